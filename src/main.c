@@ -33,7 +33,13 @@ static int do_command(Compiler *c) {
     case CMD_HEADER: return command_header(c);
     case CMD_FMU: return command_fmu(c);
     case CMD_BUILD: return command_build(c);
-    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: case CMD_LYAPUNOV: case CMD_COST: case CMD_SWEEP: return command_run(c);
+    case CMD_RUN:
+    case CMD_PLOT:
+    case CMD_ANIMATE:
+    case CMD_MODES:
+    case CMD_LYAPUNOV:
+    case CMD_COST:
+    case CMD_SWEEP: return command_run(c);
     case CMD_EFFECTS: return command_effects(c);
     case CMD_HELP: return command_help(c);
     case CMD_COMPLETION: case CMD_COMPLETE: return command_completion(c);
@@ -63,7 +69,8 @@ static int compile(Compiler *c) {
   int status = compiler_read(c);
   if (status == STATUS_OK) status = folds_digits(c) ? do_command(c) : STATUS_USAGE;
   compiler_print_messages(c);
-  if (c->o.command == CMD_CHECK && c->o.json && status != STATUS_USAGE && check_json_print(c) != STATUS_OK) status = STATUS_USAGE;
+  if (c->o.command == CMD_CHECK && c->o.json && status != STATUS_USAGE && check_json_print(c) != STATUS_OK)
+    status = STATUS_USAGE;
   return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
 }
 
@@ -82,7 +89,8 @@ int main(int argc, char **argv) {
   lag_prepare_streams();
   if (!c.arena) return usage_error("out of memory");
   if (setjmp(out_of_memory)) {
-    if (arena_hit_limit(c.arena)) fprintf(stderr, "lagc: the model needs more than the limit of %d MiB of memory\n", MEMORY_LIMIT_MIB);
+    if (arena_hit_limit(c.arena))
+      fprintf(stderr, "lagc: the model needs more than the limit of %d MiB of memory\n", MEMORY_LIMIT_MIB);
     else fprintf(stderr, "lagc: out of memory\n");
     status = STATUS_USAGE;
   } else {

@@ -1,5 +1,6 @@
-/* Measures of tests: arithmetic as one writes it, `max(y) - h`, in words for runtime/analysis/measure.h, `y max() h -`, without checks of names and units:
- * the compiler's own way is src/model/measure.c. Precedence: + -, * /, unary -, ^. pi, deg; x(10) at a time; min and max are those along the run. */
+/* Measures of tests: arithmetic as one writes it, `max(y) - h`, in words for runtime/analysis/measure.h, `y max() h
+ * -`, without checks of names and units: the compiler's own way is src/model/measure.c. Precedence: + -, * /, unary
+ * -, ^. pi, deg; x(10) at a time; min and max are those along the run. */
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,7 +33,10 @@ static void words_name(Words *w, char name[128])
 {
   int quoted = *w->at == '"', open = 0;
   size_t n = quoted ? strcspn(w->at + 1, "\"") + 2 : 0;
-  for (; !quoted && (isalnum((unsigned char)w->at[n]) || (w->at[n] && strchr("_'.[]", w->at[n])) || (open && w->at[n] == ',')); n++) open += (w->at[n] == '[') - (w->at[n] == ']');
+  for (; !quoted &&
+         (isalnum((unsigned char)w->at[n]) || (w->at[n] && strchr("_'.[]", w->at[n])) || (open && w->at[n] == ','));
+       n++)
+    open += (w->at[n] == '[') - (w->at[n] == ']');
   w->wrong |= n == 0 || n > 127;
   snprintf(name, 128, "%.*s", (int)n, w->at);
   w->at += w->wrong ? strlen(w->at) : n;
@@ -41,8 +45,10 @@ static void words_name(Words *w, char name[128])
 /* name( is read. */
 static void words_call(Words *w, const char *name)
 {
-  static const char *const tracks[] = {"max", "min", "mean", "rms", "drift", "period"}, *const functions[] = {"sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh",
-    "tanh", "sqrt", "cbrt", "exp", "log", "abs", "floor", "atan2", "hypot", "kepler", "K", "sn", "cn", "dn", "lambert"};
+  static const char *const tracks[] = {"max", "min", "mean", "rms", "drift", "period"},
+                           *const functions[] = {"sin",   "cos",    "tan",  "asin", "acos", "atan", "sinh",   "cosh",
+                                                 "tanh",  "sqrt",   "cbrt", "exp",  "log",  "abs",  "floor",  "atan2",
+                                                 "hypot", "kepler", "K",    "sn",   "cn",   "dn",   "lambert"};
   char word[300], event[128] = "";
   int hit = strcmp(name, "hit") == 0, of = hit || strcmp(name, "count") == 0, known = 0;
   if (of) {

@@ -1,6 +1,7 @@
-/* Automatic choice of the method where none is named. Enters: a simulation with its values and tolerance; leaves: its method, and the reason.
- * Holds: the choice depends on the model, the values and the tolerance, never on measured times. Stiffness is the dominant eigenvalue of the
- * Jacobian by the power method, compared with a method's bound of stability at the steps of a trial run. */
+/* Automatic choice of the method where none is named. Enters: a simulation with its values and tolerance; leaves:
+ * its method, and the reason. Holds: the choice depends on the model, the values and the tolerance, never on
+ * measured times. Stiffness is the dominant eigenvalue of the Jacobian by the power method, compared with a method's
+ * bound of stability at the steps of a trial run. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,21 +13,25 @@
 /* Between these tolerances dop853 is the cheapest method, as measured with `lagc cost`. */
 static const double below_taylor = 1e-9, above_rk45 = 1e-6;
 
-enum { MOST_OF_TRIAL = 200, MOST_OF_RADAU = 40 }; /* limits on the size of the state: beyond, Jacobians or factorizations take too long */
+/* limits on the size of the state: beyond, Jacobians or factorizations take too long */
+enum { MOST_OF_TRIAL = 200, MOST_OF_RADAU = 40 };
 enum { STEPS_OF_TRIAL = 600, LEAST_STEPS = 30, ITERATIONS = 6, STAGES = 12, MARGIN = 4 };
 
-/* Fraction of the stability bound above which a step counts as limited. Steps limited by stability vary about the bound, since steps past it let
- * errors grow until one is refused (h*rho of rk45, whose bound is 3.3, lies between 2.2 and 4.2), so half of them may be below it. */
+/* Fraction of the stability bound above which a step counts as limited. Steps limited by stability vary about the
+ * bound, since steps past it let errors grow until one is refused (h*rho of rk45, whose bound is 3.3, lies between
+ * 2.2 and 4.2), so half of them may be below it. */
 static const double near_bound = 0.75;
-/* A mode counts as growing if its real part is more than this fraction of |eigenvalue|: accuracy, not stability, limits steps. Less may be
- * rounding in the eigenvalue of an oscillation. */
+/* A mode counts as growing if its real part is more than this fraction of |eigenvalue|: accuracy, not stability,
+ * limits steps. Less may be rounding in the eigenvalue of an oscillation. */
 static const double growing = 0.1;
 
 typedef struct Stiffness {
-  int steps, looked, limited; /* steps made; of these examined; of these with h*rho near or past the stability bound. In a trial that gets past
-                               * half of its steps, only later ones count */
+  /* steps made; of these examined; of these with h*rho near or past the stability bound. In a trial that gets past
+   * half of its steps, only later ones count */
+  int steps, looked, limited;
   int unfinished;             /* 1: the trial ended at its largest number of steps */
-  double needed;              /* least number of steps of an explicit method at its stability bound: the sum of h*rho/bound */
+  /* least number of steps of an explicit method at its stability bound: the sum of h*rho/bound */
+  double needed;
   double calls, until;        /* right-hand sides computed; time reached */
 } Stiffness;
 
@@ -54,9 +59,9 @@ static double apply_jacobian(const lag_problem *pb, const double *J, const doubl
   return sqrt(dot(pb->n, y, y));
 }
 
-/* The dominant eigenvalue, or pair: returns its modulus, 0 where there is none, and its real part. Power method, continued from the vector of
- * the last step. Then x, y = J x and z = J y lie in the span of the pair's vectors, z = a y + b x, and the pair are the roots of s^2 = a s + b.
- * For a single eigenvalue y is along x, and s = y.x/x.x. */
+/* The dominant eigenvalue, or pair: returns its modulus, 0 where there is none, and its real part. Power method,
+ * continued from the vector of the last step. Then x, y = J x and z = J y lie in the span of the pair's vectors, z =
+ * a y + b x, and the pair are the roots of s^2 = a s + b. For a single eigenvalue y is along x, and s = y.x/x.x. */
 static double dominant(Look *l, const lag_problem *pb, double *real) {
   const double alike = 1e-10; /* squared sine of an angle that counts as 0 */
   int n = l->n;
@@ -85,7 +90,8 @@ static int examine_step(void *context, const lag_sim *sim) {
   double t = sim->run->step_t1, h = fabs(t - l->last), real;
   l->last = s->until = t;
   s->calls = pb.rhs_calls;
-  if (s->steps == STEPS_OF_TRIAL / 2) { /* drops the statistics of the first half of the trial: they may be those of a transient */
+  /* drops the statistics of the first half of the trial: they may be those of a transient */
+  if (s->steps == STEPS_OF_TRIAL / 2) {
     s->looked = s->limited = 0;
   }
   if (s->steps++ % l->every == 0 && lag_jacobian(&pb, t, sim->y, l->J, l->work) == LAG_OK) {
@@ -97,10 +103,11 @@ static int examine_step(void *context, const lag_sim *sim) {
   return s->steps >= STEPS_OF_TRIAL;
 }
 
-/* Runs a trial by `method` with the values of sim for at most STEPS_OF_TRIAL steps, and compares each with an explicit method's `bound` of
- * stability on the negative real axis. A mode that grows in the direction of the run does not count: backwards, a stiff model is not stiff. Needs
- * the model's linearisation. 0: no trial is possible; LAG_ENOMEM. Source of the criterion, and of the bounds 3.3 of rk45 and 6.1 of dop853: Hairer, Wanner,
- * Solving Ordinary Differential Equations II (1996), DOI 10.1007/978-3-642-05221-7, IV.2. */
+/* Runs a trial by `method` with the values of sim for at most STEPS_OF_TRIAL steps, and compares each with an
+ * explicit method's `bound` of stability on the negative real axis. A mode that grows in the direction of the run
+ * does not count: backwards, a stiff model is not stiff. Needs the model's linearisation. 0: no trial is possible;
+ * LAG_ENOMEM. Source of the criterion, and of the bounds 3.3 of rk45 and 6.1 of dop853: Hairer, Wanner, Solving
+ * Ordinary Differential Equations II (1996), DOI 10.1007/978-3-642-05221-7, IV.2. */
 static int run_trial(const lag_sim *sim, double until, const lag_method *method, double bound, Stiffness *s) {
   lag_sim *trial = lag_sim_like(sim);
   size_t n = (size_t)sim->pb.n, rows = n - (size_t)sim->pb.nq;
@@ -120,10 +127,13 @@ static int run_trial(const lag_sim *sim, double until, const lag_method *method,
   return rc == LAG_ENOMEM ? rc : ready;
 }
 
-/* After a trial of radau, with n components of the state: whether its steps are so far past the bound that it is much cheaper than dop853 can be.
- * At tight tolerances rounding or a transient may limit an explicit method's first steps far below the stability bound; this test still sees
- * stiffness. Costs are right-hand sides, 12 a step of dop853; radau's Jacobian and decompositions count as n of them. */
-static int exceeds_stability(const Stiffness *s, int n) { return STAGES * s->needed > MARGIN * (s->calls + (double)n * s->steps); }
+/* After a trial of radau, with n components of the state: whether its steps are so far past the bound that it is
+ * much cheaper than dop853 can be. At tight tolerances rounding or a transient may limit an explicit method's first
+ * steps far below the stability bound; this test still sees stiffness. Costs are right-hand sides, 12 a step of
+ * dop853; radau's Jacobian and decompositions count as n of them. */
+static int exceeds_stability(const Stiffness *s, int n) {
+  return STAGES * s->needed > MARGIN * (s->calls + (double)n * s->steps);
+}
 
 /* ---- The choice */
 
@@ -136,13 +146,17 @@ static int is_stiff(const lag_sim *sim, double until, const lag_method *method, 
   int rc = !m->linear || m->constraints || n > MOST_OF_TRIAL ? 0 : run_trial(sim, until, method, bound, &s);
   if (rc <= 0) return rc;
   if (s.looked >= LEAST_STEPS && s.limited * 2 > s.looked) {
-    snprintf(why, size, "radau, since the model is stiff: stability, not the tolerance, would limit %.0f %% of the first steps of %s",
-             100.0 * s.limited / s.looked, method->name);
+    snprintf(
+        why, size,
+        "radau, since the model is stiff: stability, not the tolerance, would limit %.0f %% of the first steps of %s",
+        100.0 * s.limited / s.looked, method->name);
     return 1;
   }
   rc = !s.unfinished || n > MOST_OF_RADAU ? 0 : run_trial(sim, until, &lag_radau, bound, &radau);
   if (rc <= 0 || !exceeds_stability(&radau, n)) return rc < 0 ? rc : 0;
-  snprintf(why, size, "radau, since the model is stiff: stability alone would demand %.2g steps of %s to t = %.3g s, and radau takes %d",
+  snprintf(why, size,
+           "radau, since the model is stiff: stability alone would demand %.2g steps of %s to t = %.3g s, and radau "
+           "takes %d",
            radau.needed, method->name, radau.until, radau.steps);
   return 1;
 }
@@ -170,10 +184,12 @@ static int take_method(lag_sim *sim, double until, const lag_method *method, con
 /* why := the choice after `refused` could not start, as the simulation's message says. */
 static void say_refusal(const lag_sim *sim, const lag_method *refused, const char *taken, char *why, size_t size) {
   const char *message = lag_sim_message(sim);
-  snprintf(why, size, "%s, since %s cannot start here (%.*s)", taken, refused->name, (int)strcspn(message, ";"), message);
+  snprintf(why, size, "%s, since %s cannot start here (%.*s)", taken, refused->name, (int)strcspn(message, ";"),
+           message);
 }
 
-int lag_sim_choose_method(lag_sim *sim, double until, int exponents, const lag_option *opt, int n, char *why, size_t size) {
+int lag_sim_choose_method(lag_sim *sim, double until, int exponents, const lag_option *opt, int n, char *why,
+                          size_t size) {
   if (!sim || !why) return LAG_EINVAL;
   double tol = lag_sim_tolerance(sim);
   const lag_method *plain = tol > above_rk45 ? &lag_rk45 : &lag_dop853, *refused = NULL;

@@ -1,6 +1,7 @@
-/* The plan of `lagc cost`: which setting of which method is run next, and when to stop. Enters: methods, a reference, a time to spend; leaves: runs
- * with errors and times, and the Pareto front. Holds: each method is tried at two coarse settings before it is judged; after that the shortest run
- * that may lie near the front comes next, so that the front is known from its cheap end on, whenever the time is up. */
+/* The plan of `lagc cost`: which setting of which method is run next, and when to stop. Enters: methods, a
+ * reference, a time to spend; leaves: runs with errors and times, and the Pareto front. Holds: each method is tried
+ * at two coarse settings before it is judged; after that the shortest run that may lie near the front comes next, so
+ * that the front is known from its cheap end on, whenever the time is up. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -41,7 +42,8 @@ static int is_adaptive(const CostMethod *m) { return (m->method->flags & LAG_MET
 static double knob_of(const Plan *p, const CostMethod *m, int k) {
   const Samples *r = p->s->reference;
   int rows = r->rows - (r->t[0] == p->s->scene.t0); /* without the start */
-  double span = fabs(r->t[r->rows - 1] - p->s->scene.t0), knob = is_adaptive(m) ? pow(10, -2 - k) : span / ldexp(rows, k);
+  double span = fabs(r->t[r->rows - 1] - p->s->scene.t0),
+         knob = is_adaptive(m) ? pow(10, -2 - k) : span / ldexp(rows, k);
   return knob < (is_adaptive(m) ? 4.5 * DBL_EPSILON : 1e-12 * span) ? 0 : knob;
 }
 
@@ -57,7 +59,8 @@ static void predict(const CostMethod *m, MethodProgress *g) {
   g->error = m->nruns ? smaller * m->run[m->nruns - 1].error : rough;
 }
 
-/* Time of the fastest run with at most this error, or at most the smallest error found: below it nothing is gained but luck in rounding. */
+/* Time of the fastest run with at most this error, or at most the smallest error found: below it nothing is gained
+ * but luck in rounding. */
 static double front_time(const CostSweep *s, double error) {
   const CostRun *run;
   double least = HUGE_VAL;
@@ -91,7 +94,8 @@ static int run_next(Plan *p, int i) {
   CostMethod *m = &s->method[i];
   MethodProgress *g = &p->of[i];
   CostRun run = {.knob = knob_of(p, m, g->next++)};
-  const double fine = 1e-7; /* errors that stop falling there do so for rounding; coarse ones may rise and fall by chance */
+  /* errors that stop falling there do so for rounding; coarse ones may rise and fall by chance */
+  const double fine = 1e-7;
   double longest = fmax(0.01, s->seconds * (m->nruns < 2 ? 0.1 : 0.5));
   if (run.knob == 0 || m->nruns == LAG_COST_MOST_RUNS - 2) {
     g->done = 1;
@@ -144,14 +148,16 @@ static int try_between(Plan *p, CostMethod *m) {
   return LAG_OK;
 }
 
-/* Of methods whose fastest run within the target takes at most twice as long as the fastest of all, settings closer to the target. */
+/* Of methods whose fastest run within the target takes at most twice as long as the fastest of all, settings closer
+ * to the target. */
 static int refine_target(Plan *p) {
   CostSweep *s = p->s;
   const CostRun *own;
   double least = front_time(s, s->target);
   int rc = LAG_OK;
   for (int i = 0; i < s->n && rc == LAG_OK && s->target > 0 && used(p) < 0.9 * s->seconds; i++)
-    if (lag_cost_cheapest(&s->method[i], 1, s->target, &own) && own->time <= 2 * least) rc = try_between(p, &s->method[i]);
+    if (lag_cost_cheapest(&s->method[i], 1, s->target, &own) && own->time <= 2 * least)
+      rc = try_between(p, &s->method[i]);
   return rc;
 }
 
@@ -165,7 +171,8 @@ static int repeat_front(Plan *p) {
       CostRun *run = &s->method[i].run[k], again = *run;
       if (run->time > close * front_time(s, run->error) || used(p) + 3 * run->time > s->seconds) continue;
       p->stopped = s->note && s->note(s->context, &s->method[i], used(p) / s->seconds);
-      rc = lag_cost_run(&s->method[i], s, fmax(enough, 3 * run->time), run->time > enough ? 3 : 41, HUGE_VAL, &p->own, &again);
+      rc = lag_cost_run(&s->method[i], s, fmax(enough, 3 * run->time), run->time > enough ? 3 : 41, HUGE_VAL, &p->own,
+                        &again);
       if (rc == LAG_OK) *run = again;
       else if (rc != LAG_ENOMEM) rc = LAG_OK;
     }

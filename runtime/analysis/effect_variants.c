@@ -79,7 +79,8 @@ int lag_variant_difference(const Variant *scene, const Variant *other, double *d
   pool.failed = pool.failed || take_scales(scene, other, at, scale, own);
   if (!pool.failed) {
     double most = row_difference(a->y + last_a * na, b->y + last_b * nb, at, scale, a->n);
-    for (size_t i = 0; i + 1 < (size_t)common; i++) most = fmax(most, row_difference(a->y + i * na, b->y + i * nb, at, scale, a->n));
+    for (size_t i = 0; i + 1 < (size_t)common; i++)
+      most = fmax(most, row_difference(a->y + i * na, b->y + i * nb, at, scale, a->n));
     double begun = scene->sim->scene->t0;
     *difference = fmax(most, fabs(a->t[last_a] - b->t[last_b]) / fabs(a->t[last_a] - begun));
   }
@@ -89,7 +90,8 @@ int lag_variant_difference(const Variant *scene, const Variant *other, double *d
 
 /* ---- Weights */
 
-/* Groups of accelerations and rates of states with one unit: group[n] of component i, -1 for rates of coordinates. Returns the number of groups. */
+/* Groups of accelerations and rates of states with one unit: group[n] of component i, -1 for rates of coordinates.
+ * Returns the number of groups. */
 static int group_rates(const Variant *v, int *group) {
   int count = 0;
   for (int i = 0; i < v->run.n; i++) {
@@ -125,11 +127,13 @@ static double largest_ratio(int states, int groups, const double *size, const do
 int lag_variant_weight(const Variant *along, const Variant *with, const Variant *without, double *weight) {
   Pool pool = {0};
   size_t n = (size_t)(with->run.n > without->run.n ? with->run.n : without->run.n);
-  int *at_with = places(&pool, along, with), *at_without = places(&pool, along, without), *same = places(&pool, with, without);
+  int *at_with = places(&pool, along, with), *at_without = places(&pool, along, without),
+      *same = places(&pool, with, without);
   int *group = (int *)(void *)lag_pool_doubles(&pool, n), groups = 0, states = 0;
   double *y = lag_pool_doubles(&pool, n), *one = lag_pool_doubles(&pool, n), *two = lag_pool_doubles(&pool, n);
   double *beside = lag_pool_doubles(&pool, n);
-  double *size = lag_pool_doubles(&pool, LAG_VARIANT_ROWS * n), *differs = lag_pool_doubles(&pool, LAG_VARIANT_ROWS * n);
+  double *size = lag_pool_doubles(&pool, LAG_VARIANT_ROWS * n),
+         *differs = lag_pool_doubles(&pool, LAG_VARIANT_ROWS * n);
   const double moved = 1. / 1024; /* shows the terms of rates that cancel */
   *weight = NAN;
   if (!pool.failed) groups = group_rates(with, group);
@@ -157,7 +161,8 @@ int lag_variant_weight(const Variant *along, const Variant *with, const Variant 
 static double time_calls(Variant *v, int loops, double *dy) {
   double begun = lag_processor_seconds();
   for (int k = 0; k < loops; k++)
-    for (int i = 0; i < v->run.rows; i++) lag_rhs(&v->sim->pb, v->run.t[i], v->run.y + (size_t)i * (size_t)v->run.n, dy);
+    for (int i = 0; i < v->run.rows; i++)
+      lag_rhs(&v->sim->pb, v->run.t[i], v->run.y + (size_t)i * (size_t)v->run.n, dy);
   return (lag_processor_seconds() - begun) / loops / v->run.rows;
 }
 

@@ -1,5 +1,6 @@
-/* The equations of a model at rest, their perturbation noise, and the search for an equilibrium: trust region, Newton's method and overdamped
- * motion (equilibrium.h), with a test for roots that accounts for rounding of the model's numbers. */
+/* The equations of a model at rest, their perturbation noise, and the search for an equilibrium: trust region,
+ * Newton's method and overdamped motion (equilibrium.h), with a test for roots that accounts for rounding of the
+ * model's numbers. */
 #include "analysis/equilibrium.h"
 
 #include <float.h>
@@ -24,8 +25,8 @@ void lag_equilibrium_state(Equilibrium *r, const double *x) {
   for (int i = 0; i < r->n; i++) r->y[i < nq ? i : nq + i] = x[i] * r->scale[i];
 }
 
-/* An lag_equations: forces M a (a from the model, so that both vanish together) and rates, of an Equilibrium at x[n]. Leaves the state in y,
- * y' in rate, and M. */
+/* An lag_equations: forces M a (a from the model, so that both vanish together) and rates, of an Equilibrium at
+ * x[n]. Leaves the state in y, y' in rate, and M. */
 static int equations(void *context, const double *x, double *f, double *J) {
   Equilibrium *r = context;
   lag_problem *pb = &r->sim->pb;
@@ -45,7 +46,8 @@ static int equations(void *context, const double *x, double *f, double *J) {
 
 /* ---- Perturbation noise */
 
-/* Perturbs the elements of z[n] that belong to pass `turn`: those whose number, counted from `first`, is `turn` modulo MOST_TURNS. */
+/* Perturbs the elements of z[n] that belong to pass `turn`: those whose number, counted from `first`, is `turn`
+ * modulo MOST_TURNS. */
 static void perturb(double *z, int n, int first, int turn) {
   for (int i = 0; i < n; i++) {
     int at = first + i;
@@ -53,7 +55,8 @@ static void perturb(double *z, int n, int first, int turn) {
   }
 }
 
-int lag_perturbation_noise(Equilibrium *r, lag_values *values, const double *x, size_t count, double *base, double *noise, double *scratch) {
+int lag_perturbation_noise(Equilibrium *r, lag_values *values, const double *x, size_t count, double *base,
+                           double *noise, double *scratch) {
   lag_problem *pb = &r->sim->pb;
   const double *given = pb->p;
   int np = pb->model->np, n = r->n, turns = np + n < MOST_TURNS ? np + n : MOST_TURNS;
@@ -76,7 +79,8 @@ int lag_perturbation_noise(Equilibrium *r, lag_values *values, const double *x, 
 
 /* ---- Regularity of a place */
 
-/* Distance of M[n * n] from a singular matrix: the least pivot of symmetric elimination relative to size[n], the usual diagonal. M is destroyed. */
+/* Distance of M[n * n] from a singular matrix: the least pivot of symmetric elimination relative to size[n], the
+ * usual diagonal. M is destroyed. */
 static double least_pivot(int n, double *M, const double *size) {
   double least = HUGE_VAL;
   for (int k = 0; k < n; k++) {
@@ -87,8 +91,8 @@ static double least_pivot(int n, double *M, const double *size) {
   return least;
 }
 
-/* Whether the mass matrix is nearly singular at r->x and not nearby: a coordinate loses its meaning, as longitude does at a pole. This test and
- * the next leave r's values undefined. */
+/* Whether the mass matrix is nearly singular at r->x and not nearby: a coordinate loses its meaning, as longitude
+ * does at a pole. This test and the next leave r's values undefined. */
 static int is_coordinate_pole(Equilibrium *r) {
   int n = r->n, nq = r->sim->pb.nq;
   double *size = r->dx;
@@ -129,8 +133,8 @@ static int is_nonsmooth(Equilibrium *r) {
   double *here = r->J, *near = r->W, *far = r->scratch;
   int rough = 0;
   for (int pattern = 0; pattern < 4 && !rough; pattern++) {
-    rough = displaced_derivatives(r, pattern, 0, here) == 0 && displaced_derivatives(r, pattern, 1e-9, near) == 0 && displaced_derivatives(r, pattern, 1e-3, far) == 0 &&
-            changes_at_once(r->n, here, near, far);
+    rough = displaced_derivatives(r, pattern, 0, here) == 0 && displaced_derivatives(r, pattern, 1e-9, near) == 0 &&
+            displaced_derivatives(r, pattern, 1e-3, far) == 0 && changes_at_once(r->n, here, near, far);
   }
   return rough;
 }
@@ -150,12 +154,14 @@ static void choose_scales(Equilibrium *r) {
   for (int i = 0; i < r->n; i++) {
     const lag_var *v = unknown(r, i);
     double largest = 0;
-    for (int j = 0; j < r->n; j++) largest = strcmp(unknown(r, j)->unit, v->unit) == 0 ? fmax(largest, fabs(r->start[j])) : largest;
+    for (int j = 0; j < r->n; j++)
+      largest = strcmp(unknown(r, j)->unit, v->unit) == 0 ? fmax(largest, fabs(r->start[j])) : largest;
     r->scale[i] = lag_is_angle(v) ? 1 : largest > 0 ? largest : v->factor;
   }
 }
 
-/* Row scales that give forces as a whole, and rates as a whole, the size 1: units and magnitudes of models differ by any factor. */
+/* Row scales that give forces as a whole, and rates as a whole, the size 1: units and magnitudes of models differ by
+ * any factor. */
 static int choose_rows(Equilibrium *r) {
   int nq = r->sim->pb.nq, n = r->n;
   double largest[2] = {0, 0};
@@ -194,16 +200,18 @@ static int forces_and_noise(Equilibrium *r, const double *x) {
   return equations(r, x, r->f, NULL); /* r->rate at x */
 }
 
-/* Solves J dx = -b, where b[n] and J have the given noise (NULL: none), by Gaussian elimination with complete pivoting (J.H. Wilkinson, J. ACM 8
- * (1961) 281, DOI 10.1145/321075.321076) after rows were divided by the largest size of terms in them; pivots that cancel among these, to rounding,
- * count as 0. Destroys J and b. Returns the rank; undetermined unknowns are 0; b[i] for i >= rank is the unbalanced force of a combination of
- * equations that no unknown changes, 0 if it is noise. Errors add as if independent. */
+/* Solves J dx = -b, where b[n] and J have the given noise (NULL: none), by Gaussian elimination with complete
+ * pivoting (J.H. Wilkinson, J. ACM 8 (1961) 281, DOI 10.1145/321075.321076) after rows were divided by the largest
+ * size of terms in them; pivots that cancel among these, to rounding, count as 0. Destroys J and b. Returns the
+ * rank; undetermined unknowns are 0; b[i] for i >= rank is the unbalanced force of a combination of equations that
+ * no unknown changes, 0 if it is noise. Errors add as if independent. */
 static int solve(Equilibrium *r, double *b, const double *noise) {
   int n = r->n, rank = 0;
   double *A = r->J, *x = r->dx, *error = r->scratch, *column = error + n;
   for (int i = 0; i < n; i++) {
     double size = 0;
-    for (int j = 0; j < n; j++) size = fmax(size, fabs(A[i * n + j]) + (noise ? noise[n + i * n + j] / DBL_EPSILON : 0));
+    for (int j = 0; j < n; j++)
+      size = fmax(size, fabs(A[i * n + j]) + (noise ? noise[n + i * n + j] / DBL_EPSILON : 0));
     double factor = size > 0 && isfinite(size) ? 1 / size : 1;
     for (int j = 0; j < n; j++) A[i * n + j] *= factor;
     b[i] *= -factor;
@@ -264,9 +272,11 @@ static int none_pulls(Equilibrium *r) {
 /* Whether all forces vanish at x[n]. */
 static int vanish(Equilibrium *r, const double *x) { return forces_and_noise(r, x) == 0 && none_pulls(r); }
 
-/* Whether x[n] is a root: all forces vanish there, or within a Newton step of rounding size. The size of a force alone says little, as stiff
- * ones stand beside soft ones. */
-static int is_root(Equilibrium *r, const double *x) { return forces_and_noise(r, x) == 0 && (none_pulls(r) || newton_stays(r, x)); }
+/* Whether x[n] is a root: all forces vanish there, or within a Newton step of rounding size. The size of a force
+ * alone says little, as stiff ones stand beside soft ones. */
+static int is_root(Equilibrium *r, const double *x) {
+  return forces_and_noise(r, x) == 0 && (none_pulls(r) || newton_stays(r, x));
+}
 
 /* Rounds small components of x to 0 where forces vanish there, too. */
 static void round_to_zero(Equilibrium *r) {
@@ -298,8 +308,8 @@ static void restore_undetermined(Equilibrium *r) {
 
 /* ---- Newton's method */
 
-/* Newton's method without step control: along the floor of a steep valley its steps are large where a method that must reduce forces at each
- * step is slow. 1: x[n] has converged. */
+/* Newton's method without step control: along the floor of a steep valley its steps are large where a method that
+ * must reduce forces at each step is slow. 1: x[n] has converged. */
 static int newton(Equilibrium *r, lag_equations *zero, double *x, int most) {
   double last = HUGE_VAL;
   for (int k = 0; k < most; k++) {
@@ -335,7 +345,8 @@ static int overdamped_step(void *context, const double *x, double *f, double *J)
   return rc;
 }
 
-/* W := the mass matrix in the units of the equations, and the identity for rates; delta: a first step of 0.3 of a scale. */
+/* W := the mass matrix in the units of the equations, and the identity for rates; delta: a first step of 0.3 of a
+ * scale. */
 static void prepare_overdamped(Equilibrium *r) {
   int n = r->n, nq = r->sim->pb.nq;
   double fastest = 0;
@@ -384,7 +395,8 @@ static int ran_away(Equilibrium *r) {
   return distance(r, r->x, r->begin) > 1e4 * start || largest_force(r, r->x) < 1e-6 * largest_force(r, r->begin);
 }
 
-/* x := the root to which Newton's method leads from there[n], if it is a root and within `farthest`; else x is unchanged. Whether x is a root. */
+/* x := the root to which Newton's method leads from there[n], if it is a root and within `farthest`; else x is
+ * unchanged. Whether x is a root. */
 static int newton_polish(Equilibrium *r, const double *there, double farthest) {
   size_t bytes = (size_t)r->n * sizeof(double);
   memcpy(r->kept, r->x, bytes);
@@ -429,9 +441,10 @@ static int search(Equilibrium *r, const lag_algebra *algebra) {
 static int allocate(Equilibrium *r) {
   const lag_model *m = r->sim->scene->model;
   size_t n = (size_t)r->n, nq = (size_t)m->nq, ny = (size_t)r->sim->pb.n;
-  double **const parts[] = {&r->start, &r->found, &r->y, &r->rate, &r->scale, &r->x, &r->begin, &r->from, &r->first, &r->trial, &r->near, &r->kept,
-                            &r->f, &r->row, &r->dx, &r->step, &r->spread, &r->J, &r->W, &r->values, &r->noise, &r->scratch, &r->dr, &r->M,
-                            &r->work};
+  double **const parts[] = {&r->start,   &r->found, &r->y,      &r->rate, &r->scale, &r->x,      &r->begin,
+                            &r->from,    &r->first, &r->trial,  &r->near, &r->kept,  &r->f,      &r->row,
+                            &r->dx,      &r->step,  &r->spread, &r->J,    &r->W,     &r->values, &r->noise,
+                            &r->scratch, &r->dr,    &r->M,      &r->work};
   const size_t sizes[] = {n, n, ny, ny, n, n, n, n, n, n, n, n, n, n, n, n, n, n * n, n * n, n + n * n, n + n * n,
                           n * n + 3 * n + (size_t)(m->np + m->nderived), n * ny, nq * nq, lag_linear_work(m)};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&r->pool, sizes[i]);
@@ -450,13 +463,14 @@ static int is_held(Equilibrium *r) {
   return held;
 }
 
-/* spread := uncertainty of the root: Newton steps for noise of the forces with two patterns of signs, and for the rest of the forces. Leaves all
- * values at x. */
+/* spread := uncertainty of the root: Newton steps for noise of the forces with two patterns of signs, and for the
+ * rest of the forces. Leaves all values at x. */
 static int estimate_uncertainty(Equilibrium *r) {
   int n = r->n, rc = 0;
   for (int pattern = 0; pattern < 3 && rc == 0; pattern++) {
     rc = forces_and_noise(r, r->x);
-    for (int i = 0; i < n; i++) r->step[i] = pattern == 0 ? r->f[i] : CERTAIN * r->noise[i] * (pattern == 2 && i % 2 ? -1 : 1);
+    for (int i = 0; i < n; i++)
+      r->step[i] = pattern == 0 ? r->f[i] : CERTAIN * r->noise[i] * (pattern == 2 && i % 2 ? -1 : 1);
     if (rc == 0) solve(r, r->step, r->noise);
     for (int i = 0; i < n && rc == 0; i++) r->spread[i] = fmax(r->spread[i], fmin(fabs(r->dx[i]), 0.1));
   }

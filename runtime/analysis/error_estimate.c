@@ -1,6 +1,7 @@
-/* Error of a run by a second run (error_estimate.h), as in step doubling: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I
- * (1993), DOI 10.1007/978-3-540-78862-1, II.4, but for the whole motion. Neighbouring motions of chaos part exponentially, those of regular
- * motion in proportion to time; a method adds to it once or twice more: hence the laws of growth. */
+/* Error of a run by a second run (error_estimate.h), as in step doubling: E. Hairer, S.P. Norsett, G. Wanner,
+ * Solving Ordinary Differential Equations I (1993), DOI 10.1007/978-3-540-78862-1, II.4, but for the whole motion.
+ * Neighbouring motions of chaos part exponentially, those of regular motion in proportion to time; a method adds to
+ * it once or twice more: hence the laws of growth. */
 #include "analysis/error_estimate.h"
 
 #include <float.h>
@@ -42,8 +43,8 @@ static void halve(ErrorEstimate *e) {
   e->stride *= 2;
 }
 
-/* Whether a switching surface or an event has cut the last step: a dense output that calls the model, or is projected to its constraints, has the
- * wrong branch, or set of constraints, by now. */
+/* Whether a switching surface or an event has cut the last step: a dense output that calls the model, or is
+ * projected to its constraints, has the wrong branch, or set of constraints, by now. */
 static int is_cut(const lag_sim *sim, int held, int at_event) {
   return (sim->scene->model->nmodes || held) && (at_event || sim->run->t != sim->run->step_t1);
 }
@@ -52,12 +53,14 @@ static int is_cut(const lag_sim *sim, int held, int at_event) {
 static int some_held(const lag_sim *sim) {
   const lag_model *m = sim->scene->model;
   int held = 0;
-  for (int i = 0; i < m->ncontacts; i++) held |= m->contacts[i].is_tangent || lag_contact_is_closed(sim, &m->contacts[i]);
+  for (int i = 0; i < m->ncontacts; i++)
+    held |= m->contacts[i].is_tangent || lag_contact_is_closed(sim, &m->contacts[i]);
   return held;
 }
 
-/* *t, y[n] := place k within the last step; few: there are several in a step, else one; held: a contact is closed at an end of it. Returns whether it lies before the
- * end, and so before events there; the end where the method steps to each row, or the step is cut. */
+/* *t, y[n] := place k within the last step; few: there are several in a step, else one; held: a contact is closed at
+ * an end of it. Returns whether it lies before the end, and so before events there; the end where the method steps
+ * to each row, or the step is cut. */
 static int take_place(lag_sim *sim, int k, int few, int held, double *t, double *y) {
   const double golden = 0.6180339887498949; /* any part of all steps has places everywhere in a step */
   const Run *r = sim->run;
@@ -85,7 +88,8 @@ void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim) {
     if (++e->seen % e->stride) continue;
     if (s->rows == e->room) halve(e);
     if (e->seen % e->stride) continue;
-    between = take_place(sim, k, e->stride < PLACES_A_STEP, held, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n);
+    between =
+        take_place(sim, k, e->stride < PLACES_A_STEP, held, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n);
     e->met[s->rows++] = between ? before : e->events;
   }
 }
@@ -125,7 +129,8 @@ static int by_error(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* The error that is exceeded half of the time of these pieces: close encounters, where velocities differ for a moment, do not count. */
+/* The error that is exceeded half of the time of these pieces: close encounters, where velocities differ for a
+ * moment, do not count. */
 static double typical_error(int n, Piece *all) {
   double whole = 0, part = 0;
   int i = 0;
@@ -144,12 +149,13 @@ static int put_level(int n, Piece *all, double at, double *t, double *y) {
   return 1;
 }
 
-/* t[BINS], y[BINS] := time and log of the typical error in equal spans of the time compared, up to the horizon. Returns the number of those with an
- * error. */
+/* t[BINS], y[BINS] := time and log of the typical error in equal spans of the time compared, up to the horizon.
+ * Returns the number of those with an error. */
 static int take_levels(const ErrorEstimate *e, double *t, double *y) {
   static const double latest = 1 - 1e-12;
   Piece piece[LAG_ERROR_PLACES];
-  double end = fabs((isnan(e->horizon) ? e->compared ? e->motion.t[e->compared - 1] : e->t0 : e->horizon) - e->t0), before = 0;
+  double end = fabs((isnan(e->horizon) ? e->compared ? e->motion.t[e->compared - 1] : e->t0 : e->horizon) - e->t0),
+         before = 0;
   int n = 0, pieces = 0, bin = 0;
   for (int i = 0; i < e->compared; i++) {
     double at = fabs(e->motion.t[i] - e->t0);
@@ -191,9 +197,9 @@ static int is_exponential(Slope all, Slope late, Slope power_all, Slope power_la
   return fits && all.slope * span > rise && power_late.slope > steep;
 }
 
-/* The power of t, 0 to 2, that the error follows from a quarter of the time on, and alike in the second half; -1: none is
- * told apart from others. Where a charge drifts, it is bounded never, and as t only where that fits well: it grows by
- * more later. rough: of a few errors, the nearest power. */
+/* The power of t, 0 to 2, that the error follows from a quarter of the time on, and alike in the second half; -1:
+ * none is told apart from others. Where a charge drifts, it is bounded never, and as t only where that fits well: it
+ * grows by more later. rough: of a few errors, the nearest power. */
 static int power_of(Slope all, Slope late, int drifts, int rough) {
   const double near = 0.35, sure = 0.4, well = 0.13, flat = 0.1, nearest = 0.45; /* by tests/accuracy/estimates.py */
   int k = (int)lround(fmin(fmax(all.slope, 0), 9));
@@ -260,13 +266,15 @@ double lag_error_reach(ErrorEstimate *e, double factor) {
   if (e->growth == LAG_ERROR_UNKNOWN) { /* motions that parted: the mean rate up to there */
     int first = 0;
     while (first < e->compared - 1 && !(e->error[first] > 0)) first++;
-    return e->error[first] < no_digit ? t * (1 - log(factor) / log(no_digit / fmax(e->error[first], DBL_EPSILON))) : NAN;
+    return e->error[first] < no_digit ? t * (1 - log(factor) / log(no_digit / fmax(e->error[first], DBL_EPSILON)))
+                                      : NAN;
   }
   rest = log(no_digit / (factor * level));
   return e->growth == LAG_ERROR_EXPONENTIAL ? t + rest / e->rate : power > 0 ? t * exp(rest / power) : HUGE_VAL;
 }
 
-/* Exponential growth goes on, for as long again at most; other laws may end where the motion changes, as chaos shows late. */
+/* Exponential growth goes on, for as long again at most; other laws may end where the motion changes, as chaos shows
+ * late. */
 static void extrapolate(ErrorEstimate *e, double until, double level) {
   double t = fabs(e->motion.t[e->compared - 1] - e->t0), left = fabs(until - e->t0) - t, dir = until < e->t0 ? -1 : 1;
   double rest = e->growth == LAG_ERROR_EXPONENTIAL ? fmin(left, t) : 0;
@@ -279,7 +287,8 @@ static void extrapolate(ErrorEstimate *e, double until, double level) {
 
 /* ---- The comparison */
 
-/* A time at which no digit is left. It is the horizon if the motions stay apart: in a close encounter velocities differ for a moment. */
+/* A time at which no digit is left. It is the horizon if the motions stay apart: in a close encounter velocities
+ * differ for a moment. */
 typedef struct Parting {
   double t, least; /* NaN: none; smallest error from a twentieth of the time so far later on */
 } Parting;
@@ -297,8 +306,8 @@ static int is_confirmed(const ErrorEstimate *e, Parting *p, double t, double err
   return 0;
 }
 
-/* Compares rows up to the end, the horizon, or where `other` stops. Two runs meet an event at times that differ by their
- * errors: rows between, where one has met it and the other has not, say nothing, unless they go on. */
+/* Compares rows up to the end, the horizon, or where `other` stops. Two runs meet an event at times that differ by
+ * their errors: rows between, where one has met it and the other has not, say nothing, unless they go on. */
 static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
   enum { LONG = 4 };
   Parting parting = {NAN, HUGE_VAL};
@@ -353,8 +362,10 @@ int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
     e->continued = 1;
     extrapolate(e, until, level);
   }
-  if (isnan(e->largest) && !e->why[0] && !e->motion.rows) snprintf(e->why, sizeof e->why, "the run ended at an event in its first step");
-  if (isnan(e->largest) && !e->why[0]) snprintf(e->why, sizeof e->why, "a second run reached only t = %.3g s", lag_sim_time(other));
+  if (isnan(e->largest) && !e->why[0] && !e->motion.rows)
+    snprintf(e->why, sizeof e->why, "the run ended at an event in its first step");
+  if (isnan(e->largest) && !e->why[0])
+    snprintf(e->why, sizeof e->why, "a second run reached only t = %.3g s", lag_sim_time(other));
   return LAG_OK;
 }
 

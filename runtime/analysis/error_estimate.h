@@ -1,12 +1,17 @@
-/* Error of a run by a second, more accurate run: the differences of the two motions within steps, where rows are interpolated, and at its end, relative to the largest value of their kind
- * and unit, as in work_precision.h. Enters: a run under way, then a simulation of the same scene; leaves: the error, its law of growth, and the
- * horizon, the time from which no digit is left. Holds: the run is the same, bit by bit, with an estimate or without. */
+/* Error of a run by a second, more accurate run: the differences of the two motions within steps, where rows are
+ * interpolated, and at its end, relative to the largest value of their kind and unit, as in work_precision.h.
+ * Enters: a run under way, then a simulation of the same scene; leaves: the error, its law of growth, and the
+ * horizon, the time from which no digit is left. Holds: the run is the same, bit by bit, with an estimate or
+ * without. */
 #pragma once
 
 #include "analysis/formula_noise.h"
 
 /* How an error grows with the time t since the start. */
-typedef enum ErrorGrowth { LAG_ERROR_UNKNOWN, LAG_ERROR_BOUNDED, LAG_ERROR_LINEAR, LAG_ERROR_QUADRATIC, LAG_ERROR_EXPONENTIAL } ErrorGrowth;
+typedef enum ErrorGrowth {
+  LAG_ERROR_UNKNOWN, LAG_ERROR_BOUNDED, LAG_ERROR_LINEAR, LAG_ERROR_QUADRATIC,
+  LAG_ERROR_EXPONENTIAL
+} ErrorGrowth;
 
 enum { LAG_ERROR_PLACES = 4096 };
 
@@ -45,8 +50,9 @@ void lag_error_estimate_note_end(ErrorEstimate *e, lag_sim *sim);
 /* *least := the smallest divisor of errors along the noted motion. LAG_OK or LAG_ENOMEM. */
 int lag_error_least_scale(const ErrorEstimate *e, lag_sim *other, double *least);
 
-/* Runs `other`, a simulation of the same scene at its start with a more accurate setting, along the noted motion, until it fails or its hook (lag_sim_on_step)
- * ends it, and fills in the rest of *e; until: end of the run. LAG_OK, also where `other` fails (e->why), or LAG_ENOMEM. */
+/* Runs `other`, a simulation of the same scene at its start with a more accurate setting, along the noted motion,
+ * until it fails or its hook (lag_sim_on_step) ends it, and fills in the rest of *e; until: end of the run. LAG_OK,
+ * also where `other` fails (e->why), or LAG_ENOMEM. */
 int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until);
 
 /* *e as before the last comparison, for another one. */
@@ -58,9 +64,10 @@ int lag_error_estimate_is_blind(ErrorEstimate *e);
 /* After a comparison: whether a formula has lost many digits. */
 int lag_formula_is_lossy(const ErrorEstimate *e);
 
-/* After a comparison: time since the start at which errors `factor` times as large leave no digit, by their law of growth; HUGE_VAL: never; NaN: no law
- * is known. */
+/* After a comparison: time since the start at which errors `factor` times as large leave no digit, by their law of
+ * growth; HUGE_VAL: never; NaN: no law is known. */
 double lag_error_reach(ErrorEstimate *e, double factor);
 
-/* The law of errors at n times t, the first of which is the start; LAG_ERROR_UNKNOWN: none is visible, or no digit is left at the last ones. */
+/* The law of errors at n times t, the first of which is the start; LAG_ERROR_UNKNOWN: none is visible, or no digit
+ * is left at the last ones. */
 ErrorGrowth lag_error_growth(int n, double *t, const double *error);

@@ -7,8 +7,8 @@
 
 #include "core/core.h"
 
-/* noise[n] += rounding of the rates at t, y; size[n] := the largest of itself and of their sizes. scratch[5 n]. Not 0: no
- * values. */
+/* noise[n] += rounding of the rates at t, y; size[n] := the largest of itself and of their sizes. scratch[5 n]. Not
+ * 0: no values. */
 static int add_noise(lag_sim *sim, double t, const double *y, double *noise, double *size, double *scratch) {
   const double moved = 1. / 1024, usual = 1. / 3; /* these roundings are twice as large as others, and of one sign */
   int n = sim->pb.n, nq = sim->pb.nq;

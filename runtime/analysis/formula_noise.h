@@ -1,5 +1,5 @@
-/* Digits that the formulas of a model have left along a motion: cancellation, as of 1 - cos(x) near 0, is the same in each
- * run. */
+/* Digits that the formulas of a model have left along a motion: cancellation, as of 1 - cos(x) near 0, is the same
+ * in each run. */
 #pragma once
 
 #include "analysis/work_precision.h"

@@ -1,5 +1,5 @@
-/* Lyapunov exponents by repeated orthonormalisation of the tangent (lyapunov.h), with their errors, and the dimension and entropy
- * that follow. */
+/* Lyapunov exponents by repeated orthonormalisation of the tangent (lyapunov.h), with their errors, and the
+ * dimension and entropy that follow. */
 #include "analysis/lyapunov.h"
 
 #include <float.h>
@@ -15,8 +15,8 @@ static const double resolution = 0.1;
 
 void lag_lyapunov_free(Lyapunov *l) { lag_pool_free(&l->pool); }
 
-/* Pseudo-random vectors, the same in every run: axes of a model may be directions that its flow never leaves. Generator: D.E. Knuth, MMIX; the
- * upper bits of its states. */
+/* Pseudo-random vectors, the same in every run: axes of a model may be directions that its flow never leaves.
+ * Generator: D.E. Knuth, MMIX; the upper bits of its states. */
 static void random_vectors(Lyapunov *l) {
   uint64_t x = 1;
   for (int i = 0; i < l->n * l->k; i++) {
@@ -27,9 +27,11 @@ static void random_vectors(Lyapunov *l) {
 
 int lag_lyapunov_begin(Lyapunov *l, lag_sim *sim, int k, double from, double until) {
   size_t n = (size_t)sim->pb.n, kk = (size_t)k, nn = n * n;
-  *l = (Lyapunov){.n = sim->pb.n, .d = sim->pb.n, .k = k, .from = from, .until = until, .begun = NAN, .t = NAN, .half = NAN};
+  *l = (Lyapunov){
+      .n = sim->pb.n, .d = sim->pb.n, .k = k, .from = from, .until = until, .begun = NAN, .t = NAN, .half = NAN};
   double **const parts[] = {&l->sum, &l->at_half, &l->block_sum, &l->block, &l->Y, &l->J, &l->A, &l->B, &l->work};
-  const size_t sizes[] = {kk, kk, kk, LAG_LYAPUNOV_BLOCKS * (kk + 1), n * kk, nn, nn, nn, lag_linear_work(sim->pb.model) + 1};
+  const size_t sizes[] = {kk, kk, kk, LAG_LYAPUNOV_BLOCKS * (kk + 1),    n * kk,
+                          nn, nn, nn, lag_linear_work(sim->pb.model) + 1};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&l->pool, sizes[i]);
   if (l->pool.failed) return LAG_ENOMEM;
   random_vectors(l);
@@ -74,7 +76,8 @@ static double fastest(Lyapunov *l) {
   return rate;
 }
 
-/* Df at y, t: adds its trace to the divergence since the last call, once that counts, and sets the longest next step. */
+/* Df at y, t: adds its trace to the divergence since the last call, once that counts, and sets the longest next
+ * step. */
 static int examine_jacobian(Lyapunov *l, lag_sim *sim, double t, const double *y) {
   lag_problem *pb = &sim->pb;
   int n = l->n, nq = pb->nq;
@@ -136,7 +139,9 @@ static double mean_rate(const Lyapunov *l, const double *sum, int i, double t) {
 
 double lag_lyapunov_exponent(const Lyapunov *l, int i) { return mean_rate(l, l->sum, i, l->t); }
 
-double lag_lyapunov_at_half(const Lyapunov *l, int i) { return isnan(l->half) ? 0 : mean_rate(l, l->at_half, i, l->half); }
+double lag_lyapunov_at_half(const Lyapunov *l, int i) {
+  return isnan(l->half) ? 0 : mean_rate(l, l->at_half, i, l->half);
+}
 
 /* Whether exponent i, or for i = k their sum, is minus infinity: a slide has joined neighbouring motions. */
 static int is_infinite(const Lyapunov *l, int i) { return mean_rate(l, l->sum, i, l->t) == -HUGE_VAL; }

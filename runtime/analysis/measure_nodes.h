@@ -1,5 +1,5 @@
-/* Measures as nodes: written by measure_text.c, evaluated along a run by measure_run.c. Holds: the nodes of an expression stand together, arguments before
- * their node, so an evaluation is a loop over node[begin .. root]. */
+/* Measures as nodes: written by measure_text.c, evaluated along a run by measure_run.c. Holds: the nodes of an
+ * expression stand together, arguments before their node, so an evaluation is a loop over node[begin .. root]. */
 #pragma once
 
 #include "analysis/measure.h"
@@ -16,9 +16,15 @@ typedef enum MeasureKind {
   MEASURE_LYAPUNOV
 } MeasureKind;
 
-typedef enum QuantityKind { QUANTITY_TIME, QUANTITY_STATE, QUANTITY_OUTPUT, QUANTITY_CHARGE, QUANTITY_PARAMETER, QUANTITY_INPUT, QUANTITY_KINDS } QuantityKind;
+typedef enum QuantityKind {
+  QUANTITY_TIME, QUANTITY_STATE, QUANTITY_OUTPUT, QUANTITY_CHARGE, QUANTITY_PARAMETER, QUANTITY_INPUT,
+  QUANTITY_KINDS
+} QuantityKind;
 
-typedef enum TrackKind { TRACK_MAX, TRACK_MIN, TRACK_MEAN, TRACK_RMS, TRACK_DRIFT, TRACK_PERIOD, TRACK_KINDS } TrackKind;
+typedef enum TrackKind {
+  TRACK_MAX, TRACK_MIN, TRACK_MEAN, TRACK_RMS, TRACK_DRIFT, TRACK_PERIOD,
+  TRACK_KINDS
+} TrackKind;
 
 /* Unit in which a value is shown: SI = shown*factor + offset. */
 typedef struct MeasureUnit {
@@ -26,7 +32,8 @@ typedef struct MeasureUnit {
   double factor, offset;
 } MeasureUnit;
 
-/* MEASURE_STATIC: known before the run; else the number of the run after which the value is known, 0 for all but values at times that are measures. */
+/* MEASURE_STATIC: known before the run; else the number of the run after which the value is known, 0 for all but
+ * values at times that are measures. */
 enum { MEASURE_STATIC = -1 };
 
 typedef struct MeasureNode {

@@ -1,11 +1,14 @@
-/* Measures of a run. Enters: a run, part by part; leaves: the value of each expression. Holds: the run does not depend on it.
+/* Measures of a run. Enters: a run, part by part; leaves: the value of each expression. Holds: the run does not
+ * depend on it.
  *
- * Each part of the run, a step or what an event leaves of it, is sampled at equal times by dense output: at a few of them, and at the rest where the few
- * leave room for a larger value or a zero. Where the parabola through three samples has its top between two of them, the top is found by golden section
- * (R.P. Brent, Algorithms for Minimization without Derivatives, 1973, ch. 5); where samples change their sign, the zero by kernels/locate.h. Integrals are sums of quadratures over the parts, by the nodes that balances of charges take
- * (core/charge_monitor.c): of the order of the method, so that the error of a mean falls with the step as that of the motion does; in methods of long steps,
- * Taylor's, over halves of halves of them. Both sides of a jump count.
- * A drift, with equal steps, is that of the ends of steps. */
+ * Each part of the run, a step or what an event leaves of it, is sampled at equal times by dense output: at a few of
+ * them, and at the rest where the few leave room for a larger value or a zero. Where the parabola through three
+ * samples has its top between two of them, the top is found by golden section (R.P. Brent, Algorithms for
+ * Minimization without Derivatives, 1973, ch. 5); where samples change their sign, the zero by kernels/locate.h.
+ * Integrals are sums of quadratures over the parts, by the nodes that balances of charges take
+ * (core/charge_monitor.c): of the order of the method, so that the error of a mean falls with the step as that of
+ * the motion does; in methods of long steps, Taylor's, over halves of halves of them. Both sides of a jump count. A
+ * drift, with equal steps, is that of the ends of steps. */
 #include "analysis/measure.h"
 
 #include <float.h>
@@ -31,8 +34,8 @@ static int allocate(Measures *m) {
   return LAG_OK;
 }
 
-Measures *lag_measures_new(const lag_scene *scene, int n, const char *const *text, const MeasureDialect *dialect, char *why,
-                           size_t size) {
+Measures *lag_measures_new(const lag_scene *scene, int n, const char *const *text, const MeasureDialect *dialect,
+                           char *why, size_t size) {
   Measures *m = calloc(1, sizeof *m);
   size_t count = n > 0 ? (size_t)n : 1;
   snprintf(why, size, "out of memory");
@@ -143,7 +146,8 @@ static void find_tops(Measures *m, Track *track, double sign, int n, const doubl
   const double beyond = 1.25; /* the parabola's top may be off by a quarter of an interval */
   Followed f = {m, track->arg, sign};
   for (int k = 1; k < n; k++) {
-    double a = sign * x[k - 1], b = sign * x[k], c = sign * x[k + 1], bend = a - 2 * b + c, place = (a - c) / (2 * bend), rise = (a - c) * place / 4;
+    double a = sign * x[k - 1], b = sign * x[k], c = sign * x[k + 1], bend = a - 2 * b + c,
+           place = (a - c) / (2 * bend), rise = (a - c) * place / 4;
     double best = sign > 0 ? track->most : -track->least, here = fmax(fmax(a, b), c);
     if (!(bend < 0) || !(fabs(place) <= beyond) || (place < -0.5 && k > 1) || (place > 0.5 && k < n - 1)) continue;
     double gain = b - rise - here;
@@ -175,9 +179,14 @@ static void follow(Measures *m, Track *track, int n, const double *t, const doub
 static int is_integral(const Track *k) { return k->kind == TRACK_MEAN || k->kind == TRACK_RMS; }
 
 /* Parts of a step that are sampled, and for quadrature: methods of high order take long steps. */
-static int places(const lag_method *method) { return method->flags & LAG_METHOD_TAYLOR ? MEASURE_SAMPLES : method->order >= 6 ? MEASURE_SAMPLES / 2 : MEASURE_SAMPLES / 4; }
+static int places(const lag_method *method) {
+  return method->flags & LAG_METHOD_TAYLOR ? MEASURE_SAMPLES
+         : method->order >= 6              ? MEASURE_SAMPLES / 2
+                                           : MEASURE_SAMPLES / 4;
+}
 
-/* Whether sign*x may exceed `best` and all of its samples x[n + 1] between two of them, which are closer to each other than the bend of x. */
+/* Whether sign*x may exceed `best` and all of its samples x[n + 1] between two of them, which are closer to each
+ * other than the bend of x. */
 static int may_have_top(double sign, double best, double bend, int n, const double *x) {
   for (int k = 0; k <= n; k++) best = fmax(best, sign * x[k]);
   for (int k = 0; k < n; k++)
@@ -197,7 +206,8 @@ static int needs_more(const Track *track, int n, const double *x) {
   double bend = 0;
   for (int k = 1; k < n; k++) bend = fmax(bend, 2 * fabs(x[k - 1] - 2 * x[k] + x[k + 1]));
   if (track->kind == TRACK_PERIOD) return may_pass(bend, n, x);
-  return (track->kind != TRACK_MIN && may_have_top(1, track->most, bend, n, x)) || (track->kind != TRACK_MAX && may_have_top(-1, -track->least, bend, n, x));
+  return (track->kind != TRACK_MIN && may_have_top(1, track->most, bend, n, x)) ||
+         (track->kind != TRACK_MAX && may_have_top(-1, -track->least, bend, n, x));
 }
 
 /* Samples number first, first + stride, ... n of [a, b]: t[k] and the values of each track there. */
@@ -206,11 +216,13 @@ static void take_samples(Measures *m, double a, double b, int n, int first, int 
     t[k] = k == n ? b : a + k * (b - a) / n;
     take_row(m, t[k]);
     for (int i = 0; i < m->ntracks; i++)
-      if (!is_integral(&m->track[i]) && m->track[i].active) m->sampled[i * (MEASURE_SAMPLES + 1) + k] = evaluate(m, m->track[i].arg);
+      if (!is_integral(&m->track[i]) && m->track[i].active)
+        m->sampled[i * (MEASURE_SAMPLES + 1) + k] = evaluate(m, m->track[i].arg);
   }
 }
 
-/* Whether a track is followed at ends of steps alone, where the method computes: a drift, with equal steps. Between them is an interpolation, with errors of its own. */
+/* Whether a track is followed at ends of steps alone, where the method computes: a drift, with equal steps. Between
+ * them is an interpolation, with errors of its own. */
 static int is_at_ends(const Measures *m, const Track *k) { return k->kind == TRACK_DRIFT && m->sim->steps_equal; }
 
 /* Notes a value at t if a step begins or ends there. */
@@ -322,8 +334,8 @@ static int follow_to(Measures *m, double t) {
   return rc ? rc : lag_sim_advance(s, t);
 }
 
-/* The values at times that are known after run `known`, which lie not before the present time: records those that are now. Returns the node that is
- * next in the direction to `until`, or NULL. */
+/* The values at times that are known after run `known`, which lie not before the present time: records those that
+ * are now. Returns the node that is next in the direction to `until`, or NULL. */
 static MeasureNode *next_time(Measures *m, int known, double until) {
   double now = lag_sim_time(m->sim), dir = until < now ? -1 : 1;
   MeasureNode *next = NULL;
@@ -343,13 +355,16 @@ static MeasureNode *next_time(Measures *m, int known, double until) {
 
 static void take_times(Measures *m, int known) {
   for (MeasureNode *n = m->node; n < m->node + m->nnodes; n++)
-    if ((n->kind == MEASURE_AT && n->known == known && !n->taken) || (n->kind == MEASURE_HIT && known == 0)) evaluate(m, n->kind == MEASURE_AT ? n->b : n->a);
+    if ((n->kind == MEASURE_AT && n->known == known && !n->taken) || (n->kind == MEASURE_HIT && known == 0))
+      evaluate(m, n->kind == MEASURE_AT ? n->b : n->a);
 }
 
 int lag_measures_begin(Measures *m, lag_sim *sim) {
   for (const MeasureNode *n = m->node; n < m->node + m->nnodes; n++)
     if ((n->kind == MEASURE_HIT || n->kind == MEASURE_FIRINGS) && !lag_event_is_located(sim, n->index))
-      return lag_fail(sim, LAG_EMETHOD, "%s does not locate events of contacts, as %s is one; dop853 does, and an event of your own, as `event low: y - 1 falling`, is located by both",
+      return lag_fail(sim, LAG_EMETHOD,
+                      "%s does not locate events of contacts, as %s is one; dop853 does, and an event of your own, as "
+                      "`event low: y - 1 falling`, is located by both",
                       sim->method->name, sim->scene->model->ev[n->index].name);
   int rc = lag_sim_advance(sim, lag_sim_time(sim)); /* only then is there a state */
   if (rc < 0) return rc;
@@ -405,7 +420,8 @@ static double track_value(const Measures *m, const Track *k) {
 /* Values at times that are themselves measures, and with past_end those after the end, in runs of their own. */
 static int run_again(Measures *m, lag_sim *sim, double end) {
   int last = 0, rc = LAG_OK;
-  for (const MeasureNode *n = m->node; n < m->node + m->nnodes; n++) last = n->kind == MEASURE_AT && n->known > last ? n->known : last;
+  for (const MeasureNode *n = m->node; n < m->node + m->nnodes; n++)
+    last = n->kind == MEASURE_AT && n->known > last ? n->known : last;
   for (int known = m->dialect.past_end ? 0 : 1; known <= last && rc != LAG_ENOMEM; known++) {
     double until = end;
     int some = 0;
@@ -441,7 +457,8 @@ static void explain(Measures *m, int k, double end) {
     const MeasureNode *n = &m->node[i];
     if (n->kind == MEASURE_TRACK && isnan(n->result)) {
       const Track *track = &m->track[n->index];
-      if (!track->begun) snprintf(why, size, "the run ends at t = %s s, before the window of time begins", LAG_TEXT(end));
+      if (!track->begun)
+        snprintf(why, size, "the run ends at t = %s s, before the window of time begins", LAG_TEXT(end));
       else if (!isnan(track->bad)) snprintf(why, size, "it has no value at t = %s s", LAG_TEXT(track->bad));
       else snprintf(why, size, "no period: it passes 0 upwards %s", track->passages ? "once" : "never");
       return;
@@ -451,12 +468,15 @@ static void explain(Measures *m, int k, double end) {
     } else if (n->kind == MEASURE_HIT && isnan(n->result)) {
       double times = m->firings[n->index];
       if (times == 0.0) snprintf(why, size, "%s never happens", m->scene->model->ev[n->index].name);
-      else snprintf(why, size, "%s happens %s time%s", m->scene->model->ev[n->index].name, LAG_TEXT(times), times == 1 ? "" : "s");
+      else
+        snprintf(why, size, "%s happens %s time%s", m->scene->model->ev[n->index].name, LAG_TEXT(times),
+                 times == 1 ? "" : "s");
       return;
     } else if (n->kind == MEASURE_AT && isnan(n->result) && !isnan(m->node[n->b].value)) {
       double t = m->node[n->b].value, dir = end < m->t0 ? -1 : 1;
       if ((t - end) * dir > 0) snprintf(why, size, "the run ends at t = %s s, before %s s", LAG_TEXT(end), LAG_TEXT(t));
-      else if ((t - m->t0) * dir < 0) snprintf(why, size, "the run begins at t = %s s, after %s s", LAG_TEXT(m->t0), LAG_TEXT(t));
+      else if ((t - m->t0) * dir < 0)
+        snprintf(why, size, "the run begins at t = %s s, after %s s", LAG_TEXT(m->t0), LAG_TEXT(t));
       else snprintf(why, size, "it has no value at t = %s s", LAG_TEXT(t));
       return;
     }

@@ -1,5 +1,6 @@
 /* Measures from words, as lagc compiles them (measure.h has the notation). Enters: words, the names of a scene.
- * Leaves: a node for each word, the unit of the value. Holds: a wrong word leaves a message; at most DEEPEST operands wait. */
+ * Leaves: a node for each word, the unit of the value. Holds: a wrong word leaves a message; at most DEEPEST
+ * operands wait. */
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -118,11 +119,17 @@ static int find_charge(const lag_model *m, const char *name) {
 
 /* *of, *index, *unit of the quantity called name; 0: there is none. */
 static int find_quantity(const lag_scene *scene, const char *name, QuantityKind *of, int *index, MeasureUnit *unit) {
-  static const QuantityKind kinds[] = {[LAG_IS_P] = QUANTITY_PARAMETER, [LAG_IS_Q] = QUANTITY_STATE, [LAG_IS_V] = QUANTITY_STATE, [LAG_IS_Z] = QUANTITY_STATE, [LAG_IS_U] = QUANTITY_INPUT};
+  static const QuantityKind kinds[] = {[LAG_IS_P] = QUANTITY_PARAMETER,
+                                       [LAG_IS_Q] = QUANTITY_STATE,
+                                       [LAG_IS_V] = QUANTITY_STATE,
+                                       [LAG_IS_Z] = QUANTITY_STATE,
+                                       [LAG_IS_U] = QUANTITY_INPUT};
   const lag_model *m = scene->model;
   const lag_var *var;
-  int found, kind = lag_find_name(m, name, &found, &var), state = kind == LAG_IS_Q || kind == LAG_IS_V || kind == LAG_IS_Z;
-  for (*index = 0; *index < scene->nout && !state; ++*index) /* an output of a state is the state, and costs all outputs */
+  int found, kind = lag_find_name(m, name, &found, &var),
+             state = kind == LAG_IS_Q || kind == LAG_IS_V || kind == LAG_IS_Z;
+  /* an output of a state is the state, and costs all outputs */
+  for (*index = 0; *index < scene->nout && !state; ++*index)
     if (strcmp(scene->outputs[*index].name, name) == 0) {
       *of = QUANTITY_OUTPUT;
       *unit = unit_of_var(&scene->outputs[*index], 0);
@@ -225,7 +232,8 @@ static int put_operation(Reader *r, const char *word, const char *name, const ch
   if (hit || strcmp(name, "count") == 0) return put_event(r, hit, argument);
   if (at) return put_at(r);
   MeasureKind kind = f && f->two ? MEASURE_TWO : MEASURE_ONE;
-  MeasureNode call = {.kind = kind, .one = f ? f->one : NULL, .two = f ? f->two : NULL, .known = MEASURE_STATIC, .result = NAN};
+  MeasureNode call = {
+      .kind = kind, .one = f ? f->one : NULL, .two = f ? f->two : NULL, .known = MEASURE_STATIC, .result = NAN};
   if (f) return put(r, call, f->two ? 2 : 1);
   if (strcmp(name, "pi") == 0) return put_number(r, 3.14159265358979323846264338327950288);
   r->m->exponent |= exponent;

@@ -1,7 +1,8 @@
-/* Modes of M x'' + C x' + K x = 0, with K = -dr/dq and C = -dr/dv at rest. Without C, and with K = K', as a symmetric eigenvalue problem (J.W.
- * Strutt, Lord Rayleigh, The Theory of Sound, 1877, chapter IV); else, and with states, as y' = A y. Stability: by the first approximation where
- * real parts decide (A.M. Lyapunov, 1892), by the energy where it has a strict minimum (Lagrange; G. Lejeune Dirichlet, J. reine angew. Math. 32
- * (1846) 85, DOI 10.1515/crll.1846.32.85). */
+/* Modes of M x'' + C x' + K x = 0, with K = -dr/dq and C = -dr/dv at rest. Without C, and with K = K', as a
+ * symmetric eigenvalue problem (J.W. Strutt, Lord Rayleigh, The Theory of Sound, 1877, chapter IV); else, and with
+ * states, as y' = A y. Stability: by the first approximation where real parts decide (A.M. Lyapunov, 1892), by the
+ * energy where it has a strict minimum (Lagrange; G. Lejeune Dirichlet, J. reine angew. Math. 32 (1846) 85, DOI
+ * 10.1515/crll.1846.32.85). */
 #include "analysis/modes.h"
 
 #include <float.h>
@@ -23,12 +24,15 @@ typedef struct Matrices {
   int definite, symmetric, undamped; /* to rounding: M is positive definite; K is symmetric; C = 0 */
   int lowering;                /* number of directions in which the energy falls; -1: not known */
   int flat;                    /* number of directions in which it is constant, to rounding */
-  double *values, *vectors;    /* eigenpairs K x = value M x, where lowering >= 0: [nq] ascending up to rounding, columns [nq * nq] in the model's SI units */
+  /* eigenpairs K x = value M x, where lowering >= 0: [nq] ascending up to rounding, columns [nq * nq] in the model's
+   * SI units */
+  double *values, *vectors;
   double *zero;                /* [nq] |value| up to this counts as 0 */
 } Matrices;
 
 /* noise[count] := at least the changes of values when the root moves to four corners of its uncertainty. */
-static void add_spread(Equilibrium *r, lag_values *values, size_t count, const double *base, double *noise, double *scratch) {
+static void add_spread(Equilibrium *r, lag_values *values, size_t count, const double *base, double *noise,
+                       double *scratch) {
   double *at = scratch + count;
   for (int corner = 0; corner < 4; corner++) {
     for (int i = 0; i < r->n; i++) {
@@ -198,8 +202,8 @@ static double energy_at(Equilibrium *r, int i, double a, int j, double b) {
   return pb->model->energy(r->sim->run->t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, e, r->work) ? NAN : e[0];
 }
 
-/* H[n * n] := second differences of the energy with step h, divided by the roots of their diagonal. 1 or -1: the sign of the diagonal; 0: of no
- * sign beyond rounding. */
+/* H[n * n] := second differences of the energy with step h, divided by the roots of their diagonal. 1 or -1: the
+ * sign of the diagonal; 0: of no sign beyond rounding. */
 static int energy_differences(Equilibrium *r, double h, double *H) {
   int n = r->n, sign = 0;
   double here = energy_at(r, 0, 0, 0, 0), noise = 1e5 * DBL_EPSILON * fabs(here) / (h * h);
@@ -221,7 +225,8 @@ static int energy_differences(Equilibrium *r, double h, double *H) {
   return sign;
 }
 
-/* 1: the energy has a strict minimum at rest; -1: a strict maximum; 0: neither is seen, with differences of two steps that agree. */
+/* 1: the energy has a strict minimum at rest; -1: a strict maximum; 0: neither is seen, with differences of two
+ * steps that agree. */
 static int energy_extremum(Pool *pool, Equilibrium *r, const lag_algebra *algebra) {
   const double step = 1e-3, agree = 1e-4, definite = 1e-3;
   size_t n = (size_t)r->n, nn = n * n;
@@ -260,8 +265,8 @@ static int place(const ModeSearch *w, int i) { return i < w->nq ? i : w->nq + i;
 /* Amplitude of component i of a shape (coordinates, then states), in scales. */
 static double amplitude(const ModeSearch *w, int i, double re, double im) { return hypot(re, im) / w->rest->scale[i]; }
 
-/* The component to be normalised to 1: the coordinate with the largest kinetic energy; if only states move, the state with the largest
- * amplitude. Of equal ones the first, whatever rounding says. */
+/* The component to be normalised to 1: the coordinate with the largest kinetic energy; if only states move, the
+ * state with the largest amplitude. Of equal ones the first, whatever rounding says. */
 static int reference(const ModeSearch *w, const double *re, const double *im) {
   int best[2] = {0, w->nq};
   double most[2] = {-1, 0}, far[2] = {0, 0};
@@ -292,7 +297,8 @@ void lag_add_mode(Modes *to, const lag_model *m, Mode mode, int n, double *re, d
 
 /* Adds a mode with the shape re + i im, [n] with a stride. */
 static int add_mode(ModeSearch *w, Mode mode, const double *re, const double *im, int stride) {
-  double *shape_re = lag_pool_doubles(&w->out->pool, (size_t)w->n), *shape_im = lag_pool_doubles(&w->out->pool, (size_t)w->n);
+  double *shape_re = lag_pool_doubles(&w->out->pool, (size_t)w->n),
+         *shape_im = lag_pool_doubles(&w->out->pool, (size_t)w->n);
   if (w->out->pool.failed) return LAG_ENOMEM;
   for (int i = 0; i < w->n; i++) {
     shape_re[i] = re[i * stride];
@@ -330,7 +336,8 @@ void lag_reduce_columns(int n, int k, const double *scale, double *v) {
   }
 }
 
-/* Whether all forces stay 0 along x[n], or along a curve that begins so (a rotation): tested near and as far as `most` scales, on both sides. */
+/* Whether all forces stay 0 along x[n], or along a curve that begins so (a rotation): tested near and as far as
+ * `most` scales, on both sides. */
 static int is_free(ModeSearch *w, const double *x, double most) {
   const double steps[] = {-most / 3, most / 3, -most, most};
   double far = 0;
@@ -342,8 +349,8 @@ static int is_free(ModeSearch *w, const double *x, double most) {
   return far > 0;
 }
 
-/* Whether zero modes that are free one by one are free together, which x^2 y^2 is not along x and y: a few sums are tried, with coefficients in
- * no simple ratio. */
+/* Whether zero modes that are free one by one are free together, which x^2 y^2 is not along x and y: a few sums are
+ * tried, with coefficients in no simple ratio. */
 static int free_together(ModeSearch *w, double *x) {
   int k = w->nkernel;
   for (int pattern = 0; pattern < 4 && k > 1; pattern++) {
@@ -402,7 +409,9 @@ static int modes_of_values(ModeSearch *w) {
 }
 
 /* Whether the eigenvalue is the conjugate, or the negative, of one that is listed. */
-static int is_second_half(const ModeSearch *w, const Spectrum *s, int k) { return s->im[k] < 0 || (w->out->pairs && s->re[k] < 0); }
+static int is_second_half(const ModeSearch *w, const Spectrum *s, int k) {
+  return s->im[k] < 0 || (w->out->pairs && s->re[k] < 0);
+}
 
 /* Whether k is the first of equal defective eigenvalues, which are listed as one mode. */
 static int is_first(const Spectrum *s, int k) {
@@ -424,7 +433,8 @@ static int modes_of_matrix(ModeSearch *w) {
   w->out->drifts = s.zeros > s.nkernel;
   w->kernel = lag_pool_doubles(pool, n * (size_t)s.nkernel);
   for (int i = 0; i < w->n && w->kernel; i++)
-    for (int k = 0; k < s.nkernel; k++) w->kernel[i * s.nkernel + k] = s.kernel[place(w, i) * s.n + s.n - s.nkernel + k];
+    for (int k = 0; k < s.nkernel; k++)
+      w->kernel[i * s.nkernel + k] = s.kernel[place(w, i) * s.n + s.n - s.nkernel + k];
   for (int k = 0; k < s.count && rc == LAG_OK && !pool->failed; k++) {
     Mode mode = {.re = minimum ? 0 : s.re[k], .im = s.im[k], .repeats = (int)s.repeats[k]};
     for (int i = 0; i < w->n; i++) {
@@ -457,7 +467,8 @@ static Verdict decide_stability(const ModeSearch *w) {
   if (stays == 0 && zeros == 0) return LAG_DECAYS;
   if (defective) return LAG_DEFECTIVE;
   if (zeros && !out->together) return LAG_DEGENERATE;
-  if (w->conserves && out->lowering == 0) return zeros != w->m.flat ? LAG_DEGENERATE : zeros ? LAG_NEUTRAL : LAG_MINIMUM;
+  if (w->conserves && out->lowering == 0)
+    return zeros != w->m.flat ? LAG_DEGENERATE : zeros ? LAG_NEUTRAL : LAG_MINIMUM;
   if (w->loses && out->lowering == 0 && zeros == 0 && w->m.flat == 0) return LAG_DISSIPATIVE_MINIMUM;
   if (w->conserves && out->lowering > 0) return LAG_GYROSCOPIC;
   return stays == 0 ? LAG_NEUTRAL : LAG_CENTRE;

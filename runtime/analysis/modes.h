@@ -1,5 +1,5 @@
-/* Modes of small motion about an equilibrium: frequencies, shapes, damping, and the stability that follows. Enters: a state of rest; leaves: its
- * modes and a verdict. */
+/* Modes of small motion about an equilibrium: frequencies, shapes, damping, and the stability that follows. Enters:
+ * a state of rest; leaves: its modes and a verdict. */
 #pragma once
 
 #include "analysis/equilibrium.h"
@@ -16,8 +16,10 @@ typedef struct Mode {
 typedef enum Verdict {
   LAG_UNSTABLE,    /* a mode grows */
   LAG_DECAYS,      /* all modes decay: asymptotically stable */
-  LAG_MINIMUM,     /* a strict minimum of a conserved energy, of first order also a maximum: stable (Lagrange, Dirichlet) */
-  LAG_DISSIPATIVE_MINIMUM,      /* a strict minimum of an energy that nothing raises: stable (Thomson & Tait; Chetaev) */
+  /* a strict minimum of a conserved energy, of first order also a maximum: stable (Lagrange, Dirichlet) */
+  LAG_MINIMUM,
+  /* a strict minimum of an energy that nothing raises: stable (Thomson & Tait; Chetaev) */
+  LAG_DISSIPATIVE_MINIMUM,
   LAG_NEUTRAL,     /* free motions; otherwise a minimum, or all modes decay */
   LAG_GYROSCOPIC,  /* not decided: all modes oscillate, but the energy has no minimum */
   LAG_DEGENERATE,        /* not decided: a zero mode that is no free motion, or several that are not free together */
@@ -52,5 +54,6 @@ void lag_add_mode(Modes *to, const lag_model *m, Mode mode, int n, double *re, d
 /* Orders modes as they are listed. */
 void lag_modes_sort(Modes *modes);
 
-/* Columns v[n * k] := a basis of the same space with as many zeros as possible: Gauss-Jordan elimination, components measured in scale[n]. */
+/* Columns v[n * k] := a basis of the same space with as many zeros as possible: Gauss-Jordan elimination, components
+ * measured in scale[n]. */
 void lag_reduce_columns(int n, int k, const double *scale, double *v);

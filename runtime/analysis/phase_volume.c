@@ -25,9 +25,14 @@ int lag_phase_volume_begin(PhaseVolume *v, lag_sim *sim) {
   const lag_model *m = sim->scene->model;
   size_t n = (size_t)sim->pb.n, nq = (size_t)sim->pb.nq;
   *v = (PhaseVolume){.n = sim->pb.n};
-  if (m->constraints) return lag_fail(sim, LAG_EMETHOD, "the volume of the phase space is that of all coordinates, and constraints leave a part of it; write the model in coordinates without constraints");
+  if (m->constraints)
+    return lag_fail(sim, LAG_EMETHOD,
+                    "the volume of the phase space is that of all coordinates, and constraints leave a part of it; "
+                    "write the model in coordinates without constraints");
   if (nq && !m->linear)
-    return lag_fail(sim, LAG_EMETHOD, "the volume of the phase space needs the mass matrix, which this program was built without; `lagc run --volume` builds it in, and so does `lagc build --with linear`");
+    return lag_fail(sim, LAG_EMETHOD,
+                    "the volume of the phase space needs the mass matrix, which this program was built without; `lagc "
+                    "run --volume` builds it in, and so does `lagc build --with linear`");
   double **const parts[] = {&v->sum, &v->Y, &v->grown, &v->M, &v->dr, &v->work};
   const size_t sizes[] = {n, n * n, n, nq * nq, n * n, lag_linear_work(m) + 1};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&v->pool, sizes[i]);
@@ -49,7 +54,10 @@ int lag_phase_volume_step(PhaseVolume *v, lag_sim *sim) {
   rc = rc ? rc : lag_orthonormalise(v->n, v->n, v->Y, v->sum, 1, sim->tangent_log == -HUGE_VAL);
   rc = rc ? rc : lag_sim_set_tangent(sim, v->n, v->Y);
   sim->tangent_log = 0;
-  if (rc == LAG_EDOMAIN) return lag_fail(sim, rc, "at t = %s s neighbouring motions become one within a step, and their volume 0; take smaller steps", LAG_TEXT(lag_sim_time(sim)));
+  if (rc == LAG_EDOMAIN)
+    return lag_fail(sim, rc,
+                    "at t = %s s neighbouring motions become one within a step, and their volume 0; take smaller steps",
+                    LAG_TEXT(lag_sim_time(sim)));
   if (rc) return rc;
   v->log_det = log_det_of(v, sim, v->sum);
   v->largest = fmax(v->largest, fabs(v->log_det));

@@ -1,12 +1,14 @@
-/* Eigenvalues, their multiplicity and the kernel (spectrum.h). An eigenvalue is known up to the noise of the matrix times its sensitivity (J.
- * Wilkinson, The Algebraic Eigenvalue Problem, 1965, chapter 2). Eigenvalues within each other's uncertainty are replaced by their mean, which is
- * well determined where they are not; those within their uncertainty of 0 are 0. */
+/* Eigenvalues, their multiplicity and the kernel (spectrum.h). An eigenvalue is known up to the noise of the matrix
+ * times its sensitivity (J. Wilkinson, The Algebraic Eigenvalue Problem, 1965, chapter 2). Eigenvalues within each
+ * other's uncertainty are replaced by their mean, which is well determined where they are not; those within their
+ * uncertainty of 0 are 0. */
 #include "analysis/spectrum.h"
 
 #include <float.h>
 #include <math.h>
 
-/* Sensitivity of a multiple eigenvalue above which it lacks eigenvectors: one that has all is some thousands at most. */
+/* Sensitivity of a multiple eigenvalue above which it lacks eigenvectors: one that has all is some thousands at
+ * most. */
 static const double defective = 1e5;
 
 static double frobenius(int n, const double *A) {
@@ -32,8 +34,10 @@ static void find_clusters(const Spectrum *s, const double *uncertain, double *cl
   }
 }
 
-/* Replaces the members of a cluster by their mean, whose error is `error`; repeats := their number where eigenvectors are missing. */
-static void settle_cluster(Spectrum *s, int first, const double *cluster, const double *sensitivity, double error, double *uncertain) {
+/* Replaces the members of a cluster by their mean, whose error is `error`; repeats := their number where
+ * eigenvectors are missing. */
+static void settle_cluster(Spectrum *s, int first, const double *cluster, const double *sensitivity, double error,
+                           double *uncertain) {
   double re = 0, im = 0, most = 0;
   int members = 0;
   for (int i = 0; i < s->n; i++)
@@ -54,8 +58,8 @@ static void settle_cluster(Spectrum *s, int first, const double *cluster, const 
 
 static double modulus(const Spectrum *s, int k) { return hypot(s->re[k], s->im[k]); }
 
-/* Where A has a kernel: sets eigenvalues to 0 until there are as many zeros as it has vectors, the smallest first, and moves the others to the
- * front. */
+/* Where A has a kernel: sets eigenvalues to 0 until there are as many zeros as it has vectors, the smallest first,
+ * and moves the others to the front. */
 static void separate_zeros(Spectrum *s) {
   int least = 0;
   for (int k = 0; k < s->n; k++) s->zeros += modulus(s, k) == 0.0;
@@ -78,7 +82,8 @@ static void separate_zeros(Spectrum *s) {
   }
 }
 
-/* A := D^-1 A D, and noise likewise, with the D = diag(scale) that balances the terms of the entries. terms[n * n] is scratch. */
+/* A := D^-1 A D, and noise likewise, with the D = diag(scale) that balances the terms of the entries. terms[n * n]
+ * is scratch. */
 static int balance(const lag_algebra *algebra, int n, double *A, double *noise, double *scale, double *terms) {
   for (int i = 0; i < n * n; i++) terms[i] = fmax(fabs(A[i]), noise[i] / DBL_EPSILON);
   int rc = algebra->balance(n, terms, scale);
@@ -92,11 +97,13 @@ static int balance(const lag_algebra *algebra, int n, double *A, double *noise, 
 
 int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A, double *noise) {
   double *scale, *sensitivity, *uncertain, *cluster;
-  double **const parts[] = {&scale, &sensitivity, &uncertain, &cluster, &s->re, &s->im, &s->repeats, &s->vre, &s->vim, &s->kernel};
+  double **const parts[] = {&scale, &sensitivity, &uncertain, &cluster, &s->re,
+                            &s->im, &s->repeats,  &s->vre,    &s->vim,  &s->kernel};
   size_t size = (size_t)n;
   int rank = n;
   *s = (Spectrum){.n = n};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(pool, i < 7 ? size : size * size);
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+    *parts[i] = lag_pool_doubles(pool, i < 7 ? size : size * size);
   if (pool->failed) return LAG_ENOMEM;
   int rc = balance(algebra, n, A, noise, scale, s->kernel);
   double norm = frobenius(n, A), error = fmax(DBL_EPSILON * norm, frobenius(n, noise));

@@ -1,5 +1,5 @@
-/* Eigenvalues and eigenvectors of a real matrix; zeros and multiple eigenvalues are told from rounding: a free motion is an exact 0, not a pair
- * of 1e-8. */
+/* Eigenvalues and eigenvectors of a real matrix; zeros and multiple eigenvalues are told from rounding: a free
+ * motion is an exact 0, not a pair of 1e-8. */
 #pragma once
 
 #include "analysis/memory_pool.h"
@@ -16,6 +16,6 @@ typedef struct Spectrum {
   double *kernel;    /* [n * n], the last nkernel columns */
 } Spectrum;
 
-/* Spectrum of A[n * n], whose entries have errors up to noise[n * n] >= 0, at least those of rounding. Both are destroyed. Memory is the
- * pool's. LAG_OK, LAG_ENOMEM, LAG_EMETHOD. */
+/* Spectrum of A[n * n], whose entries have errors up to noise[n * n] >= 0, at least those of rounding. Both are
+ * destroyed. Memory is the pool's. LAG_OK, LAG_ENOMEM, LAG_EMETHOD. */
 int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A, double *noise);

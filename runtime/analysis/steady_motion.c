@@ -1,7 +1,8 @@
-/* Symmetries of the equations of motion, and steady motions along them (steady_motion.h). Symmetries: shifts of coordinates, and rotations in the
- * planes of two coordinates of one unit, which for the four numbers of a rotation turn the body and the space; a combination with generator X is a
- * symmetry if [f, X] = 0 for y' = f and X is tangent to the constraints. Steady: f = X at y (J. E. Marsden, Lectures on Mechanics, 1992,
- * chapter 4), by Gauss-Newton steps of least length. Derivatives: C. J. F. Ridders, Adv. Eng. Software 4 (1982) 75, DOI
+/* Symmetries of the equations of motion, and steady motions along them (steady_motion.h). Symmetries: shifts of
+ * coordinates, and rotations in the planes of two coordinates of one unit, which for the four numbers of a rotation
+ * turn the body and the space; a combination with generator X is a symmetry if [f, X] = 0 for y' = f and X is
+ * tangent to the constraints. Steady: f = X at y (J. E. Marsden, Lectures on Mechanics, 1992, chapter 4), by
+ * Gauss-Newton steps of least length. Derivatives: C. J. F. Ridders, Adv. Eng. Software 4 (1982) 75, DOI
  * 10.1016/S0141-1195(82)80057-0. */
 #include "analysis/steady_motion.h"
 
@@ -42,8 +43,8 @@ static int central_difference(SteadyMotion *s, const double *y, const double *x,
   return rc;
 }
 
-/* Column i of D, derivatives along x, and of its errors, where they become smaller: differences extrapolated from half-widths up to h to 0, for each
- * row from the level where two extrapolations agree best. */
+/* Column i of D, derivatives along x, and of its errors, where they become smaller: differences extrapolated from
+ * half-widths up to h to 0, for each row from the level where two extrapolations agree best. */
 static int extrapolate(SteadyMotion *s, const double *y, const double *x, int i, double h, double *D, double *error) {
   const double ratio = 1.5;
   size_t n = (size_t)s->n, rows = (size_t)s->nrows;
@@ -69,7 +70,8 @@ static int extrapolate(SteadyMotion *s, const double *y, const double *x, int i,
   return LAG_OK;
 }
 
-/* The largest error of column i, relative to the size of its row; errors not below rounding, as two extrapolations may agree by chance. */
+/* The largest error of column i, relative to the size of its row; errors not below rounding, as two extrapolations
+ * may agree by chance. */
 static double settle_column(const SteadyMotion *s, int i, const double *D, double *error) {
   double most = 0;
   for (int k = 0; k < s->nrows; k++) {
@@ -81,7 +83,8 @@ static double settle_column(const SteadyMotion *s, int i, const double *D, doubl
   return most;
 }
 
-/* D at y along column k of Q[size * size] or, for NULL, by unknown k, and its errors: where the model has no values as far away, or bends much, from nearer. */
+/* D at y along column k of Q[size * size] or, for NULL, by unknown k, and its errors: where the model has no values
+ * as far away, or bends much, from nearer. */
 static int along_column(SteadyMotion *s, const double *y, const double *Q, int size, int k) {
   double h = 0.25, off = HUGE_VAL, *x = s->direction;
   int known = 0;
@@ -110,8 +113,8 @@ static void from_tangents(const SteadyMotion *s, const double *Q, int size, int 
     }
 }
 
-/* G and noise of rates at y along the tangents of redundant constraints; across they are set to 0: constraints that are broken may be independent, as hinges out of
- * line are, and then forces jump. */
+/* G and noise of rates at y along the tangents of redundant constraints; across they are set to 0: constraints that
+ * are broken may be independent, as hinges out of line are, and then forces jump. */
 static int derivatives_along_tangents(SteadyMotion *s, const double *y) {
   Pool pool = {0};
   int size = s->nrows;
@@ -156,7 +159,8 @@ static double row_weight(const SteadyMotion *s, int r) {
 
 static int of_one_unit(const lag_model *m, int i, int j) { return strcmp(m->q[i].unit, m->q[j].unit) == 0; }
 
-/* Number of shifts: of coordinates; of a model with states alone, a Hamiltonian or an L linear in velocities, of all states. */
+/* Number of shifts: of coordinates; of a model with states alone, a Hamiltonian or an L linear in velocities, of all
+ * states. */
 static int count_shifts(const lag_model *m) { return m->nq ? m->nq : m->nz; }
 
 /* Adds candidate k, times c, to X at y and to DX: a shift by one unit, or a turn. */
@@ -211,7 +215,8 @@ static void symmetry_defect(const SteadyMotion *s, int k, const double *y, doubl
 
 /* y := a place beside the state, on the constraints. */
 static int sample(const SteadyMotion *s, int k, double far, double *y) {
-  for (int i = 0; i < s->n; i++) y[i] = s->y[i] + far * s->unit[i] * (fmod(0.754877666 * (i + 1) + 0.569840291 * (k + 1) * (i + 2), 1) - 0.5);
+  for (int i = 0; i < s->n; i++)
+    y[i] = s->y[i] + far * s->unit[i] * (fmod(0.754877666 * (i + 1) + 0.569840291 * (k + 1) * (i + 2), 1) - 0.5);
   return lag_project(&s->sim->pb, s->sim->run->t, y, NULL);
 }
 
@@ -230,7 +235,8 @@ int lag_tangent_kernel(Pool *pool, const SteadyMotion *s, int size, double *Q) {
   double *A = lag_pool_doubles(pool, (size_t)rows * (size_t)n);
   for (int r = 0; r < rows && A; r++)
     for (int i = 0; i < n; i++) A[r * n + i] = s->G[(n + r) * n + i] * s->unit[i] / s->row[n + r];
-  for (double tol = 1e-5; A && tol > 1e-9; tol /= 1e3) { /* rounding: 1e-12; a rank that depends on the tolerance is none */
+  /* rounding: 1e-12; a rank that depends on the tolerance is none */
+  for (double tol = 1e-5; A && tol > 1e-9; tol /= 1e3) {
     rank = lag_padded_kernel(pool, s->algebra, size, (Rectangle){rows, n, A}, tol, Q);
     if (rank < 0 || (last >= 0 && rank != last)) return rank < 0 ? rank : LAG_ESINGULAR;
     last = rank;
@@ -238,8 +244,9 @@ int lag_tangent_kernel(Pool *pool, const SteadyMotion *s, int size, double *Q) {
   return A ? rank : LAG_ENOMEM;
 }
 
-/* generators := the columns of Q[size * size] from `first` on, in a basis with many zeros. Coefficients that are halves but for rounding become
- * halves, as they are for turns of a rotation's four numbers beside those of points. */
+/* generators := the columns of Q[size * size] from `first` on, in a basis with many zeros. Coefficients that are
+ * halves but for rounding become halves, as they are for turns of a rotation's four numbers beside those of points.
+ * */
 static int keep_generators(SteadyMotion *s, const double *Q, int size, int first) {
   int K = s->ncandidates, m = s->m;
   double *v = lag_pool_doubles(&s->pool, (size_t)K * (size_t)(m + 1)), *one = v + (size_t)K * (size_t)m;
@@ -259,7 +266,8 @@ static int keep_generators(SteadyMotion *s, const double *Q, int size, int first
 /* Fills generators with the combinations of candidates that are symmetries at a few places. */
 static int find_symmetries(SteadyMotion *s) {
   int n = s->n, K = s->ncandidates, rows = s->nrows * SAMPLES, size = K > rows ? K : rows;
-  double *A = lag_pool_doubles(&s->pool, (size_t)rows * (size_t)K), *y = lag_pool_doubles(&s->pool, (size_t)n), *column = lag_pool_doubles(&s->pool, (size_t)s->nrows);
+  double *A = lag_pool_doubles(&s->pool, (size_t)rows * (size_t)K), *y = lag_pool_doubles(&s->pool, (size_t)n),
+         *column = lag_pool_doubles(&s->pool, (size_t)s->nrows);
   double *X = lag_pool_doubles(&s->pool, 2 * (size_t)n), *Q = lag_pool_doubles(&s->pool, (size_t)size * (size_t)size);
   double *T = lag_pool_doubles(&s->pool, (size_t)s->nrows * (size_t)s->nrows);
   if (s->pool.failed) return LAG_ENOMEM;
@@ -293,7 +301,8 @@ static int find_symmetries(SteadyMotion *s) {
 static int least_squares(SteadyMotion *s, int rows, int cols, const double *A, const double *b, double *x) {
   Pool pool = {0};
   int size = rows > cols ? rows : cols;
-  double *Q = lag_pool_doubles(&pool, (size_t)size * (size_t)size), *B = lag_pool_doubles(&pool, (size_t)rows * (size_t)size);
+  double *Q = lag_pool_doubles(&pool, (size_t)size * (size_t)size),
+         *B = lag_pool_doubles(&pool, (size_t)rows * (size_t)size);
   double *N = lag_pool_doubles(&pool, (size_t)size * (size_t)size), *z = lag_pool_doubles(&pool, (size_t)size);
   int rank = pool.failed ? LAG_ENOMEM : lag_padded_kernel(&pool, s->algebra, size, (Rectangle){rows, cols, A},
                                                           1e-7 * largest(rows * cols, A), Q);
@@ -313,7 +322,8 @@ static int least_squares(SteadyMotion *s, int rows, int cols, const double *A, c
   return rc;
 }
 
-/* J[nrows * (n + m)], b[nrows]: the equations f - X = 0 and the constraints at y, in units; at rest velocities are no unknowns. */
+/* J[nrows * (n + m)], b[nrows]: the equations f - X = 0 and the constraints at y, in units; at rest velocities are
+ * no unknowns. */
 static int equations(SteadyMotion *s, int m, double *J, double *b, double *X, double *DX) {
   int n = s->n, nq = s->nq, cols = n + m, rc = rows_at(s, s->y, s->f);
   rc = rc ? rc : derivatives(s, s->y);
@@ -322,7 +332,10 @@ static int equations(SteadyMotion *s, int m, double *J, double *b, double *X, do
   double *one = s->at;
   for (int r = 0; r < s->nrows; r++) {
     b[r] = (s->f[r] - (m && r < n ? X[r] : 0)) / s->row[r];
-    for (int j = 0; j < n; j++) J[r * cols + j] = !s->moving && j >= nq && j < 2 * nq ? 0 : (s->G[r * n + j] - (m && r < n ? DX[r * n + j] : 0)) * s->unit[j] / s->row[r];
+    for (int j = 0; j < n; j++)
+      J[r * cols + j] = !s->moving && j >= nq && j < 2 * nq
+                            ? 0
+                            : (s->G[r * n + j] - (m && r < n ? DX[r * n + j] : 0)) * s->unit[j] / s->row[r];
   }
   for (int k = 0; k < m; k++) {
     for (int i = 0; i < m; i++) one[i] = i == k;
@@ -332,11 +345,14 @@ static int equations(SteadyMotion *s, int m, double *J, double *b, double *X, do
   return LAG_OK;
 }
 
-/* Whether what is left of every equation is rounding: of its own terms; where no unknown changes it, of the fastest ones. */
+/* Whether what is left of every equation is rounding: of its own terms; where no unknown changes it, of the fastest
+ * ones. */
 static int is_root(const SteadyMotion *s, int cols, const double *J, const double *b) {
   double fastest = largest(s->n * cols, J), noise;
   for (int r = 0; r < s->nrows; r++) {
-    double top = row_top(s, r, &noise), rounding = r >= s->n ? 1e-12 : top <= noise ? 4 * DBL_EPSILON * fastest : 1e-12 * top + noise;
+    double top = row_top(s, r, &noise), rounding = r >= s->n      ? 1e-12
+                                                   : top <= noise ? 4 * DBL_EPSILON * fastest
+                                                                  : 1e-12 * top + noise;
     if (!(fabs(b[r]) <= rounding)) return 0;
   }
   return 1;
@@ -374,8 +390,10 @@ static void settle_on_constraints(SteadyMotion *s) {
 static int newton(SteadyMotion *s, int *steps) {
   int n = s->n, m = s->moving ? s->m : 0, cols = n + m;
   Pool pool = {0};
-  double *J = lag_pool_doubles(&pool, (size_t)s->nrows * (size_t)(cols + s->m)), *b = lag_pool_doubles(&pool, (size_t)s->nrows), *x = lag_pool_doubles(&pool, (size_t)cols);
-  double *X = lag_pool_doubles(&pool, (size_t)n), *DX = lag_pool_doubles(&pool, (size_t)n * (size_t)n), last = HUGE_VAL, step = HUGE_VAL;
+  double *J = lag_pool_doubles(&pool, (size_t)s->nrows * (size_t)(cols + s->m)),
+         *b = lag_pool_doubles(&pool, (size_t)s->nrows), *x = lag_pool_doubles(&pool, (size_t)cols);
+  double *X = lag_pool_doubles(&pool, (size_t)n), *DX = lag_pool_doubles(&pool, (size_t)n * (size_t)n), last = HUGE_VAL,
+         step = HUGE_VAL;
   if (s->sim->pb.redundant) settle_on_constraints(s);
   int rc = pool.failed ? LAG_ENOMEM : m ? choose_generator(s, J, b, X) : LAG_OK, found = 0;
   for (int k = 0; k < MOST_STEPS && rc == LAG_OK; k++, last = step) {
@@ -436,7 +454,8 @@ static double typical_rate(SteadyMotion *s) {
   return rate > 0 ? rate : 1;
 }
 
-/* Units of positions: of angles 1 rad, else the largest start in that unit, or one unit; of velocities the largest, or a position's times a typical rate. */
+/* Units of positions: of angles 1 rad, else the largest start in that unit, or one unit; of velocities the largest,
+ * or a position's times a typical rate. */
 static void choose_units(SteadyMotion *s, Equilibrium *rest) {
   const lag_model *m = s->sim->pb.model;
   double rate = 1;
@@ -444,15 +463,20 @@ static void choose_units(SteadyMotion *s, Equilibrium *rest) {
     for (int i = 0; i < s->nq; i++) {
       double most = 0;
       for (int j = 0; j < s->nq; j++) most = of_one_unit(m, i, j) ? fmax(most, fabs(s->y[part * s->nq + j])) : most;
-      s->unit[part * s->nq + i] = !part && lag_is_angle(&m->q[i]) ? 1 : most > 0 ? most : part ? rate * s->unit[i] : m->q[i].factor;
+      s->unit[part * s->nq + i] = !part && lag_is_angle(&m->q[i]) ? 1
+                                  : most > 0                      ? most
+                                  : part                          ? rate * s->unit[i]
+                                                                  : m->q[i].factor;
     }
     rate = typical_rate(s);
   }
-  for (int i = 0; i < m->nz; i++) s->unit[2 * s->nq + i] = fabs(s->y[2 * s->nq + i]) > 0 ? fabs(s->y[2 * s->nq + i]) : m->z[i].factor;
+  for (int i = 0; i < m->nz; i++)
+    s->unit[2 * s->nq + i] = fabs(s->y[2 * s->nq + i]) > 0 ? fabs(s->y[2 * s->nq + i]) : m->z[i].factor;
   for (int i = 0; i < rest->n; i++) rest->scale[i] = s->unit[i < s->nq ? i : s->nq + i];
 }
 
-/* Sizes of rows: of rates the unit; of constraints the change by one unit of an unknown, so that a row whose derivatives vanish here is seen. */
+/* Sizes of rows: of rates the unit; of constraints the change by one unit of an unknown, so that a row whose
+ * derivatives vanish here is seen. */
 static void choose_rows(SteadyMotion *s) {
   const double far = 0.25;
   for (int r = 0; r < s->nrows; r++) s->row[r] = r < s->n ? s->unit[r] : 0;
@@ -468,8 +492,11 @@ static void choose_rows(SteadyMotion *s) {
 
 static int allocate(SteadyMotion *s, Equilibrium *rest) {
   size_t n = (size_t)s->n, rows = (size_t)s->nrows;
-  double **const parts[] = {&s->unit, &s->row, &s->y, &s->at, &s->f, &s->out, &s->G, &s->noise, &s->D, &s->error, &s->direction, &s->table};
-  const size_t sizes[] = {n, rows, n, n > (size_t)s->ncandidates ? n : (size_t)s->ncandidates, rows, 2 * rows, rows * n, rows * n, rows * n, rows * n, n, 2 * LEVELS * rows + (size_t)s->ncandidates};
+  double **const parts[] = {&s->unit, &s->row,   &s->y, &s->at,    &s->f,         &s->out,
+                            &s->G,    &s->noise, &s->D, &s->error, &s->direction, &s->table};
+  const size_t sizes[] = {n,        rows,     n,        n > (size_t)s->ncandidates ? n : (size_t)s->ncandidates,
+                          rows,     2 * rows, rows * n, rows * n,
+                          rows * n, rows * n, n,        2 * LEVELS * rows + (size_t)s->ncandidates};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&s->pool, sizes[i]);
   double **const report[] = {&rest->start, &rest->found, &rest->scale, &rest->y, &rest->rate};
   for (size_t i = 0; i < sizeof report / sizeof *report; i++) *report[i] = lag_pool_doubles(&rest->pool, n);
@@ -480,9 +507,13 @@ int lag_steady_find(SteadyMotion *s, Equilibrium *rest, lag_sim *sim, const lag_
   lag_problem *pb = &sim->pb;
   const lag_constraints *of = pb->model->constraints;
   int nq = pb->nq, n = pb->n;
-  *s = (SteadyMotion){.sim = sim, .algebra = algebra, .n = n, .nq = nq, .moving = moving, .nrows = n + (of ? of->nholonomic + of->n : 0), .ncandidates = count_candidates(pb->model)};
+  *s = (SteadyMotion){.sim = sim,
+                      .algebra = algebra, .n = n, .nq = nq, .moving = moving,
+                      .nrows = n + (of ? of->nholonomic + of->n : 0),
+                      .ncandidates = count_candidates(pb->model)};
   *rest = (Equilibrium){.sim = sim, .n = nq + pb->nz};
-  pb->redundant |= of && sim->run->rank < of->n && sim->run->beside == sim->run->rank; /* a row that is 0 here is marked nowhere else */
+  /* a row that is 0 here is marked nowhere else */
+  pb->redundant |= of && sim->run->rank < of->n && sim->run->beside == sim->run->rank;
   int rc = allocate(s, rest);
   if (rc) return rc;
   for (int i = 0; i < n; i++) s->y[i] = !moving && i >= nq && i < 2 * nq ? 0 : sim->now[i];

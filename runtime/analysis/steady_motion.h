@@ -1,5 +1,6 @@
-/* Steady motions: a state whose motion is that of a symmetry, such as a shift of cyclic coordinates at constant rates or a uniform rotation
- * (relative equilibria); rest is the simplest. With constraints, small changes lie in the tangent space of the states that obey them. */
+/* Steady motions: a state whose motion is that of a symmetry, such as a shift of cyclic coordinates at constant
+ * rates or a uniform rotation (relative equilibria); rest is the simplest. With constraints, small changes lie in
+ * the tangent space of the states that obey them. */
 #pragma once
 
 #include "analysis/modes.h"
@@ -8,7 +9,8 @@ typedef struct SteadyMotion {
   Pool pool;
   lag_sim *sim;
   const lag_algebra *algebra;
-  int n, nq, nrows;     /* n = 2 nq + nz; rows: the rates of y, then residuals of constraints on positions and on velocities */
+  /* n = 2 nq + nz; rows: the rates of y, then residuals of constraints on positions and on velocities */
+  int n, nq, nrows;
   int moving;           /* 0: rest is looked for, and velocities are no unknowns */
   int rank;             /* of the constraints' derivatives, beside the start */
   int without_rates;    /* 1: rows of rates are not computed */
@@ -23,8 +25,9 @@ typedef struct SteadyMotion {
   double *D, *error, *direction; /* scratch: derivatives along directions, with their errors, and a direction */
 } SteadyMotion;
 
-/* Finds the steady motion nearest to the simulation's start; moving: 0, rest. rest: its members start, found, scale, y (with velocities) and steps
- * are set, for the report. 1: found, 0: not found, < 0: a status. The model must not depend on time. */
+/* Finds the steady motion nearest to the simulation's start; moving: 0, rest. rest: its members start, found, scale,
+ * y (with velocities) and steps are set, for the report. 1: found, 0: not found, < 0: a status. The model must not
+ * depend on time. */
 int lag_steady_find(SteadyMotion *s, Equilibrium *rest, lag_sim *sim, const lag_algebra *algebra, int moving);
 void lag_steady_free(SteadyMotion *s);
 
@@ -34,11 +37,12 @@ void lag_steady_generator(const SteadyMotion *s, const double *c, const double *
 /* Sets f, G and noise at y. 0, or a status. */
 int lag_steady_derivatives(SteadyMotion *s);
 
-/* Q[size * size], the kernel of the constraints' derivatives in units, size >= n and their rows. Returns the rank, or a status < 0; LAG_ESINGULAR: there is no
- * clear one. Reads G. */
+/* Q[size * size], the kernel of the constraints' derivatives in units, size >= n and their rows. Returns the rank,
+ * or a status < 0; LAG_ESINGULAR: there is no clear one. Reads G. */
 int lag_tangent_kernel(Pool *pool, const SteadyMotion *s, int size, double *Q);
 
-/* Whether a steady motion lies near y + dx[n], dx in units and made `far` long, nearer than y: then they form a family. */
+/* Whether a steady motion lies near y + dx[n], dx in units and made `far` long, nearer than y: then they form a
+ * family. */
 int lag_steady_continues(SteadyMotion *s, const double *dx, double far);
 
 /* A matrix by rows. */
@@ -47,7 +51,8 @@ typedef struct Rectangle {
   const double *at;
 } Rectangle;
 
-/* Q[size * size], as lag_algebra.kernel has it, of A[rows * cols] in the corner of a square of `size` >= rows, cols; pivots up to tol count as
+/* Q[size * size], as lag_algebra.kernel has it, of A[rows * cols] in the corner of a square of `size` >= rows, cols;
+ * pivots up to tol count as
  * 0. Returns the rank, or a status < 0. */
 int lag_padded_kernel(Pool *pool, const lag_algebra *algebra, int size, Rectangle A, double tol, double *Q);
 

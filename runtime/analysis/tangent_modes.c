@@ -1,8 +1,9 @@
-/* Modes about a steady motion y(t) = g(t) y, g the flow of a symmetry X (steady_motion.h). In the frame that moves with it a small change obeys
- * u' = (Df - DX) u, and lies in the tangent space of the constraints, which the flow keeps: u = T x, x' = T' (Df - DX) T x = B x with an orthonormal
- * basis T. Its first columns are displacements by symmetries, which B keeps; what is left of B without them decides stability, and its zeros belong
- * to other steady motions, such as those at another speed, where they have all eigenvectors (A. M. Lyapunov, 1892; for families: I. G. Malkin, Theory
- * of Stability of Motion, 1952, par. 93). */
+/* Modes about a steady motion y(t) = g(t) y, g the flow of a symmetry X (steady_motion.h). In the frame that moves
+ * with it a small change obeys u' = (Df - DX) u, and lies in the tangent space of the constraints, which the flow
+ * keeps: u = T x, x' = T' (Df - DX) T x = B x with an orthonormal basis T. Its first columns are displacements by
+ * symmetries, which B keeps; what is left of B without them decides stability, and its zeros belong to other steady
+ * motions, such as those at another speed, where they have all eigenvectors (A. M. Lyapunov, 1892; for families: I.
+ * G. Malkin, Theory of Stability of Motion, 1952, par. 93). */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -32,7 +33,8 @@ static int find_tangent_space(TangentModes *w) {
   double *Q = lag_pool_doubles(pool, (size_t)size * (size_t)size);
   if (pool->failed) return LAG_ENOMEM;
   int rank = lag_tangent_kernel(pool, s, size, Q);
-  if (rank >= 0 && rank < s->rank) return LAG_ESINGULAR; /* a singular configuration: fewer constraints than beside it, and more tangents than motions */
+  /* a singular configuration: fewer constraints than beside it, and more tangents than motions */
+  if (rank >= 0 && rank < s->rank) return LAG_ESINGULAR;
   w->d = n - rank;
   w->T = rank < 0 ? NULL : lag_pool_doubles(pool, (size_t)n * (size_t)w->d);
   for (int i = 0; i < n && w->T; i++)
@@ -45,12 +47,14 @@ static int separate_symmetries(TangentModes *w) {
   const SteadyMotion *s = w->s;
   int n = s->n, d = w->d, m = s->m, size = d > m ? d : m;
   Pool pool = {0};
-  double *P = lag_pool_doubles(&pool, (size_t)m * (size_t)d), *one = lag_pool_doubles(&pool, (size_t)m), *X = lag_pool_doubles(&pool, (size_t)n);
+  double *P = lag_pool_doubles(&pool, (size_t)m * (size_t)d), *one = lag_pool_doubles(&pool, (size_t)m),
+         *X = lag_pool_doubles(&pool, (size_t)n);
   double *Q = lag_pool_doubles(&pool, (size_t)size * (size_t)size), *T = lag_pool_doubles(&pool, (size_t)n * (size_t)d);
   for (int k = 0; k < m && !pool.failed; k++) {
     memset(one, 0, (size_t)m * sizeof *one);
     one[k] = 1;
-    lag_steady_generator(s, one, s->y, X, NULL); /* an axis of turns is no displacement, to rounding: generators have the size 1 */
+    /* an axis of turns is no displacement, to rounding: generators have the size 1 */
+    lag_steady_generator(s, one, s->y, X, NULL);
     for (int l = 0; l < d; l++)
       for (int i = 0; i < n; i++) P[k * d + l] += w->T[i * d + l] * X[i] / s->unit[i];
   }
@@ -69,11 +73,13 @@ static int restrict_to_tangents(TangentModes *w) {
   const double rounding = 4 * DBL_EPSILON; /* of an element of T */
   int n = s->n, d = w->d;
   Pool pool = {0};
-  double *B = w->B = lag_pool_doubles(&w->out->pool, (size_t)d * (size_t)d), *noise = w->noise = lag_pool_doubles(&w->out->pool, (size_t)d * (size_t)d);
+  double *B = w->B = lag_pool_doubles(&w->out->pool, (size_t)d * (size_t)d),
+         *noise = w->noise = lag_pool_doubles(&w->out->pool, (size_t)d * (size_t)d);
   double *AT = lag_pool_doubles(&pool, 2 * (size_t)n * (size_t)d), *error = AT + (size_t)n * (size_t)d;
   for (int i = 0; i < n && AT; i++)
     for (int j = 0; j < n; j++) {
-      double per = s->unit[j] / s->unit[i], A = (s->G[i * n + j] - w->DX[i * n + j]) * per, e = s->noise[i * n + j] * per;
+      double per = s->unit[j] / s->unit[i], A = (s->G[i * n + j] - w->DX[i * n + j]) * per,
+             e = s->noise[i * n + j] * per;
       for (int k = 0; k < d; k++) {
         AT[i * d + k] += A * w->T[j * d + k];
         error[i * d + k] += e * fabs(w->T[j * d + k]) + rounding * fabs(A);
@@ -123,7 +129,8 @@ static int lift(const TangentModes *w, const Eigenvector *z, double *shape) {
   Pool pool = {0};
   double *A = lag_pool_doubles(&pool, 4 * (size_t)m * (size_t)m), *x = lag_pool_doubles(&pool, 2 * (size_t)m);
   for (int i = 0; i < m && !pool.failed; i++) { /* real and imaginary parts of (B_mm - value) x = -B_me z */
-    for (int j = 0; j < m; j++) A[i * 2 * m + j] = A[(m + i) * 2 * m + m + j] = w->B[i * d + j] - (i == j ? z->value_re : 0);
+    for (int j = 0; j < m; j++)
+      A[i * 2 * m + j] = A[(m + i) * 2 * m + m + j] = w->B[i * d + j] - (i == j ? z->value_re : 0);
     A[i * 2 * m + m + i] = z->value_im;
     A[(m + i) * 2 * m + i] = -z->value_im;
     for (int l = 0; l < e; l++) {
@@ -148,7 +155,8 @@ static int lift(const TangentModes *w, const Eigenvector *z, double *shape) {
   return rc;
 }
 
-/* Adds k zero modes, columns of v[n * k], in a basis with many zeros; those that displace nothing change speeds alone, and are not listed. */
+/* Adds k zero modes, columns of v[n * k], in a basis with many zeros; those that displace nothing change speeds
+ * alone, and are not listed. */
 static int add_zeros(TangentModes *w, int k, double *v, int free) {
   int n = w->s->n, rc = LAG_OK;
   double *x = lag_pool_doubles(&w->out->pool, 2 * (size_t)n), *scale = x + n;
@@ -168,15 +176,17 @@ static int add_zeros(TangentModes *w, int k, double *v, int free) {
   return rc;
 }
 
-/* Whether all zeros that are left, columns of u[n * k], lead to other steady motions, one by one and in sums with coefficients in no simple ratio:
- * only then nonlinear terms do not decide. */
+/* Whether all zeros that are left, columns of u[n * k], lead to other steady motions, one by one and in sums with
+ * coefficients in no simple ratio: only then nonlinear terms do not decide. */
 static int is_family(TangentModes *w, int k, const double *u) {
   int n = w->s->n, family = w->spectrum.zeros == k;
   double *x = lag_pool_doubles(&w->out->pool, (size_t)n);
   for (int try = 0; try < k + (k > 1 ? 4 : 0) && x && family; try++) {
     for (int i = 0; i < n; i++) {
       x[i] = 0;
-      for (int j = 0; j < k; j++) x[i] += try < k ? u[i * k + j] * (try == j) : u[i * k + j] * ((try - k) >> j % 2 & 1 ? -1 : 1) * (0.7 + 0.11 * (j * 3 % 4));
+      for (int j = 0; j < k; j++)
+        x[i] += try < k ? u[i * k + j] * (try == j)
+                        : u[i * k + j] * ((try - k) >> j % 2 & 1 ? -1 : 1) * (0.7 + 0.11 * (j * 3 % 4));
     }
     family = lag_steady_continues(w->s, x, 0.05) && lag_steady_continues(w->s, x, -0.05);
   }
@@ -187,7 +197,8 @@ static int is_family(TangentModes *w, int k, const double *u) {
 static int add_all_zeros(TangentModes *w) {
   const Spectrum *s = &w->spectrum;
   int n = w->s->n, m = w->shifts, k = s->nkernel, rc = LAG_OK;
-  double *v = lag_pool_doubles(&w->out->pool, (size_t)n * (size_t)m), *u = lag_pool_doubles(&w->out->pool, (size_t)n * (size_t)k);
+  double *v = lag_pool_doubles(&w->out->pool, (size_t)n * (size_t)m),
+         *u = lag_pool_doubles(&w->out->pool, (size_t)n * (size_t)k);
   double *re = lag_pool_doubles(&w->out->pool, 2 * (size_t)n);
   if (w->out->pool.failed) return LAG_ENOMEM;
   for (int i = 0; i < n; i++)
@@ -236,7 +247,8 @@ static int has_positive_mass(const TangentModes *w) {
   const lag_constraints *of = pb->model->constraints;
   size_t nq = (size_t)pb->nq;
   Pool pool = {0};
-  double *M = lag_pool_doubles(&pool, nq * nq), *A = of ? lag_pool_doubles(&pool, (size_t)of->n * nq) : NULL, *unit = lag_pool_doubles(&pool, nq);
+  double *M = lag_pool_doubles(&pool, nq * nq), *A = of ? lag_pool_doubles(&pool, (size_t)of->n * nq) : NULL,
+         *unit = lag_pool_doubles(&pool, nq);
   int positive = A && M && unit && lag_constraint_jacobian(pb, w->s->sim->run->t, w->s->y, A, unit, M) == 0;
   for (int k = 0; k < pb->nq && positive; k++) {
     positive = M[k * pb->nq + k] > 0;
@@ -246,8 +258,8 @@ static int has_positive_mass(const TangentModes *w) {
   return positive;
 }
 
-/* Whether the state is at rest, the energy is conserved and its kinetic part positive, and forces depend on positions alone: then oscillation in
- * every direction means that the energy is least. */
+/* Whether the state is at rest, the energy is conserved and its kinetic part positive, and forces depend on
+ * positions alone: then oscillation in every direction means that the energy is least. */
 static int is_potential(const TangentModes *w) {
   const SteadyMotion *s = w->s;
   const lag_model *m = s->sim->pb.model;

@@ -1,5 +1,5 @@
-/* Work-precision diagrams; the method and its source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), DOI
- * 10.1007/978-3-540-78862-1, II.10. */
+/* Work-precision diagrams; the method and its source: Hairer, Norsett, Wanner, Solving Ordinary Differential
+ * Equations I (1993), DOI 10.1007/978-3-540-78862-1, II.10. */
 #include "analysis/work_precision.h"
 
 #include <math.h>
@@ -46,7 +46,8 @@ int lag_samples_note(Samples *s, lag_sim *sim) {
   }
   for (int k = sim->method->flags & LAG_METHOD_STEPS_TO ? PLACES : 1; k <= PLACES && rc == LAG_OK; k++) {
     rc = k < PLACES ? lag_dense_state(sim, from + h * k / PLACES, sim->yc) : LAG_OK;
-    for (int i = 0; i < s->n && rc == LAG_OK; i++) s->largest[i] = fmax(s->largest[i], fabs(k < PLACES ? sim->yc[i] : sim->now[i]));
+    for (int i = 0; i < s->n && rc == LAG_OK; i++)
+      s->largest[i] = fmax(s->largest[i], fabs(k < PLACES ? sim->yc[i] : sim->now[i]));
   }
   sim->pb.rhs_calls = calls;
   return rc;
@@ -60,15 +61,19 @@ typedef struct Residuals {
   void *context;
 } Residuals;
 
-/* r[n] := the residual in the middle of the last step. The derivative of the motion is that of a polynomial of degree 8. */
+/* r[n] := the residual in the middle of the last step. The derivative of the motion is that of a polynomial of
+ * degree 8. */
 static int take_residual(lag_sim *sim, double *r) {
   static const double weight[] = {4. / 5, -1. / 5, 4. / 105, -1. / 280};
   const double apart = 0.1; /* of a step */
-  double from = sim->run->step_t0, h = sim->run->t - from, middle = from + 0.5 * h, calls = sim->pb.rhs_calls, *y = sim->yc;
+  double from = sim->run->step_t0, h = sim->run->t - from, middle = from + 0.5 * h, calls = sim->pb.rhs_calls,
+         *y = sim->yc;
   int n = sim->pb.n, rc = LAG_OK;
   memset(r, 0, (size_t)n * sizeof *r);
   if (h == 0) return LAG_OK;
-  if (sim->method->flags & LAG_METHOD_STEPS_TO) return lag_fail(sim, LAG_EINVAL, "%s has no motion between the ends of its steps, and so no residual", sim->method->name);
+  if (sim->method->flags & LAG_METHOD_STEPS_TO)
+    return lag_fail(sim, LAG_EINVAL, "%s has no motion between the ends of its steps, and so no residual",
+                    sim->method->name);
   rc = lag_dense_state(sim, middle, y);
   rc = rc ? rc : lag_rhs(&sim->pb, middle, y, r);
   for (int i = 0; i < n && rc == LAG_OK; i++) r[i] = -r[i];
@@ -84,7 +89,8 @@ static int take_residual(lag_sim *sim, double *r) {
 static int note_residual(void *residuals, const lag_sim *sim) {
   Residuals *w = residuals;
   w->rc = take_residual((lag_sim *)sim, w->r);
-  for (int i = 0; i < sim->pb.n && w->rc == LAG_OK; i++) w->most[i] = w->r[i] - w->r[i] == 0 ? fmax(w->most[i], fabs(w->r[i])) : HUGE_VAL;
+  for (int i = 0; i < sim->pb.n && w->rc == LAG_OK; i++)
+    w->most[i] = w->r[i] - w->r[i] == 0 ? fmax(w->most[i], fabs(w->r[i])) : HUGE_VAL;
   return w->rc || (w->before && w->before(w->context, sim));
 }
 
@@ -143,8 +149,9 @@ int lag_previous_alike(const lag_sim *sim, int i) {
   return -1;
 }
 
-/* terms[n] := the largest of itself and of each component's size at y, t of a run that lasts `span`, where its values are
- * rounding: of velocities by the energy, of coordinates with these over the run, of states by the terms of their rates. */
+/* terms[n] := the largest of itself and of each component's size at y, t of a run that lasts `span`, where its
+ * values are rounding: of velocities by the energy, of coordinates with these over the run, of states by the terms
+ * of their rates. */
 static void add_state_terms(lag_sim *sim, double t, const double *y, double span, double *terms, double *v) {
   int nq = sim->pb.nq, n = sim->pb.n;
   double calls = sim->pb.rhs_calls, *rate = sim->yb, *beside = sim->yc;
@@ -165,7 +172,8 @@ static void add_state_terms(lag_sim *sim, double t, const double *y, double span
   sim->pb.rhs_calls = calls;
 }
 
-/* terms[n] := sizes of components where their values are rounding, over some rows; 0, HUGE_VAL: not known. v: scratch. */
+/* terms[n] := sizes of components where their values are rounding, over some rows; 0, HUGE_VAL: not known. v:
+ * scratch. */
 static void take_terms(const Samples *s, lag_sim *sim, double *terms, double *v) {
   enum { ROWS = 5 };
   int n = s->n, last = s->rows - 1;
@@ -219,7 +227,8 @@ double lag_cost_row_error(int n, const double *a, const double *b, const double 
 double lag_cost_error(const Samples *a, const Samples *b, const double *scale) {
   double most = 0;
   for (int i = 0; i < a->rows && i < b->rows; i++)
-    most = fmax(most, lag_cost_row_error(a->n, a->y + (size_t)i * (size_t)a->n, b->y + (size_t)i * (size_t)a->n, scale));
+    most =
+        fmax(most, lag_cost_row_error(a->n, a->y + (size_t)i * (size_t)a->n, b->y + (size_t)i * (size_t)a->n, scale));
   return most;
 }
 
@@ -287,7 +296,8 @@ static int run_once(CostMethod *m, const CostSweep *s, int watched, double longe
   return rc ? rc : own->rows < s->reference->rows ? LAG_STOPPED : LAG_OK;
 }
 
-int lag_cost_run(CostMethod *m, const CostSweep *s, double enough, int most, double longest, Samples *own, CostRun *run) {
+int lag_cost_run(CostMethod *m, const CostSweep *s, double enough, int most, double longest, Samples *own,
+                 CostRun *run) {
   enum { MOST_REPEATS = 41 };
   double times[MOST_REPEATS], total = 0;
   int n = 0, residual = own->output == LAG_SAMPLES_RESIDUAL, rc = run_once(m, s, 1, longest, own, run);
@@ -319,7 +329,8 @@ double lag_cost_order(const CostMethod *m, double uncertainty) {
   for (int i = 0; i < m->nruns; i++) floor = fmin(floor, m->run[i].error);
   for (int i = 1; i < m->nruns && !varies; i++) {
     const CostRun *a = &m->run[i - 1], *b = &m->run[i];
-    if (a->error < 1e-2 && b->error > 30 * floor && b->error > 10 * uncertainty && b->error < a->error && b->steps > a->steps)
+    if (a->error < 1e-2 && b->error > 30 * floor && b->error > 10 * uncertainty && b->error < a->error &&
+        b->steps > a->steps)
       slope[n++] = log(a->error / b->error) / log((double)b->steps / (double)a->steps);
   }
   if (n < SLOPES) return NAN;
@@ -338,7 +349,10 @@ void lag_pareto_front(CostMethod *m, int n) {
       for (int j = 0; j < n && !better; j++)
         for (int l = 0; l < m[j].nruns && !better; l++) {
           const CostRun *other = &m[j].run[l];
-          better = other->time <= run->time && other->error <= run->error && (other->time < run->time || other->error < run->error) ? other : NULL;
+          better = other->time <= run->time && other->error <= run->error &&
+                           (other->time < run->time || other->error < run->error)
+                       ? other
+                       : NULL;
         }
       run->best = !better;
     }
@@ -358,6 +372,10 @@ static const CostMethod *find_cheapest(const CostMethod *m, int n, double target
   return which;
 }
 
-const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, const CostRun **run) { return find_cheapest(m, n, target, 0, run); }
+const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, const CostRun **run) {
+  return find_cheapest(m, n, target, 0, run);
+}
 
-const CostMethod *lag_cost_answer(const CostMethod *m, int n, double target, const CostRun **run) { return find_cheapest(m, n, target, 1, run); }
+const CostMethod *lag_cost_answer(const CostMethod *m, int n, double target, const CostRun **run) {
+  return find_cheapest(m, n, target, 1, run);
+}

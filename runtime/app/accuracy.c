@@ -1,6 +1,6 @@
-/* --accuracy: the setting whose error over the whole run is below a number. Enters: a simulation with its values; leaves: its method and tolerance or
- * step. Each trial is a run and a second, more accurate one (analysis/error_estimate.h); the setting is refined until the estimated error is a third
- * of what was asked. */
+/* --accuracy: the setting whose error over the whole run is below a number. Enters: a simulation with its values;
+ * leaves: its method and tolerance or step. Each trial is a run and a second, more accurate one
+ * (analysis/error_estimate.h); the setting is refined until the estimated error is a third of what was asked. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -38,27 +38,36 @@ static int note(void *trial, const lag_sim *sim) {
 
 /* *e := the error of a run with the present setting. LAG_OK, or the failure of the run with app->sim's message. */
 static int try_setting(App *app, ErrorEstimate *e) {
-  lag_sim *trial = lag_app_fresh_sim(app); /* with the scene's monitors: a setting that they stop is not accurate enough */
+  /* with the scene's monitors: a setting that they stop is not accurate enough */
+  lag_sim *trial = lag_app_fresh_sim(app);
   int rc = trial ? lag_error_estimate_init(e, trial) : LAG_ENOMEM;
   rc = rc ? rc : lag_app_copy_method(app->sim, trial, 1);
   if (rc == 0) {
     lag_sim_on_step(trial, note, &(Trial){e, trial});
     rc = lag_sim_advance(trial, app->until);
     if (rc < 0) lag_fail(app->sim, rc, "%s", lag_sim_message(trial));
-    if (rc == LAG_INTERRUPTED) rc = lag_fail(app->sim, LAG_ESTEP, "%s would take more than %g steps", app->sim->method->name, LAG_ACCURACY_STEPS);
+    if (rc == LAG_INTERRUPTED)
+      rc =
+          lag_fail(app->sim, LAG_ESTEP, "%s would take more than %g steps", app->sim->method->name, LAG_ACCURACY_STEPS);
   }
-  if (rc >= 0) rc = lag_app_compare_errors(app, e, trial, 1e6 + 30 * lag_app_work(trial)); /* more of it creeps where errors are rounding */
+  /* more of it creeps where errors are rounding */
+  if (rc >= 0) rc = lag_app_compare_errors(app, e, trial, 1e6 + 30 * lag_app_work(trial));
   lag_sim_free(trial);
   return rc < 0 ? rc : LAG_OK;
 }
 
 static int refuse(const App *app, double asked, double best, double horizon) {
   char reach[600] = "";
-  int failed = isnan(horizon) && !(best < HUGE_VAL) && lag_sim_message(app->sim)[0]; /* the message has its own advice */
-  if (!isnan(horizon)) snprintf(reach, sizeof reach, ": after t = %.3g s no digit is left in " LAG_PRECISION " precision", horizon);
-  else if (best < HUGE_VAL) snprintf(reach, sizeof reach, ": the smallest error found is %.2g%s", best, best <= asked ? ", too near to be sure" : "");
+  /* the message has its own advice */
+  int failed = isnan(horizon) && !(best < HUGE_VAL) && lag_sim_message(app->sim)[0];
+  if (!isnan(horizon))
+    snprintf(reach, sizeof reach, ": after t = %.3g s no digit is left in " LAG_PRECISION " precision", horizon);
+  else if (best < HUGE_VAL)
+    snprintf(reach, sizeof reach, ": the smallest error found is %.2g%s", best,
+             best <= asked ? ", too near to be sure" : "");
   else if (failed) snprintf(reach, sizeof reach, ": %s", lag_sim_message(app->sim));
-  return lag_app_error(&app->args, "--accuracy %g is not reached to t = %g s%s%s%s", asked, app->until, reach, failed ? "" : "; end the run earlier (--until)",
+  return lag_app_error(&app->args, "--accuracy %g is not reached to t = %g s%s%s%s", asked, app->until, reach,
+                       failed ? "" : "; end the run earlier (--until)",
                        !failed && strcmp(LAG_PRECISION, "double") == 0 ? ", or write --precision quad" : "");
 }
 
@@ -67,15 +76,26 @@ int lag_app_choose_by_accuracy(App *app) {
   ErrorEstimate e = {0};
   double asked, best = HUGE_VAL, horizon = NAN;
   if (!lag_args_number(a, "--accuracy", a->accuracy, "--accuracy 1e-8", &asked)) return EXIT_USAGE;
-  if (!(asked > 0 && asked < 1)) return lag_app_error(a, "--accuracy %s: a relative error between 0 and 1, for example --accuracy 1e-8", a->accuracy);
-  if (app->sim->pb.contacts) return lag_app_error(a, "--accuracy: %s meets impacts at its steps, so no step gives a small error of velocities near them; dop853 locates impacts", app->sim->method->name);
+  if (!(asked > 0 && asked < 1))
+    return lag_app_error(a, "--accuracy %s: a relative error between 0 and 1, for example --accuracy 1e-8",
+                         a->accuracy);
+  if (app->sim->pb.contacts)
+    return lag_app_error(a,
+                         "--accuracy: %s meets impacts at its steps, so no step gives a small error of velocities near "
+                         "them; dop853 locates impacts",
+                         app->sim->method->name);
   int equal = lag_equal_step(app->sim) > 0;
-  double least = equal ? 0 : 4.5 * DBL_EPSILON, knob = equal ? lag_equal_step(app->sim) : fmax(least, fmin(0.1 * asked, 1e-3)), order = equal ? app->sim->method->order : 1;
+  double least = equal ? 0 : 4.5 * DBL_EPSILON,
+         knob = equal ? lag_equal_step(app->sim) : fmax(least, fmin(0.1 * asked, 1e-3)),
+         order = equal ? app->sim->method->order : 1;
   app->asked = asked;
   for (int i = 0, vain = 0; i < MOST_TRIALS && vain < 2; i++) {
     double steps = fabs(app->until - app->scene->t0) / knob;
     if (equal && steps > LAG_ACCURACY_STEPS)
-      return lag_app_error(a, "--accuracy %g would take about %.1e steps of %s; leave out --method, and an adaptive method of higher order is chosen", asked, steps, app->sim->method->name);
+      return lag_app_error(a,
+                           "--accuracy %g would take about %.1e steps of %s; leave out --method, and an adaptive "
+                           "method of higher order is chosen",
+                           asked, steps, app->sim->method->name);
     int rc = set_knob(app, knob);
     if (rc) return app->args.method ? lag_app_error(a, "%s", lag_sim_message(app->sim)) : rc;
     rc = try_setting(app, &e);
@@ -88,7 +108,9 @@ int lag_app_choose_by_accuracy(App *app) {
     if (error <= share * asked) return 0;
     if (knob <= least || (equal && best < HUGE_VAL && error > 2 * best)) break;
     double wanted = 0.5 * share * asked / error, step_factor = pow(fmax(fmin(wanted, 0.5), 1e-3), 1 / order);
-    if (equal && error < HUGE_VAL && steps > 10 * LAG_ACCURACY_STEPS * pow(wanted, 1 / order)) step_factor = pow(wanted, 1 / order); /* refused at once */
+    /* refused at once */
+    if (equal && error < HUGE_VAL && steps > 10 * LAG_ACCURACY_STEPS * pow(wanted, 1 / order))
+      step_factor = pow(wanted, 1 / order);
     knob = fmax(least, knob * step_factor);
   }
   return refuse(app, asked, best, horizon);

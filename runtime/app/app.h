@@ -1,5 +1,5 @@
-/* Shared by the files of app/, the main program of a simulator: the command line, and the state of a run. Functions that return 0 or
- * EXIT_USAGE have printed a message in the second case. */
+/* Shared by the files of app/, the main program of a simulator: the command line, and the state of a run. Functions
+ * that return 0 or EXIT_USAGE have printed a message in the second case. */
 #pragma once
 
 #include <signal.h>
@@ -19,7 +19,8 @@ typedef struct Args {
   const char *accuracy;
   const char *transient, *exponents; /* for --lyapunov */
   const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
-  const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram; /* for --sweep */
+  /* for --sweep */
+  const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram;
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
   int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs,
       sweep, zip, go_on, yes, portrait, potential, distance, energy_error, no_monitors;
@@ -47,7 +48,8 @@ typedef struct DrawnColumn {
 typedef struct PictureSampling {
   int on, places;   /* 1: rows are chosen here; number of samples in the last step */
   double soonest;   /* steps that end within this time after the last sampled one are not sampled [s] */
-  double seen_to, length; /* end of the last sampled step; for STEPS_TO methods the longest step that few samples resolve */
+  /* end of the last sampled step; for STEPS_TO methods the longest step that few samples resolve */
+  double seen_to, length;
   double *y, *seen; /* [n] scratch; samples of a step, [MOST_PLACES + 1][ncols] */
   int ends, cut;    /* 1: rows are ends of steps; the last sample is at an event within a step */
   int store;        /* 0: kept rows are counted, not stored */
@@ -67,7 +69,9 @@ typedef struct App {
   Args args;
   const lag_scene *scene;
   const lag_scene *whole; /* the scene with its monitors */
-  lag_scene bare;   /* for exponents, costs, errors and their pictures: the scene without monitors and closed forms, which would end a rough run or take time */
+  /* for exponents, costs, errors and their pictures: the scene without monitors and closed forms, which would end a
+   * rough run or take time */
+  lag_scene bare;
   lag_scene unwatched; /* for --no-monitors */
   lag_sim *sim;
   State state;      /* the saved state of --resume */
@@ -79,7 +83,8 @@ typedef struct App {
   int *marked;      /* [tracks] the words noted last; NULL: no animation */
   PlottedCurves drawn;
   char drawn_ys[96]; /* label of an axis with the names of several --plot-y */
-  double *portrait, portrait_unit[3]; /* --portrait, --potential: a state; SI units in those of its first two components and of the energy, as drawn */
+  /* --portrait, --potential: a state; SI units in those of its first two components and of the energy, as drawn */
+  double *portrait, portrait_unit[3];
   double *row;      /* [ncols] */
   double last_row;  /* time of the last row, NaN before the first */
   long long rows_put, empty_rows; /* rows written; rows with an output that is not finite */
@@ -138,7 +143,8 @@ const Option *lag_args_option(int i);
 
 /* args.c: parses and checks the command line. 0, or EXIT_USAGE after a message. */
 int lag_args_parse(Args *a, int argc, char **argv);
-/* *x := the decimal number that is the whole text, maybe infinite; else 0. Other forms that strtod takes (inf, nan, 0x1p3) are none. */
+/* *x := the decimal number that is the whole text, maybe infinite; else 0. Other forms that strtod takes (inf, nan,
+ * 0x1p3) are none. */
 int lag_args_decimal(const char *text, double *x);
 /* The same for finite numbers. Else a message with the name `what` and an example; returns 0. */
 int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x);
@@ -150,7 +156,8 @@ __attribute__((format(printf, 2, 3)))
 #endif
 int lag_app_error(const Args *a, const char *format, ...);
 
-/* simulation_setup.c: app->scene and app->sim with values and method; lag_app_set_up_start: without the method. 0, or EXIT_USAGE after a message. */
+/* simulation_setup.c: app->scene and app->sim with values and method; lag_app_set_up_start: without the method. 0,
+ * or EXIT_USAGE after a message. */
 int lag_app_set_up(App *app);
 int lag_app_set_up_start(App *app);
 /* app->until := end of the run, from --until or the scene; called by both above. 0, or EXIT_USAGE after a message. */
@@ -173,15 +180,17 @@ const lag_method *lag_app_find_method(const App *app, const char *name);
 /* Prints that there is no such method; returns EXIT_USAGE. */
 int lag_app_unknown_method(const App *app, const char *name);
 
-/* Chooses a method with these options for app->sim, whose values are set; app->why := the reason. 0, or EXIT_USAGE after a message. */
+/* Chooses a method with these options for app->sim, whose values are set; app->why := the reason. 0, or EXIT_USAGE
+ * after a message. */
 int lag_app_choose_automatically(App *app, const lag_option *opt, int n);
 
 /* simulator_help.c: --help; the table of all methods, or of the one of this name. */
 void lag_app_help(const App *app, FILE *f);
 void lag_app_list_methods(const App *app, const char *name, FILE *f);
 
-/* pictures.c: writes a picture to path by `write`, which makes an SVG file (-1 with errno set); of a path that ends in .png that becomes a PNG. lag_app_draw_table: the
- * table to --svg, if given. 0, or EXIT_USAGE after a message. lag_app_check_parts: refuses files that only a program built with librsvg or libhdf5 writes. */
+/* pictures.c: writes a picture to path by `write`, which makes an SVG file (-1 with errno set); of a path that ends
+ * in .png that becomes a PNG. lag_app_draw_table: the table to --svg, if given. 0, or EXIT_USAGE after a message.
+ * lag_app_check_parts: refuses files that only a program built with librsvg or libhdf5 writes. */
 int lag_app_check_parts(const App *app);
 int lag_app_picture(const App *app, const char *path, int (*write)(const char *svg, void *context), void *context);
 int lag_app_draw_table(const App *app, const char *title);
@@ -191,45 +200,52 @@ int lag_app_choose_curves(App *app);
 /* app->show := points of --points and --from. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_points(App *app);
 
-/* picture_sampling.c: rows of pictures. lag_sampling_open comes after lag_app_choose_curves and lag_app_choose_points. lag_sampling_advance is lag_sim_advance that samples the
- * motion on the way. lag_sampling_close thins the rows at the end. lag_sampling_warn: note := a warning about the picture, or ""; also printed. */
+/* picture_sampling.c: rows of pictures. lag_sampling_open comes after lag_app_choose_curves and
+ * lag_app_choose_points. lag_sampling_advance is lag_sim_advance that samples the motion on the way.
+ * lag_sampling_close thins the rows at the end. lag_sampling_warn: note := a warning about the picture, or ""; also
+ * printed. */
 int lag_sampling_open(App *app);
 int lag_sampling_advance(App *app, double until);
 int lag_sampling_close(App *app);
 void lag_sampling_warn(App *app, char *note, size_t size);
 void lag_sampling_free(App *app);
 
-/* output_rows.c: time of row grid[2] of a grid that begins at grid[0], with rows grid[1] apart; the index of time t, whole up to rounding
- * of the times. */
+/* output_rows.c: time of row grid[2] of a grid that begins at grid[0], with rows grid[1] apart; the index of time t,
+ * whole up to rounding of the times. */
 double lag_app_row_time(const App *app, const double *grid);
 double lag_app_row_at(const App *app, const double *grid, double t);
-/* error_curves.c: whether the rows of a picture lie at equal times, as differences need them; the present row's energy, less its jumps at events and the work
- * of forces so far; the energies that are drawn := decimal logarithms of their errors, relative where no run begins with the energy 0. sim: of the first run. */
+/* error_curves.c: whether the rows of a picture lie at equal times, as differences need them; the present row's
+ * energy, less its jumps at events and the work of forces so far; the energies that are drawn := decimal logarithms
+ * of their errors, relative where no run begins with the energy 0. sim: of the first run. */
 int lag_app_equal_times(const Args *a);
 void lag_energy_kept(App *app);
 void lag_energy_errors(App *app, lag_sim *sim);
 /* portrait.c: what --portrait or --potential draws beneath app->drawn. 0, or EXIT_USAGE after a message. */
 int lag_portrait_open(App *app);
-/* output_rows.c: writes a row of the present state; writes app->row, also to the table if drawn. LAG_OK, or a failure. */
+/* output_rows.c: writes a row of the present state; writes app->row, also to the table if drawn. LAG_OK, or a
+ * failure. */
 int lag_app_put_row(App *app);
 int lag_app_write_row(App *app, int drawn);
-/* Signals that end a run (Ctrl-C, SIGTERM, SIGHUP) let it finish its step and write its files; nohup is respected. Called before files are
- * opened, so that none is left over. */
+/* Signals that end a run (Ctrl-C, SIGTERM, SIGHUP) let it finish its step and write its files; nohup is respected.
+ * Called before files are opened, so that none is left over. */
 void lag_app_catch_interrupt(void);
-/* Clock and progress line: lag_app_start_clock before a run, lag_app_stop_clock at its end, lag_app_after_step as the function of lag_sim_on_step.
- * lag_app_interrupted: the exit status after a signal. */
+/* Clock and progress line: lag_app_start_clock before a run, lag_app_stop_clock at its end, lag_app_after_step as
+ * the function of lag_sim_on_step. lag_app_interrupted: the exit status after a signal. */
 void lag_app_start_clock(App *app);
 int lag_app_after_step(void *app, const lag_sim *sim);
 void lag_app_stop_clock(App *app);
 int lag_app_interrupted(void);
-/* Refuses outputs that would overwrite the model, this program, a file that is read or each other. 0, or EXIT_USAGE after a message. */
+/* Refuses outputs that would overwrite the model, this program, a file that is read or each other. 0, or EXIT_USAGE
+ * after a message. */
 int lag_app_check_outputs(const App *app);
 
-/* One run: set up, opened files, up to its end, app->status; no report. 0, or EXIT_USAGE after a message. lag_app_free: all that it holds but the command line. */
+/* One run: set up, opened files, up to its end, app->status; no report. 0, or EXIT_USAGE after a message.
+ * lag_app_free: all that it holds but the command line. */
 int lag_app_run(App *app);
 void lag_app_free(App *app);
 
-/* multi_run_plot.c: whether the command line names several scenes or methods, or --vs, for one picture; draws it and returns the exit status. */
+/* multi_run_plot.c: whether the command line names several scenes or methods, or --vs, for one picture; draws it and
+ * returns the exit status. */
 int lag_app_overlays(const Args *a);
 /* Length of the first method in a list with commas; those between the parentheses of options separate none. */
 size_t lag_app_method_length(const char *list);
@@ -241,21 +257,23 @@ int lag_app_cloud(App *app);
 /* event_log.c: --section. 0, or EXIT_USAGE after a message. */
 int lag_section_choose(App *app);
 
-/* tangent_columns.c: --tangent. lag_tangent_columns_open adds its columns to the table; 0, or EXIT_USAGE after a message. lag_tangent_columns_row: their values in
- * app->row; LAG_OK, or a failure. */
+/* tangent_columns.c: --tangent. lag_tangent_columns_open adds its columns to the table; 0, or EXIT_USAGE after a
+ * message. lag_tangent_columns_row: their values in app->row; LAG_OK, or a failure. */
 int lag_tangent_columns_open(App *app);
 int lag_tangent_columns_row(App *app);
 void lag_report_tangent(App *app, FILE *f);
 void lag_report_tangent_json(App *app, Json *j);
 
-/* volume_report.c: --volume. open: gives the run its tangent; 0, or EXIT_USAGE after a message. step: at the end of each step; a failure ends the run. */
+/* volume_report.c: --volume. open: gives the run its tangent; 0, or EXIT_USAGE after a message. step: at the end of
+ * each step; a failure ends the run. */
 int lag_app_volume_open(App *app);
 void lag_app_volume_step(App *app);
 void lag_report_volume(App *app, FILE *f);
 void lag_report_volume_json(App *app, Json *j);
 
-/* measures.c: --measure, and the measures of the scene. open: before the run, and before files are opened; 0, or EXIT_USAGE after a message. begin and
- * end: of the run; a status. advance: lag_sim_advance, with measures if there are any. */
+/* measures.c: --measure, and the measures of the scene. open: before the run, and before files are opened; 0, or
+ * EXIT_USAGE after a message. begin and end: of the run; a status. advance: lag_sim_advance, with measures if there
+ * are any. */
 int lag_app_measures_open(App *app);
 int lag_app_measures_begin(App *app);
 int lag_app_advance(App *app, double t);
@@ -264,12 +282,14 @@ void lag_app_measures_free(App *app);
 void lag_report_measures(const App *app, FILE *f);
 void lag_report_measures_json(const App *app, Json *j);
 
-/* error_report.c: the error of the run, by a second run. begin: before the run; 0, or EXIT_USAGE after a message. end: after it. */
+/* error_report.c: the error of the run, by a second run. begin: before the run; 0, or EXIT_USAGE after a message.
+ * end: after it. */
 int lag_app_error_begin(App *app);
 void lag_app_error_end(App *app);
 /* `to` takes the method and options of `from`, and its tolerance times `times`. LAG_OK, or a refusal. */
 int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times);
-/* Compares the motion noted in *e, of `run`, with a more accurate run of at most `most` operations. LAG_OK, also where that fails (e->why), or LAG_ENOMEM. */
+/* Compares the motion noted in *e, of `run`, with a more accurate run of at most `most` operations. LAG_OK, also
+ * where that fails (e->why), or LAG_ENOMEM. */
 double lag_app_work(const lag_sim *run); /* operations of a run so far, about */
 int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most);
 /* Steps of a run that --accuracy tries, at most. */
@@ -308,13 +328,15 @@ int lag_app_flush(const App *app);
 /* Tests before a long run whether a file can be written; path NULL: none. 0, or EXIT_USAGE after a message. */
 int lag_app_try_file(const App *app, const char *path);
 
-/* motion_marks.c: what an animation marks. lag_marks_note: the state now; LAG_ENOMEM. lag_marks_event: event k at time t; -1: no memory. */
+/* motion_marks.c: what an animation marks. lag_marks_note: the state now; LAG_ENOMEM. lag_marks_event: event k at
+ * time t; -1: no memory. */
 int lag_marks_open(App *app);
 int lag_marks_note(App *app);
 int lag_marks_event(App *app, int k, double t);
 void lag_marks_free(App *app);
 
-/* event_log.c: the log of --events. 0, or EXIT_USAGE after a message. lag_event_note: as the function of lag_sim_on_event, for both. */
+/* event_log.c: the log of --events. 0, or EXIT_USAGE after a message. lag_event_note: as the function of
+ * lag_sim_on_event, for both. */
 int lag_event_log_open(App *app);
 void lag_event_note(void *app, int k, double t, const double *before, const double *after);
 void lag_event_log_free(App *app);

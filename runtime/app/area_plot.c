@@ -1,6 +1,7 @@
-/* --cloud: starts on an ellipse around the scene's start, carried along by each method, drawn at several times in the plane of two quantities. Enters: the command line;
- * leaves: the picture, the area inside the cloud at each time, an exit status. Holds: the plane is that of the drawn columns, where these are components of the state;
- * with one coordinate it is that of the coordinate and its rate or momentum, whatever is drawn over it. */
+/* --cloud: starts on an ellipse around the scene's start, carried along by each method, drawn at several times in
+ * the plane of two quantities. Enters: the command line; leaves: the picture, the area inside the cloud at each
+ * time, an exit status. Holds: the plane is that of the drawn columns, where these are components of the state; with
+ * one coordinate it is that of the coordinate and its rate or momentum, whatever is drawn over it. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,8 +27,9 @@ typedef struct Cloud {
   char title[300];
 } Cloud;
 
-/* Area inside the smooth closed curve through every k-th point of x[n], y[n], the contour integral of (x dy - y dx)/2 with derivatives of the trigonometric interpolant
- * (L.N. Trefethen, Spectral Methods in MATLAB (2000), ch. 3, DOI 10.1137/1.9780898719598). */
+/* Area inside the smooth closed curve through every k-th point of x[n], y[n], the contour integral of (x dy - y
+ * dx)/2 with derivatives of the trigonometric interpolant (L.N. Trefethen, Spectral Methods in MATLAB (2000), ch. 3,
+ * DOI 10.1137/1.9780898719598). */
 static double area_of(int n, int k, const double *x, const double *y) {
   const double pi = acos(-1);
   double sum = 0;
@@ -50,9 +52,12 @@ static int read_size(Cloud *c) {
   long long n;
   snprintf(number, sizeof number, "%.*s", (int)(colon ? colon - a->cloud : 60), a->cloud);
   if (lag_args_count(a, "--cloud", number, "--cloud 60", &n)) return EXIT_USAGE;
-  if (n < LEAST_STARTS || n > MOST_STARTS) return lag_app_error(a, "--cloud %s: from %d to %d starts", a->cloud, LEAST_STARTS, MOST_STARTS);
+  if (n < LEAST_STARTS || n > MOST_STARTS)
+    return lag_app_error(a, "--cloud %s: from %d to %d starts", a->cloud, LEAST_STARTS, MOST_STARTS);
   if (colon && (!lag_args_number(a, "--cloud", colon + 1, "--cloud 60:0.1", &c->part) || !(c->part > 0)))
-    return lag_app_error(a, "--cloud %s: after the colon stands the size of the cloud, as a part of the motion's, for example 60:0.1", a->cloud);
+    return lag_app_error(
+        a, "--cloud %s: after the colon stands the size of the cloud, as a part of the motion's, for example 60:0.1",
+        a->cloud);
   c->asked = c->n = (int)n;
   return 0;
 }
@@ -62,10 +67,14 @@ static int read_times(Cloud *c) {
   c->until = c->run.until;
   c->every = (c->until - c->run.scene->t0) / (TIMES - 1);
   if (a->every && !lag_args_number(a, "--every", a->every, "--every 1", &c->every)) return EXIT_USAGE;
-  if (a->every && !(c->every > 0)) return lag_app_error(a, "--every %s: the time between two clouds must be positive, for example --every 1", a->every);
+  if (a->every && !(c->every > 0))
+    return lag_app_error(a, "--every %s: the time between two clouds must be positive, for example --every 1",
+                         a->every);
   c->every = copysign(c->every, c->until - c->run.scene->t0);
   double times = floor(lag_app_row_at(&c->run, (double[]){c->run.scene->t0, fabs(c->every)}, c->until)) + 1;
-  if (times > MOST_TIMES) return lag_app_error(a, "--every %g: that makes %.0f clouds; %d can be told apart at most", c->every, times, MOST_TIMES);
+  if (times > MOST_TIMES)
+    return lag_app_error(a, "--every %g: that makes %.0f clouds; %d can be told apart at most", c->every, times,
+                         MOST_TIMES);
   c->times = (int)times;
   c->xy = calloc((size_t)c->times * 2 * (size_t)c->n, sizeof *c->xy);
   return c->xy ? 0 : lag_app_error(a, "out of memory");
@@ -78,25 +87,34 @@ static int set_up(Cloud *c, const char *method) {
   run->args.method = method;
   int rc = lag_app_set_up(run);
   if (rc) return rc;
-  if (lag_table_init(&run->table, run->sim, 0) || !(run->row = calloc((size_t)run->table.ncols, sizeof *run->row))) return lag_app_error(&run->args, "out of memory");
+  if (lag_table_init(&run->table, run->sim, 0) || !(run->row = calloc((size_t)run->table.ncols, sizeof *run->row)))
+    return lag_app_error(&run->args, "out of memory");
   return lag_app_choose_curves(run);
 }
 
-static const char *drawn_name(const Cloud *c, int axis) { return c->run.table.cols[(axis ? c->run.drawn.y : c->run.drawn.x)[0]].name; }
+static const char *drawn_name(const Cloud *c, int axis) {
+  return c->run.table.cols[(axis ? c->run.drawn.y : c->run.drawn.x)[0]].name;
+}
 
 static int choose_plane(Cloud *c) {
   const lag_model *m = c->run.scene->model;
-  if (m->constraints) return lag_app_error(&c->app->args, "--cloud: the model has constraints, and displaced starts would break them; write it in coordinates without constraints");
+  if (m->constraints)
+    return lag_app_error(&c->app->args, "--cloud: the model has constraints, and displaced starts would break them; "
+                                        "write it in coordinates without constraints");
   for (int axis = 0; axis < 2; axis++) c->component[axis] = lag_component_index(m, drawn_name(c, axis));
   int x = c->component[0], other = c->run.sim->pb.n == 2 && x >= 0 ? 1 - x : -1;
   if (c->component[1] < 0 || c->component[1] == x) c->component[1] = other;
   for (int axis = 0; axis < 2; axis++)
     if (c->component[axis] < 0)
-      return lag_app_error(&c->app->args, "--cloud: starts are displaced along coordinates, velocities or states, and %s is none: give two by --x and --y", drawn_name(c, axis));
+      return lag_app_error(&c->app->args,
+                           "--cloud: starts are displaced along coordinates, velocities or states, and %s is none: "
+                           "give two by --x and --y",
+                           drawn_name(c, axis));
   return 0;
 }
 
-/* Half-axes of the ellipse: parts of half of the range of the displaced components along the scene's motion, by dop853. */
+/* Half-axes of the ellipse: parts of half of the range of the displaced components along the scene's motion, by
+ * dop853. */
 static int find_half_axes(Cloud *c) {
   lag_sim *sim = lag_app_fresh_sim(&c->run);
   double least[2], most[2];
@@ -114,7 +132,11 @@ static int find_half_axes(Cloud *c) {
   if (rc < 0) rc = lag_app_error(&c->app->args, "%s", sim ? lag_sim_message(sim) : "out of memory");
   for (int axis = 0; axis < 2 && rc >= 0; axis++) {
     c->half[axis] = c->part * (most[axis] - least[axis]) / 2;
-    if (!(c->half[axis] > 0)) rc = lag_app_error(&c->app->args, "--cloud: %s does not change along the motion, which gives the cloud its size; start elsewhere", lag_state_column(sim, c->component[axis]).name);
+    if (!(c->half[axis] > 0))
+      rc =
+          lag_app_error(&c->app->args,
+                        "--cloud: %s does not change along the motion, which gives the cloud its size; start elsewhere",
+                        lag_state_column(sim, c->component[axis]).name);
   }
   lag_sim_free(sim);
   return rc < 0 ? EXIT_RUN : rc == EXIT_USAGE ? rc : 0;
@@ -122,13 +144,17 @@ static int find_half_axes(Cloud *c) {
 
 /* ---- The runs */
 
-/* Carries start i along; its drawn values into c->xy, up to a failure, which a warning tells. 0, or EXIT_USAGE after a message. */
+/* Carries start i along; its drawn values into c->xy, up to a failure, which a warning tells. 0, or EXIT_USAGE after
+ * a message. */
 static int carry(Cloud *c, lag_sim *sim, int i) {
   const double pi = acos(-1), angle = 2 * pi * i / c->n;
   int rc = sim ? lag_app_copy_method(c->run.sim, sim, 1) : LAG_ENOMEM, k = 0;
   for (int axis = 0; axis < 2 && rc == 0; axis++)
-    rc = lag_sim_set(sim, lag_state_column(sim, c->component[axis]).name, c->centre[axis] + c->half[axis] * (axis ? sin(angle) : cos(angle)));
-  if (rc) return lag_app_error(&c->app->args, "start %d of %d: %s", i + 1, c->n, sim ? lag_sim_message(sim) : "out of memory");
+    rc = lag_sim_set(sim, lag_state_column(sim, c->component[axis]).name,
+                     c->centre[axis] + c->half[axis] * (axis ? sin(angle) : cos(angle)));
+  if (rc)
+    return lag_app_error(&c->app->args, "start %d of %d: %s", i + 1, c->n,
+                         sim ? lag_sim_message(sim) : "out of memory");
   for (; k < c->times && rc == 0; k++) {
     double *to = c->xy + 2 * (size_t)(k * c->n);
     rc = lag_sim_advance(sim, c->run.scene->t0 + k * c->every);
@@ -137,7 +163,9 @@ static int carry(Cloud *c, lag_sim *sim, int i) {
     to[i] = c->run.row[c->run.drawn.x[0]];
     to[c->n + i] = c->run.row[c->run.drawn.y[0]];
   }
-  if (k < c->reached) lag_app_error(&c->app->args, "warning: %s, start %d of %d: %s; its cloud is drawn up to then", lag_sim_method(sim)->name, i + 1, c->n, rc < 0 ? lag_sim_message(sim) : "an event stops it");
+  if (k < c->reached)
+    lag_app_error(&c->app->args, "warning: %s, start %d of %d: %s; its cloud is drawn up to then",
+                  lag_sim_method(sim)->name, i + 1, c->n, rc < 0 ? lag_sim_message(sim) : "an event stops it");
   c->reached = k < c->reached ? k : c->reached;
   return 0;
 }
@@ -155,7 +183,8 @@ static int carry_all(Cloud *c) {
 
 static double area_at(const Cloud *c, int k, int *coarse);
 
-/* Carries the starts that were asked for along, and twice as many as often as areas are not determined, up to MOST_AREA. */
+/* Carries the starts that were asked for along, and twice as many as often as areas are not determined, up to
+ * MOST_AREA. */
 static int carry_enough(Cloud *c) {
   enum { MOST_AREA = 4000 };
   for (c->n = c->asked;; c->n *= 2) {
@@ -175,7 +204,11 @@ static int open_table(Cloud *c) {
   PlottedCurves *d = &c->app->drawn;
   size_t m = (size_t)c->methods;
   *t = (Table){.ncols = 1 + 2 * c->methods, .cols = calloc(1 + 2 * m, sizeof *t->cols), .keep = 1};
-  *d = (PlottedCurves){.n = c->methods, .x = calloc(2 * m, sizeof *d->x), .xname = c->app->args.plot_x, .yname = c->app->args.plot_y, .runs = c->methods};
+  *d = (PlottedCurves){.n = c->methods,
+                       .x = calloc(2 * m, sizeof *d->x),
+                       .xname = c->app->args.plot_x,
+                       .yname = c->app->args.plot_y,
+                       .runs = c->methods};
   c->app->row = calloc(1 + 2 * m, sizeof *c->app->row);
   if (!t->cols || !d->x || !c->app->row) return lag_app_error(&c->app->args, "out of memory");
   d->y = d->x + c->methods;
@@ -188,7 +221,8 @@ static int note_times(Cloud *c) {
   PlottedCurves *d = &c->app->drawn;
   free(d->note);
   d->nnotes = 0;
-  if (!(d->note = calloc((size_t)c->reached + 1, sizeof *d->note))) return lag_app_error(&c->app->args, "out of memory");
+  if (!(d->note = calloc((size_t)c->reached + 1, sizeof *d->note)))
+    return lag_app_error(&c->app->args, "out of memory");
   for (int k = 0; k < c->reached; k++) {
     const double *from = c->xy + 2 * (size_t)(k * c->n);
     PictureNote *note = &d->note[d->nnotes++];
@@ -225,7 +259,8 @@ static double area_at(const Cloud *c, int k, int *coarse) {
   const double rough = 1e-3; /* of the first area */
   const double *x = c->xy + 2 * (size_t)(k * c->n), *first = c->xy;
   double area = area_of(c->n, 1, x, x + c->n);
-  *coarse = k && c->n % 2 == 0 && fabs(area_of(c->n, 2, x, x + c->n) - area) > rough * fabs(area_of(c->n, 1, first, first + c->n));
+  *coarse = k && c->n % 2 == 0 &&
+            fabs(area_of(c->n, 2, x, x + c->n) - area) > rough * fabs(area_of(c->n, 1, first, first + c->n));
   return area;
 }
 
@@ -244,7 +279,9 @@ static void report_areas(const Cloud *c, int method) {
     else if (bad) printf("%s ? at t = %.6g s", k == 1 ? "" : ",", t);
     else printf("%s %.9g at t = %.6g s", k == 1 ? "" : ",", area / first, t);
   }
-  printf(coarse ? "; ?: not determined by %d starts: fewer times, --until, or a smaller cloud, --cloud %d:0.01\n" : "\n", c->n, c->asked);
+  printf(coarse ? "; ?: not determined by %d starts: fewer times, --until, or a smaller cloud, --cloud %d:0.01\n"
+                : "\n",
+         c->n, c->asked);
 }
 
 static int one_method(Cloud *c, int method) {

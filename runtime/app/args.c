@@ -1,5 +1,5 @@
-/* Command line of a simulator. Enters: argv; leaves: Args. Holds: nothing is guessed; a message quotes the wrong word and
- * says what to write instead. */
+/* Command line of a simulator. Enters: argv; leaves: Args. Holds: nothing is guessed; a message quotes the wrong
+ * word and says what to write instead. */
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -19,22 +19,29 @@ int lag_args_decimal(const char *text, double *x) {
 
 /* "60deg" -> '60[deg]' (of an option in s: 5s -> 5), "9,81" -> 9.81. Returns 0 when it is neither. */
 static int meant_number(const char *text, int units, char *out, size_t size) {
-  size_t n = strspn(text, "+-.0123456789"), letters = strspn(text + n, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ/*^0123456789");
+  size_t n = strspn(text, "+-.0123456789"),
+         letters = strspn(text + n, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ/*^0123456789");
   if (!n || n + letters > size - 8) return 0;
-  if (text[n] == ',' && n + 1 + strspn(text + n + 1, "0123456789") == strlen(text)) return snprintf(out, size, "%.*s.%s", (int)n, text, text + n + 1);
+  if (text[n] == ',' && n + 1 + strspn(text + n + 1, "0123456789") == strlen(text))
+    return snprintf(out, size, "%.*s.%s", (int)n, text, text + n + 1);
   if (!letters || text[n + letters]) return 0;
-  return units ? snprintf(out, size, "'%.*s[%s]'", (int)n, text, text + n) : snprintf(out, size, "%.*s, in s", (int)n, text);
+  return units ? snprintf(out, size, "'%.*s[%s]'", (int)n, text, text + n)
+               : snprintf(out, size, "%.*s, in s", (int)n, text);
 }
 
 int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x) {
   int decimal = lag_args_decimal(text, x);
   if (strchr(text, '[')) {
-    lag_app_error(a, "%s: \"%s\" has a unit, and a simulator takes numbers in the units that --help shows, times in s; lagc run converts", what, text);
+    lag_app_error(a,
+                  "%s: \"%s\" has a unit, and a simulator takes numbers in the units that --help shows, times in s; "
+                  "lagc run converts",
+                  what, text);
     return 0;
   }
   if (!decimal) {
     char meant[64];
-    if (!meant_number(text, strncmp(what, "--", 2) != 0, meant, sizeof meant)) snprintf(meant, sizeof meant, "for example %s", example);
+    if (!meant_number(text, strncmp(what, "--", 2) != 0, meant, sizeof meant))
+      snprintf(meant, sizeof meant, "for example %s", example);
     lag_app_error(a, "%s: \"%s\" is not a number; write %s", what, text, meant);
     return 0;
   }
@@ -49,7 +56,8 @@ int lag_args_count(const Args *a, const char *option, const char *text, const ch
   double value;
   if (!lag_args_number(a, option, text, example, &value)) return EXIT_USAGE;
   if (value > 1e12) return lag_app_error(a, "%s %s: up to 1e12", option, text);
-  if (value < 1 || value != floor(value)) return lag_app_error(a, "%s %s: a whole number above 0, for example %s", option, text, example);
+  if (value < 1 || value != floor(value))
+    return lag_app_error(a, "%s %s: a whole number above 0, for example %s", option, text, example);
   *x = (long long)value;
   return 0;
 }
@@ -67,7 +75,8 @@ enum { NOPTIONS = sizeof options / sizeof *options };
 
 const Option *lag_args_option(int i) { return i < NOPTIONS ? &options[i] : NULL; }
 
-/* Of the options of one name, which write to other fields in other analyses: --sweep comes before those that are its own. */
+/* Of the options of one name, which write to other fields in other analyses: --sweep comes before those that are its
+ * own. */
 static const Option *find_option(const Args *a, const char *name, size_t n) {
   const Option *found = NULL;
   for (int i = 0; i < NOPTIONS; i++) {
@@ -148,8 +157,8 @@ static int check_files(const Args *a, unsigned what) {
     if (o->takes != TAKES_FILE || !*o->hint || !(o->analyses & what) || !is_given(a, o)) continue;
     path = *(const char *const *)((const char *)a + o->field);
     if ((other = lag_outfile_other_type(path, o->hint)) != NULL)
-      return lag_app_error(a, "%s %s: it writes %s; write %s %.*s%.*s", name, path, lag_outfile_contents(o->hint), name, (int)(other - path), path,
-                           (int)strcspn(o->hint, " "), o->hint);
+      return lag_app_error(a, "%s %s: it writes %s; write %s %.*s%.*s", name, path, lag_outfile_contents(o->hint), name,
+                           (int)(other - path), path, (int)strcspn(o->hint, " "), o->hint);
   }
   return 0;
 }
@@ -170,15 +179,23 @@ static int check_analysis(const Args *a) {
     unsigned analyses = analyses_with(o);
     if (!is_given(a, o) || analyses & what) continue;
     if (what == RUN || what == REFERENCE) {
-      return analyses & RUN ? lag_app_error(a, "%s has no meaning for --reference, which takes name=value and --until", o->name)
-                            : lag_app_error(a, "%s is for %s", o->name, analyses & COST ? "--cost" : analyses & SWEEP ? "--sweep" : analyses & MODES ? "--modes" : "--lyapunov");
+      return analyses & RUN
+                 ? lag_app_error(a, "%s has no meaning for --reference, which takes name=value and --until", o->name)
+                 : lag_app_error(a, "%s is for %s", o->name,
+                                 analyses & COST    ? "--cost"
+                                 : analyses & SWEEP ? "--sweep"
+                                 : analyses & MODES ? "--modes"
+                                                    : "--lyapunov");
     }
-    return lag_app_error(a, "%s has no meaning for %s", o->name,
-                     what == COST ? "--cost, which runs all methods at many tolerances and steps; --methods NAME,NAME selects some"
-                     : what == SWEEP ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
-                     : what == MODES ? "--modes, which takes name=value, --steady and --json"
-                     : what == EFFECTS ? "--effects, which takes name=value, --until and a method"
-                                     : "--lyapunov, which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
+    return lag_app_error(
+        a, "%s has no meaning for %s", o->name,
+        what == COST ? "--cost, which runs all methods at many tolerances and steps; --methods NAME,NAME selects some"
+        : what == SWEEP
+            ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
+        : what == MODES ? "--modes, which takes name=value, --steady and --json"
+        : what == EFFECTS
+            ? "--effects, which takes name=value, --until and a method"
+            : "--lyapunov, which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
   }
   return check_files(a, what);
 }
@@ -189,32 +206,72 @@ size_t lag_app_method_length(const char *list) {
   return n + strcspn(list + n, ",");
 }
 
-int lag_app_overlays(const Args *a) { return a->nscenes > 1 || a->nvs > 0 || a->starts || (a->method && a->method[lag_app_method_length(a->method)] == ','); }
+int lag_app_overlays(const Args *a) {
+  return a->nscenes > 1 || a->nvs > 0 || a->starts || (a->method && a->method[lag_app_method_length(a->method)] == ',');
+}
 
 /* --cloud draws one scene by several methods, and writes nothing else. */
 static int check_cloud(const Args *a) {
-  const char *other = a->out ? "-o" : a->json ? "--json" : a->html ? "--html" : a->save ? "--save-state" : a->resume ? "--resume" : a->events ? "--events"
-                      : a->measures ? "--measure" : a->tangent ? "--tangent" : a->volume ? "--volume" : a->accuracy ? "--accuracy" : a->section ? "--section" : a->vs ? "--vs" : a->starts ? "--starts"
-                      : a->distance ? "--distance" : a->energy_error ? "--energy-error" : a->portrait ? "--portrait" : a->potential ? "--potential" : a->sketch ? "--sketch" : NULL;
+  const char *other = a->out            ? "-o"
+                      : a->json         ? "--json"
+                      : a->html         ? "--html"
+                      : a->save         ? "--save-state"
+                      : a->resume       ? "--resume"
+                      : a->events       ? "--events"
+                      : a->measures     ? "--measure"
+                      : a->tangent      ? "--tangent"
+                      : a->volume       ? "--volume"
+                      : a->accuracy     ? "--accuracy"
+                      : a->section      ? "--section"
+                      : a->vs           ? "--vs"
+                      : a->starts       ? "--starts"
+                      : a->distance     ? "--distance"
+                      : a->energy_error ? "--energy-error"
+                      : a->portrait     ? "--portrait"
+                      : a->potential    ? "--potential"
+                      : a->sketch       ? "--sketch"
+                                        : NULL;
   if (other) return lag_app_error(a, "%s and --cloud: a cloud is a picture of its own; leave one of them out", other);
-  if (a->nscenes > 1) return lag_app_error(a, "--cloud: two scenes are named, %s and %s; a cloud is around the start of one", a->scenes[0], a->scenes[1]);
-  return a->svg && a->plot_x && a->plot_y ? 0 : lag_app_error(a, "--cloud needs a picture: `lagc plot` makes it, or add --svg FILE and --plot-x, --plot-y");
+  if (a->nscenes > 1)
+    return lag_app_error(a, "--cloud: two scenes are named, %s and %s; a cloud is around the start of one",
+                         a->scenes[0], a->scenes[1]);
+  return a->svg && a->plot_x && a->plot_y
+             ? 0
+             : lag_app_error(a,
+                             "--cloud needs a picture: `lagc plot` makes it, or add --svg FILE and --plot-x, --plot-y");
 }
 
 /* Several scenes or methods, or --vs, draw one picture, and write nothing else. */
 static int check_overlay(const Args *a) {
-  const char *other = a->out ? "-o" : a->json ? "--json" : a->html ? "--html" : a->save ? "--save-state" : a->resume ? "--resume" : a->events ? "--events"
-                      : a->measures ? "--measure" : a->tangent ? "--tangent" : a->volume ? "--volume" : a->accuracy ? "--accuracy" : NULL;
+  const char *other = a->out        ? "-o"
+                      : a->json     ? "--json"
+                      : a->html     ? "--html"
+                      : a->save     ? "--save-state"
+                      : a->resume   ? "--resume"
+                      : a->events   ? "--events"
+                      : a->measures ? "--measure"
+                      : a->tangent  ? "--tangent"
+                      : a->volume   ? "--volume"
+                      : a->accuracy ? "--accuracy"
+                                    : NULL;
   if (a->cloud) return check_cloud(a);
   if (!lag_app_overlays(a)) return 0;
   for (int i = 0; i < a->nvs; i++)
     if (!strchr(a->vs[i], '=')) return lag_app_error(a, "--vs %s: write name=value, for example --vs th=1.2", a->vs[i]);
-  if (a->starts && (a->vs || a->distance)) return lag_app_error(a, "--starts and --%s: the range says which runs are drawn; leave one of them out", a->vs ? "vs" : "distance");
+  if (a->starts && (a->vs || a->distance))
+    return lag_app_error(a, "--starts and --%s: the range says which runs are drawn; leave one of them out",
+                         a->vs ? "vs" : "distance");
   if (a->modes || a->lyapunov || a->cost || a->reference || a->effects || a->sweep || !a->svg) {
-    return a->nscenes > 1 ? lag_app_error(a, "two scenes are named: %s and %s; `lagc plot` draws several in one picture; to set a value write name=value", a->scenes[0], a->scenes[1])
-           : a->starts ? lag_app_error(a, "--starts %s: several runs are for a picture, which `lagc plot` draws", a->starts)
-           : a->nvs    ? lag_app_error(a, "--vs %s: another run is for a picture, which `lagc plot` draws", a->vs[0])
-                       : lag_app_error(a, "--method %s: several methods are for a picture, which `lagc plot` draws; name one", a->method);
+    return a->nscenes > 1 ? lag_app_error(a,
+                                          "two scenes are named: %s and %s; `lagc plot` draws several in one picture; "
+                                          "to set a value write name=value",
+                                          a->scenes[0], a->scenes[1])
+           : a->starts
+               ? lag_app_error(a, "--starts %s: several runs are for a picture, which `lagc plot` draws", a->starts)
+           : a->nvs
+               ? lag_app_error(a, "--vs %s: another run is for a picture, which `lagc plot` draws", a->vs[0])
+               : lag_app_error(a, "--method %s: several methods are for a picture, which `lagc plot` draws; name one",
+                               a->method);
   }
   return other ? lag_app_error(a, "%s is for one run; a picture of several goes without it", other) : 0;
 }
@@ -222,34 +279,59 @@ static int check_overlay(const Args *a) {
 static int check(const Args *a) {
   if (check_overlay(a)) return EXIT_USAGE;
   int on_stdout = a->out && strcmp(a->out, "-") == 0;
-  if (a->motions && strcmp(a->motions, "-") == 0) return lag_app_error(a, "--motions -: motions are written to a file, for example --motions motions.csv");
-  if (on_stdout && a->json) return lag_app_error(a, "-o - and --json both write to standard output; give -o a file name");
+  if (a->motions && strcmp(a->motions, "-") == 0)
+    return lag_app_error(a, "--motions -: motions are written to a file, for example --motions motions.csv");
+  if (on_stdout && a->json)
+    return lag_app_error(a, "-o - and --json both write to standard output; give -o a file name");
   if (a->events && strcmp(a->events, "-") == 0 && a->json)
     return lag_app_error(a, "--events - and --json both write to standard output; give --events a file name");
-  if ((a->plot_x || a->plot_y) && !a->svg && !a->sketch) return lag_app_error(a, "--plot-x and --plot-y need a picture: add --svg FILE or --sketch");
+  if ((a->plot_x || a->plot_y) && !a->svg && !a->sketch)
+    return lag_app_error(a, "--plot-x and --plot-y need a picture: add --svg FILE or --sketch");
   if (a->distance && (a->energy_error || !lag_app_overlays(a)))
-    return lag_app_error(a, a->energy_error ? "--distance and --energy-error are two pictures; leave one of them out" : "--distance is between runs: add one with another value, for example --vs th=1.2, or another method or scene");
-  if ((a->distance || a->energy_error) && (!a->svg || a->section || a->plot_x || a->portrait || a->potential || a->tangent))
-    return lag_app_error(a, "--%s is a picture over time, which `lagc plot` draws", a->distance ? "distance" : "energy-error");
+    return lag_app_error(a, a->energy_error ? "--distance and --energy-error are two pictures; leave one of them out"
+                                            : "--distance is between runs: add one with another value, for example "
+                                              "--vs th=1.2, or another method or scene");
+  if ((a->distance || a->energy_error) &&
+      (!a->svg || a->section || a->plot_x || a->portrait || a->potential || a->tangent))
+    return lag_app_error(a, "--%s is a picture over time, which `lagc plot` draws",
+                         a->distance ? "distance" : "energy-error");
   if ((a->portrait || a->potential) && !(a->svg && a->plot_x && a->plot_y))
-    return lag_app_error(a, "--portrait and --potential need a picture: `lagc plot` makes it, or add --svg FILE and --plot-x, --plot-y");
-  if (a->portrait && a->potential) return lag_app_error(a, "--portrait and --potential are two pictures; leave one of them out");
-  if (a->plot_x && !a->plot_y) return lag_app_error(a, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x);
+    return lag_app_error(
+        a, "--portrait and --potential need a picture: `lagc plot` makes it, or add --svg FILE and --plot-x, --plot-y");
+  if (a->portrait && a->potential)
+    return lag_app_error(a, "--portrait and --potential are two pictures; leave one of them out");
+  if (a->plot_x && !a->plot_y)
+    return lag_app_error(a, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x);
   if ((a->points || a->from || a->trace || a->no_rods) && !a->html)
     return lag_app_error(a, "--points, --from, --trace and --no-rods need an animation: add --html FILE");
-  if (a->html && !a->points) return lag_app_error(a, "--html %s: points are missing; add --points 'X,Y X,Y ...' with the names of outputs", a->html);
-  if (a->section && a->html) return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
+  if (a->html && !a->points)
+    return lag_app_error(a, "--html %s: points are missing; add --points 'X,Y X,Y ...' with the names of outputs",
+                         a->html);
+  if (a->section && a->html)
+    return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
   if ((a->tangent || a->volume) && (a->save || a->resume))
-    return lag_app_error(a, "--%s and --%s: a saved state holds no tangent; run it in one piece", a->tangent ? "tangent" : "volume", a->save ? "save-state" : "resume");
-  if (a->tangent && a->volume) return lag_app_error(a, "--tangent and --volume: each takes the tangent of the run for itself; make two runs");
+    return lag_app_error(a, "--%s and --%s: a saved state holds no tangent; run it in one piece",
+                         a->tangent ? "tangent" : "volume", a->save ? "save-state" : "resume");
+  if (a->tangent && a->volume)
+    return lag_app_error(a, "--tangent and --volume: each takes the tangent of the run for itself; make two runs");
   if (a->accuracy && (a->tol || a->step || a->resume))
-    return lag_app_error(a, "--accuracy chooses the tolerance or step; leave out --%s", a->tol ? "tol" : a->step ? "step" : "resume");
+    return lag_app_error(a, "--accuracy chooses the tolerance or step; leave out --%s",
+                         a->tol    ? "tol"
+                         : a->step ? "step"
+                                   : "resume");
   if (a->section && a->every)
-    return lag_app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
+    return lag_app_error(
+        a,
+        "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
   const char *const rows[] = {a->out, a->motions};
   for (int i = 0; i < 2; i++)
-    if (strcmp(LAG_PRECISION, "double") != 0 && rows[i] && (lag_outfile_has_suffix(rows[i], "npy") || lag_outfile_has_suffix(rows[i], "h5"))) /* there is no type of 34 digits */
-      return lag_app_error(a, "%s: .npy and .h5 files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", rows[i]);
+    /* there is no type of 34 digits */
+    if (strcmp(LAG_PRECISION, "double") != 0 && rows[i] &&
+        (lag_outfile_has_suffix(rows[i], "npy") || lag_outfile_has_suffix(rows[i], "h5")))
+      return lag_app_error(a,
+                           "%s: .npy and .h5 files hold doubles, this run computes in " LAG_PRECISION
+                           " precision; write to a .csv file",
+                           rows[i]);
   return check_analysis(a);
 }
 
@@ -261,7 +343,8 @@ int lag_args_parse(Args *a, int argc, char **argv) {
   if (!a->sets || !a->scenes) return lag_app_error(a, "out of memory");
   for (int i = 1; i < argc; i++) {
     if (strpbrk(argv[i], "\n\t")) { /* messages show each argument on one line */
-      return lag_app_error(a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i);
+      return lag_app_error(
+          a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i);
     }
   }
   for (int i = 1; i < argc; i++) {

@@ -1,4 +1,5 @@
-/* Finds the columns that --plot-x, --plot-y, --points and --from name. Enters: the names and the table; leaves: column indices. */
+/* Finds the columns that --plot-x, --plot-y, --points and --from name. Enters: the names and the table; leaves:
+ * column indices. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,7 +32,8 @@ static int is_part(const char *column, const char *name) {
 static int no_column(const App *app, const char *name) {
   lag_nearest near = {.name = name};
   for (int i = 0; i < app->table.ncols; i++) lag_try_nearest(&near, app->table.cols[i].name);
-  lag_app_error(&app->args, near.best ? "no output is named %s; did you mean %s?" : "no output is named %s", name, near.best);
+  lag_app_error(&app->args, near.best ? "no output is named %s; did you mean %s?" : "no output is named %s", name,
+                near.best);
   return -1;
 }
 
@@ -40,14 +42,16 @@ static int compare(const char *a, const char *b) {
   for (;;) {
     int digits = *a >= '0' && *a <= '9' && *b >= '0' && *b <= '9';
     char *behind_a, *behind_b;
-    long x = digits ? strtol(a, &behind_a, 10) : (unsigned char)*a, y = digits ? strtol(b, &behind_b, 10) : (unsigned char)*b;
+    long x = digits ? strtol(a, &behind_a, 10) : (unsigned char)*a,
+         y = digits ? strtol(b, &behind_b, 10) : (unsigned char)*b;
     if (x != y || *a == '\0') return x < y ? -1 : x > y;
     a = digits ? behind_a : a + 1;
     b = digits ? behind_b : b + 1;
   }
 }
 
-/* cols := the column of this name, or all its members and components in order. Returns their number; -1 after a message. */
+/* cols := the column of this name, or all its members and components in order. Returns their number; -1 after a
+ * message. */
 static int columns_of(const App *app, const char *name, int *cols) {
   const Column *c = app->table.cols;
   int n = 0;
@@ -65,7 +69,8 @@ static int columns_of(const App *app, const char *name, int *cols) {
   return n ? n : no_column(app, name);
 }
 
-/* The period of an angle that is declared periodic, in the unit of its column, over which pictures of more than a turn, and points of a section, are drawn; 0: none. */
+/* The period of an angle that is declared periodic, in the unit of its column, over which pictures of more than a
+ * turn, and points of a section, are drawn; 0: none. */
 static double period_of(const App *app, int col) {
   const lag_model *m = app->scene->model;
   int i = lag_component_index(m, app->table.cols[col].name);
@@ -73,7 +78,8 @@ static double period_of(const App *app, int col) {
   return v && v->periodic ? 2 * acos(-1) / v->factor : 0;
 }
 
-/* d->y := the columns of each --plot-y; d->yname := their names, NULL for several over the time, whose axes have units. -1 after a message. */
+/* d->y := the columns of each --plot-y; d->yname := their names, NULL for several over the time, whose axes have
+ * units. -1 after a message. */
 static int choose_ys(App *app) {
   const Args *a = &app->args;
   PlottedCurves *d = &app->drawn;
@@ -83,7 +89,8 @@ static int choose_ys(App *app) {
     int n = columns_of(app, a->plot_ys[i], d->y + d->n);
     if (n < 0) return -1;
     d->n += n;
-    if (used < sizeof app->drawn_ys) used += (size_t)snprintf(app->drawn_ys + used, sizeof app->drawn_ys - used, "%s%s", i ? ", " : "", a->plot_ys[i]);
+    if (used < sizeof app->drawn_ys)
+      used += (size_t)snprintf(app->drawn_ys + used, sizeof app->drawn_ys - used, "%s%s", i ? ", " : "", a->plot_ys[i]);
   }
   d->yname = a->nplot_ys == 1 ? a->plot_y : a->plot_x ? app->drawn_ys : NULL;
   return 0;
@@ -99,14 +106,15 @@ int lag_app_choose_curves(App *app) {
   for (int i = 1; i < most; i++) d->y[i - 1] = i;
   if ((a->plot_x && (nx = columns_of(app, a->plot_x, d->x)) < 0) || (a->plot_y && choose_ys(app))) return EXIT_USAGE;
   if (nx != 1 && nx != d->n)
-    return lag_app_error(a, "--plot-x %s has %d parts, --plot-y %s has %d; draw one against the other by naming a part", a->plot_x, nx, a->plot_y, d->n);
+    return lag_app_error(a, "--plot-x %s has %d parts, --plot-y %s has %d; draw one against the other by naming a part",
+                         a->plot_x, nx, a->plot_y, d->n);
   for (int i = nx; i < d->n; i++) d->x[i] = d->x[0];
   if (a->plot_x) d->beneath.period = period_of(app, d->x[0]);
   return 0;
 }
 
-/* cols := the column with the longest name at *s (names may contain spaces and commas), or all parts of the name there. Moves *s past
- * the name. Returns their number; -1 after a message. */
+/* cols := the column with the longest name at *s (names may contain spaces and commas), or all parts of the name
+ * there. Moves *s past the name. Returns their number; -1 after a message. */
 static int columns_at(const App *app, const char **s, int *cols) {
   size_t longest = 0;
   for (int i = 0; i < app->table.ncols; i++) {
@@ -147,7 +155,8 @@ static int add_points(App *app, const char *option, const char *text, int *x, in
     }
     if (nx < 0 || ny < 0) return EXIT_USAGE;
     if (ny == 0) return lag_app_error(&app->args, "%s \"%s\": each point is X,Y, two names of outputs", option, text);
-    if (nx != ny && nx != 1 && ny != 1) return lag_app_error(&app->args, "%s \"%s\": %d places across for %d up", option, text, nx, ny);
+    if (nx != ny && nx != 1 && ny != 1)
+      return lag_app_error(&app->args, "%s \"%s\": %d places across for %d up", option, text, nx, ny);
     int n = nx > ny ? nx : ny;
     int *cols = realloc(show->cols, 2 * (size_t)(show->npoints + n) * sizeof *cols);
     if (!cols) return lag_app_error(&app->args, "out of memory");
@@ -158,7 +167,8 @@ static int add_points(App *app, const char *option, const char *text, int *x, in
       cols[2 * show->npoints++ + 1] = y[ny > 1 ? k : 0];
     }
   }
-  return show->npoints ? 0 : lag_app_error(&app->args, "%s \"%s\": each point is X,Y, two names of outputs", option, text);
+  return show->npoints ? 0
+                       : lag_app_error(&app->args, "%s \"%s\": each point is X,Y, two names of outputs", option, text);
 }
 
 /* show->unit := the common unit of all points; columns without a unit fit any. */
@@ -169,8 +179,8 @@ static int choose_unit(App *app) {
     const Column *c = &app->table.cols[show->cols[i]];
     if (!c->unit[0]) continue;
     if (first && strcmp(first->unit, c->unit) != 0) {
-      return lag_app_error(&app->args, "--points: %s is in [%s], %s in [%s]; a picture of places needs one unit", first->name, first->unit,
-                       c->name, c->unit);
+      return lag_app_error(&app->args, "--points: %s is in [%s], %s in [%s]; a picture of places needs one unit",
+                           first->name, first->unit, c->name, c->unit);
     }
     first = first ? first : c;
   }

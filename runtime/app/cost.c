@@ -1,6 +1,6 @@
-/* --cost: error and time of every method at many settings, against a reference. --reference: writes that reference, for a
- * simulator of lower precision. Enters: the command line; leaves: the runs, for cost_report.c and cost_picture.c; or samples as text. Holds: times
- * are processor time of this process. */
+/* --cost: error and time of every method at many settings, against a reference. --reference: writes that reference,
+ * for a simulator of lower precision. Enters: the command line; leaves: the runs, for cost_report.c and
+ * cost_picture.c; or samples as text. Holds: times are processor time of this process. */
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -14,7 +14,8 @@
 #include "numeric/clock.h"
 
 int lag_cost_begin(Cost *c, int rows, int n, double t0, double span) {
-  if (lag_samples_init(&c->reference, rows, n) || !(c->scale = calloc((size_t)n + 1, sizeof *c->scale))) return LAG_ENOMEM;
+  if (lag_samples_init(&c->reference, rows, n) || !(c->scale = calloc((size_t)n + 1, sizeof *c->scale)))
+    return LAG_ENOMEM;
   for (int i = 0; i < rows; i++) c->reference.t[i] = t0 + span * i / (rows - 1);
   return LAG_OK;
 }
@@ -58,7 +59,8 @@ static lag_sim *begin_run(App *app, const lag_method *method, double tol) {
   int rc = sim ? lag_sim_set_method(sim, method, NULL, 0) : LAG_ENOMEM;
   rc = rc ? rc : lag_sim_set_tolerance(sim, tol);
   if (rc == 0) return sim;
-  lag_app_error(&app->args, "the reference run by %s(tol=%g) failed: %s", method->name, tol, sim ? lag_sim_message(sim) : "out of memory");
+  lag_app_error(&app->args, "the reference run by %s(tol=%g) failed: %s", method->name, tol,
+                sim ? lag_sim_message(sim) : "out of memory");
   lag_sim_free(sim);
   return NULL;
 }
@@ -76,7 +78,8 @@ static int take_row(lag_sim *sim, const Samples *like, double t, double *y) {
   return rc == LAG_OK && row.rows == 0 ? LAG_STOPPED : rc;
 }
 
-/* Rows of c->reference from both runs, as long as their difference, the uncertainty, stays small enough to judge others by. Returns what ended it. */
+/* Rows of c->reference from both runs, as long as their difference, the uncertainty, stays small enough to judge
+ * others by. Returns what ended it. */
 static int fill_rows(Pair *p, Cost *c, lag_sim *like) {
   const double judges = c->target > 0 ? fmin(1e-4, 0.1 * c->target) : 1e-4;
   Samples *s = &c->reference;
@@ -122,7 +125,8 @@ lag_sim *lag_cost_most_accurate(App *app) {
 int lag_cost_reference(App *app, Cost *c, double seconds, int *limited) {
   double tol;
   const lag_method *method = most_accurate(app, &tol);
-  Pair p = {.fine = begin_run(app, method, tol), .reference = &c->reference, .latest = lag_processor_seconds() + seconds};
+  Pair p = {
+      .fine = begin_run(app, method, tol), .reference = &c->reference, .latest = lag_processor_seconds() + seconds};
   p.coarse = p.fine ? begin_run(app, method, 10 * tol) : NULL;
   int rc = p.coarse ? LAG_OK : LAG_EINVAL;
   *limited = 0;
@@ -136,10 +140,15 @@ int lag_cost_reference(App *app, Cost *c, double seconds, int *limited) {
       rc = lag_app_error(&app->args, "the reference run by %s(tol=%g) failed: %s", method->name, tol,
                          lag_sim_message(lag_sim_message(p.fine)[0] ? p.fine : p.coarse)) ? EXIT_RUN : 0;
     else if (*limited && c->reference.rows < 2)
-      rc = lag_app_error(&app->args, "the reference run by %s(tol=%g) takes more than %.3g s to t = %g s; allow more time: --seconds %g, or end earlier: --until",
-                         method->name, tol, seconds, c->reference.t[1], 10 * seconds) ? EXIT_RUN : 0;
+      rc = lag_app_error(&app->args,
+                         "the reference run by %s(tol=%g) takes more than %.3g s to t = %g s; allow more time: "
+                         "--seconds %g, or end earlier: --until",
+                         method->name, tol, seconds, c->reference.t[1], 10 * seconds)
+               ? EXIT_RUN
+               : 0;
     else rc = 0;
-    c->precision[0] = (CostPrecision){.name = LAG_PRECISION, .epsilon = DBL_EPSILON, .seconds = p.used, .to = lag_sim_time(p.fine)};
+    c->precision[0] =
+        (CostPrecision){.name = LAG_PRECISION, .epsilon = DBL_EPSILON, .seconds = p.used, .to = lag_sim_time(p.fine)};
   }
   lag_sim_free(p.fine);
   lag_sim_free(p.coarse);
@@ -157,7 +166,8 @@ typedef struct Rates {
 static int note_rates(void *rates, const lag_sim *sim) {
   Rates *w = rates;
   int bad = lag_rhs(&w->sim->pb, sim->run->t, sim->now, w->now);
-  for (int i = 0; i < w->reference->n && !bad; i++) w->reference->largest[i] = fmax(w->reference->largest[i], fabs(w->now[i]));
+  for (int i = 0; i < w->reference->n && !bad; i++)
+    w->reference->largest[i] = fmax(w->reference->largest[i], fabs(w->now[i]));
   return bad || lag_app_interrupted() != EXIT_SIGNAL;
 }
 
@@ -171,7 +181,8 @@ static int scale_residual(App *app, Cost *c) {
     rc = lag_sim_advance(w.sim, s->t[i]);
     s->rows = i + (rc == LAG_OK);
   }
-  if (rc < 0 && w.sim && s->rows < 2) lag_app_error(&app->args, "--error residual: %s; end the run earlier: --until", lag_sim_message(w.sim));
+  if (rc < 0 && w.sim && s->rows < 2)
+    lag_app_error(&app->args, "--error residual: %s; end the run earlier: --until", lag_sim_message(w.sim));
   s->uncertainty = differences;
   if (lag_cost_scales(s, app->sim, c->scale) || !w.sim || !w.now) rc = LAG_ENOMEM;
   lag_sim_free(w.sim);
@@ -208,7 +219,8 @@ static int read_reference(App *app, Cost *c) {
   FILE *f = strcmp(a->against, "-") == 0 ? stdin : lag_open_to_read(a->against);
   int rows, n, good;
   if (!f) return lag_app_error(a, "cannot read %s: %s", a->against, lag_read_error());
-  good = fscanf(f, "samples %d %d by %95[^\n]", &rows, &n, c->reference_name) == 3 && rows > 0 && rows <= s->rows && n == s->n;
+  good = fscanf(f, "samples %d %d by %95[^\n]", &rows, &n, c->reference_name) == 3 && rows > 0 && rows <= s->rows &&
+         n == s->n;
   good = good && fscanf(f, " uncertainty") == 0 && read_number(f, &s->uncertainty);
   good = good && fscanf(f, " largest") == 0;
   for (int k = 0; good && k < n; k++) good = read_number(f, &s->largest[k]);
@@ -217,12 +229,16 @@ static int read_reference(App *app, Cost *c) {
     for (int k = 0; good && k < n; k++) good = read_number(f, &s->y[(size_t)i * (size_t)n + (size_t)k]);
   }
   s->rows = rows;
-  for (CostPrecision p; good && c->nprecisions < LAG_COST_PRECISIONS && fscanf(f, " precision %15s", p.name) == 1; c->precision[c->nprecisions++] = p)
+  for (CostPrecision p; good && c->nprecisions < LAG_COST_PRECISIONS && fscanf(f, " precision %15s", p.name) == 1;
+       c->precision[c->nprecisions++] = p)
     good = read_number(f, &p.epsilon) && read_number(f, &p.seconds) && read_number(f, &p.to);
   if (f != stdin) fclose(f);
   if (good && lag_cost_scales(s, app->sim, c->scale)) return lag_app_error(a, "out of memory");
-  return good ? 0 : lag_app_error(a, "%s holds no reference for this scene; `--reference` of a simulator of the same model writes one",
-                              strcmp(a->against, "-") == 0 ? "standard input" : a->against);
+  return good
+             ? 0
+             : lag_app_error(
+                   a, "%s holds no reference for this scene; `--reference` of a simulator of the same model writes one",
+                   strcmp(a->against, "-") == 0 ? "standard input" : a->against);
 }
 
 /* ---- Measurements */
@@ -245,7 +261,9 @@ static int add(Cost *c, const lag_method *m, lag_option option) {
   return LAG_OK;
 }
 
-static int is_wanted(const Args *a, const char *name) { return !a->methods || lag_app_has_word(a->methods, name, strlen(name)); }
+static int is_wanted(const Args *a, const char *name) {
+  return !a->methods || lag_app_has_word(a->methods, name, strlen(name));
+}
 
 /* Whether each word of --methods is a method, or one at a value of its option that was listed. */
 static int check_methods(App *app, const Cost *c) {
@@ -255,8 +273,13 @@ static int check_methods(App *app, const Cost *c) {
     snprintf(word, sizeof word, "%.*s", (int)strcspn(s, ", "), s);
     snprintf(base, sizeof base, "%.*s", (int)strcspn(word, "("), word);
     if (!lag_app_find_method(app, base)) return lag_app_unknown_method(app, base);
-    for (int i = 0; i < c->nmethods; i++) known |= strcmp(c->method[i].name, word) == 0 || strcmp(c->method[i].method->name, word) == 0;
-    if (!known) return lag_app_error(&app->args, "--methods %s: write %s, or a value of its option that lagc cost tries: variational(order=2), 4, 6, 8; gauss(stages=1) to 4", word, base);
+    for (int i = 0; i < c->nmethods; i++)
+      known |= strcmp(c->method[i].name, word) == 0 || strcmp(c->method[i].method->name, word) == 0;
+    if (!known)
+      return lag_app_error(&app->args,
+                           "--methods %s: write %s, or a value of its option that lagc cost tries: "
+                           "variational(order=2), 4, 6, 8; gauss(stages=1) to 4",
+                           word, base);
   }
   return 0;
 }
@@ -270,13 +293,18 @@ int lag_cost_list_methods(App *app, Cost *c) {
     size_t k = 0;
     while (k < NFAMILIES && strcmp(families[k].method, m->name) != 0) k++;
     if (m->flags & LAG_METHOD_IMPULSES) {
-      if (a->methods && is_wanted(a, m->name)) return lag_app_error(a, "--methods %s: lagc cost leaves it out, as impacts that it meets at other steps have no error that falls with the step", m->name);
+      if (a->methods && is_wanted(a, m->name))
+        return lag_app_error(a,
+                             "--methods %s: lagc cost leaves it out, as impacts that it meets at other steps have no "
+                             "error that falls with the step",
+                             m->name);
       continue;
     }
     if (k == NFAMILIES && is_wanted(a, m->name)) bad |= add(c, m, (lag_option){0});
     for (int x = k < NFAMILIES ? families[k].from : 0; k < NFAMILIES && x <= families[k].to; x += families[k].by) {
       snprintf(name, sizeof name, "%s(%s=%d)", m->name, families[k].option, x);
-      if (is_wanted(a, m->name) || is_wanted(a, name)) bad |= add(c, m, (lag_option){.name = families[k].option, .value = x});
+      if (is_wanted(a, m->name) || is_wanted(a, name))
+        bad |= add(c, m, (lag_option){.name = families[k].option, .value = x});
     }
   }
   c->named = a->methods && c->nmethods <= LAG_COST_FAMILIES;
@@ -306,8 +334,10 @@ static int note_progress(void *progress, const CostMethod *m, double part) {
 
 static int measure(App *app, Cost *c) {
   ProgressLine p = {app, c->seconds, 0, -1};
-  CostSweep sweep = {.method = c->method, .n = c->nmethods, .scene = {fresh, app, app->scene->t0}, .reference = &c->reference, .scale = c->scale,
-                     .seconds = c->seconds, .target = c->target, .note = note_progress, .context = &p};
+  CostSweep sweep = {.method = c->method,
+                     .n = c->nmethods, .scene = {fresh, app, app->scene->t0}, .reference = &c->reference,
+                     .scale = c->scale, .seconds = c->seconds, .target = c->target, .note = note_progress,
+                     .context = &p};
   lag_app_catch_interrupt();
   int rc = lag_cost_sweep(&sweep);
   c->stopped = lag_app_interrupted() != EXIT_SIGNAL;
@@ -328,7 +358,8 @@ static int judge_run(App *app, Cost *c, const CostMethod *m, const CostRun *run)
   return rc < 0 ? rc : LAG_OK;
 }
 
-/* Marks the answers that `lagc run` would refuse, until none is. After MOST of them all runs with such an error are marked. */
+/* Marks the answers that `lagc run` would refuse, until none is. After MOST of them all runs with such an error are
+ * marked. */
 static void check_answers(App *app, Cost *c) {
   enum { MOST = 40 };
   static const double errors[] = {1e-3, 1e-6, 1e-9, 1e-12};
@@ -343,7 +374,8 @@ static void check_answers(App *app, Cost *c) {
     tries += bad;
     if (bad) ((CostRun *)run)->stopped = 1;
     for (int x = 0; bad && tries == MOST && x < c->nmethods; x++)
-      for (int y = 0; y < c->method[x].nruns; y++) c->method[x].run[y].stopped |= c->method[x].run[y].error <= errors[0] || c->target > 0;
+      for (int y = 0; y < c->method[x].nruns; y++)
+        c->method[x].run[y].stopped |= c->method[x].run[y].error <= errors[0] || c->target > 0;
     i += !bad;
   }
   app->scene = own;
@@ -367,7 +399,8 @@ static int show(App *app, const Cost *c) {
   if (a->json) lag_cost_put_json(stdout, app, c);
   else if (!a->quiet) lag_cost_put_text(stdout, app, c);
   if (a->out) {
-    int picture = lag_outfile_has_suffix(a->out, "svg png"), rc = picture ? lag_app_picture(app, a->out, draw, &(Drawing){app, c}) : lag_cost_put_rows(a->out, app, c);
+    int picture = lag_outfile_has_suffix(a->out, "svg png"),
+        rc = picture ? lag_app_picture(app, a->out, draw, &(Drawing){app, c}) : lag_cost_put_rows(a->out, app, c);
     if (rc) return picture ? rc : lag_app_io_error(app, a->out);
   }
   if (c->stopped) return lag_app_interrupted();
@@ -378,13 +411,20 @@ static int show(App *app, const Cost *c) {
 static int run_cost(App *app, Cost *c) {
   const Args *a = &app->args;
   int limited = 0, rc = lag_cost_list_methods(app, c);
-  if (rc == 0 && a->target && (!lag_args_number(a, "--target", a->target, "--target 1e-8", &c->target) || c->target <= 0))
-    rc = lag_app_error(a, "--target %s: an error to reach, relative and positive; for example --target 1e-8", a->target);
+  if (rc == 0 && a->target &&
+      (!lag_args_number(a, "--target", a->target, "--target 1e-8", &c->target) || c->target <= 0))
+    rc =
+        lag_app_error(a, "--target %s: an error to reach, relative and positive; for example --target 1e-8", a->target);
   rc = rc ? rc : lag_app_check_outputs(app);
   app->progress = isatty(2) && !a->quiet ? 0 : -1;
-  rc = rc ? rc : c->reference.output == LAG_SAMPLES_RESIDUAL ? scale_residual(app, c) : a->against ? read_reference(app, c) : lag_cost_reference(app, c, 0.4 * c->seconds, &limited);
+  rc = rc                                            ? rc
+       : c->reference.output == LAG_SAMPLES_RESIDUAL ? scale_residual(app, c)
+       : a->against                                  ? read_reference(app, c)
+                                                     : lag_cost_reference(app, c, 0.4 * c->seconds, &limited);
   if (rc == 0 && c->reference.rows < 2)
-    rc = lag_app_error(a, "an event ends the run before t = %g s, the first time of comparison; write --until with an earlier time", c->reference.t[1]);
+    rc = lag_app_error(
+        a, "an event ends the run before t = %g s, the first time of comparison; write --until with an earlier time",
+        c->reference.t[1]);
   if (rc == 0) {
     double last = c->reference.t[c->reference.rows - 1];
     c->reached = last == app->until ? NAN : last;
@@ -393,7 +433,8 @@ static int run_cost(App *app, Cost *c) {
     lag_app_catch_interrupt();
     return lag_app_realtime(app, c);
   }
-  if (rc == 0 && c->reference.output != LAG_SAMPLES_RESIDUAL && lag_cost_precisions(app, c, 0.1 * c->seconds)) rc = lag_app_error(a, "out of memory");
+  if (rc == 0 && c->reference.output != LAG_SAMPLES_RESIDUAL && lag_cost_precisions(app, c, 0.1 * c->seconds))
+    rc = lag_app_error(a, "out of memory");
   rc = rc ? rc : measure(app, c);
   if (rc == 0) check_answers(app, c);
   return rc ? rc : show(app, c);
@@ -413,15 +454,24 @@ int lag_app_cost(App *app) {
   if (rc) return rc;
   const double before = 0.98; /* of a run that an event ends: coarse settings miss its time a little */
   double t0 = app->scene->t0, span = app->until - t0;
-  int final = a->error && strcmp(a->error, "final") == 0, residual = a->error && strcmp(a->error, "residual") == 0, rows = final ? 2 : LAG_COST_ROWS;
+  int final = a->error && strcmp(a->error, "final") == 0, residual = a->error && strcmp(a->error, "residual") == 0,
+      rows = final ? 2 : LAG_COST_ROWS;
   int output = residual ? LAG_SAMPLES_RESIDUAL : a->error && !final ? find_output(app, a->error) : 0;
   cost.event = lag_cost_event_end(app);
   if (cost.event != app->until) span = before * (cost.event - t0);
-  if (output < 0 && !residual) return lag_app_error(a, "--error %s: no such output; lagc cost takes any expression of the model, `energy` among them, `final` or `residual`", a->error);
+  if (output < 0 && !residual)
+    return lag_app_error(a,
+                         "--error %s: no such output; lagc cost takes any expression of the model, `energy` among "
+                         "them, `final` or `residual`",
+                         a->error);
   int failed = lag_cost_begin(&cost, rows, output > 0 ? 1 : app->sim->pb.n, t0, span);
   rc = failed ? lag_app_error(a, "out of memory")
-       : span == 0.0 ? lag_app_error(a, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", t0) : 0;
-  if (rc == 0 && a->seconds && (!lag_args_number(a, "--seconds", a->seconds, "--seconds 60", &cost.seconds) || cost.seconds <= 0))
+       : span == 0.0
+           ? lag_app_error(
+                 a, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", t0)
+           : 0;
+  if (rc == 0 && a->seconds &&
+      (!lag_args_number(a, "--seconds", a->seconds, "--seconds 60", &cost.seconds) || cost.seconds <= 0))
     rc = lag_app_error(a, "--seconds %s: the time to spend, for example --seconds 60", a->seconds);
   cost.reference.output = output;
   if (rc == 0 && !a->reference) {

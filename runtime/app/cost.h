@@ -32,15 +32,17 @@ typedef struct Cost {
   int stopped;               /* 1: Ctrl-C ended the sweep */
 } Cost;
 
-/* cost.c. Time at which an event ends the run, to six digits; app->until where none does, or it cannot be found soon. */
+/* cost.c. Time at which an event ends the run, to six digits; app->until where none does, or it cannot be found
+ * soon. */
 double lag_cost_event_end(App *app);
-/* Room for a reference of n components at `rows` times, equally spaced from t0 to t0 + span; LAG_OK or LAG_ENOMEM. Free with lag_cost_end, also
- * after an error. */
+/* Room for a reference of n components at `rows` times, equally spaced from t0 to t0 + span; LAG_OK or LAG_ENOMEM.
+ * Free with lag_cost_end, also after an error. */
 enum { LAG_COST_ROWS = 17 }; /* the start among them, for the scales */
 int lag_cost_begin(Cost *c, int rows, int n, double t0, double span);
 void lag_cost_end(Cost *c);
-/* Reference by taylor, or by dop853 where the model has no Taylor series, at two tolerances; their difference is its uncertainty. It ends where
- * that is too large or, after `seconds` of processor time, with the rows that it has: then *limited = 1. 0, or an exit status after a message. */
+/* Reference by taylor, or by dop853 where the model has no Taylor series, at two tolerances; their difference is its
+ * uncertainty. It ends where that is too large or, after `seconds` of processor time, with the rows that it has:
+ * then *limited = 1. 0, or an exit status after a message. */
 int lag_cost_reference(App *app, Cost *c, double seconds, int *limited);
 /* A simulation by the reference's method and tolerance; NULL after a message. */
 lag_sim *lag_cost_most_accurate(App *app);
@@ -50,8 +52,8 @@ int lag_cost_list_methods(App *app, Cost *c);
 /* The knob of a method: "tol" or "step". */
 const char *lag_cost_knob(const lag_method *m);
 
-/* Families of methods that work alike, at most LAG_COST_FAMILIES. The family's best method: the fastest of it for most of the errors 1e-2, 1e-4, ..;
- * NULL where it has no run. */
+/* Families of methods that work alike, at most LAG_COST_FAMILIES. The family's best method: the fastest of it for
+ * most of the errors 1e-2, 1e-4, ..; NULL where it has no run. */
 enum { LAG_COST_FAMILIES = 8 };
 const CostMethod *lag_cost_best_of_family(const Cost *c, int family);
 

@@ -1,5 +1,6 @@
-/* Pictures of --cost: what accuracy costs in time, on logarithmic axes. Enters: methods with their runs; leaves: an SVG file, or lines for a
- * terminal. Holds: at most one curve a family, told apart by marks and dashes as well as colours; legible at 8 cm. */
+/* Pictures of --cost: what accuracy costs in time, on logarithmic axes. Enters: methods with their runs; leaves: an
+ * SVG file, or lines for a terminal. Holds: at most one curve a family, told apart by marks and dashes as well as
+ * colours; legible at 8 cm. */
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -77,12 +78,13 @@ static Panel panel_of(const Curve *all, int n) {
 /* Colours of Okabe and Ito, of different lightness; dashes tell them apart without colour. */
 static const struct {
   const char *colour, *dash;
-} styles[LAG_COST_FAMILIES] = {{"#d55e00", ""}, {"#0072b2", ""}, {"#009e73", "9 4"}, {"#cc79a7", "2 3"}, {"#8a7f00", "9 4 2 4"}, {"#444444", ""},
-                               {"#56b4e9", "9 4"}, {"#000000", "2 3"}};
+} styles[LAG_COST_FAMILIES] = {{"#d55e00", ""},        {"#0072b2", ""}, {"#009e73", "9 4"}, {"#cc79a7", "2 3"},
+                               {"#8a7f00", "9 4 2 4"}, {"#444444", ""}, {"#56b4e9", "9 4"}, {"#000000", "2 3"}};
 
 /* 10 to the power k, as a tick. */
 static void put_power(FILE *f, double x, double y, const char *anchor, double k) {
-  fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">10<tspan dy=\"-7\" font-size=\"14\">%.0f</tspan></text>\n", x, y, anchor, k);
+  fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">10<tspan dy=\"-7\" font-size=\"14\">%.0f</tspan></text>\n",
+          x, y, anchor, k);
 }
 
 static void put_axes(FILE *f, const Panel *r) {
@@ -137,8 +139,11 @@ static void put_front(FILE *f, const Panel *r, const Cost *c) {
 }
 
 static void put_mark(FILE *f, int kind, double x, double y) {
-  static const char *const shapes[LAG_COST_FAMILIES] = {"m-5 0a5 5 0 1 0 10 0a5 5 0 1 0 -10 0", "m-5 -5h10v10h-10z", "m0 -6l6 10h-12z", "m0 -7l6 7l-6 7l-6 -7z",
-                                                        "m0 6l6 -10h-12z", "m-5 -5l10 10m0 -10l-10 10", "m-6 0h12m-6 -6v12", "m-6 -3h12v6h-12z"};
+  static const char *const shapes[LAG_COST_FAMILIES] = {"m-5 0a5 5 0 1 0 10 0a5 5 0 1 0 -10 0",
+                                                        "m-5 -5h10v10h-10z", "m0 -6l6 10h-12z", "m0 -7l6 7l-6 7l-6 -7z",
+                                                        "m0 6l6 -10h-12z", "m-5 -5l10 10m0 -10l-10 10",
+                                                        "m-6 0h12m-6 -6v12",
+                                                        "m-6 -3h12v6h-12z"};
   fprintf(f, "M%.1f %.1f%s", x, y, shapes[kind]);
 }
 
@@ -154,7 +159,8 @@ static void put_curve(FILE *f, const Panel *r, const Curve *c) {
   fputs("\"/>\n", f);
 }
 
-/* A triangle under the middle of the curve whose slope is that of the observed order: time grows as error^(-1/order). */
+/* A triangle under the middle of the curve whose slope is that of the observed order: time grows as
+ * error^(-1/order). */
 static void put_slope(FILE *f, const Panel *r, const Curve *c) {
   char order[16];
   int k = c->n / 2;
@@ -219,7 +225,9 @@ int lag_cost_put_picture(const char *path, const App *app, const Cost *c) {
     if (!known) put_slope(o.f, &r, &all[i]);
   }
   put_names(o.f, &r, all, n);
-  fputs("<path fill=\"#f0c808\" fill-opacity=\"0.35\" d=\"M572 532h20v14h-20z\"/>\n<text x=\"598\" y=\"545\" font-size=\"15\">up to twice the least time</text>\n</svg>\n", o.f);
+  fputs("<path fill=\"#f0c808\" fill-opacity=\"0.35\" d=\"M572 532h20v14h-20z\"/>\n<text x=\"598\" y=\"545\" "
+        "font-size=\"15\">up to twice the least time</text>\n</svg>\n",
+        o.f);
   free(all);
   return lag_outfile_close(&o, OUTFILE_KEEP);
 }
@@ -237,8 +245,10 @@ void lag_cost_sketch(FILE *f, const Cost *c) {
     for (int i = n - 1; i >= 0; i--)
       for (int k = 0; k + 1 < all[i].n; k++)
         for (int part = 0; part <= COLUMNS; part++) {
-          double s = (double)part / COLUMNS, x = all[i].x[k] + s * (all[i].x[k + 1] - all[i].x[k]), y = all[i].y[k] + s * (all[i].y[k + 1] - all[i].y[k]);
-          cell[lrint((r.y1 - y) / (r.y1 - r.y0) * (ROWS - 1))][lrint((r.x0 - x) / (r.x0 - r.x1) * (COLUMNS - 1))] = (char)('a' + i);
+          double s = (double)part / COLUMNS, x = all[i].x[k] + s * (all[i].x[k + 1] - all[i].x[k]),
+                 y = all[i].y[k] + s * (all[i].y[k + 1] - all[i].y[k]);
+          cell[lrint((r.y1 - y) / (r.y1 - r.y0) * (ROWS - 1))][lrint((r.x0 - x) / (r.x0 - r.x1) * (COLUMNS - 1))] =
+              (char)('a' + i);
         }
     fputs("\nprocessor time [s] against error\n", f);
     for (int y = 0; y < ROWS; y++) {
@@ -247,7 +257,8 @@ void lag_cost_sketch(FILE *f, const Cost *c) {
       if (tick) fprintf(f, "%8s%-4.0f|%s\n", "1e", nearbyint(power), cell[y]);
       else fprintf(f, "%12s|%s\n", "", cell[y]);
     }
-    fprintf(f, "%12s+%.*s\n%13s1e%-*.0f1e%.0f\n%13s", "", COLUMNS, "----------------------------------------------------------------", "", COLUMNS - 6, r.x0, r.x1, "");
+    fprintf(f, "%12s+%.*s\n%13s1e%-*.0f1e%.0f\n%13s", "", COLUMNS,
+            "----------------------------------------------------------------", "", COLUMNS - 6, r.x0, r.x1, "");
     for (int i = 0; i < n; i++) fprintf(f, "%s%c %s", i ? ", " : "", 'a' + i, all[i].m->name);
     putc('\n', f);
   }

@@ -1,5 +1,5 @@
-/* The report of --cost. Enters: methods with their runs; leaves: the fastest settings, a table of times, the front, notes; or all runs as JSON or
- * CSV. */
+/* The report of --cost. Enters: methods with their runs; leaves: the fastest settings, a table of times, the front,
+ * notes; or all runs as JSON or CSV. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -18,7 +18,8 @@ static int family_of(const Cost *c, const CostMethod *m) {
   static const struct {
     const char *begin;
     int family;
-  } names[] = {{"taylor", 0}, {"rk", 1}, {"dop", 1}, {"verlet", 2}, {"symplectic", 2}, {"variational", 3}, {"gauss", 4}, {"radau", 5}, {"gsl-", 6}};
+  } names[] = {{"taylor", 0},      {"rk", 1},    {"dop", 1},   {"verlet", 2}, {"symplectic", 2},
+               {"variational", 3}, {"gauss", 4}, {"radau", 5}, {"gsl-", 6}};
   if (c->named) return (int)(m - c->method);
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (strncmp(m->name, names[i].begin, strlen(names[i].begin)) == 0) return names[i].family;
@@ -41,7 +42,8 @@ const CostMethod *lag_cost_best_of_family(const Cost *c, int family) {
     for (int k = 1; k <= COLUMNS; k++) {
       double own = time_for(m, k);
       int first = own < HUGE_VAL;
-      for (int j = 0; j < c->nmethods && first; j++) first = family_of(c, &c->method[j]) != family || time_for(&c->method[j], k) >= own;
+      for (int j = 0; j < c->nmethods && first; j++)
+        first = family_of(c, &c->method[j]) != family || time_for(&c->method[j], k) >= own;
       wins += first;
     }
     if (wins > most) {
@@ -73,7 +75,8 @@ void lag_cost_put_command(FILE *f, const App *app, const Cost *c) {
   fprintf(f, "  lagc run %s %s", app->program->source, app->scene->name);
   if (a->given) fputs(a->given, f);
   for (int i = 0; i < a->nsets && !a->given; i++) fprintf(f, " %s", a->sets[i]);
-  if (!isnan(c->reached) && c->event == app->until) fprintf(f, " --until %.9g", c->reached); /* errors were compared up to there; the last --until counts */
+  /* errors were compared up to there; the last --until counts */
+  if (!isnan(c->reached) && c->event == app->until) fprintf(f, " --until %.9g", c->reached);
   else if (a->until && !a->given) fprintf(f, " --until %s", a->until);
 }
 
@@ -113,14 +116,19 @@ static void put_answer(FILE *f, const App *app, const Cost *c) {
     if (c->monitor[0])
       fprintf(f, "no setting with an error of %g or less is one that `lagc run` accepts\n", c->target);
     else
-      fprintf(f, "no setting has an error of %g or less; the smallest found is %.1e; raise --target%s\n", c->target, smallest_error(c),
-              smallest_error(c) > rounding && lacks_time(c) ? ", or allow more time (--seconds)" : ": that is rounding of doubles, or its growth");
+      fprintf(f, "no setting has an error of %g or less; the smallest found is %.1e; raise --target%s\n", c->target,
+              smallest_error(c),
+              smallest_error(c) > rounding && lacks_time(c) ? ", or allow more time (--seconds)"
+                                                            : ": that is rounding of doubles, or its growth");
     return;
   }
   for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) shown += put_cheapest(f, app, c, errors[i]);
   if (!shown && c->monitor[0]) fprintf(f, "no setting with an error of 0.001 or less is one that `lagc run` accepts\n");
-  else if (!shown && lacks_time(c)) fprintf(f, "no setting has an error of 0.001 or less; allow more time: --seconds %g\n", 3 * c->seconds);
-  else if (!shown) fprintf(f, "no setting has an error of 0.001 or less; the smallest found is %.1e: end the run earlier (--until)\n", smallest_error(c));
+  else if (!shown && lacks_time(c))
+    fprintf(f, "no setting has an error of 0.001 or less; allow more time: --seconds %g\n", 3 * c->seconds);
+  else if (!shown)
+    fprintf(f, "no setting has an error of 0.001 or less; the smallest found is %.1e: end the run earlier (--until)\n",
+            smallest_error(c));
 }
 
 /* A line for each method, or for the best of each family: its times for errors of 1e-2, 1e-4, .. */
@@ -130,7 +138,9 @@ static void put_times(FILE *f, const Cost *c, int all) {
   putc('\n', f);
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
-    if ((c->named ? m->nruns == 0 : time_for(m, 1) == HUGE_VAL) || (!all && lag_cost_best_of_family(c, family_of(c, m)) != m)) continue;
+    if ((c->named ? m->nruns == 0 : time_for(m, 1) == HUGE_VAL) ||
+        (!all && lag_cost_best_of_family(c, family_of(c, m)) != m))
+      continue;
     fprintf(f, "  %-30s", m->name);
     for (int k = 1; k <= COLUMNS; k++) {
       const CostRun *any;
@@ -144,30 +154,41 @@ static void put_times(FILE *f, const Cost *c, int all) {
     }
     putc('\n', f);
   }
-  fputs(all || c->named ? "* the fastest of all\n" : "* the fastest of all; one method of each family, --all: every method\n", f);
+  fputs(all || c->named ? "* the fastest of all\n"
+                        : "* the fastest of all; one method of each family, --all: every method\n",
+        f);
 }
 
 /* The runs of the front, or all. */
 static void put_runs(FILE *f, const Cost *c, int all) {
   char setting[160], order[32], spread[32];
-  fprintf(f, "\n  %-44s %-9s %-11s %12s %6s %10s %11s  %s\n", all ? "" : "the front", "error", "grows as", "time [ms]", "+-", "steps", "calls", "order");
+  fprintf(f, "\n  %-44s %-9s %-11s %12s %6s %10s %11s  %s\n", all ? "" : "the front", "error", "grows as", "time [ms]",
+          "+-", "steps", "calls", "order");
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
     int first = 1;
-    snprintf(order, sizeof order, isnan(m->order) ? "  -" : m->method->flags & LAG_METHOD_ADAPTIVE ? "  %.1f" : "  %.2f", m->order);
+    snprintf(order, sizeof order,
+             isnan(m->order)                          ? "  -"
+             : m->method->flags & LAG_METHOD_ADAPTIVE ? "  %.1f"
+                                                      : "  %.2f",
+             m->order);
     for (int k = 0; k < m->nruns; k++) {
       const CostRun *r = &m->run[k];
       if (!all && !r->best) continue;
-      snprintf(setting, sizeof setting, "%.*s%s%s=%.9g)", (int)strcspn(m->name, ")"), m->name, m->option.name ? ", " : "(", lag_cost_knob(m->method),
-               r->knob);
+      snprintf(setting, sizeof setting, "%.*s%s%s=%.9g)", (int)strcspn(m->name, ")"), m->name,
+               m->option.name ? ", " : "(", lag_cost_knob(m->method), r->knob);
       snprintf(spread, sizeof spread, isnan(r->spread) ? "-" : "%.0f %%", 50 * r->spread);
-      fprintf(f, "%c %-44s %-9.2e %-11s %12.4g %6s %10lld %11lld%s\n", r->best ? '*' : ' ', setting, r->error, growth_of(c, r), 1e3 * r->time, spread, r->steps, r->calls,
-              first ? order : "");
+      fprintf(f, "%c %-44s %-9.2e %-11s %12.4g %6s %10lld %11lld%s\n", r->best ? '*' : ' ', setting, r->error,
+              growth_of(c, r), 1e3 * r->time, spread, r->steps, r->calls, first ? order : "");
       first = 0;
     }
   }
-  fprintf(f, "* no other run is both faster and more accurate%s. time: median processor time; +- half of the interquartile range of the\n"
-          "times. order: as measured, the slope of log error against log steps, at the smallest errors above rounding\n", all ? "" : "; --runs: every run");
+  fprintf(
+      f,
+      "* no other run is both faster and more accurate%s. time: median processor time; +- half of the interquartile "
+      "range of the\n"
+      "times. order: as measured, the slope of log error against log steps, at the smallest errors above rounding\n",
+      all ? "" : "; --runs: every run");
 }
 
 /* Why a method has no runs, without its name. */
@@ -196,15 +217,27 @@ static void put_notes(FILE *f, const App *app, const Cost *c) {
   const double worth_telling = 1e-14; /* finer settings would meet rounding */
   int n = 0;
   if (s->output == LAG_SAMPLES_RESIDUAL)
-    fprintf(f, "\nerror: what is left of the equations of motion in the middle of steps, relative to the largest rate of its kind and unit\n");
-  else if (s->output) fprintf(f, "\nerror: of %s, the largest difference from the reference at %d times, relative to its largest value\n", app->args.error, s->rows - 1);
-  else if (s->rows == 2) fputs("\nerror: the difference from the reference at the end, relative to the value or others of its kind and unit there\n", f);
-  else fprintf(f, "\nerror: the largest difference from the reference at %d times, relative to the largest value of its kind and unit\n", s->rows - 1);
-  if (s->output != LAG_SAMPLES_RESIDUAL) fprintf(f, "reference: %s, itself uncertain by %.1e\n", c->reference_name, s->uncertainty);
+    fprintf(f, "\nerror: what is left of the equations of motion in the middle of steps, relative to the largest rate "
+               "of its kind and unit\n");
+  else if (s->output)
+    fprintf(f, "\nerror: of %s, the largest difference from the reference at %d times, relative to its largest value\n",
+            app->args.error, s->rows - 1);
+  else if (s->rows == 2)
+    fputs("\nerror: the difference from the reference at the end, relative to the value or others of its kind and unit "
+          "there\n",
+          f);
+  else
+    fprintf(f,
+            "\nerror: the largest difference from the reference at %d times, relative to the largest value of its kind "
+            "and unit\n",
+            s->rows - 1);
+  if (s->output != LAG_SAMPLES_RESIDUAL)
+    fprintf(f, "reference: %s, itself uncertain by %.1e\n", c->reference_name, s->uncertainty);
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
     if (m->nruns == 0 || !(m->left_out > worth_telling)) continue;
-    fprintf(f, "%s%s from %.0e", n++ ? ", " : "left out, as three times slower than others or for want of time: ", m->name, m->left_out);
+    fprintf(f, "%s%s from %.0e",
+            n++ ? ", " : "left out, as three times slower than others or for want of time: ", m->name, m->left_out);
   }
   if (n) fputs("; more --seconds measure more\n", f);
   put_absent(f, c);
@@ -221,12 +254,17 @@ void lag_cost_put_text(FILE *f, const App *app, const Cost *c) {
   const Samples *s = &c->reference;
   fprintf(f, "model %s, scene %s, to t = %.15g s\n", app->scene->model->name, app->scene->name, s->t[s->rows - 1]);
   if (!s->output && !moves(s))
-    fputs(
-        "note: nothing moves, so that every method is exact: a scene with a motion compares them, `start x = 1` in it or x=1 here\n",
-        f);
-  if (c->event != app->until) fprintf(f, "an event ends the run at about t = %.6g s; errors are compared up to t = %.6g s\n", c->event, s->t[s->rows - 1]);
+    fputs("note: nothing moves, so that every method is exact: a scene with a motion compares them, `start x = 1` in "
+          "it or x=1 here\n",
+          f);
+  if (c->event != app->until)
+    fprintf(f, "an event ends the run at about t = %.6g s; errors are compared up to t = %.6g s\n", c->event,
+            s->t[s->rows - 1]);
   else if (!isnan(c->reached))
-    fprintf(f, "the reference ends at t = %.15g s (an event ends the run, no digit is left, or it takes too long): errors are compared up to there\n", c->reached);
+    fprintf(f,
+            "the reference ends at t = %.15g s (an event ends the run, no digit is left, or it takes too long): errors "
+            "are compared up to there\n",
+            c->reached);
   if (c->stopped) fputs("interrupted: what was measured until then\n", f);
   put_answer(f, app, c);
   if (c->monitor[0]) fprintf(f, "`lagc run` refuses cheaper settings: %s\n", c->monitor);
@@ -293,8 +331,8 @@ static void put_csv(FILE *f, const Cost *c) {
     for (int k = 0; k < c->method[i].nruns; k++) {
       const CostMethod *m = &c->method[i];
       const CostRun *r = &m->run[k];
-      fprintf(f, "%s,%s,%.17g,%.17g,%.9g,%.3g,%lld,%lld,%d\n", m->name, lag_cost_knob(m->method), r->knob, r->error, r->time, r->spread, r->steps,
-              r->calls, r->best);
+      fprintf(f, "%s,%s,%.17g,%.17g,%.9g,%.3g,%lld,%lld,%d\n", m->name, lag_cost_knob(m->method), r->knob, r->error,
+              r->time, r->spread, r->steps, r->calls, r->best);
     }
 }
 

@@ -1,7 +1,8 @@
-/* --effects: measures the variants in a program made by `lagc effects`, whose first scene is the user's and whose others are that scene
- * with other effects. Enters: the command line; leaves: lines for lagc, `method`, `span`, `error`, then `variant NUMBER OPERATIONS
- * SECONDS DIFFERENCE WEIGHT` for each. `--effects runs`: differences only. `--effects budget`: for each variant `setting NUMBER ERROR SECONDS METHOD KNOB
- * VALUE`, its fastest setting whose error against the first scene's motion is at most --target, or `none NUMBER SMALLEST`. */
+/* --effects: measures the variants in a program made by `lagc effects`, whose first scene is the user's and whose
+ * others are that scene with other effects. Enters: the command line; leaves: lines for lagc, `method`, `span`,
+ * `error`, then `variant NUMBER OPERATIONS SECONDS DIFFERENCE WEIGHT` for each. `--effects runs`: differences only.
+ * `--effects budget`: for each variant `setting NUMBER ERROR SECONDS METHOD KNOB VALUE`, its fastest setting whose
+ * error against the first scene's motion is at most --target, or `none NUMBER SMALLEST`. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -30,7 +31,8 @@ static int knows(const lag_scene *scene, const char *text) {
   const lag_var *var;
   int index;
   snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
-  return lag_find_name(scene->model, name, &index, &var) != LAG_IS_NOTHING || lag_family_member(scene->model, name, 0, part, sizeof part);
+  return lag_find_name(scene->model, name, &index, &var) != LAG_IS_NOTHING ||
+         lag_family_member(scene->model, name, 0, part, sizeof part);
 }
 
 /* Sets the values of the command line; those of effects that are off in this variant and on in another are left out. */
@@ -45,8 +47,8 @@ static int set_values(Trial *k) {
   return 0;
 }
 
-/* Gives a variant the parameter values and the start of the first scene, for all names that it has, since its own text may compute them
- * without the effects that are off. */
+/* Gives a variant the parameter values and the start of the first scene, for all names that it has, since its own
+ * text may compute them without the effects that are off. */
 static void copy_start(const lag_sim *first, lag_sim *sim) {
   const lag_model *m = first->scene->model, *own = sim->scene->model;
   const lag_var *var;
@@ -65,7 +67,9 @@ static void copy_start(const lag_sim *first, lag_sim *sim) {
 
 /* Sets the method of the first scene, or an automatic one where the variant refuses that. */
 static int set_method(Trial *k, lag_sim *sim, double tol) {
-  if (lag_sim_set_method(sim, k->method, k->options, k->method->noptions) == LAG_OK && lag_sim_set_tolerance(sim, tol) == LAG_OK) return 0;
+  if (lag_sim_set_method(sim, k->method, k->options, k->method->noptions) == LAG_OK &&
+      lag_sim_set_tolerance(sim, tol) == LAG_OK)
+    return 0;
   return lag_app_choose_method(k->app);
 }
 
@@ -98,7 +102,8 @@ static int prepare_first(Trial *k) {
   k->t1 = app->until;
   adopt_simulation(k, &k->v[0]);
   if (k->t1 == k->t0)
-    return lag_app_error(&app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", k->t0);
+    return lag_app_error(
+        &app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", k->t0);
   printf("span %.17g\n", k->t1 - k->t0);
   return 0;
 }
@@ -117,8 +122,8 @@ static int prepare_others(Trial *k) {
 
 /* ---- Measurements */
 
-/* Numerical error of the first scene: its difference from a run with tolerance/100 or half the step; at the smallest tolerance from a run
- * with 10 times the tolerance. */
+/* Numerical error of the first scene: its difference from a run with tolerance/100 or half the step; at the smallest
+ * tolerance from a run with 10 times the tolerance. */
 static int measure_error(Trial *k) {
   App *app = k->app;
   const double least = 1e-15;
@@ -181,7 +186,8 @@ static int measure(Trial *k) {
 static void print(const Trial *k) {
   for (int i = 0; i < k->nscenes; i++) {
     const Variant *v = &k->v[i];
-    printf("variant %d %d %.9g %.17g %.9g\n", i, k->app->program->scenes[i]->model->ops, v->time, v->difference, v->weight);
+    printf("variant %d %d %.9g %.17g %.9g\n", i, k->app->program->scenes[i]->model->ops, v->time, v->difference,
+           v->weight);
     if (v->why[0]) printf("failed %d %s\n", i, v->why);
   }
 }
@@ -204,7 +210,8 @@ static lag_sim *fresh_variant(void *source) {
   return sim;
 }
 
-/* own := the reference's values of the components that the variant has. LAG_OK, LAG_ENOMEM, or LAG_EINVAL: the scene lacks one. */
+/* own := the reference's values of the components that the variant has. LAG_OK, LAG_ENOMEM, or LAG_EINVAL: the scene
+ * lacks one. */
 static int take_components(const Cost *c, const lag_model *m, lag_sim *sim, Cost *own) {
   const Samples *all = &c->reference;
   int n = sim->pb.n, rc = lag_cost_begin(own, all->rows, n, 0, 0);
@@ -212,7 +219,8 @@ static int take_components(const Cost *c, const lag_model *m, lag_sim *sim, Cost
     int at = lag_component_index(m, lag_state_column(sim, k).name);
     if (at < 0) rc = LAG_EINVAL;
     own->reference.largest[k] = at < 0 ? 0 : all->largest[at];
-    for (int i = 0; i < all->rows && rc == LAG_OK; i++) own->reference.y[(size_t)i * (size_t)n + (size_t)k] = all->y[(size_t)i * (size_t)all->n + (size_t)at];
+    for (int i = 0; i < all->rows && rc == LAG_OK; i++)
+      own->reference.y[(size_t)i * (size_t)n + (size_t)k] = all->y[(size_t)i * (size_t)all->n + (size_t)at];
   }
   if (rc) return rc;
   memcpy(own->reference.t, all->t, (size_t)all->rows * sizeof *all->t);
@@ -225,7 +233,8 @@ static void print_setting(int variant, const Cost *c, double target) {
   const CostMethod *m = lag_cost_cheapest(c->method, c->nmethods, target, &run);
   double least = HUGE_VAL;
   if (m) {
-    printf("setting %d %.9g %.9g %s %s %.9g\n", variant, run->error, run->time, m->name, lag_cost_knob(m->method), run->knob);
+    printf("setting %d %.9g %.9g %s %s %.9g\n", variant, run->error, run->time, m->name, lag_cost_knob(m->method),
+           run->knob);
     return;
   }
   for (int i = 0; i < c->nmethods; i++)
@@ -245,10 +254,14 @@ static int weigh_variant(Trial *k, const Cost *c, int scene, double seconds, dou
   VariantSource source = {k, scene};
   lag_sim *sim = fresh_variant(&source);
   int rc = sim ? take_components(c, k->v[0].sim->scene->model, sim, &own) : LAG_ENOMEM;
-  rc = rc == LAG_EINVAL ? LAG_EINVAL : rc ? lag_app_error(&app->args, "out of memory") : lag_cost_list_methods(app, &own);
+  rc = rc == LAG_EINVAL ? LAG_EINVAL
+       : rc             ? lag_app_error(&app->args, "out of memory")
+                        : lag_cost_list_methods(app, &own);
   if (rc == 0) {
-    CostSweep sweep = {.method = own.method, .n = own.nmethods, .scene = {fresh_variant, &source, k->t0}, .reference = &own.reference, .scale = own.scale,
-                       .seconds = seconds, .target = target, .note = note_nothing};
+    CostSweep sweep = {.method = own.method,
+                       .n = own.nmethods, .scene = {fresh_variant, &source, k->t0}, .reference = &own.reference,
+                       .scale = own.scale, .seconds = seconds, .target = target,
+                       .note = note_nothing};
     rc = lag_cost_sweep(&sweep) ? lag_app_error(&app->args, "out of memory") : 0;
   }
   if (rc == 0) print_setting(scene, &own, target);
@@ -264,7 +277,9 @@ static int weigh_budget(Trial *k) {
   double seconds, target;
   int limited;
   const double before = 0.95; /* of a run that an event ends: other sets of effects end it at other times */
-  if (!lag_args_number(a, "--seconds", a->seconds, "--seconds 10", &seconds) || !lag_args_number(a, "--target", a->target, "--target 1e-6", &target)) return EXIT_USAGE;
+  if (!lag_args_number(a, "--seconds", a->seconds, "--seconds 10", &seconds) ||
+      !lag_args_number(a, "--target", a->target, "--target 1e-6", &target))
+    return EXIT_USAGE;
   if (target < 10 * DBL_EPSILON) { /* below what this precision can show */
     for (int i = 0; i < k->nscenes; i++) printf("none %d nan\n", i);
     return 0;
@@ -276,11 +291,19 @@ static int weigh_budget(Trial *k) {
   app->until = k->t1;
   cost.event = lag_cost_event_end(app);
   double span = cost.event == k->t1 ? k->t1 - k->t0 : before * (cost.event - k->t0);
-  int rc = lag_cost_begin(&cost, LAG_COST_ROWS, app->sim->pb.n, k->t0, span) ? lag_app_error(a, "out of memory") : lag_cost_reference(app, &cost, 0.4 * seconds, &limited);
+  int rc = lag_cost_begin(&cost, LAG_COST_ROWS, app->sim->pb.n, k->t0, span)
+               ? lag_app_error(a, "out of memory")
+               : lag_cost_reference(app, &cost, 0.4 * seconds, &limited);
   app->sim = NULL;
-  if (rc == 0 && cost.reference.rows < 2) rc = lag_app_error(a, "no digit of %g is left at t = %g s, the first time of comparison; end the run earlier: --until", target, cost.reference.t[1]);
-  if (rc == 0) printf("reference %.9g %.17g %d %s\n", cost.reference.uncertainty, cost.reference.t[cost.reference.rows - 1], cost.event != k->t1, cost.reference_name);
-  for (int i = 0; i < k->nscenes && rc == 0 && lag_app_interrupted() == EXIT_SIGNAL; i++) rc = weigh_variant(k, &cost, i, 0.6 * seconds / k->nscenes, target);
+  if (rc == 0 && cost.reference.rows < 2)
+    rc = lag_app_error(a,
+                       "no digit of %g is left at t = %g s, the first time of comparison; end the run earlier: --until",
+                       target, cost.reference.t[1]);
+  if (rc == 0)
+    printf("reference %.9g %.17g %d %s\n", cost.reference.uncertainty, cost.reference.t[cost.reference.rows - 1],
+           cost.event != k->t1, cost.reference_name);
+  for (int i = 0; i < k->nscenes && rc == 0 && lag_app_interrupted() == EXIT_SIGNAL; i++)
+    rc = weigh_variant(k, &cost, i, 0.6 * seconds / k->nscenes, target);
   lag_cost_end(&cost);
   return rc;
 }

@@ -1,4 +1,5 @@
-/* Curves of differences, on a logarithmic axis: of the energy, less the work of forces, from its first value (--energy-error). (multi_run_plot.c: the distance of runs, --distance.) */
+/* Curves of differences, on a logarithmic axis: of the energy, less the work of forces, from its first value
+ * (--energy-error). (multi_run_plot.c: the distance of runs, --distance.) */
 #include <math.h>
 #include <string.h>
 
@@ -37,7 +38,8 @@ void lag_energy_errors(App *app, lag_sim *sim) {
   int relative = 1;
   lag_sim_charge(sim, 0, &energy);
   for (int i = 0; i < d->n; i++) relative &= first_value(t, d->y[i]) != 0;
-  if ((energy.flags & (LAG_CONSERVED | LAG_BALANCED)) == LAG_BALANCED) d->yname = relative ? "|(E - work)/E(0) - 1|" : "|E - work - E(0)|";
+  if ((energy.flags & (LAG_CONSERVED | LAG_BALANCED)) == LAG_BALANCED)
+    d->yname = relative ? "|(E - work)/E(0) - 1|" : "|E - work - E(0)|";
   else d->yname = relative ? "|E/E(0) - 1|" : "|E - E(0)|";
   for (int i = 0; i < d->n; i++) {
     double first = first_value(t, d->y[i]);

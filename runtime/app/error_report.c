@@ -1,5 +1,6 @@
-/* The error of a run, by a second run with a more accurate setting. Enters: a run under way, then finished; leaves: a line or two of the report: the
- * error, how it grows, and the horizon. Holds: the second run makes few steps beside the run; then its law of growth tells the rest. */
+/* The error of a run, by a second run with a more accurate setting. Enters: a run under way, then finished; leaves:
+ * a line or two of the report: the error, how it grows, and the horizon. Holds: the second run makes few steps
+ * beside the run; then its law of growth tells the rest. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -13,7 +14,8 @@ static const double least_tolerance = 4.5 * DBL_EPSILON;
 
 int lag_app_error_begin(App *app) {
   const Args *a = &app->args;
-  int impulses = (lag_sim_method(app->sim)->flags & LAG_METHOD_IMPULSES) && app->scene->model->ncontacts; /* impacts are at other steps in a run with other steps */
+  /* impacts are at other steps in a run with other steps */
+  int impulses = (lag_sim_method(app->sim)->flags & LAG_METHOD_IMPULSES) && app->scene->model->ncontacts;
   app->watched = !impulses && (!a->quiet || a->json || a->svg || a->html) && !app->resumed && !app->overlaid;
   return app->watched && lag_error_estimate_init(&app->error, app->sim) ? lag_app_error(a, "out of memory") : 0;
 }
@@ -25,8 +27,9 @@ int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times) {
   return rc ? rc : lag_sim_set_tolerance(to, fmax(times * from->tol, least_tolerance));
 }
 
-/* Work of a run so far, in operations: a nanosecond or so each. Constraints add the factors of a matrix at each call, events their functions, a Taylor series
- * the square of its order. Contacts that are open are no constraints. */
+/* Work of a run so far, in operations: a nanosecond or so each. Constraints add the factors of a matrix at each
+ * call, events their functions, a Taylor series the square of its order. Contacts that are open are no constraints.
+ * */
 double lag_app_work(const lag_sim *run) {
   const double each_event = 1000;
   const lag_model *m = run->scene->model;
@@ -45,10 +48,13 @@ static int enough(void *app, const lag_sim *other) {
 }
 
 /* Whether rounding counts as truncation does. */
-static int is_long_series(const lag_sim *run) { return run->method == &lag_taylor_method && !run->scene->model->constraints && lag_equal_step(run) <= 0 && run->tol < 1e-11; }
+static int is_long_series(const lag_sim *run) {
+  return run->method == &lag_taylor_method && !run->scene->model->constraints && lag_equal_step(run) <= 0 &&
+         run->tol < 1e-11;
+}
 
-/* taylor with a smaller tolerance, a lower order and at most half the run's mean step: the roundings of long series have one sign along a motion, with any
- * tolerance, and are in proportion to steps. */
+/* taylor with a smaller tolerance, a lower order and at most half the run's mean step: the roundings of long series
+ * have one sign along a motion, with any tolerance, and are in proportion to steps. */
 static int set_shorter_series(const ErrorEstimate *e, const lag_sim *run, lag_sim *other) {
   const double lower = 3;
   const lag_option shorter[] = {{.name = "order", .value = fmax(lag_taylor_order(run->method_work) - lower, 1)},
@@ -67,8 +73,8 @@ static int set_adaptive(const ErrorEstimate *e, lag_sim *other) {
   return rc ? rc : lag_sim_set_tolerance(other, small);
 }
 
-/* A setting whose error is small beside the run's; near the smallest tolerance, one whose error is of another making, and about as small, or a larger
- * tolerance, which shows an error that is too large, but not 0. */
+/* A setting whose error is small beside the run's; near the smallest tolerance, one whose error is of another
+ * making, and about as small, or a larger tolerance, which shows an error that is too large, but not 0. */
 static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim *other) {
   const double apart = 3; /* tolerances whose errors differ enough */
   if (lag_equal_step(run) > 0) return set_adaptive(e, other);
@@ -79,7 +85,8 @@ static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim
 /* Rounding has no law that is worth telling. */
 static int is_rounding(const ErrorEstimate *e) { return e->largest < 500 * DBL_EPSILON; }
 
-/* Moves the start by four roundings, one of which the first sum may take away, up and down in turns. What cannot be set stays. */
+/* Moves the start by four roundings, one of which the first sum may take away, up and down in turns. What cannot be
+ * set stays. */
 static void nudge(lag_sim *sim) {
   const double few = 4 * DBL_EPSILON;
   const lag_model *m = lag_sim_scene(sim)->model;
@@ -124,8 +131,8 @@ static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double m
   return rc == LAG_ENOMEM ? rc : LAG_OK;
 }
 
-/* The mean step of the run where a limit, rows of a table or kicks set its steps, and the second run's, not the tolerance;
- * else 0. */
+/* The mean step of the run where a limit, rows of a table or kicks set its steps, and the second run's, not the
+ * tolerance; else 0. */
 static double forced_step(const ErrorEstimate *e, const lag_sim *run, double steps) {
   double part = e->motion.rows ? (double)e->compared / e->motion.rows : 0, own = run->run->steps * part;
   int follows = (run->method->flags & LAG_METHOD_ADAPTIVE) && run->method->order_most == 0 && e->compared;
@@ -133,8 +140,8 @@ static double forced_step(const ErrorEstimate *e, const lag_sim *run, double ste
   return forced ? fabs(lag_sim_time(run) - e->t0) / run->run->steps : 0;
 }
 
-/* Compares a second time with a start that is off by a rounding, where both runs may have errors of one size and direction:
- * rounding, in motions that part. */
+/* Compares a second time with a start that is off by a rounding, where both runs may have errors of one size and
+ * direction: rounding, in motions that part. */
 static int compare_again(App *app, ErrorEstimate *e, const lag_sim *run, double most, Second *second) {
   const double little = 1e7, close = 1e-12; /* work of a second run; tolerance of the first */
   int near = lag_equal_step(run) > 0 || run->tol < close;
@@ -158,7 +165,8 @@ int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most
     second.longest = 0.5 * step;
     rc = compare_once(app, e, run, 2 * most, &second);
   }
-  /* Flights on straight lines have the same roundings with any setting; what impacts make of these, a start that is off by one shows. */
+  /* Flights on straight lines have the same roundings with any setting; what impacts make of these, a start that is
+   * off by one shows. */
   if (rc) return rc;
   const double tiny = 1e-11;
   int blind = lag_error_estimate_is_blind(e), exact = !blind && run->run->events > 0 && e->largest < tiny;
@@ -198,8 +206,9 @@ static double shown(const ErrorEstimate *e) { return e->largest < DBL_EPSILON ? 
 static void put_lost_formula(const App *app, FILE *f) {
   const ErrorEstimate *e = &app->error;
   int nq = app->scene->model->nq, second = e->formula.of < 2 * nq, of = second ? e->formula.of - nq : e->formula.of;
-  fprintf(f, "the error is not known: the formula of %s%s cancels along this motion, and has lost digits in any run; two "
-             "runs agree to %.1g. Write terms that cancel in another form, as 2*sin(x/2)^2 for 1 - cos(x)%s\n",
+  fprintf(f,
+          "the error is not known: the formula of %s%s cancels along this motion, and has lost digits in any run; two "
+          "runs agree to %.1g. Write terms that cancel in another form, as 2*sin(x/2)^2 for 1 - cos(x)%s\n",
           lag_state_column(app->sim, of).name, second ? "''" : "'", shown(e), LAG_MORE_PRECISION);
 }
 
@@ -211,7 +220,8 @@ void lag_report_error(const App *app, FILE *f) {
   if (e->continued && growth_of(e) == LAG_ERROR_EXPONENTIAL)
     snprintf(from, sizeof from, " (continued from t = %.3g s)", (double)e->motion.t[e->compared - 1]);
   if (!isnan(e->horizon)) {
-    fprintf(f, "after t = %.3g s no digit is left%s: the motion there is the integrator's; averages may still hold\n", e->horizon, from);
+    fprintf(f, "after t = %.3g s no digit is left%s: the motion there is the integrator's; averages may still hold\n",
+            e->horizon, from);
     return;
   }
   if (lag_formula_is_lossy(e)) {

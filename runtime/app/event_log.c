@@ -1,6 +1,6 @@
-/* Event log (--events), rows at events (--section), and the report on events. Enters: events during the run, with the state before and after; leaves:
- * rows of time, name, state before, state after, in declared units with all digits. Holds: a run that is saved and resumed
- * logs each event once, in the part where it happens. */
+/* Event log (--events), rows at events (--section), and the report on events. Enters: events during the run, with
+ * the state before and after; leaves: rows of time, name, state before, state after, in declared units with all
+ * digits. Holds: a run that is saved and resumed logs each event once, in the part where it happens. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +36,8 @@ int lag_event_log_open(App *app) {
   const Args *a = &app->args;
   if (!a->events) return 0;
   if (app->scene->model->nev == 0)
-    return lag_app_error(a, "--events %s: model %s has no events in scene %s", a->events, app->scene->model->name, app->scene->name);
+    return lag_app_error(a, "--events %s: model %s has no events in scene %s", a->events, app->scene->model->name,
+                         app->scene->name);
   if (make_columns(app)) return lag_app_error(a, "out of memory");
   return lag_rows_open(&app->log_rows, a->events, &app->log) ? lag_app_io_error(app, a->events) : 0;
 }
@@ -62,8 +63,8 @@ void lag_event_log_free(App *app) {
   free(app->log_names);
 }
 
-/* ---- Poincare section (--section): rows at the crossings of a surface, given as an event that changes nothing. A row is on the surface as
- * precisely as events are located; a start on the surface is no crossing. */
+/* ---- Poincare section (--section): rows at the crossings of a surface, given as an event that changes nothing. A
+ * row is on the surface as precisely as events are located; a start on the surface is no crossing. */
 
 int lag_section_choose(App *app) {
   const lag_model *m = app->scene->model;
@@ -74,14 +75,17 @@ int lag_section_choose(App *app) {
     if (strcmp(name, m->ev[k].name) == 0) {
       app->section = k;
       if (lag_event_is_located(app->sim, k)) return 0;
-      return lag_app_error(&app->args, "--section %s: %s does not locate events of contacts; dop853 does", name, lag_sim_method(app->sim)->name);
+      return lag_app_error(&app->args, "--section %s: %s does not locate events of contacts; dop853 does", name,
+                           lag_sim_method(app->sim)->name);
     }
     lag_try_nearest(&near, m->ev[k].name);
   }
   if (!name) return 0;
-  if (near.best) return lag_app_error(&app->args, "--section %s: there is no such event; did you mean \"%s\"?", name, near.best);
-  return lag_app_error(&app->args, "--section %s: scene %s has no such event; name one, or lagc run %s --section 'EXPR rising' makes it", name,
-                   app->scene->name, app->program->source);
+  if (near.best)
+    return lag_app_error(&app->args, "--section %s: there is no such event; did you mean \"%s\"?", name, near.best);
+  return lag_app_error(
+      &app->args, "--section %s: scene %s has no such event; name one, or lagc run %s --section 'EXPR rising' makes it",
+      name, app->scene->name, app->program->source);
 }
 
 /* ---- The report */
@@ -92,12 +96,19 @@ void lag_report_events(const App *app, FILE *f) {
     double first, last;
     if (!lag_event_is_located(app->sim, k)) continue;
     long long n = lag_sim_event_times(app->sim, k, &first, &last);
-    fprintf(f, "%s %s: ", m->ev[k].direction == LAG_KICK ? "kick" : k == app->section ? "section" : "event", m->ev[k].name);
+    fprintf(f, "%s %s: ",
+            m->ev[k].direction == LAG_KICK ? "kick"
+            : k == app->section            ? "section"
+                                           : "event",
+            m->ev[k].name);
     if (n == 0) fputs("never", f);
     else fprintf(f, "%lld time%s", n, n == 1 ? "" : "s");
     if (n == 1) fprintf(f, ", t = %s s", lag_number_text(first, (char[64]){0}));
-    else if (n > 1) fprintf(f, ", first at t = %s s, last at %s s", lag_number_text(first, (char[64]){0}), lag_number_text(last, (char[64]){0}));
-    if (app->sim->skipped[k] > 0) fprintf(f, "; then at rest: impacts of the next %.2g s are left out", app->sim->skipped[k]);
+    else if (n > 1)
+      fprintf(f, ", first at t = %s s, last at %s s", lag_number_text(first, (char[64]){0}),
+              lag_number_text(last, (char[64]){0}));
+    if (app->sim->skipped[k] > 0)
+      fprintf(f, "; then at rest: impacts of the next %.2g s are left out", app->sim->skipped[k]);
     putc('\n', f);
   }
   if (m->nev > MOST_EVENTS) fprintf(f, "  (and %d events more)\n", m->nev - MOST_EVENTS);

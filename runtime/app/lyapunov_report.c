@@ -1,5 +1,5 @@
-/* --lyapunov: Lyapunov exponents of a scene's motion. Enters: the command line; leaves: a table, JSON, rows and a picture of
- * the running estimates. Holds: an interrupted run reports the estimates so far. */
+/* --lyapunov: Lyapunov exponents of a scene's motion. Enters: the command line; leaves: a table, JSON, rows and a
+ * picture of the running estimates. Holds: an interrupted run reports the estimates so far. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +9,8 @@
 #include "app/app.h"
 #include "core/core.h"
 
-enum { TURNING = 10, ROWS = 500 }; /* default transient: a tenth of the time, in which tangent vectors align; rows of estimates */
+/* default transient: a tenth of the time, in which tangent vectors align; rows of estimates */
+enum { TURNING = 10, ROWS = 500 };
 
 typedef struct Job {
   App *app;
@@ -25,11 +26,13 @@ static int choose_times(App *app, double *from) {
   const Args *a = &app->args;
   double t0 = app->scene->t0;
   if (!(app->until > t0))
-    return lag_app_error(a, "--until %s: exponents are means over a long time from t = %g s on; write a later one", a->until ? a->until : "", t0);
+    return lag_app_error(a, "--until %s: exponents are means over a long time from t = %g s on; write a later one",
+                         a->until ? a->until : "", t0);
   double turning = (app->until - t0) / TURNING;
   if (a->transient && !lag_args_number(a, "--transient", a->transient, "--transient 100", &turning)) return EXIT_USAGE;
   if (turning < 0 || turning >= app->until - t0)
-    return lag_app_error(a, "--transient %g: the time left out at the beginning must be between 0 and %g s", turning, app->until - t0);
+    return lag_app_error(a, "--transient %g: the time left out at the beginning must be between 0 and %g s", turning,
+                         app->until - t0);
   *from = t0 + turning;
   return 0;
 }
@@ -39,11 +42,13 @@ static int choose_number(App *app, int *k) {
   int n = lag_tangent_dimension(app->sim);
   double x = n;
   if (n < 0) return lag_app_error(a, "%s", lag_sim_message(app->sim));
-  if (n == 0) return lag_app_error(a, "constraints fix all coordinates of the model: there are no neighbouring motions");
+  if (n == 0)
+    return lag_app_error(a, "constraints fix all coordinates of the model: there are no neighbouring motions");
   if (a->exponents && !lag_args_number(a, "--exponents", a->exponents, "--exponents 1", &x)) return EXIT_USAGE;
   if (x < 1 || x > n || x != floor(x))
-    return lag_app_error(a, "--exponents %s: write a whole number from 1 to %d, the coordinates, velocities and states of the model%s", a->exponents, n,
-                         app->scene->model->constraints ? " that constraints leave free" : "");
+    return lag_app_error(
+        a, "--exponents %s: write a whole number from 1 to %d, the coordinates, velocities and states of the model%s",
+        a->exponents, n, app->scene->model->constraints ? " that constraints leave free" : "");
   *k = (int)x;
   return 0;
 }
@@ -73,7 +78,8 @@ static int put_estimates(Job *job) {
 static void at_event(void *context, int k, double t, const double *before, const double *after) {
   Job *job = context;
   (void)k;
-  if (memcmp(before, after, (size_t)job->l.n * sizeof *before) != 0) lag_lyapunov_event(&job->l, job->app->sim, t, before);
+  if (memcmp(before, after, (size_t)job->l.n * sizeof *before) != 0)
+    lag_lyapunov_event(&job->l, job->app->sim, t, before);
 }
 
 static int after_step(void *context, const lag_sim *sim) {
@@ -90,30 +96,47 @@ static int after_step(void *context, const lag_sim *sim) {
 
 /* ---- The report */
 
-/* Note where the sum of the exponents is not the mean divergence (Liouville): steps are too long for the fastest decay. */
+/* Note where the sum of the exponents is not the mean divergence (Liouville): steps are too long for the fastest
+ * decay. */
 static void caution(FILE *f, const Lyapunov *l) {
-  double sum = lag_lyapunov_exponent(l, l->k), divergence = lag_lyapunov_divergence(l), size = fabs(lag_lyapunov_exponent(l, l->k - 1));
+  double sum = lag_lyapunov_exponent(l, l->k), divergence = lag_lyapunov_divergence(l),
+         size = fabs(lag_lyapunov_exponent(l, l->k - 1));
   if (fabs(sum - divergence) > 1e-3 * fmax(size, fabs(divergence)) + 3 * lag_lyapunov_error(l, l->k)) {
-    fprintf(f, "note: the sum should be the mean divergence of the flow, %.6g: the steps are too long for the fastest decay; take smaller steps, "
-               "or trust only the first exponents\n", divergence);
+    fprintf(f,
+            "note: the sum should be the mean divergence of the flow, %.6g: the steps are too long for the fastest "
+            "decay; take smaller steps, "
+            "or trust only the first exponents\n",
+            divergence);
   }
 }
 
 /* Conclusions from the exponents that their errors allow: chaos, entropy, dimension. */
 static void conclude(FILE *f, const Lyapunov *l) {
-  double first = lag_lyapunov_exponent(l, 0), off = lag_lyapunov_error(l, 0), error, x = lag_lyapunov_entropy(l, &error);
+  double first = lag_lyapunov_exponent(l, 0), off = lag_lyapunov_error(l, 0), error,
+         x = lag_lyapunov_entropy(l, &error);
   int sign = lag_lyapunov_sign(l, 0);
   if (sign > 0)
-    fprintf(f, "chaotic, if the motion is bounded: small errors grow by a factor of e in %.3g s (%.3g to %.3g), in the mean\n", 1 / first, 1 / (first + off),
-            1 / (first - off));
-  if (sign > 0 && l->k == l->d) fprintf(f, "sum of the positive exponents (entropy by Pesin): %.4g, error %.1g 1/s\n", x, error);
-  if (sign == 0) fprintf(f, "not known to be chaotic: the first exponent is 0 within three errors; one below %.1g 1/s needs a longer run\n", 3 * off);
+    fprintf(
+        f,
+        "chaotic, if the motion is bounded: small errors grow by a factor of e in %.3g s (%.3g to %.3g), in the mean\n",
+        1 / first, 1 / (first + off), 1 / (first - off));
+  if (sign > 0 && l->k == l->d)
+    fprintf(f, "sum of the positive exponents (entropy by Pesin): %.4g, error %.1g 1/s\n", x, error);
+  if (sign == 0)
+    fprintf(
+        f,
+        "not known to be chaotic: the first exponent is 0 within three errors; one below %.1g 1/s needs a longer run\n",
+        3 * off);
   if (sign < 0) fputs("not chaotic: small errors decay\n", f);
-  if (isinf(lag_lyapunov_exponent(l, l->k))) fputs("minus infinity: where the motion begins to slide, or a body to stick, neighbouring motions become one\n", f);
+  if (isinf(lag_lyapunov_exponent(l, l->k)))
+    fputs("minus infinity: where the motion begins to slide, or a body to stick, neighbouring motions become one\n", f);
   x = lag_lyapunov_dimension(l, &error);
   if (isfinite(x)) fprintf(f, "dimension by Kaplan and Yorke: %.4g, error %.1g\n", x, error);
-  fprintf(f, "error: the largest of the standard error from %d blocks, of the change since half the time, and of one factor of e in the whole time; zero is "
-             "reached as log(t)/t only\n", l->nblocks);
+  fprintf(f,
+          "error: the largest of the standard error from %d blocks, of the change since half the time, and of one "
+          "factor of e in the whole time; zero is "
+          "reached as log(t)/t only\n",
+          l->nblocks);
 }
 
 static void put_text(FILE *f, App *app, const Lyapunov *l) {
@@ -125,13 +148,18 @@ static void put_text(FILE *f, App *app, const Lyapunov *l) {
     fprintf(f, "no step of the run ends after t = %g s, where the measurement begins; run longer: --until\n", l->from);
     return;
   }
-  fprintf(f, "measured from t = %.6g to %.6g s, over %lld step%s\n", l->begun, l->t, l->steps, l->steps == 1 ? "" : "s");
-  if (l->d < l->n) fprintf(f, "phase space: %d dimensions, the %d coordinates, velocities and states less %d that constraints fix\n", l->d, l->n, l->n - l->d);
+  fprintf(f, "measured from t = %.6g to %.6g s, over %lld step%s\n", l->begun, l->t, l->steps,
+          l->steps == 1 ? "" : "s");
+  if (l->d < l->n)
+    fprintf(f, "phase space: %d dimensions, the %d coordinates, velocities and states less %d that constraints fix\n",
+            l->d, l->n, l->n - l->d);
   fprintf(f, "  %-4s%18s%14s%22s\n", "", "exponent [1/s]", "error", "at half the time");
   for (int i = 0; i < l->k; i++)
-    fprintf(f, "  %-4d%18.8g%14.2g%22.8g\n", i + 1, lag_lyapunov_exponent(l, i), lag_lyapunov_error(l, i), lag_lyapunov_at_half(l, i));
+    fprintf(f, "  %-4d%18.8g%14.2g%22.8g\n", i + 1, lag_lyapunov_exponent(l, i), lag_lyapunov_error(l, i),
+            lag_lyapunov_at_half(l, i));
   if (l->k == l->d) {
-    fprintf(f, "  %-4s%18.8g%14.2g%22.8g\n", "sum", lag_lyapunov_exponent(l, l->k), lag_lyapunov_error(l, l->k), lag_lyapunov_at_half(l, l->k));
+    fprintf(f, "  %-4s%18.8g%14.2g%22.8g\n", "sum", lag_lyapunov_exponent(l, l->k), lag_lyapunov_error(l, l->k),
+            lag_lyapunov_at_half(l, l->k));
     caution(f, l);
   }
   if (l->nblocks < 2) {
@@ -156,7 +184,8 @@ static int infinite(const Lyapunov *l) {
 
 static void put_json(FILE *f, const App *app, const Lyapunov *l) {
   int all = l->k == l->d, sign = lag_lyapunov_sign(l, 0);
-  double error, dimension = lag_lyapunov_dimension(l, &error), entropy_error, entropy = lag_lyapunov_entropy(l, &entropy_error);
+  double error, dimension = lag_lyapunov_dimension(l, &error), entropy_error,
+                entropy = lag_lyapunov_entropy(l, &entropy_error);
   Json j = {.f = f};
   lag_json_begin(&j, NULL, '{');
   lag_report_json_head(app, &j);
@@ -192,13 +221,19 @@ static int failed(App *app, const Job *job) {
   errno = app->bad_errno;
   if (app->bad_file) return lag_app_io_error(app, app->bad_file);
   if (job->rc == LAG_EDOMAIN)
-    lag_app_error(a, "at t = %g s neighbouring motions become one within a step, an exponent of minus infinity; take fewer: --exponents %d, or "
-                     "smaller steps", t, job->l.k > 1 ? job->l.k - 1 : 1);
+    lag_app_error(a,
+                  "at t = %g s neighbouring motions become one within a step, an exponent of minus infinity; take "
+                  "fewer: --exponents %d, or "
+                  "smaller steps",
+                  t, job->l.k > 1 ? job->l.k - 1 : 1);
   else if (job->rc || app->status < 0)
     lag_app_error(a, "%s", job->rc == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
   else if (app->status == LAG_STOPPED)
-    lag_app_error(a, "an event stopped the run at t = %g s: exponents are means over a motion that goes on; take another start, or an earlier "
-                     "--until", t);
+    lag_app_error(a,
+                  "an event stopped the run at t = %g s: exponents are means over a motion that goes on; take another "
+                  "start, or an earlier "
+                  "--until",
+                  t);
   else return 0;
   return EXIT_RUN;
 }

@@ -6,7 +6,8 @@
 
 #include "app/app.h"
 
-/* The words of NAME=WORDS, or, as lagc writes them, NAME;WORDS;WORDS for the variants of the model; alone they are the name. */
+/* The words of NAME=WORDS, or, as lagc writes them, NAME;WORDS;WORDS for the variants of the model; alone they are
+ * the name. */
 static const char *split(const char *text, size_t *name_length) {
   size_t n = strcspn(text, ";");
   *name_length = text[n] ? n : strcspn(text, "=");
@@ -18,7 +19,8 @@ static int add(App *app, int *n, const char *name, size_t length, const char *te
   int k = 0, ofscene = app->scene->nmeasures;
   while (k < *n && (strlen(app->measure_names[k]) != length || memcmp(app->measure_names[k], name, length) != 0)) k++;
   if (k < *n && (k >= ofscene || *n < ofscene)) {
-    lag_app_error(&app->args, "--measure %.*s: another measure is called so; write NAME=EXPR with another name", (int)length, name);
+    lag_app_error(&app->args, "--measure %.*s: another measure is called so; write NAME=EXPR with another name",
+                  (int)length, name);
     return -1;
   }
   texts[k] = text;
@@ -34,7 +36,8 @@ static int collect(App *app, const char **texts) {
   const lag_scene *scene = app->scene;
   int n = 0;
   for (int k = 0; k < scene->nmeasures; k++)
-    if (add(app, &n, scene->measures[k].name, strlen(scene->measures[k].name), scene->measures[k].text, texts) < 0) return -1;
+    if (add(app, &n, scene->measures[k].name, strlen(scene->measures[k].name), scene->measures[k].text, texts) < 0)
+      return -1;
   for (int k = 0; k < app->args.nmeasures; k++) {
     size_t length;
     const char *given = app->args.measures[k], *text = split(given, &length);
@@ -51,10 +54,14 @@ int lag_app_measures_open(App *app) {
   const char **texts = app->measure_texts = calloc(most, sizeof *texts);
   app->measured = calloc(most, sizeof *app->measured);
   app->measure_names = calloc(most + 1, sizeof *app->measure_names);
-  int n = texts && app->measured && app->measure_names ? collect(app, texts) : (lag_app_error(&app->args, "out of memory"), -1);
-  if (n >= 0 && !(app->measures = lag_measures_new(app->scene, n, texts, NULL, why, sizeof why))) lag_app_error(&app->args, "--measure %s", why);
+  int n = texts && app->measured && app->measure_names ? collect(app, texts)
+                                                       : (lag_app_error(&app->args, "out of memory"), -1);
+  if (n >= 0 && !(app->measures = lag_measures_new(app->scene, n, texts, NULL, why, sizeof why)))
+    lag_app_error(&app->args, "--measure %s", why);
   if (!app->measures) return EXIT_USAGE;
-  return lag_measures_refused(app->measures, app->sim, app->until, why, sizeof why) ? lag_app_error(&app->args, "--measure lyapunov: %s", why) : 0;
+  return lag_measures_refused(app->measures, app->sim, app->until, why, sizeof why)
+             ? lag_app_error(&app->args, "--measure lyapunov: %s", why)
+             : 0;
 }
 
 void lag_app_measures_free(App *app) {
@@ -67,7 +74,9 @@ void lag_app_measures_free(App *app) {
 
 int lag_app_measures_begin(App *app) { return app->measures ? lag_measures_begin(app->measures, app->sim) : LAG_OK; }
 
-int lag_app_advance(App *app, double t) { return app->measures ? lag_measures_advance(app->measures, t) : lag_sim_advance(app->sim, t); }
+int lag_app_advance(App *app, double t) {
+  return app->measures ? lag_measures_advance(app->measures, t) : lag_sim_advance(app->sim, t);
+}
 
 int lag_app_measures_end(App *app) { return app->measures ? lag_measures_end(app->measures, app->measured) : LAG_OK; }
 
@@ -89,6 +98,7 @@ void lag_report_measures(const App *app, FILE *f) {
 void lag_report_measures_json(const App *app, Json *j) {
   if (!app->measures) return;
   lag_json_begin(j, "measures", '{');
-  for (int k = 0; k < lag_measures_count(app->measures); k++) lag_json_number(j, app->measure_names[k], app->measured[k]);
+  for (int k = 0; k < lag_measures_count(app->measures); k++)
+    lag_json_number(j, app->measure_names[k], app->measured[k]);
   lag_json_end(j, '}');
 }

@@ -37,25 +37,33 @@ static int refuse(const App *app) {
   const Args *a = &app->args;
   const char *source = app->program->source;
   if (!app->extras.algebra) {
-    return lag_app_error(a, "this simulator was built without GSL, which finds roots and eigenvalues; install GSL (libgsl-dev), make "
-                        "lagc anew, and leave out --no-gsl");
+    return lag_app_error(
+        a, "this simulator was built without GSL, which finds roots and eigenvalues; install GSL (libgsl-dev), make "
+           "lagc anew, and leave out --no-gsl");
   }
   if (m->ncontacts) {
-    return lag_app_error(a, "modes with contacts are not computed yet (%s): take a model without them", m->constraints->of[m->contacts[0].constraint].name);
+    return lag_app_error(a, "modes with contacts are not computed yet (%s): take a model without them",
+                         m->constraints->of[m->contacts[0].constraint].name);
   }
   if (!m->linear && !in_tangent_space(app)) {
-    return lag_app_error(a, "this simulator was built without the model's linearisation; write lagc modes %s, or build it with: lagc "
-                        "build %s --with linear", source, source);
+    return lag_app_error(
+        a,
+        "this simulator was built without the model's linearisation; write lagc modes %s, or build it with: lagc "
+        "build %s --with linear",
+        source, source);
   }
   if (m->nq + m->nz == 0) return lag_app_error(a, "model %s has neither coordinates nor states", m->name);
   if (m->flags & LAG_AUTONOMOUS) return 0;
   if (!(m->flags & LAG_TIMELESS)) {
-    return lag_app_error(a, "scene %s depends on time: t stands in its equations, so nothing stays at rest; take a scene without "
-                        "what drives it, or put a parameter in place of t", app->scene->name);
+    return lag_app_error(
+        a,
+        "scene %s depends on time: t stands in its equations, so nothing stays at rest; take a scene without "
+        "what drives it, or put a parameter in place of t",
+        app->scene->name);
   }
   const char *input = changing_input(app);
-  return input ? lag_app_error(a, "scene %s depends on time by its input %s, so nothing stays at rest; hold it: %s=0", app->scene->name,
-                           input, input)
+  return input ? lag_app_error(a, "scene %s depends on time by its input %s, so nothing stays at rest; hold it: %s=0",
+                               app->scene->name, input, input)
                : 0;
 }
 
@@ -65,7 +73,8 @@ static int refuse(const App *app) {
 static const char *caution_of(const App *app, const Equilibrium *r) {
   if (r->pole) return "the mass matrix is nearly singular here: a coordinate has lost its meaning";
   if (!(app->scene->model->flags & LAG_SMOOTH))
-    return "the model has if, abs, sign, min, max, atan2 or roots: where they switch at the equilibrium, the modes are those of one side";
+    return "the model has if, abs, sign, min, max, atan2 or roots: where they switch at the equilibrium, the modes are "
+           "those of one side";
   return NULL;
 }
 
@@ -80,14 +89,23 @@ static const struct {
                                            "has a minimum here, and nothing raises it (Lagrange, Dirichlet, Kelvin)"},
     [LAG_NEUTRAL] = {"neutral", NULL},
     [LAG_GYROSCOPIC] = {"undecided", NULL},
-    [LAG_DEGENERATE] = {"undecided", "a zero mode, or several together: the linearisation has no force along it, so it does not decide stability"},
-    [LAG_COORDINATE_POLE] = {"undecided", "a coordinate has lost its meaning here, as a longitude does at a pole; these are the modes of the others, "
-                                          "and coordinates without a pole here would show all"},
-    [LAG_HELD] = {"undecided", "dry friction holds what rests here against small forces, and stops small motions, so that none is linear: these are "
+    [LAG_DEGENERATE] =
+        {"undecided",
+         "a zero mode, or several together: the linearisation has no force along it, so it does not decide stability"},
+    [LAG_COORDINATE_POLE] =
+        {"undecided",
+         "a coordinate has lost its meaning here, as a longitude does at a pole; these are the modes of the others, "
+         "and coordinates without a pole here would show all"},
+    [LAG_HELD] = {"undecided", "dry friction holds what rests here against small forces, and stops small motions, so "
+                               "that none is linear: these are "
                                "the modes without it; lagc run shows where the motion stops"},
-    [LAG_NONSMOOTH] = {"undecided", "the forces' derivatives jump here, or have no limit, so that no motion is small enough to be linear"},
-    [LAG_DEFECTIVE] = {"undecided", "a multiple frequency with too few shapes: small motion grows in proportion to time, until the nonlinear "
-                                    "terms matter"},
+    [LAG_NONSMOOTH] =
+        {"undecided",
+         "the forces' derivatives jump here, or have no limit, so that no motion is small enough to be linear"},
+    [LAG_DEFECTIVE] =
+        {"undecided",
+         "a multiple frequency with too few shapes: small motion grows in proportion to time, until the nonlinear "
+         "terms matter"},
     [LAG_CENTRE] = {"undecided", "some modes neither grow nor decay, and no energy is known that is conserved"},
 };
 
@@ -96,8 +114,9 @@ static void put_reason(const Modes *s, unsigned facts, char *text, size_t n) {
   const Mode *last = &s->mode[s->n - 1], *top = s->mode; /* the one that grows fastest, or decays slowest */
   for (int i = 0; i < s->n; i++) top = s->mode[i].re > top->re ? &s->mode[i] : top;
   if (s->verdict == LAG_CENTRE && facts & LAG_CONSERVES_ENERGY) {
-    snprintf(text, n, "some modes neither grow nor decay, and the energy, which is conserved, is not known to have a minimum "
-                      "here");
+    snprintf(text, n,
+             "some modes neither grow nor decay, and the energy, which is conserved, is not known to have a minimum "
+             "here");
   } else if (s->verdict == LAG_MINIMUM && s->extremum < 0) {
     snprintf(text, n, "the energy, which is conserved, has a maximum here, and all rates follow from it (Dirichlet)");
   } else if (verdicts[s->verdict].reason) {
@@ -107,16 +126,21 @@ static void put_reason(const Modes *s, unsigned facts, char *text, size_t n) {
   } else if (s->verdict == LAG_DECAYS) {
     snprintf(text, n, "every mode decays, the slowest by a factor of e in %.6g s", -1 / top->re);
   } else if (s->verdict == LAG_NEUTRAL && s->steady) {
-    snprintf(text, n, "zero modes lead to other steady motions%s", last->re == 0.0 && last->im == 0.0 ? "; there are no other modes" : "; all other modes decay, "
-             "so the motion comes back to one of them beside it");
+    snprintf(text, n, "zero modes lead to other steady motions%s",
+             last->re == 0.0 && last->im == 0.0 ? "; there are no other modes"
+                                                : "; all other modes decay, "
+                                                  "so the motion comes back to one of them beside it");
   } else if (s->verdict == LAG_NEUTRAL) {
     snprintf(text, n, "no force along the zero modes%s%s", s->drifts ? ", so a push causes an endless drift" : "",
              last->re == 0.0 && last->im == 0.0 ? "; there are no others"
              : s->lowering == 0 && s->pairs     ? "; the energy has a minimum in all other directions"
                                                 : "; all other modes decay");
   } else {
-    snprintf(text, n, "all modes oscillate, but the energy falls in %d direction%s: forces at right angles to the motion alone hold it, and "
-                      "damping in all directions would make it unstable (Thomson, Tait, Chetaev)", s->lowering, s->lowering == 1 ? "" : "s");
+    snprintf(text, n,
+             "all modes oscillate, but the energy falls in %d direction%s: forces at right angles to the motion alone "
+             "hold it, and "
+             "damping in all directions would make it unstable (Thomson, Tait, Chetaev)",
+             s->lowering, s->lowering == 1 ? "" : "s");
   }
 }
 
@@ -180,7 +204,8 @@ static void put_vector(Line *l, Vector v) {
     char value[64], word[300];
     if ((!v.all && hypot(part(v.re, &v, i), part(v.im, &v, i)) <= 1e-9 * most) || k++ % every) continue;
     value_text(part(v.re, &v, i), part(v.im, &v, i), most, value, sizeof value);
-    snprintf(word, sizeof word, "%s %s%s%s%s", var->name, value, unit[0] ? " " : "", unit, k + every <= shown ? "," : "");
+    snprintf(word, sizeof word, "%s %s%s%s%s", var->name, value, unit[0] ? " " : "", unit,
+             k + every <= shown ? "," : "");
     put_word(l, word);
   }
   if (every > 1) l->column += fprintf(l->f, " (every %d)", every);
@@ -195,7 +220,9 @@ typedef struct Rates {
   const double *of; /* [n] of variable(m, i) */
 } Rates;
 
-static Rates steady_rates(const lag_model *m, const Equilibrium *r) { return m->nq ? (Rates){m->nq, r->y + m->nq} : (Rates){m->nz, r->rate}; }
+static Rates steady_rates(const lag_model *m, const Equilibrium *r) {
+  return m->nq ? (Rates){m->nq, r->y + m->nq} : (Rates){m->nz, r->rate};
+}
 
 /* "  moving with x' 5 m/s, ...": the rates of a steady motion. */
 static void put_velocities(FILE *f, const lag_model *m, Rates rates) {
@@ -207,7 +234,8 @@ static void put_velocities(FILE *f, const lag_model *m, Rates rates) {
     char word[300];
     const lag_var *x = variable(m, i);
     const char *unit = strcmp(x->unit, "1") == 0 ? "" : x->unit;
-    snprintf(word, sizeof word, "%s' %.6g%s%s%s%s", x->name, v[i] / x->factor, unit[0] ? " " : "", unit[0] ? unit : "", unit[0] ? "/s" : " /s", i < last ? "," : "");
+    snprintf(word, sizeof word, "%s' %.6g%s%s%s%s", x->name, v[i] / x->factor, unit[0] ? " " : "", unit[0] ? unit : "",
+             unit[0] ? "/s" : " /s", i < last ? "," : "");
     if (v[i] != 0.0) put_word(&line, word);
   }
   putc('\n', f);
@@ -222,7 +250,8 @@ static void put_equilibrium(FILE *f, const App *app, const Equilibrium *r, const
   fprintf(f, "%s: scene %s\n%s: ", m->name, app->scene->name, s->steady ? "steady motion" : "equilibrium");
   const lag_var *v = variable(m, far);
   if (moved(r, far) > 1e-12)
-    fprintf(f, "from the start %s moved by %.6g%s%s", v->name, (r->found[far] - r->start[far]) / v->factor, v->unit[0] ? " " : "", v->unit);
+    fprintf(f, "from the start %s moved by %.6g%s%s", v->name, (r->found[far] - r->start[far]) / v->factor,
+            v->unit[0] ? " " : "", v->unit);
   else fputs("the start itself", f);
   fprintf(f, "%s\n ", moving && !s->steady ? ", at rest (with the velocities of the start: --steady)" : "");
   put_vector(&line, (Vector){.m = m, .re = r->found, .state = 1, .all = 1});
@@ -253,7 +282,11 @@ static void put_mode(FILE *f, const lag_model *model, const Mode *m, int k, int 
   put_vector(&line, (Vector){model, m->shape_re, m->shape_im, 0, model->nq + model->nz <= ALL_SHOWN});
   if (zero || m->repeats > 1) {
     char text[60];
-    snprintf(text, sizeof text, m->repeats > 1 ? "(%d equal, too few shapes)" : m->free ? "(free)" : "(zero mode)", m->repeats);
+    snprintf(text, sizeof text,
+             m->repeats > 1 ? "(%d equal, too few shapes)"
+             : m->free      ? "(free)"
+                            : "(zero mode)",
+             m->repeats);
     put_word(&line, text);
   }
   putc('\n', f);
@@ -281,7 +314,9 @@ static void put_modes(FILE *f, const App *app, const Modes *s) {
   int damped = 0;
   for (int i = 0; i < s->n; i++) damped |= s->mode[i].re != 0;
   put_reason(s, app->scene->model->flags, text, sizeof text);
-  Line line = {f, fprintf(f, "%s%s:", verdicts[s->verdict].name, s->verdict >= LAG_GYROSCOPIC ? " by the linearisation" : ""), 2};
+  Line line = {
+      f, fprintf(f, "%s%s:", verdicts[s->verdict].name, s->verdict >= LAG_GYROSCOPIC ? " by the linearisation" : ""),
+      2};
   for (char *word = strtok(text, " "); word; word = strtok(NULL, " ")) put_word(&line, word);
   fprintf(f, "\n\nmode  %-*s  %-*s  %-*s", NUMBER, "rad/s", NUMBER, "Hz", NUMBER, "period [s]");
   if (damped) fprintf(f, "  %-*s  %-18s", NUMBER, "damping", "time to e [s]");
@@ -375,11 +410,17 @@ static void json_none(const App *app) {
 static int none_near(const App *app) {
   json_none(app);
   if (!app->args.steady)
-    lag_app_error(&app->args, "no equilibrium found near the start of scene %s: start near one: name=VALUE; for a motion that runs steadily, as a wheel that rolls, write --steady",
+    lag_app_error(&app->args,
+                  "no equilibrium found near the start of scene %s: start near one: name=VALUE; for a motion that runs "
+                  "steadily, as a wheel that rolls, write --steady",
                   app->scene->name);
   else
-    lag_app_error(&app->args, "no steady motion found near the start of scene %s: one along whose path nothing changes but coordinates that run at constant rates%s; start near one: name=VALUE",
-                  app->scene->name, app->scene->model->nq ? ", or turn together" : " (a circle in x and y is found in polar coordinates)");
+    lag_app_error(&app->args,
+                  "no steady motion found near the start of scene %s: one along whose path nothing changes but "
+                  "coordinates that run at constant rates%s; start near one: name=VALUE",
+                  app->scene->name,
+                  app->scene->model->nq ? ", or turn together"
+                                        : " (a circle in x and y is found in polar coordinates)");
   return EXIT_RUN;
 }
 
@@ -397,10 +438,10 @@ static int not_found(const App *app, const Equilibrium *r) {
   const lag_model *m = app->scene->model;
   if (runs_steadily(app)) {
     json_none(app);
-    lag_app_error(
-        &app->args,
-        "no equilibrium found from the start of scene %s, but a motion that runs steadily, along which only cyclic coordinates change: write --steady",
-        app->scene->name);
+    lag_app_error(&app->args,
+                  "no equilibrium found from the start of scene %s, but a motion that runs steadily, along which only "
+                  "cyclic coordinates change: write --steady",
+                  app->scene->name);
     return EXIT_RUN;
   }
   int i = r->worst, nq = m->nq, at = nq + i;
@@ -409,15 +450,20 @@ static int not_found(const App *app, const Equilibrium *r) {
   if (v->unit[0]) snprintf(unit, sizeof unit, " %s/s%s", v->unit, i < nq ? "^2" : "");
   json_none(app);
   if (r->away)
-    lag_app_error(&app->args, "no equilibrium found from the start of scene %s: forces only vanish at infinity. Where the model has one, start near it: %s=VALUE",
+    lag_app_error(&app->args,
+                  "no equilibrium found from the start of scene %s: forces only vanish at infinity. Where the model "
+                  "has one, start near it: %s=VALUE",
                   app->scene->name, v->name);
   else
-    lag_app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s. A force "
-                              "that vanishes nowhere has none: add a force that balances it, such as a spring; where it vanishes, start near "
-                              "there: %s=VALUE",
-                  r->steps, app->scene->name, v->name, (r->y[i < nq ? i : at] - v->offset) / v->factor, v->unit[0] ? " " : "", v->unit, v->name,
-                  i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
-                  r->pole ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
+    lag_app_error(
+        &app->args,
+        "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s. A "
+        "force "
+        "that vanishes nowhere has none: add a force that balances it, such as a spring; where it vanishes, start near "
+        "there: %s=VALUE",
+        r->steps, app->scene->name, v->name, (r->y[i < nq ? i : at] - v->offset) / v->factor, v->unit[0] ? " " : "",
+        v->unit, v->name, i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
+        r->pole ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
   return EXIT_RUN;
 }
 
@@ -427,16 +473,24 @@ static int analysis_failed(const App *app, int rc, const char *where) {
   const char *form = app->scene->model->flags & LAG_FIRST_ORDER ? "two-form of L" : "mass matrix";
   if (rc == LAG_ENOMEM) return lag_app_error(a, "out of memory");
   if (rc == LAG_ESINGULAR && app->scene->model->constraints)
-    lag_app_error(a, "the constraints are dependent, or nearly, %s and independent beside it, as bars in one line are, so small motion has no one tangent "
-                     "space; another start: name=VALUE", where);
-  else if (rc == LAG_ESINGULAR) lag_app_error(a, "the %s is singular %s: choose other coordinates there, or another start: name=VALUE", form, where);
-  else lag_app_error(a, "%s %s; another start: name=VALUE", rc == LAG_EMETHOD ? "the eigenvalues do not converge" : "the model has no values", where);
+    lag_app_error(a,
+                  "the constraints are dependent, or nearly, %s and independent beside it, as bars in one line are, so "
+                  "small motion has no one tangent "
+                  "space; another start: name=VALUE",
+                  where);
+  else if (rc == LAG_ESINGULAR)
+    lag_app_error(a, "the %s is singular %s: choose other coordinates there, or another start: name=VALUE", form,
+                  where);
+  else
+    lag_app_error(a, "%s %s; another start: name=VALUE",
+                  rc == LAG_EMETHOD ? "the eigenvalues do not converge" : "the model has no values", where);
   return EXIT_RUN;
 }
 
 static int analyse(const App *app, Equilibrium *r, SteadyMotion *steady, Modes *s) {
   int tangent = in_tangent_space(app), moving = app->args.steady;
-  int rc = tangent ? lag_steady_find(steady, r, app->sim, app->extras.algebra, moving) : lag_equilibrium_find(r, app->sim, app->extras.algebra);
+  int rc = tangent ? lag_steady_find(steady, r, app->sim, app->extras.algebra, moving)
+                   : lag_equilibrium_find(r, app->sim, app->extras.algebra);
   if (rc == 0) return tangent ? none_near(app) : not_found(app, r);
   if (rc < 0) return analysis_failed(app, rc, "at the start");
   rc = tangent ? lag_steady_modes(s, steady, r) : lag_modes_find(s, r, app->extras.algebra);
@@ -451,7 +505,8 @@ int lag_app_modes(App *app) {
   SteadyMotion steady = {0};
   Modes modes = {0};
   int rc = lag_app_set_up_start(app);
-  if (rc == 0 && lag_sim_advance(app->sim, app->scene->t0)) rc = lag_app_error(&app->args, "%s", lag_sim_message(app->sim));
+  if (rc == 0 && lag_sim_advance(app->sim, app->scene->t0))
+    rc = lag_app_error(&app->args, "%s", lag_sim_message(app->sim));
   rc = rc ? rc : refuse(app);
   rc = rc ? rc : analyse(app, &rest, &steady, &modes);
   lag_modes_free(&modes);

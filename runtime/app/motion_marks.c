@@ -1,5 +1,6 @@
-/* Marks of an animation. Enters: a run under way, its events. Leaves: the times at which contacts, constraints with a condition and surfaces of friction begin to act, stick, slip
- * and let go, and those of impacts and events. Holds: nothing is noted unless an animation is written; noting does not change the run. */
+/* Marks of an animation. Enters: a run under way, its events. Leaves: the times at which contacts, constraints with
+ * a condition and surfaces of friction begin to act, stick, slip and let go, and those of impacts and events. Holds:
+ * nothing is noted unless an animation is written; noting does not change the run. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -43,7 +44,8 @@ static int add(Marks *marks, double t, int track, int word) {
 
 static int has_impulses(const lag_sim *s) { return s->pb.contacts && s->pb.contacts->length > 0; }
 
-/* Contacts that are met by impulses act where the last step pressed them, and stick where friction was below its limit. */
+/* Contacts that are met by impulses act where the last step pressed them, and stick where friction was below its
+ * limit. */
 static int contact_word(const lag_sim *s, int i, const double *law) {
   const lag_model *m = s->scene->model;
   const lag_contact *c = &m->contacts[i];
@@ -69,7 +71,9 @@ int lag_marks_note(App *app) {
   for (int i = 0; app->marked && i < m->ncontacts + m->nmodes && rc == 0; i++) {
     int word = i < m->ncontacts ? contact_word(s, i, law) : surface_word(s, i - m->ncontacts), was = app->marked[i];
     if (word != was && add(&app->show.marks, t, i, word)) return LAG_ENOMEM;
-    if (struck && i < m->ncontacts && word != was && was == MARK_NONE && add(&app->show.marks, t, m->ncontacts + m->nmodes + m->contacts[i].impact, MARK_EVENT)) return LAG_ENOMEM;
+    if (struck && i < m->ncontacts && word != was && was == MARK_NONE &&
+        add(&app->show.marks, t, m->ncontacts + m->nmodes + m->contacts[i].impact, MARK_EVENT))
+      return LAG_ENOMEM;
     app->marked[i] = word;
   }
   return rc;

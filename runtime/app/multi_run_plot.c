@@ -1,7 +1,9 @@
-/* Several scenes, methods or values in one picture. Enters: the command line; leaves: the picture, a line a run, an exit status. Holds: a method that refuses the
- * model is left out, and said; a run that fails is drawn up to its end, with a warning; exit status 3 where all fail.
+/* Several scenes, methods or values in one picture. Enters: the command line; leaves: the picture, a line a run, an
+ * exit status. Holds: a method that refuses the model is left out, and said; a run that fails is drawn up to its
+ * end, with a warning; exit status 3 where all fail.
  *
- * All runs become one table: the rows of a run stand below those of the run before, in columns of their own, NaN in the columns of others. */
+ * All runs become one table: the rows of a run stand below those of the run before, in columns of their own, NaN in
+ * the columns of others. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,21 +19,24 @@ typedef struct OverlaidRun {
   char **sets;  /* of the command line, and its value of --vs; NULL: has none */
   char label[96];
   int *curve;
-  double first, most, rate, level, until; /* of --distance: the first and the largest distance from the first run; its growth up to a time, log10 of the distance = level + rate
-                                           * t/log(10); NaN: none */
+  /* of --distance: the first and the largest distance from the first run; its growth up to a time, log10 of the
+   * distance = level + rate t/log(10); NaN: none */
+  double first, most, rate, level, until;
 } OverlaidRun;
 
 typedef struct Overlay {
   App *app; /* the command line; its table and curves are those of the picture */
   OverlaidRun *runs;
   int n;
-  const char **values; /* [nvalues] name=value of each run of one scene and method; NULL: none, as of the first before those of --vs */
+  /* [nvalues] name=value of each run of one scene and method; NULL: none, as of the first before those of --vs */
+  const char **values;
   int nvalues;
   char *starts; /* texts of --starts */
   int scaled;   /* of --distance: 1: the outputs have several units */
 } Overlay;
 
-/* The given name=value of the name that the first --vs varies, or NULL: `angle=15 --vs angle=30` compares two values. */
+/* The given name=value of the name that the first --vs varies, or NULL: `angle=15 --vs angle=30` compares two
+ * values. */
 static const char *varied_value(const Args *a) {
   for (int i = 0; i < a->nsets && a->nvs; i++) {
     size_t n = strcspn(a->sets[i], "=") + 1;
@@ -45,17 +50,23 @@ static void set_label(OverlaidRun *r, const Args *a, const char *value) {
   const char *parts[] = {a->nscenes > 1 ? r->app.args.scene : NULL, r->method, value ? value : varied_value(a)};
   size_t n = 0;
   for (int i = 0; i < 3; i++)
-    if (parts[i] && n < sizeof r->label) n += (size_t)snprintf(r->label + n, sizeof r->label - n, "%s%s", n ? ", " : "", parts[i]);
+    if (parts[i] && n < sizeof r->label)
+      n += (size_t)snprintf(r->label + n, sizeof r->label - n, "%s%s", n ? ", " : "", parts[i]);
 }
 
-/* Runs o->runs[o->n], and counts it unless the method refuses the model. method[length], value: NULL for none. 0, or EXIT_USAGE after a message. */
+/* Runs o->runs[o->n], and counts it unless the method refuses the model. method[length], value: NULL for none. 0, or
+ * EXIT_USAGE after a message. */
 static int add_run(Overlay *o, const char *scene, const char *method, size_t length, const char *value) {
   const App *whole = o->app;
   OverlaidRun *r = &o->runs[o->n++];
   App *app = &r->app;
-  *r = (OverlaidRun){.app = {.program = whole->program, .extras = whole->extras, .args = whole->args, .last_row = NAN, .overlaid = 1, .compared = method && whole->args.method[lag_app_method_length(whole->args.method)] == ','}};
+  *r = (OverlaidRun){
+      .app = {.program = whole->program,
+              .extras = whole->extras, .args = whole->args, .last_row = NAN, .overlaid = 1,
+              .compared = method && whole->args.method[lag_app_method_length(whole->args.method)] == ','}};
   app->args.scene = scene;
-  if ((method && !(app->args.method = r->method = calloc(length + 1, 1))) || (value && !(r->sets = calloc((size_t)whole->args.nsets + 1, sizeof *r->sets))))
+  if ((method && !(app->args.method = r->method = calloc(length + 1, 1))) ||
+      (value && !(r->sets = calloc((size_t)whole->args.nsets + 1, sizeof *r->sets))))
     return lag_app_error(&whole->args, "out of memory");
   if (method) memcpy(r->method, method, length);
   if (value) {
@@ -76,15 +87,19 @@ static void free_run(OverlaidRun *r) {
   free(r->curve);
 }
 
-/* Judges the last run, which returned rc: one that was refused is left out, one that failed stays, with a warning. 0, or EXIT_USAGE after a message. */
+/* Judges the last run, which returned rc: one that was refused is left out, one that failed stays, with a warning.
+ * 0, or EXIT_USAGE after a message. */
 static int judge_run(Overlay *o, int rc) {
   const Args *a = &o->app->args;
   OverlaidRun *r = &o->runs[o->n - 1];
   char note[300];
   int status = rc ? LAG_OK : r->app.status, refused = r->app.refused || status == LAG_EMETHOD;
-  if (status == LAG_EINVAL || status == LAG_ENOMEM || status == LAG_EIO) return lag_app_error(a, "%s", status == LAG_ENOMEM ? "out of memory" : lag_sim_message(r->app.sim));
+  if (status == LAG_EINVAL || status == LAG_ENOMEM || status == LAG_EIO)
+    return lag_app_error(a, "%s", status == LAG_ENOMEM ? "out of memory" : lag_sim_message(r->app.sim));
   if (rc == 0) lag_sampling_warn(&r->app, note, sizeof note);
-  if (!refused && status < 0) lag_app_error(a, "warning: %s: %s; the picture shows the run up to its end%s", r->label, lag_sim_message(r->app.sim), lag_app_way_on(&r->app));
+  if (!refused && status < 0)
+    lag_app_error(a, "warning: %s: %s; the picture shows the run up to its end%s", r->label,
+                  lag_sim_message(r->app.sim), lag_app_way_on(&r->app));
   if (!refused) return rc;
   if (rc == 0) lag_app_error(a, "%s", lag_sim_message(r->app.sim));
   lag_app_error(a, "note: %s is left out of the picture", r->label);
@@ -100,9 +115,12 @@ static int read_starts(Overlay *o) {
   SweepPlan plan = {0};
   char why[300];
   int rc = 0;
-  if (!lag_plan_is_range(a->starts)) return lag_app_error(a, "--starts %s: write a range, for example --starts q=0..3:20", a->starts);
+  if (!lag_plan_is_range(a->starts))
+    return lag_app_error(a, "--starts %s: write a range, for example --starts q=0..3:20", a->starts);
   if (lag_plan_add(&plan, a->starts, why, sizeof why)) rc = lag_app_error(a, "--starts: %s", why);
-  else if (plan.factor[0].n == 0) rc = lag_app_error(a, "--starts %s: the number of runs is missing; write for example --starts q=0..3:20", a->starts);
+  else if (plan.factor[0].n == 0)
+    rc =
+        lag_app_error(a, "--starts %s: the number of runs is missing; write for example --starts q=0..3:20", a->starts);
   else if (lag_plan_finish(&plan, 0, why, sizeof why)) rc = lag_app_error(a, "--starts: %s", why);
   else if (plan.runs > MOST) rc = lag_app_error(a, "--starts %s: %d runs in one picture at most", a->starts, MOST);
   o->nvalues = rc ? 0 : (int)plan.runs;
@@ -145,7 +163,8 @@ static int count_methods(const Overlay *o) {
 
 static int run_all(Overlay *o) {
   const Args *a = &o->app->args;
-  int scenes = a->nscenes ? a->nscenes : 1, methods = count_methods(o), rc = methods ? read_values(o) : EXIT_USAGE, interrupted = 0;
+  int scenes = a->nscenes ? a->nscenes : 1, methods = count_methods(o), rc = methods ? read_values(o) : EXIT_USAGE,
+      interrupted = 0;
   if (rc) return rc;
   o->runs = calloc((size_t)(scenes * methods * o->nvalues), sizeof *o->runs);
   if (!o->runs) return lag_app_error(a, "out of memory");
@@ -165,31 +184,42 @@ static int run_all(Overlay *o) {
 
 /* ---- The table of all */
 
-static int same_column(const Column *a, const Column *b, int units) { return strcmp(a->name, b->name) == 0 && (!units || strcmp(a->unit, b->unit) == 0); }
+static int same_column(const Column *a, const Column *b, int units) {
+  return strcmp(a->name, b->name) == 0 && (!units || strcmp(a->unit, b->unit) == 0);
+}
 
 /* The curve of `of` whose columns have the names, and with units the units, of curve k of `first`; -1: none. */
 static int same_curve(const App *first, int k, const App *of, int units) {
   const Column *a = first->table.cols, *b = of->table.cols;
   for (int i = 0; i < of->drawn.n; i++)
-    if (same_column(&a[first->drawn.x[k]], &b[of->drawn.x[i]], units) && same_column(&a[first->drawn.y[k]], &b[of->drawn.y[i]], units)) return i;
+    if (same_column(&a[first->drawn.x[k]], &b[of->drawn.x[i]], units) &&
+        same_column(&a[first->drawn.y[k]], &b[of->drawn.y[i]], units))
+      return i;
   return -1;
 }
 
 /* Notes curve k of `has`, which the other run lacks, or has in another unit. */
 static void note_lacking(const Overlay *o, const OverlaidRun *has, int k, const OverlaidRun *lacks) {
   const App *app = &has->app;
-  const Column *x = &app->table.cols[app->drawn.x[k]], *y = &app->table.cols[app->drawn.y[k]], *other = lacks->app.table.cols;
+  const Column *x = &app->table.cols[app->drawn.x[k]], *y = &app->table.cols[app->drawn.y[k]],
+               *other = lacks->app.table.cols;
   int i = same_curve(app, k, &lacks->app, 0);
   if (o->app->args.quiet) return;
-  if (i < 0) lag_app_error(&o->app->args, "note: %s is no output of %s: the picture shows outputs of all scenes", y->name, lacks->label);
+  if (i < 0)
+    lag_app_error(&o->app->args, "note: %s is no output of %s: the picture shows outputs of all scenes", y->name,
+                  lacks->label);
   else {
     int of_x = same_column(y, &other[lacks->app.drawn.y[i]], 1);
     const Column *c = of_x ? x : y, *d = &other[of_x ? lacks->app.drawn.x[i] : lacks->app.drawn.y[i]];
-    lag_app_error(&o->app->args, "note: %s is in [%s] in %s and in [%s] in %s: one curve beside the other would mean nothing, and it is left out", c->name, c->unit, has->label, d->unit, lacks->label);
+    lag_app_error(&o->app->args,
+                  "note: %s is in [%s] in %s and in [%s] in %s: one curve beside the other would mean nothing, and it "
+                  "is left out",
+                  c->name, c->unit, has->label, d->unit, lacks->label);
   }
 }
 
-/* Finds each curve of the first run in the others; curve[k] of the first := -1 where one lacks it. *common: the number of others. 0, or EXIT_USAGE after a message. */
+/* Finds each curve of the first run in the others; curve[k] of the first := -1 where one lacks it. *common: the
+ * number of others. 0, or EXIT_USAGE after a message. */
 static int match_curves(Overlay *o, int *common) {
   OverlaidRun *first = o->runs;
   *common = first->app.drawn.n;
@@ -270,7 +300,9 @@ static int join(Overlay *o) {
 
 /* ---- The distance of runs from the first */
 
-static double value_of(const OverlaidRun *r, int k, size_t at) { return lag_table_cell(&r->app.table, at, r->app.drawn.y[r->curve[k]]); }
+static double value_of(const OverlaidRun *r, int k, size_t at) {
+  return lag_table_cell(&r->app.table, at, r->app.drawn.y[r->curve[k]]);
+}
 
 /* Whether curve k of the first run is common; its unit. */
 static const char *unit_of(const Overlay *o, int k) {
@@ -278,7 +310,8 @@ static const char *unit_of(const Overlay *o, int k) {
   return o->runs[0].curve[k] < 0 ? NULL : first->table.cols[first->drawn.y[k]].unit;
 }
 
-/* scale[k] := what differences of curve k are divided by: 1 where all have one unit, which is returned; else the largest value of this unit in the first run. */
+/* scale[k] := what differences of curve k are divided by: 1 where all have one unit, which is returned; else the
+ * largest value of this unit in the first run. */
 static const char *find_scales(Overlay *o, double *scale) {
   const OverlaidRun *first = &o->runs[0];
   const char *one = NULL;
@@ -290,7 +323,8 @@ static const char *find_scales(Overlay *o, double *scale) {
     units += !one || strcmp(unit, one) != 0;
     one = unit;
     for (int j = 0; j < n; j++)
-      for (size_t at = 0; unit_of(o, j) && strcmp(unit_of(o, j), unit) == 0 && at < first->app.table.nrows; at++) scale[k] = fmax(scale[k], fabs(value_of(first, j, at)));
+      for (size_t at = 0; unit_of(o, j) && strcmp(unit_of(o, j), unit) == 0 && at < first->app.table.nrows; at++)
+        scale[k] = fmax(scale[k], fabs(value_of(first, j, at)));
   }
   for (int k = 0; k < n && units == 1; k++) scale[k] = 1;
   o->scaled = units > 1;
@@ -310,7 +344,8 @@ static double distance_at(const Overlay *o, const OverlaidRun *r, size_t at, con
   return sqrt(sum);
 }
 
-/* The growth of a distance, a straight line of its logarithm: from its first row to the one where it reaches a tenth of its largest. t, log10 of it: [n]. */
+/* The growth of a distance, a straight line of its logarithm: from its first row to the one where it reaches a tenth
+ * of its largest. t, log10 of it: [n]. */
 static void fit_growth(OverlaidRun *r, int n, const double *t, const double *log_distance) {
   int end = 0;
   r->first = r->most = r->rate = r->level = r->until = NAN;
@@ -355,10 +390,13 @@ static int add_distances(Overlay *o, const double *scale, double *room) {
       for (int c = 1; c < t->ncols; c++) o->app->row[c] = NAN;
       o->app->row[0] = room[k];
       o->app->row[i] = room[rows + (size_t)k];
-      if (room[k] <= o->runs[i].until) o->app->row[o->n - 1 + i] = o->runs[i].level + o->runs[i].rate / log(10) * room[k];
+      if (room[k] <= o->runs[i].until)
+        o->app->row[o->n - 1 + i] = o->runs[i].level + o->runs[i].rate / log(10) * room[k];
       if (lag_table_add(t, o->app->row)) return lag_app_error(&o->app->args, "out of memory");
     }
-    if (n == 0) lag_app_error(&o->app->args, "note: %s has no row at a time of the first run that differs from it", o->runs[i].label);
+    if (n == 0)
+      lag_app_error(&o->app->args, "note: %s has no row at a time of the first run that differs from it",
+                    o->runs[i].label);
   }
   return 0;
 }
@@ -370,7 +408,8 @@ static int join_distances(Overlay *o) {
   if (o->n < 2) return lag_app_error(&app->args, "no other run is left to compare with %s", o->runs[0].label);
   size_t cols = 2 * (size_t)o->n - 1; /* the time, distances and their lines */
   app->table = (Table){.ncols = (int)cols, .cols = calloc(cols, sizeof *app->table.cols), .keep = 1};
-  app->drawn = (PlottedCurves){.n = o->n - 1, .x = calloc(2 * cols, sizeof *app->drawn.x), .ylog = 1, .xname = "t", .yname = "distance"};
+  app->drawn = (PlottedCurves){
+      .n = o->n - 1, .x = calloc(2 * cols, sizeof *app->drawn.x), .ylog = 1, .xname = "t", .yname = "distance"};
   app->row = calloc(cols, sizeof *app->row);
   double *room = calloc((size_t)n + 2 * o->runs[0].app.table.nrows + 1, sizeof *room);
   if (!app->table.cols || !app->drawn.x || !app->row || !room) rc = lag_app_error(&app->args, "out of memory");
@@ -396,7 +435,9 @@ static int join_distances(Overlay *o) {
 static void report_distance(const Overlay *o, const OverlaidRun *r) {
   const char *unit = o->app->table.cols[1].unit, *space = unit[0] ? " " : "";
   if (isnan(r->first)) printf("  no distance from the first");
-  else printf("  distance from the first: %.3g%s%s at first, %.3g%s%s at most%s", r->first, space, unit, r->most, space, unit, o->scaled ? ", each output over the largest value of its unit" : "");
+  else
+    printf("  distance from the first: %.3g%s%s at first, %.3g%s%s at most%s", r->first, space, unit, r->most, space,
+           unit, o->scaled ? ", each output over the largest value of its unit" : "");
   if (isfinite(r->rate)) printf("; grows as exp(%.3g t/s) up to t = %.3g s", r->rate, r->until);
   putchar('\n');
 }
@@ -409,9 +450,12 @@ static void report_energy(const Overlay *o, int i) {
   double most = NAN;
   lag_sim_charge(o->runs[i].app.sim, 0, &energy);
   for (size_t at = 0; col && at < whole->table.nrows; at++) most = fmax(most, lag_table_cell(&whole->table, at, col));
-  if (col) printf(", %s up to %.3g%s%s%s", whole->drawn.yname, isnan(most) ? 0 : pow(10, most), whole->table.cols[col].unit[0] ? " " : "", whole->table.cols[col].unit,
-                  energy.flags & (LAG_CONSERVED | LAG_BALANCED) ? "" : ", where the work of forces is not known");
-  else if (isfinite(energy.drift)) printf(i ? ", energy %s %.3g" : ", energy %s %.3g (%s)", lag_charge_word(&energy), energy.drift, lag_energy_scale);
+  if (col)
+    printf(", %s up to %.3g%s%s%s", whole->drawn.yname, isnan(most) ? 0 : pow(10, most),
+           whole->table.cols[col].unit[0] ? " " : "", whole->table.cols[col].unit,
+           energy.flags & (LAG_CONSERVED | LAG_BALANCED) ? "" : ", where the work of forces is not known");
+  else if (isfinite(energy.drift))
+    printf(i ? ", energy %s %.3g" : ", energy %s %.3g (%s)", lag_charge_word(&energy), energy.drift, lag_energy_scale);
 }
 
 static void report(const Overlay *o) {
@@ -427,7 +471,8 @@ static void report(const Overlay *o) {
     lag_stats st;
     lag_sim_stats(app->sim, &st);
     lag_report_method(app, method, sizeof method);
-    printf("%-*s  %s t = %.6g s, %lld steps", (int)widest, o->runs[i].label, app->status < 0 ? "FAILED at" : "reached", st.t, st.steps);
+    printf("%-*s  %s t = %.6g s, %lld steps", (int)widest, o->runs[i].label, app->status < 0 ? "FAILED at" : "reached",
+           st.t, st.steps);
     report_energy(o, i);
     printf(o->runs[i].method ? "\n" : ", by %s\n", method);
     if (i && o->app->args.distance) report_distance(o, &o->runs[i]);
@@ -443,7 +488,8 @@ int lag_app_overlay(App *app) {
   rc = rc ? rc : a->distance ? join_distances(&o) : join(&o);
   if (rc == 0) {
     const App *first = &o.runs[0].app;
-    snprintf(title, sizeof title, "%s%s%s", first->scene->model->name, a->nscenes > 1 ? "" : ": ", a->nscenes > 1 ? "" : first->scene->name);
+    snprintf(title, sizeof title, "%s%s%s", first->scene->model->name, a->nscenes > 1 ? "" : ": ",
+             a->nscenes > 1 ? "" : first->scene->name);
     lag_table_scale_time(&app->table);
     if (a->energy_error) lag_energy_errors(app, first->sim);
     rc = lag_app_draw_table(app, title);

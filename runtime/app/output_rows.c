@@ -46,5 +46,6 @@ int lag_app_put_row(App *app) {
   rc = rc ? rc : lag_tangent_columns_row(app);
   if (rc) return rc;
   note_empty(app, t);
-  return lag_app_write_row(app, app->args.every || !app->sampling.on); /* otherwise picture_sampling.c chooses the rows of pictures */
+  /* otherwise picture_sampling.c chooses the rows of pictures */
+  return lag_app_write_row(app, app->args.every || !app->sampling.on);
 }

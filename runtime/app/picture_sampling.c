@@ -1,9 +1,11 @@
-/* Adaptive sampling of a run for pictures. Enters: a run under way; leaves: in its table, as many rows as the motion needs, whatever the steps of
- * the method: the samples of a step are doubled until straight lines follow it, and a "swinging door" (E. H. Bristol, Swinging door trending, ISA
- * Transactions 1990) keeps rows such that the lines between them miss no row by more than a given part of the drawn range. Of a method of equal steps
- * a picture has the ends of steps, joined by straight lines: that is what the method computes, and an interpolation has errors of its own, of the energy a thousand times
- * the method's. An animation moves between them, too. Holds: both sides of a jump are kept, and the first and the last row; sampling does not change the run (except for
- * STEPS_TO methods, whose steps end at the times asked for). */
+/* Adaptive sampling of a run for pictures. Enters: a run under way; leaves: in its table, as many rows as the motion
+ * needs, whatever the steps of the method: the samples of a step are doubled until straight lines follow it, and a
+ * "swinging door" (E. H. Bristol, Swinging door trending, ISA Transactions 1990) keeps rows such that the lines
+ * between them miss no row by more than a given part of the drawn range. Of a method of equal steps a picture has
+ * the ends of steps, joined by straight lines: that is what the method computes, and an interpolation has errors of
+ * its own, of the energy a thousand times the method's. An animation moves between them, too. Holds: both sides of a
+ * jump are kept, and the first and the last row; sampling does not change the run (except for STEPS_TO methods,
+ * whose steps end at the times asked for). */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -40,10 +42,12 @@ static void extend_range(PictureSampling *w, const double *row) {
     widest = fmax(widest, d->most - d->least);
   }
   for (DrawnColumn *d = w->drawn; d < w->drawn + w->ndrawn; d++)
-    d->width = fmax(w->part * (w->common ? widest : fmax(0, d->most - d->least)), ROUNDING * fmax(fabs(d->least), fabs(d->most)));
+    d->width = fmax(w->part * (w->common ? widest : fmax(0, d->most - d->least)),
+                    ROUNDING * fmax(fabs(d->least), fabs(d->most)));
 }
 
-/* Whether the row `between` lies on the line from a to b, within the allowed deviation. A row without values is never off the line. */
+/* Whether the row `between` lies on the line from a to b, within the allowed deviation. A row without values is
+ * never off the line. */
 static int is_straight(const PictureSampling *w, const double *a, const double *b, const double *between) {
   double f = (between[0] - a[0]) / (b[0] - a[0]);
   for (const DrawnColumn *d = w->drawn; d < w->drawn + w->ndrawn; d++)
@@ -61,8 +65,8 @@ static int keep(App *app, const double *row) {
   return w->store ? lag_table_add(&app->table, row) : 0;
 }
 
-/* Returns 1 if no line from the last kept row passes near all rows since, this one included. Else returns 0 and narrows the door, the slopes
- * low to high of such lines. */
+/* Returns 1 if no line from the last kept row passes near all rows since, this one included. Else returns 0 and
+ * narrows the door, the slopes low to high of such lines. */
 static int door_closes(PictureSampling *w, const double *row) {
   double dt = fabs(row[0] - w->from[0]);
   int shut = w->have_last && dt > w->longest;
@@ -94,14 +98,16 @@ static int thin(App *app, const double *row) {
   }
   if (door_closes(w, row)) {
     int rc = flush(app);
-    if (rc || door_closes(w, row)) return rc ? rc : keep(app, row); /* still shut: a change between finite and not finite */
+    /* still shut: a change between finite and not finite */
+    if (rc || door_closes(w, row)) return rc ? rc : keep(app, row);
   }
   memcpy(w->last, row, bytes);
   w->have_last = 1;
   return 0;
 }
 
-/* Keeps the last row, and thins the kept rows: doubles `part` until at most `most` rows are left or part is 1/2. -1: no memory. */
+/* Keeps the last row, and thins the kept rows: doubles `part` until at most `most` rows are left or part is 1/2. -1:
+ * no memory. */
 static int reduce(App *app, size_t most) {
   PictureSampling *w = &app->sampling;
   Table *t = &app->table;
@@ -145,10 +151,13 @@ int lag_sampling_open(App *app) {
   PictureSampling *f = &app->sampling;
   double span = fabs(app->until - lag_sim_time(app->sim));
   size_t ncols = (size_t)app->table.ncols;
-  if (!app->table.keep || app->section >= 0 || app->args.tangent || lag_app_equal_times(&app->args)) { /* a tangent is known at rows only */
+  /* a tangent is known at rows only */
+  if (!app->table.keep || app->section >= 0 || app->args.tangent || lag_app_equal_times(&app->args)) {
     return 0;
   }
-  *f = (PictureSampling){.on = 1, .places = 16, .soonest = span / (1 << 20), .store = !app->args.every, .part = PART, .longest = span / 400};
+  *f = (PictureSampling){.on = 1,
+                         .places = 16, .soonest = span / (1 << 20), .store = !app->args.every, .part = PART,
+                         .longest = span / 400};
   f->ends = lag_equal_step(app->sim) > 0 && !app->args.html;
   f->y = malloc((size_t)app->sim->pb.n * sizeof *f->y);
   f->seen = malloc((MOST_PLACES + 1) * ncols * sizeof *f->seen);
@@ -198,12 +207,14 @@ static int sample_step(App *app, double a, double b) {
     for (int k = 1; k < n; k += 2) sample(app, MOST_PLACES / n * k, a + k * (b - a) / n);
   }
   f->places = n;
-  for (int k = 0; k <= n && rc == 0; k++) rc = thin(app, f->seen + (size_t)(MOST_PLACES / n * k) * (size_t)app->table.ncols);
+  for (int k = 0; k <= n && rc == 0; k++)
+    rc = thin(app, f->seen + (size_t)(MOST_PLACES / n * k) * (size_t)app->table.ncols);
   return rc ? LAG_ENOMEM : LAG_OK;
 }
 
-/* Adds the ends of the present step that a and b are; stopped: the run ends at a. b may be an event within the step: its row is added if the event changes the state,
- * and so begins a new step. A run of less than a step is a line, too. */
+/* Adds the ends of the present step that a and b are; stopped: the run ends at a. b may be an event within the step:
+ * its row is added if the event changes the state, and so begins a new step. A run of less than a step is a line,
+ * too. */
 static int sample_ends(App *app, double a, double b, int stopped) {
   PictureSampling *f = &app->sampling;
   const Run *r = app->sim->run;
@@ -226,7 +237,8 @@ static int sample_ends(App *app, double a, double b, int stopped) {
 static double sampling_stop(const App *app, double t, double until) {
   const PictureSampling *f = &app->sampling;
   double most = f->length > 0 ? f->length : fabs(app->until - t) / 1000;
-  return lag_sim_method(app->sim)->flags & LAG_METHOD_STEPS_TO && fabs(until - t) > most ? t + copysign(most, until - t) : until;
+  return lag_sim_method(app->sim)->flags & LAG_METHOD_STEPS_TO && fabs(until - t) > most ? t + copysign(most, until - t)
+                                                                                         : until;
 }
 
 int lag_sampling_advance(App *app, double until) {
@@ -239,7 +251,9 @@ int lag_sampling_advance(App *app, double until) {
     if (rc < 0 || (lag_marks_note(app) && (rc = LAG_ENOMEM))) return rc;
     if (rc || reach == until || f->kept == 0 || fabs(reach - f->seen_to) >= f->soonest) {
       int bad = f->ends ? sample_ends(app, t, reach, rc == LAG_STOPPED) : sample_step(app, t, reach);
-      if (bad == 0 && f->store && app->table.nrows * (size_t)app->table.ncols > MOST_VALUES && reduce(app, MOST_VALUES / 2 / (size_t)app->table.ncols)) bad = LAG_ENOMEM;
+      if (bad == 0 && f->store && app->table.nrows * (size_t)app->table.ncols > MOST_VALUES &&
+          reduce(app, MOST_VALUES / 2 / (size_t)app->table.ncols))
+        bad = LAG_ENOMEM;
       rc = bad ? bad : rc;
       f->length = fabs(reach - t) * 4 / f->places;
       f->seen_to = reach;
@@ -266,10 +280,15 @@ void lag_sampling_warn(App *app, char *note, size_t size) {
   if (!f->on || !app->table.nrows) return;
   if (!f->store && f->kept > FINER * app->table.nrows) {
     double span = fabs(lag_table_cell(&app->table, app->table.nrows - 1, 0) - lag_table_cell(&app->table, 0, 0));
-    snprintf(note, size, "rows every %s s are too coarse for this motion, and straight lines join them: leave --every out, or write --every %g",
-             app->args.every, fmax(lag_equal_step(app->sim), lag_tick_step(0, span / (double)f->kept / 1.6, 1))); /* a round number that resolves the motion */
+    snprintf(note, size,
+             "rows every %s s are too coarse for this motion, and straight lines join them: leave --every out, or "
+             "write --every %g",
+             /* a round number that resolves the motion */
+             app->args.every, fmax(lag_equal_step(app->sim), lag_tick_step(0, span / (double)f->kept / 1.6, 1)));
   } else if (f->part > 32 * PART) {
-    snprintf(note, size, "the run is too long to be shown finely: lines are off by up to %.2g %% of the picture; an earlier --until shows it better",
+    snprintf(note, size,
+             "the run is too long to be shown finely: lines are off by up to %.2g %% of the picture; an earlier "
+             "--until shows it better",
              100 * f->part);
   }
   if (note[0] && !app->args.quiet) fprintf(stderr, "%s: note: %s\n", app->args.self, note);

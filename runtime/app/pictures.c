@@ -10,7 +10,9 @@ int lag_app_check_parts(const App *app) {
   for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
     if (!paths[i]) continue;
     if (!app->extras.png && lag_outfile_has_suffix(paths[i], "png"))
-      return lag_app_error(&app->args, "%s: this program writes pictures as SVG; `lagc plot`, `run`, `cost` and `sweep` also as PNG", paths[i]);
+      return lag_app_error(
+          &app->args, "%s: this program writes pictures as SVG; `lagc plot`, `run`, `cost` and `sweep` also as PNG",
+          paths[i]);
     if (!app->extras.hdf5 && lag_outfile_has_suffix(paths[i], "h5"))
       return lag_app_error(&app->args, "%s: this program writes CSV and NumPy; `lagc sweep` also HDF5", paths[i]);
   }

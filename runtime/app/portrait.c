@@ -1,5 +1,6 @@
-/* Energy beneath motions: phase portraits, the level curves of the energy over coordinate and velocity (--portrait), and the potential beneath the
- * energy of the motion (--potential), for models with one coordinate, or with two of first order, as a coordinate and its momentum. */
+/* Energy beneath motions: phase portraits, the level curves of the energy over coordinate and velocity (--portrait),
+ * and the potential beneath the energy of the motion (--potential), for models with one coordinate, or with two of
+ * first order, as a coordinate and its momentum. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,8 +8,8 @@
 #include "app/app.h"
 #include "core/core.h"
 
-/* The energy at the beginning of the scene's span, in the unit of its column, where the state is that of the start but for its first two components,
- * given in the units of the drawn columns. */
+/* The energy at the beginning of the scene's span, in the unit of its column, where the state is that of the start
+ * but for its first two components, given in the units of the drawn columns. */
 static double energy_at(void *app, double x, double y) {
   const App *a = app;
   lag_sim *s = a->sim;
@@ -16,7 +17,9 @@ static double energy_at(void *app, double x, double y) {
   double e[2], *at = a->portrait;
   at[0] = x * a->portrait_unit[0];
   at[1] = y * a->portrait_unit[1];
-  if (lag_inputs_at(&s->pb, s->scene->t0, at) || m->energy(s->scene->t0, at, at + m->nq, at + 2 * m->nq, s->p, s->u, e, s->work)) return NAN;
+  if (lag_inputs_at(&s->pb, s->scene->t0, at) ||
+      m->energy(s->scene->t0, at, at + m->nq, at + 2 * m->nq, s->p, s->u, e, s->work))
+    return NAN;
   return e[0] / a->portrait_unit[2];
 }
 
@@ -24,7 +27,9 @@ static const char *refusal(const App *app) {
   const lag_model *m = app->scene->model;
   if (!m->energy) return "the model has no energy";
   if (m->constraints) return "the model has constraints";
-  return m->nq == 1 || (m->nq == 0 && m->nz == 2) ? NULL : "it needs a model with one coordinate, or with two of first order; --x and --y draw any expressions";
+  return m->nq == 1 || (m->nq == 0 && m->nz == 2)
+             ? NULL
+             : "it needs a model with one coordinate, or with two of first order; --x and --y draw any expressions";
 }
 
 /* Whether the drawn columns are those that the picture is about. */
@@ -45,7 +50,8 @@ int lag_portrait_open(App *app) {
   const PlottedCurves *d = &app->drawn;
   if (!a->portrait && !a->potential) return 0;
   const char *why = refusal(app);
-  if (!why && !has_axes(app, d->x[0], d->y[0])) why = "it is over the coordinate and its rate or momentum, or the energy; `lagc plot` chooses these";
+  if (!why && !has_axes(app, d->x[0], d->y[0]))
+    why = "it is over the coordinate and its rate or momentum, or the energy; `lagc plot` chooses these";
   if (why) return lag_app_error(a, "--%s: %s", a->portrait ? "portrait" : "potential", why);
   app->portrait = calloc((size_t)app->sim->pb.n + 1, sizeof *app->portrait);
   if (!app->portrait) return lag_app_error(a, "out of memory");
@@ -54,6 +60,9 @@ int lag_portrait_open(App *app) {
   app->portrait_unit[0] = unit_of(app, d->x[0]);
   app->portrait_unit[a->potential ? 2 : 1] = unit_of(app, d->y[0]);
   const lag_var *x = app->scene->model->nq ? app->scene->model->q : app->scene->model->z;
-  app->drawn.beneath = (Beneath){.value = energy_at, .of = app, .period = x->periodic ? 2 * acos(-1) / app->portrait_unit[0] : 0, .profile = a->potential};
+  app->drawn.beneath = (Beneath){.value = energy_at,
+                                 .of = app,
+                                 .period = x->periodic ? 2 * acos(-1) / app->portrait_unit[0] : 0,
+                                 .profile = a->potential};
   return 0;
 }

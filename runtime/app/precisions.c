@@ -1,6 +1,7 @@
-/* How far the digits of each precision carry, and what they cost, for `lagc cost`. Enters: times of other precisions' most accurate runs, with the
- * reference; leaves: horizons. Holds: errors grow along a motion by the same factor in every precision, so that the growth of errors of this program
- * tells where those of others, smaller or larger by the ratio of their last digits, leave no digit. */
+/* How far the digits of each precision carry, and what they cost, for `lagc cost`. Enters: times of other
+ * precisions' most accurate runs, with the reference; leaves: horizons. Holds: errors grow along a motion by the
+ * same factor in every precision, so that the growth of errors of this program tells where those of others, smaller
+ * or larger by the ratio of their last digits, leave no digit. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -27,7 +28,8 @@ static int note_step(void *course, const lag_sim *sim) {
 
 /* Horizon of each precision, from errors in this one. */
 static void find_horizons(Cost *c, ErrorEstimate *e, double own, double dir) {
-  for (int i = 0; i < c->nprecisions; i++) c->precision[i].horizon = e->t0 + dir * lag_error_reach(e, c->precision[i].epsilon / own);
+  for (int i = 0; i < c->nprecisions; i++)
+    c->precision[i].horizon = e->t0 + dir * lag_error_reach(e, c->precision[i].epsilon / own);
 }
 
 int lag_cost_precisions(App *app, Cost *c, double seconds) {
@@ -79,7 +81,10 @@ void lag_cost_put_precisions(FILE *f, const Cost *c) {
     snprintf(to, sizeof to, is_seen(c, p) ? "%.3g s" : "more than %.3g s", is_seen(c, p) ? p->horizon : c->seen);
     fprintf(f, "  %-12s %22s %20.4g ms\n", p->name, to, 1e3 * whole(c, p));
   }
-  fprintf(f, "digits last until rounding errors, as they grow along this motion, have reached the size of the motion; seen to t = %.3g s\n", c->seen);
+  fprintf(f,
+          "digits last until rounding errors, as they grow along this motion, have reached the size of the motion; "
+          "seen to t = %.3g s\n",
+          c->seen);
 }
 
 void lag_cost_put_precisions_json(Json *j, const Cost *c) {

@@ -1,6 +1,7 @@
-/* --cost --realtime H: which method of equal steps suits a program that must make a step of H in time. Enters: a reference; leaves: for each method the
- * error with step H, the largest step that stays with the motion, and the time a step takes, at worst. Holds: the time of each step is the least of
- * five runs of it, so that what the system does in between counts only if it meets the same step five times. */
+/* --cost --realtime H: which method of equal steps suits a program that must make a step of H in time. Enters: a
+ * reference; leaves: for each method the error with step H, the largest step that stays with the motion, and the
+ * time a step takes, at worst. Holds: the time of each step is the least of five runs of it, so that what the system
+ * does in between counts only if it meets the same step five times. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,8 @@ typedef struct FixedStep {
   double largest;       /* step [s]; 0: none was found */
   double mean, worst;   /* processor time of a step [s] */
   char why[160];
-  int refused;          /* 1: `lagc run` would refuse this run (why): a monitor of the scene, or an energy that is lost */
+  /* 1: `lagc run` would refuse this run (why): a monitor of the scene, or an energy that is lost */
+  int refused;
 } FixedStep;
 
 /* Processor time of each step. */
@@ -153,13 +155,14 @@ static void rank(FixedStep *all, int n, double target) {
   qsort(all, meet, sizeof *all, by_time);
 }
 
-/* The first whose worst step is made in half of its time: with a target, of those that meet it; else one that takes at most half as long wins if its
- * error is at most twice as large. */
+/* The first whose worst step is made in half of its time: with a target, of those that meet it; else one that takes
+ * at most half as long wins if its error is at most twice as large. */
 static const FixedStep *choose(const FixedStep *all, int n, double step, double target) {
   const FixedStep *best = NULL;
   for (int i = 0; i < n; i++) {
     const FixedStep *x = &all[i];
-    if (isnan(x->error) || x->error >= (target > 0 ? fmin(target, lost) : lost) || x->refused || x->worst > 0.5 * step) continue;
+    if (isnan(x->error) || x->error >= (target > 0 ? fmin(target, lost) : lost) || x->refused || x->worst > 0.5 * step)
+      continue;
     if (!best || (!(target > 0) && x->error <= 2 * best->error && x->mean <= 0.5 * best->mean)) best = x;
   }
   return best;
@@ -168,26 +171,39 @@ static const FixedStep *choose(const FixedStep *all, int n, double step, double 
 static void put_text(const App *app, const Cost *c, const FixedStep *all, int n, double step) {
   const FixedStep *best = choose(all, n, step, c->target);
   char setting[128];
-  printf("model %s, scene %s, steps of %g s to t = %.15g s\n", app->scene->model->name, app->scene->name, step, c->reference.t[c->reference.rows - 1]);
+  printf("model %s, scene %s, steps of %g s to t = %.15g s\n", app->scene->model->name, app->scene->name, step,
+         c->reference.t[c->reference.rows - 1]);
   if (best) {
-    snprintf(setting, sizeof setting, "%.*s%sstep=%g)", (int)strcspn(best->name, ")"), best->name, strchr(best->name, '(') ? ", " : "(", step);
-    printf("%s: %s, error %.1e, %.2g us a step, at worst %.2g us; its steps may be as long as %.2g s\n", c->target > 0 ? "fastest" : "best", best->name, best->error,
-           1e6 * best->mean, 1e6 * best->worst, best->largest);
+    snprintf(setting, sizeof setting, "%.*s%sstep=%g)", (int)strcspn(best->name, ")"), best->name,
+             strchr(best->name, '(') ? ", " : "(", step);
+    printf("%s: %s, error %.1e, %.2g us a step, at worst %.2g us; its steps may be as long as %.2g s\n",
+           c->target > 0 ? "fastest" : "best", best->name, best->error, 1e6 * best->mean, 1e6 * best->worst,
+           best->largest);
     lag_cost_put_command(stdout, app, c);
     printf(" --method \"%s\"\n", setting);
   } else {
-    if (c->target > 0) printf("no method of equal steps has an error of %g or less with steps of %g s, in half of that time; take shorter steps\n", c->target, step);
-    else printf("no method of equal steps follows the motion with steps of %g s, in half of that time; take shorter steps\n", step);
+    if (c->target > 0)
+      printf("no method of equal steps has an error of %g or less with steps of %g s, in half of that time; take "
+             "shorter steps\n",
+             c->target, step);
+    else
+      printf(
+          "no method of equal steps follows the motion with steps of %g s, in half of that time; take shorter steps\n",
+          step);
   }
   printf("in an emitted header (lagc header): ..._rk4_step(&parameters, &state, %g), which is rk4 below\n\n", step);
   printf("  %-24s %10s %14s %14s %18s\n", "", "error", "a step [us]", "at worst [us]", "largest step [s]");
   for (int i = 0; i < n; i++) {
     const FixedStep *x = &all[i];
     if (isnan(x->error)) printf("  %-24s %10s %14s %14s %18.2g  %s\n", x->name, "-", "-", "-", x->largest, x->why);
-    else printf("%c %-24s %10.1e %14.3g %14.3g %18.2g%s%s\n", x == best ? '*' : ' ', x->name, x->error, 1e6 * x->mean, 1e6 * x->worst, x->largest, x->why[0] ? "  " : "", x->why);
+    else
+      printf("%c %-24s %10.1e %14.3g %14.3g %18.2g%s%s\n", x == best ? '*' : ' ', x->name, x->error, 1e6 * x->mean,
+             1e6 * x->worst, x->largest, x->why[0] ? "  " : "", x->why);
   }
-  printf("error: the largest difference from the reference at 16 times, relative to the largest value of its kind and unit. largest step: with an error\n"
-         "below %g to the end of this run, found in factors of sqrt(2); longer ones are unstable or miss the motion\n", lost);
+  printf("error: the largest difference from the reference at 16 times, relative to the largest value of its kind and "
+         "unit. largest step: with an error\n"
+         "below %g to the end of this run, found in factors of sqrt(2); longer ones are unstable or miss the motion\n",
+         lost);
 }
 
 static void put_json(const App *app, const Cost *c, const FixedStep *all, int n, double step) {
@@ -224,11 +240,14 @@ int lag_app_realtime(App *app, const Cost *c) {
   const lag_method *m;
   int n = 0, rc = 0;
   if (!lag_args_number(a, "--realtime", a->realtime, "--realtime 1e-3", &step)) rc = EXIT_USAGE;
-  else if (!(step > 0)) rc = lag_app_error(a, "--realtime %s: the time of a step [s], for example --realtime 1e-3", a->realtime);
-  else if (!all || !least || lag_samples_init(&own, c->reference.rows, c->reference.n)) rc = lag_app_error(a, "out of memory");
+  else if (!(step > 0))
+    rc = lag_app_error(a, "--realtime %s: the time of a step [s], for example --realtime 1e-3", a->realtime);
+  else if (!all || !least || lag_samples_init(&own, c->reference.rows, c->reference.n))
+    rc = lag_app_error(a, "out of memory");
   for (int i = 0; rc == 0 && (m = lag_app_method_at(app, i)) != NULL; i++) {
     if (strcmp(m->name, "variational") == 0 || strcmp(m->name, "gauss") == 0)
-      for (int k = 1; k <= 2; k++) n = add_method(app, all, n, m, m->name[0] == 'g' ? "stages" : "order", m->name[0] == 'g' ? k : 2 * k);
+      for (int k = 1; k <= 2; k++)
+        n = add_method(app, all, n, m, m->name[0] == 'g' ? "stages" : "order", m->name[0] == 'g' ? k : 2 * k);
     else n = add_method(app, all, n, m, NULL, 0);
   }
   own.output = c->reference.output;

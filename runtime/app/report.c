@@ -12,7 +12,8 @@ void lag_report_method(const App *app, char *s, size_t n) {
   const lag_method *m = lag_sim_method(app->sim);
   const double *opt = lag_sim_options(app->sim);
   size_t used = (size_t)snprintf(s, n, "%s(", m->name);
-  if (m->flags & LAG_METHOD_ADAPTIVE) used += (size_t)snprintf(s + used, n - used, "tol=%g", lag_sim_tolerance(app->sim));
+  if (m->flags & LAG_METHOD_ADAPTIVE)
+    used += (size_t)snprintf(s + used, n - used, "tol=%g", lag_sim_tolerance(app->sim));
   for (int i = 0; i < m->noptions && used < n; i++) {
     if (opt[i] == m->options[i].value) continue;
     const char *comma = s[used - 1] == '(' ? "" : ", ";
@@ -25,14 +26,17 @@ void lag_report_method(const App *app, char *s, size_t n) {
 
 /* ---- Energy and other charges: drift or balance of each, and whether it grows */
 
-const char *lag_charge_word(const lag_charge_stats *c) { return c->flags & LAG_CONSERVED ? "drift" : c->flags & LAG_BALANCED ? "balance" : "change"; }
+const char *lag_charge_word(const lag_charge_stats *c) {
+  return c->flags & LAG_CONSERVED ? "drift" : c->flags & LAG_BALANCED ? "balance" : "change";
+}
 
 static void put_trend(const App *app, const lag_charge_stats *c, FILE *f) {
   const lag_method *m = lag_sim_method(app->sim);
   int bounded = (m->flags & LAG_METHOD_SYMPLECTIC) && (c->flags & LAG_CONSERVED);
   if (c->trend == LAG_TREND_GROWS) fprintf(f, ", grows by %.2g a second", fabs(c->slope));
   if (c->trend == LAG_TREND_OSCILLATES) fputs(", oscillates", f);
-  if (c->trend == LAG_TREND_OSCILLATES && bounded) fprintf(f, " (as step^%d)", m->order_of ? m->order_of(lag_sim_options(app->sim)) : m->order);
+  if (c->trend == LAG_TREND_OSCILLATES && bounded)
+    fprintf(f, " (as step^%d)", m->order_of ? m->order_of(lag_sim_options(app->sim)) : m->order);
   if (c->trend == LAG_TREND_ROUNDING) fputs(", rounding", f);
 }
 
@@ -66,16 +70,22 @@ static void put_charge(const App *app, const lag_charge_stats *c, FILE *f) {
 /* Whether the energy error exceeds the tolerance by far because the mass matrix was almost singular. */
 static int lost_digits(const App *app, const lag_charge_stats *energy) {
   const double singular = 1e6, digits = 100;
-  return (lag_sim_method(app->sim)->flags & LAG_METHOD_ADAPTIVE) && energy->energy_jump > digits * lag_sim_tolerance(app->sim) && energy->mass_condition > singular;
+  return (lag_sim_method(app->sim)->flags & LAG_METHOD_ADAPTIVE) &&
+         energy->energy_jump > digits * lag_sim_tolerance(app->sim) && energy->mass_condition > singular;
 }
 
 /* Warns that the tolerance was missed because the mass matrix was almost singular on the way. */
 static void put_lost_digits(const App *app, const lag_charge_stats *c, FILE *f) {
   if (lost_digits(app, c)) {
-    fprintf(f, "accuracy: a tolerance of %.3g was asked for, and the energy is kept to %.2g: near t = %.9g s, where a step changed the energy by %.2g, the mass matrix is "
-               "almost singular (its condition is %s%.2g, by the inertia of %s) and accelerations have about %.0f digits less; a `rotation` instead of angles, or other "
-               "coordinates, has no such place (lagc help rotations)\n",
-            lag_sim_tolerance(app->sim), c->drift, c->energy_jump_t, c->energy_jump, c->mass_condition > 1e15 ? "above " : "", fmin(c->mass_condition, 1e15), c->mass_condition_of, floor(log10(fmin(c->mass_condition, 1e15))));
+    fprintf(f,
+            "accuracy: a tolerance of %.3g was asked for, and the energy is kept to %.2g: near t = %.9g s, where a "
+            "step changed the energy by %.2g, the mass matrix is "
+            "almost singular (its condition is %s%.2g, by the inertia of %s) and accelerations have about %.0f digits "
+            "less; a `rotation` instead of angles, or other "
+            "coordinates, has no such place (lagc help rotations)\n",
+            lag_sim_tolerance(app->sim), c->drift, c->energy_jump_t, c->energy_jump,
+            c->mass_condition > 1e15 ? "above " : "", fmin(c->mass_condition, 1e15), c->mass_condition_of,
+            floor(log10(fmin(c->mass_condition, 1e15))));
   }
 }
 
@@ -130,15 +140,20 @@ static void charges(const App *app, FILE *f) {
     else put_energy(app, &c, f);
     put_trend(app, &c, f);
     putc('\n', f);
-    if (k == 0 && isfinite(c.dry_friction)) fprintf(f, "work of dry friction: %.6g%s%s\n", c.dry_friction, c.unit[0] ? " " : "", c.unit);
-    if (c.at_events != 0.0) fprintf(f, "%s and events: %.6g%s%s of energy\n", has_kicks(app) ? "kicks" : "impacts", c.at_events, c.unit[0] ? " " : "", c.unit);
+    if (k == 0 && isfinite(c.dry_friction))
+      fprintf(f, "work of dry friction: %.6g%s%s\n", c.dry_friction, c.unit[0] ? " " : "", c.unit);
+    if (c.at_events != 0.0)
+      fprintf(f, "%s and events: %.6g%s%s of energy\n", has_kicks(app) ? "kicks" : "impacts", c.at_events,
+              c.unit[0] ? " " : "", c.unit);
     if (k == 0) put_lost_digits(app, &c, f);
   }
 }
 
 static void charges_json(const App *app, Json *j) {
-  static const char *const trends[] = {
-      [LAG_TREND_UNKNOWN] = NULL, [LAG_TREND_ROUNDING] = "rounding", [LAG_TREND_OSCILLATES] = "oscillates", [LAG_TREND_GROWS] = "grows"};
+  static const char *const trends[] = {[LAG_TREND_UNKNOWN] = NULL,
+                                       [LAG_TREND_ROUNDING] = "rounding",
+                                       [LAG_TREND_OSCILLATES] = "oscillates",
+                                       [LAG_TREND_GROWS] = "grows"};
   const lag_scene *s = app->scene;
   lag_json_begin(j, "charges", '{');
   for (int k = 0; k < lag_sim_ncharges(app->sim); k++) {
@@ -204,18 +219,20 @@ static void constraints(const App *app, const lag_stats *st, FILE *f) {
     Column c = lag_state_column(app->sim, i);
     double asked = lag_sim_requested_start(app->sim, i), begin = lag_sim_actual_start(app->sim, i);
     if (asked != begin && moved++ < MOST_LINES) {
-      fprintf(f, "%s %s from %.15g to %.15g%s%s (by %.3g)\n", moved == 1 ? "start moved to the constraints:" : "  and", c.name, asked, begin,
-              c.unit[0] ? " " : "", c.unit, begin - asked);
+      fprintf(f, "%s %s from %.15g to %.15g%s%s (by %.3g)\n", moved == 1 ? "start moved to the constraints:" : "  and",
+              c.name, asked, begin, c.unit[0] ? " " : "", c.unit, begin - asked);
     }
   }
   if (moved > MOST_LINES) fprintf(f, "  (and %d more)\n", moved - MOST_LINES);
   if (!of) return;
-  if (of->n > m->ncontacts) fprintf(f, "constraints: %d, %d independent at the start", of->n - m->ncontacts, lag_sim_rank(app->sim));
+  if (of->n > m->ncontacts)
+    fprintf(f, "constraints: %d, %d independent at the start", of->n - m->ncontacts, lag_sim_rank(app->sim));
   for (int k = 0; k < of->n; k++)
-    if (is_redundant(app, k) && redundant++ < MOST_LINES) fprintf(f, "%s%s", redundant == 1 ? "; redundant: " : ", ", of->of[k].name);
+    if (is_redundant(app, k) && redundant++ < MOST_LINES)
+      fprintf(f, "%s%s", redundant == 1 ? "; redundant: " : ", ", of->of[k].name);
   if (lag_sim_nearby_rank(app->sim) > lag_sim_rank(app->sim)) singular(app, f);
-  fprintf(f, "%s%sconstraint residual: %.3g, of rates %.3g (the largest, in SI)\n", redundant > MOST_LINES ? ", ..." : "", of->n > m->ncontacts ? "\n" : "",
-          st->constraint, st->constraint_rate);
+  fprintf(f, "%s%sconstraint residual: %.3g, of rates %.3g (the largest, in SI)\n",
+          redundant > MOST_LINES ? ", ..." : "", of->n > m->ncontacts ? "\n" : "", st->constraint, st->constraint_rate);
 }
 
 /* Notes: steps too long for the fastest oscillation; a symplectic method on a model for which it is not symplectic. */
@@ -242,14 +259,20 @@ static void caveat(const App *app, const lag_stats *st, FILE *f) {
     putc('\n', f);
   }
   if (isfinite(st->unresolved)) {
-    fprintf(f, "note: steps are longer than half a period, about %.2g s, of the fastest oscillation: its motion is wrong, even if the energy is kept; take "
-               "--step %.0e or less, or radau, which damps the oscillation, or dop853, which resolves it\n", st->unresolved, st->unresolved / 20);
+    fprintf(f,
+            "note: steps are longer than half a period, about %.2g s, of the fastest oscillation: its motion is wrong, "
+            "even if the energy is kept; take "
+            "--step %.0e or less, or radau, which damps the oscillation, or dop853, which resolves it\n",
+            st->unresolved, st->unresolved / 20);
   }
   if (!(m->flags & LAG_METHOD_SYMPLECTIC)) return;
   if (app->scene->model->nq == 0 && !(has & LAG_FIRST_ORDER)) {
-    fprintf(f, "note: %s is symplectic for Lagrangians; here it is symmetric, and keeps quadratic invariants\n", m->name);
+    fprintf(f, "note: %s is symplectic for Lagrangians; here it is symmetric, and keeps quadratic invariants\n",
+            m->name);
   } else if ((has & LAG_FIRST_ORDER) && (has & LAG_CONSERVES_ENERGY) && !(has & LAG_CONSTANT_FORM)) {
-    fprintf(f, "note: %s is symplectic where the two-form of L is constant; here it varies, and the method is symmetric\n", m->name);
+    fprintf(f,
+            "note: %s is symplectic where the two-form of L is constant; here it varies, and the method is symmetric\n",
+            m->name);
   } else if (!(has & LAG_CONSERVES_ENERGY)) {
     fprintf(f, "note: %s is symplectic for conservative models; the energy of this one is not proved to be conserved "
                "(lagc check)\n", m->name);
@@ -260,8 +283,10 @@ static void caveat(const App *app, const lag_stats *st, FILE *f) {
 static void impulses(const App *app, FILE *f) {
   lag_contact_stats c;
   if (!lag_sim_contacts(app->sim, &c)) return;
-  fprintf(f, "contacts: at most %g act at once, %g impact%s, %.3g iterations a step with contacts; the deepest is %.3g inside (in SI)", c.touching, c.impacts, c.impacts == 1 ? "" : "s",
-          c.steps > 0 ? c.sweeps / c.steps : 0, c.depth);
+  fprintf(f,
+          "contacts: at most %g act at once, %g impact%s, %.3g iterations a step with contacts; the deepest is %.3g "
+          "inside (in SI)",
+          c.touching, c.impacts, c.impacts == 1 ? "" : "s", c.steps > 0 ? c.sweeps / c.steps : 0, c.depth);
   if (c.gained > 0) fprintf(f, "; they bring in %.3g J", c.gained);
   putc('\n', f);
 }
@@ -295,12 +320,14 @@ static void newton(const App *app, const lag_stats *st, FILE *f) {
   const char *why, *word = form(app, &why);
   if (word) fprintf(f, "%s steps, %s\n", word, why);
   if (st->systems > 0) {
-    fprintf(f, "Newton's method: %.3g corrections a system, %.3g systems a step\n", (double)st->iterations / (double)st->systems,
-            (double)st->systems / (double)(st->steps ? st->steps : 1));
+    fprintf(f, "Newton's method: %.3g corrections a system, %.3g systems a step\n",
+            (double)st->iterations / (double)st->systems, (double)st->systems / (double)(st->steps ? st->steps : 1));
   }
 }
 
-const char *lag_app_way_on(const App *app) { return app->status == LAG_EMONITOR ? "; with --no-monitors the run goes on past it" : ""; }
+const char *lag_app_way_on(const App *app) {
+  return app->status == LAG_EMONITOR ? "; with --no-monitors the run goes on past it" : "";
+}
 
 static void verdict(const App *app, FILE *f) {
   double t = lag_sim_time(app->sim);
@@ -320,7 +347,9 @@ static void exact(const App *app, FILE *f) {
     lag_sim_exact(app->sim, k, &largest, &now);
     const char *unit = strcmp(v.unit, "degC") == 0 ? "K" : v.unit; /* a difference */
     if (isnan(largest)) {
-      fprintf(f, "exact %s: the closed form has no finite value at some states of the run, so the deviation is not known\n", v.name);
+      fprintf(
+          f, "exact %s: the closed form has no finite value at some states of the run, so the deviation is not known\n",
+          v.name);
     } else {
       fprintf(f, "exact %s: largest deviation %.3g%s%s, final %.3g\n", v.name, largest, unit[0] ? " " : "", unit, now);
     }
@@ -386,7 +415,8 @@ void lag_report_text(App *app, FILE *f) {
   verdict(app, f);
   final_state(app, f);
   lag_report_measures(app, f);
-  fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
+  fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls,
+          app->wall);
   newton(app, &st, f);
   impulses(app, f);
   lag_report_error(app, f);
@@ -394,17 +424,19 @@ void lag_report_text(App *app, FILE *f) {
   constraints(app, &st, f);
   caveat(app, &st, f);
   for (int i = 0; i < c->nmonitors; i++)
-    fprintf(f, "monitor %s: drift %.3g, limit %.3g\n", c->monitors[i].name, lag_sim_monitor_drift(app->sim, i), c->monitors[i].limit);
+    fprintf(f, "monitor %s: drift %.3g, limit %.3g\n", c->monitors[i].name, lag_sim_monitor_drift(app->sim, i),
+            c->monitors[i].limit);
   exact(app, f);
   if (app->empty_rows) {
-    fprintf(f, "note: the output %s has no finite value at t = %.9g s; the same in %lld of %lld rows\n", app->table.cols[app->empty_column].name, app->empty_t,
-            app->empty_rows, app->rows_put);
+    fprintf(f, "note: the output %s has no finite value at t = %.9g s; the same in %lld of %lld rows\n",
+            app->table.cols[app->empty_column].name, app->empty_t, app->empty_rows, app->rows_put);
   }
   lag_report_events(app, f);
   switches(app, f);
   lag_report_tangent(app, f);
   lag_report_volume(app, f);
-  if (app->written && app->args.out) fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
+  if (app->written && app->args.out)
+    fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
   if (app->args.svg) fprintf(f, "picture in %s\n", app->args.svg);
   if (app->args.html) fprintf(f, "animation in %s\n", app->args.html);
 }
@@ -413,7 +445,8 @@ void lag_report_text(App *app, FILE *f) {
 static void final_outputs(App *app, Json *j) {
   if (app->scene->nout == 0 || lag_sim_outputs(app->sim, app->row + 1)) return;
   for (int i = 1; i <= lag_sim_noutputs(app->sim); i++)
-    if (lag_component_index(app->scene->model, app->table.cols[i].name) < 0) lag_json_number(j, app->table.cols[i].name, app->row[i]);
+    if (lag_component_index(app->scene->model, app->table.cols[i].name) < 0)
+      lag_json_number(j, app->table.cols[i].name, app->row[i]);
 }
 
 static void constraints_json(const App *app, Json *j) {

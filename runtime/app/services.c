@@ -1,4 +1,5 @@
-/* Services of all analyses: messages, signals, the clock with its progress line, outputs that would overwrite something. */
+/* Services of all analyses: messages, signals, the clock with its progress line, outputs that would overwrite
+ * something. */
 #include <errno.h>
 #include <stdarg.h>
 #include <string.h>
@@ -69,14 +70,20 @@ static const char *plain(const char *path) {
 
 int lag_app_check_outputs(const App *app) {
   const Args *a = &app->args;
-  const char *const to[] = {a->out, a->svg, a->html, a->save, a->events, a->motions}, *const keep[] = {app->program->source, "/proc/self/exe", a->resume, a->rows};
+  const char *const to[] = {a->out, a->svg, a->html, a->save, a->events, a->motions}, *const keep[] = {
+                                                                                          app->program->source,
+                                                                                          "/proc/self/exe", a->resume,
+                                                                                          a->rows};
   enum { N = sizeof to / sizeof *to, KEPT = sizeof keep / sizeof *keep };
 
   for (int i = 0; i < N; i++) {
     for (int k = 0; to[i] && k < KEPT; k++)
       if (keep[k] && same_file(to[i], keep[k]) && !(to[i] == a->save && keep[k] == a->resume)) {
         return lag_app_error(a, "%s would be overwritten: it is %s; write to another file", to[i],
-                         k == 0 ? "the model" : k == 1 ? "this program" : k == 2 ? "the state to go on from" : "the file of --rows");
+                             k == 0   ? "the model"
+                             : k == 1 ? "this program"
+                             : k == 2 ? "the state to go on from"
+                                      : "the file of --rows");
       }
     for (int k = 0; to[i] && k < i; k++)
       if (to[k] && (strcmp(plain(to[i]), plain(to[k])) == 0 ? !lag_is_null_device(to[i]) : same_file(to[i], to[k])))
@@ -85,7 +92,9 @@ int lag_app_check_outputs(const App *app) {
   return 0;
 }
 
-int lag_app_io_error(const App *app, const char *path) { return lag_app_error(&app->args, "cannot write %s: %s", path, strerror(errno ? errno : EIO)); }
+int lag_app_io_error(const App *app, const char *path) {
+  return lag_app_error(&app->args, "cannot write %s: %s", path, strerror(errno ? errno : EIO));
+}
 
 int lag_app_flush(const App *app) {
   errno = 0;

@@ -1,5 +1,5 @@
-/* One run. Enters: the command line; leaves: the rows and app->status. Holds: rows are at t0 + k*every, whatever the steps, and
- * at the end. */
+/* One run. Enters: the command line; leaves: the rows and app->status. Holds: rows are at t0 + k*every, whatever the
+ * steps, and at the end. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,8 @@
 #include "core/core.h"
 #include "numeric/clock.h"
 
-/* After each step: tests for signals, updates the progress line (on a terminal, after 1 s, at most 5 times a second). */
+/* After each step: tests for signals, updates the progress line (on a terminal, after 1 s, at most 5 times a
+ * second). */
 int lag_app_after_step(void *context, const lag_sim *sim) {
   App *app = context;
   if (app->watched && sim == app->sim) lag_error_estimate_note(&app->error, app->sim);
@@ -28,8 +29,9 @@ static int choose_end(App *app) {
   const Args *a = &app->args;
   double t = lag_sim_time(app->sim);
   if (app->until == t) {
-    return lag_app_error(a, "nothing to compute: the run is at t = %g s and ends at %g s; write --until with a later time", t,
-                     app->until);
+    return lag_app_error(a,
+                         "nothing to compute: the run is at t = %g s and ends at %g s; write --until with a later time",
+                         t, app->until);
   }
   if (app->resumed && (app->until - t) * (t - app->scene->t0) < 0)
     return lag_app_error(a, "%s is at t = %g s; --until %g would go back", a->resume, t, app->until);
@@ -44,8 +46,8 @@ static void note_tables(const App *app) {
     const lag_table *c = &m->tables[i];
     double first = c->row[0], last = c->row[c->width * (c->n - 1)];
     if (isnan(app->sim->hold[c->input]) && (from < first || to > last)) {
-      fprintf(stderr, "%s: note: the table of %s reaches from %g to %g s; outside, its first and last values hold\n", app->args.self,
-              m->u[c->input].name, first, last);
+      fprintf(stderr, "%s: note: the table of %s reaches from %g to %g s; outside, its first and last values hold\n",
+              app->args.self, m->u[c->input].name, first, last);
     }
   }
 }
@@ -58,7 +60,8 @@ static int choose_skip(App *app) {
   if (!lag_args_number(a, "--skip", a->skip, "--skip 100", &app->skip)) return EXIT_USAGE;
   double t = lag_sim_time(app->sim), dir = app->until < t ? -1 : 1;
   if ((app->skip - t) * dir < 0 || (app->until - app->skip) * dir <= 0)
-    return lag_app_error(a, "--skip %s: the run is from %g to %g s; what is left out ends between them", a->skip, t, app->until);
+    return lag_app_error(a, "--skip %s: the run is from %g to %g s; what is left out ends between them", a->skip, t,
+                         app->until);
   return 0;
 }
 
@@ -70,7 +73,8 @@ static int choose_grid(App *app) {
   double t = lag_sim_time(app->sim), origin = app->resumed && every > 0 ? grid[0] : t;
   if (a->every) {
     if (!lag_args_number(a, "--every", a->every, "--every 0.01", &every)) return EXIT_USAGE;
-    if (every <= 0) return lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
+    if (every <= 0)
+      return lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
     origin = app->scene->t0;
   }
   if (!(every > 0)) {
@@ -79,9 +83,10 @@ static int choose_grid(App *app) {
     if (h > 0) every = h * ceil(every / h * (1 - 1e-9));
     origin = t;
   }
-  if (app->section < 0 && (a->out || ((a->every || a->tangent) && (a->svg || a->html || a->sketch))) && fabs(app->until - t) / every > 1e9) {
-    return lag_app_error(a, "a row every %g s for %g s is %.3g rows; write a larger --every", every, fabs(app->until - t),
-                     fabs(app->until - t) / every);
+  if (app->section < 0 && (a->out || ((a->every || a->tangent) && (a->svg || a->html || a->sketch))) &&
+      fabs(app->until - t) / every > 1e9) {
+    return lag_app_error(a, "a row every %g s for %g s is %.3g rows; write a larger --every", every,
+                         fabs(app->until - t), fabs(app->until - t) / every);
   }
   grid[0] = origin;
   grid[1] = every;
@@ -132,7 +137,10 @@ static void run(App *app) {
   }
   if (begun && lag_app_measures_end(app)) rc = LAG_ENOMEM;
   if (lag_sampling_close(app)) rc = LAG_ENOMEM;
-  app->status = app->bad_file ? LAG_EIO : app->section_rc && rc >= 0 ? app->section_rc : app->volume_rc && rc >= 0 ? app->volume_rc : rc;
+  app->status = app->bad_file                ? LAG_EIO
+                : app->section_rc && rc >= 0 ? app->section_rc
+                : app->volume_rc && rc >= 0  ? app->volume_rc
+                                             : rc;
   lag_app_stop_clock(app);
 }
 
@@ -143,9 +151,11 @@ static int open_output(App *app) {
     return lag_app_error(a, "out of memory");
   }
   app->table.points = app->section >= 0;
-  if (lag_tangent_columns_open(app) || lag_app_volume_open(app) || lag_app_choose_curves(app) || lag_portrait_open(app)) return EXIT_USAGE;
+  if (lag_tangent_columns_open(app) || lag_app_volume_open(app) || lag_app_choose_curves(app) || lag_portrait_open(app))
+    return EXIT_USAGE;
   if (a->html && lag_app_choose_points(app)) return EXIT_USAGE;
-  if (lag_app_try_file(app, a->svg) || lag_app_try_file(app, a->html) || lag_app_try_file(app, a->save)) return EXIT_USAGE;
+  if (lag_app_try_file(app, a->svg) || lag_app_try_file(app, a->html) || lag_app_try_file(app, a->save))
+    return EXIT_USAGE;
   int rc = lag_sampling_open(app);
   rc = rc ? rc : lag_marks_open(app);
   rc = rc ? rc : lag_event_log_open(app);

@@ -1,5 +1,6 @@
-/* Sets up the simulation: scene, method, tolerance, values. Enters: Args; leaves: app->scene and app->sim. Holds: the command line overrides the
- * scene; scenes, methods and effects missing in this build are refused with the command that builds them. */
+/* Sets up the simulation: scene, method, tolerance, values. Enters: Args; leaves: app->scene and app->sim. Holds:
+ * the command line overrides the scene; scenes, methods and effects missing in this build are refused with the
+ * command that builds them. */
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -57,11 +58,15 @@ int lag_app_read_until(App *app) {
   double span = c->has_span ? c->t1 - c->t0 : 10;
 
   app->until = c->t0 + (a->lyapunov ? SPANS * fabs(span) : span);
-  return !a->until || lag_args_number(a, "--until", a->until, a->lyapunov ? "--until 1000" : "--until 20", &app->until) ? 0 : EXIT_USAGE;
+  return !a->until || lag_args_number(a, "--until", a->until, a->lyapunov ? "--until 1000" : "--until 20", &app->until)
+             ? 0
+             : EXIT_USAGE;
 }
 
 const lag_method *lag_app_method_at(const App *app, int i) {
-  return i < lag_nmethods ? lag_methods[i] : i - lag_nmethods < app->extras.nmethods ? app->extras.methods[i - lag_nmethods] : NULL;
+  return i < lag_nmethods                          ? lag_methods[i]
+         : i - lag_nmethods < app->extras.nmethods ? app->extras.methods[i - lag_nmethods]
+                                                   : NULL;
 }
 
 const lag_method *lag_app_find_method(const App *app, const char *name) {
@@ -99,7 +104,8 @@ static int check_steps(const App *app, const Choice *c) {
     const char *wrong = lag_is_step_option(o->name) && !o->text ? lag_step_error(app->sim, o->value) : NULL;
     if (wrong) {
       const char *example = strcmp(o->name, "step") == 0 ? "--step 1e-3" : "max_step=1e-3";
-      return lag_app_error(&app->args, "%s %g: %s; write for example %s, or leave it out", o->name, o->value, wrong, example);
+      return lag_app_error(&app->args, "%s %g: %s; write for example %s, or leave it out", o->name, o->value, wrong,
+                           example);
     }
   }
   return 0;
@@ -117,7 +123,8 @@ static int parse_method(const Args *a, Choice *c) {
   c->name = trim(c->text);
   for (char *s = strtok_r(open + 1, ",", &save); s; s = strtok_r(NULL, ",", &save)) {
     char *eq = strchr(s, '=');
-    if (!eq || c->n == MOST_OPTIONS - 1) return lag_app_error(a, "--method %s: write NAME(option=value, ...)", a->method);
+    if (!eq || c->n == MOST_OPTIONS - 1)
+      return lag_app_error(a, "--method %s: write NAME(option=value, ...)", a->method);
     *eq = '\0';
     add_option(c, trim(s), trim(eq + 1));
   }
@@ -129,11 +136,16 @@ int lag_app_unknown_method(const App *app, const char *name) {
   const lag_method *m;
   lag_nearest near = {.name = name};
   for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) lag_try_nearest(&near, m->name);
-  for (int i = 0; !near.best && (m = lag_app_method_at(app, i)) != NULL; i++) near.best = lag_text_has_word(m->doc, name) ? m->name : NULL;
+  for (int i = 0; !near.best && (m = lag_app_method_at(app, i)) != NULL; i++)
+    near.best = lag_text_has_word(m->doc, name) ? m->name : NULL;
   if (strncmp(name, "gsl-", 4) == 0 && strcmp(LAG_PRECISION, "double") != 0)
-    return lag_app_error(&app->args, "method %s computes with doubles, this run in " LAG_PRECISION " precision; dop853 and taylor do, too", name);
-  if (near.best) return lag_app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near.best);
-  return lag_app_error(&app->args, "unknown method %s; --method help lists them, and without --method the run chooses one", name);
+    return lag_app_error(
+        &app->args,
+        "method %s computes with doubles, this run in " LAG_PRECISION " precision; dop853 and taylor do, too", name);
+  if (near.best)
+    return lag_app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near.best);
+  return lag_app_error(&app->args,
+                       "unknown method %s; --method help lists them, and without --method the run chooses one", name);
 }
 
 int lag_app_choose_automatically(App *app, const lag_option *opt, int n) {
@@ -189,15 +201,19 @@ int lag_app_set_value(App *app, const char *text) {
   snprintf(name, sizeof name, "%.*s", (int)(eq - text), text);
   if (dot && lag_app_has_word(app->program->effects, text, (size_t)(dot - text)) &&
       !lag_app_has_word(app->scene->model->effects, text, (size_t)(dot - text))) {
-    return lag_app_error(a,
-                     "%s: effect %.*s is not in scene %s of this build; take a scene of %s that uses it, or write one: "
-                     "scene %s_%.*s { like %s; use %.*s }",
-                     name, (int)(dot - text), text, app->scene->name, app->program->source, app->scene->name, (int)(dot - text), text, app->scene->name, (int)(dot - text), text);
+    return lag_app_error(
+        a,
+        "%s: effect %.*s is not in scene %s of this build; take a scene of %s that uses it, or write one: "
+        "scene %s_%.*s { like %s; use %.*s }",
+        name, (int)(dot - text), text, app->scene->name, app->program->source, app->scene->name, (int)(dot - text),
+        text, app->scene->name, (int)(dot - text), text);
   }
   for (size_t k = 1; name[k - 1]; k++) /* a parameter, or a member or component of it */
     if (strchr("[.", name[k]) && lag_app_has_word(app->scene->model->fixed, name, k))
-      return lag_app_error(a, "%s is a number in this program (--fix); this builds one that takes all values: lagc build %s -o SIMULATOR", name,
-                           app->program->source);
+      return lag_app_error(
+          a,
+          "%s is a number in this program (--fix); this builds one that takes all values: lagc build %s -o SIMULATOR",
+          name, app->program->source);
   snprintf(example, sizeof example, "%s=1.5", name);
   if (!lag_args_number(a, name, eq + 1, example, &x)) return EXIT_USAGE;
   return lag_sim_set(app->sim, name, x) ? lag_app_error(a, "%s", lag_sim_message(app->sim)) : 0;
@@ -209,12 +225,15 @@ static int restore_method(App *app) {
   const State *st = &app->state;
   const lag_method *m = lag_app_find_method(app, st->method);
   lag_option opt[MOST_OPTIONS];
-  if (!m || m->noptions != st->noptions) return lag_app_error(a, "%s was saved with method %s, which is not in this build", a->resume, st->method);
+  if (!m || m->noptions != st->noptions)
+    return lag_app_error(a, "%s was saved with method %s, which is not in this build", a->resume, st->method);
   lag_app_options(m, st->options, 1, opt);
   if (lag_sim_set_method(app->sim, m, opt, m->noptions) || lag_sim_set_tolerance(app->sim, st->tol))
     return lag_app_error(a, "%s: %s", a->resume, lag_sim_message(app->sim));
   if (st->signature != lag_sim_signature(app->sim) || st->n != lag_sim_save_size(app->sim))
-    return lag_app_error(a, "%s was saved by another model or build: names, sizes, effects or equations differ, or --precision", a->resume);
+    return lag_app_error(
+        a, "%s was saved by another model or build: names, sizes, effects or equations differ, or --precision",
+        a->resume);
   return 0;
 }
 
@@ -230,12 +249,13 @@ static int same_method(App *app) {
     return lag_app_error(a, "%s was saved with --tol %g, and goes on with it; leave out --tol", a->resume, st->tol);
   if (named && (strcmp(m->name, st->method) != 0 || m->noptions != st->noptions ||
                 memcmp(lag_sim_options(app->sim), st->options, (size_t)st->noptions * sizeof(double)) != 0))
-    return lag_app_error(a, "%s was saved with method %s, and goes on with it and its options; leave out %s", a->resume, st->method,
-                         a->method ? "--method" : "--step");
+    return lag_app_error(a, "%s was saved with method %s, and goes on with it and its options; leave out %s", a->resume,
+                         st->method, a->method ? "--method" : "--step");
   return 0;
 }
 
-/* Refuses name=value of a resumed run that differs: each is set in a simulation with the values of the run, and compared with it. */
+/* Refuses name=value of a resumed run that differs: each is set in a simulation with the values of the run, and
+ * compared with it. */
 static int same_values(App *app) {
   const Args *a = &app->args;
   lag_sim *run = app->sim, *other = app->sim = lag_sim_new(app->scene);
@@ -249,7 +269,8 @@ static int same_values(App *app) {
   }
   for (int i = 0; i < a->nsets && rc == 0; i++) {
     rc = lag_app_set_value(app, a->sets[i]);
-    if (rc == 0 && (memcmp(other->p, run->p, np * sizeof(double)) != 0 || memcmp(other->begin, run->begin, n * sizeof(double)) != 0 ||
+    if (rc == 0 && (memcmp(other->p, run->p, np * sizeof(double)) != 0 ||
+                    memcmp(other->begin, run->begin, n * sizeof(double)) != 0 ||
                     memcmp(other->hold, run->hold, nu * sizeof(double)) != 0))
       rc = lag_app_error(a, "%s was saved with another value of %.*s, and goes on with it; leave out %s", a->resume,
                          (int)strcspn(a->sets[i], "="), a->sets[i], a->sets[i]);
@@ -273,8 +294,9 @@ static int new_simulation(App *app) {
   if (rc) return rc;
   app->sim = lag_sim_new(app->scene);
   if (!app->sim) {
-    return lag_app_error(&app->args, "cannot simulate scene %s: out of memory, or built for another version or number type",
-                     app->scene->name);
+    return lag_app_error(&app->args,
+                         "cannot simulate scene %s: out of memory, or built for another version or number type",
+                         app->scene->name);
   }
   return lag_app_read_until(app);
 }
@@ -288,7 +310,8 @@ static int set_values(App *app) {
 
 void lag_app_options(const lag_method *m, const double *values, double times, lag_option *opt) {
   for (int i = 0; i < m->noptions; i++)
-    opt[i] = (lag_option){.name = m->options[i].name, .value = strcmp(m->options[i].name, "step") == 0 ? times * values[i] : values[i]};
+    opt[i] = (lag_option){.name = m->options[i].name,
+                          .value = strcmp(m->options[i].name, "step") == 0 ? times * values[i] : values[i]};
 }
 
 lag_sim *lag_app_fresh_bare_sim(App *app) {

@@ -1,5 +1,6 @@
-/* Help of a simulator. --help: its scenes, names and options. `lagc methods` and --method help: the descriptors of all methods as a table and in
- * words; `--method "help NAME"`: of one. Holds: lines about methods have at most 80 columns. */
+/* Help of a simulator. --help: its scenes, names and options. `lagc methods` and --method help: the descriptors of
+ * all methods as a table and in words; `--method "help NAME"`: of one. Holds: lines about methods have at most 80
+ * columns. */
 #include <string.h>
 
 #include "app/app.h"
@@ -55,7 +56,8 @@ static unsigned analysis_named(const char *name) {
 static void put_option(FILE *f, const Option *o) {
   enum { MEANINGS = 24 };
   char line[600], term[64];
-  snprintf(term, sizeof term, "%s%s%s%s%s", o->brief ? o->brief : "", o->brief ? ", " : "", o->name, o->value ? " " : "", o->value ? o->value : "");
+  snprintf(term, sizeof term, "%s%s%s%s%s", o->brief ? o->brief : "", o->brief ? ", " : "", o->name,
+           o->value ? " " : "", o->value ? o->value : "");
   int fits = strlen(term) < MEANINGS - 2;
   if (fits) snprintf(line, sizeof line, "%-*s%s", MEANINGS - 2, term, o->text);
   else fprintf(f, "  %s\n", term);
@@ -83,7 +85,8 @@ void lag_app_help(const App *app, FILE *f) {
   const lag_program *p = app->program;
   fprintf(f, "%s: %s\n\nusage: %s [SCENE] [name=value ...] [options]\n\nscenes (the first is the default):\n", p->name,
           p->doc ? p->doc : "", app->args.self);
-  for (int i = 0; i < p->nscenes; i++) fprintf(f, "  %-20s %s\n", p->scenes[i]->name, p->scenes[i]->doc ? p->scenes[i]->doc : "");
+  for (int i = 0; i < p->nscenes; i++)
+    fprintf(f, "  %-20s %s\n", p->scenes[i]->name, p->scenes[i]->doc ? p->scenes[i]->doc : "");
   lag_sim *sim = lag_sim_new(p->scenes[0]);
   if (sim) {
     const lag_model *m = p->scenes[0]->model;
@@ -126,7 +129,8 @@ static void row(const lag_method *m, FILE *f) {
 
 static void words(const lag_method *m, FILE *f) {
   char text[400];
-  snprintf(text, sizeof text, "%s: %s%s", m->name, m->doc, m->flags & LAG_METHOD_NO_SAVE ? "; its state cannot be saved" : "");
+  snprintf(text, sizeof text, "%s: %s%s", m->name, m->doc,
+           m->flags & LAG_METHOD_NO_SAVE ? "; its state cannot be saved" : "");
   putc('\n', f);
   wrapped(f, text, 2, 4);
   for (int i = 0; i < m->noptions; i++) {
@@ -144,12 +148,18 @@ void lag_app_list_methods(const App *app, const char *name, FILE *f) {
   for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++)
     if (!name || strcmp(name, m->name) == 0) row(m, f);
   putc('\n', f);
-  wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. both: symplectic and symmetric; with forces or explicit time a "
-             "symplectic method keeps neither energy nor the two-form. Newton: whether each step solves "
-             "equations by Newton's method; partly: unless the model is separable, with constant mass matrix, and accelerations that do not "
-             "depend on velocities. states: whether the model may have a `state`; alone: without coordinates, or where L is linear in "
-             "all velocities. deriv: whether its steps have a derivative (--tangent, lagc lyapunov). holds: whether its steps end on "
-             "constraints. Options, with their defaults:", 0, 0);
+  wrapped(f,
+          "Where none is named, a run chooses and says why. dense: order between steps. both: symplectic and "
+          "symmetric; with forces or explicit time a "
+          "symplectic method keeps neither energy nor the two-form. Newton: whether each step solves "
+          "equations by Newton's method; partly: unless the model is separable, with constant mass matrix, and "
+          "accelerations that do not "
+          "depend on velocities. states: whether the model may have a `state`; alone: without coordinates, or where L "
+          "is linear in "
+          "all velocities. deriv: whether its steps have a derivative (--tangent, lagc lyapunov). holds: whether its "
+          "steps end on "
+          "constraints. Options, with their defaults:",
+          0, 0);
   for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++)
     if (!name || strcmp(name, m->name) == 0) words(m, f);
 }

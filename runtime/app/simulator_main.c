@@ -1,5 +1,5 @@
-/* Main program of a simulator. Enters: the command line; leaves: files, a report and an exit status. Holds: results up to a failure
- * or an interrupt are written. */
+/* Main program of a simulator. Enters: the command line; leaves: files, a report and an exit status. Holds: results
+ * up to a failure or an interrupt are written. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,9 +12,9 @@
 #include "core/core.h"
 #include "io/posix.h"
 
-/* After a value that is not finite: sends t, q, v, z and p of a state through the pipe $LAG_LAST_STATE (a descriptor) to
- * the waiting lagc process, if there is one, which names the expression that has none; and whether the run ended there.
- * Waits for its end. */
+/* After a value that is not finite: sends t, q, v, z and p of a state through the pipe $LAG_LAST_STATE (a
+ * descriptor) to the waiting lagc process, if there is one, which names the expression that has none; and whether
+ * the run ended there. Waits for its end. */
 #ifdef _WIN32
 static void tell_last_state(const App *app) { (void)app; } /* lagc does not wait there */
 #else
@@ -48,7 +48,8 @@ static void note_horizon(App *app) {
 }
 
 static int save_state(const App *app) {
-  State st = {.tol = lag_sim_tolerance(app->sim), .signature = lag_sim_signature(app->sim), .t = lag_sim_time(app->sim)};
+  State st = {
+      .tol = lag_sim_tolerance(app->sim), .signature = lag_sim_signature(app->sim), .t = lag_sim_time(app->sim)};
   const lag_method *m = lag_sim_method(app->sim);
   const char *path = app->args.save;
   int rc = 0;
@@ -59,7 +60,8 @@ static int save_state(const App *app) {
   memcpy(st.options, lag_sim_options(app->sim), (size_t)m->noptions * sizeof(double));
   st.n = lag_sim_save_size(app->sim);
   st.data = malloc(st.n * sizeof(double));
-  if (!st.data || lag_sim_save(app->sim, st.data)) rc = lag_app_error(&app->args, "%s", st.data ? lag_sim_message(app->sim) : "out of memory");
+  if (!st.data || lag_sim_save(app->sim, st.data))
+    rc = lag_app_error(&app->args, "%s", st.data ? lag_sim_message(app->sim) : "out of memory");
   else if (lag_state_write(path, &st)) rc = lag_app_io_error(app, path);
   free(st.data);
   return rc;
@@ -76,7 +78,9 @@ static int finish(App *app) {
     lag_rows_close(&app->rows, 0);
     lag_rows_close(&app->log_rows, 0);
     errno = app->bad_errno;
-    return app->status == LAG_EIO ? lag_app_io_error(app, app->bad_file) : lag_app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
+    return app->status == LAG_EIO
+               ? lag_app_io_error(app, app->bad_file)
+               : lag_app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
   }
   if (app->rows.open && lag_rows_close(&app->rows, 1)) bad = lag_app_io_error(app, a->out);
   else app->written = 1;
@@ -97,7 +101,8 @@ static int finish(App *app) {
   }
   if (a->json) lag_report_json(app, stdout);
   else if (!a->quiet) lag_report_text(app, f);
-  if (app->status < 0 && (a->json || a->quiet)) lag_app_error(a, "%s%s", lag_sim_message(app->sim), lag_app_way_on(app));
+  if (app->status < 0 && (a->json || a->quiet))
+    lag_app_error(a, "%s%s", lag_sim_message(app->sim), lag_app_way_on(app));
   if (lag_app_flush(app)) bad = EXIT_USAGE;
   tell_last_state(app);
   return bad ? bad : rc;
@@ -117,7 +122,8 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     lag_app_help(&app, stdout);
   } else if (rc == 0 && app.args.method && strcmp(app.args.method, "help") == 0) {
     lag_app_list_methods(&app, NULL, stdout);
-  } else if (rc == 0 && app.args.method && strncmp(app.args.method, "help ", 5) == 0 && lag_app_find_method(&app, app.args.method + 5)) {
+  } else if (rc == 0 && app.args.method && strncmp(app.args.method, "help ", 5) == 0 &&
+             lag_app_find_method(&app, app.args.method + 5)) {
     lag_app_list_methods(&app, app.args.method + 5, stdout);
   } else if (rc == 0 && app.args.sweep) {
     rc = lag_app_sweep(&app);

@@ -1,5 +1,6 @@
-/* --sweep: many runs. Enters: ranges and measures of the command line; leaves: rows, by way of a journal of finished chunks (sweep/journal.h), and statistics.
- * Holds: run i has the same numbers on any number of threads, in any shard, after any interruption. */
+/* --sweep: many runs. Enters: ranges and measures of the command line; leaves: rows, by way of a journal of finished
+ * chunks (sweep/journal.h), and statistics. Holds: run i has the same numbers on any number of threads, in any
+ * shard, after any interruption. */
 #include "app/sweep.h"
 
 #include <errno.h>
@@ -25,7 +26,8 @@ static int take_ranges(SweepApp *s) {
     else if (lag_plan_add(&s->plan, a->sets[i], why, sizeof why)) return lag_app_error(a, "%s", why);
   }
   a->nsets = kept;
-  for (int k = 0; k < s->plan.n; k++) s->plan.factor[k].compiled = lag_app_has_word(a->consts, s->plan.factor[k].name, strlen(s->plan.factor[k].name));
+  for (int k = 0; k < s->plan.n; k++)
+    s->plan.factor[k].compiled = lag_app_has_word(a->consts, s->plan.factor[k].name, strlen(s->plan.factor[k].name));
   return a->rows && lag_plan_add_rows(&s->plan, a->rows, why, sizeof why) ? lag_app_error(a, "%s", why) : 0;
 }
 
@@ -34,20 +36,28 @@ static int take_points(SweepApp *s) {
   const Args *a = &s->app->args;
   const char *name = a->sampling;
   int (*points)(const char *name, int dimensions, long long n, double *u) = s->app->extras.points; /* (as it stands) */
-  if (!points) return lag_app_error(a, "--sampling %s needs GSL: the build found none, or --no-gsl or --precision left it out; lhs needs none", name);
+  if (!points)
+    return lag_app_error(
+        a, "--sampling %s needs GSL: the build found none, or --no-gsl or --precision left it out; lhs needs none",
+        name);
   s->points = malloc((size_t)s->plan.samples * (size_t)s->plan.dimensions * sizeof *s->points);
   s->plan.points = s->points;
   if (!s->points)
-    return lag_app_error(a, "--sampling %s: %lld points of %d numbers take %.3g GB; lhs and random take none", name, s->plan.samples, s->plan.dimensions,
-                         8e-9 * (double)s->plan.samples * s->plan.dimensions);
+    return lag_app_error(a, "--sampling %s: %lld points of %d numbers take %.3g GB; lhs and random take none", name,
+                         s->plan.samples, s->plan.dimensions, 8e-9 * (double)s->plan.samples * s->plan.dimensions);
   int most = points(name, s->plan.dimensions, s->plan.samples, s->points);
-  return most ? lag_app_error(a, "--sampling %s has up to %d dimensions, here are %d; lhs has any number", name, most, s->plan.dimensions) : 0;
+  return most ? lag_app_error(a, "--sampling %s has up to %d dimensions, here are %d; lhs has any number", name, most,
+                              s->plan.dimensions)
+              : 0;
 }
 
 /* Refuses what would have no effect. */
 static int check_options(const Args *a) {
-  if (!a->samples && (a->sampling || a->seed)) return lag_app_error(a, "--%s is for samples: write for example --samples 1000", a->sampling ? "sampling" : "seed");
-  if (a->merge && (a->shard || a->go_on)) return lag_app_error(a, "--merge and --%s: parts are made first, and then joined; leave one out", a->shard ? "shard" : "resume");
+  if (!a->samples && (a->sampling || a->seed))
+    return lag_app_error(a, "--%s is for samples: write for example --samples 1000", a->sampling ? "sampling" : "seed");
+  if (a->merge && (a->shard || a->go_on))
+    return lag_app_error(a, "--merge and --%s: parts are made first, and then joined; leave one out",
+                         a->shard ? "shard" : "resume");
   return 0;
 }
 
@@ -61,8 +71,10 @@ static int make_plan(SweepApp *s) {
   s->plan.seed = (uint64_t)seed;
   s->plan.zip |= a->zip;
   if (a->sampling && strcmp(a->sampling, "lhs") == 0) s->plan.sampling = SAMPLING_HYPERCUBE;
-  else if (a->sampling && (strcmp(a->sampling, "sobol") == 0 || strcmp(a->sampling, "halton") == 0)) s->plan.sampling = SAMPLING_POINTS;
-  else if (a->sampling && strcmp(a->sampling, "random") != 0) return lag_app_error(a, "--sampling %s: it is random, lhs, sobol or halton", a->sampling);
+  else if (a->sampling && (strcmp(a->sampling, "sobol") == 0 || strcmp(a->sampling, "halton") == 0))
+    s->plan.sampling = SAMPLING_POINTS;
+  else if (a->sampling && strcmp(a->sampling, "random") != 0)
+    return lag_app_error(a, "--sampling %s: it is random, lhs, sobol or halton", a->sampling);
   if (lag_plan_finish(&s->plan, samples, why, sizeof why)) return lag_app_error(a, "%s", why);
   return s->plan.sampling == SAMPLING_POINTS && s->plan.dimensions ? take_points(s) : 0;
 }
@@ -76,23 +88,28 @@ static const char *variant_words(const SweepApp *s, int v, char *text, size_t si
   text[0] = '\0';
   if (value) lag_plan_values(&s->plan, lag_plan_run_of(&s->plan, v), value);
   for (int k = 0; k < s->plan.n && value && n < size; k++)
-    if (s->plan.factor[k].compiled) n += (size_t)snprintf(text + n, size - n, "%s%s=%g", n ? ", " : "with ", s->plan.factor[k].name, value[k]);
+    if (s->plan.factor[k].compiled)
+      n += (size_t)snprintf(text + n, size - n, "%s%s=%g", n ? ", " : "with ", s->plan.factor[k].name, value[k]);
   if (value && n < size) snprintf(text + n, size - n, ": ");
   free(value);
   return text;
 }
 
-/* Whether the program has a scene for each combination: --consts is lagc's to write, beside the program that it builds. */
+/* Whether the program has a scene for each combination: --consts is lagc's to write, beside the program that it
+ * builds. */
 static int has_variants(const SweepApp *s) {
   for (int k = 0; k < s->plan.n; k++)
     if (s->plan.factor[k].compiled && !s->plan.factor[k].n) return 0;
-  return lag_plan_variant(&s->plan, s->plan.runs - 1) + 1 == s->app->program->nscenes; /* the last run is of the last one */
+  /* the last run is of the last one */
+  return lag_plan_variant(&s->plan, s->plan.runs - 1) + 1 == s->app->program->nscenes;
 }
 
 static int open_variants(SweepApp *s) {
   App *app = s->app;
   const lag_scene *first = app->scene;
-  if (app->args.consts && !has_variants(s)) return lag_app_error(&app->args, "%s: this program was built for other values; lagc sweep builds one", app->args.consts);
+  if (app->args.consts && !has_variants(s))
+    return lag_app_error(&app->args, "%s: this program was built for other values; lagc sweep builds one",
+                         app->args.consts);
   s->sweep.nvariants = app->args.consts ? app->program->nscenes : 1;
   s->sweep.variant = s->variants = calloc((size_t)s->sweep.nvariants, sizeof *s->variants);
   int rc = s->variants ? 0 : lag_app_error(&app->args, "out of memory");
@@ -110,7 +127,8 @@ static int share_method(SweepApp *s) {
   char with[200];
   for (int v = 1; v < s->sweep.nvariants; v++) {
     lag_sim *sim = s->variants[v].like;
-    if (lag_app_copy_method(s->app->sim, sim, 1)) return lag_app_error(&s->app->args, "%s%s", variant_words(s, v, with, sizeof with), lag_sim_message(sim));
+    if (lag_app_copy_method(s->app->sim, sim, 1))
+      return lag_app_error(&s->app->args, "%s%s", variant_words(s, v, with, sizeof with), lag_sim_message(sim));
   }
   return 0;
 }
@@ -168,7 +186,8 @@ static int vary_measures(SweepApp *s, int v) {
 
 static int choose_measures(SweepApp *s) {
   App *app = s->app;
-  if ((!app->args.nmeasures && !app->scene->nmeasures && default_measures(s)) || lag_app_measures_open(app)) return EXIT_USAGE;
+  if ((!app->args.nmeasures && !app->scene->nmeasures && default_measures(s)) || lag_app_measures_open(app))
+    return EXIT_USAGE;
   s->sweep.nmeasures = lag_measures_count(app->measures);
   for (int v = 0; v < s->sweep.nvariants; v++)
     if (vary_measures(s, v)) return EXIT_USAGE;
@@ -181,30 +200,38 @@ static void unit_of(const lag_sim *sim, const char *name, char *unit, size_t siz
   const lag_var *var;
   char member[128];
   int index, kind = lag_find_name(m, name, &index, &var);
-  if (kind == LAG_IS_NOTHING && lag_family_member(m, name, 0, member, sizeof member)) kind = lag_find_name(m, member, &index, &var);
+  if (kind == LAG_IS_NOTHING && lag_family_member(m, name, 0, member, sizeof member))
+    kind = lag_find_name(m, member, &index, &var);
   if (kind == LAG_IS_NOTHING) snprintf(unit, size, "%s", "");
   else snprintf(unit, size, "%s%s", var->unit, kind == LAG_IS_V && var->unit[0] ? "/s" : "");
 }
 
-/* Two columns of one name could not be told apart, and NumPy refuses the file; a measure called as a name that varies is its value at the end. */
+/* Two columns of one name could not be told apart, and NumPy refuses the file; a measure called as a name that
+ * varies is its value at the end. */
 static int check_columns(SweepApp *s) {
   Column *c = s->table.cols;
   char label[2][sizeof *c + 4];
   for (int k = 0; k < s->plan.n; k++)
     for (int i = s->plan.n; i < s->table.ncols - 1; i++)
-      if (strcmp(c[i].name, c[k].name) == 0 && strcmp(s->variants[0].measure[i - s->plan.n], c[k].name) == 0) snprintf(c[i].name, sizeof c[i].name, "%.80s(end)", s->plan.factor[k].name);
+      if (strcmp(c[i].name, c[k].name) == 0 && strcmp(s->variants[0].measure[i - s->plan.n], c[k].name) == 0)
+        snprintf(c[i].name, sizeof c[i].name, "%.80s(end)", s->plan.factor[k].name);
   for (int i = 0; i < s->table.ncols; i++)
     for (int k = 0; k < i; k++) {
       lag_column_label(&c[i], label[0], sizeof label[0]);
       lag_column_label(&c[k], label[1], sizeof label[1]);
-      if (strcmp(c[i].name, c[k].name) != 0 && strcmp(label[0], label[1]) != 0 && strcmp(c[i].name, label[1]) != 0 && strcmp(label[0], c[k].name) != 0) continue;
-      return lag_app_error(&s->app->args, "two columns would be called %s; give the measure another name, --measure NAME=EXPR", label[1]);
+      if (strcmp(c[i].name, c[k].name) != 0 && strcmp(label[0], label[1]) != 0 && strcmp(c[i].name, label[1]) != 0 &&
+          strcmp(label[0], c[k].name) != 0)
+        continue;
+      return lag_app_error(&s->app->args,
+                           "two columns would be called %s; give the measure another name, --measure NAME=EXPR",
+                           label[1]);
     }
   return 0;
 }
 
 static int name_columns(SweepApp *s) {
-  static const char *const words[] = {"ok", "stopped", "singular", "nan", "domain", "step", "value", "memory", "monitor", "model", "zeno", "method", "io", "drift", "stall"};
+  static const char *const words[] = {"ok",      "stopped", "singular", "nan",    "domain", "step",  "value", "memory",
+                                      "monitor", "model",   "zeno",     "method", "io",     "drift", "stall"};
   int n = s->plan.n + s->sweep.nmeasures + 1;
   s->table = (Table){.ncols = n, .cols = calloc((size_t)n, sizeof *s->table.cols)};
   if (!s->table.cols) return lag_app_error(&s->app->args, "out of memory");
@@ -240,7 +267,9 @@ static int check_covered(const SweepApp *s, int k) {
   const Factor *f = &s->plan.factor[k];
   char name[sizeof f->name];
   for (int i = 0; i < k; i++)
-    if (covers(m, f->name, s->plan.factor[i].name)) return lag_app_error(a, "%s varies, and all of %s after it: write %s first, or leave one out", s->plan.factor[i].name, f->name, f->name);
+    if (covers(m, f->name, s->plan.factor[i].name))
+      return lag_app_error(a, "%s varies, and all of %s after it: write %s first, or leave one out",
+                           s->plan.factor[i].name, f->name, f->name);
   for (int i = 0; i < a->nsets; i++) {
     size_t n = strcspn(a->sets[i], "=");
     while (n && a->sets[i][n - 1] == ' ') n--;
@@ -254,10 +283,14 @@ static int check_covered(const SweepApp *s, int k) {
 static int check_unit(const SweepApp *s, const Factor *f) {
   char unit[sizeof((Column *)0)->unit];
   unit_of(s->app->sim, f->name, unit, sizeof unit);
-  return !f->unit[0] || strcmp(f->unit, unit) == 0 ? 0 : lag_app_error(&s->app->args, "%s: %s is in [%s] there, and in [%s] in the model: convert its numbers", s->app->args.rows, f->name, f->unit, unit);
+  return !f->unit[0] || strcmp(f->unit, unit) == 0
+             ? 0
+             : lag_app_error(&s->app->args, "%s: %s is in [%s] there, and in [%s] in the model: convert its numbers",
+                             s->app->args.rows, f->name, f->unit, unit);
 }
 
-/* Sets what factor k is in the first run whose value the model takes: runs with others have rows that say so. Status of lag_sim_set. */
+/* Sets what factor k is in the first run whose value the model takes: runs with others have rows that say so. Status
+ * of lag_sim_set. */
 static int set_factor(const SweepApp *s, lag_sim *sim, int k, double *value) {
   enum { MANY = 1000 };
   int bad = LAG_EINVAL;
@@ -279,7 +312,10 @@ static int set_first_values(SweepApp *s) {
     for (int v = 0; v < s->sweep.nvariants && rc == 0; v++) {
       lag_sim *sim = s->variants[v].like;
       int bad = set_factor(s, sim, k, value);
-      rc = bad ? lag_app_error(&s->app->args, "%s%s%s%s", rows ? rows : "", rows ? ": " : "", variant_words(s, v, with, sizeof with), bad == LAG_ENOMEM ? "out of memory" : lag_sim_message(sim)) : 0;
+      rc = bad ? lag_app_error(&s->app->args, "%s%s%s%s", rows ? rows : "", rows ? ": " : "",
+                               variant_words(s, v, with, sizeof with),
+                               bad == LAG_ENOMEM ? "out of memory" : lag_sim_message(sim))
+               : 0;
     }
     rc = rc || check_unit(s, &s->plan.factor[k]) || check_covered(s, k) ? EXIT_USAGE : 0;
   }
@@ -309,8 +345,11 @@ static uint64_t hash_variant(uint64_t h, const SweepApp *s, const SweepVariant *
 /* Values, method, end and measures: what two processes of one sweep share. */
 uint64_t lag_sweep_signature(const SweepApp *s) {
   const SweepPlan *p = &s->plan;
-  const double numbers[] = {lag_sim_tolerance(s->app->sim), s->sweep.until, (double)p->runs, (double)p->samples, (double)p->seed, p->sampling, p->zip};
-  uint64_t h = hash_text(hash_text(LAG_FNV1A_START, LAG_PRECISION), s->app->extras.lanes_4 ? "lanes" : ""); /* sines and sums have other last digits */
+  const double numbers[] = {lag_sim_tolerance(s->app->sim),
+                            s->sweep.until, (double)p->runs, (double)p->samples, (double)p->seed, p->sampling,
+                            p->zip};
+  /* sines and sums have other last digits */
+  uint64_t h = hash_text(hash_text(LAG_FNV1A_START, LAG_PRECISION), s->app->extras.lanes_4 ? "lanes" : "");
   for (int v = 0; v < s->sweep.nvariants; v++) h = hash_variant(h, s, &s->variants[v]);
   h = hash_numbers(h, s->sweep.nrows, s->times);
   h = hash_numbers(h, sizeof numbers / sizeof *numbers, numbers);
@@ -329,8 +368,10 @@ static int note(void *context, long long runs) {
   s->made = runs;
   double now = lag_clock_seconds() - app->begun;
   if (app->progress >= 0 && lag_clock_seconds() - app->shown >= (app->progress ? 0.2 : 1.0)) {
-    double all = (double)s->plan.runs, done = fmin((double)s->journal.finished * (double)s->sweep.chunk, all), rate = (double)runs / now;
-    fprintf(stderr, "\r%.0f of %.0f runs, %.0f %%, %.3g a second, %.0f s left   ", done, all, 100 * done / all, rate, (all / (double)s->sweep.shards - done) / rate);
+    double all = (double)s->plan.runs, done = fmin((double)s->journal.finished * (double)s->sweep.chunk, all),
+           rate = (double)runs / now;
+    fprintf(stderr, "\r%.0f of %.0f runs, %.0f %%, %.3g a second, %.0f s left   ", done, all, 100 * done / all, rate,
+            (all / (double)s->sweep.shards - done) / rate);
     app->shown = lag_clock_seconds();
     app->progress = 1;
   }
@@ -346,7 +387,8 @@ static int stop(void *context) {
  * this machine, or more than 10 GB, without --yes, and tells what takes longer than a minute. */
 static int estimate(SweepApp *s) {
   const Args *a = &s->app->args;
-  const double day = 86400, few = 16, per_number = 26, most = 1e10; /* runs of a thread; bytes: 8 in the journal, 18 of a CSV */
+  /* runs of a thread; bytes: 8 in the journal, 18 of a CSV */
+  const double day = 86400, few = 16, per_number = 26, most = 1e10;
   int variants = s->sweep.nvariants;
   double threads = (double)s->sweep.threads * s->sweep.nranks, share = (double)s->plan.runs / (double)s->sweep.shards;
   double bytes = share * (double)lag_sweep_numbers(&s->sweep) * per_number;
@@ -356,16 +398,22 @@ static int estimate(SweepApp *s) {
   const char *unit;
   double begin = lag_clock_seconds();
   int rc = row ? 0 : LAG_ENOMEM;
-  for (int v = 0; v < variants && rc == 0; v++) rc = lag_sweep_run_one(&s->sweep, lag_plan_run_of(&s->plan, v), 0, row, why, sizeof why);
+  for (int v = 0; v < variants && rc == 0; v++)
+    rc = lag_sweep_run_one(&s->sweep, lag_plan_run_of(&s->plan, v), 0, row, why, sizeof why);
   free(row);
   if (rc == LAG_ENOMEM) return lag_app_error(a, "out of memory");
   if (rc == LAG_INTERRUPTED) return lag_app_error(a, "interrupted in the first run"), lag_app_interrupted();
   double all = (lag_clock_seconds() - begin) / variants * share / threads, long_unit = lag_long_time_unit(all, &unit);
   double number = long_unit > 0 ? all / long_unit : all < 120 ? all : all / 60;
-  snprintf(text, sizeof text, number < 10 ? "%.1f %s" : "%.0f %s", number, long_unit > 0 ? unit : all < 120 ? "s" : "min");
+  snprintf(text, sizeof text, number < 10 ? "%.1f %s" : "%.0f %s", number,
+           long_unit > 0 ? unit
+           : all < 120   ? "s"
+                         : "min");
   if (!a->yes && (all > day || bytes > most))
-    return lag_app_error(a, "%lld runs would take about %s and %.3g GB on this machine: take fewer values, --shard i/n on many, or --yes",
-                         s->plan.runs, text, 1e-9 * bytes);
+    return lag_app_error(
+        a,
+        "%lld runs would take about %s and %.3g GB on this machine: take fewer values, --shard i/n on many, or --yes",
+        s->plan.runs, text, 1e-9 * bytes);
   if (all > 60 && !a->quiet) fprintf(stderr, "%s: %lld runs, about %s\n", a->self, s->plan.runs, text);
   return 0;
 }
@@ -377,14 +425,16 @@ static const char *result_file(const Args *a) { return a->out ? a->out : a->svg 
 /* Whether the rows go to a stream or a device. The journal has no name then, and ends with this process. */
 static int is_stream(const char *file) {
   struct stat st;
-  return strcmp(file, "-") == 0 || lag_is_null_device(file) || (stat(file, &st) == 0 && !S_ISREG(st.st_mode) && !S_ISDIR(st.st_mode));
+  return strcmp(file, "-") == 0 || lag_is_null_device(file) ||
+         (stat(file, &st) == 0 && !S_ISREG(st.st_mode) && !S_ISDIR(st.st_mode));
 }
 
 static int journal_path(const SweepApp *s, long long shard, char path[4200]) {
   const Args *a = &s->app->args;
   const char *folder = getenv(TEMPORARY_FOLDER);
   const char *file = result_file(a);
-  if (is_stream(file)) return snprintf(path, 4200, "%s/lagc-sweep-%ld.journal", folder ? folder : "/tmp", (long)getpid());
+  if (is_stream(file))
+    return snprintf(path, 4200, "%s/lagc-sweep-%ld.journal", folder ? folder : "/tmp", (long)getpid());
   if (s->sweep.shards == 1) return snprintf(path, 4200, "%s.journal", file);
   return snprintf(path, 4200, "%s.%lld-of-%lld.journal", file, shard + 1, s->sweep.shards);
 }
@@ -407,7 +457,8 @@ static int read_shard(SweepApp *s) {
   long long i = 1, n = 1;
   char end;
   s->sweep.shards = 1;
-  if (a->shard && (sscanf(a->shard, "%lld/%lld%c", &i, &n, &end) != 2 || i < 1 || n < i || n > 1000000)) return lag_app_error(a, "--shard %s: part i of n, for example --shard 1/4", a->shard);
+  if (a->shard && (sscanf(a->shard, "%lld/%lld%c", &i, &n, &end) != 2 || i < 1 || n < i || n > 1000000))
+    return lag_app_error(a, "--shard %s: part i of n, for example --shard 1/4", a->shard);
   s->sweep.shard = i - 1;
   s->sweep.shards = n;
   return 0;
@@ -421,13 +472,19 @@ static int merge_shard(SweepApp *s, long long k, long long n, double *row) {
   char path[4200];
   struct stat st;
   journal_path(&part, k, path);
-  if (stat(path, &st)) return lag_app_error(&s->app->args, "%s is missing: make it by --shard %lld/%lld in place of --merge, or bring it here", path, k + 1, n);
+  if (stat(path, &st))
+    return lag_app_error(&s->app->args,
+                         "%s is missing: make it by --shard %lld/%lld in place of --merge, or bring it here", path,
+                         k + 1, n);
   if (open_journal(&part, 1)) return EXIT_USAGE;
   int rc = 0;
   for (long long c = k; c < part.journal.chunks && rc == 0; c += n) {
     size_t size = (size_t)lag_sweep_chunk_runs(&s->sweep, c) * lag_sweep_numbers(&s->sweep);
-    if (!part.journal.at[c]) rc = lag_app_error(&s->app->args, "%s: %lld of its runs are missing; go on with --shard %lld/%lld --resume", part.journal.path, lag_sweep_chunk_runs(&s->sweep, c), k + 1, n);
-    else if (lag_journal_get(&part.journal, c, row, size) || lag_journal_put(&s->journal, c, row, size)) rc = lag_app_io_error(s->app, s->journal.path);
+    if (!part.journal.at[c])
+      rc = lag_app_error(&s->app->args, "%s: %lld of its runs are missing; go on with --shard %lld/%lld --resume",
+                         part.journal.path, lag_sweep_chunk_runs(&s->sweep, c), k + 1, n);
+    else if (lag_journal_get(&part.journal, c, row, size) || lag_journal_put(&s->journal, c, row, size))
+      rc = lag_app_io_error(s->app, s->journal.path);
   }
   lag_journal_close(&part.journal, 0);
   return rc;
@@ -461,36 +518,49 @@ static int choose_lanes(SweepApp *s) {
   const lag_extras *extras = &app->extras;
   long long wanted = 0;
   int i = 0;
-  if (app->args.lanes && lag_args_count(&app->args, "--lanes", app->args.lanes, "--lanes 4", &wanted)) return EXIT_USAGE;
-  if (wanted && wanted != 1 && wanted != 4 && wanted != 8) return lag_app_error(&app->args, "--lanes %lld: 1, 4 or 8 runs at once", wanted);
+  if (app->args.lanes && lag_args_count(&app->args, "--lanes", app->args.lanes, "--lanes 4", &wanted))
+    return EXIT_USAGE;
+  if (wanted && wanted != 1 && wanted != 4 && wanted != 8)
+    return lag_app_error(&app->args, "--lanes %lld: 1, 4 or 8 runs at once", wanted);
   while (app->program->scenes[i] != app->scene) i++;
   for (int v = 0; v < s->sweep.nvariants && !s->no_lanes; v++, i++)
-    s->no_lanes = lag_lanes_choose(s->variants[v].like, extras->lanes_4 ? extras->lanes_4[i] : NULL, extras->lanes_8 ? extras->lanes_8[i] : NULL, (int)wanted, &s->variants[v].lanes);
+    s->no_lanes = lag_lanes_choose(s->variants[v].like, extras->lanes_4 ? extras->lanes_4[i] : NULL,
+                                   extras->lanes_8 ? extras->lanes_8[i] : NULL, (int)wanted, &s->variants[v].lanes);
   for (int v = 0; v < s->sweep.nvariants && s->no_lanes; v++) s->variants[v].lanes = (LaneChoice){.lanes = 1};
-  return s->no_lanes && wanted > 1 ? lag_app_error(&app->args, "--lanes %lld: there are none, %s; leave it out", wanted, s->no_lanes) : 0;
+  return s->no_lanes && wanted > 1
+             ? lag_app_error(&app->args, "--lanes %lld: there are none, %s; leave it out", wanted, s->no_lanes)
+             : 0;
 }
 
 static int choose_threads(const Args *a, Sweep *s) {
   long long n = s->ranks ? 1 : lag_processors();
   const long long most = 1024;
   if (a->threads && lag_args_count(a, "--threads", a->threads, "--threads 2", &n)) return EXIT_USAGE;
-  if (a->threads && n > most) return lag_app_error(a, "--threads %lld: up to %lld; this machine has %lld processors", n, most, (long long)lag_processors());
+  if (a->threads && n > most)
+    return lag_app_error(a, "--threads %lld: up to %lld; this machine has %lld processors", n, most,
+                         (long long)lag_processors());
   s->threads = n < 1 ? 1 : n > most ? (int)most : (int)n;
   return 0;
 }
 
-/* Runs of a chunk: some thousand chunks in all, so that none is long; up to 8 runs, some hundred thousand, so that ten thousand ranks have work; with motions of up
- * to 8 MB. */
+/* Runs of a chunk: some thousand chunks in all, so that none is long; up to 8 runs, some hundred thousand, so that
+ * ten thousand ranks have work; with motions of up to 8 MB. */
 static long long chunk_size(const SweepApp *s) {
-  const long long few = 8192, many = 131072, lanes = 8, numbers = 1000000 / (long long)lag_sweep_numbers(&s->sweep) + 1, most = s->sweep.nrows && numbers < 1024 ? numbers : 1024;
-  long long runs = s->plan.runs, n = runs / many > lanes ? runs / many : runs / few + 1 > lanes ? lanes : runs / few + 1;
+  const long long few = 8192, many = 131072, lanes = 8, numbers = 1000000 / (long long)lag_sweep_numbers(&s->sweep) + 1,
+                  most = s->sweep.nrows && numbers < 1024 ? numbers : 1024;
+  long long runs = s->plan.runs, n = runs / many > lanes      ? runs / many
+                                     : runs / few + 1 > lanes ? lanes
+                                                              : runs / few + 1;
   return n > most ? most : n;
 }
 
 /* Refuses what needs a journal that outlives the process. */
 static int check_stream(const Args *a) {
   const char *option = a->go_on ? "--resume" : a->shard ? "--shard" : a->merge ? "--merge" : NULL;
-  return option && is_stream(result_file(a)) ? lag_app_error(a, "%s: %s is no file, and runs are kept beside a file only; write -o FILE", option, result_file(a)) : 0;
+  return option && is_stream(result_file(a))
+             ? lag_app_error(a, "%s: %s is no file, and runs are kept beside a file only; write -o FILE", option,
+                             result_file(a))
+             : 0;
 }
 
 static int set_up(SweepApp *s) {
@@ -508,10 +578,16 @@ static int set_up(SweepApp *s) {
   rc = rc ? rc : name_columns(s);
   rc = rc ? rc : lag_sweep_motions_open(s);
   if (rc) return rc;
-  if (app->until == app->scene->t0) return lag_app_error(&app->args, "nothing to compute: the runs begin and end at t = %g s; write --until with another time", app->until);
-  if (!result_file(&app->args)) return lag_app_error(&app->args, "the rows need a file: write -o FILE.csv or -o FILE.npy, or --svg FILE for a picture");
+  if (app->until == app->scene->t0)
+    return lag_app_error(&app->args,
+                         "nothing to compute: the runs begin and end at t = %g s; write --until with another time",
+                         app->until);
+  if (!result_file(&app->args))
+    return lag_app_error(&app->args,
+                         "the rows need a file: write -o FILE.csv or -o FILE.npy, or --svg FILE for a picture");
   if (lag_sweep_picture_check(s)) return EXIT_USAGE;
-  if (s->plan.n > LAG_GRID_MOST - 1) return lag_app_error(&app->args, "%d names vary; up to %d may", s->plan.n, LAG_GRID_MOST - 1);
+  if (s->plan.n > LAG_GRID_MOST - 1)
+    return lag_app_error(&app->args, "%d names vary; up to %d may", s->plan.n, LAG_GRID_MOST - 1);
   s->sweep.plan = &s->plan;
   s->sweep.until = app->until;
   s->sweep.chunk = chunk_size(s);
@@ -521,7 +597,10 @@ static int set_up(SweepApp *s) {
   s->sweep.context = s;
   if (s->sweep.rank) return 0; /* rank 0 has the files */
   if (lag_app_check_outputs(app) || check_stream(&app->args)) return EXIT_USAGE;
-  return (!is_stream(result_file(&app->args)) && lag_app_try_file(app, app->args.out)) || lag_app_try_file(app, app->args.svg) || lag_app_try_file(app, app->args.motions) ? EXIT_USAGE : 0;
+  return (!is_stream(result_file(&app->args)) && lag_app_try_file(app, app->args.out)) ||
+                 lag_app_try_file(app, app->args.svg) || lag_app_try_file(app, app->args.motions)
+             ? EXIT_USAGE
+             : 0;
 }
 
 static int make_runs(SweepApp *s) {
@@ -535,12 +614,19 @@ static int make_runs(SweepApp *s) {
   int status = lag_sweep_run(&s->sweep);
   lag_app_stop_clock(app);
   s->seconds = app->wall;
-  if (s->sweep.silent && status == LAG_OK) lag_app_error(&app->args, "warning: %d of %d processes do not answer; others made their runs", s->sweep.silent, s->sweep.nranks);
+  if (s->sweep.silent && status == LAG_OK)
+    lag_app_error(&app->args, "warning: %d of %d processes do not answer; others made their runs", s->sweep.silent,
+                  s->sweep.nranks);
   if (status == LAG_OK) return 0;
   if (status == LAG_EIO) lag_app_io_error(app, s->journal.path);
   char kept[sizeof s->journal.path + 60] = "";
-  if (!is_stream(result_file(&app->args))) snprintf(kept, sizeof kept, "; %s keeps the runs made so far, --resume goes on", s->journal.path);
-  lag_app_error(&app->args, "%s%s", status == LAG_EIO ? "the sweep is not complete" : status == LAG_ENOMEM ? "out of memory" : "interrupted", kept);
+  if (!is_stream(result_file(&app->args)))
+    snprintf(kept, sizeof kept, "; %s keeps the runs made so far, --resume goes on", s->journal.path);
+  lag_app_error(&app->args, "%s%s",
+                status == LAG_EIO      ? "the sweep is not complete"
+                : status == LAG_ENOMEM ? "out of memory"
+                                       : "interrupted",
+                kept);
   return status == LAG_INTERRUPTED ? lag_app_interrupted() : EXIT_USAGE;
 }
 
@@ -549,7 +635,11 @@ int lag_app_sweep(App *app) {
   int rc = lag_sweep_check_mpi(&s);
   rc = rc ? rc : lag_sweep_join(&s);
   rc = rc ? rc : set_up(&s);
-  rc = rc ? rc : app->args.mpi ? lag_sweep_start(&s) : s.sweep.rank ? lag_sweep_serve(&s) : app->args.merge ? merge(&s) : make_runs(&s);
+  rc = rc                ? rc
+       : app->args.mpi   ? lag_sweep_start(&s)
+       : s.sweep.rank    ? lag_sweep_serve(&s)
+       : app->args.merge ? merge(&s)
+                         : make_runs(&s);
   if (rc == 0 && s.sweep.rank == 0) rc = s.sweep.shards > 1 ? lag_sweep_report_part(&s) : lag_sweep_report(&s);
   lag_journal_close(&s.journal, rc == 0 && s.sweep.shards == 1);
   lag_table_free(&s.table);

@@ -23,11 +23,12 @@ typedef struct SweepApp {
 /* Hash of values, method, end and measures: equal for two processes of one sweep. */
 uint64_t lag_sweep_signature(const SweepApp *s);
 
-/* sweep_ranks.c. Refuses --mpi where it cannot be; becomes mpirun (a message where that fails). Return EXIT_USAGE after a message. */
+/* sweep_ranks.c. Refuses --mpi where it cannot be; becomes mpirun (a message where that fails). Return EXIT_USAGE
+ * after a message. */
 int lag_sweep_check_mpi(const SweepApp *s);
 int lag_sweep_start(SweepApp *s);
-/* Joins the processes that mpirun started, if it did; checks that all have the same sweep; on another rank than 0, makes runs for it; leaves, or where rc
- * is not 0 ends them all. Return the exit status. */
+/* Joins the processes that mpirun started, if it did; checks that all have the same sweep; on another rank than 0,
+ * makes runs for it; leaves, or where rc is not 0 ends them all. Return the exit status. */
 int lag_sweep_join(SweepApp *s);
 int lag_sweep_agree(SweepApp *s);
 int lag_sweep_serve(SweepApp *s);
@@ -37,7 +38,8 @@ void lag_sweep_leave(const SweepApp *s, int rc);
 int lag_sweep_report(SweepApp *s);
 /* Says where the runs of a part are. The same. */
 int lag_sweep_report_part(SweepApp *s);
-/* Passes all rows on, in order: row[table.ncols] to `take`, until it returns another number than 0. 0, or -1 with errno set. */
+/* Passes all rows on, in order: row[table.ncols] to `take`, until it returns another number than 0. 0, or -1 with
+ * errno set. */
 int lag_sweep_each_row(SweepApp *s, int (*take)(void *context, long long run, const double *row), void *context);
 
 /* sweep_picture.c: refuses --svg for what it does not draw; draws. 0, or EXIT_USAGE after a message. */
@@ -47,7 +49,8 @@ int lag_sweep_picture(SweepApp *s);
 int lag_sweep_write_arrays(SweepApp *s);
 int lag_sweep_write_motion_arrays(SweepApp *s);
 
-/* sweep_motions.c: chooses the rows of --motions, before the runs; writes the file, after them. Without --motions nothing. The same. */
+/* sweep_motions.c: chooses the rows of --motions, before the runs; writes the file, after them. Without --motions
+ * nothing. The same. */
 int lag_sweep_motions_open(SweepApp *s);
 int lag_sweep_motions_write(SweepApp *s);
 

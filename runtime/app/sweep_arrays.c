@@ -32,7 +32,10 @@ static long long axes_room(const SweepPlan *p, long long rows) {
 
 /* Room for the axes, `columns` columns over all runs, and as many names. -1: no memory. */
 static int open_arrays(Arrays *g, SweepApp *s, int columns, int over_runs, long long rows) {
-  *g = (Arrays){.s = s, .column = calloc((size_t)columns, sizeof *g->column), .from = calloc((size_t)columns, sizeof *g->from), .renamed = calloc((size_t)s->plan.n, sizeof *g->renamed),
+  *g = (Arrays){.s = s,
+                .column = calloc((size_t)columns, sizeof *g->column),
+                .from = calloc((size_t)columns, sizeof *g->from),
+                .renamed = calloc((size_t)s->plan.n, sizeof *g->renamed),
                 .memory = malloc((size_t)(axes_room(&s->plan, rows) + over_runs * s->plan.runs) * sizeof *g->memory)};
   g->next = g->memory;
   return g->column && g->from && g->renamed && g->memory ? 0 : -1;
@@ -88,7 +91,8 @@ static void add_columns(Arrays *g, int n) {
     int varies = k < g->s->plan.n;
     if (varies && !is_column(&g->s->plan, k)) continue;
     g->from[g->ncolumns] = k;
-    g->column[g->ncolumns++] = (lag_axis){varies && g->renamed[k][0] ? g->renamed[k] : t->cols[k].name, t->cols[k].unit, g->s->plan.runs, take_room(g, g->s->plan.runs)};
+    g->column[g->ncolumns++] = (lag_axis){varies && g->renamed[k][0] ? g->renamed[k] : t->cols[k].name, t->cols[k].unit,
+                                          g->s->plan.runs, take_room(g, g->s->plan.runs)};
   }
 }
 
@@ -104,7 +108,9 @@ static int write_grid(const Arrays *g, const char *path, int (*next)(void *conte
   char part[4200], title[300];
   snprintf(part, sizeof part, "%s.part-%ld", path, (long)getpid());
   snprintf(title, sizeof title, "%s: %s", app->scene->model->name, app->scene->name);
-  int rc = app->extras.hdf5(part, &(lag_grid){title, g->naxes, g->ncolumns, g->axis, g->column, next, context}) ? lag_app_error(&app->args, "HDF5 cannot write %s", path) : 0;
+  int rc = app->extras.hdf5(part, &(lag_grid){title, g->naxes, g->ncolumns, g->axis, g->column, next, context})
+               ? lag_app_error(&app->args, "HDF5 cannot write %s", path)
+               : 0;
   if (rc == 0 && rename(part, path)) rc = lag_app_io_error(app, path);
   if (rc) unlink(part);
   return rc;
@@ -113,7 +119,9 @@ static int write_grid(const Arrays *g, const char *path, int (*next)(void *conte
 int lag_sweep_write_arrays(SweepApp *s) {
   const App *app = s->app;
   Arrays g;
-  int rc = open_arrays(&g, s, s->table.ncols, s->table.ncols, 0) || add_axes(&g) ? lag_app_error(&app->args, "out of memory") : 0;
+  int rc = open_arrays(&g, s, s->table.ncols, s->table.ncols, 0) || add_axes(&g)
+               ? lag_app_error(&app->args, "out of memory")
+               : 0;
   if (rc == 0) {
     add_columns(&g, s->table.ncols);
     rc = lag_sweep_each_row(s, take_row, &g) ? lag_app_io_error(app, s->journal.path) : 0;
@@ -123,7 +131,8 @@ int lag_sweep_write_arrays(SweepApp *s) {
   return rc;
 }
 
-/* ---- Motions: t and the outputs over the axes of the runs and one of rows; names that are walked together, or are samples, over those of the runs */
+/* ---- Motions: t and the outputs over the axes of the runs and one of rows; names that are walked together, or are
+ * samples, over those of the runs */
 
 static int next_motion(void *reader, double *block) {
   MotionReader *r = reader;
@@ -139,14 +148,18 @@ static void rename_starts(Arrays *g) {
   const SweepApp *s = g->s;
   for (int k = 0; k < s->plan.n; k++)
     for (int i = 1; i < s->motions.ncols; i++)
-      if (strcmp(s->motions.cols[i].name, s->table.cols[k].name) == 0) snprintf(g->renamed[k], sizeof g->renamed[k], "%s(start)", s->table.cols[k].name);
+      if (strcmp(s->motions.cols[i].name, s->table.cols[k].name) == 0)
+        snprintf(g->renamed[k], sizeof g->renamed[k], "%s(start)", s->table.cols[k].name);
 }
 
 int lag_sweep_write_motion_arrays(SweepApp *s) {
   const App *app = s->app;
   Arrays g;
   MotionReader r = {0};
-  int rc = open_arrays(&g, s, s->plan.n + s->sweep.width, s->plan.n, s->sweep.nrows + 1) || lag_sweep_motion_reader(&r, s) ? lag_app_error(&app->args, "out of memory") : 0;
+  int rc =
+      open_arrays(&g, s, s->plan.n + s->sweep.width, s->plan.n, s->sweep.nrows + 1) || lag_sweep_motion_reader(&r, s)
+          ? lag_app_error(&app->args, "out of memory")
+          : 0;
   if (rc == 0) {
     rename_starts(&g);
     rc = add_axes(&g) ? lag_app_error(&app->args, "out of memory") : 0;
@@ -155,7 +168,8 @@ int lag_sweep_write_motion_arrays(SweepApp *s) {
     add_columns(&g, s->plan.n);
     rc = lag_sweep_each_row(s, take_row, &g) ? lag_app_io_error(app, s->journal.path) : 0;
     add_count(&g, "row", "row(axis)", s->sweep.nrows + 1);
-    for (const Column *c = s->motions.cols + 1; c < s->motions.cols + s->motions.ncols; c++) g.column[g.ncolumns++] = (lag_axis){c->name, c->unit, 0, NULL};
+    for (const Column *c = s->motions.cols + 1; c < s->motions.cols + s->motions.ncols; c++)
+      g.column[g.ncolumns++] = (lag_axis){c->name, c->unit, 0, NULL};
   }
   rc = rc ? rc : write_grid(&g, app->args.motions, next_motion, &r);
   free(r.chunk);

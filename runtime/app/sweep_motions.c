@@ -1,5 +1,6 @@
-/* --sweep --motions FILE: the rows of each run, t and the outputs, with the number of the run. Enters: the times of rows; leaves: one file of all runs, in order. Holds: rows are kept in the journal,
- * beside the measures of their runs, so they are the same on any number of threads and after an interruption; one chunk of runs is in memory. */
+/* --sweep --motions FILE: the rows of each run, t and the outputs, with the number of the run. Enters: the times of
+ * rows; leaves: one file of all runs, in order. Holds: rows are kept in the journal, beside the measures of their
+ * runs, so they are the same on any number of threads and after an interruption; one chunk of runs is in memory. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,11 +14,15 @@ enum { MOST_NUMBERS = 100000000 }; /* of one run: 0.8 GB */
 static int choose_times(SweepApp *s) {
   const App *app = s->app;
   const Args *a = &app->args;
-  double every = app->scene->every > 0 ? app->scene->every : fabs(app->until - app->scene->t0) / 1000, dir = app->until < app->scene->t0 ? -1 : 1;
+  double every = app->scene->every > 0 ? app->scene->every : fabs(app->until - app->scene->t0) / 1000,
+         dir = app->until < app->scene->t0 ? -1 : 1;
   if (a->every && !lag_args_number(a, "--every", a->every, "--every 0.01", &every)) return EXIT_USAGE;
-  if (!(every > 0)) return lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
+  if (!(every > 0))
+    return lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
   double n = floor(lag_app_row_at(app, (double[]){app->scene->t0, every}, app->until)) + 1;
-  if (n * s->sweep.width > MOST_NUMBERS) return lag_app_error(a, "--motions: a row every %g s for %g s is %.3g rows a run; write a larger --every", every, fabs(app->until - app->scene->t0), n);
+  if (n * s->sweep.width > MOST_NUMBERS)
+    return lag_app_error(a, "--motions: a row every %g s for %g s is %.3g rows a run; write a larger --every", every,
+                         fabs(app->until - app->scene->t0), n);
   s->times = malloc((size_t)n * sizeof *s->times);
   if (!s->times) return lag_app_error(a, "out of memory");
   for (int k = 0; k < (int)n; k++) {
@@ -45,8 +50,12 @@ static int choose_columns(SweepApp *s) {
   for (int v = 1; v < s->sweep.nvariants && rc == 0; v++) {
     if (lag_table_init(&other, s->variants[v].like, 0)) rc = lag_app_error(a, "out of memory");
     for (int i = 0; i < t.ncols && rc == 0; i++)
-      if (other.ncols != t.ncols || strcmp(lag_column_label(&t.cols[i], label[0], sizeof label[0]), lag_column_label(&other.cols[i], label[1], sizeof label[1])) != 0)
-        rc = lag_app_error(a, "--motions: the outputs depend on %s; let the scene name outputs that are there for each value, `output x[1]`", a->consts);
+      if (other.ncols != t.ncols || strcmp(lag_column_label(&t.cols[i], label[0], sizeof label[0]),
+                                           lag_column_label(&other.cols[i], label[1], sizeof label[1])) != 0)
+        rc = lag_app_error(a,
+                           "--motions: the outputs depend on %s; let the scene name outputs that are there for each "
+                           "value, `output x[1]`",
+                           a->consts);
     lag_table_free(&other);
   }
   lag_table_free(&t);
@@ -60,14 +69,19 @@ int lag_sweep_motions_open(SweepApp *s) {
   if (!a->motions) return 0;
   if (choose_columns(s) || choose_times(s)) return EXIT_USAGE;
   double bytes = (double)s->plan.runs * (double)lag_sweep_numbers(&s->sweep) * sizeof(double);
-  if (bytes > much && !a->quiet) fprintf(stderr, "%s: the motions of %lld runs take about %.2g GB, twice that while they are written; --every DT: fewer rows\n", a->self, s->plan.runs, bytes / 1e9);
+  if (bytes > much && !a->quiet)
+    fprintf(
+        stderr,
+        "%s: the motions of %lld runs take about %.2g GB, twice that while they are written; --every DT: fewer rows\n",
+        a->self, s->plan.runs, bytes / 1e9);
   return 0;
 }
 
 /* ---- Reading and writing */
 
 int lag_sweep_motion_reader(MotionReader *r, SweepApp *s) {
-  *r = (MotionReader){.s = s, .chunk = malloc((size_t)s->sweep.chunk * lag_sweep_numbers(&s->sweep) * sizeof *r->chunk)};
+  *r =
+      (MotionReader){.s = s, .chunk = malloc((size_t)s->sweep.chunk * lag_sweep_numbers(&s->sweep) * sizeof *r->chunk)};
   return r->chunk ? 0 : -1;
 }
 
@@ -97,7 +111,8 @@ int lag_sweep_motions_write(SweepApp *s) {
   if (!path) return 0;
   if (lag_outfile_has_suffix(path, "h5")) return lag_sweep_write_motion_arrays(s);
   double *row = malloc((size_t)s->motions.ncols * sizeof *row);
-  if (lag_sweep_motion_reader(&r, s) || !row) return free(r.chunk), free(row), lag_app_error(&s->app->args, "out of memory");
+  if (lag_sweep_motion_reader(&r, s) || !row)
+    return free(r.chunk), free(row), lag_app_error(&s->app->args, "out of memory");
   int rc = lag_rows_open(&rows, path, &s->motions);
   for (long long i = 0; i < s->plan.runs && rc == 0; i++) {
     const double *motion = lag_sweep_next_motion(&r);

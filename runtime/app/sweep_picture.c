@@ -1,4 +1,5 @@
-/* --sweep --svg: the measures over the range of one name, the first measure over those of two, or else a matrix of scatter plots; with --histogram histograms of the measures. Ranges in equal ratios have logarithmic axes. */
+/* --sweep --svg: the measures over the range of one name, the first measure over those of two, or else a matrix of
+ * scatter plots; with --histogram histograms of the measures. Ranges in equal ratios have logarithmic axes. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +18,9 @@ static int has_steps(const Factor *f) {
 
 static int is_even(const Factor *f) { return f->n > 1 && (f->kind != FACTOR_LIST || has_steps(f)); }
 
-static int is_map(const SweepPlan *p) { return p->n == 2 && !p->dimensions && !p->zip && is_even(&p->factor[0]) && is_even(&p->factor[1]); }
+static int is_map(const SweepPlan *p) {
+  return p->n == 2 && !p->dimensions && !p->zip && is_even(&p->factor[0]) && is_even(&p->factor[1]);
+}
 
 static int is_curves(const SweepPlan *p) { return p->n == 1 && !p->dimensions; }
 
@@ -37,8 +40,15 @@ int lag_sweep_picture_check(const SweepApp *s) {
   int columns = p->n + s->sweep.nmeasures;
   if (a->histogram && !bars_of(a)) return EXIT_USAGE;
   if (!a->svg || is_curves(p) || a->histogram) return 0;
-  if (is_map(p)) return p->runs > MOST_CELLS ? lag_app_error(a, "--svg: a map of more than %d cells is too large; take fewer values", MOST_CELLS) : 0;
-  return columns > MOST_COLUMNS ? lag_app_error(a, "--svg: a matrix of %d names and measures is too small to read, up to %d fit; name a few measures, --measure EXPR", columns, MOST_COLUMNS) : 0;
+  if (is_map(p))
+    return p->runs > MOST_CELLS
+               ? lag_app_error(a, "--svg: a map of more than %d cells is too large; take fewer values", MOST_CELLS)
+               : 0;
+  return columns > MOST_COLUMNS ? lag_app_error(a,
+                                                "--svg: a matrix of %d names and measures is too small to read, up to "
+                                                "%d fit; name a few measures, --measure EXPR",
+                                                columns, MOST_COLUMNS)
+                                : 0;
 }
 
 /* Rows of a picture, and where they go. */
@@ -116,10 +126,14 @@ static int draw_map(const char *path, void *drawing) {
   double *axis = malloc((size_t)(nx + ny) * sizeof *axis), both[2];
   d->value = malloc((size_t)(nx * ny) * sizeof *d->value);
   int rc = axis && d->value ? lag_sweep_each_row(s, take_cell, d) : -1;
-  for (int i = 0; i < nx && axis; i++) lag_plan_values(p, (long long)i * ny, both), axis[i] = drawn_value(p, 0, both[0]);
+  for (int i = 0; i < nx && axis; i++)
+    lag_plan_values(p, (long long)i * ny, both), axis[i] = drawn_value(p, 0, both[0]);
   for (int i = 0; i < ny && axis; i++) lag_plan_values(p, i, both), axis[nx + i] = drawn_value(p, 1, both[1]);
   for (int k = 0; k < 3; k++) lag_column_label(&s->table.cols[k], label[k], sizeof label[k]);
-  const ValueMap map = {.nx = nx, .ny = ny, .x = axis, .y = axis + nx, .xlog = is_log(p, 0), .ylog = is_log(p, 1), .value = d->value, .xlabel = label[0], .ylabel = label[1], .label = label[2]};
+  const ValueMap map = {.nx = nx,
+                        .ny = ny, .x = axis, .y = axis + nx, .xlog = is_log(p, 0), .ylog = is_log(p, 1),
+                        .value = d->value, .xlabel = label[0], .ylabel = label[1],
+                        .label = label[2]};
   if (rc == 0) rc = lag_map_write(path, &map, d->title);
   free(axis);
   free(d->value);
@@ -130,5 +144,11 @@ int lag_sweep_picture(SweepApp *s) {
   Drawing d = {.s = s};
   snprintf(d.title, sizeof d.title, "%s: %s", s->app->scene->model->name, s->app->scene->name);
   const Args *a = &s->app->args;
-  return a->svg ? lag_app_picture(s->app, a->svg, a->histogram ? draw_histograms : is_curves(&s->plan) ? draw_curves : is_map(&s->plan) ? draw_map : draw_matrix, &d) : 0;
+  return a->svg ? lag_app_picture(s->app, a->svg,
+                                  a->histogram          ? draw_histograms
+                                  : is_curves(&s->plan) ? draw_curves
+                                  : is_map(&s->plan)    ? draw_map
+                                                        : draw_matrix,
+                                  &d)
+                : 0;
 }

@@ -1,4 +1,5 @@
-/* --sweep on several processes. --mpi K: this one checks the command line, and becomes `mpirun -n K` of itself; there, rank 0 has the files and prints. */
+/* --sweep on several processes. --mpi K: this one checks the command line, and becomes `mpirun -n K` of itself;
+ * there, rank 0 has the files and prints. */
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
@@ -30,9 +31,14 @@ int lag_sweep_check_mpi(const SweepApp *s) {
   if (!a->mpi) return 0;
   if (lag_args_count(a, "--mpi", a->mpi, "--mpi 4", &n)) return EXIT_USAGE;
   if (n == 1) return lag_app_error(a, "--mpi 1: one process is there without MPI; leave it out");
-  if (!s->app->extras.ranks) return lag_app_error(a, "--mpi: this program was built without MPI; `lagc sweep --mpi %s` builds one that has it", a->mpi);
+  if (!s->app->extras.ranks)
+    return lag_app_error(a, "--mpi: this program was built without MPI; `lagc sweep --mpi %s` builds one that has it",
+                         a->mpi);
   if (a->merge) return lag_app_error(a, "--merge and --mpi: there are no runs to share; leave --mpi out");
-  return getenv("OMPI_COMM_WORLD_SIZE") ? lag_app_error(a, "--mpi %s: mpirun has started %s processes already; leave --mpi out", a->mpi, getenv("OMPI_COMM_WORLD_SIZE")) : 0;
+  return getenv("OMPI_COMM_WORLD_SIZE")
+             ? lag_app_error(a, "--mpi %s: mpirun has started %s processes already; leave --mpi out", a->mpi,
+                             getenv("OMPI_COMM_WORLD_SIZE"))
+             : 0;
 }
 
 int lag_sweep_start(SweepApp *s) {
@@ -47,7 +53,9 @@ int lag_sweep_start(SweepApp *s) {
   execvp(words[0], (char *const *)words);
   int none = errno == ENOENT;
   free(words);
-  return lag_app_error(a, "mpirun: %s", none ? "it is not there: `apt-get install openmpi-bin`; --threads needs nothing" : strerror(errno));
+  return lag_app_error(a, "mpirun: %s",
+                       none ? "it is not there: `apt-get install openmpi-bin`; --threads needs nothing"
+                            : strerror(errno));
 }
 
 /* ---- Ranks */
@@ -57,11 +65,14 @@ int lag_sweep_join(SweepApp *s) {
   const char *name = getenv(name_variable);
   if (app->args.mpi) app->args.quiet = 1; /* rank 0 prints the notes */
   if (!app->extras.ranks || app->args.mpi) return 0;
-  if (app->extras.ranks->join(&s->sweep.rank, &s->sweep.nranks)) return lag_app_error(&app->args, "MPI does not start, or has no threads");
+  if (app->extras.ranks->join(&s->sweep.rank, &s->sweep.nranks))
+    return lag_app_error(&app->args, "MPI does not start, or has no threads");
   if (s->sweep.nranks > 1) s->sweep.ranks = app->extras.ranks;
   if (s->sweep.rank) app->args.quiet = 1;
   if (name) app->args.self = name;
-  return app->args.merge && s->sweep.ranks && s->sweep.rank == 0 ? lag_app_error(&app->args, "--merge: there are no runs to share; start one process") : 0;
+  return app->args.merge && s->sweep.ranks && s->sweep.rank == 0
+             ? lag_app_error(&app->args, "--merge: there are no runs to share; start one process")
+             : 0;
 }
 
 /* Values and options that all ranks share. */
@@ -74,9 +85,11 @@ int lag_sweep_agree(SweepApp *s) {
   const Sweep *w = &s->sweep;
   Agreed own = {lag_sweep_signature(s), w->shard, w->shards}, first = own;
   if (!w->ranks) return 0;
-  if (w->ranks->share(&first, sizeof first)) return lag_app_error(&s->app->args, "rank %d: rank 0 does not answer", w->rank);
+  if (w->ranks->share(&first, sizeof first))
+    return lag_app_error(&s->app->args, "rank %d: rank 0 does not answer", w->rank);
   if (own.signature == first.signature && own.shard == first.shard && own.shards == first.shards) return 0;
-  return lag_app_error(&s->app->args, "rank %d has another sweep than rank 0: start all with the same words, files and lagc", w->rank);
+  return lag_app_error(&s->app->args,
+                       "rank %d has another sweep than rank 0: start all with the same words, files and lagc", w->rank);
 }
 
 int lag_sweep_serve(SweepApp *s) {
@@ -86,7 +99,8 @@ int lag_sweep_serve(SweepApp *s) {
   if (status == LAG_INTERRUPTED) return lag_app_interrupted();
   if (status == LAG_OK) return 0;
   s->sweep.silent = status != LAG_ENOMEM; /* rank 0 */
-  return lag_app_error(&s->app->args, "rank %d: %s", s->sweep.rank, status == LAG_ENOMEM ? "out of memory" : "rank 0 does not answer");
+  return lag_app_error(&s->app->args, "rank %d: %s", s->sweep.rank,
+                       status == LAG_ENOMEM ? "out of memory" : "rank 0 does not answer");
 }
 
 /* Ends the launcher of this process: with --enable-recovery mpirun passes over the status of ranks, and a sweep without
@@ -96,7 +110,8 @@ static void end_launcher(void) {
   char path[40], name[16] = "";
   snprintf(path, sizeof path, "/proc/%ld/comm", (long)getppid());
   FILE *f = fopen(path, "r");
-  int known = f && fgets(name, sizeof name, f) && (strncmp(name, "mpi", 3) == 0 || strncmp(name, "orte", 4) == 0 || strncmp(name, "prte", 4) == 0);
+  int known = f && fgets(name, sizeof name, f) &&
+              (strncmp(name, "mpi", 3) == 0 || strncmp(name, "orte", 4) == 0 || strncmp(name, "prte", 4) == 0);
   if (known) kill(getppid(), SIGTERM);
   if (f) fclose(f);
 #endif

@@ -22,7 +22,8 @@ static double word_of(int status) { return status >= 0 ? status == LAG_STOPPED :
 int lag_sweep_each_row(SweepApp *s, int (*take)(void *context, long long run, const double *row), void *context) {
   const Sweep *w = &s->sweep;
   size_t columns = (size_t)lag_sweep_columns(w);
-  double *chunk = malloc((size_t)w->chunk * columns * sizeof *chunk), *row = malloc((size_t)s->table.ncols * sizeof *row);
+  double *chunk = malloc((size_t)w->chunk * columns * sizeof *chunk),
+         *row = malloc((size_t)s->table.ncols * sizeof *row);
   int rc = chunk && row ? 0 : -1;
   for (long long c = 0; c < s->journal.chunks && rc == 0; c++) {
     long long n = lag_sweep_chunk_runs(w, c);
@@ -78,7 +79,8 @@ static int take_value(void *values, long long run, const double *row) {
   return 0;
 }
 
-/* Quantile by linear interpolation between order statistics: definition 7 of R. J. Hyndman, Y. Fan, The American Statistician 50 (1996) 361. */
+/* Quantile by linear interpolation between order statistics: definition 7 of R. J. Hyndman, Y. Fan, The American
+ * Statistician 50 (1996) 361. */
 static double quantile(const double *sorted, long long n, double part) {
   double at = part * (double)(n - 1);
   long long i = (long long)at;
@@ -150,7 +152,8 @@ static void print_lacking(SweepApp *s, FILE *f, const Lacking *l, const char *wh
   if (!value) return;
   lag_plan_values(&s->plan, l->first, value);
   fprintf(f, "%lld %s, the first in row %lld (", l->n, what, l->first + 1);
-  for (int i = 0; i < s->plan.n; i++) fprintf(f, "%s%s=%s", i ? " " : "", s->plan.factor[i].name, lag_number_text(value[i], (char[64]){0}));
+  for (int i = 0; i < s->plan.n; i++)
+    fprintf(f, "%s%s=%s", i ? " " : "", s->plan.factor[i].name, lag_number_text(value[i], (char[64]){0}));
   fprintf(f, "): %s\n", reason_of(s, l->first, k, why, sizeof why));
   free(value);
 }
@@ -167,16 +170,20 @@ static void print_text(SweepApp *s, FILE *f, const Statistics *t, const Failures
   char method[256], label[sizeof(Column) + 4], processes[60] = "", runs[40];
   lag_report_method(s->app, method, sizeof method);
   if (s->sweep.nranks > 1) snprintf(processes, sizeof processes, " of each of %d processes", s->sweep.nranks);
-  fprintf(f, "model %s, scene %s, method %s: %s to t = %s s, %lld failed\n", s->app->program->name, s->app->scene->name, method, runs_text(s->plan.runs, runs), lag_number_text(s->sweep.until, (char[64]){0}), failed);
+  fprintf(f, "model %s, scene %s, method %s: %s to t = %s s, %lld failed\n", s->app->program->name, s->app->scene->name,
+          method, runs_text(s->plan.runs, runs), lag_number_text(s->sweep.until, (char[64]){0}), failed);
   if (s->made) {
-    fprintf(f, "%s in %.3g s, %.3g a second on %d thread%s%s", runs_text(s->made, runs), s->seconds, (double)s->made / s->seconds, s->sweep.threads, s->sweep.threads == 1 ? "" : "s", processes);
+    fprintf(f, "%s in %.3g s, %.3g a second on %d thread%s%s", runs_text(s->made, runs), s->seconds,
+            (double)s->made / s->seconds, s->sweep.threads, s->sweep.threads == 1 ? "" : "s", processes);
     if (s->variants[0].lanes.kernel) fprintf(f, ", %d at once in lanes\n", s->variants[0].lanes.lanes);
     else fprintf(f, "%s%s\n", s->no_lanes ? ", one by one, " : "", s->no_lanes ? s->no_lanes : "");
   }
-  fprintf(f, "\n  %-28s %8s %12s %12s %12s %12s %12s %12s %12s\n", "", "runs", "mean", "deviation", "least", "5 %", "50 %", "95 %", "largest");
+  fprintf(f, "\n  %-28s %8s %12s %12s %12s %12s %12s %12s %12s\n", "", "runs", "mean", "deviation", "least", "5 %",
+          "50 %", "95 %", "largest");
   for (int k = 0; k < s->sweep.nmeasures; k++)
-    fprintf(f, "  %-28s %8lld %12.6g %12.6g %12.6g %12.6g %12.6g %12.6g %12.6g\n", lag_column_label(&s->table.cols[s->plan.n + k], label, sizeof label), t[k].n, t[k].mean, t[k].deviation, t[k].least,
-            t[k].quantile[0], t[k].quantile[1], t[k].quantile[2], t[k].most);
+    fprintf(f, "  %-28s %8lld %12.6g %12.6g %12.6g %12.6g %12.6g %12.6g %12.6g\n",
+            lag_column_label(&s->table.cols[s->plan.n + k], label, sizeof label), t[k].n, t[k].mean, t[k].deviation,
+            t[k].least, t[k].quantile[0], t[k].quantile[1], t[k].quantile[2], t[k].most);
   for (int k = 0; k < MOST_KINDS; k++) print_lacking(s, f, &bad->failed[k], "failed", 0);
   for (int k = 0; k < s->sweep.nmeasures; k++) {
     snprintf(label, sizeof label, "%s no %s", bad->none[k].n == 1 ? "has" : "have", s->app->measure_names[k]);
@@ -228,7 +235,10 @@ int lag_sweep_report(SweepApp *s) {
   Failures bad = {.s = s, .none = calloc((size_t)s->sweep.nmeasures + 1, sizeof *bad.none)};
   Statistics *t = calloc((size_t)s->sweep.nmeasures + 1, sizeof *t);
   long long failed = 0;
-  int rc = !t || !bad.none ? lag_app_error(a, "out of memory") : !a->out ? 0 : lag_outfile_has_suffix(a->out, "h5") ? lag_sweep_write_arrays(s) : write_rows(s);
+  int rc = !t || !bad.none                        ? lag_app_error(a, "out of memory")
+           : !a->out                              ? 0
+           : lag_outfile_has_suffix(a->out, "h5") ? lag_sweep_write_arrays(s)
+                                                  : write_rows(s);
   rc = rc ? rc : lag_sweep_picture(s);
   rc = rc ? rc : lag_sweep_motions_write(s);
   if (rc == 0) {
@@ -259,7 +269,8 @@ int lag_sweep_report_part(SweepApp *s) {
     lag_json_end(&j, '}');
     putchar('\n');
   } else if (!a->quiet) {
-    printf("%s has the runs of part %s; when all are there, --merge %lld in place of --shard writes the rows\n", s->journal.path, a->shard, s->sweep.shards);
+    printf("%s has the runs of part %s; when all are there, --merge %lld in place of --shard writes the rows\n",
+           s->journal.path, a->shard, s->sweep.shards);
   }
   return EXIT_FINE;
 }

@@ -1,5 +1,5 @@
-/* --tangent: derivative of the state by the state at the start. Enters: a run with a tangent; leaves: additional columns
- * dx/dy(0), row-major, in declared units, and the matrix at the end for the report. */
+/* --tangent: derivative of the state by the state at the start. Enters: a run with a tangent; leaves: additional
+ * columns dx/dy(0), row-major, in declared units, and the matrix at the end for the report. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,8 +35,11 @@ int lag_tangent_columns_open(App *app) {
   if (!a->tangent) return 0;
   if (lag_sim_set_tangent(app->sim, n, NULL)) return lag_app_error(a, "%s", lag_sim_message(app->sim));
   if (n > MOST_COMPONENTS) {
-    return lag_app_error(a, "--tangent: %d coordinates, velocities and states would make %d columns; %d are allowed. lag_sim_set_tangent of "
-                        "liblag takes as many as you give it", n, n * n, MOST_COMPONENTS);
+    return lag_app_error(a,
+                         "--tangent: %d coordinates, velocities and states would make %d columns; %d are allowed. "
+                         "lag_sim_set_tangent of "
+                         "liblag takes as many as you give it",
+                         n, n * n, MOST_COMPONENTS);
   }
   Column *cols = realloc(t->cols, (size_t)(before + n * n) * sizeof *cols);
   double *row = realloc(app->row, (size_t)(before + n * n) * sizeof *row);
@@ -54,7 +57,9 @@ int lag_tangent_columns_row(App *app) {
   if (!app->args.tangent) return LAG_OK;
   int rc = lag_sim_tangent(app->sim, J);
   for (int i = 0; i < n && rc == 0; i++)
-    for (int j = 0; j < n; j++) J[i * n + j] *= lag_sim_state_info(app->sim, j, NULL, 0, NULL, 0) / lag_sim_state_info(app->sim, i, NULL, 0, NULL, 0);
+    for (int j = 0; j < n; j++)
+      J[i * n + j] *=
+          lag_sim_state_info(app->sim, j, NULL, 0, NULL, 0) / lag_sim_state_info(app->sim, i, NULL, 0, NULL, 0);
   return rc;
 }
 
@@ -63,7 +68,8 @@ int lag_tangent_columns_row(App *app) {
 /* dx/dy(0) at the end of the run; NULL: it is not asked for, or not known. */
 static const double *final_tangent(App *app) {
   int n = components(app);
-  return !app->args.tangent || app->status < 0 || lag_tangent_columns_row(app) ? NULL : app->row + app->table.ncols - n * n;
+  return !app->args.tangent || app->status < 0 || lag_tangent_columns_row(app) ? NULL
+                                                                               : app->row + app->table.ncols - n * n;
 }
 
 static long long slides_begun(const App *app) {
@@ -89,7 +95,8 @@ void lag_report_tangent(App *app, FILE *f) {
   }
   putc('\n', f);
   long long slides = slides_begun(app);
-  if (slides) fprintf(f, "rank of the tangent falls by 1 where a slide begins: %lld time%s\n", slides, slides == 1 ? "" : "s");
+  if (slides)
+    fprintf(f, "rank of the tangent falls by 1 where a slide begins: %lld time%s\n", slides, slides == 1 ? "" : "s");
 }
 
 void lag_report_tangent_json(App *app, Json *out) {

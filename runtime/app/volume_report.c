@@ -1,4 +1,5 @@
-/* --volume: the volume of the phase space along a run (analysis/phase_volume.h). Enters: a run; leaves: a line of the report, or members in JSON. */
+/* --volume: the volume of the phase space along a run (analysis/phase_volume.h). Enters: a run; leaves: a line of
+ * the report, or members in JSON. */
 #include <math.h>
 
 #include "app/app.h"
@@ -22,7 +23,8 @@ static const char *space_of(const App *app) {
 /* Where q and p in which the flow keeps volumes are no coordinates of the model. */
 static const char *caveat(const App *app) {
   unsigned has = app->scene->model->flags;
-  return (has & LAG_FIRST_ORDER) && !(has & LAG_CONSTANT_FORM) ? "; not that of Liouville, as the two-form of L varies" : "";
+  return (has & LAG_FIRST_ORDER) && !(has & LAG_CONSTANT_FORM) ? "; not that of Liouville, as the two-form of L varies"
+                                                               : "";
 }
 
 void lag_report_volume(App *app, FILE *f) {
@@ -30,7 +32,9 @@ void lag_report_volume(App *app, FILE *f) {
   if (!v->n || app->status < 0) return;
   double log_det = lag_phase_volume_now(v, app->sim);
   if (isinf(log_det)) fprintf(f, "volume of phase space: 0, as neighbouring motions become one where a slide begins\n");
-  else fprintf(f, "volume of phase space, %s: log %.6g at the end, at most %.3g in size on the way%s\n", space_of(app), log_det, fmax(v->largest, fabs(log_det)), caveat(app));
+  else
+    fprintf(f, "volume of phase space, %s: log %.6g at the end, at most %.3g in size on the way%s\n", space_of(app),
+            log_det, fmax(v->largest, fabs(log_det)), caveat(app));
 }
 
 void lag_report_volume_json(App *app, Json *j) {

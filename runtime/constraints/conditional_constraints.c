@@ -1,23 +1,26 @@
-/* Constraints that hold while a condition is true. Enters: a state at the start or after an event; leaves: those constraints whose conditions are
- * true, and velocities that obey them. Holds: a condition is true where its constraint holds, and nowhere else, up to the rounding of its function;
- * positions do not change.
+/* Constraints that hold while a condition is true. Enters: a state at the start or after an event; leaves: those
+ * constraints whose conditions are true, and velocities that obey them. Holds: a condition is true where its
+ * constraint holds, and nowhere else, up to the rounding of its function; positions do not change.
  *
- * Where a constraint begins to hold, velocities make the least change in the metric of the mass matrix that obeys all constraints (lag_project): a
- * plastic impact, after which no state that obeys them is nearer in kinetic energy. J.J. Moreau, in: Nonsmooth Mechanics and Applications (1988), 1,
- * DOI 10.1007/978-3-7091-2624-0_1. Contacts that touch then follow their own law: the nearest velocities of both are found so, one after the other,
- * since those of contacts are sought among those that obey the constraints. */
+ * Where a constraint begins to hold, velocities make the least change in the metric of the mass matrix that obeys
+ * all constraints (lag_project): a plastic impact, after which no state that obeys them is nearer in kinetic energy.
+ * J.J. Moreau, in: Nonsmooth Mechanics and Applications (1988), 1, DOI 10.1007/978-3-7091-2624-0_1. Contacts that
+ * touch then follow their own law: the nearest velocities of both are found so, one after the other, since those of
+ * contacts are sought among those that obey the constraints. */
 #include <math.h>
 #include <string.h>
 
 #include "core/core.h"
 
-/* Part of a constraint's terms by which its position may be off where it begins to hold: events are located on the dense output, to less. */
+/* Part of a constraint's terms by which its position may be off where it begins to hold: events are located on the
+ * dense output, to less. */
 static const double no_distance = 1e-9;
 
 static int holds(const lag_sim *s, const lag_contact *c) { return s->hold[c->input] > 0.5; }
 
-/* Whether constraint c holds after the event at y, beside whose condition `margin` lies. Where the margin is rounding, `zero`, a condition that had
- * clearly been true, or false, until now ends at the same time as that of the event: feet that follow each other. */
+/* Whether constraint c holds after the event at y, beside whose condition `margin` lies. Where the margin is
+ * rounding, `zero`, a condition that had clearly been true, or false, until now ends at the same time as that of the
+ * event: feet that follow each other. */
 static int then_holds(lag_sim *s, const lag_contact *c, int event, double margin, const double *zero) {
   int now = holds(s, c), came = now ? c->impact : c->release, goes = now ? c->release : c->impact;
   if (event == came || event == goes) return event == c->impact;
@@ -54,8 +57,11 @@ int lag_conditional_place(lag_sim *s, double t, const double *y) {
 
 static int fail_apart(lag_sim *s, int k, double distance) {
   const lag_constraint *c = &s->scene->model->constraints->of[k];
-  return lag_fail(s, LAG_EMODEL, "the constraint %s begins to hold at t = %.9g s, where it is off by %.3g%s%s, and an impulse changes no positions: let its "
-                  "condition become true where it is met, or demand its rate, as x' = 0", c->name, s->run->t, distance, c->unit[0] ? " " : "", c->unit);
+  return lag_fail(s, LAG_EMODEL,
+                  "the constraint %s begins to hold at t = %.9g s, where it is off by %.3g%s%s, and an impulse changes "
+                  "no positions: let its "
+                  "condition become true where it is met, or demand its rate, as x' = 0",
+                  c->name, s->run->t, distance, c->unit[0] ? " " : "", c->unit);
 }
 
 /* Whether the constraints on positions that have just begun to hold are met at y. */
@@ -63,20 +69,25 @@ static int check_positions(lag_sim *s, const double *y) {
   const lag_model *m = s->scene->model;
   int n = m->constraints->n, rc;
   double *c = s->contact_scratch, *terms = c + n;
-  if ((rc = lag_residuals(&s->pb, s->run->t, y, c, terms)) != 0 || (rc = lag_constraint_terms(&s->pb, s->run->t, y, 1, terms)) != 0) return rc;
+  if ((rc = lag_residuals(&s->pb, s->run->t, y, c, terms)) != 0 ||
+      (rc = lag_constraint_terms(&s->pb, s->run->t, y, 1, terms)) != 0)
+    return rc;
   for (int i = 0; i < m->ncontacts; i++) {
     const lag_contact *of = &m->contacts[i];
     int k = of->constraint, begins = of->conditional && holds(s, of) && !(s->contact_was[i] > 0.5);
-    if (begins && m->constraints->of[k].holonomic && !(fabs(c[k]) <= no_distance * terms[k])) return fail_apart(s, k, c[k]);
+    if (begins && m->constraints->of[k].holonomic && !(fabs(c[k]) <= no_distance * terms[k]))
+      return fail_apart(s, k, c[k]);
   }
   return LAG_OK;
 }
 
 static int fail_unmet(lag_sim *s, int event, int changed) {
   const char *name = event < 0 ? "" : s->scene->model->ev[event].name, *why = s->pb.detail ? s->pb.detail : "";
-  if (!changed) return lag_fail(s, LAG_EMODEL, "event %s: its action at t = %s s leaves the constraints: %s", name, LAG_TEXT(s->run->t), why);
-  return lag_fail(s, LAG_EMODEL, "at t = %.9g s%s%s the constraints that hold from then on contradict each other: %s", s->run->t,
-                  event < 0 ? "" : ", after event ", name, why);
+  if (!changed)
+    return lag_fail(s, LAG_EMODEL, "event %s: its action at t = %s s leaves the constraints: %s", name,
+                    LAG_TEXT(s->run->t), why);
+  return lag_fail(s, LAG_EMODEL, "at t = %.9g s%s%s the constraints that hold from then on contradict each other: %s",
+                  s->run->t, event < 0 ? "" : ", after event ", name, why);
 }
 
 /* Brings y to the constraints that hold now. changed: the set is another; elsewhere: positions have been set. */
@@ -90,16 +101,21 @@ static int obey(lag_sim *s, double *y, int event, int changed, int elsewhere) {
 }
 
 static int fail_backwards(lag_sim *s) {
-  return lag_fail(s, LAG_EINVAL, "at t = %.9g s a constraint with `while` begins or ceases to hold: that ends a run backwards in time, since its impact cannot "
-                  "be reversed", s->run->t);
+  return lag_fail(s, LAG_EINVAL,
+                  "at t = %.9g s a constraint with `while` begins or ceases to hold: that ends a run backwards in "
+                  "time, since its impact cannot "
+                  "be reversed",
+                  s->run->t);
 }
 
 static int fail_undecided(lag_sim *s) {
   const lag_model *m = s->scene->model;
   int i = 0; /* the first that was switched in the last turn */
   while (!m->contacts[i].conditional || holds(s, &m->contacts[i]) == (s->contact_was[i] > 0.5)) i++;
-  return lag_fail(s, LAG_EMODEL, "at t = %.9g s the constraint %s can neither hold nor not hold: its own impulse makes its condition %s", s->run->t,
-                  m->constraints->of[m->contacts[i].constraint].name, holds(s, &m->contacts[i]) ? "true" : "false");
+  return lag_fail(
+      s, LAG_EMODEL,
+      "at t = %.9g s the constraint %s can neither hold nor not hold: its own impulse makes its condition %s",
+      s->run->t, m->constraints->of[m->contacts[i].constraint].name, holds(s, &m->contacts[i]) ? "true" : "false");
 }
 
 int lag_settle_constraints(lag_sim *s, double *y, const char *who, int event, int ends, int moved, const double *zero) {

@@ -1,5 +1,5 @@
-/* Independence of constraints by Gram-Schmidt orthogonalisation, in the solver's scaled coordinates (lag_scales of lag_kkt.h), so that units of
- * coordinates do not matter. Holds: rows are taken in the order of the constraints. */
+/* Independence of constraints by Gram-Schmidt orthogonalisation, in the solver's scaled coordinates (lag_scales of
+ * lag_kkt.h), so that units of coordinates do not matter. Holds: rows are taken in the order of the constraints. */
 #include <math.h>
 #include <string.h>
 
@@ -20,12 +20,14 @@ double *lag_independence_scratch(const lag_problem *pb) {
 int lag_constraint_jacobian(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass) {
   const lag_constraints *of = pb->model->constraints;
   size_t n = (size_t)of->n, nq = (size_t)pb->nq;
-  double *M = pb->ranks, *entries = M + nq * nq, *masses = entries + of->njacobian, *scale = masses + of->nmass, *top = scale + n + nq;
+  double *M = pb->ranks, *entries = M + nq * nq, *masses = entries + of->njacobian, *scale = masses + of->nmass,
+         *top = scale + n + nq;
   int rc = lag_inputs(pb, t);
   memset(M, 0, nq * nq * sizeof *M);
   rc = rc ? rc : of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, entries, masses, pb->work);
   for (size_t i = 0; i < n * nq; i++) A[i] = 0;
-  for (int e = 0; e < of->njacobian && rc == 0; e++) A[(size_t)of->jacobian[e].row * nq + (size_t)of->jacobian[e].col] = entries[e];
+  for (int e = 0; e < of->njacobian && rc == 0; e++)
+    A[(size_t)of->jacobian[e].row * nq + (size_t)of->jacobian[e].col] = entries[e];
   for (int e = 0; e < of->nmass && rc == 0; e++) {
     size_t i = (size_t)of->mass[e].row, j = (size_t)of->mass[e].col;
     M[i * nq + j] = M[j * nq + i] = masses[e];
@@ -67,7 +69,8 @@ double lag_independent_part(int n, int r, double least, const double *unit, doub
   return length > 0 ? left : -1;
 }
 
-/* Ratio of the first-order change of constraint k, when each coordinate moves by its typical magnitude, to the size of its terms; at most 1. */
+/* Ratio of the first-order change of constraint k, when each coordinate moves by its typical magnitude, to the size
+ * of its terms; at most 1. */
 static double slope(const lag_problem *pb, const double *y, const double *row, double size) {
   double s = 0;
   for (int i = 0; i < pb->nq; i++) s += row[i] != 0.0 ? fabs(row[i]) * lag_typical_magnitude(pb, y, 1, i) : 0;
@@ -76,14 +79,16 @@ static double slope(const lag_problem *pb, const double *y, const double *row, d
 
 double lag_independence(lag_problem *pb, double t, const double *y, int *weakest) {
   const lag_constraints *of = pb->model->constraints;
-  const double follows = pb->redundant || pb->model->ncontacts > 0 ? 1e-9 : 0; /* below: always redundant, as two feet of a block that stick */
+  /* below: always redundant, as two feet of a block that stick */
+  const double follows = pb->redundant || pb->model->ncontacts > 0 ? 1e-9 : 0;
   int nq = pb->nq, n = of->n, r = 0;
   double least = 1, *A = lag_independence_scratch(pb), *unit = A + n * nq, *size = unit + nq;
   int rc = lag_constraint_jacobian(pb, t, y, A, unit, NULL);
   *weakest = -1;
   rc = rc || (of->nholonomic > 0 && lag_constraint_terms(pb, t, y, 1, size));
   for (int k = 0; k < n && rc == 0; k++) {
-    double *row = A + k * nq, part = k < of->nholonomic ? slope(pb, y, row, size[k]) : 1, left = fmax(lag_independent_part(nq, r, follows, unit, A, row), 0);
+    double *row = A + k * nq, part = k < of->nholonomic ? slope(pb, y, row, size[k]) : 1,
+           left = fmax(lag_independent_part(nq, r, follows, unit, A, row), 0);
     if (left * part > follows && left * part < least) {
       least = left * part;
       *weakest = k;

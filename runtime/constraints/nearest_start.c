@@ -1,6 +1,7 @@
-/* Consistent start. Enters: the start as scene and caller set it, and which components they set; leaves: the nearest start on the constraints.
- * Holds: components that nobody set move first, the others only where that does not suffice; a start that obeys the constraints to rounding is
- * not touched. numeric/consistent_state.c searches; here are the model's functions for it, and messages. */
+/* Consistent start. Enters: the start as scene and caller set it, and which components they set; leaves: the nearest
+ * start on the constraints. Holds: components that nobody set move first, the others only where that does not
+ * suffice; a start that obeys the constraints to rounding is not touched. numeric/consistent_state.c searches; here
+ * are the model's functions for it, and messages. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -37,7 +38,8 @@ static const double *put(const lag_level *w) {
 
 static int residuals(const lag_level *w, double *residual) {
   Start *s = w->context;
-  return lag_residuals(s->pb, s->sim->scene->t0, put(w), w->positions ? residual : s->other, w->positions ? s->other : residual);
+  return lag_residuals(s->pb, s->sim->scene->t0, put(w), w->positions ? residual : s->other,
+                       w->positions ? s->other : residual);
 }
 
 static int jacobian(const lag_level *w, double *A) {
@@ -80,12 +82,14 @@ static int direction(const lag_level *w, double pull, double *d) {
     for (int a = 0; a < nf; a++) {
       x[a] = 0;
       for (int b = 0; b < nf; b++) {
-        double m = lag_level_weight(w, w->free[a]) * lag_level_weight(w, w->free[b]) * s->full[w->free[a] * nq + w->free[b]];
+        double m =
+            lag_level_weight(w, w->free[a]) * lag_level_weight(w, w->free[b]) * s->full[w->free[a] * nq + w->free[b]];
         s->kkt[a * nf + b] = m;
         x[a] += pull * m * (w->asked[w->free[b]] - w->x[w->free[b]]);
       }
       for (int e = 0; e < of->njacobian; e++)
-        if (of->jacobian[e].row < w->rows && of->jacobian[e].col == w->free[a]) A[of->jacobian[e].row * nf + a] = w->A[e];
+        if (of->jacobian[e].row < w->rows && of->jacobian[e].col == w->free[a])
+          A[of->jacobian[e].row * nf + a] = w->A[e];
     }
     for (int k = 0; k < w->rows; k++) l[k] = -w->residual[k];
     regular = lag_kkt(nf, w->rows, 0, s->kkt);
@@ -101,7 +105,8 @@ static double distance(const lag_level *w) {
   double sum = 0;
   for (int i = 0; i < w->n; i++)
     for (int j = 0; j < w->n; j++)
-      sum += lag_level_weight(w, i) * (w->x[i] - w->asked[i]) * s->full[i * w->n + j] * lag_level_weight(w, j) * (w->x[j] - w->asked[j]);
+      sum += lag_level_weight(w, i) * (w->x[i] - w->asked[i]) * s->full[i * w->n + j] * lag_level_weight(w, j) *
+             (w->x[j] - w->asked[j]);
   return sum;
 }
 
@@ -128,22 +133,31 @@ static int refuse_start(Start *s, lag_start_kind kind, int k) {
   const lag_constraint *c = &s->of->of[k];
   int positions = s->level.positions;
   char line[32];
-  if (kind == LAG_START_BROKEN || kind == LAG_START_NONE) lag_report_residual(s->pb, k, positions, fabs(s->level.residual[k]), "");
+  if (kind == LAG_START_BROKEN || kind == LAG_START_NONE)
+    lag_report_residual(s->pb, k, positions, fabs(s->level.residual[k]), "");
   switch (kind) {
   case LAG_START_NO_VALUE:
-    return lag_fail(s->sim, LAG_EINVAL, "the constraint %s%s has no value at the start: start where it has one", c->name, lag_line_text(c, line));
+    return lag_fail(s->sim, LAG_EINVAL, "the constraint %s%s has no value at the start: start where it has one",
+                    c->name, lag_line_text(c, line));
   case LAG_START_STEEP:
-    return lag_fail(s->sim, LAG_EINVAL, "the derivatives of the constraint %s%s have no value where it holds: write it so that they have, "
-                    "x = 1 in place of sqrt(x - 1) = 0", c->name, lag_line_text(c, line));
+    return lag_fail(s->sim, LAG_EINVAL,
+                    "the derivatives of the constraint %s%s have no value where it holds: write it so that they have, "
+                    "x = 1 in place of sqrt(x - 1) = 0",
+                    c->name, lag_line_text(c, line));
   case LAG_START_FLAT:
-    return lag_fail(s->sim, LAG_EINVAL, "the derivatives of the constraint %s%s vanish where it holds, so that no force can hold it: write it "
-                    "so that they do not, x = 0 in place of x^2 = 0", c->name, lag_line_text(c, line));
+    return lag_fail(
+        s->sim, LAG_EINVAL,
+        "the derivatives of the constraint %s%s vanish where it holds, so that no force can hold it: write it "
+        "so that they do not, x = 0 in place of x^2 = 0",
+        c->name, lag_line_text(c, line));
   case LAG_START_BROKEN:
-    return lag_fail(s->sim, LAG_EINVAL, "the start contradicts its constraints: %s%s; without `exactly` the nearest start is taken",
+    return lag_fail(s->sim, LAG_EINVAL,
+                    "the start contradicts its constraints: %s%s; without `exactly` the nearest start is taken",
                     s->pb->words, positions ? "" : ", in its velocities");
   default:
-    return lag_fail(s->sim, LAG_EINVAL, "no start obeys the constraints; the nearest state found from the given start: %s%s",
-                    s->pb->words, positions ? "" : " in its rate");
+    return lag_fail(s->sim, LAG_EINVAL,
+                    "no start obeys the constraints; the nearest state found from the given start: %s%s", s->pb->words,
+                    positions ? "" : " in its rate");
   }
 }
 
@@ -171,13 +185,15 @@ static int project_level(Start *s, int positions) {
   return kind == LAG_START_FOUND ? LAG_OK : refuse_start(s, kind, k);
 }
 
-/* Rank of the constraints at y; marks[k] := 1 where constraint k depends on those before it; held[i] := squared projection of coordinate i on
- * their row space. The threshold is the coarse one of lag_kkt.h: at a singular place a start is found to sqrt(eps) only. */
+/* Rank of the constraints at y; marks[k] := 1 where constraint k depends on those before it; held[i] := squared
+ * projection of coordinate i on their row space. The threshold is the coarse one of lag_kkt.h: at a singular place a
+ * start is found to sqrt(eps) only. */
 static int rank(Start *w, double *marks, double *held) {
   const double least = cbrt(DBL_EPSILON);
   int nq = w->nq, m = w->of->n, r = 0;
   double *Q = w->kkt, *unit = Q + m * nq;
-  if (lag_constraint_jacobian(w->pb, w->sim->scene->t0, w->y, Q, unit, NULL)) memset(Q, 0, (size_t)(m * nq + nq) * sizeof *Q);
+  if (lag_constraint_jacobian(w->pb, w->sim->scene->t0, w->y, Q, unit, NULL))
+    memset(Q, 0, (size_t)(m * nq + nq) * sizeof *Q);
   for (int k = 0; k < m; k++) {
     double left = lag_independent_part(nq, r, least, unit, Q, Q + k * nq);
     marks[k] = left >= 0 && !(left > least); /* an open contact is a row of zeros, and not marked */
@@ -188,10 +204,12 @@ static int rank(Start *w, double *marks, double *held) {
   return r;
 }
 
-/* Rank at the start and, where constraints are redundant, at a displaced solution: a larger rank there is a singular start; sets loose. */
+/* Rank at the start and, where constraints are redundant, at a displaced solution: a larger rank there is a singular
+ * start; sets loose. */
 static void look_beside(Start *w) {
   lag_sim *s = w->sim;
-  double *here = w->best, *held = s->loose, *held_beside = w->full, *marks = w->other; /* full is scratch of direction */
+  /* full is scratch of direction */
+  double *here = w->best, *held = s->loose, *held_beside = w->full, *marks = w->other;
   s->run->rank = s->run->beside = rank(w, s->redundant, held);
   if (s->run->rank >= w->of->n - w->pb->model->ncontacts || w->nq < 2) {
     memset(s->loose, 0, (size_t)w->nq * sizeof(double));
@@ -214,18 +232,23 @@ void lag_note_redundant(lag_sim *s) {
   for (int k = 0; of && k < of->n; k++) s->pb.redundant |= s->redundant[k] > 0;
 }
 
-/* Refuses a start where accelerations do not exist because a coordinate has neither inertia nor a constraint that moves it. */
+/* Refuses a start where accelerations do not exist because a coordinate has neither inertia nor a constraint that
+ * moves it. */
 static int check_inertia(Start *w) {
   lag_problem *pb = w->pb;
   int which;
-  if (lag_rhs(pb, w->sim->scene->t0, w->y, w->best) != LAG_ESINGULAR || !(lag_mass_condition(pb, w->sim->scene->t0, w->y, &which) > 1e12))
+  if (lag_rhs(pb, w->sim->scene->t0, w->y, w->best) != LAG_ESINGULAR ||
+      !(lag_mass_condition(pb, w->sim->scene->t0, w->y, &which) > 1e12))
     return LAG_OK;
-  return lag_fail(w->sim, LAG_EINVAL, "the mass matrix is singular: %s has no inertia at the start, and no "
-                  "constraint determines its motion; give it a mass, or a constraint that depends on it", pb->model->q[which].name);
+  return lag_fail(w->sim, LAG_EINVAL,
+                  "the mass matrix is singular: %s has no inertia at the start, and no "
+                  "constraint determines its motion; give it a mass, or a constraint that depends on it",
+                  pb->model->q[which].name);
 }
 
-/* Refuses constraints that are dependent at the start `now` and contradict each other soon after: x = 0 and x' = a t agree at t = 0 and nowhere
- * else. Without this check such a run would write its first row and end after 1e-13 s. lagc check (claims/mobility.c) tests at the same time. */
+/* Refuses constraints that are dependent at the start `now` and contradict each other soon after: x = 0 and x' = a t
+ * agree at t = 0 and nowhere else. Without this check such a run would write its first row and end after 1e-13 s.
+ * lagc check (claims/mobility.c) tests at the same time. */
 static int check_compatibility(lag_sim *s) {
   lag_problem *pb = &s->pb;
   const lag_constraints *of = pb->model->constraints;
@@ -237,15 +260,20 @@ static int check_compatibility(lag_sim *s) {
   int rc = lag_project(pb, scene->t0 + after, s->yc, NULL);
   const char *why = pb->detail;
   pb->detail = NULL;
-  return rc > 0 && why ? lag_fail(s, LAG_EINVAL, "constraints contradict each other soon after the start: at t = %.3g s %s; leave one of them out, or make "
-                                  "them agree", scene->t0 + after, why) : LAG_OK;
+  return rc > 0 && why ? lag_fail(s, LAG_EINVAL,
+                                  "constraints contradict each other soon after the start: at t = %.3g s %s; leave one "
+                                  "of them out, or make "
+                                  "them agree",
+                                  scene->t0 + after, why)
+                       : LAG_OK;
 }
 
 /* Undoes moves below the last digit of the largest component of the same unit. */
 static void keep_rounding_out(const Start *w) {
   for (int i = 0; i < 2 * w->nq; i++) {
     const double *level = i < w->nq ? w->y : w->y + w->nq;
-    if (fabs(w->y[i] - w->asked[i]) <= DBL_EPSILON / 4 * lag_unit_magnitude(w->pb, level, i % w->nq)) w->y[i] = w->asked[i];
+    if (fabs(w->y[i] - w->asked[i]) <= DBL_EPSILON / 4 * lag_unit_magnitude(w->pb, level, i % w->nq))
+      w->y[i] = w->asked[i];
   }
 }
 
@@ -253,10 +281,13 @@ static void keep_rounding_out(const Start *w) {
 static int make_room(Start *s, double **block) {
   lag_level *w = &s->level;
   size_t n = (size_t)s->pb->n, nq = (size_t)s->nq, m = (size_t)s->of->n, entries = (size_t)s->of->njacobian;
-  const size_t sizes[] = {n, n, n, m, (size_t)s->of->nmass, nq * nq, 2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m,
-                          nq, nq, nq, nq, nq, nq, nq, nq, m, m, m, m, m, entries};
-  double **const parts[] = {&s->y, &s->asked, &s->best, &s->other, &s->M, &s->full, &s->kkt,
-                            &w->x, &w->asked, &w->best, &w->from, &w->d, &w->along, &w->reach, &w->nearest, &w->residual, &w->size, &w->terms_here, &w->slope, &w->has_terms, &w->A};
+  const size_t sizes[] = {n,
+                          n, n, m, (size_t)s->of->nmass, nq * nq, 2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m,
+                          nq, nq, nq, nq, nq, nq, nq, nq, m, m, m, m, m,
+                          entries};
+  double **const parts[] = {&s->y,       &s->asked,    &s->best, &s->other,      &s->M,     &s->full,      &s->kkt,
+                            &w->x,       &w->asked,    &w->best, &w->from,       &w->d,     &w->along,     &w->reach,
+                            &w->nearest, &w->residual, &w->size, &w->terms_here, &w->slope, &w->has_terms, &w->A};
   *block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->index = malloc((nq + 2 * entries + 1) * sizeof *s->index);
   if (!*block || !s->index) return 0;
@@ -278,9 +309,11 @@ int lag_consistent_start(lag_sim *s) {
   int rc = LAG_ENOMEM;
   memcpy(s->asked, s->now, bytes);
   if (!w.of) return LAG_OK;
-  w.level = (lag_level){.context = &w, .n = w.nq, .entries = w.of->njacobian, .exactly = s->scene->exactly != 0, .rounding = DBL_EPSILON,
-                        .residuals = residuals, .jacobian = jacobian, .terms = terms, .scales = scales, .direction = direction,
-                        .distance = distance, .stage = stage, .is_contact = is_contact};
+  w.level = (lag_level){.context = &w,
+                        .n = w.nq, .entries = w.of->njacobian, .exactly = s->scene->exactly != 0,
+                        .rounding = DBL_EPSILON, .residuals = residuals, .jacobian = jacobian, .terms = terms,
+                        .scales = scales, .direction = direction, .distance = distance, .stage = stage,
+                        .is_contact = is_contact};
   if (make_room(&w, &block)) {
     memcpy(w.y, s->now, bytes);
     memcpy(w.asked, s->now, bytes);

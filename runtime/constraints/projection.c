@@ -1,5 +1,6 @@
-/* Projection onto the constraints, and the sizes against which residuals are judged. Enters: a state near the constraints; leaves: the nearest
- * one on them in the mass metric, positions first. Holds: a state that obeys them to rounding stays as it is, bit by bit. */
+/* Projection onto the constraints, and the sizes against which residuals are judged. Enters: a state near the
+ * constraints; leaves: the nearest one on them in the mass metric, positions first. Holds: a state that obeys them
+ * to rounding stays as it is, bit by bit. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -15,7 +16,8 @@ enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
 typedef struct ConstraintScratch {
   const lag_constraints *of;
   double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
-  double *terms[2];               /* [n] sizes of the terms of the rates, and of the holonomic constraints, where they were last met */
+  /* [n] sizes of the terms of the rates, and of the holonomic constraints, where they were last met */
+  double *terms[2];
   double *d, *force, *step;       /* [nq], [nq], [nq] */
   double *other;                  /* [2 nq + nz] */
   double *M;                      /* [nmass] */
@@ -28,7 +30,8 @@ size_t lag_constraint_scratch_size(const lag_model *m) {
 
 static ConstraintScratch layout(const lag_problem *pb) {
   ConstraintScratch w = {.of = pb->model->constraints};
-  double *x = pb->held, **const parts[] = {&w.c, &w.r, &w.before, &w.g, &w.terms[0], &w.terms[1], &w.A, &w.M, &w.d, &w.force, &w.step, &w.other};
+  double *x = pb->held, **const parts[] = {&w.c, &w.r, &w.before, &w.g,     &w.terms[0], &w.terms[1],
+                                           &w.A, &w.M, &w.d,      &w.force, &w.step,     &w.other};
   const int n = w.of->n, sizes[] = {n, n, n, n, n, n, w.of->njacobian, w.of->nmass, pb->nq, pb->nq, pb->nq, 0};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
@@ -40,7 +43,8 @@ static ConstraintScratch layout(const lag_problem *pb) {
 int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r) {
   int rc = lag_inputs(pb, t), nq = pb->nq;
   rc = rc ? rc : pb->model->constraints->residuals(t, y, y + nq, y + 2 * nq, pb->p, pb->u, c, r, pb->work);
-  for (int k = 0; pb->kept && k < pb->model->constraints->nholonomic; k++) c[k] = isnan(pb->kept[k]) ? 0 : c[k] - pb->kept[k];
+  for (int k = 0; pb->kept && k < pb->model->constraints->nholonomic; k++)
+    c[k] = isnan(pb->kept[k]) ? 0 : c[k] - pb->kept[k];
   return rc;
 }
 
@@ -59,10 +63,12 @@ int lag_hold_integrals(lag_sim *s, double t, const double *y) {
   return rc;
 }
 
-int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, const double *g, double *d, double *force) {
+int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, const double *g, double *d,
+                     double *force) {
   const lag_constraints *of = pb->model->constraints;
   int rc = lag_inputs(pb, t), nq = pb->nq;
-  return rc ? rc : (holonomic ? of->position : of->velocity)(t, y, y + nq, y + 2 * nq, pb->p, pb->u, g, d, force, pb->work);
+  return rc ? rc
+            : (holonomic ? of->position : of->velocity)(t, y, y + nq, y + 2 * nq, pb->p, pb->u, g, d, force, pb->work);
 }
 
 /* ---- sizes of residuals */
@@ -84,7 +90,8 @@ static int sizes(lag_problem *pb, const ConstraintScratch *w, double t, const do
 double lag_unit_magnitude(const lag_problem *pb, const double *x, int i) {
   const lag_var *q = pb->model->q;
   double most = 0;
-  for (int j = 0; j < pb->nq; j++) most = fabs(x[j]) > most && (q[i].unit == q[j].unit || strcmp(q[i].unit, q[j].unit) == 0) ? fabs(x[j]) : most;
+  for (int j = 0; j < pb->nq; j++)
+    most = fabs(x[j]) > most && (q[i].unit == q[j].unit || strcmp(q[i].unit, q[j].unit) == 0) ? fabs(x[j]) : most;
   return most;
 }
 
@@ -92,22 +99,28 @@ double lag_typical_magnitude(const lag_problem *pb, const double *y, int holonom
   const lag_var *q = &pb->model->q[i];
   const double unknown = 1e-6; /* of the unit: a run from 0 has no length, and what rounding moved off 0 is none */
   int from_zero = pb->begin && !(lag_unit_magnitude(pb, pb->begin, i) > 0);
-  double time = holonomic ? 1 : pb->span > 0 ? pb->span : 1, most = lag_unit_magnitude(pb, holonomic ? y : y + pb->nq, i);
+  double time = holonomic      ? 1
+                : pb->span > 0 ? pb->span
+                               : 1,
+         most = lag_unit_magnitude(pb, holonomic ? y : y + pb->nq, i);
   if (most > 0 && from_zero) most = fmax(most, unknown / time);
   most = fmax(most, lag_unit_magnitude(pb, y, i) / time);
   return lag_component_scale(most, q->periodic, q->unit);
 }
 
-/* Raises size[n] to the residuals of a state displaced by typical magnitudes: there may be no terms of first order, as of a folded linkage or a
- * body at rest. */
-static int displaced_sizes(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, double *size) {
+/* Raises size[n] to the residuals of a state displaced by typical magnitudes: there may be no terms of first order,
+ * as of a folded linkage or a body at rest. */
+static int displaced_sizes(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic,
+                           double *size) {
   int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : nq;
   double *c = w->c, *r = w->r;
   double reach = 0;
   const lag_var *q = pb->model->q;
   memcpy(w->other, y, (size_t)pb->n * sizeof *y);
   for (int i = 0; i < nq; i++) { /* members of a family share their magnitude, and there may be hundreds */
-    reach = i > 0 && strcmp(q[i].unit, q[i - 1].unit) == 0 && q[i].periodic == q[i - 1].periodic ? reach : lag_typical_magnitude(pb, y, holonomic, i);
+    reach = i > 0 && strcmp(q[i].unit, q[i - 1].unit) == 0 && q[i].periodic == q[i - 1].periodic
+                ? reach
+                : lag_typical_magnitude(pb, y, holonomic, i);
     w->other[at + i] += reach * lag_uneven(i);
   }
   int rc = lag_residuals(pb, t, w->other, c, r);
@@ -126,7 +139,8 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
   ConstraintScratch w = layout(pb);
   double most;
   if (lag_constraint_terms(pb, t, y, holonomic, w.g) || lag_residuals(pb, t, y, w.c, w.r)) return -1;
-  return lag_worst_residual(holonomic ? of->nholonomic : of->n, holonomic ? w.c : w.r, w.g, DBL_EPSILON, worst ? worst : &most);
+  return lag_worst_residual(holonomic ? of->nholonomic : of->n, holonomic ? w.c : w.r, w.g, DBL_EPSILON,
+                            worst ? worst : &most);
 }
 
 const char *lag_line_text(const lag_constraint *c, char text[32]) {
@@ -144,9 +158,13 @@ void lag_report_residual(lag_problem *pb, int k, int holonomic, double residual,
     length -= 2;
     level = "";
   }
-  snprintf(unit, sizeof unit, "%s%.*s%s", c->unit[0] || level[0] ? " " : "", (int)(length ? length : 1), c->unit[0] || level[0] != '*' ? c->unit : "1", level);
-  if (isnan(residual)) snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, lag_line_text(c, line), words);
-  else snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s", c->name, lag_line_text(c, line), residual, unit, words);
+  snprintf(unit, sizeof unit, "%s%.*s%s", c->unit[0] || level[0] ? " " : "", (int)(length ? length : 1),
+           c->unit[0] || level[0] != '*' ? c->unit : "1", level);
+  if (isnan(residual))
+    snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, lag_line_text(c, line), words);
+  else
+    snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s", c->name, lag_line_text(c, line),
+             residual, unit, words);
   pb->detail = pb->words;
 }
 
@@ -154,7 +172,8 @@ void lag_report_residual(lag_problem *pb, int k, int holonomic, double residual,
 
 static double ratio(double x, double y) { return x == 0.0 ? 0 : fabs(x / y); }
 
-/* Whether the rest of a correction d, its part `left`, is rounding of the largest component with the same unit: one that is 0 never stops moving. */
+/* Whether the rest of a correction d, its part `left`, is rounding of the largest component with the same unit: one
+ * that is 0 never stops moving. */
 static int is_rounding(const lag_problem *pb, const double *x, const double *d, double left) {
   for (int i = 0; i < pb->nq; i++) {
     double rest = left * fabs(d[i]), rounding = 4 * DBL_EPSILON;
@@ -201,14 +220,16 @@ int lag_constraint_is_met(lag_problem *pb, double t, const double *y, int holono
   ConstraintScratch w = layout(pb);
   double *terms = w.terms[holonomic], worst;
   int n = holonomic ? w.of->nholonomic : w.of->n, met = 1;
-  for (int k = 0; k < n; k++) met &= fabs(residual[k]) <= rounding * terms[k] / 4; /* terms from the last time suffice where the answer is clear */
+  /* terms from the last time suffice where the answer is clear */
+  for (int k = 0; k < n; k++) met &= fabs(residual[k]) <= rounding * terms[k] / 4;
   if (met) return 1;
   if (lag_worst_constraint(pb, t, y, holonomic, &worst) < 0) return 0;
   if (worst <= 0x1p10) { /* only then: terms of a state off the constraints may have any size */
     memcpy(terms, w.g, (size_t)n * sizeof *terms);
     return 1;
   }
-  for (int e = 0; e < w.of->njacobian && pb->begin; e++) { /* a unit that was 0 throughout at the start has no scale: one unit counts */
+  /* a unit that was 0 throughout at the start has no scale: one unit counts */
+  for (int e = 0; e < w.of->njacobian && pb->begin; e++) {
     const lag_entry *at = &w.of->jacobian[e];
     if (at->row < n && !(lag_unit_magnitude(pb, pb->begin, at->col) > 0)) w.g[at->row] += fabs(w.A[e]) / time;
   }
@@ -217,8 +238,9 @@ int lag_constraint_is_met(lag_problem *pb, double t, const double *y, int holono
   return met;
 }
 
-/* Newton's iteration of positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of y, before and after. Headers take the same
- * turns (emit/header_definitions.c); where the residuals shrink no more, the state is judged here alone. */
+/* Newton's iteration of positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of
+ * y, before and after. Headers take the same turns (emit/header_definitions.c); where the residuals shrink no more,
+ * the state is judged here alone. */
 static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double *y, double *lost, int holonomic) {
   int n = holonomic ? w->of->nholonomic : w->of->n, nq = pb->nq, strikes = 0;
   double *x = holonomic ? y : y + nq, *residual = holonomic ? w->c : w->r, least;
@@ -238,7 +260,8 @@ static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double 
     double most = parts_left(n, residual, w->before, &least);
     int lost_in_rounding = is_rounding(pb, x, w->d, most);
     if (lost_in_rounding && most < 0.5) return LAG_OK;
-    if (lost_in_rounding || !(least < 0.5)) { /* no residual shrinks any more, or one that the correction cannot reach does not */
+    /* no residual shrinks any more, or one that the correction cannot reach does not */
+    if (lost_in_rounding || !(least < 0.5)) {
       if (lag_constraint_is_met(pb, t, y, holonomic, residual)) return LAG_OK;
       if (++strikes == MOST_STRIKES) return report_unmet(pb, w, t, y, holonomic);
     }
@@ -274,7 +297,8 @@ static int are_tied(const lag_constraints *of, int i, int j) {
   return 0;
 }
 
-int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led) {
+int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y, const double *moved,
+                        const double *led) {
   const lag_constraints *of = pb->model->constraints;
   const double small = 1e-6;
   for (int i = 0; i < pb->nq; i++) {
@@ -294,7 +318,8 @@ int lag_report_leap(lag_problem *pb, double t, const double *y, int i, double mo
   if (k >= 0) {
     char words[128];
     const lag_var *q = &pb->model->q[i];
-    snprintf(words, sizeof words, " after a step, and meeting it would move %s by %.3g %s: it jumps, or the step is too long", q->name,
+    snprintf(words, sizeof words,
+             " after a step, and meeting it would move %s by %.3g %s: it jumps, or the step is too long", q->name,
              fabs(moved) / q->factor, q->unit);
     lag_report_residual(pb, k, 1, NAN, words);
   }

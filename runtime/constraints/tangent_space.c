@@ -1,12 +1,14 @@
-/* The tangent space of the constraints: small changes of a state between motions that obey them. Enters: a state on the constraints; leaves: the
- * dimension of that space, or changes projected onto it, as a start beside the constraints is. Holds: of a constraint on velocities that is the rate of a
- * function of positions, that function may be another in a neighbouring motion. */
+/* The tangent space of the constraints: small changes of a state between motions that obey them. Enters: a state on
+ * the constraints; leaves: the dimension of that space, or changes projected onto it, as a start beside the
+ * constraints is. Holds: of a constraint on velocities that is the rate of a function of positions, that function
+ * may be another in a neighbouring motion. */
 #include <math.h>
 #include <string.h>
 
 #include "core/core.h"
 
-/* Rank of the constraints; holonomic: of those stated on positions alone. A[n nq] and unit[nq] at the state; A is destroyed. */
+/* Rank of the constraints; holonomic: of those stated on positions alone. A[n nq] and unit[nq] at the state; A is
+ * destroyed. */
 static int rank_of(const lag_constraints *of, int nq, double *A, const double *unit, int holonomic) {
   const double follows = 1e-9;
   int r = 0;

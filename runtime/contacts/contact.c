@@ -1,17 +1,20 @@
-/* Contacts: gaps that stay at least 0. Enters: a state set by an event or a user; leaves: the state after all impacts, with the gaps closed that
- * are pressed. Holds: a closed gap is a constraint of the model, switched on by its input in `hold` (1); no closed gap pulls; an open gap that
- * touches is armed anew, so that its next closing is seen. Constraints with a condition (conditional_constraints.c) count as other constraints here.
+/* Contacts: gaps that stay at least 0. Enters: a state set by an event or a user; leaves: the state after all
+ * impacts, with the gaps closed that are pressed. Holds: a closed gap is a constraint of the model, switched on by
+ * its input in `hold` (1); no closed gap pulls; an open gap that touches is armed anew, so that its next closing is
+ * seen. Constraints with a condition (conditional_constraints.c) count as other constraints here.
  *
- * Impacts that follow each other ever faster come to an end in finite time (a ball that loses a fifth of its speed at each bounce). The gap is
- * closed when the rest of that time is too short to matter, or the next flight stays within rounding; Brogliato, Nonsmooth Mechanics, 3rd ed.
- * (2016), 1.4 and 8.1, DOI 10.1007/978-3-319-28664-8.
+ * Impacts that follow each other ever faster come to an end in finite time (a ball that loses a fifth of its speed
+ * at each bounce). The gap is closed when the rest of that time is too short to matter, or the next flight stays
+ * within rounding; Brogliato, Nonsmooth Mechanics, 3rd ed. (2016), 1.4 and 8.1, DOI 10.1007/978-3-319-28664-8.
  *
- * An impact is Newton's law for all gaps at once, each with its coefficient of restitution, as a linear complementarity problem: rate after + e
- * rate before >= 0 where a gap was closing, rate after >= 0 where it rests, an impulse >= 0, and of the two one is 0. Rates are unique, as the
- * nearest ones in the metric of the mass matrix; impulses are unique where no contact depends on others. J.J. Moreau, in: Nonsmooth Mechanics
- * and Applications (1988), 1, DOI 10.1007/978-3-7091-2624-0_1; B. Brogliato, Nonsmooth Mechanics, 3rd ed. (2016), ch. 5, DOI
- * 10.1007/978-3-319-28664-8; Ch. Glocker, Set-Valued Force Laws (2001), DOI 10.1007/978-3-540-44479-4. Forces: the same problem with
- * accelerations in place of rates, P. Loetstedt, SIAM J. Appl. Math. 42 (1982) 281, DOI 10.1137/0142022. */
+ * An impact is Newton's law for all gaps at once, each with its coefficient of restitution, as a linear
+ * complementarity problem: rate after + e rate before >= 0 where a gap was closing, rate after >= 0 where it rests,
+ * an impulse >= 0, and of the two one is 0. Rates are unique, as the nearest ones in the metric of the mass matrix;
+ * impulses are unique where no contact depends on others. J.J. Moreau, in: Nonsmooth Mechanics and Applications
+ * (1988), 1, DOI 10.1007/978-3-7091-2624-0_1; B. Brogliato, Nonsmooth Mechanics, 3rd ed. (2016), ch. 5, DOI
+ * 10.1007/978-3-319-28664-8; Ch. Glocker, Set-Valued Force Laws (2001), DOI 10.1007/978-3-540-44479-4. Forces: the
+ * same problem with accelerations in place of rates, P. Loetstedt, SIAM J. Appl. Math. 42 (1982) 281, DOI
+ * 10.1137/0142022. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -39,7 +42,9 @@ void lag_contact_set_closed(lag_sim *s, int i, int closed) {
 }
 
 /* The tangent of contact i; -1: it has no friction. */
-static int tangent_of(const lag_model *m, int i) { return i + 1 < m->ncontacts && m->contacts[i + 1].is_tangent ? i + 1 : -1; }
+static int tangent_of(const lag_model *m, int i) {
+  return i + 1 < m->ncontacts && m->contacts[i + 1].is_tangent ? i + 1 : -1;
+}
 
 void lag_contact_open(lag_sim *s) {
   const lag_model *m = s->scene->model;
@@ -61,8 +66,8 @@ static void close_contacts(const ContactSet *w, const unsigned char *closed) {
 
 int lag_contacts_no_values(ContactSet *w, int i) {
   const lag_model *m = w->sim->scene->model;
-  return lag_fail(w->sim, LAG_EMODEL, "the contact %s has no finite values at t = %s s", m->constraints->of[m->contacts[i].constraint].name,
-                  LAG_TEXT(w->sim->run->t));
+  return lag_fail(w->sim, LAG_EMODEL, "the contact %s has no finite values at t = %s s",
+                  m->constraints->of[m->contacts[i].constraint].name, LAG_TEXT(w->sim->run->t));
 }
 
 /* ---- gaps and rates */
@@ -71,9 +76,12 @@ static int make_room(ContactSet *w) {
   const lag_model *m = w->sim->scene->model;
   const lag_constraints *of = m->constraints;
   size_t p = (size_t)m->ncontacts, n = (size_t)of->n, nq = (size_t)m->nq;
-  double **const parts[] = {&w->gap, &w->rate, &w->gap_size, &w->rate_size, &w->g, &w->c, &w->r, &w->d, &w->force, &w->test, &w->events, &w->ahead,
-                            &w->A, &w->mass, &w->law, &w->side};
-  const size_t sizes[] = {p, p, p, p, n, n, n, nq, nq, (size_t)w->sim->pb.n, (size_t)(m->nev + m->nmodes), p, (size_t)of->njacobian, (size_t)of->nmass, 3 * p, p};
+  double **const parts[] = {&w->gap,   &w->rate, &w->gap_size, &w->rate_size, &w->g, &w->c,    &w->r,   &w->d,
+                            &w->force, &w->test, &w->events,   &w->ahead,     &w->A, &w->mass, &w->law, &w->side};
+  const size_t sizes[] = {p,
+                          p, p, p, n, n, n, nq, nq, (size_t)w->sim->pb.n, (size_t)(m->nev + m->nmodes), p,
+                          (size_t)of->njacobian, (size_t)of->nmass, 3 * p,
+                          p};
   w->block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   w->of = calloc(p, sizeof *w->of);
   w->at = calloc(p, sizeof *w->at);
@@ -96,17 +104,19 @@ int lag_contacts_rates(ContactSet *w, const double *y, double *rate) {
   const lag_model *m = w->sim->scene->model;
   lag_contacts_close_only(w, 1, -1);
   int rc = lag_residuals(&w->sim->pb, w->sim->run->t, y, w->c, w->r);
-  for (int i = 0; i < m->ncontacts; i++) rate[i] = rc ? NAN : m->contacts[i].conditional ? 0 : w->r[m->contacts[i].constraint];
+  for (int i = 0; i < m->ncontacts; i++)
+    rate[i] = rc ? NAN : m->contacts[i].conditional ? 0 : w->r[m->contacts[i].constraint];
   return rc;
 }
 
-/* size[constraints] := size of the terms of gaps, or of their rates, at y or at the start, whichever is larger: a ball that has come to lie at 0
- * is measured by its fall. Leaves all contacts closed. */
+/* size[constraints] := size of the terms of gaps, or of their rates, at y or at the start, whichever is larger: a
+ * ball that has come to lie at 0 is measured by its fall. Leaves all contacts closed. */
 static int term_sizes(lag_sim *s, const double *y, int holonomic, double *size, double *scratch) {
   const lag_constraints *of = s->scene->model->constraints;
   int rc = lag_constraint_terms(&s->pb, s->run->t, y, holonomic, size);
   rc = rc ? rc : lag_constraint_terms(&s->pb, s->run->t, s->begin, holonomic, scratch);
-  for (int k = 0; k < (holonomic ? of->nholonomic : of->n) && rc == 0; k++) size[k] = fmax(size[k], isfinite(scratch[k]) ? scratch[k] : 0);
+  for (int k = 0; k < (holonomic ? of->nholonomic : of->n) && rc == 0; k++)
+    size[k] = fmax(size[k], isfinite(scratch[k]) ? scratch[k] : 0);
   return rc;
 }
 
@@ -126,7 +136,8 @@ static int evaluate_contacts(lag_sim *s, double *y, ContactSet *w) {
     if (rc || !isfinite(w->gap[i]) || !isfinite(w->rate[i])) return lag_contacts_no_values(w, i);
   }
   rc = term_sizes(s, y, 1, w->g, w->c);
-  for (int i = 0; i < m->ncontacts; i++) w->gap_size[i] = m->contacts[i].is_tangent ? 1 : w->g[m->contacts[i].constraint];
+  for (int i = 0; i < m->ncontacts; i++)
+    w->gap_size[i] = m->contacts[i].is_tangent ? 1 : w->g[m->contacts[i].constraint];
   rc = rc ? rc : term_sizes(s, y, 0, w->g, w->c);
   for (int i = 0; i < m->ncontacts; i++) w->rate_size[i] = w->g[m->contacts[i].constraint];
   rc = rc ? rc : lag_inputs(pb, t);
@@ -139,20 +150,26 @@ static int evaluate_contacts(lag_sim *s, double *y, ContactSet *w) {
 static double rate_change(const lag_model *m, const double *A, int i, const double *d) {
   const lag_constraints *of = m->constraints;
   double s = 0;
-  for (int e = 0; e < of->njacobian; e++) s += of->jacobian[e].row == m->contacts[i].constraint ? A[e] * d[of->jacobian[e].col] : 0;
+  for (int e = 0; e < of->njacobian; e++)
+    s += of->jacobian[e].row == m->contacts[i].constraint ? A[e] * d[of->jacobian[e].col] : 0;
   return s;
 }
 
-static double change_of_rate(const ContactSet *w, int i, const double *d) { return rate_change(w->sim->scene->model, w->A, i, d); }
+static double change_of_rate(const ContactSet *w, int i, const double *d) {
+  return rate_change(w->sim->scene->model, w->A, i, d);
+}
 
-double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed, const double *d, const double *A, double *before, double *after) {
+double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed,
+                               const double *d, const double *A, double *before, double *after) {
   const lag_model *m = pb->model;
   int nq = m->nq, stop = 0;
   size_t bytes = (size_t)pb->n * sizeof *y;
   memcpy(before, y, bytes);
   for (int j = 0; j < nq; j++) before[nq + j] -= (speed + rate) * d[j];
   memcpy(after, before, bytes);
-  if (m->act(m->contacts[i].impact, t, before, before + nq, before + 2 * nq, pb->p, pb->u, after, after + nq, after + 2 * nq, &stop, pb->work)) return NAN;
+  if (m->act(m->contacts[i].impact, t, before, before + nq, before + 2 * nq, pb->p, pb->u, after, after + nq,
+             after + 2 * nq, &stop, pb->work))
+    return NAN;
   for (int j = 0; j < nq; j++) before[nq + j] = after[nq + j] - before[nq + j];
   return rate_change(m, A, i, before + nq) / speed - 1;
 }
@@ -174,7 +191,8 @@ static double restitution_at(ContactSet *w, int i, double speed) {
   return lag_contact_restitution(&s->pb, s->run->t, w->y, i, w->rate[i], speed, w->d, w->A, s->yc, w->test);
 }
 
-/* The coefficient of restitution of contact i, at a typical speed, where it has the most digits, unless it depends on the speed; NaN where no impulse moves it. */
+/* The coefficient of restitution of contact i, at a typical speed, where it has the most digits, unless it depends
+ * on the speed; NaN where no impulse moves it. */
 static double restitution(ContactSet *w, int i) {
   const double same = 1e-6, roundings = 1e4 * DBL_EPSILON;
   double to = lag_contacts_response(w, i), typical = w->rate_size[i] > 0 ? w->rate_size[i] : 1;
@@ -199,7 +217,8 @@ static int find_responses(ContactSet *w) {
     w->response[a * w->rows + a] = to;
   }
   for (int k = 0; k < w->rows * w->rows; k++) /* what constraints imply, others do not move either */
-    if (!(w->response[k / w->rows * (w->rows + 1)] > 0 && w->response[k % w->rows * (w->rows + 1)] > 0)) w->response[k] = 0;
+    if (!(w->response[k / w->rows * (w->rows + 1)] > 0 && w->response[k % w->rows * (w->rows + 1)] > 0))
+      w->response[k] = 0;
   return LAG_OK;
 }
 
@@ -215,10 +234,12 @@ static int fail_incompatible(ContactSet *w, int a) {
       against = b;
     }
   if (against >= 0) {
-    return lag_fail(w->sim, LAG_EMODEL, "at t = %.9g s the contacts %s and %s contradict each other: no force keeps both gaps from closing",
+    return lag_fail(w->sim, LAG_EMODEL,
+                    "at t = %.9g s the contacts %s and %s contradict each other: no force keeps both gaps from closing",
                     w->sim->run->t, lag_contacts_name(w, a), lag_contacts_name(w, against));
   }
-  return lag_fail(w->sim, LAG_EMODEL, "at t = %.9g s nothing can keep the contact %s from closing further", w->sim->run->t, lag_contacts_name(w, a < 0 ? 0 : a));
+  return lag_fail(w->sim, LAG_EMODEL, "at t = %.9g s nothing can keep the contact %s from closing further",
+                  w->sim->run->t, lag_contacts_name(w, a < 0 ? 0 : a));
 }
 
 /* Solves the complementarity problem of the contacts that take part: in[n]; push[n] := impulses where in[n]. */
@@ -244,7 +265,8 @@ static int complement(ContactSet *w, const double *q) {
   return status == LAG_SOLVED ? LAG_OK : fail_incompatible(w, status == LAG_NO_SOLUTION ? w->at[p.row] : -1);
 }
 
-/* Applies the impulses where gaps close: changes y and w->rate. e[n]: coefficients of restitution; struck[n]: gaps that were closing. */
+/* Applies the impulses where gaps close: changes y and w->rate. e[n]: coefficients of restitution; struck[n]: gaps
+ * that were closing. */
 static int impact(ContactSet *w, const double *e, const unsigned char *struck) {
   lag_sim *s = w->sim;
   int nq = s->pb.nq;
@@ -260,7 +282,9 @@ static int impact(ContactSet *w, const double *e, const unsigned char *struck) {
   for (int a = 0; a < w->n; a++) w->g[lag_contacts_at(w, a)->constraint] = w->closed[a] ? -dir * w->rhs[a] : 0;
   rc = lag_least_change(&s->pb, s->run->t, w->y, 0, w->g, w->d, w->force);
   for (int i = 0; i < nq; i++) w->y[nq + i] += w->d[i];
-  return rc || lag_not_finite(nq, w->d) >= 0 || lag_contacts_rates(w, w->y, w->rate) ? lag_contacts_no_values(w, w->of[0]) : LAG_OK;
+  return rc || lag_not_finite(nq, w->d) >= 0 || lag_contacts_rates(w, w->y, w->rate)
+             ? lag_contacts_no_values(w, w->of[0])
+             : LAG_OK;
 }
 
 /* ---- forces */
@@ -289,8 +313,8 @@ static int none_pulls(ContactSet *w, const unsigned char *closed) {
   return most > 0 && least >= 0;
 }
 
-/* w->closed := contacts that stay closed under forces: those that press, and those that depend on them where they share the load and none pulls.
- * acceleration[n] := of each gap then. y does not change; contacts are left open. */
+/* w->closed := contacts that stay closed under forces: those that press, and those that depend on them where they
+ * share the load and none pulls. acceleration[n] := of each gap then. y does not change; contacts are left open. */
 static int contacts_at_rest(ContactSet *w, double *acceleration) {
   int n = w->n, rc = find_pulls(w), more = 0;
   rc = rc ? rc : complement(w, w->rhs);
@@ -318,8 +342,8 @@ static const double no_speed = 1e-9, no_flight = 0x1p6 * DBL_EPSILON;
 
 /* ---- contacts that take part */
 
-/* of[n] := contacts that take part: closed before, of this event, or without a gap. Refuses a state set by `who` (if not NULL) with a negative
- * gap. */
+/* of[n] := contacts that take part: closed before, of this event, or without a gap. Refuses a state set by `who` (if
+ * not NULL) with a negative gap. */
 static int find_touching(ContactSet *w, const char *who, int event) {
   lag_sim *s = w->sim;
   const lag_model *m = s->scene->model;
@@ -329,10 +353,12 @@ static int find_touching(ContactSet *w, const char *who, int event) {
     int inside = w->gap[i] < -lag_no_gap * w->gap_size[i];
     if (inside && who) {
       const lag_constraint *of = constraint_of(s, i);
-      return lag_fail(s, LAG_EINVAL, "%s is inside the contact %s: its gap is %.3g%s%s", who, of->name, w->gap[i], of->unit[0] ? " " : "", of->unit);
+      return lag_fail(s, LAG_EINVAL, "%s is inside the contact %s: its gap is %.3g%s%s", who, of->name, w->gap[i],
+                      of->unit[0] ? " " : "", of->unit);
     }
     if (c->is_tangent) continue;
-    if (c->impact == event || c->release == event || w->was_closed[i] || w->gap[i] <= lag_no_gap * w->gap_size[i]) w->of[w->n++] = i;
+    if (c->impact == event || c->release == event || w->was_closed[i] || w->gap[i] <= lag_no_gap * w->gap_size[i])
+      w->of[w->n++] = i;
   }
   w->rows = w->n;
   for (int a = 0; a < w->n; a++) {
@@ -345,20 +371,30 @@ static int find_touching(ContactSet *w, const char *who, int event) {
 
 static int check_restitution(lag_sim *s, int i, double e) {
   if (!isnan(e) && !(e >= -no_speed && e <= 1 + no_speed))
-    return lag_fail(s, LAG_EINVAL, "the contact %s has a restitution of %.3g, which must be between 0 and 1", constraint_of(s, i)->name, e);
+    return lag_fail(s, LAG_EINVAL, "the contact %s has a restitution of %.3g, which must be between 0 and 1",
+                    constraint_of(s, i)->name, e);
   if (s->run->dir < 0 && e < 1 - no_speed) {
-    return lag_fail(s, LAG_EINVAL, "at t = %.9g s the contact %s, of restitution %.3g, ends the run backwards in time: an impact that loses energy "
-                    "cannot be reversed", s->run->t, constraint_of(s, i)->name, e);
+    return lag_fail(s, LAG_EINVAL,
+                    "at t = %.9g s the contact %s, of restitution %.3g, ends the run backwards in time: an impact that "
+                    "loses energy "
+                    "cannot be reversed",
+                    s->run->t, constraint_of(s, i)->name, e);
   }
   return LAG_OK;
 }
 
 static int check_friction(lag_sim *s, int i, const double *law) {
-  if (!(law[0] >= 0)) return lag_fail(s, LAG_EINVAL, "the contact %s has a friction of %.3g, which must be at least 0", constraint_of(s, i - 1)->name, law[0]);
+  if (!(law[0] >= 0))
+    return lag_fail(s, LAG_EINVAL, "the contact %s has a friction of %.3g, which must be at least 0",
+                    constraint_of(s, i - 1)->name, law[0]);
   if (!(law[-3] >= law[0]))
-    return lag_fail(s, LAG_EINVAL, "the contact %s has a static friction of %.3g, which must be at least its friction while it slips, %.3g", constraint_of(s, i - 1)->name, law[-3], law[0]);
+    return lag_fail(
+        s, LAG_EINVAL,
+        "the contact %s has a static friction of %.3g, which must be at least its friction while it slips, %.3g",
+        constraint_of(s, i - 1)->name, law[-3], law[0]);
   if (law[1] >= 0 && law[1] <= 1) return LAG_OK;
-  return lag_fail(s, LAG_EINVAL, "the contact %s has a tangential restitution of %.3g, which must be between 0 and 1", constraint_of(s, i - 1)->name, law[1]);
+  return lag_fail(s, LAG_EINVAL, "the contact %s has a tangential restitution of %.3g, which must be between 0 and 1",
+                  constraint_of(s, i - 1)->name, law[1]);
 }
 
 /* ---- impacts */
@@ -395,7 +431,8 @@ static int find_closed(ContactSet *w, int event, double *acceleration) {
   return w->rows > w->n ? lag_contacts_choose_modes(w, event, acceleration) : contacts_at_rest(w, acceleration);
 }
 
-/* Finds the contacts that rest, and among them those that are pressed and stay closed. ends[n]: those which rest after this impact, more of them on return. */
+/* Finds the contacts that rest, and among them those that are pressed and stay closed. ends[n]: those which rest
+ * after this impact, more of them on return. */
 static int rest(ContactSet *w, int event, unsigned char *ends, const double *before, double *acceleration) {
   double dir = w->sim->run->dir;
   for (int a = 0; a < w->n; a++) {
@@ -421,12 +458,15 @@ static int close_gaps(ContactSet *w) {
   close_contacts(w, w->closed);
   if (w->rows > w->n) lag_contacts_set_friction(w);
   if (lag_project(&s->pb, s->run->t, w->y, NULL) == LAG_OK) return LAG_OK;
-  return lag_fail(s, LAG_EMODEL, "at t = %.9g s contacts cannot stay closed: %s", s->run->t, s->pb.detail ? s->pb.detail : "");
+  return lag_fail(s, LAG_EMODEL, "at t = %.9g s contacts cannot stay closed: %s", s->run->t,
+                  s->pb.detail ? s->pb.detail : "");
 }
 
-/* The impacts, and what rests after them. Friction at impacts that are left out would be missing, whose sum is that of one without restitution: where the flight
- * after an impact would stay within rounding, the impact is replaced by that one. */
-static int strike_and_rest(ContactSet *w, int event, unsigned char *ends, double *before, double *e, double *acceleration, unsigned char *struck, double *y, double *rate) {
+/* The impacts, and what rests after them. Friction at impacts that are left out would be missing, whose sum is that
+ * of one without restitution: where the flight after an impact would stay within rounding, the impact is replaced by
+ * that one. */
+static int strike_and_rest(ContactSet *w, int event, unsigned char *ends, double *before, double *e,
+                           double *acceleration, unsigned char *struck, double *y, double *rate) {
   const size_t size = (size_t)w->sim->pb.n * sizeof *y, rates = (size_t)w->sim->scene->model->ncontacts * sizeof *rate;
   memcpy(y, w->y, size);
   memcpy(rate, w->rate, rates);
@@ -507,7 +547,8 @@ static int check_all(lag_sim *s) {
       continue;
     }
     double e = s->scene->model->contacts[i].conditional ? NAN : restitution(&w, i);
-    if (isfinite(e) && fabs(restitution_at(&w, i, 2 * (w.rate_size[i] > 0 ? w.rate_size[i] : 1)) - e) > 1e-6) continue; /* of an impact's speed, not of any */
+    /* of an impact's speed, not of any */
+    if (isfinite(e) && fabs(restitution_at(&w, i, 2 * (w.rate_size[i] > 0 ? w.rate_size[i] : 1)) - e) > 1e-6) continue;
     rc = isfinite(e) ? check_restitution(s, i, s->run->dir < 0 ? fmax(e, 1) : e) : LAG_OK;
   }
   free_contacts(&w);
@@ -517,9 +558,12 @@ static int check_all(lag_sim *s) {
 
 int lag_contact_begin(lag_sim *s) {
   int rc = LAG_OK;
-  if (s->pb.contacts && s->run->dir < 0) return lag_fail(s, LAG_EINVAL, "%s does not follow contacts backwards in time", s->method->name);
+  if (s->pb.contacts && s->run->dir < 0)
+    return lag_fail(s, LAG_EINVAL, "%s does not follow contacts backwards in time", s->method->name);
   if (s->scene->model->contact_laws && s->run->dir < 0)
-    return lag_fail(s, LAG_EINVAL, "contacts with friction are not followed backwards in time: many motions come to rest in the same place");
+    return lag_fail(
+        s, LAG_EINVAL,
+        "contacts with friction are not followed backwards in time: many motions come to rest in the same place");
   if (s->scene->model->ncontacts > 0) {
     lag_contact_open(s);
     rc = check_all(s);

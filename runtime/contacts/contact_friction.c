@@ -1,6 +1,8 @@
-/* Friction of contacts. Enters: a state between events; leaves: in pb->u the force of each contact that slips, mu times the force that presses, solved
- * together with it. At events: the contacts that touch; leaves: the state after their impacts, and which of them stay closed, stick and slip. Holds: forces are found at each state, so steps keep their order; input `force` of a tangent is held at the side to which its
- * contact slips, 1 or -1, at 0 where it sticks by a force that is not unique, or NaN: it sticks or is open. */
+/* Friction of contacts. Enters: a state between events; leaves: in pb->u the force of each contact that slips, mu
+ * times the force that presses, solved together with it. At events: the contacts that touch; leaves: the state after
+ * their impacts, and which of them stay closed, stick and slip. Holds: forces are found at each state, so steps keep
+ * their order; input `force` of a tangent is held at the side to which its contact slips, 1 or -1, at 0 where it
+ * sticks by a force that is not unique, or NaN: it sticks or is open. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -22,11 +24,16 @@ static int laws_at(lag_problem *pb, double t, const double *y, double *law) {
   return m->contact_laws(t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, law, pb->work);
 }
 
-/* The side to which tangent i slips; 0: it sticks by a force that is not unique; NaN: it sticks or is open, or is no tangent. */
-static double side_of(const lag_problem *pb, int i) { return pb->model->contacts[i].is_tangent ? pb->hold[pb->model->contacts[i].force] : NAN; }
+/* The side to which tangent i slips; 0: it sticks by a force that is not unique; NaN: it sticks or is open, or is no
+ * tangent. */
+static double side_of(const lag_problem *pb, int i) {
+  return pb->model->contacts[i].is_tangent ? pb->hold[pb->model->contacts[i].force] : NAN;
+}
 
-/* left[n] := force + side * largest force of the contacts of[n], which is 0 for the forces sought. *size := the largest term. */
-static int imbalance(lag_problem *pb, double t, const double *y, const int *of, int n, double *law, double *left, double *size) {
+/* left[n] := force + side * largest force of the contacts of[n], which is 0 for the forces sought. *size := the
+ * largest term. */
+static int imbalance(lag_problem *pb, double t, const double *y, const int *of, int n, double *law, double *left,
+                     double *size) {
   int rc = laws_at(pb, t, y, law);
   for (int k = 0; k < n && rc == 0; k++) {
     int input = pb->model->contacts[of[k]].force;
@@ -72,7 +79,8 @@ static int find_friction(lag_problem *pb, double t, const double *y) {
 
 static int is_closed(const lag_problem *pb, int i) { return pb->hold[pb->model->contacts[i].input] > 0.5; }
 
-/* of[n] := the closed contacts, with rows as in lag_contact_modes; at[rows] := their numbers in the model. Returns the number of rows. */
+/* of[n] := the closed contacts, with rows as in lag_contact_modes; at[rows] := their numbers in the model. Returns
+ * the number of rows. */
 static int list_closed(const lag_problem *pb, const double *law, lag_touch *of, int *at, int *n) {
   const lag_model *m = pb->model;
   *n = 0;
@@ -102,7 +110,8 @@ static int forces_at(lag_problem *pb, double t, const double *y, int rows, const
   return rc;
 }
 
-/* Chooses forces within Coulomb's cones for contacts that stick by forces that are not unique: inputs take the part that the least multipliers lack. */
+/* Chooses forces within Coulomb's cones for contacts that stick by forces that are not unique: inputs take the part
+ * that the least multipliers lack. */
 static int share_forces(lag_problem *pb, double t, const double *y) {
   const double none = 1e-9; /* rounding of a part of a force */
   lag_touch of[LAG_MOST_TOUCHES];
@@ -157,16 +166,23 @@ void lag_tangent_events(const lag_sim *s, double *g) {
 
 /* Reports that the law of the tangent at row t brings energy in, or has no impulse. */
 static int fail_impact(ContactSet *w, int a, int t, double gain) {
-  static const char *const laws[] = {[LAG_IMPACT_STRONGE] = "Stronge", [LAG_IMPACT_POISSON] = "Poisson", [LAG_IMPACT_NEWTON] = "Newton"};
+  static const char *const laws[] = {
+      [LAG_IMPACT_STRONGE] = "Stronge", [LAG_IMPACT_POISSON] = "Poisson", [LAG_IMPACT_NEWTON] = "Newton"};
   lag_sim *s = w->sim;
   const lag_contact *c = lag_contacts_at(w, t < 0 ? a : t);
   double at = s->run->t;
   const char *name = lag_contacts_name(w, a);
   if (t >= 0 && w->law[3 * w->of[t] + 1] > 0)
-    return lag_fail(s, LAG_EMODEL, "at t = %.9g s the impact of the contact %s would add energy: its coefficients do not go together there; leave `tangential` out, "
-                    "and Stronge's law holds, which never does", at, name);
-  if (isnan(gain)) return lag_fail(s, LAG_EMODEL, "at t = %.9g s the impact of the contact %s has no finite impulse", at, name);
-  return lag_fail(s, LAG_EMODEL, "at t = %.9g s the impact of the contact %s would add %.6g J of kinetic energy by %s's law, as friction turns the slip in it; `law = stronge` never adds any",
+    return lag_fail(s, LAG_EMODEL,
+                    "at t = %.9g s the impact of the contact %s would add energy: its coefficients do not go together "
+                    "there; leave `tangential` out, "
+                    "and Stronge's law holds, which never does",
+                    at, name);
+  if (isnan(gain))
+    return lag_fail(s, LAG_EMODEL, "at t = %.9g s the impact of the contact %s has no finite impulse", at, name);
+  return lag_fail(s, LAG_EMODEL,
+                  "at t = %.9g s the impact of the contact %s would add %.6g J of kinetic energy by %s's law, as "
+                  "friction turns the slip in it; `law = stronge` never adds any",
                   at, name, gain, laws[c->law]);
 }
 
@@ -187,7 +203,9 @@ static int strike(ContactSet *w, int a, double e) {
     for (int i = 0; i < nq; i++) w->y[nq + i] += P[k] * to * w->d[i];
   }
   for (int k = w->n; k < rows; k++) w->was_closed[w->of[k]] = 0; /* what stuck may slip */
-  return lag_not_finite(nq, w->y + nq) >= 0 || lag_contacts_rates(w, w->y, w->rate) ? lag_contacts_no_values(w, w->of[a]) : LAG_OK;
+  return lag_not_finite(nq, w->y + nq) >= 0 || lag_contacts_rates(w, w->y, w->rate)
+             ? lag_contacts_no_values(w, w->of[a])
+             : LAG_OK;
 }
 
 int lag_contacts_strike(ContactSet *w, const double *e) {
@@ -205,7 +223,10 @@ int lag_contacts_strike(ContactSet *w, const double *e) {
     int rc = strike(w, first, e[first]);
     if (rc) return rc;
   }
-  return lag_fail(w->sim, LAG_EZENO, "at t = %.9g s the contacts %s and others strike each other more than %d times at once; take --method \"moreau(step=1e-3)\", which has one impulse a step", w->sim->run->t, lag_contacts_name(w, 0), most);
+  return lag_fail(w->sim, LAG_EZENO,
+                  "at t = %.9g s the contacts %s and others strike each other more than %d times at once; take "
+                  "--method \"moreau(step=1e-3)\", which has one impulse a step",
+                  w->sim->run->t, lag_contacts_name(w, 0), most);
 }
 
 /* ---- contacts that rest */
@@ -223,8 +244,8 @@ static int flow_on(ContactSet *w, double dt) {
   return LAG_OK;
 }
 
-/* Acceleration of the slip at row a, which no force moves, since other constraints imply it, as at a dead centre: its mean over the shortest time that
- * shows a side; 0: none does. */
+/* Acceleration of the slip at row a, which no force moves, since other constraints imply it, as at a dead centre:
+ * its mean over the shortest time that shows a side; 0: none does. */
 static double implied_acceleration(ContactSet *w, int a) {
   lag_sim *s = w->sim;
   const double first = 0x1p-30, last = 0x1p-8, span = s->pb.span > 0 ? s->pb.span : 1; /* of the run */
@@ -262,12 +283,18 @@ static int fail_paradox(ContactSet *w, const lag_touch *of, int n, int motions) 
     least = limit;
     worst = a;
   }
-  return lag_fail(w->sim, LAG_ESTALL, "at t = %.9g s %s at the contact %s, of friction %.6g: %s (Painleve's paradox, from a friction of %.6g on in this position)",
-                  w->sim->run->t, motions ? "several motions follow" : "no motion follows", lag_contacts_name(w, worst), w->law[3 * w->of[w->at[worst] < 0 ? 0 : w->at[worst]]],
-                  motions ? "it may slip on or lift off" : "friction would press it against the surface more than the surface presses back", least);
+  return lag_fail(w->sim, LAG_ESTALL,
+                  "at t = %.9g s %s at the contact %s, of friction %.6g: %s (Painleve's paradox, from a friction of "
+                  "%.6g on in this position)",
+                  w->sim->run->t, motions ? "several motions follow" : "no motion follows", lag_contacts_name(w, worst),
+                  w->law[3 * w->of[w->at[worst] < 0 ? 0 : w->at[worst]]],
+                  motions ? "it may slip on or lift off"
+                          : "friction would press it against the surface more than the surface presses back",
+                  least);
 }
 
-/* of[*n], row[rows] := the contacts that take part and their rows in w, gaps first. Returns the number of rows; -1: there are too many. */
+/* of[*n], row[rows] := the contacts that take part and their rows in w, gaps first. Returns the number of rows; -1:
+ * there are too many. */
 static int list_touches(const ContactSet *w, int event, lag_touch *of, int *row, int *n) {
   const lag_model *m = w->sim->scene->model;
   *n = 0;
@@ -285,7 +312,9 @@ static int list_touches(const ContactSet *w, int event, lag_touch *of, int *row,
     double slip = w->rate[w->of[t]];
     of[k].mu = w->law[3 * w->of[t]];
     of[k].hold = w->law[3 * w->of[row[k]]];
-    of[k].slip = fabs(slip) <= lag_no_gap * w->rate_size[w->of[t]] || c->impact == event || w->was_closed[w->of[t]] ? 0 : slip > 0 ? 1 : -1;
+    of[k].slip = fabs(slip) <= lag_no_gap * w->rate_size[w->of[t]] || c->impact == event || w->was_closed[w->of[t]] ? 0
+                 : slip > 0                                                                                         ? 1
+                            : -1;
     of[k].cannot_stick = c->release == event;
     of[k].tangent = rows;
     row[rows++] = t;
@@ -298,9 +327,14 @@ int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration) {
   lag_touch of[LAG_MOST_TOUCHES];
   int row[2 * LAG_MOST_TOUCHES], n, rows = list_touches(w, event, of, row, &n);
   for (int a = 0; a < w->n; a++) w->closed[a] = 0;
-  if (rows < 0) return lag_fail(s, LAG_EMODEL, "at t = %.9g s more than %d contacts touch at once, some of them with friction, which only moreau follows: take --method \"moreau(step=1e-3)\"", s->run->t, LAG_MOST_TOUCHES);
+  if (rows < 0)
+    return lag_fail(s, LAG_EMODEL,
+                    "at t = %.9g s more than %d contacts touch at once, some of them with friction, which only moreau "
+                    "follows: take --method \"moreau(step=1e-3)\"",
+                    s->run->t, LAG_MOST_TOUCHES);
   int rc = find_free_accelerations(w);
-  double W[4 * LAG_MOST_TOUCHES * LAG_MOST_TOUCHES], pull[2 * LAG_MOST_TOUCHES], x[2 * LAG_MOST_TOUCHES], room[2 * LAG_MOST_TOUCHES * (2 * LAG_MOST_TOUCHES + 5)];
+  double W[4 * LAG_MOST_TOUCHES * LAG_MOST_TOUCHES], pull[2 * LAG_MOST_TOUCHES], x[2 * LAG_MOST_TOUCHES],
+      room[2 * LAG_MOST_TOUCHES * (2 * LAG_MOST_TOUCHES + 5)];
   for (int i = 0; i < rows && rc == 0; i++) {
     pull[i] = w->rhs[row[i]];
     for (int j = 0; j < rows; j++) W[i * rows + j] = w->response[row[i] * w->rows + row[j]];

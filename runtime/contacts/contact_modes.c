@@ -7,8 +7,9 @@
 #include "numeric/complementarity.h"
 #include "numeric/dense.h"
 
-/* Relative tolerances: of a force or an acceleration that may be 0; of two motions that are one. Forces that contacts share are those of least size,
- * as by springs that give way by `soft` of an acceleration, if they obey Coulomb's law, else others that do. */
+/* Relative tolerances: of a force or an acceleration that may be 0; of two motions that are one. Forces that
+ * contacts share are those of least size, as by springs that give way by `soft` of an acceleration, if they obey
+ * Coulomb's law, else others that do. */
 static const double nothing = 1e-9, alike = 1e-6, soft = 1e-12;
 
 typedef struct Trial {
@@ -19,9 +20,11 @@ typedef struct Trial {
   double first_size[2 * LAG_MOST_TOUCHES];
   int edge[LAG_MOST_TOUCHES];
   int may_wedge; /* forces that only their own size bounds, and prestress */
-  unsigned char prestress[1 << LAG_MOST_TOUCHES]; /* [sets of closed contacts, as bits] some of them can press on each other without any load */
+  /* [sets of closed contacts, as bits] some of them can press on each other without any load */
+  unsigned char prestress[1 << LAG_MOST_TOUCHES];
   int breaks;    /* contacts at rest that slip although static friction may hold them */
-  double *x, *A, *a, *first, *force, *size; /* [rows], [rows rows], accelerations, those of the first motion found, forces of it, sizes of the terms */
+  /* [rows], [rows rows], accelerations, those of the first motion found, forces of it, sizes of the terms */
+  double *x, *A, *a, *first, *force, *size;
 } Trial;
 
 /* Mode number k of a contact, in the order in which they are tried; 0: there are no more. */
@@ -58,7 +61,8 @@ static void set_rows(Trial *t) {
   for (int i = 0; i < t->n; i++) {
     const lag_touch *c = &t->of[i];
     set_row(t, i, c->mode != LAG_CONTACT_OPEN, -1, 0);
-    if (c->tangent >= 0) set_row(t, c->tangent, c->mode == LAG_CONTACT_STICKS, c->mode == LAG_CONTACT_SLIPS ? i : -1, c->to * c->mu);
+    if (c->tangent >= 0)
+      set_row(t, c->tangent, c->mode == LAG_CONTACT_STICKS, c->mode == LAG_CONTACT_SLIPS ? i : -1, c->to * c->mu);
   }
 }
 
@@ -139,7 +143,8 @@ static int fits(const Trial *t, int i) {
   if (c->mode == LAG_CONTACT_OPEN) return t->a[i] >= -nothing * t->size[i];
   if (!(t->x[i] > rounding(t, i)) || !(response(t, i) > 0) || fabs(t->a[i]) > alike * t->size[i]) return 0;
   if (c->mode == LAG_CONTACT_STICKS)
-    return fabs(t->a[c->tangent]) <= alike * t->size[c->tangent] && fabs(t->x[c->tangent]) <= lag_touch_holds(c) * t->x[i] * (1 + nothing) + rounding(t, c->tangent);
+    return fabs(t->a[c->tangent]) <= alike * t->size[c->tangent] &&
+           fabs(t->x[c->tangent]) <= lag_touch_holds(c) * t->x[i] * (1 + nothing) + rounding(t, c->tangent);
   return c->tangent < 0 || c->slip || c->to * t->a[c->tangent] >= -nothing * t->size[c->tangent];
 }
 
@@ -162,7 +167,9 @@ static int choose_forces(Trial *t) {
 }
 
 /* Whether static friction, larger than that of slipping, may hold a contact at rest. */
-static int is_held(const lag_touch *c) { return c->tangent >= 0 && c->slip == 0 && !c->cannot_stick && c->hold > c->mu; }
+static int is_held(const lag_touch *c) {
+  return c->tangent >= 0 && c->slip == 0 && !c->cannot_stick && c->hold > c->mu;
+}
 
 static int count_breaks(const Trial *t) {
   int n = 0;
@@ -170,7 +177,8 @@ static int count_breaks(const Trial *t) {
   return n;
 }
 
-/* Whether contacts a and others in `set` press on each other, each of them needed: forces p > 0 without a load, as on both sides of a rail. */
+/* Whether contacts a and others in `set` press on each other, each of them needed: forces p > 0 without a load, as
+ * on both sides of a rail. */
 static int is_ring(const Trial *t, int set, int a) {
   double A[LAG_MOST_TOUCHES * LAG_MOST_TOUCHES], p[LAG_MOST_TOUCHES], left = 1;
   int of[LAG_MOST_TOUCHES], n = 0;
@@ -178,7 +186,8 @@ static int is_ring(const Trial *t, int set, int a) {
     if (set >> i & 1 && !(response(t, i) > 0)) return 0;
     if (i != a && set >> i & 1) of[n++] = i;
   }
-  for (int k = 0; k < n * n; k++) A[k] = t->W[of[k / n] * t->rows + of[k % n]] * scale(t, of[k / n]) * scale(t, of[k % n]);
+  for (int k = 0; k < n * n; k++)
+    A[k] = t->W[of[k / n] * t->rows + of[k % n]] * scale(t, of[k / n]) * scale(t, of[k % n]);
   for (int k = 0; k < n; k++) p[k] = -t->W[of[k] * t->rows + a] * scale(t, of[k]) * scale(t, a);
   if (n == 0 || lag_solve_dense((size_t)n, 1, A, p)) return 0;
   for (int k = 0; k < n; k++) {
@@ -200,7 +209,8 @@ static void find_prestress(Trial *t) {
   }
 }
 
-/* Whether closed contacts can press on each other by a force that nothing determines; the least is none: one of them is open. */
+/* Whether closed contacts can press on each other by a force that nothing determines; the least is none: one of them
+ * is open. */
 static int has_prestress(const Trial *t) {
   int set = 0;
   for (int i = 0; i < t->n; i++) set |= (t->of[i].mode != LAG_CONTACT_OPEN) << i;
@@ -231,7 +241,8 @@ static int next(Trial *t, int *k) {
   return 0;
 }
 
-/* Where a contact begins to slip: edge[n] := whether no forces hold the contacts at rest but with this one at the edge of its cone. */
+/* Where a contact begins to slip: edge[n] := whether no forces hold the contacts at rest but with this one at the
+ * edge of its cone. */
 static void find_edges(Trial *t) {
   int leaves = 0;
   for (int i = 0; i < t->n; i++) {
@@ -249,10 +260,12 @@ static void find_edges(Trial *t) {
   }
 }
 
-/* Choices that are one motion: the lowest rank is taken. The fewest contacts slip, but all those that begin to; and forces are those of least size. */
+/* Choices that are one motion: the lowest rank is taken. The fewest contacts slip, but all those that begin to; and
+ * forces are those of least size. */
 static int rank_of(const Trial *t, int kind) {
   int rank = kind == CHOSEN;
-  for (int i = 0; i < t->n; i++) rank += t->of[i].tangent >= 0 && t->of[i].mode == LAG_CONTACT_SLIPS ? t->edge[i] ? -2 : 2 : 0;
+  for (int i = 0; i < t->n; i++)
+    rank += t->of[i].tangent >= 0 && t->of[i].mode == LAG_CONTACT_SLIPS ? t->edge[i] ? -2 : 2 : 0;
   return rank;
 }
 
@@ -291,7 +304,10 @@ static int try_breaks(Trial *t, lag_touch *found) {
 }
 
 int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const double *pull, double *x, double *room) {
-  Trial t = {n, rows, of, W, pull, {0}, {0}, {0}, 0, {0}, 0, x, room, room + rows * rows, room + rows * (rows + 1), room + rows * (rows + 2), room + rows * (rows + 3)};
+  Trial t = {n,
+             rows, of, W, pull, {0}, {0}, {0}, 0, {0}, 0, x, room, room + rows * rows, room + rows * (rows + 1),
+             room + rows * (rows + 2),
+             room + rows * (rows + 3)};
   lag_touch found[LAG_MOST_TOUCHES];
   find_edges(&t);
   find_prestress(&t);

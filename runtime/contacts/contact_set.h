@@ -5,8 +5,9 @@
 
 #include "core/core.h"
 
-/* All contacts of a model at a state: gaps, rates and the sizes of their terms; and of[n], the contacts that touch, with the response: impulses L change
- * their rates by response L, where all constraints hold. Memory is freed by free_contacts. */
+/* All contacts of a model at a state: gaps, rates and the sizes of their terms; and of[n], the contacts that touch,
+ * with the response: impulses L change their rates by response L, where all constraints hold. Memory is freed by
+ * free_contacts. */
 typedef struct ContactSet {
   lag_sim *sim;
   double *y;                    /* [n of the state] */
@@ -16,13 +17,17 @@ typedef struct ContactSet {
   double *response;             /* [n n] */
   double *rhs;                  /* [n] acceleration of each gap while all are open */
   double *impulse;              /* [n] impulses, or forces */
-  double *lcp, *scale;          /* [n n], [n] matrix and scales of the complementarity problem, whose row k is contact at[k] */
+  /* [n n], [n] matrix and scales of the complementarity problem, whose row k is contact at[k] */
+  double *lcp, *scale;
   int *at;
   unsigned char *active, *closed; /* [n] takes part; pushes */
   unsigned char *was_closed;    /* [contacts] closed before */
   unsigned char *follows;       /* [n] its gap is held by the contacts that push */
-  double *g, *c, *r, *d, *force, *test, *events, *ahead; /* scratch: [constraints], [constraints], [constraints], [nq], [nq], [n of the state], [nev], [contacts] */
-  double *law, *side;           /* [3 contacts] of the model's contact_laws; [n] side to which a contact slips, NaN: it sticks, 0: by a force that is not unique */
+  /* scratch: [constraints], [constraints], [constraints], [nq], [nq], [n of the state], [nev], [contacts] */
+  double *g, *c, *r, *d, *force, *test, *events, *ahead;
+  /* [3 contacts] of the model's contact_laws; [n] side to which a contact slips, NaN: it sticks, 0: by a force that
+   * is not unique */
+  double *law, *side;
   double *A, *mass;             /* sparse entries of the constraints' Jacobian, with all contacts closed, and of M */
   double *block;
 } ContactSet;
@@ -30,23 +35,27 @@ typedef struct ContactSet {
 /* Rounding of a gap or of its rate, relative to their terms. */
 static const double lag_no_gap = 0x1p12 * DBL_EPSILON;
 
-static inline const lag_contact *lag_contacts_at(const ContactSet *w, int a) { return &w->sim->scene->model->contacts[w->of[a]]; }
+static inline const lag_contact *lag_contacts_at(const ContactSet *w, int a) {
+  return &w->sim->scene->model->contacts[w->of[a]];
+}
 
 static inline const char *lag_contacts_name(const ContactSet *w, int a) {
   return w->sim->scene->model->constraints->of[lag_contacts_at(w, a)->constraint].name;
 }
 
-/* contact.c. set_closed: closes or opens contact i of the model; a tangent sticks, or has no friction. close_only: closes all, or `which` alone, or none (-1).
- * rates: rate[i] := rate of each gap, and slip velocity of each tangent, at y; leaves all closed. response: d := the least change of velocities that changes
- * the rate of contact i by 1, the others open; returns the change per unit impulse. no_values: reports that contact i has none. */
+/* contact.c. set_closed: closes or opens contact i of the model; a tangent sticks, or has no friction. close_only:
+ * closes all, or `which` alone, or none (-1). rates: rate[i] := rate of each gap, and slip velocity of each tangent,
+ * at y; leaves all closed. response: d := the least change of velocities that changes the rate of contact i by 1,
+ * the others open; returns the change per unit impulse. no_values: reports that contact i has none. */
 void lag_contact_set_closed(lag_sim *sim, int i, int closed);
 void lag_contacts_close_only(const ContactSet *w, int all, int which);
 int lag_contacts_rates(ContactSet *w, const double *y, double *rate);
 double lag_contacts_response(ContactSet *w, int i);
 int lag_contacts_no_values(ContactSet *w, int i);
 
-/* contact_friction.c, where some contact of w has friction. strike: impacts one after the other, the fastest first, until no gap closes; e[n]: restitution.
- * choose_modes: in[n] and side[n] of the contacts that take part, after the event, or -1; acceleration[n] of all gaps then. set_friction: sets the friction of those closed. */
+/* contact_friction.c, where some contact of w has friction. strike: impacts one after the other, the fastest first,
+ * until no gap closes; e[n]: restitution. choose_modes: in[n] and side[n] of the contacts that take part, after the
+ * event, or -1; acceleration[n] of all gaps then. set_friction: sets the friction of those closed. */
 int lag_contacts_strike(ContactSet *w, const double *e);
 int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration);
 void lag_contacts_set_friction(ContactSet *w);

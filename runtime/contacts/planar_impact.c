@@ -31,9 +31,12 @@ static double until_end(int law, double v, double slope, double owed) {
 static void by_impulse(const double *W, const double *v, int law, double mu, double e, double *P) {
   double vn = v[0], vt = v[1], stored = 0, owed = 0;
   P[0] = P[1] = 0;
-  for (int phase = 0, returns = 0; phase < 8; phase++) { /* slip, stick or slip back, each in compression and restitution */
-    double f = friction(W, vt, mu), up = W[0] + W[1] * f, along = vt == 0 && fabs(W[2] / W[3]) <= mu ? 0 : W[2] + W[3] * f;
-    double stops = until_zero(vt, along), turns = returns ? until_end(law, vn, up, owed) : until_zero(vn, up), p = fmin(stops, turns);
+  /* slip, stick or slip back, each in compression and restitution */
+  for (int phase = 0, returns = 0; phase < 8; phase++) {
+    double f = friction(W, vt, mu), up = W[0] + W[1] * f,
+           along = vt == 0 && fabs(W[2] / W[3]) <= mu ? 0 : W[2] + W[3] * f;
+    double stops = until_zero(vt, along), turns = returns ? until_end(law, vn, up, owed) : until_zero(vn, up),
+           p = fmin(stops, turns);
     double work = vn * p + up * p * p / 2;
     P[0] += p;
     P[1] += f * p;
@@ -48,11 +51,13 @@ static void by_impulse(const double *W, const double *v, int law, double mu, dou
   }
 }
 
-/* Whether both velocities follow from one, as of a body that other constraints guide, and friction holds it: then compression ends in rest, and friction bears all
- * that would push the body back. P := an impulse that stops it. */
+/* Whether both velocities follow from one, as of a body that other constraints guide, and friction holds it: then
+ * compression ends in rest, and friction bears all that would push the body back. P := an impulse that stops it. */
 static int jams(const double *W, const double *v, double mu, double *P) {
   const double same = 1e-9; /* rounding of the entries of W and v, with room */
-  if (W[0] * W[3] - W[1] * W[2] > same * W[0] * W[3] || fabs(v[1] * W[0] - v[0] * W[2]) > same * fabs(v[0] * W[2]) || fabs(W[2]) > mu * W[3]) return 0;
+  if (W[0] * W[3] - W[1] * W[2] > same * W[0] * W[3] || fabs(v[1] * W[0] - v[0] * W[2]) > same * fabs(v[0] * W[2]) ||
+      fabs(W[2]) > mu * W[3])
+    return 0;
   P[0] = -v[0] / W[0];
   P[1] = 0;
   return 1;

@@ -75,7 +75,8 @@ int lag_sim_is_undetermined(const lag_sim *s, int i) {
 }
 
 int lag_observe(lag_sim *s, double t, const double *y, double *out) {
-  const double doubtful = 1e-3; /* with independence i, forces have an error of rounding/i^2 and of the state's error/i^2 */
+  /* with independence i, forces have an error of rounding/i^2 and of the state's error/i^2 */
+  const double doubtful = 1e-3;
   const lag_scene *c = s->scene;
   int weakest, rc = lag_inputs_at(&s->pb, t, y);
   rc = rc ? rc : lag_closed_form_at(s, t);

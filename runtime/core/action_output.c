@@ -21,8 +21,8 @@ static lag_phase_point point_at(void *context, double q, double p) {
   return (lag_phase_point){out[0], out[1], out[2], out[3]};
 }
 
-double lag_action(const lag_action_curve *of, double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                  double *y, double *w) {
+double lag_action(const lag_action_curve *of, double t, const double *q, const double *v, const double *z,
+                  const double *p, const double *u, double *y, double *w) {
   Place c = {of, t, p, u, y, w};
   for (int i = 0; i < of->nq; i++) y[i] = q[i];
   for (int i = 0; i < of->nz; i++) y[2 * of->nq + i] = z[i];

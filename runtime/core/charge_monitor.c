@@ -1,17 +1,20 @@
-/* Monitors of charges: the energy and the charges of symmetries; where forces change a charge, its balance Q - int P dt. Enters: states of the
- * run, in order; leaves: for each charge the largest difference from the start, and whether it grows.
+/* Monitors of charges: the energy and the charges of symmetries; where forces change a charge, its balance Q - int P
+ * dt. Enters: states of the run, in order; leaves: for each charge the largest difference from the start, and
+ * whether it grows.
  *
- * int P dt, where it is asked for, is a sum of quadratures on the dense output, of the order of the method: one over each part of a step between
- * events. Where the ends of steps are more accurate than the dense output the nodes are Radau's: those of `radau` are its stages, whose errors
- * cancel. Methods with long steps and rough dense output, those of GSL, get no balance. The jump of a charge at an event moves the value that it
- * is compared with.
+ * int P dt, where it is asked for, is a sum of quadratures on the dense output, of the order of the method: one over
+ * each part of a step between events. Where the ends of steps are more accurate than the dense output the nodes are
+ * Radau's: those of `radau` are its stages, whose errors cancel. Methods with long steps and rough dense output,
+ * those of GSL, get no balance. The jump of a charge at an event moves the value that it is compared with.
  *
- * The size of a charge is the median over the time of the run of the sum of its terms' sizes (of the energy |p.v| + |L|): the largest would grow
- * with a blow-up, and hide it. The run ends where its energy is off by several times that size, and by a large part of its present size.
+ * The size of a charge is the median over the time of the run of the sum of its terms' sizes (of the energy |p.v| +
+ * |L|): the largest would grow with a blow-up, and hide it. The run ends where its energy is off by several times
+ * that size, and by a large part of its present size.
  *
- * Growth: the differences are averaged over 16 to 32 parts of the run, and a line is fitted to the averages. A drift grows where the line
- * explains most of their variation; an oscillation of any size cancels in the averages. Batch means: B. Schmeiser, Oper. Res. 30 (1982) 556, DOI
- * 10.1287/opre.30.3.556. Differences below the accumulated rounding are not judged: D. Brouwer, Astron. J. 46 (1937) 149, DOI 10.1086/105423. */
+ * Growth: the differences are averaged over 16 to 32 parts of the run, and a line is fitted to the averages. A drift
+ * grows where the line explains most of their variation; an oscillation of any size cancels in the averages. Batch
+ * means: B. Schmeiser, Oper. Res. 30 (1982) 556, DOI 10.1287/opre.30.3.556. Differences below the accumulated
+ * rounding are not judged: D. Brouwer, Astron. J. 46 (1937) 149, DOI 10.1086/105423. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -30,14 +33,18 @@ int lag_sim_ncharges(const lag_sim *s) {
 
 unsigned lag_charge_flags(const lag_sim *s, int k) {
   const lag_model *m = s->scene->model;
-  unsigned flags = m->charges ? m->charges->of[k].flags : m->flags & LAG_CONSERVES_ENERGY ? LAG_CONSERVED | LAG_BALANCED : 0;
+  unsigned flags = m->charges                        ? m->charges->of[k].flags
+                   : m->flags & LAG_CONSERVES_ENERGY ? LAG_CONSERVED | LAG_BALANCED
+                                                     : 0;
   if (!(flags & LAG_CONSERVED) && s->run->balanced == 0.0) return flags & LAG_JUMPS;
   for (int i = 0; i < m->nu && (flags & LAG_BY_FORMULAS); i++)
     if (!isnan(s->hold[i]) || s->signal[i].fn) flags = 0;
   return flags;
 }
 
-static void no_values(lag_sim *s, int from) { for (int i = 2 * from; i < 2 * lag_sim_ncharges(s); i++) s->charge_now[i] = NAN; }
+static void no_values(lag_sim *s, int from) {
+  for (int i = 2 * from; i < 2 * lag_sim_ncharges(s); i++) s->charge_now[i] = NAN;
+}
 
 void lag_charges_at(lag_sim *s, double t, const double *y) {
   const lag_model *m = s->scene->model;
@@ -47,7 +54,8 @@ void lag_charges_at(lag_sim *s, double t, const double *y) {
     no_values(s, 0);
     return;
   }
-  if (m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now, s->work)) s->charge_now[0] = s->charge_now[1] = NAN;
+  if (m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now, s->work))
+    s->charge_now[0] = s->charge_now[1] = NAN;
   if (n > 1 && m->charges->values(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now + 2, s->work)) no_values(s, 1);
 }
 
@@ -77,7 +85,8 @@ static int watches_charges(const lag_scene *c) {
 }
 
 void lag_charges_method(lag_sim *s, const lag_method *method) {
-  int order = method->order_most > method->order ? method->order_most : method->order, between = method->dense_order + 1;
+  int order = method->order_most > method->order ? method->order_most : method->order,
+      between = method->dense_order + 1;
   int ends = method->order_most == 0 && order > between;
   order = ends || order < between ? order : between;
   s->nodes = (order + 1) / 2 > LAG_NODES ? LAG_NODES : order < 2 ? 1 : (order + 1) / 2;
@@ -106,7 +115,8 @@ static void add_piece(lag_sim *s, double a, double b, double *gain) {
   }
 }
 
-/* gain[npowers] := int P dt over [a, b], within the last step, in whose middle velocities jump where contacts are met by impulses. */
+/* gain[npowers] := int P dt over [a, b], within the last step, in whose middle velocities jump where contacts are
+ * met by impulses. */
 static void work_over(lag_sim *s, double a, double b, double *gain) {
   const lag_contact_stats *c = s->pb.contacts;
   double jump = c && a < c->from && c->from < b ? c->from : a;
@@ -128,7 +138,8 @@ static void add_work(lag_sim *s, double t) {
   double *gain = s->charge_gain;
   if (s->run->balanced != 0.0) {
     work_over(s, s->run->watched, t, gain);
-    if (s->scene->model->charges->dry_friction) add_compensated(&s->run->dry_work, &s->run->dry_lost, gain[lag_sim_ncharges(s)]);
+    if (s->scene->model->charges->dry_friction)
+      add_compensated(&s->run->dry_work, &s->run->dry_lost, gain[lag_sim_ncharges(s)]);
     for (int k = 0; k < lag_sim_ncharges(s); k++) {
       Charge *c = &s->charges[k];
       add_compensated(&c->work, &c->lost, c->balanced * gain[k]);
@@ -149,7 +160,8 @@ static void merge_bins(Charge *c) {
   c->width *= 2;
 }
 
-/* Median of the bins' sizes, weighted by time, as there are many steps in front of a pole; without zeros, as at rest; of few bins the largest. */
+/* Median of the bins' sizes, weighted by time, as there are many steps in front of a pole; without zeros, as at
+ * rest; of few bins the largest. */
 static double median_size(const Charge *c) {
   enum { FEW = 8 };
   double size[LAG_BINS], time[LAG_BINS], whole = 0, half = 0;
@@ -190,7 +202,8 @@ static void add_to_trend(Charge *c, double t, double d, double size) {
   if (++c->bins >= LAG_BINS) merge_bins(c);
 }
 
-/* Sizes that charges have if the values so far are rounding: of momenta, those with the velocities of the energy's size. */
+/* Sizes that charges have if the values so far are rounding: of momenta, those with the velocities of the energy's
+ * size. */
 static void take_terms(lag_sim *s, double t, const double *y) {
   int n = lag_sim_ncharges(s), nq = s->pb.nq;
   double *beside = s->yb, *v = beside + nq;
@@ -209,7 +222,10 @@ void lag_charges_begin(lag_sim *s, double t, const double *y) {
   s->run->watched = t;
   s->run->balanced = can_balance(s) && (s->balances || watches_charges(s->scene));
   for (int k = 0; k < lag_sim_ncharges(s); k++) {
-    s->charges[k] = (Charge){.begin = s->charge_now[2 * k], .first = s->charge_now[2 * k], .size = fmax(s->charge_now[2 * k + 1], 0), .width = 1};
+    s->charges[k] = (Charge){.begin = s->charge_now[2 * k],
+                             .first = s->charge_now[2 * k],
+                             .size = fmax(s->charge_now[2 * k + 1], 0),
+                             .width = 1};
     s->charges[k].balanced = (lag_charge_flags(s, k) & LAG_BALANCED) != 0;
   }
   take_terms(s, t, y);
@@ -221,22 +237,25 @@ int lag_energy_undefined(lag_sim *s, double t, const double *y) {
   return n > 0 && isfinite(s->charges[0].begin) && !isfinite(s->charge_now[0]);
 }
 
-/* Whether the energy, known to be conserved or balanced, is off by d: by several times its size in this run, and by a large part of the work
- * done so far and of `size`, its present one (in free motion |p.v| + |L| is three times the energy). The second condition spares rough
- * tolerances, which lose as much as there is without a pole. Not judged: few bins, since a motion from rest has no size yet; errors below 1e-12
- * of the terms; constraints that move with time, whose peaks may lie between steps. */
+/* Whether the energy, known to be conserved or balanced, is off by d: by several times its size in this run, and by
+ * a large part of the work done so far and of `size`, its present one (in free motion |p.v| + |L| is three times the
+ * energy). The second condition spares rough tolerances, which lose as much as there is without a pole. Not judged:
+ * few bins, since a motion from rest has no size yet; errors below 1e-12 of the terms; constraints that move with
+ * time, whose peaks may lie between steps. */
 static int is_lost(const lag_model *m, const Charge *c, double d, double size) {
   const double part = 0.25, times = 4, least = 1e-12, few = 8, off = fabs(d);
   int driven = m->constraints && !(m->flags & LAG_AUTONOMOUS);
 
-  return c->balanced != 0.0 && !driven && c->bins >= few && off > fmax(times * fabs(c->begin), least * c->terms) && off > part * fmax(size, c->through) && off > times * size_of(c);
+  return c->balanced != 0.0 && !driven && c->bins >= few && off > fmax(times * fabs(c->begin), least * c->terms) &&
+         off > part * fmax(size, c->through) && off > times * size_of(c);
 }
 
 /* *c := the energy's; whether half of it is lost. */
 static int is_half_lost(lag_sim *s, lag_charge_stats *c) {
   const double half = 0.5, least = 1e-12;
   lag_sim_charge(s, 0, c);
-  double large = fmax(fabs(c->now), s->charges[0].through); /* where forces do more work than the energy that there was */
+  /* where forces do more work than the energy that there was */
+  double large = fmax(fabs(c->now), s->charges[0].through);
   int known = (c->flags & (LAG_CONSERVED | LAG_BALANCED)) != 0;
   return known && c->drift >= half && c->absolute > fmax(least * s->charges[0].terms, half * large);
 }
@@ -244,13 +263,17 @@ static int is_half_lost(lag_sim *s, lag_charge_stats *c) {
 int lag_energy_retained(lag_sim *s) {
   const lag_model *m = s->scene->model;
   lag_charge_stats c;
-  if (lag_sim_ncharges(s) == 0 || s->run->begun == 0.0 || (m->constraints && !(m->flags & LAG_AUTONOMOUS))) return LAG_OK;
+  if (lag_sim_ncharges(s) == 0 || s->run->begun == 0.0 || (m->constraints && !(m->flags & LAG_AUTONOMOUS)))
+    return LAG_OK;
   if (!is_half_lost(s, &c)) return LAG_OK;
   take_terms(s, s->run->t, s->now);
   if (!is_half_lost(s, &c)) return LAG_OK;
   const char *space = c.unit[0] ? " " : "";
-  return lag_fail(s, LAG_EDRIFT, "up to t = %.9g s the energy has an error of %.3g%s%s, of %.3g%s%s at the start: the numbers mean nothing; take %s", s->run->t, c.absolute, space, c.unit,
-                  c.begin, space, c.unit, s->steps_equal ? "smaller steps" : "a smaller tolerance");
+  return lag_fail(s, LAG_EDRIFT,
+                  "up to t = %.9g s the energy has an error of %.3g%s%s, of %.3g%s%s at the start: the numbers mean "
+                  "nothing; take %s",
+                  s->run->t, c.absolute, space, c.unit, c.begin, space, c.unit,
+                  s->steps_equal ? "smaller steps" : "a smaller tolerance");
 }
 
 static int say_lost(lag_sim *s, double t, double before, double d) {
@@ -258,14 +281,18 @@ static int say_lost(lag_sim *s, double t, double before, double d) {
   const Charge *c = &s->charges[0];
   const char *unit = m->charges ? m->charges->of[0].unit : "", *space = unit[0] ? " " : "";
   double h = lag_equal_step(s);
-  return lag_fail(s, LAG_EDRIFT, "at t = %.9g s the energy is off by %.3g%s%s, %.2g times its size in this run: the numbers mean nothing from here on. The step from "
-                  "t = %.9g s, of %.3g s, caused %.3g%s%s of that error: it crosses a pole of a force, or is too long; %s", t, d, space, unit,
-                  relative(c, fabs(d), size_of(c)), s->run->step_t0, s->run->step_t1 - s->run->step_t0, d - before, space, unit,
-                  h > 0 ? "take smaller steps, or dop853, which stops in front of a pole" : "take a smaller tolerance");
+  return lag_fail(
+      s, LAG_EDRIFT,
+      "at t = %.9g s the energy is off by %.3g%s%s, %.2g times its size in this run: the numbers mean nothing from "
+      "here on. The step from "
+      "t = %.9g s, of %.3g s, caused %.3g%s%s of that error: it crosses a pole of a force, or is too long; %s",
+      t, d, space, unit, relative(c, fabs(d), size_of(c)), s->run->step_t0, s->run->step_t1 - s->run->step_t0,
+      d - before, space, unit,
+      h > 0 ? "take smaller steps, or dop853, which stops in front of a pole" : "take a smaller tolerance");
 }
 
-/* At the largest energy change in a step, notes the condition of the mass matrix. The answer costs n^2 energies and n^3 products, so it is
- * computed only where the change has doubled. */
+/* At the largest energy change in a step, notes the condition of the mass matrix. The answer costs n^2 energies and
+ * n^3 products, so it is computed only where the change has doubled. */
 static void note_jolt(lag_sim *s, double t, const double *y, double change) {
   enum { MANY = 64 };
   const double rounding = 64 * DBL_EPSILON;
@@ -307,7 +334,8 @@ int lag_charges_record(lag_sim *s, double t, const double *y) {
 void lag_charges_jump(lag_sim *s, double t, const double *ya, const double *yb) {
   for (int pass = 0; pass < 2; pass++) {
     lag_charges_at(s, t, pass ? yb : ya);
-    for (int k = 0; k < lag_sim_ncharges(s); k++) s->charges[k].first += pass ? s->charge_now[2 * k] : -s->charge_now[2 * k];
+    for (int k = 0; k < lag_sim_ncharges(s); k++)
+      s->charges[k].first += pass ? s->charge_now[2 * k] : -s->charge_now[2 * k];
     if (lag_sim_ncharges(s)) s->run->at_events += pass ? s->charge_now[0] : -s->charge_now[0];
   }
 }
@@ -338,7 +366,9 @@ static void with_present(Charge *c, double now, double work) {
   c->peak = d > c->peak || isnan(d) ? d : c->peak;
 }
 
-double lag_charge_drift(const lag_sim *s, int k) { return relative(&s->charges[k], s->charges[k].peak, size_of(&s->charges[k])); }
+double lag_charge_drift(const lag_sim *s, int k) {
+  return relative(&s->charges[k], s->charges[k].peak, size_of(&s->charges[k]));
+}
 
 /* Fits a line to the bins: *slope and *error; returns the trend. */
 static int trend_of(const Charge *c, double size, double steps, double *slope, double *error) {
@@ -356,15 +386,20 @@ static int trend_of(const Charge *c, double size, double steps, double *slope, d
 
 void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st) {
   if (!st) return;
-  *st = (lag_charge_stats){.name = "", .unit = "", .begin = NAN, .now = NAN, .drift = NAN, .slope = NAN, .slope_error = NAN, .mass_condition = NAN, .mass_condition_of = ""};
+  *st = (lag_charge_stats){.name = "",
+                           .unit = "", .begin = NAN, .now = NAN, .drift = NAN, .slope = NAN, .slope_error = NAN,
+                           .mass_condition = NAN,
+                           .mass_condition_of = ""};
   if (!s || k < 0 || k >= lag_sim_ncharges(s)) return;
   const lag_model *m = s->scene->model;
   const Run *r = s->run;
   Charge seen = s->charges[k], *c = &seen;
   double since = 0, size = size_of(c);
 
-  *st = (lag_charge_stats){.name = m->charges ? m->charges->of[k].name : "energy", .unit = m->charges ? m->charges->of[k].unit : "",
-                           .flags = lag_charge_flags(s, k), .begin = c->begin, .mass_condition = NAN, .mass_condition_of = ""};
+  *st = (lag_charge_stats){.name = m->charges ? m->charges->of[k].name : "energy",
+                           .unit = m->charges ? m->charges->of[k].unit : "", .flags = lag_charge_flags(s, k),
+                           .begin = c->begin, .mass_condition = NAN,
+                           .mass_condition_of = ""};
   if (r->begun != 0.0 && r->have_step != 0.0 && r->balanced != 0.0) { /* the run's end is within a step */
     work_over(s, r->watched, r->t, s->charge_gain);
     since = c->balanced * s->charge_gain[k];
@@ -374,7 +409,8 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st) {
   st->now = s->charge_now[2 * k];
   c->first += k == 0 ? pending_work(s) : 0;
   st->work = c->work + since;
-  st->dry_friction = k == 0 && m->charges && m->charges->dry_friction && r->balanced != 0.0 ? r->dry_work + st->dry_friction : NAN;
+  st->dry_friction =
+      k == 0 && m->charges && m->charges->dry_friction && r->balanced != 0.0 ? r->dry_work + st->dry_friction : NAN;
   st->at_events = k == 0 ? r->at_events : 0;
   if (r->begun == 0.0) st->begin = st->now;
   else with_present(c, st->now, st->work);

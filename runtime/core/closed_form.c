@@ -1,5 +1,5 @@
-/* Comparison of a run with closed forms. Enters: states of the run; leaves: the largest differences, and the closed forms behind inputs and modes in
- * s->u, where outputs read them. */
+/* Comparison of a run with closed forms. Enters: states of the run; leaves: the largest differences, and the closed
+ * forms behind inputs and modes in s->u, where outputs read them. */
 #include <math.h>
 
 #include "core/core.h"
@@ -7,7 +7,9 @@
 int lag_closed_form_at(lag_sim *s, double t) {
   const lag_scene *c = s->scene;
   int nq = s->pb.nq;
-  return c->nexact ? c->exact(t, s->begin, s->begin + nq, s->begin + 2 * nq, s->p, s->u, s->u + c->model->nu + c->model->nmodes) : 0;
+  return c->nexact ? c->exact(t, s->begin, s->begin + nq, s->begin + 2 * nq, s->p, s->u,
+                              s->u + c->model->nu + c->model->nmodes)
+                   : 0;
 }
 
 /* Motion minus closed form k, which lag_closed_form_at has computed; of angles the nearest way around. */
@@ -25,7 +27,8 @@ static int forms_at(lag_sim *s, double t) {
 
 int lag_closed_form_record(lag_sim *s, double t, const double *y) {
   const lag_scene *c = s->scene;
-  if (c->nexact && forms_at(s, t)) return lag_fail(s, LAG_EMODEL, "the closed forms cannot be computed at t = %s s", LAG_TEXT(t));
+  if (c->nexact && forms_at(s, t))
+    return lag_fail(s, LAG_EMODEL, "the closed forms cannot be computed at t = %s s", LAG_TEXT(t));
   for (int k = 0; k < c->nexact; k++) {
     double d = fabs(difference(s, y, k));
     if (d > s->exact_peak[k] || isnan(d)) { /* a NaN must not be forgotten */

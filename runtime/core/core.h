@@ -1,8 +1,8 @@
-/* The simulation object, and the functions that the files of core/ offer one another, grouped by file.
- * Holds: the state of a run is one block of doubles, `saved`, with no pointers in it; saving a run is writing that block.
+/* The simulation object, and the functions that the files of core/ offer one another, grouped by file. Holds: the
+ * state of a run is one block of doubles, `saved`, with no pointers in it; saving a run is writing that block.
  *
- * A run is a chain of method steps [step_t0, step_t1]. Within a step the run moves from `t` to `limit`: the next event, or the end of the step.
- * The times that the caller asks for do not change the steps. */
+ * A run is a chain of method steps [step_t0, step_t1]. Within a step the run moves from `t` to `limit`: the next
+ * event, or the end of the step. The times that the caller asks for do not change the steps. */
 #pragma once
 
 #include <float.h>
@@ -26,12 +26,17 @@ typedef struct Run {
   double dry_work, dry_lost; /* work of dry friction, and the rounding error of that sum */
   double at_events;      /* change of the energy at events: impacts, constraints that begin to hold, actions */
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
-  double rank, beside;   /* rank of the constraints at the start; and, at a singular start, their rank a hundredth away from it */
-  double looks, coarse, period; /* steps of equal size: period estimates made; estimates shorter than two steps; the last such period [s] */
+  /* rank of the constraints at the start; and, at a singular start, their rank a hundredth away from it */
+  double rank, beside;
+  /* steps of equal size: period estimates made; estimates shorter than two steps; the last such period [s] */
+  double looks, coarse, period;
   double stall_since;    /* time when the stall detector last judged the pace of steps */
-  double energy_jump, energy_jump_t;   /* largest energy change in one step, and its time; replaced only by a change more than twice as large */
-  double mass_condition, mass_condition_of; /* condition of the mass matrix at energy_jump_t, and the coordinate of least inertia */
-  double restarts, restart_since; /* events, ends of branches, turns of a slip; time when the stall detector last judged their pace */
+  /* largest energy change in one step, and its time; replaced only by a change more than twice as large */
+  double energy_jump, energy_jump_t;
+  /* condition of the mass matrix at energy_jump_t, and the coordinate of least inertia */
+  double mass_condition, mass_condition_of;
+  /* events, ends of branches, turns of a slip; time when the stall detector last judged their pace */
+  double restarts, restart_since;
   double pole_calls;     /* right-hand sides that the search for poles of forces took */
   double row_origin, row_every, row_next;  /* output grid, kept here for app/ */
   double seal;           /* in a saved state: hash of its numbers, and of what they belong to */
@@ -51,12 +56,12 @@ typedef struct Charge {
   double work, lost; /* int P dt, and the rounding error of that sum (Kahan) */
   double balanced;   /* 1: P is known and integrated */
   double bins, width, in_bin; /* full bins; samples that fill a bin; samples in the open bin */
-  double t[LAG_BINS + 1], d[LAG_BINS + 1], m[LAG_BINS + 1]; /* means of time, difference and size over each bin; element LAG_BINS: sums over the
-                                                             * open bin */
+  /* means of time, difference and size over each bin; element LAG_BINS: sums over the open bin */
+  double t[LAG_BINS + 1], d[LAG_BINS + 1], m[LAG_BINS + 1];
 } Charge;
 
-/* The scalar type of this library by its name in `lagc run --precision`, and advice for more digits. The Makefile defines it for other types
- * than double; see precision.awk. */
+/* The scalar type of this library by its name in `lagc run --precision`, and advice for more digits. The Makefile
+ * defines it for other types than double; see precision.awk. */
 #ifndef LAG_PRECISION
 #define LAG_PRECISION "double"
 #define LAG_MORE_PRECISION "; --precision quad has 34 digits"
@@ -64,8 +69,9 @@ typedef struct Charge {
 #define LAG_MORE_PRECISION ""
 #endif
 
-/* A step that is made elsewhere, in the lanes of a vector (lanes/): with `on`, lag_sim_advance returns LAG_WANTS_STEP where it needs a step, towards `to`;
- * once `made` is set it goes on from the state in y, at the end t of the step. */
+/* A step that is made elsewhere, in the lanes of a vector (lanes/): with `on`, lag_sim_advance returns
+ * LAG_WANTS_STEP where it needs a step, towards `to`; once `made` is set it goes on from the state in y, at the end
+ * t of the step. */
 enum { LAG_WANTS_STEP = 1000 };
 typedef struct OutsideStep {
   int on, made;
@@ -85,18 +91,21 @@ struct lag_sim {
   double *scratch;       /* one block: u, work, y, g, g, outputs */
   double *sizes;         /* [nsizes + nmoving] scratch */
   double *sides;         /* [3 nswitch] switching functions, scratch of stall_detector.c */
-  double *rate_history;         /* [3 n] force_pole.c: rate of change of the state over the last two steps, and its fading peak; NaN: not known */
+  /* [3 n] force_pole.c: rate of change of the state over the last two steps, and its fading peak; NaN: not known */
+  double *rate_history;
   double *contact_scratch, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
   double *grip;          /* [nmodes] the largest mode of a sliding motion */
-  double *side_noise, *slid_off, *meets, *left, *meeting; /* [nmodes] switching.c: rounding of the switching functions, their size before events; whether
-                          * the motion is at the surface, the side to which it has slid off; scratch */
+  /* [nmodes] switching.c: rounding of the switching functions, their size before events; whether the motion is at
+   * the surface, the side to which it has slid off; scratch */
+  double *side_noise, *slid_off, *meets, *left, *meeting;
   int *meeting_of;       /* [3 nmodes] scratch, pb.sliding, and bytes of scratch */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
   double *saved;         /* one block: Run and the arrays below; it lies in `room`, which is freed */
   char *room;
   size_t nsaved;
   Run *run;
-  double *p, *derived, *hold; /* [np + nderived]; its last nderived; [nu + nmodes] modes, and input constants, NaN: none */
+  /* [np + nderived]; its last nderived; [nu + nmodes] modes, and input constants, NaN: none */
+  double *p, *derived, *hold;
   double *begin;         /* [n] at the start of the run */
   double *asked;         /* [n] start as requested, before projection onto the constraints */
   double *redundant;     /* [constraints] 1: it follows from the others at the start */
@@ -111,23 +120,30 @@ struct lag_sim {
   double *sign_end;      /* [nev] sign of g at the end of the step */
   double *count;         /* [nev] */
   double *first, *last;  /* [nev] times of firing, where count is not 0 */
-  double *interval, *shorter; /* [nev] interval between the last two firings; number of intervals in a row, each shorter than the one before */
-  double *flight, *skipped; /* [nev] first interval of the present series of shorter ones; time of the flights that were taken as rest */
-  double *crossed, *slips, *slid, *slid_since; /* [nmodes] times that a surface was crossed, slides begun; their time, start of the present mode */
+  /* [nev] interval between the last two firings; number of intervals in a row, each shorter than the one before */
+  double *interval, *shorter;
+  /* [nev] first interval of the present series of shorter ones; time of the flights that were taken as rest */
+  double *flight, *skipped;
+  /* [nmodes] times that a surface was crossed, slides begun; their time, start of the present mode */
+  double *crossed, *slips, *slid, *slid_since;
   double *mon_first, *mon_peak; /* [nmonitors] first value and largest deviation of a monitored output */
   double *charge_block;
   Charge *charges;       /* charge_block as [lag_sim_ncharges]; the energy first */
   double *charge_now, *charge_power, *charge_gain; /* scratch: value and scale of each charge; P; int P dt */
-  double node[LAG_NODES], weight[LAG_NODES]; /* quadrature nodes and weights over a step, as lag_charges_nodes left them; node[0] 0: not yet */
+  /* quadrature nodes and weights over a step, as lag_charges_nodes left them; node[0] 0: not yet */
+  double node[LAG_NODES], weight[LAG_NODES];
   int nodes, nodes_at_end; /* their number; 1: Radau's, the last of them at the end */
   int balances;          /* lag_sim_balance was called */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
   double *method_work;   /* [nwork] */
   size_t nwork;
-  double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
+  /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
+  double *tangent, *tangent_jump, *tangent_scratch;
   int tangent_columns, tangent_at_event; /* tangent_at_event: the event at this time is already applied to it */
-  int tangent_meets, tangent_moves, tangent_touches; /* switches met at this time; whether that time depends on the state; whether the last one is only touched */
-  double tangent_log;    /* sum of log |det S| over events (flow_tangent.c), -HUGE_VAL once a slide has begun; its reader sets it back to 0 */
+  /* switches met at this time; whether that time depends on the state; whether the last one is only touched */
+  int tangent_meets, tangent_moves, tangent_touches;
+  /* sum of log |det S| over events (flow_tangent.c), -HUGE_VAL once a slide has begun; its reader sets it back to 0 */
+  double tangent_log;
   int (*on_step)(void *, const lag_sim *);
   void *on_step_context;
   lag_event_fn *on_event;
@@ -151,7 +167,8 @@ const char *lag_step_error(const lag_sim *s, double x);
 /* The common size of the steps [s]; 0 where the method adapts it. */
 double lag_equal_step(const lag_sim *s);
 
-/* saved_state.c: FNV-1a hash that goes on from h with a number, by its value: in memory, numbers of some precisions have bytes without meaning. */
+/* saved_state.c: FNV-1a hash that goes on from h with a number, by its value: in memory, numbers of some precisions
+ * have bytes without meaning. */
 unsigned long long lag_hash_number(unsigned long long h, double x);
 
 /* A number for %s in a message. */
@@ -172,28 +189,31 @@ int lag_note(lag_problem *pb, int status, double t, const char *format, ...);
 /* Writes into message why, when and where a step failed. Returns status. */
 int lag_explain(lag_sim *sim, int status);
 
-/* projection.c: y[n] := the dense output at t in the last step, projected onto the constraints. LAG_OK, or a failure with its message. */
+/* projection.c: y[n] := the dense output at t in the last step, projected onto the constraints. LAG_OK, or a failure
+ * with its message. */
 int lag_dense_state(lag_sim *sim, double t, double *y);
 
-/* consistent_start.c: now[n], the requested start, becomes the nearest start on the constraints; sets asked, redundant, loose, run->rank and
- * run->beside. */
+/* consistent_start.c: now[n], the requested start, becomes the nearest start on the constraints; sets asked,
+ * redundant, loose, run->rank and run->beside. */
 int lag_consistent_start(lag_sim *sim);
-/* accessors.c: out[nout] := outputs of the scene [SI] at y, t; those with multipliers or accelerations are NaN near a singular position of the
- * constraints. LAG_OK, or the status of the failed function. */
+/* accessors.c: out[nout] := outputs of the scene [SI] at y, t; those with multipliers or accelerations are NaN near
+ * a singular position of the constraints. LAG_OK, or the status of the failed function. */
 int lag_observe(lag_sim *sim, double t, const double *y, double *out);
-/* constraint_rank.c: A[n nq] := Jacobian of all constraints by the coordinates at y, t, row-major; unit[nq] := coordinate scales (lag_scales of lag_kkt.h);
- * mass[nq nq] := M unless NULL. 0, or the model's status; then they are undefined. */
+/* constraint_rank.c: A[n nq] := Jacobian of all constraints by the coordinates at y, t, row-major; unit[nq] :=
+ * coordinate scales (lag_scales of lag_kkt.h); mass[nq nq] := M unless NULL. 0, or the model's status; then they are
+ * undefined. */
 int lag_constraint_jacobian(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass);
 /* The part of pb->ranks that lag_constraint_jacobian does not use: [n nq + nq + n]. */
 double *lag_independence_scratch(const lag_problem *pb);
-/* The fraction of row[n] of A that is independent of the orthonormal rows Q[r n], 0 to 1. If more than `least`, its direction becomes row r of
- * Q. -1: the row is zero. Destroys row, which may be row r of Q, or a later one. */
+/* The fraction of row[n] of A that is independent of the orthonormal rows Q[r n], 0 to 1. If more than `least`, its
+ * direction becomes row r of Q. -1: the row is zero. Destroys row, which may be row r of Q, or a later one. */
 double lag_independent_part(int n, int r, double least, const double *unit, double *Q, double *row);
-/* massless_direction.c: estimate of the condition of the scaled mass matrix at y, t, on the directions that constraints allow; NAN: not known; a value
- * above 1e15 means above 1e15. *which: the coordinate with the largest part in the direction of least inertia. */
+/* massless_direction.c: estimate of the condition of the scaled mass matrix at y, t, on the directions that
+ * constraints allow; NAN: not known; a value above 1e15 means above 1e15. *which: the coordinate with the largest
+ * part in the direction of least inertia. */
 double lag_mass_condition(lag_problem *pb, double t, const double *y, int *which);
-/* Gaussian elimination of K[n n] with complete pivoting: returns the coordinate that moves most along the direction of least inertia; *part:
- * last pivot over the first. Destroys K; x[n] and column[n] are scratch. */
+/* Gaussian elimination of K[n n] with complete pivoting: returns the coordinate that moves most along the direction
+ * of least inertia; *part: last pivot over the first. Destroys K; x[n] and column[n] are scratch. */
 int lag_massless_direction(int n, double *K, double *x, int *column, double *part);
 /* pb.redundant := whether any constraint is marked redundant (just found, or loaded). */
 void lag_note_redundant(lag_sim *sim);
@@ -205,10 +225,11 @@ int lag_setup_start(lag_sim *sim);
 int lag_check_parameters(lag_sim *sim);
 int lag_check_moving_sizes(lag_sim *sim, double t, const double *y);
 
-/* events.c and event_location.c. arm: signs of g at the start of a chain of steps. locate: the first event in (run->from, step_t1]; sets limit and
- * pending. spread: variation of g[nev] about limit within the last digits of the time, which the dense output cannot resolve; jumps[2 nev]: 1 for events that
- * are due because g jumps over zero; then scratch. fire: applies the
- * events at limit. inputs_jump: modes of switches after a jump of inputs. eval: g[nev] at y, t. */
+/* events.c and event_location.c. arm: signs of g at the start of a chain of steps. locate: the first event in
+ * (run->from, step_t1]; sets limit and pending. spread: variation of g[nev] about limit within the last digits of
+ * the time, which the dense output cannot resolve; jumps[2 nev]: 1 for events that are due because g jumps over
+ * zero; then scratch. fire: applies the events at limit. inputs_jump: modes of switches after a jump of inputs.
+ * eval: g[nev] at y, t. */
 int lag_events_arm(lag_sim *sim);
 int lag_events_inputs_jump(lag_sim *sim);
 int lag_events_locate(lag_sim *sim);
@@ -216,12 +237,13 @@ int lag_events_spread(lag_sim *sim, const double *at_event, double *spread, doub
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
 
-/* branch_change.c: whether the step from `now` to y at t continues another motion, beside a singular position of the constraints. LAG_OK, or
- * LAG_EMETHOD with the reason in pb. */
+/* branch_change.c: whether the step from `now` to y at t continues another motion, beside a singular position of the
+ * constraints. LAG_OK, or LAG_EMETHOD with the reason in pb. */
 int lag_changes_branch(lag_sim *sim, double t);
 
-/* switching.c. place: modes for a new state `now`. meet: the event of switch k is due; settle: modes from there on, and whether any has changed. before_events: call before events
- * change the state. eval: event functions g[nmodes] at y, t, after lag_inputs_at. noise: |g| up to this counts as 0. count: pb.sliding from the modes. */
+/* switching.c. place: modes for a new state `now`. meet: the event of switch k is due; settle: modes from there on,
+ * and whether any has changed. before_events: call before events change the state. eval: event functions g[nmodes]
+ * at y, t, after lag_inputs_at. noise: |g| up to this counts as 0. count: pb.sliding from the modes. */
 int lag_switch_place(lag_sim *sim);
 int lag_switch_before_events(lag_sim *sim);
 void lag_switch_meet(lag_sim *sim, int k);
@@ -230,38 +252,42 @@ int lag_switch_eval(lag_sim *sim, double t, const double *y, double *g);
 double lag_switch_noise(const lag_sim *sim, int k);
 int lag_switch_fail_zeno(lag_sim *sim, int k);
 void lag_switch_count(lag_sim *sim);
-/* step: counts for the step from `now` to y at t, where the method finds modes. sticks: whether the motion does on surface k. */
+/* step: counts for the step from `now` to y at t, where the method finds modes. sticks: whether the motion does on
+ * surface k. */
 int lag_switch_step(lag_sim *sim, double t);
 int lag_switch_sticks(const lag_sim *sim, int k);
 /* 1: no branch is held, for right-hand sides at states that are not of the run; 0: those of the run again. */
 void lag_switch_set_free(lag_sim *sim, int free);
 /* Holds switch k at mode m, 0: sliding, for right-hand sides beside the surface. */
 void lag_switch_hold(lag_sim *sim, int k, double m);
-/* Event functions that are watched: events, then switches that have a mode; none of these for methods that find no events. */
+/* Event functions that are watched: events, then switches that have a mode; none of these for methods that find no
+ * events. */
 static inline int lag_watched(const lag_sim *s) {
   return s->scene->model->nev + (s->method->flags & LAG_METHOD_STEPS_TO ? 0 : s->scene->model->nmodes);
 }
 
-/* stall_detector.c: judges the step from `now` to y at t. LAG_OK; LAG_ESTALL or LAG_ESTEP where the motion makes no progress, with the reason in
- * pb. */
+/* stall_detector.c: judges the step from `now` to y at t. LAG_OK; LAG_ESTALL or LAG_ESTEP where the motion makes no
+ * progress, with the reason in pb. */
 int lag_detect_stall(lag_sim *sim, double t);
-/* The one watch of restarts by events, contacts, impacts and switches: counts one; whether the last ones advanced the time by next to nothing, *led. */
+/* The one watch of restarts by events, contacts, impacts and switches: counts one; whether the last ones advanced
+ * the time by next to nothing, *led. */
 int lag_restarts_stall(lag_sim *sim, double *led);
 
-/* force_pole.c: whether the step of equal size from `now` to y at t crosses a pole of a derivative. LAG_OK, or LAG_EDOMAIN with the derivative
- * in pb. */
+/* force_pole.c: whether the step of equal size from `now` to y at t crosses a pole of a derivative. LAG_OK, or
+ * LAG_EDOMAIN with the derivative in pb. */
 int lag_crosses_force_pole(lag_sim *sim, double t);
 void lag_reset_rate_history(lag_sim *sim);
 
-/* projection.c: constraints on velocities that are the rate of a function of positions. keep_nothing: their positions are free. keep: holds the
- * functions at their values at y, t. Returns the model's status. */
+/* projection.c: constraints on velocities that are the rate of a function of positions. keep_nothing: their
+ * positions are free. keep: holds the functions at their values at y, t. Returns the model's status. */
 void lag_release_integrals(lag_sim *sim);
 int lag_hold_integrals(lag_sim *sim, double t, const double *y);
 
-/* contact.c. of: the contact to which the event belongs, or NULL. open: opens all contacts, before the state is replaced. settle: applies impacts to
- * y and closes the contacts that rest. event: the contact event that led there, or -1; ends: its series of impacts has ended; who: name of the event
- * that set y, which must not lie inside a contact, or NULL. begin: contacts at the start. arm: signs of contact events in `now`, where their
- * functions are g[nev]; those that touch have none. Failures have their message. */
+/* contact.c. of: the contact to which the event belongs, or NULL. open: opens all contacts, before the state is
+ * replaced. settle: applies impacts to y and closes the contacts that rest. event: the contact event that led there,
+ * or -1; ends: its series of impacts has ended; who: name of the event that set y, which must not lie inside a
+ * contact, or NULL. begin: contacts at the start. arm: signs of contact events in `now`, where their functions are
+ * g[nev]; those that touch have none. Failures have their message. */
 const lag_contact *lag_contact_of(const lag_model *m, int event);
 /* Whether event k is located: those of contacts that are met by impulses are not. */
 int lag_event_is_located(const lag_sim *sim, int k);
@@ -274,52 +300,61 @@ int lag_contact_arm(lag_sim *sim, const double *g);
 int lag_contact_laws(lag_sim *sim, const double *y, double *law);
 /* Event functions g[nev] of tangents: 1 where they are none, 1 or -1 times the slip velocity. */
 void lag_tangent_events(const lag_sim *sim, double *g);
-/* Event functions g[nev] of contacts that are met by impulses: 1, as they do not happen. show: u of these contacts, for outputs with multipliers: closed where the last step pressed them. */
+/* Event functions g[nev] of contacts that are met by impulses: 1, as they do not happen. show: u of these contacts,
+ * for outputs with multipliers: closed where the last step pressed them. */
 void lag_contact_mute(const lag_sim *sim, double *g);
 void lag_contact_show(lag_sim *sim);
 void lag_mark_due(lag_sim *sim, int event); /* the event happens at this time, too, unless it has fired already */
-/* conditional_constraints.c: constraints that hold while a condition is true. place: which of them hold at y, and no more. settle: which of them hold at y, with
- * the velocities that they and contacts then allow; moved: the event has set velocities (1) or positions, too (2); zero[events]: rounding of event
- * functions, or NULL; the others as for lag_contact_resolve. */
+/* conditional_constraints.c: constraints that hold while a condition is true. place: which of them hold at y, and no
+ * more. settle: which of them hold at y, with the velocities that they and contacts then allow; moved: the event has
+ * set velocities (1) or positions, too (2); zero[events]: rounding of event functions, or NULL; the others as for
+ * lag_contact_resolve. */
 int lag_conditional_place(lag_sim *sim, double t, const double *y);
-int lag_settle_constraints(lag_sim *sim, double *y, const char *who, int event, int ends, int moved, const double *zero);
+int lag_settle_constraints(lag_sim *sim, double *y, const char *who, int event, int ends, int moved,
+                           const double *zero);
 
-/* linearisation.c: the scale of component i of the state at which a smooth model bends, for differences; of an angle at most 1. */
+/* linearisation.c: the scale of component i of the state at which a smooth model bends, for differences; of an angle
+ * at most 1. */
 double lag_difference_scale(lag_problem *pb, const double *y, int i);
 
-/* kicks.c: events at equal times (LAG_KICK). begin: checks their periods, values of the event functions. plan: pb.kick := the time of the next. locate: root[] of those
- * in the step, whose event functions at its start are given; returns the end of the part of the step before the first. at_once: whether one is due now; it then makes a step
- * of no length, which ends there. */
+/* kicks.c: events at equal times (LAG_KICK). begin: checks their periods, values of the event functions. plan:
+ * pb.kick := the time of the next. locate: root[] of those in the step, whose event functions at its start are
+ * given; returns the end of the part of the step before the first. at_once: whether one is due now; it then makes a
+ * step of no length, which ends there. */
 int lag_is_kick(const lag_model *m, int k);
 int lag_kicks_begin(lag_sim *sim, const double *period);
 int lag_kicks_plan(lag_sim *sim);
 double lag_kicks_locate(lag_sim *sim, const double *period);
 int lag_kicks_at_once(lag_sim *sim);
-/* flow_tangent.c. meet: carries the tangent to the present time, where switch event k ends its branch; corner: over the change of rates there, after modes are
- * settled; begin: projects the tangent of a motion that begins by sliding. pass: carries the tangent over a step that is used up. jump: carries it over event k, which changes the state from `now` to yb; more:
- * another event has changed the state at this time. */
+/* flow_tangent.c. meet: carries the tangent to the present time, where switch event k ends its branch; corner: over
+ * the change of rates there, after modes are settled; begin: projects the tangent of a motion that begins by
+ * sliding. pass: carries the tangent over a step that is used up. jump: carries it over event k, which changes the
+ * state from `now` to yb; more: another event has changed the state at this time. */
 int lag_tangent_pass(lag_sim *sim);
 int lag_tangent_meet(lag_sim *sim, int k);
 int lag_tangent_corner(lag_sim *sim);
 int lag_tangent_begin(lag_sim *sim);
 int lag_tangent_jump(lag_sim *sim, int k, int more);
 void lag_tangent_free(lag_sim *sim);
-/* tangent_space.c. dimension: of the tangent space of the constraints at the present state; of a run that has not begun at its start, which is
- * computed; n without constraints; or a status < 0 with its message. project: each column of Y[n k] at y, t onto that space, in the mass metric;
- * scratch[lag_tangent_projection_size]. */
+/* tangent_space.c. dimension: of the tangent space of the constraints at the present state; of a run that has not
+ * begun at its start, which is computed; n without constraints; or a status < 0 with its message. project: each
+ * column of Y[n k] at y, t onto that space, in the mass metric; scratch[lag_tangent_projection_size]. */
 int lag_tangent_dimension(lag_sim *sim);
 size_t lag_tangent_projection_size(const lag_problem *pb);
 int lag_tangent_project(lag_problem *pb, double t, const double *y, int k, double *Y, double *scratch);
 
-/* closed_form.c. at: the closed forms at t, stored behind the inputs in s->u; call lag_inputs first. see: as in monitors.c. */
+/* closed_form.c. at: the closed forms at t, stored behind the inputs in s->u; call lag_inputs first. see: as in
+ * monitors.c. */
 int lag_closed_form_at(lag_sim *sim, double t);
 int lag_closed_form_record(lag_sim *sim, double t, const double *y);
 
-/* charge_monitor.c: charge_now[2 k], charge_now[2 k + 1] := value and scale of charge k at y, t; NaN where there is none. */
+/* charge_monitor.c: charge_now[2 k], charge_now[2 k + 1] := value and scale of charge k at y, t; NaN where there is
+ * none. */
 void lag_charges_at(lag_sim *sim, double t, const double *y);
-/* begin, see and jump as in monitors.c. method: chooses quadrature nodes for the method of the steps, which nodes computes before their first use. drift: of charge k so far,
- * relative to its size. flags: what is known of its rate, given the inputs that are set. _see returns LAG_EDRIFT, with a message, where the
- * energy has drifted past its size. */
+/* begin, see and jump as in monitors.c. method: chooses quadrature nodes for the method of the steps, which nodes
+ * computes before their first use. drift: of charge k so far, relative to its size. flags: what is known of its
+ * rate, given the inputs that are set. _see returns LAG_EDRIFT, with a message, where the energy has drifted past
+ * its size. */
 void lag_charges_method(lag_sim *sim, const lag_method *method);
 void lag_charges_nodes(lag_sim *sim);
 void lag_charges_begin(lag_sim *sim, double t, const double *y);
@@ -327,16 +362,18 @@ int lag_charges_record(lag_sim *sim, double t, const double *y);
 /* Whether the energy, finite at the start, is not finite at t. _see then adds nothing and returns LAG_ENAN. */
 int lag_energy_undefined(lag_sim *sim, double t, const double *y);
 void lag_charges_jump(lag_sim *sim, double t, const double *ya, const double *yb);
-/* Work at an instant, of impulses, whose effect on the energy is known better than from states before and after; rubbed: of friction. */
+/* Work at an instant, of impulses, whose effect on the energy is known better than from states before and after;
+ * rubbed: of friction. */
 void lag_charges_add_work(lag_sim *sim, double at_events, double rubbed);
 double lag_charge_drift(const lag_sim *sim, int k);
 unsigned lag_charge_flags(const lag_sim *sim, int k);
 
-/* charge_monitor.c: LAG_EDRIFT with a message where half of an energy that is known to be conserved or balanced is lost; else LAG_OK. */
+/* charge_monitor.c: LAG_EDRIFT with a message where half of an energy that is known to be conserved or balanced is
+ * lost; else LAG_OK. */
 int lag_energy_retained(lag_sim *sim);
 
-/* monitors.c: charges and monitors. begin: first values. see: records the state `y` at t of the run. jump: an event changed the state from ya to
- * yb. */
+/* monitors.c: charges and monitors. begin: first values. see: records the state `y` at t of the run. jump: an event
+ * changed the state from ya to yb. */
 int lag_monitors_begin(lag_sim *sim);
 int lag_monitors_record(lag_sim *sim, double t, const double *y);
 /* impulses: the same for impulses of contacts within a step, at the present time, once dense output contains them. */
@@ -345,20 +382,22 @@ int lag_monitors_jump(lag_sim *sim, double t, const double *ya, const double *yb
 
 /* sizes.c: `size` where it is more than rounding of terms of the size `terms`, else `terms`. */
 double lag_above_rounding(double size, double terms);
-/* The size of the terms of the energy, and of output k, at y, t; v[nq] := of each velocity, that at which the coordinates of
- * its unit would have this energy; HUGE_VAL: there is none. NaN: not known. Scratch: ya, yb, yc. */
+/* The size of the terms of the energy, and of output k, at y, t; v[nq] := of each velocity, that at which the
+ * coordinates of its unit would have this energy; HUGE_VAL: there is none. NaN: not known. Scratch: ya, yb, yc. */
 double lag_energy_terms(lag_sim *sim, double t, const double *y);
 double lag_output_terms(lag_sim *sim, double t, const double *y, int k);
 void lag_velocity_terms(lag_sim *sim, double t, const double *y, double *v);
-/* pb.size := sizes of the components of a run that begins at `now`: of each unit the largest value and what forces add to it
- * in the time scale of the motion. Three right-hand sides, eleven from rest at 0, not counted. */
+/* pb.size := sizes of the components of a run that begins at `now`: of each unit the largest value and what forces
+ * add to it in the time scale of the motion. Three right-hand sides, eleven from rest at 0, not counted. */
 void lag_start_sizes(lag_sim *s);
 /* The present step, before the first one the step that is set; 0: it is not known. */
 double lag_step_so_far(const lag_sim *sim);
-/* noise[n] := rounding of a formula at t, y, with the inputs as they are. up, down: as noise, which is the energy and its
- * scale, rates of velocities and states, or residuals of nholonomic constraints. Not 0: there are no values. */
+/* noise[n] := rounding of a formula at t, y, with the inputs as they are. up, down: as noise, which is the energy
+ * and its scale, rates of velocities and states, or residuals of nholonomic constraints. Not 0: there are no values.
+ * */
 typedef enum LagFormula { LAG_FORMULA_ENERGY, LAG_FORMULA_RATES, LAG_FORMULA_RESIDUALS } LagFormula;
-int lag_formula_rounding(lag_sim *sim, LagFormula of, double t, const double *y, int n, double *noise, double *up, double *down);
+int lag_formula_rounding(lag_sim *sim, LagFormula of, double t, const double *y, int n, double *noise, double *up,
+                         double *down);
 
 /* Kinds of names in a scene. */
 enum { LAG_IS_NOTHING, LAG_IS_P, LAG_IS_Q, LAG_IS_V, LAG_IS_Z, LAG_IS_U };
@@ -375,7 +414,8 @@ int lag_is_member(const char *var, const char *family, size_t length);
 int lag_nearest_name(const lag_model *model, const char *name, char *best, size_t nbest);
 /* part := member or component k of the family `name` ("th": "th[1]", "th'": "th[1]'", "r": "r.x"); 0 past the last. */
 int lag_family_member(const lag_model *model, const char *name, int k, char *part, size_t npart);
-/* Edit distance where `name` may be a typing error for `known`; LAG_NO_TYPO where it is another name: too many edits, or a single letter replaced. */
+/* Edit distance where `name` may be a typing error for `known`; LAG_NO_TYPO where it is another name: too many
+ * edits, or a single letter replaced. */
 enum { LAG_NO_TYPO = 1000 };
 int lag_typo_distance(const char *name, const char *known);
 

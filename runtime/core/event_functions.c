@@ -5,7 +5,9 @@
 int lag_events_eval(lag_sim *s, double t, const double *y, double *g) {
   const lag_model *m = s->scene->model;
   int rc = lag_inputs_at(&s->pb, t, y);
-  if (rc > 0 && s->pb.nslide) return lag_fail(s, LAG_EDOMAIN, "nothing keeps the motion on the surface on which it slides at t = %s s", LAG_TEXT(t));
+  if (rc > 0 && s->pb.nslide)
+    return lag_fail(s, LAG_EDOMAIN, "nothing keeps the motion on the surface on which it slides at t = %s s",
+                    LAG_TEXT(t));
   if (rc == 0 && lag_watched(s) > m->nev && lag_switch_eval(s, t, y, g + m->nev))
     return lag_fail(s, LAG_ENAN, "a switching function is not a number at t = %s s", LAG_TEXT(t));
   if (rc == 0 && m->nev) rc = m->events(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, g, s->work);

@@ -36,15 +36,17 @@ static lag_locator locator(lag_sim *s) {
                        0x1p-40,        s->sign_end, s->noise,  s->root, s->spare};
 }
 
-/* Marks jumps, of the events due now, whose functions go on at some distance from zero, as sign(x) does: from one sample to the next (2^-50 of t) values
- * on the same side hardly change, and the change over zero is no rounding. at_event: values now; rounding: scratch. */
+/* Marks jumps, of the events due now, whose functions go on at some distance from zero, as sign(x) does: from one
+ * sample to the next (2^-50 of t) values on the same side hardly change, and the change over zero is no rounding.
+ * at_event: values now; rounding: scratch. */
 static int confirm_jumps(lag_sim *s, const double *at_event, const double *spread, double *jumps, double *rounding) {
   const Run *r = s->run;
   int nev = lag_watched(s), some = 0, rc = 0;
   for (int k = 0; k < nev; k++) some |= jumps[k] != 0.0;
   const lag_locator l = locator(s);
   if (some) rc = lag_locate_rounding(&l, r->from + (r->limit - r->from) / 2, rounding);
-  for (int k = 0; k < nev && some && rc == 0; k++) jumps[k] = jumps[k] != 0.0 && fmax(spread[k], fabs(at_event[k])) > 1000 * rounding[k];
+  for (int k = 0; k < nev && some && rc == 0; k++)
+    jumps[k] = jumps[k] != 0.0 && fmax(spread[k], fabs(at_event[k])) > 1000 * rounding[k];
   return rc;
 }
 
@@ -70,8 +72,9 @@ int lag_events_spread(lag_sim *s, const double *at_event, double *spread, double
   return rc ? rc : confirm_jumps(s, at_event, spread, jumps, previous);
 }
 
-/* Whether no switch can end its branch in the step, as the parabola through three values of each event function shows; row 0 is the first of them.
- * A step resolves the motion, so that functions of the state are smooth on it; those that contain t are searched, and so are events. */
+/* Whether no switch can end its branch in the step, as the parabola through three values of each event function
+ * shows; row 0 is the first of them. A step resolves the motion, so that functions of the state are smooth on it;
+ * those that contain t are searched, and so are events. */
 static int is_quiet(lag_sim *s, int *rc) {
   const lag_model *m = s->scene->model;
   const Run *r = s->run;
@@ -104,7 +107,8 @@ int lag_events_locate(lag_sim *s) {
   int nev = lag_watched(s), found, unknown = 0;
   r->limit = r->step_t1;
   r->pending = 0;
-  if (nev == 0 || (s->pb.contacts && nev == 2 * s->scene->model->ncontacts)) return LAG_OK; /* contacts that are met by impulses have no other events */
+  /* contacts that are met by impulses have no other events */
+  if (nev == 0 || (s->pb.contacts && nev == 2 * s->scene->model->ncontacts)) return LAG_OK;
   for (int k = 0; k < nev; k++) {
     s->root[k] = NAN;
     s->sign_end[k] = s->sign[k];

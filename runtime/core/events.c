@@ -1,6 +1,6 @@
-/* Firing of events, where g changes its sign (event_location.c finds the time). Enters: the time; leaves: the state after the actions. Holds: sign[k] is
- * the sign of g_k just after `from`; an event that has just fired has sign 0 ("not known yet") until g has clearly left zero, so it never fires
- * twice for one crossing. */
+/* Firing of events, where g changes its sign (event_location.c finds the time). Enters: the time; leaves: the state
+ * after the actions. Holds: sign[k] is the sign of g_k just after `from`; an event that has just fired has sign 0
+ * ("not known yet") until g has clearly left zero, so it never fires twice for one crossing. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -46,7 +46,8 @@ static const double at_once = 1e-7;
 /* Time in which event k will fire for ever, dt after it fired last: the rest of the geometric
  * series of its intervals; HUGE_VAL: they do not become shorter. Others may fire between. */
 static double series_rest(lag_sim *s, int k, double dt) {
-  double *flight = &s->flight[k], *n = &s->shorter[k], before = s->interval[k], rounding = 4 * DBL_EPSILON * fabs(s->run->t);
+  double *flight = &s->flight[k], *n = &s->shorter[k], before = s->interval[k],
+         rounding = 4 * DBL_EPSILON * fabs(s->run->t);
   s->interval[k] = dt;
   if (!(dt <= *flight)) { /* the next interval begins a series */
     *flight = HUGE_VAL, *n = 0;
@@ -64,16 +65,20 @@ static double series_rest(lag_sim *s, int k, double dt) {
  * goes on at rest, takes the tolerance; a block that rocks loses most of its speed at once. */
 static int is_zeno(const lag_sim *s, int k, double rest, int contact) {
   const double part = contact ? fmin(s->tol, at_once) : at_once;
-  return s->shorter[k] >= (contact ? 3 : 10) && (rest <= part * s->flight[k] || s->interval[k] <= 64 * DBL_EPSILON * fabs(s->run->t));
+  return s->shorter[k] >= (contact ? 3 : 10) &&
+         (rest <= part * s->flight[k] || s->interval[k] <= 64 * DBL_EPSILON * fabs(s->run->t));
 }
 
 static int fail_zeno(lag_sim *s, int k) {
-  return lag_fail(s, LAG_EZENO,
-                  "event %s repeats in ever shorter intervals: %.3g s at t = %s s. Let it stop the run, or make it a contact, "
-                  "which comes to rest", s->scene->model->ev[k].name, s->interval[k], LAG_TEXT(s->run->t));
+  return lag_fail(
+      s, LAG_EZENO,
+      "event %s repeats in ever shorter intervals: %.3g s at t = %s s. Let it stop the run, or make it a contact, "
+      "which comes to rest",
+      s->scene->model->ev[k].name, s->interval[k], LAG_TEXT(s->run->t));
 }
 
-/* Fails where restarts, the last of which is event k, do not advance the time. A series of ever shorter intervals ends by itself, in the time `rest`. */
+/* Fails where restarts, the last of which is event k, do not advance the time. A series of ever shorter intervals
+ * ends by itself, in the time `rest`. */
 static int watch_restarts(lag_sim *s, int k, double rest) {
   const lag_model *m = s->scene->model;
   int which = k - m->nev;
@@ -82,10 +87,17 @@ static int watch_restarts(lag_sim *s, int k, double rest) {
   if (which >= 0) return lag_switch_fail_zeno(s, which);
   const lag_contact *c = lag_contact_of(m, k);
   if (c && c->impact == k && !c->is_tangent && !c->conditional && !lag_contact_is_closed(s, c))
-    return lag_fail(s, LAG_EZENO, "contact %s strikes at t = %s s again and again, and neither closes nor opens: the dense output of %s is too "
-                    "rough there; take verlet or dop853, or moreau, which does not locate impacts", m->ev[k].name, LAG_TEXT(s->run->t), s->method->name);
-  return lag_fail(s, LAG_EZENO, "at t = %s s event %s and others happen again and again: the last 1000 advanced the time by only %.3g s; %s", LAG_TEXT(s->run->t), m->ev[k].name, led,
-                  c ? "take moreau, which does not locate contacts" : "let it stop the run, or set a state from which its function moves away from 0");
+    return lag_fail(
+        s, LAG_EZENO,
+        "contact %s strikes at t = %s s again and again, and neither closes nor opens: the dense output of %s is too "
+        "rough there; take verlet or dop853, or moreau, which does not locate impacts",
+        m->ev[k].name, LAG_TEXT(s->run->t), s->method->name);
+  return lag_fail(
+      s, LAG_EZENO,
+      "at t = %s s event %s and others happen again and again: the last 1000 advanced the time by only %.3g s; %s",
+      LAG_TEXT(s->run->t), m->ev[k].name, led,
+      c ? "take moreau, which does not locate contacts"
+        : "let it stop the run, or set a state from which its function moves away from 0");
 }
 
 /* Rounding of event functions at this time: their own, and of those that have fired also the distance from zero. */
@@ -99,7 +111,8 @@ static const double *rounding_of_events(const lag_sim *s) {
 
 enum { BY_EVENT = 1, BY_KICK = 2 };
 
-/* The state after event k, yb, becomes that of the run. *changed: it was, at this time already. A kick changes neighbouring states where it leaves this one, and is told after it. */
+/* The state after event k, yb, becomes that of the run. *changed: it was, at this time already. A kick changes
+ * neighbouring states where it leaves this one, and is told after it. */
 static int replace_state(lag_sim *s, int k, int *changed) {
   int kick = lag_is_kick(s->scene->model, k), more = kick ? *changed & BY_EVENT : *changed;
   double t = s->run->t;
@@ -138,19 +151,22 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
                     LAG_TEXT(r->t));
   }
   double rest = series_rest(s, k, since);
-  int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact != NULL), moved = memcmp(s->yb, s->now, bytes) != 0;
+  int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact != NULL),
+      moved = memcmp(s->yb, s->now, bytes) != 0;
   int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;
   if (of || moved) {
     char who[128];
     snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
     rc = lag_settle_constraints(s, s->yb, of && !moved ? NULL : who, k, ends, moved + elsewhere, rounding_of_events(s));
   }
-  if (rc == 0 && contact && rest < HUGE_VAL && lag_contact_is_closed(s, contact)) s->skipped[k] = fmax(s->skipped[k], rest);
+  if (rc == 0 && contact && rest < HUGE_VAL && lag_contact_is_closed(s, contact))
+    s->skipped[k] = fmax(s->skipped[k], rest);
   if (rc == 0 && !kick) rc = watch_restarts(s, k, rest);
   if (rc) return rc;
   int before = *changed;
   *changed |= of != NULL; /* the set of closed contacts may be another */
-  int turns = contact && contact->is_tangent && k == contact->impact && !lag_contact_is_closed(s, contact); /* slips back at once: no event */
+  /* slips back at once: no event */
+  int turns = contact && contact->is_tangent && k == contact->impact && !lag_contact_is_closed(s, contact);
   if (turns) {
     r->events--;
     s->count[k]--;
@@ -162,7 +178,8 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
   return rc ? rc : ends && !contact ? fail_zeno(s, k) : LAG_OK;
 }
 
-/* Signs after the events at t. before: g before the actions; spread: rounding of g; jumps: 1 where g jumps over zero; changed: the state was replaced. */
+/* Signs after the events at t. before: g before the actions; spread: rounding of g; jumps: 1 where g jumps over
+ * zero; changed: the state was replaced. */
 static int rearm(lag_sim *s, const double *before, const double *spread, const double *jumps, int changed) {
   const lag_model *m = s->scene->model;
   int rc = lag_events_eval(s, s->run->t, s->now, s->g1);
@@ -206,7 +223,8 @@ static int meet_switch(lag_sim *s, int k) {
   s->last[k] = r->t;
   s->count[k]++;
   double rest = series_rest(s, k, since);
-  int which = k - s->scene->model->nev, rc = is_zeno(s, k, rest, 0) ? lag_switch_fail_zeno(s, which) : watch_restarts(s, k, rest);
+  int which = k - s->scene->model->nev,
+      rc = is_zeno(s, k, rest, 0) ? lag_switch_fail_zeno(s, which) : watch_restarts(s, k, rest);
   if (rc) return rc;
   lag_switch_meet(s, which);
   return lag_tangent_meet(s, k);
@@ -216,7 +234,10 @@ static int meet_switch(lag_sim *s, int k) {
 static int settle_switches(lag_sim *s, int met, int *changed) {
   int rc = *changed ? lag_switch_place(s) : LAG_OK;
   if (*changed && rc == LAG_OK && s->tangent && (met || s->pb.nslide))
-    rc = lag_fail(s, LAG_EMETHOD, "at t = %s s an event changes the state where the motion meets a surface or slides: there is no tangent over it; end the run before", LAG_TEXT(s->run->t));
+    rc = lag_fail(s, LAG_EMETHOD,
+                  "at t = %s s an event changes the state where the motion meets a surface or slides: there is no "
+                  "tangent over it; end the run before",
+                  LAG_TEXT(s->run->t));
   if (*changed) return rc;
   rc = met ? lag_switch_settle(s, changed) : LAG_OK;
   *changed |= met && s->tangent; /* which is at this time already */

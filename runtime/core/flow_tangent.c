@@ -1,12 +1,14 @@
-/* The tangent of a run: small changes of the state, carried along the motion. Enters: Y at one time; leaves: Y at a later time. Holds: the run itself
- * is the same, bit by bit, with a tangent or without: steps are differentiated after they were made, and the counts of the run exclude that cost;
- * with constraints Y lies in their tangent space (constraints/tangent_space.c).
+/* The tangent of a run: small changes of the state, carried along the motion. Enters: Y at one time; leaves: Y at a
+ * later time. Holds: the run itself is the same, bit by bit, with a tangent or without: steps are differentiated
+ * after they were made, and the counts of the run exclude that cost; with constraints Y lies in their tangent space
+ * (constraints/tangent_space.c).
  *
- * An event changes the state from y to y+ = R(t, y) where g(t, y) = 0; its time moves with y. With the rates f and f+ before and after it, small
- * changes are multiplied by the saltation matrix
+ * An event changes the state from y to y+ = R(t, y) where g(t, y) = 0; its time moves with y. With the rates f and
+ * f+ before and after it, small changes are multiplied by the saltation matrix
  *   S = R_y + (f+ - R_y f - R_t) g_y / (g_y f + g_t):
- * R.I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004), ch. 7, DOI 10.1007/978-3-540-44398-8. A switch that ends
- * its branch has R_y = 1; where the motion begins to slide on its surface, f+ lies in the surface and S has one rank less. */
+ * R.I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004), ch. 7, DOI
+ * 10.1007/978-3-540-44398-8. A switch that ends its branch has R_y = 1; where the motion begins to slide on its
+ * surface, f+ lies in the surface and S has one rank less. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,21 +28,29 @@ void lag_tangent_free(lag_sim *s) {
 /* Whether steps of the method can be differentiated; if not, the message says what to do. */
 static int check(lag_sim *s) {
   const lag_model *m = s->scene->model;
-  int in_p = m->nq > 0 && (s->method->flags & LAG_METHOD_VARIATION) && !((s->method->flags & LAG_METHOD_SPLITS) && (m->flags & LAG_SEPARABLE));
+  int in_p = m->nq > 0 && (s->method->flags & LAG_METHOD_VARIATION) &&
+             !((s->method->flags & LAG_METHOD_SPLITS) && (m->flags & LAG_SEPARABLE));
   if (m->ncontacts) {
     const lag_constraint *of = &m->constraints->of[m->contacts[0].constraint];
-    return lag_fail(s, LAG_EMETHOD, m->contacts[0].conditional ? "there is no tangent of a motion whose constraint %s begins and ends: the impulses there have no derivatives yet"
-                                                               : "there is no tangent of a motion with contact %s: its impacts have no derivatives yet; write them as an event that sets velocities", of->name);
+    return lag_fail(s, LAG_EMETHOD,
+                    m->contacts[0].conditional ? "there is no tangent of a motion whose constraint %s begins and ends: "
+                                                 "the impulses there have no derivatives yet"
+                                               : "there is no tangent of a motion with contact %s: its impacts have no "
+                                                 "derivatives yet; write them as an event that sets velocities",
+                    of->name);
   }
   if (m->constraints && (!s->method->tangent || (s->method->flags & LAG_METHOD_VARIATION)))
-    return lag_fail(s, LAG_EMETHOD, "method %s has no derivative of its steps with constraints; dop853, rk45, rk4 and radau have", s->method->name);
+    return lag_fail(s, LAG_EMETHOD,
+                    "method %s has no derivative of its steps with constraints; dop853, rk45, rk4 and radau have",
+                    s->method->name);
   if (!s->method->tangent) {
     return lag_fail(s, LAG_EMETHOD, "method %s has no derivative of its steps; %s has", s->method->name,
                     s->method->flags & LAG_METHOD_SYMPLECTIC ? "verlet8" : "dop853");
   }
   if (!in_p && !m->linear && !m->constraints) {
     return lag_fail(s, LAG_EMETHOD,
-                    "the tangent needs the derivatives of the equations, which this program was built without; `lagc run --tangent` builds "
+                    "the tangent needs the derivatives of the equations, which this program was built without; `lagc "
+                    "run --tangent` builds "
                     "them in, and so does `lagc build --with linear`");
   }
   return LAG_OK;
@@ -51,7 +61,8 @@ static int njump(const lag_sim *s) {
   return l && l->jumps ? l->njump : 0;
 }
 
-/* Scratch of a corner: rates before and after it, a state, the gradient of the event function and its rate, and event functions. */
+/* Scratch of a corner: rates before and after it, a state, the gradient of the event function and its rate, and
+ * event functions. */
 static size_t corner_size(const lag_sim *s) {
   const lag_model *m = s->scene->model;
   return m->nmodes ? 4 * (size_t)s->pb.n + 1 + (size_t)(m->nev + m->nmodes) : 0;
@@ -77,22 +88,29 @@ static int make_room(lag_sim *s, int k) {
   return LAG_OK;
 }
 
-/* Projects Y onto the tangent space of the constraints at the present state, t. Near a singular position, as of a folded linkage, there is none. */
+/* Projects Y onto the tangent space of the constraints at the present state, t. Near a singular position, as of a
+ * folded linkage, there is none. */
 static int stay_on_constraints(lag_sim *s, double t, double *Y) {
   const double least = 1e-3;
   int weakest = -1;
   if (s->scene->model->constraints && lag_independence(&s->pb, t, s->now, &weakest) < least && weakest >= 0)
-    return lag_fail(s, LAG_EMETHOD, "at t = %s s constraint %s nearly depends on the others: neighbouring motions part there, and there is no tangent; end the run before", LAG_TEXT(t),
-                    s->scene->model->constraints->of[weakest].name);
+    return lag_fail(s, LAG_EMETHOD,
+                    "at t = %s s constraint %s nearly depends on the others: neighbouring motions part there, and "
+                    "there is no tangent; end the run before",
+                    LAG_TEXT(t), s->scene->model->constraints->of[weakest].name);
   int rc = lag_tangent_project(&s->pb, t, s->now, s->tangent_columns, Y, s->tangent_scratch);
-  return rc ? lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN, "at t = %s s changes of the state cannot be projected onto the constraints", LAG_TEXT(t)) : LAG_OK;
+  return rc ? lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN,
+                       "at t = %s s changes of the state cannot be projected onto the constraints", LAG_TEXT(t))
+            : LAG_OK;
 }
 
 /* The start on the constraints, where the run has none yet; a singular one has no tangent space. */
 static int check_start(lag_sim *s) {
   int d = lag_tangent_dimension(s);
   if (d < 0 || s->run->beside <= s->run->rank) return d < 0 ? d : LAG_OK;
-  return lag_fail(s, LAG_EMETHOD, "constraints depend on each other at the start, but not beside it: neighbouring motions are of another kind, and there is no tangent");
+  return lag_fail(s, LAG_EMETHOD,
+                  "constraints depend on each other at the start, but not beside it: neighbouring motions are of "
+                  "another kind, and there is no tangent");
 }
 
 int lag_sim_set_tangent(lag_sim *s, int k, const double *Y) {
@@ -103,9 +121,11 @@ int lag_sim_set_tangent(lag_sim *s, int k, const double *Y) {
     lag_tangent_free(s);
     return LAG_OK;
   }
-  if (k < 0 || (!Y && k != n)) return lag_fail(s, LAG_EINVAL, "a tangent of %d columns: give them, or take all %d", k, n);
+  if (k < 0 || (!Y && k != n))
+    return lag_fail(s, LAG_EINVAL, "a tangent of %d columns: give them, or take all %d", k, n);
   if (s->run->have_step != 0.0)
-    return lag_fail(s, LAG_EINVAL, "a tangent begins at the end of a step, and t = %s lies within one", LAG_TEXT(s->run->t));
+    return lag_fail(s, LAG_EINVAL, "a tangent begins at the end of a step, and t = %s lies within one",
+                    LAG_TEXT(s->run->t));
   if ((rc = check(s)) != 0 || (rc = check_start(s)) != 0 || (rc = make_room(s, k)) != 0) return rc;
   if (Y) memcpy(s->tangent, Y, block(s) * sizeof *Y);
   else memset(s->tangent, 0, block(s) * sizeof *s->tangent);
@@ -140,14 +160,16 @@ static int only_touches(lag_sim *s, int k, double rate) {
   const double flat = 1e-6;
   double size = 0;
   for (int end = 0; end < 2; end++)
-    if (lag_events_eval(s, end ? r->step_t1 : r->step_t0, end ? s->y : s->y0, s->g1) == LAG_OK) size = fmax(size, fabs(s->g1[k]));
+    if (lag_events_eval(s, end ? r->step_t1 : r->step_t0, end ? s->y : s->y0, s->g1) == LAG_OK)
+      size = fmax(size, fabs(s->g1[k]));
   return fabs(rate * (r->step_t1 - r->step_t0)) < flat * size;
 }
 
 /* ---- Switches that end a branch */
 
 typedef struct Corner {
-  double *before, *after, *there, *gradient, *g; /* f and f+; a state; gradient of the event function and its rate along f; event functions */
+  /* f and f+; a state; gradient of the event function and its rate along f; event functions */
+  double *before, *after, *there, *gradient, *g;
 } Corner;
 
 static Corner corner_layout(const lag_sim *s) {
@@ -160,7 +182,8 @@ static Corner corner_layout(const lag_sim *s) {
   return c;
 }
 
-/* *slope := change of event function k along component i of the state, or of t for i = n, by central differences of order 4. */
+/* *slope := change of event function k along component i of the state, or of t for i = n, by central differences of
+ * order 4. */
 static int event_slope(lag_sim *s, const Corner *w, int k, int i, double *slope) {
   const double part = 0x1p-9;
   lag_problem *pb = &s->pb;
@@ -182,7 +205,8 @@ static int event_slope(lag_sim *s, const Corner *w, int k, int i, double *slope)
 
 int lag_tangent_meet(lag_sim *s, int k) {
   if (!s->tangent) return LAG_OK;
-  int n = s->pb.n, rc = !s->tangent_at_event && s->run->t != s->run->step_t0 ? advance_tangent(s, s->run->t, s->tangent) : LAG_OK;
+  int n = s->pb.n,
+      rc = !s->tangent_at_event && s->run->t != s->run->step_t0 ? advance_tangent(s, s->run->t, s->tangent) : LAG_OK;
   double calls = s->pb.rhs_calls, slope = 0;
   Corner w = corner_layout(s);
   s->tangent_at_event = 1;
@@ -200,7 +224,8 @@ int lag_tangent_meet(lag_sim *s, int k) {
 }
 
 static int refuse_corner(lag_sim *s, const char *why) {
-  return lag_fail(s, LAG_EMETHOD, "at t = %s s a force jumps, and %s: there is no tangent over it; end the run before", LAG_TEXT(s->run->t), why);
+  return lag_fail(s, LAG_EMETHOD, "at t = %s s a force jumps, and %s: there is no tangent over it; end the run before",
+                  LAG_TEXT(s->run->t), why);
 }
 
 int lag_tangent_corner(lag_sim *s) {
@@ -220,8 +245,10 @@ int lag_tangent_corner(lag_sim *s) {
     terms += fabs(w.gradient[i] * (w.after[i] - w.before[i]));
   }
   if (rc || !moves || far <= same * size) return rc;
-  if (meets > 1) return refuse_corner(s, "two surfaces are met at once, which neighbouring motions may meet in either order");
-  if (s->tangent_touches) return refuse_corner(s, "the motion only touches its surface, which neighbouring motions may miss");
+  if (meets > 1)
+    return refuse_corner(s, "two surfaces are met at once, which neighbouring motions may meet in either order");
+  if (s->tangent_touches)
+    return refuse_corner(s, "the motion only touches its surface, which neighbouring motions may miss");
   for (int c = 0; c < k; c++) {
     double along = 0;
     for (int i = 0; i < n; i++) along += w.gradient[i] * s->tangent[i * k + c];
@@ -232,10 +259,13 @@ int lag_tangent_corner(lag_sim *s) {
   return LAG_OK;
 }
 
-/* Neighbouring motions fall onto the surface at once, from either side along the jump of the rates: S = 1 - (f+ - f-) g_y / (g_y (f+ - f-)). */
+/* Neighbouring motions fall onto the surface at once, from either side along the jump of the rates: S = 1 - (f+ -
+ * f-) g_y / (g_y (f+ - f-)). */
 int lag_tangent_begin(lag_sim *s) {
   if (!s->tangent || s->pb.nslide == 0) return LAG_OK;
-  if (s->pb.nslide > 1) return lag_fail(s, LAG_EMETHOD, "a motion that begins by sliding on several surfaces has no tangent yet; start beside them");
+  if (s->pb.nslide > 1)
+    return lag_fail(s, LAG_EMETHOD,
+                    "a motion that begins by sliding on several surfaces has no tangent yet; start beside them");
   int n = s->pb.n, columns = s->tangent_columns, k = s->pb.sliding[0], rc = LAG_OK;
   Corner w = corner_layout(s);
   double calls = s->pb.rhs_calls, across = 0;
@@ -253,18 +283,22 @@ int lag_tangent_begin(lag_sim *s) {
     for (int i = 0; i < n; i++) s->tangent[i * columns + c] -= (w.after[i] - w.before[i]) * along / across;
   }
   s->tangent_log = -HUGE_VAL;
-  return rc ? lag_fail(s, LAG_EMETHOD, "the start slides, and the rates beside its surface, which its tangent needs, have no values") : LAG_OK;
+  return rc ? lag_fail(s, LAG_EMETHOD,
+                       "the start slides, and the rates beside its surface, which its tangent needs, have no values")
+            : LAG_OK;
 }
 
 /* ---- Events that change the state */
 
 static int refuse(lag_sim *s, int k, const char *why) {
-  return lag_fail(s, LAG_EMETHOD, "event %s changes the state at t = %s s: %s; take a scene without it, or end the run before",
+  return lag_fail(s, LAG_EMETHOD,
+                  "event %s changes the state at t = %s s: %s; take a scene without it, or end the run before",
                   s->scene->model->ev[k].name, LAG_TEXT(s->run->t), why);
 }
 
 typedef struct Jump {
-  double *d, *S, *g, *Rt, *before, *after, *Y, *copy; /* entries; S[n n]; gradient of g and g_t; R_t; f and f+; copies of the tangent and of S */
+  /* entries; S[n n]; gradient of g and g_t; R_t; f and f+; copies of the tangent and of S */
+  double *d, *S, *g, *Rt, *before, *after, *Y, *copy;
 } Jump;
 
 static Jump jump_layout(const lag_sim *s) {
@@ -327,15 +361,21 @@ int lag_tangent_jump(lag_sim *s, int k, int more) {
   double t = s->run->t, rhs_calls = pb->rhs_calls, rate = 0;
   if (!s->tangent) return LAG_OK;
   if (m->constraints) return refuse(s, k, "what constraints make of its effect has no derivative yet");
-  if (!m->linear) return refuse(s, k, "its effect on neighbouring motions needs derivatives, which `lagc build --with linear` builds in");
-  if (more) return refuse(s, k, "another event does so at the same time, and neighbouring motions may meet the two in either order");
+  if (!m->linear)
+    return refuse(s, k,
+                  "its effect on neighbouring motions needs derivatives, which `lagc build --with linear` builds in");
+  if (more)
+    return refuse(s, k,
+                  "another event does so at the same time, and neighbouring motions may meet the two in either order");
   Jump j = jump_layout(s);
-  if (njump(s) && (lag_inputs(pb, t) || m->linear->jumps(t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, j.d, s->work)))
+  if (njump(s) &&
+      (lag_inputs(pb, t) || m->linear->jumps(t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, j.d, s->work)))
     return refuse(s, k, "its derivatives cannot be computed");
   if (!njump(s) || !collect_derivatives(s, k, &j)) {
     return refuse(s, k, "it depends on an input, whose rate a model does not have"); /* the compiler lists all others */
   }
-  int rc = s->run->have_step != 0.0 && t != s->run->step_t0 && !s->tangent_at_event ? advance_tangent(s, t, s->tangent) : LAG_OK;
+  int rc = s->run->have_step != 0.0 && t != s->run->step_t0 && !s->tangent_at_event ? advance_tangent(s, t, s->tangent)
+                                                                                    : LAG_OK;
   rc = rc ? rc : lag_rhs(pb, t, s->now, j.before);
   lag_switch_set_free(s, 1); /* the event may have changed branches */
   int after = rc ? rc : lag_rhs(pb, t, s->yb, j.after);
@@ -352,7 +392,9 @@ int lag_tangent_jump(lag_sim *s, int k, int more) {
   }
   s->tangent_at_event = 1;
   s->tangent_log += log_det(n, j.S, j.copy);
-  return apply_saltation(s, &j) && !touches ? LAG_OK : refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
+  return apply_saltation(s, &j) && !touches
+             ? LAG_OK
+             : refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
 }
 
 int lag_sim_tangent(lag_sim *s, double *Y) {

@@ -1,13 +1,16 @@
-/* Detects steps of equal size across a pole of a force or a flow, as 1/x^2 has at x = 0: what a method computes beyond the pole is no motion of
- * the model. Enters: a step that a method has made, from s->now to s->y; leaves: whether a derivative goes through infinity within it. Adaptive
- * methods stop in front of a pole by themselves, as their steps become too small.
+/* Detects steps of equal size across a pole of a force or a flow, as 1/x^2 has at x = 0: what a method computes
+ * beyond the pole is no motion of the model. Enters: a step that a method has made, from s->now to s->y; leaves:
+ * whether a derivative goes through infinity within it. Adaptive methods stop in front of a pole by themselves, as
+ * their steps become too small.
  *
- * A step is examined where the rate of change of a velocity or a state is unlike that of the two steps before: the second difference is a tenth
- * of the largest change (in a resolved motion it is (w step)^2 of it), or the change is a peak, four times that of two steps before. Evaluations are
- * bounded: at most a quarter as many as steps, and rates that are small beside their recent peak, as where a force goes through 0, a sixteenth. Then the
- * straight line between the step's ends is bisected towards the end with the larger derivative. Across a pole of order p, the interval's length
- * times the smaller derivative at its ends grows by 2^(p-1) per bisection; for anything finite, however steep, it is halved from some bisection
- * on, and at the integrable end of a square root divided by sqrt 2. */
+ * A step is examined where the rate of change of a velocity or a state is unlike that of the two steps before: the
+ * second difference is a tenth of the largest change (in a resolved motion it is (w step)^2 of it), or the change is
+ * a peak, four times that of two steps before. Evaluations are bounded: at most a quarter as many as steps, and
+ * rates that are small beside their recent peak, as where a force goes through 0, a sixteenth. Then the straight
+ * line between the step's ends is bisected towards the end with the larger derivative. Across a pole of order p, the
+ * interval's length times the smaller derivative at its ends grows by 2^(p-1) per bisection; for anything finite,
+ * however steep, it is halved from some bisection on, and at the integrable end of a square root divided by sqrt 2.
+ * */
 #include <float.h>
 #include <math.h>
 
@@ -16,19 +19,22 @@
 
 enum { TURNS = 24, LEAST_TURNS = 12, BACK = 4, FREE_CALLS = 12, CALLS_FIRST = 48 };
 
-/* Updates the rates of change of components nq to n; returns the component whose rate is rough (see above) and largest relative to its size; -1:
- * none. slight: rates that are small beside their recent peak count, too. */
+/* Updates the rates of change of components nq to n; returns the component whose rate is rough (see above) and
+ * largest relative to its size; -1: none. slight: rates that are small beside their recent peak count, too. */
 static int find_rough(lag_sim *s, double t, int slight) {
   const double rough = 0.1, rounding = 1e-9, steep = 4, fading = 0.99;
   int nq = s->pb.nq, n = s->pb.n, which = -1;
   double most = 0, dt = t - s->run->t, *one = s->rate_history, *two = one + n, *peak = two + n;
   for (int i = nq; i < n; i++) {
-    double pace = (s->y[i] - s->now[i]) / dt, size = fabs(pace), bend = fabs(pace - 2 * one[i] + two[i]), faded = fading * peak[i];
+    double pace = (s->y[i] - s->now[i]) / dt, size = fabs(pace), bend = fabs(pace - 2 * one[i] + two[i]),
+           faded = fading * peak[i];
     double large = slight || isnan(faded) ? 0 : faded;
     int grows = size > steep * fabs(two[i]) && size > peak[i];
     if (grows || !(bend <= rough * size)) { /* NaN after the first two steps: rates not known yet */
-      double largest = fmax(fmax(size, large), fmax(fabs(one[i]), fabs(two[i]))), part = (isnan(bend) ? largest : bend) / fmax(fabs(s->now[i]), DBL_MIN);
-      int counts = (grows || !(bend <= rough * largest)) && largest * fabs(dt) > rounding * fabs(s->now[i]) && part > most;
+      double largest = fmax(fmax(size, large), fmax(fabs(one[i]), fabs(two[i]))),
+             part = (isnan(bend) ? largest : bend) / fmax(fabs(s->now[i]), DBL_MIN);
+      int counts =
+          (grows || !(bend <= rough * largest)) && largest * fabs(dt) > rounding * fabs(s->now[i]) && part > most;
       most = counts ? part : most;
       which = counts ? i : which;
     }
@@ -53,10 +59,14 @@ static double derivative_at(lag_sim *s, double x, double t, int i) {
 static double find_pole(lag_sim *s, double t, int i) {
   static const double parts[] = {0.5, 0.45, 0.55};
   const double falls = 0.4; /* in BACK turns; a pole of first order keeps half or more, a root a third or less */
-  const double alike = 2.5; /* at both ends and in the middle of a step over a pole derivatives differ by more, or in sign */
-  double from = 0, to = 1, a = derivative_at(s, from, t, i), b = derivative_at(s, to, t, i), middle = derivative_at(s, 0.5, t, i), before[BACK] = {0};
+  /* at both ends and in the middle of a step over a pole derivatives differ by more, or in sign */
+  const double alike = 2.5;
+  double from = 0, to = 1, a = derivative_at(s, from, t, i), b = derivative_at(s, to, t, i),
+         middle = derivative_at(s, 0.5, t, i), before[BACK] = {0};
   double least = fmin(a, fmin(b, middle)), most = fmax(a, fmax(b, middle));
-  if (least * most > 0 && fmax(fabs(least), fabs(most)) <= alike * fmin(fabs(least), fabs(most)) && isfinite(a + b + middle)) return NAN;
+  if (least * most > 0 && fmax(fabs(least), fabs(most)) <= alike * fmin(fabs(least), fabs(most)) &&
+      isfinite(a + b + middle))
+    return NAN;
   a = fabs(a), b = fabs(b);
   for (int turn = 0; turn < TURNS; turn++) {
     double size = (to - from) * fmin(a, b), x = from, c = NAN;

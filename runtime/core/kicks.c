@@ -1,5 +1,6 @@
-/* Kicks: events (LAG_KICK) at the times t0 + k T, k = 1, 2, ..., whose function is the period T, the same at all states. Enters: the counts of kicks so far; leaves: the time of the
- * next, pb.kick, at which steps end, and the roots of those in a step. Holds: times are products, not sums, so that they carry one rounding. */
+/* Kicks: events (LAG_KICK) at the times t0 + k T, k = 1, 2, ..., whose function is the period T, the same at all
+ * states. Enters: the counts of kicks so far; leaves: the time of the next, pb.kick, at which steps end, and the
+ * roots of those in a step. Holds: times are products, not sums, so that they carry one rounding. */
 #include <float.h>
 #include <math.h>
 
@@ -24,8 +25,11 @@ int lag_kicks_begin(lag_sim *s, const double *period) {
   const lag_model *m = s->scene->model;
   for (int k = 0; k < m->nev; k++) {
     if (!lag_is_kick(m, k)) continue;
-    if (s->run->dir < 0) return lag_fail(s, LAG_EMETHOD, "kick %s: a run backwards would need its inverse; run forwards", m->ev[k].name);
-    if (!(period[k] > 0)) return lag_fail(s, LAG_EINVAL, "kick %s: its period is %s s, and must be positive", m->ev[k].name, LAG_TEXT(period[k]));
+    if (s->run->dir < 0)
+      return lag_fail(s, LAG_EMETHOD, "kick %s: a run backwards would need its inverse; run forwards", m->ev[k].name);
+    if (!(period[k] > 0))
+      return lag_fail(s, LAG_EINVAL, "kick %s: its period is %s s, and must be positive", m->ev[k].name,
+                      LAG_TEXT(period[k]));
   }
   return LAG_OK;
 }

@@ -1,4 +1,5 @@
-/* The interface for other languages: names without structs, many states in one call. Enters: a scene, arrays of the caller; leaves: names, rates, rows. */
+/* The interface for other languages: names without structs, many states in one call. Enters: a scene, arrays of the
+ * caller; leaves: names, rates, rows. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +9,9 @@
 
 int lag_library_abi(void) { return LAG_ABI; }
 
-const lag_scene *lag_library_scene(const lag_program *program, int i) { return program && i >= 0 && i < program->nscenes ? program->scenes[i] : NULL; }
+const lag_scene *lag_library_scene(const lag_program *program, int i) {
+  return program && i >= 0 && i < program->nscenes ? program->scenes[i] : NULL;
+}
 
 const char *lag_scene_span(const lag_scene *scene, double *t0, double *t1, double *every) {
   if (!scene || !t0 || !t1 || !every) return NULL;
@@ -22,9 +25,21 @@ const char *lag_scene_method(const lag_scene *scene) { return scene ? scene->met
 
 const char *lag_item(const lag_scene *scene, int kind, int i, const char **unit, double *factor, double *offset) {
   const lag_model *m = scene ? scene->model : NULL;
-  const lag_var *vars = !m ? NULL : kind == 'q' ? m->q : kind == 'z' ? m->z : kind == 'p' ? m->p : kind == 'u' ? m->u : NULL;
-  int n = !m ? 0 : kind == 'q' ? m->nq : kind == 'z' ? m->nz : kind == 'p' ? m->np : kind == 'u' ? m->nu : kind == 'e' ? m->nev
-          : kind == 'c' ? (m->charges ? m->charges->n : 0) : kind == 'm' ? lag_nmethods : 0;
+  const lag_var *vars = !m            ? NULL
+                        : kind == 'q' ? m->q
+                        : kind == 'z' ? m->z
+                        : kind == 'p' ? m->p
+                        : kind == 'u' ? m->u
+                                      : NULL;
+  int n = !m            ? 0
+          : kind == 'q' ? m->nq
+          : kind == 'z' ? m->nz
+          : kind == 'p' ? m->np
+          : kind == 'u' ? m->nu
+          : kind == 'e' ? m->nev
+          : kind == 'c' ? (m->charges ? m->charges->n : 0)
+          : kind == 'm' ? lag_nmethods
+                        : 0;
   if (unit) *unit = "";
   if (factor) *factor = 1;
   if (offset) *offset = 0;
@@ -96,7 +111,8 @@ lag_sim *lag_sim_like(const lag_sim *from) {
   s->tol = s->pb.tol = from->tol;
   const lag_method *m = from->method;
   int n = m->noptions < 64 ? m->noptions : 64;
-  for (int i = 0; from->options && i < n; i++) opt[i] = (lag_option){.name = m->options[i].name, .value = from->options[i]};
+  for (int i = 0; from->options && i < n; i++)
+    opt[i] = (lag_option){.name = m->options[i].name, .value = from->options[i]};
   if (!from->options || lag_sim_set_method(s, m, opt, n) == LAG_OK) return s;
   lag_sim_free(s);
   return NULL;
@@ -116,7 +132,8 @@ static int motion(lag_sim *s, const double *y0, const double *p, int rows, const
   return lag_sim_rows(s, rows, t, y, NULL, &done);
 }
 
-int lag_sim_batch(const lag_sim *like, int count, const double *y0, const double *p, int rows, const double *t, double *y, int *status) {
+int lag_sim_batch(const lag_sim *like, int count, const double *y0, const double *p, int rows, const double *t,
+                  double *y, int *status) {
   if (!like || count < 0 || rows < 0 || !t || !y || !status) return LAG_EINVAL;
   size_t n = (size_t)like->pb.n, np = (size_t)like->scene->model->np, each = (size_t)rows * n;
   for (size_t k = 0; k < (size_t)count; k++) {

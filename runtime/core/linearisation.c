@@ -1,6 +1,7 @@
-/* The linearisation of a model as dense matrices. Enters: a state; leaves: derivatives of its residuals, or of its right-hand side. Holds:
- * without constraints both are exact, from emitted derivatives; with constraints, and while the motion slides, those of the right-hand side are finite
- * differences: to half of the digits for a simplified Newton's method, of order 6 for a tangent. */
+/* The linearisation of a model as dense matrices. Enters: a state; leaves: derivatives of its residuals, or of its
+ * right-hand side. Holds: without constraints both are exact, from emitted derivatives; with constraints, and while
+ * the motion slides, those of the right-hand side are finite differences: to half of the digits for a simplified
+ * Newton's method, of order 6 for a tangent. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -27,7 +28,8 @@ static LinearLayout parts_of(const lag_model *m, double *work) {
 
 size_t lag_linear_work(const lag_model *m) {
   size_t nq = (size_t)m->nq, n = 2 * nq + (size_t)m->nz;
-  size_t exact = m->linear ? n + (size_t)m->linear->ndr + (size_t)m->linear->nmass + nq * nq : 0, differences = m->constraints || m->nmodes ? 3 * n : 0;
+  size_t exact = m->linear ? n + (size_t)m->linear->ndr + (size_t)m->linear->nmass + nq * nq : 0,
+         differences = m->constraints || m->nmodes ? 3 * n : 0;
   return exact > differences ? exact : differences;
 }
 
@@ -71,7 +73,8 @@ static int difference_jacobian(lag_problem *pb, double t, const double *y, doubl
       there[k] = y[k] - step;
       rc = lag_rhs(pb, t, there, rate);
     }
-    for (int i = nq; i < n && rc == 0; i++) J[(size_t)(i - nq) * (size_t)n + (size_t)k] = (rate[i] - work[i]) / (there[k] - y[k]);
+    for (int i = nq; i < n && rc == 0; i++)
+      J[(size_t)(i - nq) * (size_t)n + (size_t)k] = (rate[i] - work[i]) / (there[k] - y[k]);
   }
   return rc;
 }
@@ -80,11 +83,14 @@ double lag_difference_scale(lag_problem *pb, const double *y, int k) {
   double size = component_magnitude(pb, y, k);
   if (k >= pb->nq || !(size > 1)) return size;
   const lag_var *q = &pb->model->q[k];
-  int is_angle = q->periodic || strcmp(q->unit, "rad") == 0 || strcmp(q->unit, "deg") == 0 || strcmp(q->unit, "rev") == 0;
-  return is_angle ? 1 : q->unit[0] ? size : sqrt(size); /* a coordinate without unit may be an angle that has turned often */
+  int is_angle =
+      q->periodic || strcmp(q->unit, "rad") == 0 || strcmp(q->unit, "deg") == 0 || strcmp(q->unit, "rev") == 0;
+  /* a coordinate without unit may be an angle that has turned often */
+  return is_angle ? 1 : q->unit[0] ? size : sqrt(size);
 }
 
-/* J by central differences of order 6, column by column: wrong by rounding over 2^-9, and by 2^-54/140 of a seventh derivative, for a scale of 1. */
+/* J by central differences of order 6, column by column: wrong by rounding over 2^-9, and by 2^-54/140 of a seventh
+ * derivative, for a scale of 1. */
 static int central_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work) {
   static const double weight[] = {0.75, -0.15, 1.0 / 60};
   const double part = 0x1p-9;

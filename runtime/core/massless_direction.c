@@ -1,5 +1,5 @@
-/* Missing inertia. Enters: a state; leaves: the condition of its mass matrix on the directions that constraints allow, and the coordinate that
- * moves most along the direction of least inertia. */
+/* Missing inertia. Enters: a state; leaves: the condition of its mass matrix on the directions that constraints
+ * allow, and the coordinate that moves most along the direction of least inertia. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,8 +39,9 @@ static double kinetic(lag_problem *pb, double t, const double *y, double rest) {
   return pb->model->energy(t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, e, pb->work) ? NAN : e[0] - rest;
 }
 
-/* M[nq nq] by second differences of the energy p.v - L over velocities, from rest: exact up to rounding where L is quadratic in them. Speeds are
- * doubled, as long as it stays quadratic, until the energy at rest costs no digits. unit[nq] := 1/sqrt of the diagonal. y[pb->n] is scratch. */
+/* M[nq nq] by second differences of the energy p.v - L over velocities, from rest: exact up to rounding where L is
+ * quadratic in them. Speeds are doubled, as long as it stays quadratic, until the energy at rest costs no digits.
+ * unit[nq] := 1/sqrt of the diagonal. y[pb->n] is scratch. */
 static int mass_by_energy(lag_problem *pb, double t, double *y, double *M, double *unit) {
   int n = pb->nq;
   double *v = y + n, factor = 1, most = 0;
@@ -65,7 +66,8 @@ static int mass_by_energy(lag_problem *pb, double t, double *y, double *M, doubl
       most = k == 0 ? fmax(most, fabs(2 * both)) : most;
     }
   }
-  for (int i = 0; i < n; i++) unit[i] = fabs(M[i * n + i]) > 0x1p-50 * most ? 1 / sqrt(fabs(M[i * n + i])) : 1 / sqrt(most);
+  for (int i = 0; i < n; i++)
+    unit[i] = fabs(M[i * n + i]) > 0x1p-50 * most ? 1 / sqrt(fabs(M[i * n + i])) : 1 / sqrt(most);
   return most > 0 && isfinite(most) ? 0 : LAG_EMODEL;
 }
 
@@ -78,7 +80,8 @@ double lag_mass_condition(lag_problem *pb, double t, const double *y, int *which
   *which = 0;
   if (M && column && n > 0) {
     int begun = 0, rc = 0;
-    for (int now = pb->begin == NULL; now < 2 && rc == 0; now++) { /* inertia 1 at the start: if it has vanished since, that shows */
+    /* inertia 1 at the start: if it has vanished since, that shows */
+    for (int now = pb->begin == NULL; now < 2 && rc == 0; now++) {
       memcpy(at, now ? y : pb->begin, (size_t)pb->n * sizeof *at);
       rc = of ? lag_constraint_jacobian(pb, t, at, A, x, M) : mass_by_energy(pb, t, at, M, x);
       if (rc == 0 && !begun) memcpy(unit, x, n * sizeof *x);

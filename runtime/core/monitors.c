@@ -1,12 +1,15 @@
-/* Monitors of a run: charges (charge_monitor.c), outputs and residuals of constraints. Enters: states of the run; leaves: largest drifts, and a failure
- * when one passes its limit. Holds: the change of a quantity at an event is not drift: the reference moves by the jump. */
+/* Monitors of a run: charges (charge_monitor.c), outputs and residuals of constraints. Enters: states of the run;
+ * leaves: largest drifts, and a failure when one passes its limit. Holds: the change of a quantity at an event is
+ * not drift: the reference moves by the jump. */
 #include <math.h>
 #include <string.h>
 
 #include "core/core.h"
 #include "core/rhs.h"
 
-static int outputs_at(lag_sim *s, double t, const double *y) { return s->scene->observe ? lag_observe(s, t, y, s->out) : 0; }
+static int outputs_at(lag_sim *s, double t, const double *y) {
+  return s->scene->observe ? lag_observe(s, t, y, s->out) : 0;
+}
 
 static int watches_outputs(const lag_scene *c) {
   for (int i = 0; i < c->nmonitors; i++)
@@ -36,7 +39,8 @@ int lag_monitors_begin(lag_sim *s) {
   const lag_scene *c = s->scene;
   see_constraints(s, s->run->t, s->now);
   lag_charges_begin(s, s->run->t, s->now);
-  if (watches_outputs(c) && outputs_at(s, s->run->t, s->now)) return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at the start");
+  if (watches_outputs(c) && outputs_at(s, s->run->t, s->now))
+    return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at the start");
   for (int i = 0; i < c->nmonitors; i++) {
     int k = c->monitors[i].output;
     s->mon_peak[i] = 0;
@@ -64,7 +68,8 @@ double lag_sim_monitor_drift(lag_sim *s, int i) {
     lag_sim_charge(s, -1 - k, &c);
     return c.drift;
   }
-  if (s->run->begun != 0.0) peak = larger(peak, outputs_at(s, s->run->t, s->now) ? NAN : fabs(s->out[k] - s->mon_first[i]));
+  if (s->run->begun != 0.0)
+    peak = larger(peak, outputs_at(s, s->run->t, s->now) ? NAN : fabs(s->out[k] - s->mon_first[i]));
   return relative(s, i, peak);
 }
 
@@ -73,13 +78,13 @@ static int judge_monitor(lag_sim *s, int i, double drift) {
   const lag_monitor *m = &s->scene->monitors[i];
   if (drift <= m->limit) return LAG_OK;
   int rough = m->output < 0 && !lag_charge_flags(s, -1 - m->output) && !lag_method_balances(s->method);
-  return lag_fail(s, LAG_EMONITOR, "monitor %s: drift %.3g is past its limit %.3g at t = %s s%s%s%s", m->name, drift, m->limit, LAG_TEXT(s->run->t),
-                  rough ? "; the work of forces is not accounted for, as " : "", rough ? s->method->name : "",
-                  rough ? " has no accurate dense output: take dop853" : "");
+  return lag_fail(s, LAG_EMONITOR, "monitor %s: drift %.3g is past its limit %.3g at t = %s s%s%s%s", m->name, drift,
+                  m->limit, LAG_TEXT(s->run->t), rough ? "; the work of forces is not accounted for, as " : "",
+                  rough ? s->method->name : "", rough ? " has no accurate dense output: take dop853" : "");
 }
 
-/* Reports that the energy has no value. The equations of motion may still have one past the end of L's domain, as those of log(x) at x < 0, and
- * equal steps may cross that end. */
+/* Reports that the energy has no value. The equations of motion may still have one past the end of L's domain, as
+ * those of log(x) at x < 0, and equal steps may cross that end. */
 static int left_domain(lag_sim *s, double t) {
   s->pb.bad_t = t;
   s->pb.bad_index = -1;
@@ -91,7 +96,8 @@ int lag_sim_judge(lag_sim *s) {
   if (!s) return LAG_EINVAL;
   int rc = s->run->begun != 0.0 && lag_energy_undefined(s, s->run->t, s->now) ? left_domain(s, s->run->t) : LAG_OK;
 
-  for (int i = 0; i < s->scene->nmonitors && rc == 0 && s->run->begun != 0.0; i++) rc = judge_monitor(s, i, lag_sim_monitor_drift(s, i));
+  for (int i = 0; i < s->scene->nmonitors && rc == 0 && s->run->begun != 0.0; i++)
+    rc = judge_monitor(s, i, lag_sim_monitor_drift(s, i));
   return rc ? rc : lag_energy_retained(s);
 }
 
@@ -107,7 +113,8 @@ int lag_monitors_record(lag_sim *s, double t, const double *y) {
   }
   if (c->model->constraints) see_constraints(s, t, y);
   if (c->nexact && lag_closed_form_record(s, t, y)) return LAG_EMODEL;
-  if (watches_outputs(c) && outputs_at(s, t, y)) return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
+  if (watches_outputs(c) && outputs_at(s, t, y))
+    return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
   for (int i = 0; i < c->nmonitors; i++) {
     int k = c->monitors[i].output;
     if (k >= 0) s->mon_peak[i] = larger(s->mon_peak[i], fabs(s->out[k] - s->mon_first[i]));
@@ -126,7 +133,8 @@ int lag_monitors_jump(lag_sim *s, double t, const double *ya, const double *yb) 
   lag_charges_jump(s, t, ya, yb);
   if (watches_outputs(c))
     for (int pass = 0; pass < 2; pass++) {
-      if (outputs_at(s, t, pass ? ya : yb)) return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
+      if (outputs_at(s, t, pass ? ya : yb))
+        return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
       for (int i = 0; i < c->nmonitors; i++) {
         int k = c->monitors[i].output;
         double *first = &s->mon_first[i], out = k >= 0 && !c->monitors[i].absolute ? s->out[k] : 0;

@@ -1,5 +1,5 @@
-/* Look-up of the names that a user may write: exact, or the suffix of one dotted name; and the nearest known name to a wrong one. Enters: text;
- * leaves: kind, index and description. */
+/* Look-up of the names that a user may write: exact, or the suffix of one dotted name; and the nearest known name to
+ * a wrong one. Enters: text; leaves: kind, index and description. */
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,7 +35,8 @@ static int find_suffix(const lag_var *vars, int n, const char *name, int *count)
 /* Whether a variable is an input of a contact, which nobody may set. */
 static int is_switch(const lag_model *m, const lag_var *var) {
   for (int i = 0; i < m->ncontacts; i++)
-    if (&m->u[m->contacts[i].input] == var || (m->contacts[i].is_tangent && &m->u[m->contacts[i].force] == var)) return 1;
+    if (&m->u[m->contacts[i].input] == var || (m->contacts[i].is_tangent && &m->u[m->contacts[i].force] == var))
+      return 1;
   return 0;
 }
 
@@ -77,7 +78,8 @@ int lag_find_name(const lag_model *m, const char *name, int *index, const lag_va
 int lag_is_member(const char *var, const char *family, size_t length) {
   size_t stem = strcspn(var, "[");
   const char *close = strchr(var, ']'), *rest = close ? close + 1 : NULL;
-  return rest && stem + strlen(rest) == length && memcmp(var, family, stem) == 0 && memcmp(family + stem, rest, length - stem) == 0;
+  return rest && stem + strlen(rest) == length && memcmp(var, family, stem) == 0 &&
+         memcmp(family + stem, rest, length - stem) == 0;
 }
 
 int lag_family_member(const lag_model *m, const char *name, int k, char *part, size_t npart) {
@@ -91,7 +93,9 @@ int lag_family_member(const lag_model *m, const char *name, int k, char *part, s
   for (size_t i = rate; i < (rate ? 2 : sizeof tables / sizeof *tables); i++) { /* only coordinates have rates to set */
     for (int j = 0; j < tables[i].n; j++) {
       const char *whole = tables[i].vars[j].name;
-      if (strncmp(whole, name, n) != 0 || !whole[n] || !strchr("[.", whole[n]) || is_switch(m, &tables[i].vars[j]) || k-- > 0) continue;
+      if (strncmp(whole, name, n) != 0 || !whole[n] || !strchr("[.", whole[n]) || is_switch(m, &tables[i].vars[j]) ||
+          k-- > 0)
+        continue;
       snprintf(part, npart, "%s%s", whole, rate ? "'" : "");
       return 1;
     }

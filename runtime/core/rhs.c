@@ -1,5 +1,5 @@
-/* The model as y' = f(t, y): the only way in which methods call it. Enters: t, y = [q|v|z]; leaves: y' = [v|a|z']. Holds: an input is the
- * model's formula or table unless a function or a constant replaces it. */
+/* The model as y' = f(t, y): the only way in which methods call it. Enters: t, y = [q|v|z]; leaves: y' = [v|a|z'].
+ * Holds: an input is the model's formula or table unless a function or a constant replaces it. */
 #include <math.h>
 #include <string.h>
 

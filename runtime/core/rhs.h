@@ -1,5 +1,5 @@
-/* Inline parts of the right-hand side, called so often, for so few numbers, that a function call would take as long as the work: for rhs.c and
- * for methods with many stages; and the compensated sum of all steps. */
+/* Inline parts of the right-hand side, called so often, for so few numbers, that a function call would take as long
+ * as the work: for rhs.c and for methods with many stages; and the compensated sum of all steps. */
 #pragma once
 
 #include <math.h>
@@ -24,7 +24,8 @@ LAG_ALWAYS_INLINE void lag_copy(int n, const double *from, double *to) {
   if (i < n) to[i] = from[i];
 }
 
-/* The parts that few models have: pb->u := inputs and modes of switches; where constraints are redundant, *y := its projection onto them. */
+/* The parts that few models have: pb->u := inputs and modes of switches; where constraints are redundant, *y := its
+ * projection onto them. */
 int lag_rhs_prepare(lag_problem *pb, double t, const double **y);
 
 /* switching.c: modes in pb->u that keep the motion on the surfaces on which it slides, at y, t. > 0: there are none. */
@@ -36,12 +37,17 @@ int lag_contact_friction_forces(lag_problem *pb, double t, const double *y);
 /* moreau_contacts.c: size of pb->contact_room in doubles. */
 size_t lag_moreau_contacts_size(const lag_model *m);
 
-/* contact.c: the coefficient of restitution of contact i, from Newton's law in the model for a state y whose velocities are changed by d[nq] times -(rate + speed), so that the gap closes with `speed`. rate: of its gap at
- * y, t; d changes that by 1; pb->u: this contact is closed, others are open; A: entries of the Jacobian; before[n], after[n] are scratch. NaN: there is none. */
-double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed, const double *d, const double *A, double *before, double *after);
+/* contact.c: the coefficient of restitution of contact i, from Newton's law in the model for a state y whose
+ * velocities are changed by d[nq] times -(rate + speed), so that the gap closes with `speed`. rate: of its gap at y,
+ * t; d changes that by 1; pb->u: this contact is closed, others are open; A: entries of the Jacobian; before[n],
+ * after[n] are scratch. NaN: there is none. */
+double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed,
+                               const double *d, const double *A, double *before, double *after);
 
 /* Inline lag_inputs; the distance to the next row of a table or kick, as lag_next_row. */
-LAG_ALWAYS_INLINE int lag_inputs_inline(lag_problem *pb, double t) { return pb->model->nu | pb->model->nmodes ? lag_inputs(pb, t) : 0; }
+LAG_ALWAYS_INLINE int lag_inputs_inline(lag_problem *pb, double t) {
+  return pb->model->nu | pb->model->nmodes ? lag_inputs(pb, t) : 0;
+}
 
 /* Distance from t to the next kick, *at; HUGE_VAL where there is none. */
 LAG_ALWAYS_INLINE double lag_next_kick(const lag_problem *pb, double t, double *at) {

@@ -1,5 +1,6 @@
-/* Saving and loading of a run. Enters: a simulation, or numbers of lag_sim_save; leaves: the numbers, or the run that they describe. Holds: a
- * block is loaded only with its seal, a hash of its numbers and of what they belong to; a refused load changes nothing. */
+/* Saving and loading of a run. Enters: a simulation, or numbers of lag_sim_save; leaves: the numbers, or the run
+ * that they describe. Holds: a block is loaded only with its seal, a hash of its numbers and of what they belong to;
+ * a refused load changes nothing. */
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -19,8 +20,8 @@ unsigned long long lag_hash_number(unsigned long long h, double x) {
   return lag_fnv1a(h, (const char *)all, sizeof all);
 }
 
-/* The seal of x[nsaved], whose own seal is not counted: 52 bits of a hash of its numbers, the signature, the method's options and the inputs that
- * are functions of the caller. */
+/* The seal of x[nsaved], whose own seal is not counted: 52 bits of a hash of its numbers, the signature, the
+ * method's options and the inputs that are functions of the caller. */
 static double seal_of(const lag_sim *s, const double *x) {
   const size_t seal = offsetof(Run, seal) / sizeof(double);
   unsigned long long h = lag_sim_signature(s);
@@ -61,10 +62,13 @@ static void take_over(lag_sim *s) {
 
 int lag_sim_load(lag_sim *s, const double *x) {
   if (!s || !x) return LAG_EINVAL;
-  if (s->method->flags & LAG_METHOD_NO_SAVE) return lag_fail(s, LAG_EINVAL, "the state of method %s cannot be resumed", s->method->name);
+  if (s->method->flags & LAG_METHOD_NO_SAVE)
+    return lag_fail(s, LAG_EINVAL, "the state of method %s cannot be resumed", s->method->name);
   if (s->tangent) return lag_fail(s, LAG_EINVAL, "a saved state holds no tangent: load it first, then begin one");
   if (x[offsetof(Run, seal) / sizeof *x] != seal_of(s, x)) {
-    return lag_fail(s, LAG_EINVAL, "the saved state is damaged, or of another run: it is none of scene %s by method %s with these options and inputs",
+    return lag_fail(s, LAG_EINVAL,
+                    "the saved state is damaged, or of another run: it is none of scene %s by method %s with these "
+                    "options and inputs",
                     s->scene->name, s->method->name);
   }
   memcpy(s->saved, x, s->nsaved * sizeof *x);

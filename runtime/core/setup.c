@@ -1,5 +1,5 @@
-/* Setup of a simulation: memory, parameters, start, method. Enters: a scene and the caller's settings by name; leaves: the state at the start of
- * the span. Holds: a setting that is refused changes nothing. */
+/* Setup of a simulation: memory, parameters, start, method. Enters: a scene and the caller's settings by name;
+ * leaves: the state at the start of the span. Holds: a setting that is refused changes nothing. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -14,23 +14,67 @@
 
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_DOUBLES = LINE / sizeof(double) };
 
-/* Allocates and lays out the blocks for this method, keeping only the settings of the caller (p, hold). opt: option values, which must live on. */
+/* Allocates and lays out the blocks for this method, keeping only the settings of the caller (p, hold). opt: option
+ * values, which must live on. */
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   const lag_model *m = s->scene->model;
-  size_t np = (size_t)(m->np + m->nderived), nm = (size_t)m->nmodes, nu = (size_t)m->nu + nm, n = (size_t)s->pb.n, nev = (size_t)m->nev + nm;
+  size_t np = (size_t)(m->np + m->nderived), nm = (size_t)m->nmodes, nu = (size_t)m->nu + nm, n = (size_t)s->pb.n,
+         nev = (size_t)m->nev + nm;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0, pushes = pushed ? lag_moreau_contacts_size(m) : 0;
-  double *contacts, *contact_room = calloc(pushes + 1, sizeof *contact_room), **const parts[] = {&s->p, &s->derived, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign,
-                            &s->noise, &s->root, &s->sign_end, &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->flight, &s->skipped, &s->crossed, &s->slips, &s->slid, &s->slid_since, &s->mon_first, &s->mon_peak,
-                            &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change, &s->charge_block, &s->rate_history, &s->pb.size};
-  const size_t sizes[] = {(size_t)m->np, (size_t)m->nderived, nu, n, n, nc, (size_t)m->nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nev, nev,
-                          nm, nm, nm, nm, nmon, nmon, (size_t)s->scene->nexact, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0, pushed, pushed ? (size_t)m->nq : 0, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double), 3 * n, n + 2};
-  const size_t nparts = sizeof sizes / sizeof *sizes, fixed = RUN_DOUBLES + lag_workspace_slice(NULL, nparts, parts, sizes);
+  size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0,
+         pushes = pushed ? lag_moreau_contacts_size(m) : 0;
+  double *contacts, *contact_room = calloc(pushes + 1, sizeof *contact_room),
+                    **const parts[] = {&s->p,
+                                       &s->derived, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept,
+                                       &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end, &s->count,
+                                       &s->first, &s->last, &s->interval, &s->shorter, &s->flight, &s->skipped,
+                                       &s->crossed, &s->slips, &s->slid, &s->slid_since, &s->mon_first, &s->mon_peak,
+                                       &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change,
+                                       &s->charge_block, &s->rate_history,
+                                       &s->pb.size};
+  const size_t sizes[] = {(size_t)m->np,
+                          (size_t)m->nderived,
+                          nu,
+                          n,
+                          n,
+                          nc,
+                          (size_t)m->nq,
+                          nc,
+                          n,
+                          n,
+                          n,
+                          nev,
+                          nev,
+                          nev,
+                          nev,
+                          nev,
+                          nev,
+                          nev,
+                          nev,
+                          nev,
+                          nev,
+                          nev,
+                          nm,
+                          nm,
+                          nm,
+                          nm,
+                          nmon,
+                          nmon,
+                          (size_t)s->scene->nexact,
+                          pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0,
+                          pushed,
+                          pushed ? (size_t)m->nq : 0,
+                          (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double),
+                          3 * n,
+                          n + 2};
+  const size_t nparts = sizeof sizes / sizeof *sizes,
+               fixed = RUN_DOUBLES + lag_workspace_slice(NULL, nparts, parts, sizes);
   lag_problem sized = s->pb;
 
   sized.opt = opt;
   sized.variant = method->variant;
-  size_t before = (fixed + LINE_DOUBLES - 1) / LINE_DOUBLES * LINE_DOUBLES, work = method->work_size(&sized), total = before + work;
+  size_t before = (fixed + LINE_DOUBLES - 1) / LINE_DOUBLES * LINE_DOUBLES, work = method->work_size(&sized),
+         total = before + work;
   char *room = calloc(total * sizeof(double) + LINE - 1, 1);
 
   if (!room || !contact_room) {
@@ -72,14 +116,22 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
 static int alloc_scratch(lag_sim *s) {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nm = (size_t)m->nmodes, nev = (size_t)m->nev + nm, nout = (size_t)s->scene->nout;
-  size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + nm + (size_t)s->scene->nexact;
-  size_t held = lag_constraint_scratch_size(m), ranks = lag_rank_scratch_size(m), sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
+  size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw),
+         nuu = nu + nm + (size_t)s->scene->nexact;
+  size_t held = lag_constraint_scratch_size(m), ranks = lag_rank_scratch_size(m),
+         sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
   size_t nc = (size_t)lag_sim_ncharges(s) + 1, np = (size_t)m->ncontacts;
-  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->pb.ranks, &s->contact_scratch,
-                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides, &s->grip, &s->side_noise, &s->slid_off, &s->meets, &s->left,
-                            &s->meeting, &s->pb.slide, &s->pb.rub, &s->sizes};
-  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 11 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch, nm, nm, nm, nm, nm,
-                          nm * (9 + 2 * nm), nm * (3 + nm), m->contact_laws ? np * (5 + 2 * np) : 0, (size_t)(m->nsizes + m->nmoving)};
+  double **const parts[] = {&s->u,
+                            &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held,
+                            &s->pb.ranks, &s->contact_scratch, &s->contact_was, &s->charge_now, &s->charge_power,
+                            &s->charge_gain, &s->sides, &s->grip, &s->side_noise, &s->slid_off, &s->meets, &s->left,
+                            &s->meeting, &s->pb.slide, &s->pb.rub,
+                            &s->sizes};
+  const size_t sizes[] = {nuu,
+                          nw, n, n, n, nev, nev, nout, 2 + nev, 11 * nev, held, ranks, sized, (size_t)m->ncontacts,
+                          2 * nc, nc, nc, 3 * (size_t)m->nswitch, nm, nm, nm, nm, nm, nm * (9 + 2 * nm), nm * (3 + nm),
+                          m->contact_laws ? np * (5 + 2 * np) : 0,
+                          (size_t)(m->nsizes + m->nmoving)};
   s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
   s->start = malloc((n + 1) * sizeof(double));
@@ -130,7 +182,8 @@ lag_sim *lag_sim_new(const lag_scene *scene) {
     return NULL;
   }
   for (int i = 0; i < m->nu + m->nmodes; i++) s->hold[i] = i < m->nu ? NAN : LAG_FREE;
-  if ((method || !scene->method) && lag_sim_set_method(s, chosen, scene->options, method ? scene->noptions : 0) == LAG_ENOMEM) {
+  if ((method || !scene->method) &&
+      lag_sim_set_method(s, chosen, scene->options, method ? scene->noptions : 0) == LAG_ENOMEM) {
     lag_sim_free(s);
     return NULL;
   }
@@ -154,10 +207,13 @@ void lag_sim_free(lag_sim *s) {
   free(s);
 }
 
-static int begun(lag_sim *s) { return s->run->begun != 0.0 ? lag_fail(s, LAG_EINVAL, "the run has begun: set this before the first step") : 0; }
+static int begun(lag_sim *s) {
+  return s->run->begun != 0.0 ? lag_fail(s, LAG_EINVAL, "the run has begun: set this before the first step") : 0;
+}
 
 /* *value := the value of one option; LAG_EINVAL when it is not allowed. */
-static int option_value(lag_sim *s, const lag_method *m, const lag_method_option *o, const lag_option *given, double *value) {
+static int option_value(lag_sim *s, const lag_method *m, const lag_method_option *o, const lag_option *given,
+                        double *value) {
   *value = given->value;
   if (given->text) {
     for (int i = 0; o->choices && o->choices[i]; i++)
@@ -170,7 +226,8 @@ static int option_value(lag_sim *s, const lag_method *m, const lag_method_option
   char are[128];
   const char *step = lag_is_step_option(o->name) && *value > 0 ? lag_step_error(s, *value) : NULL;
   int bad = lag_option_refuses(&range, given->text ? NAN : *value, s->scene->model->constraints != NULL, are);
-  if (bad && given->text) return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"; %s", m->name, o->name, given->text, are);
+  if (bad && given->text)
+    return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"; %s", m->name, o->name, given->text, are);
   if (bad || step) return lag_fail(s, LAG_EINVAL, "method %s: %s = %g: %s", m->name, o->name, *value, bad ? are : step);
   return LAG_OK;
 }
@@ -179,7 +236,8 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
   for (int k = 0; k < nopt; k++) {
     int i = 0;
     while (i < m->noptions && opt[k].name && strcmp(m->options[i].name, opt[k].name) != 0) i++;
-    if (i == m->noptions || !opt[k].name) return lag_fail(s, LAG_EINVAL, "method %s has no option \"%s\"", m->name, opt[k].name ? opt[k].name : "");
+    if (i == m->noptions || !opt[k].name)
+      return lag_fail(s, LAG_EINVAL, "method %s has no option \"%s\"", m->name, opt[k].name ? opt[k].name : "");
     int rc = option_value(s, m, &m->options[i], &opt[k], &values[i]);
     if (rc) return rc;
   }
@@ -190,23 +248,32 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
 /* Refuses a tolerance finer than the digits of the method's coefficients. */
 static int check_digits(lag_sim *s, const lag_method *method) {
   if (method->finest < DBL_EPSILON || s->tol >= method->finest) return LAG_OK;
-  return lag_fail(s, LAG_EMETHOD, "method %s: its published coefficients have digits for a tolerance of %.0e, not for %.3g; taylor computes "
-                  "its own", method->name, method->finest, s->tol);
+  return lag_fail(
+      s, LAG_EMETHOD,
+      "method %s: its published coefficients have digits for a tolerance of %.0e, not for %.3g; taylor computes "
+      "its own",
+      method->name, method->finest, s->tol);
 }
 
 /* Switches that jump, and friction in space. */
 static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
   const lag_model *m = s->scene->model;
   for (int k = 0; k < m->nmodes; k++) {
-    if (!m->switches[k].jumps || !(needs & (LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_IMPULSES))) continue;
+    if (!m->switches[k].jumps || !(needs & (LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION |
+                                            LAG_METHOD_SPLITS | LAG_METHOD_IMPULSES)))
+      continue;
     if ((needs & LAG_METHOD_IMPULSES) && !m->switches[k].nonnegative) continue;
-    return lag_fail(s, LAG_EMETHOD, "method %s cannot follow a motion that sticks or slides where `%s` jumps; rk45, dop853, radau and rk4 can", method->name,
-                    m->switches[k].text);
+    return lag_fail(
+        s, LAG_EMETHOD,
+        "method %s cannot follow a motion that sticks or slides where `%s` jumps; rk45, dop853, radau and rk4 can",
+        method->name, m->switches[k].text);
   }
   for (int i = 1; i < m->ncontacts && !(needs & LAG_METHOD_IMPULSES); i++)
     if (m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent)
-      return lag_fail(s, LAG_EMETHOD, "method %s follows friction in a plane, and the slip of a contact has two components here (%s); --method \"moreau(step=1e-3)\" follows it", method->name,
-                      m->constraints->of[m->contacts[i].constraint].name);
+      return lag_fail(s, LAG_EMETHOD,
+                      "method %s follows friction in a plane, and the slip of a contact has two components here (%s); "
+                      "--method \"moreau(step=1e-3)\" follows it",
+                      method->name, m->constraints->of[m->contacts[i].constraint].name);
   return LAG_OK;
 }
 
@@ -214,43 +281,62 @@ static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
 static int check_method(lag_sim *s, const lag_method *method) {
   const lag_model *m = s->scene->model;
   unsigned needs = method->flags, has = lag_facts(&s->pb);
-  if (m->contact_laws && (!(needs & LAG_METHOD_CONSTRAINTS) || needs & (LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS)))
-    return lag_fail(s, LAG_EMETHOD, "method %s cannot follow contacts with friction (%s); rk45, dop853, radau, rk4 and moreau can", method->name,
-                    m->ev[m->contacts[0].impact].name);
+  if (m->contact_laws && (!(needs & LAG_METHOD_CONSTRAINTS) || needs & (LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC |
+                                                                        LAG_METHOD_VARIATION | LAG_METHOD_SPLITS)))
+    return lag_fail(s, LAG_EMETHOD,
+                    "method %s cannot follow contacts with friction (%s); rk45, dop853, radau, rk4 and moreau can",
+                    method->name, m->ev[m->contacts[0].impact].name);
   if (m->constraints && !(needs & LAG_METHOD_CONSTRAINTS)) {
-    return lag_fail(s, LAG_EMETHOD, "method %s cannot hold constraints (%s); rk45, dop853 and variational can", method->name,
-                    m->constraints->of[0].name);
+    return lag_fail(s, LAG_EMETHOD, "method %s cannot hold constraints (%s); rk45, dop853 and variational can",
+                    method->name, m->constraints->of[0].name);
   }
   if (m->constraints && (has & LAG_MASSLESS) && (needs & LAG_METHOD_VARIATION)) {
-    return lag_fail(s, LAG_EMETHOD, "method %s finds velocities from momenta, and not all coordinates have inertia in this program; `lagc build --method %s` "
-                    "builds a program where they have; rk45 and dop853 need none", method->name, method->name);
+    return lag_fail(s, LAG_EMETHOD,
+                    "method %s finds velocities from momenta, and not all coordinates have inertia in this program; "
+                    "`lagc build --method %s` "
+                    "builds a program where they have; rk45 and dop853 need none",
+                    method->name, method->name);
   }
-  if ((needs & LAG_METHOD_FLOWS) && m->nq == 0) needs = (needs & ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION)) | LAG_METHOD_JACOBIAN;
-  if ((needs & LAG_METHOD_SPLITS) && m->nq == 0 && (has & LAG_SEPARABLE)) needs &= ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION);
+  if ((needs & LAG_METHOD_FLOWS) && m->nq == 0)
+    needs = (needs & ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION)) | LAG_METHOD_JACOBIAN;
+  if ((needs & LAG_METHOD_SPLITS) && m->nq == 0 && (has & LAG_SEPARABLE))
+    needs &= ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION);
   if ((needs & LAG_METHOD_NO_STATES) && (has & LAG_FIRST_ORDER)) {
     if ((needs & LAG_METHOD_SPLITS) && (has & LAG_SUM_HAMILTONIAN)) {
-      return lag_fail(s, LAG_EMETHOD, "method %s takes forces of positions and t, and here forces depend on momenta or velocities; gauss, rk45 and dop853 can",
+      return lag_fail(s, LAG_EMETHOD,
+                      "method %s takes forces of positions and t, and here forces depend on momenta or velocities; "
+                      "gauss, rk45 and dop853 can",
                       method->name);
     }
-    return lag_fail(s, LAG_EMETHOD, "method %s needs momenta beside coordinates, and L is linear in the velocities%s; gauss is symplectic there, rk45 and "
-                    "dop853 can, too", method->name, needs & LAG_METHOD_SPLITS ? ", or H is not a sum T(p) + V(q, t)" : "");
+    return lag_fail(s, LAG_EMETHOD,
+                    "method %s needs momenta beside coordinates, and L is linear in the velocities%s; gauss is "
+                    "symplectic there, rk45 and "
+                    "dop853 can, too",
+                    method->name, needs & LAG_METHOD_SPLITS ? ", or H is not a sum T(p) + V(q, t)" : "");
   }
   if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0)
-    return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can", method->name);
+    return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can",
+                    method->name);
   if ((needs & LAG_METHOD_STEPS_TO) && m->nev > 0) {
-    return lag_fail(s, LAG_EMETHOD, "method %s does not find events (%s), as its motion within a step is too rough; dop853 and radau do", method->name,
-                    m->ev[0].name);
+    return lag_fail(
+        s, LAG_EMETHOD,
+        "method %s does not find events (%s), as its motion within a step is too rough; dop853 and radau do",
+        method->name, m->ev[0].name);
   }
   int rc = check_jumps(s, method, needs);
   if (rc) return rc;
   int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !m->constraints;
   if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH))
-    return lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min, max, atan2 and tables; dop853 does not", method->name);
-  if (((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) || ((needs & LAG_METHOD_JACOBIAN) && !m->linear && !m->constraints) ||
-      ((needs & LAG_METHOD_TAYLOR) && !m->taylor)) {
     return lag_fail(s, LAG_EMETHOD,
-                    "method %s needs derivatives of the model that this program was built without; `lagc run MODEL --method %s` and "
-                    "`lagc build MODEL --method %s` build them in; rk45 and dop853 do without", method->name, method->name, method->name);
+                    "method %s needs a model without if, abs, sign, min, max, atan2 and tables; dop853 does not",
+                    method->name);
+  if (((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) ||
+      ((needs & LAG_METHOD_JACOBIAN) && !m->linear && !m->constraints) || ((needs & LAG_METHOD_TAYLOR) && !m->taylor)) {
+    return lag_fail(s, LAG_EMETHOD,
+                    "method %s needs derivatives of the model that this program was built without; `lagc run MODEL "
+                    "--method %s` and "
+                    "`lagc build MODEL --method %s` build them in; rk45 and dop853 do without",
+                    method->name, method->name, method->name);
   }
   return check_digits(s, method);
 }
@@ -283,17 +369,24 @@ int lag_sim_set_tolerance(lag_sim *s, double tol) {
   int rc = begun(s);
 
   if (rc) return rc;
-  if (!(tol > 0 && isfinite(tol))) return lag_fail(s, LAG_EINVAL, "a tolerance of %g: it must be positive, for example 1e-9", tol);
-  if (tol >= 1) return lag_fail(s, LAG_EINVAL, "a tolerance of %g leaves no digit: it is the relative error of a step, for example 1e-9", tol);
+  if (!(tol > 0 && isfinite(tol)))
+    return lag_fail(s, LAG_EINVAL, "a tolerance of %g: it must be positive, for example 1e-9", tol);
+  if (tol >= 1)
+    return lag_fail(s, LAG_EINVAL,
+                    "a tolerance of %g leaves no digit: it is the relative error of a step, for example 1e-9", tol);
   if (tol < 4.5 * DBL_EPSILON) {
-    return lag_fail(s, LAG_EINVAL, "a tolerance of %g is below what " LAG_PRECISION " precision can give: write %.0e or more" LAG_MORE_PRECISION,
+    return lag_fail(s, LAG_EINVAL,
+                    "a tolerance of %g is below what " LAG_PRECISION
+                    " precision can give: write %.0e or more" LAG_MORE_PRECISION,
                     tol, 4.51 * DBL_EPSILON);
   }
   s->tol = s->pb.tol = tol;
   return LAG_OK;
 }
 
-static int sign_ok(int sign, double x) { return sign == 1 ? x > 0 : sign == 2 ? x >= 0 : sign == -1 ? x < 0 : sign == -2 ? x <= 0 : 1; }
+static int sign_ok(int sign, double x) {
+  return sign == 1 ? x > 0 : sign == 2 ? x >= 0 : sign == -1 ? x < 0 : sign == -2 ? x <= 0 : 1;
+}
 
 static const char *sign_text(int sign) { return sign == 1 ? "> 0" : sign == 2 ? ">= 0" : sign == -1 ? "< 0" : "<= 0"; }
 
@@ -309,22 +402,32 @@ static int unknown_name(lag_sim *s, const char *name) {
   const lag_model *m = s->scene->model;
   const char *of = name[0] ? rate_of(m, name) : NULL;
   char near[64];
-  if (of) return lag_fail(s, LAG_EINVAL, "%s: the rate of %s follows from the equations of model %s: set %s, or where H is given its momentum", name, of, m->name, of);
-  if (lag_family_member(m, name, 0, near, sizeof near)) return lag_fail(s, LAG_EINVAL, "%s has parts: set %s, and so on", name, near);
+  if (of)
+    return lag_fail(
+        s, LAG_EINVAL,
+        "%s: the rate of %s follows from the equations of model %s: set %s, or where H is given its momentum", name, of,
+        m->name, of);
+  if (lag_family_member(m, name, 0, near, sizeof near))
+    return lag_fail(s, LAG_EINVAL, "%s has parts: set %s, and so on", name, near);
   return lag_nearest_name(m, name, near, sizeof near)
-             ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name, m->name,
-                        near)
+             ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name,
+                        m->name, near)
              : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
 }
 
 /* A value in the declared unit of var, converted to SI; the offset of a unit does not apply to rates. */
-static double in_si(int kind, const lag_var *var, double value) { return value * var->factor + (kind == LAG_IS_V ? 0 : var->offset); }
+static double in_si(int kind, const lag_var *var, double value) {
+  return value * var->factor + (kind == LAG_IS_V ? 0 : var->offset);
+}
 
 /* Whether var may have `value`, in its declared unit. */
 static int check_value(lag_sim *s, int kind, const lag_var *var, const char *name, double value) {
   if (!isfinite(value)) return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);
   if (kind == LAG_IS_U && strchr(var->name, '\''))
-    return lag_fail(s, LAG_EINVAL, "%s is the rate of an input, and follows from it; hold the input, or give both a function (lag_sim_set_input)", name);
+    return lag_fail(
+        s, LAG_EINVAL,
+        "%s is the rate of an input, and follows from it; hold the input, or give both a function (lag_sim_set_input)",
+        name);
   if (kind == LAG_IS_P && !sign_ok(var->sign, in_si(kind, var, value)))
     return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, value, var->name, sign_text(var->sign));
   return LAG_OK;
@@ -416,10 +519,12 @@ int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *cont
 
   if (rc) return rc;
   if (kind != LAG_IS_U)
-    return kind == LAG_IS_NOTHING ? unknown_name(s, name) : lag_fail(s, LAG_EINVAL, "%s is not an input; set it by lag_sim_set", name);
+    return kind == LAG_IS_NOTHING ? unknown_name(s, name)
+                                  : lag_fail(s, LAG_EINVAL, "%s is not an input; set it by lag_sim_set", name);
   lag_signal before = s->signal[i];
   s->signal[i] = (lag_signal){fn, context};
-  if (s->options && (rc = check_method(s, s->method)) != 0) { /* the method may need a fact that an input function takes away */
+  /* the method may need a fact that an input function takes away */
+  if (s->options && (rc = check_method(s, s->method)) != 0) {
     s->signal[i] = before;
     return rc;
   }
@@ -434,8 +539,8 @@ static int check_rates(lag_sim *s) {
   for (int i = 0; i < m->nu; i++) {
     int rate = lag_input_rate(m, i);
     if (rate < 0 || !s->signal[i].fn == !s->signal[rate].fn) continue;
-    return lag_fail(s, LAG_EINVAL, "the motion depends on %s, too: give it a function as %s has (lag_sim_set_input)", m->u[s->signal[i].fn ? rate : i].name,
-                    m->u[s->signal[i].fn ? i : rate].name);
+    return lag_fail(s, LAG_EINVAL, "the motion depends on %s, too: give it a function as %s has (lag_sim_set_input)",
+                    m->u[s->signal[i].fn ? rate : i].name, m->u[s->signal[i].fn ? i : rate].name);
   }
   return LAG_OK;
 }
@@ -446,8 +551,12 @@ static int judge_sizes(lag_sim *s, int n, const lag_size *of, const double *size
   if (!isnan(t)) snprintf(when, sizeof when, "at t = %s s ", LAG_TEXT(t));
   for (int i = 0; i < n; i++) {
     if (!(of[i].part && size[i] > 1) && (of[i].open ? size[i] > 0 : size[i] >= 0)) continue;
-    return lag_fail(s, s->run->begun == 0.0 ? LAG_EINVAL : LAG_EDOMAIN, "%s%s of %.6g, which must be %s: it is %s", when, of[i].what, size[i],
-                    of[i].part ? "between 0 and 1" : of[i].open ? "more than 0" : "at least 0", of[i].text);
+    return lag_fail(s, s->run->begun == 0.0 ? LAG_EINVAL : LAG_EDOMAIN, "%s%s of %.6g, which must be %s: it is %s",
+                    when, of[i].what, size[i],
+                    of[i].part   ? "between 0 and 1"
+                    : of[i].open ? "more than 0"
+                                 : "at least 0",
+                    of[i].text);
   }
   return LAG_OK;
 }
@@ -460,7 +569,8 @@ int lag_check_parameters(lag_sim *s) {
       return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, lag_declared(&m->p[i], s->p[i]),
                       m->p[i].name, sign_text(m->p[i].sign));
     }
-  int rc = m->nsizes ? m->size_values(s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, s->sizes, s->pb.work) : 0;
+  int rc =
+      m->nsizes ? m->size_values(s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, s->sizes, s->pb.work) : 0;
   return rc ? rc : judge_sizes(s, m->nsizes, m->sizes, s->sizes, NAN);
 }
 

@@ -1,14 +1,14 @@
-/* A run: steps of the method, cut by events, evaluated where the caller asks. Enters: a time to reach; leaves: the state there. Holds: neither
- * steps nor events depend on the times that the caller asks for (except with STEPS_TO methods), so a run that is split, saved or resumed is the
- * same run. */
+/* A run: steps of the method, cut by events, evaluated where the caller asks. Enters: a time to reach; leaves: the
+ * state there. Holds: neither steps nor events depend on the times that the caller asks for (except with STEPS_TO
+ * methods), so a run that is split, saved or resumed is the same run. */
 #include <math.h>
 #include <string.h>
 
 #include "core/core.h"
 #include "core/rhs.h"
 
-/* Begins the run at the first advance: start, method, monitors, events. For t = t0 only the start is computed, as the direction of time is not
- * known yet. */
+/* Begins the run at the first advance: start, method, monitors, events. For t = t0 only the start is computed, as
+ * the direction of time is not known yet. */
 static int begin(lag_sim *s, double t) {
   s->run->dir = s->pb.dir = t < s->scene->t0 ? -1 : 1;
   int rc = lag_setup_start(s);
@@ -17,8 +17,10 @@ static int begin(lag_sim *s, double t) {
   if (rc || t == s->scene->t0) return rc;
   if ((rc = lag_switch_place(s)) != 0) return rc;
   if (!s->options && s->scene->method && strcmp(s->scene->method, s->method->name) != 0) {
-    return lag_fail(s, LAG_EMETHOD, "scene %s asks for the method %s, which is not in liblag.a: set it by lag_sim_set_method, or another", s->scene->name,
-                    s->scene->method);
+    return lag_fail(
+        s, LAG_EMETHOD,
+        "scene %s asks for the method %s, which is not in liblag.a: set it by lag_sim_set_method, or another",
+        s->scene->name, s->scene->method);
   }
   if (!s->options) { /* the scene's method was refused and not replaced: refuse it again, for the message */
     return lag_sim_set_method(s, s->method, s->scene->options, s->scene->noptions);
@@ -36,7 +38,8 @@ static int begin(lag_sim *s, double t) {
 static int pass_jump(lag_sim *s) {
   Run *r = s->run;
   double row;
-  if (s->scene->model->ntables && lag_next_row(&s->pb, r->t, &row) < HUGE_VAL && row == nextafter(r->t, r->dir * HUGE_VAL)) {
+  if (s->scene->model->ntables && lag_next_row(&s->pb, r->t, &row) < HUGE_VAL &&
+      row == nextafter(r->t, r->dir * HUGE_VAL)) {
     r->t = row;
     s->method->reset(s->method_work, &s->pb);
     return s->scene->model->nmodes ? lag_events_inputs_jump(s) : LAG_OK;
@@ -52,7 +55,8 @@ static int make_step(lag_sim *s, double *t, double t_stop) {
   return LAG_OK;
 }
 
-/* Fails where the step, of which no event comes first, ends at a negative friction; judged by the branches of that state. */
+/* Fails where the step, of which no event comes first, ends at a negative friction; judged by the branches of that
+ * state. */
 static int judge_end(lag_sim *s) {
   Run *r = s->run;
   if (!s->scene->model->nmoving || r->have_step == 0.0 || r->pending != 0.0) return LAG_OK;

@@ -1,7 +1,7 @@
-/* Sizes of the quantities of a model: what rounding is relative to. Enters: a state; leaves: the size of the terms that
- * make a quantity, which counts where the quantity is their rounding. Holds: with other units, or another part at rest
- * beside, each size has the same ratio to its quantity. What formulas round is seen in other rounding modes: W. Kahan, How
- * futile are mindless assessments of roundoff in floating-point computation? (2006), section 4. */
+/* Sizes of the quantities of a model: what rounding is relative to. Enters: a state; leaves: the size of the terms
+ * that make a quantity, which counts where the quantity is their rounding. Holds: with other units, or another part
+ * at rest beside, each size has the same ratio to its quantity. What formulas round is seen in other rounding modes:
+ * W. Kahan, How futile are mindless assessments of roundoff in floating-point computation? (2006), section 4. */
 #include <fenv.h>
 #include <float.h>
 #include <math.h>
@@ -57,7 +57,8 @@ int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, i
 #endif
 }
 
-/* yb[nq] := how far residuals as large as the terms of the constraints move coordinates: lengths that the state lacks. */
+/* yb[nq] := how far residuals as large as the terms of the constraints move coordinates: lengths that the state
+ * lacks. */
 static int constraint_lengths(lag_sim *s, double t, const double *y) {
   const lag_constraints *of = s->scene->model->constraints;
   if (!of || !of->nholonomic) return 1;
@@ -83,8 +84,8 @@ static int is_first(const lag_model *m, int i) {
   return 1;
 }
 
-/* The velocity of all coordinates with the unit of coordinate i at which they have this kinetic energy; HUGE_VAL: there is
- * none. */
+/* The velocity of all coordinates with the unit of coordinate i at which they have this kinetic energy; HUGE_VAL:
+ * there is none. */
 static double velocity_of(lag_sim *s, double t, const double *y, int i, double energy) {
   enum { MOST = 60 };
   const lag_model *m = s->scene->model;
@@ -106,8 +107,9 @@ static double velocity_of(lag_sim *s, double t, const double *y, int i, double e
   return HUGE_VAL;
 }
 
-/* The energy that a force along the coordinates with the unit of coordinate i gives in a step h, if nothing holds them, and
- * that is more than `least`; 0: there is none. The force, as the energy is linear in a displacement by h v. */
+/* The energy that a force along the coordinates with the unit of coordinate i gives in a step h, if nothing holds
+ * them, and that is more than `least`; 0: there is none. The force, as the energy is linear in a displacement by h
+ * v. */
 static double energy_of_force(lag_sim *s, double t, const double *y, int i, double h, double e, double least) {
   enum { MOST = 20 };
   const double linear = 0.4, shorter = 1e-8;
@@ -178,8 +180,8 @@ void lag_velocity_terms(lag_sim *s, double t, const double *y, double *v) {
 
 /* ---- Sizes of a motion, from its start */
 
-/* Over all coordinates with one unit: the largest |q|, rate and acceleration at the start, and change of the acceleration
- * where coordinates are displaced. */
+/* Over all coordinates with one unit: the largest |q|, rate and acceleration at the start, and change of the
+ * acceleration where coordinates are displaced. */
 typedef struct Kind {
   double q, v, a, bend;
 } Kind;
@@ -197,7 +199,8 @@ static Kind kind_of(const lag_sim *s, const double *f, const double *bend, int i
   const lag_var *var = s->scene->model->q;
   const int nq = s->pb.nq;
   double q = lag_component_scale(fmax(largest_of_unit(nq, var, s->now, i), DBL_MIN), var[i].periodic, var[i].unit);
-  return (Kind){q > DBL_MIN ? q : 0, largest_of_unit(nq, var, f, i), largest_of_unit(nq, var, f + nq, i), largest_of_unit(nq, var, bend + nq, i)};
+  return (Kind){q > DBL_MIN ? q : 0, largest_of_unit(nq, var, f, i), largest_of_unit(nq, var, f + nq, i),
+                largest_of_unit(nq, var, bend + nq, i)};
 }
 
 static double reach(Kind k, double time) { return k.q > 0 ? k.q : fmax(k.v * time, k.a * time * time); }
@@ -207,16 +210,19 @@ static double time_scale(Kind k, double time) {
   double q = reach(k, time);
   if (k.q > 0 && k.a > 0) time = fmin(time, sqrt(k.q / k.a));
   if (k.q > 0 && k.v > 0) time = fmin(time, k.q / k.v);
-  if (!(k.q > 0) && k.a > 0 && time < HUGE_VAL && k.v > 1e-9 * k.a * time) time = fmin(time, k.v / k.a); /* a smaller v is rounding */
+  /* a smaller v is rounding */
+  if (!(k.q > 0) && k.a > 0 && time < HUGE_VAL && k.v > 1e-9 * k.a * time) time = fmin(time, k.v / k.a);
   return q > 0 && k.bend > 0 ? fmin(time, sqrt(q / k.bend)) : time;
 }
 
-/* A power of 1024, as a change from m to nm or km is one: 1 for sizes from 1/8 to 128. A tolerance is at most 8 times that of the
- * size itself. */
-static double size_unit(double size) { return size > 0 && size < HUGE_VAL ? scalbn(1, 10 * (int)floor((log2(size) + 3) / 10)) : 1; }
+/* A power of 1024, as a change from m to nm or km is one: 1 for sizes from 1/8 to 128. A tolerance is at most 8
+ * times that of the size itself. */
+static double size_unit(double size) {
+  return size > 0 && size < HUGE_VAL ? scalbn(1, 10 * (int)floor((log2(size) + 3) / 10)) : 1;
+}
 
-/* dy[n] := rates at the start, where y[at + i] is displaced by by[i], i < count, less f; NULL: nothing is displaced, or subtracted. Zeros
- * where there are none. */
+/* dy[n] := rates at the start, where y[at + i] is displaced by by[i], i < count, less f; NULL: nothing is displaced,
+ * or subtracted. Zeros where there are none. */
 static void rates_beside(lag_sim *s, int at, int count, const double *by, const double *f, double *dy) {
   const int n = s->pb.n;
   memcpy(s->ya, s->now, (size_t)n * sizeof *dy);
@@ -225,8 +231,8 @@ static void rates_beside(lag_sim *s, int at, int count, const double *by, const 
   for (int i = 0; i < n; i++) dy[i] = none ? 0 : dy[i] - (f ? f[i] : 0);
 }
 
-/* The sizes of coordinates and velocities, f: rates at the start. Returns the time scale, which begins as `time`. Turn 0: from
- * the start alone; 1: with the forces of displaced coordinates; 2: of displaced velocities. */
+/* The sizes of coordinates and velocities, f: rates at the start. Returns the time scale, which begins as `time`.
+ * Turn 0: from the start alone; 1: with the forces of displaced coordinates; 2: of displaced velocities. */
 static double coordinate_sizes(lag_sim *s, const double *f, double time) {
   const lag_model *m = s->scene->model;
   const int nq = m->nq;
@@ -242,7 +248,8 @@ static double coordinate_sizes(lag_sim *s, const double *f, double time) {
     for (int i = 0; i < nq; i++) {
       if (!is_first(m, i)) continue;
       Kind k = kind_of(s, f, bend, i);
-      double v = turn < 2 ? lag_above_rounding(fmax(k.v, k.a * time), k.bend * time) : fmax(k.v, of_v[i] * time / before);
+      double v =
+          turn < 2 ? lag_above_rounding(fmax(k.v, k.a * time), k.bend * time) : fmax(k.v, of_v[i] * time / before);
       for (int j = nq - 1; j >= i; j--) {
         if (j > i && strcmp(m->q[j].unit, m->q[i].unit) != 0) continue;
         size[j] = reach(k, time);
@@ -253,7 +260,8 @@ static double coordinate_sizes(lag_sim *s, const double *f, double time) {
   return time;
 }
 
-/* The time scale of a motion that begins where no coordinate has a size, by the forces where it leads: `time` tends to it. */
+/* The time scale of a motion that begins where no coordinate has a size, by the forces where it leads: `time` tends
+ * to it. */
 static double time_from_zero(lag_sim *s, const double *f, double time) {
   enum { TURNS = 8 };
   const lag_model *m = s->scene->model;
@@ -278,8 +286,8 @@ static double time_from_zero(lag_sim *s, const double *f, double time) {
   return time;
 }
 
-/* The sizes of states: at the start; of those that begin at 0, where their rates f lead in `time`, or before, where they change as much as f: a state
- * that relaxes goes no further. */
+/* The sizes of states: at the start; of those that begin at 0, where their rates f lead in `time`, or before, where
+ * they change as much as f: a state that relaxes goes no further. */
 static void state_sizes(lag_sim *s, const double *f, double time) {
   enum { TURNS = 8 };
   const lag_model *m = s->scene->model;

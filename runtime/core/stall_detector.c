@@ -1,17 +1,23 @@
-/* Detects runs without progress. Enters: a step that a method has made, from s->now to s->y; leaves: whether the run is to end, and why.
+/* Detects runs without progress. Enters: a step that a method has made, from s->now to s->y; leaves: whether the run
+ * is to end, and why.
  *
- * 1. Sliding: where a force jumps with the velocities, as dry friction does, and both sides lead back to the place, the motion stays there
- * (Filippov's sliding mode); steps of any size would go back and forth for ever. Across a sign change of a switching function the derivative is
- * taken on both sides of the surface; of a function that is nowhere negative, as |v|, at both ends of a step that leads past its zero. Equal
- * steps may stay on one side with stages on both: by rk4 a body that sticks would creep for ever.
- * 2. Shrinking steps: near a position where constraints become dependent, with independence s, accelerations have an error of eps/s^2; a
- * tolerance below that makes steps shrink in front of it, accepted one by one, for ever. So do places where a constraint or a force jumps with
- * the position. Criterion: MOST steps advanced the time by less than 1e-5 of the run so far, at less than 1e-2 of its mean pace (a fast event,
- * as a stiff spring that is struck, takes some hundred steps); and there is a cause, nearly dependent constraints or a model that jumps.
- * The same of 1000 restarts, by events, contacts, impacts and switches, whatever the cause: these would go on for ever.
- * 3. Equal steps longer than half a period: an implicit method keeps the energy of such an oscillation, and nothing else of it. The square of
- * the frequency is estimated along a step as -(change of acceleration).(change of position)/|change of position|^2. It does not end the run;
- * the report mentions it. */
+ * 1. Sliding: where a force jumps with the velocities, as dry friction does, and both sides lead back to the place,
+ *   the motion stays there
+ * (Filippov's sliding mode); steps of any size would go back and forth for ever. Across a sign change of a switching
+ * function the derivative is taken on both sides of the surface; of a function that is nowhere negative, as |v|, at
+ * both ends of a step that leads past its zero. Equal steps may stay on one side with stages on both: by rk4 a body
+ * that sticks would creep for ever.
+ * 2. Shrinking steps: near a position where constraints become dependent, with independence s, accelerations have an
+ *   error of eps/s^2; a
+ * tolerance below that makes steps shrink in front of it, accepted one by one, for ever. So do places where a
+ * constraint or a force jumps with the position. Criterion: MOST steps advanced the time by less than 1e-5 of the
+ * run so far, at less than 1e-2 of its mean pace (a fast event, as a stiff spring that is struck, takes some hundred
+ * steps); and there is a cause, nearly dependent constraints or a model that jumps. The same of 1000 restarts, by
+ * events, contacts, impacts and switches, whatever the cause: these would go on for ever.
+ * 3. Equal steps longer than half a period: an implicit method keeps the energy of such an oscillation, and nothing
+ *   else of it. The square of
+ * the frequency is estimated along a step as -(change of acceleration).(change of position)/|change of position|^2.
+ * It does not end the run; the report mentions it. */
 #include <math.h>
 #include <stdio.h>
 
@@ -44,17 +50,20 @@ static double rate_of(lag_sim *s, int k, double t, double dt, const double *y) {
   return sides_at(s, t + dt, s->yc, now) ? NAN : (now[k] - before) / dt;
 }
 
-/* Whether a step of equal size has stayed on one side of a surface although its first derivative leads across and the derivative there leads
- * back: its path is not that of the derivatives at its ends, r0 and r1. */
+/* Whether a step of equal size has stayed on one side of a surface although its first derivative leads across and
+ * the derivative there leads back: its path is not that of the derivatives at its ends, r0 and r1. */
 static int equal_step_sticks(lag_sim *s, int k, double t, double dt) {
   const double part = 0.25;
   double first = s->sides[k], last = s->sides[k + s->scene->model->nswitch], whole = t - s->run->t, r0, r1;
-  if (!(lag_equal_step(s) > 0) || !(first * (r0 = rate_of(s, k, s->run->t, dt, s->now)) * whole < 0) || !(fabs(first) < fabs(r0 * whole))) return 0;
+  if (!(lag_equal_step(s) > 0) || !(first * (r0 = rate_of(s, k, s->run->t, dt, s->now)) * whole < 0) ||
+      !(fabs(first) < fabs(r0 * whole)))
+    return 0;
   for (int i = 0; i < s->pb.n; i++) {
     s->ya[i] = s->now[i] + whole * s->yb[i]; /* rate_of has left the derivative there */
   }
   r1 = rate_of(s, k, t, dt, s->y);
-  return fabs(last - first - whole * (r0 + r1) / 2) > part * fabs(whole * r0) && rate_of(s, k, t, dt, s->ya) * first * whole > 0;
+  return fabs(last - first - whole * (r0 + r1) / 2) > part * fabs(whole * r0) &&
+         rate_of(s, k, t, dt, s->ya) * first * whole > 0;
 }
 
 /* Whether a motion that meets the surface of switching function k within the step to t stays on it. */
@@ -86,9 +95,12 @@ static int say_switch(lag_sim *s, int k, double t) {
   const lag_switch *c = &s->scene->model->switches[k];
   char line[32] = "";
   if (c->line) snprintf(line, sizeof line, " in line %d", c->line);
-  return lag_note(&s->pb, LAG_ESTALL, t, "it stays where %s is 0: the force of `%s`%s jumps there and pulls back from both sides, as dry friction does on a "
-                  "body that sticks, which is not supported; smooth the force, as tanh(v/w) for sign(v), or let an event stop the run", c->surface, c->text,
-                  line);
+  return lag_note(&s->pb, LAG_ESTALL, t,
+                  "it stays where %s is 0: the force of `%s`%s jumps there and pulls back from both sides, as dry "
+                  "friction does on a "
+                  "body that sticks, which is not supported; smooth the force, as tanh(v/w) for sign(v), or let an "
+                  "event stop the run",
+                  c->surface, c->text, line);
 }
 
 /* Criterion 1: a sliding motion. */
@@ -103,11 +115,14 @@ static int check_sliding(lag_sim *s, double t) {
 /* The switching function without a mode near whose surface the motion has stayed: |value| < |rate| led. -1: none. */
 static int hangs_at(lag_sim *s, double t, double led) {
   int k = s->scene->model->nswitch - 1;
-  while (k >= s->scene->model->nmodes && (sides_at(s, t, s->y, s->sides) || !(fabs(s->sides[k]) < fabs(rate_of(s, k, t, t - s->run->t, s->y)) * led))) k--;
+  while (k >= s->scene->model->nmodes &&
+         (sides_at(s, t, s->y, s->sides) || !(fabs(s->sides[k]) < fabs(rate_of(s, k, t, t - s->run->t, s->y)) * led)))
+    k--;
   return k < s->scene->model->nmodes ? -1 : k;
 }
 
-/* Whether `most` steps or restarts, of `all`, hardly advanced the time from *since to t; *led := by how much. `never`: of the whole run. */
+/* Whether `most` steps or restarts, of `all`, hardly advanced the time from *since to t; *led := by how much.
+ * `never`: of the whole run. */
 static int crawls(const lag_sim *s, double *since, double t, double most, double all, double *led) {
   const double pace = 1e-5, mean = 1e-2, never = 1e-9;
   double gone = fabs(t - s->scene->t0);
@@ -137,13 +152,19 @@ static int check_pace(lag_sim *s, double t) {
   int at = hangs_at(s, t, led);
   if (at >= 0) return say_switch(s, at, t);
   if (k < 0 || apart > dependent) {
-    return lag_note(pb, LAG_ESTEP, t, "the last %d steps advanced the time by only %.3g s: a force or a constraint jumps here, and the motion does not leave "
-                    "the place; smooth it, as sqrt(x^2 + w^2) for abs(x), or model the jump as a contact or an event", MOST, led);
+    return lag_note(pb, LAG_ESTEP, t,
+                    "the last %d steps advanced the time by only %.3g s: a force or a constraint jumps here, and the "
+                    "motion does not leave "
+                    "the place; smooth it, as sqrt(x^2 + w^2) for abs(x), or model the jump as a contact or an event",
+                    MOST, led);
   }
   const lag_constraint *weakest = &pb->model->constraints->of[k];
-  return lag_note(pb, LAG_ESTEP, t, "the last %d steps advanced the time by only %.3g s: constraint %s%s is within %.1g of being redundant, and no step is "
-                  "accurate to the tolerance; a larger tolerance, or steps of equal size (adapt=off, rk4, variational), may pass", MOST, led,
-                  weakest->name, lag_line_text(weakest, line), apart);
+  return lag_note(
+      pb, LAG_ESTEP, t,
+      "the last %d steps advanced the time by only %.3g s: constraint %s%s is within %.1g of being redundant, and no "
+      "step is "
+      "accurate to the tolerance; a larger tolerance, or steps of equal size (adapt=off, rk4, variational), may pass",
+      MOST, led, weakest->name, lag_line_text(weakest, line), apart);
 }
 
 /* Criterion 3: counts equal steps longer than half a period. */

@@ -4,8 +4,8 @@
 
 #include "core/core.h"
 
-/* Copies a variable's name and unit, of a velocity with ' and /s. A quantity without a unit has a rate without one: a model in which nothing has
- * units stays so. */
+/* Copies a variable's name and unit, of a velocity with ' and /s. A quantity without a unit has a rate without one:
+ * a model in which nothing has units stays so. */
 static double put_info(const lag_var *v, int velocity, char *name, size_t nname, char *unit, size_t nunit) {
   if (name) snprintf(name, nname, "%s%s", v->name, velocity ? "'" : "");
   if (unit) snprintf(unit, nunit, "%s%s", v->unit, velocity && v->unit[0] ? "/s" : "");

@@ -12,7 +12,9 @@ const char *lag_step_error(const lag_sim *s, double x) {
              ? "time would not move in " LAG_PRECISION " precision" : NULL;
 }
 
-double lag_step_size(const lag_problem *pb, double option) { return option > 0 ? option : (pb->span > 0 ? pb->span : 10) / 10000; }
+double lag_step_size(const lag_problem *pb, double option) {
+  return option > 0 ? option : (pb->span > 0 ? pb->span : 10) / 10000;
+}
 
 double lag_equal_step(const lag_sim *s) {
   const lag_method *m = s->method;

@@ -1,14 +1,16 @@
-/* Switching surfaces: jumps and corners of the equations. Enters: a state on a surface, or a new one; leaves: the branch of each switch, in `hold`
- * behind the inputs, for the motion from there on. Holds: no step sees a jump, since the branch is fixed until an event of its own ends it.
+/* Switching surfaces: jumps and corners of the equations. Enters: a state on a surface, or a new one; leaves: the
+ * branch of each switch, in `hold` behind the inputs, for the motion from there on. Holds: no step sees a jump,
+ * since the branch is fixed until an event of its own ends it.
  *
- * A mode is 1 or -1, the sign of the switching function g; 0: the motion slides on g = 0, and the value that keeps it there is found at each state
- * (the equivalent control); of floor: its value; LAG_FREE: the state decides. The event of a switch is that its mode ceases to fit: mode*g falls
- * below 0, or grip^2 - mode^2 of a sliding motion does; grip is 1, or more where static friction is.
+ * A mode is 1 or -1, the sign of the switching function g; 0: the motion slides on g = 0, and the value that keeps
+ * it there is found at each state (the equivalent control); of floor: its value; LAG_FREE: the state decides. The
+ * event of a switch is that its mode ceases to fit: mode*g falls below 0, or grip^2 - mode^2 of a sliding motion
+ * does; grip is 1, or more where static friction is.
  *
- * Where surfaces meet, rates r = dg/dt are linear in the modes, r = r0 + B m: each m is 1 with r >= 0, -1 with r <= 0, or
- * between with r = 0, a problem of numeric/complementarity.h; for a P-matrix -B it has one solution. A.F. Filippov,
- * Differential Equations with Discontinuous Righthand Sides (1988), DOI 10.1007/978-94-015-7793-9; L. Dieci, L. Lopez,
- * Numer. Math. 117 (2011) 779, DOI 10.1007/s00211-011-0365-4, for intersections. */
+ * Where surfaces meet, rates r = dg/dt are linear in the modes, r = r0 + B m: each m is 1 with r >= 0, -1 with r <=
+ * 0, or between with r = 0, a problem of numeric/complementarity.h; for a P-matrix -B it has one solution. A.F.
+ * Filippov, Differential Equations with Discontinuous Righthand Sides (1988), DOI 10.1007/978-94-015-7793-9; L.
+ * Dieci, L. Lopez, Numer. Math. 117 (2011) 779, DOI 10.1007/s00211-011-0365-4, for intersections. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -20,13 +22,19 @@
 #include "numeric/dense.h"
 
 static double *mode(const lag_sim *s, int k) { return &s->hold[s->scene->model->nu + k]; }
-/* Whether the method finds the mode of switch k itself, step by step, as friction beside contacts that are met by impulses. */
-static int is_stepped(const lag_sim *s, int k) { return (s->method->flags & LAG_METHOD_IMPULSES) && s->scene->model->switches[k].jumps; }
-static int slides(const lag_sim *s, int k) { return *mode(s, k) == 0.0 && !s->scene->model->switches[k].is_floor && !is_stepped(s, k); }
+/* Whether the method finds the mode of switch k itself, step by step, as friction beside contacts that are met by
+ * impulses. */
+static int is_stepped(const lag_sim *s, int k) {
+  return (s->method->flags & LAG_METHOD_IMPULSES) && s->scene->model->switches[k].jumps;
+}
+static int slides(const lag_sim *s, int k) {
+  return *mode(s, k) == 0.0 && !s->scene->model->switches[k].is_floor && !is_stepped(s, k);
+}
 
 /* ---- The sliding motion */
 
-/* r[nmodes] := rates of the switching functions at y, t with the modes in pb->u, and with the friction of contacts that slip under these. */
+/* r[nmodes] := rates of the switching functions at y, t with the modes in pb->u, and with the friction of contacts
+ * that slip under these. */
 static int rates_at(lag_problem *pb, double t, const double *y, double *r) {
   const lag_model *m = pb->model;
   int rc = m->contact_laws ? lag_contact_friction_forces(pb, t, y) : 0;
@@ -34,8 +42,10 @@ static int rates_at(lag_problem *pb, double t, const double *y, double *r) {
   return rc ? rc : m->switch_rates(t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, r, pb->work);
 }
 
-/* B[n n] := derivatives of the rates of the sliding switches by their modes; r: rates now. *size := the largest term. */
-static int rate_matrix(lag_problem *pb, double t, const double *y, const int *of, int n, const double *r, double *other, double *B, double *size) {
+/* B[n n] := derivatives of the rates of the sliding switches by their modes; r: rates now. *size := the largest
+ * term. */
+static int rate_matrix(lag_problem *pb, double t, const double *y, const int *of, int n, const double *r, double *other,
+                       double *B, double *size) {
   double *u = pb->u + pb->model->nu;
   for (int j = 0; j < n; j++) {
     double before = u[of[j]];
@@ -55,7 +65,8 @@ int lag_sliding_values(lag_problem *pb, double t, const double *y) {
   enum { ROUNDS = 8 };
   const double enough = 64 * DBL_EPSILON, some = 1e-9; /* of the largest term */
   int n = pb->nslide, nm = pb->model->nmodes, rc = 0;
-  double *u = pb->u + pb->model->nu, *r = pb->slide, *other = r + nm, *x = other + nm, *B = x + nm, size = 0, left = HUGE_VAL;
+  double *u = pb->u + pb->model->nu, *r = pb->slide, *other = r + nm, *x = other + nm, *B = x + nm, size = 0,
+         left = HUGE_VAL;
   for (int round = 0; round < ROUNDS && (rc = rates_at(pb, t, y, r)) == 0; round++) {
     left = 0;
     for (int i = 0; i < n; i++) left = fmax(left, fabs(r[pb->sliding[i]]));
@@ -119,21 +130,26 @@ int lag_switch_eval(lag_sim *s, double t, const double *y, double *g) {
   if (rc == 0 && s->pb.nslide) rc = find_grips(s, t, y);
   for (int k = 0; k < m->nmodes && rc == 0; k++) {
     double held = *mode(s, k), side = s->sides[k], now = s->u[m->nu + k];
-    g[k] = is_stepped(s, k) ? 1 : m->switches[k].is_floor ? (side - held) * (held + 1 - side) : held == 0.0 ? s->grip[k] * s->grip[k] - now * now : held * side;
+    g[k] = is_stepped(s, k)          ? 1
+           : m->switches[k].is_floor ? (side - held) * (held + 1 - side)
+           : held == 0.0             ? s->grip[k] * s->grip[k] - now * now
+                                     : held * side;
   }
   return rc;
 }
 
 double lag_switch_noise(const lag_sim *s, int k) { return slides(s, k) ? 1e-12 : 2 * s->side_noise[k]; }
 
-/* side_noise[nmodes] := change of the switching functions g[nmodes] when the state at the present time changes in its last digits. */
+/* side_noise[nmodes] := change of the switching functions g[nmodes] when the state at the present time changes in
+ * its last digits. */
 static int find_noise(lag_sim *s, const double *g) {
   const double last = 4 * DBL_EPSILON;
   const lag_model *m = s->scene->model;
   double *other = s->sides + m->nswitch;
   for (int i = 0; i < s->pb.n; i++) s->yc[i] = s->now[i] * (i % 2 ? 1 - last : 1 + last);
   int rc = sides_at(s, s->run->t * (1 + last), s->yc, other);
-  for (int k = 0; k < m->nmodes && rc == 0; k++) s->side_noise[k] = 2 * fabs(other[k] - g[k]) + 2 * last * (m->switches[k].is_floor ? 1 + fabs(g[k]) : 0);
+  for (int k = 0; k < m->nmodes && rc == 0; k++)
+    s->side_noise[k] = 2 * fabs(other[k] - g[k]) + 2 * last * (m->switches[k].is_floor ? 1 + fabs(g[k]) : 0);
   return rc;
 }
 
@@ -143,7 +159,8 @@ static int fail_at(lag_sim *s, int status, int k, const char *why) {
   const lag_switch *c = &s->scene->model->switches[k];
   char line[32] = "";
   if (c->line) snprintf(line, sizeof line, " in line %d", c->line);
-  return lag_fail(s, status, "at t = %s s the motion meets %s = 0, where `%s`%s switches: %s", LAG_TEXT(s->run->t), c->surface, c->text, line, why);
+  return lag_fail(s, status, "at t = %s s the motion meets %s = 0, where `%s`%s switches: %s", LAG_TEXT(s->run->t),
+                  c->surface, c->text, line, why);
 }
 
 /* ---- Which branches follow */
@@ -186,7 +203,9 @@ static int linear_rates(lag_sim *s, Meeting *w) {
   return 0;
 }
 
-static int can_slide(const lag_sim *s, const Meeting *w, int i) { return s->scene->model->switches[w->of[i]].jumps && w->B[i * w->n + i] < 0; }
+static int can_slide(const lag_sim *s, const Meeting *w, int i) {
+  return s->scene->model->switches[w->of[i]].jumps && w->B[i * w->n + i] < 0;
+}
 
 static double rate_of(const Meeting *w, int i) {
   double r = w->r0[i];
@@ -281,7 +300,8 @@ static void change_mode(lag_sim *s, int k, double m) {
   if (!slid && slides(s, k)) s->slips[k]++;
 }
 
-/* Chooses the branches of the switches that meets[k] says are at their surface. *changed, unless NULL: whether any is another than before. */
+/* Chooses the branches of the switches that meets[k] says are at their surface. *changed, unless NULL: whether any
+ * is another than before. */
 static int settle(lag_sim *s, int *changed) {
   const lag_model *m = s->scene->model;
   int nm = m->nmodes;
@@ -300,11 +320,14 @@ static int settle(lag_sim *s, int *changed) {
     change_mode(s, k, w.at[i] == LAG_BETWEEN ? 0 : w.m[i]);
     if (changed) *changed |= *mode(s, k) != was[k];
     s->crossed[k] += m->switches[k].is_floor ? *mode(s, k) != was[k] : was[k] != 0.0 && *mode(s, k) == -was[k];
-    if (!m->switches[k].is_floor) s->side_noise[k] = fmax(s->side_noise[k], fabs(s->sides[k])); /* a slide has left it a little beside 0 */
+    /* a slide has left it a little beside 0 */
+    if (!m->switches[k].is_floor) s->side_noise[k] = fmax(s->side_noise[k], fabs(s->sides[k]));
   }
   lag_switch_count(s);
   if (rc == 0 && s->pb.nslide && lag_inputs_at(&s->pb, s->run->t, s->now))
-    rc = fail_at(s, LAG_ESTALL, s->pb.sliding[0], "it sticks there, and the force is no sum of the switch and a rest, as in a condition with `and`; write it by sign() or if() of one comparison");
+    rc = fail_at(s, LAG_ESTALL, s->pb.sliding[0],
+                 "it sticks there, and the force is no sum of the switch and a rest, as in a condition with `and`; "
+                 "write it by sign() or if() of one comparison");
   memset(s->left, 0, (size_t)nm * sizeof *s->left);
   memset(s->meets, 0, (size_t)nm * sizeof *s->meets);
   return rc;
@@ -317,7 +340,9 @@ int lag_switch_place(lag_sim *s) {
   int rc = lag_inputs(&s->pb, s->run->t);
   rc = rc ? rc : sides_at(s, s->run->t, s->now, g);
   rc = rc ? rc : find_noise(s, g);
-  if (rc) return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "the switching functions have no value at t = %s s", LAG_TEXT(s->run->t));
+  if (rc)
+    return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "the switching functions have no value at t = %s s",
+                    LAG_TEXT(s->run->t));
   for (int k = 0; k < m->nmodes; k++) {
     if (is_stepped(s, k)) {
       if (s->slid[k] == 0.0) s->slid_since[k] = NAN; /* the last time at which it stuck */
@@ -356,10 +381,14 @@ int lag_switch_settle(lag_sim *s, int *changed) {
 }
 
 int lag_switch_fail_zeno(lag_sim *s, int k) {
-  return fail_at(s, LAG_EZENO, k, "it does so again and again in ever shorter time, and does not come to rest; smooth it, as tanh(v/w) for sign(v), or let an event stop the run");
+  return fail_at(s, LAG_EZENO, k,
+                 "it does so again and again in ever shorter time, and does not come to rest; smooth it, as tanh(v/w) "
+                 "for sign(v), or let an event stop the run");
 }
 
-int lag_switch_sticks(const lag_sim *s, int k) { return is_stepped(s, k) ? s->slid_since[k] == s->run->step_t1 : slides(s, k); }
+int lag_switch_sticks(const lag_sim *s, int k) {
+  return is_stepped(s, k) ? s->slid_since[k] == s->run->step_t1 : slides(s, k);
+}
 
 int lag_switch_step(lag_sim *s, double t) {
   const lag_model *m = s->scene->model;

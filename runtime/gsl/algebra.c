@@ -1,6 +1,6 @@
-/* lag_algebra by the GNU Scientific Library. All matrices are row-major. Holds: GSL's abort handler is off while it runs, and its allocations
- * are freed on every way out. Sources: GSL Reference Manual, "Eigensystems", "Linear Algebra" and "Nonlinear Least-Squares Fitting", and the
- * papers named there. */
+/* lag_algebra by the GNU Scientific Library. All matrices are row-major. Holds: GSL's abort handler is off while it
+ * runs, and its allocations are freed on every way out. Sources: GSL Reference Manual, "Eigensystems", "Linear
+ * Algebra" and "Nonlinear Least-Squares Fitting", and the papers named there. */
 #include <float.h>
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
@@ -24,13 +24,16 @@ typedef struct Problem {
 /* Residuals; 1e100 each where the equations have no values, so that the step is refused. */
 static int equations_f(const gsl_vector *x, void *context, gsl_vector *f) {
   Problem *p = context;
-  if (p->equations(p->context, x->data, f->data, NULL) || lag_not_finite((int)f->size, f->data) >= 0) gsl_vector_set_all(f, 1e100);
+  if (p->equations(p->context, x->data, f->data, NULL) || lag_not_finite((int)f->size, f->data) >= 0)
+    gsl_vector_set_all(f, 1e100);
   return GSL_SUCCESS;
 }
 
 static int equations_df(const gsl_vector *x, void *context, gsl_matrix *J) {
   Problem *p = context;
-  return p->equations(p->context, x->data, p->f, J->data) || lag_not_finite((int)(J->size1 * J->size2), J->data) >= 0 ? GSL_EDOM : GSL_SUCCESS;
+  return p->equations(p->context, x->data, p->f, J->data) || lag_not_finite((int)(J->size1 * J->size2), J->data) >= 0
+             ? GSL_EDOM
+             : GSL_SUCCESS;
 }
 
 /* Dogleg steps (Powell, 1970), solved by QR with column pivoting, so that a singular Jacobian is no obstacle. */
@@ -39,7 +42,8 @@ static int iterate(gsl_multifit_nlinear_workspace *w, gsl_multifit_nlinear_fdf *
   int rc = gsl_multifit_nlinear_init(&start.vector, fdf, w);
   double reach = gsl_blas_dnrm2(&start.vector), moved = HUGE_VAL;
   if (rc || gsl_vector_get(gsl_multifit_nlinear_residual(w), 0) >= 1e100) return LAG_EDOMAIN;
-  for (*steps = 0; *steps < most && gsl_blas_dnrm2(gsl_multifit_nlinear_residual(w)) > 0 && moved > DBL_EPSILON * reach; ++*steps) {
+  for (*steps = 0; *steps < most && gsl_blas_dnrm2(gsl_multifit_nlinear_residual(w)) > 0 && moved > DBL_EPSILON * reach;
+       ++*steps) {
     if (gsl_multifit_nlinear_iterate(w)) {
       break; /* no step gains any more */
     }
@@ -91,9 +95,10 @@ static int symmetric(int n, double *K, double *M, double *values, double *vector
   return rc;
 }
 
-/* Condition numbers |x_k| |y_k| / |y_k x_k| of eigenvalues: the rows of X^-1 are left eigenvectors with y_k x_k = 1, and |x_k| = 1. X is
- * destroyed. */
-static void sensitivities(gsl_matrix_complex *X, gsl_matrix_complex *inverse, gsl_permutation *perm, double *sensitivity) {
+/* Condition numbers |x_k| |y_k| / |y_k x_k| of eigenvalues: the rows of X^-1 are left eigenvectors with y_k x_k = 1,
+ * and |x_k| = 1. X is destroyed. */
+static void sensitivities(gsl_matrix_complex *X, gsl_matrix_complex *inverse, gsl_permutation *perm,
+                          double *sensitivity) {
   size_t n = X->size1;
   int sign, singular = gsl_linalg_complex_LU_decomp(X, perm, &sign) || gsl_linalg_complex_LU_invert(X, perm, inverse);
   for (size_t k = 0; k < n; k++) {
@@ -144,7 +149,8 @@ static int balance(int n, double *A, double *scale) {
   return rc ? LAG_EMETHOD : LAG_OK;
 }
 
-/* A' P = Q R with column pivoting: columns of Q beyond the rank are orthogonal to the range of A', so they span the kernel of A. */
+/* A' P = Q R with column pivoting: columns of Q beyond the rank are orthogonal to the range of A', so they span the
+ * kernel of A. */
 static int kernel(int n, const double *A, double tol, double *Q, int *rank) {
   size_t size = (size_t)n;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();

@@ -1,10 +1,10 @@
-/* The steppers of the GNU Scientific Library as methods: independent integrators to check against. Enters: t, y; leaves: the next t, y. Holds:
- * GSL's abort handler is off while it runs; a time of output is reached exactly, because GSL has no dense output (dense() here is lag_hermite,
- * inaccurate where steps are long).
+/* The steppers of the GNU Scientific Library as methods: independent integrators to check against. Enters: t, y;
+ * leaves: the next t, y. Holds: GSL's abort handler is off while it runs; a time of output is reached exactly,
+ * because GSL has no dense output (dense() here is lag_hermite, inaccurate where steps are long).
  *
- * Errors are controlled by GSL's y_new control: |err_i| <= tol (1 + |y_i|). gsl-bsimp needs the Jacobian: central finite
- * differences of the right-hand side, 2n + 2 calls each, of relative accuracy about 1e-10. Source: GSL Reference Manual, "Ordinary Differential
- * Equations" (gsl_odeiv2), and the papers named there. */
+ * Errors are controlled by GSL's y_new control: |err_i| <= tol (1 + |y_i|). gsl-bsimp needs the Jacobian: central
+ * finite differences of the right-hand side, 2n + 2 calls each, of relative accuracy about 1e-10. Source: GSL
+ * Reference Manual, "Ordinary Differential Equations" (gsl_odeiv2), and the papers named there. */
 #include <float.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
@@ -75,7 +75,8 @@ static int gsl_jacobian(double t, const double *y, double *dfdy, double *dfdt, v
   return rc;
 }
 
-/* Whether memory suffices for GSL's largest stepper, bsimp: GSL 2.7 does not check some of its allocations, and writes to NULL. */
+/* Whether memory suffices for GSL's largest stepper, bsimp: GSL 2.7 does not check some of its allocations, and
+ * writes to NULL. */
 static int has_room(size_t n) {
   void *room = malloc((8 * n * n + 256 * n + 4096) * sizeof(double));
   free(room);
@@ -90,7 +91,9 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   w->h_option = opt[0] > 0 ? opt[0] : 1e-6 * (pb->span > 0 ? pb->span : 10);
   w->h = w->h_option;
   w->system = (gsl_odeiv2_system){gsl_rhs, gsl_jacobian, (size_t)pb->n, w};
-  w->driver = has_room((size_t)pb->n) ? gsl_odeiv2_driver_alloc_scaled_new(&w->system, type, pb->dir * w->h, pb->tol, pb->tol, 1, 0, pb->size) : NULL;
+  w->driver = has_room((size_t)pb->n) ? gsl_odeiv2_driver_alloc_scaled_new(&w->system, type, pb->dir * w->h, pb->tol,
+                                                                           pb->tol, 1, 0, pb->size)
+                                      : NULL;
   gsl_set_error_handler(handler);
   pb->detail = "GSL: out of memory";
   return w->driver ? LAG_OK : LAG_ENOMEM;
@@ -157,7 +160,8 @@ static void fini(void *work) {
 /* name in C, name, order, GSL's stepper, doc: with the names of GSL's other steppers, for whoever looks for them */
 #define METHODS(X)                                                                                                  \
   X(rk8pd, "gsl-rk8pd", 8, gsl_odeiv2_step_rk8pd, "GSL: Prince-Dormand 8(9), explicit; for gsl-rkf45, gsl-msadams") \
-  X(bsimp, "gsl-bsimp", 12, gsl_odeiv2_step_bsimp, "GSL: Bulirsch-Stoer-Bader-Deuflhard, implicit, for stiff models; for gsl-msbdf")
+  X(bsimp, "gsl-bsimp", 12, gsl_odeiv2_step_bsimp,                                                                  \
+    "GSL: Bulirsch-Stoer-Bader-Deuflhard, implicit, for stiff models; for gsl-msbdf")
 
 #define DEFINE(id, text, p, type, words)                                    \
   static const lag_method method_##id = {                                   \
@@ -183,4 +187,5 @@ const lag_method *const lag_gsl_methods[] = {METHODS(LIST)};
 enum { NMETHODS = sizeof lag_gsl_methods / sizeof *lag_gsl_methods };
 const int lag_gsl_nmethods = NMETHODS;
 
-const lag_extras lag_gsl = {.methods = lag_gsl_methods, .nmethods = NMETHODS, .algebra = &lag_gsl_algebra, .points = lag_gsl_points};
+const lag_extras lag_gsl = {
+    .methods = lag_gsl_methods, .nmethods = NMETHODS, .algebra = &lag_gsl_algebra, .points = lag_gsl_points};

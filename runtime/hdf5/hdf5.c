@@ -1,5 +1,5 @@
-/* Rows and motions of a sweep as HDF5: a dataset for each measure or output, with an axis for each range, as dimension scales; units as attributes. The HDF Group, HDF5
- * Dimension Scale Specification (2005). */
+/* Rows and motions of a sweep as HDF5: a dataset for each measure or output, with an axis for each range, as
+ * dimension scales; units as attributes. The HDF Group, HDF5 Dimension Scale Specification (2005). */
 #include <hdf5.h>
 #include <hdf5_hl.h>
 #include <stdio.h>
@@ -8,9 +8,12 @@
 
 #include "lag.h"
 
-static int put_text(hid_t of, const char *name, const char *text) { return *text && H5LTset_attribute_string(of, ".", name, text) < 0; }
+static int put_text(hid_t of, const char *name, const char *text) {
+  return *text && H5LTset_attribute_string(of, ".", name, text) < 0;
+}
 
-/* A dataset of doubles, written later where x is NULL, with the same bytes in every file: without the time at which it was made. */
+/* A dataset of doubles, written later where x is NULL, with the same bytes in every file: without the time at which
+ * it was made. */
 static hid_t put_numbers(hid_t file, const char *name, int n, const hsize_t *size, const double *x) {
   hid_t how = H5Pcreate(H5P_DATASET_CREATE), space = H5Screate_simple(n, size, NULL);
   H5Pset_obj_track_times(how, 0);
@@ -53,7 +56,8 @@ static int put_column(hid_t file, const lag_grid *g, const lag_axis *c, hid_t *s
   for (int k = 0; k < naxes && !bad; k++) {
     dataset_name(name, sizeof name, g->axis[k].name);
     hid_t scale = H5Dopen2(file, name, H5P_DEFAULT);
-    bad = scale < 0 || H5DSattach_scale(*set, scale, (unsigned)k) < 0 || H5DSset_label(*set, (unsigned)k, g->axis[k].name) < 0;
+    bad = scale < 0 || H5DSattach_scale(*set, scale, (unsigned)k) < 0 ||
+          H5DSset_label(*set, (unsigned)k, g->axis[k].name) < 0;
     if (scale >= 0) H5Dclose(scale);
   }
   return bad;
@@ -70,7 +74,8 @@ static int put_block(hid_t set, const lag_grid *g, long long place, const double
   start[last] = 0;
   count[last] = (hsize_t)g->axis[last].n;
   hid_t space = H5Dget_space(set), block = H5Screate_simple(g->naxes, count, NULL);
-  int bad = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) < 0 || H5Dwrite(set, H5T_NATIVE_DOUBLE, block, space, H5P_DEFAULT, x) < 0;
+  int bad = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) < 0 ||
+            H5Dwrite(set, H5T_NATIVE_DOUBLE, block, space, H5P_DEFAULT, x) < 0;
   H5Sclose(block);
   H5Sclose(space);
   return bad;

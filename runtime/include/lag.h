@@ -1,11 +1,12 @@
 /* lag.h: the public interface of liblag, the runtime of compiled Lagrangians.
  *
- * It takes a scene (lag_model.h), emitted by lagc, and computes its trajectory. A simulation is one opaque object; a method of integration is a const
- * descriptor, and a new method is a new file.
+ * It takes a scene (lag_model.h), emitted by lagc, and computes its trajectory. A simulation is one opaque object; a
+ * method of integration is a const descriptor, and a new method is a new file.
  *
- * Conventions, everywhere below: values are in SI units unless "declared unit" is said; arrays are dense; y = [q[nq] | v[nq] | z[nz]] has n = 2 nq +
- * nz elements; the library never keeps a pointer into an array of the caller, and arrays passed to one call do not overlap. No function here is
- * thread-safe on one object; different objects are independent. Nothing is printed, nothing exits.
+ * Conventions, everywhere below: values are in SI units unless "declared unit" is said; arrays are dense; y = [q[nq]
+ * | v[nq] | z[nz]] has n = 2 nq + nz elements; the library never keeps a pointer into an array of the caller, and
+ * arrays passed to one call do not overlap. No function here is thread-safe on one object; different objects are
+ * independent. Nothing is printed, nothing exits.
  *
  * Return values: LAG_OK is 0; > 0 is a planned stop; < 0 is a failure, and lag_sim_message() then says
  * when, where and why. After a failure the simulation holds the last accepted state. */
@@ -62,8 +63,10 @@ typedef struct lag_contact_stats {
   double impacts;  /* gaps that closed faster than forces alone make them close in a step */
   double sweeps;   /* iterations over all contacts that take part, in all steps */
   double depth;    /* the deepest gap, >= 0 [SI] */
-  double gained;   /* energy that contacts brought in, where they do work at all, step by step; rounding apart it is 0 [J] */
-  /* Of the last step: work along gaps and of friction; whether charges do not contain it yet, time from which on dense output does; length. */
+  /* energy that contacts brought in, where they do work at all, step by step; rounding apart it is 0 [J] */
+  double gained;
+  /* Of the last step: work along gaps and of friction; whether charges do not contain it yet, time from which on
+   * dense output does; length. */
   double work, rubbed, due, from, length;
 } lag_contact_stats;
 
@@ -73,7 +76,9 @@ typedef struct lag_problem {
   int n, nq, nz;       /* n = 2 nq + nz */
   const double *p;     /* [np + nderived] parameters */
   double *u;           /* [nu + nmodes] inputs and modes of switches, filled by lag_rhs */
-  double *hold;        /* [nu + nmodes] constants that replace inputs, NaN where an input is not replaced; modes, 0 where the motion slides, which methods with LAG_METHOD_IMPULSES set where forces jump */
+  /* [nu + nmodes] constants that replace inputs, NaN where an input is not replaced; modes, 0 where the motion
+   * slides, which methods with LAG_METHOD_IMPULSES set where forces jump */
+  double *hold;
   const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
   double *held;        /* [lag_constraint_scratch_size] scratch of the constraint functions below */
@@ -100,52 +105,62 @@ typedef struct lag_problem {
   const char *detail;  /* explanation or NULL; a string that lives as long as this object, */
   char words[320];     /* for example composed here */
   double kick;         /* time of the next kick, at which a step ends if it would reach it; HUGE_VAL: none */
-  lag_contact_stats *contacts; /* contacts met by impulses; NULL: the method is another, or there are none. In the next three, too */
+  /* contacts met by impulses; NULL: the method is another, or there are none. In the next three, too */
+  lag_contact_stats *contacts;
   double *contact_impulse;     /* [ncontacts] impulse of each in the last step, */
   double *contact_change;      /* [nq] and the change of velocities by all of them */
   double *contact_room;        /* scratch */
-  double *size;        /* [n + 2] size of each component in this run, and last of the time: powers of 1024; tolerances are parts of it */
+  /* [n + 2] size of each component in this run, and last of the time: powers of 1024; tolerances are parts of it */
+  double *size;
 } lag_problem;
 
 /* The model's facts (LAG_AUTONOMOUS, ...) less those that an input function of the caller takes away. */
 unsigned lag_facts(const lag_problem *pb);
 
-/* pb->u := the inputs at t: the model's formulas, constants of pb->hold or functions of pb->signal. Returns the model's status. */
+/* pb->u := the inputs at t: the model's formulas, constants of pb->hold or functions of pb->signal. Returns the
+ * model's status. */
 int lag_inputs(lag_problem *pb, double t);
-/* The same, and modes of switches on whose surface the motion slides and friction of contacts that slip, at the state y[n]. */
+/* The same, and modes of switches on whose surface the motion slides and friction of contacts that slip, at the
+ * state y[n]. */
 int lag_inputs_at(lag_problem *pb, double t, const double *y);
 
-/* dy[n] = f(t, y[n]). Returns the model's status; does not look for NaN. Where constraints are redundant, f is evaluated at the projection of y
- * (lag_project): stages of a step lie off the constraints; there redundant rows become independent, and their accelerations would be rounding divided
- * by rounding. On the constraints this f is the same, and near them as smooth. */
+/* dy[n] = f(t, y[n]). Returns the model's status; does not look for NaN. Where constraints are redundant, f is
+ * evaluated at the projection of y (lag_project): stages of a step lie off the constraints; there redundant rows
+ * become independent, and their accelerations would be rounding divided by rounding. On the constraints this f is
+ * the same, and near them as smooth. */
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
 
-/* Distance from t to the next row of an input's table in direction pb->dir; HUGE_VAL where there is none. The third derivative of the right-hand side jumps
- * at a row, and a long step may skip rows: so an adaptive method ends its step at *row if its own end would lie beyond. STEPS_TO methods get it as t_stop. */
+/* Distance from t to the next row of an input's table in direction pb->dir; HUGE_VAL where there is none. The third
+ * derivative of the right-hand side jumps at a row, and a long step may skip rows: so an adaptive method ends its
+ * step at *row if its own end would lie beyond. STEPS_TO methods get it as t_stop. */
 double lag_next_row(const lag_problem *pb, double t, double *row);
 
-/* Lq = dL/dq, Lv = dL/dv and Q, the forces outside L, all [nq]; and h[model->nsecond], their derivatives. For models that have these functions;
- * nz = 0. Return the model's status. */
+/* Lq = dL/dq, Lv = dL/dv and Q, the forces outside L, all [nq]; and h[model->nsecond], their derivatives. For models
+ * that have these functions; nz = 0. Return the model's status. */
 int lag_variation(lag_problem *pb, double t, const double *q, const double *v, double *Lq, double *Lv, double *Q);
 int lag_second_derivatives(lag_problem *pb, double t, const double *q, const double *v, double *h);
 
-/* Derivatives of f, for models emitted with their linearisation (model->linear; lagc --with linear). All matrices are dense and row-major;
- * work[lag_linear_work()] is scratch, 0 doubles for a model with neither linearisation nor constraints. Both return the model's status, or LAG_EMETHOD (and
- * pb->detail) without linearisation; LAG_ESINGULAR when M is singular. Neither looks for NaN; after an error the matrices are undefined. */
+/* Derivatives of f, for models emitted with their linearisation (model->linear; lagc --with linear). All matrices
+ * are dense and row-major; work[lag_linear_work()] is scratch, 0 doubles for a model with neither linearisation nor
+ * constraints. Both return the model's status, or LAG_EMETHOD (and pb->detail) without linearisation; LAG_ESINGULAR
+ * when M is singular. Neither looks for NaN; after an error the matrices are undefined. */
 size_t lag_linear_work(const lag_model *model);
 
-/* J[(nq + nz) * n]: derivatives by y of the accelerations and of the rates of states, that is the rows of df/dy below the first nq; with the nq
- * rows [0 | 1 | 0] above it J is df/dy. Exact without constraints; with constraints finite differences, correct to half of the digits, which
- * suffices for a simplified Newton's method. Calls lag_rhs, and leaves f(t, y) in the first n of work. */
+/* J[(nq + nz) * n]: derivatives by y of the accelerations and of the rates of states, that is the rows of df/dy
+ * below the first nq; with the nq rows [0 | 1 | 0] above it J is df/dy. Exact without constraints; with constraints
+ * finite differences, correct to half of the digits, which suffices for a simplified Newton's method. Calls lag_rhs,
+ * and leaves f(t, y) in the first n of work. */
 int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
-/* The same with central differences of order 6, correct to 11 digits or so, as a tangent needs; six calls of lag_rhs a column. */
+/* The same with central differences of order 6, correct to 11 digits or so, as a tangent needs; six calls of lag_rhs
+ * a column. */
 int lag_fine_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
 
-/* dr[(nq + nz) * n]: derivatives of the residuals r = (f - M a, flow) by y at given accelerations a[nq] (NULL: 0); M[nq * nq]: the mass matrix.
- * J above is M^-1 dr in its first nq rows. */
+/* dr[(nq + nz) * n]: derivatives of the residuals r = (f - M a, flow) by y at given accelerations a[nq] (NULL: 0);
+ * M[nq * nq]: the mass matrix. J above is M^-1 dr in its first nq rows. */
 int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, double *dr, double *M, double *work);
 
-/* ---- Constraints: for models that have them (model->constraints, in lag_model.h). Functions return the model's status. */
+/* ---- Constraints: for models that have them (model->constraints, in lag_model.h). Functions return the model's
+ * status. */
 
 /* Sizes of pb->held and pb->ranks in doubles; 0 without constraints. */
 size_t lag_constraint_scratch_size(const lag_model *model);
@@ -154,45 +169,54 @@ size_t lag_rank_scratch_size(const lag_model *model);
 /* c[nholonomic], less the value at which it is held, and r[n] of the state y[n] at t. */
 int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r);
 
-/* The least change d[nq] in the mass metric with A d = g, and force[nq] = M d = A^T mu; A and M at y, t. holonomic: for g[nholonomic] and these
- * constraints alone; else for g[n] and all. */
-int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, const double *g, double *d, double *force);
+/* The least change d[nq] in the mass metric with A d = g, and force[nq] = M d = A^T mu; A and M at y, t. holonomic:
+ * for g[nholonomic] and these constraints alone; else for g[n] and all. */
+int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, const double *g, double *d,
+                     double *force);
 
-/* Projects y[n] onto the constraints at t: positions by Newton's iteration, each correction the least in the mass metric, until the residual is
- * rounding; then velocities. lost[n], or NULL: the compensation of the sum of steps in y (methods/steps.h), which is updated. > 0: no solution near
- * y, a smaller step may help; pb->detail names the worst constraint, y and lost are undefined. Does nothing without constraints.
+/* Projects y[n] onto the constraints at t: positions by Newton's iteration, each correction the least in the mass
+ * metric, until the residual is rounding; then velocities. lost[n], or NULL: the compensation of the sum of steps in
+ * y (methods/steps.h), which is updated. > 0: no solution near y, a smaller step may help; pb->detail names the
+ * worst constraint, y and lost are undefined. Does nothing without constraints.
  *
- * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), IV.4, DOI 10.1007/3-540-30666-8: projection keeps the order
- * of a method. */
+ * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), IV.4, DOI 10.1007/3-540-30666-8:
+ * projection keeps the order of a method. */
 int lag_project(lag_problem *pb, double t, double *y, double *lost);
-/* lag_project after a step from y0; > 0 also where the projection would move y farther than the step did: a constraint jumps there, or the step is too long. */
+/* lag_project after a step from y0; > 0 also where the projection would move y farther than the step did: a
+ * constraint jumps there, or the step is too long. */
 int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost);
-/* The test of lag_project_step. A step from y0 to y displaced the coordinates by led[nq], and the projection then by moved[nq]. Returns the first
- * coordinate whose correction is more than twice the larger of its own led and of that of coordinates of its unit that share a constraint with it;
- * -1: none. Corrections below a millionth of the coordinate's largest distance from 0 are rounding near a singular position, and pass. */
-int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led);
-/* pb->detail := the constraint on positions that y breaks most at t, and that meeting it moves coordinate i by `moved`. Returns LAG_ERETRY. */
+/* The test of lag_project_step. A step from y0 to y displaced the coordinates by led[nq], and the projection then by
+ * moved[nq]. Returns the first coordinate whose correction is more than twice the larger of its own led and of that
+ * of coordinates of its unit that share a constraint with it; -1: none. Corrections below a millionth of the
+ * coordinate's largest distance from 0 are rounding near a singular position, and pass. */
+int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y, const double *moved,
+                        const double *led);
+/* pb->detail := the constraint on positions that y breaks most at t, and that meeting it moves coordinate i by
+ * `moved`. Returns LAG_ERETRY. */
 int lag_report_leap(lag_problem *pb, double t, const double *y, int i, double moved);
 
-/* Independence of the weakest constraint at y, t, from 1 to 0: the part of its gradient that is orthogonal to those before it, times the ratio
- * of its derivatives to its terms. *weakest: its index, or -1. Constraints that are always redundant are left out. (constraints/constraint_rank.c) */
+/* Independence of the weakest constraint at y, t, from 1 to 0: the part of its gradient that is orthogonal to those
+ * before it, times the ratio of its derivatives to its terms. *weakest: its index, or -1. Constraints that are
+ * always redundant are left out. (constraints/constraint_rank.c) */
 double lag_independence(lag_problem *pb, double t, const double *y, int *weakest);
 
-/* The largest |x[j]| over the coordinates (or velocities) j with the unit of coordinate i: the scale of its rounding where x[i] itself is small. */
+/* The largest |x[j]| over the coordinates (or velocities) j with the unit of coordinate i: the scale of its rounding
+ * where x[i] itself is small. */
 double lag_unit_magnitude(const lag_problem *pb, const double *x, int i);
-/* Typical magnitude of component i of q (holonomic) or of v: the largest of that unit; of an angle at least 1. In a run that began at 0 it is at
- * least 1e-6, and 1 if all values are 0, since nothing else sets a scale. Of a velocity at least that of a motion through such a distance in the time
- * of the run, as at rest the velocity itself is rounding. */
+/* Typical magnitude of component i of q (holonomic) or of v: the largest of that unit; of an angle at least 1. In a
+ * run that began at 0 it is at least 1e-6, and 1 if all values are 0, since nothing else sets a scale. Of a velocity
+ * at least that of a motion through such a distance in the time of the run, as at rest the velocity itself is
+ * rounding. */
 double lag_typical_magnitude(const lag_problem *pb, const double *y, int holonomic, int i);
-/* Projects a small change e[n] of the state y onto the tangent space of the constraints: lag_project to first order, but for the change of A with the
- * positions. */
+/* Projects a small change e[n] of the state y onto the tangent space of the constraints: lag_project to first order,
+ * but for the change of A with the positions. */
 int lag_project_tangent(lag_problem *pb, double t, const double *y, double *e);
 
 /* size[nholonomic] (holonomic), or size[n] of the rates: the sum of |terms| of c, or r, at y, t. */
 int lag_constraint_terms(lag_problem *pb, double t, const double *y, int holonomic, double *size);
 
-/* The worst constraint: index of the c (holonomic) or r that is largest relative to its terms at y, t; *size, if not NULL: that ratio in units
- * of DBL_EPSILON. -1: no constraint, or no values. */
+/* The worst constraint: index of the c (holonomic) or r that is largest relative to its terms at y, t; *size, if not
+ * NULL: that ratio in units of DBL_EPSILON. -1: no constraint, or no values. */
 int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonomic, double *size);
 
 /* Whether the residuals of y at t, c (holonomic) or r, are rounding: at most 2^10 DBL_EPSILON times their terms. */
@@ -200,7 +224,8 @@ int lag_constraint_is_met(lag_problem *pb, double t, const double *y, int holono
 
 /* text := the line of a constraint, " (line 7)", or "" where the emitted C does not say. Returns text. */
 const char *lag_line_text(const lag_constraint *c, char text[32]);
-/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; for a residual of NaN "is not met". holonomic: a residual of c, else of r. */
+/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; for a residual of NaN "is not met".
+ * holonomic: a residual of c, else of r. */
 void lag_report_residual(lag_problem *pb, int k, int holonomic, double residual, const char *words);
 
 /* The step [s] of a method with equal steps: the option, or where that is 0 a 10000th of the scene's span. */
@@ -209,8 +234,9 @@ double lag_step_size(const lag_problem *pb, double option);
 /* Index of the first element of x[n] that is not finite, -1 when all are. */
 int lag_not_finite(int n, const double *x);
 
-/* Hermite interpolation y[n] between two states: quintic in q, from q, v and a at both ends; cubic in v and z. y0, f0 = f(y0), y1, f1 are [n]; h
- * = t1 - t0; s = (t - t0)/h in [0, 1]. With f of order p >= 4 the result has order 4. */
+/* Hermite interpolation y[n] between two states: quintic in q, from q, v and a at both ends; cubic in v and z. y0,
+ * f0 = f(y0), y1, f1 are [n]; h = t1 - t0; s = (t - t0)/h in [0, 1]. With f of order p >= 4 the result has order 4.
+ * */
 void lag_hermite(int nq, int nz, double h, double s, const double *y0, const double *f0, const double *y1,
                  const double *f1, double *y);
 
@@ -227,7 +253,8 @@ enum {
   LAG_METHOD_TAYLOR = 256,     /* needs Taylor coefficients: lag_model.taylor */
   LAG_METHOD_JACOBIAN = 2048,  /* needs the linearisation: lag_model.linear */
   LAG_METHOD_CONSTRAINTS = 4096, /* steps end on the constraints of a model that has them */
-  LAG_METHOD_FLOWS = 8192,     /* takes models of first order (nq = 0), with the linearisation in place of derivatives of L */
+  /* takes models of first order (nq = 0), with the linearisation in place of derivatives of L */
+  LAG_METHOD_FLOWS = 8192,
   LAG_METHOD_IMPULSES = 16384, /* meets contacts by impulses in each step: their events are not located */
   LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS only where it does not split */
 };
@@ -259,7 +286,8 @@ typedef struct lag_method {
   /* Order of the steps with these option values; NULL: order. */
   int (*order_of)(const double *opt);
 
-  /* NULL when the method can integrate this model with these option values; else why not, and what to write. May itself be NULL. */
+  /* NULL when the method can integrate this model with these option values; else why not, and what to write. May
+   * itself be NULL. */
   const char *(*refuses)(const lag_model *model, const double *opt);
 
   /* Doubles of work that init needs with the options pb->opt. */
@@ -268,8 +296,8 @@ typedef struct lag_method {
   /* Prepares work (zeroed). opt[noptions] are the values of the options. < 0: see pb->detail. */
   int (*init)(void *work, lag_problem *pb, const double *opt);
 
-  /* One accepted step from (*t, y[n]), of the method's own size in direction pb->dir, never past t_stop for a STEPS_TO method (others ignore t_stop).
-   * 0: *t, y are the new state. < 0: unchanged. Does not allocate. */
+  /* One accepted step from (*t, y[n]), of the method's own size in direction pb->dir, never past t_stop for a
+   * STEPS_TO method (others ignore t_stop). 0: *t, y are the new state. < 0: unchanged. Does not allocate. */
   int (*step)(void *work, lag_problem *pb, double *t, double *y, double t_stop);
 
   /* y[n] at t within the last step. May call the model; the next step does not depend on whether it was called. */
@@ -281,14 +309,17 @@ typedef struct lag_method {
   /* Frees what init allocated; NULL when it allocates nothing. */
   void (*fini)(void *work);
 
-  /* Y[n * k] := D Y, with D = dy(t)/dy0 for a step that begins where the last step began and ends at t, at fixed step size (for taylor: the
-   * derivative of the flow, to the tolerance). scratch has tangent_size(pb, k) doubles. 0, or < 0 as step. Later steps do not depend on whether it
-   * was called. NULL: the method has no tangent. */
+  /* Y[n * k] := D Y, with D = dy(t)/dy0 for a step that begins where the last step began and ends at t, at fixed
+   * step size (for taylor: the derivative of the flow, to the tolerance). scratch has tangent_size(pb, k) doubles.
+   * 0, or < 0 as step. Later steps do not depend on whether it was called. NULL: the method has no tangent. */
   size_t (*tangent_size)(const lag_problem *pb, int k);
   int (*tangent)(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
 
-  const void *variant; /* constants by which it differs from other methods with the same functions; these read lag_problem.variant */
-  double finest; /* the smallest tolerance that the digits of its coefficients support; 0: coefficients have all digits of the scalar */
+  /* constants by which it differs from other methods with the same functions; these read lag_problem.variant */
+  const void *variant;
+  /* the smallest tolerance that the digits of its coefficients support; 0: coefficients have all digits of the
+   * scalar */
+  double finest;
 } lag_method;
 
 /* Classical Runge-Kutta method of order 4, fixed step. */
@@ -299,7 +330,8 @@ extern const lag_method lag_euler;
 extern const lag_method lag_rk45;
 /* Dormand-Prince 8(5,3), adaptive, for tolerances below about 1e-6. */
 extern const lag_method lag_dop853;
-/* Symplectic, fixed step: symplectic Euler, Stoermer-Verlet, and compositions of order 4, 6, 8. Explicit for separable models. */
+/* Symplectic, fixed step: symplectic Euler, Stoermer-Verlet, and compositions of order 4, 6, 8. Explicit for
+ * separable models. */
 extern const lag_method lag_symplectic_euler, lag_verlet, lag_verlet4, lag_verlet6, lag_verlet8;
 /* Symplectic, fixed step, implicit, for any L: from a discrete Lagrangian, and Gauss collocation, of order 2 to 8. */
 extern const lag_method lag_variational, lag_gauss;
@@ -326,8 +358,9 @@ typedef struct lag_stats {
   long long systems, iterations; /* nonlinear systems solved within steps, and Newton corrections */
   double energy;        /* now */
   double energy_drift;  /* drift of charge 0 below; NaN when the model has no energy */
-  double constraint, constraint_rate; /* largest |c| of a holonomic constraint and |r| of any (lag_model.h) at ends of steps [SI];
-                         * NaN without constraints */
+  /* largest |c| of a holonomic constraint and |r| of any (lag_model.h) at ends of steps [SI]; NaN without
+   * constraints */
+  double constraint, constraint_rate;
   double unresolved;    /* a period shorter than two steps of equal size [s]; NaN: none was seen */
 } lag_stats;
 
@@ -341,18 +374,24 @@ enum {
 
 typedef struct lag_charge_stats {
   const char *name, *unit; /* SI unit; strings of the scene */
-  unsigned flags;       /* LAG_CONSERVED, LAG_BALANCED (lag_model.h); neither: its rate is not known, or not integrated (lag_sim_balance) */
+  /* LAG_CONSERVED, LAG_BALANCED (lag_model.h); neither: its rate is not known, or not integrated (lag_sim_balance) */
+  unsigned flags;
   double begin, now;    /* Q */
   double work;          /* int P dt, where P = dQ/dt is known and not 0 */
-  double dry_friction;  /* of the energy: the part of `work` that dry friction does; NaN: the model has none, or it is not integrated */
-  double at_events;     /* of the energy: its change at events, as by impacts and where constraints begin to hold; 0: other charges */
-  double drift;         /* largest |Q - int P dt - Q0| over the run, without jumps at events, relative to the larger of |Q0| and the median over
-                         * the run of the sum of |terms| of Q (a median, as a blow-up at the end would raise the maximum) */
+  /* of the energy: the part of `work` that dry friction does; NaN: the model has none, or it is not integrated */
+  double dry_friction;
+  /* of the energy: its change at events, as by impacts and where constraints begin to hold; 0: other charges */
+  double at_events;
+  /* largest |Q - int P dt - Q0| over the run, without jumps at events, relative to the larger of |Q0| and the median
+   * over the run of the sum of |terms| of Q (a median, as a blow-up at the end would raise the maximum) */
+  double drift;
   double absolute;      /* drift in `unit` */
-  double slope, slope_error; /* slope of a line fitted to Q - int P dt, relative as drift [1/s], and its standard error; NaN: too few steps */
+  /* slope of a line fitted to Q - int P dt, relative as drift [1/s], and its standard error; NaN: too few steps */
+  double slope, slope_error;
   int trend;
-  double energy_jump, energy_jump_t;  /* of the energy: largest change within one step, relative like drift, and its time; 0: rounding, or not computed (constant
-                         * mass matrix, more than 64 coordinates) */
+  /* of the energy: largest change within one step, relative like drift, and its time; 0: rounding, or not computed
+   * (constant mass matrix, more than 64 coordinates) */
+  double energy_jump, energy_jump_t;
   double mass_condition;        /* estimated condition of the mass matrix there; NaN: not known */
   const char *mass_condition_of; /* the coordinate of least inertia there */
 } lag_charge_stats;
@@ -360,18 +399,22 @@ typedef struct lag_charge_stats {
 /* Number of charges of the model; 0 without a Lagrangian. *stats := the monitor of charge k so far. */
 int lag_sim_ncharges(const lag_sim *sim);
 void lag_sim_charge(lag_sim *sim, int k, lag_charge_stats *stats);
-/* *contacts := counts of contacts that the method meets by impulses. Returns 1; 0: it does not, or the model has none. */
+/* *contacts := counts of contacts that the method meets by impulses. Returns 1; 0: it does not, or the model has
+ * none. */
 int lag_sim_contacts(const lag_sim *sim, lag_contact_stats *contacts);
 
-/* All functions below: a NULL that is not allowed explicitly, a time that is not finite, or an index out of range gives LAG_EINVAL and changes
- * nothing; functions that return a number then return NAN, or 0 for an integer, and functions that return a pointer NULL. */
+/* All functions below: a NULL that is not allowed explicitly, a time that is not finite, or an index out of range
+ * gives LAG_EINVAL and changes nothing; functions that return a number then return NAN, or 0 for an integer, and
+ * functions that return a pointer NULL. */
 
-/* A simulation of the scene at the start of its span, with the scene's method, tolerance and options. The scene must outlive it. NULL: no
- * memory, or a model of another ABI or scalar type. A method that cannot integrate the model, or is not in liblag.a, is refused by the first
- * advance, unless another one is set. Free with lag_sim_free (NULL allowed). */
+/* A simulation of the scene at the start of its span, with the scene's method, tolerance and options. The scene must
+ * outlive it. NULL: no memory, or a model of another ABI or scalar type. A method that cannot integrate the model,
+ * or is not in liblag.a, is refused by the first advance, unless another one is set. Free with lag_sim_free (NULL
+ * allowed). */
 lag_sim *lag_sim_new(const lag_scene *scene);
 void lag_sim_free(lag_sim *sim);
-/* A new simulation of the same scene with the same settings: values, inputs, method, tolerance; `sim` may have begun. NULL: no memory. */
+/* A new simulation of the same scene with the same settings: values, inputs, method, tolerance; `sim` may have
+ * begun. NULL: no memory. */
 lag_sim *lag_sim_like(const lag_sim *sim);
 
 /* The settings below are made before the first advance; later they return LAG_EINVAL. After an error the
@@ -379,48 +422,57 @@ lag_sim *lag_sim_like(const lag_sim *sim);
 
 /* Chooses a method. opt[nopt] are options by name; the others keep their defaults. */
 int lag_sim_set_method(lag_sim *sim, const lag_method *method, const lag_option *opt, int nopt);
-/* The method of `lagc run` where none is named: by the tolerance, and by trials for stiffness until `until`; with these options. exponents: the run
- * carries a tangent. why[size] := the reason. */
-int lag_sim_choose_method(lag_sim *sim, double until, int exponents, const lag_option *opt, int nopt, char *why, size_t size);
+/* The method of `lagc run` where none is named: by the tolerance, and by trials for stiffness until `until`; with
+ * these options. exponents: the run carries a tangent. why[size] := the reason. */
+int lag_sim_choose_method(lag_sim *sim, double until, int exponents, const lag_option *opt, int nopt, char *why,
+                          size_t size);
 /* tol is at least 4.5 DBL_EPSILON, about 1e-15. */
 int lag_sim_set_tolerance(lag_sim *sim, double tol);
 /* Sets by name, in the declared unit: a parameter ("m", "drag.c", or "c" when nothing else ends in ".c"), the start of
  * a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that replaces an input; of a family one
  * member ("m[2]", "r[1].x'") or all ("m", "r.x'"). A parameter of the wrong sign is an error. */
 int lag_sim_set(lag_sim *sim, const char *name, double value);
-/* Component i of [q|v|z] in its declared unit: asked, as it was set; begin, where the run began. With constraints they differ: the first advance
- * moves the start to the nearest consistent position, then velocity, in the mass metric: first only components that were not set, then all if needed.
- * LAG_EINVAL then: no start is near, or the scene says `exactly` and its start is another; the message names the worst constraint. */
+/* Component i of [q|v|z] in its declared unit: asked, as it was set; begin, where the run began. With constraints
+ * they differ: the first advance moves the start to the nearest consistent position, then velocity, in the mass
+ * metric: first only components that were not set, then all if needed. LAG_EINVAL then: no start is near, or the
+ * scene says `exactly` and its start is another; the message names the worst constraint. */
 double lag_sim_requested_start(const lag_sim *sim, int i);
 double lag_sim_actual_start(const lag_sim *sim, int i);
-/* Rank of the constraints at the start; whether constraint k follows from others there (not before the first advance). */
+/* Rank of the constraints at the start; whether constraint k follows from others there (not before the first
+ * advance). */
 int lag_sim_rank(const lag_sim *sim);
 int lag_sim_is_redundant(const lag_sim *sim, int k);
-/* Rank of the constraints a hundredth away from the start, if larger: a singular start, as of bars in one line. is_loose: whether the velocity
- * of coordinate i is free at the start but determined nearby; the start then chooses the branch of the motion. */
+/* Rank of the constraints a hundredth away from the start, if larger: a singular start, as of bars in one line.
+ * is_loose: whether the velocity of coordinate i is free at the start but determined nearby; the start then chooses
+ * the branch of the motion. */
 int lag_sim_nearby_rank(const lag_sim *sim);
 int lag_sim_is_undetermined(const lag_sim *sim, int i);
-/* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI units unlike lag_sim_set; fn NULL: as
- * the model says again. It must be a function of t alone: methods, events and outputs call it for times that go back and forth, more than once for some. A
- * quantity that depends on the motion is a force of the model. For full accuracy fn has two continuous derivatives, or steps are short beside its changes.
- * A value that is not finite ends the run with LAG_ENAN. context must outlive the run. A saved state does not hold fn: set it again before lag_sim_load. */
+/* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI
+ * units unlike lag_sim_set; fn NULL: as the model says again. It must be a function of t alone: methods, events and
+ * outputs call it for times that go back and forth, more than once for some. A quantity that depends on the motion
+ * is a force of the model. For full accuracy fn has two continuous derivatives, or steps are short beside its
+ * changes. A value that is not finite ends the run with LAG_ENAN. context must outlive the run. A saved state does
+ * not hold fn: set it again before lag_sim_load. */
 int lag_sim_set_input(lag_sim *sim, const char *name, lag_input_fn *fn, void *context);
-/* Integrates, along the run, the work of forces on charges, so that lag_sim_charge gives balances. Off by default, unless the scene monitors a
- * charge: it takes dense output at up to 8 places in each step. */
+/* Integrates, along the run, the work of forces on charges, so that lag_sim_charge gives balances. Off by default,
+ * unless the scene monitors a charge: it takes dense output at up to 8 places in each step. */
 int lag_sim_balance(lag_sim *sim);
 /* Whether the method's dense output is accurate enough for balances; otherwise they are not integrated. */
 int lag_method_balances(const lag_method *method);
 
-/* Integrates to time t, before or after t0, but always in one direction. The steps do not depend on t: the state at t is evaluated on the dense
- * output (STEPS_TO methods: reached exactly), so runs that are split differently agree bit by bit. An event at exactly t happens in the next call.
- * LAG_OK: the state is at t. LAG_STOPPED, LAG_INTERRUPTED: at lag_sim_time(). < 0: failure. */
+/* Integrates to time t, before or after t0, but always in one direction. The steps do not depend on t: the state at
+ * t is evaluated on the dense output (STEPS_TO methods: reached exactly), so runs that are split differently agree
+ * bit by bit. An event at exactly t happens in the next call. LAG_OK: the state is at t. LAG_STOPPED,
+ * LAG_INTERRUPTED: at lag_sim_time(). < 0: failure. */
 int lag_sim_advance(lag_sim *sim, double t);
 
-/* Makes the next step towards t, unless it is made: up to *reach, lag_sim_eval and lag_sim_outputs_at know the motion. *reach is t, the step's end or the next
- * event, whichever is first. An event at the present time happens here. Returns what lag_sim_advance would; after an error or stop *reach is lag_sim_time(). */
+/* Makes the next step towards t, unless it is made: up to *reach, lag_sim_eval and lag_sim_outputs_at know the
+ * motion. *reach is t, the step's end or the next event, whichever is first. An event at the present time happens
+ * here. Returns what lag_sim_advance would; after an error or stop *reach is lag_sim_time(). */
 int lag_sim_ensure_step(lag_sim *sim, double t, double *reach);
 
-/* y[n] at time t within the last step and not after the next event, else LAG_EINVAL. Does not change the present state; may call the model. */
+/* y[n] at time t within the last step and not after the next event, else LAG_EINVAL. Does not change the present
+ * state; may call the model. */
 int lag_sim_eval(lag_sim *sim, double t, double *y);
 
 /* The present state and parameters: pointers that stay valid until lag_sim_free. */
@@ -437,8 +489,8 @@ const double *lag_sim_options(const lag_sim *sim);
 
 /* Number of columns of output besides t: the scene's outputs, or q, v, z when it names none. */
 int lag_sim_noutputs(const lag_sim *sim);
-/* Component i of the state q, v, z: name, with a prime for a velocity, and declared unit; buffers of the caller, cut to fit, either may be NULL.
- * Returns the size of one declared unit in SI. */
+/* Component i of the state q, v, z: name, with a prime for a velocity, and declared unit; buffers of the caller, cut
+ * to fit, either may be NULL. Returns the size of one declared unit in SI. */
 double lag_sim_state_info(const lag_sim *sim, int i, char *name, size_t nname, char *unit, size_t nunit);
 /* An SI value of component i, converted to its declared unit. */
 double lag_sim_declared(const lag_sim *sim, int i, double value);
@@ -451,15 +503,18 @@ int lag_sim_outputs(lag_sim *sim, double *out);
 /* out[noutputs] at a time that lag_sim_eval knows, in declared units; y[n] := the state there. */
 int lag_sim_outputs_at(lag_sim *sim, double t, double *y, double *out);
 
-/* The tangent of the flow: Y[n * k], row-major; each column is a small change of the state, carried along exactly, as the derivative of what the
- * method computes. It begins at Y here, NULL (k = n): the identity, so that it becomes dy(t)/dy(0); k = 0: ends the tangent. Call it before the first
- * advance, after the method is set; later at ends of steps only, as in the hook of lag_sim_on_step. Needs the model's linearisation, or the
- * derivatives that an implicit method needs itself. LAG_EMETHOD: method or model have no such derivatives; the message names a method that has. At an
- * event that changes the state the tangent is multiplied by the saltation matrix; the run fails (LAG_EMETHOD) where that does not exist: the event
- * depends on an input, another one changes the state at the same time, or the motion only touches it. A saved state cannot be loaded into a run with
- * a tangent. At a branch of if, abs, min, max the derivative is that of the branch taken; over a jump of a force, as of dry friction, columns are multiplied by
- * the saltation matrix, which loses a rank where the motion begins to slide. With constraints the columns are projected onto their tangent space, in the mass
- * metric, and derivatives are differences, to some 11 digits; contacts have no tangent. */
+/* The tangent of the flow: Y[n * k], row-major; each column is a small change of the state, carried along exactly,
+ * as the derivative of what the method computes. It begins at Y here, NULL (k = n): the identity, so that it becomes
+ * dy(t)/dy(0); k = 0: ends the tangent. Call it before the first advance, after the method is set; later at ends of
+ * steps only, as in the hook of lag_sim_on_step. Needs the model's linearisation, or the derivatives that an
+ * implicit method needs itself. LAG_EMETHOD: method or model have no such derivatives; the message names a method
+ * that has. At an event that changes the state the tangent is multiplied by the saltation matrix; the run fails
+ * (LAG_EMETHOD) where that does not exist: the event depends on an input, another one changes the state at the same
+ * time, or the motion only touches it. A saved state cannot be loaded into a run with a tangent. At a branch of if,
+ * abs, min, max the derivative is that of the branch taken; over a jump of a force, as of dry friction, columns are
+ * multiplied by the saltation matrix, which loses a rank where the motion begins to slide. With constraints the
+ * columns are projected onto their tangent space, in the mass metric, and derivatives are differences, to some 11
+ * digits; contacts have no tangent. */
 int lag_sim_set_tangent(lag_sim *sim, int k, const double *Y);
 /* Y[n * k] at the present time; between the ends of steps, by one shorter step of the method. */
 int lag_sim_tangent(lag_sim *sim, double *Y);
@@ -467,16 +522,18 @@ int lag_sim_tangent(lag_sim *sim, double *Y);
 void lag_sim_stats(lag_sim *sim, lag_stats *stats);
 /* The drift of monitor i so far, as judged against its limit: at ends of steps, and at the present time. */
 double lag_sim_monitor_drift(lag_sim *sim, int i);
-/* Judges monitors and the energy at the present time; advancing judges them only at ends of steps, whatever times are asked for. LAG_OK; LAG_EMONITOR;
- * LAG_EDRIFT where half of an energy that is conserved or balanced is lost or created; both with a message. The run itself can continue unchanged. */
+/* Judges monitors and the energy at the present time; advancing judges them only at ends of steps, whatever times
+ * are asked for. LAG_OK; LAG_EMONITOR; LAG_EDRIFT where half of an energy that is conserved or balanced is lost or
+ * created; both with a message. The run itself can continue unchanged. */
 int lag_sim_judge(lag_sim *sim);
-/* Closed form k of the scene (k < lag_sim_scene(sim)->nexact): the largest |motion - closed form| at the ends of steps so far, and the
- * difference now, both in the declared unit (of degC: K); of angles modulo 2 pi. NaN: the closed form is not finite. */
+/* Closed form k of the scene (k < lag_sim_scene(sim)->nexact): the largest |motion - closed form| at the ends of
+ * steps so far, and the difference now, both in the declared unit (of degC: K); of angles modulo 2 pi. NaN: the
+ * closed form is not finite. */
 void lag_sim_exact(lag_sim *sim, int k, double *largest, double *now);
 /* Number of firings of event k, and the times of the first and the last; NaN when there was none. */
 long long lag_sim_event_times(const lag_sim *sim, int k, double *first, double *last);
-/* Switching surface k < model->nmodes: the time during which the motion has slid on it, how often it has crossed the surface, and begun to slide; NULL:
- * not wanted. */
+/* Switching surface k < model->nmodes: the time during which the motion has slid on it, how often it has crossed the
+ * surface, and begun to slide; NULL: not wanted. */
 double lag_sim_switch_times(const lag_sim *sim, int k, long long *crossings, long long *slides);
 /* The last error, "" when there was none. */
 const char *lag_sim_message(const lag_sim *sim);
@@ -492,8 +549,9 @@ int lag_time_is_up(void *until, const lag_sim *sim);
 typedef void lag_event_fn(void *context, int k, double t, const double *before, const double *after);
 void lag_sim_on_event(lag_sim *sim, lag_event_fn *hook, void *context);
 
-/* save: x[lag_sim_save_size()] := everything that a later run needs. LAG_EINVAL when the method cannot be saved. load: into a simulation of the same scene,
- * method and options; x may come from anywhere: numbers that cannot be such a state are refused (LAG_EINVAL), and the simulation stays as it was. */
+/* save: x[lag_sim_save_size()] := everything that a later run needs. LAG_EINVAL when the method cannot be saved.
+ * load: into a simulation of the same scene, method and options; x may come from anywhere: numbers that cannot be
+ * such a state are refused (LAG_EINVAL), and the simulation stays as it was. */
 size_t lag_sim_save_size(const lag_sim *sim);
 int lag_sim_save(lag_sim *sim, double *x);
 int lag_sim_load(lag_sim *sim, const double *x);
@@ -501,37 +559,41 @@ int lag_sim_load(lag_sim *sim, const double *x);
 unsigned long long lag_sim_signature(const lag_sim *sim);
 
 /* ---- Shared libraries ------------------------------------------------------------------------
-
- * `lagc build MODEL --shared -o libNAME.so` makes a library that exports the functions of this header, by the same names for every model. The
- * functions below spare other languages the structs of lag_model.h. */
+ *
+ * `lagc build MODEL --shared -o libNAME.so` makes a library that exports the functions of this header, by the same
+ * names for every model. The functions below spare other languages the structs of lag_model.h. */
 
 /* The model's scenes: the one function that the library adds to liblag. */
 const lag_program *lag_library(void);
 
-/* LAG_ABI; scene i, NULL past the last; its name, its span and `every`, 0 where it does not say; the method that it names, or NULL. */
+/* LAG_ABI; scene i, NULL past the last; its name, its span and `every`, 0 where it does not say; the method that it
+ * names, or NULL. */
 int lag_library_abi(void);
 const lag_scene *lag_library_scene(const lag_program *program, int i);
 const char *lag_scene_span(const lag_scene *scene, double *t0, double *t1, double *every);
 const char *lag_scene_method(const lag_scene *scene);
 
-/* Name of item i of a kind: 'q' coordinates, 'z' states, 'p' parameters, 'u' inputs, 'e' events, 'c' charges, 'm' methods; NULL past the last. *unit,
- * unless NULL: its declared unit; *factor, *offset: x units are x*factor + offset in SI. */
+/* Name of item i of a kind: 'q' coordinates, 'z' states, 'p' parameters, 'u' inputs, 'e' events, 'c' charges, 'm'
+ * methods; NULL past the last. *unit, unless NULL: its declared unit; *factor, *offset: x units are x*factor +
+ * offset in SI. */
 const char *lag_item(const lag_scene *scene, int kind, int i, const char **unit, double *factor, double *offset);
 /* The method of this name, or NULL. */
 const lag_method *lag_find_method(const char *name);
 
-/* dy[count * n] := f(t[k], y[k]) for `count` states in SI, with the parameters and inputs as set; constraints with a condition hold
- * where that is true, contacts as in the run. Returns the first status that is not 0. */
+/* dy[count * n] := f(t[k], y[k]) for `count` states in SI, with the parameters and inputs as set; constraints with a
+ * condition hold where that is true, contacts as in the run. Returns the first status that is not 0. */
 int lag_sim_rhs(lag_sim *sim, int count, const double *t, const double *y, double *dy);
 
-/* Advances to t[0] .. t[rows - 1]: y[rows * n] := the states [SI], out[rows * noutputs] := the outputs, in declared units; either may be NULL. *done:
- * rows written. Returns as lag_sim_advance. */
+/* Advances to t[0] .. t[rows - 1]: y[rows * n] := the states [SI], out[rows * noutputs] := the outputs, in declared
+ * units; either may be NULL. *done: rows written. Returns as lag_sim_advance. */
 int lag_sim_rows(lag_sim *sim, int rows, const double *t, double *y, double *out, int *done);
 
-/* `count` motions with the scene, method, tolerance, inputs and values of `like`, each from its own start y0[n] and with its own parameters p[np], in
- * SI; NULL: those of `like`, as for an element of p that is NaN, which follows its formula if it has one. y[count * rows * n] := the states at t[rows]; NaN from a failure or stop on. status[count] := that of each. `like` stays as
- * it is; several threads may share it. Returns LAG_OK, LAG_ENOMEM or LAG_EINVAL. */
-int lag_sim_batch(const lag_sim *like, int count, const double *y0, const double *p, int rows, const double *t, double *y, int *status);
+/* `count` motions with the scene, method, tolerance, inputs and values of `like`, each from its own start y0[n] and
+ * with its own parameters p[np], in SI; NULL: those of `like`, as for an element of p that is NaN, which follows its
+ * formula if it has one. y[count * rows * n] := the states at t[rows]; NaN from a failure or stop on. status[count]
+ * := that of each. `like` stays as it is; several threads may share it. Returns LAG_OK, LAG_ENOMEM or LAG_EINVAL. */
+int lag_sim_batch(const lag_sim *like, int count, const double *y0, const double *p, int rows, const double *t,
+                  double *y, int *status);
 
 /* ---- Simulators ------------------------------------------------------------------------------ */
 
@@ -540,13 +602,16 @@ typedef struct lag_extras {
   const lag_method *const *methods; /* [nmethods] */
   int nmethods;
   const lag_algebra *algebra;       /* or NULL */
-  /* u[n * dimensions] := the first n points of the quasi-random sequence "sobol" or "halton" in (0, 1). 0, or the largest number of dimensions; or NULL */
+  /* u[n * dimensions] := the first n points of the quasi-random sequence "sobol" or "halton" in (0, 1). 0, or the
+   * largest number of dimensions; or NULL */
   int (*points)(const char *sequence, int dimensions, long long n, double *u);
-  /* Draws the picture in the SVG file at path svg, as PNG, into the open FILE. 0, or -1 with the reason in why[size]; or NULL */
+  /* Draws the picture in the SVG file at path svg, as PNG, into the open FILE. 0, or -1 with the reason in
+   * why[size]; or NULL */
   int (*png)(const char *svg, void *file, char *why, size_t size);
   /* Writes the arrays to an HDF5 file. 0, or -1; or NULL */
   int (*hdf5)(const char *path, const lag_grid *grid);
-  /* [nscenes] the program's scenes with their models compiled for vectors of 4 and 8 doubles (LAG_LANES in lag_model.h); or NULL */
+  /* [nscenes] the program's scenes with their models compiled for vectors of 4 and 8 doubles (LAG_LANES in
+   * lag_model.h); or NULL */
   const lag_scene *const *lanes_4, *const *lanes_8;
   const lag_ranks *ranks; /* or NULL */
 } lag_extras;
@@ -561,8 +626,8 @@ int lag_hdf5_write(const char *path, const lag_grid *grid);
 /* liblag_mpi.a, by MPI. */
 extern const lag_ranks lag_mpi;
 
-/* main() of a simulator: see --help, or app/simulator_help.c. extras may be NULL. Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 128 and the
- * number of the signal (130: Ctrl-C) when it was interrupted. */
+/* main() of a simulator: see --help, or app/simulator_help.c. extras may be NULL. Returns the exit status: 0 ok, 2
+ * usage or I/O, 3 the run failed, 128 and the number of the signal (130: Ctrl-C) when it was interrupted. */
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras);
 
 #ifdef __cplusplus

@@ -3,18 +3,20 @@
  *   M x - A^T l = f        M[n*n] symmetric, A[m*n]
  *   A x         = g
  *
- * for any A, of full rank or not, and any M that is regular on the kernel of A: x is then unique, and l the multipliers of least norm (the sum of
- * l_k^2, each in the unit of its constraint).
- * Null space method (Benzi, Golub, Liesen, Acta Numerica 14 (2005) 1, section 6, DOI 10.1017/S0962492904000212): A^T P = Q R by Householder
- * reflections with column pivoting (Golub & Van Loan, Matrix Computations, 4th ed. (2013), 5.4.2), where the part of a constraint that is
- * independent of those before it decides the rank. Rows and columns of the whole system are scaled to about 1 first (lag_scales), so that units and
- * factors of constraints do not matter. In the coordinates Q^T x the first r components follow from g, the others from M without constraints; l is
- * the least-norm solution of R l = M x - f there, by a second factorization where r < m. Cheaper methods come first where they are as good: Schur's
- * complement where M is positive definite and the constraints are far from dependent; elimination within a band for large systems.
+ * for any A, of full rank or not, and any M that is regular on the kernel of A: x is then unique, and l the
+ * multipliers of least norm (the sum of l_k^2, each in the unit of its constraint). Null space method (Benzi, Golub,
+ * Liesen, Acta Numerica 14 (2005) 1, section 6, DOI 10.1017/S0962492904000212): A^T P = Q R by Householder
+ * reflections with column pivoting (Golub & Van Loan, Matrix Computations, 4th ed. (2013), 5.4.2), where the part of
+ * a constraint that is independent of those before it decides the rank. Rows and columns of the whole system are
+ * scaled to about 1 first (lag_scales), so that units and factors of constraints do not matter. In the coordinates
+ * Q^T x the first r components follow from g, the others from M without constraints; l is the least-norm solution of
+ * R l = M x - f there, by a second factorization where r < m. Cheaper methods come first where they are as good:
+ * Schur's complement where M is positive definite and the constraints are far from dependent; elimination within a
+ * band for large systems.
  *
- * Near a position where constraints become dependent, a coarse rank is the right one for corrections of a state, whose right-hand side is little
- * more than rounding: with s the independence of the weakest constraint, a residual of 1e-16 moves a position by 1e-16/s, and turns the directions
- * which constraints allow by 1e-16/s^2.
+ * Near a position where constraints become dependent, a coarse rank is the right one for corrections of a state,
+ * whose right-hand side is little more than rounding: with s the independence of the weakest constraint, a residual
+ * of 1e-16 moves a position by 1e-16/s, and turns the directions which constraints allow by 1e-16/s^2.
  *
  * LAG_REAL may be a vector; LAG_LANE is its scalar. LAG_NO_BAND leaves the band out. */
 #ifndef LAG_KKT_H
@@ -34,20 +36,23 @@ static inline LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w);
 
 /* ---- band ---- */
 #ifndef LAG_NO_BAND
-/* The whole system [M A^T; A 0] within a band, for large systems: along chains, ladders and loops of any number of links its work grows
- * linearly, also where M is singular, or M^-1 full. Unknowns are in the order of Cuthill and McKee (ACM '69: Proc. 24th nat. conf., 157, DOI
- * 10.1145/800195.805928), begun at an end; the factorization is L U with row exchanges, which widen the band by half at most, where the pivots
- * of L D L^T would fill it (Golub & Van Loan, 4.3 and 4.4). All scratch is of LAG_LANE. */
+/* The whole system [M A^T; A 0] within a band, for large systems: along chains, ladders and loops of any number of
+ * links its work grows linearly, also where M is singular, or M^-1 full. Unknowns are in the order of Cuthill and
+ * McKee (ACM '69: Proc. 24th nat. conf., 157, DOI 10.1145/800195.805928), begun at an end; the factorization is L U
+ * with row exchanges, which widen the band by half at most, where the pivots of L D L^T would fill it (Golub & Van
+ * Loan, 4.3 and 4.4). All scratch is of LAG_LANE. */
 #define LAG_BAND_LEAST 62
 #define LAG_BAND_EDGES 6
 
-/* The adjacency graph and the order of the unknowns: neighbours of unknown i are next[first[i]] to next[first[i + 1]]; order[place[i]] = i. */
+/* The adjacency graph and the order of the unknowns: neighbours of unknown i are next[first[i]] to next[first[i +
+ * 1]]; order[place[i]] = i. */
 typedef struct lag_band {
   int all, edges, half; /* half: half bandwidth, the largest difference of neighbours' places */
   LAG_LANE *edge, *first, *next, *order, *place, *scale, *rows, *pivot;
 } lag_band;
 
-/* Lists the edges of the graph, i > j, as numbers i*all + j, and the neighbours of each unknown. Returns 0 where there are too many for a band. */
+/* Lists the edges of the graph, i > j, as numbers i*all + j, and the neighbours of each unknown. Returns 0 where
+ * there are too many for a band. */
 static int lag_edges(int n, int m, const LAG_LANE *M, const LAG_LANE *A, lag_band *b) {
   b->edges = 0;
   for (int i = 0; i < b->all; i++) {
@@ -72,7 +77,8 @@ static int lag_edges(int n, int m, const LAG_LANE *M, const LAG_LANE *A, lag_ban
   return m <= n;
 }
 
-/* Breadth-first numbering: places from `at` on go to unknown i, its neighbours, and so on. Returns the first free place. */
+/* Breadth-first numbering: places from `at` on go to unknown i, its neighbours, and so on. Returns the first free
+ * place. */
 static int lag_walk(const lag_band *b, int i, int at) {
   int end = at;
   b->order[end] = (LAG_LANE)i, b->place[i] = (LAG_LANE)end++;
@@ -114,8 +120,9 @@ static LAG_LANE lag_element(int n, const lag_band *b, int e, const LAG_LANE *M, 
   return *i < n ? M[*i*n + *j] : A[(*i - n)*n + *j];
 }
 
-/* Fills and factors the band, L U with row exchanges: rows of 3 half + 1 elements, the last `half` for exchanges; scaled so that M has ones on
- * its diagonal and each constraint a largest element of 1. Returns 0 where a pivot is 0. */
+/* Fills and factors the band, L U with row exchanges: rows of 3 half + 1 elements, the last `half` for exchanges;
+ * scaled so that M has ones on its diagonal and each constraint a largest element of 1. Returns 0 where a pivot is
+ * 0. */
 static int lag_band_factor(int n, const lag_band *b, const LAG_LANE *M, const LAG_LANE *A) {
   const int h = b->half, width = 3*h + 1;
   int i, j;
@@ -137,7 +144,8 @@ static int lag_band_factor(int n, const lag_band *b, const LAG_LANE *M, const LA
     int top = k;
     LAG_LANE *const row = b->rows + k*width + h; /* row[c]: column k + c */
     for (int r = k + 1; r <= last; r++)
-      if (LAG_LANE_FN(fabs)(b->rows[r*width + k - r + h]) > LAG_LANE_FN(fabs)(b->rows[top*width + k - top + h])) top = r;
+      if (LAG_LANE_FN(fabs)(b->rows[r * width + k - r + h]) > LAG_LANE_FN(fabs)(b->rows[top * width + k - top + h]))
+        top = r;
     b->pivot[k] = (LAG_LANE)top;
     for (int c = 0; c <= 2*h && top != k; c++) {
       LAG_LANE *const other = b->rows + top*width + k + c - top + h;
@@ -171,8 +179,8 @@ static void lag_band_solve(const lag_band *b, LAG_LANE *y) {
   }
 }
 
-/* Estimate of the 1-norm of the inverse of a symmetric matrix (W. Hager, SIAM J. Sci. Stat. Comput. 5 (1984) 311, DOI 10.1137/0905023). y[all]
- * and z[all] are scratch. */
+/* Estimate of the 1-norm of the inverse of a symmetric matrix (W. Hager, SIAM J. Sci. Stat. Comput. 5 (1984) 311,
+ * DOI 10.1137/0905023). y[all] and z[all] are scratch. */
 static LAG_LANE lag_band_inverse(const lag_band *b, LAG_LANE *y, LAG_LANE *z) {
   LAG_LANE size = 0;
   int at = -1;
@@ -193,7 +201,8 @@ static LAG_LANE lag_band_inverse(const lag_band *b, LAG_LANE *y, LAG_LANE *z) {
 }
 
 /* y := residual of the right-hand side (f, g) for the solution (x, l), scaled and in the order of places. */
-static void lag_band_rest(int n, const lag_band *b, const LAG_LANE *M, const LAG_LANE *A, const LAG_LANE *side, const LAG_LANE *x, LAG_LANE *y) {
+static void lag_band_rest(int n, const lag_band *b, const LAG_LANE *M, const LAG_LANE *A, const LAG_LANE *side,
+                          const LAG_LANE *x, LAG_LANE *y) {
   int i, j;
   for (int k = 0; k < b->all; k++) y[(int)b->place[k]] = side[k] - (k < n ? M[k*n + k]*x[k] : 0);
   for (int e = 0; e < b->edges; e++) {
@@ -204,23 +213,28 @@ static void lag_band_rest(int n, const lag_band *b, const LAG_LANE *M, const LAG
   for (int k = 0; k < b->all; k++) y[(int)b->place[k]] *= b->scale[k];
 }
 
-/* Solves the system of lag_kkt if its band fits into w[room] and its condition is at most 1e8 (each constraint has a part of some 1e-4 of its
- * own, so neither rank nor least norm is in question), with one step of refinement. x and l hold f and g. Returns whether it has solved the
- * system; M and A stay. */
-static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w, int room) {
+/* Solves the system of lag_kkt if its band fits into w[room] and its condition is at most 1e8 (each constraint has a
+ * part of some 1e-4 of its own, so neither rank nor least norm is in question), with one step of refinement. x and l
+ * hold f and g. Returns whether it has solved the system; M and A stay. */
+static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w,
+                      int room) {
   const int all = n + m;
   lag_band b = {all, 0, 0, w, w + LAG_BAND_EDGES*all, 0, 0, 0, 0, 0, 0};
-  b.next = b.first + all + 1, b.order = b.next + 2*LAG_BAND_EDGES*all, b.place = b.order + all, b.scale = b.place + all, b.pivot = b.scale + all;
+  b.next = b.first + all + 1, b.order = b.next + 2 * LAG_BAND_EDGES * all, b.place = b.order + all,
+  b.scale = b.place + all, b.pivot = b.scale + all;
   LAG_LANE *const side = b.pivot + all, *const y = side + all, *const z = y + all;
   b.rows = z + all;
   if (b.rows - w > room || !lag_edges(n, m, M, A, &b)) return 0;
   lag_places(&b);
-  if (3*b.half + 1 > (room - (int)(b.rows - w))/all || !lag_band_factor(n, &b, M, A) || !(lag_band_inverse(&b, y, z) <= (LAG_LANE)1e8)) return 0;
+  if (3 * b.half + 1 > (room - (int)(b.rows - w)) / all || !lag_band_factor(n, &b, M, A) ||
+      !(lag_band_inverse(&b, y, z) <= (LAG_LANE)1e8))
+    return 0;
   for (int i = 0; i < all; i++) side[i] = i < n ? x[i] : l[i - n], z[i] = 0;
   for (int turn = 0; turn < 2; turn++) {
     lag_band_rest(n, &b, M, A, side, z, y);
     lag_band_solve(&b, y);
-    for (int i = 0; i < all; i++) z[i] += (i < n ? 1 : -1)*b.scale[i]*y[(int)b.place[i]]; /* the symmetric system is that of (x, -l) */
+    /* the symmetric system is that of (x, -l) */
+    for (int i = 0; i < all; i++) z[i] += (i < n ? 1 : -1)*b.scale[i]*y[(int)b.place[i]];
   }
   for (int i = 0; i < all; i++) *(i < n ? x + i : l + i - n) = z[i];
   return 1;
@@ -257,12 +271,14 @@ static LAG_LANE lag_reflector(int n, LAG_LANE *v, LAG_LANE *beta) {
   return alpha;
 }
 
-/* scale[m + n], powers of two, of the constraints and then of the coordinates: [M A^T; A 0], scaled by them, has elements as near to 1 as least
- * squares of their exponents allow (A. R. Curtis, J. K. Reid, IMA J. Appl. Math. 10 (1972) 118, DOI 10.1093/imamat/10.1.118). So ranks depend on
- * no unit: another unit of a constraint or coordinate changes its scale and nothing else. Elements that are rounding beside the largest of their
- * row and column do not count; inertia counts 16 times, so that a constraint that becomes dependent is seen to, and not scaled up. top[m + n]
- * and size[(m + n) n] are scratch. */
-static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *scale, LAG_LANE *top, LAG_LANE *size) {
+/* scale[m + n], powers of two, of the constraints and then of the coordinates: [M A^T; A 0], scaled by them, has
+ * elements as near to 1 as least squares of their exponents allow (A. R. Curtis, J. K. Reid, IMA J. Appl. Math. 10
+ * (1972) 118, DOI 10.1093/imamat/10.1.118). So ranks depend on no unit: another unit of a constraint or coordinate
+ * changes its scale and nothing else. Elements that are rounding beside the largest of their row and column do not
+ * count; inertia counts 16 times, so that a constraint that becomes dependent is seen to, and not scaled up. top[m +
+ * n] and size[(m + n) n] are scratch. */
+static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *scale, LAG_LANE *top,
+                       LAG_LANE *size) {
   const LAG_LANE none = (LAG_LANE)1e9;
   const int all = m + n;
   LAG_LANE moved = 1;
@@ -277,16 +293,17 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
       if (here < none && here > top[k]) top[k] = here;
       if (here < none && here > top[m + j]) top[m + j] = here;
     }
-  LAG_LANE least = none, most = -none; /* range of row and column sizes of A: where it is small nothing is scaled, so nothing changes from call
-                                        * to call */
-  for (int k = 0; k < m; k++) least = top[k] > -none && top[k] < least ? top[k] : least, most = top[k] > most ? top[k] : most;
+  /* range of row and column sizes of A: where it is small nothing is scaled, so nothing changes from call to call */
+  LAG_LANE least = none, most = -none;
+  for (int k = 0; k < m; k++)
+    least = top[k] > -none && top[k] < least ? top[k] : least, most = top[k] > most ? top[k] : most;
   for (int j = 0; j < n; j++) {
     LAG_LANE column = -none;
     for (int k = 0; k < m; k++) column = size[k*n + j] < none && size[k*n + j] > column ? size[k*n + j] : column;
     least = column > -none && column < least ? column : least;
   }
-  LAG_LANE light = none, heavy = -none; /* range of inertia, which goes with the square of a coordinate's unit; coordinates without inertia do
-                                         * not count */
+  /* range of inertia, which goes with the square of a coordinate's unit; coordinates without inertia do not count */
+  LAG_LANE light = none, heavy = -none;
   for (int j = 0; j < n; j++) {
     const LAG_LANE here = size[(m + j)*n + j] < none ? size[(m + j)*n + j] : -none;
     light = here < light ? here : light, heavy = here > heavy ? here : heavy;
@@ -303,7 +320,8 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
     for (int k = 0; k < all; k++) {
       LAG_LANE sum = 0, weight = 0;
       for (int j = 0; j < n; j++) {
-        const LAG_LANE here = size[k*n + j], twice = (LAG_LANE)(j == k - m ? 2 : 1); /* diagonal: the scale enters twice */
+        /* diagonal: the scale enters twice */
+        const LAG_LANE here = size[k*n + j], twice = (LAG_LANE)(j == k - m ? 2 : 1);
         const LAG_LANE counts = (LAG_LANE)(j == k - m ? 16 : 1);
         if (here < none) sum += counts*twice*(here + (j == k - m ? 0 : scale[m + j])), weight += counts*twice*twice;
       }
@@ -314,13 +332,16 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
       scale[k] = now;
     }
   }
-  for (int k = 0; k < all; k++) scale[k] = LAG_LANE_FN(ldexp)((LAG_LANE)1, (int)LAG_LANE_FN(floor)(scale[k] + (LAG_LANE)0.5));
+  for (int k = 0; k < all; k++)
+    scale[k] = LAG_LANE_FN(ldexp)((LAG_LANE)1, (int)LAG_LANE_FN(floor)(scale[k] + (LAG_LANE)0.5));
 }
 
-/* QR factorization of A^T with column pivoting, A P = R^T Q^T, stored by rows: row k of A[m*n] becomes [R^T | Householder vector k], with
- * diag[k] and beta[k] beside it; order[m]: permutation of the rows; scale[m]: divisor of each. Returns the rank: a row counts only if more than
- * eps^(2/3) of it, or eps^(1/3) if coarse, is independent of those before it. */
-static int lag_rank(int n, int m, int coarse, LAG_LANE *A, LAG_LANE *diag, LAG_LANE *beta, LAG_LANE *scale, LAG_LANE *order) {
+/* QR factorization of A^T with column pivoting, A P = R^T Q^T, stored by rows: row k of A[m*n] becomes [R^T |
+ * Householder vector k], with diag[k] and beta[k] beside it; order[m]: permutation of the rows; scale[m]: divisor of
+ * each. Returns the rank: a row counts only if more than eps^(2/3) of it, or eps^(1/3) if coarse, is independent of
+ * those before it. */
+static int lag_rank(int n, int m, int coarse, LAG_LANE *A, LAG_LANE *diag, LAG_LANE *beta, LAG_LANE *scale,
+                    LAG_LANE *order) {
   const LAG_LANE root = LAG_LANE_FN(cbrt)(lag_rounding()), least = coarse ? root : root*root;
   int rank = 0;
   for (int j = 0; j < m; j++) {
@@ -394,8 +415,8 @@ static int lag_last(int n, const LAG_LANE *x) {
   return n - 1;
 }
 
-/* Cholesky's factorization within the envelope of M's lower triangle: L replaces M, row i begins at from[i]. Returns whether each pivot is more
- * than `least` of its diagonal element. */
+/* Cholesky's factorization within the envelope of M's lower triangle: L replaces M, row i begins at from[i]. Returns
+ * whether each pivot is more than `least` of its diagonal element. */
 static int lag_cholesky(int n, LAG_LANE *M, const LAG_LANE *from, LAG_LANE least) {
   for (int i = 0; i < n; i++) {
     const int begin = (int)from[i];
@@ -425,13 +446,15 @@ static void lag_backward(int n, const LAG_LANE *L, const LAG_LANE *from, LAG_LAN
   }
 }
 
-/* Solves by Schur's complement S = A M^-1 A^T, with one step of refinement, if M is positive definite and the constraints are far from dependent
- * (a part of 1e-2 of each is independent of the others, so S has lost at most 4 digits). x and l hold f and g. Returns whether it has solved the
- * system; M and A stay. w[n*n + m*n + m*m + 2*n + 5*m] is scratch. The work follows the envelopes of M, L^-1 A^T and S: along a chain with
- * coordinates in its order it grows linearly. */
+/* Solves by Schur's complement S = A M^-1 A^T, with one step of refinement, if M is positive definite and the
+ * constraints are far from dependent (a part of 1e-2 of each is independent of the others, so S has lost at most 4
+ * digits). x and l hold f and g. Returns whether it has solved the system; M and A stay. w[n*n + m*n + m*m + 2*n +
+ * 5*m] is scratch. The work follows the envelopes of M, L^-1 A^T and S: along a chain with coordinates in its order
+ * it grows linearly. */
 static int lag_schur(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
   LAG_LANE *const L = w, *const W = L + n*n, *const S = W + m*n, *const from = S + m*m, *const y = from + n;
-  LAG_LANE *const begin = y + n, *const end = begin + m, *const row = end + m, *const mu = row + m, *const rest = mu + m;
+  LAG_LANE *const begin = y + n, *const end = begin + m, *const row = end + m, *const mu = row + m,
+                  *const rest = mu + m;
   if (m > n) return 0;
   for (int i = 0; i < n; i++) {
     if (!(M[i*n + i] > 0)) return 0;
@@ -479,8 +502,9 @@ static int lag_schur(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LAN
   return 1;
 }
 
-/* Gaussian elimination with partial pivoting of the lower right block of M from row r: x and z := the solutions for the right-hand sides x and
- * z. Returns the largest |z| or |1/pivot|, a lower bound of the inverse, or -1 where a pivot is 0. */
+/* Gaussian elimination with partial pivoting of the lower right block of M from row r: x and z := the solutions for
+ * the right-hand sides x and z. Returns the largest |z| or |1/pivot|, a lower bound of the inverse, or -1 where a
+ * pivot is 0. */
 static LAG_LANE lag_eliminate(int n, int r, LAG_LANE *M, LAG_LANE *x, LAG_LANE *z) {
   LAG_LANE most = 0;
   for (int k = r; k < n; k++) {
@@ -489,7 +513,12 @@ static LAG_LANE lag_eliminate(int n, int r, LAG_LANE *M, LAG_LANE *x, LAG_LANE *
       if (LAG_LANE_FN(fabs)(M[i*n + k]) > LAG_LANE_FN(fabs)(M[top*n + k])) top = i;
     if (!(LAG_LANE_FN(fabs)(M[top*n + k]) > 0)) return -1;
     for (int j = k; j < n + 2 && top != k; j++) {
-      LAG_LANE *const upper = j < n ? &M[k*n + j] : j == n ? &x[k] : &z[k], *const lower = j < n ? &M[top*n + j] : j == n ? &x[top] : &z[top];
+      LAG_LANE *const upper = j < n    ? &M[k * n + j]
+                              : j == n ? &x[k]
+                                       : &z[k],
+                      *const lower = j < n    ? &M[top * n + j]
+                                     : j == n ? &x[top]
+                                              : &z[top];
       const LAG_LANE was = *upper;
       *upper = *lower;
       *lower = was;
@@ -512,10 +541,11 @@ static LAG_LANE lag_eliminate(int n, int r, LAG_LANE *M, LAG_LANE *x, LAG_LANE *
   return most;
 }
 
-/* x[n], l[m] hold f and g, and become the solution; NaN where M or A has an element that is not finite. M and A are destroyed. w[n*n + m*n + m*m
- * + 2*n + 9*m] is scratch. Returns whether M is regular on the kernel of A, by more than rounding: pivots and the solution for an arbitrary
- * right-hand side bound the inverse from below (J. D. Dixon, SIAM J. Numer. Anal. 20 (1983) 812, DOI 10.1137/0720053); its norm times the
- * rounding of M is to be below a hundredth. */
+/* x[n], l[m] hold f and g, and become the solution; NaN where M or A has an element that is not finite. M and A are
+ * destroyed. w[n*n + m*n + m*m + 2*n + 9*m] is scratch. Returns whether M is regular on the kernel of A, by more
+ * than rounding: pivots and the solution for an arbitrary right-hand side bound the inverse from below (J. D. Dixon,
+ * SIAM J. Numer. Anal. 20 (1983) 812, DOI 10.1137/0720053); its norm times the rounding of M is to be below a
+ * hundredth. */
 static int lag_kkt_rows(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
 #ifdef LAG_BAND_LEAST
   if (n + m >= LAG_BAND_LEAST && lag_banded(n, m, M, A, x, l, w, n*n + m*n + m*m + 2*n + 9*m)) return 1;
@@ -526,7 +556,8 @@ static int lag_kkt_rows(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_
   for (int i = 0; i < n + m && !(any == 0); i++) *(i < n ? x + i : l + i - n) = any; /* NaN, like that element */
   if (!(any == 0)) return 1;
   LAG_LANE *const diag = w, *const beta = w + m, *const scale = w + 2*m, *const order = w + 3*m;
-  LAG_LANE *const y = w + 4*m, *const s = w + 5*m, *const mu = w + 6*m, *const S = w + 7*m, *const z = S + m*m + m, *const unit = z + n + m;
+  LAG_LANE *const y = w + 4 * m, *const s = w + 5 * m, *const mu = w + 6 * m, *const S = w + 7 * m,
+                  *const z = S + m * m + m, *const unit = z + n + m;
   LAG_LANE most = 0, u = 0;
   lag_scales(n, m, M, A, unit - m, z - m, unit + n);
   for (int i = 0; i < n; i++) {

@@ -53,12 +53,14 @@ LAG_LANES_EACH(LAG_DECLARE_1, LAG_DECLARE_2)
 #define LAG_AND(a, b) ((a) & (b))
 #define LAG_OR(a, b) ((a) | (b))
 #define LAG_ANY(c) lag_lanes_any(c)
-/* Checks of pivots. A lane with a singular matrix does not stop the others: its results are not finite, and its bit is set in the negative of
- * the status; so for a lane whose matrix is not finite. */
+/* Checks of pivots. A lane with a singular matrix does not stop the others: its results are not finite, and its bit
+ * is set in the negative of the status; so for a lane whose matrix is not finite. */
 #if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
 #define LAG_PIVOTS int singular __attribute__((unused)) = 0
 #define LAG_PIVOT(c) singular |= lag_lanes_bits(~(c))
-#define LAG_POSITIVE(d) singular |= (unsigned char)__builtin_ia32_cmppd512_mask(d, LAG_C(0.0), 26 /* not greater, or unordered */, (unsigned char)-1, 4)
+#define LAG_POSITIVE(d)                                                                                      \
+  singular |= (unsigned char)__builtin_ia32_cmppd512_mask(d, LAG_C(0.0), 26 /* not greater, or unordered */, \
+                                                          (unsigned char)-1, 4)
 #define LAG_PIVOTS_STATUS -singular
 #else
 #define LAG_PIVOTS LAG_MASK singular __attribute__((unused)) = {0}
@@ -109,8 +111,8 @@ LAG_LANES_EACH(LAG_DECLARE_1, LAG_DECLARE_2)
 #endif
 
 /* ---- own: front ---- */
-/* LAG_OWN: 1 where the functions below are used; for scalars other than double, and with LAG_LIBM or LAG_COMPLEX defined, those of the library
- * are. */
+/* LAG_OWN: 1 where the functions below are used; for scalars other than double, and with LAG_LIBM or LAG_COMPLEX
+ * defined, those of the library are. */
 #define LAG_JOIN2(a, b) a##b
 #define LAG_JOIN(a, b) LAG_JOIN2(a, b)
 #define LAG_IS_float 0

@@ -1,16 +1,18 @@
 /* lag_model.h: the interface between emitted C and the runtime. Includes only <stddef.h>.
  *
- * A model is a const struct of names, sizes and functions, emitted by lagc. Its state is q[nq] (generalised coordinates), v[nq] (their time
- * derivatives) and z[nz] (other states); p[np + nderived] are its parameters, of which derive computes the last nderived from the others; u[nu]
- * its inputs, and modes of switches behind them; w[nw] work space for its functions. All values are in SI units. No function allocates, keeps state, or writes past the sizes here.
- * Arrays passed to one call do not overlap.
+ * A model is a const struct of names, sizes and functions, emitted by lagc. Its state is q[nq] (generalised
+ * coordinates), v[nq] (their time derivatives) and z[nz] (other states); p[np + nderived] are its parameters, of
+ * which derive computes the last nderived from the others; u[nu] its inputs, and modes of switches behind them;
+ * w[nw] work space for its functions. All values are in SI units. No function allocates, keeps state, or writes past
+ * the sizes here. Arrays passed to one call do not overlap.
  *
- * A function returns 0 when all went well, > 0 when a smaller step may help (the value left the model's domain), < 0 for a failure that no step
- * size cures. */
+ * A function returns 0 when all went well, > 0 when a smaller step may help (the value left the model's domain), < 0
+ * for a failure that no step size cures. */
 #ifndef LAG_MODEL_H
 #define LAG_MODEL_H
 
-#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || \
+    (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
 #error "models need NaN and exact sums: compile them without -ffast-math, -Ofast and /fp:fast"
 #endif
 
@@ -22,8 +24,9 @@ extern "C" {
 
 #define LAG_ABI 15
 
-/* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many doubles, one state or one
- * set of parameters a lane. The status < 0 of such a call has bit k of its negative set where lane k is singular; the other lanes are right. */
+/* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many
+ * doubles, one state or one set of parameters a lane. The status < 0 of such a call has bit k of its negative set
+ * where lane k is singular; the other lanes are right. */
 #ifndef LAG_REAL
 #ifdef LAG_LANES
 typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
@@ -51,7 +54,9 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 enum {
   LAG_OK = 0,
   LAG_ERETRY = 1,     /* outside the domain here: a smaller step may help */
-  LAG_ESINGULAR = -1  /* the mass matrix is singular at this state, or not positive definite as elsewhere; with LAG_FIRST_ORDER, the two-form */
+  /* the mass matrix is singular at this state, or not positive definite as elsewhere; with LAG_FIRST_ORDER, the
+   * two-form */
+  LAG_ESINGULAR = -1
 };
 
 /* Facts that the compiler has proved of a model with its own formulas and tables of inputs. */
@@ -60,20 +65,26 @@ enum {
   LAG_CONSTANT_MASS = 2,    /* d2L/dq'2 depends on no coordinate, velocity or time */
   LAG_AUTONOMOUS = 4,       /* the right-hand side does not contain t */
   LAG_SMOOTH = 8,           /* no if, abs, sign, min, max, atan2 with a cut, and no table */
-  LAG_SEPARABLE = 16,       /* constant mass matrix, accelerations that do not depend on velocities, no states; with LAG_FIRST_ORDER a Hamiltonian
-                             * T(p) + V(q, t): nz is even, z = [q|p], the rates of q are functions of p alone and those of p of q and t */
+  /* constant mass matrix, accelerations that do not depend on velocities, no states; with LAG_FIRST_ORDER a
+   * Hamiltonian T(p) + V(q, t): nz is even, z = [q|p], the rates of q are functions of p alone and those of p of q
+   * and t */
+  LAG_SEPARABLE = 16,
   LAG_TIMELESS = 32,        /* t enters only by the formulas and tables of inputs, if at all */
   LAG_LOSES_ENERGY = 64,    /* not proved to be conserved; with constant inputs, the energy less the work of forces that
                              * are constant, do no work or have a potential never grows: the dissipation is quadratic in
                              * q' and nowhere negative, for the signs declared */
-  LAG_FIRST_ORDER = 128,    /* L = theta(q, t) v - H is linear in all velocities: coordinates are among z, nq is 0, and their rates solve
-                             * omega zd = dH/dq + ... with the two-form omega = dtheta in place of a mass matrix */
-  LAG_CONSTANT_FORM = 256,  /* the same, and omega depends on no coordinate, state or time, and no force on velocities */
+  /* L = theta(q, t) v - H is linear in all velocities: coordinates are among z, nq is 0, and their rates solve omega
+   * zd = dH/dq + ... with the two-form omega = dtheta in place of a mass matrix */
+  LAG_FIRST_ORDER = 128,
+  /* the same, and omega depends on no coordinate, state or time, and no force on velocities */
+  LAG_CONSTANT_FORM = 256,
   LAG_MASSLESS = 512,       /* the mass matrix is singular; constraints determine the coordinates without inertia */
-  LAG_SUM_HAMILTONIAN = 1024 /* the Hamiltonian is T(p) + V(q, t), z = [q|p]; LAG_SEPARABLE, too, if forces depend on q and t alone */
+  /* the Hamiltonian is T(p) + V(q, t), z = [q|p]; LAG_SEPARABLE, too, if forces depend on q and t alone */
+  LAG_SUM_HAMILTONIAN = 1024
 };
 
-/* A named quantity. unit is as declared ("deg"), or as inferred from the equations, "" when none; x units are x*factor + offset in SI. */
+/* A named quantity. unit is as declared ("deg"), or as inferred from the equations, "" when none; x units are
+ * x*factor + offset in SI. */
 typedef struct lag_var {
   const char *name;
   const char *unit;
@@ -83,14 +94,16 @@ typedef struct lag_var {
   double offset; /* 273.15 of degC; otherwise 0 */
 } lag_var;
 
-/* Direction of an event that happens at the times t0 + k T, k = 1, 2, ...: its function is the period T [s], of parameters alone. */
+/* Direction of an event that happens at the times t0 + k T, k = 1, 2, ...: its function is the period T [s], of
+ * parameters alone. */
 #define LAG_KICK 2
 typedef struct lag_event {
   const char *name;
   int direction; /* 1 rising, -1 falling, 0 both, LAG_KICK */
 } lag_event;
 
-/* The table of an input: n rows with increasing times, joined by splines. Used by emitted code; the runtime only ends steps at the rows. */
+/* The table of an input: n rows with increasing times, joined by splines. Used by emitted code; the runtime only
+ * ends steps at the rows. */
 typedef struct lag_table {
   int input; /* index of the input */
   int n, width;
@@ -102,17 +115,18 @@ typedef struct lag_entry {
   int row, col;
 } lag_entry;
 
-/* A derivative of event `event`: of its function (row < 0), or of the value that its actions set for component `row` of (q, v, z); by component
- * `col`, or by time where col is 2 nq + nz. */
+/* A derivative of event `event`: of its function (row < 0), or of the value that its actions set for component `row`
+ * of (q, v, z); by component `col`, or by time where col is 2 nq + nz. */
 typedef struct lag_jump {
   int event, row, col;
 } lag_jump;
 
 /* The exact linearisation of a model, emitted where a method or command needs it (lagc --with linear).
  *
- * The residuals r[nq + nz] vanish along a motion: r_i = f_i - sum_j M_ij a_j for coordinates i, r_(nq + k) = flow_k - z_k' for states. From their
- * derivatives by y = (q, v, z), at fixed a and z', follow the accelerations' changes, da = M^-1 (dr/dy) dy, and the rates', their rows of dr/dy. At
- * an equilibrium a is 0, and -dr/dq, -dr/dv are the stiffness matrix and the matrix of damping and gyroscopic forces. See lag_jacobian() in lag.h. */
+ * The residuals r[nq + nz] vanish along a motion: r_i = f_i - sum_j M_ij a_j for coordinates i, r_(nq + k) = flow_k
+ * - z_k' for states. From their derivatives by y = (q, v, z), at fixed a and z', follow the accelerations' changes,
+ * da = M^-1 (dr/dy) dy, and the rates', their rows of dr/dy. At an equilibrium a is 0, and -dr/dq, -dr/dv are the
+ * stiffness matrix and the matrix of damping and gyroscopic forces. See lag_jacobian() in lag.h. */
 typedef struct lag_linear {
   int ndr;
   const lag_entry *dr;   /* [ndr] row < nq + nz, col < 2 nq + nz; row by row, columns ascending; others are zero */
@@ -124,8 +138,9 @@ typedef struct lag_linear {
   int (*eval)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
               const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w);
 
-  /* Derivatives for the saltation matrices of events: d[njump], as listed in jump. Derivatives of g that are not listed are zero, and so are
-   * those of a value that is set; each value that is set has the entry of its own component. Events that depend on inputs are not listed. */
+  /* Derivatives for the saltation matrices of events: d[njump], as listed in jump. Derivatives of g that are not
+   * listed are zero, and so are those of a value that is set; each value that is set has the entry of its own
+   * component. Events that depend on inputs are not listed. */
   int njump;
   const lag_jump *jump;
   int (*jumps)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
@@ -140,18 +155,19 @@ typedef struct lag_constraint {
   int line;         /* line of the model's text; 0: not known, as in C that `lagc emit` writes */
 } lag_constraint;
 
-/* The constraints of a model, n in all. The first nholonomic are on positions: c(q, t) = 0; or, where the model states r = 0 and r is the rate
- * of c(q, t), that c keeps its value at the start. On velocities all are r = A(q, t) v + b(q, t) = 0, with r = dc/dt of the first nholonomic.
- * accel obeys them: its accelerations satisfy M a = f + A^T lambda, dr/dt = 0. They do not correct an error in c and r; the functions below do,
- * after a step.
+/* The constraints of a model, n in all. The first nholonomic are on positions: c(q, t) = 0; or, where the model
+ * states r = 0 and r is the rate of c(q, t), that c keeps its value at the start. On velocities all are r = A(q, t)
+ * v + b(q, t) = 0, with r = dc/dt of the first nholonomic. accel obeys them: its accelerations satisfy M a = f + A^T
+ * lambda, dr/dt = 0. They do not correct an error in c and r; the functions below do, after a step.
  *
- * A change d[nq] of the state with A d = g and least d^T M d satisfies M d = A^T mu. Constraints may be redundant, if g is consistent with them;
- * M may be singular along directions that A fixes. */
+ * A change d[nq] of the state with A d = g and least d^T M d satisfies M d = A^T mu. Constraints may be redundant,
+ * if g is consistent with them; M may be singular along directions that A fixes. */
 typedef struct lag_constraints {
   int n, nholonomic;
   const lag_constraint *of; /* [n] */
   int njacobian;
-  const lag_entry *jacobian; /* [njacobian] entries of A, row < n, col < nq; row by row, columns ascending; others are zero */
+  /* [njacobian] entries of A, row < n, col < nq; row by row, columns ascending; others are zero */
+  const lag_entry *jacobian;
   int nmass;
   const lag_entry *mass;     /* [nmass] entries of M's lower triangle, col <= row */
 
@@ -163,8 +179,8 @@ typedef struct lag_constraints {
   int (*matrices)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                   const LAG_REAL *u, LAG_REAL *A, LAG_REAL *M, LAG_REAL *w);
 
-  /* d[nq] and force[nq] = A^T mu. position: for g[nholonomic] and the holonomic constraints alone; velocity: for g[n] and all constraints. A and
-   * M are taken at the state given. */
+  /* d[nq] and force[nq] = A^T mu. position: for g[nholonomic] and the holonomic constraints alone; velocity: for
+   * g[n] and all constraints. A and M are taken at the state given. */
   int (*position)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                   const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
   int (*velocity)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
@@ -184,28 +200,31 @@ typedef struct lag_charge {
   unsigned flags;
 } lag_charge;
 
-/* Noether charges: conserved by a symmetry of L, changed by forces or constraints. The first is the energy, the charge of translations in time;
- * lag_model.energy gives its value. */
+/* Noether charges: conserved by a symmetry of L, changed by forces or constraints. The first is the energy, the
+ * charge of translations in time; lag_model.energy gives its value. */
 typedef struct lag_charges {
   int n;
   const lag_charge *of; /* [n] */
 
-  /* out[2 (n - 1)]: for each charge but the energy, its value and the sum of its |terms|, the scale of its drift. NULL where n is 1. */
+  /* out[2 (n - 1)]: for each charge but the energy, its value and the sum of its |terms|, the scale of its drift.
+   * NULL where n is 1. */
   int (*values)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                 const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
-  /* out[n]: dQ/dt of each charge, 0 where it is not known; with dry_friction out[n + 1], the last the power of dry friction. NULL: all are
-   * conserved. */
+  /* out[n]: dQ/dt of each charge, 0 where it is not known; with dry_friction out[n + 1], the last the power of dry
+   * friction. NULL: all are conserved. */
   int (*powers)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                 const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
   int dry_friction;
 } lag_charges;
 
-/* A switching function g: where it is 0 the equations jump, or have a corner, as sign(g), abs(g) and if(g > 0, a, b) do.
+/* A switching function g: where it is 0 the equations jump, or have a corner, as sign(g), abs(g) and if(g > 0, a, b)
+ * do.
  *
- * The first nmodes switches of a model have a mode, in u behind the inputs: u[nu + k] is 1 for the branch of g > 0, -1 for that of g < 0, at any
- * state; between, where the motion slides on g = 0, the value of sign(g) that keeps it there; with is_floor the value of floor(g). LAG_FREE: the
- * state decides. So u has nu + nmodes elements. The other switches are watched only. */
+ * The first nmodes switches of a model have a mode, in u behind the inputs: u[nu + k] is 1 for the branch of g > 0,
+ * -1 for that of g < 0, at any state; between, where the motion slides on g = 0, the value of sign(g) that keeps it
+ * there; with is_floor the value of floor(g). LAG_FREE: the state decides. So u has nu + nmodes elements. The other
+ * switches are watched only. */
 #define LAG_FREE 1e30
 typedef struct lag_switch {
   const char *surface, *text; /* "x'", "sign(x')" */
@@ -216,24 +235,27 @@ typedef struct lag_switch {
   int nonnegative;            /* 1: the function is nowhere negative, as |v| */
 } lag_switch;
 
-/* A unilateral contact: a gap that stays at least 0. While it is closed the gap is a constraint; the model multiplies that constraint by an
- * input, 1 when closed and 0 when open. The runtime closes a contact if impacts accumulate or an impact leaves no relative speed; it opens the
- * contact when its multiplier becomes negative. A constraint that holds while a condition is true has the same form: it closes and opens where the
- * condition, whose function the two events contain, changes. */
+/* A unilateral contact: a gap that stays at least 0. While it is closed the gap is a constraint; the model
+ * multiplies that constraint by an input, 1 when closed and 0 when open. The runtime closes a contact if impacts
+ * accumulate or an impact leaves no relative speed; it opens the contact when its multiplier becomes negative. A
+ * constraint that holds while a condition is true has the same form: it closes and opens where the condition, whose
+ * function the two events contain, changes. */
 typedef struct lag_contact {
   int input, constraint; /* index in u, index in the constraints */
-  int impact, release;   /* events: the gap closes; its multiplier falls below 0. act(impact) is Newton's impact law for this gap alone, with the
-                          * other contacts as u says */
-  /* A contact with friction is followed by its tangent. Its constraint is on the velocity of slipping, and is on while the contact sticks; input
-   * `force` is the force along that velocity while it slips. impact: the function is the velocity of slipping; release: the largest force of
-   * friction minus the size of the multiplier. */
+  /* events: the gap closes; its multiplier falls below 0. act(impact) is Newton's impact law for this gap alone,
+   * with the other contacts as u says */
+  int impact, release;
+  /* A contact with friction is followed by its tangent. Its constraint is on the velocity of slipping, and is on
+   * while the contact sticks; input `force` is the force along that velocity while it slips. impact: the function is
+   * the velocity of slipping; release: the largest force of friction minus the size of the multiplier. */
   int is_tangent, force;
   int conditional;       /* 1: a constraint with a condition; act(impact) does nothing */
-  int law;               /* of a tangent: the coefficient of restitution is Stronge's (0), Poisson's (1) or Newton's (2) */
+  /* of a tangent: the coefficient of restitution is Stronge's (0), Poisson's (1) or Newton's (2) */
+  int law;
 } lag_contact;
 
-/* An entry of lag_model.second: the second derivative of L by two of q, v, where of LAG_QQ and LAG_VV only row >= col is given and the row of
- * LAG_VQ belongs to v; or the derivative of generalised force `row` by q or v. */
+/* An entry of lag_model.second: the second derivative of L by two of q, v, where of LAG_QQ and LAG_VV only row >=
+ * col is given and the row of LAG_VQ belongs to v; or the derivative of generalised force `row` by q or v. */
 enum { LAG_QQ, LAG_VQ, LAG_VV, LAG_FQ, LAG_FV };
 typedef struct lag_second {
   int part, row, col;
@@ -241,21 +263,23 @@ typedef struct lag_second {
 
 /* Taylor coefficients of a motion, x^(k)(t) T^k / k!, by automatic differentiation of the model's program.
  *
- * Coefficient k of y_i, y = [q|v|z], is x[k*columns + i]; behind those of y stand those of the rates of v and z. `first` computes order 0 for
- * about the cost of accel; `rest` orders 1 to n <= order from the x and w[nw] that `first` has left. T > 0 is the unit of time; a power of 2
- * changes no bits. (The rates have no order n.) */
+ * Coefficient k of y_i, y = [q|v|z], is x[k*columns + i]; behind those of y stand those of the rates of v and z.
+ * `first` computes order 0 for about the cost of accel; `rest` orders 1 to n <= order from the x and w[nw] that
+ * `first` has left. T > 0 is the unit of time; a power of 2 changes no bits. (The rates have no order n.) */
 typedef struct lag_taylor {
   int order;   /* the highest order */
   int lanes;   /* 1: compiled for lanes, or with the sums that lanes have */
   int columns, width, nw;
-  int cost_first, cost_next, sums; /* operations of order 0, operations of each other order, and sums of k - 1 products in order k */
+  /* operations of order 0, operations of each other order, and sums of k - 1 products in order k */
+  int cost_first, cost_next, sums;
 
   /* follows[nu]: 1 where the input follows its formula, 0 where it is constant, as in u. Returns as accel does. */
   int (*first)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *x, LAG_REAL *w);
   void (*rest)(int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *w);
 
-  /* y[width] := the sum of orders 1 to n at t + s T, of which only the first 2 nq + nz elements are meant; dy := its derivative by s. */
+  /* y[width] := the sum of orders 1 to n at t + s T, of which only the first 2 nq + nz elements are meant; dy := its
+   * derivative by s. */
   void (*at)(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy);
 } lag_taylor;
 
@@ -281,8 +305,8 @@ typedef struct lag_model {
   const lag_var *u;  /* [nu]; the rate of an input, where the motion depends on it, stands behind it with a prime */
   const lag_event *ev; /* [nev] */
 
-  /* Derived parameters: p[np ... np + nderived - 1] from p[0 ... np - 1]. A scene's params calls derive; so must code that changes p afterwards.
-   * NULL where nderived is 0. */
+  /* Derived parameters: p[np ... np + nderived - 1] from p[0 ... np - 1]. A scene's params calls derive; so must
+   * code that changes p afterwards. NULL where nderived is 0. */
   int nderived;
   void (*derive)(LAG_REAL *p);
 
@@ -325,7 +349,8 @@ typedef struct lag_model {
   const lag_contact *contacts;        /* [ncontacts] */
   const lag_charges *charges;         /* NULL: only the energy, without a known balance if it is not conserved */
 
-  /* The members below are NULL in a program that was not emitted for a method that needs them (lagc build --method NAME). */
+  /* The members below are NULL in a program that was not emitted for a method that needs them (lagc build --method
+   * NAME). */
 
   /* Lq[nq] = dL/dq, the momenta Lv[nq] = dL/dv, and Q[nq], the generalised forces outside L. */
   int (*variation)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
@@ -351,13 +376,14 @@ typedef struct lag_model {
   /* out[nmodes]: rates dg/dt of the first nmodes, along the motion. NULL where nmodes is 0. */
   int (*switch_rates)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                       const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
-  /* out[nmodes]: the largest mode of a sliding motion, for static friction above that of motion; less than 1 counts as 1. NULL: 1. */
+  /* out[nmodes]: the largest mode of a sliding motion, for static friction above that of motion; less than 1 counts
+   * as 1. NULL: 1. */
   int (*switch_grips)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                       const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
-  /* out[3 ncontacts]: of a tangent its coefficient of friction and its tangential restitution, of a contact with friction that of static friction and 0, of
-   * others 0; and the multiplier of its constraint.
-   * NULL: no contact has friction. */
+  /* out[3 ncontacts]: of a tangent its coefficient of friction and its tangential restitution, of a contact with
+   * friction that of static friction and 0, of others 0; and the multiplier of its constraint. NULL: no contact has
+   * friction. */
   int (*contact_laws)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                       const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
@@ -366,17 +392,21 @@ typedef struct lag_model {
 } lag_model;
 
 #ifndef LAG_LANES
-/* The action variable of a coordinate, J = 1/(2 pi) closed integral of p dq along H(q, p) = constant, all else held. q, p: components of [q|v|z], the momentum in the
- * place of its velocity where the model gives L. curve: out[4] = H, dH/dp, d2H/dp2, dH/dq at such a state; momenta: out[nq]; NULL: momenta are states. */
+/* The action variable of a coordinate, J = 1/(2 pi) closed integral of p dq along H(q, p) = constant, all else held.
+ * q, p: components of [q|v|z], the momentum in the place of its velocity where the model gives L. curve: out[4] = H,
+ * dH/dp, d2H/dp2, dH/dq at such a state; momenta: out[nq]; NULL: momenta are states. */
 typedef struct lag_action_curve {
   int nq, nz, q, p, periodic;
-  int (*curve)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
-  int (*momenta)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*curve)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+               const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*momenta)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                 const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 } lag_action_curve;
 
-/* J of the curve through a state; NaN: it has none there. y[2 nq + nz] is work space. Of liblag; emitted `observe` calls it. */
-LAG_REAL lag_action(const lag_action_curve *c, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u,
-                    LAG_REAL *y, LAG_REAL *w);
+/* J of the curve through a state; NaN: it has none there. y[2 nq + nz] is work space. Of liblag; emitted `observe`
+ * calls it. */
+LAG_REAL lag_action(const lag_action_curve *c, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *y, LAG_REAL *w);
 #endif
 
 /* An option of a method: step = 1e-3; or quadrature = trapezoid, with text set. */
@@ -409,9 +439,9 @@ typedef struct lag_scene {
   /* The state at the start of the span. */
   void (*start)(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z);
 
-  /* For a model with constraints: given[i] is 1 where the start sets component i of [q|v|z], 2 where i belongs to a rotation that the start does
-   * not set, else 0. Components with 0 give way to the constraints first, then those with 2; NULL: none is set. exactly: a start that
-   * contradicts the constraints is refused. */
+  /* For a model with constraints: given[i] is 1 where the start sets component i of [q|v|z], 2 where i belongs to a
+   * rotation that the start does not set, else 0. Components with 0 give way to the constraints first, then those
+   * with 2; NULL: none is set. exactly: a start that contradicts the constraints is refused. */
   const unsigned char *given;
   int exactly;
 
@@ -432,8 +462,8 @@ typedef struct lag_scene {
   int nmonitors;
   const lag_monitor *monitors;
 
-  /* Closed forms to compare with: out[nexact] at time t of a motion that began at q0, v0, z0. For observe alone, u has nexact elements more:
-   * closed forms stand behind the inputs and modes. */
+  /* Closed forms to compare with: out[nexact] at time t of a motion that began at q0, v0, z0. For observe alone, u
+   * has nexact elements more: closed forms stand behind the inputs and modes. */
   int nexact;
   const int *exact_of; /* [nexact] the component of [q|v|z] that each closed form describes */
   int (*exact)(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0, const LAG_REAL *p,

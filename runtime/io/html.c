@@ -1,5 +1,6 @@
-/* Animation page. Enters: a table and the columns of its points; leaves: one self-contained HTML file (template page.html, turned into C by the
- * Makefile). Holds: a row is a frame; coordinates are integers in units of 1/100000 of the largest extent, finer than any screen. */
+/* Animation page. Enters: a table and the columns of its points; leaves: one self-contained HTML file (template
+ * page.html, turned into C by the Makefile). Holds: a row is a frame; coordinates are integers in units of 1/100000
+ * of the largest extent, finer than any screen. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>
@@ -20,9 +21,9 @@ static void choose_resolution(const Table *t, const Animation *a, double *zero, 
   *scale = grain;
 }
 
-/* Playback speed, in seconds of the model per second of watching: 1 for runs of 1 to 90 s; else a round number, in years, days, hours or seconds,
- * that makes the run last about twenty seconds; but at most 280 frames per second: a swing has about seventy frames, and the eye follows about
- * four swings per second. */
+/* Playback speed, in seconds of the model per second of watching: 1 for runs of 1 to 90 s; else a round number, in
+ * years, days, hours or seconds, that makes the run last about twenty seconds; but at most 280 frames per second: a
+ * swing has about seventy frames, and the eye follows about four swings per second. */
 static double choose_speed(const Table *t, double span) {
   enum { FRAMES_A_SECOND = 280, LASTS = 20 };
   const char *name;
@@ -32,7 +33,8 @@ static double choose_speed(const Table *t, double span) {
   return most > 0 && speed > most ? lag_tick_step(0, most / 1.6, 1) : speed;
 }
 
-/* Whether x is an index, not a length: numbers without a unit, constant and not all equal, as of the masses of a string. */
+/* Whether x is an index, not a length: numbers without a unit, constant and not all equal, as of the masses of a
+ * string. */
 static int x_is_index(const Table *t, const Animation *a) {
   int differ = 0;
   for (int i = 0; i < a->npoints; i++) {
@@ -99,7 +101,8 @@ static void put_frames(Json *j, const Table *t, const Animation *a, double tick,
 /* Writes the JSON object that page.html describes. */
 static void put_data(FILE *f, const Table *t, const Animation *a) {
   size_t n = t->nrows;
-  double t0 = n ? lag_table_cell(t, 0, 0) : 0, t1 = n ? lag_table_cell(t, n - 1, 0) : 0, tick = t1 != t0 ? (t1 - t0) / TICKS : 1, zero, scale;
+  double t0 = n ? lag_table_cell(t, 0, 0) : 0, t1 = n ? lag_table_cell(t, n - 1, 0) : 0,
+         tick = t1 != t0 ? (t1 - t0) / TICKS : 1, zero, scale;
   Json j = {.f = f};
 
   choose_resolution(t, a, &zero, &scale);

@@ -1,5 +1,6 @@
-/* Output files of a simulator: tables of rows, pictures, saved states. Holds for all: a file is written as FILE.part-N-M and
- * renamed when complete, so that no half-written FILE is ever seen (outfile.h). Names here are internal to the simulator. */
+/* Output files of a simulator: tables of rows, pictures, saved states. Holds for all: a file is written as
+ * FILE.part-N-M and renamed when complete, so that no half-written FILE is ever seen (outfile.h). Names here are
+ * internal to the simulator. */
 #pragma once
 
 #include <stdio.h>
@@ -18,7 +19,8 @@ typedef struct Table {
   Column *cols;
   int keep;   /* 0: rows are not stored, data stays NULL */
   int points; /* 1: rows are separate points, not joined to a curve */
-  size_t certain; /* rows up to the horizon of the run, as far as their digits mean something; 0: all. The rest is drawn grey */
+  /* rows up to the horizon of the run, as far as their digits mean something; 0: all. The rest is drawn grey */
+  size_t certain;
   double horizon; /* where certain > 0: its time, in the unit of column 0 */
   double *data;
   size_t nrows, capacity;
@@ -32,15 +34,19 @@ Column lag_state_column(const lag_sim *sim, int i);
 int lag_table_init(Table *t, const lag_sim *sim, int keep);
 void lag_table_free(Table *t);
 int lag_table_add(Table *t, const double *row);
-static inline double lag_table_cell(const Table *t, size_t row, int col) { return t->data[row * (size_t)t->ncols + (size_t)col]; }
+static inline double lag_table_cell(const Table *t, size_t row, int col) {
+  return t->data[row * (size_t)t->ncols + (size_t)col];
+}
 /* Widens [lo, hi] by the finite values of a column. */
 void lag_table_range(const Table *t, int col, double *lo, double *hi);
 /* The longest of year, day and hour of which a span [s] holds two, in seconds; *name: its unit. 0: none. */
 double lag_long_time_unit(double span, const char **name);
-/* For pictures: converts the time to years, days or hours where the rows span two or more of these; not where no column has a unit. */
+/* For pictures: converts the time to years, days or hours where the rows span two or more of these; not where no
+ * column has a unit. */
 void lag_table_scale_time(Table *t);
 
-/* A file of rows: .npy by its suffix, else CSV. The CSV header is written with the first row, so a run that fails before writes nothing. */
+/* A file of rows: .npy by its suffix, else CSV. The CSV header is written with the first row, so a run that fails
+ * before writes nothing. */
 typedef struct Rows {
   Outfile out;
   int open, npy;
@@ -54,8 +60,8 @@ int lag_rows_open(Rows *r, const char *path, const Table *t);
 int lag_rows_write(Rows *r, const double *row);
 int lag_rows_close(Rows *r, int keep);
 
-/* Makes [lo, hi] a drawable interval: with a margin relative to its length; half of the values on each side where it is narrower than `least`
- * times these; [0, 1] where it is empty. */
+/* Makes [lo, hi] a drawable interval: with a margin relative to its length; half of the values on each side where it
+ * is narrower than `least` times these; [0, 1] where it is empty. */
 void lag_widen_range(double *lo, double *hi, double least, double margin);
 /* Step of axis ticks: 1, 2 or 5 times a power of ten, about n of them from lo to hi. */
 double lag_tick_step(double lo, double hi, int n);
@@ -158,13 +164,15 @@ void lag_json_name(Json *j, const char *name);
 /* A member that is an object or an array; bracket: one of { [ and then } ]. */
 void lag_json_begin(Json *j, const char *name, char bracket);
 void lag_json_end(Json *j, char bracket);
-/* s in quotes, or null for NULL; x with the digits to read back exactly, or null where it is not finite; true, false, or null for -1. */
+/* s in quotes, or null for NULL; x with the digits to read back exactly, or null where it is not finite; true,
+ * false, or null for -1. */
 void lag_json_string(Json *j, const char *name, const char *s);
 void lag_json_number(Json *j, const char *name, double x);
 void lag_json_count(Json *j, const char *name, long long n);
 void lag_json_truth(Json *j, const char *name, int yes);
 
-/* A saved state: its head and the n doubles of lag_sim_save. lag_state_parse and lag_state_read allocate data; the caller frees it. */
+/* A saved state: its head and the n doubles of lag_sim_save. lag_state_parse and lag_state_read allocate data; the
+ * caller frees it. */
 typedef struct State {
   char program[128], scene[128], method[64];
   double tol;
@@ -178,7 +186,8 @@ typedef struct State {
 
 /* -1 with errno set. */
 int lag_state_write(const char *path, const State *s);
-/* Parses the text of a state file, which may be any bytes. NULL, or the reason why it is no saved state; data is then NULL. */
+/* Parses the text of a state file, which may be any bytes. NULL, or the reason why it is no saved state; data is
+ * then NULL. */
 const char *lag_state_parse(char *text, State *s);
 /* 0; -1 with errno set; 1: not a saved state, or damaged, with the reason in *why. */
 int lag_state_read(const char *path, State *s, const char **why);

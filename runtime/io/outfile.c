@@ -27,18 +27,22 @@ int lag_outfile_has_suffix(const char *path, const char *suffixes) {
 }
 
 const char *lag_outfile_other_type(const char *path, const char *suffixes) {
-  static const char known[] = "csv tsv npy npz json xml yaml h5 hdf5 nc mat parquet pkl xls xlsx ods svg png jpg jpeg gif webp bmp tif tiff "
-                              "pdf eps ps html htm mp4 webm avi mov c h hpp o so a py tex zip gz";
+  static const char known[] =
+      "csv tsv npy npz json xml yaml h5 hdf5 nc mat parquet pkl xls xlsx ods svg png jpg jpeg gif webp bmp tif tiff "
+      "pdf eps ps html htm mp4 webm avi mov c h hpp o so a py tex zip gz";
   return lag_outfile_has_suffix(path, known) && !lag_outfile_has_suffix(path, suffixes) ? suffix_of(path) : NULL;
 }
 
 const char *lag_outfile_contents(const char *suffixes) {
   static const char *const contents[][2] = {
       {"csv npy h5", "CSV, NumPy where the name ends in .npy, or HDF5 where it ends in .h5"},
-      {"csv npy", "CSV, or NumPy where the name ends in .npy"}, {"csv", "CSV"}, {"html htm", "HTML"},
+      {"csv npy", "CSV, or NumPy where the name ends in .npy"},
+      {"csv", "CSV"},
+      {"html htm", "HTML"},
       {"svg png csv json", "a picture, .svg or .png, or all runs, .csv or .json"},
-      {"svg png", "SVG, or PNG where the name ends in .png"}, {"h hpp", "a C header"}, {"tex", "LaTeX"}, {"json", "JSON"},
-      {"fmu", "an FMU"}, {"c", "C"}};
+      {"svg png", "SVG, or PNG where the name ends in .png"}, {"h hpp", "a C header"}, {"tex", "LaTeX"},
+      {"json", "JSON"}, {"fmu", "an FMU"},
+      {"c", "C"}};
   for (size_t i = 0; i < sizeof contents / sizeof *contents; i++)
     if (strcmp(contents[i][0], suffixes) == 0) return contents[i][1];
   return "text";
@@ -54,9 +58,12 @@ static void remove_remains(const char *path) {
   DIR *d = opendir(folder);
   for (struct dirent *e; d && (e = readdir(d)) != NULL;) {
     const char *rest = e->d_name + n + strlen(".part-");
-    if (strncmp(e->d_name, name, n) != 0 || strncmp(e->d_name + n, ".part-", 6) != 0 || strspn(rest, "0123456789-") != strlen(rest)) continue;
+    if (strncmp(e->d_name, name, n) != 0 || strncmp(e->d_name + n, ".part-", 6) != 0 ||
+        strspn(rest, "0123456789-") != strlen(rest))
+      continue;
     int fd = lag_open_in(d, e->d_name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && st.st_uid == geteuid() && lag_file_lock(fd) == 0) lag_unlink_in(d, e->d_name);
+    if (fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && st.st_uid == geteuid() && lag_file_lock(fd) == 0)
+      lag_unlink_in(d, e->d_name);
     if (fd >= 0) close(fd);
   }
   if (d) closedir(d);
@@ -64,7 +71,8 @@ static void remove_remains(const char *path) {
 
 /* Whether path names an open stream, such as /dev/stdout; such a file is appended to, never replaced. */
 static int is_stream(const char *path) {
-  return strncmp(path, "/dev/std", 8) == 0 || strncmp(path, "/dev/fd/", 8) == 0 || strncmp(path, "/proc/", 6) == 0 || lag_is_null_device(path);
+  return strncmp(path, "/dev/std", 8) == 0 || strncmp(path, "/dev/fd/", 8) == 0 || strncmp(path, "/proc/", 6) == 0 ||
+         lag_is_null_device(path);
 }
 
 /* o->path := path with links resolved. A link owned by another user (except root) is refused with EACCES. */
@@ -138,9 +146,11 @@ static int write_error(FILE *f) {
 int lag_outfile_close(Outfile *o, int keep) {
   int is_part = o->part[0] != '\0', error = !ferror(o->f) ? 0 : is_part ? write_error(o->f) : EIO;
   errno = 0;
-  if (fflush(o->f) != 0 || (keep == OUTFILE_SYNC && is_part && fsync(fileno(o->f)) != 0)) error = error_number(); /* says why, where ferror does not */
+  /* says why, where ferror does not */
+  if (fflush(o->f) != 0 || (keep == OUTFILE_SYNC && is_part && fsync(fileno(o->f)) != 0)) error = error_number();
   if (o->f != stdout) {
-    if (is_part && !error && keep && rename(o->part, o->path) != 0) error = error_number(); /* before the lock is released */
+    /* before the lock is released */
+    if (is_part && !error && keep && rename(o->part, o->path) != 0) error = error_number();
     if (is_part && (error || !keep)) remove(o->part);
     if (fclose(o->f) != 0 && !error) error = error_number();
   }

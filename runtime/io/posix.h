@@ -1,5 +1,5 @@
-/* POSIX's headers; on Windows MinGW's, and what they lack: windows.c. This header and windows.c include nothing of the runtime, because the compiler
- * is built with a copy of both (Makefile). */
+/* POSIX's headers; on Windows MinGW's, and what they lack: windows.c. This header and windows.c include nothing of
+ * the runtime, because the compiler is built with a copy of both (Makefile). */
 #pragma once
 
 #include <dirent.h>
@@ -23,7 +23,8 @@
 #include <sys/utime.h>
 #include <time.h>
 
-/* Flags of open without a counterpart: Windows has neither devices nor terminals in folders, and links only of administrators. */
+/* Flags of open without a counterpart: Windows has neither devices nor terminals in folders, and links only of
+ * administrators. */
 #define O_NOFOLLOW 0
 #define O_NONBLOCK 0
 #define O_NOCTTY 0
@@ -116,7 +117,9 @@ static inline void lag_prepare_streams(void) {
 }
 static inline DIR *lag_opendir(const char *path) { return opendir(path); }
 static inline FILE *lag_open_to_read(const char *path) { return fopen(path, "rb"); }
-static inline int lag_is_absolute(const char *path) { return path[0] == '/' || path[0] == '\\' || (path[0] && path[1] == ':'); }
+static inline int lag_is_absolute(const char *path) {
+  return path[0] == '/' || path[0] == '\\' || (path[0] && path[1] == ':');
+}
 /* The last separator of folders, or NULL. */
 static inline char *lag_last_slash(const char *path) {
   char *slash = strrchr(path, '/'), *other = strrchr(path, '\\');
@@ -145,7 +148,8 @@ static inline int lag_file_wait(int fd) {
   struct flock all = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
   return fcntl(fd, F_SETLKW, &all);
 }
-static inline void lag_nap(double time) { nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * time)}, NULL); } /* of less than a second */
+/* of less than a second */
+static inline void lag_nap(double time) { nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * time)}, NULL); }
 static inline long lag_processors(void) { return sysconf(_SC_NPROCESSORS_ONLN); }
 typedef struct lag_lock {
   pthread_mutex_t mutex;
@@ -165,7 +169,8 @@ static inline FILE *lag_open_to_read(const char *path) {
   ssize_t n = -1;
   if (fd < 0) return NULL;
   if (fstat(fd, &st) == 0 && S_ISFIFO(st.st_mode))
-    while (poll(&ready, 1, 2000) == 0 && (n = read(fd, &first, 1)) < 0 && errno == EAGAIN) continue; /* a writer that is slow */
+    /* a writer that is slow */
+    while (poll(&ready, 1, 2000) == 0 && (n = read(fd, &first, 1)) < 0 && errno == EAGAIN) continue;
   FILE *f = n == 0 || fcntl(fd, F_SETFL, 0) != 0 ? NULL : fdopen(fd, "rb");
   if (f && n == 1) ungetc((unsigned char)first, f);
   if (!f) close(fd);
@@ -186,5 +191,6 @@ static inline char *lag_last_slash(const char *path) { return strrchr(path, '/')
 static inline int lag_is_null_device(const char *path) { return strcmp(path, "/dev/null") == 0; }
 #endif
 
-/* Calls work(data[i]) for i < n, the first here, the others each on a thread of its own, and waits; those without a thread are not called. */
+/* Calls work(data[i]) for i < n, the first here, the others each on a thread of its own, and waits; those without a
+ * thread are not called. */
 void lag_on_threads(int n, void (*work)(void *data), void *const *data);

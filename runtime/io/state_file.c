@@ -1,5 +1,6 @@
-/* Saved states, from which a run continues as if never stopped. Enters: the block of doubles of a simulation; leaves: a text file, or the reverse.
- * Holds: doubles are hexadecimal and read back bit by bit (NaN as some NaN); the last line is a checksum of all lines before it.
+/* Saved states, from which a run continues as if never stopped. Enters: the block of doubles of a simulation;
+ * leaves: a text file, or the reverse. Holds: doubles are hexadecimal and read back bit by bit (NaN as some NaN);
+ * the last line is a checksum of all lines before it.
  *
  *   lag-state 1
  *   program NAME / scene NAME / method NAME / tolerance X / options N X... / signature H / t X
@@ -95,8 +96,9 @@ static int read_head(char **p, State *s) {
   char x[32];
   double n;
   int i = 0;
-  if (!skip(p, "lag-state 1\n") || !field(p, "program ", s->program, sizeof s->program) || !field(p, "scene ", s->scene, sizeof s->scene) ||
-      !field(p, "method ", s->method, sizeof s->method) || !number(p, "tolerance ", &s->tol) || !number(p, "options ", &n) || !(n >= 0 && n <= most))
+  if (!skip(p, "lag-state 1\n") || !field(p, "program ", s->program, sizeof s->program) ||
+      !field(p, "scene ", s->scene, sizeof s->scene) || !field(p, "method ", s->method, sizeof s->method) ||
+      !number(p, "tolerance ", &s->tol) || !number(p, "options ", &n) || !(n >= 0 && n <= most))
     return 0;
   s->noptions = (int)n;
   while (i < s->noptions && number(p, "", &s->options[i])) i++;

@@ -1,6 +1,6 @@
-/* SVG plots. Enters: a table; leaves: an SVG file with one panel for each unit over a common time axis, or one panel with
- * columns against others. Holds: a curve with more points than pixels is reduced to minimum and maximum of each pixel column,
- * so that no peak is lost; points of a path are at least a third of a pixel apart. */
+/* SVG plots. Enters: a table; leaves: an SVG file with one panel for each unit over a common time axis, or one panel
+ * with columns against others. Holds: a curve with more points than pixels is reduced to minimum and maximum of each
+ * pixel column, so that no peak is lost; points of a path are at least a third of a pixel apart. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -56,7 +56,8 @@ static void point(FILE *f, const Panel *p, double x, double y, int *pen) {
   *pen = 1;
 }
 
-/* Dots, as zero-length strokes with round ends in one element; from 8 pixels where they are few to 2 where they are thousands. */
+/* Dots, as zero-length strokes with round ends in one element; from 8 pixels where they are few to 2 where they are
+ * thousands. */
 static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period, const char *stroke) {
   double width = fmin(8, fmax(2, 40 / pow((double)t->nrows, 0.4)));
   fprintf(f, "<path fill=\"none\" %s stroke-width=\"%.1f\" stroke-linecap=\"round\" d=\"", stroke, width);
@@ -68,8 +69,9 @@ static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, do
   fputs("\"/>\n", f);
 }
 
-/* A curve against time: of each pixel column the first, the least, the greatest and the last value, which draw what all values would (U. Jugel,
- * Z. Jerzak, G. Hackenbroich, V. Markl, M4, PVLDB 7, 2014, 797, DOI 10.14778/2732951.2732953). A value that is not finite is a column of its own. */
+/* A curve against time: of each pixel column the first, the least, the greatest and the last value, which draw what
+ * all values would (U. Jugel, Z. Jerzak, G. Hackenbroich, V. Markl, M4, PVLDB 7, 2014, 797, DOI
+ * 10.14778/2732951.2732953). A value that is not finite is a column of its own. */
 static void curve_by_columns(FILE *f, const Panel *p, const Table *t, int ycol) {
   int pen = 0;
   for (size_t first = 0, end; first < t->nrows; first = end) {
@@ -92,7 +94,8 @@ static void curve_by_columns(FILE *f, const Panel *p, const Table *t, int ycol) 
   }
 }
 
-/* Takes the path over an end of the panel, where x is periodic: *turns, those of the point before at (from, y0), become those of (x, y). */
+/* Takes the path over an end of the panel, where x is periodic: *turns, those of the point before at (from, y0),
+ * become those of (x, y). */
 static void cross_over(FILE *f, const Panel *p, const double before[2], const double here[2], double *turns, int *pen) {
   double from = before[0], y0 = before[1], x = here[0], y = here[1];
   double way = x > from ? 1 : -1, period = p->x1 - p->x0, last = floor((x - p->x0) / period);
@@ -105,7 +108,8 @@ static void cross_over(FILE *f, const Panel *p, const double before[2], const do
   *turns = last;
 }
 
-/* One column against another, or few rows: a path without the points that are nearer than a third of a pixel to the one drawn last. period: of x, or 0. */
+/* One column against another, or few rows: a path without the points that are nearer than a third of a pixel to the
+ * one drawn last. period: of x, or 0. */
 static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period) {
   const double near = 0.3;
   double drawn_x = 0, drawn_y = 0, turns = 0, before[2];
@@ -285,7 +289,8 @@ static int units_of(const Table *t, const PlottedCurves *d, const char *units[MO
 static const char *names_of(const Table *t, const PlottedCurves *d, const char *unit, char *s, size_t n) {
   size_t at = 0;
   for (int i = 0; i < d->n && at + sizeof t->cols->name + 3 < n; i++)
-    if (strcmp(t->cols[d->y[i]].unit, unit) == 0) at += (size_t)snprintf(s + at, n - at, "%s%s", at ? ", " : "", t->cols[d->y[i]].name);
+    if (strcmp(t->cols[d->y[i]].unit, unit) == 0)
+      at += (size_t)snprintf(s + at, n - at, "%s%s", at ? ", " : "", t->cols[d->y[i]].name);
   return s;
 }
 
@@ -294,7 +299,10 @@ static void against_time(FILE *f, const Table *t, const char *title, const Plott
   char xlabel[176], names[300];
   int n = units_of(t, d, units);
   double h = n == 1 ? 380 : n == 2 ? 230 : 170;
-  Panel p = {.x = LEFT, .y = TOP, .w = WIDTH - LEFT - RIGHT, .h = h, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .xlog = d->xlog, .ylog = d->ylog, .xlabel = xlabel};
+  Panel p = {.x = LEFT,
+             .y = TOP, .w = WIDTH - LEFT - RIGHT, .h = h, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .xlog = d->xlog,
+             .ylog = d->ylog,
+             .xlabel = xlabel};
   label_of(t->cols[0].name, t->cols[0].unit, p.w, xlabel, sizeof xlabel);
   lag_svg_head(f, LEFT + (int)p.w + legend_width(t, d), TOP + (int)h * n + GAP * (n - 1) + BOTTOM, title);
   lag_table_range(t, 0, &p.x0, &p.x1);
@@ -319,7 +327,8 @@ static void against_time(FILE *f, const Table *t, const char *title, const Plott
 static void same_scale(Panel *p) {
   double flat = (p->y1 - p->y0) / (p->x1 - p->x0) * p->w;
   p->h = flat < 200 ? 200 : flat < p->h ? flat : p->h;
-  double scale = fmax((p->x1 - p->x0) / p->w, (p->y1 - p->y0) / p->h), mx = (p->x0 + p->x1) / 2, my = (p->y0 + p->y1) / 2;
+  double scale = fmax((p->x1 - p->x0) / p->w, (p->y1 - p->y0) / p->h), mx = (p->x0 + p->x1) / 2,
+         my = (p->y0 + p->y1) / 2;
   p->x0 = mx - scale * p->w / 2;
   p->x1 = mx + scale * p->w / 2;
   p->y0 = my - scale * p->h / 2;
@@ -333,8 +342,8 @@ static int is_rate(const char *rate, const char *of) {
   return strncmp(rate, of, n) == 0 && (strcmp(rate + n, "'") == 0 || strcmp(rate + n, ")'") == 0);
 }
 
-/* Whether both axes get the same scale: columns of one unit, neither the rate of the other; without units only if their ranges are of
- * similar size. */
+/* Whether both axes get the same scale: columns of one unit, neither the rate of the other; without units only if
+ * their ranges are of similar size. */
 static int shares_scale(const Table *t, const PlottedCurves *d, const Panel *p) {
   const Column *a = &t->cols[d->x[d->n - 1]], *b = &t->cols[d->y[d->n - 1]];
   double ratio = (p->x1 - p->x0) / (p->y1 - p->y0);
@@ -348,7 +357,8 @@ static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y, dou
   for (int k = 0; k < 2 && t->nrows; k++) {
     size_t row = k ? t->nrows - 1 : 0;
     double turns = period > 0 ? floor(lag_table_cell(t, row, x) / period + 0.5) : 0;
-    mark(f, lag_panel_x(p, lag_table_cell(t, row, x) - turns * period), lag_panel_y(p, lag_table_cell(t, row, y)), fill[k]);
+    mark(f, lag_panel_x(p, lag_table_cell(t, row, x) - turns * period), lag_panel_y(p, lag_table_cell(t, row, y)),
+         fill[k]);
     mark(f, p->x + p->w + 20, p->y + 16 + 20 * k, fill[k]);
     lag_svg_text(f, p->x + p->w + 32, p->y + 20 + 20 * k, "", name[k]);
   }
@@ -365,8 +375,10 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   PlottedCurves copy = *drawn, *d = &copy;
   char xlabel[176], ylabel[176];
   int x = d->x[0];
-  Panel p = {.x = LEFT, .y = TOP, .w = x ? 600 : WIDTH - LEFT - 30, .h = x ? 520 : 380, .ylog = d->ylog, .xlabel = xlabel,
-             .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL};
+  Panel p = {.x = LEFT,
+             .y = TOP, .w = x ? 600 : WIDTH - LEFT - 30, .h = x ? 520 : 380, .ylog = d->ylog, .xlabel = xlabel,
+             .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL,
+             .y1 = -HUGE_VAL};
   for (int i = 0; i < d->n; i++) {
     lag_table_range(t, d->x[i], &p.x0, &p.x1);
     lag_table_range(t, d->y[i], &p.y0, &p.y1);
@@ -380,7 +392,9 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   if (x && !d->beneath.value && shares_scale(t, d, &p)) same_scale(&p);
   axis_label(t, d->n, d->x, d->xname, p.w, xlabel, sizeof xlabel);
   axis_label(t, d->n, d->y, d->yname, p.h + 40, ylabel, sizeof ylabel);
-  lag_svg_head(f, d->n > 1 && LEFT + (int)p.w + legend_width(t, d) > WIDTH ? LEFT + (int)p.w + legend_width(t, d) : WIDTH, TOP + (int)p.h + BOTTOM, title);
+  lag_svg_head(f,
+               d->n > 1 && LEFT + (int)p.w + legend_width(t, d) > WIDTH ? LEFT + (int)p.w + legend_width(t, d) : WIDTH,
+               TOP + (int)p.h + BOTTOM, title);
   lag_svg_axes(f, &p, ylabel, 1);
   if (d->beneath.profile) lag_svg_profile(f, &p, &d->beneath);
   else if (d->beneath.value) lag_svg_levels(f, &p, &d->beneath);

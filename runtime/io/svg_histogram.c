@@ -1,4 +1,6 @@
-/* Histograms: how many rows of a table lie in each part of the range of a column, one panel per column below each other. Holds: parts are equally wide, the largest value belongs to the last; values that are not finite are left out, and said. */
+/* Histograms: how many rows of a table lie in each part of the range of a column, one panel per column below each
+ * other. Holds: parts are equally wide, the largest value belongs to the last; values that are not finite are left
+ * out, and said. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,8 +31,13 @@ static size_t without_value(const Table *t, int col) {
 
 static void draw_bars(FILE *f, const Panel *p, double lo, double hi, int parts, const long long *count) {
   for (int k = 0; k < parts; k++) {
-    double a = lag_panel_x(p, lo + (hi - lo) * k / parts), b = lag_panel_x(p, lo + (hi - lo) * (k + 1) / parts), top = lag_panel_y(p, (double)count[k]);
-    if (count[k]) fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"%s\" fill-opacity=\"0.75\" stroke=\"#fff\" stroke-width=\"0.5\"/>\n", a, top, b - a, p->y + p->h - top, lag_colour[0]);
+    double a = lag_panel_x(p, lo + (hi - lo) * k / parts), b = lag_panel_x(p, lo + (hi - lo) * (k + 1) / parts),
+           top = lag_panel_y(p, (double)count[k]);
+    if (count[k])
+      fprintf(f,
+              "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"%s\" fill-opacity=\"0.75\" "
+              "stroke=\"#fff\" stroke-width=\"0.5\"/>\n",
+              a, top, b - a, p->y + p->h - top, lag_colour[0]);
   }
 }
 
@@ -41,7 +48,9 @@ static void draw_panel(FILE *f, const Table *t, int col, int parts, double y, lo
   size_t left_out = without_value(t, col);
   lag_table_range(t, col, &lo, &hi);
   lag_widen_range(&lo, &hi, 1e-12, 0);
-  Panel p = {.x = LEFT, .y = y, .w = BARS_WIDTH, .h = BARS_HEIGHT, .x0 = lo, .x1 = hi, .xlabel = lag_column_label(&t->cols[col], label, sizeof label)};
+  Panel p = {.x = LEFT,
+             .y = y, .w = BARS_WIDTH, .h = BARS_HEIGHT, .x0 = lo, .x1 = hi,
+             .xlabel = lag_column_label(&t->cols[col], label, sizeof label)};
   p.y1 = 1.05 * (double)count_values(t, col, lo, hi, parts, count);
   if (!(p.y1 > 0)) p.y1 = 1;
   lag_svg_axes(f, &p, "runs", 1);

@@ -1,6 +1,6 @@
-/* Curves beneath those of a path: where a value over the panel is equal (level curves, by marching squares), or the value along its middle line.
- * Holds: levels lie such that curves about a minimum are as far from each other as ellipses of equal steps; a saddle has a level of its own, darker, the
- * separatrix. */
+/* Curves beneath those of a path: where a value over the panel is equal (level curves, by marching squares), or the
+ * value along its middle line. Holds: levels lie such that curves about a minimum are as far from each other as
+ * ellipses of equal steps; a saddle has a level of its own, darker, the separatrix. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -39,7 +39,9 @@ static int is_saddle(const Grid *g, int i, int j) {
 }
 
 /* The value between the points of the grid. */
-static double value_at(const Grid *g, double i, double j) { return g->b->value(g->b->of, grid_x(g->p, i), grid_y(g->p, j)); }
+static double value_at(const Grid *g, double i, double j) {
+  return g->b->value(g->b->of, grid_x(g->p, i), grid_y(g->p, j));
+}
 
 /* The value of the saddle beside a point: Newton's method with central differences. */
 static double saddle_value(const Grid *g, double i, double j) {
@@ -47,9 +49,13 @@ static double saddle_value(const Grid *g, double i, double j) {
   const double d = 0.25;
   double x = i, y = j;
   for (int k = 0; k < ROUNDS; k++) {
-    double here = value_at(g, x, y), left = value_at(g, x - d, y), right = value_at(g, x + d, y), below = value_at(g, x, y - d), above = value_at(g, x, y + d);
-    double xx = (left - 2 * here + right) / (d * d), yy = (below - 2 * here + above) / (d * d), gx = (right - left) / (2 * d), gy = (above - below) / (2 * d);
-    double xy = (value_at(g, x + d, y + d) - value_at(g, x + d, y - d) - value_at(g, x - d, y + d) + value_at(g, x - d, y - d)) / (4 * d * d);
+    double here = value_at(g, x, y), left = value_at(g, x - d, y), right = value_at(g, x + d, y),
+           below = value_at(g, x, y - d), above = value_at(g, x, y + d);
+    double xx = (left - 2 * here + right) / (d * d), yy = (below - 2 * here + above) / (d * d),
+           gx = (right - left) / (2 * d), gy = (above - below) / (2 * d);
+    double xy = (value_at(g, x + d, y + d) - value_at(g, x + d, y - d) - value_at(g, x - d, y + d) +
+                 value_at(g, x - d, y - d)) /
+                (4 * d * d);
     double det = xx * yy - xy * xy;
     x -= (yy * gx - xy * gy) / det;
     y -= (xx * gy - xy * gx) / det;
@@ -75,8 +81,10 @@ static int saddles(const Grid *g, double range, double *level) {
 /* Corners of a square, in the order of a turn. */
 static const int corner[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
 
-/* The part of the way from a corner to the next at which the value is the level: regula falsi (Illinois). from, to: what the values there are above it. */
-static double crossing(const Grid *g, const double start[2], const double end[2], double level, double from, double to) {
+/* The part of the way from a corner to the next at which the value is the level: regula falsi (Illinois). from, to:
+ * what the values there are above it. */
+static double crossing(const Grid *g, const double start[2], const double end[2], double level, double from,
+                       double to) {
   enum { ROUNDS = 5 };
   double lo = 0, hi = 1, part = from / (from - to);
   for (int k = 0; k < ROUNDS; k++) {
@@ -92,7 +100,8 @@ static double crossing(const Grid *g, const double start[2], const double end[2]
 }
 
 /* The curve within a square of the grid; value: at its corners. */
-static void curve_in_square(FILE *f, const Grid *g, double i, double j, double side, const double value[4], double level) {
+static void curve_in_square(FILE *f, const Grid *g, double i, double j, double side, const double value[4],
+                            double level) {
   double place[4][2];
   int n = 0;
   for (int k = 0; k < 4; k++) {
@@ -105,7 +114,8 @@ static void curve_in_square(FILE *f, const Grid *g, double i, double j, double s
     place[n][0] = lag_panel_x(g->p, grid_x(g->p, start[0] + part * (end[0] - start[0])));
     place[n++][1] = lag_panel_y(g->p, grid_y(g->p, start[1] + part * (end[1] - start[1])));
   }
-  for (int k = 0; k + 1 < n; k += 2) fprintf(f, "M%.1f %.1fL%.1f %.1f", place[k][0], place[k][1], place[k + 1][0], place[k + 1][1]);
+  for (int k = 0; k + 1 < n; k += 2)
+    fprintf(f, "M%.1f %.1fL%.1f %.1f", place[k][0], place[k][1], place[k + 1][0], place[k + 1][1]);
 }
 
 /* Whether a saddle lies within two squares of this one. */
@@ -118,7 +128,8 @@ static int is_near_saddle(const Grid *g, int i, int j) {
   return 0;
 }
 
-/* The curve within a square, in FINE*FINE parts: at a saddle straight lines over a whole square would bend a crossing. */
+/* The curve within a square, in FINE*FINE parts: at a saddle straight lines over a whole square would bend a
+ * crossing. */
 static void fine_curve(FILE *f, const Grid *g, int i, int j, double level) {
   const double side = 1. / FINE;
   double value[4];
@@ -149,7 +160,9 @@ static int draw_levels(FILE *f, const Grid *g) {
     most = fmax(most, g->value[k]);
   }
   if (!(most > least)) return 0;
-  for (int k = 1; k <= LEVELS; k++) level_curve(f, g, least + (most - least) * (k * k) / ((LEVELS + 1) * (LEVELS + 1)), 0, "stroke=\"#bbb\" stroke-width=\"0.8\"");
+  for (int k = 1; k <= LEVELS; k++)
+    level_curve(f, g, least + (most - least) * (k * k) / ((LEVELS + 1) * (LEVELS + 1)), 0,
+                "stroke=\"#bbb\" stroke-width=\"0.8\"");
   int n = saddles(g, most - least, saddle);
   for (int k = 0; k < n; k++) level_curve(f, g, saddle[k], 1, "stroke=\"#666\" stroke-width=\"1.1\"");
   return n;

@@ -1,5 +1,6 @@
-/* Maps: a value over two others, as coloured cells with a bar; values that are few whole numbers are categories, with a legend. Colours: the cube helix, whose
- * lightness grows with the value, so that it also works in grey: D. A. Green, Bull. Astron. Soc. India 39 (2011) 289. */
+/* Maps: a value over two others, as coloured cells with a bar; values that are few whole numbers are categories,
+ * with a legend. Colours: the cube helix, whose lightness grows with the value, so that it also works in grey: D. A.
+ * Green, Bull. Astron. Soc. India 39 (2011) 289. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,10 +44,14 @@ static void put_colour(FILE *f, const Scale *s, int level) {
     for (int k = 0; k < 3; k++) fprintf(f, "%02x", (int)(248 + (end[part > 0][k] - 248) * fabs(part)));
     return;
   }
-  double lightness = dark + (light - dark) * level / (LEVELS - 1), angle = 2 * pi * (start / 3 + turns * lightness), amplitude = lightness * (1 - lightness) / 2;
+  double lightness = dark + (light - dark) * level / (LEVELS - 1), angle = 2 * pi * (start / 3 + turns * lightness),
+         amplitude = lightness * (1 - lightness) / 2;
   const double mix[3][2] = {{-0.14861, 1.78277}, {-0.29227, -0.90649}, {1.97294, 0}};
   putc('#', f);
-  for (int k = 0; k < 3; k++) fprintf(f, "%02x", (int)(255 * fmin(fmax(lightness + amplitude * (mix[k][0] * cos(angle) + mix[k][1] * sin(angle)), 0), 1) + 0.5));
+  for (int k = 0; k < 3; k++)
+    fprintf(
+        f, "%02x",
+        (int)(255 * fmin(fmax(lightness + amplitude * (mix[k][0] * cos(angle) + mix[k][1] * sin(angle)), 0), 1) + 0.5));
 }
 
 /* The level of a value; -1: it has none. */
@@ -90,7 +95,8 @@ static void put_bar(FILE *f, const Panel *p, const Scale *s, const char *label) 
   char number[32];
   Panel bar = {.x = x, .y = p->y, .w = BAR, .h = p->h, .y0 = s->least, .y1 = s->most};
   for (int k = 0; k < LEVELS; k++) {
-    fprintf(f, "<rect x=\"%.1f\" y=\"%.2f\" width=\"%d\" height=\"%.2f\" fill=\"", x, p->y + p->h * (LEVELS - 1 - k) / LEVELS, BAR, p->h / LEVELS + 0.5);
+    fprintf(f, "<rect x=\"%.1f\" y=\"%.2f\" width=\"%d\" height=\"%.2f\" fill=\"", x,
+            p->y + p->h * (LEVELS - 1 - k) / LEVELS, BAR, p->h / LEVELS + 0.5);
     put_colour(f, s, k);
     fputs("\"/>\n", f);
   }
@@ -106,7 +112,8 @@ static void put_legend(FILE *f, const Panel *p, const Scale *s, const char *labe
   double x = p->x + p->w + 24;
   char number[32];
   for (int k = 0; k < s->categories; k++) {
-    fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"14\" height=\"14\" fill=\"%s\"/>\n", x, p->y + 22 * k, lag_colour[k]);
+    fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"14\" height=\"14\" fill=\"%s\"/>\n", x, p->y + 22 * k,
+            lag_colour[k]);
     snprintf(number, sizeof number, "%g", s->least + k);
     lag_svg_text(f, x + 22, p->y + 22 * k + 12, "", number);
   }
@@ -122,8 +129,10 @@ int lag_map_write(const char *path, const ValueMap *m, const char *title) {
   edges(m->ny, m->y, &p.y0, &p.y1);
   lag_svg_head(o.f, LEFT + SIDE + RIGHT, TOP + 20 + SIDE + BOTTOM, title);
   lag_svg_axes(o.f, &p, m->ylabel, 1);
-  fprintf(o.f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#ddd\"/>\n", p.x, p.y, p.w, p.h); /* where there is no value */
-  fprintf(o.f, "<g transform=\"translate(%.1f %.1f) scale(%.9g %.9g)\" shape-rendering=\"crispEdges\">\n", p.x, p.y, p.w / m->nx, p.h / m->ny);
+  /* where there is no value */
+  fprintf(o.f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#ddd\"/>\n", p.x, p.y, p.w, p.h);
+  fprintf(o.f, "<g transform=\"translate(%.1f %.1f) scale(%.9g %.9g)\" shape-rendering=\"crispEdges\">\n", p.x, p.y,
+          p.w / m->nx, p.h / m->ny);
   for (int k = 0, n = s.categories ? s.categories : LEVELS; k < n; k++) put_cells(o.f, m, &s, k);
   fputs("</g>\n", o.f);
   if (s.categories) put_legend(o.f, &p, &s, m->label);

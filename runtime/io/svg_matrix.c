@@ -1,4 +1,5 @@
-/* A matrix of scatter plots: each of the last columns of a table over each of the first, and over the ones before it. Holds: panels of a row share their y axis, those of a column their x axis. */
+/* A matrix of scatter plots: each of the last columns of a table over each of the first, and over the ones before
+ * it. Holds: panels of a row share their y axis, those of a column their x axis. */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +15,9 @@ static int keeps(size_t i, double part) {
 
 static void dots(FILE *f, const Panel *p, const Table *t, int x, int y, double part) {
   double shown = part * (double)t->nrows, width = shown > 1000 ? 2.2 : shown > 200 ? 3 : 4.5;
-  fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.6\" stroke-width=\"%.1f\" stroke-linecap=\"round\" d=\"", lag_colour[0], width);
+  fprintf(
+      f, "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.6\" stroke-width=\"%.1f\" stroke-linecap=\"round\" d=\"",
+      lag_colour[0], width);
   for (size_t i = 0; i < t->nrows; i++) {
     double a = lag_table_cell(t, i, x), b = lag_table_cell(t, i, y);
     if (keeps(i, part) && isfinite(a) && isfinite(b)) fprintf(f, "M%.1f %.1fh0", lag_panel_x(p, a), lag_panel_y(p, b));
@@ -32,7 +35,8 @@ static void range_of(const Table *t, int col, double *lo, double *hi) {
 int lag_matrix_write(const char *path, const ScatterMatrix *m, const char *title) {
   const Table *t = m->table;
   int rows = t->ncols - m->first, columns = t->ncols - 1;
-  double w = fmin(WIDEST, (double)(MOST_WIDTH - GAP * (columns - 1)) / columns), h = 0.8 * w, part = (double)MOST_POINTS / (double)t->nrows;
+  double w = fmin(WIDEST, (double)(MOST_WIDTH - GAP * (columns - 1)) / columns), h = 0.8 * w,
+         part = (double)MOST_POINTS / (double)t->nrows;
   char xlabel[sizeof(Column) + 4], ylabel[sizeof(Column) + 4], note[80];
   Outfile o;
   if (lag_outfile_open(&o, path)) return -1;
@@ -43,8 +47,11 @@ int lag_matrix_write(const char *path, const ScatterMatrix *m, const char *title
   }
   for (int row = 0; row < rows; row++)
     for (int x = 0; x < m->first + row; x++) {
-      int y = m->first + row, last = row + 1 == rows; /* a column begins below the measure that it shows, and reaches down */
-      Panel p = {.x = LEFT + (w + GAP) * x, .y = TOP + 20 + (h + GAP) * row, .w = w, .h = h, .xlog = x < m->first && m->log[x], .xlabel = lag_column_label(&t->cols[x], xlabel, sizeof xlabel)};
+      /* a column begins below the measure that it shows, and reaches down */
+      int y = m->first + row, last = row + 1 == rows;
+      Panel p = {.x = LEFT + (w + GAP) * x,
+                 .y = TOP + 20 + (h + GAP) * row, .w = w, .h = h, .xlog = x < m->first && m->log[x],
+                 .xlabel = lag_column_label(&t->cols[x], xlabel, sizeof xlabel)};
       range_of(t, x, &p.x0, &p.x1);
       range_of(t, y, &p.y0, &p.y1);
       lag_svg_axes(o.f, &p, x ? NULL : lag_column_label(&t->cols[y], ylabel, sizeof ylabel), last);

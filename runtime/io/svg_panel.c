@@ -6,7 +6,8 @@
 
 #include "io/visible.h"
 
-const char *const lag_colour[8] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7f00", "#444444"};
+const char *const lag_colour[8] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                   "#e69f00", "#56b4e9", "#8a7f00", "#444444"};
 
 double lag_tick_step(double lo, double hi, int n) {
   double raw = (hi - lo) / n, power = pow(10, floor(log10(raw))), f = raw / power;
@@ -50,7 +51,9 @@ double lag_panel_x(const Panel *p, double x) { return p->x + (x - p->x0) / (p->x
 
 double lag_panel_y(const Panel *p, double y) { return p->y + p->h - (y - p->y0) / (p->y1 - p->y0) * p->h; }
 
-static void tick_label(char *s, size_t n, double value, double step) { snprintf(s, n, "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value); }
+static void tick_label(char *s, size_t n, double value, double step) {
+  snprintf(s, n, "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value);
+}
 
 /* Number of x ticks per label, so that long labels (-3.086e+07) do not overlap. */
 static double label_stride(const Panel *p, double dx) {
@@ -96,7 +99,8 @@ static void linear_x(FILE *f, const Panel *p, int labelled) {
 
 static void linear_y(FILE *f, const Panel *p, int labelled) {
   double dy = lag_tick_step(p->y0, p->y1, p->h > 220 ? 7 : 4), size = fmax(fabs(p->y0), fabs(p->y1));
-  double base = size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0; /* left out of labels that would be equal otherwise */
+  /* left out of labels that would be equal otherwise */
+  double base = size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0;
   char s[32] = "";
   for (double k = ceil((p->y0 - base) / dy - 1e-9); k * dy <= p->y1 - base + 1e-9 * dy; k++) {
     if (labelled) tick_label(s, sizeof s, k * dy, dy);
@@ -108,7 +112,8 @@ static void linear_y(FILE *f, const Panel *p, int labelled) {
 }
 
 /* Lines at powers of ten, and between where these are few; those from lo to hi, decimal logarithms. */
-static void log_ticks(FILE *f, const Panel *p, double lo, double hi, int labelled, void (*tick)(FILE *f, const Panel *p, double at, const char *label)) {
+static void log_ticks(FILE *f, const Panel *p, double lo, double hi, int labelled,
+                      void (*tick)(FILE *f, const Panel *p, double at, const char *label)) {
   static const int between[] = {1, 2, 5, 3, 4, 6, 7, 8, 9};
   double span = hi - lo, crowded = p->w < 400 ? 2 * span : span;
   int every = (int)(crowded / 8) + 1, parts = crowded > 4 ? 1 : 9, told = crowded > 2.5 ? 1 : crowded > 0.7 ? 3 : 9;
@@ -124,7 +129,8 @@ static void log_ticks(FILE *f, const Panel *p, double lo, double hi, int labelle
 
 void lag_svg_axes(FILE *f, const Panel *p, const char *ylabel, int last) {
   char s[220];
-  fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" stroke=\"#999\"/>\n", p->x, p->y, p->w, p->h);
+  fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" stroke=\"#999\"/>\n", p->x, p->y,
+          p->w, p->h);
   if (p->xlog) log_ticks(f, p, p->x0, p->x1, last, x_tick);
   else linear_x(f, p, last);
   if (p->ylog) log_ticks(f, p, p->y0, p->y1, ylabel != NULL, y_tick);
@@ -132,7 +138,8 @@ void lag_svg_axes(FILE *f, const Panel *p, const char *ylabel, int last) {
   snprintf(s, sizeof s, "%s%s", last ? p->xlabel : "", p->xlog ? ", logarithmic" : "");
   if (last) lag_svg_text(f, p->x + p->w / 2, p->y + p->h + 40, "text-anchor=\"middle\" class=\"l\"", s);
   if (!ylabel) return;
-  fprintf(f, "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\" class=\"l\">", 18.0, p->y + p->h / 2);
+  fprintf(f, "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\" class=\"l\">", 18.0,
+          p->y + p->h / 2);
   lag_write_markup(f, ylabel);
   fputs(p->ylog ? ", logarithmic</text>\n" : "</text>\n", f);
 }

@@ -24,7 +24,8 @@ double lag_panel_y(const Panel *p, double y);
 void lag_svg_head(FILE *f, int width, int height, const char *title);
 void lag_svg_large_head(FILE *f, int width, int height, int size, const char *title);
 void lag_svg_text(FILE *f, double x, double y, const char *attributes, const char *s);
-/* svg_levels.c: level curves of a value over the panel; its curve along y = 0; [y0, y1] widened to the latter's lowest value, and by half upwards. */
+/* svg_levels.c: level curves of a value over the panel; its curve along y = 0; [y0, y1] widened to the latter's
+ * lowest value, and by half upwards. */
 void lag_svg_levels(FILE *f, const Panel *p, const Beneath *b);
 void lag_svg_profile(FILE *f, const Panel *p, const Beneath *b);
 void lag_svg_profile_range(const Beneath *b, double x0, double x1, double *y0, double *y1);

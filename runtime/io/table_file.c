@@ -1,8 +1,9 @@
 /* Tables and files of rows. Enters: the columns of a simulation, then one row at a time; leaves: a CSV file (RFC 4180;
  * a header with names and units, numbers with the digits to read back exactly), or a NumPy .npy file.
  *
- * The .npy file is a one-dimensional array of records with one 8-byte field a column; the field's title is "name [unit]":
- * a = numpy.load("f.npy"); a["th"], a["th [deg]"], a.dtype.fields. Format: NumPy Enhancement Proposal 1, version 3.0. */
+ * The .npy file is a one-dimensional array of records with one 8-byte field a column; the field's title is "name
+ * [unit]": a = numpy.load("f.npy"); a["th"], a["th [deg]"], a.dtype.fields. Format: NumPy Enhancement Proposal 1,
+ * version 3.0. */
 #include <errno.h>
 #include <math.h>
 #include <stdint.h>

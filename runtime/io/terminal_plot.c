@@ -1,5 +1,6 @@
-/* Plots in a terminal. Enters: a table; leaves: charts of braille dots (2 by 4 a character): the first columns against
- * time, or one column against another. Holds: rows of a curve are joined by lines, so that steep curves have no gaps. */
+/* Plots in a terminal. Enters: a table; leaves: charts of braille dots (2 by 4 a character): the first columns
+ * against time, or one column against another. Holds: rows of a curve are joined by lines, so that steep curves have
+ * no gaps. */
 #include <math.h>
 #include <string.h>
 
@@ -15,7 +16,9 @@ typedef struct Chart {
   double x0, x1, y0, y1;
 } Chart;
 
-static void plot(Chart *c, int x, int y) { if (x >= 0 && x < 2 * COLS && y >= 0 && y < 4 * c->rows) c->cell[y / 4][x / 2] |= dot[y % 4][x % 2]; }
+static void plot(Chart *c, int x, int y) {
+  if (x >= 0 && x < 2 * COLS && y >= 0 && y < 4 * c->rows) c->cell[y / 4][x / 2] |= dot[y % 4][x % 2];
+}
 
 static int to_x(const Chart *c, double x) { return (int)lrint((x - c->x0) / (c->x1 - c->x0) * (2 * COLS - 1)); }
 
@@ -75,7 +78,8 @@ static void print_chart(FILE *f, const Chart *c, const Column *name) {
   }
 }
 
-/* Equal scales for two axes of one unit, so that a circle looks round: widens the narrower range. Dots are taken as square. */
+/* Equal scales for two axes of one unit, so that a circle looks round: widens the narrower range. Dots are taken as
+ * square. */
 static void same_scale(Chart *c) {
   double wide = (c->x1 - c->x0) / (2 * COLS), high = (c->y1 - c->y0) / (4 * c->rows);
   double more_x = wide < high ? (high - wide) * COLS : 0, more_y = high < wide ? (wide - high) * 2 * c->rows : 0;

@@ -1,6 +1,6 @@
-/* Makes hidden characters visible in messages and titles: C0 and C1 controls, DEL, and characters that change the direction of text (Unicode
- * TR36, "bidirectional text spoofing") are shown as <U+202E>, a byte that is not UTF-8 as <9B>. The compiler is built with a copy of this
- * file (Makefile). */
+/* Makes hidden characters visible in messages and titles: C0 and C1 controls, DEL, and characters that change the
+ * direction of text (Unicode TR36, "bidirectional text spoofing") are shown as <U+202E>, a byte that is not UTF-8 as
+ * <9B>. The compiler is built with a copy of this file (Makefile). */
 #pragma once
 
 #include <stdio.h>
@@ -13,7 +13,8 @@ static inline int is_hidden(unsigned long code) {
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
 }
 
-/* Decodes the UTF-8 character at s of n > 0 bytes: returns its length and *code. Invalid: length 1, *code = 0xDC00 + the byte. */
+/* Decodes the UTF-8 character at s of n > 0 bytes: returns its length and *code. Invalid: length 1, *code = 0xDC00 +
+ * the byte. */
 static inline size_t utf8_at(const char *s, size_t n, unsigned long *code) {
   static const unsigned long least[] = {0, 0, 0x80, 0x800, 0x10000};
   unsigned char c = (unsigned char)*s;
@@ -27,7 +28,8 @@ static inline size_t utf8_at(const char *s, size_t n, unsigned long *code) {
   return len;
 }
 
-/* out[VISIBLE_SIZE] := visible form of the character at s of n > 0 bytes. Returns the length of the character in bytes. */
+/* out[VISIBLE_SIZE] := visible form of the character at s of n > 0 bytes. Returns the length of the character in
+ * bytes. */
 static inline size_t show_visible(const char *s, size_t n, char *out) {
   unsigned long code;
   size_t len = utf8_at(s, n, &code);

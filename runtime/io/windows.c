@@ -1,4 +1,5 @@
-/* POSIX functions that MinGW lacks, in Windows' own. Compiled for Windows only (Makefile). Holds: they fail as POSIX's do, with errno. */
+/* POSIX functions that MinGW lacks, in Windows' own. Compiled for Windows only (Makefile). Holds: they fail as
+ * POSIX's do, with errno. */
 #include "io/posix.h"
 
 #include <stdarg.h>
@@ -9,12 +10,21 @@
 /* errno := what Windows' last error is called; returns -1. */
 static int failed(void) {
   switch (GetLastError()) {
-    case ERROR_FILE_NOT_FOUND: case ERROR_PATH_NOT_FOUND: case ERROR_INVALID_NAME: case ERROR_BAD_PATHNAME: case ERROR_INVALID_DRIVE: errno = ENOENT; break;
-    case ERROR_FILE_EXISTS: case ERROR_ALREADY_EXISTS: errno = EEXIST; break;
-    case ERROR_DISK_FULL: errno = ENOSPC; break;
-    case ERROR_NOT_ENOUGH_MEMORY: case ERROR_OUTOFMEMORY: errno = ENOMEM; break;
-    case ERROR_ACCESS_DENIED: case ERROR_SHARING_VIOLATION: case ERROR_LOCK_VIOLATION: case ERROR_WRITE_PROTECT: errno = EACCES; break;
-    default: errno = EIO; break;
+  case ERROR_FILE_NOT_FOUND:
+  case ERROR_PATH_NOT_FOUND:
+  case ERROR_INVALID_NAME:
+  case ERROR_BAD_PATHNAME:
+  case ERROR_INVALID_DRIVE: errno = ENOENT; break;
+  case ERROR_FILE_EXISTS:
+  case ERROR_ALREADY_EXISTS: errno = EEXIST; break;
+  case ERROR_DISK_FULL: errno = ENOSPC; break;
+  case ERROR_NOT_ENOUGH_MEMORY:
+  case ERROR_OUTOFMEMORY: errno = ENOMEM; break;
+  case ERROR_ACCESS_DENIED:
+  case ERROR_SHARING_VIOLATION:
+  case ERROR_LOCK_VIOLATION:
+  case ERROR_WRITE_PROTECT: errno = EACCES; break;
+  default: errno = EIO; break;
   }
   return -1;
 }
@@ -34,10 +44,14 @@ static int stat_of(HANDLE h, struct lag_stat *st) {
     return 0;
   }
   if (!GetFileInformationByHandle(h, &is)) return failed();
-  int folder = (is.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) != 0, fixed = (is.dwFileAttributes & FILE_ATTRIBUTE_READONLY) != 0;
-  *st = (struct lag_stat){.st_dev = is.dwVolumeSerialNumber, .st_ino = (unsigned long long)is.nFileIndexHigh << 32 | is.nFileIndexLow,
-                   .st_mode = (folder ? _S_IFDIR : _S_IFREG) | (fixed ? 0500u : 0700u), .st_nlink = is.nNumberOfLinks,
-                   .st_size = (long long)is.nFileSizeHigh << 32 | is.nFileSizeLow, .st_mtim = time_of(is.ftLastWriteTime)};
+  int folder = (is.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) != 0,
+      fixed = (is.dwFileAttributes & FILE_ATTRIBUTE_READONLY) != 0;
+  *st = (struct lag_stat){.st_dev = is.dwVolumeSerialNumber,
+                          .st_ino = (unsigned long long)is.nFileIndexHigh << 32 | is.nFileIndexLow,
+                          .st_mode = (folder ? _S_IFDIR : _S_IFREG) | (fixed ? 0500u : 0700u),
+                          .st_nlink = is.nNumberOfLinks,
+                          .st_size = (long long)is.nFileSizeHigh << 32 | is.nFileSizeLow,
+                          .st_mtim = time_of(is.ftLastWriteTime)};
   return 0;
 }
 
@@ -56,17 +70,21 @@ int lag_fstat(int fd, struct lag_stat *st) { return stat_of((HANDLE)_get_osfhand
 int lag_open(const char *path, int flags, ...) {
   DWORD to = flags & (_O_RDWR | _O_WRONLY) ? GENERIC_READ | GENERIC_WRITE : GENERIC_READ;
   DWORD how = !(flags & _O_CREAT) ? OPEN_EXISTING : flags & _O_EXCL ? CREATE_NEW : OPEN_ALWAYS;
-  HANDLE h = CreateFileA(path, to, shared, NULL, how, FILE_ATTRIBUTE_NORMAL | FILE_FLAG_BACKUP_SEMANTICS, NULL); /* folders, too */
+  /* folders, too */
+  HANDLE h = CreateFileA(path, to, shared, NULL, how, FILE_ATTRIBUTE_NORMAL | FILE_FLAG_BACKUP_SEMANTICS, NULL);
   if (h == INVALID_HANDLE_VALUE) return failed();
   int fd = _open_osfhandle((intptr_t)h, (flags & _O_APPEND) | _O_BINARY | _O_NOINHERIT);
   if (fd < 0) CloseHandle(h);
   return fd;
 }
 
-int lag_rename(const char *from, const char *to) { return MoveFileExA(from, to, MOVEFILE_REPLACE_EXISTING) ? 0 : failed(); }
+int lag_rename(const char *from, const char *to) {
+  return MoveFileExA(from, to, MOVEFILE_REPLACE_EXISTING) ? 0 : failed();
+}
 
 static int take_lock(int fd, DWORD how) {
-  OVERLAPPED far_behind = {.Offset = 0, .OffsetHigh = 1 << 30}; /* locked bytes cannot be written by others: none of the file's */
+  /* locked bytes cannot be written by others: none of the file's */
+  OVERLAPPED far_behind = {.Offset = 0, .OffsetHigh = 1 << 30};
   return LockFileEx((HANDLE)_get_osfhandle(fd), LOCKFILE_EXCLUSIVE_LOCK | how, 0, 1, 0, &far_behind) ? 0 : failed();
 }
 

@@ -308,7 +308,8 @@ static inline int lag_contact_soften(const lag_impulses *s, lag_pressing *c, LAG
  * `enough`. Returns the number of sweeps, forth and back in turn; `most` + 1 where these do not suffice. */
 static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, int most) {
   const LAG_REAL zero = LAG_C(0.0);
-  LAG_REAL before = enough*LAG_C(1e8); /* change 1000 sweeps ago: rows that depend on others agree to their own rounding only */
+  /* change 1000 sweeps ago: rows that depend on others agree to their own rounding only */
+  LAG_REAL before = enough*LAG_C(1e8);
   lag_find_opposites(s);
   for (int i = 0; i < s->n; i++)
     for (int k = (int)s->of[i].row; k <= (int)(s->of[i].row + s->of[i].tangents); k++) {

@@ -1,5 +1,5 @@
-/* Explicit Runge-Kutta methods over lanes: the steps of methods/adaptive_rk.c, whose comments say why, of several runs at once. A lane whose step is rejected
- * tries a shorter one in the next turn. */
+/* Explicit Runge-Kutta methods over lanes: the steps of methods/adaptive_rk.c, whose comments say why, of several
+ * runs at once. A lane whose step is rejected tries a shorter one in the next turn. */
 #pragma once
 
 #include "lanes/lane_vectors.h"
@@ -57,7 +57,8 @@ static void embedded_store(void *batch, int lane, lag_sim *s) {
   lane_get(n, b->comp, lane, lag_adaptive_rk_array(w, &s->pb, EMBEDDED_COMP));
   lane_get(n, b->y0, lane, lag_adaptive_rk_array(w, &s->pb, EMBEDDED_Y0));
   lane_get(n, b->pb.y, lane, lag_adaptive_rk_array(w, &s->pb, EMBEDDED_Y1));
-  for (int j = 0; j < b->pair->tab->stages; j++) lane_get(n, b->k + j * n, lane, lag_adaptive_rk_array(w, &s->pb, EMBEDDED_K1 + j));
+  for (int j = 0; j < b->pair->tab->stages; j++)
+    lane_get(n, b->k + j * n, lane, lag_adaptive_rk_array(w, &s->pb, EMBEDDED_K1 + j));
   w->h = b->h[lane];
   w->err_power = b->err_power[lane];
   w->tc = b->tc[lane];

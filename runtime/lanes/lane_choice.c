@@ -13,12 +13,14 @@ int lag_lane_waits(int status) { return status == LAG_WANTS_STEP; }
 int lag_lane_doubts(lag_sim *s) {
   lag_charge_stats energy;
   lag_sim_charge(s, 0, &energy);
-  return energy.flags & LAG_CONSERVED && !(fabs(energy.now - s->charges[0].first) <= fmax(0.5 * fabs(energy.begin), 1e-12));
+  return energy.flags & LAG_CONSERVED &&
+         !(fabs(energy.now - s->charges[0].first) <= fmax(0.5 * fabs(energy.begin), 1e-12));
 }
 
 static int processor_has(int lanes) {
 #if defined(__GNUC__) && defined(__x86_64__)
-  return lanes == 4 ? __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") : __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
+  return lanes == 4 ? __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
+                    : __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
 #else
   return lanes == 4;
 #endif
@@ -53,7 +55,8 @@ static const char *needs_single_steps(const lag_sim *s) {
     if (lag_is_kick(m, k)) return "since the model has kicks";
   if (m->ntables) return "since an input is a table";
   if (has_signal(s)) return "since an input is a function";
-  if (s->method->flags & LAG_METHOD_SPLITS && !(m->flags & LAG_SEPARABLE)) return "since forces depend on velocities, or masses on positions";
+  if (s->method->flags & LAG_METHOD_SPLITS && !(m->flags & LAG_SEPARABLE))
+    return "since forces depend on velocities, or masses on positions";
   if (s->method->flags & LAG_METHOD_SPLITS && m->nq == 0) return "since the model gives its Hamiltonian";
   if (does_not_adapt(s)) return "since steps do not adapt";
   return NULL;
@@ -61,12 +64,14 @@ static const char *needs_single_steps(const lag_sim *s) {
 
 /* Why the program has no scenes for lanes. */
 static const char *why_not_compiled(const lag_sim *s) {
-  if (strcmp(LAG_PRECISION, "double") != 0) return "since vectors hold doubles, and this run computes in " LAG_PRECISION " precision";
+  if (strcmp(LAG_PRECISION, "double") != 0)
+    return "since vectors hold doubles, and this run computes in " LAG_PRECISION " precision";
   if (strstr(s->pb.model->math, "C library")) return "since the C library's sines (--math libm) have no vectors";
   return "since this program was compiled without: `lagc sweep` compiles 4 for AVX2 and NEON, and by gcc 8 for AVX-512";
 }
 
-const char *lag_lanes_choose(const lag_sim *like, const lag_scene *four, const lag_scene *eight, int wanted, LaneChoice *c) {
+const char *lag_lanes_choose(const lag_sim *like, const lag_scene *four, const lag_scene *eight, int wanted,
+                             LaneChoice *c) {
   const LaneWidth *const widths[] = {&lag_lane_width_8, &lag_lane_width_4};
   const lag_scene *const scenes[] = {eight, four};
   const char *why = needs_single_steps(like);
@@ -83,7 +88,8 @@ const char *lag_lanes_choose(const lag_sim *like, const lag_scene *four, const l
     }
     const LaneKernel *kernel = kernel_of(widths[i], like->method);
     if (!kernel) return "since the method has no lanes";
-    *c = (LaneChoice){kernel, scenes[i]->model, lanes, like->pb.model->nev > 0 || like->scene->nmonitors > 0 || !(like->pb.model->flags & LAG_SMOOTH)};
+    *c = (LaneChoice){kernel, scenes[i]->model, lanes,
+                      like->pb.model->nev > 0 || like->scene->nmonitors > 0 || !(like->pb.model->flags & LAG_SMOOTH)};
     return NULL;
   }
   return why;

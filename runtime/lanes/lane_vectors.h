@@ -54,7 +54,8 @@ typedef struct LaneRoom {
 
 static inline int lane_room(LaneRoom *r, size_t n) {
   r->block = calloc(n + 1, sizeof(Lanes));
-  if (r->block) r->next = (Lanes *)(void *)(r->block + (sizeof(Lanes) - (uintptr_t)r->block % sizeof(Lanes)) % sizeof(Lanes));
+  if (r->block)
+    r->next = (Lanes *)(void *)(r->block + (sizeof(Lanes) - (uintptr_t)r->block % sizeof(Lanes)) % sizeof(Lanes));
   return r->block != NULL;
 }
 
@@ -81,10 +82,12 @@ typedef struct LaneProblem {
   int equal;              /* 1: steps of equal size, which may cross a pole of a force: core/force_pole.c */
   LaneMask pause, judged; /* pause after each step; the energy is conserved, and is to be kept */
   Lanes t, to, t0;        /* present time; where to pause; start of the last step */
-  Lanes steps, t_begin, energy, floor; /* steps since load; start of the run; energy then, and the loss that would be too large */
+  /* steps since load; start of the run; energy then, and the loss that would be too large */
+  Lanes steps, t_begin, energy, floor;
   Lanes *p, *u, *hold, *y, *work;
   const Lanes *from;      /* [n] state before the last step */
-  Lanes *pace[3], *before[3]; /* [n] rates of the last step, of the one before, and their fading peak; the same before the last step */
+  /* [n] rates of the last step, of the one before, and their fading peak; the same before the last step */
+  Lanes *pace[3], *before[3];
 } LaneProblem;
 
 static inline size_t lane_problem_size(const lag_sim *s, const lag_model *m) {
@@ -94,7 +97,9 @@ static inline size_t lane_problem_size(const lag_sim *s, const lag_model *m) {
 
 static inline void lane_problem_init(LaneProblem *pb, LaneRoom *room, const lag_sim *like, const void *model) {
   const lag_model *m = like->pb.model;
-  *pb = (LaneProblem){.model = model, .n = like->pb.n, .nq = m->nq, .nz = m->nz, .nu = m->nu, .np = m->np + m->nderived, .tol = like->pb.tol};
+  *pb = (LaneProblem){.model = model,
+                      .n = like->pb.n, .nq = m->nq, .nz = m->nz, .nu = m->nu, .np = m->np + m->nderived,
+                      .tol = like->pb.tol};
   pb->p = lane_take(room, (size_t)pb->np);
   pb->u = lane_take(room, (size_t)pb->nu);
   pb->hold = lane_take(room, (size_t)pb->nu);
@@ -133,11 +138,13 @@ static inline void lane_problem_load(LaneProblem *pb, int lane, const lag_sim *s
 /* u := the inputs at t. */
 static inline int lane_inputs(LaneProblem *pb, Lanes t) {
   int rc = pb->nu && pb->model->inputs ? pb->model->inputs(t, pb->p, pb->u) : 0;
-  for (int i = 0; i < pb->nu; i++) pb->u[i] = lane_select(pb->hold[i] == pb->hold[i], pb->hold[i], pb->model->inputs ? pb->u[i] : lane_all(0));
+  for (int i = 0; i < pb->nu; i++)
+    pb->u[i] = lane_select(pb->hold[i] == pb->hold[i], pb->hold[i], pb->model->inputs ? pb->u[i] : lane_all(0));
   return rc;
 }
 
-/* Lanes whose energy is not finite, or may be lost: where a run alone ends by its energy, or is judged at its end, and in some more. */
+/* Lanes whose energy is not finite, or may be lost: where a run alone ends by its energy, or is judged at its end,
+ * and in some more. */
 static inline LaneMask lane_energy_lost(LaneProblem *pb) {
   Lanes e[2];
   const lag_model *m = pb->model;
@@ -147,19 +154,23 @@ static inline LaneMask lane_energy_lost(LaneProblem *pb) {
   return ~pb->pause & (((d > pb->floor) & pb->judged) | lane_not_finite(1, e));
 }
 
-/* After steps of equal size in the lanes of `taken`: their rates. Returns the lanes in which one is rough (force_pole.c, find_rough): these pause. */
+/* After steps of equal size in the lanes of `taken`: their rates. Returns the lanes in which one is rough
+ * (force_pole.c, find_rough): these pause. */
 static inline LaneMask lane_rough(LaneProblem *pb, LaneMask taken) {
   const double rough = 0.1, rounding = 1e-9, steep = 4, fading = 0.99;
   LaneMask found = {0};
   if (!pb->equal) return found;
   Lanes dt = pb->t - pb->t0, **one = &pb->pace[0], **two = &pb->pace[1], **peak = &pb->pace[2];
   for (int i = pb->nq; i < pb->n; i++) {
-    Lanes pace = (pb->y[i] - pb->from[i]) / dt, size = lane_abs(pace), was = lane_abs((*one)[i]), old = lane_abs((*two)[i]);
-    Lanes bend = lane_abs(pace - lane_all(2) * (*one)[i] + (*two)[i]), faded = lane_all(fading) * (*peak)[i], largest = size;
+    Lanes pace = (pb->y[i] - pb->from[i]) / dt, size = lane_abs(pace), was = lane_abs((*one)[i]),
+          old = lane_abs((*two)[i]);
+    Lanes bend = lane_abs(pace - lane_all(2) * (*one)[i] + (*two)[i]), faded = lane_all(fading) * (*peak)[i],
+          largest = size;
     LaneMask grows = (size > lane_all(steep) * old) & (size > (*peak)[i]);
     largest = lane_select(was > largest, was, largest); /* as fmax: what is not a number counts for nothing */
     largest = lane_select(old > largest, old, largest);
-    found |= (grows | ~(bend <= lane_all(rough) * size)) & (grows | ~(bend <= lane_all(rough) * largest)) & (largest * lane_abs(dt) > lane_all(rounding) * lane_abs(pb->from[i]));
+    found |= (grows | ~(bend <= lane_all(rough) * size)) & (grows | ~(bend <= lane_all(rough) * largest)) &
+             (largest * lane_abs(dt) > lane_all(rounding) * lane_abs(pb->from[i]));
     for (int k = 0; k < 3; k++) pb->before[k][i] = lane_select(taken, pb->pace[k][i], pb->before[k][i]);
     (*two)[i] = lane_select(taken, (*one)[i], (*two)[i]);
     (*one)[i] = lane_select(taken, pace, (*one)[i]);
@@ -183,7 +194,8 @@ static inline void lane_moved(LaneProblem *pb, LaneMask taken, Lanes end) {
   pb->steps += lane_select(taken, lane_all(1), lane_all(0));
 }
 
-/* After steps in the lanes of `taken`: the lanes that pause or give up, as bits; *bad: those that give up, of `lost` or by their energy. */
+/* After steps in the lanes of `taken`: the lanes that pause or give up, as bits; *bad: those that give up, of `lost`
+ * or by their energy. */
 static inline unsigned lane_some(LaneProblem *pb, LaneMask taken, LaneMask lost, unsigned *bad) {
   LaneMask rough = lane_rough(pb, taken), there = (pb->t - pb->to) * lane_all(pb->dir) >= lane_all(0);
   lost |= taken & lane_energy_lost(pb);
@@ -191,8 +203,10 @@ static inline unsigned lane_some(LaneProblem *pb, LaneMask taken, LaneMask lost,
   return *bad | (unsigned)lag_lanes_bits(rough | (taken & (pb->pause | there)));
 }
 
-/* LaneKernel.advance, by a method's step of the lanes of `busy`: returns those that took it; *bad: those that give up. */
-LAG_INLINE unsigned lane_advance(void *batch, unsigned busy, unsigned *bad, LaneMask (*step)(void *batch, LaneMask busy, LaneMask *bad)) {
+/* LaneKernel.advance, by a method's step of the lanes of `busy`: returns those that took it; *bad: those that give
+ * up. */
+LAG_INLINE unsigned lane_advance(void *batch, unsigned busy, unsigned *bad,
+                                 LaneMask (*step)(void *batch, LaneMask busy, LaneMask *bad)) {
   LaneMask on = lane_mask(busy), lost;
   *bad = 0;
   for (int turn = 0; turn < LANE_TURNS; turn++) {
@@ -204,7 +218,9 @@ LAG_INLINE unsigned lane_advance(void *batch, unsigned busy, unsigned *bad, Lane
 }
 
 /* The kernel of a method from the functions of its family. */
-#define LANE_KERNEL(id, family) static const LaneKernel id##_kernel = {#id, family##_open, lane_close, family##_load, family##_advance, family##_store, family##_aim};
+#define LANE_KERNEL(id, family)           \
+  static const LaneKernel id##_kernel = { \
+      #id, family##_open, lane_close, family##_load, family##_advance, family##_store, family##_aim};
 
 /* The last step, to y at t, into its simulation. */
 static inline void lane_problem_store(const LaneProblem *pb, int lane, lag_sim *s) {

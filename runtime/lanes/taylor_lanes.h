@@ -1,5 +1,5 @@
-/* taylor over lanes: the steps of methods/taylor.c, whose comments say why, of several runs at once. A lane whose step is rejected keeps its series while the
- * others go on. */
+/* taylor over lanes: the steps of methods/taylor.c, whose comments say why, of several runs at once. A lane whose
+ * step is rejected keeps its series while the others go on. */
 #pragma once
 
 #include "lanes/lane_vectors.h"
@@ -83,9 +83,11 @@ static int taylor_aim(void *batch, int lane, const lag_sim *s) {
 LAG_INLINE Lanes taylor_sizes(int n, TaylorLanes *b) {
   int columns = b->columns;
   const Lanes *x = b->x[b->now], none = lane_all(0);
-  for (int i = 0; i < n; i++) b->scale[i] = lane_all(1) / (lane_abs(b->pb.y[i]) + lane_abs(x[columns + i]) + b->floor[i]);
+  for (int i = 0; i < n; i++)
+    b->scale[i] = lane_all(1) / (lane_abs(b->pb.y[i]) + lane_abs(x[columns + i]) + b->floor[i]);
   Lanes root = lag_taylor_root(x, b->order, columns, n, b->scale, lane_all(DBL_MIN));
-  Lanes h = lane_select(root > none, lane_abs(b->unit) * lane_all(b->reach) / root, lane_all(HUGE_VAL)), seen = lane_abs(b->pb.t - b->pb.t_begin);
+  Lanes h = lane_select(root > none, lane_abs(b->unit) * lane_all(b->reach) / root, lane_all(HUGE_VAL)),
+        seen = lane_abs(b->pb.t - b->pb.t_begin);
   Lanes most = b->h_max > 0 ? lane_all(b->h_max) : lane_select(seen > none, seen, lane_all(HUGE_VAL));
   h = lane_min(h, most);
   h = lane_select(lane_abs(h) <= lane_all(DBL_MAX), h, lane_all(1));
@@ -167,6 +169,8 @@ static LaneMask taylor_step(void *batch, LaneMask busy, LaneMask *bad) {
   }
 }
 
-static unsigned taylor_advance(void *batch, unsigned busy, unsigned *bad) { return lane_advance(batch, busy, bad, taylor_step); }
+static unsigned taylor_advance(void *batch, unsigned busy, unsigned *bad) {
+  return lane_advance(batch, busy, bad, taylor_step);
+}
 
 LANE_KERNEL(taylor, taylor)

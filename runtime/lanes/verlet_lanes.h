@@ -47,9 +47,11 @@ static void verlet_store(void *batch, int lane, lag_sim *s) {
   const struct {
     const Lanes *x;
     int place;
-  } arrays[] = {{b->y0, VERLET_Y0}, {b->pb.y, VERLET_Y1}, {b->f0, VERLET_F0}, {b->f1, VERLET_F1}, {b->comp, VERLET_COMP}};
+  } arrays[] = {
+      {b->y0, VERLET_Y0}, {b->pb.y, VERLET_Y1}, {b->f0, VERLET_F0}, {b->f1, VERLET_F1}, {b->comp, VERLET_COMP}};
   lane_problem_store(&b->pb, lane, s);
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) lane_get(n, arrays[i].x, lane, w->x + arrays[i].place * n);
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+    lane_get(n, arrays[i].x, lane, w->x + arrays[i].place * n);
   w->step.t0 = b->pb.t0[lane];
   w->step.dt = b->pb.t[lane] - b->pb.t0[lane];
   w->step.tc = b->tc[lane];
@@ -75,8 +77,10 @@ LAG_INLINE int verlet_lane_forces(LaneProblem *pb, Lanes t, const Lanes *y, Lane
 /* All kicks and drifts of a step from y0 at t: y1, and f1 at its end. Returns the lanes where the model fails. */
 static LaneMask verlet_lane_compose(VerletLanes *b, Lanes end, double dt) {
   int n = b->pb.n, nq = b->pb.nq;
-  const lag_splitting s = {.n = nq, .q = b->y0, .v = b->y0 + nq, .a = b->f0 + nq, .lost = b->comp,
-                           .q1 = b->y1, .v1 = b->y1 + nq, .a1 = b->f1 + nq, .lost1 = b->comp1, .rate = b->y1 + nq, .dq = b->dy, .dv = b->dy + nq};
+  const lag_splitting s = {.n = nq,
+                           .q = b->y0, .v = b->y0 + nq, .a = b->f0 + nq, .lost = b->comp, .q1 = b->y1, .v1 = b->y1 + nq,
+                           .a1 = b->f1 + nq, .lost1 = b->comp1, .rate = b->y1 + nq, .dq = b->dy,
+                           .dv = b->dy + nq};
   int status = lag_split(&b->pb, &s, b->c, b->pb.t, end, lane_all(dt));
   for (int i = 0; i < nq; i++) b->f1[i] = b->y1[nq + i];
   return lane_mask((unsigned)-status) | lane_not_finite(n, b->y1);
@@ -101,7 +105,9 @@ static LaneMask verlet_step(void *batch, LaneMask busy, LaneMask *bad) {
   return taken;
 }
 
-static unsigned verlet_advance(void *batch, unsigned busy, unsigned *bad) { return lane_advance(batch, busy, bad, verlet_step); }
+static unsigned verlet_advance(void *batch, unsigned busy, unsigned *bad) {
+  return lane_advance(batch, busy, bad, verlet_step);
+}
 
 #define VERLET_KERNEL(name, general, order, flags, line, words) LANE_KERNEL(name, verlet)
 LAG_SPLITTING_METHODS(VERLET_KERNEL)

@@ -1,4 +1,5 @@
-/* Models in MATLAB and Octave: a MEX function around their shared libraries (`lagc build MODEL --shared -o libNAME.so`). README.md has its calls. */
+/* Models in MATLAB and Octave: a MEX function around their shared libraries (`lagc build MODEL --shared -o
+ * libNAME.so`). README.md has its calls. */
 #include "lag.h"
 #include "mex.h"
 
@@ -6,22 +7,26 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The library of this call. It is opened, not linked: Octave would take the functions of the first model for all others, whose names are the same. */
+/* The library of this call. It is opened, not linked: Octave would take the functions of the first model for all
+ * others, whose names are the same. */
 static void *library;
 #define CALL(f) ((__typeof__(f) *)find(#f))
 
 static void *find(const char *name) {
   void *f = dlsym(library, name);
-  if (!f) mexErrMsgIdAndTxt("lagc:library", "no %s: make the library by `lagc build MODEL --shared -o libNAME.so`", name);
+  if (!f)
+    mexErrMsgIdAndTxt("lagc:library", "no %s: make the library by `lagc build MODEL --shared -o libNAME.so`", name);
   return f;
 }
 
 static void open_library(const mxArray *path) {
   char text[1000];
-  if (!mxIsChar(path) || mxGetString(path, text, sizeof text)) mexErrMsgIdAndTxt("lagc:argument", "the library is the name of a file");
+  if (!mxIsChar(path) || mxGetString(path, text, sizeof text))
+    mexErrMsgIdAndTxt("lagc:argument", "the library is the name of a file");
   library = dlopen(text, RTLD_NOW | RTLD_LOCAL);
   if (!library) mexErrMsgIdAndTxt("lagc:library", "%s", dlerror());
-  if (CALL(lag_library_abi)() != LAG_ABI) mexErrMsgIdAndTxt("lagc:library", "%s is from another version of lagc: make it anew", text);
+  if (CALL(lag_library_abi)() != LAG_ABI)
+    mexErrMsgIdAndTxt("lagc:library", "%s is from another version of lagc: make it anew", text);
 }
 
 /* Ends the call with an error; the simulation is freed first. */
@@ -41,7 +46,8 @@ static const double *get_numbers(lag_sim *sim, const mxArray *a, const char *wha
 static const lag_scene *get_scene(const mxArray *a) {
   char name[200] = "", all[600] = "";
   const lag_scene *sc;
-  if (a && !mxIsEmpty(a) && (!mxIsChar(a) || mxGetString(a, name, sizeof name))) mexErrMsgIdAndTxt("lagc:argument", "the scene is a name");
+  if (a && !mxIsEmpty(a) && (!mxIsChar(a) || mxGetString(a, name, sizeof name)))
+    mexErrMsgIdAndTxt("lagc:argument", "the scene is a name");
   for (int i = 0; (sc = CALL(lag_library_scene)(CALL(lag_library)(), i)) != NULL; i++) {
     double t0, t1, every;
     const char *is = CALL(lag_scene_span)(sc, &t0, &t1, &every);
@@ -58,17 +64,22 @@ static int count(const lag_scene *sc, int kind) {
   return n;
 }
 
-/* Sets the fields of a struct; or the pairs of a cell {'th''', 1; 'm', 2}, for names that are no identifiers. `tol`: the tolerance. */
+/* Sets the fields of a struct; or the pairs of a cell {'th''', 1; 'm', 2}, for names that are no identifiers. `tol`:
+ * the tolerance. */
 static void set_values(lag_sim *sim, const mxArray *a) {
   int fields = mxIsStruct(a), n = fields ? mxGetNumberOfFields(a) : (int)mxGetM(a);
-  if (!mxIsEmpty(a) && !fields && (!mxIsCell(a) || mxGetN(a) != 2)) fail(sim, "lagc:argument", "the values are a struct, or a cell {'name', value; ...}");
+  if (!mxIsEmpty(a) && !fields && (!mxIsCell(a) || mxGetN(a) != 2))
+    fail(sim, "lagc:argument", "the values are a struct, or a cell {'name', value; ...}");
   for (int i = 0; i < n && !mxIsEmpty(a); i++) {
     char name[200] = "";
-    const mxArray *key = fields ? NULL : mxGetCell(a, (mwIndex)i), *v = fields ? mxGetFieldByNumber(a, 0, i) : mxGetCell(a, (mwIndex)(i + n));
+    const mxArray *key = fields ? NULL : mxGetCell(a, (mwIndex)i),
+                  *v = fields ? mxGetFieldByNumber(a, 0, i) : mxGetCell(a, (mwIndex)(i + n));
     if (fields) snprintf(name, sizeof name, "%s", mxGetFieldNameByNumber(a, i));
-    if (!v || !mxIsDouble(v) || mxGetNumberOfElements(v) != 1 || (!fields && (!key || !mxIsChar(key) || mxGetString(key, name, sizeof name))))
+    if (!v || !mxIsDouble(v) || mxGetNumberOfElements(v) != 1 ||
+        (!fields && (!key || !mxIsChar(key) || mxGetString(key, name, sizeof name))))
       fail(sim, "lagc:argument", "each value is a name and one number");
-    int status = strcmp(name, "tol") == 0 ? CALL(lag_sim_set_tolerance)(sim, mxGetScalar(v)) : CALL(lag_sim_set)(sim, name, mxGetScalar(v));
+    int status = strcmp(name, "tol") == 0 ? CALL(lag_sim_set_tolerance)(sim, mxGetScalar(v))
+                                          : CALL(lag_sim_set)(sim, name, mxGetScalar(v));
     if (status < 0) fail(sim, "lagc:value", CALL(lag_sim_message)(sim));
   }
 }
@@ -101,7 +112,9 @@ static void run(const lag_scene *sc, lag_sim *sim, int n, const mxArray *times, 
   const double *t = get_numbers(sim, times, "times are real doubles");
   int rows = (int)mxGetNumberOfElements(times), width = CALL(lag_sim_noutputs)(sim), done = 0;
   char why[400];
-  if (rows && !CALL(lag_scene_method)(sc) && CALL(lag_sim_choose_method)(sim, t[rows - 1], 0, NULL, 0, why, sizeof why) < 0) fail(sim, "lagc:run", CALL(lag_sim_message)(sim));
+  if (rows && !CALL(lag_scene_method)(sc) &&
+      CALL(lag_sim_choose_method)(sim, t[rows - 1], 0, NULL, 0, why, sizeof why) < 0)
+    fail(sim, "lagc:run", CALL(lag_sim_message)(sim));
   double *y = mxMalloc(sizeof *y * (size_t)(rows * n + 1)), *o = mxMalloc(sizeof *o * (size_t)(rows * width + 1));
   if (CALL(lag_sim_rows)(sim, rows, t, y, o, &done) < 0) fail(sim, "lagc:run", CALL(lag_sim_message)(sim));
   out[0] = matrix(y, done, n);
@@ -111,7 +124,9 @@ static void run(const lag_scene *sc, lag_sim *sim, int n, const mxArray *times, 
 static void rhs(lag_sim *sim, int n, const mxArray *time, const mxArray *states, mxArray **out) {
   const double *t = get_numbers(sim, time, "t is a real double"), *y = get_numbers(sim, states, "y has real doubles");
   int many = (int)mxGetN(states);
-  if ((int)mxGetM(states) != n || mxGetNumberOfElements(time) != 1) fail(sim, "lagc:argument", "rhs takes one time, and y with a state (coordinates, velocities, states) in each column");
+  if ((int)mxGetM(states) != n || mxGetNumberOfElements(time) != 1)
+    fail(sim, "lagc:argument",
+         "rhs takes one time, and y with a state (coordinates, velocities, states) in each column");
   double *all = mxMalloc(sizeof *all * (size_t)(many + 1));
   for (int k = 0; k < many; k++) all[k] = t[0];
   out[0] = mxCreateDoubleMatrix((mwSize)n, (mwSize)many, mxREAL);
@@ -121,9 +136,12 @@ static void rhs(lag_sim *sim, int n, const mxArray *time, const mxArray *states,
 void mexFunction(int nout, mxArray **out, int nin, const mxArray **in) {
   char what[20] = "";
   if (nin && mxIsChar(in[0])) mxGetString(in[0], what, sizeof what);
-  int is_run = strcmp(what, "run") == 0 && nin >= 3, is_rhs = strcmp(what, "rhs") == 0 && nin >= 4, next = 2 + is_run + 2 * is_rhs;
+  int is_run = strcmp(what, "run") == 0 && nin >= 3, is_rhs = strcmp(what, "rhs") == 0 && nin >= 4,
+      next = 2 + is_run + 2 * is_rhs;
   if (!is_run && !is_rhs && (strcmp(what, "names") != 0 || nin < 2))
-    mexErrMsgIdAndTxt("lagc:argument", "give ('run', library, times), ('rhs', library, t, y) or ('names', library), then values and a scene");
+    mexErrMsgIdAndTxt(
+        "lagc:argument",
+        "give ('run', library, times), ('rhs', library, t, y) or ('names', library), then values and a scene");
   open_library(in[1]);
   const lag_scene *sc = get_scene(nin > next + 1 ? in[next + 1] : NULL);
   if (!is_run && !is_rhs) {

@@ -1,11 +1,13 @@
-/* Embedded explicit Runge-Kutta methods with adaptive steps. Enters: t, y; leaves: the next accepted t, y. Holds: a rejected step leaves t and y
- * unchanged; the last stage of a step is the first of the next; sums over steps are compensated (steps.h).
+/* Embedded explicit Runge-Kutta methods with adaptive steps. Enters: t, y; leaves: the next accepted t, y. Holds: a
+ * rejected step leaves t and y unchanged; the last stage of a step is the first of the next; sums over steps are
+ * compensated (steps.h).
  *
- * Source: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), DOI 10.1007/978-3-540-78862-1: II.4 (error
- * norm, PI controller, first step), II.10 (the estimate of order 5 with a correction of order 3).
+ * Source: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), DOI
+ * 10.1007/978-3-540-78862-1: II.4 (error norm, PI controller, first step), II.10 (the estimate of order 5 with a
+ * correction of order 3).
  *
- * A step is accepted when err <= 1, with |x|^2 = 1/n sum (x_i / s_i)^2, s_i = tol (floor_i + max(|y_i|, |y1_i|)), with the floor
- * of step_control.h: err = |e| for one estimate, |e|^2 / sqrt(|e|^2 + 0.01 |e3|^2) for two. */
+ * A step is accepted when err <= 1, with |x|^2 = 1/n sum (x_i / s_i)^2, s_i = tol (floor_i + max(|y_i|, |y1_i|)),
+ * with the floor of step_control.h: err = |e| for one estimate, |e|^2 / sqrt(|e|^2 + 0.01 |e3|^2) for two. */
 #include "methods/adaptive_rk.h"
 
 #include <float.h>
@@ -21,7 +23,8 @@ const lag_method_option lag_adaptive_rk_options[LAG_NADAPTIVE_OPTIONS] = {
     {"step", "first step to try [s]; 0: chosen from the tolerance", 0, 0, HUGE_VAL, .choices = NULL},
     LAG_MAX_STEP_OPTION,
     LAG_ATOL_OPTION,
-    {"adapt", "off: every step has the size `step` (0: a 10000th of the scene's span), whatever the error", 0, 0, 1, .choices = lag_on_off},
+    {"adapt", "off: every step has the size `step` (0: a 10000th of the scene's span), whatever the error", 0, 0, 1,
+     .choices = lag_on_off},
 };
 
 size_t lag_adaptive_rk_work_size(const lag_problem *pb) {
@@ -65,7 +68,8 @@ int lag_adaptive_rk_prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *
   lag_step_limits_begin(&w->limits, t);
   if (w->h == 0.0) {
     lag_tolerance tol = {pb->tol, &w->limits};
-    w->h = lag_first_step(pb, &tol, pair->tab->order, w->limits.h_max, t, y, k1, lag_adaptive_rk_array(w, pb, EMBEDDED_Y1), k1 + row);
+    w->h = lag_first_step(pb, &tol, pair->tab->order, w->limits.h_max, t, y, k1,
+                          lag_adaptive_rk_array(w, pb, EMBEDDED_Y1), k1 + row);
   }
   return LAG_OK;
 }
@@ -106,9 +110,11 @@ static double square_along(Embedded *w, lag_problem *pb, double tb, int count, c
   return sum * w->per;
 }
 
-double lag_adaptive_rk_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt, double whole) {
+double lag_adaptive_rk_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt,
+                                   double whole) {
   double fine = dt * dt * square_along(w, pb, tb, tab->stages - late, tab->errors[0]);
-  double coarse = late ? 0.01 * dt * dt * square_along(w, pb, tb, tab->stages - 1, tab->errors[1]) : 0, both = fine + coarse;
+  double coarse = late ? 0.01 * dt * dt * square_along(w, pb, tb, tab->stages - 1, tab->errors[1]) : 0,
+         both = fine + coarse;
   w->across = whole;
   return !isfinite(both) ? NAN : late ? (both > 0 ? fine * (fine / both) : 0) : fine;
 }
@@ -118,35 +124,40 @@ int lag_adaptive_rk_reversal(Embedded *w, lag_problem *pb, double tb) {
   int nq = pb->nq;
   for (int i = 0; i < nq && !(pb->model->flags & LAG_AUTONOMOUS); i++) {
     double moved = y1[i] - y0[i], v0 = pb->dir * y0[nq + i], v1 = pb->dir * y1[nq + i];
-    if (((v0 > 0 && v1 > 0 && moved < 0) || (v0 < 0 && v1 < 0 && moved > 0)) && fabs(moved) > 1e-3 * lag_typical_magnitude(pb, y0, 1, i))
+    if (((v0 > 0 && v1 > 0 && moved < 0) || (v0 < 0 && v1 < 0 && moved > 0)) &&
+        fabs(moved) > 1e-3 * lag_typical_magnitude(pb, y0, 1, i))
       return lag_report_leap(pb, tb, y1, i, moved);
   }
   return LAG_OK;
 }
 
-/* Search for a step size that passes a singular position, where constraints become dependent. Near one a step leaves the constraints far,
- * and its end gives the next step a poor derivative. Where the step ends there a shorter one passes better, where it begins there a longer
- * one. The first good size is taken, or else the least bad of those with a small error along the constraints: shrinking alone never passes. */
+/* Search for a step size that passes a singular position, where constraints become dependent. Near one a step leaves
+ * the constraints far, and its end gives the next step a poor derivative. Where the step ends there a shorter one
+ * passes better, where it begins there a longer one. The first good size is taken, or else the least bad of those
+ * with a small error along the constraints: shrinking alone never passes. */
 typedef struct SizeSearch {
   double base, base_err; /* size before the search, and its squared error */
-  double best, least;    /* size of least singularity_penalty among those with a small error, and that singularity_penalty */
+  /* size of least singularity_penalty among those with a small error, and that singularity_penalty */
+  double best, least;
   int tries;
 } SizeSearch;
 
 enum { SEARCH_TRIES = 8 };
 
-/* Badness of a step with respect to singular positions; above 1 another size should be tried. 0 where the step came near none (w->across = 0). */
+/* Badness of a step with respect to singular positions; above 1 another size should be tried. 0 where the step came
+ * near none (w->across = 0). */
 static double singularity_penalty(const Embedded *w, lag_problem *pb, double tb) {
   const double factor = 100;  /* estimates across the constraints are some ten times too small there; squared */
   const double weight = 1e-2; /* weight of the derivative at the end, whose error is rounding/s^2 */
   int weakest;
   if (w->across == 0.0) return 0;
-  double across = factor * w->across * pb->tol, s = lag_independence(pb, tb, lag_adaptive_rk_array((Embedded *)w, pb, EMBEDDED_Y1), &weakest);
+  double across = factor * w->across * pb->tol,
+         s = lag_independence(pb, tb, lag_adaptive_rk_array((Embedded *)w, pb, EMBEDDED_Y1), &weakest);
   return lag_max(across, weight * DBL_EPSILON / (pb->tol * s * s));
 }
 
-/* 1: try again with the step w->h; *err is the squared error of the step to tb, or NaN. 0: keep the step. After the last try without success
- * w->h and *err are those of the first. */
+/* 1: try again with the step w->h; *err is the squared error of the step to tb, or NaN. 0: keep the step. After the
+ * last try without success w->h and *err are those of the first. */
 static int try_other_size(SizeSearch *l, Embedded *w, lag_problem *pb, double tb, double *err) {
   double bad = l->tries <= SEARCH_TRIES ? singularity_penalty(w, pb, tb) : 0;
   if (!(bad > 1) && (l->tries == 0 || l->tries > SEARCH_TRIES || *err <= 1)) return 0;
@@ -220,5 +231,6 @@ size_t lag_adaptive_rk_tangent_size(const lag_problem *pb, int k) {
 int lag_adaptive_rk_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   const EmbeddedPair *pair = pb->variant;
   Embedded *w = work;
-  return lag_tangent_explicit(pair->tab, pb, w->t0, lag_tangent_span(w->t0, t, w->dt), lag_adaptive_rk_array(w, pb, EMBEDDED_Y0), k, Y, scratch);
+  return lag_tangent_explicit(pair->tab, pb, w->t0, lag_tangent_span(w->t0, t, w->dt),
+                              lag_adaptive_rk_array(w, pb, EMBEDDED_Y0), k, Y, scratch);
 }

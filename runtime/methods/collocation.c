@@ -1,17 +1,22 @@
-/* Gauss collocation of first-order systems. Enters: t, y; leaves: t + h, y one step later. Holds: the stage equations are solved to
- * rounding, so that the invariants of the exact method are conserved to rounding, for any step:
+/* Gauss collocation of first-order systems. Enters: t, y; leaves: t + h, y one step later. Holds: the stage
+ * equations are solved to rounding, so that the invariants of the exact method are conserved to rounding, for any
+ * step:
  *
- *   every quadratic invariant of the flow (G.J. Cooper, IMA J. Numer. Anal. 7 (1987) 1, DOI 10.1093/imanum/7.1.1), as the impulse and
+ *   every quadratic invariant of the flow (G.J. Cooper, IMA J. Numer. Anal. 7 (1987) 1, DOI 10.1093/imanum/7.1.1),
+ *   as the impulse and
  *     the angular impulse of point vortices;
- *   a two-form with constant coefficients that the flow conserves, because it is a quadratic invariant of the variational equation
- *     (P.B. Bochev, C. Scovel, BIT 34 (1994) 337, DOI 10.1007/BF01935643): L = theta q' - H where the two-form dtheta is constant. There
+ *   a two-form with constant coefficients that the flow conserves, because it is a quadratic invariant of the
+ *   variational equation
+ *     (P.B. Bochev, C. Scovel, BIT 34 (1994) 337, DOI 10.1007/BF01935643): L = theta q' - H where the two-form
+ *     dtheta is constant. There
  *     the method is symplectic, and the energy stays within a band.
  *
- * Where the two-form varies the method is symmetric: the energy of reversible motions has no trend; for others no bound is known. Why not
- * the discrete Lagrangian of midpoints, of order 2 for any L: where L is linear in the velocities its equations are those of a two-step
- * method, whose second root, -1, lies on the unit circle: neighbouring points separate into two families (C.L. Ellison et al., Phys.
- * Plasmas 25 (2018) 052502, DOI 10.1063/1.5022277; M. Kraus, arXiv:1708.07356). Collocation is a one-step method and has no such mode; for
- * a constant two-form and a linear theta it is the variational integrator whose momenta are theta(q) at every step.
+ * Where the two-form varies the method is symmetric: the energy of reversible motions has no trend; for others no
+ * bound is known. Why not the discrete Lagrangian of midpoints, of order 2 for any L: where L is linear in the
+ * velocities its equations are those of a two-step method, whose second root, -1, lies on the unit circle:
+ * neighbouring points separate into two families (C.L. Ellison et al., Phys. Plasmas 25 (2018) 052502, DOI
+ * 10.1063/1.5022277; M. Kraus, arXiv:1708.07356). Collocation is a one-step method and has no such mode; for a
+ * constant two-form and a linear theta it is the variational integrator whose momenta are theta(q) at every step.
  *
  * Dense output: the cubic through both ends for at most two stages, a shorter step for more. */
 #include "methods/collocation.h"
@@ -49,9 +54,10 @@ typedef struct CollocationArrays {
 /* Sets the pointers, unless x is NULL; returns the length of Collocation.x. */
 static size_t layout(CollocationArrays *a, const lag_problem *pb, int stages, double *x) {
   size_t n = (size_t)pb->n, m = n * (size_t)stages;
-  double **const parts[] = {&a->comp, &a->y0, &a->y1, &a->f0, &a->f1, &a->Y, &a->u, &a->other, &a->R, &a->scale, &a->J.pivot,
-                            &a->jacobian, &a->linear, &a->history, &a->J.a};
-  const size_t sizes[] = {n, n, n, n, n, n, m, m, m, m, m, n * n, lag_linear_work(pb->model), lag_predictor_size((int)m), m * m};
+  double **const parts[] = {&a->comp, &a->y0,    &a->y1,      &a->f0,       &a->f1,     &a->Y,       &a->u,  &a->other,
+                            &a->R,    &a->scale, &a->J.pivot, &a->jacobian, &a->linear, &a->history, &a->J.a};
+  const size_t sizes[] = {
+      n, n, n, n, n, n, m, m, m, m, m, n * n, lag_linear_work(pb->model), lag_predictor_size((int)m), m * m};
   a->J.n = (int)m;
   a->J.band = (int)m - 1;
   return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
@@ -159,8 +165,10 @@ static int solve(const Collocation *w, CollocationArrays *a, lag_problem *pb, co
     if (lag_newton_has_converged(now, before, fresh, turn)) return LAG_OK;
     before = now;
   }
-  snprintf(pb->words, sizeof pb->words, "in a step of %.3g s Newton's method did not converge in %d corrections; take smaller steps, or radau or dop853",
-           fabs(w->step.h), LAG_MOST_CORRECTIONS);
+  snprintf(
+      pb->words, sizeof pb->words,
+      "in a step of %.3g s Newton's method did not converge in %d corrections; take smaller steps, or radau or dop853",
+      fabs(w->step.h), LAG_MOST_CORRECTIONS);
   pb->detail = pb->words;
   return lag_step_failed(pb, LAG_EMETHOD, s->t);
 }
@@ -242,14 +250,17 @@ void lag_collocation_dense(void *work, lag_problem *pb, double t, double *y) {
 
 enum { WITH_END = LAG_RULE_FREE + 1 };
 
-size_t lag_collocation_tangent_size(const lag_problem *pb, int k) { return lag_tangent_implicit_size(pb, WITH_END, k) + (size_t)(WITH_END * pb->n); }
+size_t lag_collocation_tangent_size(const lag_problem *pb, int k) {
+  return lag_tangent_implicit_size(pb, WITH_END, k) + (size_t)(WITH_END * pb->n);
+}
 
 /* The end of the step is an additional last stage, on which no other stage depends. */
 int lag_collocation_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   Collocation *w = work;
   CollocationArrays a = arrays(w, pb);
   int n = pb->n, stages = (int)w->rule.free, all = stages + 1;
-  double A[WITH_END * WITH_END] = {0}, c[WITH_END], step = w->step.h * pb->dir, dt = lag_tangent_span(w->step.t0, t, step);
+  double A[WITH_END * WITH_END] = {0}, c[WITH_END], step = w->step.h * pb->dir,
+                      dt = lag_tangent_span(w->step.t0, t, step);
   Step s = {.t = w->step.t0, .h = dt, .y0 = a.y0, .u = a.u};
   if (dt != step) {
     int rc = shorter(w, &a, pb, dt);

@@ -1,5 +1,6 @@
-/* Newton's method for a step of a discrete Lagrangian. Enters: q, p and a guess; leaves: the velocities inside the step, and the
- * forces at its points. Holds: all derivatives are exact, emitted by the compiler; no finite differences. */
+/* Newton's method for a step of a discrete Lagrangian. Enters: q, p and a guess; leaves: the velocities inside the
+ * step, and the forces at its points. Holds: all derivatives are exact, emitted by the compiler; no finite
+ * differences. */
 #include "methods/discrete_lagrangian.h"
 
 #include <math.h>
@@ -40,7 +41,8 @@ static size_t layout(NewtonArrays *w, const lag_problem *pb, int free, double *x
   w->J.n = w->m;
   w->J.band = free * (half_band(pb->model) + 1) - 1;
   double **const parts[] = {&w->Q, &w->V, &w->Lq, &w->Lv, &w->F, &w->R, &w->S, &w->du, &w->J.pivot, &w->h, &w->J.a};
-  const size_t sizes[] = {n, n, n, n, n, m, m, m, m, (size_t)pb->model->nsecond, (size_t)lag_band_matrix_size(w->m, w->J.band)};
+  const size_t sizes[] = {
+      n, n, n, n, n, m, m, m, m, (size_t)pb->model->nsecond, (size_t)lag_band_matrix_size(w->m, w->J.band)};
   return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
@@ -104,8 +106,8 @@ static int residual(const lag_discrete *d, const NewtonArrays *w) {
   return LAG_OK;
 }
 
-/* Adds of[k] by[l] x to the block (row, col) of the matrix, in equation k and column of free velocity l. Unknown u_k of coordinate a has index
- * a free + k, so that the matrix of a chain is banded. */
+/* Adds of[k] by[l] x to the block (row, col) of the matrix, in equation k and column of free velocity l. Unknown u_k
+ * of coordinate a has index a free + k, so that the matrix of a chain is banded. */
 static void add_block(const NewtonArrays *w, int row, int col, const double *of, const double *by, double x) {
   for (int k = 0; k < w->free; k++) {
     double *at = lag_band_matrix_at(&w->J, row * w->free + k, col * w->free);
@@ -125,7 +127,8 @@ static void scatter(const lag_discrete *d, const NewtonArrays *w, int i) {
   }
   for (int e = 0; e < m->nsecond; e++) {
     int row = m->second_at[e].row, col = m->second_at[e].col, part = m->second_at[e].part;
-    const double *of = part == LAG_VV || part == LAG_VQ ? of_p : of_f, *by = part == LAG_VV || part == LAG_FV ? r->value[i] : by_q;
+    const double *of = part == LAG_VV || part == LAG_VQ ? of_p : of_f,
+                 *by = part == LAG_VV || part == LAG_FV ? r->value[i] : by_q;
     add_block(w, row, col, of, by, w->h[e]);
     if (part == LAG_VQ) add_block(w, col, row, of_f, r->value[i], w->h[e]); /* d2L/dq dv is its transpose */
     else if (row != col && (part == LAG_QQ || part == LAG_VV)) add_block(w, col, row, of, by, w->h[e]);
@@ -137,8 +140,9 @@ static int newton_failed(const lag_discrete *d, const NewtonArrays *w, const cha
   double worst = 0;
   for (int j = 0; j < w->m; j++) worst = fmax(worst, w->R[j] == 0.0 ? 0 : fabs(w->R[j]) / w->S[j]);
   snprintf(d->pb->words, sizeof d->pb->words,
-           "in a step of %.3g s Newton's method %s, the residual is %.1g of its terms; take smaller steps, or radau or dop853", d->size, what,
-           worst);
+           "in a step of %.3g s Newton's method %s, the residual is %.1g of its terms; take smaller steps, or radau or "
+           "dop853",
+           d->size, what, worst);
   d->pb->detail = d->pb->words;
   return lag_step_failed(d->pb, LAG_EMETHOD, d->t);
 }
@@ -161,11 +165,15 @@ static int matrix(const lag_discrete *d, NewtonArrays *w) {
     scatter(d, w, i);
   }
   if (lag_band_matrix_factor(&w->J, w->du))
-    return newton_failed(d, w, d->pb->model->constraints ? "has a singular matrix, as where inertia is missing that constraints replace" : "has a singular matrix");
+    return newton_failed(d, w,
+                         d->pb->model->constraints
+                             ? "has a singular matrix, as where inertia is missing that constraints replace"
+                             : "has a singular matrix");
   return LAG_OK;
 }
 
-/* One Newton correction of u. Its size beside rounding is sqrt(sum |du R| / sum |u| S), which does not depend on units. */
+/* One Newton correction of u. Its size beside rounding is sqrt(sum |du R| / sum |u| S), which does not depend on
+ * units. */
 static lag_correction correct(const lag_discrete *d, const NewtonArrays *w) {
   double part = 0, work = 0, whole = 0;
   for (int a = 0; a < w->n; a++)
@@ -189,7 +197,8 @@ int lag_discrete_solve(const lag_discrete *d) {
   char what[48];
   d->pb->systems += d->counted;
   for (int turn = 0; turn <= LAG_MOST_CORRECTIONS; turn++) {
-    if ((rc = residual(d, &w)) != 0 || settled) return rc && turn > 0 && rc != LAG_EMODEL ? newton_left_domain(d, &w) : rc;
+    if ((rc = residual(d, &w)) != 0 || settled)
+      return rc && turn > 0 && rc != LAG_EMODEL ? newton_left_domain(d, &w) : rc;
     int fresh = lag_newton_needs_matrix(turn, before);
     if (fresh && (rc = matrix(d, &w)) != 0) return rc;
     lag_correction now = correct(d, &w);
@@ -203,7 +212,8 @@ int lag_discrete_solve(const lag_discrete *d) {
 
 /* ---- Derivative of the step */
 
-void lag_hessian_times(const lag_problem *pb, const double *h, int k, const double *dQ, const double *dV, double *dP, double *dF) {
+void lag_hessian_times(const lag_problem *pb, const double *h, int k, const double *dQ, const double *dV, double *dP,
+                       double *dF) {
   const lag_model *m = pb->model;
   for (int e = 0; e < m->nsecond; e++) {
     int row = m->second_at[e].row * k, col = m->second_at[e].col * k, part = m->second_at[e].part;
@@ -223,7 +233,8 @@ void lag_hessian_times(const lag_problem *pb, const double *h, int k, const doub
 size_t lag_discrete_tangent_size(const lag_problem *pb, int free, int k) { return (size_t)(pb->nq * (4 * k + free)); }
 
 /* du := -dR/d(q, p) (dq, dp) at fixed u, the right-hand side of the derivative. */
-static int pushed(const lag_discrete *d, const NewtonArrays *w, int k, const double *dq, const double *dp, double *du, double *dP, double *dF) {
+static int pushed(const lag_discrete *d, const NewtonArrays *w, int k, const double *dq, const double *dp, double *du,
+                  double *dP, double *dF) {
   const lag_rule *r = d->rule;
   int m = w->n * k;
   memset(du, 0, (size_t)(w->free * m) * sizeof *du);
@@ -262,7 +273,8 @@ int lag_discrete_tangent(const lag_discrete *d, int k, double *dq, double *dp, d
   solve_columns(&w, k, du, column);
   for (int i = 0; i < w.points && d->h != 0.0; i++) {
     set_point(d, &w, i);
-    if ((rc = lag_second_derivatives(d->pb, time_of(d, i), w.Q, w.V, w.h)) != 0) return lag_step_refused(d->pb, rc, time_of(d, i));
+    if ((rc = lag_second_derivatives(d->pb, time_of(d, i), w.Q, w.V, w.h)) != 0)
+      return lag_step_refused(d->pb, rc, time_of(d, i));
     memcpy(dQ, dq, (size_t)m * sizeof *dQ);
     memset(dV, 0, (size_t)m * sizeof *dV);
     memset(dF, 0, (size_t)m * sizeof *dF);

@@ -17,7 +17,8 @@ static const EmbeddedPair pair = {.tab = &lag_dop853_tableau, .late = 1, .contro
 #define EMBEDDED_ERRORS LAG_DOP853_ERRORS
 #include "methods/embedded_trial.h"
 
-enum { LAST = 12, EXTRA = 3, NSTAGES = 16, HIGH = EMBEDDED_K1 + NSTAGES }; /* arrays HIGH..HIGH+3: the highest terms of dense output */
+/* arrays HIGH..HIGH+3: the highest terms of dense output */
+enum { LAST = 12, EXTRA = 3, NSTAGES = 16, HIGH = EMBEDDED_K1 + NSTAGES };
 
 static int extra_stages(Embedded *w, lag_problem *pb, EmbeddedShape as, double t, double h) {
   double *k = w->x + EMBEDDED_K1 * as.row, *x = w->x + EMBEDDED_YS * as.row;
@@ -27,8 +28,8 @@ static int extra_stages(Embedded *w, lag_problem *pb, EmbeddedShape as, double t
   return status;
 }
 
-/* The three extra stages of dense output, and its four highest terms. have_extra := -1 where the model fails at a stage, though
- * the stages lie inside an accepted step. */
+/* The three extra stages of dense output, and its four highest terms. have_extra := -1 where the model fails at a
+ * stage, though the stages lie inside an accepted step. */
 static void extend(Embedded *w, lag_problem *pb) {
   EmbeddedShape as = embedded_shape(pb);
   int row = as.row;

@@ -1,7 +1,6 @@
-/* Stages and error of one trial step by kernels/runge_kutta.h: euler.c, rk4.c, rk45.c and dop853.c
- * include this file behind `pair` and the method's tables, EMBEDDED_STAGES, EMBEDDED_RESULT and, of
- * a pair, EMBEDDED_ERRORS.
- * Holds: each component is summed in the same order for every n, so its value does not depend on the other components. */
+/* Stages and error of one trial step by kernels/runge_kutta.h: euler.c, rk4.c, rk45.c and dop853.c include this file
+ * behind `pair` and the method's tables, EMBEDDED_STAGES, EMBEDDED_RESULT and, of a pair, EMBEDDED_ERRORS. Holds:
+ * each component is summed in the same order for every n, so its value does not depend on the other components. */
 #pragma once
 
 #include <math.h>
@@ -19,8 +18,9 @@ LAG_ALWAYS_INLINE EmbeddedShape embedded_shape(const lag_problem *pb) {
   return as;
 }
 
-/* A vector of two doubles where the compiler has such types, else one double. Not four: a vector of four would mix rates with coordinates,
- * and the coordinates of a stage, whose sines take most of its time, would wait for the newest rates. */
+/* A vector of two doubles where the compiler has such types, else one double. Not four: a vector of four would mix
+ * rates with coordinates, and the coordinates of a stage, whose sines take most of its time, would wait for the
+ * newest rates. */
 #if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE)
 #define EMBEDDED_VECTORS 1
 typedef double embedded_part __attribute__((vector_size(16), aligned(8), may_alias));
@@ -34,8 +34,8 @@ LAG_ALWAYS_INLINE embedded_part embedded_at(const double *x) { return *(const em
 
 LAG_ALWAYS_INLINE void embedded_set(double *x, embedded_part s) { *(embedded_part *)(void *)x = s; }
 
-/* Loads two numbers that the model has just stored one by one. They are loaded one by one, too: processors forward a store only to a load
- * of the same size. */
+/* Loads two numbers that the model has just stored one by one. They are loaded one by one, too: processors forward a
+ * store only to a load of the same size. */
 LAG_ALWAYS_INLINE embedded_part embedded_newest(const volatile double *k) {
 #if EMBEDDED_VECTORS
   return (embedded_part){k[0], k[1]};
@@ -119,7 +119,9 @@ LAG_ALWAYS_INLINE double embedded_error(Embedded *w, const lag_problem *pb, Embe
 /* The last stage: projects the end of the step to the constraints, then k := f there. > 0: a smaller step may help. */
 LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double tb, double *k) {
   double *y1 = w->x + EMBEDDED_Y1 * as.row;
-  int rc = pb->model->constraints ? lag_project_step(pb, tb, w->x + EMBEDDED_Y0 * as.row, y1, w->x + EMBEDDED_COMP1 * as.row) : 0;
+  int rc = pb->model->constraints
+               ? lag_project_step(pb, tb, w->x + EMBEDDED_Y0 * as.row, y1, w->x + EMBEDDED_COMP1 * as.row)
+               : 0;
   if (pb->model->constraints && rc == 0 && w->limits.fixed == 0.0) rc = lag_adaptive_rk_reversal(w, pb, tb);
   return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
 }

@@ -16,7 +16,8 @@ static double polynomial(const double *a, int n, double x, double *integral) {
   return p;
 }
 
-/* Fills value and integral (the Lagrange basis and its integral from 0, at the points) and whole (its integral over the step). */
+/* Fills value and integral (the Lagrange basis and its integral from 0, at the points) and whole (its integral over
+ * the step). */
 static void fill(lag_rule *r) {
   int n = (int)r->free, points = (int)r->points;
   for (int k = 0; k < n; k++) {

@@ -1,6 +1,7 @@
-/* Symplectic steps in q and p for any L. Enters: t, y = [q|v]; leaves: t + h, y one step later. Holds: p is carried from step to
- * step, and v is solved from dL/dv(q, v) = p; within a step q and p are values at its start plus increments, and sums over steps of q, p and t are
- * compensated (steps.h). Dense output is a polynomial through both ends (step_interpolant.h): accurate to the order of the method, not symplectic. */
+/* Symplectic steps in q and p for any L. Enters: t, y = [q|v]; leaves: t + h, y one step later. Holds: p is carried
+ * from step to step, and v is solved from dL/dv(q, v) = p; within a step q and p are values at its start plus
+ * increments, and sums over steps of q, p and t are compensated (steps.h). Dense output is a polynomial through both
+ * ends (step_interpolant.h): accurate to the order of the method, not symplectic. */
 #include "methods/implicit_symplectic.h"
 
 #include <math.h>
@@ -14,15 +15,19 @@
 #include "numeric/workspace.h"
 
 /* Doubles of the history of one substep. */
-static size_t substep_history(const lag_problem *pb, const Implicit *w) { return lag_predictor_size(pb->nq * (int)w->rule[0].free); }
+static size_t substep_history(const lag_problem *pb, const Implicit *w) {
+  return lag_predictor_size(pb->nq * (int)w->rule[0].free);
+}
 
 /* Sets the pointers of a block, unless x is NULL; returns its length. */
 static size_t block_layout(ConstraintBlock *b, const lag_problem *pb, int substeps, double *x) {
   const lag_constraints *of = pb->model->constraints;
   size_t n = (size_t)pb->n, nq = (size_t)pb->nq, nc = (size_t)of->n;
-  double **const parts[] = {&b->from, &b->to, &b->dq, &b->dp, &b->impulse, &b->d, &b->force, &b->c, &b->r, &b->g, &b->sum,
-                            &b->A, &b->M, &b->change, &b->end_jacobian, &b->history};
-  const size_t sizes[] = {n, n, nq, nq, nq, nq, nq, nc, nc, nc, nc, (size_t)of->njacobian, (size_t)of->nmass, nc * nq, nc * nc,
+  double **const parts[] = {&b->from, &b->to, &b->dq,  &b->dp, &b->impulse, &b->d,      &b->force,        &b->c,
+                            &b->r,    &b->g,  &b->sum, &b->A,  &b->M,       &b->change, &b->end_jacobian, &b->history};
+  const size_t sizes[] = {n,
+                          n, nq, nq, nq, nq, nq, nc, nc, nc, nc, (size_t)of->njacobian, (size_t)of->nmass, nc * nq,
+                          nc * nc,
                           (size_t)substeps * lag_predictor_size(of->n)};
   return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
@@ -31,11 +36,13 @@ static size_t block_layout(ConstraintBlock *b, const lag_problem *pb, int subste
 static size_t state_layout(ImplicitArrays *a, const lag_problem *pb, int free, int substeps, double *x) {
   const int constrained = pb->model->constraints != NULL;
   size_t n = (size_t)pb->n, nq = (size_t)pb->nq, m = nq * (size_t)free;
-  double **const parts[] = {&a->p, &a->qc, &a->pc, &a->dq, &a->dp, &a->ql, &a->pl, &a->v, &a->y0, &a->y1, &a->f0, &a->f1, &a->u, &a->force,
-                            &a->history, &a->path, &a->discrete};
+  double **const parts[] = {&a->p,  &a->qc, &a->pc, &a->dq, &a->dp,    &a->ql,      &a->pl,   &a->v,       &a->y0,
+                            &a->y1, &a->f0, &a->f1, &a->u,  &a->force, &a->history, &a->path, &a->discrete};
   const size_t sizes[] = {nq, nq, nq, nq, nq, nq, nq, nq, n, n, n, n, 2 * m, m,
-                          (size_t)substeps * lag_predictor_size((int)m) + lag_predictor_size(pb->nq), lag_interpolant_size(pb->nq),
-                          x && !constrained ? 0 : lag_discrete_size(pb, free)}; /* the search for its band takes time in each step */
+                          (size_t)substeps * lag_predictor_size((int)m) + lag_predictor_size(pb->nq),
+                          lag_interpolant_size(pb->nq),
+                          /* the search for its band takes time in each step */
+                          x && !constrained ? 0 : lag_discrete_size(pb, free)};
   size_t length = lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
   return length + (constrained ? block_layout(&a->block, pb, substeps, x ? x + length : NULL) : 0);
 }
@@ -52,7 +59,8 @@ static size_t state_size(const lag_problem *pb, int free, int substeps) {
 }
 
 /* Initial guess: u := velocities at the nodes of substep k, extrapolated linearly from y at t. */
-static int linear_guess(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y, double dt, int k, double at, double *u) {
+static int linear_guess(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y,
+                        double dt, int k, double at, double *u) {
   const lag_rule *r = &w->rule[k % 2];
   int nq = pb->nq, rc = lag_step_rhs(pb, t, y, a->f1);
   for (int j = 0; j < (int)r->free && rc == 0; j++)
@@ -67,8 +75,8 @@ void lag_substeps_gather(const ImplicitArrays *a, int nq) {
   }
 }
 
-int lag_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y, double dt, int k, double at, double *u,
-             int known) {
+int lag_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y, double dt,
+                int k, double at, double *u, int known) {
   const lag_rule *r = &w->rule[k % 2];
   int nq = pb->nq, m = nq * (int)r->free, rc = LAG_EMETHOD;
   double *history = a->history + (size_t)k * substep_history(pb, w), h = w->part[k] * dt;
@@ -91,7 +99,8 @@ void lag_substep_record(const Implicit *w, const ImplicitArrays *a, const lag_pr
   lag_predictor_add(a->history + (size_t)k * substep_history(pb, w), pb->nq * (int)w->rule[k % 2].free, u);
 }
 
-int lag_substeps_velocity(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double tb, const double *y, int known) {
+int lag_substeps_velocity(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double tb, const double *y,
+                          int known) {
   int nq = pb->nq;
   const double *history = a->history + (size_t)w->substeps * substep_history(pb, w);
   lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = tb, .h = 0, .size = w->step.h, .q = y, .dq = a->ql, .p = a->p,
@@ -105,7 +114,9 @@ int lag_substeps_velocity(const Implicit *w, const ImplicitArrays *a, lag_proble
 
 size_t lag_implicit_size(const lag_problem *pb, int free) { return state_size(pb, free, 1); }
 
-size_t lag_implicit_composed_size(const lag_problem *pb, const lag_composition *c) { return state_size(pb, 1, 2 * c->stages); }
+size_t lag_implicit_composed_size(const lag_problem *pb, const lag_composition *c) {
+  return state_size(pb, 1, 2 * c->stages);
+}
 
 void lag_implicit_reset(void *work, lag_problem *pb) {
   Implicit *w = work;
@@ -159,13 +170,15 @@ static int begin(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t
   memset(a->qc, 0, bytes);
   memset(a->pc, 0, bytes);
   memset(a->history, 0, (size_t)(a->path - a->history) * sizeof(double));
-  if (pb->model->constraints) memset(a->block.history, 0, (size_t)w->substeps * lag_predictor_size(pb->model->constraints->n) * sizeof(double));
+  if (pb->model->constraints)
+    memset(a->block.history, 0, (size_t)w->substeps * lag_predictor_size(pb->model->constraints->n) * sizeof(double));
   w->ready = 1;
   return LAG_OK;
 }
 
 /* All substeps of a step, without constraints; then v at its end. */
-static int chain(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double tb, const double *y, double dt) {
+static int chain(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double tb, const double *y,
+                 double dt) {
   double at = 0;
   int rc = 0;
   for (int k = 0; k < (int)w->substeps && rc == 0; k++) {
@@ -205,11 +218,11 @@ int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y, double 
   return LAG_OK;
 }
 
-/* Builds dense output of the last step: 1 done, -1 only the Hermite form, -2 not even that. Each level takes two passes, because the
- * accelerations depend on velocities. */
+/* Builds dense output of the last step: 1 done, -1 only the Hermite form, -2 not even that. Each level takes two
+ * passes, because the accelerations depend on velocities. */
 static int make_path(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const StepEnds *e, int level) {
-  if (lag_rhs(pb, w->step.t0, a->y0, a->f0) || lag_rhs(pb, w->step.t0 + w->step.dt, a->y1, a->f1) || lag_not_finite(pb->n, a->f0) >= 0 ||
-      lag_not_finite(pb->n, a->f1) >= 0) {
+  if (lag_rhs(pb, w->step.t0, a->y0, a->f0) || lag_rhs(pb, w->step.t0 + w->step.dt, a->y1, a->f1) ||
+      lag_not_finite(pb->n, a->f0) >= 0 || lag_not_finite(pb->n, a->f1) >= 0) {
     return -2;
   }
   return level == 0 || lag_interpolant_make(a->path, pb, e, level, 2) == 0 ? 1 : -1;
@@ -228,7 +241,8 @@ void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y) {
 
 /* ---- Derivative of a step */
 
-/* Scratch of the derivative. q, p at a substep: y0 + ql, p + pl, as in lag_discrete; u, force: of one substep; du, rest: of its derivative. */
+/* Scratch of the derivative. q, p at a substep: y0 + ql, p + pl, as in lag_discrete; u, force: of one substep; du,
+ * rest: of its derivative. */
 typedef struct Changes {
   double *p, *ql, *pl, *v;    /* [nq] */
   double *u, *force, *second; /* [free nq], [points nq], [nsecond] */
@@ -239,7 +253,9 @@ typedef struct Changes {
 static size_t layout(Changes *c, const lag_problem *pb, int k, double *x) {
   size_t nq = (size_t)pb->nq, m = nq * (size_t)k;
   double **const parts[] = {&c->p, &c->ql, &c->pl, &c->v, &c->u, &c->force, &c->second, &c->dv, &c->du, &c->rest};
-  const size_t sizes[] = {nq, nq, nq, nq, LAG_RULE_FREE * nq, LAG_RULE_POINTS * nq, (size_t)pb->model->nsecond, m, LAG_RULE_FREE * m,
+  const size_t sizes[] = {nq,
+                          nq, nq, nq, LAG_RULE_FREE * nq, LAG_RULE_POINTS * nq, (size_t)pb->model->nsecond, m,
+                          LAG_RULE_FREE * m,
                           lag_discrete_tangent_size(pb, LAG_RULE_FREE, k)};
   return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
@@ -260,28 +276,35 @@ static int to_momenta(const Implicit *w, const ImplicitArrays *a, lag_problem *p
   return LAG_OK;
 }
 
-/* Y over substep j, which begins at t0 + at dt. whole: the step that was taken, whose velocities are known; else they are solved for. */
-static int over_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, int j, double at, double dt, int whole, int k,
-                     double *Y) {
+/* Y over substep j, which begins at t0 + at dt. whole: the step that was taken, whose velocities are known; else
+ * they are solved for. */
+static int over_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, int j, double at,
+                        double dt, int whole, int k, double *Y) {
   const lag_rule *r = &w->rule[j % 2];
   int nq = pb->nq, rc = 0;
   double h = w->part[j] * dt;
-  lag_discrete d = {.rule = r, .pb = pb, .t = w->step.t0 + at * dt, .h = h, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p,
-                    .dp = c->pl, .u = c->u, .force = c->force, .work = a->discrete};
+  lag_discrete d = {.rule = r,
+                    .pb = pb, .t = w->step.t0 + at * dt, .h = h, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p,
+                    .dp = c->pl, .u = c->u, .force = c->force,
+                    .work = a->discrete};
 
   lag_predictor_last(a->history + (size_t)j * substep_history(pb, w), nq * (int)r->free, c->u);
   rc = whole ? 0 : lag_discrete_solve(&d);
   rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + nq * k, c->du, c->rest);
   for (int i = 0; i < (int)r->free && rc == 0; i++) lag_tangent_add(nq, h * r->whole[i], c->u + i * nq, c->ql);
-  for (int i = 0; i < (int)r->points && rc == 0 && !whole; i++) lag_tangent_add(nq, h * r->b[i], c->force + i * nq, c->pl);
+  for (int i = 0; i < (int)r->points && rc == 0 && !whole; i++)
+    lag_tangent_add(nq, h * r->b[i], c->force + i * nq, c->pl);
   return rc;
 }
 
 /* End of the step, t: Y = (dq, dp) becomes (dq, dv). */
-static int to_velocities(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, double t, int whole, int k, double *Y) {
+static int to_velocities(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, double t,
+                         int whole, int k, double *Y) {
   int nq = pb->nq, m = nq * k, rc = 0;
-  lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = t, .h = 0, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p, .dp = c->pl,
-                    .u = c->v, .force = c->force, .work = a->discrete};
+  lag_discrete d = {.rule = &w->momentum,
+                    .pb = pb, .t = t, .h = 0, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p, .dp = c->pl,
+                    .u = c->v, .force = c->force,
+                    .work = a->discrete};
   memcpy(c->v, a->y1 + nq, (size_t)nq * sizeof *Y);
   rc = whole ? 0 : lag_discrete_solve(&d);
   rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + m, c->du, c->rest);

@@ -1,5 +1,6 @@
-/* The variational equations Y' = Df Y, solved by the method that integrates y: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential
- * Equations I, 2nd ed. (1993), I.14. Applied to (y, Y) an explicit Runge-Kutta method yields exactly the derivative of its own step. */
+/* The variational equations Y' = Df Y, solved by the method that integrates y: E. Hairer, S.P. Norsett, G. Wanner,
+ * Solving Ordinary Differential Equations I, 2nd ed. (1993), I.14. Applied to (y, Y) an explicit Runge-Kutta method
+ * yields exactly the derivative of its own step. */
 #include "methods/method_tangent.h"
 
 #include <string.h>
@@ -12,7 +13,8 @@ lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double *
   return w;
 }
 
-/* Scratch: Jacobian, scratch of the linearisation, y and f of a stage, Y of a stage and of the result; f and its derivative for each stage. */
+/* Scratch: Jacobian, scratch of the linearisation, y and f of a stage, Y of a stage and of the result; f and its
+ * derivative for each stage. */
 size_t lag_tangent_size(const lag_problem *pb, int stages, int k) {
   size_t n = (size_t)pb->n, block = n * (size_t)k;
   return (size_t)(pb->nq + pb->nz) * n + lag_linear_work(pb->model) + 2 * n + 2 * block + (size_t)stages * (n + block);
@@ -44,8 +46,8 @@ static void combine(int m, int count, const double *coef, double dt, const doubl
     if (coef[j] != 0.0) lag_tangent_add(m, dt * coef[j], k + j * m, v);
 }
 
-int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, int k, double *Y,
-                         double *scratch) {
+int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, int k,
+                         double *Y, double *scratch) {
   int n = pb->n, m = n * k, last = tab->stages - 1;
   double *rest;
   lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
@@ -63,13 +65,15 @@ int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, dou
   return LAG_OK;
 }
 
-/* Scratch: Jacobian of a stage; right-hand sides, a column, pivots, row scales and the matrix of all stages together. */
+/* Scratch: Jacobian of a stage; right-hand sides, a column, pivots, row scales and the matrix of all stages
+ * together. */
 size_t lag_tangent_implicit_size(const lag_problem *pb, int stages, int k) {
   size_t big = (size_t)(stages * pb->n);
   return lag_tangent_size(pb, 0, k) + big * ((size_t)k + 3 + big);
 }
 
-void lag_tangent_put_stage(const lag_tangent *w, const lag_band_matrix *m, int stages, int s, double dt, const double *a) {
+void lag_tangent_put_stage(const lag_tangent *w, const lag_band_matrix *m, int stages, int s, double dt,
+                           const double *a) {
   int n = w->pb->n, nq = w->pb->nq;
   for (int i = 0; i < n; i++) {
     const double *J = i < nq ? NULL : w->jacobian + (i - nq) * n;
@@ -81,8 +85,8 @@ void lag_tangent_put_stage(const lag_tangent *w, const lag_band_matrix *m, int s
 }
 
 /* The derivatives K_s of the stages solve K_s = J_s (Y + dt sum_q a_sq K_q). */
-int lag_tangent_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt, const double *ys, int k,
-                         double *Y, double *scratch) {
+int lag_tangent_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt,
+                         const double *ys, int k, double *Y, double *scratch) {
   int n = pb->n, big = stages * n, rc;
   double *rest;
   lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
@@ -107,7 +111,9 @@ int lag_tangent_implicit(int stages, const double *A, const double *c, lag_probl
 }
 
 /* Scratch: y of a stage, two matrices, and one matrix per stage; f of the stages is not needed. */
-size_t lag_tangent_along_size(const lag_problem *pb, int k) { return lag_tangent_size(pb, lag_dop853_tableau.stages, k); }
+size_t lag_tangent_along_size(const lag_problem *pb, int k) {
+  return lag_tangent_size(pb, lag_dop853_tableau.stages, k);
+}
 
 /* sum (e_i / s_i)^2 of an error estimate, s_i = |Y_i| + |dt| mean |F_i| over the stages. */
 static double square(int m, int stages, const double *e, const double *Y, const double *F, double dt) {
@@ -121,7 +127,8 @@ static double square(int m, int stages, const double *e, const double *Y, const 
   return sum;
 }
 
-int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, double t0, double dt, int k, double *Y, double *scratch) {
+int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, double t0, double dt, int k, double *Y,
+                      double *scratch) {
   const lag_tableau *tab = &lag_dop853_tableau;
   const double tol = fmax(pb->tol, 1e-14), safety = 0.9, shrink_most = 0.2, grow_most = 6, least = 1e-6;
   int n = pb->n, m = n * k, stages = tab->stages - 1, rc;
@@ -140,7 +147,8 @@ int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, doubl
     combine(m, stages, tab->errors[0], 1, NULL, F, error);
     double fine = square(m, stages, error, Y, F, dt);
     combine(m, stages, tab->errors[1], 1, NULL, F, error);
-    double both = fine + 0.01 * square(m, stages, error, Y, F, dt), err = both > 0 ? fabs(h) * fine / sqrt(m * both) / tol : 0;
+    double both = fine + 0.01 * square(m, stages, error, Y, F, dt),
+           err = both > 0 ? fabs(h) * fine / sqrt(m * both) / tol : 0;
     if (!isfinite(err)) return lag_step_failed(pb, LAG_ENAN, t);
     if (err <= 1 || part < least) {
       combine(m, stages, tab->a[stages], h, Y, F, Ys);

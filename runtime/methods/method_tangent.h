@@ -1,5 +1,5 @@
-/* Exact derivatives of steps by their start, from the derivatives that the compiler emits: a step maps k small changes of the state, the
- * columns of Y[n * k] (row-major; row i belongs to component i of y). */
+/* Exact derivatives of steps by their start, from the derivatives that the compiler emits: a step maps k small
+ * changes of the state, the columns of Y[n * k] (row-major; row i belongs to component i of y). */
 #pragma once
 
 #include <float.h>
@@ -9,25 +9,27 @@
 #include "kernels/band_matrix.h"
 #include "methods/tableau.h"
 
-/* Doubles of scratch of lag_tangent_explicit; with 0 stages: for lag_tangent_layout, two vectors [n] and two matrices [n k]. */
+/* Doubles of scratch of lag_tangent_explicit; with 0 stages: for lag_tangent_layout, two vectors [n] and two
+ * matrices [n k]. */
 size_t lag_tangent_size(const lag_problem *pb, int stages, int k);
 
-/* Y := dy1/dy0 Y for the step of an explicit method from (t0, y0), of length dt: the method applied to y' = f, Y' = Df Y.
- * LAG_OK, or a failure with its time in pb; Y is then undefined. */
-int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, int k, double *Y,
-                         double *scratch);
-
-/* The same for an implicit Runge-Kutta method whose last stage is the result, by the implicit function theorem: matrix A[stages * stages],
- * nodes c, solved stages ys[stages * n]. */
-size_t lag_tangent_implicit_size(const lag_problem *pb, int stages, int k);
-int lag_tangent_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt, const double *ys, int k,
+/* Y := dy1/dy0 Y for the step of an explicit method from (t0, y0), of length dt: the method applied to y' = f, Y' =
+ * Df Y. LAG_OK, or a failure with its time in pb; Y is then undefined. */
+int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, int k,
                          double *Y, double *scratch);
 
-/* The same along a given motion path(t), from any method: Y' = Df(t, path(t)) Y by dop853 with its own steps. The error of each entry of Y,
- * relative to the entry and its change over dt, is below max(pb->tol, 1e-14). */
+/* The same for an implicit Runge-Kutta method whose last stage is the result, by the implicit function theorem:
+ * matrix A[stages * stages], nodes c, solved stages ys[stages * n]. */
+size_t lag_tangent_implicit_size(const lag_problem *pb, int stages, int k);
+int lag_tangent_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt,
+                         const double *ys, int k, double *Y, double *scratch);
+
+/* The same along a given motion path(t), from any method: Y' = Df(t, path(t)) Y by dop853 with its own steps. The
+ * error of each entry of Y, relative to the entry and its change over dt, is below max(pb->tol, 1e-14). */
 typedef void lag_tangent_path(void *work, lag_problem *pb, double t, double *y);
 size_t lag_tangent_along_size(const lag_problem *pb, int k);
-int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, double t0, double dt, int k, double *Y, double *scratch);
+int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, double t0, double dt, int k, double *Y,
+                      double *scratch);
 
 /* The Jacobian at a stage. */
 typedef struct lag_tangent {
@@ -42,8 +44,10 @@ lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double *
 /* w->jacobian := df/dy at (t, y), and f[n], unless NULL, := f(t, y). LAG_OK, or a failure. */
 int lag_tangent_at(const lag_tangent *w, double t, const double *y, double *f);
 
-/* Sets the rows of stage s of m = 1 - dt A (x) df/dy, the matrix of an implicit Runge-Kutta method; a[stages]: row s of A. */
-void lag_tangent_put_stage(const lag_tangent *w, const lag_band_matrix *m, int stages, int s, double dt, const double *a);
+/* Sets the rows of stage s of m = 1 - dt A (x) df/dy, the matrix of an implicit Runge-Kutta method; a[stages]: row s
+ * of A. */
+void lag_tangent_put_stage(const lag_tangent *w, const lag_band_matrix *m, int stages, int s, double dt,
+                           const double *a);
 
 /* out[n k] := df/dy Y. */
 void lag_tangent_times(const lag_tangent *w, const double *Y, double *out);

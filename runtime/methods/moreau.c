@@ -1,9 +1,13 @@
-/* moreau: time-stepping with contacts, in velocities and impulses. Enters: t, y; leaves: t + h, y one step later. Holds: where no contact acts it is the symmetric method of order 2
- * that drifts half a step, kicks with the mean velocity, and drifts again; sums over steps of q, v, z and t are compensated.
+/* moreau: time-stepping with contacts, in velocities and impulses. Enters: t, y; leaves: t + h, y one step later.
+ * Holds: where no contact acts it is the symmetric method of order 2 that drifts half a step, kicks with the mean
+ * velocity, and drifts again; sums over steps of q, v, z and t are compensated.
  *
- * Impacts are not located: all impulses of a step act at its middle, at once (moreau_contacts.c). So impacts may follow each other in ever shorter time, or come in any number; positions at an impact are off by at
- * most half a step's path, and an error of order 1 follows. Constraints are held by projection, and impulses respect them. J.J. Moreau, in: Nonsmooth Mechanics and Applications (1988), 1, DOI
- * 10.1007/978-3-7091-2624-0_1; M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235, DOI 10.1016/S0045-7825(98)00383-1. Dense output is the parabola of a step, or two about an impact. */
+ * Impacts are not located: all impulses of a step act at its middle, at once (moreau_contacts.c). So impacts may
+ * follow each other in ever shorter time, or come in any number; positions at an impact are off by at most half a
+ * step's path, and an error of order 1 follows. Constraints are held by projection, and impulses respect them. J.J.
+ * Moreau, in: Nonsmooth Mechanics and Applications (1988), 1, DOI 10.1007/978-3-7091-2624-0_1; M. Jean, Comput.
+ * Methods Appl. Mech. Eng. 177 (1999) 235, DOI 10.1016/S0045-7825(98)00383-1. Dense output is the parabola of a
+ * step, or two about an impact. */
 #include <float.h>
 #include <string.h>
 
@@ -16,7 +20,8 @@
 
 static const lag_method_option options[] = {LAG_STEP_OPTION};
 
-/* Head of the saved state; behind it arrays of n, 2 doubles a contact of the model, friction and tangential restitution, and the room of dry friction. */
+/* Head of the saved state; behind it arrays of n, 2 doubles a contact of the model, friction and tangential
+ * restitution, and the room of dry friction. */
 typedef struct Moreau {
   lag_fixed_step step;
   double struck; /* the last step had an impact */
@@ -24,10 +29,15 @@ typedef struct Moreau {
 } Moreau;
 enum { Y0, Y1, RATE, RATE0, MID, COMP, FREE, SIZE, ARRAYS };
 
-static size_t work_size(const lag_problem *pb) { return sizeof(Moreau) / sizeof(double) + ARRAYS * (size_t)pb->n + 2 * (size_t)pb->model->ncontacts + lag_joint_friction_size(pb); }
+static size_t work_size(const lag_problem *pb) {
+  return sizeof(Moreau) / sizeof(double) + ARRAYS * (size_t)pb->n + 2 * (size_t)pb->model->ncontacts +
+         lag_joint_friction_size(pb);
+}
 
 static double *law_of(Moreau *w, const lag_problem *pb) { return w->x + ARRAYS * pb->n; }
-static JointFriction friction_of(Moreau *w, const lag_problem *pb) { return lag_joint_friction(pb, law_of(w, pb) + 2 * pb->model->ncontacts); }
+static JointFriction friction_of(Moreau *w, const lag_problem *pb) {
+  return lag_joint_friction(pb, law_of(w, pb) + 2 * pb->model->ncontacts);
+}
 
 static void reset(void *work, lag_problem *pb) {
   Moreau *w = work;
@@ -45,7 +55,8 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   reset(work, pb);
   if (!m->contact_laws) return LAG_OK;
   rc = lag_inputs(pb, 0);
-  rc = rc ? rc : m->contact_laws(0, pb->begin, pb->begin + pb->nq, pb->begin + 2 * pb->nq, pb->p, pb->u, pb->rub, pb->work);
+  rc = rc ? rc
+          : m->contact_laws(0, pb->begin, pb->begin + pb->nq, pb->begin + 2 * pb->nq, pb->p, pb->u, pb->rub, pb->work);
   for (int i = 0; i < 2 * m->ncontacts; i++) law_of(w, pb)[i] = pb->rub[3 * (i / 2) + i % 2];
   for (int i = 0; i + 1 < m->ncontacts && rc == 0; i++) {
     if (m->contacts[i].is_tangent || !m->contacts[i + 1].is_tangent || !(pb->rub[3 * i] > pb->rub[3 * i + 3])) continue;
@@ -57,11 +68,14 @@ static int init(void *work, lag_problem *pb, const double *opt) {
 
 static const char *refuses(const lag_model *m, const double *opt) {
   (void)opt;
-  if (m->flags & LAG_MASSLESS) return "some coordinates have no inertia, and impulses would move them by any amount; dop853 takes such a model";
+  if (m->flags & LAG_MASSLESS)
+    return "some coordinates have no inertia, and impulses would move them by any amount; dop853 takes such a model";
   for (int i = 0; i < m->ncontacts; i++)
-    if (m->contacts[i].law) return "it has a law of impact of its own, and one contact or more name another; dop853 follows these";
+    if (m->contacts[i].law)
+      return "it has a law of impact of its own, and one contact or more name another; dop853 follows these";
   for (int i = 0; i < m->ncontacts; i++)
-    if (m->contacts[i].conditional) return "constraints that hold while a condition is true are not followed; dop853 follows them";
+    if (m->contacts[i].conditional)
+      return "constraints that hold while a condition is true are not followed; dop853 follows them";
   return NULL;
 }
 
@@ -72,9 +86,11 @@ static int is_explicit(const lag_problem *pb) {
 }
 
 /* Y1 := FREE with impulses of contacts and dry friction, which agree: in turns, until friction changes nothing more. */
-static int agree(Moreau *w, lag_problem *pb, double tm, double t, double dt, MoreauContacts *contacts, JointFriction *f) {
+static int agree(Moreau *w, lag_problem *pb, double tm, double t, double dt, MoreauContacts *contacts,
+                 JointFriction *f) {
   enum { ROUNDS = 500 };
-  const double little = 1e-5; /* of the largest slip, or of what friction changes: friction that follows it to its limit by many small steps */
+  /* of the largest slip, or of what friction changes: friction that follows it to its limit by many small steps */
+  const double little = 1e-5;
   int n = pb->n, nq = pb->nq, rc = 0;
   double *y1 = w->x + Y1 * n, *free = w->x + FREE * n, moved = 0, before = 0;
   for (int round = 0; round < ROUNDS; round++) {
@@ -92,11 +108,14 @@ static int agree(Moreau *w, lag_problem *pb, double tm, double t, double dt, Mor
   return lag_step_failed(pb, LAG_EMETHOD, tm);
 }
 
-/* Y1: velocities and states at the end t of a step from y. Forces are those at the mean velocity; of a step with an impact the mean of those at both ends, since the mean of velocities that jump is none that occurs. */
-static int kick(Moreau *w, lag_problem *pb, double tm, double t, double dt, const double *y, MoreauContacts *contacts, JointFriction *f) {
+/* Y1: velocities and states at the end t of a step from y. Forces are those at the mean velocity; of a step with an
+ * impact the mean of those at both ends, since the mean of velocities that jump is none that occurs. */
+static int kick(Moreau *w, lag_problem *pb, double tm, double t, double dt, const double *y, MoreauContacts *contacts,
+                JointFriction *f) {
   enum { TURNS = 100 };
   int n = pb->n, nq = pb->nq, meets = pb->model->ncontacts > 0, rc = 0;
-  double *y1 = w->x + Y1 * n, *rate = w->x + RATE * n, *rate0 = w->x + RATE0 * n, *mid = w->x + MID * n, *size = w->x + SIZE * n, before = HUGE_VAL, moved;
+  double *y1 = w->x + Y1 * n, *rate = w->x + RATE * n, *rate0 = w->x + RATE0 * n, *mid = w->x + MID * n,
+         *size = w->x + SIZE * n, before = HUGE_VAL, moved;
   for (int turn = 0; turn < TURNS; turn++) {
     if ((rc = lag_step_rhs(pb, tm, mid, rate)) != 0) return rc;
     if (turn == 0) memcpy(rate0, rate, (size_t)n * sizeof *rate);
@@ -109,11 +128,13 @@ static int kick(Moreau *w, lag_problem *pb, double tm, double t, double dt, cons
     }
     if (meets && turn == 0 && rc == 0) rc = lag_moreau_contacts_find(contacts, pb, tm, dt, mid, y1 + nq, law_of(w, pb));
     memcpy(w->x + FREE * n, y1, (size_t)n * sizeof *y1);
-    if (meets && rc == 0) rc = f->n ? agree(w, pb, tm, t, dt, contacts, f) : lag_moreau_contacts_solve(contacts, pb, tm, y1 + nq);
+    if (meets && rc == 0)
+      rc = f->n ? agree(w, pb, tm, t, dt, contacts, f) : lag_moreau_contacts_solve(contacts, pb, tm, y1 + nq);
     if (rc || (is_explicit(pb) && !f->n)) return rc;
     for (int i = nq; i < n; i++) {
       size[i] = rate[i];
-      for (int k = 0; k < f->n; k++) size[i] = fabs(size[i]) + fabs(f->d[k * n + i]); /* at rest forces cancel: rounding is that of friction */
+      /* at rest forces cancel: rounding is that of friction */
+      for (int k = 0; k < f->n; k++) size[i] = fabs(size[i]) + fabs(f->d[k * n + i]);
     }
     const lag_moreau_ends ends = {dt, y, y1, size};
     double most = lag_moreau_mean(&ends, contacts->impacts > 0 ? 1 : 0.5, DBL_EPSILON, nq, pb->nz, mid);
@@ -129,7 +150,8 @@ static void drift(Moreau *w, const lag_problem *pb, double dt, double *y) {
   int n = pb->n, nq = pb->nq;
   const double *y0 = w->x + Y0 * n, *y1 = w->x + Y1 * n;
   double *lost = w->x + COMP * n;
-  for (int i = 0; i < n; i++) y[i] = lag_compensated_sum(y0[i], i < nq ? dt / 2 * (y0[nq + i] + y1[nq + i]) : y1[i] - y0[i], &lost[i]);
+  for (int i = 0; i < n; i++)
+    y[i] = lag_compensated_sum(y0[i], i < nq ? dt / 2 * (y0[nq + i] + y1[nq + i]) : y1[i] - y0[i], &lost[i]);
 }
 
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
@@ -155,14 +177,16 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   memcpy(y0, y, (size_t)n * sizeof *y);
   drift(w, pb, next.dt, y);
   pb->bad_index = lag_not_finite(n, y);
-  rc = pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, next.tb) : lag_project_step(pb, next.tb, y0, y, w->x + COMP * n);
+  rc = pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, next.tb)
+                          : lag_project_step(pb, next.tb, y0, y, w->x + COMP * n);
   if (rc) {
     memcpy(y, y0, (size_t)n * sizeof *y);
     if (friction.n) lag_joint_friction_back(&friction, pb);
     return rc == LAG_ENAN ? rc : lag_step_not_projected(pb, rc, next.tb);
   }
   w->struck = contacts.impacts;
-  if (pb->model->ncontacts) lag_moreau_contacts_note(&contacts, pb, next.dt, contacts.impacts > 0 ? tm : next.tb, y0 + nq, y1 + nq);
+  if (pb->model->ncontacts)
+    lag_moreau_contacts_note(&contacts, pb, next.dt, contacts.impacts > 0 ? tm : next.tb, y0 + nq, y1 + nq);
   memcpy(y1, y, (size_t)n * sizeof *y);
   lag_fixed_step_end(&w->step, &next, t);
   return LAG_OK;
@@ -179,7 +203,8 @@ const lag_method lag_moreau = {
     .name = "moreau",
     .order = 2,
     .dense_order = 2,
-    .doc = "time-stepping with contacts and friction by impulses, for many contacts or impacts. DOI 10.1007/978-3-7091-2624-0_1",
+    .doc = "time-stepping with contacts and friction by impulses, for many contacts or impacts. DOI "
+           "10.1007/978-3-7091-2624-0_1",
     .flags = LAG_METHOD_CONSTRAINTS | LAG_METHOD_IMPULSES,
     .noptions = 1,
     .options = options,

@@ -1,11 +1,18 @@
-/* Contacts in one step of moreau. Enters, leaves: moreau_contacts.h. Holds: no contact does work on the motion, measured by its impulse and the mean of its rates at both ends.
+/* Contacts in one step of moreau. Enters, leaves: moreau_contacts.h. Holds: no contact does work on the motion,
+ * measured by its impulse and the mean of its rates at both ends.
  *
- * A contact takes part where its gap is closed at the middle of the step, and where it may close until the end at a rate that forces cause in a step, its pace: so that what lies stays where it is. Its rate
- * afterwards, u, is bounded by Newton's law u >= -e u0 where it was closing faster than its pace, by u >= 0 (or what is left of a gap) where slower, and by u >= -u0 where it was opening; so P (u0 + u) <= 0. Where the gap is curved, its rate is 0 at the end of the step, not at the middle, and curvature belongs to the pace: a bead in a hoop does not strike it. Friction
- * opposes the mean of the slip velocities at both ends: it drives the slip s into the ball whose diameter goes from -s0 to 0, so F (s0 + s) <= 0. In an impact it opposes the slip at the end, driven to 0, or with
- * tangential restitution to -e_t s0, as in the papers below; at a contact where this would add energy, as it may where the impulse turns the slip round (T.R. Kane, D.A. Levinson, Dynamics (1985), 5.8), the mean
- * of both, too, so P (u0 + u) + F (s0 + s) <= 0 always. J.J. Moreau, in: Nonsmooth Mechanics and Applications (1988), 1,
- * DOI 10.1007/978-3-7091-2624-0_1; D.E. Stewart, J.C. Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673, DOI 10.1002/(SICI)1097-0207(19960815)39:15<2673::AID-NME972>3.0.CO;2-I. */
+ * A contact takes part where its gap is closed at the middle of the step, and where it may close until the end at a
+ * rate that forces cause in a step, its pace: so that what lies stays where it is. Its rate afterwards, u, is
+ * bounded by Newton's law u >= -e u0 where it was closing faster than its pace, by u >= 0 (or what is left of a gap)
+ * where slower, and by u >= -u0 where it was opening; so P (u0 + u) <= 0. Where the gap is curved, its rate is 0 at
+ * the end of the step, not at the middle, and curvature belongs to the pace: a bead in a hoop does not strike it.
+ * Friction opposes the mean of the slip velocities at both ends: it drives the slip s into the ball whose diameter
+ * goes from -s0 to 0, so F (s0 + s) <= 0. In an impact it opposes the slip at the end, driven to 0, or with
+ * tangential restitution to -e_t s0, as in the papers below; at a contact where this would add energy, as it may
+ * where the impulse turns the slip round (T.R. Kane, D.A. Levinson, Dynamics (1985), 5.8), the mean of both, too, so
+ * P (u0 + u) + F (s0 + s) <= 0 always. J.J. Moreau, in: Nonsmooth Mechanics and Applications (1988), 1, DOI
+ * 10.1007/978-3-7091-2624-0_1; D.E. Stewart, J.C. Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673, DOI
+ * 10.1002/(SICI)1097-0207(19960815)39:15<2673::AID-NME972>3.0.CO;2-I. */
 #include "methods/moreau_contacts.h"
 
 #include <float.h>
@@ -28,24 +35,32 @@ int lag_contact_tangents(const lag_model *m, int i) {
 /* Bandwidth of M. */
 static int band_of(const lag_constraints *of) {
   int band = 0;
-  for (int e = 0; e < of->nmass; e++) band = of->mass[e].row - of->mass[e].col > band ? of->mass[e].row - of->mass[e].col : band;
+  for (int e = 0; e < of->nmass; e++)
+    band = of->mass[e].row - of->mass[e].col > band ? of->mass[e].row - of->mass[e].col : band;
   return band;
 }
 
 static size_t lay_out(const lag_model *m, double *room, MoreauContacts *w) {
   const lag_constraints *of = m->constraints;
   double *contacts;
-  size_t p = (size_t)m->ncontacts, n = (size_t)of->n, nq = (size_t)m->nq, state = 2 * nq + (size_t)m->nz, nj = (size_t)of->njacobian;
-  double **const parts[] = {&contacts, &w->A.first, &w->A.col, &w->A.value, &w->D.first, &w->D.col, &w->D.value, &w->response, &w->b, &w->P, &w->before, &w->c, &w->r0, &w->r1, &w->pace, &w->bend, &w->g,
-                            &w->d, &w->effort, &w->jacobian, &w->mass, &w->band, &w->pivot, &w->scale, &w->test, &w->after};
-  const size_t sizes[] = {p * sizeof(lag_pressing) / sizeof(double), p + 1, nj, nj, p + 1, p * nq, p * nq, p, p, p, p, n, n, n, n, n, n, nq, nq, nj, (size_t)of->nmass,
-                          (size_t)lag_band_matrix_size(m->nq, band_of(of)), nq, nq, state, state};
+  size_t p = (size_t)m->ncontacts, n = (size_t)of->n, nq = (size_t)m->nq, state = 2 * nq + (size_t)m->nz,
+         nj = (size_t)of->njacobian;
+  double **const parts[] = {&contacts,    &w->A.first, &w->A.col, &w->A.value, &w->D.first, &w->D.col,    &w->D.value,
+                            &w->response, &w->b,       &w->P,     &w->before,  &w->c,       &w->r0,       &w->r1,
+                            &w->pace,     &w->bend,    &w->g,     &w->d,       &w->effort,  &w->jacobian, &w->mass,
+                            &w->band,     &w->pivot,   &w->scale, &w->test,    &w->after};
+  const size_t sizes[] = {p * sizeof(lag_pressing) / sizeof(double),
+                          p + 1, nj, nj, p + 1, p * nq, p * nq, p, p, p, p, n, n, n, n, n, n, nq, nq, nj,
+                          (size_t)of->nmass, (size_t)lag_band_matrix_size(m->nq, band_of(of)), nq, nq, state,
+                          state};
   size_t all = lag_workspace_slice(room, sizeof sizes / sizeof *sizes, parts, sizes);
   if (room) w->of = (lag_pressing *)(void *)contacts;
   return all;
 }
 
-size_t lag_moreau_contacts_size(const lag_model *m) { return m->ncontacts ? lay_out(m, NULL, &(MoreauContacts){0}) : 0; }
+size_t lag_moreau_contacts_size(const lag_model *m) {
+  return m->ncontacts ? lay_out(m, NULL, &(MoreauContacts){0}) : 0;
+}
 
 MoreauContacts lag_moreau_contacts(const lag_problem *pb) {
   MoreauContacts w = {0};
@@ -65,7 +80,9 @@ static int close(lag_problem *pb, double t, int only) {
   return rc;
 }
 
-static const char *name_of(const lag_problem *pb, int i) { return pb->model->constraints->of[pb->model->contacts[i].constraint].name; }
+static const char *name_of(const lag_problem *pb, int i) {
+  return pb->model->constraints->of[pb->model->contacts[i].constraint].name;
+}
 
 static int fail(lag_problem *pb, double t, int i, const char *what) {
   snprintf(pb->words, sizeof pb->words, "the contact %s %s", name_of(pb, i), what);
@@ -75,7 +92,8 @@ static int fail(lag_problem *pb, double t, int i, const char *what) {
 
 /* ---- responses */
 
-/* d := change of velocities by a unit impulse of contact i of the model, whose row of A is `row`, under the other constraints. */
+/* d := change of velocities by a unit impulse of contact i of the model, whose row of A is `row`, under the other
+ * constraints. */
 static int respond(MoreauContacts *w, lag_problem *pb, double t, const double *y, int i, int row) {
   const lag_constraints *of = pb->model->constraints;
   int nq = pb->nq, k = pb->model->contacts[i].constraint, rc = 0;
@@ -136,19 +154,23 @@ static int add_row(MoreauContacts *w, lag_problem *pb, double t, const double *y
 /* ---- laws */
 
 /* The law of contact i of the model, whose rows are there. */
-static int set_law(MoreauContacts *w, lag_problem *pb, double t, double h, const double *y, const double *law, int i, lag_pressing *c) {
-  int row = (int)c->row, k = pb->model->contacts[i].constraint, strikes = lag_contact_strikes(w->r0[k], w->pace[k]) && w->response[row] > 0;
+static int set_law(MoreauContacts *w, lag_problem *pb, double t, double h, const double *y, const double *law, int i,
+                   lag_pressing *c) {
+  int row = (int)c->row, k = pb->model->contacts[i].constraint,
+      strikes = lag_contact_strikes(w->r0[k], w->pace[k]) && w->response[row] > 0;
   double e = 0;
   if (strikes) {
     int rc = close(pb, t, i);
     for (int j = 0; j < pb->nq; j++) w->d[j] = 0;
-    for (int n = (int)w->D.first[row]; n < (int)w->D.first[row + 1]; n++) w->d[(int)w->D.col[n]] = w->D.value[n] / w->response[row];
+    for (int n = (int)w->D.first[row]; n < (int)w->D.first[row + 1]; n++)
+      w->d[(int)w->D.col[n]] = w->D.value[n] / w->response[row];
     e = rc ? NAN : lag_contact_restitution(pb, t, y, i, w->r0[k], -w->r0[k], w->d, w->jacobian, w->test, w->after);
     if (!isfinite(e)) return fail(pb, t, i, "has no finite restitution");
     w->impacts++;
   }
   c->mu = c->tangents > 0 ? law[2 * (i + 1)] : 0;
-  lag_contact_law(c, w->c[k], w->r0[k], w->bend[k], h, e, strikes && c->tangents > 0 ? law[2 * (i + 1) + 1] : 0, strikes, w->before + row + 1);
+  lag_contact_law(c, w->c[k], w->r0[k], w->bend[k], h, e, strikes && c->tangents > 0 ? law[2 * (i + 1) + 1] : 0,
+                  strikes, w->before + row + 1);
   return 0;
 }
 
@@ -172,12 +194,14 @@ static int evaluate(MoreauContacts *w, lag_problem *pb, double t, double h, cons
   }
   for (int i = 0; i < pb->model->ncontacts && rc == 0; i++) {
     int k = pb->model->contacts[i].constraint;
-    if (!isfinite(w->r0[k]) || !isfinite(w->r1[k]) || (!pb->model->contacts[i].is_tangent && !isfinite(w->c[k]))) return fail(pb, t, i, "has no finite values");
+    if (!isfinite(w->r0[k]) || !isfinite(w->r1[k]) || (!pb->model->contacts[i].is_tangent && !isfinite(w->c[k])))
+      return fail(pb, t, i, "has no finite values");
   }
   return rc ? lag_step_refused(pb, rc, t) : 0;
 }
 
-int lag_moreau_contacts_find(MoreauContacts *w, lag_problem *pb, double t, double h, const double *y, const double *free, const double *law) {
+int lag_moreau_contacts_find(MoreauContacts *w, lag_problem *pb, double t, double h, const double *y,
+                             const double *free, const double *law) {
   const lag_model *m = pb->model;
   int known = 0, rc = evaluate(w, pb, t, h, y, free);
   w->n = w->rows = 0;
@@ -193,7 +217,8 @@ int lag_moreau_contacts_find(MoreauContacts *w, lag_problem *pb, double t, doubl
     if (rc) return lag_step_refused(pb, rc, t);
     rc = set_law(w, pb, t, h, y, law, i, c);
     pb->contacts->depth = fmax(pb->contacts->depth, 0 - w->c[k]);
-    if (rc == 0 && !(w->response[(int)c->row] > 0) && w->r1[k] < 0) return fail(pb, t, i, "closes, and nothing can keep it from closing");
+    if (rc == 0 && !(w->response[(int)c->row] > 0) && w->r1[k] < 0)
+      return fail(pb, t, i, "closes, and nothing can keep it from closing");
   }
   return rc;
 }
@@ -202,15 +227,20 @@ int lag_moreau_contacts_solve(MoreauContacts *w, lag_problem *pb, double t, doub
   const double enough = 64 * DBL_EPSILON;
   double size = 0;
   for (int r = 0; r < w->rows; r++)
-    for (int e = (int)w->A.first[r]; e < (int)w->A.first[r + 1]; e++) size = fmax(size, fabs(w->A.value[e] * v[(int)w->A.col[e]]));
+    for (int e = (int)w->A.first[r]; e < (int)w->A.first[r + 1]; e++)
+      size = fmax(size, fabs(w->A.value[e] * v[(int)w->A.col[e]]));
   if (!w->n) return 0;
   const lag_impulses impulses = {w->n, w->of, w->A, w->D, w->response, w->b, w->P, v};
   int sweeps = lag_contact_impulses(&impulses, enough * size, MOST_SWEEPS);
   w->sweeps += sweeps;
-  return sweeps > MOST_SWEEPS ? fail(pb, t, (int)w->of[0].contact, "and others find no impulses that agree: take smaller steps, or look for bodies that are wedged") : 0;
+  return sweeps > MOST_SWEEPS
+             ? fail(pb, t, (int)w->of[0].contact,
+                    "and others find no impulses that agree: take smaller steps, or look for bodies that are wedged")
+             : 0;
 }
 
-void lag_moreau_contacts_note(MoreauContacts *w, lag_problem *pb, double h, double from, const double *v0, const double *v1) {
+void lag_moreau_contacts_note(MoreauContacts *w, lag_problem *pb, double h, double from, const double *v0,
+                              const double *v1) {
   lag_contact_stats *s = pb->contacts;
   double work[2] = {0, 0}, own = 0, size = 0;
   memset(w->force, 0, (size_t)pb->model->ncontacts * sizeof *w->force);
@@ -220,10 +250,12 @@ void lag_moreau_contacts_note(MoreauContacts *w, lag_problem *pb, double h, doub
       int r = (int)w->of[i].row + j;
       double mean = w->P[r] * (lag_row_product(&w->A, r, v0) + lag_row_product(&w->A, r, v1)) / 2;
       w->force[(int)w->of[i].contact + j] = w->P[r];
-      for (int e = (int)w->D.first[r]; e < (int)w->D.first[r + 1]; e++) pb->contact_change[(int)w->D.col[e]] += w->P[r] * w->D.value[e];
+      for (int e = (int)w->D.first[r]; e < (int)w->D.first[r + 1]; e++)
+        pb->contact_change[(int)w->D.col[e]] += w->P[r] * w->D.value[e];
       work[j > 0] += mean;
       own += mean + w->P[r] * w->b[r];
-      size += fabs(w->P[r]) * (fabs(w->before[r]) + fabs(lag_row_product(&w->A, r, v1) + w->b[r]) + w->pace[pb->model->contacts[(int)w->of[i].contact + j].constraint]);
+      size += fabs(w->P[r]) * (fabs(w->before[r]) + fabs(lag_row_product(&w->A, r, v1) + w->b[r]) +
+                               w->pace[pb->model->contacts[(int)w->of[i].contact + j].constraint]);
     }
   s->length = h;
   s->work = work[0];

@@ -1,10 +1,10 @@
-/* Dry friction of joints and sliders in one step of moreau. Enters, leaves: moreau_joint_friction.h. Holds: each surface
- * obeys its law after its turn (kernels/impulses.h): no slip is left at the end where less than the bound holds it, else
- * friction is at its size, against the slip.
+/* Dry friction of joints and sliders in one step of moreau. Enters, leaves: moreau_joint_friction.h. Holds: each
+ * surface obeys its law after its turn (kernels/impulses.h): no slip is left at the end where less than the bound
+ * holds it, else friction is at its size, against the slip.
  *
- * Bounds are 1, or static friction in parts of that of motion where the body rests at the begin. In a step with an impact
- * friction opposes the mean of the slips at both ends, as that of contacts (moreau_contacts.c): it drives the slip s into
- * the interval from -s0 to 0, so it brings no energy in where the impact turns the slip round. */
+ * Bounds are 1, or static friction in parts of that of motion where the body rests at the begin. In a step with an
+ * impact friction opposes the mean of the slips at both ends, as that of contacts (moreau_contacts.c): it drives the
+ * slip s into the interval from -s0 to 0, so it brings no energy in where the impact turns the slip round. */
 #include "methods/moreau_joint_friction.h"
 
 #include <float.h>
@@ -40,7 +40,9 @@ JointFriction lag_joint_friction(const lag_problem *pb, double *room) {
 
 /* Switch of surface j, and its mode for the model. */
 static int switch_of(const JointFriction *w, int j) { return (int)w->at[j]; }
-static double *held(const JointFriction *w, lag_problem *pb, int j) { return &pb->hold[pb->model->nu + switch_of(w, j)]; }
+static double *held(const JointFriction *w, lag_problem *pb, int j) {
+  return &pb->hold[pb->model->nu + switch_of(w, j)];
+}
 
 static void hold(const JointFriction *w, lag_problem *pb, int j, double mode) { w->mode[j] = *held(w, pb, j) = mode; }
 

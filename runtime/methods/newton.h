@@ -6,7 +6,8 @@
 
 enum { LAG_MOST_CORRECTIONS = 25 };
 
-/* Size of a correction. part: its largest component relative to the motion over the step; rounding: its size where rounding is to be told. */
+/* Size of a correction. part: its largest component relative to the motion over the step; rounding: its size where
+ * rounding is to be told. */
 typedef struct lag_correction {
   double part, rounding;
 } lag_correction;
@@ -20,8 +21,8 @@ static inline double lag_relative_correction(double length, double du, double u,
 /* The matrix is refreshed while corrections are large. */
 static inline int lag_newton_needs_matrix(int turn, lag_correction before) { return turn == 0 || before.part > 1e-3; }
 
-/* Whether the next correction would be below rounding (a fresh matrix squares errors, an old one contracts them at the same rate), or
- * corrections have stopped shrinking because they are rounding. */
+/* Whether the next correction would be below rounding (a fresh matrix squares errors, an old one contracts them at
+ * the same rate), or corrections have stopped shrinking because they are rounding. */
 static inline int lag_newton_has_converged(lag_correction now, lag_correction before, int fresh, int turn) {
   double next = fresh ? 1000 * now.part * now.part : now.part * (now.part / before.part);
   if (now.part == 0.0 || (next <= DBL_EPSILON / 16 && (fresh || now.part < before.part))) return 1;

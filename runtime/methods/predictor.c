@@ -1,6 +1,6 @@
-/* Predictor by backward differences. The difference of order j + 1 is the error of a polynomial of degree j: E. Hairer, S.P. Norsett, G. Wanner,
- * Solving Ordinary Differential Equations I, 2nd ed. (1993), III.1; as start values for implicit methods: Hairer, Lubich, Wanner, Geometric
- * Numerical Integration, 2nd ed. (2006), VIII.6.1. */
+/* Predictor by backward differences. The difference of order j + 1 is the error of a polynomial of degree j: E.
+ * Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), III.1; as start values
+ * for implicit methods: Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VIII.6.1. */
 #include "methods/predictor.h"
 
 #include <math.h>
@@ -27,7 +27,9 @@ int lag_predictor_guess(const double *history, int m, double *x) {
   return 1;
 }
 
-void lag_predictor_last(const double *history, int m, double *x) { memcpy(x, ((const Predictor *)(const void *)history)->x, (size_t)m * sizeof *x); }
+void lag_predictor_last(const double *history, int m, double *x) {
+  memcpy(x, ((const Predictor *)(const void *)history)->x, (size_t)m * sizeof *x);
+}
 
 /* The largest difference of order j, relative to the size of each component. */
 static double largest_difference(const Predictor *h, int m, int j) {

@@ -1,13 +1,16 @@
-/* radau: Radau IIA of order 5, implicit and L-stable, with adaptive steps and the exact Jacobian that the compiler emits: for
- * stiff models. Enters: t, y; leaves: the next accepted t, y. Holds: a rejected step leaves t and y unchanged; f at the end of
- * a step serves as f at the start of the next; the Jacobian and its factors are kept while Newton's method converges fast.
- * Constraints: the index-1 form within a step, projection at its end, and a Jacobian by differences.
+/* radau: Radau IIA of order 5, implicit and L-stable, with adaptive steps and the exact Jacobian that the compiler
+ * emits: for stiff models. Enters: t, y; leaves: the next accepted t, y. Holds: a rejected step leaves t and y
+ * unchanged; f at the end of a step serves as f at the start of the next; the Jacobian and its factors are kept
+ * while Newton's method converges fast. Constraints: the index-1 form within a step, projection at its end, and a
+ * Jacobian by differences.
  *
- * Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), DOI 10.1007/978-3-642-05221-7,
- * IV.8 and code RADAU5: simplified Newton iteration in coordinates in which the inverse Butcher matrix is block diagonal (one real
- * and one complex eigenvalue), its stopping rule, start values from the last collocation polynomial, error estimate with a second,
- * filtered one after a rejected step, predictive step control (K. Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496, DOI 10.1145/198429.198437). The
- * tolerances are transformed as in RADAU5, 0.1 tol^(2/3), because the estimate has order 3. Dense output: the collocation polynomial. */
+ * Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), DOI
+ * 10.1007/978-3-642-05221-7, IV.8 and code RADAU5: simplified Newton iteration in coordinates in which the inverse
+ * Butcher matrix is block diagonal (one real and one complex eigenvalue), its stopping rule, start values from the
+ * last collocation polynomial, error estimate with a second, filtered one after a rejected step, predictive step
+ * control (K. Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496, DOI 10.1145/198429.198437). The tolerances are
+ * transformed as in RADAU5, 0.1 tol^(2/3), because the estimate has order 3. Dense output: the collocation
+ * polynomial. */
 #include "lag.h"
 
 #include <float.h>
@@ -23,31 +26,42 @@
 
 enum { MOST_CORRECTIONS = 7, MOST_WHEN_FIXED = 30, STAGES = 3 };
 
-/* Results of an attempt besides LAG_ERETRY (the model left its domain): the error was too large; Newton's method diverged. */
+/* Results of an attempt besides LAG_ERETRY (the model left its domain): the error was too large; Newton's method
+ * diverged. */
 enum { REJECTED = LAG_ERETRY + 1, DIVERGED };
 
 static const double safety = 0.9, shrink_most = 0.2, grow_most = 8;
 static const double contracts_well = 1e-3; /* contraction rate below which the Jacobian is kept */
-static const double keep_least = 1, keep_most = 1.2; /* growth of h within these factors is ignored, to keep the LU factors */
+/* growth of h within these factors is ignored, to keep the LU factors */
+static const double keep_least = 1, keep_most = 1.2;
 
 /* The method: nodes, Butcher matrix (table IV.5.6), the eigenvalues of its inverse, and the eigenvectors T. */
 static const double node[STAGES] = {0.155051025721682190180271592529410861, 0.644948974278317809819728407470589139, 1};
 static const double butcher[STAGES][STAGES] = {
-    {0.19681547722366042586838614299182989, -0.0655354258501983881085227825696086918, 0.023770974348220152420408232107189663},
-    {0.394424314739087276997411671458497581, 0.292073411665228463020502745897058999, -0.0415487521259979301981860098849674408},
-    {0.376403062700467275050075442369280795, 0.512485826188421613838813446519608094, 0.111111111111111111111111111111111111}};
+    {0.19681547722366042586838614299182989, -0.0655354258501983881085227825696086918,
+     0.023770974348220152420408232107189663},
+    {0.394424314739087276997411671458497581, 0.292073411665228463020502745897058999,
+     -0.0415487521259979301981860098849674408},
+    {0.376403062700467275050075442369280795, 0.512485826188421613838813446519608094,
+     0.111111111111111111111111111111111111}};
 static const double real_eigenvalue = 3.6378342527444957322084185135777758;
 static const double eigenvalue[2] = {2.6810828736277521338957907432111121, 3.0504301992474105694263776247875679};
 static const double T[STAGES][STAGES] = {
-    {0.0912323948708929427914945808409637767, -0.141255295020954208427990383807797309, -0.0300291941051474244918611170890538667},
-    {0.241717932707107018957332888253560007, 0.204129352293799931995990810298338174, 0.38294211275726193779543823359987321},
+    {0.0912323948708929427914945808409637767, -0.141255295020954208427990383807797309,
+     -0.0300291941051474244918611170890538667},
+    {0.241717932707107018957332888253560007, 0.204129352293799931995990810298338174,
+     0.38294211275726193779543823359987321},
     {0.96604818261509293619, 1, 0}};
 static const double inverse_T[STAGES][STAGES] = {
-    {4.32557989006315535102689011541746916, 0.339199251815809869543024087704992642, 0.541770539935874871186841058693939352},
-    {-4.17871859155190472734646265851205623, -0.327682820761062387082533272429616234, 0.476623554500550451960069084091012498},
-    {-0.502872634945786875951247343139544293, 2.57192694985560542918678535360167505, -0.596039204828224924968821911099302403}};
+    {4.32557989006315535102689011541746916, 0.339199251815809869543024087704992642,
+     0.541770539935874871186841058693939352},
+    {-4.17871859155190472734646265851205623, -0.327682820761062387082533272429616234,
+     0.476623554500550451960069084091012498},
+    {-0.502872634945786875951247343139544293, 2.57192694985560542918678535360167505,
+     -0.596039204828224924968821911099302403}};
 /* Weights of z/h in the error estimate, (-13 -+ 7 sqrt 6)/3 and -1/3. */
-static const double error_weight[STAGES] = {-10.0488093998274155624603295076470799, 1.38214273316074889579366284098041325, -1.0 / 3};
+static const double error_weight[STAGES] = {-10.0488093998274155624603295076470799,
+                                            1.38214273316074889579366284098041325, -1.0 / 3};
 
 /* Saved state of the method, doubles only; RadauArrays has pointers into x. */
 typedef struct Radau {
@@ -68,20 +82,27 @@ typedef struct Radau {
 
 typedef struct RadauArrays {
   double *f0, *y0, *y1, *comp, *comp1, *scale, *ys, *fs, *err; /* [n] */
-  double *z, *w, *dw, *path;     /* [3 n] z = stages - y; w = T^-1 z; its correction; differences of the collocation polynomial */
+  /* [3 n] z = stages - y; w = T^-1 z; its correction; differences of the collocation polynomial */
+  double *z, *w, *dw, *path;
   double *jacobian;              /* [(nq + nz) n] */
   double *row;                   /* [2 n] scratch */
   double *linear;                /* scratch of lag_jacobian */
-  lag_band_matrix real, complex;        /* gamma/h - J, and the real form [alpha/h - J, -beta/h; beta/h, alpha/h - J] of the complex one */
+  /* gamma/h - J, and the real form [alpha/h - J, -beta/h; beta/h, alpha/h - J] of the complex one */
+  lag_band_matrix real, complex;
 } RadauArrays;
 
 /* Sets the pointers, unless x is NULL; returns the length of Radau.x. */
 static size_t layout(RadauArrays *a, const lag_problem *pb, double *x) {
   size_t n = (size_t)pb->n, m = STAGES * n;
-  double **const parts[] = {&a->f0, &a->y0, &a->y1, &a->comp, &a->comp1, &a->scale, &a->ys, &a->fs, &a->err, &a->real.pivot, &a->z, &a->w,
-                            &a->dw, &a->path, &a->jacobian, &a->row, &a->complex.pivot, &a->real.a, &a->complex.a, &a->linear};
-  const size_t sizes[] = {n, n, n, n, n, n, n, n, n, n, m, m, m, m, (size_t)(pb->nq + pb->nz) * n, 2 * n, 2 * n, n * n, 4 * n * n,
-                          lag_linear_work(pb->model)};
+  double **const parts[] = {&a->f0,
+                            &a->y0, &a->y1, &a->comp, &a->comp1, &a->scale, &a->ys, &a->fs, &a->err, &a->real.pivot,
+                            &a->z, &a->w, &a->dw, &a->path, &a->jacobian, &a->row, &a->complex.pivot, &a->real.a,
+                            &a->complex.a,
+                            &a->linear};
+  const size_t sizes[] = {n,     n,     n,     n,         n,
+                          n,     n,     n,     n,         n,
+                          m,     m,     m,     m,         (size_t)(pb->nq + pb->nz) * n,
+                          2 * n, 2 * n, n * n, 4 * n * n, lag_linear_work(pb->model)};
   a->real.n = pb->n;
   a->complex.n = 2 * pb->n;
   a->real.band = pb->n - 1;
@@ -129,7 +150,8 @@ static int update_jacobian(Radau *w, const RadauArrays *a, lag_problem *pb, doub
 }
 
 /* m := c 1 - J in the block of rows and columns from `at` on. */
-static void put_minus_jacobian(const RadauArrays *a, const lag_problem *pb, const lag_band_matrix *m, int at, double c) {
+static void put_minus_jacobian(const RadauArrays *a, const lag_problem *pb, const lag_band_matrix *m, int at,
+                               double c) {
   int n = pb->n, nq = pb->nq;
   for (int i = 0; i < n; i++) {
     double *row = lag_band_matrix_at(m, at + i, at);
@@ -169,7 +191,8 @@ static void guess(const Radau *w, const RadauArrays *a, int n, double dt) {
   for (int s = 0; s < STAGES && w->have_path != 0.0; s++) {
     double c = node[s] * dt / w->dt;
     for (int i = 0; i < n; i++)
-      a->z[s * n + i] = c * (a->path[i] + (c - (node[1] - 1)) * (a->path[n + i] + (c - (node[0] - 1)) * a->path[2 * n + i]));
+      a->z[s * n + i] =
+          c * (a->path[i] + (c - (node[1] - 1)) * (a->path[n + i] + (c - (node[0] - 1)) * a->path[2 * n + i]));
   }
   apply_to_stages(inverse_T, n, a->z, a->w);
 }
@@ -245,7 +268,8 @@ static Outcome newton(Radau *w, const RadauArrays *a, lag_problem *pb, double t,
       }
       w->unsettled = w->rate / (1 - w->rate);
       int left = MOST_CORRECTIONS - 1 - o.corrections;
-      double end = w->unsettled * size * pow(w->rate, left) / goal; /* predicted error after the last correction allowed */
+      /* predicted error after the last correction allowed */
+      double end = w->unsettled * size * pow(w->rate, left) / goal;
       if (end >= 1 && w->limits.fixed == 0.0) {
         o.shrink = 0.8 * pow(fmax(1e-4, fmin(20, end)), -1.0 / (4 + left));
         break;
@@ -276,7 +300,8 @@ static double estimate(const RadauArrays *a, const lag_problem *pb, const double
   return fmax(sqrt(s / n), 1e-10);
 }
 
-/* The error estimate; where it is large in the first step or after a rejected one, a second estimate, filtered for stiff f. */
+/* The error estimate; where it is large in the first step or after a rejected one, a second estimate, filtered for
+ * stiff f. */
 static double error_of(const Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y, double dt) {
   double err = estimate(a, pb, a->f0, dt);
   if (!(err >= 1) || !(w->h_accepted == 0.0 || w->again != 0.0)) return err;
@@ -321,7 +346,8 @@ static void store_polynomial(const RadauArrays *a, int n) {
   }
 }
 
-static void accept(Radau *w, const RadauArrays *a, lag_problem *pb, double *t, double *y, double dt, double tb, double tc) {
+static void accept(Radau *w, const RadauArrays *a, lag_problem *pb, double *t, double *y, double dt, double tb,
+                   double tc) {
   size_t bytes = (size_t)pb->n * sizeof(double);
   store_polynomial(a, pb->n);
   memcpy(a->y0, y, bytes);
@@ -364,7 +390,8 @@ static int prepare(Radau *w, const RadauArrays *a, lag_problem *pb, double t, co
 }
 
 /* Computes the end of an accepted step and the size of the next. > 0: a smaller step may help. */
-static int conclude(Radau *w, const RadauArrays *a, lag_problem *pb, double tb, const double *y, double err, int corrections) {
+static int conclude(Radau *w, const RadauArrays *a, lag_problem *pb, double tb, const double *y, double err,
+                    int corrections) {
   int rc = finish(a, pb, tb, y);
   if (rc) w->h /= 2;
   else if (w->limits.fixed != 0.0) w->jacobian_age = 0;
@@ -441,12 +468,15 @@ static void dense(void *work, lag_problem *pb, double t, double *y) {
   RadauArrays a = arrays(w, pb);
   int n = pb->n;
   double s = (t - (w->t0 + w->dt)) / w->dt;
-  for (int i = 0; i < n; i++) y[i] = a.y1[i] + s * (a.path[i] + (s - (node[1] - 1)) * (a.path[n + i] + (s - (node[0] - 1)) * a.path[2 * n + i]));
+  for (int i = 0; i < n; i++)
+    y[i] = a.y1[i] + s * (a.path[i] + (s - (node[1] - 1)) * (a.path[n + i] + (s - (node[0] - 1)) * a.path[2 * n + i]));
 }
 
 /* ---- Derivative of a step */
 
-static size_t tangent_size(const lag_problem *pb, int k) { return lag_tangent_implicit_size(pb, STAGES, k) + (size_t)(STAGES * pb->n); }
+static size_t tangent_size(const lag_problem *pb, int k) {
+  return lag_tangent_implicit_size(pb, STAGES, k) + (size_t)(STAGES * pb->n);
+}
 
 /* The stages are values of the collocation polynomial. */
 static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
@@ -461,7 +491,8 @@ const lag_method lag_radau = {
     .name = "radau",
     .order = 5,
     .dense_order = 3,
-    .doc = "Radau IIA with the exact Jacobian (of constrained models a differenced one), for stiff models. DOI 10.1007/978-3-642-05221-7, IV.8",
+    .doc = "Radau IIA with the exact Jacobian (of constrained models a differenced one), for stiff models. DOI "
+           "10.1007/978-3-642-05221-7, IV.8",
     .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_NEWTON | LAG_METHOD_JACOBIAN | LAG_METHOD_CONSTRAINTS,
     .noptions = LAG_NADAPTIVE_OPTIONS,
     .options = lag_adaptive_rk_options,

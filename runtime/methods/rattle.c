@@ -1,11 +1,12 @@
-/* Steps with constraints, by the discrete Lagrange-d'Alembert principle. Enters: the start of a step, on the constraints; leaves: its
- * end, on the constraints. Algorithm: a constraint impulse at the start of a block brings its end to c = 0, and the momentum at
- * the end is projected to r = 0: RATTLE where L is separable.
+/* Steps with constraints, by the discrete Lagrange-d'Alembert principle. Enters: the start of a step, on the
+ * constraints; leaves: its end, on the constraints. Algorithm: a constraint impulse at the start of a block brings
+ * its end to c = 0, and the momentum at the end is projected to r = 0: RATTLE where L is separable.
  *
- * Sources: H.C. Andersen, J. Comput. Phys. 52 (1983) 24, DOI 10.1016/0021-9991(83)90014-1; J.E. Marsden, M. West (galerkin_rule.h), section 3.5;
- * Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VII.1. A constraint on velocities holds for the chord of the
- * block, in the mean of its two ends, a symmetric rule: J. Cortes, S. Martinez, Nonlinearity 14 (2001) 1365, DOI
- * 10.1088/0951-7715/14/5/322; R. McLachlan, M. Perlmutter, J. Nonlinear Sci. 16 (2006) 283, DOI 10.1007/s00332-005-0698-1. */
+ * Sources: H.C. Andersen, J. Comput. Phys. 52 (1983) 24, DOI 10.1016/0021-9991(83)90014-1; J.E. Marsden, M. West
+ * (galerkin_rule.h), section 3.5; Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VII.1. A
+ * constraint on velocities holds for the chord of the block, in the mean of its two ends, a symmetric rule: J.
+ * Cortes, S. Martinez, Nonlinearity 14 (2001) 1365, DOI 10.1088/0951-7715/14/5/322; R. McLachlan, M. Perlmutter, J.
+ * Nonlinear Sci. 16 (2006) 283, DOI 10.1007/s00332-005-0698-1. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -25,9 +26,10 @@ static int block_length(const Implicit *w) {
   return whole ? 2 : 1;
 }
 
-/* b->to := [q|v], the present q and the velocity of the chord, at t1 = t0 + h, where t0 is the start of the block. b->g := minus the
- * constraint defect there. Returns the model's status. */
-static int constraint_defect(const ImplicitArrays *a, lag_problem *pb, double t0, double t1, double h, const double *y) {
+/* b->to := [q|v], the present q and the velocity of the chord, at t1 = t0 + h, where t0 is the start of the block.
+ * b->g := minus the constraint defect there. Returns the model's status. */
+static int constraint_defect(const ImplicitArrays *a, lag_problem *pb, double t0, double t1, double h,
+                             const double *y) {
   const ConstraintBlock *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
   int nq = pb->nq, rc;
@@ -51,18 +53,22 @@ static int constraint_defect(const ImplicitArrays *a, lag_problem *pb, double t0
 /* The largest |d_i| of d[nq] relative to the largest |x| or |y| of the same unit. */
 static double relative_size(const lag_problem *pb, const double *d, const double *x, const double *y) {
   double most = 0;
-  for (int i = 0; i < pb->nq; i++) most = fmax(most, d[i] == 0.0 ? 0 : fabs(d[i]) / fmax(lag_unit_magnitude(pb, x, i), lag_unit_magnitude(pb, y, i)));
+  for (int i = 0; i < pb->nq; i++)
+    most = fmax(most, d[i] == 0.0 ? 0 : fabs(d[i]) / fmax(lag_unit_magnitude(pb, x, i), lag_unit_magnitude(pb, y, i)));
   return most;
 }
 
-/* Relative size of the correction b->d of the end of a block of length h; or of its impulse relative to the whole impulse, if smaller:
- * coordinates held at 0 have no size, but the force that holds them has one. */
+/* Relative size of the correction b->d of the end of a block of length h; or of its impulse relative to the whole
+ * impulse, if smaller: coordinates held at 0 have no size, but the force that holds them has one. */
 static double relative_size_of_block(const lag_problem *pb, const ConstraintBlock *b, double h) {
   double most = 0;
   for (int i = 0; i < pb->nq; i++) {
-    double far = fmax(lag_unit_magnitude(pb, b->from, i), lag_unit_magnitude(pb, b->to, i)), whole = fabs(h) * lag_unit_magnitude(pb, b->impulse, i);
+    double far = fmax(lag_unit_magnitude(pb, b->from, i), lag_unit_magnitude(pb, b->to, i)),
+           whole = fabs(h) * lag_unit_magnitude(pb, b->impulse, i);
     double part = b->d[i] == 0.0 ? 0 : fabs(b->d[i]) / (far > 0 ? far : lag_typical_magnitude(pb, b->from, 1, i));
-    if (part > 0 && whole > 0) part = far > 0 ? fmin(part, lag_unit_magnitude(pb, b->force, i) / whole) : lag_unit_magnitude(pb, b->force, i) / whole;
+    if (part > 0 && whole > 0)
+      part = far > 0 ? fmin(part, lag_unit_magnitude(pb, b->force, i) / whole)
+                     : lag_unit_magnitude(pb, b->force, i) / whole;
     most = fmax(most, part);
   }
   return most;
@@ -81,8 +87,9 @@ static int find_changes(const ImplicitArrays *a, lag_problem *pb, double t0) {
   return rc;
 }
 
-/* b->g: from the change of constraints wanted at the end of a block, t1, to the change at its start that causes it; pivots below `least` are
- * left out. The two differ near a singular position, even in sign, as of a stretched linkage. Needs b->change. */
+/* b->g: from the change of constraints wanted at the end of a block, t1, to the change at its start that causes it;
+ * pivots below `least` are left out. The two differ near a singular position, even in sign, as of a stretched
+ * linkage. Needs b->change. */
 static int end_to_start_change(const ImplicitArrays *a, lag_problem *pb, double t1, double least) {
   const ConstraintBlock *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
@@ -92,7 +99,8 @@ static int end_to_start_change(const ImplicitArrays *a, lag_problem *pb, double 
   for (int e = 0; e < of->njacobian && rc == 0; e++) {
     int row = of->jacobian[e].row;
     double part = row < of->nholonomic ? 1 : 0.5;
-    for (int k = 0; k < n; k++) b->end_jacobian[row * n + k] += part * b->A[e] * b->change[k * nq + of->jacobian[e].col];
+    for (int k = 0; k < n; k++)
+      b->end_jacobian[row * n + k] += part * b->A[e] * b->change[k * nq + of->jacobian[e].col];
   }
   for (int k = of->nholonomic; k < n; k++) b->end_jacobian[k * n + k] += 0.5;
   if (rc == 0) {
@@ -108,7 +116,9 @@ static int end_to_start_change(const ImplicitArrays *a, lag_problem *pb, double 
 /* LAG_EMETHOD: no small change meets all constraints; pb->detail names the worst. */
 static int contradiction(lag_problem *pb, double t, const double *y, int holonomic) {
   int k = lag_worst_constraint(pb, t, y, holonomic, NULL);
-  if (k >= 0) lag_report_residual(pb, k, holonomic, NAN, ", and no small change meets it: it contradicts others, or depends on them here");
+  if (k >= 0)
+    lag_report_residual(pb, k, holonomic, NAN,
+                        ", and no small change meets it: it contradicts others, or depends on them here");
   return lag_step_failed(pb, LAG_EMETHOD, t);
 }
 
@@ -118,11 +128,11 @@ static void add_impulse(const ConstraintBlock *b, int nq, int nc, double h) {
   for (int k = 0; k < nc; k++) b->sum[k] += b->g[k];
 }
 
-/* Solves the block of substeps k to k + length - 1 for its impulse. The defects of constraints on positions must end as rounding. Those on
- * velocities need not: of two equivalent ones with different factors the chord meets one, and misses the other by O(h^2); project() finds
- * contradictions at the end of the block. */
-static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double t1, const double *y, double dt, int k, int length,
-                double at) {
+/* Solves the block of substeps k to k + length - 1 for its impulse. The defects of constraints on positions must end
+ * as rounding. Those on velocities need not: of two equivalent ones with different factors the chord meets one, and
+ * misses the other by O(h^2); project() finds contradictions at the end of the block. */
+static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double t1,
+                        const double *y, double dt, int k, int length, double at) {
   const ConstraintBlock *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
   int nq = pb->nq, m = nq * (int)w->rule[0].free, steered = 0, known = 0, rc, holonomic = of->nholonomic == of->n;
@@ -134,8 +144,10 @@ static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem 
   memcpy(b->dp, a->dp, bytes);
   memset(b->impulse, 0, bytes);
   memset(b->sum, 0, (size_t)of->n * sizeof(double));
-  if (lag_predictor_guess(history, of->n, b->g) && lag_least_change(pb, t + at * dt, b->from, holonomic, b->g, b->d, b->force) == 0 &&
-      relative_size(pb, b->d, b->from + nq, b->from + nq) <= fabs(h)) { /* no guess where a singular position magnifies its error */
+  if (lag_predictor_guess(history, of->n, b->g) &&
+      lag_least_change(pb, t + at * dt, b->from, holonomic, b->g, b->d, b->force) == 0 &&
+      /* no guess where a singular position magnifies its error */
+      relative_size(pb, b->d, b->from + nq, b->from + nq) <= fabs(h)) {
     add_impulse(b, nq, of->n, h);
   }
   for (int turn = 0; turn < MOST_IMPULSES; turn++) {
@@ -156,7 +168,8 @@ static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem 
     double rounding = DBL_EPSILON * (steered ? 0x1p12 : 4); /* rounding is magnified near a singular position */
     int settled = part <= DBL_EPSILON / 4 || (part <= rounding && part >= before / 2);
     if (!settled && steered && part >= before / 2 && lag_residuals(pb, t1, b->to, b->c, b->r) == 0) {
-      settled = lag_constraint_is_met(pb, t1, b->to, 1, b->c); /* rounding of terms that no coordinate has the size of, as at 0 */
+      /* rounding of terms that no coordinate has the size of, as at 0 */
+      settled = lag_constraint_is_met(pb, t1, b->to, 1, b->c);
     }
     if (settled) {
       if (steered && least > LEAST) {
@@ -166,7 +179,9 @@ static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem 
       }
       lag_predictor_add(history, of->n, b->sum);
       rc = lag_residuals(pb, t1, b->to, b->c, b->r);
-      return rc ? lag_step_refused(pb, rc, t1) : lag_constraint_is_met(pb, t1, b->to, 1, b->c) ? LAG_OK : contradiction(pb, t1, b->to, 1);
+      return rc                                              ? lag_step_refused(pb, rc, t1)
+             : lag_constraint_is_met(pb, t1, b->to, 1, b->c) ? LAG_OK
+                                                             : contradiction(pb, t1, b->to, 1);
     }
     if (!steered && turn > 0 && part > before / 16) { /* converges too slowly: use the changes at the end */
       steered = 1;
@@ -193,7 +208,8 @@ static int project(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, 
     rc = lag_residuals(pb, tb, b->to, b->c, b->r);
     for (int k = 0; k < pb->model->constraints->n; k++) b->g[k] = -b->r[k];
     rc = rc ? rc : lag_least_change(pb, tb, b->to, 0, b->g, b->d, b->force);
-    if (rc || lag_not_finite(nq, b->d) >= 0) return rc ? lag_step_refused(pb, rc, tb) : lag_step_failed(pb, LAG_ENAN, tb);
+    if (rc || lag_not_finite(nq, b->d) >= 0)
+      return rc ? lag_step_refused(pb, rc, tb) : lag_step_failed(pb, LAG_ENAN, tb);
     for (int i = 0; i < nq; i++) {
       a->dp[i] += b->force[i];
       a->v[i] += b->d[i];
@@ -202,10 +218,13 @@ static int project(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, 
   }
   memcpy(b->to + nq, a->v, (size_t)nq * sizeof(double));
   rc = lag_residuals(pb, tb, b->to, b->c, b->r);
-  return rc ? lag_step_refused(pb, rc, tb) : lag_constraint_is_met(pb, tb, b->to, 0, b->r) ? LAG_OK : contradiction(pb, tb, b->to, 0);
+  return rc                                              ? lag_step_refused(pb, rc, tb)
+         : lag_constraint_is_met(pb, tb, b->to, 0, b->r) ? LAG_OK
+                                                         : contradiction(pb, tb, b->to, 0);
 }
 
-/* A failure where a block of length h moved a coordinate farther than the velocities at its ends explain: a constraint jumps there. */
+/* A failure where a block of length h moved a coordinate farther than the velocities at its ends explain: a
+ * constraint jumps there. */
 static int check_leap(const ImplicitArrays *a, lag_problem *pb, double t1, double h) {
   const ConstraintBlock *b = &a->block;
   int nq = pb->nq;
@@ -217,7 +236,8 @@ static int check_leap(const ImplicitArrays *a, lag_problem *pb, double t1, doubl
   return i < 0 ? LAG_OK : lag_step_not_projected(pb, lag_report_leap(pb, t1, b->from, i, b->d[i]), t1);
 }
 
-int lag_rattle(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double tb, const double *y, double dt) {
+int lag_rattle(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double tb, const double *y,
+               double dt) {
   const ConstraintBlock *b = &a->block;
   int nq = pb->nq, m = nq * (int)w->rule[0].free, length = block_length(w), substeps = (int)w->substeps, rc = 0;
   double at = 0;

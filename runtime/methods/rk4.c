@@ -1,5 +1,6 @@
-/* rk4: the classical Runge-Kutta method with a fixed step. Steps: adaptive_rk.c, without an error estimate. Source: W. Kutta, Z. Math. Phys. 46
- * (1901) 435. f at the end of a step is the first stage of the next, so dense output (lag_hermite) costs nothing. */
+/* rk4: the classical Runge-Kutta method with a fixed step. Steps: adaptive_rk.c, without an error estimate. Source:
+ * W. Kutta, Z. Math. Phys. 46 (1901) 435. f at the end of a step is the first stage of the next, so dense output
+ * (lag_hermite) costs nothing. */
 #include "lag.h"
 #include "methods/adaptive_rk.h"
 #include "methods/steps.h"

@@ -1,4 +1,5 @@
-/* Error norm and first step of adaptive methods (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.4). */
+/* Error norm and first step of adaptive methods (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I,
+ * II.4). */
 #include "methods/step_control.h"
 
 #include <math.h>

@@ -15,8 +15,13 @@ typedef struct lag_step_limits {
 /* The first options of an adaptive method, in this order. */
 enum { LAG_OPT_STEP, LAG_OPT_MAX, LAG_OPT_ATOL, LAG_OPT_ADAPT, LAG_NADAPTIVE_OPTIONS };
 extern const char *const lag_on_off[];
-#define LAG_MAX_STEP_OPTION {"max_step", "largest step [s]; 0: a tenth of the scene's span, or the time since the start", 0, 0, HUGE_VAL, .choices = NULL}
-#define LAG_ATOL_OPTION {"atol", "absolute tolerance [SI]; 0: the relative one, of the size of the motion", 0, 0, HUGE_VAL, .choices = NULL}
+#define LAG_MAX_STEP_OPTION                                                                                      \
+  {                                                                                                              \
+    "max_step", "largest step [s]; 0: a tenth of the scene's span, or the time since the start", 0, 0, HUGE_VAL, \
+        .choices = NULL                                                                                          \
+  }
+#define LAG_ATOL_OPTION \
+  { "atol", "absolute tolerance [SI]; 0: the relative one, of the size of the motion", 0, 0, HUGE_VAL, .choices = NULL }
 
 /* The error of component i of y may be `relative` times |y_i| + lag_tolerance_floor. */
 typedef struct lag_tolerance {
@@ -42,7 +47,8 @@ static inline void lag_step_limits_begin(lag_step_limits *l, double t) {
 static inline double lag_min(double a, double b) { return a < b ? a : b; }
 static inline double lag_max(double a, double b) { return a > b ? a : b; }
 
-/* Largest step: the option, or else the time covered so far; at most `longest` (0: no limit). Without limit where all steps have one size. */
+/* Largest step: the option, or else the time covered so far; at most `longest` (0: no limit). Without limit where
+ * all steps have one size. */
 static inline double lag_longest_step(const lag_step_limits *l, double t, double longest) {
   double seen = fabs(t - l->t_begin), most = l->h_max > 0 ? l->h_max : seen > 0 ? seen : HUGE_VAL;
   return l->fixed != 0.0 ? HUGE_VAL : longest > 0 ? lag_min(most, longest) : most;
@@ -53,8 +59,8 @@ static inline double lag_longest_step(const lag_step_limits *l, double t, double
 /* Weighted root mean square of x[n], with weights 1/(relative (floor_i + |y_i|)). */
 double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const double *x, const double *y);
 
-/* The first step to try from y, where f0 = f(t, y), for a method of this order; at most h_max (0: no limit). y1[n] and
- * f1[n] are scratch. E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), II.4
- * "starting step size": one Euler step measures the second derivative. */
+/* The first step to try from y, where f0 = f(t, y), for a method of this order; at most h_max (0: no limit). y1[n]
+ * and f1[n] are scratch. E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.
+ * (1993), II.4 "starting step size": one Euler step measures the second derivative. */
 double lag_first_step(lag_problem *pb, const lag_tolerance *tol, int order, double h_max, double t, const double *y,
                       const double *f0, double *y1, double *f1);

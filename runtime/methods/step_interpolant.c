@@ -1,12 +1,14 @@
-/* Interpolant within a step of q'' = f(t, q, q'). Enters: states and accelerations at both ends; leaves: polynomials of q and v.
- * Holds: v has error O(h^(m+4)) and q O(h^(m+6)) with m accelerations inside the step, if these are as accurate. Where f depends
- * on velocities the accelerations have the error of v, one order less, and a second pass recovers it.
+/* Interpolant within a step of q'' = f(t, q, q'). Enters: states and accelerations at both ends; leaves: polynomials
+ * of q and v. Holds: v has error O(h^(m+4)) and q O(h^(m+6)) with m accelerations inside the step, if these are as
+ * accurate. Where f depends on velocities the accelerations have the error of v, one order less, and a second pass
+ * recovers it.
  *
- * Construction: a(x) interpolates the accelerations at equal distances, x = 0..M, M = m + 1; with W = x (x-1) ... (x-M), zero
- * at these x, v = v0 + int (a + alpha W) meets v1, and q = q0 + v0 t + iint (a + alpha W + beta (x - M/2) W) meets q1.
- * For m = 0 this is lag_hermite, of order 4. Its q gives the accelerations inside for m = 2 (order 6), that path those for
- * m = 4 (order 8): "bootstrapping", W.H. Enright, K.R. Jackson, S.P. Norsett, P.G. Thomsen, ACM Trans. Math. Softw. 12
- * (1986) 193, DOI 10.1145/7921.7923. As in lag_hermite beta stays out of v: it would magnify errors of q by 1/h. */
+ * Construction: a(x) interpolates the accelerations at equal distances, x = 0..M, M = m + 1; with W = x (x-1) ...
+ * (x-M), zero at these x, v = v0 + int (a + alpha W) meets v1, and q = q0 + v0 t + iint (a + alpha W + beta (x -
+ * M/2) W) meets q1. For m = 0 this is lag_hermite, of order 4. Its q gives the accelerations inside for m = 2 (order
+ * 6), that path those for m = 4 (order 8): "bootstrapping", W.H. Enright, K.R. Jackson, S.P. Norsett, P.G. Thomsen,
+ * ACM Trans. Math. Softw. 12 (1986) 193, DOI 10.1145/7921.7923. As in lag_hermite beta stays out of v: it would
+ * magnify errors of q by 1/h. */
 #include "methods/step_interpolant.h"
 
 #include <string.h>

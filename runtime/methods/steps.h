@@ -43,7 +43,8 @@ static inline void lag_fixed_step_end(lag_fixed_step *s, const lag_next_step *ne
 }
 
 /* The option `step` of fixed-step methods. */
-#define LAG_STEP_OPTION {"step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, .choices = NULL}
+#define LAG_STEP_OPTION \
+  { "step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, .choices = NULL }
 
 /* Records the time of a failure in pb; returns status. */
 static inline int lag_step_failed(lag_problem *pb, int status, double t) {
@@ -61,7 +62,8 @@ static inline int lag_step_not_projected(lag_problem *pb, int rc, double t) {
   return rc > 0 ? lag_step_failed(pb, LAG_EMETHOD, t) : lag_step_refused(pb, rc, t);
 }
 
-/* dy := f(t, y), for a method that cannot take a smaller step. LAG_OK, or a failure, also where a rate is not finite. */
+/* dy := f(t, y), for a method that cannot take a smaller step. LAG_OK, or a failure, also where a rate is not
+ * finite. */
 static inline int lag_step_rhs(lag_problem *pb, double t, const double *y, double *dy) {
   int rc = lag_rhs(pb, t, y, dy);
   if (rc) return lag_step_refused(pb, rc, t);

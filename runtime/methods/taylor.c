@@ -1,18 +1,22 @@
-/* taylor: Taylor series of the motion, with steps and an order chosen from the tolerance. Enters: t, y; leaves: the next accepted t, y. Holds: a step
- * takes the series at its start and one evaluation at its end, which is order 0 of the next series; M is factored once a step.
+/* taylor: Taylor series of the motion, with steps and an order chosen from the tolerance. Enters: t, y; leaves: the
+ * next accepted t, y. Holds: a step takes the series at its start and one evaluation at its end, which is order 0 of
+ * the next series; M is factored once a step.
  *
- * Source of the recurrences: the compiler's series/series.h. Source of the step size: A. Jorba, M. Zou, Experimental Mathematics
- * 14 (2005) 99, DOI 10.1080/10586458.2005.10128904, section 3: with x_k the coefficient of order k the root test of the
- * radius of convergence gives h = c min(|x_(p-1)|^(-1/(p-1)), |x_p|^(-1/p)). Here |x| = max |x_i| / (|y_i| + |T y_i'| +
- * floor_i), T about the last step, so that a component may pass through zero. Motions with symmetries have series with
- * gaps: a pendulum released at a right angle has only the coefficients 2, 6, 10, ... of its angle. So here
- *  1. the root test uses the last WINDOW coefficients, r = max_k |x_k|^(1/k), and h is such that a series with |x_k| = r^k
+ * Source of the recurrences: the compiler's series/series.h. Source of the step size: A. Jorba, M. Zou, Experimental
+ * Mathematics 14 (2005) 99, DOI 10.1080/10586458.2005.10128904, section 3: with x_k the coefficient of order k the
+ * root test of the radius of convergence gives h = c min(|x_(p-1)|^(-1/(p-1)), |x_p|^(-1/p)). Here |x| = max |x_i| /
+ * (|y_i| + |T y_i'| + floor_i), T about the last step, so that a component may pass through zero. Motions with
+ * symmetries have series with gaps: a pendulum released at a right angle has only the coefficients 2, 6, 10, ... of
+ * its angle. So here
+ *  1. the root test uses the last WINDOW coefficients, r = max_k |x_k|^(1/k), and h is such that a series with |x_k|
+ *    = r^k
  *     omits a fraction of the tolerance: (r h)^(p+1) = rtol/4, and less near rounding;
  *  2. the defect at the end of the step, y'(h) of the polynomial minus the model's f(y(h)), depends on all omitted
- *     coefficients. The error it implies must be below the tolerance, or the step is made smaller. A defect that does not
+ *     coefficients. The error it implies must be below the tolerance, or the step is made smaller. A defect that
+ *     does not
  *     shrink with the step as h^p is rounding, and is accepted.
- * The order p is the one with the most time covered per operation: h = rtol^(1/(p+1))/r, and order k costs an evaluation
- * and k - 1 terms of each sum. */
+ * The order p is the one with the most time covered per operation: h = rtol^(1/(p+1))/r, and order k costs an
+ * evaluation and k - 1 terms of each sum. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -30,11 +34,13 @@ enum { LEAST_ORDER = 6 };
 enum { OPT_ORDER = LAG_NADAPTIVE_OPTIONS, NOPTIONS };
 
 static const lag_method_option options[NOPTIONS] = {
-    {"step", "size of the step [s] where adapt is off; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, .choices = NULL},
+    {"step", "size of the step [s] where adapt is off; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL,
+     .choices = NULL},
     LAG_MAX_STEP_OPTION,
     LAG_ATOL_OPTION,
     {"adapt", "off: every step has the size `step`, whatever the error", 0, 0, 1, .choices = lag_on_off},
-    {"order", "order of the series; 0: chosen from the tolerance and what an order costs", 0, 0, LAG_TAYLOR_ORDER, NULL, .every = 1},
+    {"order", "order of the series; 0: chosen from the tolerance and what an order costs", 0, 0, LAG_TAYLOR_ORDER, NULL,
+     .every = 1},
 };
 
 double lag_taylor_order(const double *method_work) { return ((const Taylor *)(const void *)method_work)->order; }
@@ -73,13 +79,15 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   return LAG_OK;
 }
 
-/* Order 0 of series[which] at t, y. Returns 0 or the model's status; > 0 with pb->bad_index >= 0 where a rate is not finite. */
+/* Order 0 of series[which] at t, y. Returns 0 or the model's status; > 0 with pb->bad_index >= 0 where a rate is not
+ * finite. */
 static int first(Taylor *w, lag_problem *pb, double which, double t, const double *y) {
   int nq = pb->nq, rc = lag_inputs_inline(pb, t);
   double *x = lag_taylor_series(w, pb, which);
   pb->rhs_calls++;
   pb->bad_index = -1;
-  rc = rc ? rc : pb->model->taylor->first(t, y, y + nq, y + 2 * nq, pb->p, pb->u, lag_taylor_follows(w, pb), x, pb->work);
+  rc = rc ? rc
+          : pb->model->taylor->first(t, y, y + nq, y + 2 * nq, pb->p, pb->u, lag_taylor_follows(w, pb), x, pb->work);
   if (rc == 0) {
     int bad = lag_not_finite(nq + pb->nz, x + pb->n);
     pb->bad_index = bad < 0 ? -1 : nq + bad;
@@ -88,11 +96,14 @@ static int first(Taylor *w, lag_problem *pb, double which, double t, const doubl
   return rc;
 }
 
-/* Unit of time of the first series: the time scale of the state, as a power of 2. Later series use about the last step. */
+/* Unit of time of the first series: the time scale of the state, as a power of 2. Later series use about the last
+ * step. */
 static double guess_unit(Taylor *w, const lag_problem *pb, const double *y) {
   double fastest = 0;
   const double *rates = lag_taylor_series(w, pb, w->now) + pb->n;
-  for (int i = 0; i < pb->n; i++) fastest = fmax(fastest, fabs(i < pb->nq ? y[pb->nq + i] : rates[i - pb->nq]) / (fabs(y[i]) + lag_tolerance_floor(&w->limits, pb, i)));
+  for (int i = 0; i < pb->n; i++)
+    fastest = fmax(fastest, fabs(i < pb->nq ? y[pb->nq + i] : rates[i - pb->nq]) /
+                                (fabs(y[i]) + lag_tolerance_floor(&w->limits, pb, i)));
   return fastest > 0 && isfinite(fastest) ? ldexp(1, -ilogb(fastest)) : 1;
 }
 
@@ -127,7 +138,8 @@ static double root_test_step(Taylor *w, lag_problem *pb, const double *y) {
   int n = pb->n, columns = pb->model->taylor->columns;
   const double *x = lag_taylor_series(w, pb, w->now);
   double *scale = lag_taylor_array(w, pb, TAYLOR_SCALE);
-  for (int i = 0; i < n; i++) scale[i] = 1 / (fabs(y[i]) + fabs(x[columns + i]) + lag_tolerance_floor(&w->limits, pb, i));
+  for (int i = 0; i < n; i++)
+    scale[i] = 1 / (fabs(y[i]) + fabs(x[columns + i]) + lag_tolerance_floor(&w->limits, pb, i));
   double root = lag_taylor_root(x, (int)w->order, columns, n, scale, DBL_MIN);
   return root > 0 ? fabs(w->unit[w->now > 0]) * w->reach / root : HUGE_VAL;
 }
@@ -143,8 +155,10 @@ static double error_of(Taylor *w, lag_problem *pb, double dt) {
 /* Y1, COMP1 := the state at t + dt and its compensation. */
 static void advance(Taylor *w, lag_problem *pb, const double *y, double dt) {
   const double *comp = lag_taylor_array(w, pb, TAYLOR_COMP);
-  double *sum = lag_taylor_array(w, pb, TAYLOR_SUM), *y1 = lag_taylor_array(w, pb, TAYLOR_Y1), *comp1 = lag_taylor_array(w, pb, TAYLOR_COMP1);
-  pb->model->taylor->at((int)w->order, dt / w->unit[w->now > 0], lag_taylor_series(w, pb, w->now), sum, lag_taylor_array(w, pb, TAYLOR_SLOPE));
+  double *sum = lag_taylor_array(w, pb, TAYLOR_SUM), *y1 = lag_taylor_array(w, pb, TAYLOR_Y1),
+         *comp1 = lag_taylor_array(w, pb, TAYLOR_COMP1);
+  pb->model->taylor->at((int)w->order, dt / w->unit[w->now > 0], lag_taylor_series(w, pb, w->now), sum,
+                        lag_taylor_array(w, pb, TAYLOR_SLOPE));
   for (int i = 0; i < pb->n; i++) {
     comp1[i] = comp[i];
     y1[i] = lag_compensated_sum(y[i], sum[i], &comp1[i]);
@@ -223,7 +237,8 @@ const lag_method lag_taylor_method = {
     .dense_order = 20,
     .order_least = 1,
     .order_most = LAG_TAYLOR_ORDER,
-    .doc = "Taylor series of an order that follows from the tolerance, for tolerances below 1e-9. DOI 10.1080/10586458.2005.10128904",
+    .doc = "Taylor series of an order that follows from the tolerance, for tolerances below 1e-9. DOI "
+           "10.1080/10586458.2005.10128904",
     .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_TAYLOR,
     .noptions = NOPTIONS,
     .options = options,

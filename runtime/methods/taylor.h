@@ -19,11 +19,14 @@ typedef struct Taylor {
   double x[];
 } Taylor;
 
-enum { TAYLOR_COMP, TAYLOR_COMP1, TAYLOR_Y1, TAYLOR_SUM, TAYLOR_SLOPE, TAYLOR_SCALE, TAYLOR_ARRAYS }; /* arrays of `width` doubles; the two series follow */
+/* arrays of `width` doubles; the two series follow */
+enum { TAYLOR_COMP, TAYLOR_COMP1, TAYLOR_Y1, TAYLOR_SUM, TAYLOR_SLOPE, TAYLOR_SCALE, TAYLOR_ARRAYS };
 
 static inline int lag_taylor_width(const lag_problem *pb) { return pb->model->taylor->width; }
 
-static inline double *lag_taylor_array(Taylor *w, const lag_problem *pb, int which) { return w->x + which * lag_taylor_width(pb); }
+static inline double *lag_taylor_array(Taylor *w, const lag_problem *pb, int which) {
+  return w->x + which * lag_taylor_width(pb);
+}
 
 /* Series 0 or 1: (order + 1) rows of `columns` doubles. */
 static inline double *lag_taylor_series(Taylor *w, const lag_problem *pb, double which) {
@@ -37,5 +40,6 @@ static inline double *lag_taylor_follows(Taylor *w, const lag_problem *pb) {
   return w->x + TAYLOR_ARRAYS * ty->width + 2 * (ty->order + 1) * ty->columns;
 }
 
-/* Before a step at t, y: the series there, where none is known (at the start, and after an event). LAG_OK, or a failure. */
+/* Before a step at t, y: the series there, where none is known (at the start, and after an event). LAG_OK, or a
+ * failure. */
 int lag_taylor_prepare(Taylor *w, lag_problem *pb, double t, const double *y);

@@ -1,8 +1,10 @@
-/* variational and gauss: variational integrators with one discrete Lagrangian a step, of order 2, 4, 6 or 8. Enters: t, y; leaves: t + h, y one step
- * later. Holds: the map is symplectic in q and dL/dv and symmetric for any L; the momentum of a symmetry that acts on q affinely is conserved to
- * rounding. Forces enter by the discrete Lagrange-d'Alembert principle. Steps: implicit_symplectic.c; tables and their sources: galerkin_rule.h. With
- * u Gauss points a step both methods are the same; variational also takes constraints, and gauss models with states only (nq = 0), such as
- * Lagrangians linear in all velocities, which have no p: it collocates their flow (collocation.c, which says why variational refuses them). */
+/* variational and gauss: variational integrators with one discrete Lagrangian a step, of order 2, 4, 6 or 8. Enters:
+ * t, y; leaves: t + h, y one step later. Holds: the map is symplectic in q and dL/dv and symmetric for any L; the
+ * momentum of a symmetry that acts on q affinely is conserved to rounding. Forces enter by the discrete
+ * Lagrange-d'Alembert principle. Steps: implicit_symplectic.c; tables and their sources: galerkin_rule.h. With u
+ * Gauss points a step both methods are the same; variational also takes constraints, and gauss models with states
+ * only (nq = 0), such as Lagrangians linear in all velocities, which have no p: it collocates their flow
+ * (collocation.c, which says why variational refuses them). */
 #include "lag.h"
 #include "methods/collocation.h"
 #include "methods/implicit_symplectic.h"
@@ -13,7 +15,8 @@ enum { OPT_STAGES = 1 };
 
 static const lag_method_option variational_options[] = {
     LAG_STEP_OPTION,
-    {"order", "2, 4, 6 or 8; 2 with constraints, as higher orders need them within a step, too", 2, 2, 8, NULL, .every = 2, .most = 2},
+    {"order", "2, 4, 6 or 8; 2 with constraints, as higher orders need them within a step, too", 2, 2, 8, NULL,
+     .every = 2, .most = 2},
 };
 
 static const lag_method_option gauss_options[] = {
@@ -31,7 +34,9 @@ static int points(const lag_problem *pb) {
   return m->order_of(pb->opt) / 2;
 }
 
-static size_t work_size(const lag_problem *pb) { return (pb->nq ? lag_implicit_size : lag_collocation_size)(pb, points(pb)); }
+static size_t work_size(const lag_problem *pb) {
+  return (pb->nq ? lag_implicit_size : lag_collocation_size)(pb, points(pb));
+}
 
 static int init(void *work, lag_problem *pb, const double *opt) {
   int u = points(pb);
@@ -50,17 +55,22 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return (pb->nq ? lag_implicit_step : lag_collocation_step)(work, pb, t, y, t_stop);
 }
 
-static void dense(void *work, lag_problem *pb, double t, double *y) { (pb->nq ? lag_implicit_dense : lag_collocation_dense)(work, pb, t, y); }
+static void dense(void *work, lag_problem *pb, double t, double *y) {
+  (pb->nq ? lag_implicit_dense : lag_collocation_dense)(work, pb, t, y);
+}
 
 static void reset(void *work, lag_problem *pb) { (pb->nq ? lag_implicit_reset : lag_collocation_reset)(work, pb); }
 
-static size_t tangent_size(const lag_problem *pb, int k) { return (pb->nq ? lag_implicit_tangent_size : lag_collocation_tangent_size)(pb, k); }
+static size_t tangent_size(const lag_problem *pb, int k) {
+  return (pb->nq ? lag_implicit_tangent_size : lag_collocation_tangent_size)(pb, k);
+}
 
 static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   return (pb->nq ? lag_implicit_tangent : lag_collocation_tangent)(work, pb, t, k, Y, scratch);
 }
 
-#define PROPERTIES (LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_NEWTON)
+#define PROPERTIES \
+  (LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_NEWTON)
 #define FUNCTIONS                                                                                                  \
   .work_size = work_size, .init = init, .step = step, .dense = dense, .reset = reset,                              \
   .tangent_size = tangent_size, .tangent = tangent

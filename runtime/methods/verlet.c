@@ -1,12 +1,14 @@
-/* symplectic_euler, verlet, verlet4, verlet6, verlet8: kicks and drifts (kernels/splitting.h). Explicit, in this file, for models whose
- * accelerations depend on t and q only, y = [q|v], and for Hamiltonians T(p) + V(q, t), whose states are [q|p]. For other models a composition of
- * symplectic Euler and its adjoint in q and p, by Newton's method (implicit_symplectic.c); two halves make the generalised Stoermer-Verlet method,
- * the Lobatto IIIA-IIIB pair: Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VI.3 and II.2.2. Enters: t, y; leaves: t + h,
- * y one step later. Holds: sums over steps of q, v (or p) and t are compensated (steps.h); the acceleration at the end of a step is the first of the
- * next.
+/* symplectic_euler, verlet, verlet4, verlet6, verlet8: kicks and drifts (kernels/splitting.h). Explicit, in this
+ * file, for models whose accelerations depend on t and q only, y = [q|v], and for Hamiltonians T(p) + V(q, t), whose
+ * states are [q|p]. For other models a composition of symplectic Euler and its adjoint in q and p, by Newton's
+ * method (implicit_symplectic.c); two halves make the generalised Stoermer-Verlet method, the Lobatto IIIA-IIIB
+ * pair: Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VI.3 and II.2.2. Enters: t, y;
+ * leaves: t + h, y one step later. Holds: sums over steps of q, v (or p) and t are compensated (steps.h); the
+ * acceleration at the end of a step is the first of the next.
  *
- * A drift advances t with q, so a force with explicit time is evaluated at the right time and keeps the order. The map is
- * symplectic only where the forces have a potential. Dense output has the order of the descriptor, and is not symplectic. */
+ * A drift advances t with q, so a force with explicit time is evaluated at the right time and keeps the order. The
+ * map is symplectic only where the forces have a potential. Dense output has the order of the descriptor, and is not
+ * symplectic. */
 #include "lag.h"
 
 #include <math.h>
@@ -43,7 +45,8 @@ static const lag_composition *table_of(const lag_problem *pb) {
 static size_t work_size(const lag_problem *pb) {
   const VerletMember *m = pb->variant;
   if (!is_explicit(pb)) return lag_implicit_composed_size(pb, m->any);
-  return sizeof(Verlet) / sizeof(double) + VERLET_NARRAYS * (size_t)pb->n + (pb->nq ? lag_interpolant_size(pb->nq) : 2 * (size_t)pb->n);
+  return sizeof(Verlet) / sizeof(double) + VERLET_NARRAYS * (size_t)pb->n +
+         (pb->nq ? lag_interpolant_size(pb->nq) : 2 * (size_t)pb->n);
 }
 
 static void reset(void *work, lag_problem *pb) {
@@ -71,12 +74,15 @@ static int init(void *work, lag_problem *pb, const double *opt) {
 }
 
 /* All kicks and drifts of a step, from F0 = f(t, y) to Y1 and F1 = f(tb, Y1). */
-static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double t, double tb, const double *y, double dt) {
+static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double t, double tb, const double *y,
+                   double dt) {
   int n = pb->n, nq = half_of(pb), rc;
   double *y1 = w->x + VERLET_Y1 * n, *f1 = w->x + VERLET_F1 * n;
-  const lag_splitting s = {.n = nq, .q = y, .v = y + nq, .a = w->x + VERLET_F0 * n + nq, .lost = w->x + VERLET_COMP * n,
-                           .q1 = y1, .v1 = y1 + nq, .a1 = f1 + nq, .lost1 = w->x + VERLET_COMP1 * n, .rate = pb->nq ? y1 + nq : f1,
-                           .dq = w->x + VERLET_DY * n, .dv = w->x + VERLET_DY * n + nq};
+  const lag_splitting s = {.n = nq,
+                           .q = y, .v = y + nq, .a = w->x + VERLET_F0 * n + nq, .lost = w->x + VERLET_COMP * n,
+                           .q1 = y1, .v1 = y1 + nq, .a1 = f1 + nq, .lost1 = w->x + VERLET_COMP1 * n,
+                           .rate = pb->nq ? y1 + nq : f1, .dq = w->x + VERLET_DY * n,
+                           .dv = w->x + VERLET_DY * n + nq};
   if ((rc = lag_split(pb, &s, c, t, tb, dt)) != 0) return rc;
   if (pb->nq) lag_copy(nq, y1 + nq, f1);
   else if ((rc = lag_step_rhs(pb, tb, y1, f1)) != 0) return rc;
@@ -103,7 +109,8 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return LAG_OK;
 }
 
-/* State inside the last step of T(p) + V(q): the cubic through both ends, of order 3, or a shorter step where the method's order is above 2. */
+/* State inside the last step of T(p) + V(q): the cubic through both ends, of order 3, or a shorter step where the
+ * method's order is above 2. */
 static void dense_in_phase_space(Verlet *w, lag_problem *pb, double t, const StepEnds *ends, double *y) {
   const lag_composition *c = table_of(pb);
   size_t n = (size_t)pb->n, bytes = n * sizeof(double);
@@ -121,7 +128,8 @@ static void dense(void *work, lag_problem *pb, double t, double *y) {
   const lag_composition *c = table_of(pb);
   Verlet *w = work;
   int n = pb->n;
-  StepEnds ends = {w->step.t0, w->step.dt, w->x + VERLET_Y0 * n, w->x + VERLET_F0 * n, w->x + VERLET_Y1 * n, w->x + VERLET_F1 * n};
+  StepEnds ends = {w->step.t0,           w->step.dt,           w->x + VERLET_Y0 * n,
+                   w->x + VERLET_F0 * n, w->x + VERLET_Y1 * n, w->x + VERLET_F1 * n};
   double *path = w->x + VERLET_NARRAYS * n;
   if (!is_explicit(pb)) {
     lag_implicit_dense(work, pb, t, y);
@@ -140,7 +148,9 @@ static void dense(void *work, lag_problem *pb, double t, double *y) {
   lag_interpolant_at(path, pb, &ends, w->have_path > 0 ? level : 0, (t - w->step.t0) / w->step.dt, y);
 }
 
-static size_t tangent_size(const lag_problem *pb, int k) { return is_explicit(pb) ? lag_tangent_size(pb, 0, k) : lag_implicit_tangent_size(pb, k); }
+static size_t tangent_size(const lag_problem *pb, int k) {
+  return is_explicit(pb) ? lag_tangent_size(pb, 0, k) : lag_implicit_tangent_size(pb, k);
+}
 
 /* One kick of y by f, and of Y by the derivative F of f. */
 static void kick_both(int nq, int k, double h, const double *f, const double *F, double *y, double *Y) {
@@ -148,7 +158,8 @@ static void kick_both(int nq, int k, double h, const double *f, const double *F,
   lag_tangent_add(nq * k, h, F + nq * k, Y + nq * k);
 }
 
-/* Repeats the kicks and drifts of compose with their derivatives: a kick adds the derivative of the force to dv, a drift adds dv to dq. */
+/* Repeats the kicks and drifts of compose with their derivatives: a kick adds the derivative of the force to dv, a
+ * drift adds dv to dq. */
 static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   if (!is_explicit(pb)) return lag_implicit_tangent(work, pb, t, k, Y, scratch);
   const lag_composition *c = table_of(pb);
@@ -174,24 +185,24 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
   return LAG_OK;
 }
 
-#define DEFINE(id, general, p, properties, line, words)                                                                   \
-  static const VerletMember member_##id = {&lag_compose_##id, &lag_compose_##general};                                       \
-  const lag_method lag_##id = {                                                                                           \
-      .name = #id,                                                                                                        \
-      .order = p,                                                                                                         \
-      .dense_order = p,                                                                                                   \
-      .doc = line,                                                                                                        \
-      .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_NEWTON |\
-               LAG_METHOD_CONSTRAINTS | (properties),                                              \
-      .noptions = 1,                                                                                                      \
-      .options = options,                                                                                                 \
-      .work_size = work_size,                                                                                             \
-      .init = init,                                                                                                       \
-      .step = step,                                                                                                       \
-      .dense = dense,                                                                                                     \
-      .reset = reset,                                                                                                     \
-      .tangent_size = tangent_size,                                                                                       \
-      .tangent = tangent,                                                                                                 \
-      .variant = &member_##id,                                                                                            \
+#define DEFINE(id, general, p, properties, line, words)                                                  \
+  static const VerletMember member_##id = {&lag_compose_##id, &lag_compose_##general};                   \
+  const lag_method lag_##id = {                                                                          \
+      .name = #id,                                                                                       \
+      .order = p,                                                                                        \
+      .dense_order = p,                                                                                  \
+      .doc = line,                                                                                       \
+      .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | \
+               LAG_METHOD_NEWTON | LAG_METHOD_CONSTRAINTS | (properties),                                \
+      .noptions = 1,                                                                                     \
+      .options = options,                                                                                \
+      .work_size = work_size,                                                                            \
+      .init = init,                                                                                      \
+      .step = step,                                                                                      \
+      .dense = dense,                                                                                    \
+      .reset = reset,                                                                                    \
+      .tangent_size = tangent_size,                                                                      \
+      .tangent = tangent,                                                                                \
+      .variant = &member_##id,                                                                           \
   };
 LAG_SPLITTING_METHODS(DEFINE)

@@ -4,7 +4,8 @@
 #include "kernels/composition.h"
 #include "methods/steps.h"
 
-/* Saved state of the explicit methods, doubles only; x holds the arrays of n named below, then the path of step_interpolant.h. */
+/* Saved state of the explicit methods, doubles only; x holds the arrays of n named below, then the path of
+ * step_interpolant.h. */
 typedef struct Verlet {
   lag_fixed_step step;
   double ready;     /* 1: F1 = f(t, y) is known */

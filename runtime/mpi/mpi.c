@@ -1,4 +1,5 @@
-/* Processes of a sweep, by MPI (lag_ranks of lag.h). Waiting gives the processor away: MPI's own waiting takes all of it. */
+/* Processes of a sweep, by MPI (lag_ranks of lag.h). Waiting gives the processor away: MPI's own waiting takes all
+ * of it. */
 #include <limits.h>
 #include <mpi.h>
 #include <stdlib.h>
@@ -75,7 +76,9 @@ static int receive(void *bytes, size_t *n, int wait) {
     if (MPI_Iprobe(MPI_ANY_SOURCE, 0, MPI_COMM_WORLD, &there, &s)) return -1;
     if (!there) rest(k);
   }
-  if (!there || MPI_Get_count(&s, MPI_BYTE, &size) || (size_t)size > *n || MPI_Recv(bytes, size, MPI_BYTE, s.MPI_SOURCE, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE)) return -1;
+  if (!there || MPI_Get_count(&s, MPI_BYTE, &size) || (size_t)size > *n ||
+      MPI_Recv(bytes, size, MPI_BYTE, s.MPI_SOURCE, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE))
+    return -1;
   *n = (size_t)size;
   return s.MPI_SOURCE;
 }
@@ -88,4 +91,5 @@ static void leave(void) {
 
 static void end(int status) { MPI_Abort(MPI_COMM_WORLD, status); }
 
-const lag_ranks lag_mpi = {.join = join, .share = share, .send = send_bytes, .receive = receive, .leave = leave, .end = end};
+const lag_ranks lag_mpi = {
+    .join = join, .share = share, .send = send_bytes, .receive = receive, .leave = leave, .end = end};

@@ -1,5 +1,6 @@
-/* Turning points by a search outward from the start and bisection; the momenta of both branches by Newton's method about the extremum of H in p.
- * Beside a saddle E - H is small against H: there it is the integral of the force from the start, which has all digits. */
+/* Turning points by a search outward from the start and bisection; the momenta of both branches by Newton's method
+ * about the extremum of H in p. Beside a saddle E - H is small against H: there it is the integral of the force from
+ * the start, which has all digits. */
 #include "numeric/action_integral.h"
 
 #include <float.h>
@@ -27,13 +28,16 @@ typedef struct {
 static const char *const goes_round = "it goes round";
 
 /* q, or the same place within half a turn of the start. */
-static double beside_start(const Curve *c, double q) { return c->periodic ? q - 2 * PI * round((q - c->q) / (2 * PI)) : q; }
+static double beside_start(const Curve *c, double q) {
+  return c->periodic ? q - 2 * PI * round((q - c->q) / (2 * PI)) : q;
+}
 
 static lag_phase_point point_at(Curve *c, double q, double p) { return c->at(c->context, beside_start(c, q), p); }
 
 /* --- momenta --- */
 
-/* The extremum of H in p, by Newton's method with steps halved until |dH/dp| falls; exact in one step where H is quadratic. */
+/* The extremum of H in p, by Newton's method with steps halved until |dH/dp| falls; exact in one step where H is
+ * quadratic. */
 static lag_phase_point at_middle(Curve *c, double q) {
   enum { STEPS = 60, HALVES = 60 };
   lag_phase_point x = point_at(c, q, c->middle);
@@ -94,10 +98,12 @@ static double branch(Curve *c, double q, double left, int side, lag_phase_point 
   return d;
 }
 
-/* Whether both branches exist at q, and H rises, or falls, all the way from its extremum to each: with more extrema in p the curve has other parts. */
+/* Whether both branches exist at q, and H rises, or falls, all the way from its extremum to each: with more extrema
+ * in p the curve has other parts. */
 static int has_two_branches(Curve *c, double q) {
   enum { PLACES = 16 };
-  double extremum = at_middle(c, q).H, left = fabs(c->E - extremum), rounding = 64 * DBL_EPSILON * (fabs(c->E) + fabs(extremum));
+  double extremum = at_middle(c, q).H, left = fabs(c->E - extremum),
+         rounding = 64 * DBL_EPSILON * (fabs(c->E) + fabs(extremum));
   for (int side = -1; side <= 1; side += 2) {
     lag_phase_point at;
     double d = branch(c, q, room(c, q), side, &at);
@@ -134,7 +140,8 @@ static double scale_at(Curve *c, double q, double *most) {
   return isfinite(length) && length > 0 ? length : size;
 }
 
-/* A place between a and c with no room, by golden section for the least room; NAN: there is none. The room at b, between them, is less than at both. */
+/* A place between a and c with no room, by golden section for the least room; NAN: there is none. The room at b,
+ * between them, is less than at both. */
 static double place_without_room(Curve *curve, double a, double b, double c) {
   enum { STEPS = 60 };
   const double part = 0.381966011250105151795;
@@ -159,13 +166,16 @@ static double turning_point(Curve *c, double q, double step, const char **why) {
   for (int k = 0; k < STEPS; k++) {
     bad = good + step;
     last = room(c, bad);
-    double gap = last > room_good && room_good < room_behind && good != q ? place_without_room(c, behind, good, bad) : NAN; /* a narrow barrier */
+    /* a narrow barrier */
+    double gap =
+        last > room_good && room_good < room_behind && good != q ? place_without_room(c, behind, good, bad) : NAN;
     if (isfinite(gap)) {
       good = behind, bad = gap, last = 0;
       break;
     }
     if (!(last > 0)) break;
-    if (k % 4 == 0 && isfinite(last) && (*why = reason_at(c, bad))) return NAN; /* seldom, since it takes ten times as long; integrate() looks everywhere */
+    /* seldom, since it takes ten times as long; integrate() looks everywhere */
+    if (k % 4 == 0 && isfinite(last) && (*why = reason_at(c, bad))) return NAN;
     if (c->periodic && fabs(bad - q) > 4 * PI) return *why = goes_round, NAN;
     behind = good, room_behind = room_good;
     good = bad, room_good = last;
@@ -198,7 +208,8 @@ enum { NODES_MOST = 16, GAUSS_MOST = 1024 };
 /* The largest mean curvature of the room from q to places inside the panel. */
 static double bend_at(Curve *c, double q, double step) {
   double bend = 0, force = at_middle(c, q).force;
-  for (double h = step; fabs(h) > 1e-12 * fabs(step); h /= 4) bend = fmax(bend, fabs((at_middle(c, q + h).force - force) / h));
+  for (double h = step; fabs(h) > 1e-12 * fabs(step); h /= 4)
+    bend = fmax(bend, fabs((at_middle(c, q + h).force - force) / h));
   return bend;
 }
 
@@ -221,7 +232,8 @@ static void add_panel(Curve *c, const Panel *x, int side, int n, const double *n
   double whole = asinh(1 / x->near);
   c->q = x->at, c->room = x->room; /* from here rooms are integrated */
   for (int k = 0; k < n; k++) {
-    double w = node[k] * whole, v = x->near * sinh(w), way = x->step * (x->turns ? v * v : v), q = x->at + way, left = room_along(c, q, way);
+    double w = node[k] * whole, v = x->near * sinh(w), way = x->step * (x->turns ? v * v : v), q = x->at + way,
+           left = room_along(c, q, way);
     double width = fabs(x->step) * x->near * cosh(w) * whole * weight[k] * (x->turns ? 2 * v : 1);
     for (int branch_of = side ? side : -1; branch_of <= (side ? side : 1); branch_of += 2) {
       lag_phase_point at;
@@ -270,7 +282,8 @@ static int find_nodes(Curve *c, double low, double high, double *node) {
 
 static void integrate(Curve *c, int side, lag_action_integral *out) {
   enum { PLACES = 64, LEAST = 16 };
-  for (int k = 1; k < PLACES && !out->why_not; k++) out->why_not = reason_at(c, out->low + (out->high - out->low) * k / PLACES);
+  for (int k = 1; k < PLACES && !out->why_not; k++)
+    out->why_not = reason_at(c, out->low + (out->high - out->low) * k / PLACES);
   if (out->why_not) return;
   double ends[NODES_MOST], points[2 * GAUSS_MOST], sum[2] = {0, 0}, doubt = 0, last_J, last_time;
   Panel panels[2 * NODES_MOST];
@@ -295,7 +308,8 @@ static void integrate(Curve *c, int side, lag_action_integral *out) {
   out->J = (side ? sum[0] : fabs(sum[0])) / (2 * PI);
   out->time = side ? sum[1] : fabs(sum[1]);
   out->time_error += fabs((side ? 1 : 2) * doubt / sum[1]);
-  if (!isfinite(out->time_error)) out->why_not = "it lies on a separatrix, as far as the digits of its start tell: the motion takes for ever";
+  if (!isfinite(out->time_error))
+    out->why_not = "it lies on a separatrix, as far as the digits of its start tell: the motion takes for ever";
 }
 
 /* --- the curve --- */

@@ -15,14 +15,16 @@ void lag_loose_directions(int n, const double *held, const double *held_beside, 
 
 static void copy(const lag_level *w, double *to, const double *from) { memcpy(to, from, (size_t)w->n * sizeof *to); }
 
-/* The worst constraint at x, -1 where terms or residuals have no value; *times: its residual in units of the rounding of its terms. */
+/* The worst constraint at x, -1 where terms or residuals have no value; *times: its residual in units of the
+ * rounding of its terms. */
 static int worst(lag_level *w, double *times) {
   *times = HUGE_VAL;
   if (w->terms(w, w->terms_here) || w->residuals(w, w->residual)) return -1;
   return lag_worst_residual(w->rows, w->residual, w->terms_here, w->rounding, times);
 }
 
-/* Merit function: sum of squared residuals relative to their terms at the start. Infinite where it has no value, so that no step leads there. */
+/* Merit function: sum of squared residuals relative to their terms at the start. Infinite where it has no value, so
+ * that no step leads there. */
 static double merit(lag_level *w) {
   double s = 0;
   if (w->residuals(w, w->residual)) return HUGE_VAL;
@@ -42,8 +44,8 @@ double lag_level_weight(const lag_level *w, int i) {
   return w->at == LAG_MOVES_LAST && !w->alike && w->stage(w, i) < LAG_MOVES_LAST ? open : 1;
 }
 
-/* The part of the step d that moves no position by more than half of what is typical: far steps lead to other solutions. The whole step where it solves the
- * problem, as where constraints are linear. */
+/* The part of the step d that moves no position by more than half of what is typical: far steps lead to other
+ * solutions. The whole step where it solves the problem, as where constraints are linear. */
 static double longest_part(lag_level *w, double before) {
   double part = 1;
   if (!w->positions) return 1;
@@ -57,7 +59,8 @@ static double longest_part(lag_level *w, double before) {
   return part;
 }
 
-/* Whether the constraints hold to rounding: of their terms here, or at the request, from which components have come that are near 0. */
+/* Whether the constraints hold to rounding: of their terms here, or at the request, from which components have come
+ * that are near 0. */
 static int arrived(lag_level *w) {
   double times;
   if (w->terms(w, w->terms_here) || w->residuals(w, w->residual)) return 0;
@@ -112,7 +115,8 @@ static int is_held(const lag_level *w, int i) {
   return e < w->entries;
 }
 
-/* Whether x is as near to the request as to leave no other solution nearer, for all that one looks: within a tenth of what is typical. */
+/* Whether x is as near to the request as to leave no other solution nearer, for all that one looks: within a tenth
+ * of what is typical. */
 static int is_near(lag_level *w) {
   int near = 1;
   w->scales(w, w->asked, w->reach);
@@ -133,9 +137,11 @@ static void go_to_place(lag_level *w, int k) {
 static void go_around(lag_level *w, int k) {
   double far = 0;
   w->scales(w, w->asked, w->reach);
-  for (int i = 0; i < w->n; i++) far = w->reach[i] > 0 ? fmax(far, fabs(w->nearest[i] - w->asked[i]) / w->reach[i]) : far;
+  for (int i = 0; i < w->n; i++)
+    far = w->reach[i] > 0 ? fmax(far, fabs(w->nearest[i] - w->asked[i]) / w->reach[i]) : far;
   copy(w, w->x, w->asked);
-  for (int a = 0; a < w->nfree; a++) w->x[w->free[a]] += far * w->reach[w->free[a]] * (k >> a % 8 & 1 ? 1 : -1) * lag_uneven(a + k);
+  for (int a = 0; a < w->nfree; a++)
+    w->x[w->free[a]] += far * w->reach[w->free[a]] * (k >> a % 8 & 1 ? 1 : -1) * lag_uneven(a + k);
 }
 
 /* Goes from x to the constraints, and along them towards the request; keeps the state if it is nearer than *least. */
@@ -148,8 +154,8 @@ static void try_from_here(lag_level *w, double *least) {
   copy(w, w->nearest, w->x);
 }
 
-/* Reaches the constraints by moving free components. Positions: the first place that leads there; where that is far from the request, the nearest of
- * solutions from all around. */
+/* Reaches the constraints by moving free components. Positions: the first place that leads there; where that is far
+ * from the request, the nearest of solutions from all around. */
 static int reach_constraints(lag_level *w) {
   enum { AROUND = 24, FEW = 24 }; /* places; components that may move: a search of many takes long */
   double least = HUGE_VAL;
@@ -191,7 +197,8 @@ static lag_start_kind refuse(lag_level *w, lag_start_kind kind, int *constraint)
   return *constraint < 0 || !isfinite(w->residual[*constraint]) ? LAG_START_NO_VALUE : kind;
 }
 
-/* slope[rows] := first-order change of each constraint when every component moves by its typical magnitude, here or as requested. */
+/* slope[rows] := first-order change of each constraint when every component moves by its typical magnitude, here or
+ * as requested. */
 static int find_slopes(lag_level *w) {
   double *here = w->from, *asked = w->d;
   memset(w->slope, 0, (size_t)w->rows * sizeof *w->slope);
@@ -205,7 +212,8 @@ static int find_slopes(lag_level *w) {
 
 static int is_flat(const lag_level *w, int k) { return w->has_terms[k] != 0.0 && w->slope[k] < 1e-6 * w->size[k]; }
 
-/* Moves x by a hundredth, in components that a constraint contains or in all, then to the constraints; returns whether it arrives. */
+/* Moves x by a hundredth, in components that a constraint contains or in all, then to the constraints; returns
+ * whether it arrives. */
 static int go_beside(lag_level *w, int all) {
   choose_free(w, LAG_MOVES_LAST);
   w->scales(w, w->x, w->d);
@@ -213,8 +221,8 @@ static int go_beside(lag_level *w, int all) {
   return descend(w);
 }
 
-/* Whether constraint k, whose derivatives vanish at x, has vanishing derivatives at a displaced solution, too; not so for a linkage at its dead
- * centre. x stays. */
+/* Whether constraint k, whose derivatives vanish at x, has vanishing derivatives at a displaced solution, too; not
+ * so for a linkage at its dead centre. x stays. */
 static int is_flat_beside(lag_level *w, int k) {
   copy(w, w->best, w->x);
   int flat = !go_beside(w, 0) || !find_slopes(w) || is_flat(w, k);
@@ -223,8 +231,9 @@ static int is_flat_beside(lag_level *w, int k) {
   return flat;
 }
 
-/* Refuses a constraint whose derivatives vanish where it holds, as those of x^2 = 0: no force can hold it. A constraint without terms, as with a
- * factor that is 0, is left alone. reached: x obeys the constraints; else w->residual are those at x. */
+/* Refuses a constraint whose derivatives vanish where it holds, as those of x^2 = 0: no force can hold it. A
+ * constraint without terms, as with a factor that is 0, is left alone. reached: x obeys the constraints; else
+ * w->residual are those at x. */
 static lag_start_kind check_derivatives(lag_level *w, int reached, int *constraint) {
   if (!w->positions || !find_slopes(w)) return LAG_START_FOUND;
   for (int k = 0; k < w->rows; k++) {
@@ -260,7 +269,8 @@ lag_start_kind lag_consistent_state(lag_level *w, int *constraint) {
   for (int stage = LAG_MOVES_FIRST; stage <= LAG_MOVES_LAST; stage++) {
     int before = w->nfree;
     choose_free(w, stage);
-    if ((stage == LAG_MOVES_FIRST || w->nfree != before) && reach_constraints(w)) return check_derivatives(w, 1, constraint);
+    if ((stage == LAG_MOVES_FIRST || w->nfree != before) && reach_constraints(w))
+      return check_derivatives(w, 1, constraint);
   }
   w->alike = 1;
   if (reach_constraints(w)) return check_derivatives(w, 1, constraint);

@@ -3,7 +3,9 @@
 
 #include <math.h>
 
-void lag_swap_rows(size_t n, double *A, size_t i, size_t k) { for (size_t j = 0; j < n && i != k; j++) lag_swap(&A[i * n + j], &A[k * n + j]); }
+void lag_swap_rows(size_t n, double *A, size_t i, size_t k) {
+  for (size_t j = 0; j < n && i != k; j++) lag_swap(&A[i * n + j], &A[k * n + j]);
+}
 
 void lag_swap_columns(size_t rows, size_t n, double *A, size_t i, size_t k) {
   for (size_t r = 0; r < rows && i != k; r++) lag_swap(&A[r * n + i], &A[r * n + k]);
@@ -29,7 +31,9 @@ double lag_eliminate_row(int n, double *A, int k, int i) {
 }
 
 /* a[n] -= factor b[n]. */
-static void subtract(size_t n, double *a, double factor, const double *b) { for (size_t j = 0; j < n && factor != 0.0; j++) a[j] -= factor * b[j]; }
+static void subtract(size_t n, double *a, double factor, const double *b) {
+  for (size_t j = 0; j < n && factor != 0.0; j++) a[j] -= factor * b[j];
+}
 
 int lag_eliminate(size_t n, size_t m, double *A, double *B) {
   for (size_t c = 0; c < n; c++) {

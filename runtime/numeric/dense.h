@@ -13,20 +13,20 @@ static inline void lag_swap(double *a, double *b) {
 void lag_swap_rows(size_t n, double *A, size_t i, size_t k);
 void lag_swap_columns(size_t rows, size_t n, double *A, size_t i, size_t k);
 
-/* Complete pivoting: brings the largest element of rows and columns >= k of A[n * n] to (k, k), by swaps with row *row and column *col.
- * Returns its size. */
+/* Complete pivoting: brings the largest element of rows and columns >= k of A[n * n] to (k, k), by swaps with row
+ * *row and column *col. Returns its size. */
 double lag_complete_pivot(int n, int k, double *A, int *row, int *col);
 
 /* Subtracts the multiple of row k of A[n * n] that makes element (i, k) zero from row i; returns the multiple. */
 double lag_eliminate_row(int n, double *A, int k, int i);
 
-/* Elimination with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed., section 3.4): A[n * n] becomes upper triangular, and its
- * steps are applied to B[n * m], too. -1: no pivot. */
+/* Elimination with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed., section 3.4): A[n * n] becomes
+ * upper triangular, and its steps are applied to B[n * m], too. -1: no pivot. */
 int lag_eliminate(size_t n, size_t m, double *A, double *B);
 
 /* B[n * m] := A^-1 B; A[n * n] is destroyed. -1: A is singular. */
 int lag_solve_dense(size_t n, size_t m, double *A, double *B);
 
-/* x[n] := A^-1 x by Gauss-Jordan elimination of A[n * n] with complete pivoting, for pivots above `least`; x of the remaining equations holds
- * their residuals. pivot[n] := column of the pivot of each row, -1: none. */
+/* x[n] := A^-1 x by Gauss-Jordan elimination of A[n * n] with complete pivoting, for pivots above `least`; x of the
+ * remaining equations holds their residuals. pivot[n] := column of the pivot of each row, -1: none. */
 void lag_gauss_jordan(int n, double *A, double *x, double *pivot, double least);

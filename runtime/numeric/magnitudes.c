@@ -16,7 +16,8 @@ int lag_worst_residual(int n, const double *residual, const double *terms, doubl
   int which = -1;
   *times = -1;
   for (int k = 0; k < n; k++) {
-    double x = fabs(residual[k]), part = x < DBL_MIN ? 0 : x / (rounding * terms[k]); /* subnormal numbers have lost digits */
+    /* subnormal numbers have lost digits */
+    double x = fabs(residual[k]), part = x < DBL_MIN ? 0 : x / (rounding * terms[k]);
     part = isnan(part) ? HUGE_VAL : part; /* no value */
     if (part > *times) {
       *times = part;

@@ -12,7 +12,8 @@ int lag_option_refuses(const lag_option_range *r, double x, int constrained, cha
   const char *with = most < r->max ? "with constraints it is" : "it is";
   if (r->choices) {
     n = snprintf(text, 128, "%s one of", with);
-    for (int i = 0; r->choices[i] && n < 128; i++) n += snprintf(text + n, (size_t)(128 - n), "%s %s", i ? "," : "", r->choices[i]);
+    for (int i = 0; r->choices[i] && n < 128; i++)
+      n += snprintf(text + n, (size_t)(128 - n), "%s %s", i ? "," : "", r->choices[i]);
   } else if (r->min == most) {
     snprintf(text, 128, "%s %g", with, most);
   } else if (most < HUGE_VAL) {

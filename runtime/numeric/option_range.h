@@ -9,7 +9,9 @@ typedef struct lag_option_range {
 } lag_option_range;
 
 /* Whether the option is a step [s], which is positive where it is given. */
-static inline int lag_is_step_option(const char *option) { return strcmp(option, "step") == 0 || strcmp(option, "max_step") == 0; }
+static inline int lag_is_step_option(const char *option) {
+  return strcmp(option, "step") == 0 || strcmp(option, "max_step") == 0;
+}
 
 /* 0 where x is allowed, or 1 and text := the values that are. */
 int lag_option_refuses(const lag_option_range *r, double x, int constrained, char text[128]);

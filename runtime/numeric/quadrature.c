@@ -1,6 +1,6 @@
-/* Gauss and Radau quadrature: nodes and weights from Legendre's polynomials, by Newton's method: P. Davis, P. Rabinowitz, Methods of Numerical
- * Integration, 2nd ed. (1984), 2.7; M. Abramowitz, I. Stegun, 25.4.29 and 25.4.31. Computed, so no digits to mistype, and as many as the scalar
- * has. */
+/* Gauss and Radau quadrature: nodes and weights from Legendre's polynomials, by Newton's method: P. Davis, P.
+ * Rabinowitz, Methods of Numerical Integration, 2nd ed. (1984), 2.7; M. Abramowitz, I. Stegun, 25.4.29 and 25.4.31.
+ * Computed, so no digits to mistype, and as many as the scalar has. */
 #include "numeric/quadrature.h"
 
 #include <math.h>

@@ -6,7 +6,9 @@
 
 #include "lag.h"
 
-static cairo_status_t put(void *file, const unsigned char *bytes, unsigned n) { return fwrite(bytes, 1, n, file) == n ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR; }
+static cairo_status_t put(void *file, const unsigned char *bytes, unsigned n) {
+  return fwrite(bytes, 1, n, file) == n ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+}
 
 int lag_png_write(const char *svg, void *file, char *why, size_t size) {
   const double scale = 2; /* for screens with small pixels, and print */

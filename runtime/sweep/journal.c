@@ -1,4 +1,5 @@
-/* The journal of a sweep (journal.h): a head, then records, each a chunk's number, its size, its numbers as they lie in memory, and a hash. */
+/* The journal of a sweep (journal.h): a head, then records, each a chunk's number, its size, its numbers as they lie
+ * in memory, and a hash. */
 #include "sweep/journal.h"
 
 #include "io/posix.h"
@@ -18,7 +19,8 @@ typedef struct Record {
 } Record;
 
 static uint64_t hash_of(const Record *r, const double *row) {
-  return lag_fnv1a(lag_fnv1a(LAG_FNV1A_START, (const char *)r, sizeof *r), (const char *)row, (size_t)r->n * sizeof *row);
+  return lag_fnv1a(lag_fnv1a(LAG_FNV1A_START, (const char *)r, sizeof *r), (const char *)row,
+                   (size_t)r->n * sizeof *row);
 }
 
 static int read_all(int fd, void *bytes, size_t n, long long at) {
@@ -39,9 +41,12 @@ static int scan(Journal *j, double *row) {
   for (;;) {
     Record r;
     uint64_t hash;
-    if (read_all(j->fd, &r, sizeof r, at) || r.chunk < 0 || r.chunk >= j->chunks || r.n < 0 || (size_t)r.n > j->size) break;
+    if (read_all(j->fd, &r, sizeof r, at) || r.chunk < 0 || r.chunk >= j->chunks || r.n < 0 || (size_t)r.n > j->size)
+      break;
     long long end = at + (long long)sizeof r + r.n * (long long)sizeof *row;
-    if (read_all(j->fd, row, (size_t)r.n * sizeof *row, at + (long long)sizeof r) || read_all(j->fd, &hash, sizeof hash, end) || hash != hash_of(&r, row)) break;
+    if (read_all(j->fd, row, (size_t)r.n * sizeof *row, at + (long long)sizeof r) ||
+        read_all(j->fd, &hash, sizeof hash, end) || hash != hash_of(&r, row))
+      break;
     j->finished += !j->at[r.chunk];
     j->at[r.chunk] = at;
     at = end + (long long)sizeof hash;
@@ -64,11 +69,15 @@ static const char *reason_it_is_there(const char *path) {
   return locked ? at_work : "a sweep that did not end is there; --resume goes on with it, or remove the file";
 }
 
-/* Length of the file, where it has no more than the first bytes of this head, as after a kill or on a full disk; else -1. */
+/* Length of the file, where it has no more than the first bytes of this head, as after a kill or on a full disk;
+ * else -1. */
 static long long length_of_cut_head(const Journal *j, const Head *head) {
   Head there;
   off_t n = lseek(j->fd, 0, SEEK_END);
-  return n >= 0 && n < (off_t)sizeof there && read_all(j->fd, &there, (size_t)n, 0) == 0 && memcmp(&there, head, (size_t)n) == 0 ? n : -1;
+  return n >= 0 && n < (off_t)sizeof there && read_all(j->fd, &there, (size_t)n, 0) == 0 &&
+                 memcmp(&there, head, (size_t)n) == 0
+             ? n
+             : -1;
 }
 
 int lag_journal_open(Journal *j, const char *path, int resume, char *why, size_t nwhy) {
@@ -85,7 +94,10 @@ int lag_journal_open(Journal *j, const char *path, int resume, char *why, size_t
   if (!j->at || !row) {
     fail(j, why, nwhy, "out of memory");
   } else if ((j->fd = open(path, O_RDWR | O_APPEND | O_CLOEXEC | (resume ? 0 : O_CREAT | O_EXCL), 0666)) < 0) {
-    fail(j, why, nwhy, errno == EEXIST ? reason_it_is_there(path) : errno == ENOENT && resume ? "there is nothing to go on with; leave out --resume" : strerror(errno));
+    fail(j, why, nwhy,
+         errno == EEXIST             ? reason_it_is_there(path)
+         : errno == ENOENT && resume ? "there is nothing to go on with; leave out --resume"
+                                     : strerror(errno));
   } else if (lag_file_lock(j->fd)) {
     fail(j, why, nwhy, at_work);
   } else if (!(j->f = fdopen(j->fd, "a+b"))) {
@@ -93,10 +105,15 @@ int lag_journal_open(Journal *j, const char *path, int resume, char *why, size_t
   } else if (!resume || (cut = length_of_cut_head(j, &head)) >= 0) {
     if (cut >= 0) fail(j, why, nwhy, "the file has no run, since it ends within its head; all runs are made");
     j->end = sizeof head;
-    rc = ftruncate(j->fd, 0) || fseeko(j->f, 0, SEEK_SET) < 0 || fwrite(&head, sizeof head, 1, j->f) != 1 || fflush(j->f) ? fail(j, why, nwhy, strerror(errno)) : 0;
+    rc =
+        ftruncate(j->fd, 0) || fseeko(j->f, 0, SEEK_SET) < 0 || fwrite(&head, sizeof head, 1, j->f) != 1 || fflush(j->f)
+            ? fail(j, why, nwhy, strerror(errno))
+            : 0;
     if (rc) unlink(path);
   } else if (read_all(j->fd, &there, sizeof there, 0) || memcmp(&there, &head, sizeof head) != 0) {
-    fail(j, why, nwhy, "this is another sweep: model, ranges, measures, method, end or samples differ; give the same, or remove the file");
+    fail(j, why, nwhy,
+         "this is another sweep: model, ranges, measures, method, end or samples differ; give the same, or remove the "
+         "file");
   } else {
     rc = scan(j, row) ? fail(j, why, nwhy, strerror(errno)) : 0;
   }
@@ -113,7 +130,9 @@ int lag_journal_put(Journal *j, long long chunk, const double *row, size_t n) {
   const double soon = 0.1, often = 10; /* [s] */
   Record r = {chunk, (int64_t)n};
   uint64_t hash = hash_of(&r, row);
-  if (fwrite(&r, sizeof r, 1, j->f) != 1 || fwrite(row, sizeof *row, n, j->f) != n || fwrite(&hash, sizeof hash, 1, j->f) != 1) return -1;
+  if (fwrite(&r, sizeof r, 1, j->f) != 1 || fwrite(row, sizeof *row, n, j->f) != n ||
+      fwrite(&hash, sizeof hash, 1, j->f) != 1)
+    return -1;
   double now = lag_clock_seconds();
   if (now - j->written >= soon && lag_journal_flush(j)) return -1;
   if (now - j->synced >= often) {
@@ -128,7 +147,9 @@ int lag_journal_put(Journal *j, long long chunk, const double *row, size_t n) {
 
 int lag_journal_get(const Journal *j, long long chunk, double *row, size_t n) {
   Record r;
-  if (!j->at[chunk] || fflush(j->f) || read_all(j->fd, &r, sizeof r, j->at[chunk]) || r.chunk != chunk || r.n < (int64_t)n) return -1;
+  if (!j->at[chunk] || fflush(j->f) || read_all(j->fd, &r, sizeof r, j->at[chunk]) || r.chunk != chunk ||
+      r.n < (int64_t)n)
+    return -1;
   return read_all(j->fd, row, n * sizeof *row, j->at[chunk] + (long long)sizeof r);
 }
 

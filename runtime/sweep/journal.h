@@ -1,5 +1,6 @@
-/* The journal of a sweep: its finished chunks of runs, in a file beside the output. Enters: rows of a chunk; leaves: the same rows, in this or a later
- * process. Holds: what was put a tenth of a second ago is there after kill -9; a record that was cut is as if it were not there; a journal of another sweep is refused. */
+/* The journal of a sweep: its finished chunks of runs, in a file beside the output. Enters: rows of a chunk; leaves:
+ * the same rows, in this or a later process. Holds: what was put a tenth of a second ago is there after kill -9; a
+ * record that was cut is as if it were not there; a journal of another sweep is refused. */
 #pragma once
 
 #include <stddef.h>
@@ -24,7 +25,8 @@ typedef struct Journal {
  * or -1 with the reason. Free with lag_journal_close, also after an error. */
 int lag_journal_open(Journal *j, const char *path, int resume, char *why, size_t nwhy);
 
-/* Adds a chunk: row[n], which is written within a tenth of a second of work, or by lag_journal_flush. -1 with errno set. Not for several threads at once. */
+/* Adds a chunk: row[n], which is written within a tenth of a second of work, or by lag_journal_flush. -1 with errno
+ * set. Not for several threads at once. */
 int lag_journal_put(Journal *j, long long chunk, const double *row, size_t n);
 int lag_journal_flush(Journal *j);
 

@@ -1,4 +1,5 @@
-/* Chunks that are not made yet (run_chunks_impl.h). A chunk is taken once, and again only after its rank was silent past the deadline; rows that come twice are the same. */
+/* Chunks that are not made yet (run_chunks_impl.h). A chunk is taken once, and again only after its rank was silent
+ * past the deadline; rows that come twice are the same. */
 #include "sweep/run_chunks_impl.h"
 
 #include <errno.h>

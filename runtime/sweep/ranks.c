@@ -1,4 +1,5 @@
-/* A sweep on several processes (run_chunks_impl.h). A rank that asks gets as many chunks as take it about 50 ms, more where many ranks ask, fewer near the end. */
+/* A sweep on several processes (run_chunks_impl.h). A rank that asks gets as many chunks as take it about 50 ms,
+ * more where many ranks ask, fewer near the end. */
 #include "sweep/run_chunks_impl.h"
 
 #include <errno.h>
@@ -11,7 +12,9 @@ enum { WAIT = 100000 }; /* of receive, between looks at signals [us] */
 
 static size_t chunk_size(const Sweep *s) { return (size_t)s->chunk * lag_sweep_numbers(s); }
 
-static size_t batch_bytes(const Sweep *s, int64_t n) { return offsetof(Batch, row) + (size_t)n * chunk_size(s) * sizeof(double); }
+static size_t batch_bytes(const Sweep *s, int64_t n) {
+  return offsetof(Batch, row) + (size_t)n * chunk_size(s) * sizeof(double);
+}
 
 /* Chunks of a message: up to a megabyte of rows. */
 static int64_t batch_room(const Sweep *s) {
@@ -33,7 +36,8 @@ typedef struct Server {
 
 /* Number of chunks for a rank that made b. README.md has the reasons of the numbers. */
 static int64_t next_number(Pool *p, const Batch *b) {
-  const double cost = 20e-6, busy = 0.25, least = 0.05; /* of a message here [s]; part of the time in which rank 0 serves; [s] */
+  /* of a message here [s]; part of the time in which rank 0 serves; [s] */
+  const double cost = 20e-6, busy = 0.25, least = 0.05;
   const Sweep *s = p->s;
   double asking = (double)s->nranks * s->threads, time = fmax(least, asking * cost / busy);
   lag_lock_take(&p->lock);

@@ -1,5 +1,5 @@
-/* Rows of a CSV file (sweep_grid.h). Enters: names in the first line, "th [rad]" for th, numbers in each other one; leaves: a list of values for each name. Holds:
- * every field is read, or the file is refused with its line. */
+/* Rows of a CSV file (sweep_grid.h). Enters: names in the first line, "th [rad]" for th, numbers in each other one;
+ * leaves: a list of values for each name. Holds: every field is read, or the file is refused with its line. */
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -24,7 +24,8 @@ typedef struct Rows {
 
 static int refuse(const Rows *r, const char *format, ...) {
   va_list args;
-  int n = r->line ? snprintf(r->why, r->size, "%s:%lld: ", r->path, r->line) : snprintf(r->why, r->size, "%s: ", r->path);
+  int n =
+      r->line ? snprintf(r->why, r->size, "%s:%lld: ", r->path, r->line) : snprintf(r->why, r->size, "%s: ", r->path);
   va_start(args, format);
   if (n >= 0 && (size_t)n < r->size) vsnprintf(r->why + n, r->size - (size_t)n, format, args);
   va_end(args);
@@ -49,10 +50,12 @@ static int read_text(Rows *r) {
   int failed = ferror(f) ? errno : !r->text || got ? ENOMEM : 0;
   fclose(f);
   if (binary) return refuse(r, "this is no text: it has a byte 0; save it as CSV");
-  if (n > MOST_BYTES) return refuse(r, "the file has more than %d MB; split it, and run a sweep for each part", MOST_BYTES / 1000000);
+  if (n > MOST_BYTES)
+    return refuse(r, "the file has more than %d MB; split it, and run a sweep for each part", MOST_BYTES / 1000000);
   if (failed) return refuse(r, "cannot be read: %s", strerror(failed));
   r->text[n] = '\0';
-  r->at = r->text + (strncmp(r->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0); /* the mark that spreadsheets put before UTF-8 */
+  /* the mark that spreadsheets put before UTF-8 */
+  r->at = r->text + (strncmp(r->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0);
   return 0;
 }
 
@@ -68,7 +71,8 @@ static char *next_line(Rows *r) {
   return NULL;
 }
 
-/* Takes a field, in quotes or not, with the spaces around it. *at := the next field, NULL: none. NULL: a quote has no end. */
+/* Takes a field, in quotes or not, with the spaces around it. *at := the next field, NULL: none. NULL: a quote has
+ * no end. */
 static char *take_field(char **at) {
   char *s = *at + strspn(*at, " \t"), *from = s, *to = s, *end;
   if (*s == '"') {
@@ -93,7 +97,8 @@ static int split(Rows *r, char *line, int most) {
   int n = 0;
   for (char *at = line; at; n++) {
     if (n == most) return most + 1;
-    if (!(r->field[n] = take_field(&at))) return refuse(r, "a quote has no end before the comma or the end of the line");
+    if (!(r->field[n] = take_field(&at)))
+      return refuse(r, "a quote has no end before the comma or the end of the line");
   }
   return n;
 }
@@ -115,7 +120,8 @@ static int read_names(Rows *r, SweepPlan *p) {
     if (unit && name[n - 1] == ']') *unit = name[n - 1] = '\0', unit += 2;
     else unit = NULL;
     if (!*name) return refuse(r, "column %d has no name", k + 1);
-    if (isdigit((unsigned char)*name) || *name == '-') return refuse(r, "%.60s is no name: the first line has the names of the columns, as th,l", name);
+    if (isdigit((unsigned char)*name) || *name == '-')
+      return refuse(r, "%.60s is no name: the first line has the names of the columns, as th,l", name);
     if (lag_plan_add_column(p, name, unit ? unit : "", r->why, r->size)) return -1;
   }
   return 0;
@@ -124,11 +130,16 @@ static int read_names(Rows *r, SweepPlan *p) {
 static int read_numbers(Rows *r, SweepPlan *p, char *line) {
   int n = split(r, line, r->columns);
   if (n < 0) return -1;
-  if (n != r->columns) return refuse(r, n > r->columns ? "there are more fields than the %d names in the first line" : "there are fewer fields than the %d names in the first line", r->columns);
+  if (n != r->columns)
+    return refuse(r,
+                  n > r->columns ? "there are more fields than the %d names in the first line"
+                                 : "there are fewer fields than the %d names in the first line",
+                  r->columns);
   for (int k = 0; k < n; k++) {
     const char *s = r->field[k];
     double x;
-    if (!lag_plan_number(&s, &x) || *s) return refuse(r, "\"%.60s\" is not a number; rows have one for each name in the first line", r->field[k]);
+    if (!lag_plan_number(&s, &x) || *s)
+      return refuse(r, "\"%.60s\" is not a number; rows have one for each name in the first line", r->field[k]);
     if (lag_factor_add(&p->factor[r->first + k], x)) return refuse(r, "out of memory");
   }
   return 0;

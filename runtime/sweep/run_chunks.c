@@ -35,7 +35,9 @@ static int make_chunk(Worker *w, long long c, double *row) {
   int rc = LAG_OK;
   for (long long k = 0, n = lag_sweep_chunk_runs(s, c); k < n && rc == LAG_OK; k++) {
     long long i = c * s->chunk + k;
-    SweepRun r = {.measures = w->measures[lag_plan_variant(s->plan, i)], .row = lag_sweep_row(s, row, k), .motion = lag_sweep_motion(s, row, c, k)};
+    SweepRun r = {.measures = w->measures[lag_plan_variant(s->plan, i)],
+                  .row = lag_sweep_row(s, row, k),
+                  .motion = lag_sweep_motion(s, row, c, k)};
     rc = lag_sweep_run_whole(s, &r, i, w->value, NULL, 0);
   }
   return rc;
@@ -90,7 +92,8 @@ static void make_batch(Worker *w) {
   int64_t n = b->n;
   w->taken = 0;
   if (w->lanes) b->rc = lag_lane_worker_run(w->lanes, (ChunkSource){take_from_batch, give_to_batch, w});
-  for (; !w->lanes && w->taken < n && b->rc == LAG_OK; w->taken += b->rc == LAG_OK) b->rc = make_chunk(w, b->chunk[w->taken], lag_batch_row(w->pool->s, b, w->taken));
+  for (; !w->lanes && w->taken < n && b->rc == LAG_OK; w->taken += b->rc == LAG_OK)
+    b->rc = make_chunk(w, b->chunk[w->taken], lag_batch_row(w->pool->s, b, w->taken));
   b->n = b->rc == LAG_OK ? n : w->lanes ? 0 : w->taken;
 }
 
@@ -114,7 +117,8 @@ static void work(void *worker) {
 
 Measures *lag_sweep_measures(const Sweep *s, int variant) {
   char why[1];
-  return lag_measures_new(lag_sim_scene(s->variant[variant].like), s->nmeasures, s->variant[variant].measure, NULL, why, sizeof why);
+  return lag_measures_new(lag_sim_scene(s->variant[variant].like), s->nmeasures, s->variant[variant].measure, NULL, why,
+                          sizeof why);
 }
 
 static void close_measures(const Sweep *s, Measures **m) {

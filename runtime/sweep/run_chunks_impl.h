@@ -1,4 +1,5 @@
-/* Inside of this folder. Chunks that are not made yet (pool.c): threads (run_chunks.c) and other ranks (ranks.c) take them, and give their rows. */
+/* Inside of this folder. Chunks that are not made yet (pool.c): threads (run_chunks.c) and other ranks (ranks.c)
+ * take them, and give their rows. */
 #pragma once
 
 #include <stdint.h>
@@ -24,9 +25,10 @@ typedef struct SweepRun {
 double *lag_sweep_row(const Sweep *s, double *row, long long k);
 double *lag_sweep_motion(const Sweep *s, double *row, long long c, long long k);
 
-/* Run i, for which measures, row and motion are set, in parts. open: its start, with value[factors] as scratch; LAG_OK, or its status already. advance: its status,
- * or one of lag_lane_waits, after which it is called again. end: the row of a run with this status; why[size] := the message of a failure; why may be NULL. Returns
- * LAG_OK, or LAG_INTERRUPTED or LAG_ENOMEM: there is no row. */
+/* Run i, for which measures, row and motion are set, in parts. open: its start, with value[factors] as scratch;
+ * LAG_OK, or its status already. advance: its status, or one of lag_lane_waits, after which it is called again. end:
+ * the row of a run with this status; why[size] := the message of a failure; why may be NULL. Returns LAG_OK, or
+ * LAG_INTERRUPTED or LAG_ENOMEM: there is no row. */
 int lag_sweep_run_open(Sweep *s, SweepRun *r, long long i, double *value);
 int lag_sweep_run_advance(const Sweep *s, SweepRun *r);
 int lag_sweep_run_end(const Sweep *s, SweepRun *r, int status, char *why, size_t size);
@@ -38,7 +40,8 @@ int lag_sweep_run_whole(Sweep *s, SweepRun *r, long long i, double *value, char 
 /* Where chunks come from, and where they go. */
 typedef struct ChunkSource {
   long long (*take)(void *context, double **row); /* a chunk and room for its numbers; -1: none is left */
-  void (*give)(void *context, long long c, double *row, int rc, double time); /* the chunk, made in `time` [s]; rc not LAG_OK: why it is not there */
+  /* the chunk, made in `time` [s]; rc not LAG_OK: why it is not there */
+  void (*give)(void *context, long long c, double *row, int rc, double time);
   void *context;
 } ChunkSource;
 
@@ -58,7 +61,8 @@ typedef struct Pool {
   lag_lock lock;        /* for the rest */
   long long next, made; /* next chunk; runs made */
   int rc, error;
-  double *taken;        /* [chunks] time at which a rank took the chunk, 0: none has it [s]; NULL: there are no other ranks */
+  /* [chunks] time at which a rank took the chunk, 0: none has it [s]; NULL: there are no other ranks */
+  double *taken;
   long long out;        /* chunks that ranks have */
   double longest;       /* time that anyone took for what was taken at once [s] */
 } Pool;
@@ -69,7 +73,8 @@ long long lag_pool_take(Pool *p, int for_rank);
 void lag_pool_give(Pool *p, long long c, const double *row, int rc, double time);
 /* Ends the sweep, if rc is not LAG_OK. */
 void lag_pool_end(Pool *p, int rc);
-/* Waits for the chunks that other ranks have. One whose rank is silent past the deadline; -1: all are there, or the sweep ends. */
+/* Waits for the chunks that other ranks have. One whose rank is silent past the deadline; -1: all are there, or the
+ * sweep ends. */
 long long lag_pool_lost(Pool *p);
 /* Time after which a rank is taken for dead [s]. */
 double lag_pool_deadline(const Pool *p);

@@ -1,5 +1,6 @@
-/* The runs of a sweep in the lanes of vectors: as one ends, its lane takes the next run. Enters: chunks; leaves: their numbers. Holds: steps are those of a
- * run alone, bit by bit (lanes/lane_kernel.h); whatever a lane cannot do is left to the run alone, from its start. */
+/* The runs of a sweep in the lanes of vectors: as one ends, its lane takes the next run. Enters: chunks; leaves:
+ * their numbers. Holds: steps are those of a run alone, bit by bit (lanes/lane_kernel.h); whatever a lane cannot do
+ * is left to the run alone, from its start. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +12,8 @@ enum { MOST_LANES = LANE_CHUNKS - 1 };
 
 /* A chunk whose runs are under way. */
 typedef struct OpenChunk {
-  long long c, left, next;  /* runs that have not ended, 0: there is no chunk; where to look for the next run of the variant */
+  /* runs that have not ended, 0: there is no chunk; where to look for the next run of the variant */
+  long long c, left, next;
   double *row, since;       /* its numbers; time of its beginning [s] */
   char *begun;              /* [chunk] */
 } OpenChunk;
@@ -95,7 +97,9 @@ static OpenChunk *open_chunk(LaneWorker *w) {
 static long long next_run(const LaneWorker *w, OpenChunk *o, int variant) {
   long long n = o->left ? lag_sweep_chunk_runs(w->s, o->c) : 0, first = o->c * w->s->chunk;
   for (; o->next < n; o->next++)
-    if (!o->begun[o->next] && (w->s->nvariants == 1 || variant < 0 || lag_plan_variant(w->s->plan, first + o->next) == variant)) return o->next;
+    if (!o->begun[o->next] &&
+        (w->s->nvariants == 1 || variant < 0 || lag_plan_variant(w->s->plan, first + o->next) == variant))
+      return o->next;
   return -1;
 }
 
@@ -145,7 +149,8 @@ static void look(LaneWorker *w, int k) {
   if (rc >= 0 && !lag_lane_waits(rc) && !fresh && lag_lane_doubts(l->run.sim)) run_alone(w, l);
   else if (!lag_lane_waits(rc)) note_end(w, l, lag_sweep_run_end(w->s, &l->run, rc, NULL, 0));
   else if (!fresh && lanes->kernel->aim(batch, k, l->run.sim)) w->busy |= 1u << k;
-  else if (lanes->kernel->load(batch, k, l->run.sim, lanes->pause || lag_measures_follow(l->run.measures)) == LAG_OK) w->busy |= 1u << k;
+  else if (lanes->kernel->load(batch, k, l->run.sim, lanes->pause || lag_measures_follow(l->run.measures)) == LAG_OK)
+    w->busy |= 1u << k;
   else run_alone(w, l);
 }
 

@@ -1,4 +1,5 @@
-/* Numbers for samples (sampling.h). Enters: the number of a sample, and of a dimension; leaves: a number in (0, 1). Holds: nothing is kept between calls. */
+/* Numbers for samples (sampling.h). Enters: the number of a sample, and of a dimension; leaves: a number in (0, 1).
+ * Holds: nothing is kept between calls. */
 #include "sweep/sampling.h"
 
 #include <math.h>
@@ -22,7 +23,8 @@ void lag_philox(const uint32_t counter[4], const uint32_t key[2], uint32_t out[4
 enum { VALUES, ORDER };
 
 static void words_at(uint64_t seed, uint64_t i, uint32_t d, uint32_t stream, uint32_t out[4]) {
-  const uint32_t key[2] = {(uint32_t)seed, (uint32_t)(seed >> 32)}, counter[4] = {(uint32_t)i, (uint32_t)(i >> 32), d, stream};
+  const uint32_t key[2] = {(uint32_t)seed, (uint32_t)(seed >> 32)},
+                 counter[4] = {(uint32_t)i, (uint32_t)(i >> 32), d, stream};
   lag_philox(counter, key, out);
 }
 
@@ -33,8 +35,8 @@ double lag_random_at(uint64_t seed, uint64_t i, uint32_t d) {
   return ((double)bits + 0.5) / 9007199254740992.0; /* 2^53 */
 }
 
-/* Place of i in a random order of 0..n-1: a Feistel network on the smallest even number of bits that holds n, applied until it leads below n. M. Luby,
- * C. Rackoff, SIAM J. Comput. 17 (1988) 373, DOI 10.1137/0217022. */
+/* Place of i in a random order of 0..n-1: a Feistel network on the smallest even number of bits that holds n,
+ * applied until it leads below n. M. Luby, C. Rackoff, SIAM J. Comput. 17 (1988) 373, DOI 10.1137/0217022. */
 static uint64_t shuffled(uint64_t seed, uint64_t i, uint64_t n, uint32_t d) {
   enum { ROUNDS = 6 };
   uint32_t half = 1, w[4];
@@ -57,11 +59,13 @@ double lag_hypercube_at(uint64_t seed, uint64_t i, uint64_t n, uint32_t d) {
   return ((double)shuffled(seed, i, n, d) + lag_random_at(seed, i, d)) / (double)n;
 }
 
-/* An approximation of four digits, then Newton's method of third order (Halley) on erfc. M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions
- * (1964), 26.2.23. */
+/* An approximation of four digits, then Newton's method of third order (Halley) on erfc. M. Abramowitz, I. A.
+ * Stegun, Handbook of Mathematical Functions (1964), 26.2.23. */
 double lag_normal_quantile(double p) {
-  const double half = fmin(p, 1 - p), sign = p < 0.5 ? -1 : 1, root_of_2 = 1.41421356237309504880168872420969808, root_of_2pi = 2.50662827463100050241576528481104525;
-  double t = sqrt(-2 * log(half)), x = t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
+  const double half = fmin(p, 1 - p), sign = p < 0.5 ? -1 : 1, root_of_2 = 1.41421356237309504880168872420969808,
+               root_of_2pi = 2.50662827463100050241576528481104525;
+  double t = sqrt(-2 * log(half)),
+         x = t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
   if (p == 0.5) return 0;
   for (int i = 0; i < 3; i++) {
     double off = (0.5 * erfc(x / root_of_2) - half) * root_of_2pi * exp(0.5 * x * x);

@@ -1,4 +1,5 @@
-/* The runs of a sweep (sweep_grid.h): a grid of all combinations, the last range fastest, and at each of its places the same samples. */
+/* The runs of a sweep (sweep_grid.h): a grid of all combinations, the last range fastest, and at each of its places
+ * the same samples. */
 #include "sweep/sweep_grid.h"
 
 #include <math.h>
@@ -50,32 +51,40 @@ static int refuse(char *why, size_t size, const char *word, const char *what) {
 
 static int refuse_empty(char *why, size_t size, const char *word, const Factor *f) {
   char what[120];
-  snprintf(what, sizeof what, "the range is empty: its first value, %g, is not below its last, %g", (double)f->a, (double)f->b);
+  snprintf(what, sizeof what, "the range is empty: its first value, %g, is not below its last, %g", (double)f->a,
+           (double)f->b);
   return refuse(why, size, word, what);
 }
 
 static const char range_form[] = "a range is FIRST..LAST:NUMBER, for example 0..1:11; with a unit 0..180[deg]:19",
-                  list_form[] = "a list is numbers and commas, 1,2,5 or 0,90[deg]; a range is 0..1:11; values at random are NAME~normal(MEAN, DEVIATION)";
+                  list_form[] = "a list is numbers and commas, 1,2,5 or 0,90[deg]; a range is 0..1:11; values at "
+                                "random are NAME~normal(MEAN, DEVIATION)";
 
 /* "A..B", "A..B:N", "A..B:log:N" */
 static int read_interval(Factor *f, const char *s, const char *word, char *why, size_t size) {
   double n = 0;
   f->kind = FACTOR_LINEAR;
-  if (!lag_plan_number(&s, &f->a) || !take(&s, "..") || !lag_plan_number(&s, &f->b)) return refuse(why, size, word, range_form);
+  if (!lag_plan_number(&s, &f->a) || !take(&s, "..") || !lag_plan_number(&s, &f->b))
+    return refuse(why, size, word, range_form);
   if (!*s) {
     f->kind = FACTOR_UNIFORM;
   } else {
     if (!take(&s, ":")) return refuse(why, size, word, range_form);
     if (take(&s, "log")) f->kind = FACTOR_LOG;
-    if (f->kind == FACTOR_LOG && !take(&s, ":")) return refuse(why, size, word, "the number of values is missing, for example 1e-3..1e3:log:7");
-    if (!lag_plan_number(&s, &n) || *s || n != floor(n) || n < 1) return refuse(why, size, word, "the number of values is a whole number above 0, as in 0..1:11, or, in equal ratios, 1..100:log:11");
+    if (f->kind == FACTOR_LOG && !take(&s, ":"))
+      return refuse(why, size, word, "the number of values is missing, for example 1e-3..1e3:log:7");
+    if (!lag_plan_number(&s, &n) || *s || n != floor(n) || n < 1)
+      return refuse(
+          why, size, word,
+          "the number of values is a whole number above 0, as in 0..1:11, or, in equal ratios, 1..100:log:11");
     if (n > MOST_RUNS) return refuse(why, size, word, "a sweep has up to 1e12 runs: take fewer values");
     f->n = (long long)n;
     if (f->n == 1 && f->a != f->b) return refuse(why, size, word, "one value of a range: write the value alone");
   }
   if (f->b < f->a || (f->b == f->a && f->n != 1)) return refuse_empty(why, size, word, f);
   if (!isfinite(f->b - f->a)) return refuse(why, size, word, "the range is wider than the largest number");
-  if (f->kind == FACTOR_LOG && !(f->a > 0)) return refuse(why, size, word, "a range with equal ratios has positive ends");
+  if (f->kind == FACTOR_LOG && !(f->a > 0))
+    return refuse(why, size, word, "a range with equal ratios has positive ends");
   return 0;
 }
 
@@ -102,7 +111,8 @@ static int read_list(Factor *f, const char *s, const char *word, char *why, size
 static int read_distribution(Factor *f, const char *s, const char *word, char *why, size_t size) {
   int normal = take(&s, "normal"), ok = normal || take(&s, "uniform");
   f->kind = normal ? FACTOR_NORMAL : FACTOR_UNIFORM;
-  ok = ok && take(&s, "(") && lag_plan_number(&s, &f->a) && take(&s, ",") && lag_plan_number(&s, &f->b) && take(&s, ")") && !*s;
+  ok = ok && take(&s, "(") && lag_plan_number(&s, &f->a) && take(&s, ",") && lag_plan_number(&s, &f->b) &&
+       take(&s, ")") && !*s;
   if (!ok) return refuse(why, size, word, "a distribution is normal(MEAN, DEVIATION) or uniform(FIRST, LAST)");
   if (normal && !(f->b > 0)) return refuse(why, size, word, "the deviation is positive");
   if (!normal && !isfinite(f->b - f->a)) return refuse(why, size, word, "the range is wider than the largest number");
@@ -159,7 +169,8 @@ static int count_grid(SweepPlan *p, char *why, size_t size) {
     const Factor *f = &p->factor[k];
     if (!f->n) continue;
     if (p->zip && first >= 0 && f->n != p->factor[first].n) {
-      snprintf(why, size, "--zip: %s has %lld values, %s %lld; ranges that are walked together have the same number", p->factor[first].name, p->factor[first].n, f->name, f->n);
+      snprintf(why, size, "--zip: %s has %lld values, %s %lld; ranges that are walked together have the same number",
+               p->factor[first].name, p->factor[first].n, f->name, f->n);
       return -1;
     }
     if (p->zip && first >= 0) continue;
@@ -181,7 +192,8 @@ int lag_plan_finish(SweepPlan *p, long long samples, char *why, size_t size) {
       char range[160], ratios[200] = "";
       snprintf(range, sizeof range, "%s=%g..%g", f->name, (double)f->a, (double)f->b);
       if (f->a > 0) snprintf(ratios, sizeof ratios, " %s:log:11 in equal ratios,", range);
-      snprintf(why, size, "%s: the number of values is missing: write %s:11,%s or add --samples 1000 for random values", range, range, ratios);
+      snprintf(why, size, "%s: the number of values is missing: write %s:11,%s or add --samples 1000 for random values",
+               range, range, ratios);
       return -1;
     }
     if (samples == 0) {
@@ -195,13 +207,16 @@ int lag_plan_finish(SweepPlan *p, long long samples, char *why, size_t size) {
     return -1;
   }
   if (p->n == 0) {
-    snprintf(why, size, "nothing varies: no value has two dots or a comma; write a range, NAME=FIRST..LAST:NUMBER, for example th=0..1:11, or a list, th=0,1,2");
+    snprintf(why, size,
+             "nothing varies: no value has two dots or a comma; write a range, NAME=FIRST..LAST:NUMBER, for example "
+             "th=0..1:11, or a list, th=0,1,2");
     return -1;
   }
   if (count_grid(p, why, size)) return -1;
   p->samples = samples ? samples : 1;
   if ((double)p->grid * (double)p->samples > MOST_RUNS) {
-    snprintf(why, size, "%.3g runs are more than %g: take fewer values or samples", (double)p->grid * (double)p->samples, (double)MOST_RUNS);
+    snprintf(why, size, "%.3g runs are more than %g: take fewer values or samples",
+             (double)p->grid * (double)p->samples, (double)MOST_RUNS);
     return -1;
   }
   p->runs = p->grid * p->samples;

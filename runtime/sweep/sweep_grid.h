@@ -1,5 +1,5 @@
-/* The runs of a sweep: the values of each. Enters: ranges, as words of the command line; leaves: for run i the value of each name that varies. Holds: run i
- * has the same values in any order. Names are not looked up here. */
+/* The runs of a sweep: the values of each. Enters: ranges, as words of the command line; leaves: for run i the value
+ * of each name that varies. Holds: run i has the same values in any order. Names are not looked up here. */
 #pragma once
 
 #include <stddef.h>
@@ -30,13 +30,15 @@ typedef struct SweepPlan {
   int dimensions; /* of samples */
 } SweepPlan;
 
-/* Whether the word is a range: name=A..B:N, name=A..B:log:N, name=A,B,C, name~normal(MEAN, DEVIATION), name~uniform(A, B); and with samples name=A..B. */
+/* Whether the word is a range: name=A..B:N, name=A..B:log:N, name=A,B,C, name~normal(MEAN, DEVIATION),
+ * name~uniform(A, B); and with samples name=A..B. */
 int lag_plan_is_range(const char *word);
 
 /* Adds the range. 0, or -1 with the reason in why: what is wrong, and what to write. */
 int lag_plan_add(SweepPlan *p, const char *word, char *why, size_t size);
 
-/* rows_file.c: adds the columns of a CSV file: a row a run, names in its first line, "th [rad]" for th; walked together with each other. The same. */
+/* rows_file.c: adds the columns of a CSV file: a row a run, names in its first line, "th [rad]" for th; walked
+ * together with each other. The same. */
 int lag_plan_add_rows(SweepPlan *p, const char *path, char *why, size_t size);
 
 /* Counts runs when all ranges are there; samples: of distributions, 0: none given. 0, or -1 with the reason. */
@@ -45,7 +47,8 @@ int lag_plan_finish(SweepPlan *p, long long samples, char *why, size_t size);
 /* value[n] := the values of run i. */
 void lag_plan_values(const SweepPlan *p, long long i, double *value);
 
-/* The variant of run i: its place in the grid of the compiled names alone, the last fastest; 0 where there are none. And a run of a variant. */
+/* The variant of run i: its place in the grid of the compiled names alone, the last fastest; 0 where there are none.
+ * And a run of a variant. */
 long long lag_plan_variant(const SweepPlan *p, long long i);
 long long lag_plan_run_of(const SweepPlan *p, long long variant);
 

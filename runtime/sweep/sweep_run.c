@@ -55,7 +55,8 @@ int lag_sweep_run_end(const Sweep *s, SweepRun *r, int status, char *why, size_t
     status = judged < 0 ? judged : status;
   }
   if (status >= 0 && lag_measures_end(r->measures, r->row)) status = LAG_ENOMEM;
-  for (int k = 0; k < s->nmeasures && status < 0; k++) r->row[k] = NAN; /* up to a failure they are no measures of the run */
+  /* up to a failure they are no measures of the run */
+  for (int k = 0; k < s->nmeasures && status < 0; k++) r->row[k] = NAN;
   r->row[s->nmeasures] = status;
   if (why) snprintf(why, size, "%s", status < 0 && r->sim ? lag_sim_message(r->sim) : "");
   lag_sim_free(r->sim);

@@ -1,8 +1,8 @@
 /* Arena: the memory of one compilation.
  *
- * Everything a compilation allocates lives in one arena and is freed at once by arena_free. No caller checks for NULL: when memory runs out, or the
- * arena's limit is reached, arena_alloc jumps to the handler that arena_guard installed. Only main, the parser (which must free the parser's own
- * stack first) and tests install handlers. */
+ * Everything a compilation allocates lives in one arena and is freed at once by arena_free. No caller checks for
+ * NULL: when memory runs out, or the arena's limit is reached, arena_alloc jumps to the handler that arena_guard
+ * installed. Only main, the parser (which must free the parser's own stack first) and tests install handlers. */
 #pragma once
 
 #include <setjmp.h>
@@ -25,15 +25,17 @@ typedef struct {
 Arena *arena_new(const ArenaConfig *config);
 void arena_free(Arena *a);
 
-/* Mark: arena_forget frees all that was allocated since, to which nothing may point any more. For trials that are not kept. */
+/* Mark: arena_forget frees all that was allocated since, to which nothing may point any more. For trials that are
+ * not kept. */
 typedef struct {
   size_t serial, in_chunk;
 } ArenaMark;
 ArenaMark arena_mark(const Arena *a);
 void arena_forget(Arena *a, ArenaMark since);
 
-/* Gives up a block of n bytes, to which nothing may point any more. A block larger than a chunk, and the latest block, are free at once; others
- * with the arena (the address sanitizer reports their use from now on). A block that is not of this arena is left alone. */
+/* Gives up a block of n bytes, to which nothing may point any more. A block larger than a chunk, and the latest
+ * block, are free at once; others with the arena (the address sanitizer reports their use from now on). A block that
+ * is not of this arena is left alone. */
 void arena_release(Arena *a, void *block, size_t n);
 
 /* n zeroed bytes aligned for any type; never NULL (see above). */
@@ -47,7 +49,8 @@ char *arena_strndup(Arena *a, const char *s, size_t n);
 char *arena_printf(Arena *a, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 char *arena_vprintf(Arena *a, const char *fmt, va_list ap) __attribute__((format(printf, 2, 0)));
 
-/* Runs work with an arena of its own for values that are not kept, freed at the end; where either arena runs out of memory, `outer` fails. */
+/* Runs work with an arena of its own for values that are not kept, freed at the end; where either arena runs out of
+ * memory, `outer` fails. */
 void arena_with_scratch(Arena *outer, void (*work)(Arena *scratch, void *data), void *data);
 
 /* Gives the reason of a failure; returns 0. */

@@ -1,4 +1,5 @@
-/* Dense linear algebra in long double, all matrices row-major: inverse, Gram-Schmidt, kernel by pivoted QR, row echelon form. */
+/* Dense linear algebra in long double, all matrices row-major: inverse, Gram-Schmidt, kernel by pivoted QR, row
+ * echelon form. */
 #include "base/dense_matrix.h"
 
 #include <math.h>
@@ -16,7 +17,8 @@ static void exchange(long double *x, long double *y, uint32_t n, size_t stride) 
   }
 }
 
-uint32_t dense_solve(Arena *arena, uint32_t n, const long double *a, long double *b, long double tolerance, long double *null) {
+uint32_t dense_solve(Arena *arena, uint32_t n, const long double *a, long double *b, long double tolerance,
+                     long double *null) {
   ArenaMark before = arena_mark(arena);
   SparseElements all = {0};
   for (uint32_t i = 0; i < n; i++)
@@ -90,8 +92,11 @@ static void exchange_columns(PivotedQR *t, uint32_t one, uint32_t other) {
 }
 
 static PivotedQR pivoted_qr_new(Arena *a, uint32_t rows, uint32_t columns, long double *m) {
-  PivotedQR t = {rows, columns, columns, m, ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, long double, columns + 1),
-                ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, uint32_t, columns + 1)};
+  PivotedQR t = {rows,
+                 columns, columns, m, ARENA_ARRAY(a, long double, columns + 1),
+                 ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, long double, columns + 1),
+                 ARENA_ARRAY(a, long double, columns + 1),
+                 ARENA_ARRAY(a, uint32_t, columns + 1)};
   long double largest = 0;
   for (uint32_t j = 0; j < columns; j++) largest = fmaxl(largest, t.length[j] = sqrtl(squared_below(&t, 0, j)));
   for (uint32_t j = 0; j < columns; j++) {
@@ -147,7 +152,8 @@ DenseRows dense_kernel(Arena *a, uint32_t rows, uint32_t columns, long double *m
     taken = length;
     reflect(&t, rank, length);
   }
-  DenseRows null = {columns - rank, columns, ARENA_ARRAY(a, long double, (size_t)(columns - rank) * columns + 1), taken / fmaxl(left, 1e-20L)};
+  DenseRows null = {columns - rank, columns, ARENA_ARRAY(a, long double, (size_t)(columns - rank) * columns + 1),
+                    taken / fmaxl(left, 1e-20L)};
   long double *x = t.along;
   for (uint32_t k = 0; k < null.n; k++) {
     for (uint32_t i = 0; i < rank; i++) x[i] = -m[(size_t)i * columns + rank + k];
@@ -196,12 +202,16 @@ static void append_to_basis(Basis *b) {
 DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns) {
   size_t all = (size_t)from->n * columns;
   DenseRows o = {.width = columns, .at = ARENA_ARRAY(a, long double, all + 1)};
-  Basis basis = {.at = o.at, .width = columns, .begin = ARENA_ARRAY(a, uint32_t, from->n + 1), .column = ARENA_ARRAY(a, uint32_t, all + 1)};
+  Basis basis = {.at = o.at,
+                 .width = columns,
+                 .begin = ARENA_ARRAY(a, uint32_t, from->n + 1),
+                 .column = ARENA_ARRAY(a, uint32_t, all + 1)};
   for (uint32_t k = 0; k < from->n; k++) {
     long double *row = o.at + (size_t)basis.n * columns, length = 0;
     memcpy(row, from->at + (size_t)k * from->width, columns * sizeof *row);
     for (uint32_t j = 0; j < columns; j++) length += row[j] * row[j];
-    if (length > 0 && gram_schmidt(&basis, row) > 1e-9L) append_to_basis(&basis); /* else the next row takes its place */
+    /* else the next row takes its place */
+    if (length > 0 && gram_schmidt(&basis, row) > 1e-9L) append_to_basis(&basis);
   }
   o.n = basis.n;
   return o;

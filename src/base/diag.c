@@ -1,4 +1,5 @@
-/* Diagnostics: records messages once each, and prints them by place, with the source line and a caret under the span. */
+/* Diagnostics: records messages once each, and prints them by place, with the source line and a caret under the
+ * span. */
 #include "base/diag.h"
 
 #include "base/visible.h"
@@ -82,7 +83,8 @@ static void put_under(StrBuf *out, const Place *p, uint32_t from, uint32_t to, c
   }
 }
 
-/* The source line and, under it, a caret with tildes to the end of the span (or of the line). Long lines are shown in a window around the span. */
+/* The source line and, under it, a caret with tildes to the end of the span (or of the line). Long lines are shown
+ * in a window around the span. */
 static void print_snippet(StrBuf *out, const Place *p, Span span) {
   enum { WIDE = 160, BEFORE = 60 };
   uint32_t from = 0, len = p->line_len;

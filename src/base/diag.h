@@ -38,7 +38,8 @@ Diags *diags_new(Arena *a, const Sources *sources);
 /* Separates a message from the way out that it offers: "unknown name `%s`" HELP "did you mean `%s`?". */
 #define HELP "\x1F"
 
-/* Records a message about a span, with its way out, if the text has one; a repetition of a recorded message is dropped. Returns 0. */
+/* Records a message about a span, with its way out, if the text has one; a repetition of a recorded message is
+ * dropped. Returns 0. */
 int diag_error(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 int diag_warning(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 

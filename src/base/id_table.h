@@ -1,4 +1,5 @@
-/* IdTable: hash table from content to the id of an entry in the owner's array. Open addressing; the owner compares contents:
+/* IdTable: hash table from content to the id of an entry in the owner's array. Open addressing; the owner compares
+ * contents:
  *
  *   uint32_t at = idtable_start(&t, hash), id;
  *   while (idtable_next(&t, hash, &at, &id))

@@ -1,5 +1,6 @@
-/* Table of the methods of integration: their names, options and requirements, for the checks of models and the emission of C.
- * base/method_rows.def is a copy of the runtime's own table, with which tests/golden/run_method_rows.sh compares it: lagc builds without liblag. */
+/* Table of the methods of integration: their names, options and requirements, for the checks of models and the
+ * emission of C. base/method_rows.def is a copy of the runtime's own table, with which
+ * tests/golden/run_method_rows.sh compares it: lagc builds without liblag. */
 #pragma once
 
 #include "base/intern.h"
@@ -10,7 +11,8 @@ enum {
   METHOD_SPLITS = 4,     /* but not of a separable model */
   METHOD_JACOBIAN = 8,   /* needs the linearisation */
   METHOD_TAYLOR = 16,    /* needs Taylor coefficients, and so a smooth model */
-  METHOD_FLOWS = 32,     /* takes models of states alone, with the linearisation, though it refuses states beside coordinates */
+  /* takes models of states alone, with the linearisation, though it refuses states beside coordinates */
+  METHOD_FLOWS = 32,
   METHOD_CONSTRAINTS = 64 /* holds constraints */
 };
 
@@ -39,7 +41,8 @@ int method_may_be_gsl(const char *name);
 /* The known name nearest to an unknown one, else that of a method whose description has the word; or NULL. */
 const char *method_suggest(Arena *a, const char *wrong);
 
-/* Whether an option may not be x, of a model with constraints or without, as a run judges it; allowed := what it may be. */
+/* Whether an option may not be x, of a model with constraints or without, as a run judges it; allowed := what it may
+ * be. */
 int method_option_refuses(const MethodOption *o, double x, int constrained, char allowed[128]);
 
 /* The option of that name, or NULL. */

@@ -1,4 +1,5 @@
-/* Arithmetic on Num: exact in 128-bit intermediates; on overflow doubles with error bounds, and residues modulo a prime below 2^62. */
+/* Arithmetic on Num: exact in 128-bit intermediates; on overflow doubles with error bounds, and residues modulo a
+ * prime below 2^62. */
 #include "base/num.h"
 
 #include <float.h>
@@ -51,7 +52,9 @@ static uint64_t scramble(uint64_t x) {
 /* A hash in place of the residue, for values that have none, such as irrational powers. */
 static uint64_t mod_drawn(uint64_t a, uint64_t b) { return scramble(scramble(a + 0x9e3779b97f4a7c15u) ^ b) % PRIME; }
 
-static uint64_t mod_div(uint64_t a, uint64_t b) { return b == 1 ? a : b ? mod_mul(a, mod_pow(b, PRIME - 2)) : mod_drawn(a, b); }
+static uint64_t mod_div(uint64_t a, uint64_t b) {
+  return b == 1 ? a : b ? mod_mul(a, mod_pow(b, PRIME - 2)) : mod_drawn(a, b);
+}
 
 static uint64_t mod_ratio(Wide n, Wide d) {
   uint64_t top = (uint64_t)((Product)wide_abs(n) % PRIME), bottom = (uint64_t)((Product)d % PRIME);
@@ -68,8 +71,8 @@ static uint64_t bits_of(double x) {
   return bits;
 }
 
-/* Makes an inexact number; adds the rounding of x and of the bound itself to the error. If value and residue agree on an integer, the result is
- * that integer. */
+/* Makes an inexact number; adds the rounding of x and of the bound itself to the error. If value and residue agree
+ * on an integer, the result is that integer. */
 static Num inexact(double x, double error, uint64_t residue) {
   error = error * (1 + 1e-9) + fabs(x) * DBL_EPSILON + DBL_MIN * DBL_EPSILON;
   int64_t whole = residue > PRIME / 2 ? -(int64_t)(PRIME - residue) : (int64_t)residue;
@@ -205,7 +208,8 @@ static double power(double x, double y) {
 
 /* a^b, inexact. The error of ln |r| is |b| times that of ln |a|, plus |ln |a|| times that of b. */
 static Num pow_inexact(Num a, Num b) {
-  double x = num_value(a), y = num_value(b), r = power(x, y), ea = value_error(a), eb = value_error(b), least = fabs(x) - ea;
+  double x = num_value(a), y = num_value(b), r = power(x, y), ea = value_error(a), eb = value_error(b),
+         least = fabs(x) - ea;
   double relative = least > 0 ? fabs(y) * ea / least + fabs(log(fabs(x))) * eb + 4 * DBL_EPSILON : INFINITY;
   return inexact(r, relative < 0.1 ? 2 * relative * fabs(r) : INFINITY, residue_of_power(a, b));
 }

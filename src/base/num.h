@@ -1,10 +1,11 @@
 /* Num: an exact rational, or a double with a bound of its error where a rational would overflow 64 bits.
  * Always in lowest terms with den > 0; den == 0 marks the double. Pure values: no memory.
  *
- * Equality stays sound for inexact numbers: such a number is never "zero" or "one". Beside the double stands the residue of
- * the true value modulo a prime, which arithmetic carries without rounding; a difference is exactly 0 where value and residue
- * both are. Different numbers pass for equal with probability 1 in 4e18 (Schwartz 1980, DOI 10.1145/322217.322225), and
- * 1 + 1e-20 is not 1. In the same way an integer on which value and residue agree is exact. */
+ * Equality stays sound for inexact numbers: such a number is never "zero" or "one". Beside the double stands the
+ * residue of the true value modulo a prime, which arithmetic carries without rounding; a difference is exactly 0
+ * where value and residue both are. Different numbers pass for equal with probability 1 in 4e18 (Schwartz 1980, DOI
+ * 10.1145/322217.322225), and 1 + 1e-20 is not 1. In the same way an integer on which value and residue agree is
+ * exact. */
 #pragma once
 
 #include <stdint.h>
@@ -63,6 +64,6 @@ void num_format_double(char *out, double x);
 /* Reads a finite decimal number; 0: the text is none, as inf, nan and 0x1p3, which strtod reads. */
 int num_parse_double(const char *text, double *x);
 
-/* decimal_literal.c: x*pi^pi_power as a decimal literal, exact where it has at most 40 digits, else cut after 40. NULL where x is no exact
- * rational, its denominator is above 10^18, or pi_power is not -1, 0 or 1. */
+/* decimal_literal.c: x*pi^pi_power as a decimal literal, exact where it has at most 40 digits, else cut after 40.
+ * NULL where x is no exact rational, its denominator is above 10^18, or pi_power is not -1, 0 or 1. */
 const char *decimal_literal(Arena *a, Num x, int pi_power);

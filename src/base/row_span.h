@@ -22,6 +22,7 @@ typedef struct {
 
 RowSpan row_span(Arena *arena, uint32_t width);
 
-/* Relative length, from 0 to 1, of the row minus its projection onto the span; above `independent` the row joins the span. Q is not stored:
- * corrected semi-normal equations, A. Bjorck, Linear Algebra Appl. 88/89 (1987) 31, DOI 10.1016/0024-3795(87)90101-7. */
+/* Relative length, from 0 to 1, of the row minus its projection onto the span; above `independent` the row joins the
+ * span. Q is not stored: corrected semi-normal equations, A. Bjorck, Linear Algebra Appl. 88/89 (1987) 31, DOI
+ * 10.1016/0024-3795(87)90101-7. */
 long double row_span_add(RowSpan *s, const RowElement *row, uint32_t n, long double independent);

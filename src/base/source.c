@@ -20,7 +20,8 @@ const Source *source_add(Sources *s, const char *path, const char *text, size_t 
   Source file = {.path = path, .text = text, .len = (uint32_t)len, .base = s->next_base};
   s->next_base += file.len + 1;
   vec_push(s->arena, &file.lines, 0);
-  for (const char *end; (end = memchr(text + file.lines.at[file.lines.n - 1], '\n', len - file.lines.at[file.lines.n - 1]));)
+  for (const char *end;
+       (end = memchr(text + file.lines.at[file.lines.n - 1], '\n', len - file.lines.at[file.lines.n - 1]));)
     vec_push(s->arena, &file.lines, (uint32_t)(end - text) + 1);
   vec_push(s->arena, &s->files, file);
   return &s->files.at[s->files.n - 1];
@@ -37,7 +38,8 @@ static const Source *read_file(Sources *s, FILE *f, const char *path, const char
   }
   StrBuf all = strbuf(s->arena);
   char block[16 * 1024];
-  for (size_t got; all.n <= SOURCE_MAX_BYTES && (got = fread(block, 1, sizeof block, f)) > 0;) sb_putn(&all, block, got);
+  for (size_t got; all.n <= SOURCE_MAX_BYTES && (got = fread(block, 1, sizeof block, f)) > 0;)
+    sb_putn(&all, block, got);
   const char *text = sb_text(&all);
   size_t len = all.n;
   arena_guard(s->arena, before);
@@ -103,7 +105,8 @@ Place source_place(const Sources *s, uint32_t offset) {
   uint32_t len = 0;
   while (start + len < f->len && text[len] != '\n') len++;
   len -= len > 0 && text[len - 1] == '\r'; /* elsewhere a \r is part of the line */
-  return (Place){.file = f, .line = line, .column = column, .line_text = text, .line_len = len, .line_byte = at - start};
+  return (Place){
+      .file = f, .line = line, .column = column, .line_text = text, .line_len = len, .line_byte = at - start};
 }
 
 /* --- paths --- */

@@ -1,7 +1,7 @@
 /* Sources: the texts of a compilation, and how an offset becomes file, line and column.
  *
- * All texts share one range of offsets (each starts where the one before ended, plus one), so that a Span of two numbers says file and place at once.
- * Offset 0 is never used by a text: a zero Span means "no place". */
+ * All texts share one range of offsets (each starts where the one before ended, plus one), so that a Span of two
+ * numbers says file and place at once. Offset 0 is never used by a text: a zero Span means "no place". */
 #pragma once
 
 #include <stdint.h>
@@ -49,9 +49,11 @@ Sources *sources_new(Arena *a);
 /* Adds a text (not copied: it must outlive the sources). Texts over SOURCE_MAX_BYTES: NULL. */
 const Source *source_add(Sources *s, const char *path, const char *text, size_t len);
 
-/* Reads the model, a file or a pipe, into the arena. On failure NULL, with the reason in *error (part of an English sentence). */
+/* Reads the model, a file or a pipe, into the arena. On failure NULL, with the reason in *error (part of an English
+ * sentence). */
 const Source *source_read_model(Sources *s, const char *path, const char **error);
-/* Reads a file that a model names. It must be a regular file: models come from anywhere, and must not make lagc wait for a pipe or touch a device. */
+/* Reads a file that a model names. It must be a regular file: models come from anywhere, and must not make lagc wait
+ * for a pipe or touch a device. */
 const Source *source_read(Sources *s, const char *path, const char **error);
 
 /* Opens a regular file for reading, or NULL with *error. */
@@ -66,5 +68,6 @@ Place source_place(const Sources *s, uint32_t offset);
 /* `path` as written in the file `from`: relative to its folder, in one spelling for each file. */
 const char *path_relative_to(Arena *a, const char *from, const char *path);
 
-/* The file that is `path` in the file `from`: beside it; or, where none can be read there, in the library that comes with lagc. */
+/* The file that is `path` in the file `from`: beside it; or, where none can be read there, in the library that comes
+ * with lagc. */
 const char *source_locate(const Sources *s, const char *from, const char *path);

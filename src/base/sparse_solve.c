@@ -1,4 +1,5 @@
-/* Sparse Gaussian elimination with equilibration and threshold pivoting, rank-revealing; and regularity of M on the kernel of A. */
+/* Sparse Gaussian elimination with equilibration and threshold pivoting, rank-revealing; and regularity of M on the
+ * kernel of A. */
 #include "base/sparse_solve.h"
 
 #include <float.h>
@@ -14,7 +15,8 @@ typedef struct {
 } Matrix;
 
 /* Counting sort of `from` into `to` by row or column, stable; start[n + 1]: index of the first element of each line. */
-static void sort_by(uint32_t n, const SparseElement *from, size_t count, SparseElement *to, uint32_t *start, int by_row) {
+static void sort_by(uint32_t n, const SparseElement *from, size_t count, SparseElement *to, uint32_t *start,
+                    int by_row) {
   for (uint32_t i = 0; i <= n; i++) start[i] = 0;
   for (size_t k = 0; k < count; k++) start[by_row ? from[k].row : from[k].col]++;
   for (uint32_t i = 0, sum = 0; i <= n; i++) {
@@ -48,8 +50,8 @@ static Matrix matrix_of(Arena *arena, uint32_t n, const SparseElements *a) {
 
 enum { NOT_COUNTED = INT_MIN / 4 };
 
-/* Binary exponents of the elements; NOT_COUNTED where one is 0, not finite, or at the level of double rounding beside the largest of its row and
- * column. */
+/* Binary exponents of the elements; NOT_COUNTED where one is 0, not finite, or at the level of double rounding
+ * beside the largest of its row and column. */
 static int *exponents_of(Arena *arena, const Matrix *m) {
   const int rounding = 2 * (DBL_MANT_DIG - 1) - 8;
   uint32_t n = m->n, count = m->from[n];
@@ -64,7 +66,8 @@ static int *exponents_of(Arena *arena, const Matrix *m) {
     if (size[k] > top[n + x->col]) top[n + x->col] = size[k];
   }
   for (uint32_t k = 0; k < count; k++)
-    if (size[k] != NOT_COUNTED && 2 * size[k] < top[m->at[k].row] + top[n + m->at[k].col] - rounding) size[k] = NOT_COUNTED;
+    if (size[k] != NOT_COUNTED && 2 * size[k] < top[m->at[k].row] + top[n + m->at[k].col] - rounding)
+      size[k] = NOT_COUNTED;
   return size;
 }
 
@@ -72,7 +75,8 @@ static int *exponents_of(Arena *arena, const Matrix *m) {
 static void equilibrate(Arena *arena, const Matrix *m, int *row, int *column) {
   uint32_t n = m->n, *counted = ARENA_ARRAY(arena, uint32_t, 2 * (size_t)n + 1);
   const int *size = exponents_of(arena, m);
-  long double *scale = ARENA_ARRAY(arena, long double, 2 * (size_t)n + 1), *sum = ARENA_ARRAY(arena, long double, 2 * (size_t)n + 1), moved = 1;
+  long double *scale = ARENA_ARRAY(arena, long double, 2 * (size_t)n + 1),
+              *sum = ARENA_ARRAY(arena, long double, 2 * (size_t)n + 1), moved = 1;
   for (int turn = 0; turn < 60 && moved > 0.1L; turn++) {
     moved = 0;
     for (uint32_t first = 0; first < 2 * n; first += n) { /* all rows, then all columns */
@@ -153,11 +157,13 @@ static void unlist_row(Elimination *x, uint32_t i) {
 
 static Elimination elimination_new(Arena *arena, const Matrix *m, const int *by_row, const int *by_column) {
   uint32_t n = m->n;
-  Elimination x = {.arena = arena, .n = n, .rows = ARENA_ARRAY(arena, Row, n + 1), .columns = ARENA_ARRAY(arena, Lines, n + 1),
+  Elimination x = {.arena = arena,
+                   .n = n, .rows = ARENA_ARRAY(arena, Row, n + 1), .columns = ARENA_ARRAY(arena, Lines, n + 1),
                    .count = ARENA_ARRAY(arena, uint32_t, n + 1), .taken = ARENA_ARRAY(arena, uint32_t, n + 1),
                    .is_taken = ARENA_ARRAY(arena, unsigned char, n + 1), .first = ARENA_ARRAY(arena, uint32_t, n + 1),
                    .next = ARENA_ARRAY(arena, uint32_t, n + 1), .before = ARENA_ARRAY(arena, uint32_t, n + 1),
-                   .most = ARENA_ARRAY(arena, long double, 2 * (size_t)n + 2), .place = ARENA_ARRAY(arena, uint32_t, n + 1)};
+                   .most = ARENA_ARRAY(arena, long double, 2 * (size_t)n + 2),
+                   .place = ARENA_ARRAY(arena, uint32_t, n + 1)};
   for (uint32_t i = n; i-- > 0;) {
     for (uint32_t k = m->from[i]; k < m->from[i + 1]; k++) {
       uint32_t col = m->at[k].col;
@@ -182,13 +188,15 @@ static uint32_t shortest_row(const Elimination *x, long double least) {
 static void bring_pivot(const Elimination *x, Row *r, long double least) {
   uint32_t at = UINT32_MAX;
   for (uint32_t k = 0; k < r->n; k++)
-    if (fabsl(r->at[k].value) >= least && (at == UINT32_MAX || x->count[r->at[k].col] < x->count[r->at[at].col])) at = k;
+    if (fabsl(r->at[k].value) >= least && (at == UINT32_MAX || x->count[r->at[k].col] < x->count[r->at[at].col]))
+      at = k;
   Element pivot = r->at[at];
   r->at[at] = r->at[0];
   r->at[0] = pivot;
 }
 
-/* Chooses the next pivot row, with a pivot of at least a tenth of the largest element. Returns 0 where no element is above `least`. */
+/* Chooses the next pivot row, with a pivot of at least a tenth of the largest element. Returns 0 where no element is
+ * above `least`. */
 static int choose_pivot_row(Elimination *x, long double least, uint32_t *row) {
   static const Row none;
   long double largest = x->n ? x->most[1] : 0;
@@ -240,7 +248,8 @@ static void eliminate(Elimination *x, long double *b, long double least) {
   }
 }
 
-/* Back substitution: unknowns of the pivots from right-hand sides b (NULL: 0) and the free unknowns, which stand in x. */
+/* Back substitution: unknowns of the pivots from right-hand sides b (NULL: 0) and the free unknowns, which stand in
+ * x. */
 static void substitute_back(const Elimination *e, const long double *b, long double *x) {
   for (uint32_t k = e->rank; k-- > 0;) {
     const Row *r = &e->rows[e->taken[k]];
@@ -259,7 +268,8 @@ static uint32_t first_free(const Elimination *e) {
   return free;
 }
 
-uint32_t sparse_solve(Arena *arena, uint32_t n, const SparseElements *a, long double *b, long double tolerance, long double *null) {
+uint32_t sparse_solve(Arena *arena, uint32_t n, const SparseElements *a, long double *b, long double tolerance,
+                      long double *null) {
   ArenaMark before = arena_mark(arena);
   Matrix m = matrix_of(arena, n, a);
   int *by_row = ARENA_ARRAY(arena, int, n + 1), *by_column = ARENA_ARRAY(arena, int, n + 1);
@@ -280,7 +290,8 @@ uint32_t sparse_solve(Arena *arena, uint32_t n, const SparseElements *a, long do
   return e.rank;
 }
 
-/* M is singular on the kernel of A where K = M + A^T W A is singular, for a generic positive diagonal W, after equilibration. */
+/* M is singular on the kernel of A where K = M + A^T W A is singular, for a generic positive diagonal W, after
+ * equilibration. */
 int sparse_is_regular_on_kernel(Arena *arena, uint32_t n, uint32_t m, const SparseElements *a, long double *null) {
   ArenaMark before = arena_mark(arena);
   uint32_t w = n + m;
@@ -290,7 +301,8 @@ int sparse_is_regular_on_kernel(Arena *arena, uint32_t n, uint32_t m, const Spar
     if (isfinite(a->at[k].value)) vec_push(arena, &finite, a->at[k]);
   Matrix x = matrix_of(arena, w, &finite);
   equilibrate(arena, &x, row, column);
-  for (uint32_t k = 0; k < x.from[w]; k++) x.at[k].value = ldexpl(x.at[k].value, row[x.at[k].row] + column[x.at[k].col]);
+  for (uint32_t k = 0; k < x.from[w]; k++)
+    x.at[k].value = ldexpl(x.at[k].value, row[x.at[k].row] + column[x.at[k].col]);
   for (uint32_t k = 0; k < x.from[n]; k++)
     if (x.at[k].col < n) sparse_put(arena, &K, x.at[k].row, x.at[k].col, x.at[k].value);
   for (uint32_t c = n; c < w; c++) { /* row A of a constraint, rescaled, gives its column -A^T */

@@ -1,4 +1,5 @@
-/* Not-a-knot splines in long double: a tridiagonal system for the second derivatives of the cubic; a banded one for slopes and second derivatives of the quintic. */
+/* Not-a-knot splines in long double: a tridiagonal system for the second derivatives of the cubic; a banded one for
+ * slopes and second derivatives of the quintic. */
 #include "base/spline.h"
 
 #include <math.h>
@@ -9,9 +10,9 @@ typedef long double Real;
 static Real gap(double (*row)[3], uint32_t i) { return (Real)row[i + 1][0] - row[i][0]; }
 static Real chord(double (*row)[3], uint32_t i) { return ((Real)row[i + 1][1] - row[i][1]) / gap(row, i); }
 
-/* Row i of the tridiagonal system for the second derivatives m[1] .. m[n-2]: below, on and above the diagonal, and the right
- * side. From the first and last rows m[0] and m[n-1] are eliminated by the continuity of the third derivative at rows 1 and
- * n - 2. Diagonally dominant: no pivoting is needed. */
+/* Row i of the tridiagonal system for the second derivatives m[1] .. m[n-2]: below, on and above the diagonal, and
+ * the right side. From the first and last rows m[0] and m[n-1] are eliminated by the continuity of the third
+ * derivative at rows 1 and n - 2. Diagonally dominant: no pivoting is needed. */
 static void equation(double (*row)[3], uint32_t n, uint32_t i, Real e[4]) {
   Real h = gap(row, i - 1), k = gap(row, i);
   e[0] = h;
@@ -58,17 +59,21 @@ int spline_fit(Arena *a, double (*row)[3], uint32_t n) {
 
 /* ---- The quintic */
 
-/* A quintic on an interval h in x = 0 .. 1 is u0 + x h u0' + x^2 h^2 u0''/2 + c3 x^3 + c4 x^4 + c5 x^5. The last three by u0, h u0', h^2 u0'', and
- * the same at the end. */
-static const Real high[3][6] = {{-10, -6, -1.5L, 10, -4, 0.5L}, {15, 8, 1.5L, -15, 7, -1}, {-6, -3, -0.5L, 6, -3, 0.5L}};
+/* A quintic on an interval h in x = 0 .. 1 is u0 + x h u0' + x^2 h^2 u0''/2 + c3 x^3 + c4 x^4 + c5 x^5. The last
+ * three by u0, h u0', h^2 u0'', and the same at the end. */
+static const Real high[3][6] = {
+    {-10, -6, -1.5L, 10, -4, 0.5L}, {15, 8, 1.5L, -15, 7, -1}, {-6, -3, -0.5L, 6, -3, 0.5L}};
 
 /* Derivative k = 3, 4, 5 of the quintic at the start and the end of its interval, over c3, c4, c5, times h^k. */
-static const Real derivative[3][2][3] = {{{6, 0, 0}, {6, 24, 60}}, {{0, 24, 0}, {0, 24, 120}}, {{0, 0, 120}, {0, 0, 120}}};
+static const Real derivative[3][2][3] = {
+    {{6, 0, 0}, {6, 24, 60}}, {{0, 24, 0}, {0, 24, 120}}, {{0, 0, 120}, {0, 0, 120}}};
 
-/* The unknowns are the slopes and second derivatives of the rows, times the first and the squared mean interval; an equation has those of three rows. */
+/* The unknowns are the slopes and second derivatives of the rows, times the first and the squared mean interval; an
+ * equation has those of three rows. */
 enum { SPAN = 6, BELOW = 5, WIDE = SPAN + 2 * BELOW };
 
-/* Equation: derivative k is continuous at row i. e[0 .. 5] := coefficients of the unknowns of rows i - 1, i, i + 1; returns the right side. */
+/* Equation: derivative k is continuous at row i. e[0 .. 5] := coefficients of the unknowns of rows i - 1, i, i + 1;
+ * returns the right side. */
 static Real continuity(const double (*jet)[4], uint32_t i, int k, Real mean, Real *e) {
   Real right = 0;
   for (int j = 0; j < SPAN; j++) e[j] = 0;
@@ -92,7 +97,9 @@ typedef struct Band {
   Real *a, *b;
 } Band;
 
-static Real *at(const Band *m, uint32_t row, uint32_t column) { return &m->a[(size_t)row * WIDE + column + BELOW - row]; }
+static Real *at(const Band *m, uint32_t row, uint32_t column) {
+  return &m->a[(size_t)row * WIDE + column + BELOW - row];
+}
 
 static void exchange(const Band *m, uint32_t i, uint32_t j, uint32_t from, uint32_t to) {
   for (uint32_t c = from; c < to; c++) {
@@ -106,7 +113,8 @@ static void exchange(const Band *m, uint32_t i, uint32_t j, uint32_t from, uint3
 /* Gaussian elimination with partial pivoting; b := the solution. */
 static void solve_band(const Band *m) {
   for (uint32_t k = 0; k < m->n; k++) {
-    uint32_t last = k + BELOW < m->n - 1 ? k + BELOW : m->n - 1, to = k + SPAN + BELOW < m->n ? k + SPAN + BELOW : m->n, best = k;
+    uint32_t last = k + BELOW < m->n - 1 ? k + BELOW : m->n - 1, to = k + SPAN + BELOW < m->n ? k + SPAN + BELOW : m->n,
+             best = k;
     for (uint32_t i = k + 1; i <= last; i++) best = fabsl(*at(m, i, k)) > fabsl(*at(m, best, k)) ? i : best;
     if (best != k) exchange(m, k, best, k, to);
     for (uint32_t i = k + 1; i <= last; i++) {

@@ -15,7 +15,8 @@ void sb_puts(StrBuf *b, const char *s);
 void sb_putn(StrBuf *b, const char *s, size_t n);
 void sb_printf(StrBuf *b, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
-/* Appends s[n] with control characters and characters that reverse the direction of text shown as <U+202E>, except those of `keep`. */
+/* Appends s[n] with control characters and characters that reverse the direction of text shown as <U+202E>, except
+ * those of `keep`. */
 void sb_visible(StrBuf *b, const char *s, size_t n, const char *keep);
 
 /* Appends the text as a string of JSON, in quotes. */

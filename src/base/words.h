@@ -15,6 +15,6 @@ static inline int is_space(char c) { return c == ' ' || c == '\t' || c == '\n' |
 /* Ending of a noun after the number n. */
 static inline const char *plural(unsigned long n) { return n == 1 ? "" : "s"; }
 
-/* The candidate closest to `wrong` in edit distance (insert, delete, replace, swap neighbours), or NULL when none is close: at most a third of the
- * length, at least one edit. For "did you mean". */
+/* The candidate closest to `wrong` in edit distance (insert, delete, replace, swap neighbours), or NULL when none is
+ * close: at most a third of the length, at least one edit. For "did you mean". */
 Name suggest(const char *wrong, const Name *candidates, size_t n);

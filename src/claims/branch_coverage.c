@@ -90,7 +90,9 @@ const char *branch_coverage_missing(const BranchCoverage *s) {
     if (of->one && of->other) continue;
     sb_putc(&b, '`');
     expr_print(s->g, of->e, PRINT_TEXT, &b);
-    sb_puts(&b, of->kind == TRUTH ? of->one ? "` false" : "` true" : of->kind == SIGN ? of->one ? "` negative" : "` positive" : "` with two distinguishable values");
+    sb_puts(&b, of->kind == TRUTH  ? of->one ? "` false" : "` true"
+                : of->kind == SIGN ? of->one ? "` negative" : "` positive"
+                                   : "` with two distinguishable values");
     return sb_text(&b);
   }
   return NULL;

@@ -8,8 +8,9 @@ Expr switching_function(ExprGraph *g, Expr e);
 
 typedef struct BranchCoverage BranchCoverage;
 
-/* The sides in the roots: true and false of conditions; both signs of the arguments of `min`, `max`, `abs` and `sign` where both are possible; two
- * values of functions of one number that vary (tanh(x^2 + 30) is 1 in all digits there are). */
+/* The sides in the roots: true and false of conditions; both signs of the arguments of `min`, `max`, `abs` and
+ * `sign` where both are possible; two values of functions of one number that vary (tanh(x^2 + 30) is 1 in all digits
+ * there are). */
 BranchCoverage *branch_coverage(ExprGraph *g, const Expr *roots, uint32_t n);
 
 /* Records a state that was compared. */

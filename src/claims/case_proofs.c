@@ -1,5 +1,5 @@
-/* Each case is a substitution in the claim and in the equations of motion, judged by the one prover (prove_by_motion). Depth is at most CASES_DEPTH_MAX,
- * the number of proofs PROOFS_MOST. */
+/* Each case is a substitution in the claim and in the equations of motion, judged by the one prover
+ * (prove_by_motion). Depth is at most CASES_DEPTH_MAX, the number of proofs PROOFS_MOST. */
 #include "claims/case_proofs.h"
 
 #include "claims/branch_coverage.h"
@@ -68,7 +68,9 @@ static Expr fold(ExprGraph *g, Expr e) {
 
 /* --- substitution --- */
 
-static Expr substitute_in(ExprGraph *g, Expr x, const Expr *with) { return expr_substitute(g, x, with, expr_symbol_count(g) + 1, ""); }
+static Expr substitute_in(ExprGraph *g, Expr x, const Expr *with) {
+  return expr_substitute(g, x, with, expr_symbol_count(g) + 1, "");
+}
 
 static Expr *substitute_all(ExprGraph *g, const Expr *x, uint32_t n, const Expr *with) {
   Expr *out = ARENA_ARRAY(expr_arena(g), Expr, n + 1);
@@ -78,7 +80,9 @@ static Expr *substitute_all(ExprGraph *g, const Expr *x, uint32_t n, const Expr 
 
 static Entries substitute_entries(ExprGraph *g, const Entries *x, const Expr *with) {
   Entries out = {0};
-  for (uint32_t i = 0; i < x->n; i++) vec_push(expr_arena(g), &out, ((MassEntry){x->at[i].row, x->at[i].col, fold(g, substitute_in(g, x->at[i].e, with))}));
+  for (uint32_t i = 0; i < x->n; i++)
+    vec_push(expr_arena(g), &out,
+             ((MassEntry){x->at[i].row, x->at[i].col, fold(g, substitute_in(g, x->at[i].e, with))}));
   return out;
 }
 
@@ -133,7 +137,8 @@ typedef struct {
 } Linear;
 
 static int is_free(const Symbol *s) {
-  return s->kind != SYM_ACC && s->kind != SYM_MULTIPLIER && s->kind != SYM_RATE && s->kind != SYM_LOCAL && s->kind != SYM_CONST;
+  return s->kind != SYM_ACC && s->kind != SYM_MULTIPLIER && s->kind != SYM_RATE && s->kind != SYM_LOCAL &&
+         s->kind != SYM_CONST;
 }
 
 /* Whether u = A s + B: du/ds is free of s, and u has no steps in s, whose derivative is 0. */
@@ -156,14 +161,16 @@ static Expr solution(ExprGraph *g, const Linear *l, Expr value) {
   return expr_div(g, rest, l->A);
 }
 
-/* A symbol in which u is linear, and its value where u is `value`. Preferred: a symbol of unknown sign, then one whose sign the value shows. 0:
- * there is none. */
+/* A symbol in which u is linear, and its value where u is `value`. Preferred: a symbol of unknown sign, then one
+ * whose sign the value shows. 0: there is none. */
 static int solve_for_symbol(ExprGraph *g, Expr u, Expr value, SymId *s, Expr *is) {
   ExprList l = expr_topo(g, &u, 1);
   int best = 0;
   for (uint32_t i = 0; i < l.n && best < 3; i++) {
     Linear one;
-    if (expr_op(g, l.at[i]) != EX_SYM || !is_free(expr_sym_of(g, l.at[i])) || !linear_in(g, u, expr_sym_id(g, l.at[i]), &one) || !expr_is_nonzero(g, one.A)) continue;
+    if (expr_op(g, l.at[i]) != EX_SYM || !is_free(expr_sym_of(g, l.at[i])) ||
+        !linear_in(g, u, expr_sym_id(g, l.at[i]), &one) || !expr_is_nonzero(g, one.A))
+      continue;
     Expr found = solution(g, &one, value);
     ExprSign sign = expr_sym_of(g, l.at[i])->sign;
     int rank = sign == SIGN_UNKNOWN ? 3 : expr_sign(g, found) == sign ? 2 : 1;
@@ -175,7 +182,8 @@ static int solve_for_symbol(ExprGraph *g, Expr u, Expr value, SymId *s, Expr *is
   return best > 0;
 }
 
-/* Whether the claim holds where u is `sign` times a positive number, or 0 for sign 0; -1: no symbol gives u that value. */
+/* Whether the claim holds where u is `sign` times a positive number, or 0 for sign 0; -1: no symbol gives u that
+ * value. */
 static int holds_where(Prover *p, const Claim *c, Expr u, int sign) {
   ExprGraph *g = p->g;
   Expr value = expr_scale(g, num_int(sign), expr_symbol(g, p->symbols->positive[c->depth])->node), is;
@@ -205,7 +213,8 @@ static int use_domain(Prover *p, const Claim *c) {
 
 /* --- constraints --- */
 
-/* Solves c = A s^2 + B = 0 for s, both roots or that of the declared sign; 1 or 0 as the claim holds with them, -1: there is no such s. */
+/* Solves c = A s^2 + B = 0 for s, both roots or that of the declared sign; 1 or 0 as the claim holds with them, -1:
+ * there is no such s. */
 static int use_square(Prover *p, const Claim *c, Expr constraint) {
   ExprGraph *g = p->g;
   ExprList l = expr_topo(g, &constraint, 1);
@@ -215,11 +224,14 @@ static int use_square(Prover *p, const Claim *c, Expr constraint) {
       SymId s = expr_sym_id(g, l.at[i]);
       ExprSign sign = expr_symbol(g, s)->sign;
       if ((sign != SIGN_UNKNOWN) != with_sign) continue;
-      Expr slope = expr_diff(g, constraint, s), twice = expr_diff(g, slope, s), A = expr_scale(g, num_ratio(1, 2), twice);
-      Expr square = expr_pow_num(g, l.at[i], num_int(2)), part = expr_mul(g, A, square), B = expr_sub(g, constraint, part);
+      Expr slope = expr_diff(g, constraint, s), twice = expr_diff(g, slope, s),
+           A = expr_scale(g, num_ratio(1, 2), twice);
+      Expr square = expr_pow_num(g, l.at[i], num_int(2)), part = expr_mul(g, A, square),
+           B = expr_sub(g, constraint, part);
       if (!expr_is_nonzero(g, A) || expr_contains_sym(g, A, s) || expr_contains_sym(g, B, s)) continue;
       Expr minus = expr_neg(g, B), root = expr_sqrt(g, expr_div(g, minus, A)), other = expr_neg(g, root);
-      return (sign_is_nonpositive(sign) || holds_with(p, c, s, root)) && (sign_is_nonnegative(sign) || holds_with(p, c, s, other));
+      return (sign_is_nonpositive(sign) || holds_with(p, c, s, root)) &&
+             (sign_is_nonnegative(sign) || holds_with(p, c, s, other));
     }
   return -1;
 }
@@ -236,8 +248,8 @@ static int use_positions(Prover *p, const Claim *c) {
   return -1;
 }
 
-/* Uses a constraint r = 0 on velocities, solved for each velocity whose factor is not 0. The claim must hold with each of them: then it holds
- * wherever one factor is not 0. -1: none is left. */
+/* Uses a constraint r = 0 on velocities, solved for each velocity whose factor is not 0. The claim must hold with
+ * each of them: then it holds wherever one factor is not 0. -1: none is left. */
 static int use_velocities(Prover *p, const Claim *c) {
   ExprGraph *g = p->g;
   const Constraints *k = &c->e->constraints;
@@ -317,6 +329,9 @@ int prove_by_cases(const Eqns *e, const CaseSymbols *symbols, Expr lhs, Expr rhs
   ExprGraph *g = e->g;
   Prover p = {.m = e->m, .g = g, .symbols = symbols, .proofs = PROOFS_MOST};
   Expr left = states_substitute(e, lhs), right = states_substitute(e, rhs), gap = expr_sub(g, left, right);
-  Claim c = {.e = e, .gap = fold(g, gap), .domain = domain ? fold(g, states_substitute(e, domain)) : 0, .solved = (expr_kinds(g, gap) & solved) != 0};
+  Claim c = {.e = e,
+             .gap = fold(g, gap),
+             .domain = domain ? fold(g, states_substitute(e, domain)) : 0,
+             .solved = (expr_kinds(g, gap) & solved) != 0};
   return e->mass.n + e->constraints.A.n <= ENTRIES_MOST && prove(&p, &c);
 }

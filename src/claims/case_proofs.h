@@ -13,6 +13,7 @@ typedef struct {
 } CaseSymbols;
 CaseSymbols cases_symbols(const Model *m);
 
-/* Whether the sides are equal at all states where `domain` holds (0: everywhere). The cases: signs that the domain gives; states on the
- * constraints and velocities along them; both sides, and the place itself, of each `abs`, `sign`, `min`, `max` and comparison. */
+/* Whether the sides are equal at all states where `domain` holds (0: everywhere). The cases: signs that the domain
+ * gives; states on the constraints and velocities along them; both sides, and the place itself, of each `abs`,
+ * `sign`, `min`, `max` and comparison. */
 int prove_by_cases(const Eqns *e, const CaseSymbols *symbols, Expr lhs, Expr rhs, Expr domain);

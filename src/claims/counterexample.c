@@ -1,5 +1,5 @@
-/* Draws states, completes them by constraints and M q'' = f, compares both sides with running bounds on rounding, and writes the first difference
- * with as few digits as still show it. */
+/* Draws states, completes them by constraints and M q'' = f, compares both sides with running bounds on rounding,
+ * and writes the first difference with as few digits as still show it. */
 #include "claims/counterexample.h"
 
 #include <float.h>
@@ -64,7 +64,9 @@ static Real size_of(const CounterexampleSearch *s, Expr side) {
   return size;
 }
 
-static int certain(Real value, Real bound) { return isfinite(value) && isfinite(bound) && fabsl(value) > 16 * bound + LDBL_MIN; }
+static int certain(Real value, Real bound) {
+  return isfinite(value) && isfinite(bound) && fabsl(value) > 16 * bound + LDBL_MIN;
+}
 
 /* Completes the state and compares the sides; 1: both are defined and differ. */
 static int differs(CounterexampleSearch *s) {
@@ -116,7 +118,8 @@ static void simple_state(CounterexampleSearch *s, int k) {
   for (uint32_t i = 0; i < m->states.n; i++) s->symbols[m->states.at[i].z] = at[(i + shift) % 4];
   for (uint32_t i = 0; i < m->inputs.n; i++) s->symbols[m->inputs.at[i].sym] = at[i % 2];
   for (uint32_t i = 0; i < m->canonicals.n; i++)
-    for (uint32_t j = 0; j < variables_of(&m->canonicals.at[i]); j++) s->symbols[m->canonicals.at[i].fresh[j]] = at[(j + shift) % 4];
+    for (uint32_t j = 0; j < variables_of(&m->canonicals.at[i]); j++)
+      s->symbols[m->canonicals.at[i].fresh[j]] = at[(j + shift) % 4];
 }
 
 static void random_state(CounterexampleSearch *s, uint32_t seed) {
@@ -129,7 +132,8 @@ static void far_state(CounterexampleSearch *s, uint32_t seed) {
   sample_state(s->g, seed, s->symbols);
   for (uint32_t i = 0; i < s->free.n; i++) {
     SymId sym = s->free.at[i].sym;
-    Real choice = (fabsl(sample_symbol(s->g, sym, seed + 7000)) - 0.3L) / 1.7L, power = (fabsl(sample_symbol(s->g, sym, seed + 9000)) - 0.3L) / 1.7L;
+    Real choice = (fabsl(sample_symbol(s->g, sym, seed + 7000)) - 0.3L) / 1.7L,
+         power = (fabsl(sample_symbol(s->g, sym, seed + 9000)) - 0.3L) / 1.7L;
     if (seed % 2 == 0 && choice > 0.35L) continue;
     s->symbols[sym] *= powl(10, 18 * power - 6);
   }
@@ -140,7 +144,8 @@ static void whole_state(CounterexampleSearch *s, uint32_t seed) {
   sample_state(s->g, seed, s->symbols);
   for (uint32_t i = 0; i < s->free.n; i++) {
     const Symbol *sym = expr_symbol(s->g, s->free.at[i].sym);
-    Real part = (fabsl(sample_symbol(s->g, s->free.at[i].sym, seed + 5000)) - 0.3L) / 1.7L, x = seed % 2 ? floorl(13 * part) / 2 - 3 : floorl(7 * part) - 3;
+    Real part = (fabsl(sample_symbol(s->g, s->free.at[i].sym, seed + 5000)) - 0.3L) / 1.7L,
+         x = seed % 2 ? floorl(13 * part) / 2 - 3 : floorl(7 * part) - 3;
     int may_vanish = !sign_is_strict(sym->sign);
     if (sym->sign != SIGN_UNKNOWN) x = (sign_is_nonpositive(sym->sign) ? -1 : 1) * fabsl(x);
     s->symbols[s->free.at[i].sym] = x == 0 && !may_vanish ? (sign_is_nonpositive(sym->sign) ? -1 : 1) : x;
@@ -185,7 +190,8 @@ static int shows_with(CounterexampleSearch *s, int digits) {
     const FreeSymbol *f = &s->free.at[i];
     char text[64];
     snprintf(text, sizeof text, "%.*Lg", digits, shown_value(s, f));
-    s->symbols[f->sym] = strtold(text, NULL) * (Real)unit_factor(f->unit) + (f->rate ? 0 : (Real)num_value(f->unit->offset));
+    s->symbols[f->sym] =
+        strtold(text, NULL) * (Real)unit_factor(f->unit) + (f->rate ? 0 : (Real)num_value(f->unit->offset));
   }
   return differs(s);
 }
@@ -210,7 +216,8 @@ static const char *state_text(const CounterexampleSearch *s, int digits) {
     const FreeSymbol *f = &s->free.at[i];
     if (!f->shown) continue;
     sb_printf(&b, "%s%s = %.*Lg", b.n ? ", " : "", expr_symbol(s->g, f->sym)->name, digits, shown_value(s, f));
-    if (unit_factor(f->unit) != 1 || (!f->rate && !num_is_zero(f->unit->offset))) sb_printf(&b, f->rate ? " [%s/s]" : " [%s]", f->unit->text);
+    if (unit_factor(f->unit) != 1 || (!f->rate && !num_is_zero(f->unit->offset)))
+      sb_printf(&b, f->rate ? " [%s/s]" : " [%s]", f->unit->text);
   }
   return sb_text(&b);
 }
@@ -223,7 +230,8 @@ static const char *difference_text(CounterexampleSearch *s) {
   for (int i = 0; i < 3; i++) {
     int k = (const int[]){6, 17, 21}[i];
     const char *left = arena_printf(a, "%.*Lg", k, s->l), *right = arena_printf(a, "%.*Lg", k, s->r);
-    if (strcmp(left, right) != 0) return arena_printf(a, "the left side is %s, the right side %s at %s", left, right, state);
+    if (strcmp(left, right) != 0)
+      return arena_printf(a, "the left side is %s, the right side %s at %s", left, right, state);
   }
   return arena_printf(a, "the left side is %.6Lg, the right side differs from it by %.6Lg at %s", s->l, -s->d, state);
 }
@@ -259,7 +267,9 @@ static void gather_params(CounterexampleSearch *s) {
   s->out = ARENA_ARRAY(a, Real, is.n + 1);
 }
 
-static int is_in_sides(const CounterexampleSearch *s, SymId sym) { return expr_contains_sym(s->g, s->left, sym) || expr_contains_sym(s->g, s->right, sym); }
+static int is_in_sides(const CounterexampleSearch *s, SymId sym) {
+  return expr_contains_sym(s->g, s->left, sym) || expr_contains_sym(s->g, s->right, sym);
+}
 
 /* Lists the symbols that states give values: coordinates, velocities, states, time, inputs, free parameters. */
 static void gather_free(CounterexampleSearch *s) {
@@ -275,7 +285,8 @@ static void gather_free(CounterexampleSearch *s) {
       int shown = m->coords.n <= FEW_COORDINATES || is_in_sides(s, sym);
       vec_push(a, &s->free, ((FreeSymbol){sym, &c->unit, rates, shown}));
     }
-  for (uint32_t i = 0; i < m->states.n; i++) vec_push(a, &s->free, ((FreeSymbol){m->states.at[i].z, &m->states.at[i].unit, 0, 1}));
+  for (uint32_t i = 0; i < m->states.n; i++)
+    vec_push(a, &s->free, ((FreeSymbol){m->states.at[i].z, &m->states.at[i].unit, 0, 1}));
   for (uint32_t i = 0; i < m->canonicals.n; i++)
     for (uint32_t j = 0; j < variables_of(&m->canonicals.at[i]); j++) {
       SymId sym = m->canonicals.at[i].fresh[j];
@@ -283,8 +294,10 @@ static void gather_free(CounterexampleSearch *s) {
     }
   vec_push(a, &s->free, ((FreeSymbol){m->time, si, 0, is_in_sides(s, m->time)}));
   for (uint32_t i = 0; i < m->inputs.n; i++)
-    if (!model_is_contact_switch(m, m->inputs.at[i].sym)) vec_push(a, &s->free, ((FreeSymbol){m->inputs.at[i].sym, &m->inputs.at[i].unit, 0, 1}));
-  int moves = ((expr_kinds(s->g, s->left) | expr_kinds(s->g, s->right)) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0; /* then M and f matter */
+    if (!model_is_contact_switch(m, m->inputs.at[i].sym))
+      vec_push(a, &s->free, ((FreeSymbol){m->inputs.at[i].sym, &m->inputs.at[i].unit, 0, 1}));
+  /* then M and f matter */
+  int moves = ((expr_kinds(s->g, s->left) | expr_kinds(s->g, s->right)) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0;
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Param *p = &m->params.at[i];
     if (s->e->definitions && s->e->definitions[p->sym]) continue;

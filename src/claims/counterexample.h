@@ -10,6 +10,7 @@ typedef struct {
   const char *missing; /* a side of a switch that no state was on, see claims/branch_coverage.h; NULL: none */
 } Counterexample;
 
-/* Tries simple states, random ones, states from 1e-6 to 1e12 in size, and whole numbers. The sides differ where the difference exceeds 16 times the
- * bound of all rounding, the state's included. quick: a few simple and random states only. */
+/* Tries simple states, random ones, states from 1e-6 to 1e12 in size, and whole numbers. The sides differ where the
+ * difference exceeds 16 times the bound of all rounding, the state's included. quick: a few simple and random states
+ * only. */
 Counterexample counterexample_find(const Eqns *e, const Expect *x, int quick);

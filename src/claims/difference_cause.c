@@ -1,5 +1,6 @@
-/* Tries, in this order: other arguments (an order of y, swapped or fixed parameters), for which the equations of motion give the function's values;
- * one term of an equation of motion M q'' = f, of a rate z', or of two coupled equations solved by Cramer's rule, changed so that they do. */
+/* Tries, in this order: other arguments (an order of y, swapped or fixed parameters), for which the equations of
+ * motion give the function's values; one term of an equation of motion M q'' = f, of a rate z', or of two coupled
+ * equations solved by Cramer's rule, changed so that they do. */
 #include "claims/difference_cause.h"
 
 #include <math.h>
@@ -12,7 +13,8 @@
 
 typedef long double Real;
 
-enum { PAIRS_MAX = 24, COST_MORE = 5 }; /* most terms of which pairs are tried; cost of a term too many, where others cost 1 and the size of a factor */
+/* most terms of which pairs are tried; cost of a term too many, where others cost 1 and the size of a factor */
+enum { PAIRS_MAX = 24, COST_MORE = 5 };
 
 typedef struct {
   const Eqns *e;
@@ -28,8 +30,8 @@ typedef struct {
   const Features *features;
 } CauseSearch;
 
-/* A change of the derived value is an explanation of its difference only if it leaves no more than rounding explains, and is itself more than that
- * wherever the value differs. 0: it is none. */
+/* A change of the derived value is an explanation of its difference only if it leaves no more than rounding
+ * explains, and is itself more than that wherever the value differs. 0: it is none. */
 static int fits(Real change, Real difference, Real bound) {
   return fabsl(change - difference) <= bound && (fabsl(difference) <= bound || fabsl(change) > bound);
 }
@@ -42,8 +44,10 @@ static Real trial_rate(const CauseSearch *s, uint32_t i) {
   return s->trial[i < 2 * s->nq ? s->m->coords.at[i - s->nq].a : s->m->states.at[i - 2 * s->nq].rate];
 }
 
-/* Whether at every state the equations give the function's values when its y[i] is component order[map[i]], or, order NULL, after `change`. */
-static int explains(CauseSearch *s, const uint32_t *order, void (*change)(CauseSearch *s, uint32_t j, uint32_t k), uint32_t j, uint32_t k) {
+/* Whether at every state the equations give the function's values when its y[i] is component order[map[i]], or,
+ * order NULL, after `change`. */
+static int explains(CauseSearch *s, const uint32_t *order, void (*change)(CauseSearch *s, uint32_t j, uint32_t k),
+                    uint32_t j, uint32_t k) {
   size_t bytes = (expr_symbol_count(s->g) + 1) * sizeof *s->trial;
   int changed = 0;
   for (uint32_t n = 0; n < s->d->n; n++) {
@@ -54,7 +58,8 @@ static int explains(CauseSearch *s, const uint32_t *order, void (*change)(CauseS
     sample_follow(s->d->points, s->trial);
     if (!states_complete(s->solver, s->trial)) return 0;
     for (uint32_t i = 0; i < s->y.n; i++) {
-      Real difference = s->d->difference[n][i], bound = s->d->bound[n][i], moved = trial_rate(s, order ? order[i] : i) - (rate[i] - difference);
+      Real difference = s->d->difference[n][i], bound = s->d->bound[n][i],
+           moved = trial_rate(s, order ? order[i] : i) - (rate[i] - difference);
       if (!fits(moved, difference, bound)) return 0;
       changed |= fabsl(moved) > bound;
     }
@@ -78,10 +83,12 @@ static void fix_parameters(CauseSearch *s, uint32_t j, uint32_t k) {
 static const char *cause_order(CauseSearch *s) {
   uint32_t n = s->nq, *order = ARENA_ARRAY(s->arena, uint32_t, s->y.n + 1);
   for (int kind = 0; kind < 2 && n; kind++) {
-    for (uint32_t i = 0; i < s->y.n; i++) order[s->d->map[i]] = i >= 2 * n ? i : kind ? (i + n) % (2 * n) : i / 2 + i % 2 * n;
+    for (uint32_t i = 0; i < s->y.n; i++)
+      order[s->d->map[i]] = i >= 2 * n ? i : kind ? (i + n) % (2 * n) : i / 2 + i % 2 * n;
     if (!explains(s, order, NULL, 0, 0)) continue;
     StrBuf b = strbuf(s->arena);
-    for (uint32_t i = 0; i < s->y.n; i++) sb_printf(&b, "%s%s", i ? "," : "", expr_symbol(s->g, s->y.at[order[s->d->map[i]]])->name);
+    for (uint32_t i = 0; i < s->y.n; i++)
+      sb_printf(&b, "%s%s", i ? "," : "", expr_symbol(s->g, s->y.at[order[s->d->map[i]]])->name);
     return arena_printf(s->arena, "it has y in another order: --map \"%s\"", sb_text(&b));
   }
   return NULL;
@@ -92,12 +99,14 @@ static const char *cause_parameters(CauseSearch *s) {
   for (uint32_t j = 0; j < p.n; j++) {
     const char *name = expr_symbol(s->g, p.at[j])->name;
     for (uint32_t k = j + 1; k < p.n; k++)
-      if (explains(s, NULL, swap_parameters, j, k)) return arena_printf(s->arena, "`%s` and `%s` are swapped in it", name, expr_symbol(s->g, p.at[k])->name);
+      if (explains(s, NULL, swap_parameters, j, k))
+        return arena_printf(s->arena, "`%s` and `%s` are swapped in it", name, expr_symbol(s->g, p.at[k])->name);
     if (!explains(s, NULL, fix_parameters, j, j)) continue;
     fix_parameters(s, j, j);
     return arena_printf(s->arena, "it has %.6Lg for `%s`, whatever p[%u] is", s->trial[p.at[j]], name, j);
   }
-  return p.n > 1 && explains(s, NULL, fix_parameters, 0, p.n - 1) ? "it has the scene's parameters, whatever p is" : NULL;
+  return p.n > 1 && explains(s, NULL, fix_parameters, 0, p.n - 1) ? "it has the scene's parameters, whatever p is"
+                                                                  : NULL;
 }
 
 /* ---- one term ---- */
@@ -150,14 +159,17 @@ typedef struct {
   const char *text;
 } Cause;
 
-static int is_minus_one(const CauseSearch *s, Expr e) { return expr_is_num(s->g, e) && num_equal(expr_number(s->g, e), num_int(-1)); }
+static int is_minus_one(const CauseSearch *s, Expr e) {
+  return expr_is_num(s->g, e) && num_equal(expr_number(s->g, e), num_int(-1));
+}
 
 static void consider(Cause *best, double cost, const char *text) {
   if (best->text && best->cost <= cost) return;
   *best = (Cause){cost, text};
 }
 
-/* Residual of an equation at the states with the function's rates, and the part of it that rounding explains; the accelerations that it determines. */
+/* Residual of an equation at the states with the function's rates, and the part of it that rounding explains; the
+ * accelerations that it determines. */
 typedef struct {
   Real value[FEATURE_STATES], bound[FEATURE_STATES];
   uint32_t solved; /* bit j: q''_j */
@@ -169,8 +181,11 @@ static uint32_t accelerations_in(CauseSearch *s, Expr e) {
   return bits;
 }
 
-/* Whether `e`, in place of a term with the accelerations `had`, brings in one that the equation determines: so any difference could be explained. */
-static int is_circular(CauseSearch *s, Expr e, uint32_t had, const Lack *lack) { return (accelerations_in(s, e) & ~had & lack->solved) != 0; }
+/* Whether `e`, in place of a term with the accelerations `had`, brings in one that the equation determines: so any
+ * difference could be explained. */
+static int is_circular(CauseSearch *s, Expr e, uint32_t had, const Lack *lack) {
+  return (accelerations_in(s, e) & ~had & lack->solved) != 0;
+}
 
 static int is_lack(CauseSearch *s, Expr change, const Lack *lack) {
   Real value[FEATURE_STATES];
@@ -192,15 +207,19 @@ static void consider_term(CauseSearch *s, Expr term, const Lack *lack, Cause *be
   Monomial factor = missing ? (Monomial){0} : features_fit(s->features, ratio);
   if (!missing && !factor.e) return;
   Expr now = missing ? term : expr_mul(s->g, term, factor.e);
-  if (!missing && (is_circular(s, now, accelerations_in(s, term), lack) || !is_lack(s, expr_sub(s->g, now, term), lack))) return;
+  if (!missing &&
+      (is_circular(s, now, accelerations_in(s, term), lack) || !is_lack(s, expr_sub(s->g, now, term), lack)))
+    return;
   const char *text = expr_text(s->g, term);
   if (missing) consider(best, 0, arena_printf(s->arena, "it lacks `%s`", text));
-  else if (is_minus_one(s, factor.e)) consider(best, 1, arena_printf(s->arena, "it has `%s` with the opposite sign", text));
+  else if (is_minus_one(s, factor.e))
+    consider(best, 1, arena_printf(s->arena, "it has `%s` with the opposite sign", text));
   else consider(best, 1 + factor.size, arena_printf(s->arena, "it has `%s` in place of `%s`", expr_text(s->g, now),
                                                     text));
 }
 
-/* The change of one term, or a term too many; else the change of two terms that were written as a product with a sum. */
+/* The change of one term, or a term too many; else the change of two terms that were written as a product with a
+ * sum. */
 static const char *changed_term(CauseSearch *s, const Exprs *terms, const Lack *lack) {
   Cause best = {0};
   for (uint32_t k = 0; k < terms->n; k++) consider_term(s, terms->at[k], lack, &best);
@@ -209,11 +228,14 @@ static const char *changed_term(CauseSearch *s, const Exprs *terms, const Lack *
     consider(&best, COST_MORE, arena_printf(s->arena, "it has one more term, `%s`", expr_text(s->g, more.e)));
   for (uint32_t k = 0; k < terms->n && terms->n <= PAIRS_MAX && !best.text; k++)
     for (uint32_t j = 0; j < k; j++)
-      if (accelerations_in(s, terms->at[j]) == accelerations_in(s, terms->at[k])) consider_term(s, expr_add(s->g, terms->at[j], terms->at[k]), lack, &best);
+      if (accelerations_in(s, terms->at[j]) == accelerations_in(s, terms->at[k]))
+        consider_term(s, expr_add(s->g, terms->at[j], terms->at[k]), lack, &best);
   return best.text;
 }
 
-static Real difference_of(const CauseSearch *s, uint32_t n, uint32_t component) { return s->d->difference[n][component]; }
+static Real difference_of(const CauseSearch *s, uint32_t n, uint32_t component) {
+  return s->d->difference[n][component];
+}
 
 static Real bound_of(const CauseSearch *s, uint32_t n, uint32_t component) { return s->d->bound[n][component]; }
 
@@ -241,7 +263,8 @@ static const char *cause_in_equation(CauseSearch *s, uint32_t i) {
     }
     uint32_t first = terms.n;
     add_terms(s, expr_neg(s->g, M), &terms);
-    for (uint32_t k = first; k < terms.n; k++) terms.at[k] = expr_mul(s->g, terms.at[k], expr_symbol(s->g, s->m->coords.at[j].a)->node);
+    for (uint32_t k = first; k < terms.n; k++)
+      terms.at[k] = expr_mul(s->g, terms.at[k], expr_symbol(s->g, s->m->coords.at[j].a)->node);
   }
   return vanishes(&lack) ? "" : changed_term(s, &terms, &lack);
 }
@@ -270,7 +293,8 @@ static const char *cause_in_solution(CauseSearch *s, uint32_t i, int below) {
   uint32_t j = 1 - i;
   Expr own = eqns_mass(s->e, i, i), other = eqns_mass(s->e, j, j), cross = eqns_mass(s->e, i, j);
   Expr det = expr_sub(s->g, expr_mul(s->g, own, other), expr_mul(s->g, cross, cross));
-  Expr first = expr_mul(s->g, other, s->e->f[i]), second = expr_mul(s->g, cross, s->e->f[j]), numerator = expr_sub(s->g, first, second);
+  Expr first = expr_mul(s->g, other, s->e->f[i]), second = expr_mul(s->g, cross, s->e->f[j]),
+       numerator = expr_sub(s->g, first, second);
   Exprs terms = {0};
   Real divisor[FEATURE_STATES], above[FEATURE_STATES];
   Lack lack = {.solved = 3};
@@ -311,7 +335,9 @@ static const char *cause_in_accelerations(CauseSearch *s, int kind) {
   int known = 1;
   for (uint32_t i = 0; i < s->nq && known; i++) {
     const Coord *q = &s->m->coords.at[i];
-    const char *cause = kind == IN_FACTOR ? cause_in_factor(s, i) : kind == IN_EQUATION ? cause_in_equation(s, i) : cause_in_solution(s, i, kind == IN_DETERMINANT);
+    const char *cause = kind == IN_FACTOR     ? cause_in_factor(s, i)
+                        : kind == IN_EQUATION ? cause_in_equation(s, i)
+                                              : cause_in_solution(s, i, kind == IN_DETERMINANT);
     known = add_cause(&b, where[kind], kind == IN_EQUATION ? q->name : expr_symbol(s->g, q->a)->name, cause);
   }
   return known && b.n ? sb_text(&b) : NULL;
@@ -324,7 +350,8 @@ static const char *cause_in_terms(CauseSearch *s) {
     if (!add_cause(&b, "the rate of ", s->m->states.at[i].name, cause_in_rate(s, i))) return NULL;
   if (b.n || !s->nq) return b.n ? sb_text(&b) : NULL; /* a rate before the accelerations that may contain the state */
   if (s->nq > 1) cause = cause_in_accelerations(s, IN_FACTOR);
-  for (int kind = IN_EQUATION; kind <= (s->nq == 2 ? IN_NUMERATOR : IN_EQUATION) && !cause; kind++) cause = cause_in_accelerations(s, kind);
+  for (int kind = IN_EQUATION; kind <= (s->nq == 2 ? IN_NUMERATOR : IN_EQUATION) && !cause; kind++)
+    cause = cause_in_accelerations(s, kind);
   return cause;
 }
 
@@ -339,7 +366,8 @@ static const char *cause_in_velocities(CauseSearch *s) {
       uint32_t equal = 0;
       for (uint32_t n = 0; n < s->d->n; n++) equal += s->d->state[n][s->y.at[j]] == s->d->rate[n][i];
       if (equal == s->d->n)
-        return arena_printf(s->arena, "it has `dydt[%u] = %s` in place of `%s`", place, expr_symbol(s->g, s->y.at[j])->name, expr_symbol(s->g, s->m->coords.at[i].v)->name);
+        return arena_printf(s->arena, "it has `dydt[%u] = %s` in place of `%s`", place,
+                            expr_symbol(s->g, s->y.at[j])->name, expr_symbol(s->g, s->m->coords.at[i].v)->name);
     }
     return NULL;
   }
@@ -350,7 +378,8 @@ static const char *cause_in_velocities(CauseSearch *s) {
 
 /* Symbols, sines and cosines of the equations, then those of other combinations of two angles. */
 static const Features *gather_features(CauseSearch *s) {
-  const unsigned quantities = 1u << SYM_PARAM | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_ACC;
+  const unsigned quantities = 1u << SYM_PARAM | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_TIME |
+                              1u << SYM_INPUT | 1u << SYM_ACC;
   const int combine[][2] = {{1, 0}, {0, 1}, {1, -1}, {1, 1}, {1, -2}, {2, -1}, {2, -2}};
   const Model *m = s->m;
   Exprs roots = {0};
@@ -379,7 +408,8 @@ static const Features *gather_features(CauseSearch *s) {
 const char *difference_cause(const Eqns *e, const DifferenceData *d) {
   enum { COORDINATES_MAX = 12 };
   const Model *m = e->m;
-  CauseSearch s = {.e = e, .m = m, .g = e->g, .arena = m->arena, .d = d, .y = sample_state_symbols(d->points), .nq = m->coords.n};
+  CauseSearch s = {
+      .e = e, .m = m, .g = e->g, .arena = m->arena, .d = d, .y = sample_state_symbols(d->points), .nq = m->coords.n};
   uint32_t count = expr_symbol_count(e->g) + 1;
   if (d->n < FEATURE_STATES || (m->coords.n && !e->mass_known) || m->coords.n > COORDINATES_MAX) return NULL;
   for (uint32_t n = 0; n < d->n; n++)

@@ -1,4 +1,5 @@
-/* The mistake that explains how a function by hand differs from the equations of motion: order or choice of its arguments, or one term. */
+/* The mistake that explains how a function by hand differs from the equations of motion: order or choice of its
+ * arguments, or one term. */
 #pragma once
 
 #include "claims/monomial_fit.h"

@@ -1,5 +1,5 @@
-/* Verdict on an expectation: a state at which the sides differ, else a proof for all states, else a proof by cases. With contacts, the equations
- * are judged with all contacts open, and with each closed alone. */
+/* Verdict on an expectation: a state at which the sides differ, else a proof for all states, else a proof by cases.
+ * With contacts, the equations are judged with all contacts open, and with each closed alone. */
 #include "claims/expect.h"
 
 #include "claims/case_proofs.h"
@@ -41,7 +41,9 @@ static int numbers_are_exact(const Eqns *e, const Expect *x) {
 
 static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r, int allow_numeric) {
   Diags *d = e->m->diags;
-  const char *text = arena_printf(e->m->arena, "expect %s is not decided: no proof is found, and at all states tried the sides agree to %d digits", r->label, r->digits);
+  const char *text = arena_printf(
+      e->m->arena, "expect %s is not decided: no proof is found, and at all states tried the sides agree to %d digits",
+      r->label, r->digits);
   if (allow_numeric) {
     diag_warning(d, x->span, "%s", text);
     return;
@@ -73,20 +75,27 @@ ExpectResult expect_judge(const Eqns *e, const CaseSymbols *symbols, const Expec
 
 static void report_unknown(const Eqns *e, const Expect *x, const ExpectResult *r) {
   if (r->missing) {
-    diag_error(e->m->diags, x->span, "expect %s is not decided: no proof is found, and no state that was compared shows %s", r->label, r->missing);
-    diag_help(e->m->diags, "state the expectation for one side of the switch alone, or in another form%s", r->inexact ? "; " EXACT_NUMBERS : "");
+    diag_error(e->m->diags, x->span,
+               "expect %s is not decided: no proof is found, and no state that was compared shows %s", r->label,
+               r->missing);
+    diag_help(e->m->diags, "state the expectation for one side of the switch alone, or in another form%s",
+              r->inexact ? "; " EXACT_NUMBERS : "");
     return;
   }
-  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a meaningful value", r->label);
-  diag_help(e->m->diags, "state the expectation where its roots and logarithms are defined, with numbers of ordinary size%s", r->inexact ? "; " EXACT_NUMBERS : "");
+  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a meaningful value",
+             r->label);
+  diag_help(e->m->diags,
+            "state the expectation where its roots and logarithms are defined, with numbers of ordinary size%s",
+            r->inexact ? "; " EXACT_NUMBERS : "");
 }
 
 /* --- parameters that follow from others, and contacts --- */
 
-/* Substitutions for parameters that are given by others (param I = m*l^2 follows m and l), and for contacts: open and without force, but for
- * number `closed` (-1: none). NULL: there are none. */
+/* Substitutions for parameters that are given by others (param I = m*l^2 follows m and l), and for contacts: open
+ * and without force, but for number `closed` (-1: none). NULL: there are none. */
 static const Expr *parameter_substitutions(const Model *m, int closed) {
-  Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 2 + m->expects.n); /* each expectation may declare one more symbol */
+  /* each expectation may declare one more symbol */
+  Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 2 + m->expects.n);
   int some = 0;
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Param *p = &m->params.at[i];
@@ -97,7 +106,9 @@ static const Expr *parameter_substitutions(const Model *m, int closed) {
   for (uint32_t i = 0; i < m->contacts.n; i++) {
     const Contact *c = &m->contacts.at[i];
     with[c->closed] = expr_int(m->g, (int)i == closed);
-    if (c->is_tangent && (int)i != closed && (int)i - 1 != closed && !((int)i - 2 == closed && m->contacts.at[i - 1].is_tangent)) with[c->force] = expr_int(m->g, 0);
+    if (c->is_tangent && (int)i != closed && (int)i - 1 != closed &&
+        !((int)i - 2 == closed && m->contacts.at[i - 1].is_tangent))
+      with[c->force] = expr_int(m->g, 0);
     if ((int)i != closed) with[m->constraints.at[c->constraint].multiplier] = expr_int(m->g, 0);
   }
   return some || m->contacts.n ? with : NULL;
@@ -120,7 +131,8 @@ static ContactCase *contact_cases(const Eqns *e) {
 }
 
 /* Verdict in the first case in which the expectation is not proved, or in the last. */
-static ExpectResult judge_cases(const ContactCase *cases, const CaseSymbols *symbols, const Expect *x, Expect *shown, const Eqns **e) {
+static ExpectResult judge_cases(const ContactCase *cases, const CaseSymbols *symbols, const Expect *x, Expect *shown,
+                                const Eqns **e) {
   const Model *m = cases[0].e->m;
   ExpectResult r = {0};
   for (uint32_t i = 0; i <= m->contacts.n; i++) {
@@ -133,8 +145,9 @@ static ExpectResult judge_cases(const ContactCase *cases, const CaseSymbols *sym
     if (with && x->domain) shown->domain = expr_substitute(m->g, x->domain, with, n, "");
     r = expect_judge(*e, symbols, shown);
     if (r.verdict == EXPECT_PROVED) continue;
-    if (m->contacts.n) r.label = i ? arena_printf(m->arena, "%s, while `%s` is closed,", r.label, m->contacts.at[i - 1].name)
-                                   : arena_printf(m->arena, "%s, while all contacts are open,", r.label);
+    if (m->contacts.n)
+      r.label = i ? arena_printf(m->arena, "%s, while `%s` is closed,", r.label, m->contacts.at[i - 1].name)
+                  : arena_printf(m->arena, "%s, while all contacts are open,", r.label);
     break;
   }
   return r;
@@ -201,5 +214,7 @@ void expects_print(const ExpectResults *r, const Sources *sources, StrBuf *out) 
     print_one(&r->at[i], sources, out);
     proved += r->at[i].verdict == EXPECT_PROVED;
   }
-  if (r->n) sb_printf(out, "%u of %u expectation%s proved%s\n", proved, r->n, r->n == 1 ? "" : "s", proved ? ": for all states at which both sides have real values" : "");
+  if (r->n)
+    sb_printf(out, "%u of %u expectation%s proved%s\n", proved, r->n, r->n == 1 ? "" : "s",
+              proved ? ": for all states at which both sides have real values" : "");
 }

@@ -17,7 +17,8 @@ typedef struct {
   ExpectVerdict verdict;
   int digits; /* digits to which the sides agree */
   int states; /* number of states at which the sides were compared */
-  const char *missing; /* a side of a switch, or a proved difference, that no compared state showed; NULL: none, or no state was compared */
+  /* a side of a switch, or a proved difference, that no compared state showed; NULL: none, or no state was compared */
+  const char *missing;
   const char *difference; /* if refuted: both values, and a state that has them */
   int between; /* holds between jumps of what its brackets contain */
   int inexact; /* a number in the sides or in the equations is not exact, which may be why it is not decided */
@@ -25,12 +26,13 @@ typedef struct {
 
 typedef VEC(ExpectResult) ExpectResults;
 
-/* Verdict on one equation without contacts, reported nowhere. Of a claim that stands in no text, lhs_ast is 0 and `name` its label. */
+/* Verdict on one equation without contacts, reported nowhere. Of a claim that stands in no text, lhs_ast is 0 and
+ * `name` its label. */
 ExpectResult expect_judge(const Eqns *e, const CaseSymbols *symbols, const Expect *x);
 
-/* Judges the expectations declared in `effect` (NULL: outside effects) and appends the verdicts. A refuted one is an error in the model's
- * diagnostics, with the single edit that corrects it if there is one; one that is not decided is an error too, or, where the sides agree in
- * numbers and allow_numeric is set, a warning. */
+/* Judges the expectations declared in `effect` (NULL: outside effects) and appends the verdicts. A refuted one is an
+ * error in the model's diagnostics, with the single edit that corrects it if there is one; one that is not decided
+ * is an error too, or, where the sides agree in numbers and allow_numeric is set, a warning. */
 void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults *out);
 
 /* Appends a line for each expectation and a summary; nothing when there are none. */
@@ -45,7 +47,8 @@ int canonical_holds(Eqns *e, const Canonical *c, const CaseSymbols *symbols, con
 /* Judges all canonical transformations, and appends a line for each that holds. */
 void canonicals_check(Eqns *e, StrBuf *out);
 
-/* mobility.c: appends the degrees of freedom and a line for each constraint: its kind, and whether it is redundant. Nothing without constraints.
- * 0, reported in the model's diagnostics, when no motion is possible from the start that the scene gives: no state near it obeys the
- * constraints, redundant ones disagree, M is singular on their kernel, or a contact is violated. */
+/* mobility.c: appends the degrees of freedom and a line for each constraint: its kind, and whether it is redundant.
+ * Nothing without constraints. 0, reported in the model's diagnostics, when no motion is possible from the start
+ * that the scene gives: no state near it obeys the constraints, redundant ones disagree, M is singular on their
+ * kernel, or a contact is violated. */
 int mobility_show(const Eqns *e, StrBuf *out);

@@ -1,4 +1,5 @@
-/* Candidates for the factors of a monomial (monomial_fit.h): quantities of the model, each once, preferred ones first. */
+/* Candidates for the factors of a monomial (monomial_fit.h): quantities of the model, each once, preferred ones
+ * first. */
 #pragma once
 
 #include "claims/monomial_fit.h"
@@ -19,5 +20,6 @@ void pool_add(FeaturePool *pool, Expr e);
 /* Adds the sine and the cosine of the angle. */
 void pool_angle(FeaturePool *pool, Expr angle);
 
-/* Adds what the nodes contain, of `what`: symbols of these kinds (bits 1 << SymKind); sines and cosines; sums and other functions. */
+/* Adds what the nodes contain, of `what`: symbols of these kinds (bits 1 << SymKind); sines and cosines; sums and
+ * other functions. */
 void pool_nodes(FeaturePool *pool, ExprList nodes, unsigned what, unsigned kinds);

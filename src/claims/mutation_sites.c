@@ -1,4 +1,5 @@
-/* Walks each side from its root down and gives every operand its role. Values with an edit come from those of the nodes beside the way up. */
+/* Walks each side from its root down and gives every operand its role. Values with an edit come from those of the
+ * nodes beside the way up. */
 #include "claims/mutation_sites.h"
 
 #include "base/words.h"
@@ -22,7 +23,9 @@ static Span with_parentheses(const Model *m, Span s) {
 
 static AstId root_of(const Expect *x, int side) { return side ? x->rhs_ast : x->lhs_ast; }
 
-static Expr *node_at(const SiteList *l, int side, AstId node) { return &l->nodes[side][node - ast_expr(l->m->ast, root_of(l->x, side))->first]; }
+static Expr *node_at(const SiteList *l, int side, AstId node) {
+  return &l->nodes[side][node - ast_expr(l->m->ast, root_of(l->x, side))->first];
+}
 
 Expr edit_node(const SiteList *l, int side, AstId node) { return *node_at(l, side, node); }
 Expr edit_side(const SiteList *l, int k) { return *node_at(l, k, root_of(l->x, k)); }
@@ -44,7 +47,8 @@ Expr edit_replaced(const SiteList *l, const Site *s, Expr with) {
   while (node != root && with) {
     AstId up = l->up[s->side][node - first];
     const AstExpr *x = ast_expr(l->m->ast, up);
-    Expr a = x->a && node != x->a ? *node_at(l, s->side, x->a) : with, b = x->b && node != x->b ? *node_at(l, s->side, x->b) : with;
+    Expr a = x->a && node != x->a ? *node_at(l, s->side, x->a) : with,
+         b = x->b && node != x->b ? *node_at(l, s->side, x->b) : with;
     with = combined(l->m->g, x, a, b);
     node = up;
   }
@@ -57,7 +61,9 @@ static void put(SiteList *l, AstId node, const Site *above, SiteRole role, Span 
   Span span = ast_expr(l->m->ast, node)->span;
   if (role != SITE_ARGUMENT && role != SITE_PART) span = with_parentheses(l->m, span);
   Site *s = &l->at[l->n++];
-  *s = (Site){.node = node, .up = above->node, .side = above->side, .role = role, .span = span, .with_op = op.end ? span_join(op, span) : span};
+  *s = (Site){.node = node,
+              .up = above->node, .side = above->side, .role = role, .span = span,
+              .with_op = op.end ? span_join(op, span) : span};
   l->up[s->side][node - ast_expr(l->m->ast, root_of(l->x, s->side))->first] = above->node;
 }
 
@@ -74,7 +80,8 @@ static void put_below(SiteList *l, const Site *s) {
   if (ast_is_sum(x->kind) || is_product(x->kind)) put_operands(l, x, s);
   else if (x->kind == AST_NEG) put(l, x->a, s, s->role == SITE_FACTOR ? SITE_FACTOR : SITE_NUMERATOR, (Span){0, 0});
   else if (x->kind == AST_POW) put(l, x->a, s, SITE_BASE, (Span){0, 0});
-  else if (x->kind == AST_CALL && (edit_function(x) != EX_NUM || strcmp(x->name, "sqrt") == 0)) put(l, x->args, s, SITE_ARGUMENT, (Span){0, 0});
+  else if (x->kind == AST_CALL && (edit_function(x) != EX_NUM || strcmp(x->name, "sqrt") == 0))
+    put(l, x->args, s, SITE_ARGUMENT, (Span){0, 0});
 }
 
 static void walk_side(SiteList *l, int side) {
@@ -93,7 +100,8 @@ static void walk_side(SiteList *l, int side) {
     Site *s = &l->at[i];
     const AstExpr *x = ast_expr(l->m->ast, s->node);
     int chained = ast_is_sum(x->kind) || is_product(x->kind); /* the resolver gives values to whole chains alone */
-    if (chained && !*node_at(l, side, s->node)) *node_at(l, side, s->node) = combined(l->m->g, x, *node_at(l, side, x->a), *node_at(l, side, x->b));
+    if (chained && !*node_at(l, side, s->node))
+      *node_at(l, side, s->node) = combined(l->m->g, x, *node_at(l, side, x->a), *node_at(l, side, x->b));
     s->value = *node_at(l, side, s->node);
   }
 }

@@ -33,7 +33,8 @@ typedef struct {
   AstId *up[2];   /* the site above each node of a side */
 } SiteList;
 
-/* The sites of both sides of an expectation that is the only instance of its statement, outer ones first, left side first. Operands of primes, exponents, conditions and indices are no sites. */
+/* The sites of both sides of an expectation that is the only instance of its statement, outer ones first, left side
+ * first. Operands of primes, exponents, conditions and indices are no sites. */
 SiteList mutation_sites_of(const Model *m, const Expect *x);
 
 /* Values as written: of a node of a side, and of side k; 0: none of its own. */

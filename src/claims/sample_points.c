@@ -1,4 +1,5 @@
-/* Draws values of all symbols, rounds them to doubles, lets values that are given by others follow, and projects onto the constraints. */
+/* Draws values of all symbols, rounds them to doubles, lets values that are given by others follow, and projects
+ * onto the constraints. */
 #include "claims/sample_points.h"
 
 #include <math.h>
@@ -76,8 +77,9 @@ static int is_open(SamplePoints *s, const Contact *c, const long double *symbols
   return c->margin || c->is_tangent || value_of(s, c->gap, symbols) >= 0;
 }
 
-/* Reflects coordinates in contacts that are passed, one after the other, until none is: a tower of blocks has no open state among random ones.
- * S. Agmon, The relaxation method for linear inequalities, Canad. J. Math. 6 (1954) 382, doi:10.4153/CJM-1954-037-2. */
+/* Reflects coordinates in contacts that are passed, one after the other, until none is: a tower of blocks has no
+ * open state among random ones. S. Agmon, The relaxation method for linear inequalities, Canad. J. Math. 6 (1954)
+ * 382, doi:10.4153/CJM-1954-037-2. */
 static void open_contacts(SamplePoints *s, long double *symbols) {
   enum { SWEEPS = 50 };
   uint32_t nq = s->m->coords.n, passed = 1;
@@ -123,7 +125,8 @@ static int draw(SamplePoints *s, uint32_t k, uint32_t seed, long double *symbols
   if (k == 0) {
     symbols[m->time] = m->scene.t0;
     for (uint32_t i = 0; i < s->ny; i++) symbols[s->y[i]] = 0;
-    for (uint32_t i = 0; i < m->scene.starts.n; i++) symbols[m->scene.starts.at[i].target] = value_of(s, m->scene.starts.at[i].value, symbols);
+    for (uint32_t i = 0; i < m->scene.starts.n; i++)
+      symbols[m->scene.starts.at[i].target] = value_of(s, m->scene.starts.at[i].value, symbols);
   }
   if (k) open_contacts(s, symbols);
   if (s->solver && !states_project(s->solver, symbols)) return 0;

@@ -1,5 +1,5 @@
-/* Bounds from residuals, block by block: |K^-1| times the residual and its rounding, with K = [D -A^T; A 0], D = 1 for coordinates and velocities,
- * D = M for accelerations and multipliers. */
+/* Bounds from residuals, block by block: |K^-1| times the residual and its rounding, with K = [D -A^T; A 0], D = 1
+ * for coordinates and velocities, D = M for accelerations and multipliers. */
 #include "claims/state_error_bounds.h"
 
 #include <float.h>
@@ -78,8 +78,8 @@ static void fill_system(StateErrorBounds *w, int with_mass) {
     if (!w->counts[k]) w->K[(n + k) * width + n + k] = 1;
 }
 
-/* Bounds out = 2 |K^-1| off of the unknowns for residuals of size off, block by block. The factor 2 covers errors dK of the entries while |K^-1|
- * dK is small. 0: it is not. */
+/* Bounds out = 2 |K^-1| off of the unknowns for residuals of size off, block by block. The factor 2 covers errors dK
+ * of the entries while |K^-1| dK is small. 0: it is not. */
 static int bound_unknowns(StateErrorBounds *w, const Real *off, Real *out) {
   uint32_t width = w->width;
   for (uint32_t b = 0; b < width; b++) {
@@ -123,9 +123,12 @@ static int bound_motion(StateErrorBounds *w, int velocities, Real *errors) {
   return 1;
 }
 
-static SymId unknown(const Eqns *e, uint32_t i) { return i < e->n ? e->m->coords.at[i].a : e->constraints.of[i - e->n]->multiplier; }
+static SymId unknown(const Eqns *e, uint32_t i) {
+  return i < e->n ? e->m->coords.at[i].a : e->constraints.of[i - e->n]->multiplier;
+}
 
-/* Bounds of accelerations and multipliers from the residuals of the equations of motion; multipliers are free if constraints are redundant. */
+/* Bounds of accelerations and multipliers from the residuals of the equations of motion; multipliers are free if
+ * constraints are redundant. */
 static int bound_solution(StateErrorBounds *w, const Real *symbols, int free, Real *errors) {
   const Eqns *e = w->e;
   uint32_t n = e->n, width = w->width;

@@ -1,5 +1,6 @@
-/* At a few dozen states each place of the formula is solved for the value that it needs. The needed value, its difference from the written one, or
- * their ratio is recognised as a monomial of the model's quantities, and named as an edit: the cheapest one that is proved is the correction. */
+/* At a few dozen states each place of the formula is solved for the value that it needs. The needed value, its
+ * difference from the written one, or their ratio is recognised as a monomial of the model's quantities, and named
+ * as an edit: the cheapest one that is proved is the correction. */
 #include "claims/suggest_correction.h"
 
 #include <math.h>
@@ -84,8 +85,8 @@ static long double residual_with(EditSearch *md, EvalTape *tape, uint32_t state,
   return out[0] - out[1];
 }
 
-/* The root of the function x -> (x - r)/(c x + d) through three points: exact where the equation is linear in the place, or a quotient of linear
- * functions of it (Jarratt and Nudds 1965, DOI 10.1093/comjnl/8.1.62). */
+/* The root of the function x -> (x - r)/(c x + d) through three points: exact where the equation is linear in the
+ * place, or a quotient of linear functions of it (Jarratt and Nudds 1965, DOI 10.1093/comjnl/8.1.62). */
 static long double next_guess(const long double *x, const long double *f) {
   long double y0 = x[0] - x[2], y1 = x[1] - x[2];
   long double det = f[0] * y0 * (f[1] - f[2]) - f[1] * y1 * (f[0] - f[2]);
@@ -110,7 +111,8 @@ static long double needed_value(EditSearch *md, EvalTape *tape, uint32_t state, 
 }
 
 static int find_need(EditSearch *md, const Site *s, Need *need) {
-  Expr stand_in = expr_symbol(md->g, md->stand_in)->node, changed = edit_replaced(&md->sites, s, stand_in), value = s->value;
+  Expr stand_in = expr_symbol(md->g, md->stand_in)->node, changed = edit_replaced(&md->sites, s, stand_in),
+       value = s->value;
   Expr sides[2] = {s->side ? md->x->lhs : changed, s->side ? changed : md->x->rhs};
   if (!changed) return 0;
   EvalTape *tape = eval_tape(md->g, sides, 2), *as_written = eval_tape(md->g, &value, 1);
@@ -127,16 +129,20 @@ static int find_need(EditSearch *md, const Site *s, Need *need) {
 
 /* --- features --- */
 
-/* Whether e is or contains a whole side: that may not correct the other, or any x'' = formula could become x'' = x''. */
+/* Whether e is or contains a whole side: that may not correct the other, or any x'' = formula could become x'' =
+ * x''. */
 static int contains_a_side(const void *data, Expr e) {
   const EditSearch *md = data;
   const Expr sides[2] = {md->x->lhs, md->x->rhs};
   for (int k = 0; k < 2; k++)
-    if (e == sides[k] || (expr_op(md->g, sides[k]) == EX_SYM && expr_contains_sym(md->g, e, expr_sym_id(md->g, sides[k])))) return 1;
+    if (e == sides[k] ||
+        (expr_op(md->g, sides[k]) == EX_SYM && expr_contains_sym(md->g, e, expr_sym_id(md->g, sides[k]))))
+      return 1;
   return 0;
 }
 
-/* Quantities that the needed value of a place may be made of; simple ones first. What is missing often stands elsewhere in the expectations. */
+/* Quantities that the needed value of a place may be made of; simple ones first. What is missing often stands
+ * elsewhere in the expectations. */
 static const Features *gather_features(EditSearch *md) {
   const Model *m = md->m;
   VEC(Expr) own = {0}, all = {0}, dynamics = {0}, inertia = {0};
@@ -149,9 +155,10 @@ static const Features *gather_features(EditSearch *md) {
   for (uint32_t i = 0; i < md->e->n; i++) vec_push(md->arena, &dynamics, md->e->f[i]);
   for (uint32_t i = 0; i < m->states.n; i++) vec_push(md->arena, &dynamics, md->e->flow[i]);
   for (uint32_t i = 0; i < md->e->mass.n; i++) vec_push(md->arena, &inertia, md->e->mass.at[i].e);
-  ExprList nodes[] = {expr_topo(md->g, own.at, own.n), expr_topo(md->g, inertia.at, inertia.n), expr_topo(md->g, all.at, all.n),
-                      expr_topo(md->g, dynamics.at, dynamics.n)};
-  const unsigned quantities = 1u << SYM_PARAM | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_RATE;
+  ExprList nodes[] = {expr_topo(md->g, own.at, own.n), expr_topo(md->g, inertia.at, inertia.n),
+                      expr_topo(md->g, all.at, all.n), expr_topo(md->g, dynamics.at, dynamics.n)};
+  const unsigned quantities = 1u << SYM_PARAM | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_TIME |
+                              1u << SYM_INPUT | 1u << SYM_RATE;
   const unsigned simple = POOL_SYMBOLS | POOL_ANGLES, all_of = simple | POOL_COMPOUNDS;
   FeaturePool pool = {.g = md->g, .barred = contains_a_side, .data = md};
   for (int k = 0; k < 4; k++) pool_nodes(&pool, nodes[k], simple, quantities);
@@ -173,7 +180,8 @@ static void guess(EditSearch *md, const Site *s, Expr with, double cost, Span ca
 }
 
 /* The same, where the text at the caret should be `text`. */
-static Guess *guess_text(EditSearch *md, const Site *s, Expr with, double cost, Span at, const char *edit, const char *text) {
+static Guess *guess_text(EditSearch *md, const Site *s, Expr with, double cost, Span at, const char *edit,
+                         const char *text) {
   guess(md, s, with, cost, at, edit);
   Guess *last = &md->guesses.at[md->guesses.n - 1];
   last->text = text;
@@ -195,7 +203,9 @@ static void guess_sign(EditSearch *md, const Site *s, const char *text) {
   if (s->role != SITE_TERM && s->role != SITE_ROOT && s->role != SITE_ARGUMENT) return;
   const AstExpr *up = s->up ? ast_expr(md->m->ast, s->up) : NULL;
   int second = s->role == SITE_TERM && up->b == s->node;
-  const char *how = !second ? "should have the opposite sign" : up->kind == AST_SUB ? "should be added, not subtracted" : "should be subtracted, not added";
+  const char *how = !second               ? "should have the opposite sign"
+                    : up->kind == AST_SUB ? "should be added, not subtracted"
+                                          : "should be subtracted, not added";
   double cost = COST_SLIP;
   if (!second) cost += begins_with_minus(md, s) ? -0.05 : 0.1; /* a written sign is the likelier mistake */
   if (s->role == SITE_ARGUMENT && cost > COST_SLIP) cost += 0.2; /* -sin(x) before sin(-x) */
@@ -232,7 +242,8 @@ static void guess_power(EditSearch *md, const Site *s, const char *text, const N
     long double power = powl(fabsl(need->written[i]), roundl(12 * r) / 12);
     if (!(fabsl(power - fabsl(need->needed[i])) <= 1e-8L * power)) return;
   }
-  Expr base = exponent ? edit_node(&md->sites, s->side, x->a) : s->value, with = base ? expr_pow_num(md->g, base, n) : 0;
+  Expr base = exponent ? edit_node(&md->sites, s->side, x->a) : s->value,
+       with = base ? expr_pow_num(md->g, base, n) : 0;
   if (exponent) {
     const char *old = short_text(md->m->ast, exponent->span);
     Expr shown = expr_num(md->g, n);
@@ -254,7 +265,8 @@ static void guess_power(EditSearch *md, const Site *s, const char *text, const N
   int alone = x->kind == AST_NAME || x->kind == AST_CALL || x->kind == AST_PRIME || x->kind == AST_MEMBER ||
               x->kind == AST_INDEX || s->span.begin < x->span.begin;
   guess_text(md, s, with, COST_POWER, s->span, arena_printf(md->arena, "`%s` should be", text),
-             arena_printf(md->arena, alone ? "%s%s" : "(%s)%s", text, arena_printf(md->arena, whole, power)))->own = alone ? 1 : 2;
+             arena_printf(md->arena, alone ? "%s%s" : "(%s)%s", text, arena_printf(md->arena, whole, power)))
+      ->own = alone ? 1 : 2;
 }
 
 /* Whether all needed values are `value`, up to rounding. */
@@ -266,23 +278,27 @@ static int needs(const Need *need, long double value) {
 
 static void guess_removal(EditSearch *md, const Site *s, const char *text, const Need *need) {
   int is_number = ast_of(md, s)->kind == AST_NUM, zero = needs(need, 0);
-  if (zero && is_number) guess_text(md, s, expr_int(md->g, 0), COST_SLIP, s->span, arena_printf(md->arena, "`%s` should be", text), "0");
-  if (zero && s->role == SITE_TERM) guess(md, s, expr_int(md->g, 0), COST_EXTRA, s->with_op, arena_printf(md->arena, "the term `%s` should not be there", text));
+  if (zero && is_number)
+    guess_text(md, s, expr_int(md->g, 0), COST_SLIP, s->span, arena_printf(md->arena, "`%s` should be", text), "0");
+  if (zero && s->role == SITE_TERM)
+    guess(md, s, expr_int(md->g, 0), COST_EXTRA, s->with_op,
+          arena_printf(md->arena, "the term `%s` should not be there", text));
   if (is_number || (s->role != SITE_FACTOR && s->role != SITE_DIVISOR) || !needs(need, 1)) return;
   const char *what = s->role == SITE_FACTOR ? "factor" : "divisor";
-  guess(md, s, expr_int(md->g, 1), COST_EXTRA, s->with_op, arena_printf(md->arena, "the %s `%s` should not be there", what, text));
+  guess(md, s, expr_int(md->g, 1), COST_EXTRA, s->with_op,
+        arena_printf(md->arena, "the %s `%s` should not be there", what, text));
 }
 
-/* Small differences in cost where the same factor fits in several places: a product goes before a name in it, a term or numerator before the whole
- * side. */
+/* Small differences in cost where the same factor fits in several places: a product goes before a name in it, a term
+ * or numerator before the whole side. */
 static double cost_of_place(const EditSearch *md, const Site *s) {
   AstKind kind = ast_of(md, s)->kind;
   int compound = ast_is_sum(kind) || kind == AST_MUL || kind == AST_DIV;
   return s->role == SITE_NUMERATOR && !compound ? 0.1 : s->role == SITE_ROOT ? 0.05 : 0;
 }
 
-/* A missing factor, unless it is long: one that cancels much of the text and puts other things there is no edit. In x'' = formula the formula lacks
- * it, not x''. */
+/* A missing factor, unless it is long: one that cancels much of the text and puts other things there is no edit. In
+ * x'' = formula the formula lacks it, not x''. */
 static void guess_factor(EditSearch *md, const Site *s, const char *text, const Monomial *missing) {
   enum { MOST = 12, MOST_MIXED = 5 };
   int alone = s->role == SITE_ROOT && !s->side && expr_op(md->g, s->value) == EX_SYM, number = is_number(md, missing);
@@ -290,8 +306,11 @@ static void guess_factor(EditSearch *md, const Site *s, const char *text, const 
   Expr shown = missing->divisor ? missing->divisor : missing->e;
   const char *what = missing->divisor ? "divisor" : "factor", *formula = expr_text(md->g, shown);
   if (!printed_says(md->m, formula, shown)) return;
-  double cost = (number ? COST_SCALE + (expr_number(md->g, missing->e).den == 1 ? 0 : 0.2) : COST_VALUE + COST_FACTOR * missing->size) + cost_of_place(md, s);
-  guess(md, s, expr_mul(md->g, s->value, missing->e), cost, s->span, arena_printf(md->arena, "`%s` lacks the %s `%s`", text, what, formula));
+  double cost = (number ? COST_SCALE + (expr_number(md->g, missing->e).den == 1 ? 0 : 0.2)
+                        : COST_VALUE + COST_FACTOR * missing->size) +
+                cost_of_place(md, s);
+  guess(md, s, expr_mul(md->g, s->value, missing->e), cost, s->span,
+        arena_printf(md->arena, "`%s` lacks the %s `%s`", text, what, formula));
 }
 
 static void guess_term(EditSearch *md, const Site *s, const char *text, const Monomial *missing) {
@@ -299,7 +318,8 @@ static void guess_term(EditSearch *md, const Site *s, const char *text, const Mo
   if (!is_sum && s->role == SITE_TERM) return;
   if (!printed_says(md->m, expr_text(md->g, missing->e), missing->e)) return;
   const char *edit = arena_printf(md->arena, "`%s` lacks the term `%s`", text, expr_text(md->g, missing->e));
-  guess(md, s, expr_add(md->g, s->value, missing->e), COST_VALUE + COST_FACTOR * missing->size + (is_sum ? 0 : 0.1), ast_of(md, s)->span, edit);
+  guess(md, s, expr_add(md->g, s->value, missing->e), COST_VALUE + COST_FACTOR * missing->size + (is_sum ? 0 : 0.1),
+        ast_of(md, s)->span, edit);
 }
 
 static void guess_replacement(EditSearch *md, const Site *s, Expr with, double cost, Span caret) {
@@ -313,10 +333,14 @@ static void guess_argument(EditSearch *md, const Site *argument, Expr needed) {
   const AstExpr *x = ast_of(md, argument);
   for (uint32_t i = 0; i < md->sites.n; i++) {
     const Site *t = &md->sites.at[i];
-    if (t->side != argument->side || t->role != SITE_TERM || t->node < x->first || t->node > argument->node || !t->value) continue;
+    if (t->side != argument->side || t->role != SITE_TERM || t->node < x->first || t->node > argument->node ||
+        !t->value)
+      continue;
     const AstExpr *up = ast_expr(md->m->ast, t->up);
-    Expr with = up->kind == AST_SUB && up->b == t->node ? expr_sub(md->g, t->value, lacking) : expr_add(md->g, t->value, lacking);
-    if (!expr_is_zero(md->g, with) && expr_pairs(md->g, with, EX_SUM) == 1) guess_replacement(md, t, with, COST_NAME - 0.1, t->span);
+    Expr with = up->kind == AST_SUB && up->b == t->node ? expr_sub(md->g, t->value, lacking)
+                                                        : expr_add(md->g, t->value, lacking);
+    if (!expr_is_zero(md->g, with) && expr_pairs(md->g, with, EX_SUM) == 1)
+      guess_replacement(md, t, with, COST_NAME - 0.1, t->span);
   }
   guess_replacement(md, argument, needed, COST_NAME, x->span);
 }
@@ -356,7 +380,9 @@ static void guess_names(EditSearch *md, const Site *s, Expr needed) {
 }
 
 static void guess_at(EditSearch *md, const Site *s, Need *need) {
-  if (s->role == SITE_PART || !s->value || edit_replaced(&md->sites, s, s->value) != edit_side(&md->sites, s->side) || !find_need(md, s, need)) return;
+  if (s->role == SITE_PART || !s->value || edit_replaced(&md->sites, s, s->value) != edit_side(&md->sites, s->side) ||
+      !find_need(md, s, need))
+    return;
   const char *text = short_text(md->m->ast, s->span);
   Monomial ratio = features_fit(md->features, need->ratio), needed = features_fit(md->features, need->needed);
   Monomial difference = features_fit(md->features, need->difference);
@@ -410,7 +436,8 @@ static AstId written_node(const Paste *p, AstKind kind, uint32_t begin, uint32_t
   const Ast *ast = p->md->m->ast;
   for (AstId id = p->side->first; id <= p->root; id++) {
     const AstExpr *x = ast_expr(ast, id);
-    if (x->kind == kind && x->span.begin - p->side->span.begin == begin && x->span.end - p->side->span.begin == end) return id;
+    if (x->kind == kind && x->span.begin - p->side->span.begin == begin && x->span.end - p->side->span.begin == end)
+      return id;
   }
   return 0;
 }
@@ -418,7 +445,8 @@ static AstId written_node(const Paste *p, AstKind kind, uint32_t begin, uint32_t
 /* Whether the node is a number, or a fraction of two. */
 static int is_number_text(const Ast *ast, AstId id, Num *n) {
   int minus = ast_expr(ast, id)->kind == AST_NEG;
-  const AstExpr *x = ast_expr(ast, minus ? ast_expr(ast, id)->a : id), *top = x->kind == AST_DIV ? ast_expr(ast, x->a) : x;
+  const AstExpr *x = ast_expr(ast, minus ? ast_expr(ast, id)->a : id),
+                *top = x->kind == AST_DIV ? ast_expr(ast, x->a) : x;
   const AstExpr *below = x->kind == AST_DIV ? ast_expr(ast, x->b) : NULL;
   int negative = top->kind == AST_NEG;
   if (negative) top = ast_expr(ast, top->a);
@@ -428,7 +456,8 @@ static int is_number_text(const Ast *ast, AstId id, Num *n) {
   return 1;
 }
 
-/* Nodes beside the edit have their values; so has the site's own text within it; a number before a unit has the unit's scale. */
+/* Nodes beside the edit have their values; so has the site's own text within it; a number before a unit has the
+ * unit's scale. */
 static Expr known_part(const void *data, const Ast *ast, const AstExpr *x, uint32_t begin, uint32_t end) {
   const Paste *p = data;
   ExprGraph *g = p->md->g;
@@ -440,7 +469,8 @@ static Expr known_part(const void *data, const Ast *ast, const AstExpr *x, uint3
   if (!beside && !number) return 0;
   AstId id = written_node(p, x->kind, begin >= p->end ? begin - shift : begin, end > p->begin ? end - shift : end);
   if (!id || beside) return id ? edit_node(&p->md->sites, side, id) : 0;
-  Expr was = edit_node(&p->md->sites, side, id), before = edit_node(&p->md->sites, side, ast_expr(p->md->m->ast, id)->a);
+  Expr was = edit_node(&p->md->sites, side, id),
+       before = edit_node(&p->md->sites, side, ast_expr(p->md->m->ast, id)->a);
   if (!was || !before || expr_is_zero(g, before)) return 0;
   Expr scale = expr_div(g, was, before);
   return expr_mul(g, expr_num(g, n), scale);
@@ -455,7 +485,8 @@ static int pasted_is_proved(EditSearch *md, const Guess *guess, const char *text
   if (!file || guess->at.begin < x->span.begin || guess->at.end > x->span.end) return 0;
   StrBuf b = strbuf(md->arena);
   sb_putn(&b, file->text + (x->span.begin - file->base), guess->at.begin - x->span.begin);
-  Paste p = {.md = md, .guess = guess, .side = x, .root = root, .begin = (uint32_t)b.n, .was = guess->at.end - x->span.begin};
+  Paste p = {
+      .md = md, .guess = guess, .side = x, .root = root, .begin = (uint32_t)b.n, .was = guess->at.end - x->span.begin};
   sb_puts(&b, text);
   p.end = (uint32_t)b.n;
   if (own) p.own = p.begin + own - 1, p.own_end = p.own + (guess->site->span.end - guess->site->span.begin);

@@ -5,7 +5,8 @@
 
 typedef struct {
   Span caret;
-  const char *edit; /* "`sin(th1)` should be `cos(th1)`"; NULL: no single edit was found, and the caret is at the right side */
+  /* "`sin(th1)` should be `cos(th1)`"; NULL: no single edit was found, and the caret is at the right side */
+  const char *edit;
 } SuggestedEdit;
 
 /* Needs an expectation that does not hold. An edit that it returns is proved to correct it. */

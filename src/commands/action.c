@@ -13,15 +13,20 @@ static void print_one(const ActionVariables *v, uint32_t i, StrBuf *out) {
   const ActionVariable *x = &v->at[i];
   sb_printf(out, "%s: ", expr_symbol(g, v->space->q[i])->name);
   if (x->why_not) sb_printf(out, "no action variable: %s\n", x->why_not);
-  else if (x->cyclic) sb_printf(out, "J = %.16Lg, the momentum %s, constant\n", x->J, expr_symbol(g, v->space->p[i])->name);
+  else if (x->cyclic)
+    sb_printf(out, "J = %.16Lg, the momentum %s, constant\n", x->J, expr_symbol(g, v->space->p[i])->name);
   else if (x->rests) sb_puts(out, "J = 0, at rest\n");
   else {
     sb_printf(out, "J = %.*Lg", x->digits, x->J);
-    if (isfinite(x->omega)) sb_printf(out, ", omega = dE/dJ = %.*Lg, period %.*Lg", x->omega_digits, x->omega, x->omega_digits, 2 * acosl(-1) / fabsl(x->omega));
+    if (isfinite(x->omega))
+      sb_printf(out, ", omega = dE/dJ = %.*Lg, period %.*Lg", x->omega_digits, x->omega, x->omega_digits,
+                2 * acosl(-1) / fabsl(x->omega));
     if (x->rotates) sb_puts(out, ", going round: over a turn");
     else sb_printf(out, ", between %.10Lg and %.10Lg", x->low, x->high);
-    sb_printf(out, "%s\n", x->digits < 16 ? "; no more digits are sure, as H is not smooth along the curve, or its terms cancel"
-                         : x->omega_digits < 16 ? "; omega has no more digits, as a separatrix is near" : "");
+    sb_printf(out, "%s\n",
+              x->digits < 16 ? "; no more digits are sure, as H is not smooth along the curve, or its terms cancel"
+              : x->omega_digits < 16 ? "; omega has no more digits, as a separatrix is near"
+                                     : "");
   }
 }
 
@@ -47,7 +52,8 @@ static void print_separated(const ActionVariables *v, StrBuf *out) {
 
 /* Remark on what the actions leave out; "" where there is none. */
 static const char *remark_on(const Eqns *e) {
-  if (noether_note_on_impacts(e->m)) return "kicks, events or impacts change the state: the actions are those of the motion between them";
+  if (noether_note_on_impacts(e->m))
+    return "kicks, events or impacts change the state: the actions are those of the motion between them";
   if (eqns_has_forces(e)) return "forces stand outside H: the actions are those of the motion without them";
   if (e->conserves_energy) return "";
   return arena_printf(e->m->arena, "%s; the actions are those of the start, all else held", charges_energy_text(e));
@@ -85,8 +91,9 @@ static void json_action(const ActionVariables *v, uint32_t i, StrBuf *out) {
   const Separation *s = &v->separation;
   ExprGraph *g = v->space->e->g;
   int turns = !x->why_not && !x->cyclic && !x->rests;
-  sb_printf(out, "%s{\"coordinate\": \"%s\", \"momentum\": \"%s\", \"why_not\": \"%s\", \"cyclic\": %s", i ? ",\n  " : "\n  ", name_of(v, v->space->q[i]), name_of(v, v->space->p[i]),
-            x->why_not ? x->why_not : "", x->cyclic ? "true" : "false");
+  sb_printf(out, "%s{\"coordinate\": \"%s\", \"momentum\": \"%s\", \"why_not\": \"%s\", \"cyclic\": %s",
+            i ? ",\n  " : "\n  ", name_of(v, v->space->q[i]), name_of(v, v->space->p[i]), x->why_not ? x->why_not : "",
+            x->cyclic ? "true" : "false");
   json_number("action", x->why_not ? NAN : x->J, turns ? x->digits : 17, out);
   json_number("frequency", turns ? x->omega : NAN, x->omega_digits, out);
   sb_printf(out, ", \"digits\": %d, \"frequency_digits\": %d", turns ? x->digits : 16, turns ? x->omega_digits : 16);
@@ -103,7 +110,8 @@ static void print_json(const ActionVariables *v, StrBuf *out) {
   sb_printf(out, "{\"model\": \"%s\", \"scene\": \"%s\"", e->m->name, e->m->scene.name);
   json_number("energy", v->E, 17, out);
   sb_printf(out, ", \"remark\": \"%s\", \"separates\": %s, \"tied\": [", remark_on(e), s->separates ? "true" : "false");
-  if (!s->separates && s->kind[s->i] == PAIR_TIED) sb_printf(out, "\"%s\", \"%s\"", name_of(v, v->space->q[s->i]), name_of(v, v->space->q[s->j]));
+  if (!s->separates && s->kind[s->i] == PAIR_TIED)
+    sb_printf(out, "\"%s\", \"%s\"", name_of(v, v->space->q[s->i]), name_of(v, v->space->q[s->j]));
   sb_puts(out, "], \"actions\": [");
   for (uint32_t i = 0; i < v->space->n; i++) json_action(v, i, out);
   sb_puts(out, "]}\n");

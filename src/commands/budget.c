@@ -1,6 +1,7 @@
-/* `lagc cost --budget X`: the cheapest combination of effects, method, setting and precision whose motion differs from the full model's by X at
- * most. In: the scene's effects; out: the smallest set of them that may do (effect_study.h), and for that set and for all of them the fastest setting.
- * Holds: errors are measured against an accurate run of the full model, so that they contain the effects left out, integration and rounding. */
+/* `lagc cost --budget X`: the cheapest combination of effects, method, setting and precision whose motion differs
+ * from the full model's by X at most. In: the scene's effects; out: the smallest set of them that may do
+ * (effect_study.h), and for that set and for all of them the fastest setting. Holds: errors are measured against an
+ * accurate run of the full model, so that they contain the effects left out, integration and rounding. */
 #include "commands/budget.h"
 
 #include <math.h>
@@ -54,7 +55,10 @@ static int read_options(const Compiler *c, BudgetOptions *b) {
     else if (strcmp(word, "--quiet") == 0) b->quiet = 1;
     else if (n == 9 && strncmp(word, "--methods", n) == 0) b->methods = eq ? eq + 1 : c->o.rest.at[i + 1];
     else if (strncmp(word, "--until", 7) != 0) {
-      usage_error(arena_printf(c->arena, "--budget and %.*s: leave one of them out; --budget takes name=value, --until, --seconds, --methods and --json", (int)n, word));
+      usage_error(arena_printf(c->arena,
+                               "--budget and %.*s: leave one of them out; --budget takes name=value, --until, "
+                               "--seconds, --methods and --json",
+                               (int)n, word));
       return 0;
     }
     i += (uint32_t)takes;
@@ -102,8 +106,10 @@ static int read_line(Budget *b, const EffectSets *sets, char *line) {
 }
 
 /* Measures the settings of these sets of effects in one precision. Returns a STATUS. */
-static int measure(Compiler *c, EffectStudy *s, Budget *b, const EffectSets *sets, const BudgetOptions *o, double seconds) {
-  const char *path, *words[8] = {"--target", arena_printf(c->arena, "%.17g", b->budget), "--seconds", arena_printf(c->arena, "%.3g", seconds)};
+static int measure(Compiler *c, EffectStudy *s, Budget *b, const EffectSets *sets, const BudgetOptions *o,
+                   double seconds) {
+  const char *path, *words[8] = {"--target", arena_printf(c->arena, "%.17g", b->budget), "--seconds",
+                                 arena_printf(c->arena, "%.3g", seconds)};
   char *said = NULL;
   if (o->methods) words[4] = "--methods", words[5] = o->methods;
   b->all.n = 0;
@@ -123,7 +129,8 @@ static int measure(Compiler *c, EffectStudy *s, Budget *b, const EffectSets *set
   return status;
 }
 
-/* The fastest of all settings; of those that take the same time, as well as that is known, the one with fewer effects. NULL: no set has one. */
+/* The fastest of all settings; of those that take the same time, as well as that is known, the one with fewer
+ * effects. NULL: no set has one. */
 static const Setting *fastest(const Budget *b) {
   const double same = 1.05;
   const Setting *best = NULL;
@@ -145,49 +152,72 @@ static void put_text(const Compiler *c, const Budget *b, StrBuf *out) {
   const Setting *best = fastest(b), *full = &b->all.at[0];
   const EffectStudy *s = b->study;
   int cut = !b->event && fabs(b->end - s->scene->scene.t0) < 0.999*fabs(b->asked);
-  sb_printf(out, "model %s, scene %s, to t = %.15g s: a budget of %g for effects, integration and rounding\n", s->scene->name, s->scene->scene.name, b->end, b->budget);
+  sb_printf(out, "model %s, scene %s, to t = %.15g s: a budget of %g for effects, integration and rounding\n",
+            s->scene->name, s->scene->scene.name, b->end, b->budget);
   if (b->event) sb_puts(out, "an event ends the run a little later; when it does is not part of the error\n");
-  if (cut) sb_puts(out, "later no digit of this budget is left of the reference, or it takes too long: the run is shortened\n");
+  if (cut)
+    sb_puts(out,
+            "later no digit of this budget is left of the reference, or it takes too long: the run is shortened\n");
   if (!best) {
-    sb_printf(out, "no setting keeps it: the smallest error found is %.1e; raise --budget, allow more time (--seconds), or end the run earlier (--until)\n", full->time);
+    sb_printf(out,
+              "no setting keeps it: the smallest error found is %.1e; raise --budget, allow more time (--seconds), or "
+              "end the run earlier (--until)\n",
+              full->time);
     return;
   }
   sb_puts(out, "cheapest: ");
   if (best->set != s->used) sb_printf(out, "without %s, ", left_out(b, best));
   sb_printf(out, "%.3g ms, error %.1e", 1e3*best->time, best->error);
   if (best->set != s->used && !isnan(full->error)) sb_printf(out, "; with all effects %.3g ms", 1e3*full->time);
-  if (best->set != s->used) sb_printf(out, "\nin the scene, in place of its `use` lines and of what refers to the others:\n  %s\nthen", effect_use_statement(s, best->set));
+  if (best->set != s->used)
+    sb_printf(out, "\nin the scene, in place of its `use` lines and of what refers to the others:\n  %s\nthen",
+              effect_use_statement(s, best->set));
   const char *until = cut ? arena_printf(b->arena, " --until %.9g", b->end) : "";
-  sb_printf(out, "\n  lagc run %s %s%s%s --method \"%s\" --%s %s%s%s\n\n", c->o.file, s->scene->scene.name, c->given_words, until, best->method, best->knob, best->value,
-            b->precision ? " --precision " : "", b->precision ? b->precision : "");
+  sb_printf(out, "\n  lagc run %s %s%s%s --method \"%s\" --%s %s%s%s\n\n", c->o.file, s->scene->scene.name,
+            c->given_words, until, best->method, best->knob, best->value, b->precision ? " --precision " : "",
+            b->precision ? b->precision : "");
   sb_printf(out, "  %-32s %10s %12s  %s\n", "effects left out", "error", "time [ms]", "setting");
   for (uint32_t i = 0; i < b->all.n; i++) {
     const Setting *x = &b->all.at[i];
-    if (isnan(x->error)) sb_printf(out, "  %-32s %10s %12s  its smallest error is %.1e\n", left_out(b, x), "-", "-", x->time);
-    else sb_printf(out, "%c %-32s %10.1e %12.3g  %s, --%s %s\n", x == best ? '*' : ' ', left_out(b, x), x->error, 1e3*x->time, x->method, x->knob, x->value);
+    if (isnan(x->error))
+      sb_printf(out, "  %-32s %10s %12s  its smallest error is %.1e\n", left_out(b, x), "-", "-", x->time);
+    else
+      sb_printf(out, "%c %-32s %10.1e %12.3g  %s, --%s %s\n", x == best ? '*' : ' ', left_out(b, x), x->error,
+                1e3 * x->time, x->method, x->knob, x->value);
   }
-  sb_printf(out, "error: the largest difference from the motion with all effects (%s, itself uncertain by %.1e) at 16 times, relative to the\n"
-            "largest value of its kind and unit\n", b->reference, b->uncertainty);
+  sb_printf(out,
+            "error: the largest difference from the motion with all effects (%s, itself uncertain by %.1e) at 16 "
+            "times, relative to the\n"
+            "largest value of its kind and unit\n",
+            b->reference, b->uncertainty);
   if (s->used)
-    sb_printf(out, s->least == s->used ? "no effect can be left out: %u other sets differ by more than %.2g, the part of the budget that is for effects\n"
-                                           : "no smaller set is enough: %u sets were run; alone it differs by %.1e\n",
+    sb_printf(out,
+              s->least == s->used ? "no effect can be left out: %u other sets differ by more than %.2g, the part of "
+                                    "the budget that is for effects\n"
+                                  : "no smaller set is enough: %u sets were run; alone it differs by %.1e\n",
               s->tried, s->least == s->used ? s->accuracy : s->least_difference);
-  if (s->scene->scene.monitors.n) sb_puts(out, "the scene's monitors are not part of this: they may refer to effects that are left out\n");
+  if (s->scene->scene.monitors.n)
+    sb_puts(out, "the scene's monitors are not part of this: they may refer to effects that are left out\n");
 }
 
 static void put_json(const Budget *b, StrBuf *out) {
   const Setting *best = fastest(b);
   const EffectStudy *s = b->study;
-  sb_printf(out, "{\"model\": \"%s\", \"scene\": \"%s\", \"budget\": %.17g, \"precision\": \"%s\", \"until\": %.17g, \"uncertainty\": %.9g, \"sets_run\": %u, \"settings\": [", s->scene->name,
-            s->scene->scene.name, b->budget, b->precision ? b->precision : "double", b->end, b->uncertainty, s->tried);
+  sb_printf(out,
+            "{\"model\": \"%s\", \"scene\": \"%s\", \"budget\": %.17g, \"precision\": \"%s\", \"until\": %.17g, "
+            "\"uncertainty\": %.9g, \"sets_run\": %u, \"settings\": [",
+            s->scene->name, s->scene->scene.name, b->budget, b->precision ? b->precision : "double", b->end,
+            b->uncertainty, s->tried);
   for (uint32_t i = 0; i < b->all.n; i++) {
     const Setting *x = &b->all.at[i];
     EffectList gone = effect_names(s, s->used & ~x->set);
     sb_printf(out, "%s{\"left_out\": [", i ? ", " : "");
     for (uint32_t k = 0; k < gone.n; k++) sb_printf(out, "%s\"%s\"", k ? ", " : "", gone.at[k]);
     if (isnan(x->error)) sb_printf(out, "], \"error\": null, \"smallest_error\": %.9g, \"cheapest\": false}", x->time);
-    else sb_printf(out, "], \"error\": %.9g, \"seconds\": %.9g, \"method\": \"%s\", \"%s\": %s, \"cheapest\": %s}", x->error, x->time, x->method,
-                   strcmp(x->knob, "tol") == 0 ? "tolerance" : "step", x->value, x == best ? "true" : "false");
+    else
+      sb_printf(out, "], \"error\": %.9g, \"seconds\": %.9g, \"method\": \"%s\", \"%s\": %s, \"cheapest\": %s}",
+                x->error, x->time, x->method, strcmp(x->knob, "tol") == 0 ? "tolerance" : "step", x->value,
+                x == best ? "true" : "false");
   }
   sb_puts(out, "]}\n");
 }
@@ -198,7 +228,8 @@ static void put_json(const Budget *b, StrBuf *out) {
 static EffectStudy *find_sets(Compiler *c, double budget, int *status) {
   const double part = 0.7, finer = 1e-3; /* for effects; of the tolerance of runs that compare them */
   const char *words[] = {"--tol", arena_printf(c->arena, "%.3g", fmax(finer*budget, 2e-15)), "--quiet", NULL};
-  Model *m = model_build(c->ast, &(ModelChoice){.scene = c->o.scene, .defines = c->o.defines.at, .ndefines = c->o.defines.n});
+  Model *m =
+      model_build(c->ast, &(ModelChoice){.scene = c->o.scene, .defines = c->o.defines.at, .ndefines = c->o.defines.n});
   *status = STATUS_MODEL;
   if (!m) return NULL;
   EffectStudy *s = m->effects.n ? effect_study_plan(m) : ARENA_NEW(c->arena, EffectStudy);
@@ -208,7 +239,9 @@ static EffectStudy *find_sets(Compiler *c, double budget, int *status) {
   s->least = s->used;
   *status = STATUS_OK;
   if (effect_count(s->used) > EFFECTS_SEARCHED)
-    *status = usage_error(arena_printf(c->arena, "--budget: the scene has %u effects; all sets of up to %d are searched: leave some out", effect_count(s->used), EFFECTS_SEARCHED));
+    *status = usage_error(
+        arena_printf(c->arena, "--budget: the scene has %u effects; all sets of up to %d are searched: leave some out",
+                     effect_count(s->used), EFFECTS_SEARCHED));
   else if (s->used) {
     char *const *argv = arguments(c, "runs", words);
     c->o.command = CMD_EFFECTS; /* derivatives for the scene's method alone */
@@ -228,9 +261,11 @@ int cost_budget(Compiler *c) {
   Budget b = {.arena = c->arena};
   StrBuf out = strbuf(c->arena);
   if (!num_parse_double(c->o.budget, &b.budget) || !(b.budget > 0))
-    return usage_error(arena_printf(c->arena, "--budget %s: an error that does not matter, relative and positive; for example 1e-6", c->o.budget));
+    return usage_error(arena_printf(
+        c->arena, "--budget %s: an error that does not matter, relative and positive; for example 1e-6", c->o.budget));
   if (c->o.seconds && (!num_parse_double(c->o.seconds, &seconds) || !(seconds > 0)))
-    return usage_error(arena_printf(c->arena, "--seconds %s: the time to spend, for example --seconds 60", c->o.seconds));
+    return usage_error(
+        arena_printf(c->arena, "--seconds %s: the time to spend, for example --seconds 60", c->o.seconds));
   if (!read_options(c, &o)) return STATUS_USAGE;
   EffectStudy *s = find_sets(c, b.budget, &status);
   if (!s) return status;
@@ -241,7 +276,9 @@ int cost_budget(Compiler *c) {
     b.precision = precisions[i];
     status = measure(c, s, &b, &sets, &o, fmax(seconds - (double)(time(NULL) - begin), seconds/3));
   }
-  if (status > SIGNALLED) fprintf(stderr, "lagc: interrupted%s\n", b.all.n ? ": settings known by then follow" : " before a setting was measured");
+  if (status > SIGNALLED)
+    fprintf(stderr, "lagc: interrupted%s\n",
+            b.all.n ? ": settings known by then follow" : " before a setting was measured");
   if (b.all.n == 0 || (status != STATUS_OK && status < SIGNALLED)) return status;
   int ended = status;
   if (o.json) put_json(&b, &out);

@@ -10,9 +10,11 @@ int command_build(Compiler *c) {
   Units units = {0};
   int is_so = c->o.output && lag_outfile_has_suffix(c->o.output, "so");
   if (!c->o.output && !c->o.shared) return usage_error("`lagc build` needs -o SIMULATOR");
-  if (is_so && !c->o.shared) return usage_error("build writes a program: write -o SIMULATOR, or --shared for a library");
+  if (is_so && !c->o.shared)
+    return usage_error("build writes a program: write -o SIMULATOR, or --shared for a library");
   if (c->o.output && !is_so && c->o.shared) return usage_error("--shared writes a library: write -o libNAME.so");
-  if (c->o.shared && options_more_digits(&c->o)) return usage_error("a shared library has doubles: leave --precision out");
+  if (c->o.shared && options_more_digits(&c->o))
+    return usage_error("a shared library has doubles: leave --precision out");
   int status = simulator_lower(c, &units) ? simulator_of_units(c, &units, c->o.output, &path) : STATUS_MODEL;
   if (status != STATUS_OK || c->o.output) return status;
   StrBuf b = strbuf(c->arena);

@@ -12,12 +12,13 @@
 #include "symmetry/noether_report.h"
 #include "report/equation_listing.h"
 
-/* Judges symmetries and expectations for the model without effects, and those inside an effect with that effect and its requirements; no scene is
- * needed. */
+/* Judges symmetries and expectations for the model without effects, and those inside an effect with that effect and
+ * its requirements; no scene is needed. */
 static void check_claims(Compiler *c, const Ast *ast, int allow_numeric, ExpectResults *results, StrBuf *out) {
   EffectList where = model_claiming_effects(ast);
   Eqns **e = ARENA_ARRAY(ast->arena, Eqns *, where.n + 1);
-  for (uint32_t i = 0; i < where.n; i++) e[i] = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
+  for (uint32_t i = 0; i < where.n; i++)
+    e[i] = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
   for (uint32_t i = 0; i < where.n; i++) {
     if (!e[i]) continue;
     charges_judge(e[i], where.at[i]);
@@ -48,7 +49,8 @@ static void collect_units(const Model *m, FoundUnits *all) {
 }
 
 static void list_units(const FoundUnits *all, StrBuf *out) {
-  for (uint32_t i = 0; i < all->n; i++) sb_printf(out, "%s%s [%s]", i ? ", " : "units found: ", all->at[i].name, all->at[i].unit);
+  for (uint32_t i = 0; i < all->n; i++)
+    sb_printf(out, "%s%s [%s]", i ? ", " : "units found: ", all->at[i].name, all->at[i].unit);
   if (all->n) sb_putc(out, '\n');
 }
 

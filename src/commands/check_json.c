@@ -13,10 +13,12 @@ static void put_member(StrBuf *out, const char *name, const char *text) {
   else sb_puts(out, "null");
 }
 
-/* The place of a span as members: lines and columns from 1, columns in characters; null where a message is about no text. */
+/* The place of a span as members: lines and columns from 1, columns in characters; null where a message is about no
+ * text. */
 static void put_span(StrBuf *out, const Sources *sources, Span span) {
   Place p = source_place(sources, span.end ? span.begin : 0), end = source_place(sources, span.end);
-  if (!p.file) sb_puts(out, ", \"file\": null, \"line\": null, \"column\": null, \"end_line\": null, \"end_column\": null");
+  if (!p.file)
+    sb_puts(out, ", \"file\": null, \"line\": null, \"column\": null, \"end_line\": null, \"end_column\": null");
   else {
     put_member(out, "file", p.file->path);
     sb_printf(out, ", \"line\": %u, \"column\": %u, \"end_line\": %u, \"end_column\": %u", p.line, p.column,
@@ -69,7 +71,10 @@ void check_json_symmetries(Compiler *c, const Eqns *e, Name effect) {
     sb_puts(out, "{\"name\": ");
     sb_json(out, x->name);
     put_span(out, c->sources, x->of->span);
-    put_member(out, "verdict", x->proof.broken ? "false" : x->proof.by_value ? "holds in numbers" : verdicts[x->proof.is]);
+    put_member(out, "verdict",
+               x->proof.broken     ? "false"
+               : x->proof.by_value ? "holds in numbers"
+                                   : verdicts[x->proof.is]);
     int known = x->proof.charge && x->proof.is <= INVARIANT_UP_TO_F;
     put_member(out, "charge", known ? expr_text(e->g, x->proof.charge) : NULL);
     sb_puts(out, "}");

@@ -1,4 +1,5 @@
-/* Parses the command line by the tables of command_table.c; mistakes are answered with the nearest word or the right command. */
+/* Parses the command line by the tables of command_table.c; mistakes are answered with the nearest word or the right
+ * command. */
 #include "commands/command_table.h"
 
 #include <string.h>
@@ -17,7 +18,9 @@ static const char *unknown_command(Arena *a, const char *word) {
   size_t n = 0;
   for (const CommandRow *row; n < CMD_COUNT && (row = command_row(n)) != NULL && row->help; n++) names[n] = row->name;
   size_t len = strlen(word);
-  if (len > 4 && strcmp(word + len - 4, ".lag") == 0) return arena_printf(a, "a command is missing before %s: `lagc run %s`, `lagc derive %s`, `lagc check %s`", word, word, word, word);
+  if (len > 4 && strcmp(word + len - 4, ".lag") == 0)
+    return arena_printf(a, "a command is missing before %s: `lagc run %s`, `lagc derive %s`, `lagc check %s`", word,
+                        word, word, word);
   Name near = suggest(word, names, n);
   const char *way = help_way(a, word);
   if (near) return arena_printf(a, "unknown command `%s`: did you mean `%s`?", word, near);
@@ -62,7 +65,8 @@ static int check_choices(Arena *a, const OptionRow *row, const char *value, cons
     const char *word = arena_strndup(a, s, n);
     if (!has_word(row->hint, word))
       return fail_with(error, arena_printf(a, "%s takes %s%s, not `%s`%s", row->name, comma_separated(a, row->hint),
-                                           several ? ", with commas between several" : "", word, nearest_choice(a, row->hint, word)));
+                                           several ? ", with commas between several" : "", word,
+                                           nearest_choice(a, row->hint, word)));
     s += n;
     if (!*s++ || !*s) return 1; /* a comma may end the list */
   }
@@ -70,34 +74,40 @@ static int check_choices(Arena *a, const OptionRow *row, const char *value, cons
 
 /* Advice: the command or option that writes files of this suffix. */
 static const char *advice_for_suffix(Command c, const char *suffix) {
-  if (c == CMD_PLOT && has_word("png pdf jpg jpeg gif webp eps ps", suffix)) return ", which browsers and `rsvg-convert` turn into other kinds";
+  if (c == CMD_PLOT && has_word("png pdf jpg jpeg gif webp eps ps", suffix))
+    return ", which browsers and `rsvg-convert` turn into other kinds";
   if (c == CMD_RUN && strcmp(suffix, "json") == 0) return "; --json prints the report as JSON";
   if (has_word("svg png", suffix) && option_find(c, "--svg", &(const char *){NULL})) return "; --svg FILE draws";
   if (c != CMD_ANIMATE && has_word("html htm", suffix)) return "; `lagc animate` writes HTML";
   if (c != CMD_HEADER && has_word("h hh hpp hxx", suffix)) return "; `lagc header` writes headers";
-  if (c != CMD_EMIT && strcmp(suffix, "c") == 0) return "; `lagc emit` writes C for the runtime, `lagc derive --format c` the accelerations";
+  if (c != CMD_EMIT && strcmp(suffix, "c") == 0)
+    return "; `lagc emit` writes C for the runtime, `lagc derive --format c` the accelerations";
   return "";
 }
 
 /* Reports a file name whose suffix is of another kind than the command writes. */
-static int check_kind(Arena *a, Command c, const OptionRow *row, const char *path, const char *suffixes, const char **error) {
+static int check_kind(Arena *a, Command c, const OptionRow *row, const char *path, const char *suffixes,
+                      const char **error) {
   const char *other = lag_outfile_other_type(path, suffixes), *name = row->brief ? row->brief : row->name;
   if (!other) return 1;
-  const char *writer = row->brief ? command_find(c)->name : row->name, *way = row->brief ? advice_for_suffix(c, other) : "";
+  const char *writer = row->brief ? command_find(c)->name : row->name,
+             *way = row->brief ? advice_for_suffix(c, other) : "";
   const char *kind = !*suffixes && c == CMD_BUILD ? "a program" : lag_outfile_contents(suffixes);
   int stem = (int)(other - path) - !*suffixes;
-  return fail_with(error, arena_printf(a, "%s %s: %s writes %s%s; write %s %.*s%.*s", name, path, writer, kind, way, name, stem, path,
-                                       (int)strcspn(suffixes, " "), suffixes));
+  return fail_with(error, arena_printf(a, "%s %s: %s writes %s%s; write %s %.*s%.*s", name, path, writer, kind, way,
+                                       name, stem, path, (int)strcspn(suffixes, " "), suffixes));
 }
 
 /* derive and noether: takes the format from the name of the output file, or compares it with --format. */
 static int check_format(Arena *a, Options *o, const char **error) {
-  const OptionRow *output = option_find(o->command, "-o", &(const char *){NULL}), *format = option_find(o->command, "--format", &(const char *){NULL});
+  const OptionRow *output = option_find(o->command, "-o", &(const char *){NULL}),
+                  *format = option_find(o->command, "--format", &(const char *){NULL});
   static const char *const formats[][2] = {{"latex", "tex"}, {"json", "json"}, {"c", "c"}};
   if (!o->output || !output || !format) return 1;
   const char *suffixes = "";
   for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
-    if (!o->format && has_word(format->hint, formats[i][0]) && lag_outfile_has_suffix(o->output, formats[i][1])) o->format = formats[i][0];
+    if (!o->format && has_word(format->hint, formats[i][0]) && lag_outfile_has_suffix(o->output, formats[i][1]))
+      o->format = formats[i][0];
     if (o->format && strcmp(o->format, formats[i][0]) == 0) suffixes = formats[i][1];
   }
   return check_kind(a, o->command, output, o->output, suffixes, error);
@@ -141,10 +151,14 @@ static const char *unknown_option(Arena *a, const Options *o, const char *word) 
   const char *value, *arg = arena_printf(a, "%.*s", (int)strcspn(word, "="), word);
   const CommandRow *row = command_find(o->command);
   if (o->command == CMD_COST && has_word("--method --tol --step", arg))
-    return arena_printf(a, "`lagc cost` has no option `%s`: it runs all methods at many tolerances and steps; --methods NAME,NAME selects some", arg);
+    return arena_printf(a,
+                        "`lagc cost` has no option `%s`: it runs all methods at many tolerances and steps; --methods "
+                        "NAME,NAME selects some",
+                        arg);
   for (size_t i = 0; command_row(i); i++)
     if (option_find(command_row(i)->command, arg, &value))
-      return arena_printf(a, "`%s` is an option of `lagc %s`; `lagc help %s` lists those of `lagc %s`", arg, command_row(i)->name, row->name, row->name);
+      return arena_printf(a, "`%s` is an option of `lagc %s`; `lagc help %s` lists those of `lagc %s`", arg,
+                          command_row(i)->name, row->name, row->name);
   Name names[64];
   size_t n = 0;
   for (size_t i = 0; option_row(i); i++)
@@ -158,9 +172,12 @@ static const char *unknown_option(Arena *a, const Options *o, const char *word) 
           : NULL;
   if (says) return arena_printf(a, "`lagc %s` has no option `%s`; %s", row->name, arg, says);
   for (size_t i = 0; i < n && meant; i++)
-    if (strcmp(names[i], meant) == 0) return arena_printf(a, "`lagc %s` has no option `%s`; here it is called `%s`", row->name, arg, meant);
+    if (strcmp(names[i], meant) == 0)
+      return arena_printf(a, "`lagc %s` has no option `%s`; here it is called `%s`", row->name, arg, meant);
   if (near) return arena_printf(a, "`lagc %s` has no option `%s`: did you mean `%s`?", row->name, arg, near);
-  const char *set = command_takes_values(o->command) && strncmp(arg, "--", 2) == 0 ? arena_printf(a, "; a value of the model has no dashes: %s=1", arg + 2) : "";
+  const char *set = command_takes_values(o->command) && strncmp(arg, "--", 2) == 0
+                        ? arena_printf(a, "; a value of the model has no dashes: %s=1", arg + 2)
+                        : "";
   return arena_printf(a, "`lagc %s` has no option `%s`; `lagc help %s` lists them%s", row->name, arg, row->name, set);
 }
 
@@ -182,9 +199,13 @@ static int read_option(Arena *a, Arguments *words, Options *o, const OptionRow *
     value = words->at[++words->i];
     if (row->passed) vec_push(a, &o->rest, value);
   }
-  int library = o->command == CMD_BUILD && lag_outfile_has_suffix(value ? value : "", "so"); /* --shared may come later: build.c judges */
-  if (row->takes == TAKES_FILE && (*row->hint || o->command == CMD_BUILD) && !library && !check_kind(a, o->command, row, value, row->hint, error)) return 0;
-  if (strcmp(row->name, "--method") == 0) o->method = value; /* passed on, and recorded: its derivatives are compiled in */
+  /* --shared may come later: build.c judges */
+  int library = o->command == CMD_BUILD && lag_outfile_has_suffix(value ? value : "", "so");
+  if (row->takes == TAKES_FILE && (*row->hint || o->command == CMD_BUILD) && !library &&
+      !check_kind(a, o->command, row, value, row->hint, error))
+    return 0;
+  /* passed on, and recorded: its derivatives are compiled in */
+  if (strcmp(row->name, "--method") == 0) o->method = value;
   if (strcmp(row->name, "--resume") == 0) o->resume = value;
   if (strcmp(row->name, "--tol") == 0) o->tol = value;
   if (strcmp(row->name, "--accuracy") == 0 && command_simulates(o->command)) o->accurate = value;
@@ -201,19 +222,23 @@ static void add_scene(Arena *a, Options *o, const char *name) {
 
 /* A word that is no option: the model, a scene, a value. */
 static int read_word(Arena *a, const char *arg, Options *o, const char **error) {
-  int sets = command_takes_values(o->command) && (strchr(arg, '=') || (o->command == CMD_SWEEP && o->file && strchr(arg, '~')));
+  int sets = command_takes_values(o->command) &&
+             (strchr(arg, '=') || (o->command == CMD_SWEEP && o->file && strchr(arg, '~')));
   if (!o->file && !sets) {
     o->file = arg;
     return 1;
   }
   const char *last = arg + strlen(arg) - (*arg != '\0');
-  if (sets && (*last == '=' || *last == '~')) return fail_with(error, arena_printf(a, "%s: a value is missing; name and value are one word without spaces, as in k=1", arg));
+  if (sets && (*last == '=' || *last == '~'))
+    return fail_with(
+        error, arena_printf(a, "%s: a value is missing; name and value are one word without spaces, as in k=1", arg));
   if (command_simulates(o->command) || sets) {
     if (!sets) add_scene(a, o, arg);
     vec_push(a, &o->rest, arg);
     return 1;
   }
-  if (o->scene) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
+  if (o->scene)
+    return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
   add_scene(a, o, arg);
   return 1;
 }
@@ -236,7 +261,9 @@ static int read_arguments(Arena *a, int argc, char **argv, Options *o, const cha
       return 1;
     }
   }
-  if (!o->file) *error = arena_printf(a, "a %s is missing; usage: %s", o->command == CMD_NEW ? "name" : "model", usage(a, o->command));
+  if (!o->file)
+    *error =
+        arena_printf(a, "a %s is missing; usage: %s", o->command == CMD_NEW ? "name" : "model", usage(a, o->command));
   return o->file && check_format(a, o, error);
 }
 
@@ -245,7 +272,8 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
   const char *arg = argc > 2 ? argv[2] : NULL;
   if (o->command == CMD_HELP && arg) /* several words are a search */
     for (int i = 3; i < argc; i++) arg = arena_printf(a, "%s %s", arg, argv[i]);
-  else if (argc > 3) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", argv[3], usage(a, o->command)));
+  else if (argc > 3)
+    return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", argv[3], usage(a, o->command)));
   o->topic = arg;
   if (arg && (strcmp(arg, "--help") == 0 || strcmp(arg, "-h") == 0)) {
     o->topic = o->command == CMD_HELP ? NULL : command_find(o->command)->name;
@@ -262,7 +290,8 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
     return fail_with(error, unknown_option(a, o, arg));
   }
   if (o->command == CMD_COMPLETION && (!arg || !has_word("bash zsh fish", arg)))
-    return fail_with(error, "which shell? write `lagc completion bash`, `lagc completion zsh` or `lagc completion fish`");
+    return fail_with(error,
+                     "which shell? write `lagc completion bash`, `lagc completion zsh` or `lagc completion fish`");
   return 1;
 }
 
@@ -273,7 +302,10 @@ int options_read(Arena *a, int argc, char **argv, Options *o, const char **error
   *error = NULL;
   for (int i = 1; i < argc && o->command != CMD_COMPLETE; i++)
     if (strpbrk(argv[i], "\n\t")) { /* messages show a word on one line */
-      return fail_with(error, arena_printf(a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i));
+      return fail_with(
+          error,
+          arena_printf(
+              a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i));
     }
   if (!o->command) return fail_with(error, unknown_command(a, argv[1]));
   if (o->command == CMD_COMPLETE) {

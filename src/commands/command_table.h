@@ -1,5 +1,5 @@
-/* Tables of lagc's commands and options, and the values that a command line gives to them. The parser, `lagc help` and completion read the tables; a
- * test compares the man page and the simulator's own options with them. */
+/* Tables of lagc's commands and options, and the values that a command line gives to them. The parser, `lagc help`
+ * and completion read the tables; a test compares the man page and the simulator's own options with them. */
 #pragma once
 
 #include <stddef.h>
@@ -8,8 +8,10 @@
 #include "model/model.h"
 
 typedef enum {
-  CMD_NONE, CMD_CHECK, CMD_VERIFY, CMD_DERIVE, CMD_NOETHER, CMD_ACTION, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES, CMD_LYAPUNOV, CMD_COST, CMD_SWEEP, CMD_EFFECTS, CMD_METHODS, CMD_MODELS, CMD_NEW, CMD_CACHE, CMD_BUILD, CMD_HEADER, CMD_EMIT, CMD_FMU,
-  CMD_HELP, CMD_COMPLETION, CMD_VERSION, CMD_COMPLETE, CMD_MANPAGE, CMD_COUNT
+  CMD_NONE, CMD_CHECK, CMD_VERIFY, CMD_DERIVE, CMD_NOETHER, CMD_ACTION, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES,
+  CMD_LYAPUNOV, CMD_COST, CMD_SWEEP, CMD_EFFECTS, CMD_METHODS, CMD_MODELS, CMD_NEW, CMD_CACHE, CMD_BUILD, CMD_HEADER,
+  CMD_EMIT, CMD_FMU, CMD_HELP, CMD_COMPLETION, CMD_VERSION, CMD_COMPLETE, CMD_MANPAGE,
+  CMD_COUNT
 } Command;
 
 typedef VEC(const char *) OptionTexts;
@@ -105,9 +107,11 @@ Command command_named(const char *word);
 /* The row of a command; NULL for CMD_NONE. */
 const CommandRow *command_find(Command c);
 
-/* The option of command c written as `arg` ("--until", "--until=3", "-o", "-DN=3"), or NULL. *value: the value in the same word, or NULL. */
+/* The option of command c written as `arg` ("--until", "--until=3", "-o", "-DN=3"), or NULL. *value: the value in
+ * the same word, or NULL. */
 const OptionRow *option_find(Command c, const char *arg, const char **value);
-/* Whether the word is an option whose value is the next word: in `--method rk4(step=0.01)` the second word is no setting. */
+/* Whether the word is an option whose value is the next word: in `--method rk4(step=0.01)` the second word is no
+ * setting. */
 int option_takes_next(Command c, const char *word);
 
 /* Whether pages list the option with the command: those that are passed on stand at `run`. */

@@ -15,8 +15,9 @@ int command_build(Compiler *c);
 int command_run(Compiler *c); /* run, plot, animate, modes, lyapunov, cost */
 int command_effects(Compiler *c);
 
-/* Appends what `lagc check` says: facts, scenes (or the one named), effects that no scene uses, units found, symmetries, expectations. Returns 0
- * when the model is wrong and nothing is worth printing; the reasons, and false claims, are in c->diags. */
+/* Appends what `lagc check` says: facts, scenes (or the one named), effects that no scene uses, units found,
+ * symmetries, expectations. Returns 0 when the model is wrong and nothing is worth printing; the reasons, and false
+ * claims, are in c->diags. */
 int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out);
 
 /* Appends the symmetries of the scene's model; scene NULL: of the model without effects, and of
@@ -28,7 +29,8 @@ int noether_print(Compiler *c, const char *scene, double seconds, const char *fo
 typedef VEC(Name) Topics;
 void help_topics(Arena *a, Topics *out);
 
-/* Appends a line for each model of the gallery whose name or title has the word (NULL: for each), and returns their number. */
+/* Appends a line for each model of the gallery whose name or title has the word (NULL: for each), and returns their
+ * number. */
 uint32_t models_list(Compiler *c, const char *word, StrBuf *out);
 
 /* These read no model. */

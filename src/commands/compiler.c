@@ -72,8 +72,10 @@ int compiler_read(Compiler *c) {
   const Source *source = source_read_model(c->sources, path, &why);
   if (!source) {
     const char *model = gallery_name(c->arena, c->argv0, path), *whole = arena_printf(c->arena, "%s.lag", path);
-    if (file_exists(whole)) return usage_error(arena_printf(c->arena, "cannot read %s: %s; did you mean %s?", path, why, whole));
-    return usage_error(arena_printf(c->arena, model ? "cannot read %s: %s; the gallery has @%s" : "cannot read %s: %s", path, why, model));
+    if (file_exists(whole))
+      return usage_error(arena_printf(c->arena, "cannot read %s: %s; did you mean %s?", path, why, whole));
+    return usage_error(arena_printf(c->arena, model ? "cannot read %s: %s; the gallery has @%s" : "cannot read %s: %s",
+                                    path, why, model));
   }
   parse(c->ast, source);
   settings_defines(c->ast, c->o.defines.at, c->o.defines.n);
@@ -100,14 +102,18 @@ Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {
   return e;
 }
 
-Eqns *compiler_derive_scene(Compiler *c, const char *scene) { return compiler_derive(c, &(ModelChoice){.scene = scene}); }
+Eqns *compiler_derive_scene(Compiler *c, const char *scene) {
+  return compiler_derive(c, &(ModelChoice){.scene = scene});
+}
 
 Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice) {
   Eqns *e = compiler_derive(c, choice);
   return e && e->singular_mass && (derivatives_required(e, &c->o) & WANT_VARIATION) ? equations_regularised(e) : e;
 }
 
-ProgramSet *compiler_unit_head(Compiler *c, Eqns *e) { return unit_head(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0); }
+ProgramSet *compiler_unit_head(Compiler *c, Eqns *e) {
+  return unit_head(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0);
+}
 
 ProgramSet *compiler_new_unit(Compiler *c, Eqns *e) {
   ProgramSet *u = compiler_unit_head(c, e);
@@ -155,7 +161,9 @@ static void warn_of_actions(const Eqns *e) {
   for (uint32_t i = 0; i < e->noutputs; i++)
     for (uint32_t k = 0; k < m->actions.n && !output_is_plain(e, i); k++)
       if (expr_contains_sym(e->g, m->scene.outputs.at[i].value, m->actions.at[k].sym)) {
-        diag_warning(m->diags, m->scene.outputs.at[i].span, "the output `%s` is left out: liblag computes action variables, and this does without it", e->outputs[i].name);
+        diag_warning(m->diags, m->scene.outputs.at[i].span,
+                     "the output `%s` is left out: liblag computes action variables, and this does without it",
+                     e->outputs[i].name);
         diag_help(m->diags, "a library with all outputs: `lagc build --shared`");
         break;
       }

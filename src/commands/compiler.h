@@ -21,7 +21,8 @@ typedef struct {
   Diags *diags;
   Ast *ast;
   RunRequest picture; /* requests of run, plot and animate */
-  const char *given_words; /* values, -D and --until of the command line, as a shell reads them: for commands that a report names */
+  /* values, -D and --until of the command line, as a shell reads them: for commands that a report names */
+  const char *given_words;
   GivenList given; /* values that the command line gives to names, for run, plot and animate */
   StrBuf told;     /* comparisons with the text, for check --verbose */
   StrBuf json[JSON_LISTS]; /* lists of check --json (check_json.h) */
@@ -46,7 +47,8 @@ int compiler_report(Compiler *c, const char *path, const StrBuf *text);
 /* Reads c->o.file into c->ast. Returns a STATUS. */
 int compiler_read(Compiler *c);
 
-/* required_derivatives.c: flags WANT_... (ir/program_set.h) that the methods of e's scene, of --method and of the state of --resume need, and --with. */
+/* required_derivatives.c: flags WANT_... (ir/program_set.h) that the methods of e's scene, of --method and of the
+ * state of --resume need, and --with. */
 unsigned derivatives_required(const Eqns *e, const Options *o);
 /* `lagc cost`: those of them that a C compiler has ready in a part of --seconds. */
 unsigned derivatives_in_time(unsigned wants, const ProgramSet *u, const Options *o);
@@ -63,11 +65,12 @@ Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice);
 ProgramSet *compiler_new_unit(Compiler *c, Eqns *e);
 ProgramSet *compiler_unit_head(Compiler *c, Eqns *e); /* see unit_head */
 
-/* Whether all programs of u are well formed and, for one of its scenes, compute what the text says; otherwise reported: an internal error. */
+/* Whether all programs of u are well formed and, for one of its scenes, compute what the text says; otherwise
+ * reported: an internal error. */
 int compiler_agrees(const Eqns *e, const ProgramSet *u, uint32_t scene);
 
-/* Programs of one scene, compared with the text. hoists: derived parameters are taken out, as emitted models have them. NULL with the reason
- * in c->diags when a program is wrong: an internal error. */
+/* Programs of one scene, compared with the text. hoists: derived parameters are taken out, as emitted models have
+ * them. NULL with the reason in c->diags when a program is wrong: an internal error. */
 ProgramSet *compiler_lower_scene(Compiler *c, Eqns *e, int hoists);
 
 /* The same for an embedded header, with the consistent start in its scene. */

@@ -1,9 +1,10 @@
 /* `lagc complete WORD...`: what a shell may offer for the last WORD of a command line. The scripts of completion
  * (src/commands/complete.bash and its kin) ask it, so that all shells know what the parser knows, and nothing twice.
  *
- * WORDs are those after `lagc`, the last one as far as the cursor, perhaps empty. Each line of the answer is a candidate for the whole word, a tab,
- * and a description; after a candidate that ends in `=` or `(` the user goes on without a space. The line `:files SUFFIX...` stands for the names of
- * files with one of these suffixes, or, without any, of all files; where a file's name is only the last part of the word, it begins after the `=`. */
+ * WORDs are those after `lagc`, the last one as far as the cursor, perhaps empty. Each line of the answer is a
+ * candidate for the whole word, a tab, and a description; after a candidate that ends in `=` or `(` the user goes on
+ * without a space. The line `:files SUFFIX...` stands for the names of files with one of these suffixes, or, without
+ * any, of all files; where a file's name is only the last part of the word, it begins after the `=`. */
 #include <ctype.h>
 #include <string.h>
 
@@ -84,15 +85,20 @@ static void offer_settings(CommandLine *l) {
     offer_setting(l, arena_printf(l->arena, "%s'", c->name), "start of its velocity", NULL);
   }
   for (uint32_t i = 0; i < m->states.n; i++)
-    offer_setting(l, m->states.at[i].name, m->states.at[i].coordinate ? "start of the coordinate" : "start of the state", &m->states.at[i].unit);
-  for (uint32_t i = 0; i < m->inputs.n; i++) offer_setting(l, m->inputs.at[i].name, "input, held constant", &m->inputs.at[i].unit);
+    offer_setting(l, m->states.at[i].name,
+                  m->states.at[i].coordinate ? "start of the coordinate" : "start of the state", &m->states.at[i].unit);
+  for (uint32_t i = 0; i < m->inputs.n; i++)
+    offer_setting(l, m->inputs.at[i].name, "input, held constant", &m->inputs.at[i].unit);
 }
 
 static void offer_names(CommandLine *l, const AstStmt *list) {
-  static const char *const quantity[STMT_STOP + 1] = {[STMT_COORD] = "coordinate", [STMT_MOMENTUM] = "momentum", [STMT_PARAM] = "parameter", [STMT_CONST] = "constant", [STMT_INPUT] = "input",
-                                                      [STMT_STATE] = "state", [STMT_LET] = "let", [STMT_OBSERVE] = "observable"};
+  static const char *const quantity[STMT_STOP + 1] = {
+      [STMT_COORD] = "coordinate", [STMT_MOMENTUM] = "momentum", [STMT_PARAM] = "parameter",
+      [STMT_CONST] = "constant",   [STMT_INPUT] = "input",       [STMT_STATE] = "state",
+      [STMT_LET] = "let",          [STMT_OBSERVE] = "observable"};
   for (const AstStmt *s = list; s; s = s->next) {
-    if (s->name && quantity[s->kind]) offer(l, s->dims ? arena_printf(l->arena, "%s[", s->name) : s->name, quantity[s->kind]);
+    if (s->name && quantity[s->kind])
+      offer(l, s->dims ? arena_printf(l->arena, "%s[", s->name) : s->name, quantity[s->kind]);
     if (s->name && s->kind == STMT_FUNCTION) offer(l, arena_printf(l->arena, "%s(", s->name), "function of the model");
   }
 }
@@ -100,7 +106,9 @@ static void offer_names(CommandLine *l, const AstStmt *list) {
 /* Offers names for the identifier at the end of an expression; the text before it is kept. */
 static void offer_expression(CommandLine *l) {
   size_t n = strlen(l->word), head = strlen(l->head);
-  while (n > head && (isalnum((unsigned char)l->word[n - 1]) || strchr("_.", l->word[n - 1]) || (unsigned char)l->word[n - 1] >= 0x80)) n--;
+  while (n > head && (isalnum((unsigned char)l->word[n - 1]) || strchr("_.", l->word[n - 1]) ||
+                      (unsigned char)l->word[n - 1] >= 0x80))
+    n--;
   if (isdigit((unsigned char)l->word[n])) return;
   l->head = arena_strndup(l->arena, l->word, n);
   Ast *ast = read_ast(l);
@@ -183,7 +191,9 @@ static void record_word(CommandLine *l, const char *word) {
   const char *value = NULL;
   if (l->open) {
     const char *eq = strchr(word, '=');
-    if (l->open->takes == TAKES_DEFINE && eq) vec_push(l->arena, &l->defines, ((Define){.name = arena_strndup(l->arena, word, (size_t)(eq - word)), .value = eq + 1}));
+    if (l->open->takes == TAKES_DEFINE && eq)
+      vec_push(l->arena, &l->defines,
+               ((Define){.name = arena_strndup(l->arena, word, (size_t)(eq - word)), .value = eq + 1}));
     l->open = NULL;
     return;
   }
@@ -199,7 +209,8 @@ static void record_word(CommandLine *l, const char *word) {
 
 static void offer_models(CommandLine *l, const char *before) {
   Gallery g = gallery_find(l->arena, l->argv0);
-  for (uint32_t i = 0; i < g.names.n; i++) offer(l, arena_printf(l->arena, "%s%s", before, g.names.at[i]), "model of the gallery");
+  for (uint32_t i = 0; i < g.names.n; i++)
+    offer(l, arena_printf(l->arena, "%s%s", before, g.names.at[i]), "model of the gallery");
 }
 
 static void offer_word(CommandLine *l) {

@@ -11,7 +11,8 @@
 
 enum { MOST_VALUES = 256 };
 
-/* Adds the values of FIRST..LAST:NUMBER, or FIRST..LAST:log:NUMBER; after: the text behind LAST. Returns 0 where that is no such range. */
+/* Adds the values of FIRST..LAST:NUMBER, or FIRST..LAST:log:NUMBER; after: the text behind LAST. Returns 0 where
+ * that is no such range. */
 static int add_interval(Arena *a, ConstRange *c, double first, double last, const char *after) {
   int ratios = strncmp(after, ":log", 4) == 0;
   const char *number = after + (ratios ? 4 : 0);
@@ -19,7 +20,10 @@ static int add_interval(Arena *a, ConstRange *c, double first, double last, cons
   if (n < 2 || !(last > first) || (ratios && !(first > 0))) return 0;
   for (long i = 0; i < n && i <= MOST_VALUES; i++) {
     char text[32];
-    num_format_double(text, i == 0 ? first : i == n - 1 ? last : ratios ? first * pow(last / first, (double)i / (double)(n - 1)) : first + (double)i * (last - first) / (double)(n - 1));
+    num_format_double(text, i == 0       ? first
+                            : i == n - 1 ? last
+                            : ratios     ? first * pow(last / first, (double)i / (double)(n - 1))
+                                         : first + (double)i * (last - first) / (double)(n - 1));
     vec_push(a, &c->values, arena_strdup(a, text));
   }
   return 1;
@@ -30,7 +34,8 @@ static int read_values(Arena *a, const Range *r, ConstRange *c) {
   for (uint32_t i = 0; i < r->numbers.n; i++) vec_push(a, &number, strchr(r->numbers.at[i], '=') + 1);
   for (uint32_t i = 0; i < number.n; i++)
     if (!text_is_number(number.at[i])) return 0;
-  if (number.n == 2 && strncmp(r->between.at[1], "..", 2) == 0) return add_interval(a, c, strtod(number.at[0], NULL), strtod(number.at[1], NULL), r->between.at[2]);
+  if (number.n == 2 && strncmp(r->between.at[1], "..", 2) == 0)
+    return add_interval(a, c, strtod(number.at[0], NULL), strtod(number.at[1], NULL), r->between.at[2]);
   for (uint32_t i = 0; i < number.n; i++) vec_push(a, &c->values, number.at[i]);
   return number.n > 0 && !*r->between.at[number.n];
 }
@@ -40,9 +45,14 @@ int const_range_take(Ast *ast, Options *o, uint32_t i, const char *name, const c
   const char *word = o->rest.at[i];
   ConstRange c = {.name = name};
   for (uint32_t k = 0; k < o->defines.n; k++)
-    if (strcmp(o->defines.at[k].name, name) == 0) return fail_with(error, arena_printf(a, "-D %s=%s: %s varies; leave one out", name, o->defines.at[k].value, name));
+    if (strcmp(o->defines.at[k].name, name) == 0)
+      return fail_with(error,
+                       arena_printf(a, "-D %s=%s: %s varies; leave one out", name, o->defines.at[k].value, name));
   if (strchr(word, '~') || !read_values(a, range_split(a, word), &c))
-    return fail_with(error, arena_printf(a, "%s: `%s` is a constant, and compiled for each of its values: write plain numbers, for example %s=2,4,8 or %s=2..8:4", word, name, name, name));
+    return fail_with(error, arena_printf(a,
+                                         "%s: `%s` is a constant, and compiled for each of its values: write plain "
+                                         "numbers, for example %s=2,4,8 or %s=2..8:4",
+                                         word, name, name, name));
   StrBuf list = strbuf(a);
   sb_printf(&list, "%s=", name);
   for (uint32_t k = 0; k < c.values.n; k++) sb_printf(&list, k ? ",%s" : "%s", c.values.at[k]);
@@ -62,9 +72,13 @@ uint32_t const_range_variants(Arena *a, const Options *o, const char **error) {
   uint32_t n = 1;
   for (uint32_t k = 0; k < o->consts.n; k++) {
     uint32_t values = o->consts.at[k].values.n;
-    if (walks_together(o) && k && values != n) return (uint32_t)fail_with(error, "--zip: ranges that are walked together have the same number of values");
+    if (walks_together(o) && k && values != n)
+      return (uint32_t)fail_with(error, "--zip: ranges that are walked together have the same number of values");
     n = walks_together(o) ? values : n * values;
-    if (n > MOST_VALUES) return (uint32_t)fail_with(error, arena_printf(a, "%s: a program is compiled for up to %d values of constants; make several sweeps", o->consts.at[k].name, MOST_VALUES));
+    if (n > MOST_VALUES)
+      return (uint32_t)fail_with(
+          error, arena_printf(a, "%s: a program is compiled for up to %d values of constants; make several sweeps",
+                              o->consts.at[k].name, MOST_VALUES));
   }
   return n;
 }

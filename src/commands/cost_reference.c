@@ -1,5 +1,7 @@
-/* The reference motion of `lagc cost`: a child process builds a simulator with more digits and runs it, while the caller builds the one that is
- * measured. Errors of both grow alike along the motion, so long doubles leave it 2000 times more accurate than the best run in doubles. A whole reference is kept in the cache, by simulator, scene, values and end; one that time has cut short is not. */
+/* The reference motion of `lagc cost`: a child process builds a simulator with more digits and runs it, while the
+ * caller builds the one that is measured. Errors of both grow alike along the motion, so long doubles leave it 2000
+ * times more accurate than the best run in doubles. A whole reference is kept in the cache, by simulator, scene,
+ * values and end; one that time has cut short is not. */
 #include "commands/cost_reference.h"
 
 #include <stdio.h>
@@ -67,8 +69,8 @@ static void keep(Arena *a, const char *path, FILE *out) {
   if (lag_outfile_close(&o, whole ? OUTFILE_KEEP : OUTFILE_DROP) == 0) cache_limit(a, path);
 }
 
-/* Appends what quadruple precision costs: the line `precision quad` of a reference by such a simulator, with a second at most. Models that take long to
- * compile have none. */
+/* Appends what quadruple precision costs: the line `precision quad` of a reference by such a simulator, with a
+ * second at most. Models that take long to compile have none. */
 static void add_quad(Compiler *c, const Units *units, const Words *argv, FILE *out) {
   enum { MOST = 12, ROOM = 256 };
   char line[ROOM];
@@ -125,7 +127,8 @@ void cost_reference_begin(Compiler *c, double seconds, CostReference *r) {
 int cost_reference_end(CostReference *r, double seconds) {
   enum { CUT_SHORT = 3 };
   if (!r->out) return 0;
-  int status = process_end(r->process, seconds), given = (status == 0 || status == CUT_SHORT) && process_read_from(r->out);
+  int status = process_end(r->process, seconds),
+      given = (status == 0 || status == CUT_SHORT) && process_read_from(r->out);
   fclose(r->out);
   return given;
 }

@@ -12,7 +12,9 @@
 #include "phase_space/expression_brackets.h"
 #include "syntax/parse.h"
 
-static PrintStyle style_of(const char *format) { return format && strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT; }
+static PrintStyle style_of(const char *format) {
+  return format && strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT;
+}
 
 static int refuse_form(const Eqns *e, const char *message, const char *help) {
   diag_error(e->m->diags, e->m->span, "%s", message);
@@ -20,12 +22,16 @@ static int refuse_form(const Eqns *e, const char *message, const char *help) {
   return 0;
 }
 
-/* Appends momenta, H(q, p) and Hamilton's equations. Returns 0, with the reason in the diags, where no such H exists. */
+/* Appends momenta, H(q, p) and Hamilton's equations. Returns 0, with the reason in the diags, where no such H
+ * exists. */
 static int hamiltonian_print(Eqns *e, PrintStyle style, StrBuf *out) {
   if (e->m->hamiltonian) show_equations(e, NULL, style, out);
   else if (e->n) show_hamiltonian(e, style, out);
   else if (!e->first.n) return refuse_form(e, "no Hamiltonian: the model has no Lagrangian", NULL);
-  else return refuse_form(e, "no Hamiltonian by momenta: L is linear in velocities", "coordinates are then canonical among themselves, and the energy is H: see `lagc derive` without --hamiltonian");
+  else
+    return refuse_form(e, "no Hamiltonian by momenta: L is linear in velocities",
+                       "coordinates are then canonical among themselves, and the energy is H: see `lagc derive` "
+                       "without --hamiltonian");
   return 1;
 }
 
@@ -33,7 +39,8 @@ static int hamiltonian_print(Eqns *e, PrintStyle style, StrBuf *out) {
 static int lagrangian_print(Eqns *e, PrintStyle style, StrBuf *out) {
   if (!e->m->hamiltonian) {
     return refuse_form(e, e->m->lagrangian ? "the model gives its Lagrangian" : "the model gives no Hamiltonian",
-                       "--lagrangian goes back from `hamiltonian = H` without a Lagrangian; beside one, H is a claim that `lagc check` proves");
+                       "--lagrangian goes back from `hamiltonian = H` without a Lagrangian; beside one, H is a claim "
+                       "that `lagc check` proves");
   }
   show_lagrangian(e, style, out);
   return 1;
@@ -41,10 +48,14 @@ static int lagrangian_print(Eqns *e, PrintStyle style, StrBuf *out) {
 
 /* Usage errors of the options that ask for another form than the equations of motion. */
 static int form_is_wrong(Compiler *c) {
-  const char *option = c->o.hamiltonian ? "--hamiltonian" : c->o.lagrangian ? "--lagrangian" : c->o.bracket ? "--bracket" : "--in";
+  const char *option = c->o.hamiltonian  ? "--hamiltonian"
+                       : c->o.lagrangian ? "--lagrangian"
+                       : c->o.bracket    ? "--bracket"
+                                         : "--in";
   int forms = c->o.hamiltonian + c->o.lagrangian + (c->o.bracket != NULL) + (c->o.in != NULL);
   if (forms > 1) return usage_error("give one of --hamiltonian, --lagrangian, --bracket and --in");
-  if (forms && (c->o.ops || (c->o.format && strcmp(c->o.format, "c") == 0))) return usage_error(arena_printf(c->arena, "%s goes with --format text or latex", option));
+  if (forms && (c->o.ops || (c->o.format && strcmp(c->o.format, "c") == 0)))
+    return usage_error(arena_printf(c->arena, "%s goes with --format text or latex", option));
   return STATUS_OK;
 }
 
@@ -59,7 +70,8 @@ static int print_bracket(Compiler *c, AstId bracket) {
   Eqns *e = compiler_derive(c, &(ModelChoice){.scene = c->o.scene, .bracket = bracket});
   StrBuf out = strbuf(c->arena);
   if (!e) return STATUS_MODEL;
-  show_bracket(e, arena_printf(c->arena, "{%s}", c->o.bracket), expression_brackets_substitute(e, e->m->asked_bracket, 1), style_of(c->o.format), &out);
+  show_bracket(e, arena_printf(c->arena, "{%s}", c->o.bracket),
+               expression_brackets_substitute(e, e->m->asked_bracket, 1), style_of(c->o.format), &out);
   return compiler_report(c, c->o.output, &out);
 }
 
@@ -85,7 +97,8 @@ static int print_in(Compiler *c) {
   if (!to) return STATUS_MODEL;
   const CaseSymbols symbols = cases_symbols(e->m);
   if (!canonical_holds(e, to, &symbols, &how)) return STATUS_MODEL;
-  if (!to->is_point) return show_canonical(e, to, style_of(c->o.format), &out) ? compiler_report(c, c->o.output, &out) : STATUS_MODEL;
+  if (!to->is_point)
+    return show_canonical(e, to, style_of(c->o.format), &out) ? compiler_report(c, c->o.output, &out) : STATUS_MODEL;
   e = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .coordinates = to->name});
   if (!e) return STATUS_MODEL;
   show_equations(e, NULL, style_of(c->o.format), &out);
@@ -95,7 +108,8 @@ static int print_in(Compiler *c) {
 /* The operation count without --fix. */
 static const char *unfixed_cost(Compiler *c) {
   Eqns *e = compiler_derive(c, &(ModelChoice){.scene = c->o.scene, .unfixed = 1});
-  return e ? arena_printf(c->arena, "without --fix: %s\n", op_count_text(compiler_new_unit(c, e)->accel, c->arena)) : "";
+  return e ? arena_printf(c->arena, "without --fix: %s\n", op_count_text(compiler_new_unit(c, e)->accel, c->arena))
+           : "";
 }
 
 int command_derive(Compiler *c) {

@@ -1,4 +1,5 @@
-/* Sets of effects: closed under requirements, built as variants of one program, run, and searched for the smallest that suffices. */
+/* Sets of effects: closed under requirements, built as variants of one program, run, and searched for the smallest
+ * that suffices. */
 #include "commands/effect_study.h"
 
 #include <limits.h>
@@ -59,7 +60,9 @@ static Name excluding_effect(const EffectStudy *s, EffectSet set) {
   return NULL;
 }
 
-int effect_set_valid(const EffectStudy *s, EffectSet set) { return meets_requirements(s, set) && !excluding_effect(s, set); }
+int effect_set_valid(const EffectStudy *s, EffectSet set) {
+  return meets_requirements(s, set) && !excluding_effect(s, set);
+}
 
 /* --- variants --- */
 
@@ -89,9 +92,12 @@ static void plan_row(EffectStudy *s, uint32_t effect) {
 
 EffectStudy *effect_study_plan(const Model *scene) {
   EffectStudy *s = ARENA_NEW(scene->arena, EffectStudy);
-  *s = (EffectStudy){.arena = scene->arena, .ast = scene->ast, .graph = effect_graph(scene->ast), .scene = scene, .error = NAN};
+  *s = (EffectStudy){
+      .arena = scene->arena, .ast = scene->ast, .graph = effect_graph(scene->ast), .scene = scene, .error = NAN};
   if (!s->graph.n || s->graph.n > MOST_EFFECTS) {
-    diag_error(scene->diags, scene->span, s->graph.n ? "the model has %u effects; `lagc effects` compares up to %d" : "the model has no effects to compare",
+    diag_error(scene->diags, scene->span,
+               s->graph.n ? "the model has %u effects; `lagc effects` compares up to %d"
+                          : "the model has no effects to compare",
                s->graph.n, MOST_EFFECTS);
     diag_help(scene->diags, "declare an effect with `effect drag { ... }`, and turn it on with `use drag` in a scene");
     return NULL;
@@ -127,7 +133,8 @@ static int read_variant(char *text, EffectMeasurement *m, uint32_t n) {
   return 1;
 }
 
-/* Parses the output of a run of n variants; lines that are no measurements go to *rest. NULL: fewer than n were measured. */
+/* Parses the output of a run of n variants; lines that are no measurements go to *rest. NULL: fewer than n were
+ * measured. */
 static EffectMeasurement *read_measurements(EffectStudy *s, char *said, uint32_t n, const char **rest) {
   EffectMeasurement *m = ARENA_ARRAY(s->arena, EffectMeasurement, n);
   StrBuf other = strbuf(s->arena);
@@ -154,7 +161,8 @@ static EffectMeasurement *read_measurements(EffectStudy *s, char *said, uint32_t
 
 /* The scene with another set of effects, as a unit of its own. */
 static ProgramSet *lower_variant(Compiler *c, EffectList effects, unsigned *wants) {
-  Eqns *e = compiler_derive_wanted(c, &(ModelChoice){.scene = c->o.scene, .only = &effects, .given = c->given.at, .ngiven = c->given.n});
+  Eqns *e = compiler_derive_wanted(
+      c, &(ModelChoice){.scene = c->o.scene, .only = &effects, .given = c->given.at, .ngiven = c->given.n});
   if (!e) return NULL;
   switches_find(e);
   ProgramSet *u = compiler_new_unit(c, e);
@@ -182,10 +190,12 @@ int effect_sets_build(Compiler *c, EffectStudy *s, const EffectSets *sets, int o
   return simulator_make(c, &tools, &texts, NULL, path);
 }
 
-int effect_sets_run(Compiler *c, EffectStudy *s, const EffectSets *sets, char *const *argv, EffectMeasurement **measured) {
+int effect_sets_run(Compiler *c, EffectStudy *s, const EffectSets *sets, char *const *argv,
+                    EffectMeasurement **measured) {
   const char *path, *rest;
   char *said = NULL;
-  int status = effect_sets_build(c, s, sets, strcmp(argv[2], "runs") != 0, &path); /* compilation takes longer than these runs */
+  /* compilation takes longer than these runs */
+  int status = effect_sets_build(c, s, sets, strcmp(argv[2], "runs") != 0, &path);
   if (status != STATUS_OK) return status;
   status = process_run(c->arena, path, argv, &said);
   *measured = read_measurements(s, said, sets->n, &rest);

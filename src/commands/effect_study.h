@@ -1,6 +1,6 @@
-/* Sets of effects compared with a scene's own set: which are planned, run and found sufficient. A variant is the scene with another set of effects; a
- * program of variants measures them (runtime/app/effect_costs.c). An effect is left out together with those that require it, and added together
- * with what it requires. */
+/* Sets of effects compared with a scene's own set: which are planned, run and found sufficient. A variant is the
+ * scene with another set of effects; a program of variants measures them (runtime/app/effect_costs.c). An effect is
+ * left out together with those that require it, and added together with what it requires. */
 #pragma once
 
 #include "commands/compiler.h"
@@ -15,11 +15,13 @@ typedef VEC(EffectSet) EffectSets;
 /* Measurements of one variant. */
 typedef struct {
   int ops;
-  double time, difference, weight; /* time of a call [s]; the others: runtime/analysis/effect_variants.h; NaN: not measured */
+  /* time of a call [s]; the others: runtime/analysis/effect_variants.h; NaN: not measured */
+  double time, difference, weight;
   const char *why;                 /* why its run failed, or NULL */
 } EffectMeasurement;
 
-/* One effect. The variants upper and lower differ by this effect alone; the variant apart is compared with the scene. */
+/* One effect. The variants upper and lower differ by this effect alone; the variant apart is compared with the
+ * scene. */
 typedef struct {
   uint32_t effect;
   int on;
@@ -61,11 +63,14 @@ const char *effect_names_joined(const EffectStudy *s, EffectSet set);
 /* The `use` statement of a set, with the scene's values: `use j2, drag(c = 2)`. */
 const char *effect_use_statement(const EffectStudy *s, EffectSet set);
 
-/* *path := a program of these variants, in the cache; optimised or, for a few runs, not: the bits are the same. Returns a STATUS. */
+/* *path := a program of these variants, in the cache; optimised or, for a few runs, not: the bits are the same.
+ * Returns a STATUS. */
 int effect_sets_build(Compiler *c, EffectStudy *s, const EffectSets *sets, int optimised, const char **path);
-/* Builds such a program and runs it with these arguments, `--effects report` or `--effects runs` among them; *measured := [sets->n]. Returns a STATUS. */
-int effect_sets_run(Compiler *c, EffectStudy *s, const EffectSets *sets, char *const *argv, EffectMeasurement **measured);
+/* Builds such a program and runs it with these arguments, `--effects report` or `--effects runs` among them;
+ * *measured := [sets->n]. Returns a STATUS. */
+int effect_sets_run(Compiler *c, EffectStudy *s, const EffectSets *sets, char *const *argv,
+                    EffectMeasurement **measured);
 
-/* Runs all sets of 0, 1, 2, ... effects that contain their requirements, beside the scene's own, until one differs by s->accuracy at most: s->least, or
- * the scene's own. argv as above, with "runs". Returns a STATUS. */
+/* Runs all sets of 0, 1, 2, ... effects that contain their requirements, beside the scene's own, until one differs
+ * by s->accuracy at most: s->least, or the scene's own. argv as above, with "runs". Returns a STATUS. */
 int effect_find_least(Compiler *c, EffectStudy *s, char *const *argv);

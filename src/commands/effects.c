@@ -1,4 +1,5 @@
-/* `lagc effects`: runs one simulator of a scene's variants (effect_study.h), and judges and reports its measurements. */
+/* `lagc effects`: runs one simulator of a scene's variants (effect_study.h), and judges and reports its
+ * measurements. */
 #include "commands/commands.h"
 
 #include <math.h>
@@ -23,7 +24,9 @@ static const char *verdict_on(const EffectStudy *s, const EffectRow *row) {
 
 static Name name_of(const EffectStudy *s, const EffectRow *row) { return s->graph.at[row->effect].stmt->name; }
 
-static int ops_of(const EffectStudy *s, const EffectRow *row) { return s->measured[row->upper].ops - s->measured[row->lower].ops; }
+static int ops_of(const EffectStudy *s, const EffectRow *row) {
+  return s->measured[row->upper].ops - s->measured[row->lower].ops;
+}
 
 /* Operations as a fraction of the scene's right-hand side. */
 static double operation_fraction(const EffectStudy *s, double part) { return part / s->measured[0].ops; }
@@ -40,13 +43,16 @@ static int shared_ops(const EffectStudy *s) {
   return ops;
 }
 
-static const char *number(Arena *a, double x) { return isnan(x) ? "-" : isinf(x) ? "no number" : arena_printf(a, "%.2g", x); }
+static const char *number(Arena *a, double x) {
+  return isnan(x) ? "-" : isinf(x) ? "no number" : arena_printf(a, "%.2g", x);
+}
 
 static const char *percent(Arena *a, double x) { return isfinite(x) ? arena_printf(a, "%.0f %%", 100 * x) : "-"; }
 
 static int name_width(const EffectStudy *s) {
   size_t width = strlen("shared");
-  for (uint32_t i = 0; i < s->rows.n; i++) width = strlen(name_of(s, &s->rows.at[i])) > width ? strlen(name_of(s, &s->rows.at[i])) : width;
+  for (uint32_t i = 0; i < s->rows.n; i++)
+    width = strlen(name_of(s, &s->rows.at[i])) > width ? strlen(name_of(s, &s->rows.at[i])) : width;
   return (int)width;
 }
 
@@ -59,9 +65,11 @@ static void put_row(const EffectStudy *s, const EffectRow *row, int width, StrBu
     return;
   }
   const EffectMeasurement *m = &s->measured[row->apart];
-  sb_printf(out, " %6s %6s %6s  %9s %11s  %s", arena_printf(a, "%s%d", sign, ops_of(s, row)), percent(a, operation_fraction(s, ops_of(s, row))),
-            percent(a, time_share(s, row)), number(a, m->weight), m->why ? "run fails" : number(a, m->difference), verdict_on(s, row));
-  if (row->together) sb_printf(out, " (%s %s)", row->on ? "left out with" : "added with", effect_names_joined(s, row->together));
+  sb_printf(out, " %6s %6s %6s  %9s %11s  %s", arena_printf(a, "%s%d", sign, ops_of(s, row)),
+            percent(a, operation_fraction(s, ops_of(s, row))), percent(a, time_share(s, row)), number(a, m->weight),
+            m->why ? "run fails" : number(a, m->difference), verdict_on(s, row));
+  if (row->together)
+    sb_printf(out, " (%s %s)", row->on ? "left out with" : "added with", effect_names_joined(s, row->together));
   sb_putc(out, '\n');
 }
 
@@ -73,7 +81,8 @@ static void put_failures(const EffectStudy *s, StrBuf *out) {
   for (uint32_t i = 0; i < s->rows.n; i++) {
     const EffectRow *row = &s->rows.at[i];
     if (!row->excluded_by && s->measured[row->apart].why)
-      sb_printf(out, "%s %s the run fails: %s\n", row->on ? "without" : "with", name_of(s, row), s->measured[row->apart].why);
+      sb_printf(out, "%s %s the run fails: %s\n", row->on ? "without" : "with", name_of(s, row),
+                s->measured[row->apart].why);
   }
 }
 
@@ -85,8 +94,11 @@ static void put_least(const EffectStudy *s, StrBuf *out) {
     return;
   }
   EffectSet gone = s->used & ~s->least;
-  sb_printf(out, "without %s the difference is %.2g, below %g, measured by runs; no smaller set is enough (%u %s run)\n  %s\n", effect_names_joined(s, gone), s->least_difference,
-            s->accuracy, s->tried, s->tried == 1 ? "set was" : "sets were", effect_use_statement(s, s->least));
+  sb_printf(
+      out,
+      "without %s the difference is %.2g, below %g, measured by runs; no smaller set is enough (%u %s run)\n  %s\n",
+      effect_names_joined(s, gone), s->least_difference, s->accuracy, s->tried, s->tried == 1 ? "set was" : "sets were",
+      effect_use_statement(s, s->least));
 }
 
 static void put_text(const EffectStudy *s, StrBuf *out) {
@@ -126,7 +138,8 @@ static void json_names(const EffectStudy *s, EffectSet set, StrBuf *out) {
 
 static void json_row(const EffectStudy *s, const EffectRow *row, StrBuf *out) {
   const EffectMeasurement *m = &s->measured[row->apart];
-  sb_printf(out, "{\"name\": \"%s\", \"on\": %s, \"verdict\": \"%s\"", name_of(s, row), row->on ? "true" : "false", verdict_on(s, row));
+  sb_printf(out, "{\"name\": \"%s\", \"on\": %s, \"verdict\": \"%s\"", name_of(s, row), row->on ? "true" : "false",
+            verdict_on(s, row));
   if (row->excluded_by) {
     sb_printf(out, ", \"excluded_by\": \"%s\"}", row->excluded_by);
     return;
@@ -145,11 +158,13 @@ static void json_row(const EffectStudy *s, const EffectRow *row, StrBuf *out) {
 }
 
 static void put_json(const EffectStudy *s, StrBuf *out) {
-  sb_printf(out, "{\"model\": \"%s\", \"scene\": \"%s\", \"method\": \"%s\"", s->scene->name, s->scene->scene.name, s->method);
+  sb_printf(out, "{\"model\": \"%s\", \"scene\": \"%s\", \"method\": \"%s\"", s->scene->name, s->scene->scene.name,
+            s->method);
   json_number(out, "span_s", s->span);
   json_number(out, "integration_error", s->error);
   json_number(out, "limit", limit_of(s));
-  sb_printf(out, ", \"operations\": %d, \"base\": %d, \"shared\": %d", s->measured[0].ops, s->measured[s->base].ops, shared_ops(s));
+  sb_printf(out, ", \"operations\": %d, \"base\": %d, \"shared\": %d", s->measured[0].ops, s->measured[s->base].ops,
+            shared_ops(s));
   json_number(out, "time_s", s->measured[0].time);
   json_number(out, "base_time_s", s->measured[s->base].time);
   sb_puts(out, ", \"effects\": [");
@@ -178,19 +193,31 @@ static int find_smallest(Compiler *c, EffectStudy *s) {
   char **argv = ARENA_ARRAY(c->arena, char *, c->picture.argv.n);
   memcpy(argv, c->picture.argv.at, c->picture.argv.n*sizeof *argv);
   argv[2] = arena_strdup(c->arena, "runs");
-  if (!num_parse_double(c->o.accuracy, &s->accuracy) || !(s->accuracy > 0)) return usage_error(arena_printf(c->arena, "--accuracy %s: a difference that does not matter, relative and positive; for example 1e-6", c->o.accuracy));
+  if (!num_parse_double(c->o.accuracy, &s->accuracy) || !(s->accuracy > 0))
+    return usage_error(arena_printf(
+        c->arena, "--accuracy %s: a difference that does not matter, relative and positive; for example 1e-6",
+        c->o.accuracy));
   if (s->error <= s->accuracy/10) return effect_find_least(c, s, argv);
-  fprintf(stderr, "lagc: --accuracy %g: the error of integration, %.2g, is not well below it; add --tol with a smaller number, or --step\n", s->accuracy, s->error);
+  fprintf(stderr,
+          "lagc: --accuracy %g: the error of integration, %.2g, is not well below it; add --tol with a smaller number, "
+          "or --step\n",
+          s->accuracy, s->error);
   return STATUS_RUN;
 }
 
 int command_effects(Compiler *c) {
   int status = simulator_prepare(c);
-  Model *m = status == STATUS_OK ? model_build(c->ast, &(ModelChoice){.scene = c->o.scene, .defines = c->o.defines.at, .ndefines = c->o.defines.n}) : NULL;
+  Model *m =
+      status == STATUS_OK
+          ? model_build(c->ast,
+                        &(ModelChoice){.scene = c->o.scene, .defines = c->o.defines.at, .ndefines = c->o.defines.n})
+          : NULL;
   EffectStudy *s = m ? effect_study_plan(m) : NULL;
   if (!s) return status == STATUS_OK ? STATUS_MODEL : status;
   if (c->o.accuracy && effect_count(s->used) > EFFECTS_SEARCHED)
-    return usage_error(arena_printf(c->arena, "--accuracy: the scene has %u effects; all sets of up to %d are searched: leave some out", effect_count(s->used), EFFECTS_SEARCHED));
+    return usage_error(arena_printf(
+        c->arena, "--accuracy: the scene has %u effects; all sets of up to %d are searched: leave some out",
+        effect_count(s->used), EFFECTS_SEARCHED));
   status = effect_sets_run(c, s, &s->variants, c->picture.argv.at, &s->measured);
   if (status == STATUS_OK && c->o.accuracy) status = find_smallest(c, s);
   if (status != STATUS_OK) return status;

@@ -18,7 +18,8 @@ static int make_binaries(Compiler *c, const Fmu *f, FmuBinaries *all, const char
   VEC(const char *) compilers = {0};
   if (!toolchain_compiler(a, &tools, error)) return 0;
   vec_push(a, &compilers, tools.cc);
-  for (char *w = strtok(arena_strdup(a, c->o.also_cc ? c->o.also_cc : ""), ","); w; w = strtok(NULL, ",")) vec_push(a, &compilers, w);
+  for (char *w = strtok(arena_strdup(a, c->o.also_cc ? c->o.also_cc : ""), ","); w; w = strtok(NULL, ","))
+    vec_push(a, &compilers, w);
   tools.soname = arena_printf(a, "%s.so", f->identifier);
   for (uint32_t i = 0; i < compilers.n; i++) {
     FmuBinary one = {.library = strbuf(a)};
@@ -40,8 +41,10 @@ int command_fmu(Compiler *c) {
   if (!u) return STATUS_MODEL;
   StrBuf equations = strbuf(c->arena), archive = strbuf(c->arena);
   show_equations(e, "", PRINT_TEXT, &equations);
-  if (!fmu_make(u, c->o.fmi && strcmp(c->o.fmi, "3") == 0 ? 3 : 2, sb_text(&equations), &f, &error)) return usage_error(error);
+  if (!fmu_make(u, c->o.fmi && strcmp(c->o.fmi, "3") == 0 ? 3 : 2, sb_text(&equations), &f, &error))
+    return usage_error(error);
   if (compiler_is_source(c, c->o.output)) return STATUS_USAGE;
-  if (!make_binaries(c, &f, &binaries, &error) || !fmu_pack(&f, binaries.at, binaries.n, &archive, &error)) return usage_error(error);
+  if (!make_binaries(c, &f, &binaries, &error) || !fmu_pack(&f, binaries.at, binaries.n, &archive, &error))
+    return usage_error(error);
   return compiler_write(c, c->o.output, &archive);
 }

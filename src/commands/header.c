@@ -22,20 +22,30 @@ static int is_prefix(const char *s) {
 }
 
 int command_header(Compiler *c) {
-  if (c->o.prefix && !is_prefix(c->o.prefix)) return usage_error(arena_printf(c->arena, "--prefix %s is no name for C and C++: letters, digits and single `_` between them, as in `pend` or `arm_2`", c->o.prefix));
+  if (c->o.prefix && !is_prefix(c->o.prefix))
+    return usage_error(arena_printf(
+        c->arena,
+        "--prefix %s is no name for C and C++: letters, digits and single `_` between them, as in `pend` or `arm_2`",
+        c->o.prefix));
   Eqns *e = compiler_derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   Name conditional = model_conditional(e->m);
   if (conditional)
-    return usage_error(arena_printf(c->arena, "a header has no constraints with `while` (%s), whose impulses and times take a run of events: "
-                                    "`lagc build --shared` makes a library that has them", conditional));
+    return usage_error(
+        arena_printf(c->arena,
+                     "a header has no constraints with `while` (%s), whose impulses and times take a run of events: "
+                     "`lagc build --shared` makes a library that has them",
+                     conditional));
   ProgramSet *u = compiler_lower_embedded(c, e);
   if (!u) return STATUS_MODEL;
   HeaderParts parts = {.prefix = c->o.prefix};
   const char *error;
-  if (!header_parts(u, c->o.with, &parts, &error) || !header_parts(u, c->o.target, &parts, &error)) return usage_error(error);
+  if (!header_parts(u, c->o.with, &parts, &error) || !header_parts(u, c->o.target, &parts, &error))
+    return usage_error(error);
   if (u->contact_laws && !header_parts(u, "moreau", &parts, &error))
-    return usage_error(arena_printf(c->arena, "%s, and contacts with friction need it: `lagc build --shared` makes a library that follows them", error));
+    return usage_error(arena_printf(
+        c->arena, "%s, and contacts with friction need it: `lagc build --shared` makes a library that follows them",
+        error));
   StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
   show_equations(e, "", PRINT_TEXT, &equations);
   emit_header(u, header_name(c, u->name), parts, sb_text(&equations), &out);

@@ -1,5 +1,5 @@
-/* `lagc help`: pages on a command, a chapter or a word of the reference, a function, a unit, an option; put together from the tables of commands and
- * options, the chapters of grammar/LANGUAGE.md, and the table of units. */
+/* `lagc help`: pages on a command, a chapter or a word of the reference, a function, a unit, an option; put together
+ * from the tables of commands and options, the chapters of grammar/LANGUAGE.md, and the table of units. */
 #include "commands/commands.h"
 
 #include <ctype.h>
@@ -21,8 +21,8 @@ enum { TERMS = 24 }; /* column of the meanings in lists */
 
 /* ---- chapters of the language reference ---- */
 
-/* A chapter of grammar/LANGUAGE.md runs from a heading (## or ###) to the next. A comment below the heading lists the words that it explains;
- * the first one names the chapter: <!-- help: scenes scene start span --> */
+/* A chapter of grammar/LANGUAGE.md runs from a heading (## or ###) to the next. A comment below the heading lists
+ * the words that it explains; the first one names the chapter: <!-- help: scenes scene start span --> */
 typedef struct {
   const char *const *lines; /* the heading first */
   size_t n;
@@ -62,7 +62,8 @@ static int says_first(const char *line, char end, const char *word) {
   return 0;
 }
 
-/* Prints line i if it is a row of a table about the word, or, in a chapter that lists the word, an item of a list about it. Returns 1 when it did. */
+/* Prints line i if it is a row of a table about the word, or, in a chapter that lists the word, an item of a list
+ * about it. Returns 1 when it did. */
 static int print_entry(StrBuf *out, const Chapter *c, size_t i, const char *word) {
   const char *line = c->lines[i];
   if (line[0] == '|' && says_first(line + 1, '|', word)) {
@@ -81,8 +82,8 @@ static int names_chapter(const Chapter *c, const char *word) {
   return strncmp(c->words, word, n) == 0 && (c->words[n] == ' ' || c->words[n] == '\0');
 }
 
-/* Appends the chapter's text on a word: rows of tables that begin with it; for one of the chapter's own words also items of
- * lists that do, or, without any, the whole chapter. Returns 0 when there is nothing. */
+/* Appends the chapter's text on a word: rows of tables that begin with it; for one of the chapter's own words also
+ * items of lists that do, or, without any, the whole chapter. Returns 0 when there is nothing. */
 static int chapter_print(StrBuf *out, const Chapter *c, const char *word) {
   int rows = 0;
   for (size_t i = 0; i < c->n && !names_chapter(c, word); i++) rows += print_entry(out, c, i, word);
@@ -147,9 +148,12 @@ static int put_named_options(StrBuf *out, const char *topic, int before) {
   topic += strspn(topic, "-");
   for (size_t i = 0; option_row(i); i++) {
     const OptionRow *o = option_row(i);
-    if (strcmp(o->name + 2, topic) != 0 && (!o->brief || strcmp(o->brief + 1, topic) != 0) && !(o->takes == TAKES_CHOICE && has_word(o->hint, topic))) continue;
+    if (strcmp(o->name + 2, topic) != 0 && (!o->brief || strcmp(o->brief + 1, topic) != 0) &&
+        !(o->takes == TAKES_CHOICE && has_word(o->hint, topic)))
+      continue;
     if (before && !found) sb_putc(out, '\n');
-    const char *head = arena_printf(out->arena, "%s of %s:", found ? "and" : "option", commands_text(out->arena, o->commands));
+    const char *head =
+        arena_printf(out->arena, "%s of %s:", found ? "and" : "option", commands_text(out->arena, o->commands));
     page_words(out, head, strlen(head), 0, 0);
     put_option(out, o);
     found = 1;
@@ -163,8 +167,8 @@ static int put_unit(StrBuf *out, const char *name, int before) {
   for (uint32_t i = 0; unit_name(i); i++) {
     if (strcmp(unit_name(i), name) != 0) continue;
     const char *is = unit_meaning(i, out->arena);
-    sb_printf(out, "%sunit:\n  [%s]%s%s%s\n", before ? "\n" : "", name, is ? " = " : "", is ? is : " of the SI, a base unit",
-              unit_takes_prefixes(i) ? "; takes the SI prefixes" : "");
+    sb_printf(out, "%sunit:\n  [%s]%s%s%s\n", before ? "\n" : "", name, is ? " = " : "",
+              is ? is : " of the SI, a base unit", unit_takes_prefixes(i) ? "; takes the SI prefixes" : "");
     return 1;
   }
   if (!unit_exists(name)) return 0;
@@ -180,7 +184,8 @@ static void put_units(StrBuf *out) {
   for (uint32_t i = 1; unit_name(i); i++) { /* the first is 1 */
     const char *is = unit_meaning(i, out->arena), *mark = unit_takes_prefixes(i) ? "" : "*";
     plain |= *mark;
-    vec_push(out->arena, &cells, arena_printf(out->arena, "%s%s%s%s", unit_name(i), mark, is ? " = " : "", is ? is : ""));
+    vec_push(out->arena, &cells,
+             arena_printf(out->arena, "%s%s%s%s", unit_name(i), mark, is ? " = " : "", is ? is : ""));
   }
   uint32_t rows = (cells.n + COLUMNS - 1) / COLUMNS;
   sb_puts(out, "\nThe table\n---------\n");
@@ -229,22 +234,24 @@ static void put_overview(StrBuf *out) {
                "usage: lagc COMMAND MODEL [SCENE] [options]\n\n");
   for (size_t i = 0; command_row(i); i++)
     if (command_row(i)->does) page_term(out, command_row(i)->name, command_row(i)->does, TERMS);
-  sb_puts(
-      out,
-      "\nlagc help tutorial is a quarter of an hour, lagc help python the way from Python.\n"
-      "lagc help WORDS searches all of them (lagc help normal modes). Topics: each command,\nfunction, unit and option; expert; and\n\n");
+  sb_puts(out, "\nlagc help tutorial is a quarter of an hour, lagc help python the way from Python.\n"
+               "lagc help WORDS searches all of them (lagc help normal modes). Topics: each command,\nfunction, unit "
+               "and option; expert; and\n\n");
   for (uint32_t i = 0; i < chapters.n; i++) {
     const char *words = chapters.at[i].words, *first = word_at(a, words, 0);
     uint32_t before = shown.n;
     if (first) add_topic(a, &shown, first);
     if (shown.n == before) continue;
     words += strlen(first);
-    const char *more = *words ? words + 1 : strcmp(first, "functions") == 0 ? all_functions(a) : chapter_title(a, &chapters.at[i]);
+    const char *more = *words                            ? words + 1
+                       : strcmp(first, "functions") == 0 ? all_functions(a)
+                                                         : chapter_title(a, &chapters.at[i]);
     page_term(out, first, more, TERMS);
   }
   page_term(out, "methods", "of integration, with their options", TERMS);
   sb_putc(out, '\n');
-  page_paragraphs(out, "MODEL is a .lag file; without a SCENE its first scene is taken. Exit status: 0 ok, 1 bad model, 2 usage or files, "
+  page_paragraphs(out, "MODEL is a .lag file; without a SCENE its first scene is taken. Exit status: 0 ok, 1 bad "
+                       "model, 2 usage or files, "
                        "3 the run failed.");
 }
 
@@ -266,7 +273,8 @@ static int put_document(StrBuf *out, const char *topic) {
   if (strcmp(topic, "expert") != 0) return 0;
   for (size_t i = 0; option_row(i); i++)
     if (option_expert(option_row(i))) {
-      const char *of = arena_printf(out->arena, "%s (%s)", option_row(i)->does, commands_text(out->arena, option_row(i)->commands));
+      const char *of =
+          arena_printf(out->arena, "%s (%s)", option_row(i)->does, commands_text(out->arena, option_row(i)->commands));
       OptionRow row = *option_row(i);
       row.does = of;
       put_option(out, &row);
@@ -294,7 +302,8 @@ static int print_topic(StrBuf *out, const char *topic) {
 
 /* --- the command --- */
 
-/* A program of the runtime, built and cached like a simulator, prints the methods: `--method help` the table, `--method "help NAME"` one method. */
+/* A program of the runtime, built and cached like a simulator, prints the methods: `--method help` the table,
+ * `--method "help NAME"` one method. */
 static int help_methods(Compiler *c, const char *name) {
   static const char program[] =
     "#include \"lag.h\"\n\n"
@@ -333,7 +342,8 @@ int command_help(Compiler *c) {
   const char *topic = c->o.topic;
   if (topic && strcmp(topic, "methods") == 0) return help_methods(c, NULL);
   if (!topic) put_overview(&out);
-  else if (!print_topic(&out, topic)) return method_find(topic, strlen(topic)) ? help_methods(c, topic) : search(c, topic);
+  else if (!print_topic(&out, topic))
+    return method_find(topic, strlen(topic)) ? help_methods(c, topic) : search(c, topic);
   return compiler_write(c, NULL, &out);
 }
 

@@ -27,7 +27,9 @@ typedef struct {
 typedef VEC(Passage) Passages;
 
 static Passage *add_passage(Arena *a, Passages *to, const char *title, const char *topic, const char *text) {
-  vec_push(a, to, ((Passage){.head = title, .title = title, .topic = topic, .text = text, .all = text, .bonus = 1, .order = to->n}));
+  vec_push(a, to,
+           ((Passage){
+               .head = title, .title = title, .topic = topic, .text = text, .all = text, .bonus = 1, .order = to->n}));
   return &to->at[to->n - 1];
 }
 
@@ -247,8 +249,8 @@ static void put_answers(StrBuf *out, const Passages *in, const Question *asked, 
 }
 
 int help_search(StrBuf *out, const char *words) {
-  static const char idle[] =
-      "a an the how to do does i is are of for with and or in on my me can what find make get use using lagc it from by as at";
+  static const char idle[] = "a an the how to do does i is are of for with and or in on my me can what find make get "
+                             "use using lagc it from by as at";
   enum { MOST = 8 };
   Arena *a = out->arena;
   Question asked[MOST];
@@ -258,8 +260,10 @@ int help_search(StrBuf *out, const char *words) {
   StrBuf told = strbuf(a);
   for (const char *s = words; *s && n < MOST;) {
     size_t len = strcspn(s, " "), next = strcspn(s + len + (s[len] == ' '), " ");
-    const char *word = arena_strndup(a, s, len), *both = arena_printf(a, "%s%.*s", word, (int)next, s + len + (s[len] == ' '));
-    const char *joint = next ? help_way(a, both) : NULL, *way = joint ? joint : said ? NULL : help_way(a, word); /* time step: timestep */
+    const char *word = arena_strndup(a, s, len),
+               *both = arena_printf(a, "%s%.*s", word, (int)next, s + len + (s[len] == ' '));
+    /* time step: timestep */
+    const char *joint = next ? help_way(a, both) : NULL, *way = joint ? joint : said ? NULL : help_way(a, word);
     s += len + (s[len] == ' ');
     said = joint != NULL;
     if (!len || (has_word(idle, word) && !joint)) continue;

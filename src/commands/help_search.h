@@ -1,4 +1,5 @@
-/* Search of `lagc help WORDS` over commands, options, the reference, the tutorial, README and the page on Python, with synonyms. */
+/* Search of `lagc help WORDS` over commands, options, the reference, the tutorial, README and the page on Python,
+ * with synonyms. */
 #pragma once
 
 #include "base/strbuf.h"

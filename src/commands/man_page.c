@@ -144,7 +144,8 @@ static void put_man_page(StrBuf *out) {
 }
 
 static void put_chapter(StrBuf *out) {
-  sb_puts(out, "## Commands and options\nOptions of `run` that `plot`, `animate` and simulators have, too, are listed with `run`.\n");
+  sb_puts(out, "## Commands and options\nOptions of `run` that `plot`, `animate` and simulators have, too, are listed "
+               "with `run`.\n");
   put_commands(out, &markdown);
   sb_puts(out, "\n### Options for experts\n");
   put_options(out, &markdown, CMD_NONE);

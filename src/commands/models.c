@@ -31,7 +31,8 @@ uint32_t models_list(Compiler *c, const char *word, StrBuf *out) {
   Gallery g = gallery_find(c->arena, c->argv0);
   int widest = 0;
   uint32_t found = 0;
-  for (uint32_t i = 0; i < g.names.n; i++) widest = (int)strlen(g.names.at[i]) > widest ? (int)strlen(g.names.at[i]) : widest;
+  for (uint32_t i = 0; i < g.names.n; i++)
+    widest = (int)strlen(g.names.at[i]) > widest ? (int)strlen(g.names.at[i]) : widest;
   for (uint32_t i = 0; i < g.names.n; i++) {
     StrBuf text = gallery_text(c->arena, &g, g.names.at[i]);
     const char *title = gallery_title(c->arena, sb_text(&text));
@@ -46,8 +47,11 @@ int command_models(Compiler *c) {
   StrBuf out = strbuf(c->arena);
   Gallery g = gallery_find(c->arena, c->argv0);
   if (!g.names.n) return usage_error("the gallery is not found beside lagc: `make install` brings it along");
-  if (!models_list(c, c->o.topic, &out)) return usage_error(arena_printf(c->arena, "no model has `%s` in its name or title; `lagc models` lists all", c->o.topic));
-  sb_printf(&out, "\nFiles in %s. `lagc run @pendulum` runs one, `lagc new NAME --like pendulum` copies one.\n", g.folder);
+  if (!models_list(c, c->o.topic, &out))
+    return usage_error(
+        arena_printf(c->arena, "no model has `%s` in its name or title; `lagc models` lists all", c->o.topic));
+  sb_printf(&out, "\nFiles in %s. `lagc run @pendulum` runs one, `lagc new NAME --like pendulum` copies one.\n",
+            g.folder);
   return compiler_write(c, NULL, &out);
 }
 
@@ -76,11 +80,13 @@ int command_new(Compiler *c) {
   const char *name = arena_strndup(a, c->o.file, n - suffix), *path = arena_printf(a, "%s.lag", name);
   Gallery g = gallery_find(a, c->argv0);
   const char *error = NULL, *like = c->o.like ? c->o.like + (c->o.like[0] == '@') : nearest_model(&g, name);
-  if (c->o.scene) return usage_error(arena_printf(a, "one word too many: `%s`; usage: lagc new NAME [--like MODEL]", c->o.scene));
+  if (c->o.scene)
+    return usage_error(arena_printf(a, "one word too many: `%s`; usage: lagc new NAME [--like MODEL]", c->o.scene));
   if (!is_name(name)) {
     char *better = arena_strdup(a, name);
     for (char *s = better; *s; s++) *s = *s == '-' || *s == ' ' || *s == '.' ? '_' : *s;
-    return usage_error(arena_printf(a, "%s: a model's name has letters, digits and _, and begins with a letter%s%s", name, is_name(better) ? "; write lagc new " : "", is_name(better) ? better : ""));
+    return usage_error(arena_printf(a, "%s: a model's name has letters, digits and _, and begins with a letter%s%s",
+                                    name, is_name(better) ? "; write lagc new " : "", is_name(better) ? better : ""));
   }
   if (!gallery_path(a, c->argv0, arena_printf(a, "@%s", like), &error)) return usage_error(error);
   if (file_exists(path)) return usage_error(arena_printf(a, "%s is there already; take another name", path));
@@ -89,6 +95,7 @@ int command_new(Compiler *c) {
   sb_putn(&out, from, (size_t)(line - from));
   sb_printf(&out, "model %s%s", name, line + 6 + strcspn(line + 6, " \n"));
   int status = compiler_write(c, path, &out);
-  if (status == STATUS_OK) printf("%s begins as a copy of %s; `lagc check %s`, `lagc run %s --sketch`\n", path, like, path, path);
+  if (status == STATUS_OK)
+    printf("%s begins as a copy of %s; `lagc check %s`, `lagc run %s --sketch`\n", path, like, path, path);
   return status;
 }

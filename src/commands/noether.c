@@ -10,7 +10,9 @@
 #include "report/equation_listing.h"
 #include "toolchain/process.h"
 
-static PrintStyle style_of(const char *format) { return format && strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT; }
+static PrintStyle style_of(const char *format) {
+  return format && strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT;
+}
 
 /* Each stage that begins or goes on after a second. */
 static void show_progress(SearchLimit *l, double spent) {
@@ -22,7 +24,8 @@ static void show_progress(SearchLimit *l, double spent) {
 int noether_print(Compiler *c, const char *scene, double seconds, const char *format, StrBuf *out) {
   Eqns *e = compiler_derive_compared(c, &(ModelChoice){.scene = scene, .bare = !scene});
   if (!e) return 0;
-  if (!e->m->lagrangian) return diag_error(e->m->diags, e->m->span, "no symmetries to look for: the model has no Lagrangian");
+  if (!e->m->lagrangian)
+    return diag_error(e->m->diags, e->m->span, "no symmetries to look for: the model has no Lagrangian");
   if (!scene && !charges_judge(e, NULL)) return 0;
   SearchLimit limit = search_limit(seconds);
   if (stderr_is_terminal()) limit.show = show_progress;
@@ -43,6 +46,8 @@ int command_noether(Compiler *c) {
   StrBuf out = strbuf(c->arena);
   double seconds = 10;
   if (c->o.seconds && (!num_parse_double(c->o.seconds, &seconds) || !(seconds > 0)))
-    return usage_error(arena_printf(c->arena, "--seconds %s: the time for the search, for example --seconds 60", c->o.seconds));
-  return noether_print(c, c->o.scene, seconds, c->o.format, &out) ? compiler_report(c, c->o.output, &out) : STATUS_MODEL;
+    return usage_error(
+        arena_printf(c->arena, "--seconds %s: the time for the search, for example --seconds 60", c->o.seconds));
+  return noether_print(c, c->o.scene, seconds, c->o.format, &out) ? compiler_report(c, c->o.output, &out)
+                                                                  : STATUS_MODEL;
 }

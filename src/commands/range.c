@@ -1,4 +1,5 @@
-/* Ranges of `lagc sweep` (range.h): only cut into numbers here, so that units and formulas are converted as those of name=value. */
+/* Ranges of `lagc sweep` (range.h): only cut into numbers here, so that units and formulas are converted as those of
+ * name=value. */
 #include "commands/range.h"
 
 #include <stdlib.h>
@@ -7,7 +8,8 @@
 #include "base/num.h"
 #include "base/strbuf.h"
 
-/* The first separator of a list or range outside parentheses; NULL: none. Names of folders may have dots, "../wind.csv", of files commas. */
+/* The first separator of a list or range outside parentheses; NULL: none. Names of folders may have dots,
+ * "../wind.csv", of files commas. */
 static const char *find_separator(const char *s) {
   size_t n = strlen(s);
   int depth = 0;
@@ -58,14 +60,16 @@ Range *range_split(Arena *a, const char *word) {
       vec_push(a, &r->between, word);
       return r;
     }
-    vec_push(a, &r->between, arena_printf(a, "%s%.*s", from == text ? arena_strndup(a, word, mark + 1) : "", (int)(at - from), from));
+    vec_push(a, &r->between,
+             arena_printf(a, "%s%.*s", from == text ? arena_strndup(a, word, mark + 1) : "", (int)(at - from), from));
     vec_push(a, &r->numbers, arena_printf(a, "%s=%.*s%s", r->name, (int)n, at, r->unit));
     from = at += n;
     if (*at == ':') break; /* the number of values follows */
     at += strncmp(at, "..", 2) == 0 ? 2 : *at == ',';
     at += strspn(at, " ");
   }
-  const char *unit = distributed && strncmp(text, "normal", 6) == 0 && r->numbers.n == 2 ? strchr(r->numbers.at[1], '[') : NULL;
+  const char *unit =
+      distributed && strncmp(text, "normal", 6) == 0 && r->numbers.n == 2 ? strchr(r->numbers.at[1], '[') : NULL;
   if (unit) r->zero = arena_printf(a, "%s=0%s", r->name, unit);
   vec_push(a, &r->between, from == text ? arena_printf(a, "%s%s", arena_strndup(a, word, mark + 1), text) : from);
   return r;

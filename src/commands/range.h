@@ -14,7 +14,8 @@ typedef struct {
   const char *zero;          /* name=0[unit] of a deviation, which is a difference: 1 K is 1 degC; NULL: none */
 } Range;
 
-/* The range in a word of the command line; NULL: it is none. Forms that are wrong are left to the simulator, which says so. */
+/* The range in a word of the command line; NULL: it is none. Forms that are wrong are left to the simulator, which
+ * says so. */
 Range *range_split(Arena *a, const char *word);
 
 /* The word again, with each number as its converted setting has it. */

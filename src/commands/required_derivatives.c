@@ -12,12 +12,13 @@
 #include "fmu/fmu_archive.h"
 #include "ir/program_set.h"
 
-/* Flags of a method; one that splits T and V of separable models is implicit for others, and then needs derivatives of L. */
+/* Flags of a method; one that splits T and V of separable models is implicit for others, and then needs derivatives
+ * of L. */
 static unsigned required_by_info(const Eqns *e, const MethodInfo *m) {
   int splits = (m->flags & METHOD_SPLITS) && e->separable;
   if ((m->flags & METHOD_FLOWS) && !e->n) return WANT_LINEAR;
-  return ((m->flags & METHOD_VARIATION) && !splits ? WANT_VARIATION : 0u) | (m->flags & METHOD_JACOBIAN ? WANT_LINEAR : 0u) |
-         (m->flags & METHOD_TAYLOR ? WANT_TAYLOR : 0u);
+  return ((m->flags & METHOD_VARIATION) && !splits ? WANT_VARIATION : 0u) |
+         (m->flags & METHOD_JACOBIAN ? WANT_LINEAR : 0u) | (m->flags & METHOD_TAYLOR ? WANT_TAYLOR : 0u);
 }
 
 /* Flags of methods written NAME or NAME(option=value, ...), with commas between several. */
@@ -34,7 +35,8 @@ static unsigned required_by_method(const Eqns *e, const char *text) {
   return wants;
 }
 
-/* The method of a saved state, from the line `method NAME` near its head; NULL: none, and the simulator refuses the file. */
+/* The method of a saved state, from the line `method NAME` near its head; NULL: none, and the simulator refuses the
+ * file. */
 static const char *method_of_state(Arena *a, const char *path) {
   char line[256];
   const char *name = NULL, *error;
@@ -52,15 +54,17 @@ static unsigned required_by_all(const Eqns *e) {
   return wants;
 }
 
-/* Flags of the methods that the simulator may choose when none is named: taylor for small tolerances, radau where friction or flows may be
- * stiff. None for long models, whose series and Jacobians take long to compile. */
+/* Flags of the methods that the simulator may choose when none is named: taylor for small tolerances, radau where
+ * friction or flows may be stiff. None for long models, whose series and Jacobians take long to compile. */
 static unsigned required_by_choice(const Eqns *e, const Options *o) {
   enum { LONG = 40 };
   const double below_taylor = 1e-9; /* as in runtime/analysis/automatic_method.c */
-  double tol = o->accurate ? 0.1 * below_taylor : o->tol ? strtod(o->tol, NULL) : e->m->scene.tolerance; /* --accuracy tries several tolerances */
+  /* --accuracy tries several tolerances */
+  double tol = o->accurate ? 0.1 * below_taylor : o->tol ? strtod(o->tol, NULL) : e->m->scene.tolerance;
   int runs = command_simulates(o->command) || o->command == CMD_BUILD;
   if (!runs || (e->m->scene.method && !o->accurate) || o->method || e->n + e->m->states.n > LONG) return 0;
-  return (tol > 0 && tol < below_taylor ? WANT_TAYLOR : 0u) | (e->conserves_energy && !e->m->states.n ? 0u : WANT_LINEAR);
+  return (tol > 0 && tol < below_taylor ? WANT_TAYLOR : 0u) |
+         (e->conserves_energy && !e->m->states.n ? 0u : WANT_LINEAR);
 }
 
 /* Whether a measure of the scene or of --measure contains the Lyapunov exponent, for which the run has a tangent. */
@@ -84,9 +88,11 @@ static const char *passed_option(const Options *o, const char *name) {
 }
 
 unsigned derivatives_in_time(unsigned wants, const ProgramSet *u, const Options *o) {
-  const double a_second = 400; /* instructions of accelerations with second derivatives of L: gcc 12 -O2, 400 to 880 (bicycle) */
+  /* instructions of accelerations with second derivatives of L: gcc 12 -O2, 400 to 880 (bicycle) */
+  const double a_second = 400;
   double seconds = o->seconds ? strtod(o->seconds, NULL) : 10;
-  int takes_long = o->command == CMD_COST && !passed_option(o, "--methods") && u->accel && u->accel->ins.n > seconds/2*a_second;
+  int takes_long =
+      o->command == CMD_COST && !passed_option(o, "--methods") && u->accel && u->accel->ins.n > seconds / 2 * a_second;
   return takes_long ? wants & ~(unsigned)WANT_VARIATION : wants;
 }
 
@@ -95,6 +101,11 @@ unsigned derivatives_required(const Eqns *e, const Options *o) {
     const char *methods = passed_option(o, "--methods");
     return methods ? required_by_method(e, methods) | WANT_TAYLOR : required_by_all(e); /* taylor: for the reference */
   }
-  unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) | required_by_choice(e, o) | (o->command == CMD_FMU ? fmu_wants() : o->command == CMD_HEADER ? WANT_HELD | header_wants(o->with) | header_wants(o->target) : o->with || measures_exponent(e) ? WANT_LINEAR : 0u);
+  unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) |
+                   required_by_choice(e, o) |
+                   (o->command == CMD_FMU             ? fmu_wants()
+                    : o->command == CMD_HEADER        ? WANT_HELD | header_wants(o->with) | header_wants(o->target)
+                    : o->with || measures_exponent(e) ? WANT_LINEAR
+                                                      : 0u);
   return o->resume ? wants | required_by_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

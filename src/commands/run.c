@@ -1,4 +1,5 @@
-/* `lagc run`, `plot`, `animate`, `modes`, `lyapunov`, `cost`: the simulator in the cache, started with what the command line says. */
+/* `lagc run`, `plot`, `animate`, `modes`, `lyapunov`, `cost`: the simulator in the cache, started with what the
+ * command line says. */
 #include "commands/commands.h"
 
 #include <errno.h>
@@ -39,18 +40,21 @@ static double seconds_now(void) {
   return (double)now.tv_sec + 1e-9*(double)now.tv_nsec;
 }
 
-/* Makes the simulator of `lagc cost`, beside it the reference where three fifths of the time, or five seconds, suffice, and tells it how much is left: at least
- * a third. */
+/* Makes the simulator of `lagc cost`, beside it the reference where three fifths of the time, or five seconds,
+ * suffice, and tells it how much is left: at least a third. */
 static int make_cost_simulator(Compiler *c, const Units *units, double begin, const char **path) {
   enum { LEAST_WAIT = 5 };
   double asked = c->o.seconds ? strtod(c->o.seconds, NULL) : 10;
   CostReference reference;
   cost_reference_begin(c, 0.4*asked, &reference);
-  int status = simulator_of_units(c, units, NULL, path), given = cost_reference_end(&reference, fmax(0.6*asked - (seconds_now() - begin), LEAST_WAIT));
+  int status = simulator_of_units(c, units, NULL, path),
+      given = cost_reference_end(&reference, fmax(0.6 * asked - (seconds_now() - begin), LEAST_WAIT));
   double left = asked - (seconds_now() - begin);
   c->picture.argv.n--; /* the NULL at the end */
   vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--seconds"));
-  vec_push(c->arena, &c->picture.argv, !(asked > 0) ? arena_strdup(c->arena, c->o.seconds) : arena_printf(c->arena, "%.3g", left > asked/3 ? left : asked/3));
+  vec_push(c->arena, &c->picture.argv,
+           !(asked > 0) ? arena_strdup(c->arena, c->o.seconds)
+                        : arena_printf(c->arena, "%.3g", left > asked / 3 ? left : asked / 3));
   if (c->given_words[0]) {
     vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--given"));
     vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, c->given_words));
@@ -72,7 +76,8 @@ int command_run(Compiler *c) {
   if (c->o.budget) return cost_budget(c);
   Units units = {0};
   if (!simulator_lower(c, &units)) return STATUS_MODEL;
-  status = c->o.command == CMD_COST ? make_cost_simulator(c, &units, begin, &path) : simulator_of_units(c, &units, NULL, &path);
+  status = c->o.command == CMD_COST ? make_cost_simulator(c, &units, begin, &path)
+                                    : simulator_of_units(c, &units, NULL, &path);
   if (status != STATUS_OK) return status;
   if (writes_source(c)) return STATUS_USAGE;
   fflush(stdout);
@@ -81,5 +86,6 @@ int command_run(Compiler *c) {
   if (c->run && c->run->n <= LARGE && c->o.command != CMD_SWEEP) last_state_listen(c->arena, tell_last_state, c);
   process_become(path, c->picture.argv.at);
   const char *why = strerror(errno);
-  return usage_error(arena_printf(c->arena, "cannot run %s: %s; set XDG_CACHE_HOME to a folder where programs may run", path, why));
+  return usage_error(
+      arena_printf(c->arena, "cannot run %s: %s; set XDG_CACHE_HOME to a folder where programs may run", path, why));
 }

@@ -24,7 +24,8 @@ static const char *column_name(RequestBuilder *k, const char *text) {
   return arena_printf(k->arena, "%.*s...#%u", (int)cut, text, k->p->asked.n + 1);
 }
 
-/* Adds an expression to the outputs and returns the name of its column; NULL after a mistake. from: the option that holds the expression. */
+/* Adds an expression to the outputs and returns the name of its column; NULL after a mistake. from: the option that
+ * holds the expression. */
 static const char *add_output(RequestBuilder *k, const char *from, const char *text) {
   text = text_trimmed(k->arena, text, strlen(text));
   if (strcmp(text, "t") == 0) return text; /* every table begins with the time */
@@ -67,7 +68,8 @@ static const AstStmt *find_quantity(const Ast *ast, const char *name) {
 
 /* The direction that the last word names; *n: length of the text before that word. -1: no direction. */
 static int section_direction(const char *text, size_t *n) {
-  static const char *const words[] = {[CROSS_BOTH] = "crossing", [CROSS_RISING] = "rising", [CROSS_FALLING] = "falling"};
+  static const char *const words[] = {
+      [CROSS_BOTH] = "crossing", [CROSS_RISING] = "rising", [CROSS_FALLING] = "falling"};
   const char *space = strrchr(text, ' ');
   for (int k = 0; space && k < (int)(sizeof words / sizeof *words); k++) {
     if (strcmp(space + 1, words[k]) != 0) continue;
@@ -90,11 +92,18 @@ static void list_events(Arena *a, const AstStmt *first, Names *names) {
 /* A section without a direction: the nearest event or kick, unless it is a quantity of the model. 0 with *error. */
 static int refuse_section(RequestBuilder *k, const char *text, Names events, const char **error) {
   Name near = find_quantity(k->ast, text) ? NULL : suggest(text, events.at, events.n);
-  if (near) return fail_with(error, arena_printf(k->arena, "--section %s: there is no event or kick `%s`; did you mean `%s`?", text, text, near));
-  return fail_with(error, arena_printf(k->arena, "--section %s: a direction is missing; write --section '%s rising', falling or crossing (both)", text, text));
+  if (near)
+    return fail_with(error, arena_printf(k->arena, "--section %s: there is no event or kick `%s`; did you mean `%s`?",
+                                         text, text, near));
+  return fail_with(
+      error,
+      arena_printf(k->arena,
+                   "--section %s: a direction is missing; write --section '%s rising', falling or crossing (both)",
+                   text, text));
 }
 
-/* --section 'EXPR rising' becomes an event of the model, at which the simulator writes rows; the name of an event or a kick is passed on. */
+/* --section 'EXPR rising' becomes an event of the model, at which the simulator writes rows; the name of an event or
+ * a kick is passed on. */
 static int prepare_section(RequestBuilder *k, const char **error) {
   const char *text = k->o->section;
   size_t n = 0;
@@ -110,7 +119,8 @@ static int prepare_section(RequestBuilder *k, const char **error) {
   int direction = section_direction(text, &n);
   if (direction < 0) return refuse_section(k, text, events, error);
   const Source *source = source_add(k->ast->sources, "--section", text, n);
-  k->p->section = (Section){source ? parse_expression(k->ast, source) : 0, (AstDirection)direction, intern(k->ast->names, text)};
+  k->p->section =
+      (Section){source ? parse_expression(k->ast, source) : 0, (AstDirection)direction, intern(k->ast->names, text)};
   if (!k->p->section.expr) return 0;
   add_argument(k, "--section", text);
   return 1;
@@ -174,7 +184,8 @@ static const char *momentum_of(const Ast *ast, const char *coordinate) {
   return momentum;
 }
 
-/* The only coordinate of the model, *second its momentum or NULL; or, for --portrait, its only two. NULL: it has others, which *error says. */
+/* The only coordinate of the model, *second its momentum or NULL; or, for --portrait, its only two. NULL: it has
+ * others, which *error says. */
 static const char *only_coordinate(RequestBuilder *k, const char *option, const char **second, const char **error) {
   const AstStmt *found[2] = {NULL, NULL};
   uint32_t n = 0;
@@ -187,26 +198,34 @@ static const char *only_coordinate(RequestBuilder *k, const char *option, const 
   if (n == 1 && found[0]) *second = momentum_of(k->ast, found[0]->name);
   if (n == 2 && found[0] && found[1] && k->o->portrait) *second = found[1]->name;
   if ((n == 1 || *second) && found[0]) return found[0]->name;
-  *error = arena_printf(k->arena, "%s needs a model with one coordinate%s; --x and --y draw any expressions", option, k->o->portrait ? ", or with two of first order" : "");
+  *error = arena_printf(k->arena, "%s needs a model with one coordinate%s; --x and --y draw any expressions", option,
+                        k->o->portrait ? ", or with two of first order" : "");
   return NULL;
 }
 
 static int prepare_plot(RequestBuilder *k, const char **error) {
   const Options *o = k->o;
-  const char *x = o->phase ? o->phase : o->x, *y = o->phase ? derivative_text(k, o->phase) : o->y.n ? o->y.at[0] : NULL, *second;
+  const char *x = o->phase ? o->phase : o->x,
+             *y = o->phase ? derivative_text(k, o->phase)
+                  : o->y.n ? o->y.at[0]
+                           : NULL,
+             *second;
   if (o->energy_error && !x && !y) y = "energy";
   else if (o->energy_error) *error = "--energy-error chooses the axes; leave out --x, --y and --phase";
   else if (o->distance && x) *error = "--distance is over time; leave out --x and --phase";
   if (o->cloud && o->phase) *error = "--cloud draws the coordinate and its momentum, or --x and --y; leave out --phase";
-  else if (o->cloud && !x && !y && (x = only_coordinate(k, "--cloud", &second, error))) y = second ? second : arena_printf(k->arena, "p_%s", x);
+  else if (o->cloud && !x && !y && (x = only_coordinate(k, "--cloud", &second, error)))
+    y = second ? second : arena_printf(k->arena, "p_%s", x);
   if (o->cloud) add_argument(k, "--cloud", o->cloud);
   if (o->energy_error) add_argument(k, "--energy-error", NULL);
   if (o->distance) add_argument(k, "--distance", NULL);
   const char *beneath = o->portrait ? "--portrait" : o->potential ? "--potential" : NULL;
   if (*error) return 0;
   if (o->portrait && o->potential) *error = "--portrait and --potential are two pictures; leave one of them out";
-  else if (beneath && (x || y)) *error = arena_printf(k->arena, "%s chooses the axes; leave out --x, --y and --phase", beneath);
-  else if (o->phase && (o->x || o->y.n)) *error = "--phase EXPR draws the rate of EXPR against it; leave out --x and --y";
+  else if (beneath && (x || y))
+    *error = arena_printf(k->arena, "%s chooses the axes; leave out --x, --y and --phase", beneath);
+  else if (o->phase && (o->x || o->y.n))
+    *error = "--phase EXPR draws the rate of EXPR against it; leave out --x and --y";
   else if (beneath && (x = only_coordinate(k, beneath, &second, error))) {
     y = o->potential ? "energy" : second ? second : derivative_text(k, x);
     add_argument(k, beneath, NULL);
@@ -260,14 +279,15 @@ static const char *point_end(const char *s, const char **comma) {
   return s;
 }
 
-/* Splits "x1,y1 x2,y2" or "x1, y1; x2, y2" into the texts of each point. After its comma a point ends at a space that no
- * operator touches (a sign may follow it). Returns 0, with *error, where a point has not two parts. */
+/* Splits "x1,y1 x2,y2" or "x1, y1; x2, y2" into the texts of each point. After its comma a point ends at a space
+ * that no operator touches (a sign may follow it). Returns 0, with *error, where a point has not two parts. */
 static int points_split(Arena *a, const char *text, PointTexts *points, const char **error) {
   for (const char *s = text;;) {
     s += strspn(s, "; \t\r\n");
     if (!*s) break;
     const char *comma, *end = point_end(s, &comma);
-    if (!comma || *end == ',') return fail_with(error, arena_printf(a, "\"%s\": each point is x,y, for example 'x1,y1 x2,y2'", text));
+    if (!comma || *end == ',')
+      return fail_with(error, arena_printf(a, "\"%s\": each point is x,y, for example 'x1,y1 x2,y2'", text));
     PointText p = {text_trimmed(a, s, (size_t)(comma - s)), text_trimmed(a, comma + 1, (size_t)(end - comma - 1))};
     if (!p.x[0] || !p.y[0]) return fail_with(error, arena_printf(a, "\"%s\": a point lacks x or y", text));
     vec_push(a, points, p);
@@ -324,8 +344,8 @@ static void find_row(const Model *m, StrBuf *points) {
   }
 }
 
-/* Points from vectors among the coordinates, families included: r.x,r.y or b[1].x,b[1].y b[2].x,b[2].y; else from a family of
- * numbers. Builds the model, which knows their number; returns 0 when it has mistakes. */
+/* Points from vectors among the coordinates, families included: r.x,r.y or b[1].x,b[1].y b[2].x,b[2].y; else from a
+ * family of numbers. Builds the model, which knows their number; returns 0 when it has mistakes. */
 static int find_vectors(RequestBuilder *k, FoundPoints *f) {
   enum { MOST = 1000 };
   ModelChoice choice = {.scene = k->p->scene, .defines = k->o->defines.at, .ndefines = k->o->defines.n};
@@ -371,8 +391,10 @@ static FoundPoints find_points(RequestBuilder *k) {
   return f;
 }
 
-/* Makes each part of "x1,y1 x2,y2" an output of the scene and returns the names of the columns, written likewise; NULL after a mistake. */
-static const char *add_points(RequestBuilder *k, const char *from, const char *text, uint32_t most, const char **error) {
+/* Makes each part of "x1,y1 x2,y2" an output of the scene and returns the names of the columns, written likewise;
+ * NULL after a mistake. */
+static const char *add_points(RequestBuilder *k, const char *from, const char *text, uint32_t most,
+                              const char **error) {
   PointTexts points = {0};
   const char *why = NULL;
   if (!points_split(k->arena, text, &points, &why) || points.n > most) {
@@ -403,7 +425,8 @@ static int prepare_animate(RequestBuilder *k, const char **error) {
     f = find_points(k);
     if (!f.points && !find_vectors(k, &f)) return 0;
     if (!f.points) {
-      *error = "no points to draw: the model has no x,y, no x1,y1 x2,y2 ..., no px,py and no vector among its coordinates; write "
+      *error = "no points to draw: the model has no x,y, no x1,y1 x2,y2 ..., no px,py and no vector among its "
+               "coordinates; write "
                "--points 'X,Y X,Y', each two expressions";
       return 0;
     }
@@ -412,7 +435,10 @@ static int prepare_animate(RequestBuilder *k, const char **error) {
   int rods = (f.rods || o->from) && !o->no_rods;
   if (!o->points && !is_quiet(o))
     k->p->note = arena_printf(k->arena, "points %.*s%s%s%s; --points 'X,Y X,Y' takes others", SHOWN_POINTS, f.points,
-                              strlen(f.points) > SHOWN_POINTS ? "..." : "", rods ? ", joined by rods from " : "", !rods ? "" : f.from ? f.from : "the origin");
+                              strlen(f.points) > SHOWN_POINTS ? "..." : "", rods ? ", joined by rods from " : "",
+                              !rods    ? ""
+                              : f.from ? f.from
+                                       : "the origin");
   const char *points = add_points(k, "--points", f.points, UINT32_MAX, error), *from = NULL;
   if (!points || (f.from && rods && !(from = add_points(k, "--from", f.from, 1, error)))) return 0;
   add_argument(k, "--html", file_name(k, "html"));
@@ -429,7 +455,8 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   for (uint32_t i = 0; i < o->scenes.n; i++) scenes[i] = intern(ast->names, o->scenes.at[i]);
   p->scenes = (SceneList){scenes, o->scenes.n};
   p->scene = o->scene ? scenes[0] : NULL;
-  add_argument(&k, arena_printf(k.arena, "lagc %s", command_find(o->command)->name), NULL); /* head of the simulator's messages */
+  /* head of the simulator's messages */
+  add_argument(&k, arena_printf(k.arena, "lagc %s", command_find(o->command)->name), NULL);
   if (o->command == CMD_EFFECTS) add_argument(&k, "--effects", "report");
   for (uint32_t i = 0; i < o->observe.n; i++) ok &= add_output(&k, "--observe", o->observe.at[i]) != NULL;
   ok = ok && prepare_section(&k, error) && prepare_measures(&k, error);
@@ -440,7 +467,9 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   if (o->command == CMD_COST) add_argument(&k, "--cost", NULL);
   if (o->command == CMD_SWEEP) add_argument(&k, "--sweep", NULL);
   if (o->command == CMD_COST && o->error) {
-    p->error = strcmp(o->error, "final") == 0 || strcmp(o->error, "residual") == 0 ? o->error : add_output(&k, "--error", o->error);
+    p->error = strcmp(o->error, "final") == 0 || strcmp(o->error, "residual") == 0
+                   ? o->error
+                   : add_output(&k, "--error", o->error);
     ok = ok && p->error;
     if (p->error) add_argument(&k, "--error", p->error);
   }

@@ -18,8 +18,9 @@ typedef struct {
   const char *note; /* points that were chosen for the user, or NULL */
 } RunRequest;
 
-/* --- settings.c: values on the command line. A simulator takes plain numbers in declared units; so inputs with a formula or a table, and starts of
- * rotations, are compiled in, and values with units or formulas become numbers. Each returns 0 on a mistake, which is in ast->diags or *error. --- */
+/* --- settings.c: values on the command line. A simulator takes plain numbers in declared units; so inputs with a
+ * formula or a table, and starts of rotations, are compiled in, and values with units or formulas become numbers.
+ * Each returns 0 on a mistake, which is in ast->diags or *error. --- */
 
 /* Parses the values of constants, -D. */
 int settings_defines(Ast *ast, Define *defines, uint32_t n);

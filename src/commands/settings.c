@@ -1,4 +1,5 @@
-/* Values on the command line: parses -D, compiles in inputs and starts of rotations, converts units and formulas to plain numbers. */
+/* Values on the command line: parses -D, compiles in inputs and starts of rotations, converts units and formulas to
+ * plain numbers. */
 #include "commands/run_request.h"
 
 #include <string.h>
@@ -28,7 +29,9 @@ static const AstStmt *find_declared(const Ast *ast, AstStmtKind kind, const char
   const char *dot = strchr(name, '.'), *stem = dot ? dot + 1 : name;
   for (const AstStmt *s = ast->first; s; s = s->next) {
     if (s->kind == kind && !dot && strcmp(s->name, name) == 0) return s;
-    if (s->kind != STMT_EFFECT || (dot && (strlen(s->name) != (size_t)(dot - name) || strncmp(s->name, name, strlen(s->name)) != 0))) continue;
+    if (s->kind != STMT_EFFECT ||
+        (dot && (strlen(s->name) != (size_t)(dot - name) || strncmp(s->name, name, strlen(s->name)) != 0)))
+      continue;
     for (const AstStmt *x = s->body; x; x = x->next)
       if (x->kind == kind && strcmp(x->name, stem) == 0) return x;
   }
@@ -83,7 +86,8 @@ static const char *value_beside(Arena *a, const Options *o, uint32_t i, const ch
   for (uint32_t k = 0; k < o->rest.n; k++) {
     const char *word = o->rest.at[k], *eq = word[0] != '-' ? strchr(word, '=') : NULL;
     if (word[0] == '-' && option_takes_next(o->command, word)) k++;
-    if (k != i && eq && strcmp(text_trimmed(a, word, (size_t)(eq - word)), name) == 0 && !range_split(a, word)) return word;
+    if (k != i && eq && strcmp(text_trimmed(a, word, (size_t)(eq - word)), name) == 0 && !range_split(a, word))
+      return word;
   }
   return NULL;
 }
@@ -94,7 +98,8 @@ static int check_ranges(Ast *ast, const Options *o, const char **error) {
     const char *word = o->rest.at[i];
     if (word[0] == '-' && option_takes_next(o->command, word)) i++;
     if (word[0] == '-' || !range_split(ast->arena, word)) continue;
-    const char *name = text_trimmed(ast->arena, word, strcspn(word, "=~")), *beside = value_beside(ast->arena, o, i, name);
+    const char *name = text_trimmed(ast->arena, word, strcspn(word, "=~")),
+               *beside = value_beside(ast->arena, o, i, name);
     if (beside) return fail_with(error, arena_printf(ast->arena, "%s: %s varies; leave one out", beside, name));
   }
   return 1;
@@ -105,7 +110,8 @@ int settings_compiled(Ast *ast, Options *o, int all, GivenList *given, const cha
   int ok = 1;
   if (!check_ranges(ast, o, error)) return 0;
   for (uint32_t i = 0; i < o->rest.n; i++) {
-    if (o->rest.at[i][0] == '-' && option_takes_next(o->command, o->rest.at[i]) && i + 1 < o->rest.n) { /* --measure u=x is no value of u */
+    /* --measure u=x is no value of u */
+    if (o->rest.at[i][0] == '-' && option_takes_next(o->command, o->rest.at[i]) && i + 1 < o->rest.n) {
       o->rest.at[kept++] = o->rest.at[i++];
       o->rest.at[kept++] = o->rest.at[i];
       continue;
@@ -114,11 +120,16 @@ int settings_compiled(Ast *ast, Options *o, int all, GivenList *given, const cha
     const char *name = eq ? text_trimmed(ast->arena, arg, (size_t)(eq - arg)) : "";
     int ranges = eq && o->command == CMD_SWEEP && range_split(ast->arena, arg) != NULL;
     int constant = eq && find_declared(ast, STMT_CONST, name) && !find_declared(ast, STMT_PARAM, name);
-    if (constant && !ranges) return fail_with(error, arena_printf(ast->arena, "%s: `%s` is a constant, fixed when compiling: write -D %s", arg, name, arg));
+    if (constant && !ranges)
+      return fail_with(
+          error, arena_printf(ast->arena, "%s: `%s` is a constant, fixed when compiling: write -D %s", arg, name, arg));
     if (constant && !const_range_take(ast, o, i, name, error)) return 0;
     arg = o->rest.at[i];
     if (ranges && starts_rotation(ast, name))
-      return fail_with(error, arena_printf(ast->arena, "%s: the start of a rotation is compiled and cannot vary: write a `param` into it, as in `start omega(R) = (w, 0, 0)`, which can", arg));
+      return fail_with(error, arena_printf(ast->arena,
+                                           "%s: the start of a rotation is compiled and cannot vary: write a `param` "
+                                           "into it, as in `start omega(R) = (w, 0, 0)`, which can",
+                                           arg));
     int formula = eq && !text_is_number(eq + 1) && !ranges && find_declared(ast, STMT_INPUT, name);
     if (eq && eq[1] && (all || formula || starts_rotation(ast, name))) ok &= take_setting(ast, arg, given);
     else o->rest.at[kept++] = arg;
@@ -149,7 +160,8 @@ static int needs_conversion(const char *value) {
   return strchr(value, '[') || strspn(value, "+-*/^.0123456789eE() pi") == n;
 }
 
-/* Notes that `value`, of `name` (NULL: a time), is to become a number in the word. Returns 0 where it cannot be read. */
+/* Notes that `value`, of `name` (NULL: a time), is to become a number in the word. Returns 0 where it cannot be
+ * read. */
 static int convert_later(Converter *c, const char *name, const char *value, const char **word, const char *before) {
   CommandValue v = {.target = name ? parse_setting(c->ast, "command line", name) : 0};
   v.value = parse_setting(c->ast, "command line", value);
@@ -161,7 +173,8 @@ static int convert_later(Converter *c, const char *name, const char *value, cons
 /* Converts name=value, with spaces around both removed. */
 static int convert_setting(Converter *c, const char **arg) {
   const char *eq = strchr(*arg, '=');
-  const char *name = text_trimmed(c->arena, *arg, (size_t)(eq - *arg)), *value = text_trimmed(c->arena, eq + 1, strlen(eq + 1));
+  const char *name = text_trimmed(c->arena, *arg, (size_t)(eq - *arg)),
+             *value = text_trimmed(c->arena, eq + 1, strlen(eq + 1));
   if (needs_conversion(value)) return convert_later(c, name, value, arg, arena_printf(c->arena, "%s=", name));
   *arg = arena_printf(c->arena, "%s=%s", name, value);
   return 1;
@@ -177,7 +190,8 @@ static int convert_time(Converter *c, uint32_t *i) {
     int joined = at[*i][n] == '=';
     if (!joined && *i + 1 == c->o->rest.n) return 1;
     const char *value = joined ? at[*i] + n + 1 : at[++*i];
-    return !needs_conversion(value) || convert_later(c, NULL, value, &at[*i], joined ? arena_printf(c->arena, "%s=", options[k]) : "");
+    return !needs_conversion(value) ||
+           convert_later(c, NULL, value, &at[*i], joined ? arena_printf(c->arena, "%s=", options[k]) : "");
   }
   return 1;
 }
@@ -187,7 +201,8 @@ static const char *number_text(Converter *c, const CommandValue *v) {
   enum { ROOM = 32 };
   if (options_more_digits(c->o) && v->digits) return v->digits;
   if (options_more_digits(c->o)) {
-    diag_error(c->ast->diags, ast_expr(c->ast, v->value)->span, "--precision %s needs more digits of this value than lagc computes", c->o->precision);
+    diag_error(c->ast->diags, ast_expr(c->ast, v->value)->span,
+               "--precision %s needs more digits of this value than lagc computes", c->o->precision);
     diag_help(c->ast->diags, "lagc has all digits of fractions and of multiples of pi; write other values as decimals");
     return NULL;
   }
@@ -198,7 +213,11 @@ static const char *number_text(Converter *c, const CommandValue *v) {
 
 /* Evaluates the values in the scene, and writes them into their words. */
 static int convert_all(Converter *c) {
-  ModelChoice choice = {.scene = c->o->scene, .defines = c->o->defines.at, .ndefines = c->o->defines.n, .values = c->values.at, .nvalues = c->values.n};
+  ModelChoice choice = {.scene = c->o->scene,
+                        .defines = c->o->defines.at,
+                        .ndefines = c->o->defines.n,
+                        .values = c->values.at,
+                        .nvalues = c->values.n};
   if (!c->values.n) return 1;
   if (!model_build(c->ast, &choice)) return 0;
   for (uint32_t i = 0; i < c->values.n; i++) {
@@ -242,9 +261,11 @@ int settings_units(Ast *ast, const Options *o) {
       if (strchr(word, '=')) ok &= convert_setting(&c, &o->rest.at[i]);
       continue;
     }
-    Range *starts = strcmp(word, "--starts") == 0 && i + 1 < o->rest.n ? range_split(ast->arena, o->rest.at[i + 1]) : NULL;
+    Range *starts =
+        strcmp(word, "--starts") == 0 && i + 1 < o->rest.n ? range_split(ast->arena, o->rest.at[i + 1]) : NULL;
     if (starts) note_range(&c, &ranges, starts, i + 1, &ok);
-    else if (strcmp(word, "--vs") == 0 && i + 1 < o->rest.n && strchr(o->rest.at[i + 1], '=')) ok &= convert_setting(&c, &o->rest.at[i + 1]);
+    else if (strcmp(word, "--vs") == 0 && i + 1 < o->rest.n && strchr(o->rest.at[i + 1], '='))
+      ok &= convert_setting(&c, &o->rest.at[i + 1]);
     ok &= convert_time(&c, &i);
     if (i == at && option_takes_next(o->command, word)) i++;
   }

@@ -19,9 +19,12 @@
 
 /* The equations of a scene with the outputs, inputs and section of the command line. */
 static Eqns *derive_asked(Compiler *c, const char *scene, int measures) {
-  return compiler_derive_wanted(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nextra_outputs = c->picture.asked.n,
-                                  .measures = c->picture.measures.at, .nmeasures = measures ? c->picture.measures.n : 0,
-                                  .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
+  return compiler_derive_wanted(c, &(ModelChoice){.scene = scene,
+                                                  .asked = c->picture.asked.at, .nextra_outputs = c->picture.asked.n,
+                                                  .measures = c->picture.measures.at,
+                                                  .nmeasures = measures ? c->picture.measures.n : 0,
+                                                  .given = c->given.at, .ngiven = c->given.n,
+                                                  .section = c->picture.section});
 }
 
 typedef VEC(const Measures *) Measured; /* the measures of the command line, of each variant */
@@ -50,14 +53,16 @@ static int warn_literal(const Ast *ast, const char *precision) {
   for (AstId i = 1; i < ast->exprs.n; i++) {
     const AstExpr *e = ast_expr(ast, i);
     if (e->kind != AST_NUM || num_is_exact(e->number) || e->span.end - e->span.begin <= SAFE) continue;
-    diag_warning(ast->diags, e->span, "this number is rounded to 17 digits, fewer than --precision %s computes with", precision);
+    diag_warning(ast->diags, e->span, "this number is rounded to 17 digits, fewer than --precision %s computes with",
+                 precision);
     diag_help(ast->diags, "if more digits matter, make it a parameter or a start, and give them as name=value");
     return 1;
   }
   return 0;
 }
 
-/* Warns of the first literal that was rounded to a double, or, where there is none, of the first such number in the model's graph. */
+/* Warns of the first literal that was rounded to a double, or, where there is none, of the first such number in the
+ * model's graph. */
 static void precision_warn(const Ast *ast, const ExprGraph *g, const char *precision) {
   enum { SAFE = 15, ROOM = 32 };
   if (warn_literal(ast, precision)) return;
@@ -66,8 +71,11 @@ static void precision_warn(const Ast *ast, const ExprGraph *g, const char *preci
     if (!expr_is_num(g, e) || num_is_exact(expr_number(g, e))) continue;
     num_format_double(text, num_value(expr_number(g, e)));
     if (strspn(text, "-0.123456789") - (text[0] == '-') - (strchr(text, '.') != NULL) <= SAFE) continue;
-    fprintf(stderr, "lagc: warning: --precision %s: a product of numbers of the model, %s, is rounded to 17 digits; if more digits matter, make them "
-            "parameters\n", precision, text);
+    fprintf(stderr,
+            "lagc: warning: --precision %s: a product of numbers of the model, %s, is rounded to 17 digits; if more "
+            "digits matter, make them "
+            "parameters\n",
+            precision, text);
     return;
   }
 }
@@ -100,7 +108,8 @@ static int finish_units(const Compiler *c, const Units *units, const Lowereds *o
 
 /* Says for which values of the constants the model is wrong; returns 0. */
 static int tell_variant(Compiler *c) {
-  for (uint32_t k = c->o.defines.n - c->o.consts.n; k < c->o.defines.n; k++) fprintf(stderr, "lagc: with %s=%s:\n", c->o.defines.at[k].name, c->o.defines.at[k].value);
+  for (uint32_t k = c->o.defines.n - c->o.consts.n; k < c->o.defines.n; k++)
+    fprintf(stderr, "lagc: with %s=%s:\n", c->o.defines.at[k].name, c->o.defines.at[k].value);
   return 0;
 }
 
@@ -119,7 +128,8 @@ static void lower_scene(Compiler *c, Eqns *e, int runs, int apart, Units *units,
   if (runs) c->run = e, c->run_by = home;
   unsigned wants = derivatives_required(e, &c->o), in_time = derivatives_in_time(wants, home, &c->o);
   if (in_time != wants)
-    c->picture.note = "methods that need second derivatives of L are left out: their C takes long to compile; --seconds 60 or --methods NAME has them";
+    c->picture.note = "methods that need second derivatives of L are left out: their C takes long to compile; "
+                      "--seconds 60 or --methods NAME has them";
   unit_require(home, e, in_time);
   unit_add_scene(home, e);
   vec_push(c->arena, all, ((Lowered){e, home, home->scenes.n - 1}));
@@ -144,7 +154,8 @@ int simulator_lower(Compiler *c, Units *units) {
       Eqns *e = runs ? run : derive_asked(c, scenes.at[i], scenes.at == named.at && scenes.n == named.n);
       if (!e) return c->o.consts.n ? tell_variant(c) : 0;
       lower_scene(c, e, runs, variants > 1, units, &all);
-      if (options_more_digits(&c->o) && i + 1 == scenes.n && !simulator_is_later_rank(c)) precision_warn(c->ast, all.at[all.n - 1].e->m->g, c->o.precision);
+      if (options_more_digits(&c->o) && i + 1 == scenes.n && !simulator_is_later_rank(c))
+        precision_warn(c->ast, all.at[all.n - 1].e->m->g, c->o.precision);
     }
   }
   pass_measures(c, &measured);
@@ -176,7 +187,8 @@ Texts simulator_texts(Compiler *c, const Units *units, ProgramKind kind) {
     const char *file = arena_printf(c->arena, "model_%u.c", i);
     emit_model(units->at[i], names[i], 0, &b);
     if (i + 1 == units->n) emit_program((const ProgramSet *const *)units->at, names, units->n, kind, &b);
-    for (int lanes = 4; lanes <= 8 && kind & PROGRAM_WITH_LANES; lanes *= 2) add_lanes(c, units->at[i], names[i], file, lanes, &texts);
+    for (int lanes = 4; lanes <= 8 && kind & PROGRAM_WITH_LANES; lanes *= 2)
+      add_lanes(c, units->at[i], names[i], file, lanes, &texts);
     vec_push(c->arena, &texts, ((SourceText){file, sb_text(&b)}));
   }
   return texts;
@@ -208,7 +220,8 @@ int simulator_is_later_rank(const Compiler *c) {
 
 /* Whether a sweep has several processes: by --mpi, or because mpirun or srun started this one with others. */
 static int asks_ranks(const Compiler *c) {
-  static const char *const sizes[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"}; /* of Open MPI; of srun, which sets PMIX_RANK beside the last one */
+  /* of Open MPI; of srun, which sets PMIX_RANK beside the last one */
+  static const char *const sizes[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
   if (c->o.command != CMD_SWEEP) return 0;
   for (uint32_t i = 0; i < c->picture.argv.n && c->picture.argv.at[i]; i++)
     if (strncmp(c->picture.argv.at[i], "--mpi", 5) == 0) return 1;
@@ -219,14 +232,24 @@ static int asks_ranks(const Compiler *c) {
   return 0;
 }
 
-/* Links the parts of the runtime that the command line asks for: those that write its files, and MPI. Returns PROGRAM_WITH_..., or -1 with *error. */
+/* Links the parts of the runtime that the command line asks for: those that write its files, and MPI. Returns
+ * PROGRAM_WITH_..., or -1 with *error. */
 static int find_parts(Compiler *c, Toolchain *t, const char **error) {
   static const struct {
     const char *suffix, *part, *needs;
     int kind;
-  } rows[] = {{".png", "png", "a picture as PNG needs librsvg, which this lagc was built without: `apt-get install librsvg2-dev`, then `make`; .svg needs nothing", PROGRAM_WITH_PNG},
-              {".h5", "hdf5", "HDF5 needs libhdf5, which this lagc was built without: `apt-get install libhdf5-dev`, then `make`; .csv and .npy need nothing", PROGRAM_WITH_HDF5},
-              {NULL, "mpi", "several processes (--mpi, mpirun) need Open MPI, which this lagc was built without: `apt-get install libopenmpi-dev openmpi-bin`, then `make`; --threads needs nothing", PROGRAM_WITH_MPI}};
+  } rows[] = {{".png", "png",
+               "a picture as PNG needs librsvg, which this lagc was built without: `apt-get install librsvg2-dev`, "
+               "then `make`; .svg needs nothing",
+               PROGRAM_WITH_PNG},
+              {".h5", "hdf5",
+               "HDF5 needs libhdf5, which this lagc was built without: `apt-get install libhdf5-dev`, then `make`; "
+               ".csv and .npy need nothing",
+               PROGRAM_WITH_HDF5},
+              {NULL, "mpi",
+               "several processes (--mpi, mpirun) need Open MPI, which this lagc was built without: `apt-get install "
+               "libopenmpi-dev openmpi-bin`, then `make`; --threads needs nothing",
+               PROGRAM_WITH_MPI}};
   int kind = 0;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     if (rows[i].suffix ? !names_file(c, rows[i].suffix) : !asks_ranks(c)) continue;
@@ -248,7 +271,9 @@ int simulator_of_units(Compiler *c, const Units *units, const char *output, cons
   tools.lanes = units->at[0]->lanes;
   int parts = find_parts(c, &tools, &error);
   if (parts < 0) return usage_error(error);
-  ProgramKind kind = c->o.shared ? PROGRAM_LIBRARY : (ProgramKind)((tools.gsl ? PROGRAM_WITH_GSL : 0) | parts | (tools.lanes ? PROGRAM_WITH_LANES : 0));
+  ProgramKind kind =
+      c->o.shared ? PROGRAM_LIBRARY
+                  : (ProgramKind)((tools.gsl ? PROGRAM_WITH_GSL : 0) | parts | (tools.lanes ? PROGRAM_WITH_LANES : 0));
   Texts texts = simulator_texts(c, units, kind);
   return simulator_make(c, &tools, &texts, output, path);
 }
@@ -256,14 +281,20 @@ int simulator_of_units(Compiler *c, const Units *units, const char *output, cons
 static const char *simulator_in(Compiler *c, const Units *units, const char *precision) {
   Toolchain tools;
   const char *error = NULL;
-  if (!toolchain_find(c->arena, c->argv0, 0, &tools, &error) || !toolchain_precision(c->arena, &tools, precision, &error)) return NULL;
+  if (!toolchain_find(c->arena, c->argv0, 0, &tools, &error) ||
+      !toolchain_precision(c->arena, &tools, precision, &error))
+    return NULL;
   Texts texts = simulator_texts(c, units, PROGRAM_PLAIN);
   return toolchain_simulator(c->arena, &tools, texts.at, texts.n, &error);
 }
 
-const char *simulator_precise(Compiler *c, const Units *units) { return simulator_in(c, units, LDBL_MANT_DIG > DBL_MANT_DIG ? "long" : "quad"); }
+const char *simulator_precise(Compiler *c, const Units *units) {
+  return simulator_in(c, units, LDBL_MANT_DIG > DBL_MANT_DIG ? "long" : "quad");
+}
 
-const char *simulator_quad(Compiler *c, const Units *units) { return LDBL_MANT_DIG > DBL_MANT_DIG ? simulator_in(c, units, "quad") : NULL; }
+const char *simulator_quad(Compiler *c, const Units *units) {
+  return LDBL_MANT_DIG > DBL_MANT_DIG ? simulator_in(c, units, "quad") : NULL;
+}
 
 OptionTexts simulator_values(Compiler *c) {
   OptionTexts words = {0};
@@ -292,7 +323,8 @@ static void add_word(StrBuf *b, const char *word) {
 /* Before settings_compiled, which takes values away. */
 static const char *words_given(Compiler *c) {
   StrBuf b = strbuf(c->arena);
-  for (uint32_t i = 0; i < c->o.defines.n; i++) sb_printf(&b, " -D %s=%s", c->o.defines.at[i].name, c->o.defines.at[i].value);
+  for (uint32_t i = 0; i < c->o.defines.n; i++)
+    sb_printf(&b, " -D %s=%s", c->o.defines.at[i].name, c->o.defines.at[i].value);
   OptionTexts words = simulator_values(c);
   for (uint32_t i = 0; i < words.n; i++)
     if (!c->o.scene || strcmp(words.at[i], c->o.scene) != 0) add_word(&b, words.at[i]);
@@ -306,7 +338,8 @@ int simulator_prepare(Compiler *c) {
     if (!model_has_scene(c->ast, c->o.scenes.at[i])) return STATUS_MODEL;
   if (!settings_compiled(c->ast, &c->o, 0, &c->given, &error)) return error ? usage_error(error) : STATUS_MODEL;
   if (!const_range_variants(c->arena, &c->o, &error)) return usage_error(error);
-  if (c->o.consts.n) vec_push(c->arena, &c->o.rest, arena_printf(c->arena, "--consts=%s", const_range_names(c->arena, &c->o)));
+  if (c->o.consts.n)
+    vec_push(c->arena, &c->o.rest, arena_printf(c->arena, "--consts=%s", const_range_names(c->arena, &c->o)));
   if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
   if (!run_request_prepare(&c->picture, c->ast, &c->o, &error)) return error ? usage_error(error) : STATUS_MODEL;
   return STATUS_OK;

@@ -12,7 +12,8 @@ typedef VEC(SourceText) Texts;
 /* Reads what the command line gives to a simulator: values of names, expressions to draw. Returns a STATUS. */
 int simulator_prepare(Compiler *c);
 
-/* Lowers the scenes to `units`: all, or the one that the command line asks something of. 0 with the reasons in c->diags. */
+/* Lowers the scenes to `units`: all, or the one that the command line asks something of. 0 with the reasons in
+ * c->diags. */
 int simulator_lower(Compiler *c, Units *units);
 
 /* The C texts of a program of these units. */
@@ -30,8 +31,8 @@ int simulator_is_later_rank(const Compiler *c);
 /* The words of the command line that say which motion is run: scene, name=value, --until. */
 OptionTexts simulator_values(Compiler *c);
 
-/* A simulator with more digits than doubles have, in the cache: long double, or quadruple precision where that is no more than a double; NULL where
- * there is neither. */
+/* A simulator with more digits than doubles have, in the cache: long double, or quadruple precision where that is no
+ * more than a double; NULL where there is neither. */
 const char *simulator_precise(Compiler *c, const Units *units);
 /* One with quadruple precision where the one above has long doubles; NULL elsewhere. */
 const char *simulator_quad(Compiler *c, const Units *units);

@@ -168,7 +168,8 @@ static size_t put_table(StrBuf *out, const char *const *lines, size_t n) {
 
 size_t page_code(StrBuf *out, const char *const *lines, size_t n) {
   size_t i = 1;
-  for (; i < n && line_kind(lines[i]) != LINE_FENCE; i++) sb_printf(out, "%s%s", *lines[i] == '\n' ? "" : "    ", lines[i]);
+  for (; i < n && line_kind(lines[i]) != LINE_FENCE; i++)
+    sb_printf(out, "%s%s", *lines[i] == '\n' ? "" : "    ", lines[i]);
   return i + 1;
 }
 

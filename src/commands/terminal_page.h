@@ -18,7 +18,8 @@ void page_term(StrBuf *out, const char *term, const char *meaning, size_t column
 /* Paragraphs separated by empty lines; a line that begins with white space is preformatted. */
 void page_paragraphs(StrBuf *out, const char *text);
 
-/* Markdown of the reference, from its lines (each ends with a newline): headings, paragraphs, lists, tables, code, links. Comments are left out. */
+/* Markdown of the reference, from its lines (each ends with a newline): headings, paragraphs, lists, tables, code,
+ * links. Comments are left out. */
 void page_markdown(StrBuf *out, const char *const *lines, size_t n);
 
 /* A row of a table, "| a | b |", as a term and its meaning. */

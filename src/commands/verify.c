@@ -1,8 +1,9 @@
 /* `lagc verify`: a right-hand side by hand against the derived equations.
  *
- * A program with the emitted model in quadruple precision and the function as it is written, in doubles, evaluates both at sample points and at
- * arguments some roundings beside each. A difference counts if it exceeds what rounding explains: the spread of the difference over these
- * arguments and the four directions of rounding (Kahan, How futile are mindless assessments of roundoff, 2006), and the change of the derived value. */
+ * A program with the emitted model in quadruple precision and the function as it is written, in doubles, evaluates
+ * both at sample points and at arguments some roundings beside each. A difference counts if it exceeds what rounding
+ * explains: the spread of the difference over these arguments and the four directions of rounding (Kahan, How futile
+ * are mindless assessments of roundoff, 2006), and the change of the derived value. */
 #include <ctype.h>
 #include <float.h>
 #include <math.h>
@@ -24,7 +25,8 @@
 
 typedef long double Real;
 
-enum { BESIDE = 6, ROUNDINGS = 8, MODES = 4, FEWEST = 8 }; /* arguments beside a point, and their largest distance in ulp; directions of rounding; fewest points */
+/* arguments beside a point, and their largest distance in ulp; directions of rounding; fewest points */
+enum { BESIDE = 6, ROUNDINGS = 8, MODES = 4, FEWEST = 8 };
 
 /* Results of one set of arguments; dydt in the order of the function. */
 typedef struct {
@@ -36,7 +38,8 @@ typedef struct {
 
 /* Findings on one component of dydt, in the model's order. */
 typedef struct {
-  uint32_t points, differs, scattered; /* points compared; those where it differs; those of RANDOM where rounding leaves no digits */
+  /* points compared; those where it differs; those of RANDOM where rounding leaves no digits */
+  uint32_t points, differs, scattered;
   int is_rounding;                     /* it is not exact at points where the value is 0 up to roundings */
   Real ulps;                           /* largest difference in ulp that rounding explains */
   Real worst;                          /* largest of the relative differences that rounding does not explain, */
@@ -74,10 +77,14 @@ static int is_identifier(const char *s) {
 static int read_target(Verification *v, const char **error) {
   const char *given = v->c->o.against, *colon = given ? strrchr(given, ':') : NULL;
   if (!given) return fail_with(error, "which function? write --against FILE.c:FUNCTION");
-  const char *other = colon ? arena_strndup(v->arena, given, (size_t)(colon - given)) : given, *dot = strrchr(other, '.');
+  const char *other = colon ? arena_strndup(v->arena, given, (size_t)(colon - given)) : given,
+             *dot = strrchr(other, '.');
   if (dot && has_word(".py .ipynb .m .jl .f .f90 .rs .js .java .nb", dot))
-    return fail_with(error, arena_printf(v->arena, "%s is not C: `lagc verify` compiles and calls a C function; from Python compare with "
-                                                   "`lagc.load(MODEL).rhs(t, y)`, or write the formula into the model: `expect x'' = ...`", other));
+    return fail_with(
+        error, arena_printf(v->arena,
+                            "%s is not C: `lagc verify` compiles and calls a C function; from Python compare with "
+                            "`lagc.load(MODEL).rhs(t, y)`, or write the formula into the model: `expect x'' = ...`",
+                            other));
   if (!colon || !colon[1] || isdigit((unsigned char)colon[1]) || !is_identifier(colon + 1))
     return fail_with(error, arena_printf(v->arena, "--against %s names no function: write FILE.c:FUNCTION", given));
   v->file = arena_strndup(v->arena, given, (size_t)(colon - given));
@@ -85,7 +92,9 @@ static int read_target(Verification *v, const char **error) {
   return 1;
 }
 
-static Name name_of(const Verification *v, uint32_t i) { return expr_symbol(v->g, sample_state_symbols(v->points).at[i])->name; }
+static Name name_of(const Verification *v, uint32_t i) {
+  return expr_symbol(v->g, sample_state_symbols(v->points).at[i])->name;
+}
 
 /* Index of the component that s[n] names; ny: none. */
 static uint32_t component_named(const Verification *v, const char *s, size_t n) {
@@ -120,7 +129,8 @@ static int read_map(Verification *v, const char **error) {
       Name *names = ARENA_ARRAY(v->arena, Name, v->ny + 1);
       for (uint32_t k = 0; k < v->ny; k++) names[k] = name_of(v, k);
       Name near = suggest(word, names, v->ny);
-      const char *help = near ? arena_printf(v->arena, ": did you mean `%s`?", near) : arena_printf(v->arena, "; they are %s", all_names(v, NULL));
+      const char *help = near ? arena_printf(v->arena, ": did you mean `%s`?", near)
+                              : arena_printf(v->arena, "; they are %s", all_names(v, NULL));
       return fail_with(error, arena_printf(v->arena, "--map: `%s` is no component of y%s", word, help));
     }
     for (uint32_t k = 0; k < n && k < v->ny; k++)
@@ -129,7 +139,8 @@ static int read_map(Verification *v, const char **error) {
     s += length + (s[length] == ',');
   }
   if (v->c->o.map && n != v->ny)
-    return fail_with(error, arena_printf(v->arena, "--map has %u name%s, y has %u components: %s", n, plural(n), v->ny, all_names(v, NULL)));
+    return fail_with(error, arena_printf(v->arena, "--map has %u name%s, y has %u components: %s", n, plural(n), v->ny,
+                                         all_names(v, NULL)));
   return 1;
 }
 
@@ -141,7 +152,8 @@ static char *code_only(Arena *a, const char *text) {
   for (size_t i = 0; s[i];) {
     size_t n = 1;
     if (s[i] == '/' && s[i + 1] == '/') n = strcspn(s + i, "\n");
-    else if (s[i] == '/' && s[i + 1] == '*') n = strstr(s + i + 2, "*/") ? (size_t)(strstr(s + i + 2, "*/") - (s + i)) + 2 : strlen(s + i);
+    else if (s[i] == '/' && s[i + 1] == '*')
+      n = strstr(s + i + 2, "*/") ? (size_t)(strstr(s + i + 2, "*/") - (s + i)) + 2 : strlen(s + i);
     else if (s[i] == '"' || s[i] == '\'') {
       while (s[i + n] && s[i + n] != s[i] && s[i + n] != '\n') n += s[i + n] == '\\' && s[i + n + 1] ? 2 : 1;
       n += s[i + n] != '\0';
@@ -195,31 +207,40 @@ static const char *function_missing(Verification *v, const char *text) {
     sb_printf(&b, "%s%s", i ? ", " : "", names.at[i]);
   }
   Name near = suggest(v->function, names.at, names.n);
-  const char *help = near ? arena_printf(v->arena, ": did you mean `%s`?", near) : names.n ? arena_printf(v->arena, "; it has %s", sb_text(&b)) : "";
+  const char *help = near      ? arena_printf(v->arena, ": did you mean `%s`?", near)
+                     : names.n ? arena_printf(v->arena, "; it has %s", sb_text(&b))
+                               : "";
   return arena_printf(v->arena, "%s has no function `%s`%s", v->file, v->function, help);
 }
 
-/* The function behind one interface, whether it returns void or a number; names of macros in the file cannot collide with these. */
+/* The function behind one interface, whether it returns void or a number; names of macros in the file cannot collide
+ * with these. */
 static const char *adapter_text(const Verification *v, const char *path) {
   const char *f = v->function;
-  return arena_printf(v->arena,
-                      "#define main lag_against_main\n#include \"%s\"\n#undef main\n"
-                      "#define LAG_IS(result, Y) __builtin_types_compatible_p(__typeof__(&%s), result (*)(double, Y, const double *, double *))\n"
-                      "_Static_assert(!LAG_IS(void, const double *) && !LAG_IS(int, const double *) && !LAG_IS(void, double *) && !LAG_IS(int, double *),\n"
-                      "               \"its third argument should be dydt, which it writes, and is a pointer to const\");\n"
-                      "int lag_against(double lag_t, double *lag_y, double *lag_dydt, double *lag_p) {\n"
-                      "  return __builtin_choose_expr(__builtin_types_compatible_p(__typeof__(%s(lag_t, lag_y, lag_dydt, lag_p)), void),\n"
-                      "    (%s(lag_t, lag_y, lag_dydt, lag_p), 0), %s(lag_t, lag_y, lag_dydt, lag_p));\n}\n",
-                      path, f, f, f, f);
+  return arena_printf(
+      v->arena,
+      "#define main lag_against_main\n#include \"%s\"\n#undef main\n"
+      "#define LAG_IS(result, Y) __builtin_types_compatible_p(__typeof__(&%s), result (*)(double, Y, const double *, "
+      "double *))\n"
+      "_Static_assert(!LAG_IS(void, const double *) && !LAG_IS(int, const double *) && !LAG_IS(void, double *) && "
+      "!LAG_IS(int, double *),\n"
+      "               \"its third argument should be dydt, which it writes, and is a pointer to const\");\n"
+      "int lag_against(double lag_t, double *lag_y, double *lag_dydt, double *lag_p) {\n"
+      "  return __builtin_choose_expr(__builtin_types_compatible_p(__typeof__(%s(lag_t, lag_y, lag_dydt, lag_p)), "
+      "void),\n"
+      "    (%s(lag_t, lag_y, lag_dydt, lag_p), 0), %s(lag_t, lag_y, lag_dydt, lag_p));\n}\n",
+      path, f, f, f, f);
 }
 
-/* The model for another scalar: flags -D and -include of the toolchain as text, since the function is compiled by the same command. */
+/* The model for another scalar: flags -D and -include of the toolchain as text, since the function is compiled by
+ * the same command. */
 static const char *model_text(const Verification *v, const ProgramSet *u, const Toolchain *t) {
   StrBuf b = strbuf(v->arena);
   for (const char *const *f = t->flags; *f; f++) {
     if (strcmp(*f, "-include") == 0) sb_printf(&b, "#include <%s>\n", *++f);
     const char *equals = strchr(*f, '=');
-    if (strncmp(*f, "-D", 2) == 0 && equals) sb_printf(&b, "#define %.*s %s\n", (int)(equals - *f - 2), *f + 2, equals + 1);
+    if (strncmp(*f, "-D", 2) == 0 && equals)
+      sb_printf(&b, "#define %.*s %s\n", (int)(equals - *f - 2), *f + 2, equals + 1);
   }
   emit_model(u, "lag_derived", 0, &b); /* a function by hand often has the model's name */
   for (size_t i = 0; i < sizeof verify_driver / sizeof *verify_driver; i++) sb_puts(&b, verify_driver[i]);
@@ -230,7 +251,10 @@ static const char *model_text(const Verification *v, const ProgramSet *u, const 
 /* Builds and runs the program with derived equations in this precision. Returns 0, with run.error,
  * if it is not built. */
 static int run_with(Verification *v, const char *precision) {
-  static const char *const flags[] = {"-std=gnu11", "-Werror=incompatible-pointer-types", "-Werror=int-conversion", "-Werror=implicit-function-declaration", "-Wfatal-errors", NULL};
+  static const char *const flags[] = {"-std=gnu11",
+                                      "-Werror=incompatible-pointer-types", "-Werror=int-conversion",
+                                      "-Werror=implicit-function-declaration", "-Wfatal-errors",
+                                      NULL};
   Toolchain t;
   if (!toolchain_find(v->arena, v->c->argv0, 0, &t, &v->run.error)) return 0;
   toolchain_scalar(&t, precision);
@@ -295,10 +319,12 @@ static Real derived(const Verification *v, const Evaluation *x, const Real *symb
   return x->high[i - v->nq];
 }
 
-static Real ulp(Real x) { return x == 0 || !isfinite(x) ? DBL_TRUE_MIN : fmaxl(ldexpl(1, ilogbl(x) - DBL_MANT_DIG + 1), DBL_TRUE_MIN); }
+static Real ulp(Real x) {
+  return x == 0 || !isfinite(x) ? DBL_TRUE_MIN : fmaxl(ldexpl(1, ilogbl(x) - DBL_MANT_DIG + 1), DBL_TRUE_MIN);
+}
 
-/* Largest acceleration or rate. Values 1e-9 times as large may differ by rounding that no argument moves, as exp(x) - 1 does for tiny x; random points
- * have none such, and decide. */
+/* Largest acceleration or rate. Values 1e-9 times as large may differ by rounding that no argument moves, as exp(x)
+ * - 1 does for tiny x; random points have none such, and decide. */
 static Real largest_rate(const Verification *v, const Evaluation *x) {
   Real most = 0;
   for (uint32_t i = 0; i < v->na; i++) most = fmaxl(most, fabsl(x->high[i]));
@@ -311,7 +337,8 @@ static int is_clearly_larger(Real x, Real than) { return x > than * (1 + 1e-6L) 
 /* The difference of a component of dydt from the derived value, and what rounding explains of it. */
 typedef struct {
   Real value, difference, bound;
-  Real spread, moved; /* of the difference, and of the derived value, over arguments beside the point and directions of rounding */
+  /* of the difference, and of the derived value, over arguments beside the point and directions of rounding */
+  Real spread, moved;
 } Difference;
 
 /* Component i of dydt, at place `place` of the function, at the k-th point. */
@@ -339,14 +366,17 @@ static Difference difference_at(const Verification *v, uint32_t k, uint32_t i, u
 
 static void judge(Verification *v, uint32_t k, uint32_t i, uint32_t place) {
   const Real few = 1 << 26; /* a value of which roundings leave fewer is 0, and its ulp says nothing */
-  const Real zero = 1e-17L; /* of the largest rate: a constraint holds this rate at 0, and it is the rounding of others */
-  const Real enough = 1e-9L, condition = 65536; /* fewer than 9 digits may be left only where roundings of the arguments leave no more than 5 digits more */
+  /* of the largest rate: a constraint holds this rate at 0, and it is the rounding of others */
+  const Real zero = 1e-17L;
+  /* fewer than 9 digits may be left only where roundings of the arguments leave no more than 5 digits more */
+  const Real enough = 1e-9L, condition = 65536;
   Component *c = &v->component[i];
   Evaluation x = evaluation(v, k, 0);
   Difference d = difference_at(v, k, i, place);
   if (x.status != 0 || !isfinite(d.value)) return;
   const Real largest = largest_rate(v, &x), size = fabsl(d.value) < zero * largest ? largest : fabsl(d.value);
-  int scatters = d.spread > enough * size && d.spread > condition * d.moved, finite = isfinite(d.difference) && x.yours_status[0] == 0;
+  int scatters = d.spread > enough * size && d.spread > condition * d.moved,
+      finite = isfinite(d.difference) && x.yours_status[0] == 0;
   c->scattered += scatters && sample_is_random(v->point[k]);
   if (scatters && finite) return;
   c->points++;
@@ -375,7 +405,8 @@ static const char *rate_name(const Verification *v, uint32_t i) { return arena_p
 static int differs(Verification *v, const char *what, uint32_t k, const char *how) {
   if (v->quiet) return STATUS_RUN;
   const char *at = sample_text(v->points, v->symbols[v->point[k]]);
-  usage_error(arena_printf(v->arena, "%s:%s %s%s\n  at %s\n  called with %s", v->file, v->function, what, how ? how : "", at, signature(v)));
+  usage_error(arena_printf(v->arena, "%s:%s %s%s\n  at %s\n  called with %s", v->file, v->function, what,
+                           how ? how : "", at, signature(v)));
   return STATUS_RUN;
 }
 
@@ -384,11 +415,16 @@ static int judge_calls(Verification *v) {
   Evaluation first = evaluation(v, 0, 0), again = evaluation(v, v->n, 0);
   for (uint32_t k = 0; k < v->n; k++) {
     Evaluation x = evaluation(v, k, 0);
-    if (isnan(x.yours_status[0])) return differs(v, arena_printf(v->arena, "writes past dydt[%u], the last component", v->ny - 1), k, NULL);
-    if (x.status == 0 && x.yours_status[0] != 0) return differs(v, arena_printf(v->arena, "returns %g, where the derived equations have a value", x.yours_status[0]), k, NULL);
+    if (isnan(x.yours_status[0]))
+      return differs(v, arena_printf(v->arena, "writes past dydt[%u], the last component", v->ny - 1), k, NULL);
+    if (x.status == 0 && x.yours_status[0] != 0)
+      return differs(v,
+                     arena_printf(v->arena, "returns %g, where the derived equations have a value", x.yours_status[0]),
+                     k, NULL);
   }
   if (memcmp(first.dydt[0], again.dydt[0], v->ny * sizeof(double)) != 0 && !isnan(first.dydt[0][0]))
-    return differs(v, "gives other values when it is called once more with the same arguments: it reads more than them", 0, NULL);
+    return differs(v, "gives other values when it is called once more with the same arguments: it reads more than them",
+                   0, NULL);
   return STATUS_OK;
 }
 
@@ -422,9 +458,11 @@ static int report_difference(Verification *v, uint32_t i) {
   while (v->map[place] != i) place++;
   Evaluation x = evaluation(v, c->worst_at, 0);
   Real low, value = derived(v, &x, v->symbols[v->point[c->worst_at]], i, &low), yours = x.dydt[0][place];
-  const char *effects = agreeing_effects(v), *cause = effects ? effects : cause_of(v), *a = arena_strdup(v->arena, ""), *b = a;
+  const char *effects = agreeing_effects(v), *cause = effects ? effects : cause_of(v), *a = arena_strdup(v->arena, ""),
+             *b = a;
   for (int digits = 6; digits <= 21 && strcmp(a, b) == 0; digits += 5) {
-    a = isnan(yours) ? "nan, or not set, or computed from a place outside y or p" : arena_printf(v->arena, "%.*Lg", digits, yours);
+    a = isnan(yours) ? "nan, or not set, or computed from a place outside y or p"
+                     : arena_printf(v->arena, "%.*Lg", digits, yours);
     b = arena_printf(v->arena, "%.*Lg", digits, value);
   }
   StrBuf how = strbuf(v->arena);
@@ -432,7 +470,8 @@ static int report_difference(Verification *v, uint32_t i) {
   sb_printf(&how, "\n  %s = dydt[%u] is %s, derived %s: not equal at %u of %u states", rate_name(v, i), place, a, b,
             c->differs, c->points);
   for (uint32_t k = 0; k < v->ny; k++)
-    if (k != i && v->component[k].differs) sb_printf(&how, "%s%s", k < i || !strstr(sb_text(&how), "; also") ? "; also " : ", ", rate_name(v, k));
+    if (k != i && v->component[k].differs)
+      sb_printf(&how, "%s%s", k < i || !strstr(sb_text(&how), "; also") ? "; also " : ", ", rate_name(v, k));
   return differs(v, sb_text(&how) + 1, c->worst_at, NULL);
 }
 
@@ -444,13 +483,15 @@ static Real round_up(Real x) {
 
 static int report_agreement(Verification *v, const char *precision) {
   StrBuf b = strbuf(v->arena);
-  sb_printf(&b, "%s:%s agrees with the derived equations of %s, scene %s%s, at %u states\n  called with %s\n", v->file, v->function, v->m->name, v->m->scene.name,
-            v->given, v->n, signature(v));
+  sb_printf(&b, "%s:%s agrees with the derived equations of %s, scene %s%s, at %u states\n  called with %s\n", v->file,
+            v->function, v->m->name, v->m->scene.name, v->given, v->n, signature(v));
   for (uint32_t i = 0; i < v->ny; i++) {
     const Component *c = &v->component[i];
     sb_printf(&b, "  %-10s ", rate_name(v, i));
     if (c->ulps == 0) sb_puts(&b, c->is_rounding ? "0 up to roundings" : "exact");
-    else sb_printf(&b, "within %.6Lg ulp%s", round_up(c->ulps), c->ulps > 2 * ROUNDINGS ? ", where roundings explain as many" : "");
+    else
+      sb_printf(&b, "within %.6Lg ulp%s", round_up(c->ulps),
+                c->ulps > 2 * ROUNDINGS ? ", where roundings explain as many" : "");
     sb_putc(&b, '\n');
   }
   sb_printf(&b, "  derived: %s digits", strcmp(precision, "quad") == 0 ? "34" : "19");
@@ -473,11 +514,18 @@ static int report(Verification *v, const char *precision) {
   }
   if (v->component[worst].differs) return report_difference(v, worst);
   if (v->component[scattered].scattered > POINTS_RANDOM / 2)
-    return differs(v, arena_printf(v->arena, "has fewer than 9 digits in %s, where the derived value keeps theirs when arguments are rounded: is a float in it?", rate_name(v, scattered)), 0, NULL);
+    return differs(v,
+                   arena_printf(v->arena,
+                                "has fewer than 9 digits in %s, where the derived value keeps theirs when arguments "
+                                "are rounded: is a float in it?",
+                                rate_name(v, scattered)),
+                   0, NULL);
   if (v->quiet) return fewest < FEWEST ? STATUS_RUN : STATUS_OK;
   if (fewest < FEWEST) {
-    usage_error(arena_printf(v->arena, "not decided: only %u states give the derived equations and %s:%s a value with digits; "
-                             "declare signs of coordinates and parameters, so that states are drawn inside the domain", fewest, v->file, v->function));
+    usage_error(arena_printf(v->arena,
+                             "not decided: only %u states give the derived equations and %s:%s a value with digits; "
+                             "declare signs of coordinates and parameters, so that states are drawn inside the domain",
+                             fewest, v->file, v->function));
     return STATUS_RUN;
   }
   return report_agreement(v, precision);
@@ -492,7 +540,11 @@ static int report_break(Verification *v, int status, size_t evaluated) {
     return STATUS_USAGE;
   }
   if (k == v->n) k = 0;
-  return differs(v, status == LATE ? "does not return within 5 s" : status < 0 ? "crashes" : "ends the program", k, NULL);
+  return differs(v,
+                 status == LATE ? "does not return within 5 s"
+                 : status < 0   ? "crashes"
+                                : "ends the program",
+                 k, NULL);
 }
 
 /* ---- the command ---- */
@@ -502,12 +554,17 @@ static int compare(Verification *v) {
   FILE *out = v->run.out;
   write_points(v, v->run.in);
   if (fflush(v->run.in) != 0) return usage_error("cannot write a temporary file");
-  if (!v->n) return usage_error("no state inside the model's domain was found: declare signs of coordinates and parameters");
+  if (!v->n)
+    return usage_error("no state inside the model's domain was found: declare signs of coordinates and parameters");
   int built = run_with(v, precision) || run_with(v, precision = "long");
   const char *error = v->run.error;
   if (!built && v->quiet) return STATUS_USAGE;
   if (!built && !strstr(error, " failed:\n")) return usage_error(error);
-  if (!built) return usage_error(arena_printf(v->arena, "%s\nthe function is called as %s(t, y, dydt, p), where t is a double, and the others are arrays of doubles; it takes all four, also those that it does not use", error, v->function));
+  if (!built)
+    return usage_error(arena_printf(v->arena,
+                                    "%s\nthe function is called as %s(t, y, dydt, p), where t is a double, and the "
+                                    "others are arrays of doubles; it takes all four, also those that it does not use",
+                                    error, v->function));
   size_t want = (size_t)v->n * (BESIDE + 1) + 1, size = result_size(v);
   v->results = ARENA_ARRAY(v->arena, double, want * size);
   rewind(out);
@@ -541,7 +598,8 @@ static int begin(Verification *v, const char **error) {
   const char *why;
   const Source *text;
   if (!read_target(v, error) || !read_map(v, error)) return 0;
-  if (!(text = source_read(v->c->sources, v->file, &why))) return fail_with(error, arena_printf(v->arena, "cannot read %s: %s", v->file, why));
+  if (!(text = source_read(v->c->sources, v->file, &why)))
+    return fail_with(error, arena_printf(v->arena, "cannot read %s: %s", v->file, why));
   *error = function_missing(v, text->text);
   v->path = file_absolute(v->arena, v->file);
   if (!*error && (!v->path || strpbrk(v->path, "\"\\\n")))
@@ -561,14 +619,17 @@ static const char *agreeing_effects(Verification *v) {
     EffectSet set = s->graph.n > ALL ? s->variants.at[i] : i;
     EffectList names = effect_names(s, set);
     if (set == s->used || !effect_set_valid(s, set)) continue;
-    ModelChoice choice = {.scene = c->o.scene, .only = &names, .given = c->given.at, .ngiven = c->given.n, .domains = 1};
+    ModelChoice choice = {
+        .scene = c->o.scene, .only = &names, .given = c->given.at, .ngiven = c->given.n, .domains = 1};
     Eqns *e = compiler_derive(c, &choice);
     Verification other = {.given = v->given, .quiet = 1};
     const char *used = effect_names_joined(s, set), *error = NULL;
     if (!e) continue;
     prepare(&other, c, e);
     if (!other.ny || !begin(&other, &error) || verify_equations(&other, c, e) != STATUS_OK) continue;
-    return arena_printf(c->arena, "it agrees with the model %s%s, and the scene `%s` has other effects: compare it with a scene that says `use %s`",
+    return arena_printf(c->arena,
+                        "it agrees with the model %s%s, and the scene `%s` has other effects: compare it with a scene "
+                        "that says `use %s`",
                         names.n ? "with " : "without effects", used, v->m->scene.name, names.n ? used : "none");
   }
   return NULL;
@@ -582,18 +643,24 @@ static const char *values_given(Arena *a, const Options *o) {
 }
 
 int command_verify(Compiler *c) {
-  if (!HAS_POSIX) return usage_error("`lagc verify` is not for Windows: a function that does not return can be ended on POSIX systems only; WSL is one");
+  if (!HAS_POSIX)
+    return usage_error("`lagc verify` is not for Windows: a function that does not return can be ended on POSIX "
+                       "systems only; WSL is one");
   const char *error = NULL, *given = values_given(c->arena, &c->o);
   if (!settings_compiled(c->ast, &c->o, 1, &c->given, &error)) return error ? usage_error(error) : STATUS_MODEL;
   if (c->o.rest.n) return usage_error(arena_printf(c->arena, "%s has no value: write name=value", c->o.rest.at[0]));
-  Eqns *e = compiler_derive(c, &(ModelChoice){.scene = c->o.scene, .given = c->given.at, .ngiven = c->given.n, .domains = 1});
+  Eqns *e =
+      compiler_derive(c, &(ModelChoice){.scene = c->o.scene, .given = c->given.at, .ngiven = c->given.n, .domains = 1});
   if (!e) return STATUS_MODEL;
   Verification v = {.given = given};
   prepare(&v, c, e);
   Name conditional = model_conditional(v.m);
   if (conditional)
-    return usage_error(arena_printf(c->arena, "a function is compared with one set of equations, and those change where `%s` begins to hold: compare models with and "
-                                    "without that constraint", conditional));
+    return usage_error(arena_printf(c->arena,
+                                    "a function is compared with one set of equations, and those change where `%s` "
+                                    "begins to hold: compare models with and "
+                                    "without that constraint",
+                                    conditional));
   if (!v.ny) return usage_error("the model has no coordinates and no states: there is nothing to compare");
   if (!begin(&v, &error)) return usage_error(error);
   return verify_equations(&v, c, e);

@@ -29,14 +29,16 @@ const char *shortest_double(Arena *a, double x);
 /* Section NAME of a text of the runtime: include/lag_math.h, lag_kkt.h, kernels/. */
 void embedded_section(const char *name, const char *prefix, const char *lower, StrBuf *out);
 
-/* Needs of a file from the headers of runtime/include, with the prefix of its names. solver: of dense linear systems. */
+/* Needs of a file from the headers of runtime/include, with the prefix of its names. solver: of dense linear
+ * systems. */
 typedef struct {
   const ProgramSet *u;
   const char *prefix, *lower;
   int solver;
 } MathText;
 
-/* Vector lanes (PREFIX_LANES): mask type, selection, functions lane by lane. Must precede everything that has a default. */
+/* Vector lanes (PREFIX_LANES): mask type, selection, functions lane by lane. Must precede everything that has a
+ * default. */
 void math_lanes(const MathText *m, StrBuf *out);
 
 /* Macros and prototypes: selection and logic (PREFIX_SELECT, PREFIX_MASK, ...), lower_sincos, exp and log over lanes,

@@ -1,13 +1,16 @@
 /* Rolled loops of a program as loops in C.
  *
- * Inside, a value is a `const` of its iteration. A value that other iterations, other loops or later code need is kept in a
- * local array, one element per iteration, preceded by the values that the first iterations take from the code before. */
+ * Inside, a value is a `const` of its iteration. A value that other iterations, other loops or later code need is
+ * kept in a local array, one element per iteration, preceded by the values that the first iterations take from the
+ * code before. */
 #include <string.h>
 
 #include "emit/cwriter_impl.h"
 
 static const Loop *loop_at(const Writer *w, uint32_t k) { return &w->rolls.loops.at[k]; }
-static Slot code_of(const Writer *w, const Loop *l, uint32_t turn, uint32_t offset) { return w->rolls.code[l->begin + turn * l->period + offset]; }
+static Slot code_of(const Writer *w, const Loop *l, uint32_t turn, uint32_t offset) {
+  return w->rolls.code[l->begin + turn * l->period + offset];
+}
 
 int cloop_share_turn(const Writer *w, Slot a, Slot b) {
   uint32_t pa = w->rolls.place[a], pb = w->rolls.place[b];
@@ -54,9 +57,12 @@ const char *cloop_index(Arena *a, int64_t first, int64_t by_i, const char *i, in
 }
 
 /* Text of the index first + step*k. */
-static const char *index_text(const Writer *w, int64_t first, int64_t step) { return cloop_index(w->a, first, step, "k", 0, ""); }
+static const char *index_text(const Writer *w, int64_t first, int64_t step) {
+  return cloop_index(w->a, first, step, "k", 0, "");
+}
 
-/* The element of the kept array that holds the value at `place` of a loop; if step is not 0, its index advances by `step` iterations per k. */
+/* The element of the kept array that holds the value at `place` of a loop; if step is not 0, its index advances by
+ * `step` iterations per k. */
 static CExpr kept_value(const Writer *w, uint32_t place, int64_t step) {
   uint32_t in = w->rolls.loop[place] - 1, offset = loop_offset(loop_at(w, in), place);
   int64_t first = (int64_t)(loop_at(w, in)->kept[offset] - 1) + loop_turn(loop_at(w, in), place);
@@ -118,7 +124,8 @@ static void count_own_uses(Writer *w, Body *b) {
     int twice = i->op == IR_PIVOT || i->op == IR_SIGN || i->op == IR_MIN || i->op == IR_MAX; /* spelled twice */
     for (int which = 0; which < 3; which++) {
       Slot x = ins_operand(i, which);
-      if (x && roll_step(&w->rolls, b->l, k, which).kind == STEP_OWN) b->own_uses[offset_of(w, b->l, x)] += twice ? 2 : 1;
+      if (x && roll_step(&w->rolls, b->l, k, which).kind == STEP_OWN)
+        b->own_uses[offset_of(w, b->l, x)] += twice ? 2 : 1;
     }
   }
   for (uint32_t k = 0; k < b->l->stores.n; k++) b->own_uses[b->l->stores.at[k].offset]++;
@@ -145,7 +152,9 @@ static void declare_kept(Writer *w, const Body *b, int conditions) {
     const Ins *i = &w->p->ins.at[code_of(w, l, 0, k)];
     if (!l->kept[k] || ir_is_condition(i->op) != conditions) continue;
     names[k] = cnames_take(&w->names, l->carried[k] ? carried_name(w, i) : kept_name(w, i));
-    if (l->carried[k]) sb_printf(&text, "%s%s = %s", text.n ? ", " : "", names[k], cwriter_operand(w, w->rolls.code[l->begin + k - l->period]).text);
+    if (l->carried[k])
+      sb_printf(&text, "%s%s = %s", text.n ? ", " : "", names[k],
+                cwriter_operand(w, w->rolls.code[l->begin + k - l->period]).text);
     else sb_printf(&text, "%s%s[%u]", text.n ? ", " : "", names[k], l->count + l->kept[k] - 1);
   }
   if (!text.n) return;
@@ -158,7 +167,8 @@ static void write_first_values(Writer *w, const Body *b) {
   for (uint32_t k = 0; k < l->period; k++)
     for (uint32_t t = 0; t + 1 < l->kept[k] && !l->carried[k]; t++) {
       uint32_t place = l->begin + k - (l->kept[k] - 1 - t) * l->period;
-      cwriter_line(w, arena_printf(w->a, "%s[%u] = %s;", w->kept[b->number][k], t, cwriter_operand(w, w->rolls.code[place]).text));
+      cwriter_line(w, arena_printf(w->a, "%s[%u] = %s;", w->kept[b->number][k], t,
+                                   cwriter_operand(w, w->rolls.code[place]).text));
     }
 }
 
@@ -177,8 +187,8 @@ static void name_turn_loads(Writer *w, Body *b) {
       const Ins *i = &w->p->ins.at[x];
       const char *name = cnames_take(&w->names, cloop_stem(w->a, i->name));
       vec_push(w->a, &b->loads, ((TurnLoad){x, s.step, name}));
-      cwriter_line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, cwriter_array(w, i->array),
-                                        index_text(w, i->index, s.step)));
+      cwriter_line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name,
+                                   cwriter_array(w, i->array), index_text(w, i->index, s.step)));
     }
 }
 
@@ -187,7 +197,9 @@ static CExpr multiple(const Writer *w, Num unit, const char *index) {
   int dyadic = (unit.den & (unit.den - 1)) == 0;
   const char *up = c_number(w->a, w->style->prefix, dyadic ? unit : num_int(unit.num));
   if (dyadic) return (CExpr){arena_printf(w->a, "%s*(%s_LANE)(%s)", up, w->style->prefix, index), C_MUL, 0};
-  return (CExpr){arena_printf(w->a, "%s*(%s_LANE)(%s)/%s", up, w->style->prefix, index, c_number(w->a, w->style->prefix, num_int(unit.den))), C_MUL, 0};
+  return (CExpr){arena_printf(w->a, "%s*(%s_LANE)(%s)/%s", up, w->style->prefix, index,
+                              c_number(w->a, w->style->prefix, num_int(unit.den))),
+                 C_MUL, 0};
 }
 
 static CExpr turn_operand(const Writer *w, const Body *b, uint32_t offset, int which, Slot x) {
@@ -304,7 +316,8 @@ static int64_t loop_place(const Writer *w, Slot s) {
   return place && w->rolls.loop[place - 1] ? (int64_t)place - 1 : -1;
 }
 
-/* Whether store n after `first` continues the progression of the first two: index + n, and value x[0] + n*(x[1] - x[0]). */
+/* Whether store n after `first` continues the progression of the first two: index + n, and value x[0] + n*(x[1] -
+ * x[0]). */
 static int follows(const Writer *w, const Store *first, uint32_t n) {
   Slot x = first[0].slot, y = first[1].slot, z = first[n].slot;
   if (first[n].array != first->array || first[n].index != first->index + n) return 0;
@@ -323,7 +336,8 @@ static const char *stored_value(const Writer *w, const Store *first) {
   const Ins *i = &w->p->ins.at[x];
   if (x == y) return cwriter_operand(w, x).text;
   if (i->op == IR_LOAD)
-    return arena_printf(w->a, "%s[%s]", cwriter_array(w, i->array), index_text(w, i->index, (int64_t)w->p->ins.at[y].index - i->index));
+    return arena_printf(w->a, "%s[%s]", cwriter_array(w, i->array),
+                        index_text(w, i->index, (int64_t)w->p->ins.at[y].index - i->index));
   int64_t px = loop_place(w, x), py = loop_place(w, y);
   return kept_value(w, (uint32_t)px, (py - px) / (int64_t)loop_at(w, w->rolls.loop[px] - 1)->period).text;
 }
@@ -332,7 +346,8 @@ uint32_t cloop_stores(const Writer *w, uint32_t k) {
   const Prog *p = w->p;
   const Store *first = &p->stores.at[k];
   uint32_t fewest = p->nests.n ? 8 : 16; /* programs with nests, as of networks, have shorter runs of stores */
-  if (k + fewest > p->stores.n || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0)) return 0;
+  if (k + fewest > p->stores.n || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0))
+    return 0;
   if (w->style->params && p->ins.at[first->slot].op == IR_LOAD && p->ins.at[first->slot].array == ARR_P) return 0;
   uint32_t n = 1;
   while (k + n < p->stores.n && follows(w, first, n)) n++;

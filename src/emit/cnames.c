@@ -11,24 +11,25 @@
 
 /* Reserved words: keywords and names of C and C++, and names that emitted text uses. */
 static const char *const reserved[] = {
-  "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
-  "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof",
-  "static", "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while", "asm", "bool", "catch",
-  "class", "delete", "explicit", "export", "false", "friend", "mutable", "namespace", "new", "operator", "private",
-  "protected", "public", "template", "this", "throw", "true", "try", "typeid", "typename", "using", "virtual", "and",
-  "or", "not", "xor", "compl", "bitand", "bitor", "and_eq", "or_eq", "not_eq", "xor_eq", "alignas", "alignof",
-  "nullptr", "noexcept", "constexpr", "consteval", "constinit", "decltype", "static_assert", "thread_local",
-  "typeof", "const_cast", "static_cast", "dynamic_cast", "reinterpret_cast", "concept", "requires", "co_await",
-  "co_return", "co_yield", "wchar_t", "char8_t", "char16_t", "char32_t", "size_t", "ptrdiff_t", "float_t",
-  "double_t", "offsetof", "main", "errno", "signgam",
-  FUNCTIONS(NAME) "atan2", "fabs", "sqrt", "pow", "hypot", "NULL", "INFINITY", "NAN", "EOF", "OVERFLOW",
-  "UNDERFLOW", "DOMAIN", "SING", "PLOSS", "TLOSS", "I", "HUGE", "HUGE_VAL", "HUGE_VALF", "HUGE_VALL", "MAXFLOAT",
-  "M_E", "M_LOG2E", "M_LOG10E", "M_LN2", "M_LN10", "M_PI", "M_PI_2", "M_PI_4", "M_1_PI", "M_2_PI", "M_2_SQRTPI",
-  "M_SQRT2", "M_SQRT1_2", "FP_NAN", "FP_INFINITE", "FP_ZERO", "FP_SUBNORMAL", "FP_NORMAL", "FP_ILOGB0", "FP_ILOGBNAN",
-  "FP_FAST_FMA", "FP_FAST_FMAF", "FP_FAST_FMAL", "MATH_ERRNO", "MATH_ERREXCEPT", "math_errhandling", "near", "far", "unix", "linux",
+    "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
+    "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof",
+    "static", "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while", "asm", "bool", "catch",
+    "class", "delete", "explicit", "export", "false", "friend", "mutable", "namespace", "new", "operator", "private",
+    "protected", "public", "template", "this", "throw", "true", "try", "typeid", "typename", "using", "virtual", "and",
+    "or", "not", "xor", "compl", "bitand", "bitor", "and_eq", "or_eq", "not_eq", "xor_eq", "alignas", "alignof",
+    "nullptr", "noexcept", "constexpr", "consteval", "constinit", "decltype", "static_assert", "thread_local", "typeof",
+    "const_cast", "static_cast", "dynamic_cast", "reinterpret_cast", "concept", "requires", "co_await", "co_return",
+    "co_yield", "wchar_t", "char8_t", "char16_t", "char32_t", "size_t", "ptrdiff_t", "float_t", "double_t", "offsetof",
+    "main", "errno", "signgam", FUNCTIONS(NAME) "atan2", "fabs", "sqrt", "pow", "hypot", "NULL", "INFINITY", "NAN",
+    "EOF", "OVERFLOW", "UNDERFLOW", "DOMAIN", "SING", "PLOSS", "TLOSS", "I", "HUGE", "HUGE_VAL", "HUGE_VALF",
+    "HUGE_VALL", "MAXFLOAT", "M_E", "M_LOG2E", "M_LOG10E", "M_LN2", "M_LN10", "M_PI", "M_PI_2", "M_PI_4", "M_1_PI",
+    "M_2_PI", "M_2_SQRTPI", "M_SQRT2", "M_SQRT1_2", "FP_NAN", "FP_INFINITE", "FP_ZERO", "FP_SUBNORMAL", "FP_NORMAL",
+    "FP_ILOGB0", "FP_ILOGBNAN", "FP_FAST_FMA", "FP_FAST_FMAF", "FP_FAST_FMAL", "MATH_ERRNO", "MATH_ERREXCEPT",
+    "math_errhandling", "near", "far", "unix", "linux",
 };
 
-/* Functions of the C library that a compiler or <math.h> declares: allowed as names of locals, not of objects with external linkage. */
+/* Functions of the C library that a compiler or <math.h> declares: allowed as names of locals, not of objects with
+ * external linkage. */
 static const char *const library[] = {
   "abort", "abs", "acosh", "alloca", "asinh", "atanh", "bcmp", "bcopy", "bzero", "calloc", "ceil", "clog", "conj",
   "copysign", "cexp", "cpow", "drem", "erf", "erfc", "exit", "exp2", "exp10", "expm1", "fdim", "ffs", "floor", "fma",
@@ -86,7 +87,8 @@ const char *cname_letters(Arena *a, const char *name) {
 const char *cname(Arena *a, const char *name) {
   const char *text = cname_letters(a, name);
   if (text[0] >= '0' && text[0] <= '9') text = arena_printf(a, "n%s", text);
-  int taken = text[0] == '_' || strncmp(text, "lag_", 4) == 0 || strncmp(text, "LAG_", 4) == 0; /* the C library's, the runtime's */
+  /* the C library's, the runtime's */
+  int taken = text[0] == '_' || strncmp(text, "lag_", 4) == 0 || strncmp(text, "LAG_", 4) == 0;
   if (taken) text = arena_printf(a, "x%s", text);
   for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++)
     if (strcmp(text, reserved[i]) == 0) return arena_printf(a, "%s_", text);

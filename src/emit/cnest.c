@@ -1,6 +1,7 @@
 /* Nests of a program as nested loops in C.
  *
- * Sums are elements of one local array; a sum whose element is the same in all turns of a row is accumulated in a variable. */
+ * Sums are elements of one local array; a sum whose element is the same in all turns of a row is accumulated in a
+ * variable. */
 #include <string.h>
 
 #include "emit/cwriter_impl.h"
@@ -16,7 +17,8 @@ typedef struct {
 static int has_rows(const Nest *n) { return n->rows > 1; }
 
 static const char *index_text(const Nesting *x, IrSubscript at) {
-  return cloop_index(x->body.a, at.first, has_rows(x->n) ? at.by_row : 0, x->i, nest_has_turns(x->n) ? at.by_turn : 0, x->j);
+  return cloop_index(x->body.a, at.first, has_rows(x->n) ? at.by_row : 0, x->i, nest_has_turns(x->n) ? at.by_turn : 0,
+                     x->j);
 }
 
 static const char *place(const Nesting *x, uint32_t k) { return index_text(x, x->n->at[k]); }
@@ -33,7 +35,8 @@ static void find_varying(Nesting *x) {
   const Prog *p = x->n->body;
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
-    if (i->op == IR_LOAD && i->array != ARR_OUTER && !ir_is_scalar(i->array)) x->each[s] = (unsigned char)nest_moves(x->n, i->index);
+    if (i->op == IR_LOAD && i->array != ARR_OUTER && !ir_is_scalar(i->array))
+      x->each[s] = (unsigned char)nest_moves(x->n, i->index);
     else x->each[s] = x->each[i->a] | x->each[i->b] | x->each[i->c];
   }
 }
@@ -48,7 +51,8 @@ static void write_load(Nesting *x, const Writer *around, Slot s) {
   } else {
     const char *name = cnames_take(&w->names, i->name ? i->name : "sum");
     cwriter_line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name,
-                         i->array == ARR_P && w->parameters ? w->parameters : cwriter_array(w, i->array), place(x, i->index)));
+                                 i->array == ARR_P && w->parameters ? w->parameters : cwriter_array(w, i->array),
+                                 place(x, i->index)));
     w->piece[s] = (CExpr){name, C_ATOM, 0};
   }
 }
@@ -97,7 +101,8 @@ static void declare_partial(Nesting *x) {
 static void add_partial(Nesting *x) {
   Writer *w = &x->body;
   for (uint32_t k = 0; k < w->p->stores.n; k++)
-    if (x->partial[k]) cwriter_line(w, arena_printf(w->a, "%s[%s] += %s;", w->cells, place(x, w->p->stores.at[k].index), x->partial[k]));
+    if (x->partial[k])
+      cwriter_line(w, arena_printf(w->a, "%s[%s] += %s;", w->cells, place(x, w->p->stores.at[k].index), x->partial[k]));
 }
 
 static void write_rows(Nesting *x, const Writer *around) {
@@ -168,7 +173,8 @@ static void copy_parameters(Writer *w) {
   StrBuf text = strbuf(w->a);
   w->parameters = cnames_take(&w->names, "values");
   sb_printf(&text, "const %s_REAL %s[%lld] = {", w->style->prefix, w->parameters, (long long)end);
-  for (int64_t k = 0; k < end; k++) sb_printf(&text, "%s%s->%s", k ? ", " : "", w->style->in[ARR_P], w->style->params[k]);
+  for (int64_t k = 0; k < end; k++)
+    sb_printf(&text, "%s%s->%s", k ? ", " : "", w->style->in[ARR_P], w->style->params[k]);
   sb_puts(&text, "};");
   cwriter_line(w, sb_text(&text));
 }
@@ -180,6 +186,6 @@ void cnest_prepare(Writer *w) {
   w->row = cnames_take(&w->names, "i");
   w->turn = cnames_take(&w->names, "j");
   cwriter_line(w, arena_printf(w->a, "%s_REAL %s[%u];", w->style->prefix, w->cells, w->p->cells));
-  cwriter_line(w, arena_printf(w->a, "for (int %s = 0; %s < %u; %s++) %s[%s] = %s_C(0.0);", w->row, w->row, w->p->cells, w->row, w->cells, w->row,
-                       w->style->prefix));
+  cwriter_line(w, arena_printf(w->a, "for (int %s = 0; %s < %u; %s++) %s[%s] = %s_C(0.0);", w->row, w->row, w->p->cells,
+                               w->row, w->cells, w->row, w->style->prefix));
 }

@@ -1,7 +1,9 @@
-/* Linear systems that are solved in a loop: their entries are written to the workspace w, and a support function solves them. */
+/* Linear systems that are solved in a loop: their entries are written to the workspace w, and a support function
+ * solves them. */
 #include "emit/cwriter_impl.h"
 
-/* Writes w[at], w[at + 1], ... = values; eight or more equal neighbours, such as zeros of a sparse matrix, as a loop. */
+/* Writes w[at], w[at + 1], ... = values; eight or more equal neighbours, such as zeros of a sparse matrix, as a
+ * loop. */
 static void write_entries(Writer *w, uint32_t at, const Slot *values, uint32_t n) {
   enum { MANY = 8 };
   for (uint32_t j = 0, end; j < n; j = end) {

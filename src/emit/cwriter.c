@@ -1,5 +1,5 @@
-/* Function bodies in C: spelling of values as expressions with minimal parentheses, statements in the order of the program,
- * stores at the end. Rounding is that of the program: expressions are grouped as computed. */
+/* Function bodies in C: spelling of values as expressions with minimal parentheses, statements in the order of the
+ * program, stores at the end. Rounding is that of the program: expressions are grouped as computed. */
 #include <stdio.h>
 #include <string.h>
 
@@ -36,7 +36,8 @@ static const char *without_zeros(Arena *a, const char *decimal) {
   enum { SMALL = 4, LARGE = 6 };
   const char *point = strchr(decimal, '.'), *first = decimal + strspn(decimal, "0.");
   size_t whole = (size_t)(point - decimal), zeros = 0;
-  if (first > point && (size_t)(first - point) > SMALL) return arena_printf(a, "%c%s%se-%d", *first, first[1] ? "." : "", first + 1, (int)(first - point));
+  if (first > point && (size_t)(first - point) > SMALL)
+    return arena_printf(a, "%c%s%se-%d", *first, first[1] ? "." : "", first + 1, (int)(first - point));
   while (zeros < whole && point[-1 - (int)zeros] == '0') zeros++;
   if (strcmp(point, ".0") != 0 || zeros < LARGE || zeros == whole) return decimal;
   return arena_printf(a, "%.*se%d", (int)(whole - zeros), decimal, (int)zeros);
@@ -127,13 +128,18 @@ static CExpr call(Writer *w, const char *head, const Ins *i, int n) {
   return (CExpr){arena_printf(w->a, "%s(%s)", head, sb_text(&b)), C_ATOM, 0};
 }
 
-static CExpr macro(Writer *w, const char *name, const Ins *i, int n) { return call(w, arena_printf(w->a, "%s_%s", w->style->prefix, name), i, n); }
+static CExpr macro(Writer *w, const char *name, const Ins *i, int n) {
+  return call(w, arena_printf(w->a, "%s_%s", w->style->prefix, name), i, n);
+}
 
 /* A function of the C library; sin and cos may be embedded in the file. */
 static CExpr function(Writer *w, const char *fn, const Ins *i, int n) {
   int is_own = w->style->math && (strcmp(fn, "sin") == 0 || strcmp(fn, "cos") == 0);
   if (w->style->params && strcmp(fn, "fabs") == 0) return macro(w, "ABS", i, n);
-  return call(w, is_own ? arena_printf(w->a, "%s_%s", w->style->math, fn) : arena_printf(w->a, "%s_FN(%s)", w->style->prefix, fn), i, n);
+  return call(w,
+              is_own ? arena_printf(w->a, "%s_%s", w->style->math, fn)
+                     : arena_printf(w->a, "%s_FN(%s)", w->style->prefix, fn),
+              i, n);
 }
 
 /* Element `index` of an array: p->m1 where the parameters are a struct. */
@@ -154,10 +160,13 @@ static CExpr load(const Writer *w, const Ins *i) {
 static CExpr choose(Writer *w, const Ins *i) {
   const char *m = w->style->prefix, *a = wrapped(w, i->a, C_CMP + 1);
   if (i->op == IR_SIGN)
-    return (CExpr){arena_printf(w->a, "%s_SELECT(%s > %s_C(0.0), %s_C(1.0), %s_SELECT(%s < %s_C(0.0), -%s_C(1.0), %s_C(0.0)))", m, a,
-                                m, m, m, a, m, m, m), C_ATOM, 0};
+    return (CExpr){
+        arena_printf(w->a, "%s_SELECT(%s > %s_C(0.0), %s_C(1.0), %s_SELECT(%s < %s_C(0.0), -%s_C(1.0), %s_C(0.0)))", m,
+                     a, m, m, m, a, m, m, m),
+        C_ATOM, 0};
   const char *b = wrapped(w, i->b, C_CMP + 1);
-  return (CExpr){arena_printf(w->a, "%s_SELECT(%s %s %s, %s, %s)", m, a, i->op == IR_MIN ? "<" : ">", b, a, b), C_ATOM, 0};
+  return (CExpr){arena_printf(w->a, "%s_SELECT(%s %s %s, %s, %s)", m, a, i->op == IR_MIN ? "<" : ">", b, a, b), C_ATOM,
+                 0};
 }
 
 static CExpr solved(Writer *w, const Ins *i) {
@@ -236,12 +245,15 @@ static int is_identifier(const char *s) {
 }
 
 /* Name of an operand if it is an identifier with a meaning (not w1); else NULL. */
-static const char *meaningful_name(const CExpr *x) { return x->text && !x->counted && is_identifier(x->text) ? x->text : NULL; }
+static const char *meaningful_name(const CExpr *x) {
+  return x->text && !x->counted && is_identifier(x->text) ? x->text : NULL;
+}
 
 static const char *made_name(Writer *w, const Ins *i) {
   CExpr x = cwriter_operand(w, i->a), y = cwriter_operand(w, i->b);
   const Ins *top = &w->p->ins.at[i->a];
-  return ir_made_name(w->a, i, top->op == IR_CONST && num_is_one(top->number), meaningful_name(&x), meaningful_name(&y));
+  return ir_made_name(w->a, i, top->op == IR_CONST && num_is_one(top->number), meaningful_name(&x),
+                      meaningful_name(&y));
 }
 
 CExpr cwriter_name(Writer *w, const Ins *i) {
@@ -267,7 +279,8 @@ void cwriter_declare(Writer *w, Slot s, CExpr name, CExpr x) {
   cwriter_flush_title(w);
   const char *type = ir_is_condition(i->op) ? "MASK" : "REAL";
   cwriter_statement(w, arena_printf(w->a, "const %s_%s %s = %s;", w->style->prefix, type, name.text, x.text));
-  const char *said = i->name && w->indent ? cloop_stem(w->a, i->name) : i->name; /* in a loop, the name common to all turns */
+  /* in a loop, the name common to all turns */
+  const char *said = i->name && w->indent ? cloop_stem(w->a, i->name) : i->name;
   if (said && strcmp(said, name.text) != 0) sb_printf(w->out, " /* %s */", comment_text(w->a, meaning(w, said)));
   sb_putc(w->out, '\n');
   w->piece[s] = name;
@@ -281,10 +294,12 @@ void cwriter_pivot(Writer *w, const Ins *i) {
 }
 
 /* Rows of a table, as many on a line as fit. */
-void cwrite_rows(const IrTable *table, const char *name, const char *prefix, const char *indent, Arena *a, StrBuf *out) {
+void cwrite_rows(const IrTable *table, const char *name, const char *prefix, const char *indent, Arena *a,
+                 StrBuf *out) {
   const Spline *c = table->curve;
   const int width = c->jet ? 4 : 3;
-  sb_printf(out, "%s/* %s: time, value, %ssecond derivative. */\n", indent, comment_text(a, table->file), c->jet ? "first and " : "");
+  sb_printf(out, "%s/* %s: time, value, %ssecond derivative. */\n", indent, comment_text(a, table->file),
+            c->jet ? "first and " : "");
   sb_printf(out, "%sstatic const %s_LANE %s[%u][%d] = {", indent, prefix, name, c->n, width);
   size_t column = WRAP_COLUMNS;
   for (uint32_t k = 0; k < c->n; k++) {
@@ -315,15 +330,18 @@ static const char *rows_of(Writer *w, const Ins *i) {
     if (w->rows[k].curve == table->curve) return w->rows[k].name;
   const char *name = cnames_take(&w->names, arena_printf(w->a, "%s_rows", table->name));
   cwrite_rows(table, name, w->style->prefix, "  ", w->a, w->out);
-  if (w->nrows < sizeof w->rows / sizeof *w->rows) w->rows[w->nrows].curve = table->curve, w->rows[w->nrows++].name = name;
+  if (w->nrows < sizeof w->rows / sizeof *w->rows)
+    w->rows[w->nrows].curve = table->curve, w->rows[w->nrows++].name = name;
   return name;
 }
 
 static void write_table(Writer *w, Slot s, const Ins *i) {
   const IrTable *table = &w->p->tables.at[i->index];
   const char *name = rows_of(w, i), *t = cwriter_operand(w, i->a).text;
-  const char *call = table->curve->jet ? arena_printf(w->a, "%s(%s, %u, %s, %d)", w->style->curve, t, table->curve->n, name, table->order)
-                                       : arena_printf(w->a, "%s(%s, %u, %s)", w->style->spline, t, table->curve->n, name);
+  const char *call =
+      table->curve->jet
+          ? arena_printf(w->a, "%s(%s, %u, %s, %d)", w->style->curve, t, table->curve->n, name, table->order)
+          : arena_printf(w->a, "%s(%s, %u, %s)", w->style->spline, t, table->curve->n, name);
   w->piece[s] = (CExpr){call, C_ATOM, 0};
 }
 
@@ -332,10 +350,12 @@ static Slot *loads_of(Writer *w, int array, uint32_t *n) {
   const Prog *p = w->p;
   *n = 0;
   for (Slot s = 1; s < p->ins.n; s++)
-    if (p->ins.at[s].op == IR_LOAD && (int)p->ins.at[s].array == array && p->ins.at[s].index >= *n) *n = p->ins.at[s].index + 1;
+    if (p->ins.at[s].op == IR_LOAD && (int)p->ins.at[s].array == array && p->ins.at[s].index >= *n)
+      *n = p->ins.at[s].index + 1;
   Slot *at = ARENA_ARRAY(w->a, Slot, *n + 1);
   for (Slot s = 1; s < p->ins.n; s++)
-    if (p->ins.at[s].op == IR_LOAD && (int)p->ins.at[s].array == array && w->uses[s] && cloop_names_load(w, s)) at[p->ins.at[s].index] = s;
+    if (p->ins.at[s].op == IR_LOAD && (int)p->ins.at[s].array == array && w->uses[s] && cloop_names_load(w, s))
+      at[p->ins.at[s].index] = s;
   return at;
 }
 
@@ -359,7 +379,8 @@ static void write_array(Writer *w, int array) {
       sb_puts(w->out, ";\n");
       column = 0;
     }
-    const char *full = column ? arena_printf(w->a, ", %s", text) : arena_printf(w->a, "  const %s_REAL %s", w->style->prefix, text);
+    const char *full =
+        column ? arena_printf(w->a, ", %s", text) : arena_printf(w->a, "  const %s_REAL %s", w->style->prefix, text);
     sb_puts(w->out, full);
     column += strlen(full);
     w->piece[at[k]] = (CExpr){name, C_ATOM, 0};
@@ -371,7 +392,8 @@ static void write_arrays(Writer *w) {
   for (int array = 0; array < ARR_COUNT; array++) write_array(w, array);
 }
 
-/* Declares the loads of the arrays that instruction s reads: here and not at the top, where calls in between would have to save them. */
+/* Declares the loads of the arrays that instruction s reads: here and not at the top, where calls in between would
+ * have to save them. */
 static void write_arrays_of(Writer *w, Slot s) {
   for (int which = 0; which < 3; which++) {
     const Ins *x = &w->p->ins.at[ins_operand(&w->p->ins.at[s], which)];
@@ -411,7 +433,8 @@ static void declare_pair(Writer *w, Slot s, const Ins *first, const Ins *second,
   CExpr a = cwriter_name(w, first), b = cwriter_name(w, second);
   int in_order = strcmp(first->text, "sin") == 0;
   sb_printf(names, "%s%s, %s", names->n ? ", " : "", a.text, b.text);
-  sb_printf(arguments, "%s%s, &%s, &%s", arguments->n ? ", " : "", x, in_order ? a.text : b.text, in_order ? b.text : a.text);
+  sb_printf(arguments, "%s%s, &%s, &%s", arguments->n ? ", " : "", x, in_order ? a.text : b.text,
+            in_order ? b.text : a.text);
   w->piece[s] = a;
   w->piece[w->pair[s]] = b;
 }
@@ -429,17 +452,19 @@ int cwriter_declare_sincos(Writer *w, Slot s, const Ins *first, const Ins *secon
 
 static int is_computed_before(const Writer *w, Slot x, Slot s) { return x < s || w->p->ins.at[x].op == IR_LOAD; }
 
-/* Collects, from s on, up to SINCOS_BATCH sines or cosines with a pair whose angles are known when s is computed; returns their number. */
+/* Collects, from s on, up to SINCOS_BATCH sines or cosines with a pair whose angles are known when s is computed;
+ * returns their number. */
 static uint32_t collect_sincos(const Writer *w, Slot s, Slot *at) {
   enum { NEAR = 400 };
   uint32_t n = 0;
   for (Slot k = s; k < w->p->ins.n && k < s + NEAR && n < SINCOS_BATCH; k++)
-    if (w->pair[k] > k && !w->piece[k].text && !cloop_contains(w, k) && is_computed_before(w, w->p->ins.at[k].a, s)) at[n++] = k;
+    if (w->pair[k] > k && !w->piece[k].text && !cloop_contains(w, k) && is_computed_before(w, w->p->ins.at[k].a, s))
+      at[n++] = k;
   return n;
 }
 
-/* Computes sines and cosines outside of loops by calls for two or four angles, which processors overlap. Returns 0 if s has no
- * pair, or fewer than two angles are left. */
+/* Computes sines and cosines outside of loops by calls for two or four angles, which processors overlap. Returns 0
+ * if s has no pair, or fewer than two angles are left. */
 static int write_sincos_batch(Writer *w, Slot s) {
   if (!w->pair[s] || w->piece[s].text) return w->pair[s] != 0;
   Slot at[SINCOS_BATCH];
@@ -448,7 +473,8 @@ static int write_sincos_batch(Writer *w, Slot s) {
   n = n < SINCOS_BATCH ? 2 : SINCOS_BATCH;
   for (uint32_t k = 0; k < n; k++) write_arrays_of(w, at[k]);
   StrBuf names = strbuf(w->a), arguments = strbuf(w->a);
-  for (uint32_t k = 0; k < n; k++) declare_pair(w, at[k], &w->p->ins.at[at[k]], &w->p->ins.at[w->pair[at[k]]], &names, &arguments);
+  for (uint32_t k = 0; k < n; k++)
+    declare_pair(w, at[k], &w->p->ins.at[at[k]], &w->p->ins.at[w->pair[at[k]]], &names, &arguments);
   cwriter_flush_title(w);
   cwriter_line(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&names)));
   cwriter_line(w, arena_printf(w->a, "%s_sincos%u(%s);", w->style->math, n, sb_text(&arguments)));
@@ -479,7 +505,8 @@ void cwriter_instruction(Writer *w, Slot s) {
     cnest_write(w, i);
     return;
   }
-  if (ir_is_leaf(i->op) || write_sincos_batch(w, s) || cwriter_declare_sincos(w, s, i, &w->p->ins.at[w->pair[s]])) return;
+  if (ir_is_leaf(i->op) || write_sincos_batch(w, s) || cwriter_declare_sincos(w, s, i, &w->p->ins.at[w->pair[s]]))
+    return;
   CExpr x = cwriter_spell(w, i);
   int told = !i->name || (w->stored[s] && strcmp(i->name, w->stored[s]) == 0); /* the store's comment says the name */
   int part = w->uses[s] <= 1 && told && cwriter_is_short(w, x) && i->op != IR_SOLVED;
@@ -490,7 +517,8 @@ void cwriter_instruction(Writer *w, Slot s) {
 static void write_store(Writer *w, const Store *st) {
   const char *text = cwriter_operand(w, st->slot).text;
   const char *target = element(w, w->style->out[st->array], st->index), *member = strstr(target, "->");
-  int said = !st->comment[0] || strcmp(st->comment, text) == 0 || (w->style->params && member && strcmp(member + 2, st->comment) == 0);
+  int said = !st->comment[0] || strcmp(st->comment, text) == 0 ||
+             (w->style->params && member && strcmp(member + 2, st->comment) == 0);
   cwriter_statement(w, arena_printf(w->a, "%s = %s;", target, text));
   if (!said) sb_printf(w->out, " /* %s */", comment_text(w->a, st->comment));
   sb_putc(w->out, '\n');
@@ -512,7 +540,8 @@ static int is_paired(const Writer *w, uint32_t k) {
 static uint32_t write_pair(Writer *w, uint32_t k) {
   const Store *st = &w->p->stores.at[k], *other = next_store(w, k);
   const char *x = cwriter_operand(w, st->slot).text, *y = cwriter_operand(w, other ? other->slot : 0).text;
-  cwriter_line(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
+  cwriter_line(
+      w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
   return other ? 2 : 1;
 }
 
@@ -533,7 +562,8 @@ static void write_stores(Writer *w) {
 
 /* Bit set of the arrays that can be indexed by a variable: not scalars such as t, nor struct members. */
 static unsigned arrays_by_index(const CStyle *style) {
-  return style->params ? 1u << ARR_Q | 1u << ARR_V | 1u << ARR_Z | 1u << ARR_U | 1u << ARR_CELL : ~(1u << ARR_T | 1u << ARR_ORDER | 1u << ARR_PER_ORDER | 1u << ARR_UP);
+  return style->params ? 1u << ARR_Q | 1u << ARR_V | 1u << ARR_Z | 1u << ARR_U | 1u << ARR_CELL
+                       : ~(1u << ARR_T | 1u << ARR_ORDER | 1u << ARR_PER_ORDER | 1u << ARR_UP);
 }
 
 /* Whether no array is both read and written. */
@@ -566,7 +596,8 @@ static void write_code(Writer *w) {
 
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
-  uint32_t from = p->nests.n ? 0 : style->prefer_short_code ? ROLL_SELDOM_FROM : ROLL_FROM; /* programs with nests are long */
+  /* programs with nests are long */
+  uint32_t from = p->nests.n ? 0 : style->prefer_short_code ? ROLL_SELDOM_FROM : ROLL_FROM;
   w.rolls = roll_find(p, arrays_by_index(style), from, stores_apart(p, style));
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
   cwriter_init_pieces(&w);

@@ -14,12 +14,14 @@ typedef struct {
   const char *const *params;        /* member name of each parameter (p->name); NULL: an array (p[3]) */
   const char *const *out;           /* names of the arrays written */
   int apart;                        /* 1: no element is both read and written, even where an array is */
-  unsigned paired;                  /* bit i: stores to out[i] go two at a time, through PREFIX_PAIR(array, index, x, y) */
+  /* bit i: stores to out[i] go two at a time, through PREFIX_PAIR(array, index, x, y) */
+  unsigned paired;
   unsigned padded;                  /* bit i: out[i] has room for a pair where the last element has no partner */
   const char *const *own;           /* names in the function's scope, NULL at the end */
   const char *const *globals;         /* names that the function must not hide, NULL at the end; or NULL */
   const char *solve, *kkt;          /* functions that solve a linear system, and one with constraints */
-  int is_regular;                   /* 1: linear systems were found regular before, and the function returns no status */
+  /* 1: linear systems were found regular before, and the function returns no status */
+  int is_regular;
   const char *spline, *curve;       /* functions that evaluate tables: cubics, and derivatives of quintics */
   const char *const *rows;          /* names of the arrays of table rows; NULL: the body declares them */
   int prefer_short_code;                /* 1: prefer short code to fast code */

@@ -1,4 +1,5 @@
-/* Internals of the writer of function bodies: cwriter.c writes statements, csolve.c linear systems, cloop.c loops, cnest.c nests of loops. */
+/* Internals of the writer of function bodies: cwriter.c writes statements, csolve.c linear systems, cloop.c loops,
+ * cnest.c nests of loops. */
 #pragma once
 
 #include "emit/cwriter.h"
@@ -21,7 +22,8 @@ typedef struct {
   uint32_t *uses;
   const char **stored; /* by slot: comment of the store of its value */
   CExpr *piece; /* by slot: C text of its value */
-  Slot *pair;   /* by slot of a sine: the cosine of the same angle, and vice versa, where one call computes both; or 0 */
+  /* by slot of a sine: the cosine of the same angle, and vice versa, where one call computes both; or 0 */
+  Slot *pair;
   StrBuf *out;
   uint32_t temps;
   const char *title; /* pending: printed before the next statement */
@@ -52,7 +54,8 @@ void cwriter_flush_title(Writer *w);
 /* Name of an array that is read. */
 const char *cwriter_array(const Writer *w, IrArray array);
 
-/* Clears the texts of all values and spells the constants, which need no statement and may be used in an earlier turn of a loop. */
+/* Clears the texts of all values and spells the constants, which need no statement and may be used in an earlier
+ * turn of a loop. */
 void cwriter_init_pieces(Writer *w);
 
 /* Writes an instruction outside the loops of cloop.c. */
@@ -67,10 +70,12 @@ CExpr cwriter_name(Writer *w, const Ins *i);
 /* Writes `const LAG_REAL name = x;`; slot s is spelled by that name from now on. */
 void cwriter_declare(Writer *w, Slot s, CExpr name, CExpr x);
 
-/* Declares a sine and its cosine by one sincos call, named after their instructions, unless done already. Returns 0 if slot s has no pair. */
+/* Declares a sine and its cosine by one sincos call, named after their instructions, unless done already. Returns 0
+ * if slot s has no pair. */
 int cwriter_declare_sincos(Writer *w, Slot s, const Ins *first, const Ins *second);
 
-/* Whether sin and cos of one operand can share a call: both outside of loops, or in the same turn of one loop in all turns. */
+/* Whether sin and cos of one operand can share a call: both outside of loops, or in the same turn of one loop in all
+ * turns. */
 int cloop_share_turn(const Writer *w, Slot a, Slot b);
 
 /* Whether slot s is computed in a loop. */

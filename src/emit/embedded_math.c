@@ -27,8 +27,13 @@
 static const struct {
   const char *const *line;
   size_t n;
-} embedded[] = {LINES(lag_lanes), LINES(lag_math), LINES(lag_sincos), LINES(lag_support), LINES(lag_kkt), LINES(scalar_kernel), LINES(compensated_sum_kernel), LINES(composition_kernel), LINES(splitting_kernel),
-                LINES(runge_kutta_tables_kernel), LINES(runge_kutta_kernel), LINES(step_size_kernel), LINES(taylor_order_kernel), LINES(taylor_size_kernel), LINES(dense_output_kernel), LINES(band_matrix_kernel), LINES(impulses_kernel), LINES(locate_kernel)};
+} embedded[] = {LINES(lag_lanes),
+                LINES(lag_math), LINES(lag_sincos), LINES(lag_support), LINES(lag_kkt), LINES(scalar_kernel),
+                LINES(compensated_sum_kernel), LINES(composition_kernel), LINES(splitting_kernel),
+                LINES(runge_kutta_tables_kernel), LINES(runge_kutta_kernel), LINES(step_size_kernel),
+                LINES(taylor_order_kernel), LINES(taylor_size_kernel), LINES(dense_output_kernel),
+                LINES(band_matrix_kernel), LINES(impulses_kernel),
+                LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";
 static int is_marker(const char *line, const char *name) {
@@ -48,7 +53,8 @@ void embedded_section(const char *name, const char *prefix, const char *lower, S
 static int calls(const Prog *p, const char *name) {
   for (uint32_t k = 0; k < prog_parts(p); k++)
     for (Slot s = 1; s < prog_part(p, k)->ins.n; s++)
-      if ((prog_part(p, k)->ins.at[s].op == IR_FN1 || prog_part(p, k)->ins.at[s].op == IR_FN2) && strcmp(prog_part(p, k)->ins.at[s].text, name) == 0)
+      if ((prog_part(p, k)->ins.at[s].op == IR_FN1 || prog_part(p, k)->ins.at[s].op == IR_FN2) &&
+          strcmp(prog_part(p, k)->ins.at[s].text, name) == 0)
         return 1;
   return 0;
 }

@@ -1,4 +1,5 @@
-/* Parts of the emitted model file that emit_model.c puts together: scenes (emit_scene.c), Taylor recurrences (emit_taylor.c), tables of variables (variable_tables.c). */
+/* Parts of the emitted model file that emit_model.c puts together: scenes (emit_scene.c), Taylor recurrences
+ * (emit_taylor.c), tables of variables (variable_tables.c). */
 #pragma once
 
 #include "emit/cfunction.h"
@@ -11,22 +12,25 @@ typedef struct {
   StrBuf *out;
 } ModelFile;
 
-/* How functions of the file spell their arrays. own: names of their arguments, NULL at the end; written: of their output arrays. */
+/* How functions of the file spell their arrays. own: names of their arguments, NULL at the end; written: of their
+ * output arrays. */
 CStyle model_style(const ModelFile *f, const char *const *own, const char *const *written);
 
-/* Appends the function NAME of the state around p, if there is one; in: a further array that it reads, or NULL; written: its output arrays,
- * NULL at the end. */
-void state_function(const ModelFile *f, const Prog *p, const char *name, const char *comment, const char *in, const char *const *written);
+/* Appends the function NAME of the state around p, if there is one; in: a further array that it reads, or NULL;
+ * written: its output arrays, NULL at the end. */
+void state_function(const ModelFile *f, const Prog *p, const char *name, const char *comment, const char *in,
+                    const char *const *written);
 extern const char *const one_out[]; /* the output array `out` alone */
 
 /* emit_scene.c: appends the functions and tables of scene `index` of the model whose lag_model is called NAME. */
 void emit_scene(const ModelFile *f, const char *name, uint32_t index);
 
-/* Series -> the functions that compute a model's Taylor coefficients, and the const lag_taylor called `taylor`. base: all but in, out and own; lanes: for a text that is
- * compiled for lanes. */
+/* Series -> the functions that compute a model's Taylor coefficients, and the const lag_taylor called `taylor`.
+ * base: all but in, out and own; lanes: for a text that is compiled for lanes. */
 void emit_taylor(const Series *s, const CStyle *base, int lanes, StrBuf *out);
 
-/* The same in plain C for a header, without lag_taylor: sizes and the type lower_taylor_work; functions lower_taylor_first, _rest and _at. */
+/* The same in plain C for a header, without lag_taylor: sizes and the type lower_taylor_work; functions
+ * lower_taylor_first, _rest and _at. */
 void emit_taylor_types(const Series *s, const CStyle *base, const char *lower, StrBuf *out);
 void emit_taylor_functions(const Series *s, const CStyle *base, const char *lower, StrBuf *out);
 
@@ -38,7 +42,8 @@ TaylorCosts taylor_costs(const Series *s);
 
 enum { TAYLOR_INLINE_MAX = 300 }; /* most operations of taylor_next that are inlined several times */
 
-/* emit_lanes.c, for a text that is compiled for lanes: columns of factors of its convolution sums; functions for these and for the step of an order; the loop over orders. */
+/* emit_lanes.c, for a text that is compiled for lanes: columns of factors of its convolution sums; functions for
+ * these and for the step of an order; the loop over orders. */
 uint32_t emit_lane_factors(const Series *s);
 void emit_lane_sums(const Series *s, StrBuf *out);
 void emit_lane_orders(const Series *s, StrBuf *out);
@@ -48,13 +53,15 @@ void emit_lane_scenes(const ProgramSet *const *units, const char *const *names, 
 /* The C identifier of scene k. */
 const char *scene_id(const ProgramSet *u, uint32_t k);
 
-/* Whether a table of variables (names, units, factors) is written with macros, as runs of numbered names (u[1], u[2], ...) are, so that the
- * text does not grow with the length of families; if so, table_macros must precede it. */
+/* Whether a table of variables (names, units, factors) is written with macros, as runs of numbered names (u[1],
+ * u[2], ...) are, so that the text does not grow with the length of families; if so, table_macros must precede it.
+ * */
 int table_needs_macros(const IrVar *v, uint32_t n);
 void table_macros(StrBuf *out);
 
 /* `static const lag_var NAME[] = {...};`, or nothing for an empty table. */
 void table_vars(const char *name, const IrVar *v, uint32_t n, Arena *a, StrBuf *out);
 
-/* Number of a table in the model's precision: digits (or NULL) if longer than the double's text; integers stay plain. */
+/* Number of a table in the model's precision: digits (or NULL) if longer than the double's text; integers stay
+ * plain. */
 const char *table_number(Arena *a, double x, const char *digits);

@@ -1,68 +1,77 @@
-/* Models compiled once more for vectors of 4 and 8 doubles, each lane with a run of its own: the files, the table of their scenes, and the convolution sums of
- * Taylor series. */
+/* Models compiled once more for vectors of 4 and 8 doubles, each lane with a run of its own: the files, the table of
+ * their scenes, and the convolution sums of Taylor series. */
 #include "emit/emit_impl.h"
 #include "emit/emit_model.h"
 
-/* Where a file is compiled for lanes. Clang passes vectors of 8 doubles as the file's flags say, whatever the function's target. */
-static const char *lanes_condition(int lanes) { return lanes == 8 ? "defined(__GNUC__) && defined(__x86_64__) && !defined(__clang__)" : "defined(__GNUC__)"; }
+/* Where a file is compiled for lanes. Clang passes vectors of 8 doubles as the file's flags say, whatever the
+ * function's target. */
+static const char *lanes_condition(int lanes) {
+  return lanes == 8 ? "defined(__GNUC__) && defined(__x86_64__) && !defined(__clang__)" : "defined(__GNUC__)";
+}
 
 void emit_lanes(const ProgramSet *u, const char *name, const char *text, int lanes, StrBuf *out) {
   sb_printf(out, "/* %s for vectors of %d doubles. */\n#if %s\n", text, lanes, lanes_condition(lanes));
   if (lanes == 8) sb_puts(out, "#pragma GCC target(\"avx512f,avx512dq\")\n");
   sb_printf(out, "#define LAG_LANES %d\n#define %s %s_lanes_%d\n", lanes, name, name, lanes);
-  for (uint32_t k = 0; k < u->scenes.n; k++) sb_printf(out, "#define %s_%s %s_%s_lanes_%d\n", name, scene_id(u, k), name, scene_id(u, k), lanes);
+  for (uint32_t k = 0; k < u->scenes.n; k++)
+    sb_printf(out, "#define %s_%s %s_%s_lanes_%d\n", name, scene_id(u, k), name, scene_id(u, k), lanes);
   sb_printf(out, "#include \"%s\"\n#endif\n", text);
 }
 
 void emit_lane_scenes(const ProgramSet *const *units, const char *const *names, uint32_t n, int lanes, StrBuf *out) {
   sb_printf(out, "#if %s\n", lanes_condition(lanes));
   for (uint32_t i = 0; i < n; i++)
-    for (uint32_t k = 0; k < units[i]->scenes.n; k++) sb_printf(out, "extern const lag_scene %s_%s_lanes_%d;\n", names[i], scene_id(units[i], k), lanes);
+    for (uint32_t k = 0; k < units[i]->scenes.n; k++)
+      sb_printf(out, "extern const lag_scene %s_%s_lanes_%d;\n", names[i], scene_id(units[i], k), lanes);
   sb_printf(out, "static const lag_scene *const lanes_%d[] = {\n", lanes);
   for (uint32_t i = 0; i < n; i++)
-    for (uint32_t k = 0; k < units[i]->scenes.n; k++) sb_printf(out, "  &%s_%s_lanes_%d,\n", names[i], scene_id(units[i], k), lanes);
+    for (uint32_t k = 0; k < units[i]->scenes.n; k++)
+      sb_printf(out, "  &%s_%s_lanes_%d,\n", names[i], scene_id(units[i], k), lanes);
   sb_printf(out, "};\n#else\nstatic const lag_scene *const *const lanes_%d = NULL;\n#endif\n\n", lanes);
 }
 
-/* Over lanes memory limits the speed. So the sums of three orders are begun at once, in pairs: each coefficient is loaded once for them. And coefficients that
- * are factors of several sums are kept once, where all sums are written out. For a double the operations are the same. */
+/* Over lanes memory limits the speed. So the sums of three orders are begun at once, in pairs: each coefficient is
+ * loaded once for them. And coefficients that are factors of several sums are kept once, where all sums are written
+ * out. For a double the operations are the same. */
 static const char *const sums =
-  "\n/* Along rows of numbers: s = a[1] b[k-1] + ... + a[k-1] b[1] for order k, where a and b are columns of f.\n"
-  " *   taylor_far       for order k, and the terms of the two after it that are known at order k, of two sums g and h\n"
-  " *   taylor_near_1, 2 adds the others\n"
-  " *   taylor_rest      orders 1 to n\n"
-  " *   taylor_at        y = x[1] s + ... + x[n] s^n for q, v and z, and dy its derivative by s */\n"
-  "typedef const LAG_REAL (*taylor_rows)[TAYLOR_FACTORS];\n"
-  "static TAYLOR_INLINE void taylor_far(int k, taylor_rows f, int g, int ag, int bg, int h, int ah, int bh, LAG_REAL *s, LAG_REAL (*far)[TAYLOR_SUMS]) {\n"
-  "  LAG_REAL g1 = f[k - 2][bg], g2 = f[k - 1][bg], h1 = f[k - 2][bh], h2 = f[k - 1][bh];\n"
-  "  LAG_REAL sg0 = lag_mad(f[2][ag], g1, f[1][ag]*g2), sg1 = f[2][ag]*g2, sg2 = LAG_C(0.0);\n"
-  "  LAG_REAL sh0 = lag_mad(f[2][ah], h1, f[1][ah]*h2), sh1 = f[2][ah]*h2, sh2 = LAG_C(0.0);\n"
-  "  for (int j = 3; j < k; j++) {\n"
-  "    const LAG_REAL a = f[j][ag], b = f[j][ah], g0 = f[k - j][bg], h0 = f[k - j][bh];\n"
-  "    sg0 = lag_mad(a, g0, sg0);\n"
-  "    sg1 = lag_mad(a, g1, sg1);\n"
-  "    sg2 = lag_mad(a, g2, sg2);\n"
-  "    sh0 = lag_mad(b, h0, sh0);\n"
-  "    sh1 = lag_mad(b, h1, sh1);\n"
-  "    sh2 = lag_mad(b, h2, sh2);\n"
-  "    g2 = g1;\n"
-  "    g1 = g0;\n"
-  "    h2 = h1;\n"
-  "    h1 = h0;\n"
-  "  }\n"
-  "  s[g] = sg0;\n"
-  "  s[h] = sh0;\n"
-  "  far[0][g] = sg1;\n"
-  "  far[0][h] = sh1;\n"
-  "  far[1][g] = sg2;\n"
-  "  far[1][h] = sh2;\n"
-  "}\n"
-  "\nstatic TAYLOR_INLINE LAG_REAL taylor_near_1(int k, taylor_rows f, int a, int b, LAG_REAL far) {\n"
-  "  return lag_mad(f[1][a], f[k - 1][b], lag_mad(f[k - 1][a], f[1][b], far));\n"
-  "}\n"
-  "\nstatic TAYLOR_INLINE LAG_REAL taylor_near_2(int k, taylor_rows f, int a, int b, LAG_REAL far) {\n"
-  "  return taylor_near_1(k, f, a, b, lag_mad(f[2][a], f[k - 2][b], lag_mad(f[k - 2][a], f[2][b], far)));\n"
-  "}\n";
+    "\n/* Along rows of numbers: s = a[1] b[k-1] + ... + a[k-1] b[1] for order k, where a and b are columns of f.\n"
+    " *   taylor_far       for order k, and the terms of the two after it that are known at order k, of two sums g and "
+    "h\n"
+    " *   taylor_near_1, 2 adds the others\n"
+    " *   taylor_rest      orders 1 to n\n"
+    " *   taylor_at        y = x[1] s + ... + x[n] s^n for q, v and z, and dy its derivative by s */\n"
+    "typedef const LAG_REAL (*taylor_rows)[TAYLOR_FACTORS];\n"
+    "static TAYLOR_INLINE void taylor_far(int k, taylor_rows f, int g, int ag, int bg, int h, int ah, int bh, LAG_REAL "
+    "*s, LAG_REAL (*far)[TAYLOR_SUMS]) {\n"
+    "  LAG_REAL g1 = f[k - 2][bg], g2 = f[k - 1][bg], h1 = f[k - 2][bh], h2 = f[k - 1][bh];\n"
+    "  LAG_REAL sg0 = lag_mad(f[2][ag], g1, f[1][ag]*g2), sg1 = f[2][ag]*g2, sg2 = LAG_C(0.0);\n"
+    "  LAG_REAL sh0 = lag_mad(f[2][ah], h1, f[1][ah]*h2), sh1 = f[2][ah]*h2, sh2 = LAG_C(0.0);\n"
+    "  for (int j = 3; j < k; j++) {\n"
+    "    const LAG_REAL a = f[j][ag], b = f[j][ah], g0 = f[k - j][bg], h0 = f[k - j][bh];\n"
+    "    sg0 = lag_mad(a, g0, sg0);\n"
+    "    sg1 = lag_mad(a, g1, sg1);\n"
+    "    sg2 = lag_mad(a, g2, sg2);\n"
+    "    sh0 = lag_mad(b, h0, sh0);\n"
+    "    sh1 = lag_mad(b, h1, sh1);\n"
+    "    sh2 = lag_mad(b, h2, sh2);\n"
+    "    g2 = g1;\n"
+    "    g1 = g0;\n"
+    "    h2 = h1;\n"
+    "    h1 = h0;\n"
+    "  }\n"
+    "  s[g] = sg0;\n"
+    "  s[h] = sh0;\n"
+    "  far[0][g] = sg1;\n"
+    "  far[0][h] = sh1;\n"
+    "  far[1][g] = sg2;\n"
+    "  far[1][h] = sh2;\n"
+    "}\n"
+    "\nstatic TAYLOR_INLINE LAG_REAL taylor_near_1(int k, taylor_rows f, int a, int b, LAG_REAL far) {\n"
+    "  return lag_mad(f[1][a], f[k - 1][b], lag_mad(f[k - 1][a], f[1][b], far));\n"
+    "}\n"
+    "\nstatic TAYLOR_INLINE LAG_REAL taylor_near_2(int k, taylor_rows f, int a, int b, LAG_REAL far) {\n"
+    "  return taylor_near_1(k, f, a, b, lag_mad(f[2][a], f[k - 2][b], lag_mad(f[k - 2][a], f[2][b], far)));\n"
+    "}\n";
 
 enum { WRITTEN_MOST = 24 }; /* sums that are written out, where the step of an order is inlined, too */
 enum { ARRAY_A = 2, ARRAY_B = 3 }; /* outputs of Series.next */
@@ -79,7 +88,9 @@ typedef struct {
   uint32_t n;
 } FactorColumns;
 
-static int writes_sums(const Series *s) { return s->sums + s->squares <= WRITTEN_MOST && ops_total(prog_count(s->next)) <= TAYLOR_INLINE_MAX; }
+static int writes_sums(const Series *s) {
+  return s->sums + s->squares <= WRITTEN_MOST && ops_total(prog_count(s->next)) <= TAYLOR_INLINE_MAX;
+}
 
 static uint32_t column_of(FactorColumns *c, const Store *st) {
   for (uint32_t i = 0; i < c->n; i++)
@@ -124,14 +135,18 @@ static void written_far(const Series *s, StrBuf *out) {
       if (done[i] || (k == n && !any)) continue;
       if (k == n) k = i, other = f;
       done[i] = done[k] = 1;
-      sb_printf(out, "    taylor_far(k, f, %u, %u, %u, %u, %u, %u, s, far);\n", sum_at(s, i), f.a, f.b, sum_at(s, k), other.a, other.b);
+      sb_printf(out, "    taylor_far(k, f, %u, %u, %u, %u, %u, %u, s, far);\n", sum_at(s, i), f.a, f.b, sum_at(s, k),
+                other.a, other.b);
     }
 }
 
 static void looped_far(uint32_t from, uint32_t n, const char *b, StrBuf *out) {
   if (n > 1)
-    sb_printf(out, "    for (int g = %u; g < %u; g += 2) taylor_far(k, f, g, g, %sg, g + 1, g + 1, %sg + 1, s, far);\n", from, from + n / 2 * 2, b, b);
-  if (n % 2) sb_printf(out, "    taylor_far(k, f, %u, %u, %s%u, %u, %u, %s%u, s, far);\n", from + n - 1, from + n - 1, b, from + n - 1, from + n - 1, from + n - 1, b, from + n - 1);
+    sb_printf(out, "    for (int g = %u; g < %u; g += 2) taylor_far(k, f, g, g, %sg, g + 1, g + 1, %sg + 1, s, far);\n",
+              from, from + n / 2 * 2, b, b);
+  if (n % 2)
+    sb_printf(out, "    taylor_far(k, f, %u, %u, %s%u, %u, %u, %s%u, s, far);\n", from + n - 1, from + n - 1, b,
+              from + n - 1, from + n - 1, from + n - 1, b, from + n - 1);
 }
 
 /* s := the sums of an order by an expression in k, f and the columns $a and $b of sum $g. */
@@ -157,14 +172,18 @@ void emit_lane_sums(const Series *s, StrBuf *out) {
   int written = writes_sums(s);
   sb_puts(out, sums);
   sb_puts(out, "\n/* The step from order k to k + 1; returns 1/(k + 1). */\n"
-               "static TAYLOR_INLINE LAG_REAL taylor_order(int k, LAG_REAL T, LAG_REAL per_k, const LAG_REAL *s, LAG_REAL *x, taylor_work *w) {\n"
+               "static TAYLOR_INLINE LAG_REAL taylor_order(int k, LAG_REAL T, LAG_REAL per_k, const LAG_REAL *s, "
+               "LAG_REAL *x, taylor_work *w) {\n"
                "  LAG_REAL *const row = x + k*TAYLOR_COLUMNS;\n"
                "  const LAG_REAL per_next = LAG_C(1.0)/(LAG_LANE)(k + 1);\n");
   if (written) sb_puts(out, "  LAG_REAL a[TAYLOR_SUMS], b[TAYLOR_SQUARES];\n");
-  sb_printf(out, "  taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, s, w->c, row, row, row + TAYLOR_COLUMNS, %s%s);\n",
-            written ? "a, b" : "w->f[k], w->f[k] + TAYLOR_SUMS", s->room ? ", w->m" : "");
+  sb_printf(
+      out,
+      "  taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, s, w->c, row, row, row + TAYLOR_COLUMNS, %s%s);\n",
+      written ? "a, b" : "w->f[k], w->f[k] + TAYLOR_SUMS", s->room ? ", w->m" : "");
   FactorColumns c = written ? factor_columns(s) : (FactorColumns){0};
-  for (uint32_t i = 0; i < c.n; i++) sb_printf(out, "  w->f[k][%u] = %c[%u];\n", i, c.factor[i]->array == ARRAY_A ? 'a' : 'b', c.factor[i]->index);
+  for (uint32_t i = 0; i < c.n; i++)
+    sb_printf(out, "  w->f[k][%u] = %c[%u];\n", i, c.factor[i]->array == ARRAY_A ? 'a' : 'b', c.factor[i]->index);
   if (s->uses_time) sb_printf(out, "  row[TAYLOR_COLUMNS + %u] = LAG_C(0.0);\n", 3*s->nq + 2*s->nz);
   sb_puts(out, "  return per_next;\n}\n");
 }
@@ -173,7 +192,9 @@ void emit_lane_sums(const Series *s, StrBuf *out) {
 void emit_lane_orders(const Series *s, StrBuf *out) {
   static const char *const order = "per_k = taylor_order(k, T, per_k, s, x, w);\n";
   int written = writes_sums(s);
-  sb_printf(out, "  const taylor_rows f = (taylor_rows)w->f;\n  %s\n", written ? "LAG_REAL s[TAYLOR_SUMS], far[2][TAYLOR_SUMS];" : "LAG_REAL *const s = w->s, (*const far)[TAYLOR_SUMS] = w->far;");
+  sb_printf(out, "  const taylor_rows f = (taylor_rows)w->f;\n  %s\n",
+            written ? "LAG_REAL s[TAYLOR_SUMS], far[2][TAYLOR_SUMS];"
+                    : "LAG_REAL *const s = w->s, (*const far)[TAYLOR_SUMS] = w->far;");
   sb_printf(out, "  int k = 1;\n"
                  "  (void)f; (void)far;\n"
                  "  for (int i = 0; i < TAYLOR_SUMS; i++) s[i] = LAG_C(0.0);\n"

@@ -8,14 +8,22 @@
 
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
 
-/* Names that the head of an emitted file defines, besides lag_... and LAG_..., which no name of a model becomes (emit/cnames.c). */
+/* Names that the head of an emitted file defines, besides lag_... and LAG_..., which no name of a model becomes
+ * (emit/cnames.c). */
 static const char *const abi_names[] = {
-  "jump_table", "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL",
-  "TAYLOR_UNROLL_4", "taylor_pair", "TAYLOR_PAIR", "taylor_at", "taylor_work", "taylor_first", "taylor_next", "taylor_sums", "taylor_rest",
-  "taylor_squares", "TAYLOR_SQUARES", "taylor_four", "TAYLOR_WIDE", "TAYLOR_INLINE", "taylor_sums_wide", "taylor_squares_wide",
-  "taylor_rest_wide", "taylor_at_wide", "taylor_part", "taylor_part_wide", "taylor_rest_any", "taylor_at_any", "q_table", "z_table",
-  "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear", "curves", "singular", "constraint_table",
-  "jacobian_table", "inertia_table", "constraints", "contact_table", "charge_table", "charges", "switch_table", "taylor_far", "taylor_add",
+    "jump_table",       "TAYLOR_COLUMNS",   "TAYLOR_SUMS",      "TAYLOR_CONSTANTS",
+    "TAYLOR_WIDTH",     "TAYLOR_LANES",     "TAYLOR_GROUP",     "TAYLOR_UNROLL",
+    "TAYLOR_UNROLL_4",  "taylor_pair",      "TAYLOR_PAIR",      "taylor_at",
+    "taylor_work",      "taylor_first",     "taylor_next",      "taylor_sums",
+    "taylor_rest",      "taylor_squares",   "TAYLOR_SQUARES",   "taylor_four",
+    "TAYLOR_WIDE",      "TAYLOR_INLINE",    "taylor_sums_wide", "taylor_squares_wide",
+    "taylor_rest_wide", "taylor_at_wide",   "taylor_part",      "taylor_part_wide",
+    "taylor_rest_any",  "taylor_at_any",    "q_table",          "z_table",
+    "p_table",          "u_table",          "ev_table",         "dr_table",
+    "mass_table",       "second_table",     "linear",           "curves",
+    "singular",         "constraint_table", "jacobian_table",   "inertia_table",
+    "constraints",      "contact_table",    "charge_table",     "charges",
+    "switch_table",     "taylor_far",       "taylor_add",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -34,13 +42,21 @@ static const char *const *rows_names(const ProgramSet *u) {
   CNames ids = cnames_new(u->arena);
   const char **names = ARENA_ARRAY(u->arena, const char *, u->inputs->tables.n + 1);
   for (uint32_t i = 0; i < u->inputs->tables.n; i++)
-    names[i] = u->inputs->tables.at[i].order ? names[i - 1] : arena_printf(u->arena, "rows_%s", cnames_take(&ids, u->inputs->tables.at[i].name));
+    names[i] = u->inputs->tables.at[i].order
+                   ? names[i - 1]
+                   : arena_printf(u->arena, "rows_%s", cnames_take(&ids, u->inputs->tables.at[i].name));
   return names;
 }
 
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel", "derive", "energy", "linearise", "jumps", "taylor", "variation", "second", "events", "act", "impact", "strike", "inputs", "params", "start", "observe",
-                                      "outputs", "forces", "options", "monitors", "measures", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "charge_values", "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws", "size_values", "size_table", "correct_positions", "correct_velocities"};
+  static const char *const taken[] = {"accel",
+                                      "derive", "energy", "linearise", "jumps", "taylor", "variation", "second",
+                                      "events", "act", "impact", "strike", "inputs", "params", "start", "observe",
+                                      "outputs", "forces", "options", "monitors", "measures", "program", "scenes",
+                                      "curves", "exact", "exact_of", "residuals", "matrices", "charge_values",
+                                      "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws",
+                                      "size_values", "size_table", "correct_positions",
+                                      "correct_velocities"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -76,26 +92,34 @@ static void flag_text(unsigned flags, const char *const *names, uint32_t n, StrB
 const char *const one_out[] = {"out", NULL};
 
 CStyle model_style(const ModelFile *f, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .kkt = "lag_kkt",
-                  .spline = "lag_spline", .curve = "lag_curve", .math = math_prefix(f->u, "lag")};
+  return (CStyle){.prefix = "LAG",
+                  .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve",
+                  .kkt = "lag_kkt", .spline = "lag_spline", .curve = "lag_curve",
+                  .math = math_prefix(f->u, "lag")};
 }
 
 /* Whether the function is called once a step, or once a row of output. */
 static int is_seldom_called(const ProgramSet *u, const Prog *p) {
-  int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers || p == u->switch_values || p == u->switch_rates || p == u->switch_grips || p == u->contact_laws || p == u->size_values;
+  int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers || p == u->switch_values ||
+               p == u->switch_rates || p == u->switch_grips || p == u->contact_laws || p == u->size_values;
   for (uint32_t i = 0; i < u->scenes.n; i++) seldom |= p == u->scenes.at[i].observe || p == u->scenes.at[i].momenta;
   return seldom;
 }
 
-void state_function(const ModelFile *f, const Prog *p, const char *name, const char *comment, const char *in, const char *const *written) {
+void state_function(const ModelFile *f, const Prog *p, const char *name, const char *comment, const char *in,
+                    const char *const *written) {
   const char *own[12] = {"t", "q", "v", "z", "p", "u"};
   uint32_t n = 6, outputs = 0;
   StrBuf head = strbuf(f->a);
   if (!p) return;
   while (written[outputs]) outputs++;
-  sb_printf(&head, "static int %s(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL *p, const LAG_REAL *u", name);
+  sb_printf(&head,
+            "static int %s(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL "
+            "*p, const LAG_REAL *u",
+            name);
   if (in) sb_printf(&head, ", const LAG_REAL *%s", own[n++] = in);
-  for (uint32_t k = 0; k < outputs; k++) sb_printf(&head, "%s LAG_REAL *%s", !k && (in || outputs > 2) ? ",\n   " : ",", own[n++] = written[k]);
+  for (uint32_t k = 0; k < outputs; k++)
+    sb_printf(&head, "%s LAG_REAL *%s", !k && (in || outputs > 2) ? ",\n   " : ",", own[n++] = written[k]);
   sb_puts(&head, ", LAG_REAL *w)");
   own[n] = "w";
   CStyle st = model_style(f, own, written);
@@ -107,17 +131,23 @@ void state_function(const ModelFile *f, const Prog *p, const char *name, const c
 static void accel(const ModelFile *f) {
   static const char *const written[] = {"a", "zd", NULL};
   const char *what = !f->u->z.n ? "Accelerations" : f->u->q.n ? "Accelerations and rates" : "Rates";
-  state_function(f, f->u->accel, "accel", arena_printf(f->a, "%s: %s.", what, op_count_text(f->u->accel, f->a)), NULL, written);
+  state_function(f, f->u->accel, "accel", arena_printf(f->a, "%s: %s.", what, op_count_text(f->u->accel, f->a)), NULL,
+                 written);
 }
 
-void emit_accel(const ProgramSet *u, StrBuf *out) { accel(&(ModelFile){.u = u, .a = u->arena, .globals = globals_of(u, NULL), .out = out}); }
+void emit_accel(const ProgramSet *u, StrBuf *out) {
+  accel(&(ModelFile){.u = u, .a = u->arena, .globals = globals_of(u, NULL), .out = out});
+}
 
 static void emit_variation(const ModelFile *f) {
   static const char *const written[] = {"Lq", "Lv", "Q", NULL}, *const derivatives[] = {"h", NULL};
   const ProgramSet *u = f->u;
   if (!u->variation) return;
-  state_function(f, u->variation, "variation", "dL/dq, the momenta dL/dq', and the generalised forces outside of L.", NULL, written);
-  state_function(f, u->second, "second", arena_printf(f->a, "Their nonzero derivatives: %s.", op_count_text(u->second, f->a)), NULL, derivatives);
+  state_function(f, u->variation, "variation", "dL/dq, the momenta dL/dq', and the generalised forces outside of L.",
+                 NULL, written);
+  state_function(f, u->second, "second",
+                 arena_printf(f->a, "Their nonzero derivatives: %s.", op_count_text(u->second, f->a)), NULL,
+                 derivatives);
 }
 
 /* Newton's law of impact for the contact whose constraint is `row`, which its input closes. */
@@ -125,11 +155,14 @@ static void emit_strike(const ModelFile *f) {
   static const char *const written[] = {"v1", NULL};
   const ProgramSet *u = f->u;
   if (!u->impact) return;
-  state_function(f, u->impact, "impact", "Velocities after the impact of the contact whose entry of g is 1.", "g", written);
-  sb_printf(f->out, "\nstatic int strike(int row, int input, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *v1, LAG_REAL *w) {\n"
-                    "  LAG_REAL g[%u], with[%u];\n"
-                    "  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = 0; i < %u; i++) with[i] = u[i];\n"
-                    "  g[row] = with[input] = LAG_C(1.0);\n  return impact(t, q, v, z, p, with, g, v1, w);\n}\n",
+  state_function(f, u->impact, "impact", "Velocities after the impact of the contact whose entry of g is 1.", "g",
+                 written);
+  sb_printf(f->out,
+            "\nstatic int strike(int row, int input, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL "
+            "*z,\n    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *v1, LAG_REAL *w) {\n"
+            "  LAG_REAL g[%u], with[%u];\n"
+            "  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = 0; i < %u; i++) with[i] = u[i];\n"
+            "  g[row] = with[input] = LAG_C(1.0);\n  return impact(t, q, v, z, p, with, g, v1, w);\n}\n",
             u->constraints.of.n, u->u.n, u->constraints.of.n, u->u.n);
 }
 
@@ -141,13 +174,18 @@ static void emit_events(const ModelFile *f) {
   emit_strike(f);
   for (uint32_t i = 0; i < u->events.n; i++)
     if (!program_set_striking_contact(u, i))
-      state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", cname_of_event(u, i)), arena_printf(f->a, "What the event %s does.", u->events.at[i].name), NULL, written);
-  sb_puts(f->out, "\nstatic int act(int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL *p, const LAG_REAL *u,\n"
+      state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", cname_of_event(u, i)),
+                     arena_printf(f->a, "What the event %s does.", u->events.at[i].name), NULL, written);
+  sb_puts(f->out, "\nstatic int act(int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    "
+                  "const LAG_REAL *p, const LAG_REAL *u,\n"
                   "    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n  switch (k) {\n");
   for (uint32_t i = 0; i < u->events.n; i++) {
     const IrContact *c = program_set_striking_contact(u, i);
-    if (c) sb_printf(f->out, "    case %u: return strike(%u, %u, t, q, v, z, p, u, v1, w);\n", i, c->constraint, c->input);
-    else sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, u->events.at[i].stop ? " *stop = 1;" : "", cname_of_event(u, i));
+    if (c)
+      sb_printf(f->out, "    case %u: return strike(%u, %u, t, q, v, z, p, u, v1, w);\n", i, c->constraint, c->input);
+    else
+      sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i,
+                u->events.at[i].stop ? " *stop = 1;" : "", cname_of_event(u, i));
   }
   sb_puts(f->out, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
 }
@@ -155,21 +193,27 @@ static void emit_events(const ModelFile *f) {
 static void emit_switches(const ModelFile *f) {
   const ProgramSet *u = f->u;
   if (!u->switches.n) return;
-  state_function(f, u->switch_values, "switch_values", "Switching functions: forces jump, or have a corner, where one of them is 0.", NULL, one_out);
+  state_function(f, u->switch_values, "switch_values",
+                 "Switching functions: forces jump, or have a corner, where one of them is 0.", NULL, one_out);
   state_function(f, u->switch_rates, "switch_rates", "Their rates.", NULL, one_out);
-  state_function(f, u->switch_grips, "switch_grips", "Static limits, relative to the force on a sliding body.", NULL, one_out);
+  state_function(f, u->switch_grips, "switch_grips", "Static limits, relative to the force on a sliding body.", NULL,
+                 one_out);
   sb_puts(f->out, "\nstatic const lag_switch switch_table[] = {\n");
   for (uint32_t i = 0; i < u->switches.n; i++) {
     const IrSwitch *s = &u->switches.at[i];
-    sb_printf(f->out, "  {%s, %s, %u, %d, %d, %d, %d},\n", c_string(f->a, s->surface), c_string(f->a, s->text), u->lines ? s->line : 0, s->jumps, s->is_floor, s->is_timed, s->nonnegative);
+    sb_printf(f->out, "  {%s, %s, %u, %d, %d, %d, %d},\n", c_string(f->a, s->surface), c_string(f->a, s->text),
+              u->lines ? s->line : 0, s->jumps, s->is_floor, s->is_timed, s->nonnegative);
   }
   sb_puts(f->out, "};\n");
 }
 
 static void emit_sizes(const ModelFile *f) {
   if (!f->u->sizes.n) return;
-  if (f->u->size_values) state_function(f, f->u->size_values, "size_values", "Sizes of friction, inertias and coefficients, of parameters alone.", NULL, one_out);
-  if (f->u->moving_sizes) state_function(f, f->u->moving_sizes, "moving_sizes", "Sizes of friction that change along a run.", NULL, one_out);
+  if (f->u->size_values)
+    state_function(f, f->u->size_values, "size_values",
+                   "Sizes of friction, inertias and coefficients, of parameters alone.", NULL, one_out);
+  if (f->u->moving_sizes)
+    state_function(f, f->u->moving_sizes, "moving_sizes", "Sizes of friction that change along a run.", NULL, one_out);
   sb_puts(f->out, "\nstatic const lag_size size_table[] = {\n");
   for (uint32_t i = 0; i < f->u->sizes.n; i++) {
     const IrSize *s = &f->u->sizes.at[i];
@@ -187,8 +231,10 @@ static void emit_charges(const ModelFile *f) {
   };
   const ProgramSet *u = f->u;
   if (!u->charges.n) return;
-  state_function(f, u->charge_values, "charge_values", "The charges of symmetries, and the scales of their drifts.", NULL, one_out);
-  state_function(f, u->charge_powers, "charge_powers", "Rates of change of the energy and of these charges.", NULL, one_out);
+  state_function(f, u->charge_values, "charge_values", "The charges of symmetries, and the scales of their drifts.",
+                 NULL, one_out);
+  state_function(f, u->charge_powers, "charge_powers", "Rates of change of the energy and of these charges.", NULL,
+                 one_out);
   sb_puts(f->out, "\nstatic const lag_charge charge_table[] = {\n");
   for (uint32_t i = 0; i < u->charges.n; i++) {
     const IrCharge *c = &u->charges.at[i];
@@ -196,8 +242,11 @@ static void emit_charges(const ModelFile *f) {
     flag_text(c->flags, flags, CHARGE_FLAGS, f->out);
     sb_puts(f->out, "},\n");
   }
-  sb_printf(f->out, "};\n\nstatic const lag_charges charges = {\n  .n = %u, .of = charge_table, .values = %s, .powers = %s,%s\n};\n", u->charges.n,
-            u->charge_values ? "charge_values" : "NULL", u->charge_powers ? "charge_powers" : "NULL", u->dry_friction ? " .dry_friction = 1," : "");
+  sb_printf(
+      f->out,
+      "};\n\nstatic const lag_charges charges = {\n  .n = %u, .of = charge_table, .values = %s, .powers = %s,%s\n};\n",
+      u->charges.n, u->charge_values ? "charge_values" : "NULL", u->charge_powers ? "charge_powers" : "NULL",
+      u->dry_friction ? " .dry_friction = 1," : "");
 }
 
 /* --- parameters and inputs --- */
@@ -207,7 +256,8 @@ static void emit_derive(const ModelFile *f) {
   if (!f->u->nderived) return;
   CStyle st = model_style(f, own, written);
   st.apart = st.prefer_short_code = 1;
-  CFunction c = {.comment = arena_printf(f->a, "Derived parameters, for the functions below: %s.", op_count_text(f->u->derived, f->a)),
+  CFunction c = {.comment = arena_printf(f->a, "Derived parameters, for the functions below: %s.",
+                                         op_count_text(f->u->derived, f->a)),
                  .head = "static void derive(LAG_REAL *p)"};
   cfunction(f->u->derived, &st, &c, f->out);
 }
@@ -241,10 +291,13 @@ static void emit_jumps(const ModelFile *f) {
   const ProgramSet *u = f->u;
   enum { A_LINE = 8 };
   if (!u->jumps) return;
-  state_function(f, u->jumps, "jumps", "Linearised events: derivatives of their functions and of the values that their actions set.", NULL, written);
+  state_function(f, u->jumps, "jumps",
+                 "Linearised events: derivatives of their functions and of the values that their actions set.", NULL,
+                 written);
   sb_puts(f->out, "\nstatic const lag_jump jump_table[] = {");
   for (uint32_t i = 0; i < u->jump_at.n; i++)
-    sb_printf(f->out, "%s{%u, %d, %u},", i % A_LINE ? " " : "\n  ", u->jump_at.at[i].event, u->jump_at.at[i].row, u->jump_at.at[i].col);
+    sb_printf(f->out, "%s{%u, %d, %u},", i % A_LINE ? " " : "\n  ", u->jump_at.at[i].event, u->jump_at.at[i].row,
+              u->jump_at.at[i].col);
   sb_puts(f->out, "\n};\n");
 }
 
@@ -255,14 +308,18 @@ static void emit_linear(const ModelFile *f) {
   static const char *const written[] = {"dr", "M", NULL};
   const ProgramSet *u = f->u;
   if (!has_linear(u)) return;
-  const char *comment = arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.", op_count_text(u->linear, f->a));
+  const char *comment =
+      arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.",
+                   op_count_text(u->linear, f->a));
   state_function(f, u->linear, "linearise", comment, "a", written);
   entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
   entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
   emit_jumps(f);
-  sb_printf(f->out, "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval = linearise,\n",
-            u->linear_dr.n, u->linear_dr.n ? "dr_table" : "NULL", u->linear_mass.n, u->linear_mass.n ? "mass_table" : "NULL",
-            ops_as_int(ops_total(prog_count(u->linear))));
+  sb_printf(f->out,
+            "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval "
+            "= linearise,\n",
+            u->linear_dr.n, u->linear_dr.n ? "dr_table" : "NULL", u->linear_mass.n,
+            u->linear_mass.n ? "mass_table" : "NULL", ops_as_int(ops_total(prog_count(u->linear))));
   if (u->jumps) sb_printf(f->out, "  .njump = %u, .jump = jump_table, .jumps = jumps,\n", u->jump_at.n);
   sb_puts(f->out, "};\n");
 }
@@ -274,46 +331,65 @@ static void constraint_table(const ProgramSet *u, StrBuf *out) {
   Arena *a = u->arena;
   sb_puts(out, "\nstatic const lag_constraint constraint_table[] = {\n");
   for (uint32_t i = 0; i < k->of.n; i++)
-    sb_printf(out, "  {%s, %d, %s, %u},\n", c_string(a, k->of.at[i].name), i < k->nholonomic, c_string(a, k->of.at[i].unit), u->lines ? k->of.at[i].line : 0);
+    sb_printf(out, "  {%s, %d, %s, %u},\n", c_string(a, k->of.at[i].name), i < k->nholonomic,
+              c_string(a, k->of.at[i].unit), u->lines ? k->of.at[i].line : 0);
   sb_puts(out, "};\n");
 }
 
 static void emit_constraints(const ModelFile *f) {
-  static const char *const residuals[] = {"c", "r", NULL}, *const matrices[] = {"A", "M", NULL}, *const change[] = {"d", "force", NULL};
+  static const char *const residuals[] = {"c", "r", NULL}, *const matrices[] = {"A", "M", NULL},
+                           *const change[] = {"d", "force", NULL};
   const IrConstraints *k = &f->u->constraints;
   if (!k->of.n) return;
-  state_function(f, k->residuals, "residuals", k->nkept > k->nholonomic ? "What the constraints say is zero, or stays as it is at the start: c on positions; r on velocities."
-                                                                        : "What the constraints say is zero: c on positions, r on velocities.", NULL, residuals);
-  state_function(f, k->matrices, "matrices", "A, the derivatives of r by the velocities, and the mass matrix: the entries that are not zero.", NULL, matrices);
+  state_function(
+      f, k->residuals, "residuals",
+      k->nkept > k->nholonomic
+          ? "What the constraints say is zero, or stays as it is at the start: c on positions; r on velocities."
+          : "What the constraints say is zero: c on positions, r on velocities.",
+      NULL, residuals);
+  state_function(f, k->matrices, "matrices",
+                 "A, the derivatives of r by the velocities, and the mass matrix: the entries that are not zero.", NULL,
+                 matrices);
   int both = k->velocity == k->position;
   if (k->nkept)
-    state_function(f, k->position, "correct_positions", both ? "The least change d with A d = g, for positions or velocities; force: M d."
-                                                             : "The least change d of positions with A d = g; force: M d.", "g", change);
-  if (!both) state_function(f, k->velocity, "correct_velocities", "The least change d of velocities with A d = g; force: M d.", "g", change);
+    state_function(f, k->position, "correct_positions",
+                   both ? "The least change d with A d = g, for positions or velocities; force: M d."
+                        : "The least change d of positions with A d = g; force: M d.",
+                   "g", change);
+  if (!both)
+    state_function(f, k->velocity, "correct_velocities", "The least change d of velocities with A d = g; force: M d.",
+                   "g", change);
   constraint_table(f->u, f->out);
   entries("jacobian_table", k->jacobian.at, k->jacobian.n, f->out);
   entries("inertia_table", k->mass.at, k->mass.n, f->out);
-  sb_printf(f->out, "\nstatic const lag_constraints constraints = {\n  .n = %u, .nholonomic = %u, .of = constraint_table,\n", k->of.n, k->nkept);
-  sb_printf(f->out, "  .njacobian = %u, .jacobian = jacobian_table, .nmass = %u, .mass = %s,\n", k->jacobian.n, k->mass.n, k->mass.n ? "inertia_table" : "NULL");
+  sb_printf(f->out,
+            "\nstatic const lag_constraints constraints = {\n  .n = %u, .nholonomic = %u, .of = constraint_table,\n",
+            k->of.n, k->nkept);
+  sb_printf(f->out, "  .njacobian = %u, .jacobian = jacobian_table, .nmass = %u, .mass = %s,\n", k->jacobian.n,
+            k->mass.n, k->mass.n ? "inertia_table" : "NULL");
   sb_printf(f->out, "  .residuals = residuals, .matrices = matrices,\n  .position = %s, .velocity = %s,\n};\n",
             k->nkept ? "correct_positions" : "NULL", both ? "correct_positions" : "correct_velocities");
   if (!f->u->contacts.n) return;
   sb_puts(f->out, "\nstatic const lag_contact contact_table[] = {\n");
   for (uint32_t i = 0; i < f->u->contacts.n; i++) {
     const IrContact *c = &f->u->contacts.at[i];
-    sb_printf(f->out, "  {%u, %u, %u, %u, %d, %u, %d, %d},\n", c->input, c->constraint, c->impact, c->release, c->is_tangent, c->force, c->conditional, c->law);
+    sb_printf(f->out, "  {%u, %u, %u, %u, %d, %u, %d, %d},\n", c->input, c->constraint, c->impact, c->release,
+              c->is_tangent, c->force, c->conditional, c->law);
   }
   sb_puts(f->out, "};\n");
-  state_function(f, f->u->contact_laws, "contact_laws", "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", NULL, one_out);
+  state_function(f, f->u->contact_laws, "contact_laws",
+                 "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", NULL,
+                 one_out);
 }
 
 /* --- tables --- */
 
 /* Whether a table of the unit is written with macros. */
 static int has_long_tables(const ProgramSet *u) {
-  int is_long = table_needs_macros(u->q.at, u->q.n) || table_needs_macros(u->z.at, u->z.n) || table_needs_macros(u->p.at, u->p.n) ||
-                table_needs_macros(u->u.at, u->u.n);
-  for (uint32_t i = 0; i < u->scenes.n; i++) is_long |= table_needs_macros(u->scenes.at[i].outputs.at, u->scenes.at[i].outputs.n);
+  int is_long = table_needs_macros(u->q.at, u->q.n) || table_needs_macros(u->z.at, u->z.n) ||
+                table_needs_macros(u->p.at, u->p.n) || table_needs_macros(u->u.at, u->u.n);
+  for (uint32_t i = 0; i < u->scenes.n; i++)
+    is_long |= table_needs_macros(u->scenes.at[i].outputs.at, u->scenes.at[i].outputs.n);
   return is_long;
 }
 
@@ -334,12 +410,14 @@ static int needs_solver(const ProgramSet *u) {
 
 static const char *or_null(uint32_t n, const char *name) { return n ? name : "NULL"; }
 
-/* Digest of the equations' C text (FNV-1a, 64 bits, in hexadecimal), by which a saved state is tied to its equations. */
+/* Digest of the equations' C text (FNV-1a, 64 bits, in hexadecimal), by which a saved state is tied to its
+ * equations. */
 static const char *digest_text(Arena *a, const char *text) {
   return arena_printf(a, "%016llx", (unsigned long long)lag_fnv1a(LAG_FNV1A_START, text, strlen(text)));
 }
 
-/* Table `curves`: input, number of rows, their width and array of each input that is a table; rates share those of their input. */
+/* Table `curves`: input, number of rows, their width and array of each input that is a table; rates share those of
+ * their input. */
 static void emit_curves(const ProgramSet *u, StrBuf *out) {
   const Prog *p = u->inputs;
   if (!p->tables.n) return;
@@ -377,30 +455,41 @@ static void emit_tables(const ProgramSet *u, const char *name, const char *diges
   if (u->events.n) {
     sb_puts(out, "\nstatic const lag_event ev_table[] = {\n");
     for (uint32_t i = 0; i < u->events.n; i++)
-      sb_printf(out, u->events.at[i].direction == EVENT_KICK ? "  {%s, LAG_KICK},\n" : "  {%s, %d},\n", c_string(u->arena, u->events.at[i].name), u->events.at[i].direction);
+      sb_printf(out, u->events.at[i].direction == EVENT_KICK ? "  {%s, LAG_KICK},\n" : "  {%s, %d},\n",
+                c_string(u->arena, u->events.at[i].name), u->events.at[i].direction);
     sb_puts(out, "};\n");
   }
   emit_curves(u, out);
   second_table(u, out);
-  const char *model = c_string(u->arena, u->name), *doc = c_string(u->arena, u->doc), *effects = c_string(u->arena, u->effects);
+  const char *model = c_string(u->arena, u->name), *doc = c_string(u->arena, u->doc),
+             *effects = c_string(u->arena, u->effects);
   sb_printf(out, "\nconst lag_model %s = {\n", name);
-  sb_printf(out, "  .abi = LAG_ABI, .real_size = sizeof(LAG_REAL),\n  .name = %s,\n  .doc = %s,\n  .effects = %s,\n  .digest = \"%s\",\n  .flags = ", model, doc, effects, digest);
+  sb_printf(out,
+            "  .abi = LAG_ABI, .real_size = sizeof(LAG_REAL),\n  .name = %s,\n  .doc = %s,\n  .effects = %s,\n  "
+            ".digest = \"%s\",\n  .flags = ",
+            model, doc, effects, digest);
   flag_text(u->flags, flags, UNIT_FLAGS, out);
   sb_printf(out, ",\n  .ops = %u,\n", ops_as_int(ops_total(prog_count(u->accel))));
-  sb_printf(out, "  .nq = %u, .nz = %u, .np = %u, .nu = %u, .nev = %u, .nw = %u,\n", u->q.n, u->z.n, u->p.n, u->u.n, u->events.n, work_size(u));
-  sb_printf(out, "  .q = %s, .z = %s, .p = %s, .u = %s, .ev = %s,\n", or_null(u->q.n, "q_table"), or_null(u->z.n, "z_table"),
-            or_null(u->p.n, "p_table"), or_null(u->u.n, "u_table"), or_null(u->events.n, "ev_table"));
+  sb_printf(out, "  .nq = %u, .nz = %u, .np = %u, .nu = %u, .nev = %u, .nw = %u,\n", u->q.n, u->z.n, u->p.n, u->u.n,
+            u->events.n, work_size(u));
+  sb_printf(out, "  .q = %s, .z = %s, .p = %s, .u = %s, .ev = %s,\n", or_null(u->q.n, "q_table"),
+            or_null(u->z.n, "z_table"), or_null(u->p.n, "p_table"), or_null(u->u.n, "u_table"),
+            or_null(u->events.n, "ev_table"));
   if (u->nderived) sb_printf(out, "  .nderived = %u, .derive = derive,\n", u->nderived);
-  sb_printf(out, "  .inputs = %s, .accel = accel, .energy = %s,\n  .events = %s, .act = %s,\n", or_null(u->u.n, "inputs"),
-            u->energy ? "energy" : "NULL", or_null(u->events.n, "events"), or_null(u->events.n, "act"));
+  sb_printf(out, "  .inputs = %s, .accel = accel, .energy = %s,\n  .events = %s, .act = %s,\n",
+            or_null(u->u.n, "inputs"), u->energy ? "energy" : "NULL", or_null(u->events.n, "events"),
+            or_null(u->events.n, "act"));
   if (u->inputs->tables.n) sb_puts(out, "  .ntables = sizeof curves / sizeof *curves, .tables = curves,\n");
   if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->contact_laws) sb_puts(out, "  .contact_laws = contact_laws,\n");
-  if (u->sizes.n) sb_printf(out, "  .nsizes = %u, .sizes = size_table, .size_values = %s,\n", u->sizes.n - u->nmoving, u->size_values ? "size_values" : "NULL");
+  if (u->sizes.n)
+    sb_printf(out, "  .nsizes = %u, .sizes = size_table, .size_values = %s,\n", u->sizes.n - u->nmoving,
+              u->size_values ? "size_values" : "NULL");
   if (u->nmoving) sb_printf(out, "  .nmoving = %u, .moving_sizes = moving_sizes,\n", u->nmoving);
   if (u->charges.n) sb_puts(out, "  .charges = &charges,\n");
-  if (u->switches.n) sb_printf(out, "  .nswitch = %u, .switches = switch_table, .switch_values = switch_values,\n", u->switches.n);
+  if (u->switches.n)
+    sb_printf(out, "  .nswitch = %u, .switches = switch_table, .switch_values = switch_values,\n", u->switches.n);
   if (u->nmodes) sb_printf(out, "  .nmodes = %u, .switch_rates = switch_rates,\n", u->nmodes);
   if (u->switch_grips) sb_puts(out, "  .switch_grips = switch_grips,\n");
   if (u->variation)
@@ -433,7 +522,8 @@ void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
   size_t begin = out->n;
   emit_derive(&f);
   accel(&f);
-  state_function(&f, u->energy, "energy", "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", NULL, one_out);
+  state_function(&f, u->energy, "energy",
+                 "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", NULL, one_out);
   emit_events(&f);
   emit_inputs(&f);
   emit_constraints(&f);
@@ -441,8 +531,12 @@ void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
   emit_sizes(&f);
   emit_charges(&f);
   emit_switches(&f);
-  emit_linear(&f); /* after the digest: a saved state depends on the equations, not on the methods' derivatives of them */
-  if (u->taylor) emit_taylor(u->taylor, &(CStyle){.prefix = "LAG", .globals = f.globals, .solve = "lag_solve", .math = math_prefix(u, "lag")}, u->lanes, out);
+  /* after the digest: a saved state depends on the equations, not on the methods' derivatives of them */
+  emit_linear(&f);
+  if (u->taylor)
+    emit_taylor(u->taylor,
+                &(CStyle){.prefix = "LAG", .globals = f.globals, .solve = "lag_solve", .math = math_prefix(u, "lag")},
+                u->lanes, out);
   emit_variation(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, name, i);

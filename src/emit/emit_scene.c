@@ -7,7 +7,8 @@
 static int is_number_like(const Prog *p, const Prog *like) {
   if (p->stores.n != 1 || like->stores.n != 1) return 0;
   const Ins *x = &p->ins.at[p->stores.at[0].slot], *y = &like->ins.at[like->stores.at[0].slot];
-  return p->stores.at[0].slot && like->stores.at[0].slot && x->op == IR_CONST && y->op == IR_CONST && num_equal(x->number, y->number);
+  return p->stores.at[0].slot && like->stores.at[0].slot && x->op == IR_CONST && y->op == IR_CONST &&
+         num_equal(x->number, y->number);
 }
 
 /* Number of parameters from i on with one constant value if at least 16; otherwise 1. */
@@ -27,8 +28,8 @@ static void emit_params(const ModelFile *f, const IrScene *s, const char *id) {
     same = same_params(f->u, s, i);
     if (same > 1) {
       const Prog *p = s->params[i];
-      sb_printf(f->out, "  for (int k = 0; k < %u; k++) /* %s ... %s */\n    if (!fixed[k + %u]) p[k + %u] = %s;\n", same,
-                comment_text(f->a, f->u->p.at[i].name), comment_text(f->a, f->u->p.at[i + same - 1].name), i, i,
+      sb_printf(f->out, "  for (int k = 0; k < %u; k++) /* %s ... %s */\n    if (!fixed[k + %u]) p[k + %u] = %s;\n",
+                same, comment_text(f->a, f->u->p.at[i].name), comment_text(f->a, f->u->p.at[i + same - 1].name), i, i,
                 c_number(f->a, "LAG", p->ins.at[p->stores.at[0].slot].number));
       continue;
     }
@@ -61,15 +62,18 @@ static void emit_exact(const ModelFile *f, const IrScene *s, const char *id) {
   CStyle st = model_style(f, own, written);
   st.in = from_start;
   CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .returns = 1};
-  c.head = arena_printf(f->a, "static int exact_%s(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,\n"
-                              "    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out)", id);
+  c.head = arena_printf(f->a,
+                        "static int exact_%s(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,\n"
+                        "    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out)",
+                        id);
   cfunction(s->exact, &st, &c, f->out);
   sb_printf(f->out, "\nstatic const int exact_of_%s[] = {", id);
   for (uint32_t i = 0; i < s->exact_of.n; i++) sb_printf(f->out, "%s%u", i ? ", " : "", s->exact_of.at[i]);
   sb_puts(f->out, "};\n");
 }
 
-/* Outputs with action variables: their curves, and a function that puts their values behind those in u. Rows of output have no lanes. */
+/* Outputs with action variables: their curves, and a function that puts their values behind those in u. Rows of
+ * output have no lanes. */
 static void emit_observe(const ModelFile *f, const IrScene *s, const char *id) {
   const ProgramSet *u = f->u;
   StrBuf *out = f->out;
@@ -83,20 +87,27 @@ static void emit_observe(const ModelFile *f, const IrScene *s, const char *id) {
   state_function(f, s->momenta, arena_printf(f->a, "momenta_%s", id), "The momenta dL/dq'.", NULL, one_out);
   for (uint32_t i = 0; i < s->actions.n; i++) {
     const IrAction *a = &s->actions.at[i];
-    const char *what = s->momenta ? "H, dH/dp, d2H/dp2, dH/dq for the action of %s; v holds momenta." : "H, dH/dp, d2H/dp2, dH/dq for the action of %s.";
-    state_function(f, a->curve, arena_printf(f->a, "curve_%s_%u", id, i), arena_printf(f->a, what, a->name), NULL, one_out);
+    const char *what = s->momenta ? "H, dH/dp, d2H/dp2, dH/dq for the action of %s; v holds momenta."
+                                  : "H, dH/dp, d2H/dp2, dH/dq for the action of %s.";
+    state_function(f, a->curve, arena_printf(f->a, "curve_%s_%u", id, i), arena_printf(f->a, what, a->name), NULL,
+                   one_out);
   }
-  state_function(f, s->observe, arena_printf(f->a, "values_%s", id), arena_printf(f->a, "%s Action variables stand behind the inputs.", comment), NULL, one_out);
-  sb_printf(out, "\nstatic int observe_%s(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w) {\n", id);
+  state_function(f, s->observe, arena_printf(f->a, "values_%s", id),
+                 arena_printf(f->a, "%s Action variables stand behind the inputs.", comment), NULL, one_out);
+  sb_printf(out,
+            "\nstatic int observe_%s(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const "
+            "LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w) {\n",
+            id);
   sb_printf(out, "  LAG_REAL with[%u], y[%u];\n", n + s->actions.n, 2 * u->q.n + u->z.n);
   if (n) sb_printf(out, "  for (int i = 0; i < %u; i++) with[i] = u[i];\n", n);
   for (uint32_t i = 0; i < s->actions.n; i++) {
     const IrAction *a = &s->actions.at[i];
-    sb_printf(out, "  static const lag_action_curve of_%u = {%u, %u, %u, %u, %d, curve_%s_%u, %s%s};\n", i, u->q.n, u->z.n, a->q, a->p, a->periodic, id, i, s->momenta ? "momenta_" : "NULL",
-              s->momenta ? id : "");
+    sb_printf(out, "  static const lag_action_curve of_%u = {%u, %u, %u, %u, %d, curve_%s_%u, %s%s};\n", i, u->q.n,
+              u->z.n, a->q, a->p, a->periodic, id, i, s->momenta ? "momenta_" : "NULL", s->momenta ? id : "");
     sb_printf(out, "  with[%u] = lag_action(&of_%u, t, q, v, z, p, u, y, w);\n", n + i, i);
   }
-  sb_printf(out, "  return values_%s(t, q, v, z, p, with, out, w);\n}\n#else\n#define observe_%s NULL\n#endif\n", id, id);
+  sb_printf(out, "  return values_%s(t, q, v, z, p, with, out, w);\n}\n#else\n#define observe_%s NULL\n#endif\n", id,
+            id);
 }
 
 static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
@@ -105,7 +116,8 @@ static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *
     sb_printf(out, "\nstatic const lag_option options_%s[] = {\n", id);
     for (uint32_t i = 0; i < s->options.n; i++) {
       const IrOption *o = &s->options.at[i];
-      sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, o->name), table_number(u->arena, o->value, NULL), o->text ? c_string(u->arena, o->text) : "NULL");
+      sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, o->name), table_number(u->arena, o->value, NULL),
+                o->text ? c_string(u->arena, o->text) : "NULL");
     }
     sb_puts(out, "};\n");
   }
@@ -113,7 +125,8 @@ static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *
     sb_printf(out, "\nstatic const lag_monitor monitors_%s[] = {\n", id);
     for (uint32_t i = 0; i < s->monitors.n; i++) {
       const IrMonitor *m = &s->monitors.at[i];
-      sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output, table_number(u->arena, m->limit, NULL), m->absolute);
+      sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output,
+                table_number(u->arena, m->limit, NULL), m->absolute);
     }
     sb_puts(out, "};\n");
   }
@@ -140,7 +153,8 @@ static void emit_given(const ProgramSet *u, const IrScene *s, const char *id, St
   uint32_t n = u->q.n, total = 2 * n + u->z.n, after[] = {0, n, 2 * n};
   if (!u->constraints.of.n) return;
   unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, total);
-  for (uint32_t k = 0; k < s->start->stores.n; k++) given[after[s->start->stores.at[k].array] + s->start->stores.at[k].index] = 1;
+  for (uint32_t k = 0; k < s->start->stores.n; k++)
+    given[after[s->start->stores.at[k].array] + s->start->stores.at[k].index] = 1;
   for (uint32_t k = 0; k < s->implied.n; k++) given[s->implied.at[k]] = 2;
   emit_flags("given", id, given, total, out);
 }
@@ -169,15 +183,17 @@ void emit_scene(const ModelFile *f, const char *name, uint32_t index) {
   sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
   sb_printf(out, "  .model = &%s,\n  .params = params_%s, .start = start_%s,\n", name, id, id);
   if (u->constraints.of.n) sb_printf(out, "  .given = given_%s, .exactly = %d,\n", id, s->exactly);
-  sb_printf(out, "  .t0 = %s, .t1 = %s, .has_span = %d,\n", table_number(u->arena, s->t0, NULL), table_number(u->arena, s->t1, s->t1_digits), s->has_span);
-  sb_printf(out, "  .method = %s, .noptions = %u, .options = %s,\n", s->method ? c_string(u->arena, s->method) : "NULL", s->options.n,
-            list_name(u, s->options.n, "options", id));
+  sb_printf(out, "  .t0 = %s, .t1 = %s, .has_span = %d,\n", table_number(u->arena, s->t0, NULL),
+            table_number(u->arena, s->t1, s->t1_digits), s->has_span);
+  sb_printf(out, "  .method = %s, .noptions = %u, .options = %s,\n", s->method ? c_string(u->arena, s->method) : "NULL",
+            s->options.n, list_name(u, s->options.n, "options", id));
   sb_printf(out, "  .tolerance = %s,\n", table_number(u->arena, s->tolerance, NULL));
   sb_printf(out, "  .nout = %u, .outputs = %s,\n", s->outputs.n, list_name(u, s->outputs.n, "outputs", id));
   if (has_forces(s)) sb_printf(out, "  .forces = forces_%s,\n", id);
   sb_printf(out, "  .every = %s, .observe = observe_%s,\n", table_number(u->arena, s->every, NULL), id);
   sb_printf(out, "  .nmonitors = %u, .monitors = %s,\n", s->monitors.n, list_name(u, s->monitors.n, "monitors", id));
-  if (s->exact_of.n) sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
+  if (s->exact_of.n)
+    sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
   if (s->measures.n) sb_printf(out, "  .nmeasures = %u, .measures = measures_%s,\n", s->measures.n, id);
   sb_puts(out, "};\n");
 }

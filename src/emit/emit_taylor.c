@@ -1,13 +1,15 @@
-/* C of the Taylor recurrences: order 0, the step from order k to k + 1, the convolution sums over rows of coefficients,
- * and the evaluation of the series. In model files each row operation also with vectors of four doubles (AVX2); in headers plain C,
- * whose names begin with the header's prefix. Order of operations, and so the bits, are the same. */
+/* C of the Taylor recurrences: order 0, the step from order k to k + 1, the convolution sums over rows of
+ * coefficients, and the evaluation of the series. In model files each row operation also with vectors of four
+ * doubles (AVX2); in headers plain C, whose names begin with the header's prefix. Order of operations, and so the
+ * bits, are the same. */
 #include "emit/emit_impl.h"
 
 #include <string.h>
 
 enum { LANES = 4 };    /* row lengths are multiples of this */
 enum { CALL = 25 };    /* extra cost of a function call, in operations */
-enum { REGISTER_SUMS_MAX = 12 };    /* most sums of one kind that stay in registers from one order to the next: see register_sums */
+/* most sums of one kind that stay in registers from one order to the next: see register_sums */
+enum { REGISTER_SUMS_MAX = 12 };
 enum { LOOP_FROM = 9 }; /* statements that differ in an index only become a loop from this number on */
 
 static const char *const arrays[ARR_COUNT] = {
@@ -36,7 +38,8 @@ static const char *const head =
   "#endif\n";
 
 /* Pair g of a row held in pairs, or in fours. */
-static const char *const part = "static TAYLOR_INLINE taylor_pair taylor_part(const taylor_pair *x, int g) { return x[g]; }\n";
+static const char *const part =
+    "static TAYLOR_INLINE taylor_pair taylor_part(const taylor_pair *x, int g) { return x[g]; }\n";
 static const char *const wide_part =
   "TAYLOR_WIDE static TAYLOR_INLINE taylor_pair taylor_part_wide(const taylor_four *x, int g) {\n"
   "  return g % 2 ? (taylor_pair){x[g/2][2], x[g/2][3]} : (taylor_pair){x[g/2][0], x[g/2][1]};\n"
@@ -44,156 +47,173 @@ static const char *const wide_part =
 
 /* Vectors of four, for models whose rows are long enough: shorter rows gain nothing over pairs. */
 static const char *const wide_head =
-  "/* Fours on processors with AVX2: whatever the file was compiled for, this is asked as it runs. The bits are the same. */\n"
-  "#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE) && defined(__x86_64__)\n"
-  "#define TAYLOR_WIDE __attribute__((target(\"avx2\")))\n"
-  "typedef double taylor_four __attribute__((vector_size(32), aligned(8), may_alias));\n"
-  "#endif\n";
+    "/* Fours on processors with AVX2: whatever the file was compiled for, this is asked as it runs. The bits are the "
+    "same. */\n"
+    "#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE) && defined(__x86_64__)\n"
+    "#define TAYLOR_WIDE __attribute__((target(\"avx2\")))\n"
+    "typedef double taylor_four __attribute__((vector_size(32), aligned(8), may_alias));\n"
+    "#endif\n";
 
-/* Templates, see fill(): $ is the suffix (none or _wide), # the vector type, @ an attribute, % the place of an unroll pragma, ~N an unrolled loop
- * over N vectors. */
+/* Templates, see fill(): $ is the suffix (none or _wide), # the vector type, @ an attribute, % the place of an
+ * unroll pragma, ~N an unrolled loop over N vectors. */
 static const char *const at =
-  "\n@static void taylor_at$(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
-  "  enum { PARTS = 4*sizeof(LAG_REAL)/sizeof(#) };\n"
-  "  const LAG_REAL u = s*s, twice = LAG_C(2.0);\n"
-  "  for (int i = 0; i < TAYLOR_WIDTH; i += 4) {\n"
-  "    # e[PARTS] = {0}, de[PARTS] = {0}, o[PARTS] = {0}, d[PARTS] = {0};\n"
-  "    int k = n;\n"
-  "    for (const # *const row = (const # *)(x + k*TAYLOR_COLUMNS + i); k%2 == 0; k--)\n"
-  "      for (int g = 0; g < (int)PARTS; g++) e[g] = row[g];\n"
-  "    for (; k > 0; k -= 2) {\n"
-  "      const # *const odd = (const # *)(x + k*TAYLOR_COLUMNS + i), *const even = (const # *)(x + (k - 1)*TAYLOR_COLUMNS + i);\n"
-  "      ~PARTS {\n"
-  "        d[g] = d[g]*u + o[g];\n"
-  "        o[g] = o[g]*u + odd[g];\n"
-  "      }\n"
-  "      if (k == 1) break;\n"
-  "      ~PARTS {\n"
-  "        de[g] = de[g]*u + e[g];\n"
-  "        e[g] = e[g]*u + even[g];\n"
-  "      }\n"
-  "    }\n"
-  "    ~PARTS {\n"
-  "      ((# *)(y + i))[g] = e[g]*u + o[g]*s;\n"
-  "      ((# *)(dy + i))[g] = (de[g]*u + e[g])*(twice*s) + d[g]*(twice*u) + o[g];\n"
-  "    }\n"
-  "  }\n"
-  "}\n";
+    "\n@static void taylor_at$(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
+    "  enum { PARTS = 4*sizeof(LAG_REAL)/sizeof(#) };\n"
+    "  const LAG_REAL u = s*s, twice = LAG_C(2.0);\n"
+    "  for (int i = 0; i < TAYLOR_WIDTH; i += 4) {\n"
+    "    # e[PARTS] = {0}, de[PARTS] = {0}, o[PARTS] = {0}, d[PARTS] = {0};\n"
+    "    int k = n;\n"
+    "    for (const # *const row = (const # *)(x + k*TAYLOR_COLUMNS + i); k%2 == 0; k--)\n"
+    "      for (int g = 0; g < (int)PARTS; g++) e[g] = row[g];\n"
+    "    for (; k > 0; k -= 2) {\n"
+    "      const # *const odd = (const # *)(x + k*TAYLOR_COLUMNS + i), *const even = (const # *)(x + (k - "
+    "1)*TAYLOR_COLUMNS + i);\n"
+    "      ~PARTS {\n"
+    "        d[g] = d[g]*u + o[g];\n"
+    "        o[g] = o[g]*u + odd[g];\n"
+    "      }\n"
+    "      if (k == 1) break;\n"
+    "      ~PARTS {\n"
+    "        de[g] = de[g]*u + e[g];\n"
+    "        e[g] = e[g]*u + even[g];\n"
+    "      }\n"
+    "    }\n"
+    "    ~PARTS {\n"
+    "      ((# *)(y + i))[g] = e[g]*u + o[g]*s;\n"
+    "      ((# *)(dy + i))[g] = (de[g]*u + e[g])*(twice*s) + d[g]*(twice*u) + o[g];\n"
+    "    }\n"
+    "  }\n"
+    "}\n";
 
 static const char *const sums =
-  "\n@static void taylor_sums$(int k, taylor_work *w) {\n"
-  "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
-  "  const int last = k - 1;\n"
-  "  for (int i = 0; i < TAYLOR_SQUARES; i += TAYLOR_GROUP) {\n"
-  "    # s[PARTS] = {0};\n"
-  "%    for (int j = 2; j < last; j++) {\n"
-  "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->b[k - j] + i);\n"
-  "      ~PARTS s[g] += a[g]*b[g];\n"
-  "    }\n"
-  "    ~PARTS ((# *)(w->s + i))[g] = s[g];\n"
-  "    const taylor_pair *const a1 = (const taylor_pair *)(w->a[1] + i), *const b1 = (const taylor_pair *)(w->b[1] + i);\n"
-  "    const taylor_pair *const an = (const taylor_pair *)(w->a[last] + i), *const bn = (const taylor_pair *)(w->b[last] + i);\n"
-  "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
-  "    if (k > 2) {\n"
-  "      ~PAIRS out[g] = out[g] + an[g]*b1[g] + a1[g]*bn[g];\n"
-  "    } else if (k == 2) {\n"
-  "      ~PAIRS out[g] = a1[g]*bn[g];\n"
-  "    }\n"
-  "  }\n"
-  "}\n";
+    "\n@static void taylor_sums$(int k, taylor_work *w) {\n"
+    "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = "
+    "TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
+    "  const int last = k - 1;\n"
+    "  for (int i = 0; i < TAYLOR_SQUARES; i += TAYLOR_GROUP) {\n"
+    "    # s[PARTS] = {0};\n"
+    "%    for (int j = 2; j < last; j++) {\n"
+    "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->b[k - j] + i);\n"
+    "      ~PARTS s[g] += a[g]*b[g];\n"
+    "    }\n"
+    "    ~PARTS ((# *)(w->s + i))[g] = s[g];\n"
+    "    const taylor_pair *const a1 = (const taylor_pair *)(w->a[1] + i), *const b1 = (const taylor_pair *)(w->b[1] + "
+    "i);\n"
+    "    const taylor_pair *const an = (const taylor_pair *)(w->a[last] + i), *const bn = (const taylor_pair "
+    "*)(w->b[last] + i);\n"
+    "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
+    "    if (k > 2) {\n"
+    "      ~PAIRS out[g] = out[g] + an[g]*b1[g] + a1[g]*bn[g];\n"
+    "    } else if (k == 2) {\n"
+    "      ~PAIRS out[g] = a1[g]*bn[g];\n"
+    "    }\n"
+    "  }\n"
+    "}\n";
 
 static const char *const squares =
-  "\n@static void taylor_squares$(int k, taylor_work *w) {\n"
-  "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
-  "  const int last = k - 1, half = k/2;\n"
-  "  const LAG_REAL twice = LAG_C(2.0);\n"
-  "  for (int i = TAYLOR_SQUARES; i < TAYLOR_SUMS; i += TAYLOR_GROUP) {\n"
-  "    # s[PARTS] = {0};\n"
-  "%    for (int j = 2; j < k - j; j++) {\n"
-  "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->a[k - j] + i);\n"
-  "      ~PARTS s[g] += a[g]*b[g];\n"
-  "    }\n"
-  "    ~PARTS s[g] *= twice;\n"
-  "    const # *const m = (const # *)(w->a[half] + i);\n"
-  "    if (half > 1 && 2*half == k) {\n"
-  "      ~PARTS s[g] += m[g]*m[g];\n"
-  "    }\n"
-  "    ~PARTS ((# *)(w->s + i))[g] = s[g];\n"
-  "    if (k < 2) continue;\n"
-  "    const taylor_pair *const a = (const taylor_pair *)(w->a[1] + i), *const b = (const taylor_pair *)(w->a[last] + i);\n"
-  "    const LAG_REAL weight = k > 2 ? twice : LAG_C(1.0);\n"
-  "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
-  "    ~PAIRS out[g] += weight*(a[g]*b[g]);\n"
-  "  }\n"
-  "}\n";
+    "\n@static void taylor_squares$(int k, taylor_work *w) {\n"
+    "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = "
+    "TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
+    "  const int last = k - 1, half = k/2;\n"
+    "  const LAG_REAL twice = LAG_C(2.0);\n"
+    "  for (int i = TAYLOR_SQUARES; i < TAYLOR_SUMS; i += TAYLOR_GROUP) {\n"
+    "    # s[PARTS] = {0};\n"
+    "%    for (int j = 2; j < k - j; j++) {\n"
+    "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->a[k - j] + i);\n"
+    "      ~PARTS s[g] += a[g]*b[g];\n"
+    "    }\n"
+    "    ~PARTS s[g] *= twice;\n"
+    "    const # *const m = (const # *)(w->a[half] + i);\n"
+    "    if (half > 1 && 2*half == k) {\n"
+    "      ~PARTS s[g] += m[g]*m[g];\n"
+    "    }\n"
+    "    ~PARTS ((# *)(w->s + i))[g] = s[g];\n"
+    "    if (k < 2) continue;\n"
+    "    const taylor_pair *const a = (const taylor_pair *)(w->a[1] + i), *const b = (const taylor_pair *)(w->a[last] "
+    "+ i);\n"
+    "    const LAG_REAL weight = k > 2 ? twice : LAG_C(1.0);\n"
+    "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
+    "    ~PAIRS out[g] += weight*(a[g]*b[g]);\n"
+    "  }\n"
+    "}\n";
 
-/* Convolution sums for few sums. Coefficients of order k - 1 come from registers, those of order k - 2 are loaded in pairs, as they
- * were stored: neither load waits for a store, and the sum over the other orders is ready early. */
+/* Convolution sums for few sums. Coefficients of order k - 1 come from registers, those of order k - 2 are loaded in
+ * pairs, as they were stored: neither load waits for a store, and the sum over the other orders is ready early. */
 static const char *const register_sums =
-  "\n@static TAYLOR_INLINE void taylor_sums$(int k, const taylor_work *w, const taylor_pair *a, const taylor_pair *b, taylor_pair *s) {\n"
-  "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = TAYLOR_PAIRED*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
-  "  const taylor_pair *const a1 = (const taylor_pair *)w->a[1], *const b1 = (const taylor_pair *)w->b[1];\n"
-  "  const taylor_pair *const a2 = (const taylor_pair *)w->a[2], *const b2 = (const taylor_pair *)w->b[2];\n"
-  "  # far[PARTS] = {0};\n"
-  "  TAYLOR_UNROLL_4\n"
-  "  for (int j = 3; j < k - 2; j++) {\n"
-  "    const # *const aj = (const # *)w->a[j], *const bj = (const # *)w->b[k - j];\n"
-  "    ~PARTS far[g] += aj[g]*bj[g];\n"
-  "  }\n"
-  "  ~PAIRS s[g] = taylor_part$(far, g);\n"
-  "  if (k > 4) {\n"
-  "    const taylor_pair *const am = (const taylor_pair *)w->a[k - 2], *const bm = (const taylor_pair *)w->b[k - 2];\n"
-  "    ~PAIRS s[g] += am[g]*b2[g] + a2[g]*bm[g];\n"
-  "  } else if (k == 4) {\n"
-  "    ~PAIRS s[g] = a2[g]*b2[g];\n"
-  "  }\n"
-  "  if (k > 2) {\n"
-  "    ~PAIRS s[g] += a[g]*b1[g] + a1[g]*b[g];\n"
-  "  } else if (k == 2) {\n"
-  "    ~PAIRS s[g] = a[g]*b[g];\n"
-  "  }\n"
-  "}\n";
+    "\n@static TAYLOR_INLINE void taylor_sums$(int k, const taylor_work *w, const taylor_pair *a, const taylor_pair "
+    "*b, taylor_pair *s) {\n"
+    "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = "
+    "TAYLOR_PAIRED*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
+    "  const taylor_pair *const a1 = (const taylor_pair *)w->a[1], *const b1 = (const taylor_pair *)w->b[1];\n"
+    "  const taylor_pair *const a2 = (const taylor_pair *)w->a[2], *const b2 = (const taylor_pair *)w->b[2];\n"
+    "  # far[PARTS] = {0};\n"
+    "  TAYLOR_UNROLL_4\n"
+    "  for (int j = 3; j < k - 2; j++) {\n"
+    "    const # *const aj = (const # *)w->a[j], *const bj = (const # *)w->b[k - j];\n"
+    "    ~PARTS far[g] += aj[g]*bj[g];\n"
+    "  }\n"
+    "  ~PAIRS s[g] = taylor_part$(far, g);\n"
+    "  if (k > 4) {\n"
+    "    const taylor_pair *const am = (const taylor_pair *)w->a[k - 2], *const bm = (const taylor_pair *)w->b[k - "
+    "2];\n"
+    "    ~PAIRS s[g] += am[g]*b2[g] + a2[g]*bm[g];\n"
+    "  } else if (k == 4) {\n"
+    "    ~PAIRS s[g] = a2[g]*b2[g];\n"
+    "  }\n"
+    "  if (k > 2) {\n"
+    "    ~PAIRS s[g] += a[g]*b1[g] + a1[g]*b[g];\n"
+    "  } else if (k == 2) {\n"
+    "    ~PAIRS s[g] = a[g]*b[g];\n"
+    "  }\n"
+    "}\n";
 
 static const char *const register_squares =
-  "\n@static TAYLOR_INLINE void taylor_squares$(int k, const taylor_work *w, const taylor_pair *a, taylor_pair *s) {\n"
-  "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = TAYLOR_SQUARED*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
-  "  const taylor_pair *const a1 = (const taylor_pair *)(w->a[1] + TAYLOR_SQUARES), *const a2 = (const taylor_pair *)(w->a[2] + TAYLOR_SQUARES);\n"
-  "  const LAG_REAL twice = LAG_C(2.0);\n"
-  "  const int half = k/2;\n"
-  "  # far[PARTS] = {0};\n"
-  "  TAYLOR_UNROLL_4\n"
-  "  for (int j = 3; j < k - j; j++) {\n"
-  "    const # *const aj = (const # *)(w->a[j] + TAYLOR_SQUARES), *const bj = (const # *)(w->a[k - j] + TAYLOR_SQUARES);\n"
-  "    ~PARTS far[g] += aj[g]*bj[g];\n"
-  "  }\n"
-  "  ~PAIRS s[g] = twice*taylor_part$(far, g);\n"
-  "  if (half > 1 && 2*half == k) {\n"
-  "    const taylor_pair *const m = (const taylor_pair *)(w->a[half] + TAYLOR_SQUARES);\n"
-  "    ~PAIRS s[g] += m[g]*m[g];\n"
-  "  }\n"
-  "  if (k > 4) {\n"
-  "    const taylor_pair *const am = (const taylor_pair *)(w->a[k - 2] + TAYLOR_SQUARES);\n"
-  "    ~PAIRS s[g] += twice*(am[g]*a2[g]);\n"
-  "  }\n"
-  "  if (k > 2) {\n"
-  "    ~PAIRS s[g] += twice*(a[g]*a1[g]);\n"
-  "  } else if (k == 2) {\n"
-  "    ~PAIRS s[g] = a[g]*a[g];\n"
-  "  }\n"
-  "}\n";
+    "\n@static TAYLOR_INLINE void taylor_squares$(int k, const taylor_work *w, const taylor_pair *a, taylor_pair *s) "
+    "{\n"
+    "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = "
+    "TAYLOR_SQUARED*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
+    "  const taylor_pair *const a1 = (const taylor_pair *)(w->a[1] + TAYLOR_SQUARES), *const a2 = (const taylor_pair "
+    "*)(w->a[2] + TAYLOR_SQUARES);\n"
+    "  const LAG_REAL twice = LAG_C(2.0);\n"
+    "  const int half = k/2;\n"
+    "  # far[PARTS] = {0};\n"
+    "  TAYLOR_UNROLL_4\n"
+    "  for (int j = 3; j < k - j; j++) {\n"
+    "    const # *const aj = (const # *)(w->a[j] + TAYLOR_SQUARES), *const bj = (const # *)(w->a[k - j] + "
+    "TAYLOR_SQUARES);\n"
+    "    ~PARTS far[g] += aj[g]*bj[g];\n"
+    "  }\n"
+    "  ~PAIRS s[g] = twice*taylor_part$(far, g);\n"
+    "  if (half > 1 && 2*half == k) {\n"
+    "    const taylor_pair *const m = (const taylor_pair *)(w->a[half] + TAYLOR_SQUARES);\n"
+    "    ~PAIRS s[g] += m[g]*m[g];\n"
+    "  }\n"
+    "  if (k > 4) {\n"
+    "    const taylor_pair *const am = (const taylor_pair *)(w->a[k - 2] + TAYLOR_SQUARES);\n"
+    "    ~PAIRS s[g] += twice*(am[g]*a2[g]);\n"
+    "  }\n"
+    "  if (k > 2) {\n"
+    "    ~PAIRS s[g] += twice*(a[g]*a1[g]);\n"
+    "  } else if (k == 2) {\n"
+    "    ~PAIRS s[g] = a[g]*a[g];\n"
+    "  }\n"
+    "}\n";
 
 static const char *const along_rows_comment =
-  "\n/* Along rows of numbers.\n"
-  " *   taylor_sums      s = a[1] b[k-1] + ... + a[k-1] b[1]. What order k - 1 has just made comes last, and in pairs, as it was\n"
-  " *                    stored: a processor hands on what it has just stored only to loads of no more than that.\n"
-  " *   taylor_squares   the same where b is a: twice the first half, and the middle\n"
-  " *   taylor_rest      orders 1 to n\n"
-  " *   taylor_at        y = x[1] s + ... + x[n] s^n for q, v and z, and dy its derivative by s: even and odd powers by\n"
-  " *                    Horner's rule, side by side: u e(u) + s o(u), u = s^2. Both have room for TAYLOR_WIDTH. */";
+    "\n/* Along rows of numbers.\n"
+    " *   taylor_sums      s = a[1] b[k-1] + ... + a[k-1] b[1]. What order k - 1 has just made comes last, and in "
+    "pairs, as it was\n"
+    " *                    stored: a processor hands on what it has just stored only to loads of no more than that.\n"
+    " *   taylor_squares   the same where b is a: twice the first half, and the middle\n"
+    " *   taylor_rest      orders 1 to n\n"
+    " *   taylor_at        y = x[1] s + ... + x[n] s^n for q, v and z, and dy its derivative by s: even and odd powers "
+    "by\n"
+    " *                    Horner's rule, side by side: u e(u) + s o(u), u = s^2. Both have room for TAYLOR_WIDTH. */";
 
 static const char *const along_rows_of_header =
-  "\n/* Along rows of coefficients. taylor_sums: s = a[1] b[k-1] + ... + a[k-1] b[1]; taylor_squares: the same where b is a; taylor_rest: orders 1 to n;\n"
-  " * taylor_at: y = x[1] s + ... + x[n] s^n, by even and odd powers, and dy its derivative by s. */";
+    "\n/* Along rows of coefficients. taylor_sums: s = a[1] b[k-1] + ... + a[k-1] b[1]; taylor_squares: the same where "
+    "b is a; taylor_rest: orders 1 to n;\n"
+    " * taylor_at: y = x[1] s + ... + x[n] s^n, by even and odd powers, and dy its derivative by s. */";
 
 /* out: text to be written, with the names of model files; it goes to `file`, in headers with the prefix. */
 typedef struct {
@@ -205,9 +225,12 @@ typedef struct {
   StrBuf *out, *file;
 } TaylorWriter;
 
-static int is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; }
+static int is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
 
-/* Moves the text to the file. Names of headers: lag_, taylor_ and their capitals begin with the prefix, pairs are numbers. */
+/* Moves the text to the file. Names of headers: lag_, taylor_ and their capitals begin with the prefix, pairs are
+ * numbers. */
 static void flush(const TaylorWriter *w) {
   const char *text = sb_text(w->out), *prefix = w->base->prefix;
   if (!w->lower) sb_puts(w->file, text);
@@ -241,7 +264,8 @@ static CStyle style_for(const TaylorWriter *w, const char *const *own, const cha
 /* Whether the sums are few enough that the coefficients of the last order stay in registers. */
 static int sums_fit_registers(const TaylorWriter *w) {
   const Series *s = w->s;
-  return !w->lanes && s->first_square <= s->group && s->width - s->first_square <= s->group && s->sums <= REGISTER_SUMS_MAX && s->squares <= REGISTER_SUMS_MAX &&
+  return !w->lanes && s->first_square <= s->group && s->width - s->first_square <= s->group &&
+         s->sums <= REGISTER_SUMS_MAX && s->squares <= REGISTER_SUMS_MAX &&
          ops_total(prog_count(s->next)) <= TAYLOR_INLINE_MAX;
 }
 
@@ -250,11 +274,14 @@ static uint32_t even(uint32_t n) { return (n + 1) / 2 * 2; }
 static void work(const TaylorWriter *w) {
   const Series *s = w->s;
   uint32_t width = (2 * s->nq + s->nz + LANES - 1) / LANES * LANES;
-  sb_printf(w->out, "enum { TAYLOR_COLUMNS = %u, TAYLOR_WIDTH = %u, TAYLOR_GROUP = %u, TAYLOR_SQUARES = %u, TAYLOR_SUMS = %u, TAYLOR_CONSTANTS = %u",
+  sb_printf(w->out,
+            "enum { TAYLOR_COLUMNS = %u, TAYLOR_WIDTH = %u, TAYLOR_GROUP = %u, TAYLOR_SQUARES = %u, TAYLOR_SUMS = %u, "
+            "TAYLOR_CONSTANTS = %u",
             s->columns, width, s->group, s->first_square, s->width, s->constants ? s->constants : 1);
   if (sums_fit_registers(w))
-    sb_printf(w->out, "%sTAYLOR_STATE = %u, TAYLOR_PAIRED = %u, TAYLOR_SQUARED = %u, TAYLOR_PER_PAIR = %s", w->lower ? ",\n       " : " };\nenum { ",
-              even(2 * s->nq + s->nz), even(s->sums), even(s->squares), w->lower ? "1" : "sizeof(taylor_pair)/sizeof(LAG_REAL)");
+    sb_printf(w->out, "%sTAYLOR_STATE = %u, TAYLOR_PAIRED = %u, TAYLOR_SQUARED = %u, TAYLOR_PER_PAIR = %s",
+              w->lower ? ",\n       " : " };\nenum { ", even(2 * s->nq + s->nz), even(s->sums), even(s->squares),
+              w->lower ? "1" : "sizeof(taylor_pair)/sizeof(LAG_REAL)");
   sb_puts(w->out, " };\n");
   const char *some = w->lower ? " + 1" : ""; /* C99 has no empty arrays */
   if (w->lanes)
@@ -273,7 +300,11 @@ static void work(const TaylorWriter *w) {
 
 static void copy(const TaylorWriter *w, const char *name, uint32_t n, uint32_t from) {
   for (uint32_t i = 0; i < n && n < LOOP_FROM; i++) sb_printf(w->out, "  x[%u] = %s[%u];\n", from + i, name, i);
-  if (n >= LOOP_FROM) sb_printf(w->out, from ? "  for (int i = 0; i < %u; i++) x[i + %u] = %s[i];\n" : "  for (int i = 0; i < %u; i++) x[i%.0u] = %s[i];\n", n, from, name);
+  if (n >= LOOP_FROM)
+    sb_printf(w->out,
+              from ? "  for (int i = 0; i < %u; i++) x[i + %u] = %s[i];\n"
+                   : "  for (int i = 0; i < %u; i++) x[i%.0u] = %s[i];\n",
+              n, from, name);
 }
 
 /* Types of a text for lanes: single numbers. */
@@ -300,9 +331,12 @@ static void first(const TaylorWriter *w) {
   const Series *s = w->s;
   CStyle st = style_for(w, own, written);
   sb_printf(w->out, "\n/* Order 0: %s. */\n", op_count_text(s->first, w->a));
-  sb_printf(w->out, "static int taylor_first(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const %s *p,\n"
-                    "    const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *x, %s *work) {\n"
-                    "  LAG_REAL *const c = ((taylor_work *)(void *)work)->c;\n", w->lower ? "lag_params" : "LAG_REAL", work_type(w));
+  sb_printf(
+      w->out,
+      "static int taylor_first(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const %s *p,\n"
+      "    const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *x, %s *work) {\n"
+      "  LAG_REAL *const c = ((taylor_work *)(void *)work)->c;\n",
+      w->lower ? "lag_params" : "LAG_REAL", work_type(w));
   if (s->room) sb_puts(w->out, "  LAG_REAL *const w = ((taylor_work *)(void *)work)->m;\n");
   sb_puts(w->out, "  (void)t; (void)q; (void)v; (void)z; (void)p; (void)u; (void)follows; (void)c;\n");
   copy(w, "q", s->nq, 0);
@@ -323,17 +357,21 @@ static void next(const TaylorWriter *w) {
   }
   st.is_regular = 1; /* as at order 0 */
   st.apart = 1; /* y may be x: it reads the state and t, and writes the rates */
-  sb_printf(w->out, "\n/* Order k > 0, besides the sums: %s. Each name stands for coefficient k of its value. */\n", op_count_text(s->next, w->a));
-  sb_printf(w->out, "static %svoid taylor_next(", !w->lower && ops_total(prog_count(s->next)) <= TAYLOR_INLINE_MAX ? "TAYLOR_INLINE " : "");
-  sb_puts(w->out, "LAG_REAL order, LAG_REAL per_order, LAG_REAL up, const LAG_REAL *s, const LAG_REAL *c, const LAG_REAL *y,\n"
-                  "    LAG_REAL *x, LAG_REAL *x1, LAG_REAL *a, LAG_REAL *b");
+  sb_printf(w->out, "\n/* Order k > 0, besides the sums: %s. Each name stands for coefficient k of its value. */\n",
+            op_count_text(s->next, w->a));
+  sb_printf(w->out, "static %svoid taylor_next(",
+            !w->lower && ops_total(prog_count(s->next)) <= TAYLOR_INLINE_MAX ? "TAYLOR_INLINE " : "");
+  sb_puts(w->out,
+          "LAG_REAL order, LAG_REAL per_order, LAG_REAL up, const LAG_REAL *s, const LAG_REAL *c, const LAG_REAL *y,\n"
+          "    LAG_REAL *x, LAG_REAL *x1, LAG_REAL *a, LAG_REAL *b");
   sb_puts(w->out, s->room ? ", LAG_REAL *w) {\n" : ") {\n");
   sb_puts(w->out, "  (void)order; (void)per_order; (void)up; (void)s; (void)c; (void)y; (void)a; (void)b;\n");
   body(w, s->next, &st);
   sb_puts(w->out, "}\n");
 }
 
-/* Appends the head of the loop `~N` at text, indented as in its line (begin: of the template); returns the length of N. */
+/* Appends the head of the loop `~N` at text, indented as in its line (begin: of the template); returns the length of
+ * N. */
 static size_t unrolled(const TaylorWriter *w, const char *begin, const char *text) {
   size_t column = 0, n = strspn(text + 1, "ABCDEFGHIJKLMNOPQRSTUVWXYZ");
   while (text - column > begin && *(text - column - 1) == ' ') column++;
@@ -342,7 +380,8 @@ static size_t unrolled(const TaylorWriter *w, const char *begin, const char *tex
   return n;
 }
 
-/* Appends a template with its marks filled in. The loop over orders is unrolled where there is a single group of sums. */
+/* Appends a template with its marks filled in. The loop over orders is unrolled where there is a single group of
+ * sums. */
 static void fill(const TaylorWriter *w, const char *text, const char *suffix, const char *type, const char *attribute) {
   StrBuf *out = w->out;
   for (const char *begin = text; *text; text++) {
@@ -353,7 +392,8 @@ static void fill(const TaylorWriter *w, const char *text, const char *suffix, co
     else if (w->lower && strncmp(text, "  TAYLOR_UNROLL_4\n", 18) == 0) text += 17;
     else if (w->lower && strncmp(text, "taylor_part$(far, g)", 20) == 0) sb_puts(out, "far[g]"), text += 19;
     else if (*text == '~') text += unrolled(w, begin, text);
-    else if (*text == '%' && text[1] == ' ') sb_puts(out, !w->lower && w->s->first_square == w->s->group ? "    TAYLOR_UNROLL_4\n" : "");
+    else if (*text == '%' && text[1] == ' ')
+      sb_puts(out, !w->lower && w->s->first_square == w->s->group ? "    TAYLOR_UNROLL_4\n" : "");
     else sb_putc(out, *text);
   }
 }
@@ -363,7 +403,8 @@ static uint32_t rate_column(const Series *s, uint32_t i) { return i < s->nq ? s-
 
 /* Writes x[to + i] of order 1 = T times x[from + i] of order 0, for i < n. */
 static void rate(const TaylorWriter *w, uint32_t to, uint32_t from, uint32_t n) {
-  if (n) sb_printf(w->out, "  for (int i = %u; i < %u; i++) x[TAYLOR_COLUMNS + i] = T*x[i + %u];\n", to, to + n, from - to);
+  if (n)
+    sb_printf(w->out, "  for (int i = %u; i < %u; i++) x[TAYLOR_COLUMNS + i] = T*x[i + %u];\n", to, to + n, from - to);
 }
 
 /* Clears the padding of the last groups. Up to 15 sums are stored in pairs, an odd last one together with a zero. */
@@ -374,8 +415,10 @@ static void clear_padding(const TaylorWriter *w) {
     sb_printf(w->out, "  for (int k = 1; k < n; k++) /* what fills the last group */\n"
                       "    for (int i = %u; i < TAYLOR_SQUARES; i++) w->a[k][i] = w->b[k][i] = LAG_C(0.0);\n", filled);
   if (s->first_square + s->squares < s->width)
-    sb_printf(w->out, "  for (int k = 0; k < n; k++)\n"
-                      "    for (int i = %u; i < TAYLOR_SUMS; i++) w->a[k][i] = LAG_C(0.0);\n", s->first_square + s->squares);
+    sb_printf(w->out,
+              "  for (int k = 0; k < n; k++)\n"
+              "    for (int i = %u; i < TAYLOR_SUMS; i++) w->a[k][i] = LAG_C(0.0);\n",
+              s->first_square + s->squares);
 }
 
 /* Loop over orders with rows in memory. */
@@ -386,18 +429,23 @@ static void orders_in_memory(const TaylorWriter *w, const char *suffix) {
                   "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_LANE)(k + 1);\n");
   if (s->sums) sb_printf(w->out, "    taylor_sums%s(k, w);\n", suffix);
   if (s->squares) sb_printf(w->out, "    taylor_squares%s(k, w);\n", suffix);
-  sb_printf(w->out, "    taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, w->s, w->c, row, row, row + TAYLOR_COLUMNS, w->a[k], w->b[k]%s);\n",
+  sb_printf(w->out,
+            "    taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, w->s, w->c, row, row, row + TAYLOR_COLUMNS, "
+            "w->a[k], w->b[k]%s);\n",
             s->room ? ", w->m" : "");
 }
 
-/* Loop over orders with the state and the factors of sums in registers: the arrays of pairs y1, a and b, which compilers keep in
- * registers because no single element is addressed; y and s are copies whose elements are. */
+/* Loop over orders with the state and the factors of sums in registers: the arrays of pairs y1, a and b, which
+ * compilers keep in registers because no single element is addressed; y and s are copies whose elements are. */
 static void orders_in_registers(const TaylorWriter *w, const char *suffix) {
   const Series *s = w->s;
   uint32_t state = 2 * s->nq + s->nz;
   int reads_row = s->uses_time; /* t stands behind the state, in the row */
-  fill(w, "  enum { STATE = TAYLOR_STATE/TAYLOR_PER_PAIR, PAIRS = TAYLOR_PAIRED/TAYLOR_PER_PAIR, SQUARES = TAYLOR_SQUARES/TAYLOR_PER_PAIR,\n"
-          "    ALL = TAYLOR_SQUARED", "", "", "");
+  fill(w,
+       "  enum { STATE = TAYLOR_STATE/TAYLOR_PER_PAIR, PAIRS = TAYLOR_PAIRED/TAYLOR_PER_PAIR, SQUARES = "
+       "TAYLOR_SQUARES/TAYLOR_PER_PAIR,\n"
+       "    ALL = TAYLOR_SQUARED",
+       "", "", "");
   sb_puts(w->out, w->lower ? " > 0" : ""); /* C++ compilers warn of a number as a condition */
   fill(w, " ? SQUARES + TAYLOR_SQUARED/TAYLOR_PER_PAIR : PAIRS };\n"
           "  const taylor_pair zero = {0};\n"
@@ -425,7 +473,9 @@ static void orders_in_registers(const TaylorWriter *w, const char *suffix) {
   if (s->sums) sb_printf(w->out, "    taylor_sums%s(k, w, a, b, sum);\n", suffix);
   if (s->squares) sb_printf(w->out, "    taylor_squares%s(k, w, a + SQUARES, sum + SQUARES);\n", suffix);
   fill(w, "    ~ALL s[g] = sum[g];\n", "", "", "");
-  sb_printf(w->out, "    taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, (const LAG_REAL *)s, w->c, %s, row, (LAG_REAL *)y1, (LAG_REAL *)a, (LAG_REAL *)b%s);\n",
+  sb_printf(w->out,
+            "    taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, (const LAG_REAL *)s, w->c, %s, row, "
+            "(LAG_REAL *)y1, (LAG_REAL *)a, (LAG_REAL *)b%s);\n",
             reads_row ? "row" : "(const LAG_REAL *)y", s->room ? ", w->m" : "");
   fill(w, "    ~STATE ((taylor_pair *)(row + TAYLOR_COLUMNS))[g] = y1[g];\n"
           "    ~ALL ((taylor_pair *)w->a[k])[g] = a[g];\n"
@@ -490,16 +540,19 @@ static void choose_width(StrBuf *out) {
 static void table(const TaylorWriter *w, int wide) {
   const Series *s = w->s;
   sb_puts(w->out, "\nstatic const lag_taylor taylor = {\n"
-    "  .order = LAG_TAYLOR_ORDER, .columns = TAYLOR_COLUMNS, .width = TAYLOR_WIDTH, .nw = (int)(sizeof(taylor_work)/sizeof(LAG_REAL)),\n");
+                  "  .order = LAG_TAYLOR_ORDER, .columns = TAYLOR_COLUMNS, .width = TAYLOR_WIDTH, .nw = "
+                  "(int)(sizeof(taylor_work)/sizeof(LAG_REAL)),\n");
   TaylorCosts c = taylor_costs(s);
   if (w->lanes) sb_puts(w->out, "  .lanes = 1,\n");
   sb_printf(w->out, "  .cost_first = %u, .cost_next = %u, .sums = %u,\n", c.first, c.next, c.sums);
-  sb_printf(w->out, "  .first = taylor_first, .rest = taylor_rest%s, .at = taylor_at%s,\n};\n", wide ? "_any" : "", wide ? "_any" : "");
+  sb_printf(w->out, "  .first = taylor_first, .rest = taylor_rest%s, .at = taylor_at%s,\n};\n", wide ? "_any" : "",
+            wide ? "_any" : "");
 }
 
 TaylorCosts taylor_costs(const Series *s) {
   OpCount c = prog_count(s->first);
-  return (TaylorCosts){ops_as_int(ops_total(c) + CALL*c.fn), ops_as_int(ops_total(prog_count(s->next))), s->sums + s->squares/2};
+  return (TaylorCosts){ops_as_int(ops_total(c) + CALL * c.fn), ops_as_int(ops_total(prog_count(s->next))),
+                       s->sums + s->squares / 2};
 }
 
 static void emit_types(TaylorWriter w) {

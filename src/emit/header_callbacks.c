@@ -1,4 +1,5 @@
-/* Callbacks of an emitted header for the libraries of `--for`: thin functions around _rhs, _jac and _events, as GSL, SUNDIALS and CasADi call them. */
+/* Callbacks of an emitted header for the libraries of `--for`: thin functions around _rhs, _jac and _events, as GSL,
+ * SUNDIALS and CasADi call them. */
 #include <math.h>
 #include <string.h>
 
@@ -15,17 +16,22 @@ static uint32_t ny(const Header *h) { return 2 * h->u->q.n + h->u->z.n; }
 
 typedef unsigned char Pattern; /* [NY*columns], row by row */
 
-static Pattern *pattern_new(const Header *h, uint32_t columns) { return ARENA_ARRAY(h->a, Pattern, (size_t)ny(h) * columns + 1); }
+static Pattern *pattern_new(const Header *h, uint32_t columns) {
+  return ARENA_ARRAY(h->a, Pattern, (size_t)ny(h) * columns + 1);
+}
 
-/* Derivatives of the rates from those of the residuals f - M q'' and of the constraints: the solution fills all rows of a block of M and A. */
+/* Derivatives of the rates from those of the residuals f - M q'' and of the constraints: the solution fills all rows
+ * of a block of M and A. */
 static Pattern *rates_pattern(const Header *h, const IrEntry *at, uint32_t n, uint32_t columns) {
   uint32_t nq = h->u->q.n, *block = union_find_new(h->a, nq + 1);
   Pattern *x = pattern_new(h, columns);
   const IrConstraints *c = &h->u->constraints;
   uint32_t m = nq + h->u->z.n, *first = ARENA_ARRAY(h->a, uint32_t, c->of.n + 1); /* a coordinate of each constraint */
-  for (uint32_t k = 0; k < h->u->linear_mass.n; k++) union_find_join(block, h->u->linear_mass.at[k].row, h->u->linear_mass.at[k].col);
+  for (uint32_t k = 0; k < h->u->linear_mass.n; k++)
+    union_find_join(block, h->u->linear_mass.at[k].row, h->u->linear_mass.at[k].col);
   for (uint32_t k = 0; k < c->jacobian.n; k++) first[c->jacobian.at[k].row] = c->jacobian.at[k].col;
-  for (uint32_t k = 0; k < c->jacobian.n; k++) union_find_join(block, first[c->jacobian.at[k].row], c->jacobian.at[k].col);
+  for (uint32_t k = 0; k < c->jacobian.n; k++)
+    union_find_join(block, first[c->jacobian.at[k].row], c->jacobian.at[k].col);
   for (uint32_t k = 0; k < n; k++) {
     if (at[k].row >= nq && at[k].row < m) {
       x[(nq + at[k].row) * columns + at[k].col] = 1;
@@ -165,24 +171,25 @@ static const char *const gsl_system =
   " |}\n";
 
 static const char *const store_matrix =
-  " |\n"
-  " |/* Row-major J with the pattern at (columns, then rows), to a dense matrix or one of compressed columns. */\n"
-  " |static int lag_store_matrix(const int *at, const LAG_REAL *J, SUNMatrix to) {\n"
-  " |  if (SUNMatGetID(to) == SUNMATRIX_DENSE) {\n"
-  " |    for (int j = 0; j < LAG_NY; j++)\n"
-  " |      for (int i = 0; i < LAG_NY; i++) SM_ELEMENT_D(to, i, j) = J[i*LAG_NY + j];\n"
-  " |    return 0;\n"
-  " |  }\n"
-  " |  if (SUNMatGetID(to) != SUNMATRIX_SPARSE || SM_SPARSETYPE_S(to) != CSC_MAT || SM_NNZ_S(to) < at[LAG_NY]) return -1;\n"
-  " |  for (int j = 0; j <= LAG_NY; j++) SM_INDEXPTRS_S(to)[j] = at[j];\n"
-  " |  for (int j = 0; j < LAG_NY; j++)\n"
-  " |    for (int k = at[j]; k < at[j + 1]; k++) {\n"
-  " |      const int i = at[LAG_NY + 1 + k];\n"
-  " |      SM_INDEXVALS_S(to)[k] = i;\n"
-  " |      SM_DATA_S(to)[k] = J[i*LAG_NY + j];\n"
-  " |    }\n"
-  " |  return 0;\n"
-  " |}\n";
+    " |\n"
+    " |/* Row-major J with the pattern at (columns, then rows), to a dense matrix or one of compressed columns. */\n"
+    " |static int lag_store_matrix(const int *at, const LAG_REAL *J, SUNMatrix to) {\n"
+    " |  if (SUNMatGetID(to) == SUNMATRIX_DENSE) {\n"
+    " |    for (int j = 0; j < LAG_NY; j++)\n"
+    " |      for (int i = 0; i < LAG_NY; i++) SM_ELEMENT_D(to, i, j) = J[i*LAG_NY + j];\n"
+    " |    return 0;\n"
+    " |  }\n"
+    " |  if (SUNMatGetID(to) != SUNMATRIX_SPARSE || SM_SPARSETYPE_S(to) != CSC_MAT || SM_NNZ_S(to) < at[LAG_NY]) "
+    "return -1;\n"
+    " |  for (int j = 0; j <= LAG_NY; j++) SM_INDEXPTRS_S(to)[j] = at[j];\n"
+    " |  for (int j = 0; j < LAG_NY; j++)\n"
+    " |    for (int k = at[j]; k < at[j + 1]; k++) {\n"
+    " |      const int i = at[LAG_NY + 1 + k];\n"
+    " |      SM_INDEXVALS_S(to)[k] = i;\n"
+    " |      SM_DATA_S(to)[k] = J[i*LAG_NY + j];\n"
+    " |    }\n"
+    " |  return 0;\n"
+    " |}\n";
 
 /* CVODE and ARKODE call the same forms. */
 static const char *const ode_rhs =
@@ -220,61 +227,63 @@ static const char *const ida_plain =
 
 /* The residual from the forces M q'' + b that the rates need; rates of states by _accel. */
 static const char *const ida_implicit =
-  " |\n"
-  " |static int lag_residual(LAG_REAL t, const LAG_REAL *y, const LAG_REAL *rate, const lag_data *d, LAG_REAL *r) {\n"
-  STATE_AND_DATA
-  "z|  LAG_REAL a[LAG_NQ];\n"
-  "z|  if (lag_accel(ARGS, a, r + 2*LAG_NQ) != LAG_OK) return LAG_ESINGULAR;\n"
-  "z|  for (int i = 2*LAG_NQ; i < LAG_NY; i++) r[i] = rate[i] - r[i];\n"
-  " |  for (int i = 0; i < LAG_NQ; i++) r[i] = rate[i] - v[i];\n"
-  " |  return lag_inverse_dynamics(ARGS, rate + LAG_NQ, r + LAG_NQ);\n"
-  " |}\n"
-  " |\n"
-  " |LAG_API int lag_ida_res(sunrealtype t, N_Vector y, N_Vector dydt, N_Vector r, void *data) {\n"
-  " |  return lag_residual(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt), (const lag_data *)data, N_VGetArrayPointer(r)) != LAG_OK;\n"
-  " |}\n";
+    " |\n"
+    " |static int lag_residual(LAG_REAL t, const LAG_REAL *y, const LAG_REAL *rate, const lag_data *d, LAG_REAL *r) "
+    "{\n" STATE_AND_DATA "z|  LAG_REAL a[LAG_NQ];\n"
+    "z|  if (lag_accel(ARGS, a, r + 2*LAG_NQ) != LAG_OK) return LAG_ESINGULAR;\n"
+    "z|  for (int i = 2*LAG_NQ; i < LAG_NY; i++) r[i] = rate[i] - r[i];\n"
+    " |  for (int i = 0; i < LAG_NQ; i++) r[i] = rate[i] - v[i];\n"
+    " |  return lag_inverse_dynamics(ARGS, rate + LAG_NQ, r + LAG_NQ);\n"
+    " |}\n"
+    " |\n"
+    " |LAG_API int lag_ida_res(sunrealtype t, N_Vector y, N_Vector dydt, N_Vector r, void *data) {\n"
+    " |  return lag_residual(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt), (const lag_data *)data, "
+    "N_VGetArrayPointer(r)) != LAG_OK;\n"
+    " |}\n";
 
 static const char *const ida_jac =
-  " |\n"
-  " |static const int lag_residual_at[] = {RESIDUAL_AT};\n"
-  " |\n"
-  " |static void lag_residual_jac(LAG_REAL t, LAG_REAL c, const LAG_REAL *y, const LAG_REAL *rate, const lag_data *d, LAG_REAL *J) {\n"
-  "q|  static const unsigned short at[][2] = {MASS_AT};\n"
-  "q|  LAG_REAL m[NMASS];\n"
-  " |  LAG_REAL e[NENTRIES];\n"
-  STATE_AND_DATA
-  " |  (void)rate;\n"
-  " |  for (int i = 0; i < LAG_NY*LAG_NY; i++) J[i] = LAG_C(0.0);\n"
-  "q|  for (int i = 0; i < LAG_NQ; i++) J[i*LAG_NY + LAG_NQ + i] = LAG_C(-1.0);\n"
-  " |  for (int i = 0; i < LAG_NY; i++)\n"
-  " |    if (i < LAG_NQ || i >= 2*LAG_NQ) J[i*LAG_NY + i] = c;\n"
-  " |  lag_partials_state(ARGSOF_RATES);\n"
-  "q|  for (int k = 0; k < NMASS; k++) J[(LAG_NQ + at[k][0])*LAG_NY + LAG_NQ + at[k][1]] = c*m[k];\n"
-  "q|  for (int k = 0; k < NMASS; k++) J[(LAG_NQ + at[k][1])*LAG_NY + LAG_NQ + at[k][0]] = c*m[k];\n"
-  " |  for (int k = 0; k < NDERIVATIVES; k++) J[(LAG_NQ + lag_by_state_at[k][0])*LAG_NY + lag_by_state_at[k][1]] -= e[k];\n"
-  " |}\n"
-  " |\n"
-  " |LAG_API int lag_ida_jac(sunrealtype t, sunrealtype c, N_Vector y, N_Vector dydt, N_Vector r, SUNMatrix J, void *data,\n"
-  " |   N_Vector w1, N_Vector w2, N_Vector w3) {\n"
-  " |  lag_data *const d = (lag_data *)data;\n"
-  " |  (void)r; (void)w1; (void)w2; (void)w3;\n"
-  " |  lag_residual_jac(t, c, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt), d, d->J);\n"
-  " |  return lag_store_matrix(lag_residual_at, d->J, J);\n"
-  " |}\n";
+    " |\n"
+    " |static const int lag_residual_at[] = {RESIDUAL_AT};\n"
+    " |\n"
+    " |static void lag_residual_jac(LAG_REAL t, LAG_REAL c, const LAG_REAL *y, const LAG_REAL *rate, const lag_data "
+    "*d, LAG_REAL *J) {\n"
+    "q|  static const unsigned short at[][2] = {MASS_AT};\n"
+    "q|  LAG_REAL m[NMASS];\n"
+    " |  LAG_REAL e[NENTRIES];\n" STATE_AND_DATA " |  (void)rate;\n"
+    " |  for (int i = 0; i < LAG_NY*LAG_NY; i++) J[i] = LAG_C(0.0);\n"
+    "q|  for (int i = 0; i < LAG_NQ; i++) J[i*LAG_NY + LAG_NQ + i] = LAG_C(-1.0);\n"
+    " |  for (int i = 0; i < LAG_NY; i++)\n"
+    " |    if (i < LAG_NQ || i >= 2*LAG_NQ) J[i*LAG_NY + i] = c;\n"
+    " |  lag_partials_state(ARGSOF_RATES);\n"
+    "q|  for (int k = 0; k < NMASS; k++) J[(LAG_NQ + at[k][0])*LAG_NY + LAG_NQ + at[k][1]] = c*m[k];\n"
+    "q|  for (int k = 0; k < NMASS; k++) J[(LAG_NQ + at[k][1])*LAG_NY + LAG_NQ + at[k][0]] = c*m[k];\n"
+    " |  for (int k = 0; k < NDERIVATIVES; k++) J[(LAG_NQ + lag_by_state_at[k][0])*LAG_NY + lag_by_state_at[k][1]] -= "
+    "e[k];\n"
+    " |}\n"
+    " |\n"
+    " |LAG_API int lag_ida_jac(sunrealtype t, sunrealtype c, N_Vector y, N_Vector dydt, N_Vector r, SUNMatrix J, void "
+    "*data,\n"
+    " |   N_Vector w1, N_Vector w2, N_Vector w3) {\n"
+    " |  lag_data *const d = (lag_data *)data;\n"
+    " |  (void)r; (void)w1; (void)w2; (void)w3;\n"
+    " |  lag_residual_jac(t, c, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt), d, d->J);\n"
+    " |  return lag_store_matrix(lag_residual_at, d->J, J);\n"
+    " |}\n";
 
 /* Of models with constraints, whose residual is y' - f(t, y). */
 static const char *const ida_plain_jac =
-  " |\n"
-  " |static const int lag_residual_at[] = {RESIDUAL_AT};\n"
-  " |\n"
-  " |LAG_API int lag_ida_jac(sunrealtype t, sunrealtype c, N_Vector y, N_Vector dydt, N_Vector r, SUNMatrix J, void *data,\n"
-  " |   N_Vector w1, N_Vector w2, N_Vector w3) {\n"
-  " |  lag_data *const d = (lag_data *)data;\n"
-  " |  (void)dydt; (void)r; (void)w1; (void)w2; (void)w3;\n"
-  " |  if (lag_jac_of_y(t, N_VGetArrayPointer(y), d, d->J) != LAG_OK) return 1;\n"
-  " |  for (int i = 0; i < LAG_NY*LAG_NY; i++) d->J[i] = (i%(LAG_NY + 1) ? LAG_C(0.0) : c) - d->J[i];\n"
-  " |  return lag_store_matrix(lag_residual_at, d->J, J);\n"
-  " |}\n";
+    " |\n"
+    " |static const int lag_residual_at[] = {RESIDUAL_AT};\n"
+    " |\n"
+    " |LAG_API int lag_ida_jac(sunrealtype t, sunrealtype c, N_Vector y, N_Vector dydt, N_Vector r, SUNMatrix J, void "
+    "*data,\n"
+    " |   N_Vector w1, N_Vector w2, N_Vector w3) {\n"
+    " |  lag_data *const d = (lag_data *)data;\n"
+    " |  (void)dydt; (void)r; (void)w1; (void)w2; (void)w3;\n"
+    " |  if (lag_jac_of_y(t, N_VGetArrayPointer(y), d, d->J) != LAG_OK) return 1;\n"
+    " |  for (int i = 0; i < LAG_NY*LAG_NY; i++) d->J[i] = (i%(LAG_NY + 1) ? LAG_C(0.0) : c) - d->J[i];\n"
+    " |  return lag_store_matrix(lag_residual_at, d->J, J);\n"
+    " |}\n";
 
 static const char *const ida_root =
   " |\n"
@@ -285,32 +294,33 @@ static const char *const ida_root =
 
 /* Queries of CasADi about a function. */
 static const char *const casadi_facts =
-  " |\n"
-  " |LAG_API casadi_int FUNCTION_n_in(void) { return N_IN; }\n"
-  " |LAG_API casadi_int FUNCTION_n_out(void) { return N_OUT; }\n"
-  " |LAG_API const char *FUNCTION_name_in(casadi_int i) {\n"
-  " |  static const char *const names[] = {\"x\", \"u\", \"p\", \"t\", \"out_xdot\"};\n"
-  " |  return i >= 0 && i < N_IN ? names[i] : 0;\n"
-  " |}\n"
-  " |LAG_API const char *FUNCTION_name_out(casadi_int i) {\n"
-  " |  static const char *const names[] = {OUTPUTS};\n"
-  " |  return i >= 0 && i < N_OUT ? names[i] : 0;\n"
-  " |}\n"
-  " |LAG_API const casadi_int *FUNCTION_sparsity_in(casadi_int i) {\n"
-  " |  static const casadi_int at[][4] = {{LAG_NY, 1, 1, 0}, {LAG_NU, 1, 1, 0}, {LAG_NP, 1, 1, 0}, {1, 1, 1, 0}, {LAG_NY, 1, 0, 0}};\n"
-  " |  return i >= 0 && i < N_IN ? at[i] : 0;\n"
-  " |}\n"
-  " |LAG_API const casadi_int *FUNCTION_sparsity_out(casadi_int i) {\n"
-  " |  PATTERNS;\n"
-  " |  return i >= 0 && i < N_OUT ? at[i] : 0;\n"
-  " |}\n"
-  " |LAG_API int FUNCTION_work(casadi_int *sz_arg, casadi_int *sz_res, casadi_int *sz_iw, casadi_int *sz_w) {\n"
-  " |  if (sz_arg) *sz_arg = N_IN;\n"
-  " |  if (sz_res) *sz_res = N_OUT;\n"
-  " |  if (sz_iw) *sz_iw = 0;\n"
-  " |  if (sz_w) *sz_w = LAG_NY + LAG_NUMATRICES;\n"
-  " |  return 0;\n"
-  " |}\n";
+    " |\n"
+    " |LAG_API casadi_int FUNCTION_n_in(void) { return N_IN; }\n"
+    " |LAG_API casadi_int FUNCTION_n_out(void) { return N_OUT; }\n"
+    " |LAG_API const char *FUNCTION_name_in(casadi_int i) {\n"
+    " |  static const char *const names[] = {\"x\", \"u\", \"p\", \"t\", \"out_xdot\"};\n"
+    " |  return i >= 0 && i < N_IN ? names[i] : 0;\n"
+    " |}\n"
+    " |LAG_API const char *FUNCTION_name_out(casadi_int i) {\n"
+    " |  static const char *const names[] = {OUTPUTS};\n"
+    " |  return i >= 0 && i < N_OUT ? names[i] : 0;\n"
+    " |}\n"
+    " |LAG_API const casadi_int *FUNCTION_sparsity_in(casadi_int i) {\n"
+    " |  static const casadi_int at[][4] = {{LAG_NY, 1, 1, 0}, {LAG_NU, 1, 1, 0}, {LAG_NP, 1, 1, 0}, {1, 1, 1, 0}, "
+    "{LAG_NY, 1, 0, 0}};\n"
+    " |  return i >= 0 && i < N_IN ? at[i] : 0;\n"
+    " |}\n"
+    " |LAG_API const casadi_int *FUNCTION_sparsity_out(casadi_int i) {\n"
+    " |  PATTERNS;\n"
+    " |  return i >= 0 && i < N_OUT ? at[i] : 0;\n"
+    " |}\n"
+    " |LAG_API int FUNCTION_work(casadi_int *sz_arg, casadi_int *sz_res, casadi_int *sz_iw, casadi_int *sz_w) {\n"
+    " |  if (sz_arg) *sz_arg = N_IN;\n"
+    " |  if (sz_res) *sz_res = N_OUT;\n"
+    " |  if (sz_iw) *sz_iw = 0;\n"
+    " |  if (sz_w) *sz_w = LAG_NY + LAG_NUMATRICES;\n"
+    " |  return 0;\n"
+    " |}\n";
 
 static const char *const casadi_ode =
   " |\n"
@@ -331,80 +341,92 @@ static const char *const casadi_ode =
   " |}\n";
 
 static const char *const casadi_jac =
-  " |\n"
-  " |static const casadi_int lag_ode_A[] = {LAG_NY, LAG_NY, JAC_AT};\n"
-  " |static const casadi_int lag_ode_B[] = {LAG_NY, LAG_NU, INPUTS_AT};\n"
-  " |static const casadi_int lag_ode_P[] = {LAG_NY, LAG_NP, PARAMS_AT};\n"
-  " |static const casadi_int lag_ode_T[] = {LAG_NY, 1, TIME_AT};\n"
-  " |\n"
-  " |/* The entries of a row-major matrix that CasADi stores. */\n"
-  " |static void lag_ode_gather(const casadi_int *at, const casadi_real *from, casadi_real *to) {\n"
-  " |  const casadi_int columns = at[1], *const first = at + 2, *const row = first + columns + 1;\n"
-  " |  for (casadi_int j = 0; j < columns && to; j++)\n"
-  " |    for (casadi_int k = first[j]; k < first[j + 1]; k++) to[k] = from[row[k]*columns + j];\n"
-  " |}\n"
-  " |\n"
-  " |LAG_API int jac_lag_ode(const casadi_real **arg, casadi_real **res, casadi_int *iw, casadi_real *w, int mem) {\n"
-  " |  lag_params values;\n"
-  " |  const lag_params *const p = &values;\n"
-  " |  const casadi_real t = lag_ode_arguments(arg, w, &values);\n"
-  "q|  const casadi_real *const q = w, *const v = w + LAG_NQ;\n"
-  "z|  const casadi_real *const z = w + 2*LAG_NQ;\n"
-  "u|  const casadi_real *const u = w + LAG_NY;\n"
-  " |  casadi_real *const A = w + LAG_NY + LAG_NU, *const B = A + LAG_NY*LAG_NY, *const P = B + LAG_NY*LAG_NU, *const T = P + LAG_NY*LAG_NP;\n"
-  " |  int status = lag_linearize(ARGS, AINPUT_MATRIX);\n"
-  " |  (void)iw; (void)mem;\n"
-  " |PARAMS_MATRIXTIME_COLUMN  if (status != LAG_OK) return 1;\n"
-  " |  lag_ode_gather(lag_ode_A, A, res[0]);\n"
-  " |  lag_ode_gather(lag_ode_B, B, res[1]);\n"
-  " |  lag_ode_gather(lag_ode_P, P, res[2]);\n"
-  " |  lag_ode_gather(lag_ode_T, T, res[3]);\n"
-  " |  return 0;\n"
-  " |}\n";
+    " |\n"
+    " |static const casadi_int lag_ode_A[] = {LAG_NY, LAG_NY, JAC_AT};\n"
+    " |static const casadi_int lag_ode_B[] = {LAG_NY, LAG_NU, INPUTS_AT};\n"
+    " |static const casadi_int lag_ode_P[] = {LAG_NY, LAG_NP, PARAMS_AT};\n"
+    " |static const casadi_int lag_ode_T[] = {LAG_NY, 1, TIME_AT};\n"
+    " |\n"
+    " |/* The entries of a row-major matrix that CasADi stores. */\n"
+    " |static void lag_ode_gather(const casadi_int *at, const casadi_real *from, casadi_real *to) {\n"
+    " |  const casadi_int columns = at[1], *const first = at + 2, *const row = first + columns + 1;\n"
+    " |  for (casadi_int j = 0; j < columns && to; j++)\n"
+    " |    for (casadi_int k = first[j]; k < first[j + 1]; k++) to[k] = from[row[k]*columns + j];\n"
+    " |}\n"
+    " |\n"
+    " |LAG_API int jac_lag_ode(const casadi_real **arg, casadi_real **res, casadi_int *iw, casadi_real *w, int mem) {\n"
+    " |  lag_params values;\n"
+    " |  const lag_params *const p = &values;\n"
+    " |  const casadi_real t = lag_ode_arguments(arg, w, &values);\n"
+    "q|  const casadi_real *const q = w, *const v = w + LAG_NQ;\n"
+    "z|  const casadi_real *const z = w + 2*LAG_NQ;\n"
+    "u|  const casadi_real *const u = w + LAG_NY;\n"
+    " |  casadi_real *const A = w + LAG_NY + LAG_NU, *const B = A + LAG_NY*LAG_NY, *const P = B + LAG_NY*LAG_NU, "
+    "*const T = P + LAG_NY*LAG_NP;\n"
+    " |  int status = lag_linearize(ARGS, AINPUT_MATRIX);\n"
+    " |  (void)iw; (void)mem;\n"
+    " |PARAMS_MATRIXTIME_COLUMN  if (status != LAG_OK) return 1;\n"
+    " |  lag_ode_gather(lag_ode_A, A, res[0]);\n"
+    " |  lag_ode_gather(lag_ode_B, B, res[1]);\n"
+    " |  lag_ode_gather(lag_ode_P, P, res[2]);\n"
+    " |  lag_ode_gather(lag_ode_T, T, res[3]);\n"
+    " |  return 0;\n"
+    " |}\n";
 
 /* --- which of them a header has --- */
 
 enum { JAC = 1, EVENTS = 2, TIME = 4, IMPLICIT = 8, PLAIN = 16, LINEAR = 32, ALONE = 64 /* IDA without the others */ };
 
 static unsigned facts_of(const Header *h) {
-  int gsl_asks = has(h, PART_GSL) && has(h, PART_JAC) && (!is_timeless(h) || h->u->u.n), casadi_asks = has(h, PART_CASADI) && has(h, PART_LINEAR) && !is_timeless(h);
+  int gsl_asks = has(h, PART_GSL) && has(h, PART_JAC) && (!is_timeless(h) || h->u->u.n),
+      casadi_asks = has(h, PART_CASADI) && has(h, PART_LINEAR) && !is_timeless(h);
   int implicit = has(h, PART_INVERSE) && !h->u->constraints.of.n;
-  return (has(h, PART_JAC) ? JAC : 0u) | (has(h, PART_LINEAR) ? LINEAR : 0u) | (h->u->events.n ? EVENTS : 0u) | (gsl_asks || casadi_asks ? TIME : 0u) |
-         (implicit ? IMPLICIT : PLAIN) | (has(h, PART_GSL | PART_CVODE | PART_ARKODE) ? 0u : ALONE);
+  return (has(h, PART_JAC) ? JAC : 0u) | (has(h, PART_LINEAR) ? LINEAR : 0u) | (h->u->events.n ? EVENTS : 0u) |
+         (gsl_asks || casadi_asks ? TIME : 0u) | (implicit ? IMPLICIT : PLAIN) |
+         (has(h, PART_GSL | PART_CVODE | PART_ARKODE) ? 0u : ALONE);
 }
 
-/* In order of definition: libraries that call a function, what it needs, the word LIBRARY or FUNCTION, its text, the comment of its declaration. */
+/* In order of definition: libraries that call a function, what it needs, the word LIBRARY or FUNCTION, its text, the
+ * comment of its declaration. */
 static const struct {
   unsigned of, needs;
   const char *name, *text, *doc;
 } callbacks[] = {
-  {WITH_DATA, 0, "", data, "y[LAG_NY] = (q, v, z) of a state, and back."},
-  {PART_GSL | PART_CVODE | PART_ARKODE, JAC, "", jac_of_y, NULL},
-  {PART_IDA, JAC | PLAIN | ALONE, "", jac_of_y, NULL},
-  {SUNDIALS, EVENTS, "", events_of_y, NULL},
-  {SUNDIALS, EVENTS, "", directions, "Directions of the events' zeros: 1 rising, -1 falling, 0 both. After a root: lag_from_y, lag_act, lag_to_y, and a new start."},
-  {PART_GSL | PART_CASADI, TIME, "", by_time, NULL},
-  {PART_GSL, 0, "", gsl_rhs, NULL},
-  {PART_GSL, JAC, "", gsl_jac, NULL},
-  {PART_GSL, 0, "", gsl_system, "The system of GSL's drivers, with data d. They end no step at events."},
-  {SUNDIALS, JAC, "", store_matrix, NULL},
-  {PART_CVODE | PART_ARKODE, JAC, "", jac_pattern_table, NULL},
-  {PART_CVODE, 0, "cvode", ode_rhs, "For CVODE, with a lag_data as user data. Where the mass matrix is singular, a shorter step is tried."},
-  {PART_CVODE, JAC, "cvode", ode_jac, NULL},
-  {PART_CVODE, EVENTS, "cvode", ode_root, NULL},
-  {PART_ARKODE, 0, "arkode", ode_rhs, "For ARKODE, with a lag_data as user data. Where the mass matrix is singular, a shorter step is tried."},
-  {PART_ARKODE, JAC, "arkode", ode_jac, NULL},
-  {PART_ARKODE, EVENTS, "arkode", ode_root, NULL},
-  {PART_IDA, IMPLICIT, "", ida_implicit, "For IDA, with a lag_data as user data: the residual q' - v, M q'' + b. The rates of the start are from _rhs."},
-  {PART_IDA, PLAIN, "", ida_plain, "For IDA, with a lag_data as user data: the residual y' - f(t, y). The rates of the start are from _rhs."},
-  {PART_IDA, JAC | IMPLICIT, "", ida_jac, NULL},
-  {PART_IDA, JAC | PLAIN, "", ida_plain_jac, NULL},
-  {PART_IDA, EVENTS, "", ida_root, NULL},
-  {PART_CASADI, 0, "lag_ode", casadi_ode, "For CasADi 3.6 and later: xdot(x, u, p, t) with x = (q, v, z), p in the order LAG_P_..., and its Jacobian.\n"
-   " *   cc -O2 -shared -fPIC -x c -DLAG_IMPLEMENTATION FILE.h -o FILE.so -lm;  casadi.external(\"lag_ode\", \"./FILE.so\")"},
-  {PART_CASADI, 0, "lag_ode", casadi_facts, NULL},
-  {PART_CASADI, LINEAR, "jac_lag_ode", casadi_jac, NULL},
-  {PART_CASADI, LINEAR, "jac_lag_ode", casadi_facts, NULL},
+    {WITH_DATA, 0, "", data, "y[LAG_NY] = (q, v, z) of a state, and back."},
+    {PART_GSL | PART_CVODE | PART_ARKODE, JAC, "", jac_of_y, NULL},
+    {PART_IDA, JAC | PLAIN | ALONE, "", jac_of_y, NULL},
+    {SUNDIALS, EVENTS, "", events_of_y, NULL},
+    {SUNDIALS, EVENTS, "", directions,
+     "Directions of the events' zeros: 1 rising, -1 falling, 0 both. After a root: lag_from_y, lag_act, lag_to_y, and "
+     "a new start."},
+    {PART_GSL | PART_CASADI, TIME, "", by_time, NULL},
+    {PART_GSL, 0, "", gsl_rhs, NULL},
+    {PART_GSL, JAC, "", gsl_jac, NULL},
+    {PART_GSL, 0, "", gsl_system, "The system of GSL's drivers, with data d. They end no step at events."},
+    {SUNDIALS, JAC, "", store_matrix, NULL},
+    {PART_CVODE | PART_ARKODE, JAC, "", jac_pattern_table, NULL},
+    {PART_CVODE, 0, "cvode", ode_rhs,
+     "For CVODE, with a lag_data as user data. Where the mass matrix is singular, a shorter step is tried."},
+    {PART_CVODE, JAC, "cvode", ode_jac, NULL},
+    {PART_CVODE, EVENTS, "cvode", ode_root, NULL},
+    {PART_ARKODE, 0, "arkode", ode_rhs,
+     "For ARKODE, with a lag_data as user data. Where the mass matrix is singular, a shorter step is tried."},
+    {PART_ARKODE, JAC, "arkode", ode_jac, NULL},
+    {PART_ARKODE, EVENTS, "arkode", ode_root, NULL},
+    {PART_IDA, IMPLICIT, "", ida_implicit,
+     "For IDA, with a lag_data as user data: the residual q' - v, M q'' + b. The rates of the start are from _rhs."},
+    {PART_IDA, PLAIN, "", ida_plain,
+     "For IDA, with a lag_data as user data: the residual y' - f(t, y). The rates of the start are from _rhs."},
+    {PART_IDA, JAC | IMPLICIT, "", ida_jac, NULL},
+    {PART_IDA, JAC | PLAIN, "", ida_plain_jac, NULL},
+    {PART_IDA, EVENTS, "", ida_root, NULL},
+    {PART_CASADI, 0, "lag_ode", casadi_ode,
+     "For CasADi 3.6 and later: xdot(x, u, p, t) with x = (q, v, z), p in the order LAG_P_..., and its Jacobian.\n"
+     " *   cc -O2 -shared -fPIC -x c -DLAG_IMPLEMENTATION FILE.h -o FILE.so -lm;  casadi.external(\"lag_ode\", "
+     "\"./FILE.so\")"},
+    {PART_CASADI, 0, "lag_ode", casadi_facts, NULL},
+    {PART_CASADI, LINEAR, "jac_lag_ode", casadi_jac, NULL},
+    {PART_CASADI, LINEAR, "jac_lag_ode", casadi_facts, NULL},
 };
 enum { CALLBACKS = sizeof callbacks / sizeof *callbacks };
 
@@ -422,16 +444,21 @@ static const char *prototypes(const Header *h, const char *text) {
 }
 
 const char *header_libraries(const Header *h) {
-  return !has(h, WITH_DATA) ? "" : !has(h, SUNDIALS) ? ", GSL's headers" : !has(h, PART_GSL) ? ", headers of SUNDIALS" : ", headers of GSL and SUNDIALS";
+  return !has(h, WITH_DATA)  ? ""
+         : !has(h, SUNDIALS) ? ", GSL's headers"
+         : !has(h, PART_GSL) ? ", headers of SUNDIALS"
+                             : ", headers of GSL and SUNDIALS";
 }
 
 void header_callbacks_include(const Header *h) {
   if (has(h, PART_GSL)) sb_puts(h->out, "#include <gsl/gsl_odeiv2.h>\n");
   if (has(h, SUNDIALS))
-    csupport_expand("#include <sundials/sundials_matrix.h>\n#include <sundials/sundials_nvector.h>\n#include <sundials/sundials_types.h>\n"
+    csupport_expand("#include <sundials/sundials_matrix.h>\n#include <sundials/sundials_nvector.h>\n#include "
+                    "<sundials/sundials_types.h>\n"
                     "#include <sunmatrix/sunmatrix_dense.h>\n#include <sunmatrix/sunmatrix_sparse.h>\n"
                     "#ifndef LAG_REAL\n#if defined(SUNDIALS_SINGLE_PRECISION)\n#define LAG_REAL float\n"
-                    "#elif defined(SUNDIALS_EXTENDED_PRECISION)\n#define LAG_REAL long double\n#endif\n#endif\n", h->upper, h->lower, h->out);
+                    "#elif defined(SUNDIALS_EXTENDED_PRECISION)\n#define LAG_REAL long double\n#endif\n#endif\n",
+                    h->upper, h->lower, h->out);
   if (has(h, WITH_DATA)) sb_putc(h->out, '\n');
 }
 
@@ -440,13 +467,19 @@ void header_callbacks_declare(const Header *h) {
   const HeaderWord work[] = {{"WORK", sparse ? "  LAG_REAL J[LAG_NY*LAG_NY]; /* work space */\n" : ""}, {NULL, NULL}};
   if (has(h, WITH_DATA)) header_template(h, data_struct, work);
   if (sparse)
-    sb_printf(h->out, "\n/* Nonzero entries of Jacobians, of rates and of IDA's residual, for matrices of compressed columns (CSC_MAT); dense ones do as well. */\n"
-              "enum { %s_NNZ = %u, %s_NNZ_IDA = %u };\n", h->upper, entries(h, jac_pattern(h)), h->upper, entries(h, residual_pattern(h)));
-  if (has(h, PART_CASADI)) sb_puts(h->out, "\n#ifndef casadi_real\n#define casadi_real double\n#endif\n#ifndef casadi_int\n#define casadi_int long long int\n#endif\n");
+    sb_printf(h->out,
+              "\n/* Nonzero entries of Jacobians, of rates and of IDA's residual, for matrices of compressed columns "
+              "(CSC_MAT); dense ones do as well. */\n"
+              "enum { %s_NNZ = %u, %s_NNZ_IDA = %u };\n",
+              h->upper, entries(h, jac_pattern(h)), h->upper, entries(h, residual_pattern(h)));
+  if (has(h, PART_CASADI))
+    sb_puts(h->out, "\n#ifndef casadi_real\n#define casadi_real double\n#endif\n#ifndef casadi_int\n#define casadi_int "
+                    "long long int\n#endif\n");
   for (int i = 0; i < CALLBACKS; i++) {
     const HeaderWord w[] = {{"LIBRARY", callbacks[i].name}, {"FUNCTION", callbacks[i].name}, {NULL, NULL}};
     if (!is_wanted(h, i)) continue;
-    if (callbacks[i].doc) csupport_expand(arena_printf(h->a, "\n/* %s */\n", callbacks[i].doc), h->upper, h->lower, h->out);
+    if (callbacks[i].doc)
+      csupport_expand(arena_printf(h->a, "\n/* %s */\n", callbacks[i].doc), h->upper, h->lower, h->out);
     header_template(h, prototypes(h, callbacks[i].text), w);
   }
 }
@@ -456,34 +489,55 @@ void header_callbacks_define(const Header *h) {
   StrBuf to = strbuf(h->a);
   for (uint32_t i = 0; i < u->events.n; i++) sb_printf(&to, "%s%d", i ? ", " : "", u->events.at[i].direction);
   const char *args = header_state_args(h, 0, ""), *ok = "if (status == LAG_OK) status =";
-  const char *data_u = u->u.n ? ", ((lag_data *)data)->u" : "", *mass = arena_printf(h->a, "%u", u->linear_mass.n), *dr = arena_printf(h->a, "%u", u->linear_dr.n);
+  const char *data_u = u->u.n ? ", ((lag_data *)data)->u" : "", *mass = arena_printf(h->a, "%u", u->linear_mass.n),
+             *dr = arena_printf(h->a, "%u", u->linear_dr.n);
   const char *jac_at = "", *residual_at = "", *inputs_at = "", *params_at = "", *time_at = "", *dfdt = "status";
   int timeless = is_timeless(h);
   if (!has(h, WITH_DATA | PART_CASADI)) return;
-  if (!timeless || u->u.n) dfdt = arena_printf(h->a, "status == LAG_OK ? lag_by_time(t, y, &d->p%s, dfdt) : status", u->u.n ? ", d->u" : "");
+  if (!timeless || u->u.n)
+    dfdt = arena_printf(h->a, "status == LAG_OK ? lag_by_time(t, y, &d->p%s, dfdt) : status", u->u.n ? ", d->u" : "");
   if (has(h, PART_JAC | PART_LINEAR)) { /* the model is small enough for dense matrices */
     Pattern *time = pattern_new(h, 1);
     for (uint32_t i = u->q.n; i < ny(h) && !timeless; i++) time[i] = 1;
-    jac_at = compressed(h, jac_pattern(h), ny(h)), residual_at = compressed(h, residual_pattern(h), ny(h)), time_at = compressed(h, time, 1);
+    jac_at = compressed(h, jac_pattern(h), ny(h)), residual_at = compressed(h, residual_pattern(h), ny(h)),
+    time_at = compressed(h, time, 1);
     inputs_at = compressed(h, rates_pattern(h, u->by_inputs_dr.at, u->by_inputs_dr.n, u->u.n), u->u.n);
     params_at = compressed(h, rates_pattern(h, u->by_params_dr.at, u->by_params_dr.n, u->p.n), u->p.n);
   }
   for (int i = 0; i < CALLBACKS; i++) {
     int jac = callbacks[i].needs & LINEAR;
     const HeaderWord w[] = {
-      {"LIBRARY", callbacks[i].name}, {"FUNCTION", callbacks[i].name}, {"DIRECTIONS", sb_text(&to)}, {"DATA_U", data_u},
-      {"TYPED_U", u->u.n ? ", const LAG_REAL *u" : ""}, {"WITH_U", u->u.n ? ", u" : ""}, {"W_U", u->u.n ? ", w + LAG_NY" : ""},
-      {"STEP", header_constant(h, 0x1p-24 * fabs(h->scene->t1 - h->scene->t0))},
-      {"BY_TIME", dfdt}, {"JACOBIAN", has(h, PART_JAC) ? "lag_gsl_jac" : "0"},
-      {"JAC_AT", jac_at}, {"RESIDUAL_AT", residual_at}, {"TIME_AT", time_at}, {"INPUTS_AT", inputs_at}, {"PARAMS_AT", params_at},
-      {"MASS_AT", header_positions(h, u->linear_mass.at, u->linear_mass.n)}, {"NMASS", mass},
-      {"NENTRIES", u->linear_dr.n ? dr : "1"}, {"NDERIVATIVES", dr}, {"OF_RATES", u->q.n ? ", rate + LAG_NQ, e, m" : ", e"},
-      {"N_IN", jac ? "5" : "4"}, {"N_OUT", jac ? "4" : "1"},
-      {"OUTPUTS", jac ? "\"jac_xdot_x\", \"jac_xdot_u\", \"jac_xdot_p\", \"jac_xdot_t\"" : "\"xdot\""},
-      {"PATTERNS", jac ? "static const casadi_int *const at[] = {lag_ode_A, lag_ode_B, lag_ode_P, lag_ode_T}" : "static const casadi_int at[][3] = {{LAG_NY, 1, 1}}"},
-      {"MATRICES", jac ? " + LAG_NY*(LAG_NY + LAG_NU + LAG_NP + 1)" : ""}, {"INPUT_MATRIX", u->u.n ? ", B" : ""},
-      {"PARAMS_MATRIX", u->p.n ? arena_printf(h->a, "  %s lag_dparams(%s, P);\n", ok, args) : ""},
-      {"TIME_COLUMN", timeless ? "" : arena_printf(h->a, "  %s lag_by_time(t, w, p%s, T);\n", ok, u->u.n ? ", u" : "")}, {NULL, NULL}};
+        {"LIBRARY", callbacks[i].name},
+        {"FUNCTION", callbacks[i].name},
+        {"DIRECTIONS", sb_text(&to)},
+        {"DATA_U", data_u},
+        {"TYPED_U", u->u.n ? ", const LAG_REAL *u" : ""},
+        {"WITH_U", u->u.n ? ", u" : ""},
+        {"W_U", u->u.n ? ", w + LAG_NY" : ""},
+        {"STEP", header_constant(h, 0x1p-24 * fabs(h->scene->t1 - h->scene->t0))},
+        {"BY_TIME", dfdt},
+        {"JACOBIAN", has(h, PART_JAC) ? "lag_gsl_jac" : "0"},
+        {"JAC_AT", jac_at},
+        {"RESIDUAL_AT", residual_at},
+        {"TIME_AT", time_at},
+        {"INPUTS_AT", inputs_at},
+        {"PARAMS_AT", params_at},
+        {"MASS_AT", header_positions(h, u->linear_mass.at, u->linear_mass.n)},
+        {"NMASS", mass},
+        {"NENTRIES", u->linear_dr.n ? dr : "1"},
+        {"NDERIVATIVES", dr},
+        {"OF_RATES", u->q.n ? ", rate + LAG_NQ, e, m" : ", e"},
+        {"N_IN", jac ? "5" : "4"},
+        {"N_OUT", jac ? "4" : "1"},
+        {"OUTPUTS", jac ? "\"jac_xdot_x\", \"jac_xdot_u\", \"jac_xdot_p\", \"jac_xdot_t\"" : "\"xdot\""},
+        {"PATTERNS", jac ? "static const casadi_int *const at[] = {lag_ode_A, lag_ode_B, lag_ode_P, lag_ode_T}"
+                         : "static const casadi_int at[][3] = {{LAG_NY, 1, 1}}"},
+        {"MATRICES", jac ? " + LAG_NY*(LAG_NY + LAG_NU + LAG_NP + 1)" : ""},
+        {"INPUT_MATRIX", u->u.n ? ", B" : ""},
+        {"PARAMS_MATRIX", u->p.n ? arena_printf(h->a, "  %s lag_dparams(%s, P);\n", ok, args) : ""},
+        {"TIME_COLUMN",
+         timeless ? "" : arena_printf(h->a, "  %s lag_by_time(t, w, p%s, T);\n", ok, u->u.n ? ", u" : "")},
+        {NULL, NULL}};
     if (is_wanted(h, i)) header_template(h, callbacks[i].text, w);
   }
 }

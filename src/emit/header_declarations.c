@@ -4,34 +4,40 @@
 #include "emit/header_impl.h"
 
 static const char *const options =
-  "/* The scalar. */\n"
-  "#ifndef LAG_REAL\n#ifdef LAG_LANES\n"
-  "typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));\n#define LAG_REAL lag_lanes\n"
-  "#else\n#define LAG_REAL double\n#endif\n#endif\n\n"
-  "/* Linkage. */\n"
-  "#ifndef LAG_API\n#ifdef LAG_STATIC\n#define LAG_API static inline\n#else\n#define LAG_API\n#endif\n#endif\n\n"
-  "/* Number of the interface of headers: it changes with functions and structs. */\n"
-  "enum { LAG_ABI = 2 };\n\n"
-  "/* Status codes of functions. */\n"
-  "enum {\n  LAG_OK = 0,\n  LAG_ESINGULAR = -1, /* the mass matrix is singular at this state, or not positive definite as elsewhere */\n"
-  "  LAG_ENAN = -4,      /* an acceleration, or the state after a step, is not finite */\n"
-  "  LAG_ESIZE = -9      /* a parameter breaks its declared sign, or makes a friction, an inertia or a coefficient negative */\n};\n";
+    "/* The scalar. */\n"
+    "#ifndef LAG_REAL\n#ifdef LAG_LANES\n"
+    "typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));\n#define LAG_REAL lag_lanes\n"
+    "#else\n#define LAG_REAL double\n#endif\n#endif\n\n"
+    "/* Linkage. */\n"
+    "#ifndef LAG_API\n#ifdef LAG_STATIC\n#define LAG_API static inline\n#else\n#define LAG_API\n#endif\n#endif\n\n"
+    "/* Number of the interface of headers: it changes with functions and structs. */\n"
+    "enum { LAG_ABI = 2 };\n\n"
+    "/* Status codes of functions. */\n"
+    "enum {\n  LAG_OK = 0,\n  LAG_ESINGULAR = -1, /* the mass matrix is singular at this state, or not positive "
+    "definite as elsewhere */\n"
+    "  LAG_ENAN = -4,      /* an acceleration, or the state after a step, is not finite */\n"
+    "  LAG_ESIZE = -9      /* a parameter breaks its declared sign, or makes a friction, an inertia or a coefficient "
+    "negative */\n};\n";
 
 /* --- indices --- */
 
 /* Unit of a variable for a comment: " [deg]: 1 deg is 0.01745 in SI". */
 static const char *unit_text(const Header *h, const IrVar *v) {
   if (!v->unit[0]) return "";
-  if (v->offset != 0) return arena_printf(h->a, " [%s]: 0 %s is %s in SI", v->unit, v->unit, shortest_double(h->a, v->offset));
+  if (v->offset != 0)
+    return arena_printf(h->a, " [%s]: 0 %s is %s in SI", v->unit, v->unit, shortest_double(h->a, v->offset));
   if (v->factor == 1) return arena_printf(h->a, " [%s]", v->unit);
   return arena_printf(h->a, " [%s]: 1 %s is %s in SI", v->unit, v->unit, shortest_double(h->a, v->factor));
 }
 
-static void size(const Header *h, const char *name, uint32_t n) { sb_printf(h->out, "  %s_%s = %u,\n", h->upper, name, n); }
+static void size(const Header *h, const char *name, uint32_t n) {
+  sb_printf(h->out, "  %s_%s = %u,\n", h->upper, name, n);
+}
 
 static void sizes(const Header *h) {
   const ProgramSet *u = h->u;
-  sb_puts(h->out, "\n/* Sizes: coordinates, states, both with velocities, parameters, inputs, events, constraints, outputs. */\nenum {\n");
+  sb_puts(h->out, "\n/* Sizes: coordinates, states, both with velocities, parameters, inputs, events, constraints, "
+                  "outputs. */\nenum {\n");
   size(h, "NQ", u->q.n);
   size(h, "NZ", u->z.n);
   size(h, "NY", 2 * u->q.n + u->z.n);
@@ -58,42 +64,60 @@ static void event_indices(const Header *h) {
   sb_puts(h->out, "\n/* Events: where their function, from _events, changes sign. */\nenum {\n");
   for (uint32_t i = 0; i < n; i++) {
     const IrEvent *ev = &h->u->events.at[i];
-    const char *way = ev->direction == EVENT_KICK ? "a kick; its function is the time between two" : ev->direction > 0 ? "rising" : ev->direction < 0 ? "falling" : "crossing";
-    sb_printf(h->out, "  %s = %u%s /* %s, %s%s */\n", h->ev[i], i, i + 1 < n ? "," : "", ev->name, way, ev->stop ? ", ends the run" : "");
+    const char *way = ev->direction == EVENT_KICK ? "a kick; its function is the time between two"
+                      : ev->direction > 0         ? "rising"
+                      : ev->direction < 0         ? "falling"
+                                                  : "crossing";
+    sb_printf(h->out, "  %s = %u%s /* %s, %s%s */\n", h->ev[i], i, i + 1 < n ? "," : "", ev->name, way,
+              ev->stop ? ", ends the run" : "");
   }
   sb_puts(h->out, "};\n");
 }
 
 /* --- structs --- */
 
-static const char *sign_text(int sign) { return sign == 1 ? " > 0" : sign == 2 ? " >= 0" : sign == -1 ? " < 0" : sign == -2 ? " <= 0" : ""; }
+static const char *sign_text(int sign) {
+  return sign == 1 ? " > 0" : sign == 2 ? " >= 0" : sign == -1 ? " < 0" : sign == -2 ? " <= 0" : "";
+}
 
 static void params_struct(const Header *h) {
   const ProgramSet *u = h->u;
-  long double *value = ARENA_ARRAY(h->a, long double, u->p.n + 1), *y = ARENA_ARRAY(h->a, long double, 2 * u->q.n + u->z.n + 1);
+  long double *value = ARENA_ARRAY(h->a, long double, u->p.n + 1),
+              *y = ARENA_ARRAY(h->a, long double, 2 * u->q.n + u->z.n + 1);
   scene_values(u, h->scene, value, y, ARENA_ARRAY(h->a, long double, u->u.n + 1));
-  sb_printf(h->out, "\n/* Parameters, with the values of scene %s. */\ntypedef struct %s_params {\n", h->scene->name, h->lower);
+  sb_printf(h->out, "\n/* Parameters, with the values of scene %s. */\ntypedef struct %s_params {\n", h->scene->name,
+            h->lower);
   if (!h->u->p.n) sb_puts(h->out, "  char none; /* C has no empty struct */\n");
   for (uint32_t i = 0; i < h->u->p.n; i++) {
     const IrVar *v = &h->u->p.at[i];
-    const char *text = arena_printf(h->a, "%s%s, default %s%s", unit_text(h, v), sign_text(v->sign), shortest_double(h->a, (double)value[i]), v->factor == 1 && v->offset == 0 ? "" : " (SI)");
+    const char *text =
+        arena_printf(h->a, "%s%s, default %s%s", unit_text(h, v), sign_text(v->sign),
+                     shortest_double(h->a, (double)value[i]), v->factor == 1 && v->offset == 0 ? "" : " (SI)");
     if (*text == ' ' || *text == ',') text++;
-    sb_printf(h->out, "  %s_REAL %s; /* %s */\n", h->upper, h->fields[i], comment_text(h->a, *text == ' ' ? text + 1 : text));
+    sb_printf(h->out, "  %s_REAL %s; /* %s */\n", h->upper, h->fields[i],
+              comment_text(h->a, *text == ' ' ? text + 1 : text));
   }
   sb_printf(h->out, "} %s_params;\n", h->lower);
 }
 
 static void input_type(const Header *h) {
   if (!h->u->u.n) return;
-  sb_printf(h->out, "\n/* Sets those of the inputs u[%s_NU] that it knows, at time t. */\ntypedef void %s_input_fn(void *context, %s_REAL t, %s_REAL *u);\n",
+  sb_printf(h->out,
+            "\n/* Sets those of the inputs u[%s_NU] that it knows, at time t. */\ntypedef void %s_input_fn(void "
+            "*context, %s_REAL t, %s_REAL *u);\n",
             h->upper, h->lower, h->upper, h->upper);
 }
 
 static void state_struct(const Header *h) {
   sb_printf(h->out, "\ntypedef struct %s_state {\n  %s_REAL t; /* time [s] */\n", h->lower, h->upper);
-  if (h->u->q.n) sb_printf(h->out, "  %s_REAL q[%s_NQ]; /* coordinates */\n  %s_REAL v[%s_NQ]; /* their time derivatives */\n", h->upper, h->upper, h->upper, h->upper);
+  if (h->u->q.n)
+    sb_printf(h->out, "  %s_REAL q[%s_NQ]; /* coordinates */\n  %s_REAL v[%s_NQ]; /* their time derivatives */\n",
+              h->upper, h->upper, h->upper, h->upper);
   if (h->u->z.n) sb_printf(h->out, "  %s_REAL z[%s_NZ]; /* states */\n", h->upper, h->upper);
-  sb_printf(h->out, "  %s_REAL lost[1 + %s_NY]; /* rounding of t, q, v, z that the steps to here have lost; 0 at the start */\n", h->upper, h->upper);
+  sb_printf(
+      h->out,
+      "  %s_REAL lost[1 + %s_NY]; /* rounding of t, q, v, z that the steps to here have lost; 0 at the start */\n",
+      h->upper, h->upper);
   if (header_has_method(h, "moreau")) header_moreau_members(h);
   sb_printf(h->out, "} %s_state;\n", h->lower);
 }
@@ -101,44 +125,58 @@ static void state_struct(const Header *h) {
 /* --- prototypes --- */
 
 static const char *const docs[FN_COUNT] = {
-  [FN_DEFAULTS] = "The parameters of the scene.",
-  [FN_PARAM] = "A parameter by its index LAG_P_...; 0 when there is none. For tables and sliders.",
-  [FN_START] = "The state at the start of the scene. LAG_ESIZE: it is as it was.",
-  [FN_INPUTS] = "The inputs u[LAG_NU] at time t by the model's formulas and tables; a table holds its end values outside.",
-  [FN_ACCEL] = "Accelerations a[LAG_NQ], rates zd[LAG_NZ] of the states: what an integrator needs.",
-  [FN_ENERGY] = "e[0]: the energy p q' - L; e[1]: |p q'| + |L|, the scale of its drift.",
-  [FN_CHARGES] = "out[2*k]: the charge of symmetry k; out[2*k + 1]: the magnitude of its terms, the scale of its drift.",
-  [FN_POWERS] = "Rates of change per second: out[0] of the energy, out[k + 1] of the charge of symmetry k.",
-  [FN_OBSERVE] = "Outputs of the scene: out[LAG_NOUT].",
-  [FN_EVENTS] = "The event functions g[LAG_NEV].",
-  [FN_ACT] = "Applies the action of an event to the state; *stop becomes 1 if the event ends the run.",
-  [FN_HOLD] = "Moves the state to the nearest one that obeys the constraints, by the metric of the mass matrix; steps do so themselves.\n"
-              " * LAG_EUNMET: no small change obeys them; begin nearer, or step shorter.",
-  [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was. Events, and contacts, are the caller's.",
-  [FN_UNTIL_EVENT] = "As _rk4_step, to the first event in the step: *event is its index, and *s the state just behind it, where _act applies; -1: none.\n"
-                     " * Crossings are found one by one, however short the time between them, as in `lagc run --method rk4`.\n"
-                     " * A function that is 0 at the start, or whose event has just acted, has the sign with which it leaves 0. Of\n"
-                     " * events at the same time the first is told.\n"
-                     " * LAG_ENAN: an event function is not a number; LAG_EZENO: events follow each other without time between them. *s is as it was then.",
-  [FN_RHS] = "dydt[LAG_NY]: the rates of y = (q, v, z), for integrators of first order.",
-  [FN_MASS] = "The mass matrix M[LAG_NQ*LAG_NQ], row by row.",
-  [FN_BIAS] = "b[LAG_NQ] of M q'' + b = 0: Coriolis and centrifugal terms, weight and the forces of the model, with their signs changed.",
-  [FN_INVERSE] = "The generalised forces M a + b that are needed besides those of the model for the accelerations a.",
-  [FN_JAC] = "J[LAG_NY*LAG_NY], row by row: derivatives of the rates of y = (q, v, z) by y, at held inputs.",
-  [FN_JVP] = "out[LAG_NY] = J x, without J.",
-  [FN_VJP] = "out[LAG_NY] = J^T x, without J.",
-  [FN_LINEARIZE] = "The linearisation: A[LAG_NY*LAG_NY] of the rates of y = (q, v, z) by y; B[LAG_NY*LAG_NU] by the inputs.",
-  [FN_DPARAMS] = "P[LAG_NY*LAG_NP], row by row: derivatives of the rates of y = (q, v, z) by the parameters, each as if it were free.",
-  [FN_CONSTRAINTS] = "Residuals of the constraints: c of those on positions, r of all on velocities (rates of the former first).",
-  [FN_CONSTRAINT_JACOBIAN] = "A[LAG_NC*LAG_NQ], row by row: derivatives of r by the velocities; M q'' = f + A^T lambda.",
-  [FN_MULTIPLIERS] = "The multipliers lambda[LAG_NC] of the constraints: their forces are A^T lambda.",
-  [FN_RK4_STEP_WITH] = "The same with inputs that change during the step: input(context, t, u) finds the model's own in u.",
+    [FN_DEFAULTS] = "The parameters of the scene.",
+    [FN_PARAM] = "A parameter by its index LAG_P_...; 0 when there is none. For tables and sliders.",
+    [FN_START] = "The state at the start of the scene. LAG_ESIZE: it is as it was.",
+    [FN_INPUTS] =
+        "The inputs u[LAG_NU] at time t by the model's formulas and tables; a table holds its end values outside.",
+    [FN_ACCEL] = "Accelerations a[LAG_NQ], rates zd[LAG_NZ] of the states: what an integrator needs.",
+    [FN_ENERGY] = "e[0]: the energy p q' - L; e[1]: |p q'| + |L|, the scale of its drift.",
+    [FN_CHARGES] =
+        "out[2*k]: the charge of symmetry k; out[2*k + 1]: the magnitude of its terms, the scale of its drift.",
+    [FN_POWERS] = "Rates of change per second: out[0] of the energy, out[k + 1] of the charge of symmetry k.",
+    [FN_OBSERVE] = "Outputs of the scene: out[LAG_NOUT].",
+    [FN_EVENTS] = "The event functions g[LAG_NEV].",
+    [FN_ACT] = "Applies the action of an event to the state; *stop becomes 1 if the event ends the run.",
+    [FN_HOLD] = "Moves the state to the nearest one that obeys the constraints, by the metric of the mass matrix; "
+                "steps do so themselves.\n"
+                " * LAG_EUNMET: no small change obeys them; begin nearer, or step shorter.",
+    [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was. Events, and "
+                    "contacts, are the caller's.",
+    [FN_UNTIL_EVENT] =
+        "As _rk4_step, to the first event in the step: *event is its index, and *s the state just behind it, where "
+        "_act applies; -1: none.\n"
+        " * Crossings are found one by one, however short the time between them, as in `lagc run --method rk4`.\n"
+        " * A function that is 0 at the start, or whose event has just acted, has the sign with which it leaves 0. Of\n"
+        " * events at the same time the first is told.\n"
+        " * LAG_ENAN: an event function is not a number; LAG_EZENO: events follow each other without time between "
+        "them. *s is as it was then.",
+    [FN_RHS] = "dydt[LAG_NY]: the rates of y = (q, v, z), for integrators of first order.",
+    [FN_MASS] = "The mass matrix M[LAG_NQ*LAG_NQ], row by row.",
+    [FN_BIAS] = "b[LAG_NQ] of M q'' + b = 0: Coriolis and centrifugal terms, weight and the forces of the model, with "
+                "their signs changed.",
+    [FN_INVERSE] = "The generalised forces M a + b that are needed besides those of the model for the accelerations a.",
+    [FN_JAC] = "J[LAG_NY*LAG_NY], row by row: derivatives of the rates of y = (q, v, z) by y, at held inputs.",
+    [FN_JVP] = "out[LAG_NY] = J x, without J.",
+    [FN_VJP] = "out[LAG_NY] = J^T x, without J.",
+    [FN_LINEARIZE] =
+        "The linearisation: A[LAG_NY*LAG_NY] of the rates of y = (q, v, z) by y; B[LAG_NY*LAG_NU] by the inputs.",
+    [FN_DPARAMS] = "P[LAG_NY*LAG_NP], row by row: derivatives of the rates of y = (q, v, z) by the parameters, each as "
+                   "if it were free.",
+    [FN_CONSTRAINTS] =
+        "Residuals of the constraints: c of those on positions, r of all on velocities (rates of the former first).",
+    [FN_CONSTRAINT_JACOBIAN] =
+        "A[LAG_NC*LAG_NQ], row by row: derivatives of r by the velocities; M q'' = f + A^T lambda.",
+    [FN_MULTIPLIERS] = "The multipliers lambda[LAG_NC] of the constraints: their forces are A^T lambda.",
+    [FN_RK4_STEP_WITH] =
+        "The same with inputs that change during the step: input(context, t, u) finds the model's own in u.",
 };
 
 /* Numbered names of the symmetries: "0 spin, 1 momentum"; charge 0, the energy, is left out. */
 static const char *charge_names(const Header *h) {
   StrBuf b = strbuf(h->a);
-  for (uint32_t i = 1; i < h->u->charges.n; i++) sb_printf(&b, "%s%u %s", i > 1 ? ", " : "", i - 1, h->u->charges.at[i].name);
+  for (uint32_t i = 1; i < h->u->charges.n; i++)
+    sb_printf(&b, "%s%u %s", i > 1 ? ", " : "", i - 1, h->u->charges.at[i].name);
   return comment_text(h->a, sb_text(&b));
 }
 
@@ -149,9 +187,12 @@ void header_declarations(const Header *h) {
   sizes(h);
   indices(h, "Coordinates: q[...], and their time derivatives v[...].", h->q, u->q.at, u->q.n);
   indices(h, "States: z[...].", h->z, u->z.at, u->z.n);
-  indices(h, "Inputs: u[...]. NULL stands for the formulas of the model in steps, nowhere else.", h->in, u->u.at, u->u.n);
-  const char *outputs = h->scene->plain.n < h->scene->outputs.n ? "Outputs: out[...]. Those with closed forms or action variables, which need a run, are left out."
-                                                                : "Outputs: out[...].";
+  indices(h, "Inputs: u[...]. NULL stands for the formulas of the model in steps, nowhere else.", h->in, u->u.at,
+          u->u.n);
+  const char *outputs =
+      h->scene->plain.n < h->scene->outputs.n
+          ? "Outputs: out[...]. Those with closed forms or action variables, which need a run, are left out."
+          : "Outputs: out[...].";
   indices(h, outputs, h->outputs, h->scene->outputs.at, h->scene->plain.n);
   event_indices(h);
   indices(h, "Parameters, for _param.", h->p, u->p.at, u->p.n);
@@ -162,17 +203,23 @@ void header_declarations(const Header *h) {
   input_type(h);
   for (int f = 0; f < FN_COUNT; f++) {
     if (!header_has(h, (HeaderFn)f)) continue;
-    const char *doc = f != FN_ACCEL || (u->q.n && u->z.n) ? docs[f] : u->q.n ? "Accelerations a[LAG_NQ]: what an integrator needs."
-                                                                             : "Rates zd[LAG_NZ] of the states: what an integrator needs.";
+    const char *doc = f != FN_ACCEL || (u->q.n && u->z.n) ? docs[f]
+                      : u->q.n                            ? "Accelerations a[LAG_NQ]: what an integrator needs."
+                                                          : "Rates zd[LAG_NZ] of the states: what an integrator needs.";
     if (f == FN_START && u->constraints.of.n)
-      doc = "The state at the start of the scene, on the constraints, as `lagc run` finds it with the parameters of _defaults; with others, _hold\n"
+      doc = "The state at the start of the scene, on the constraints, as `lagc run` finds it with the parameters of "
+            "_defaults; with others, _hold\n"
             " * leads from there to the nearest one that obeys them.";
-    if (f == FN_START && u->constraints.of.n) csupport_expand("\nenum { LAG_EUNMET = -7 }; /* status: the constraints cannot be met near this state */\n", h->upper, h->lower, h->out);
+    if (f == FN_START && u->constraints.of.n)
+      csupport_expand("\nenum { LAG_EUNMET = -7 }; /* status: the constraints cannot be met near this state */\n",
+                      h->upper, h->lower, h->out);
     if (f == FN_UNTIL_EVENT) csupport_expand("\nenum { LAG_EZENO = -5 };\n", h->upper, h->lower, h->out);
     sb_puts(h->out, "\n/* ");
     csupport_expand(doc, h->upper, h->lower, h->out);
     if (f == FN_CHARGES) sb_printf(h->out, "\n * Symmetries: %s.", charge_names(h));
-    if ((f == FN_RK4_STEP || f == FN_UNTIL_EVENT || f == FN_RHS) && u->u.n) sb_puts(h->out, "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
+    if ((f == FN_RK4_STEP || f == FN_UNTIL_EVENT || f == FN_RHS) && u->u.n)
+      sb_puts(h->out,
+              "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
     const char *text = arena_printf(h->a, "%s_API %s;", h->upper, header_prototype(h, (HeaderFn)f));
     sb_puts(h->out, " */\n");
     if (f == FN_UNTIL_EVENT) {

@@ -4,7 +4,9 @@
 #include "emit/header_impl.h"
 
 /* Compilers that drop NaN, or reorder sums. As in lag_model.h. */
-#define FAST_MATH "defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)"
+#define FAST_MATH                                                                                 \
+  "defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && " \
+  "__FINITE_MATH_ONLY__) || defined(_M_FP_FAST)"
 
 static const char *const macros =
   "/* Functions and constants in the scalar's precision. */\n"
@@ -51,92 +53,103 @@ static const char *const overloads =
   "using lagc_overloads::hypot;\n"
   "#endif\n";
 
-/* Newton's method onto the constraints, positions first, then velocities, by the turns of the runtime (constraints/projection.c), each lane by itself. */
+/* Newton's method onto the constraints, positions first, then velocities, by the turns of the runtime
+ * (constraints/projection.c), each lane by itself. */
 static const char *const onto =
-  " |\n"
-  " |/* The state nearest to the constraints. lost: rounding that q, v have lost so far, or 0. */\n"
-  " |static int lag_onto(const lag_params *p, lag_state *sINPUTS, LAG_REAL *lost) {\n"
-  " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), half = LAG_C(0.5), strikes = LAG_C(3.0);\n"
-  " |  const LAG_LANE epsilon = lag_epsilon();\n"
-  " |  LAG_LANE root = epsilon; /* of epsilon, or up to twice that */\n"
-  " |  while (root*root < epsilon) root *= (LAG_LANE)2;\n"
-  " |  LAG_LANE little = root; /* of root */\n"
-  " |  while (little*little < root) little *= (LAG_LANE)2;\n"
-  " |  LAG_MASK unmet = zero < zero;\n"
-  " |  int status = LAG_OK;\n"
-  " |  for (int level = FIRST; level < 2; level++) {\n"
-  " |    LAG_REAL c[LAG_NC], r[LAG_NC], g[LAG_NC], before[LAG_NC], first[LAG_NC], d[LAG_NQ], reach[LAG_NQ], force[LAG_NQ], *const x = level ? s->v : s->q;\n"
-  " |    LAG_REAL vain = zero;\n"
-  " |    LAG_MASK on = LAG_NOT(unmet), tiny = on; /* still comes nearer; the last correction is tiny */\n"
-  " |    for (int turn = 0; turn < 20; turn++) {\n"
-  " |      LAG_REAL most = zero, least = one, size = zero;\n"
-  " |      LAG_TRY(lag_residuals(STATE, c, r));\n"
-  " |      for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++) {\n"
-  " |        g[k] = -(level ? r[k] : c[k]);\n"
-  " |        const LAG_REAL now = LAG_FN(fabs)(g[k]), part = turn ? LAG_SELECT(now > zero, now/before[k], zero) : zero;\n"
-  " |        most = LAG_SELECT(part > most, part, most);\n"
-  " |        least = LAG_SELECT(LAG_AND(now > zero, part < least), part, least);\n"
-  " |        before[k] = now;\n"
-  " |        if (!turn) first[k] = now;\n"
-  " |        size += now;\n"
-  " |      }\n"
-  " |      unmet = LAG_OR(unmet, LAG_AND(on, LAG_NOT(size >= zero)));\n"
-  " |      on = LAG_AND(LAG_AND(on, size > zero), LAG_NOT(LAG_FAILED(status)));\n"
-  " |      if (turn) {\n"
-  " |        LAG_MASK done = zero <= zero; /* what is left is rounding of the largest component with its unit */\n"
-  " |        tiny = done;\n"
-  " |        for (int i = 0; i < LAG_NQ; i++) {\n"
-  " |          const LAG_REAL change = LAG_FN(fabs)(d[i]);\n"
-  " |          LAG_REAL largest = zero;\n"
-  " |          for (int j = 0; j < LAG_NQ; j++)\n"
-  " |            WITHlargest = LAG_SELECT(LAG_FN(fabs)(x[j]) > largest, LAG_FN(fabs)(x[j]), largest);\n"
-  " |          done = LAG_AND(done, most*change <= LAG_C(4.0)*epsilon*largest);\n"
-  " |          reach[i] = one + largest;\n"
-  " |          tiny = LAG_AND(tiny, change <= root*reach[i]);\n"
-  " |        }\n"
-  " |        vain = LAG_SELECT(LAG_OR(least < half, tiny), vain, vain + one);\n"
-  " |        unmet = LAG_OR(unmet, LAG_AND(on, LAG_AND(LAG_NOT(done), vain >= strikes)));\n"
-  " |        on = LAG_AND(LAG_AND(on, LAG_NOT(done)), LAG_OR(least < half, LAG_AND(LAG_NOT(tiny), vain < strikes)));\n"
-  " |      }\n"
-  " |      if (!LAG_ANY(on)) break;\n"
-  " |      LAG_TRY(LAG_WHERE(on, CORRECT));\n"
-  " |      for (int i = 0; i < LAG_NQ; i++) {\n"
-  " |        LAG_REAL rest = lost ? lost[level*LAG_NQ + i] : zero;\n"
-  " |        const LAG_REAL sum = lag_compensated_sum(x[i], d[i], &rest);\n"
-  " |        x[i] = LAG_SELECT(on, sum, x[i]);\n"
-  " |        if (lost) lost[level*LAG_NQ + i] = LAG_SELECT(on, rest, lost[level*LAG_NQ + i]);\n"
-  " |      }\n"
-  " |    }\n"
-  " |    unmet = LAG_OR(unmet, LAG_AND(on, LAG_NOT(tiny)));\n"
-  " |    const LAG_MASK whole = LAG_NOT(LAG_OR(unmet, LAG_FAILED(status)));\n"
-  " |    LAG_MASK stays = zero < zero;\n"
-  " |    for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++) stays = LAG_OR(stays, before[k] > LAG_C(1e-3)*first[k]);\n"
-  " |    if (!LAG_ANY(LAG_AND(whole, stays))) continue;\n"
-  " |    lag_state beside = *s; /* what stays is rounding if little changes of the state are more */\n"
-  " |    LAG_LANE uneven = (LAG_LANE)0.5;\n"
-  " |    for (int i = 0; i < LAG_NQ; i++) {\n"
-  " |      uneven *= (LAG_LANE)3.9*((LAG_LANE)1 - uneven);\n"
-  " |      (level ? beside.v : beside.q)[i] += uneven*little*reach[i];\n"
-  " |    }\n"
-  " |    LAG_TRY(lag_residuals(BESIDE, c, r));\n"
-  " |    for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++)\n"
-  " |      unmet = LAG_OR(unmet, LAG_AND(LAG_AND(whole, before[k] > LAG_C(1e-3)*first[k]), before[k] > LAG_FN(fabs)((level ? r[k] : c[k]) + g[k])));\n"
-  " |  }\n"
-  " |  LAG_TRY(LAG_STATUS(unmet, LAG_EUNMET));\n"
-  " |  return status;\n"
-  " |}\n";
+    " |\n"
+    " |/* The state nearest to the constraints. lost: rounding that q, v have lost so far, or 0. */\n"
+    " |static int lag_onto(const lag_params *p, lag_state *sINPUTS, LAG_REAL *lost) {\n"
+    " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), half = LAG_C(0.5), strikes = LAG_C(3.0);\n"
+    " |  const LAG_LANE epsilon = lag_epsilon();\n"
+    " |  LAG_LANE root = epsilon; /* of epsilon, or up to twice that */\n"
+    " |  while (root*root < epsilon) root *= (LAG_LANE)2;\n"
+    " |  LAG_LANE little = root; /* of root */\n"
+    " |  while (little*little < root) little *= (LAG_LANE)2;\n"
+    " |  LAG_MASK unmet = zero < zero;\n"
+    " |  int status = LAG_OK;\n"
+    " |  for (int level = FIRST; level < 2; level++) {\n"
+    " |    LAG_REAL c[LAG_NC], r[LAG_NC], g[LAG_NC], before[LAG_NC], first[LAG_NC], d[LAG_NQ], reach[LAG_NQ], "
+    "force[LAG_NQ], *const x = level ? s->v : s->q;\n"
+    " |    LAG_REAL vain = zero;\n"
+    " |    LAG_MASK on = LAG_NOT(unmet), tiny = on; /* still comes nearer; the last correction is tiny */\n"
+    " |    for (int turn = 0; turn < 20; turn++) {\n"
+    " |      LAG_REAL most = zero, least = one, size = zero;\n"
+    " |      LAG_TRY(lag_residuals(STATE, c, r));\n"
+    " |      for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++) {\n"
+    " |        g[k] = -(level ? r[k] : c[k]);\n"
+    " |        const LAG_REAL now = LAG_FN(fabs)(g[k]), part = turn ? LAG_SELECT(now > zero, now/before[k], zero) : "
+    "zero;\n"
+    " |        most = LAG_SELECT(part > most, part, most);\n"
+    " |        least = LAG_SELECT(LAG_AND(now > zero, part < least), part, least);\n"
+    " |        before[k] = now;\n"
+    " |        if (!turn) first[k] = now;\n"
+    " |        size += now;\n"
+    " |      }\n"
+    " |      unmet = LAG_OR(unmet, LAG_AND(on, LAG_NOT(size >= zero)));\n"
+    " |      on = LAG_AND(LAG_AND(on, size > zero), LAG_NOT(LAG_FAILED(status)));\n"
+    " |      if (turn) {\n"
+    " |        LAG_MASK done = zero <= zero; /* what is left is rounding of the largest component with its unit */\n"
+    " |        tiny = done;\n"
+    " |        for (int i = 0; i < LAG_NQ; i++) {\n"
+    " |          const LAG_REAL change = LAG_FN(fabs)(d[i]);\n"
+    " |          LAG_REAL largest = zero;\n"
+    " |          for (int j = 0; j < LAG_NQ; j++)\n"
+    " |            WITHlargest = LAG_SELECT(LAG_FN(fabs)(x[j]) > largest, LAG_FN(fabs)(x[j]), largest);\n"
+    " |          done = LAG_AND(done, most*change <= LAG_C(4.0)*epsilon*largest);\n"
+    " |          reach[i] = one + largest;\n"
+    " |          tiny = LAG_AND(tiny, change <= root*reach[i]);\n"
+    " |        }\n"
+    " |        vain = LAG_SELECT(LAG_OR(least < half, tiny), vain, vain + one);\n"
+    " |        unmet = LAG_OR(unmet, LAG_AND(on, LAG_AND(LAG_NOT(done), vain >= strikes)));\n"
+    " |        on = LAG_AND(LAG_AND(on, LAG_NOT(done)), LAG_OR(least < half, LAG_AND(LAG_NOT(tiny), vain < "
+    "strikes)));\n"
+    " |      }\n"
+    " |      if (!LAG_ANY(on)) break;\n"
+    " |      LAG_TRY(LAG_WHERE(on, CORRECT));\n"
+    " |      for (int i = 0; i < LAG_NQ; i++) {\n"
+    " |        LAG_REAL rest = lost ? lost[level*LAG_NQ + i] : zero;\n"
+    " |        const LAG_REAL sum = lag_compensated_sum(x[i], d[i], &rest);\n"
+    " |        x[i] = LAG_SELECT(on, sum, x[i]);\n"
+    " |        if (lost) lost[level*LAG_NQ + i] = LAG_SELECT(on, rest, lost[level*LAG_NQ + i]);\n"
+    " |      }\n"
+    " |    }\n"
+    " |    unmet = LAG_OR(unmet, LAG_AND(on, LAG_NOT(tiny)));\n"
+    " |    const LAG_MASK whole = LAG_NOT(LAG_OR(unmet, LAG_FAILED(status)));\n"
+    " |    LAG_MASK stays = zero < zero;\n"
+    " |    for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++) stays = LAG_OR(stays, before[k] > "
+    "LAG_C(1e-3)*first[k]);\n"
+    " |    if (!LAG_ANY(LAG_AND(whole, stays))) continue;\n"
+    " |    lag_state beside = *s; /* what stays is rounding if little changes of the state are more */\n"
+    " |    LAG_LANE uneven = (LAG_LANE)0.5;\n"
+    " |    for (int i = 0; i < LAG_NQ; i++) {\n"
+    " |      uneven *= (LAG_LANE)3.9*((LAG_LANE)1 - uneven);\n"
+    " |      (level ? beside.v : beside.q)[i] += uneven*little*reach[i];\n"
+    " |    }\n"
+    " |    LAG_TRY(lag_residuals(BESIDE, c, r));\n"
+    " |    for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++)\n"
+    " |      unmet = LAG_OR(unmet, LAG_AND(LAG_AND(whole, before[k] > LAG_C(1e-3)*first[k]), before[k] > "
+    "LAG_FN(fabs)((level ? r[k] : c[k]) + g[k])));\n"
+    " |  }\n"
+    " |  LAG_TRY(LAG_STATUS(unmet, LAG_EUNMET));\n"
+    " |  return status;\n"
+    " |}\n";
 
 /* --- functions around programs --- */
 
 static void accel(const Header *h) {
   static const char *const out[] = {"a", "zd", NULL}, *const none[] = {"a", NULL};
   const char *const *extra = !h->u->q.n ? out + 1 : h->u->z.n ? out : none;
-  const char *args = strchr(header_prototype(h, FN_ACCEL), '('), *a = h->u->q.n ? ", a" : "", *zd = h->u->z.n ? ", zd" : "";
-  header_state_function(h, h->u->accel, "As _accel; results may be NaN or infinite: adaptive steps then try a shorter one.",
-                        header_wrapped(h, arena_printf(h->a, "static int %s_rates_at%s", h->lower, args)), extra, out, 1);
-  sb_printf(h->out, "\n%s {\n  int status = %s_rates_at(%s%s%s);\n", header_api(h, FN_ACCEL), h->lower, header_state_args(h, 0, ""), a, zd);
-  if (h->u->q.n) csupport_expand("  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(a, LAG_NQ)), LAG_ENAN));\n", h->upper, h->lower, h->out);
-  if (h->u->z.n) csupport_expand("  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(zd, LAG_NZ)), LAG_ENAN));\n", h->upper, h->lower, h->out);
+  const char *args = strchr(header_prototype(h, FN_ACCEL), '('), *a = h->u->q.n ? ", a" : "",
+             *zd = h->u->z.n ? ", zd" : "";
+  header_state_function(
+      h, h->u->accel, "As _accel; results may be NaN or infinite: adaptive steps then try a shorter one.",
+      header_wrapped(h, arena_printf(h->a, "static int %s_rates_at%s", h->lower, args)), extra, out, 1);
+  sb_printf(h->out, "\n%s {\n  int status = %s_rates_at(%s%s%s);\n", header_api(h, FN_ACCEL), h->lower,
+            header_state_args(h, 0, ""), a, zd);
+  if (h->u->q.n)
+    csupport_expand("  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(a, LAG_NQ)), LAG_ENAN));\n", h->upper, h->lower, h->out);
+  if (h->u->z.n)
+    csupport_expand("  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(zd, LAG_NZ)), LAG_ENAN));\n", h->upper, h->lower, h->out);
   sb_puts(h->out, "  return status;\n}\n");
 }
 
@@ -159,7 +172,10 @@ static void write_defaults(const Header *h, const char *head, int follow) {
 
 static void defaults(const Header *h) {
   write_defaults(h, header_api(h, FN_DEFAULTS), 0);
-  if (h->parts.follows) write_defaults(h, arena_printf(h->a, "static void %s_follow(%s_params *p, const unsigned char *given)", h->lower, h->lower), 1);
+  if (h->parts.follows)
+    write_defaults(
+        h, arena_printf(h->a, "static void %s_follow(%s_params *p, const unsigned char *given)", h->lower, h->lower),
+        1);
 }
 
 static void param(const Header *h) {
@@ -175,10 +191,17 @@ static void param(const Header *h) {
 
 /* Condition on p->NAME, or on a size: comparisons by > alone, which types that differentiate have. */
 static const char *demand(const Header *h, const char *x, int sign) {
-  return arena_printf(h->a, sign == 1 ? "%s > zero" : sign == -1 ? "zero > %s" : sign == 2 ? "LAG_NOT(zero > %s)" : "LAG_NOT(%s > zero)", x);
+  return arena_printf(h->a,
+                      sign == 1    ? "%s > zero"
+                      : sign == -1 ? "zero > %s"
+                      : sign == 2  ? "LAG_NOT(zero > %s)"
+                                   : "LAG_NOT(%s > zero)",
+                      x);
 }
 
-static void write_demand(const Header *h, const char *demand) { csupport_expand(arena_printf(h->a, "  good = LAG_AND(good, %s);\n", demand), h->upper, h->lower, h->out); }
+static void write_demand(const Header *h, const char *demand) {
+  csupport_expand(arena_printf(h->a, "  good = LAG_AND(good, %s);\n", demand), h->upper, h->lower, h->out);
+}
 
 /* lag_sizes: whether parameters have their declared signs, and the sizes that they determine. */
 static void sizes(const Header *h) {
@@ -187,12 +210,17 @@ static void sizes(const Header *h) {
   if (u->size_values) {
     CStyle st = header_style(h, own, out);
     CFunction c = {.comment = "Sizes of friction, inertias and coefficients, of parameters alone.", .own_work = 1};
-    c.head = arena_printf(h->a, "static void %s_size_values(const %s_params *p, %s_REAL *out)", h->lower, h->lower, h->upper);
+    c.head = arena_printf(h->a, "static void %s_size_values(const %s_params *p, %s_REAL *out)", h->lower, h->lower,
+                          h->upper);
     cfunction(u->size_values, &st, &c, h->out);
   }
-  csupport_expand("\nstatic int lag_sizes(const lag_params *p) {\n#ifdef LAG_COMPLEX /* has no order */\n  (void)p;\n  return LAG_OK;\n#else\n"
-                  "  const LAG_REAL zero = LAG_C(0.0);\n  LAG_MASK good = LAG_IS_FINITE(zero);\n", h->upper, h->lower, h->out);
-  if (u->size_values) csupport_expand(arena_printf(h->a, "  LAG_REAL size[%u];\n  lag_size_values(p, size);\n", u->sizes.n - u->nmoving), h->upper, h->lower, h->out);
+  csupport_expand("\nstatic int lag_sizes(const lag_params *p) {\n#ifdef LAG_COMPLEX /* has no order */\n  (void)p;\n  "
+                  "return LAG_OK;\n#else\n"
+                  "  const LAG_REAL zero = LAG_C(0.0);\n  LAG_MASK good = LAG_IS_FINITE(zero);\n",
+                  h->upper, h->lower, h->out);
+  if (u->size_values)
+    csupport_expand(arena_printf(h->a, "  LAG_REAL size[%u];\n  lag_size_values(p, size);\n", u->sizes.n - u->nmoving),
+                    h->upper, h->lower, h->out);
   else sb_puts(h->out, "  (void)p;\n");
   for (uint32_t i = 0; i < u->p.n; i++)
     if (u->p.at[i].sign) write_demand(h, demand(h, arena_printf(h->a, "p->%s", h->fields[i]), u->p.at[i].sign));
@@ -221,7 +249,8 @@ static void start(const Header *h) {
   if (checks) csupport_expand("  LAG_TRY(lag_sizes(p));\n", h->upper, h->lower, h->out);
   else if (!prog_reads(h->scene->start, ARR_P) && !header_has(h, FN_HOLD)) sb_puts(h->out, "  (void)p;\n");
   sb_printf(h->out, "  s->t = %s;\n", header_constant(h, h->scene->t0));
-  if (h->u->q.n) sb_printf(h->out, "  for (int i = 0; i < %s_NQ; i++) s->q[i] = s->v[i] = %s_C(0.0);\n", h->upper, h->upper);
+  if (h->u->q.n)
+    sb_printf(h->out, "  for (int i = 0; i < %s_NQ; i++) s->q[i] = s->v[i] = %s_C(0.0);\n", h->upper, h->upper);
   if (h->u->z.n) sb_printf(h->out, "  for (int i = 0; i < %s_NZ; i++) s->z[i] = %s_C(0.0);\n", h->upper, h->upper);
   sb_printf(h->out, "  for (int i = 0; i <= %s_NY; i++) s->lost[i] = %s_C(0.0);\n", h->upper, h->upper);
   if (header_has_method(h, "moreau")) header_moreau_start(h);
@@ -229,12 +258,16 @@ static void start(const Header *h) {
   for (uint32_t i = 0; i < h->scene->moves.n; i++) {
     const IrMove *x = &h->scene->moves.at[i];
     uint32_t n = h->u->q.n;
-    sb_printf(h->out, "  s->%s[%s] = %s;\n", x->component < n ? "q" : "v", h->q[x->component % n], header_constant(h, x->value));
+    sb_printf(h->out, "  s->%s[%s] = %s;\n", x->component < n ? "q" : "v", h->q[x->component % n],
+              header_constant(h, x->value));
   }
   if (header_has(h, FN_HOLD) && h->u->u.n)
     sb_printf(h->out, "  %s_REAL u[%s_NU];\n  %s_inputs(s->t, p, u);\n", h->upper, h->upper, h->lower);
-  if (header_has(h, FN_HOLD)) csupport_expand(arena_printf(h->a, "  LAG_TRY(lag_hold(p, s%s));\n", h->u->u.n ? ", u" : ""), h->upper, h->lower, h->out);
-  sb_printf(h->out, "  return %s;\n}\n", checks || header_has(h, FN_HOLD) ? "status" : arena_printf(h->a, "%s_OK", h->upper));
+  if (header_has(h, FN_HOLD))
+    csupport_expand(arena_printf(h->a, "  LAG_TRY(lag_hold(p, s%s));\n", h->u->u.n ? ", u" : ""), h->upper, h->lower,
+                    h->out);
+  sb_printf(h->out, "  return %s;\n}\n",
+            checks || header_has(h, FN_HOLD) ? "status" : arena_printf(h->a, "%s_OK", h->upper));
 }
 
 static void inputs(const Header *h) {
@@ -247,7 +280,9 @@ static void inputs(const Header *h) {
 
 /* --- events --- */
 
-const char *header_action(const Header *h, uint32_t i) { return arena_printf(h->a, "%s_act_%s", h->lower, cname_of_event(h->u, i)); }
+const char *header_action(const Header *h, uint32_t i) {
+  return arena_printf(h->a, "%s_act_%s", h->lower, cname_of_event(h->u, i));
+}
 
 static void action(const Header *h, uint32_t i) {
   const char **out = ARENA_ARRAY(h->a, const char *, 4), **own = ARENA_ARRAY(h->a, const char *, 4);
@@ -259,7 +294,8 @@ static void action(const Header *h, uint32_t i) {
   sb_printf(&head, "static int %s(%s", header_action(h, i), header_state_args(h, 1, ""));
   for (uint32_t k = 0; k < n; k++) sb_printf(&head, ", %s_REAL *%s", h->upper, own[k]);
   sb_putc(&head, ')');
-  const char *comment = arena_printf(h->a, "Action of the event %s: q1, v1, z1 hold the state after it.", h->u->events.at[i].name);
+  const char *comment =
+      arena_printf(h->a, "Action of the event %s: q1, v1, z1 hold the state after it.", h->u->events.at[i].name);
   header_state_function(h, h->u->events.at[i].action, comment, header_wrapped(h, sb_text(&head)), own, out, 1);
 }
 
@@ -269,12 +305,18 @@ static void strike(const Header *h) {
   const char *R = h->upper, *m = h->lower;
   if (!h->u->impact) return;
   StrBuf text = strbuf(h->a);
-  const char *head = arena_printf(h->a, "static int %s_impact(%s, const %s_REAL *g, %s_REAL *v1)", m, header_state_args(h, 1, ""), R, R);
-  header_state_function(h, h->u->impact, "Velocities after the impact of the contact whose entry of g is 1.", header_wrapped(h, head), extra, out, 1);
-  head = arena_printf(h->a, "static int %s_strike(int row, int input, %s, %s_REAL *v1)", m, header_state_args(h, 1, ""), R);
-  sb_printf(&text, "\n%s {\n  LAG_REAL g[%u], with[%u];\n  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = 0; i < %u; i++) with[i] = u[i];\n",
+  const char *head = arena_printf(h->a, "static int %s_impact(%s, const %s_REAL *g, %s_REAL *v1)", m,
+                                  header_state_args(h, 1, ""), R, R);
+  header_state_function(h, h->u->impact, "Velocities after the impact of the contact whose entry of g is 1.",
+                        header_wrapped(h, head), extra, out, 1);
+  head = arena_printf(h->a, "static int %s_strike(int row, int input, %s, %s_REAL *v1)", m, header_state_args(h, 1, ""),
+                      R);
+  sb_printf(&text,
+            "\n%s {\n  LAG_REAL g[%u], with[%u];\n  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = 0; "
+            "i < %u; i++) with[i] = u[i];\n",
             header_wrapped(h, head), h->u->constraints.of.n, h->u->u.n, h->u->constraints.of.n, h->u->u.n);
-  sb_printf(&text, "  g[row] = with[input] = LAG_C(1.0);\n  return lag_impact(t, q, v, %sp, with, g, v1);\n}\n", h->u->z.n ? "z, " : "");
+  sb_printf(&text, "  g[row] = with[input] = LAG_C(1.0);\n  return lag_impact(t, q, v, %sp, with, g, v1);\n}\n",
+            h->u->z.n ? "z, " : "");
   csupport_expand(sb_text(&text), R, m, h->out);
 }
 
@@ -283,13 +325,20 @@ static void act(const Header *h) {
   strike(h);
   for (uint32_t i = 0; i < h->u->events.n; i++)
     if (!program_set_striking_contact(h->u, i)) action(h, i);
-  sb_printf(h->out, "\n%s {\n  const %s_state was = *s;\n  for (int i = 0; i <= %s_NY; i++) s->lost[i] = %s_C(0.0);\n  switch (event) {\n", header_api(h, FN_ACT), h->lower,
-            h->upper, h->upper);
-  const char *q = h->u->q.n ? ", s->q, s->v" : "", *z = h->u->z.n ? ", s->z" : "", *args = header_state_args(h, 0, "was.");
+  sb_printf(h->out,
+            "\n%s {\n  const %s_state was = *s;\n  for (int i = 0; i <= %s_NY; i++) s->lost[i] = %s_C(0.0);\n  switch "
+            "(event) {\n",
+            header_api(h, FN_ACT), h->lower, h->upper, h->upper);
+  const char *q = h->u->q.n ? ", s->q, s->v" : "", *z = h->u->z.n ? ", s->z" : "",
+             *args = header_state_args(h, 0, "was.");
   for (uint32_t i = 0; i < h->u->events.n; i++) {
     const IrContact *c = program_set_striking_contact(h->u, i);
-    if (c) sb_printf(h->out, "    case %s: return %s_strike(%u, %s, %s, s->v);\n", h->ev[i], h->lower, c->constraint, h->in[c->input], args);
-    else sb_printf(h->out, "    case %s:%s return %s(%s%s%s);\n", h->ev[i], h->u->events.at[i].stop ? " *stop = 1;" : "", header_action(h, i), args, q, z);
+    if (c)
+      sb_printf(h->out, "    case %s: return %s_strike(%u, %s, %s, s->v);\n", h->ev[i], h->lower, c->constraint,
+                h->in[c->input], args);
+    else
+      sb_printf(h->out, "    case %s:%s return %s(%s%s%s);\n", h->ev[i], h->u->events.at[i].stop ? " *stop = 1;" : "",
+                header_action(h, i), args, q, z);
   }
   sb_printf(h->out, "    default: (void)stop; return %s_OK;\n  }\n}\n", h->upper);
 }
@@ -298,7 +347,9 @@ static void act(const Header *h) {
 
 static void change(const Header *h, const Prog *p, const char *name) {
   static const char *const extra[] = {"g", "d", "force", NULL}, *const out[] = {"d", "force"};
-  header_internal_function(h, p, name, arena_printf(h->a, "const %s_REAL *g, %s_REAL *d, %s_REAL *force", h->upper, h->upper, h->upper), extra, out);
+  header_internal_function(
+      h, p, name, arena_printf(h->a, "const %s_REAL *g, %s_REAL *d, %s_REAL *force", h->upper, h->upper, h->upper),
+      extra, out);
 }
 
 /* The numbers of the coordinates' units, where there are several. */
@@ -312,7 +363,9 @@ static int units(const Header *h) {
     several |= first;
     sb_printf(&text, "%s%u", i ? ", " : "", first);
   }
-  if (several) sb_printf(h->out, "\nstatic const int %s_unit_of[] = {%s}; /* equal for coordinates with the same unit */\n", h->lower, sb_text(&text));
+  if (several)
+    sb_printf(h->out, "\nstatic const int %s_unit_of[] = {%s}; /* equal for coordinates with the same unit */\n",
+              h->lower, sb_text(&text));
   return several != 0;
 }
 
@@ -321,14 +374,24 @@ void header_hold_define(const Header *h) {
   const IrConstraints *k = &h->u->constraints;
   int both = k->position == k->velocity;
   const char *args = header_state_args(h, 0, "s->"), *R = h->upper, *m = h->lower, *u = h->u->u.n ? ", u" : "";
-  header_internal_function(h, k->residuals, "residuals", arena_printf(h->a, "%s_REAL *c, %s_REAL *r", R, R), extra, extra);
+  header_internal_function(h, k->residuals, "residuals", arena_printf(h->a, "%s_REAL *c, %s_REAL *r", R, R), extra,
+                           extra);
   if (k->nholonomic) change(h, k->position, both ? "correct" : "correct_positions");
   if (!both) change(h, k->velocity, "correct_velocities");
-  const char *correct = both ? arena_printf(h->a, "lag_correct(%s, g, d, force)", args)
-                        : !k->nholonomic ? arena_printf(h->a, "lag_correct_velocities(%s, g, d, force)", args)
-                        : arena_printf(h->a, "level ? lag_correct_velocities(%s, g, d, force) : lag_correct_positions(%s, g, d, force)", args, args);
-  const HeaderWord words[] = {{"STATE", args}, {"BESIDE", header_state_args(h, 0, "beside.")}, {"CORRECT", correct}, {"FIRST", k->nholonomic ? "0" : "1"}, {"INPUTS", h->u->u.n ? ", const LAG_REAL *u" : ""},
-                              {"WITH", units(h) ? "if (lag_unit_of[j] == lag_unit_of[i]) " : ""}, {NULL, NULL}};
+  const char *correct =
+      both ? arena_printf(h->a, "lag_correct(%s, g, d, force)", args)
+      : !k->nholonomic
+          ? arena_printf(h->a, "lag_correct_velocities(%s, g, d, force)", args)
+          : arena_printf(h->a,
+                         "level ? lag_correct_velocities(%s, g, d, force) : lag_correct_positions(%s, g, d, force)",
+                         args, args);
+  const HeaderWord words[] = {{"STATE", args},
+                              {"BESIDE", header_state_args(h, 0, "beside.")},
+                              {"CORRECT", correct},
+                              {"FIRST", k->nholonomic ? "0" : "1"},
+                              {"INPUTS", h->u->u.n ? ", const LAG_REAL *u" : ""},
+                              {"WITH", units(h) ? "if (lag_unit_of[j] == lag_unit_of[i]) " : ""},
+                              {NULL, NULL}};
   header_template(h, onto, words);
   sb_printf(h->out, "\n%s {\n  return %s_onto(p, s%s, 0);\n}\n", header_api(h, FN_HOLD), m, u);
 }
@@ -365,7 +428,9 @@ static const char *comparison_of_unit(const ProgramSet *u) {
 /* Limits of scalars: no order, or no functions in C++98. */
 static void for_scalars(const Header *h) {
   const char *why = comparison_of_unit(h->u), *m = h->upper;
-  if (why) sb_printf(h->out, "#ifdef %s_COMPLEX\n#error \"%s_REAL cannot be complex: the model has %s\"\n#endif\n\n", m, m, why);
+  if (why)
+    sb_printf(h->out, "#ifdef %s_COMPLEX\n#error \"%s_REAL cannot be complex: the model has %s\"\n#endif\n\n", m, m,
+              why);
   if (h->u->constraints.of.n || unit_calls(h->u, "cbrt") || unit_calls(h->u, "hypot")) sb_puts(h->out, overloads);
   if (header_has_method(h, "taylor")) header_taylor_overloads(h);
 }
@@ -378,7 +443,8 @@ static int solves_dense(const Header *h) {
 
 void header_implementation(const Header *h) {
   static const char *const e[] = {"e", NULL}, *const out[] = {"out", NULL}, *const g[] = {"g", NULL};
-  sb_puts(h->out, "#if " FAST_MATH "\n#error \"this header needs NaN and exact sums: compile it without -ffast-math, -Ofast and /fp:fast\"\n#endif\n#include <math.h>\n\n");
+  sb_puts(h->out, "#if " FAST_MATH "\n#error \"this header needs NaN and exact sums: compile it without -ffast-math, "
+                                   "-Ofast and /fp:fast\"\n#endif\n#include <math.h>\n\n");
   MathText math = {h->u, h->upper, h->lower, solves_dense(h)};
   for_scalars(h);
   sb_puts(h->out, "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
@@ -393,9 +459,12 @@ void header_implementation(const Header *h) {
   inputs(h);
   accel(h);
   if (header_has(h, FN_ENERGY)) header_state_function(h, h->u->energy, NULL, header_api(h, FN_ENERGY), e, e, 0);
-  if (header_has(h, FN_CHARGES)) header_state_function(h, h->u->charge_values, NULL, header_api(h, FN_CHARGES), out, out, 1);
-  if (header_has(h, FN_POWERS)) header_state_function(h, h->u->charge_powers, NULL, header_api(h, FN_POWERS), out, out, 1);
-  if (header_has(h, FN_OBSERVE)) header_state_function(h, h->scene->observe_plain, NULL, header_api(h, FN_OBSERVE), out, out, 1);
+  if (header_has(h, FN_CHARGES))
+    header_state_function(h, h->u->charge_values, NULL, header_api(h, FN_CHARGES), out, out, 1);
+  if (header_has(h, FN_POWERS))
+    header_state_function(h, h->u->charge_powers, NULL, header_api(h, FN_POWERS), out, out, 1);
+  if (header_has(h, FN_OBSERVE))
+    header_state_function(h, h->scene->observe_plain, NULL, header_api(h, FN_OBSERVE), out, out, 1);
   if (header_has(h, FN_EVENTS)) header_state_function(h, h->u->event_values, NULL, header_api(h, FN_EVENTS), g, g, 1);
   act(h);
   sb_putc(h->out, '\n');

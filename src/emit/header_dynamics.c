@@ -1,4 +1,5 @@
-/* Parts of an emitted header that `--with` asks for: matrices, inverse dynamics, derivatives, constraints, events, names. */
+/* Parts of an emitted header that `--with` asks for: matrices, inverse dynamics, derivatives, constraints, events,
+ * names. */
 #include <string.h>
 
 #include "emit/header_impl.h"
@@ -59,7 +60,9 @@ unsigned header_wants(const char *list) {
   int some;
   for (const char *s = list ? list : ""; *s; s += strcspn(s, ","), s += *s == ',') {
     int method = header_method(s, strcspn(s, ","));
-    wants |= method >= 0 ? header_method_wants(method) : is_word(s, strcspn(s, ","), "all") ? WANT_VARIATION | WANT_TAYLOR : 0;
+    wants |= method >= 0                          ? header_method_wants(method)
+             : is_word(s, strcspn(s, ","), "all") ? WANT_VARIATION | WANT_TAYLOR
+                                                  : 0;
     for (size_t i = 0; i < WORDS; i++)
       if (words[i].part & parts_of(s, strcspn(s, ","), &some)) wants |= words[i].wants;
   }
@@ -70,7 +73,8 @@ unsigned header_wants(const char *list) {
 static const char *lack(const ProgramSet *u, unsigned part) {
   enum { DENSE = 300 };
   if (part & DERIVATIVES && u->contacts.n) return "no contacts: they open and close";
-  if (part & (DERIVATIVES | PART_MASS) && 2 * u->q.n + u->z.n > DENSE) return "at most 300 coordinates, velocities and states: the matrices are dense";
+  if (part & (DERIVATIVES | PART_MASS) && 2 * u->q.n + u->z.n > DENSE)
+    return "at most 300 coordinates, velocities and states: the matrices are dense";
   if (part & (PART_MASS | PART_INVERSE) && !u->q.n) return "coordinates: this model has states alone";
   if (part & PART_PARAMS && !u->p.n) return "parameters: this model has none that is free";
   if (part & PART_CONSTRAINTS && !u->constraints.of.n) return "constraints: this model has none";
@@ -86,8 +90,10 @@ int header_parts(const ProgramSet *u, const char *list, HeaderParts *parts, cons
     const char *lacks = method >= 0 ? header_method_refusal(u, method) : NULL;
     if (method >= 0) parts->methods |= 1u << method;
     if (lib >= 0) parts->parts |= libraries[lib].part;
-    if (lib >= 0 && u->contacts.n) lacks = "no contacts, which open and close: a header without --for shows the loop of steps that they need";
-    if (lib >= 0 && program_set_kick(u)) lacks = "no kicks: a header without --for shows the loop of steps that they need";
+    if (lib >= 0 && u->contacts.n)
+      lacks = "no contacts, which open and close: a header without --for shows the loop of steps that they need";
+    if (lib >= 0 && program_set_kick(u))
+      lacks = "no kicks: a header without --for shows the loop of steps that they need";
     for (size_t i = 0; i < WORDS && !lacks; i++) {
       if (!(words[i].part & asked)) continue;
       lacks = lack(u, words[i].part);
@@ -108,65 +114,67 @@ int header_parts(const ProgramSet *u, const char *list, HeaderParts *parts, cons
 
 /* The elimination, for all columns at once, is that of _solve. */
 static const char *const solve_mass =
-  " |\n"
-  " |/* M X = B for the matrix with entries m: B[NQ*columns] becomes X. Gaussian elimination with partial pivoting. */\n"
-  " |static int lag_solve_mass(const LAG_REAL *m, int columns, LAG_REAL *B) {\n"
-  " |  static const unsigned short at[][2] = {ENTRIES};\n"
-  " |  LAG_REAL M[LAG_NQ*LAG_NQ];\n"
-  " |  LAG_PIVOTS;\n"
-  " |  for (int i = 0; i < LAG_NQ*LAG_NQ; i++) M[i] = LAG_C(0.0);\n"
-  " |  for (int k = 0; k < NENTRIES; k++) {\n"
-  " |    M[at[k][0]*LAG_NQ + at[k][1]] = m[k];\n"
-  " |    M[at[k][1]*LAG_NQ + at[k][0]] = m[k];\n"
-  " |  }\n"
-  " |  for (int k = 0; k < LAG_NQ; k++) {\n"
-  " |    for (int i = k + 1; i < LAG_NQ; i++) {\n"
-  " |      const LAG_MASK larger = LAG_FN(fabs)(M[i*LAG_NQ + k]) > LAG_FN(fabs)(M[k*LAG_NQ + k]);\n"
-  " |      for (int j = k; j < LAG_NQ + columns && LAG_ANY(larger); j++) {\n"
-  " |        LAG_REAL *const upper = j < LAG_NQ ? &M[k*LAG_NQ + j] : &B[k*columns + j - LAG_NQ];\n"
-  " |        LAG_REAL *const lower = j < LAG_NQ ? &M[i*LAG_NQ + j] : &B[i*columns + j - LAG_NQ];\n"
-  " |        const LAG_REAL was = *upper;\n"
-  " |        *upper = LAG_SELECT(larger, *lower, was);\n"
-  " |        *lower = LAG_SELECT(larger, was, *lower);\n"
-  " |      }\n"
-  " |    }\n"
-  " |    LAG_PIVOT(LAG_FN(fabs)(M[k*LAG_NQ + k]) > LAG_C(0.0));\n"
-  " |    for (int i = k + 1; i < LAG_NQ; i++) {\n"
-  " |      const LAG_REAL factor = M[i*LAG_NQ + k]/M[k*LAG_NQ + k];\n"
-  " |      for (int j = k + 1; j < LAG_NQ; j++) M[i*LAG_NQ + j] -= factor*M[k*LAG_NQ + j];\n"
-  " |      for (int j = 0; j < columns; j++) B[i*columns + j] -= factor*B[k*columns + j];\n"
-  " |    }\n"
-  " |  }\n"
-  " |  for (int k = LAG_NQ - 1; k >= 0; k--)\n"
-  " |    for (int j = 0; j < columns; j++) {\n"
-  " |      for (int i = k + 1; i < LAG_NQ; i++) B[k*columns + j] -= M[k*LAG_NQ + i]*B[i*columns + j];\n"
-  " |      B[k*columns + j] /= M[k*LAG_NQ + k];\n"
-  " |    }\n"
-  " |  return LAG_PIVOTS_STATUS;\n"
-  " |}\n";
+    " |\n"
+    " |/* M X = B for the matrix with entries m: B[NQ*columns] becomes X. Gaussian elimination with partial pivoting. "
+    "*/\n"
+    " |static int lag_solve_mass(const LAG_REAL *m, int columns, LAG_REAL *B) {\n"
+    " |  static const unsigned short at[][2] = {ENTRIES};\n"
+    " |  LAG_REAL M[LAG_NQ*LAG_NQ];\n"
+    " |  LAG_PIVOTS;\n"
+    " |  for (int i = 0; i < LAG_NQ*LAG_NQ; i++) M[i] = LAG_C(0.0);\n"
+    " |  for (int k = 0; k < NENTRIES; k++) {\n"
+    " |    M[at[k][0]*LAG_NQ + at[k][1]] = m[k];\n"
+    " |    M[at[k][1]*LAG_NQ + at[k][0]] = m[k];\n"
+    " |  }\n"
+    " |  for (int k = 0; k < LAG_NQ; k++) {\n"
+    " |    for (int i = k + 1; i < LAG_NQ; i++) {\n"
+    " |      const LAG_MASK larger = LAG_FN(fabs)(M[i*LAG_NQ + k]) > LAG_FN(fabs)(M[k*LAG_NQ + k]);\n"
+    " |      for (int j = k; j < LAG_NQ + columns && LAG_ANY(larger); j++) {\n"
+    " |        LAG_REAL *const upper = j < LAG_NQ ? &M[k*LAG_NQ + j] : &B[k*columns + j - LAG_NQ];\n"
+    " |        LAG_REAL *const lower = j < LAG_NQ ? &M[i*LAG_NQ + j] : &B[i*columns + j - LAG_NQ];\n"
+    " |        const LAG_REAL was = *upper;\n"
+    " |        *upper = LAG_SELECT(larger, *lower, was);\n"
+    " |        *lower = LAG_SELECT(larger, was, *lower);\n"
+    " |      }\n"
+    " |    }\n"
+    " |    LAG_PIVOT(LAG_FN(fabs)(M[k*LAG_NQ + k]) > LAG_C(0.0));\n"
+    " |    for (int i = k + 1; i < LAG_NQ; i++) {\n"
+    " |      const LAG_REAL factor = M[i*LAG_NQ + k]/M[k*LAG_NQ + k];\n"
+    " |      for (int j = k + 1; j < LAG_NQ; j++) M[i*LAG_NQ + j] -= factor*M[k*LAG_NQ + j];\n"
+    " |      for (int j = 0; j < columns; j++) B[i*columns + j] -= factor*B[k*columns + j];\n"
+    " |    }\n"
+    " |  }\n"
+    " |  for (int k = LAG_NQ - 1; k >= 0; k--)\n"
+    " |    for (int j = 0; j < columns; j++) {\n"
+    " |      for (int i = k + 1; i < LAG_NQ; i++) B[k*columns + j] -= M[k*LAG_NQ + i]*B[i*columns + j];\n"
+    " |      B[k*columns + j] /= M[k*LAG_NQ + k];\n"
+    " |    }\n"
+    " |  return LAG_PIVOTS_STATUS;\n"
+    " |}\n";
 
 /* The same with constraints, column by column: the elimination destroys its matrices. */
 static const char *const solve_constrained =
-  " |\n"
-  " |/* M X - A^T L = B, A X = G for the matrices with entries m and A: B[NQ*columns] becomes X, G[NC*columns] becomes L. */\n"
-  " |static int lag_solve_mass(const LAG_REAL *m, const LAG_REAL *A, int columns, LAG_REAL *B, LAG_REAL *G) {\n"
-  " |  static const unsigned short at[][2] = {ENTRIES}, of[][2] = {JACOBIAN};\n"
-  " |  LAG_REAL w[2*LAG_NQ*LAG_NQ + 2*LAG_NQ*LAG_NC + LAG_NC*LAG_NC + 3*LAG_NQ + 10*LAG_NC];\n"
-  " |  LAG_REAL *const a = w + LAG_NQ*LAG_NQ, *const x = a + LAG_NC*LAG_NQ, *const l = x + LAG_NQ;\n"
-  " |  LAG_PIVOTS;\n"
-  " |  for (int j = 0; j < columns; j++) {\n"
-  " |    for (int i = 0; i < LAG_NQ*(LAG_NQ + LAG_NC); i++) w[i] = LAG_C(0.0);\n"
-  " |    for (int k = 0; k < NENTRIES; k++) w[at[k][0]*LAG_NQ + at[k][1]] = m[k];\n"
-  " |    for (int k = 0; k < NENTRIES; k++) w[at[k][1]*LAG_NQ + at[k][0]] = m[k];\n"
-  " |    for (int k = 0; k < NJACOBIAN; k++) a[of[k][0]*LAG_NQ + of[k][1]] = A[k];\n"
-  " |    for (int i = 0; i < LAG_NQ; i++) x[i] = B[i*columns + j];\n"
-  " |    for (int k = 0; k < LAG_NC; k++) l[k] = G[k*columns + j];\n"
-  " |    LAG_PIVOT(lag_kkt(LAG_NQ, LAG_NC, 0, w));\n"
-  " |    for (int i = 0; i < LAG_NQ; i++) B[i*columns + j] = x[i];\n"
-  " |    for (int k = 0; k < LAG_NC; k++) G[k*columns + j] = l[k];\n"
-  " |  }\n"
-  " |  return LAG_PIVOTS_STATUS;\n"
-  " |}\n";
+    " |\n"
+    " |/* M X - A^T L = B, A X = G for the matrices with entries m and A: B[NQ*columns] becomes X, G[NC*columns] "
+    "becomes L. */\n"
+    " |static int lag_solve_mass(const LAG_REAL *m, const LAG_REAL *A, int columns, LAG_REAL *B, LAG_REAL *G) {\n"
+    " |  static const unsigned short at[][2] = {ENTRIES}, of[][2] = {JACOBIAN};\n"
+    " |  LAG_REAL w[2*LAG_NQ*LAG_NQ + 2*LAG_NQ*LAG_NC + LAG_NC*LAG_NC + 3*LAG_NQ + 10*LAG_NC];\n"
+    " |  LAG_REAL *const a = w + LAG_NQ*LAG_NQ, *const x = a + LAG_NC*LAG_NQ, *const l = x + LAG_NQ;\n"
+    " |  LAG_PIVOTS;\n"
+    " |  for (int j = 0; j < columns; j++) {\n"
+    " |    for (int i = 0; i < LAG_NQ*(LAG_NQ + LAG_NC); i++) w[i] = LAG_C(0.0);\n"
+    " |    for (int k = 0; k < NENTRIES; k++) w[at[k][0]*LAG_NQ + at[k][1]] = m[k];\n"
+    " |    for (int k = 0; k < NENTRIES; k++) w[at[k][1]*LAG_NQ + at[k][0]] = m[k];\n"
+    " |    for (int k = 0; k < NJACOBIAN; k++) a[of[k][0]*LAG_NQ + of[k][1]] = A[k];\n"
+    " |    for (int i = 0; i < LAG_NQ; i++) x[i] = B[i*columns + j];\n"
+    " |    for (int k = 0; k < LAG_NC; k++) l[k] = G[k*columns + j];\n"
+    " |    LAG_PIVOT(lag_kkt(LAG_NQ, LAG_NC, 0, w));\n"
+    " |    for (int i = 0; i < LAG_NQ; i++) B[i*columns + j] = x[i];\n"
+    " |    for (int k = 0; k < LAG_NC; k++) G[k*columns + j] = l[k];\n"
+    " |  }\n"
+    " |  return LAG_PIVOTS_STATUS;\n"
+    " |}\n";
 
 /* PARTIALS_by: one column a variable; out[NY*columns] := derivatives of the rates. */
 static const char *const by =
@@ -262,20 +270,27 @@ static const char *const vjp_body =
 
 #define LIST(v) (v).at, (v).n
 
-/* Chooses lines marked b (coordinates and states), f (states alone), n (no inputs), c (constraints), o (coordinates without), which become plain ones
- * or go. */
+/* Chooses lines marked b (coordinates and states), f (states alone), n (no inputs), c (constraints), o (coordinates
+ * without), which become plain ones or go. */
 static void write_marked(const Header *h, const char *text, const HeaderWord *w) {
   const ProgramSet *u = h->u;
   StrBuf b = strbuf(h->a);
   for (const char *s = text; *s; s += strcspn(s, "\n") + 1) {
-    int wanted = *s == 'b' ? u->q.n && u->z.n : *s == 'f' ? !u->q.n : *s == 'n' ? !u->u.n : *s == 'c' ? u->constraints.of.n > 0 : *s == 'o' ? u->q.n && !u->constraints.of.n : 1;
+    int wanted = *s == 'b'   ? u->q.n && u->z.n
+                 : *s == 'f' ? !u->q.n
+                 : *s == 'n' ? !u->u.n
+                 : *s == 'c' ? u->constraints.of.n > 0
+                 : *s == 'o' ? u->q.n && !u->constraints.of.n
+                             : 1;
     size_t n = strcspn(s, "\n") + 1;
     if (wanted) sb_printf(&b, "%c%.*s", strchr("bfnco", *s) ? ' ' : *s, (int)n - 1, s + 1);
   }
   header_template(h, sb_text(&b), w);
 }
 
-static HeaderWord number_word(const Header *h, const char *mark, uint32_t n) { return (HeaderWord){mark, arena_printf(h->a, "%u", n)}; }
+static HeaderWord number_word(const Header *h, const char *mark, uint32_t n) {
+  return (HeaderWord){mark, arena_printf(h->a, "%u", n)};
+}
 
 typedef struct {
   HeaderWord at[13];
@@ -284,21 +299,41 @@ typedef struct {
 /* Words of the templates for derivatives by one kind of variables. */
 static Words words_of(const Header *h, const char *name, const IrEntry *at, uint32_t n, const char *columns) {
   const ProgramSet *u = h->u;
-  const char *a = u->q.n ? ", a" : "", *rates = u->z.n && u->q.n ? ", a, zd" : a, *q = u->constraints.of.n ? ", a, lambda" : a;
+  const char *a = u->q.n ? ", a" : "", *rates = u->z.n && u->q.n ? ", a, zd" : a,
+             *q = u->constraints.of.n ? ", a, lambda" : a;
   const char *out = u->constraints.of.n ? ", m, A" : u->q.n ? ", m" : "";
-  return (Words){{{"NAME", name}, {"ENTRIES", header_positions(h, at, n)}, number_word(h, "NENTRIES", n), number_word(h, "NALL", n ? n : 1),
-                  number_word(h, "NMASS", u->linear_mass.n ? u->linear_mass.n : 1), {"COLUMNS", columns}, {"STATE", header_state_args(h, 1, "")},
+  return (Words){{{"NAME", name},
+                  {"ENTRIES", header_positions(h, at, n)},
+                  number_word(h, "NENTRIES", n),
+                  number_word(h, "NALL", n ? n : 1),
+                  number_word(h, "NMASS", u->linear_mass.n ? u->linear_mass.n : 1),
+                  {"COLUMNS", columns},
+                  {"STATE", header_state_args(h, 1, "")},
                   number_word(h, "NJACOBIAN", u->constraints.jacobian.n ? u->constraints.jacobian.n : 1),
-                  {"RATES", rates}, {"WITH", q}, {"OUT", out}, {NULL, NULL}}};
+                  {"RATES", rates},
+                  {"WITH", q},
+                  {"OUT", out},
+                  {NULL, NULL}}};
 }
 
 /* lag_by_NAME: derivatives of the rates by state, inputs or parameters. */
-static void define_by(const Header *h, const Prog *p, const char *name, const IrEntry *at, uint32_t n, const char *columns) {
-  static const char *const all[] = {"a", "d", "m", NULL}, *const states[] = {"d", NULL}, *const out[] = {"d", "m", "A"}, *const constrained[] = {"a", "g", "d", "m", "A", NULL};
-  const char *R = h->upper, *q = h->u->constraints.of.n ? arena_printf(h->a, ", const %s_REAL *a, const %s_REAL *g, %s_REAL *d, %s_REAL *m, %s_REAL *A", R, R, R, R, R)
-                                 : h->u->q.n ? arena_printf(h->a, ", const %s_REAL *a, %s_REAL *d, %s_REAL *m", R, R, R) : arena_printf(h->a, ", %s_REAL *d", R);
-  const char *head = arena_printf(h->a, "static void %s_partials_%s(%s%s)", h->lower, name, header_state_args(h, 1, ""), q);
-  header_state_function(h, p, NULL, header_wrapped(h, head), h->u->constraints.of.n ? constrained : h->u->q.n ? all : states, out, 0);
+static void define_by(const Header *h, const Prog *p, const char *name, const IrEntry *at, uint32_t n,
+                      const char *columns) {
+  static const char *const all[] = {"a", "d", "m", NULL}, *const states[] = {"d", NULL}, *const out[] = {"d", "m", "A"},
+                           *const constrained[] = {"a", "g", "d", "m", "A", NULL};
+  const char *R = h->upper,
+             *q = h->u->constraints.of.n
+                      ? arena_printf(h->a, ", const %s_REAL *a, const %s_REAL *g, %s_REAL *d, %s_REAL *m, %s_REAL *A",
+                                     R, R, R, R, R)
+                  : h->u->q.n ? arena_printf(h->a, ", const %s_REAL *a, %s_REAL *d, %s_REAL *m", R, R, R)
+                              : arena_printf(h->a, ", %s_REAL *d", R);
+  const char *head =
+      arena_printf(h->a, "static void %s_partials_%s(%s%s)", h->lower, name, header_state_args(h, 1, ""), q);
+  header_state_function(h, p, NULL, header_wrapped(h, head),
+                        h->u->constraints.of.n ? constrained
+                        : h->u->q.n            ? all
+                                               : states,
+                        out, 0);
   Words w = words_of(h, name, at, n, columns);
   write_marked(h, by, w.at);
 }
@@ -307,11 +342,15 @@ static void begin(const Header *h, HeaderFn f) { sb_printf(h->out, "\n%s", heade
 
 static void derivatives(const Header *h) {
   const ProgramSet *u = h->u;
-  const char *ny = arena_printf(h->a, "%s_NY", h->upper), *nu = arena_printf(h->a, "%s_NU", h->upper), *np = arena_printf(h->a, "%s_NP", h->upper);
+  const char *ny = arena_printf(h->a, "%s_NY", h->upper), *nu = arena_printf(h->a, "%s_NU", h->upper),
+             *np = arena_printf(h->a, "%s_NP", h->upper);
   unsigned parts = h->parts.parts;
   if (parts & (PART_JAC | PART_LINEAR | PART_PARAMS) && u->q.n) {
-    const HeaderWord w[] = {{"ENTRIES", header_positions(h, LIST(u->linear_mass))}, number_word(h, "NENTRIES", u->linear_mass.n),
-                            {"JACOBIAN", header_positions(h, LIST(u->constraints.jacobian))}, number_word(h, "NJACOBIAN", u->constraints.jacobian.n), {NULL, NULL}};
+    const HeaderWord w[] = {{"ENTRIES", header_positions(h, LIST(u->linear_mass))},
+                            number_word(h, "NENTRIES", u->linear_mass.n),
+                            {"JACOBIAN", header_positions(h, LIST(u->constraints.jacobian))},
+                            number_word(h, "NJACOBIAN", u->constraints.jacobian.n),
+                            {NULL, NULL}};
     header_template(h, u->constraints.of.n ? solve_constrained : solve_mass, w);
   }
   if (parts & (PART_JAC | PART_LINEAR)) define_by(h, u->linear, "state", LIST(u->linear_dr), ny);
@@ -324,7 +363,8 @@ static void derivatives(const Header *h) {
     begin(h, FN_VJP), write_marked(h, products, w.at), write_marked(h, vjp_body, w.at);
   }
   if (parts & PART_LINEAR) begin(h, FN_LINEARIZE), write_marked(h, linearize_body, NULL);
-  if (parts & PART_PARAMS) begin(h, FN_DPARAMS), header_template(h, " | {\n |  return lag_by_params(ARGS, P);\n |}\n", NULL);
+  if (parts & PART_PARAMS)
+    begin(h, FN_DPARAMS), header_template(h, " | {\n |  return lag_by_params(ARGS, P);\n |}\n", NULL);
 }
 
 /* --- matrices, constraints --- */
@@ -332,20 +372,27 @@ static void derivatives(const Header *h) {
 /* A function that zeroes out[size] and fills it by an internal one around p. */
 static void filled(const Header *h, const Prog *p, HeaderFn f, const char *name, const char *out, const char *size) {
   const char *const own[] = {out, NULL};
-  const char *head = arena_printf(h->a, "static int %s_fill_%s(%s, %s_REAL *%s)", h->lower, name, header_state_args(h, 1, ""), h->upper, out);
+  const char *head = arena_printf(h->a, "static int %s_fill_%s(%s, %s_REAL *%s)", h->lower, name,
+                                  header_state_args(h, 1, ""), h->upper, out);
   header_state_function(h, p, NULL, header_wrapped(h, head), own, own, 1);
   begin(h, f);
   const HeaderWord w[] = {{"SIZE", size}, {"NAME", name}, {"OUT", out}, {NULL, NULL}};
-  header_template(h, " | {\n |  for (int i = 0; i < SIZE; i++) OUT[i] = LAG_C(0.0);\n |  return lag_fill_NAME(ARGS, OUT);\n |}\n", w);
+  header_template(
+      h, " | {\n |  for (int i = 0; i < SIZE; i++) OUT[i] = LAG_C(0.0);\n |  return lag_fill_NAME(ARGS, OUT);\n |}\n",
+      w);
 }
 
 static void constraints(const Header *h) {
   const IrConstraints *k = &h->u->constraints;
   begin(h, FN_CONSTRAINTS), header_template(h, " | {\n |  return lag_residuals(ARGS, c, r);\n |}\n", NULL);
-  const char *head = arena_printf(h->a, "static int %s_matrices(%s, %s_REAL *d, %s_REAL *m)", h->lower, header_state_args(h, 1, ""), h->upper, h->upper);
+  const char *head = arena_printf(h->a, "static int %s_matrices(%s, %s_REAL *d, %s_REAL *m)", h->lower,
+                                  header_state_args(h, 1, ""), h->upper, h->upper);
   static const char *const out[] = {"d", "m", NULL};
   header_state_function(h, k->matrices, NULL, header_wrapped(h, head), out, out, 1);
-  const HeaderWord w[] = {{"ENTRIES", header_positions(h, LIST(k->jacobian))}, number_word(h, "NENTRIES", k->jacobian.n), number_word(h, "NMASS", k->mass.n ? k->mass.n : 1), {NULL, NULL}};
+  const HeaderWord w[] = {{"ENTRIES", header_positions(h, LIST(k->jacobian))},
+                          number_word(h, "NENTRIES", k->jacobian.n),
+                          number_word(h, "NMASS", k->mass.n ? k->mass.n : 1),
+                          {NULL, NULL}};
   begin(h, FN_CONSTRAINT_JACOBIAN);
   header_template(h,
     " | {\n"
@@ -362,92 +409,94 @@ static void constraints(const Header *h) {
 
 /* A step with its dense output, and its event functions along it. Lines marked s are for _step_until_event. */
 static const char *const step_path =
-  " |\n"
-  " |/* A step from *from to *to; at: a state between. */\n"
-  " |typedef struct lag_path {\n"
-  " |  const lag_params *p;\n"
-  " |  const lag_state *from, *to;\n"
-  "u|  const LAG_REAL *u; /* inputs: these, or those of the model and of the caller */\n"
-  "u|  lag_input_fn *input;\n"
-  "u|  void *context;\n"
-  "u|  LAG_REAL now[LAG_NU];\n"
-  " |  LAG_REAL y[2][LAG_NY], MEMBERS;\n"
-  " |  lag_step_ends ends;\n"
-  " |  lag_state at;\n"
-  "s|  int stepped; /* states are ends of steps of that length, not dense output */\n"
-  " |} lag_path;\n"
-  " |\n"
-  " |static void lag_path_begin(lag_path *a, const lag_params *p, const lag_state *from, const lag_state *to,\n"
-  " |    LAG_REAL h) {\n"
-  " |  a->p = p, a->from = from, a->to = to;\n"
-  " |  lag_gather(from, a->y[0]);\n"
-  " |  lag_gather(to, a->y[1]);\n"
-  " |  a->ends.h = h, a->ends.y0 = a->y[0], a->ends.y1 = a->y[1];\n"
-  " |  a->ends.f0 = FIRST, a->ends.f1 = LAST;\n"
-  " |}\n"
-  " |\n"
-  " |/* a->at := the state x after the begin of the step; shaken: with its last digits changed. */\n"
-  " |static int lag_path_at(lag_path *a, int shaken, LAG_REAL x) {\n"
-  " |  const LAG_REAL zero = LAG_C(0.0), h = a->ends.h;\n"
-  " |  const int begins = !(x < zero) && !(x > zero);\n"
-  " |  LAG_REAL y[LAG_NY];\n"
-  "s|  a->at = *a->from;\n"
-  "s|  if (a->stepped) return lag_rk4_step(a->p, &a->at, xOF_PATH);\n"
-  " |  a->at = begins ? *a->from : *a->to;\n"
-  " |  if (!begins && (x < h || x > h)) {\n"
-  " |    WITHIN;\n"
-  " |    lag_scatter(y, &a->at);\n"
-  " |    for (int i = 1; i <= LAG_NY; i++) a->at.lost[i] = zero;\n"
-  " |    a->at.lost[0] = a->from->lost[0];\n"
-  " |    a->at.t = lag_compensated_sum(a->from->t, x, &a->at.lost[0]);\n"
-  "c|    const int status = lag_onto(a->p, &a->atNOW_AT, 0);\n"
-  "c|    if (status != LAG_OK) return status;\n"
-  " |  }\n"
-  " |  if (!shaken) return LAG_OK;\n"
-  " |  const LAG_REAL last = LAG_C(4.0)*lag_epsilon();\n"
-  " |  lag_gather(&a->at, y);\n"
-  " |  for (int i = 0; i < LAG_NY; i++)\n"
-  " |    y[i] += LAG_SELECT(i % 2, -last, last)*(LAG_FN(fabs)(y[i]) + LAG_FN(fabs)(y[i] - a->y[0][i]));\n"
-  " |  lag_scatter(y, &a->at);\n"
-  " |  a->at.t *= LAG_C(1.0) + last;\n"
-  " |  return LAG_OK;\n"
-  " |}\n"
-  " |\n"
-  " |static int lag_path_events(void *context, int shaken, LAG_REAL x, LAG_REAL *g) {\n"
-  " |  lag_path *const a = (lag_path *)context;\n"
-  " |  const lag_params *const p = a->p;\n"
-  " |  const lag_state *const end = &a->at;\n"
-  " |  int status = lag_path_at(a, shaken, x);\n"
-  "u|  const LAG_REAL *const u = lag_held(p, end->t, a->u, a->input, a->context, a->now);\n"
-  " |  if (status == LAG_OK) status = lag_events(AFTER, g);\n"
-  " |  for (int k = 0; k < LAG_NEV && status == LAG_OK; k++)\n"
-  " |    if (!(g[k] - g[k] >= LAG_C(0.0))) status = LAG_ENAN;\n"
-  " |  return status;\n"
-  " |}\n"
-  " |\n"
-  " |static int lag_event_direction(void *context, int k) {\n"
-  " |  static const signed char direction[] = {DIRECTIONS};\n"
-  " |  (void)context;\n"
-  " |  return direction[k];\n"
-  " |}\n"
-  "s|\n"
-  "s|/* Finds event k by steps, in place of dense output, which is off by more; a->stepped: they show it, near its root. */\n"
-  "s|static int lag_step_to_root(const lag_locator *l, lag_path *a, int k) {\n"
-  "s|  const LAG_REAL h = a->ends.h, x = l->root[k], half = LAG_C(0.5);\n"
-  "s|  const LAG_REAL *const g[] = {l->value, l->value + LAG_NEV};\n"
-  "s|  LAG_REAL d = h*LAG_C(9.5367431640625e-07);\n"
-  "s|  int found = 0, status = LAG_OK;\n"
-  "s|  a->stepped = 1;\n"
-  "s|  for (int i = 0; i < 7 && status == LAG_OK && !found; i++, d *= LAG_C(8.0)) {\n"
-  "s|    const LAG_REAL t[] = {LAG_SELECT(d/x < half, x - d, half*x), LAG_SELECT((x + d)/h < LAG_C(1.0), x + d, h)};\n"
-  "s|    status = lag_path_events(a, 0, t[0], l->value);\n"
-  "s|    if (status == LAG_OK) status = lag_path_events(a, 0, t[1], l->value + LAG_NEV);\n"
-  "s|    if (status == LAG_OK && g[0][k]*l->sign[k] < LAG_C(0.0) && g[1][k]*l->sign[k] > LAG_C(0.0))\n"
-  "s|      status = lag_find_crossing(l, k, LAG_C(0.0), t, g, &found);\n"
-  "s|  }\n"
-  "s|  a->stepped = found;\n"
-  "s|  return status;\n"
-  "s|}\n";
+    " |\n"
+    " |/* A step from *from to *to; at: a state between. */\n"
+    " |typedef struct lag_path {\n"
+    " |  const lag_params *p;\n"
+    " |  const lag_state *from, *to;\n"
+    "u|  const LAG_REAL *u; /* inputs: these, or those of the model and of the caller */\n"
+    "u|  lag_input_fn *input;\n"
+    "u|  void *context;\n"
+    "u|  LAG_REAL now[LAG_NU];\n"
+    " |  LAG_REAL y[2][LAG_NY], MEMBERS;\n"
+    " |  lag_step_ends ends;\n"
+    " |  lag_state at;\n"
+    "s|  int stepped; /* states are ends of steps of that length, not dense output */\n"
+    " |} lag_path;\n"
+    " |\n"
+    " |static void lag_path_begin(lag_path *a, const lag_params *p, const lag_state *from, const lag_state *to,\n"
+    " |    LAG_REAL h) {\n"
+    " |  a->p = p, a->from = from, a->to = to;\n"
+    " |  lag_gather(from, a->y[0]);\n"
+    " |  lag_gather(to, a->y[1]);\n"
+    " |  a->ends.h = h, a->ends.y0 = a->y[0], a->ends.y1 = a->y[1];\n"
+    " |  a->ends.f0 = FIRST, a->ends.f1 = LAST;\n"
+    " |}\n"
+    " |\n"
+    " |/* a->at := the state x after the begin of the step; shaken: with its last digits changed. */\n"
+    " |static int lag_path_at(lag_path *a, int shaken, LAG_REAL x) {\n"
+    " |  const LAG_REAL zero = LAG_C(0.0), h = a->ends.h;\n"
+    " |  const int begins = !(x < zero) && !(x > zero);\n"
+    " |  LAG_REAL y[LAG_NY];\n"
+    "s|  a->at = *a->from;\n"
+    "s|  if (a->stepped) return lag_rk4_step(a->p, &a->at, xOF_PATH);\n"
+    " |  a->at = begins ? *a->from : *a->to;\n"
+    " |  if (!begins && (x < h || x > h)) {\n"
+    " |    WITHIN;\n"
+    " |    lag_scatter(y, &a->at);\n"
+    " |    for (int i = 1; i <= LAG_NY; i++) a->at.lost[i] = zero;\n"
+    " |    a->at.lost[0] = a->from->lost[0];\n"
+    " |    a->at.t = lag_compensated_sum(a->from->t, x, &a->at.lost[0]);\n"
+    "c|    const int status = lag_onto(a->p, &a->atNOW_AT, 0);\n"
+    "c|    if (status != LAG_OK) return status;\n"
+    " |  }\n"
+    " |  if (!shaken) return LAG_OK;\n"
+    " |  const LAG_REAL last = LAG_C(4.0)*lag_epsilon();\n"
+    " |  lag_gather(&a->at, y);\n"
+    " |  for (int i = 0; i < LAG_NY; i++)\n"
+    " |    y[i] += LAG_SELECT(i % 2, -last, last)*(LAG_FN(fabs)(y[i]) + LAG_FN(fabs)(y[i] - a->y[0][i]));\n"
+    " |  lag_scatter(y, &a->at);\n"
+    " |  a->at.t *= LAG_C(1.0) + last;\n"
+    " |  return LAG_OK;\n"
+    " |}\n"
+    " |\n"
+    " |static int lag_path_events(void *context, int shaken, LAG_REAL x, LAG_REAL *g) {\n"
+    " |  lag_path *const a = (lag_path *)context;\n"
+    " |  const lag_params *const p = a->p;\n"
+    " |  const lag_state *const end = &a->at;\n"
+    " |  int status = lag_path_at(a, shaken, x);\n"
+    "u|  const LAG_REAL *const u = lag_held(p, end->t, a->u, a->input, a->context, a->now);\n"
+    " |  if (status == LAG_OK) status = lag_events(AFTER, g);\n"
+    " |  for (int k = 0; k < LAG_NEV && status == LAG_OK; k++)\n"
+    " |    if (!(g[k] - g[k] >= LAG_C(0.0))) status = LAG_ENAN;\n"
+    " |  return status;\n"
+    " |}\n"
+    " |\n"
+    " |static int lag_event_direction(void *context, int k) {\n"
+    " |  static const signed char direction[] = {DIRECTIONS};\n"
+    " |  (void)context;\n"
+    " |  return direction[k];\n"
+    " |}\n"
+    "s|\n"
+    "s|/* Finds event k by steps, in place of dense output, which is off by more; a->stepped: they show it, near its "
+    "root. */\n"
+    "s|static int lag_step_to_root(const lag_locator *l, lag_path *a, int k) {\n"
+    "s|  const LAG_REAL h = a->ends.h, x = l->root[k], half = LAG_C(0.5);\n"
+    "s|  const LAG_REAL *const g[] = {l->value, l->value + LAG_NEV};\n"
+    "s|  LAG_REAL d = h*LAG_C(9.5367431640625e-07);\n"
+    "s|  int found = 0, status = LAG_OK;\n"
+    "s|  a->stepped = 1;\n"
+    "s|  for (int i = 0; i < 7 && status == LAG_OK && !found; i++, d *= LAG_C(8.0)) {\n"
+    "s|    const LAG_REAL t[] = {LAG_SELECT(d/x < half, x - d, half*x), LAG_SELECT((x + d)/h < LAG_C(1.0), x + d, "
+    "h)};\n"
+    "s|    status = lag_path_events(a, 0, t[0], l->value);\n"
+    "s|    if (status == LAG_OK) status = lag_path_events(a, 0, t[1], l->value + LAG_NEV);\n"
+    "s|    if (status == LAG_OK && g[0][k]*l->sign[k] < LAG_C(0.0) && g[1][k]*l->sign[k] > LAG_C(0.0))\n"
+    "s|      status = lag_find_crossing(l, k, LAG_C(0.0), t, g, &found);\n"
+    "s|  }\n"
+    "s|  a->stepped = found;\n"
+    "s|  return status;\n"
+    "s|}\n";
 
 /* Where a state is fresh, from _start or _act, an event may have just fired: its function leaves 0 at
  * once, and its sign is not known before. */
@@ -538,8 +587,9 @@ static void name_rows(const Header *h, const char *of, const IrVar *v, uint32_t 
   if (!n) return;
   sb_printf(h->out, "static const %s_name %s_names_%s[] = {\n", h->lower, h->lower, of);
   for (uint32_t i = 0; i < n; i++)
-    sb_printf(h->out, "  {%s, %s, %s, %s, %s, %s}%s\n", c_string(h->a, v[i].name), c_string(h->a, v[i].unit), shortest_double(h->a, v[i].factor),
-              shortest_double(h->a, v[i].offset), least[v[i].sign > 0], most[v[i].sign < 0], i + 1 < n ? "," : "");
+    sb_printf(h->out, "  {%s, %s, %s, %s, %s, %s}%s\n", c_string(h->a, v[i].name), c_string(h->a, v[i].unit),
+              shortest_double(h->a, v[i].factor), shortest_double(h->a, v[i].offset), least[v[i].sign > 0],
+              most[v[i].sign < 0], i + 1 < n ? "," : "");
   sb_puts(h->out, "};\n");
 }
 
@@ -547,8 +597,11 @@ void header_name_tables(const Header *h) {
   const ProgramSet *u = h->u;
   if (!(h->parts.parts & PART_NAMES)) return;
   sb_printf(h->out, "\n#ifdef %s_WITH_NAMES\n#include <math.h>\n", h->upper);
-  sb_printf(h->out, "/* A name, its unit, the size of the unit in SI (value = factor*number + offset), and bounds of the value in SI. */\n"
-                    "typedef struct %s_name {\n  const char *name, *unit;\n  double factor, offset, least, most;\n} %s_name;\n", h->lower, h->lower);
+  sb_printf(h->out,
+            "/* A name, its unit, the size of the unit in SI (value = factor*number + offset), and bounds of the value "
+            "in SI. */\n"
+            "typedef struct %s_name {\n  const char *name, *unit;\n  double factor, offset, least, most;\n} %s_name;\n",
+            h->lower, h->lower);
   name_rows(h, "q", u->q.at, u->q.n);
   name_rows(h, "z", u->z.at, u->z.n);
   name_rows(h, "p", u->p.at, u->p.n);
@@ -558,21 +611,26 @@ void header_name_tables(const Header *h) {
 }
 
 void header_dynamics_define(const Header *h) {
-  static const char *const b[] = {"b", NULL}, *const force[] = {"a", "force", NULL}, *const out[] = {"force"}, *const lambda[] = {"lambda", NULL};
+  static const char *const b[] = {"b", NULL}, *const force[] = {"a", "force", NULL}, *const out[] = {"force"},
+                           *const lambda[] = {"lambda", NULL};
   const ProgramSet *u = h->u;
   const HeaderWord inputs[] = {{"INPUTS", u->u.n ? ", u, 0, 0" : ""}, {NULL, NULL}};
   if (header_has(h, FN_MASS)) {
     filled(h, u->mass, FN_MASS, "mass", "M", arena_printf(h->a, "%s_NQ*%s_NQ", h->upper, h->upper));
     header_state_function(h, u->bias, NULL, header_api(h, FN_BIAS), b, b, 1);
   }
-  if (header_has(h, FN_RHS)) begin(h, FN_RHS), header_template(h, " | {\n |  return lag_rates(p, t, yINPUTS, dydt);\n |}\n", inputs);
+  if (header_has(h, FN_RHS))
+    begin(h, FN_RHS), header_template(h, " | {\n |  return lag_rates(p, t, yINPUTS, dydt);\n |}\n", inputs);
   if (header_has(h, FN_INVERSE)) header_state_function(h, u->inverse, NULL, header_api(h, FN_INVERSE), force, out, 1);
-  if (header_has(h, FN_MULTIPLIERS)) header_state_function(h, u->multipliers, NULL, header_api(h, FN_MULTIPLIERS), lambda, lambda, 1);
+  if (header_has(h, FN_MULTIPLIERS))
+    header_state_function(h, u->multipliers, NULL, header_api(h, FN_MULTIPLIERS), lambda, lambda, 1);
   derivatives(h);
   if (h->parts.parts & PART_OUTPUTS) {
     static const char *const d[] = {"d", NULL};
-    const char *head = arena_printf(h->a, "static int %s_partials_outputs(%s, %s_REAL *d)", h->lower, header_state_args(h, 1, ""), h->upper);
-    sb_printf(h->out, "\nstatic const unsigned short %s_by_outputs_at[][2] = {%s};\n", h->lower, header_positions(h, LIST(u->outputs_at)));
+    const char *head = arena_printf(h->a, "static int %s_partials_outputs(%s, %s_REAL *d)", h->lower,
+                                    header_state_args(h, 1, ""), h->upper);
+    sb_printf(h->out, "\nstatic const unsigned short %s_by_outputs_at[][2] = {%s};\n", h->lower,
+              header_positions(h, LIST(u->outputs_at)));
     header_state_function(h, u->outputs, NULL, header_wrapped(h, head), d, d, 1);
   }
   if (header_has(h, FN_CONSTRAINTS)) constraints(h);

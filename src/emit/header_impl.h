@@ -1,4 +1,5 @@
-/* State and parts of an emitted header, shared by emit_header.c (names, head comment), header_declarations.c and header_definitions.c. */
+/* State and parts of an emitted header, shared by emit_header.c (names, head comment), header_declarations.c and
+ * header_definitions.c. */
 #pragma once
 
 #include "emit/cfunction.h"
@@ -20,9 +21,12 @@ typedef struct {
 } Header;
 
 /* Functions of a header; whether this model has function f; its prototype without `;`. */
-typedef enum { FN_DEFAULTS, FN_PARAM, FN_START, FN_INPUTS, FN_ACCEL, FN_ENERGY, FN_CHARGES, FN_POWERS, FN_OBSERVE, FN_EVENTS, FN_ACT, FN_HOLD, FN_RK4_STEP, FN_RK4_STEP_WITH,
-               FN_UNTIL_EVENT, FN_RHS, FN_MASS, FN_BIAS, FN_INVERSE, FN_JAC, FN_JVP, FN_VJP, FN_LINEARIZE, FN_DPARAMS, FN_CONSTRAINTS, FN_CONSTRAINT_JACOBIAN,
-               FN_MULTIPLIERS, FN_COUNT } HeaderFn;
+typedef enum {
+  FN_DEFAULTS, FN_PARAM, FN_START, FN_INPUTS, FN_ACCEL, FN_ENERGY, FN_CHARGES, FN_POWERS, FN_OBSERVE, FN_EVENTS, FN_ACT,
+  FN_HOLD, FN_RK4_STEP, FN_RK4_STEP_WITH, FN_UNTIL_EVENT, FN_RHS, FN_MASS, FN_BIAS, FN_INVERSE, FN_JAC, FN_JVP, FN_VJP,
+  FN_LINEARIZE, FN_DPARAMS, FN_CONSTRAINTS, FN_CONSTRAINT_JACOBIAN, FN_MULTIPLIERS,
+  FN_COUNT
+} HeaderFn;
 int header_has(const Header *h, HeaderFn f);
 const char *header_prototype(const Header *h, HeaderFn f);
 
@@ -34,12 +38,14 @@ void header_implementation(const Header *h);
 void header_steps_declare(const Header *h);
 void header_steps_define(const Header *h);
 
-/* header_adaptive.c: the memory of adaptive methods and its filling; what failures do within their trial steps; moves of lanes; the control of their sizes. */
+/* header_adaptive.c: the memory of adaptive methods and its filling; what failures do within their trial steps;
+ * moves of lanes; the control of their sizes. */
 void header_adaptive_declare(const Header *h);
 void header_move(const Header *h);
 void header_adaptive_define(const Header *h, const char *longest);
 
-/* header_taylor.c, header_variational.c: the memory of a method and its prototypes; its functions. longest: constant of the longest step. */
+/* header_taylor.c, header_variational.c: the memory of a method and its prototypes; its functions. longest: constant
+ * of the longest step. */
 void header_taylor_declare(const Header *h);
 void header_taylor_overloads(const Header *h); /* functions that C++98 lacks; outside of extern "C" */
 void header_taylor_define(const Header *h, const char *longest);
@@ -56,7 +62,8 @@ typedef struct {
 } LineChoice;
 const char *header_chosen(const Header *h, const char *text, const LineChoice *choices);
 
-/* header_moreau.c: NULL, or what a model needs; indices of contacts and surfaces, what the state says of them, its start; the prototypes and functions of the steps; the change of the middle of a step. */
+/* header_moreau.c: NULL, or what a model needs; indices of contacts and surfaces, what the state says of them, its
+ * start; the prototypes and functions of the steps; the change of the middle of a step. */
 const char *header_moreau_lacks(const ProgramSet *u);
 void header_moreau_start(const Header *h);
 void header_moreau_indices(const Header *h);
@@ -79,8 +86,9 @@ typedef struct {
 /* Appends a section of the runtime's kernels. */
 void header_section(const Header *h, const char *name);
 
-/* Appends a template: its lines begin with a mark, q, z or u for models with coordinates, states or inputs, n for those without inputs, and `|`. HELD, PASS: parameters and arguments for
- * inputs, CALL: arguments of _accel, ARGS: of functions of the state; further words end with {NULL, NULL}. LAG_ and lag_ become the prefix. */
+/* Appends a template: its lines begin with a mark, q, z or u for models with coordinates, states or inputs, n for
+ * those without inputs, and `|`. HELD, PASS: parameters and arguments for inputs, CALL: arguments of _accel, ARGS:
+ * of functions of the state; further words end with {NULL, NULL}. LAG_ and lag_ become the prefix. */
 void header_template(const Header *h, const char *text, const HeaderWord *more);
 
 /* header_definitions.c: functions of models with constraints. */
@@ -92,7 +100,8 @@ void header_name_tables(const Header *h);
 /* Text of a table of positions: "{0, 1}, {0, 2}". */
 const char *header_positions(const Header *h, const IrEntry *at, uint32_t n);
 
-/* header_callbacks.c: includes, functions for the libraries of `--for`; what the header includes besides <math.h>: ", GSL's headers". */
+/* header_callbacks.c: includes, functions for the libraries of `--for`; what the header includes besides <math.h>:
+ * ", GSL's headers". */
 void header_callbacks_include(const Header *h);
 void header_callbacks_declare(const Header *h);
 void header_callbacks_define(const Header *h);
@@ -101,15 +110,19 @@ const char *header_libraries(const Header *h);
 /* Names in the C of a function around a program with these further parameters and output arrays. */
 CStyle header_style(const Header *h, const char *const *own, const char *const *out);
 /* A function of the state around p; own: its further parameters; out: its output arrays. */
-void header_state_function(const Header *h, const Prog *p, const char *comment, const char *head, const char *const *own, const char *const *out, int returns);
-/* `static int lower_NAME(state, params)` around p; extra, out: as own and out above. The name of the action of an event. */
-void header_internal_function(const Header *h, const Prog *p, const char *name, const char *params, const char *const *extra, const char *const *out);
+void header_state_function(const Header *h, const Prog *p, const char *comment, const char *head,
+                           const char *const *own, const char *const *out, int returns);
+/* `static int lower_NAME(state, params)` around p; extra, out: as own and out above. The name of the action of an
+ * event. */
+void header_internal_function(const Header *h, const Prog *p, const char *name, const char *params,
+                              const char *const *extra, const char *const *out);
 const char *header_action(const Header *h, uint32_t event);
 /* A double as a constant of the scalar's type, with a point, so that it takes suffixes. */
 const char *header_constant(const Header *h, double x);
 const char *header_api(const Header *h, HeaderFn f);
 
-/* Index of the method with this name of n letters, or -1; programs WANT_... that it needs; NULL, or what a model needs that it steps. */
+/* Index of the method with this name of n letters, or -1; programs WANT_... that it needs; NULL, or what a model
+ * needs that it steps. */
 int header_method(const char *name, size_t n);
 unsigned header_method_wants(int method);
 const char *header_method_refusal(const ProgramSet *u, int method);

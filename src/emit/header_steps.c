@@ -1,11 +1,13 @@
-/* Steppers of an emitted header: frames around the runtime's kernels, whose steps and tables they carry, so that digits are those of `lagc run`. */
+/* Steppers of an emitted header: frames around the runtime's kernels, whose steps and tables they carry, so that
+ * digits are those of `lagc run`. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "emit/header_impl.h"
 #include "kernels/steppers.def"
 
-/* Method of a header: of kernels/steppers.def (table: its name there in upper case), or of header_taylor.c, header_variational.c, header_moreau.c. */
+/* Method of a header: of kernels/steppers.def (table: its name there in upper case), or of header_taylor.c,
+ * header_variational.c, header_moreau.c. */
 typedef enum { OTHER, FIXED, ADAPTIVE, SPLITTING } MethodKind;
 typedef struct {
   const char *name, *table, *words;
@@ -42,8 +44,9 @@ static const char *const runge_kutta =
   " |#define LAG_ADD(i, d) x[i] = lag_compensated_sum(y[i], d, &end->lost[i + 1])\n"
   " |#define LAG_ALLOWED(i, size) (w->absolute + w->tolerance*(size))\n";
 
-/* A step from *s to end->t. Lines by their mark: A with an error estimate, F and H with constraints, of fixed and adaptive steps, E without constraints, L if the
- * last stage is computed once the step is accepted; I inputs during projection. */
+/* A step from *s to end->t. Lines by their mark: A with an error estimate, F and H with constraints, of fixed and
+ * adaptive steps, E without constraints, L if the last stage is computed once the step is accepted; I inputs during
+ * projection. */
 static const char *const trial =
   " |\n"
   " |/* The state after a step h by WORDS; k[0]: the rates at *s.\n"
@@ -78,10 +81,20 @@ static const char *const trial =
 
 static void write_trial(const Header *h, const HeaderMethod *m) {
   int adapts = m->kind == ADAPTIVE, holds = header_has(h, FN_HOLD), early = adapts && !m->late;
-  const LineChoice choices[] = {{'A', adapts}, {'I', holds && h->u->u.n}, {'F', holds && !adapts}, {'H', holds && early}, {'E', !holds && early}, {'L', holds && m->late}, {0, 0}};
-  const char *onto = arena_printf(h->a, "lag_onto(p, end%s, end->lost + 1)", h->u->u.n ? ", lag_held(p, end->t, u, input, context, now)" : "");
-  const HeaderWord words[] = {{"WORDS", m->words}, {"METHOD", m->name}, {"TABLE", m->table}, {"MORE", adapts ? ", const lag_adaptive *w, LAG_REAL *error" : ""}, {"ONTO", onto},
-                              {"LAST", arena_printf(h->a, "LAG_%s_LAST", m->table)}, {"TWO", m->late ? "1" : "0"}, {NULL, NULL}};
+  const LineChoice choices[] = {{'A', adapts},
+                                {'I', holds && h->u->u.n}, {'F', holds && !adapts}, {'H', holds && early},
+                                {'E', !holds && early}, {'L', holds && m->late},
+                                {0, 0}};
+  const char *onto = arena_printf(h->a, "lag_onto(p, end%s, end->lost + 1)",
+                                  h->u->u.n ? ", lag_held(p, end->t, u, input, context, now)" : "");
+  const HeaderWord words[] = {{"WORDS", m->words},
+                              {"METHOD", m->name},
+                              {"TABLE", m->table},
+                              {"MORE", adapts ? ", const lag_adaptive *w, LAG_REAL *error" : ""},
+                              {"ONTO", onto},
+                              {"LAST", arena_printf(h->a, "LAG_%s_LAST", m->table)},
+                              {"TWO", m->late ? "1" : "0"},
+                              {NULL, NULL}};
   header_section(h, m->name);
   header_template(h, header_chosen(h, trial, choices), words);
 }
@@ -90,38 +103,39 @@ static void write_trial(const Header *h, const HeaderMethod *m) {
 
 /* Lines marked q, z or u are for models with coordinates, states or inputs. */
 static const char *const support =
-  " |\n"
-  " |/* The state as one array: q, v, z. */\n"
-  " |static void lag_gather(const lag_state *s, LAG_REAL *y) {\n"
-  "q|  for (int i = 0; i < LAG_NQ; i++) {\n"
-  "q|    y[i] = s->q[i];\n"
-  "q|    y[LAG_NQ + i] = s->v[i];\n"
-  "q|  }\n"
-  "z|  for (int i = 0; i < LAG_NZ; i++) y[2*LAG_NQ + i] = s->z[i];\n"
-  " |}\n"
-  " |\n"
-  " |static void lag_scatter(const LAG_REAL *y, lag_state *s) {\n"
-  "q|  for (int i = 0; i < LAG_NQ; i++) {\n"
-  "q|    s->q[i] = y[i];\n"
-  "q|    s->v[i] = y[LAG_NQ + i];\n"
-  "q|  }\n"
-  "z|  for (int i = 0; i < LAG_NZ; i++) s->z[i] = y[2*LAG_NQ + i];\n"
-  " |}\n"
-  " |\n"
-  "u|\n"
-  "u|/* The inputs at time t: those held, or the model's own and the caller's. */\n"
-  "u|static const LAG_REAL *lag_held(const lag_params *p, LAG_REAL t, const LAG_REAL *u, lag_input_fn *input, void *context, LAG_REAL *now) {\n"
-  "u|  if (u) return u;\n"
-  "u|  lag_inputs(t, p, now);\n"
-  "u|  if (input) input(context, t, now);\n"
-  "u|  return now;\n"
-  "u|}\n"
-  " |\n"
-  " |static int lag_rates(const lag_params *p, LAG_REAL t, const LAG_REAL *yHELD, LAG_REAL *k) {\n"
-  "u|  LAG_REAL now[LAG_NU];\n"
-  "q|  for (int i = 0; i < LAG_NQ; i++) k[i] = y[LAG_NQ + i];\n"
-  " |  return lag_rates_at(CALL);\n"
-  " |}\n";
+    " |\n"
+    " |/* The state as one array: q, v, z. */\n"
+    " |static void lag_gather(const lag_state *s, LAG_REAL *y) {\n"
+    "q|  for (int i = 0; i < LAG_NQ; i++) {\n"
+    "q|    y[i] = s->q[i];\n"
+    "q|    y[LAG_NQ + i] = s->v[i];\n"
+    "q|  }\n"
+    "z|  for (int i = 0; i < LAG_NZ; i++) y[2*LAG_NQ + i] = s->z[i];\n"
+    " |}\n"
+    " |\n"
+    " |static void lag_scatter(const LAG_REAL *y, lag_state *s) {\n"
+    "q|  for (int i = 0; i < LAG_NQ; i++) {\n"
+    "q|    s->q[i] = y[i];\n"
+    "q|    s->v[i] = y[LAG_NQ + i];\n"
+    "q|  }\n"
+    "z|  for (int i = 0; i < LAG_NZ; i++) s->z[i] = y[2*LAG_NQ + i];\n"
+    " |}\n"
+    " |\n"
+    "u|\n"
+    "u|/* The inputs at time t: those held, or the model's own and the caller's. */\n"
+    "u|static const LAG_REAL *lag_held(const lag_params *p, LAG_REAL t, const LAG_REAL *u, lag_input_fn *input, void "
+    "*context, LAG_REAL *now) {\n"
+    "u|  if (u) return u;\n"
+    "u|  lag_inputs(t, p, now);\n"
+    "u|  if (input) input(context, t, now);\n"
+    "u|  return now;\n"
+    "u|}\n"
+    " |\n"
+    " |static int lag_rates(const lag_params *p, LAG_REAL t, const LAG_REAL *yHELD, LAG_REAL *k) {\n"
+    "u|  LAG_REAL now[LAG_NU];\n"
+    "q|  for (int i = 0; i < LAG_NQ; i++) k[i] = y[LAG_NQ + i];\n"
+    " |  return lag_rates_at(CALL);\n"
+    " |}\n";
 
 /* Steps of one size. */
 static const char *const fixed_step =
@@ -157,19 +171,20 @@ static const char *const splitting_forces =
   " |}\n";
 
 static const char *const splitting_step =
-  " |static int lag_splitting_step(const lag_composition *c, const lag_params *p, lag_state *s, LAG_REAL h, LAG_REAL *aHELD) {\n"
-  " |  LAG_REAL dq[LAG_NQ], dv[LAG_NQ], b[LAG_NQ];\n"
-  " |  lag_state end = *s;\n"
-  " |  const lag_splitting m = {LAG_NQ, s->q, s->v, a, s->lost + 1, end.q, end.v, b, end.lost + 1, end.v, dq, dv};\n"
-  " |  int status = LAG_OK;\n"
-  " |  end.t = lag_compensated_sum(s->t, h, &end.lost[0]);\n"
-  " |  LAG_TRY(lag_split(pPASS, &m, c, s->t, end.t, h));\n"
-  " |  LAG_TRY(lag_check(&end));\n"
-  " |  const LAG_MASK taken = LAG_NOT(LAG_FAILED(status));\n"
-  " |  for (int i = 0; i < LAG_NQ; i++) a[i] = LAG_SELECT(taken, b[i], a[i]);\n"
-  " |  LAG_MOVE(taken, s, &end);\n"
-  " |  return status;\n"
-  " |}\n";
+    " |static int lag_splitting_step(const lag_composition *c, const lag_params *p, lag_state *s, LAG_REAL h, LAG_REAL "
+    "*aHELD) {\n"
+    " |  LAG_REAL dq[LAG_NQ], dv[LAG_NQ], b[LAG_NQ];\n"
+    " |  lag_state end = *s;\n"
+    " |  const lag_splitting m = {LAG_NQ, s->q, s->v, a, s->lost + 1, end.q, end.v, b, end.lost + 1, end.v, dq, dv};\n"
+    " |  int status = LAG_OK;\n"
+    " |  end.t = lag_compensated_sum(s->t, h, &end.lost[0]);\n"
+    " |  LAG_TRY(lag_split(pPASS, &m, c, s->t, end.t, h));\n"
+    " |  LAG_TRY(lag_check(&end));\n"
+    " |  const LAG_MASK taken = LAG_NOT(LAG_FAILED(status));\n"
+    " |  for (int i = 0; i < LAG_NQ; i++) a[i] = LAG_SELECT(taken, b[i], a[i]);\n"
+    " |  LAG_MOVE(taken, s, &end);\n"
+    " |  return status;\n"
+    " |}\n";
 
 /* --- the methods of a header --- */
 
@@ -188,13 +203,19 @@ int header_method(const char *name, size_t n) {
 
 unsigned header_method_wants(int method) { return methods[method].wants; }
 
-int header_has_method(const Header *h, const char *name) { return is_wanted(h, (uint32_t)header_method(name, strlen(name))); }
+int header_has_method(const Header *h, const char *name) {
+  return is_wanted(h, (uint32_t)header_method(name, strlen(name)));
+}
 
 const char *header_method_refusal(const ProgramSet *u, int i) {
   if (methods[i].wants == WANT_TAYLOR)
-    return u->taylor ? NULL : "analytic functions (no if, abs, sign, min, max), no tables and no constraints; rk45 and dop853 step every model";
+    return u->taylor ? NULL
+                     : "analytic functions (no if, abs, sign, min, max), no tables and no constraints; rk45 and dop853 "
+                       "step every model";
   if (methods[i].wants == WANT_VARIATION)
-    return u->variation && !u->constraints.of.n && !u->z.n ? NULL : "coordinates alone, without states and constraints; rk45 and dop853 step every model";
+    return u->variation && !u->constraints.of.n && !u->z.n
+               ? NULL
+               : "coordinates alone, without states and constraints; rk45 and dop853 step every model";
   if (strcmp(methods[i].name, "moreau") == 0) return header_moreau_lacks(u);
   if (methods[i].kind != SPLITTING || (u->flags & 1u << UNIT_SEPARABLE && !u->constraints.of.n && !u->z.n)) return NULL;
   return "accelerations that depend on t and coordinates alone, a constant mass matrix, no states and no constraints";
@@ -208,12 +229,19 @@ unsigned header_methods(const ProgramSet *u) {
 
 /* with: inputs are a function of time. */
 static const char *prototype(const Header *h, const HeaderMethod *m, int with) {
-  const char *u = with ? ", lag_input_fn *input, void *context" : h->u->u.n ? ", const LAG_REAL *u" : "", *step = with ? "step_with" : "step";
-  if (m->kind == SPLITTING) return arena_printf(h->a, "int lag_%s_%s(const lag_params *p, lag_state *s, LAG_REAL h%s, LAG_REAL *a)", m->name, step, u);
-  return arena_printf(h->a, "int lag_%s_%s(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL until%s)", m->name, step, u);
+  const char *u = with        ? ", lag_input_fn *input, void *context"
+                  : h->u->u.n ? ", const LAG_REAL *u"
+                              : "",
+             *step = with ? "step_with" : "step";
+  if (m->kind == SPLITTING)
+    return arena_printf(h->a, "int lag_%s_%s(const lag_params *p, lag_state *s, LAG_REAL h%s, LAG_REAL *a)", m->name,
+                        step, u);
+  return arena_printf(h->a, "int lag_%s_%s(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL until%s)",
+                      m->name, step, u);
 }
 
-static const char *const guard = "\n#if !defined(LAG_LANES) && !defined(LAG_COMPLEX) /* one step size for one state */\n";
+static const char *const guard =
+    "\n#if !defined(LAG_LANES) && !defined(LAG_COMPLEX) /* one step size for one state */\n";
 
 static const char *const ordered = "\n#ifndef LAG_COMPLEX\n";
 
@@ -229,7 +257,9 @@ static void declare_both(const Header *h, const HeaderMethod *m) {
 }
 
 void header_steps_declare(const Header *h) {
-  if (has_status(h)) line(h, "\n/* Status codes of steps: no step is short enough, Newton's method does not converge, a tolerance is not positive. */\nenum { LAG_ESTEP = -2, LAG_ENEWTON = -3, LAG_ETOLERANCE = -8 };\n");
+  if (has_status(h))
+    line(h, "\n/* Status codes of steps: no step is short enough, Newton's method does not converge, a tolerance is "
+            "not positive. */\nenum { LAG_ESTEP = -2, LAG_ENEWTON = -3, LAG_ETOLERANCE = -8 };\n");
   if (some_adaptive(h)) {
     line(h, ordered);
     header_adaptive_declare(h);
@@ -261,8 +291,11 @@ void header_steps_declare(const Header *h) {
   for (uint32_t i = 1; i < sizeof methods / sizeof *methods; i++) {
     const HeaderMethod *m = &methods[i];
     if (!is_wanted(h, i) || m->kind != SPLITTING) continue;
-    line(h, arena_printf(h->a, "\n/* A step h by %s. a[LAG_NQ]: the accelerations at *s, by _accel before the first step; the\n * step leaves those at its end.%s */\n",
-                         m->words, h->u->u.n ? " u: the inputs, constant during the step; 0 for the model's formulas." : ""));
+    line(h, arena_printf(h->a,
+                         "\n/* A step h by %s. a[LAG_NQ]: the accelerations at *s, by _accel before the first step; "
+                         "the\n * step leaves those at its end.%s */\n",
+                         m->words,
+                         h->u->u.n ? " u: the inputs, constant during the step; 0 for the model's formulas." : ""));
     declare_both(h, m);
   }
 }
@@ -270,19 +303,27 @@ void header_steps_declare(const Header *h) {
 /* With inputs, one internal function serves both kinds: u held, or evaluated at each stage. */
 static void define_both(const Header *h, const HeaderMethod *m) {
   int splits = m->kind == SPLITTING;
-  const char *call = splits ? arena_printf(h->a, "lag_splitting_step(&lag_compose_%s, p, s, h, a", m->name) : arena_printf(h->a, "lag_%s(p, s, w, until", m->name);
+  const char *call = splits ? arena_printf(h->a, "lag_splitting_step(&lag_compose_%s, p, s, h, a", m->name)
+                            : arena_printf(h->a, "lag_%s(p, s, w, until", m->name);
   for (int with = 0; (h->u->u.n || splits) && with < (h->u->u.n ? 2 : 1); with++) {
     if (!splits || with) line(h, "\n");
     write_prototype(h, arena_printf(h->a, "LAG_API %s", prototype(h, m, with)));
-    line(h, arena_printf(h->a, " {\n  return %s%s);\n}\n", call, !h->u->u.n ? "" : with ? ", 0, input, context" : ", u, 0, 0"));
+    line(h, arena_printf(h->a, " {\n  return %s%s);\n}\n", call,
+                         !h->u->u.n ? ""
+                         : with     ? ", 0, input, context"
+                                    : ", u, 0, 0"));
   }
 }
 
 static void define_method(const Header *h, const HeaderMethod *m) {
   const HeaderWord words[] = {{"METHOD", m->name}, {"TABLE", m->table}, {NULL, NULL}};
   line(h, "\n");
-  write_prototype(h, h->u->u.n ? arena_printf(h->a, "static int lag_%s(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL until%s)", m->name, header_held_parameters)
-                               : arena_printf(h->a, "LAG_API %s", prototype(h, m, 0)));
+  write_prototype(
+      h, h->u->u.n
+             ? arena_printf(h->a,
+                            "static int lag_%s(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL until%s)",
+                            m->name, header_held_parameters)
+             : arena_printf(h->a, "LAG_API %s", prototype(h, m, 0)));
   header_template(h, adaptive_step, words);
   define_both(h, m);
 }
@@ -339,11 +380,15 @@ static void define_rk4(const Header *h) {
   write_trial(h, m);
   line(h, "\n");
   if (!h->u->u.n) line(h, header_wrapped(h, arena_printf(h->a, "LAG_API %s", header_prototype(h, FN_RK4_STEP))));
-  else line(h, "static int lag_step(const lag_params *p, lag_state *s, LAG_REAL h, const LAG_REAL *u,\n   lag_input_fn *input, void *context)");
+  else
+    line(h, "static int lag_step(const lag_params *p, lag_state *s, LAG_REAL h, const LAG_REAL *u,\n   lag_input_fn "
+            "*input, void *context)");
   header_template(h, fixed_step, words);
   if (!h->u->u.n) return;
-  line(h, arena_printf(h->a, "\nLAG_API %s {\n  return lag_step(p, s, h, u, 0, 0);\n}\n", header_wrapped(h, header_prototype(h, FN_RK4_STEP))));
-  line(h, arena_printf(h->a, "\nLAG_API %s {\n  return lag_step(p, s, h, 0, input, context);\n}\n", header_wrapped(h, header_prototype(h, FN_RK4_STEP_WITH))));
+  line(h, arena_printf(h->a, "\nLAG_API %s {\n  return lag_step(p, s, h, u, 0, 0);\n}\n",
+                       header_wrapped(h, header_prototype(h, FN_RK4_STEP))));
+  line(h, arena_printf(h->a, "\nLAG_API %s {\n  return lag_step(p, s, h, 0, input, context);\n}\n",
+                       header_wrapped(h, header_prototype(h, FN_RK4_STEP_WITH))));
 }
 
 static const char *const epsilon =
@@ -357,7 +402,8 @@ static const char *const epsilon =
 
 static const char *longest(const Header *h) {
   const IrScene *s = h->scene;
-  return s->has_span ? arena_printf(h->a, "(%s - %s)/LAG_C(10.0)", header_constant(h, s->t1), header_constant(h, s->t0)) : "LAG_C(0.0)";
+  return s->has_span ? arena_printf(h->a, "(%s - %s)/LAG_C(10.0)", header_constant(h, s->t1), header_constant(h, s->t0))
+                     : "LAG_C(0.0)";
 }
 
 /* Methods that need an order of numbers. */

@@ -54,7 +54,8 @@ int header_has(const Header *h, HeaderFn f) {
     case FN_LINEARIZE: return (h->parts.parts & PART_LINEAR) != 0;
     case FN_DPARAMS: return (h->parts.parts & PART_PARAMS) != 0;
     case FN_CONSTRAINTS: case FN_CONSTRAINT_JACOBIAN: return (h->parts.parts & PART_CONSTRAINTS) != 0;
-    case FN_MULTIPLIERS: return u->constraints.of.n && (h->parts.parts & (PART_CONSTRAINTS | PART_JAC | PART_LINEAR | PART_PARAMS)) != 0;
+    case FN_MULTIPLIERS:
+      return u->constraints.of.n && (h->parts.parts & (PART_CONSTRAINTS | PART_JAC | PART_LINEAR | PART_PARAMS)) != 0;
     case FN_DEFAULTS: case FN_PARAM: case FN_START: case FN_ACCEL: case FN_RK4_STEP: case FN_COUNT: break;
   }
   return 1;
@@ -70,7 +71,8 @@ const char *header_prototype(const Header *h, HeaderFn f) {
     case FN_START: return arena_printf(a, "int %s_start(const %s_params *p, %s_state *s)", m, m, m);
     case FN_INPUTS: return arena_printf(a, "void %s_inputs(%s_REAL t, const %s_params *p, %s_REAL *u)", m, R, m, R);
     case FN_ACCEL: {
-      const char *q = h->u->q.n ? arena_printf(a, ", %s_REAL *a", R) : "", *z = h->u->z.n ? arena_printf(a, ", %s_REAL *zd", R) : "";
+      const char *q = h->u->q.n ? arena_printf(a, ", %s_REAL *a", R) : "",
+                 *z = h->u->z.n ? arena_printf(a, ", %s_REAL *zd", R) : "";
       return arena_printf(a, "int %s_accel(%s%s%s)", m, state, q, z);
     }
     case FN_ENERGY: return arena_printf(a, "void %s_energy(%s, %s_REAL *e)", m, state, R);
@@ -78,20 +80,31 @@ const char *header_prototype(const Header *h, HeaderFn f) {
     case FN_POWERS: return arena_printf(a, "int %s_powers(%s, %s_REAL *out)", m, state, R);
     case FN_OBSERVE: return arena_printf(a, "int %s_observe(%s, %s_REAL *out)", m, state, R);
     case FN_EVENTS: return arena_printf(a, "int %s_events(%s, %s_REAL *g)", m, state, R);
-    case FN_ACT: return arena_printf(a, "int %s_act(int event, const %s_params *p, %s_state *s%s, int *stop)", m, m, m, u);
+    case FN_ACT:
+      return arena_printf(a, "int %s_act(int event, const %s_params *p, %s_state *s%s, int *stop)", m, m, m, u);
     case FN_HOLD: return arena_printf(a, "int %s_hold(const %s_params *p, %s_state *s%s)", m, m, m, u);
-    case FN_RK4_STEP: return arena_printf(a, "int %s_rk4_step(const %s_params *p, %s_state *s, %s_REAL h%s)", m, m, m, R, u);
+    case FN_RK4_STEP:
+      return arena_printf(a, "int %s_rk4_step(const %s_params *p, %s_state *s, %s_REAL h%s)", m, m, m, R, u);
     case FN_RK4_STEP_WITH:
-      return arena_printf(a, "int %s_rk4_step_with(const %s_params *p, %s_state *s, %s_REAL h, %s_input_fn *input, void *context)", m, m, m, R, m);
-    case FN_UNTIL_EVENT: return arena_printf(a, "int %s_step_until_event(const %s_params *p, %s_state *s, %s_REAL h%s, int *event)", m, m, m, R, u);
-    case FN_RHS: return arena_printf(a, "int %s_rhs(%s_REAL t, const %s_REAL *y, const %s_params *p%s, %s_REAL *dydt)", m, R, R, m, u, R);
+      return arena_printf(
+          a, "int %s_rk4_step_with(const %s_params *p, %s_state *s, %s_REAL h, %s_input_fn *input, void *context)", m,
+          m, m, R, m);
+    case FN_UNTIL_EVENT:
+      return arena_printf(a, "int %s_step_until_event(const %s_params *p, %s_state *s, %s_REAL h%s, int *event)", m, m,
+                          m, R, u);
+    case FN_RHS:
+      return arena_printf(a, "int %s_rhs(%s_REAL t, const %s_REAL *y, const %s_params *p%s, %s_REAL *dydt)", m, R, R, m,
+                          u, R);
     case FN_MASS: return arena_printf(a, "int %s_mass(%s, %s_REAL *M)", m, state, R);
     case FN_BIAS: return arena_printf(a, "int %s_bias(%s, %s_REAL *b)", m, state, R);
-    case FN_INVERSE: return arena_printf(a, "int %s_inverse_dynamics(%s, const %s_REAL *a, %s_REAL *force)", m, state, R, R);
+    case FN_INVERSE:
+      return arena_printf(a, "int %s_inverse_dynamics(%s, const %s_REAL *a, %s_REAL *force)", m, state, R, R);
     case FN_JAC: return arena_printf(a, "int %s_jac(%s, %s_REAL *J)", m, state, R);
     case FN_JVP: return arena_printf(a, "int %s_jvp(%s, const %s_REAL *x, %s_REAL *out)", m, state, R, R);
     case FN_VJP: return arena_printf(a, "int %s_vjp(%s, const %s_REAL *x, %s_REAL *out)", m, state, R, R);
-    case FN_LINEARIZE: return arena_printf(a, "int %s_linearize(%s, %s_REAL *A%s)", m, state, R, h->u->u.n ? arena_printf(a, ", %s_REAL *B", R) : "");
+    case FN_LINEARIZE:
+      return arena_printf(a, "int %s_linearize(%s, %s_REAL *A%s)", m, state, R,
+                          h->u->u.n ? arena_printf(a, ", %s_REAL *B", R) : "");
     case FN_DPARAMS: return arena_printf(a, "int %s_dparams(%s, %s_REAL *P)", m, state, R);
     case FN_CONSTRAINTS: return arena_printf(a, "int %s_constraints(%s, %s_REAL *c, %s_REAL *r)", m, state, R, R);
     case FN_CONSTRAINT_JACOBIAN: return arena_printf(a, "int %s_constraint_jacobian(%s, %s_REAL *A)", m, state, R);
@@ -102,8 +115,12 @@ const char *header_prototype(const Header *h, HeaderFn f) {
 }
 
 void header_one_state(const Header *h, const char *name, const char *way) {
-  csupport_expand(arena_printf(h->a, "int lag_%s(const void *p, ...) __attribute__((error(\"it computes one state, not LAG_LANES: %s\"\n"
-                                     "  \" by a second header without LAG_LANES, with another --prefix\")));\n", name, way), h->upper, h->lower, h->out);
+  csupport_expand(
+      arena_printf(h->a,
+                   "int lag_%s(const void *p, ...) __attribute__((error(\"it computes one state, not LAG_LANES: %s\"\n"
+                   "  \" by a second header without LAG_LANES, with another --prefix\")));\n",
+                   name, way),
+      h->upper, h->lower, h->out);
 }
 
 /* ---- functions around programs */
@@ -122,23 +139,31 @@ static const char *const *own_names(const Header *h, const char *const *extra) {
 }
 
 CStyle header_style(const Header *h, const char *const *own, const char *const *out) {
-  return (CStyle){.prefix = h->upper, .in = arrays, .params = h->fields, .out = out, .own = own, .globals = h->globals,
-                  .solve = arena_printf(h->a, "%s_solve", h->lower), .kkt = arena_printf(h->a, "%s_kkt", h->lower), .spline = arena_printf(h->a, "%s_spline", h->lower), .curve = arena_printf(h->a, "%s_curve", h->lower),
+  return (CStyle){.prefix = h->upper,
+                  .in = arrays, .params = h->fields, .out = out, .own = own, .globals = h->globals,
+                  .solve = arena_printf(h->a, "%s_solve", h->lower), .kkt = arena_printf(h->a, "%s_kkt", h->lower),
+                  .spline = arena_printf(h->a, "%s_spline", h->lower),
+                  .curve = arena_printf(h->a, "%s_curve", h->lower),
                   .math = math_prefix(h->u, h->lower)};
 }
 
-void header_state_function(const Header *h, const Prog *p, const char *comment, const char *head, const char *const *own, const char *const *out, int returns) {
+void header_state_function(const Header *h, const Prog *p, const char *comment, const char *head,
+                           const char *const *own, const char *const *out, int returns) {
   CStyle st = header_style(h, own_names(h, own), out);
   CFunction c = {.comment = comment, .head = head, .returns = returns, .own_work = 1};
   cfunction(p, &st, &c, h->out);
 }
 
-void header_internal_function(const Header *h, const Prog *p, const char *name, const char *params, const char *const *extra, const char *const *out) {
-  const char *head = arena_printf(h->a, "static int %s_%s(%s, %s)", h->lower, name, header_state_args(h, 1, ""), params);
+void header_internal_function(const Header *h, const Prog *p, const char *name, const char *params,
+                              const char *const *extra, const char *const *out) {
+  const char *head =
+      arena_printf(h->a, "static int %s_%s(%s, %s)", h->lower, name, header_state_args(h, 1, ""), params);
   header_state_function(h, p, NULL, header_wrapped(h, head), extra, out, 1);
 }
 
-const char *header_api(const Header *h, HeaderFn f) { return header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, header_prototype(h, f))); }
+const char *header_api(const Header *h, HeaderFn f) {
+  return header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, header_prototype(h, f)));
+}
 
 const char *header_constant(const Header *h, double x) {
   const char *text = shortest_double(h->a, x);
@@ -147,7 +172,8 @@ const char *header_constant(const Header *h, double x) {
 
 const char *header_positions(const Header *h, const IrEntry *at, uint32_t n) {
   StrBuf b = strbuf(h->a);
-  for (uint32_t k = 0; k < n; k++) sb_printf(&b, "%s{%u, %u}", !k ? "" : k % 12 ? ", " : ",\n    ", at[k].row, at[k].col);
+  for (uint32_t k = 0; k < n; k++)
+    sb_printf(&b, "%s{%u, %u}", !k ? "" : k % 12 ? ", " : ",\n    ", at[k].row, at[k].col);
   return n ? sb_text(&b) : "{0, 0}";
 }
 
@@ -156,18 +182,24 @@ const char *header_positions(const Header *h, const IrEntry *at, uint32_t n) {
 void header_section(const Header *h, const char *name) { embedded_section(name, h->upper, h->lower, h->out); }
 
 const char *const header_held_inputs = "\n * u: the inputs, constant during the step; 0 for the model's formulas.";
-const char *const header_adaptive_lanes =
-  "\n * Over lanes: a try in each lane that is not at its `until`. One whose step is too long keeps its state, and has a shorter step in the next\n"
-  " * call; the others go on. Status: minus the sum of 2^k over the lanes k that failed; until[k] = s->t[k] lets such a lane rest.";
+const char *const header_adaptive_lanes = "\n * Over lanes: a try in each lane that is not at its `until`. One whose "
+                                          "step is too long keeps its state, and has a shorter step in the next\n"
+                                          " * call; the others go on. Status: minus the sum of 2^k over the lanes k "
+                                          "that failed; until[k] = s->t[k] lets such a lane rest.";
 
 const char *const header_held_parameters = ", const LAG_REAL *u, lag_input_fn *input, void *context";
 
 void header_template(const Header *h, const char *text, const HeaderWord *more) {
   const ProgramSet *u = h->u;
-  const char *call = arena_printf(h->a, "t%s%s, p%s%s%s", u->q.n ? ", y, y + LAG_NQ" : "", u->z.n ? ", y + 2*LAG_NQ" : "",
-                                  u->u.n ? ", lag_held(p, t, u, input, context, now)" : "", u->q.n ? ", k + LAG_NQ" : "", u->z.n ? ", k + 2*LAG_NQ" : "");
-  const HeaderWord usual[] = {{"HELD", u->u.n ? header_held_parameters : ""}, {"PASS", u->u.n ? ", u, input, context" : ""}, {"CALL", call},
-                              {"ARGS", header_state_args(h, 0, "")}, {NULL, NULL}};
+  const char *call =
+      arena_printf(h->a, "t%s%s, p%s%s%s", u->q.n ? ", y, y + LAG_NQ" : "", u->z.n ? ", y + 2*LAG_NQ" : "",
+                   u->u.n ? ", lag_held(p, t, u, input, context, now)" : "", u->q.n ? ", k + LAG_NQ" : "",
+                   u->z.n ? ", k + 2*LAG_NQ" : "");
+  const HeaderWord usual[] = {{"HELD", u->u.n ? header_held_parameters : ""},
+                              {"PASS", u->u.n ? ", u, input, context" : ""},
+                              {"CALL", call},
+                              {"ARGS", header_state_args(h, 0, "")},
+                              {NULL, NULL}};
   StrBuf b = strbuf(h->a);
   for (const char *s = text; *s;) {
     size_t n = strcspn(s, "\n") + 1;

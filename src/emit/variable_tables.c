@@ -45,17 +45,19 @@ static int counts_up(const char *x, const char *y, Number *n) {
 }
 
 static int same_but_name(const IrVar *x, const IrVar *y) {
-  return strcmp(x->unit, y->unit) == 0 && !(x->factor < y->factor) && !(x->factor > y->factor) && !(x->offset < y->offset) &&
-         !(x->offset > y->offset) && x->periodic == y->periodic && x->sign == y->sign;
+  return strcmp(x->unit, y->unit) == 0 && !(x->factor < y->factor) && !(x->factor > y->factor) &&
+         !(x->offset < y->offset) && !(x->offset > y->offset) && x->periodic == y->periodic && x->sign == y->sign;
 }
 
-/* Number of successive groups of `size` entries that differ only in one number that counts up; 1 if the second differs otherwise. */
+/* Number of successive groups of `size` entries that differ only in one number that counts up; 1 if the second
+ * differs otherwise. */
 static uint32_t groups_at(const IrVar *v, uint32_t n, uint32_t size) {
   uint32_t groups = 1;
   for (Number first, now; (groups + 1) * size <= n; groups++)
     for (uint32_t k = 0; k < size; k++) {
       const IrVar *x = &v[(groups - 1) * size + k], *y = x + size;
-      if (!counts_up(v[k].name, v[size + k].name, &first) || !counts_up(x->name, y->name, &now) || !same_but_name(x, y)) return groups;
+      if (!counts_up(v[k].name, v[size + k].name, &first) || !counts_up(x->name, y->name, &now) || !same_but_name(x, y))
+        return groups;
       Number lead;
       counts_up(v[0].name, v[size].name, &lead);
       if (first.begin != now.begin || now.value != lead.value + groups - 1) return groups;
@@ -84,7 +86,8 @@ const char *table_number(Arena *a, double x, const char *digits) {
 }
 
 static const char *rest_of_entry(const IrVar *v, Arena *a) {
-  const char *unit = c_string(a, v->unit), *factor = table_number(a, v->factor, decimal_literal(a, v->ratio, v->pi_power));
+  const char *unit = c_string(a, v->unit),
+             *factor = table_number(a, v->factor, decimal_literal(a, v->ratio, v->pi_power));
   const char *offset = table_number(a, v->offset, NULL);
   return arena_printf(a, "%s, %s, %d, %d, %s},", unit, factor, v->periodic, v->sign, offset);
 }
@@ -93,7 +96,8 @@ static const char *rest_of_entry(const IrVar *v, Arena *a) {
 static const char *entry_of_i(const IrVar *v, const IrVar *next, Arena *a) {
   Number n;
   counts_up(v->name, next->name, &n);
-  const char *before = n.begin ? c_string(a, arena_strndup(a, v->name, n.begin)) : "", *after = v->name[n.end] ? c_string(a, v->name + n.end) : "";
+  const char *before = n.begin ? c_string(a, arena_strndup(a, v->name, n.begin)) : "",
+             *after = v->name[n.end] ? c_string(a, v->name + n.end) : "";
   return arena_printf(a, "{%s #i %s, %s", before, after, rest_of_entry(v, a));
 }
 

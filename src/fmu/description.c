@@ -1,4 +1,5 @@
-/* modelDescription.xml: variables with their units, starts and bounds, and which depends on which. Value references as in core.in. */
+/* modelDescription.xml: variables with their units, starts and bounds, and which depends on which. Value references
+ * as in core.in. */
 #include "fmu/fmu_archive_impl.h"
 
 #include <math.h>
@@ -52,7 +53,8 @@ static void set_unit(Description *d, FmuVar *v, const IrVar *from) {
   int angle = !from->si[0] && (from->pi_power || strstr(from->unit, "rad"));
   int own = from->factor == 1 && from->offset == 0;
   v->unit = own ? from->unit : angle ? "rad" : from->si[0] ? from->si : "1";
-  if (from->pi_power && from->si[0]) v->unit = from->si[0] == '1' ? arena_printf(d->a, "rad%s", from->si + 1) : arena_printf(d->a, "rad*%s", from->si);
+  if (from->pi_power && from->si[0])
+    v->unit = from->si[0] == '1' ? arena_printf(d->a, "rad%s", from->si + 1) : arena_printf(d->a, "rad*%s", from->si);
   v->display = own ? "" : from->unit;
   v->factor = from->factor;
   v->offset = from->offset;
@@ -62,13 +64,17 @@ static void set_unit(Description *d, FmuVar *v, const IrVar *from) {
 /* The unit of a rate: `m/s` of m, `m/s^2` of m/s. */
 static const char *per_second(Arena *a, const char *unit) {
   size_t n = strlen(unit);
-  return n == 0 ? "" : n > 2 && strcmp(unit + n - 2, "/s") == 0 ? arena_printf(a, "%s^2", unit) : arena_printf(a, "%s/s", unit);
+  return n == 0                                     ? ""
+         : n > 2 && strcmp(unit + n - 2, "/s") == 0 ? arena_printf(a, "%s^2", unit)
+                                                    : arena_printf(a, "%s/s", unit);
 }
 
 static FmuVar rate_of(Description *d, const FmuVar *of, uint32_t state) {
   enum { SECOND = 2 };
-  FmuVar v = {.name = arena_printf(d->a, "%s'", of->name), .unit = per_second(d->a, of->unit), .display = per_second(d->a, of->display), .factor = of->factor,
-              .causality = "local", .variability = "continuous", .derivative_of = state};
+  FmuVar v = {.name = arena_printf(d->a, "%s'", of->name),
+              .unit = per_second(d->a, of->unit), .display = per_second(d->a, of->display), .factor = of->factor,
+              .causality = "local", .variability = "continuous",
+              .derivative_of = state};
   if (of->offset != 0) v.display = "";
   memcpy(v.base, of->base, sizeof v.base);
   if (v.unit[0]) v.base[SECOND]--;
@@ -111,9 +117,12 @@ static void add_variables(Description *d) {
   const ProgramSet *u = d->u;
   Arena *a = d->a;
   uint32_t n = u->q.n;
-  long double *p = ARENA_ARRAY(a, long double, u->p.n + 1), *y = ARENA_ARRAY(a, long double, 2 * n + u->z.n + 1), *in = ARENA_ARRAY(a, long double, u->u.n + 1);
+  long double *p = ARENA_ARRAY(a, long double, u->p.n + 1), *y = ARENA_ARRAY(a, long double, 2 * n + u->z.n + 1),
+              *in = ARENA_ARRAY(a, long double, u->u.n + 1);
   scene_values(u, d->scene, p, y, in);
-  FmuVar time = {.name = "t", .unit = "s", .display = "", .factor = 1, .base = {0, 0, 1}, .causality = "independent", .variability = "continuous"};
+  FmuVar time = {.name = "t",
+                 .unit = "s", .display = "", .factor = 1, .base = {0, 0, 1}, .causality = "independent",
+                 .variability = "continuous"};
   vec_push(a, &d->vars, time);
   for (uint32_t i = 0; i < n; i++) add_state(d, local_variable(d, &u->q.at[i]), y[i]);
   for (uint32_t i = 0; i < n; i++) add_state(d, rate_of(d, &d->vars.at[1 + i], 1 + i), y[n + i]);
@@ -145,7 +154,9 @@ static void add_variables(Description *d) {
     vec_push(a, &d->vars, v);
   }
   for (uint32_t i = 0; i < u->events.n; i++) {
-    FmuVar v = {.name = arena_printf(a, "event(%s)", u->events.at[i].name), .unit = "", .display = "", .factor = 1, .causality = "local", .variability = "continuous"};
+    FmuVar v = {.name = arena_printf(a, "event(%s)", u->events.at[i].name),
+                .unit = "", .display = "", .factor = 1, .causality = "local",
+                .variability = "continuous"};
     if (is_contact_event(u, i)) v.name = NULL;
     vec_push(a, &d->vars, v);
   }
@@ -154,7 +165,9 @@ static void add_variables(Description *d) {
     if (d->vars.at[i].name) d->position[i] = ++at;
 }
 
-static const char *sign_text(int sign) { return sign == 1 ? "> 0" : sign == 2 ? ">= 0" : sign == -1 ? "< 0" : sign == -2 ? "<= 0" : ""; }
+static const char *sign_text(int sign) {
+  return sign == 1 ? "> 0" : sign == 2 ? ">= 0" : sign == -1 ? "< 0" : sign == -2 ? "<= 0" : "";
+}
 
 static void write_variable(const Description *d, uint32_t vr) {
   const FmuVar *v = &d->vars.at[vr];
@@ -196,7 +209,8 @@ static void write_unit(const Description *d, uint32_t at) {
   for (uint32_t i = at; i < d->vars.n; i++) {
     const FmuVar *w = &d->vars.at[i];
     int told = !w->name || !w->display[0] || !same_unit(v, w);
-    for (uint32_t k = at; k < i && !told; k++) told = d->vars.at[k].name && same_unit(w, &d->vars.at[k]) && strcmp(d->vars.at[k].display, w->display) == 0;
+    for (uint32_t k = at; k < i && !told; k++)
+      told = d->vars.at[k].name && same_unit(w, &d->vars.at[k]) && strcmp(d->vars.at[k].display, w->display) == 0;
     if (told) continue;
     sb_puts(out, "<DisplayUnit");
     attribute(out, "name", w->display);
@@ -222,7 +236,8 @@ static void write_units(const Description *d) {
 /* An unknown; on: the one variable that it depends on, 0: any. */
 static void write_unknown(const Description *d, const char *name, uint32_t vr, uint32_t on) {
   int old = d->f->version == 2;
-  sb_printf(d->out, "    <%s %s=\"%u\"", old ? "Unknown" : name, old ? "index" : "valueReference", old ? d->position[vr] : vr);
+  sb_printf(d->out, "    <%s %s=\"%u\"", old ? "Unknown" : name, old ? "index" : "valueReference",
+            old ? d->position[vr] : vr);
   if (on) sb_printf(d->out, " dependencies=\"%u\" dependenciesKind=\"constant\"", old ? d->position[on] : on);
   sb_puts(d->out, "/>\n");
 }
@@ -254,7 +269,8 @@ static void write_structure(const Description *d) {
     if (v->name && !v->initial && (is_output(v) || v->derivative_of)) write_unknown(d, "InitialUnknown", i, 0);
   }
   close_list(d, "InitialUnknowns");
-  for (uint32_t i = d->vars.n - d->u->events.n; i < d->vars.n && d->f->version == 3 && !d->u->contacts.n; i++) write_unknown(d, "EventIndicator", i, 0);
+  for (uint32_t i = d->vars.n - d->u->events.n; i < d->vars.n && d->f->version == 3 && !d->u->contacts.n; i++)
+    write_unknown(d, "EventIndicator", i, 0);
   sb_puts(d->out, "  </ModelStructure>\n");
 }
 
@@ -264,10 +280,16 @@ static void write_interface(const Description *d, const char *kind, const char *
   int old = d->f->version == 2;
   sb_printf(d->out, "  <%s", kind);
   attribute(d->out, "modelIdentifier", d->f->identifier);
-  sb_printf(d->out, " %s=\"true\" %s=\"true\"%s", old ? "canGetAndSetFMUstate" : "canGetAndSetFMUState", old ? "canSerializeFMUstate" : "canSerializeFMUState", more);
-  if (d->f->has_derivatives) attribute(d->out, old ? "providesDirectionalDerivative" : "providesDirectionalDerivatives", "true");
+  sb_printf(d->out, " %s=\"true\" %s=\"true\"%s", old ? "canGetAndSetFMUstate" : "canGetAndSetFMUState",
+            old ? "canSerializeFMUstate" : "canSerializeFMUState", more);
+  if (d->f->has_derivatives)
+    attribute(d->out, old ? "providesDirectionalDerivative" : "providesDirectionalDerivatives", "true");
   if (!old) sb_puts(d->out, "/>\n");
-  else sb_printf(d->out, " canNotUseMemoryManagementFunctions=\"true\">\n    <SourceFiles><File name=\"fmu_archive.c\"/></SourceFiles>\n  </%s>\n", kind);
+  else
+    sb_printf(d->out,
+              " canNotUseMemoryManagementFunctions=\"true\">\n    <SourceFiles><File "
+              "name=\"fmu_archive.c\"/></SourceFiles>\n  </%s>\n",
+              kind);
 }
 
 void fmu_describe(const ProgramSet *u, const Fmu *f, StrBuf *out) {
@@ -278,13 +300,17 @@ void fmu_describe(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   attribute(out, "fmiVersion", old ? "2.0" : "3.0");
   attribute(out, "modelName", u->name);
   attribute(out, old ? "guid" : "instantiationToken", f->token);
-  attribute(out, "description", arena_printf(d.a, "%s; scene %s; effects in use: %s", u->doc[0] ? u->doc : u->name, d.scene->name, u->effects[0] ? u->effects : "none"));
+  attribute(out, "description",
+            arena_printf(d.a, "%s; scene %s; effects in use: %s", u->doc[0] ? u->doc : u->name, d.scene->name,
+                         u->effects[0] ? u->effects : "none"));
   attribute(out, "license", "0BSD: any use, without conditions");
   attribute(out, "generationTool", "lagc");
   attribute(out, "variableNamingConvention", "flat");
   if (old) sb_printf(out, " numberOfEventIndicators=\"%u\"", u->contacts.n ? 0 : u->events.n);
   sb_puts(out, ">\n");
-  if (!u->contacts.n) write_interface(&d, "ModelExchange", old || !(u->events.n || u->constraints.of.n) ? "" : " needsCompletedIntegratorStep=\"true\"");
+  if (!u->contacts.n)
+    write_interface(&d, "ModelExchange",
+                    old || !(u->events.n || u->constraints.of.n) ? "" : " needsCompletedIntegratorStep=\"true\"");
   int stops = 0;
   for (uint32_t i = 0; i < u->events.n; i++) stops |= u->events.at[i].stop;
   const char *early = !old && stops ? " mightReturnEarlyFromDoStep=\"true\"" : "";

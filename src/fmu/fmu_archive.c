@@ -27,11 +27,14 @@ static double moreau_step(const IrScene *s) {
 /* Sizes, and arguments of the header's functions, which leave out what the model lacks. */
 static void write_head(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   const IrScene *s = &u->scenes.at[0];
-  sb_printf(out, "/* fmu_archive.c: the model %s, scene %s, as an FMU of FMI %d.0. All that is to be compiled.\n", u->name, s->name, f->version);
+  sb_printf(out, "/* fmu_archive.c: the model %s, scene %s, as an FMU of FMI %d.0. All that is to be compiled.\n",
+            u->name, s->name, f->version);
   sb_puts(out, " * This text may be used for any purpose without conditions (0BSD). */\n");
-  sb_puts(out, "#include <math.h>\n#include <stdbool.h>\n#include <stdint.h>\n#include <stdlib.h>\n#include <string.h>\n\n");
+  sb_puts(out,
+          "#include <math.h>\n#include <stdbool.h>\n#include <stdint.h>\n#include <stdlib.h>\n#include <string.h>\n\n");
   sb_puts(out, "#define MODEL_STATIC\n#include \"model.h\"\n\n");
-  sb_puts(out, "#if defined(_WIN32)\n#define EXPORTED __declspec(dllexport)\n#elif defined(__GNUC__)\n#define EXPORTED __attribute__((visibility(\"default\")))\n"
+  sb_puts(out, "#if defined(_WIN32)\n#define EXPORTED __declspec(dllexport)\n#elif defined(__GNUC__)\n#define EXPORTED "
+               "__attribute__((visibility(\"default\")))\n"
                "#else\n#define EXPORTED\n#endif\n\n");
   define(out, "NQ", u->q.n);
   define(out, "NZ", u->z.n);
@@ -42,20 +45,27 @@ static void write_head(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   define(out, "NOUT", s->plain.n);
   define(out, "HOLDS", u->constraints.of.n > 0);
   define(out, "CONTACTS", u->contacts.n);
-  if (u->constraints.of.n) sb_printf(out, "#define CORRECT model_correct%s\n", u->constraints.position == u->constraints.velocity ? "" : "_velocities");
+  if (u->constraints.of.n)
+    sb_printf(out, "#define CORRECT model_correct%s\n",
+              u->constraints.position == u->constraints.velocity ? "" : "_velocities");
   define(out, "FRICTION", (uint32_t)(f->moreau && !u->contacts.n));
   const char *with = u->u.n ? "_with(&(m)->p, &(m)->s, h, set_inputs, m)" : "(&(m)->p, &(m)->s, h)";
-  if (f->moreau) sb_printf(out, "#define MOREAU_STEP %.17g\n#define MOREAU(m, h) model_moreau_step%s\n", moreau_step(s), with);
+  if (f->moreau)
+    sb_printf(out, "#define MOREAU_STEP %.17g\n#define MOREAU(m, h) model_moreau_step%s\n", moreau_step(s), with);
   define(out, "NMODES", u->nmodes);
   define(out, "KICKS", program_set_kick(u) != NULL);
   define(out, "DERIVATIVES", (uint32_t)f->has_derivatives);
   define(out, "OUTPUT_DERIVATIVES", u->outputs_at.n);
   sb_printf(out, "#define TOKEN \"%s\"\n", f->token);
-  sb_printf(out, "#define START_TIME %.17g\n#define TOLERANCE %.17g\n", s->t0, s->tolerance > 0 ? s->tolerance : FMU_TOLERANCE);
-  sb_printf(out, "#define ARGUMENTS(s, p, u) (s)->t%s%s, p%s\n", u->q.n ? ", (s)->q, (s)->v" : "", u->z.n ? ", (s)->z" : "", u->u.n ? ", u" : "");
-  sb_printf(out, "#define WITH_MODES(s, p, u) (s)->t%s%s, p, u\n", u->q.n ? ", (s)->q, (s)->v" : "", u->z.n ? ", (s)->z" : "");
+  sb_printf(out, "#define START_TIME %.17g\n#define TOLERANCE %.17g\n", s->t0,
+            s->tolerance > 0 ? s->tolerance : FMU_TOLERANCE);
+  sb_printf(out, "#define ARGUMENTS(s, p, u) (s)->t%s%s, p%s\n", u->q.n ? ", (s)->q, (s)->v" : "",
+            u->z.n ? ", (s)->z" : "", u->u.n ? ", u" : "");
+  sb_printf(out, "#define WITH_MODES(s, p, u) (s)->t%s%s, p, u\n", u->q.n ? ", (s)->q, (s)->v" : "",
+            u->z.n ? ", (s)->z" : "");
   sb_printf(out, "#define GIVEN(m, u)%s\n", u->u.n ? " &(m)->p, (m)->s.t, u, NULL, NULL," : "");
-  sb_printf(out, "#define AND_INPUTS(u)%s\n#define BY_TIME(m)%s\n", u->u.n ? " , u" : "", u->u.n ? " NULL, set_inputs, m," : "");
+  sb_printf(out, "#define AND_INPUTS(u)%s\n#define BY_TIME(m)%s\n", u->u.n ? " , u" : "",
+            u->u.n ? " NULL, set_inputs, m," : "");
   sb_printf(out, "#define BY_INPUTS(m)%s\n", u->u.n ? " , NULL, set_inputs, m" : "");
   int keeps = u->events.n && !f->moreau, some = u->u.n > 0;
   sb_printf(out, "#define STEP(m, until, path) model_dop853_%s(&(m)->p, &(m)->s, &(m)->w, until%s%s%s)\n",
@@ -77,8 +87,10 @@ static void write_tables(const ProgramSet *u, StrBuf *out) {
     const IrContact *c = &u->contacts.at[i];
     sb_printf(out, "%s{%u, %d}", i ? ", " : "", c->input, c->is_tangent ? (int)c->force : -1);
   }
-  sb_puts(out, "}; /* input that closes it; input of its force, -1: it is a gap */\nstatic const int contact_event[] = {");
-  for (uint32_t i = 0; i < u->contacts.n; i++) sb_printf(out, "%s%u, %u", i ? ", " : "", u->contacts.at[i].impact, u->contacts.at[i].release);
+  sb_puts(out,
+          "}; /* input that closes it; input of its force, -1: it is a gap */\nstatic const int contact_event[] = {");
+  for (uint32_t i = 0; i < u->contacts.n; i++)
+    sb_printf(out, "%s%u, %u", i ? ", " : "", u->contacts.at[i].impact, u->contacts.at[i].release);
   sb_puts(out, "};\n");
 }
 
@@ -88,8 +100,8 @@ static void write_tables(const ProgramSet *u, StrBuf *out) {
 /* 128 bits of hash, written as a UUID is. */
 static const char *token_of(Arena *a, const StrBuf *text) {
   uint64_t x = lag_fnv1a(LAG_FNV1A_START, text->at, text->n), y = lag_fnv1a(0x9e3779b97f4a7c15u, text->at, text->n);
-  return arena_printf(a, "{%08x-%04x-%04x-%04x-%012llx}", (unsigned)(x >> 32), (unsigned)(x >> 16 & 0xffff), (unsigned)(x & 0xffff), (unsigned)(y >> 48),
-                      (unsigned long long)(y & 0xffffffffffffu));
+  return arena_printf(a, "{%08x-%04x-%04x-%04x-%012llx}", (unsigned)(x >> 32), (unsigned)(x >> 16 & 0xffff),
+                      (unsigned)(x & 0xffff), (unsigned)(y >> 48), (unsigned long long)(y & 0xffffffffffffu));
 }
 
 static void write_wrapper(const ProgramSet *u, const Fmu *f, StrBuf *out) {
@@ -102,8 +114,12 @@ static void write_wrapper(const ProgramSet *u, const Fmu *f, StrBuf *out) {
 }
 
 static const char *build_description(Arena *a, const char *identifier) {
-  return arena_printf(a, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n  <BuildConfiguration modelIdentifier=\"%s\">\n"
-                         "    <SourceFileSet language=\"C11\"><SourceFile name=\"fmu_archive.c\"/></SourceFileSet>\n  </BuildConfiguration>\n</fmiBuildDescription>\n", identifier);
+  return arena_printf(a,
+                      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n  "
+                      "<BuildConfiguration modelIdentifier=\"%s\">\n"
+                      "    <SourceFileSet language=\"C11\"><SourceFile name=\"fmu_archive.c\"/></SourceFileSet>\n  "
+                      "</BuildConfiguration>\n</fmiBuildDescription>\n",
+                      identifier);
 }
 
 #define DERIVATIVES "jac,linear"
@@ -114,7 +130,9 @@ int fmu_make(const ProgramSet *u, int version, const char *equations, Fmu *f, co
   Arena *a = u->arena;
   HeaderParts parts = {.prefix = "model", .follows = 1};
   for (uint32_t i = 0; i < u->contacts.n; i++)
-    if (u->contacts.at[i].conditional) return fail_with(error, "an FMU has no constraints with `while`, which need a solver of their own: `lagc build --shared` makes a library that has them");
+    if (u->contacts.at[i].conditional)
+      return fail_with(error, "an FMU has no constraints with `while`, which need a solver of their own: `lagc build "
+                              "--shared` makes a library that has them");
   HeaderParts steps = parts;
   int moreau = header_parts(u, "dop853,moreau", &steps, error);
   if (moreau) parts = steps;
@@ -123,7 +141,11 @@ int fmu_make(const ProgramSet *u, int version, const char *equations, Fmu *f, co
   int has_derivatives = u->outputs && header_parts(u, u->p.n ? DERIVATIVES ",params" : DERIVATIVES, &more, error);
   if (u->events.n) parts.parts |= PART_PATH, more.parts |= PART_PATH;
   if (has_derivatives) parts = more, parts.parts |= u->outputs_at.n ? PART_OUTPUTS : 0;
-  *f = (Fmu){.version = version, .identifier = cname(a, u->name), .token = "", .has_derivatives = has_derivatives, .moreau = moreau};
+  *f = (Fmu){.version = version,
+             .identifier = cname(a, u->name),
+             .token = "",
+             .has_derivatives = has_derivatives,
+             .moreau = moreau};
   StrBuf header = strbuf(a), all = strbuf(a), wrapper = strbuf(a), description = strbuf(a);
   emit_header(u, "model", parts, equations, &header);
   f->header = sb_text(&header);
@@ -158,8 +180,10 @@ static const Platform platforms[] = {
 static const char *binary_path(Arena *a, const Fmu *f, const char *machine, const char **error) {
   const Platform *p = platforms, *end = platforms + sizeof platforms / sizeof *platforms;
   while (p < end && !(strstr(machine, p->machine) && strstr(machine, p->system))) p++;
-  if (p < end) return arena_printf(a, "binaries/%s/%s.%s", f->version == 2 ? p->fmi2 : p->fmi3, f->identifier, p->ending);
-  *error = arena_printf(a, "FMI has no name for the machine %.*s: take a compiler for Linux, Windows or macOS", (int)strcspn(machine, "\n"), machine);
+  if (p < end)
+    return arena_printf(a, "binaries/%s/%s.%s", f->version == 2 ? p->fmi2 : p->fmi3, f->identifier, p->ending);
+  *error = arena_printf(a, "FMI has no name for the machine %.*s: take a compiler for Linux, Windows or macOS",
+                        (int)strcspn(machine, "\n"), machine);
   return NULL;
 }
 
@@ -172,7 +196,8 @@ int fmu_pack(const Fmu *f, const FmuBinary *of, uint32_t n, StrBuf *out, const c
     const char *path = binary_path(a, f, of[i].machine, error);
     if (!path) return 0;
     for (uint32_t k = 0; k < i; k++)
-      if (strcmp(files.at[k].name, path) == 0) return fail_with(error, arena_printf(a, "two compilers make %s: name each machine once", path));
+      if (strcmp(files.at[k].name, path) == 0)
+        return fail_with(error, arena_printf(a, "two compilers make %s: name each machine once", path));
     vec_push(a, &files, ((ZipFile){path, of[i].library.at, of[i].library.n}));
   }
   vec_push(a, &files, text_file("modelDescription.xml", f->description));

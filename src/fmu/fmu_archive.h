@@ -1,4 +1,5 @@
-/* ProgramSet -> FMU (Functional Mock-up Unit): the archive that the FMI standard 2.0 or 3.0 defines, of C sources, their description and a binary. */
+/* ProgramSet -> FMU (Functional Mock-up Unit): the archive that the FMI standard 2.0 or 3.0 defines, of C sources,
+ * their description and a binary. */
 #pragma once
 
 #include "base/strbuf.h"
@@ -19,8 +20,8 @@ typedef struct {
 /* Programs WANT_... that FMUs use. */
 unsigned fmu_wants(void);
 
-/* Texts of the FMU of the unit's first scene. equations: text for the head comment of the header. Returns 0, with *error, for a model that cannot
- * be an FMU. */
+/* Texts of the FMU of the unit's first scene. equations: text for the head comment of the header. Returns 0, with
+ * *error, for a model that cannot be an FMU. */
 int fmu_make(const ProgramSet *u, int version, const char *equations, Fmu *f, const char **error);
 
 /* A shared library made of f->wrapper, and what its compiler compiles for: x86_64-linux-gnu. */
@@ -29,5 +30,6 @@ typedef struct {
   const char *machine;
 } FmuBinary;
 
-/* Appends the archive with n binaries. Returns 0, with *error, where FMI has no name for a machine, or two are one, or the archive is not written. */
+/* Appends the archive with n binaries. Returns 0, with *error, where FMI has no name for a machine, or two are one,
+ * or the archive is not written. */
 int fmu_pack(const Fmu *f, const FmuBinary *of, uint32_t n, StrBuf *out, const char **error);

@@ -53,7 +53,8 @@ int zip_write(const ZipFile *files, size_t n, StrBuf *out, const char **error) {
   (void)files;
   (void)n;
   (void)out;
-  return fail_with(error, "this lagc was built without minizip, which writes the archives of FMUs: apt-get install libminizip-dev, and make lagc anew");
+  return fail_with(error, "this lagc was built without minizip, which writes the archives of FMUs: apt-get install "
+                          "libminizip-dev, and make lagc anew");
 }
 
 #endif

@@ -23,8 +23,8 @@ static Slot without_sign(Prog *p, Slot s, int *minus) {
   return i->op == IR_NEG ? i->a : prog_num(p, num_neg(i->number));
 }
 
-/* For numbers a, b, c: a + b, a - b, a*b, a/b, exact for fractions; x/b becomes x*(1/b), c*(b*x) becomes (c*b)*x. Signs move in front of
- * products, where a sum absorbs them. */
+/* For numbers a, b, c: a + b, a - b, a*b, a/b, exact for fractions; x/b becomes x*(1/b), c*(b*x) becomes (c*b)*x.
+ * Signs move in front of products, where a sum absorbs them. */
 Slot prog_constant_fold(Prog *p, const Ins *i) {
   if (i->op == IR_SQRT || i->op == IR_FN1) return reckon_function(p, i);
   if ((i->op != IR_ADD && i->op != IR_SUB && i->op != IR_MUL && i->op != IR_DIV) || !i->a || !i->b) return NOT_A_SLOT;
@@ -36,14 +36,18 @@ Slot prog_constant_fold(Prog *p, const Ins *i) {
       return minus ? prog_op(p, IR_NEG, size, 0) : size;
     }
   }
-  if (i->op == IR_MUL && prog_is_number(p, i->a) && !prog_is_number(p, i->b)) return prog_constant_fold(p, &(Ins){.op = IR_MUL, .a = i->b, .b = i->a});
+  if (i->op == IR_MUL && prog_is_number(p, i->a) && !prog_is_number(p, i->b))
+    return prog_constant_fold(p, &(Ins){.op = IR_MUL, .a = i->b, .b = i->a});
   if (!prog_is_number(p, i->b)) return NOT_A_SLOT;
   Num b = p->ins.at[i->b].number;
   if (i->op == IR_MUL && num_is_zero(b)) return 0;
   if (i->op == IR_DIV && num_is_zero(b)) return NOT_A_SLOT;
   if (prog_is_number(p, i->a)) {
     Num a = p->ins.at[i->a].number;
-    return prog_num(p, i->op == IR_ADD ? num_add(a, b) : i->op == IR_SUB ? num_sub(a, b) : i->op == IR_MUL ? num_mul(a, b) : num_div(a, b));
+    return prog_num(p, i->op == IR_ADD   ? num_add(a, b)
+                       : i->op == IR_SUB ? num_sub(a, b)
+                       : i->op == IR_MUL ? num_mul(a, b)
+                                         : num_div(a, b));
   }
   if (i->op == IR_DIV) return prog_op(p, IR_MUL, i->a, prog_num(p, num_div(num_int(1), b)));
   const Ins *inner = &p->ins.at[i->a];

@@ -1,4 +1,5 @@
-/* Common factors of sums of two products, see prog_factor: passes over the program, repeated while they save operations. */
+/* Common factors of sums of two products, see prog_factor: passes over the program, repeated while they save
+ * operations. */
 #include "ir/product.h"
 
 enum { NONE = MOST_FACTORS };

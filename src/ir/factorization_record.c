@@ -1,4 +1,5 @@
-/* Forward and backward substitution with recorded factors, as instructions. The order of operations is that of eliminate.c and linear_solve.c. */
+/* Forward and backward substitution with recorded factors, as instructions. The order of operations is that of
+ * eliminate.c and linear_solve.c. */
 #include "ir/factorization_record.h"
 
 static Slot op(Prog *p, IrOp o, Slot a, Slot b) { return prog_op(p, o, a, b); }
@@ -21,7 +22,8 @@ static void forward(Prog *p, const FactorRecord *f, uint32_t v, Slot *b, const S
   Slot moved = s ? s[v] : 0, own = b[v];
   for (uint32_t k = 0; k < f->row[v].n; k++)
     if (f->row[v].at[k].col == v) own = prog_sub_product(p, own, f->row[v].at[k].value, moved);
-  for (uint32_t k = 0; k < f->C[v].n; k++) b[f->C[v].at[k].col] = prog_add_product(p, b[f->C[v].at[k].col], f->C[v].at[k].value, own);
+  for (uint32_t k = 0; k < f->C[v].n; k++)
+    b[f->C[v].at[k].col] = prog_add_product(p, b[f->C[v].at[k].col], f->C[v].at[k].value, own);
   for (uint32_t k = 0; k < f->row[v].n; k++) {
     SparseEntry r = f->row[v].at[k];
     if (r.col != v) b[r.col] = prog_sub_product(p, b[r.col], r.value, moved);
@@ -31,7 +33,8 @@ static void forward(Prog *p, const FactorRecord *f, uint32_t v, Slot *b, const S
 void factor_record_backward(Prog *p, const FactorRecord *f, uint32_t v, const Slot *b, const Slot *s, Slot *x) {
   if (v < f->n) {
     x[v] = divided(p, f, v, b[v], f->pivot[v]);
-    for (uint32_t k = 0; k < f->below[v].n; k++) x[v] = prog_sub_product(p, x[v], f->below[v].at[k].value, x[f->below[v].at[k].col]);
+    for (uint32_t k = 0; k < f->below[v].n; k++)
+      x[v] = prog_sub_product(p, x[v], f->below[v].at[k].value, x[f->below[v].at[k].col]);
     return;
   }
   x[v] = s ? s[v] : 0;
@@ -52,7 +55,8 @@ static void solve_pair(Prog *p, const FactorRecord *f, uint32_t k, const Slot *b
 
 static void solve_loop(Prog *p, const FactorBlock *m, const Slot *b, Slot *x) {
   uint32_t n = m->n;
-  Slot *full = ARENA_ARRAY(p->arena, Slot, n * n), *rhs = ARENA_ARRAY(p->arena, Slot, n), *y = ARENA_ARRAY(p->arena, Slot, n);
+  Slot *full = ARENA_ARRAY(p->arena, Slot, n * n), *rhs = ARENA_ARRAY(p->arena, Slot, n),
+       *y = ARENA_ARRAY(p->arena, Slot, n);
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t j = 0; j < n; j++) full[i * n + j] = m->M[i >= j ? i * n + j : j * n + i];
   for (uint32_t i = 0; i < n; i++) rhs[i] = b[m->at[i]];

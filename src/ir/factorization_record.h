@@ -1,5 +1,5 @@
-/* The factors of a linear system M q'' = f as slots of the program that made them, to solve it for further right-hand sides. Filled
- * on request by eliminate.c, gram.c and solve.c. */
+/* The factors of a linear system M q'' = f as slots of the program that made them, to solve it for further
+ * right-hand sides. Filled on request by eliminate.c, gram.c and solve.c. */
 #pragma once
 
 #include "base/sparse_pattern.h"
@@ -26,8 +26,8 @@ typedef struct {
   const Slot *inverse;     /* reciprocals of pivots [n], or of divisors of blocks [blocks.n]; NULL: divide */
 } FactorRecord;
 
-/* Appends to p, of which f has the slots, the solution x[n + ndefs] for the right-hand side b[n + ndefs], where the rate of definition k is
- * C u' + s[n + k] (s NULL: 0). b is destroyed. */
+/* Appends to p, of which f has the slots, the solution x[n + ndefs] for the right-hand side b[n + ndefs], where the
+ * rate of definition k is C u' + s[n + k] (s NULL: 0). b is destroyed. */
 void factor_record_solve(Prog *p, const FactorRecord *f, Slot *b, const Slot *s, Slot *x);
 
 /* Computes x[v] from b and the unknowns eliminated after v: the step of back substitution. */

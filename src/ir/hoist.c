@@ -1,5 +1,6 @@
-/* unit_hoist. For each program: slots that depend on parameters alone are marked, and which of them the rest needs; if moving them saves enough
- * operations, they move to the program `derived`, and the rest loads them as parameters. */
+/* unit_hoist. For each program: slots that depend on parameters alone are marked, and which of them the rest needs;
+ * if moving them saves enough operations, they move to the program `derived`, and the rest loads them as parameters.
+ * */
 #include "ir/program_set.h"
 
 #include "ir/roll.h"
@@ -36,14 +37,16 @@ static unsigned char *find_constant(const Prog *p) {
   return constant;
 }
 
-/* By slot: whether its value may become a derived parameter. Not numbers, which the C compiler folds unless a function takes them, nor
- * a changed sign, which is not worth a load. */
+/* By slot: whether its value may become a derived parameter. Not numbers, which the C compiler folds unless a
+ * function takes them, nor a changed sign, which is not worth a load. */
 static unsigned char *find_worthy(const Prog *p, const unsigned char *constant) {
-  unsigned char *worthy = ARENA_ARRAY(p->arena, unsigned char, p->ins.n), *number = ARENA_ARRAY(p->arena, unsigned char, p->ins.n);
+  unsigned char *worthy = ARENA_ARRAY(p->arena, unsigned char, p->ins.n),
+                *number = ARENA_ARRAY(p->arena, unsigned char, p->ins.n);
   number[0] = 1;
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
-    number[s] = constant[s] && i->op != IR_LOAD && i->op != IR_FN1 && i->op != IR_FN2 && i->op != IR_SQRT && number[i->a] && number[i->b] && number[i->c];
+    number[s] = constant[s] && i->op != IR_LOAD && i->op != IR_FN1 && i->op != IR_FN2 && i->op != IR_SQRT &&
+                number[i->a] && number[i->b] && number[i->c];
     worthy[s] = constant[s] && !number[s] && !ir_is_leaf(i->op) && !ir_is_condition(i->op) && i->op != IR_NEG;
   }
   return worthy;
@@ -63,7 +66,9 @@ static unsigned char *mark_needed(const Prog *p, const unsigned char *worthy) {
   return mark;
 }
 
-static int is_derived(const unsigned char *worthy, const unsigned char *mark, Slot s) { return worthy[s] && mark[s] & 1; }
+static int is_derived(const unsigned char *worthy, const unsigned char *mark, Slot s) {
+  return worthy[s] && mark[s] & 1;
+}
 
 /* Whether the operations saved are worth the derived parameters that they take. */
 static int is_profitable(const Prog *p, const unsigned char *worthy, const unsigned char *mark) {
@@ -134,7 +139,8 @@ void unit_hoist(ProgramSet *u) {
   IrConstraints *c = &u->constraints;
   Hoist h = {.derived = prog_new(u->arena), .first = u->p.n};
   const Prog *same = c->position == c->velocity ? c->position : NULL;
-  const Prog **all[] = {&u->accel, &c->residuals, &c->matrices, &c->position, &c->velocity, &u->variation, &u->second, &u->linear};
+  const Prog **all[] = {&u->accel,    &c->residuals, &c->matrices, &c->position,
+                        &c->velocity, &u->variation, &u->second,   &u->linear};
   for (size_t k = 0; k < sizeof all / sizeof *all; k++)
     if (!same || all[k] != &c->velocity) hoist_from(&h, all[k]);
   if (same) c->velocity = c->position;

@@ -1,12 +1,14 @@
 /* Nests of loops for sums over pairs, sites or bodies: the search, and the program with the nests found.
  *
- * The search is one for connected components of a program's graph, so that bodies written out by hand are found as a family is. Hubs are
- * sums of many terms, and values with many users; without hubs the graph falls into pieces, one for each pair of bodies. Pieces that
- * differ only in the array elements that they read and the sums that they add to are a group. Where these indices are affine in two
- * counters, a group becomes a Nest (ir/prog.h) of the size of one piece.
+ * The search is one for connected components of a program's graph, so that bodies written out by hand are found as a
+ * family is. Hubs are sums of many terms, and values with many users; without hubs the graph falls into pieces, one
+ * for each pair of bodies. Pieces that differ only in the array elements that they read and the sums that they add
+ * to are a group. Where these indices are affine in two counters, a group becomes a Nest (ir/prog.h) of the size of
+ * one piece.
  *
- * Pieces are searched in waves: first those that need no hub, then those whose hubs are complete. Each wave sorts its pieces into groups by their
- * canonical form; groups become nests. Several ways to partition the program are tried; the one that covers most of it wins. */
+ * Pieces are searched in waves: first those that need no hub, then those whose hubs are complete. Each wave sorts
+ * its pieces into groups by their canonical form; groups become nests. Several ways to partition the program are
+ * tried; the one that covers most of it wins. */
 #include "base/hash.h"
 #include "ir/nest_impl.h"
 
@@ -46,7 +48,8 @@ static uint32_t hash_words(const CanonicalForm *t) {
 }
 
 static int same_words(const CanonicalForm *x, const CanonicalForm *y) {
-  return x->words.n == y->words.n && x->columns.n == y->columns.n && memcmp(x->words.at, y->words.at, x->words.n * sizeof *x->words.at) == 0;
+  return x->words.n == y->words.n && x->columns.n == y->columns.n &&
+         memcmp(x->words.at, y->words.at, x->words.n * sizeof *x->words.at) == 0;
 }
 
 /* The group of the form in s->tape, which a new group takes. */
@@ -65,7 +68,9 @@ static PieceGroup *group_of(Search *s) {
 
 static void add_nest(Search *s, const PieceGroup *x, const Fit *f) {
   Arena *a = s->c.a;
-  Nest n = {.rows = f->rows, .skew = f->skew, .turns = f->turns, .more = f->more, .at = f->at, .n = x->tape.columns.n, .count = f->count};
+  Nest n = {.rows = f->rows,
+            .skew = f->skew, .turns = f->turns, .more = f->more, .at = f->at, .n = x->tape.columns.n,
+            .count = f->count};
   n.body = nest_body(&s->c, &x->tape, f, &n.outer, &n.nouter);
   vec_push(a, &s->found, ((FoundNest){n, x->tape.array.at}));
   for (uint32_t k = 0; k < f->count; k++) {
@@ -226,7 +231,9 @@ static Slot make_nest(Rebuild *r, uint32_t k) {
 
 /* The value of a cell after nest number `nest`, from 1. */
 static Slot load_cell(Rebuild *r, uint32_t cell, uint32_t nest, Name name) {
-  return prog_ins(r->to, (Ins){.op = IR_LOAD, .array = ARR_CELL, .a = r->map[r->from->ins.n + nest - 1], .index = cell, .name = name});
+  return prog_ins(
+      r->to,
+      (Ins){.op = IR_LOAD, .array = ARR_CELL, .a = r->map[r->from->ins.n + nest - 1], .index = cell, .name = name});
 }
 
 static Slot make_hub(Rebuild *r, Slot hub) {
@@ -250,8 +257,9 @@ static void rebuild(Rebuild *r, uint32_t item) {
     r->open.n--;
     if (r->done[x]) continue;
     r->done[x] = 1;
-    r->map[x] = x >= n ? make_nest(r, x - n)
-                : has_cell(r, x) ? make_hub(r, x) : prog_ins(r->to, prog_import(r->to, r->from, r->map, r->from->ins.at[x]));
+    r->map[x] = x >= n           ? make_nest(r, x - n)
+                : has_cell(r, x) ? make_hub(r, x)
+                                 : prog_ins(r->to, prog_import(r->to, r->from, r->map, r->from->ins.at[x]));
     if (x < n) prog_name(r->to, r->map[x], r->from->ins.at[x].name);
   }
 }
@@ -278,8 +286,8 @@ static Prog *with_nests(const Search *s) {
   return tidy;
 }
 
-/* Number of instructions that nests replace; 0 where all nests are single loops, which are left to ir/roll.h: there they share values with
- * the code around. */
+/* Number of instructions that nests replace; 0 where all nests are single loops, which are left to ir/roll.h: there
+ * they share values with the code around. */
 static uint32_t instructions_replaced(const Search *s) {
   const Partition *c = &s->c;
   uint32_t inside = 0;

@@ -1,5 +1,6 @@
-/* Pieces of a group as nests whose indices are affine in two counters. Pieces are split by shape where shapes are few (a spring to the
- * right, a spring downwards), and sorted; runs of equal steps are rows, and rows whose first indices and lengths go by equal steps a nest. */
+/* Pieces of a group as nests whose indices are affine in two counters. Pieces are split by shape where shapes are
+ * few (a spring to the right, a spring downwards), and sorted; runs of equal steps are rows, and rows whose first
+ * indices and lengths go by equal steps a nest. */
 #include <string.h>
 
 #include "ir/nest_impl.h"
@@ -41,7 +42,8 @@ static int64_t gcd(int64_t a, int64_t b) {
   return a < 0 ? -a : a;
 }
 
-/* Greatest common divisor of the distances between a piece's indices in one array: 2 where x and y do not mix. 0: no distances. */
+/* Greatest common divisor of the distances between a piece's indices in one array: 2 where x and y do not mix. 0: no
+ * distances. */
 static int64_t spacing(const Indices *g, uint32_t first) {
   int64_t all = 0;
   for (uint32_t k = 0; k < g->n && all != 1; k++)
@@ -50,7 +52,8 @@ static int64_t spacing(const Indices *g, uint32_t first) {
   return all;
 }
 
-/* Key of a shape: the first varying index modulo the spacing; for modulo 0, a hash of the other indices in its array relative to it. */
+/* Key of a shape: the first varying index modulo the spacing; for modulo 0, a hash of the other indices in its array
+ * relative to it. */
 static uint64_t shape_of(const Indices *g, uint32_t first, uint32_t k, int64_t modulo) {
   const int64_t *at = indices(g, k);
   uint64_t h = modulo ? (uint64_t)(at[first] % modulo) : 0;
@@ -59,7 +62,8 @@ static uint64_t shape_of(const Indices *g, uint32_t first, uint32_t k, int64_t m
   return h;
 }
 
-/* Sorts pieces by shape, stably; end[]: end of each shape. Returns the number of shapes, or MANY: all pairs of n bodies have n - 1. */
+/* Sorts pieces by shape, stably; end[]: end of each shape. Returns the number of shapes, or MANY: all pairs of n
+ * bodies have n - 1. */
 static uint32_t split(Indices *g, uint32_t first, int64_t modulo, uint32_t *end) {
   uint64_t known[MOST_SHAPES];
   uint32_t n = 0, *shape = ARENA_ARRAY(g->a, uint32_t, g->n), *to = ARENA_ARRAY(g->a, uint32_t, g->n), put = 0;
@@ -93,8 +97,10 @@ static void sort(Indices *g) {
   uint32_t n = g->n, *from = g->order, *to = ARENA_ARRAY(g->a, uint32_t, n);
   for (uint32_t size = 1; size < n; size *= 2) {
     for (uint32_t left = 0; left < n; left += 2 * size) {
-      uint32_t i = left, middle = left + size < n ? left + size : n, j = middle, end = middle + size < n ? middle + size : n;
-      for (uint32_t k = left; k < end; k++) to[k] = j == end || (i < middle && before(g, from[i], from[j])) ? from[i++] : from[j++];
+      uint32_t i = left, middle = left + size < n ? left + size : n, j = middle,
+               end = middle + size < n ? middle + size : n;
+      for (uint32_t k = left; k < end; k++)
+        to[k] = j == end || (i < middle && before(g, from[i], from[j])) ? from[i++] : from[j++];
     }
     uint32_t *t = from;
     from = to;
@@ -121,7 +127,9 @@ static Rows find_rows(const Indices *g) {
   int by_common = pairs >= g->n / 2;
   for (uint32_t i = 0; i < g->n;) {
     uint32_t n = 1;
-    while (i + n < g->n && (!by_common || indices(g, i + n)[common] == indices(g, i)[common]) && (n < 2 || even(g, i + n - 2, i + n - 1, i + n))) n++;
+    while (i + n < g->n && (!by_common || indices(g, i + n)[common] == indices(g, i)[common]) &&
+           (n < 2 || even(g, i + n - 2, i + n - 1, i + n)))
+      n++;
     vec_push(g->a, &rows, ((Row){i, n}));
     i += n;
   }
@@ -177,7 +185,8 @@ static Fit fit_of(const Indices *g, const Growing *w, uint32_t count) {
   if (w->n > 1) f.more = (int64_t)w->rows[1].count - w->rows[0].count;
   f.skew = skew_of(g, w);
   for (uint32_t k = 0; k < g->width; k++)
-    at[k] = (IrSubscript){.first = indices(g, w->rows->begin)[k], .by_row = w->row[k] - f.skew * w->turn[k], .by_turn = w->turn[k]};
+    at[k] = (IrSubscript){
+        .first = indices(g, w->rows->begin)[k], .by_row = w->row[k] - f.skew * w->turn[k], .by_turn = w->turn[k]};
   return f;
 }
 
@@ -186,7 +195,10 @@ static void fit_shape(Indices *g, Fits *fits) {
   find_varying(g);
   Rows rows = find_rows(g);
   for (uint32_t i = 0; i < rows.n;) {
-    Growing w = {.rows = rows.at + i, .n = 1, .row = ARENA_ARRAY(g->a, int64_t, g->width + 1), .turn = ARENA_ARRAY(g->a, int64_t, g->width + 1)};
+    Growing w = {.rows = rows.at + i,
+                 .n = 1,
+                 .row = ARENA_ARRAY(g->a, int64_t, g->width + 1),
+                 .turn = ARENA_ARRAY(g->a, int64_t, g->width + 1)};
     if (w.rows->count >= 2) {
       difference(g, w.rows->begin, w.rows->begin + 1, w.turn);
       w.steps = 1;

@@ -1,4 +1,5 @@
-/* The body of a nest from a canonical form. The order of sums and products is free here: terms and factors that stay the same in a row come first. */
+/* The body of a nest from a canonical form. The order of sums and products is free here: terms and factors that stay
+ * the same in a row come first. */
 #include "ir/nest_impl.h"
 
 /* How often a value changes. */
@@ -14,7 +15,9 @@ typedef struct {
   VEC(Slot) outer;
 } BodyBuilder;
 
-static int changes(const BodyBuilder *m, uint32_t column) { return m->f->at[column].by_turn ? EACH_TURN : m->f->at[column].by_row ? EACH_ROW : ONCE; }
+static int changes(const BodyBuilder *m, uint32_t column) {
+  return m->f->at[column].by_turn ? EACH_TURN : m->f->at[column].by_row ? EACH_ROW : ONCE;
+}
 
 static void find_changes(BodyBuilder *m) {
   for (uint32_t id = 0; id < m->t->nodes.n; id++) {
@@ -79,7 +82,8 @@ static Slot value(BodyBuilder *m, uint32_t id) {
 
 static int same_place(const BodyBuilder *m, uint32_t x, uint32_t y) {
   const IrSubscript *a = &m->f->at[x], *b = &m->f->at[y];
-  return m->t->array.at[x] == m->t->array.at[y] && a->first == b->first && a->by_row == b->by_row && a->by_turn == b->by_turn;
+  return m->t->array.at[x] == m->t->array.at[y] && a->first == b->first && a->by_row == b->by_row &&
+         a->by_turn == b->by_turn;
 }
 
 /* Stores the shares; shares of one sum are added first. */

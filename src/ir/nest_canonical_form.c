@@ -13,7 +13,9 @@ static int by_signature(const void *x, const void *y) {
   return (a->slot > b->slot) - (a->slot < b->slot);
 }
 
-static Child child(const Partition *c, Slot s, int minus) { return (Child){s, minus, c->sig[s], c->low[s], c->mass[s]}; }
+static Child child(const Partition *c, Slot s, int minus) {
+  return (Child){s, minus, c->sig[s], c->low[s], c->mass[s]};
+}
 
 static void take_factors(const Partition *c, Slot s, Children *to) {
   const Prog *p = c->p;
@@ -35,7 +37,8 @@ void nest_children(const Partition *c, Slot s, Children *to) {
   if (nest_is_sum(i->op)) {
     c->terms->n = 0;
     nest_terms(c, s, c->terms);
-    for (uint32_t k = 0; k < c->terms->n; k++) vec_push(c->a, to, child(c, c->terms->at[k].value, c->terms->at[k].minus));
+    for (uint32_t k = 0; k < c->terms->n; k++)
+      vec_push(c->a, to, child(c, c->terms->at[k].value, c->terms->at[k].minus));
   } else if (i->op == IR_MUL) {
     take_factors(c, s, to);
   } else {

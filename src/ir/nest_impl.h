@@ -1,5 +1,6 @@
-/* Shared by nest.c (search, and the program with nests), nest_partition.c (hubs and pieces), nest_canonical_form.c (canonical form of a piece),
- * nest_affine.c (indices affine in two counters) and nest_body.c (the body of a nest). */
+/* Shared by nest.c (search, and the program with nests), nest_partition.c (hubs and pieces), nest_canonical_form.c
+ * (canonical form of a piece), nest_affine.c (indices affine in two counters) and nest_body.c (the body of a nest).
+ * */
 #pragma once
 
 #include "ir/prog.h"
@@ -38,8 +39,11 @@ typedef struct {
   unsigned char *joined; /* by slot: a sum inside its only user, a sum; likewise products */
   unsigned char *hub;    /* by slot: HubKind */
   Slot *sum;             /* by slot: the hub that it is a partial sum of, or is; or 0 */
-  uint64_t *sig, *flip;  /* by slot: signature of its computation, without array indices; of a partial sum, of its terms and of their negatives */
-  uint64_t *low, *mass;  /* by slot: lowest array element read, and sum of all indices read: order of equal signatures */
+  /* by slot: signature of its computation, without array indices; of a partial sum, of its terms and of their
+   * negatives */
+  uint64_t *sig, *flip;
+  /* by slot: lowest array element read, and sum of all indices read: order of equal signatures */
+  uint64_t *low, *mass;
   uint32_t *piece;       /* by slot: number of its piece, from 1; 0: none */
   VEC(Piece) pieces;
   VEC(Slot) hubs;        /* in the order in which stores need them */
@@ -91,7 +95,8 @@ typedef struct {
   uint32_t first, n; /* its operands: links first ... first + n - 1 */
 } Node;
 
-/* The canonical form of a piece, the same for all pieces of a group except for the indices: nodes after their operands, then the shares. */
+/* The canonical form of a piece, the same for all pieces of a group except for the indices: nodes after their
+ * operands, then the shares. */
 typedef struct {
   VEC(Node) nodes;
   VEC(Link) links;
@@ -107,7 +112,8 @@ typedef struct {
 typedef struct {
   uint32_t stamp, id;
 } Local;
-/* Writes the piece to `tape`, which is reused. stamp: number of the piece, from 1; local: by slot, zeroed before the first piece. */
+/* Writes the piece to `tape`, which is reused. stamp: number of the piece, from 1; local: by slot, zeroed before the
+ * first piece. */
 void nest_canonical_form(const Partition *c, Piece *piece, Local *local, uint32_t stamp, CanonicalForm *tape);
 
 /* A nest of loops over pieces of a group. */

@@ -40,15 +40,18 @@ static void find_long_sums(Partition *c) {
 /* Sums that share a term with another sum, as forces of springs do by Newton's third law. */
 static void find_sums_in_common(Partition *c) {
   const Prog *p = c->p;
-  uint32_t *uses = ARENA_ARRAY(c->a, uint32_t, p->ins.n); /* number of sums with the term; of a partial sum, number of sums that contain it */
+  /* number of sums with the term; of a partial sum, number of sums that contain it */
+  uint32_t *uses = ARENA_ARRAY(c->a, uint32_t, p->ins.n);
   for (Slot s = p->ins.n; s-- > 1;)
-    for (int k = 0; k < 2 && nest_is_sum(op_of(c, s)); k++) uses[ins_operand(&p->ins.at[s], k)] += c->joined[s] ? uses[s] : 1;
+    for (int k = 0; k < 2 && nest_is_sum(op_of(c, s)); k++)
+      uses[ins_operand(&p->ins.at[s], k)] += c->joined[s] ? uses[s] : 1;
   for (Slot s = 1; s < p->ins.n; s++) {
     if (!nest_is_sum(op_of(c, s)) || c->joined[s]) continue;
     c->terms->n = 0;
     nest_terms(c, s, c->terms);
     for (uint32_t k = 0; k < c->terms->n && c->terms->n > 1; k++)
-      if (uses[c->terms->at[k].value] > 1 && !ir_is_leaf(op_of(c, c->terms->at[k].value)) && !c->hub[s]) c->hub[s] = HUB_COMMON;
+      if (uses[c->terms->at[k].value] > 1 && !ir_is_leaf(op_of(c, c->terms->at[k].value)) && !c->hub[s])
+        c->hub[s] = HUB_COMMON;
   }
 }
 
@@ -106,11 +109,14 @@ static uint64_t part_of_sum(const Partition *c, Slot x, int minus) {
   return with(minus ? 2 : 3, c->sig[x]);
 }
 
-static uint64_t part_of_product(const Partition *c, Slot x) { return c->joined[x] && op_of(c, x) == IR_MUL ? c->sig[x] : with(4, c->sig[x]); }
+static uint64_t part_of_product(const Partition *c, Slot x) {
+  return c->joined[x] && op_of(c, x) == IR_MUL ? c->sig[x] : with(4, c->sig[x]);
+}
 
 static void sign_sum(Partition *c, Slot s, const Ins *i) {
   int a = i->op == IR_NEG, b = i->op == IR_SUB;
-  uint64_t plus = part_of_sum(c, i->a, a) + part_of_sum(c, i->b, b), minus = part_of_sum(c, i->a, !a) + part_of_sum(c, i->b, !b);
+  uint64_t plus = part_of_sum(c, i->a, a) + part_of_sum(c, i->b, b),
+           minus = part_of_sum(c, i->a, !a) + part_of_sum(c, i->b, !b);
   c->sig[s] = c->hub[s] == HUB_SUM ? 5 : c->joined[s] ? plus : with(6, plus);
   c->flip[s] = minus;
 }
@@ -215,7 +221,8 @@ static int is_of_one_piece(Partition *c, Slot *parent, Slot sum, Slot user) {
   return 1;
 }
 
-/* Returns hubs to pieces: a shared value whose users are all in one piece, and a sum whose terms and users are. Returns whether there was one. */
+/* Returns hubs to pieces: a shared value whose users are all in one piece, and a sum whose terms and users are.
+ * Returns whether there was one. */
 static int return_hubs(Partition *c, Slot *parent) {
   int some = 0;
   const Slot *user = find_users(c, parent);
@@ -286,7 +293,8 @@ static void find_shares(Partition *c) {
     const Ins *i = &p->ins.at[s];
     if (i->op == IR_PIVOT) not_apart(c, i->a);
     for (int k = 0; k < 3 && c->piece[s]; k++)
-      if (ins_operand(i, k) && c->hub[ins_operand(i, k)] && c->piece[ins_operand(i, k)] != c->piece[s]) wait_for(c, ins_operand(i, k), c->piece[s], 0);
+      if (ins_operand(i, k) && c->hub[ins_operand(i, k)] && c->piece[ins_operand(i, k)] != c->piece[s])
+        wait_for(c, ins_operand(i, k), c->piece[s], 0);
     terms.n = 0;
     if (c->hub[s] == HUB_SUM) nest_terms(c, s, &terms);
     if (c->hub[s] == HUB_SHARED || c->hub[s] == HUB_STORED) vec_push(c->a, &terms, ((HubTerm){s, s, 0}));
@@ -328,7 +336,8 @@ typedef struct {
 /* Sort key: shared values by the array elements that they read, other hubs in the order of stores. */
 static HubKey key_of(const Partition *c, uint32_t rank) {
   Slot s = c->hubs.at[rank];
-  return c->hub[s] == HUB_SHARED ? (HubKey){c->sig[s], c->low[s], c->mass[s], rank} : (HubKey){.sig = c->hub[s], .rank = rank};
+  return c->hub[s] == HUB_SHARED ? (HubKey){c->sig[s], c->low[s], c->mass[s], rank}
+                                 : (HubKey){.sig = c->hub[s], .rank = rank};
 }
 
 static int by_key(const void *x, const void *y) {
@@ -339,8 +348,8 @@ static int by_key(const void *x, const void *y) {
   return (a->rank > b->rank) - (a->rank < b->rank);
 }
 
-/* Classes and numbers of hubs. Sums are one class, stored values another, shared values one for each signature. Stored values have the
- * number of their first store, with gaps, so that a loop stores them. */
+/* Classes and numbers of hubs. Sums are one class, stored values another, shared values one for each signature.
+ * Stored values have the number of their first store, with gaps, so that a loop stores them. */
 static void number_hubs(Partition *c) {
   HubKey *keys = ARENA_ARRAY(c->a, HubKey, c->hubs.n + 1);
   for (uint32_t k = 0; k < c->hubs.n; k++) keys[k] = key_of(c, k);

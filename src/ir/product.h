@@ -13,5 +13,6 @@ typedef struct {
 /* Whether the value is an unnamed product with one use, which may be dissolved in its user. uses: see prog_uses. */
 int product_is_part(const Prog *p, const uint32_t *uses, Slot s);
 
-/* The factors of product s in order; parts are replaced by their factors, up to MOST_FACTORS. inside: these parts are marked; or NULL. */
+/* The factors of product s in order; parts are replaced by their factors, up to MOST_FACTORS. inside: these parts
+ * are marked; or NULL. */
 Product product_of(const Prog *p, const uint32_t *uses, Slot s, unsigned char *inside);

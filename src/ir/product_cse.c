@@ -1,5 +1,5 @@
-/* Common subproducts, see prog_product_cse. Products become lists of factors; the pair of factors in most lists is replaced by a new factor until
- * no pair is in two; then the program is built again with the pairs. */
+/* Common subproducts, see prog_product_cse. Products become lists of factors; the pair of factors in most lists is
+ * replaced by a new factor until no pair is in two; then the program is built again with the pairs. */
 #include "ir/product.h"
 
 /* A factor: a slot of the program or, from ins.n on, ins.n + the number of a pair. */
@@ -77,7 +77,9 @@ static Tally most_frequent(ProductCse *s) {
 
 /* --- replacing it --- */
 
-static Slot last_of(const ProductCse *s, Factor f) { return f < s->from->ins.n ? f : s->pairs.at[f - s->from->ins.n].last; }
+static Slot last_of(const ProductCse *s, Factor f) {
+  return f < s->from->ins.n ? f : s->pairs.at[f - s->from->ins.n].last;
+}
 
 /* Replaces factors a and b by `pair`, at the position of the later one. */
 static void take_out(Product *p, Factor a, Factor b, Factor pair) {
@@ -100,7 +102,9 @@ static void take_out_everywhere(ProductCse *s, const Tally *t) {
 
 /* --- the program with pairs --- */
 
-static Slot slot_of(const ProductCse *s, Factor f) { return f < s->from->ins.n ? s->map[f] : s->made[f - s->from->ins.n]; }
+static Slot slot_of(const ProductCse *s, Factor f) {
+  return f < s->from->ins.n ? s->map[f] : s->made[f - s->from->ins.n];
+}
 
 static Slot multiply(ProductCse *s, const Product *p) {
   Slot r = slot_of(s, p->at[0]);
@@ -125,7 +129,8 @@ static void rebuild(ProductCse *s) {
   for (Slot k = 1; k < p->ins.n; k++) {
     if (s->inside[k]) continue;
     const Ins *i = &p->ins.at[k];
-    s->map[k] = s->product[k] ? multiply(s, &s->products.at[s->product[k] - 1].of) : prog_ins(s->to, prog_import(s->to, p, s->map, *i));
+    s->map[k] = s->product[k] ? multiply(s, &s->products.at[s->product[k] - 1].of)
+                              : prog_ins(s->to, prog_import(s->to, p, s->map, *i));
     prog_name(s->to, s->map[k], i->name);
     for (uint32_t at = first[k]; at; at = next[at - 1]) {
       const Pair *pair = &s->pairs.at[at - 1];
@@ -137,8 +142,10 @@ static void rebuild(ProductCse *s) {
 
 Prog *prog_product_cse(Prog *p) {
   Arena *a = p->arena;
-  ProductCse s = {.from = p, .to = prog_new_like(p), .uses = prog_uses(p), .inside = ARENA_ARRAY(a, unsigned char, p->ins.n),
-             .product = ARENA_ARRAY(a, uint32_t, p->ins.n), .map = ARENA_ARRAY(a, Slot, p->ins.n)};
+  ProductCse s = {.from = p,
+                  .to = prog_new_like(p), .uses = prog_uses(p), .inside = ARENA_ARRAY(a, unsigned char, p->ins.n),
+                  .product = ARENA_ARRAY(a, uint32_t, p->ins.n),
+                  .map = ARENA_ARRAY(a, Slot, p->ins.n)};
   find_products(&s);
   uint32_t pairs = 0;
   for (uint32_t w = 0; w < s.products.n; w++) pairs += s.products.at[w].of.n * (s.products.at[w].of.n - 1) / 2;

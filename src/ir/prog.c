@@ -1,4 +1,5 @@
-/* Prog: construction with value numbering, copies, dead code, verification, operation counts and the listing of --dump=prog. */
+/* Prog: construction with value numbering, copies, dead code, verification, operation counts and the listing of
+ * --dump=prog. */
 #include "ir/prog.h"
 
 #include <string.h>
@@ -40,14 +41,17 @@ static int is_pure(IrOp op) { return op != IR_SOLVE && op != IR_NEST && op != IR
 
 static uint32_t hash_ins(const Ins *i) {
   uint32_t h = (uint32_t)i->op * 0x9e3779b9u;
-  const uint32_t parts[] = {i->a, i->b, i->c, i->index, (uint32_t)i->array, (uint32_t)i->number.num, (uint32_t)i->number.den};
+  const uint32_t parts[] = {
+      i->a, i->b, i->c, i->index, (uint32_t)i->array, (uint32_t)i->number.num, (uint32_t)i->number.den};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) h = (h ^ parts[k]) * 0x85ebca6bu + (h >> 13);
-  for (const char *c = i->op == IR_FN1 || i->op == IR_FN2 ? i->text : NULL; c && *c; c++) h = (h ^ (unsigned char)*c) * 16777619u;
+  for (const char *c = i->op == IR_FN1 || i->op == IR_FN2 ? i->text : NULL; c && *c; c++)
+    h = (h ^ (unsigned char)*c) * 16777619u;
   return h ^ (h >> 16);
 }
 
 static int same(const Ins *x, const Ins *y) {
-  if (x->op != y->op || x->a != y->a || x->b != y->b || x->c != y->c || x->index != y->index || x->array != y->array) return 0;
+  if (x->op != y->op || x->a != y->a || x->b != y->b || x->c != y->c || x->index != y->index || x->array != y->array)
+    return 0;
   if (x->op == IR_CONST) return num_equal(x->number, y->number);
   if (x->op == IR_FN1 || x->op == IR_FN2) return strcmp(x->text, y->text) == 0;
   return 1;
@@ -64,7 +68,8 @@ static int is_num(const Prog *p, Slot s, int64_t value) {
   return s && i->op == IR_CONST && num_equal(i->number, num_int(value));
 }
 
-/* Identities x + 0, x - 0, 1*x, 0*x, x/1, 0/x, x + (-y), x - (-y); slot 0 is the structural zero. NOT_A_SLOT: none applies. */
+/* Identities x + 0, x - 0, 1*x, 0*x, x/1, 0/x, x + (-y), x - (-y); slot 0 is the structural zero. NOT_A_SLOT: none
+ * applies. */
 static Slot fold(Prog *p, const Ins *i) {
   switch (i->op) {
     case IR_ADD:
@@ -126,7 +131,9 @@ Slot prog_sub_product(Prog *p, Slot x, Slot a, Slot b) {
   return prog_op(p, IR_SUB, x, ab);
 }
 
-Slot prog_num(Prog *p, Num n) { return num_value(n) == 0 ? 0 : prog_ins(p, (Ins){.op = IR_CONST, .number = num_drop_error(n)}); }
+Slot prog_num(Prog *p, Num n) {
+  return num_value(n) == 0 ? 0 : prog_ins(p, (Ins){.op = IR_CONST, .number = num_drop_error(n)});
+}
 void prog_title(Prog *p, const char *text) { prog_ins(p, (Ins){.op = IR_TITLE, .text = text}); }
 
 void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *comment) {
@@ -156,7 +163,9 @@ void prog_name(Prog *p, Slot s, Name name) {
   if (!i->name && i->op != IR_CONST && i->op != IR_PI && i->op != IR_LOAD) i->name = name;
 }
 
-int ir_is_scalar(IrArray array) { return array == ARR_T || array == ARR_ORDER || array == ARR_PER_ORDER || array == ARR_UP; }
+int ir_is_scalar(IrArray array) {
+  return array == ARR_T || array == ARR_ORDER || array == ARR_PER_ORDER || array == ARR_UP;
+}
 
 int ir_is_condition(IrOp op) { return op >= IR_LT && op <= IR_OR; }
 
@@ -289,13 +298,16 @@ const char *prog_verify(const Prog *p) {
     const Ins *i = &p->ins.at[s];
     const char *wrong = i->op == IR_NEST ? verify_nest(p, s) : NULL;
     if (wrong) return wrong;
-    if (i->op == IR_LOAD && i->array == ARR_CELL && i->a && p->ins.at[i->a].op != IR_NEST) return arena_printf(p->arena, "sum %u has no nest", s);
+    if (i->op == IR_LOAD && i->array == ARR_CELL && i->a && p->ins.at[i->a].op != IR_NEST)
+      return arena_printf(p->arena, "sum %u has no nest", s);
     if (i->a >= s || i->b >= s || i->c >= s) return arena_printf(p->arena, "instruction %u uses a later one", s);
     int takes_condition = i->op == IR_NOT || i->op == IR_AND || i->op == IR_OR;
     if (i->a && ir_is_condition(p->ins.at[i->a].op) && !takes_condition && i->op != IR_SELECT)
       return arena_printf(p->arena, "instruction %u computes with a condition", s);
-    if (takes_condition && !ir_is_condition(p->ins.at[i->a].op)) return arena_printf(p->arena, "instruction %u needs a condition", s);
-    if (i->op == IR_SOLVED && p->ins.at[i->a].op != IR_SOLVE) return arena_printf(p->arena, "instruction %u has no solve", s);
+    if (takes_condition && !ir_is_condition(p->ins.at[i->a].op))
+      return arena_printf(p->arena, "instruction %u needs a condition", s);
+    if (i->op == IR_SOLVED && p->ins.at[i->a].op != IR_SOLVE)
+      return arena_printf(p->arena, "instruction %u has no solve", s);
   }
   for (uint32_t k = 0; k < p->stores.n; k++)
     if (p->stores.at[k].slot >= p->ins.n) return "a store names no instruction";
@@ -304,7 +316,8 @@ const char *prog_verify(const Prog *p) {
 
 static int same_table(const IrTable *a, const IrTable *b) {
   const Spline *x = a->curve, *y = b->curve;
-  return strcmp(a->name, b->name) == 0 && a->order == b->order && x->n == y->n && !x->jet == !y->jet && memcmp(x->row, y->row, x->n * sizeof *x->row) == 0;
+  return strcmp(a->name, b->name) == 0 && a->order == b->order && x->n == y->n && !x->jet == !y->jet &&
+         memcmp(x->row, y->row, x->n * sizeof *x->row) == 0;
 }
 
 int prog_same(const Prog *a, const Prog *b) {
@@ -371,7 +384,8 @@ uint32_t prog_work_size(const Prog *p) {
   for (uint32_t i = 0; i < p->solves.n; i++) {
     const Solve *k = &p->solves.at[i];
     uint32_t n = k->n, m = k->m, system = n * n + m * n + n + m, scratch = n * n + m * n + m * m + 2 * n + 9 * m;
-    uint32_t lane = (system + scratch + 3) / 4; /* where reals are vectors, each lane is solved by itself in doubles: at most a quarter of the room */
+    /* where reals are vectors, each lane is solved by itself in doubles: at most a quarter of the room */
+    uint32_t lane = (system + scratch + 3) / 4;
     uint32_t need = system + (!m ? 0 : scratch > lane ? scratch : lane);
     if (need > most) most = need;
   }
@@ -385,12 +399,15 @@ static const char *const op_names[] = {
   "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "nest", "table", "title",
 };
 
-static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g", "free", "x", "s", "c", "order", "per_order", "up", "sum", "outer"};
+static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z",     "p",         "u",  "a",   "g",    "free",
+                                                   "x", "s", "c", "order", "per_order", "up", "sum", "outer"};
 
 static void dump_nest(const Nest *n, StrBuf *out) {
-  sb_printf(out, "  %u rows, %lld + %lld*i turns from %lld*i\n", n->rows, (long long)n->turns, (long long)n->more, (long long)n->skew);
+  sb_printf(out, "  %u rows, %lld + %lld*i turns from %lld*i\n", n->rows, (long long)n->turns, (long long)n->more,
+            (long long)n->skew);
   for (uint32_t k = 0; k < n->n; k++)
-    sb_printf(out, "  #%u: %lld + %lld*i + %lld*j\n", k, (long long)n->at[k].first, (long long)n->at[k].by_row, (long long)n->at[k].by_turn);
+    sb_printf(out, "  #%u: %lld + %lld*i + %lld*j\n", k, (long long)n->at[k].first, (long long)n->at[k].by_row,
+              (long long)n->at[k].by_turn);
   for (uint32_t k = 0; k < n->nouter; k++) sb_printf(out, "  outer[%u]: %%%u\n", k, n->outer[k]);
   prog_dump(n->body, out);
   sb_puts(out, "  end of nest\n");
@@ -406,7 +423,8 @@ void prog_dump(const Prog *p, StrBuf *out) {
     }
     if (i->op == IR_LOAD) sb_printf(out, " %s[%u]", array_names[i->array], i->index);
     if (i->text) sb_printf(out, " %s", i->text);
-    if (i->op == IR_PIVOT || i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_NEST || i->op == IR_TABLE) sb_printf(out, " #%u", i->index);
+    if (i->op == IR_PIVOT || i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_NEST || i->op == IR_TABLE)
+      sb_printf(out, " #%u", i->index);
     if (i->a) sb_printf(out, " %%%u", i->a);
     if (i->b) sb_printf(out, " %%%u", i->b);
     if (i->c) sb_printf(out, " %%%u", i->c);
@@ -415,5 +433,6 @@ void prog_dump(const Prog *p, StrBuf *out) {
     if (i->op == IR_NEST) dump_nest(&p->nests.at[i->index], out);
   }
   for (uint32_t k = 0; k < p->stores.n; k++)
-    sb_printf(out, "out%u[%u] = %%%u  ; %s\n", p->stores.at[k].array, p->stores.at[k].index, p->stores.at[k].slot, p->stores.at[k].comment);
+    sb_printf(out, "out%u[%u] = %%%u  ; %s\n", p->stores.at[k].array, p->stores.at[k].index, p->stores.at[k].slot,
+              p->stores.at[k].comment);
 }

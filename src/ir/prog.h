@@ -1,4 +1,5 @@
-/* Prog: the program of one emitted function. Straight-line code in single assignment, except for nests of loops that accumulate sums.
+/* Prog: the program of one emitted function. Straight-line code in single assignment, except for nests of loops that
+ * accumulate sums.
  *
  * Operands have lower numbers than their instruction; every value is computed once. A Prog knows names
  * for its values and carries its own texts, so that nothing after it needs the model. */
@@ -43,9 +44,10 @@ typedef enum {
   IR_TITLE   /* text: a comment line above the instructions that follow */
 } IrOp;
 
-/* Arrays that a function reads. Line 1: time, state, parameters, inputs; accelerations (linearisation only); right-hand side g of A d = g (state
- * corrections only). Line 2, Taylor coefficients (series/series.h): flags of inputs that follow their formulas (0: held constant), coefficients x[k],
- * sums over lower coefficients, constants of order 0; the scalars k, 1/k and T/(k + 1). Line 3, nests: accumulated sums, whose loads have the nest as
+/* Arrays that a function reads. Line 1: time, state, parameters, inputs; accelerations (linearisation only);
+ * right-hand side g of A d = g (state corrections only). Line 2, Taylor coefficients (series/series.h): flags of
+ * inputs that follow their formulas (0: held constant), coefficients x[k], sums over lower coefficients, constants
+ * of order 0; the scalars k, 1/k and T/(k + 1). Line 3, nests: accumulated sums, whose loads have the nest as
  * operand a; values that a body reads from the program around its nest. */
 typedef enum {
   ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_A, ARR_G,
@@ -77,8 +79,9 @@ typedef struct {
   const char *comment;
 } Store;
 
-/* A system that a loop solves: matrix[n*n] row-major (0: zero), rhs[n]. m > 0 constraints: M x - A^T l = f, A x = g. A[m*n] follows M, g follows f, l
- * follows x. filled: indices of the nonzero elements of the matrix. coarse: nearly dependent constraints count as dependent (lag_kkt.h). */
+/* A system that a loop solves: matrix[n*n] row-major (0: zero), rhs[n]. m > 0 constraints: M x - A^T l = f, A x = g.
+ * A[m*n] follows M, g follows f, l follows x. filled: indices of the nonzero elements of the matrix. coarse: nearly
+ * dependent constraints count as dependent (lag_kkt.h). */
 typedef struct {
   uint32_t n, m;
   int coarse;
@@ -96,11 +99,12 @@ typedef struct {
   int64_t first, by_row, by_turn;
 } IrSubscript;
 
-/* Two loops that accumulate sums: for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1. Sums (ARR_CELL) are 0 before the first
- * nest. A sum that stays the same in all turns of the inner (or only) loop gets their total at once, added up from 0.
+/* Two loops that accumulate sums: for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1. Sums
+ * (ARR_CELL) are 0 before the first nest. A sum that stays the same in all turns of the inner (or only) loop gets
+ * their total at once, added up from 0.
  *
- * The body is a program without nests. The index of its loads and stores is a position in `at` (scalars have none), of loads of
- * ARR_OUTER a position in `outer`. A store to array 0 adds to the sum, a store to array 1 subtracts. */
+ * The body is a program without nests. The index of its loads and stores is a position in `at` (scalars have none),
+ * of loads of ARR_OUTER a position in `outer`. A store to array 0 adds to the sum, a store to array 1 subtracts. */
 typedef struct {
   uint32_t rows, count; /* count: turns of all rows together */
   int64_t skew, turns, more;
@@ -114,7 +118,9 @@ typedef struct {
 static inline int nest_has_turns(const Nest *n) { return n->rows == 1 || n->turns != 1 || n->more != 0; }
 
 /* Whether the index at[k] changes from turn to turn of the inner loop, or of the only one. */
-static inline int nest_moves(const Nest *n, uint32_t k) { return (nest_has_turns(n) ? n->at[k].by_turn : n->at[k].by_row) != 0; }
+static inline int nest_moves(const Nest *n, uint32_t k) {
+  return (nest_has_turns(n) ? n->at[k].by_turn : n->at[k].by_row) != 0;
+}
 
 /* First turn of row i, and one past its last. */
 static inline int64_t nest_from(const Nest *n, int64_t i) { return n->skew*i; }
@@ -126,7 +132,8 @@ static inline int64_t nest_index(const Nest *n, uint32_t k, int64_t i, int64_t j
   return x->first + x->by_row*i + x->by_turn*j;
 }
 
-/* The spline of the table that the user gave for input `name`; order: of its derivative, 0 unless the curve is quintic. */
+/* The spline of the table that the user gave for input `name`; order: of its derivative, 0 unless the curve is
+ * quintic. */
 typedef struct {
   const char *name, *file;
   const Spline *curve;
@@ -155,10 +162,12 @@ Prog *prog_new(Arena *a);
 /* An empty program with room for as many instructions as p has: growing would take twice the memory. */
 Prog *prog_new_like(const Prog *p);
 
-/* Gives up the memory of a program from which all that is needed was copied. Its solves, tables, nests and texts stay: copies have them. */
+/* Gives up the memory of a program from which all that is needed was copied. Its solves, tables, nests and texts
+ * stay: copies have them. */
 void prog_release(Prog *p);
 
-/* Appends an instruction, or returns an equal earlier one; operands of a sum or product match in either order. Simplifies x + 0, 1*x and the like. */
+/* Appends an instruction, or returns an equal earlier one; operands of a sum or product match in either order.
+ * Simplifies x + 0, 1*x and the like. */
 Slot prog_ins(Prog *p, Ins i);
 Slot prog_op(Prog *p, IrOp op, Slot a, Slot b);
 Slot prog_add_product(Prog *p, Slot x, Slot a, Slot b); /* x + a*b */
@@ -178,14 +187,15 @@ void prog_name(Prog *p, Slot s, Name name);
 
 int ir_is_condition(IrOp op);
 
-/* Name of an unnamed value made from the names x and y of its operands (NULL: none): sin_th1, m2_l1, th1_dot_sq, inv_M11; or NULL.
- * of_one: the first operand is the number 1. */
+/* Name of an unnamed value made from the names x and y of its operands (NULL: none): sin_th1, m2_l1, th1_dot_sq,
+ * inv_M11; or NULL. of_one: the first operand is the number 1. */
 const char *ir_made_name(Arena *a, const Ins *i, int of_one, const char *x, const char *y);
 
 /* Whether a value is a number or a load, which takes no instruction of its own. */
 int ir_is_leaf(IrOp op);
 
-/* constant_fold.c: the folded or simplified form of an instruction with numbers among its operands, appended; NOT_A_SLOT: there is none. */
+/* constant_fold.c: the folded or simplified form of an instruction with numbers among its operands, appended;
+ * NOT_A_SLOT: there is none. */
 Slot prog_constant_fold(Prog *p, const Ins *i);
 int prog_is_number(const Prog *p, Slot s);
 
@@ -196,25 +206,27 @@ long double prog_call1(const char *name, long double x);
  * Needs nothing, breaks nothing. */
 Prog *prog_tidy(const Prog *p);
 
-/* Common factors of sums: a*x + a*y becomes a*(x + y) where neither product has another use, as long as that saves operations.
- * Needs a tidy program and leaves one; changes rounding. */
+/* Common factors of sums: a*x + a*y becomes a*(x + y) where neither product has another use, as long as that saves
+ * operations. Needs a tidy program and leaves one; changes rounding. */
 Prog *prog_factor(Prog *p);
 
-/* Common subproducts: m*l*a and m*l*b share m*l. The pair of factors that most products contain becomes a value of its own, again and again (M.
- * Breuer, Generation of optimal code for expressions via factorization, Comm. ACM 12 (1969) 333, doi:10.1145/363011.363153). Time grows as products
- * times pairs, so only for short programs. Needs a tidy program and leaves one with at most as many operations; changes rounding. */
+/* Common subproducts: m*l*a and m*l*b share m*l. The pair of factors that most products contain becomes a value of
+ * its own, again and again (M. Breuer, Generation of optimal code for expressions via factorization, Comm. ACM 12
+ * (1969) 333, doi:10.1145/363011.363153). Time grows as products times pairs, so only for short programs. Needs a
+ * tidy program and leaves one with at most as many operations; changes rounding. */
 Prog *prog_product_cse(Prog *p);
 
-/* Sums over pairs, sites or bodies as nests (nest.c); p itself where there are none, p has fewer than `from` instructions, or it has
- * solves. Needs a tidy program and leaves one; adds sums in another order. */
+/* Sums over pairs, sites or bodies as nests (nest.c); p itself where there are none, p has fewer than `from`
+ * instructions, or it has solves. Needs a tidy program and leaves one; adds sums in another order. */
 Prog *prog_find_nests(Prog *p, uint32_t from);
 
-/* Schedule store by store, pivots first, without titles: the instructions that one store needs stand together, and form a loop with
- * those of its neighbours. Not for programs with solves. */
+/* Schedule store by store, pivots first, without titles: the instructions that one store needs stand together, and
+ * form a loop with those of its neighbours. Not for programs with solves. */
 Prog *prog_schedule_by_store(const Prog *p);
 
-/* Schedule by critical path: the longest path of latencies to the end comes first, late values stand where they are needed. calls_first: functions
- * are calls and come first, since values in registers would have to be saved before them. Without titles; programs with solves keep their order. */
+/* Schedule by critical path: the longest path of latencies to the end comes first, late values stand where they are
+ * needed. calls_first: functions are calls and come first, since values in registers would have to be saved before
+ * them. Without titles; programs with solves keep their order. */
 Prog *prog_schedule_by_path(const Prog *p, int calls_first);
 
 /* Approximate latency of an operation, in cycles. */
@@ -223,31 +235,34 @@ uint32_t ir_latency(IrOp op);
 /* Whether two programs have equal listings and tables. */
 int prog_same(const Prog *a, const Prog *b);
 
-/* Instruction i of `from` for `to`: operands renumbered by map[slot]; its solve, table or nest is copied. Does not append it. */
+/* Instruction i of `from` for `to`: operands renumbered by map[slot]; its solve, table or nest is copied. Does not
+ * append it. */
 Ins prog_import(Prog *to, const Prog *from, const Slot *map, Ins i);
 
 /* All programs with instructions: part 0 is p itself, parts 1 ... prog_parts - 1 are the bodies of its nests. */
 uint32_t prog_parts(const Prog *p);
 const Prog *prog_part(const Prog *p, uint32_t k);
 
-/* Number of operands of an instruction, and operand k (0: a structural zero): a, b, c; then the values that its nest reads, or the matrix and
- * the right-hand side of its system. */
+/* Number of operands of an instruction, and operand k (0: a structural zero): a, b, c; then the values that its nest
+ * reads, or the matrix and the right-hand side of its system. */
 uint32_t prog_operands(const Prog *p, const Ins *i);
 Slot prog_operand(const Prog *p, const Ins *i, uint32_t k);
 
 /* Number of uses of each value by instructions, stores, solves and nests: [p->ins.n]. */
 uint32_t *prog_uses(const Prog *p);
 
-/* Reassociates sums: terms are added in the order in which they are ready, so that a late one passes through few additions.
- * ready[p->ins.n]: time at which each load has its value, in cycles. Changes rounding; drops names of partial sums. */
+/* Reassociates sums: terms are added in the order in which they are ready, so that a late one passes through few
+ * additions. ready[p->ins.n]: time at which each load has its value, in cycles. Changes rounding; drops names of
+ * partial sums. */
 Prog *prog_reassociate(const Prog *p, const uint32_t *ready);
 
-/* Reassociates sums and products for fused multiply-add, all loads being ready at the start: terms in a row, earliest first, so that
- * each addition takes in a product. Of two equally fast orders it takes the one with fewer instructions. Keeps names and operations. */
+/* Reassociates sums and products for fused multiply-add, all loads being ready at the start: terms in a row,
+ * earliest first, so that each addition takes in a product. Of two equally fast orders it takes the one with fewer
+ * instructions. Keeps names and operations. */
 Prog *prog_reassociate_fma(const Prog *p);
 
-/* Checks that operands precede their uses, conditions feed only conditions and selections, and stores and operands of nests exist.
- * NULL, or the first fault. */
+/* Checks that operands precede their uses, conditions feed only conditions and selections, and stores and operands
+ * of nests exist. NULL, or the first fault. */
 const char *prog_verify(const Prog *p);
 
 /* A listing, one instruction a line, for --dump=prog. */
@@ -262,8 +277,8 @@ int prog_solves_dense(const Prog *p);
 /* Size of the work space that IR_SOLVE needs, in reals. */
 uint32_t prog_work_size(const Prog *p);
 
-/* solve_cost.c: operations of a system that a loop solves. With constraints, counted for independent ones and a positive definite M, where
- * zeros outside of envelopes cost nothing. */
+/* solve_cost.c: operations of a system that a loop solves. With constraints, counted for independent ones and a
+ * positive definite M, where zeros outside of envelopes cost nothing. */
 OpCount solve_count(Arena *a, const Solve *k);
 
 OpCount prog_count(const Prog *p);
@@ -272,6 +287,6 @@ uint64_t ops_total(OpCount c);
 /* As an int, saturated at INT32_MAX. */
 uint32_t ops_as_int(uint64_t ops);
 
-/* Evaluates the program in extended precision, with the range of doubles: in[array] are the inputs, out[array][index] the stores.
- * Returns 0, or -1 when a pivot failed. */
+/* Evaluates the program in extended precision, with the range of doubles: in[array] are the inputs,
+ * out[array][index] the stores. Returns 0, or -1 when a pivot failed. */
 int prog_eval(const Prog *p, const long double *const in[ARR_COUNT], long double *const *out);

@@ -1,4 +1,5 @@
-/* prog_eval: an interpreter of Prog in extended precision, independent of the emitted C. Adds in the same order as emitted code. */
+/* prog_eval: an interpreter of Prog in extended precision, independent of the emitted C. Adds in the same order as
+ * emitted code. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -31,7 +32,8 @@ static Real call2(const char *name, Real x, Real y) {
   return NAN;
 }
 
-/* Solves M x = f, or [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations. Redundant constraints get multipliers 0. */
+/* Solves M x = f, or [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations. Redundant constraints get
+ * multipliers 0. */
 static const Real *solved(const Prog *p, const Solve *s, const Real *v, int *status) {
   uint32_t n = s->n, total = solve_unknowns(s);
   Real *b = ARENA_ARRAY(p->arena, Real, total);
@@ -96,7 +98,8 @@ static int run_ins(Run *r, Slot s, const Ins *i) {
   return 0;
 }
 
-/* Computes the body in turn j of row i. The nest gives its loads their indices; run_ins would take those of a program. */
+/* Computes the body in turn j of row i. The nest gives its loads their indices; run_ins would take those of a
+ * program. */
 static int run_turn(Run *body, const Run *r, const Nest *n, int64_t i, int64_t j) {
   const Prog *p = n->body;
   for (Slot s = 1; s < p->ins.n; s++) {
@@ -151,10 +154,14 @@ static int run_all(Run *r) {
 
 int prog_eval(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out) {
   ArenaMark before = arena_mark(p->arena);
-  Run r = {.p = p, .in = in, .v = ARENA_ARRAY(p->arena, Real, p->ins.n), .cells = ARENA_ARRAY(p->arena, Real, p->cells + 1),
+  Run r = {.p = p,
+           .in = in,
+           .v = ARENA_ARRAY(p->arena, Real, p->ins.n),
+           .cells = ARENA_ARRAY(p->arena, Real, p->cells + 1),
            .solution = ARENA_ARRAY(p->arena, const Real *, p->ins.n)};
   int status = run_all(&r);
-  for (uint32_t k = 0; k < p->stores.n && status == 0; k++) out[p->stores.at[k].array][p->stores.at[k].index] = r.v[p->stores.at[k].slot];
+  for (uint32_t k = 0; k < p->stores.n && status == 0; k++)
+    out[p->stores.at[k].array][p->stores.at[k].index] = r.v[p->stores.at[k].slot];
   arena_forget(p->arena, before);
   return status;
 }

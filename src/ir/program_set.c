@@ -6,8 +6,12 @@
 ProgList program_set_programs(const ProgramSet *u) {
   ProgList all = {0};
   const IrConstraints *k = &u->constraints;
-  const Prog *const of_unit[] = {u->accel, u->energy, u->event_values, u->inputs, u->derived, u->charge_values, u->charge_powers, u->switch_values, u->switch_rates, u->switch_grips, u->contact_laws, u->contact_coefficients, u->size_values, u->moving_sizes, u->held_accel, u->impact, k->residuals,
-                                 k->matrices, k->position, k->velocity, u->variation, u->second, u->linear, u->mass, u->bias, u->inverse, u->multipliers, u->by_inputs, u->outputs,
+  const Prog *const of_unit[] = {u->accel,
+                                 u->energy, u->event_values, u->inputs, u->derived, u->charge_values, u->charge_powers,
+                                 u->switch_values, u->switch_rates, u->switch_grips, u->contact_laws,
+                                 u->contact_coefficients, u->size_values, u->moving_sizes, u->held_accel, u->impact,
+                                 k->residuals, k->matrices, k->position, k->velocity, u->variation, u->second,
+                                 u->linear, u->mass, u->bias, u->inverse, u->multipliers, u->by_inputs, u->outputs,
                                  u->by_params, u->jumps, u->taylor ? u->taylor->first : NULL,
                                  u->taylor ? u->taylor->next : NULL};
   for (size_t i = 0; i < sizeof of_unit / sizeof *of_unit; i++) vec_push(u->arena, &all, of_unit[i]);
@@ -53,6 +57,7 @@ const char *program_set_kick(const ProgramSet *u) {
 
 const IrContact *program_set_striking_contact(const ProgramSet *u, uint32_t i) {
   for (uint32_t k = 0; k < u->contacts.n; k++)
-    if (u->contacts.at[k].impact == i && !u->contacts.at[k].conditional && !u->contacts.at[k].is_tangent) return &u->contacts.at[k];
+    if (u->contacts.at[k].impact == i && !u->contacts.at[k].conditional && !u->contacts.at[k].is_tangent)
+      return &u->contacts.at[k];
   return NULL;
 }

@@ -54,7 +54,8 @@ typedef struct {
   const char *name, *text;
 } IrMeasure;
 
-/* An output `action(x)`, which a run computes on the curve H(q, p) = E; q, p: components of [q|v|z], q of x, and of the momenta in their places. */
+/* An output `action(x)`, which a run computes on the curve H(q, p) = E; q, p: components of [q|v|z], q of x, and of
+ * the momenta in their places. */
 typedef struct {
   const char *name;  /* x */
   const Prog *curve; /* H, dH/dp, d2H/dp2, dH/dq; where the model gives L with momenta in the place of velocities */
@@ -82,7 +83,8 @@ typedef struct {
   VEC(IrOption) options;
   double tolerance, every;
   VEC(IrVar) outputs;
-  VEC(unsigned char) forces;    /* by output, in models with constraints: whether it contains multipliers or accelerations */
+  /* by output, in models with constraints: whether it contains multipliers or accelerations */
+  VEC(unsigned char) forces;
   const Prog *observe_plain; /* outputs without closed forms and actions, for programs that know no start, */
   VEC(IrVar) plain;          /* and their descriptions */
   const Prog *observe_held;  /* the same with modes, as held_accel; NULL: no motion sticks */
@@ -107,8 +109,12 @@ typedef struct {
 } IrJump;
 
 /* Programs that only some methods of integration, or headers, need; made on request. */
-enum { WANT_VARIATION = 1, WANT_TAYLOR = 2, WANT_LINEAR = 4, WANT_MASS = 8, WANT_INVERSE = 16, WANT_BY_INPUTS = 32, WANT_BY_PARAMS = 64, WANT_MULTIPLIERS = 128, WANT_OUTPUTS = 256,
-       WANT_CONSTRAINED = 512 /* derivatives also of models with constraints, which simulators take by differences */, WANT_HELD = 1024 };
+enum {
+  WANT_VARIATION = 1, WANT_TAYLOR = 2, WANT_LINEAR = 4, WANT_MASS = 8, WANT_INVERSE = 16, WANT_BY_INPUTS = 32,
+  WANT_BY_PARAMS = 64, WANT_MULTIPLIERS = 128, WANT_OUTPUTS = 256,
+  WANT_CONSTRAINED = 512 /* derivatives also of models with constraints, which simulators take by differences */,
+  WANT_HELD = 1024
+};
 
 /* Position of a second derivative of L or of a force; part: SECOND_... of mech/lagrangian_hessian.h. */
 typedef struct {
@@ -129,8 +135,9 @@ typedef struct {
   const Prog *residuals, *matrices, *position, *velocity;
 } IrConstraints;
 
-/* Indices: of the input that says whether the contact is closed, of its constraint, of its two events; of a tangent: of the input of its force.
- * conditional: a constraint with `while`; of a tangent, law: of impact, holds: more friction while it sticks. */
+/* Indices: of the input that says whether the contact is closed, of its constraint, of its two events; of a tangent:
+ * of the input of its force. conditional: a constraint with `while`; of a tangent, law: of impact, holds: more
+ * friction while it sticks. */
 typedef struct {
   uint32_t input, constraint, impact, release, force;
   int is_tangent, conditional, law, holds;
@@ -152,17 +159,20 @@ typedef struct {
 /* Modes from here on are not held: the state decides. As LAG_FREE in lag_model.h. */
 #define HELD_MOST 1e30
 
-/* flags: bits CHARGE_CONSERVED, CHARGE_BALANCED (its balance is known), CHARGE_BY_FORMULAS (only while inputs follow their formulas), CHARGE_JUMPS. */
+/* flags: bits CHARGE_CONSERVED, CHARGE_BALANCED (its balance is known), CHARGE_BY_FORMULAS (only while inputs follow
+ * their formulas), CHARGE_JUMPS. */
 typedef struct {
   const char *name, *unit;
   unsigned flags;
 } IrCharge;
 
-/* Recurrences of Taylor coefficients (series/series.h makes them). Columns of the coefficients x[k][...]: q, v, z, then q'' and z', then t. */
+/* Recurrences of Taylor coefficients (series/series.h makes them). Columns of the coefficients x[k][...]: q, v, z,
+ * then q'' and z', then t. */
 typedef struct {
   const Prog *first;     /* order 0. out 0: x[0], its q'' and z'; out 1: c, the constants that `next` reads */
-  const Prog *next;      /* order k. Reads x[k] of q, v, z, t, the sums s, and c. out 0: x[k], its q'' and z'; out 1: x[k+1], its
-                            q, v and z; out 2, 3: a[k], b[k] (no b[k] of squares) */
+  /* order k. Reads x[k] of q, v, z, t, the sums s, and c. out 0: x[k], its q'' and z'; out 1: x[k+1], its q, v and
+   * z; out 2, 3: a[k], b[k] (no b[k] of squares) */
+  const Prog *next;
   uint32_t nq, nz;
   uint32_t columns;      /* of x, a multiple of 4 */
   uint32_t sums;         /* pairs a != b, with a column of a, b and s each */
@@ -186,34 +196,41 @@ typedef struct {
   VEC(IrSize) sizes;
   const Prog *size_values, *moving_sizes; /* of the first sizes, of parameters alone, and of the others; NULL: none */
   uint32_t nmoving;
-  const Prog *derived;          /* computes parameters p.n ... p.n + nderived - 1 from the others; NULL, 0: none, or before unit_hoist */
+  /* computes parameters p.n ... p.n + nderived - 1 from the others; NULL, 0: none, or before unit_hoist */
+  const Prog *derived;
   uint32_t nderived;
   VEC(IrCharge) charges;        /* the energy first; empty where the energy is the only one, conserved, without unit */
   const Prog *charge_values, *charge_powers; /* NULL: the energy is the only charge; all charges are conserved */
   int dry_friction;             /* charge_powers has its power, too, behind those of the charges */
   VEC(IrSwitch) switches;
   uint32_t nmodes;              /* switches that a run holds; their modes are inputs behind those of the model */
-  const Prog *switch_values, *switch_rates, *switch_grips, *contact_laws; /* NULL: no switches; none that is held; no static limits; no contact with friction */
+  /* NULL: no switches; none that is held; no static limits; no contact with friction */
+  const Prog *switch_values, *switch_rates, *switch_grips, *contact_laws;
   const Prog *held_accel; /* of headers: accel with modes; NULL: no motion sticks */
-  const Prog *contact_coefficients; /* of headers: friction and tangential restitution of each contact; NULL: none has friction */
+  /* of headers: friction and tangential restitution of each contact; NULL: none has friction */
+  const Prog *contact_coefficients;
   IrConstraints constraints;
   VEC(IrContact) contacts;
   const Prog *impact;           /* Newton's law of impact of one contact, see lower_impact; NULL: no contact strikes */
   unsigned wants;
   const Prog *variation, *second; /* NULL unless WANT_VARIATION */
   VEC(IrSecond) second_at;        /* positions of the outputs of `second` */
-  const Series *taylor;         /* NULL unless WANT_TAYLOR, and where the model has no series: not analytic, constraints, tables */
+  /* NULL unless WANT_TAYLOR, and where the model has no series: not analytic, constraints, tables */
+  const Series *taylor;
   const Prog *linear;           /* NULL: not requested */
   VEC(IrEntry) linear_dr, linear_mass; /* positions of its outputs 0 and 1; output 2: constraints.jacobian */
-  const Prog *mass, *bias, *inverse, *multipliers, *by_inputs, *by_params, *outputs; /* of headers; NULL: not requested */
+  /* of headers; NULL: not requested */
+  const Prog *mass, *bias, *inverse, *multipliers, *by_inputs, *by_params, *outputs;
   VEC(IrEntry) by_inputs_dr, by_params_dr; /* as linear_dr */
-  VEC(IrEntry) outputs_at; /* of the derivatives of outputs, formulas of parameters and inputs: columns q, v, z, inputs, q'', z', parameters */
+  /* of the derivatives of outputs, formulas of parameters and inputs: columns q, v, z, inputs, q'', z', parameters */
+  VEC(IrEntry) outputs_at;
   const Prog *jumps;            /* NULL: not requested, or no event changes the state */
   VEC(IrJump) jump_at;          /* positions of its outputs */
   VEC(IrScene) scenes;
   int libm;                     /* emitted code calls the C library's sin and cos */
   int lanes;                    /* emitted to be compiled for lanes, too, and for a double with the same bits */
-  int lines;                    /* messages on constraints and switches give their source lines: simulators name their file */
+  /* messages on constraints and switches give their source lines: simulators name their file */
+  int lines;
 } ProgramSet;
 
 typedef VEC(const Prog *) ProgList;
@@ -225,13 +242,16 @@ ProgList program_set_programs(const ProgramSet *u);
 const char *program_set_verify(const ProgramSet *u);
 /* The name of the first kick; NULL: the unit has none. */
 const char *program_set_kick(const ProgramSet *u);
-/* The contact that strikes at event i, by u->impact; NULL: none. A constraint with `while`, and a tangent, have no law of impact of their own. */
+/* The contact that strikes at event i, by u->impact; NULL: none. A constraint with `while`, and a tangent, have no
+ * law of impact of their own. */
 const IrContact *program_set_striking_contact(const ProgramSet *u, uint32_t i);
 
-/* Values of a scene: parameters p[np] (NaN where a formula has none), the start y[2*nq + nz] on the constraints, inputs in[nu] at its time. */
+/* Values of a scene: parameters p[np] (NaN where a formula has none), the start y[2*nq + nz] on the constraints,
+ * inputs in[nu] at its time. */
 void scene_values(const ProgramSet *u, const IrScene *s, long double *p, long double *y, long double *in);
 
-/* hoist.c: moves values that depend on parameters alone from the programs that a step calls to u->derived, and leaves loads of parameters u->p.n,
- * u->p.n + 1, ... in their place; a constant mass matrix that is eliminated in straight-line code is factored then, too. Only for emitted models,
- * whose callers compute derived parameters; call once, after all programs are made. Checks of pivots stay where they are. */
+/* hoist.c: moves values that depend on parameters alone from the programs that a step calls to u->derived, and
+ * leaves loads of parameters u->p.n, u->p.n + 1, ... in their place; a constant mass matrix that is eliminated in
+ * straight-line code is factored then, too. Only for emitted models, whose callers compute derived parameters; call
+ * once, after all programs are made. Checks of pivots stay where they are. */
 void unit_hoist(ProgramSet *u);

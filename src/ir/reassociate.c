@@ -1,5 +1,6 @@
-/* Reassociation of sums and products by the times at which their operands are ready (prog_reassociate, prog_reassociate_fma). A sum, or product, whose
- * parts have no other use is gathered into a list of terms, or factors, and built again in the new order. */
+/* Reassociation of sums and products by the times at which their operands are ready (prog_reassociate,
+ * prog_reassociate_fma). A sum, or product, whose parts have no other use is gathered into a list of terms, or
+ * factors, and built again in the new order. */
 #include <stdlib.h>
 
 #include "ir/product.h"
@@ -95,8 +96,8 @@ static Term add(Reassociation *b, Term x, Term y) {
   return (Term){.slot = s, .minus = x.minus && y.minus, .ready = ready(b, s)};
 }
 
-/* The term to begin with: a product in first place takes a multiplication of its own, so the first term that is none, if it is ready
- * within a multiplication's time. */
+/* The term to begin with: a product in first place takes a multiplication of its own, so the first term that is
+ * none, if it is ready within a multiplication's time. */
 static uint32_t first_of(const Reassociation *b) {
   const Term *t = b->terms.at;
   for (uint32_t k = 0; k < b->terms.n; k++)
@@ -116,8 +117,8 @@ static Slot add_in_a_row(Reassociation *b) {
   return sum.minus ? timed(b, prog_op(b->to, IR_NEG, sum.slot, 0), 0) : sum.slot;
 }
 
-/* The sum as a tree: adds the two earliest of terms and partial sums, again and again. Both are queues in order of time (Huffman's tree
- * by two queues; J. van Leeuwen, ICALP 1976, p. 382). */
+/* The sum as a tree: adds the two earliest of terms and partial sums, again and again. Both are queues in order of
+ * time (Huffman's tree by two queues; J. van Leeuwen, ICALP 1976, p. 382). */
 static Slot add_up(Reassociation *b) {
   uint32_t t = 0, u = 0;
   b->sums.n = 0;
@@ -146,7 +147,8 @@ static void mark_factors(Reassociation *b) {
 static Slot multiply(Reassociation *b, Slot s) {
   Product of = product_of(b->from, b->uses, s, NULL);
   Term t[MOST_FACTORS];
-  for (uint32_t k = 0; k < of.n; k++) t[k] = (Term){.slot = b->map[of.at[k]], .ready = ready(b, b->map[of.at[k]]), .rank = k};
+  for (uint32_t k = 0; k < of.n; k++)
+    t[k] = (Term){.slot = b->map[of.at[k]], .ready = ready(b, b->map[of.at[k]]), .rank = k};
   for (uint32_t n = of.n; n > 1; n--) {
     if (of.n > 2) qsort(t, n, sizeof *t, by_time);
     Slot two = timed(b, prog_op(b->to, IR_MUL, t[0].slot, t[1].slot), 0);

@@ -1,21 +1,26 @@
-/* Searches straight-line code for loops, from the first instruction on: at each position the period and number of iterations that cover
- * most of the code; then the stores that loops take over, and the values that later iterations or later code need. */
+/* Searches straight-line code for loops, from the first instruction on: at each position the period and number of
+ * iterations that cover most of the code; then the stores that loops take over, and the values that later iterations
+ * or later code need. */
 #include "ir/roll.h"
 
 #include <string.h>
 
 enum { LONGEST_PERIOD = 400, FEWEST_TURNS = 8, MOST_BACK = 2 };
 
-/* Class by operation and kinds of operands: instructions of one class may be turns of one loop. Solves, nests, tables and titles have
- * classes of their own. */
+/* Class by operation and kinds of operands: instructions of one class may be turns of one loop. Solves, nests,
+ * tables and titles have classes of their own. */
 static uint32_t class_of(const Prog *p, Slot s) {
   const Ins *i = &p->ins.at[s];
-  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_NEST || i->op == IR_TITLE || i->op == IR_TABLE) return UINT32_MAX - s;
+  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_NEST || i->op == IR_TITLE || i->op == IR_TABLE)
+    return UINT32_MAX - s;
   uint32_t h = (uint32_t)i->op * 31 + i->index;
   for (const char *c = i->text; c && *c; c++) h = (h ^ (unsigned char)*c) * 16777619u;
   for (int k = 0; k < 3; k++) { /* kinds of operands that must agree: none, array, number, value */
     Slot x = ins_operand(i, k);
-    h = h * 5 + (!x ? 0 : !ir_is_leaf(p->ins.at[x].op) ? 1 : p->ins.at[x].op == IR_LOAD ? 2 + 8 * (uint32_t)p->ins.at[x].array : 3);
+    h = h * 5 + (!x                             ? 0
+                 : !ir_is_leaf(p->ins.at[x].op) ? 1
+                 : p->ins.at[x].op == IR_LOAD   ? 2 + 8 * (uint32_t)p->ins.at[x].array
+                                                : 3);
   }
   return h & 0x3fffffffu;
 }
@@ -24,7 +29,8 @@ typedef struct {
   Rolls *r;
   const uint32_t *cls; /* by place */
   unsigned by_index;
-  uint32_t *equal_until;  /* by period: end of the run of classes that are equal a period later, as last computed by equal_classes */
+  /* by period: end of the run of classes that are equal a period later, as last computed by equal_classes */
+  uint32_t *equal_until;
   uint32_t *failed;    /* by period: place, from 1, of an instruction that ended a group: all groups with it fail */
 } Search;
 
@@ -40,7 +46,8 @@ int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first) {
   if (!num_is_exact(*unit) || num_is_zero(*unit) || unit->den > LARGEST) return 0;
   Num times = num_div(x->number, *unit);
   *first = times.num;
-  return num_is_exact(times) && times.den == 1 && times.num > -LARGEST && times.num < LARGEST && unit->num > -LARGEST && unit->num < LARGEST;
+  return num_is_exact(times) && times.den == 1 && times.num > -LARGEST && times.num < LARGEST && unit->num > -LARGEST &&
+         unit->num < LARGEST;
 }
 
 static Step step_between(const Rolls *r, uint32_t begin, uint32_t period, Slot x, Slot y) {
@@ -60,7 +67,8 @@ static Step step_between(const Rolls *r, uint32_t begin, uint32_t period, Slot x
 }
 
 Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which) {
-  Slot x = ins_operand(code_at(r, l->begin + offset), which), y = ins_operand(code_at(r, l->begin + l->period + offset), which);
+  Slot x = ins_operand(code_at(r, l->begin + offset), which),
+       y = ins_operand(code_at(r, l->begin + l->period + offset), which);
   Step s = step_between(r, l->begin, l->period, x, y);
   if (s.kind == STEP_OTHER) s.step /= (int64_t)r->loops.at[r->loop[place_of(r, x)] - 1].period;
   return s;
@@ -75,7 +83,8 @@ static uint32_t turns_of(const Search *f, uint32_t begin, uint32_t period, uint3
   uint32_t in = 0; /* the loop of x, from 1, for STEP_OTHER */
   Num unit = {0};
   int64_t multiple = 0;
-  if (s.kind == STEP_SAME && r->place[x] && place_of(r, x) >= begin) return 1; /* a value of the first iteration, which later iterations cannot use */
+  /* a value of the first iteration, which later iterations cannot use */
+  if (s.kind == STEP_SAME && r->place[x] && place_of(r, x) >= begin) return 1;
   if (s.kind == STEP_NUMBER && !roll_number(first, &r->p->ins.at[y], &unit, &multiple)) return 1;
   if (s.kind == STEP_LOAD && (first->op != IR_LOAD || !(f->by_index >> first->array & 1))) return 1;
   if (s.kind == STEP_OWN && s.step != period) return 1;
@@ -87,10 +96,12 @@ static uint32_t turns_of(const Search *f, uint32_t begin, uint32_t period, uint3
   for (uint32_t t = 1; t < most; t++) {
     Slot z = ins_operand(code_at(r, begin + t * period + offset), which);
     const Ins *now = &r->p->ins.at[z];
-    int follows = s.kind == STEP_SAME ? z == x
-                  : s.kind == STEP_NUMBER ? now->op == IR_CONST && num_equal(now->number, num_mul(unit, num_int(multiple + t)))
-                  : s.kind == STEP_LOAD ? now->op == IR_LOAD && now->index == (uint32_t)((int64_t)first->index + t * s.step)
-                                        : r->place[z] && (int64_t)place_of(r, z) == (int64_t)place_of(r, x) + t * s.step && (!in || r->loop[place_of(r, z)] == in);
+    int follows =
+        s.kind == STEP_SAME     ? z == x
+        : s.kind == STEP_NUMBER ? now->op == IR_CONST && num_equal(now->number, num_mul(unit, num_int(multiple + t)))
+        : s.kind == STEP_LOAD   ? now->op == IR_LOAD && now->index == (uint32_t)((int64_t)first->index + t * s.step)
+                                : r->place[z] && (int64_t)place_of(r, z) == (int64_t)place_of(r, x) + t * s.step &&
+                                    (!in || r->loop[place_of(r, z)] == in);
     if (!follows) return t;
   }
   return most;
@@ -102,8 +113,8 @@ static int same_sharing(const Rolls *r, uint32_t begin, uint32_t period, uint32_
   return (x->a == x->b) == (y->a == y->b) && (x->a == x->c) == (y->a == y->c) && (x->b == x->c) == (y->b == y->c);
 }
 
-/* Number of instructions from `begin` on whose classes equal those a period later. The search only moves forward, so that each period
- * is compared once. */
+/* Number of instructions from `begin` on whose classes equal those a period later. The search only moves forward, so
+ * that each period is compared once. */
 static uint32_t equal_classes(const Search *f, uint32_t begin, uint32_t period) {
   uint32_t *to = &f->equal_until[period];
   if (*to <= begin)
@@ -136,7 +147,8 @@ static uint32_t carried(const Rolls *r, const Loop *l) {
   uint32_t n = 0;
   for (uint32_t k = 0; k < l->period; k++)
     for (int which = 0; which < 3; which++) {
-      Slot x = ins_operand(code_at(r, l->begin + k), which), y = ins_operand(code_at(r, l->begin + l->period + k), which);
+      Slot x = ins_operand(code_at(r, l->begin + k), which),
+           y = ins_operand(code_at(r, l->begin + l->period + k), which);
       n += x && step_between(r, l->begin, l->period, x, y).kind == STEP_BEFORE;
     }
   return n;
@@ -161,7 +173,8 @@ static Loop longest_at(const Search *f, uint32_t begin) {
   Loop best = {.begin = begin, .period = 1};
   for (uint32_t period = 1; period <= LONGEST_PERIOD && begin + period < f->r->n; period++) {
     uint32_t turns = turns_at(f, begin, period);
-    if (turns >= FEWEST_TURNS && turns * period > best.count * best.period + period) best = (Loop){.begin = begin, .period = period, .count = turns};
+    if (turns >= FEWEST_TURNS && turns * period > best.count * best.period + period)
+      best = (Loop){.begin = begin, .period = period, .count = turns};
   }
   return best;
 }
@@ -264,7 +277,8 @@ Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early) {
   Arena *a = p->arena;
   Rolls r = {.p = p};
   Slot *code = ARENA_ARRAY(a, Slot, p->ins.n);
-  uint32_t *place = ARENA_ARRAY(a, uint32_t, p->ins.n), *cls = ARENA_ARRAY(a, uint32_t, p->ins.n), *loop = ARENA_ARRAY(a, uint32_t, p->ins.n);
+  uint32_t *place = ARENA_ARRAY(a, uint32_t, p->ins.n), *cls = ARENA_ARRAY(a, uint32_t, p->ins.n),
+           *loop = ARENA_ARRAY(a, uint32_t, p->ins.n);
   for (Slot s = 1; s < p->ins.n; s++) {
     if (ir_is_leaf(p->ins.at[s].op)) continue;
     cls[r.n] = class_of(p, s);
@@ -274,7 +288,8 @@ Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early) {
   r.code = code;
   r.place = place;
   r.loop = loop;
-  Search f = {&r, cls, by_index, ARENA_ARRAY(a, uint32_t, LONGEST_PERIOD + 1), ARENA_ARRAY(a, uint32_t, LONGEST_PERIOD + 1)};
+  Search f = {&r, cls, by_index, ARENA_ARRAY(a, uint32_t, LONGEST_PERIOD + 1),
+              ARENA_ARRAY(a, uint32_t, LONGEST_PERIOD + 1)};
   for (uint32_t i = 0; i < r.n && r.n >= from;) {
     Loop l = longest_at(&f, i);
     if (!l.count) {
@@ -288,7 +303,8 @@ Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early) {
     vec_push(a, &r.loops, l);
     for (uint32_t k = 0; k < l.period * l.count; k++) loop[i + k] = r.loops.n;
     i += l.period * l.count;
-    memset(f.failed, 0, (LONGEST_PERIOD + 1) * sizeof *f.failed); /* operands in the new loop may now follow its turns */
+    /* operands in the new loop may now follow its turns */
+    memset(f.failed, 0, (LONGEST_PERIOD + 1) * sizeof *f.failed);
   }
   r.stored = ARENA_ARRAY(a, unsigned char, p->stores.n + 1);
   if (early) find_stores(&r);

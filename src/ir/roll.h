@@ -1,7 +1,8 @@
-/* Loop rolling: finds runs of isomorphic groups of consecutive instructions in a Prog. Names and families are not looked at, so that a
- * chain written out by hand rolls as a family does.
+/* Loop rolling: finds runs of isomorphic groups of consecutive instructions in a Prog. Names and families are not
+ * looked at, so that a chain written out by hand rolls as a family does.
  *
- * The Prog stays as it is; the writer of C uses the loops to write it shorter. Every value is computed by the same operations in the same order. */
+ * The Prog stays as it is; the writer of C uses the loops to write it shorter. Every value is computed by the same
+ * operations in the same order. */
 #pragma once
 
 #include "ir/prog.h"
@@ -16,8 +17,10 @@ typedef struct {
 /* `count` iterations of `period` instructions, from place `begin` of the code on. */
 typedef struct {
   uint32_t begin, period, count;
-  uint32_t *kept;         /* [period] 0: value used in its own iteration only; 1: behind the loop, too; 1 + b: b iterations later, too */
-  unsigned char *carried; /* [period] 1: only the next iteration needs the value and, behind the loop, at most the last one is needed */
+  /* [period] 0: value used in its own iteration only; 1: behind the loop, too; 1 + b: b iterations later, too */
+  uint32_t *kept;
+  /* [period] 1: only the next iteration needs the value and, behind the loop, at most the last one is needed */
+  unsigned char *carried;
   VEC(LoopStore) stores;
 } Loop;
 
@@ -51,7 +54,8 @@ typedef struct {
   unsigned char *stored; /* by store of p: 1 when a loop has it in its `stores` */
 } Rolls;
 
-/* Programs of fewer instructions get no loops: straight-line code is faster and reads better. SELDOM: called once a step or a row. */
+/* Programs of fewer instructions get no loops: straight-line code is faster and reads better. SELDOM: called once a
+ * step or a row. */
 enum { ROLL_FROM = 1500, ROLL_SELDOM_FROM = 500 };
 
 /* by_index: bits 1 << IrArray of arrays that may be indexed by a variable. from: fewest instructions of a program with
@@ -61,6 +65,7 @@ Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early);
 /* How operand `which` (0, 1, 2) of instruction `offset` of the loop changes from iteration to iteration. */
 Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which);
 
-/* Numbers of a STEP_NUMBER, unit*(first + r), from those of its first two iterations, x and y. The numerators are exact in binary, so that
- * division by the unit's denominator rounds as the number itself. Returns 0 when the numbers have no such form. */
+/* Numbers of a STEP_NUMBER, unit*(first + r), from those of its first two iterations, x and y. The numerators are
+ * exact in binary, so that division by the unit's denominator rounds as the number itself. Returns 0 when the
+ * numbers have no such form. */
 int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first);

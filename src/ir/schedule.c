@@ -24,7 +24,8 @@ typedef struct {
   VEC(Slot) open;
 } Schedule;
 
-/* Appends s after its operands, a before b before c; with a list instead of recursion, since sums have any number of terms. */
+/* Appends s after its operands, a before b before c; with a list instead of recursion, since sums have any number of
+ * terms. */
 static void compute(Schedule *d, Slot s) {
   vec_push(d->to->arena, &d->open, s);
   while (d->open.n) {
@@ -47,7 +48,10 @@ static void compute(Schedule *d, Slot s) {
 
 Prog *prog_schedule_by_store(const Prog *p) {
   Arena *a = p->arena;
-  Schedule d = {.from = p, .to = prog_new_like(p), .map = ARENA_ARRAY(a, Slot, p->ins.n), .done = ARENA_ARRAY(a, unsigned char, p->ins.n)};
+  Schedule d = {.from = p,
+                .to = prog_new_like(p),
+                .map = ARENA_ARRAY(a, Slot, p->ins.n),
+                .done = ARENA_ARRAY(a, unsigned char, p->ins.n)};
   d.done[0] = 1;
   for (Slot s = 1; s < p->ins.n; s++)
     if (p->ins.at[s].op == IR_PIVOT) compute(&d, s);
@@ -86,7 +90,8 @@ static void need_before(const Timing *t, uint32_t *left, Slot operand, uint32_t 
   if (left[operand] < own) left[operand] = own;
 }
 
-/* Slots sorted by the length of the path from their start to the end of the program. A pivot is checked as soon as it is known. */
+/* Slots sorted by the length of the path from their start to the end of the program. A pivot is checked as soon as
+ * it is known. */
 static Deadline *deadlines(const Timing *t) {
   const Prog *p = t->p;
   Deadline *d = ARENA_ARRAY(p->arena, Deadline, p->ins.n);

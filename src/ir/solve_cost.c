@@ -1,5 +1,5 @@
-/* Operation counts of the linear systems that loops of the runtime solve. With constraints the loops follow envelopes (lag_kkt.h), so
- * the count depends on the pattern of M and A. */
+/* Operation counts of the linear systems that loops of the runtime solve. With constraints the loops follow
+ * envelopes (lag_kkt.h), so the count depends on the pattern of M and A. */
 #include "ir/prog.h"
 
 /* Operations on lower triangles, whose row i begins at column from[i]. */
@@ -40,12 +40,13 @@ static uint32_t end_of_solution(uint32_t n, const uint32_t *from, const Slot *x)
   return end;
 }
 
-/* Schur's complement, as in lag_schur, line by line. Large banded systems go by lag_banded instead; they are counted here too, though it
- * takes about as many operations where M is diagonal, and fewer where it is not. */
+/* Schur's complement, as in lag_schur, line by line. Large banded systems go by lag_banded instead; they are counted
+ * here too, though it takes about as many operations where M is diagonal, and fewer where it is not. */
 static Ops by_complement(Arena *a, const Solve *k) {
   uint32_t n = k->n, m = k->m;
   const Slot *M = k->matrix, *A = k->matrix + (size_t)n*n;
-  uint32_t *from = ARENA_ARRAY(a, uint32_t, n), *begin = ARENA_ARRAY(a, uint32_t, m), *end = ARENA_ARRAY(a, uint32_t, m), *row = ARENA_ARRAY(a, uint32_t, m);
+  uint32_t *from = ARENA_ARRAY(a, uint32_t, n), *begin = ARENA_ARRAY(a, uint32_t, m),
+           *end = ARENA_ARRAY(a, uint32_t, m), *row = ARENA_ARRAY(a, uint32_t, m);
   Ops c = {0};
   for (uint32_t i = 0; i < n; i++) from[i] = first_entry(M + (size_t)i*n, i);
   cholesky(n, from, &c);

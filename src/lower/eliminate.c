@@ -1,7 +1,8 @@
 /* M q'' = f by elimination without pivoting in straight-line code, in the order of mech/elimination_order.h.
  *
- * A coordinate's step is that of L D L^T without pivoting (Golub & Van Loan, Matrix Computations, 4th ed., algorithm 4.1.2); its pivot is checked. A
- * definition's step puts w' = C u' into the quadratic form u'^T H u'/2 - b^T u' (mech/augmented_system.h). */
+ * A coordinate's step is that of L D L^T without pivoting (Golub & Van Loan, Matrix Computations, 4th ed., algorithm
+ * 4.1.2); its pivot is checked. A definition's step puts w' = C u' into the quadratic form u'^T H u'/2 - b^T u'
+ * (mech/augmented_system.h). */
 #include "base/sparse_pattern.h"
 #include "lower/lower_impl.h"
 
@@ -79,7 +80,8 @@ typedef struct {
   Slot c, r, y;
 } StepEntry;
 
-static void step_entries(Elimination *y, const SparseRow *row, const SparseRow *c, Slot h, uint32_t v, uint32_t *n, StepEntry *at) {
+static void step_entries(Elimination *y, const SparseRow *row, const SparseRow *c, Slot h, uint32_t v, uint32_t *n,
+                         StepEntry *at) {
   *n = 0;
   for (uint32_t i = 0; i < c->n; i++) {
     Slot hc = op(y->l, IR_MUL, h, c->at[i].value), r = sparse_get(&y->H, v, c->at[i].col);
@@ -121,7 +123,9 @@ static void eliminate_definition(Elimination *y, uint32_t v) {
 static FactorRecord record(const Elimination *y) {
   Slot *pivot = ARENA_ARRAY(y->l->p->arena, Slot, y->s->n + 1);
   for (uint32_t v = 0; v < y->s->n; v++) pivot[v] = sparse_get(&y->H, v, v);
-  return (FactorRecord){.n = y->s->n, .ndefs = y->s->ndefs, .straight = 1, .order = y->s->order, .pivot = pivot, .below = y->factor, .C = y->C,
+  return (FactorRecord){.n = y->s->n,
+                        .ndefs = y->s->ndefs, .straight = 1, .order = y->s->order, .pivot = pivot, .below = y->factor,
+                        .C = y->C,
                         .row = y->H.rows};
 }
 

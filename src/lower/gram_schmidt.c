@@ -1,6 +1,6 @@
-/* M q'' = f in straight-line code where M = W^T C W is almost singular somewhere (mech/kinetic_squares.h). Modified Gram-Schmidt in the metric C
- * (A. Bjorck, BIT 7 (1967) 1, DOI 10.1007/BF01934122) gives the factors of M = L D L^T from W itself: their errors grow with the condition
- * of W, in elimination of M with its square. */
+/* M q'' = f in straight-line code where M = W^T C W is almost singular somewhere (mech/kinetic_squares.h). Modified
+ * Gram-Schmidt in the metric C (A. Bjorck, BIT 7 (1967) 1, DOI 10.1007/BF01934122) gives the factors of M = L D L^T
+ * from W itself: their errors grow with the condition of W, in elimination of M with its square. */
 #include "lower/lower_impl.h"
 
 typedef struct {
@@ -32,7 +32,8 @@ static void orthogonalise_by(Gram *y, uint32_t v, const uint32_t *later, uint32_
     Slot f = op(y->l, IR_DIV, product(y, weighted, u), d);
     if (!f) continue;
     prog_name(y->l->p, f, lower_numbered(y->l, "L", v, u));
-    for (uint32_t k = 0; k < y->s->n; k++) y->w[k * y->n + u] = prog_sub_product(y->l->p, y->w[k * y->n + u], f, y->w[k * y->n + v]);
+    for (uint32_t k = 0; k < y->s->n; k++)
+      y->w[k * y->n + u] = prog_sub_product(y->l->p, y->w[k * y->n + u], f, y->w[k * y->n + v]);
     y->b[u] = prog_sub_product(y->l->p, y->b[u], f, y->b[v]);
     vec_push(y->l->p->arena, &y->below[v], ((SparseEntry){u, f}));
   }
@@ -43,7 +44,9 @@ void lower_gram_schmidt(Lower *l, Slot *acc) {
   Arena *a = l->p->arena;
   uint32_t n = e->n;
   const uint32_t *order = e->system.order;
-  Gram y = {.l = l, .s = &e->squares, .n = n, .w = ARENA_ARRAY(a, Slot, (size_t)e->squares.n * n), .b = ARENA_ARRAY(a, Slot, n), .pivot = ARENA_ARRAY(a, Slot, n),
+  Gram y = {.l = l,
+            .s = &e->squares, .n = n, .w = ARENA_ARRAY(a, Slot, (size_t)e->squares.n * n), .b = ARENA_ARRAY(a, Slot, n),
+            .pivot = ARENA_ARRAY(a, Slot, n),
             .below = ARENA_ARRAY(a, SparseRow, n)};
   for (uint32_t k = 0; k < y.s->n * n; k++) y.w[k] = y.s->W[k] ? lower_slot(l, y.s->W[k]) : 0;
   for (uint32_t i = 0; i < n; i++) {
@@ -52,7 +55,9 @@ void lower_gram_schmidt(Lower *l, Slot *acc) {
   }
   prog_title(l->p, "M q'' = f, M = W^T C W by orthogonal columns of W");
   for (uint32_t k = 0; k < n; k++) orthogonalise_by(&y, order[k], order + k + 1, n - k - 1);
-  FactorRecord factors = {.n = n, .straight = 1, .order = order, .pivot = y.pivot, .below = y.below, .C = ARENA_ARRAY(a, SparseRow, n),
+  FactorRecord factors = {.n = n,
+                          .straight = 1, .order = order, .pivot = y.pivot, .below = y.below,
+                          .C = ARENA_ARRAY(a, SparseRow, n),
                           .row = ARENA_ARRAY(a, SparseRow, n)};
   for (uint32_t k = n; k-- > 0;) factor_record_backward(l->p, &factors, order[k], y.b, NULL, acc);
   if (l->factored) *l->factored = factors;

@@ -1,20 +1,27 @@
-/* Switches on the branch that a run holds: sign, abs, min, max, comparisons and floor read their mode, an input behind those of the model.
+/* Switches on the branch that a run holds: sign, abs, min, max, comparisons and floor read their mode, an input
+ * behind those of the model.
  *
- * Mode 1 or -1: the branch where the switching function is positive or negative, at any state; between: the branch of a sliding motion; of floor:
- * its value; FREE: none is held, and the state decides as the text says. */
+ * Mode 1 or -1: the branch where the switching function is positive or negative, at any state; between: the branch
+ * of a sliding motion; of floor: its value; FREE: none is held, and the state decides as the text says. */
 #include "lower/lower_impl.h"
 #include "mech/switches.h"
 
-static Slot select(Lower *l, Slot c, Slot a, Slot b) { return prog_ins(l->p, (Ins){.op = IR_SELECT, .a = c, .b = a, .c = b}); }
+static Slot select(Lower *l, Slot c, Slot a, Slot b) {
+  return prog_ins(l->p, (Ins){.op = IR_SELECT, .a = c, .b = a, .c = b});
+}
 
 static Slot load_mode(Lower *l, const Switch *s) {
   uint32_t k = (uint32_t)(s - l->e->switches.at);
-  return prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_U, .index = l->e->m->inputs.n + k, .name = arena_printf(l->p->arena, "side_%u", k + 1)});
+  return prog_ins(l->p, (Ins){.op = IR_LOAD,
+                              .array = ARR_U,
+                              .index = l->e->m->inputs.n + k,
+                              .name = arena_printf(l->p->arena, "side_%u", k + 1)});
 }
 
 /* The mode where one is held, else `otherwise`. */
 static Slot held_or(Lower *l, Slot mode, int sign, Slot otherwise) {
-  Slot most = prog_num(l->p, num_double(HELD_MOST)), held = op(l, IR_LT, mode, most), value = sign < 0 ? op(l, IR_NEG, mode, 0) : mode;
+  Slot most = prog_num(l->p, num_double(HELD_MOST)), held = op(l, IR_LT, mode, most),
+       value = sign < 0 ? op(l, IR_NEG, mode, 0) : mode;
   return select(l, held, value, otherwise);
 }
 
@@ -31,9 +38,11 @@ static const Switch *switch_at(const Lower *l, Expr e, int *sign) {
 
 /* A choice on a surface where the motion slides: the mean of both branches, weighted by the mode. */
 static Slot sliding_choice(Lower *l, Expr e, const Switch *s, int sign, Slot otherwise) {
-  Slot mode = load_mode(l, s), one = prog_num(l->p, num_int(1)), half = prog_num(l->p, num_ratio(1, 2)), below = prog_num(l->p, num_int(-1));
+  Slot mode = load_mode(l, s), one = prog_num(l->p, num_int(1)), half = prog_num(l->p, num_ratio(1, 2)),
+       below = prog_num(l->p, num_int(-1));
   Slot over = op(l, IR_LT, below, mode), under = op(l, IR_LT, mode, one), slides = op(l, IR_AND, over, under);
-  Slot sum = op(l, sign < 0 ? IR_SUB : IR_ADD, one, mode), weight = op(l, IR_MUL, half, sum), rest = op(l, IR_SUB, one, weight);
+  Slot sum = op(l, sign < 0 ? IR_SUB : IR_ADD, one, mode), weight = op(l, IR_MUL, half, sum),
+       rest = op(l, IR_SUB, one, weight);
   Slot a = op(l, IR_MUL, weight, arg(l, e, 1)), b = op(l, IR_MUL, rest, arg(l, e, 2)), mean = op(l, IR_ADD, a, b);
   return select(l, slides, mean, otherwise);
 }
@@ -43,7 +52,8 @@ Slot lower_held_branch(Lower *l, Expr e) {
   ExprOp o = expr_op(l->g, e);
   if (o == EX_SELECT) {
     const Switch *s = switch_at(l, expr_arg(l->g, e, 0), &sign);
-    return s && s->jumps ? sliding_choice(l, e, s, sign, select(l, arg(l, e, 0), arg(l, e, 1), arg(l, e, 2))) : NOT_A_SLOT;
+    return s && s->jumps ? sliding_choice(l, e, s, sign, select(l, arg(l, e, 0), arg(l, e, 1), arg(l, e, 2)))
+                         : NOT_A_SLOT;
   }
   const Switch *s = switch_at(l, e, &sign);
   if (!s) return NOT_A_SLOT;

@@ -1,7 +1,9 @@
 /* M q'' = f, and its solution, as instructions.
  *
- * A positive definite mass matrix is eliminated in straight-line code (eliminate.c, gram_schmidt.c) unless that would be long. Otherwise M falls into
- * blocks of coupled coordinates: one by division, two by Cramer's rule, more by a loop with partial pivoting. Coordinates that a constraint couples are one block, solved with their multipliers. */
+ * A positive definite mass matrix is eliminated in straight-line code (eliminate.c, gram_schmidt.c) unless that
+ * would be long. Otherwise M falls into blocks of coupled coordinates: one by division, two by Cramer's rule, more
+ * by a loop with partial pivoting. Coordinates that a constraint couples are one block, solved with their
+ * multipliers. */
 #include "base/union_find.h"
 #include "lower/lower_impl.h"
 
@@ -20,7 +22,8 @@ typedef struct {
   Slot *A, *g;  /* [m*n], [m] */
 } Block;
 
-/* Right-hand sides: f[n] (0: zero), and g[nrows] of the first nrows constraints. factor[nrows]: of rows of A, 0: 1; or NULL: all are 1. */
+/* Right-hand sides: f[n] (0: zero), and g[nrows] of the first nrows constraints. factor[nrows]: of rows of A, 0: 1;
+ * or NULL: all are 1. */
 typedef struct {
   const Slot *f, *g, *factor;
   uint32_t nrows;
@@ -74,7 +77,9 @@ static BlockLayout make_layout(Lower *l, const RightHandSides *s) {
   const Eqns *e = l->e;
   Arena *a = l->p->arena;
   const uint32_t *label = label_blocks(e, s->nrows);
-  BlockLayout y = {.blocks = ARENA_ARRAY(a, Block, e->n), .block = ARENA_ARRAY(a, uint32_t, e->n), .place = ARENA_ARRAY(a, uint32_t, e->n)};
+  BlockLayout y = {.blocks = ARENA_ARRAY(a, Block, e->n),
+                   .block = ARENA_ARRAY(a, uint32_t, e->n),
+                   .place = ARENA_ARRAY(a, uint32_t, e->n)};
   for (uint32_t i = 0; i < e->n; i++) {
     y.block[i] = label[i] == i ? y.n++ : y.block[label[i]];
     y.place[i] = y.blocks[y.block[i]].n++;
@@ -134,8 +139,8 @@ static void solve_one(Lower *l, const Block *b, Slot *x) {
   x[0] = op(l, IR_DIV, b->f[0], b->M[0]);
 }
 
-/* Cramer's rule for two coordinates whose mass matrix may be indefinite (L = x'*y'). It needs no pivoting, and for 2 x 2 is forward stable (Higham,
- * Accuracy and Stability of Numerical Algorithms, 2nd ed., section 1.10.1). */
+/* Cramer's rule for two coordinates whose mass matrix may be indefinite (L = x'*y'). It needs no pivoting, and for 2
+ * x 2 is forward stable (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 1.10.1). */
 static void solve_two(Lower *l, Block *b, Slot *x) {
   Slot m11 = b->M[0], m12 = b->M[2], m22 = b->M[3];
   Slot square = op(l, IR_MUL, m11, m22);
@@ -171,8 +176,8 @@ static int has_large_block(const Eqns *e) {
   return 0;
 }
 
-/* Whether to eliminate in straight-line code without pivoting. Where M is definite only for the values of parameters, small blocks go by
- * the rules below instead: they cost the same, and work for any M. */
+/* Whether to eliminate in straight-line code without pivoting. Where M is definite only for the values of
+ * parameters, small blocks go by the rules below instead: they cost the same, and work for any M. */
 static int is_straight_line(const Eqns *e) {
   const LinearSystem *s = &e->system;
   if (e->squares.n) return 1; /* kinetic_squares needs M definite, by values of parameters at least */

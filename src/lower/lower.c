@@ -1,7 +1,8 @@
 /* Expressions of the graph as instructions.
  *
- * Nodes come after their arguments, so that lowering is one loop over them. Rewrites here save operations and keep the
- * rounding of the text: products of parameters first, one factor for coefficients of equal size, the addition theorem. */
+ * Nodes come after their arguments, so that lowering is one loop over them. Rewrites here save operations and keep
+ * the rounding of the text: products of parameters first, one factor for coefficients of equal size, the addition
+ * theorem. */
 #include "lower/lower.h"
 
 #include <stdlib.h>
@@ -114,7 +115,8 @@ static Slot scaled(Lower *l, Slot t, Num c) {
   return down ? op(l, IR_DIV, product, down) : product;
 }
 
-/* The common absolute value of all coefficients of a sum, else 1: k*(a - b) costs one multiplication less than k*a - k*b. */
+/* The common absolute value of all coefficients of a sum, else 1: k*(a - b) costs one multiplication less than k*a -
+ * k*b. */
 static Num shared_size(const ExprGraph *g, Expr e) {
   Num c, k;
   expr_pair(g, e, EX_SUM, 0, &c);
@@ -157,7 +159,9 @@ static Slot lower_sum(Lower *l, Expr e) {
 
 /* --- functions --- */
 
-static Slot call1(Lower *l, const char *name, Slot x) { return prog_ins(l->p, (Ins){.op = IR_FN1, .a = x, .text = name}); }
+static Slot call1(Lower *l, const char *name, Slot x) {
+  return prog_ins(l->p, (Ins){.op = IR_FN1, .a = x, .text = name});
+}
 
 /* sin and cos of u. For u = a + b or a - b where sines or cosines of both a and b are needed
  * anyway, the addition theorem costs three operations instead of a function. */
@@ -213,8 +217,11 @@ static Slot lower_symbol(Lower *l, Expr e) {
     case SYM_STATE: return lower_load(l, ARR_Z, s);
     case SYM_PARAM: return load_param(l, s);
     case SYM_INPUT: return lower_input(l, s);
-    case SYM_CONST: return l->p->folds_constants ? prog_num(l->p, num_double(3.14159265358979323846)) : prog_ins(l->p, (Ins){.op = IR_PI});
-    case SYM_ACC: case SYM_RATE: case SYM_MULTIPLIER: case SYM_LOCAL: break; /* slots are set before: see lower_with_accelerations */
+    case SYM_CONST:
+      return l->p->folds_constants ? prog_num(l->p, num_double(3.14159265358979323846))
+                                   : prog_ins(l->p, (Ins){.op = IR_PI});
+    /* slots are set before: see lower_with_accelerations */
+    case SYM_ACC: case SYM_RATE: case SYM_MULTIPLIER: case SYM_LOCAL: break;
   }
   return 0;
 }

@@ -10,7 +10,8 @@ Prog *lower_residuals(const Eqns *e) {
   lower_roots(&l, k->r, k->n);
   for (uint32_t i = 0; i < k->nkept; i++) prog_store(l.p, 0, i, lower_slot(&l, k->c[i]), k->of[i]->name);
   for (uint32_t i = 0; i < k->n; i++)
-    prog_store(l.p, 1, i, lower_slot(&l, k->r[i]), i < k->nkept ? arena_printf(a, "%s'", k->of[i]->name) : k->of[i]->name);
+    prog_store(l.p, 1, i, lower_slot(&l, k->r[i]),
+               i < k->nkept ? arena_printf(a, "%s'", k->of[i]->name) : k->of[i]->name);
   return lower_finish(&l, &(PassPlan){0}, NULL);
 }
 
@@ -19,7 +20,8 @@ static void store_entries(Lower *l, uint32_t array, const Entries *x) {
   for (uint32_t i = 0; i < x->n; i++) lower_roots(l, &x->at[i].e, 1);
   for (uint32_t i = 0; i < x->n; i++) {
     const char *row = array ? m->coords.at[x->at[i].row].name : l->e->constraints.of[x->at[i].row]->name;
-    prog_store(l->p, array, i, lower_slot(l, x->at[i].e), arena_printf(l->p->arena, "%s, %s", row, m->coords.at[x->at[i].col].name));
+    prog_store(l->p, array, i, lower_slot(l, x->at[i].e),
+               arena_printf(l->p->arena, "%s, %s", row, m->coords.at[x->at[i].col].name));
   }
 }
 
@@ -34,7 +36,8 @@ Prog *lower_projection(const Eqns *e, uint32_t nrows) {
   const Model *m = e->m;
   Lower l = lower_new(e);
   Arena *a = l.p->arena;
-  Slot *g = ARENA_ARRAY(a, Slot, nrows + 1), *d = ARENA_ARRAY(a, Slot, e->n + 1), *force = ARENA_ARRAY(a, Slot, e->n + 1);
+  Slot *g = ARENA_ARRAY(a, Slot, nrows + 1), *d = ARENA_ARRAY(a, Slot, e->n + 1),
+       *force = ARENA_ARRAY(a, Slot, e->n + 1);
   for (uint32_t i = 0; i < nrows; i++)
     g[i] = prog_ins(l.p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = i, .name = e->constraints.of[i]->name});
   lower_correction(&l, nrows, 1, g, NULL, d, force);
@@ -72,20 +75,23 @@ static Eqns with_closed_rows(const Eqns *e) {
 /* The change of the rate of contact c by its impact, where g names it. */
 static Slot impact_change(Lower *l, const Eqns *e, const Contact *c, uint32_t row) {
   ExprGraph *g = e->g;
-  Expr speed = as_closed(e, c, e->constraints.r[row]), one = expr_int(g, 1), both = expr_add(g, one, c->restitution), change = expr_mul(g, both, speed), back = expr_neg(g, change);
+  Expr speed = as_closed(e, c, e->constraints.r[row]), one = expr_int(g, 1), both = expr_add(g, one, c->restitution),
+       change = expr_mul(g, both, speed), back = expr_neg(g, change);
   lower_roots(l, &back, 1);
   Slot named = prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = row, .name = e->constraints.of[row]->name});
   return prog_op(l->p, IR_MUL, lower_slot(l, back), named);
 }
 
-/* Newton's law of restitution for the contact that g names by a 1, J v1 + g_t = -e (J v + g_t), with the impulse M (v1 - v) = A^T Lambda that keeps
- * all other constraints and closed contacts; its own row of A is active, as its input `closed` is 1. One program serves all contacts. */
+/* Newton's law of restitution for the contact that g names by a 1, J v1 + g_t = -e (J v + g_t), with the impulse M
+ * (v1 - v) = A^T Lambda that keeps all other constraints and closed contacts; its own row of A is active, as its
+ * input `closed` is 1. One program serves all contacts. */
 Prog *lower_impact(const Eqns *e) {
   const Model *m = e->m;
   const Constraints *k = &e->constraints;
   Eqns closed = with_closed_rows(e);
   Lower l = lower_new(&closed);
-  Slot *change = ARENA_ARRAY(m->arena, Slot, k->n + 1), *factor = ARENA_ARRAY(m->arena, Slot, k->n + 1), *d = ARENA_ARRAY(m->arena, Slot, e->n + 1);
+  Slot *change = ARENA_ARRAY(m->arena, Slot, k->n + 1), *factor = ARENA_ARRAY(m->arena, Slot, k->n + 1),
+       *d = ARENA_ARRAY(m->arena, Slot, e->n + 1);
   uint32_t some = 0;
   for (uint32_t i = 0; i < k->n; i++) {
     const Contact *c = striking_contact(e, i);

@@ -1,4 +1,5 @@
-/* Shared by the files that lower Eqns: lower*.c (expressions, one program each), linear_solve.c, eliminate.c, gram_schmidt.c (the linear system). */
+/* Shared by the files that lower Eqns: lower*.c (expressions, one program each), linear_solve.c, eliminate.c,
+ * gram_schmidt.c (the linear system). */
 #pragma once
 
 #include "ir/factorization_record.h"
@@ -13,7 +14,8 @@ typedef struct {
   ExprMap circular; /* u -> 1 where sin u or cos u occurs among the roots */
   int by_text;      /* switches follow the state, as the text says, never a held mode: events, actions, closed forms */
   int direct;       /* no addition theorem for sin(a - b): a series of its own is cheaper */
-  FactorRecord *factored; /* receives the factors of the linear system, and x its solution [n + ndefs]; NULL: not recorded */
+  /* receives the factors of the linear system, and x its solution [n + ndefs]; NULL: not recorded */
+  FactorRecord *factored;
   Slot *x;
   int coarse;         /* as in Solve: for outputs, which shall stay finite where constraints become dependent */
   Slot *multipliers; /* [number of constraints], set by lower_solution */
@@ -45,8 +47,8 @@ Prog *lower_finish_seldom(const Lower *l);
 /* Lowers M q'' = f and its solution; acc[n] receives the slots of q''. */
 void lower_solution(Lower *l, Slot *acc);
 
-/* The change d[n] with A d = g for the first nrows constraints that is least in the metric M, and force = A^T mu = M d, or NULL. coarse: as in Solve;
- * factor[nrows]: of rows of A, 0: 1; or NULL. */
+/* The change d[n] with A d = g for the first nrows constraints that is least in the metric M, and force = A^T mu = M
+ * d, or NULL. coarse: as in Solve; factor[nrows]: of rows of A, 0: 1; or NULL. */
 void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, const Slot *factor, Slot *d, Slot *force);
 
 /* eliminate.c: q'' by elimination without pivoting; entries of H and C and forces must be lowered. */
@@ -55,7 +57,8 @@ void lower_elimination(Lower *l, Slot *acc);
 /* gram_schmidt.c: q'' where M = W^T C W; weights, W and forces must be lowered. */
 void lower_gram_schmidt(Lower *l, Slot *acc);
 
-/* Names "M12", "f1" by numbers of coordinates, from 1 (j UINT32_MAX: i alone); the stem alone when there is one coordinate. */
+/* Names "M12", "f1" by numbers of coordinates, from 1 (j UINT32_MAX: i alone); the stem alone when there is one
+ * coordinate. */
 Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j);
 
 /* Check that d is positive, or (positive 0) not zero; none where d is a number that passes. */

@@ -1,4 +1,5 @@
-/* Eqns -> ProgramSet: all programs of a model, and the tables of names, units, flags and positions that describe them. */
+/* Eqns -> ProgramSet: all programs of a model, and the tables of names, units, flags and positions that describe
+ * them. */
 #include "ir/program_set.h"
 
 #include <string.h>
@@ -12,7 +13,10 @@
 static IrVar ir_var(const Model *m, Name name, const Unit *u, int periodic, AstSign sign) {
   static const int signs[] = {[SIGN_ANY] = 0, [SIGN_GT] = 1, [SIGN_GE] = 2, [SIGN_LT] = -1, [SIGN_LE] = -2};
   Dim d = dim_resolved(m->dims, u->dim);
-  IrVar v = {name, u->text, unit_factor(u), periodic, signs[sign], num_value(u->offset), u->factor, u->pi_power, unit_of_dim(m->dims, d).text, {0}};
+  IrVar v = {name,      u->text,     unit_factor(u),
+             periodic,  signs[sign], num_value(u->offset),
+             u->factor, u->pi_power, unit_of_dim(m->dims, d).text,
+             {0}};
   int whole = v.si[0] != '\0';
   for (int i = 0; i < DIM_BASES && whole; i++) whole = num_is_int(dim_exponent(m->dims, d, (DimBase)i));
   for (int i = 0; i < DIM_BASES && whole; i++) v.base[i] = (signed char)num_value(dim_exponent(m->dims, d, (DimBase)i));
@@ -27,10 +31,17 @@ static const char *joined(Arena *a, const Name *names, uint32_t n) {
 
 static unsigned flags_of(const Eqns *e) {
   const int set[UNIT_FLAGS] = {
-    [UNIT_CONSERVES_ENERGY] = e->conserves_energy, [UNIT_CONSTANT_MASS] = e->constant_mass, [UNIT_AUTONOMOUS] = e->autonomous,
-    [UNIT_SMOOTH] = e->smooth, [UNIT_SEPARABLE] = e->separable, [UNIT_TIMELESS] = e->timeless, [UNIT_LOSES_ENERGY] = e->loses_energy,
-    [UNIT_FIRST_ORDER] = e->first.n != 0, [UNIT_CONSTANT_FORM] = e->first.n && e->first.constant && e->first.closed,
-    [UNIT_MASSLESS] = e->singular_mass, [UNIT_SUM_HAMILTONIAN] = e->sum_hamiltonian,
+      [UNIT_CONSERVES_ENERGY] = e->conserves_energy,
+      [UNIT_CONSTANT_MASS] = e->constant_mass,
+      [UNIT_AUTONOMOUS] = e->autonomous,
+      [UNIT_SMOOTH] = e->smooth,
+      [UNIT_SEPARABLE] = e->separable,
+      [UNIT_TIMELESS] = e->timeless,
+      [UNIT_LOSES_ENERGY] = e->loses_energy,
+      [UNIT_FIRST_ORDER] = e->first.n != 0,
+      [UNIT_CONSTANT_FORM] = e->first.n && e->first.constant && e->first.closed,
+      [UNIT_MASSLESS] = e->singular_mass,
+      [UNIT_SUM_HAMILTONIAN] = e->sum_hamiltonian,
   };
   unsigned flags = 0;
   for (unsigned i = 0; i < UNIT_FLAGS; i++) flags |= set[i] ? 1u << i : 0;
@@ -57,7 +68,9 @@ static void add_contacts(ProgramSet *u, const Eqns *e) {
   const Model *m = e->m;
   for (uint32_t k = 0; k < m->contacts.n; k++) {
     const Contact *c = &m->contacts.at[k];
-    IrContact one = {expr_symbol(e->g, c->closed)->index, 0, c->impact, c->release, 0, c->is_tangent, c->margin != 0, c->law, c->is_tangent && c->hold != c->friction};
+    IrContact one = {
+        expr_symbol(e->g, c->closed)->index,    0, c->impact, c->release, 0, c->is_tangent, c->margin != 0, c->law,
+        c->is_tangent && c->hold != c->friction};
     if (c->is_tangent) one.force = expr_symbol(e->g, c->force)->index;
     while (e->constraints.of[one.constraint] != &m->constraints.at[c->constraint]) one.constraint++;
     vec_push(u->arena, &u->contacts, one);
@@ -68,7 +81,8 @@ static void add_contacts(ProgramSet *u, const Eqns *e) {
 }
 
 static void add_events(ProgramSet *u, const Eqns *e) {
-  static const int directions[] = {[CROSS_BOTH] = 0, [CROSS_RISING] = 1, [CROSS_FALLING] = -1, [AT_EQUAL_TIMES] = EVENT_KICK};
+  static const int directions[] = {
+      [CROSS_BOTH] = 0, [CROSS_RISING] = 1, [CROSS_FALLING] = -1, [AT_EQUAL_TIMES] = EVENT_KICK};
   for (uint32_t i = 0; i < e->m->events.n; i++) {
     const Event *ev = &e->m->events.at[i];
     IrEvent one = {ev->name, directions[ev->direction], lower_action(e, i), ev->stop};
@@ -84,10 +98,12 @@ static void add_constraints(ProgramSet *u, const Eqns *e) {
   for (uint32_t i = 0; i < k->n; i++) {
     const char *unit = dim_text(e->m->dims, k->of[i]->dim);
     Place place = source_place(e->m->ast->sources, k->of[i]->span.begin);
-    vec_push(u->arena, &to->of, ((IrConstraint){k->of[i]->name, strcmp(unit, "1") == 0 ? "" : unit, place.file ? place.line : 0}));
+    vec_push(u->arena, &to->of,
+             ((IrConstraint){k->of[i]->name, strcmp(unit, "1") == 0 ? "" : unit, place.file ? place.line : 0}));
   }
   for (uint32_t i = 0; i < k->A.n; i++) vec_push(u->arena, &to->jacobian, ((IrEntry){k->A.at[i].row, k->A.at[i].col}));
-  for (uint32_t i = 0; i < e->mass.n; i++) vec_push(u->arena, &to->mass, ((IrEntry){e->mass.at[i].row, e->mass.at[i].col}));
+  for (uint32_t i = 0; i < e->mass.n; i++)
+    vec_push(u->arena, &to->mass, ((IrEntry){e->mass.at[i].row, e->mass.at[i].col}));
   to->nholonomic = k->nholonomic;
   to->nkept = k->nkept;
   to->residuals = lower_residuals(e);
@@ -103,7 +119,8 @@ static void add_charges(ProgramSet *u, const Eqns *e) {
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
     int conserved = c->proof.drift == PROVED_ZERO;
-    unsigned known = 1u << CHARGE_BALANCED | (conserved ? 1u << CHARGE_CONSERVED : 0) | (c->proof.by_formulas ? 1u << CHARGE_BY_FORMULAS : 0);
+    unsigned known = 1u << CHARGE_BALANCED | (conserved ? 1u << CHARGE_CONSERVED : 0) |
+                     (c->proof.by_formulas ? 1u << CHARGE_BY_FORMULAS : 0);
     unsigned flags = c->proof.jumps ? 1u << CHARGE_JUMPS : c->proof.power_unknown ? 0 : known;
     vec_push(u->arena, &u->charges, ((IrCharge){c->name, c->unit.text, flags}));
   }
@@ -117,7 +134,9 @@ static void add_switches(ProgramSet *u, const Eqns *e) {
   for (uint32_t i = 0; i < all->n; i++) {
     const Switch *s = &all->at[i];
     Place place = source_place(e->m->ast->sources, s->span.begin);
-    vec_push(u->arena, &u->switches, ((IrSwitch){s->surface, s->text, place.file ? place.line : 0, s->jumps, s->kind == SWITCH_FLOOR, (expr_kinds(e->g, s->side) & 1u << SYM_TIME) != 0, s->kind == SWITCH_SPEED}));
+    vec_push(u->arena, &u->switches,
+             ((IrSwitch){s->surface, s->text, place.file ? place.line : 0, s->jumps, s->kind == SWITCH_FLOOR,
+                         (expr_kinds(e->g, s->side) & 1u << SYM_TIME) != 0, s->kind == SWITCH_SPEED}));
   }
   u->nmodes = all->nmodes;
   if (all->n) u->switch_values = lower_switches(e);
@@ -161,17 +180,21 @@ static void add_sizes(ProgramSet *u, const Eqns *e, int moving) {
 ProgramSet *unit_head(const Eqns *e, const char *source, int libm) {
   const Model *m = e->m;
   ProgramSet *u = ARENA_NEW(m->arena, ProgramSet);
-  *u = (ProgramSet){.arena = m->arena, .name = m->name, .doc = m->doc ? m->doc : "", .source = source, .flags = flags_of(e),
-                .libm = libm};
+  *u = (ProgramSet){.arena = m->arena,
+                    .name = m->name, .doc = m->doc ? m->doc : "", .source = source, .flags = flags_of(e),
+                    .libm = libm};
   u->effects = joined(m->arena, m->effects.at, m->effects.n);
   u->all_effects = joined(m->arena, m->all_effects.at, m->all_effects.n);
   add_fixed(u, m);
   for (uint32_t i = 0; i < m->coords.n; i++)
-    vec_push(m->arena, &u->q, ir_var(m, m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
+    vec_push(m->arena, &u->q,
+             ir_var(m, m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->states.n; i++)
-    vec_push(m->arena, &u->z, ir_var(m, m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
+    vec_push(m->arena, &u->z,
+             ir_var(m, m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->params.n; i++)
-    if (!m->params.at[i].fixed) vec_push(m->arena, &u->p, ir_var(m, m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
+    if (!m->params.at[i].fixed)
+      vec_push(m->arena, &u->p, ir_var(m, m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
   for (uint32_t i = 0; i < m->inputs.n; i++)
     vec_push(m->arena, &u->u, ir_var(m, m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
   u->inputs = lower_inputs(e);
@@ -199,8 +222,9 @@ ProgramSet *unit_new(const Eqns *e, const char *source, int libm) {
 static int is_same(const Prog *a, const Prog *b) { return a && b ? prog_same(a, b) : a == b; }
 
 int unit_accepts_scenes(const ProgramSet *a, const ProgramSet *b) {
-  return a->flags == b->flags && strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs) && a->sizes.n == b->sizes.n &&
-         a->nmoving == b->nmoving && is_same(a->size_values, b->size_values) && is_same(a->moving_sizes, b->moving_sizes);
+  return a->flags == b->flags && strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 &&
+         prog_same(a->inputs, b->inputs) && a->sizes.n == b->sizes.n && a->nmoving == b->nmoving &&
+         is_same(a->size_values, b->size_values) && is_same(a->moving_sizes, b->moving_sizes);
 }
 
 /* Quaternion coordinates of rotations with an implied start, except those to which the scene gives a value. */
@@ -248,7 +272,8 @@ static void add_exact(IrScene *s, const Eqns *e) {
 
 /* Positions of the entries of M that programs of derivatives compute. */
 static void note_mass(ProgramSet *u, const Eqns *e) {
-  for (uint32_t k = u->linear_mass.n; k < e->mass.n; k++) vec_push(u->arena, &u->linear_mass, ((IrEntry){e->mass.at[k].row, e->mass.at[k].col}));
+  for (uint32_t k = u->linear_mass.n; k < e->mass.n; k++)
+    vec_push(u->arena, &u->linear_mass, ((IrEntry){e->mass.at[k].row, e->mass.at[k].col}));
 }
 
 static void add_linear(ProgramSet *u, Eqns *e) {
@@ -297,10 +322,12 @@ static void add_jumps(ProgramSet *u, const Eqns *e) {
   EventPartials jumps = eqns_event_derivatives(e);
   if (!jumps.n) return;
   u->jumps = lower_event_derivatives(e, jumps);
-  for (uint32_t k = 0; k < jumps.n; k++) vec_push(u->arena, &u->jump_at, ((IrJump){jumps.at[k].event, jumps.at[k].row, jumps.at[k].col}));
+  for (uint32_t k = 0; k < jumps.n; k++)
+    vec_push(u->arena, &u->jump_at, ((IrJump){jumps.at[k].event, jumps.at[k].row, jumps.at[k].col}));
 }
 
-/* Switches of equations that otherwise follow the text: where a motion may stick, accelerations with held modes, too. */
+/* Switches of equations that otherwise follow the text: where a motion may stick, accelerations with held modes,
+ * too. */
 static void add_held(ProgramSet *u, const Eqns *e) {
   Eqns held = *e;
   int some = 0;
@@ -331,8 +358,10 @@ void unit_require(ProgramSet *u, Eqns *e, unsigned wants) {
 void unit_add_scene(ProgramSet *u, const Eqns *e) {
   const Model *m = e->m;
   const Scene *sc = &m->scene;
-  IrScene s = {.exactly = sc->exactly.end != 0, .name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .t1_digits = sc->t1_digits, .has_span = sc->has_span, .method = sc->method,
-               .tolerance = sc->tolerance, .every = sc->every};
+  IrScene s = {.exactly = sc->exactly.end != 0,
+               .name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .t1_digits = sc->t1_digits,
+               .has_span = sc->has_span, .method = sc->method, .tolerance = sc->tolerance,
+               .every = sc->every};
   const Prog **params = ARENA_ARRAY(m->arena, const Prog *, m->params.n + 1);
   for (uint32_t i = 0; i < m->params.n; i++)
     if (!m->params.at[i].fixed) params[m->params.at[i].place] = lower_param(e, i);
@@ -347,14 +376,17 @@ void unit_add_scene(ProgramSet *u, const Eqns *e) {
   for (uint32_t i = 0; i < e->noutputs; i++) {
     IrVar v = ir_var(m, e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
     vec_push(m->arena, &s.outputs, v);
-    if (e->constraints.n) vec_push(m->arena, &s.forces, (expr_kinds(e->g, e->outputs[i].value) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0);
+    if (e->constraints.n)
+      vec_push(m->arena, &s.forces,
+               (expr_kinds(e->g, e->outputs[i].value) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0);
     if (output_is_plain(e, i)) vec_push(m->arena, &s.plain, v);
   }
   add_exact(&s, e);
   add_actions(&s, e);
   add_held_outputs(&s, u, e);
   for (uint32_t i = 0; i < sc->monitors.n; i++) {
-    IrMonitor mon = {sc->monitors.at[i].name, sc->monitors.at[i].output, sc->monitors.at[i].limit, sc->monitors.at[i].absolute};
+    IrMonitor mon = {sc->monitors.at[i].name, sc->monitors.at[i].output, sc->monitors.at[i].limit,
+                     sc->monitors.at[i].absolute};
     vec_push(m->arena, &s.monitors, mon);
   }
   for (uint32_t i = 0; i < sc->measures.n; i++) {

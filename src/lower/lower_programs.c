@@ -1,4 +1,5 @@
-/* Eqns to Progs: one program for each function of an emitted model, other than charges (lower_charges.c) and constraints (lower_constraints.c). */
+/* Eqns to Progs: one program for each function of an emitted model, other than charges (lower_charges.c) and
+ * constraints (lower_constraints.c). */
 #include "lower/lower.h"
 
 #include "ir/roll.h"
@@ -47,7 +48,8 @@ Prog *lower_accel_traced(const Eqns *e, int libm, StrBuf *trace) {
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
-  return lower_finish(&l, &(PassPlan){.nests_from = ROLL_FROM, .every_step = 1, .uncoupled = is_diagonal(e), .libm = libm}, trace);
+  return lower_finish(
+      &l, &(PassPlan){.nests_from = ROLL_FROM, .every_step = 1, .uncoupled = is_diagonal(e), .libm = libm}, trace);
 }
 
 Prog *lower_accel(const Eqns *e, int libm) { return lower_accel_traced(e, libm, NULL); }
@@ -76,11 +78,14 @@ IrSystem lower_system(const Eqns *e) {
   Lower l = lower_new(e);
   const Model *m = e->m;
   Arena *a = m->arena;
-  Slot *acc = ARENA_ARRAY(a, Slot, e->n + 1), *f = ARENA_ARRAY(a, Slot, e->n + 1), *flow = ARENA_ARRAY(a, Slot, m->states.n + 1);
+  Slot *acc = ARENA_ARRAY(a, Slot, e->n + 1), *f = ARENA_ARRAY(a, Slot, e->n + 1),
+       *flow = ARENA_ARRAY(a, Slot, m->states.n + 1);
   Name *rates = ARENA_ARRAY(a, Name, e->n + m->states.n + 1), *velocities = ARENA_ARRAY(a, Name, e->n + 1);
   FactorRecord *factored = ARENA_NEW(a, FactorRecord);
-  IrSystem sys = {.p = l.p, .nq = e->n, .ndefs = e->n ? e->system.ndefs : 0, .nz = m->states.n, .f = f, .flow = flow, .rates = rates,
-                  .velocities = velocities, .factored = factored};
+  IrSystem sys = {.p = l.p,
+                  .nq = e->n, .ndefs = e->n ? e->system.ndefs : 0, .nz = m->states.n, .f = f, .flow = flow,
+                  .rates = rates, .velocities = velocities,
+                  .factored = factored};
   l.direct = 1;
   l.factored = factored;
   lower_inputs_along(&l);
@@ -106,12 +111,14 @@ IrSystem lower_system(const Eqns *e) {
 void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   const Model *m = l->e->m;
   int needed = 0;
-  for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_MULTIPLIER);
+  for (uint32_t i = 0; i < n; i++)
+    needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_MULTIPLIER);
   if (needed) {
     Slot *acc = ARENA_ARRAY(m->arena, Slot, l->e->n + 1);
     l->coarse = 1;
     lower_solution(l, acc);
-    for (uint32_t i = 0; i < l->e->n; i++) expr_map_set(&l->slots, expr_symbol(l->g, m->coords.at[i].a)->node, acc[i] + 1);
+    for (uint32_t i = 0; i < l->e->n; i++)
+      expr_map_set(&l->slots, expr_symbol(l->g, m->coords.at[i].a)->node, acc[i] + 1);
     for (uint32_t i = 0; i < l->e->constraints.n; i++)
       expr_map_set(&l->slots, expr_symbol(l->g, l->e->constraints.of[i]->multiplier)->node, l->multipliers[i] + 1);
     lower_roots(l, l->e->flow, m->states.n);
@@ -137,7 +144,8 @@ static void load_accelerations(Lower *l) {
 static void load_multipliers(Lower *l) {
   const Constraints *k = &l->e->constraints;
   for (uint32_t i = 0; i < k->n; i++) {
-    Slot lambda = prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = i, .name = expr_symbol(l->g, k->of[i]->multiplier)->name});
+    Slot lambda = prog_ins(
+        l->p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = i, .name = expr_symbol(l->g, k->of[i]->multiplier)->name});
     expr_map_set(&l->slots, expr_symbol(l->g, k->of[i]->multiplier)->node, lambda + 1);
   }
 }
@@ -146,7 +154,9 @@ static void load_multipliers(Lower *l) {
 static const char *component(const Lower *l, uint32_t i) {
   const Model *m = l->e->m;
   uint32_t n = l->e->n;
-  return i < n ? m->coords.at[i].name : i < 2 * n ? text_of_symbol(l, m->coords.at[i - n].v) : m->states.at[i - 2 * n].name;
+  return i < n       ? m->coords.at[i].name
+         : i < 2 * n ? text_of_symbol(l, m->coords.at[i - n].v)
+                     : m->states.at[i - 2 * n].name;
 }
 
 /* Name of the variable of column `col`. */
@@ -173,15 +183,19 @@ Prog *lower_linear(const Eqns *e, Partials dr, PartialsBy by) {
   lower_roots(&l, roots, n);
   for (uint32_t k = 0; k < dr.n; k++) {
     uint32_t row = dr.at[k].row;
-    const char *of = row < e->n ? component(&l, row) : row < e->n + nz ? text_of_symbol(&l, e->m->states.at[row - e->n].rate) : e->constraints.of[row - e->n - nz]->name;
+    const char *of = row < e->n        ? component(&l, row)
+                     : row < e->n + nz ? text_of_symbol(&l, e->m->states.at[row - e->n].rate)
+                                       : e->constraints.of[row - e->n - nz]->name;
     prog_store(l.p, 0, k, lower_slot(&l, roots[k]), arena_printf(a, "%s by %s", of, variable(&l, by, dr.at[k].col)));
   }
   for (uint32_t k = 0; k < e->mass.n; k++) {
     const MassEntry *M = &e->mass.at[k];
-    prog_store(l.p, 1, k, lower_slot(&l, M->e), arena_printf(a, "%s, %s", component(&l, M->row), component(&l, M->col)));
+    prog_store(l.p, 1, k, lower_slot(&l, M->e),
+               arena_printf(a, "%s, %s", component(&l, M->row), component(&l, M->col)));
   }
   for (uint32_t k = 0; k < A->n; k++)
-    prog_store(l.p, 2, k, lower_slot(&l, A->at[k].e), arena_printf(a, "%s, %s", e->constraints.of[A->at[k].row]->name, component(&l, A->at[k].col)));
+    prog_store(l.p, 2, k, lower_slot(&l, A->at[k].e),
+               arena_printf(a, "%s, %s", e->constraints.of[A->at[k].row]->name, component(&l, A->at[k].col)));
   return finished(&l, ROLL_FROM);
 }
 
@@ -211,7 +225,8 @@ Prog *lower_event_derivatives(const Eqns *e, EventPartials jumps) {
   for (uint32_t k = 0; k < jumps.n; k++) lower_roots(&l, &jumps.at[k].e, 1);
   for (uint32_t k = 0; k < jumps.n; k++) {
     const EventPartial *j = &jumps.at[k];
-    const char *event = e->m->events.at[j->event].name, *of = j->row < 0 ? "its function" : component(&l, (uint32_t)j->row);
+    const char *event = e->m->events.at[j->event].name,
+               *of = j->row < 0 ? "its function" : component(&l, (uint32_t)j->row);
     const char *by = j->col < 2 * e->n + e->m->states.n ? component(&l, j->col) : "t";
     prog_store(l.p, 0, k, lower_slot(&l, j->e), arena_printf(a, "event %s: %s by %s", event, of, by));
   }
@@ -257,7 +272,8 @@ Prog *lower_second_derivatives(const Eqns *e, const Variation *x) {
   Expr *roots = ARENA_ARRAY(e->m->arena, Expr, x->second.n + 1);
   for (uint32_t k = 0; k < x->second.n; k++) roots[k] = x->second.at[k].e;
   lower_roots(&l, roots, x->second.n);
-  for (uint32_t k = 0; k < x->second.n; k++) prog_store(l.p, 0, k, lower_slot(&l, roots[k]), second_text(&l, &x->second.at[k]));
+  for (uint32_t k = 0; k < x->second.n; k++)
+    prog_store(l.p, 0, k, lower_slot(&l, roots[k]), second_text(&l, &x->second.at[k]));
   return finished(&l, ROLL_FROM);
 }
 
@@ -267,7 +283,8 @@ Prog *lower_events(const Eqns *e) {
   Expr *roots = ARENA_ARRAY(m->arena, Expr, m->events.n + 1);
   for (uint32_t i = 0; i < m->events.n; i++) roots[i] = m->events.at[i].g;
   lower_with_accelerations(&l, roots, m->events.n);
-  for (uint32_t i = 0; i < m->events.n; i++) prog_store(l.p, 0, i, lower_slot(&l, m->events.at[i].g), m->events.at[i].name);
+  for (uint32_t i = 0; i < m->events.n; i++)
+    prog_store(l.p, 0, i, lower_slot(&l, m->events.at[i].g), m->events.at[i].name);
   return finished(&l, ROLL_FROM);
 }
 
@@ -378,10 +395,13 @@ Prog *lower_inputs(const Eqns *e) {
 }
 
 /* Closed forms, and actions behind them, are input symbols numbered behind the model's inputs. */
-static int is_of_runs(const Symbol *s, const void *data) { return s->kind == SYM_INPUT && s->index >= *(const uint32_t *)data; }
+static int is_of_runs(const Symbol *s, const void *data) {
+  return s->kind == SYM_INPUT && s->index >= *(const uint32_t *)data;
+}
 
 int output_is_plain(const Eqns *e, uint32_t i) {
-  return !(e->m->scene.exacts.n + e->nactions) || !expr_contains(e->g, e->outputs[i].value, is_of_runs, &e->m->inputs.n);
+  return !(e->m->scene.exacts.n + e->nactions) ||
+         !expr_contains(e->g, e->outputs[i].value, is_of_runs, &e->m->inputs.n);
 }
 
 /* Values of the outputs, and the outputs in *of. */
@@ -407,9 +427,11 @@ Prog *lower_output_partials(const Eqns *e, Partials *d) {
   const Expr *outputs = values_of_outputs(e, 1, &of, &n);
   for (uint32_t i = 0; i < n; i++) vec_push(m->arena, &x, outputs[i]), vec_push(m->arena, &names, of[i]->name);
   for (uint32_t i = 0; i < m->params.n; i++)
-    if (!m->params.at[i].fixed) vec_push(m->arena, &x, m->params.at[i].value), vec_push(m->arena, &names, m->params.at[i].name);
+    if (!m->params.at[i].fixed)
+      vec_push(m->arena, &x, m->params.at[i].value), vec_push(m->arena, &names, m->params.at[i].name);
   for (uint32_t i = 0; i < m->inputs.n; i++)
-    vec_push(m->arena, &x, m->inputs.at[i].value ? m->inputs.at[i].value : expr_int(e->g, 0)), vec_push(m->arena, &names, m->inputs.at[i].name);
+    vec_push(m->arena, &x, m->inputs.at[i].value ? m->inputs.at[i].value : expr_int(e->g, 0)),
+        vec_push(m->arena, &names, m->inputs.at[i].name);
   *d = eqns_output_partials(e, x.at, x.n);
   Expr *roots = ARENA_ARRAY(e->m->arena, Expr, d->n + 1);
   for (uint32_t k = 0; k < d->n; k++) roots[k] = d->at[k].e;
@@ -450,7 +472,8 @@ Prog *lower_closed_forms(const Eqns *e) {
   Lower l = lower_by_text(e);
   const Scene *sc = &e->m->scene;
   for (uint32_t i = 0; i < sc->exacts.n; i++) lower_roots(&l, &sc->exacts.at[i].value, 1);
-  for (uint32_t i = 0; i < sc->exacts.n; i++) prog_store(l.p, 0, i, lower_slot(&l, sc->exacts.at[i].value), sc->exacts.at[i].name);
+  for (uint32_t i = 0; i < sc->exacts.n; i++)
+    prog_store(l.p, 0, i, lower_slot(&l, sc->exacts.at[i].value), sc->exacts.at[i].name);
   return prog_tidy(l.p);
 }
 

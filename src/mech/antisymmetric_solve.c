@@ -1,4 +1,5 @@
-/* Elimination by 2x2 pivots with Markowitz's count (Bunch 1982); the rest by Pfaffians of all subsets of its rows (Knuth 1996), 2^m of them. */
+/* Elimination by 2x2 pivots with Markowitz's count (Bunch 1982); the rest by Pfaffians of all subsets of its rows
+ * (Knuth 1996), 2^m of them. */
 #include "mech/antisymmetric_solve.h"
 
 #include "sym/simplify.h"

@@ -1,4 +1,5 @@
-/* H and C by differentiating L and each definition with symbols in the place of definitions; adjoints lambda by a backward sweep. */
+/* H and C by differentiating L and each definition with symbols in the place of definitions; adjoints lambda by a
+ * backward sweep. */
 #include "mech/augmented_system.h"
 
 #include "sym/diff.h"
@@ -17,14 +18,16 @@ typedef struct {
   ExprPartials *gradient;  /* [n + 1] derivatives of cut by u */
 } Augmentation;
 
-/* Finds the definitions that contain velocities; writes them and L in q', stand-ins and expressions without velocities. */
+/* Finds the definitions that contain velocities; writes them and L in q', stand-ins and expressions without
+ * velocities. */
 static void cut_definitions(Augmentation *l) {
   const Eqns *e = l->e;
   Expr lagrangian = e->m->lagrangian;
   ExprList all = expr_topo(l->g, &lagrangian, 1);
   VEC(Expr) defs = {0};
   for (uint32_t i = 0; i < all.n; i++)
-    if (expr_op(l->g, all.at[i]) == EX_DEF && expr_kinds(l->g, all.at[i]) & 1u << SYM_VEL) vec_push(l->arena, &defs, all.at[i]);
+    if (expr_op(l->g, all.at[i]) == EX_DEF && expr_kinds(l->g, all.at[i]) & 1u << SYM_VEL)
+      vec_push(l->arena, &defs, all.at[i]);
   l->n = defs.n;
   l->def = defs.at;
   if (!l->n) return;
@@ -48,10 +51,12 @@ static void cut_definitions(Augmentation *l) {
 /* Derivatives of x by u = (q', w), indices in u, ascending. */
 static ExprPartials by_u(Augmentation *l, Expr x) {
   VEC(ExprPartial) all = {0};
-  ExprPartials v = expr_gradient_sparse(l->g, x, SYM_VEL, l->e->n), w = expr_gradient_sparse(l->g, x, SYM_LOCAL, l->first + l->n);
+  ExprPartials v = expr_gradient_sparse(l->g, x, SYM_VEL, l->e->n),
+               w = expr_gradient_sparse(l->g, x, SYM_LOCAL, l->first + l->n);
   for (uint32_t i = 0; i < v.n; i++) vec_push(l->arena, &all, v.at[i]);
   for (uint32_t i = 0; i < w.n; i++)
-    if (w.at[i].index >= l->first) vec_push(l->arena, &all, ((ExprPartial){l->e->n + w.at[i].index - l->first, w.at[i].e}));
+    if (w.at[i].index >= l->first)
+      vec_push(l->arena, &all, ((ExprPartial){l->e->n + w.at[i].index - l->first, w.at[i].e}));
   return (ExprPartials){all.at, all.n};
 }
 

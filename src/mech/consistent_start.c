@@ -1,5 +1,5 @@
-/* Consistent starts: the scene's start values, moved onto the constraints by numeric/consistent_state.c, which a run calls with emitted functions;
- * here are the functions by value. */
+/* Consistent starts: the scene's start values, moved onto the constraints by numeric/consistent_state.c, which a run
+ * calls with emitted functions; here are the functions by value. */
 #include "mech/consistent_start.h"
 
 #include <float.h>
@@ -20,7 +20,9 @@ typedef struct {
   long double *symbols, *b;      /* by symbol; right-hand side and solution */
 } Finder;
 
-static SymId component(const Eqns *e, uint32_t i, int positions) { return positions ? e->m->coords.at[i].q : e->m->coords.at[i].v; }
+static SymId component(const Eqns *e, uint32_t i, int positions) {
+  return positions ? e->m->coords.at[i].q : e->m->coords.at[i].v;
+}
 
 /* Evaluates the equations at the level's components x. */
 static Finder *evaluate(const lag_level *w, const long double *x) {
@@ -32,10 +34,12 @@ static Finder *evaluate(const lag_level *w, const long double *x) {
 
 /* --- scales --- */
 
-static int same_unit(const Model *m, uint32_t i, uint32_t j) { return strcmp(m->coords.at[i].unit.text, m->coords.at[j].unit.text) == 0; }
+static int same_unit(const Model *m, uint32_t i, uint32_t j) {
+  return strcmp(m->coords.at[i].unit.text, m->coords.at[j].unit.text) == 0;
+}
 
-/* most[i] := largest absolute value among coordinates (velocities) with the unit of coordinate i. The first coordinate of each unit searches
- * for all of that unit. */
+/* most[i] := largest absolute value among coordinates (velocities) with the unit of coordinate i. The first
+ * coordinate of each unit searches for all of that unit. */
 static void largest_of_unit(const Eqns *e, const long double *symbols, int positions, long double *most) {
   for (uint32_t i = 0; i < e->n; i++) {
     uint32_t first = 0;
@@ -46,8 +50,8 @@ static void largest_of_unit(const Eqns *e, const long double *symbols, int posit
   }
 }
 
-/* reach[i] := scale of coordinate i or its velocity: the largest of its unit (velocities: at least that over the scene's duration); 1 if that is 0,
- * and at least 1 for an angle. */
+/* reach[i] := scale of coordinate i or its velocity: the largest of its unit (velocities: at least that over the
+ * scene's duration); 1 if that is 0, and at least 1 for an angle. */
 static void coordinate_scales(const Eqns *e, const long double *symbols, int positions, long double *reach) {
   const Model *m = e->m;
   double span = m->scene.has_span ? fabs(m->scene.t1 - m->scene.t0) : 0;
@@ -93,7 +97,8 @@ static void scales(const lag_level *w, const long double *x, long double *reach)
 static int terms(const lag_level *w, long double *size) {
   Arena *arena = ((Finder *)w->context)->e->m->arena;
   lag_level beside = *w;
-  long double *reach = ARENA_ARRAY(arena, long double, (size_t)w->n + 1), *c = ARENA_ARRAY(arena, long double, (size_t)w->rows + 1);
+  long double *reach = ARENA_ARRAY(arena, long double, (size_t)w->n + 1),
+              *c = ARENA_ARRAY(arena, long double, (size_t)w->rows + 1);
   beside.x = ARENA_ARRAY(arena, long double, (size_t)w->n + 1);
   jacobian(w, w->A);
   for (int k = 0; k < w->rows; k++) size[k] = 0;
@@ -163,7 +168,8 @@ static long double distance(const lag_level *w) {
   find_mass(f, 0);
   for (uint32_t k = 0; k < f->mass.n; k++) {
     uint32_t i = f->mass.at[k].row, j = f->mass.at[k].col;
-    s += lag_level_weight(w, (int)i) * (w->x[i] - w->asked[i]) * f->mass.at[k].value * lag_level_weight(w, (int)j) * (w->x[j] - w->asked[j]);
+    s += lag_level_weight(w, (int)i) * (w->x[i] - w->asked[i]) * f->mass.at[k].value * lag_level_weight(w, (int)j) *
+         (w->x[j] - w->asked[j]);
   }
   return s;
 }
@@ -197,7 +203,8 @@ int start_of_scene(const Eqns *e, long double *found, unsigned char *moved) {
     if (i % e->n == 0) largest_of_unit(e, symbols, i == 0, most);
     SymId at = component(e, i % e->n, i < e->n);
     found[i] = symbols[at];
-    moved[i] = symbols != asked && fabsl(symbols[at] - asked[at]) > DBL_EPSILON / 4 * most[i % e->n]; /* more than rounding of the largest of its unit */
+    /* more than rounding of the largest of its unit */
+    moved[i] = symbols != asked && fabsl(symbols[at] - asked[at]) > DBL_EPSILON / 4 * most[i % e->n];
   }
   return r.kind == LAG_START_FOUND || !m->scene.starts.n;
 }
@@ -235,11 +242,16 @@ static lag_level level_new(Finder *f) {
   const Entries *A = &f->e->constraints.A;
   size_t n = f->e->n, m = f->e->constraints.n;
   int *row = ARENA_ARRAY(a, int, A->n + 1), *col = ARENA_ARRAY(a, int, A->n + 1);
-  lag_level w = {.context = f, .n = (int)n, .entries = (int)A->n, .row = row, .col = col, .exactly = f->e->m->scene.exactly.end != 0, .rounding = DBL_EPSILON,
-                 .residuals = residuals, .jacobian = jacobian, .terms = terms, .scales = scales, .direction = direction, .distance = distance,
-                 .stage = stage, .is_contact = is_contact, .A = ARENA_ARRAY(a, long double, A->n + 1), .free = ARENA_ARRAY(a, int, n + 1)};
-  long double **const by_component[] = {&w.x, &w.asked, &w.best, &w.from, &w.d, &w.along, &w.reach, &w.nearest}, **const by_row[] = {&w.residual, &w.size, &w.terms_here, &w.slope, &w.has_terms};
-  for (size_t i = 0; i < sizeof by_component / sizeof *by_component; i++) *by_component[i] = ARENA_ARRAY(a, long double, n + 1);
+  lag_level w = {.context = f,
+                 .n = (int)n, .entries = (int)A->n, .row = row, .col = col, .exactly = f->e->m->scene.exactly.end != 0,
+                 .rounding = DBL_EPSILON, .residuals = residuals, .jacobian = jacobian, .terms = terms,
+                 .scales = scales, .direction = direction, .distance = distance, .stage = stage,
+                 .is_contact = is_contact, .A = ARENA_ARRAY(a, long double, A->n + 1),
+                 .free = ARENA_ARRAY(a, int, n + 1)};
+  long double **const by_component[] = {&w.x, &w.asked, &w.best, &w.from, &w.d, &w.along, &w.reach, &w.nearest},
+                      **const by_row[] = {&w.residual, &w.size, &w.terms_here, &w.slope, &w.has_terms};
+  for (size_t i = 0; i < sizeof by_component / sizeof *by_component; i++)
+    *by_component[i] = ARENA_ARRAY(a, long double, n + 1);
   for (size_t i = 0; i < sizeof by_row / sizeof *by_row; i++) *by_row[i] = ARENA_ARRAY(a, long double, m + 1);
   for (uint32_t k = 0; k < A->n; k++) row[k] = (int)A->at[k].row, col[k] = (int)A->at[k].col;
   return w;
@@ -247,7 +259,9 @@ static lag_level level_new(Finder *f) {
 
 static Finder finder_new(const Eqns *e, StateSolver *solver, long double *symbols) {
   Arena *a = e->m->arena;
-  return (Finder){.e = e, .solver = solver, .given = given_by(e), .symbols = symbols, .place = ARENA_ARRAY(a, uint32_t, e->n + 1),
+  return (Finder){.e = e,
+                  .solver = solver, .given = given_by(e), .symbols = symbols,
+                  .place = ARENA_ARRAY(a, uint32_t, e->n + 1),
                   .b = ARENA_ARRAY(a, long double, (size_t)e->n + e->constraints.n + 1)};
 }
 
@@ -290,8 +304,11 @@ const char *start_residual_text(const Eqns *e, const StartResult *r) {
   const char *unit = dim_text(m->dims, dim); /* "1", "?" where units are not known */
   int bare = *unit == '1' || *unit == '?';
   if (!isfinite(r->residual)) return "";
-  return arena_printf(m->arena, "; it is off by %.3Lg%s%s%s%s", fabsl(r->residual), bare ? "" : " [", bare ? "" : unit, bare ? "" : "]",
-                      rate ? " in its rate" : r->velocities ? " in its velocities" : "");
+  return arena_printf(m->arena, "; it is off by %.3Lg%s%s%s%s", fabsl(r->residual), bare ? "" : " [", bare ? "" : unit,
+                      bare ? "" : "]",
+                      rate            ? " in its rate"
+                      : r->velocities ? " in its velocities"
+                                      : "");
 }
 
 void start_report(const Eqns *e, const StartResult *r) {
@@ -301,22 +318,29 @@ void start_report(const Eqns *e, const StartResult *r) {
   switch (r->kind) {
     case LAG_START_FOUND: return;
     case LAG_START_NO_VALUE:
-      diag_error(m->diags, k->span, "scene %s: the constraint `%s` has no value at the start" HELP "start where it has one", scene, k->name);
+      diag_error(m->diags, k->span,
+                 "scene %s: the constraint `%s` has no value at the start" HELP "start where it has one", scene,
+                 k->name);
       return;
     case LAG_START_BROKEN:
       diag_error(m->diags, k->span, "scene %s: the start contradicts the constraint `%s`%s", scene, k->name, off);
       diag_help(m->diags, "without `exactly` the nearest start is taken");
       return;
     case LAG_START_FLAT:
-      diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` vanish where it holds, so that no force can hold it", scene, k->name);
+      diag_error(m->diags, k->span,
+                 "scene %s: the derivatives of the constraint `%s` vanish where it holds, so that no force can hold it",
+                 scene, k->name);
       diag_help(m->diags, "write a constraint whose derivatives do not vanish: x = 0 in place of x^2 = 0");
       return;
     case LAG_START_STEEP:
-      diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` have no value where it holds", scene, k->name);
+      diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` have no value where it holds",
+                 scene, k->name);
       diag_help(m->diags, "write a constraint whose derivatives have values: x = 1 in place of sqrt(x - 1) = 0");
       return;
     case LAG_START_NONE:
-      diag_error(m->diags, k->span, "scene %s: no state near its start obeys the constraint `%s`%s", scene, k->name, off);
-      diag_help(m->diags, "start nearer to a state that obeys it; where its derivatives vanish no direction leads there");
+      diag_error(m->diags, k->span, "scene %s: no state near its start obeys the constraint `%s`%s", scene, k->name,
+                 off);
+      diag_help(m->diags,
+                "start nearer to a state that obeys it; where its derivatives vanish no direction leads there");
   }
 }

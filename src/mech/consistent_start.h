@@ -14,19 +14,21 @@ typedef struct {
 /* Values by symbol: parameters and the scene's start values; 0 for all other symbols, so that all contacts are open. */
 long double *start_requested(const Eqns *e);
 
-/* Moves symbols (from start_requested) onto the constraints as a run does (numeric/consistent_state.h): positions that the scene does not give
- * first, then velocities. On failure symbols hold the last state that was tried. */
+/* Moves symbols (from start_requested) onto the constraints as a run does (numeric/consistent_state.h): positions
+ * that the scene does not give first, then velocities. On failure symbols hold the last state that was tried. */
 StartResult start_find(const Eqns *e, StateSolver *solver, long double *symbols);
 
-/* The consistent start for the scene: found[2 n] = [q|v], and moved[2 n], set where a value moved by more than a double's rounding. Without
- * constraints, or if none was found, the scene's own values; 0, reported in the diagnostics, if none was found and the scene gives a start. */
+/* The consistent start for the scene: found[2 n] = [q|v], and moved[2 n], set where a value moved by more than a
+ * double's rounding. Without constraints, or if none was found, the scene's own values; 0, reported in the
+ * diagnostics, if none was found and the scene gives a start. */
 int start_of_scene(const Eqns *e, long double *found, unsigned char *moved);
 
-/* step[n] := displacements to a nearby state: `part` times the size of each coordinate (the largest of its unit; at least 1 for an angle) times
- * a factor from 0.5 to 1.5, different for each coordinate. */
+/* step[n] := displacements to a nearby state: `part` times the size of each coordinate (the largest of its unit; at
+ * least 1 for an angle) times a factor from 0.5 to 1.5, different for each coordinate. */
 void start_nearby_steps(const Eqns *e, const long double *symbols, long double part, long double *step);
 
-/* Moves the symbols, whose positions obey the constraints, to positions about a hundredth away that do, too; 0: none was found. */
+/* Moves the symbols, whose positions obey the constraints, to positions about a hundredth away that do, too; 0: none
+ * was found. */
 int start_beside(const Eqns *e, StateSolver *solver, long double *symbols);
 
 /* Reports in the model's diagnostics why there is no consistent start. */

@@ -1,6 +1,7 @@
-/* Holonomic constraints by index reduction: c = 0 is kept as c, c' and c'' (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed.
- * (1996), VII.1, DOI 10.1007/978-3-642-05221-7); constraints on velocities by Lagrange-d'Alembert's principle: their forces do no work on virtual
- * displacements, A dq = 0. (Not vakonomic mechanics, which puts lambda c into the action and has other motions.) */
+/* Holonomic constraints by index reduction: c = 0 is kept as c, c' and c'' (E. Hairer, G. Wanner, Solving Ordinary
+ * Differential Equations II, 2nd ed. (1996), VII.1, DOI 10.1007/978-3-642-05221-7); constraints on velocities by
+ * Lagrange-d'Alembert's principle: their forces do no work on virtual displacements, A dq = 0. (Not vakonomic
+ * mechanics, which puts lambda c into the action and has other motions.) */
 #include "mech/constrain.h"
 
 #include "mech/frobenius.h"
@@ -33,7 +34,9 @@ static int check_contains(const Eqns *e, const Constraint *k, const ExprPartials
   Diags *d = e->m->diags;
   if (row->n) return 1;
   if (expr_is_zero(e->g, simplify(e->g, k->c))) {
-    return diag_error(d, k->span, "the constraint `%s` demands nothing: its sides are the same for all coordinates" HELP "leave it out", k->name);
+    return diag_error(
+        d, k->span,
+        "the constraint `%s` demands nothing: its sides are the same for all coordinates" HELP "leave it out", k->name);
   }
   return diag_error(d, k->span, "the constraint `%s` contains no coordinate"
                     HELP "a condition on parameters and time alone cannot be met by any force", k->name);
@@ -62,8 +65,11 @@ static int check_count(const Eqns *e) {
   while (i < m->constraints.n && (held += !contact_of_constraint(m, &m->constraints.at[i])) <= e->n) i++;
   if (held <= e->n) return 1;
   const Constraint *k = &m->constraints.at[i];
-  diag_error(m->diags, k->span, "there are more constraints than coordinates: `%s` is number %u, of %u coordinates", k->name, e->n + 1, e->n);
-  diag_help(m->diags, "at most %u of them are independent: leave out those that follow from others, which `lagc check` names where there are not too many",
+  diag_error(m->diags, k->span, "there are more constraints than coordinates: `%s` is number %u, of %u coordinates",
+             k->name, e->n + 1, e->n);
+  diag_help(m->diags,
+            "at most %u of them are independent: leave out those that follow from others, which `lagc check` names "
+            "where there are not too many",
             e->n);
   return 0;
 }
@@ -83,18 +89,21 @@ static int derive_row(Eqns *e, const Constraint *k, ConstraintRow *to) {
   if (!check_contains(e, k, &to->row) || (!holonomic && !check_linear(e, k, &to->row))) return 0;
   if (e->m->constraints.n <= COMPARE_MAX && !check_contradiction(e, k)) return 0;
   const Contact *contact = contact_of_constraint(e->m, k);
-  to->kept = holonomic ? k->c : contact && contact->is_tangent ? 0 : frobenius_leaf(e, k->c); /* what sticks may slip on */
+  /* what sticks may slip on */
+  to->kept = holonomic ? k->c : contact && contact->is_tangent ? 0 : frobenius_leaf(e, k->c);
   return 1;
 }
 
-static void add(Eqns *e, const Constraint *k, const ConstraintRow *kind, const Constraint **of, Expr *c, Expr *r, Expr *demand) {
+static void add(Eqns *e, const Constraint *k, const ConstraintRow *kind, const Constraint **of, Expr *c, Expr *r,
+                Expr *demand) {
   Constraints *all = &e->constraints;
   uint32_t at = all->n++;
   of[at] = k;
   c[at] = kind->kept;
   r[at] = is_holonomic(e, k) ? rate(e, k->c, "'") : k->c;
   demand[at] = expr_neg(e->g, rate(e, r[at], "_drift"));
-  for (uint32_t i = 0; i < kind->row.n; i++) vec_push(e->m->arena, &all->A, ((MassEntry){at, kind->row.at[i].index, kind->row.at[i].e}));
+  for (uint32_t i = 0; i < kind->row.n; i++)
+    vec_push(e->m->arena, &all->A, ((MassEntry){at, kind->row.at[i].index, kind->row.at[i].e}));
 }
 
 static void add_forces(Eqns *e) {
@@ -140,7 +149,8 @@ int constrain(Eqns *e) {
 int constraints_do_no_work(const Eqns *e) {
   const Constraints *k = &e->constraints;
   for (uint32_t i = 0; i < k->n; i++) {
-    int moves = i < k->nholonomic ? (expr_kinds(e->g, k->c[i]) & 1u << SYM_TIME) != 0 : !expr_is_zero(e->g, eqns_at_rest(e, k->r[i]));
+    int moves = i < k->nholonomic ? (expr_kinds(e->g, k->c[i]) & 1u << SYM_TIME) != 0
+                                  : !expr_is_zero(e->g, eqns_at_rest(e, k->r[i]));
     if (moves) return 0;
   }
   return 1;

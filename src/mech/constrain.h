@@ -3,8 +3,8 @@
 
 #include "mech/eqns.h"
 
-/* Fills e->constraints and adds A^T lambda to e->f. 0, reported, when a constraint is not linear in velocities, contains no
- * coordinate or contradicts another, or when there are more constraints than coordinates. */
+/* Fills e->constraints and adds A^T lambda to e->f. 0, reported, when a constraint is not linear in velocities,
+ * contains no coordinate or contradicts another, or when there are more constraints than coordinates. */
 int constrain(Eqns *e);
 
 /* The contact that stands for this constraint, which holds while the contact is closed; NULL: none. */
@@ -13,5 +13,6 @@ const Contact *contact_of_constraint(const Model *m, const Constraint *k);
 /* Whether constraint forces do no work on admissible motions: q'.A^T lambda = -lambda.b, so whether b = 0. */
 int constraints_do_no_work(const Eqns *e);
 
-/* Treats all constraints on velocities as r = 0, for emitted headers, which cannot store the values of F at the start. */
+/* Treats all constraints on velocities as r = 0, for emitted headers, which cannot store the values of F at the
+ * start. */
 void constraints_keep_none(Eqns *e);

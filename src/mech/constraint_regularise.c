@@ -1,5 +1,5 @@
-/* Weights of the regularising term: of the size of the inertia that the constraint moves. They affect only the rounding, and the
- * constraint error in the middle of a step. */
+/* Weights of the regularising term: of the size of the inertia that the constraint moves. They affect only the
+ * rounding, and the constraint error in the middle of a step. */
 #include "mech/constraint_regularise.h"
 
 #include <math.h>
@@ -32,7 +32,8 @@ static Num weight_near_start(const Eqns *e, uint32_t k) {
   const Entries *A = &e->constraints.A;
   const Model *m = e->m;
   uint32_t all = expr_symbol_count(e->g) + 1, n = 0;
-  long double *there = ARENA_ARRAY(m->arena, long double, all), *asked = start_requested(e), *step = ARENA_ARRAY(m->arena, long double, e->n), sum = 0;
+  long double *there = ARENA_ARRAY(m->arena, long double, all), *asked = start_requested(e),
+              *step = ARENA_ARRAY(m->arena, long double, e->n), sum = 0;
   Expr *row = ARENA_ARRAY(m->arena, Expr, A->n + 1);
   long double *value = ARENA_ARRAY(m->arena, long double, A->n + 1);
   for (uint32_t i = 0; i < all; i++) there[i] = asked[i];
@@ -47,7 +48,8 @@ static Num weight_near_start(const Eqns *e, uint32_t k) {
   return power >= 0 ? num_int(INT64_C(1) << power) : num_ratio(1, INT64_C(1) << -power);
 }
 
-/* M_jj/A_kj^2 where both are constants: the right dimension, and it follows parameters. Else an estimate near the start. */
+/* M_jj/A_kj^2 where both are constants: the right dimension, and it follows parameters. Else an estimate near the
+ * start. */
 static Expr weight(const Eqns *e, uint32_t k) {
   const Entries *A = &e->constraints.A;
   for (uint32_t i = 0; i < A->n; i++) {

@@ -1,5 +1,5 @@
-/* Derives Eqns: calls lagrange, constrain and first_order, adds the energy, and reads facts for every state (conserved, smooth,
- * separable, ...) off the graph. */
+/* Derives Eqns: calls lagrange, constrain and first_order, adds the energy, and reads facts for every state
+ * (conserved, smooth, separable, ...) off the graph. */
 #include "mech/derive_equations.h"
 
 #include <math.h>
@@ -23,14 +23,17 @@ static unsigned bit(SymKind kind) { return 1u << kind; }
 
 static int contains_kind(const Eqns *e, Expr x, SymKind kind) { return (expr_kinds(e->g, x) & bit(kind)) != 0; }
 
-/* Past this many coordinates the energy's lets are not expanded: along a chain they would grow with the square of its length. */
+/* Past this many coordinates the energy's lets are not expanded: along a chain they would grow with the square of
+ * its length. */
 enum { EXPAND_MAX_COORDS = 32 };
 
 /* Past this many coordinates energy and momenta stay as differentiated: nobody reads them, and short forms of sums over
  * all coordinates cost more than the derivation. */
 enum { SHORTEN_MAX_COORDS = 64 };
 
-static Expr shorten(const Eqns *e, Expr x) { return e->mass_known && e->n <= SHORTEN_MAX_COORDS ? simplify(e->g, x) : x; }
+static Expr shorten(const Eqns *e, Expr x) {
+  return e->mass_known && e->n <= SHORTEN_MAX_COORDS ? simplify(e->g, x) : x;
+}
 
 /* Momenta of L as written, without the regularising terms of Model.regularising. */
 static const Expr *plain_momenta(const Eqns *e) {
@@ -41,7 +44,8 @@ static const Expr *plain_momenta(const Eqns *e) {
   return p;
 }
 
-/* p q' - x for a part x of L, by Euler's theorem from the velocity degrees of its terms; 0 if a term is not homogeneous. */
+/* p q' - x for a part x of L, by Euler's theorem from the velocity degrees of its terms; 0 if a term is not
+ * homogeneous. */
 static Expr moving_energy(const Eqns *e, Expr x) {
   ExprGraph *g = e->g;
   VEC(Expr) terms = {0};
@@ -57,8 +61,8 @@ static Expr moving_energy(const Eqns *e, Expr x) {
   return expr_add_n(g, terms.at, terms.n);
 }
 
-/* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as written: k/2*(r - l)^2 has more
- * correct digits than its expansion. */
+/* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as written: k/2*(r -
+ * l)^2 has more correct digits than its expansion. */
 static void derive_energy(Eqns *e) {
   ExprGraph *g = e->g;
   Arena *arena = e->m->arena;
@@ -101,8 +105,8 @@ static unsigned kinds_in(const Eqns *e, const Expr *roots, uint32_t n) {
   return kinds;
 }
 
-/* Adds the formulas of the inputs that occur to the roots. A table depends on time, and the third derivative of its spline
- * jumps at each row: not autonomous, not smooth. */
+/* Adds the formulas of the inputs that occur to the roots. A table depends on time, and the third derivative of its
+ * spline jumps at each row: not autonomous, not smooth. */
 static void add_input_formulas(Eqns *e, ExprVec *roots) {
   const Model *m = e->m;
   ExprList l = expr_topo(e->g, roots->at, roots->n);
@@ -152,7 +156,8 @@ int is_no_coordinate(const Symbol *s, const void *states) {
 static unsigned kinds_of_lagrangian(const Eqns *e) {
   const Model *m = e->m;
   unsigned kinds = kinds_in(e, &e->lagrangian, 1);
-  return e->first.n && !expr_contains(e->g, e->lagrangian, is_no_coordinate, m->states.at) ? kinds & ~bit(SYM_STATE) : kinds;
+  return e->first.n && !expr_contains(e->g, e->lagrangian, is_no_coordinate, m->states.at) ? kinds & ~bit(SYM_STATE)
+                                                                                           : kinds;
 }
 
 typedef struct {
@@ -173,7 +178,8 @@ static int rates_lack(const Eqns *e, uint32_t from, uint32_t to, StateRange what
   return 1;
 }
 
-/* H = T(p) + V(q, t): rates of q do not contain q or t. With forces of q and t, rates of p do not contain p: a splitting method can take both. */
+/* H = T(p) + V(q, t): rates of q do not contain q or t. With forces of q and t, rates of p do not contain p: a
+ * splitting method can take both. */
 static void find_splitting(Eqns *e) {
   uint32_t n = e->m->pairs.n;
   e->sum_hamiltonian = n && e->m->states.n == 2 * n && rates_lack(e, 0, n, (StateRange){0, n, 1});
@@ -202,8 +208,10 @@ static void classify(Eqns *e) {
   ExprList l = expr_topo(e->g, roots.at, roots.n);
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(e->g, l.at[i]);
-    int cut = op == EX_ATAN2 && expr_sign(e->g, expr_arg(e->g, l.at[i], 1)) != SIGN_POSITIVE; /* where the angle jumps by 2 pi */
-    e->smooth &= op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_FLOOR && op != EX_MIN && op != EX_MAX && !cut;
+    /* where the angle jumps by 2 pi */
+    int cut = op == EX_ATAN2 && expr_sign(e->g, expr_arg(e->g, l.at[i], 1)) != SIGN_POSITIVE;
+    e->smooth &=
+        op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_FLOOR && op != EX_MIN && op != EX_MAX && !cut;
   }
   unsigned lagrangian = kinds_of_lagrangian(e);
   e->energy_jumps = e->energy && discontinuities_of(e, e->energy).n > 0;
@@ -232,7 +240,8 @@ int eqns_check_numbers(const Eqns *e) {
     }
     if (num_is_imprecise(n)) {
       diag_error(m->diags, span, "rounding leaves fewer than six digits of a number in the equations of motion");
-      diag_help(m->diags, "numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits; write the result of such a "
+      diag_help(m->diags, "numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits; write "
+                          "the result of such a "
                           "difference as one number");
       return 0;
     }
@@ -245,8 +254,10 @@ static int check_method(const Eqns *e) {
   const Scene *sc = &e->m->scene;
   const MethodInfo *method = sc->method ? method_find(sc->method, strlen(sc->method)) : NULL;
   if (!method || !(method->flags & METHOD_TAYLOR) || e->smooth) return 1;
-  return diag_error(e->m->diags, sc->method_span, "the method `%s` needs a model without if, abs, sign, min, max, atan2 and tables"
-                    HELP "`dop853` does not", method->name);
+  return diag_error(e->m->diags, sc->method_span,
+                    "the method `%s` needs a model without if, abs, sign, min, max, atan2 and tables" HELP
+                    "`dop853` does not",
+                    method->name);
 }
 
 Eqns *eqns_derive(const Model *m) {

@@ -19,7 +19,8 @@ ExprJumps discontinuities_of(const Eqns *e, Expr x) {
 /* Symbols of the motion: coordinates, velocities, rates, and states that are coordinates of a model of first order. */
 static int is_of_motion(const Symbol *s, const void *model) {
   const Model *m = model;
-  return s->kind == SYM_COORD || s->kind == SYM_VEL || s->kind == SYM_RATE || (s->kind == SYM_STATE && m->states.at[s->index].coordinate);
+  return s->kind == SYM_COORD || s->kind == SYM_VEL || s->kind == SYM_RATE ||
+         (s->kind == SYM_STATE && m->states.at[s->index].coordinate);
 }
 
 /* Span of the node in the text; if the text does not contain it, that of L. */
@@ -40,14 +41,17 @@ static void warn_of_momentum(const Eqns *e, uint32_t i, const ExprJumps *said) {
   Name q = expr_symbol(e->g, eqns_coordinate(e, i))->name;
   for (uint32_t k = 0; k < all.n; k++) {
     if (is_among(said, all.at[k].node)) continue;
-    diag_warning(m->diags, place_in_text(m, all.at[k].node), "the momentum of `%s` jumps here, and the equations of motion lack the impulse of the jump",
-                 q);
-    diag_help(m->diags, "smooth it, or let an event of the same place set the velocity: `event NAME: t - 1 [s] rising { %s' = ... }`", q);
+    diag_warning(m->diags, place_in_text(m, all.at[k].node),
+                 "the momentum of `%s` jumps here, and the equations of motion lack the impulse of the jump", q);
+    diag_help(
+        m->diags,
+        "smooth it, or let an event of the same place set the velocity: `event NAME: t - 1 [s] rising { %s' = ... }`",
+        q);
   }
 }
 
-/* Constraints with a corner, as y = abs(x). A projection behind the corner gives the velocity after an impact without rebound, or, if a step
- * ends on the corner, an arbitrary one. */
+/* Constraints with a corner, as y = abs(x). A projection behind the corner gives the velocity after an impact
+ * without rebound, or, if a step ends on the corner, an arbitrary one. */
 static void warn_of_corners(const Eqns *e) {
   const Model *m = e->m;
   const Constraints *all = &e->constraints;
@@ -57,7 +61,9 @@ static void warn_of_corners(const Eqns *e) {
     for (uint32_t i = 0; i < jumps.n; i++) {
       if (!expr_contains(e->g, jumps.at[i].side, is_of_motion, m)) continue;
       Span place = expr_map_get(&m->written, jumps.at[i].node) ? place_in_text(m, jumps.at[i].node) : all->of[k]->span;
-      diag_warning(m->diags, place, "the constraint `%s` has a corner here, and no equation says how a motion passes it", all->of[k]->name);
+      diag_warning(m->diags, place,
+                   "the constraint `%s` has a corner here, and no equation says how a motion passes it",
+                   all->of[k]->name);
       diag_help(m->diags, "round it, as sqrt(x^2 + w^2) for abs(x); or use contacts, whose impacts have a law");
     }
   }
@@ -72,8 +78,10 @@ void discontinuity_warn(const Eqns *e) {
   ExprJumps all = discontinuities_of(e, m->lagrangian);
   for (uint32_t i = 0; i < all.n; i++) {
     if (!expr_contains(e->g, all.at[i].side, is_of_motion, m)) continue;
-    diag_warning(m->diags, place_in_text(m, all.at[i].node), "L jumps here, and the equations of motion lack the impulse of the jump");
-    diag_help(m->diags, "forces are derivatives on each side of the jump: smooth it, as tanh(x/w) for sign(x), or let an event or a contact give the impulse");
+    diag_warning(m->diags, place_in_text(m, all.at[i].node),
+                 "L jumps here, and the equations of motion lack the impulse of the jump");
+    diag_help(m->diags, "forces are derivatives on each side of the jump: smooth it, as tanh(x/w) for sign(x), or let "
+                        "an event or a contact give the impulse");
     vec_push(m->arena, &said, all.at[i]);
   }
   ExprJumps known = {said.at, said.n};

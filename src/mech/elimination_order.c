@@ -1,4 +1,5 @@
-/* Symbolic elimination on the sparsity pattern, counting operations. Candidates wait in a heap by the rule's key; stale entries are skipped. */
+/* Symbolic elimination on the sparsity pattern, counting operations. Candidates wait in a heap by the rule's key;
+ * stale entries are skipped. */
 #include "mech/elimination_order.h"
 
 #include "base/sparse_pattern.h"
@@ -59,17 +60,22 @@ static uint64_t key_of(const Elimination *e, uint32_t v) {
   switch (e->rule) {
     case ORDER_CHEAPEST: return cost_of(e, v);
     case ORDER_OUTERMOST: return definition ? (uint64_t)e->total - e->depth[v] : 0;
-    case ORDER_OUTERMOST_HUBS_LAST: return definition ? (uint64_t)e->total - e->depth[v] : e->H.rows[v].n > HUB ? e->total + cost_of(e, v) : 0;
+    case ORDER_OUTERMOST_HUBS_LAST:
+      return definition ? (uint64_t)e->total - e->depth[v] : e->H.rows[v].n > HUB ? e->total + cost_of(e, v) : 0;
     case ORDER_DEFINITIONS_FIRST: return definition ? 0 : 1 + cost_of(e, v);
   }
   return 0;
 }
 
-static int ready(const Elimination *e, uint32_t v) { return !e->gone[v] && !e->nusers[v] && (v >= e->n || sparse_get(&e->H, v, v)); }
+static int ready(const Elimination *e, uint32_t v) {
+  return !e->gone[v] && !e->nusers[v] && (v >= e->n || sparse_get(&e->H, v, v));
+}
 
 /* --- a heap --- */
 
-static int before(const Candidate *x, const Candidate *y) { return x->key != y->key ? x->key < y->key : x->var < y->var; }
+static int before(const Candidate *x, const Candidate *y) {
+  return x->key != y->key ? x->key < y->key : x->var < y->var;
+}
 
 static void push(Elimination *e, uint32_t v) {
   if (!ready(e, v)) return;

@@ -48,12 +48,15 @@ Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) { return entries_at(e->g, 
 
 uint32_t eqns_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
 
-SymId eqns_coordinate(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].q : e->m->states.at[e->first.at[i]].z; }
+SymId eqns_coordinate(const Eqns *e, uint32_t i) {
+  return e->n ? e->m->coords.at[i].q : e->m->states.at[e->first.at[i]].z;
+}
 
 SymId *eqns_symbols(const Eqns *e, int velocities) {
   uint32_t n = eqns_coordinates(e);
   SymId *s = ARENA_ARRAY(e->m->arena, SymId, n + 1);
-  for (uint32_t i = 0; i < n; i++) s[i] = !velocities ? eqns_coordinate(e, i) : e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate;
+  for (uint32_t i = 0; i < n; i++)
+    s[i] = !velocities ? eqns_coordinate(e, i) : e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate;
   return s;
 }
 

@@ -10,8 +10,8 @@
  *   M q'' = f + A^T lambda, A q'' = -(A' q' + b')
  * from L' = L + lambda c for holonomic constraints, from Lagrange-d'Alembert's principle for constraints on velocities.
  *
- * (dp/dq) q' + dp/dt is one forward directional derivative of p. Expressions contain q, q', z, t, parameters and inputs;
- * accelerations and rates occur in expects and outputs only. */
+ * (dp/dq) q' + dp/dt is one forward directional derivative of p. Expressions contain q, q', z, t, parameters and
+ * inputs; accelerations and rates occur in expects and outputs only. */
 #pragma once
 
 #include "model/model.h"
@@ -23,14 +23,16 @@ typedef struct {
 
 typedef VEC(MassEntry) Entries;
 
-/* Sorts entries by row and column, sums those at one place in their order, applies `rule` (or NULL) to the sums, and drops zeros. */
+/* Sorts entries by row and column, sums those at one place in their order, applies `rule` (or NULL) to the sums, and
+ * drops zeros. */
 void entries_collect(ExprGraph *g, Entries *t, Expr (*rule)(ExprGraph *, Expr));
 
 /* Element (i, j) of a symmetric matrix given by its lower triangle, row by row; the zero node where there is none. */
 Expr entries_at(ExprGraph *g, const Entries *t, uint32_t i, uint32_t j);
 
 /* M q'' = f as the program solves it. Variables 0 .. n-1 are the accelerations; variable n + k is the rate of
- * definition k, which contains velocities: C_k times the variables before it (mech/augmented_system.h). Without definitions H = M. */
+ * definition k, which contains velocities: C_k times the variables before it (mech/augmented_system.h). Without
+ * definitions H = M. */
 typedef struct {
   uint32_t n, ndefs;
   const Expr *defs;      /* [ndefs] */
@@ -48,7 +50,8 @@ typedef struct {
   const Expr *W;      /* [n * coordinates], 0 where it is zero */
 } SquareForms;
 
-/* Constraints in three groups: holonomic; on velocities with r = dF/dt, so that F(q, t) keeps its value at the start; other ones on velocities. */
+/* Constraints in three groups: holonomic; on velocities with r = dF/dt, so that F(q, t) keeps its value at the
+ * start; other ones on velocities. */
 typedef struct {
   uint32_t n, nholonomic, nkept; /* nkept: the first two groups together */
   const Constraint *const *of; /* [n] */
@@ -66,7 +69,9 @@ typedef struct {
   Entries form;          /* row by row, columns ascending: the two-form omega, less dQ/dq' */
   const Expr *rhs;       /* [n] right-hand side of form q' = rhs: dH/dq + dtheta/dt - Q at q' = 0 */
   const Expr *rates;     /* [n] q' as solved; Eqns.flow has the forms that are shortest together */
-  const Expr *velocity;  /* [Model.pairs] q' in q and p of a model that gives its Hamiltonian; the rate itself where forces on p contain rates */
+  /* [Model.pairs] q' in q and p of a model that gives its Hamiltonian; the rate itself where forces on p contain
+   * rates */
+  const Expr *velocity;
   const uint32_t *block; /* [n] block number; the form couples coordinates of one block only */
   const Expr *divisors;  /* [ndivisors] divisors of the rates that may be 0 */
   uint32_t ndivisors;
@@ -120,7 +125,8 @@ typedef struct {
   LinearSystem system;   /* the cheapest form of M q'' = f found; without multipliers */
   SquareForms squares;   /* factors of an M that is nearly singular somewhere */
   Constraints constraints;
-  const Expr *Q;         /* [n] generalised forces, already in f; first order: [first.n], with rates, already in rhs and form */
+  /* [n] generalised forces, already in f; first order: [first.n], with rates, already in rhs and form */
+  const Expr *Q;
   const Expr *flow;      /* [number of states] z', free of rates */
   Expr energy;           /* p q' - L, and the potential below, to show; 0 without coordinates */
   Expr potential;        /* of all forces, where the energy is conserved with it; 0: none (symmetry/charges.c) */
@@ -133,18 +139,23 @@ typedef struct {
   Switches switches;     /* none before switches_find */
   const Output *outputs; /* the scene's outputs, with the energy and charges filled in */
   uint32_t noutputs;
-  const ActionCurve *actions; /* [nactions] that outputs contain: inputs numbered behind those of the model and closed forms */
+  /* [nactions] that outputs contain: inputs numbered behind those of the model and closed forms */
+  const ActionCurve *actions;
   uint32_t nactions;
   const Expr *definitions; /* by symbol: expressions substituted for parameters that others define; or NULL */
-  int definite_by_values; /* definite_mass, or definite for parameters with the signs of their values; a run checks the pivots */
+  /* definite_mass, or definite for parameters with the signs of their values; a run checks the pivots */
+  int definite_by_values;
   VEC(ModelSize) sizes;  /* of the model, and inertias of parameters alone, each once: what a run checks at its start */
   int constant_mass, definite_mass, singular_mass, autonomous, smooth;
   int conserves_energy;  /* dE/dt = 0 is proved along all motions, for any inputs: charges[0] */
-  int energy_jumps;      /* the energy is discontinuous somewhere, as L is; the facts about it hold between such places */
-  int loses_energy;      /* not proved to be conserved; less the work of forces that are constant or have a potential,
-                          * the energy cannot rise while inputs stay; derive_equations.c leaves the forces to charges.c */
+  /* the energy is discontinuous somewhere, as L is; the facts about it hold between such places */
+  int energy_jumps;
+  /* not proved to be conserved; less the work of forces that are constant or have a potential, the energy cannot
+   * rise while inputs stay; derive_equations.c leaves the forces to charges.c */
+  int loses_energy;
   int timeless;          /* t occurs in the formulas of inputs only */
-  int separable;         /* constant mass, no velocity in f, no states, or H = T(p) + V(q, t): a splitting method can integrate it */
+  /* constant mass, no velocity in f, no states, or H = T(p) + V(q, t): a splitting method can integrate it */
+  int separable;
   int sum_hamiltonian;   /* H = T(p) + V(q, t) is given, whatever the forces */
 } Eqns;
 

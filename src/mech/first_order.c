@@ -1,5 +1,5 @@
-/* Two-form and right-hand side by differentiation, split into blocks of coupled coordinates; each block solved on the graph by
- * mech/antisymmetric_solve.h, as a doubled antisymmetric system where forces make it unsymmetric. */
+/* Two-form and right-hand side by differentiation, split into blocks of coupled coordinates; each block solved on
+ * the graph by mech/antisymmetric_solve.h, as a doubled antisymmetric system where forces make it unsymmetric. */
 #include "mech/first_order.h"
 
 #include <math.h>
@@ -30,7 +30,9 @@ typedef struct {
 static unsigned bit(SymKind kind) { return 1u << kind; }
 static int has_rates(const FirstOrderBuilder *w, Expr x) { return (expr_kinds(w->g, x) & bit(SYM_RATE)) != 0; }
 static const State *state_of(const FirstOrderBuilder *w, uint32_t i) { return &w->m->states.at[w->to->at[i]]; }
-static Expr at_rest(const FirstOrderBuilder *w, Expr x) { return expr_substitute(w->g, x, w->still, expr_symbol_count(w->g) + 1, "_at_rest"); }
+static Expr at_rest(const FirstOrderBuilder *w, Expr x) {
+  return expr_substitute(w->g, x, w->still, expr_symbol_count(w->g) + 1, "_at_rest");
+}
 
 static void find_coordinates(FirstOrderBuilder *w) {
   uint32_t *at = ARENA_ARRAY(w->arena, uint32_t, w->m->states.n + 1);
@@ -64,8 +66,10 @@ static int differentiate(FirstOrderBuilder *w) {
   w->e->energy = H;
   for (uint32_t i = 0; i < w->n; i++) {
     if (expr_kinds(w->g, theta[i]) & bit(SYM_INPUT)) {
-      return diag_error(w->m->diags, w->m->lagrangian_span, "the momentum of `%s` depends on an input, whose derivative would be needed"
-                        HELP "write the input as a formula of t inside L instead", state_of(w, i)->name);
+      return diag_error(w->m->diags, w->m->lagrangian_span,
+                        "the momentum of `%s` depends on an input, whose derivative would be needed" HELP
+                        "write the input as a formula of t inside L instead",
+                        state_of(w, i)->name);
     }
     Expr changing = expr_diff(w->g, theta[i], w->m->time);
     w->rhs[i] = expr_add(w->g, w->rhs[i], changing);
@@ -73,7 +77,9 @@ static int differentiate(FirstOrderBuilder *w) {
   return 1;
 }
 
-static void add_part(FirstOrderBuilder *w, uint32_t row, uint32_t col, Expr e) { vec_push(w->arena, &w->to->form, ((MassEntry){row, col, e})); }
+static void add_part(FirstOrderBuilder *w, uint32_t row, uint32_t col, Expr e) {
+  vec_push(w->arena, &w->to->form, ((MassEntry){row, col, e}));
+}
 
 /* omega_ij += dtheta_j/dq_i - dtheta_i/dq_j. */
 static int add_form(FirstOrderBuilder *w) {
@@ -82,9 +88,10 @@ static int add_form(FirstOrderBuilder *w) {
     for (uint32_t k = 0; k < d.n; k++) {
       uint32_t j = w->place[d.at[k].index];
       if (!j) {
-        diag_error(w->m->diags, w->m->lagrangian_span, "the momentum of `%s` depends on the state `%s`", state_of(w, i)->name,
-                   w->m->states.at[d.at[k].index].name);
-        diag_help(w->m->diags, "not yet: where L is linear in the velocities, a state can stand in terms without velocities");
+        diag_error(w->m->diags, w->m->lagrangian_span, "the momentum of `%s` depends on the state `%s`",
+                   state_of(w, i)->name, w->m->states.at[d.at[k].index].name);
+        diag_help(w->m->diags,
+                  "not yet: where L is linear in the velocities, a state can stand in terms without velocities");
         return 0;
       }
       Expr minus = expr_neg(w->g, d.at[k].e);
@@ -95,7 +102,8 @@ static int add_form(FirstOrderBuilder *w) {
   return 1;
 }
 
-/* Velocities of a model that gives its Hamiltonian, q' = dH/dp - Q_p, in place of q' in Q: so Q may depend on them in any way. */
+/* Velocities of a model that gives its Hamiltonian, q' = dH/dp - Q_p, in place of q' in Q: so Q may depend on them
+ * in any way. */
 static void replace_velocities(FirstOrderBuilder *w, Expr *Q) {
   const Model *m = w->m;
   SymId *rates = ARENA_ARRAY(w->arena, SymId, m->pairs.n + 1);
@@ -122,8 +130,11 @@ static int jumps_with_rates(const FirstOrderBuilder *w, Expr x) {
 }
 
 static int report_force(const FirstOrderBuilder *w, uint32_t i) {
-  diag_error(w->m->diags, w->m->lagrangian_span, "the force on `%s` is not linear in the velocities, and L has no inertia", state_of(w, i)->name);
-  diag_help(w->m->diags, "the velocities follow from a linear system where L is linear in them: write forces of q and t, or linear in q'");
+  diag_error(w->m->diags, w->m->lagrangian_span,
+             "the force on `%s` is not linear in the velocities, and L has no inertia", state_of(w, i)->name);
+  diag_help(
+      w->m->diags,
+      "the velocities follow from a linear system where L is linear in them: write forces of q and t, or linear in q'");
   return 0;
 }
 
@@ -135,7 +146,8 @@ static int add_forces(FirstOrderBuilder *w) {
   if (w->m->hamiltonian) replace_velocities(w, Q);
   for (uint32_t i = 0; i < w->n; i++) {
     if (jumps_with_rates(w, Q[i])) return report_force(w, i);
-    ExprPartials d = has_rates(w, Q[i]) ? expr_gradient_sparse(w->g, Q[i], SYM_RATE, w->m->states.n) : (ExprPartials){0};
+    ExprPartials d =
+        has_rates(w, Q[i]) ? expr_gradient_sparse(w->g, Q[i], SYM_RATE, w->m->states.n) : (ExprPartials){0};
     for (uint32_t k = 0; k < d.n; k++) {
       Expr part = simplify(w->g, d.at[k].e);
       if (has_rates(w, part)) return report_force(w, i);
@@ -203,12 +215,14 @@ static Blocks split(FirstOrderBuilder *w) {
 static const char *names_of(const FirstOrderBuilder *w, const Block *b, const uint32_t *which, uint32_t n) {
   enum { FEW = 12 };
   StrBuf names = strbuf(w->arena);
-  for (uint32_t i = 0; i < n && i < FEW; i++) sb_printf(&names, "%s`%s`", i ? ", " : "", state_of(w, b->at[which ? which[i] : i])->name);
+  for (uint32_t i = 0; i < n && i < FEW; i++)
+    sb_printf(&names, "%s`%s`", i ? ", " : "", state_of(w, b->at[which ? which[i] : i])->name);
   if (n > FEW) sb_puts(&names, " and others");
   return sb_text(&names);
 }
 
-/* A determinant that is not identically zero vanishes at a random state with probability zero. 1: regular, or defined at no state tried. */
+/* A determinant that is not identically zero vanishes at a random state with probability zero. 1: regular, or
+ * defined at no state tried. */
 static int is_regular(const FirstOrderBuilder *w, const Block *b) {
   enum { TRIES = 8 };
   long double *symbols = ARENA_ARRAY(w->arena, long double, expr_symbol_count(w->g) + 1);
@@ -230,15 +244,25 @@ static void report_singular(const FirstOrderBuilder *w, const Block *b) {
   Diags *d = w->m->diags;
   Span span = w->m->lagrangian_span;
   if (w->to->closed && w->n % 2) {
-    diag_error(d, span, "L is linear in the velocities, and has an odd number of coordinates, %u: they do not determine their motion", w->n);
-    diag_help(d, "of first order, coordinates come in pairs, as positions and momenta do; declare a coordinate whose rate is known as a `state` "
+    diag_error(
+        d, span,
+        "L is linear in the velocities, and has an odd number of coordinates, %u: they do not determine their motion",
+        w->n);
+    diag_help(d, "of first order, coordinates come in pairs, as positions and momenta do; declare a coordinate whose "
+                 "rate is known as a `state` "
                  "with a `flow`");
   } else if (b->n == 1) {
-    diag_error(d, state_of(w, b->at[0])->span, "L is linear in the velocities, and does not determine the velocity of `%s`", state_of(w, b->at[0])->name);
+    diag_error(d, state_of(w, b->at[0])->span,
+               "L is linear in the velocities, and does not determine the velocity of `%s`",
+               state_of(w, b->at[0])->name);
     diag_help(d, "terms like x*y' must couple the coordinates in pairs; total time derivatives do not count");
   } else {
-    diag_error(d, span, "L is linear in the velocities, and does not determine them: the two-form of %s is singular in every state", names_of(w, b, NULL, b->n));
-    diag_help(d, "with dL/dq_i' = theta_i, the matrix dtheta_j/dq_i - dtheta_i/dq_j must be regular; total time derivatives do not count");
+    diag_error(
+        d, span,
+        "L is linear in the velocities, and does not determine them: the two-form of %s is singular in every state",
+        names_of(w, b, NULL, b->n));
+    diag_help(d, "with dL/dq_i' = theta_i, the matrix dtheta_j/dq_i - dtheta_i/dq_j must be regular; total time "
+                 "derivatives do not count");
   }
 }
 
@@ -272,9 +296,11 @@ static int solve(FirstOrderBuilder *w, Block *b, Expr *rate) {
   int many = b->n > BLOCK_MOST;
   if (many || !antisymmetric_solve(w->g, m, b->A, b->b, name, &by)) {
     int all = many || !w->to->closed;
-    diag_error(w->m->diags, w->m->lagrangian_span, "not yet: L is linear in the velocities, and its two-form couples too many coordinates: %s",
+    diag_error(w->m->diags, w->m->lagrangian_span,
+               "not yet: L is linear in the velocities, and its two-form couples too many coordinates: %s",
                names_of(w, b, all ? NULL : by.left, all ? b->n : by.nleft));
-    diag_help(w->m->diags, "pairs whose entry cannot vanish are eliminated first: declare signs of parameters, `param G = 1 > 0`");
+    diag_help(w->m->diags,
+              "pairs whose entry cannot vanish are eliminated first: declare signs of parameters, `param G = 1 > 0`");
     return 0;
   }
   for (uint32_t i = 0; i < b->n; i++) rate[b->at[i]] = by.x[w->to->closed ? i : b->n + i];
@@ -282,14 +308,16 @@ static int solve(FirstOrderBuilder *w, Block *b, Expr *rate) {
   return 1;
 }
 
-/* Flows := the rates in the form with the fewest operations; substituted for rates in other flows, in events and their actions. */
+/* Flows := the rates in the form with the fewest operations; substituted for rates in other flows, in events and
+ * their actions. */
 static void put_flows(FirstOrderBuilder *w, const Model *m, const Expr *rate) {
   uint32_t nsymbols = expr_symbol_count(w->g) + 1;
   const Expr *best = lagrange_short_forms(w->e, rate, w->n);
   Expr *with = ARENA_ARRAY(w->arena, Expr, nsymbols), *flow = ARENA_ARRAY(w->arena, Expr, m->states.n + 1);
   for (uint32_t i = 0; i < w->n; i++) with[state_of(w, i)->rate] = flow[w->to->at[i]] = best[i];
   for (uint32_t i = 0; i < m->states.n; i++)
-    if (!w->place[i]) flow[i] = with[m->states.at[i].rate] = expr_substitute(w->g, m->states.at[i].flow, with, nsymbols, "");
+    if (!w->place[i])
+      flow[i] = with[m->states.at[i].rate] = expr_substitute(w->g, m->states.at[i].flow, with, nsymbols, "");
   Model *own = ARENA_NEW(w->arena, Model);
   *own = *m;
   own->events.at = ARENA_ARRAY(w->arena, Event, m->events.n + 1);
@@ -306,7 +334,8 @@ static void put_flows(FirstOrderBuilder *w, const Model *m, const Expr *rate) {
   }
   own->grips.at = ARENA_ARRAY(w->arena, Grip, m->grips.n + 1);
   for (uint32_t i = 0; i < m->grips.n; i++)
-    own->grips.at[i] = (Grip){expr_substitute(w->g, m->grips.at[i].velocity, with, nsymbols, ""), expr_substitute(w->g, m->grips.at[i].ratio, with, nsymbols, "")};
+    own->grips.at[i] = (Grip){expr_substitute(w->g, m->grips.at[i].velocity, with, nsymbols, ""),
+                              expr_substitute(w->g, m->grips.at[i].ratio, with, nsymbols, "")};
   w->e->m = own;
   w->e->flow = flow;
 }
@@ -316,8 +345,10 @@ static void put_energy(FirstOrderBuilder *w) {
   enum { SHORTEN_MAX = 64 };
   ExprGraph *g = w->g;
   Expr *terms = ARENA_ARRAY(w->arena, Expr, w->n + 1);
-  for (uint32_t i = 0; i < w->n; i++) terms[i] = expr_mul(g, w->to->theta[i], expr_symbol(g, state_of(w, i)->rate)->node);
-  Expr pv = expr_add_n(g, terms, w->n), size_pv = expr_fn(g, EX_ABS, pv), l = expr_sub(g, pv, w->e->energy), size_l = expr_fn(g, EX_ABS, l);
+  for (uint32_t i = 0; i < w->n; i++)
+    terms[i] = expr_mul(g, w->to->theta[i], expr_symbol(g, state_of(w, i)->rate)->node);
+  Expr pv = expr_add_n(g, terms, w->n), size_pv = expr_fn(g, EX_ABS, pv), l = expr_sub(g, pv, w->e->energy),
+       size_l = expr_fn(g, EX_ABS, l);
   w->e->energy_stable = w->n <= SHORTEN_MAX ? simplify_stable(g, w->e->energy) : w->e->energy;
   w->e->energy_scale = expr_add(g, size_pv, size_l);
 }

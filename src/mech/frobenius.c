@@ -1,5 +1,5 @@
-/* Integrability by Frobenius' theorem in numbers, on the kernel of all forms at random states; proved where all forms are closed. Potentials of
- * single exact forms by integration. */
+/* Integrability by Frobenius' theorem in numbers, on the kernel of all forms at random states; proved where all
+ * forms are closed. Potentials of single exact forms by integration. */
 #include "mech/frobenius.h"
 
 #include <math.h>
@@ -12,8 +12,8 @@
 
 enum { MOST_COORDINATES = 64 };
 
-/* The one-forms in coordinates (q, t), w = n + 1: coefficients form[m * w] and exterior derivatives d[m * w * w], antisymmetric. A zero
- * coefficient is the null Expr. */
+/* The one-forms in coordinates (q, t), w = n + 1: coefficients form[m * w] and exterior derivatives d[m * w * w],
+ * antisymmetric. A zero coefficient is the null Expr. */
 typedef struct {
   const Eqns *e;
   ExprGraph *g;
@@ -64,7 +64,8 @@ static Forms make_forms(const Eqns *e) {
 
 /* --- by value --- */
 
-/* Orthonormal basis[w * w]: first the span of the forms, then the directions that all forms allow. Returns the first row of the latter. */
+/* Orthonormal basis[w * w]: first the span of the forms, then the directions that all forms allow. Returns the first
+ * row of the latter. */
 static uint32_t allowed(const Forms *f, const long double *form, long double *basis) {
   const long double independent = 1e-9L;
   uint32_t n = 0, first;
@@ -100,11 +101,13 @@ static int vanishes(const Forms *f, uint32_t i, const long double *symbols, cons
   return 1;
 }
 
-/* Whether d omega_i vanishes on the allowed directions at a few random states; -1: no state on the constraints was found. */
+/* Whether d omega_i vanishes on the allowed directions at a few random states; -1: no state on the constraints was
+ * found. */
 static int looks_integrable(const Forms *f, StateSolver *solver) {
   enum { TRIES = 12, ENOUGH = 4 };
   Arena *arena = f->e->m->arena;
-  long double *symbols = ARENA_ARRAY(arena, long double, expr_symbol_count(f->g) + 1), *form = ARENA_ARRAY(arena, long double, (size_t)f->m * f->w);
+  long double *symbols = ARENA_ARRAY(arena, long double, expr_symbol_count(f->g) + 1),
+              *form = ARENA_ARRAY(arena, long double, (size_t)f->m * f->w);
   long double *basis = ARENA_ARRAY(arena, long double, (size_t)(f->w + 1) * f->w);
   int seen = 0;
   for (uint32_t seed = 1; seed <= TRIES && seen < ENOUGH; seed++) {

@@ -1,4 +1,5 @@
-/* Legendre transformation: M is inverted by cofactors, block by block; q' = M^-1 (p - a), and p' by differentiating H. */
+/* Legendre transformation: M is inverted by cofactors, block by block; q' = M^-1 (p - a), and p' by differentiating
+ * H. */
 #include "mech/hamilton.h"
 
 #include "base/union_find.h"
@@ -23,7 +24,8 @@ static Expr mul3(const LegendreTransform *w, Expr a, Expr b, Expr c) { return ex
 
 /* --- the inverse of M --- */
 
-static Expr minor2(const LegendreTransform *w, const Expr *m, uint32_t n, uint32_t r1, uint32_t r2, uint32_t c1, uint32_t c2) {
+static Expr minor2(const LegendreTransform *w, const Expr *m, uint32_t n, uint32_t r1, uint32_t r2, uint32_t c1,
+                   uint32_t c2) {
   Expr a = expr_mul(w->g, m[r1 * n + c1], m[r2 * n + c2]), b = expr_mul(w->g, m[r1 * n + c2], m[r2 * n + c1]);
   return simplify(w->g, expr_sub(w->g, a, b));
 }
@@ -35,7 +37,8 @@ static Expr cofactor(const LegendreTransform *w, const Expr *m, uint32_t n, uint
   return minor2(w, m, 3, (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3); /* cyclic: the sign is in it */
 }
 
-/* Inverse of the block of the n coordinates in at. 0: the block is singular, or an entry takes more than OPS_MOST operations. */
+/* Inverse of the block of the n coordinates in at. 0: the block is singular, or an entry takes more than OPS_MOST
+ * operations. */
 static int invert_block(LegendreTransform *w, const uint32_t *at, uint32_t n) {
   ExprGraph *g = w->g;
   Expr m[BLOCK_MOST * BLOCK_MOST], det = expr_int(g, 0);
@@ -63,7 +66,9 @@ static const char *invert(LegendreTransform *w, const char *what) {
     if (union_find_root(block, i) != i) continue;
     for (uint32_t k = i; k < w->n; k++) {
       if (union_find_root(block, k) != i) continue;
-      if (n == BLOCK_MOST) return arena_printf(w->arena, "%s couples more than three coordinates, too many for an inverse in closed form", what);
+      if (n == BLOCK_MOST)
+        return arena_printf(w->arena, "%s couples more than three coordinates, too many for an inverse in closed form",
+                            what);
       at[n++] = k;
     }
     if (!invert_block(w, at, n)) return arena_printf(w->arena, "the inverse of %s is too long in closed form", what);
@@ -115,10 +120,12 @@ static Hamilton hamilton_equations(LegendreTransform *w) {
   }
   Expr H = expr_add(g, short_form(w, kinetic), V);
   for (uint32_t i = 0; i < w->n; i++) {
-    Expr force = expr_neg(g, expr_diff(g, kinetic, w->q[i])), pull = expr_neg(g, expr_diff(g, V, w->q[i])), other = expr_replace(g, w->e->Q[i], w->v, w->rate, w->n);
+    Expr force = expr_neg(g, expr_diff(g, kinetic, w->q[i])), pull = expr_neg(g, expr_diff(g, V, w->q[i])),
+         other = expr_replace(g, w->e->Q[i], w->v, w->rate, w->n);
     for (uint32_t x = 0; x < k->A.n; x++)
       if (k->A.at[x].col == i) {
-        Expr lambda = node(w, k->of[k->A.at[x].row]->multiplier), A = expr_replace(g, k->A.at[x].e, w->v, w->rate, w->n);
+        Expr lambda = node(w, k->of[k->A.at[x].row]->multiplier),
+             A = expr_replace(g, k->A.at[x].e, w->v, w->rate, w->n);
         other = expr_add(g, other, expr_mul(g, A, lambda));
       }
     force = expr_add(g, short_form(w, force), short_form(w, pull));
@@ -142,7 +149,8 @@ Hamilton hamilton_derive(Eqns *e) {
   w.a = ARENA_ARRAY(a, Expr, n + 1), w.rate = ARENA_ARRAY(a, Expr, n + 1), w.force = ARENA_ARRAY(a, Expr, n + 1);
   w.inverse = ARENA_ARRAY(a, Expr, nn + 1);
   w.form = &e->mass;
-  for (uint32_t i = 0; i < e->n; i++) w.p[i] = expr_declare(e->g, SYM_LOCAL, i, arena_printf(a, "p_%s", e->m->coords.at[i].name), SIGN_UNKNOWN);
+  for (uint32_t i = 0; i < e->n; i++)
+    w.p[i] = expr_declare(e->g, SYM_LOCAL, i, arena_printf(a, "p_%s", e->m->coords.at[i].name), SIGN_UNKNOWN);
   Hamilton open = {.p = w.p, .why_not = is_quadratic(e) ? NULL : "L is not quadratic in velocities"};
   if (e->m->regularising) open.why_not = "the components of a rotation are not independent";
   if (e->singular_mass && !open.why_not) open.why_not = "the mass matrix is singular";
@@ -225,7 +233,8 @@ InverseLegendre lagrangian_derive(Eqns *e) {
   Entries W = momentum_hessian(&w, H);
   w.form = &W;
   if (w.n <= BLOCK_MOST) out.det = determinant(&w);
-  if (out.det && expr_is_zero(e->g, out.det)) out.why_not = "det d2H/dp2 = 0 in every state: velocities do not determine the momenta";
+  if (out.det && expr_is_zero(e->g, out.det))
+    out.why_not = "det d2H/dp2 = 0 in every state: velocities do not determine the momenta";
   for (uint32_t k = 0; k < W.n && !out.why_not; k++)
     if (expr_contains(e->g, W.at[k].e, is_one_of, &w)) out.why_not = "H is not quadratic in the momenta";
   if (!out.why_not) out.why_not = invert(&w, "d2H/dp2");

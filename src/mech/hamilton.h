@@ -1,11 +1,12 @@
 /* The Hamiltonian H(q, p, t) by the Legendre transformation of L: p_i = dL/dq_i', H = p q' - L.
  *
- * Symbolic where L is quadratic in velocities, L = q'Mq'/2 + a q' - V, and M has a short inverse in closed form, in blocks of at most three
- * coordinates. Then
+ * Symbolic where L is quadratic in velocities, L = q'Mq'/2 + a q' - V, and M has a short inverse in closed form, in
+ * blocks of at most three coordinates. Then
  *   H = (p - a) M^-1 (p - a)/2 + V,   q' = dH/dp,   p' = -dH/dq + Q + A^T lambda
  * with Q the generalised forces outside L, and lambda the multipliers of constraints.
  *
- * Back from H(q, p, t): q' = dH/dp = W p + b with W = d2H/dp2, and L = (q' - b) W^-1 (q' - b)/2 - H(q, 0, t), where H is quadratic in p. */
+ * Back from H(q, p, t): q' = dH/dp = W p + b with W = d2H/dp2, and L = (q' - b) W^-1 (q' - b)/2 - H(q, 0, t), where
+ * H is quadratic in p. */
 #pragma once
 
 #include "mech/eqns.h"
@@ -21,7 +22,8 @@ typedef struct {
 
 typedef struct {
   const char *why_not; /* reason for no closed form; NULL: there is one */
-  Expr det;            /* det d2H/dp2 of up to three coordinates, 0 node where it vanishes everywhere; 0: not computed */
+  /* det d2H/dp2 of up to three coordinates, 0 node where it vanishes everywhere; 0: not computed */
+  Expr det;
   Expr L;
   const Expr *p;       /* [pairs] momenta in q, q', t */
 } InverseLegendre;
@@ -29,5 +31,6 @@ typedef struct {
 /* Lagrangian of a model that gives its Hamiltonian. */
 InverseLegendre lagrangian_derive(Eqns *e);
 
-/* Needs coordinates with accelerations: for an L of first order the Legendre transformation is singular. May derive e->mass. */
+/* Needs coordinates with accelerations: for an L of first order the Legendre transformation is singular. May derive
+ * e->mass. */
 Hamilton hamilton_derive(Eqns *e);

@@ -1,4 +1,5 @@
-/* Reads the squares off L with lets expanded; then looks for a coordinate singularity of M, in numbers, at multiples of a quarter turn. */
+/* Reads the squares off L with lets expanded; then looks for a coordinate singularity of M, in numbers, at multiples
+ * of a quarter turn. */
 #include "mech/kinetic_squares.h"
 
 #include <math.h>
@@ -79,7 +80,8 @@ static int mass_at(const Eqns *e, const long double *symbols, long double *M) {
   return isfinite(sum);
 }
 
-/* Number of coordinates involved in the kernel of M at a state, scaled by size[n], roots of the inertia elsewhere. 0: M is regular. */
+/* Number of coordinates involved in the kernel of M at a state, scaled by size[n], roots of the inertia elsewhere.
+ * 0: M is regular. */
 static uint32_t singular_along(const Eqns *e, const long double *symbols, const long double *size) {
   long double M[COORDINATES_MOST * COORDINATES_MOST], null[COORDINATES_MOST], most = 0;
   uint32_t along = 0;
@@ -89,8 +91,8 @@ static uint32_t singular_along(const Eqns *e, const long double *symbols, const 
   return along;
 }
 
-/* Tries each coordinate in turn at 0 and at quarters of a turn, where angles have their poles; all other symbols are random. A singularity
- * along fewer than `least` coordinates does not count. */
+/* Tries each coordinate in turn at 0 and at quarters of a turn, where angles have their poles; all other symbols are
+ * random. A singularity along fewer than `least` coordinates does not count. */
 static int find_singularity(const Eqns *e, uint32_t least, MassPole *pole) {
   long double *symbols = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
   long double M[COORDINATES_MOST * COORDINATES_MOST], size[COORDINATES_MOST];
@@ -118,7 +120,9 @@ int mass_pole(const Eqns *e, MassPole *pole) { return find_singularity(e, 1, pol
 SquareForms kinetic_squares(const Eqns *e) {
   const SquareForms none = {0};
   if (e->n < 2 || e->n > COORDINATES_MOST || !e->m->lagrangian || e->m->constraints.n) return none;
-  Squares s = {.e = e, .W = ARENA_ARRAY(e->m->arena, Expr, FORMS_MOST * (size_t)e->n), .weight = ARENA_ARRAY(e->m->arena, Expr, FORMS_MOST)};
+  Squares s = {.e = e,
+               .W = ARENA_ARRAY(e->m->arena, Expr, FORMS_MOST * (size_t)e->n),
+               .weight = ARENA_ARRAY(e->m->arena, Expr, FORMS_MOST)};
   Expr L = expr_expand_defs(e->g, e->m->lagrangian), two = expr_int(e->g, 2);
   if (!collect_squares(&s, two, L) || s.of.n < e->n) return none;
   s.of.W = s.W;

@@ -1,5 +1,6 @@
-/* Momenta, forces and mass matrix by differentiation on the graph; the cheapest form of M q'' = f, dense or with definitions as
- * unknowns (mech/augmented_system.h); the error message for a mass matrix that is singular everywhere. */
+/* Momenta, forces and mass matrix by differentiation on the graph; the cheapest form of M q'' = f, dense or with
+ * definitions as unknowns (mech/augmented_system.h); the error message for a mass matrix that is singular
+ * everywhere. */
 #include "mech/lagrange.h"
 
 #include <math.h>
@@ -43,7 +44,8 @@ Expr *generalised_forces(const Model *m, SymKind q, SymKind v, uint32_t n) {
   return Q;
 }
 
-/* out[i] = dp[i]/dt without q''. The derivative of a definition without velocities is its full time derivative and named so: I', not I_drift. */
+/* out[i] = dp[i]/dt without q''. The derivative of a definition without velocities is its full time derivative and
+ * named so: I', not I_drift. */
 static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
   ExprGraph *g = e->g;
   const Expr *seed = explicit_direction(e);
@@ -52,14 +54,17 @@ static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
   VEC(Expr) still = {0};
   ExprList all = expr_topo(g, p, e->n);
   for (uint32_t i = 0; i < all.n; i++)
-    if (expr_op(g, all.at[i]) == EX_DEF && !(expr_kinds(g, all.at[i]) & (1u << SYM_VEL | 1u << SYM_STATE))) vec_push(e->m->arena, &still, all.at[i]);
+    if (expr_op(g, all.at[i]) == EX_DEF && !(expr_kinds(g, all.at[i]) & (1u << SYM_VEL | 1u << SYM_STATE)))
+      vec_push(e->m->arena, &still, all.at[i]);
   Expr *unused = ARENA_ARRAY(e->m->arena, Expr, still.n + 1);
   expr_tangent(g, still.at, still.n, seed, nseed, "'", &rates, unused);
   expr_tangent(g, p, e->n, seed, nseed, "_drift", &rates, out);
 }
 
 /* L plus the regularising terms of Model.regularising, for rotations and constraints. */
-static Expr regularised_lagrangian(const Eqns *e) { return e->m->regularising ? expr_add(e->g, e->m->lagrangian, e->m->regularising) : e->m->lagrangian; }
+static Expr regularised_lagrangian(const Eqns *e) {
+  return e->m->regularising ? expr_add(e->g, e->m->lagrangian, e->m->regularising) : e->m->lagrangian;
+}
 
 /* Fills p, dLdq and Q; returns the forces f as differentiated. */
 static Expr *differentiate(Eqns *e) {
@@ -137,7 +142,8 @@ static Entries rewritten(const Eqns *e, const Entries *from, Expr (*rule)(ExprGr
   return to;
 }
 
-/* Whether the rule changes a force. Of more than 64 forces a sample is tried: sums over all other bodies are slow to rewrite and look alike. */
+/* Whether the rule changes a force. Of more than 64 forces a sample is tried: sums over all other bodies are slow to
+ * rewrite and look alike. */
 static int changes_forces(const Eqns *e, const LinearSystem *s, Expr (*rule)(ExprGraph *, Expr)) {
   enum { MANY = 64, SAMPLE = 16 };
   uint32_t step = e->n > MANY ? e->n / SAMPLE : 1;
@@ -146,10 +152,12 @@ static int changes_forces(const Eqns *e, const LinearSystem *s, Expr (*rule)(Exp
   return 0;
 }
 
-/* Replaces *best if s with all entries rewritten takes no more operations. Operations are counted for all entries together: entries that
- * are shorter alone may share less. */
-static void try_form(Eqns *e, const LinearSystem *s, Expr (*rule)(ExprGraph *, Expr), LinearSystem *best, uint64_t *ops) {
-  LinearSystem t = {.n = s->n, .ndefs = s->ndefs, .defs = s->defs, .H = rewritten(e, &s->H, rule), .C = rewritten(e, &s->C, rule)};
+/* Replaces *best if s with all entries rewritten takes no more operations. Operations are counted for all entries
+ * together: entries that are shorter alone may share less. */
+static void try_form(Eqns *e, const LinearSystem *s, Expr (*rule)(ExprGraph *, Expr), LinearSystem *best,
+                     uint64_t *ops) {
+  LinearSystem t = {
+      .n = s->n, .ndefs = s->ndefs, .defs = s->defs, .H = rewritten(e, &s->H, rule), .C = rewritten(e, &s->C, rule)};
   Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n);
   int some = changes_forces(e, s, rule);
   for (uint32_t i = 0; i < e->n; i++) f[i] = some ? rule(e->g, s->f[i]) : s->f[i];
@@ -167,7 +175,8 @@ static Expr as_differentiated(ExprGraph *g, Expr x) {
 
 enum { LOOK_THROUGH = 1 };
 
-/* Cheapest form of s, its operations in *ops. how: LOOK_THROUGH or 0; looking through lets grows with the square of a chain's length. */
+/* Cheapest form of s, its operations in *ops. how: LOOK_THROUGH or 0; looking through lets grows with the square of
+ * a chain's length. */
 static LinearSystem best_form(Eqns *e, const LinearSystem *s, int how, uint64_t *ops) {
   LinearSystem best = *s;
   *ops = UINT64_MAX;
@@ -177,7 +186,8 @@ static LinearSystem best_form(Eqns *e, const LinearSystem *s, int how, uint64_t 
   return best;
 }
 
-/* Whether solving with the dense mass matrix takes more than MANY_TIMES the operations of the augmented system; M is then not derived. */
+/* Whether solving with the dense mass matrix takes more than MANY_TIMES the operations of the augmented system; M is
+ * then not derived. */
 static int dense_is_too_costly(Eqns *e, LinearSystem *lifted) {
   enum { FEW_COORDINATES = 12, MANY_TIMES = 3 };
   if (e->n <= FEW_COORDINATES || !lifted->ndefs || e->m->expects.n) return 0;
@@ -244,7 +254,8 @@ static void slow_state(const Eqns *e, uint32_t seed, long double *values) {
   for (uint32_t i = 0; i < e->n; i++) values[e->m->coords.at[i].v] *= 0.1L;
 }
 
-/* Names of the coordinates whose rows of the mass matrix are zero, if L contains the velocity of one of them; else NULL. */
+/* Names of the coordinates whose rows of the mass matrix are zero, if L contains the velocity of one of them; else
+ * NULL. */
 static const char *coordinates_without_inertia(const Eqns *e) {
   const Model *m = e->m;
   StrBuf names = strbuf(m->arena);
@@ -272,26 +283,35 @@ static void report_singular(const Eqns *e, const long double *null) {
   const char *light = coordinates_without_inertia(e);
   if (e->mass.n == 0 && !(expr_kinds(e->g, m->lagrangian) & 1u << SYM_VEL)) {
     diag_error(d, m->lagrangian_span, "the mass matrix is zero: L does not contain velocities");
-    diag_help(d, "nothing moves without kinetic energy, or terms like x*y' that make a coordinate the momentum of another");
+    diag_help(
+        d, "nothing moves without kinetic energy, or terms like x*y' that make a coordinate the momentum of another");
   } else if (e->mass.n == 0) {
-    diag_error(d, m->lagrangian_span, "the mass matrix is zero: all terms that are not linear in the velocities cancel");
+    diag_error(d, m->lagrangian_span,
+               "the mass matrix is zero: all terms that are not linear in the velocities cancel");
     diag_help(d, "write L linear in the velocities: the equations are then of first order, without accelerations");
   } else if (light) {
-    diag_error(d, m->lagrangian_span, "the mass matrix is singular in every state: without inertia: %s; L is linear in these velocities, not in the others", light);
-    diag_help(d, "not yet: Lagrangians of mixed order; give all coordinates inertia, or none, or declare a coordinate that follows at once as a `state` with a `flow`");
+    diag_error(d, m->lagrangian_span,
+               "the mass matrix is singular in every state: without inertia: %s; L is linear in these velocities, not "
+               "in the others",
+               light);
+    diag_help(d, "not yet: Lagrangians of mixed order; give all coordinates inertia, or none, or declare a coordinate "
+                 "that follows at once as a `state` with a `flow`");
   } else if (involved == 1) {
-    diag_error(d, m->coords.at[last].span, "the mass matrix is singular in every state: `%s` has no inertia%s", m->coords.at[last].name,
-               m->constraints.n ? ", and no constraint moves it" : "");
-    diag_help(d, "L contains no `%s'^2`; add its kinetic energy, or declare it as a `let` or a `state`", m->coords.at[last].name);
+    diag_error(d, m->coords.at[last].span, "the mass matrix is singular in every state: `%s` has no inertia%s",
+               m->coords.at[last].name, m->constraints.n ? ", and no constraint moves it" : "");
+    diag_help(d, "L contains no `%s'^2`; add its kinetic energy, or declare it as a `let` or a `state`",
+              m->coords.at[last].name);
   } else {
-    diag_error(d, m->kinetic_span.end ? m->kinetic_span : m->lagrangian_span, "the mass matrix is singular in every state: one combination of %s has no inertia%s", sb_text(&names),
+    diag_error(d, m->kinetic_span.end ? m->kinetic_span : m->lagrangian_span,
+               "the mass matrix is singular in every state: one combination of %s has no inertia%s", sb_text(&names),
                m->constraints.n ? ", and no constraint moves it" : "");
     diag_help(d, "the kinetic energy depends on fewer combinations of velocities than there are coordinates");
   }
 }
 
 /* M and all = [M -A^T; A 0] at a state. 0: an entry of M is not finite. */
-static int system_at(const Eqns *e, const Expr *entries, const long double *symbols, long double *values, SparseElements *M, SparseElements *all) {
+static int system_at(const Eqns *e, const Expr *entries, const long double *symbols, long double *values,
+                     SparseElements *M, SparseElements *all) {
   int finite = 1;
   M->n = all->n = 0;
   expr_eval(e->g, entries, e->mass.n + e->constraints.A.n, symbols, values);
@@ -302,8 +322,8 @@ static int system_at(const Eqns *e, const Expr *entries, const long double *symb
   return finite;
 }
 
-/* A determinant that is not identically zero vanishes at a random state with probability zero. Large matrices are judged in the run,
- * by their factorization. */
+/* A determinant that is not identically zero vanishes at a random state with probability zero. Large matrices are
+ * judged in the run, by their factorization. */
 int lagrange_check_mass(Eqns *e) {
   enum { LARGEST = 200 };
   uint32_t n = e->n;
@@ -313,7 +333,8 @@ int lagrange_check_mass(Eqns *e) {
   uint32_t m = e->constraints.n, roots = e->mass.n + A->n;
   Expr *entries = ARENA_ARRAY(arena, Expr, roots + 1);
   for (uint32_t k = 0; k < roots; k++) entries[k] = k < e->mass.n ? e->mass.at[k].e : A->at[k - e->mass.n].e;
-  long double *symbols = ARENA_ARRAY(arena, long double, expr_symbol_count(e->g) + 1), *values = ARENA_ARRAY(arena, long double, roots + 1);
+  long double *symbols = ARENA_ARRAY(arena, long double, expr_symbol_count(e->g) + 1),
+              *values = ARENA_ARRAY(arena, long double, roots + 1);
   long double *null = ARENA_ARRAY(arena, long double, n);
   SparseElements M = {0}, all = {0};
   int judged = 0;

@@ -9,10 +9,12 @@ void lagrange_momenta_and_forces(Eqns *e);
 /* Fills e->squares. Call last: nodes made here must not change the order of terms in what is printed. */
 void lagrange_squares(Eqns *e);
 
-/* Short forms of raw[n] if they take no more operations together, else raw: entries that are shorter one by one may share less. */
+/* Short forms of raw[n] if they take no more operations together, else raw: entries that are shorter one by one may
+ * share less. */
 const Expr *lagrange_short_forms(const Eqns *e, const Expr *raw, uint32_t n);
 
-/* 0: the mass matrix is singular on the kernel of the constraints at every state tried, and m->diags says why. Sets e->singular_mass. */
+/* 0: the mass matrix is singular on the kernel of the constraints at every state tried, and m->diags says why. Sets
+ * e->singular_mass. */
 int lagrange_check_mass(Eqns *e);
 
 /* Fills e->mass where the program does without it. */

@@ -11,12 +11,13 @@ static void add_rows(const Eqns *e, Variation *x, SecondPart part, const Expr *o
   int triangle = part == SECOND_QQ || part == SECOND_VV;
   for (uint32_t i = 0; i < e->n; i++) {
     ExprPartials row = expr_gradient_sparse(e->g, of[i], kind, triangle ? i + 1 : e->n);
-    for (uint32_t k = 0; k < row.n; k++) vec_push(e->m->arena, &x->second, ((SecondEntry){part, i, row.at[k].index, row.at[k].e}));
+    for (uint32_t k = 0; k < row.n; k++)
+      vec_push(e->m->arena, &x->second, ((SecondEntry){part, i, row.at[k].index, row.at[k].e}));
   }
 }
 
-/* With up to this many entries a coordinate, entries are ordered by diagonals: along one, the entries of a family are alike and become
- * a loop. Full matrices roll better row by row. */
+/* With up to this many entries a coordinate, entries are ordered by diagonals: along one, the entries of a family
+ * are alike and become a loop. Full matrices roll better row by row. */
 enum { FEW_A_ROW = 8 };
 
 static int by_diagonal(const void *a, const void *b) {
@@ -55,7 +56,8 @@ Variation *lagrangian_hessian_derive(const Eqns *e) {
   add_rows(e, x, SECOND_FQ, e->Q, SYM_COORD);
   add_rows(e, x, SECOND_FV, e->Q, SYM_VEL);
   shorten(e, x);
-  if (x->second.n && x->second.n <= FEW_A_ROW * e->n) qsort(x->second.at, x->second.n, sizeof *x->second.at, by_diagonal);
+  if (x->second.n && x->second.n <= FEW_A_ROW * e->n)
+    qsort(x->second.at, x->second.n, sizeof *x->second.at, by_diagonal);
   x->dLdq = lagrange_short_forms(e, first, 2 * e->n);
   x->momenta = x->dLdq + e->n;
   x->forces = e->Q;

@@ -1,10 +1,11 @@
-/* Derivatives for variational integrators (discrete mechanics): first derivatives of L, generalised forces, and the second
- * derivatives of L and first derivatives of the forces. Derived when a method of integration needs them. */
+/* Derivatives for variational integrators (discrete mechanics): first derivatives of L, generalised forces, and the
+ * second derivatives of L and first derivatives of the forces. Derived when a method of integration needs them. */
 #pragma once
 
 #include "mech/eqns.h"
 
-/* Kinds of entries: d2L/dq dq, d2L/dq' dq, d2L/dq' dq', dQ/dq, dQ/dq'. QQ and VV are lower triangles; a row of VQ belongs to a velocity. */
+/* Kinds of entries: d2L/dq dq, d2L/dq' dq, d2L/dq' dq', dQ/dq, dQ/dq'. QQ and VV are lower triangles; a row of VQ
+ * belongs to a velocity. */
 typedef enum { SECOND_QQ, SECOND_VQ, SECOND_VV, SECOND_FQ, SECOND_FV } SecondPart;
 
 typedef struct {

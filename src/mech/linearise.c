@@ -1,5 +1,5 @@
-/* Eqns -> partial derivatives of the equations of motion: reverse mode over the graph of each residual, so that the work
- * follows the nonzero entries. M q'' in two forms, entries in three; the fewest operations win. */
+/* Eqns -> partial derivatives of the equations of motion: reverse mode over the graph of each residual, so that the
+ * work follows the nonzero entries. M q'' in two forms, entries in three; the fewest operations win. */
 #include "mech/linearise.h"
 
 #include "mech/lagrange.h"
@@ -33,7 +33,8 @@ static Expr *inertia_of_mass(const Eqns *e) {
 /* M q'' as the directional derivative of p along q' += q'': as long as the text of L, even where M is full. */
 static Expr *inertia_of_momenta(const Eqns *e) {
   const Model *m = e->m;
-  Expr *seed = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(e->g) + 1), *inertia = ARENA_ARRAY(m->arena, Expr, e->n + 1);
+  Expr *seed = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(e->g) + 1),
+       *inertia = ARENA_ARRAY(m->arena, Expr, e->n + 1);
   for (uint32_t i = 0; i < e->n; i++) seed[m->coords.at[i].v] = expr_symbol(e->g, m->coords.at[i].a)->node;
   expr_tangent(e->g, e->p, e->n, seed, expr_symbol_count(e->g) + 1, "_inertia", NULL, inertia);
   return inertia;
@@ -45,7 +46,8 @@ static Expr *inertia_of_momenta(const Eqns *e) {
 static ExprPartials by_others(const Eqns *e, Expr x, PartialsBy by) {
   const Model *m = e->m;
   VEC(ExprPartial) all = {0};
-  ExprPartials d = by == BY_INPUTS ? expr_gradient_sparse(e->g, x, SYM_INPUT, m->inputs.n) : expr_gradient_sparse(e->g, x, SYM_PARAM, m->params.n);
+  ExprPartials d = by == BY_INPUTS ? expr_gradient_sparse(e->g, x, SYM_INPUT, m->inputs.n)
+                                   : expr_gradient_sparse(e->g, x, SYM_PARAM, m->params.n);
   for (uint32_t k = 0; k < d.n; k++) {
     if (by == BY_PARAMS && m->params.at[d.at[k].index].fixed) continue;
     uint32_t col = by == BY_PARAMS ? m->params.at[d.at[k].index].place : d.at[k].index;
@@ -64,7 +66,8 @@ static ExprPartials by_state(const Eqns *e, Expr x) {
   VEC(ExprPartial) all = {0};
   for (int b = 0; b < 3; b++) {
     ExprPartials d = expr_gradient_sparse(e->g, x, blocks[b].kind, blocks[b].n);
-    for (uint32_t k = 0; k < d.n; k++) vec_push(m->arena, &all, ((ExprPartial){blocks[b].first + d.at[k].index, d.at[k].e}));
+    for (uint32_t k = 0; k < d.n; k++)
+      vec_push(m->arena, &all, ((ExprPartial){blocks[b].first + d.at[k].index, d.at[k].e}));
   }
   return (ExprPartials){all.at, all.n};
 }
@@ -87,15 +90,19 @@ static PartialList differentiate(const Eqns *e, const Expr *inertia, PartialsBy 
   uint32_t nz = e->m->states.n;
   const Expr *constraints = constraint_residuals(e);
   for (uint32_t i = 0; i < e->n + nz + e->constraints.n; i++) {
-    Expr x = i < e->n ? expr_sub(e->g, e->f[i], inertia[i]) : i < e->n + nz ? e->flow[i - e->n] : constraints[i - e->n - nz];
+    Expr x = i < e->n        ? expr_sub(e->g, e->f[i], inertia[i])
+             : i < e->n + nz ? e->flow[i - e->n]
+                             : constraints[i - e->n - nz];
     ExprPartials d = by == BY_STATE ? by_state(e, x) : by_others(e, x, by);
     for (uint32_t k = 0; k < d.n; k++) vec_push(e->m->arena, &found, ((Partial){i, d.at[k].index, d.at[k].e}));
   }
   return found;
 }
 
-/* Replaces *best by the list with its entries rewritten (rule NULL: as they are) if M and list together take fewer operations. */
-static void try_form(const Eqns *e, const PartialList *from, Expr (*rule)(ExprGraph *, Expr), PartialList *best, uint64_t *ops) {
+/* Replaces *best by the list with its entries rewritten (rule NULL: as they are) if M and list together take fewer
+ * operations. */
+static void try_form(const Eqns *e, const PartialList *from, Expr (*rule)(ExprGraph *, Expr), PartialList *best,
+                     uint64_t *ops) {
   PartialList to = {0};
   VEC(Expr) roots = {0};
   for (uint32_t k = 0; k < from->n; k++) {
@@ -158,18 +165,23 @@ Partials eqns_output_partials(const Eqns *e, const Expr *x, uint32_t n) {
   const struct {
     SymKind kind;
     uint32_t n, first; /* first column */
-  } blocks[] = {{SYM_INPUT, m->inputs.n, ny}, {SYM_ACC, e->n, ny + m->inputs.n}, {SYM_RATE, m->states.n, ny + m->inputs.n + e->n}};
+  } blocks[] = {{SYM_INPUT, m->inputs.n, ny},
+                {SYM_ACC, e->n, ny + m->inputs.n},
+                {SYM_RATE, m->states.n, ny + m->inputs.n + e->n}};
   uint32_t first_param = ny + m->inputs.n + e->n + m->states.n;
   PartialList found = {0};
   for (uint32_t i = 0; i < n; i++) {
     ExprPartials d = by_state(e, x[i]);
-    for (uint32_t k = 0; k < d.n; k++) vec_push(m->arena, &found, ((Partial){i, d.at[k].index, simplify_shallow(e->g, d.at[k].e)}));
+    for (uint32_t k = 0; k < d.n; k++)
+      vec_push(m->arena, &found, ((Partial){i, d.at[k].index, simplify_shallow(e->g, d.at[k].e)}));
     for (int b = 0; b < 3; b++) {
       d = expr_gradient_sparse(e->g, x[i], blocks[b].kind, blocks[b].n);
-      for (uint32_t k = 0; k < d.n; k++) vec_push(m->arena, &found, ((Partial){i, blocks[b].first + d.at[k].index, simplify_shallow(e->g, d.at[k].e)}));
+      for (uint32_t k = 0; k < d.n; k++)
+        vec_push(m->arena, &found, ((Partial){i, blocks[b].first + d.at[k].index, simplify_shallow(e->g, d.at[k].e)}));
     }
     d = by_others(e, x[i], BY_PARAMS);
-    for (uint32_t k = 0; k < d.n; k++) vec_push(m->arena, &found, ((Partial){i, first_param + d.at[k].index, simplify_shallow(e->g, d.at[k].e)}));
+    for (uint32_t k = 0; k < d.n; k++)
+      vec_push(m->arena, &found, ((Partial){i, first_param + d.at[k].index, simplify_shallow(e->g, d.at[k].e)}));
   }
   return (Partials){found.at, found.n};
 }
@@ -180,7 +192,8 @@ typedef VEC(EventPartial) EventPartialList;
 
 static void add_event(const Eqns *e, EventPartialList *to, uint32_t event, int row, uint32_t col, Expr value) {
   value = simplify_shallow(e->g, value);
-  if (!expr_is_zero(e->g, value) || row == (int)col) vec_push(e->m->arena, to, ((EventPartial){event, row, col, value}));
+  if (!expr_is_zero(e->g, value) || row == (int)col)
+    vec_push(e->m->arena, to, ((EventPartial){event, row, col, value}));
 }
 
 /* Derivatives of one value by the state, then by the time. */

@@ -16,8 +16,9 @@ typedef struct {
 
 /* The exact linearisation: nonzero derivatives of the residuals
  *   r_i = f_i - sum_j M_ij q_j''   (i < n),   r_(n + k) = flow_k
- * at fixed q'', row by row, columns ascending. The Jacobian of the accelerations is dq''/dy = M^-1 dr/dy. Entries contain the symbols q''.
- * With constraints also r_(n + states + k) = demand_k - sum_j A_kj q_j'', at fixed multipliers, whose symbols are in entries of the first n rows:
+ * at fixed q'', row by row, columns ascending. The Jacobian of the accelerations is dq''/dy = M^-1 dr/dy. Entries
+ * contain the symbols q''. With constraints also r_(n + states + k) = demand_k - sum_j A_kj q_j'', at fixed
+ * multipliers, whose symbols are in entries of the first n rows:
  *   M dq'' - A^T dlambda = dr_i,   A dq'' = dr_(n + states + k). */
 Partials eqns_linearise(Eqns *e);
 
@@ -25,8 +26,8 @@ Partials eqns_linearise(Eqns *e);
 typedef enum { BY_STATE, BY_INPUTS, BY_PARAMS } PartialsBy;
 Partials eqns_partials(Eqns *e, PartialsBy by);
 
-/* Derivatives of x[0..n), such as outputs: row: the index; columns: the components of y, then inputs, q'', z' and the parameters that are not fixed,
- * each as if it were free. */
+/* Derivatives of x[0..n), such as outputs: row: the index; columns: the components of y, then inputs, q'', z' and
+ * the parameters that are not fixed, each as if it were free. */
 Partials eqns_output_partials(const Eqns *e, const Expr *x, uint32_t n);
 
 /* Forces M q'' - f that give the accelerations q'', [n], in the symbols q''; those of constraints are part of them. */
@@ -34,9 +35,10 @@ const Expr *eqns_inverse_dynamics(Eqns *e);
 /* f without multipliers, [n]. */
 const Expr *eqns_forces(const Eqns *e);
 
-/* Derivative of an event: of its function g (row < 0) or of the value that an action assigns to component `row` of [q|v|z], by component `col` of
- * the state, or by time (col = 2 n + states). Of g the nonzero ones; of a value also that by its own component, so that each assigned row is there.
- * Events that depend on inputs have none, since the compiler does not know the inputs' values. */
+/* Derivative of an event: of its function g (row < 0) or of the value that an action assigns to component `row` of
+ * [q|v|z], by component `col` of the state, or by time (col = 2 n + states). Of g the nonzero ones; of a value also
+ * that by its own component, so that each assigned row is there. Events that depend on inputs have none, since the
+ * compiler does not know the inputs' values. */
 typedef struct {
   uint32_t event;
   int row;

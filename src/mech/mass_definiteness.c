@@ -1,4 +1,5 @@
-/* Positive definiteness from L = sum of terms: signs of the terms, and squares against products of velocities (Gershgorin). */
+/* Positive definiteness from L = sum of terms: signs of the terms, and squares against products of velocities
+ * (Gershgorin). */
 #include "mech/mass_definiteness.h"
 
 #include <math.h>
@@ -18,8 +19,9 @@ typedef struct {
   Expr factor, form;
 } Part;
 
-/* L multiplied out into c*factor*u*v. Since |u*v| <= (u^2 + v^2)/2, each product is subtracted from the coefficients of the squares with the
- * same factor; these must stay nonnegative (Gershgorin's circles, one set for each factor). */
+/* L multiplied out into c*factor*u*v. Since |u*v| <= (u^2 + v^2)/2, each product is subtracted from the coefficients
+ * of the squares with the same factor; these must stay nonnegative (Gershgorin's circles, one set for each factor).
+ * */
 typedef struct {
   const Eqns *e;
   VEC(Part) open; /* parts to be multiplied out */
@@ -78,7 +80,8 @@ static int add_quadratic_term(SquareBounds *q, Expr factor, Num c, Expr term) {
 }
 
 static int add_term(SquareBounds *q, Expr factor, Num c, Expr term) {
-  return !has_velocities(q->e->g, term) || add_quadratic_term(q, factor, c, term) || is_linear_in_velocities(q->e->g, term, q->e->n);
+  return !has_velocities(q->e->g, term) || add_quadratic_term(q, factor, c, term) ||
+         is_linear_in_velocities(q->e->g, term, q->e->n);
 }
 
 static int squares_dominate(const Eqns *e, Expr l) {
@@ -101,7 +104,8 @@ static int squares_dominate(const Eqns *e, Expr l) {
 }
 
 int mass_is_definite(const Eqns *e, const LinearSystem *s, Expr lagrangian) {
-  /* A nonnegative form that is quadratic in q' has a positive semidefinite Hessian; quadratic: the entries of H and C contain no velocities. */
+  /* A nonnegative form that is quadratic in q' has a positive semidefinite Hessian; quadratic: the entries of H and
+   * C contain no velocities. */
   for (uint32_t i = 0; i < s->H.n; i++)
     if (has_velocities(e->g, s->H.at[i].e)) return 0;
   for (uint32_t i = 0; i < s->C.n; i++)
@@ -132,7 +136,8 @@ static int may_be_positive(const Eqns *e, Expr entry) {
   uint32_t n = expr_symbol_count(e->g) + 1;
   Expr *with = ARENA_ARRAY(m->arena, Expr, n);
   for (uint32_t i = 0; i < m->params.n; i++)
-    if (expr_symbol(e->g, m->params.at[i].sym)->sign == SIGN_UNKNOWN) with[m->params.at[i].sym] = expr_fn(e->g, EX_EXP, expr_symbol(e->g, m->params.at[i].sym)->node);
+    if (expr_symbol(e->g, m->params.at[i].sym)->sign == SIGN_UNKNOWN)
+      with[m->params.at[i].sym] = expr_fn(e->g, EX_EXP, expr_symbol(e->g, m->params.at[i].sym)->node);
   ExprSign sign = expr_sign(e->g, expr_substitute(e->g, entry, with, n, ""));
   return sign != SIGN_NEGATIVE && sign != SIGN_NONPOSITIVE;
 }
@@ -177,7 +182,8 @@ void mass_warn_nonpositive(const Eqns *e) {
     expr_map_set(&judged, x.e, 1);
     expr_eval(e->g, &x.e, 1, value, &inertia);
     if ((!(inertia < 0) && !(inertia == 0 && !m->constraints.n)) || !may_be_positive(e, x.e)) continue;
-    diag_warning(m->diags, m->coords.at[x.row].span, "the values of the parameters make the inertia of `%s` %s", m->coords.at[x.row].name, inertia < 0 ? "negative" : "zero");
+    diag_warning(m->diags, m->coords.at[x.row].span, "the values of the parameters make the inertia of `%s` %s",
+                 m->coords.at[x.row].name, inertia < 0 ? "negative" : "zero");
     diag_help(m->diags, "give them values that make %s positive; with `> 0` after a parameter a run refuses others",
               expr_text(e->g, x.e));
   }
@@ -203,10 +209,16 @@ static uint32_t without_inertia(const Eqns *e, const long double *at) {
 
 int mass_regular_at_start(const Eqns *e) {
   const Model *m = e->m;
-  if (!e->n || !e->mass_known || e->constant_mass || m->constraints.n || e->singular_mass || !m->scene.span.end) return 1; /* constant: mass_warn_nonpositive */
+  /* constant: mass_warn_nonpositive */
+  if (!e->n || !e->mass_known || e->constant_mass || m->constraints.n || e->singular_mass || !m->scene.span.end)
+    return 1;
   uint32_t k = without_inertia(e, start_requested(e));
   if (k == e->n) return 1;
-  diag_error(m->diags, m->scene.span, "the mass matrix is singular at the start of the scene `%s`, where `%s` has no inertia: no acceleration follows there", m->scene.name, m->coords.at[k].name);
-  diag_help(m->diags, "begin elsewhere, as with `start %s = 0.1`, or describe this position by other coordinates", m->coords.at[k].name);
+  diag_error(m->diags, m->scene.span,
+             "the mass matrix is singular at the start of the scene `%s`, where `%s` has no inertia: no acceleration "
+             "follows there",
+             m->scene.name, m->coords.at[k].name);
+  diag_help(m->diags, "begin elsewhere, as with `start %s = 0.1`, or describe this position by other coordinates",
+            m->coords.at[k].name);
   return 0;
 }

@@ -1,5 +1,5 @@
-/* Linear algebra on normal forms where the system is small; otherwise a combination of rows, whose coefficients numbers at states
- * suggest. Numbers refute, and never prove. */
+/* Linear algebra on normal forms where the system is small; otherwise a combination of rows, whose coefficients
+ * numbers at states suggest. Numbers refute, and never prove. */
 #include "mech/motion_proof.h"
 
 #include <math.h>
@@ -18,8 +18,9 @@ static Expr with_definitions(const Eqns *e, Expr x) {
   return e->definitions ? expr_substitute(e->g, x, e->definitions, expr_symbol_count(e->g) + 1, "") : x;
 }
 
-/* Proves that the difference is 0 by solving M q'' - A^T lambda = f, A q'' = demand for accelerations and multipliers. Redundant constraints leave
- * that undecided; so would contacts, whose rows are zero while they are open and are left out. */
+/* Proves that the difference is 0 by solving M q'' - A^T lambda = f, A q'' = demand for accelerations and
+ * multipliers. Redundant constraints leave that undecided; so would contacts, whose rows are zero while they are
+ * open and are left out. */
 static Verdict prove_by_solving(const Eqns *e, Expr difference) {
   const Model *m = e->m;
   const Constraints *c = &e->constraints;
@@ -27,7 +28,8 @@ static Verdict prove_by_solving(const Eqns *e, Expr difference) {
   uint32_t n = e->n, w = n, *row = ARENA_ARRAY(m->arena, uint32_t, c->n + 1);
   for (uint32_t i = 0; i < c->n; i++) row[i] = UINT32_MAX;
   for (uint32_t k = 0; k < c->A.n; k++)
-    if (row[c->A.at[k].row] == UINT32_MAX && !expr_is_zero(g, with_definitions(e, c->A.at[k].e))) row[c->A.at[k].row] = w++;
+    if (row[c->A.at[k].row] == UINT32_MAX && !expr_is_zero(g, with_definitions(e, c->A.at[k].e)))
+      row[c->A.at[k].row] = w++;
   Expr *M = ARENA_ARRAY(m->arena, Expr, (size_t)w * w + 1), *f = ARENA_ARRAY(m->arena, Expr, w + 1);
   SymId *acc = ARENA_ARRAY(m->arena, SymId, w + 1);
   for (size_t i = 0; i < (size_t)w * w; i++) M[i] = expr_int(g, 0);
@@ -97,7 +99,8 @@ static void add_constraint_rows(RowSearch *w) {
   }
   w->square = w->row.n;
   for (uint32_t k = 0; k < c->n; k++)
-    if (!contact_of_constraint(e->m, c->of[k])) vec_push(e->m->arena, &w->row, expr_expand_defs(w->g, with_definitions(e, c->r[k])));
+    if (!contact_of_constraint(e->m, c->of[k]))
+      vec_push(e->m->arena, &w->row, expr_expand_defs(w->g, with_definitions(e, c->r[k])));
   for (uint32_t i = 0; i < e->n && c->n; i++) vec_push(e->m->arena, &w->unknown, e->m->coords.at[i].v);
 }
 
@@ -117,7 +120,8 @@ static int may_be_singular(ExprGraph *g, Expr x) {
 /* --- the combination of all rows that numbers suggest --- */
 
 enum { LOOKS = 4 };
-/* Values at LOOKS states: coefficients of the rows; parts of x, then constants, which may be factors of coefficients. */
+/* Values at LOOKS states: coefficients of the rows; parts of x, then constants, which may be factors of
+ * coefficients. */
 typedef struct {
   VEC(Expr) factor; /* the number 1 first */
   uint32_t parts;   /* number of those that are parts of x */
@@ -150,7 +154,8 @@ static void find_factors(const RowSearch *w, const RowBlock *b, Expr x, Looks *t
   }
 }
 
-/* c := coefficients with W^T c = dx/d(unknowns) in least squares, from v = [W, dx/d(unknowns)]; 0: dependent rows, or no values. */
+/* c := coefficients with W^T c = dx/d(unknowns) in least squares, from v = [W, dx/d(unknowns)]; 0: dependent rows,
+ * or no values. */
 static int fit_rows(Arena *a, const RowBlock *b, const long double *v, long double *c) {
   uint32_t n = b->rows, m = b->unknowns;
   long double *G = ARENA_ARRAY(a, long double, (size_t)n * n + 1);
@@ -165,7 +170,8 @@ static int fit_rows(Arena *a, const RowBlock *b, const long double *v, long doub
   return dense_solve_rows(a, n, G, 1, c);
 }
 
-/* Coefficients and factors at LOOKS states that obey the constraints; 0: the rows are dependent at one, or too few are found. */
+/* Coefficients and factors at LOOKS states that obey the constraints; 0: the rows are dependent at one, or too few
+ * are found. */
 static int look(const RowSearch *w, const RowBlock *b, Expr x, Looks *to) {
   Arena *a = w->e->m->arena;
   uint32_t n = b->rows, m = b->unknowns, slopes = (n + 1) * m;
@@ -280,8 +286,8 @@ static int is_small(const Eqns *e, Expr x, const long double *symbols, long doub
   return fabsl(value) <= tiny * fmaxl(size, 1);
 }
 
-/* Scales coordinates by powers of two and flips unknown signs by the bits of the seed: where constraints have several branches, the nearest states
- * then lie on several of them. */
+/* Scales coordinates by powers of two and flips unknown signs by the bits of the seed: where constraints have
+ * several branches, the nearest states then lie on several of them. */
 static void spread(const Eqns *e, uint32_t seed, long double *symbols) {
   static const int powers[] = {0, 2, -3, 4, 1, 7, -6, 3};
   for (uint32_t i = 0; i < eqns_coordinates(e); i++) {
@@ -291,8 +297,9 @@ static void spread(const Eqns *e, uint32_t seed, long double *symbols) {
   }
 }
 
-/* 1: |x| is below `tiny` at random states that obey the constraints, near ones first, then from starts that are far apart;
- * 0: it is not at one of them; -1: too few were found. A large x at a far state is judged by the size of its terms. */
+/* 1: |x| is below `tiny` at random states that obey the constraints, near ones first, then from starts that are far
+ * apart; 0: it is not at one of them; -1: too few were found. A large x at a far state is judged by the size of its
+ * terms. */
 static int vanishes_by_value(const Eqns *e, Expr x, long double tiny) {
   enum { STATES = 12, NEAR = 4 * STATES, ALL = NEAR + 64 };
   long double *symbols = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);

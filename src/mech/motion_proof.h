@@ -8,7 +8,8 @@
  * rows of M q'' = f + A^T lambda, A q'' = demand and r = 0; rates and the energy substituted. */
 Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs);
 
-/* Whether x is rounding at random states that obey the constraints, with accelerations and multipliers of the motion. */
+/* Whether x is rounding at random states that obey the constraints, with accelerations and multipliers of the
+ * motion. */
 int motion_vanishes(const Eqns *e, Expr x);
 
 /* Whether x is 0 along all motions. PROVED_NONZERO: it is not at a state that obeys the constraints. */

@@ -1,4 +1,5 @@
-/* One tape evaluates M, f, flows, energy and constraints at a state; sparse elimination solves [M -A^T; A 0] and the projections. */
+/* One tape evaluates M, f, flows, energy and constraints at a state; sparse elimination solves [M -A^T; A 0] and the
+ * projections. */
 #include "mech/states.h"
 
 #include <float.h>
@@ -14,7 +15,8 @@ struct StateSolver {
   long double *out, *b; /* the tape's results; right-hand side and solution */
   SparseElements a;     /* matrix of the linear system */
   SparseVector row;     /* a scaled row of A */
-  int *scale;               /* [n + m] exponents of states_column_scale for the system's unknowns, at the state evaluated last */
+  /* [n + m] exponents of states_column_scale for the system's unknowns, at the state evaluated last */
+  int *scale;
   int scaled;               /* scale is known for that state */
   uint32_t nflows;
 };
@@ -106,7 +108,9 @@ static long double largest(const long double *x, uint32_t n) {
   return most;
 }
 
-static SymId symbol_at(const Model *m, uint32_t j, int velocities) { return velocities ? m->coords.at[j].v : m->coords.at[j].q; }
+static SymId symbol_at(const Model *m, uint32_t j, int velocities) {
+  return velocities ? m->coords.at[j].v : m->coords.at[j].q;
+}
 
 /* Largest absolute value of the coordinates, or of the velocities. */
 static long double motion_size(const StateSolver *s, const long double *symbols, int velocities) {
@@ -115,8 +119,8 @@ static long double motion_size(const StateSolver *s, const long double *symbols,
   return most;
 }
 
-/* Whether the residuals of the first rows are rounding: smaller than relative changes of 1e-12 in the motion would cause, whatever the scale
- * of a constraint. */
+/* Whether the residuals of the first rows are rounding: smaller than relative changes of 1e-12 in the motion would
+ * cause, whatever the scale of a constraint. */
 static int are_small(const StateSolver *s, const long double *residual, uint32_t rows, long double size) {
   const Entries *A = &s->e->constraints.A;
   const long double *values = s->out + s->first_entry;
@@ -134,7 +138,8 @@ static int project(StateSolver *s, long double *symbols, int velocities) {
   const long double rounding = 64 * LDBL_EPSILON;
   const Constraints *k = &s->e->constraints;
   uint32_t rows = velocities ? k->n : k->nholonomic;
-  long double moved = INFINITY, size = 0, least = fminl(motion_size(s, symbols, velocities), 1); /* scale for a motion that ends at 0 */
+  /* scale for a motion that ends at 0 */
+  long double moved = INFINITY, size = 0, least = fminl(motion_size(s, symbols, velocities), 1);
   for (int i = 0; i < MOST && moved > rounding * size; i++) {
     StateValues v = states_at(s, symbols);
     if (!least_change(s, velocities ? v.r : v.c, rows)) return 0;
@@ -172,7 +177,8 @@ const SparseVector *states_row(StateSolver *s, uint32_t k, uint32_t *at) {
 }
 
 uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts, long double *held) {
-  const long double independent = 6e-6L; /* a double's eps^(1/3), as in runtime/constraints/nearest_start.c: singular places are found to eps^(1/2) */
+  /* a double's eps^(1/3), as in runtime/constraints/nearest_start.c: singular places are found to eps^(1/2) */
+  const long double independent = 6e-6L;
   uint32_t at = 0, n = s->e->n;
   RowSpan span = row_span(s->e->m->arena, n);
   for (uint32_t j = 0; held && j < n; j++) held[j] = 0;

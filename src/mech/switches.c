@@ -1,5 +1,5 @@
-/* Switching functions from the nodes of the equations; jumps of forces and flows from sym/jump.h, and divisions by a nonnegative speed that give a
- * direction v/|v|. */
+/* Switching functions from the nodes of the equations; jumps of forces and flows from sym/jump.h, and divisions by a
+ * nonnegative speed that give a direction v/|v|. */
 #include "mech/switches.h"
 
 #include <math.h>
@@ -16,7 +16,8 @@ typedef long double Real;
 typedef VEC(Switch) SwitchList;
 typedef VEC(Expr) ExprVec;
 
-/* Kinds of symbols whose rates jump with a force. Rates of coordinates and time do not jump: a motion crosses a surface of these. */
+/* Kinds of symbols whose rates jump with a force. Rates of coordinates and time do not jump: a motion crosses a
+ * surface of these. */
 static const unsigned sudden = 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE;
 
 static int is_inside(ExprGraph *g, Expr whole, Expr node) {
@@ -56,7 +57,8 @@ static Span place_of(const Eqns *e, Expr node, Expr side, int nonnegative) {
   AstId written = expr_map_get(&m->written, node);
   if (written) return ast_expr(m->ast, written)->span;
   for (uint32_t k = 0; k < m->forces.n; k++)
-    if (is_inside(e->g, m->forces.at[k].f, node) || (nonnegative && turns_at_rest(e, m->forces.at[k].f, side))) return m->forces.at[k].span;
+    if (is_inside(e->g, m->forces.at[k].f, node) || (nonnegative && turns_at_rest(e, m->forces.at[k].f, side)))
+      return m->forces.at[k].span;
   return m->dissipation ? m->dissipation_span : m->lagrangian_span;
 }
 
@@ -160,11 +162,13 @@ static ExprList nodes_of(const Eqns *e) {
 
 /* Switching function of a node; 0: it has none that a run can follow. */
 static Expr side_of(const Eqns *e, Expr node) {
-  const unsigned varying = sudden | 1u << SYM_TIME | 1u << SYM_COORD, unknown = 1u << SYM_INPUT | 1u << SYM_MULTIPLIER | 1u << SYM_ACC;
+  const unsigned varying = sudden | 1u << SYM_TIME | 1u << SYM_COORD,
+                 unknown = 1u << SYM_INPUT | 1u << SYM_MULTIPLIER | 1u << SYM_ACC;
   ExprOp op = expr_op(e->g, node);
   Expr side = 0;
   if (op == EX_SIGN || op == EX_ABS || op == EX_FLOOR) side = expr_arg(e->g, node, 0);
-  if (op == EX_MIN || op == EX_MAX || op == EX_LT || op == EX_LE) side = expr_sub(e->g, expr_arg(e->g, node, 1), expr_arg(e->g, node, 0));
+  if (op == EX_MIN || op == EX_MAX || op == EX_LT || op == EX_LE)
+    side = expr_sub(e->g, expr_arg(e->g, node, 1), expr_arg(e->g, node, 0));
   unsigned kinds = side ? expr_kinds(e->g, side) : 0;
   return kinds & varying && !(kinds & unknown) ? side : 0;
 }
@@ -206,8 +210,8 @@ static void mark_arguments(ExprGraph *g, Expr node, ExprMap *to) {
     if (is_root(g, node, i)) mark_below(g, expr_pair(g, node, EX_PROD, i, &power), to);
 }
 
-/* Nodes that no run may hold on a branch, as it may have no value past the surface: those inside roots and logarithms, and choices between such
- * values, as if(x < 0, (-x)^1.5, 0). */
+/* Nodes that no run may hold on a branch, as it may have no value past the surface: those inside roots and
+ * logarithms, and choices between such values, as if(x < 0, (-x)^1.5, 0). */
 static const ExprMap *nodes_by_text(const Eqns *e, ExprList nodes) {
   ExprGraph *g = e->g;
   ExprMap *to = ARENA_NEW(e->m->arena, ExprMap);
@@ -218,7 +222,8 @@ static const ExprMap *nodes_by_text(const Eqns *e, ExprList nodes) {
     uint32_t choice = op == EX_SELECT;
     if (is_partial(g, node)) mark_arguments(g, node, to);
     if (!choice && op != EX_MIN && op != EX_MAX) continue;
-    if (!is_partial_below(g, expr_arg(g, node, choice)) && !is_partial_below(g, expr_arg(g, node, choice + 1))) continue;
+    if (!is_partial_below(g, expr_arg(g, node, choice)) && !is_partial_below(g, expr_arg(g, node, choice + 1)))
+      continue;
     expr_map_set(to, node, 1);
     if (choice) mark_below(g, expr_arg(g, node, 0), to);
   }
@@ -236,7 +241,8 @@ void switches_find(Eqns *e) {
     if (!side) continue;
     int is_floor = expr_op(e->g, nodes.at[i]) == EX_FLOOR;
     uint32_t k = find(e->g, jumps.at, jumps.n, side, 0, &sign);
-    int found = k < jumps.n && jumps.at[k].kind == SWITCH_SIDE, may_jump = is_large(e) && expr_kinds(e->g, side) & sudden && expr_op(e->g, nodes.at[i]) == EX_SIGN;
+    int found = k < jumps.n && jumps.at[k].kind == SWITCH_SIDE,
+        may_jump = is_large(e) && expr_kinds(e->g, side) & sudden && expr_op(e->g, nodes.at[i]) == EX_SIGN;
     add(e, &all, nodes.at[i], side, is_floor ? SWITCH_FLOOR : SWITCH_SIDE, !is_floor && (found || may_jump));
   }
   if (all.n > MOST) all.n = 0;
@@ -254,7 +260,8 @@ const Switch *switch_of(const Eqns *e, Expr side, int is_floor, int *sign) {
 const Expr *switch_rates(const Eqns *e) {
   const Model *m = e->m;
   uint32_t n = e->switches.nmodes, nseed = expr_symbol_count(e->g) + 1;
-  Expr *seed = ARENA_ARRAY(m->arena, Expr, nseed), *sides = ARENA_ARRAY(m->arena, Expr, n + 1), *rates = ARENA_ARRAY(m->arena, Expr, n + 1);
+  Expr *seed = ARENA_ARRAY(m->arena, Expr, nseed), *sides = ARENA_ARRAY(m->arena, Expr, n + 1),
+       *rates = ARENA_ARRAY(m->arena, Expr, n + 1);
   model_seed_time(m, seed);
   for (uint32_t i = 0; i < m->coords.n; i++) {
     seed[m->coords.at[i].q] = expr_symbol(e->g, m->coords.at[i].v)->node;
@@ -273,7 +280,8 @@ static Expr contact_friction_power(const Eqns *e) {
   for (uint32_t i = 0; i < e->m->contacts.n; i++) {
     const Contact *c = &e->m->contacts.at[i];
     if (!c->is_tangent) continue;
-    Expr moved = expr_sub(g, c->gap, eqns_at_rest(e, c->gap)), part = expr_mul(g, expr_symbol(g, c->force)->node, moved);
+    Expr moved = expr_sub(g, c->gap, eqns_at_rest(e, c->gap)),
+         part = expr_mul(g, expr_symbol(g, c->force)->node, moved);
     power = expr_add(g, power, part);
   }
   return power;
@@ -296,7 +304,8 @@ Expr switch_power(const Eqns *e) {
   if (!signs.n) return power;
   expr_replace_nodes(g, e->Q, n, signs.at, zeros.at, signs.n, smooth);
   for (uint32_t i = 0; i < n; i++) {
-    Expr dry = expr_sub(g, e->Q[i], smooth[i]), v = e->n ? expr_symbol(g, e->m->coords.at[i].v)->node : e->flow[e->first.at[i]], part = expr_mul(g, dry, v);
+    Expr dry = expr_sub(g, e->Q[i], smooth[i]),
+         v = e->n ? expr_symbol(g, e->m->coords.at[i].v)->node : e->flow[e->first.at[i]], part = expr_mul(g, dry, v);
     power = expr_add(g, power, part);
   }
   return power;
@@ -307,9 +316,12 @@ Expr switch_power(const Eqns *e) {
 void switches_warn(const Eqns *e) {
   const Switches *all = &e->switches;
   for (uint32_t i = all->nmodes; i < all->n; i++) {
-    diag_warning(e->m->diags, all->at[i].span, "a force jumps where `%s` is 0; a motion that sticks there, as under dry friction, cannot be followed: the run ends where it sticks",
+    diag_warning(e->m->diags, all->at[i].span,
+                 "a force jumps where `%s` is 0; a motion that sticks there, as under dry friction, cannot be "
+                 "followed: the run ends where it sticks",
                  all->at[i].surface);
-    diag_help(e->m->diags, "smooth it, as tanh(v/w) for sign(v) with a small velocity w, and take radau; or let an event stop the run there");
+    diag_help(e->m->diags, "smooth it, as tanh(v/w) for sign(v) with a small velocity w, and take radau; or let an "
+                           "event stop the run there");
   }
 }
 
@@ -318,7 +330,8 @@ void switches_show(const Eqns *e, StrBuf *out) {
   const Switches *all = &e->switches;
   for (uint32_t i = 0; i < all->nmodes && i < MOST; i++) {
     Place place = source_place(e->m->ast->sources, all->at[i].span.begin);
-    sb_printf(out, "switching surface: `%s` = 0 (line %u)%s\n", all->at[i].surface, place.line, all->at[i].jumps ? ", where a motion may stick" : "");
+    sb_printf(out, "switching surface: `%s` = 0 (line %u)%s\n", all->at[i].surface, place.line,
+              all->at[i].jumps ? ", where a motion may stick" : "");
   }
   if (all->nmodes > MOST) sb_printf(out, "switching surfaces: %u more\n", all->nmodes - MOST);
 }

@@ -1,4 +1,5 @@
-/* Targets of assignments (`start`, `exact`, `param`, maps of symmetries): left sides, lists, and values for whole families. */
+/* Targets of assignments (`start`, `exact`, `param`, maps of symmetries): left sides, lists, and values for whole
+ * families. */
 #include "base/words.h"
 #include "model/builder.h"
 
@@ -14,10 +15,12 @@ Target read_target(const Builder *b, AstId id) {
   if (x->kind == AST_MEMBER) {
     const AstExpr *left = ast_expr(b->ast, x->a);
     const AstExpr *owner = left->kind == AST_MEMBER ? ast_expr(b->ast, left->a) : NULL; /* wind.v.x */
-    int of_effect = owner && owner->kind == AST_NAME &&
-                    (scope_own(&b->scope, left->name, owner->name) || !scope_find(&b->scope, owner->name, NULL, &ambiguous));
-    int component = left->kind == AST_INDEX || of_effect || (left->kind == AST_NAME && !scope_own(&b->scope, x->name, left->name) &&
-                                                scope_find(&b->scope, left->name, NULL, &ambiguous));
+    int of_effect =
+        owner && owner->kind == AST_NAME &&
+        (scope_own(&b->scope, left->name, owner->name) || !scope_find(&b->scope, owner->name, NULL, &ambiguous));
+    int component = left->kind == AST_INDEX || of_effect ||
+                    (left->kind == AST_NAME && !scope_own(&b->scope, x->name, left->name) &&
+                     scope_find(&b->scope, left->name, NULL, &ambiguous));
     if (component) {
       p.part = strlen(x->name) == 1 && strchr(letters, x->name[0]) ? (int)(strchr(letters, x->name[0]) - letters) : 4;
       p.stem = x->a;
@@ -43,7 +46,9 @@ const AstExpr *list_behind(const Builder *b, AstId id, const AstUnit **unit) {
   return x->kind == AST_LIST ? x : NULL;
 }
 
-static uint64_t count_along(const IndexRange *r, uint32_t k) { return r->hi[k] < r->lo[k] ? 0 : (uint64_t)(r->hi[k] - r->lo[k] + 1); }
+static uint64_t count_along(const IndexRange *r, uint32_t k) {
+  return r->hi[k] < r->lo[k] ? 0 : (uint64_t)(r->hi[k] - r->lo[k] + 1);
+}
 
 uint64_t range_count(const IndexRange *r) {
   uint64_t n = 1;
@@ -57,34 +62,41 @@ static int report_count(Builder *b, const AstExpr *list, const char *what, const
 }
 
 /* Elements of a list of rows; each row is a list, with or without a unit of its own. */
-static int row_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out) {
+static int row_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name,
+                        Elements *out) {
   uint64_t rows = count_along(r, 0), columns = count_along(r, 1);
   if (ast_list_length(b->ast, list->args) != rows)
-    return report_count(b, list, "the list", arena_printf(b->arena, "`%s` has %llu rows", name, (unsigned long long)rows));
+    return report_count(b, list, "the list",
+                        arena_printf(b->arena, "`%s` has %llu rows", name, (unsigned long long)rows));
   for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) {
     const AstUnit *own;
     const AstExpr *row = list_behind(b, i, &own);
     if (!row || ast_list_length(b->ast, row->args) != columns)
-      return row ? report_count(b, row, "this row", arena_printf(b->arena, "those of `%s` have %llu", name, (unsigned long long)columns))
+      return row ? report_count(b, row, "this row",
+                                arena_printf(b->arena, "those of `%s` have %llu", name, (unsigned long long)columns))
                  : report_count(b, list, "the list", "some are rows and some are not");
-    for (AstId k = row->args; k; k = ast_expr(b->ast, k)->next) vec_push(b->arena, out, ((Element){k, own ? own : behind}));
+    for (AstId k = row->args; k; k = ast_expr(b->ast, k)->next)
+      vec_push(b->arena, out, ((Element){k, own ? own : behind}));
   }
   return 1;
 }
 
-int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out) {
+int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name,
+                  Elements *out) {
   const AstUnit *own;
   const AstExpr *row = list_behind(b, list->args, &own);
   if (row && r->n == 2) return row_elements(b, list, behind, r, name, out);
   if (row)
-    return diag_error(b->diags, row->span, "a list in a list gives a row of a family with two indices, and `%s` has %s", name, r->n ? "one" : "none");
+    return diag_error(b->diags, row->span, "a list in a list gives a row of a family with two indices, and `%s` has %s",
+                      name, r->n ? "one" : "none");
   if (!r->n) {
     report_count(b, list, "the list", arena_printf(b->arena, "`%s` is no family", name));
     diag_help(b->diags, "a list gives a family its members; a vector is written `(a, b)`");
     return 0;
   }
   if (ast_list_length(b->ast, list->args) != range_count(r))
-    return report_count(b, list, "the list", arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)range_count(r)));
+    return report_count(b, list, "the list",
+                        arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)range_count(r)));
   for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) vec_push(b->arena, out, ((Element){i, behind}));
   return 1;
 }
@@ -115,11 +127,13 @@ static int give_member(const Assign *s, const int64_t *at, AstId id, Value v) {
   Span span = ast_expr(b->ast, id)->span;
   if (!v.e) return 0;
   if (v.n != s->parts)
-    return diag_error(b->diags, span, "`%s` is %s, and %s is given here", member_name(b->ast, s->e->name, at, s->e->ndims), shape_text(b, s->parts),
-                      shape_text(b, v.n));
-  uint32_t first = s->e->index + member_offset(s->e, at) + (s->p->part < 0 ? 0 : (uint32_t)component_index(s->e->parts, s->p->part));
+    return diag_error(b->diags, span, "`%s` is %s, and %s is given here",
+                      member_name(b->ast, s->e->name, at, s->e->ndims), shape_text(b, s->parts), shape_text(b, v.n));
+  uint32_t first =
+      s->e->index + member_offset(s->e, at) + (s->p->part < 0 ? 0 : (uint32_t)component_index(s->e->parts, s->p->part));
   v = values_in(b, v, span, s->assigner->unit(b, first, s->assigner->data));
-  for (uint32_t k = 0; v.e && k < (v.n ? v.n : 1); k++) s->assigner->give(b, first + k, v.at[k], span, s->assigner->data);
+  for (uint32_t k = 0; v.e && k < (v.n ? v.n : 1); k++)
+    s->assigner->give(b, first + k, v.at[k], span, s->assigner->data);
   return v.e != 0;
 }
 
@@ -129,10 +143,12 @@ static int read_ranges(Builder *b, const Target *p, const Entity *e, AstId lhs, 
   *r = entity_range(e);
   if (!p->indices) return 1;
   if (!e->ndims)
-    return diag_error(b->diags, span, "`%s` is %s without index" HELP "a family is declared with its size: `%s[3]`", e->name, ent_kind_text(e->kind),
-                      e->name);
+    return diag_error(b->diags, span, "`%s` is %s without index" HELP "a family is declared with its size: `%s[3]`",
+                      e->name, ent_kind_text(e->kind), e->name);
   if (!resolve_indices(b, p->indices, NULL, r)) return 0;
-  if (r->n != e->ndims) return diag_error(b->diags, span, "`%s` has %s, here it has %u", e->name, e->ndims == 1 ? "one index" : "two indices", r->n);
+  if (r->n != e->ndims)
+    return diag_error(b->diags, span, "`%s` has %s, here it has %u", e->name,
+                      e->ndims == 1 ? "one index" : "two indices", r->n);
   int empty = 0;
   for (uint32_t k = 0; k < r->n; k++) empty |= r->hi[k] < r->lo[k];
   return empty || (index_in_range(b, e, r->lo, span) && index_in_range(b, e, r->hi, span));
@@ -144,7 +160,8 @@ static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list,
   if (!list_elements(s->b, list, behind, r, s->e->name, &elements)) return;
   int64_t at[2] = {r->lo[0], r->lo[1]};
   for (uint32_t i = 0; i < elements.n; i++) {
-    give_member(s, at, elements.at[i].id, element_value(s->b, &elements.at[i], s->assigner->where, s->assigner->effect));
+    give_member(s, at, elements.at[i].id,
+                element_value(s->b, &elements.at[i], s->assigner->where, s->assigner->effect));
     range_next(r, at);
   }
 }
@@ -171,7 +188,8 @@ void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstI
   Assign s = {.b = b, .p = p, .e = e, .assigner = assigner, .parts = p->part < 0 ? e->parts : 0};
   IndexRange r;
   if (p->part >= 0 && component_index(e->parts, p->part) < 0) {
-    diag_error(b->diags, ast_expr(b->ast, lhs)->span, "`%s` is %s: it has no such component", e->name, shape_text(b, e->parts));
+    diag_error(b->diags, ast_expr(b->ast, lhs)->span, "`%s` is %s: it has no such component", e->name,
+               shape_text(b, e->parts));
     return;
   }
   if (!read_ranges(b, p, e, lhs, &r)) return;

@@ -1,5 +1,6 @@
-/* model_build: the active statements, in file order, become a Model. Declarations first (declare.c), then energies, forces, flows,
- * constraints and events, then what may contain accelerations (expect, observe), then the scene. Contract: model.h. */
+/* model_build: the active statements, in file order, become a Model. Declarations first (declare.c), then energies,
+ * forces, flows, constraints and events, then what may contain accelerations (expect, observe), then the scene.
+ * Contract: model.h. */
 #include "model/model.h"
 
 #include <math.h>
@@ -31,7 +32,8 @@ static void check_energy_unit(Builder *b, const AstStmt *st, AstId id, const Val
   Span span = ast_expr(b->ast, id)->span;
   if (!en->first.end) en->first = st->span;
   if (dim_equate(b->dims, b->energy, v->dim, span)) return;
-  diag_error(b->diags, span, "units do not match: this is %s, another part of the Lagrangian %s", in_dim(b, v->dim), in_dim(b, b->energy));
+  diag_error(b->diags, span, "units do not match: this is %s, another part of the Lagrangian %s", in_dim(b, v->dim),
+             in_dim(b, b->energy));
   diag_also(b->diags, en->first, "that part is here");
   explain_dims(b, v->dim, DIM_ANY);
 }
@@ -49,7 +51,8 @@ static void check_units_of_forces(Builder *b, const Energies *en) {
     Span span = ast_expr(b->ast, c->id)->span;
     if (dim_equate(b->dims, c->dim, want, span)) continue;
     diag_error(b->diags, span, "%s is %s, and this is %s", c->what, in_dim(b, want), in_dim(b, c->dim));
-    if (c->bare) diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_text(b, c->id), dim_text(b->dims, want));
+    if (c->bare)
+      diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_text(b, c->id), dim_text(b->dims, want));
     explain_dims(b, c->dim, want);
   }
 }
@@ -63,7 +66,8 @@ static int is_first_energy(Builder *b, const AstStmt *st, Energies *en) {
     return 1;
   }
   diag_error(b->diags, st->span, own->end && own != whole ? "this energy is given twice" : "L is given twice");
-  diag_also(b->diags, before, own->end ? "first given here; write one sum" : "first given here; give L, or kinetic and potential energy");
+  diag_also(b->diags, before,
+            own->end ? "first given here; write one sum" : "first given here; give L, or kinetic and potential energy");
   return 0;
 }
 
@@ -75,7 +79,9 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   if (!effect && st->kind == STMT_KINETIC) b->m->kinetic_span = st->span;
   if (st->kind == STMT_DISSIPATION) b->m->dissipation_span = st->span;
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
-  if (v.e && v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, but a number is needed here", shape_text(b, v.n));
+  if (v.e && v.n)
+    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, but a number is needed here",
+               shape_text(b, v.n));
   en->failed |= st->kind != STMT_DISSIPATION && (!v.e || v.n);
   if (!v.e || v.n) return;
   b->m->domain = domain_and(b, b->m->domain, v.domain);
@@ -112,7 +118,8 @@ static Expr sum_of_terms(Builder *b, const Energies *en, AstStmtKind kind) {
 static void finish_energies(Builder *b, const Energies *en) {
   Model *m = b->m;
   check_units_of_forces(b, en);
-  Expr l = sum_of_terms(b, en, STMT_LAGRANGIAN), kinetic = sum_of_terms(b, en, STMT_KINETIC), potential = sum_of_terms(b, en, STMT_POTENTIAL);
+  Expr l = sum_of_terms(b, en, STMT_LAGRANGIAN), kinetic = sum_of_terms(b, en, STMT_KINETIC),
+       potential = sum_of_terms(b, en, STMT_POTENTIAL);
   if (en->terms[3].n) m->dissipation = sum_of_terms(b, en, STMT_DISSIPATION);
   for (uint32_t i = 0; i < m->contacts.n; i++) { /* friction is the force on the slip */
     const Contact *c = &m->contacts.at[i];
@@ -134,8 +141,10 @@ static void report_force(Builder *b, const AstStmt *st) {
 }
 
 static void report_torque(Builder *b, const AstStmt *st) {
-  diag_error(b->diags, st->span, "a force on a rotation is a torque: a vector of 3 components, in the rotation's own frame");
-  diag_help(b->diags, "`force R = (0, 0, tau)`; a torque of space is `force R = transpose(R)*tau`, a force at a point of a body `let p = r + R*s`, `force p = F`");
+  diag_error(b->diags, st->span,
+             "a force on a rotation is a torque: a vector of 3 components, in the rotation's own frame");
+  diag_help(b->diags, "`force R = (0, 0, tau)`; a torque of space is `force R = transpose(R)*tau`, a force at a point "
+                      "of a body `let p = r + R*s`, `force p = F`");
 }
 
 static void add_forces(Builder *b, AstId li, AstId ri, const Value *point, const Value *f, Energies *en) {
@@ -195,7 +204,9 @@ static void add_grip(Builder *b, const AstStmt *st, Name effect) {
   }
   Grip grip = {v.e, expr_div(b->g, g.e, f.e)};
   if (expr_is_num(b->g, grip.ratio) && num_value(expr_number(b->g, grip.ratio)) < 1) {
-    diag_error(b->diags, span, "the static limit is smaller than the friction of a sliding body" HELP "static friction is at least as large: `static = mu_s*N` with mu_s >= mu");
+    diag_error(b->diags, span,
+               "the static limit is smaller than the friction of a sliding body" HELP
+               "static friction is at least as large: `static = mu_s*N` with mu_s >= mu");
     return;
   }
   vec_push(b->arena, &b->m->grips, grip);
@@ -227,7 +238,8 @@ static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   if (v.e && v.n != of.n) report_shapes(b, st->span, of.n, v.n);
   b->m->domain = domain_and(b, b->m->domain, v.domain);
   for (uint32_t k = 0; k < (of.n ? of.n : 1); k++)
-    b->m->states.at[expr_sym_of(b->g, of.at[k])->index].flow = v.e && v.n == of.n ? v.at[k] : expr_int(b->g, 0); /* reported */
+    /* reported */
+    b->m->states.at[expr_sym_of(b->g, of.at[k])->index].flow = v.e && v.n == of.n ? v.at[k] : expr_int(b->g, 0);
 }
 
 static void add_expect(Builder *b, const AstStmt *st, Name effect) {
@@ -241,13 +253,16 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
   }
   b->brackets = 0;
   Value l = v[0], r = v[1];
-  if (!l.e || !r.e || refuse_actions(b, &l, ast_expr(b->ast, st->lhs)->span) || refuse_actions(b, &r, ast_expr(b->ast, st->rhs)->span)) return;
+  if (!l.e || !r.e || refuse_actions(b, &l, ast_expr(b->ast, st->lhs)->span) ||
+      refuse_actions(b, &r, ast_expr(b->ast, st->rhs)->span))
+    return;
   if (l.n != r.n) {
     report_shapes(b, st->span, l.n, r.n);
     return;
   }
   if (!dims_agree(b, &l, &r, st->span)) {
-    diag_error(b->diags, st->span, "units do not match: the left side is %s, the right side %s", in_dim(b, l.dim), in_dim(b, r.dim));
+    diag_error(b->diags, st->span, "units do not match: the left side is %s, the right side %s", in_dim(b, l.dim),
+               in_dim(b, r.dim));
     explain_dims(b, l.dim, r.dim);
   }
   if (st->name && !b->index.n) check_name_is_new(b, "expectation", st->name, effect, st->name_span);
@@ -341,7 +356,8 @@ static void check_coords_in_lagrangian(Builder *b) {
   }
   for (uint32_t i = 0; i < m->coords.n; i++) {
     if (found[i]) continue;
-    diag_error(b->diags, m->coords.at[i].span, "the Lagrangian does not contain the coordinate `%s`", m->coords.at[i].name);
+    diag_error(b->diags, m->coords.at[i].span, "the Lagrangian does not contain the coordinate `%s`",
+               m->coords.at[i].name);
     diag_help(b->diags, "nothing would determine its motion; add its energy, or remove it");
   }
 }
@@ -350,7 +366,8 @@ static void check_whole(Builder *b) {
   Model *m = b->m;
   if (b->diags->errors) return; /* a missing part may be one that was refused */
   if (!m->coords.n && !m->states.n) {
-    diag_error(b->diags, m->span, "the model has no coordinates and no states" HELP "declare a coordinate: `coord x [m]`");
+    diag_error(b->diags, m->span,
+               "the model has no coordinates and no states" HELP "declare a coordinate: `coord x [m]`");
   }
   if (m->coords.n && !m->lagrangian) {
     diag_error(b->diags, m->coords.at[0].span, "there are coordinates but no Lagrangian");
@@ -480,9 +497,11 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order, Inpu
 
 static const Declarations *declarations_of(const Builder *b) {
   Declarations *d = ARENA_NEW(b->arena, Declarations);
-  *d = (Declarations){
-      .ast = b->ast, .diags = b->diags, .dims = b->dims, .scope = b->scope, .members = b->members, .constraints = b->constraints, .rotations = b->rotations,
-      .active = b->active, .lets = b->lets, .functions = b->functions, .observes = b->observes, .constants = b->constants};
+  *d = (Declarations){.ast = b->ast,
+                      .diags = b->diags, .dims = b->dims, .scope = b->scope, .members = b->members,
+                      .constraints = b->constraints, .rotations = b->rotations, .active = b->active, .lets = b->lets,
+                      .functions = b->functions, .observes = b->observes,
+                      .constants = b->constants};
   return d;
 }
 

@@ -4,14 +4,16 @@
 #include "model/declarations.h"
 #include "model/model.h"
 
-/* Index of a file's statements by name, made once (file_index.c): a file may have thousands of scenes, each compiled by itself. */
+/* Index of a file's statements by name, made once (file_index.c): a file may have thousands of scenes, each compiled
+ * by itself. */
 typedef struct FileIndex {
   Scope scenes, effects;                   /* the first of each name: index into `named` */
   VEC(const AstStmt *) named;
   const AstStmt *model, *scene, *effect;   /* the first named statement of each kind, or NULL */
   VEC(const AstStmt *) common;             /* all statements but scenes, in the file's order */
   VEC(const AstStmt *) repeated;           /* scenes and effects whose name was declared before */
-  int is_sound, clashes;                   /* names and effects were checked and are right; effects_check found an error */
+  /* names and effects were checked and are right; effects_check found an error */
+  int is_sound, clashes;
 } FileIndex;
 
 FileIndex *file_index(Ast *ast);
@@ -33,7 +35,8 @@ typedef enum {
   IN_OUTPUT    /* + closed forms exact(q), error(q) */
 } Context;
 
-/* Value of an expression: a number, a vector of 2 or 3 components of one dimension, or a rotation (unit quaternion w, x, y, z). */
+/* Value of an expression: a number, a vector of 2 or 3 components of one dimension, or a rotation (unit quaternion
+ * w, x, y, z). */
 typedef struct {
   union {
     Expr e; /* the number, or component 0; 0: error, already reported */
@@ -45,7 +48,8 @@ typedef struct {
   int point;     /* temperature on a scale with an offset, 20 [degC]: cannot be scaled */
   const char *unit; /* unit as written, of a name or of a number with a unit; otherwise NULL */
   uint32_t n;    /* shape: 0 number, 2 or 3 vector, ROTATION */
-  Expr domain;   /* condition under which the text has a real value; 0: wherever the nodes have, or unknown (Builder.domains) */
+  /* condition under which the text has a real value; 0: wherever the nodes have, or unknown (Builder.domains) */
+  Expr domain;
 } Value;
 
 /* Evaluation of a let, an observable or a function, when first needed. */
@@ -55,13 +59,14 @@ typedef struct {
 } Evaluated;
 
 /* The size of a friction, as it is written. */
-/* Instance of a user function for given argument shapes. Its body is evaluated once, with symbols as arguments and unknown
- * dimensions; each call substitutes its own. */
+/* Instance of a user function for given argument shapes. Its body is evaluated once, with symbols as arguments and
+ * unknown dimensions; each call substitutes its own. */
 typedef struct {
   uint32_t function;
   Value *args;            /* made of LOCAL symbols */
   uint32_t nargs;
-  VEC(SymId) symbols;     /* all arguments' components; if the body takes a rate, followed by their rates and second rates */
+  /* all arguments' components; if the body takes a rate, followed by their rates and second rates */
+  VEC(SymId) symbols;
   uint32_t nplain;        /* number of arguments' components, and so of rates and of second rates */
   uint32_t first_unknown; /* argument i has dimension dim_of_unknown(first_unknown + i) */
   int done;
@@ -141,7 +146,8 @@ struct Builder {
   int is_giving;   /* ModelChoice.given is being applied */
   int is_measuring; /* a measure is being read */
   int unitless;    /* no name of the model has a unit: dimensions are not checked */
-  const BoundName *bound; /* [nbound] the group parameter of the symmetry being read; the new variables of a canonical transformation */
+  /* [nbound] the group parameter of the symmetry being read; the new variables of a canonical transformation */
+  const BoundName *bound;
   uint32_t nbound;
   int gives_lagrangian; /* the model itself has L, T or V */
   int brackets;    /* {f, g} in an expression is a Poisson bracket */
@@ -152,7 +158,8 @@ struct Builder {
 /* Evaluates an expression of the text; after an error, reported, the value has e = 0. */
 Value resolve(Builder *b, AstId id, Context where, Name effect);
 
-/* The same, with the values of its nodes, nodes[i] for node ast_expr(id)->first + i; 0: a vector, or none of its own (part of a chain). */
+/* The same, with the values of its nodes, nodes[i] for node ast_expr(id)->first + i; 0: a vector, or none of its own
+ * (part of a chain). */
 Value resolve_condition(Builder *b, AstId id, Name effect); /* a value of the dynamics that may be a condition */
 Value resolve_nodes(Builder *b, AstId id, Context where, Name effect, Expr *nodes);
 
@@ -234,7 +241,8 @@ typedef VEC(Element) Elements;
 
 /* Elements of a list for the members r of family `name`, row by row; for two indices the list may be a list of rows.
  * 0, reported, when the number of elements differs from that of members. */
-int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out);
+int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name,
+                  Elements *out);
 Value element_value(Builder *b, const Element *x, Context where, Name effect);
 
 /* Index range of a whole family. */
@@ -244,8 +252,8 @@ IndexRange entity_range(const Entity *e);
 uint64_t range_count(const IndexRange *r);
 int range_next(const IndexRange *r, int64_t *at);
 
-/* Assigns values to the members and components of entity e that p names: calls `give` for each scalar, with its index in
- * the model's array. `unit` returns the unit in which a scalar takes bare numbers. */
+/* Assigns values to the members and components of entity e that p names: calls `give` for each scalar, with its
+ * index in the model's array. `unit` returns the unit in which a scalar takes bare numbers. */
 typedef struct {
   Context where; /* names allowed in the value */
   const Unit *(*unit)(Builder *b, uint32_t scalar, void *data);
@@ -264,8 +272,8 @@ Expr closed_form_error(Builder *b, const Exact *x);
 /* effect.c: reports an unknown scene or effect, with the nearest name. */
 void report_unnamed(const Ast *ast, AstStmtKind kind, Span span, const char *name);
 
-/* Effects in use: tests for one; adds those of a scene's `use` statements; adds one with all effects it requires; reports
- * unmet `requires` and violated `excludes` of one. */
+/* Effects in use: tests for one; adds those of a scene's `use` statements; adds one with all effects it requires;
+ * reports unmet `requires` and violated `excludes` of one. */
 int uses_effect(const Builder *b, Name effect);
 int is_use_none(const AstStmt *st);
 void collect_uses(Builder *b, const AstStmt *scene);
@@ -297,18 +305,21 @@ void set_measure(Builder *b, const AstStmt *st);
 /* The same of the command line: plain numbers are in the unit beside them, units that do not match draw warnings. */
 void ask_measure(Builder *b, const CommandOutput *asked);
 
-/* input_rates.c: notes that the rate of this order of an input, of the inputs in e, or of those that momenta depend on, is needed; declares the rates of an input that an earlier build
- * noted, behind it; gives them formulas and tables. */
+/* input_rates.c: notes that the rate of this order of an input, of the inputs in e, or of those that momenta depend
+ * on, is needed; declares the rates of an input that an earlier build noted, behind it; gives them formulas and
+ * tables. */
 void want_input_rate(Builder *b, uint32_t input, int order);
 void want_rates_of(Builder *b, Expr e, int order);
 void want_rates_of_momenta(Builder *b);
 void declare_input_rates(Builder *b, uint32_t input);
 void fill_input_rates(Builder *b);
 
-/* input_table.c: sets the formula or, where rhs is a file name, the table of input `index`; stem: its name without the effect. */
+/* input_table.c: sets the formula or, where rhs is a file name, the table of input `index`; stem: its name without
+ * the effect. */
 void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
 
-/* declare.c: enters the names that a statement declares into scope and model; a StatementFn. Likewise, of momenta alone. */
+/* declare.c: enters the names that a statement declares into scope and model; a StatementFn. Likewise, of momenta
+ * alone. */
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data);
 void declare_momentum(Builder *b, const AstStmt *st, Name effect, void *data);
 
@@ -317,20 +328,20 @@ int declare_entity(Builder *b, const AstStmt *st, Entity e);
 
 enum { FAMILY_MAX = 1000000 };
 
-/* declared_type.c: declares the name of a refused declaration, so that its uses are not reported as unknown; brackets after a space are a unit, else a
- * size: 0, reported, where a unit was written without the space. */
+/* declared_type.c: declares the name of a refused declaration, so that its uses are not reported as unknown;
+ * brackets after a space are a unit, else a size: 0, reported, where a unit was written without the space. */
 void declare_refused(Builder *b, const AstStmt *st, Name effect);
 int check_brackets(Builder *b, const AstStmt *st, Name effect);
-/* Fills in the entity for a plain name, a vector or a family, without declaring it; 0 after an error. `index` is that of
- * its first scalar; `parts` comes from read_type. */
+/* Fills in the entity for a plain name, a vector or a family, without declaring it; 0 after an error. `index` is
+ * that of its first scalar; `parts` comes from read_type. */
 int read_family(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index, uint8_t parts, Entity *e);
 int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts);
 
 /* Name of component k of member `at`: "th", "th[2]", "r.x", "r[2].x". */
 Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k);
 
-/* fixed_params.c: replaces the parameters listed in `words` (NULL: none) by their values, and numbers the remaining ones (Param.place).
- * Mistakes are reported. */
+/* fixed_params.c: replaces the parameters listed in `words` (NULL: none) by their values, and numbers the remaining
+ * ones (Param.place). Mistakes are reported. */
 void fix_params(Builder *b, const char *words);
 
 /* declare_param.c */
@@ -338,8 +349,8 @@ void declare_param(Builder *b, const AstStmt *st, Name effect);
 void declare_const(Builder *b, const AstStmt *st, Name effect);
 SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSign sign, Dim dim);
 
-/* Value of a constant expression (span, step, tolerance) in `unit`; NAN after an error. `what` names it in messages. *digits (or NULL) as in
- * base/num.h. */
+/* Value of a constant expression (span, step, tolerance) in `unit`; NAN after an error. `what` names it in messages.
+ * *digits (or NULL) as in base/num.h. */
 double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits);
 
 /* command_value.c: evaluates ModelChoice.values. */
@@ -359,7 +370,8 @@ void declare_composed(Builder *b);
 void resolve_let(Builder *b, uint32_t index);
 void resolve_observe(Builder *b, uint32_t index);
 
-/* Entity of a name; unknown and ambiguous names are reported. `declare` is the kind of declaration to suggest ("state"), or NULL for any. */
+/* Entity of a name; unknown and ambiguous names are reported. `declare` is the kind of declaration to suggest
+ * ("state"), or NULL for any. */
 const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const char *declare);
 
 /* Warns when a unit is also the name of a constant: `th [N]` is th in newtons. */
@@ -370,7 +382,8 @@ void check_sign(Builder *b, const Param *p, Span span);
 
 /* Warns of parameters whose value, computed from others, contradicts their declared sign: a run refuses them. */
 void warn_signs(Builder *b);
-/* Adds a size made of parameters, or of them and of a factor that is not negative; others are left out, as are those whose sign is proved. */
+/* Adds a size made of parameters, or of them and of a factor that is not negative; others are left out, as are those
+ * whose sign is proved. */
 void add_size(Builder *b, Expr value, const char *what, Span span, int part);
 /* Errors where the values of the scene make sizes of friction and contacts negative, or too large. */
 void check_sizes(Builder *b);
@@ -388,13 +401,15 @@ const AstStmt *declared_in_use(const Builder *b, Name name, Name effect);
 const AstStmt *declaring_effect(const Builder *b, Name name);
 int effect_declares(const AstStmt *effect, Name name);
 
-/* Source text of an expression (of a span) on one line, without comments; ast_short leaves out the middle of a long one. */
+/* Source text of an expression (of a span) on one line, without comments; ast_short leaves out the middle of a long
+ * one. */
 const char *ast_text(const Builder *b, AstId id);
 const char *source_text(const Builder *b, Span s);
 const char *ast_short(const Builder *b, AstId id);
 Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
-/* Unit of a declaration. Without one the dimension is a new unknown, shared by all members of a family and inferred from the equations. */
+/* Unit of a declaration. Without one the dimension is a new unknown, shared by all members of a family and inferred
+ * from the equations. */
 Unit declared_unit(Builder *b, const AstStmt *st, Name effect);
 
 /* entities.c: declared unit of an entity, or NULL. */
@@ -416,8 +431,8 @@ const char *shown_unit(const Builder *b, const Value *v);
 const char *in_unit(const Builder *b, const char *unit);
 const char *in_dim(const Builder *b, Dim d);
 
-/* Adds to a message about dimensions x and y (y DIM_ANY: x alone) where the dimension of a name without unit was inferred,
- * or that no choice of unit would help. */
+/* Adds to a message about dimensions x and y (y DIM_ANY: x alone) where the dimension of a name without unit was
+ * inferred, or that no choice of unit would help. */
 void explain_dims(Builder *b, Dim x, Dim y);
 
 /* Replaces missing units in the model by the inferred ones. */
@@ -428,7 +443,8 @@ void fill_inferred_units(Builder *b);
 /* Adds the constraint q.q = 1 for the quaternion whose first coordinate is `coord`. */
 void constrain_rotation(Builder *b, Name name, uint32_t coord, Span span);
 
-/* Sets Model.regularising: a kinetic term in the rate of |q|, which no motion has, so that the mass matrix is regular. */
+/* Sets Model.regularising: a kinetic term in the rate of |q|, which no motion has, so that the mass matrix is
+ * regular. */
 void add_rotation_inertia(Builder *b);
 
 /* Rates q' = q (0, w)/2 from the angular velocity w in the body frame; and w from the rates. */
@@ -441,13 +457,15 @@ int spin_target(Builder *b, AstId place, Name effect);
 /* Generalised force along the four quaternion coordinates of a torque in the body frame. */
 Value torque_force(Builder *b, const Value *q, const Value *torque);
 
-/* hamiltonian.c: decides whether the text gives L (gives_lagrangian), or H and not L (Model.hamiltonian); reports coordinates without a momentum. */
+/* hamiltonian.c: decides whether the text gives L (gives_lagrangian), or H and not L (Model.hamiltonian); reports
+ * coordinates without a momentum. */
 void find_hamiltonian(Builder *b);
 void check_momenta(Builder *b);
 /* Whether people call a momentum so: p, px, p1, p_th. */
 int is_momentum_name(Name name);
 
-/* 1 if a statement adds to H; 0, reported, if the model, or an effect of it, may not give H here. *first: the model's own statement. */
+/* 1 if a statement adds to H; 0, reported, if the model, or an effect of it, may not give H here. *first: the
+ * model's own statement. */
 int gives_hamiltonian(Builder *b, const AstStmt *st, Name effect, Span *first);
 /* 1 unless a term of L stands beside H; reported. */
 int adds_to_hamiltonian(Builder *b, const AstStmt *st);
@@ -472,21 +490,21 @@ void add_symmetry(Builder *b, const AstStmt *st, Name effect);
 /* canonical.c: reads a canonical transformation, once L is known. */
 void add_canonical(Builder *b, const AstStmt *st);
 
-/* redeclarations.c: reports repeated names of scenes, effects, events, constraints and expectations, and settings that a scene or
- * event gives twice. */
+/* redeclarations.c: reports repeated names of scenes, effects, events, constraints and expectations, and settings
+ * that a scene or event gives twice. */
 void check_names_once(Builder *b, const FileIndex *file);
 void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span);
 void check_set_once(Builder *b, const AstStmt *block);
 
-/* event.c: adds an event, or a section; resolves a value assigned to a coordinate, a state, or the rate of one, whose name is
- * declared in `unit`; reports different shapes. */
+/* event.c: adds an event, or a section; resolves a value assigned to a coordinate, a state, or the rate of one,
+ * whose name is declared in `unit`; reports different shapes. */
 void add_event(Builder *b, const AstStmt *st, Name effect);
 void add_section(Builder *b, const Section *s);
 Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit);
 void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right);
 
-/* start_values.c: reads `start q = ...`, `exact q = ...`; completes the starts of rotations after all statements of the scene
- * (default: the identity); rad/s. */
+/* start_values.c: reads `start q = ...`, `exact q = ...`; completes the starts of rotations after all statements of
+ * the scene (default: the identity); rad/s. */
 void set_motion(Builder *b, const AstStmt *st);
 void complete_rotation_starts(Builder *b);
 Unit spin_unit(const Builder *b);

@@ -1,5 +1,6 @@
-/* Canonical transformations: `canonical NAME: Q = ..., P = ...`, its inverse `q = ..., p = ...`, or a generating function `F2(q, P) = ...`. Here names,
- * units and completeness; claims/canonical_claims.c judges. New variables are symbols that no equation of motion contains. */
+/* Canonical transformations: `canonical NAME: Q = ..., P = ...`, its inverse `q = ..., p = ...`, or a generating
+ * function `F2(q, P) = ...`. Here names, units and completeness; claims/canonical_claims.c judges. New variables are
+ * symbols that no equation of motion contains. */
 #include "base/words.h"
 #include "model/resolve_impl.h"
 
@@ -36,7 +37,9 @@ static OldPlaces old_places(const Reader *r, Name name) {
 static int is_old(const Reader *r, Name name) { return old_places(r, name).size > 0; }
 
 static int is_hamiltonian(const AstStmt *x) { return x->kind == STMT_SET && strcmp(x->name, "hamiltonian") == 0; }
-static int is_forward(const Reader *r, const AstStmt *x) { return x->kind == STMT_SET && !is_old(r, x->name) && !is_hamiltonian(x); }
+static int is_forward(const Reader *r, const AstStmt *x) {
+  return x->kind == STMT_SET && !is_old(r, x->name) && !is_hamiltonian(x);
+}
 
 /* Place of a new variable in c.fresh; nnew: no such name. */
 static uint32_t new_place(const Reader *r, Name name) {
@@ -64,7 +67,8 @@ static int name_variable(Reader *r, uint32_t place, Name name, Span span) {
 
 static int report_count(const Reader *r, Span span, uint32_t found) {
   const char *what = r->c.is_point ? "coordinates" : "variables, each coordinate followed by its momentum";
-  return diag_error(r->b->diags, span, "`%s` has %u new variable%s, and the model needs %u new %s", r->st->name, found, plural(found), r->nnew, what);
+  return diag_error(r->b->diags, span, "`%s` has %u new variable%s, and the model needs %u new %s", r->st->name, found,
+                    plural(found), r->nnew, what);
 }
 
 /* Conjugate of a variable that only a generating function names: Q for P, Qx for Px, else Q_name. */
@@ -98,7 +102,8 @@ static int names_of_generator(Reader *r, const AstStmt *F) {
   for (AstId i = F->args; i; i = ast_expr(r->b->ast, i)->next) {
     const AstExpr *x = ast_expr(r->b->ast, i);
     if (is_old(r, x->name)) continue;
-    if (k == n || !name_variable(r, k + momenta * n, x->name, x->span)) return k < n ? 0 : report_count(r, F->span, k + 1);
+    if (k == n || !name_variable(r, k + momenta * n, x->name, x->span))
+      return k < n ? 0 : report_count(r, F->span, k + 1);
     if (!name_variable(r, k + !momenta * n, conjugate_name(r, x->name, !momenta), x->span)) return 0;
     k++;
   }
@@ -128,7 +133,8 @@ static int read_names(Reader *r) {
   if (r->st->args) return names_of_head(r);
   if (names_new_variables(r)) return names_of_maps(r);
   if (F) return names_of_generator(r, F);
-  return diag_error(r->b->diags, r->st->name_span, "the new variables have no names" HELP "name them: `canonical %s(Q, P): ...`", r->st->name);
+  return diag_error(r->b->diags, r->st->name_span,
+                    "the new variables have no names" HELP "name them: `canonical %s(Q, P): ...`", r->st->name);
 }
 
 /* Symbols with the units and signs of the forward map, where there is one: r = sqrt(x^2 + y^2) is not negative. */
@@ -151,7 +157,8 @@ static int is_unknown(const Symbol *s, const void *data) {
   return s->kind == SYM_INPUT && s->index < r->b->m->inputs.n;
 }
 
-/* Value of a map or a generating function. bound: it may contain new variables, and has no velocities; else old variables alone. */
+/* Value of a map or a generating function. bound: it may contain new variables, and has no velocities; else old
+ * variables alone. */
 static Value map_value(Reader *r, AstId id, int bound) {
   Builder *b = r->b;
   Span v = {0};
@@ -161,10 +168,12 @@ static Value map_value(Reader *r, AstId id, int bound) {
   b->nbound = 0;
   if (x.e && refuse_actions(b, &x, ast_expr(b->ast, id)->span)) return FAILED;
   if (bound && x.e) v = velocity_in(b, id, &x);
-  if (v.end) return refuse(b, v, "a transformation of phase space is made of coordinates, momenta and t, and has no velocities");
+  if (v.end)
+    return refuse(b, v, "a transformation of phase space is made of coordinates, momenta and t, and has no velocities");
   for (uint32_t k = 0; x.e && k < component_count(&x); k++)
     if (expr_contains(b->g, x.at[k], is_unknown, r))
-      return refuse(b, ast_expr(b->ast, id)->span, "a canonical transformation has no accelerations, multipliers or inputs");
+      return refuse(b, ast_expr(b->ast, id)->span,
+                    "a canonical transformation has no accelerations, multipliers or inputs");
   r->c.domain = domain_and(b, r->c.domain, x.domain);
   return x;
 }
@@ -184,10 +193,15 @@ static int read_forward(Reader *r, const AstStmt *x, Value *forward) {
   Builder *b = r->b;
   uint32_t k = new_place(r, x->name);
   if (k == r->nnew)
-    return diag_error(b->diags, x->name_span, "`%s` is neither a coordinate or momentum of the model nor a new variable of `%s`", x->name, r->st->name);
+    return diag_error(b->diags, x->name_span,
+                      "`%s` is neither a coordinate or momentum of the model nor a new variable of `%s`", x->name,
+                      r->st->name);
   if (forward[k].e) return diag_error(b->diags, x->name_span, "`%s` is given twice", x->name);
   Value v = map_value(r, x->rhs, 0);
-  if (v.e && v.n) return diag_error(b->diags, ast_expr(b->ast, x->rhs)->span, "a new variable is a number, and this is %s" HELP "give each component a name", shape_text(b, v.n));
+  if (v.e && v.n)
+    return diag_error(b->diags, ast_expr(b->ast, x->rhs)->span,
+                      "a new variable is a number, and this is %s" HELP "give each component a name",
+                      shape_text(b, v.n));
   forward[k] = v;
   r->spans[k] = x->name_span;
   return v.e != 0;
@@ -197,11 +211,16 @@ static int read_inverse(Reader *r, const AstStmt *x, Expr *inverse) {
   Builder *b = r->b;
   OldPlaces at = old_places(r, x->name);
   if (r->lifts && at.first >= r->c.n)
-    return diag_error(b->diags, x->name_span, "`%s` follows from the coordinates" HELP "leave it out, or name the new momenta, too: `%s(Q, P): ...`", x->name, r->st->name);
+    return diag_error(b->diags, x->name_span,
+                      "`%s` follows from the coordinates" HELP
+                      "leave it out, or name the new momenta, too: `%s(Q, P): ...`",
+                      x->name, r->st->name);
   if (inverse[at.first]) return diag_error(b->diags, x->name_span, "`%s` is given twice", x->name);
   Value v = map_value(r, x->rhs, 1);
   if (!v.e) return 0;
-  if (component_count(&v) != at.size) return diag_error(b->diags, x->span, "`%s` is %s, and this is %s", x->name, shape_text(b, at.size > 1 ? at.size : 0), shape_text(b, v.n));
+  if (component_count(&v) != at.size)
+    return diag_error(b->diags, x->span, "`%s` is %s, and this is %s", x->name,
+                      shape_text(b, at.size > 1 ? at.size : 0), shape_text(b, v.n));
   for (uint32_t k = 0; k < at.size; k++) inverse[at.first + k] = v.at[k];
   return has_dim(r, x->rhs, &v, dim_of_symbol(r, r->old[at.first]), arena_printf(b->arena, "`%s`", x->name));
 }
@@ -216,32 +235,42 @@ static int check_arguments(Reader *r, const AstStmt *F) {
     uint32_t k = new_place(r, name);
     int fits = at.size ? at.first >= from && at.first < from + n : k >= to && k < to + n;
     if (!fits)
-      return diag_error(r->b->diags, ast_expr(r->b->ast, i)->span, "`%s` is no argument of this kind of generating function, %s", name, forms[r->c.kind - 1]);
+      return diag_error(r->b->diags, ast_expr(r->b->ast, i)->span,
+                        "`%s` is no argument of this kind of generating function, %s", name, forms[r->c.kind - 1]);
     if (at.size) old += at.size;
     else fresh++;
   }
   if (old == n && fresh == n) return 1;
-  return diag_error(r->b->diags, F->span, "a generating function %s has %u old and %u new arguments, and this one %u and %u", forms[r->c.kind - 1], n, n, old, fresh);
+  return diag_error(r->b->diags, F->span,
+                    "a generating function %s has %u old and %u new arguments, and this one %u and %u",
+                    forms[r->c.kind - 1], n, n, old, fresh);
 }
 
 /* Whether F contains its arguments, t and parameters alone; otherwise reported. */
 static int depends_on_arguments(Reader *r, const AstStmt *F) {
   uint32_t n = r->c.n;
   for (uint32_t i = 0; i < 4 * n; i++) {
-    int fresh = i >= 2 * n, momentum = i % (2 * n) >= n, argument = fresh ? momentum == (r->c.kind % 2 == 0) : momentum == (r->c.kind > 2);
+    int fresh = i >= 2 * n, momentum = i % (2 * n) >= n,
+        argument = fresh ? momentum == (r->c.kind % 2 == 0) : momentum == (r->c.kind > 2);
     SymId s = fresh ? r->c.fresh[i - 2 * n] : r->old[i];
     if (argument || !expr_contains_sym(r->b->g, r->c.generator, s)) continue;
-    return diag_error(r->b->diags, ast_expr(r->b->ast, F->rhs)->span, "`%s` contains `%s`, which is none of its arguments", F->name, expr_symbol(r->b->g, s)->name);
+    return diag_error(r->b->diags, ast_expr(r->b->ast, F->rhs)->span,
+                      "`%s` contains `%s`, which is none of its arguments", F->name, expr_symbol(r->b->g, s)->name);
   }
   return 1;
 }
 
 static int read_kind(Reader *r, const AstStmt *F) {
   if (F->name[0] == 'F' && F->name[1] >= '1' && F->name[1] <= '4' && !F->name[2]) r->c.kind = F->name[1] - '0';
-  else return diag_error(r->b->diags, F->name_span, "a generating function is called F1, F2, F3 or F4" HELP "F1(q, Q), F2(q, P), F3(p, Q), F4(p, P), with old q, p and new Q, P");
+  else
+    return diag_error(r->b->diags, F->name_span,
+                      "a generating function is called F1, F2, F3 or F4" HELP
+                      "F1(q, Q), F2(q, P), F3(p, Q), F4(p, P), with old q, p and new Q, P");
   for (const AstStmt *x = F->next; x; x = x->next)
-    if (x->kind == STMT_FUNCTION) return diag_error(r->b->diags, x->name_span, "`%s` has two generating functions", r->st->name);
-  return !r->b->gives_lagrangian || diag_error(r->b->diags, F->span, "the model gives its Lagrangian, which has no symbols for momenta" HELP
+    if (x->kind == STMT_FUNCTION)
+      return diag_error(r->b->diags, x->name_span, "`%s` has two generating functions", r->st->name);
+  return !r->b->gives_lagrangian || diag_error(r->b->diags, F->span,
+                                               "the model gives its Lagrangian, which has no symbols for momenta" HELP
                                                "give its Hamiltonian: `momentum p of x`, `hamiltonian = ...`");
 }
 
@@ -249,7 +278,9 @@ static int read_generator(Reader *r, const AstStmt *F) {
   Builder *b = r->b;
   if (!check_arguments(r, F)) return 0;
   Value v = map_value(r, F->rhs, 1);
-  if (v.e && v.n) return diag_error(b->diags, ast_expr(b->ast, F->rhs)->span, "a generating function is a number, and this is %s", shape_text(b, v.n));
+  if (v.e && v.n)
+    return diag_error(b->diags, ast_expr(b->ast, F->rhs)->span, "a generating function is a number, and this is %s",
+                      shape_text(b, v.n));
   r->c.generator = v.e;
   Dim action = dim_mul(b->dims, b->energy, dim_of_symbol(r, b->m->time));
   return v.e && has_dim(r, F->rhs, &v, action, "an action") && depends_on_arguments(r, F);
@@ -261,10 +292,14 @@ static int read_hamiltonian(Reader *r, const AstStmt *x) {
   if (r->c.is_point) return diag_error(b->diags, x->span, "a change of coordinates claims no Hamiltonian");
   if (r->c.K) return diag_error(b->diags, x->name_span, "`%s` is given twice", x->name);
   Value v = map_value(r, x->rhs, 1);
-  if (v.e && v.n) return diag_error(b->diags, ast_expr(b->ast, x->rhs)->span, "a Hamiltonian is a number, and this is %s", shape_text(b, v.n));
+  if (v.e && v.n)
+    return diag_error(b->diags, ast_expr(b->ast, x->rhs)->span, "a Hamiltonian is a number, and this is %s",
+                      shape_text(b, v.n));
   for (uint32_t i = 0; v.e && i < r->nold; i++)
     if (expr_contains_sym(b->g, v.e, r->old[i]))
-      return diag_error(b->diags, ast_expr(b->ast, x->rhs)->span, "the new Hamiltonian is a function of the new variables, and this contains `%s`", expr_symbol(b->g, r->old[i])->name);
+      return diag_error(b->diags, ast_expr(b->ast, x->rhs)->span,
+                        "the new Hamiltonian is a function of the new variables, and this contains `%s`",
+                        expr_symbol(b->g, r->old[i])->name);
   r->c.K = v.e;
   r->c.K_span = x->span;
   return v.e && has_dim(r, x->rhs, &v, b->energy, "a Hamiltonian");
@@ -277,7 +312,8 @@ static int check_pairs(Reader *r) {
   for (uint32_t i = 0; i < r->c.n && !r->c.is_point && !b->unitless; i++) {
     Dim product = dim_mul(b->dims, dim_of_symbol(r, r->c.fresh[i]), dim_of_symbol(r, r->c.fresh[r->c.n + i]));
     if (dim_equate(b->dims, product, action, r->spans[i])) continue;
-    diag_error(b->diags, r->spans[i], "units do not match: `%s*%s` is %s, and an action %s", r->names[i].name, r->names[r->c.n + i].name, in_dim(b, product), in_dim(b, action));
+    diag_error(b->diags, r->spans[i], "units do not match: `%s*%s` is %s, and an action %s", r->names[i].name,
+               r->names[r->c.n + i].name, in_dim(b, product), in_dim(b, action));
     return 0;
   }
   return 1;
@@ -287,7 +323,8 @@ static int check_pairs(Reader *r) {
 static void lift(Reader *r) {
   ExprGraph *g = r->b->g;
   Expr sum = expr_int(g, 0);
-  for (uint32_t i = 0; i < r->c.n; i++) sum = expr_sub(g, sum, expr_mul(g, expr_symbol(g, r->old[r->c.n + i])->node, r->c.inverse[i]));
+  for (uint32_t i = 0; i < r->c.n; i++)
+    sum = expr_sub(g, sum, expr_mul(g, expr_symbol(g, r->old[r->c.n + i])->node, r->c.inverse[i]));
   r->c.kind = 3;
   r->c.generator = sum;
   r->c.inverse = NULL;
@@ -295,7 +332,9 @@ static void lift(Reader *r) {
 
 static int all_given(const Reader *r, uint32_t given, const Expr *map, const SymId *sym, uint32_t n) {
   for (uint32_t k = 0; k < n && given; k++)
-    if (!map[k]) return diag_error(r->b->diags, r->st->span, "`%s` gives no `%s`", r->st->name, expr_symbol(r->b->g, sym[k])->name);
+    if (!map[k])
+      return diag_error(r->b->diags, r->st->span, "`%s` gives no `%s`", r->st->name,
+                        expr_symbol(r->b->g, sym[k])->name);
   return 1;
 }
 
@@ -313,13 +352,18 @@ static int read_maps(Reader *r) {
   declare_variables(r, values);
   for (const AstStmt *x = r->st->body; x; x = x->next) {
     int is_map = x->kind == STMT_SET && is_old(r, x->name);
-    if (x->kind == STMT_FUNCTION ? !read_generator(r, x) : is_map ? !read_inverse(r, x, inverse) : is_hamiltonian(x) && !read_hamiltonian(r, x)) return 0;
+    if (x->kind == STMT_FUNCTION ? !read_generator(r, x)
+        : is_map                 ? !read_inverse(r, x, inverse)
+                                 : is_hamiltonian(x) && !read_hamiltonian(r, x))
+      return 0;
     inverses += (uint32_t)is_map;
   }
   for (uint32_t k = 0; k < r->nnew; k++) forward[k] = values[k].e;
   if (forwards) r->c.forward = forward;
   if (inverses) r->c.inverse = inverse;
-  if (!all_given(r, forwards, forward, r->c.fresh, r->nnew) || !all_given(r, inverses, inverse, r->old, r->lifts ? r->c.n : r->nold)) return 0;
+  if (!all_given(r, forwards, forward, r->c.fresh, r->nnew) ||
+      !all_given(r, inverses, inverse, r->old, r->lifts ? r->c.n : r->nold))
+    return 0;
   if (r->lifts) lift(r);
   return check_pairs(r);
 }

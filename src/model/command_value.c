@@ -25,7 +25,8 @@ static double in_declared(Builder *b, Expr x, const Unit *u, const char **digits
   ExprGraph *g = b->g;
   Expr pi = expr_symbol(g, b->m->pi)->node;
   Expr from_zero = num_is_zero(u->offset) ? x : expr_sub(g, x, expr_num(g, u->offset));
-  Expr scaled = expr_scale(g, num_div(num_int(1), u->factor), from_zero), turns = expr_pow_num(g, pi, num_int(-u->pi_power));
+  Expr scaled = expr_scale(g, num_div(num_int(1), u->factor), from_zero),
+       turns = expr_pow_num(g, pi, num_int(-u->pi_power));
   Expr e = expr_mul(g, scaled, turns);
   *digits = expression_digits(b, e);
   return (double)constant_value(b, e);
@@ -38,7 +39,9 @@ static void command_value(Builder *b, CommandValue *of) {
     if (!target.e) return;
     if (target.n || !setting_unit(b, target.e, &unit)) {
       diag_error(b->diags, ast_expr(b->ast, of->target)->span, "a run cannot set `%s`", ast_short(b, of->target));
-      if (target.n) diag_help(b->diags, "it is %s: set its components, `%s.x=...`", shape_text(b, target.n), ast_text(b, of->target));
+      if (target.n)
+        diag_help(b->diags, "it is %s: set its components, `%s.x=...`", shape_text(b, target.n),
+                  ast_text(b, of->target));
       else diag_help(b->diags, "parameters, inputs, and the starts of coordinates, velocities and states are set so");
       return;
     }

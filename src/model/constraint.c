@@ -1,6 +1,7 @@
-/* Constraints and contacts: each becomes c = 0 in the model, left side minus right side, with a multiplier that outputs can name.
- * A contact is closed*gap = 0 plus two events: impact (the gap falls to 0) and release (the multiplier does). A constraint with `while` is
- * closed*c = 0 with the same two events, of a function that is positive where the condition is true. */
+/* Constraints and contacts: each becomes c = 0 in the model, left side minus right side, with a multiplier that
+ * outputs can name. A contact is closed*gap = 0 plus two events: impact (the gap falls to 0) and release (the
+ * multiplier does). A constraint with `while` is closed*c = 0 with the same two events, of a function that is
+ * positive where the condition is true. */
 #include <math.h>
 
 #include "base/words.h"
@@ -10,7 +11,9 @@
 static int can_be_held(Builder *b, Expr c, const char *what, Name name, Span span) {
   unsigned kinds = expr_kinds(b->g, c);
   if (kinds & 1u << SYM_STATE)
-    return diag_error(b->diags, span, "the %s `%s` contains a state: constraints hold between coordinates" HELP "declare the constrained quantity as a coordinate",
+    return diag_error(b->diags, span,
+                      "the %s `%s` contains a state: constraints hold between coordinates" HELP
+                      "declare the constrained quantity as a coordinate",
                       what, name);
   if (kinds & 1u << SYM_INPUT) want_rates_of(b, c, kinds & 1u << SYM_VEL ? 1 : 2);
   return 1;
@@ -19,15 +22,19 @@ static int can_be_held(Builder *b, Expr c, const char *what, Name name, Span spa
 /* Shapes and dimensions of both sides; 0, reported, if they differ. The hint gives a bare number its unit. */
 static int sides_agree(Builder *b, const AstStmt *st, const Value *l, const Value *r) {
   if (l->n != r->n)
-    return diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, l->n), shape_text(b, r->n));
+    return diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s",
+                      shape_text(b, l->n), shape_text(b, r->n));
   if (l->n == ROTATION) {
     refuse_rotation(b, st->span, ast_text(b, st->lhs), TURN_EQUATION);
     return 0;
   }
   if (dims_agree(b, l, r, st->span)) return 1;
-  diag_error(b->diags, st->span, "units do not match: the left side is %s, the right side %s", in_dim(b, l->dim), in_dim(b, r->dim));
+  diag_error(b->diags, st->span, "units do not match: the left side is %s, the right side %s", in_dim(b, l->dim),
+             in_dim(b, r->dim));
   const Value *bare = r->bare ? r : l;
-  if (bare->bare) diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_text(b, bare == r ? st->rhs : st->lhs), dim_text(b->dims, bare == r ? l->dim : r->dim));
+  if (bare->bare)
+    diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_text(b, bare == r ? st->rhs : st->lhs),
+              dim_text(b->dims, bare == r ? l->dim : r->dim));
   explain_dims(b, l->dim, r->dim);
   return 0;
 }
@@ -58,26 +65,36 @@ static uint32_t add_switched_event(Builder *b, const Contact *c, const char *suf
 
 /* Adds an event of a tangent: the runtime says when its value counts. */
 static uint32_t add_named_event(Builder *b, Name name, const char *suffix, Expr value, Span span) {
-  vec_push(b->arena, &b->m->events, ((Event){.name = intern_printf(b, "%s%s", name, suffix), .span = span, .direction = CROSS_FALLING, .g = value}));
+  vec_push(
+      b->arena, &b->m->events,
+      ((Event){.name = intern_printf(b, "%s%s", name, suffix), .span = span, .direction = CROSS_FALLING, .g = value}));
   return b->m->events.n - 1;
 }
 
 static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *gap, const Value *e) {
   Span span = ast_expr(b->ast, st->lhs)->span, bounce = ast_expr(b->ast, st->rhs)->span;
   if (gap->n || e->n)
-    return diag_error(b->diags, gap->n ? span : bounce, "this is %s, but a number is needed here", shape_text(b, gap->n ? gap->n : e->n));
+    return diag_error(b->diags, gap->n ? span : bounce, "this is %s, but a number is needed here",
+                      shape_text(b, gap->n ? gap->n : e->n));
   unsigned kinds = expr_kinds(b->g, gap->e);
   if (!can_be_held(b, gap->e, "contact", name, span)) return 0;
   if (kinds & 1u << SYM_VEL || !(kinds & 1u << SYM_COORD))
-    return diag_error(b->diags, span, "the gap of the contact `%s` contains %s" HELP
-                      "a gap is a distance between positions: `contact floor: y >= 0, restitution = 0.8`", name, kinds & 1u << SYM_VEL ? "a velocity" : "no coordinate");
+    return diag_error(b->diags, span,
+                      "the gap of the contact `%s` contains %s" HELP
+                      "a gap is a distance between positions: `contact floor: y >= 0, restitution = 0.8`",
+                      name, kinds & 1u << SYM_VEL ? "a velocity" : "no coordinate");
   double value = expr_is_num(b->g, e->e) ? num_value(expr_number(b->g, e->e)) : 0.5;
-  const unsigned of_impact = 1u << SYM_PARAM | 1u << SYM_CONST | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_INPUT | 1u << SYM_TIME;
+  const unsigned of_impact =
+      1u << SYM_PARAM | 1u << SYM_CONST | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_INPUT | 1u << SYM_TIME;
   if (expr_kinds(b->g, e->e) & ~of_impact || value < 0 || value > 1)
-    return diag_error(b->diags, bounce, "a coefficient of restitution is a number from 0 to 1, made of parameters, and of positions and velocities at the impact");
-  if (expr_is_constant(b->g, e->e)) add_size(b, e->e, arena_printf(b->arena, "the contact `%s` has a restitution", name), bounce, 1);
+    return diag_error(b->diags, bounce,
+                      "a coefficient of restitution is a number from 0 to 1, made of parameters, and of positions and "
+                      "velocities at the impact");
+  if (expr_is_constant(b->g, e->e))
+    add_size(b, e->e, arena_printf(b->arena, "the contact `%s` has a restitution", name), bounce, 1);
   return dims_agree(b, e, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, bounce) ||
-         diag_error(b->diags, bounce, "a coefficient of restitution is a pure number, and this is %s", in_dim(b, e->dim));
+         diag_error(b->diags, bounce, "a coefficient of restitution is a pure number, and this is %s",
+                    in_dim(b, e->dim));
 }
 
 /* A pure number made of parameters, at least 0 and at most `most`; what: its name. */
@@ -87,7 +104,8 @@ static int check_coefficient(Builder *b, Name contact, AstId id, const Value *x,
   if (x->n) return diag_error(b->diags, span, "this is %s, but a number is needed here", shape_text(b, x->n));
   double value = expr_is_num(b->g, x->e) ? num_value(expr_number(b->g, x->e)) : 0;
   if (!expr_is_constant(b->g, x->e)) return diag_error(b->diags, span, "%s is a number, or made of parameters", what);
-  if (value < 0 || value > most) return diag_error(b->diags, span, most > 1 ? "%s is at least 0" : "%s is a number from 0 to 1", what);
+  if (value < 0 || value > most)
+    return diag_error(b->diags, span, most > 1 ? "%s is at least 0" : "%s is a number from 0 to 1", what);
   add_size(b, x->e, arena_printf(b->arena, "the contact `%s` has %s", contact, what), span, !(most > 1));
   return dims_agree(b, x, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, span) ||
          diag_error(b->diags, span, "%s is a pure number, and this is %s", what, in_dim(b, x->dim));
@@ -100,20 +118,29 @@ static int check_slip(Builder *b, AstId id, const Value *slip, const Contact *c)
   Dim speed = dim_per_second(b->dims, b->m->constraints.at[c->constraint].dim);
   if (!slip->e) return 0;
   if (slip->n && slip->n != 2)
-    return diag_error(b->diags, span, "this is %s, but a number or two are needed here" HELP "the slip has one component in a plane, and two along a surface in space: `slip = (x', y')`", shape_text(b, slip->n));
+    return diag_error(b->diags, span,
+                      "this is %s, but a number or two are needed here" HELP
+                      "the slip has one component in a plane, and two along a surface in space: `slip = (x', y')`",
+                      shape_text(b, slip->n));
   for (uint32_t k = 0; k < component_count(slip); k++) {
     if (!can_be_held(b, slip->at[k], "slip of the contact", name, span)) return 0;
     if (!(expr_kinds(b->g, slip->at[k]) & 1u << SYM_VEL))
-      return diag_error(b->diags, span, "the slip of the contact `%s` contains no velocity" HELP
-                        "it is the velocity of the point of contact along the surface: `slip = x' + r*th'` of a wheel", name);
+      return diag_error(b->diags, span,
+                        "the slip of the contact `%s` contains no velocity" HELP
+                        "it is the velocity of the point of contact along the surface: `slip = x' + r*th'` of a wheel",
+                        name);
   }
   return dims_agree(b, slip, &(Value){.e = c->gap, .dim = speed}, span) ||
-         diag_error(b->diags, span, "the slip of the contact `%s` is %s, its gap per second %s" HELP
-                    "friction compares two forces: let the gap be the distance from the surface, and the slip the velocity along it", name, in_dim(b, slip->dim), in_dim(b, speed));
+         diag_error(b->diags, span,
+                    "the slip of the contact `%s` is %s, its gap per second %s" HELP
+                    "friction compares two forces: let the gap be the distance from the surface, and the slip the "
+                    "velocity along it",
+                    name, in_dim(b, slip->dim), in_dim(b, speed));
 }
 
 /* A tangent of contact c, along one component of its slip: "" in a plane, ".x", ".y" in space. t: what both share. */
-static void push_tangent(Builder *b, const AstStmt *st, const Contact *c, Contact t, Expr slip, Dim dim, const char *component) {
+static void push_tangent(Builder *b, const AstStmt *st, const Contact *c, Contact t, Expr slip, Dim dim,
+                         const char *component) {
   Model *m = b->m;
   t.gap = slip;
   t.name = intern_printf(b, "%s.slip%s", c->name, component);
@@ -121,28 +148,40 @@ static void push_tangent(Builder *b, const AstStmt *st, const Contact *c, Contac
   t.closed = add_signal(b, t.name, "sticks", SIGN_NONNEGATIVE, DIM_NONE, st->name_span);
   add_scalar_constraint(b, t.name, expr_mul(b->g, symbol_node(b, t.closed), slip), dim, st->span);
   t.force = add_signal(b, t.name, "force", SIGN_UNKNOWN, multiplier_dim(b, dim, 0), st->name_span);
-  Expr pressed = symbol_node(b, m->constraints.at[c->constraint].multiplier), held = expr_add(b->g, symbol_node(b, m->constraints.at[t.constraint].multiplier), symbol_node(b, t.force));
+  Expr pressed = symbol_node(b, m->constraints.at[c->constraint].multiplier),
+       held = expr_add(b->g, symbol_node(b, m->constraints.at[t.constraint].multiplier), symbol_node(b, t.force));
   Expr limit = expr_mul(b->g, t.hold, pressed), size = expr_fn(b->g, EX_ABS, held);
   t.impact = add_named_event(b, c->name, intern_printf(b, " sticks%s", component), slip, st->span);
-  t.release = add_named_event(b, c->name, intern_printf(b, " slips%s", component), expr_sub(b->g, limit, size), st->span);
+  t.release =
+      add_named_event(b, c->name, intern_printf(b, " slips%s", component), expr_sub(b->g, limit, size), st->span);
   vec_push(b->arena, &m->contacts, t);
 }
 
-#define FRICTION_FORM "`contact NAME: y >= 0, restitution = 0.5, friction = mu, slip = x'`, and perhaps `static = mu_s`, `tangential = e_t` or `law = poisson`"
+#define FRICTION_FORM                                                                                                \
+  "`contact NAME: y >= 0, restitution = 0.5, friction = mu, slip = x'`, and perhaps `static = mu_s`, `tangential = " \
+  "e_t` or `law = poisson`"
 
 /* Reports options that stand twice, or do not go together. */
 static int check_options(Builder *b, const AstStmt *st) {
   for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) {
     const AstExpr *x = ast_expr(b->ast, i);
-    if (ast_option_value(b->ast, st, x->name) != x->args) return diag_error(b->diags, x->span, "the contact `%s` has `%s` twice", st->name, x->name);
+    if (ast_option_value(b->ast, st, x->name) != x->args)
+      return diag_error(b->diags, x->span, "the contact `%s` has `%s` twice", st->name, x->name);
   }
   int mu = ast_option_value(b->ast, st, "friction") != 0, slip = ast_option_value(b->ast, st, "slip") != 0;
   if (!mu || !slip)
-    return diag_error(b->diags, ast_expr(b->ast, st->args)->span, "the contact `%s` has %s" HELP "a contact has with friction also the velocity of slipping: " FRICTION_FORM, st->name,
-                      mu ? "friction and no slip" : slip ? "a slip and no friction" : "neither friction nor slip");
+    return diag_error(b->diags, ast_expr(b->ast, st->args)->span,
+                      "the contact `%s` has %s" HELP
+                      "a contact has with friction also the velocity of slipping: " FRICTION_FORM,
+                      st->name,
+                      mu     ? "friction and no slip"
+                      : slip ? "a slip and no friction"
+                             : "neither friction nor slip");
   AstId law = ast_option_value(b->ast, st, "law");
   if (law && ast_option_value(b->ast, st, "tangential"))
-    return diag_error(b->diags, ast_expr(b->ast, law)->span, "`tangential` is a law of its own, for both velocities after an impact" HELP "leave `law` out, or `tangential`");
+    return diag_error(b->diags, ast_expr(b->ast, law)->span,
+                      "`tangential` is a law of its own, for both velocities after an impact" HELP
+                      "leave `law` out, or `tangential`");
   return 1;
 }
 
@@ -157,7 +196,8 @@ static int impact_law(Builder *b, const AstStmt *st) {
 }
 
 /* A coefficient of the contact, or `other` where it is not given; 0, reported: it is wrong. */
-static Expr coefficient(Builder *b, const AstStmt *st, Name effect, const char *word, double most, const char *what, Expr other) {
+static Expr coefficient(Builder *b, const AstStmt *st, Name effect, const char *word, double most, const char *what,
+                        Expr other) {
   AstId id = ast_option_value(b->ast, st, word);
   if (!id) return other;
   Value x = resolve(b, id, IN_DYNAMICS, effect);
@@ -176,8 +216,13 @@ static void add_tangents(Builder *b, const AstStmt *st, Name effect, const Conta
   t.restitution = coefficient(b, st, effect, "tangential", 1, "a tangential restitution", expr_int(b->g, 0));
   Value slip = resolve(b, v, IN_DYNAMICS, effect);
   if (!check_slip(b, v, &slip, c) || !t.friction || !t.hold || !t.restitution || t.law < 0) return;
-  scope_add(&b->constraints, (Entity){.index = m->constraints.n, .name = intern_printf(b, "slip"), .effect = c->name, .span = st->name_span, .parts = (uint8_t)slip.n});
-  for (uint32_t k = 0; k < component_count(&slip); k++) push_tangent(b, st, c, t, slip.at[k], slip.dim, slip.n ? components[k] : "");
+  scope_add(&b->constraints, (Entity){.index = m->constraints.n,
+                                      .name = intern_printf(b, "slip"),
+                                      .effect = c->name,
+                                      .span = st->name_span,
+                                      .parts = (uint8_t)slip.n});
+  for (uint32_t k = 0; k < component_count(&slip); k++)
+    push_tangent(b, st, c, t, slip.at[k], slip.dim, slip.n ? components[k] : "");
   if (!m->dissipation_span.end) m->dissipation_span = st->span;
 }
 
@@ -186,10 +231,12 @@ static Contact push_contact(Builder *b, const AstStmt *st, Name name, Name effec
   Model *m = b->m;
   Contact c = {.name = name, .gap = gap->e, .restitution = restitution, .constraint = m->constraints.n};
   c.closed = add_signal(b, name, "closed", SIGN_NONNEGATIVE, DIM_NONE, st->name_span);
-  scope_add(&b->constraints, (Entity){.index = m->constraints.n, .name = name, .effect = effect, .span = st->name_span});
+  scope_add(&b->constraints,
+            (Entity){.index = m->constraints.n, .name = name, .effect = effect, .span = st->name_span});
   add_scalar_constraint(b, name, expr_mul(b->g, symbol_node(b, c.closed), gap->e), gap->dim, st->span);
   c.impact = add_switched_event(b, &c, "", 0, gap->e, st->span);
-  c.release = add_switched_event(b, &c, " opens", 1, symbol_node(b, m->constraints.at[c.constraint].multiplier), st->span);
+  c.release =
+      add_switched_event(b, &c, " opens", 1, symbol_node(b, m->constraints.at[c.constraint].multiplier), st->span);
   vec_push(b->arena, &m->contacts, c);
   return c;
 }
@@ -215,7 +262,8 @@ void add_contact(Builder *b, const AstStmt *st, Name effect) {
 
 /* --- constraints with `while` --- */
 
-/* A function that is positive where condition x is true, and negative where it is false; 0: x is an equation, or none. */
+/* A function that is positive where condition x is true, and negative where it is false; 0: x is an equation, or
+ * none. */
 static Expr margin_of(Builder *b, Expr x) {
   ExprGraph *g = b->g;
   ExprOp op = expr_op(g, x);
@@ -232,8 +280,8 @@ static int is_multiplier(const Builder *b, AstId id) {
   return x->kind == AST_CALL && strcmp(x->name, "lambda") == 0;
 }
 
-/* Whether the condition is about a multiplier: then the constraint is a contact that does not bounce, and *wrong is 1 where it is no
- * `lambda(NAME) > 0`. */
+/* Whether the condition is about a multiplier: then the constraint is a contact that does not bounce, and *wrong is
+ * 1 where it is no `lambda(NAME) > 0`. */
 static int is_one_sided(const Builder *b, const AstStmt *st, int *wrong) {
   const AstExpr *x = ast_expr(b->ast, st->args);
   int greater = x->kind == AST_GT || x->kind == AST_GE, less = x->kind == AST_LT || x->kind == AST_LE;
@@ -252,8 +300,11 @@ static int is_one_sided(const Builder *b, const AstStmt *st, int *wrong) {
 static void add_one_sided(Builder *b, const AstStmt *st, Name name, Name effect, const Value *c, int wrong) {
   Value gap = *c, e = {.e = expr_int(b->g, 0), .dim = DIM_NONE};
   if (wrong) {
-    diag_error(b->diags, ast_expr(b->ast, st->args)->span, "a constraint whose force has one sign holds `while lambda(%s) > 0`, and no other number or force may stand there" HELP
-               "a force against the sides as they are written is positive with the sides exchanged: a rope pulls with `constraint %s: l = hypot(x, y) while lambda(%s) > 0`", name, name, name);
+    diag_error(b->diags, ast_expr(b->ast, st->args)->span,
+               "a constraint whose force has one sign holds `while lambda(%s) > 0`, and no other number or force may "
+               "stand there" HELP "a force against the sides as they are written is positive with the sides exchanged: "
+                                  "a rope pulls with `constraint %s: l = hypot(x, y) while lambda(%s) > 0`",
+               name, name, name);
     return;
   }
   if (check_contact(b, st, name, &gap, &e)) push_contact(b, st, name, effect, &gap, e.e);
@@ -267,12 +318,20 @@ static Expr condition_margin(Builder *b, const AstStmt *st, Name name, Name effe
   unsigned kinds = expr_kinds(b->g, v.e);
   Expr margin = v.condition ? margin_of(b, v.e) : 0;
   if (kinds & 1u << SYM_INPUT)
-    diag_error(b->diags, span, "the condition of `%s` contains an input, which may jump" HELP "write the input as a formula of t, or let an event set a state", name);
+    diag_error(b->diags, span,
+               "the condition of `%s` contains an input, which may jump" HELP
+               "write the input as a formula of t, or let an event set a state",
+               name);
   else if (v.condition && !(kinds & (1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_TIME)))
-    diag_error(b->diags, span, "the condition of `%s` cannot change: it contains no coordinate, velocity, state or t" HELP
-               "leave `while` out, or put the constraint into an effect, which a scene uses", name);
+    diag_error(b->diags, span,
+               "the condition of `%s` cannot change: it contains no coordinate, velocity, state or t" HELP
+               "leave `while` out, or put the constraint into an effect, which a scene uses",
+               name);
   else if (!margin)
-    diag_error(b->diags, span, "`%s` is no condition that holds over a time" HELP "`while` takes comparisons by <, <=, > and >=, joined by `and`, `or`, `not`", ast_short(b, st->args));
+    diag_error(b->diags, span,
+               "`%s` is no condition that holds over a time" HELP
+               "`while` takes comparisons by <, <=, > and >=, joined by `and`, `or`, `not`",
+               ast_short(b, st->args));
   else return margin;
   return 0;
 }
@@ -311,7 +370,11 @@ void add_constraint(Builder *b, const AstStmt *st, Name effect) {
   }
   Expr margin = st->args ? condition_margin(b, st, name, effect) : 0;
   if (st->args && !margin) return;
-  scope_add(&b->constraints, (Entity){.index = b->m->constraints.n, .name = name, .effect = effect, .span = st->name_span, .parts = (uint8_t)left.n});
+  scope_add(&b->constraints, (Entity){.index = b->m->constraints.n,
+                                      .name = name,
+                                      .effect = effect,
+                                      .span = st->name_span,
+                                      .parts = (uint8_t)left.n});
   for (uint32_t k = 0, from = b->m->contacts.n; k < component_count(&left); k++) {
     Expr c = expr_sub(b->g, left.at[k], right.at[k]);
     if (!can_be_held(b, c, "constraint", name, st->span)) return;

@@ -1,4 +1,5 @@
-/* Declarations: names of a model, and the text of its definitions. The self-check (self_check/) evaluates the text from this table, by code of its own. */
+/* Declarations: names of a model, and the text of its definitions. The self-check (self_check/) evaluates the text
+ * from this table, by code of its own. */
 #pragma once
 
 #include "model/scope.h"

@@ -1,26 +1,33 @@
-/* Declarations: each name enters the scope, and coordinates, states, inputs, observables their arrays of the Model, in file order.
- * Lets and functions are only recorded: resolve.c evaluates them when needed. Parameters and constants: declare_param.c. */
+/* Declarations: each name enters the scope, and coordinates, states, inputs, observables their arrays of the Model,
+ * in file order. Lets and functions are only recorded: resolve.c evaluates them when needed. Parameters and
+ * constants: declare_param.c. */
 #include <stdlib.h>
 
 #include "base/words.h"
 #include "model/builder.h"
 
 static int declare_name(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index) {
-  return declare_entity(b, st, (Entity){.kind = kind, .index = index, .name = st->name, .effect = effect, .span = st->name_span});
+  return declare_entity(
+      b, st, (Entity){.kind = kind, .index = index, .name = st->name, .effect = effect, .span = st->name_span});
 }
 
-static int declare_family(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index, uint8_t parts, Entity *e) {
+static int declare_family(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index, uint8_t parts,
+                          Entity *e) {
   return read_family(b, st, effect, kind, index, parts, e) && declare_entity(b, st, *e);
 }
 
-static int declares_motion(const AstStmt *st) { return st->kind == STMT_COORD || st->kind == STMT_MOMENTUM || st->kind == STMT_STATE; }
+static int declares_motion(const AstStmt *st) {
+  return st->kind == STMT_COORD || st->kind == STMT_MOMENTUM || st->kind == STMT_STATE;
+}
 
-/* Name of a coordinate or state in outputs: "EFFECT.NAME" if the model or another effect in use declares NAME as well. */
+/* Name of a coordinate or state in outputs: "EFFECT.NAME" if the model or another effect in use declares NAME as
+ * well. */
 static Name plain_name(Builder *b, const AstStmt *st, Name effect) {
   if (!effect) return st->name;
   for (uint32_t i = 0; i < b->active.n; i++) {
     const Active *a = &b->active.at[i];
-    if (a->effect != effect && a->stmt->name == st->name && declares_motion(a->stmt)) return intern_printf(b, "%s.%s", effect, st->name);
+    if (a->effect != effect && a->stmt->name == st->name && declares_motion(a->stmt))
+      return intern_printf(b, "%s.%s", effect, st->name);
   }
   return st->name;
 }
@@ -28,9 +35,14 @@ static Name plain_name(Builder *b, const AstStmt *st, Name effect) {
 static void add_state(Builder *b, const AstStmt *st, Name name, Unit unit) {
   Model *m = b->m;
   uint32_t i = m->states.n;
-  State z = {.name = name, .span = st->name_span, .unit = unit, .coordinate = st->kind != STMT_STATE, .periodic = st->periodic};
+  State z = {.name = name,
+             .span = st->name_span,
+             .unit = unit,
+             .coordinate = st->kind != STMT_STATE,
+             .periodic = st->periodic};
   z.z = declare_symbol(b, SYM_STATE, i, name, SIGN_UNKNOWN, unit.dim);
-  z.rate = declare_symbol(b, SYM_RATE, i, intern_printf(b, "%s'", name), SIGN_UNKNOWN, dim_per_second(b->dims, unit.dim));
+  z.rate =
+      declare_symbol(b, SYM_RATE, i, intern_printf(b, "%s'", name), SIGN_UNKNOWN, dim_per_second(b->dims, unit.dim));
   vec_push(b->arena, &m->states, z);
 }
 
@@ -71,8 +83,10 @@ static void declare_motion(Builder *b, const AstStmt *st, Name effect) {
   int64_t at[2] = {1, 1};
   Name stem = plain_name(b, st, effect);
   do {
-    for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++) (is_state ? add_state : add_coord)(b, st, scalar_name(b, &e, stem, at, k), unit);
-    if (parts == ROTATION && !is_state) constrain_rotation(b, member_name(b->ast, stem, at, e.ndims), e.index + member_offset(&e, at), st->name_span);
+    for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++)
+      (is_state ? add_state : add_coord)(b, st, scalar_name(b, &e, stem, at, k), unit);
+    if (parts == ROTATION && !is_state)
+      constrain_rotation(b, member_name(b->ast, stem, at, e.ndims), e.index + member_offset(&e, at), st->name_span);
   } while (next_member(&e, at));
 }
 
@@ -95,7 +109,8 @@ static uint32_t family_of(Builder *b, const AstStmt *st, Name effect, EntKind ki
   if (old && old->kind == ENT_NONE) return 0;
   if (old && old->kind == kind && old->ndims == r->n) return (uint32_t)(old - b->scope.all.at) + 1;
   if (old && old->kind == kind && old->ndims) {
-    diag_error(b->diags, st->name_span, "`%s` has %s, here it has %u", st->name, old->ndims == 1 ? "one index" : "two indices", r->n);
+    diag_error(b->diags, st->name_span, "`%s` has %s, here it has %u", st->name,
+               old->ndims == 1 ? "one index" : "two indices", r->n);
     diag_also(b->diags, old->span, "first declared here");
     return 0;
   }
@@ -108,7 +123,8 @@ static uint32_t family_of(Builder *b, const AstStmt *st, Name effect, EntKind ki
 }
 
 /* Declares one member of a family and widens the family's index range to contain it. */
-static int declare_member(Builder *b, const AstStmt *st, uint32_t family, const int64_t *at, uint32_t index, Name *name) {
+static int declare_member(Builder *b, const AstStmt *st, uint32_t family, const int64_t *at, uint32_t index,
+                          Name *name) {
   Entity *f = &b->scope.all.at[family - 1];
   *name = member_name(b->ast, f->name, at, f->ndims);
   const Entity *old = scope_own(&b->members, *name, f->effect);
@@ -121,7 +137,8 @@ static int declare_member(Builder *b, const AstStmt *st, uint32_t family, const 
     if (at[k] < f->lo[k]) f->lo[k] = at[k];
     if (at[k] > f->hi[k]) f->hi[k] = at[k];
   }
-  scope_add(&b->members, (Entity){.kind = f->kind, .index = index, .name = *name, .effect = f->effect, .span = st->name_span});
+  scope_add(&b->members,
+            (Entity){.kind = f->kind, .index = index, .name = *name, .effect = f->effect, .span = st->name_span});
   return 1;
 }
 
@@ -188,7 +205,8 @@ static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
   vec_push(b->arena, &m->observes, o);
   IndexVar *around = ARENA_ARRAY(b->arena, IndexVar, b->index.n + 1);
   if (b->index.n) memcpy(around, b->index.at, b->index.n * sizeof *around);
-  add_definition(b, ENT_OBSERVE, (Definition){.stmt = st, .name = o.name, .effect = effect, .around = around, .naround = b->index.n});
+  add_definition(b, ENT_OBSERVE,
+                 (Definition){.stmt = st, .name = o.name, .effect = effect, .around = around, .naround = b->index.n});
 }
 
 /* 1 if a momentum beside L has the size of its coordinate; otherwise reported. */
@@ -206,7 +224,9 @@ void declare_momentum(Builder *b, const AstStmt *st, Name effect, void *data) {
   if (b->m->hamiltonian) {
     declare_motion(b, st, effect);
   } else if (st->dims) {
-    diag_error(b->diags, st->name_span, "not yet: names for the momenta of a family whose Lagrangian is given" HELP "they are called `%s[1]` and so on",
+    diag_error(b->diags, st->name_span,
+               "not yet: names for the momenta of a family whose Lagrangian is given" HELP
+               "they are called `%s[1]` and so on",
                ast_expr(b->ast, st->rhs)->name);
     declare_refused(b, st, effect);
   } else if (b->gives_lagrangian && names_a_momentum(b, st, effect)) {
@@ -227,7 +247,17 @@ void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_FUNCTION: declare_function(b, st, effect); return;
     case STMT_OBSERVE: declare_observe(b, st, effect); return;
     case STMT_SYMMETRY: declare_symmetry(b, st, effect); return;
-    case STMT_CANONICAL: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE: case STMT_MOMENTUM: case STMT_HAMILTONIAN: case STMT_LAGRANGIAN: case STMT_CONSTRAINT: case STMT_CONTACT: case STMT_KINETIC: case STMT_POTENTIAL:
+    case STMT_CANONICAL:
+    case STMT_FOR:
+    case STMT_MODEL:
+    case STMT_INCLUDE:
+    case STMT_MOMENTUM:
+    case STMT_HAMILTONIAN:
+    case STMT_LAGRANGIAN:
+    case STMT_CONSTRAINT:
+    case STMT_CONTACT:
+    case STMT_KINETIC:
+    case STMT_POTENTIAL:
     case STMT_DISSIPATION: case STMT_FORCE: case STMT_FLOW: case STMT_MAP: case STMT_EXPECT:
     case STMT_EVENT: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
     case STMT_START: case STMT_EXACT: case STMT_SET: case STMT_USE: case STMT_SPAN: case STMT_METHOD:

@@ -27,12 +27,15 @@ void warn_signs(Builder *b) {
     if (!p->value) continue;
     expr_eval(b->g, &p->value, 1, x, &x[p->sym]);
     if (expr_is_num(b->g, p->value) || has_sign(p->sign, x[p->sym])) continue;
-    diag_warning(b->diags, p->span, "`%s` is declared %s, but its value is %s", p->name, sign_texts[p->sign], arena_printf(b->arena, "%.6Lg", x[p->sym]));
+    diag_warning(b->diags, p->span, "`%s` is declared %s, but its value is %s", p->name, sign_texts[p->sign],
+                 arena_printf(b->arena, "%.6Lg", x[p->sym]));
     diag_help(b->diags, "a run refuses this value: change it, or the parameters it depends on");
   }
 }
 
-static int is_of_parameters(const ExprGraph *g, Expr e) { return !(expr_kinds(g, e) & ~(1u << SYM_PARAM | 1u << SYM_CONST)); }
+static int is_of_parameters(const ExprGraph *g, Expr e) {
+  return !(expr_kinds(g, e) & ~(1u << SYM_PARAM | 1u << SYM_CONST));
+}
 
 /* The factor of parameters of a size; 0: none, or the rest may be negative. */
 static Expr parameter_factor(ExprGraph *g, Expr size) {
@@ -68,7 +71,11 @@ void check_sizes(Builder *b) {
     const char *size = arena_printf(b->arena, "%.6Lg", f);
     if (!(f < 0) && !(one->part && f > 1)) continue;
     if (one->part) diag_error(b->diags, one->span, "%s of %s, which must be between 0 and 1", one->what, size);
-    else diag_error(b->diags, one->span, "%s of %s, and would drive the motion" HELP "it acts against the velocity by itself: let its size be at least 0, `param mu = 0.3 >= 0`", one->what, size);
+    else
+      diag_error(b->diags, one->span,
+                 "%s of %s, and would drive the motion" HELP
+                 "it acts against the velocity by itself: let its size be at least 0, `param mu = 0.3 >= 0`",
+                 one->what, size);
   }
 }
 
@@ -77,7 +84,10 @@ void check_sign(Builder *b, const Param *p, Span span) {
   if (p->sign == SIGN_ANY || !p->value) return;
   ExprSign s = expr_sign(b->g, p->value);
   int zero = expr_is_zero(b->g, p->value), above = s == SIGN_POSITIVE, below = s == SIGN_NEGATIVE;
-  int wrong = p->sign == SIGN_GT ? below || zero : p->sign == SIGN_GE ? below : p->sign == SIGN_LT ? above || zero : above;
+  int wrong = p->sign == SIGN_GT   ? below || zero
+              : p->sign == SIGN_GE ? below
+              : p->sign == SIGN_LT ? above || zero
+                                   : above;
   if (wrong) diag_error(b->diags, span, "`%s` is declared %s, but this value is not", p->name, sign_texts[p->sign]);
 }
 
@@ -104,7 +114,8 @@ static void add_param(const Declared *d, Name name, Value v, Span span) {
 static void add_member(const Declared *d, const int64_t *at, Value v, Span span) {
   Builder *b = d->b;
   if (v.e && v.n != d->e.parts) {
-    diag_error(b->diags, span, "`%s` is %s, and %s is given here", d->st->name, shape_text(b, d->e.parts), shape_text(b, v.n));
+    diag_error(b->diags, span, "`%s` is %s, and %s is given here", d->st->name, shape_text(b, d->e.parts),
+               shape_text(b, v.n));
     v = (Value){0};
   }
   if (v.e && v.n == ROTATION) v = refuse_rotation(b, span, source_text(b, span), TURN_VALUE);
@@ -156,7 +167,8 @@ void declare_param(Builder *b, const AstStmt *st, Name effect) {
   if (!known) return;
   int fits = read_values(&d, effect, &values);
   if (!st->type && fits) d.e.parts = (uint8_t)values.at.at[0].n;
-  if (d.e.parts && st->sign != SIGN_ANY) diag_error(b->diags, st->name_span, "`%s` is %s, and has no sign", st->name, shape_text(b, d.e.parts));
+  if (d.e.parts && st->sign != SIGN_ANY)
+    diag_error(b->diags, st->name_span, "`%s` is %s, and has no sign", st->name, shape_text(b, d.e.parts));
   d.unit = param_unit(b, st, effect, &values);
   if (!declare_entity(b, st, d.e)) return;
   int64_t at[2] = {1, 1};
@@ -180,7 +192,8 @@ static const Define *defined(const Builder *b, Name name) {
 static Value defined_value(Builder *b, const Define *d, const Value *v, Name effect) {
   Value given = resolve(b, d->expr, IN_CONST, effect);
   if (!given.e || !v->e || given.n == v->n) return given;
-  return refuse(b, ast_expr(b->ast, d->expr)->span, "`%s` is %s, and %s is given here", d->name, shape_text(b, v->n), shape_text(b, given.n));
+  return refuse(b, ast_expr(b->ast, d->expr)->span, "`%s` is %s, and %s is given here", d->name, shape_text(b, v->n),
+                shape_text(b, given.n));
 }
 
 /* A bare number of -D is in the unit of the constant's value in the file. */

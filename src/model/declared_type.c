@@ -51,7 +51,8 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
     }
     if (!resolve_whole(b, i, effect, &n)) return 0;
     if (n < 1) return diag_error(b->diags, span, "a family has at least one member, and this is %lld", (long long)n);
-    if (n > FAMILY_MAX || (all *= (uint64_t)n) > FAMILY_MAX) return diag_error(b->diags, span, "a family has at most %d members", FAMILY_MAX);
+    if (n > FAMILY_MAX || (all *= (uint64_t)n) > FAMILY_MAX)
+      return diag_error(b->diags, span, "a family has at most %d members", FAMILY_MAX);
     e->lo[e->ndims] = 1;
     e->hi[e->ndims++] = n;
   }
@@ -59,7 +60,8 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
 }
 
 int read_family(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index, uint8_t parts, Entity *e) {
-  *e = (Entity){.kind = kind, .index = index, .name = st->name, .effect = effect, .span = st->name_span, .parts = parts};
+  *e =
+      (Entity){.kind = kind, .index = index, .name = st->name, .effect = effect, .span = st->name_span, .parts = parts};
   if (!check_brackets(b, st, effect)) return 0;
   if (read_sizes(b, st, effect, e)) return 1;
   declare_refused(b, st, effect);
@@ -75,7 +77,8 @@ Unit declared_unit(Builder *b, const AstStmt *st, Name effect) {
   Unit u = unit_resolve(&st->unit, b->dims, b->diags, b->arena);
   if (st->unit.n || b->unitless) return u;
   u.dim = dim_unknown(b->dims, st->name);
-  vec_push(b->arena, &b->undeclared, ((Undeclared){effect ? intern_printf(b, "%s.%s", effect, st->name) : st->name, u.dim}));
+  vec_push(b->arena, &b->undeclared,
+           ((Undeclared){effect ? intern_printf(b, "%s.%s", effect, st->name) : st->name, u.dim}));
   return u;
 }
 
@@ -87,11 +90,13 @@ static void report_rotation(Builder *b, const AstStmt *st) {
     diag_error(b->diags, st->unit.span, "a rotation has no unit: its four numbers are those of a unit quaternion");
     diag_help(b->diags, "write `coord %s: rotation`", st->name);
   } else {
-    diag_error(b->diags, st->name_span, "a rotation is not an angle, and cannot be `periodic`" HELP "write `coord %s: rotation`", st->name);
+    diag_error(b->diags, st->name_span,
+               "a rotation is not an angle, and cannot be `periodic`" HELP "write `coord %s: rotation`", st->name);
   }
 }
 
-/* Number of components of a declared type (vec2, vec3, rotation); 0, reported, where the kind of statement cannot have it. */
+/* Number of components of a declared type (vec2, vec3, rotation); 0, reported, where the kind of statement cannot
+ * have it. */
 int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts) {
   int two = st->type && strcmp(st->type, "vec2") == 0, three = st->type && strcmp(st->type, "vec3") == 0;
   *parts = two ? 2 : three ? 3 : 0;

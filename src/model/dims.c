@@ -1,4 +1,5 @@
-/* Dimensions as interned sparse vectors of rational exponents; unknowns by Gaussian elimination. Contract and source: dims.h. */
+/* Dimensions as interned sparse vectors of rational exponents; unknowns by Gaussian elimination. Contract and
+ * source: dims.h. */
 #include "model/dims.h"
 
 #include <string.h>
@@ -43,7 +44,8 @@ struct Dims {
 
 static uint32_t hash_parts(const DimPower *p, uint32_t n) {
   uint32_t h = n;
-  for (uint32_t i = 0; i < n; i++) h = hash_mix(hash_mix(hash_mix(h, p[i].key), (uint32_t)p[i].e.num), (uint32_t)p[i].e.den);
+  for (uint32_t i = 0; i < n; i++)
+    h = hash_mix(hash_mix(hash_mix(h, p[i].key), (uint32_t)p[i].e.num), (uint32_t)p[i].e.den);
   return h;
 }
 
@@ -119,7 +121,9 @@ Dim dim_div(Dims *d, Dim a, Dim b) {
   return a == b && a != DIM_ANY ? DIM_NONE : combine(d, a, b, num_int(-1));
 }
 
-Dim dim_pow(Dims *d, Dim a, Num e) { return a == DIM_ANY || num_is_zero(e) ? (a ? DIM_NONE : DIM_ANY) : combine(d, DIM_NONE, a, e); }
+Dim dim_pow(Dims *d, Dim a, Num e) {
+  return a == DIM_ANY || num_is_zero(e) ? (a ? DIM_NONE : DIM_ANY) : combine(d, DIM_NONE, a, e);
+}
 
 Dim dim_per_second(Dims *d, Dim a) { return dim_div(d, a, dim_base(d, DIM_TIME)); }
 
@@ -143,13 +147,16 @@ static Dim put_for_unknown(Dims *d, Dim a, DimPower p, Dim is) {
 Dim dim_resolved(Dims *d, Dim a) {
   if (d->forms.at[a].found && d->forms.at[a].found_when == d->time) return d->forms.at[a].found;
   Dim r = a;
-  for (const DimPower *p = solved_part(d, r); p; p = solved_part(d, r)) r = put_for_unknown(d, r, *p, d->unknowns.at[p->key - DIM_BASES].is);
+  for (const DimPower *p = solved_part(d, r); p; p = solved_part(d, r))
+    r = put_for_unknown(d, r, *p, d->unknowns.at[p->key - DIM_BASES].is);
   d->forms.at[a].found = r;
   d->forms.at[a].found_when = d->time;
   return r;
 }
 
-static const DimPower *last_part(const Dims *d, Dim a) { return d->forms.at[a].n ? &d->forms.at[a].part[d->forms.at[a].n - 1] : NULL; }
+static const DimPower *last_part(const Dims *d, Dim a) {
+  return d->forms.at[a].n ? &d->forms.at[a].part[d->forms.at[a].n - 1] : NULL;
+}
 
 int dim_is_open(Dims *d, Dim a) {
   const DimPower *last = last_part(d, dim_resolved(d, a));
@@ -227,10 +234,12 @@ static const char *derived_name(const Dims *d, Dim a) {
   static const struct {
     const char *name;
     int8_t e[4];
-  } derived[] = {{"N", {1, 1, -2}}, {"J", {2, 1, -2}}, {"W", {2, 1, -3}}, {"Pa", {-1, 1, -2}}, {"C", {0, 0, 1, 1}}, {"V", {2, 1, -3, -1}}};
+  } derived[] = {{"N", {1, 1, -2}},   {"J", {2, 1, -2}},   {"W", {2, 1, -3}},
+                 {"Pa", {-1, 1, -2}}, {"C", {0, 0, 1, 1}}, {"V", {2, 1, -3, -1}}};
   for (size_t i = 0; i < sizeof derived / sizeof *derived; i++) {
     int same = 1;
-    for (int k = 0; k < DIM_BASES && same; k++) same = num_equal(dim_exponent(d, a, (DimBase)k), num_int(k < 4 ? derived[i].e[k] : 0));
+    for (int k = 0; k < DIM_BASES && same; k++)
+      same = num_equal(dim_exponent(d, a, (DimBase)k), num_int(k < 4 ? derived[i].e[k] : 0));
     if (same && last_part(d, a)->key < DIM_BASES) return derived[i].name;
   }
   return NULL;

@@ -1,9 +1,11 @@
 /* Dimensions, and inference of those that the text does not state, from the equations.
  *
- * A Dim is a product of powers of the SI base units and of unknowns, one for each name that was declared without a unit: m^2*k. Written additively it
- * is a sparse vector of rational exponents, and every place where two things must have one dimension (a sum, a comparison, a force against its
- * coordinate) is a linear equation between two such vectors. dim_equate solves them one by one, by elimination (A. Kennedy, "Dimension types", ESOP
- * 1994, doi:10.1007/3-540-57880-3_23, has exponents that are integers; here they are rationals, so that a field's linear algebra is enough).
+ * A Dim is a product of powers of the SI base units and of unknowns, one for each name that was declared without a
+ * unit: m^2*k. Written additively it is a sparse vector of rational exponents, and every place where two things must
+ * have one dimension (a sum, a comparison, a force against its coordinate) is a linear equation between two such
+ * vectors. dim_equate solves them one by one, by elimination (A. Kennedy, "Dimension types", ESOP 1994,
+ * doi:10.1007/3-540-57880-3_23, has exponents that are integers; here they are rationals, so that a field's linear
+ * algebra is enough).
  *
  * A Dim is an index into a table without duplicates: equal dimensions have equal indices. All memory is the arena's. */
 #pragma once
@@ -18,7 +20,10 @@ typedef struct Dims Dims;
 enum { DIM_ANY = 0 };  /* fits every dimension: zero, or a value whose error was reported */
 enum { DIM_NONE = 1 }; /* dimensionless */
 
-typedef enum { DIM_LENGTH, DIM_MASS, DIM_TIME, DIM_CURRENT, DIM_TEMPERATURE, DIM_AMOUNT, DIM_LUMINOUS, DIM_BASES } DimBase;
+typedef enum {
+  DIM_LENGTH, DIM_MASS, DIM_TIME, DIM_CURRENT, DIM_TEMPERATURE, DIM_AMOUNT, DIM_LUMINOUS,
+  DIM_BASES
+} DimBase;
 
 Dims *dims_new(Arena *a);
 
@@ -32,7 +37,8 @@ Dim dim_per_second(Dims *d, Dim a);
 Dim dim_unknown(Dims *d, Name name);
 uint32_t dim_unknowns(const Dims *d);
 
-/* Adds the equation a = b. 1: it holds, or it is solved for the newest unknown in it, with `why` as the reason. 0: contradiction, nothing changes. */
+/* Adds the equation a = b. 1: it holds, or it is solved for the newest unknown in it, with `why` as the reason. 0:
+ * contradiction, nothing changes. */
 int dim_equate(Dims *d, Dim a, Dim b, Span why);
 
 /* Dimension with all solved unknowns substituted: base units and unsolved unknowns only. */

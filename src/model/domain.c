@@ -1,5 +1,6 @@
-/* Domains: the condition under which an expression, as written, has a real value. Graph nodes lose it: sqrt(x)^2 is the node x.
- * Conditions are graph nodes, made only if Builder.domains is set; 0 stands for a condition that always holds. */
+/* Domains: the condition under which an expression, as written, has a real value. Graph nodes lose it: sqrt(x)^2 is
+ * the node x. Conditions are graph nodes, made only if Builder.domains is set; 0 stands for a condition that always
+ * holds. */
 #include "model/resolve_impl.h"
 #include "sym/jump.h"
 
@@ -31,11 +32,14 @@ static Expr power_domain(const Builder *b, Expr base, Expr exponent) {
   if (!expr_is_num(b->g, exponent)) return 0;
   Num e = expr_number(b->g, exponent);
   int root = !num_is_exact(e) || (e.den != 1 && e.den != 3);
-  if (num_sign(e) < 0) return root ? drop_if_true(b, expr_fn2(b->g, EX_LT, expr_int(b->g, 0), base)) : not_zero(b, base);
+  if (num_sign(e) < 0)
+    return root ? drop_if_true(b, expr_fn2(b->g, EX_LT, expr_int(b->g, 0), base)) : not_zero(b, base);
   return root ? at_least(b, base, expr_int(b->g, 0)) : 0;
 }
 
-Expr domain_of_derivative(const Builder *b, const Value *of) { return b->domains ? expr_smooth_domain(b->g, of->at, component_count(of), NULL) : 0; }
+Expr domain_of_derivative(const Builder *b, const Value *of) {
+  return b->domains ? expr_smooth_domain(b->g, of->at, component_count(of), NULL) : 0;
+}
 
 static Expr if_domain(const Eval *ev, const AstExpr *x, const Value *v) {
   const Builder *b = ev->b;
@@ -93,20 +97,30 @@ Expr domain_of_node(const Eval *ev, AstId id, const Value *v) {
   const Builder *b = ev->b;
   const AstExpr *x = ast_expr(b->ast, id);
   switch (x->kind) {
-    case AST_NAME: case AST_INDEX: case AST_SUM: case AST_PRODUCT: case AST_NUM: case AST_LIST: case AST_STRING: case AST_BIND:
-    case AST_ERROR: return v->domain;
-    case AST_ADD: case AST_SUB: return chain_domain(ev, 0);
-    case AST_MUL: case AST_DIV: return chain_domain(ev, 1);
-    case AST_POW: {
-      const Value *base = value_of(ev, x->a), *e = value_of(ev, x->b);
-      return domain_and(b, domain_and(b, base->domain, e->domain), power_domain(b, base->e, e->e));
+  case AST_NAME:
+  case AST_INDEX:
+  case AST_SUM:
+  case AST_PRODUCT:
+  case AST_NUM:
+  case AST_LIST:
+  case AST_STRING:
+  case AST_BIND:
+  case AST_ERROR: return v->domain;
+  case AST_ADD:
+  case AST_SUB: return chain_domain(ev, 0);
+  case AST_MUL:
+  case AST_DIV: return chain_domain(ev, 1);
+  case AST_POW: {
+    const Value *base = value_of(ev, x->a), *e = value_of(ev, x->b);
+    return domain_and(b, domain_and(b, base->domain, e->domain), power_domain(b, base->e, e->e));
     }
     case AST_PRIME: return domain_and(b, value_of(ev, x->a)->domain, domain_of_derivative(b, value_of(ev, x->a)));
     case AST_MEMBER: return v->domain ? v->domain : value_of(ev, x->a)->domain;
     case AST_NEG: case AST_NOT: case AST_UNIT: case AST_AT: return value_of(ev, x->a)->domain;
     case AST_LT: case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE:
       return domain_and(b, value_of(ev, x->a)->domain, value_of(ev, x->b)->domain);
-    case AST_AND: case AST_OR: { /* short circuit: the second operand needs a value only where the first does not decide */
+    /* short circuit: the second operand needs a value only where the first does not decide */
+    case AST_AND: case AST_OR: {
       const Value *first = value_of(ev, x->a);
       Expr open = x->kind == AST_AND ? first->e : expr_fn(b->g, EX_NOT, first->e);
       return domain_and(b, first->domain, implied(b, open, value_of(ev, x->b)->domain));

@@ -1,4 +1,5 @@
-/* Effects: lists for commands, the graph of `requires` and `excludes` with its checks, and the set in use. Contract: effect.h. */
+/* Effects: lists for commands, the graph of `requires` and `excludes` with its checks, and the set in use. Contract:
+ * effect.h. */
 #include "model/effect.h"
 
 #include "base/words.h"
@@ -29,7 +30,9 @@ void report_unnamed(const Ast *ast, AstStmtKind kind, Span span, const char *nam
   Name near = nearest(ast, kind, name);
   if (near) diag_help(ast->diags, "did you mean `%s`?", near);
   else if (kind == STMT_EFFECT) diag_help(ast->diags, "declare it: `effect %s { ... }`", name);
-  else diag_help(ast->diags, "the scenes are %s%s", all_scenes(ast), span.end ? "" : "; a value is one word, name=value, and an option's stands behind it");
+  else
+    diag_help(ast->diags, "the scenes are %s%s", all_scenes(ast),
+              span.end ? "" : "; a value is one word, name=value, and an option's stands behind it");
 }
 
 EffectList model_unused_effects(const Ast *ast) {
@@ -48,7 +51,9 @@ EffectList model_unused_effects(const Ast *ast) {
 /* Recursion is bounded by the parser's limit on nested blocks. */
 static int contains_claim(const AstStmt *list) {
   for (const AstStmt *s = list; s; s = s->next)
-    if (s->kind == STMT_EXPECT || s->kind == STMT_SYMMETRY || s->kind == STMT_CANONICAL || s->kind == STMT_HAMILTONIAN || (s->kind == STMT_FOR && contains_claim(s->body))) return 1;
+    if (s->kind == STMT_EXPECT || s->kind == STMT_SYMMETRY || s->kind == STMT_CANONICAL ||
+        s->kind == STMT_HAMILTONIAN || (s->kind == STMT_FOR && contains_claim(s->body)))
+      return 1;
   return 0;
 }
 
@@ -109,18 +114,24 @@ static const AstStmt *statement_of(const EffectGraph *g, uint32_t i, AstStmtKind
 }
 
 /* Reports that effect i requires or excludes `other`, where `user` brings both. */
-static int report_relation(const Ast *ast, const EffectGraph *g, uint32_t user, uint32_t i, uint32_t other, AstStmtKind kind) {
+static int report_relation(const Ast *ast, const EffectGraph *g, uint32_t user, uint32_t i, uint32_t other,
+                           AstStmtKind kind) {
   Name one = g->at[i].stmt->name, two = g->at[other].stmt->name, by = g->at[user].stmt->name;
   const AstStmt *x = statement_of(g, i, kind, other);
   const char *word = kind == STMT_REQUIRES ? "requires" : "excludes";
   if (i == other) diag_error(ast->diags, x->span, "the effect `%s` %s itself", one, word);
-  else if (kind == STMT_REQUIRES) diag_error(ast->diags, x->span, "the effects `%s` and `%s` require each other, directly or through others", one, two);
-  else diag_error(ast->diags, x->span, "the effect `%s` excludes `%s`, and no scene can use `%s`, which brings both", one, two, by);
+  else if (kind == STMT_REQUIRES)
+    diag_error(ast->diags, x->span, "the effects `%s` and `%s` require each other, directly or through others", one,
+               two);
+  else
+    diag_error(ast->diags, x->span, "the effect `%s` excludes `%s`, and no scene can use `%s`, which brings both", one,
+               two, by);
   diag_help(ast->diags, "leave out this `%s`, or make one effect of them", word);
   return 0;
 }
 
-/* 0, reported, if an effect requires itself, or brings two effects that exclude each other. in: scratch, one entry an effect. */
+/* 0, reported, if an effect requires itself, or brings two effects that exclude each other. in: scratch, one entry
+ * an effect. */
 static int check_effect(const Ast *ast, const EffectGraph *g, uint32_t user, uint8_t *in) {
   memset(in, 0, g->n);
   effect_reach(ast, g, user, 0, in);
@@ -138,7 +149,8 @@ static int check_effect(const Ast *ast, const EffectGraph *g, uint32_t user, uin
 static void check_names(const Ast *ast, const EffectGraph *g) {
   for (uint32_t i = 0; i < g->n; i++)
     for (const AstStmt *x = g->at[i].stmt->body; x; x = x->next)
-      if ((x->kind == STMT_REQUIRES || x->kind == STMT_EXCLUDES) && place_of(g, x->name) == NONE) report_unnamed(ast, STMT_EFFECT, x->name_span, x->name);
+      if ((x->kind == STMT_REQUIRES || x->kind == STMT_EXCLUDES) && place_of(g, x->name) == NONE)
+        report_unnamed(ast, STMT_EFFECT, x->name_span, x->name);
 }
 
 int effects_check(const Ast *ast) {
@@ -209,7 +221,8 @@ static const AstStmt *use_of(const Builder *b, Name effect) {
 
 /* Reports an exclusion that the scene violates. */
 static void report_excluded(Builder *b, const AstStmt *effect, const AstStmt *x) {
-  diag_error(b->diags, x->span, "the effects `%s` and `%s` exclude each other, and the scene `%s` uses both", effect->name, x->name, b->m->scene.name);
+  diag_error(b->diags, x->span, "the effects `%s` and `%s` exclude each other, and the scene `%s` uses both",
+             effect->name, x->name, b->m->scene.name);
   diag_help(b->diags, "use one of them; `use none` turns off effects inherited by `like`");
   const AstStmt *use = use_of(b, x->name);
   if (use) diag_also(b->diags, use->name_span, "`%s` is used here", x->name);
@@ -221,7 +234,8 @@ void check_effect_needs(Builder *b, const AstStmt *effect) {
     if (!find_named(b->ast, STMT_EFFECT, x->name)) {
       report_unnamed(b->ast, STMT_EFFECT, x->name_span, x->name);
     } else if (x->kind == STMT_REQUIRES && !uses_effect(b, x->name)) {
-      diag_error(b->diags, x->span, "the effect `%s` requires `%s`, which the scene `%s` does not use", effect->name, x->name, b->m->scene.name);
+      diag_error(b->diags, x->span, "the effect `%s` requires `%s`, which the scene `%s` does not use", effect->name,
+                 x->name, b->m->scene.name);
       diag_help(b->diags, "add `use %s` to the scene", x->name);
     } else if (x->kind == STMT_EXCLUDES && uses_effect(b, x->name)) {
       report_excluded(b, effect, x);
@@ -234,7 +248,9 @@ int names_off_effect(const Builder *b, AstId value) {
   for (AstId i = 1; i < b->ast->exprs.n; i++) {
     const AstExpr *x = ast_expr(b->ast, i);
     int ambiguous;
-    if (x->kind != AST_NAME || x->span.begin < all.begin || x->span.end > all.end || scope_find(&b->scope, x->name, NULL, &ambiguous)) continue;
+    if (x->kind != AST_NAME || x->span.begin < all.begin || x->span.end > all.end ||
+        scope_find(&b->scope, x->name, NULL, &ambiguous))
+      continue;
     const AstStmt *effect = find_named(b->ast, STMT_EFFECT, x->name);
     if (!effect) effect = declaring_effect(b, x->name);
     if (effect && !uses_effect(b, effect->name)) return 1;

@@ -1,5 +1,5 @@
-/* Named things of a model: symbols and entities as they are declared, their ranges and units; lists of a model's coordinates, constants and scenes;
- * constraints with their multipliers. */
+/* Named things of a model: symbols and entities as they are declared, their ranges and units; lists of a model's
+ * coordinates, constants and scenes; constraints with their multipliers. */
 #include <math.h>
 #include <string.h>
 
@@ -80,7 +80,7 @@ void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span) {
   Model *m = b->m;
   Constraint one = {.name = name, .span = span, .c = c, .dim = dim};
   int holonomic = !(expr_kinds(b->g, c) & 1u << SYM_VEL);
-  one.multiplier = declare_symbol(b, SYM_MULTIPLIER, m->constraints.n, intern_printf(b, "lambda(%s)", name), SIGN_UNKNOWN,
-                                  multiplier_dim(b, dim, holonomic));
+  one.multiplier = declare_symbol(b, SYM_MULTIPLIER, m->constraints.n, intern_printf(b, "lambda(%s)", name),
+                                  SIGN_UNKNOWN, multiplier_dim(b, dim, holonomic));
   vec_push(b->arena, &m->constraints, one);
 }

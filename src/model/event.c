@@ -1,4 +1,5 @@
-/* Events: a switching function, a direction of crossing, and actions (new values); kicks, whose function is their period; and sections, which have no actions. */
+/* Events: a switching function, a direction of crossing, and actions (new values); kicks, whose function is their
+ * period; and sections, which have no actions. */
 #include "model/resolve_impl.h"
 
 Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit) {
@@ -8,10 +9,13 @@ Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *u
 }
 
 void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right) {
-  diag_error(b->diags, span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, left), shape_text(b, right));
+  diag_error(b->diags, span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, left),
+             shape_text(b, right));
 }
 
-static void push_action(Builder *b, Event *ev, SymId target, Expr value) { vec_push(b->arena, &ev->actions, ((Action){target, value})); }
+static void push_action(Builder *b, Event *ev, SymId target, Expr value) {
+  vec_push(b->arena, &ev->actions, ((Action){target, value}));
+}
 
 /* Value of `target` after the event: that of its action, or the symbol itself. */
 static Expr set_value(const Builder *b, const Event *ev, SymId target) {
@@ -31,7 +35,9 @@ static void push_spin(Builder *b, Event *ev, uint32_t coord, const Expr *w) {
 /* 1 if a statement of the event sets omega(R). */
 static int sets_spin(Builder *b, const AstStmt *event, uint32_t coord, Name effect) {
   for (const AstStmt *s = event->body; s; s = s->next)
-    if (s->kind == STMT_SET && ast_expr(b->ast, s->lhs)->kind == AST_CALL && spin_target(b, s->lhs, effect) == (int)coord) return 1;
+    if (s->kind == STMT_SET && ast_expr(b->ast, s->lhs)->kind == AST_CALL &&
+        spin_target(b, s->lhs, effect) == (int)coord)
+      return 1;
   return 0;
 }
 
@@ -47,7 +53,8 @@ static void keep_spin(Builder *b, Event *ev, uint32_t coord) {
 static void add_spin_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
   int coord = spin_target(b, st->lhs, effect);
   Unit unit = spin_unit(b);
-  Value v = coord < 0 ? FAILED : values_in(b, resolve(b, st->rhs, IN_DYNAMICS, effect), ast_expr(b->ast, st->rhs)->span, &unit);
+  Value v = coord < 0 ? FAILED
+                      : values_in(b, resolve(b, st->rhs, IN_DYNAMICS, effect), ast_expr(b->ast, st->rhs)->span, &unit);
   if (!v.e) return;
   if (v.n == 3) push_spin(b, ev, (uint32_t)coord, v.at);
   else report_shapes(b, st->span, 3, v.n);
@@ -60,13 +67,17 @@ static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
     SymKind kind = expr_op(b->g, target.at[k]) == EX_SYM ? expr_sym_of(b->g, target.at[k])->kind : SYM_LOCAL;
     if (kind == SYM_COORD || kind == SYM_VEL || kind == SYM_STATE) continue;
     diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "an event can set a coordinate, a velocity or a state");
-    if (kind == SYM_RATE && b->m->first_order) diag_help(b->diags, "%s: `%s` follows from the coordinates", no_inertia(b->m), ast_text(b, st->lhs));
-    else diag_help(b->diags, "declare a value that an event changes as a `state`: `state k`, with `flow k' = 0` where nothing else changes it");
+    if (kind == SYM_RATE && b->m->first_order)
+      diag_help(b->diags, "%s: `%s` follows from the coordinates", no_inertia(b->m), ast_text(b, st->lhs));
+    else
+      diag_help(b->diags, "declare a value that an event changes as a `state`: `state k`, with `flow k' = 0` where "
+                          "nothing else changes it");
     return;
   }
   SymId sym = expr_sym_id(b->g, target.e);
   uint32_t i = expr_sym_of(b->g, target.e)->index;
-  const Unit *unit = expr_sym_of(b->g, target.e)->kind == SYM_STATE ? &b->m->states.at[i].unit : &b->m->coords.at[i].unit;
+  const Unit *unit =
+      expr_sym_of(b->g, target.e)->kind == SYM_STATE ? &b->m->states.at[i].unit : &b->m->coords.at[i].unit;
   Value v = resolve_for(b, st->rhs, effect, sym, unit);
   if (!v.e) return;
   if (target.n != v.n) {
@@ -85,7 +96,8 @@ static void add_actions(Builder *b, const AstStmt *event, Name effect, Event *ev
   uint32_t n = ev->actions.n;
   for (uint32_t i = 0; i < b->rotations.n; i++)
     for (uint32_t k = 0; k < n; k++)
-      if (ev->actions.at[k].target == b->m->coords.at[b->rotations.at[i]].q && !sets_spin(b, event, b->rotations.at[i], effect))
+      if (ev->actions.at[k].target == b->m->coords.at[b->rotations.at[i]].q &&
+          !sets_spin(b, event, b->rotations.at[i], effect))
         keep_spin(b, ev, b->rotations.at[i]);
   for (const AstStmt *s = event->body; s; s = s->next)
     if (s->kind != STMT_STOP && ast_expr(b->ast, s->lhs)->kind == AST_CALL) add_spin_action(b, s, effect, ev);
@@ -114,7 +126,9 @@ void add_event(Builder *b, const AstStmt *st, Name effect) {
   check_set_once(b, st);
   int kick = st->direction == AT_EQUAL_TIMES;
   Value g = kick ? (Value){.e = period_of(b, st, effect)} : resolve(b, st->lhs, IN_DYNAMICS, effect);
-  if (g.n) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "this is %s, but a number is needed here", shape_text(b, g.n));
+  if (g.n)
+    diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "this is %s, but a number is needed here",
+               shape_text(b, g.n));
   ev.g = g.e;
   add_actions(b, st, effect, &ev);
   if (g.e) vec_push(b->arena, &b->m->events, ev);
@@ -128,7 +142,9 @@ static int turns(Builder *b, Expr e) {
     Expr term = expr_pair(b->g, e, EX_SUM, i, &n);
     const Symbol *s = expr_op(b->g, term) == EX_SYM ? expr_sym_of(b->g, term) : NULL;
     if (!s || !num_is_one(num_abs(n))) continue;
-    if ((s->kind == SYM_COORD && b->m->coords.at[s->index].periodic) || (s->kind == SYM_STATE && b->m->states.at[s->index].periodic)) return 1;
+    if ((s->kind == SYM_COORD && b->m->coords.at[s->index].periodic) ||
+        (s->kind == SYM_STATE && b->m->states.at[s->index].periodic))
+      return 1;
   }
   return 0;
 }
@@ -146,11 +162,14 @@ void add_section(Builder *b, const Section *s) {
   }
   unsigned later = 1u << SYM_ACC | 1u << SYM_LOCAL | (b->m->first_order ? 0 : 1u << SYM_RATE);
   if (expr_kinds(b->g, g.e) & later) {
-    diag_error(b->diags, span, "a section is a surface in the space of states: it cannot contain accelerations, rates of states or `energy`");
+    diag_error(
+        b->diags, span,
+        "a section is a surface in the space of states: it cannot contain accelerations, rates of states or `energy`");
     diag_help(b->diags, "write it with coordinates, velocities, states, t and lets");
     return;
   }
-  if (turns(b, g.e)) g.e = expr_fn(b->g, EX_TAN, expr_scale(b->g, num_ratio(1, 2), g.e)); /* zero once a turn; a pole half a turn away is no crossing */
+  /* zero once a turn; a pole half a turn away is no crossing */
+  if (turns(b, g.e)) g.e = expr_fn(b->g, EX_TAN, expr_scale(b->g, num_ratio(1, 2), g.e));
   vec_push(b->arena, &b->m->events, ((Event){.name = s->name, .span = span, .g = g.e, .direction = s->direction}));
 }
 

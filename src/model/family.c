@@ -36,5 +36,7 @@ int range_fits(Builder *b, int64_t from, int64_t to, Span span) {
 }
 
 void report_many_indices(Builder *b, Span span) {
-  diag_error(b->diags, span, "a family has one index, or two" HELP "combine two indices into one: `u[(i - 1)*K + j]`, in a family of N*K");
+  diag_error(b->diags, span,
+             "a family has one index, or two" HELP
+             "combine two indices into one: `u[(i - 1)*K + j]`, in a family of N*K");
 }

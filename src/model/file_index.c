@@ -2,7 +2,10 @@
 #include "model/builder.h"
 
 static void add(Ast *ast, FileIndex *x, const AstStmt *s) {
-  const AstStmt **first = s->kind == STMT_MODEL ? &x->model : s->kind == STMT_SCENE ? &x->scene : s->kind == STMT_EFFECT ? &x->effect : NULL;
+  const AstStmt **first = s->kind == STMT_MODEL    ? &x->model
+                          : s->kind == STMT_SCENE  ? &x->scene
+                          : s->kind == STMT_EFFECT ? &x->effect
+                                                   : NULL;
   if (s->kind != STMT_SCENE) vec_push(ast->arena, &x->common, s);
   if (!first || !s->name) return;
   if (!*first) *first = s;

@@ -1,11 +1,13 @@
-/* --fix: parameters that are compiled in as numbers. Marks them, evaluates them with the scene's values, numbers the others. */
+/* --fix: parameters that are compiled in as numbers. Marks them, evaluates them with the scene's values, numbers the
+ * others. */
 #include "model/builder.h"
 #include "base/words.h"
 #include "sym/expr_eval.h"
 
 /* --- which parameters --- */
 
-/* Parameter called `g` or `drag.c`; NULL, reported, when there is none. *off: only an effect that is off declares it (a note). */
+/* Parameter called `g` or `drag.c`; NULL, reported, when there is none. *off: only an effect that is off declares it
+ * (a note). */
 static const Entity *find_param(Builder *b, const char *word, int *off) {
   const char *dot = strchr(word, '.');
   Name effect = dot ? intern(b->ast->names, arena_strndup(b->arena, word, (size_t)(dot - word))) : NULL;
@@ -15,12 +17,14 @@ static const Entity *find_param(Builder *b, const char *word, int *off) {
   const AstStmt *owner = effect ? find_named(b->ast, STMT_EFFECT, effect) : declaring_effect(b, name);
   *off = !e && owner && effect_declares(owner, name);
   if (*off) {
-    diag_note(b->diags, (Span){0}, "--fix %s: the effect `%s` is off in the scene `%s`, and has nothing to fix there", word, owner->name, b->m->scene.name);
+    diag_note(b->diags, (Span){0}, "--fix %s: the effect `%s` is off in the scene `%s`, and has nothing to fix there",
+              word, owner->name, b->m->scene.name);
     return NULL;
   }
   if (e && !ambiguous && e->kind == ENT_PARAM) return e;
   if (ambiguous) {
-    diag_error(b->diags, (Span){0}, "--fix %s: more than one effect in use declares it" HELP "say which: --fix %s.%s", word, e->effect, name);
+    diag_error(b->diags, (Span){0}, "--fix %s: more than one effect in use declares it" HELP "say which: --fix %s.%s",
+               word, e->effect, name);
   } else if (e) {
     diag_error(b->diags, (Span){0}, "--fix %s: this is %s; only parameters can be fixed", word, ent_kind_text(e->kind));
     if (e->kind == ENT_CONST) diag_help(b->diags, "constants are set when compiling: -D %s=...", word);
@@ -28,12 +32,14 @@ static const Entity *find_param(Builder *b, const char *word, int *off) {
     VEC(Name) known = {0};
     for (uint32_t i = 0; i < b->scope.all.n; i++) {
       const Entity *x = &b->scope.all.at[i];
-      if (x->kind == ENT_PARAM) vec_push(b->arena, &known, x->effect ? intern_printf(b, "%s.%s", x->effect, x->name) : x->name);
+      if (x->kind == ENT_PARAM)
+        vec_push(b->arena, &known, x->effect ? intern_printf(b, "%s.%s", x->effect, x->name) : x->name);
     }
     Name near = suggest(word, known.at, known.n);
     diag_error(b->diags, (Span){0}, "--fix %s: the model has no such parameter", word);
     if (near) diag_help(b->diags, "did you mean `%s`?", near);
-    else diag_help(b->diags, "a family is fixed by its name, a parameter of an effect by `effect.name`, all by --fix all");
+    else
+      diag_help(b->diags, "a family is fixed by its name, a parameter of an effect by `effect.name`, all by --fix all");
   }
   return NULL;
 }
@@ -43,7 +49,8 @@ static int names_param(const Builder *b, const char *word) {
   return e && e->kind == ENT_PARAM;
 }
 
-/* Sets Param.fixed for a comma-separated list; parameters of effects that are off are skipped. 0 on a mistake, reported. */
+/* Sets Param.fixed for a comma-separated list; parameters of effects that are off are skipped. 0 on a mistake,
+ * reported. */
 static int mark(Builder *b, const char *words) {
   uint32_t errors = b->diags->errors;
   for (const char *s = words; *s;) {
@@ -62,9 +69,12 @@ static int mark(Builder *b, const char *words) {
 
 /* --- their values --- */
 
-static int is_free_param(const Symbol *s, const void *data) { return s->kind == SYM_PARAM && !((const Model *)data)->params.at[s->index].fixed; }
+static int is_free_param(const Symbol *s, const void *data) {
+  return s->kind == SYM_PARAM && !((const Model *)data)->params.at[s->index].fixed;
+}
 
-/* Sets Param.number of fixed parameters: exact if the value is rational, a double if it contains pi or other parameters. */
+/* Sets Param.number of fixed parameters: exact if the value is rational, a double if it contains pi or other
+ * parameters. */
 static void evaluate(Builder *b) {
   Model *m = b->m;
   long double *x = model_constants(m);

@@ -1,5 +1,5 @@
-/* Models that give their Hamiltonian: each momentum is a coordinate, and L = sum p q' - H is of first order (mech/first_order.h). Beside an
- * L, momenta are names of dL/dq', and H is a claim that `lagc check` judges. */
+/* Models that give their Hamiltonian: each momentum is a coordinate, and L = sum p q' - H is of first order
+ * (mech/first_order.h). Beside an L, momenta are names of dL/dq', and H is a claim that `lagc check` judges. */
 #include <string.h>
 
 #include "model/builder.h"
@@ -19,7 +19,8 @@ void find_hamiltonian(Builder *b) {
 Span velocity_in(const Builder *b, AstId id, const Value *v) {
   for (AstId k = ast_expr(b->ast, id)->first; k <= id; k++)
     if (ast_expr(b->ast, k)->kind == AST_PRIME) return ast_expr(b->ast, k)->span;
-  return v && v->e && (expr_kinds(b->g, v->e) & (1u << SYM_VEL | 1u << SYM_RATE)) ? ast_expr(b->ast, id)->span : (Span){0};
+  return v && v->e && (expr_kinds(b->g, v->e) & (1u << SYM_VEL | 1u << SYM_RATE)) ? ast_expr(b->ast, id)->span
+                                                                                  : (Span){0};
 }
 
 int is_free_of_velocities(Builder *b, const AstStmt *st, const Value *v) {
@@ -32,7 +33,10 @@ int is_free_of_velocities(Builder *b, const AstStmt *st, const Value *v) {
 
 int gives_hamiltonian(Builder *b, const AstStmt *st, Name effect, Span *first) {
   if (!b->m->hamiltonian && !effect) return 0;
-  if (!b->m->hamiltonian) return diag_error(b->diags, st->span, "the model gives its Lagrangian, and this effect a Hamiltonian" HELP "write the effect's terms of L: `potential = ...`");
+  if (!b->m->hamiltonian)
+    return diag_error(b->diags, st->span,
+                      "the model gives its Lagrangian, and this effect a Hamiltonian" HELP
+                      "write the effect's terms of L: `potential = ...`");
   if (!effect && first->end) {
     diag_error(b->diags, st->span, "H is given twice");
     diag_also(b->diags, *first, "first given here; write one sum");
@@ -44,7 +48,9 @@ int gives_hamiltonian(Builder *b, const AstStmt *st, Name effect, Span *first) {
 
 Value value_of_hamiltonian(Builder *b, const AstStmt *st, Name effect) {
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
-  if (v.e && v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, but a number is needed here", shape_text(b, v.n));
+  if (v.e && v.n)
+    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, but a number is needed here",
+               shape_text(b, v.n));
   if (!v.e || v.n || !is_free_of_velocities(b, st, &v)) return (Value){0};
   b->m->domain = domain_and(b, b->m->domain, v.domain);
   return v;
@@ -52,19 +58,24 @@ Value value_of_hamiltonian(Builder *b, const AstStmt *st, Name effect) {
 
 int adds_to_hamiltonian(Builder *b, const AstStmt *st) {
   if (!b->m->hamiltonian || (st->kind != STMT_LAGRANGIAN && st->kind != STMT_KINETIC)) return 1;
-  return diag_error(b->diags, st->span, "the model gives its Hamiltonian, and this effect a term of L" HELP "write its term of H: `hamiltonian = ...`");
+  return diag_error(b->diags, st->span,
+                    "the model gives its Hamiltonian, and this effect a term of L" HELP
+                    "write its term of H: `hamiltonian = ...`");
 }
 
 int pair_fits(Builder *b, const AstStmt *st, const Entity *p, const Entity *q) {
   Span span = ast_expr(b->ast, st->lhs)->span;
   if (q->kind == ENT_NONE) return 0;
   if (q->kind != ENT_COORD && !(q->kind == ENT_STATE && b->m->states.at[q->index].coordinate))
-    return diag_error(b->diags, span, "`%s` is %s, and only a coordinate has a momentum", q->name, ent_kind_text(q->kind));
+    return diag_error(b->diags, span, "`%s` is %s, and only a coordinate has a momentum", q->name,
+                      ent_kind_text(q->kind));
   for (uint32_t i = 0; i < b->m->pairs.n; i++) {
     if (b->m->pairs.at[i].p == q->index) return diag_error(b->diags, span, "`%s` is a momentum itself", q->name);
     if (b->m->pairs.at[i].q == q->index) return diag_error(b->diags, span, "`%s` has two momenta", q->name);
   }
-  if (p->ndims > 1) return diag_error(b->diags, st->name_span, "not yet: momenta of a family with two indices" HELP "declare a family with one index");
+  if (p->ndims > 1)
+    return diag_error(b->diags, st->name_span,
+                      "not yet: momenta of a family with two indices" HELP "declare a family with one index");
   int same = p->parts == q->parts && p->ndims == q->ndims;
   for (int k = 0; same && k < p->ndims; k++) same = p->hi[k] == q->hi[k];
   if (same) return 1;
@@ -77,7 +88,8 @@ Value action_of_momentum(Builder *b, const AstStmt *st, Name effect) {
   const AstExpr *of = ast_expr(b->ast, st->lhs);
   const Entity *q = resolve_name(b, of->name, of->span, effect, "coord"), *p = scope_own(&b->scope, st->name, effect);
   if (!q || !p || p->kind == ENT_NONE || !pair_fits(b, st, p, q)) return (Value){0};
-  for (uint32_t k = 0; k < entity_size(p); k++) vec_push(b->arena, &b->m->pairs, ((CanonicalPair){q->index + k, p->index + k}));
+  for (uint32_t k = 0; k < entity_size(p); k++)
+    vec_push(b->arena, &b->m->pairs, ((CanonicalPair){q->index + k, p->index + k}));
   return resolve(b, st->args, IN_DYNAMICS, effect);
 }
 
@@ -90,9 +102,11 @@ void check_momenta(Builder *b) {
       found = p->kind == STMT_MOMENTUM && ast_expr(b->ast, p->lhs)->name == q->name;
     }
     if (found) continue;
-    diag_error(b->diags, q->name_span, "the coordinate `%s` has no momentum, and the model gives its Hamiltonian", q->name);
+    diag_error(b->diags, q->name_span, "the coordinate `%s` has no momentum, and the model gives its Hamiltonian",
+               q->name);
     if (is_momentum_name(q->name))
-      diag_help(b->diags, "a momentum is no coordinate: in place of `coord %s` write `momentum %s of q`", q->name, q->name);
+      diag_help(b->diags, "a momentum is no coordinate: in place of `coord %s` write `momentum %s of q`", q->name,
+                q->name);
     else diag_help(b->diags, "declare one: `momentum p of %s`", q->name);
   }
 }

@@ -1,6 +1,7 @@
-/* Rates of inputs. Where the text takes u', or an equation needs it, u' is an input behind u, and u'' behind u': a program, a header or an FMU has the value and its rates as inputs. Their
- * formulas are derivatives of u's formula, their tables the derivatives of the quintic through u's rows. Only what is needed is declared: a build of the model notes what it
- * lacks, and the next one has it (build_model.c). */
+/* Rates of inputs. Where the text takes u', or an equation needs it, u' is an input behind u, and u'' behind u': a
+ * program, a header or an FMU has the value and its rates as inputs. Their formulas are derivatives of u's formula,
+ * their tables the derivatives of the quintic through u's rows. Only what is needed is declared: a build of the
+ * model notes what it lacks, and the next one has it (build_model.c). */
 #include <math.h>
 #include <string.h>
 
@@ -29,7 +30,8 @@ void want_rates_of(Builder *b, Expr e, int order) {
   for (uint32_t i = 0; i < l.n; i++) {
     if (expr_op(b->g, l.at[i]) != EX_SYM) continue;
     const Symbol *s = expr_sym_of(b->g, l.at[i]);
-    if (s->kind == SYM_INPUT && s->index < b->m->inputs.n && !model_is_contact_switch(b->m, expr_sym_id(b->g, l.at[i]))) want_input_rate(b, s->index, order);
+    if (s->kind == SYM_INPUT && s->index < b->m->inputs.n && !model_is_contact_switch(b->m, expr_sym_id(b->g, l.at[i])))
+      want_input_rate(b, s->index, order);
   }
 }
 
@@ -52,8 +54,12 @@ void declare_input_rates(Builder *b, uint32_t input) {
     if (r->of.at[i].name == m->inputs.at[input].name) wanted = r->of.at[i].order;
   for (int order = 1; order <= wanted; order++) {
     const Input *of = &m->inputs.at[m->inputs.n - 1];
-    Input rate = {.name = intern_printf(b, "%s'", of->name), .span = of->span, .unit = unit_per_second(b, &of->unit), .order = order};
-    rate.sym = declare_symbol(b, SYM_INPUT, m->inputs.n, rate.name, SIGN_UNKNOWN, dim_per_second(b->dims, b->dim_of.at[of->sym]));
+    Input rate = {.name = intern_printf(b, "%s'", of->name),
+                  .span = of->span,
+                  .unit = unit_per_second(b, &of->unit),
+                  .order = order};
+    rate.sym = declare_symbol(b, SYM_INPUT, m->inputs.n, rate.name, SIGN_UNKNOWN,
+                              dim_per_second(b->dims, b->dim_of.at[of->sym]));
     m->inputs.at[m->inputs.n - 1].rate = m->inputs.n;
     vec_push(b->arena, &m->inputs, rate);
   }
@@ -66,19 +72,26 @@ static const Spline *quintic(Builder *b, const Input *in) {
   if (rows->jet) return rows;
   for (uint32_t i = 1; i < rows->n; i++)
     if (rows->row[i][0] == nextafter(rows->row[i - 1][0], HUGE_VAL)) {
-      diag_error(b->diags, in->span, "the rate of `%s` is needed, and its table `%s` jumps at t = %.9g" HELP "a position that jumps has no velocity: leave the second row of that time out", in->name, name,
-                 rows->row[i - 1][0]);
+      diag_error(b->diags, in->span,
+                 "the rate of `%s` is needed, and its table `%s` jumps at t = %.9g" HELP
+                 "a position that jumps has no velocity: leave the second row of that time out",
+                 in->name, name, rows->row[i - 1][0]);
       return NULL;
     }
   if (rows->n < SPLINE_QUINTIC_ROWS) {
-    diag_error(b->diags, in->span, "the rate of `%s` is needed, and its table `%s` has %u rows: a smooth curve needs %d" HELP "add rows, or write the input as a formula of t", in->name, name, rows->n,
-               SPLINE_QUINTIC_ROWS);
+    diag_error(b->diags, in->span,
+               "the rate of `%s` is needed, and its table `%s` has %u rows: a smooth curve needs %d" HELP
+               "add rows, or write the input as a formula of t",
+               in->name, name, rows->n, SPLINE_QUINTIC_ROWS);
     return NULL;
   }
   double(*jet)[4] = arena_alloc(b->arena, rows->n * sizeof *jet);
   for (uint32_t i = 0; i < rows->n; i++) memcpy(jet[i], rows->row[i], 2 * sizeof jet[i][0]);
   if (!spline_fit_quintic(b->arena, jet, rows->n)) {
-    diag_error(b->diags, in->span, "the curve through `%s` has no finite rates" HELP "rows are too close, or values too far apart, for double precision", name);
+    diag_error(b->diags, in->span,
+               "the curve through `%s` has no finite rates" HELP
+               "rows are too close, or values too far apart, for double precision",
+               name);
     return NULL;
   }
   Spline *s = ARENA_NEW(b->arena, Spline);
@@ -92,7 +105,10 @@ static void warn_of_corners(Builder *b, const Input *in) {
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(b->g, l.at[i]);
     if (op != EX_ABS && op != EX_SIGN && op != EX_FLOOR && op != EX_MIN && op != EX_MAX && op != EX_SELECT) continue;
-    diag_warning(b->diags, ast_expr(b->ast, in->text)->span, "the rate of `%s` is needed, and its formula may have corners or jumps: the motion lacks their impulses", in->name);
+    diag_warning(
+        b->diags, ast_expr(b->ast, in->text)->span,
+        "the rate of `%s` is needed, and its formula may have corners or jumps: the motion lacks their impulses",
+        in->name);
     diag_help(b->diags, "smooth it: a position that jumps has no velocity, one with a corner no acceleration");
     return;
   }
@@ -115,5 +131,6 @@ void fill_input_rates(Builder *b) {
 void model_seed_time(const Model *m, Expr *seed) {
   seed[m->time] = expr_int(m->g, 1);
   for (uint32_t i = 0; i < m->inputs.n; i++)
-    if (m->inputs.at[i].rate) seed[m->inputs.at[i].sym] = expr_symbol(m->g, m->inputs.at[m->inputs.at[i].rate].sym)->node;
+    if (m->inputs.at[i].rate)
+      seed[m->inputs.at[i].sym] = expr_symbol(m->g, m->inputs.at[m->inputs.at[i].rate].sym)->node;
 }

@@ -1,10 +1,12 @@
 /* Tables: the file of `input u = "file.csv"` becomes a cubic spline (base/spline.h).
  *
- * A row has time in s, and value in the input's unit, separated by commas, semicolons, tabs or, in a table without these, blanks. Blank lines and
- * lines that begin with # are skipped. A first line whose first field is not a number is a head: the time is the column `t` (or `time`), else the
- * first; the value is the column named like the input, or, of two columns, the other one. A head may state units, as lagc's own output does: `t [s],u
- * [N]`; they must be the input's. Without a head there are two columns. Each row has as many numbers as the head has names: decimal commas do not pass
- * as other columns. Two rows with the same time are a jump. A file that is no table is not quoted. */
+ * A row has time in s, and value in the input's unit, separated by commas, semicolons, tabs or, in a table without
+ * these, blanks. Blank lines and lines that begin with # are skipped. A first line whose first field is not a number
+ * is a head: the time is the column `t` (or `time`), else the first; the value is the column named like the input,
+ * or, of two columns, the other one. A head may state units, as lagc's own output does: `t [s],u [N]`; they must be
+ * the input's. Without a head there are two columns. Each row has as many numbers as the head has names: decimal
+ * commas do not pass as other columns. Two rows with the same time are a jump. A file that is no table is not
+ * quoted. */
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -40,7 +42,9 @@ typedef struct {
 
 static Span span_of(const Table *t, Piece p) { return (Span){t->file.base + p.begin, t->file.base + p.end}; }
 
-static const char *text_of(const Table *t, Piece p) { return arena_strndup(t->b->arena, t->file.text + p.begin, p.end - p.begin); }
+static const char *text_of(const Table *t, Piece p) {
+  return arena_strndup(t->b->arena, t->file.text + p.begin, p.end - p.begin);
+}
 
 static int is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
@@ -90,7 +94,10 @@ static void mistake(Table *t, Piece p, const char *what) {
 
 /* A file of another kind: the mistake stands in the model, and the file is not shown. */
 static void no_table(Table *t, const char *why) {
-  diag_error(t->b->diags, ast_expr(t->b->ast, t->id)->span, "`%s` is not a table: %s" HELP "a table is a text with a row `time, value` in each line; a first line may name the columns", t->file.path, why);
+  diag_error(t->b->diags, ast_expr(t->b->ast, t->id)->span,
+             "`%s` is not a table: %s" HELP
+             "a table is a text with a row `time, value` in each line; a first line may name the columns",
+             t->file.path, why);
   t->mistakes++;
 }
 
@@ -102,8 +109,8 @@ static int same_letters(const char *a, const char *b, size_t n) {
   return 1;
 }
 
-/* 2 if a field of the head is `name`, without unit, 1 if a word in other letters, upper or lower (t and T are two names); *unit is the text in
- * brackets after it. */
+/* 2 if a field of the head is `name`, without unit, 1 if a word in other letters, upper or lower (t and T are two
+ * names); *unit is the text in brackets after it. */
 static int is_called(const Table *t, Piece field, const char *name, Piece *unit) {
   const char *s = t->file.text, *open = memchr(s + field.begin, '[', field.end - field.begin);
   Piece stem = {field.begin, open ? (uint32_t)(open - s) : field.end};
@@ -128,7 +135,8 @@ static uint32_t find_column(const Table *t, uint32_t from, const char *name, uin
 static Unit unit_written(const Table *t, const char *text) {
   Builder *b = t->b;
   const char *whole = arena_printf(b->arena, "1 [%s]", text);
-  const Source *source = source_add(b->ast->sources, arena_printf(b->arena, "unit in %s", t->file.path), whole, strlen(whole));
+  const Source *source =
+      source_add(b->ast->sources, arena_printf(b->arena, "unit in %s", t->file.path), whole, strlen(whole));
   AstId id = source ? parse_expression(b->ast, source) : 0;
   AstUnit none = {0};
   int is_unit = id && ast_expr(b->ast, id)->kind == AST_UNIT;
@@ -136,7 +144,8 @@ static Unit unit_written(const Table *t, const char *text) {
 }
 
 static int same_unit(const Table *t, const Unit *x, const Unit *y, Span why) {
-  return dim_equate(t->b->dims, x->dim, y->dim, why) && num_equal(x->factor, y->factor) && x->pi_power == y->pi_power && num_equal(x->offset, y->offset);
+  return dim_equate(t->b->dims, x->dim, y->dim, why) && num_equal(x->factor, y->factor) && x->pi_power == y->pi_power &&
+         num_equal(x->offset, y->offset);
 }
 
 /* Reports a unit in the head other than the input's (want), or seconds (want NULL); spelling does not matter. */
@@ -163,7 +172,8 @@ static void check_twins(Table *t, uint32_t k) {
   Piece name = trimmed(t, (Piece){t->fields.at[k].begin, unit.begin < unit.end ? unit.begin - 1 : t->fields.at[k].end});
   uint32_t again = find_column(t, k + 1, text_of(t, name), t->fields.n);
   if (again == t->fields.n) return;
-  const char *called = text_of(t, name), *but = is_called(t, t->fields.at[again], called, &unit) < 2 ? ", but for upper and lower case" : "";
+  const char *called = text_of(t, name),
+             *but = is_called(t, t->fields.at[again], called, &unit) < 2 ? ", but for upper and lower case" : "";
   mistake(t, t->fields.at[again], arena_printf(t->b->arena, "two columns are called `%s`%s", called, but));
   diag_help(t->b->diags, "give one of them another name");
 }
@@ -174,7 +184,8 @@ static void read_head(Table *t, Piece line) {
   t->value = find_column(t, 0, t->stem, n > 2 ? n : 1 - t->time);
   if (n < 2) no_table(t, "it has one column");
   else if ((again = find_column(t, 0, "", n)) < n) {
-    mistake(t, again + 1 < n ? (Piece){t->fields.at[again].begin, t->fields.at[again + 1].begin} : line, arena_printf(t->b->arena, "column %u has no name", again + 1));
+    mistake(t, again + 1 < n ? (Piece){t->fields.at[again].begin, t->fields.at[again + 1].begin} : line,
+            arena_printf(t->b->arena, "column %u has no name", again + 1));
     diag_help(t->b->diags, "name every column, as in `t,%s`, and end no line with a separator", t->stem);
   } else if (t->value == n) {
     mistake(t, line, arena_printf(t->b->arena, "none of these %u columns is called `%s`", n, t->stem));
@@ -201,10 +212,14 @@ static int read_number(Table *t, Piece line, uint32_t column, const char *what, 
   }
   *field = t->fields.at[column];
   if (number(t, *field, x)) return 1;
-  if (field->begin == field->end) mistake(t, (Piece){field->begin, field->begin + 1}, arena_printf(b->arena, "the %s is missing", what));
+  if (field->begin == field->end)
+    mistake(t, (Piece){field->begin, field->begin + 1}, arena_printf(b->arena, "the %s is missing", what));
   else mistake(t, *field, arena_printf(b->arena, "the %s is not a number", what));
-  if (memchr(t->file.text + field->begin, ',', field->end - field->begin)) diag_help(b->diags, "numbers are written with a point: `0.5`");
-  else diag_help(b->diags, "numbers are decimal and finite: `0.5`, `1e-3`; the row can be left out, or commented out with `#`");
+  if (memchr(t->file.text + field->begin, ',', field->end - field->begin))
+    diag_help(b->diags, "numbers are written with a point: `0.5`");
+  else
+    diag_help(b->diags,
+              "numbers are decimal and finite: `0.5`, `1e-3`; the row can be left out, or commented out with `#`");
   return 0;
 }
 
@@ -218,18 +233,24 @@ static void read_row(Table *t, Piece line) {
     return;
   }
   if (t->fields.n != t->columns && t->fields.n > t->time && t->fields.n > t->value) {
-    mistake(t, line, arena_printf(t->b->arena, "this row has %u fields, and the first line %u", t->fields.n, t->columns));
-    diag_help(t->b->diags, t->separator == ',' ? "numbers are written with a point, `0.5`, and separated by commas" : "each row has one number for each column");
+    mistake(t, line,
+            arena_printf(t->b->arena, "this row has %u fields, and the first line %u", t->fields.n, t->columns));
+    diag_help(t->b->diags, t->separator == ',' ? "numbers are written with a point, `0.5`, and separated by commas"
+                                               : "each row has one number for each column");
     return;
   }
-  if (!read_number(t, line, t->time, "time", &time, &at) || !read_number(t, line, t->value, "value", &value, &of)) return;
+  if (!read_number(t, line, t->time, "time", &time, &at) || !read_number(t, line, t->value, "value", &value, &of))
+    return;
   double before = t->before;
   int jumps = t->numbers.n && time == before;
   if (t->numbers.n && (time < before || (jumps && t->jumped))) {
     char now[32], then[32];
     num_format_double(now, time);
     num_format_double(then, before);
-    mistake(t, at, arena_printf(t->b->arena, jumps ? "this is the third row at %s" : "times must increase, and %s does not come after %s", now, then));
+    mistake(t, at,
+            arena_printf(t->b->arena,
+                         jumps ? "this is the third row at %s" : "times must increase, and %s does not come after %s",
+                         now, then));
     diag_help(t->b->diags, "sort the rows; a jump is two rows of one time: the value before it, and the one after it");
     return;
   }
@@ -251,7 +272,8 @@ static void read_line(Table *t, Piece line) {
   if (first) t->columns = t->fields.n;
   if (first && !number(t, t->fields.at[0], &x)) read_head(t, line);
   else if (first && t->columns > 2) {
-    mistake(t, line, arena_printf(t->b->arena, "this table has %u columns, and no first line that names them", t->columns));
+    mistake(t, line,
+            arena_printf(t->b->arena, "this table has %u columns, and no first line that names them", t->columns));
     diag_help(t->b->diags, "begin with a line of names, `t,%s,...`; numbers are written with a point, `0.5`", t->stem);
     t->wrong_head = 1;
   } else read_row(t, line);
@@ -316,9 +338,11 @@ static void warn_of_overshoot(const Table *t, const Spline *s) {
     }
   if (lo - low <= (hi - lo) / 2 && high - hi <= (hi - lo) / 2) return;
   double unit = unit_factor(&t->in->unit), zero = num_value(t->in->unit.offset);
-  diag_warning(t->b->diags, ast_expr(t->b->ast, t->id)->span, "between its rows the curve goes from %.3g to %.3g, and the rows from %.3g to %.3g",
-               (low - zero) / unit, (high - zero) / unit, (lo - zero) / unit, (hi - zero) / unit);
-  diag_help(t->b->diags, "a cubic swings where rows lie far apart beside a steep rise: add rows there, or make it a jump, two rows of one time");
+  diag_warning(t->b->diags, ast_expr(t->b->ast, t->id)->span,
+               "between its rows the curve goes from %.3g to %.3g, and the rows from %.3g to %.3g", (low - zero) / unit,
+               (high - zero) / unit, (lo - zero) / unit, (hi - zero) / unit);
+  diag_help(t->b->diags, "a cubic swings where rows lie far apart beside a steep rise: add rows there, or make it a "
+                         "jump, two rows of one time");
 }
 
 /* Fits a spline to each piece between two jumps. */

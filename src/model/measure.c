@@ -160,8 +160,11 @@ static const Unit *unit_of_symbol(Builder *b, const Symbol *s, Unit *room) {
 
 /* Refuses comparisons and choices of measures; 0. */
 static int refuse_choice(MeasureReader *r, AstId id) {
-  return diag_error(r->b->diags, ast_expr(r->b->ast, id)->span, "`%s` is a choice among measures, which have none" HELP
-                    "measure both sides, and compare them in the rows of a sweep; along the run a choice is an observable: `max(if(x > 0, x, 0))`", ast_short(r->b, id));
+  return diag_error(r->b->diags, ast_expr(r->b->ast, id)->span,
+                    "`%s` is a choice among measures, which have none" HELP
+                    "measure both sides, and compare them in the rows of a sweep; along the run a choice is an "
+                    "observable: `max(if(x > 0, x, 0))`",
+                    ast_short(r->b, id));
 }
 
 /* An operand of the language by its name in the runtime; it becomes an output where it has none. */

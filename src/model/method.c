@@ -1,5 +1,5 @@
-/* `method NAME(option = value, ...)` of a scene: checked against the table of base/method_table.h and against the model (states,
- * constraints), and stored in the scene with names and values as the runtime expects them. */
+/* `method NAME(option = value, ...)` of a scene: checked against the table of base/method_table.h and against the
+ * model (states, constraints), and stored in the scene with names and values as the runtime expects them. */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,8 @@ static const char *listed(const Builder *b, const char *const *words) {
   return sb_text(&list);
 }
 
-/* The method's entry in the table; NULL for one that only the runtime knows (gsl-*), and, reported, for an unknown one. */
+/* The method's entry in the table; NULL for one that only the runtime knows (gsl-*), and, reported, for an unknown
+ * one. */
 static const MethodInfo *known_method(Builder *b, const AstStmt *st) {
   const MethodInfo *m = method_find(st->name, strlen(st->name));
   if (m || method_may_be_gsl(st->name)) return m;
@@ -44,7 +45,8 @@ static void check_value(Builder *b, const MethodOption *o, const Option *given, 
     diag_error(b->diags, span, "the option `%s` is a number" HELP "write `%s = 0.01`", o->name, o->name);
   } else if (method_option_refuses(o, given->text ? NAN : given->value, b->m->constraints.n > 0, allowed)) {
     const char *value = given->text ? given->text : arena_printf(b->arena, "%.6g", given->value);
-    diag_error(b->diags, span, "the option `%s` cannot be %s%s%s", o->name, given->text ? "`" : "", value, given->text ? "`" : "");
+    diag_error(b->diags, span, "the option `%s` cannot be %s%s%s", o->name, given->text ? "`" : "", value,
+               given->text ? "`" : "");
     diag_help(b->diags, "%s", allowed);
   }
 }
@@ -75,7 +77,8 @@ void scene_method(Builder *b, const AstStmt *st) {
   if (m && (m->flags & METHOD_NO_STATES) && b->m->states.n && !flows_alone && !may_split) {
     if (b->m->first_order) {
       diag_error(b->diags, st->name_span, "the method `%s` needs %s", m->name,
-                 b->m->hamiltonian ? "velocities, and the model gives its Hamiltonian" : "momenta beside coordinates, and L is linear in the velocities");
+                 b->m->hamiltonian ? "velocities, and the model gives its Hamiltonian"
+                                   : "momenta beside coordinates, and L is linear in the velocities");
       diag_help(b->diags, "`gauss` is symplectic there; `rk45` and `dop853` can, too");
       return;
     }

@@ -1,7 +1,8 @@
 /* Ast -> Model: names resolved, units converted, one scene and its effects applied.
  *
- * Needs a parsed Ast. Statements that the scene does not use are read for the names they declare only, and make no graph node: a model with an effect
- * off is the model with the effect's text deleted. All values of a Model are in SI units. */
+ * Needs a parsed Ast. Statements that the scene does not use are read for the names they declare only, and make no
+ * graph node: a model with an effect off is the model with the effect's text deleted. All values of a Model are in
+ * SI units. */
 #pragma once
 
 #include "base/spline.h"
@@ -61,7 +62,8 @@ typedef struct {
   Span span;
 } Force;
 
-/* A friction with a static limit: a body at rest, velocity 0, is held by up to `ratio` times the force of a sliding one. */
+/* A friction with a static limit: a body at rest, velocity 0, is held by up to `ratio` times the force of a sliding
+ * one. */
 typedef struct {
   Expr velocity, ratio;
 } Grip;
@@ -73,8 +75,9 @@ typedef struct {
   Expr lhs, rhs;
   Expr domain; /* condition under which both sides, as written, have real values; 0: wherever the nodes have */
   Name effect; /* the effect around the statement, or NULL */
-  const Expr *nodes[2]; /* values of the nodes of the left and the right side, in the order of the text (as resolve_nodes); NULL: one of several
-                         * instances of its statement (family, vector) */
+  /* values of the nodes of the left and the right side, in the order of the text (as resolve_nodes); NULL: one of
+   * several instances of its statement (family, vector) */
+  const Expr *nodes[2];
 } Expect;
 
 typedef struct {
@@ -91,7 +94,8 @@ typedef struct {
   int stop;
 } Event;
 
-/* Constraint c(q, t) = 0 (holonomic) or c(q, q', t) = 0 (velocities). A vector constraint is one Constraint per component. */
+/* Constraint c(q, t) = 0 (holonomic) or c(q, q', t) = 0 (velocities). A vector constraint is one Constraint per
+ * component. */
 typedef struct {
   Name name; /* "rod", "rod[2]", "grip.x" */
   Span span;
@@ -101,22 +105,26 @@ typedef struct {
   int inside; /* made by the compiler: unit length of a rotation */
 } Constraint;
 
-/* Unilateral contact, gap >= 0. While the gap is closed it is the constraint c = closed*gap. A constraint with `while` is another: it is closed
- * where `margin` is positive, and has neither gap nor restitution.
+/* Unilateral contact, gap >= 0. While the gap is closed it is the constraint c = closed*gap. A constraint with
+ * `while` is another: it is closed where `margin` is positive, and has neither gap nor restitution.
  *
- * A contact with friction is followed by its tangent, an entry of its own: the constraint closed*slip = 0 on the velocity of slipping, which holds
- * while the contact sticks, and the force of friction while it slips. */
+ * A contact with friction is followed by its tangent, an entry of its own: the constraint closed*slip = 0 on the
+ * velocity of slipping, which holds while the contact sticks, and the force of friction while it slips. */
 typedef struct {
   Name name;
   Expr gap, restitution;         /* of a tangent: the velocity of slipping, and the tangential restitution or 0 */
   Expr margin;                   /* 0: a contact */
-  SymId closed;                  /* input set by the runtime: 1 while the gap is closed, or the contact sticks, else 0 */
+  /* input set by the runtime: 1 while the gap is closed, or the contact sticks, else 0 */
+  SymId closed;
   uint32_t constraint;           /* index into Model.constraints */
-  uint32_t impact, release;      /* indices into Model.events; of a tangent: the slip ends; the force reaches its limit */
+  /* indices into Model.events; of a tangent: the slip ends; the force reaches its limit */
+  uint32_t impact, release;
   int is_tangent;                /* of the contact before it */
   Expr friction, hold;           /* of a tangent: its coefficients while it slips, and while it sticks */
-  int law;                       /* of a tangent: the law of impact, as LAG_IMPACT_STRONGE of runtime/contacts/planar_impact.h and its neighbours */
-  SymId force;                   /* of a tangent: input set by the runtime, the force of friction along the slip while the contact slips */
+  /* of a tangent: the law of impact, as LAG_IMPACT_STRONGE of runtime/contacts/planar_impact.h and its neighbours */
+  int law;
+  /* of a tangent: input set by the runtime, the force of friction along the slip while the contact slips */
+  SymId force;
 } Contact;
 
 /* Origin of an output in the text: component `component` of the value of `id`; where `id` names a family, of its
@@ -143,8 +151,8 @@ typedef struct {
   Span span;
 } ExpressionBracket;
 
-/* A canonical transformation from z = (q, p) to Z = (Q, P), claimed by its maps, by a generating function, or by several of these. Of a model that gives
- * its Lagrangian: the forward map alone, or a point transformation. */
+/* A canonical transformation from z = (q, p) to Z = (Q, P), claimed by its maps, by a generating function, or by
+ * several of these. Of a model that gives its Lagrangian: the forward map alone, or a point transformation. */
 typedef struct {
   Name name;
   Span span;
@@ -176,7 +184,8 @@ typedef struct {
   OutputText from;
 } Output;
 
-/* Component of a symmetry's generator: first derivative of the transformed coordinate (or t) by the group parameter, at 0. */
+/* Component of a symmetry's generator: first derivative of the transformed coordinate (or t) by the group parameter,
+ * at 0. */
 typedef struct {
   SymId target; /* of kind SYM_COORD, SYM_STATE (a coordinate) or SYM_TIME */
   Expr rate;    /* in coordinates, t and parameters; 0: wrong, and reported */
@@ -281,7 +290,8 @@ typedef struct {
   SymId time, pi;
   VEC(Coord) coords;
   VEC(State) states;
-  int first_order;         /* L is linear in all velocities: coordinates are held in `states`, velocities are their rates */
+  /* L is linear in all velocities: coordinates are held in `states`, velocities are their rates */
+  int first_order;
   int hamiltonian;         /* the text gives H and not L: L = sum p q' - H, of first order */
   VEC(CanonicalPair) pairs; /* of such a model */
   VEC(Param) params;
@@ -289,7 +299,8 @@ typedef struct {
   VEC(Input) inputs;
   Expr kinetic, potential; /* 0 when L was given as a whole */
   Expr lagrangian;         /* 0 when the text declares no coordinates */
-  Expr regularising;             /* kinetic term in q.q' of each rotation, 0 on its constraint, which makes M regular; 0: none */
+  /* kinetic term in q.q' of each rotation, 0 on its constraint, which makes M regular; 0: none */
+  Expr regularising;
   Span lagrangian_span;
   Span dissipation_span;
   Span kinetic_span;       /* empty when L was given as a whole */
@@ -320,7 +331,8 @@ typedef struct {
 
 /* Name of built-in function i; NULL past the end. */
 const char *function_name(size_t i);
-/* Index of a built-in function; -1: none, or one that functions.def defines by a text, before which names of a model go. */
+/* Index of a built-in function; -1: none, or one that functions.def defines by a text, before which names of a model
+ * go. */
 int function_index(const char *name);
 
 /* Names of the file's scenes, in order; "default" alone when there is none. */
@@ -339,7 +351,8 @@ EffectList model_unused_effects(const Ast *ast);
 /* Warns of parameters, lets, inputs and functions of the model's main file that no expression uses. */
 void model_warn_unused(Ast *ast);
 
-/* Names of the effects that contain an expectation or a symmetry; the first is NULL if the model itself contains one. */
+/* Names of the effects that contain an expectation or a symmetry; the first is NULL if the model itself contains
+ * one. */
 EffectList model_claiming_effects(const Ast *ast);
 
 /* An additional output from the command line, and the name of its column. */
@@ -348,8 +361,8 @@ typedef struct {
   Name name;
 } CommandOutput;
 
-/* A parameter, an input, or a start (of a coordinate, a velocity, a state; of omega(R)), and its value from the command line: a formula; of an input also
- * the name of a table. */
+/* A parameter, an input, or a start (of a coordinate, a velocity, a state; of omega(R)), and its value from the
+ * command line: a formula; of an input also the name of a table. */
 typedef struct {
   AstId what, value;
 } CommandInput;
@@ -379,8 +392,9 @@ typedef struct {
   const char *scene; /* NULL: the first */
   Name also;         /* an effect to turn on besides the scene's, with its required effects; or NULL */
   int bare;          /* build without a scene: no effect but `also` (and its requirements) is on */
-  const EffectList *only; /* the set of effects in use, instead of the scene's (a variant): values for other effects, outputs,
-                           * monitors and closed forms of the scene are dropped. NULL: the scene's effects */
+  /* the set of effects in use, instead of the scene's (a variant): values for other effects, outputs, monitors and
+   * closed forms of the scene are dropped. NULL: the scene's effects */
+  const EffectList *only;
   const Define *defines;
   uint32_t ndefines;
   const CommandOutput *asked; /* outputs besides the scene's own */
@@ -389,12 +403,14 @@ typedef struct {
   uint32_t nmeasures;
   const CommandInput *given; /* values that override the scene's */
   uint32_t ngiven;
-  CommandValue *values; /* model_build evaluates them; an error is reported when a run cannot set a target, or a value does not fit it */
+  /* model_build evaluates them; an error is reported when a run cannot set a target, or a value does not fit it */
+  CommandValue *values;
   uint32_t nvalues;
   AstId bracket;   /* an expression with brackets, to print; or 0 */
   Section section;
   const char *fix; /* parameters to compile in as numbers, with the scene's values: "g,drag.c", "all"; NULL: none */
-  Name coordinates; /* the point transformation (Canonical.is_point) in whose new coordinates the model is built; or NULL */
+  /* the point transformation (Canonical.is_point) in whose new coordinates the model is built; or NULL */
+  Name coordinates;
   int domains;     /* Model.domain is wanted; without a scene it always is */
   int unfixed;     /* set by callers that ignore the command line's --fix */
 } ModelChoice;
@@ -406,9 +422,12 @@ const char *reason_against_brackets(const Model *m);
 CoordList model_coordinates(const Model *m);
 
 /* Reason why a model of first order has no accelerations, for messages. */
-static inline const char *no_inertia(const Model *m) { return m->hamiltonian ? "the model gives its Hamiltonian" : "L is linear in the velocities"; }
+static inline const char *no_inertia(const Model *m) {
+  return m->hamiltonian ? "the model gives its Hamiltonian" : "L is linear in the velocities";
+}
 
-/* printed_text.c: value of an operator other than a call, whose operands have the values a and b; 0: one of them has none. */
+/* printed_text.c: value of an operator other than a call, whose operands have the values a and b; 0: one of them has
+ * none. */
 Expr operation_value(ExprGraph *g, const AstExpr *x, Expr a, Expr b);
 
 /* The measure with its unit, as the runtime reads it. */

@@ -31,14 +31,17 @@ static int charge_named(Builder *b, const AstExpr *x) {
   int ambiguous;
   if (x->kind == AST_NAME && strcmp(x->name, "energy") == 0) return 0;
   if (x->kind == AST_NAME) e = scope_find(&b->scope, x->name, NULL, &ambiguous);
-  if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME) e = scope_own(&b->scope, x->name, ast_expr(b->ast, x->a)->name);
+  if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME)
+    e = scope_own(&b->scope, x->name, ast_expr(b->ast, x->a)->name);
   return e && e->kind == ENT_SYMMETRY ? (int)e->index + 1 : -1;
 }
 
 void set_monitor(Builder *b, const AstStmt *st) {
   if (!st->lhs) {
     diag_error(b->diags, st->name_span, "`monitor %s` has no limit", st->name);
-    diag_help(b->diags, "give the largest drift allowed: `monitor %s 1e-8`; `monitor none` drops the monitors before it", st->name);
+    diag_help(b->diags,
+              "give the largest drift allowed: `monitor %s 1e-8`; `monitor none` drops the monitors before it",
+              st->name);
     return;
   }
   const AstExpr *x = ast_expr(b->ast, st->lhs);

@@ -1,4 +1,5 @@
-/* Hints for unknown names: declarations out of reach, habits from paper (xdot, p_x, wt), functions of other languages, nearest names. */
+/* Hints for unknown names: declarations out of reach, habits from paper (xdot, p_x, wt), functions of other
+ * languages, nearest names. */
 #include "base/words.h"
 #include "model/builder.h"
 
@@ -55,16 +56,19 @@ static int has_rate(const Builder *b, const char *word, size_t n) {
 static int advise_rate(Builder *b, const char *name) {
   static const struct {
     const char *before, *behind, *primes;
-  } forms[] = {{"", "_ddot", "''"}, {"", "ddot", "''"}, {"", "_dot", "'"}, {"", "dot", "'"}, {"dd", "", "''"},
-               {"d", "", "'"},      {"v_", "", "'"},    {"v", "", "'"},    {"", "p", "'"},   {"a_", "", "''"}, {"a", "", "''"}};
+  } forms[] = {{"", "_ddot", "''"}, {"", "ddot", "''"}, {"", "_dot", "'"}, {"", "dot", "'"},
+               {"dd", "", "''"},    {"d", "", "'"},     {"v_", "", "'"},   {"v", "", "'"},
+               {"", "p", "'"},      {"a_", "", "''"},   {"a", "", "''"}};
   size_t len = strlen(name);
   for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
     size_t before = strlen(forms[i].before), behind = strlen(forms[i].behind);
-    if (len <= before + behind || strncmp(name, forms[i].before, before) != 0 || strcmp(name + len - behind, forms[i].behind) != 0) continue;
+    if (len <= before + behind || strncmp(name, forms[i].before, before) != 0 ||
+        strcmp(name + len - behind, forms[i].behind) != 0)
+      continue;
     size_t n = len - before - behind;
     if (!has_rate(b, name + before, n)) continue;
-    diag_help(b->diags, "the %s of `%.*s` is written `%.*s%s`", forms[i].primes[1] ? "second derivative" : "rate", (int)n, name + before,
-              (int)n, name + before, forms[i].primes);
+    diag_help(b->diags, "the %s of `%.*s` is written `%.*s%s`", forms[i].primes[1] ? "second derivative" : "rate",
+              (int)n, name + before, (int)n, name + before, forms[i].primes);
     return 1;
   }
   return 0;
@@ -73,8 +77,10 @@ static int advise_rate(Builder *b, const char *name) {
 /* Recognises a momentum p_x where none is allowed. */
 static int advise_momentum(Builder *b, const char *name) {
   if (strncmp(name, "p_", 2) != 0 || !has_rate(b, name + 2, strlen(name + 2))) return 0;
-  diag_help(b->diags, "the momentum `%s` may stand in outputs, observables and expectations; here write it with the velocity `%s'`, which an event sets", name,
-            name + 2);
+  diag_help(b->diags,
+            "the momentum `%s` may stand in outputs, observables and expectations; here write it with the velocity "
+            "`%s'`, which an event sets",
+            name, name + 2);
   return 1;
 }
 
@@ -90,13 +96,17 @@ static int advise_word(Builder *b, const char *const (*rows)[2], size_t n, Name 
 
 /* Names with a meaning on paper, and what to write instead. */
 static const char *const paper_names[][2] = {
-  {"dt", "a time derivative is written `x'`"}, {"π", "did you mean `pi`?"},
-  {"E H energy", "the energy is `energy`, in outputs, monitors, observables and expectations; elsewhere write it with coordinates and velocities"},
-  {"L lagrangian", "the Lagrangian is `lagrangian`, in outputs, observables and expectations; elsewhere write it with coordinates and velocities"},
-  {"g", "gravity is a parameter, too: `param g = 9.81 [m/s^2]`"},
-  {"T V", "where L is `kinetic` less `potential` (no effect in use adds a `lagrangian`), the energies are `T` and `V`, in outputs, observables and expectations"},
-  {"t", "`t` is the time, which a run gives its value: `span 20 [s]` says how long it is"},
-  {"e", "the number is `exp(1)`; a parameter is declared: `param e = 0.9`"},
+    {"dt", "a time derivative is written `x'`"},
+    {"π", "did you mean `pi`?"},
+    {"E H energy", "the energy is `energy`, in outputs, monitors, observables and expectations; elsewhere write it "
+                   "with coordinates and velocities"},
+    {"L lagrangian", "the Lagrangian is `lagrangian`, in outputs, observables and expectations; elsewhere write it "
+                     "with coordinates and velocities"},
+    {"g", "gravity is a parameter, too: `param g = 9.81 [m/s^2]`"},
+    {"T V", "where L is `kinetic` less `potential` (no effect in use adds a `lagrangian`), the energies are `T` and "
+            "`V`, in outputs, observables and expectations"},
+    {"t", "`t` is the time, which a run gives its value: `span 20 [s]` says how long it is"},
+    {"e", "the number is `exp(1)`; a parameter is declared: `param e = 0.9`"},
 };
 
 /* Recognises the index of `let a[i] = ...`, which lacks a range. */
@@ -115,8 +125,8 @@ static int advise_index(Builder *b, Name name, Span span) {
 
 /* Functions of other languages and books, and what to write instead. */
 static const char *const foreign_functions[][2] = {
-    {FOREIGN_CHOICES,
-     "a choice is written `if(x > 0, a, b)`: a where the condition holds, b where not; of several, `if(x > 1, a, if(x > 0, b, c))`"},
+    {FOREIGN_CHOICES, "a choice is written `if(x > 0, a, b)`: a where the condition holds, b where not; of several, "
+                      "`if(x > 1, a, if(x > 0, b, c))`"},
     {"ln", "did you mean `log`?"},
     {"log10 log2", "write `log(x)/log(10)`, `log(x)/log(2)`"},
     {"arcsin arccos arctan arctan2", "the inverse functions are `asin`, `acos`, `atan`, `atan2`"},
@@ -126,12 +136,14 @@ static const char *const foreign_functions[][2] = {
     {"sgn signum", "did you mean `sign`?"},
     {"heaviside step", "write `if(x > 0, 1, 0)`"},
     {"diff Diff dt D grad", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
-    {"delay delayed lag history",
-     "a delay does not exist: equations hold the state of one moment; a lag of first order is a state, `flow z' = (x - z)/T`"},
+    {"delay delayed lag history", "a delay does not exist: equations hold the state of one moment; a lag of first "
+                                  "order is a state, `flow z' = (x - z)/T`"},
     {"length mag magnitude", "the length of a vector is `norm(r)`"},
 };
 
-int advise_unknown_function(Builder *b, Name name) { return advise_word(b, foreign_functions, sizeof foreign_functions / sizeof *foreign_functions, name); }
+int advise_unknown_function(Builder *b, Name name) {
+  return advise_word(b, foreign_functions, sizeof foreign_functions / sizeof *foreign_functions, name);
+}
 
 /* 1 for an expression of the command line, where nothing can be declared. */
 static int is_asked(const Builder *b, Span span) {
@@ -148,12 +160,15 @@ static void advise_names(Builder *b) {
   for (; i < b->scope.all.n && n < MOST; i++) {
     const Entity *e = &b->scope.all.at[i];
     int skip = e->kind == ENT_NONE || e->kind == ENT_FUNCTION || e->kind == ENT_BUILTIN;
-    for (uint32_t k = 0; k < n && !skip; k++) skip = shown[k]->name == e->name && shown[k]->effect == e->effect; /* members of a family */
+    /* members of a family */
+    for (uint32_t k = 0; k < n && !skip; k++) skip = shown[k]->name == e->name && shown[k]->effect == e->effect;
     if (skip) continue;
     sb_printf(&list, "%s%s%s%s", n ? ", " : "", e->effect ? e->effect : "", e->effect ? "." : "", e->name);
     shown[n++] = e;
   }
-  if (n) diag_help(b->diags, "the model has %s%s%s", sb_text(&list), n == MOST ? ", ..." : "", b->m->lagrangian ? ", energy" : "");
+  if (n)
+    diag_help(b->diags, "the model has %s%s%s", sb_text(&list), n == MOST ? ", ..." : "",
+              b->m->lagrangian ? ", energy" : "");
 }
 
 static int is_among(const char *word, size_t length, const Name *names, uint32_t n) {
@@ -167,7 +182,8 @@ static int advise_product(Builder *b, Name name, const Name *known, uint32_t n) 
   size_t length = strlen(name);
   for (size_t cut = 1; cut < length; cut++)
     /* `xx` is a typing error, not x*x */
-    if (is_among(name, cut, known, n) && is_among(name + cut, length - cut, known, n) && strncmp(name, name + cut, cut) != 0) {
+    if (is_among(name, cut, known, n) && is_among(name + cut, length - cut, known, n) &&
+        strncmp(name, name + cut, cut) != 0) {
       diag_help(b->diags, "a product is written with `*`: `%.*s*%s`", (int)cut, name, name + cut);
       return 1;
     }
@@ -177,12 +193,15 @@ static int advise_product(Builder *b, Name name, const Name *known, uint32_t n) 
 static int advise_function(Builder *b, Name name) {
   size_t i = 0;
   while (function_name(i) && strcmp(function_name(i), name) != 0) i++;
-  if (function_name(i)) diag_help(b->diags, "`%s` is a function, `%s(...)`; a power of it is written behind: `%s(...)^2`", name, name, name);
+  if (function_name(i))
+    diag_help(b->diags, "`%s` is a function, `%s(...)`; a power of it is written behind: `%s(...)^2`", name, name,
+              name);
   return function_name(i) != NULL;
 }
 
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare) {
-  if (b->diags->list.n > DIAG_MAX) return; /* the message will not be shown, and the search is linear in the number of names */
+  /* the message will not be shown, and the search is linear in the number of names */
+  if (b->diags->list.n > DIAG_MAX) return;
   const AstStmt *later = declared_in_use(b, name, effect);
   if (later && span.begin >= later->span.begin && span.end <= later->span.end) {
     diag_help(b->diags, "the value of a name cannot contain the name itself");
@@ -203,7 +222,8 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
     diag_help(b->diags, "a momentum is declared with its coordinate: `momentum %s of x`", name);
     return;
   }
-  if (advise_index(b, name, span) || advise_rate(b, name) || advise_momentum(b, name) || advise_function(b, name)) return;
+  if (advise_index(b, name, span) || advise_rate(b, name) || advise_momentum(b, name) || advise_function(b, name))
+    return;
   Name *known = ARENA_ARRAY(b->arena, Name, b->scope.all.n + 3);
   uint32_t n = 0;
   for (uint32_t i = 0; i < b->scope.all.n; i++) {
@@ -214,7 +234,8 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
   known[n++] = "pi";
   if (is_asked(b, span) && b->m->lagrangian) known[n++] = "energy";
   if (advise_product(b, name, known, n)) return;
-  int paper = strcmp(name, "dt") == 0 || strcmp(name, "T") == 0 || strcmp(name, "t") == 0; /* no nearest name, which could be t */
+  /* no nearest name, which could be t */
+  int paper = strcmp(name, "dt") == 0 || strcmp(name, "T") == 0 || strcmp(name, "t") == 0;
   Name near = paper ? NULL : suggest(name, known, n);
   if (!near && advise_word(b, paper_names, sizeof paper_names / sizeof *paper_names, name)) return;
   if (near) diag_help(b->diags, "did you mean `%s`?", near);
@@ -235,7 +256,8 @@ void report_no_member(Builder *b, Span span, Name effect, Name name) {
   if (!e) {
     Name near = suggest(effect, effects.at, effects.n);
     if (near) diag_help(b->diags, "did you mean `%s.%s`?", near, name);
-    else if (has_word("csv txt dat tsv npy", name)) diag_help(b->diags, "the name of a file stands in quotes: `\"%s.%s\"`", effect, name);
+    else if (has_word("csv txt dat tsv npy", name))
+      diag_help(b->diags, "the name of a file stands in quotes: `\"%s.%s\"`", effect, name);
     else if (!advise_momentum(b, effect)) diag_help(b->diags, "the model has no effect `%s`", effect);
     return;
   }

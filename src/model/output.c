@@ -1,4 +1,5 @@
-/* Outputs of a scene: one column per number, per component of a vector, per member of a family. Names and units of columns. */
+/* Outputs of a scene: one column per number, per component of a vector, per member of a family. Names and units of
+ * columns. */
 #include "model/builder.h"
 
 /* Entity at the stem of an output, ignoring indices, component and primes; or NULL. */
@@ -10,7 +11,8 @@ static const Entity *named(Builder *b, const Target *p) {
   return scope_find(&b->scope, x->name, NULL, &ambiguous);
 }
 
-/* Unit of an output: the name's declared unit, otherwise none yet: fill_inferred_units derives it from the dimension. */
+/* Unit of an output: the name's declared unit, otherwise none yet: fill_inferred_units derives it from the
+ * dimension. */
 static Unit output_unit(Builder *b, const Entity *e, uint32_t primes, Dim dim) {
   const Unit *own = e ? entity_unit(b, e) : NULL;
   Unit u = own && own->text[0] ? *own : unit_si(DIM_ANY, "");
@@ -27,7 +29,8 @@ static void show_spin(const Builder *b, const Value *v, Unit *unit) {
 
 int push_output(Builder *b, const Output *o) {
   vec_push(b->arena, &b->m->scene.outputs, *o);
-  if (!scope_own(&b->outputs, o->name, NULL)) scope_add(&b->outputs, (Entity){.name = o->name, .index = b->m->scene.outputs.n - 1});
+  if (!scope_own(&b->outputs, o->name, NULL))
+    scope_add(&b->outputs, (Entity){.name = o->name, .index = b->m->scene.outputs.n - 1});
   return (int)b->m->scene.outputs.n - 1;
 }
 
@@ -54,7 +57,8 @@ static Name label_of(Builder *b, const char *stem, int part, uint32_t primes) {
 }
 
 /* Adds a number, or each component of a vector. Index of the number's output; -1 for a vector. */
-static int add_value(Builder *b, const char *stem, uint32_t primes, const Entity *e, Span span, const Value *v, OutputText from) {
+static int add_value(Builder *b, const char *stem, uint32_t primes, const Entity *e, Span span, const Value *v,
+                     OutputText from) {
   Unit unit = output_unit(b, e, primes, v->dim);
   show_spin(b, v, &unit);
   if (!v->n) return add_one(b, label_of(b, stem, -1, primes), span, unit, v->e, &from);

@@ -159,7 +159,8 @@ static int differs(ExprGraph *g, EvalTape *tape, uint32_t seed, long double *sym
 
 int printed_says(const Model *m, const char *text, Expr e) {
   enum { STATES = 5, MOST = 1 };                 /* one state may lie beside a pole or a branch */
-  enum { SYMBOLS_MOST = 2000, NODES_MOST = 50000 }; /* of models whose texts people read; the bicycle has 22,500 nodes */
+  /* of models whose texts people read; the bicycle has 22,500 nodes */
+  enum { SYMBOLS_MOST = 2000, NODES_MOST = 50000 };
   if (expr_symbol_count(m->g) > SYMBOLS_MOST || expr_count(m->g) > NODES_MOST) return 1;
   Expr both[2] = {e, printed_value(m, text, e, NULL, NULL)};
   if (!both[1] || both[0] == both[1]) return both[1] != 0;

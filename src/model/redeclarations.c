@@ -1,14 +1,17 @@
-/* Duplicate declarations: names, and settings of a scene or event. A second one, which would silently win, is an error. */
+/* Duplicate declarations: names, and settings of a scene or event. A second one, which would silently win, is an
+ * error. */
 #include "model/builder.h"
 
 void check_names_once(Builder *b, const FileIndex *file) {
   const AstStmt *none = find_named(b->ast, STMT_EFFECT, "none");
   if (none) {
-    diag_error(b->diags, none->name_span, "an effect cannot be called `none`: `use none` turns all off" HELP "choose another name");
+    diag_error(b->diags, none->name_span,
+               "an effect cannot be called `none`: `use none` turns all off" HELP "choose another name");
   }
   for (uint32_t i = 0; i < file->repeated.n; i++) {
     const AstStmt *s = file->repeated.at[i];
-    diag_error(b->diags, s->name_span, "the %s `%s` is declared twice", s->kind == STMT_SCENE ? "scene" : "effect", s->name);
+    diag_error(b->diags, s->name_span, "the %s `%s` is declared twice", s->kind == STMT_SCENE ? "scene" : "effect",
+               s->name);
     diag_also(b->diags, find_named(b->ast, s->kind, s->name)->name_span, "first declared here");
   }
 }
@@ -31,7 +34,8 @@ void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Spa
   diag_also(b->diags, old->span, "first declared here");
 }
 
-/* Key of a setting: equal for two statements of which the second would override the first; NULL: repetition is allowed. */
+/* Key of a setting: equal for two statements of which the second would override the first; NULL: repetition is
+ * allowed. */
 static Name setting_key(Builder *b, const AstStmt *st, const char *owner) {
   switch (st->kind) {
     case STMT_SPAN: return intern_printf(b, "span");
@@ -64,7 +68,8 @@ void check_set_once(Builder *b, const AstStmt *block) {
       check_setting(b, said, x, "");
       continue;
     }
-    if (x->kind == STMT_USE && strcmp(x->name, "none") == 0) said = new_scope(b); /* statements before `use none` have no effect */
+    /* statements before `use none` have no effect */
+    if (x->kind == STMT_USE && strcmp(x->name, "none") == 0) said = new_scope(b);
     if (x->kind == STMT_METHOD) check_setting(b, said, x, "");
     Scope *values = x->kind == STMT_METHOD ? new_scope(b) : said;
     const char *owner = x->kind == STMT_USE ? arena_printf(b->arena, "%s.", x->name) : "";

@@ -1,8 +1,9 @@
 /* Expressions: Ast -> expression graph, with checks of shapes and dimensions.
  *
- * Ast nodes of an expression are contiguous, children first, so evaluation is one loop over them. The body of a sum is repeated for each value of its
- * index; a branch of an `if` with a known condition is skipped. The whole state is an Eval: an evaluation that needs an unevaluated definition is
- * suspended on an explicit stack, so neither nesting nor chains of definitions use the C stack. */
+ * Ast nodes of an expression are contiguous, children first, so evaluation is one loop over them. The body of a sum
+ * is repeated for each value of its index; a branch of an `if` with a known condition is skipped. The whole state is
+ * an Eval: an evaluation that needs an unevaluated definition is suspended on an explicit stack, so neither nesting
+ * nor chains of definitions use the C stack. */
 #include <math.h>
 
 #include "base/words.h"
@@ -11,14 +12,17 @@
 
 /* --- nodes that their parents evaluate --- */
 
-/* Marks a left operand with the same kind of operator: a chain becomes one n-ary sum (or product), so a sum of a million terms costs one sort. */
+/* Marks a left operand with the same kind of operator: a chain becomes one n-ary sum (or product), so a sum of a
+ * million terms costs one sort. */
 static void mark_chain(Eval *ev, const AstExpr *x) {
   AstKind left = ast_expr(ev->b->ast, x->a)->kind;
   int additive = x->kind == AST_ADD || x->kind == AST_SUB;
   ev->by_parent[x->a - ev->first] = additive ? left == AST_ADD || left == AST_SUB : left == AST_MUL || left == AST_DIV;
 }
 
-static void guard(Eval *ev, AstId construct, AstId body) { ev->guarded[ast_expr(ev->b->ast, body)->first - ev->first] = construct; }
+static void guard(Eval *ev, AstId construct, AstId body) {
+  ev->guarded[ast_expr(ev->b->ast, body)->first - ev->first] = construct;
+}
 
 static void mark_branches(Eval *ev, AstId id, const AstExpr *x) {
   const Ast *ast = ev->b->ast;
@@ -36,7 +40,8 @@ static void mark_name(Eval *ev, const AstExpr *x) {
   if (of->kind == AST_NAME || effects) ev->by_parent[x->a - ev->first] = 1;
 }
 
-/* Marks names of constraints, which have no value: lambda(rod), lambda(rod[2]), lambda(drag.rod), lambda(feet[2].slip). */
+/* Marks names of constraints, which have no value: lambda(rod), lambda(rod[2]), lambda(drag.rod),
+ * lambda(feet[2].slip). */
 static void mark_constraint(Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "lambda") != 0 || !x->args || own_function(ev, x)) return;
   for (AstId i = x->args; i; i = ast_expr(ev->b->ast, i)->next) {
@@ -103,9 +108,13 @@ static Value node_value(Eval *ev, AstId id) {
       return refuse(b, x->span, "a list gives the members of a family their values, and stands alone" HELP
                     "`param m[3] = {1, 3, 1/2}`, `start th = {0.1, 0.2}`; a vector is written `(a, b, c)`");
     case AST_STRING:
-      return refuse(b, x->span, "a quoted text is not a value here" HELP
-                    "a table from a file gives an input its values: `input u = \"file.csv\"`, or `u = \"file.csv\"` in a scene");
-    case AST_BIND: return refuse(b, x->span, "a range stands in `sum(i in 1..N, ...)`, and one of time in a measure, `max(x, 10..20)`");
+      return refuse(
+          b, x->span,
+          "a quoted text is not a value here" HELP
+          "a table from a file gives an input its values: `input u = \"file.csv\"`, or `u = \"file.csv\"` in a scene");
+    case AST_BIND:
+      return refuse(b, x->span,
+                    "a range stands in `sum(i in 1..N, ...)`, and one of time in a measure, `max(x, 10..20)`");
     case AST_ERROR: return FAILED;
   }
   return FAILED;
@@ -125,7 +134,8 @@ int operand_fits(Eval *ev, const AstExpr *x, AstId i) {
   const Value *v = value_of(ev, i);
   int logic = x->kind == AST_NOT || x->kind == AST_AND || x->kind == AST_OR;
   int is_if = x->kind == AST_CALL && strcmp(x->name, "if") == 0;
-  int is_foreign_if = x->kind == AST_CALL && has_word(FOREIGN_CHOICES, x->name) && !own_function(ev, x); /* call_value reports the function */
+  /* call_value reports the function */
+  int is_foreign_if = x->kind == AST_CALL && has_word(FOREIGN_CHOICES, x->name) && !own_function(ev, x);
   if (v->condition && !logic && !(is_if && i == x->args) && !is_foreign_if) {
     report_condition(b, i);
     return 0;
@@ -135,9 +145,13 @@ int operand_fits(Eval *ev, const AstExpr *x, AstId i) {
     return 0;
   }
   if (v->n && !takes_vectors(ev, x)) {
-    diag_error(b->diags, ast_expr(b->ast, i)->span, "`%s` is %s, but a number is needed here", ast_short(b, i), shape_text(b, v->n));
-    if (x->kind == AST_POW && i == x->a) diag_help(b->diags, "the square of a vector is `dot(a, a)`, its length `norm(a)`");
-    else diag_help(b->diags, "its components are `.x`, `.y`%s; `dot(a, b)` and `norm(a)` are numbers", v->n > 2 ? ", `.z`" : "");
+    diag_error(b->diags, ast_expr(b->ast, i)->span, "`%s` is %s, but a number is needed here", ast_short(b, i),
+               shape_text(b, v->n));
+    if (x->kind == AST_POW && i == x->a)
+      diag_help(b->diags, "the square of a vector is `dot(a, a)`, its length `norm(a)`");
+    else
+      diag_help(b->diags, "its components are `.x`, `.y`%s; `dot(a, b)` and `norm(a)` are numbers",
+                v->n > 2 ? ", `.z`" : "");
     return 0;
   }
   return !v->point || point_fits(ev, x, i);
@@ -145,7 +159,8 @@ int operand_fits(Eval *ev, const AstExpr *x, AstId i) {
 
 static int operands_fit(Eval *ev, const AstExpr *x) {
   AstId at[3] = {x->a, x->b, x->args};
-  if (x->kind == AST_ADD || x->kind == AST_SUB || x->kind == AST_MUL || x->kind == AST_DIV) return 1; /* checked by judge_sum, judge_product */
+  /* checked by judge_sum, judge_product */
+  if (x->kind == AST_ADD || x->kind == AST_SUB || x->kind == AST_MUL || x->kind == AST_DIV) return 1;
   for (int k = 0; k < 3; k++)
     for (AstId i = at[k]; i; i = k == 2 ? ast_expr(ev->b->ast, i)->next : 0)
       if (!operand_fits(ev, x, i)) return 0;
@@ -171,9 +186,11 @@ static Value usable_value(Eval *ev, const AstExpr *x, Value v) {
   for (uint32_t k = 0; v.e && k < component_count(&v); k++) {
     int infinite = has_number(ev->b->g, v.at[k], is_infinite);
     if (!infinite && !has_number(ev->b->g, v.at[k], num_is_imprecise)) continue;
-    return refuse(ev->b, x->span, infinite ? "a number here is not finite" HELP "numbers reach up to 1.8e308" :
-                  "rounding leaves fewer than six digits of a number here" HELP
-                  "write its result as one number: numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits");
+    return refuse(ev->b, x->span,
+                  infinite ? "a number here is not finite" HELP "numbers reach up to 1.8e308"
+                           : "rounding leaves fewer than six digits of a number here" HELP
+                             "write its result as one number: numbers are exact as fractions of whole numbers up to "
+                             "9.2e18, others have 16 digits");
   }
   return v;
 }
@@ -254,7 +271,9 @@ static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
   return ev;
 }
 
-static Definitions *definitions(Builder *b, EntKind kind) { return kind == ENT_FUNCTION ? &b->functions : kind == ENT_LET ? &b->lets : &b->observes; }
+static Definitions *definitions(Builder *b, EntKind kind) {
+  return kind == ENT_FUNCTION ? &b->functions : kind == ENT_LET ? &b->lets : &b->observes;
+}
 
 void add_definition(Builder *b, EntKind kind, Definition d) {
   Definitions *list = definitions(b, kind);
@@ -263,7 +282,9 @@ void add_definition(Builder *b, EntKind kind, Definition d) {
 }
 
 /* Index of the let, the observable, or the function of the instance, that an evaluation is for. */
-static uint32_t definition_index(const Builder *b, EntKind kind, uint32_t index) { return kind == ENT_FUNCTION ? b->instances.at[index]->function : index; }
+static uint32_t definition_index(const Builder *b, EntKind kind, uint32_t index) {
+  return kind == ENT_FUNCTION ? b->instances.at[index]->function : index;
+}
 
 static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
   uint32_t place = definition_index(b, kind, index);
@@ -295,7 +316,8 @@ static Value let_value(Builder *b, const Definition *d, Value v) {
 /* Internal error: an expression failed without a message. */
 static void report_missing_message(Builder *b, AstId id) {
   if (!b->diags->errors)
-    diag_error(b->diags, ast_expr(b->ast, id)->span, "internal error: `%s` has no value, and no reason is known", ast_short(b, id));
+    diag_error(b->diags, ast_expr(b->ast, id)->span, "internal error: `%s` has no value, and no reason is known",
+               ast_short(b, id));
 }
 
 /* An observable without a declared unit takes its expression's; a vector becomes one output per component. */
@@ -384,7 +406,10 @@ static int nests_too_deep(Builder *b, AstId id) {
     if (open.n > deepest) deepest = open.n;
   }
   if (deepest <= DEEPEST) return 0;
-  diag_error(b->diags, ast_expr(b->ast, id)->span, "functions are nested %u deep here, and at most %d in one expression" HELP "name an inner part: `let a = sin(...)`", deepest, DEEPEST);
+  diag_error(b->diags, ast_expr(b->ast, id)->span,
+             "functions are nested %u deep here, and at most %d in one expression" HELP
+             "name an inner part: `let a = sin(...)`",
+             deepest, DEEPEST);
   return 1;
 }
 

@@ -1,5 +1,5 @@
-/* Function calls: built-in functions of numbers and vectors, if, d(expr, name); others are dispatched to resolve_function.c
- * (user functions), rotation.c, constraint.c (lambda) and resolve_exact.c. */
+/* Function calls: built-in functions of numbers and vectors, if, d(expr, name); others are dispatched to
+ * resolve_function.c (user functions), rotation.c, constraint.c (lambda) and resolve_exact.c. */
 #include "base/words.h"
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
@@ -25,7 +25,8 @@ static Value call_binary(Eval *ev, const AstExpr *x, ExprOp op) {
   if (!v->e || !w->e) return FAILED;
   if (!operands_agree(ev, x->span, x->args, second)) return FAILED;
   Dim dim = v->dim != DIM_ANY ? v->dim : w->dim;
-  return a_value(record_jump(ev, x, expr_fn2(b->g, op, v->e, w->e)), op == EX_ATAN2 ? DIM_NONE : dim, v->bare && w->bare);
+  return a_value(record_jump(ev, x, expr_fn2(b->g, op, v->e, w->e)), op == EX_ATAN2 ? DIM_NONE : dim,
+                 v->bare && w->bare);
 }
 
 /* With a constant condition the other branch was not evaluated (see enter in resolve.c). */
@@ -36,7 +37,8 @@ static Value call_if(Eval *ev, const AstExpr *x) {
   const Value *c = value_of(ev, x->args), *v = value_of(ev, yes), *w = value_of(ev, no);
   if (!c->e) return FAILED;
   if (!c->condition)
-    return refuse(b, ast_expr(b->ast, x->args)->span, "`%s` is not a condition" HELP "`if(condition, a, b)` takes a condition first, such as `x > 0`",
+    return refuse(b, ast_expr(b->ast, x->args)->span,
+                  "`%s` is not a condition" HELP "`if(condition, a, b)` takes a condition first, such as `x > 0`",
                   ast_short(b, x->args));
   if (expr_is_num(b->g, c->e)) return expr_is_zero(b->g, c->e) ? *w : *v;
   if (!v->e || !w->e || !same_shape(ev, x->span, yes, no)) return FAILED;
@@ -97,7 +99,9 @@ static Value call_norm(Eval *ev, const AstExpr *x) {
   const Value *v = value_of(ev, x->args);
   if (!v->e) return FAILED;
   if (v->n == ROTATION) return refuse_rotation(b, ast_expr(b->ast, x->args)->span, ast_short(b, x->args), TURN_NUMBER);
-  if (!v->n) return refuse(b, x->span, "`norm` takes a vector, and `%s` is a number" HELP "`abs(x)` is the size of a number", ast_short(b, x->args));
+  if (!v->n)
+    return refuse(b, x->span, "`norm` takes a vector, and `%s` is a number" HELP "`abs(x)` is the size of a number",
+                  ast_short(b, x->args));
   Expr square = dot(b->g, v, v);
   return a_value(expr_sqrt(b->g, square), v->dim, v->bare);
 }
@@ -114,8 +118,10 @@ static void warn_no_rate(Eval *ev, const AstExpr *x, const Value *derivative) {
   if (by->kind != AST_NAME || strcmp(by->name, "t") != 0 || expr_is_num(b->g, value_of(ev, x->args)->e)) return;
   for (uint32_t k = 0; k < component_count(derivative); k++)
     if (!expr_is_zero(b->g, derivative->at[k])) return;
-  diag_warning(b->diags, x->span, "this is 0: `d` is the partial derivative, and `%s` does not contain t itself", ast_short(b, x->args));
-  diag_help(b->diags, of->kind == AST_NAME ? "its rate is written `%s'`" : "its rate is written `(%s)'`", ast_short(b, x->args));
+  diag_warning(b->diags, x->span, "this is 0: `d` is the partial derivative, and `%s` does not contain t itself",
+               ast_short(b, x->args));
+  diag_help(b->diags, of->kind == AST_NAME ? "its rate is written `%s'`" : "its rate is written `(%s)'`",
+            ast_short(b, x->args));
 }
 
 /* d(expr, name): a partial derivative. */
@@ -126,10 +132,13 @@ static Value call_d(Eval *ev, const AstExpr *x) {
   const Value *v = value_of(ev, x->args), *w = value_of(ev, by);
   if (!v->e || !w->e) return FAILED;
   if (v->n == ROTATION) return refuse_rotation(b, ast_expr(b->ast, x->args)->span, ast_short(b, x->args), TURN_NUMBER);
-  if (w->n) return refuse(b, ast_expr(b->ast, by)->span, "`%s` is %s: differentiate by its components", ast_short(b, by), shape_text(b, w->n));
+  if (w->n)
+    return refuse(b, ast_expr(b->ast, by)->span, "`%s` is %s: differentiate by its components", ast_short(b, by),
+                  shape_text(b, w->n));
   SymKind kind = expr_op(b->g, w->e) == EX_SYM ? expr_sym_of(b->g, w->e)->kind : SYM_CONST;
   if (kind == SYM_CONST || w->e == expr_symbol(b->g, b->m->energy_sym)->node)
-    return refuse(b, ast_expr(b->ast, by)->span, "`d(expr, name)` differentiates by a coordinate, a velocity, a parameter or t");
+    return refuse(b, ast_expr(b->ast, by)->span,
+                  "`d(expr, name)` differentiates by a coordinate, a velocity, a parameter or t");
   Value r = {.dim = dim_div(b->dims, v->dim, w->dim), .n = v->n};
   for (uint32_t k = 0; k < component_count(v); k++) {
     if (kind != SYM_LOCAL && expr_contains(b->g, v->at[k], is_local, NULL))
@@ -158,12 +167,12 @@ static const struct {
   int takes_vectors; /* vectors or rotations */
 } functions[] = {
 #define ROW(OP, name, ...) {#name, NULL, EX_##OP, 0},
-  FUNCTIONS(ROW)
-  {"abs", NULL, EX_ABS, 0}, {"sign", NULL, EX_SIGN, 0}, {"floor", NULL, EX_FLOOR, 0},
-  {"atan2", NULL, EX_ATAN2, 0}, {"hypot", NULL, EX_HYPOT, 0}, {"min", NULL, EX_MIN, 0}, {"max", NULL, EX_MAX, 0},
-  {"sqrt", call_sqrt, 0, 0}, {"pow", call_pow, 0, 0}, {"if", call_if, 0, 1}, {"d", call_d, 0, 1}, {"dot", call_dot, 0, 1}, {"cross", call_cross, 0, 1},
-  {"norm", call_norm, 0, 1}, {"lambda", multiplier_value, 0, 1}, {"omega", omega_value, 0, 1}, {"turn", turn_value, 0, 1}, {"transpose", transpose_value, 0, 1},
-  {"action", action_value, 0, 1},
+    FUNCTIONS(ROW){"abs", NULL, EX_ABS, 0}, {"sign", NULL, EX_SIGN, 0}, {"floor", NULL, EX_FLOOR, 0},
+    {"atan2", NULL, EX_ATAN2, 0}, {"hypot", NULL, EX_HYPOT, 0}, {"min", NULL, EX_MIN, 0}, {"max", NULL, EX_MAX, 0},
+    {"sqrt", call_sqrt, 0, 0}, {"pow", call_pow, 0, 0}, {"if", call_if, 0, 1}, {"d", call_d, 0, 1},
+    {"dot", call_dot, 0, 1}, {"cross", call_cross, 0, 1}, {"norm", call_norm, 0, 1}, {"lambda", multiplier_value, 0, 1},
+    {"omega", omega_value, 0, 1}, {"turn", turn_value, 0, 1}, {"transpose", transpose_value, 0, 1},
+    {"action", action_value, 0, 1},
 };
 
 enum { BUILT_IN = sizeof functions / sizeof *functions };
@@ -183,7 +192,8 @@ int function_index(const char *name) {
 
 int call_takes_vectors(const Eval *ev, const AstExpr *x) {
   int i = function_index(x->name);
-  return (i >= 0 && functions[i].takes_vectors) || strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0 || own_function(ev, x);
+  return (i >= 0 && functions[i].takes_vectors) || strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0 ||
+         own_function(ev, x);
 }
 
 /* The coordinate, state or let in `th(0)`, which the parser takes for a call; or NULL. */
@@ -197,7 +207,8 @@ static const Entity *called_motion(const Eval *ev, const AstExpr *x) {
 /* 1 for `F(t)`, the notation of paper for time-dependent quantities. */
 static int is_of_time(const Eval *ev, const AstExpr *x) {
   const AstExpr *argument = x->args ? ast_expr(ev->b->ast, x->args) : NULL;
-  return argument && argument->kind == AST_NAME && strcmp(argument->name, "t") == 0 && ast_list_length(ev->b->ast, x->args) == 1;
+  return argument && argument->kind == AST_NAME && strcmp(argument->name, "t") == 0 &&
+         ast_list_length(ev->b->ast, x->args) == 1;
 }
 
 static Value unknown_function(Eval *ev, const AstExpr *x) {
@@ -213,7 +224,8 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
     if (b->scope.all.at[i].kind == ENT_FUNCTION) known[n++] = b->scope.all.at[i].name;
   int ambiguous;
   const Entity *e = scope_find(&b->scope, x->name, ev->effect, &ambiguous);
-  if (called_motion(ev, x) && ast_expr(b->ast, x->args)->kind == AST_NUM && num_is_zero(ast_expr(b->ast, x->args)->number)) {
+  if (called_motion(ev, x) && ast_expr(b->ast, x->args)->kind == AST_NUM &&
+      num_is_zero(ast_expr(b->ast, x->args)->number)) {
     report_start(b, x->span);
     return FAILED;
   }
@@ -221,14 +233,18 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
   Name near = suggest(x->name, known, n);
   const char *argument = x->args ? ast_text(b, x->args) : "";
   if (!e && advise_unknown_function(b, x->name)) return FAILED;
-  if (strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0) diag_help(b->diags, "`%s(q)` may stand in `output` and `monitor`, in a scene that says `exact q = ...`", x->name);
-  else if (e && is_of_time(ev, x)) diag_help(b->diags, "`%s` is %s: write `%s`; its dependence on time is implied", x->name, ent_kind_text(e->kind), x->name);
+  if (strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0)
+    diag_help(b->diags, "`%s(q)` may stand in `output` and `monitor`, in a scene that says `exact q = ...`", x->name);
+  else if (e && is_of_time(ev, x))
+    diag_help(b->diags, "`%s` is %s: write `%s`; its dependence on time is implied", x->name, ent_kind_text(e->kind),
+              x->name);
   else if (e && argument[0] == 't' && argument[1] && strchr(" -+", argument[1]))
-    diag_help(
-        b->diags,
-        "a delay does not exist: equations hold the state of one moment; a lag of first order is a state, `flow z' = (%s - z)/T`",
-        x->name);
-  else if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
+    diag_help(b->diags,
+              "a delay does not exist: equations hold the state of one moment; a lag of first order is a state, `flow "
+              "z' = (%s - z)/T`",
+              x->name);
+  else if (e)
+    diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
   else if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else if (b->is_measuring)
     diag_help(b->diags, "of a run there are max, min, mean, rms, drift, period, hit, count and, without parentheses, "

@@ -1,8 +1,9 @@
 /* Closed forms, `exact th = th(0)*cos(w*t)`, and their outputs `exact(th)`, `error(th)`.
  *
- * A closed form contains t, parameters, inputs and start values. While it is resolved, th(0) is a local symbol, and th itself is refused. Then each
- * local is replaced by its coordinate: in a finished closed form th means th(0). In outputs, exact(th) is a symbol of kind SYM_INPUT numbered after
- * the model's inputs: the runtime evaluates closed forms like inputs. */
+ * A closed form contains t, parameters, inputs and start values. While it is resolved, th(0) is a local symbol, and
+ * th itself is refused. Then each local is replaced by its coordinate: in a finished closed form th means th(0). In
+ * outputs, exact(th) is a symbol of kind SYM_INPUT numbered after the model's inputs: the runtime evaluates closed
+ * forms like inputs. */
 #include "model/resolve_impl.h"
 
 /* --- values at the start --- */
@@ -25,7 +26,8 @@ static void start_symbols(Builder *b) {
   for (uint32_t i = 0; i < of.n; i++) {
     const Symbol *s = expr_symbol(b->g, of.at[i]);
     Expr node = s->node;
-    SymId local = declare_symbol(b, SYM_LOCAL, 0, intern_printf(b, "%s(0)", s->name), SIGN_UNKNOWN, b->dim_of.at[of.at[i]]);
+    SymId local =
+        declare_symbol(b, SYM_LOCAL, 0, intern_printf(b, "%s(0)", s->name), SIGN_UNKNOWN, b->dim_of.at[of.at[i]]);
     b->at_start[of.at[i]] = expr_symbol(b->g, local)->node;
     b->from_start[local] = node;
   }
@@ -45,7 +47,8 @@ Value start_value(Eval *ev, Value v, Span span, const Value *when) {
   }
   if (when->n || !expr_is_zero(b->g, when->e)) return refuse(b, span, "only the start value is known here: `x(0)`");
   start_symbols(b);
-  for (uint32_t k = 0; k < component_count(&v); k++) v.at[k] = expr_substitute(b->g, v.at[k], b->at_start, b->nbefore, "_0");
+  for (uint32_t k = 0; k < component_count(&v); k++)
+    v.at[k] = expr_substitute(b->g, v.at[k], b->at_start, b->nbefore, "_0");
   v.bare = 0;
   return v;
 }
@@ -54,14 +57,16 @@ Value start_value(Eval *ev, Value v, Span span, const Value *when) {
 
 static int moves(const Symbol *s, const void *data) {
   (void)data;
-  return s->kind == SYM_COORD || s->kind == SYM_VEL || s->kind == SYM_ACC || s->kind == SYM_STATE || s->kind == SYM_RATE;
+  return s->kind == SYM_COORD || s->kind == SYM_VEL || s->kind == SYM_ACC || s->kind == SYM_STATE ||
+         s->kind == SYM_RATE;
 }
 
 void set_closed_form(Builder *b, SymId target, const Unit *unit, int periodic, Expr value, Span span) {
   Scene *sc = &b->m->scene;
   const Symbol *s = expr_symbol(b->g, target);
   if (expr_contains(b->g, value, moves, NULL)) {
-    diag_error(b->diags, span, "a closed form may contain t, parameters and values at the start, and not the motion itself");
+    diag_error(b->diags, span,
+               "a closed form may contain t, parameters and values at the start, and not the motion itself");
     diag_help(b->diags, "`%s(0)` is the value of `%s` at the start", s->name, s->name);
     return;
   }
@@ -93,11 +98,14 @@ static Expr wrapped(ExprGraph *g, Expr e) {
 }
 
 Expr closed_form_error(Builder *b, const Exact *x) {
-  Expr is = expr_symbol(b->g, x->target)->node, should = expr_symbol(b->g, x->sym)->node, off = expr_sub(b->g, is, should);
+  Expr is = expr_symbol(b->g, x->target)->node, should = expr_symbol(b->g, x->sym)->node,
+       off = expr_sub(b->g, is, should);
   return x->periodic ? wrapped(b->g, off) : off;
 }
 
-int call_is_exact(const Eval *ev, Name name) { return ev->where == IN_OUTPUT && (strcmp(name, "exact") == 0 || strcmp(name, "error") == 0); }
+int call_is_exact(const Eval *ev, Name name) {
+  return ev->where == IN_OUTPUT && (strcmp(name, "exact") == 0 || strcmp(name, "error") == 0);
+}
 
 Value exact_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;

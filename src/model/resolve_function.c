@@ -1,5 +1,6 @@
-/* Calls of user functions, and of functions that functions.def defines by a text. A body is evaluated once per choice of argument shapes, with local symbols and unknown dimensions
- * as arguments (an Instance); a call substitutes its arguments, and checks their dimensions against those inferred from the body. */
+/* Calls of user functions, and of functions that functions.def defines by a text. A body is evaluated once per
+ * choice of argument shapes, with local symbols and unknown dimensions as arguments (an Instance); a call
+ * substitutes its arguments, and checks their dimensions against those inferred from the body. */
 #include "model/resolve_impl.h"
 #include "syntax/parse.h"
 
@@ -37,7 +38,8 @@ void need_rates(Builder *b, Instance *in) {
 static Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes) {
   const Definition *f = &b->functions.at[function];
   Instance *in = ARENA_NEW(b->arena, Instance);
-  *in = (Instance){.function = function, .nargs = ast_list_length(b->ast, f->stmt->args), .first_unknown = dim_unknowns(b->dims)};
+  *in = (Instance){
+      .function = function, .nargs = ast_list_length(b->ast, f->stmt->args), .first_unknown = dim_unknowns(b->dims)};
   in->args = ARENA_ARRAY(b->arena, Value, in->nargs + 1);
   AstId id = f->stmt->args;
   for (uint32_t i = 0; i < in->nargs; i++, id = ast_expr(b->ast, id)->next)
@@ -73,7 +75,8 @@ static void report_argument(Eval *ev, const AstExpr *x, const Instance *in, uint
   for (uint32_t k = 0; k < i; k++) id = ast_expr(b->ast, id)->next;
   const char *unit = dim_text(b->dims, want), *text = ast_short(b, arg);
   diag_error(b->diags, ast_expr(b->ast, arg)->span, "units do not match: the argument `%s` of `%s` is %s here, `%s` %s",
-             ast_expr(b->ast, id)->name, x->name, in_unit(b, unit), text, v->bare ? "has no unit" : in_unit(b, shown_unit(b, v)));
+             ast_expr(b->ast, id)->name, x->name, in_unit(b, unit), text,
+             v->bare ? "has no unit" : in_unit(b, shown_unit(b, v)));
   if (v->bare) diag_help(b->diags, "give the number its unit: `%s [%s]`", text, unit);
   DimCause c;
   if (dim_cause(b->dims, in->args[i].dim, &c)) diag_also(b->diags, c.why, "because of this");
@@ -132,7 +135,8 @@ static Value call_instance(Eval *ev, const AstExpr *x, const Instance *in) {
   r.dim = dim_replace(b->dims, r.dim, in->first_unknown, in->nargs, dims);
   r.bare = b->functions.at[in->function].composed;
   for (AstId arg = x->args; arg; arg = ast_expr(b->ast, arg)->next) r.bare &= value_of(ev, arg)->bare;
-  for (uint32_t k = 0; k < component_count(&r); k++) r.at[k] = expr_replace(b->g, r.at[k], in->symbols.at, with, in->symbols.n);
+  for (uint32_t k = 0; k < component_count(&r); k++)
+    r.at[k] = expr_replace(b->g, r.at[k], in->symbols.at, with, in->symbols.n);
   if (r.domain) r.domain = expr_replace(b->g, r.domain, in->symbols.at, with, in->symbols.n);
   return r;
 }
@@ -157,14 +161,16 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
   Builder *b = ev->b;
   const Definition *f = &b->functions.at[e->index];
   uint32_t nargs = ast_list_length(b->ast, f->stmt->args), n = 0, *shapes = ARENA_ARRAY(b->arena, uint32_t, nargs + 1);
-  if (ev->where < IN_START && !f->composed) return refuse(b, x->span, "`%s` is a function of the model's own, and may not be used here", x->name);
+  if (ev->where < IN_START && !f->composed)
+    return refuse(b, x->span, "`%s` is a function of the model's own, and may not be used here", x->name);
   if (!arity_is(ev, x, nargs)) return FAILED;
   for (AstId arg = x->args; arg; arg = ast_expr(b->ast, arg)->next) {
     if (!value_of(ev, arg)->e) return FAILED;
     shapes[n++] = value_of(ev, arg)->n;
   }
   uint32_t place = find_instance(b, e->index, nargs, shapes, x->span);
-  if (b->instances.at[place]->done) return known_at_start(ev, call_instance(ev, x, b->instances.at[place]), x->name, x->span);
+  if (b->instances.at[place]->done)
+    return known_at_start(ev, call_instance(ev, x, b->instances.at[place]), x->name, x->span);
   suspend_for(ev, ENT_FUNCTION, place, b->state[ENT_FUNCTION].at[e->index].progress, x->name, x->span);
   return FAILED;
 }

@@ -1,4 +1,5 @@
-/* State of an evaluation of an expression (Eval), and the functions that evaluate its nodes; included by this folder only. */
+/* State of an evaluation of an expression (Eval), and the functions that evaluate its nodes; included by this folder
+ * only. */
 #pragma once
 
 #include "model/builder.h"
@@ -30,7 +31,8 @@ struct Eval {
   AstId first, root, pc;
   uint32_t cap;
   Value *value;        /* [i] value of node first + i */
-  unsigned char *by_parent; /* [i] node first + i is skipped: its parent reads it (chain operand, name before an index) */
+  /* [i] node first + i is skipped: its parent reads it (chain operand, name before an index) */
+  unsigned char *by_parent;
   AstId *guarded;      /* [i] the sum, product or `if` whose body or branch begins at node first + i, or 0 */
   VEC(Loop) loops;
   VEC(Value) terms;    /* terms of all loops in progress */
@@ -51,14 +53,15 @@ static inline uint32_t component_count(const Value *v) { return v->n ? v->n : 1;
 
 static inline Value *value_of(const Eval *ev, AstId id) { return &ev->value[id - ev->first]; }
 
-/* check_units.c, each 0 and reported on failure: two values may be added; a value is a pure number (angles are), as `what`
- * requires; node x may have a temperature in degC as operand. refuse_point reports such an operand; 0. */
+/* check_units.c, each 0 and reported on failure: two values may be added; a value is a pure number (angles are), as
+ * `what` requires; node x may have a temperature in degC as operand. refuse_point reports such an operand; 0. */
 int operands_agree(Eval *ev, Span span, AstId x, AstId y);
 int need_pure(Eval *ev, AstId arg, const char *what);
 int point_fits(Eval *ev, const AstExpr *x, AstId operand);
 int refuse_point(Eval *ev, AstId operand, const char *why);
 
-/* 1 if the value's type suits node x: conditions in logic and first in `if`, vectors where x takes vectors; 0, reported. */
+/* 1 if the value's type suits node x: conditions in logic and first in `if`, vectors where x takes vectors; 0,
+ * reported. */
 int operand_fits(Eval *ev, const AstExpr *x, AstId operand);
 
 /* 1 if two values have the same shape; 0, reported, if not. */
@@ -87,8 +90,8 @@ const Value *function_argument(const Builder *b, const Instance *function, Name 
 /* v, the value of a let or of a call; where a start is given, refused if anything but parameters is in it. */
 Value known_at_start(Eval *ev, Value v, Name name, Span span);
 
-/* Suspends the evaluation until a let, an observable or a function instance has a value. If that one is in progress, the
- * definition is circular: reported. */
+/* Suspends the evaluation until a let, an observable or a function instance has a value. If that one is in progress,
+ * the definition is circular: reported. */
 void suspend_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span);
 
 /* resolve_function.c: stores the value of an instance's body; an error in the body is attributed to the call. */
@@ -102,7 +105,8 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e);
 /* The user function that x calls, or NULL. */
 const Entity *own_function(const Eval *ev, const AstExpr *x);
 
-/* rotation.c: product p q (rotation by q, then by p); vector v rotated by q; rotation coordinate (rates: its rates) as a value. */
+/* rotation.c: product p q (rotation by q, then by p); vector v rotated by q; rotation coordinate (rates: its rates)
+ * as a value. */
 Value rotation_product(Builder *b, const Value *p, const Value *q);
 Value rotation_turn(Builder *b, const Value *q, const Value *v);
 Value rotation_at(const Builder *b, uint32_t coord, int rates);
@@ -118,7 +122,8 @@ typedef enum {
 } TurnMistake;
 Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why);
 
-/* entities.c: dimension of lambda, as lambda c is an energy, for velocity constraints a power; appends the constraint c = 0 of dimension dim, with its multiplier. */
+/* entities.c: dimension of lambda, as lambda c is an energy, for velocity constraints a power; appends the
+ * constraint c = 0 of dimension dim, with its multiplier. */
 Dim multiplier_dim(Builder *b, Dim dim, int holonomic);
 void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span);
 

@@ -4,7 +4,8 @@
 #include "base/words.h"
 #include "model/resolve_impl.h"
 
-/* The name of a constraint or a contact: rod, rod[2], drag.rod; owner: the effect that is named. NULL: not a name, or an index without value. */
+/* The name of a constraint or a contact: rod, rod[2], drag.rod; owner: the effect that is named. NULL: not a name,
+ * or an index without value. */
 static Name indexed_name(Eval *ev, AstId id, Name *owner) {
   Builder *b = ev->b;
   const AstExpr *x = ast_expr(b->ast, id);
@@ -48,24 +49,36 @@ Value multiplier_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   if (!arity_is(ev, x, 1)) return FAILED;
   if (ev->where < IN_OBSERVE)
-    return refuse(b, x->span, "multipliers follow from the equations of motion, and cannot stand in them" HELP
-                  "`lambda(NAME)` may stand in `observe`, `output` and `expect`, and alone in `constraint ... while lambda(NAME) > 0`; "
-                  "friction that follows the force of a surface is that of a contact, `contact NAME: y >= 0, restitution = 0, friction = mu, slip = x'`");
+    return refuse(b, x->span,
+                  "multipliers follow from the equations of motion, and cannot stand in them" HELP
+                  "`lambda(NAME)` may stand in `observe`, `output` and `expect`, and alone in `constraint ... while "
+                  "lambda(NAME) > 0`; "
+                  "friction that follows the force of a surface is that of a contact, `contact NAME: y >= 0, "
+                  "restitution = 0, friction = mu, slip = x'`");
   Span span = ast_expr(b->ast, x->args)->span;
   uint32_t errors = b->diags->errors;
   Name owner = NULL, name = named_constraint(ev, x->args, &owner);
   int ambiguous = 0;
-  const Entity *e = !name ? NULL : owner ? scope_own(&b->constraints, name, owner) : scope_find(&b->constraints, name, ev->effect, &ambiguous);
-  if (!e) return b->diags->errors > errors ? FAILED : report_unknown(b, span, owner && name ? intern_printf(b, "%s.%s", owner, name) : name);
-  if (ambiguous) return refuse(b, span, "more than one effect in use has a constraint `%s`" HELP "say which: `lambda(%s.%s)`", name, e->effect, name);
+  const Entity *e = !name   ? NULL
+                    : owner ? scope_own(&b->constraints, name, owner)
+                            : scope_find(&b->constraints, name, ev->effect, &ambiguous);
+  if (!e)
+    return b->diags->errors > errors
+               ? FAILED
+               : report_unknown(b, span, owner && name ? intern_printf(b, "%s.%s", owner, name) : name);
+  if (ambiguous)
+    return refuse(b, span, "more than one effect in use has a constraint `%s`" HELP "say which: `lambda(%s.%s)`", name,
+                  e->effect, name);
   if (e->index >= b->m->constraints.n) return FAILED; /* refused */
   Value v = {.n = e->parts};
-  for (uint32_t k = 0; k < component_count(&v); k++) v.at[k] = expr_symbol(b->g, b->m->constraints.at[e->index + k].multiplier)->node;
+  for (uint32_t k = 0; k < component_count(&v); k++)
+    v.at[k] = expr_symbol(b->g, b->m->constraints.at[e->index + k].multiplier)->node;
   v.dim = b->dim_of.at[b->m->constraints.at[e->index].multiplier];
   for (uint32_t i = 0; i < b->m->contacts.n; i++) {
     const Contact *c = &b->m->contacts.at[i];
     uint32_t k = c->constraint - e->index;
-    if (c->is_tangent && c->constraint >= e->index && k < component_count(&v)) v.at[k] = expr_add(b->g, v.at[k], expr_symbol(b->g, c->force)->node);
+    if (c->is_tangent && c->constraint >= e->index && k < component_count(&v))
+      v.at[k] = expr_add(b->g, v.at[k], expr_symbol(b->g, c->force)->node);
   }
   return v;
 }

@@ -1,4 +1,5 @@
-/* Names in expressions: indices, arguments, built-in quantities (energy, T, V, p_x), declared names, members of families, components. */
+/* Names in expressions: indices, arguments, built-in quantities (energy, T, V, p_x), declared names, members of
+ * families, components. */
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
 
@@ -9,7 +10,8 @@ const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const 
     diag_error(b->diags, span, "unknown name `%s`", name);
     advise_unknown_name(b, name, span, effect, declare);
   } else if (ambiguous) {
-    diag_error(b->diags, span, "`%s` is declared by more than one effect in use" HELP "say which: `%s.%s`", name, e->effect, name);
+    diag_error(b->diags, span, "`%s` is declared by more than one effect in use" HELP "say which: `%s.%s`", name,
+               e->effect, name);
     return NULL;
   }
   return e;
@@ -40,7 +42,8 @@ static const char *place_text(Context where) {
   switch (where) {
     case IN_CONST: return "only numbers and constants are known here";
     case IN_PARAM: return "a parameter's value may contain numbers and parameters declared before it";
-    case IN_START: return "a start or a value in a scene may contain numbers, parameters, and lets and functions of them";
+    case IN_START:
+      return "a start or a value in a scene may contain numbers, parameters, and lets and functions of them";
     case IN_INPUT: return "an input may contain numbers, parameters and t";
     case IN_DYNAMICS: return "declare a name that equations contain by `let`; observables are for outputs";
     case IN_EXACT: case IN_OBSERVE: case IN_OUTPUT: break;
@@ -76,7 +79,8 @@ Value known_at_start(Eval *ev, Value v, Name name, Span span) {
   Name moving = NULL, *found = &moving;
   for (uint32_t k = 0; ev->where == IN_START && v.e && k < component_count(&v); k++)
     if (expr_contains(ev->b->g, v.at[k], moves, &found))
-      return refuse(ev->b, span, "`%s` contains `%s` and may not be used here" HELP "%s", name, moving, place_text(IN_START));
+      return refuse(ev->b, span, "`%s` contains `%s` and may not be used here" HELP "%s", name, moving,
+                    place_text(IN_START));
   return v;
 }
 
@@ -85,12 +89,14 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
   Builder *b = ev->b;
   if (e->kind == ENT_NONE) return FAILED;
   if (least_context(e->kind) > ev->where)
-    return refuse(b, span, "`%s` is %s and may not be used here" HELP "%s", e->name, ent_kind_text(e->kind), place_text(ev->where));
+    return refuse(b, span, "`%s` is %s and may not be used here" HELP "%s", e->name, ent_kind_text(e->kind),
+                  place_text(ev->where));
   switch (e->kind) {
     case ENT_COORD: case ENT_STATE: case ENT_PARAM: case ENT_INPUT: {
       Value v = {.n = e->parts};
       uint32_t i = e->index + member_offset(e, at);
-      for (uint32_t k = 0; k < component_count(&v); k++) v.at[k] = expr_symbol(b->g, symbol_of(b->m, e->kind, i + k))->node;
+      for (uint32_t k = 0; k < component_count(&v); k++)
+        v.at[k] = expr_symbol(b->g, symbol_of(b->m, e->kind, i + k))->node;
       v.dim = b->dim_of.at[symbol_of(b->m, e->kind, i)];
       v.unit = entity_unit(b, e)->text;
       return v;
@@ -113,7 +119,9 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
 Value whole_value(Eval *ev, const Entity *e, Span span) {
   if (!e->ndims || e->kind == ENT_NONE) return entity_value(ev, e, NULL, span);
   Name one = member_name(ev->b->ast, e->name, e->lo, e->ndims);
-  return refuse(ev->b, span, "`%s` is a family: say which member" HELP "the first is `%s`; `sum(i in ..., ...)` adds over all", e->name, one);
+  return refuse(ev->b, span,
+                "`%s` is a family: say which member" HELP "the first is `%s`; `sum(i in ..., ...)` adds over all",
+                e->name, one);
 }
 
 /* lagrangian, energy, T, V in outputs and claims, unless the model declares the name; 0: not one of them. */
@@ -135,7 +143,9 @@ static int builtin_quantity(Eval *ev, Name name, Value *out) {
 static const Entity *momentum_of(const Eval *ev, Name name) {
   int ambiguous;
   Builder *b = ev->b;
-  if (ev->where < IN_OBSERVE || strncmp(name, "p_", 2) != 0 || !b->m->lagrangian || scope_find(&b->scope, name, ev->effect, &ambiguous)) return NULL;
+  if (ev->where < IN_OBSERVE || strncmp(name, "p_", 2) != 0 || !b->m->lagrangian ||
+      scope_find(&b->scope, name, ev->effect, &ambiguous))
+    return NULL;
   const Entity *e = scope_find(&b->scope, intern(b->ast->names, name + 2), ev->effect, &ambiguous);
   int moves = e && (e->kind == ENT_COORD || (e->kind == ENT_STATE && b->m->states.at[e->index].coordinate));
   return moves && !ambiguous ? e : NULL;
@@ -169,7 +179,8 @@ Value name_value(Eval *ev, const AstExpr *x) {
   const IndexVar *index = find_index(ev, x->name);
   if (index) return a_value(expr_int(b->g, index->at), DIM_NONE, 1);
   for (uint32_t i = 0; i < b->nbound && ev->in_statement; i++)
-    if (b->bound[i].name == x->name) return a_value(expr_symbol(b->g, b->bound[i].sym)->node, b->dim_of.at[b->bound[i].sym], 0);
+    if (b->bound[i].name == x->name)
+      return a_value(expr_symbol(b->g, b->bound[i].sym)->node, b->dim_of.at[b->bound[i].sym], 0);
   const Value *argument = function_argument(b, ev->function, x->name);
   if (argument) return *argument;
   if (strcmp(x->name, "pi") == 0) return a_value(expr_symbol(b->g, b->m->pi)->node, DIM_NONE, 1);
@@ -207,7 +218,8 @@ static int in_range(const Entity *e, const int64_t *at) {
 /* Reports an index out of range, with the range. */
 static void report_range(Builder *b, const Entity *e, const int64_t *at, Span span, const char *where) {
   StrBuf s = strbuf(b->arena);
-  for (int k = 0; k < e->ndims; k++) sb_printf(&s, "%s%lld..%lld", k ? ", " : "", (long long)e->lo[k], (long long)e->hi[k]);
+  for (int k = 0; k < e->ndims; k++)
+    sb_printf(&s, "%s%lld..%lld", k ? ", " : "", (long long)e->lo[k], (long long)e->hi[k]);
   diag_error(b->diags, span, "`%s` is out of range%s", member_name(b->ast, e->name, at, e->ndims), where);
   if (in_range(e, at)) diag_help(b->diags, "`%s` is defined in %s, but not for this member", e->name, sb_text(&s));
   else diag_help(b->diags, "the members are `%s[%s]`", e->name, sb_text(&s));
@@ -228,13 +240,17 @@ static Value indexed_value(Eval *ev, const Entity *e, const AstExpr *x, int mome
   if (e->kind == ENT_NONE) return FAILED;
   if (!e->ndims) {
     diag_error(b->diags, x->span, "`%s` is %s without index", e->name, ent_kind_text(e->kind));
-    if (e->parts == ROTATION) diag_help(b->diags, "the components of a rotation are `%s.w`, `%s.x`, `%s.y`, `%s.z`", e->name, e->name, e->name, e->name);
+    if (e->parts == ROTATION)
+      diag_help(b->diags, "the components of a rotation are `%s.w`, `%s.x`, `%s.y`, `%s.z`", e->name, e->name, e->name,
+                e->name);
     else if (e->parts) diag_help(b->diags, "the components of a vector are `%s.x`, `%s.y`", e->name, e->name);
-    else diag_help(b->diags, "a family is declared with its size: `%s[3]`; a unit stands apart: `%s [%s]`", e->name, e->name,
-                   ast_text(b, x->args));
+    else
+      diag_help(b->diags, "a family is declared with its size: `%s[3]`; a unit stands apart: `%s [%s]`", e->name,
+                e->name, ast_text(b, x->args));
     return FAILED;
   }
-  if (n != e->ndims) return refuse(b, x->span, "`%s` has %s, here it has %u", e->name, e->ndims == 1 ? "one index" : "two indices", n);
+  if (n != e->ndims)
+    return refuse(b, x->span, "`%s` has %s, here it has %u", e->name, e->ndims == 1 ? "one index" : "two indices", n);
   const Entity *member = e;
   int listed = e->kind == ENT_LET || e->kind == ENT_OBSERVE;
   if (in_range(e, at) && listed) member = find_member(b->ast, &b->members, e, at);
@@ -276,7 +292,11 @@ static Value component(Eval *ev, const AstExpr *x, Value v) {
     return one;
   }
   diag_error(b->diags, x->span, "`%s` has no component `%s`", ast_short(b, x->a), x->name);
-  if (v.n) diag_help(b->diags, "it is %s: %s", shape_text(b, v.n), v.n == 2 ? "`.x`, `.y`" : v.n == 3 ? "`.x`, `.y`, `.z`" : "`.w`, `.x`, `.y`, `.z`");
+  if (v.n)
+    diag_help(b->diags, "it is %s: %s", shape_text(b, v.n),
+              v.n == 2   ? "`.x`, `.y`"
+              : v.n == 3 ? "`.x`, `.y`, `.z`"
+                         : "`.w`, `.x`, `.y`, `.z`");
   else diag_help(b->diags, "it is a number; vectors are declared `coord r: vec3 [m]`, or written `(a, b, c)`");
   return FAILED;
 }
@@ -289,8 +309,8 @@ Value member_value(Eval *ev, const AstExpr *x) {
   const Entity *e = scope_own(&b->scope, x->name, left->name);
   if (e) return whole_value(ev, e, x->span);
   int ambiguous;
-  if (scope_find(&b->scope, left->name, ev->effect, &ambiguous) || momentum_of(ev, left->name) || find_index(ev, left->name) ||
-      function_argument(b, ev->function, left->name)) {
+  if (scope_find(&b->scope, left->name, ev->effect, &ambiguous) || momentum_of(ev, left->name) ||
+      find_index(ev, left->name) || function_argument(b, ev->function, left->name)) {
     Value v = name_value(ev, left);
     return ev->waiting ? FAILED : component(ev, x, v);
   }

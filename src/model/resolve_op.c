@@ -12,8 +12,8 @@ int same_shape(Eval *ev, Span span, AstId x, AstId y) {
   Builder *b = ev->b;
   const Value *v = value_of(ev, x), *w = value_of(ev, y);
   if (v->n == w->n) return 1;
-  return diag_error(b->diags, span, "shapes do not match: `%s` is %s, `%s` is %s", ast_short(b, x), shape_text(b, v->n), ast_short(b, y),
-                    shape_text(b, w->n));
+  return diag_error(b->diags, span, "shapes do not match: `%s` is %s, `%s` is %s", ast_short(b, x), shape_text(b, v->n),
+                    ast_short(b, y), shape_text(b, w->n));
 }
 
 /* --- chains of two operators --- */
@@ -45,10 +45,12 @@ static Expr add_scratch(Builder *b) {
   return e;
 }
 
-/* 1 if operand i, in degC, is first in the sum, 20 [degC] + 5 [K], or the one subtracted, T - 20 [degC]; 0, reported. */
+/* 1 if operand i, in degC, is first in the sum, 20 [degC] + 5 [K], or the one subtracted, T - 20 [degC]; 0,
+ * reported. */
 static int point_in_sum(Eval *ev, uint32_t i) {
   uint32_t subtracted = 0;
-  for (uint32_t k = 0; k <= i; k++) subtracted += ev->operands.at[k].inverted && value_of(ev, ev->operands.at[k].at)->point;
+  for (uint32_t k = 0; k <= i; k++)
+    subtracted += ev->operands.at[k].inverted && value_of(ev, ev->operands.at[k].at)->point;
   if (ev->operands.at[i].inverted ? subtracted == 1 : i == 0) return 1;
   return refuse_point(ev, ev->operands.at[i].at, "cannot be added to a temperature");
 }
@@ -120,7 +122,9 @@ static int factor_fits(Eval *ev, uint32_t i, const Value *r) {
   const Value *v = value_of(ev, o.at);
   Span span = ast_expr(b->ast, o.at)->span;
   if (v->n && (o.inverted || r->n)) {
-    diag_error(b->diags, span, o.inverted ? "`%s` is %s, and division by a vector is not defined" : "`%s` is %s, and so is a factor before it",
+    diag_error(b->diags, span,
+               o.inverted ? "`%s` is %s, and division by a vector is not defined"
+                          : "`%s` is %s, and so is a factor before it",
                ast_short(b, o.at), shape_text(b, v->n));
     diag_help(b->diags, "write `dot(a, b)`, `cross(a, b)` or `norm(a)`");
     return 0;
@@ -129,18 +133,23 @@ static int factor_fits(Eval *ev, uint32_t i, const Value *r) {
   return 1;
 }
 
-/* Warns of 2*pi/86164 [rad/s]: the unit binds to the divisor, but the quotient's was probably meant. r: the product so far. */
+/* Warns of 2*pi/86164 [rad/s]: the unit binds to the divisor, but the quotient's was probably meant. r: the product
+ * so far. */
 static void warn_unit_of_divisor(Eval *ev, const Operand *o, const Value *r) {
   Builder *b = ev->b;
   const AstExpr *u = ast_expr(b->ast, o->at), *quotient = u + 1; /* a parent follows its last child */
-  if (!o->inverted || u->kind != AST_UNIT || ast_expr(b->ast, u->a)->kind != AST_NUM || o->at + 1 >= b->ast->exprs.n) return;
+  if (!o->inverted || u->kind != AST_UNIT || ast_expr(b->ast, u->a)->kind != AST_NUM || o->at + 1 >= b->ast->exprs.n)
+    return;
   if (quotient->kind != AST_DIV || quotient->b != o->at || !r->bare) return;
   if (*source_text(b, (Span){quotient->op_span.end, u->span.begin}) == '(') return;
   if (value_of(ev, o->at)->e == value_of(ev, u->a)->e && value_of(ev, o->at)->dim == DIM_NONE) return; /* [rad], [1] */
-  const char *above = source_text(b, (Span){quotient->span.begin, quotient->op_span.begin}), *number = ast_text(b, u->a), *unit = u->unit.text;
+  const char *above = source_text(b, (Span){quotient->span.begin, quotient->op_span.begin}),
+             *number = ast_text(b, u->a), *unit = u->unit.text;
   Dim d = dim_div(b->dims, r->dim, value_of(ev, o->at)->dim);
-  diag_warning(b->diags, u->span, "the unit [%s] belongs to the divisor `%s` alone, so that the quotient is %s", unit, number, in_dim(b, d));
-  diag_help(b->diags, "a unit of the quotient: `(%s/%s) [%s]`; of the divisor: `%s/(%s [%s])`", above, number, unit, above, number, unit);
+  diag_warning(b->diags, u->span, "the unit [%s] belongs to the divisor `%s` alone, so that the quotient is %s", unit,
+               number, in_dim(b, d));
+  diag_help(b->diags, "a unit of the quotient: `(%s/%s) [%s]`; of the divisor: `%s/(%s [%s])`", above, number, unit,
+            above, number, unit);
 }
 
 static int type_of_product(Eval *ev, const AstExpr *x, Value *r, Factors *f) {
@@ -152,7 +161,8 @@ static int type_of_product(Eval *ev, const AstExpr *x, Value *r, Factors *f) {
   for (uint32_t i = 0; i < ev->operands.n; i++) {
     Operand o = ev->operands.at[i];
     const Value *v = value_of(ev, o.at);
-    int fits = operand_fits(ev, x, o.at) && v->e && (v->n == ROTATION ? rotation_fits(ev, i, f) : factor_fits(ev, i, r));
+    int fits =
+        operand_fits(ev, x, o.at) && v->e && (v->n == ROTATION ? rotation_fits(ev, i, f) : factor_fits(ev, i, r));
     ok &= fits;
     if (!fits) continue;
     warn_unit_of_divisor(ev, &o, r);
@@ -318,7 +328,8 @@ int loop_begin(Eval *ev, AstId id) {
   return 1;
 }
 
-/* Shape and dimension of sum(...) or product(...) from its terms, and whether it is bare; 0, reported, when terms differ. */
+/* Shape and dimension of sum(...) or product(...) from its terms, and whether it is bare; 0, reported, when terms
+ * differ. */
 static int type_of_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr *x, Value *r) {
   Builder *b = ev->b;
   int product = x->kind == AST_PRODUCT;
@@ -331,7 +342,9 @@ static int type_of_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr 
   for (uint32_t i = 0; i < n; i++) {
     r->bare &= term[i].bare;
     if (term[i].n != r->n || (product && r->n)) {
-      diag_error(b->diags, span, product ? "the factors of a product are numbers" : "the terms of a sum have one shape; here are %s and %s",
+      diag_error(b->diags, span,
+                 product ? "the factors of a product are numbers"
+                         : "the terms of a sum have one shape; here are %s and %s",
                  shape_text(b, r->n), shape_text(b, term[i].n));
       return 0;
     }
@@ -339,7 +352,8 @@ static int type_of_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr 
       r->dim = dim_mul(b->dims, r->dim, term[i].dim);
     } else if (!is_zero(b, &term[i]) && term[i].dim != DIM_ANY) {
       if (!dim_equate(b->dims, r->dim, term[i].dim, span)) {
-        diag_error(b->diags, span, "units do not match: terms of this sum are %s and %s", in_dim(b, r->dim), in_dim(b, term[i].dim));
+        diag_error(b->diags, span, "units do not match: terms of this sum are %s and %s", in_dim(b, r->dim),
+                   in_dim(b, term[i].dim));
         explain_dims(b, r->dim, term[i].dim);
         return 0;
       }

@@ -35,7 +35,9 @@ static int has_no_rate(Builder *b, const Value *v) {
   const Expr *seed = time_seeds(b);
   ExprList l = expr_topo(b->g, v->at, component_count(v));
   for (uint32_t i = 0; i < l.n; i++)
-    if (expr_op(b->g, l.at[i]) == EX_SYM && expr_sym_of(b->g, l.at[i])->kind == SYM_LOCAL && !seed[expr_sym_id(b->g, l.at[i])]) return 1;
+    if (expr_op(b->g, l.at[i]) == EX_SYM && expr_sym_of(b->g, l.at[i])->kind == SYM_LOCAL &&
+        !seed[expr_sym_id(b->g, l.at[i])])
+      return 1;
   return 0;
 }
 
@@ -50,7 +52,9 @@ static unsigned kinds_in(Builder *b, const Value *v) {
 static int has_closed_form(Builder *b, const Value *v) {
   ExprList l = expr_topo(b->g, v->at, component_count(v));
   for (uint32_t i = 0; i < l.n; i++)
-    if (expr_op(b->g, l.at[i]) == EX_SYM && expr_sym_of(b->g, l.at[i])->kind == SYM_INPUT && expr_sym_of(b->g, l.at[i])->index >= b->m->inputs.n) return 1;
+    if (expr_op(b->g, l.at[i]) == EX_SYM && expr_sym_of(b->g, l.at[i])->kind == SYM_INPUT &&
+        expr_sym_of(b->g, l.at[i])->index >= b->m->inputs.n)
+      return 1;
   return 0;
 }
 
@@ -68,17 +72,23 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
   if (kinds & 1u << SYM_INPUT && has_closed_form(b, &of))
     return refuse(b, span, "inputs and closed forms have no time derivative" HELP
                   "a velocity has a closed form of its own: `exact x' = ...`, and then `error(x')`");
-  if (kinds & 1u << SYM_INPUT && !want_rates(b, &of)) return refuse(b, span, "not yet: a third time derivative of an input");
+  if (kinds & 1u << SYM_INPUT && !want_rates(b, &of))
+    return refuse(b, span, "not yet: a third time derivative of an input");
   if (kinds & second && !(kinds & 1u << SYM_ACC))
-    return refuse(b, span, b->m->hamiltonian ? "the model gives its Hamiltonian, and there is no second derivative" HELP
-                                               "write the derivative of the right side of Hamilton's equation"
-                         : b->m->first_order ? "L is linear in the velocities: they follow from the coordinates, and there is no second derivative" HELP
-                                               "write the derivative of the right side of its equation of motion"
-                                             : "a state has a rate, and no second one" HELP "write the derivative of the right side of its flow");
+    return refuse(
+        b, span,
+        b->m->hamiltonian ? "the model gives its Hamiltonian, and there is no second derivative" HELP
+                            "write the derivative of the right side of Hamilton's equation"
+        : b->m->first_order
+            ? "L is linear in the velocities: they follow from the coordinates, and there is no second derivative" HELP
+              "write the derivative of the right side of its equation of motion"
+            : "a state has a rate, and no second one" HELP "write the derivative of the right side of its flow");
   if (kinds & second) return refuse(b, span, "third derivatives do not occur in mechanics");
   if (kinds & 1u << SYM_LOCAL && has_no_rate(b, &of))
-    return refuse(b, span, "not yet: a time derivative of the energy, a charge or an action, or a third one of a function's argument" HELP
-                  "the energy changes by the power of forces: `force x = F` adds the power `F*x'`");
+    return refuse(
+        b, span,
+        "not yet: a time derivative of the energy, a charge or an action, or a third one of a function's argument" HELP
+        "the energy changes by the power of forces: `force x = F` adds the power `F*x'`");
   Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};
   const Expr *seed = time_seeds(b);
   expr_tangent(b->g, of.at, component_count(&of), seed, b->nseeds + 1, "'", &b->rates, r.at);

@@ -1,8 +1,10 @@
-/* Rotations: a coordinate is a unit quaternion q = (w, x, y, z), which turns vectors of the body frame into space. Coordinates, `turn(axis, angle)`,
- * products and `transpose` have length 1 on the constraint q.q = 1; the formulas assume it: polynomials without poles, never divided by the length.
+/* Rotations: a coordinate is a unit quaternion q = (w, x, y, z), which turns vectors of the body frame into space.
+ * Coordinates, `turn(axis, angle)`, products and `transpose` have length 1 on the constraint q.q = 1; the formulas
+ * assume it: polynomials without poles, never divided by the length.
  *
- * Sources: W.R. Hamilton (1843); the rotation of a vector, v + 2 u x (u x v + w v) with q = (w, u), O. Rodrigues, J. Math. Pures Appl. 5 (1840) 380;
- * the rates of q and the angular velocity in the body's frame, A. Cayley, Camb. Math. J. 3 (1843) 224: q' = q (0, omega)/2. */
+ * Sources: W.R. Hamilton (1843); the rotation of a vector, v + 2 u x (u x v + w v) with q = (w, u), O. Rodrigues, J.
+ * Math. Pures Appl. 5 (1840) 380; the rates of q and the angular velocity in the body's frame, A. Cayley, Camb.
+ * Math. J. 3 (1843) 224: q' = q (0, omega)/2. */
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
@@ -99,8 +101,11 @@ static const Value *rotation_argument(Eval *ev, const AstExpr *x) {
   const Value *v = value_of(ev, x->args);
   if (!v->e) return NULL;
   if (v->n == ROTATION) return v;
-  diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` is %s, but `%s` takes a rotation", ast_short(b, x->args), shape_text(b, v->n), x->name);
-  if (strcmp(x->name, "omega") == 0 && !v->n) diag_help(b->diags, "the rate of an angle is written with a prime: `th'`; a rotation is declared `coord R: rotation`");
+  diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` is %s, but `%s` takes a rotation", ast_short(b, x->args),
+             shape_text(b, v->n), x->name);
+  if (strcmp(x->name, "omega") == 0 && !v->n)
+    diag_help(b->diags,
+              "the rate of an angle is written with a prime: `th'`; a rotation is declared `coord R: rotation`");
   else diag_help(b->diags, "a rotation is declared `coord R: rotation`, or made by `turn(axis, angle)`");
   return NULL;
 }
@@ -132,12 +137,16 @@ Value turn_value(Eval *ev, const AstExpr *x) {
   if (!n->e || !a->e) return FAILED;
   if (n->n != 3 || a->n) {
     AstId wrong = n->n != 3 ? x->args : angle;
-    return refuse(b, ast_expr(b->ast, wrong)->span, "`%s` is %s, and `turn` takes an axis and an angle" HELP
-                  "`turn((0, 0, 1), 90 [deg])` turns about the third axis", ast_short(b, wrong), shape_text(b, n->n != 3 ? n->n : a->n));
+    return refuse(b, ast_expr(b->ast, wrong)->span,
+                  "`%s` is %s, and `turn` takes an axis and an angle" HELP
+                  "`turn((0, 0, 1), 90 [deg])` turns about the third axis",
+                  ast_short(b, wrong), shape_text(b, n->n != 3 ? n->n : a->n));
   }
   if (is_zero(b, n))
-    return refuse(b, ast_expr(b->ast, x->args)->span, "`%s` has no direction to turn about" HELP
-                  "the identity is `turn((0, 0, 1), 0)`, the start of a rotation without a `start`", ast_short(b, x->args));
+    return refuse(b, ast_expr(b->ast, x->args)->span,
+                  "`%s` has no direction to turn about" HELP
+                  "the identity is `turn((0, 0, 1), 0)`, the start of a rotation without a `start`",
+                  ast_short(b, x->args));
   if (!need_pure(ev, angle, "`turn`")) return FAILED;
   Expr half = expr_scale(g, num_ratio(1, 2), a->e), s = expr_fn(g, EX_SIN, half), square[3];
   for (int k = 0; k < 3; k++) square[k] = expr_pow_num(g, n->at[k], num_int(2));
@@ -182,8 +191,8 @@ void constrain_rotation(Builder *b, Name name, uint32_t coord, Span span) {
   b->m->constraints.at[b->m->constraints.n - 1].inside = 1;
 }
 
-/* Trace of the 4x4 mass matrix of the quaternion's rates at the identity, all other coordinates and rates 0: four times the trace of the inertia
- * tensor. 0 unless it is a constant known to be positive. */
+/* Trace of the 4x4 mass matrix of the quaternion's rates at the identity, all other coordinates and rates 0: four
+ * times the trace of the inertia tensor. 0 unless it is a constant known to be positive. */
 static Expr traced_inertia(Builder *b, uint32_t coord) {
   const Model *m = b->m;
   ExprGraph *g = b->g;

@@ -1,5 +1,5 @@
-/* Scenes: selection of the active statements, inheritance by `like`, and the settings of a run: values, start, span, tolerance,
- * outputs, monitors. Later statements override earlier ones, except monitors, which accumulate. */
+/* Scenes: selection of the active statements, inheritance by `like`, and the settings of a run: values, start, span,
+ * tolerance, outputs, monitors. Later statements override earlier ones, except monitors, which accumulate. */
 #include <math.h>
 
 #include "model/builder.h"
@@ -21,7 +21,8 @@ static const AstStmt **scene_chain(Builder *b, const AstStmt *scene) {
   for (const AstStmt *s = scene; s;) {
     for (uint32_t i = 0; i < chain.n; i++)
       if (chain.at[i] == s) {
-        diag_error(b->diags, s->name_span, "the scene `%s` inherits from itself" HELP "`like` must not lead back to the scene", s->name);
+        diag_error(b->diags, s->name_span,
+                   "the scene `%s` inherits from itself" HELP "`like` must not lead back to the scene", s->name);
         s = NULL;
         break;
       }
@@ -97,7 +98,8 @@ void scene_select(Builder *b, const ModelChoice *choice) {
   if (choice->also) use_with_required(b, choice->also);
   b->is_variant = choice->only != NULL;
   if (b->is_variant) b->m->effects.n = 0;
-  for (uint32_t i = 0; b->is_variant && i < choice->only->n; i++) vec_push(b->arena, &b->m->effects, choice->only->at[i]);
+  for (uint32_t i = 0; b->is_variant && i < choice->only->n; i++)
+    vec_push(b->arena, &b->m->effects, choice->only->at[i]);
   VEC(Name) in_order = {0};
   for (uint32_t i = 0; i < file->common.n; i++) {
     const AstStmt *s = file->common.at[i];
@@ -137,7 +139,8 @@ static const Entity *find_settable(Builder *b, AstId id, Name effect) {
   if (e && (e->kind == ENT_PARAM || e->kind == ENT_INPUT)) return e;
   if (e && e->kind != ENT_NONE) {
     diag_error(b->diags, x->span, "`%s` is %s, not a parameter", e->name, ent_kind_text(e->kind));
-    if (e->kind == ENT_COORD || e->kind == ENT_STATE) diag_help(b->diags, "its start is set by `start %s = ...`", e->name);
+    if (e->kind == ENT_COORD || e->kind == ENT_STATE)
+      diag_help(b->diags, "its start is set by `start %s = ...`", e->name);
     if (e->kind == ENT_CONST) diag_help(b->diags, "constants are fixed when compiling: `-D %s=...`", e->name);
     if (e->kind == ENT_LET) diag_help(b->diags, "declare it by `param` where scenes give it values");
   }
@@ -151,7 +154,8 @@ static int advise_statement(Builder *b, const AstStmt *st) {
   if (l->kind != AST_NAME || declared_in_use(b, l->name, NULL)) return 0;
   for (size_t i = 0; i < sizeof words / sizeof *words; i++)
     if (strcmp(l->name, words[i]) == 0) {
-      diag_error(b->diags, st->span, "`%s` takes no `=`" HELP "write `%s %s`", words[i], words[i], ast_short(b, st->rhs));
+      diag_error(b->diags, st->span, "`%s` takes no `=`" HELP "write `%s %s`", words[i], words[i],
+                 ast_short(b, st->rhs));
       return 1;
     }
   return 0;
@@ -161,7 +165,9 @@ typedef struct {
   uint32_t index;
 } ParamLimit;
 
-static int param_from(const Symbol *s, const void *data) { return s->kind == SYM_PARAM && s->index >= ((const ParamLimit *)data)->index; }
+static int param_from(const Symbol *s, const void *data) {
+  return s->kind == SYM_PARAM && s->index >= ((const ParamLimit *)data)->index;
+}
 
 static const Unit *param_unit(Builder *b, uint32_t i, void *data) {
   (void)data;
@@ -188,7 +194,9 @@ static void set_value(Builder *b, const AstStmt *st, Name effect) {
   const Entity *e = find_settable(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
   if (!e) return;
   if (e->kind == ENT_PARAM) assign_values(b, &p, e, st->lhs, st->rhs, &assigner);
-  else if (p.indices || p.part >= 0) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "`%s` is an input: it has no index and no component", e->name);
+  else if (p.indices || p.part >= 0)
+    diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "`%s` is an input: it has no index and no component",
+               e->name);
   else give_input(b, e->index, e->name, st->rhs, effect);
 }
 
@@ -228,7 +236,9 @@ static void set_tolerance(Builder *b, const AstStmt *st) {
   diag_help(b->diags, "it is the relative error of a step: `tolerance 1e-9`");
 }
 
-static int is_monitor_none(const AstStmt *st) { return st->kind == STMT_MONITOR && !st->lhs && strcmp(st->name, "none") == 0; }
+static int is_monitor_none(const AstStmt *st) {
+  return st->kind == STMT_MONITOR && !st->lhs && strcmp(st->name, "none") == 0;
+}
 
 static void exact_statement(Builder *b, const AstStmt *st) {
   if (st->kind == STMT_EXACT) set_motion(b, st);
@@ -259,7 +269,10 @@ static void default_outputs(Builder *b) {
     for (uint32_t i = 0; i < m->coords.n; i++) {
       const Coord *c = &m->coords.at[i];
       const Symbol *s = expr_symbol(b->g, velocities ? c->v : c->q);
-      Output o = {.name = s->name, .span = c->span, .unit = velocities ? unit_per_second(b, &c->unit) : c->unit, .value = s->node};
+      Output o = {.name = s->name,
+                  .span = c->span,
+                  .unit = velocities ? unit_per_second(b, &c->unit) : c->unit,
+                  .value = s->node};
       push_output(b, &o);
     }
   for (uint32_t i = 0; i < m->states.n; i++) {
@@ -273,7 +286,9 @@ static void default_outputs(Builder *b) {
   push_output(b, &o);
 }
 
-static int gives_value(const AstStmt *st) { return st->kind == STMT_SET || st->kind == STMT_START || st->kind == STMT_EXACT; }
+static int gives_value(const AstStmt *st) {
+  return st->kind == STMT_SET || st->kind == STMT_START || st->kind == STMT_EXACT;
+}
 
 /* The effect, in use or not, that declares the target of an assignment; NULL: the model itself. */
 static Name effect_given(Builder *b, const AstStmt *st) {
@@ -291,8 +306,10 @@ static Name effect_given(Builder *b, const AstStmt *st) {
   return effect ? effect->name : NULL;
 }
 
-/* Applies statement st of scene *s of the chain. An error in an inherited statement also names the scene that inherits it. */
-static void apply_in_chain(Builder *b, const AstStmt *const *s, const AstStmt *st, void (*apply)(Builder *b, const AstStmt *st)) {
+/* Applies statement st of scene *s of the chain. An error in an inherited statement also names the scene that
+ * inherits it. */
+static void apply_in_chain(Builder *b, const AstStmt *const *s, const AstStmt *st,
+                           void (*apply)(Builder *b, const AstStmt *st)) {
   uint32_t errors = b->diags->errors;
   apply(b, st);
   if (!s[1] || b->diags->errors == errors || b->diags->list.at[b->diags->latest].note) return;
@@ -310,8 +327,9 @@ static int has_own_outputs(const AstStmt *const *s) {
 
 static int is_shown(const AstStmt *st) { return st->kind == STMT_OUTPUT || st->kind == STMT_EXACT; }
 
-/* 1 if a statement has no effect on the run: it precedes a `use none`, or it is inherited and sets a value of an effect that is
- * off. A variant (ModelChoice.only) also drops outputs, closed forms and values with names of effects that are off. */
+/* 1 if a statement has no effect on the run: it precedes a `use none`, or it is inherited and sets a value of an
+ * effect that is off. A variant (ModelChoice.only) also drops outputs, closed forms and values with names of effects
+ * that are off. */
 static int is_dropped(Builder *b, const AstStmt *st, int before_none, int inherited) {
   if (st->kind == STMT_USE) return before_none;
   if (b->is_variant && is_shown(st)) return 1;
@@ -391,7 +409,8 @@ void scene_build(Builder *b, const ModelChoice *choice) {
     const CommandOutput *o = &choice->asked[i];
     uint32_t errors = b->diags->errors;
     int rate = i && ast_expr(b->ast, o->expr)->kind == AST_PRIME && strstr(o->name, o[-1].name);
-    if (!rate || errors == before) add_outputs_as(b, o->expr, o->name); /* --phase x: what is wrong in x is wrong in x', and said once */
+    /* --phase x: what is wrong in x is wrong in x', and said once */
+    if (!rate || errors == before) add_outputs_as(b, o->expr, o->name);
     before = errors;
   }
   for (uint32_t i = 0; i < choice->nmeasures; i++) ask_measure(b, &choice->measures[i]);

@@ -6,8 +6,9 @@
 #include "base/intern.h"
 #include "base/source.h"
 
-/* Families: the entity of `th[N]` has index ranges; its members are adjacent in the model's array, row by row, the components of a vector together.
- * Members of lets and observables are entities of their own, in a second scope (Builder.members), as they are declared one by one. */
+/* Families: the entity of `th[N]` has index ranges; its members are adjacent in the model's array, row by row, the
+ * components of a vector together. Members of lets and observables are entities of their own, in a second scope
+ * (Builder.members), as they are declared one by one. */
 
 typedef enum {
   ENT_NONE, /* declaration refused: uses are not reported again */
@@ -35,8 +36,8 @@ typedef struct {
 /* The entity that `effect` (NULL: the model itself) declares as `name`, or NULL. */
 const Entity *scope_own(const Scope *s, Name name, Name effect);
 
-/* The entity that `name` means inside `effect` (NULL: outside of effects), or NULL. *ambiguous: neither the effect nor the
- * model declares it, and several effects in use do. */
+/* The entity that `name` means inside `effect` (NULL: outside of effects), or NULL. *ambiguous: neither the effect
+ * nor the model declares it, and several effects in use do. */
 const Entity *scope_find(const Scope *s, Name name, Name effect, int *ambiguous);
 
 void scope_add(Scope *s, Entity e);

@@ -1,5 +1,6 @@
-/* Start values, `start q = ...`, and closed forms, `exact q = ...`. A rotation starts with its four quaternion components;
- * `start omega(R) = ...` is converted to their rates after all statements of the scene, as it depends on the start of R. */
+/* Start values, `start q = ...`, and closed forms, `exact q = ...`. A rotation starts with its four quaternion
+ * components; `start omega(R) = ...` is converted to their rates after all statements of the scene, as it depends on
+ * the start of R. */
 #include "model/resolve_impl.h"
 
 typedef struct {
@@ -48,11 +49,13 @@ static void warn_of_degrees(Builder *b, const Coord *q, AstId value) {
   if (x->kind == AST_NEG) x = ast_expr(b->ast, x->a);
   double v = x->kind == AST_NUM ? num_value(x->number) : 0;
   if (strcmp(q->unit.text, "rad") != 0 || !(v > 6) || v > 360 || v != (double)(int)v) return;
-  diag_warning(b->diags, x->span, "`%s` is measured in rad, and %g rad are %.2g turns", q->name, v, v / 6.283185307179586);
+  diag_warning(b->diags, x->span, "`%s` is measured in rad, and %g rad are %.2g turns", q->name, v,
+               v / 6.283185307179586);
   diag_help(b->diags, "write %g [deg] where degrees are meant, and %g [rad] where not", v, v);
 }
 
-/* Reads `start q = ...` or `exact q = ...` for a coordinate, velocity or state. `start exactly`: constraints may not move it. */
+/* Reads `start q = ...` or `exact q = ...` for a coordinate, velocity or state. `start exactly`: constraints may not
+ * move it. */
 void set_motion(Builder *b, const AstStmt *st) {
   if (ast_expr(b->ast, st->lhs)->kind == AST_CALL) {
     give_spin(b, st);
@@ -64,26 +67,32 @@ void set_motion(Builder *b, const AstStmt *st) {
   Name owner = name->kind == AST_MEMBER && !p.wrong ? ast_expr(b->ast, name->a)->name : NULL; /* e1.y */
   if (p.wrong || p.primes > 1 || (name->kind != AST_NAME && !owner) || (owner && declared_in_use(b, owner, NULL))) {
     if (name->kind == AST_ERROR) return;
-    if (exact) diag_error(b->diags, x->span, "a closed form is that of a coordinate, a velocity or a state: `exact x = x(0)*cos(w*t)`");
+    if (exact)
+      diag_error(b->diags, x->span,
+                 "a closed form is that of a coordinate, a velocity or a state: `exact x = x(0)*cos(w*t)`");
     else diag_error(b->diags, x->span, "a start gives a coordinate or a velocity: `start th = 90 [deg]`");
     return;
   }
-  const Entity *e = owner ? scope_own(&b->scope, name->name, owner) : resolve_name(b, name->name, name->span, NULL, "coord");
+  const Entity *e =
+      owner ? scope_own(&b->scope, name->name, owner) : resolve_name(b, name->name, name->span, NULL, "coord");
   if (!e && owner) report_no_member(b, name->span, owner, name->name);
   if (!e) return;
   if (e->kind == ENT_NONE) return;
   if (e->kind != ENT_COORD && e->kind != ENT_STATE) {
-    diag_error(b->diags, name->span, "`%s` is %s; only coordinates, velocities and states %s", name->name, ent_kind_text(e->kind),
-               exact ? "have a closed form" : "start somewhere");
+    diag_error(b->diags, name->span, "`%s` is %s; only coordinates, velocities and states %s", name->name,
+               ent_kind_text(e->kind), exact ? "have a closed form" : "start somewhere");
     if (e->kind == ENT_PARAM && !exact) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
     return;
   }
   if (p.primes && e->kind == ENT_STATE) {
     int is_coord = b->m->states.at[e->index].coordinate;
-    if (is_coord) diag_error(b->diags, x->span, "`%s'` follows from the coordinates%s: %s, and the motion of first order", name->name,
-                             b->m->hamiltonian ? " and momenta" : "", no_inertia(b->m));
+    if (is_coord)
+      diag_error(b->diags, x->span, "`%s'` follows from the coordinates%s: %s, and the motion of first order",
+                 name->name, b->m->hamiltonian ? " and momenta" : "", no_inertia(b->m));
     else diag_error(b->diags, x->span, "the rate of a state follows from its flow");
-    diag_help(b->diags, exact ? "give the closed form of the %s itself: `exact %s = ...`" : "give the start of the %s itself: `start %s = ...`",
+    diag_help(b->diags,
+              exact ? "give the closed form of the %s itself: `exact %s = ...`"
+                    : "give the start of the %s itself: `start %s = ...`",
               is_coord ? "coordinate" : "state", name->name);
     return;
   }
@@ -92,7 +101,8 @@ void set_motion(Builder *b, const AstStmt *st) {
     diag_help(b->diags, "`start omega(%s) = (a, b, c)` gives it, in the rotation's own frame", name->name);
     return;
   }
-  if (e->kind == ENT_COORD && !p.primes && !exact && e->parts != ROTATION) warn_of_degrees(b, &b->m->coords.at[e->index], st->rhs);
+  if (e->kind == ENT_COORD && !p.primes && !exact && e->parts != ROTATION)
+    warn_of_degrees(b, &b->m->coords.at[e->index], st->rhs);
   if (st->exactly && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;
   StartOf of = {.kind = e->kind, .velocity = p.primes > 0};
   Assigner assigner = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of, NULL};
@@ -125,8 +135,10 @@ int spin_target(Builder *b, AstId place, Name effect) {
   IndexRange r = {0};
   if (p.indices && !resolve_indices(b, p.indices, effect, &r)) return -2;
   for (uint32_t k = 0; k < r.n; k++) at[k] = r.lo[k];
-  if (r.n == e->ndims && index_in_range(b, e, at, ast_expr(b->ast, place)->span)) return (int)(e->index + member_offset(e, at));
-  if (r.n != e->ndims) diag_error(b->diags, ast_expr(b->ast, place)->span, "`%s` does not name one rotation", ast_short(b, place));
+  if (r.n == e->ndims && index_in_range(b, e, at, ast_expr(b->ast, place)->span))
+    return (int)(e->index + member_offset(e, at));
+  if (r.n != e->ndims)
+    diag_error(b->diags, ast_expr(b->ast, place)->span, "`%s` does not name one rotation", ast_short(b, place));
   return -2;
 }
 
@@ -162,7 +174,8 @@ static void give_spin(Builder *b, const AstStmt *st) {
   const Entity *e = spin_entity(b, st->lhs, NULL, &p);
   if (!e) return;
   if (st->kind == STMT_EXACT) {
-    diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "a closed form is that of a rotation itself: `exact R = turn(axis, w*t)`");
+    diag_error(b->diags, ast_expr(b->ast, st->lhs)->span,
+               "a closed form is that of a rotation itself: `exact R = turn(axis, w*t)`");
     return;
   }
   SpinOf of = {e->index, spin_unit(b)};
@@ -196,7 +209,8 @@ static void complete_spin_start(Builder *b, const SpinStart *s) {
   for (uint32_t k = 0; k < ROTATION; k++) {
     const Coord *c = &b->m->coords.at[s->coord + k];
     if (starts(b, c->v)) {
-      diag_error(b->diags, s->span, "the angular velocity is given twice: by `omega`, and by `%s'`" HELP "leave out one of them", c->name);
+      diag_error(b->diags, s->span,
+                 "the angular velocity is given twice: by `omega`, and by `%s'`" HELP "leave out one of them", c->name);
       return;
     }
     give_start(b, s->coord + k, rates.at[k], s->span, &of);

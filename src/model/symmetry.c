@@ -1,6 +1,6 @@
-/* Symmetries: `symmetry spin(s): x -> x*cos(s) - y*sin(s), y -> x*sin(s) + y*cos(s)`, a transformation of coordinates and time that is
- * the identity at s = 0. The model keeps its generator only, the first-order part in s, which is all that Noether's theorem needs.
- * In outputs, the symmetry's name means its charge. */
+/* Symmetries: `symmetry spin(s): x -> x*cos(s) - y*sin(s), y -> x*sin(s) + y*cos(s)`, a transformation of
+ * coordinates and time that is the identity at s = 0. The model keeps its generator only, the first-order part in s,
+ * which is all that Noether's theorem needs. In outputs, the symmetry's name means its charge. */
 #include <math.h>
 
 #include "model/resolve_impl.h"
@@ -11,7 +11,9 @@
 #include "sym/simplify.h"
 
 /* Name with its effect: "wind.gust". */
-static Name full_name(Builder *b, Name name, Name effect) { return effect ? intern_printf(b, "%s.%s", effect, name) : name; }
+static Name full_name(Builder *b, Name name, Name effect) {
+  return effect ? intern_printf(b, "%s.%s", effect, name) : name;
+}
 
 /* Name of the group parameter; NULL, reported, if there are two, or the model declares the name. */
 static Name parameter_name(Builder *b, const AstStmt *st, Name effect) {
@@ -19,11 +21,13 @@ static Name parameter_name(Builder *b, const AstStmt *st, Name effect) {
   int ambiguous;
   const Entity *other = scope_find(&b->scope, s->name, effect, &ambiguous);
   if (s->next) {
-    diag_error(b->diags, ast_expr(b->ast, s->next)->span, "a symmetry has one parameter" HELP "write two symmetries: each has a charge of its own");
+    diag_error(b->diags, ast_expr(b->ast, s->next)->span,
+               "a symmetry has one parameter" HELP "write two symmetries: each has a charge of its own");
     return NULL;
   }
   if (!other) return s->name;
-  diag_error(b->diags, s->span, "`%s` is %s of the model, and here the parameter of a symmetry", s->name, ent_kind_text(other->kind));
+  diag_error(b->diags, s->span, "`%s` is %s of the model, and here the parameter of a symmetry", s->name,
+             ent_kind_text(other->kind));
   diag_also(b->diags, other->span, "declared here");
   return NULL;
 }
@@ -33,7 +37,11 @@ static int is_taken(Builder *b, const AstStmt *st) {
   int energy = strcmp(st->name, "energy") == 0;
   if (!energy && strcmp(st->name, "exact") != 0) return 0;
   diag_error(b->diags, st->name_span, "a symmetry cannot be called `%s`", st->name);
-  if (energy) diag_help(b->diags, "`energy` is the charge of t -> t - s, which every model has, in outputs, monitors and reports; call it `%s_2`", st->name);
+  if (energy)
+    diag_help(
+        b->diags,
+        "`energy` is the charge of t -> t - s, which every model has, in outputs, monitors and reports; call it `%s_2`",
+        st->name);
   else diag_help(b->diags, "`monitor exact` watches the scene's closed forms; call it `%s_2`", st->name);
   return 1;
 }
@@ -41,11 +49,13 @@ static int is_taken(Builder *b, const AstStmt *st) {
 void declare_symmetry(Builder *b, const AstStmt *st, Name effect) {
   Model *m = b->m;
   if (is_taken(b, st)) return;
-  Entity e = {.kind = ENT_SYMMETRY, .index = m->symmetries.n, .name = st->name, .effect = effect, .span = st->name_span};
+  Entity e = {
+      .kind = ENT_SYMMETRY, .index = m->symmetries.n, .name = st->name, .effect = effect, .span = st->name_span};
   if (!declare_entity(b, st, e)) return;
   Symmetry y = {.name = full_name(b, st->name, effect), .effect = effect, .doc = st->doc, .span = st->span, .stmt = st};
   Name s = ast_expr(b->ast, st->args)->name;
-  Dim dim = b->unitless ? DIM_ANY : dim_unknown(b->dims, s), action = dim_mul(b->dims, b->energy, dim_base(b->dims, DIM_TIME));
+  Dim dim = b->unitless ? DIM_ANY : dim_unknown(b->dims, s),
+      action = dim_mul(b->dims, b->energy, dim_base(b->dims, DIM_TIME));
   y.parameter = declare_symbol(b, SYM_LOCAL, 0, s, SIGN_UNKNOWN, dim);
   y.unit = unit_si(b->unitless ? DIM_ANY : dim_div(b->dims, action, dim), "");
   y.charge = declare_symbol(b, SYM_LOCAL, 0, y.name, SIGN_UNKNOWN, y.unit.dim);
@@ -62,12 +72,15 @@ typedef struct {
   EntKind kind;
 } Mapping;
 
-/* 1 if the transformed coordinate depends on coordinates, t and parameters only (a point transformation); 0, reported. */
+/* 1 if the transformed coordinate depends on coordinates, t and parameters only (a point transformation); 0,
+ * reported. */
 static int is_of_points(const Mapping *p, Expr to, Span span) {
   Builder *b = p->b;
   const Model *m = b->m;
   unsigned kinds = expr_kinds(b->g, to);
-  const char *what = kinds & (1u << SYM_VEL | 1u << SYM_RATE) ? "velocities" : kinds & 1u << SYM_INPUT ? "inputs" : NULL;
+  const char *what = kinds & (1u << SYM_VEL | 1u << SYM_RATE) ? "velocities"
+                     : kinds & 1u << SYM_INPUT                ? "inputs"
+                                                              : NULL;
   ExprList l = expr_topo(b->g, &to, 1);
   for (uint32_t i = 0; i < l.n && !what && kinds & 1u << SYM_STATE; i++) {
     const Symbol *s = expr_op(b->g, l.at[i]) == EX_SYM ? expr_sym_of(b->g, l.at[i]) : NULL;
@@ -92,22 +105,26 @@ static Name rotation_of(const Builder *b, SymId target) {
 /* 1 if the map is proved to be the identity at s = 0; 0, reported. */
 static int begins_at_identity(const Mapping *p, SymId target, Expr to, Span span) {
   Builder *b = p->b;
-  Expr zero = expr_int(b->g, 0), start = expr_replace(b->g, to, &p->of->parameter, &zero, 1), own = expr_symbol(b->g, target)->node;
+  Expr zero = expr_int(b->g, 0), start = expr_replace(b->g, to, &p->of->parameter, &zero, 1),
+       own = expr_symbol(b->g, target)->node;
   Expr left = expr_sub(b->g, start, own);
   Name s = expr_symbol(b->g, p->of->parameter)->name, name = expr_symbol(b->g, target)->name;
   Verdict v = prove_zero(b->g, left, NULL);
   if (v == PROVED_ZERO) return 1;
   Name turned = rotation_of(b, target);
   if (turned)
-    return diag_error(b->diags, span, "at %s = 0 the symmetry `%s` turns `%s`" HELP
-                      "write by how much %s turns it: about an axis of space by `%s -> turn((0, 0, 1), %s)*%s`, about its own by `%s -> %s*turn((0, 0, 1), %s)`",
+    return diag_error(b->diags, span,
+                      "at %s = 0 the symmetry `%s` turns `%s`" HELP
+                      "write by how much %s turns it: about an axis of space by `%s -> turn((0, 0, 1), %s)*%s`, about "
+                      "its own by `%s -> %s*turn((0, 0, 1), %s)`",
                       s, p->of->name, turned, s, turned, s, turned, turned, turned, s);
   const char *text = expr_text(b->g, simplify(b->g, start));
   if (v == PROVED_NONZERO) diag_error(b->diags, span, "at %s = 0 the symmetry `%s` maps `%s` to `%s`, not to itself", s,
                                       p->of->name, name, text);
   else diag_error(b->diags, span, "no proof that the symmetry `%s` maps `%s` to itself at %s = 0: the result is `%s`",
                   p->of->name, name, s, text);
-  diag_help(b->diags, "write the transformed value, a function of %s that equals `%s` at 0: `%s -> %s + %s`", s, name, name, name, s);
+  diag_help(b->diags, "write the transformed value, a function of %s that equals `%s` at 0: `%s -> %s + %s`", s, name,
+            name, name, s);
   return 0;
 }
 
@@ -124,9 +141,13 @@ static int has_corner(const Mapping *p, Expr to) {
 }
 
 static void report_no_rate(const Builder *b, const Symmetry *y, Move *move) {
-  Name s = expr_symbol(b->g, y->parameter)->name, turned = rotation_of(b, move->target), name = turned ? turned : expr_symbol(b->g, move->target)->name;
-  diag_error(b->diags, move->value, "the symmetry `%s` maps `%s` to an expression that is not differentiable by %s at %s = 0", y->name, name, s, s);
-  const char *as = turned ? arena_printf(b->arena, "`%s -> turn((0, 0, 1), %s)*%s`", name, s, name) : arena_printf(b->arena, "`%s -> %s + %s`", name, name, s);
+  Name s = expr_symbol(b->g, y->parameter)->name, turned = rotation_of(b, move->target),
+       name = turned ? turned : expr_symbol(b->g, move->target)->name;
+  diag_error(b->diags, move->value,
+             "the symmetry `%s` maps `%s` to an expression that is not differentiable by %s at %s = 0", y->name, name,
+             s, s);
+  const char *as = turned ? arena_printf(b->arena, "`%s -> turn((0, 0, 1), %s)*%s`", name, s, name)
+                          : arena_printf(b->arena, "`%s -> %s + %s`", name, name, s);
   diag_help(b->diags, "a charge belongs to a transformation that is smooth in its parameter, as %s is", as);
   move->rate = 0;
 }
@@ -137,7 +158,8 @@ static void check_rates(Builder *b, const Symmetry *y) {
   uint32_t n = y->moves.n, open = n;
   Expr *rates = ARENA_ARRAY(b->arena, Expr, n + 1);
   uint8_t *known = ARENA_ARRAY(b->arena, uint8_t, n + 1);
-  long double *symbols = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1), *value = ARENA_ARRAY(b->arena, long double, n + 1);
+  long double *symbols = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1),
+              *value = ARENA_ARRAY(b->arena, long double, n + 1);
   for (uint32_t i = 0; i < n; i++) rates[i] = y->moves.at[i].rate;
   EvalTape *tape = eval_tape(b->g, rates, n);
   for (uint32_t seed = 1; seed <= TRIES && open; seed++) {
@@ -157,7 +179,8 @@ static void add_move(const Mapping *p, SymId target, Expr to, Span span) {
     if (y->moves.at[i].target != target) continue;
     diag_error(b->diags, p->target, "the symmetry `%s` maps `%s` twice", y->name, name);
     diag_also(b->diags, y->moves.at[i].span, "first here; all maps are one transformation, of the old coordinates");
-    if (b->index.n) diag_help(b->diags, "maps after a `for` belong to it, up to the next `for`: write other maps before it");
+    if (b->index.n)
+      diag_help(b->diags, "maps after a `for` belong to it, up to the next `for`: write other maps before it");
     return;
   }
   Move move = {.target = target, .span = p->map->span, .value = span};
@@ -205,7 +228,8 @@ static void add_map(Builder *b, const AstStmt *st, Name effect, void *data) {
   Target target = read_target(b, st->lhs);
   const AstExpr *whole = ast_expr(b->ast, st->lhs), *name = ast_expr(b->ast, target.stem);
   if (name->kind == AST_ERROR) return;
-  if (!target.wrong && name->kind == AST_NAME && strcmp(name->name, "t") == 0 && !target.primes && !target.indices && target.part < 0) {
+  if (!target.wrong && name->kind == AST_NAME && strcmp(name->name, "t") == 0 && !target.primes && !target.indices &&
+      target.part < 0) {
     map_time(&p, st->rhs, effect);
     return;
   }
@@ -214,7 +238,8 @@ static void add_map(Builder *b, const AstStmt *st, Name effect, void *data) {
     diag_error(b->diags, whole->span, "a symmetry maps coordinates and t: `symmetry shift(s): x -> x + s`");
     return;
   }
-  const Entity *e = owner ? scope_own(&b->scope, name->name, owner) : resolve_name(b, name->name, name->span, effect, "coord");
+  const Entity *e =
+      owner ? scope_own(&b->scope, name->name, owner) : resolve_name(b, name->name, name->span, effect, "coord");
   if (!e && owner) report_no_member(b, name->span, owner, name->name);
   if (!e || e->kind == ENT_NONE) return;
   p.kind = e->kind;
@@ -234,7 +259,8 @@ static void check_moves(Builder *b, const Symmetry *y) {
     some |= y->moves.at[i].rate && !expr_is_zero(b->g, y->moves.at[i].rate);
   }
   if (some || !good || !y->moves.n) return;
-  diag_error(b->diags, y->span, "the symmetry `%s` moves nothing, to first order in its parameter" HELP "its charge would be 0", y->name);
+  diag_error(b->diags, y->span,
+             "the symmetry `%s` moves nothing, to first order in its parameter" HELP "its charge would be 0", y->name);
 }
 
 void add_symmetry(Builder *b, const AstStmt *st, Name effect) {

@@ -1,9 +1,10 @@
 /* Table of units, and conversion of written units. Contract: units.h.
  *
- * Values: SI Brochure, 9th edition (BIPM 2019), tables 4 and 8; au: IAU 2012 Resolution B2; eV and u: CODATA 2018; yr: the Julian year
- * of 365.25 days (IAU); bar, L, min, h, d: table 8 of the brochure; ft and lb: exact by the international yard and pound agreement of
- * 1959; ly: 299792458 m/s times yr; pc: 648000/pi au, IAU 2015 Resolution B2; Msun: the nominal 1.3271244e20 m^3/s^2 of IAU 2015
- * Resolution B3 over G = 6.67430e-11 m^3/(kg s^2) of CODATA 2018, which is known to 2.2e-5. */
+ * Values: SI Brochure, 9th edition (BIPM 2019), tables 4 and 8; au: IAU 2012 Resolution B2; eV and u: CODATA 2018;
+ * yr: the Julian year of 365.25 days (IAU); bar, L, min, h, d: table 8 of the brochure; ft and lb: exact by the
+ * international yard and pound agreement of 1959; ly: 299792458 m/s times yr; pc: 648000/pi au, IAU 2015 Resolution
+ * B2; Msun: the nominal 1.3271244e20 m^3/s^2 of IAU 2015 Resolution B3 over G = 6.67430e-11 m^3/(kg s^2) of CODATA
+ * 2018, which is known to 2.2e-5. */
 #include "model/units.h"
 
 #include <math.h>
@@ -120,16 +121,21 @@ static Num power_of_ten(int n) {
 
 /* Common other spellings of units, for messages. */
 static const char *const spellings[][2] = {
-  {"meter", "m"}, {"metre", "m"}, {"meters", "m"}, {"metres", "m"}, {"gram", "g"}, {"grams", "g"}, {"kilogram", "kg"},
-  {"kilograms", "kg"}, {"kgs", "kg"}, {"Kg", "kg"}, {"KG", "kg"}, {"kilo", "kg"}, {"sec", "s"}, {"secs", "s"},
-  {"second", "s"}, {"seconds", "s"}, {"Sec", "s"}, {"minute", "min"}, {"minutes", "min"}, {"hour", "h"}, {"hours", "h"},
-  {"hr", "h"}, {"days", "d"}, {"year", "yr"}, {"years", "yr"}, {"a", "yr"}, {"degree", "deg"}, {"degrees", "deg"},
-  {"radian", "rad"}, {"radians", "rad"}, {"turn", "rev"}, {"rpm", "rev/min"}, {"Newton", "N"}, {"newton", "N"},
-  {"Joule", "J"}, {"joule", "J"}, {"Watt", "W"}, {"watt", "W"}, {"Volt", "V"}, {"volt", "V"}, {"Ampere", "A"},
-  {"ampere", "A"}, {"amp", "A"}, {"Kelvin", "K"}, {"kelvin", "K"}, {"Ohm", "ohm"}, {"Hertz", "Hz"}, {"hertz", "Hz"},
-  {"Pascal", "Pa"}, {"Coulomb", "C"}, {"Farad", "F"}, {"Henry", "H"}, {"Tesla", "T"}, {"AU", "au"}, {"ev", "eV"},
-  {"us", "µs"}, {"um", "µm"}, {"liter", "L"}, {"litre", "L"}, {"l", "L"}, {"amu", "u"}, {"Da", "u"},
-  {"foot", "ft"}, {"feet", "ft"}, {"lbs", "lb"}, {"pound", "lb"}, {"pounds", "lb"}, {"parsec", "pc"}, {"lyr", "ly"}, {"M_sun", "Msun"}, {"msun", "Msun"},
+    {"meter", "m"},   {"metre", "m"},     {"meters", "m"},     {"metres", "m"},    {"gram", "g"},
+    {"grams", "g"},   {"kilogram", "kg"}, {"kilograms", "kg"}, {"kgs", "kg"},      {"Kg", "kg"},
+    {"KG", "kg"},     {"kilo", "kg"},     {"sec", "s"},        {"secs", "s"},      {"second", "s"},
+    {"seconds", "s"}, {"Sec", "s"},       {"minute", "min"},   {"minutes", "min"}, {"hour", "h"},
+    {"hours", "h"},   {"hr", "h"},        {"days", "d"},       {"year", "yr"},     {"years", "yr"},
+    {"a", "yr"},      {"degree", "deg"},  {"degrees", "deg"},  {"radian", "rad"},  {"radians", "rad"},
+    {"turn", "rev"},  {"rpm", "rev/min"}, {"Newton", "N"},     {"newton", "N"},    {"Joule", "J"},
+    {"joule", "J"},   {"Watt", "W"},      {"watt", "W"},       {"Volt", "V"},      {"volt", "V"},
+    {"Ampere", "A"},  {"ampere", "A"},    {"amp", "A"},        {"Kelvin", "K"},    {"kelvin", "K"},
+    {"Ohm", "ohm"},   {"Hertz", "Hz"},    {"hertz", "Hz"},     {"Pascal", "Pa"},   {"Coulomb", "C"},
+    {"Farad", "F"},   {"Henry", "H"},     {"Tesla", "T"},      {"AU", "au"},       {"ev", "eV"},
+    {"us", "µs"},     {"um", "µm"},       {"liter", "L"},      {"litre", "L"},     {"l", "L"},
+    {"amu", "u"},     {"Da", "u"},        {"foot", "ft"},      {"feet", "ft"},     {"lbs", "lb"},
+    {"pound", "lb"},  {"pounds", "lb"},   {"parsec", "pc"},    {"lyr", "ly"},      {"M_sun", "Msun"},
+    {"msun", "Msun"},
 };
 enum { N_SPELLINGS = sizeof spellings / sizeof *spellings };
 
@@ -141,7 +147,9 @@ static const char *const usual[] = {
 enum { N_USUAL = sizeof usual / sizeof *usual };
 
 /* 1 for kg and units of the table, except deg and degC. */
-static int is_plain(const char *name) { return strcmp(name, "kg") == 0 || (find_row(name) && strncmp(name, "deg", 3) != 0); }
+static int is_plain(const char *name) {
+  return strcmp(name, "kg") == 0 || (find_row(name) && strncmp(name, "deg", 3) != 0);
+}
 
 /* Recognises `Nm` as N*m; 0: not a product of two units. */
 static int report_product(const AstUnitFactor *f, Diags *diags) {
@@ -264,8 +272,10 @@ const char *unit_meaning(uint32_t i, Arena *a) {
   const char *base = dim_product_text(dims, row_dim(dims, row));
   if (strcmp(base, row->name) == 0) return NULL;
   if (strcmp(row->name, "deg") == 0) return "pi/180";
-  if (row->pi_power) return arena_printf(a, "%s%s%s%s", row->factor, row->pi_power < 0 ? "/pi" : "*pi", *base ? " " : "", base);
-  if (!num_is_zero(offset_of(row))) return arena_printf(a, "%s, counted from %g %s", base, num_value(offset_of(row)), base);
+  if (row->pi_power)
+    return arena_printf(a, "%s%s%s%s", row->factor, row->pi_power < 0 ? "/pi" : "*pi", *base ? " " : "", base);
+  if (!num_is_zero(offset_of(row)))
+    return arena_printf(a, "%s, counted from %g %s", base, num_value(offset_of(row)), base);
   if (strcmp(row->factor, "1") == 0) return *base ? base : "1";
   return arena_printf(a, "%s%s%s", row->factor, *base ? " " : "", base);
 }

@@ -12,11 +12,14 @@ typedef struct {
   const char *text; /* as written; "" for none */
 } Unit;
 
-/* Converts a unit of the text; unknown names are reported, with the nearest known one. No unit written: DIM_ANY, factor 1. */
+/* Converts a unit of the text; unknown names are reported, with the nearest known one. No unit written: DIM_ANY,
+ * factor 1. */
 Unit unit_resolve(const AstUnit *u, Dims *dims, Diags *diags, Arena *a);
 
 /* SI unit of dimension d, written `text`. */
-static inline Unit unit_si(Dim d, const char *text) { return (Unit){.dim = d, .factor = num_int(1), .offset = num_int(0), .text = text}; }
+static inline Unit unit_si(Dim d, const char *text) {
+  return (Unit){.dim = d, .factor = num_int(1), .offset = num_int(0), .text = text};
+}
 
 /* SI unit of a dimension: factor 1; text "" for unknown dimensions and pure numbers. */
 Unit unit_of_dim(Dims *dims, Dim d);

@@ -1,8 +1,8 @@
-/* Warnings about parameters, lets, inputs and functions of the model's main file that no expression uses, and about names
- * that hide the model's energy or L.
+/* Warnings about parameters, lets, inputs and functions of the model's main file that no expression uses, and about
+ * names that hide the model's energy or L.
  *
- * In: a parsed Ast without errors, with the expressions of the command line. Names are not resolved: any occurrence in an
- * expression, active or not, counts as a use; the left side of a scene's assignment does not. */
+ * In: a parsed Ast without errors, with the expressions of the command line. Names are not resolved: any occurrence
+ * in an expression, active or not, counts as a use; the left side of a scene's assignment does not. */
 #include <string.h>
 
 #include "model/model.h"
@@ -37,14 +37,20 @@ static int is_drawn(const char *name) {
 }
 
 static int can_be_unused(const AstStmt *s) {
-  return s->name && (s->kind == STMT_PARAM || s->kind == STMT_INPUT || s->kind == STMT_FUNCTION || (s->kind == STMT_LET && !is_drawn(s->name)));
+  return s->name && (s->kind == STMT_PARAM || s->kind == STMT_INPUT || s->kind == STMT_FUNCTION ||
+                     (s->kind == STMT_LET && !is_drawn(s->name)));
 }
 
 static void warn_list(Ast *ast, const Scope *used, const AstStmt *list) {
   for (const AstStmt *s = list; s; s = s->next) {
     if (s->kind == STMT_EFFECT) warn_list(ast, used, s->body);
-    if (!can_be_unused(s) || scope_own(used, s->name, NULL) || source_place(ast->sources, s->name_span.begin).file != ast->sources->files.at) continue;
-    const char *what = s->kind == STMT_PARAM ? "parameter" : s->kind == STMT_INPUT ? "input" : s->kind == STMT_FUNCTION ? "function" : "let";
+    if (!can_be_unused(s) || scope_own(used, s->name, NULL) ||
+        source_place(ast->sources, s->name_span.begin).file != ast->sources->files.at)
+      continue;
+    const char *what = s->kind == STMT_PARAM      ? "parameter"
+                       : s->kind == STMT_INPUT    ? "input"
+                       : s->kind == STMT_FUNCTION ? "function"
+                                                  : "let";
     diag_warning(ast->diags, s->name_span, "nothing uses the %s `%s`", what, s->name);
     if (s->kind == STMT_LET) diag_help(ast->diags, "remove it, or show it: `output %s`", s->name);
     else diag_help(ast->diags, "use it in a formula, or remove it");
@@ -64,7 +70,8 @@ static void warn_hidden(Ast *ast, const AstStmt *list) {
                 s->kind == STMT_OBSERVE || s->kind == STMT_FUNCTION;
     if (s->kind == STMT_EFFECT) warn_hidden(ast, s->body);
     if (!named || !s->name || (strcmp(s->name, "energy") != 0 && strcmp(s->name, "lagrangian") != 0)) continue;
-    diag_warning(ast->diags, s->name_span, "`%s` hides the model's own %s in outputs, measures and expectations", s->name, s->name);
+    diag_warning(ast->diags, s->name_span, "`%s` hides the model's own %s in outputs, measures and expectations",
+                 s->name, s->name);
     diag_help(ast->diags, "call it `my_%s`, or leave it out: `output %s` needs no declaration", s->name, s->name);
   }
 }

@@ -34,11 +34,14 @@ static Expr value_of(Eqns *e, const PhaseSpace *s, const ActionOutput *a, Action
   PairKind kind = pair_with_action(s, i, &why_not);
   if (why_not) {
     diag_error(m->diags, a->span, "`%s` has no action variable: %s", a->name, why_not);
-    if (kind == PAIR_TIED) diag_help(m->diags, "`lagc action` tells which coordinates separate; others than these may: `lagc help canonical`");
+    if (kind == PAIR_TIED)
+      diag_help(m->diags,
+                "`lagc action` tells which coordinates separate; others than these may: `lagc help canonical`");
     return 0;
   }
   if (kind == PAIR_CYCLIC) return s->rate ? e->p[i] : expr_symbol(g, s->p[i])->node;
-  SymId sym = expr_declare(g, SYM_INPUT, m->inputs.n + m->scene.exacts.n + e->nactions, expr_symbol(g, a->sym)->name, SIGN_UNKNOWN);
+  SymId sym = expr_declare(g, SYM_INPUT, m->inputs.n + m->scene.exacts.n + e->nactions, expr_symbol(g, a->sym)->name,
+                           SIGN_UNKNOWN);
   curves[e->nactions++] = curve_of(s, i);
   return expr_symbol(g, sym)->node;
 }
@@ -52,7 +55,8 @@ int action_outputs(Eqns *e, Expr *value) {
     const ActionOutput *a = &m->actions.at[k];
     if (!is_used(e, a->sym)) continue;
     const char *why_not = s.e ? NULL : phase_space_try(e, &s);
-    if (why_not) return diag_error(m->diags, a->span, "no action variable of `%s` in closed form: %s", a->name, why_not);
+    if (why_not)
+      return diag_error(m->diags, a->span, "no action variable of `%s` in closed form: %s", a->name, why_not);
     s.H = expr_expand_defs(e->g, s.H);
     if (!(value[k] = value_of(e, &s, a, curves))) return 0;
   }

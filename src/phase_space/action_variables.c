@@ -1,4 +1,5 @@
-/* Curves of a phase space and their actions: separation, derivatives of H, the scene's start. The integral is numeric/action_integral.c's, in long double. */
+/* Curves of a phase space and their actions: separation, derivatives of H, the scene's start. The integral is
+ * numeric/action_integral.c's, in long double. */
 #include "phase_space/action_variables.h"
 
 #include <math.h>
@@ -66,7 +67,9 @@ static void pair_action(const PhaseSpace *s, uint32_t i, const Real *start, Acti
   for (uint32_t k = 0; k < count; k++) c.symbols[k] = start[k];
   c.tape = eval_tape(g, roots, 4);
   lag_action_integral x = lag_action_of_curve(point_at, &c, start[c.q], start[c.p], pair_is_periodic(s, i));
-  *out = (ActionVariable){.why_not = x.why_not, .rests = x.rests, .rotates = x.rotates, .J = x.J, .omega = 2 * pi / x.time, .low = x.low, .high = x.high};
+  *out = (ActionVariable){.why_not = x.why_not,
+                          .rests = x.rests, .rotates = x.rotates, .J = x.J, .omega = 2 * pi / x.time, .low = x.low,
+                          .high = x.high};
   out->digits = digits_of(x.error);
   out->omega_digits = digits_of(x.time_error);
 }
@@ -87,8 +90,10 @@ static const char *reason_of_tie(const PhaseSpace *s, const Separation *x) {
   const ExprGraph *g = s->e->g;
   Arena *a = s->e->m->arena;
   Name qi = expr_symbol(g, s->q[x->i])->name, qj = expr_symbol(g, s->q[x->j])->name;
-  if (x->i == x->j) return arena_printf(a, "H does not separate in these coordinates: it contains %s, and not its momentum", qi);
-  return arena_printf(a, "H does not separate in these coordinates: Levi-Civita's condition for %s and %s %s%s", qi, qj, x->refuted ? "fails" : "is not decided",
+  if (x->i == x->j)
+    return arena_printf(a, "H does not separate in these coordinates: it contains %s, and not its momentum", qi);
+  return arena_printf(a, "H does not separate in these coordinates: Levi-Civita's condition for %s and %s %s%s", qi, qj,
+                      x->refuted ? "fails" : "is not decided",
                       x->refuted && s->e->m->params.n ? ", for general values of the parameters" : "");
 }
 
@@ -97,7 +102,9 @@ static int jumps_with_the_state(const PhaseSpace *s) {
   ExprJumps jumps = discontinuities_of(s->e, s->H);
   for (uint32_t k = 0; k < jumps.n; k++)
     for (uint32_t i = 0; i < s->n; i++)
-      if (expr_contains_sym(s->e->g, jumps.at[k].side, s->q[i]) || expr_contains_sym(s->e->g, jumps.at[k].side, s->p[i])) return 1;
+      if (expr_contains_sym(s->e->g, jumps.at[k].side, s->q[i]) ||
+          expr_contains_sym(s->e->g, jumps.at[k].side, s->p[i]))
+        return 1;
   return 0;
 }
 

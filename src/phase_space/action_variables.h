@@ -1,8 +1,11 @@
-/* Action variables of the scene's start: J = 1/(2 pi) closed integral p dq along the curve H(q, p) = E of each coordinate, in numbers.
+/* Action variables of the scene's start: J = 1/(2 pi) closed integral p dq along the curve H(q, p) = E of each
+ * coordinate, in numbers.
  *
- * A coordinate has a curve of its own where H separates (phase_space/separability.h): the other pairs are held at the start. Cyclic coordinates have p constant.
+ * A coordinate has a curve of its own where H separates (phase_space/separability.h): the other pairs are held at
+ * the start. Cyclic coordinates have p constant.
  *
- * The integral is numeric/action_integral.h's, which runs use for outputs `action(x)` (phase_space/action_outputs.h). Long double, about 1e-15. */
+ * The integral is numeric/action_integral.h's, which runs use for outputs `action(x)`
+ * (phase_space/action_outputs.h). Long double, about 1e-15. */
 #pragma once
 
 #include "phase_space/separability.h"
@@ -13,7 +16,8 @@ typedef struct {
   int rests;               /* at an equilibrium: J = 0 */
   int rotates;              /* it goes round: J is the mean of p over a turn, omega has its sign */
   long double J;           /* SI */
-  int digits, omega_digits; /* of J and omega, up to 16: fewer where H has a corner along the curve, omega's beside a separatrix */
+  /* of J and omega, up to 16: fewer where H has a corner along the curve, omega's beside a separatrix */
+  int digits, omega_digits;
   long double omega;       /* dE/dJ at fixed other actions; NAN: not computed */
   long double low, high;   /* turning points, or ends of a turn */
 } ActionVariable;
@@ -29,6 +33,8 @@ typedef struct {
 int action_variables(Eqns *e, ActionVariables *out);
 
 /* Of pair i of a phase space, whose H is free of definitions: */
-PairKind pair_with_action(const PhaseSpace *s, uint32_t i, const char **why_not); /* *why_not: NULL, or the reason for no action at any state */
+/* *why_not: NULL, or the reason for no action at any state */
+PairKind pair_with_action(const PhaseSpace *s, uint32_t i, const char **why_not);
 int pair_is_periodic(const PhaseSpace *s, uint32_t i);
-void action_roots(const PhaseSpace *s, uint32_t i, Expr *roots);                  /* roots[4]: H, dH/dp, d2H/dp2, dH/dq */
+/* roots[4]: H, dH/dp, d2H/dp2, dH/dq */
+void action_roots(const PhaseSpace *s, uint32_t i, Expr *roots);

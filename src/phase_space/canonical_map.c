@@ -1,4 +1,5 @@
-/* Linear maps are inverted by their transpose, S^-1 = -J S^T J; others unknown by unknown, where an equation is linear in one. */
+/* Linear maps are inverted by their transpose, S^-1 = -J S^T J; others unknown by unknown, where an equation is
+ * linear in one. */
 #include "phase_space/canonical_map.h"
 
 #include "sym/diff.h"
@@ -99,8 +100,10 @@ Expr canonical_determinant(ExprGraph *g, const Canonical *c) {
   Expr *m = ARENA_ARRAY(expr_arena(g), Expr, (size_t)n * n + 1);
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t j = 0; j < n; j++) {
-      SymId old = c->is_point ? 0 : c->old[i + (c->kind > 2 ? n : 0)], fresh = c->fresh[j + (!c->is_point && c->kind % 2 == 0 ? n : 0)];
-      Expr row = c->is_point ? expr_expand_defs(g, c->inverse[i]) : expr_diff(g, expr_expand_defs(g, c->generator), old);
+      SymId old = c->is_point ? 0 : c->old[i + (c->kind > 2 ? n : 0)],
+            fresh = c->fresh[j + (!c->is_point && c->kind % 2 == 0 ? n : 0)];
+      Expr row =
+          c->is_point ? expr_expand_defs(g, c->inverse[i]) : expr_diff(g, expr_expand_defs(g, c->generator), old);
       m[i * n + j] = short_diff(g, row, fresh);
     }
   return determinant(g, m, n);
@@ -113,7 +116,8 @@ static const Expr *linear_inverse(const PhaseSpace *s, const Canonical *c, const
   ExprGraph *g = s->e->g;
   uint32_t n = c->n, N = 2 * n;
   SymId *z = old_symbols(s);
-  Expr *S = ARENA_ARRAY(s->e->m->arena, Expr, (size_t)N * N + 1), *rest = ARENA_ARRAY(s->e->m->arena, Expr, 3 * (size_t)N + 1), *zero = rest + N, *out = zero + N;
+  Expr *S = ARENA_ARRAY(s->e->m->arena, Expr, (size_t)N * N + 1),
+       *rest = ARENA_ARRAY(s->e->m->arena, Expr, 3 * (size_t)N + 1), *zero = rest + N, *out = zero + N;
   for (uint32_t k = 0; k < N; k++) zero[k] = expr_int(g, 0);
   for (uint32_t i = 0; i < N; i++) {
     Expr b = expr_replace(g, forward[i], z, zero, N);
@@ -181,7 +185,8 @@ const Expr *canonical_inverse(const PhaseSpace *s, const Canonical *c) {
   if (!c->forward) F = generator_equations(s, c);
   for (uint32_t i = 0; i < N; i++) {
     if (c->forward) forward[i] = phase_space_expression(s, c->forward[i]);
-    eq[i] = left[i] = c->forward ? expr_sub(g, node(g, c->fresh[i]), forward[i]) : expr_expand_defs(g, expr_sub(g, F.left[i], F.right[i]));
+    eq[i] = left[i] = c->forward ? expr_sub(g, node(g, c->fresh[i]), forward[i])
+                                 : expr_expand_defs(g, expr_sub(g, F.left[i], F.right[i]));
   }
   SymId *x = old_symbols(s);
   const Expr *z = c->forward ? linear_inverse(s, c, forward) : NULL;
@@ -200,7 +205,8 @@ static Expr *time_gradient(const PhaseSpace *s, const Canonical *c, const Expr *
   for (uint32_t k = 0; k < 2 * n; k++) {
     r[k] = expr_int(g, 0);
     for (uint32_t i = 0; i < n; i++) {
-      Expr dq = expr_diff(g, z[i], c->fresh[k]), dp = expr_diff(g, z[n + i], c->fresh[k]), qt = expr_diff(g, z[i], t), pt = expr_diff(g, z[n + i], t);
+      Expr dq = expr_diff(g, z[i], c->fresh[k]), dp = expr_diff(g, z[n + i], c->fresh[k]), qt = expr_diff(g, z[i], t),
+           pt = expr_diff(g, z[n + i], t);
       Expr one = expr_mul(g, dq, pt), other = expr_mul(g, dp, qt), both = expr_sub(g, one, other);
       r[k] = expr_add(g, r[k], both);
     }
@@ -213,7 +219,8 @@ static Expr *time_gradient(const PhaseSpace *s, const Canonical *c, const Expr *
 static Expr time_part(const PhaseSpace *s, const Canonical *c, const Expr *z, const Expr *r) {
   ExprGraph *g = s->e->g;
   SymId *x = old_symbols(s);
-  Expr R = c->kind ? expr_replace(g, expr_expand_defs(g, expr_diff(g, c->generator, s->e->m->time)), x, z, 2 * c->n) : expr_potential(g, r, c->fresh, 2 * c->n, 0);
+  Expr R = c->kind ? expr_replace(g, expr_expand_defs(g, expr_diff(g, c->generator, s->e->m->time)), x, z, 2 * c->n)
+                   : expr_potential(g, r, c->fresh, 2 * c->n, 0);
   for (uint32_t k = 0; k < 2 * c->n; k++) {
     Expr slope = expr_diff(g, R, c->fresh[k]);
     if (prove_zero(g, expr_sub(g, slope, r[k]), NULL) != PROVED_ZERO) return 0;
@@ -242,7 +249,8 @@ static Expr force_along(const PhaseSpace *s, const Canonical *c, const Expr *z, 
 NewHamiltonian canonical_hamiltonian(const PhaseSpace *s, const Canonical *c, const Expr *z) {
   ExprGraph *g = s->e->g;
   uint32_t n = c->n;
-  Expr *rate = ARENA_ARRAY(s->e->m->arena, Expr, 4 * (size_t)n + 1), *motion = rate + 2 * n, *r = time_gradient(s, c, z), R = 0;
+  Expr *rate = ARENA_ARRAY(s->e->m->arena, Expr, 4 * (size_t)n + 1), *motion = rate + 2 * n,
+       *r = time_gradient(s, c, z), R = 0;
   NewHamiltonian out = {.rate = rate, .motion = motion};
   for (uint32_t k = 0; k < 2 * n; k++) out.has_R |= !expr_is_zero(g, r[k]);
   if (out.has_R) R = time_part(s, c, z, r);
@@ -251,7 +259,8 @@ NewHamiltonian canonical_hamiltonian(const PhaseSpace *s, const Canonical *c, co
   out.K = simplify(g, R ? expr_add(g, out.K, R) : out.K);
   for (uint32_t k = 0; k < 2 * n; k++) {
     uint32_t by = (k + n) % (2 * n);
-    Expr slope = expr_diff(g, out.K, c->fresh[by]), all = R ? slope : expr_add(g, slope, r[by]), net = expr_sub(g, all, force_along(s, c, z, by));
+    Expr slope = expr_diff(g, out.K, c->fresh[by]), all = R ? slope : expr_add(g, slope, r[by]),
+         net = expr_sub(g, all, force_along(s, c, z, by));
     motion[k] = k < n ? all : expr_neg(g, all);
     rate[k] = simplify(g, k < n ? net : expr_neg(g, net));
   }

@@ -1,9 +1,12 @@
-/* Canonical transformations z = (q, p) -> Z = (Q, P): equations of a generating function, the inverse, and the new Hamiltonian.
+/* Canonical transformations z = (q, p) -> Z = (Q, P): equations of a generating function, the inverse, and the new
+ * Hamiltonian.
  *
- * F1(q, Q): p = dF/dq, P = -dF/dQ;  F2(q, P): p = dF/dq, Q = dF/dP;  F3(p, Q): q = -dF/dp, P = -dF/dQ;  F4(p, P): q = -dF/dp, Q = dF/dP.
- * A map that depends on t adds R to the Hamiltonian: K(Z, t) = H(z(Z, t), t) + R, with R = dF/dt of a generating function and, of any canonical map,
+ * F1(q, Q): p = dF/dq, P = -dF/dQ; F2(q, P): p = dF/dq, Q = dF/dP; F3(p, Q): q = -dF/dp, P = -dF/dQ; F4(p, P): q =
+ * -dF/dp, Q = dF/dP. A map that depends on t adds R to the Hamiltonian: K(Z, t) = H(z(Z, t), t) + R, with R = dF/dt
+ * of a generating function and, of any canonical map,
  *   dR/dZ = dq/dZ dp/dt - dp/dZ dq/dt   at fixed Z.
- * H. Goldstein, C. Poole, J. Safko, Classical Mechanics, 3rd ed. (2002), 9.1; L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed. (1976), 45. */
+ * H. Goldstein, C. Poole, J. Safko, Classical Mechanics, 3rd ed. (2002), 9.1; L. D. Landau, E. M. Lifshitz,
+ * Mechanics, 3rd ed. (1976), 45. */
 #pragma once
 
 #include "phase_space/expression_brackets.h"
@@ -14,7 +17,8 @@ typedef struct {
 } GeneratorEquations;
 GeneratorEquations generator_equations(const PhaseSpace *s, const Canonical *c);
 
-/* det d2F/dx dX of a generating function's old and new arguments, or det dq/dQ of a point transformation; simplified. */
+/* det d2F/dx dX of a generating function's old and new arguments, or det dq/dQ of a point transformation;
+ * simplified. */
 Expr canonical_determinant(ExprGraph *g, const Canonical *c);
 
 /* z(Z, t), [2n]: as given, or solved for. NULL: not found. */

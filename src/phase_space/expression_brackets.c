@@ -41,7 +41,8 @@ Expr phase_space_expression(const PhaseSpace *s, Expr x) {
 }
 
 Expr poisson_bracket(ExprGraph *g, Expr f, Expr h, const SymId *q, const SymId *p, uint32_t n) {
-  Expr *d = ARENA_ARRAY(expr_arena(g), Expr, 4 * (size_t)n + 1), *fq = d, *fp = fq + n, *hq = fp + n, *hp = hq + n, sum = expr_int(g, 0);
+  Expr *d = ARENA_ARRAY(expr_arena(g), Expr, 4 * (size_t)n + 1), *fq = d, *fp = fq + n, *hq = fp + n, *hp = hq + n,
+       sum = expr_int(g, 0);
   expr_gradient(g, f, q, n, fq);
   expr_gradient(g, f, p, n, fp);
   expr_gradient(g, h, q, n, hq);
@@ -76,10 +77,12 @@ int expression_brackets_derive(Eqns *e, const ChargeNames *charges) {
   for (e->nbrackets = 0; e->nbrackets < m->brackets.n; e->nbrackets++) {
     const ExpressionBracket *b = &m->brackets.at[e->nbrackets];
     Expr part[2] = {b->f, b->g};
-    for (int k = 0; k < 2; k++) part[k] = phase_space_expression(&s, expr_replace(e->g, part[k], charges->sym, charges->value, charges->n));
+    for (int k = 0; k < 2; k++)
+      part[k] = phase_space_expression(&s, expr_replace(e->g, part[k], charges->sym, charges->value, charges->n));
     Expr shown = poisson_bracket(e->g, part[0], part[1], s.q, s.p, s.n);
     struct BracketValue x = {.value = shown, .shown = shown};
-    x.domain = both(e->g, expr_smooth_domain(e->g, part, 2, &x.jumps), expression_brackets_domain(e, expr_add(e->g, b->f, b->g), &x.jumps));
+    x.domain = both(e->g, expr_smooth_domain(e->g, part, 2, &x.jumps),
+                    expression_brackets_domain(e, expr_add(e->g, b->f, b->g), &x.jumps));
     if (!m->hamiltonian) x.value = expr_replace(e->g, shown, s.p, e->p, s.n);
     if (!m->hamiltonian && x.domain) x.domain = expr_replace(e->g, x.domain, s.p, e->p, s.n);
     all[e->nbrackets] = x;

@@ -1,7 +1,7 @@
 /* Poisson brackets {f, g} = sum df/dq dg/dp - df/dp dg/dq of two expressions, at a fixed time.
  *
- * Where the model gives its Lagrangian, q' = dH/dp(q, p) is put into f and g first: the mass matrix needs an inverse in closed form
- * (mech/hamilton.h). A bracket may stand in a bracket. */
+ * Where the model gives its Lagrangian, q' = dH/dp(q, p) is put into f and g first: the mass matrix needs an inverse
+ * in closed form (mech/hamilton.h). A bracket may stand in a bracket. */
 #pragma once
 
 #include "mech/eqns.h"

@@ -18,9 +18,13 @@ typedef struct {
 
 /* --- which pairs come off --- */
 
-static int is_free_of(const Splitter *w, Expr x, SymId s) { return !expr_contains_sym(w->g, x, s) || prove_zero(w->g, expr_diff(w->g, x, s), NULL) == PROVED_ZERO; }
+static int is_free_of(const Splitter *w, Expr x, SymId s) {
+  return !expr_contains_sym(w->g, x, s) || prove_zero(w->g, expr_diff(w->g, x, s), NULL) == PROVED_ZERO;
+}
 
-static int is_free_of_pair(const Splitter *w, Expr x, uint32_t i) { return is_free_of(w, x, w->s->q[i]) && is_free_of(w, x, w->s->p[i]); }
+static int is_free_of_pair(const Splitter *w, Expr x, uint32_t i) {
+  return is_free_of(w, x, w->s->q[i]) && is_free_of(w, x, w->s->p[i]);
+}
 
 /* Whether x is free of all other pairs: of those that are left, or of all. */
 static int stands_alone(const Splitter *w, Expr x, uint32_t i, int of_all) {
@@ -32,7 +36,8 @@ static int stands_alone(const Splitter *w, Expr x, uint32_t i, int of_all) {
 /* The next pair with a curve of its own; n: none. */
 static uint32_t next_pair(const Splitter *w) {
   for (uint32_t i = 0; i < w->s->n; i++)
-    if (!w->done[i] && !expr_is_zero(w->g, w->Hp[i]) && stands_alone(w, expr_div(w->g, w->Hq[i], w->Hp[i]), i, 0)) return i;
+    if (!w->done[i] && !expr_is_zero(w->g, w->Hp[i]) && stands_alone(w, expr_div(w->g, w->Hq[i], w->Hp[i]), i, 0))
+      return i;
   return w->s->n;
 }
 
@@ -46,7 +51,10 @@ static Expr levi_civita(const Splitter *w, uint32_t i, uint32_t j) {
   ExprGraph *g = w->g;
   const SymId *q = w->s->q, *p = w->s->p;
   const Expr *Hq = w->Hq, *Hp = w->Hp;
-  const Expr factor[4][3] = {{Hp[i], Hp[j], expr_diff(g, Hq[i], q[j])}, {Hq[i], Hq[j], expr_diff(g, Hp[i], p[j])}, {Hp[i], Hq[j], expr_diff(g, Hq[i], p[j])}, {Hq[i], Hp[j], expr_diff(g, Hp[i], q[j])}};
+  const Expr factor[4][3] = {{Hp[i], Hp[j], expr_diff(g, Hq[i], q[j])},
+                             {Hq[i], Hq[j], expr_diff(g, Hp[i], p[j])},
+                             {Hp[i], Hq[j], expr_diff(g, Hq[i], p[j])},
+                             {Hq[i], Hp[j], expr_diff(g, Hp[i], q[j])}};
   Expr sum = expr_int(g, 0);
   for (int k = 0; k < 4; k++) {
     Expr two = expr_mul(g, factor[k][0], factor[k][1]), three = expr_mul(g, two, factor[k][2]);
@@ -55,7 +63,8 @@ static Expr levi_civita(const Splitter *w, uint32_t i, uint32_t j) {
   return sum;
 }
 
-/* Judges the conditions of the pairs that are left. Without dH/dp they say nothing: the equation of p cannot be solved for it. */
+/* Judges the conditions of the pairs that are left. Without dH/dp they say nothing: the equation of p cannot be
+ * solved for it. */
 static int conditions_hold(const Splitter *w, Separation *out) {
   for (uint32_t i = 0; i < w->s->n; i++)
     if (!w->done[i] && expr_is_zero(w->g, w->Hp[i])) {
@@ -103,7 +112,9 @@ static Terms terms_of(const Splitter *w, Expr x) {
   return out;
 }
 
-static int mentions(const Splitter *w, Expr x, uint32_t i) { return expr_contains_sym(w->g, x, w->s->q[i]) || expr_contains_sym(w->g, x, w->s->p[i]); }
+static int mentions(const Splitter *w, Expr x, uint32_t i) {
+  return expr_contains_sym(w->g, x, w->s->q[i]) || expr_contains_sym(w->g, x, w->s->p[i]);
+}
 
 /* x with q = p = 1 of a pair. */
 static Expr held(const Splitter *w, Expr x, uint32_t i) {
@@ -119,7 +130,8 @@ static Expr constant_of(const Splitter *w, uint32_t i) {
 
 static Expr energy_of(const Splitter *w) { return expr_symbol(w->g, w->s->e->m->energy_sym)->node; }
 
-/* The equation of a pair with a curve of its own: the terms of H with it are a factor times G, and G = alpha is put into H. */
+/* The equation of a pair with a curve of its own: the terms of H with it are a factor times G, and G = alpha is put
+ * into H. */
 static void equation_alone(Splitter *w, uint32_t i) {
   ExprGraph *g = w->g;
   Expr with = expr_int(g, 0), G;
@@ -161,12 +173,15 @@ static int split(const Splitter *w, Expr T, uint32_t i, uint32_t j, Expr *Ti, Ex
   return 1;
 }
 
-/* Two pairs that separate together, H quadratic in their momenta: mu (H - E) = Fi + Fj, mu from the ratio of the inverse masses, which is a product. */
+/* Two pairs that separate together, H quadratic in their momenta: mu (H - E) = Fi + Fj, mu from the ratio of the
+ * inverse masses, which is a product. */
 static void equations_of_two(Splitter *w, uint32_t i, uint32_t j) {
   ExprGraph *g = w->g;
-  Expr mi = simplify(g, expr_diff(g, expr_diff(g, w->H, w->s->p[i]), w->s->p[i])), mj = simplify(g, expr_diff(g, expr_diff(g, w->H, w->s->p[j]), w->s->p[j]));
+  Expr mi = simplify(g, expr_diff(g, expr_diff(g, w->H, w->s->p[i]), w->s->p[i])),
+       mj = simplify(g, expr_diff(g, expr_diff(g, w->H, w->s->p[j]), w->s->p[j]));
   if (expr_is_zero(g, mi) || expr_is_zero(g, mj)) return;
-  Expr ratio = held(w, simplify(g, expr_div(g, mi, mj)), j), mu = simplify(g, expr_div(g, ratio, mi)), zero = expr_sub(g, w->H, energy_of(w)), Fi, Fj;
+  Expr ratio = held(w, simplify(g, expr_div(g, mi, mj)), j), mu = simplify(g, expr_div(g, ratio, mi)),
+       zero = expr_sub(g, w->H, energy_of(w)), Fi, Fj;
   Terms t = terms_of(w, zero);
   Expr sum = expr_int(g, 0), constant = constant_of(w, i);
   for (uint32_t k = 0; k < t.n; k++) sum = expr_add(g, sum, simplify(g, expr_mul(g, mu, t.at[k])));
@@ -212,7 +227,10 @@ Separation separation_of(const PhaseSpace *s) {
   uint32_t n = s->n;
   Expr *by = ARENA_ARRAY(a, Expr, 4 * (size_t)n + 1);
   uint8_t *flags = ARENA_ARRAY(a, uint8_t, 2 * (size_t)n + 1), *tangled = flags + n;
-  Splitter w = {.g = g, .s = s, .Hq = by, .Hp = by + n, .left = by + 2 * n, .right = by + 3 * n, .done = flags, .order = ARENA_ARRAY(a, uint32_t, n + 1), .kind = ARENA_ARRAY(a, PairKind, n + 1), .H = s->H};
+  Splitter w = {.g = g,
+                .s = s, .Hq = by, .Hp = by + n, .left = by + 2 * n, .right = by + 3 * n, .done = flags,
+                .order = ARENA_ARRAY(a, uint32_t, n + 1), .kind = ARENA_ARRAY(a, PairKind, n + 1),
+                .H = s->H};
   Separation out = {.n = n, .order = w.order, .kind = w.kind, .tangled = tangled, .left = w.left, .right = w.right};
   for (uint32_t i = 0; i < n; i++) {
     w.Hq[i] = simplify(g, expr_diff(g, s->H, s->q[i]));

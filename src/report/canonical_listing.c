@@ -8,7 +8,8 @@ static Expr node(const Text *t, SymId s) { return expr_symbol(t->g, s)->node; }
 
 static void show_inverse(Text *t, const PhaseSpace *s, const Canonical *c, const Expr *z) {
   text_heading(t, "old variables");
-  for (uint32_t k = 0; k < 2 * c->n; k++) text_equation(t, node(t, k < c->n ? s->q[k] : s->p[k - c->n]), z[k], k + 1 == 2 * c->n);
+  for (uint32_t k = 0; k < 2 * c->n; k++)
+    text_equation(t, node(t, k < c->n ? s->q[k] : s->p[k - c->n]), z[k], k + 1 == 2 * c->n);
   text_end(t);
 }
 
@@ -16,15 +17,19 @@ static void show_motion(Text *t, const Canonical *c, const NewHamiltonian *new) 
   text_heading(t, "Hamilton's equations");
   for (uint32_t k = 0; k < 2 * c->n; k++) {
     Name name = expr_symbol(t->g, c->fresh[k])->name;
-    text_named(t, arena_printf(t->e->m->arena, "%s'", name), arena_printf(t->e->m->arena, "\\dot{%s}", text_latex_name(t, name)), new->rate[k], k + 1 == 2 * c->n);
+    text_named(t, arena_printf(t->e->m->arena, "%s'", name),
+               arena_printf(t->e->m->arena, "\\dot{%s}", text_latex_name(t, name)), new->rate[k], k + 1 == 2 * c->n);
   }
   text_end(t);
 }
 
 static const char *heading_of(const Canonical *c, const NewHamiltonian *new) {
   if (!new->has_R) return "Hamiltonian: K = H";
-  if (!new->found_R) return "part of the Hamiltonian: H; the map's own change in time has no closed form found, and is in the equations below";
-  return c->kind ? "Hamiltonian: K = H + dF/dt" : "Hamiltonian: K = H + R, R found from the map's own change in time, up to a function of t";
+  if (!new->found_R)
+    return "part of the Hamiltonian: H; the map's own change in time has no closed form found, and is in the equations "
+           "below";
+  return c->kind ? "Hamiltonian: K = H + dF/dt"
+                 : "Hamiltonian: K = H + R, R found from the map's own change in time, up to a function of t";
 }
 
 int show_canonical(Eqns *e, const Canonical *c, PrintStyle style, StrBuf *out) {
@@ -34,7 +39,8 @@ int show_canonical(Eqns *e, const Canonical *c, PrintStyle style, StrBuf *out) {
   const Expr *z = canonical_inverse(&s, c);
   if (!z) {
     diag_error(e->m->diags, c->span, "the inverse of `%s` is not found", c->name);
-    diag_help(e->m->diags, "give the old variables as functions of the new, too: `%s = ..., ...`", expr_symbol(e->g, s.q[0])->name);
+    diag_help(e->m->diags, "give the old variables as functions of the new, too: `%s = ..., ...`",
+              expr_symbol(e->g, s.q[0])->name);
     return 0;
   }
   NewHamiltonian new = canonical_hamiltonian(&s, c, z);

@@ -7,7 +7,8 @@
 #include "mech/kinetic_squares.h"
 #include "sym/simplify.h"
 
-/* Short form of an entry of M or f, as a person writes it, even where the shared form costs less to compute. Long chains keep their lets. */
+/* Short form of an entry of M or f, as a person writes it, even where the shared form costs less to compute. Long
+ * chains keep their lets. */
 static Expr shown(const Text *t, Expr x) {
   enum { SHORT_MAX_COORDS = 16 };
   return t->e->n + t->e->first.n <= SHORT_MAX_COORDS ? simplify(t->g, x) : x;
@@ -17,7 +18,8 @@ static Expr shown(const Text *t, Expr x) {
 static const Expr *mass_rows(Text *t) {
   const Eqns *e = t->e;
   uint32_t n = e->n, *next = ARENA_ARRAY(e->m->arena, uint32_t, n + 1), begin = 0;
-  Expr *rows = ARENA_ARRAY(e->m->arena, Expr, n + 1), *terms = ARENA_ARRAY(e->m->arena, Expr, 2 * (size_t)e->mass.n + 1);
+  Expr *rows = ARENA_ARRAY(e->m->arena, Expr, n + 1),
+       *terms = ARENA_ARRAY(e->m->arena, Expr, 2 * (size_t)e->mass.n + 1);
   for (uint32_t k = 0; k < e->mass.n; k++) {
     const MassEntry *x = &e->mass.at[k];
     next[x->row]++;
@@ -39,8 +41,8 @@ static const Expr *mass_rows(Text *t) {
   return rows;
 }
 
-/* Unknowns of the augmented system: accelerations; for each definition w the part of dw/dt that contains them, and the force that w transmits
- * to its arguments. */
+/* Unknowns of the augmented system: accelerations; for each definition w the part of dw/dt that contains them, and
+ * the force that w transmits to its arguments. */
 typedef struct {
   const Expr *rate, *force;
 } Unknowns;
@@ -66,7 +68,8 @@ static void add_product(Text *t, Expr *sum, Expr a, Expr b) {
   *sum = expr_add(t->g, *sum, ab);
 }
 
-/* Rows of the augmented system: H and C^T for coordinates; H, C^T and -1 for definitions; and C: see mech/augmented_system.h. */
+/* Rows of the augmented system: H and C^T for coordinates; H, C^T and -1 for definitions; and C: see
+ * mech/augmented_system.h. */
 static void lifted_motion(Text *t) {
   const Eqns *e = t->e;
   const LinearSystem *s = &e->system;
@@ -84,20 +87,23 @@ static void lifted_motion(Text *t) {
     add_product(t, &row[x->col], x->e, u.force[x->row]);
     add_product(t, &rate[x->row], x->e, u.rate[x->col]);
   }
-  text_heading(t, "equations of motion: w' of a let w without terms in velocities alone, F_w the force that w transmits");
+  text_heading(t,
+               "equations of motion: w' of a let w without terms in velocities alone, F_w the force that w transmits");
   for (uint32_t k = s->n; k < total; k++) text_equation(t, u.rate[k], rate[k], 0);
   for (uint32_t k = total; k-- > s->n;) text_equation(t, u.force[k], row[k], 0);
   for (uint32_t i = 0; i < s->n; i++) text_equation(t, row[i], s->f[i], i + 1 == s->n && !e->m->states.n);
 }
 
-/* Whether the coordinate is coupled to at most one other. If so, its rate is printed instead of its row of the two-form. */
+/* Whether the coordinate is coupled to at most one other. If so, its rate is printed instead of its row of the
+ * two-form. */
 static int is_in_pair(const FirstOrder *x, uint32_t i) {
   uint32_t n = 0;
   for (uint32_t k = 0; k < x->n; k++) n += x->block[k] == x->block[i];
   return n <= 2;
 }
 
-/* sum_j omega_ij q_j' = dH/dq_i + ..., with the first sign positive; the rate itself where the coordinate is one of a pair. */
+/* sum_j omega_ij q_j' = dH/dq_i + ..., with the first sign positive; the rate itself where the coordinate is one of
+ * a pair. */
 static void first_order_motion(Text *t) {
   const Eqns *e = t->e;
   const FirstOrder *x = &e->first;
@@ -124,10 +130,12 @@ static void motion(Text *t) {
   if (e->n && !e->mass_known) lifted_motion(t);
   else text_heading(t, m->hamiltonian ? "Hamilton's equations" : "equations of motion");
   const Expr *rows = e->mass_known ? mass_rows(t) : NULL;
-  for (uint32_t i = 0; rows && i < e->n; i++) text_equation(t, rows[i], shown(t, e->f[i]), i + 1 == e->n && !m->states.n);
+  for (uint32_t i = 0; rows && i < e->n; i++)
+    text_equation(t, rows[i], shown(t, e->f[i]), i + 1 == e->n && !m->states.n);
   if (e->first.n) first_order_motion(t);
   for (uint32_t i = 0; i < m->states.n; i++)
-    if (!m->states.at[i].coordinate) text_equation(t, expr_symbol(t->g, m->states.at[i].rate)->node, m->states.at[i].flow, i + 1 == m->states.n);
+    if (!m->states.at[i].coordinate)
+      text_equation(t, expr_symbol(t->g, m->states.at[i].rate)->node, m->states.at[i].flow, i + 1 == m->states.n);
   text_end(t);
 }
 
@@ -155,7 +163,9 @@ static void constraints(Text *t) {
   while_conditions(t);
   Expr *rows = ARENA_ARRAY(e->m->arena, Expr, k->n);
   for (uint32_t i = 0; i < k->n; i++) rows[i] = zero;
-  for (uint32_t i = 0; i < k->A.n; i++) add_product(t, &rows[k->A.at[i].row], shown(t, k->A.at[i].e), expr_symbol(t->g, e->m->coords.at[k->A.at[i].col].a)->node);
+  for (uint32_t i = 0; i < k->A.n; i++)
+    add_product(t, &rows[k->A.at[i].row], shown(t, k->A.at[i].e),
+                expr_symbol(t->g, e->m->coords.at[k->A.at[i].col].a)->node);
   text_heading(t, "conditions of the constraints on accelerations");
   for (uint32_t i = 0; i < k->n; i++) text_equation(t, rows[i], shown(t, k->demand[i]), i + 1 == k->n);
   text_end(t);
@@ -164,36 +174,47 @@ static void constraints(Text *t) {
 /* E and its balance. */
 static void energy(Text *t, const Charge *c) {
   const char *title = t->e->m->hamiltonian ? "Hamiltonian" : "energy";
-  text_heading(t, t->e->energy_jumps ? arena_printf(t->e->m->arena, "%s; its balance holds between jumps of L", title) : title);
+  text_heading(t, t->e->energy_jumps ? arena_printf(t->e->m->arena, "%s; its balance holds between jumps of L", title)
+                                     : title);
   int moves = c->proof.drift != PROVED_ZERO && !c->proof.power_unknown;
   const char *name = t->e->m->hamiltonian ? "H" : "E";
   text_named(t, name, name, t->e->energy, !moves);
-  if (moves) text_named(t, arena_printf(t->e->m->arena, "d%s/dt", name), arena_printf(t->e->m->arena, "\\dot{%s}", name), c->proof.power, 1);
+  if (moves)
+    text_named(t, arena_printf(t->e->m->arena, "d%s/dt", name), arena_printf(t->e->m->arena, "\\dot{%s}", name),
+               c->proof.power, 1);
   text_end(t);
 }
 
 /* Degrees of freedom of n first-order coordinates: n/2, with a half left over if drag couples an odd number. */
-static const char *half(const Eqns *e, uint32_t n) { return arena_printf(e->m->arena, "%u%s", n / 2, n % 2 ? " 1/2" : ""); }
+static const char *half(const Eqns *e, uint32_t n) {
+  return arena_printf(e->m->arena, "%u%s", n / 2, n % 2 ? " 1/2" : "");
+}
 
 /* ", singular at theta = 0", or nothing. */
 static const char *pole_text(const Eqns *e) {
   static const char *const at[] = {"-pi/2", "0", "pi/2", "pi"};
   MassPole pole;
   if (e->singular_mass || !mass_pole(e, &pole)) return "";
-  return arena_printf(e->m->arena, "%s singular at %s = %s", e->definite_by_values ? ", but" : ",", e->m->coords.at[pole.coordinate].name, at[pole.quarters + 1]);
+  return arena_printf(e->m->arena, "%s singular at %s = %s", e->definite_by_values ? ", but" : ",",
+                      e->m->coords.at[pole.coordinate].name, at[pole.quarters + 1]);
 }
 
 void show_facts(const Eqns *e, StrBuf *out) {
   const char *energy = e->ncharges ? charges_energy_text(e) : "";
   if (e->m->hamiltonian)
-    sb_printf(out, "Hamiltonian, %u coordinate%s and as many momenta; %s\n", e->first.n / 2, plural(e->first.n / 2), energy);
+    sb_printf(out, "Hamiltonian, %u coordinate%s and as many momenta; %s\n", e->first.n / 2, plural(e->first.n / 2),
+              energy);
   else if (e->first.n)
-    sb_printf(out, "first-order Lagrangian, %u coordinates, %s degree%s of freedom; two-form %s; %s\n", e->first.n, half(e, e->first.n),
-              e->first.n == 2 ? "" : "s", e->first.constant ? "constant" : "variable", energy);
+    sb_printf(out, "first-order Lagrangian, %u coordinates, %s degree%s of freedom; two-form %s; %s\n", e->first.n,
+              half(e, e->first.n), e->first.n == 2 ? "" : "s", e->first.constant ? "constant" : "variable", energy);
   if (!e->n) return;
-  sb_printf(out, "%u coordinate%s; mass matrix %s%s%s; %s\n", e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
-            e->singular_mass ? ", singular where no constraint holds" : e->definite_mass ? ", positive definite"
-            : e->definite_by_values ? ", positive definite by the signs of its parameters' values" : "", pole_text(e), energy);
+  sb_printf(out, "%u coordinate%s; mass matrix %s%s%s; %s\n", e->n, plural(e->n),
+            e->constant_mass ? "constant" : "variable",
+            e->singular_mass        ? ", singular where no constraint holds"
+            : e->definite_mass      ? ", positive definite"
+            : e->definite_by_values ? ", positive definite by the signs of its parameters' values"
+                                    : "",
+            pole_text(e), energy);
 }
 
 static void facts(Text *t, const char *cost) {
@@ -254,15 +275,22 @@ void dump_equations(const Eqns *e, StrBuf *out) {
   const Model *m = e->m;
   Arena *a = m->arena;
   for (uint32_t k = 0; k < e->mass.n; k++)
-    entry(e, arena_printf(a, "M[%s,%s]", m->coords.at[e->mass.at[k].row].name, m->coords.at[e->mass.at[k].col].name), e->mass.at[k].e, out);
+    entry(e, arena_printf(a, "M[%s,%s]", m->coords.at[e->mass.at[k].row].name, m->coords.at[e->mass.at[k].col].name),
+          e->mass.at[k].e, out);
   for (uint32_t i = 0; i < e->n; i++) entry(e, arena_printf(a, "f[%s]", m->coords.at[i].name), e->f[i], out);
   for (uint32_t i = 0; i < e->n; i++) entry(e, arena_printf(a, "Q[%s]", m->coords.at[i].name), e->Q[i], out);
-  for (uint32_t i = 0; i < m->states.n; i++) entry(e, arena_printf(a, "flow[%s]", m->states.at[i].name), e->flow[i], out);
+  for (uint32_t i = 0; i < m->states.n; i++)
+    entry(e, arena_printf(a, "flow[%s]", m->states.at[i].name), e->flow[i], out);
   const Constraints *k = &e->constraints;
-  for (uint32_t i = 0; i < k->n; i++) entry(e, arena_printf(a, i < k->nholonomic ? "c[%s]" : "r[%s]", k->of[i]->name), i < k->nholonomic ? k->c[i] : k->r[i], out);
-  for (uint32_t i = 0; i < k->A.n; i++) entry(e, arena_printf(a, "A[%s,%s]", k->of[k->A.at[i].row]->name, m->coords.at[k->A.at[i].col].name), k->A.at[i].e, out);
+  for (uint32_t i = 0; i < k->n; i++)
+    entry(e, arena_printf(a, i < k->nholonomic ? "c[%s]" : "r[%s]", k->of[i]->name),
+          i < k->nholonomic ? k->c[i] : k->r[i], out);
+  for (uint32_t i = 0; i < k->A.n; i++)
+    entry(e, arena_printf(a, "A[%s,%s]", k->of[k->A.at[i].row]->name, m->coords.at[k->A.at[i].col].name), k->A.at[i].e,
+          out);
   for (uint32_t i = 0; i < k->n; i++) entry(e, arena_printf(a, "g[%s]", k->of[i]->name), k->demand[i], out);
   if (e->energy_stable) entry(e, "E", e->energy_stable, out);
-  sb_printf(out, "facts:%s%s%s%s%s\n", e->constant_mass ? " constant-mass" : "", e->definite_mass ? " definite-mass" : "",
-            e->conserves_energy ? " conserves-energy" : "", e->autonomous ? " autonomous" : "", e->smooth ? " smooth" : "");
+  sb_printf(out, "facts:%s%s%s%s%s\n", e->constant_mass ? " constant-mass" : "",
+            e->definite_mass ? " definite-mass" : "", e->conserves_energy ? " conserves-energy" : "",
+            e->autonomous ? " autonomous" : "", e->smooth ? " smooth" : "");
 }

@@ -10,7 +10,9 @@ static void keep(Text *t, Exprs *roots, Expr x) { vec_push(t->e->m->arena, roots
 
 static Expr rate_symbol(Text *t, uint32_t i) { return expr_symbol(t->g, t->e->m->coords.at[i].v)->node; }
 
-static const char *latex_rate(Text *t, SymId p) { return arena_printf(t->e->m->arena, "\\dot{%s}", text_latex_name(t, expr_symbol(t->g, p)->name)); }
+static const char *latex_rate(Text *t, SymId p) {
+  return arena_printf(t->e->m->arena, "\\dot{%s}", text_latex_name(t, expr_symbol(t->g, p)->name));
+}
 
 /* q' = dH/dp, p' = -dH/dq + Q, and flows of states with velocities replaced by dH/dp. */
 static void motion(Text *t, const Hamilton *h, Exprs *roots) {
@@ -57,7 +59,8 @@ static void open_form(Text *t, Exprs *roots) {
   for (uint32_t k = 0; k < e->mass.n && !e->m->regularising; k++) {
     Name row = e->m->coords.at[e->mass.at[k].row].name, col = e->m->coords.at[e->mass.at[k].col].name;
     Expr x = e->n <= 16 ? simplify(t->g, e->mass.at[k].e) : e->mass.at[k].e;
-    text_named(t, arena_printf(a, "M[%s,%s]", row, col), arena_printf(a, "M_{%s,%s}", text_latex_name(t, row), text_latex_name(t, col)), x, k + 1 == e->mass.n);
+    text_named(t, arena_printf(a, "M[%s,%s]", row, col),
+               arena_printf(a, "M_{%s,%s}", text_latex_name(t, row), text_latex_name(t, col)), x, k + 1 == e->mass.n);
     keep(t, roots, x);
   }
   if (e->mass.n && !e->m->regularising) text_end(t);
@@ -76,7 +79,8 @@ void show_bracket(const Eqns *e, const char *name, Expr value, PrintStyle style,
   sb_putc(out, '\n');
 }
 
-/* Whether a product may be 0: at some state, or for some values of parameters. Divisors, as m in 1/m, cannot make it so. */
+/* Whether a product may be 0: at some state, or for some values of parameters. Divisors, as m in 1/m, cannot make it
+ * so. */
 static int may_vanish(ExprGraph *g, Expr x) {
   Num c;
   if (expr_pairs(g, x, EX_SUM) == 1) x = expr_pair(g, x, EX_SUM, 0, &c);
@@ -131,5 +135,7 @@ void show_hamiltonian(Eqns *e, PrintStyle style, StrBuf *out) {
   } else open_form(&t, &roots);
   constraints(&t, &roots);
   text_definitions(&t, roots.at, roots.n);
-  if (!h.is_closed) sb_printf(out, "%s%s: simulators compute H as the energy, from velocities\n", text_latex(&t) ? "% " : "\n", h.why_not);
+  if (!h.is_closed)
+    sb_printf(out, "%s%s: simulators compute H as the energy, from velocities\n", text_latex(&t) ? "% " : "\n",
+              h.why_not);
 }

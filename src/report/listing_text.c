@@ -23,7 +23,8 @@ void text_expr(Text *t, Expr e) {
     return;
   }
   text_put(t, "(", "\\text{(");
-  sb_printf(t->out, "too long to print: %.2g parts written out, %u distinct ones; --format c shows the steps", size, distinct);
+  sb_printf(t->out, "too long to print: %.2g parts written out, %u distinct ones; --format c shows the steps", size,
+            distinct);
   text_put(t, ")", ")}");
 }
 
@@ -38,7 +39,9 @@ static void equation(Text *t, const char *name, Expr left, Expr right, int last)
 }
 
 void text_equation(Text *t, Expr left, Expr right, int last) { equation(t, NULL, left, right, last); }
-void text_named(Text *t, const char *text, const char *in_latex, Expr right, int last) { equation(t, text_latex(t) ? in_latex : text, 0, right, last); }
+void text_named(Text *t, const char *text, const char *in_latex, Expr right, int last) {
+  equation(t, text_latex(t) ? in_latex : text, 0, right, last);
+}
 
 const char *text_latex_name(Text *t, Name name) {
   StrBuf b = strbuf(t->e->m->arena);
@@ -59,7 +62,8 @@ void text_definitions(Text *t, const Expr *roots, uint32_t n) {
 
 void text_title(Text *t) {
   const Model *m = t->e->m;
-  sb_printf(t->out, text_latex(t) ? "%% %s%s%s\n%% scene %s" : "%s%s%s\nscene %s", m->name, *m->doc ? ": " : "", m->doc, m->scene.name);
+  sb_printf(t->out, text_latex(t) ? "%% %s%s%s\n%% scene %s" : "%s%s%s\nscene %s", m->name, *m->doc ? ": " : "", m->doc,
+            m->scene.name);
   for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(t->out, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
   sb_putc(t->out, '\n');
 }
@@ -68,7 +72,8 @@ void text_constraints(Text *t) {
   const Constraints *k = &t->e->constraints;
   if (!k->n) return;
   text_heading(t, "constraints");
-  for (uint32_t i = 0; i < k->n; i++) text_equation(t, i < k->nholonomic ? k->c[i] : k->r[i], expr_int(t->g, 0), i + 1 == k->n);
+  for (uint32_t i = 0; i < k->n; i++)
+    text_equation(t, i < k->nholonomic ? k->c[i] : k->r[i], expr_int(t->g, 0), i + 1 == k->n);
   text_end(t);
 }
 
@@ -78,7 +83,8 @@ void text_momenta(Text *t) {
   text_heading(t, "momenta");
   for (uint32_t i = 0; i < n; i++) {
     Name name = e->n ? e->m->coords.at[i].name : e->m->states.at[e->first.at[i]].name;
-    const char *text = arena_printf(e->m->arena, "p_%s", name), *tex = arena_printf(e->m->arena, "p_{%s}", text_latex_name(t, name));
+    const char *text = arena_printf(e->m->arena, "p_%s", name),
+               *tex = arena_printf(e->m->arena, "p_{%s}", text_latex_name(t, name));
     Expr shown = e->n ? e->momenta[i] : e->first.theta[i];
     text_named(t, text, tex, shown, i + 1 == n);
   }
@@ -91,14 +97,17 @@ void text_charges(Text *t) {
   if (e->ncharges < 2) return;
   int jumps = 0;
   for (uint32_t i = 1; i < e->ncharges; i++) jumps |= e->charges[i].proof.jumps;
-  text_heading(t, jumps ? "charges of symmetries; some balances hold between jumps of L only: see `lagc check`" : "charges of symmetries");
+  text_heading(t, jumps ? "charges of symmetries; some balances hold between jumps of L only: see `lagc check`"
+                        : "charges of symmetries");
   for (uint32_t i = 1; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
     const char *tex = text_latex_name(t, c->name);
     int last = i + 1 == e->ncharges, moves = !c->proof.power_unknown && !expr_is_zero(t->g, c->proof.power);
-    if (!expr_is_zero(t->g, c->proof.F)) text_named(t, arena_printf(a, "F(%s)", c->name), arena_printf(a, "F_{%s}", tex), c->proof.F, 0);
+    if (!expr_is_zero(t->g, c->proof.F))
+      text_named(t, arena_printf(a, "F(%s)", c->name), arena_printf(a, "F_{%s}", tex), c->proof.F, 0);
     text_named(t, c->name, arena_printf(a, "Q_{%s}", tex), c->proof.charge, last && !moves);
-    if (moves) text_named(t, arena_printf(a, "d(%s)/dt", c->name), arena_printf(a, "\\dot{Q}_{%s}", tex), c->proof.power, last);
+    if (moves)
+      text_named(t, arena_printf(a, "d(%s)/dt", c->name), arena_printf(a, "\\dot{Q}_{%s}", tex), c->proof.power, last);
   }
   text_end(t);
 }

@@ -1,4 +1,5 @@
-/* `lagc noether` as one JSON object: names and formulas are text of the language, in which no character needs an escape. */
+/* `lagc noether` as one JSON object: names and formulas are text of the language, in which no character needs an
+ * escape. */
 #include "symmetry/charges.h"
 #include "model/printed_text.h"
 #include "symmetry/noether_report.h"
@@ -105,8 +106,10 @@ static void put_effect(StrBuf *out, const NoetherReport *r, const EffectVerdict 
 static void put_polynomial_charges(StrBuf *out, const NoetherReport *r) {
   const PolynomialCharges *f = r->polynomial;
   if (!f) return;
-  sb_printf(out, ",\n \"degree\": {\"searched_to\": %u, \"not_proved\": %u, \"certain\": %s, \"why_not\": \"%s\", \"ansatz\": [", f->ansatz.n ? f->ansatz.n + 1 : 0, f->unproved,
-            f->doubtful ? "false" : "true", f->why_not ? f->why_not : "");
+  sb_printf(
+      out,
+      ",\n \"degree\": {\"searched_to\": %u, \"not_proved\": %u, \"certain\": %s, \"why_not\": \"%s\", \"ansatz\": [",
+      f->ansatz.n ? f->ansatz.n + 1 : 0, f->unproved, f->doubtful ? "false" : "true", f->why_not ? f->why_not : "");
   for (uint32_t k = 0; k < f->ansatz.n; k++) sb_printf(out, "%s\"%s\"", comma(k), f->ansatz.at[k]);
   sb_puts(out, "], \"charges\": [");
   for (uint32_t k = 0; k < f->all.n; k++) {
@@ -120,13 +123,17 @@ static void put_polynomial_charges(StrBuf *out, const NoetherReport *r) {
 static void put_involution(StrBuf *out, const NoetherReport *r) {
   const Involution *v = r->involution;
   if (!v) return;
-  sb_printf(out, ",\n \"involution\": {\"degrees_of_freedom\": %u, \"integrable\": %s, \"independent\": %u, \"search_ended_early\": %s, \"why_not\": \"%s\", \"charges\": [", v->n,
-            !v->why_not && v->all.n == v->n ? "true" : "false", v->independent, v->steps || v->left_out ? "true" : "false", v->why_not ? v->why_not : "");
+  sb_printf(out,
+            ",\n \"involution\": {\"degrees_of_freedom\": %u, \"integrable\": %s, \"independent\": %u, "
+            "\"search_ended_early\": %s, \"why_not\": \"%s\", \"charges\": [",
+            v->n, !v->why_not && v->all.n == v->n ? "true" : "false", v->independent,
+            v->steps || v->left_out ? "true" : "false", v->why_not ? v->why_not : "");
   for (uint32_t k = 0; k < v->all.n; k++) {
     const InvolutionCharge *x = &v->all.at[k];
     sb_puts(out, k ? ",\n  {" : "\n  {");
     if (x->kind == INVOLUTION_LISTED) sb_printf(out, "\"number\": %u, ", x->number + 1);
-    if (x->kind == INVOLUTION_SQUARES) sb_printf(out, "\"squares_of\": [%u, %u, %u], ", x->of[0] + 1, x->of[1] + 1, x->of[2] + 1);
+    if (x->kind == INVOLUTION_SQUARES)
+      sb_printf(out, "\"squares_of\": [%u, %u, %u], ", x->of[0] + 1, x->of[1] + 1, x->of[2] + 1);
     if (x->name) sb_printf(out, "\"declared\": \"%s\", ", x->name);
     sb_puts(out, "\"charge\": ");
     put_expr(out, r->e->m, x->charge);
@@ -142,7 +149,10 @@ void show_noether_json(const NoetherReport *r, StrBuf *out) {
   for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(out, "%s\"%s\"", comma(i), m->effects.at[i]);
   sb_printf(out, "], \"energy\": \"%s\", \"cyclic\": [", charges_energy_word(r->e));
   for (uint32_t i = 0; i < r->cyclic.n; i++) sb_printf(out, "%s\"%s\"", comma(i), m->coords.at[r->cyclic.at[i]].name);
-  sb_printf(out, "],\n \"note\": \"%s\", \"ansatz\": \"%s\", \"searched\": %s, \"not_proved\": %u, \"galilean\": %s,\n \"symmetries\": [", f->note ? f->note : "", f->ansatz, f->searched ? "true" : "false", f->unproved,
+  sb_printf(out,
+            "],\n \"note\": \"%s\", \"ansatz\": \"%s\", \"searched\": %s, \"not_proved\": %u, \"galilean\": %s,\n "
+            "\"symmetries\": [",
+            f->note ? f->note : "", f->ansatz, f->searched ? "true" : "false", f->unproved,
             f->galilean ? "true" : "false");
   for (uint32_t k = 0; k < f->all.n; k++) {
     sb_puts(out, k ? ",\n  " : "\n  ");

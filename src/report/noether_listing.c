@@ -47,14 +47,17 @@ static const char *named_latex(const Page *p, uint32_t k, int dot) {
 }
 
 /* A line of prose; in LaTeX a comment. */
-static void say(Page *p, const char *words) { sb_printf(p->text.out, "%s%s\n", text_latex(&p->text) ? "% " : "", words); }
+static void say(Page *p, const char *words) {
+  sb_printf(p->text.out, "%s%s\n", text_latex(&p->text) ? "% " : "", words);
+}
 
 /* --- symmetries --- */
 
 static void put_delta(Page *p, Name name, Expr x) {
   Text *t = &p->text;
   Arena *a = t->e->m->arena;
-  if (!expr_is_zero(t->g, x)) text_named(t, arena_printf(a, "delta %s", name), arena_printf(a, "\\delta %s", text_latex_name(t, name)), x, 0);
+  if (!expr_is_zero(t->g, x))
+    text_named(t, arena_printf(a, "delta %s", name), arena_printf(a, "\\delta %s", text_latex_name(t, name)), x, 0);
 }
 
 /* "  for k > 0" */
@@ -73,7 +76,8 @@ static void put_conditions(Page *p, uint32_t k) {
 /* Changes of the coordinates and of time. */
 static void deltas(Page *p, const FoundSymmetry *s) {
   const Text *t = &p->text;
-  for (uint32_t i = 0; i < eqns_coordinates(t->e); i++) put_delta(p, expr_symbol(t->g, eqns_coordinate(t->e, i))->name, s->by.xi[i]);
+  for (uint32_t i = 0; i < eqns_coordinates(t->e); i++)
+    put_delta(p, expr_symbol(t->g, eqns_coordinate(t->e, i))->name, s->by.xi[i]);
   put_delta(p, "t", s->by.tau);
 }
 
@@ -83,7 +87,8 @@ static void symmetry(Page *p, uint32_t k) {
   const FoundSymmetry *s = &p->r->found.all.at[k];
   int moves = s->is.drift != PROVED_ZERO && !s->is.power_unknown;
   Name declared = noether_declared(p->r, k);
-  text_heading(t, arena_printf(a, "%s: %s%s%s%s", named(p, "", k, ""), s->name, declared ? "; declared as " : "", declared ? declared : "", s->is.jumps ? "; between jumps of L only" : ""));
+  text_heading(t, arena_printf(a, "%s: %s%s%s%s", named(p, "", k, ""), s->name, declared ? "; declared as " : "",
+                               declared ? declared : "", s->is.jumps ? "; between jumps of L only" : ""));
   deltas(p, s);
   if (!expr_is_zero(t->g, s->is.F)) text_named(t, "F", "F", s->is.F, 0);
   if (s->is.over_time) say(p, "  F also contains the integral over t of dQ/dt below");
@@ -92,8 +97,9 @@ static void symmetry(Page *p, uint32_t k) {
   text_end(t);
   put_conditions(p, k);
   if (s->is.drift != NOT_DECIDED) return;
-  say(p, s->is.power_unknown ? "  not decided whether it changes: L depends on an input whose rate of change is not known"
-                             : "  not decided whether it changes: this rate is neither proved to be 0 nor seen not to be");
+  say(p, s->is.power_unknown
+             ? "  not decided whether it changes: L depends on an input whose rate of change is not known"
+             : "  not decided whether it changes: this rate is neither proved to be 0 nor seen not to be");
 }
 
 static int some_jump(const FoundSymmetries *f) {
@@ -111,10 +117,14 @@ static void symmetries(Page *p) {
     say(p, arena_printf(a, "not searched: %s", f->note));
     return;
   }
-  say(p, f->all.n ? arena_printf(a, "found: %u symmetr%s, each proved%s; %s = p.delta q - E delta t - F", f->all.n, f->all.n == 1 ? "y" : "ies", some_jump(f) ? ", some between jumps of L only" : "", p->Q)
-                  : "found: none");
+  say(p, f->all.n
+             ? arena_printf(a, "found: %u symmetr%s, each proved%s; %s = p.delta q - E delta t - F", f->all.n,
+                            f->all.n == 1 ? "y" : "ies", some_jump(f) ? ", some between jumps of L only" : "", p->Q)
+             : "found: none");
   if (f->unproved)
-    say(p, arena_printf(a, "%u more direction%s of the solution space not written in closed form, or not proved: not listed", f->unproved, plural(f->unproved)));
+    say(p, arena_printf(
+               a, "%u more direction%s of the solution space not written in closed form, or not proved: not listed",
+               f->unproved, plural(f->unproved)));
   if (f->note) say(p, f->note);
   if (f->galilean) say(p, "the ten charges of the Galilei group are among them");
   for (uint32_t k = 0; k < f->all.n; k++) symmetry(p, k);
@@ -152,7 +162,9 @@ static void scaling(Page *p) {
     if (num_is_zero(power)) continue;
     sb_printf(&b, "%s %s -> %s*%s", b.n > sizeof "scaling:" ? "," : "", x, power_text(p, power), x);
   }
-  sb_printf(&b, " maps solutions to solutions; it multiplies the action by %s, so it is no symmetry in Noether's sense and has no charge",
+  sb_printf(&b,
+            " maps solutions to solutions; it multiplies the action by %s, so it is no symmetry in Noether's sense and "
+            "has no charge",
             power_text(p, r->scaling.kappa));
   say(p, sb_text(&b));
 }
@@ -201,9 +213,14 @@ static void algebra(Page *p) {
     open += !x->all.at[k].c && !x->all.at[k].is_outside;
     outside += !x->all.at[k].c && x->all.at[k].is_outside;
   }
-  if (outside) say(p, arena_printf(a, "  %u of them %s no combination of these charges", outside, outside == 1 ? "is" : "are"));
-  if (open) say(p, arena_printf(a, "  %u of them %s of these charges with coefficients that were not recognised", open, open == 1 ? "is a combination" : "are combinations"));
-  const char *how = x->by_value ? arena_printf(a, "%u of %u proved, all checked at random states", pairs - x->by_value, pairs) : "all proved";
+  if (outside)
+    say(p, arena_printf(a, "  %u of them %s no combination of these charges", outside, outside == 1 ? "is" : "are"));
+  if (open)
+    say(p, arena_printf(a, "  %u of them %s of these charges with coefficients that were not recognised", open,
+                        open == 1 ? "is a combination" : "are combinations"));
+  const char *how = x->by_value
+                        ? arena_printf(a, "%u of %u proved, all checked at random states", pairs - x->by_value, pairs)
+                        : "all proved";
   say(p, arena_printf(a, "  %s%s", !x->all.n ? "all Poisson brackets are 0: " : zero ? "the others are 0: " : "", how));
 }
 
@@ -211,7 +228,8 @@ static void algebra(Page *p) {
 
 static int is_broken(const EffectVerdict *v, const Noether *is, const Noether *before) {
   if (!is->charge) return 1;
-  return is->power_unknown || (is->jumps && !before->jumps) || !expr_is_zero(v->e->g, is->power) || (is->is != INVARIANT && is->is != INVARIANT_UP_TO_F);
+  return is->power_unknown || (is->jumps && !before->jumps) || !expr_is_zero(v->e->g, is->power) ||
+         (is->is != INVARIANT && is->is != INVARIANT_UP_TO_F);
 }
 
 /* The charge whose rate follows, where L or F of the effect changes it. */
@@ -243,8 +261,11 @@ static void effect(Page *p, const EffectVerdict *v) {
     int last = ++shown == broken;
     if (is->charge) other_charge(p, v, &of, k);
     if (is->charge && is->jumps) say(p, arena_printf(a, "  %s, between jumps of L only:", named(p, "", k, "")));
-    if (is->charge && !is->power_unknown) text_named(&of, named(p, "d", k, "/dt"), named_latex(p, k, 1), is->power, last);
-    else sb_printf(of.out, text_latex(&of) ? "  %s &\\text{ is not known}\n" : "  %s is not known\n", text_latex(&of) ? named_latex(p, k, 1) : named(p, "d", k, "/dt"));
+    if (is->charge && !is->power_unknown)
+      text_named(&of, named(p, "d", k, "/dt"), named_latex(p, k, 1), is->power, last);
+    else
+      sb_printf(of.out, text_latex(&of) ? "  %s &\\text{ is not known}\n" : "  %s is not known\n",
+                text_latex(&of) ? named_latex(p, k, 1) : named(p, "d", k, "/dt"));
   }
   text_end(&of);
   impacts(p, v);
@@ -260,9 +281,14 @@ static void polynomial_charges(Page *p) {
   sb_putc(t->out, '\n');
   for (uint32_t k = 0; k < f->ansatz.n; k++) say(p, arena_printf(a, "looked for: %s", f->ansatz.at[k]));
   if (f->why_not) say(p, arena_printf(a, "not searched to degree %u in the momenta: %s", f->degree, f->why_not));
-  if (f->ansatz.n && f->all.n) say(p, arena_printf(a, "found: %u charge%s, each proved, beside products of charges", f->all.n, plural(f->all.n)));
-  else if (f->ansatz.n) say(p, f->unproved || f->doubtful || !p->r->found.all.n ? "found: none" : "found: none but products of the charges above");
-  if (f->unproved) say(p, arena_printf(a, "%u more candidate%s not written in closed form, or not proved: not listed", f->unproved, plural(f->unproved)));
+  if (f->ansatz.n && f->all.n)
+    say(p, arena_printf(a, "found: %u charge%s, each proved, beside products of charges", f->all.n, plural(f->all.n)));
+  else if (f->ansatz.n)
+    say(p, f->unproved || f->doubtful || !p->r->found.all.n ? "found: none"
+                                                            : "found: none but products of the charges above");
+  if (f->unproved)
+    say(p, arena_printf(a, "%u more candidate%s not written in closed form, or not proved: not listed", f->unproved,
+                        plural(f->unproved)));
   if (f->doubtful) say(p, "  a rank was not certain: there may be more");
   Expr *roots = ARENA_ARRAY(a, Expr, f->all.n + 1);
   for (uint32_t k = 0; k < f->all.n; k++) {
@@ -280,7 +306,8 @@ static void polynomial_charges(Page *p) {
 static const char *charge_name(const Page *p, const InvolutionCharge *x) {
   if (x->kind == INVOLUTION_LISTED) return named(p, "", x->number, "");
   if (x->kind == INVOLUTION_DECLARED) return x->name;
-  return arena_printf(p->text.e->m->arena, "%s^2 + %s^2 + %s^2", named(p, "", x->of[0], ""), named(p, "", x->of[1], ""), named(p, "", x->of[2], ""));
+  return arena_printf(p->text.e->m->arena, "%s^2 + %s^2 + %s^2", named(p, "", x->of[0], ""), named(p, "", x->of[1], ""),
+                      named(p, "", x->of[2], ""));
 }
 
 static const char *charge_names_text(const Page *p, const Involution *v) {
@@ -297,8 +324,12 @@ static const char *charge_names_text(const Page *p, const Involution *v) {
 /* Where further charges might be. */
 static const char *not_looked_for(const Page *p) {
   const PolynomialCharges *f = p->r->polynomial;
-  if (!f || f->why_not) return f ? "higher degrees in the momenta were not searched" : "higher degrees in the momenta were not searched: --degree 2, 3, 4";
-  return arena_printf(p->text.e->m->arena, "none is left within the coefficients above up to degree %u in the momenta; others may exist", f->degree);
+  if (!f || f->why_not)
+    return f ? "higher degrees in the momenta were not searched"
+             : "higher degrees in the momenta were not searched: --degree 2, 3, 4";
+  return arena_printf(p->text.e->m->arena,
+                      "none is left within the coefficients above up to degree %u in the momenta; others may exist",
+                      f->degree);
 }
 
 static void involution(Page *p) {
@@ -310,15 +341,22 @@ static void involution(Page *p) {
     say(p, arena_printf(a, "no charges in involution: %s", v->why_not));
     return;
   }
-  say(p, arena_printf(a, v->all.n == v->n ? "in involution: %s%s%u of %u: Liouville-integrable" : "in involution: %s%s%u of the %u that integrability needs", charge_names_text(p, v),
-                      v->all.n ? ": " : "", v->all.n, v->n));
+  say(p, arena_printf(a,
+                      v->all.n == v->n ? "in involution: %s%s%u of %u: Liouville-integrable"
+                                       : "in involution: %s%s%u of the %u that integrability needs",
+                      charge_names_text(p, v), v->all.n ? ": " : "", v->all.n, v->n));
   if (v->all.n > 1) say(p, "  all their Poisson brackets are 0, proved");
-  say(p, arena_printf(a, "  %u independent charge%s in all, by the rank of gradients at random states%s", v->independent, plural(v->independent),
-                      v->all.n == v->n && v->independent > v->n ? v->independent == 2 * v->n - 1 ? ": maximally superintegrable" : ": superintegrable" : ""));
+  say(p, arena_printf(a, "  %u independent charge%s in all, by the rank of gradients at random states%s",
+                      v->independent, plural(v->independent),
+                      v->all.n == v->n && v->independent > v->n
+                          ? v->independent == 2 * v->n - 1 ? ": maximally superintegrable" : ": superintegrable"
+                          : ""));
   if (v->all.n == v->n) return;
   say(p, arena_printf(a, "  %s", not_looked_for(p)));
-  if (v->steps) say(p, arena_printf(a, "  the search for sets ended after %u tries: there may be a larger one", v->steps));
-  if (v->left_out) say(p, arena_printf(a, "  %u further charges were not looked at: there may be a larger set", v->left_out));
+  if (v->steps)
+    say(p, arena_printf(a, "  the search for sets ended after %u tries: there may be a larger one", v->steps));
+  if (v->left_out)
+    say(p, arena_printf(a, "  %u further charges were not looked at: there may be a larger set", v->left_out));
 }
 
 /* --- the page --- */

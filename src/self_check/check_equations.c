@@ -1,4 +1,5 @@
-/* Residuals of the text's equations of motion along virtual displacements, with the accelerations of the program. Formula: self_check.h. */
+/* Residuals of the text's equations of motion along virtual displacements, with the accelerations of the program.
+ * Formula: self_check.h. */
 #include <math.h>
 
 #include "self_check/self_check_impl.h"
@@ -42,7 +43,9 @@ void check_input(void *data, InputKind kind, uint32_t i, Jet *out) {
   }
 }
 
-Bounded check_coefficient(const Tape *tape, const Jet *at, Ref r, int plane, int k) { return r ? tape_value(tape, at, r)->c[plane][k] : (Bounded){0, 0}; }
+Bounded check_coefficient(const Tape *tape, const Jet *at, Ref r, int plane, int k) {
+  return r ? tape_value(tape, at, r)->c[plane][k] : (Bounded){0, 0};
+}
 
 int check_run_text(Check *c) {
   int unsure = 0;
@@ -62,7 +65,8 @@ static Bounded torque_work(const Check *c, const TextForce *f) {
     int i = k % 3 + 1, j = i % 3 + 1;
     Bounded turn = bounded_sub(bounded_mul(q[0], d[k]), bounded_mul(q[k], d[0]));
     turn = bounded_sub(turn, bounded_sub(bounded_mul(q[i], d[j]), bounded_mul(q[j], d[i])));
-    work = bounded_add(work, bounded_mul(bounded_mul((Bounded){2, 0}, turn), check_coefficient(t, c->at, f->f[k - 1], 0, 0)));
+    work = bounded_add(work,
+                       bounded_mul(bounded_mul((Bounded){2, 0}, turn), check_coefficient(t, c->at, f->f[k - 1], 0, 0)));
   }
   return work;
 }
@@ -73,7 +77,10 @@ static void add_forces(const Check *c, Real sign, BoundedSum *r) {
   for (uint32_t i = 0; i < d->forces.n; i++) {
     const TextForce *f = &d->forces.at[i];
     if (f->torque) bounded_sum_add(r, sign, torque_work(c, f));
-    else bounded_sum_add(r, sign, bounded_mul(check_coefficient(d->tape, c->at, f->f[0], 0, 0), check_coefficient(d->tape, c->at, f->point[0], 1, 0)));
+    else
+      bounded_sum_add(r, sign,
+                      bounded_mul(check_coefficient(d->tape, c->at, f->f[0], 0, 0),
+                                  check_coefficient(d->tape, c->at, f->point[0], 1, 0)));
   }
   bounded_sum_add(r, -sign, check_coefficient(d->tape, c->at, d->dissipation, 2, 0));
 }
@@ -83,7 +90,10 @@ static void add_multipliers(const Check *c, BoundedSum *r) {
   for (uint32_t i = 0; i < k->n; i++) {
     uint32_t place = (uint32_t)(k->of[i] - c->m->constraints.at);
     if (k->of[i]->inside) continue; /* displacements satisfy it: check_keep_rotations */
-    bounded_sum_add(r, -1, bounded_mul((Bounded){c->lambda[place], c->lambda_error[place]}, check_coefficient(c->dynamics->tape, c->at, c->dynamics->constraints[place], i < k->nholonomic ? 1 : 2, 0)));
+    bounded_sum_add(r, -1,
+                    bounded_mul((Bounded){c->lambda[place], c->lambda_error[place]},
+                                check_coefficient(c->dynamics->tape, c->at, c->dynamics->constraints[place],
+                                                  i < k->nholonomic ? 1 : 2, 0)));
   }
 }
 
@@ -139,12 +149,14 @@ static CheckVerdict check_coordinate(Check *c, uint32_t i, const Real *const *va
   if (m->first_order && !m->states.at[i].coordinate) return AGREES;
   for (uint32_t k = 0; k < check_components(c); k++) c->c[k] = k == i;
   if (!m->first_order) check_keep_rotations(c);
-  return check_direction(c, m->first_order ? m->states.at[i].name : m->coords.at[i].name, m->lagrangian_span, variation);
+  return check_direction(c, m->first_order ? m->states.at[i].name : m->coords.at[i].name, m->lagrangian_span,
+                         variation);
 }
 
 /* Checks one random combination of all coordinates; on disagreement, each coordinate, to name the wrong one. */
 static CheckVerdict check_combination(Check *c, const Real *const *variation) {
-  for (uint32_t k = 0; k < check_components(c); k++) c->c[k] = check_random(c, 0.3L, 1) * (check_random(c, 0, 1) < 0.5L ? -1 : 1);
+  for (uint32_t k = 0; k < check_components(c); k++)
+    c->c[k] = check_random(c, 0.3L, 1) * (check_random(c, 0, 1) < 0.5L ? -1 : 1);
   if (c->m->first_order)
     for (uint32_t k = 0; k < check_components(c); k++) c->c[k] *= c->m->states.at[k].coordinate;
   else check_keep_rotations(c);
@@ -154,8 +166,10 @@ static CheckVerdict check_combination(Check *c, const Real *const *variation) {
   m->diags = diags_new(c->arena, c->m->ast->sources);
   CheckVerdict v = check_direction(c, "all coordinates", m->lagrangian_span, variation);
   m->diags = heard;
-  for (uint32_t i = 0; v == DISAGREES && i < check_components(c) && m->diags->errors == errors; i++) check_coordinate(c, i, variation);
-  if (v == DISAGREES && m->diags->errors == errors) check_direction(c, "all coordinates", m->lagrangian_span, variation);
+  for (uint32_t i = 0; v == DISAGREES && i < check_components(c) && m->diags->errors == errors; i++)
+    check_coordinate(c, i, variation);
+  if (v == DISAGREES && m->diags->errors == errors)
+    check_direction(c, "all coordinates", m->lagrangian_span, variation);
   return v;
 }
 
@@ -169,9 +183,13 @@ CheckVerdict check_equations(Check *c) {
     if (!check_run(c, c->u->variation, out)) return DISMISSED;
   }
   const Real *const *given = variation[0] ? variation : NULL;
-  uint32_t n = check_components(c), length = c->dynamics->tape->ins.n, singles = length >= LONG_TAPE ? 0 : n <= FEW ? n : 1;
+  uint32_t n = check_components(c), length = c->dynamics->tape->ins.n,
+           singles = length >= LONG_TAPE ? 0
+                     : n <= FEW          ? n
+                                         : 1;
   if (n > FEW || !singles) v = check_combination(c, given);
-  for (uint32_t i = 0; i < singles && v == AGREES; i++) v = worse(v, check_coordinate(c, n <= FEW ? i : (uint32_t)(check_random(c, 0, 1) * n), given));
+  for (uint32_t i = 0; i < singles && v == AGREES; i++)
+    v = worse(v, check_coordinate(c, n <= FEW ? i : (uint32_t)(check_random(c, 0, 1) * n), given));
   c->statistics->directions = singles + (n > FEW || !singles);
   return v;
 }
@@ -214,18 +232,24 @@ static int text_is_finite(Check *c) {
   for (uint32_t k = 0; k < c->n; k++) c->c[k] = 1;
   int sure = check_run_text(c);
   BoundedSum r = check_residual(c);
-  for (uint32_t i = 0; i < c->m->states.n; i++) sure &= isfinite(check_coefficient(d->tape, c->at, d->flows[i], 0, 0).v);
-  return sure && isfinite(r.sum.v) && isfinite(r.inner_magnitude) && isfinite(check_coefficient(d->tape, c->at, d->dissipation, 0, 0).v) && r.size < 1e150L;
+  for (uint32_t i = 0; i < c->m->states.n; i++)
+    sure &= isfinite(check_coefficient(d->tape, c->at, d->flows[i], 0, 0).v);
+  return sure && isfinite(r.sum.v) && isfinite(r.inner_magnitude) &&
+         isfinite(check_coefficient(d->tape, c->at, d->dissipation, 0, 0).v) && r.size < 1e150L;
 }
 
-/* The program has no finite accelerations: an error if the text's equations are finite with a positive definite mass matrix. */
+/* The program has no finite accelerations: an error if the text's equations are finite with a positive definite mass
+ * matrix. */
 CheckVerdict check_failure(Check *c) {
-  if (!c->n || c->n > FEW || c->dynamics->why || c->dynamics->tape->ins.n > LONG_TAPE || c->m->constraints.n) return DISMISSED;
+  if (!c->n || c->n > FEW || c->dynamics->why || c->dynamics->tape->ins.n > LONG_TAPE || c->m->constraints.n)
+    return DISMISSED;
   c->error = 0;
   for (uint32_t i = 0; i < c->n; i++) c->a[i] = 0;
   for (uint32_t i = 0; i < c->m->states.n; i++) c->zd[i] = 0;
   if (!text_is_finite(c) || !text_is_definite(c)) return DISMISSED;
-  diag_error(c->m->diags, c->m->lagrangian_span, "internal error: the compiled program has no finite accelerations where the text has");
-  diag_help(c->m->diags, "at %s; nothing was written. This is a mistake in lagc, not in the model: please report it", check_state_text(c));
+  diag_error(c->m->diags, c->m->lagrangian_span,
+             "internal error: the compiled program has no finite accelerations where the text has");
+  diag_help(c->m->diags, "at %s; nothing was written. This is a mistake in lagc, not in the model: please report it",
+            check_state_text(c));
   return DISAGREES;
 }

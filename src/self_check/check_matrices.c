@@ -1,5 +1,6 @@
-/* Programs of matrices: mass matrix with bias and inverse dynamics, by the text's residual at accelerations that are no solution; derivatives by state,
- * inputs and parameters, by finite differences of the text's residuals. Enters: a state whose motion was compared. Leaves: a verdict, the state as it was. */
+/* Programs of matrices: mass matrix with bias and inverse dynamics, by the text's residual at accelerations that are
+ * no solution; derivatives by state, inputs and parameters, by finite differences of the text's residuals. Enters: a
+ * state whose motion was compared. Leaves: a verdict, the state as it was. */
 #include <math.h>
 
 #include "self_check/self_check_impl.h"
@@ -28,19 +29,24 @@ static Real along(const Check *c, const Real *M, const Real *force, Real *size) 
   return sum;
 }
 
-/* Compares M a + b and the forces of inverse dynamics with the text's residual at these accelerations and no multipliers. */
+/* Compares M a + b and the forces of inverse dynamics with the text's residual at these accelerations and no
+ * multipliers. */
 static CheckVerdict compare_forces(Check *c, const Real *M, const Real *bias, const Real *inverse) {
   Real size = 0, program = bias ? along(c, M, bias, &size) : 0, other = inverse ? along(c, NULL, inverse, &size) : 0;
   if (!check_run_text(c)) return AGREES;
   BoundedSum t = check_residual(c);
   t.size += size;
-  CheckVerdict v = bias ? check_compare(c, &t, program, c->m->lagrangian_span, "the mass matrix and the bias", NULL) : AGREES;
-  return inverse && v != DISAGREES ? worse(v, check_compare(c, &t, other, c->m->lagrangian_span, "inverse dynamics", NULL)) : v;
+  CheckVerdict v =
+      bias ? check_compare(c, &t, program, c->m->lagrangian_span, "the mass matrix and the bias", NULL) : AGREES;
+  return inverse && v != DISAGREES
+             ? worse(v, check_compare(c, &t, other, c->m->lagrangian_span, "inverse dynamics", NULL))
+             : v;
 }
 
 static CheckVerdict check_forces(Check *c) {
   const ProgramSet *u = c->u;
-  Real *M = reals(c, c->n * c->n), *bias = reals(c, c->n), *inverse = reals(c, c->n), *a = reals(c, c->n), *lambda = reals(c, c->m->constraints.n);
+  Real *M = reals(c, c->n * c->n), *bias = reals(c, c->n), *inverse = reals(c, c->n), *a = reals(c, c->n),
+       *lambda = reals(c, c->m->constraints.n);
   CheckVerdict v = AGREES;
   for (uint32_t i = 0; i < c->n; i++) a[i] = c->a[i];
   for (uint32_t i = 0; i < c->m->constraints.n; i++) lambda[i] = c->lambda[i], c->lambda[i] = 0;
@@ -77,7 +83,8 @@ static Real *variable(const Check *c, PartialsBy by, uint32_t i) {
   return &c->given[k];
 }
 
-/* Weights of the residuals: equations of motion, then flows, then constraints, without those of unit length, which the text leaves out. */
+/* Weights of the residuals: equations of motion, then flows, then constraints, without those of unit length, which
+ * the text leaves out. */
 static Real *weights(Check *c) {
   const Constraints *k = &c->e->constraints;
   uint32_t nz = c->m->states.n;
@@ -86,11 +93,13 @@ static Real *weights(Check *c) {
   for (uint32_t i = 0; i < c->n; i++) w[i] = c->c[i];
   for (uint32_t i = 0; i < nz; i++) w[c->n + i] = c->dynamics->flows[i] ? check_random(c, -1, 1) : 0;
   for (uint32_t i = 0; i < k->n; i++)
-    if (c->dynamics->constraints[k->of[i] - c->m->constraints.at] && !k->of[i]->inside) w[c->n + nz + i] = check_random(c, -1, 1);
+    if (c->dynamics->constraints[k->of[i] - c->m->constraints.at] && !k->of[i]->inside)
+      w[c->n + nz + i] = check_random(c, -1, 1);
   return w;
 }
 
-/* The text's residuals times their weights at a perturbed state, with the unperturbed accelerations and multipliers; 0: not finite or unsure. */
+/* The text's residuals times their weights at a perturbed state, with the unperturbed accelerations and multipliers;
+ * 0: not finite or unsure. */
 static int residual_beside(Check *c, const Real *w, Real *out, Real *size, Real *rounding) {
   const TextDynamics *d = c->dynamics;
   const Constraints *k = &c->e->constraints;
@@ -100,11 +109,13 @@ static int residual_beside(Check *c, const Real *w, Real *out, Real *size, Real 
   if (!check_run_text(c)) return 0;
   BoundedSum r = {0};
   if (c->n) r = check_residual(c);
-  for (uint32_t i = 0; i < nz; i++) bounded_sum_add(&r, -w[c->n + i], check_coefficient(d->tape, c->at, d->flows[i], 0, 0));
+  for (uint32_t i = 0; i < nz; i++)
+    bounded_sum_add(&r, -w[c->n + i], check_coefficient(d->tape, c->at, d->flows[i], 0, 0));
   for (uint32_t i = 0; i < k->n; i++) { /* coefficient 2 is half of c'' */
     int holonomic = i < k->nholonomic;
     Ref of = d->constraints[k->of[i] - c->m->constraints.at];
-    bounded_sum_add(&r, w[c->n + nz + i] * (holonomic ? 2 : 1), check_coefficient(d->tape, c->at, of, 0, holonomic ? 2 : 1));
+    bounded_sum_add(&r, w[c->n + nz + i] * (holonomic ? 2 : 1),
+                    check_coefficient(d->tape, c->at, of, 0, holonomic ? 2 : 1));
   }
   *out = r.sum.v;
   *size += r.size + r.inner_magnitude;
@@ -141,10 +152,12 @@ static CheckVerdict check_derivatives(Check *c, const Derivatives *x) {
   for (uint32_t i = 0; i < c->m->states.n; i++) zd[i] = c->zd[i];
   Real middle, scale = 0, none = 0;
   int ran = residual_beside(c, w, &middle, &scale, &none);
-  if (ran && fabsl(said) * h > h * scale) h *= scale / fabsl(said); /* a fast phase, as cos(w t) with a large w t: differences over a small part of a turn */
+  /* a fast phase, as cos(w t) with a large w t: differences over a small part of a turn */
+  if (ran && fabsl(said) * h > h * scale) h *= scale / fabsl(said);
   if (jet_unit > 1e-6L * h) return AGREES;
   for (int k = 0; k < 4 && ran; k++) {
-    for (uint32_t i = 0; i < x->columns; i++) *variable(c, x->by, i) = base[i] + (k % 2 ? h : -h) * (k < 2 ? 1 : 2) * d[i];
+    for (uint32_t i = 0; i < x->columns; i++)
+      *variable(c, x->by, i) = base[i] + (k % 2 ? h : -h) * (k < 2 ? 1 : 2) * d[i];
     ran = residual_beside(c, w, &at[k], &inner_magnitude, &rounding);
   }
   for (uint32_t i = 0; i < x->columns; i++) *variable(c, x->by, i) = base[i];

@@ -1,4 +1,5 @@
-/* Rates of charges and Taylor coefficients, against finite differences of values that were compared with the text before. */
+/* Rates of charges and Taylor coefficients, against finite differences of values that were compared with the text
+ * before. */
 #include <math.h>
 
 #include "self_check/self_check_impl.h"
@@ -42,8 +43,8 @@ static Real short_time(const Check *c) {
   return 1e-4L / rate;
 }
 
-/* Derivative by Richardson extrapolation of central differences, at = f(-h), f(h), f(-2h), f(2h). Error: a quarter of their difference,
- * plus 1/h times the known error `rounding` and the rounding of values of magnitude `size`. */
+/* Derivative by Richardson extrapolation of central differences, at = f(-h), f(h), f(-2h), f(2h). Error: a quarter
+ * of their difference, plus 1/h times the known error `rounding` and the rounding of values of magnitude `size`. */
 BoundedSum check_derivative(const Real at[4], Real h, Real size, Real rounding) {
   Real near = (at[1] - at[0]) / (2 * h), far = (at[3] - at[2]) / (4 * h), spread = fabsl(near - far);
   Real error = spread / 4 + (1024 * jet_unit * size + rounding) / h;
@@ -57,7 +58,9 @@ static CheckVerdict check_charges(Check *c) {
   Real *value = ARENA_ARRAY(c->arena, Real, 2 * n + 4), *power = ARENA_ARRAY(c->arena, Real, n + 1), h = short_time(c);
   Real(*at)[4] = arena_alloc(c->arena, (n + 1) * sizeof *at), *size = ARENA_ARRAY(c->arena, Real, n + 1);
   CheckVerdict v = AGREES;
-  if (n < 2 || !u->charge_values || c->m->inputs.n > 0 || (u->charge_powers && !check_run(c, u->charge_powers, (Real *const[]){power}))) return AGREES;
+  if (n < 2 || !u->charge_values || c->m->inputs.n > 0 ||
+      (u->charge_powers && !check_run(c, u->charge_powers, (Real *const[]){power})))
+    return AGREES;
   SavedState kept = copy_state(c);
   for (int k = 0; k < 4; k++) { /* -h, h, -2h, 2h; q to second order in s */
     Real s = (k % 2 ? h : -h) * (k < 2 ? 1 : 2);
@@ -81,13 +84,17 @@ static CheckVerdict check_charges(Check *c) {
 
 enum { ORDERS = 10 };
 
-/* Taylor coefficients up to ORDERS in x[order][column], by the recurrences of series/series.h as emitted code runs them, with T = 1. */
+/* Taylor coefficients up to ORDERS in x[order][column], by the recurrences of series/series.h as emitted code runs
+ * them, with T = 1. */
 static int taylor_rows(Check *c, const Series *s, Real *x) {
   uint32_t columns = s->columns, nq = s->nq, nz = s->nz, time = 3 * nq + 2 * nz, wide = s->width + s->group + 4;
-  Real *constants = ARENA_ARRAY(c->arena, Real, s->constants + 1), *sum = ARENA_ARRAY(c->arena, Real, wide), *follows = ARENA_ARRAY(c->arena, Real, c->m->inputs.n + 1);
-  Real *a = ARENA_ARRAY(c->arena, Real, (size_t)wide * (ORDERS + 1)), *b = ARENA_ARRAY(c->arena, Real, (size_t)wide * (ORDERS + 1));
+  Real *constants = ARENA_ARRAY(c->arena, Real, s->constants + 1), *sum = ARENA_ARRAY(c->arena, Real, wide),
+       *follows = ARENA_ARRAY(c->arena, Real, c->m->inputs.n + 1);
+  Real *a = ARENA_ARRAY(c->arena, Real, (size_t)wide * (ORDERS + 1)),
+       *b = ARENA_ARRAY(c->arena, Real, (size_t)wide * (ORDERS + 1));
   const Real *in[ARR_COUNT] = {0};
-  in[ARR_T] = &c->t, in[ARR_Q] = c->q, in[ARR_V] = c->v, in[ARR_Z] = c->z, in[ARR_P] = c->p, in[ARR_U] = c->signal, in[ARR_FREE] = follows;
+  in[ARR_T] = &c->t, in[ARR_Q] = c->q, in[ARR_V] = c->v, in[ARR_Z] = c->z, in[ARR_P] = c->p, in[ARR_U] = c->signal,
+  in[ARR_FREE] = follows;
   if (prog_eval(s->first, in, (Real *const[]){x, constants}) != 0) return 0;
   for (uint32_t i = 0; i < nq; i++) x[i] = c->q[i], x[nq + i] = c->v[i];
   for (uint32_t i = 0; i < nz; i++) x[2 * nq + i] = c->z[i];
@@ -101,10 +108,12 @@ static int taylor_rows(Check *c, const Series *s, Real *x) {
     Real order = k, per_order = 1 / order, up = 1 / (order + 1), *row = x + (size_t)k * columns;
     for (uint32_t i = 0; i < wide; i++) {
       sum[i] = 0;
-      for (int j = 1; j < k; j++) sum[i] += a[(size_t)j * wide + i] * (s->squares && i >= s->first_square ? a : b)[(size_t)(k - j) * wide + i];
+      for (int j = 1; j < k; j++)
+        sum[i] += a[(size_t)j * wide + i] * (s->squares && i >= s->first_square ? a : b)[(size_t)(k - j) * wide + i];
     }
     in[ARR_COEF] = row, in[ARR_ORDER] = &order, in[ARR_PER_ORDER] = &per_order, in[ARR_UP] = &up;
-    if (prog_eval(s->next, in, (Real *const[]){row, row + columns, a + (size_t)k * wide, b + (size_t)k * wide}) != 0) return 0;
+    if (prog_eval(s->next, in, (Real *const[]){row, row + columns, a + (size_t)k * wide, b + (size_t)k * wide}) != 0)
+      return 0;
   }
   return 1;
 }
@@ -129,7 +138,8 @@ static int run_at(Check *c, const TaylorStep *y, int orders, const SavedState *k
   Real *x = y->x, h = y->h, *a = y->a + (part ? s->nq : 0), *zd = y->zd + (part ? s->nz : 0);
   Real *top = x + (size_t)(orders + 1) * s->columns, *cut = copied(c, top, s->columns * (uint32_t)(ORDERS - orders));
   for (uint32_t i = 0; i < s->columns * (uint32_t)(ORDERS - orders); i++) top[i] = 0;
-  for (uint32_t i = 0; i < s->nq; i++) c->q[i] = polynomial(x, s->columns, i, h, 0), c->v[i] = polynomial(x, s->columns, s->nq + i, h, 0);
+  for (uint32_t i = 0; i < s->nq; i++)
+    c->q[i] = polynomial(x, s->columns, i, h, 0), c->v[i] = polynomial(x, s->columns, s->nq + i, h, 0);
   for (uint32_t i = 0; i < s->nz; i++) c->z[i] = polynomial(x, s->columns, 2 * s->nq + i, h, 0);
   c->t = kept->t + h;
   int ran = check_run(c, c->u->accel, (Real *const[]){a, zd});
@@ -143,27 +153,30 @@ static Real taylor_step(const Series *s, const Real *x) {
   Real h = 0.1L;
   for (uint32_t i = 0; i < s->nq + s->nz; i++)
     for (int k = ORDERS - 1; k <= ORDERS; k++) {
-      Real last = fabsl(x[(size_t)k * s->columns + s->nq + i]), size = fabsl(x[s->nq + i]) + fabsl(x[s->columns + s->nq + i]);
+      Real last = fabsl(x[(size_t)k * s->columns + s->nq + i]),
+           size = fabsl(x[s->nq + i]) + fabsl(x[s->columns + s->nq + i]);
       if (last > 0 && size > 0) h = fminl(h, powl(1e-12L * size / last, 1.0L / k));
     }
   return h;
 }
 
-/* Returns |rate - slope|: rate i of the program at h, and the slope of polynomial i there. *t: the slope with its truncation error,
- * estimated by leaving out two terms; off: rounding error of the rate; *said: the rate. */
+/* Returns |rate - slope|: rate i of the program at h, and the slope of polynomial i there. *t: the slope with its
+ * truncation error, estimated by leaving out two terms; off: rounding error of the rate; *said: the rate. */
 static Real taylor_difference(const TaylorStep *y, uint32_t i, Real off, BoundedSum *t, Real *said) {
   const Series *s = y->s;
   const Real *x = y->x, h = y->h, *at = i < s->nq ? y->a + i : y->zd + (i - s->nq),
       less = at[i < s->nq ? s->nq : s->nz];
-  Real slope = polynomial(x, s->columns, s->nq + i, h, 1), last = fabsl(x[(size_t)ORDERS * s->columns + s->nq + i]) * ORDERS * powl(h, ORDERS - 1);
+  Real slope = polynomial(x, s->columns, s->nq + i, h, 1),
+       last = fabsl(x[(size_t)ORDERS * s->columns + s->nq + i]) * ORDERS * powl(h, ORDERS - 1);
   Real rounding = 1e12L * jet_unit * fabsl(x[s->nq + i]) / h;
   *t = (BoundedSum){{slope, (fabsl(*at - less) + last) / 1024 + off}, fabsl(slope) + rounding, 0};
   *said = *at;
   return fabsl(slope - *at);
 }
 
-/* At time h, the derivative of the velocities' Taylor polynomials must be the program's acceleration at the polynomials' state, up to
- * truncation. As a step may cross a corner or a jump, a difference counts only if a step 64 times shorter shows it, too. */
+/* At time h, the derivative of the velocities' Taylor polynomials must be the program's acceleration at the
+ * polynomials' state, up to truncation. As a step may cross a corner or a jump, a difference counts only if a step
+ * 64 times shorter shows it, too. */
 static CheckVerdict check_taylor(Check *c) {
   const Series *s = c->u->taylor;
   TaylorStep y = {.s = s, .x = ARENA_ARRAY(c->arena, Real, (size_t)s->columns * (ORDERS + 2)),
@@ -180,7 +193,9 @@ static CheckVerdict check_taylor(Check *c) {
       BoundedSum t;
       Real said, difference = taylor_difference(&y, i, i < s->nq ? c->a_error[i] : c->zd_error[i - s->nq], &t, &said);
       differs |= difference > 64 * 1024 * t.sum.e + 1e-9L * t.size;
-      if (shorter) v = worse(v, check_compare(c, &t, said, c->m->span, "the rate from Taylor coefficients of", i < s->nq ? c->m->coords.at[i].name : c->m->states.at[i - s->nq].name));
+      if (shorter)
+        v = worse(v, check_compare(c, &t, said, c->m->span, "the rate from Taylor coefficients of",
+                                   i < s->nq ? c->m->coords.at[i].name : c->m->states.at[i - s->nq].name));
     }
     if (!differs) return AGREES;
   }
@@ -190,6 +205,7 @@ static CheckVerdict check_taylor(Check *c) {
 CheckVerdict check_motion(Check *c) {
   CheckVerdict v = c->far ? AGREES : check_charges(c);
   if (v != DISAGREES && !c->far) v = worse(v, check_matrices(c));
-  if (v != DISAGREES && !c->far && c->u->taylor && c->e->smooth && c->n <= LONG_TAPE / 100) v = worse(v, check_taylor(c));
+  if (v != DISAGREES && !c->far && c->u->taylor && c->e->smooth && c->n <= LONG_TAPE / 100)
+    v = worse(v, check_taylor(c));
   return v == DISAGREES ? v : AGREES;
 }

@@ -1,12 +1,13 @@
-/* States for the self-check: random parameters, coordinates and inputs, projected on the model's constraints by Newton's method; the
- * programs' accelerations and multipliers there, with their sensitivity to rounding. */
+/* States for the self-check: random parameters, coordinates and inputs, projected on the model's constraints by
+ * Newton's method; the programs' accelerations and multipliers there, with their sensitivity to rounding. */
 #include <math.h>
 
 #include "base/tolerance.h"
 #include "lower/lower.h"
 #include "self_check/self_check_impl.h"
 
-/* --- random numbers: splitmix64, the same on every machine (G. Steele, D. Lea, C. Flood, OOPSLA 2014, doi:10.1145/2660193.2660195) --- */
+/* --- random numbers: splitmix64, the same on every machine (G. Steele, D. Lea, C. Flood, OOPSLA 2014,
+ * doi:10.1145/2660193.2660195) --- */
 
 static Real uniform(Check *c) {
   uint64_t x = c->random += 0x9e3779b97f4a7c15u;
@@ -38,7 +39,9 @@ int check_run(const Check *c, const Prog *p, Real *const *out) {
 static Real other_value(Check *c, const Param *p, Real value) {
   Real factor = check_random(c, 0.7L, 1.4L);
   if (value != 0) return value * factor;
-  return p->sign == SIGN_GT || p->sign == SIGN_GE ? 0.5L * factor : p->sign == SIGN_LT || p->sign == SIGN_LE ? -0.5L * factor : 0.5L - factor;
+  return p->sign == SIGN_GT || p->sign == SIGN_GE   ? 0.5L * factor
+         : p->sign == SIGN_LT || p->sign == SIGN_LE ? -0.5L * factor
+                                                    : 0.5L - factor;
 }
 
 static int loads_parameters(const Prog *p) {
@@ -61,7 +64,8 @@ static int choose_parameters(Check *c) {
   return !c->u->derived || check_run(c, c->u->derived, (Real *const[]){c->p});
 }
 
-/* Random value within reach * 0.8 of `start` (reach * |start|/2 where |start| > 1); far: of any magnitude up to 1000. */
+/* Random value within reach * 0.8 of `start` (reach * |start|/2 where |start| > 1); far: of any magnitude up to
+ * 1000. */
 static Real random_near(Check *c, Real start) {
   Real size = fabsl(start) > 1 ? fabsl(start) / 2 : 0.8L;
   if (c->far) return check_random(c, -1, 1) * powl(10, check_random(c, -1, 3));
@@ -86,13 +90,16 @@ static Real largest(const Real *x, uint32_t n) {
   return r;
 }
 
-/* Newton's method onto the constraints, by the program's own projection. 0: no convergence, or contradictory constraints. */
+/* Newton's method onto the constraints, by the program's own projection. 0: no convergence, or contradictory
+ * constraints. */
 static int project_constraints(Check *c, int velocities) {
-  enum { ROUNDS = 40, HOPELESS = 6 }; /* no progress after HOPELESS rounds: give up, the next state is nearer to the start */
+  /* no progress after HOPELESS rounds: give up, the next state is nearer to the start */
+  enum { ROUNDS = 40, HOPELESS = 6 };
   const IrConstraints *k = &c->u->constraints;
   uint32_t rows = velocities ? k->of.n : k->nkept;
   Real *position = ARENA_ARRAY(c->arena, Real, k->of.n), *rate = ARENA_ARRAY(c->arena, Real, k->of.n);
-  Real *change = ARENA_ARRAY(c->arena, Real, c->n), *force = ARENA_ARRAY(c->arena, Real, c->n), *of = velocities ? c->v : c->q;
+  Real *change = ARENA_ARRAY(c->arena, Real, c->n), *force = ARENA_ARRAY(c->arena, Real, c->n),
+       *of = velocities ? c->v : c->q;
   Real first = 0;
   for (int round = 0; round < ROUNDS; round++) {
     if (!check_run(c, k->residuals, (Real *const[]){position, rate})) return 0;
@@ -103,7 +110,8 @@ static int project_constraints(Check *c, int velocities) {
     if (!check_run(c, velocities ? k->velocity : k->position, (Real *const[]){change, force})) return 0;
     for (uint32_t i = 0; i < c->n; i++) of[i] += change[i];
     Real size = 1 + largest(of, c->n);
-    if (largest(change, c->n) <= LONG_TOLERANCE(1e-16L) * size) return left <= 1e-9L * first + LONG_TOLERANCE(1e-13L) * size;
+    if (largest(change, c->n) <= LONG_TOLERANCE(1e-16L) * size)
+      return left <= 1e-9L * first + LONG_TOLERANCE(1e-13L) * size;
   }
   return 0;
 }
@@ -114,8 +122,9 @@ static int switch_sides(Check *c, Real *side) {
   return !c->u->nmodes || check_run(c, c->u->switch_values, (Real *const[]){side});
 }
 
-/* Modes of switches: in every second state those of the state itself, which must give what no mode gives. Refuses a state that constraints hold on the edge of a switch, where rounding decides;
- * free[switches]: values before constraints. */
+/* Modes of switches: in every second state those of the state itself, which must give what no mode gives. Refuses a
+ * state that constraints hold on the edge of a switch, where rounding decides; free[switches]: values before
+ * constraints. */
 static int hold_switches(Check *c, int attempt, const Real *free) {
   const ProgramSet *u = c->u;
   Real *mode = c->signal + c->m->inputs.n, *side = ARENA_ARRAY(c->arena, Real, u->switches.n + 1);
@@ -145,7 +154,8 @@ static int choose_state(Check *c, int attempt, Real *free) {
   if (!switch_sides(c, free)) return 0;
   Real before = largest(c->q, c->n);
   if (!u->constraints.of.n) return 1;
-  int obeys = project_constraints(c, 0) && project_constraints(c, 1) && largest(c->q, c->n) > 1e-6L * before; /* refuses collapse to 0 */
+  /* refuses collapse to 0 */
+  int obeys = project_constraints(c, 0) && project_constraints(c, 1) && largest(c->q, c->n) > 1e-6L * before;
   if (!obeys && !c->far) c->reach /= 16; /* long chains of constraints converge from nearby only */
   return obeys;
 }
@@ -174,7 +184,8 @@ static void bound_rounding(Check *c) {
   enum { DIGITS = 16, TRIES = 2 };
   const Model *m = c->m;
   uint32_t n = c->n, nz = m->states.n, all = 2 * n + nz;
-  Real *state = ARENA_ARRAY(c->arena, Real, all + 1), *a = ARENA_ARRAY(c->arena, Real, n + nz + 1), *zd = ARENA_ARRAY(c->arena, Real, nz + 1);
+  Real *state = ARENA_ARRAY(c->arena, Real, all + 1), *a = ARENA_ARRAY(c->arena, Real, n + nz + 1),
+       *zd = ARENA_ARRAY(c->arena, Real, nz + 1);
   Real *lambda = ARENA_ARRAY(c->arena, Real, m->constraints.n + 1), *const part[] = {c->q, c->v, c->z};
   const uint32_t size[] = {n, n, nz};
   for (uint32_t i = 0; i < n; i++) c->a_error[i] = 0;
@@ -211,7 +222,8 @@ static Real *alloc_reals(const Check *c, uint32_t n) { return ARENA_ARRAY(c->are
 void check_prepare(Check *c) {
   const Model *m = c->m;
   uint32_t n = m->coords.n, nz = m->states.n;
-  Real **const all[] = {&c->q, &c->v, &c->a, &c->q0, &c->v0, &c->c}, **const of_states[] = {&c->z, &c->zd, &c->zdd, &c->z0};
+  Real **const all[] = {&c->q, &c->v, &c->a, &c->q0, &c->v0, &c->c},
+               **const of_states[] = {&c->z, &c->zd, &c->zdd, &c->z0};
   for (size_t k = 0; k < sizeof all / sizeof *all; k++) *all[k] = alloc_reals(c, n + nz);
   for (size_t k = 0; k < sizeof of_states / sizeof *of_states; k++) *of_states[k] = alloc_reals(c, nz);
   c->p = alloc_reals(c, m->params.n + c->u->nderived);

@@ -5,7 +5,8 @@
 
 /* Compares value r of the text's outputs, if it has one, with the program's. */
 static CheckVerdict check_output_value(Check *c, Ref r, Real program, Span span, const char *what, const char *name) {
-  return r ? check_value(c, check_coefficient(c->outputs->tape, c->at_outputs, r, 0, 0), program, span, what, name) : AGREES;
+  return r ? check_value(c, check_coefficient(c->outputs->tape, c->at_outputs, r, 0, 0), program, span, what, name)
+           : AGREES;
 }
 
 /* --- dynamics: values from the last check_run_text, whatever its direction --- */
@@ -14,7 +15,9 @@ static CheckVerdict check_flows(Check *c) {
   const TextDynamics *d = c->dynamics;
   CheckVerdict v = AGREES;
   for (uint32_t i = 0; i < c->m->states.n; i++)
-    if (d->flows[i]) v = worse(v, check_value(c, check_coefficient(d->tape, c->at, d->flows[i], 0, 0), c->zd[i], c->m->states.at[i].span, "the rate of", c->m->states.at[i].name));
+    if (d->flows[i])
+      v = worse(v, check_value(c, check_coefficient(d->tape, c->at, d->flows[i], 0, 0), c->zd[i],
+                               c->m->states.at[i].span, "the rate of", c->m->states.at[i].name));
   return v;
 }
 
@@ -27,15 +30,17 @@ static CheckVerdict check_constraints(Check *c) {
     if (!r) continue;
     Bounded rate = check_coefficient(c->dynamics->tape, c->at, r, 0, i < k->nholonomic ? 2 : 1);
     BoundedSum t = {rate, 0, 0};
-    for (uint32_t j = 0; j < c->n; j++) t.size += fabsl(c->a[j]) + c->v[j] * c->v[j]; /* magnitude of the terms: accelerations, */
-    for (uint32_t j = 0; j < c->m->constraints.n; j++) t.size += fabsl(c->lambda[j]); /* and the multipliers' forces in them */
+    /* magnitude of the terms: accelerations, */
+    for (uint32_t j = 0; j < c->n; j++) t.size += fabsl(c->a[j]) + c->v[j] * c->v[j];
+    /* and the multipliers' forces in them */
+    for (uint32_t j = 0; j < c->m->constraints.n; j++) t.size += fabsl(c->lambda[j]);
     v = worse(v, check_compare(c, &t, 0, k->of[i]->span, "the rate of the constraint", k->of[i]->name));
   }
   return v;
 }
 
-/* The potential that completes the energy, from its expression: its rate is proved to be minus the power of forces and of
- * explicit time, which are compared on their own. */
+/* The potential that completes the energy, from its expression: its rate is proved to be minus the power of forces
+ * and of explicit time, which are compared on their own. */
 static Bounded potential(const Check *c) {
   const Model *m = c->m;
   long double bound, *symbols = model_constants(m);
@@ -53,7 +58,8 @@ static CheckVerdict check_energy(Check *c) {
   Real value[2] = {0};
   BoundedSum t = {0};
   if (!c->u->energy || !d->lagrangian) return AGREES;
-  for (uint32_t i = 0; i < check_components(c); i++) c->c[i] = c->m->first_order ? c->zd[i] * c->m->states.at[i].coordinate : c->v[i];
+  for (uint32_t i = 0; i < check_components(c); i++)
+    c->c[i] = c->m->first_order ? c->zd[i] * c->m->states.at[i].coordinate : c->v[i];
   if (!check_run_text(c) || !check_run(c, c->u->energy, (Real *const[]){value})) return DISMISSED;
   bounded_sum_add(&t, 1, check_coefficient(d->tape, c->at, d->lagrangian, 2, 0));
   bounded_sum_add(&t, -1, check_coefficient(d->tape, c->at, d->lagrangian, 0, 0));
@@ -90,7 +96,8 @@ static CheckVerdict check_outputs(Check *c) {
   if (!e->noutputs || !check_run(c, scene->observe, (Real *const[]){value})) return AGREES;
   for (uint32_t i = 0; i < e->noutputs; i++) {
     v = worse(v, check_output_value(c, o->outputs[i], value[i], e->outputs[i].span, "the output", e->outputs[i].name));
-    if (o->is_energy[i] && c->has_energy) v = worse(v, check_compare(c, &c->energy, value[i], e->outputs[i].span, "the output", e->outputs[i].name));
+    if (o->is_energy[i] && c->has_energy)
+      v = worse(v, check_compare(c, &c->energy, value[i], e->outputs[i].span, "the output", e->outputs[i].name));
   }
   return v;
 }
@@ -101,7 +108,8 @@ static CheckVerdict check_signals(Check *c) {
   CheckVerdict v = AGREES;
   if (!c->m->inputs.n || !check_run(c, c->u->inputs, (Real *const[]){value})) return AGREES;
   for (uint32_t i = 0; i < c->m->inputs.n; i++)
-    v = worse(v, check_output_value(c, o->signals[i], value[i], c->m->inputs.at[i].span, "the input", c->m->inputs.at[i].name));
+    v = worse(v, check_output_value(c, o->signals[i], value[i], c->m->inputs.at[i].span, "the input",
+                                    c->m->inputs.at[i].name));
   return v;
 }
 
@@ -115,5 +123,6 @@ CheckVerdict check_other_values(Check *c) {
   int unsure = 0;
   for (uint32_t i = 0; i < check_components(c); i++) c->c[i] = 0; /* no displacement */
   tape_run(c->outputs->tape, check_input, c, c->at_outputs, &unsure);
-  return worse(worse(check_events(c), check_outputs(c)), check_signals(c)); /* unsure values have infinite error bounds, and are dismissed */
+  /* unsure values have infinite error bounds, and are dismissed */
+  return worse(worse(check_events(c), check_outputs(c)), check_signals(c));
 }

@@ -1,6 +1,7 @@
-/* Evaluation of expressions of the text. Ast nodes of an expression are contiguous, children first, so evaluation is one loop over them;
- * the body of a sum is repeated per term, the branch of an `if` that is not taken is skipped. An evaluation that needs a definition or
- * a call waits on an explicit stack of frames: neither nesting nor chains of definitions use the C stack. */
+/* Evaluation of expressions of the text. Ast nodes of an expression are contiguous, children first, so evaluation is
+ * one loop over them; the body of a sum is repeated per term, the branch of an `if` that is not taken is skipped. An
+ * evaluation that needs a definition or a call waits on an explicit stack of frames: neither nesting nor chains of
+ * definitions use the C stack. */
 #include "self_check/direct_eval.h"
 
 #include <stdlib.h>
@@ -58,7 +59,9 @@ static Frame *begin_awaited(DirectEval *t, Frame *f) {
     const Constant *c = &t->b->constants.at[w.index];
     return begin(t, c->given, c->effect, w);
   }
-  const Definition *d = w.kind == ENT_LET ? &t->b->lets.at[w.index] : w.kind == ENT_OBSERVE ? &t->b->observes.at[w.index] : &t->b->functions.at[w.index];
+  const Definition *d = w.kind == ENT_LET       ? &t->b->lets.at[w.index]
+                        : w.kind == ENT_OBSERVE ? &t->b->observes.at[w.index]
+                                                : &t->b->functions.at[w.index];
   Frame *g = begin(t, d->stmt->rhs, d->effect, w);
   push_indices(t, g, d->index, 2);
   push_indices(t, g, d->around, d->naround);
@@ -66,7 +69,8 @@ static Frame *begin_awaited(DirectEval *t, Frame *f) {
   g->function = d;
   g->nargs = 0;
   g->args = ARENA_ARRAY(t->arena, TextValue, ast_list_length(t->b->ast, ast_expr(t->b->ast, f->pc)->args) + 1);
-  for (AstId i = ast_expr(t->b->ast, f->pc)->args; i; i = ast_expr(t->b->ast, i)->next) g->args[g->nargs++] = f->value[i - f->first];
+  for (AstId i = ast_expr(t->b->ast, f->pc)->args; i; i = ast_expr(t->b->ast, i)->next)
+    g->args[g->nargs++] = f->value[i - f->first];
   return g;
 }
 

@@ -1,15 +1,15 @@
 /* Ast -> Tape: expressions as written, without the expression graph.
  *
- * Names are looked up in the model's scopes; all else (indices, units, functions, vectors, rotations, sums) is evaluated from the Ast
- * by independent code, so that it can be compared with model/ and sym/. */
+ * Names are looked up in the model's scopes; all else (indices, units, functions, vectors, rotations, sums) is
+ * evaluated from the Ast by independent code, so that it can be compared with model/ and sym/. */
 #pragma once
 
 #include "self_check/tape.h"
 #include "model/declarations.h"
 #include "model/model.h"
 
-/* Value of an expression: a number (n = 0), a vector of n = 2 or 3 components, or a rotation, n = ROTATION, times `scale` (0: none).
- * at[0] = 0: not evaluated here; DirectEval.why has the reason. */
+/* Value of an expression: a number (n = 0), a vector of n = 2 or 3 components, or a rotation, n = ROTATION, times
+ * `scale` (0: none). at[0] = 0: not evaluated here; DirectEval.why has the reason. */
 typedef struct {
   Ref at[4], scale;
   uint32_t n;
@@ -25,8 +25,10 @@ struct DirectEval {
   Tape *tape;
   TextValue *lets, *observes, *constants; /* values, indexed as in Declarations; at[0] = 0: not evaluated yet */
   const char *why;                      /* first construct that could not be evaluated; the caller resets it to NULL */
-  Ref lagrangian, kinetic, potential;   /* energies for `lagrangian`, `T`, `V`, `energy`, `p_x` in outputs: set by the caller if `needs_energies` */
-  const int64_t *member;                /* indices for a family named without any, in outputs; NULL: such a family has no value */
+  /* energies for `lagrangian`, `T`, `V`, `energy`, `p_x` in outputs: set by the caller if `needs_energies` */
+  Ref lagrangian, kinetic, potential;
+  /* indices for a family named without any, in outputs; NULL: such a family has no value */
+  const int64_t *member;
   int needs_energies;                             /* an energy was needed before it was set */
   VEC(struct Frame *) idle;             /* free list of frames */
 };

@@ -50,7 +50,8 @@ static inline int whole(const DirectEval *t, const TextValue *v, int64_t *out) {
   return 1;
 }
 
-/* direct_eval_node.c: value of node `id` from its operands' values; sets f->waits and f->needs where a definition is needed first. */
+/* direct_eval_node.c: value of node `id` from its operands' values; sets f->waits and f->needs where a definition is
+ * needed first. */
 TextValue text_node(DirectEval *t, Frame *f, AstId id);
 
 /* x op y: AST_ADD, AST_SUB, AST_MUL or AST_DIV of numbers, vectors, rotations. */

@@ -1,4 +1,5 @@
-/* Values of single Ast nodes on the tape: operators, names, functions, rotations. Independent of model/resolve*.c, which it checks. */
+/* Values of single Ast nodes on the tape: operators, names, functions, rotations. Independent of model/resolve*.c,
+ * which it checks. */
 #include <stdlib.h>
 
 #include "self_check/direct_eval_impl.h"
@@ -18,7 +19,9 @@ static Ref times_unit(DirectEval *t, Ref r, const Unit *u) {
   return num_is_zero(u->offset) ? r : binary_op(t, TAPE_ADD, r, tape_number(t->tape, u->offset));
 }
 
-Ref text_component(DirectEval *t, const TextValue *v, uint32_t k, const Unit *unit) { return v->bare ? times_unit(t, v->at[k], unit) : v->at[k]; }
+Ref text_component(DirectEval *t, const TextValue *v, uint32_t k, const Unit *unit) {
+  return v->bare ? times_unit(t, v->at[k], unit) : v->at[k];
+}
 
 static TextValue unit_node(DirectEval *t, const TextValue *v, const AstExpr *x) {
   Unit u = unit_resolve(&x->unit, t->b->dims, t->b->diags, t->m->arena);
@@ -53,7 +56,8 @@ static TextValue product(DirectEval *t, const TextValue *p, const TextValue *q) 
   Ref across[3];
   cross(t, p->at + 1, q->at + 1, across);
   r.at[0] = minus(t, times(t, p->at[0], q->at[0]), dot(t, p->at + 1, q->at + 1, 3));
-  for (int k = 0; k < 3; k++) r.at[k + 1] = plus(t, plus(t, times(t, p->at[0], q->at[k + 1]), times(t, q->at[0], p->at[k + 1])), across[k]);
+  for (int k = 0; k < 3; k++)
+    r.at[k + 1] = plus(t, plus(t, times(t, p->at[0], q->at[k + 1]), times(t, q->at[0], p->at[k + 1])), across[k]);
   r.scale = p->scale && q->scale ? times(t, p->scale, q->scale) : p->scale ? p->scale : q->scale;
   return r;
 }
@@ -115,21 +119,25 @@ TextValue text_pair(DirectEval *t, AstKind op, const TextValue *x, const TextVal
   if (x->n == ROTATION) return scaled_rotation(t, op, x, y);
   if (y->n == ROTATION) return scaled_rotation(t, op, y, x);
   TextValue r = {.n = x->n ? x->n : y->n, .bare = x->bare && y->bare};
-  for (uint32_t k = 0; k < text_components(&r); k++) r.at[k] = binary_op(t, ops[op], x->at[x->n ? k : 0], y->at[y->n ? k : 0]);
+  for (uint32_t k = 0; k < text_components(&r); k++)
+    r.at[k] = binary_op(t, ops[op], x->at[x->n ? k : 0], y->at[y->n ? k : 0]);
   return r;
 }
 
 static TextValue power(DirectEval *t, const TextValue *x, const TextValue *y) {
   Num n;
   if (!x->at[0] || !y->at[0]) return NOTHING;
-  Ref r = tape_is_number(t->tape, y->at[0], &n) ? tape_power(t->tape, x->at[0], n) : binary_op(t, TAPE_POW, x->at[0], y->at[0]);
+  Ref r = tape_is_number(t->tape, y->at[0], &n) ? tape_power(t->tape, x->at[0], n)
+                                                : binary_op(t, TAPE_POW, x->at[0], y->at[0]);
   return scalar(r, x->bare && y->bare);
 }
 
 static TextValue comparison(DirectEval *t, const Frame *f, const AstExpr *x) {
   Ref l = operand(f, x->a)->at[0], r = operand(f, x->b)->at[0];
   int swapped = x->kind == AST_GT || x->kind == AST_GE;
-  TapeOp op = x->kind == AST_LT || x->kind == AST_GT ? TAPE_LT : x->kind == AST_LE || x->kind == AST_GE ? TAPE_LE : TAPE_EQ;
+  TapeOp op = x->kind == AST_LT || x->kind == AST_GT   ? TAPE_LT
+              : x->kind == AST_LE || x->kind == AST_GE ? TAPE_LE
+                                                       : TAPE_EQ;
   Ref c = binary_op(t, op, swapped ? r : l, swapped ? l : r);
   return scalar(x->kind == AST_NE ? tape_op(t->tape, TAPE_NOT, c, 0, 0) : c, 0);
 }
@@ -160,11 +168,13 @@ static TextValue value_or_wait(DirectEval *t, Frame *f, EntKind kind, uint32_t i
 }
 
 static TextValue entity(DirectEval *t, Frame *f, const Entity *e, const int64_t *at) {
-  static const InputKind kinds[] = {[ENT_COORD] = INPUT_COORD, [ENT_STATE] = INPUT_STATE, [ENT_PARAM] = INPUT_PARAM, [ENT_INPUT] = INPUT_SIGNAL};
+  static const InputKind kinds[] = {
+      [ENT_COORD] = INPUT_COORD, [ENT_STATE] = INPUT_STATE, [ENT_PARAM] = INPUT_PARAM, [ENT_INPUT] = INPUT_SIGNAL};
   TextValue r = {.n = e->parts};
   switch (e->kind) {
     case ENT_COORD: case ENT_STATE: case ENT_PARAM: case ENT_INPUT:
-      for (uint32_t k = 0; k < text_components(&r); k++) r.at[k] = tape_input(t->tape, kinds[e->kind], e->index + member_offset(e, at) + k);
+      for (uint32_t k = 0; k < text_components(&r); k++)
+        r.at[k] = tape_input(t->tape, kinds[e->kind], e->index + member_offset(e, at) + k);
       return r;
     case ENT_CONST: return value_or_wait(t, f, e->kind, e->index, &t->constants[e->index]);
     case ENT_LET: return value_or_wait(t, f, e->kind, e->index, &t->lets[e->index]);
@@ -178,7 +188,8 @@ static TextValue entity(DirectEval *t, Frame *f, const Entity *e, const int64_t 
 static TextValue named(DirectEval *t, Frame *f, const Entity *e, const int64_t *at) {
   const int64_t *which = e->ndims ? at ? at : t->member : NULL;
   if (e->ndims && !which) return NOTHING;
-  const Entity *member = e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE) ? find_member(t->b->ast, &t->b->members, e, which) : e;
+  const Entity *member =
+      e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE) ? find_member(t->b->ast, &t->b->members, e, which) : e;
   return member ? entity(t, f, member, which) : NOTHING;
 }
 
@@ -195,7 +206,8 @@ static const IndexVar *find_index(const Frame *f, Name name) {
   return NULL;
 }
 
-/* `lagrangian`, `T`, `V` or `energy`; 0 until they are set. For first-order L all states count as coordinates: L has no rates of others. */
+/* `lagrangian`, `T`, `V` or `energy`; 0 until they are set. For first-order L all states count as coordinates: L has
+ * no rates of others. */
 static Ref energy_called(DirectEval *t, Name name) {
   if (strcmp(name, "lagrangian") == 0) return t->lagrangian;
   if (strcmp(name, "T") == 0) return t->kinetic;
@@ -247,7 +259,8 @@ static TextValue index_node(DirectEval *t, Frame *f, const AstExpr *x) {
   int ambiguous;
   const Entity *e = NULL;
   if (of->kind == AST_NAME) e = scope_find(&t->b->scope, of->name, f->effect, &ambiguous);
-  else if (of->kind == AST_MEMBER && ast_expr(t->b->ast, of->a)->kind == AST_NAME) e = scope_own(&t->b->scope, of->name, ast_expr(t->b->ast, of->a)->name);
+  else if (of->kind == AST_MEMBER && ast_expr(t->b->ast, of->a)->kind == AST_NAME)
+    e = scope_own(&t->b->scope, of->name, ast_expr(t->b->ast, of->a)->name);
   for (AstId i = x->args; i && n < 2; i = ast_expr(t->b->ast, i)->next, n++)
     if (!whole(t, operand(f, i), &at[n])) return NOTHING;
   const Entity *q = !e && of->kind == AST_NAME ? momentum_of(t, f, of->name) : NULL;
@@ -285,11 +298,13 @@ static TextValue select_value(DirectEval *t, const TextValue *c, const TextValue
   if (tape_is_number(t->tape, c->at[0], &known)) return num_is_zero(known) ? *y : *x;
   if (!x->at[0] || !y->at[0]) return NOTHING;
   TextValue r = {.n = x->n};
-  for (uint32_t k = 0; k < text_components(x); k++) r.at[k] = tape_op(t->tape, TAPE_SELECT, c->at[0], x->at[k], y->at[k]);
+  for (uint32_t k = 0; k < text_components(x); k++)
+    r.at[k] = tape_op(t->tape, TAPE_SELECT, c->at[0], x->at[k], y->at[k]);
   return r;
 }
 
-/* The name of a constraint or a contact: rod, rod[2], drag.rod; owner: the effect that is named. NULL: its index has no value. */
+/* The name of a constraint or a contact: rod, rod[2], drag.rod; owner: the effect that is named. NULL: its index has
+ * no value. */
 static Name constraint_name(DirectEval *t, const Frame *f, AstId id, Name *owner) {
   const Ast *ast = t->b->ast;
   const AstExpr *x = ast_expr(ast, id);
@@ -304,20 +319,23 @@ static Name constraint_name(DirectEval *t, const Frame *f, AstId id, Name *owner
   return member_name(ast, x->name, at, n);
 }
 
-/* Multiplier of a constraint: lambda(rod), lambda(rod[2]), lambda(drag.rod), or of the slip of a contact: lambda(floor.slip), lambda(feet[2].slip). */
+/* Multiplier of a constraint: lambda(rod), lambda(rod[2]), lambda(drag.rod), or of the slip of a contact:
+ * lambda(floor.slip), lambda(feet[2].slip). */
 static TextValue multiplier(DirectEval *t, const Frame *f, AstId id) {
   const AstExpr *x = ast_expr(t->b->ast, id);
   int of_family = x->kind == AST_MEMBER && ast_expr(t->b->ast, x->a)->kind == AST_INDEX, ambiguous;
   Name owner = NULL, name = of_family ? x->name : constraint_name(t, f, id, &owner);
   if (of_family) owner = constraint_name(t, f, x->a, &owner);
   if (!name || (of_family && !owner)) return NOTHING;
-  const Entity *e = owner ? scope_own(&t->b->constraints, name, owner) : scope_find(&t->b->constraints, name, f->effect, &ambiguous);
+  const Entity *e =
+      owner ? scope_own(&t->b->constraints, name, owner) : scope_find(&t->b->constraints, name, f->effect, &ambiguous);
   TextValue r = {.n = e ? e->parts : 0};
   for (uint32_t k = 0; e && k < text_components(&r); k++) r.at[k] = tape_input(t->tape, INPUT_MULTIPLIER, e->index + k);
   for (uint32_t i = 0; e && i < t->m->contacts.n; i++) { /* friction of a contact that slips */
     const Contact *c = &t->m->contacts.at[i];
     uint32_t k = c->constraint - e->index;
-    if (c->is_tangent && c->constraint >= e->index && k < text_components(&r)) r.at[k] = plus(t, r.at[k], tape_input(t->tape, INPUT_SIGNAL, expr_symbol(t->m->g, c->force)->index));
+    if (c->is_tangent && c->constraint >= e->index && k < text_components(&r))
+      r.at[k] = plus(t, r.at[k], tape_input(t->tape, INPUT_SIGNAL, expr_symbol(t->m->g, c->force)->index));
   }
   return r;
 }
@@ -325,8 +343,10 @@ static TextValue multiplier(DirectEval *t, const Frame *f, AstId id) {
 static TextValue call_vectors(DirectEval *t, Name name, const TextValue *x, const TextValue *y) {
   TextValue r = {.n = 3};
   if (strcmp(name, "dot") == 0) return scalar(dot(t, x->at, y->at, x->n), x->bare && y->bare);
-  if (strcmp(name, "norm") == 0) return scalar(tape_power(t->tape, dot(t, x->at, x->at, x->n), num_ratio(1, 2)), x->bare);
-  if (x->n == 2) return scalar(minus(t, times(t, x->at[0], y->at[1]), times(t, x->at[1], y->at[0])), x->bare && y->bare);
+  if (strcmp(name, "norm") == 0)
+    return scalar(tape_power(t->tape, dot(t, x->at, x->at, x->n), num_ratio(1, 2)), x->bare);
+  if (x->n == 2)
+    return scalar(minus(t, times(t, x->at[0], y->at[1]), times(t, x->at[1], y->at[0])), x->bare && y->bare);
   cross(t, x->at, y->at, r.at);
   r.bare = x->bare && y->bare;
   return r;
@@ -338,7 +358,8 @@ static TextValue call_rotation(DirectEval *t, Name name, const TextValue *x, con
   return y->at[0] ? turn(t, x, y) : NOTHING;
 }
 
-/* d(expr, name). Not evaluated by an argument of a function: its value may be a number, or occur elsewhere in the body. */
+/* d(expr, name). Not evaluated by an argument of a function: its value may be a number, or occur elsewhere in the
+ * body. */
 static TextValue partial(const DirectEval *t, const Frame *f, const TextValue *of, AstId by) {
   const AstExpr *x = ast_expr(t->b->ast, by);
   while (x->kind == AST_PRIME || x->kind == AST_MEMBER) x = ast_expr(t->b->ast, x->a);
@@ -369,7 +390,8 @@ static TextValue call_unary(DirectEval *t, Name name, const TextValue *x) {
 }
 
 static TextValue call_node(DirectEval *t, Frame *f, const AstExpr *x) {
-  static const char *const vectors[] = {"dot", "cross", "norm", NULL}, *const rotations[] = {"omega", "turn", "transpose", NULL};
+  static const char *const vectors[] = {"dot", "cross", "norm", NULL}, *const rotations[] = {"omega", "turn",
+                                                                                             "transpose", NULL};
   const Ast *ast = t->b->ast;
   int ambiguous;
   const Entity *own = scope_find(&t->b->scope, x->name, f->effect, &ambiguous);
@@ -389,7 +411,8 @@ static TextValue call_node(DirectEval *t, Frame *f, const AstExpr *x) {
 
 static TextValue node(DirectEval *t, Frame *f, AstId id) {
   const AstExpr *x = ast_expr(t->b->ast, id);
-  const TextValue *a = x->a >= f->first ? operand(f, x->a) : &NOTHING, *b = x->b >= f->first ? operand(f, x->b) : &NOTHING;
+  const TextValue *a = x->a >= f->first ? operand(f, x->a) : &NOTHING,
+                  *b = x->b >= f->first ? operand(f, x->b) : &NOTHING;
   switch (x->kind) {
     case AST_NUM: return scalar(tape_number(t->tape, x->number), 1);
     case AST_NAME: return name_node(t, f, x->name);
@@ -415,10 +438,12 @@ static TextValue node(DirectEval *t, Frame *f, AstId id) {
   return NOTHING;
 }
 
-/* Names without a value may be parts of their parent node; any other node without a value is noted in DirectEval.why. */
+/* Names without a value may be parts of their parent node; any other node without a value is noted in
+ * DirectEval.why. */
 TextValue text_node(DirectEval *t, Frame *f, AstId id) {
   TextValue v = node(t, f, id);
   AstKind kind = ast_expr(t->b->ast, id)->kind;
-  if (!v.at[0] && !f->waits && kind != AST_NAME && kind != AST_INDEX && kind != AST_MEMBER) return unknown(t, kind == AST_CALL ? ast_expr(t->b->ast, id)->name : "a part");
+  if (!v.at[0] && !f->waits && kind != AST_NAME && kind != AST_INDEX && kind != AST_MEMBER)
+    return unknown(t, kind == AST_CALL ? ast_expr(t->b->ast, id)->name : "a part");
   return v;
 }

@@ -1,5 +1,6 @@
-/* Arithmetic and elementary functions of jets, each with a first-order bound on rounding. Functions f(x(s, e1, e2)) are composed from
- * the derivatives f .. f'''' at the state (Faa di Bruno, truncated). Contract and sources: jet.h. */
+/* Arithmetic and elementary functions of jets, each with a first-order bound on rounding. Functions f(x(s, e1, e2))
+ * are composed from the derivatives f .. f'''' at the state (Faa di Bruno, truncated). Contract and sources: jet.h.
+ * */
 #include "self_check/jet.h"
 
 #include <float.h>
@@ -14,7 +15,9 @@ static Bounded with_rounding(JetReal v, JetReal e) { return (Bounded){v, e + jet
 
 Bounded bounded_add(Bounded x, Bounded y) { return with_rounding(x.v + y.v, x.e + y.e); }
 Bounded bounded_sub(Bounded x, Bounded y) { return with_rounding(x.v - y.v, x.e + y.e); }
-Bounded bounded_mul(Bounded x, Bounded y) { return with_rounding(x.v * y.v, fabsl(x.v) * y.e + x.e * fabsl(y.v) + x.e * y.e); }
+Bounded bounded_mul(Bounded x, Bounded y) {
+  return with_rounding(x.v * y.v, fabsl(x.v) * y.e + x.e * fabsl(y.v) + x.e * y.e);
+}
 
 Bounded bounded_div(Bounded x, Bounded y) {
   JetReal q = x.v / y.v;
@@ -40,7 +43,8 @@ static int most_planes(const Jet *x, const Jet *y) { return x->planes > y->plane
 static void add_signed(Jet *out, const Jet *x, const Jet *y, int sign) {
   Jet r = {.planes = most_planes(x, y)};
   for (int p = 0; p == 0 || p < r.planes; p++)
-    for (int k = 0; k < JET_ORDERS; k++) r.c[p][k] = with_rounding(x->c[p][k].v + sign * y->c[p][k].v, x->c[p][k].e + y->c[p][k].e);
+    for (int k = 0; k < JET_ORDERS; k++)
+      r.c[p][k] = with_rounding(x->c[p][k].v + sign * y->c[p][k].v, x->c[p][k].e + y->c[p][k].e);
   *out = r;
 }
 
@@ -92,17 +96,19 @@ void jet_rate(Jet *out, const Jet *x) {
 /* --- composition with functions, from their derivatives at the state --- */
 
 enum { ROUNDINGS = 8 };
-enum { DERIVATIVES = JET_ORDERS + 2 }; /* orders 0 .. JET_ORDERS + 1 of a function: the last bounds the error of the one before */
+/* orders 0 .. JET_ORDERS + 1 of a function: the last bounds the error of the one before */
+enum { DERIVATIVES = JET_ORDERS + 2 };
 
-/* Derivative k of f with its error: the error of x propagated to second order (for x^2 at 0), plus ROUNDINGS. lost: absolute error of
- * f', f'', ... from cancellation where they are computed from f, as 1 - tanh^2 is. */
+/* Derivative k of f with its error: the error of x propagated to second order (for x^2 at 0), plus ROUNDINGS. lost:
+ * absolute error of f', f'', ... from cancellation where they are computed from f, as 1 - tanh^2 is. */
 static Bounded derivative(const JetReal d[DERIVATIVES], int k, JetReal error, JetReal lost) {
   JetReal second = k + 2 < DERIVATIVES && error > 0 ? fabsl(d[k + 2]) * error * error / 2 : 0;
   return (Bounded){d[k], fabsl(d[k + 1]) * error + second + ROUNDINGS * jet_unit * fabsl(d[k]) + (k > 0 ? lost : 0)};
 }
 
 /* Taylor coefficients of g(x(s)), where g is derivative `first` of f. */
-static void compose(Bounded out[JET_ORDERS], const JetReal d[DERIVATIVES], int first, const Bounded x[JET_ORDERS], JetReal lost) {
+static void compose(Bounded out[JET_ORDERS], const JetReal d[DERIVATIVES], int first, const Bounded x[JET_ORDERS],
+                    JetReal lost) {
   Bounded d1 = derivative(d, first + 1, x[0].e, lost);
   out[0] = derivative(d, first, x[0].e, lost);
   out[1] = bounded_mul(d1, x[1]);
@@ -133,7 +139,8 @@ static void sine_derivatives(JetReal d[DERIVATIVES], JetReal f, JetReal df) {
 
 /* tan (sign 1) and tanh (sign -1): f' = 1 + sign f^2 = slope, which the caller computes without cancellation. */
 static void tangent_derivatives(JetReal d[DERIVATIVES], JetReal f, JetReal slope, int sign) {
-  JetReal cycle[DERIVATIVES] = {f, slope, 2 * sign * f * slope, slope * (2 * sign + 6 * f * f), slope * f * (16 + 24 * sign * f * f)};
+  JetReal cycle[DERIVATIVES] = {f, slope, 2 * sign * f * slope, slope * (2 * sign + 6 * f * f),
+                                slope * f * (16 + 24 * sign * f * f)};
   memcpy(d, cycle, sizeof cycle);
 }
 
@@ -145,13 +152,15 @@ static void power_derivatives(JetReal d[DERIVATIVES], JetReal f, JetReal x, JetR
 
 static void arc_sine(JetReal d[DERIVATIVES], JetReal x, JetReal value, int sign) {
   JetReal r = 1 / sqrtl((1 - x) * (1 + x)), r3 = r * r * r, r5 = r3 * r * r;
-  JetReal cycle[DERIVATIVES] = {value, sign * r, sign * x * r3, sign * (1 + 2 * x * x) * r5, sign * (9 * x + 6 * x * x * x) * r5 * r * r};
+  JetReal cycle[DERIVATIVES] = {value, sign * r, sign * x * r3, sign * (1 + 2 * x * x) * r5,
+                                sign * (9 * x + 6 * x * x * x) * r5 * r * r};
   memcpy(d, cycle, sizeof cycle);
 }
 
 static void arc_tangent(JetReal d[DERIVATIVES], JetReal x) {
   JetReal r = 1 / (1 + x * x);
-  JetReal cycle[DERIVATIVES] = {atanl(x), r, -2 * x * r * r, (6 * x * x - 2) * r * r * r, 24 * x * (1 - x * x) * r * r * r * r};
+  JetReal cycle[DERIVATIVES] = {atanl(x), r, -2 * x * r * r, (6 * x * x - 2) * r * r * r,
+                                24 * x * (1 - x * x) * r * r * r * r};
   memcpy(d, cycle, sizeof cycle);
 }
 

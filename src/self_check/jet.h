@@ -2,10 +2,10 @@
  *
  *   x(s, e1, e2) = sum over k < JET_ORDERS of (c[0][k] + e1 c[1][k] + e2 c[2][k]) s^k,   e1^2 = e2^2 = e1 e2 = 0
  *
- * s is the time since the state, e1 and e2 are the sizes of the displacements. Each coefficient carries a bound on its own rounding
- * error, to first order (running error analysis: N.J. Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 3.3,
- * doi:10.1137/1.9780898718027). Taylor arithmetic: A. Griewank and A. Walther, Evaluating Derivatives, 2008, chapter 13,
- * doi:10.1137/1.9780898717761. Nothing here knows the expression graph. */
+ * s is the time since the state, e1 and e2 are the sizes of the displacements. Each coefficient carries a bound on
+ * its own rounding error, to first order (running error analysis: N.J. Higham, Accuracy and Stability of Numerical
+ * Algorithms, 2002, section 3.3, doi:10.1137/1.9780898718027). Taylor arithmetic: A. Griewank and A. Walther,
+ * Evaluating Derivatives, 2008, chapter 13, doi:10.1137/1.9780898717761. Nothing here knows the expression graph. */
 #pragma once
 
 typedef long double JetReal;
@@ -19,7 +19,8 @@ typedef struct {
 
 typedef struct {
   Bounded c[JET_PLANES][JET_ORDERS];
-  int planes; /* 0: constant; 1: varies along the motion only; JET_PLANES: displacements, too. All other coefficients are 0 */
+  /* 0: constant; 1: varies along the motion only; JET_PLANES: displacements, too. All other coefficients are 0 */
+  int planes;
 } Jet;
 
 /* Unit roundoff of JetReal. */
@@ -38,10 +39,12 @@ void jet_div(Jet *out, const Jet *x, const Jet *y);
 /* Time derivative along the motion; its highest order is unknown and set to 0. */
 void jet_rate(Jet *out, const Jet *x);
 
-/* x^exponent. is_third: a multiple of 1/3, a real root for negative x; other fractional powers of negative x are NaN. */
+/* x^exponent. is_third: a multiple of 1/3, a real root for negative x; other fractional powers of negative x are
+ * NaN. */
 void jet_power(Jet *out, const Jet *x, JetReal exponent, int is_third);
 
-/* A function of the C library by its name: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, fabs. 0: unknown. */
+/* A function of the C library by its name: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, fabs. 0:
+ * unknown. */
 int jet_function(Jet *out, const char *name, const Jet *x);
 void jet_atan2(Jet *out, const Jet *y, const Jet *x);
 void jet_hypot(Jet *out, const Jet *x, const Jet *y);

@@ -1,5 +1,5 @@
-/* Extrapolates the motion from a run's last good state, q + h v + h^2/2 a with h doubling, and evaluates the text's tapes along it until
- * an instruction with finite operands is not finite. Contract: self_check.h. */
+/* Extrapolates the motion from a run's last good state, q + h v + h^2/2 a with h doubling, and evaluates the text's
+ * tapes along it until an instruction with finite operands is not finite. Contract: self_check.h. */
 #include "self_check/self_check.h"
 
 #include <float.h>
@@ -30,7 +30,8 @@ static int read_numbers(Check *c, const Numbers *of) {
   copy_numbers(c->z, m->states.n, &at);
   copy_numbers(c->p, parameters, &at);
   if (c->u->derived && !check_run(c, c->u->derived, (Real *const[]){c->p})) return 0;
-  for (uint32_t i = 0; i < m->params.n; i++) c->given[i] = m->params.at[i].fixed ? (Real)num_value(m->params.at[i].number) : c->p[m->params.at[i].place];
+  for (uint32_t i = 0; i < m->params.n; i++)
+    c->given[i] = m->params.at[i].fixed ? (Real)num_value(m->params.at[i].number) : c->p[m->params.at[i].place];
   for (uint32_t i = 0; i < c->n + m->states.n; i++) c->c[i] = 1;
   return 1;
 }
@@ -38,12 +39,17 @@ static int read_numbers(Check *c, const Numbers *of) {
 /* Notes the expression, its operands, and the state. */
 static void note_expression(Check *c, const Tape *t, const Jet *at, Ref r, int ended) {
   const TapeIns *i = &t->ins.at[r];
-  const Real x = tape_value(t, at, i->a)->c[0][0].v, y = i->b ? tape_value(t, at, i->b)->c[0][0].v : 0, value = tape_value(t, at, r)->c[0][0].v;
-  const char *of = fabsl(value) <= DBL_MAX ? "the derivatives of this expression have" : "this expression has", *format = i->op == TAPE_DIV ? ": %.6Lg divided by %.6Lg" : i->b ? " at %.6Lg and %.6Lg" : " at %.6Lg";
+  const Real x = tape_value(t, at, i->a)->c[0][0].v, y = i->b ? tape_value(t, at, i->b)->c[0][0].v : 0,
+             value = tape_value(t, at, r)->c[0][0].v;
+  const char *of = fabsl(value) <= DBL_MAX ? "the derivatives of this expression have" : "this expression has",
+             *format = i->op == TAPE_DIV ? ": %.6Lg divided by %.6Lg"
+                       : i->b            ? " at %.6Lg and %.6Lg"
+                                         : " at %.6Lg";
   char operands[80];
   Diags *d = c->m->diags;
   snprintf(operands, sizeof operands, format, x, y);
-  diag_note(d, ast_expr(c->m->ast, i->at)->span, "%s%s no finite value%s", ended ? "the run ends here, where " : "", of, operands);
+  diag_note(d, ast_expr(c->m->ast, i->at)->span, "%s%s no finite value%s", ended ? "the run ends here, where " : "", of,
+            operands);
   diag_help(d, "at %s", check_state_text(c));
 }
 
@@ -59,7 +65,8 @@ static int search_motion(Check *c, const void *data) {
   check_prepare(c);
   if (!read_numbers(c, of)) return 0;
   const Check start = *c;
-  Real *q = ARENA_ARRAY(c->arena, Real, c->n + 1), *v = ARENA_ARRAY(c->arena, Real, c->n + 1), *z = ARENA_ARRAY(c->arena, Real, c->m->states.n + 1);
+  Real *q = ARENA_ARRAY(c->arena, Real, c->n + 1), *v = ARENA_ARRAY(c->arena, Real, c->n + 1),
+       *z = ARENA_ARRAY(c->arena, Real, c->m->states.n + 1);
   if (!check_solve_motion(c))
     for (uint32_t i = 0; i < c->n; i++) c->a[i] = 0;
   for (uint32_t i = 0; i < c->n; i++) q[i] = c->q[i], v[i] = c->v[i], c->a[i] = isfinite(c->a[i]) ? c->a[i] : 0;
@@ -71,7 +78,9 @@ static int search_motion(Check *c, const void *data) {
       for (uint32_t i = 0; i < c->n; i++) c->q[i] = q[i] + h * (v[i] + h / 2 * c->a[i]), c->v[i] = v[i] + h * c->a[i];
       for (uint32_t i = 0; i < c->m->states.n; i++) c->z[i] = z[i] + h * c->zd[i];
       if (!check_run(c, c->u->inputs, (Real *const[]){c->signal})) continue;
-      if (search_tape(c, c->dynamics->tape, derivatives, c->at, of->ended) || search_tape(c, c->outputs->tape, derivatives, c->at_outputs, of->ended)) return 1;
+      if (search_tape(c, c->dynamics->tape, derivatives, c->at, of->ended) ||
+          search_tape(c, c->outputs->tape, derivatives, c->at_outputs, of->ended))
+        return 1;
     }
   return 0;
 }

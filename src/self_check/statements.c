@@ -1,4 +1,5 @@
-/* Reads the active statements of a model onto tapes, in the order in which model/ numbers constraints and events. Contract: statements.h. */
+/* Reads the active statements of a model onto tapes, in the order in which model/ numbers constraints and events.
+ * Contract: statements.h. */
 #include "self_check/statements.h"
 
 /* Traversal of the active statements, with the indices of enclosing `for` loops. */
@@ -52,7 +53,9 @@ static Ref added(Walk *w, Ref sum, TapeOp op, Ref term) {
   return tape_op(t, op, sum, term, 0);
 }
 
-static void push_force(Walk *w, Ref point, Ref f) { vec_push(w->text->arena, &w->dynamics->forces, ((TextForce){.point = {point}, .f = {f}})); }
+static void push_force(Walk *w, Ref point, Ref f) {
+  vec_push(w->text->arena, &w->dynamics->forces, ((TextForce){.point = {point}, .f = {f}}));
+}
 
 static void read_force(Walk *w, const AstStmt *st, Name effect) {
   const Ast *ast = w->text->b->ast;
@@ -101,20 +104,24 @@ static void read_flow(Walk *w, const AstStmt *st, Name effect) {
   }
 }
 
-/* Stores c as the model's next written constraint, skipping the unit-length constraints that the compiler adds for rotations. */
+/* Stores c as the model's next written constraint, skipping the unit-length constraints that the compiler adds for
+ * rotations. */
 static void push_constraint(Walk *w, Ref c) {
   const Model *m = w->text->m;
   while (w->constraint < m->constraints.n && m->constraints.at[w->constraint].inside) w->constraint++;
   if (w->constraint < m->constraints.n) w->dynamics->constraints[w->constraint++] = c;
 }
 
-static Ref contact_signal(const Walk *w, SymId s) { return tape_input(w->text->tape, INPUT_SIGNAL, expr_symbol(w->text->m->g, s)->index); }
+static Ref contact_signal(const Walk *w, SymId s) {
+  return tape_input(w->text->tape, INPUT_SIGNAL, expr_symbol(w->text->m->g, s)->index);
+}
 
 /* The tangent of a contact as a constraint, `sticks` times the slip, and the power of its force. */
 static void read_tangent(Walk *w, const Contact *tangent, Ref slip) {
   Tape *t = w->text->tape;
   push_constraint(w, tape_op(t, TAPE_MUL, contact_signal(w, tangent->closed), slip, 0));
-  w->dynamics->dissipation = added(w, w->dynamics->dissipation, TAPE_SUB, tape_op(t, TAPE_MUL, contact_signal(w, tangent->force), slip, 0));
+  w->dynamics->dissipation =
+      added(w, w->dynamics->dissipation, TAPE_SUB, tape_op(t, TAPE_MUL, contact_signal(w, tangent->force), slip, 0));
 }
 
 /* Stores a contact, or a constraint with `while`: its input `closed` times c. Returns it; NULL: there is none here. */
@@ -130,7 +137,9 @@ static const Contact *push_switched(Walk *w, Ref c) {
   return NULL;
 }
 
-static TextValue slip_value(Walk *w, const AstStmt *st, Name effect) { return value(w, ast_option_value(w->text->b->ast, st, "slip"), effect); }
+static TextValue slip_value(Walk *w, const AstStmt *st, Name effect) {
+  return value(w, ast_option_value(w->text->b->ast, st, "slip"), effect);
+}
 
 static void read_contact(Walk *w, const AstStmt *st, Name effect) {
   const Contact *c = push_switched(w, value(w, st->lhs, effect).at[0]);
@@ -159,15 +168,17 @@ static void read_constraint(Walk *w, const AstStmt *st, Name effect) {
 static void read_dynamics(Walk *w, const AstStmt *st, Name effect) {
   TextDynamics *d = w->dynamics;
   switch (st->kind) {
-    case STMT_MOMENTUM: case STMT_HAMILTONIAN: d->lagrangian = with_phase_space_action(w, d->lagrangian, st, effect); return;
-    case STMT_LAGRANGIAN: case STMT_KINETIC: d->lagrangian = added(w, d->lagrangian, TAPE_ADD, value(w, st->rhs, effect).at[0]); return;
-    case STMT_POTENTIAL: d->lagrangian = added(w, d->lagrangian, TAPE_SUB, value(w, st->rhs, effect).at[0]); return;
-    case STMT_DISSIPATION: d->dissipation = added(w, d->dissipation, TAPE_ADD, value(w, st->rhs, effect).at[0]); return;
-    case STMT_FORCE: read_force(w, st, effect); return;
-    case STMT_FLOW: read_flow(w, st, effect); return;
-    case STMT_CONSTRAINT: read_constraint(w, st, effect); return;
-    case STMT_CONTACT: read_contact(w, st, effect); return;
-    default: return; /* no part of the equations of motion */
+  case STMT_MOMENTUM:
+  case STMT_HAMILTONIAN: d->lagrangian = with_phase_space_action(w, d->lagrangian, st, effect); return;
+  case STMT_LAGRANGIAN:
+  case STMT_KINETIC: d->lagrangian = added(w, d->lagrangian, TAPE_ADD, value(w, st->rhs, effect).at[0]); return;
+  case STMT_POTENTIAL: d->lagrangian = added(w, d->lagrangian, TAPE_SUB, value(w, st->rhs, effect).at[0]); return;
+  case STMT_DISSIPATION: d->dissipation = added(w, d->dissipation, TAPE_ADD, value(w, st->rhs, effect).at[0]); return;
+  case STMT_FORCE: read_force(w, st, effect); return;
+  case STMT_FLOW: read_flow(w, st, effect); return;
+  case STMT_CONSTRAINT: read_constraint(w, st, effect); return;
+  case STMT_CONTACT: read_contact(w, st, effect); return;
+  default: return; /* no part of the equations of motion */
   }
 }
 
@@ -250,12 +261,14 @@ static Ref output_value(Walk *w, const OutputText *o) {
 static int is_energy(const DirectEval *t, const OutputText *o) {
   int ambiguous;
   const AstExpr *x = o->id ? ast_expr(t->b->ast, o->id) : NULL;
-  return x && x->kind == AST_NAME && strcmp(x->name, "energy") == 0 && !scope_find(&t->b->scope, x->name, NULL, &ambiguous);
+  return x && x->kind == AST_NAME && strcmp(x->name, "energy") == 0 &&
+         !scope_find(&t->b->scope, x->name, NULL, &ambiguous);
 }
 
 static void read_energies(Walk *w, const AstStmt *st, Name effect) {
   DirectEval *t = w->text;
-  if (st->kind == STMT_MOMENTUM || st->kind == STMT_HAMILTONIAN) t->lagrangian = with_phase_space_action(w, t->lagrangian, st, effect);
+  if (st->kind == STMT_MOMENTUM || st->kind == STMT_HAMILTONIAN)
+    t->lagrangian = with_phase_space_action(w, t->lagrangian, st, effect);
   int plus = st->kind == STMT_LAGRANGIAN || st->kind == STMT_KINETIC;
   if (!plus && st->kind != STMT_POTENTIAL) return;
   Ref term = value(w, st->rhs, effect).at[0];
@@ -264,7 +277,8 @@ static void read_energies(Walk *w, const AstStmt *st, Name effect) {
   if (st->kind == STMT_POTENTIAL) t->potential = added(w, t->potential, TAPE_ADD, term);
 }
 
-/* Puts L, T and V on the tape, for outputs with `lagrangian`, `T`, `V`, `energy`, `p_x`. No value where a part of L has none. */
+/* Puts L, T and V on the tape, for outputs with `lagrangian`, `T`, `V`, `energy`, `p_x`. No value where a part of L
+ * has none. */
 static void give_energies(Walk *w) {
   w->why = NULL;
   walk(w, read_energies);

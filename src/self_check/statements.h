@@ -1,4 +1,5 @@
-/* Statements of the text on tapes: energies, forces, flows and constraints (TextDynamics); events, outputs and inputs (TextOutputs). */
+/* Statements of the text on tapes: energies, forces, flows and constraints (TextDynamics); events, outputs and
+ * inputs (TextOutputs). */
 #pragma once
 
 #include "self_check/direct_eval.h"
@@ -15,7 +16,8 @@ typedef struct {
   Ref value;
 } TextAction;
 
-/* Ref 0: the text has no such statement, or it contains a construct that tapes cannot evaluate (`why`). Memory is the arena's. */
+/* Ref 0: the text has no such statement, or it contains a construct that tapes cannot evaluate (`why`). Memory is
+ * the arena's. */
 typedef struct {
   Tape *tape;
   Ref lagrangian, dissipation;
@@ -30,7 +32,8 @@ typedef struct {
   Ref *events;  /* [events of the model] */
   VEC(TextAction) actions;
   Ref *outputs; /* [outputs of the scene] */
-  unsigned char *is_energy; /* [outputs of the scene] 1: the name `energy` alone, compared with the energy instead of a formula */
+  /* [outputs of the scene] 1: the name `energy` alone, compared with the energy instead of a formula */
+  unsigned char *is_energy;
   Ref *signals; /* [inputs of the model] their formulas */
 } TextOutputs;
 

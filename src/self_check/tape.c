@@ -24,7 +24,9 @@ static Ref append(Tape *t, TapeIns i) {
 
 Ref tape_number(Tape *t, Num n) { return append(t, (TapeIns){.op = TAPE_NUMBER, .number = n}); }
 Ref tape_pi(Tape *t) { return append(t, (TapeIns){.op = TAPE_PI}); }
-Ref tape_input(Tape *t, InputKind kind, uint32_t index) { return append(t, (TapeIns){.op = TAPE_INPUT, .input = kind, .index = index}); }
+Ref tape_input(Tape *t, InputKind kind, uint32_t index) {
+  return append(t, (TapeIns){.op = TAPE_INPUT, .input = kind, .index = index});
+}
 
 int tape_is_number(const Tape *t, Ref a, Num *n) {
   if (!a || t->ins.at[a].op != TAPE_NUMBER) return 0;
@@ -56,16 +58,21 @@ static int fold_exact(TapeOp op, Num x, Num y, Num *r) {
   return num_is_exact(*r);
 }
 
-static int is_unary(TapeOp op) { return op == TAPE_NEG || op == TAPE_NOT || op == TAPE_RATE || op == TAPE_SIGN || op == TAPE_FLOOR; }
+static int is_unary(TapeOp op) {
+  return op == TAPE_NEG || op == TAPE_NOT || op == TAPE_RATE || op == TAPE_SIGN || op == TAPE_FLOOR;
+}
 
 Ref tape_op(Tape *t, TapeOp op, Ref a, Ref b, Ref c) {
   Num x, y = num_int(0), r;
   if (!a || (!b && !is_unary(op)) || (op == TAPE_SELECT && !c)) return 0;
-  if (tape_is_number(t, a, &x) && (is_unary(op) || tape_is_number(t, b, &y)) && fold_exact(op, x, y, &r)) return tape_number(t, r);
+  if (tape_is_number(t, a, &x) && (is_unary(op) || tape_is_number(t, b, &y)) && fold_exact(op, x, y, &r))
+    return tape_number(t, r);
   return append(t, (TapeIns){.op = op, .a = a, .b = b, .c = c});
 }
 
-Ref tape_function(Tape *t, const char *name, Ref a) { return a ? append(t, (TapeIns){.op = TAPE_FUNCTION, .a = a, .text = name}) : 0; }
+Ref tape_function(Tape *t, const char *name, Ref a) {
+  return a ? append(t, (TapeIns){.op = TAPE_FUNCTION, .a = a, .text = name}) : 0;
+}
 
 Ref tape_power(Tape *t, Ref a, Num exponent) {
   Num x, r;
@@ -81,7 +88,8 @@ Ref tape_power(Tape *t, Ref a, Num exponent) {
 /* --- slots --- */
 
 void tape_finish(Tape *t, const Ref *roots, uint32_t n) {
-  uint32_t *last = ARENA_ARRAY(t->arena, uint32_t, t->ins.n), *idle = ARENA_ARRAY(t->arena, uint32_t, t->ins.n), nidle = 0;
+  uint32_t *last = ARENA_ARRAY(t->arena, uint32_t, t->ins.n), *idle = ARENA_ARRAY(t->arena, uint32_t, t->ins.n),
+           nidle = 0;
   for (uint32_t i = 1; i < t->ins.n; i++) {
     const TapeIns *x = &t->ins.at[i];
     last[i] = i;
@@ -90,7 +98,8 @@ void tape_finish(Tape *t, const Ref *roots, uint32_t n) {
   for (uint32_t k = 0; k < n; k++) last[roots[k]] = UINT32_MAX;
   for (uint32_t i = 1; i < t->ins.n; i++) {
     TapeIns *x = &t->ins.at[i];
-    x->slot = nidle ? idle[--nidle] : t->slots++; /* allocated before operands are freed: a result never overwrites an operand */
+    /* allocated before operands are freed: a result never overwrites an operand */
+    x->slot = nidle ? idle[--nidle] : t->slots++;
     Ref used[4] = {x->a, x->b, x->c, i};
     for (int k = 0; k < 4; k++) {
       int again = 0;
@@ -109,7 +118,8 @@ static Jet number_jet(Num n) {
 
 static Jet jet_of_bool(int yes) { return jet_exact(yes != 0); }
 
-/* Gives a value an infinite error bound (near: decided by rounding, or out of range); results computed from it inherit it. */
+/* Gives a value an infinite error bound (near: decided by rounding, or out of range); results computed from it
+ * inherit it. */
 static void mark_unsure(Jet *out, int near, int *unsure) {
   if (!near) return;
   out->c[0][0].e = INFINITY;
@@ -150,8 +160,14 @@ static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, 
     case TAPE_HYPOT: jet_hypot(out, x, y); return;
     case TAPE_SELECT: near = isinf(x->c[0][0].e); *out = value(x) != 0 ? *y : *z; break;
     case TAPE_NOT: near = isinf(x->c[0][0].e); *out = jet_of_bool(value(x) == 0); break;
-    case TAPE_AND: near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e); *out = jet_of_bool(value(x) != 0 && value(y) != 0); break;
-    case TAPE_OR: near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e); *out = jet_of_bool(value(x) != 0 || value(y) != 0); break;
+    case TAPE_AND:
+      near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e);
+      *out = jet_of_bool(value(x) != 0 && value(y) != 0);
+      break;
+    case TAPE_OR:
+      near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e);
+      *out = jet_of_bool(value(x) != 0 || value(y) != 0);
+      break;
     case TAPE_SIGN: near = is_near(x, &zero); *out = jet_exact((value(x) > 0) - (value(x) < 0)); break;
     case TAPE_FLOOR: {
       Jet whole = jet_exact(roundl(value(x)));

@@ -1,5 +1,5 @@
-/* Tape: straight-line program of operations on jets, in the order of the text. Nothing is simplified, except that arithmetic of
- * exact numbers is folded, as indices and conditions of families need it. */
+/* Tape: straight-line program of operations on jets, in the order of the text. Nothing is simplified, except that
+ * arithmetic of exact numbers is folded, as indices and conditions of families need it. */
 #pragma once
 
 #include "base/arena.h"
@@ -56,7 +56,8 @@ Ref tape_op(Tape *t, TapeOp op, Ref a, Ref b, Ref c); /* 0 where an operand is 0
 Ref tape_function(Tape *t, const char *name, Ref a);
 Ref tape_power(Tape *t, Ref a, Num exponent);
 
-/* Partial derivative of a value by an input or its rates, by = x, x', x''. 0: `by` is none of these, or the tape is too long. */
+/* Partial derivative of a value by an input or its rates, by = x, x', x''. 0: `by` is none of these, or the tape is
+ * too long. */
 Ref tape_partial(Tape *t, Ref of, Ref by);
 
 /* Energy p q' - L of a Lagrangian whose coordinates are the inputs of one kind. */
@@ -71,11 +72,12 @@ void tape_finish(Tape *t, const Ref *roots, uint32_t n);
 /* Callback: the jet of an input. */
 typedef void TapeInput(void *data, InputKind kind, uint32_t index, Jet *out);
 
-/* Evaluates the tape into at[slots]. *unsure is set by comparisons within rounding error, and by values beyond the range of doubles. */
+/* Evaluates the tape into at[slots]. *unsure is set by comparisons within rounding error, and by values beyond the
+ * range of doubles. */
 void tape_run(const Tape *t, TapeInput *input, void *data, Jet *at, int *unsure);
 
-/* First instruction with finite operands whose value exceeds the range of doubles (derivatives: or whose jet is not finite);
- * 0: none. Its value and its operands are in at[slots]. */
+/* First instruction with finite operands whose value exceeds the range of doubles (derivatives: or whose jet is not
+ * finite); 0: none. Its value and its operands are in at[slots]. */
 Ref tape_first_nonfinite(const Tape *t, TapeInput *input, void *data, int derivatives, Jet *at);
 
 static inline const Jet *tape_value(const Tape *t, const Jet *at, Ref a) { return &at[t->ins.at[a].slot]; }

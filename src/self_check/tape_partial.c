@@ -1,5 +1,5 @@
-/* Partial derivatives on a tape, d(expr, name) of the text, by forward differentiation, instruction by instruction. Deliberately
- * independent of sym/diff.c, which it checks. */
+/* Partial derivatives on a tape, d(expr, name) of the text, by forward differentiation, instruction by instruction.
+ * Deliberately independent of sym/diff.c, which it checks. */
 #include <string.h>
 
 #include "self_check/tape.h"
@@ -42,13 +42,15 @@ static Ref through_function(Tape *t, const char *name, Ref self, Ref a, Ref da) 
   if (strcmp(name, "tan") == 0) return quotient(t, da, square(t, tape_function(t, "cos", a)));
   if (strcmp(name, "sinh") == 0) return product(t, tape_function(t, "cosh", a), da);
   if (strcmp(name, "cosh") == 0) return product(t, tape_function(t, "sinh", a), da);
-  if (strcmp(name, "tanh") == 0) return product(t, tape_op(t, TAPE_SUB, integer(t, 1), square(t, self), 0), da); /* bound sees cancellation */
+  /* bound sees cancellation */
+  if (strcmp(name, "tanh") == 0) return product(t, tape_op(t, TAPE_SUB, integer(t, 1), square(t, self), 0), da);
   if (strcmp(name, "exp") == 0) return product(t, self, da);
   if (strcmp(name, "log") == 0) return quotient(t, da, a);
   if (strcmp(name, "fabs") == 0) return product(t, tape_op(t, TAPE_SIGN, a, 0, 0), da);
   Ref one = integer(t, 1);
   if (strcmp(name, "atan") == 0) return quotient(t, da, tape_op(t, TAPE_ADD, one, square(t, a), 0));
-  Ref rest = product(t, tape_op(t, TAPE_SUB, one, a, 0), tape_op(t, TAPE_ADD, one, a, 0)); /* 1 - a^2, for asin and acos */
+  /* 1 - a^2, for asin and acos */
+  Ref rest = product(t, tape_op(t, TAPE_SUB, one, a, 0), tape_op(t, TAPE_ADD, one, a, 0));
   Ref r = quotient(t, da, tape_power(t, rest, num_ratio(1, 2)));
   return strcmp(name, "asin") == 0 ? r : negative(t, r);
 }
@@ -60,7 +62,9 @@ static Ref through_pow(Tape *t, Ref self, Ref a, Ref b, Ref da, Ref db) {
   return db ? sum(t, base, product(t, product(t, self, tape_function(t, "log", a)), db)) : base;
 }
 
-static Ref chosen(Tape *t, Ref condition, Ref da, Ref db) { return da || db ? tape_op(t, TAPE_SELECT, condition, zero(t, da), zero(t, db)) : 0; }
+static Ref chosen(Tape *t, Ref condition, Ref da, Ref db) {
+  return da || db ? tape_op(t, TAPE_SELECT, condition, zero(t, da), zero(t, db)) : 0;
+}
 
 static Ref known(const Partial *p, Ref r, uint32_t level) { return r ? p->of.at[p->place.at[r] - 1].by[level] : 0; }
 
@@ -69,7 +73,8 @@ static Ref derivative(const Partial *p, Ref r, uint32_t level) {
   TapeIns i = t->ins.at[r]; /* a copy: the tape grows */
   Ref da = known(p, i.a, level), db = known(p, i.b, level), dc = known(p, i.c, level);
   if (i.op == TAPE_INPUT && (level || i.input != p->kind)) return 0;
-  if (i.op == TAPE_INPUT) return p->index == ALL ? tape_op(t, TAPE_RATE, r, 0, 0) : i.index == p->index ? integer(t, 1) : 0;
+  if (i.op == TAPE_INPUT)
+    return p->index == ALL ? tape_op(t, TAPE_RATE, r, 0, 0) : i.index == p->index ? integer(t, 1) : 0;
   /* d(a')/dx' = (da/dx')' + da/dx, where a' is the rate along the motion. */
   if (i.op == TAPE_RATE) return sum(t, da ? tape_op(t, TAPE_RATE, da, 0, 0) : 0, level ? known(p, i.a, level - 1) : 0);
   if (!da && !db && !dc) return 0;
@@ -79,16 +84,27 @@ static Ref derivative(const Partial *p, Ref r, uint32_t level) {
     case TAPE_NEG: return negative(t, da);
     case TAPE_MUL: return sum(t, product(t, da, i.b), product(t, i.a, db));
     case TAPE_DIV: return quotient(t, sum(t, da, negative(t, product(t, r, db))), i.b);
-    case TAPE_POWER: return product(t, product(t, tape_number(t, i.number), tape_power(t, i.a, num_sub(i.number, num_int(1)))), da);
+    case TAPE_POWER:
+      return product(t, product(t, tape_number(t, i.number), tape_power(t, i.a, num_sub(i.number, num_int(1)))), da);
     case TAPE_POW: return through_pow(t, r, i.a, i.b, da, db);
     case TAPE_FUNCTION: return through_function(t, i.text, r, i.a, da);
     case TAPE_ATAN2: /* (x y' - y x')/(x^2 + y^2) of y = a, x = b */
-      return quotient(t, sum(t, product(t, i.b, da), negative(t, product(t, i.a, db))), sum(t, square(t, i.a), square(t, i.b)));
+      return quotient(t, sum(t, product(t, i.b, da), negative(t, product(t, i.a, db))),
+                      sum(t, square(t, i.a), square(t, i.b)));
     case TAPE_HYPOT: return quotient(t, sum(t, product(t, i.a, da), product(t, i.b, db)), r);
     case TAPE_MIN: return chosen(t, tape_op(t, TAPE_LT, i.a, i.b, 0), da, db);
     case TAPE_MAX: return chosen(t, tape_op(t, TAPE_LT, i.b, i.a, 0), da, db);
     case TAPE_SELECT: return chosen(t, i.a, db, dc);
-    case TAPE_NUMBER: case TAPE_PI: case TAPE_INPUT: case TAPE_RATE: case TAPE_SIGN: case TAPE_FLOOR: case TAPE_LT: case TAPE_LE: case TAPE_EQ: case TAPE_NOT:
+    case TAPE_NUMBER:
+    case TAPE_PI:
+    case TAPE_INPUT:
+    case TAPE_RATE:
+    case TAPE_SIGN:
+    case TAPE_FLOOR:
+    case TAPE_LT:
+    case TAPE_LE:
+    case TAPE_EQ:
+    case TAPE_NOT:
     case TAPE_AND: case TAPE_OR: break; /* piecewise constant */
   }
   return 0;

@@ -1,5 +1,5 @@
-/* series_new: the program of order 0 is a copy of the model's program; the program of order k gets a recurrence for each instruction that the
- * motion depends on, and the linear system with the factors of order 0. */
+/* series_new: the program of order 0 is a copy of the model's program; the program of order k gets a recurrence for
+ * each instruction that the motion depends on, and the linear system with the factors of order 0. */
 #include "series/series.h"
 
 #include "series/series_impl.h"
@@ -35,7 +35,8 @@ Slot series_constant(SeriesBuilder *m, Slot s) {
     vec_push(m->arena, &m->constants, s);
     *at = m->constants.n;
   }
-  return prog_ins(m->next, (Ins){.op = IR_LOAD, .array = ARR_STEP, .index = *at - 1, .name = i->name ? i->name : "constant"});
+  return prog_ins(m->next,
+                  (Ins){.op = IR_LOAD, .array = ARR_STEP, .index = *at - 1, .name = i->name ? i->name : "constant"});
 }
 
 Slot series_zero(SeriesBuilder *m, Val a) { return series_constant(m, m->values.at[a].zero); }
@@ -155,7 +156,16 @@ static int64_t column_of(ModelSeries *w, const Ins *i) {
     case ARR_V: return sys->nq + i->index;
     case ARR_Z: return 2 * sys->nq + i->index;
     case ARR_T: w->out->uses_time = 1; return 3 * sys->nq + 2 * sys->nz;
-    case ARR_P: case ARR_U: case ARR_A: case ARR_G: case ARR_FREE: case ARR_COEF: case ARR_SUMS: case ARR_STEP: case ARR_ORDER: case ARR_PER_ORDER:
+    case ARR_P:
+    case ARR_U:
+    case ARR_A:
+    case ARR_G:
+    case ARR_FREE:
+    case ARR_COEF:
+    case ARR_SUMS:
+    case ARR_STEP:
+    case ARR_ORDER:
+    case ARR_PER_ORDER:
     case ARR_UP: case ARR_CELL: case ARR_OUTER: case ARR_COUNT: break;
   }
   return -1;
@@ -176,8 +186,9 @@ static void copy_program(ModelSeries *w) {
     Slot zero = w->zero[s] = prog_ins(w->m.first, i);
     prog_name(w->m.first, zero, i.name);
     if (!w->need[s]) continue;
-    w->value[s] = i.op == IR_LOAD ? load_value(w, &i, zero)
-                                  : series_instruction(&w->m, &i, zero, w->value[was->a], w->value[was->b], w->value[was->c]);
+    w->value[s] = i.op == IR_LOAD
+                      ? load_value(w, &i, zero)
+                      : series_instruction(&w->m, &i, zero, w->value[was->a], w->value[was->b], w->value[was->c]);
     Slot coef = w->m.values.at[w->value[s]].coef;
     if (i.op != IR_LOAD) prog_name(w->m.next, coef, i.name);
   }
@@ -204,7 +215,8 @@ static void list_entries(ModelSeries *w) {
   }
 }
 
-/* Opens the values of rates and adjoints, the latter computed in `first`: lambda = H u' + C^T lambda, from the last definition on. */
+/* Opens the values of rates and adjoints, the latter computed in `first`: lambda = H u' + C^T lambda, from the last
+ * definition on. */
 static void open_unknowns(ModelSeries *w) {
   SeriesBuilder *m = &w->m;
   const IrSystem *sys = w->sys;
@@ -215,9 +227,11 @@ static void open_unknowns(ModelSeries *w) {
   for (uint32_t v = total; v-- > sys->nq;) {
     Slot sum = 0;
     for (uint32_t k = 0; k < w->H[v].n; k++)
-      sum = prog_add_product(m->first, sum, m->values.at[w->H[v].at[k].value].zero, m->values.at[w->u[w->H[v].at[k].other]].zero);
+      sum = prog_add_product(m->first, sum, m->values.at[w->H[v].at[k].value].zero,
+                             m->values.at[w->u[w->H[v].at[k].other]].zero);
     for (uint32_t k = 0; k < w->column[v].n; k++)
-      sum = prog_add_product(m->first, sum, m->values.at[w->column[v].at[k].value].zero, m->values.at[w->lambda[w->column[v].at[k].other]].zero);
+      sum = prog_add_product(m->first, sum, m->values.at[w->column[v].at[k].value].zero,
+                             m->values.at[w->lambda[w->column[v].at[k].other]].zero);
     w->lambda[v] = series_open(m, sum);
   }
 }
@@ -300,13 +314,14 @@ static FactorRecord factors_in_next(ModelSeries *w) {
   return seen;
 }
 
-/* Solves small systems by the inverse: for a full M it takes as many operations as factors do, with shorter chains of dependence. It is
- * as accurate, since a definite matrix loses no digits by bad scales. */
+/* Solves small systems by the inverse: for a full M it takes as many operations as factors do, with shorter chains
+ * of dependence. It is as accurate, since a definite matrix loses no digits by bad scales. */
 static void solve_by_inverse(ModelSeries *w, const Slot *b, Slot *x) {
   SeriesBuilder *m = &w->m;
   FactorRecord f = *w->sys->factored;
   uint32_t n = f.n;
-  Slot unit[INVERSE_MAX], column[INVERSE_MAX], inverse[INVERSE_MAX][INVERSE_MAX], *pivot = ARENA_ARRAY(m->arena, Slot, n);
+  Slot unit[INVERSE_MAX], column[INVERSE_MAX], inverse[INVERSE_MAX][INVERSE_MAX],
+      *pivot = ARENA_ARRAY(m->arena, Slot, n);
   SparseRow *below = ARENA_ARRAY(m->arena, SparseRow, n);
   for (uint32_t v = 0; v < n; v++) {
     pivot[v] = w->zero[f.pivot[v]];
@@ -330,7 +345,8 @@ static void solve(ModelSeries *w) {
   SeriesBuilder *m = &w->m;
   const IrSystem *sys = w->sys;
   uint32_t n = sys->nq, total = n + sys->ndefs;
-  Slot *b = ARENA_ARRAY(m->arena, Slot, total + 1), *s = ARENA_ARRAY(m->arena, Slot, total + 1), *x = ARENA_ARRAY(m->arena, Slot, total + 1);
+  Slot *b = ARENA_ARRAY(m->arena, Slot, total + 1), *s = ARENA_ARRAY(m->arena, Slot, total + 1),
+       *x = ARENA_ARRAY(m->arena, Slot, total + 1);
   if (!n) return;
   list_entries(w);
   open_unknowns(w);
@@ -372,14 +388,15 @@ static void store_all(ModelSeries *w) {
   const IrSystem *sys = w->sys;
   uint32_t nq = sys->nq, nz = sys->nz;
   for (uint32_t i = 0; i < nq; i++) store_rate(w, i, w->zero[sys->x[i]], m->values.at[w->u[i]].coef);
-  for (uint32_t i = 0; i < nz; i++) store_rate(w, nq + i, w->zero[sys->flow[i]], m->values.at[w->value[sys->flow[i]]].coef);
+  for (uint32_t i = 0; i < nz; i++)
+    store_rate(w, nq + i, w->zero[sys->flow[i]], m->values.at[w->value[sys->flow[i]]].coef);
   for (uint32_t i = 0; i < nq; i++) store_state(w, i, load(m, ARR_COEF, nq + i, sys->velocities[i]));
   for (uint32_t i = 0; i < nq; i++) store_state(w, nq + i, m->values.at[w->u[i]].coef);
   for (uint32_t i = 0; i < nz; i++) store_state(w, 2 * nq + i, m->values.at[w->value[sys->flow[i]]].coef);
 }
 
-/* By slot: cycles until the loads of `next` are ready. Rates of the previous order, and v and z computed from them, come last, with the
- * sums that contain them; everything else was ready one order before. */
+/* By slot: cycles until the loads of `next` are ready. Rates of the previous order, and v and z computed from them,
+ * come last, with the sums that contain them; everything else was ready one order before. */
 static const uint32_t *when_ready(const ModelSeries *w, const Prog *next) {
   enum { ORDER = 30, PRODUCT = 4 };
   uint32_t *ready = ARENA_ARRAY(next->arena, uint32_t, next->ins.n), total = w->sys->nq + w->sys->ndefs;

@@ -1,14 +1,16 @@
 /* Prog -> Series: the recurrences of the Taylor coefficients of a model's motion.
  *
- * A value x(t) along the motion from t0 on has coefficients x[k] = x^(k)(t0) T^k / k!, in time measured in units of T. Automatic differentiation
- * gives coefficient k of each value from those of its operands up to k, and those of itself below k (E. Hairer, S.P. Norsett, G. Wanner, Solving
- * Ordinary Differential Equations I, 2nd ed. 1993, DOI 10.1007/978-3-540-78862-1, I.8; A. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99, DOI
+ * A value x(t) along the motion from t0 on has coefficients x[k] = x^(k)(t0) T^k / k!, in time measured in units of
+ * T. Automatic differentiation gives coefficient k of each value from those of its operands up to k, and those of
+ * itself below k (E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. 1993, DOI
+ * 10.1007/978-3-540-78862-1, I.8; A. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99, DOI
  * 10.1080/10586458.2005.10128904, section 2). Lower orders enter only by convolution sums
  *
  *     s = a[1] b[k-1] + a[2] b[k-2] + ... + a[k-1] b[1]
  *
- * over pairs of values (a, b); the rest is straight-line code in the coefficients of order k. So a Series is two programs and a list of pairs, of a
- * size proportional to the model's program; the loops over the order are the same for all models.
+ * over pairs of values (a, b); the rest is straight-line code in the coefficients of order k. So a Series is two
+ * programs and a list of pairs, of a size proportional to the model's program; the loops over the order are the same
+ * for all models.
  *
  * M q'' = f is solved order by order with the factors of M[0], which `first` makes: M[0] q''[k] is
  * f[k] - M[k] q''[0] less the sums over M and q''. Where M is kept as a product, through definitions w' = C q'' + ...

@@ -1,4 +1,5 @@
-/* series_columns: assigns a column to each sum and an index to each constant that `next` uses; the linear system makes more than it uses. */
+/* series_columns: assigns a column to each sum and an index to each constant that `next` uses; the linear system
+ * makes more than it uses. */
 #include "series/series_impl.h"
 
 /* Sums are accumulated in groups that stay in registers: up to 16 numbers, in vectors of 2 or 4. */
@@ -17,10 +18,13 @@ static void need(Need *n, Slot s) {
   vec_push(n->m->arena, &n->open, s);
 }
 
-/* Marks slots and pairs that stores and solves need, backwards; a convolution sum needs coefficient k of both its factors. */
+/* Marks slots and pairs that stores and solves need, backwards; a convolution sum needs coefficient k of both its
+ * factors. */
 static Need find_needed(SeriesBuilder *m) {
   const Prog *p = m->next;
-  Need n = {.m = m, .slot = ARENA_ARRAY(m->arena, unsigned char, p->ins.n), .pair = ARENA_ARRAY(m->arena, unsigned char, m->pairs.n + 1)};
+  Need n = {.m = m,
+            .slot = ARENA_ARRAY(m->arena, unsigned char, p->ins.n),
+            .pair = ARENA_ARRAY(m->arena, unsigned char, m->pairs.n + 1)};
   for (uint32_t k = 0; k < p->stores.n; k++) need(&n, p->stores.at[k].slot);
   for (uint32_t k = 0; k < p->solves.n; k++) {
     for (uint32_t i = 0; i < solve_unknowns(&p->solves.at[k]); i++) need(&n, p->solves.at[k].rhs[i]);
@@ -104,6 +108,7 @@ void series_columns(SeriesBuilder *m, Series *s) {
     uint32_t i = m->columns.at[c];
     if (i != UINT32_MAX) prog_store(m->next, 2, c, m->values.at[m->pairs.at[i].a].coef, "");
   }
-  for (uint32_t c = 0; c < s->sums; c++) prog_store(m->next, 3, c, m->values.at[m->pairs.at[m->columns.at[c]].b].coef, "");
+  for (uint32_t c = 0; c < s->sums; c++)
+    prog_store(m->next, 3, c, m->values.at[m->pairs.at[m->columns.at[c]].b].coef, "");
   for (uint32_t i = 0; i < m->constants.n; i++) prog_store(m->first, 1, i, m->constants.at[i], "");
 }

@@ -1,5 +1,5 @@
-/* Shared by series.c (the two programs, the linear system), series_recurrences.c (a recurrence for each operation) and series_columns.c (columns of sums
- * and constants). */
+/* Shared by series.c (the two programs, the linear system), series_recurrences.c (a recurrence for each operation)
+ * and series_columns.c (columns of sums and constants). */
 #pragma once
 
 #include "series/series.h"
@@ -37,7 +37,8 @@ typedef struct {
 
 /* A value with coefficients 0 and k; coef == 0: constant in time. */
 Val series_value(SeriesBuilder *m, Slot zero, Slot coef);
-/* A value whose coefficient k is set later, by series_set, since it needs sums over the value's own lower coefficients. */
+/* A value whose coefficient k is set later, by series_set, since it needs sums over the value's own lower
+ * coefficients. */
 Val series_open(SeriesBuilder *m, Slot zero);
 void series_set(SeriesBuilder *m, Val v, Slot coef);
 
@@ -59,9 +60,10 @@ Slot series_order(SeriesBuilder *m);
 /* The value t d/dt v. */
 Val series_theta(SeriesBuilder *m, Val v);
 
-/* The value of an instruction of the program, by its recurrence; v, w, x: values of its operands, zero: its slot in `first`.
- * 0 when it is not analytic, with m->why set. */
+/* The value of an instruction of the program, by its recurrence; v, w, x: values of its operands, zero: its slot in
+ * `first`. 0 when it is not analytic, with m->why set. */
 Val series_instruction(SeriesBuilder *m, const Ins *i, Slot zero, Val v, Val w, Val x);
 
-/* Assigns columns to the sums, and places to the constants, that the stores of `next` need; stores the factors a[k], b[k] and the constants. */
+/* Assigns columns to the sums, and places to the constants, that the stores of `next` need; stores the factors a[k],
+ * b[k] and the constants. */
 void series_columns(SeriesBuilder *m, Series *s);

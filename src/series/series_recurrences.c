@@ -1,6 +1,7 @@
-/* series_instruction: a recurrence for each operation. u, v, ... are the operands, y the result; S(a, b) is the convolution sum of
- * a and b over 0 < j < k, theta u = t du/dt has the coefficients k u[k]. Each recurrence is the function's differential equation with
- * the terms of order 0 and k taken out of the sums: theta e = e theta u for e = exp u gives k e[k] = e[0] k u[k] + S(theta u, e). */
+/* series_instruction: a recurrence for each operation. u, v, ... are the operands, y the result; S(a, b) is the
+ * convolution sum of a and b over 0 < j < k, theta u = t du/dt has the coefficients k u[k]. Each recurrence is the
+ * function's differential equation with the terms of order 0 and k taken out of the sums: theta e = e theta u for e
+ * = exp u gives k e[k] = e[0] k u[k] + S(theta u, e). */
 #include <string.h>
 
 #include "series/series_impl.h"
@@ -10,7 +11,9 @@ static Slot zero(SeriesBuilder *m, Val v) { return m->values.at[v].zero; }
 static int varies(SeriesBuilder *m, Val v) { return m->values.at[v].varies; }
 
 static Slot first_op(SeriesBuilder *m, IrOp op, Slot a, Slot b) { return prog_op(m->first, op, a, b); }
-static Slot first_call(SeriesBuilder *m, const char *name, Slot a) { return prog_ins(m->first, (Ins){.op = IR_FN1, .a = a, .text = name}); }
+static Slot first_call(SeriesBuilder *m, const char *name, Slot a) {
+  return prog_ins(m->first, (Ins){.op = IR_FN1, .a = a, .text = name});
+}
 static Slot first_number(SeriesBuilder *m, int64_t n) { return prog_num(m->first, num_int(n)); }
 
 static Slot add(SeriesBuilder *m, Slot a, Slot b) { return series_op(m, IR_ADD, a, b); }
@@ -112,7 +115,8 @@ static Val power(SeriesBuilder *m, Slot at_zero, Val u, Val v) {
 
 /* --- circular and hyperbolic functions --- */
 
-/* theta s = c theta u, theta c = -s theta u (circular) or s theta u. Each recurrence needs the other, so both are made. */
+/* theta s = c theta u, theta c = -s theta u (circular) or s theta u. Each recurrence needs the other, so both are
+ * made. */
 static void sine_and_cosine(SeriesBuilder *m, Val u, int circular, Val *sine, Val *cosine) {
   Val s = series_open(m, first_call(m, circular ? "sin" : "sinh", zero(m, u)));
   Val c = series_open(m, first_call(m, circular ? "cos" : "cosh", zero(m, u))), slope = series_theta(m, u);
@@ -125,7 +129,8 @@ static void sine_and_cosine(SeriesBuilder *m, Val u, int circular, Val *sine, Va
 
 /* sin u or cos u; sinh u or cosh u. Recorded in u, so that each is made once. */
 static Val circular(SeriesBuilder *m, Val u, int wants_sine, int is_circular) {
-  Val s = is_circular ? m->values.at[u].sine : m->values.at[u].sinh, c = is_circular ? m->values.at[u].cosine : m->values.at[u].cosh;
+  Val s = is_circular ? m->values.at[u].sine : m->values.at[u].sinh,
+      c = is_circular ? m->values.at[u].cosine : m->values.at[u].cosh;
   if (!s) sine_and_cosine(m, u, is_circular, &s, &c);
   Value *x = &m->values.at[u];
   *(is_circular ? &x->sine : &x->sinh) = s;
@@ -157,7 +162,8 @@ static Val inverse(SeriesBuilder *m, Slot at_zero, Val u, Val d, int negative) {
 
 /* asin, acos: d = sqrt(1 - u u), computed as (1 - u)(1 + u) at order 0. */
 static Val arc_sine(SeriesBuilder *m, Slot at_zero, Val u, int cosine) {
-  Slot one = first_number(m, 1), u0 = zero(m, u), minus = first_op(m, IR_SUB, one, u0), plus = first_op(m, IR_ADD, one, u0);
+  Slot one = first_number(m, 1), u0 = zero(m, u), minus = first_op(m, IR_SUB, one, u0),
+       plus = first_op(m, IR_ADD, one, u0);
   Slot inside = first_op(m, IR_MUL, minus, plus);
   Val w = series_value(m, inside, neg(m, coef(m, square(m, u))));
   return inverse(m, at_zero, u, square_root(m, first_op(m, IR_SQRT, inside, 0), w), cosine);
@@ -179,7 +185,8 @@ static Val norm_square(SeriesBuilder *m, Val u, Val v) {
 static Val angle(SeriesBuilder *m, Slot at_zero, Val v, Val u) {
   Val y = series_open(m, at_zero), slope = series_open(m, 0), d = norm_square(m, u, v);
   m->values.at[y].theta = slope;
-  Slot forth = series_sum(m, u, series_theta(m, v)), back = series_sum(m, v, series_theta(m, u)), own = series_sum(m, slope, d);
+  Slot forth = series_sum(m, u, series_theta(m, v)), back = series_sum(m, v, series_theta(m, u)),
+       own = series_sum(m, slope, d);
   Slot sums = series_per_order(m, sub(m, sub(m, forth, back), own)), there = lead(m, u, v), here = lead(m, v, u);
   Slot top = add(m, sub(m, there, here), sums);
   series_set(m, y, series_over(m, top, zero(m, d)));
@@ -221,7 +228,8 @@ static Val function2(SeriesBuilder *m, const char *name, Slot at_zero, Val u, Va
 static Val choice(SeriesBuilder *m, Slot at_zero, Slot condition, Val u, Val v) {
   Slot one = first_number(m, 1), flag = prog_ins(m->first, (Ins){.op = IR_SELECT, .a = condition, .b = one});
   Slot holds = series_op(m, IR_LT, 0, series_constant(m, flag));
-  return series_value(m, at_zero, prog_ins(m->next, (Ins){.op = IR_SELECT, .a = holds, .b = coef(m, u), .c = coef(m, v)}));
+  return series_value(m, at_zero,
+                      prog_ins(m->next, (Ins){.op = IR_SELECT, .a = holds, .b = coef(m, u), .c = coef(m, v)}));
 }
 
 static Val linear(SeriesBuilder *m, IrOp op, Slot at_zero, Val u, Val v) {
@@ -244,7 +252,14 @@ Val series_instruction(SeriesBuilder *m, const Ins *i, Slot at_zero, Val u, Val 
     case IR_TABLE: return refuse(m, "a table");
     case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND: case IR_OR: return refuse(m, "if");
     case IR_SELECT: return choice(m, at_zero, i->a, v, w);
-    case IR_CONST: case IR_PI: case IR_LOAD: case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_NEST: case IR_TITLE: break;
+    case IR_CONST:
+    case IR_PI:
+    case IR_LOAD:
+    case IR_PIVOT:
+    case IR_SOLVE:
+    case IR_SOLVED:
+    case IR_NEST:
+    case IR_TITLE: break;
   }
   return 0;
 }

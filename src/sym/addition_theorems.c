@@ -66,7 +66,8 @@ static void make_power(Normal *n, uint32_t at) {
   normal_set_gen_info(n, a->cos, (GenInfo){.kind = GEN_POWER, .expr = e, .atom = at});
 }
 
-/* c as a multiple of its atom's unit. A coefficient that needs a finer unit makes new generators and restarts the normal form. */
+/* c as a multiple of its atom's unit. A coefficient that needs a finer unit makes new generators and restarts the
+ * normal form. */
 static int32_t multiple_of(Normal *n, uint32_t at, Num c) {
   Atom *a = &n->atoms.at[at];
   Num unit = num_gcd(a->unit, c);
@@ -101,7 +102,9 @@ static Circular add_angles(Normal *n, Circular a, Circular b) {
   return (Circular){.cos = cos, .sin = sin};
 }
 
-static Circular zero_angle(Normal *n) { return (Circular){.cos = frac_num(n->field, num_int(1)), .sin = frac_poly(poly_zero())}; }
+static Circular zero_angle(Normal *n) {
+  return (Circular){.cos = frac_num(n->field, num_int(1)), .sin = frac_poly(poly_zero())};
+}
 
 Circular normal_multiple(Normal *n, uint32_t at, int32_t k) {
   Atom a = n->atoms.at[at];
@@ -224,11 +227,13 @@ static Frac power_of(Normal *n, PolyId base_num, DenId base_den, Frac u) {
   return product;
 }
 
-/* b^u as one power of b^(u/k) or b^(-u/k), whichever atom exists: exp(x - y) is 1 at x = y = 1000, where exp(x)*exp(-y) is NaN. */
+/* b^u as one power of b^(u/k) or b^(-u/k), whichever atom exists: exp(x - y) is 1 at x = y = 1000, where
+ * exp(x)*exp(-y) is NaN. */
 static Frac whole_power(Normal *n, PolyId base_num, DenId base_den, Frac u) {
   PolyRing *r = n->ring;
   Num content = num_abs(poly_content(r, u.num)), inverse = num_div(num_int(1), content);
-  PolyId part = poly_intern(r, poly_scale(r, inverse, u.num)), turned = poly_intern(r, poly_scale(r, num_neg(inverse), u.num));
+  PolyId part = poly_intern(r, poly_scale(r, inverse, u.num)),
+         turned = poly_intern(r, poly_scale(r, num_neg(inverse), u.num));
   int known = 0;
   for (uint32_t i = 0; i < n->atoms.n; i++) {
     const Atom *a = &n->atoms.at[i];
@@ -249,7 +254,8 @@ Frac normal_power(Normal *n, Frac base, Frac u) {
   PolyId id = poly_intern(n->ring, base.num);
   if (id == 0) poly_fail(n->ring, POLY_DIVIDED_BY_ZERO); /* 0^u depends on the sign of u */
   n->canonical = 0; /* x^u and y^u and (x*y)^u are related */
-  if (!n->proof) return n->keep_range && !is_constant(u) ? whole_power(n, id, base.den, u) : power_of(n, id, base.den, u);
+  if (!n->proof)
+    return n->keep_range && !is_constant(u) ? whole_power(n, id, base.den, u) : power_of(n, id, base.den, u);
   PowerParts parts = normal_power_parts(n, base, u);
   Frac product = frac_num(n->field, num_int(1));
   for (uint32_t i = 0; i < parts.n && n->ring->status == POLY_OK; i++) {

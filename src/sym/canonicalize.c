@@ -62,7 +62,8 @@ static Pair *find_term(const Pairs *p, Expr term) {
   return lo < p->n && p->at[lo].node == term ? &p->at[lo] : NULL;
 }
 
-/* Finds a factor sin u, cos u, sinh u or cosh u to a power >= 2 in term, from pair `from` on: its function *op, argument *u, pair *at. */
+/* Finds a factor sin u, cos u, sinh u or cosh u to a power >= 2 in term, from pair `from` on: its function *op,
+ * argument *u, pair *at. */
 static int squared_function(const ExprGraph *g, Expr term, Expr *u, ExprOp *op, uint32_t from, uint32_t *at) {
   if (expr_op(g, term) != EX_PROD) return 0;
   for (uint32_t i = from; i < expr_pairs(g, term, EX_PROD); i++) {
@@ -79,7 +80,9 @@ static int squared_function(const ExprGraph *g, Expr term, Expr *u, ExprOp *op, 
   return 0;
 }
 
-static ExprOp cofunction(ExprOp op) { return op == EX_SIN ? EX_COS : op == EX_COS ? EX_SIN : op == EX_SINH ? EX_COSH : EX_SINH; }
+static ExprOp cofunction(ExprOp op) {
+  return op == EX_SIN ? EX_COS : op == EX_COS ? EX_SIN : op == EX_SINH ? EX_COSH : EX_SINH;
+}
 
 /* Applies sin^2 + cos^2 = 1 or cosh^2 - sinh^2 = 1 once to the collected pairs: R sin^2 + R cos^2 -> R, and
  * R - R sin^2 -> R cos^2. Returns 1 when a pair changed. */
@@ -257,7 +260,8 @@ void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e) {
   push_factor(g, r, base, e);
 }
 
-/* Pushes again the factors whose collected exponent allows a simplification (2^(1/2) squared). Returns 1 when r changed. */
+/* Pushes again the factors whose collected exponent allows a simplification (2^(1/2) squared). Returns 1 when r
+ * changed. */
 static int simplify_factors(ExprGraph *g, Product *r) {
   Pair room[ROOM];
   Product again = {.c = r->c, .p = ROOM_FOR(room)};
@@ -443,7 +447,9 @@ static Expr fold_fn2(ExprGraph *g, ExprOp op, Expr a, Expr b) {
   return 0;
 }
 
-static int commutes(ExprOp op) { return op == EX_MIN || op == EX_MAX || op == EX_EQ || op == EX_AND || op == EX_OR || op == EX_HYPOT; }
+static int commutes(ExprOp op) {
+  return op == EX_MIN || op == EX_MAX || op == EX_EQ || op == EX_AND || op == EX_OR || op == EX_HYPOT;
+}
 
 Expr expr_fn2(ExprGraph *g, ExprOp op, Expr a, Expr b) {
   Expr folded = fold_fn2(g, op, a, b);

@@ -1,4 +1,5 @@
-/* Derivatives of graph nodes: partial derivatives by argument, a forward sweep (tangents) and a reverse sweep (adjoints). */
+/* Derivatives of graph nodes: partial derivatives by argument, a forward sweep (tangents) and a reverse sweep
+ * (adjoints). */
 #include "sym/diff.h"
 
 #include <stdlib.h>
@@ -67,7 +68,14 @@ static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
     case EX_POW: return partial_pow(g, e, a, b, i);
     case EX_ATAN2: return partial_atan2(g, a, b, i);
     case EX_HYPOT: return expr_div(g, i == 0 ? a : b, e);
-    case EX_NUM: case EX_MIN: case EX_MAX: case EX_SELECT: /* choices, see below */ case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: EX_FUNCTION_CASES
+    case EX_NUM:
+    case EX_MIN:
+    case EX_MAX:
+    case EX_SELECT: /* choices, see below */
+    case EX_SYM:
+    case EX_DEF:
+    case EX_SUM:
+    case EX_PROD: EX_FUNCTION_CASES
     case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_LT: case EX_LE:
     case EX_EQ: case EX_NOT: case EX_AND: case EX_OR: case EX_COUNT: break;
   }
@@ -75,7 +83,9 @@ static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
 }
 
 /* Whether e is log|u|: a function of u, whose slope is 1/u. */
-static int is_log_of_size(ExprGraph *g, Expr e) { return expr_op(g, e) == EX_LOG && expr_op(g, expr_arg(g, e, 0)) == EX_ABS; }
+static int is_log_of_size(ExprGraph *g, Expr e) {
+  return expr_op(g, e) == EX_LOG && expr_op(g, expr_arg(g, e, 0)) == EX_ABS;
+}
 
 /* Number of arguments of e that are nodes to differentiate; coefficients and exponents do not count. */
 static uint32_t inputs(ExprGraph *g, Expr e) {
@@ -95,7 +105,8 @@ static Expr partial(ExprGraph *g, Expr e, uint32_t i) {
   return expr_nargs(g, e) == 1 ? partial_unary(g, e, input(g, e, 0)) : partial_binary(g, e, i);
 }
 
-/* --- choices: if, min, max. Their derivative is that of the side that holds; a factor of 0 would not do, as the other side's may have no value there. --- */
+/* --- choices: if, min, max. Their derivative is that of the side that holds; a factor of 0 would not do, as the
+ * other side's may have no value there. --- */
 
 /* A choice of two sides among the inputs of e. */
 typedef struct {
@@ -115,7 +126,8 @@ static int is_choice(ExprGraph *g, Expr e, Choice *c) {
 
 enum { NESTED_CHOICES = 16 };
 
-/* p*x, inside the sides of a choice x that is 0 on the other side, or of such terms of a sum; deeper than `depth` choices in one another, a product. */
+/* p*x, inside the sides of a choice x that is 0 on the other side, or of such terms of a sum; deeper than `depth`
+ * choices in one another, a product. */
 static Expr times_chosen(ExprGraph *g, Expr p, Expr x, int depth) {
   Num k;
   if (depth == 0) return expr_mul(g, p, x);
@@ -130,7 +142,8 @@ static Expr times_chosen(ExprGraph *g, Expr p, Expr x, int depth) {
   if (!chosen || (n == 1 && expr_op(g, x) == EX_SELECT)) return expr_mul(g, p, x);
   Expr sum = g->zero;
   for (uint32_t i = 0; i < n; i++) {
-    Expr term = expr_pair(g, x, EX_SUM, i, &k), product = times_chosen(g, p, term, depth - 1), scaled = expr_scale(g, k, product);
+    Expr term = expr_pair(g, x, EX_SUM, i, &k), product = times_chosen(g, p, term, depth - 1),
+         scaled = expr_scale(g, k, product);
     sum = expr_add(g, sum, scaled);
   }
   return sum;
@@ -158,7 +171,8 @@ static void push_term(ExprGraph *g, Terms *t, Expr term) {
     vec_push(g->arena, t, term);
     return;
   }
-  Expr yes = expr_add(g, expr_arg(g, last, 1), expr_arg(g, term, 1)), no = expr_add(g, expr_arg(g, last, 2), expr_arg(g, term, 2));
+  Expr yes = expr_add(g, expr_arg(g, last, 1), expr_arg(g, term, 1)),
+       no = expr_add(g, expr_arg(g, last, 2), expr_arg(g, term, 2));
   t->at[t->n - 1] = expr_select(g, expr_arg(g, term, 0), yes, no);
 }
 
@@ -171,7 +185,8 @@ typedef struct {
   const Expr *at;
 } Seeds;
 
-static void sweep_forward(ExprGraph *g, const Expr *roots, uint32_t n, Seeds seed, const char *suffix, ExprMap *known, Expr *out) {
+static void sweep_forward(ExprGraph *g, const Expr *roots, uint32_t n, Seeds seed, const char *suffix, ExprMap *known,
+                          Expr *out) {
   ExprList l = expr_topo_until(g, roots, n, known);
   ExprMap *dot = &g->work; /* node -> its tangent; absent: zero */
   expr_map_clear(dot);
@@ -180,7 +195,8 @@ static void sweep_forward(ExprGraph *g, const Expr *roots, uint32_t n, Seeds see
     Expr e = l.at[k];
     if (expr_op(g, e) == EX_SYM) {
       SymId s = expr_sym_id(g, e);
-      if (s >= seed.first && s - seed.first < seed.n && seed.at[s - seed.first]) expr_map_set(dot, e, seed.at[s - seed.first]);
+      if (s >= seed.first && s - seed.first < seed.n && seed.at[s - seed.first])
+        expr_map_set(dot, e, seed.at[s - seed.first]);
       continue;
     }
     Expr before = known ? expr_map_get(known, e) : 0;

@@ -1,5 +1,5 @@
-/* Differentiation on the graph: never on a tree, each node once. Forward mode: Wengert (1964). Reverse mode: Linnainmaa (1976); Griewank & Walther,
- * Evaluating Derivatives (2008), chapters 3.1 and 3.2. */
+/* Differentiation on the graph: never on a tree, each node once. Forward mode: Wengert (1964). Reverse mode:
+ * Linnainmaa (1976); Griewank & Walther, Evaluating Derivatives (2008), chapters 3.1 and 3.2. */
 #pragma once
 
 #include "sym/expr.h"
@@ -25,8 +25,8 @@ typedef struct {
 
 ExprPartials expr_gradient_sparse(ExprGraph *g, Expr e, SymKind kind, uint32_t below);
 
-/* Directional derivatives out[i] = sum over s of d(roots[i])/ds * seed[s]. seed has nseed entries, 0 meaning zero. The derivative of a definition `a`
- * becomes the definition `a` + suffix ("'" for the total time derivative). known: derivatives of definitions from earlier calls with the same seed,
- * read and extended; or NULL. */
+/* Directional derivatives out[i] = sum over s of d(roots[i])/ds * seed[s]. seed has nseed entries, 0 meaning zero.
+ * The derivative of a definition `a` becomes the definition `a` + suffix ("'" for the total time derivative). known:
+ * derivatives of definitions from earlier calls with the same seed, read and extended; or NULL. */
 void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
                   const char *suffix, ExprMap *known, Expr *out);

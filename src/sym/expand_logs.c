@@ -1,5 +1,5 @@
-/* Expansion of logarithms and powers of products, for proofs: log(a*b) = log(a) + log(b) and (a*b)^u = a^u*b^u for factors
- * that are known to be positive. */
+/* Expansion of logarithms and powers of products, for proofs: log(a*b) = log(a) + log(b) and (a*b)^u = a^u*b^u for
+ * factors that are known to be positive. */
 #include "sym/normal_form_impl.h"
 
 enum { MAX_FACTORS = 200 };
@@ -33,7 +33,9 @@ static void split_number(Splitter *s, int64_t m, int sign) {
     int64_t e = 0;
     if (p > 1000) p = m;
     for (; m % p == 0; m /= p) e++;
-    if (e) vec_push(n->arena, s->out, ((PowerPart){whole(n, num_int(p)), frac_mul(n->field, s->exponent, whole(n, num_int(sign * e))), 0}));
+    if (e)
+      vec_push(n->arena, s->out,
+               ((PowerPart){whole(n, num_int(p)), frac_mul(n->field, s->exponent, whole(n, num_int(sign * e))), 0}));
   }
 }
 
@@ -42,14 +44,15 @@ static void add_power(Splitter *s, Poly base, int32_t e) {
   vec_push(n->arena, s->out, ((PowerPart){frac_poly(base), frac_mul(n->field, s->exponent, whole(n, num_int(e))), 0}));
 }
 
-/* A factor x of unknown sign to the power e: for even e a power of x^2, which is positive; odd powers are collected in s->odd. */
+/* A factor x of unknown sign to the power e: for even e a power of x^2, which is positive; odd powers are collected
+ * in s->odd. */
 static void add_unknown_sign(Splitter *s, Poly x, int32_t e) {
   if (e % 2 != 0) vec_push(s->n->arena, &s->odd, ((Odd){x, e}));
   else add_power(s, poly_mul(s->n->ring, x, x), e / 2);
 }
 
-/* Adds the odd powers. Their product has the sign `sign`, or the exponent is an integer: a single factor thus has a known sign; of several,
- * the product and the squares of the factors are parts. */
+/* Adds the odd powers. Their product has the sign `sign`, or the exponent is an integer: a single factor thus has a
+ * known sign; of several, the product and the squares of the factors are parts. */
 static void add_odd_powers(Splitter *s, int sign) {
   PolyRing *r = s->n->ring;
   Poly rest = poly_num(r, num_int(sign));

@@ -67,7 +67,9 @@ static Expr make_named(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs
   uint32_t hash = hash_parts(op, args, nargs, name), slot = idtable_start(&g->table, hash);
   for (Expr e; idtable_next(&g->table, hash, &slot, &e);) {
     const Node *n = &g->nodes.at[e];
-    if (n->op == op && n->nargs == nargs && n->name == name && memcmp(g->args.at + n->payload, args, nargs * sizeof *args) == 0) return e;
+    if (n->op == op && n->nargs == nargs && n->name == name &&
+        memcmp(g->args.at + n->payload, args, nargs * sizeof *args) == 0)
+      return e;
   }
   Node n = {.op = (uint8_t)op, .nargs = nargs, .payload = g->args.n, .name = name};
   n.sign = (uint8_t)expr_infer_sign(g, op, args, nargs);
@@ -78,7 +80,9 @@ static Expr make_named(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs
   return add_hashed(g, n, hash);
 }
 
-Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs) { return make_named(g, op, args, nargs, NULL); }
+Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs) {
+  return make_named(g, op, args, nargs, NULL);
+}
 
 /* --- leaves --- */
 
@@ -154,9 +158,13 @@ Name expr_def_name(const ExprGraph *g, Expr e) { return g->nodes.at[e].name; }
 ExprSign expr_sign(const ExprGraph *g, Expr e) { return (ExprSign)g->nodes.at[e].sign; }
 int expr_is_num(const ExprGraph *g, Expr e) { return g->nodes.at[e].op == EX_NUM; }
 unsigned expr_kinds(const ExprGraph *g, Expr e) { return g->nodes.at[e].kinds; }
-int expr_is_constant(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
+int expr_is_constant(const ExprGraph *g, Expr e) {
+  return (expr_kinds(g, e) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0;
+}
 int expr_is_zero(const ExprGraph *g, Expr e) { return e == g->zero; }
-int expr_is_nonzero(const ExprGraph *g, Expr e) { return sign_is_strict(expr_sign(g, e)) || (expr_is_num(g, e) && e != g->zero); }
+int expr_is_nonzero(const ExprGraph *g, Expr e) {
+  return sign_is_strict(expr_sign(g, e)) || (expr_is_num(g, e) && e != g->zero);
+}
 const char *expr_op_text(ExprOp op) { return op_texts[op]; }
 
 int expr_is_bool(const ExprGraph *g, Expr e) {
@@ -239,7 +247,16 @@ ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32
     case EX_ABS: case EX_HYPOT: return SIGN_NONNEGATIVE;
     case EX_SELECT:
       return expr_sign(g, args[1]) == expr_sign(g, args[2]) ? expr_sign(g, args[1]) : SIGN_UNKNOWN;
-    case EX_NUM: case EX_SYM: case EX_FLOOR: case EX_ATAN2: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ: case EX_NOT:
+    case EX_NUM:
+    case EX_SYM:
+    case EX_FLOOR:
+    case EX_ATAN2:
+    case EX_MIN:
+    case EX_MAX:
+    case EX_LT:
+    case EX_LE:
+    case EX_EQ:
+    case EX_NOT:
     case EX_AND: case EX_OR: case EX_COUNT: break;
   }
   return SIGN_UNKNOWN;

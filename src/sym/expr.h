@@ -8,10 +8,12 @@
  *   - a sum raised to an integer power is primitive: its coefficients have no common factor, and
  *     the first is positive;
  *   - sin^2 u + cos^2 u with equal cofactors is 1, and 1 - sin^2 u is cos^2 u; likewise cosh^2 - sinh^2;
- *   - quotients of hyperbolic functions and exponentials have no infinity above and below: sinh u/cosh u is tanh u, exp(u)/exp(v)
+ *   - quotients of hyperbolic functions and exponentials have no infinity above and below: sinh u/cosh u is tanh u,
+ *     exp(u)/exp(v)
  *     is exp(u - v), exp(u)/(1 + exp(u)) is 1/(1 + exp(-u));
  *   - odd and even functions take arguments whose first coefficient is positive;
- *   - nothing is distributed except numbers over sums, and sums in which such a quotient would hide; nothing crosses a DEF.
+ *   - nothing is distributed except numbers over sums, and sums in which such a quotient would hide; nothing crosses
+ *     a DEF.
  * The order of ids is the order of creation; a caller that wants the same text everywhere names
  * intermediate results instead of nesting calls (C fixes no order of argument evaluation).
  *
@@ -80,7 +82,8 @@ Expr expr_int(ExprGraph *g, int64_t n);
 SymId expr_declare(ExprGraph *g, SymKind kind, uint32_t index, Name name, ExprSign sign);
 uint32_t expr_symbol_count(const ExprGraph *g);
 const Symbol *expr_symbol(const ExprGraph *g, SymId id);
-/* Definition with a unique name: name, name_2, name_3 ... in order of request; equal (name, body) give one definition. */
+/* Definition with a unique name: name, name_2, name_3 ... in order of request; equal (name, body) give one
+ * definition. */
 Expr expr_def_unique(ExprGraph *g, Name name, Expr body);
 /* Definition `name = body`; leaves (numbers, symbols, definitions) are returned unchanged. */
 Expr expr_def(ExprGraph *g, Name name, Expr body);
@@ -101,7 +104,8 @@ Expr expr_fn(ExprGraph *g, ExprOp op, Expr a);           /* SIN .. SIGN, NOT */
 Expr expr_fn2(ExprGraph *g, ExprOp op, Expr a, Expr b);  /* ATAN2 .. OR */
 Expr expr_select(ExprGraph *g, Expr condition, Expr a, Expr b);
 
-/* Node with e's operation and new arguments, for passes that rewrite bottom-up. args has expr_nargs(g, e) elements in the order of expr_arg. */
+/* Node with e's operation and new arguments, for passes that rewrite bottom-up. args has expr_nargs(g, e) elements
+ * in the order of expr_arg. */
 Expr expr_rebuild(ExprGraph *g, Expr e, const Expr *args);
 
 /* --- inspection --- */
@@ -121,7 +125,8 @@ int expr_is_zero(const ExprGraph *g, Expr e);
 int expr_is_bool(const ExprGraph *g, Expr e); /* a comparison or logical operation */
 const char *expr_op_text(ExprOp op);
 
-/* Pairs (term, coefficient) of a SUM, or (base, exponent) of a PROD; any other node counts as the single pair (node, 1). */
+/* Pairs (term, coefficient) of a SUM, or (base, exponent) of a PROD; any other node counts as the single pair (node,
+ * 1). */
 uint32_t expr_pairs(const ExprGraph *g, Expr e, ExprOp op);
 Expr expr_pair(const ExprGraph *g, Expr e, ExprOp op, uint32_t i, Num *number);
 
@@ -169,7 +174,8 @@ Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const c
 Expr expr_replace(ExprGraph *g, Expr e, const SymId *syms, const Expr *with, uint32_t n);
 
 /* out[i] = roots[i] with each nodes[k] replaced by with[k], all roots in one pass. */
-void expr_replace_nodes(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *nodes, const Expr *with, uint32_t nnodes, Expr *out);
+void expr_replace_nodes(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *nodes, const Expr *with,
+                        uint32_t nnodes, Expr *out);
 
 /* e with every definition replaced by its body. */
 Expr expr_expand_defs(ExprGraph *g, Expr e);

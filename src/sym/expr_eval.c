@@ -18,8 +18,8 @@ static long double power(long double base, Num e) {
 
 static long double number(Num n) { return num_is_exact(n) ? (long double)n.num / (long double)n.den : n.approx; }
 
-/* TapeStep of a tape, for one node: its arguments are t->arg[first ..], indices of earlier steps; coefficients or exponents
- * of a sum or product are t->number[first ..]. */
+/* TapeStep of a tape, for one node: its arguments are t->arg[first ..], indices of earlier steps; coefficients or
+ * exponents of a sum or product are t->number[first ..]. */
 typedef struct {
   ExprOp op;
   uint32_t first, n;
@@ -128,7 +128,8 @@ void eval_run(EvalTape *t, const long double *symbols, long double *out) {
   read_roots(t, out);
 }
 
-void eval_run_double(EvalTape *t, long double (*symbol)(SymId s, const void *data), const void *data, long double *out) {
+void eval_run_double(EvalTape *t, long double (*symbol)(SymId s, const void *data), const void *data,
+                     long double *out) {
   t->round_to_double = 1;
   for (uint32_t i = 0; i < t->n; i++) {
     const TapeStep *o = &t->step[i];

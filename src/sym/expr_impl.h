@@ -18,7 +18,8 @@ typedef struct {
   uint32_t next;
 } Contribution;
 
-/* Definition made for (name, body) by expr_def_unique. The entry with body 0 counts the definitions that asked for the name. */
+/* Definition made for (name, body) by expr_def_unique. The entry with body 0 counts the definitions that asked for
+ * the name. */
 typedef struct {
   Name name;
   Expr body, def;
@@ -65,15 +66,15 @@ typedef struct {
 /* Multiplies r by base^e. */
 void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e);
 
-/* finite_quotients.c: applies sinh/cosh = tanh, exp(u)/exp(v) = exp(u - v) or exp(u)/(1 + exp(u)) = 1/(1 + exp(-u)) once to
- * the factors of r. Returns 1 when r changed. */
+/* finite_quotients.c: applies sinh/cosh = tanh, exp(u)/exp(v) = exp(u - v) or exp(u)/(1 + exp(u)) = 1/(1 + exp(-u))
+ * once to the factors of r. Returns 1 when r changed. */
 int expr_rewrite_quotient(ExprGraph *g, Product *r);
 
 /* cosh(u) of the sum 1 - tanh(u)^2 = 1/cosh(u)^2, which rounds to 0 where u > 19; otherwise 0. */
 Expr expr_cosh_of_tanh(ExprGraph *g, Expr sum);
 
-/* Index of the sum T in exp(u)*T or T/S that must be distributed, so that each exp(u) meets the sums with exp(u) below it;
- * r->p.n if there is none. */
+/* Index of the sum T in exp(u)*T or T/S that must be distributed, so that each exp(u) meets the sums with exp(u)
+ * below it; r->p.n if there is none. */
 uint32_t expr_sum_to_distribute(const ExprGraph *g, const Product *r);
 
 /* The hash-consed node (op, args). The caller guarantees that it is canonical. */
@@ -85,7 +86,8 @@ ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32
 Expr expr_with_mapped_args(ExprGraph *g, const ExprMap *m, Expr e);
 
 /* Sets m to 1 for those nodes of l (a result of expr_topo) that contain a symbol for which want() is true. */
-void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s, const void *data), const void *data, ExprMap *m);
+void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s, const void *data), const void *data,
+                          ExprMap *m);
 
 /* f(-x) = -f(x), f(x), or neither. */
 typedef enum { NEITHER, ODD, EVEN } Symmetry;

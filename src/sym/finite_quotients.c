@@ -6,7 +6,8 @@ Expr expr_cosh_of_tanh(ExprGraph *g, Expr sum) {
   Num one, minus, two;
   if (expr_pairs(g, sum, EX_SUM) != 2 || expr_pair(g, sum, EX_SUM, 0, &one) != g->one || !num_is_one(one)) return 0;
   Expr square = expr_pair(g, sum, EX_SUM, 1, &minus), tanh = expr_pair(g, square, EX_PROD, 0, &two);
-  int fits = num_equal(minus, num_int(-1)) && expr_pairs(g, square, EX_PROD) == 1 && num_equal(two, num_int(2)) && expr_op(g, tanh) == EX_TANH;
+  int fits = num_equal(minus, num_int(-1)) && expr_pairs(g, square, EX_PROD) == 1 && num_equal(two, num_int(2)) &&
+             expr_op(g, tanh) == EX_TANH;
   return fits ? expr_fn(g, EX_COSH, expr_arg(g, tanh, 0)) : 0;
 }
 
@@ -40,8 +41,10 @@ static int use_pair_quotient(ExprGraph *g, Product *r) {
       Pair *y = &r->p.at[k];
       Expr quotient = num_sign(x->number) == -num_sign(y->number) ? quotient_of(g, x->node, y->node) : 0;
       if (!quotient) continue;
-      int all = num_cmp(num_abs(x->number), num_abs(y->number)) < 0 || (op == EX_SINH && !(num_is_int(x->number) && num_is_int(y->number)));
-      Num shared = all ? x->number : num_neg(y->number); /* sinh(u) may be negative: a fractional power of it is moved whole */
+      int all = num_cmp(num_abs(x->number), num_abs(y->number)) < 0 ||
+                (op == EX_SINH && !(num_is_int(x->number) && num_is_int(y->number)));
+      /* sinh(u) may be negative: a fractional power of it is moved whole */
+      Num shared = all ? x->number : num_neg(y->number);
       x->number = num_sub(x->number, shared);
       y->number = num_add(y->number, shared);
       expr_push_power(g, r, quotient, shared);
@@ -93,7 +96,8 @@ static Expr divide_by_exp(ExprGraph *g, Expr sum, Expr E, int64_t k) {
   return expr_add_n(g, terms, n);
 }
 
-/* E^j S^-m for E = exp(u) and a sum S with powers of E: S is divided by E, exp(u)/(1 + exp(u)) -> 1/(exp(-u) + 1). Returns 1 when r changed. */
+/* E^j S^-m for E = exp(u) and a sum S with powers of E: S is divided by E, exp(u)/(1 + exp(u)) -> 1/(exp(-u) + 1).
+ * Returns 1 when r changed. */
 static int use_exp_quotient(ExprGraph *g, Product *r) {
   for (uint32_t i = 0; i < r->p.n; i++) {
     Expr E = r->p.at[i].node;
@@ -117,7 +121,8 @@ static int use_exp_quotient(ExprGraph *g, Product *r) {
   return 0;
 }
 
-/* Whether a term of T has the factor E = exp(u); if `below`, whether a term of T is divided by a sum that contains E. */
+/* Whether a term of T has the factor E = exp(u); if `below`, whether a term of T is divided by a sum that contains
+ * E. */
 static int meets_exp(const ExprGraph *g, Expr T, Expr E, int below) {
   Num c, k;
   for (uint32_t i = 0; i < expr_pairs(g, T, EX_SUM); i++) {
@@ -134,7 +139,9 @@ static int meets_exp(const ExprGraph *g, Expr T, Expr E, int below) {
 /* Index of the first factor of r that is a sum for which meets_exp holds; r->p.n if there is none. */
 static uint32_t find_mixed_sum(const ExprGraph *g, const Product *r, Expr E, int below) {
   uint32_t i = 0;
-  while (i < r->p.n && !(expr_op(g, r->p.at[i].node) == EX_SUM && num_is_one(r->p.at[i].number) && meets_exp(g, r->p.at[i].node, E, below))) i++;
+  while (i < r->p.n && !(expr_op(g, r->p.at[i].node) == EX_SUM && num_is_one(r->p.at[i].number) &&
+                         meets_exp(g, r->p.at[i].node, E, below)))
+    i++;
   return i;
 }
 
@@ -156,4 +163,6 @@ uint32_t expr_sum_to_distribute(const ExprGraph *g, const Product *r) {
   return r->p.n;
 }
 
-int expr_rewrite_quotient(ExprGraph *g, Product *r) { return use_pair_quotient(g, r) || use_exp_quotient(g, r) || use_tanh_square(g, r); }
+int expr_rewrite_quotient(ExprGraph *g, Product *r) {
+  return use_pair_quotient(g, r) || use_exp_quotient(g, r) || use_tanh_square(g, r);
+}

@@ -1,4 +1,5 @@
-/* Arithmetic of fractions with factored denominators; numerators are cancelled by exact division on request (frac_cancel). */
+/* Arithmetic of fractions with factored denominators; numerators are cancelled by exact division on request
+ * (frac_cancel). */
 #include "sym/frac.h"
 
 #include <stdlib.h>
@@ -243,8 +244,8 @@ Frac frac_pow(FracField *f, Frac a, int32_t n) {
 
 /* --- cancelling --- */
 
-/* Divisor of the numerator that lowers the exponent of factor d by *step: the factor itself, or R for a generator x with
- * x^k = R that occurs k times (step k). */
+/* Divisor of the numerator that lowers the exponent of factor d by *step: the factor itself, or R for a generator x
+ * with x^k = R that occurs k times (step k). */
 static Poly divisor_of(FracField *f, DenFactor d, uint32_t *step) {
   PolyRing *r = f->ring;
   Poly p = poly_at(r, d.factor);

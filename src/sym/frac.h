@@ -1,9 +1,10 @@
 /* Rational functions: fractions of polynomials. The denominator stays factored, as a list of (polynomial, exponent):
  * sums over equal denominators stay small, and no greatest common divisor is needed.
  *
- * Must hold: factors are interned polynomials, primitive (integer coefficients without a common factor, the first positive) and without a monomial of
- * generators that may have negative exponents, which the numerator carries. A power of a generator with a relation x^k = R is the factor x, never the
- * expanded power; a factor equal to such an R becomes x^k. Failures are those of the ring (poly.h); dividing by 0 adds POLY_DIVIDED_BY_ZERO. */
+ * Must hold: factors are interned polynomials, primitive (integer coefficients without a common factor, the first
+ * positive) and without a monomial of generators that may have negative exponents, which the numerator carries. A
+ * power of a generator with a relation x^k = R is the factor x, never the expanded power; a factor equal to such an
+ * R becomes x^k. Failures are those of the ring (poly.h); dividing by 0 adds POLY_DIVIDED_BY_ZERO. */
 #pragma once
 
 #include "sym/poly.h"

@@ -129,7 +129,8 @@ static Expr combine(ExprGraph *g, Expr a, Expr x, Expr b, Expr y) {
 }
 
 /* The integrals of x^k exp(u) sin(w) and x^k exp(u) cos(w), u' = a, w' = b, by parts from k = 0 on:
- *   int x^k exp(u) sin(w) = (x^k exp(u) (a sin w - b cos w) - k (a S - b C))/(a^2 + b^2), S and C the integrals for k - 1. */
+ *   int x^k exp(u) sin(w) = (x^k exp(u) (a sin w - b cos w) - k (a S - b C))/(a^2 + b^2), S and C the integrals for
+ *   k - 1. */
 static HarmonicPair harmonic_integrals(const Task *t, int32_t k, Expr u, Expr w) {
   ExprGraph *g = t->g;
   Expr a = expr_diff(g, u, t->x), b = expr_diff(g, w, t->x), minus_b = expr_neg(g, b), x = expr_symbol(g, t->x)->node;
@@ -142,7 +143,8 @@ static HarmonicPair harmonic_integrals(const Task *t, int32_t k, Expr u, Expr w)
     Expr old_sine = combine(g, a, done.sin, minus_b, done.cos), old_cosine = combine(g, a, done.cos, b, done.sin);
     old_sine = expr_scale(g, num_int(-i), old_sine);
     old_cosine = expr_scale(g, num_int(-i), old_cosine);
-    Expr one = expr_int(g, 1), new_sine = combine(g, front, sine, one, old_sine), new_cosine = combine(g, front, cosine, one, old_cosine);
+    Expr one = expr_int(g, 1), new_sine = combine(g, front, sine, one, old_sine),
+         new_cosine = combine(g, front, cosine, one, old_cosine);
     done.sin = expr_mul(g, new_sine, inverse);
     done.cos = expr_mul(g, new_cosine, inverse);
   }
@@ -218,7 +220,8 @@ static Expr integral_of_power(ExprGraph *g, Expr u, Num power) {
   return expr_scale(g, num_div(num_int(1), next), expr_pow_num(g, u, next));
 }
 
-/* c of e = .. + c f(u), where `of` is u or f(u) and `slope` = dx/d(of) replaces it by s: c/slope if free of q, else 0. */
+/* c of e = .. + c f(u), where `of` is u or f(u) and `slope` = dx/d(of) replaces it by s: c/slope if free of q, else
+ * 0. */
 static Expr constant_factor(const Task *t, Expr c, Expr slope) {
   Expr factor = expr_is_zero(t->g, slope) ? slope : simplify(t->g, expr_div(t->g, c, slope));
   int constant = !expr_contains_sym(t->g, factor, t->s) && !contains_any(t->g, factor, t->q, t->n);
@@ -247,7 +250,9 @@ static Expr integral_of_factor(const Task *t, Expr u, Num power) {
 }
 
 /* u f(u) - integral of u f'(u), for f whose second term is `rest`. */
-static Expr by_parts(ExprGraph *g, ExprOp f, Expr u, Expr rest) { return expr_sub(g, expr_mul(g, u, expr_fn(g, f, u)), rest); }
+static Expr by_parts(ExprGraph *g, ExprOp f, Expr u, Expr rest) {
+  return expr_sub(g, expr_mul(g, u, expr_fn(g, f, u)), rest);
+}
 
 /* Integral of f(u) by u; 0: it is not in this list. */
 static Expr integral_of_function(ExprGraph *g, ExprOp f, Expr u) {
@@ -287,7 +292,8 @@ static Expr integral_of_call(const Task *t, Expr call) {
 static Expr integral_of_quadratic(const Task *t, Expr u, Num power) {
   ExprGraph *g = t->g;
   Expr slope = expr_diff(g, u, t->x), twice = expr_diff(g, slope, t->x), zero = expr_int(g, 0);
-  if (num_value(power) != -1 || expr_op(g, u) != EX_SUM || contains_any(g, twice, t->q, t->n) || expr_is_zero(g, twice)) return 0;
+  if (num_value(power) != -1 || expr_op(g, u) != EX_SUM || contains_any(g, twice, t->q, t->n) || expr_is_zero(g, twice))
+    return 0;
   Expr ss = expr_pow_num(g, expr_symbol(g, t->s)->node, num_int(2));
   Expr c = constant_factor(t, expr_neg(g, expr_mul(g, slope_in(t, u), ss)), expr_int(g, 1));
   Expr b = expr_replace(g, slope, &t->x, &zero, 1), d = expr_replace(g, u, &t->x, &zero, 1);
@@ -298,14 +304,17 @@ static Expr integral_of_quadratic(const Task *t, Expr u, Num power) {
 }
 
 /* Whether u^power is a power of a sum that is better not multiplied out: near u = 0 its terms cancel. */
-static int is_whole_power(const Task *t, Expr u, Num power) { return expr_op(t->g, u) == EX_SUM && num_is_int(power) && num_value(power) > 1; }
+static int is_whole_power(const Task *t, Expr u, Num power) {
+  return expr_op(t->g, u) == EX_SUM && num_is_int(power) && num_value(power) > 1;
+}
 
 /* Integral of one term of t->e by substitution of a function in it, or of a whole power of a sum, or 0. */
 static Expr integral_by_substitution(const Task *t, int whole_powers) {
   ExprList nodes = expr_topo(t->g, &t->e, 1);
   for (uint32_t i = 0; i < nodes.n; i++) {
     Expr whole = whole_powers ? 0 : integral_of_call(t, nodes.at[i]);
-    for (uint32_t k = 0; !whole && expr_op(t->g, nodes.at[i]) != EX_SUM && k < expr_pairs(t->g, nodes.at[i], EX_PROD); k++) {
+    for (uint32_t k = 0; !whole && expr_op(t->g, nodes.at[i]) != EX_SUM && k < expr_pairs(t->g, nodes.at[i], EX_PROD);
+         k++) {
       Num power;
       Expr u = expr_pair(t->g, nodes.at[i], EX_PROD, k, &power);
       if (whole_powers && !is_whole_power(t, u, power)) continue;
@@ -332,8 +341,8 @@ static Expr degree_in(const Task *t, Expr e, Expr u, Expr slope) {
   return expr_is_num(g, degree) && num_sign(expr_number(g, degree)) >= 0 ? degree : 0;
 }
 
-/* Integral of a term with a switch at a zero of u, linear in x: u term/(degree + 1) where that holds, else if(0 < u, F, G) from
- * antiderivatives of the branches that are 0 at the switch. 0: none. */
+/* Integral of a term with a switch at a zero of u, linear in x: u term/(degree + 1) where that holds, else if(0 < u,
+ * F, G) from antiderivatives of the branches that are 0 at the switch. 0: none. */
 static Expr integral_by_sides(const Task *t, int depth) {
   ExprGraph *g = t->g;
   Expr u = depth > 0 ? switch_in(g, t->e, t->x) : 0, slope = u ? expr_diff(g, u, t->x) : 0, F[2];
@@ -350,7 +359,10 @@ static Expr integral_by_sides(const Task *t, int depth) {
     F[k] = whole_antiderivative(g, k ? below : above, *t, depth - 1);
     if (!F[k]) return 0;
     Expr there = expr_replace(g, F[k], &t->x, &root, 1), inner = switch_in(g, there, 0);
-    int sign = !inner ? 0 : sign_is_nonnegative(expr_sign(g, inner)) ? 1 : sign_is_nonpositive(expr_sign(g, inner)) ? -1 : 0;
+    int sign = !inner                                     ? 0
+               : sign_is_nonnegative(expr_sign(g, inner)) ? 1
+               : sign_is_nonpositive(expr_sign(g, inner)) ? -1
+                                                          : 0;
     F[k] = expr_sub(g, F[k], sign ? on_side(g, there, inner, sign) : there);
   }
   return expr_select(g, expr_fn2(g, EX_LT, expr_int(g, 0), u), F[0], F[1]);
@@ -361,7 +373,8 @@ static Expr integral_by_division(const Task *t) {
   ExprGraph *g = t->g;
   ExprList nodes = expr_topo(g, &t->e, 1);
   for (uint32_t i = 0; i < nodes.n; i++) {
-    Expr slope = expr_op(g, nodes.at[i]) == EX_SUM ? expr_diff(g, nodes.at[i], t->x) : 0, s = expr_symbol(g, t->s)->node;
+    Expr slope = expr_op(g, nodes.at[i]) == EX_SUM ? expr_diff(g, nodes.at[i], t->x) : 0,
+         s = expr_symbol(g, t->s)->node;
     if (!slope || expr_is_zero(g, slope) || contains_any(g, slope, t->q, t->n)) continue;
     Expr there = expr_add(g, expr_symbol(g, t->x)->node, expr_div(g, expr_sub(g, s, nodes.at[i]), slope));
     Expr in_s = expr_replace(g, t->e, &t->x, &there, 1), whole = expr_integrate(g, in_s, t->s, 0);
@@ -393,7 +406,8 @@ static Expr in_powers(ExprGraph *g, Expr e) {
   ExprList l = expr_topo(g, &e, 1);
   for (uint32_t i = 0; i < l.n; i++) {
     if (expr_op(g, l.at[i]) != EX_HYPOT) continue;
-    Expr xx = expr_pow_num(g, expr_arg(g, l.at[i], 0), num_int(2)), yy = expr_pow_num(g, expr_arg(g, l.at[i], 1), num_int(2));
+    Expr xx = expr_pow_num(g, expr_arg(g, l.at[i], 0), num_int(2)),
+         yy = expr_pow_num(g, expr_arg(g, l.at[i], 1), num_int(2));
     vec_push(expr_arena(g), &node, l.at[i]);
     vec_push(expr_arena(g), &root, expr_sqrt(g, expr_add(g, xx, yy)));
   }
@@ -401,7 +415,8 @@ static Expr in_powers(ExprGraph *g, Expr e) {
   return e;
 }
 
-/* Antiderivative of e by the forms above, by substitution, and on the sides of switches; *rest: the terms without one. */
+/* Antiderivative of e by the forms above, by substitution, and on the sides of switches; *rest: the terms without
+ * one. */
 static Expr antiderivative(ExprGraph *g, Expr e, Task with, int depth, Expr *rest) {
   enum { MOST = 64, LONGEST = 2000 };
   uint32_t distinct;

@@ -1,5 +1,5 @@
-/* Search for jumps: candidates from the graph, sign changes of their switching functions on straight lines through random
- * states, then the one-sided values of the expression at shrinking distances. */
+/* Search for jumps: candidates from the graph, sign changes of their switching functions on straight lines through
+ * random states, then the one-sided values of the expression at shrinking distances. */
 #include "sym/jump.h"
 
 #include <math.h>
@@ -15,7 +15,8 @@ enum {
   PLACES = 12   /* lines with a sign change tried for each candidate; one jump suffices */
 };
 
-static const unsigned varying_kinds = 1u << SYM_TIME | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE;
+static const unsigned varying_kinds =
+    1u << SYM_TIME | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE;
 
 typedef struct {
   ExprGraph *g;
@@ -46,7 +47,9 @@ static void add(const Search *s, Sources *to, Expr node, Expr side) {
 }
 
 /* Whether op can turn a pole into a finite jump: atan(1/x), x/abs(x). */
-static int bounds_poles(ExprOp op) { return op == EX_ATAN || op == EX_ATAN2 || op == EX_TANH || op == EX_EXP || op == EX_ABS; }
+static int bounds_poles(ExprOp op) {
+  return op == EX_ATAN || op == EX_ATAN2 || op == EX_TANH || op == EX_EXP || op == EX_ABS;
+}
 
 static void add_divisors(const Search *s, Sources *to, Expr product) {
   ExprGraph *g = s->g;
@@ -118,8 +121,9 @@ static void select_terms(Search *s, const Sources *all, Expr x) {
 
 /* --- lines --- */
 
-/* Random line. Every second line starts at the origin, so that powers of 10 along it meet every length and time scale: the radius of an
- * atom, and of an orbit. Of the others, every second one moves velocities and states alone: g(q) q' changes its sign with q' there, not with g. */
+/* Random line. Every second line starts at the origin, so that powers of 10 along it meet every length and time
+ * scale: the radius of an atom, and of an orbit. Of the others, every second one moves velocities and states alone:
+ * g(q) q' changes its sign with q' there, not with g. */
 static void draw_line(Search *s, uint32_t seed) {
   const Real wide = 4; /* past half a turn */
   const unsigned kinds = seed % 4 == 3 ? 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE : varying_kinds;
@@ -175,9 +179,11 @@ static int sign_changes(Search *s, EvalTape *side, SignChange change[CHANGES]) {
     Real before = left, after = right, near = sampling_point(s, 1 - i), far = sampling_point(s, -i);
     left = switching_value(s, side, far);
     right = switching_value(s, side, sampling_point(s, i));
-    if (isfinite(before) && isfinite(left) && (left > 0) != (before > 0)) change[n++] = (SignChange){far, near, left > 0};
+    if (isfinite(before) && isfinite(left) && (left > 0) != (before > 0))
+      change[n++] = (SignChange){far, near, left > 0};
     near = sampling_point(s, i - 1), far = sampling_point(s, i);
-    if (n < CHANGES && isfinite(after) && isfinite(right) && (right > 0) != (after > 0)) change[n++] = (SignChange){near, far, after > 0};
+    if (n < CHANGES && isfinite(after) && isfinite(right) && (right > 0) != (after > 0))
+      change[n++] = (SignChange){near, far, after > 0};
   }
   return n;
 }
@@ -213,12 +219,15 @@ static Real value_at(Search *s, Real where, Real *size) {
 /* Length scale for steps along the line at `where`. */
 static Real length_scale(const Search *s, Real where) { return s->from_origin ? fabsl(where) : fmaxl(1, fabsl(where)); }
 
-/* Height of the jump of x at `where`, 0 if there is none. Across a jump the difference of both sides stays constant as the distance shrinks;
- * for a continuous x it falls, to about half per step even for an eighth root; at a pole, or for log, it grows. */
+/* Height of the jump of x at `where`, 0 if there is none. Across a jump the difference of both sides stays constant
+ * as the distance shrinks; for a continuous x it falls, to about half per step even for an eighth root; at a pole,
+ * or for log, it grows. */
 static Real jump_at(Search *s, Real where) {
   static const Real distance[] = {1e-5L, 1e-7L, 1e-9L, 1e-11L};
   enum { DISTANCES = sizeof distance / sizeof *distance };
-  const Real tolerance = 0.02L, least = 1e-9L; /* tolerance is relative to the jump, least to its terms; positions are known to 1e-11 even if long double is double */
+  /* tolerance is relative to the jump, least to its terms; positions are known to 1e-11 even if long double is
+   * double */
+  const Real tolerance = 0.02L, least = 1e-9L;
   Real far = length_scale(s, where), jump[DISTANCES], size, other, most = 0;
   for (int i = 0; i < DISTANCES; i++) {
     Real h = distance[i] * far, above = value_at(s, where + h, &size), below = value_at(s, where - h, &other);
@@ -234,7 +243,8 @@ static Real jump_at(Search *s, Real where) {
 }
 
 static void add_jump(Search *s, const Source *from, EvalTape *side, uint32_t seed, Real where, Real by) {
-  Real h = 1e-6L * length_scale(s, where), slope = (switching_value(s, side, where + h) - switching_value(s, side, where - h)) / (2 * h);
+  Real h = 1e-6L * length_scale(s, where),
+       slope = (switching_value(s, side, where + h) - switching_value(s, side, where - h)) / (2 * h);
   Real *symbols = ARENA_ARRAY(s->arena, Real, s->nsymbols + 1);
   sample_state(s->g, seed, symbols); /* symbols without influence on the jump */
   set_state(s, where);
@@ -280,7 +290,8 @@ typedef struct {
 /* Adds the condition a != b. 1: it restricts the motion. */
 static int add_apart(SmoothDomain *d, Expr a, Expr b) {
   Expr u = expr_sub(d->g, a, b), apart;
-  if (!(expr_kinds(d->g, u) & ~(1u << SYM_PARAM | 1u << SYM_CONST | 1u << SYM_TIME)) || expr_is_nonzero(d->g, u)) return 0;
+  if (!(expr_kinds(d->g, u) & ~(1u << SYM_PARAM | 1u << SYM_CONST | 1u << SYM_TIME)) || expr_is_nonzero(d->g, u))
+    return 0;
   apart = expr_fn(d->g, EX_NOT, expr_fn2(d->g, EX_EQ, a, b));
   d->all = d->all ? expr_fn2(d->g, EX_AND, d->all, apart) : apart;
   return 1;
@@ -296,7 +307,8 @@ Expr expr_smooth_domain(ExprGraph *g, const Expr *roots, uint32_t n, int *jumps)
     ExprOp op = expr_op(g, e);
     if (op == EX_ABS || op == EX_SIGN) some |= add_apart(&d, u, zero);
     if (op == EX_FLOOR) some |= add_apart(&d, u, e);
-    if (op == EX_MIN || op == EX_MAX || op == EX_LT || op == EX_LE || op == EX_EQ) some |= add_apart(&d, u, expr_arg(g, e, 1));
+    if (op == EX_MIN || op == EX_MAX || op == EX_LT || op == EX_LE || op == EX_EQ)
+      some |= add_apart(&d, u, expr_arg(g, e, 1));
     if (op == EX_CBRT) add_apart(&d, u, zero);
     if (op == EX_ASIN || op == EX_ACOS) add_apart(&d, u, one), add_apart(&d, u, minus);
     for (uint32_t k = 0; op == EX_PROD && k < expr_pairs(g, e, EX_PROD); k++) {

@@ -1,8 +1,9 @@
 /* Jump discontinuities of an expression; its derivative holds on each side of a jump and does not show it.
  *
- * Candidates are read off the graph: comparisons, signs, branch cuts of atan2, poles of tan, divisors. A candidate jumps if the difference of
- * the expression between states on both sides stays constant as the states approach each other.
- * abs(x), max(x, y) and if(x > 0, x^2, 0) do not jump; a divergence to infinity is not reported, as no motion passes through it. */
+ * Candidates are read off the graph: comparisons, signs, branch cuts of atan2, poles of tan, divisors. A candidate
+ * jumps if the difference of the expression between states on both sides stays constant as the states approach each
+ * other. abs(x), max(x, y) and if(x > 0, x^2, 0) do not jump; a divergence to infinity is not reported, as no motion
+ * passes through it. */
 #pragma once
 
 #include "sym/expr.h"
@@ -26,6 +27,7 @@ typedef struct {
  * where jumps or corners are among them. */
 Expr expr_smooth_domain(ExprGraph *g, const Expr *roots, uint32_t n, int *jumps);
 
-/* Jumps of x as a function of coordinates, velocities, states and time, one per causing node, in graph order. Searched along 64 straight
- * lines through random states and among the first 200 candidates: others may be missed. */
+/* Jumps of x as a function of coordinates, velocities, states and time, one per causing node, in graph order.
+ * Searched along 64 straight lines through random states and among the first 200 candidates: others may be missed.
+ * */
 ExprJumps expr_jumps(ExprGraph *g, Expr x);

@@ -172,11 +172,13 @@ static Frac circular_fn(Normal *n, Expr e, Frac u) {
 
 /* For proofs: min and max by (a + b -+ |a - b|)/2. */
 static Frac min_max_frac(Normal *n, ExprOp op, Frac a, Frac b) {
-  Frac sum = frac_add(n->field, a, b), gap = frac_sub(n->field, a, b), size = normal_hypot(n, gap, frac_poly(poly_zero()), 0);
+  Frac sum = frac_add(n->field, a, b), gap = frac_sub(n->field, a, b),
+       size = normal_hypot(n, gap, frac_poly(poly_zero()), 0);
   return half_sum(n, sum, op == EX_MIN ? frac_neg(n->field, size) : size);
 }
 
-/* Opaque odd or even function: f(-u) = -f(u) or f(u), chosen so that the first coefficient of the argument is positive. */
+/* Opaque odd or even function: f(-u) = -f(u) or f(u), chosen so that the first coefficient of the argument is
+ * positive. */
 static Frac signed_opaque(Normal *n, Expr e, Frac u, int odd) {
   ExprOp op = expr_op(n->g, e);
   if (u.num.n == 0 && odd) return u;
@@ -234,7 +236,8 @@ static Frac convert(Normal *n, Expr e) {
     case EX_ABS: return normal_hypot(n, u, frac_poly(poly_zero()), e);
     case EX_HYPOT: return normal_hypot(n, u, value_of(n, expr_arg(g, e, 1)), e);
     case EX_SIGN: return OPAQUE;
-    case EX_MIN: case EX_MAX: return n->proof ? min_max_frac(n, op, u, value_of(n, expr_arg(g, e, 1))) : opaque_fn(n, e);
+    case EX_MIN:
+    case EX_MAX: return n->proof ? min_max_frac(n, op, u, value_of(n, expr_arg(g, e, 1))) : opaque_fn(n, e);
     case EX_FLOOR: case EX_ATAN2: case EX_LT: case EX_LE: case EX_EQ:
     case EX_NOT: case EX_AND: case EX_OR: case EX_SELECT: return opaque_fn(n, e);
     case EX_COUNT: break;

@@ -1,16 +1,18 @@
 /* Normal form: expressions as fractions of polynomials whose generators are symbols, sines and
  * cosines of base angles, exponentials, roots, and opaque functions.
  *
- * Enters: any expressions of a graph; definitions are expanded unless limits.shallow is set. Leaves: fractions over one ring. Equal fractions mean
- * equal expressions wherever all of them are defined; a zero numerator is a proof. The converse holds while `canonical` is 1: then all relations
- * between the generators are known, and a nonzero numerator is a nonzero function.
+ * Enters: any expressions of a graph; definitions are expanded unless limits.shallow is set. Leaves: fractions over
+ * one ring. Equal fractions mean equal expressions wherever all of them are defined; a zero numerator is a proof.
+ * The converse holds while `canonical` is 1: then all relations between the generators are known, and a nonzero
+ * numerator is a nonzero function.
  *
  * How the generators are chosen:
  *   - sin u, cos u, tan u: u is a sum of rational multiples of terms; a term divided so that all its
  *     multiples in the problem are whole is a base angle, with the relation s^2 = 1 - c^2; whole
  *     multiples and sums follow from the addition theorems. Multiples of pi are exact where the
  *     values are square roots;
- *   - exp u, cosh u, b^u likewise, with one generator each that may have negative exponents; with keep_range set, hyperbolic
+ *   - exp u, cosh u, b^u likewise, with one generator each that may have negative exponents; with keep_range set,
+ *     hyperbolic
  *     functions stay opaque and exp of a sum is one generator: quotients of exponentials overflow where tanh does not;
  *   - u^(1/k): x with x^k = u; numbers and factors known to be positive are taken out of the root.
  *     |u| is the square root of u^2, hypot(u, v) of u^2 + v^2;
@@ -25,9 +27,11 @@ typedef struct {
   uint32_t max_terms; /* limit for one polynomial */
   uint64_t max_work;  /* limit on products of terms */
   int shallow;        /* definitions stay opaque: each is a generator */
-  int proof;          /* logarithms, powers, min and max are expanded as far as signs allow; results are not for readers */
+  /* logarithms, powers, min and max are expanded as far as signs allow; results are not for readers */
+  int proof;
   int keep_range;     /* hyperbolic functions and exp of sums are not expanded: for forms that are evaluated */
-  int residues;       /* numbers beyond 64 bits are coefficients with residues (base/num.h): for proofs that an expression is 0 */
+  /* numbers beyond 64 bits are coefficients with residues (base/num.h): for proofs that an expression is 0 */
+  int residues;
 } NormalLimits;
 
 typedef enum { GEN_SYMBOL, GEN_SIN, GEN_COS, GEN_POWER, GEN_ROOT, GEN_OPAQUE } GenKind;
@@ -79,7 +83,8 @@ typedef struct {
 /* New normal-form problem; its memory is in the arena a, which must not be the graph's if it is freed. */
 Normal *normal_new(ExprGraph *g, Arena *a, NormalLimits limits);
 
-/* Normal forms of the roots (a root 0 gives 0), all over the same generators. out is valid only if the result is POLY_OK, and until the next call. */
+/* Normal forms of the roots (a root 0 gives 0), all over the same generators. out is valid only if the result is
+ * POLY_OK, and until the next call. */
 PolyStatus normal_run(Normal *n, const Expr *roots, uint32_t count, Frac *out);
 
 /* Records kind and expression of a new generator of the ring. */

@@ -18,8 +18,8 @@ Frac normal_pow_num(Normal *n, Frac a, Num e);
 /* sqrt(a^2 + b^2), or |a| for b = 0; printed as e where squaring might overflow. */
 Frac normal_hypot(Normal *n, Frac a, Frac b, Expr e);
 
-/* expand_logs.c, for proofs: base^exponent as a product of powers b^u or e^u, split at numbers, factors of known sign and squares;
- * log(u) as the sum over the powers of u. */
+/* expand_logs.c, for proofs: base^exponent as a product of powers b^u or e^u, split at numbers, factors of known
+ * sign and squares; log(u) as the sum over the powers of u. */
 typedef struct {
   Frac base, exponent;
   int is_e;

@@ -1,5 +1,6 @@
-/* Polynomial arithmetic. Sums and products go through an accumulator indexed by monomial id, so a term costs one array access. Relations are applied
- * to the accumulated sum, one step for every term at a time, so that equal terms merge before they are rewritten further. */
+/* Polynomial arithmetic. Sums and products go through an accumulator indexed by monomial id, so a term costs one
+ * array access. Relations are applied to the accumulated sum, one step for every term at a time, so that equal terms
+ * merge before they are rewritten further. */
 #include "sym/poly.h"
 
 #include <stdlib.h>

@@ -1,11 +1,12 @@
 /* Sparse multivariate polynomials over Q, modulo relations x^k = R.
  *
- * Enters: generators, and for some of them a relation x^k = R, where R contains older generators only. Leaves: polynomials in normal form, that is
- * the unique combination of monomials in which the exponent of such an x is 0 .. k-1. Generators without a relation may have negative exponents
- * (Laurent polynomials); generators with a relation may not. Must hold: coefficients are exact. A coefficient beyond 64 bits ends the computation
- * with the status POLY_INEXACT; more terms or work than allowed end it with POLY_TOO_LARGE. The status stays, and later operations return at once
- * with meaningless results: callers check the status at the end. In a ring with `residues` set such a coefficient is a double with its residue
- * (base/num.h): a polynomial that vanishes is still the polynomial 0.
+ * Enters: generators, and for some of them a relation x^k = R, where R contains older generators only. Leaves:
+ * polynomials in normal form, that is the unique combination of monomials in which the exponent of such an x is 0 ..
+ * k-1. Generators without a relation may have negative exponents (Laurent polynomials); generators with a relation
+ * may not. Must hold: coefficients are exact. A coefficient beyond 64 bits ends the computation with the status
+ * POLY_INEXACT; more terms or work than allowed end it with POLY_TOO_LARGE. The status stays, and later operations
+ * return at once with meaningless results: callers check the status at the end. In a ring with `residues` set such a
+ * coefficient is a double with its residue (base/num.h): a polynomial that vanishes is still the polynomial 0.
  *
  * Ownership: all in the ring's arena. Polynomials are values that are never changed. */
 #pragma once

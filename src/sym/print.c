@@ -30,7 +30,9 @@ static void close_paren(Printer *p) { text(p, by_style(p, ")", "\\right)")); }
 
 static const char *num_text(Printer *p, Num n) {
   StrBuf b = strbuf(p->g->arena);
-  if (latex(p) && num_is_exact(n) && n.den != 1) sb_printf(&b, "%s\\frac{%lld}{%lld}", n.num < 0 ? "-" : "", (long long)(n.num < 0 ? -n.num : n.num), (long long)n.den);
+  if (latex(p) && num_is_exact(n) && n.den != 1)
+    sb_printf(&b, "%s\\frac{%lld}{%lld}", n.num < 0 ? "-" : "", (long long)(n.num < 0 ? -n.num : n.num),
+              (long long)n.den);
   else num_print(&b, n);
   return sb_text(&b);
 }
@@ -43,7 +45,8 @@ typedef struct {
   int rank;
 } Factor;
 
-/* Position of a factor in a product: numbers and sums of parameters, parameters, coordinates, functions, velocities: (m1 + m2)*g*l*sin(th)*th'. */
+/* Position of a factor in a product: numbers and sums of parameters, parameters, coordinates, functions, velocities:
+ * (m1 + m2)*g*l*sin(th)*th'. */
 static int rank_of(ExprGraph *g, Expr e) {
   switch (expr_op(g, e)) {
     case EX_NUM: return 0;
@@ -364,7 +367,8 @@ static void latex_name(Name name, StrBuf *out) {
 void name_print(Name name, PrintStyle style, StrBuf *out) {
   size_t n = strlen(name);
   if (style == PRINT_TEXT) sb_puts(out, name);
-  else if (strncmp(name, "lambda(", 7) == 0) sb_printf(out, "\\lambda_{\\mathrm{%.*s}}", (int)(n - 8), name + 7); /* a multiplier */
+  /* a multiplier */
+  else if (strncmp(name, "lambda(", 7) == 0) sb_printf(out, "\\lambda_{\\mathrm{%.*s}}", (int)(n - 8), name + 7);
   else latex_name(name, out);
 }
 

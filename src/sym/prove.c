@@ -125,7 +125,9 @@ static int is_diagonal(const System *s) {
   return 1;
 }
 
-static int has_unknown(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0; }
+static int has_unknown(const ExprGraph *g, Expr e) {
+  return (expr_kinds(g, e) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0;
+}
 
 /* Whether e is a polynomial in the unknowns, so that substituting their values is valid for all states. */
 static int is_polynomial(const System *s) {
@@ -164,8 +166,9 @@ static Expr with_quotients(const System *s, Expr (*quotient)(ExprGraph *g, Expr 
   return expr_replace(s->g, s->e, s->acc, with, s->n);
 }
 
-/* Verdict for a diagonal block of any size, without the normal form of the block. Long sums of fractions may cancel term
- * by term where a common denominator would be too large: hence both f/M whole and f/M term by term are tried. */
+/* Verdict for a diagonal block of any size, without the normal form of the block. Long sums of fractions may cancel
+ * term by term where a common denominator would be too large: hence both f/M whole and f/M term by term are tried.
+ * */
 static Verdict diagonal_verdict(const System *s) {
   if (!is_diagonal(s) || !is_polynomial(s)) return NOT_DECIDED;
   if (expr_is_zero(s->g, with_quotients(s, expr_div))) return PROVED_ZERO;
@@ -189,8 +192,9 @@ static void clear_denominators(Normal *n, uint32_t size, const Frac *M, const Fr
   }
 }
 
-/* Minor of the first rows over the columns in the bit set `set`, by expansion along its last row. Expansion by minors, each computed once, beats
- * elimination on sparse polynomials (Gentleman and Johnson 1976, DOI 10.1145/355694.355696), and needs no division modulo relations. */
+/* Minor of the first rows over the columns in the bit set `set`, by expansion along its last row. Expansion by
+ * minors, each computed once, beats elimination on sparse polynomials (Gentleman and Johnson 1976, DOI
+ * 10.1145/355694.355696), and needs no division modulo relations. */
 static Poly minor_of(PolyRing *r, uint32_t columns, const Poly *rows, uint32_t set, const Poly *minors) {
   uint32_t row = (uint32_t)__builtin_popcount(set) - 1;
   Poly parts[MAX_BLOCK + 1];
@@ -220,7 +224,8 @@ static Poly cramer(Normal *n, uint32_t size, const Poly *rows, Poly *solution) {
   return minors[all & ~(1u << size)];
 }
 
-/* Generator of each unknown; returns 0 if an unknown occurs inside another generator, where it cannot be substituted. */
+/* Generator of each unknown; returns 0 if an unknown occurs inside another generator, where it cannot be
+ * substituted. */
 static int unknown_gens(Normal *n, const System *s, GenId *gen) {
   for (uint32_t k = 0; k < s->n; k++) {
     gen[k] = GEN_NONE;
@@ -232,7 +237,8 @@ static int unknown_gens(Normal *n, const System *s, GenId *gen) {
   return 1;
 }
 
-/* Term t with unknown k replaced by solution[k]/det, times det^degree; degree is at least the term's degree in the unknowns. */
+/* Term t with unknown k replaced by solution[k]/det, times det^degree; degree is at least the term's degree in the
+ * unknowns. */
 static Poly substitute_term(Normal *n, const System *s, const GenId *gen, Term t, int32_t degree, Poly det,
                             const Poly *solution) {
   PolyRing *r = n->ring;
@@ -251,7 +257,8 @@ static Poly substitute_term(Normal *n, const System *s, const GenId *gen, Term t
   return poly_mul_mono(r, p, t.c, rest);
 }
 
-/* p with the solution substituted for the unknowns, times a power of det. Returns 0 on a negative power of an unknown. */
+/* p with the solution substituted for the unknowns, times a power of det. Returns 0 on a negative power of an
+ * unknown. */
 static int substitute(Normal *n, const System *s, const GenId *gen, Poly p, Poly det, const Poly *solution,
                       Poly *result) {
   int32_t degree = 0;

@@ -7,8 +7,9 @@
 /* Default limits on the cost of a proof: about 0.2 s at most. */
 NormalLimits prove_limits(void);
 
-/* Decides whether e is 0 wherever it is defined; numbers beyond 64 bits are compared by their residues (base/num.h). PROVED_NONZERO: the normal form
- * is unique and not 0, or the value at some state exceeds its rounding bound. limits NULL: prove_limits(). */
+/* Decides whether e is 0 wherever it is defined; numbers beyond 64 bits are compared by their residues (base/num.h).
+ * PROVED_NONZERO: the normal form is unique and not 0, or the value at some state exceeds its rounding bound. limits
+ * NULL: prove_limits(). */
 Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits);
 
 /* Whether the value of e at some random state exceeds its rounding bound: the quick half of prove_zero. */
@@ -27,16 +28,18 @@ void sample_state(const ExprGraph *g, uint32_t seed, long double *symbols);
 /* Value of symbol s in the sample state of that seed. */
 long double sample_symbol(const ExprGraph *g, SymId s, uint32_t seed);
 
-/* sample_state with coordinates, states and time of magnitude 1.2 .. 8: angles beyond half a turn, across branch cuts. */
+/* sample_state with coordinates, states and time of magnitude 1.2 .. 8: angles beyond half a turn, across branch
+ * cuts. */
 void sample_state_wide(const ExprGraph *g, uint32_t seed, long double *symbols);
 
-/* Tape that evaluates all nodes of the roots with rounding bounds at a state (bound_run); bound_value reads one node after a run.
- * errors[s]: error of symbol s, or NULL for exact symbols. */
+/* Tape that evaluates all nodes of the roots with rounding bounds at a state (bound_run); bound_value reads one node
+ * after a run. errors[s]: error of symbol s, or NULL for exact symbols. */
 typedef struct BoundTape BoundTape;
 BoundTape *bound_tape(ExprGraph *g, const Expr *roots, uint32_t n);
 void bound_run(BoundTape *t, const long double *symbols, const long double *errors);
 long double bound_value(const BoundTape *t, Expr node, long double *bound);
 
-/* Value of e and a bound of its error, given the errors of the symbols (NULL: none). The bound is infinite where none is known. */
+/* Value of e and a bound of its error, given the errors of the symbols (NULL: none). The bound is infinite where
+ * none is known. */
 long double value_with_bound(ExprGraph *g, Expr e, const long double *symbols, const long double *errors,
                         long double *bound);

@@ -193,6 +193,7 @@ Frac normal_pow_num(Normal *n, Frac a, Num e) {
 Frac normal_hypot(Normal *n, Frac a, Frac b, Expr e) {
   Frac aa = frac_mul(n->field, a, a), bb = frac_mul(n->field, b, b);
   Frac sum = frac_add(n->field, aa, bb);
-  if (!n->keep_range || sum.den || sum.num.n < 2 || n->ring->status != POLY_OK) return normal_pow_num(n, sum, num_ratio(1, 2));
+  if (!n->keep_range || sum.den || sum.num.n < 2 || n->ring->status != POLY_OK)
+    return normal_pow_num(n, sum, num_ratio(1, 2));
   return gen_power(n, root_gen(n, sum.num, 2, e), 1);
 }

@@ -1,5 +1,6 @@
-/* Random sample states, and values with a bound of their rounding error: the running error analysis of Wilkinson (Higham, Accuracy and Stability of
- * Numerical Algorithms, 2002, section 3.3), with first-order bounds for the functions. */
+/* Random sample states, and values with a bound of their rounding error: the running error analysis of Wilkinson
+ * (Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 3.3), with first-order bounds for the
+ * functions. */
 #include <float.h>
 #include <math.h>
 
@@ -31,7 +32,9 @@ static Real state_value(const Symbol *s, uint32_t id, uint32_t seed) {
   return uniform_number(2 * place + 1) < 0.5L ? size : -size;
 }
 
-long double sample_symbol(const ExprGraph *g, SymId s, uint32_t seed) { return state_value(expr_symbol(g, s), s, seed); }
+long double sample_symbol(const ExprGraph *g, SymId s, uint32_t seed) {
+  return state_value(expr_symbol(g, s), s, seed);
+}
 
 void sample_state(const ExprGraph *g, uint32_t seed, long double *symbols) {
   for (SymId s = 1; s <= expr_symbol_count(g); s++) symbols[s] = sample_symbol(g, s, seed);
@@ -68,7 +71,8 @@ static Real sum_bound(const Bounds *b, Expr e) {
   for (uint32_t i = 0; i < n; i++) {
     Num c;
     Expr t = expr_pair(b->g, e, EX_SUM, i, &c);
-    bound += fabsl((Real)num_value(c)) * bound_of(b, t) + (num_error(c) > 0 ? (Real)num_error(c) * (fabsl(value_of(b, t)) + bound_of(b, t)) : 0);
+    bound += fabsl((Real)num_value(c)) * bound_of(b, t) +
+             (num_error(c) > 0 ? (Real)num_error(c) * (fabsl(value_of(b, t)) + bound_of(b, t)) : 0);
     size += fabsl((Real)num_value(c) * value_of(b, t));
     exact &= num_is_int(c) && is_short_binary(value_of(b, t)) && is_short_binary((Real)num_value(c) * value_of(b, t));
   }
@@ -93,7 +97,8 @@ static int is_exact_product(const Bounds *b, Expr e, Real value) {
   return below != 0 && value * below == above && is_short_binary(value);
 }
 
-/* Error bound of a product; a factor that may be 0 within its bound leaves twice the largest magnitude of the product. */
+/* Error bound of a product; a factor that may be 0 within its bound leaves twice the largest magnitude of the
+ * product. */
 static Real prod_bound(const Bounds *b, Expr e, Real value) {
   Real relative = 0, most = 1;
   int vanishes = 0;
@@ -162,17 +167,30 @@ static Real unary_bound(const Bounds *b, Expr e, Real f) {
 
 static Real node_bound(const Bounds *b, Expr e, Real value, const Real *errors) {
   switch (expr_op(b->g, e)) {
-    case EX_NUM: return num_is_int(expr_number(b->g, e)) ? 0 : LDBL_EPSILON * fabsl(value) + (Real)num_error(expr_number(b->g, e));
-    case EX_SYM:
-      if (expr_sym_of(b->g, e)->kind == SYM_CONST) return LDBL_EPSILON * fabsl(value);
-      return errors ? errors[expr_sym_id(b->g, e)] : 0;
-    case EX_SUM: return sum_bound(b, e);
-    case EX_PROD: return prod_bound(b, e, value);
-    case EX_POW: case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE:
-    case EX_EQ: case EX_AND: case EX_OR: case EX_SELECT: return binary_bound(b, e, value);
-    EX_FUNCTION_CASES
-    case EX_DEF: case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_NOT: return unary_bound(b, e, value);
-    case EX_COUNT: break;
+  case EX_NUM:
+    return num_is_int(expr_number(b->g, e)) ? 0 : LDBL_EPSILON * fabsl(value) + (Real)num_error(expr_number(b->g, e));
+  case EX_SYM:
+    if (expr_sym_of(b->g, e)->kind == SYM_CONST) return LDBL_EPSILON * fabsl(value);
+    return errors ? errors[expr_sym_id(b->g, e)] : 0;
+  case EX_SUM: return sum_bound(b, e);
+  case EX_PROD: return prod_bound(b, e, value);
+  case EX_POW:
+  case EX_ATAN2:
+  case EX_HYPOT:
+  case EX_MIN:
+  case EX_MAX:
+  case EX_LT:
+  case EX_LE:
+  case EX_EQ:
+  case EX_AND:
+  case EX_OR:
+  case EX_SELECT: return binary_bound(b, e, value); EX_FUNCTION_CASES
+  case EX_DEF:
+  case EX_ABS:
+  case EX_SIGN:
+  case EX_FLOOR:
+  case EX_NOT: return unary_bound(b, e, value);
+  case EX_COUNT: break;
   }
   return INFINITY;
 }
@@ -180,8 +198,8 @@ static Real node_bound(const Bounds *b, Expr e, Real value, const Real *errors) 
 /* Underflow error: LDBL_MIN for an inexact operation whose value is subnormal, else 0. */
 static Real underflow(const ExprGraph *g, Expr e, Real value) {
   ExprOp op = expr_op(g, e);
-  int exact = op == EX_NUM || op == EX_SYM || op == EX_SUM || op == EX_DEF || op == EX_ABS || op == EX_SIGN || op == EX_FLOOR || op == EX_MIN || op == EX_MAX ||
-              op == EX_SELECT || expr_is_bool(g, e);
+  int exact = op == EX_NUM || op == EX_SYM || op == EX_SUM || op == EX_DEF || op == EX_ABS || op == EX_SIGN ||
+              op == EX_FLOOR || op == EX_MIN || op == EX_MAX || op == EX_SELECT || expr_is_bool(g, e);
   return exact || fabsl(value) >= LDBL_MIN ? 0 : LDBL_MIN;
 }
 
@@ -220,7 +238,8 @@ long double bound_value(const BoundTape *t, Expr root, long double *bound) {
   return place ? t->value[place - 1] : 0;
 }
 
-long double value_with_bound(ExprGraph *g, Expr e, const long double *symbols, const long double *errors, long double *bound) {
+long double value_with_bound(ExprGraph *g, Expr e, const long double *symbols, const long double *errors,
+                             long double *bound) {
   BoundTape *t = bound_tape(g, &e, 1);
   bound_run(t, symbols, errors);
   return bound_value(t, e, bound);

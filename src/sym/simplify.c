@@ -1,8 +1,9 @@
 /* simplify: the normal form of an expression, written as briefly as possible.
  *
- * A numerator is a sum of terms number * parameters * dynamic part * circular functions. For each monomial of the first three, the polynomial in
- * circular functions takes its shortest form; then terms with the same functions of the state are collected, which gives each a polynomial of
- * parameters; then functions of the state with the same parameter factor are collected. */
+ * A numerator is a sum of terms number * parameters * dynamic part * circular functions. For each monomial of the
+ * first three, the polynomial in circular functions takes its shortest form; then terms with the same functions of
+ * the state are collected, which gives each a polynomial of parameters; then functions of the state with the same
+ * parameter factor are collected. */
 #include "sym/simplify.h"
 
 #include <float.h>
@@ -32,7 +33,9 @@ static int gen_is_param(const Normal *n, GenId x) {
   return (info.kind == GEN_SYMBOL || info.kind == GEN_ROOT) && expr_is_constant(n->g, info.expr);
 }
 
-static int gen_is_circular(const Normal *n, GenId x) { return n->gens.at[x].kind == GEN_SIN || n->gens.at[x].kind == GEN_COS; }
+static int gen_is_circular(const Normal *n, GenId x) {
+  return n->gens.at[x].kind == GEN_SIN || n->gens.at[x].kind == GEN_COS;
+}
 
 /* Part of a monomial whose generators are circular functions, or (circular 0) parameters or not. */
 static MonoId mono_part(Normal *n, MonoId m, int circular, int param) {
@@ -62,7 +65,8 @@ static int by_cofactor(const void *a, const void *b) {
   return (x->term > y->term) - (x->term < y->term);
 }
 
-/* Size of the largest group of terms with a common cofactor (not 1), a run of splits from *from; 0 if no two terms share one. */
+/* Size of the largest group of terms with a common cofactor (not 1), a run of splits from *from; 0 if no two terms
+ * share one. */
 static uint32_t largest_group(Normal *n, const Term *t, uint32_t count, Split *splits, uint32_t *from) {
   uint32_t total = 0, best = 1;
   for (uint32_t i = 0; i < count; i++) {
@@ -277,7 +281,9 @@ typedef struct {
 
 static void work(Arena *scratch, void *data) {
   Task *t = data;
-  Normal *n = normal_new(t->g, scratch, (NormalLimits){.max_terms = MAX_TERMS, .max_work = MAX_WORK, .shallow = t->shallow, .keep_range = 1});
+  Normal *n =
+      normal_new(t->g, scratch,
+                 (NormalLimits){.max_terms = MAX_TERMS, .max_work = MAX_WORK, .shallow = t->shallow, .keep_range = 1});
   Frac f;
   if (normal_run(n, &t->e, 1, &f) != POLY_OK) return;
   Frac smaller = frac_cancel(n->field, f);
@@ -287,7 +293,9 @@ static void work(Arena *scratch, void *data) {
 
 /* --- range --- */
 
-static int can_overflow(ExprOp op) { return op == EX_EXP || op == EX_SINH || op == EX_COSH || op == EX_TANH || op == EX_POW; }
+static int can_overflow(ExprOp op) {
+  return op == EX_EXP || op == EX_SINH || op == EX_COSH || op == EX_TANH || op == EX_POW;
+}
 
 typedef struct {
   const ExprGraph *g;
@@ -365,12 +373,13 @@ static int loses_digits(EvalTape *t, const Between *at, long double *symbols) {
   for (SymId s = 1; s <= expr_symbol_count(at->g); s++) symbols[s] = symbol_between(s, at);
   eval_run(t, symbols, exact);
   eval_run_double(t, symbol_between, at, is);
-  long double before = fabsl(is[0] - exact[0]), after = fabsl(is[1] - exact[1]), rounding = 64 * DBL_EPSILON * fabsl(exact[0]);
+  long double before = fabsl(is[0] - exact[0]), after = fabsl(is[1] - exact[1]),
+              rounding = 64 * DBL_EPSILON * fabsl(exact[0]);
   return after > rounding && after > 1000 * before;
 }
 
-/* Whether `after` has the digits of a product `before` beside zeros between random states: 2*cos(1 + u/2)*sin(u/2) has more
- * than sin(1 + u) - sin(1). */
+/* Whether `after` has the digits of a product `before` beside zeros between random states: 2*cos(1 + u/2)*sin(u/2)
+ * has more than sin(1 + u) - sin(1). */
 static int keeps_digits(ExprGraph *g, Expr before, Expr after) {
   enum { LINES = 12, PARTS = 4, HALVINGS = 30, NODES_MOST = 120 };
   const long double beside = 1e-6L;
@@ -393,7 +402,9 @@ static int keeps_digits(ExprGraph *g, Expr before, Expr after) {
 }
 
 /* The new form s if it keeps the range and the digits of e, else e. */
-static Expr if_good(ExprGraph *g, Expr e, Expr s) { return s == e || (keeps_range(g, e, s) && keeps_digits(g, e, s)) ? s : e; }
+static Expr if_good(ExprGraph *g, Expr e, Expr s) {
+  return s == e || (keeps_range(g, e, s) && keeps_digits(g, e, s)) ? s : e;
+}
 
 Expr simplify(ExprGraph *g, Expr e) {
   Expr s = rewritten(g, e, 0);

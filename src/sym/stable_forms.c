@@ -67,7 +67,8 @@ static Expr half_angle(ExprGraph *g, Num c, Expr R, ExprOp f, Expr u) {
   return expr_scale(g, num_mul(num_int(2), c), product);
 }
 
-/* Rewrites c*R*cos u + d*R, term i with its factor `cosine`: for d = -c into the form with sin(u/2)^2, for d = c with cos(u/2)^2. */
+/* Rewrites c*R*cos u + d*R, term i with its factor `cosine`: for d = -c into the form with sin(u/2)^2, for d = c
+ * with cos(u/2)^2. */
 static int use_half_angle(SumTerms *t, uint32_t i, Expr cosine) {
   ExprGraph *g = t->g;
   Num c = t->at[i].c;

@@ -76,7 +76,8 @@ static void sort_ids(ExprGraph *g, Expr *at, uint32_t n) {
   }
 }
 
-/* Nodes reachable from the roots, ascending; not below nodes of `leaves` (or NULL) nor, if shallow, below definitions. */
+/* Nodes reachable from the roots, ascending; not below nodes of `leaves` (or NULL) nor, if shallow, below
+ * definitions. */
 static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, int shallow) {
   VEC(Expr) found = {g->found, 0, g->found_cap};
   expr_map_clear(&g->seen);
@@ -105,7 +106,9 @@ static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap 
 
 ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, 0); }
 ExprList expr_topo_shallow(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, 1); }
-ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves) { return topo(g, roots, n, leaves, 0); }
+ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves) {
+  return topo(g, roots, n, leaves, 0);
+}
 
 int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data) {
   ExprList l = expr_topo(g, &e, 1);
@@ -121,7 +124,8 @@ int expr_contains_sym(ExprGraph *g, Expr e, SymId sym) {
   return expr_contains(g, e, same_symbol, &node);
 }
 
-void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s, const void *data), const void *data, ExprMap *m) {
+void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s, const void *data), const void *data,
+                          ExprMap *m) {
   expr_map_clear(m);
   for (uint32_t i = 0; i < l.n; i++) {
     Expr e = l.at[i];
@@ -199,7 +203,8 @@ Expr expr_replace(ExprGraph *g, Expr e, const SymId *syms, const Expr *with, uin
   return rewrite_one(g, e, &g->work, "");
 }
 
-void expr_replace_nodes(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *nodes, const Expr *with, uint32_t nnodes, Expr *out) {
+void expr_replace_nodes(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *nodes, const Expr *with,
+                        uint32_t nnodes, Expr *out) {
   expr_map_clear(&g->work);
   for (uint32_t i = 0; i < nnodes; i++) expr_map_set(&g->work, nodes[i], with[i]);
   rewrite(g, roots, n, &g->work, "", out);
@@ -226,7 +231,8 @@ double expr_tree_size(ExprGraph *g, Expr e, uint32_t *distinct) {
   for (uint32_t k = 0; k < l.n; k++) {
     expr_map_set(&g->seen, l.at[k], k + 1);
     size[k] = 1;
-    for (uint32_t i = 0; expr_op(g, l.at[k]) != EX_DEF && i < expr_nargs(g, l.at[k]); i++) size[k] += size[expr_map_get(&g->seen, expr_arg(g, l.at[k], i)) - 1];
+    for (uint32_t i = 0; expr_op(g, l.at[k]) != EX_DEF && i < expr_nargs(g, l.at[k]); i++)
+      size[k] += size[expr_map_get(&g->seen, expr_arg(g, l.at[k], i)) - 1];
   }
   *distinct = l.n;
   return size[l.n - 1];

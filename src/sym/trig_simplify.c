@@ -1,4 +1,5 @@
-/* Candidate forms of a trigonometric polynomial: powers of sines and cosines, or its Fourier spectrum by directions; the shortest wins. */
+/* Candidate forms of a trigonometric polynomial: powers of sines and cosines, or its Fourier spectrum by directions;
+ * the shortest wins. */
 #include "sym/trig_simplify.h"
 
 #include <stdlib.h>
@@ -212,7 +213,8 @@ static Line line_of(PolyRing *r, Term t, int is_sine) {
   return line;
 }
 
-/* Adds the lines of a polynomial in exponentials; of each pair of conjugates the one with positive first exponent counts. */
+/* Adds the lines of a polynomial in exponentials; of each pair of conjugates the one with positive first exponent
+ * counts. */
 static void push_lines(Normal *n, Spectrum *s, Poly p, int is_sine) {
   for (uint32_t i = 0; i < p.n; i++) {
     const Mono *m = mono_at(n->ring, p.at[i].mono);

@@ -1,4 +1,5 @@
-/* The ansatz of the search for symmetries, and its linear equations at random states: each state gives one row of B0 and B1, scaled to size 1. */
+/* The ansatz of the search for symmetries, and its linear equations at random states: each state gives one row of B0
+ * and B1, scaled to size 1. */
 #include <math.h>
 
 #include "base/tolerance.h"
@@ -82,8 +83,8 @@ struct RowSource {
   uint32_t reach;        /* index into reaches */
 };
 
-/* Random number, 0.3 .. 1.7 with random sign. Steele, Lea, Flood: Fast splittable pseudorandom number generators, OOPSLA 2014, DOI
- * 10.1145/2660193.2660195. */
+/* Random number, 0.3 .. 1.7 with random sign. Steele, Lea, Flood: Fast splittable pseudorandom number generators,
+ * OOPSLA 2014, DOI 10.1145/2660193.2660195. */
 static long double next_value(RowSource *r) {
   uint64_t z = r->random += 0x9e3779b97f4a7c15u;
   z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
@@ -106,7 +107,11 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
   for (uint32_t i = 0; i < s->n; i++) roots[count++] = eqns_momenta(e)[i];
   for (uint32_t i = 0; i < k->A.n; i++) roots[count++] = k->A.at[i].e;
   for (uint32_t i = 0; i < k->n; i++) roots[count++] = k->r[i];
-  *r = (RowSource){.of = s, .scratch = scratch, .tape = eval_tape(e->g, roots, count), .solver = k->n ? states_new(e) : NULL, .random = 7};
+  *r = (RowSource){.of = s,
+                   .scratch = scratch,
+                   .tape = eval_tape(e->g, roots, count),
+                   .solver = k->n ? states_new(e) : NULL,
+                   .random = 7};
   r->symbols = ARENA_ARRAY(scratch, long double, symbols);
   r->kept = ARENA_ARRAY(scratch, long double, symbols);
   r->out = ARENA_ARRAY(scratch, long double, count);
@@ -118,18 +123,22 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
 }
 
 /* Sizes of coordinates and velocities, tried until L has a value: roots of 1 - v^2/c^2, logarithms of x - a. */
-static const long double reaches[][2] = {{1, 1}, {1, 0.5L}, {1, 0.25L}, {1, 0.125L}, {0.5L, 1}, {0.25L, 1}, {4, 1}, {16, 1}, {0.25L, 0.25L}, {0.0625L, 0.0625L}};
+static const long double reaches[][2] = {{1, 1},     {1, 0.5L}, {1, 0.25L}, {1, 0.125L},    {0.5L, 1},
+                                         {0.25L, 1}, {4, 1},    {16, 1},    {0.25L, 0.25L}, {0.0625L, 0.0625L}};
 enum { REACHES = sizeof reaches / sizeof *reaches };
 
-/* Draws new values of all symbols but parameters, coordinates `spread` times as large. Times are further apart, so that functions of time are told
- * from each other. */
+/* Draws new values of all symbols but parameters, coordinates `spread` times as large. Times are further apart, so
+ * that functions of time are told from each other. */
 static void draw(RowSource *r, long double spread) {
   const ExprGraph *g = r->of->e->g;
   const long double *reach = reaches[r->reach];
   for (SymId s = 1; s <= expr_symbol_count(g); s++) {
     const Symbol *x = expr_symbol(g, s);
     if (x->kind == SYM_PARAM || x->kind == SYM_CONST) continue;
-    long double value = next_value(r) * (x->kind == SYM_TIME ? 4 : x->kind == SYM_COORD ? spread * reach[0] : x->kind == SYM_VEL ? reach[1] : 1);
+    long double value = next_value(r) * (x->kind == SYM_TIME    ? 4
+                                         : x->kind == SYM_COORD ? spread * reach[0]
+                                         : x->kind == SYM_VEL   ? reach[1]
+                                                                : 1);
     r->symbols[s] = sign_is_nonnegative(x->sign) ? fabsl(value) : value;
   }
 }
@@ -143,7 +152,8 @@ static long double steepness(RowSource *r) {
   return sum + none;
 }
 
-/* Draws some states and keeps that with the weakest forces: where two of several bodies nearly touch, their force drowns all others, and with 1/(x
+/* Draws some states and keeps that with the weakest forces: where two of several bodies nearly touch, their force
+ * drowns all others, and with 1/(x
  * - y)^2 rounding of the potential drowns the kinetic energy. With many bodies every second state is wide. */
 static int draw_some(RowSource *r) {
   enum { MANY = 6, DRAWS = 24 };
@@ -232,7 +242,8 @@ static void lagrangian_rows(RowSource *r, RowKind kind, long double *b0, long do
   }
 }
 
-/* The row A xi + b tau of a constraint r = A q' + b, at a state moved onto the constraints. 0: it cannot be moved there. */
+/* The row A xi + b tau of a constraint r = A q' + b, at a state moved onto the constraints. 0: it cannot be moved
+ * there. */
 static int constraint_row(RowSource *r, uint32_t which, long double *b0) {
   const Ansatz *s = r->of;
   const Constraints *k = &s->e->constraints;
@@ -252,7 +263,8 @@ static int constraint_row(RowSource *r, uint32_t which, long double *b0) {
   return 1;
 }
 
-/* Scales a row to largest element 1: states where bodies nearly touch would drown the others. 0: a value is not finite. */
+/* Scales a row to largest element 1: states where bodies nearly touch would drown the others. 0: a value is not
+ * finite. */
 static int normalise(long double *b0, long double *b1, uint32_t n) {
   long double most = 0;
   for (uint32_t i = 0; i < n; i++) {

@@ -33,7 +33,8 @@ static Charge charge_of(const Eqns *e, const Symmetry *y) {
   return c;
 }
 
-/* The one judgement of the energy, which all commands quote; a potential that completes it becomes a part of e->energy. */
+/* The one judgement of the energy, which all commands quote; a potential that completes it becomes a part of
+ * e->energy. */
 static Charge energy_of(Eqns *e) {
   Charge c = {.name = "energy", .unit = e->m->energy_unit, .proof = noether_energy(e)};
   Expr V = c.proof.potential;
@@ -79,7 +80,8 @@ Expr charges_substitute(const Eqns *e, Expr x) {
   return expression_brackets_substitute(e, x, 0);
 }
 
-/* The scene's outputs, with the energy, charges and actions that they name filled in, and velocities of a Hamiltonian as in its forces, so that both stick together. */
+/* The scene's outputs, with the energy, charges and actions that they name filled in, and velocities of a
+ * Hamiltonian as in its forces, so that both stick together. */
 static int fill_outputs(Eqns *e) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
@@ -90,7 +92,8 @@ static int fill_outputs(Eqns *e) {
   Expr *with = ARENA_ARRAY(m->arena, Expr, nsymbols);
   with[m->energy_sym] = e->energy_stable;
   for (uint32_t k = 0; k < m->actions.n; k++) with[m->actions.at[k].sym] = action[k];
-  for (uint32_t k = 0; k < m->pairs.n && m->hamiltonian; k++) with[m->states.at[m->pairs.at[k].q].rate] = e->first.velocity[k];
+  for (uint32_t k = 0; k < m->pairs.n && m->hamiltonian; k++)
+    with[m->states.at[m->pairs.at[k].q].rate] = e->first.velocity[k];
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) {
     out[i] = m->scene.outputs.at[i];
     out[i].value = charges_substitute(e, out[i].value);
@@ -104,7 +107,8 @@ static int fill_outputs(Eqns *e) {
 
 /* --- verdicts --- */
 
-/* x with definitions expanded that are not the user's: derivatives of lets, whose names mean something only where all definitions are printed. */
+/* x with definitions expanded that are not the user's: derivatives of lets, whose names mean something only where
+ * all definitions are printed. */
 static Expr in_own_names(const Eqns *e, Expr x) {
   enum { DEEPEST = 64 };
   Arena *a = e->m->arena;
@@ -139,9 +143,12 @@ static const char *text_of(const Eqns *e, Expr x) {
   return sb_text(&b);
 }
 
-static int holds(const Charge *c) { return (c->proof.is == INVARIANT || c->proof.is == INVARIANT_UP_TO_F) && !c->proof.broken; }
+static int holds(const Charge *c) {
+  return (c->proof.is == INVARIANT || c->proof.is == INVARIANT_UP_TO_F) && !c->proof.broken;
+}
 
-/* "`x` or `y`": maps of which one with the opposite sign would make the symmetry hold; *one: one of them, or NULL; *n: their number. */
+/* "`x` or `y`": maps of which one with the opposite sign would make the symmetry hold; *one: one of them, or NULL;
+ * *n: their number. */
 static const char *wrong_signs(const Eqns *e, const Symmetry *y, const Move **one, uint32_t *n) {
   enum { MOST = 12 };
   Symmetry other = *y;
@@ -165,7 +172,9 @@ static void report_broken(const Eqns *e, const Charge *c) {
   const Constraint *k = e->constraints.of[c->proof.broken - 1];
   Diags *d = e->m->diags;
   diag_error(d, c->of->span, "the symmetry `%s` does not keep to the constraint `%s`", c->name, k->name);
-  diag_also(d, k->span, "to first order in its parameter, it changes the left minus the right side of this constraint by %s", text_of(e, c->proof.breaks));
+  diag_also(d, k->span,
+            "to first order in its parameter, it changes the left minus the right side of this constraint by %s",
+            text_of(e, c->proof.breaks));
 }
 
 static void report_false(const Eqns *e, const Charge *c) {
@@ -174,9 +183,14 @@ static void report_false(const Eqns *e, const Charge *c) {
   const Move *wrong = NULL;
   uint32_t signs;
   const char *names = wrong_signs(e, c->of, &wrong, &signs), *left = text_of(e, n->remainder);
-  const char *what = expr_is_zero(e->g, n->F) ? "delta L" : arena_printf(e->m->arena, "delta L - dF/dt, with F = %s,", text_of(e, n->F));
-  diag_error(d, signs == 1 ? wrong->span : c->of->span, "the symmetry `%s` is false: it changes L by more than a total derivative", c->name);
-  if (signs) diag_help(d, "the remainder of %s is %s; it would be 0 if the change of %s had the opposite sign", what, left, names);
+  const char *what = expr_is_zero(e->g, n->F)
+                         ? "delta L"
+                         : arena_printf(e->m->arena, "delta L - dF/dt, with F = %s,", text_of(e, n->F));
+  diag_error(d, signs == 1 ? wrong->span : c->of->span,
+             "the symmetry `%s` is false: it changes L by more than a total derivative", c->name);
+  if (signs)
+    diag_help(d, "the remainder of %s is %s; it would be 0 if the change of %s had the opposite sign", what, left,
+              names);
   else diag_help(d, "the remainder of %s is %s", what, left);
 }
 
@@ -184,7 +198,9 @@ static void report_undecided(const Eqns *e, const Charge *c) {
   Diags *d = e->m->diags;
   diag_error(d, c->of->span, "the symmetry `%s` is not decided", c->name);
   if (c->proof.product) {
-    diag_also(d, c->proof.product->span, "it holds at all states found, which may leave out one factor of this constraint; write the factor that is meant as the constraint");
+    diag_also(d, c->proof.product->span,
+              "it holds at all states found, which may leave out one factor of this constraint; write the factor that "
+              "is meant as the constraint");
     return;
   }
   diag_help(d, "no F(q, t) with dF/dt = %s was found, and no proof that there is none", text_of(e, c->proof.remainder));
@@ -234,13 +250,15 @@ static int motion_jumps(const Model *m) {
 /* Reason of a conserved energy beside which forces, or constraints that move, act. */
 static const char *reason_of(const Eqns *e) {
   const char *of = eqns_has_forces(e) ? "the potential %s of the forces" : "%s, as L has a total time derivative";
-  if (e->potential) return arena_printf(e->m->arena, arena_printf(e->m->arena, ", with %s", of), text_of(e, e->potential));
+  if (e->potential)
+    return arena_printf(e->m->arena, arena_printf(e->m->arena, ", with %s", of), text_of(e, e->potential));
   if (eqns_has_forces(e)) return ": the forces do no work";
   return constraints_do_no_work(e) ? "" : ": the constraints do no work";
 }
 
 const char *charges_drift_word(Verdict drift) {
-  static const char *const words[] = {[PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided"};
+  static const char *const words[] = {
+      [PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided"};
   return words[drift];
 }
 
@@ -255,11 +273,13 @@ const char *charges_energy_text(const Eqns *e) {
   if (is->jumps) return "energy changes (L jumps, and the energy with it)";
   const char *events = motion_jumps(e->m) ? " between events" : "", *name = e->m->hamiltonian ? "H" : "E";
   const char *inputs = is->by_formulas ? " while inputs follow their formulas" : "";
-  if (is->drift == PROVED_ZERO) return arena_printf(e->m->arena, "energy is conserved%s%s%s", events, inputs, reason_of(e));
+  if (is->drift == PROVED_ZERO)
+    return arena_printf(e->m->arena, "energy is conserved%s%s%s", events, inputs, reason_of(e));
   const char *verdict = is->drift == PROVED_NONZERO ? "energy changes"
-                        : is->open_integral ? "not decided whether the energy is conserved; with a potential of the forces, "
-                                              "an integral that is not found, it is"
-                                            : "not decided whether the energy is conserved";
+                        : is->open_integral
+                            ? "not decided whether the energy is conserved; with a potential of the forces, "
+                              "an integral that is not found, it is"
+                            : "not decided whether the energy is conserved";
   if (is->power_unknown) return arena_printf(e->m->arena, "%s: " NO_RATE, verdict);
   const char *power = text_of(e, is->power);
   return strlen(power) <= LINE ? arena_printf(e->m->arena, "%s: d%s/dt = %s", verdict, name, power)
@@ -270,7 +290,8 @@ const char *charges_energy_text(const Eqns *e) {
 static const char *gauge_text(const Eqns *e, const Noether *is) {
   const char *F = text_of(e, is->F);
   if (!is->over_time) return F;
-  return arena_printf(e->m->arena, "%s%sintegral of %s over t", expr_is_zero(e->g, is->F) ? "" : F, expr_is_zero(e->g, is->F) ? "" : " + the ", text_of(e, is->over_time));
+  return arena_printf(e->m->arena, "%s%sintegral of %s over t", expr_is_zero(e->g, is->F) ? "" : F,
+                      expr_is_zero(e->g, is->F) ? "" : " + the ", text_of(e, is->over_time));
 }
 
 static const char *place_text(const Eqns *e, const Symmetry *y) {
@@ -282,12 +303,15 @@ void charges_print(const Eqns *e, Name effect, StrBuf *out) {
   for (uint32_t i = 1; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
     const char *how = c->proof.by_value ? "holds on the constraints, in numbers" : "proved";
-    const char *proved = c->proof.jumps ? arena_printf(e->m->arena, "%s%s between jumps", how, c->proof.by_value ? "," : "") : how;
+    const char *proved =
+        c->proof.jumps ? arena_printf(e->m->arena, "%s%s between jumps", how, c->proof.by_value ? "," : "") : how;
     if (c->of->effect != effect) continue;
     sb_printf(out, "%s: symmetry %s: ", place_text(e, c->of), c->name);
     if (!holds(c)) sb_puts(out, c->proof.is == INVARIANCE_NOT_DECIDED ? "not decided" : "false");
     else if (c->proof.is == INVARIANT) sb_printf(out, "%s; charge %s", proved, text_of(e, c->proof.charge));
-    else sb_printf(out, "%s up to dF/dt, F = %s; charge %s", proved, gauge_text(e, &c->proof), text_of(e, c->proof.charge));
+    else
+      sb_printf(out, "%s up to dF/dt, F = %s; charge %s", proved, gauge_text(e, &c->proof),
+                text_of(e, c->proof.charge));
     if (holds(c)) put_balance(e, c, out);
     sb_putc(out, '\n');
   }
@@ -297,7 +321,8 @@ void charges_show_broken(const Eqns *e, StrBuf *out) {
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
     if ((c->proof.drift == PROVED_ZERO && !c->proof.jumps) || (!c->of && e->m->symmetries.n == 0)) continue;
-    sb_printf(out, "  %s%s\n", power_text(e, c), c->proof.jumps && !c->proof.power_unknown ? " between jumps of L" : "");
+    sb_printf(out, "  %s%s\n", power_text(e, c),
+              c->proof.jumps && !c->proof.power_unknown ? " between jumps of L" : "");
   }
 }
 

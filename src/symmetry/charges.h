@@ -12,8 +12,8 @@ struct Charge {
   Expr value, scale; /* in the form that programs compute */
 };
 
-/* Model -> Eqns, complete: the equations of motion, their charges, and outputs that name the energy or a charge. NULL, with the reason in the
- * model's diagnostics, as eqns_derive, or when a declared symmetry does not hold. */
+/* Model -> Eqns, complete: the equations of motion, their charges, and outputs that name the energy or a charge.
+ * NULL, with the reason in the model's diagnostics, as eqns_derive, or when a declared symmetry does not hold. */
 Eqns *equations_of(const Model *m);
 
 /* The complete equations of the same model with a regular mass matrix (eqns_derive_regularised). */
@@ -32,8 +32,9 @@ const char *charges_energy_word(const Eqns *e);
 /* x with the symbols of declared charges and of brackets replaced by their expressions. */
 Expr charges_substitute(const Eqns *e, Expr x);
 
-/* Whether the symmetries declared in `effect` (NULL: outside effects) hold. Others are reported in the model's diagnostics, with the remainder of
- * delta L and, where one map has the wrong sign, that map. e: the model without effects, or with that effect and what it requires. */
+/* Whether the symmetries declared in `effect` (NULL: outside effects) hold. Others are reported in the model's
+ * diagnostics, with the remainder of delta L and, where one map has the wrong sign, that map. e: the model without
+ * effects, or with that effect and what it requires. */
 int charges_judge(const Eqns *e, Name effect);
 
 /* Appends a line for each symmetry of `effect` to what `lagc check` prints. */

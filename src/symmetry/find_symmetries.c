@@ -1,5 +1,6 @@
-/* Drives the search: chooses parameter values, computes solution spaces, writes the rates of exp(A t) in closed form (or, where L contains t or is
- * of first order, lists functions of time), and adds each family of generators that share them. */
+/* Drives the search: chooses parameter values, computes solution spaces, writes the rates of exp(A t) in closed form
+ * (or, where L contains t or is of first order, lists functions of time), and adds each family of generators that
+ * share them. */
 #include "symmetry/find_symmetries_impl.h"
 
 #include <math.h>
@@ -36,11 +37,12 @@ static void add_guess(SymmetrySearch *s, RateCandidates *all, Expr root, int is_
   vec_push(s->scratch, all, ((RateCandidate){square, negative ? expr_neg(s->g, root) : root, is_double}));
 }
 
-/* Rates of two coordinates coupled by b = beta m through velocities: with z = x + i y, z'' = kappa z - i beta z', w^2 + beta w + kappa = 0; a
- * double root in a frame that turns. */
+/* Rates of two coordinates coupled by b = beta m through velocities: with z = x + i y, z'' = kappa z - i beta z',
+ * w^2 + beta w + kappa = 0; a double root in a frame that turns. */
 static void add_coupled(SymmetrySearch *s, RateCandidates *all, Expr beta, Expr kappa) {
   ExprGraph *g = s->g;
-  Expr four = expr_scale(g, num_int(4), kappa), inside = simplify(g, expr_sub(g, expr_pow_num(g, beta, num_int(2)), four));
+  Expr four = expr_scale(g, num_int(4), kappa),
+       inside = simplify(g, expr_sub(g, expr_pow_num(g, beta, num_int(2)), four));
   add_guess(s, all, beta, 0);
   if (expr_is_zero(g, inside)) add_guess(s, all, expr_scale(g, num_ratio(1, 2), beta), 1);
   if (expr_is_zero(g, kappa) || choice_value(&s->choices, CHOICE_FIRST, inside) <= 0) return;
@@ -50,7 +52,8 @@ static void add_coupled(SymmetrySearch *s, RateCandidates *all, Expr beta, Expr 
   add_guess(s, all, root, 0); /* of breathing modes: the sum of both */
 }
 
-/* Candidates from each coordinate with its own equation m q'' = kappa m q + ..., and from pairs with equal kappa and coupled velocities. */
+/* Candidates from each coordinate with its own equation m q'' = kappa m q + ..., and from pairs with equal kappa and
+ * coupled velocities. */
 static RateCandidates rate_candidates(SymmetrySearch *s) {
   Eqns *e = s->e;
   ExprGraph *g = s->g;
@@ -69,7 +72,8 @@ static RateCandidates rate_candidates(SymmetrySearch *s) {
     for (uint32_t j = 0; j < i; j++) {
       Expr one = expr_diff(g, e->dLdq[i], s->ansatz->v[j]), other = expr_diff(g, e->dLdq[j], s->ansatz->v[i]);
       Expr b = simplify(g, expr_sub(g, one, other));
-      if (kappa[j] == kappa[i] && expr_is_constant(g, b) && !expr_is_zero(g, b)) add_coupled(s, &all, simplify(g, expr_div(g, b, m)), kappa[i]);
+      if (kappa[j] == kappa[i] && expr_is_constant(g, b) && !expr_is_zero(g, b))
+        add_coupled(s, &all, simplify(g, expr_div(g, b, m)), kappa[i]);
     }
   }
   return all;
@@ -93,7 +97,8 @@ static int rate_by_guess(SymmetrySearch *s, const RateCandidates *all, long doub
     Num c;
     long double ratio = rate2 / choice_value(&s->choices, CHOICE_FIRST, all->at[k].square);
     if (!recognise_rational(ratio, &c) || num_value(c) <= 0) continue;
-    for (uint32_t i = 0; i < noether_choices(s); i++) to->rate2[i] = (long double)num_value(c) * choice_value(&s->choices, i, all->at[k].square);
+    for (uint32_t i = 0; i < noether_choices(s); i++)
+      to->rate2[i] = (long double)num_value(c) * choice_value(&s->choices, i, all->at[k].square);
     if (!close_to(nearest_rate(s, CHOICE_SECOND, to->rate2[CHOICE_SECOND]), to->rate2[CHOICE_SECOND])) continue;
     Expr root = expr_sqrt(s->g, expr_num(s->g, c));
     to->rate = expr_mul(s->g, root, all->at[k].root);
@@ -102,7 +107,8 @@ static int rate_by_guess(SymmetrySearch *s, const RateCandidates *all, long doub
   return 0;
 }
 
-/* Writes the squared rate as a product of powers of parameters, or a sum of parameters over one of them. 0: it is neither. */
+/* Writes the squared rate as a product of powers of parameters, or a sum of parameters over one of them. 0: it is
+ * neither. */
 static int rate_by_value(SymmetrySearch *s, long double rate2, Family *to) {
   for (uint32_t i = 0; i < noether_choices(s); i++) to->rate2[i] = i == CHOICE_SECOND ? NAN : nearest_rate(s, i, rate2);
   const SolutionSpace *second = noether_space_at(s, CHOICE_SECOND);
@@ -135,7 +141,8 @@ static void search_rates(SymmetrySearch *s) {
   sort_rates(&rates);
   RateCandidates all = rate_candidates(s);
   for (uint32_t k = 0; k < rates.n; k++) {
-    Family f = {.kind = rates.at[k] < 0 ? TIME_CIRCULAR : TIME_EXPONENTIAL, .rate2 = ARENA_ARRAY(s->scratch, long double, noether_choices(s))};
+    Family f = {.kind = rates.at[k] < 0 ? TIME_CIRCULAR : TIME_EXPONENTIAL,
+                .rate2 = ARENA_ARRAY(s->scratch, long double, noether_choices(s))};
     if (rate_by_guess(s, &all, rates.at[k], &f) || rate_by_value(s, rates.at[k], &f)) noether_add_family(s, &f);
   }
 }
@@ -181,7 +188,8 @@ static void add_growing(SymmetrySearch *s, Exprs *to, Expr w) {
   Expr t = expr_symbol(s->g, s->e->m->time)->node;
   add_circular(s, &plain, w);
   for (int power = 1; power <= 2; power++)
-    for (uint32_t k = 0; k < plain.n; k++) add_once(s, to, expr_mul(s->g, expr_pow_num(s->g, t, num_int(power)), plain.at[k]));
+    for (uint32_t k = 0; k < plain.n; k++)
+      add_once(s, to, expr_mul(s->g, expr_pow_num(s->g, t, num_int(power)), plain.at[k]));
 }
 
 static void add_exponential(SymmetrySearch *s, Exprs *to, Expr rate) {
@@ -190,8 +198,9 @@ static void add_exponential(SymmetrySearch *s, Exprs *to, Expr rate) {
   add_once(s, to, expr_fn(s->g, EX_EXP, expr_neg(s->g, phase)));
 }
 
-/* Functions of time for the ansatz. For xi and tau: 1, t, t^2 and those of L's own rates, double rates times t and t^2; for F their products, too.
- * A first-order L gets constants only for xi and tau: more would let each charge be multiplied by functions of others. */
+/* Functions of time for the ansatz. For xi and tau: 1, t, t^2 and those of L's own rates, double rates times t and
+ * t^2; for F their products, too. A first-order L gets constants only for xi and tau: more would let each charge be
+ * multiplied by functions of others. */
 static TimeList time_list(SymmetrySearch *s) {
   enum { RATES_MOST = 4 };
   Exprs circular = {0}, exponential = {0}, growing = {0}, list = {0};
@@ -203,7 +212,8 @@ static TimeList time_list(SymmetrySearch *s) {
     for (uint32_t k = 0; k < own.n; k++)
       if (own.at[k].is_double) add_once(s, &growing, own.at[k].root);
     for (uint32_t k = 0; k < own.n && circular.n + exponential.n < RATES_MOST; k++)
-      add_once(s, choice_value(&s->choices, CHOICE_FIRST, own.at[k].square) < 0 ? &circular : &exponential, own.at[k].root);
+      add_once(s, choice_value(&s->choices, CHOICE_FIRST, own.at[k].square) < 0 ? &circular : &exponential,
+               own.at[k].root);
   }
   if (circular.n > RATES_MOST) circular.n = RATES_MOST;
   if (exponential.n > RATES_MOST) exponential.n = RATES_MOST;
@@ -241,21 +251,28 @@ static const char *functions_text(SymmetrySearch *s, const TimeList *times, uint
 static void search_listed(SymmetrySearch *s) {
   Family f = {.kind = TIME_LISTED, .times = time_list(s)};
   s->out->searched = noether_add_family(s, &f);
-  s->out->ansatz = arena_printf(s->e->m->arena, "xi affine in the coordinates%s, tau, with coefficients in t: %s; F a polynomial of degree %u in the coordinates, "
-                                "with those%s%s, and any function of t alone",
-                                !s->ansatz->whole ? " (turns and stretches of one vector only)" : "", functions_text(s, &f.times, 0, f.times.n),
-                                s->ansatz->degree, f.times.n < f.times.ngauge ? " and " : "", functions_text(s, &f.times, f.times.n, f.times.ngauge));
+  s->out->ansatz =
+      arena_printf(s->e->m->arena,
+                   "xi affine in the coordinates%s, tau, with coefficients in t: %s; F a polynomial of degree %u in "
+                   "the coordinates, "
+                   "with those%s%s, and any function of t alone",
+                   !s->ansatz->whole ? " (turns and stretches of one vector only)" : "",
+                   functions_text(s, &f.times, 0, f.times.n), s->ansatz->degree,
+                   f.times.n < f.times.ngauge ? " and " : "", functions_text(s, &f.times, f.times.n, f.times.ngauge));
 }
 
 /* --- the search --- */
 
 static const char *ansatz_text(const SymmetrySearch *s) {
   const Ansatz *a = s->ansatz;
-  return arena_printf(s->e->m->arena, "xi affine in the coordinates%s, tau, both with any dependence on time; F a polynomial of degree %u in the coordinates",
+  return arena_printf(s->e->m->arena,
+                      "xi affine in the coordinates%s, tau, both with any dependence on time; F a polynomial of degree "
+                      "%u in the coordinates",
                       !a->whole ? " (turns and stretches of one vector only)" : "", a->degree);
 }
 
-static const long double GAP_WEAK = 1e10L; /* least ratio of pivots to rounding that is trusted; models have 1e13 and more */
+/* least ratio of pivots to rounding that is trusted; models have 1e13 and more */
+static const long double GAP_WEAK = 1e10L;
 
 static void search_autonomous(SymmetrySearch *s) {
   const SolutionSpace *space = noether_space_at(s, CHOICE_FIRST);
@@ -265,9 +282,11 @@ static void search_autonomous(SymmetrySearch *s) {
   Family powers = {.kind = TIME_POWERS};
   noether_add_family(s, &powers);
   search_rates(s);
-  uint32_t dimension = space->space.n ? space->space.n - 1 : 0, known = s->out->all.n + s->out->unproved; /* less F = 1 */
+  /* less F = 1 */
+  uint32_t dimension = space->space.n ? space->space.n - 1 : 0, known = s->out->all.n + s->out->unproved;
   if (dimension > known) s->out->unproved += dimension - known;
-  if (space->space.gap < GAP_WEAK) s->out->note = "rates or couplings lie so close to one another that some symmetries may be missing";
+  if (space->space.gap < GAP_WEAK)
+    s->out->note = "rates or couplings lie so close to one another that some symmetries may be missing";
 }
 
 /* Number of solutions at a choice whose rate is complex: they oscillate and grow at once. */
@@ -288,9 +307,13 @@ static void draw_parameters(SymmetrySearch *s) {
   enum { ATTEMPTS = 12 };
   for (uint32_t attempt = 0; attempt < ATTEMPTS; attempt++) {
     use_attempt(s, attempt);
-    if (rows_exist(s->ansatz, s->scratch, s->choices.at[CHOICE_FIRST]) && rows_exist(s->ansatz, s->scratch, s->choices.at[CHOICE_SECOND])) break;
+    if (rows_exist(s->ansatz, s->scratch, s->choices.at[CHOICE_FIRST]) &&
+        rows_exist(s->ansatz, s->scratch, s->choices.at[CHOICE_SECOND]))
+      break;
   }
-  if (s->ansatz->has_time || !s->e->n || !s->choices.n || !(complex_rates(s, CHOICE_FIRST) + complex_rates(s, CHOICE_SECOND))) return;
+  if (s->ansatz->has_time || !s->e->n || !s->choices.n ||
+      !(complex_rates(s, CHOICE_FIRST) + complex_rates(s, CHOICE_SECOND)))
+    return;
   for (uint32_t attempt = 1; attempt < ATTEMPTS && search_goes_on(s->limit, 0); attempt++) {
     use_attempt(s, attempt);
     if (complex_rates(s, CHOICE_FIRST) + complex_rates(s, CHOICE_SECOND) == 0) return;
@@ -300,7 +323,8 @@ static void draw_parameters(SymmetrySearch *s) {
 
 static void search_ansatz(SymmetrySearch *s, int whole) {
   *s->out = (FoundSymmetries){0};
-  search_stage(s->limit, whole ? 0.5 : 0.7, whole ? "all generators affine in the coordinates" : "generators that mix the components of one vector");
+  search_stage(s->limit, whole ? 0.5 : 0.7,
+               whole ? "all generators affine in the coordinates" : "generators that mix the components of one vector");
   s->ansatz = ansatz_new(s->scratch, s->e, whole, s->limit);
   draw_parameters(s);
   if (s->ansatz->has_time || !s->e->n) search_listed(s);
@@ -308,8 +332,12 @@ static void search_ansatz(SymmetrySearch *s, int whole) {
 }
 
 static const char *stopped_note(const SymmetrySearch *s) {
-  if (s->limit->no_room) return arena_printf(s->e->m->arena, "%s, and nothing was searched beyond", search_stop_text(s->limit));
-  return arena_printf(s->e->m->arena, "%.3g s did not suffice for more, and nothing was searched beyond: --seconds %.3g gives more time", s->limit->seconds, 10 * s->limit->seconds);
+  if (s->limit->no_room)
+    return arena_printf(s->e->m->arena, "%s, and nothing was searched beyond", search_stop_text(s->limit));
+  return arena_printf(
+      s->e->m->arena,
+      "%.3g s did not suffice for more, and nothing was searched beyond: --seconds %.3g gives more time",
+      s->limit->seconds, 10 * s->limit->seconds);
 }
 
 /* The largest ansatz that can be searched in its part of the time, else the usual symmetries. */
@@ -321,7 +349,8 @@ static void search_work(Arena *scratch, void *data) {
   if (whole && s->limit->stopped && !s->out->all.n) search_ansatz(s, 0);
   if (!s->out->searched || (s->limit->stopped && !s->out->all.n)) {
     try_usual_symmetries(s->e, s->out, s->limit);
-    s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and rotations of all coordinates of a kind together";
+    s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and rotations of all coordinates "
+                     "of a kind together";
     s->out->note = "the linear equations of the full search could not be solved reliably";
   }
   if (s->limit->stopped) s->out->note = stopped_note(s);
@@ -329,7 +358,9 @@ static void search_work(Arena *scratch, void *data) {
 
 const char *noether_note_on_impacts(const Model *m) {
   uint32_t setting = 0;
-  if (model_conditional(m)) return "constraints with `while` change charges where they begin, and while they hold, if their symmetry moves them: the charges are those of the motion without them";
+  if (model_conditional(m))
+    return "constraints with `while` change charges where they begin, and while they hold, if their symmetry moves "
+           "them: the charges are those of the motion without them";
   if (m->contacts.n) return "impacts and contacts change charges: the balances hold between them";
   for (uint32_t i = 0; i < m->events.n; i++) setting += m->events.at[i].actions.n > 0;
   return setting ? "events change charges: the balances hold between them" : NULL;
@@ -342,7 +373,8 @@ static FoundSymmetries search_in(Eqns *e, SearchLimit *limit) {
   return out;
 }
 
-/* Where t drops out of L, and not all symmetries are found in closed form, the text may have their functions of time. */
+/* Where t drops out of L, and not all symmetries are found in closed form, the text may have their functions of
+ * time. */
 static FoundSymmetries search(Eqns *e, SearchLimit *limit) {
   FoundSymmetries out = search_in(e, limit);
   if (e->lagrangian == e->m->lagrangian || (out.searched && !out.unproved)) return out;
@@ -360,7 +392,8 @@ static int has_galilean_charges(const FoundSymmetries *all) {
     if (s->kind == SYMMETRY_ENERGY) seen[s->kind] = 7;
     else if (s->of_all) seen[s->kind] |= 1u << s->axis;
   }
-  return seen[SYMMETRY_ENERGY] && seen[SYMMETRY_MOMENTUM] == 7 && seen[SYMMETRY_ROTATION] == 7 && seen[SYMMETRY_BOOST] == 7;
+  return seen[SYMMETRY_ENERGY] && seen[SYMMETRY_MOMENTUM] == 7 && seen[SYMMETRY_ROTATION] == 7 &&
+         seen[SYMMETRY_BOOST] == 7;
 }
 
 FoundSymmetries noether_find(Eqns *e, SearchLimit *limit) {

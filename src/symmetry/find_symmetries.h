@@ -1,8 +1,9 @@
-/* The search for point symmetries of L: generators affine in q, with coefficients that are functions of time, and gauge functions that are
- * polynomials of q. Lie's method, restricted to that ansatz and done in numbers (P. J. Olver, Applications of Lie Groups to Differential
- * Equations, 2nd ed. (1993), 2.4 and 5.2): random states give linear equations, the space of their solutions is brought to echelon form at two
- * choices of parameters, its entries are recognised as rationals times powers of parameters, and symmetry/noether_theorem.h proves each member. Members that
- * are not proved are counted and not listed. */
+/* The search for point symmetries of L: generators affine in q, with coefficients that are functions of time, and
+ * gauge functions that are polynomials of q. Lie's method, restricted to that ansatz and done in numbers (P. J.
+ * Olver, Applications of Lie Groups to Differential Equations, 2nd ed. (1993), 2.4 and 5.2): random states give
+ * linear equations, the space of their solutions is brought to echelon form at two choices of parameters, its
+ * entries are recognised as rationals times powers of parameters, and symmetry/noether_theorem.h proves each member.
+ * Members that are not proved are counted and not listed. */
 #pragma once
 
 #include "symmetry/noether_theorem.h"
@@ -37,16 +38,16 @@ typedef struct {
   const char *note;     /* or NULL: a remark for the report */
 } FoundSymmetries;
 
-/* Remark for the report: impacts, contacts, and events that set coordinates or velocities change charges, and are no part of L. NULL: the model
- * has none. */
+/* Remark for the report: impacts, contacts, and events that set coordinates or velocities change charges, and are no
+ * part of L. NULL: the model has none. */
 const char *noether_note_on_impacts(const Model *m);
 
 /* Finds symmetries that hold for all values of the parameters, in the time allowed: `note` says
  * what was not searched. Needs a Lagrangian. */
 FoundSymmetries noether_find(Eqns *e, SearchLimit *limit);
 
-/* A scaling q_i -> s^alpha_i q_i, t -> s^beta t that multiplies L dt by s^kappa with kappa not 0: it maps solutions to solutions and has no
- * charge. noether_scaling returns 0 where there is none, or there are several. */
+/* A scaling q_i -> s^alpha_i q_i, t -> s^beta t that multiplies L dt by s^kappa with kappa not 0: it maps solutions
+ * to solutions and has no charge. noether_scaling returns 0 where there is none, or there are several. */
 typedef struct {
   const Num *alpha; /* [n] */
   Num beta, kappa;

@@ -36,5 +36,6 @@ int noether_add_family(SymmetrySearch *s, const Family *f);
 /* Whether the model has more coordinates than the search for all symmetries takes: a hundred. */
 int too_large_to_search(const Eqns *e);
 
-/* Tries the energy, momenta of cyclic coordinates, and translations, boosts and rotations of all coordinates of a kind. */
+/* Tries the energy, momenta of cyclic coordinates, and translations, boosts and rotations of all coordinates of a
+ * kind. */
 void try_usual_symmetries(Eqns *e, FoundSymmetries *out, SearchLimit *limit);

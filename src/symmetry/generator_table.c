@@ -1,4 +1,5 @@
-/* Generators as functions of time from x' = A x: polynomials of t from the generalised kernel of A, oscillations and exponentials from that of A^2
+/* Generators as functions of time from x' = A x: polynomials of t from the generalised kernel of A, oscillations and
+ * exponentials from that of A^2
  * - rate2, rates from the minimal polynomial of A^2; where L contains t, a fit to listed functions. */
 #include "symmetry/generator_table.h"
 
@@ -29,10 +30,12 @@ static void clear_rounding(long double *m, size_t n, long double size) {
     if (fabsl(m[i]) < 1e-12L * size) m[i] = 0;
 }
 
-static long double size_of(const SolutionSpace *s) { return fmaxl(dense_largest(s->A, (size_t)s->space.n * s->space.n), 1e-3L) * (long double)(s->space.n + 1); }
+static long double size_of(const SolutionSpace *s) {
+  return fmaxl(dense_largest(s->A, (size_t)s->space.n * s->space.n), 1e-3L) * (long double)(s->space.n + 1);
+}
 
-/* Orthonormal basis of the x with m^k x = 0 for some k up to `most`: the kernel of m[n*n], then the x that m maps into it, and so on. *depth: the
- * k needed. */
+/* Orthonormal basis of the x with m^k x = 0 for some k up to `most`: the kernel of m[n*n], then the x that m maps
+ * into it, and so on. *depth: the k needed. */
 static DenseRows generalised_kernel(Arena *a, uint32_t n, const long double *m, uint32_t most, uint32_t *depth) {
   DenseRows x = {.width = n, .at = ARENA_ARRAY(a, long double, (size_t)n * n + 1)};
   for (*depth = 0; *depth < most; ++*depth) {
@@ -59,7 +62,8 @@ static DenseRows polynomials(Arena *a, const SolutionSpace *s) {
 }
 
 /* Adds `factor` times the part of solution x in tau and xi to a block of a row. */
-static void add_solution(const SolutionSpace *s, const long double *x, long double factor, uint32_t shown, long double *block) {
+static void add_solution(const SolutionSpace *s, const long double *x, long double factor, uint32_t shown,
+                         long double *block) {
   for (size_t k = 0; k < s->space.n; k++)
     for (size_t j = 0; x[k] != 0 && j < shown; j++) block[j] += factor * x[k] * s->space.at[k * s->space.width + j];
 }
@@ -70,7 +74,8 @@ static GeneratorTable table_new(Arena *a, uint32_t rows, uint32_t blocks, uint32
 }
 
 int table_same_shape(const GeneratorTable *a, const GeneratorTable *b) {
-  return a->rows == b->rows && a->shown == b->shown && (!a->rows || memcmp(a->pivot, b->pivot, a->rows * sizeof *a->pivot) == 0);
+  return a->rows == b->rows && a->shown == b->shown &&
+         (!a->rows || memcmp(a->pivot, b->pivot, a->rows * sizeof *a->pivot) == 0);
 }
 
 static void reduce(GeneratorTable *t) {
@@ -119,7 +124,8 @@ static Parts parts_of(Arena *a, const SolutionSpace *s, const long double *m, lo
 }
 
 /* The blocks of t^k exp(S t) in exp(A t) x = exp(S t) (1 + N t + ..) x. */
-static void show_periodic(const SolutionSpace *s, const Parts *p, const long double *x, long double *next, long double rate2, uint32_t shown, long double *block) {
+static void show_periodic(const SolutionSpace *s, const Parts *p, const long double *x, long double *next,
+                          long double rate2, uint32_t shown, long double *block) {
   long double rate = sqrtl(fabsl(rate2)), *second = block + shown;
   apply(p->n, p->S, x, next);
   if (rate2 < 0) {
@@ -135,7 +141,8 @@ static void show_periodic(const SolutionSpace *s, const Parts *p, const long dou
 
 GeneratorTable table_periodic(Arena *a, const SolutionSpace *s, uint32_t shown, long double rate2) {
   uint32_t n = s->space.n, depth;
-  long double *m = ARENA_ARRAY(a, long double, (size_t)n * n + 1), *next = ARENA_ARRAY(a, long double, n + 1), *at = ARENA_ARRAY(a, long double, n + 1);
+  long double *m = ARENA_ARRAY(a, long double, (size_t)n *n + 1), *next = ARENA_ARRAY(a, long double, n + 1),
+              *at = ARENA_ARRAY(a, long double, n + 1);
   multiply(n, s->A, s->A, m);
   for (size_t i = 0; i < n; i++) m[i * n + i] -= rate2;
   clear_rounding(m, (size_t)n * n, size_of(s) * size_of(s));
@@ -160,7 +167,8 @@ GeneratorTable table_periodic(Arena *a, const SolutionSpace *s, uint32_t shown, 
 static void roots_of(uint32_t n, const long double *c, complex long double *root) {
   long double radius = 0;
   for (uint32_t k = 0; k < n; k++) radius = fmaxl(radius, powl(fabsl(c[k]), 1.0L / (n - k)));
-  for (uint32_t k = 0; k < n; k++) root[k] = 1.2L * radius * cexpl((long double)(6.3 * k / n + 0.4) * (complex long double)I);
+  for (uint32_t k = 0; k < n; k++)
+    root[k] = 1.2L * radius * cexpl((long double)(6.3 * k / n + 0.4) * (complex long double)I);
   for (int turn = 0; turn < 500; turn++)
     for (uint32_t k = 0; k < n; k++) {
       complex long double value = 1, others = 1;
@@ -193,11 +201,13 @@ static SolutionSpace without_polynomials(Arena *a, const SolutionSpace *s) {
 static uint32_t minimal_polynomial(Arena *a, const SolutionSpace *s, uint32_t most, long double *c) {
   uint32_t n = s->space.n, count = n < most ? n : most;
   long double *x = ARENA_ARRAY(a, long double, n + 1), *y = ARENA_ARRAY(a, long double, n + 1);
-  long double *krylov = ARENA_ARRAY(a, long double, (size_t)n * (most + 1) + 1), *copy = ARENA_ARRAY(a, long double, (size_t)n * (most + 1) + 1);
+  long double *krylov = ARENA_ARRAY(a, long double, (size_t)n *(most + 1) + 1),
+              *copy = ARENA_ARRAY(a, long double, (size_t)n *(most + 1) + 1);
   for (uint32_t i = 0; i < n; i++) x[i] = sinl(1.0L + 17.0L * i);
   for (uint32_t m = 0; m <= count; m++) {
     for (uint32_t i = 0; i < n; i++) krylov[(size_t)i * (most + 1) + m] = x[i];
-    for (uint32_t i = 0; i < n; i++) memcpy(copy + (size_t)i * (m + 1), krylov + (size_t)i * (most + 1), (m + 1) * sizeof *copy);
+    for (uint32_t i = 0; i < n; i++)
+      memcpy(copy + (size_t)i * (m + 1), krylov + (size_t)i * (most + 1), (m + 1) * sizeof *copy);
     DenseRows null = dense_kernel(a, n, m + 1, copy, 1e-10L);
     if (null.n) {
       for (uint32_t k = 0; k <= m; k++) c[k] = null.at[k] / null.at[m];
@@ -209,7 +219,8 @@ static uint32_t minimal_polynomial(Arena *a, const SolutionSpace *s, uint32_t mo
   return 0;
 }
 
-/* Moves the roots that equal root k up to the rounding of a double root to the places behind it. Returns their number, with root k. */
+/* Moves the roots that equal root k up to the rounding of a double root to the places behind it. Returns their
+ * number, with root k. */
 static uint32_t gather_close_roots(uint32_t n, complex long double *root, uint32_t k) {
   const long double apart = 3e-8L;
   uint32_t count = 1;
@@ -258,17 +269,20 @@ Rates space_rates(Arena *a, const SolutionSpace *s) {
 
 /* --- functions of time that are listed --- */
 
-GeneratorTable table_listed(Arena *a, const Ansatz *s, const TimeList *times, const long double *parameters, int *sure) {
+GeneratorTable table_listed(Arena *a, const Ansatz *s, const TimeList *times, const long double *parameters,
+                            int *sure) {
   enum { SPARE_ROWS = 16 };
   ExprGraph *g = s->e->g;
   SymId t = s->e->m->time;
-  uint32_t first = s->shown + 1, gauge = s->columns - first, nT = times->ngauge, width = times->n * s->shown + nT * gauge, rows = width + SPARE_ROWS;
+  uint32_t first = s->shown + 1, gauge = s->columns - first, nT = times->ngauge,
+           width = times->n * s->shown + nT * gauge, rows = width + SPARE_ROWS;
   uint32_t more = s->held.n ? times->n * s->shown + SPARE_ROWS : 0;
   *sure = 0;
   double elements = (double)(rows + more) * width;
   if (!search_fits(s->limit, elements) || !search_goes_on(s->limit, 2 * width * elements)) return (GeneratorTable){0};
   Expr *roots = ARENA_ARRAY(a, Expr, 2 * (size_t)nT);
-  long double *value = ARENA_ARRAY(a, long double, 2 * (size_t)nT), *symbols = ARENA_ARRAY(a, long double, expr_symbol_count(g) + 1);
+  long double *value = ARENA_ARRAY(a, long double, 2 * (size_t)nT),
+              *symbols = ARENA_ARRAY(a, long double, expr_symbol_count(g) + 1);
   long double *b0 = ARENA_ARRAY(a, long double, s->columns), *b1 = ARENA_ARRAY(a, long double, s->columns);
   long double *m = ARENA_ARRAY(a, long double, (size_t)(rows + more) * width);
   for (uint32_t k = 0; k < nT; k++) roots[k] = times->f[k], roots[nT + k] = expr_diff(g, times->f[k], t);
@@ -281,14 +295,16 @@ GeneratorTable table_listed(Arena *a, const Ansatz *s, const TimeList *times, co
     if (!search_goes_on(s->limit, 0) || !rows_at_time(source, kind, b0, b1, &symbols[t])) return (GeneratorTable){0};
     eval_run(tape, symbols, value);
     for (uint32_t k = 0; k < nT; k++) {
-      for (uint32_t j = 0; k < times->n && j < s->shown; j++) row[k * s->shown + j] = b0[j] * value[k] + b1[j] * value[nT + k];
+      for (uint32_t j = 0; k < times->n && j < s->shown; j++)
+        row[k * s->shown + j] = b0[j] * value[k] + b1[j] * value[nT + k];
       for (uint32_t j = 0; j < gauge; j++)
         row[times->n * s->shown + k * gauge + j] = b0[first + j] * value[k] + b1[first + j] * value[nT + k];
     }
   }
   DenseRows kernel = dense_kernel(a, rows + more, width, m, 1e-12L);
   GeneratorTable to = table_new(a, kernel.n, times->n, s->shown);
-  for (size_t k = 0; k < kernel.n; k++) memcpy(to.at + k * times->n * s->shown, kernel.at + k * width, times->n * s->shown * sizeof *to.at);
+  for (size_t k = 0; k < kernel.n; k++)
+    memcpy(to.at + k * times->n * s->shown, kernel.at + k * width, times->n * s->shown * sizeof *to.at);
   *sure = kernel.gap > 1e3L;
   reduce(&to);
   return to;

@@ -1,5 +1,6 @@
-/* A search in depth over the known charges, in their order: the next one that commutes with all chosen and adds to the rank. Brackets are sorted out in numbers
- * at random states, and those that are left are proved when they are needed. The search ends after STEPS_MOST tries, and says so. */
+/* A search in depth over the known charges, in their order: the next one that commutes with all chosen and adds to
+ * the rank. Brackets are sorted out in numbers at random states, and those that are left are proved when they are
+ * needed. The search ends after STEPS_MOST tries, and says so. */
 #include "symmetry/involution.h"
 
 #include <math.h>
@@ -38,7 +39,9 @@ typedef struct {
 
 /* --- the known charges --- */
 
-static int is_periodic(const Model *m, const Symbol *q) { return q->kind == SYM_COORD ? m->coords.at[q->index].periodic : m->states.at[q->index].periodic; }
+static int is_periodic(const Model *m, const Symbol *q) {
+  return q->kind == SYM_COORD ? m->coords.at[q->index].periodic : m->states.at[q->index].periodic;
+}
 
 /* Whether x has one value for an angle and the angle and a turn, to rounding at random states. */
 static int same_after_a_turn(const Search *w, Expr x, SymId angle) {
@@ -79,7 +82,8 @@ static void add_known(Search *w, InvolutionCharge is, Expr value) {
 
 static Expr in_phase_space(const Search *w, Expr x) { return phase_space_expression(&w->space, x); }
 
-/* Whether x is the same number in every state, as (a + b)^2 - a^2 - 2*a*b - b^2: its gradient is rounding alone, and no rank is read off it. */
+/* Whether x is the same number in every state, as (a + b)^2 - a^2 - 2*a*b - b^2: its gradient is rounding alone, and
+ * no rank is read off it. */
 static int is_same_everywhere(const Search *w, Expr x) {
   for (uint32_t i = 0; i < w->space.n; i++) {
     Expr by_q = expr_diff(w->g, x, w->space.q[i]), by_p = expr_diff(w->g, x, w->space.p[i]);
@@ -88,12 +92,14 @@ static int is_same_everywhere(const Search *w, Expr x) {
   return 1;
 }
 
-/* A function of the text, where it is conserved: {f, H} = 0, and neither f nor H jumps, as {f, H} has no part from jumps, nor from the rate of an input. */
+/* A function of the text, where it is conserved: {f, H} = 0, and neither f nor H jumps, as {f, H} has no part from
+ * jumps, nor from the rate of an input. */
 static void add_declared(Search *w, const char *name, Expr x) {
   InvolutionCharge is = {.kind = INVOLUTION_DECLARED, .name = name, .charge = x};
   if (!name && expr_op(w->g, x) == EX_DEF) is.name = expr_def_name(w->g, x);
   Expr value = in_phase_space(w, x), rate;
-  if (expr_kinds(w->g, value) & (1u << SYM_TIME | 1u << SYM_VEL | 1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_INPUT)) return;
+  if (expr_kinds(w->g, value) & (1u << SYM_TIME | 1u << SYM_VEL | 1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_INPUT))
+    return;
   if (w->e->energy_jumps || discontinuities_of(w->e, value).n || is_same_everywhere(w, value)) return;
   rate = poisson_bracket(w->g, value, w->space.H, w->space.q, w->space.p, w->space.n);
   if (prove_zero(w->g, rate, NULL) == PROVED_ZERO) add_known(w, is, value);
@@ -116,7 +122,9 @@ static void add_squares(Search *w) {
   uint32_t of[ROTATIONS_MOST + 1], n = 0;
   for (uint32_t k = 0; k < w->known.n && n <= ROTATIONS_MOST; k++) {
     const Known *x = &w->known.at[k];
-    if (x->is.kind == INVOLUTION_LISTED && x->is.number < w->found->all.n && w->found->all.at[x->is.number].kind == SYMMETRY_ROTATION) of[n++] = k;
+    if (x->is.kind == INVOLUTION_LISTED && x->is.number < w->found->all.n &&
+        w->found->all.at[x->is.number].kind == SYMMETRY_ROTATION)
+      of[n++] = k;
   }
   if (n > ROTATIONS_MOST) return;
   for (uint32_t a = 0; a < n; a++)
@@ -170,7 +178,9 @@ static int draw_slopes(Search *w) {
   return done == STATES;
 }
 
-static const long double *slope_of(const Search *w, uint32_t state, uint32_t k) { return w->slope + ((size_t)state * w->known.n + k) * 2 * w->space.n; }
+static const long double *slope_of(const Search *w, uint32_t state, uint32_t k) {
+  return w->slope + ((size_t)state * w->known.n + k) * 2 * w->space.n;
+}
 
 /* Rank of the gradients of these charges: the largest of those at the states. */
 static uint32_t rank_of(const Search *w, const uint32_t *chosen, uint32_t count) {
@@ -207,7 +217,8 @@ static int commute(Search *w, uint32_t a, uint32_t b) {
   uint8_t *verdict = &w->verdict[(size_t)a * w->known.n + b];
   if (*verdict == NOT_DECIDED && differs(w, a, b)) *verdict = PROVED_NONZERO;
   if (*verdict == NOT_DECIDED) {
-    Expr bracket = poisson_bracket(w->g, w->known.at[a].value, w->known.at[b].value, w->space.q, w->space.p, w->space.n);
+    Expr bracket =
+        poisson_bracket(w->g, w->known.at[a].value, w->known.at[b].value, w->space.q, w->space.p, w->space.n);
     *verdict = prove_zero(w->g, bracket, NULL) == PROVED_ZERO ? PROVED_ZERO : PROVED_NONZERO;
   }
   return *verdict == PROVED_ZERO;
@@ -223,7 +234,8 @@ static int may_join(Search *w, uint32_t *chosen, uint32_t count, uint32_t k) {
 
 /* The largest set, the first of its size, among those that were tried. Returns the size. */
 static uint32_t choose(Search *w, uint32_t *best) {
-  uint32_t n = w->space.n, r = w->known.n, count = 0, most = 0, k = 0, *chosen = ARENA_ARRAY(w->scratch, uint32_t, n + 1);
+  uint32_t n = w->space.n, r = w->known.n, count = 0, most = 0, k = 0,
+           *chosen = ARENA_ARRAY(w->scratch, uint32_t, n + 1);
   for (uint32_t step = 0; most < n; step++) {
     if (step == STEPS_MOST) {
       w->out->steps = STEPS_MOST;
@@ -246,7 +258,8 @@ static void search(Arena *scratch, void *data) {
   add_listed(w);
   add_squares(w);
   add_all_declared(w);
-  uint32_t r = w->known.n, *all = ARENA_ARRAY(scratch, uint32_t, r + 1), *best = ARENA_ARRAY(scratch, uint32_t, w->space.n + 1);
+  uint32_t r = w->known.n, *all = ARENA_ARRAY(scratch, uint32_t, r + 1),
+           *best = ARENA_ARRAY(scratch, uint32_t, w->space.n + 1);
   if (!draw_slopes(w)) w->out->why_not = "the charges have no values at random states";
   if (w->out->why_not) return;
   w->verdict = ARENA_ARRAY(scratch, uint8_t, (size_t)r * r + 1);

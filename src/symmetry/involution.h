@@ -1,11 +1,13 @@
-/* Charges in involution: a largest set, among those known, whose gradients are independent and whose Poisson brackets with one another are 0. With n of them for
- * n degrees of freedom the motion is integrable in Liouville's sense. J. Liouville, J. Math. Pures Appl. 20 (1855) 137; V. I. Arnold, Mathematical Methods of
- * Classical Mechanics, 2nd ed. (1989), 49.
+/* Charges in involution: a largest set, among those known, whose gradients are independent and whose Poisson
+ * brackets with one another are 0. With n of them for n degrees of freedom the motion is integrable in Liouville's
+ * sense. J. Liouville, J. Math. Pures Appl. 20 (1855) 137; V. I. Arnold, Mathematical Methods of Classical
+ * Mechanics, 2nd ed. (1989), 49.
  *
- * Known are the conserved charges of the report that are free of t, sums of the squares of three angular momenta, and functions that the model declares: operands
- * of brackets in expectations, observed quantities, charges of declared symmetries; declared ones count where {f, H} = 0 is proved, and f is
- * free of inputs and does not jump, as an angle of atan2 does. A charge that is not the same after a turn of a periodic coordinate is none. Ranks are numbers, of
- * gradients at random states; brackets are proved. */
+ * Known are the conserved charges of the report that are free of t, sums of the squares of three angular momenta,
+ * and functions that the model declares: operands of brackets in expectations, observed quantities, charges of
+ * declared symmetries; declared ones count where {f, H} = 0 is proved, and f is free of inputs and does not jump, as
+ * an angle of atan2 does. A charge that is not the same after a turn of a periodic coordinate is none. Ranks are
+ * numbers, of gradients at random states; brackets are proved. */
 #pragma once
 
 #include "symmetry/polynomial_charges.h"
@@ -28,7 +30,8 @@ typedef struct {
   uint32_t n;              /* degrees of freedom */
   uint32_t independent;    /* rank of the gradients of all known charges */
   uint32_t left_out;       /* known charges beyond the first few hundred, which are not looked at */
-  uint32_t steps;          /* 0, or the number of tries after which the search ended before its end: larger sets may exist */
+  /* 0, or the number of tries after which the search ended before its end: larger sets may exist */
+  uint32_t steps;
   VEC(InvolutionCharge) all; /* the set; integrable: n of them */
 } Involution;
 

@@ -1,12 +1,12 @@
-/* Rows of tables become generators: the numbers that an entry has at several choices of parameters become an expression of these; then each
- * generator is proved, named and listed. */
+/* Rows of tables become generators: the numbers that an entry has at several choices of parameters become an
+ * expression of these; then each generator is proved, named and listed. */
 #include <math.h>
 
 #include "symmetry/find_symmetries_impl.h"
 #include "symmetry/symmetry_names.h"
 
-/* The tables of a family, one a choice of parameter values; those at CHOICE_MOVED and above are made when needed (moved). changes: how rows were
- * shortened. */
+/* The tables of a family, one a choice of parameter values; those at CHOICE_MOVED and above are made when needed
+ * (moved). changes: how rows were shortened. */
 typedef struct {
   const Family *family;
   GeneratorTable *at;
@@ -26,7 +26,8 @@ static GeneratorTable generator_table_at(SymmetrySearch *s, const Family *f, uin
   }
   const SolutionSpace *space = noether_space_at(s, choice);
   if (!space->sure) return (GeneratorTable){0};
-  return f->kind == TIME_POWERS ? table_powers(s->scratch, space, shown) : table_periodic(s->scratch, space, shown, f->rate2[choice]);
+  return f->kind == TIME_POWERS ? table_powers(s->scratch, space, shown)
+                                : table_periodic(s->scratch, space, shown, f->rate2[choice]);
 }
 
 /* Whether the tables at all choices, made here where missing, have one shape. */
@@ -34,7 +35,8 @@ static int shapes_agree(SymmetrySearch *s, FamilyTables *t) {
   int agree = 1;
   for (uint32_t i = CHOICE_MOVED; i < noether_choices(s) && !t->moved; i++) {
     t->at[i] = generator_table_at(s, t->family, i);
-    for (uint32_t k = 0; k < t->changes.n && table_same_shape(&t->at[0], &t->at[i]); k++) agree = table_change(s->scratch, &t->at[i], t->changes.at[k]) && agree;
+    for (uint32_t k = 0; k < t->changes.n && table_same_shape(&t->at[0], &t->at[i]); k++)
+      agree = table_change(s->scratch, &t->at[i], t->changes.at[k]) && agree;
   }
   t->moved = 1;
   for (uint32_t i = CHOICE_SECOND; i < noether_choices(s); i++) agree = agree && table_same_shape(&t->at[0], &t->at[i]);
@@ -62,16 +64,20 @@ static int row_coefficients(SymmetrySearch *s, FamilyTables *t, uint32_t row, in
 
 /* Expressions of the row after shortening, which replaces it if they are recognised. */
 static int shorter_coefficients(SymmetrySearch *s, FamilyTables *t, uint32_t row, int moved, Expr *c) {
-  uint32_t n = t->moved && shapes_agree(s, t) ? noether_choices(s) : CHOICE_MOVED, width = t->at[0].blocks * t->at[0].shown;
+  uint32_t n = t->moved && shapes_agree(s, t) ? noether_choices(s) : CHOICE_MOVED,
+           width = t->at[0].blocks * t->at[0].shown;
   long double *kept = ARENA_ARRAY(s->scratch, long double, (size_t)n * width);
   RowChange changes[CHANGES_MOST];
-  for (uint32_t i = 0; i < n; i++) memcpy(kept + (size_t)i * width, t->at[i].at + (size_t)row * width, width * sizeof *kept);
+  for (uint32_t i = 0; i < n; i++)
+    memcpy(kept + (size_t)i * width, t->at[i].at + (size_t)row * width, width * sizeof *kept);
   uint32_t count = table_shorten(s->scratch, &t->at[0], row, changes);
   int found = count > 0;
   for (uint32_t i = CHOICE_SECOND; i < n; i++)
-    for (uint32_t k = 0; k < count && found; k++) found = table_same_shape(&t->at[0], &t->at[i]) && table_change(s->scratch, &t->at[i], changes[k]);
+    for (uint32_t k = 0; k < count && found; k++)
+      found = table_same_shape(&t->at[0], &t->at[i]) && table_change(s->scratch, &t->at[i], changes[k]);
   found = found && row_coefficients(s, t, row, moved, c);
-  for (uint32_t i = 0; i < n && !found; i++) memcpy(t->at[i].at + (size_t)row * width, kept + (size_t)i * width, width * sizeof *kept);
+  for (uint32_t i = 0; i < n && !found; i++)
+    memcpy(t->at[i].at + (size_t)row * width, kept + (size_t)i * width, width * sizeof *kept);
   for (uint32_t k = 0; k < count && found; k++) vec_push(s->scratch, &t->changes, changes[k]);
   return found;
 }
@@ -101,12 +107,13 @@ static int scaled_coefficients(SymmetrySearch *s, const FamilyTables *t, uint32_
   return 0;
 }
 
-/* Coefficients of a row of the table at the first choice, c[blocks*shown]; the row may be shortened. 0: one is not recognised. Cheap ways first:
- * tables at all choices are made last. */
+/* Coefficients of a row of the table at the first choice, c[blocks*shown]; the row may be shortened. 0: one is not
+ * recognised. Cheap ways first: tables at all choices are made last. */
 static int recognise_row(SymmetrySearch *s, FamilyTables *t, uint32_t row, Expr *c) {
   if (row_coefficients(s, t, row, 0, c) || shorter_coefficients(s, t, row, 0, c)) return 1;
   if (!shapes_agree(s, t)) return 0;
-  return row_coefficients(s, t, row, 1, c) || shorter_coefficients(s, t, row, 1, c) || scaled_coefficients(s, t, row, c);
+  return row_coefficients(s, t, row, 1, c) || shorter_coefficients(s, t, row, 1, c) ||
+         scaled_coefficients(s, t, row, c);
 }
 
 /* --- generators --- */
@@ -143,7 +150,8 @@ static int32_t lowest_power(const ExprGraph *g, const Expr *c, size_t n, Expr x)
     Num number, power;
     Expr term = expr_pair(g, c[k], EX_SUM, 0, &number);
     for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++)
-      if (expr_pair(g, term, EX_PROD, i, &power) == x && num_is_int(power) && power.num < lowest) lowest = (int32_t)power.num;
+      if (expr_pair(g, term, EX_PROD, i, &power) == x && num_is_int(power) && power.num < lowest)
+        lowest = (int32_t)power.num;
   }
   return lowest;
 }
@@ -160,7 +168,9 @@ static void clear_parameters(SymmetrySearch *s, Expr *c, size_t n) {
   }
 }
 
-static Expr phi(SymmetrySearch *s, uint32_t k) { return k ? expr_symbol(s->g, s->ansatz->q[k - 1])->node : expr_int(s->g, 1); }
+static Expr phi(SymmetrySearch *s, uint32_t k) {
+  return k ? expr_symbol(s->g, s->ansatz->q[k - 1])->node : expr_int(s->g, 1);
+}
 
 /* xi and *tau from the coefficients c. */
 static Expr *components(SymmetrySearch *s, const FamilyTables *t, const Expr *c, Expr *tau) {
@@ -195,7 +205,8 @@ static void make_generator(SymmetrySearch *s, const FamilyTables *t, const Coord
 
 /* Whether the verdict counts as proved. Contacts are open at random states, so that their constraints do not matter. */
 static int is_proved(const SymmetrySearch *s, const Noether *is) {
-  return (is->is == INVARIANT || is->is == INVARIANT_UP_TO_F) && !is->broken && (!is->by_value || s->ansatz->held.n == 0);
+  return (is->is == INVARIANT || is->is == INVARIANT_UP_TO_F) && !is->broken &&
+         (!is->by_value || s->ansatz->held.n == 0);
 }
 
 /* Lists a row with recognised coefficients, if it is proved. */

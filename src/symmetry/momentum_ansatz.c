@@ -147,7 +147,8 @@ static void read_function(MomentumAnsatz *a, FunctionSearch *s, Expr L) {
   if (a->curved) find_functions(s, L);
 }
 
-/* Sine and cosine of each coordinate that is declared periodic: the Runge-Lenz vector in polar coordinates contains them, L does not. */
+/* Sine and cosine of each coordinate that is declared periodic: the Runge-Lenz vector in polar coordinates contains
+ * them, L does not. */
 static void add_angles(MomentumAnsatz *a, FunctionSearch *s) {
   const Model *m = a->e->m;
   a->spare = (uint32_t)a->curved;
@@ -161,7 +162,8 @@ static void add_angles(MomentumAnsatz *a, FunctionSearch *s) {
 
 /* Tape of functions, their rates, momenta, their rates, and q'. */
 static void make_tape(MomentumAnsatz *a) {
-  Expr *roots = ARENA_ARRAY(a->scratch, Expr, 2 * (size_t)a->factors), *seed = ARENA_ARRAY(a->scratch, Expr, a->symbols);
+  Expr *roots = ARENA_ARRAY(a->scratch, Expr, 2 * (size_t)a->factors),
+       *seed = ARENA_ARRAY(a->scratch, Expr, a->symbols);
   uint32_t k = a->functions;
   for (uint32_t i = 0; i < a->n; i++) seed[a->q[i]] = a->rate[i];
   memcpy(roots, a->factor + a->n, k * sizeof *roots);
@@ -184,7 +186,8 @@ static void from_lagrangian(MomentumAnsatz *a) {
     a->momenta[i] = eqns_momenta(a->e)[i];
     a->rate[i] = node(a, a->v[i]);
     a->force[i] = a->e->Q ? expr_add(a->g, a->e->dLdq[i], a->e->Q[i]) : a->e->dLdq[i];
-    p[i] = expr_declare(a->g, SYM_LOCAL, i, arena_printf(a->e->m->arena, "p_%s", expr_symbol(a->g, a->q[i])->name), SIGN_UNKNOWN);
+    p[i] = expr_declare(a->g, SYM_LOCAL, i, arena_printf(a->e->m->arena, "p_%s", expr_symbol(a->g, a->q[i])->name),
+                        SIGN_UNKNOWN);
   }
 }
 
@@ -217,7 +220,8 @@ MomentumAnsatz *momentum_ansatz_new(Arena *scratch, Eqns *e) {
   a->functions = s.found.n;
   a->factors = 2 * a->n + a->functions;
   a->factor = ARENA_ARRAY(scratch, Expr, a->factors);
-  for (uint32_t i = 0; i < a->n; i++) a->factor[i] = node(a, a->q[i]), a->factor[a->n + a->functions + i] = node(a, a->p[i]);
+  for (uint32_t i = 0; i < a->n; i++)
+    a->factor[i] = node(a, a->q[i]), a->factor[a->n + a->functions + i] = node(a, a->p[i]);
   if (a->functions) memcpy(a->factor + a->n, s.found.at, a->functions * sizeof *a->factor);
   make_tape(a);
   return a;
@@ -225,8 +229,12 @@ MomentumAnsatz *momentum_ansatz_new(Arena *scratch, Eqns *e) {
 
 /* --- the columns --- */
 
-uint32_t momentum_ansatz_polynomial(const MomentumAnsatz *a, uint32_t below) { return a->leading + below * a->potential_degree / 2; }
-uint32_t momentum_ansatz_functions(const MomentumAnsatz *a, uint32_t below) { return a->functions ? (below + 1) / 2 + a->spare : 0; }
+uint32_t momentum_ansatz_polynomial(const MomentumAnsatz *a, uint32_t below) {
+  return a->leading + below * a->potential_degree / 2;
+}
+uint32_t momentum_ansatz_functions(const MomentumAnsatz *a, uint32_t below) {
+  return a->functions ? (below + 1) / 2 + a->spare : 0;
+}
 
 /* First and next monomial of a degree in n variables: x^2, x*y, y^2. 0: there is none. */
 static int first_power(uint8_t *x, uint32_t n, uint32_t degree) {
@@ -252,8 +260,8 @@ static int is_pure(const uint8_t *x, uint32_t n) {
   return variables <= 1;
 }
 
-/* Appends the functions in x times each monomial of the coordinates times each of the momenta: powers of one momentum (pure), or the others. 0: too
- * many columns. */
+/* Appends the functions in x times each monomial of the coordinates times each of the momenta: powers of one
+ * momentum (pure), or the others. 0: too many columns. */
 static int add_products(MomentumAnsatz *a, uint8_t *x, uint32_t in_q, uint32_t in_p, int pure) {
   uint8_t *p = x + a->n + a->functions;
   first_power(x, a->n, in_q);
@@ -268,7 +276,8 @@ static int add_products(MomentumAnsatz *a, uint8_t *x, uint32_t in_q, uint32_t i
   return 1;
 }
 
-/* The same for each product of this many functions. Powers of single momenta first: they lead the charges, x*py^2 - y*px*py. */
+/* The same for each product of this many functions. Powers of single momenta first: they lead the charges, x*py^2 -
+ * y*px*py. */
 static int add_functions(MomentumAnsatz *a, uint32_t in_q, uint32_t in_functions, uint32_t in_p) {
   uint8_t *x = ARENA_ARRAY(a->scratch, uint8_t, a->factors), *f = x + a->n;
   if (!first_power(f, a->functions, in_functions)) return 1;
@@ -278,7 +287,8 @@ static int add_functions(MomentumAnsatz *a, uint32_t in_q, uint32_t in_functions
   return 1;
 }
 
-/* Columns of the highest degree in the momenta first, then those with the fewest functions, then of the lowest degree in the coordinates. */
+/* Columns of the highest degree in the momenta first, then those with the fewest functions, then of the lowest
+ * degree in the coordinates. */
 static int add_columns(MomentumAnsatz *a) {
   a->columns = 0;
   for (uint32_t below = 0; below <= a->degree; below += a->even ? 2 : 1)
@@ -300,7 +310,8 @@ int momentum_ansatz_fill(MomentumAnsatz *a, uint32_t degree) {
 /* --- values and rates --- */
 
 /* phi_k and its rate from those of the factors. */
-static void product_rule(const MomentumAnsatz *a, uint32_t k, const long double *value, const long double *rate, long double *phi, long double *change) {
+static void product_rule(const MomentumAnsatz *a, uint32_t k, const long double *value, const long double *rate,
+                         long double *phi, long double *change) {
   const uint8_t *power = a->power + (size_t)k * a->factors;
   *phi = 1;
   *change = 0;
@@ -320,7 +331,8 @@ void momentum_state(const MomentumAnsatz *a, const long double *parameters, uint
   for (uint32_t i = 0; i < a->n && seed % 2; i++) a->state[a->q[i]] *= 4;
 }
 
-int momentum_row(const MomentumAnsatz *a, const long double *parameters, uint32_t seed, long double *value, long double *rate) {
+int momentum_row(const MomentumAnsatz *a, const long double *parameters, uint32_t seed, long double *value,
+                 long double *rate) {
   uint32_t k = a->functions;
   long double *x = a->out + 2 * (size_t)a->factors, *dx = x + a->factors;
   int finite = 1;
@@ -358,7 +370,8 @@ Expr momentum_rate(const MomentumAnsatz *a, Expr Q) {
   expr_gradient(a->g, Q, a->q, a->n, dQdq);
   expr_gradient(a->g, Q, a->p, a->n, dQdp);
   for (uint32_t i = 0; i < a->n; i++) {
-    Expr moved = expr_mul(a->g, dQdq[i], a->rate[i]), pushed = expr_mul(a->g, dQdp[i], a->force[i]), both = expr_add(a->g, moved, pushed);
+    Expr moved = expr_mul(a->g, dQdq[i], a->rate[i]), pushed = expr_mul(a->g, dQdp[i], a->force[i]),
+         both = expr_add(a->g, moved, pushed);
     sum = expr_add(a->g, sum, both);
   }
   return momentum_in_velocities(a, sum);

@@ -124,7 +124,8 @@ static int generator_in(const Eqns *to, const Eqns *from, const Generator *by, G
   Expr *xi = ARENA_ARRAY(to->m->arena, Expr, n + 1);
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t k = 0; k < eqns_coordinates(from); k++) {
-      Name here = expr_symbol(to->g, eqns_coordinate(to, i))->name, there = expr_symbol(from->g, eqns_coordinate(from, k))->name;
+      Name here = expr_symbol(to->g, eqns_coordinate(to, i))->name,
+           there = expr_symbol(from->g, eqns_coordinate(from, k))->name;
       if (strcmp(here, there) != 0) continue;
       if (!(xi[i] = in_graph(to, from->g, by->xi[k]))) return 0;
       placed++;

@@ -93,8 +93,8 @@ Expr noether_at_rest(const ProofWork *w, Expr x) {
   return expr_replace(w->g, x, w->v, zero, w->n);
 }
 
-/* delta L without the terms of L that are invariant by themselves: the pairs of N bodies are judged one by one. Each remainder is in its short
- * form. */
+/* delta L without the terms of L that are invariant by themselves: the pairs of N bodies are judged one by one. Each
+ * remainder is in its short form. */
 static Expr delta_lagrangian(const ProofWork *w) {
   ExprGraph *g = w->g;
   VEC(Expr) left = {0};
@@ -116,8 +116,8 @@ static int may_vanish(const ProofWork *w, Expr base, Num power) {
   return num_sign(power) > 0 && !sign_is_strict(sign) && (expr_kinds(w->g, base) & 1u << SYM_COORD);
 }
 
-/* The first holonomic constraint, contacts left out, that is a product of factors two of which may be 0: random states may miss one of these
- * parts. NULL: there is none. */
+/* The first holonomic constraint, contacts left out, that is a product of factors two of which may be 0: random
+ * states may miss one of these parts. NULL: there is none. */
 static const Constraint *constraint_with_factors(const ProofWork *w) {
   const Constraints *k = &w->e->constraints;
   for (uint32_t i = 0; i < k->nholonomic; i++) {
@@ -178,11 +178,13 @@ static Verdict is_total_derivative(const ProofWork *w, Expr dL) {
 
 /* Whether x depends on time alone: then it is the derivative of its integral, which need not have a closed form. */
 static int is_of_time(const ProofWork *w, Expr x) {
-  return !expr_is_zero(w->g, x) && !(expr_kinds(w->g, x) & ~(1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_PARAM | 1u << SYM_CONST));
+  return !expr_is_zero(w->g, x) &&
+         !(expr_kinds(w->g, x) & ~(1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_PARAM | 1u << SYM_CONST));
 }
 
-/* A first guess of F by Cartan's formula: theta.xi + phi tau, where theta q' + phi are the terms of L of degree 1 and 0 in velocities. If these
- * terms are a gauge, the rest of delta L is small or 0, and their primitive need not be found. */
+/* A first guess of F by Cartan's formula: theta.xi + phi tau, where theta q' + phi are the terms of L of degree 1
+ * and 0 in velocities. If these terms are a gauge, the rest of delta L is small or 0, and their primitive need not
+ * be found. */
 static Expr contraction(const ProofWork *w, int with_phi) {
   Expr *theta = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) theta[i] = noether_at_rest(w, w->p[i]);
@@ -278,8 +280,9 @@ static Expr size_of_product(ExprGraph *g, const ExprMap *size, Expr x) {
   return expr_mul_n(g, factors, n);
 }
 
-/* Sum of the absolute values of the terms of x, as if products of sums were multiplied out: |a|*(|x| + |z|) for a*(x - z). Denominators,
- * roots and functions count as single terms; definitions are expanded. size: magnitudes known from earlier calls. */
+/* Sum of the absolute values of the terms of x, as if products of sums were multiplied out: |a|*(|x| + |z|) for a*(x
+ * - z). Denominators, roots and functions count as single terms; definitions are expanded. size: magnitudes known
+ * from earlier calls. */
 static Expr term_magnitude(ExprGraph *g, ExprMap *size, Expr x) {
   ExprList l = expr_topo_until(g, &x, 1, size);
   for (uint32_t i = 0; i < l.n; i++) {
@@ -319,7 +322,8 @@ static Expr constraint_moved(const ProofWork *w, Expr c) {
   return tangent(w, c, seed, "_delta");
 }
 
-/* lambda^T (A xi + b tau), contacts closed. For a holonomic constraint: the change of c under the generator; for r = A q' + b: A xi + b tau. */
+/* lambda^T (A xi + b tau), contacts closed. For a holonomic constraint: the change of c under the generator; for r =
+ * A q' + b: A xi + b tau. */
 static Expr power_of_constraints(ProofWork *w, Noether *to) {
   ExprGraph *g = w->g;
   const Constraints *k = &w->e->constraints;
@@ -350,7 +354,8 @@ static Expr power_of_constraints(ProofWork *w, Noether *to) {
 
 static int is_other_state(const Eqns *e, uint32_t i) { return !e->m->states.at[i].coordinate; }
 
-/* tau dL/dt from everything in L besides q and t: states with their flow, inputs with the derivative of their formula. */
+/* tau dL/dt from everything in L besides q and t: states with their flow, inputs with the derivative of their
+ * formula. */
 static Expr power_of_change(const ProofWork *w, Noether *to) {
   ExprGraph *g = w->g;
   const Model *m = w->m;
@@ -360,7 +365,9 @@ static Expr power_of_change(const ProofWork *w, Noether *to) {
     if (is_other_state(w->e, i)) seed[m->states.at[i].z] = w->e->flow[i];
   for (uint32_t i = 0; i < m->inputs.n; i++) {
     const Input *in = &m->inputs.at[i];
-    if (!(expr_kinds(g, w->L) & 1u << SYM_INPUT) || !expr_contains_sym(g, w->L, in->sym) || model_is_contact_switch(m, in->sym)) continue;
+    if (!(expr_kinds(g, w->L) & 1u << SYM_INPUT) || !expr_contains_sym(g, w->L, in->sym) ||
+        model_is_contact_switch(m, in->sym))
+      continue;
     if (in->rate) seed[in->sym] = proof_node(w, m->inputs.at[in->rate].sym);
     else if (in->value) seed[in->sym] = expr_diff(g, in->value, m->time);
     to->by_formulas |= !in->rate && in->value;

@@ -1,4 +1,5 @@
-/* Recognition by continued fractions, by quotients at two choices, and by logarithmic differences where one parameter is moved. */
+/* Recognition by continued fractions, by quotients at two choices, and by logarithmic differences where one
+ * parameter is moved. */
 #include "symmetry/number_recognition.h"
 
 #include <math.h>
@@ -10,7 +11,8 @@
 /* Values of all symbols at a choice. */
 static void draw(const ExprGraph *g, uint32_t attempt, uint32_t choice, long double *to) {
   sample_state(g, choice == CHOICE_SECOND && attempt == 0 ? 2 : 1 + 2 * attempt, to);
-  for (SymId s = 1; s <= expr_symbol_count(g) && choice == CHOICE_SECOND && attempt > 0; s++) to[s] *= 1 + 0.03L * sample_symbol(g, s, 2 + 2 * attempt);
+  for (SymId s = 1; s <= expr_symbol_count(g) && choice == CHOICE_SECOND && attempt > 0; s++)
+    to[s] *= 1 + 0.03L * sample_symbol(g, s, 2 + 2 * attempt);
 }
 
 Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt) {
@@ -22,7 +24,8 @@ Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt) {
   for (uint32_t i = 0; i < e->constraints.n; i++) vec_push(a, &roots, e->constraints.r[i]);
   ExprList all = expr_topo(g, roots.at, roots.n);
   for (uint32_t i = 0; i < all.n; i++)
-    if (expr_op(g, all.at[i]) == EX_SYM && expr_sym_of(g, all.at[i])->kind == SYM_PARAM) vec_push(a, &params, expr_sym_id(g, all.at[i]));
+    if (expr_op(g, all.at[i]) == EX_SYM && expr_sym_of(g, all.at[i])->kind == SYM_PARAM)
+      vec_push(a, &params, expr_sym_id(g, all.at[i]));
   long double **at = ARENA_ARRAY(a, long double *, 2 + params.n);
   for (uint32_t k = 0; k < 2 + params.n; k++) {
     at[k] = ARENA_ARRAY(a, long double, count);
@@ -35,7 +38,8 @@ Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt) {
   return (Choices){e, params.n, params.at, at};
 }
 
-/* Continued fraction p/q within `error` of x, p*q up to `most`: of random numbers, one in |x|/(error*most) is that close to one. */
+/* Continued fraction p/q within `error` of x, p*q up to `most`: of random numbers, one in |x|/(error*most) is that
+ * close to one. */
 static int fraction_of(long double x, long double error, long double most, Num *out) {
   long double rest = x, p0 = 1, q0 = 0, p1 = floorl(x), q1 = 1;
   while (fabsl(x - p1 / q1) > error) {
@@ -55,17 +59,21 @@ static int fraction_of(long double x, long double error, long double most, Num *
 /* Longer fractions need more digits of x, which only values without accumulated rounding have. */
 int recognise_rational(long double x, Num *out) {
   if (!(fabsl(x) < 1e14L)) return 0;
-  return fraction_of(x, 1e-12L * fmaxl(fabsl(x), 1), 1e10L, out) || fraction_of(x, LONG_TOLERANCE(1e-17L) * fabsl(x), 1e14L, out);
+  return fraction_of(x, 1e-12L * fmaxl(fabsl(x), 1), 1e10L, out) ||
+         fraction_of(x, LONG_TOLERANCE(1e-17L) * fabsl(x), 1e14L, out);
 }
 
 /* Whether the value is the same rational at the first two choices. */
 static int recognise_same(const long double *value, Num *out) {
-  return fabsl(value[CHOICE_FIRST] - value[CHOICE_SECOND]) < 1e-9L * fabsl(value[CHOICE_FIRST]) && recognise_rational(value[CHOICE_FIRST], out);
+  return fabsl(value[CHOICE_FIRST] - value[CHOICE_SECOND]) < 1e-9L * fabsl(value[CHOICE_FIRST]) &&
+         recognise_rational(value[CHOICE_FIRST], out);
 }
 
 static long double value_at(const Choices *c, uint32_t choice, uint32_t k) { return c->at[choice][c->param[k]]; }
 
-static Expr parameter(const Choices *c, uint32_t k, Num power) { return expr_pow_num(c->e->g, expr_symbol(c->e->g, c->param[k])->node, power); }
+static Expr parameter(const Choices *c, uint32_t k, Num power) {
+  return expr_pow_num(c->e->g, expr_symbol(c->e->g, c->param[k])->node, power);
+}
 
 /* A rational times p or 1/p of one parameter, or times a ratio or product of two; 0: none. */
 static Expr recognise_ratio(const Choices *c, const long double *value) {
@@ -75,9 +83,12 @@ static Expr recognise_ratio(const Choices *c, const long double *value) {
       for (int powers = 0; powers < 4; powers++) {
         int a = powers & 1 ? -1 : 1, b = k == i ? 0 : powers & 2 ? -1 : 1;
         long double first = powl(value_at(c, CHOICE_FIRST, i), a) * powl(value_at(c, CHOICE_FIRST, k), b);
-        long double second = powl(value_at(c, CHOICE_SECOND, i), a) * powl(value_at(c, CHOICE_SECOND, k), b), ratio = value[CHOICE_FIRST] / first;
+        long double second = powl(value_at(c, CHOICE_SECOND, i), a) * powl(value_at(c, CHOICE_SECOND, k), b),
+                    ratio = value[CHOICE_FIRST] / first;
         Num number;
-        if (!(fabsl(ratio - value[CHOICE_SECOND] / second) < 1e-10L * fabsl(ratio)) || !recognise_rational(ratio, &number)) continue;
+        if (!(fabsl(ratio - value[CHOICE_SECOND] / second) < 1e-10L * fabsl(ratio)) ||
+            !recognise_rational(ratio, &number))
+          continue;
         Expr one = parameter(c, i, num_int(a)), other = parameter(c, k, num_int(b));
         return expr_scale(g, number, expr_mul(g, one, other));
       }
@@ -89,7 +100,8 @@ static Expr rate_multiple(const Choices *c, const long double *value, Expr rate,
   static const int powers[4] = {1, -1, 2, -2};
   for (int k = 0; k < 4; k++) {
     Expr factor = expr_pow_num(c->e->g, rate, num_int(powers[k])), found = 0;
-    long double rest[2] = {value[CHOICE_FIRST] / choice_value(c, CHOICE_FIRST, factor), value[CHOICE_SECOND] / choice_value(c, CHOICE_SECOND, factor)};
+    long double rest[2] = {value[CHOICE_FIRST] / choice_value(c, CHOICE_FIRST, factor),
+                           value[CHOICE_SECOND] / choice_value(c, CHOICE_SECOND, factor)};
     Num number;
     if (ratio) found = recognise_ratio(c, rest);
     else if (recognise_same(rest, &number)) found = expr_num(c->e->g, number);
@@ -168,7 +180,8 @@ Expr recognise_linear(const Choices *c, const long double *value) {
   if (fabsl(rest) < 1e-10L) rest = 0;
   if (!recognise_rational(rest, &number)) return 0;
   sum = expr_add(g, sum, expr_num(g, number));
-  return fabsl(choice_value(c, CHOICE_SECOND, sum) - value[CHOICE_SECOND]) < 1e-9L * fabsl(value[CHOICE_SECOND]) ? sum : 0;
+  return fabsl(choice_value(c, CHOICE_SECOND, sum) - value[CHOICE_SECOND]) < 1e-9L * fabsl(value[CHOICE_SECOND]) ? sum
+                                                                                                                 : 0;
 }
 
 Expr recognise_quotient(const Choices *c, const long double *value) {

@@ -1,5 +1,5 @@
-/* Fits each bracket to the charges at random states for every choice of parameter values, recognises the coefficients as expressions, and proves
- * the combination against the symbolic bracket. */
+/* Fits each bracket to the charges at random states for every choice of parameter values, recognises the
+ * coefficients as expressions, and proves the combination against the symbolic bracket. */
 #include "symmetry/poisson_brackets.h"
 
 #include <math.h>
@@ -72,8 +72,8 @@ static int to_phase_space(const BracketFit *w, long double *out) {
   return 1;
 }
 
-/* Brackets [pairs] at a state from derivatives in phase space; size[pairs] keeps the largest products of derivatives so far, the measure for
- * rounding. */
+/* Brackets [pairs] at a state from derivatives in phase space; size[pairs] keeps the largest products of derivatives
+ * so far, the measure for rounding. */
 static void all_brackets(const BracketFit *w, const long double *out, long double *to, long double *size) {
   size_t n = w->n;
   const long double *by_q = out + w->r, *by_p = by_q + w->r * n;
@@ -96,7 +96,8 @@ typedef struct {
 
 static Sample sample_new(const BracketFit *w, uint32_t states) {
   size_t m = w->r + 1;
-  return (Sample){states, ARENA_ARRAY(w->scratch, long double, states * m), ARENA_ARRAY(w->scratch, long double, (size_t)states * w->pairs + 1),
+  return (Sample){states, ARENA_ARRAY(w->scratch, long double, states *m),
+                  ARENA_ARRAY(w->scratch, long double, (size_t)states * w->pairs + 1),
                   ARENA_ARRAY(w->scratch, long double, m), ARENA_ARRAY(w->scratch, long double, w->pairs + 1)};
 }
 
@@ -113,13 +114,15 @@ static void scale_charges(const BracketFit *w, Sample *x) {
 /* Evaluates charges and brackets at random states. 0: too few states have finite values. */
 static int draw_sample(const BracketFit *w, uint32_t choice, Sample *x) {
   uint32_t count = expr_symbol_count(w->g) + 1, done = 0;
-  long double *symbols = ARENA_ARRAY(w->scratch, long double, count), *out = ARENA_ARRAY(w->scratch, long double, w->roots + 1);
+  long double *symbols = ARENA_ARRAY(w->scratch, long double, count),
+              *out = ARENA_ARRAY(w->scratch, long double, w->roots + 1);
   double n = w->n, work = w->e->mass.n > 4 * w->n ? n * n * n : 0; /* elimination skips zeros */
   for (uint32_t seed = 1; done < x->states && seed < 20 + 4 * x->states; seed++) {
     int finite = 1;
     if (!search_goes_on(w->limit, work)) return 0;
     sample_state(w->g, 50 + seed, symbols);
-    for (uint32_t k = 0; k < w->choices.n; k++) symbols[w->choices.param[k]] = w->choices.at[choice][w->choices.param[k]];
+    for (uint32_t k = 0; k < w->choices.n; k++)
+      symbols[w->choices.param[k]] = w->choices.at[choice][w->choices.param[k]];
     eval_run(w->tape, symbols, out);
     for (uint32_t k = 0; k < w->roots; k++) finite = finite && isfinite(out[k]);
     if (!finite || !to_phase_space(w, out)) continue;
@@ -132,7 +135,8 @@ static int draw_sample(const BracketFit *w, uint32_t choice, Sample *x) {
   return done == x->states;
 }
 
-/* Checks coefficients c[r + 1] of one bracket, which the first states gave, at the others. NAN: the bracket is no combination of charges. */
+/* Checks coefficients c[r + 1] of one bracket, which the first states gave, at the others. NAN: the bracket is no
+ * combination of charges. */
 static void check_fit(const BracketFit *w, const Sample *x, size_t pair, long double *c) {
   uint32_t m = w->r + 1;
   long double worst = 0;
@@ -170,7 +174,8 @@ static void put_slopes(const BracketFit *w, uint32_t a) {
   const Generator *by = &at(w, a)->by;
   Expr *of_xi = ARENA_ARRAY(w->scratch, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) {
-    Expr rate = w->e->n ? node(w, w->v[i]) : w->e->first.rates[i], moved = expr_mul(g, by->tau, rate), fall = expr_diff(g, at(w, a)->is.F, w->q[i]);
+    Expr rate = w->e->n ? node(w, w->v[i]) : w->e->first.rates[i], moved = expr_mul(g, by->tau, rate),
+         fall = expr_diff(g, at(w, a)->is.F, w->q[i]);
     by_p[i] = expr_sub(g, by->xi[i], moved);
     by_q[i] = w->e->n ? expr_sub(g, expr_mul(g, by->tau, w->e->dLdq[i]), fall) : expr_int(g, 0);
   }
@@ -181,10 +186,14 @@ static void put_slopes(const BracketFit *w, uint32_t a) {
   }
 }
 
-static int is_energy(const BracketFit *w, uint32_t a) { return at(w, a)->kind == SYMMETRY_ENERGY && expr_is_zero(w->g, at(w, a)->is.power); }
+static int is_energy(const BracketFit *w, uint32_t a) {
+  return at(w, a)->kind == SYMMETRY_ENERGY && expr_is_zero(w->g, at(w, a)->is.power);
+}
 
 /* {Q, E} of a conserved E is minus the explicit time derivative of Q, as Q is already proved conserved. */
-static Expr with_energy(const BracketFit *w, uint32_t a) { return expr_neg(w->g, expr_diff(w->g, at(w, a)->is.charge, w->e->m->time)); }
+static Expr with_energy(const BracketFit *w, uint32_t a) {
+  return expr_neg(w->g, expr_diff(w->g, at(w, a)->is.charge, w->e->m->time));
+}
 
 static Expr symbolic(const BracketFit *w, uint32_t a, uint32_t b) {
   ExprGraph *g = w->g;
@@ -206,7 +215,8 @@ static Expr symbolic(const BracketFit *w, uint32_t a, uint32_t b) {
 
 /* --- the brackets --- */
 
-/* A coefficient from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges; 0: not recognised. */
+/* A coefficient from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the
+ * charges; 0: not recognised. */
 static Expr recognise(const BracketFit *w, long double *const *fits, size_t place) {
   long double *x = ARENA_ARRAY(w->scratch, long double, 2 + w->choices.n);
   for (uint32_t k = 0; k < 2 + w->choices.n; k++)
@@ -216,7 +226,8 @@ static Expr recognise(const BracketFit *w, long double *const *fits, size_t plac
   return known ? known : recognise_monomial(&w->choices, x);
 }
 
-/* The constant of a bracket, its difference from the combination of charges: by simplification, or recognised and then proved. */
+/* The constant of a bracket, its difference from the combination of charges: by simplification, or recognised and
+ * then proved. */
 static void find_bracket_constant(const BracketFit *w, Bracket *k, long double *const *fits, size_t place) {
   ExprGraph *g = w->g;
   Expr sum = expr_int(g, 0), left;
@@ -248,7 +259,11 @@ static Bracket combined(const BracketFit *w, Bracket k, long double *const *fits
 }
 
 static Bracket bracket_of(const BracketFit *w, uint32_t a, uint32_t b, long double *const *fits, size_t place) {
-  Bracket k = {.a = a, .b = b, .constant = expr_int(w->g, 0), .value = symbolic(w, a, b), .is_outside = is_outside(w, fits, place)};
+  Bracket k = {.a = a,
+               .b = b,
+               .constant = expr_int(w->g, 0),
+               .value = symbolic(w, a, b),
+               .is_outside = is_outside(w, fits, place)};
   Bracket known = combined(w, k, fits, place);
   if (known.c) return known;
   k.value = simplify(w->g, k.value);
@@ -302,7 +317,8 @@ static void compute_brackets(Arena *scratch, void *data) {
 
 static const char *reason_against(const Eqns *e, uint32_t r) {
   if (e->constraints.n) return "the model has constraints, which need Dirac brackets";
-  if (!e->n && (e->m->forces.n || e->m->dissipation)) return "L is linear in velocities, and forces change the two-form of the brackets";
+  if (!e->n && (e->m->forces.n || e->m->dissipation))
+    return "L is linear in velocities, and forces change the two-form of the brackets";
   if (e->m->states.n && e->n) return "the model has states beside its coordinates";
   if (r > CHARGES_MOST) return arena_printf(e->m->arena, "there are more than %d charges", CHARGES_MOST);
   return NULL;
@@ -310,7 +326,10 @@ static const char *reason_against(const Eqns *e, uint32_t r) {
 
 Algebra brackets_find(Eqns *e, const FoundSymmetries *of, SearchLimit *limit) {
   Algebra out = {.n = of->all.n, .why_not = reason_against(e, of->all.n)};
-  BracketFit w = {.e = e, .g = e->g, .of = of, .n = eqns_coordinates(e), .r = of->all.n, .pairs = of->all.n * (of->all.n - 1) / 2, .out = &out, .limit = limit};
+  BracketFit w = {.e = e,
+                  .g = e->g, .of = of, .n = eqns_coordinates(e), .r = of->all.n,
+                  .pairs = of->all.n * (of->all.n - 1) / 2, .out = &out,
+                  .limit = limit};
   search_stage(limit, 1, "Poisson brackets");
   limit->stopped = 0;
   if (out.why_not || of->all.n < 2) return out;

@@ -1,4 +1,5 @@
-/* Null space of rates at random states, less products of known charges; its rows become charges with coefficients in closed form. */
+/* Null space of rates at random states, less products of known charges; its rows become charges with coefficients in
+ * closed form. */
 #include "symmetry/polynomial_charges.h"
 
 #include <math.h>
@@ -33,7 +34,8 @@ typedef VEC(uint32_t) Columns;
 /* Kernel of the rates, or of the values, of some columns at random states; notes a rank that is not certain. */
 static DenseRows kernel_of(ChargeSearch *s, uint32_t choice, const Columns *in, int of_values) {
   uint32_t rows = in->n * 3 / 2 + SPARE_ROWS, all = s->a->columns;
-  long double *value = ARENA_ARRAY(s->scratch, long double, all + 1), *rate = ARENA_ARRAY(s->scratch, long double, all + 1);
+  long double *value = ARENA_ARRAY(s->scratch, long double, all + 1),
+              *rate = ARENA_ARRAY(s->scratch, long double, all + 1);
   long double *m = ARENA_ARRAY(s->scratch, long double, (size_t)rows * in->n + 1);
   double work = 2.0 * in->n * in->n * rows;
   for (uint32_t i = 0, seed = 1; i < rows; seed++) {
@@ -98,7 +100,8 @@ typedef struct {
 } Products;
 
 /* Appends the product of product j and a charge with these values, if its degree allows. */
-static void multiply(ChargeSearch *s, Products *p, uint32_t j, uint32_t degree, const long double *charge, uint32_t states) {
+static void multiply(ChargeSearch *s, Products *p, uint32_t j, uint32_t degree, const long double *charge,
+                     uint32_t states) {
   if (p->degree[j] + degree > s->a->degree || p->n == PRODUCTS_MOST) return;
   long double *to = p->at[p->n] = ARENA_ARRAY(s->scratch, long double, states);
   p->degree[p->n++] = p->degree[j] + degree;
@@ -119,7 +122,8 @@ static Products *products_at(ChargeSearch *s, uint32_t states, const uint32_t *s
   Products *p = ARENA_NEW(s->scratch, Products);
   uint32_t n = s->known.n;
   Expr *roots = ARENA_ARRAY(s->scratch, Expr, n + 1);
-  long double *out = ARENA_ARRAY(s->scratch, long double, n + 1), *charge = ARENA_ARRAY(s->scratch, long double, (size_t)states * n + 1);
+  long double *out = ARENA_ARRAY(s->scratch, long double, n + 1),
+              *charge = ARENA_ARRAY(s->scratch, long double, (size_t)states *n + 1);
   for (uint32_t i = 0; i < n; i++) roots[i] = s->known.at[i].charge;
   EvalTape *tape = eval_tape(s->g, roots, n);
   p->at[p->n++] = ARENA_ARRAY(s->scratch, long double, states);
@@ -135,7 +139,8 @@ static Products *products_at(ChargeSearch *s, uint32_t states, const uint32_t *s
 }
 
 /* Values of the charges in `rows` at random states, whose seeds it notes. 0: too few states have values. */
-static int values_of_rows(ChargeSearch *s, const DenseRows *rows, const Columns *in, uint32_t states, uint32_t *seed, long double *to) {
+static int values_of_rows(ChargeSearch *s, const DenseRows *rows, const Columns *in, uint32_t states, uint32_t *seed,
+                          long double *to) {
   long double *value = ARENA_ARRAY(s->scratch, long double, 2 * (size_t)s->a->columns), *rate = value + s->a->columns;
   uint32_t k = 0;
   for (uint32_t try = 1; k < states && try < 20 * states; try++) {
@@ -191,7 +196,9 @@ typedef struct {
   uint32_t choices;
 } Tables;
 
-static long double element(const Tables *t, uint32_t choice, uint32_t row, uint32_t j) { return t->rows[choice].at[(size_t)row * t->in->n + j]; }
+static long double element(const Tables *t, uint32_t choice, uint32_t row, uint32_t j) {
+  return t->rows[choice].at[(size_t)row * t->in->n + j];
+}
 
 static Expr recognise(const ChargeSearch *s, const long double *x) {
   Expr known = recognise_by_two(&s->choices, x, NULL, 0);
@@ -200,7 +207,8 @@ static Expr recognise(const ChargeSearch *s, const long double *x) {
   return known ? known : recognise_quotient(&s->choices, x);
 }
 
-/* A coefficient from its values x[choices]: in closed form, or as a multiple of one of the row's coefficients c[n], (4*A - B)*A. */
+/* A coefficient from its values x[choices]: in closed form, or as a multiple of one of the row's coefficients c[n],
+ * (4*A - B)*A. */
 static Expr coefficient(const ChargeSearch *s, const Tables *t, const long double *x, const Expr *c, uint32_t n) {
   long double *ratio = ARENA_ARRAY(s->scratch, long double, t->choices);
   Expr known = recognise(s, x);
@@ -308,11 +316,15 @@ static void put_coefficients(const ChargeSearch *s, uint32_t below, StrBuf *out)
   if (most && a->functions > SHOWN_MOST) sb_printf(out, " and %u more functions in L", a->functions - SHOWN_MOST);
 }
 
-/* "charges of degree 2 in the momenta, free of t: coefficients at p^2 are polynomials of the coordinates of degree 2; at p^0 of degree 2, times .." */
+/* "charges of degree 2 in the momenta, free of t: coefficients at p^2 are polynomials of the coordinates of degree
+ * 2; at p^0 of degree 2, times .." */
 static const char *ansatz_text(const ChargeSearch *s) {
   const MomentumAnsatz *a = s->a;
   StrBuf b = strbuf(s->e->m->arena);
-  sb_printf(&b, "charges of degree %u in the momenta, free of t: coefficients at p^%u are polynomials of the coordinates of degree ", a->degree, a->degree);
+  sb_printf(&b,
+            "charges of degree %u in the momenta, free of t: coefficients at p^%u are polynomials of the coordinates "
+            "of degree ",
+            a->degree, a->degree);
   put_coefficients(s, 0, &b);
   for (uint32_t below = a->even ? 2 : 1; below <= a->degree; below += a->even ? 2 : 1) {
     sb_printf(&b, "; at p^%u of degree ", a->degree - below);

@@ -1,9 +1,11 @@
-/* Charges that are polynomials of the momenta with coefficients free of t, of degree 2 to 4: the energies of parts, Runge and Lenz's vector, Fradkin's
- * tensor. Their symmetries move no points of space, so the search for generators does not see them.
+/* Charges that are polynomials of the momenta with coefficients free of t, of degree 2 to 4: the energies of parts,
+ * Runge and Lenz's vector, Fradkin's tensor. Their symmetries move no points of space, so the search for generators
+ * does not see them.
  *
- * Numbers find candidates, symbols decide: dQ/dt = 0 at random states gives the space of all charges within the ansatz (momentum_ansatz.h); products
- * of charges known before are taken out of it; coefficients are recognised, and dQ/dt = 0 is proved. J. Hietarinta, Direct methods for the search of
- * the second invariant, Physics Reports 147 (1987) 87, DOI 10.1016/0370-1573(87)90089-5. */
+ * Numbers find candidates, symbols decide: dQ/dt = 0 at random states gives the space of all charges within the
+ * ansatz (momentum_ansatz.h); products of charges known before are taken out of it; coefficients are recognised, and
+ * dQ/dt = 0 is proved. J. Hietarinta, Direct methods for the search of the second invariant, Physics Reports 147
+ * (1987) 87, DOI 10.1016/0370-1573(87)90089-5. */
 #pragma once
 
 #include "symmetry/find_symmetries.h"
@@ -24,6 +26,6 @@ typedef struct {
   int doubtful;         /* a rank was not certain */
 } PolynomialCharges;
 
-/* Searches degree 1, 2, .. up to `degree`; products of known charges and of those found before are not listed. Charges of degree 1 are new where
- * their generator is not affine in the coordinates. */
+/* Searches degree 1, 2, .. up to `degree`; products of known charges and of those found before are not listed.
+ * Charges of degree 1 are new where their generator is not affine in the coordinates. */
 PolynomialCharges *polynomial_charges_find(Eqns *e, const FoundSymmetries *known, uint32_t degree, SearchLimit *limit);

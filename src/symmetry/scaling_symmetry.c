@@ -1,5 +1,5 @@
-/* Scalings that multiply the action: exponents from the kernel of linear equations at random states, the same rationals at two choices of
- * parameters, then proved term by term. */
+/* Scalings that multiply the action: exponents from the kernel of linear equations at random states, the same
+ * rationals at two choices of parameters, then proved term by term. */
 #include <math.h>
 
 #include "base/dense_matrix.h"
@@ -23,14 +23,17 @@ static Expr node(const ScalingSearch *w, SymId s) { return expr_symbol(w->g, s)-
 static SymId q_of(const ScalingSearch *w, uint32_t i) { return w->e->m->coords.at[i].q; }
 static SymId v_of(const ScalingSearch *w, uint32_t i) { return w->e->m->coords.at[i].v; }
 
-/* Exponents alpha, beta, kappa up to a factor: the kernel of the equations at random states. NULL: it is not one-dimensional. */
+/* Exponents alpha, beta, kappa up to a factor: the kernel of the equations at random states. NULL: it is not
+ * one-dimensional. */
 static const long double *exponents(ScalingSearch *w, const long double *parameters, uint32_t turn) {
   enum { SPARE_ROWS = 8 };
   ExprGraph *g = w->g;
   Expr L = w->e->lagrangian, *roots = ARENA_ARRAY(w->scratch, Expr, 2 + 2 * (size_t)w->n);
   uint32_t n = w->n, width = n + 2, rows = width + SPARE_ROWS, count = expr_symbol_count(g) + 1;
-  if (!search_fits(w->limit, (double)rows * width) || !search_goes_on(w->limit, 2.0 * width * width * rows)) return NULL;
-  long double *m = ARENA_ARRAY(w->scratch, long double, (size_t)rows * width), *symbols = ARENA_ARRAY(w->scratch, long double, count);
+  if (!search_fits(w->limit, (double)rows * width) || !search_goes_on(w->limit, 2.0 * width * width * rows))
+    return NULL;
+  long double *m = ARENA_ARRAY(w->scratch, long double, (size_t)rows *width),
+              *symbols = ARENA_ARRAY(w->scratch, long double, count);
   long double *out = ARENA_ARRAY(w->scratch, long double, 2 + 2 * (size_t)n);
   roots[0] = L;
   roots[1] = expr_diff(g, L, w->e->m->time);
@@ -90,12 +93,15 @@ static void scaling_work(Arena *scratch, void *data) {
   ScalingSearch *w = data;
   w->scratch = scratch;
   Choices choices = choices_new(scratch, w->e, 0);
-  const long double *x = exponents(w, choices.at[CHOICE_FIRST], 1), *y = x ? exponents(w, choices.at[CHOICE_SECOND], 2) : NULL;
+  const long double *x = exponents(w, choices.at[CHOICE_FIRST], 1),
+                    *y = x ? exponents(w, choices.at[CHOICE_SECOND], 2) : NULL;
   Num *whole = ARENA_ARRAY(w->e->m->arena, Num, w->n + 2), other;
   uint32_t last = w->n + 1;
   if (!y || fabsl(x[last]) < 1e-9L || fabsl(y[last]) < 1e-9L) return; /* kappa is 0: a symmetry in Noether's sense */
   for (uint32_t i = 0; i <= last; i++)
-    if (!recognise_rational(x[i] / x[last], &whole[i]) || !recognise_rational(y[i] / y[last], &other) || !num_equal(whole[i], other)) return;
+    if (!recognise_rational(x[i] / x[last], &whole[i]) || !recognise_rational(y[i] / y[last], &other) ||
+        !num_equal(whole[i], other))
+      return;
   make_whole(whole, w->n + 2);
   *w->out = (Scaling){whole, whole[w->n], whole[last]};
   w->found = is_proved(w);

@@ -9,7 +9,9 @@ static const double ELEMENTS_MOST = 3e7; /* of a matrix: half a gigabyte */
 
 static double processor_seconds(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
-SearchLimit search_limit(double seconds) { return (SearchLimit){.seconds = seconds, .part = 1, .begin = processor_seconds(), .doing = ""}; }
+SearchLimit search_limit(double seconds) {
+  return (SearchLimit){.seconds = seconds, .part = 1, .begin = processor_seconds(), .doing = ""};
+}
 
 void search_stage(SearchLimit *l, double part, const char *doing) {
   l->part = part;
@@ -31,5 +33,6 @@ int search_fits(SearchLimit *l, double elements) {
 }
 
 const char *search_stop_text(const SearchLimit *l) {
-  return l->no_room ? "more than half a gigabyte would be needed for one matrix" : "the time was spent; --seconds gives more";
+  return l->no_room ? "more than half a gigabyte would be needed for one matrix"
+                    : "the time was spent; --seconds gives more";
 }

@@ -1,5 +1,6 @@
-/* Shortens rows of a table of generators: adds a multiple of another row where fewer distinct magnitudes remain. In reduced echelon form the turn
- * of the centre of mass, xi_i = sum m_j J r_j, less a multiple of the turn of all bodies, contains differences of masses. */
+/* Shortens rows of a table of generators: adds a multiple of another row where fewer distinct magnitudes remain. In
+ * reduced echelon form the turn of the centre of mass, xi_i = sum m_j J r_j, less a multiple of the turn of all
+ * bodies, contains differences of masses. */
 #include <math.h>
 
 #include "symmetry/generator_table.h"

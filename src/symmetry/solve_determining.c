@@ -1,11 +1,13 @@
-/* Solution space of B0 u + B1 u' = 0: the space of all coefficients, restricted by equations at random states until it contains u' with u. */
+/* Solution space of B0 u + B1 u' = 0: the space of all coefficients, restricted by equations at random states until
+ * it contains u' with u. */
 #include <math.h>
 
 #include "base/tolerance.h"
 #include "symmetry/determining_equations.h"
 
 enum { SPARE_ROWS = 12 };
-static const long double REST = 1e-11L; /* least pivot of a column of length 1: rounding is 1e-18, random pivots were never seen below 1e-6 */
+/* least pivot of a column of length 1: rounding is 1e-18, random pivots were never seen below 1e-6 */
+static const long double REST = 1e-11L;
 
 /* x * space: coordinates in the space become coefficients u. */
 static DenseRows combine(Arena *a, const DenseRows *x, const DenseRows *space) {
@@ -26,7 +28,8 @@ typedef struct {
 static Sparse sparse_rows(Arena *a, const DenseRows *space) {
   size_t all = (size_t)space->n * space->width, count = 0;
   for (size_t i = 0; i < all; i++) count += space->at[i] != 0;
-  Sparse s = {ARENA_ARRAY(a, uint32_t, space->n + 1), ARENA_ARRAY(a, uint32_t, count + 1), ARENA_ARRAY(a, long double, count + 1)};
+  Sparse s = {ARENA_ARRAY(a, uint32_t, space->n + 1), ARENA_ARRAY(a, uint32_t, count + 1),
+              ARENA_ARRAY(a, long double, count + 1)};
   uint32_t next = 0;
   for (uint32_t k = 0; k < space->n; k++) {
     for (uint32_t j = 0; j < space->width; j++) {
@@ -40,14 +43,15 @@ static Sparse sparse_rows(Arena *a, const DenseRows *space) {
   return s;
 }
 
-/* Rounding in products with the rows of a space: eps over the smallest pivot that they were solved with, about 1/gap. */
+/* Rounding in products with the rows of a space: eps over the smallest pivot that they were solved with, about
+ * 1/gap. */
 static long double rounding_of(const DenseRows *space) {
   const long double least = LONG_TOLERANCE(1e-15L);
   return space->gap > 0 ? fmaxl(least, 30 / space->gap) : least;
 }
 
-/* to[n] = products of a row with the rows of the space, all of length about 1. A product far below 1 is rounding and becomes 0, as a kernel scales
- * columns. */
+/* to[n] = products of a row with the rows of the space, all of length about 1. A product far below 1 is rounding and
+ * becomes 0, as a kernel scales columns. */
 static void project(const Sparse *s, uint32_t n, const long double *row, long double rounding, long double *to) {
   for (uint32_t k = 0; k < n; k++) {
     to[k] = 0;
@@ -67,8 +71,9 @@ static uint32_t columns_used(const long double *m, uint32_t rows, uint32_t colum
   return used;
 }
 
-/* Kernel of (B0, B1) on vectors (x, y), u = x*space, u' = y*space. Its rank is at most the number of nonzero columns, a third of all for
- * ROWS_EVEN. It takes half as many rows again, because square random matrices are badly conditioned. */
+/* Kernel of (B0, B1) on vectors (x, y), u = x*space, u' = y*space. Its rank is at most the number of nonzero
+ * columns, a third of all for ROWS_EVEN. It takes half as many rows again, because square random matrices are badly
+ * conditioned. */
 static DenseRows kernel_of_rows(RowSource *r, Arena *a, RowKind kind, const DenseRows *space, SearchLimit *limit) {
   uint32_t n = space->n, rows = 0, wanted = SPARE_ROWS;
   size_t most = 3 * n + SPARE_ROWS, w = space->width;
@@ -84,7 +89,8 @@ static DenseRows kernel_of_rows(RowSource *r, Arena *a, RowKind kind, const Dens
     }
   }
   double used = columns_used(m, rows, 2 * n);
-  return search_goes_on(limit, 2 * used * used * rows) ? dense_kernel(a, rows, 2 * n, m, REST) : (DenseRows){.width = 2 * n};
+  return search_goes_on(limit, 2 * used * used * rows) ? dense_kernel(a, rows, 2 * n, m, REST)
+                                                       : (DenseRows){.width = 2 * n};
 }
 
 /* Intersects the space with the solutions of rows of one kind. 0: such rows could not be had. */
@@ -136,7 +142,9 @@ SolutionSpace solution_space(const Ansatz *s, Arena *a, const long double *param
   RowSource *r = rows_new(s, a, parameters);
   SolutionSpace found = {.space = initial_space(s, a, like ? &like->space : NULL), .sure = 1};
   DenseRows *space = &found.space;
-  if (!intersect(r, a, ROWS_EVEN, space, s->limit, &found.sure) || !intersect(r, a, ROWS_AT_REST, space, s->limit, &found.sure)) return (SolutionSpace){0};
+  if (!intersect(r, a, ROWS_EVEN, space, s->limit, &found.sure) ||
+      !intersect(r, a, ROWS_AT_REST, space, s->limit, &found.sure))
+    return (SolutionSpace){0};
   for (uint32_t before = UINT32_MAX; before != space->n;) {
     before = space->n;
     if (!intersect(r, a, ROWS_ALL, space, s->limit, &found.sure)) return (SolutionSpace){0};

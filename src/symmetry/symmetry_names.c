@@ -1,4 +1,5 @@
-/* Names a generator by the time blocks in which tau, shifts and linear terms occur, and by the coordinates that these couple. */
+/* Names a generator by the time blocks in which tau, shifts and linear terms occur, and by the coordinates that
+ * these couple. */
 #include "symmetry/symmetry_names.h"
 
 #include <ctype.h>
@@ -34,13 +35,17 @@ static uint32_t sibling(const CoordinateNames *e, uint32_t i, char letter) {
   const char *dot = strrchr(name, '.');
   for (uint32_t k = 0; dot && k < e->n; k++) {
     Name other = e->name[k];
-    if (strncmp(other, name, (size_t)(dot + 1 - name)) == 0 && other[dot + 1 - name] == letter && !other[dot + 2 - name]) return k;
+    if (strncmp(other, name, (size_t)(dot + 1 - name)) == 0 && other[dot + 1 - name] == letter &&
+        !other[dot + 2 - name])
+      return k;
   }
   return UINT32_MAX;
 }
 
 /* Components of a rotation lie along no axis. */
-uint32_t name_axis(const CoordinateNames *e, uint32_t i) { return sibling(e, i, 'w') == UINT32_MAX ? axis_of(e->name[i]) : AXIS_NONE; }
+uint32_t name_axis(const CoordinateNames *e, uint32_t i) {
+  return sibling(e, i, 'w') == UINT32_MAX ? axis_of(e->name[i]) : AXIS_NONE;
+}
 
 static uint32_t along(const CoordinateNames *e, uint32_t axis) {
   uint32_t n = 0;
@@ -152,9 +157,14 @@ static void name_shift(const CoordinateNames *e, const GeneratorRow *r, FoundSym
   to->axis = axis;
   to->of_all = axis != AXIS_NONE;
   if (only != UINT32_MAX)
-    to->name = arena_printf(a, magnetic ? "magnetic translation along %s" : has_F ? "translation along %s: momentum less the impulse of the uniform force" : "momentum of %s",
+    to->name = arena_printf(a,
+                            magnetic ? "magnetic translation along %s"
+                            : has_F  ? "translation along %s: momentum less the impulse of the uniform force"
+                                     : "momentum of %s",
                             e->name[only]);
-  else if (axis != AXIS_NONE) to->name = arena_printf(a, magnetic ? "magnetic translation of all bodies along %s" : "total momentum along %s", axis_text(axis));
+  else if (axis != AXIS_NONE)
+    to->name = arena_printf(a, magnetic ? "magnetic translation of all bodies along %s" : "total momentum along %s",
+                            axis_text(axis));
   else to->name = magnetic ? "magnetic translation" : "momentum along a direction";
 }
 
@@ -163,9 +173,10 @@ static void name_boost(const CoordinateNames *e, const GeneratorRow *r, FoundSym
   to->kind = SYMMETRY_BOOST;
   to->axis = axis;
   to->of_all = axis != AXIS_NONE;
-  to->name = only != UINT32_MAX  ? arena_printf(e->arena, "boost along %s", e->name[only])
-             : axis != AXIS_NONE   ? arena_printf(e->arena, "boost along %s: the centre of mass moves uniformly", axis_text(axis))
-                                 : "boost";
+  to->name = only != UINT32_MAX ? arena_printf(e->arena, "boost along %s", e->name[only])
+             : axis != AXIS_NONE
+                 ? arena_printf(e->arena, "boost along %s: the centre of mass moves uniformly", axis_text(axis))
+                 : "boost";
 }
 
 static uint32_t terms_of(const CoordinateNames *e, const GeneratorRow *r) {
@@ -174,7 +185,8 @@ static uint32_t terms_of(const CoordinateNames *e, const GeneratorRow *r) {
   return terms;
 }
 
-/* Axis about which the linear part turns some bodies by one angle, and their number *bodies; AXIS_NONE: it is no such turn. */
+/* Axis about which the linear part turns some bodies by one angle, and their number *bodies; AXIS_NONE: it is no
+ * such turn. */
 static uint32_t common_turn(const CoordinateNames *e, const GeneratorRow *r, uint32_t *bodies) {
   uint32_t axis = AXIS_NONE, terms = terms_of(e, r);
   Expr one = 0;
@@ -206,36 +218,44 @@ static uint32_t bodies_with(const CoordinateNames *e, uint32_t axis) {
 static int mixes_bodies(const CoordinateNames *e, const GeneratorRow *r) {
   for (uint32_t j = 0; j < r->ansatz->xi.n; j++) {
     if (expr_is_zero(e->g, r->c[1 + j])) continue;
-    uint32_t i = r->ansatz->xi.at[j].i, k = r->ansatz->xi.at[j].k - 1, a = name_axis(e, i), b = name_axis(e, k), found = 0;
+    uint32_t i = r->ansatz->xi.at[j].i, k = r->ansatz->xi.at[j].k - 1, a = name_axis(e, i), b = name_axis(e, k),
+             found = 0;
     if (a == AXIS_NONE || b == AXIS_NONE || a == b) return 0;
     for (uint32_t other = 0; other < e->n && !found; other++)
       for (uint32_t last = 0; last < e->n && !found; last++)
-        found = name_same_body(e->name[i], e->name[other]) && name_axis(e, other) == b && name_same_body(e->name[k], e->name[last]) &&
-                name_axis(e, last) == a && entry(e, r, 0, other, last + 1) == expr_neg(e->g, r->c[1 + j]);
+        found = name_same_body(e->name[i], e->name[other]) && name_axis(e, other) == b &&
+                name_same_body(e->name[k], e->name[last]) && name_axis(e, last) == a &&
+                entry(e, r, 0, other, last + 1) == expr_neg(e->g, r->c[1 + j]);
     if (!found) return 0;
   }
   return 1;
 }
 
-/* Whether xi is a multiple of n q (a turn in space) or q n (about the body's own axis): q the quaternion that begins at coordinate w, n its unit
- * vector `axis`. */
+/* Whether xi is a multiple of n q (a turn in space) or q n (about the body's own axis): q the quaternion that begins
+ * at coordinate w, n its unit vector `axis`. */
 static int turns_rotation(const CoordinateNames *e, const GeneratorRow *r, uint32_t w, uint32_t axis, int own) {
-  uint32_t x = sibling(e, w, (char)('x' + axis)), y = sibling(e, w, (char)('x' + (axis + 1) % 3)), z = sibling(e, w, (char)('x' + (axis + 2) % 3));
+  uint32_t x = sibling(e, w, (char)('x' + axis)), y = sibling(e, w, (char)('x' + (axis + 1) % 3)),
+           z = sibling(e, w, (char)('x' + (axis + 2) % 3));
   if (x == UINT32_MAX || y == UINT32_MAX || z == UINT32_MAX) return 0;
   Expr c = entry(e, r, 0, x, w + 1), minus = expr_neg(e->g, c), other = own ? minus : c;
-  return !expr_is_zero(e->g, c) && entry(e, r, 0, w, x + 1) == minus && entry(e, r, 0, z, y + 1) == other && entry(e, r, 0, y, z + 1) == expr_neg(e->g, other);
+  return !expr_is_zero(e->g, c) && entry(e, r, 0, w, x + 1) == minus && entry(e, r, 0, z, y + 1) == other &&
+         entry(e, r, 0, y, z + 1) == expr_neg(e->g, other);
 }
 
-/* Names a xi that turns only w against `axis` (the sum of n q and q n) or only the two other components (their difference). 0: neither. */
+/* Names a xi that turns only w against `axis` (the sum of n q and q n) or only the two other components (their
+ * difference). 0: neither. */
 static int name_double_turn(const CoordinateNames *e, const GeneratorRow *r, FoundSymmetry *to) {
   for (uint32_t w = 0; w < e->n && terms_of(e, r) == 2; w++)
     for (uint32_t axis = 0; axis < 3 && sibling(e, w, 'w') == w; axis++) {
-      uint32_t x = sibling(e, w, (char)('x' + axis)), y = sibling(e, w, (char)('x' + (axis + 1) % 3)), z = sibling(e, w, (char)('x' + (axis + 2) % 3));
+      uint32_t x = sibling(e, w, (char)('x' + axis)), y = sibling(e, w, (char)('x' + (axis + 1) % 3)),
+               z = sibling(e, w, (char)('x' + (axis + 2) % 3));
       if (x == UINT32_MAX || y == UINT32_MAX || z == UINT32_MAX) continue;
       int sum = turns(e, r, w, x);
       if (!sum && !turns(e, r, y, z)) continue;
       to->kind = SYMMETRY_OTHER;
-      to->name = arena_printf(e->arena, "turns about %s in space and about the body's own: the %s of the angular momenta", axis_text(axis), sum ? "sum" : "difference");
+      to->name =
+          arena_printf(e->arena, "turns about %s in space and about the body's own: the %s of the angular momenta",
+                       axis_text(axis), sum ? "sum" : "difference");
       return 1;
     }
   return 0;
@@ -247,7 +267,10 @@ static int name_turn(const CoordinateNames *e, const GeneratorRow *r, FoundSymme
     for (uint32_t k = 0; k < 6 && sibling(e, w, 'w') == w; k++) {
       if (!turns_rotation(e, r, w, k / 2, k % 2)) continue;
       to->kind = SYMMETRY_OTHER;
-      to->name = arena_printf(e->arena, k % 2 ? "turns about the body's own %s: twice its angular momentum" : "turns about %s in space: twice the angular momentum", axis_text(k / 2));
+      to->name = arena_printf(e->arena,
+                              k % 2 ? "turns about the body's own %s: twice its angular momentum"
+                                    : "turns about %s in space: twice the angular momentum",
+                              axis_text(k / 2));
       return 1;
     }
   return 0;
@@ -280,12 +303,14 @@ void name_symmetry(const CoordinateNames *e, const GeneratorRow *r, FoundSymmetr
   Parts p = parts_of(e, r);
   to->axis = AXIS_NONE;
   to->name = "point symmetry";
-  if (r->kind == TIME_LISTED && p.tau == 1 && p.shift > 1 && !p.linear) to->name = "energy in a moving frame"; /* the frame of the forced motion */
+  /* the frame of the forced motion */
+  if (r->kind == TIME_LISTED && p.tau == 1 && p.shift > 1 && !p.linear) to->name = "energy in a moving frame";
   else if (r->kind != TIME_POWERS && (r->kind != TIME_LISTED || (p.tau | p.shift | p.linear) > 7)) {
     const char *what = p.tau ? "breathing" : p.linear ? "turning" : "shift along a solution";
     const char *of_time = r->kind == TIME_CIRCULAR ? "periodic" : "exponential";
     int grows = (p.tau | p.shift | p.linear) > 3;
-    to->name = r->kind == TIME_LISTED ? what : arena_printf(e->arena, grows ? "%s, t times %s" : "%s, %s in t", what, of_time);
+    to->name =
+        r->kind == TIME_LISTED ? what : arena_printf(e->arena, grows ? "%s, t times %s" : "%s, %s in t", what, of_time);
   } else if (is_energy(p)) {
     to->kind = SYMMETRY_ENERGY;
     to->name = "energy";
@@ -297,5 +322,6 @@ void name_symmetry(const CoordinateNames *e, const GeneratorRow *r, FoundSymmetr
     to->kind = SYMMETRY_SCALING;
     to->name = "scaling";
   } else if (p.tau & 4) to->name = "expansion";
-  else if (!p.tau && p.linear == 1) to->name = block_turns(e, r) ? "rotation and translation at once" : "affine map of the coordinates";
+  else if (!p.tau && p.linear == 1)
+    to->name = block_turns(e, r) ? "rotation and translation at once" : "affine map of the coordinates";
 }

@@ -25,7 +25,8 @@ CoordinateNames coordinate_names(const Eqns *e);
 
 enum { AXIS_NONE = 3 };
 
-/* Axis of coordinate i by its name (r[2].x, x[2], x2, x): 0, 1, 2 for x, y, z; AXIS_NONE: none. Components of rotations have none. */
+/* Axis of coordinate i by its name (r[2].x, x[2], x2, x): 0, 1, 2 for x, y, z; AXIS_NONE: none. Components of
+ * rotations have none. */
 uint32_t name_axis(const CoordinateNames *e, uint32_t i);
 const char *axis_text(uint32_t axis);
 

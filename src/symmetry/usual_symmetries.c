@@ -55,9 +55,16 @@ static void try_kind(TrialWork *w, uint32_t i) {
   for (uint32_t k = i; k < w->n; k++)
     if (same_kind(w, i, k)) shift[k] = expr_int(w->g, 1), boost[k] = w->t;
   Name what = of_all ? axis_text(axis) : arena_strndup(a, name_of(w, i), strcspn(name_of(w, i), "["));
-  try_one(w, shift, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_MOMENTUM, .name = arena_printf(a, "total momentum along %s", what), .of_all = of_all, .axis = axis});
+  try_one(w, shift, expr_int(w->g, 0),
+          (FoundSymmetry){.kind = SYMMETRY_MOMENTUM,
+                          .name = arena_printf(a, "total momentum along %s", what),
+                          .of_all = of_all,
+                          .axis = axis});
   try_one(w, boost, expr_int(w->g, 0),
-          (FoundSymmetry){.kind = SYMMETRY_BOOST, .name = arena_printf(a, "boost along %s: the centre of mass moves uniformly", what), .of_all = of_all, .axis = axis});
+          (FoundSymmetry){.kind = SYMMETRY_BOOST,
+                          .name = arena_printf(a, "boost along %s: the centre of mass moves uniformly", what),
+                          .of_all = of_all,
+                          .axis = axis});
 }
 
 static void try_kinds(TrialWork *w) {
@@ -83,7 +90,9 @@ static void try_turn(TrialWork *w, uint32_t axis) {
       bodies++;
     }
   const char *name = arena_printf(w->e->m->arena, "total angular momentum about %s", axis_text(axis));
-  if (bodies) try_one(w, xi, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_ROTATION, .name = name, .of_all = 1, .axis = axis});
+  if (bodies)
+    try_one(w, xi, expr_int(w->g, 0),
+            (FoundSymmetry){.kind = SYMMETRY_ROTATION, .name = name, .of_all = 1, .axis = axis});
 }
 
 static void try_cyclic(TrialWork *w) {
@@ -91,7 +100,10 @@ static void try_cyclic(TrialWork *w) {
     if (!expr_is_zero(w->g, w->e->dLdq[i])) continue;
     Expr *xi = zero_components(w);
     xi[i] = expr_int(w->g, 1);
-    try_one(w, xi, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_MOMENTUM, .name = arena_printf(w->e->m->arena, "momentum of %s", name_of(w, i)), .axis = AXIS_NONE});
+    try_one(w, xi, expr_int(w->g, 0),
+            (FoundSymmetry){.kind = SYMMETRY_MOMENTUM,
+                            .name = arena_printf(w->e->m->arena, "momentum of %s", name_of(w, i)),
+                            .axis = AXIS_NONE});
   }
 }
 
@@ -100,16 +112,21 @@ static void try_cyclic(TrialWork *w) {
 int too_large_to_search(const Eqns *e) { return eqns_coordinates(e) > SEARCH_MOST; }
 
 void try_usual_symmetries(Eqns *e, FoundSymmetries *out, SearchLimit *limit) {
-  TrialWork w = {.e = e, .g = e->g, .n = eqns_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e), .out = out, .limit = limit};
+  TrialWork w = {.e = e,
+                 .g = e->g, .n = eqns_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node,
+                 .names = coordinate_names(e), .out = out,
+                 .limit = limit};
   search_stage(limit, 0.8, "the usual symmetries");
-  out->ansatz = "for more than a hundred coordinates: the energy, momenta of cyclic coordinates, and translations, boosts and rotations of all "
+  out->ansatz = "for more than a hundred coordinates: the energy, momenta of cyclic coordinates, and translations, "
+                "boosts and rotations of all "
                 "coordinates of a kind together";
   out->searched = w.n <= TRY_MOST;
   if (!out->searched) {
     out->note = "there are more than a thousand coordinates";
     return;
   }
-  try_one(&w, zero_components(&w), expr_int(e->g, -1), (FoundSymmetry){.kind = SYMMETRY_ENERGY, .name = "energy", .axis = AXIS_NONE});
+  try_one(&w, zero_components(&w), expr_int(e->g, -1),
+          (FoundSymmetry){.kind = SYMMETRY_ENERGY, .name = "energy", .axis = AXIS_NONE});
   try_cyclic(&w);
   try_kinds(&w);
   for (uint32_t axis = 0; axis < 3; axis++) try_turn(&w, axis);

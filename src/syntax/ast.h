@@ -1,8 +1,9 @@
 /* Ast: a .lag file as it was written. Names are not resolved, kinds are not checked, nothing is
  * folded: every later pass can still point at the user's own text.
  *
- * Expressions live in one array and are named by AstId; children come before parents, and the nodes of one expression are contiguous (the parser
- * builds bottom-up), so passes are loops. Statements are structs in lists. Id 0 means "absent". */
+ * Expressions live in one array and are named by AstId; children come before parents, and the nodes of one
+ * expression are contiguous (the parser builds bottom-up), so passes are loops. Statements are structs in lists. Id
+ * 0 means "absent". */
 #pragma once
 
 #include <string.h>
@@ -81,7 +82,9 @@ typedef enum {
   /* declarations */
   STMT_MODEL,       /* name, doc */
   STMT_INCLUDE,     /* doc = the path */
-  STMT_COORD,       /* from here to STMT_FUNCTION: declarations of names. name, dims, type (vec2, vec3, rotation or NULL), unit, periodic */
+  /* from here to STMT_FUNCTION: declarations of names. name, dims, type (vec2, vec3, rotation or NULL), unit,
+   * periodic */
+  STMT_COORD,
   STMT_MOMENTUM,    /* name, dims, type, unit, lhs = coordinate, rhs = its name p_x, args = the action p*x' */
   STMT_PARAM,       /* name, dims, type (vec2, vec3 or NULL), unit (of the name, or its value), rhs, sign */
   STMT_CONST,       /* name, unit, rhs */
@@ -126,7 +129,8 @@ typedef enum {
 } AstStmtKind;
 
 typedef enum { SIGN_ANY, SIGN_GT, SIGN_GE, SIGN_LT, SIGN_LE } AstSign; /* param ... > 0 */
-typedef enum { CROSS_BOTH, CROSS_RISING, CROSS_FALLING, AT_EQUAL_TIMES } AstDirection; /* the last: a kick, whose lhs is its period */
+/* the last: a kick, whose lhs is its period */
+typedef enum { CROSS_BOTH, CROSS_RISING, CROSS_FALLING, AT_EQUAL_TIMES } AstDirection;
 
 typedef struct AstStmt AstStmt;
 struct AstStmt {

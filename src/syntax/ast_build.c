@@ -30,19 +30,24 @@ static AstId append(Ast *ast, AstExpr e) {
   return id;
 }
 
-AstId ast_number(Ast *ast, Span span, Num number) { return append(ast, (AstExpr){.kind = AST_NUM, .span = span, .op_span = span, .number = number}); }
+AstId ast_number(Ast *ast, Span span, Num number) {
+  return append(ast, (AstExpr){.kind = AST_NUM, .span = span, .op_span = span, .number = number});
+}
 
 AstId ast_string(Ast *ast, AstText text) {
   Name name = intern(ast->names, text.text);
   return append(ast, (AstExpr){.kind = AST_STRING, .span = text.span, .op_span = text.span, .name = name});
 }
 
-AstId ast_name(Ast *ast, Ident name) { return append(ast, (AstExpr){.kind = AST_NAME, .span = name.span, .op_span = name.span, .name = name.name}); }
+AstId ast_name(Ast *ast, Ident name) {
+  return append(ast, (AstExpr){.kind = AST_NAME, .span = name.span, .op_span = name.span, .name = name.name});
+}
 
 void check_declared(Ast *ast, Ident name) {
   int is_t = strcmp(name.name, "t") == 0;
   if (!is_t && strcmp(name.name, "pi") != 0) return;
-  diag_error(ast->diags, name.span, "`%s` is %s, and cannot be declared" HELP "choose another name", name.name, is_t ? "the time" : "the number pi");
+  diag_error(ast->diags, name.span, "`%s` is %s, and cannot be declared" HELP "choose another name", name.name,
+             is_t ? "the time" : "the number pi");
 }
 
 AstId ast_declared(Ast *ast, Ident name) {
@@ -96,9 +101,12 @@ AstId ast_binary(Ast *ast, AstKind kind, Span span, Span op, AstId a, AstId b) {
 static void check_indexed(Ast *ast, Span span, AstId a) {
   AstKind kind = ast_expr(ast, a)->kind;
   if (kind == AST_PRIME) {
-    diag_error(ast->diags, span, "the index stands after the prime" HELP "write the prime last: `x[i]'`; a unit stands apart: `x' [m/s]`");
+    diag_error(ast->diags, span,
+               "the index stands after the prime" HELP
+               "write the prime last: `x[i]'`; a unit stands apart: `x' [m/s]`");
   } else if (kind != AST_NAME && kind != AST_MEMBER && kind != AST_INDEX) {
-    diag_error(ast->diags, span, "only a name has an index" HELP "a unit stands apart from the `)` before it: `(a, b) [m]`");
+    diag_error(ast->diags, span,
+               "only a name has an index" HELP "a unit stands apart from the `)` before it: `(a, b) [m]`");
   }
 }
 
@@ -111,7 +119,9 @@ AstId ast_member(Ast *ast, Span span, AstId a, Ident member) {
   return append(ast, (AstExpr){.kind = AST_MEMBER, .span = span, .op_span = member.span, .a = a, .name = member.name});
 }
 
-AstId ast_prime(Ast *ast, Span span, Span op, AstId a) { return append(ast, (AstExpr){.kind = AST_PRIME, .span = span, .op_span = op, .a = a}); }
+AstId ast_prime(Ast *ast, Span span, Span op, AstId a) {
+  return append(ast, (AstExpr){.kind = AST_PRIME, .span = span, .op_span = op, .a = a});
+}
 
 AstId ast_unit(Ast *ast, Span span, AstId a, AstUnit unit) {
   return append(ast, (AstExpr){.kind = AST_UNIT, .span = span, .op_span = unit.span, .a = a, .unit = unit});

@@ -66,7 +66,8 @@ AstStmt *stmt_plain(Ast *ast, AstStmtKind kind, Span span);
 AstStmt *stmt_include(Ast *ast, Span span, AstText path);
 AstStmt *stmt_name(Ast *ast, AstStmtKind kind, Span span, Ident name);
 AstStmt *stmt_titled(Ast *ast, AstStmtKind kind, Span span, Ident name, AstText doc, StmtList body);
-AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, Ident type, AstUnit unit, int periodic);
+AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, Ident type, AstUnit unit,
+                    int periodic);
 /* `momentum p of q`: a coordinate with the term p*q' of the action, or, where L is given, a name of dL/dq'. */
 AstStmt *stmt_momentum(Ast *ast, Span span, Ident name, AstList dims, Ident type, Ident coord, AstUnit unit);
 AstStmt *stmt_hamiltonian(Ast *ast, Span span, AstId rhs);
@@ -81,7 +82,8 @@ AstStmt *stmt_constraint(Ast *ast, Span span, Ident name, AstList dims, AstId lh
 AstStmt *stmt_equation(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstId lhs, AstId rhs);
 /* rubbing: options. */
 AstStmt *stmt_contact(Ast *ast, Span span, Ident name, AstList dims, AstId gap, AstId restitution, AstList rubbing);
-/* `friction NAME on q: f, static = most`: the force -f*sign(q') on q, and its value, the observable NAME. most: 0 where there is none. */
+/* `friction NAME on q: f, static = most`: the force -f*sign(q') on q, and its value, the observable NAME. most: 0
+ * where there is none. */
 StmtList stmts_friction(Ast *ast, Span span, Ident name, AstList dims, AstId place, AstId f, AstId most);
 AstStmt *stmt_symmetry(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList maps);
 /* `canonical NAME(args): maps`: items `Q = ...` and `F2(q, P) = ...`. */

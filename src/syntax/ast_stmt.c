@@ -85,7 +85,8 @@ static void check_type(Ast *ast, Ident type) {
   else diag_help(ast->diags, "the types are `vec2`, `vec3` and, of coordinates, `rotation`; a number has none");
 }
 
-AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, Ident type, AstUnit unit, int periodic) {
+AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, Ident type, AstUnit unit,
+                    int periodic) {
   AstStmt *s = declare(ast, kind, span, name);
   if (type.name) check_type(ast, type);
   s->dims = dims.first;
@@ -105,7 +106,8 @@ static AstId member_of(Ast *ast, Ident name, const Ident *index) {
 static AstId action_term(Ast *ast, Span span, Ident p, Ident q, AstId size, int is_vector) {
   Ident i = {intern(ast->names, "_i"), span}, dot = {intern(ast->names, "dot"), span};
   AstId lo = size ? ast_number(ast, span, num_int(1)) : 0;
-  AstId momentum = member_of(ast, p, size ? &i : NULL), coord = member_of(ast, q, size ? &i : NULL), rate = ast_prime(ast, q.span, q.span, coord), term;
+  AstId momentum = member_of(ast, p, size ? &i : NULL), coord = member_of(ast, q, size ? &i : NULL),
+        rate = ast_prime(ast, q.span, q.span, coord), term;
   if (is_vector) term = ast_call(ast, span, dot, ast_list_add(ast, ast_list(momentum), rate));
   else term = ast_binary(ast, AST_MUL, span, span, momentum, rate);
   return size ? ast_reduce(ast, AST_SUM, span, i, lo, size, term, span) : term;
@@ -113,7 +115,8 @@ static AstId action_term(Ast *ast, Span span, Ident p, Ident q, AstId size, int 
 
 AstStmt *stmt_momentum(Ast *ast, Span span, Ident name, AstList dims, Ident type, Ident coord, AstUnit unit) {
   AstStmt *s = stmt_coord(ast, STMT_MOMENTUM, span, name, dims, type, unit, 0);
-  s->args = action_term(ast, span, name, coord, dims.first, type.name != NULL); /* first: an expression's nodes follow one another */
+  /* first: an expression's nodes follow one another */
+  s->args = action_term(ast, span, name, coord, dims.first, type.name != NULL);
   s->lhs = ast_name(ast, coord);
   s->rhs = ast_name(ast, (Ident){intern(ast->names, arena_printf(ast->arena, "p_%s", coord.name)), coord.span});
   return s;
@@ -140,7 +143,8 @@ AstStmt *stmt_valued(Ast *ast, AstStmtKind kind, Span span, Ident name, AstUnit 
   return stmt_define(ast, kind, span, name, (AstList){0, 0}, unit, value);
 }
 
-AstStmt *stmt_param(Ast *ast, Span span, Ident name, AstList dims, Ident type, AstUnit unit, AstId value, AstSign sign) {
+AstStmt *stmt_param(Ast *ast, Span span, Ident name, AstList dims, Ident type, AstUnit unit, AstId value,
+                    AstSign sign) {
   AstStmt *s = stmt_valued(ast, STMT_PARAM, span, name, unit, value);
   if (type.name) check_type(ast, type);
   s->dims = dims.first;
@@ -190,7 +194,8 @@ AstStmt *stmt_constraint(Ast *ast, Span span, Ident name, AstList dims, AstId lh
 }
 
 StmtList stmts_friction(Ast *ast, Span span, Ident name, AstList dims, AstId place, AstId f, AstId most) {
-  AstId rate = ast_prime(ast, span, span, place), side = ast_call(ast, span, (Ident){intern(ast->names, "sign"), span}, ast_list(rate));
+  AstId rate = ast_prime(ast, span, span, place),
+        side = ast_call(ast, span, (Ident){intern(ast->names, "sign"), span}, ast_list(rate));
   AstId product = ast_binary(ast, AST_MUL, span, span, f, side), value = ast_unary(ast, AST_NEG, span, span, product);
   AstStmt *force = stmt_pair(ast, STMT_FORCE, span, place, value);
   AstStmt *shown = stmt_define(ast, STMT_OBSERVE, span, name, dims, (AstUnit){0}, value);

@@ -31,21 +31,24 @@ static void push_tokens(Parse *cx, TokKind begin) {
   } while (1);
 }
 
-/* Reports the first invisible or direction-changing character, in comments and texts too: what a reader sees must be what is compiled
- * (N. Boucher, R. Anderson, "Trojan Source", arXiv:2111.00169). */
+/* Reports the first invisible or direction-changing character, in comments and texts too: what a reader sees must be
+ * what is compiled (N. Boucher, R. Anderson, "Trojan Source", arXiv:2111.00169). */
 static void report_hidden(Ast *ast, const Source *source) {
   unsigned long code;
   for (size_t at = 0, len; at < source->len; at += len) {
     const char *s = source->text + at;
     len = utf8_at(s, source->len - at, &code);
-    if (!is_hidden(code) || *s == '\t' || *s == '\n' || (*s == '\r' && (at + 1 == source->len || s[1] == '\n'))) continue;
+    if (!is_hidden(code) || *s == '\t' || *s == '\n' || (*s == '\r' && (at + 1 == source->len || s[1] == '\n')))
+      continue;
     uint32_t begin = source->base + (uint32_t)at;
-    diag_error(ast->diags, (Span){begin, begin + (uint32_t)len}, "a character that does not show, U+%04X, stands here; remove it", (unsigned)code);
+    diag_error(ast->diags, (Span){begin, begin + (uint32_t)len},
+               "a character that does not show, U+%04X, stands here; remove it", (unsigned)code);
     return;
   }
 }
 
-/* Parses one text. When memory runs out, the stack is freed and the failure passed to the previous guard of the arena. */
+/* Parses one text. When memory runs out, the stack is freed and the failure passed to the previous guard of the
+ * arena. */
 static void run(Parse *cx, Ast *ast, const Source *source, TokKind begin) {
   *cx = (Parse){.ast = ast};
   jmp_buf here;
@@ -139,7 +142,8 @@ static StmtList included(Includes *in, AstStmt *s) {
   run(&cx, ast, source, TOK_BEGIN_FILE);
   if (cx.stmts.first || !begins_wrong(ast, source, before.list.n)) return cx.stmts;
   *ast->diags = before; /* a file of another kind, perhaps with secrets, is not quoted */
-  diag_error(ast->diags, s->name_span, "`%s` is not a model: it has no statement" HELP "`lagc check %s` shows its lines", path, path);
+  diag_error(ast->diags, s->name_span,
+             "`%s` is not a model: it has no statement" HELP "`lagc check %s` shows its lines", path, path);
   return cx.stmts;
 }
 

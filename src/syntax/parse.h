@@ -3,8 +3,9 @@
 
 #include "syntax/ast.h"
 
-/* Parses a source and appends its statements to ast, those of included files too (paths relative to the including file; a repeated include counts
- * once, a cycle is an error). All errors go to ast->diags: after one the parser goes on at the next statement. Returns 1 when there were none. */
+/* Parses a source and appends its statements to ast, those of included files too (paths relative to the including
+ * file; a repeated include counts once, a cycle is an error). All errors go to ast->diags: after one the parser goes
+ * on at the next statement. Returns 1 when there were none. */
 int parse(Ast *ast, const Source *source);
 
 /* Parses one expression, such as a value on the command line; 0 after an error. */

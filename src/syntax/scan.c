@@ -79,7 +79,8 @@ static int is_space(uint32_t code) {
   return code == 0x00A0 || (code >= 0x2000 && code <= 0x200B) || code == 0x202F || code == 0x3000 || code == 0xFEFF;
 }
 
-/* Code points beyond ASCII that may stand in a name: everything but spaces, signs, arrows, operators, box drawings, pictures and private use. */
+/* Code points beyond ASCII that may stand in a name: everything but spaces, signs, arrows, operators, box drawings,
+ * pictures and private use. */
 static int is_letter(uint32_t code) {
   if (code < 0x00AA) return 0;
   if (code < 0x00C0) return code == 0x00AA || code == 0x00B5 || code == 0x00BA;
@@ -182,8 +183,9 @@ int scan_number(Scan *s, Token *t, const char *text, int n) {
     if (code < 0x80 || is_letter(code)) {
       const char *name = text + digits;
       int letters = n - (int)digits;
-      const char *help = arena_printf(s->arena, "`%.*s*%.*s` is a product, `%.*s [%.*s]` has a unit; a name begins with a letter",
-                                      (int)digits, text, letters, name, (int)digits, text, letters, name);
+      const char *help =
+          arena_printf(s->arena, "`%.*s*%.*s` is a product, `%.*s [%.*s]` has a unit; a name begins with a letter",
+                       (int)digits, text, letters, name, (int)digits, text, letters, name);
       return bad(s, t, 0, (uint32_t)n, "an operator is missing between a number and a name", help);
     }
   }
@@ -198,7 +200,8 @@ int scan_string(Scan *s, Token *t, const char *text, int n) {
     uint32_t shown = (uint32_t)n;
     while (shown > 1 && text[shown - 1] == '\r') shown--;
     bad(s, t, 0, shown, "this quoted text is not closed on its line",
-        s->touch == s->begin ? "a second derivative has two primes, `x''`; a text is closed by another `\"`" : "put a `\"` at its end");
+        s->touch == s->begin ? "a second derivative has two primes, `x''`; a text is closed by another `\"`"
+                             : "put a `\"` at its end");
     return n;
   }
   for (int k = 1; k < n - 1; k++)
@@ -216,7 +219,8 @@ int scan_bracket(Scan *s, Token *t, const char *text, int n) {
     return 1;
   }
   if (text[n - 1] != ']') {
-    if (s->source->text[s->begin - s->source->base + (uint32_t)n] == '[') bad(s, t, 0, 1, "a `[` that touches no name begins a unit, and a unit contains no `[`", LIST_IS_WRITTEN);
+    if (s->source->text[s->begin - s->source->base + (uint32_t)n] == '[')
+      bad(s, t, 0, 1, "a `[` that touches no name begins a unit, and a unit contains no `[`", LIST_IS_WRITTEN);
     else bad(s, t, 0, 1, "the `]` of this unit is missing",
         "a unit stands on one line: `[m/s^2]`; an index touches its name: `x[i]`");
     return n;
@@ -236,6 +240,8 @@ int scan_unknown(Scan *s, Token *t, const char *text, int n) {
   if (c < 0x20 || c == 0x7F)
     return bad(s, t, 0, 1, arena_printf(s->arena, "a control character (0x%02X)", c), NULL);
   return bad(s, t, 0, 1, arena_printf(s->arena, "`%c` is not a sign of this language", c),
-             c == '\\' ? "this is not LaTeX: write `x'` for \\dot{x}, `x''` for \\ddot{x}, `a/b` for \\frac{a}{b}, `theta` or `θ` for "
-                         "\\theta" : NULL);
+             c == '\\' ? "this is not LaTeX: write `x'` for \\dot{x}, `x''` for \\ddot{x}, `a/b` for \\frac{a}{b}, "
+                         "`theta` or `θ` for "
+                         "\\theta"
+                       : NULL);
 }

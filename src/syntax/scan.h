@@ -33,7 +33,9 @@ void scan_open(Scan *s);
 void scan_lex(Scan *s, Token *t);
 
 /* Advice where brackets were meant for a list. */
-#define LIST_IS_WRITTEN "a vector is written `(0, 0, 1)`, a list `{1, 2}`, a matrix as a list of its rows: `param K[2,2] = {{2, 0.5}, {0.5, 1}}`"
+#define LIST_IS_WRITTEN                                                                                           \
+  "a vector is written `(0, 0, 1)`, a list `{1, 2}`, a matrix as a list of its rows: `param K[2,2] = {{2, 0.5}, " \
+  "{0.5, 1}}`"
 
 /* Parses the text of a unit, without brackets, that begins at offset `begin`, into t->unit. Returns 1
  * on success; on failure the token becomes BAD with place and message. (unit.c) */

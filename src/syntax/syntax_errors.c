@@ -123,7 +123,8 @@ static void report_word(Parse *cx, const Token *t) {
   unsigned where = cx->filter->where[t->depth];
   TokKind elsewhere = token_statement(t->name, W_ANY);
   if (elsewhere != TOK_IDENT) {
-    diag_error(d, t->span, "`%s` cannot stand in %s", t->name, where == W_FILE ? "the model itself" : place_name(where));
+    diag_error(d, t->span, "`%s` cannot stand in %s", t->name,
+               where == W_FILE ? "the model itself" : place_name(where));
     if (where == W_SCENE && (elsewhere == TOK_PARAM || elsewhere == TOK_CONST))
       diag_help(d, "it belongs in a model or an effect; in a scene a parameter gets another value by `NAME = …`");
     else diag_help(d, "it belongs in %s%s", place_name(token_flags(elsewhere)),
@@ -136,10 +137,14 @@ static void report_word(Parse *cx, const Token *t) {
   Name near = way ? NULL : nearest_word(cx, t->name, where);
   if (way) diag_help(d, "%s", way);
   else if (near) diag_help(d, "did you mean `%s`?", near);
-  else if (where & (W_SCENE | W_EVENT)) diag_help(d, t->follows == TOK_LPAREN ? "a start is set by `start %s = …`" : "a value is set with `%s = …`", t->name);
+  else if (where & (W_SCENE | W_EVENT))
+    diag_help(d, t->follows == TOK_LPAREN ? "a start is set by `start %s = …`" : "a value is set with `%s = …`",
+              t->name);
   else if (t->follows != TOK_ASSIGN && ((token_flags(t->follows) & T_BINARY) || t->follows == TOK_PRIME))
-    diag_help(d, "equations of motion follow from the Lagrangian; `expect m*x'' = …` checks one of yours, `force x = …` adds a force");
-  else if (t->follows == TOK_ASSIGN) diag_help(d, "a name is given a meaning with `let %s = …` or `param %s = …`", t->name, t->name);
+    diag_help(d, "equations of motion follow from the Lagrangian; `expect m*x'' = …` checks one of yours, `force x = "
+                 "…` adds a force");
+  else if (t->follows == TOK_ASSIGN)
+    diag_help(d, "a name is given a meaning with `let %s = …` or `param %s = …`", t->name, t->name);
   else diag_help(d, "`lagc help language` shows a model, `lagc help` lists the statements");
 }
 

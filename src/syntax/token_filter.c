@@ -17,7 +17,8 @@
  *     otherwise it is a keyword.
  *   - A first name where a keyword must stand, but that is none of this block, becomes BADWORD.
  *   - `periodic`, `rising`, `falling`, `crossing` and `every` are keywords directly after an
- *     operand, in the statements that take them, and so is `while` in a constraint; `restitution` after the `,` of a contact, `on` and `static` of a friction, `exactly`
+ *     operand, in the statements that take them, and so is `while` in a constraint; `restitution` after the `,` of a
+ *     contact, `on` and `static` of a friction, `exactly`
  *     after `start` when a name follows; `for` after the `:` or `,` of a symmetry when a name
  *     follows; `sum` and `product` before `(`.
  * Everywhere else a name is a name: a coordinate may be called `force`, `every` or `sum`.
@@ -34,7 +35,9 @@ Filter *filter_new(Scan *scan, int single) {
   return f;
 }
 
-const OpenBracket *filter_open_bracket(const Filter *f) { return f->brackets.n ? &f->brackets.at[f->brackets.n - 1] : NULL; }
+const OpenBracket *filter_open_bracket(const Filter *f) {
+  return f->brackets.n ? &f->brackets.at[f->brackets.n - 1] : NULL;
+}
 
 /* The raw token after the next k. */
 static const Token *peek_at(Filter *f, uint32_t k) {
@@ -107,7 +110,9 @@ static int at_line_end(Filter *f) {
 
 /* ---- words ---- */
 
-static int sets_a_name(TokKind next) { return next == TOK_ASSIGN || next == TOK_DOT || next == TOK_PRIME || next == TOK_INDEX; }
+static int sets_a_name(TokKind next) {
+  return next == TOK_ASSIGN || next == TOK_DOT || next == TOK_PRIME || next == TOK_INDEX;
+}
 
 /* Classifies the first name of a statement: a statement word, a name being set, or BADWORD. */
 static Token first_name(Filter *f, Token t) {
@@ -140,7 +145,8 @@ static TokKind slot_word(Filter *f, const Token *t) {
   static const struct {
     TokKind statement, word;
   } slots[] = {{TOK_COORD, TOK_PERIODIC}, {TOK_EVENT, TOK_RISING}, {TOK_EVENT, TOK_FALLING},
-               {TOK_EVENT, TOK_CROSSING}, {TOK_OUTPUT, TOK_EVERY}, {TOK_KICK, TOK_EVERY}, {TOK_FRICTION, TOK_ON}, {TOK_MOMENTUM, TOK_OF}, {TOK_CONSTRAINT, TOK_WHILE}};
+               {TOK_EVENT, TOK_CROSSING}, {TOK_OUTPUT, TOK_EVERY}, {TOK_KICK, TOK_EVERY},
+               {TOK_FRICTION, TOK_ON},    {TOK_MOMENTUM, TOK_OF},  {TOK_CONSTRAINT, TOK_WHILE}};
   if (f->prev == TOK_START && peek(f)->kind == TOK_IDENT)
     return strcmp(t->name, "exactly") == 0 ? TOK_EXACTLY : TOK_IDENT;
   if (f->word == TOK_CONTACT && f->prev == TOK_COMMA && !f->brackets.n)

@@ -1,4 +1,5 @@
-/* Token filter: raw tokens -> tokens of the grammar, with statement words, statement ends, and primes of dotted names. */
+/* Token filter: raw tokens -> tokens of the grammar, with statement words, statement ends, and primes of dotted
+ * names. */
 #pragma once
 
 #include "syntax/scan.h"

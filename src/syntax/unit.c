@@ -69,7 +69,9 @@ static int parse_integer(Unit *u, Num *out) {
   if (!negative) accept_sign(u, "+");
   skip_spaces(u);
   uint32_t n = digits_length(u);
-  if (!n) return unit_bad(u, u->at, 1, "an exponent is an integer, or a fraction in parentheses", "write `m^2`, `s^-1`, `Hz^(1/2)`");
+  if (!n)
+    return unit_bad(u, u->at, 1, "an exponent is an integer, or a fraction in parentheses",
+                    "write `m^2`, `s^-1`, `Hz^(1/2)`");
   Num value = num_parse(u->text + u->at, n);
   if (!num_is_int(value) || num_cmp(value, num_int(UNIT_EXPONENT)) > 0)
     return unit_bad(u, u->at, n, "this exponent is too large for a unit", NULL);
@@ -114,7 +116,9 @@ static int bad_factor(Unit *u) {
   if ((unsigned char)u->text[u->at] >= 0x80)
     while (u->at + len < u->n && ((unsigned char)u->text[u->at + len] & 0xC0) == 0x80) len++;
   const char *message = arena_printf(u->scan->arena, "`%.*s` cannot stand in a unit", (int)len, u->text + u->at);
-  const char *help = u->text[u->at] == '.' ? "factors are joined by `*`: `[N*m]`" : u->text[u->at] == ',' ? LIST_IS_WRITTEN : "a unit is written `[kg*m^2/s]`; an index touches its name: `x[i]`";
+  const char *help = u->text[u->at] == '.'   ? "factors are joined by `*`: `[N*m]`"
+                     : u->text[u->at] == ',' ? LIST_IS_WRITTEN
+                                             : "a unit is written `[kg*m^2/s]`; an index touches its name: `x[i]`";
   return unit_bad(u, u->at, len, message, help);
 }
 
@@ -138,7 +142,8 @@ static int parse_factor(Unit *u, int divide) {
     if (!n) return bad_factor(u);
     if (n > 1 || u->text[at] != '1')
       return unit_bad(u, at, n, "a unit holds no number but 1",
-                      memchr(u->text, ',', u->n) ? LIST_IS_WRITTEN : "write the number before the unit: `2 [m]`; a power is `m^2`");
+                      memchr(u->text, ',', u->n) ? LIST_IS_WRITTEN
+                                                 : "write the number before the unit: `2 [m]`; a power is `m^2`");
   }
   AstUnitFactor f = {.name = intern(u->scan->names, without_degree_sign(u, u->text + at, n)), .exponent = num_int(1),
                      .span = {u->begin + at, u->begin + at + n}};
@@ -154,7 +159,8 @@ static int parse_factors(Unit *u) {
     int divide = from > first && accept_sign(u, "/");
     if (from > first && !divide && !accept_sign(u, "*") && !accept_sign(u, "\xC2\xB7")) accept_sign(u, "\xE2\x8B\x85");
     if (accept_sign(u, "(")) {
-      if (u->depth++ == UNIT_DEPTH) return unit_bad(u, u->at, 1, "the parentheses of this unit are nested too deep (16)", NULL);
+      if (u->depth++ == UNIT_DEPTH)
+        return unit_bad(u, u->at, 1, "the parentheses of this unit are nested too deep (16)", NULL);
       if (!parse_factors(u)) return 0;
       if (!accept_sign(u, ")")) return unit_bad(u, u->n, 1, "a `)` is missing in this unit", NULL);
       u->depth--;

@@ -45,7 +45,8 @@ int file_install(const char *path, const char *from, const char **error) {
   if (!f || lag_outfile_open(&o, path) != 0) *error = strerror(errno);
   else {
     ok = copy(f, o.f) && fstat(fileno(o.f), &st) == 0;
-    ok = close_outfile(&o, ok && fchmod(fileno(o.f), (st.st_mode | (st.st_mode & 0444) >> 2) & 0777) == 0, error); /* readers may execute it */
+    /* readers may execute it */
+    ok = close_outfile(&o, ok && fchmod(fileno(o.f), (st.st_mode | (st.st_mode & 0444) >> 2) & 0777) == 0, error);
   }
   if (f) fclose(f);
   return ok;

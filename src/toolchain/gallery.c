@@ -13,7 +13,8 @@ static int by_name(const void *a, const void *b) { return strcmp(*(const Name *)
 
 const char *gallery_folder(Arena *a, const char *argv0) {
   const char *own = toolchain_own_folder(a, argv0), *home = getenv("LAG_HOME");
-  const char *places[] = {home && home[0] ? arena_printf(a, "%s/share/lagc/models", home) : NULL, arena_printf(a, "%s/../share/lagc/models", own), arena_printf(a, "%s/../models", own)};
+  const char *places[] = {home && home[0] ? arena_printf(a, "%s/share/lagc/models", home) : NULL,
+                          arena_printf(a, "%s/../share/lagc/models", own), arena_printf(a, "%s/../models", own)};
   for (size_t i = 0; i < sizeof places / sizeof *places; i++)
     if (places[i] && file_exists(places[i])) return file_absolute(a, places[i]);
   return NULL;
@@ -29,7 +30,8 @@ Gallery gallery_find(Arena *a, const char *argv0) {
   DIR *d = g.folder ? opendir(g.folder) : NULL;
   for (struct dirent *e; d && (e = readdir(d));) {
     size_t n = strlen(e->d_name);
-    if (n > 4 && e->d_name[0] != '.' && strcmp(e->d_name + n - 4, ".lag") == 0) vec_push(a, &g.names, arena_strndup(a, e->d_name, n - 4));
+    if (n > 4 && e->d_name[0] != '.' && strcmp(e->d_name + n - 4, ".lag") == 0)
+      vec_push(a, &g.names, arena_strndup(a, e->d_name, n - 4));
   }
   if (d) closedir(d);
   if (g.names.n) qsort(g.names.at, g.names.n, sizeof *g.names.at, by_name);
@@ -46,8 +48,9 @@ const char *gallery_path(Arena *a, const char *argv0, const char *word, const ch
     Name near = word[1] ? suggest(word + 1, g.names.at, g.names.n) : NULL;
     for (uint32_t i = 0; i < g.names.n && word[1] && !near; i++)
       if (strncmp(g.names.at[i], word + 1, strlen(word + 1)) == 0) near = g.names.at[i];
-    *error = !word[1] ? "@ and the name of a gallery model, for example @pendulum; `lagc models` lists them" : near ? arena_printf(a, "the gallery has no model %s; did you mean @%s?", word + 1, near)
-                  : arena_printf(a, "the gallery has no model %s; `lagc models` lists them", word + 1);
+    *error = !word[1] ? "@ and the name of a gallery model, for example @pendulum; `lagc models` lists them"
+             : near   ? arena_printf(a, "the gallery has no model %s; did you mean @%s?", word + 1, near)
+                      : arena_printf(a, "the gallery has no model %s; `lagc models` lists them", word + 1);
   }
   return NULL;
 }

@@ -81,7 +81,8 @@ int process_end(long process, double seconds) {
   siginfo_t end = {0};
   double waited = 0;
   int over = 0;
-  while ((over = waitid(P_PID, (id_t)process, &end, WEXITED | WNOHANG | WNOWAIT) != 0 || end.si_pid) == 0 && waited < seconds) {
+  while ((over = waitid(P_PID, (id_t)process, &end, WEXITED | WNOHANG | WNOWAIT) != 0 || end.si_pid) == 0 &&
+         waited < seconds) {
     nanosleep(&pause, NULL);
     waited += 0.01;
   }
@@ -89,7 +90,9 @@ int process_end(long process, double seconds) {
   return wait_for((pid_t)process);
 }
 
-int process_read_from(FILE *f) { return lseek(fileno(f), 0, SEEK_END) > 0 && lseek(fileno(f), 0, SEEK_SET) == 0 && dup2(fileno(f), 0) == 0; }
+int process_read_from(FILE *f) {
+  return lseek(fileno(f), 0, SEEK_END) > 0 && lseek(fileno(f), 0, SEEK_SET) == 0 && dup2(fileno(f), 0) == 0;
+}
 
 static void wait_and_tell(Arena *a, int fd, void (*tell)(void *data, const double *number, uint32_t n), void *data) {
   FILE *f = fdopen(fd, "r");

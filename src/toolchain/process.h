@@ -9,7 +9,8 @@
 /* Runs the program at `path`; *said gets its standard output and error. Returns its exit status, or -1. */
 int process_run(Arena *a, const char *path, char *const *argv, char **said);
 
-/* Runs the program at path with its standard output to a file; its messages are dropped. Returns its exit status, or -1. */
+/* Runs the program at path with its standard output to a file; its messages are dropped. Returns its exit status, or
+ * -1. */
 int process_to_file(const char *path, char *const *argv, FILE *out);
 
 /* Becomes the program at path, which takes over the standard streams. Returns only where that fails. */
@@ -25,7 +26,8 @@ int stderr_is_terminal(void);
 /* Makes what the file holds the standard input. Returns 0 where it is empty or that fails. */
 int process_read_from(FILE *f);
 
-/* Forks a listener beside the simulator that lagc becomes by exec: it keeps the compiled model, and waits for the state at which a run ended for
- * want of a finite value. Returns in the process that becomes the simulator, which finds the pipe's descriptor in $LAG_LAST_STATE. The listener calls
- * tell(data, number, n) when n numbers have arrived, and ends with the simulator. If fork or pipe fails, as on Windows, there is no listener. */
+/* Forks a listener beside the simulator that lagc becomes by exec: it keeps the compiled model, and waits for the
+ * state at which a run ended for want of a finite value. Returns in the process that becomes the simulator, which
+ * finds the pipe's descriptor in $LAG_LAST_STATE. The listener calls tell(data, number, n) when n numbers have
+ * arrived, and ends with the simulator. If fork or pipe fails, as on Windows, there is no listener. */
 void last_state_listen(Arena *a, void (*tell)(void *data, const double *number, uint32_t n), void *data);

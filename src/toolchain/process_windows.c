@@ -14,7 +14,8 @@ int stderr_is_terminal(void) { return _isatty(2); }
 
 enum { NOT_FOUND = 127 }; /* as shells and process.c say it */
 
-/* Appends a word so that the C library of the program reads the same word: in quotes, with \ before quotes and doubled before the closing one. */
+/* Appends a word so that the C library of the program reads the same word: in quotes, with \ before quotes and
+ * doubled before the closing one. */
 static void add_word(StrBuf *line, const char *word) {
   sb_puts(line, line->n ? " \"" : "\"");
   for (const char *c = word;; c++) {
@@ -31,17 +32,21 @@ static void add_word(StrBuf *line, const char *word) {
 
 static HANDLE of_file(int fd) { return (HANDLE)_get_osfhandle(fd); }
 
-/* Starts the program with these streams; without folder in its name, it is looked for in PATH. Returns the process; NULL: it is not started. */
+/* Starts the program with these streams; without folder in its name, it is looked for in PATH. Returns the process;
+ * NULL: it is not started. */
 static HANDLE start(Arena *a, const char *path, char *const *argv, HANDLE out, HANDLE err) {
   StrBuf line = strbuf(a);
-  STARTUPINFOA how = {.cb = sizeof how, .dwFlags = STARTF_USESTDHANDLES, .hStdInput = of_file(0), .hStdOutput = out, .hStdError = err};
+  STARTUPINFOA how = {
+      .cb = sizeof how, .dwFlags = STARTF_USESTDHANDLES, .hStdInput = of_file(0), .hStdOutput = out, .hStdError = err};
   PROCESS_INFORMATION is;
   add_word(&line, path);
   for (char *const *w = argv + 1; *w; w++) add_word(&line, *w);
   SetHandleInformation(how.hStdInput, HANDLE_FLAG_INHERIT, HANDLE_FLAG_INHERIT);
   SetHandleInformation(out, HANDLE_FLAG_INHERIT, HANDLE_FLAG_INHERIT);
   SetHandleInformation(err, HANDLE_FLAG_INHERIT, HANDLE_FLAG_INHERIT);
-  if (!CreateProcessA(lag_last_slash(path) ? path : NULL, arena_strdup(a, sb_text(&line)), NULL, NULL, TRUE, 0, NULL, NULL, &how, &is)) return NULL;
+  if (!CreateProcessA(lag_last_slash(path) ? path : NULL, arena_strdup(a, sb_text(&line)), NULL, NULL, TRUE, 0, NULL,
+                      NULL, &how, &is))
+    return NULL;
   CloseHandle(is.hThread);
   return is.hProcess;
 }
@@ -100,7 +105,9 @@ long process_begin(int (*work)(void *data), void *data) {
 
 int process_end(long process, double seconds) { return (void)seconds, (int)process; }
 
-int process_read_from(FILE *f) { return _lseeki64(_fileno(f), 0, SEEK_END) > 0 && _lseeki64(_fileno(f), 0, SEEK_SET) == 0 && _dup2(_fileno(f), 0) == 0; }
+int process_read_from(FILE *f) {
+  return _lseeki64(_fileno(f), 0, SEEK_END) > 0 && _lseeki64(_fileno(f), 0, SEEK_SET) == 0 && _dup2(_fileno(f), 0) == 0;
+}
 
 void last_state_listen(Arena *a, void (*tell)(void *data, const double *number, uint32_t n), void *data) {
   (void)a;

@@ -1,4 +1,5 @@
-/* The cache of simulators: finds a safe folder, makes locked folders for builds there, removes the least recently used entries. */
+/* The cache of simulators: finds a safe folder, makes locked folders for builds there, removes the least recently
+ * used entries. */
 #include "toolchain/simulator_cache.h"
 
 #include <inttypes.h>
@@ -8,7 +9,8 @@
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 #include "base/vec.h"
 
-enum { LIMIT_MIB = 1024, NAME = 32, SUFFIX = 9 }; /* digits of an entry's name; those of a reference follow after a dot */
+/* digits of an entry's name; those of a reference follow after a dot */
+enum { LIMIT_MIB = 1024, NAME = 32, SUFFIX = 9 };
 
 /* --- folders --- */
 
@@ -40,11 +42,13 @@ static int dir_is_safe(const char *path) {
   return safe;
 }
 
-/* Creates the folder at path if needed and removes write permission of others. Returns path; NULL if others can still write there. */
+/* Creates the folder at path if needed and removes write permission of others. Returns path; NULL if others can
+ * still write there. */
 static const char *own_folder(Arena *a, const char *path) {
   struct stat st;
   if (!dir_make(a, path)) return NULL;
-  if (lstat(path, &st) == 0 && S_ISDIR(st.st_mode) && st.st_uid == geteuid() && st.st_mode & 022) chmod(path, st.st_mode & 0755);
+  if (lstat(path, &st) == 0 && S_ISDIR(st.st_mode) && st.st_uid == geteuid() && st.st_mode & 022)
+    chmod(path, st.st_mode & 0755);
   return dir_is_safe(path) && access(path, W_OK) == 0 ? path : NULL;
 }
 
@@ -91,16 +95,18 @@ static int try_folder(Arena *a, const char *base, BuildFolder *f) {
 
 int build_folder_make(Arena *a, const char *base, BuildFolder *f) {
   int made = 0;
-  for (int i = 0; i < 10 && !made; i++) made = try_folder(a, base, f); /* again where another process removed it as left over */
+  /* again where another process removed it as left over */
+  for (int i = 0; i < 10 && !made; i++) made = try_folder(a, base, f);
   return made;
 }
 
-/* Removes the folder if its lock can be taken. A missing lock (its process was killed, or is about to make it) is made here: a process that is
- * still making the folder then fails to get its lock, and makes another folder. */
+/* Removes the folder if its lock can be taken. A missing lock (its process was killed, or is about to make it) is
+ * made here: a process that is still making the folder then fails to get its lock, and makes another folder. */
 static void remove_if_stale(Arena *a, const char *path) {
   struct stat st;
   if (lstat(path, &st) != 0 || !S_ISDIR(st.st_mode) || st.st_uid != geteuid()) return;
-  BuildFolder f = {path, open(arena_printf(a, "%s/lock", path), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0600)};
+  BuildFolder f = {
+      path, open(arena_printf(a, "%s/lock", path), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0600)};
   if (f.lock >= 0 && take_lock(f.lock)) build_folder_remove(&f);
   else if (f.lock >= 0) close(f.lock);
 }
@@ -119,7 +125,8 @@ void cache_remove_stale_builds(Arena *a) {
   for (struct dirent *e; d && (e = readdir(d));) {
     const char *path = arena_printf(a, "%s/%s", base, e->d_name);
     if (strncmp(e->d_name, "lagc-build-", 11) == 0 && strlen(e->d_name) == 17) remove_if_stale(a, path);
-    else if (strspn(e->d_name, "0123456789abcdef") == NAME && strcmp(e->d_name + NAME, ".lock") == 0) remove_lock_if_stale(path);
+    else if (strspn(e->d_name, "0123456789abcdef") == NAME && strcmp(e->d_name + NAME, ".lock") == 0)
+      remove_lock_if_stale(path);
   }
   if (d) closedir(d);
 }
@@ -128,10 +135,12 @@ void cache_remove_stale_builds(Arena *a) {
 
 static int file_is_own(const char *path) {
   struct stat st;
-  return lstat(path, &st) == 0 && S_ISREG(st.st_mode) && st.st_uid == geteuid() && !(st.st_mode & 022) && st.st_nlink == 1 && st.st_size > 0;
+  return lstat(path, &st) == 0 && S_ISREG(st.st_mode) && st.st_uid == geteuid() && !(st.st_mode & 022) &&
+         st.st_nlink == 1 && st.st_size > 0;
 }
 
-/* A seal, the last CACHE_SEAL bytes of an entry: size and hash of the bytes before it. Loaders of programs do not read so far. */
+/* A seal, the last CACHE_SEAL bytes of an entry: size and hash of the bytes before it. Loaders of programs do not
+ * read so far. */
 static const char seal_form[] = "\n#lagc %016" PRIx64 " %016" PRIx64 "\n";
 
 /* Hash of the next n bytes, or of all (n < 0); *n := their number. */
@@ -140,7 +149,9 @@ static uint64_t hash_file(FILE *f, int64_t *n) {
   uint64_t h = LAG_FNV1A_START;
   int64_t left = *n < 0 ? INT64_MAX : *n;
   *n = 0;
-  for (size_t some; left > 0 && (some = fread(block, 1, left < (int64_t)sizeof block ? (size_t)left : sizeof block, f)) > 0; left -= (int64_t)some, *n += (int64_t)some)
+  for (size_t some;
+       left > 0 && (some = fread(block, 1, left < (int64_t)sizeof block ? (size_t)left : sizeof block, f)) > 0;
+       left -= (int64_t)some, *n += (int64_t)some)
     h = lag_fnv1a(h, block, some);
   return h;
 }
@@ -197,13 +208,19 @@ typedef struct {
 } Entry;
 typedef VEC(Entry) Entries;
 
-static int is_reference(const char *name) { return strlen(name) == NAME + SUFFIX && name[NAME] == '.' && strspn(name + NAME + 1, "0123456789abcdef") == SUFFIX - 1; }
+static int is_reference(const char *name) {
+  return strlen(name) == NAME + SUFFIX && name[NAME] == '.' &&
+         strspn(name + NAME + 1, "0123456789abcdef") == SUFFIX - 1;
+}
 
-static int is_entry(const char *name) { return strspn(name, "0123456789abcdef") == NAME && (name[NAME] == '\0' || is_reference(name)); }
+static int is_entry(const char *name) {
+  return strspn(name, "0123456789abcdef") == NAME && (name[NAME] == '\0' || is_reference(name));
+}
 
 static int by_age(const void *x, const void *y) {
   const struct timespec *a = &((const Entry *)x)->used, *b = &((const Entry *)y)->used;
-  return a->tv_sec != b->tv_sec ? (a->tv_sec > b->tv_sec) - (a->tv_sec < b->tv_sec) : (a->tv_nsec > b->tv_nsec) - (a->tv_nsec < b->tv_nsec);
+  return a->tv_sec != b->tv_sec ? (a->tv_sec > b->tv_sec) - (a->tv_sec < b->tv_sec)
+                                : (a->tv_nsec > b->tv_nsec) - (a->tv_nsec < b->tv_nsec);
 }
 
 /* All entries, the least recently used first; *total: their size [bytes]. */
@@ -254,8 +271,9 @@ void cache_print(Arena *a, StrBuf *out) {
   const char *dir = cache_folder(a);
   Entries all = entries(a, dir, &total);
   sb_printf(out, "folder      %s\n", dir ? dir : "none: set XDG_CACHE_HOME to a folder that only you can write");
-  sb_printf(out, "simulators  %u\nreferences  %u (lagc cost)\nsize        %.1f MiB\nlimit       %.0f MiB (LAGC_CACHE_MIB)\n", count_simulators(&all),
-            all.n - count_simulators(&all), mib(total), mib(limit()));
+  sb_printf(out,
+            "simulators  %u\nreferences  %u (lagc cost)\nsize        %.1f MiB\nlimit       %.0f MiB (LAGC_CACHE_MIB)\n",
+            count_simulators(&all), all.n - count_simulators(&all), mib(total), mib(limit()));
 }
 
 void cache_clear(Arena *a, StrBuf *out) {

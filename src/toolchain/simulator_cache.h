@@ -1,4 +1,5 @@
-/* Cache of simulators, and of the reference motions that they computed: an entry is named by a hash of its texts, and run only where nobody but the user can have written it. */
+/* Cache of simulators, and of the reference motions that they computed: an entry is named by a hash of its texts,
+ * and run only where nobody but the user can have written it. */
 #pragma once
 
 #include "base/strbuf.h"
@@ -23,10 +24,12 @@ void build_folder_remove(BuildFolder *f);
 int cache_has(const char *path);
 /* The same for a reference, beside its simulator with a suffix of eight digits. */
 int cache_has_data(const char *path);
-/* Appends CACHE_SEAL bytes, size and hash, to a file that becomes an entry: files cut short by a loss of power, or overwritten, are built anew. 0: not written. */
+/* Appends CACHE_SEAL bytes, size and hash, to a file that becomes an entry: files cut short by a loss of power, or
+ * overwritten, are built anew. 0: not written. */
 enum { CACHE_SEAL = 41 };
 int cache_seal(const char *path);
-/* Waits while another process builds this entry, as ranks of mpirun do together; then others wait, until cache_give. A descriptor; -1: locks do not work there. */
+/* Waits while another process builds this entry, as ranks of mpirun do together; then others wait, until cache_give.
+ * A descriptor; -1: locks do not work there. */
 int cache_take(Arena *a, const char *path);
 void cache_give(Arena *a, const char *path, int lock);
 /* Removes the entries used longest ago, except `keep`, until the cache is within its limit. */

@@ -1,4 +1,5 @@
-/* Finds the runtime, runs the C compiler in a folder of its own, and keeps simulators in the cache under a hash of their texts. */
+/* Finds the runtime, runs the C compiler in a folder of its own, and keeps simulators in the cache under a hash of
+ * their texts. */
 #include "toolchain/toolchain.h"
 
 #include <errno.h>
@@ -13,9 +14,9 @@
 #include "toolchain/probe_text.h" /* static const char *const probe_text[]: generated from compiler_probe.in */
 #include "toolchain/process.h"
 
-/* No vector stores in emitted C: the stages of an integrator read results number by number, and store forwarding needs loads of the
- * size of the store; vector stores cost 5 to 7 ns of latency a stage (make bench T=bench/methods). They are also what triggers the
- * compiler fault of compiler_probe.in. */
+/* No vector stores in emitted C: the stages of an integrator read results number by number, and store forwarding
+ * needs loads of the size of the store; vector stores cost 5 to 7 ns of latency a stage (make bench
+ * T=bench/methods). They are also what triggers the compiler fault of compiler_probe.in. */
 #define TOOLCHAIN_SCALAR "-fno-tree-slp-vectorize"
 
 /* The program that the compiler makes. Compilers for Windows would append .exe to a name without it. */
@@ -56,7 +57,9 @@ int toolchain_compiler(Arena *a, Toolchain *t, const char **error) {
   const char *cc = getenv("CC");
   static const char *const none[] = {NULL};
   *t = (Toolchain){.cc = cc && cc[0] ? cc : DEFAULT_CC, .optimise = optimisation(), .flags = none};
-  return t->optimise ? 1 : fail_with(error, arena_printf(a, "LAGC_OPTIMISE is %s; it takes -O0, -O1, -O2 or -O3", getenv("LAGC_OPTIMISE")));
+  return t->optimise ? 1
+                     : fail_with(error, arena_printf(a, "LAGC_OPTIMISE is %s; it takes -O0, -O1, -O2 or -O3",
+                                                     getenv("LAGC_OPTIMISE")));
 }
 
 int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error) {
@@ -66,11 +69,16 @@ int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, cons
   t->library = "lag";
   if (home && home[0]) {
     found = try_place(a, arena_printf(a, "%s/lib", home), arena_printf(a, "%s/include", home), t);
-    if (!found) return fail_with(error, arena_printf(a, "LAG_HOME is %s, where lib/liblag.a and include/lag.h are not found", home));
+    if (!found)
+      return fail_with(error,
+                       arena_printf(a, "LAG_HOME is %s, where lib/liblag.a and include/lag.h are not found", home));
   }
   found = found || try_place(a, own, arena_printf(a, "%s/../runtime/include", own), t);
   found = found || try_place(a, installed(a, own, LAGC_LIBDIR), installed(a, own, LAGC_INCLUDEDIR), t);
-  if (!found) return fail_with(error, arena_printf(a, "the runtime (liblag.a and lag.h) is not found beside %s; run `make`, or set LAG_HOME", own));
+  if (!found)
+    return fail_with(
+        error,
+        arena_printf(a, "the runtime (liblag.a and lag.h) is not found beside %s; run `make`, or set LAG_HOME", own));
   t->gsl = want_gsl && file_exists(arena_printf(a, "%s/liblag_gsl.a", t->lib));
   return 1;
 }
@@ -83,10 +91,12 @@ const char *toolchain_part(Arena *a, const Toolchain *t, const char *part) {
 }
 
 void toolchain_scalar(Toolchain *t, const char *precision) {
-  static const char *const of_long[] = {"-DLAG_REAL=long double", "-DLAG_FN(x)=x##l", "-DLAG_C(x)=x##L", "-DLAG_NUMBER(x)=x##L",
-                                        "-DLAG_TAYLOR_ORDER=48", NULL};
-  static const char *const of_quad[] = {"-std=gnu11", "-include", "quadmath.h", "-DLAG_REAL=__float128", "-DLAG_FN(x)=x##q", "-DLAG_C(x)=x##Q",
-                                        "-DLAG_NUMBER(x)=x##Q", "-DLAG_TAYLOR_ORDER=64", NULL};
+  static const char *const of_long[] = {"-DLAG_REAL=long double", "-DLAG_FN(x)=x##l",      "-DLAG_C(x)=x##L",
+                                        "-DLAG_NUMBER(x)=x##L",   "-DLAG_TAYLOR_ORDER=48", NULL};
+  static const char *const of_quad[] = {"-std=gnu11",
+                                        "-include", "quadmath.h", "-DLAG_REAL=__float128", "-DLAG_FN(x)=x##q",
+                                        "-DLAG_C(x)=x##Q", "-DLAG_NUMBER(x)=x##Q", "-DLAG_TAYLOR_ORDER=64",
+                                        NULL};
   int quad = strcmp(precision, "quad") == 0;
   t->flags = quad ? of_quad : of_long;
   t->needs = quad ? "-lquadmath" : NULL;
@@ -99,8 +109,9 @@ int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const cha
   t->library = arena_printf(a, "lag_%s", precision);
   t->include = arena_printf(a, "%s/lag-%s", t->lib, precision);
   if (file_exists(arena_printf(a, "%s/lib%s.a", t->lib, t->library))) return 1;
-  return fail_with(error, arena_printf(a, "--precision %s: %s/lib%s.a is not there; `make precisions` builds it%s", precision, t->lib, t->library,
-                                       t->needs ? ", where the C compiler has libquadmath" : ""));
+  return fail_with(error,
+                   arena_printf(a, "--precision %s: %s/lib%s.a is not there; `make precisions` builds it%s", precision,
+                                t->lib, t->library, t->needs ? ", where the C compiler has libquadmath" : ""));
 }
 
 /* --- the probe for compilers that store wrong numbers --- */
@@ -121,18 +132,21 @@ static int run_compiler(Arena *a, const char *cc, const char *const *more, char 
 static int is_suspect(Arena *a, const char *cc, const char *source) {
   const char *const more[] = {"-dM", "-E", source, NULL};
   char *said = NULL;
-  return run_compiler(a, cc, more, &said) == 0 && strstr(said, "#define __AVX512F__ ") && !strstr(said, "#define __clang__ ");
+  return run_compiler(a, cc, more, &said) == 0 && strstr(said, "#define __AVX512F__ ") &&
+         !strstr(said, "#define __clang__ ");
 }
 
-static int fails_with(Arena *a, const char *cc, const char *optimise, const char *flag, const char *source, const char *program) {
+static int fails_with(Arena *a, const char *cc, const char *optimise, const char *flag, const char *source,
+                      const char *program) {
   const char *const more[] = {optimise, TOOLCHAIN_SCALAR, flag, "-o", program, source, NULL};
   char *said = NULL, *argv[] = {arena_strdup(a, program), NULL};
   if (run_compiler(a, cc, more, &said) != 0) return 0; /* the build itself will report that */
   return process_run(a, program, argv, &said) == WRONG;
 }
 
-/* The flag that the compiler `cc` (with its options, as in $CC) needs besides `optimise` and TOOLCHAIN_SCALAR: "" for most. Compilers for processors
- * with AVX-512 are probed by a program that is written, run and removed in the folder dir. NULL, with *error, when no flag helps. */
+/* The flag that the compiler `cc` (with its options, as in $CC) needs besides `optimise` and TOOLCHAIN_SCALAR: ""
+ * for most. Compilers for processors with AVX-512 are probed by a program that is written, run and removed in the
+ * folder dir. NULL, with *error, when no flag helps. */
 static const char *probe_flag(Arena *a, const char *cc, const char *optimise, const char *dir, const char **error) {
   static const char *const flags[] = {"", "-march=x86-64-v3"};
   enum { N_FLAGS = sizeof flags / sizeof *flags };
@@ -146,7 +160,10 @@ static const char *probe_flag(Arena *a, const char *cc, const char *optimise, co
   remove(source);
   remove(program);
   if (found < N_FLAGS) return flags[found];
-  *error = arena_printf(a, "the C compiler `%s` stores wrong numbers, with " TOOLCHAIN_SCALAR " and -march=x86-64-v3 too; set CC to another", cc);
+  *error = arena_printf(a,
+                        "the C compiler `%s` stores wrong numbers, with " TOOLCHAIN_SCALAR
+                        " and -march=x86-64-v3 too; set CC to another",
+                        cc);
   return NULL;
 }
 
@@ -156,7 +173,9 @@ static const char *probe_flag(Arena *a, const char *cc, const char *optimise, co
 static int is_alone(const Toolchain *t) { return t->soname && !t->library; }
 
 /* File that the compiler makes in a build folder. */
-static const char *made_in(Arena *a, const Toolchain *t, const char *dir) { return arena_printf(a, "%s/%s", dir, t->soname ? "library.so" : SIMULATOR); }
+static const char *made_in(Arena *a, const Toolchain *t, const char *dir) {
+  return arena_printf(a, "%s/%s", dir, t->soname ? "library.so" : SIMULATOR);
+}
 
 /* Without a name gold writes the path of the build folder into the library. */
 #ifdef __APPLE__
@@ -182,22 +201,32 @@ static const char *const lane_flags[] = {NULL};
 int toolchain_has_lanes(void) { return 0; }
 #endif
 
-/* Compiles and links with the flags that the simulator reports as LAG_BUILD: no contraction (same bits with and without fused multiply-add),
- * no vector stores, and the flag of the probe. */
-static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
+/* Compiles and links with the flags that the simulator reports as LAG_BUILD: no contraction (same bits with and
+ * without fused multiply-add), no vector stores, and the flag of the probe. */
+static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n,
+                   const char **error) {
   const char *safe = probe_flag(a, t->cc, t->optimise, dir, error);
   if (!safe) return 0;
-  char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc, t->optimise, *safe ? " " : "", safe);
+  char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc,
+                             t->optimise, *safe ? " " : "", safe);
   for (char *c = build + strlen("-DLAG_BUILD=\""); c[1]; c++)
     if (*c == '"' || *c == '\\') *c = ' ';
   int alone = is_alone(t);
   const char *first[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, "-o", made_in(a, t, dir)};
   const char *runtime[] = {build, "-I", t->include};
-  const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : "")}, *hidden[] = {"-fvisibility=hidden", "-s", alone ? steady_flags(a, t) : ""};
-  const char *whole[] = {"-Wl,-Bsymbolic", arena_printf(a, "-Wl,--version-script=%s/exports.map", dir), "-Wl,--whole-archive",
-                         arena_printf(a, "%s/lib%s.a", t->lib, t->library), "-Wl,--no-whole-archive"};
-  const char *last[] = {alone ? "" : arena_printf(a, "-L%s", t->lib), t->gsl ? "-llag_gsl" : "", t->soname ? "" : arena_printf(a, "%s/lib%s.a", t->lib, t->library), t->gsl ? "-lgsl" : "",
-                        t->gsl ? "-lgslcblas" : "", t->needs ? t->needs : "", "-lm", NULL};
+  const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : "")},
+             *hidden[] = {"-fvisibility=hidden", "-s", alone ? steady_flags(a, t) : ""};
+  const char *whole[] = {"-Wl,-Bsymbolic", arena_printf(a, "-Wl,--version-script=%s/exports.map", dir),
+                         "-Wl,--whole-archive", arena_printf(a, "%s/lib%s.a", t->lib, t->library),
+                         "-Wl,--no-whole-archive"};
+  const char *last[] = {alone ? "" : arena_printf(a, "-L%s", t->lib),
+                        t->gsl ? "-llag_gsl" : "",
+                        t->soname ? "" : arena_printf(a, "%s/lib%s.a", t->lib, t->library),
+                        t->gsl ? "-lgsl" : "",
+                        t->gsl ? "-lgslcblas" : "",
+                        t->needs ? t->needs : "",
+                        "-lm",
+                        NULL};
   VEC(const char *) words = {0}, parts = {0};
   for (size_t i = 0; i < sizeof first / sizeof *first; i++) vec_push(a, &words, first[i]);
   for (size_t i = 0; i < sizeof runtime / sizeof *runtime && !alone; i++) vec_push(a, &words, runtime[i]);
@@ -209,7 +238,8 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   for (size_t i = alone ? n - 1 : 0; i < n; i++) vec_push(a, &words, arena_printf(a, "%s/%s", dir, texts[i].name));
   for (size_t i = 0; i < sizeof whole / sizeof *whole && t->soname && !alone; i++) vec_push(a, &words, whole[i]);
   for (int i = 0; i < 3; i++)
-    for (char *w = t->parts[i] ? strtok(arena_strdup(a, t->parts[i]), " ") : NULL; w; w = strtok(NULL, " ")) vec_push(a, &parts, w);
+    for (char *w = t->parts[i] ? strtok(arena_strdup(a, t->parts[i]), " ") : NULL; w; w = strtok(NULL, " "))
+      vec_push(a, &parts, w);
   for (size_t i = 0; i < sizeof last / sizeof *last; i++) {
     vec_push(a, &words, last[i]);
     if (i == 0)
@@ -218,15 +248,21 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   char *said = NULL;
   int status = run_compiler(a, t->cc, words.at, &said);
   if (status == 0) return 1;
-  if (status == 127) *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
+  if (status == 127)
+    *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
   else if (t->needs && said && strstr(said, "quadmath"))
-    *error = arena_printf(a, "quadruple precision needs libquadmath, which comes with gcc; the C compiler `%s` does not find it: set CC=gcc", t->cc);
+    *error = arena_printf(
+        a,
+        "quadruple precision needs libquadmath, which comes with gcc; the C compiler `%s` does not find it: set CC=gcc",
+        t->cc);
   else *error = arena_printf(a, "the C compiler `%s` failed:\n%s", t->cc, said ? said : "");
   return 0;
 }
 
-/* Compiles with the variable of temporary files set to the build folder, so that the compiler's temporary files are removed with it. */
-static int compile_with_tmpdir(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
+/* Compiles with the variable of temporary files set to the build folder, so that the compiler's temporary files are
+ * removed with it. */
+static int compile_with_tmpdir(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n,
+                               const char **error) {
   const char *was = getenv(TEMPORARY_FOLDER), *before = was ? arena_strdup(a, was) : NULL;
   setenv(TEMPORARY_FOLDER, dir, 1);
   int ok = compile(a, t, dir, texts, n, error);
@@ -238,11 +274,15 @@ static int compile_with_tmpdir(Arena *a, const Toolchain *t, const char *dir, co
 /* Compiles in a new build folder, which stays only on success, with made_in of f->path. */
 static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
   const char *base = cache_folder(a);
-  if (!base) return fail_with(error, "there is no folder to build in that only you can write: set XDG_CACHE_HOME to one");
-  if (!build_folder_make(a, base, f)) return fail_with(error, arena_printf(a, "cannot write in %s: %s", base, strerror(errno)));
-  static const char exports[] = "{ global: lag_*; local: *; };\n"; /* a shared library shows the functions of lag.h only */
+  if (!base)
+    return fail_with(error, "there is no folder to build in that only you can write: set XDG_CACHE_HOME to one");
+  if (!build_folder_make(a, base, f))
+    return fail_with(error, arena_printf(a, "cannot write in %s: %s", base, strerror(errno)));
+  /* a shared library shows the functions of lag.h only */
+  static const char exports[] = "{ global: lag_*; local: *; };\n";
   const char *why;
-  int ok = !t->soname || is_alone(t) || file_write(arena_printf(a, "%s/exports.map", f->path), exports, strlen(exports), &why);
+  int ok = !t->soname || is_alone(t) ||
+           file_write(arena_printf(a, "%s/exports.map", f->path), exports, strlen(exports), &why);
   for (size_t i = 0; i < n && ok; i++) {
     ok = file_write(arena_printf(a, "%s/%s", f->path, texts[i].name), texts[i].text, strlen(texts[i].text), &why);
   }
@@ -256,11 +296,13 @@ static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n
   return ok;
 }
 
-int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output, const char **error) {
+int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output,
+                    const char **error) {
   struct stat st;
   BuildFolder f;
   const char *why;
-  if (stat(output, &st) == 0 && !S_ISREG(st.st_mode)) return fail_with(error, arena_printf(a, "cannot write %s: it is not an ordinary file", output));
+  if (stat(output, &st) == 0 && !S_ISREG(st.st_mode))
+    return fail_with(error, arena_printf(a, "cannot write %s: it is not an ordinary file", output));
   if (!build(a, t, texts, n, &f, error)) return 0;
   int ok = file_install(output, made_in(a, t, f.path), &why);
   if (!ok) *error = arena_printf(a, "cannot write %s: %s", output, why);
@@ -283,7 +325,8 @@ const char *toolchain_machine(Arena *a, const Toolchain *t) {
   return run_compiler(a, t->cc, more, &said) == 0 ? said : "";
 }
 
-int toolchain_library(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, StrBuf *out, const char **error) {
+int toolchain_library(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, StrBuf *out,
+                      const char **error) {
   BuildFolder f;
   const char *why;
   if (!build(a, t, texts, n, &f, error)) return 0;
@@ -299,7 +342,8 @@ int toolchain_library(Arena *a, const Toolchain *t, const SourceText *texts, siz
 static uint64_t hash_library(Arena *a, uint64_t h, const char *path) {
   struct stat st;
   if (stat(path, &st) != 0) return h;
-  const char *text = arena_printf(a, "%s %lld %lld.%09ld", path, (long long)st.st_size, (long long)st.st_mtim.tv_sec, st.st_mtim.tv_nsec);
+  const char *text = arena_printf(a, "%s %lld %lld.%09ld", path, (long long)st.st_size, (long long)st.st_mtim.tv_sec,
+                                  st.st_mtim.tv_nsec);
   return lag_fnv1a(h, text, strlen(text));
 }
 

@@ -16,7 +16,9 @@ typedef struct {
   const char *const *flags; /* matching flags for emitted C, NULL-terminated */
   int lanes;             /* models are also compiled for lanes of vectors */
   const char *needs;     /* one more library to link, or NULL */
-  const char *soname;    /* of the shared library that is made instead of a program, with the runtime where `library` names it; NULL: a program */
+  /* of the shared library that is made instead of a program, with the runtime where `library` names it; NULL: a
+   * program */
+  const char *soname;
   const char *optimise;  /* -O2 or $LAGC_OPTIMISE; -O0 where compilation takes longer than the run */
 } Toolchain;
 
@@ -28,8 +30,8 @@ typedef struct {
 /* The folder of the running executable. */
 const char *toolchain_own_folder(Arena *a, const char *argv0);
 
-/* Finds the runtime: in $LAG_HOME, or beside the running executable (a build tree or an installation).
- * argv0: the name that lagc was called by. Returns 0, with *error, when it is not found or $LAGC_OPTIMISE is no level. */
+/* Finds the runtime: in $LAG_HOME, or beside the running executable (a build tree or an installation). argv0: the
+ * name that lagc was called by. Returns 0, with *error, when it is not found or $LAGC_OPTIMISE is no level. */
 int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error);
 
 /* The words that link a part of the runtime, liblag_PART.a; NULL: it is not there. */
@@ -38,7 +40,8 @@ const char *toolchain_part(Arena *a, const Toolchain *t, const char *part);
 /* The flags for models over another scalar, long or quad, in programs that call nothing of the runtime. */
 void toolchain_scalar(Toolchain *t, const char *precision);
 
-/* Sets the toolchain to a precision: double, long or quad. Returns 0, with *error, when the runtime was not built for it. */
+/* Sets the toolchain to a precision: double, long or quad. Returns 0, with *error, when the runtime was not built
+ * for it. */
 int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const char **error);
 
 /* The C compiler alone, without the runtime. Returns 0, with *error, when $LAGC_OPTIMISE is no level. */
@@ -50,13 +53,14 @@ int toolchain_has_lanes(void);
 /* The machine that the compiler compiles for, as it names it: x86_64-linux-gnu; "" where it does not say. */
 const char *toolchain_machine(Arena *a, const Toolchain *t);
 
-/* Compiles the last text, which may include the others, to a shared library called t->soname without the runtime, and appends its bytes. Returns 0,
- * with *error. */
+/* Compiles the last text, which may include the others, to a shared library called t->soname without the runtime,
+ * and appends its bytes. Returns 0, with *error. */
 int toolchain_library(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, StrBuf *out, const char **error);
 
 /* Compiles and links the texts into the executable or library `output`, which appears only on success.
  * Returns 0 on failure, with *error (it may contain the compiler's own messages). */
-int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output, const char **error);
+int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output,
+                    const char **error);
 
 /* The path of a simulator of these texts, from the cache or built; NULL, with *error. */
 const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error);

@@ -1,5 +1,6 @@
-/* 800 double pendulums from starts at rest to t = 10, one after the other or in lanes, by code that others would write: microseconds a motion and the
- * median error of th1, for some tolerances. Argument: the file of rows `th1,th2,th1 at t = 10` that lagc wrote with 19 digits. */
+/* 800 double pendulums from starts at rest to t = 10, one after the other or in lanes, by code that others would
+ * write: microseconds a motion and the median error of th1, for some tolerances. Argument: the file of rows
+ * `th1,th2,th1 at t = 10` that lagc wrote with 19 digits. */
 #define lag_dop853_tableau coefficients
 #define lag_dop853 unused_method
 #include "methods/dop853.c"
@@ -40,7 +41,8 @@ static void judge(const char *name, void (*all)(double tol)) {
 /* ---- one after the other: textbook accelerations for m = l = 1, by the C library's sine and cosine */
 
 static int rates(double t, const double *y, double *d, void *context) {
-  const double s1 = sin(y[0]), s2 = sin(y[1]), s = sin(y[0] - y[1]), c = cos(y[0] - y[1]), per = 1/(2 - c*c), g = 9.81, u = y[2]*y[2], v = y[3]*y[3];
+  const double s1 = sin(y[0]), s2 = sin(y[1]), s = sin(y[0] - y[1]), c = cos(y[0] - y[1]), per = 1 / (2 - c * c),
+               g = 9.81, u = y[2] * y[2], v = y[3] * y[3];
   (void)t, (void)context;
   d[0] = y[2];
   d[1] = y[3];
@@ -67,7 +69,8 @@ static void by_gsl(double tol) {
 #endif
 
 #ifdef BENCH_ODEINT
-double peer_odeint(int problem, int (*rates)(double, const double *, double *, void *), int n, double t, double tol, double *y);
+double peer_odeint(int problem, int (*rates)(double, const double *, double *, void *), int n, double t, double tol,
+                   double *y);
 double bench_now(void) { return now(); }
 
 static void by_odeint(double tol) {
@@ -79,7 +82,8 @@ static void by_odeint(double tol) {
 }
 #endif
 
-/* ---- in lanes: dop853 as one would write it by hand, each lane with its own step, the next motion where one ends; sine and cosine by libmvec */
+/* ---- in lanes: dop853 as one would write it by hand, each lane with its own step, the next motion where one ends;
+ * sine and cosine by libmvec */
 
 #ifdef LANES
 typedef double real __attribute__((vector_size(8*LANES)));
@@ -100,7 +104,8 @@ INLINE real pick(mask c, real a, real b) { return (real)((c & (mask)a) | (~c & (
 INLINE real size(real x) { return (real)((mask)x & 0x7fffffffffffffffLL); }
 
 INLINE void lane_rates(const real *y, real *d) {
-  const real s1 = vector_sin(y[0]), s2 = vector_sin(y[1]), s = vector_sin(y[0] - y[1]), c = vector_cos(y[0] - y[1]), per = 1/(2 - c*c);
+  const real s1 = vector_sin(y[0]), s2 = vector_sin(y[1]), s = vector_sin(y[0] - y[1]), c = vector_cos(y[0] - y[1]),
+             per = 1 / (2 - c * c);
   const real u = y[2]*y[2], v = y[3]*y[3];
   const double g = 9.81;
   d[0] = y[2];
@@ -172,7 +177,8 @@ int main(int argc, char **argv) {
   char line[400];
   if (!f || !fgets(line, sizeof line, f)) return 2;
   for (int i = 0; i < MOTIONS; i++)
-    if (!fgets(line, sizeof line, f) || sscanf(line, "%lf,%lf,%lf", &start[i][0], &start[i][1], &wanted[i]) != 3) return 2;
+    if (!fgets(line, sizeof line, f) || sscanf(line, "%lf,%lf,%lf", &start[i][0], &start[i][1], &wanted[i]) != 3)
+      return 2;
   fclose(f);
 #ifdef BENCH_GSL
   judge("gsl_rk8pd", by_gsl);

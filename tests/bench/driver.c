@@ -46,8 +46,8 @@ static double *room(int n) {
   return x;
 }
 
-/* States within WITHIN of rest at 0, or where SCENE_START is defined of the scene's start; the same in every run. (What a
- * sine costs depends on its argument: 108 instructions at 0.1, 140 at 3.) */
+/* States within WITHIN of rest at 0, or where SCENE_START is defined of the scene's start; the same in every run.
+ * (What a sine costs depends on its argument: 108 instructions at 0.1, 140 at 3.) */
 static Bench bench_new(void) {
   Bench b = {.m = SCENE.model, .n = 1};
   int n = b.m->nq;
@@ -126,6 +126,7 @@ int main(int argc, char **argv) {
   if (argc == 2 && strcmp(argv[1], "check") == 0) return check(&b);
   if (argc == 2 && strcmp(argv[1], "time") == 0) return times(&b), 0;
   for (int k = 0; argc == 4 && k < b.n; k++)
-    if (strcmp(argv[1], "count") == 0 && strcmp(argv[2], b.all[k].name) == 0) return call(&b, b.all[k].f, atol(argv[3])), 0;
+    if (strcmp(argv[1], "count") == 0 && strcmp(argv[2], b.all[k].name) == 0)
+      return call(&b, b.all[k].f, atol(argv[3])), 0;
   return 2;
 }

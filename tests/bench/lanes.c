@@ -1,5 +1,5 @@
-/* What lag_math.h and an emitted model cost: nanoseconds a lane, the least of many rounds. Compiled with -DLAG_LANES=4 or 8, or
- * without for doubles; SCENE is a scene of the emitted model. */
+/* What lag_math.h and an emitted model cost: nanoseconds a lane, the least of many rounds. Compiled with
+ * -DLAG_LANES=4 or 8, or without for doubles; SCENE is a scene of the emitted model. */
 #define _POSIX_C_SOURCE 199309L
 #include <math.h>
 #include <stdio.h>

@@ -1,12 +1,14 @@
-/* Time against error: methods of liblag on emitted models, next to integrators of others on hand-written ones, in one run.
- *   methods [own]    prints, for each problem and each error to be reached, the fastest setting of each method; own: only
+/* Time against error: methods of liblag on emitted models, next to integrators of others on hand-written ones, in
+ * one run.
+ *   methods [own] prints, for each problem and each error to be reached, the fastest setting of each method; own:
+ *   only
  *                    liblag's, rk8pd and dop853 inlined by hand
  *
- * Every method runs at tolerances from 1e-4 to 1e-15 until the smallest error is reached, or it takes seconds; its time is the least of several runs, its
- * error the largest of the coordinates at the end. The chains, whose motion is chaotic, run at one tolerance. liblag's times
- * are of lag_sim_advance: they include the watch on the energy at each step, which those of others do not. Linked
- * with the emitted models; a peer is there when its BENCH_ macro is defined. In brackets: the time over rk8pd's, and over
- * that of dop853 inlined by hand. */
+ * Every method runs at tolerances from 1e-4 to 1e-15 until the smallest error is reached, or it takes seconds; its
+ * time is the least of several runs, its error the largest of the coordinates at the end. The chains, whose motion
+ * is chaotic, run at one tolerance. liblag's times are of lag_sim_advance: they include the watch on the energy at
+ * each step, which those of others do not. Linked with the emitted models; a peer is there when its BENCH_ macro is
+ * defined. In brackets: the time over rk8pd's, and over that of dop853 inlined by hand. */
 #include "methods.h"
 
 #include <stdio.h>
@@ -15,10 +17,12 @@
 
 #include "lag.h"
 
-extern const lag_scene double_pendulum_swing, henon_heiles_regular, kepler_hundred, kepler_narrow, outer_planets_years, chain_10_swing, chain_20_swing,
-  oscillators_go;
-int linear_10(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *a, double *zd, double *w);
-int linear_20(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *a, double *zd, double *w);
+extern const lag_scene double_pendulum_swing, henon_heiles_regular, kepler_hundred, kepler_narrow, outer_planets_years,
+    chain_10_swing, chain_20_swing, oscillators_go;
+int linear_10(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *a,
+              double *zd, double *w);
+int linear_20(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *a,
+              double *zd, double *w);
 
 typedef struct {
   const char *label;
@@ -31,7 +35,8 @@ typedef struct {
   double only_tol;     /* not 0: no errors, but this tolerance */
 } Problem;
 
-static const double masses_lengths_g[41] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 9.81};
+static const double masses_lengths_g[41] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,   1,
+                                            1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 9.81};
 
 int by_hand_chain_10(double t, const double *y, double *d, void *p) {
   (void)p;
@@ -55,13 +60,23 @@ static const double at_planets[] = {
 static const double at_kepler[] = {0.4, 0}, at_narrow[] = {-1.9, 0};
 
 static const Problem problems[] = {
-  {"double pendulum, th1 = th2 = pi/2, to t = 10", &double_pendulum_swing, DOUBLE_PENDULUM, by_hand_double_pendulum, 10, at_double_pendulum, {1e-6, 1e-9, 1e-12}, 0},
-  {"Henon-Heiles, E = 1/8, to t = 1000", &henon_heiles_regular, HENON_HEILES, by_hand_henon_heiles, 1000, at_henon_heiles, {1e-6, 1e-11, 0}, 0},
-  {"Kepler, e = 0.6, 100 periods", &kepler_hundred, KEPLER, by_hand_kepler, 628.31853071795864769, at_kepler, {1e-5, 1e-10, 0}, 0},
-  {"Kepler, e = 0.9, 5.5 periods", &kepler_narrow, KEPLER, by_hand_kepler, 34.557519189487725623, at_narrow, {1e-8, 0, 0}, 0},
-  {"outer planets, 10^4 years", &outer_planets_years, PLANETS, by_hand_planets, 3652500, at_planets, {5e-6, 2e-9, 0}, 0},
-  {"chain of 10 rods, to t = 10", &chain_10_swing, CHAIN_10, by_hand_chain_10, 10, NULL, {0}, 1e-12},
-  {"chain of 20 rods, to t = 10", &chain_20_swing, CHAIN_20, by_hand_chain_20, 10, NULL, {0}, 1e-12},
+    {"double pendulum, th1 = th2 = pi/2, to t = 10",
+     &double_pendulum_swing, DOUBLE_PENDULUM, by_hand_double_pendulum, 10, at_double_pendulum, {1e-6, 1e-9, 1e-12},
+     0},
+    {"Henon-Heiles, E = 1/8, to t = 1000",
+     &henon_heiles_regular, HENON_HEILES, by_hand_henon_heiles, 1000, at_henon_heiles, {1e-6, 1e-11, 0},
+     0},
+    {"Kepler, e = 0.6, 100 periods",
+     &kepler_hundred, KEPLER, by_hand_kepler, 628.31853071795864769, at_kepler, {1e-5, 1e-10, 0},
+     0},
+    {"Kepler, e = 0.9, 5.5 periods",
+     &kepler_narrow, KEPLER, by_hand_kepler, 34.557519189487725623, at_narrow, {1e-8, 0, 0},
+     0},
+    {"outer planets, 10^4 years",
+     &outer_planets_years, PLANETS, by_hand_planets, 3652500, at_planets, {5e-6, 2e-9, 0},
+     0},
+    {"chain of 10 rods, to t = 10", &chain_10_swing, CHAIN_10, by_hand_chain_10, 10, NULL, {0}, 1e-12},
+    {"chain of 20 rods, to t = 10", &chain_20_swing, CHAIN_20, by_hand_chain_20, 10, NULL, {0}, 1e-12},
 };
 enum { N_PROBLEMS = sizeof problems/sizeof *problems };
 
@@ -141,7 +156,9 @@ static void measure(const Problem *p, Series *s) {
     }
     failed = best == HUGE_VAL ? failed + 1 : 0;
     s->time[s->n++] = best;
-    if (p->only_tol > 0 || spent > 0.5 || failed > 4 || (s->n > 2 && s->error[s->n - 1] < least/3 && s->error[s->n - 2] < least/3)) break;
+    if (p->only_tol > 0 || spent > 0.5 || failed > 4 ||
+        (s->n > 2 && s->error[s->n - 1] < least / 3 && s->error[s->n - 2] < least / 3))
+      break;
   }
 }
 
@@ -173,8 +190,12 @@ static void print_row(const Problem *p, const Series *s, const Series *first, co
 
 /* Calls of right-hand sides, counted. */
 static double per_call;
-static int counted_oscillators(double t, const double *y, double *d, void *p) { return per_call++, by_hand_oscillators(t, y, d, p); }
-static int counted_pendulum(double t, const double *y, double *d, void *p) { return per_call++, by_hand_double_pendulum(t, y, d, p); }
+static int counted_oscillators(double t, const double *y, double *d, void *p) {
+  return per_call++, by_hand_oscillators(t, y, d, p);
+}
+static int counted_pendulum(double t, const double *y, double *d, void *p) {
+  return per_call++, by_hand_double_pendulum(t, y, d, p);
+}
 
 /* Seconds that a call takes where each waits for the last, as stages do: y += 1e-9 f(y), and nothing else. */
 static double waiting_call(const Problem *p, bench_rhs *f) {
@@ -206,7 +227,9 @@ static void print_overhead(const Series *s, const Problem *p, bench_rhs *f, doub
     best = fmin(best, t);
   }
   calls = s->method ? calls : per_call;
-  if (calls > 0) printf("  %-28s  %7.1f  %7.1f\n", s->label, 1e9*best/calls, 1e9*(best/calls - waiting_call(p, s->method ? NULL : f)));
+  if (calls > 0)
+    printf("  %-28s  %7.1f  %7.1f\n", s->label, 1e9 * best / calls,
+           1e9 * (best / calls - waiting_call(p, s->method ? NULL : f)));
 }
 
 int main(int argc, char **argv) {
@@ -233,7 +256,8 @@ int main(int argc, char **argv) {
   int own = argc > 1 && strcmp(argv[1], "own") == 0;
   for (int i = 0; i < N_PROBLEMS; i++) {
     const Problem *p = &problems[i], *shown = p;
-    const Series *first = strcmp(series[0].label, "GSL rk8pd") == 0 ? &series[0] : NULL, *second = first ? &series[1] : &series[0];
+    const Series *first = strcmp(series[0].label, "GSL rk8pd") == 0 ? &series[0] : NULL,
+                 *second = first ? &series[1] : &series[0];
     for (int k = 0; k < N_SERIES; k++) series[k].n = 0;
     printf("%s: milliseconds to an error of", shown->label);
     for (int e = 0; e < 3 && p->errors[e] > 0; e++) printf(" %.0e", p->errors[e]);
@@ -246,14 +270,19 @@ int main(int argc, char **argv) {
     }
   }
   static const Problem small[] = {
-    {"two oscillators, whose right-hand side is 2 negations", &oscillators_go, OSCILLATORS, counted_oscillators, 1000, NULL, {0}, 0},
-    {"double pendulum", &double_pendulum_swing, DOUBLE_PENDULUM, counted_pendulum, 10, NULL, {0}, 0},
+      {"two oscillators, whose right-hand side is 2 negations",
+       &oscillators_go, OSCILLATORS, counted_oscillators, 1000, NULL, {0},
+       0},
+      {"double pendulum", &double_pendulum_swing, DOUBLE_PENDULUM, counted_pendulum, 10, NULL, {0}, 0},
   };
   bench_rhs *const alone[] = {by_hand_oscillators, by_hand_double_pendulum};
   for (int i = 0; i < 2; i++) {
-    printf("%s, tolerance 1e-10: nanoseconds a call, all in all, and beyond those of a call alone that waits for the last one\n", small[i].label);
+    printf("%s, tolerance 1e-10: nanoseconds a call, all in all, and beyond those of a call alone that waits for the "
+           "last one\n",
+           small[i].label);
     for (int k = 0; k < N_SERIES; k++)
-      if ((!own || series[k].own) && !(series[k].method && strcmp(series[k].method, "taylor") == 0)) print_overhead(&series[k], &small[i], alone[i], 1e-10);
+      if ((!own || series[k].own) && !(series[k].method && strcmp(series[k].method, "taylor") == 0))
+        print_overhead(&series[k], &small[i], alone[i], 1e-10);
   }
   return 0;
 }

@@ -14,8 +14,8 @@ enum { BENCH_MOST = 64 };
 /* f(t, y[n]) into dy; n even. */
 typedef int bench_rhs(double t, const double *y, double *dy, void *calls);
 
-/* A peer: from y[n] at 0 to y at t, with absolute and relative tolerance tol. The processor's time of the steps in seconds, < 0 when it
- * fails. Objects of its own are made and freed outside of that time. */
+/* A peer: from y[n] at 0 to y at t, with absolute and relative tolerance tol. The processor's time of the steps in
+ * seconds, < 0 when it fails. Objects of its own are made and freed outside of that time. */
 typedef double bench_peer(int problem, bench_rhs *f, int n, double t, double tol, double *y);
 bench_peer peer_rk8pd, peer_adams, peer_arkode, peer_odeint, peer_inlined, peer_sympy;
 
@@ -50,13 +50,15 @@ static inline int by_hand_kepler(double t, const double *y, double *d, void *p) 
 }
 
 static inline int by_hand_planets(double t, const double *y, double *d, void *p) {
-  static const double m[6] = {1.00000597682, 0.000954786104043, 0.000285583733151, 0.0000437273164546, 0.0000517759138449, 1/1.3e8};
+  static const double m[6] = {1.00000597682,      0.000954786104043,  0.000285583733151,
+                              0.0000437273164546, 0.0000517759138449, 1 / 1.3e8};
   const double G = 2.95912208286e-4;
   (void)t, (void)p;
   for (int i = 0; i < 18; i++) d[i] = y[18 + i], d[18 + i] = 0;
   for (int i = 0; i < 6; i++)
     for (int j = 0; j < i; j++) {
-      const double x[3] = {y[3*i] - y[3*j], y[3*i + 1] - y[3*j + 1], y[3*i + 2] - y[3*j + 2]}, r2 = x[0]*x[0] + x[1]*x[1] + x[2]*x[2], k = G/(r2*sqrt(r2));
+      const double x[3] = {y[3 * i] - y[3 * j], y[3 * i + 1] - y[3 * j + 1], y[3 * i + 2] - y[3 * j + 2]},
+                   r2 = x[0] * x[0] + x[1] * x[1] + x[2] * x[2], k = G / (r2 * sqrt(r2));
       for (int c = 0; c < 3; c++) d[18 + 3*i + c] -= m[j]*k*x[c], d[18 + 3*j + c] += m[i]*k*x[c];
     }
   return 0;

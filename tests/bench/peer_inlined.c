@@ -1,6 +1,6 @@
-/* dop853 as one would write it by hand for one problem: number of equations, coefficients and right-hand side known to the compiler,
- * Hairer's step control (dop853.f: safety 0.9, factors from 1/3 to 6, no memory), nothing watched. The coefficients are those of
- * runtime/methods/dop853.c. */
+/* dop853 as one would write it by hand for one problem: number of equations, coefficients and right-hand side known
+ * to the compiler, Hairer's step control (dop853.f: safety 0.9, factors from 1/3 to 6, no memory), nothing watched.
+ * The coefficients are those of runtime/methods/dop853.c. */
 #define lag_dop853_tableau coefficients
 #define lag_dop853 unused_method
 #include "methods/dop853.c"
@@ -93,16 +93,16 @@ double peer_inlined(int problem, bench_rhs *f, int n, double t, double tol, doub
 
 #ifdef BENCH_SYMPY
 /* The same with what SymPy writes for the chains (sympy_peer.py); -1 for other problems. */
-#define SYMPY_CHAIN(n)                                                                                                              \
-  int sympy_##n(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *a, double *zd, \
-                double *w);                                                                                                         \
-  static int sympy_chain_##n(double t, const double *y, double *d, void *p) {                                                       \
-    double parameters[2*n + 1];                                                                                                     \
-    (void)p;                                                                                                                        \
-    for (int i = 0; i < 2*n; i++) parameters[i] = 1;                                                                                \
-    parameters[2*n] = 9.81;                                                                                                         \
-    memcpy(d, y + n, n*sizeof *d);                                                                                                  \
-    return sympy_##n(t, y, y + n, NULL, parameters, NULL, d + n, NULL, NULL);                                                       \
+#define SYMPY_CHAIN(n)                                                                                         \
+  int sympy_##n(double t, const double *q, const double *v, const double *z, const double *p, const double *u, \
+                double *a, double *zd, double *w);                                                             \
+  static int sympy_chain_##n(double t, const double *y, double *d, void *p) {                                  \
+    double parameters[2 * n + 1];                                                                              \
+    (void)p;                                                                                                   \
+    for (int i = 0; i < 2 * n; i++) parameters[i] = 1;                                                         \
+    parameters[2 * n] = 9.81;                                                                                  \
+    memcpy(d, y + n, n * sizeof *d);                                                                           \
+    return sympy_##n(t, y, y + n, NULL, parameters, NULL, d + n, NULL, NULL);                                  \
   }
 SYMPY_CHAIN(10)
 SYMPY_CHAIN(20)

@@ -1,4 +1,5 @@
-/* SUNDIALS: CVODE's Adams methods with fixed-point iteration, and ARKODE's explicit method of order 8 (Fehlberg's 13 stages). */
+/* SUNDIALS: CVODE's Adams methods with fixed-point iteration, and ARKODE's explicit method of order 8 (Fehlberg's 13
+ * stages). */
 #include <arkode/arkode_erkstep.h>
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>

@@ -1,5 +1,6 @@
-/* Coordinates of sun and outer planets after 3652500 days, by the Taylor series of models/outer_planets.lag in quadruple
- * precision: orders 36 and 44, which agree to DIGITS. After 200000 days they agree with tests/hard/cases to 24 digits. */
+/* Coordinates of sun and outer planets after 3652500 days, by the Taylor series of models/outer_planets.lag in
+ * quadruple precision: orders 36 and 44, which agree to DIGITS. After 200000 days they agree with tests/hard/cases
+ * to 24 digits. */
   22.56235121005769768272915725,
   -8.896735119753165902811815379,
   -4.471532888846161022979413917,

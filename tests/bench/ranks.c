@@ -1,4 +1,5 @@
-/* Time of a message at rank 0: takes the rows of N chunks of 8 runs and 4 numbers into its journal, hands out N others. Rank 1 makes no runs, and asks at once. */
+/* Time of a message at rank 0: takes the rows of N chunks of 8 runs and 4 numbers into its journal, hands out N
+ * others. Rank 1 makes no runs, and asks at once. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -40,10 +41,15 @@ int main(int argc, char **argv) {
   Journal j = {.fd = -1};
   if (argc < 2 || lag_mpi.join(&rank, &n)) return 2;
   for (int k = 0; k < 2; k++) {
-    Sweep s = {.plan = &plan, .nmeasures = MEASURES, .chunk = RUNS, .shards = 1, .journal = &j, .ranks = &lag_mpi, .rank = rank, .nranks = n, .note = note};
+    Sweep s = {.plan = &plan,
+               .nmeasures = MEASURES, .chunk = RUNS, .shards = 1, .journal = &j, .ranks = &lag_mpi, .rank = rank,
+               .nranks = n,
+               .note = note};
     lag_mpi.share(&word, sizeof word);
     if (rank) ask(&s, k ? 1e-6 : 1);
-    else printf("%s %.2f us a chunk\n", k ? "64 chunks a message" : "1 chunk a message", 1e6 / (double)chunks * serve(&s, &j, argv[1], (size_t)RUNS * (MEASURES + 1)));
+    else
+      printf("%s %.2f us a chunk\n", k ? "64 chunks a message" : "1 chunk a message",
+             1e6 / (double)chunks * serve(&s, &j, argv[1], (size_t)RUNS * (MEASURES + 1)));
   }
   lag_mpi.leave();
   return 0;

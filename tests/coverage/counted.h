@@ -1,4 +1,5 @@
-/* Included into every file of a build for gcov: processes that become others, or end without exit(), count what they reached first. */
+/* Included into every file of a build for gcov: processes that become others, or end without exit(), count what they
+ * reached first. */
 void __gcov_dump(void);
 __attribute__((__noreturn__)) void _exit(int);
 int __gcov_execv(const char *, char *const *);

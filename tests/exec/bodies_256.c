@@ -1,7 +1,7 @@
 /* 256 gravitating bodies: what lagc emitted against loops over all ordered pairs, in long double.
  *
- * The bound is that of a sum of n terms in any order, n*2^-53 of the terms' sizes (Higham, Accuracy and Stability of Numerical
- * Algorithms, 2nd ed., section 4.2), and 30 roundings of each term. */
+ * The bound is that of a sum of n terms in any order, n*2^-53 of the terms' sizes (Higham, Accuracy and Stability of
+ * Numerical Algorithms, 2nd ed., section 4.2), and 30 roundings of each term. */
 #include <math.h>
 #include <stdio.h>
 
@@ -54,7 +54,8 @@ int main(void) {
   if (m->nq != 3*N || m->np != N + 2 || m->nderived > 6 || m->nw > 1024) return 2;
   bodies_drift.params(p, none);
   bodies_drift.start(p, q, v, NULL);
-  for (int i = 0; i < N; i++) { /* masses and velocities of their own; the start by its formulas, to rounding of arguments up to 435 */
+  /* masses and velocities of their own; the start by its formulas, to rounding of arguments up to 435 */
+  for (int i = 0; i < N; i++) {
     const double want[3] = {cos(i + 1), sin(1.7*(i + 1)), sin(0.6*(i + 1))};
     for (int k = 0; k < 3; k++) {
       if (!(fabs(q[3*i + k] - want[k]) <= 435*0x1p-52)) return 3;
@@ -63,6 +64,7 @@ int main(void) {
     p[i] = 1 + 0.5*want[0];
   }
   if (m->derive) m->derive(p);
-  if (m->accel(0, q, v, NULL, p, NULL, a, NULL, room) != 0 || m->energy(0, q, v, NULL, p, NULL, energy, room) != 0) return 4;
+  if (m->accel(0, q, v, NULL, p, NULL, a, NULL, room) != 0 || m->energy(0, q, v, NULL, p, NULL, energy, room) != 0)
+    return 4;
   return check_accelerations() | check_energy();
 }

@@ -1,5 +1,5 @@
-/* Accelerations of tests/exec/models/windings.lag, or elements.lag, against its equations, M a + K q = 0, in long double: no solver judges
- * another. */
+/* Accelerations of tests/exec/models/windings.lag, or elements.lag, against its equations, M a + K q = 0, in long
+ * double: no solver judges another. */
 #include <math.h>
 #include <stdio.h>
 
@@ -65,7 +65,9 @@ int main(void) {
   static const unsigned char none[8];
   const lag_model *m = SCENE.model;
   double worst = 0, stale = 0;
-  if (m->np != PARAMETERS || m->nq > MOST || (size_t)(m->np + m->nderived) > sizeof p/sizeof *p || (size_t)m->nw > sizeof w/sizeof *w) return 2;
+  if (m->np != PARAMETERS || m->nq > MOST || (size_t)(m->np + m->nderived) > sizeof p / sizeof *p ||
+      (size_t)m->nw > sizeof w / sizeof *w)
+    return 2;
   SCENE.params(p, none);
   for (int turn = 0; turn < 50; turn++) {
     for (int k = 0; k < LANES; k++) {

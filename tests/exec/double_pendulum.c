@@ -1,17 +1,17 @@
 /* The emitted accelerations of models/double_pendulum.lag against hand-written ones, at random states. Prints TAP.
  *   double_pendulum [STATES]      linked with the emitted model, for LAG_REAL = double
  *
- * The formulas are typed from the textbook (the Lagrangian of Landau and Lifshitz, Mechanics, paragraph 5, problem 1, solved for the
- * accelerations by Cramer's rule), not from what lagc prints:
+ * The formulas are typed from the textbook (the Lagrangian of Landau and Lifshitz, Mechanics, paragraph 5, problem
+ * 1, solved for the accelerations by Cramer's rule), not from what lagc prints:
  *   (m1 + m2) l1 th1'' + m2 l2 th2'' cos(D) = -m2 l2 th2'^2 sin(D) - (m1 + m2) g sin(th1),    D = th1 - th2
  *   l2 th2'' + l1 th1'' cos(D) = l1 th1'^2 sin(D) - g sin(th2)
  * The judge evaluates them in quadruple precision, and also the sum of the absolute values of the terms, which is what
  * rounding is proportional to. The error of an acceleration is measured in units of the last place of that sum.
  *
- * The bound, 50 units: the emitted text has some 70 additions, multiplications and divisions, whose roundings are each at
- * most half a unit of a term in that sum: 35. Where it takes sin and cos of th1 - th2, the difference, up to 7, is rounded
- * too, by up to 4 units, and enters the accelerations through three such functions: 12. Rounding has no plan, so about the
- * square root of that, 4, is what to expect. A wrong sign or factor is off by 1e15 units. */
+ * The bound, 50 units: the emitted text has some 70 additions, multiplications and divisions, whose roundings are
+ * each at most half a unit of a term in that sum: 35. Where it takes sin and cos of th1 - th2, the difference, up to
+ * 7, is rounded too, by up to 4 units, and enters the accelerations through three such functions: 12. Rounding has
+ * no plan, so about the square root of that, 4, is what to expect. A wrong sign or factor is off by 1e15 units. */
 #include <math.h>
 #include <quadmath.h>
 #include <stdint.h>
@@ -45,7 +45,8 @@ static State random_state(void) {
   State s;
   for (int i = 0; i < 2; i++) s.q[i] = uniform(-3.5, 3.5);
   for (int i = 0; i < 2; i++) s.v[i] = uniform(-20, 20);
-  for (int i = 0; i < 4; i++) s.p[i] = exp2(uniform(i < 2 ? -2 : -1, i < 2 ? 2 : 1)); /* masses 1/4..4, lengths 1/2..2 */
+  /* masses 1/4..4, lengths 1/2..2 */
+  for (int i = 0; i < 4; i++) s.p[i] = exp2(uniform(i < 2 ? -2 : -1, i < 2 ? 2 : 1));
   s.p[4] = uniform(0, 20);
   if (double_pendulum.derive) double_pendulum.derive(s.p);
   return s;
@@ -96,10 +97,11 @@ int main(int argc, char **argv) {
   }
   printf("1..2\n");
   for (int i = 0; i < 2; i++) {
-    printf("%sok %d - th%d'' of the emitted C agrees with the textbook at %ld states: worst %.3g units in the last place of %g\n",
+    printf("%sok %d - th%d'' of the emitted C agrees with the textbook at %ld states: worst %.3g units in the last "
+           "place of %g\n",
            worst[i] <= BOUND ? "" : "not ", i + 1, i + 1, states, worst[i], BOUND);
-    printf("# worst at th1 %.17g th2 %.17g th1' %.17g th2' %.17g m1 %g m2 %g l1 %g l2 %g g %g\n", at[i].q[0], at[i].q[1],
-           at[i].v[0], at[i].v[1], at[i].p[0], at[i].p[1], at[i].p[2], at[i].p[3], at[i].p[4]);
+    printf("# worst at th1 %.17g th2 %.17g th1' %.17g th2' %.17g m1 %g m2 %g l1 %g l2 %g g %g\n", at[i].q[0],
+           at[i].q[1], at[i].v[0], at[i].v[1], at[i].p[0], at[i].p[1], at[i].p[2], at[i].p[3], at[i].p[4]);
   }
   return failed != 0;
 }

@@ -1,7 +1,8 @@
-/* Adaptive steps over lanes: the emitted header all.h makes LANES motions at once, one.h the same ones by one, each with a start, parameters and ends of its own,
- * the last one backwards; lane 1 has an end that is no number, or with SINGULAR parameters of 0. METHOD: rk45 or dop853, or
- * taylor with TAYLOR; GIVEN: `, NULL` for a model with inputs; TOL: the tolerance. Lane 2 rests in the first part, and without HOLD its state
- * is 0. Exit status 0 when each lane has the bits of its motion alone: state, number of steps, memory of the method. */
+/* Adaptive steps over lanes: the emitted header all.h makes LANES motions at once, one.h the same ones by one, each
+ * with a start, parameters and ends of its own, the last one backwards; lane 1 has an end that is no number, or with
+ * SINGULAR parameters of 0. METHOD: rk45 or dop853, or taylor with TAYLOR; GIVEN: `, NULL` for a model with inputs;
+ * TOL: the tolerance. Lane 2 rests in the first part, and without HOLD its state is 0. Exit status 0 when each lane
+ * has the bits of its motion alone: state, number of steps, memory of the method. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -44,10 +45,13 @@ enum { KEPT = 2 };
 #endif
 enum { NUMBERS = 2 + 2*ONE_NY, BROKEN = 1, RESTS = 2, MOST = 100000 };
 
-/* The first step of lane k to try: 0, found by the method; or too long, so that tries follow each other. A lane that rests keeps it. */
+/* The first step of lane k to try: 0, found by the method; or too long, so that tries follow each other. A lane that
+ * rests keeps it. */
 static double first_of(int k) { return k % 2 || k == RESTS ? 0.3*(1 + k) : 0; }
 
-static double end_of(int k, int part) { return k == RESTS && part == 1 ? 0 : (k == LANES - 1 ? -0.1 : 1)*(0.7*part + 0.11*k*part); }
+static double end_of(int k, int part) {
+  return k == RESTS && part == 1 ? 0 : (k == LANES - 1 ? -0.1 : 1) * (0.7 * part + 0.11 * k * part);
+}
 
 /* Number i that lane k of a method keeps between steps. */
 static double kept(const all_memory *w, int i, int k) { return (&w->NEXT)[i][k]; }
@@ -104,13 +108,15 @@ static void together(all_state *s, all_memory *w, int *steps) {
   }
   begun = *w;
   for (int part = 1; part <= 2; part++) {
-    for (int k = 0; k < LANES; k++) end[k] = steps[k] < 0 ? s->t[k] : k == BROKEN && part == 2 ? (double)NAN : end_of(k, part);
+    for (int k = 0; k < LANES; k++)
+      end[k] = steps[k] < 0 ? s->t[k] : k == BROKEN && part == 2 ? (double)NAN : end_of(k, part);
     for (int turn = 0; turn < MOST; turn++) {
       const ALL_REAL before = s->t;
       const int status = STEP(all)(&p, s, w, end GIVEN);
       int rests = 1;
 #ifdef SINGULAR
-      if (part == 1 && turn == 0 && status != -(1 << BROKEN)) printf("lane %d is singular; the status is %d\n", BROKEN, status), steps[BROKEN] = MOST;
+      if (part == 1 && turn == 0 && status != -(1 << BROKEN))
+        printf("lane %d is singular; the status is %d\n", BROKEN, status), steps[BROKEN] = MOST;
 #endif
       for (int k = 0; k < LANES; k++) {
         steps[k] += s->t[k] < before[k] || s->t[k] > before[k];
@@ -120,7 +126,8 @@ static void together(all_state *s, all_memory *w, int *steps) {
       if (rests) break;
     }
     for (int i = 0; i < KEPT && part == 1; i++)
-      if (kept(w, i, RESTS) != kept(&begun, i, RESTS)) printf("lane %d rests, and number %d of its memory is %g\n", RESTS, i, kept(w, i, RESTS)), steps[RESTS] = MOST;
+      if (kept(w, i, RESTS) != kept(&begun, i, RESTS))
+        printf("lane %d rests, and number %d of its memory is %g\n", RESTS, i, kept(w, i, RESTS)), steps[RESTS] = MOST;
   }
 }
 
@@ -158,7 +165,8 @@ int main(void) {
       same &= memcmp(&x, &((double *)&t)[i], sizeof x) == 0;
     }
     if (same) continue;
-    printf("lane %d: %d steps, %d alone; t %.17g %.17g; number 1: %.17g, %.17g alone\n", k, steps[k], n, s.t[k], t.t, get((const ALL_REAL *)&s, 1, k), ((double *)&t)[1]);
+    printf("lane %d: %d steps, %d alone; t %.17g %.17g; number 1: %.17g, %.17g alone\n", k, steps[k], n, s.t[k], t.t,
+           get((const ALL_REAL *)&s, 1, k), ((double *)&t)[1]);
     bad = 1;
   }
   return bad;

@@ -1,5 +1,6 @@
-/* The pendulum in floats on a Cortex-M4, without a library's start-up code, as a process of Linux that qemu-arm runs: accelerations and energy
- * against closed forms, and a swing of small amplitude against a cosine. Exit status: number of the check that failed, or 0. */
+/* The pendulum in floats on a Cortex-M4, without a library's start-up code, as a process of Linux that qemu-arm
+ * runs: accelerations and energy against closed forms, and a swing of small amplitude against a cosine. Exit status:
+ * number of the check that failed, or 0. */
 #define PENDULUM_REAL float
 #define PENDULUM_STATIC
 #include "pendulum.h"
@@ -18,7 +19,8 @@ void _start(void) {
   pendulum_defaults(&p);
   pendulum_start(&p, &s);
   s.q[0] = 0.7f, s.v[0] = 0.4f;
-  if (pendulum_accel(s.t, s.q, s.v, &p, a) != PENDULUM_OK || differs(a[0], -6.31977551f, 2e-6f)) leave(1); /* -9.81 sin(0.7) */
+  /* -9.81 sin(0.7) */
+  if (pendulum_accel(s.t, s.q, s.v, &p, a) != PENDULUM_OK || differs(a[0], -6.31977551f, 2e-6f)) leave(1);
   pendulum_energy(s.t, s.q, s.v, &p, e);
   if (differs(e[0], 2.38689814f, 4e-6f)) leave(2); /* 9.81 (1 - cos(0.7)) + 0.4^2/2 */
   s.q[0] = 0.01f, s.v[0] = 0.0f, s.t = 0.0f;

@@ -1,4 +1,5 @@
-/* Contacts by Moreau's method in headers, against closed forms. REAL: the scalar; NEAR: relative tolerance of what is exact but for rounding. Exit status 0 when all hold. */
+/* Contacts by Moreau's method in headers, against closed forms. REAL: the scalar; NEAR: relative tolerance of what
+ * is exact but for rounding. Exit status 0 when all hold. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -36,7 +37,8 @@ static slope_state slope(double a, double v, double y, double t, double e, doubl
   s.v[SLOPE_X] = (REAL)v;
   s.q[SLOPE_Y] = (REAL)y;
   while (s.t < (REAL)(t - h/2)) {
-    if (slope_moreau_step(&p, &s, (REAL)h, 0) != SLOPE_OK) printf("a step fails at %g\n", (double)s.t), wrong = 1, s.t = (REAL)t;
+    if (slope_moreau_step(&p, &s, (REAL)h, 0) != SLOPE_OK)
+      printf("a step fails at %g\n", (double)s.t), wrong = 1, s.t = (REAL)t;
     touched[(int)s.touch[SLOPE_CONTACT_PLANE]] = 1;
     struck += s.struck[SLOPE_CONTACT_PLANE] > 0;
   }
@@ -80,14 +82,16 @@ static void copied(void) {
   was = s;
   for (int i = 0; i < 200; i++) wrong |= slope_moreau_step(&p, &s, (REAL)h, 0) != SLOPE_OK;
   for (int i = 0; i < 200; i++) wrong |= slope_moreau_step(&p, &was, (REAL)h, 0) != SLOPE_OK;
-  for (int i = 0; i < SLOPE_NQ; i++) near("a copy", s.q[i], (double)was.q[i], 0), near("its speed", s.v[i], (double)was.v[i], 0);
+  for (int i = 0; i < SLOPE_NQ; i++)
+    near("a copy", s.q[i], (double)was.q[i], 0), near("its speed", s.v[i], (double)was.v[i], 0);
   s.v[SLOPE_X] = (REAL)(HUGE_VAL);
   was = s;
   near("no step from an infinite state", (REAL)slope_moreau_step(&p, &s, (REAL)h, 0), SLOPE_ECONTACT, 0);
   near("which stays", s.t, (double)was.t, 0);
 }
 
-/* A ball with side spin in space: friction lies in the cone; it rolls on with 5/7 of its speed, and 2/7 of that of its spin across. */
+/* A ball with side spin in space: friction lies in the cone; it rolls on with 5/7 of its speed, and 2/7 of that of
+ * its spin across. */
 static void space(double turn) {
   puck_params p;
   puck_state s;
@@ -97,7 +101,10 @@ static void space(double turn) {
   s.v[PUCK_X] = (REAL)(5*c), s.v[PUCK_Y] = (REAL)(5*n), s.v[PUCK_A] = (REAL)(20*c), s.v[PUCK_B] = (REAL)(20*n);
   for (int i = 0; i < 2000; i++) {
     if (puck_moreau_step(&p, &s, (REAL)h, 0) != PUCK_OK) wrong = 1;
-    if (i == 500) near("friction is mu m g", (REAL)hypot((double)s.impulse[PUCK_CONTACT_FLOOR_SLIP_X], (double)s.impulse[PUCK_CONTACT_FLOOR_SLIP_Y]), 0.2*2*g*h, 10*NEAR);
+    if (i == 500)
+      near("friction is mu m g",
+           (REAL)hypot((double)s.impulse[PUCK_CONTACT_FLOOR_SLIP_X], (double)s.impulse[PUCK_CONTACT_FLOOR_SLIP_Y]),
+           0.2 * 2 * g * h, 10 * NEAR);
   }
   near("5/7", (REAL)(s.v[PUCK_X]*(REAL)c + s.v[PUCK_Y]*(REAL)n), 25./7, 1e5*NEAR);
   near("2/7", (REAL)(s.v[PUCK_Y]*(REAL)c - s.v[PUCK_X]*(REAL)n), -4./7, 1e5*NEAR);
@@ -114,7 +121,8 @@ static void wall(void) {
     if (wall_moreau_step(&p, &s, (REAL)h, 0) != WALL_OK) wrong = 1;
   near("hangs at the wall, 0.2 m from the line below, to half a step of its speed", s.q[WALL_X], 0.2, 3e-3);
   near("on its rod", s.q[WALL_X]*s.q[WALL_X] + s.q[WALL_Y]*s.q[WALL_Y], 1, 100*NEAR);
-  near("pressed by m g tan(a), sin(a) = x", s.impulse[WALL_CONTACT_WALL], g*h*(double)s.q[WALL_X]/sqrt(1 - (double)(s.q[WALL_X]*s.q[WALL_X])), 1000*NEAR);
+  near("pressed by m g tan(a), sin(a) = x", s.impulse[WALL_CONTACT_WALL],
+       g * h * (double)s.q[WALL_X] / sqrt(1 - (double)(s.q[WALL_X] * s.q[WALL_X])), 1000 * NEAR);
 }
 
 int main(void) {

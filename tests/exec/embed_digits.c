@@ -1,6 +1,6 @@
-/* Steps of a header against the runtime's, bit by bit, from a start within NEAR units in the last place: model M, header prefixes M and U, scene SCENE; METHOD by
- * name. TOL: tolerance of adaptive methods; STEPS: at most. A step in which the runtime finds an event is the last. Exit
- * status 0 when all are equal; prints how many there were. */
+/* Steps of a header against the runtime's, bit by bit, from a start within NEAR units in the last place: model M,
+ * header prefixes M and U, scene SCENE; METHOD by name. TOL: tolerance of adaptive methods; STEPS: at most. A step
+ * in which the runtime finds an event is the last. Exit status 0 when all are equal; prints how many there were. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -46,7 +46,9 @@ int main(void) {
   int n = 0, rc = lag_sim_advance(sim, SCENE.t0);
   if (rc != LAG_OK) return printf("%s\n", lag_sim_message(sim)), 2;
   JOIN(M, _gather)(&s, y);
-  if (!same(y, lag_sim_q(sim), NQ, NEAR) || !same(y + NQ, lag_sim_v(sim), NQ, NEAR) || !same(y + 2 * NQ, lag_sim_z(sim), NY - 2 * NQ, NEAR)) return printf("at the start\n"), 1;
+  if (!same(y, lag_sim_q(sim), NQ, NEAR) || !same(y + NQ, lag_sim_v(sim), NQ, NEAR) ||
+      !same(y + 2 * NQ, lag_sim_z(sim), NY - 2 * NQ, NEAR))
+    return printf("at the start\n"), 1;
   memcpy(y, lag_sim_q(sim), NQ * sizeof *y);
   memcpy(y + NQ, lag_sim_v(sim), NQ * sizeof *y);
   memcpy(y + 2 * NQ, lag_sim_z(sim), (NY - 2 * NQ) * sizeof *y);
@@ -55,17 +57,20 @@ int main(void) {
   for (; n < STEPS; n++) {
     rc = lag_sim_ensure_step(sim, far, &reach);
     if (rc == LAG_OK) rc = lag_sim_advance(sim, reach);
-    if (rc == LAG_EMETHOD) return STEP == 0 ? printf("Newton's method of the runtime fails in step %d, the header's does not\n", n), 1 : 0;
+    if (rc == LAG_EMETHOD)
+      return STEP == 0 ? printf("Newton's method of the runtime fails in step %d, the header's does not\n", n), 1 : 0;
     if (rc != LAG_OK) break;
     if (STEP != 0) return printf("the header's step %d fails\n", n), 1;
     if (s.t != lag_sim_time(sim)) {
       if (lag_sim_time(sim) < s.t && JOIN(U, _NEV) > 0) return printf("%d steps to an event\n", n), 0;
-      if (NEAR > 0 && s.t < lag_sim_time(sim)) return printf("%d steps to one whose error lies across the constraints\n", n), 0;
+      if (NEAR > 0 && s.t < lag_sim_time(sim))
+        return printf("%d steps to one whose error lies across the constraints\n", n), 0;
       printf("step %d, time: header %.17g, runtime %.17g\n", n, s.t, lag_sim_time(sim));
       return 1;
     }
     JOIN(M, _gather)(&s, y);
-    if (!same(y, lag_sim_q(sim), NQ, 0) || !same(y + NQ, lag_sim_v(sim), NQ, 0) || !same(y + 2 * NQ, lag_sim_z(sim), NY - 2 * NQ, 0)) {
+    if (!same(y, lag_sim_q(sim), NQ, 0) || !same(y + NQ, lag_sim_v(sim), NQ, 0) ||
+        !same(y + 2 * NQ, lag_sim_z(sim), NY - 2 * NQ, 0)) {
       printf("after step %d\n", n + 1);
       return 1;
     }

@@ -1,4 +1,5 @@
-/* Dry friction by Moreau's method in headers, against closed forms. REAL: the scalar; NEAR: tolerance of what is exact but for rounding. Exit status 0 when all hold. */
+/* Dry friction by Moreau's method in headers, against closed forms. REAL: the scalar; NEAR: tolerance of what is
+ * exact but for rounding. Exit status 0 when all hold. */
 #include <math.h>
 #include <stdio.h>
 
@@ -40,7 +41,8 @@ static void spring(void) {
     const spring_state was = s;
     if (spring_moreau_step(&p, &s, (REAL)h) != SPRING_OK) { wrong = 1; break; }
     if (!(was.v[0]*s.v[0] < 0) && !(s.touch[0] == SPRING_STICKS && was.touch[0] == SPRING_SLIPS)) continue;
-    swing -= 0.2, turns++; /* it turns within a step, at most k x h^2/2 from the end; that of the step's own friction adds up */
+    /* it turns within a step, at most k x h^2/2 from the end; that of the step's own friction adds up */
+    swing -= 0.2, turns++;
     near("swing", (REAL)fabs((double)s.q[0]), swing, 1e-5);
   }
   near("turns", (REAL)turns, 5, 0);
@@ -65,15 +67,20 @@ static void belt(void) {
   if (!(loose > 0 && caught > 0)) printf("it neither slips nor sticks\n"), wrong = 1;
 }
 
-/* A block slides on a plank, and that on a table: they go on together. Friction 3 N between them, 1 N below; masses 1 and 2 kg. */
+/* A block slides on a plank, and that on a table: they go on together. Friction 3 N between them, 1 N below; masses
+ * 1 and 2 kg. */
 static void plank(void) {
   plank_params p;
   plank_state s;
   plank_defaults(&p);
-  (void)plank_start(&p, &s); /* the block at 4 m/s: slows by 3, the plank gains (3 - 1)/2 = 1 m/s^2; equal after 1 s, at 1 m/s; then both slow by 1/3 */
+  /* the block at 4 m/s: slows by 3, the plank gains (3 - 1)/2 = 1 m/s^2; equal after 1 s, at 1 m/s; then both slow
+   * by 1/3 */
+  (void)plank_start(&p, &s);
   for (int i = 0; i < 2000; i++) {
     if (plank_moreau_step(&p, &s, (REAL)h) != PLANK_OK) { wrong = 1; break; }
-    if (i == 499) near("slides on it", s.touch[PLANK_SURFACE_SLIP_DOT], PLANK_SLIPS, 0), near("3 m/s^2", s.v[PLANK_X], 2.5, 1000*NEAR);
+    if (i == 499)
+      near("slides on it", s.touch[PLANK_SURFACE_SLIP_DOT], PLANK_SLIPS, 0),
+          near("3 m/s^2", s.v[PLANK_X], 2.5, 1000 * NEAR);
   }
   near("together", s.v[PLANK_X] - s.v[PLANK_Y], 0, 10*NEAR);
   near("at 1 - 1/3 m/s", s.v[PLANK_X], 2./3, 1000*NEAR);
@@ -85,7 +92,8 @@ static void plank(void) {
   near("sticks", s.touch[PLANK_SURFACE_Y_DOT], PLANK_STICKS, 0);
 }
 
-/* A bead on a straight wire that rises by 3/4, with friction 2 N along x; 10 N of weight pull 7.5 N back along x. Held; then a force that grows. */
+/* A bead on a straight wire that rises by 3/4, with friction 2 N along x; 10 N of weight pull 7.5 N back along x.
+ * Held; then a force that grows. */
 static void pull(void *context, REAL t, REAL *u) { (void)context, u[WIRE_IN_F] = 2*t; }
 
 static void wire(void) {

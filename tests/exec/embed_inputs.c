@@ -142,7 +142,8 @@ int main(void)
   lag_sim_free(sim);
 
   sim = lag_sim_new(&cart_push);
-  if (!sim || lag_sim_set_input(sim, "u", ramp, &grows) || lag_sim_set_input(sim, "u", NULL, NULL) || lag_sim_advance(sim, 2)) {
+  if (!sim || lag_sim_set_input(sim, "u", ramp, &grows) || lag_sim_set_input(sim, "u", NULL, NULL) ||
+      lag_sim_advance(sim, 2)) {
     return 1;
   }
   near("taken back: the model's formula", lag_sim_q(sim)[0], 1 * 4.0 / 4, 1e-9);
@@ -152,8 +153,8 @@ int main(void)
   lag_sim_free(sim);
 
   sim = lag_sim_new(&cart_push);
-  if (!sim || lag_sim_set_input(sim, "x", ramp, &grows) != LAG_EINVAL || lag_sim_set_input(sim, "uu", ramp, &grows) != LAG_EINVAL ||
-      !strstr(lag_sim_message(sim), "did you mean u?")) {
+  if (!sim || lag_sim_set_input(sim, "x", ramp, &grows) != LAG_EINVAL ||
+      lag_sim_set_input(sim, "uu", ramp, &grows) != LAG_EINVAL || !strstr(lag_sim_message(sim), "did you mean u?")) {
     printf("wrong names: %s\n", sim ? lag_sim_message(sim) : "no memory");
     bad = 1;
   }

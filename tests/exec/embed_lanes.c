@@ -1,6 +1,6 @@
-/* Many motions at once: the emitted header swing.h (lagc header models/double_pendulum.lag -o swing.h) over lanes. LANES double pendulums
- * with different starts and masses make the same steps in one loop; the same header, as one.h, makes them one by one, and
- * both end in the same place. Exit status 0 when they do. */
+/* Many motions at once: the emitted header swing.h (lagc header models/double_pendulum.lag -o swing.h) over lanes.
+ * LANES double pendulums with different starts and masses make the same steps in one loop; the same header, as
+ * one.h, makes them one by one, and both end in the same place. Exit status 0 when they do. */
 #include <math.h>
 #include <stdio.h>
 

@@ -1,6 +1,7 @@
-/* Functions of `lagc header --with all`, model A in doubles, against the same model B in quadruple precision, at states near the start: derivatives
- * against central differences of accelerations, products J x against J^T x, inverse against forward dynamics. HELD: arguments for inputs. Exit status
- * 0 when all hold; prints the worst ratios to the tolerances. */
+/* Functions of `lagc header --with all`, model A in doubles, against the same model B in quadruple precision, at
+ * states near the start: derivatives against central differences of accelerations, products J x against J^T x,
+ * inverse against forward dynamics. HELD: arguments for inputs. Exit status 0 when all hold; prints the worst ratios
+ * to the tolerances. */
 #include <math.h>
 #include <quadmath.h>
 #include <stdio.h>
@@ -15,7 +16,9 @@ typedef __float128 quad;
 static double worst[8];
 static const char *const what[8] = {"J", "B", "P", "J x", "J x . w", "inverse of forward", "inverse", "mass"};
 static void note(int k, double error, double size, double tolerance) {
-  const double r = error <= tolerance * size ? error / (tolerance * size + 1e-300) : error == error ? error / (tolerance * size + 1e-300) : HUGE_VAL;
+  const double r = error <= tolerance * size ? error / (tolerance * size + 1e-300)
+                   : error == error          ? error / (tolerance * size + 1e-300)
+                                             : HUGE_VAL;
   if (r > worst[k]) worst[k] = r;
 }
 
@@ -62,7 +65,8 @@ static void compare(int k, const double *J, const quad *d, const quad *rate, dou
 }
 
 static void at_state(double t, double *y, a_params *p, double *u) {
-  static double J[NY * NY + 1], A[NY * NY + 1], B[NY * NU + 1], P[NY * NP + 1], x[NY + 1], w[NY + 1], jx[NY + 1], jw[NY + 1];
+  static double J[NY * NY + 1], A[NY * NY + 1], B[NY * NU + 1], P[NY * NP + 1], x[NY + 1], w[NY + 1], jx[NY + 1],
+      jw[NY + 1];
   quad yq[NY + 1], uq[NU + 1], d[NY + 1], rate[NY + 1];
   b_params pq;
   b_defaults(&pq);
@@ -72,7 +76,8 @@ static void at_state(double t, double *y, a_params *p, double *u) {
 #if HAS_JAC
   double *const q = y, *const v = y + NQ, *const z = y + 2 * NQ;
   (void)q, (void)v, (void)z;
-  if (a_jac(ARGS, J) != a_OK || LINEARIZE != a_OK || a_jvp(ARGS, x, jx) != a_OK || a_vjp(ARGS, w, jw) != a_OK) worst[0] = HUGE_VAL;
+  if (a_jac(ARGS, J) != a_OK || LINEARIZE != a_OK || a_jvp(ARGS, x, jx) != a_OK || a_vjp(ARGS, w, jw) != a_OK)
+    worst[0] = HUGE_VAL;
   double left = 0, right = 0, sum = 0;
   rates(t, yq, &pq, uq, rate);
   for (int j = 0; j < NY; j++) {
@@ -85,7 +90,8 @@ static void at_state(double t, double *y, a_params *p, double *u) {
   for (int i = 0; i < NY * NY && CONSTRAINED; i++) all += fabs(J[i] * x[i % NY]);
   for (int i = 0; i < NY; i++) {
     double product = 0, terms = all;
-    for (int j = 0; j < NY; j++) product += J[i * NY + j] * x[j], terms += fabs(J[i * NY + j] * x[j]), sum += fabs(w[i] * J[i * NY + j] * x[j]);
+    for (int j = 0; j < NY; j++)
+      product += J[i * NY + j] * x[j], terms += fabs(J[i * NY + j] * x[j]), sum += fabs(w[i] * J[i * NY + j] * x[j]);
     note(3, fabs(product - jx[i]), terms, 1e-12);
     left += w[i] * jx[i];
     right += jw[i] * x[i];
@@ -107,7 +113,9 @@ static void at_state(double t, double *y, a_params *p, double *u) {
   static double M[NQ * NQ + 1], b[NQ + 1], a[NQ + 1], zd[NZ + 1], force[NQ + 1];
   double *const q1 = y, *const v1 = y + NQ, *const z1 = y + 2 * NQ;
   (void)zd, (void)z1;
-  if (a_mass(ARGS1, M) != a_OK || a_bias(ARGS1, b) != a_OK || ACCEL1 != a_OK || a_inverse_dynamics(ARGS1, a, force) != a_OK) worst[7] = HUGE_VAL;
+  if (a_mass(ARGS1, M) != a_OK || a_bias(ARGS1, b) != a_OK || ACCEL1 != a_OK ||
+      a_inverse_dynamics(ARGS1, a, force) != a_OK)
+    worst[7] = HUGE_VAL;
   for (int turn = 0; turn < 2; turn++) {
     double size = 0; /* |M||q''| + |f| */
     for (int i = 0; i < NQ; i++) {

@@ -1,5 +1,5 @@
-/* Parts of headers against closed forms: mass and bias of the double pendulum, constraints of the slider crank, events of the bouncing ball, names.
- * Exit status 0 when all hold. */
+/* Parts of headers against closed forms: mass and bias of the double pendulum, constraints of the slider crank,
+ * events of the bouncing ball, names. Exit status 0 when all hold. */
 #define DOUBLE_PENDULUM_IMPLEMENTATION
 #define SLIDER_CRANK_IMPLEMENTATION
 #define BOUNCING_BALL_IMPLEMENTATION
@@ -73,7 +73,9 @@ static void constraints(void) {
   slider_crank_accel(s.t, s.q, s.v, &p, a);
   slider_crank_multipliers(s.t, s.q, s.v, &p, lambda);
   near("M11 of the crank", M[0], p.J1, 0);
-  for (int i = 0; i < 3; i++) near("M q'' + b = A^T lambda", M[3 * i] * a[0] + M[3 * i + 1] * a[1] + M[3 * i + 2] * a[2] + b[i], A[i] * lambda[0] + A[3 + i] * lambda[1], 1e-13);
+  for (int i = 0; i < 3; i++)
+    near("M q'' + b = A^T lambda", M[3 * i] * a[0] + M[3 * i + 1] * a[1] + M[3 * i + 2] * a[2] + b[i],
+         A[i] * lambda[0] + A[3 + i] * lambda[1], 1e-13);
 }
 
 /* Bounces at sqrt(2h/g) (1 + 2e + 2e^2 + ...), with speeds e^k sqrt(2gh). */
@@ -97,7 +99,8 @@ static void events(void) {
   }
 }
 
-/* Steps longer than the flights, to the end of all bounces at fall (1 + e)/(1 - e): no bounce is passed over, and the end is told. */
+/* Steps longer than the flights, to the end of all bounces at fall (1 + e)/(1 - e): no bounce is passed over, and
+ * the end is told. */
 static void long_steps(void) {
   bouncing_ball_params p;
   bouncing_ball_state s, was;
@@ -119,7 +122,8 @@ static void long_steps(void) {
   near("and changes nothing", memcmp(&s, &was, sizeof s), 0, 0);
   near("where the bounces end", s.t, fall * (1 + p.e) / (1 - p.e), 1e-12);
 
-  for (int k = 0; k < 2; k++) { /* thrown from the floor, at once or after steps: exactly on the event, which waits until the ball has left it */
+  /* thrown from the floor, at once or after steps: exactly on the event, which waits until the ball has left it */
+  for (int k = 0; k < 2; k++) {
     bouncing_ball_start(&p, &s);
     s.q[0] = 0, s.v[0] = 3, s.lost[1] = k ? 1e-30 : 0;
     near("thrown", bouncing_ball_step_until_event(&p, &s, 1, &event), BOUNCING_BALL_OK, 0);

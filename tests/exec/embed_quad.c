@@ -1,4 +1,5 @@
-/* A header in quadruple precision, and in the complex numbers of C: the pendulum's acceleration against -g/l sin(th). */
+/* A header in quadruple precision, and in the complex numbers of C: the pendulum's acceleration against -g/l
+ * sin(th). */
 #ifdef QUAD
 #include <quadmath.h>
 #define PENDULUM_REAL __float128

@@ -1,5 +1,6 @@
-/* Taylor and variational steps of a header against closed forms: the pendulum with g = l = 1, released at a right angle, passes its lowest point at
- * K = (pi/2)/agm(1, sqrt(1/2)) with the speed sqrt(2). REAL: the scalar; QUAD: __float128. Exit status 0 when all hold. */
+/* Taylor and variational steps of a header against closed forms: the pendulum with g = l = 1, released at a right
+ * angle, passes its lowest point at K = (pi/2)/agm(1, sqrt(1/2)) with the speed sqrt(2). REAL: the scalar; QUAD:
+ * __float128. Exit status 0 when all hold. */
 #include <float.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +15,10 @@
 #else
 #define PENDULUM_REAL REAL
 #define NUMBER(x) ((REAL)x##L)
-#define EPSILON (sizeof(REAL) == sizeof(float) ? (REAL)FLT_EPSILON : sizeof(REAL) == sizeof(double) ? (REAL)DBL_EPSILON : (REAL)LDBL_EPSILON)
+#define EPSILON                                         \
+  (sizeof(REAL) == sizeof(float)    ? (REAL)FLT_EPSILON \
+   : sizeof(REAL) == sizeof(double) ? (REAL)DBL_EPSILON \
+                                    : (REAL)LDBL_EPSILON)
 #endif
 #define PENDULUM_IMPLEMENTATION
 #include "pendulum.h"
@@ -24,11 +28,13 @@ static int bad;
 static void near(const char *what, Real got, Real want, Real tolerance) {
   Real d = got - want;
   if (d <= tolerance && -d <= tolerance) return;
-  printf("%s: got %.20Lg, want %.20Lg, tolerance %Lg\n", what, (long double)got, (long double)want, (long double)tolerance);
+  printf("%s: got %.20Lg, want %.20Lg, tolerance %Lg\n", what, (long double)got, (long double)want,
+         (long double)tolerance);
   bad = 1;
 }
 
-static const Real quarter = NUMBER(1.854074677301371918433850347195260046), right = NUMBER(1.570796326794896619231321691639751442),
+static const Real quarter = NUMBER(1.854074677301371918433850347195260046),
+                  right = NUMBER(1.570796326794896619231321691639751442),
                   speed = NUMBER(1.414213562373095048801688724209698079);
 
 static void start(pendulum_params *p, pendulum_state *s) {
@@ -45,7 +51,8 @@ static int taylor_to(pendulum_params *p, pendulum_state *s, pendulum_taylor *w, 
   return steps;
 }
 
-/* Few steps, so that rounding stays near that of the result: 10 units in the last place of the angles that occur, and for a lower order the tolerance. */
+/* Few steps, so that rounding stays near that of the result: 10 units in the last place of the angles that occur,
+ * and for a lower order the tolerance. */
 static void taylor(int order, Real tolerance) {
   pendulum_params p;
   pendulum_state s;
@@ -63,7 +70,8 @@ static void taylor(int order, Real tolerance) {
   near("no number is refused", pendulum_taylor_step(&p, &s, &w, quarter) != PENDULUM_OK, 1, 0);
   near("and leaves the time", s.t, before.t, 0);
   s = before;
-  near("nor is it a time to reach", pendulum_taylor_step(&p, &s, &w, PENDULUM_FN(sqrt)(-NUMBER(1.0))), PENDULUM_ESTEP, 0);
+  near("nor is it a time to reach", pendulum_taylor_step(&p, &s, &w, PENDULUM_FN(sqrt)(-NUMBER(1.0))), PENDULUM_ESTEP,
+       0);
   pendulum_adaptive a;
   pendulum_adaptive_begin(&a, tolerance);
   near("for dop853 either", pendulum_dop853_step(&p, &s, &a, PENDULUM_FN(sqrt)(-NUMBER(1.0))), PENDULUM_ESTEP, 0);
@@ -71,9 +79,12 @@ static void taylor(int order, Real tolerance) {
 }
 
 /* Bits of two states. */
-static Real differs(const pendulum_state *a, const pendulum_state *b) { return a->t != b->t || a->q[0] != b->q[0] || a->v[0] != b->v[0]; }
+static Real differs(const pendulum_state *a, const pendulum_state *b) {
+  return a->t != b->t || a->q[0] != b->q[0] || a->v[0] != b->v[0];
+}
 
-/* A step of Taylor's method from the start at t, towards `until`; the first try is `first` long, or with 0 by the series. */
+/* A step of Taylor's method from the start at t, towards `until`; the first try is `first` long, or with 0 by the
+ * series. */
 static int taylor_once(Real t, Real until, Real first, pendulum_state *s, pendulum_taylor *w) {
   pendulum_params p;
   start(&p, s);
@@ -84,8 +95,8 @@ static int taylor_once(Real t, Real until, Real first, pendulum_state *s, pendul
   return pendulum_taylor_step(&p, s, w, until);
 }
 
-/* Steps beside the caller's time: up to 1e-4 too short they are stretched to it, longer ones end there, and are as if they had been tried so; a way of one rounding is
- * gone, where the step itself may be four roundings at least. */
+/* Steps beside the caller's time: up to 1e-4 too short they are stretched to it, longer ones end there, and are as
+ * if they had been tried so; a way of one rounding is gone, where the step itself may be four roundings at least. */
 static void taylor_ends(void) {
   static pendulum_taylor w;
   pendulum_state free_step, s, same;
@@ -109,7 +120,8 @@ static void taylor_ends(void) {
   near("a way of one rounding", taylor_once(1, 1 + EPSILON, 0, &s, &w), PENDULUM_OK, 0);
   near("is gone", s.t, 1 + EPSILON, 0);
   near("a step of two or three", taylor_once(1, 2, 3*EPSILON, &s, &w), PENDULUM_ESTEP, 0);
-  if (EPSILON < NUMBER(1e-15)) near("or one near the least number", taylor_once(0, 2, NUMBER(1e-306), &s, &w), PENDULUM_ESTEP, 0);
+  if (EPSILON < NUMBER(1e-15))
+    near("or one near the least number", taylor_once(0, 2, NUMBER(1e-306), &s, &w), PENDULUM_ESTEP, 0);
 }
 
 static Real variational_error(int order, int n) {

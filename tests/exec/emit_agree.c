@@ -46,7 +46,8 @@ static void random_state(Point *s) {
   for (int i = 0; i < MAX; i++) s->q[i] = next(), s->v[i] = next(), s->z[i] = next(), s->u[i] = next();
 }
 
-/* Of constraints with `while`, which contradict each other, the first alone holds; so do contacts beyond the number of coordinates, which are open. */
+/* Of constraints with `while`, which contradict each other, the first alone holds; so do contacts beyond the number
+ * of coordinates, which are open. */
 static void close_first(const Model *m, Point *s) {
   Name first = model_conditional(m);
   for (uint32_t i = 0; i < m->contacts.n; i++) {
@@ -114,11 +115,13 @@ static void take_away_multipliers(const Eqns *e, const Real *symbols, Real *left
   const Entries *A = &e->constraints.A;
   uint32_t n = e->n, w = n + e->constraints.n;
   Expr *roots = ARENA_ARRAY(arena, Expr, A->n + 1);
-  Real *K = ARENA_ARRAY(arena, Real, w * w), *x = ARENA_ARRAY(arena, Real, w), *value = ARENA_ARRAY(arena, Real, A->n + 1);
+  Real *K = ARENA_ARRAY(arena, Real, w * w), *x = ARENA_ARRAY(arena, Real, w),
+       *value = ARENA_ARRAY(arena, Real, A->n + 1);
   for (uint32_t k = 0; k < A->n; k++) roots[k] = A->at[k].e;
   expr_eval(e->g, roots, A->n, symbols, value);
   for (uint32_t i = 0; i < n; i++) K[i * w + i] = 1, x[i] = left[i];
-  for (uint32_t k = 0; k < A->n; k++) K[(n + A->at[k].row) * w + A->at[k].col] = K[A->at[k].col * w + n + A->at[k].row] = value[k];
+  for (uint32_t k = 0; k < A->n; k++)
+    K[(n + A->at[k].row) * w + A->at[k].col] = K[A->at[k].col * w + n + A->at[k].row] = value[k];
   dense_solve(arena, w, K, x, 1e-15L, NULL);
   for (uint32_t i = 0; i < n; i++) left[i] = x[i];
 }
@@ -128,7 +131,8 @@ static void take_away_multipliers(const Eqns *e, const Real *symbols, Real *left
 static int compare_graph(Eqns *e, const Prog *accel, const Prog *energy, const Point *s) {
   Arena *arena = e->m->arena;
   uint32_t n = e->n, nz = e->m->states.n, total = n + nz + 2 + e->mass.n, k = 0;
-  Real a[2 * MAX], f[2], *left = ARENA_ARRAY(arena, Real, n + 1), *size = ARENA_ARRAY(arena, Real, n + 1), tolerance = fmaxl(loose, 1e-15L);
+  Real a[2 * MAX], f[2], *left = ARENA_ARRAY(arena, Real, n + 1), *size = ARENA_ARRAY(arena, Real, n + 1),
+                         tolerance = fmaxl(loose, 1e-15L);
   const Real *in[ARR_COUNT] = {&s->t, s->q, s->v, s->z, s->p, s->u};
   Real *out[] = {a, a + n}, *out_energy[] = {f}, *value = ARENA_ARRAY(arena, Real, total);
   Expr *roots = ARENA_ARRAY(arena, Expr, total);
@@ -149,13 +153,16 @@ static int compare_graph(Eqns *e, const Prog *accel, const Prog *energy, const P
   }
   if (e->constraints.n) take_away_multipliers(e, symbol_values(e, s), left);
   for (uint32_t i = 0; i < n; i++)
-    if (!(fabsl(left[i]) <= tolerance * size[i])) return printf("%s: row %u of M q'' = f is left with %Lg of %Lg\n", e->m->name, i, left[i], size[i]), 1;
+    if (!(fabsl(left[i]) <= tolerance * size[i]))
+      return printf("%s: row %u of M q'' = f is left with %Lg of %Lg\n", e->m->name, i, left[i], size[i]), 1;
   for (uint32_t i = 0; i < nz; i++)
-    if (!(fabsl(a[n + i] - value[n + i]) <= tolerance * (1 + fabsl(value[n + i])))) return printf("%s: rate %u\n", e->m->name, i), 1;
+    if (!(fabsl(a[n + i] - value[n + i]) <= tolerance * (1 + fabsl(value[n + i]))))
+      return printf("%s: rate %u\n", e->m->name, i), 1;
   if (!e->energy) return 0;
   prog_eval(energy, in, out_energy);
   Real scale = 1 + (isnan(value[k - 1]) ? fabsl(value[k - 2]) : fabsl(value[k - 1]));
-  int rates = (expr_kinds(e->g, e->energy_scale) & 1u << SYM_RATE) != 0; /* of coordinates of first order, which the graph has no values of */
+  /* of coordinates of first order, which the graph has no values of */
+  int rates = (expr_kinds(e->g, e->energy_scale) & 1u << SYM_RATE) != 0;
   if (agree(f[0], value[k - 2], tolerance * scale) && (rates || agree(f[1], value[k - 1], tolerance * scale))) return 0;
   return printf("%s: the energy is %.21Lg, of the graph %.21Lg\n", e->m->name, f[0], value[k - 2]), 1;
 }
@@ -197,7 +204,8 @@ static int check_model(Arena *arena, const char *path, const lag_scene *scene) {
   if (scene->model->np + scene->model->nderived > PARAMS) return printf("%s has too many parameters\n", m->name), 1;
   if (scene->model->nw > WORK) return printf("%s has too much work space\n", m->name), 1;
   Prog *accel = lower_accel(e, 0), *energy = lower_energy(e);
-  loose = strcmp(m->name, "compass_walker") == 0 ? fmaxl(LOOSE, 1e-9L) : LOOSE; /* its feet have a millionth of the mass: rows of the solution lose that much */
+  /* its feet have a millionth of the mass: rows of the solution lose that much */
+  loose = strcmp(m->name, "compass_walker") == 0 ? fmaxl(LOOSE, 1e-9L) : LOOSE;
   Point s;
   seed = 7; /* the states of a model do not depend on which models come before it */
   scene->params(s.p, none);
@@ -206,7 +214,8 @@ static int check_model(Arena *arena, const char *path, const lag_scene *scene) {
     random_state(&s);
     close_first(m, &s);
     if (compare(scene->model, accel, energy, &s)) return 1;
-    if (i < GRAPH_STATES && !e->switches.nmodes && compare_graph(e, accel, energy, &s)) return 1; /* which has no held branches */
+    /* which has no held branches */
+    if (i < GRAPH_STATES && !e->switches.nmodes && compare_graph(e, accel, energy, &s)) return 1;
     if (scene->model->variation && i < 3 && compare_variation(scene->model, e, &s)) return 1;
   }
   return 0;

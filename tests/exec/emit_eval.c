@@ -37,8 +37,10 @@ static void evaluate(const lag_scene *s) {
   if (m->inputs) m->inputs(k.t, k.p, k.u);
   int status = m->accel(k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.out + m->nq, k.w);
   print(m->name, "accel", status, k.out, m->nq + m->nz);
-  if (m->energy) status = m->energy(k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.w), print(m->name, "energy", status, k.out, 2);
-  if (m->events) status = m->events(k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.w), print(m->name, "events", status, k.out, m->nev);
+  if (m->energy)
+    status = m->energy(k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.w), print(m->name, "energy", status, k.out, 2);
+  if (m->events)
+    status = m->events(k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.w), print(m->name, "events", status, k.out, m->nev);
   status = s->observe(k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.w);
   print(m->name, "observe", status, k.out, s->nout);
 }
@@ -52,7 +54,9 @@ int main(void) {
     seed = 1;
     for (int i = 0; i < s->model->nu; i++) k.u[i] = 0; /* contacts are open */
     for (int i = 0; i < s->model->nmodes; i++) k.u[s->model->nu + i] = (LAG_REAL)LAG_FREE;
-    int halvings = 0; /* of the second, to the span where that is shorter: the phase of a fast field has no digits in floats after a second */
+    /* of the second, to the span where that is shorter: the phase of a fast field has no digits in floats after a
+     * second */
+    int halvings = 0;
     while (halvings < 60 && ldexp(1, -halvings) > fabs(s->t1 - s->t0)) halvings++;
     for (int state = 0; state < STATES; state++) {
       k.t = (LAG_REAL)ldexp(next(), -halvings);

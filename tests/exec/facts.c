@@ -3,10 +3,11 @@
  *
  * A line of a .facts file is a comment (#), an abbreviation `let NAME = EXPRESSION`, or a fact in four columns
  *   SCENE [name=value | --tol X | --until T | --method NAME]... | LEFT = RIGHT | TOLERANCE [rel] | why it holds
- * The first column is what one types after `lagc run MODEL`. Both sides are measures (tests/measure_words.h) in SI units, angles in
- * radians: th(2) at a time, also after the end of the run; max(x), period(x), hit(NAME, 3), ...; pi deg au day; and the functions of the table
- * `functions` below. The fact holds when |LEFT - RIGHT| <= TOLERANCE (rel: times |RIGHT|). Successive facts with the same first column share one run.
- * GSL evaluates the special functions; without it (no -DFACTS_GSL) the facts that need them are skipped. */
+ * The first column is what one types after `lagc run MODEL`. Both sides are measures (tests/measure_words.h) in SI
+ * units, angles in radians: th(2) at a time, also after the end of the run; max(x), period(x), hit(NAME, 3), ...; pi
+ * deg au day; and the functions of the table `functions` below. The fact holds when |LEFT - RIGHT| <= TOLERANCE
+ * (rel: times |RIGHT|). Successive facts with the same first column share one run. GSL evaluates the special
+ * functions; without it (no -DFACTS_GSL) the facts that need them are skipped. */
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -131,7 +132,8 @@ static const char *text_of_let(const char *name) {
 }
 
 static Measures *compile(const lag_scene *scene, int n, const char *const *text, char *why) {
-  static const MeasureDialect extended = {.past_end = 1, .nfunctions = sizeof functions/sizeof *functions, .functions = functions};
+  static const MeasureDialect extended = {
+      .past_end = 1, .nfunctions = sizeof functions / sizeof *functions, .functions = functions};
   enum { WORDS = 12*LINE }; /* names of lets are expanded */
   static char words[2*MAX_FACTS][WORDS];
   static const char *all[2*MAX_FACTS];
@@ -150,8 +152,11 @@ static void compare(Fact *f, double left, double right, const char *why_left, co
   double tol = strtod(f->columns[2], &end), error = fabs(left - right);
   end = trim(end);
   double allowed = *end ? tol*fabs(right) : tol;
-  if (!(tol > 0) || (*end && strcmp(end, "rel") != 0)) fail(f->why, 0, "a tolerance is a number > 0, and `rel` after it or nothing");
-  else if (!(error <= allowed)) fail(f->why, 0, "%.17g and %.17g differ by %.3g, more than %.3g %s %s", left, right, error, allowed, why_left, why_right);
+  if (!(tol > 0) || (*end && strcmp(end, "rel") != 0))
+    fail(f->why, 0, "a tolerance is a number > 0, and `rel` after it or nothing");
+  else if (!(error <= allowed))
+    fail(f->why, 0, "%.17g and %.17g differ by %.3g, more than %.3g %s %s", left, right, error, allowed, why_left,
+         why_right);
   else f->holds = 1, fail(f->why, 0, " (off by %.1e, allowed %.1e)", error, allowed);
   f->skipped = missing && (isnan(left) || isnan(right));
 }
@@ -183,7 +188,8 @@ static void judge(Fact *f, int n) {
   for (int i = 0, k = 0; i < n; i++) {
     if (f[i].why[0]) continue;
     if (why[0]) strcpy(f[i].why, why);
-    else compare(&f[i], value[k], value[k + 1], lag_measures_why(m, k), failed[0] ? failed : lag_measures_why(m, k + 1));
+    else
+      compare(&f[i], value[k], value[k + 1], lag_measures_why(m, k), failed[0] ? failed : lag_measures_why(m, k + 1));
     k += 2;
   }
   lag_measures_free(m);
@@ -198,7 +204,8 @@ static void take_fact(const char *line) {
   f->number = nfacts;
   for (int i = 0; i < 4; i++) f->columns[i] = f->line + strlen(f->line);
   f->columns[0] = f->line;
-  for (char *bar = strchr(f->line, '|'); bar && k < 4; bar = strchr(f->columns[k - 1], '|')) *bar = '\0', f->columns[k++] = bar + 1;
+  for (char *bar = strchr(f->line, '|'); bar && k < 4; bar = strchr(f->columns[k - 1], '|'))
+    *bar = '\0', f->columns[k++] = bar + 1;
   for (int i = 0; i < 4; i++) f->columns[i] = trim(f->columns[i]);
   f->right = strchr(f->columns[1], '=');
   if (k < 4) fail(f->why, 0, "it has %d columns of 4", k);
@@ -240,8 +247,11 @@ int main(int argc, char **argv) {
     judge(&facts[i], n);
     for (const Fact *f = &facts[i]; f < &facts[i + n]; f++) {
       failed += !f->holds && !f->skipped;
-      printf("%s %d - %s %s: %s = %s%s\n", f->holds || f->skipped ? "ok" : "not ok", f->number, argv[1], f->columns[0], f->columns[1], f->right ? f->right : "",
-             f->skipped ? " # SKIP needs GSL" : f->holds ? f->why : "");
+      printf("%s %d - %s %s: %s = %s%s\n", f->holds || f->skipped ? "ok" : "not ok", f->number, argv[1], f->columns[0],
+             f->columns[1], f->right ? f->right : "",
+             f->skipped ? " # SKIP needs GSL"
+             : f->holds ? f->why
+                        : "");
       if (!f->holds && !f->skipped) printf("# %s\n# it should hold: %s\n", f->why, f->columns[3]);
     }
   }

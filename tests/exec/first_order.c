@@ -1,6 +1,6 @@
-/* The method gauss on Lagrangians that are linear in the velocities, by closed forms and by what the exact motion keeps: first_order TEST.
- * Linked with the emitted scenes pair, three (tests/hard/cases), cycle (models/lotka_volterra.lag) and banana (models/guiding_centre.lag).
- * Prints TAP. */
+/* The method gauss on Lagrangians that are linear in the velocities, by closed forms and by what the exact motion
+ * keeps: first_order TEST. Linked with the emitted scenes pair, three (tests/hard/cases), cycle
+ * (models/lotka_volterra.lag) and banana (models/guiding_centre.lag). Prints TAP. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,7 +59,8 @@ static void orders(void) {
     char what[80];
     double order = log2(pair_error(s, h[s - 1], 40) / pair_error(s, h[s - 1] / 2, 40));
     snprintf(what, sizeof what, "%d stages: order less %d", s, 2 * s);
-    check(fabs(order - 2 * s) < 0.15, what, fabs(order - 2 * s), 0.15); /* the next power of h is the second: (h/pi)^2/4 < 0.5 of 1 in log2 */
+    /* the next power of h is the second: (h/pi)^2/4 < 0.5 of 1 in log2 */
+    check(fabs(order - 2 * s) < 0.15, what, fabs(order - 2 * s), 0.15);
     order = log2(pair_error(s, h[s - 1], 40 + 0.3 * h[s - 1]) / pair_error(s, h[s - 1] / 2, 40 + 0.15 * h[s - 1]));
     snprintf(what, sizeof what, "%d stages: order between steps less %d", s, 2 * s);
     check(fabs(order - 2 * s) < 0.35, what, fabs(order - 2 * s), 0.35);
@@ -95,7 +96,9 @@ static double form_change(int stages, double h, double t) {
 }
 
 static void symplectic(void) {
-  for (int s = 1; s <= 4; s++) check(form_change(s, 0.25, 25) < 1e-13, "the step keeps the two-form of three vortices", form_change(s, 0.25, 25), 1e-13);
+  for (int s = 1; s <= 4; s++)
+    check(form_change(s, 0.25, 25) < 1e-13, "the step keeps the two-form of three vortices", form_change(s, 0.25, 25),
+          1e-13);
   check(form_change(2, 0.25, 25.1) < 1e-13, "so does a part of a step", form_change(2, 0.25, 25.1), 1e-13);
   check(form_change(0, 0.25, 25) > 1e-9, "this test sees that rk4 does not", form_change(0, 0.25, 25), 1e-9);
 }
@@ -105,7 +108,8 @@ typedef struct {
   double mean[10], swing;
 } Energies;
 
-static Energies energies(const lag_scene *scene, int stages, double h, int steps, double (*energy)(const double *z, const double *p)) {
+static Energies energies(const lag_scene *scene, int stages, double h, int steps,
+                         double (*energy)(const double *z, const double *p)) {
   lag_sim *sim = open_run(scene, stages, h);
   Energies e = {{0}, 0};
   double first = 0;
@@ -150,8 +154,9 @@ static double of_banana(const double *z, const double *p) { /* R z phi u; q mu *
   return z[3] * z[3] / 2 + p[1] * sqrt(1 + (x * x + z[1] * z[1]) / (p[0] * p[0])) / z[0];
 }
 
-/* 1e5 steps so long that the energy swings by far more than rounding; a trend would be seen among the means of tenths. What is left is
- * that a tenth holds no whole number of swings: some hundred of them, so below 1e-2. rk4 shows that a trend is found. */
+/* 1e5 steps so long that the energy swings by far more than rounding; a trend would be seen among the means of
+ * tenths. What is left is that a tenth holds no whole number of swings: some hundred of them, so below 1e-2. rk4
+ * shows that a trend is found. */
 static void long_runs(void) {
   static const struct {
     const char *name;
@@ -176,7 +181,8 @@ static void long_runs(void) {
   check(trend(&e) > 0.5, "this test sees the trend of rk4", trend(&e), 0.5);
 }
 
-/* sum G_i x_i, sum G_i y_i, sum G_i (x_i^2 + y_i^2): for steps of any size. 1e4 steps round by 1e-16 each, at random. */
+/* sum G_i x_i, sum G_i y_i, sum G_i (x_i^2 + y_i^2): for steps of any size. 1e4 steps round by 1e-16 each, at
+ * random. */
 static void invariants(void) {
   lag_sim *sim = open_run(&vortices_3_go, 2, 0.5);
   double first[3] = {0}, worst = 0;

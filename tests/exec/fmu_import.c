@@ -1,9 +1,11 @@
-/* An importer of FMUs, written from the FMI standard 2.0 and 3.0 (-DFMI=2 or 3): loads an unpacked FMU and compares its motion with rows of a table,
- * or tries what the standard asks of saved states, refusals and the end of a run.
+/* An importer of FMUs, written from the FMI standard 2.0 and 3.0 (-DFMI=2 or 3): loads an unpacked FMU and compares
+ * its motion with rows of a table, or tries what the standard asks of saved states, refusals and the end of a run.
  *   fmu_import FOLDER BINARY MODE TABLE.csv TOLERANCE SUBSTEPS [name=value ...]
- * me: model exchange, by the classical Runge-Kutta method with SUBSTEPS steps a row, and bisection to events. cs: co-simulation, a step a row.
- * halts: a motion that ends at t = 1, where a force loses its value: the standard's answers.
- * derivatives: directional derivatives by the variables named, beside differences. saved: co-simulation, in which each row is computed anew from a saved and from a serialized state, with the same bits. @name=value: set after the start. */
+ * me: model exchange, by the classical Runge-Kutta method with SUBSTEPS steps a row, and bisection to events. cs:
+ * co-simulation, a step a row. halts: a motion that ends at t = 1, where a force loses its value: the standard's
+ * answers. derivatives: directional derivatives by the variables named, beside differences. saved: co-simulation, in
+ * which each row is computed anew from a saved and from a serialized state, with the same bits. @name=value: set
+ * after the start. */
 #ifdef _WIN32
 #include <windows.h>
 #define dlopen(path, flags) LoadLibraryA(path)
@@ -123,17 +125,23 @@ static const struct {
   void *environment;
 } callbacks = {logged, calloc, free, NULL, NULL};
 static Instance instance_new(const char *token, int cosim) {
-  return ((Instance (*)(const char *, int, const char *, const char *, const void *, int, int))function("fmi2Instantiate"))("one", cosim, token, "", &callbacks, 0, 0);
+  return ((Instance(*)(const char *, int, const char *, const char *, const void *, int, int))function(
+      "fmi2Instantiate"))("one", cosim, token, "", &callbacks, 0, 0);
 }
 static int set_up(double tolerance, double start) {
   return CALL("fmi2SetupExperiment", (Instance, int, double, double, int, double), c, 1, tolerance, start, 0, 0.0);
 }
 static void initialize(double tolerance, double start) {
-  ok(CALL("fmi2SetupExperiment", (Instance, int, double, double, int, double), c, 1, tolerance, start, 0, 0.0), "SetupExperiment");
+  ok(CALL("fmi2SetupExperiment", (Instance, int, double, double, int, double), c, 1, tolerance, start, 0, 0.0),
+     "SetupExperiment");
   ok(CALL("fmi2EnterInitializationMode", (Instance), c), "EnterInitializationMode");
 }
-static int get_real(const Ref *r, int n, double *x) { return CALL("fmi2GetReal", (Instance, const Ref *, size_t, double *), c, r, (size_t)n, x); }
-static int set_real(const Ref *r, int n, const double *x) { return CALL("fmi2SetReal", (Instance, const Ref *, size_t, const double *), c, r, (size_t)n, x); }
+static int get_real(const Ref *r, int n, double *x) {
+  return CALL("fmi2GetReal", (Instance, const Ref *, size_t, double *), c, r, (size_t)n, x);
+}
+static int set_real(const Ref *r, int n, const double *x) {
+  return CALL("fmi2SetReal", (Instance, const Ref *, size_t, const double *), c, r, (size_t)n, x);
+}
 static int step(double from, double by) {
   int status = CALL("fmi2DoStep", (Instance, double, double, int), c, from, by, 1), terminated = 0;
   now = from + by;
@@ -148,29 +156,39 @@ static int discrete_states(int *states) {
     int again, terminate, nominals, states, has_next;
     double next;
   } info = {1, 0, 0, 0, 0, 0};
-  for (*states = 0; info.again; *states |= info.states) ok(CALL("fmi2NewDiscreteStates", (Instance, void *), c, &info), "NewDiscreteStates");
+  for (*states = 0; info.again; *states |= info.states)
+    ok(CALL("fmi2NewDiscreteStates", (Instance, void *), c, &info), "NewDiscreteStates");
   next_event = info.has_next ? info.next : HUGE_VAL;
   return info.terminate;
 }
 #else
 static Instance instance_new(const char *token, int cosim) {
   if (!cosim)
-    return ((Instance (*)(const char *, const char *, const char *, bool, bool, void *, void (*)(void)))function("fmi3InstantiateModelExchange"))
-           ("one", token, "", false, false, NULL, logged);
-  return ((Instance (*)(const char *, const char *, const char *, bool, bool, bool, bool, const Ref *, size_t, void *, void (*)(void), void *))
-          function("fmi3InstantiateCoSimulation"))("one", token, "", false, false, false, false, NULL, 0, NULL, logged, NULL);
+    return ((Instance(*)(const char *, const char *, const char *, bool, bool, void *, void (*)(void)))function(
+        "fmi3InstantiateModelExchange"))("one", token, "", false, false, NULL, logged);
+  return ((Instance(*)(const char *, const char *, const char *, bool, bool, bool, bool, const Ref *, size_t, void *,
+                       void (*)(void), void *))function("fmi3InstantiateCoSimulation"))(
+      "one", token, "", false, false, false, false, NULL, 0, NULL, logged, NULL);
 }
 static int set_up(double tolerance, double start) {
-  return CALL("fmi3EnterInitializationMode", (Instance, bool, double, double, bool, double), c, true, tolerance, start, false, 0.0);
+  return CALL("fmi3EnterInitializationMode", (Instance, bool, double, double, bool, double), c, true, tolerance, start,
+              false, 0.0);
 }
 static void initialize(double tolerance, double start) {
-  ok(CALL("fmi3EnterInitializationMode", (Instance, bool, double, double, bool, double), c, true, tolerance, start, false, 0.0), "EnterInitializationMode");
+  ok(CALL("fmi3EnterInitializationMode", (Instance, bool, double, double, bool, double), c, true, tolerance, start,
+          false, 0.0),
+     "EnterInitializationMode");
 }
-static int get_real(const Ref *r, int n, double *x) { return CALL("fmi3GetFloat64", (Instance, const Ref *, size_t, double *, size_t), c, r, (size_t)n, x, (size_t)n); }
-static int set_real(const Ref *r, int n, const double *x) { return CALL("fmi3SetFloat64", (Instance, const Ref *, size_t, const double *, size_t), c, r, (size_t)n, x, (size_t)n); }
+static int get_real(const Ref *r, int n, double *x) {
+  return CALL("fmi3GetFloat64", (Instance, const Ref *, size_t, double *, size_t), c, r, (size_t)n, x, (size_t)n);
+}
+static int set_real(const Ref *r, int n, const double *x) {
+  return CALL("fmi3SetFloat64", (Instance, const Ref *, size_t, const double *, size_t), c, r, (size_t)n, x, (size_t)n);
+}
 static int step(double from, double by) {
   bool event, terminate, early;
-  int status = CALL("fmi3DoStep", (Instance, double, double, bool, bool *, bool *, bool *, double *), c, from, by, true, &event, &terminate, &early, &now);
+  int status = CALL("fmi3DoStep", (Instance, double, double, bool, bool *, bool *, bool *, double *), c, from, by, true,
+                    &event, &terminate, &early, &now);
   stopped = terminate;
   return status;
 }
@@ -178,24 +196,30 @@ static int discrete_states(int *states) {
   bool again = true, terminate = false, nominals, changed, has_next = false;
   double next = 0;
   for (*states = 0; again; *states |= changed)
-    ok(CALL("fmi3UpdateDiscreteStates", (Instance, bool *, bool *, bool *, bool *, bool *, double *), c, &again, &terminate, &nominals, &changed, &has_next, &next), "UpdateDiscreteStates");
+    ok(CALL("fmi3UpdateDiscreteStates", (Instance, bool *, bool *, bool *, bool *, bool *, double *), c, &again,
+            &terminate, &nominals, &changed, &has_next, &next),
+       "UpdateDiscreteStates");
   next_event = has_next ? next : HUGE_VAL;
   return terminate;
 }
 #endif
 
-static void get_states(double *x) { ok(CALL(PREFIX "GetContinuousStates", (Instance, double *, size_t), c, x, (size_t)nx), "GetContinuousStates"); }
+static void get_states(double *x) {
+  ok(CALL(PREFIX "GetContinuousStates", (Instance, double *, size_t), c, x, (size_t)nx), "GetContinuousStates");
+}
 static void put(double t, const double *x) {
   ok(CALL(PREFIX "SetTime", (Instance, double), c, t), "SetTime");
   ok(CALL(PREFIX "SetContinuousStates", (Instance, const double *, size_t), c, x, (size_t)nx), "SetContinuousStates");
 }
 static void rates_at(double t, const double *x, double *f) {
   put(t, x);
-  ok(CALL(SPELLED("GetDerivatives", "GetContinuousStateDerivatives"), (Instance, double *, size_t), c, f, (size_t)nx), "derivatives");
+  ok(CALL(SPELLED("GetDerivatives", "GetContinuousStateDerivatives"), (Instance, double *, size_t), c, f, (size_t)nx),
+     "derivatives");
 }
 static void indicators_at(double t, const double *x, double *g) {
   put(t, x);
-  if (nevents) ok(CALL(PREFIX "GetEventIndicators", (Instance, double *, size_t), c, g, (size_t)nevents), "GetEventIndicators");
+  if (nevents)
+    ok(CALL(PREFIX "GetEventIndicators", (Instance, double *, size_t), c, g, (size_t)nevents), "GetEventIndicators");
 }
 
 /* ---- model exchange ---- */
@@ -224,7 +248,8 @@ static void event_mode(void) {
   ok(CALL(PREFIX "EnterContinuousTimeMode", (Instance), c), "EnterContinuousTimeMode");
 }
 
-/* Integrates to the time `end`; a crossing of an event indicator within a step is found by bisection of the step. Steps end at time events; one at `end` happens in the next call. */
+/* Integrates to the time `end`; a crossing of an event indicator within a step is found by bisection of the step.
+ * Steps end at time events; one at `end` happens in the next call. */
 static void exchange(double end, int substeps) {
   const double h = (end - now)/substeps;
   double x[MOST], y[MOST], g[MOST], after[MOST];
@@ -251,7 +276,8 @@ static void exchange(double end, int substeps) {
     }
     now += by;
     put(now, y);
-    ok(CALL(PREFIX "CompletedIntegratorStep", (Instance, Bool, Bool *, Bool *), c, 1, &wants, &terminate), "CompletedIntegratorStep");
+    ok(CALL(PREFIX "CompletedIntegratorStep", (Instance, Bool, Bool *, Bool *), c, 1, &wants, &terminate),
+       "CompletedIntegratorStep");
     stopped |= terminate;
     if (event || wants) event_mode();
     get_states(x);
@@ -273,7 +299,8 @@ static void saved_step(double by, const Ref *r, int n) {
   double t = now, x[MOST];
   size_t size = 0;
   ok(CALL(PREFIX "Get" STATE, (Instance, void **), c, &state), "get the state");
-  ok(CALL(PREFIX "Serialized" STATE "Size", (Instance, void *, size_t *), c, state, &size), "size of a serialized state");
+  ok(CALL(PREFIX "Serialized" STATE "Size", (Instance, void *, size_t *), c, state, &size),
+     "size of a serialized state");
   char *bytes = malloc(size);
   ok(CALL(PREFIX "Serialize" STATE, (Instance, void *, char *, size_t), c, state, bytes, size), "serialize");
   ok(step(t, by), "DoStep");
@@ -282,7 +309,8 @@ static void saved_step(double by, const Ref *r, int n) {
   ok(CALL(DESERIALIZE, (Instance, const char *, size_t, void **), c, bytes, size, &copy), "deserialize");
   void *none = NULL;
   bytes[0] ^= 1;
-  if (CALL(DESERIALIZE, (Instance, const char *, size_t, void **), c, bytes, size, &none) == 0) fail("the state of another FMU is taken");
+  if (CALL(DESERIALIZE, (Instance, const char *, size_t, void **), c, bytes, size, &none) == 0)
+    fail("the state of another FMU is taken");
   if (messages != 1) fail("a refusal without a message");
   messages = 0;
   again_from(copy, t, by, r, n, x); /* which the standards allow after an error */
@@ -297,13 +325,18 @@ static void saved_step(double by, const Ref *r, int n) {
 /* Directional derivative of unknown[n] by one variable. */
 static int derivative(const Ref *unknown, int n, Ref known, double seed, double *exact) {
 #if FMI == 2
-  return CALL("fmi2GetDirectionalDerivative", (Instance, const Ref *, size_t, const Ref *, size_t, const double *, double *), c, unknown, (size_t)n, &known, 1, &seed, exact);
+  return CALL("fmi2GetDirectionalDerivative",
+              (Instance, const Ref *, size_t, const Ref *, size_t, const double *, double *), c, unknown, (size_t)n,
+              &known, 1, &seed, exact);
 #else
-  return CALL("fmi3GetDirectionalDerivative", (Instance, const Ref *, size_t, const Ref *, size_t, const double *, size_t, double *, size_t), c, unknown, (size_t)n, &known, 1, &seed, 1, exact, (size_t)n);
+  return CALL("fmi3GetDirectionalDerivative",
+              (Instance, const Ref *, size_t, const Ref *, size_t, const double *, size_t, double *, size_t), c,
+              unknown, (size_t)n, &known, 1, &seed, 1, exact, (size_t)n);
 #endif
 }
 
-/* Outputs and rates with the known variable moved by `by`: component `at` of the state, or, for at < 0, an input or a parameter. */
+/* Outputs and rates with the known variable moved by `by`: component `at` of the state, or, for at < 0, an input or
+ * a parameter. */
 static void moved(const double *x, int at, Ref input, double value, double by, const Ref *r, int n, double *out) {
   double y[MOST], u = value + by;
   memcpy(y, x, sizeof y);
@@ -381,7 +414,8 @@ static void refusals(const char *token) {
   refuses("a parameter against its sign", set_real(&p, 1, &y));
   refuses("a parameter that is infinite", set_real(&p, 1, &endless));
   refuses("a start that is not a number", set_real(&start, 1, &nothing));
-  refuses("an integer", CALL(SPELLED("GetInteger", "GetInt32"), (Instance, const Ref *, size_t, int *, size_t), c, &p, 1, (int *)&x, 1));
+  refuses("an integer", CALL(SPELLED("GetInteger", "GetInt32"), (Instance, const Ref *, size_t, int *, size_t), c, &p,
+                             1, (int *)&x, 1));
   refuses("values without an array", get_real(&p, 1, NULL));
   refuses("a start time that is not a number", set_up(1e-9, nothing));
   refuses("an infinite start time", set_up(1e-9, endless));
@@ -415,7 +449,9 @@ static void refusals(const char *token) {
   refuses("events after the end", CALL(PREFIX "EnterEventMode", (Instance), c));
   Instance was = c;
   c = NULL;
-  if (step(0, 0.1) != 3 || get_real(&p, 1, &x) != 3 || CALL(PREFIX "Reset", (Instance), c) != 3 || CALL(PREFIX "Terminate", (Instance), c) != 3) fail("no instance");
+  if (step(0, 0.1) != 3 || get_real(&p, 1, &x) != 3 || CALL(PREFIX "Reset", (Instance), c) != 3 ||
+      CALL(PREFIX "Terminate", (Instance), c) != 3)
+    fail("no instance");
   c = was;
 }
 
@@ -427,7 +463,8 @@ static void begin(const char *token, int cosim) {
   ok(CALL(PREFIX "ExitInitializationMode", (Instance), c), "ExitInitializationMode");
 }
 
-/* DISCARD where part of the step is made, or a smaller one may be; ERROR where none is: an importer that tried again would do so without end. */
+/* DISCARD where part of the step is made, or a smaller one may be; ERROR where none is: an importer that tried again
+ * would do so without end. */
 static void halts(const char *token) {
   double x[2] = {0}, f[2], beyond = 1.5;
   begin(token, 1);
@@ -442,10 +479,13 @@ static void halts(const char *token) {
   begin(token, 0);
   nx = 2;
   put(0.75, x);
-  ok(CALL(SPELLED("GetDerivatives", "GetContinuousStateDerivatives"), (Instance, double *, size_t), c, f, (size_t)2), "GetDerivatives");
+  ok(CALL(SPELLED("GetDerivatives", "GetContinuousStateDerivatives"), (Instance, double *, size_t), c, f, (size_t)2),
+     "GetDerivatives");
   if (f[1] != 0.5) fail("the rate is another");
   put(beyond, x);
-  if (CALL(SPELLED("GetDerivatives", "GetContinuousStateDerivatives"), (Instance, double *, size_t), c, f, (size_t)2) != 2) fail("rates without a value are not discarded");
+  if (CALL(SPELLED("GetDerivatives", "GetContinuousStateDerivatives"), (Instance, double *, size_t), c, f, (size_t)2) !=
+      2)
+    fail("rates without a value are not discarded");
 }
 
 /* ---- tables ---- */
@@ -476,7 +516,8 @@ int main(int argc, char **argv) {
   if (strcmp(mode, "halts") == 0) return halts(token), 0;
 
   const char *derivatives = strstr(xml, "<Derivatives>");
-  nx = FMI == 2 ? count(derivatives, strstr(derivatives, "</Derivatives>"), "<Unknown") : count(xml, tail, "<ContinuousStateDerivative ");
+  nx = FMI == 2 ? count(derivatives, strstr(derivatives, "</Derivatives>"), "<Unknown")
+                : count(xml, tail, "<ContinuousStateDerivative ");
   nevents = FMI == 2 ? atoi(attribute(head, "numberOfEventIndicators")) : count(xml, tail, "<EventIndicator ");
   if (nx > MOST || nevents > MOST) fail("too many states");
   FILE *table = fopen(argv[4], "r");
@@ -489,7 +530,8 @@ int main(int argc, char **argv) {
   for (char *w; (w = strtok(NULL, ",\n"));) { /* "th' [rad/s]" */
     char *unit = strstr(w, " [");
     if (unit) *unit = '\0';
-    if (strcmp(mode, "derivatives") == 0 && strcmp(attribute(variable_named(w), "causality"), "output") != 0) continue; /* an input among the columns */
+    /* an input among the columns */
+    if (strcmp(mode, "derivatives") == 0 && strcmp(attribute(variable_named(w), "causality"), "output") != 0) continue;
     snprintf(names[n], sizeof names[n], "%s", w);
     r[n++] = reference_of(w);
   }
@@ -504,7 +546,8 @@ int main(int argc, char **argv) {
     ok(CALL(PREFIX "ExitInitializationMode", (Instance), c), "ExitInitializationMode");
     event_mode();
     for (int i = 7; i < argc; i++) bad |= derivatives_by(argv[i], r, n, atof(argv[5]));
-    return bad || !strstr(xml, FMI == 2 ? " providesDirectionalDerivative=\"true\"" : " providesDirectionalDerivatives=\"true\"");
+    return bad || !strstr(xml, FMI == 2 ? " providesDirectionalDerivative=\"true\""
+                                        : " providesDirectionalDerivatives=\"true\"");
   }
   int started = 0;
   while (fgets(line, sizeof line, table) && !stopped) {

@@ -1,8 +1,9 @@
 /* The emitted linearisation of every model of all_scenes against central differences of its emitted accelerations,
  * in quadruple precision, at random states: J = M^-1 dr. With h = 1e-12 a difference has an error of h^2 times the
- * third derivative, 1e-24, and of rounding, 1e-34/h = 1e-22 times the accelerations: 1e-15 relative to the largest entry
- * of its column leaves room for large third derivatives, 1e-19 times the acceleration for what cancels in it (two atoms
- * that nearly touch push with 1e30; a density of exp(177) has the rounding of 177), and neither for a wrong sign. */
+ * third derivative, 1e-24, and of rounding, 1e-34/h = 1e-22 times the accelerations: 1e-15 relative to the largest
+ * entry of its column leaves room for large third derivatives, 1e-19 times the acceleration for what cancels in it
+ * (two atoms that nearly touch push with 1e30; a density of exp(177) has the rounding of 177), and neither for a
+ * wrong sign. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -1,7 +1,8 @@
-/* Methods in quadruple precision, where high orders have room to show, on models that lagc emitted: the order of steps and of
- * dense output, with forces and time in L too, from how solutions for steps h, h/2, h/4 approach each other (that they approach
- * the right one is measured in double precision, against closed forms and other methods); of symplectic ones the symplectic form
- * of one step in q and p, and time reversal. TAP. Goes through runtime/precision.awk. */
+/* Methods in quadruple precision, where high orders have room to show, on models that lagc emitted: the order of
+ * steps and of dense output, with forces and time in L too, from how solutions for steps h, h/2, h/4 approach each
+ * other (that they approach the right one is measured in double precision, against closed forms and other methods);
+ * of symplectic ones the symplectic form of one step in q and p, and time reversal. TAP. Goes through
+ * runtime/precision.awk. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -89,7 +90,8 @@ static lag_sim *begin(const Case *c, const Kind *k, const double *y, double h)
   lag_option opt[3] = {{"step", h, NULL}, k->option[0], k->option[1]};
   lag_sim *s = lag_sim_new(scene_of(c));
   char name[32];
-  if (!s || lag_sim_set_tolerance(s, 1e-27) || lag_sim_set_method(s, k->method, opt, 1 + k->noptions)) { /* tolerance: of Newton's method */
+  /* tolerance: of Newton's method */
+  if (!s || lag_sim_set_tolerance(s, 1e-27) || lag_sim_set_method(s, k->method, opt, 1 + k->noptions)) {
     printf("# %s\n", s ? lag_sim_message(s) : "no simulation");
     exit(1);
   }
@@ -151,8 +153,8 @@ static void orders(const Case *c, const Kind *k)
   result(fabs(p - k->order) <= 0.15, "order", c->scene->model->name, k, p);
 }
 
-/* The largest error at 0.37 of each step, against steps half as long at the same times, which are as good as exact 2^order
- * times over: in both the same places of their steps are asked for. */
+/* The largest error at 0.37 of each step, against steps half as long at the same times, which are as good as exact
+ * 2^order times over: in both the same places of their steps are asked for. */
 static double dense_error(const Case *c, const Kind *k, double h)
 {
   lag_sim *coarse = begin(c, k, c->y, h), *fine = begin(c, k, c->y, h / 8);
@@ -175,7 +177,8 @@ static void dense_orders(const Case *c, const Kind *k)
     return; /* the explicit form: tests/unit/test_rt_verlet.c */
   }
   double h = c->h / k->finer, p = log2(dense_error(c, k, h) / dense_error(c, k, h / 2));
-  /* Over 16 steps, which become shorter with h: the errors of steps add up to order + 1 there, those between stand alone. */
+  /* Over 16 steps, which become shorter with h: the errors of steps add up to order + 1 there, those between stand
+   * alone. */
   result(p >= k->order - 0.3, "order between steps", c->scene->model->name, k, p);
 }
 
@@ -294,7 +297,8 @@ static void reversal(const Case *c, const Kind *k)
   flow(&there, k, there.y, c->h, -8 * c->h, back);
   double d = apart(back, c->y, size(c));
   double rounding = 1e-24; /* of Newton's method, which stops at the rounding of what is largest in it */
-  result(symmetric ? d < rounding : d > 1e-6, symmetric ? "the way back" : "another way back", c->scene->model->name, k, d);
+  result(symmetric ? d < rounding : d > 1e-6, symmetric ? "the way back" : "another way back", c->scene->model->name, k,
+         d);
 }
 
 int main(void)
@@ -302,7 +306,8 @@ int main(void)
   for (int i = 0; i < CASES; i++) {
     for (int j = 0; j < KINDS; j++) {
       orders(&cases[i], &kinds[j]);
-      if (kinds[j].method->tangent && kinds[j].method != &lag_taylor_method) { /* whose tangent is dop853's, to the tolerance */
+      /* whose tangent is dop853's, to the tolerance */
+      if (kinds[j].method->tangent && kinds[j].method != &lag_taylor_method) {
         derivative(&cases[i], &kinds[j]);
       }
       if (kinds[j].method->flags & LAG_METHOD_SYMPLECTIC) {
@@ -312,7 +317,8 @@ int main(void)
       }
     }
   }
-  static const Kind other = {&lag_rk45, "rk45", {{"adapt", 0, "off"}}, 1, 5, 1}; /* what the measure shows when it is not */
+  /* what the measure shows when it is not */
+  static const Kind other = {&lag_rk45, "rk45", {{"adapt", 0, "off"}}, 1, 5, 1};
   double d = defect(&cases[1], &other, cases[1].h);
   result(d > 1e-10, "is not symplectic", cases[1].scene->model->name, &other, d);
   printf("1..%d\n", tests);

@@ -74,5 +74,6 @@ a pile of blocks|block tower
 END
 )"
 
+empty "no line of C above 120 columns" "$(find src runtime tests grammar -name '*.[chl]' -exec awk 'length($0) > 120 { print FILENAME ":" FNR }' {} +)"
 empty "each file of sources begins with a comment" "$(find src runtime -name '*.[ch]' -exec awk 'FNR == 1 && !/^\/\*/ { print FILENAME }' {} +)"
 tap_end

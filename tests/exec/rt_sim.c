@@ -53,9 +53,12 @@ static int ball_act(int k, double t, const double *q, const double *v, const dou
   return 0;
 }
 
-static const lag_model ball = {.abi = LAG_ABI, .real_size = sizeof(double), .name = "ball", .doc = "", .effects = "drag",
-    .flags = 0, .nq = 1, .np = 3, .nu = 1, .nev = 2, .q = ball_q, .p = ball_p, .u = ball_u, .ev = ball_ev,
-    .inputs = ball_inputs, .accel = ball_accel, .energy = ball_energy, .events = ball_events, .act = ball_act};
+static const lag_model ball = {.abi = LAG_ABI,
+                               .real_size = sizeof(double), .name = "ball", .doc = "", .effects = "drag", .flags = 0,
+                               .nq = 1, .np = 3, .nu = 1, .nev = 2, .q = ball_q, .p = ball_p, .u = ball_u,
+                               .ev = ball_ev, .inputs = ball_inputs, .accel = ball_accel, .energy = ball_energy,
+                               .events = ball_events,
+                               .act = ball_act};
 
 static void ball_params(double *p, const unsigned char *fixed)
 {
@@ -77,7 +80,8 @@ static const lag_scene drop = {.name = "drop", .doc = "dropped from 1 m", .model
 /* ---- pendulum, angles in degrees; outputs with names that must be quoted */
 static const lag_var pend_q[] = {{"th", "deg", 3.14159265358979323846 / 180, 1, 0, 0}};
 static const lag_var pend_p[] = {{"l", "m", 1, 0, 1, 0}, {"g", "m/s^2", 1, 0, 1, 0}};
-static const lag_var pend_out[] = {{"th", "deg", 3.14159265358979323846 / 180, 1, 0, 0}, {"E \"total\", T+V", "J", 1, 0, 0, 0}};
+static const lag_var pend_out[] = {{"th", "deg", 3.14159265358979323846 / 180, 1, 0, 0},
+                                   {"E \"total\", T+V", "J", 1, 0, 0, 0}};
 static const lag_monitor pend_mon[] = {{"energy", -1, 1e-6, 0}, {"H", 1, 1e-6, 0}};
 
 static int pend_accel(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
@@ -108,8 +112,18 @@ static int pend_observe(double t, const double *q, const double *v, const double
   return 0;
 }
 
-static const lag_model pendulum = {.abi = LAG_ABI, .real_size = sizeof(double), .name = "pendulum", .doc = "", .effects = "",
-    .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE, .nq = 1, .np = 2, .q = pend_q, .p = pend_p, .accel = pend_accel, .energy = pend_energy};
+static const lag_model pendulum = {.abi = LAG_ABI,
+                                   .real_size = sizeof(double),
+                                   .name = "pendulum",
+                                   .doc = "",
+                                   .effects = "",
+                                   .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE,
+                                   .nq = 1,
+                                   .np = 2,
+                                   .q = pend_q,
+                                   .p = pend_p,
+                                   .accel = pend_accel,
+                                   .energy = pend_energy};
 
 static void pend_params(double *p, const unsigned char *fixed)
 {
@@ -125,11 +139,15 @@ static void pend_start(const double *p, double *q, double *v, double *z)
 }
 
 static const lag_option pend_opt[] = {{"step", 0.001, 0}};
-static const lag_scene swing = {.name = "swing", .doc = "", .model = &pendulum, .params = pend_params, .start = pend_start,
-    .t0 = 0, .t1 = 10, .has_span = 1, .every = 0.1, .nout = 2, .outputs = pend_out, .observe = pend_observe,
-    .nmonitors = 2, .monitors = pend_mon};
-static const lag_scene fixed_swing = {.name = "fixed", .doc = "", .model = &pendulum, .params = pend_params,
-    .start = pend_start, .t0 = 0, .t1 = 10, .has_span = 1, .every = 0.1, .method = "rk4", .noptions = 1, .options = pend_opt};
+static const lag_scene swing = {.name = "swing",
+                                .doc = "", .model = &pendulum, .params = pend_params, .start = pend_start, .t0 = 0,
+                                .t1 = 10, .has_span = 1, .every = 0.1, .nout = 2, .outputs = pend_out,
+                                .observe = pend_observe, .nmonitors = 2,
+                                .monitors = pend_mon};
+static const lag_scene fixed_swing = {.name = "fixed",
+                                      .doc = "", .model = &pendulum, .params = pend_params, .start = pend_start,
+                                      .t0 = 0, .t1 = 10, .has_span = 1, .every = 0.1, .method = "rk4", .noptions = 1,
+                                      .options = pend_opt};
 
 /* ---- a force that becomes infinite at t = 1 */
 static int wall_accel(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
@@ -140,8 +158,10 @@ static int wall_accel(double t, const double *q, const double *v, const double *
   return 0;
 }
 
-static const lag_model wall_model = {.abi = LAG_ABI, .real_size = sizeof(double), .name = "wall", .doc = "", .effects = "",
-    .nq = 1, .np = 0, .q = ball_q, .accel = wall_accel};
+static const lag_model wall_model = {.abi = LAG_ABI,
+                                     .real_size = sizeof(double), .name = "wall", .doc = "", .effects = "", .nq = 1,
+                                     .np = 0, .q = ball_q,
+                                     .accel = wall_accel};
 static const lag_scene wall = {.name = "wall", .doc = "", .model = &wall_model, .start = ball_start, .t0 = 0, .t1 = 5,
     .has_span = 1, .every = 0.25};
 

@@ -1,4 +1,5 @@
-/* A program around shared libraries of `lagc build --shared`: the spring (x = cos 2t from 1), linked; a second library, opened beside it. */
+/* A program around shared libraries of `lagc build --shared`: the spring (x = cos 2t from 1), linked; a second
+ * library, opened beside it. */
 #include <dlfcn.h>
 #include <lag.h>
 #include <math.h>
@@ -45,15 +46,22 @@ static void other_library(const char *path) {
 int main(int argc, char **argv) {
   enum { ROWS = 3, COUNT = 5 };
   const double t[ROWS] = {1, 2, 5};
-  double y[COUNT * ROWS * 2], out[16 * ROWS], y0[COUNT * 2], p[COUNT * 2], dy[COUNT * 2], times[COUNT] = {0}, Y[4], t0, t1, every;
+  double y[COUNT * ROWS * 2], out[16 * ROWS], y0[COUNT * 2], p[COUNT * 2], dy[COUNT * 2], times[COUNT] = {0}, Y[4], t0,
+                                                                                          t1, every;
   int status[COUNT], done;
   const lag_scene *scene = lag_library_scene(lag_library(), 0);
   const char *unit;
   double factor;
-  if (argc < 2 || lag_library_abi() != LAG_ABI || lag_library_scene(lag_library(), 99) || strcmp(lag_scene_span(scene, &t0, &t1, &every), "free") != 0) return 1;
-  if (strcmp(lag_item(scene, 'q', 0, &unit, &factor, NULL), "x") != 0 || lag_item(scene, 'q', 1, NULL, NULL, NULL) || lag_item(scene, '?', 0, NULL, NULL, NULL)) return 1;
+  if (argc < 2 || lag_library_abi() != LAG_ABI || lag_library_scene(lag_library(), 99) ||
+      strcmp(lag_scene_span(scene, &t0, &t1, &every), "free") != 0)
+    return 1;
+  if (strcmp(lag_item(scene, 'q', 0, &unit, &factor, NULL), "x") != 0 || lag_item(scene, 'q', 1, NULL, NULL, NULL) ||
+      lag_item(scene, '?', 0, NULL, NULL, NULL))
+    return 1;
   lag_sim *sim = lag_sim_new(scene);
-  if (lag_sim_set(sim, "x", 1 / factor) || lag_sim_set_method(sim, lag_find_method("dop853"), NULL, 0) || lag_sim_set_tolerance(sim, 1e-12)) return 1;
+  if (lag_sim_set(sim, "x", 1 / factor) || lag_sim_set_method(sim, lag_find_method("dop853"), NULL, 0) ||
+      lag_sim_set_tolerance(sim, 1e-12))
+    return 1;
   if (lag_sim_set_tangent(sim, 2, NULL)) printf("%s\n", lag_sim_message(sim)), bad = 1;
   for (int k = 0; k < COUNT; k++) y0[2 * k] = k, y0[2 * k + 1] = 1, p[2 * k] = 1 + k, p[2 * k + 1] = 4; /* m, k */
   /* rates: x'' = -4x */
@@ -76,7 +84,8 @@ int main(int argc, char **argv) {
   lag_sim_stats(sim, &stats);
   near("energy", stats.energy, 2, 1e-9);
   lag_sim *like = lag_sim_like(sim);
-  if (!like || lag_sim_method(like) != lag_find_method("dop853") || lag_sim_time(like) != 0 || lag_sim_q(like)[0] != 1) bad = 1;
+  if (!like || lag_sim_method(like) != lag_find_method("dop853") || lag_sim_time(like) != 0 || lag_sim_q(like)[0] != 1)
+    bad = 1;
   lag_sim_free(like);
   lag_sim_free(sim);
   sim = lag_sim_new(scene);

@@ -1,4 +1,5 @@
-/* In the place of a C compiler on Windows: copies the program named by WINDOWS_CC_MADE to the file behind -o; `-dM -E` prints nothing. */
+/* In the place of a C compiler on Windows: copies the program named by WINDOWS_CC_MADE to the file behind -o; `-dM
+ * -E` prints nothing. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* A main for fuzz targets without libFuzzer: replays a corpus as TAP, or mutates one for a while.
- *   fuzz_NAME FOLDER                          each file of the folder once, in the order of names; those named long_* with SLOW set
+ *   fuzz_NAME FOLDER each file of the folder once, in the order of names; those named long_* with SLOW set
  *   fuzz_NAME --mutate SECONDS SEED-FILE DIR  random mutations of them; a failure leaves its input in SEED-FILE
  * The target is LLVMFuzzerTestOneInput, so that clang's libFuzzer can drive it as well. What it must not do:
  * crash, leak, or upset a sanitizer. Mutations are the same in every run (one seed, an LCG). */
@@ -51,7 +51,8 @@ static void read_folder(const char *folder) {
   if (!d) die("cannot open", folder);
   seeds = calloc(MAX_FILES, sizeof *seeds);
   for (struct dirent *e; seeds && nseeds < MAX_FILES && (e = readdir(d));) {
-    if (e->d_name[0] == '.' || (strncmp(e->d_name, "long_", 5) == 0 && !getenv("SLOW"))) continue; /* `make test-long` sets SLOW */
+    /* `make test-long` sets SLOW */
+    if (e->d_name[0] == '.' || (strncmp(e->d_name, "long_", 5) == 0 && !getenv("SLOW"))) continue;
     size_t n = strlen(folder) + strlen(e->d_name) + 2;
     char *path = malloc(n);
     if (!path) die("no memory for", folder);

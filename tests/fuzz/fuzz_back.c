@@ -1,8 +1,9 @@
-/* Fuzzing the back half: each byte of the input is a choice in a grammar of models, so that all of them parse: Taylor coefficients, families,
- * starts and symmetries are reached by every other input. The model goes every way that a command goes: checked, its symmetries found, its start
- * brought to its constraints, emitted with all that methods can want, and as a header. Nothing may crash, leak, upset a sanitizer, take more than its
- * memory limit, or make a program that prog_verify refuses; a model that is not built says why.
- * With -DSHOW the program prints the model of the file that it is given. */
+/* Fuzzing the back half: each byte of the input is a choice in a grammar of models, so that all of them parse:
+ * Taylor coefficients, families, starts and symmetries are reached by every other input. The model goes every way
+ * that a command goes: checked, its symmetries found, its start brought to its constraints, emitted with all that
+ * methods can want, and as a header. Nothing may crash, leak, upset a sanitizer, take more than its memory limit, or
+ * make a program that prog_verify refuses; a model that is not built says why. With -DSHOW the program prints the
+ * model of the file that it is given. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,7 +30,8 @@ enum { FUZZ_MEMORY = 256 * 1024 * 1024, MOST_COORDS = 3, DEEPEST = 3, LARGE = 32
 typedef struct {
   const uint8_t *at, *end;
   StrBuf out;
-  unsigned n, family, state, vector; /* coordinates beside the family; its length, or 0; whether there is a state; a vector */
+  /* coordinates beside the family; its length, or 0; whether there is a state; a vector */
+  unsigned n, family, state, vector;
 } Choices;
 
 /* 0 where nothing is left to choose. */
@@ -49,7 +51,8 @@ static void put_atom(Choices *c, const char *member) {
 }
 
 static void put_expr(Choices *c, const char *member, unsigned depth) {
-  static const char *const functions[] = {"sin", "cos", "exp", "log", "sqrt", "tanh", "abs", "atan", "cosh", "asin", "sign", "sinh"};
+  static const char *const functions[] = {"sin", "cos",  "exp",  "log",  "sqrt", "tanh",
+                                          "abs", "atan", "cosh", "asin", "sign", "sinh"};
   static const char *const two[] = {"atan2", "hypot", "min", "max"};
   unsigned k = depth ? choose(c, 10) : 0;
   if (k < 2) {
@@ -81,12 +84,14 @@ static void put_lagrangian(Choices *c) {
   static const char *const pairs[] = {"", "j in 1..i-1", "j in 1..N"};
   put(c, "lagrangian = ");
   for (unsigned i = 0; i < c->n; i++) {
-    static const char *const inertia[] = {"k/2*%s'^2 + ", "%s'^2/2 + ", "k*l^2*%s'^2 + ", "-%s'^2 + ", "(1 + x^2)*%s'^2 + ", "%s'*x' + "};
+    static const char *const inertia[] = {"k/2*%s'^2 + ", "%s'^2/2 + ",         "k*l^2*%s'^2 + ",
+                                          "-%s'^2 + ",    "(1 + x^2)*%s'^2 + ", "%s'*x' + "};
     sb_printf(&c->out, inertia[choose(c, sizeof inertia / sizeof *inertia)], coords[i]);
   }
   if (c->vector) put(c, "k/2*dot(r', r') + ");
   if (c->family) {
-    put(c, choose(c, 4) ? "sum(i in 1..N, m[i]/2*u[i]'^2) - sum(i in 1..N, " : "sum(i in 1..N, sum(j in 1..i, u[j]')^2/2) - sum(i in 1..N, ");
+    put(c, choose(c, 4) ? "sum(i in 1..N, m[i]/2*u[i]'^2) - sum(i in 1..N, "
+                        : "sum(i in 1..N, sum(j in 1..i, u[j]')^2/2) - sum(i in 1..N, ");
     const char *pair = pairs[choose(c, 3)];
     if (*pair) sb_printf(&c->out, "sum(%s, %s*", pair, choose(c, 2) ? "m[j]" : "(u[i] - u[j])^2");
     put_expr(c, *pair && choose(c, 2) ? "j" : "i", 2);
@@ -99,9 +104,14 @@ static void put_lagrangian(Choices *c) {
 
 /* Statements behind L; each name is declared once. */
 static void put_rest(Choices *c) {
-  static const char *const with_coords[] = {"force x = ", "expect x'' = ", "constraint skate: x'*sin(y) - y'*cos(y) = 0*", "constraint circle: x^2 + y^2 = l^2 + 0*",
-                                            "contact floor: x >= -1, restitution = ", "event hit: x falling { x' = -k*x' }\nobserve o1 = ", "symmetry shift(e): x -> x + e*"};
-  static const char *const any[] = {"dissipation = k*", "observe o2 = ", "constraint rod: l = ", "expect energy = ", "let w1 = "};
+  static const char *const with_coords[] = {"force x = ",
+                                            "expect x'' = ", "constraint skate: x'*sin(y) - y'*cos(y) = 0*",
+                                            "constraint circle: x^2 + y^2 = l^2 + 0*",
+                                            "contact floor: x >= -1, restitution = ",
+                                            "event hit: x falling { x' = -k*x' }\nobserve o1 = ",
+                                            "symmetry shift(e): x -> x + e*"};
+  static const char *const any[] = {"dissipation = k*",
+                                    "observe o2 = ", "constraint rod: l = ", "expect energy = ", "let w1 = "};
   unsigned done = 0;
   for (unsigned more = choose(c, 6); more--;) {
     unsigned k = choose(c, 13);
@@ -109,7 +119,8 @@ static void put_rest(Choices *c) {
     done |= 1u << k;
     if (k < 7 && c->n > (k == 2 || k == 3)) statement(c, with_coords[k], k == 0 ? 2 : 1);
     else if (k >= 7 && k < 12) statement(c, any[k - 7], 2);
-    else if (k == 12) put(c, "effect air {\n  "), statement(c, c->n ? "force x = -k*x' + " : "dissipation = ", 1), put(c, "}\n");
+    else if (k == 12)
+      put(c, "effect air {\n  "), statement(c, c->n ? "force x = -k*x' + " : "dissipation = ", 1), put(c, "}\n");
   }
 }
 
@@ -171,7 +182,8 @@ static void emit(Ast *ast, Eqns *e) {
   emit_model(u, model_id(a, u->name), 0, &c);
 }
 
-/* Coordinates beyond which a search for symmetries takes seconds under sanitizers: seeds are searched, for which the driver sets FUZZ_REPLAY, and mutants are not. */
+/* Coordinates beyond which a search for symmetries takes seconds under sanitizers: seeds are searched, for which the
+ * driver sets FUZZ_REPLAY, and mutants are not. */
 enum { SEARCHED = 4 };
 
 static void run(Arena *a, const char *text) {

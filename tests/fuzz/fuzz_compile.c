@@ -1,6 +1,6 @@
-/* Fuzzing the whole way: any bytes are parsed, and every scene, and every effect that no scene uses,
- * is derived, lowered, and written as C, header, text and LaTeX, its expectations judged. Nothing may
- * crash, leak, take more than its memory limit, or make a program that prog_verify refuses; a model that is not built says why.
+/* Fuzzing the whole way: any bytes are parsed, and every scene, and every effect that no scene uses, is derived,
+ * lowered, and written as C, header, text and LaTeX, its expectations judged. Nothing may crash, leak, take more
+ * than its memory limit, or make a program that prog_verify refuses; a model that is not built says why.
  *
  *   clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz/fuzz_compile.c LIBLAGC -o fuzz
  *   ./fuzz -dict=tests/fuzz/lag.dict -timeout=10 tests/fuzz/corpus/compile

@@ -1,11 +1,13 @@
-/* Fuzzing what comes back from a file: numbers for lag_sim_load, and the text of a saved state. Whatever they are, a load either is refused, and
- * the simulation is what it was, bit by bit, or gives a run that can go on. Nothing may crash, leak, or upset a sanitizer. The first byte of an
- * input says what the rest is:
+/* Fuzzing what comes back from a file: numbers for lag_sim_load, and the text of a saved state. Whatever they are, a
+ * load either is refused, and the simulation is what it was, bit by bit, or gives a run that can go on. Nothing may
+ * crash, leak, or upset a sanitizer. The first byte of an input says what the rest is:
  *   T: the text of a state without its checksum, which is added
  *   E CASE {FIELD FIELD KIND}: a real state of a case, with these numbers in place of its own
  *   R CASE FIELD FIELD BYTES: the same, with bytes over it from a number on
- *   S KIND: of all cases, after a few steps, this number in place of each in turn; not for libFuzzer, as it takes seconds
- * Cases are models (tests/fuzz/load, as lagc emits them) by methods, saved at the start, within a step and after a few. */
+ *   S KIND: of all cases, after a few steps, this number in place of each in turn; not for libFuzzer, as it takes
+ *   seconds
+ * Cases are models (tests/fuzz/load, as lagc emits them) by methods, saved at the start, within a step and after a
+ * few. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -21,17 +23,20 @@ extern const lag_scene load_spring_s, load_pend_s, load_series_s, load_flow_s, l
 static const struct {
   const lag_scene *scene;
   const lag_method *method;
-} cases[] = {
-    {&load_spring_s, &lag_rk45}, {&load_spring_s, &lag_rk4}, {&load_spring_s, &lag_dop853}, {&load_spring_s, &lag_radau},
-    {&load_pend_s, &lag_variational}, {&load_pend_s, &lag_gauss}, {&load_pend_s, &lag_verlet4}, {&load_pend_s, &lag_symplectic_euler},
-    {&load_series_s, &lag_taylor_method}, {&load_flow_s, &lag_gauss}, {&load_flow_s, &lag_dop853}, {&load_rod_s, &lag_rk45},
-    {&load_rod_s, &lag_variational}, {&load_rod_s, &lag_verlet8}, {&load_rod_s, &lag_radau}, {&load_ball_s, &lag_verlet}, {&load_ball_s, &lag_dop853}};
+} cases[] = {{&load_spring_s, &lag_rk45},
+             {&load_spring_s, &lag_rk4}, {&load_spring_s, &lag_dop853}, {&load_spring_s, &lag_radau},
+             {&load_pend_s, &lag_variational}, {&load_pend_s, &lag_gauss}, {&load_pend_s, &lag_verlet4},
+             {&load_pend_s, &lag_symplectic_euler}, {&load_series_s, &lag_taylor_method}, {&load_flow_s, &lag_gauss},
+             {&load_flow_s, &lag_dop853}, {&load_rod_s, &lag_rk45}, {&load_rod_s, &lag_variational},
+             {&load_rod_s, &lag_verlet8}, {&load_rod_s, &lag_radau}, {&load_ball_s, &lag_verlet},
+             {&load_ball_s, &lag_dop853}};
 static const double until[] = {0, 0.01, 1.234};
 enum { NCASES = sizeof cases / sizeof *cases, NUNTIL = sizeof until / sizeof *until, STEPS = 3, MOST_EDITS = 64 };
 
 /* Numbers that a crafted state would have; what is left of a kind's range are small whole numbers. */
-static const double wild[] = {0, -0.0, 1, -1, 0.5, -0.5, 2, 31, 32, 33, 1e3, 1e9, -1e9, 2147483648.0, 4294967296.0, 0x1p53, 0x1p63, 1e300, -1e300,
-                              1e-300, 5e-324, HUGE_VAL, -HUGE_VAL, NAN};
+static const double wild[] = {0,      -0.0,   1,      -1,       0.5,          -0.5,         2,      31,     32,
+                              33,     1e3,    1e9,    -1e9,     2147483648.0, 4294967296.0, 0x1p53, 0x1p63, 1e300,
+                              -1e300, 1e-300, 5e-324, HUGE_VAL, -HUGE_VAL,    NAN};
 enum { NWILD = sizeof wild / sizeof *wild };
 
 static double number_of(uint8_t kind)
@@ -119,7 +124,8 @@ static void begin(int k, size_t n)
   begun[k].sim = new_sim(k);
   begun[k].saved = begun[k].saved ? begun[k].saved : malloc(n * sizeof(double));
   begun[k].again = begun[k].again ? begun[k].again : malloc(n * sizeof(double));
-  if (!begun[k].saved || !begun[k].again || lag_sim_advance(begun[k].sim, 0.005) || lag_sim_save(begun[k].sim, begun[k].saved)) {
+  if (!begun[k].saved || !begun[k].again || lag_sim_advance(begun[k].sim, 0.005) ||
+      lag_sim_save(begun[k].sim, begun[k].saved)) {
     abort();
   }
 }

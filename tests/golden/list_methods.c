@@ -1,5 +1,6 @@
-/* Prints the methods of the runtime as rows of the table in src/base/method_table.c. Runs once, when lagc is built: the compiler includes no header
- * of the runtime, and so needs no second list of names, options and requirements of methods. */
+/* Prints the methods of the runtime as rows of the table in src/base/method_table.c. Runs once, when lagc is built:
+ * the compiler includes no header of the runtime, and so needs no second list of names, options and requirements of
+ * methods. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -30,10 +31,13 @@ static void list(const lag_method *const *methods, int n)
 {
   for (int i = 0; i < n; i++) {
     const lag_method *m = methods[i];
-    printf("  {\"%s\", \"%.*s\", 0%s%s%s%s%s%s%s,\n", m->name, (int)strcspn(m->doc, "\n"), m->doc, m->flags & LAG_METHOD_NO_STATES ? " | METHOD_NO_STATES" : "",
-           m->flags & LAG_METHOD_VARIATION ? " | METHOD_VARIATION" : "", m->flags & LAG_METHOD_SPLITS ? " | METHOD_SPLITS" : "",
-           m->flags & LAG_METHOD_JACOBIAN ? " | METHOD_JACOBIAN" : "", m->flags & LAG_METHOD_TAYLOR ? " | METHOD_TAYLOR" : "",
-           m->flags & LAG_METHOD_FLOWS ? " | METHOD_FLOWS" : "", m->flags & LAG_METHOD_CONSTRAINTS ? " | METHOD_CONSTRAINTS" : "");
+    printf("  {\"%s\", \"%.*s\", 0%s%s%s%s%s%s%s,\n", m->name, (int)strcspn(m->doc, "\n"), m->doc,
+           m->flags & LAG_METHOD_NO_STATES ? " | METHOD_NO_STATES" : "",
+           m->flags & LAG_METHOD_VARIATION ? " | METHOD_VARIATION" : "",
+           m->flags & LAG_METHOD_SPLITS ? " | METHOD_SPLITS" : "",
+           m->flags & LAG_METHOD_JACOBIAN ? " | METHOD_JACOBIAN" : "",
+           m->flags & LAG_METHOD_TAYLOR ? " | METHOD_TAYLOR" : "", m->flags & LAG_METHOD_FLOWS ? " | METHOD_FLOWS" : "",
+           m->flags & LAG_METHOD_CONSTRAINTS ? " | METHOD_CONSTRAINTS" : "");
     list_options(m);
   }
 }

@@ -28,14 +28,17 @@ begin elsewhere, as with'
 # The texts in the calls that report, one a line, as FILE:LINE<tab>TEXT; texts that are not sentences are left out.
 texts() {
   awk -v calls='(diag_error|diag_warning|not_yet|unit_bad|report_count|refuse_point)[(]' '
+    # Literals side by side are one text.
     function literals(call,   text, in_text, c, i) {
       for (i = 1; i <= length(call); i++) {
         c = substr(call, i, 1)
         if (in_text && c == "\\") { text = text substr(call, ++i, 1); continue }
-        if (c != "\"") { if (in_text) text = text c; continue }
-        in_text = !in_text
-        if (!in_text && length(text) >= 8 && text ~ / /) print FILENAME ":" line "\t" text
-        if (!in_text) text = ""
+        if (c == "\"") in_text = !in_text
+        else if (in_text) text = text c
+        else if (c != " ") {
+          if (length(text) >= 8 && text ~ / /) print FILENAME ":" line "\t" text
+          text = ""
+        }
       }
     }
     function flush() {

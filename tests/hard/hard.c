@@ -1,16 +1,22 @@
-/* Runs cases with known values: hard CASES.json EXPECTED RUNS TIER [CASE | METHOD ...]: the runs of that tier, only those of the cases and
- * methods named. A line of EXPECTED, those of one scene in the order of time:
+/* Runs cases with known values: hard CASES.json EXPECTED RUNS TIER [CASE | METHOD ...]: the runs of that tier, only
+ * those of the cases and methods named. A line of EXPECTED, those of one scene in the order of time:
  *   CASE SCENE TIME OUTPUT VALUE TOLERANCE
- * TIME: a number; `end`, of the run, when an event ends it; EVENT#K, when EVENT happens for the K-th time, and OUTPUT is `time`.
- * OUTPUT: of the scene, or, over the run until then, `residual`: the largest error of a constraint in positions or velocities; `energy`: the
- * largest |E - E0|; `growth`, of symplectic methods alone: that in the last tenth of the span over that in the first; `drift`, of the others: as `energy`. TOLERANCE: absolute; quad:X is one for runs of 34 digits alone. A line of RUNS:
+ * TIME: a number; `end`, of the run, when an event ends it; EVENT#K, when EVENT happens for the K-th time, and
+ * OUTPUT is `time`. OUTPUT: of the scene, or, over the run until then, `residual`: the largest error of a constraint
+ * in positions or velocities; `energy`: the largest |E - E0|; `growth`, of symplectic methods alone: that in the
+ * last tenth of the span over that in the first; `drift`, of the others: as `energy`. TOLERANCE: absolute; quad:X is
+ * one for runs of 34 digits alone. A line of RUNS:
  *   TIER CASE METHOD [OPTION=VALUE ...]
- * CASE `*`: all cases without a line of their own for METHOD, but for those whose line begins with `only`. Options are the method's, and
- *   tol=X; steps=N or A..B: fixed steps a span, doubled from A until all is within its tolerance, at most B; most=N: more steps
- *   fail; limit=X: known not to reach the tolerance; fails where the error is more than X times what is allowed; inf: known not to come to the end.
- * TIER `quad`: what is allowed is a unit in the last digit of VALUE, or 1e-18 of TOLERANCE where that is more, as numbers of 34 digits are
- * to those of 16. Models have no inputs and no contacts. A method that refuses a model says why; that is no failure. For other precisions it goes through
- * runtime/precision.awk. Prints a line a run, as TAP; with TABLE in the environment, as a table. */
+ * CASE `*`: all cases without a line of their own for METHOD, but for those whose line begins with `only`. Options
+ * are the method's, and
+ *   tol=X; steps=N or A..B: fixed steps a span, doubled from A until all is within its tolerance, at most B; most=N:
+ *   more steps
+ *   fail; limit=X: known not to reach the tolerance; fails where the error is more than X times what is allowed;
+ *   inf: known not to come to the end.
+ * TIER `quad`: what is allowed is a unit in the last digit of VALUE, or 1e-18 of TOLERANCE where that is more, as
+ * numbers of 34 digits are to those of 16. Models have no inputs and no contacts. A method that refuses a model says
+ * why; that is no failure. For other precisions it goes through runtime/precision.awk. Prints a line a run, as TAP;
+ * with TABLE in the environment, as a table. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -88,7 +94,8 @@ static int read_facts(const char *path, int digits) {
   char value[NAME], tolerance[NAME];
   FILE *f = fopen(path, "r");
   Fact *x = facts;
-  while (f && nfacts < FACTS && fscanf(f, "%63s %63s %63s %63s %63s %63s", x->id, x->scene, x->time, x->output, value, tolerance) == 6) {
+  while (f && nfacts < FACTS &&
+         fscanf(f, "%63s %63s %63s %63s %63s %63s", x->id, x->scene, x->time, x->output, value, tolerance) == 6) {
     x->value = strtod(value, NULL);
     x->allowed = allowed_of(value, tolerance, digits);
     x = facts + ++nfacts;
@@ -206,7 +213,8 @@ static double seconds(void) {
 static double energy_of(const lag_sim *sim, double *work) {
   const lag_model *m = lag_sim_scene(sim)->model;
   double e[2] = {NAN, NAN};
-  if (m->energy) m->energy(lag_sim_time(sim), lag_sim_q(sim), lag_sim_v(sim), lag_sim_z(sim), lag_sim_p(sim), NULL, e, work);
+  if (m->energy)
+    m->energy(lag_sim_time(sim), lag_sim_q(sim), lag_sim_v(sim), lag_sim_z(sim), lag_sim_p(sim), NULL, e, work);
   return e[0];
 }
 
@@ -215,7 +223,8 @@ static double residual_of(const lag_sim *sim, double *work) {
   const lag_constraints *k = m->constraints;
   double most = 0, *c = work + m->nw, *r = c + (k ? k->nholonomic : 0);
   if (!k) return 0;
-  if (k->residuals(lag_sim_time(sim), lag_sim_q(sim), lag_sim_v(sim), lag_sim_z(sim), lag_sim_p(sim), NULL, c, r, work)) return NAN;
+  if (k->residuals(lag_sim_time(sim), lag_sim_q(sim), lag_sim_v(sim), lag_sim_z(sim), lag_sim_p(sim), NULL, c, r, work))
+    return NAN;
   for (int i = 0; i < k->nholonomic; i++) most = fmax(most, fabs(c[i]));
   for (int i = 0; i < k->n; i++) most = fmax(most, fabs(r[i]));
   return most;
@@ -244,7 +253,8 @@ static double time_of_event(const lag_model *m, const char *text, const Watch *w
   const char *sign = strchr(text, '#');
   int n = atoi(sign + 1);
   for (int k = 0; k < m->nev && k < EVENTS; k++)
-    if (strncmp(m->ev[k].name, text, (size_t)(sign - text)) == 0 && n >= 1 && n <= w->rung[k]) return w->times[k][n - 1];
+    if (strncmp(m->ev[k].name, text, (size_t)(sign - text)) == 0 && n >= 1 && n <= w->rung[k])
+      return w->times[k][n - 1];
   return NAN;
 }
 
@@ -277,7 +287,8 @@ static lag_sim *prepare(const lag_scene *s, const char *id, const lag_method *me
   if (!bad) bad = lag_sim_set_method(sim, method, x->opt, x->nopt + (steps != 0));
   x->refused = bad == LAG_EMETHOD || (bad && strstr(lag_sim_message(sim), "with constraints it is 2"));
   for (size_t i = 0; i < sizeof starts / sizeof *starts; i++)
-    if (!bad && strcmp(starts[i].id, id) == 0 && strcmp(starts[i].scene, s->name) == 0) bad = lag_sim_set(sim, starts[i].name, starts[i].value);
+    if (!bad && strcmp(starts[i].id, id) == 0 && strcmp(starts[i].scene, s->name) == 0)
+      bad = lag_sim_set(sim, starts[i].name, starts[i].value);
   if (!bad) return sim;
   snprintf(x->message, sizeof x->message, "%s", lag_sim_message(sim));
   lag_sim_free(sim);
@@ -297,7 +308,8 @@ static void run_once(const lag_scene *s, const char *id, const lag_method *metho
   lag_sim *sim = prepare(s, id, method, x, steps);
   x->worst = sim ? 0 : (double)NAN;
   if (!sim) return;
-  w = (Watch){.trial = x, .work = calloc((size_t)s->model->nw + 8 + (k ? (size_t)(k->n + k->nholonomic) : 0), sizeof(double))};
+  w = (Watch){.trial = x,
+              .work = calloc((size_t)s->model->nw + 8 + (k ? (size_t)(k->n + k->nholonomic) : 0), sizeof(double))};
   w.energy0 = energy_of(sim, w.work);
   w.span = s->t1;
   x->residual = x->energy = 0;
@@ -319,29 +331,38 @@ static void run_once(const lag_scene *s, const char *id, const lag_method *metho
 static int next_scene(const char *id, int *i, const char **scene) {
   for (; *i < nfacts; (*i)++) {
     int seen = 0;
-    for (int k = 0; k < *i && !seen; k++) seen = strcmp(facts[k].id, id) == 0 && strcmp(facts[k].scene, facts[*i].scene) == 0;
+    for (int k = 0; k < *i && !seen; k++)
+      seen = strcmp(facts[k].id, id) == 0 && strcmp(facts[k].scene, facts[*i].scene) == 0;
     if (strcmp(facts[*i].id, id) == 0 && !seen) return *scene = facts[(*i)++].scene, 1;
   }
   return 0;
 }
 
 /* Whether a run is as it should be: within what is allowed, or not worse than the limit that is known of it. */
-static int is_fine(const Trial *x) { return x->refused || isinf(x->limit) || x->worst <= (x->limit > 0 ? x->limit : 1); }
+static int is_fine(const Trial *x) {
+  return x->refused || isinf(x->limit) || x->worst <= (x->limit > 0 ? x->limit : 1);
+}
 
 static void report(const Run *r, const char *id, const char *scene, const Trial *x, const char *cases) {
   char why[200], name[2 * NAME];
   int fine = is_fine(x);
-  snprintf(name, sizeof name, "%s%s%s", id, strcmp(scene, "go") == 0 ? "" : ", ", strcmp(scene, "go") == 0 ? "" : scene);
+  snprintf(name, sizeof name, "%s%s%s", id, strcmp(scene, "go") == 0 ? "" : ", ",
+           strcmp(scene, "go") == 0 ? "" : scene);
   if (getenv("TABLE")) {
     difficulty(cases, id, why, sizeof why);
-    printf("%-41s %-34.34s %-12s %8.2g %8.2g %8.2g %9lld %8.2g  %s\n", name, why, r->method, x->worst, x->residual, x->stats.energy_drift,
-           x->stats.steps, seconds(), x->refused ? "refuses" : x->limit > 0 && x->worst > 1 ? "limit" : fine ? "pass" : "FAIL");
+    printf("%-41s %-34.34s %-12s %8.2g %8.2g %8.2g %9lld %8.2g  %s\n", name, why, r->method, x->worst, x->residual,
+           x->stats.energy_drift, x->stats.steps, seconds(),
+           x->refused                     ? "refuses"
+           : x->limit > 0 && x->worst > 1 ? "limit"
+           : fine                         ? "pass"
+                                          : "FAIL");
   } else if (x->refused) {
     printf("ok %d - %s by %s: refused: %s\n", ++count, name, r->method, x->message);
   } else {
-    printf("%sok %d - %s by %s: error over what is allowed %.2g (%s), residual %.2g, energy drift %.2g, %lld steps, %lld rejected, %.2g s%s\n", fine ? "" : "not ", ++count,
-           name, r->method, x->worst, x->wrong ? x->wrong : "", x->residual, x->stats.energy_drift, x->stats.steps, x->stats.rejected, seconds(),
-           x->limit > 0 ? ": a known limit" : "");
+    printf("%sok %d - %s by %s: error over what is allowed %.2g (%s), residual %.2g, energy drift %.2g, %lld steps, "
+           "%lld rejected, %.2g s%s\n",
+           fine ? "" : "not ", ++count, name, r->method, x->worst, x->wrong ? x->wrong : "", x->residual,
+           x->stats.energy_drift, x->stats.steps, x->stats.rejected, seconds(), x->limit > 0 ? ": a known limit" : "");
     if (!fine) printf("# %s\n", x->message);
   }
   fflush(stdout);
@@ -374,7 +395,8 @@ static int run_case(const Run *r, const char *id, const char *cases) {
 /* Whether some line is for this case and method, or keeps other methods from the case. */
 static int has_own(const char *id, const char *method) {
   for (int i = 0; i < nruns; i++)
-    if (strcmp(runs[i].id, id) == 0 && (strcmp(runs[i].tier, "only") == 0 || strcmp(runs[i].method, method) == 0)) return 1;
+    if (strcmp(runs[i].id, id) == 0 && (strcmp(runs[i].tier, "only") == 0 || strcmp(runs[i].method, method) == 0))
+      return 1;
   return 0;
 }
 

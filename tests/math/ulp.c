@@ -1,7 +1,8 @@
-/* lag_math.h against libquadmath: for each function the largest error in units in the last place, the argument it is at, and a
- * checksum of all results, which is that of a double's in vectors of lanes too.
+/* lag_math.h against libquadmath: for each function the largest error in units in the last place, the argument it is
+ * at, and a checksum of all results, which is that of a double's in vectors of lanes too.
  *
- *   ulp POINTS     `function points error argument checksum`; exit status 1 where an error is more than 1, or a special value wrong */
+ *   ulp POINTS `function points error argument checksum`; exit status 1 where an error is more than 1, or a special
+ *   value wrong */
 #include <float.h>
 #include <math.h>
 #include <quadmath.h>
@@ -54,13 +55,16 @@ static double near_multiple(void) {
   }
 }
 
-/* Doubles that come very near to a multiple of pi/2: Muller, Elementary Functions, 3rd ed., table 11.1, and Payne and Hanek's worst
- * case of all doubles (W. Kahan); small ones, and those around the ends of what the short reduction takes. */
-static const double angles[] = {
-  5.3193726483265414e+255 /* 6381956970095103 2^797 */, 1.5707963267948966, 3.1415926535897931, 4.71238898038469, 6.2831853071795862,
-  7.8539816339744828, 22, 355, 103993, 104348, 833719/2.0, 2e5, 200000.00000000003, 199999.99999999997, 1e22, 1e300, 1.7976931348623157e308,
-  2.2250738585072014e-308, 5e-324, 1e-300, 0.78539816339744828, 0.78539816339744839, 2.3561944901923448, 3.9269908169872414, 1e-8, 710,
-  25735.829, 25735.878, 25735.927, 25735.976, 25736.025};
+/* Doubles that come very near to a multiple of pi/2: Muller, Elementary Functions, 3rd ed., table 11.1, and Payne
+ * and Hanek's worst case of all doubles (W. Kahan); small ones, and those around the ends of what the short
+ * reduction takes. */
+static const double angles[] = {5.3193726483265414e+255 /* 6381956970095103 2^797 */,
+                                1.5707963267948966, 3.1415926535897931, 4.71238898038469, 6.2831853071795862,
+                                7.8539816339744828, 22, 355, 103993, 104348, 833719 / 2.0, 2e5, 200000.00000000003,
+                                199999.99999999997, 1e22, 1e300, 1.7976931348623157e308, 2.2250738585072014e-308,
+                                5e-324, 1e-300, 0.78539816339744828, 0.78539816339744839, 2.3561944901923448,
+                                3.9269908169872414, 1e-8, 710, 25735.829, 25735.878, 25735.927, 25735.976,
+                                25736.025};
 
 static double angle(long i, long n) {
   const long hard = (long)(sizeof angles/sizeof *angles);
@@ -74,8 +78,11 @@ static double angle(long i, long n) {
 }
 
 static double exponent(long i, long n) {
-  static const double hard[] = {0, 709.782712893384, 709.78271289338397, -708.3964185322641, -745.13321910194111, -745.13321910194122, -744.4400719213812, 0.34657359027997264,
-                                -0.34657359027997264, 1e-300, -1e-300, 1};
+  static const double hard[] = {0,
+                                709.782712893384, 709.78271289338397, -708.3964185322641, -745.13321910194111,
+                                -745.13321910194122, -744.4400719213812, 0.34657359027997264, -0.34657359027997264,
+                                1e-300, -1e-300,
+                                1};
   if (i < (long)(sizeof hard/sizeof *hard)) return hard[i];
   switch (i*3/n) {
     case 0: return between(-1, 1);
@@ -85,8 +92,11 @@ static double exponent(long i, long n) {
 }
 
 static double positive(long i, long n) {
-  static const double hard[] = {1, 0.99999999999999989, 1.0000000000000002, 0.70710678118654746, 0.70710678118654757, 1.4142135623730951,
-                                1.4142135623730949, 5e-324, 2.2250738585072014e-308, 2.2250738585072009e-308, 1.7976931348623157e308, 2, 0.5};
+  static const double hard[] = {1,
+                                0.99999999999999989, 1.0000000000000002, 0.70710678118654746, 0.70710678118654757,
+                                1.4142135623730951, 1.4142135623730949, 5e-324, 2.2250738585072014e-308,
+                                2.2250738585072009e-308, 1.7976931348623157e308, 2,
+                                0.5};
   if (i < (long)(sizeof hard/sizeof *hard)) return hard[i];
   switch (i*3/n) {
     case 0: return between(0.5, 2);
@@ -148,7 +158,8 @@ static int abreast(long n) {
   for (long i = 0; i + MOST*LANES <= n && !bad; i += MOST*LANES) {
     LAG_REAL x[MOST], s[3][MOST], c[3][MOST];
     for (int k = 0; k < MOST; k++) {
-      for (int lane = 0; lane < LANES; lane++) put(&x[k], lane, bits()%64 ? angle(i + k*LANES + lane, n) : bits() & 1 ? HUGE_VAL : (double)NAN);
+      for (int lane = 0; lane < LANES; lane++)
+        put(&x[k], lane, bits() % 64 ? angle(i + k * LANES + lane, n) : bits() & 1 ? HUGE_VAL : (double)NAN);
       own_sin(&x[k], &s[0][k]);
       own_cos(&x[k], &c[0][k]);
     }
@@ -191,12 +202,14 @@ static int specials(void) {
     bad |= special("sin", own_sin, sign*5e-324, sign*5e-324) | special("exp", own_exp, sign*0.0, 1);
     bad |= special("log", own_log, sign*0.0, -inf) | special("rsqrt", own_rsqrt, sign*0.0, sign*inf);
   }
-  bad |= special("sin", own_sin, nan_, nan_) | special("cos", own_cos, nan_, nan_) | special("exp", own_exp, nan_, nan_);
+  bad |=
+      special("sin", own_sin, nan_, nan_) | special("cos", own_cos, nan_, nan_) | special("exp", own_exp, nan_, nan_);
   bad |= special("exp", own_exp, inf, inf) | special("exp", own_exp, -inf, 0) | special("exp", own_exp, 1e300, inf);
   bad |= special("exp", own_exp, -1e300, 0) | special("exp", own_exp, 709.8, inf) | special("exp", own_exp, -746, 0);
   bad |= special("log", own_log, inf, inf) | special("log", own_log, -1, nan_) | special("log", own_log, -inf, nan_);
   bad |= special("log", own_log, nan_, nan_) | special("log", own_log, 1, 0);
-  bad |= special("rsqrt", own_rsqrt, inf, 0) | special("rsqrt", own_rsqrt, -1, nan_) | special("rsqrt", own_rsqrt, nan_, nan_);
+  bad |= special("rsqrt", own_rsqrt, inf, 0) | special("rsqrt", own_rsqrt, -1, nan_) |
+         special("rsqrt", own_rsqrt, nan_, nan_);
   return bad;
 }
 

@@ -1,6 +1,7 @@
-/* check SEED FROM TO: derives models FROM .. TO of a seed in one process, and lets each compare what it compiled with its text (src/self_check).
- * Prints those that disagree, and a last line: `N agree, N with nothing decided, N refused, N disagree; seed S`. Exit status 1 where one
- * disagrees, or more than a tenth is refused: a generator whose models are no models tests nothing. */
+/* check SEED FROM TO: derives models FROM .. TO of a seed in one process, and lets each compare what it compiled
+ * with its text (src/self_check). Prints those that disagree, and a last line: `N agree, N with nothing decided, N
+ * refused, N disagree; seed S`. Exit status 1 where one disagrees, or more than a tenth is refused: a generator
+ * whose models are no models tests nothing. */
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,7 +23,8 @@ static Outcome judge(Arena *a, Diags *diags, Sources *sources, const char *text)
   Eqns *e = m ? equations_of(m) : NULL;
   if (!e) return REFUSED;
   ProgramSet *u = unit_new(e, "random.lag", 0);
-  unsigned of_headers = WANT_MASS | WANT_INVERSE | WANT_BY_INPUTS | WANT_BY_PARAMS | WANT_MULTIPLIERS | WANT_CONSTRAINED;
+  unsigned of_headers =
+      WANT_MASS | WANT_INVERSE | WANT_BY_INPUTS | WANT_BY_PARAMS | WANT_MULTIPLIERS | WANT_CONSTRAINED;
   unit_require(u, e, WANT_TAYLOR | of_headers | (e->singular_mass ? 0 : WANT_VARIATION | WANT_LINEAR));
   unit_add_scene(u, e);
   unit_hoist(u);
@@ -46,7 +48,8 @@ static Outcome check_one(uint64_t seed, uint64_t number) {
     if (v == DISAGREES || getenv("RANDOM_VERBOSE")) {
       StrBuf said = strbuf(a);
       diags_print(diags, &said);
-      printf("model %llu of seed %llu:\n%s%s\n", (unsigned long long)number, (unsigned long long)seed, v == DISAGREES ? text : "", sb_text(&said));
+      printf("model %llu of seed %llu:\n%s%s\n", (unsigned long long)number, (unsigned long long)seed,
+             v == DISAGREES ? text : "", sb_text(&said));
     }
   }
   arena_free(a);
@@ -59,7 +62,8 @@ int main(int argc, char **argv) {
   uint64_t seed = strtoull(argv[1], NULL, 10), from = strtoull(argv[2], NULL, 10), to = strtoull(argv[3], NULL, 10);
   uint64_t n[OUTCOMES] = {0};
   for (uint64_t i = from; i <= to; i++) n[check_one(seed, i)]++;
-  printf("%llu agree, %llu with nothing decided, %llu refused, %llu disagree; seed %llu\n", (unsigned long long)n[AGREES], (unsigned long long)n[UNDECIDED],
-         (unsigned long long)n[REFUSED], (unsigned long long)n[DISAGREES], (unsigned long long)seed);
+  printf("%llu agree, %llu with nothing decided, %llu refused, %llu disagree; seed %llu\n",
+         (unsigned long long)n[AGREES], (unsigned long long)n[UNDECIDED], (unsigned long long)n[REFUSED],
+         (unsigned long long)n[DISAGREES], (unsigned long long)seed);
   return n[DISAGREES] > 0 || n[REFUSED] * 10 > to - from + 1;
 }

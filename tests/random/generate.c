@@ -15,7 +15,8 @@ static int write_model(const char *folder, uint64_t number, const char *text) {
 
 int main(int argc, char **argv) {
   if (argc < 3) return fprintf(stderr, "usage: generate SEED FROM [TO [FOLDER]]\n"), 2;
-  uint64_t seed = strtoull(argv[1], NULL, 10), from = strtoull(argv[2], NULL, 10), to = argc > 3 ? strtoull(argv[3], NULL, 10) : from;
+  uint64_t seed = strtoull(argv[1], NULL, 10), from = strtoull(argv[2], NULL, 10),
+           to = argc > 3 ? strtoull(argv[3], NULL, 10) : from;
   for (uint64_t number = from; number <= to; number++) {
     char *text = random_model(seed, number);
     int ok = text && (argc > 4 ? write_model(argv[4], number, text) : fputs(text, stdout) >= 0);

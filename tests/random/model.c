@@ -1,5 +1,6 @@
-/* A grammar with weights: each rule is a text in which @K stands for an expression of kind K. Kinds bound values, so that functions
- * with a domain get arguments inside it near |q| < 2. Weights favour compositions: odd of odd, inverse of direct, powers of negatives. */
+/* A grammar with weights: each rule is a text in which @K stands for an expression of kind K. Kinds bound values, so
+ * that functions with a domain get arguments inside it near |q| < 2. Weights favour compositions: odd of odd,
+ * inverse of direct, powers of negatives. */
 #include "model.h"
 
 #include <stdarg.h>
@@ -71,8 +72,8 @@ static void know(Maker *m, const char *format, ...) {
 
 /* --- rules --- */
 
-/* A: any value; B: in -1..1; P: positive, not near 0; S: some units at most; I: argument of a function that is odd or inverse;
- * C: made of parameters alone; q: a name; p: a parameter; n: a number; @1: the first argument again. */
+/* A: any value; B: in -1..1; P: positive, not near 0; S: some units at most; I: argument of a function that is odd
+ * or inverse; C: made of parameters alone; q: a name; p: a parameter; n: a number; @1: the first argument again. */
 typedef struct {
   char kind;
   unsigned weight;
@@ -80,32 +81,40 @@ typedef struct {
 } Rule;
 
 static const Rule rules[] = {
-  {'A', 6, "@q"}, {'A', 3, "-@q"}, {'A', 4, "@I"}, {'A', 3, "(@A + @S)"}, {'A', 3, "(@S - @A)"}, {'A', 3, "@n*@A"}, {'A', 3, "@p*@S"},
-  {'A', 2, "@S*@B"}, {'A', 1, "@A/@P"}, {'A', 2, "(@S + @C)"}, {'A', 1, "@S^2"}, {'A', 1, "@S^3"}, {'A', 1, "(-@S)^3"}, {'A', 1, "(-@S)^2"},
-  {'A', 1, "sinh(@B)"}, {'A', 1, "tan(@B)"}, {'A', 1, "log(@P)"}, {'A', 1, "abs(@S)"}, {'A', 1, "cbrt(@P)"}, {'A', 1, "if(@S > @n, @S, @B)"},
-  {'A', 1, "if(@S < @B, -@1, @B)"}, {'A', 1, "hypot(@S, @A)"}, {'A', 1, "atan2(@S, @P)"}, {'A', 1, "atan2(@S, @A)"},
-  {'S', 8, "@q"}, {'S', 4, "-@q"}, {'S', 3, "@q/2"}, {'S', 2, "(@q + @n)"}, {'S', 3, "(@q - @q)"}, {'S', 2, "(2*@q + @q)"}, {'S', 4, "@I"},
-  {'S', 3, "@B"}, {'S', 1, "@p*@q"}, {'S', 1, "@q/@p"}, {'S', 2, "@C"}, {'S', 2, "(@B - @C)"}, {'S', 1, "@q*@B"},
-  {'I', 4, "asin(tanh(@A))"}, {'I', 3, "atan(tanh(@A))"}, {'I', 3, "2*atan(tanh(@S/2))"}, {'I', 2, "atan(sinh(@S))"}, {'I', 2, "asin(sin(@S))"},
-  {'I', 2, "acos(tanh(@S))"}, {'I', 2, "acos(cos(@S))"}, {'I', 2, "atan(tan(@B))"}, {'I', 1, "tanh(sinh(@B))"}, {'I', 2, "asin(@B*3/4)"},
-  {'I', 2, "atan(@A)"}, {'I', 2, "-atan(-@S)"}, {'I', 2, "atan2(sin(@S), cos(@1))"}, {'I', 1, "atan2(-@S, @P)"}, {'I', 1, "log(exp(@B))"},
-  {'I', 1, "log(cosh(@S))"}, {'I', 1, "atan(exp(@B))"}, {'I', 1, "sqrt(@S^2)"}, {'I', 1, "(@P^2)^(1/2)"}, {'I', 1, "(-8)^(1/3)*@S"},
-  {'I', 1, "asin(@S/sqrt(1 + @1^2))"}, {'I', 1, "acos(-tanh(@S))"}, {'I', 1, "cbrt(-@P)"}, {'I', 1, "(-@P)^(1/3)"}, {'I', 1, "(-@P)^(2/3)"},
-  {'I', 1, "sign(@S)*@1"}, {'I', 1, "abs(-@S)"}, {'I', 1, "max(@S, -@1)"}, {'I', 1, "min(@S, @B)"}, {'I', 1, "max(@S, @S)"},
-  {'B', 5, "sin(@A)"}, {'B', 5, "cos(@A)"}, {'B', 4, "tanh(@A)"}, {'B', 3, "sin(tanh(@S))"}, {'B', 2, "tanh(sin(@S))"}, {'B', 3, "sin(@I)"},
-  {'B', 3, "cos(@S + @I)"}, {'B', 3, "sin(@S - @I)"}, {'B', 2, "cos(@i*@S - 2*@I)"}, {'B', 2, "tanh(@I)"}, {'B', 1, "@S/hypot(1, @1)"},
-  {'B', 1, "@S/(1 + @1^2)"}, {'B', 1, "sin(@S)^2"}, {'B', 1, "cos(@S)^3"}, {'B', 1, "-sin(-@S)"}, {'B', 1, "exp(-@S^2)"},
-  {'B', 1, "1/(1 + exp(-@S))"}, {'B', 1, "1/cosh(@S)"}, {'B', 1, "sin(@S)*cos(@1)"}, {'B', 1, "sin(atan2(@S, @P))"}, {'B', 1, "tanh(@S)*tanh(@1)"},
-  {'P', 3, "(1 + @S^2)"}, {'P', 3, "(3/2 + @B)"}, {'P', 2, "cosh(@B)"}, {'P', 2, "exp(@B)"}, {'P', 2, "sqrt(1 + @S^2)"}, {'P', 2, "@p"},
-  {'P', 1, "(2 + @B)^@p"}, {'P', 1, "(3/2 + @B)^(2/3)"}, {'P', 1, "(1 + @S^2)^(-1/2)"}, {'P', 1, "(1 + sinh(@B)^2)"}, {'P', 1, "(2 - tanh(@S)^2)"},
-  {'P', 1, "hypot(1, @S)"}, {'P', 1, "(1 + abs(@S))"}, {'P', 1, "2^@B"}, {'P', 1, "(1 + exp(@B))"}, {'P', 1, "sqrt(@P)"}, {'P', 1, "max(@P, @P)"},
-  {'C', 3, "@d"}, {'C', 2, "atan(tanh(@d))"}, {'C', 2, "asin(tanh(-@d))"}, {'C', 1, "sin(@d - @d)"}, {'C', 1, "-tanh(@d)"}, {'C', 1, "atan2(@d, -@p)"},
-  {'C', 1, "sqrt(@d^2)"}, {'C', 1, "(-@p)^(1/3)"}, {'C', 1, "log(@p)"}, {'C', 1, "pi/@i"}, {'C', 1, "2*atan(tanh(@d/2))"}, {'C', 1, "abs(@d)"},
-  {'F', 1, "tanh(@q/w)"}, {'F', 1, "w*log(cosh(@q/w))"}, {'F', 1, "1/(1 + exp(-@q/w))"}, {'F', 1, "w*log(1 + exp(@q/w))"}, {'F', 1, "1/cosh(@q/w)^2"},
-  {'F', 1, "exp(-(@q/w)^2)"}, {'F', 1, "@B*tanh((@q - @C)/w)"}, {'F', 1, "atan(sinh(@q/w))"}, {'F', 1, "exp(-2*(@q - @n)) - 2*exp(-(@q - @n))"},
-  {'V', 8, "@A"}, {'V', 4, "@B"}, {'V', 3, "@F"}, {'V', 3, "@n*@S^2"}, {'V', 2, "@p*@A"}, {'V', 2, "cos(@A + @I)"}, {'V', 1, "@P"}, {'V', 1, "@B*@B"},
-  {'T', 3, "@n*@w'"}, {'T', 2, "@w'*@v/8"}, {'T', 2, "@w'^2/2"}, {'T', 2, "@B*@v"}, {'T', 1, "@A*@v"}, {'T', 1, "@w'*@w'/8"}, {'T', 1, "@B*@v*@v/4"},
-  {'T', 1, "@w*@w'"}, {'T', 1, "@P*@v^2/2"}, {'T', 1, "@v^4/4"}, {'T', 1, "sqrt(1 + @v^2)"},
+    {'A', 6, "@q"}, {'A', 3, "-@q"}, {'A', 4, "@I"}, {'A', 3, "(@A + @S)"}, {'A', 3, "(@S - @A)"}, {'A', 3, "@n*@A"},
+    {'A', 3, "@p*@S"}, {'A', 2, "@S*@B"}, {'A', 1, "@A/@P"}, {'A', 2, "(@S + @C)"}, {'A', 1, "@S^2"}, {'A', 1, "@S^3"},
+    {'A', 1, "(-@S)^3"}, {'A', 1, "(-@S)^2"}, {'A', 1, "sinh(@B)"}, {'A', 1, "tan(@B)"}, {'A', 1, "log(@P)"},
+    {'A', 1, "abs(@S)"}, {'A', 1, "cbrt(@P)"}, {'A', 1, "if(@S > @n, @S, @B)"}, {'A', 1, "if(@S < @B, -@1, @B)"},
+    {'A', 1, "hypot(@S, @A)"}, {'A', 1, "atan2(@S, @P)"}, {'A', 1, "atan2(@S, @A)"}, {'S', 8, "@q"}, {'S', 4, "-@q"},
+    {'S', 3, "@q/2"}, {'S', 2, "(@q + @n)"}, {'S', 3, "(@q - @q)"}, {'S', 2, "(2*@q + @q)"}, {'S', 4, "@I"},
+    {'S', 3, "@B"}, {'S', 1, "@p*@q"}, {'S', 1, "@q/@p"}, {'S', 2, "@C"}, {'S', 2, "(@B - @C)"}, {'S', 1, "@q*@B"},
+    {'I', 4, "asin(tanh(@A))"}, {'I', 3, "atan(tanh(@A))"}, {'I', 3, "2*atan(tanh(@S/2))"}, {'I', 2, "atan(sinh(@S))"},
+    {'I', 2, "asin(sin(@S))"}, {'I', 2, "acos(tanh(@S))"}, {'I', 2, "acos(cos(@S))"}, {'I', 2, "atan(tan(@B))"},
+    {'I', 1, "tanh(sinh(@B))"}, {'I', 2, "asin(@B*3/4)"}, {'I', 2, "atan(@A)"}, {'I', 2, "-atan(-@S)"},
+    {'I', 2, "atan2(sin(@S), cos(@1))"}, {'I', 1, "atan2(-@S, @P)"}, {'I', 1, "log(exp(@B))"},
+    {'I', 1, "log(cosh(@S))"}, {'I', 1, "atan(exp(@B))"}, {'I', 1, "sqrt(@S^2)"}, {'I', 1, "(@P^2)^(1/2)"},
+    {'I', 1, "(-8)^(1/3)*@S"}, {'I', 1, "asin(@S/sqrt(1 + @1^2))"}, {'I', 1, "acos(-tanh(@S))"}, {'I', 1, "cbrt(-@P)"},
+    {'I', 1, "(-@P)^(1/3)"}, {'I', 1, "(-@P)^(2/3)"}, {'I', 1, "sign(@S)*@1"}, {'I', 1, "abs(-@S)"},
+    {'I', 1, "max(@S, -@1)"}, {'I', 1, "min(@S, @B)"}, {'I', 1, "max(@S, @S)"}, {'B', 5, "sin(@A)"},
+    {'B', 5, "cos(@A)"}, {'B', 4, "tanh(@A)"}, {'B', 3, "sin(tanh(@S))"}, {'B', 2, "tanh(sin(@S))"},
+    {'B', 3, "sin(@I)"}, {'B', 3, "cos(@S + @I)"}, {'B', 3, "sin(@S - @I)"}, {'B', 2, "cos(@i*@S - 2*@I)"},
+    {'B', 2, "tanh(@I)"}, {'B', 1, "@S/hypot(1, @1)"}, {'B', 1, "@S/(1 + @1^2)"}, {'B', 1, "sin(@S)^2"},
+    {'B', 1, "cos(@S)^3"}, {'B', 1, "-sin(-@S)"}, {'B', 1, "exp(-@S^2)"}, {'B', 1, "1/(1 + exp(-@S))"},
+    {'B', 1, "1/cosh(@S)"}, {'B', 1, "sin(@S)*cos(@1)"}, {'B', 1, "sin(atan2(@S, @P))"}, {'B', 1, "tanh(@S)*tanh(@1)"},
+    {'P', 3, "(1 + @S^2)"}, {'P', 3, "(3/2 + @B)"}, {'P', 2, "cosh(@B)"}, {'P', 2, "exp(@B)"},
+    {'P', 2, "sqrt(1 + @S^2)"}, {'P', 2, "@p"}, {'P', 1, "(2 + @B)^@p"}, {'P', 1, "(3/2 + @B)^(2/3)"},
+    {'P', 1, "(1 + @S^2)^(-1/2)"}, {'P', 1, "(1 + sinh(@B)^2)"}, {'P', 1, "(2 - tanh(@S)^2)"}, {'P', 1, "hypot(1, @S)"},
+    {'P', 1, "(1 + abs(@S))"}, {'P', 1, "2^@B"}, {'P', 1, "(1 + exp(@B))"}, {'P', 1, "sqrt(@P)"},
+    {'P', 1, "max(@P, @P)"}, {'C', 3, "@d"}, {'C', 2, "atan(tanh(@d))"}, {'C', 2, "asin(tanh(-@d))"},
+    {'C', 1, "sin(@d - @d)"}, {'C', 1, "-tanh(@d)"}, {'C', 1, "atan2(@d, -@p)"}, {'C', 1, "sqrt(@d^2)"},
+    {'C', 1, "(-@p)^(1/3)"}, {'C', 1, "log(@p)"}, {'C', 1, "pi/@i"}, {'C', 1, "2*atan(tanh(@d/2))"},
+    {'C', 1, "abs(@d)"}, {'F', 1, "tanh(@q/w)"}, {'F', 1, "w*log(cosh(@q/w))"}, {'F', 1, "1/(1 + exp(-@q/w))"},
+    {'F', 1, "w*log(1 + exp(@q/w))"}, {'F', 1, "1/cosh(@q/w)^2"}, {'F', 1, "exp(-(@q/w)^2)"},
+    {'F', 1, "@B*tanh((@q - @C)/w)"}, {'F', 1, "atan(sinh(@q/w))"}, {'F', 1, "exp(-2*(@q - @n)) - 2*exp(-(@q - @n))"},
+    {'V', 8, "@A"}, {'V', 4, "@B"}, {'V', 3, "@F"}, {'V', 3, "@n*@S^2"}, {'V', 2, "@p*@A"}, {'V', 2, "cos(@A + @I)"},
+    {'V', 1, "@P"}, {'V', 1, "@B*@B"}, {'T', 3, "@n*@w'"}, {'T', 2, "@w'*@v/8"}, {'T', 2, "@w'^2/2"}, {'T', 2, "@B*@v"},
+    {'T', 1, "@A*@v"}, {'T', 1, "@w'*@w'/8"}, {'T', 1, "@B*@v*@v/4"}, {'T', 1, "@w*@w'"}, {'T', 1, "@P*@v^2/2"},
+    {'T', 1, "@v^4/4"}, {'T', 1, "sqrt(1 + @v^2)"},
 };
 
 static const Rule *pick(Maker *m, char kind) {
@@ -120,7 +129,8 @@ static const Rule *pick(Maker *m, char kind) {
 }
 
 static void leaf(Maker *m, char kind) {
-  static const char *const positive[] = {"a", "b", "c"}, *const any[] = {"d", "e", "a", "f"}, *const number[] = {"2", "3", "1/2", "2/3", "-1", "-3/2", "1/4", "5"};
+  static const char *const positive[] = {"a", "b", "c"}, *const any[] = {"d", "e", "a", "f"},
+                           *const number[] = {"2", "3", "1/2", "2/3", "-1", "-3/2", "1/4", "5"};
   switch (kind) {
     case 'p': say(m, "%s", positive[below(m, 3)]); return;
     case 'd': say(m, "%s", any[below(m, 4)]); return;
@@ -215,8 +225,9 @@ static void declare(Maker *m, const Shape *s) {
     know(m, "(R*(0, 0, 1)).x");
     know(m, "(R*(1, 2, 0)).z");
   }
-  say(m, "param a = %u/4 > 0, b = %u/5 > 0, c = %u/3 > 0, d = %d/4, e = -%u/7, f = %d/3 <= 0, w = 1/%u > 0\n", 1 + below(m, 8), 2 + below(m, 8), 1 + below(m, 6),
-      (int)below(m, 13) - 6, 1 + below(m, 9), -(int)below(m, 7), 1 + below(m, 40));
+  say(m, "param a = %u/4 > 0, b = %u/5 > 0, c = %u/3 > 0, d = %d/4, e = -%u/7, f = %d/3 <= 0, w = 1/%u > 0\n",
+      1 + below(m, 8), 2 + below(m, 8), 1 + below(m, 6), (int)below(m, 13) - 6, 1 + below(m, 9), -(int)below(m, 7),
+      1 + below(m, 40));
 }
 
 static void lets(Maker *m) {
@@ -263,7 +274,8 @@ static void potential(Maker *m, const Shape *s) {
     say(m, ")");
     m->names = names;
   }
-  if (s->vector) say(m, "\n  - %s", below(m, 2) ? "b/hypot(1, norm(r))" : "a/2*dot(r, r) - 1/sqrt(1 + dot(r, (2, 1))^2)");
+  if (s->vector)
+    say(m, "\n  - %s", below(m, 2) ? "b/hypot(1, norm(r))" : "a/2*dot(r, r) - 1/sqrt(1 + dot(r, (2, 1))^2)");
   say(m, "\n");
 }
 
@@ -310,7 +322,8 @@ char *random_model(uint64_t seed, uint64_t number) {
   if (!m) return NULL;
   m->random = seed * 0x9e3779b97f4a7c15u ^ number * 0xd1342543de82ef95u;
   next(m);
-  say(m, "model r%llu \"Random model %llu of seed %llu\"\n", (unsigned long long)number, (unsigned long long)number, (unsigned long long)seed);
+  say(m, "model r%llu \"Random model %llu of seed %llu\"\n", (unsigned long long)number, (unsigned long long)number,
+      (unsigned long long)seed);
   Shape s = shape_of(m);
   declare(m, &s);
   lets(m);

@@ -1,5 +1,5 @@
-/* Random models, for tests that compare two ways to compute the same. The text of a model depends on its seed and number only:
- * integer arithmetic, the same on every machine. */
+/* Random models, for tests that compare two ways to compute the same. The text of a model depends on its seed and
+ * number only: integer arithmetic, the same on every machine. */
 #ifndef RANDOM_MODEL_H
 #define RANDOM_MODEL_H
 

@@ -1,6 +1,6 @@
-/* cut_effects FILE: the names of the file's effects, one a line. cut_effects FILE EFFECT...: the file without the text of these
- * effects, cut by the parser's own spans, and without what others say of them: uses, requirements, exclusions, values of
- * theirs. */
+/* cut_effects FILE: the names of the file's effects, one a line. cut_effects FILE EFFECT...: the file without the
+ * text of these effects, cut by the parser's own spans, and without what others say of them: uses, requirements,
+ * exclusions, values of theirs. */
 #include <stdio.h>
 #include <string.h>
 
@@ -21,7 +21,9 @@ static int is_named(const Cutter *c, Name name) {
 /* drag.c = 3, start drag.y = 1: whose is it? */
 static Name owner_of(const Ast *ast, AstId id) {
   const AstExpr *x = ast_expr(ast, id);
-  while (x->kind == AST_PRIME || x->kind == AST_INDEX || (x->kind == AST_MEMBER && ast_expr(ast, x->a)->kind != AST_NAME)) x = ast_expr(ast, x->a);
+  while (x->kind == AST_PRIME || x->kind == AST_INDEX ||
+         (x->kind == AST_MEMBER && ast_expr(ast, x->a)->kind != AST_NAME))
+    x = ast_expr(ast, x->a);
   return x->kind == AST_MEMBER ? ast_expr(ast, x->a)->name : NULL;
 }
 

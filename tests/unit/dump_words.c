@@ -1,7 +1,7 @@
 /* dump_words: the words that the compiler knows, from its own tables, one a line: `statement coord`, `slot every`,
- * `function sin`, `unit m` (`prefixed m` where it takes SI prefixes), `command run`, `option run --tol`, `BROUGHT python | load`: words that
- * users bring along and what they mean. Help, the man page,
- * completion and the editors' grammar are held against them. */
+ * `function sin`, `unit m` (`prefixed m` where it takes SI prefixes), `command run`, `option run --tol`, `BROUGHT
+ * python | load`: words that users bring along and what they mean. Help, the man page, completion and the editors'
+ * grammar are held against them. */
 #include <stdio.h>
 
 #include "commands/command_table.h"

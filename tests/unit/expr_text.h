@@ -37,7 +37,11 @@ static inline SymId text_symbol(Texts *t, const char *name) {
   size_t len = strlen(name);
   int primes = len > 1 && name[len - 1] == '\'' ? 1 + (name[len - 2] == '\'') : 0;
   int param = strstr(t->params, padded) != NULL || strcmp(name, "pi") == 0;
-  SymKind kind = param ? SYM_PARAM : primes == 2 ? SYM_ACC : primes ? SYM_VEL : strcmp(name, "t") ? SYM_COORD : SYM_TIME;
+  SymKind kind = param               ? SYM_PARAM
+                 : primes == 2       ? SYM_ACC
+                 : primes            ? SYM_VEL
+                 : strcmp(name, "t") ? SYM_COORD
+                                     : SYM_TIME;
   SymId s = expr_declare(t->g, kind, t->n, intern(t->names, name), param ? SIGN_POSITIVE : SIGN_UNKNOWN);
   t->known[t->n++] = s;
   return s;

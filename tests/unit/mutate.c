@@ -65,7 +65,8 @@ static AstId above(const Walk *w, AstId id) { return w->up[id - w->first]; }
 static Span outer(const Walk *w, Span s) {
   const char *t = w->text;
   uint32_t b = s.begin - w->base, e = s.end - w->base;
-  if (b > 0 && t[b - 1] == '(' && t[e] == ')' && (b < 2 || strchr("(+-*/ =", t[b - 2]))) return (Span){s.begin - 1, s.end + 1};
+  if (b > 0 && t[b - 1] == '(' && t[e] == ')' && (b < 2 || strchr("(+-*/ =", t[b - 2])))
+    return (Span){s.begin - 1, s.end + 1};
   return s;
 }
 
@@ -144,7 +145,8 @@ static void function_edits(Walk *w, AstId id) {
 static void dropped_terms(Walk *w, AstId id) {
   const AstExpr *x = node(w, id);
   if (!is_sum(x->kind)) return;
-  Span sum = outer(w, node(w, whole(w, id))->span), a = outer(w, node(w, x->a)->span), b = outer(w, node(w, x->b)->span);
+  Span sum = outer(w, node(w, whole(w, id))->span), a = outer(w, node(w, x->a)->span),
+       b = outer(w, node(w, x->b)->span);
   add(w, "term", (Span){a.end, b.end}, "", sum, sum);
   if (is_sum(node(w, x->a)->kind)) return;
   uint32_t to = x->kind == AST_SUB ? x->op_span.begin : b.begin;
@@ -155,7 +157,8 @@ static void dropped_terms(Walk *w, AstId id) {
 static void dropped_factors(Walk *w, AstId id) {
   const AstExpr *x = node(w, id);
   if (!is_product(x->kind)) return;
-  Span product = outer(w, node(w, whole(w, id))->span), a = outer(w, node(w, x->a)->span), b = outer(w, node(w, x->b)->span);
+  Span product = outer(w, node(w, whole(w, id))->span), a = outer(w, node(w, x->a)->span),
+       b = outer(w, node(w, x->b)->span);
   add(w, "factor", (Span){a.end, b.end}, "", product, product);
   if (is_product(node(w, x->a)->kind)) return;
   const AstExpr *first = node(w, x->a);
@@ -296,8 +299,8 @@ static int run(Arena *a, const char *path, int verbose) {
   for (uint32_t i = 0; i < edits.n; i++) try_mutant(&c, path, file->text, &edits.at[i]);
   free(edits.at);
   printf("%u mutants: %u refuted by proof, %u by units, %u equivalent and proved, %u not decided, %u broken; "
-         "caret on the edit in %u of %u, the edit named in %u\n", c.total, c.refuted, c.units, c.proved, c.undecided, c.broken,
-         c.hits, c.refuted, c.advised);
+         "caret on the edit in %u of %u, the edit named in %u\n",
+         c.total, c.refuted, c.units, c.proved, c.undecided, c.broken, c.hits, c.refuted, c.advised);
   return c.undecided || c.broken;
 }
 

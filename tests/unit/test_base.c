@@ -276,7 +276,8 @@ static void test_gaps(void **state) {
 }
 #endif
 
-/* What is forgotten is given back, in chunks of its own and in one that goes on; what was there before stays, and what comes after is zero. */
+/* What is forgotten is given back, in chunks of its own and in one that goes on; what was there before stays, and
+ * what comes after is zero. */
 static void test_forget(void **state) {
   (void)state;
   ArenaConfig config = {.chunk = 64};
@@ -311,13 +312,15 @@ static void counted_dealloc(void *user, void *p) {
   free(p);
 }
 
-/* A block larger than a chunk, wherever it stands among the chunks, and the latest block are free at once; others stay. A block that is not of
- * the arena changes nothing, and a mark stays good when the chunk that it names is gone. */
+/* A block larger than a chunk, wherever it stands among the chunks, and the latest block are free at once; others
+ * stay. A block that is not of the arena changes nothing, and a mark stays good when the chunk that it names is
+ * gone. */
 static void test_release(void **state) {
   (void)state;
   int chunks = 0;
   char outside[16], far_outside[256];
-  Arena *a = arena_new(&(ArenaConfig){.alloc = counted_alloc, .dealloc = counted_dealloc, .user = &chunks, .chunk = 128});
+  Arena *a =
+      arena_new(&(ArenaConfig){.alloc = counted_alloc, .dealloc = counted_dealloc, .user = &chunks, .chunk = 128});
   char *kept = arena_strdup(a, "kept"), *large = arena_alloc(a, 1000);
   size_t used = arena_used(a);
   ArenaMark after_large = arena_mark(a);
@@ -350,7 +353,8 @@ static void test_vec_gives_up(void **state) {
   VEC(uint32_t) v = {0};
   for (uint32_t i = 0; i < MANY; i++) vec_push(a, &v, i);
   for (uint32_t i = 0; i < MANY; i++) assert_int_equal(v.at[i], i);
-  assert_true(arena_used(a) < v.cap * sizeof *v.at + 4 * 1024); /* blocks of less than a chunk stay: together less than two chunks, and their gaps */
+  /* blocks of less than a chunk stay: together less than two chunks, and their gaps */
+  assert_true(arena_used(a) < v.cap * sizeof *v.at + 4 * 1024);
   arena_free(a);
 }
 
@@ -425,10 +429,10 @@ static void test_diag_layout(void **state) {
   diag_help(p.d, "did you mean `%s`?", "th");
   diag_warning(p.d, span_of(&p, "model"), "first");
   diag_also(p.d, span_of(&p, "m\n"), "see");
-  assert_string_equal(printed(&p),
-                      "m.lag:1:1: warning: first\n    1 | model m\n      | ^~~~~\n"
-                      "m.lag:1:7: note: see\n    1 | model m\n      |       ^\n"
-                      "m.lag:2:9: error: unknown name `thh`\n    2 | let a = thh + 1\n      |         ^~~\n      = did you mean `th`?\n");
+  assert_string_equal(printed(&p), "m.lag:1:1: warning: first\n    1 | model m\n      | ^~~~~\n"
+                                   "m.lag:1:7: note: see\n    1 | model m\n      |       ^\n"
+                                   "m.lag:2:9: error: unknown name `thh`\n    2 | let a = thh + 1\n      |         "
+                                   "^~~\n      = did you mean `th`?\n");
   assert_int_equal(p.d->errors, 1);
   arena_free(p.a);
 }

@@ -1,4 +1,5 @@
-/* Poisson brackets of the charges that are found: structure constants of textbooks, by the names of the charges, and Jacobi's identity. */
+/* Poisson brackets of the charges that are found: structure constants of textbooks, by the names of the charges, and
+ * Jacobi's identity. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -66,12 +67,13 @@ static void is(const Charges *c, const char *a, const char *b, long double facto
   uint32_t n = c->found.all.n, one = charge(c, a), other = charge(c, b), only = to ? charge(c, to) : n;
   for (uint32_t k = 0; k <= n; k++) {
     long double expected = k == only ? factor : 0, got = constant(c, one, other, k);
-    if (!(fabsl(got - expected) < 1e-15L)) fail_msg("{%s, %s} has %Lg of charge %u, expected %Lg", a, b, got, k, expected);
+    if (!(fabsl(got - expected) < 1e-15L))
+      fail_msg("{%s, %s} has %Lg of charge %u, expected %Lg", a, b, got, k, expected);
   }
 }
 
-/* sum over cyclic (a, b, c) of {{a, b}, c}: each is a combination again, and all of them add up to 0. Sums of products of a few small
- * numbers, so 1e-15 is rounding. */
+/* sum over cyclic (a, b, c) of {{a, b}, c}: each is a combination again, and all of them add up to 0. Sums of
+ * products of a few small numbers, so 1e-15 is rounding. */
 static void jacobi(const Charges *c) {
   uint32_t n = c->found.all.n, m = n + 1;
   long double *f = ARENA_ARRAY(c->arena, long double, (size_t)n * n * m);
@@ -84,8 +86,10 @@ static void jacobi(const Charges *c) {
         for (size_t k = 0; k < m; k++) {
           long double sum = 0;
           for (size_t x = 0; x < n; x++)
-            sum += f[(a * n + b) * m + x] * f[(x * n + d) * m + k] + f[(b * n + d) * m + x] * f[(x * n + a) * m + k] + f[(d * n + a) * m + x] * f[(x * n + b) * m + k];
-          if (!(fabsl(sum) < 1e-13L)) fail_msg("Jacobi's identity of charges %zu, %zu, %zu is off by %Lg", a + 1, b + 1, d + 1, sum);
+            sum += f[(a * n + b) * m + x] * f[(x * n + d) * m + k] + f[(b * n + d) * m + x] * f[(x * n + a) * m + k] +
+                   f[(d * n + a) * m + x] * f[(x * n + b) * m + k];
+          if (!(fabsl(sum) < 1e-13L))
+            fail_msg("Jacobi's identity of charges %zu, %zu, %zu is off by %Lg", a + 1, b + 1, d + 1, sum);
         }
 }
 
@@ -93,7 +97,8 @@ static void jacobi(const Charges *c) {
 
 static void rotations(void **state) {
   (void)state;
-  Charges c = charges("model k\ncoord x, y, z\nparam m = 2 > 0, k = 3 > 0\nlagrangian = m/2*(x'^2 + y'^2 + z'^2) + k/sqrt(x^2 + y^2 + z^2)\n");
+  Charges c = charges("model k\ncoord x, y, z\nparam m = 2 > 0, k = 3 > 0\nlagrangian = m/2*(x'^2 + y'^2 + z'^2) + "
+                      "k/sqrt(x^2 + y^2 + z^2)\n");
   is(&c, "angular momentum about x", "angular momentum about y", 1, "angular momentum about z");
   is(&c, "angular momentum about y", "angular momentum about z", 1, "angular momentum about x");
   is(&c, "angular momentum about z", "angular momentum about x", 1, "angular momentum about y");
@@ -117,7 +122,8 @@ static void galilei(void **state) {
 /* Two bodies: the central mass is the sum. */
 static void two_bodies(void **state) {
   (void)state;
-  Charges c = charges("model n\ncoord x1, y1, x2, y2\nparam a = 2 > 0, b = 3 > 0, k = 1\nlagrangian = a/2*(x1'^2 + y1'^2) + b/2*(x2'^2 + y2'^2) + k/hypot(x1 - x2, y1 - y2)\n");
+  Charges c = charges("model n\ncoord x1, y1, x2, y2\nparam a = 2 > 0, b = 3 > 0, k = 1\nlagrangian = a/2*(x1'^2 + "
+                      "y1'^2) + b/2*(x2'^2 + y2'^2) + k/hypot(x1 - x2, y1 - y2)\n");
   is(&c, "total momentum along x", "boost along x: the centre of mass moves uniformly", 5, NULL);
   jacobi(&c);
   arena_free(c.arena);
@@ -135,10 +141,12 @@ static void inverse_square(void **state) {
   arena_free(c.arena);
 }
 
-/* Translations in a uniform field do not commute: {m x' - b y, m y' + b x} = -b (Landau & Lifshitz, Quantum Mechanics, 112). */
+/* Translations in a uniform field do not commute: {m x' - b y, m y' + b x} = -b (Landau & Lifshitz, Quantum
+ * Mechanics, 112). */
 static void magnetic(void **state) {
   (void)state;
-  Charges c = charges("model b\ncoord x, y\nparam m = 2 > 0, b = 3\nlagrangian = m/2*(x'^2 + y'^2) + b/2*(x*y' - y*x')\n");
+  Charges c =
+      charges("model b\ncoord x, y\nparam m = 2 > 0, b = 3\nlagrangian = m/2*(x'^2 + y'^2) + b/2*(x*y' - y*x')\n");
   is(&c, "magnetic translation along x", "magnetic translation along y", -3, NULL);
   is(&c, "energy", "magnetic translation along x", 0, NULL);
   jacobi(&c);
@@ -148,7 +156,8 @@ static void magnetic(void **state) {
 /* The algebra of a charge on a spring in a magnetic field closes, too. */
 static void two_rates(void **state) {
   (void)state;
-  Charges c = charges("model b\ncoord x, y\nparam m = 2 > 0, b = 3 > 0, k = 1 > 0\nlagrangian = m/2*(x'^2 + y'^2) + b/2*(x*y' - y*x') - k/2*(x^2 + y^2)\n");
+  Charges c = charges("model b\ncoord x, y\nparam m = 2 > 0, b = 3 > 0, k = 1 > 0\nlagrangian = m/2*(x'^2 + y'^2) + "
+                      "b/2*(x*y' - y*x') - k/2*(x^2 + y^2)\n");
   assert_int_equal(c.found.all.n, 8);
   jacobi(&c);
   arena_free(c.arena);
@@ -156,7 +165,8 @@ static void two_rates(void **state) {
 
 static void oscillator(void **state) {
   (void)state;
-  Charges c = charges("model o\ncoord x, y\nparam m = 2 > 0, k = 8 > 0\nlagrangian = m/2*(x'^2 + y'^2) - k/2*(x^2 + y^2)\n");
+  Charges c =
+      charges("model o\ncoord x, y\nparam m = 2 > 0, k = 8 > 0\nlagrangian = m/2*(x'^2 + y'^2) - k/2*(x^2 + y^2)\n");
   assert_int_equal(c.found.all.n, 8);
   jacobi(&c);
   arena_free(c.arena);
@@ -169,10 +179,12 @@ static long double value_of(const Charges *c, const char *name) {
   return NAN;
 }
 
-/* z oscillates with w = sqrt(2/m) for itself, while L contains t: the energy in a moving frame, m k of it, turns cos into sin with w m k. */
+/* z oscillates with w = sqrt(2/m) for itself, while L contains t: the energy in a moving frame, m k of it, turns cos
+ * into sin with w m k. */
 static void roots_of_numbers(void **state) {
   (void)state;
-  Charges c = charges("model r\ncoord x, z\nparam m = 2 > 0, k = 3 > 0, g = 1\nlagrangian = m/2*(x'^2 + z'^2) - g*cos(k*t)*x - z^2\n");
+  Charges c = charges(
+      "model r\ncoord x, z\nparam m = 2 > 0, k = 3 > 0, g = 1\nlagrangian = m/2*(x'^2 + z'^2) - g*cos(k*t)*x - z^2\n");
   uint32_t n = c.found.all.n, energy = charge(&c, "energy in a moving frame");
   for (uint32_t k = 0; k < c.algebra.all.n; k++) assert_non_null(c.algebra.all.at[k].c);
   long double got = 0;
@@ -182,12 +194,14 @@ static void roots_of_numbers(void **state) {
   arena_free(c.arena);
 }
 
-/* Momenta of vortices are coordinates of one another: the bracket of the two sums is the total circulation. L = G x y' gives {x, y} = 1/G;
- * Q along x is -G y, along y +G x, less their gauge, so {G y, -G x} = G {x, y} G. */
+/* Momenta of vortices are coordinates of one another: the bracket of the two sums is the total circulation. L = G x
+ * y' gives {x, y} = 1/G; Q along x is -G y, along y +G x, less their gauge, so {G y, -G x} = G {x, y} G. */
 static void vortices(void **state) {
   (void)state;
-  Charges c = charges("model v\ncoord x1, y1, x2, y2\nparam a = 1, b = 2\nlagrangian = a*(x1*y1' - y1*x1')/2 + b*(x2*y2' - y2*x2')/2 + a*b*log((x1 - x2)^2 + (y1 - y2)^2)\n");
-  long double value = constant(&c, charge(&c, "total momentum along x"), charge(&c, "total momentum along y"), c.found.all.n);
+  Charges c = charges("model v\ncoord x1, y1, x2, y2\nparam a = 1, b = 2\nlagrangian = a*(x1*y1' - y1*x1')/2 + "
+                      "b*(x2*y2' - y2*x2')/2 + a*b*log((x1 - x2)^2 + (y1 - y2)^2)\n");
+  long double value =
+      constant(&c, charge(&c, "total momentum along x"), charge(&c, "total momentum along y"), c.found.all.n);
   assert_true(fabsl(fabsl(value) - 3) < 1e-15L);
   jacobi(&c);
   arena_free(c.arena);
@@ -199,7 +213,10 @@ static void refused(void **state) {
   jmp_buf failed;
   if (setjmp(failed)) fail_msg("out of memory");
   arena_guard(a, &failed);
-  Eqns *e = equations(a, "model s\ncoord x, y, z\nparam g = 9.81, l = 1 > 0\nlagrangian = (x'^2 + y'^2 + z'^2)/2 - g*z\nconstraint rod: x^2 + y^2 + z^2 = l^2\n", NULL);
+  Eqns *e = equations(a,
+                      "model s\ncoord x, y, z\nparam g = 9.81, l = 1 > 0\nlagrangian = (x'^2 + y'^2 + z'^2)/2 - "
+                      "g*z\nconstraint rod: x^2 + y^2 + z^2 = l^2\n",
+                      NULL);
   SearchLimit limit = search_limit(INFINITY);
   FoundSymmetries found = noether_find(e, &limit);
   assert_non_null(brackets_find(e, &found, &limit).why_not);
@@ -208,9 +225,10 @@ static void refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(rotations), cmocka_unit_test(galilei),    cmocka_unit_test(two_bodies), cmocka_unit_test(inverse_square),
-    cmocka_unit_test(magnetic),  cmocka_unit_test(oscillator), cmocka_unit_test(vortices),   cmocka_unit_test(refused),
-    cmocka_unit_test(two_rates), cmocka_unit_test(roots_of_numbers),
+      cmocka_unit_test(rotations),        cmocka_unit_test(galilei),  cmocka_unit_test(two_bodies),
+      cmocka_unit_test(inverse_square),   cmocka_unit_test(magnetic), cmocka_unit_test(oscillator),
+      cmocka_unit_test(vortices),         cmocka_unit_test(refused),  cmocka_unit_test(two_rates),
+      cmocka_unit_test(roots_of_numbers),
   };
   return cmocka_run_group_tests_name("brackets", tests, NULL, NULL);
 }

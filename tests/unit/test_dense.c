@@ -1,4 +1,5 @@
-/* Dense elimination: kernels, orthonormal rows, inverses. Expected: matrices are made from their kernels and inverses. */
+/* Dense elimination: kernels, orthonormal rows, inverses. Expected: matrices are made from their kernels and
+ * inverses. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -32,12 +33,14 @@ static void a_kernel_is_found(void **state) {
     memcpy(was, m, sizeof was);
     DenseRows null = dense_kernel(a, rows, n, m, 1e-11L);
     assert_int_equal(null.n, 1);
-    for (uint32_t k = 0; k + 1 < n; k++) assert_true(fabsl(null.at[k] / null.at[n - 1] + 1) < 1e-10L); /* 1e-19 by 1e6 of scale, and conditions of 1e3 */
+    /* 1e-19 by 1e6 of scale, and conditions of 1e3 */
+    for (uint32_t k = 0; k + 1 < n; k++) assert_true(fabsl(null.at[k] / null.at[n - 1] + 1) < 1e-10L);
     arena_free(a);
   }
 }
 
-/* A column that is rounding beside the others counts as zero, and has no part in other vectors of the kernel: (2, -1, 0) and (0, 0, 1). */
+/* A column that is rounding beside the others counts as zero, and has no part in other vectors of the kernel: (2,
+ * -1, 0) and (0, 0, 1). */
 static void a_column_of_rounding_is_zero(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
@@ -55,7 +58,8 @@ static void a_column_of_rounding_is_zero(void **state) {
 static void rows_become_orthonormal(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
-  long double rows[] = {1, 2, 3, 4, 2, 4, 6, 8, 0, 0, 0, 0, 1, 0, -1, 2, 3, 4, 5, 10}; /* the second, third and fifth depend on others */
+  /* the second, third and fifth depend on others */
+  long double rows[] = {1, 2, 3, 4, 2, 4, 6, 8, 0, 0, 0, 0, 1, 0, -1, 2, 3, 4, 5, 10};
   DenseRows o = dense_orthonormal(a, &(DenseRows){.n = 5, .width = 4, .at = rows}, 4);
   assert_int_equal(o.n, 2);
   for (uint32_t i = 0; i < 2; i++)
@@ -97,7 +101,8 @@ static void an_inverse_is_one(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_kernel_is_found), cmocka_unit_test(a_column_of_rounding_is_zero), cmocka_unit_test(rows_become_orthonormal), cmocka_unit_test(an_inverse_is_one),
+      cmocka_unit_test(a_kernel_is_found), cmocka_unit_test(a_column_of_rounding_is_zero),
+      cmocka_unit_test(rows_become_orthonormal), cmocka_unit_test(an_inverse_is_one),
   };
   return cmocka_run_group_tests_name("dense", tests, NULL, NULL);
 }

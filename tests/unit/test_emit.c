@@ -57,7 +57,8 @@ static Real *random_symbols(const Eqns *e, uint64_t *seed) {
     if (sym->kind == SYM_VEL) v[s] *= 0.3L;        /* below the speed of light, which is a parameter */
     if (sym->kind == SYM_CONST) v[s] = 3.14159265358979323846264338327950288L;
   }
-  for (uint32_t i = e->n; i < e->m->contacts.n; i++) v[e->m->contacts.at[i].closed] = 0; /* more of them at once hold no motion */
+  /* more of them at once hold no motion */
+  for (uint32_t i = e->n; i < e->m->contacts.n; i++) v[e->m->contacts.at[i].closed] = 0;
   Name first = model_conditional(e->m); /* of constraints with `while`, which contradict each other, it alone holds */
   for (uint32_t i = 0; i < e->m->contacts.n; i++)
     if (e->m->contacts.at[i].margin) v[e->m->contacts.at[i].closed] = e->m->contacts.at[i].name == first;
@@ -110,7 +111,8 @@ static void check_demand(const Eqns *e, const char *where, const Real *value, co
       left += term;
       size += fabsl(term);
     }
-    if (!(fabsl(left) <= 1e-15L * size)) fail_msg("%s: constraint %s is left with %Lg of %Lg", where, k->of[row]->name, left, size);
+    if (!(fabsl(left) <= 1e-15L * size))
+      fail_msg("%s: constraint %s is left with %Lg of %Lg", where, k->of[row]->name, left, size);
   }
 }
 
@@ -135,12 +137,14 @@ static void check_state(const Eqns *e, const Prog *accel, const char *where, con
   }
   if (e->constraints.n) take_away_multipliers(e, value, left);
   for (uint32_t i = 0; i < e->n; i++)
-    if (!(fabsl(left[i]) <= 1e-15L * size[i])) fail_msg("%s: row %u is left with %Lg of %Lg", where, i, left[i], size[i]);
+    if (!(fabsl(left[i]) <= 1e-15L * size[i]))
+      fail_msg("%s: row %u is left with %Lg of %Lg", where, i, left[i], size[i]);
   check_demand(e, where, value, a);
   for (uint32_t i = 0; i < e->m->states.n; i++) {
     Real want = value_of(e, e->flow[i], value);
     if (isnan(zd[i]) && isnan(want)) continue; /* the root of a negative number, at a random state */
-    if (!(fabsl(zd[i] - want) <= 1e-15L * (1 + fabsl(want)))) fail_msg("%s: rate %u is %Lg, not %Lg", where, i, zd[i], want);
+    if (!(fabsl(zd[i] - want) <= 1e-15L * (1 + fabsl(want))))
+      fail_msg("%s: rate %u is %Lg, not %Lg", where, i, zd[i], want);
   }
 }
 
@@ -174,7 +178,8 @@ static void test_equations(void **state) {
   glob_t found;
   assert_int_equal(glob("models/*.lag", 0, NULL, &found), 0);
   assert_int_equal(glob("tests/exec/models/*.lag", GLOB_APPEND, NULL, &found), 0);
-  for (size_t step = (size_t)slow(2, 12), i = first_row(step); i < found.gl_pathc; i += step) check_file(found.gl_pathv[i]);
+  for (size_t step = (size_t)slow(2, 12), i = first_row(step); i < found.gl_pathc; i += step)
+    check_file(found.gl_pathv[i]);
   globfree(&found);
 }
 
@@ -221,7 +226,8 @@ static void test_numbers(void **state) {
 /* --- how sums and products are written --- */
 
 static const char *body_with(Prog *p, const char *math, Slot s) {
-  static const char *const in[ARR_COUNT] = {"t", "q", "v", "z", "p", "u"}, *const out[] = {"a"}, *const own[] = {"q", "a", NULL};
+  static const char *const in[ARR_COUNT] = {"t", "q", "v", "z", "p", "u"}, *const out[] = {"a"},
+                           *const own[] = {"q", "a", NULL};
   CStyle style = {.prefix = "R", .in = in, .out = out, .own = own, .solve = "solve", .loads_inline = 1, .math = math};
   prog_store(p, 0, 0, s, "it");
   StrBuf b = strbuf(arena);
@@ -231,7 +237,9 @@ static const char *body_with(Prog *p, const char *math, Slot s) {
 
 static const char *body(Prog *p, Slot s) { return body_with(p, NULL, s); }
 
-static Slot q(Prog *p, uint32_t i) { return prog_ins(p, (Ins){.op = IR_LOAD, .array = ARR_Q, .index = i, .name = "q"}); }
+static Slot q(Prog *p, uint32_t i) {
+  return prog_ins(p, (Ins){.op = IR_LOAD, .array = ARR_Q, .index = i, .name = "q"});
+}
 
 static void test_grouping(void **state) {
   (void)state;
@@ -254,7 +262,8 @@ static void test_grouping(void **state) {
 
 /* sum + sin x + cos x */
 static Slot plus_circle(Prog *p, Slot sum, Slot x) {
-  Slot s = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "sin"}), c = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "cos"});
+  Slot s = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "sin"}),
+       c = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "cos"});
   Slot both = prog_op(p, IR_ADD, s, c);
   return prog_op(p, IR_ADD, sum, both);
 }
@@ -265,7 +274,8 @@ static int count_text(const char *text, const char *what) {
   return n;
 }
 
-/* Of seven angles four go by one call, two by another, one alone; that of a sum of sines waits for these and goes alone, too. */
+/* Of seven angles four go by one call, two by another, one alone; that of a sum of sines waits for these and goes
+ * alone, too. */
 static void test_abreast(void **state) {
   (void)state;
   Prog *p = prog_new(arena);
@@ -275,17 +285,23 @@ static void test_abreast(void **state) {
   assert_int_equal(count_text(text, "r_sincos4("), 1);
   assert_int_equal(count_text(text, "r_sincos2("), 1);
   assert_int_equal(count_text(text, "r_sincos("), 2);
-  assert_true(strstr(text, "r_sincos4(") < strstr(text, "r_sincos2(") && strstr(text, "r_sincos2(") < strstr(text, "r_sincos("));
+  assert_true(strstr(text, "r_sincos4(") < strstr(text, "r_sincos2(") &&
+              strstr(text, "r_sincos2(") < strstr(text, "r_sincos("));
   assert_int_equal(count_text(text, "r_sin("), 0);
   for (int i = 0; i < 7; i++)
-    assert_int_equal(count_text(text, arena_printf(arena, "(q[%d], &", i)) + count_text(text, arena_printf(arena, " q[%d], &", i)), 1);
+    assert_int_equal(count_text(text, arena_printf(arena, "(q[%d], &", i)) +
+                         count_text(text, arena_printf(arena, " q[%d], &", i)),
+                     1);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test_setup_teardown(test_equations, setup, teardown), cmocka_unit_test_setup_teardown(test_names, setup, teardown),
-    cmocka_unit_test_setup_teardown(test_strings, setup, teardown),   cmocka_unit_test_setup_teardown(test_numbers, setup, teardown),
-    cmocka_unit_test_setup_teardown(test_grouping, setup, teardown), cmocka_unit_test_setup_teardown(test_abreast, setup, teardown),
+      cmocka_unit_test_setup_teardown(test_equations, setup, teardown),
+      cmocka_unit_test_setup_teardown(test_names, setup, teardown),
+      cmocka_unit_test_setup_teardown(test_strings, setup, teardown),
+      cmocka_unit_test_setup_teardown(test_numbers, setup, teardown),
+      cmocka_unit_test_setup_teardown(test_grouping, setup, teardown),
+      cmocka_unit_test_setup_teardown(test_abreast, setup, teardown),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -76,7 +76,8 @@ static void forms(void **state) {
   assert_int_equal(verdict(PENDULUM "expect l*th'' + g*sin(th) = 0\n"), EXPECT_PROVED);
   assert_int_equal(verdict(PENDULUM "expect 0 = m*l^2*th'' + m*g*l*sin(th)\n"), EXPECT_PROVED);
   assert_int_equal(verdict(PENDULUM "expect th''^2 = (g/l*sin(th))^2\n"), EXPECT_PROVED);
-  assert_int_equal(verdict(PENDULUM "let h = l*sin(th)\nexpect h'' = l*cos(th)*th'' - l*sin(th)*th'^2\n"), EXPECT_PROVED);
+  assert_int_equal(verdict(PENDULUM "let h = l*sin(th)\nexpect h'' = l*cos(th)*th'' - l*sin(th)*th'^2\n"),
+                   EXPECT_PROVED);
   assert_int_equal(verdict(PENDULUM "expect energy = m/2*l^2*th'^2 - m*g*l*cos(th)\n"), EXPECT_PROVED);
   assert_int_equal(verdict(PENDULUM "expect -g*sin(th) = l*th''\n"), EXPECT_PROVED);
 }
@@ -165,7 +166,8 @@ static void states_and_flows(void **state) {
   (void)state;
   assert_int_equal(verdict("model z\nparam a = 2\nstate u, v\nflow u' = a*v\nflow v' = -u\n"
                            "expect u'*v' = -a*u*v\n"), EXPECT_PROVED);
-  mends("model z\nparam a = 2\nstate u, v\nflow u' = a*v\nflow v' = -u\nexpect v' = u\n", "u", "`u` should have the opposite sign");
+  mends("model z\nparam a = 2\nstate u, v\nflow u' = a*v\nflow v' = -u\nexpect v' = u\n", "u",
+        "`u` should have the opposite sign");
   /* A state that a coordinate feels: its rate is put in. */
   assert_int_equal(verdict("model z\ncoord x\nparam c = 2\nstate i\nflow i' = -x'\nlagrangian = x'^2/2 + c*i*x\n"
                            "expect x'' + i' = c*i - x'\n"), EXPECT_PROVED);

@@ -1,5 +1,5 @@
-/* Memory runs out, once at each allocation (in `make test` at every third) of a compilation from text to C: every time the way ends
- * in the arena's guard, with all memory given back. */
+/* Memory runs out, once at each allocation (in `make test` at every third) of a compilation from text to C: every
+ * time the way ends in the arena's guard, with all memory given back. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -36,25 +36,26 @@ static void budget_free(void *user, void *p) {
   free(p);
 }
 
-static const char good[] =
-  "model cart \"a cart with a pendulum\"\n"
-  "coord x [m], th [rad] periodic\n"
-  "param M = 2 [kg] > 0, m = 1 [kg] > 0, l = 1/2 [m] > 0, g = 9.81 [m/s^2] > 0\n"
-  "const N = 3\nstate i [A]\ninput u [N] = sin(t/(1 [s]))*1 [N]\n"
-  "function square(a) = a^2\n"
-  "let px = x + l*sin(th)\nlet py = -l*cos(th)\n"
-  "lagrangian = M/2*square(x') + m/2*(px'^2 + py'^2) - m*g*py\n"
-  "force (px, py) = (u, 0)\nflow i' = -i/(1 [s])\n"
-  "effect drag { param c = 0.1 [N*s/m]; dissipation = c/2*x'^2 }\n"
-  "observe reach [cm] = abs(px)\n"
-  "event bump: x - 1 [m] rising { x' = -0.5*x'; stop }\n"
-  "scene s { use drag(c = 0.3); start th = 90 [deg]; span 3; output x, th, reach, energy every 0.1; monitor energy 1e-6 }\n";
+static const char good[] = "model cart \"a cart with a pendulum\"\n"
+                           "coord x [m], th [rad] periodic\n"
+                           "param M = 2 [kg] > 0, m = 1 [kg] > 0, l = 1/2 [m] > 0, g = 9.81 [m/s^2] > 0\n"
+                           "const N = 3\nstate i [A]\ninput u [N] = sin(t/(1 [s]))*1 [N]\n"
+                           "function square(a) = a^2\n"
+                           "let px = x + l*sin(th)\nlet py = -l*cos(th)\n"
+                           "lagrangian = M/2*square(x') + m/2*(px'^2 + py'^2) - m*g*py\n"
+                           "force (px, py) = (u, 0)\nflow i' = -i/(1 [s])\n"
+                           "effect drag { param c = 0.1 [N*s/m]; dissipation = c/2*x'^2 }\n"
+                           "observe reach [cm] = abs(px)\n"
+                           "event bump: x - 1 [m] rising { x' = -0.5*x'; stop }\n"
+                           "scene s { use drag(c = 0.3); start th = 90 [deg]; span 3; output x, th, reach, energy "
+                           "every 0.1; monitor energy 1e-6 }\n";
 
-static const char bad[] =
-  "model m\ncoord x [m], x [kg], q[m]\nparam k = kk, l = 1 [metre], n = -1 > 0\nlet a = b\nlet b = a + sum(i in 1..3, i)\n"
-  "lagrangian = x'^2 + x + sin(1 [m]) + nope(x) + 1/0\nforce (x, y) = 3\nflow w' = 1\n"
-  "effect e { requires f; param c = 1 }\nscene s { use e(d = 1), g; span = 3; start y = 1; like t; output x.y, drag.c }\n"
-  "scene t { like s }\nconstraint c: x = 1\n";
+static const char bad[] = "model m\ncoord x [m], x [kg], q[m]\nparam k = kk, l = 1 [metre], n = -1 > 0\nlet a = b\nlet "
+                          "b = a + sum(i in 1..3, i)\n"
+                          "lagrangian = x'^2 + x + sin(1 [m]) + nope(x) + 1/0\nforce (x, y) = 3\nflow w' = 1\n"
+                          "effect e { requires f; param c = 1 }\nscene s { use e(d = 1), g; span = 3; start y = 1; "
+                          "like t; output x.y, drag.c }\n"
+                          "scene t { like s }\nconstraint c: x = 1\n";
 
 static void emit_all(Arena *a, Eqns *e) {
   ProgramSet *u = unit_new(e, "test.lag", 0);

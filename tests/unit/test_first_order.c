@@ -1,5 +1,5 @@
-/* Lagrangians that are linear in all velocities: rates against formulas derived by hand, at random states, and against a linear system
- * that the test fills and solves itself. */
+/* Lagrangians that are linear in all velocities: rates against formulas derived by hand, at random states, and
+ * against a linear system that the test fills and solves itself. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,8 +23,8 @@ static Real val(const Moment *s, const char *name) { return at(s->e, s->v, name)
 
 enum { MOST = 16, TRIALS = 50 };
 
-/* Rates by hand, in the order of declaration; coordinates are positive where `positive`. The error allowed is that of 50 operations,
- * times how far a singular state may be: 1e3. */
+/* Rates by hand, in the order of declaration; coordinates are positive where `positive`. The error allowed is that
+ * of 50 operations, times how far a singular state may be: 1e3. */
 static void compare(const char *lag, int positive, void (*by_hand)(const Moment *s, Real *z)) {
   Arena *arena = arena_new(NULL);
   Eqns *e = equations(arena, lag, NULL);
@@ -35,12 +35,14 @@ static void compare(const char *lag, int positive, void (*by_hand)(const Moment 
   assert_null(prog_verify(p));
   for (int trial = 0; trial < TRIALS; trial++) {
     Real *point = random_point(e), z[MOST] = {0}, want[MOST] = {0};
-    for (uint32_t i = 0; positive && i < e->m->states.n; i++) point[e->m->states.at[i].z] = 1.25L + 0.5L * point[e->m->states.at[i].z];
+    for (uint32_t i = 0; positive && i < e->m->states.n; i++)
+      point[e->m->states.at[i].z] = 1.25L + 0.5L * point[e->m->states.at[i].z];
     Moment s = {e, point};
     assert_int_equal(run_prog(e, p, s.v, NULL, z), 0);
     by_hand(&s, want);
     for (uint32_t i = 0; i < e->m->states.n; i++)
-      if (!(fabsl(z[i] - want[i]) <= 1e-14L * (1 + fabsl(want[i])))) fail_msg("%s\nrate %u: %Lg, by hand %Lg", lag, i, z[i], want[i]);
+      if (!(fabsl(z[i] - want[i]) <= 1e-14L * (1 + fabsl(want[i]))))
+        fail_msg("%s\nrate %u: %Lg, by hand %Lg", lag, i, z[i], want[i]);
   }
   arena_free(arena);
 }
@@ -59,7 +61,8 @@ static void test_lotka_volterra(void **state) {
   /* A total time derivative, here of log(x)*log(y), changes momenta and no motion. */
   compare("model m\ncoord x, y\nlagrangian = log(x)/y*y' - (x - log(x) + y - log(y))\n", 1, hunters);
   /* As lets, and as kinetic and potential energy. */
-  compare("model m\ncoord x, y\nlet a = log(x)\nlet b = log(y)\nkinetic = (a*b' - b*a')/2\npotential = x - a + y - b\n", 1, hunters);
+  compare("model m\ncoord x, y\nlet a = log(x)\nlet b = log(y)\nkinetic = (a*b' - b*a')/2\npotential = x - a + y - b\n",
+          1, hunters);
 }
 
 /* q' = dH/dp, p' = -dH/dq + F(t): L = p q' - H. */
@@ -88,8 +91,9 @@ static void test_explicit_time(void **state) {
   compare("model m\ncoord x, y\nparam k = 1.5\nlagrangian = (2 + sin(t))*x*y' - k/2*(x^2 + y^2)\n", 0, growing_field);
 }
 
-/* The guiding centre in the field B = (0, -Az', Ay') of the potential (0, Ay, Az), Ay = 2 x + x^2/4, Az = 3 x^2/20: X' = (u B* + b x mu grad B)/B*_par,
- * u' = -mu B*.grad B/B*_par with B* = B + u curl b (R. G. Littlejohn, J. Plasma Phys. 29 (1983) 111). All depend on x alone. */
+/* The guiding centre in the field B = (0, -Az', Ay') of the potential (0, Ay, Az), Ay = 2 x + x^2/4, Az = 3 x^2/20:
+ * X' = (u B* + b x mu grad B)/B*_par, u' = -mu B*.grad B/B*_par with B* = B + u curl b (R. G. Littlejohn, J. Plasma
+ * Phys. 29 (1983) 111). All depend on x alone. */
 static void guiding_centre(const Moment *s, Real *z) {
   Real x = val(s, "x"), u = val(s, "u"), mu = val(s, "mu");
   Real By = -0.3L * x, Bz = 2 + x / 2, dBy = -0.3L, dBz = 0.5L;
@@ -105,8 +109,10 @@ static void guiding_centre(const Moment *s, Real *z) {
 
 static void test_guiding_centre(void **state) {
   (void)state;
-  compare("model m\ncoord x, y, z, u\nparam mu = 0.7\nlet Ay = 2*x + x^2/4\nlet Az = 3*x^2/20\nlet By = -3*x/10\nlet Bz = 2 + x/2\n"
-          "let B = sqrt(By^2 + Bz^2)\nlagrangian = (Ay + u*By/B)*y' + (Az + u*Bz/B)*z' - u^2/2 - mu*B\n", 0, guiding_centre);
+  compare("model m\ncoord x, y, z, u\nparam mu = 0.7\nlet Ay = 2*x + x^2/4\nlet Az = 3*x^2/20\nlet By = -3*x/10\nlet "
+          "Bz = 2 + x/2\n"
+          "let B = sqrt(By^2 + Bz^2)\nlagrangian = (Ay + u*By/B)*y' + (Az + u*Bz/B)*z' - u^2/2 - mu*B\n",
+          0, guiding_centre);
 }
 
 /* A state beside coordinates, whose flow contains a velocity. x' = -dH/dy, y' = dH/dx with H = (x^2 + y^2)/2 + c x. */
@@ -131,7 +137,8 @@ static const char *coupled(Arena *a, uint32_t n, const char *sign, int banded) {
   for (uint32_t i = 0; i < n; i++) sb_printf(&b, "coord q%u\n", i);
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t j = 0; j < i; j++)
-      if (!banded || i == j + 1) sb_printf(&b, "param w%u_%u = %.17Lg%s\n", i, j, *sign ? 2 + weight(i, j) : weight(i, j), sign);
+      if (!banded || i == j + 1)
+        sb_printf(&b, "param w%u_%u = %.17Lg%s\n", i, j, *sign ? 2 + weight(i, j) : weight(i, j), sign);
   sb_puts(&b, "lagrangian = 0");
   for (uint32_t i = 0; i < n; i++) {
     sb_printf(&b, " - %u*q%u^3/3", i + 1, i);
@@ -165,7 +172,8 @@ static void check_coupled(uint32_t n, const char *sign, int banded) {
     }
     assert_int_equal(dense_solve(e->m->arena, n, A, b, 0, NULL), n);
     for (uint32_t i = 0; i < n; i++) /* of either solver, by conditions below 1e4 */
-      if (!(fabsl(got[i] - b[i]) <= 1e-14L * (1 + fabsl(b[i])))) fail_msg("%u coordinates, rate %u: %Lg, solved %Lg", n, i, got[i], b[i]);
+      if (!(fabsl(got[i] - b[i]) <= 1e-14L * (1 + fabsl(b[i]))))
+        fail_msg("%u coordinates, rate %u: %Lg, solved %Lg", n, i, got[i], b[i]);
   }
   arena_free(arena);
 }

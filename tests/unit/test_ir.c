@@ -15,9 +15,12 @@ typedef long double Real;
 
 /* ---- the checker ---- */
 
-static Slot load(Prog *p, uint32_t i) { return prog_ins(p, (Ins){.op = IR_LOAD, .array = ARR_Q, .index = i, .name = "q"}); }
+static Slot load(Prog *p, uint32_t i) {
+  return prog_ins(p, (Ins){.op = IR_LOAD, .array = ARR_Q, .index = i, .name = "q"});
+}
 
-/* A malformed program goes through no pass and says so; the accelerations of a short model go through those of short programs, in order. */
+/* A malformed program goes through no pass and says so; the accelerations of a short model go through those of short
+ * programs, in order. */
 static void test_passes(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
@@ -35,7 +38,9 @@ static void test_passes(void **state) {
   StrBuf trace = strbuf(a);
   prog_store(p, 0, 0, prog_op(p, IR_MUL, load(p, 0), load(p, 1)), "out");
   passes_run(p, &(PassPlan){.nests_from = 1500, .every_step = 1}, &trace);
-  const char *order[] = {"after lowering:", "after tidy:", "after factor:", "after product_cse:", "after reassociate_fma:"}, *at = sb_text(&trace);
+  const char *order[] = {"after lowering:", "after tidy:", "after factor:", "after product_cse:",
+                         "after reassociate_fma:"},
+             *at = sb_text(&trace);
   for (size_t i = 0; i < sizeof order / sizeof *order; i++) {
     at = strstr(at, order[i]);
     assert_non_null(at);
@@ -90,7 +95,8 @@ static void test_numbering(void **state) {
   Slot minus = prog_op(p, IR_SUB, 0, x);
   assert_int_equal(p->ins.at[minus].op, IR_NEG);
   assert_int_equal(prog_op(p, IR_NEG, minus, 0), x);
-  Slot s = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "sin"}), c = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "cos"});
+  Slot s = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "sin"}),
+       c = prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "cos"});
   assert_int_not_equal(s, c);
   assert_int_equal(prog_ins(p, (Ins){.op = IR_FN1, .a = x, .text = "sin"}), s);
   assert_int_not_equal(two, one);
@@ -110,7 +116,8 @@ static void test_tidy(void **state) {
   Slot x = load(p, 0), y = load(p, 1), z = load(p, 2);
   Slot dead = prog_op(p, IR_SQRT, z, 0);
   (void)dead;
-  Slot d1 = prog_op(p, IR_DIV, x, y), d2 = prog_op(p, IR_DIV, z, y), two = prog_num(p, num_int(2)), d3 = prog_op(p, IR_DIV, x, two);
+  Slot d1 = prog_op(p, IR_DIV, x, y), d2 = prog_op(p, IR_DIV, z, y), two = prog_num(p, num_int(2)),
+       d3 = prog_op(p, IR_DIV, x, two);
   Slot d4 = prog_op(p, IR_DIV, x, z);
   prog_store(p, 0, 0, d1, "a");
   prog_store(p, 0, 1, d2, "b");
@@ -133,7 +140,8 @@ static void test_tidy(void **state) {
   arena_free(a);
 }
 
-/* Elimination of 2000 unknowns: n (n - 1) (2 n + 5)/6 products, as many sums, n (n + 1)/2 quotients, in all more than 2^32. */
+/* Elimination of 2000 unknowns: n (n - 1) (2 n + 5)/6 products, as many sums, n (n + 1)/2 quotients, in all more
+ * than 2^32. */
 static void test_count_of_many(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
@@ -147,8 +155,9 @@ static void test_count_of_many(void **state) {
   arena_free(a);
 }
 
-/* lag_kkt.h by hand for M = diag(m1, m2) and one constraint: roots of M and S, each after a product that says how small a pivot may be; 2
- * quotients each of L^-1 A^T, L^-1 f, twice L^-T, and twice 2 with S; products: S, A y, twice the forces of the constraint, what is left. */
+/* lag_kkt.h by hand for M = diag(m1, m2) and one constraint: roots of M and S, each after a product that says how
+ * small a pivot may be; 2 quotients each of L^-1 A^T, L^-1 f, twice L^-T, and twice 2 with S; products: S, A y,
+ * twice the forces of the constraint, what is left. */
 static void test_count_constrained(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
@@ -160,7 +169,8 @@ static void test_count_constrained(void **state) {
   arena_free(a);
 }
 
-/* Bodies on rods, each held to the next: what lag_kkt.h did when it ran with a type of numbers that counts operations (C++). */
+/* Bodies on rods, each held to the next: what lag_kkt.h did when it ran with a type of numbers that counts
+ * operations (C++). */
 static void test_count_along_a_chain(void **state) {
   (void)state;
   static const uint32_t did[][5] = {{40, 2230, 2230, 1178, 80}, {80, 7670, 7670, 3958, 160}};
@@ -182,7 +192,8 @@ static void test_factor(void **state) {
   Arena *arena = arena_new(NULL);
   Prog *p = prog_new(arena);
   Slot a = load(p, 0), b = load(p, 1), x = load(p, 2), y = load(p, 3), z = load(p, 4);
-  Slot ax = prog_op(p, IR_MUL, a, x), ay = prog_op(p, IR_MUL, a, y), az = prog_op(p, IR_MUL, a, z), bz = prog_op(p, IR_MUL, b, z);
+  Slot ax = prog_op(p, IR_MUL, a, x), ay = prog_op(p, IR_MUL, a, y), az = prog_op(p, IR_MUL, a, z),
+       bz = prog_op(p, IR_MUL, b, z);
   Slot bx = prog_op(p, IR_MUL, b, x), abx = prog_op(p, IR_MUL, a, bx), by = prog_op(p, IR_MUL, b, y);
   prog_store(p, 0, 0, prog_op(p, IR_SUB, ax, ay), "a*(x - y)");
   prog_store(p, 0, 1, prog_op(p, IR_ADD, abx, az), "a*(b*x + z)");
@@ -200,8 +211,8 @@ static void test_factor(void **state) {
   arena_free(arena);
 }
 
-/* s*b - c*d + e - named with s = sin a, the slowest: e begins, since a product in front would be rounded by itself, s*b comes last,
- * and a sum with a name stays one. */
+/* s*b - c*d + e - named with s = sin a, the slowest: e begins, since a product in front would be rounded by itself,
+ * s*b comes last, and a sum with a name stays one. */
 static void test_in_time(void **state) {
   (void)state;
   Arena *arena = arena_new(NULL);
@@ -232,7 +243,8 @@ static void test_in_time(void **state) {
   arena_free(arena);
 }
 
-/* a*b*x, a*b*y, a*a*b and a*b: three multiplications less with a*b made once; a product that is stored, x*y, is a factor as it is. */
+/* a*b*x, a*b*y, a*a*b and a*b: three multiplications less with a*b made once; a product that is stored, x*y, is a
+ * factor as it is. */
 static void test_share(void **state) {
   (void)state;
   Arena *arena = arena_new(NULL);
@@ -280,8 +292,9 @@ static uint32_t place(const Prog *p, IrOp op) {
   return 0;
 }
 
-/* 1/(x^9 - sin y) and z + 1, written with what is needed last in front: the powers, on which all waits, come first; the sum, which
- * nothing waits for, last; the sine when it is needed, or first of all where it is a call; the pivot before its division. */
+/* 1/(x^9 - sin y) and z + 1, written with what is needed last in front: the powers, on which all waits, come first;
+ * the sum, which nothing waits for, last; the sine when it is needed, or first of all where it is a call; the pivot
+ * before its division. */
 static void test_by_deadline(void **state) {
   (void)state;
   Arena *arena = arena_new(NULL);
@@ -337,11 +350,13 @@ static void test_pivot(void **state) {
 /* ---- lowering ---- */
 
 static const char *const flows[] = {
-  "x + y - a*x", "x*y^2/b - 3*x + 1/7", "(x - y)/(2 + sin(x)^2)", "sin(x + y) + cos(x - y) + sin(x)*cos(y)", "cos(x) - cos(y)",
-  "sqrt(1 + x^2)*exp(-y)", "(1 + x^2)^(3/2) + (2 + y)^(-1/2) + (3 + x)^(2/5)", "x^7 - y^-3 + (x*y)^12", "atan2(y, x) + hypot(x, y)",
-  "min(x, y)*max(x, a) + abs(x) + sign(y)", "if(x > y and not (x <= a) or y == 2, x, y^2)", "tan(x) + asin(x/2) + acos(y/2) + atan(x)",
-  "sinh(x) + cosh(y) + tanh(x*y) + log(2 + x) + cbrt(y)", "(2 + x)^(y + a) + a^x", "2*x/3 - 5*y/7 + 0.1*x*y", "pi*x + 1e-30*y + 6.02e23",
-  "l1*l2 + l3^2 - l2/(3 + l1)", "x/b + y/b + 1/b - (x*y)/b", "t*x + sin(2*t)", "-x - y", "1",
+    "x + y - a*x", "x*y^2/b - 3*x + 1/7", "(x - y)/(2 + sin(x)^2)", "sin(x + y) + cos(x - y) + sin(x)*cos(y)",
+    "cos(x) - cos(y)", "sqrt(1 + x^2)*exp(-y)", "(1 + x^2)^(3/2) + (2 + y)^(-1/2) + (3 + x)^(2/5)",
+    "x^7 - y^-3 + (x*y)^12", "atan2(y, x) + hypot(x, y)", "min(x, y)*max(x, a) + abs(x) + sign(y)",
+    "if(x > y and not (x <= a) or y == 2, x, y^2)", "tan(x) + asin(x/2) + acos(y/2) + atan(x)",
+    "sinh(x) + cosh(y) + tanh(x*y) + log(2 + x) + cbrt(y)", "(2 + x)^(y + a) + a^x", "2*x/3 - 5*y/7 + 0.1*x*y",
+    "pi*x + 1e-30*y + 6.02e23", "l1*l2 + l3^2 - l2/(3 + l1)", "x/b + y/b + 1/b - (x*y)/b", "t*x + sin(2*t)", "-x - y",
+    "1",
 };
 
 static void test_lower(void **state) {
@@ -349,7 +364,9 @@ static void test_lower(void **state) {
   enum { N = sizeof flows / sizeof *flows };
   Arena *a = arena_new(NULL);
   StrBuf lag = strbuf(a);
-  sb_puts(&lag, "model m\nstate x, y\nparam a = 0.7, b = 1.3\nlet l1 = sin(x*y) + y\nlet l2 = l1^2 + x\nlet l3 = cos(l2)*l1\n");
+  sb_puts(
+      &lag,
+      "model m\nstate x, y\nparam a = 0.7, b = 1.3\nlet l1 = sin(x*y) + y\nlet l2 = l1^2 + x\nlet l3 = cos(l2)*l1\n");
   for (int i = 0; i < N; i++) sb_printf(&lag, "state s%d\nflow s%d' = %s\n", i, i, flows[i]);
   sb_puts(&lag, "flow x' = y\nflow y' = -x\n");
   Eqns *e = equations(a, sb_text(&lag), NULL);
@@ -362,7 +379,8 @@ static void test_lower(void **state) {
     assert_int_equal(run_prog(e, p, v, NULL, out), 0);
     expr_eval(e->g, e->flow, N + 2, v, want);
     for (int i = 0; i < N + 2; i++)
-      if (!(fabsl(out[i] - want[i]) <= 1e-16L * (1 + fabsl(want[i])))) fail_msg("%s: %Lg, not %Lg", i < 2 ? "x, y" : flows[i - 2], out[i], want[i]);
+      if (!(fabsl(out[i] - want[i]) <= 1e-16L * (1 + fabsl(want[i]))))
+        fail_msg("%s: %Lg, not %Lg", i < 2 ? "x, y" : flows[i - 2], out[i], want[i]);
   }
   arena_free(a);
 }
@@ -402,7 +420,8 @@ static const char *coupled_model(Arena *a, int n, int reach, int definite) {
   for (int i = 2; i <= n; i++) sb_printf(&lag, ", q%d", i);
   sb_puts(&lag, "\nlagrangian = 0");
   for (int i = 1; i <= n; i++) {
-    sb_printf(&lag, " %s q%d'^2*(2 + sin(q%d)^2)/%d - q%d^2*%d/3", definite || i % 2 ? "+" : "-", i, i, 1 + i % 3, i, i);
+    sb_printf(&lag, " %s q%d'^2*(2 + sin(q%d)^2)/%d - q%d^2*%d/3", definite || i % 2 ? "+" : "-", i, i, 1 + i % 3, i,
+              i);
     for (int j = i + 1; j <= n && j <= i + reach; j++)
       sb_printf(&lag, definite ? " + (q%d' + cos(q%d)*q%d')^2/%d" : " + q%d'*cos(q%d)*q%d'/%d", i, i, j, 2 + j % 2);
   }
@@ -420,7 +439,8 @@ static void check_solution(int n, int reach, int definite) {
   assert_null(prog_verify(p));
   if (definite && n > 1 && n <= 12) assert_int_equal(p->solves.n, 0); /* straight-line LDL^T */
   if (!definite) assert_int_equal(p->solves.n, n > 2); /* a pair in the open, more by a loop with pivoting */
-  Real *A = ARENA_ARRAY(a, Real, N * N), *b = ARENA_ARRAY(a, Real, N), *x = ARENA_ARRAY(a, Real, N), *got = ARENA_ARRAY(a, Real, N);
+  Real *A = ARENA_ARRAY(a, Real, N * N), *b = ARENA_ARRAY(a, Real, N), *x = ARENA_ARRAY(a, Real, N),
+       *got = ARENA_ARRAY(a, Real, N);
   for (int trial = 0; trial < 10; trial++) {
     const Real *v = random_point(e);
     for (uint32_t i = 0; i < N; i++)
@@ -432,7 +452,8 @@ static void check_solution(int n, int reach, int definite) {
     eliminate(A, b, N, x);
     assert_int_equal(run_prog(e, p, v, got, NULL), 0);
     for (uint32_t i = 0; i < N; i++)
-      if (!(fabsl(got[i] - x[i]) <= 1e-14L * (1 + fabsl(x[i])))) fail_msg("n = %d: q%u'' = %Lg, not %Lg", n, i + 1, got[i], x[i]);
+      if (!(fabsl(got[i] - x[i]) <= 1e-14L * (1 + fabsl(x[i]))))
+        fail_msg("n = %d: q%u'' = %Lg, not %Lg", n, i + 1, got[i], x[i]);
   }
   arena_free(a);
 }
@@ -452,10 +473,12 @@ static void test_solve_indefinite(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_verify), cmocka_unit_test(test_numbering),      cmocka_unit_test(test_tidy),
-    cmocka_unit_test(test_passes), cmocka_unit_test(test_pivot),  cmocka_unit_test(test_lower),          cmocka_unit_test(test_solve_definite),
-    cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor), cmocka_unit_test(test_count_of_many), cmocka_unit_test(test_count_constrained), cmocka_unit_test(test_count_along_a_chain), cmocka_unit_test(test_in_time), cmocka_unit_test(test_share),
-    cmocka_unit_test(test_factors_in_time), cmocka_unit_test(test_by_deadline),
+      cmocka_unit_test(test_verify), cmocka_unit_test(test_numbering), cmocka_unit_test(test_tidy),
+      cmocka_unit_test(test_passes), cmocka_unit_test(test_pivot), cmocka_unit_test(test_lower),
+      cmocka_unit_test(test_solve_definite), cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor),
+      cmocka_unit_test(test_count_of_many), cmocka_unit_test(test_count_constrained),
+      cmocka_unit_test(test_count_along_a_chain), cmocka_unit_test(test_in_time), cmocka_unit_test(test_share),
+      cmocka_unit_test(test_factors_in_time), cmocka_unit_test(test_by_deadline),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

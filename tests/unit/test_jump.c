@@ -44,8 +44,11 @@ static void expect(Lab *l, Expr x, const char *what, long double by) {
 
 static void test_continuous(void **state) {
   (void)state;
-  static const char *const texts[] = {"abs(x)", "max(x, y)", "min(x, 1)*x'", "x*sign(x)", "(x - 1)*sign(x - 1)", "cbrt(x)", "acos(cos(x))", "asin(sin(x))", "1/x", "tan(x)",
-                                      "log(abs(x))", "1/hypot(x, y)", "exp(-1/x^2)", "atan(1/x^2)", "abs(x)^0.125", "sign(a)*x", "sin(x)*atan2(sin(x), x^2 + 1)"};
+  static const char *const texts[] = {"abs(x)",
+                                      "max(x, y)", "min(x, 1)*x'", "x*sign(x)", "(x - 1)*sign(x - 1)", "cbrt(x)",
+                                      "acos(cos(x))", "asin(sin(x))", "1/x", "tan(x)", "log(abs(x))", "1/hypot(x, y)",
+                                      "exp(-1/x^2)", "atan(1/x^2)", "abs(x)^0.125", "sign(a)*x",
+                                      "sin(x)*atan2(sin(x), x^2 + 1)"};
   Lab l = lab_new();
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) expect(&l, read(&l, texts[i]), texts[i], 0);
   expect(&l, branch(&l, "x", "x^2", "0"), "if(x > 0, x^2, 0)", 0);
@@ -62,10 +65,12 @@ static void test_jumps(void **state) {
   const struct {
     const char *text;
     long double by;
-  } cases[] = {{"sign(x)", 2}, {"3*sign(x' - y) + x^3", 6}, {"atan(tan(x))", pi}, {"atan(1/x)", pi}, {"x/abs(x)", 2}, {"tanh(1/(x - y))", 2}, {"1/(1 + exp(1/x))", 1},
-               {"atan2(y, x)", 2*pi}, {"sign(t - 7)", 2}, {"0.000001*sign(x) + x", 2e-6L}};
+  } cases[] = {{"sign(x)", 2},     {"3*sign(x' - y) + x^3", 6},    {"atan(tan(x))", pi},    {"atan(1/x)", pi},
+               {"x/abs(x)", 2},    {"tanh(1/(x - y))", 2},         {"1/(1 + exp(1/x))", 1}, {"atan2(y, x)", 2 * pi},
+               {"sign(t - 7)", 2}, {"0.000001*sign(x) + x", 2e-6L}};
   Lab l = lab_new();
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) expect(&l, read(&l, cases[i].text), cases[i].text, cases[i].by);
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    expect(&l, read(&l, cases[i].text), cases[i].text, cases[i].by);
   expect(&l, branch(&l, "x - 1", "1", "0"), "if(x > 1, 1, 0)", 1);
   expect(&l, branch(&l, "x - 1000000", "1", "0"), "far away", 1);
   expect(&l, branch(&l, "1/1000000 - hypot(x, y)", "1", "0"), "a small ball", 1);
@@ -86,6 +91,7 @@ static void test_place(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_continuous), cmocka_unit_test(test_jumps), cmocka_unit_test(test_place)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_continuous), cmocka_unit_test(test_jumps),
+                                     cmocka_unit_test(test_place)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

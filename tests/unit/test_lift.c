@@ -71,7 +71,8 @@ static uint32_t check(const char *lag, int lifted) {
     Real size = 0;
     for (uint32_t i = 0; i < e->n; i++) size = fmaxl(size, fabsl(want[i]));
     for (uint32_t i = 0; i < e->n; i++) /* 64 bits, and a condition of M up to 1e4 */
-      if (!(fabsl(got[i] - want[i]) <= 1e-14L * size)) fail_msg("%s\nacceleration %u: %Lg, dense %Lg", lag, i, got[i], want[i]);
+      if (!(fabsl(got[i] - want[i]) <= 1e-14L * size))
+        fail_msg("%s\nacceleration %u: %Lg, dense %Lg", lag, i, got[i], want[i]);
   }
   uint32_t ops = (uint32_t)ops_total(prog_count(p));
   arena_free(arena);
@@ -131,7 +132,8 @@ static void check_linear(Writer write) {
   Arena *a = arena_new(NULL);
   int more = slow(5, 2);
   uint32_t few = check(write(a, 10), 1), some = check(write(a, 10 + more), 1), many = check(write(a, 10 + 2*more), 1);
-  if (many - some > some - few + 10) fail_msg("%s\n10 links, %d and %d more take %u, %u, %u operations", write(a, 10), more, 2*more, few, some, many);
+  if (many - some > some - few + 10)
+    fail_msg("%s\n10 links, %d and %d more take %u, %u, %u operations", write(a, 10), more, 2 * more, few, some, many);
   arena_free(a);
 }
 
@@ -139,9 +141,12 @@ static const char *family(Arena *a, int n) { return arena_printf(a, CHAIN ENERGI
 
 /* Other names, and the chain counted from its tip to its pivot. */
 static const char *renamed(Arena *a, int n) {
-  return arena_printf(a, "model m\nconst K = %d\ncoord alpha[K]\nparam mu = 1 > 0, g = 9.81 > 0\nlet east[K+1] = 0, north[K+1] = 0\n"
-                         "let east[k in 1..K] = east[k+1] + sin(alpha[k])\nlet north[k in 1..K] = north[k+1] - cos(alpha[k])\n"
-                         "lagrangian = sum(k in 1..K, mu/2*(east[k]'^2 + north[k]'^2) - mu*g*north[k])\n", n);
+  return arena_printf(
+      a,
+      "model m\nconst K = %d\ncoord alpha[K]\nparam mu = 1 > 0, g = 9.81 > 0\nlet east[K+1] = 0, north[K+1] = 0\n"
+      "let east[k in 1..K] = east[k+1] + sin(alpha[k])\nlet north[k in 1..K] = north[k+1] - cos(alpha[k])\n"
+      "lagrangian = sum(k in 1..K, mu/2*(east[k]'^2 + north[k]'^2) - mu*g*north[k])\n",
+      n);
 }
 
 /* The same without families. */
@@ -158,17 +163,27 @@ static const char *by_hand(Arena *a, int n) {
 
 /* Each angle measured from the link before: the direction is a chain of lets, too. */
 static const char *relative(Arena *a, int n) {
-  return arena_printf(a, "model m\nconst N = %d\ncoord th[N]\nparam m[N] = 1 > 0, I = 0.1 > 0, g = 9.81 > 0\nlet phi[0] = 0, x[0] = 0, y[0] = 0\n"
-                         "let phi[i in 1..N] = phi[i-1] + th[i]\nlet x[i in 1..N] = x[i-1] + sin(phi[i])\nlet y[i in 1..N] = y[i-1] - cos(phi[i])\n"
-                         "kinetic = sum(i in 1..N, m[i]/2*(x[i]'^2 + y[i]'^2) + I/2*phi[i]'^2)\npotential = sum(i in 1..N, m[i]*g*y[i])\n", n);
+  return arena_printf(
+      a,
+      "model m\nconst N = %d\ncoord th[N]\nparam m[N] = 1 > 0, I = 0.1 > 0, g = 9.81 > 0\nlet phi[0] = 0, x[0] = 0, "
+      "y[0] = 0\n"
+      "let phi[i in 1..N] = phi[i-1] + th[i]\nlet x[i in 1..N] = x[i-1] + sin(phi[i])\nlet y[i in 1..N] = y[i-1] - "
+      "cos(phi[i])\n"
+      "kinetic = sum(i in 1..N, m[i]/2*(x[i]'^2 + y[i]'^2) + I/2*phi[i]'^2)\npotential = sum(i in 1..N, m[i]*g*y[i])\n",
+      n);
 }
 
 /* In space, two angles a link. */
 static const char *spatial(Arena *a, int n) {
-  return arena_printf(a, "model m\nconst N = %d\ncoord th[N], ph[N]\nparam m = 1 > 0, I = 0.1 > 0, g = 9.81 > 0\nlet x[0] = 0, y[0] = 0, z[0] = 0\n"
-                         "let x[i in 1..N] = x[i-1] + sin(th[i])*cos(ph[i])\nlet y[i in 1..N] = y[i-1] + sin(th[i])*sin(ph[i])\n"
-                         "let z[i in 1..N] = z[i-1] - cos(th[i])\nkinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2 + z[i]'^2) + I/2*ph[i]'^2)\n"
-                         "potential = sum(i in 1..N, m*g*z[i])\n", n);
+  return arena_printf(
+      a,
+      "model m\nconst N = %d\ncoord th[N], ph[N]\nparam m = 1 > 0, I = 0.1 > 0, g = 9.81 > 0\nlet x[0] = 0, y[0] = 0, "
+      "z[0] = 0\n"
+      "let x[i in 1..N] = x[i-1] + sin(th[i])*cos(ph[i])\nlet y[i in 1..N] = y[i-1] + sin(th[i])*sin(ph[i])\n"
+      "let z[i in 1..N] = z[i-1] - cos(th[i])\nkinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2 + z[i]'^2) + "
+      "I/2*ph[i]'^2)\n"
+      "potential = sum(i in 1..N, m*g*z[i])\n",
+      n);
 }
 
 /* Every second link carries a branch of two. */
@@ -186,29 +201,40 @@ static const char *tree(Arena *a, int n) {
 
 /* Speeds by way of a let that is not linear in velocities. */
 static const char *squares(Arena *a, int n) {
-  return arena_printf(a, CHAIN "let v2[i in 1..N] = x[i]'^2 + y[i]'^2\nkinetic = sum(i in 1..N, m[i]/2*v2[i])\npotential = sum(i in 1..N, m[i]*g*y[i])\n", n);
+  return arena_printf(a,
+                      CHAIN "let v2[i in 1..N] = x[i]'^2 + y[i]'^2\nkinetic = sum(i in 1..N, m[i]/2*v2[i])\npotential "
+                            "= sum(i in 1..N, m[i]*g*y[i])\n",
+                      n);
 }
 
 /* Friction in the joints and a drive that depends on time. */
 static const char *driven(Arena *a, int n) {
-  return arena_printf(a, "model m\nconst N = %d\ncoord th[N]\nparam m = 1 > 0, g = 9.81 > 0\nlet x[0] = 0.1*sin(3*t), y[0] = 0\n"
-                         "let x[i in 1..N] = x[i-1] + sin(th[i])\nlet y[i in 1..N] = y[i-1] - cos(th[i])\n"
-                         "kinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2))\npotential = sum(i in 1..N, m*g*y[i])\n"
-                         "dissipation = sum(i in 2..N, 0.1*(th[i]' - th[i-1]')^2)\nforce (x[N], y[N]) = (-x[N]', 2)\n", n);
+  return arena_printf(
+      a,
+      "model m\nconst N = %d\ncoord th[N]\nparam m = 1 > 0, g = 9.81 > 0\nlet x[0] = 0.1*sin(3*t), y[0] = 0\n"
+      "let x[i in 1..N] = x[i-1] + sin(th[i])\nlet y[i in 1..N] = y[i-1] - cos(th[i])\n"
+      "kinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2))\npotential = sum(i in 1..N, m*g*y[i])\n"
+      "dissipation = sum(i in 2..N, 0.1*(th[i]' - th[i-1]')^2)\nforce (x[N], y[N]) = (-x[N]', 2)\n",
+      n);
 }
 
-/* A chain below a cart, whose velocity every term of the kinetic energy adds by itself; and a rotor that every link drives. */
+/* A chain below a cart, whose velocity every term of the kinetic energy adds by itself; and a rotor that every link
+ * drives. */
 static const char *cart(Arena *a, int n) {
-  return arena_printf(a, "model m\nconst N = %d\ncoord c, th[N], w\nparam m = 1 > 0, g = 9.81 > 0\nlet x[0] = 0, y[0] = 0\n"
-                         "let x[i in 1..N] = x[i-1] + sin(th[i])\nlet y[i in 1..N] = y[i-1] - cos(th[i])\n"
-                         "kinetic = m*c'^2 + m*w'^2 + sum(i in 1..N, m/2*((x[i]' + c')^2 + y[i]'^2) + 0.1*(w' + th[i]')^2)\n"
-                         "potential = sum(i in 1..N, m*g*y[i])\n", n);
+  return arena_printf(
+      a,
+      "model m\nconst N = %d\ncoord c, th[N], w\nparam m = 1 > 0, g = 9.81 > 0\nlet x[0] = 0, y[0] = 0\n"
+      "let x[i in 1..N] = x[i-1] + sin(th[i])\nlet y[i in 1..N] = y[i-1] - cos(th[i])\n"
+      "kinetic = m*c'^2 + m*w'^2 + sum(i in 1..N, m/2*((x[i]' + c')^2 + y[i]'^2) + 0.1*(w' + th[i]')^2)\n"
+      "potential = sum(i in 1..N, m*g*y[i])\n",
+      n);
 }
 
 static void test_chains(void **state) {
   (void)state;
   const Writer writers[] = {family, renamed, by_hand, relative, spatial, tree, squares, driven, cart};
-  for (size_t step = (size_t)slow(1, 4), i = first_row(step); i < sizeof writers / sizeof *writers; i += step) check_linear(writers[i]);
+  for (size_t step = (size_t)slow(1, 4), i = first_row(step); i < sizeof writers / sizeof *writers; i += step)
+    check_linear(writers[i]);
 }
 
 /* --- where it does not pay, or must not happen --- */
@@ -216,7 +242,8 @@ static void test_chains(void **state) {
 /* A node between two others: the cost is that of the fill-in. */
 static void test_net(void **state) {
   (void)state;
-  const char *net = "model m\nconst N = 5\ncoord a[N,N]\nparam m = 1 > 0\nlet x[i in 0..N, j in 0..N] = if(i < 1 or j < 1, 0, (x[i-1,j] + x[i,j-1])/2 + sin(a[i,j]))\n"
+  const char *net = "model m\nconst N = 5\ncoord a[N,N]\nparam m = 1 > 0\nlet x[i in 0..N, j in 0..N] = if(i < 1 or j "
+                    "< 1, 0, (x[i-1,j] + x[i,j-1])/2 + sin(a[i,j]))\n"
                     "lagrangian = sum(i in 1..N, sum(j in 1..N, m/2*x[i,j]'^2 + m/2*a[i,j]'^2 - m*x[i,j]))\n";
   uint32_t ops = check(net, 1);
   assert_true(ops < 25 * 25 * 25 / 3); /* a dense factorization alone */
@@ -226,8 +253,10 @@ static void test_short_ones_stay_dense(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
   check(family(a, 2), 0);
-  check("model m\ncoord x, th\nparam M = 2 > 0, m = 1 > 0, l = 0.5 > 0, g = 9.81\nlet px = x + l*sin(th), py = -l*cos(th)\n"
-        "lagrangian = M/2*x'^2 + m/2*(px'^2 + py'^2) - m*g*py\n", 0);
+  check("model m\ncoord x, th\nparam M = 2 > 0, m = 1 > 0, l = 0.5 > 0, g = 9.81\nlet px = x + l*sin(th), py = "
+        "-l*cos(th)\n"
+        "lagrangian = M/2*x'^2 + m/2*(px'^2 + py'^2) - m*g*py\n",
+        0);
   arena_free(a);
 }
 
@@ -294,8 +323,9 @@ static void test_long(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_textbook), cmocka_unit_test(test_chains), cmocka_unit_test(test_net),
-    cmocka_unit_test(test_short_ones_stay_dense), cmocka_unit_test(test_indefinite), cmocka_unit_test(test_undeclared_signs), cmocka_unit_test(test_consistent_mass), cmocka_unit_test(test_long),
+      cmocka_unit_test(test_textbook), cmocka_unit_test(test_chains), cmocka_unit_test(test_net),
+      cmocka_unit_test(test_short_ones_stay_dense), cmocka_unit_test(test_indefinite),
+      cmocka_unit_test(test_undeclared_signs), cmocka_unit_test(test_consistent_mass), cmocka_unit_test(test_long),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

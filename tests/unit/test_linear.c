@@ -55,7 +55,8 @@ static void compare(const char *lag, void (*by_hand)(const Moment *s, Real want[
     linearise(&s);
     by_hand(&s, want);
     for (int i = 0; i < MOST; i++)
-      for (int j = 0; j < MOST; j++) close_to(s.dr[i][j], want[i][j], arena_printf(arena, "dr[%d][%d] of\n%s", i, j, lag));
+      for (int j = 0; j < MOST; j++)
+        close_to(s.dr[i][j], want[i][j], arena_printf(arena, "dr[%d][%d] of\n%s", i, j, lag));
   }
   arena_free(arena);
 }
@@ -133,7 +134,8 @@ static void melting(const Moment *s, Real r[MOST][MOST]) {
 
 static void test_mass_of_a_state(void **state) {
   (void)state;
-  compare("model m\ncoord x\nstate z\nparam m = 1.5, k = 3\nlagrangian = m/2*(1 + z)*x'^2 - k/2*x^2\nflow z' = -z/2\n", melting);
+  compare("model m\ncoord x\nstate z\nparam m = 1.5, k = 3\nlagrangian = m/2*(1 + z)*x'^2 - k/2*x^2\nflow z' = -z/2\n",
+          melting);
 }
 
 /* M = m gamma^3 for L = -m c^2 sqrt(1 - v^2/c^2), so dr/dv = -3 m gamma^5 v a/c^2: M depends on the velocity. */
@@ -145,7 +147,8 @@ static void relativistic(const Moment *s, Real r[MOST][MOST]) {
 
 static void test_mass_of_a_velocity(void **state) {
   (void)state;
-  compare("model m\ncoord x\nparam m = 1.5, k = 3, c = 4\nlagrangian = -m*c^2*sqrt(1 - x'^2/c^2) - k/2*x^2\n", relativistic);
+  compare("model m\ncoord x\nparam m = 1.5, k = 3, c = 4\nlagrangian = -m*c^2*sqrt(1 - x'^2/c^2) - k/2*x^2\n",
+          relativistic);
 }
 
 /* A string of N masses: three entries a row, whatever N is. */
@@ -158,13 +161,14 @@ static void test_sparse(void **state) {
   Partials dr = eqns_linearise(e);
   assert_int_equal(dr.n, 3 * 500 - 2);
   for (uint32_t k = 1; k < dr.n; k++)
-    assert_true(dr.at[k].row > dr.at[k - 1].row || (dr.at[k].row == dr.at[k - 1].row && dr.at[k].col > dr.at[k - 1].col));
+    assert_true(dr.at[k].row > dr.at[k - 1].row ||
+                (dr.at[k].row == dr.at[k - 1].row && dr.at[k].col > dr.at[k - 1].col));
   arena_free(arena);
 }
 
-/* d(th1'', th2'')/d(th1, th2, th1', th2') of the double pendulum, by SymPy 1.11: Lagrange's equations of T - V, solve() for
- * the accelerations, diff() of them, N(..., 22) at th1 = 3/10, th2 = -7/10, th1' = 11/10, th2' = -2/5 with m1 = 3/2,
- * m2 = 1/2, l1 = 3/4, l2 = 5/4, g = 9.81. */
+/* d(th1'', th2'')/d(th1, th2, th1', th2') of the double pendulum, by SymPy 1.11: Lagrange's equations of T - V,
+ * solve() for the accelerations, diff() of them, N(..., 22) at th1 = 3/10, th2 = -7/10, th1' = 11/10, th2' = -2/5
+ * with m1 = 3/2, m2 = 1/2, l1 = 3/4, l2 = 5/4, g = 9.81. */
 static const Real sympy[2][4] = {
   {-10.09562666876147577352L, -1.926235478082926280214L, -0.2697430866873024591156L, 0.3025725724706835355417L},
   {0.8345030262565958025077L, -2.939720608803900024098L, 1.198187386983906800745L, -0.09808839515901907604203L},
@@ -173,9 +177,12 @@ static const Real sympy[2][4] = {
 static void test_double_pendulum(void **state) {
   (void)state;
   Arena *arena = arena_new(NULL);
-  Eqns *e = equations(arena, "model m\ncoord th1, th2\nparam m1 = 3/2, m2 = 1/2, l1 = 3/4, l2 = 5/4, g = 9.81\n"
-                             "let x1 = l1*sin(th1)\nlet y1 = -l1*cos(th1)\nlet x2 = x1 + l2*sin(th2)\nlet y2 = y1 - l2*cos(th2)\n"
-                             "kinetic = m1/2*(x1'^2 + y1'^2) + m2/2*(x2'^2 + y2'^2)\npotential = m1*g*y1 + m2*g*y2\n", NULL);
+  Eqns *e =
+      equations(arena,
+                "model m\ncoord th1, th2\nparam m1 = 3/2, m2 = 1/2, l1 = 3/4, l2 = 5/4, g = 9.81\n"
+                "let x1 = l1*sin(th1)\nlet y1 = -l1*cos(th1)\nlet x2 = x1 + l2*sin(th2)\nlet y2 = y1 - l2*cos(th2)\n"
+                "kinetic = m1/2*(x1'^2 + y1'^2) + m2/2*(x2'^2 + y2'^2)\npotential = m1*g*y1 + m2*g*y2\n",
+                NULL);
   assert_non_null(e);
   Real *v = random_point(e), acc[2];
   v[symbol_named(e, "th1")] = 0.3L;
@@ -188,7 +195,8 @@ static void test_double_pendulum(void **state) {
   Moment s = {.e = e, .v = v};
   linearise(&s);
   Real det = s.M[0][0] * s.M[1][1] - s.M[0][1] * s.M[1][0];
-  for (int j = 0; j < 4; j++) { /* 1e-15: rounding of some tens of operations in extended precision, and of the solution */
+  /* 1e-15: rounding of some tens of operations in extended precision, and of the solution */
+  for (int j = 0; j < 4; j++) {
     close_to((s.M[1][1] * s.dr[0][j] - s.M[0][1] * s.dr[1][j]) / det, sympy[0][j], "a Jacobian's first row");
     close_to((s.M[0][0] * s.dr[1][j] - s.M[1][0] * s.dr[0][j]) / det, sympy[1][j], "a Jacobian's second row");
   }

@@ -34,9 +34,11 @@ static void compare(const char *lag, ByHand by_hand) {
     assert_int_equal(run_prog(e, p, s.v, a, z), 0);
     by_hand(&s, want_a, want_z);
     for (uint32_t i = 0; i < e->n; i++)
-      if (!(fabsl(a[i] - want_a[i]) <= 1e-14L * (1 + fabsl(want_a[i])))) fail_msg("%s\nacceleration %u: %Lg, by hand %Lg", lag, i, a[i], want_a[i]);
+      if (!(fabsl(a[i] - want_a[i]) <= 1e-14L * (1 + fabsl(want_a[i]))))
+        fail_msg("%s\nacceleration %u: %Lg, by hand %Lg", lag, i, a[i], want_a[i]);
     for (uint32_t i = 0; i < e->m->states.n; i++)
-      if (!(fabsl(z[i] - want_z[i]) <= 1e-14L * (1 + fabsl(want_z[i])))) fail_msg("%s\nrate %u: %Lg, by hand %Lg", lag, i, z[i], want_z[i]);
+      if (!(fabsl(z[i] - want_z[i]) <= 1e-14L * (1 + fabsl(want_z[i]))))
+        fail_msg("%s\nrate %u: %Lg, by hand %Lg", lag, i, z[i], want_z[i]);
   }
   arena_free(arena);
 }
@@ -50,7 +52,8 @@ static void pendulum(const Moment *s, Real *a, Real *z) {
 
 static void test_pendulum(void **state) {
   (void)state;
-  compare("model m\ncoord th\nparam m = 1.5, l = 0.7, g = 9.81\nlagrangian = m*l^2*th'^2/2 + m*g*l*cos(th)\n", pendulum);
+  compare("model m\ncoord th\nparam m = 1.5, l = 0.7, g = 9.81\nlagrangian = m*l^2*th'^2/2 + m*g*l*cos(th)\n",
+          pendulum);
   compare("model m\ncoord th\nparam m = 1.5, l = 0.7, g = 9.81\nlet x = l*sin(th)\nlet y = -l*cos(th)\n"
           "kinetic = m/2*(x'^2 + y'^2)\npotential = m*g*y\n", pendulum);
 }
@@ -65,8 +68,10 @@ static void cart(const Moment *s, Real *a, Real *z) {
 
 static void test_cart(void **state) {
   (void)state;
-  compare("model m\ncoord x, th\nparam M = 2 > 0, m = 1 > 0, l = 0.5 > 0, g = 9.81\nlet px = x + l*sin(th)\nlet py = -l*cos(th)\n"
-          "lagrangian = M/2*x'^2 + m/2*(px'^2 + py'^2) - m*g*py\n", cart);
+  compare("model m\ncoord x, th\nparam M = 2 > 0, m = 1 > 0, l = 0.5 > 0, g = 9.81\nlet px = x + l*sin(th)\nlet py = "
+          "-l*cos(th)\n"
+          "lagrangian = M/2*x'^2 + m/2*(px'^2 + py'^2) - m*g*py\n",
+          cart);
   compare("model m\ncoord x, th\nparam M = 2, m = 1, l = 0.5, g = 9.81\n" /* no signs: the other solver */
           "lagrangian = (M + m)/2*x'^2 + m*l*cos(th)*x'*th' + m*l^2/2*th'^2 + m*g*l*cos(th)\n", cart);
 }
@@ -94,7 +99,8 @@ static void charge(const Moment *s, Real *a, Real *z) {
 
 static void test_velocity_dependent_potential(void **state) {
   (void)state;
-  compare("model m\ncoord x, y\nparam m = 1.2, q = 0.7, B = 3\nlagrangian = m/2*(x'^2 + y'^2) + q*B/2*(x*y' - y*x')\n", charge);
+  compare("model m\ncoord x, y\nparam m = 1.2, q = 0.7, B = 3\nlagrangian = m/2*(x'^2 + y'^2) + q*B/2*(x*y' - y*x')\n",
+          charge);
 }
 
 /* The pivot moves up and down by A cos(w t): th'' = -(g - A w^2 cos(w t))/l sin th */
@@ -106,8 +112,10 @@ static void shaken(const Moment *s, Real *a, Real *z) {
 
 static void test_explicit_time(void **state) {
   (void)state;
-  compare("model m\ncoord th\nparam m = 1, l = 0.7, g = 9.81, A = 0.2, w = 3\nlet x = l*sin(th)\nlet y = A*cos(w*t) - l*cos(th)\n"
-          "lagrangian = m/2*(x'^2 + y'^2) - m*g*y\n", shaken);
+  compare("model m\ncoord th\nparam m = 1, l = 0.7, g = 9.81, A = 0.2, w = 3\nlet x = l*sin(th)\nlet y = A*cos(w*t) - "
+          "l*cos(th)\n"
+          "lagrangian = m/2*(x'^2 + y'^2) - m*g*y\n",
+          shaken);
 }
 
 /* A mass that grows: L = (m0 + k t) x'^2/2, so x'' = -k x'/(m0 + k t). */
@@ -137,7 +145,8 @@ static void test_indefinite(void **state) {
 static int definite(const char *lagrangian) {
   Arena *arena = arena_new(NULL);
   char lag[300];
-  snprintf(lag, sizeof lag, "model m\ncoord x, y\nparam m = 2 > 0, b = 1.4\nlet u = x*y' - y*x'\nlagrangian = %s\n", lagrangian);
+  snprintf(lag, sizeof lag, "model m\ncoord x, y\nparam m = 2 > 0, b = 1.4\nlet u = x*y' - y*x'\nlagrangian = %s\n",
+           lagrangian);
   Eqns *e = equations(arena, lag, NULL);
   assert_non_null(e);
   int is = e->definite_mass;
@@ -173,7 +182,8 @@ static void relativistic(const Moment *s, Real *a, Real *z) {
 
 static void test_not_quadratic(void **state) {
   (void)state;
-  compare("model m\ncoord x\nparam m = 1.5, F = 0.4, c = 4\nlagrangian = -m*c^2*sqrt(1 - x'^2/c^2) + F*x\n", relativistic);
+  compare("model m\ncoord x\nparam m = 1.5, F = 0.4, c = 4\nlagrangian = -m*c^2*sqrt(1 - x'^2/c^2) + F*x\n",
+          relativistic);
 }
 
 /* ---- forces ---- */
@@ -187,20 +197,24 @@ static void pushed(const Moment *s, Real *a, Real *z) {
 static void test_force(void **state) {
   (void)state;
   compare("model m\ncoord x\nparam m = 2, k = 3, F = 0.6\nlagrangian = m/2*x'^2 - k/2*x^2\nforce x = F\n", pushed);
-  compare("model m\ncoord x\nparam m = 2, k = 3, F = 0.6\nlagrangian = m/2*x'^2\nforce x = F/2\nforce x = F/2 - k*x\n", pushed);
+  compare("model m\ncoord x\nparam m = 2, k = 3, F = 0.6\nlagrangian = m/2*x'^2\nforce x = F/2\nforce x = F/2 - k*x\n",
+          pushed);
 }
 
 /* A force (Fx, Fy) at the bob of a pendulum: Q = l (Fx cos th + Fy sin th). */
 static void blown(const Moment *s, Real *a, Real *z) {
   (void)z;
   Real l = val(s, "l"), th = val(s, "th");
-  a[0] = (l * (val(s, "Fx") * cosl(th) + val(s, "Fy") * sinl(th)) - val(s, "m") * val(s, "g") * l * sinl(th)) / (val(s, "m") * l * l);
+  a[0] = (l * (val(s, "Fx") * cosl(th) + val(s, "Fy") * sinl(th)) - val(s, "m") * val(s, "g") * l * sinl(th)) /
+         (val(s, "m") * l * l);
 }
 
 static void test_point_force(void **state) {
   (void)state;
-  compare("model m\ncoord th\nparam m = 1.2, l = 0.7, g = 9.81, Fx = 0.3, Fy = -0.8\nlet px = l*sin(th)\nlet py = -l*cos(th)\n"
-          "lagrangian = m*l^2*th'^2/2 - m*g*py\nforce (px, py) = (Fx, Fy)\n", blown);
+  compare("model m\ncoord th\nparam m = 1.2, l = 0.7, g = 9.81, Fx = 0.3, Fy = -0.8\nlet px = l*sin(th)\nlet py = "
+          "-l*cos(th)\n"
+          "lagrangian = m*l^2*th'^2/2 - m*g*py\nforce (px, py) = (Fx, Fy)\n",
+          blown);
   compare("model m\ncoord th\nparam m = 1.2, l = 0.7, g = 9.81, Fx = 0.3, Fy = -0.8\n" /* gravity as a force, too */
           "lagrangian = m*l^2*th'^2/2\nforce (l*sin(th), -l*cos(th)) = (Fx, Fy - m*g)\n", blown);
 }
@@ -215,8 +229,10 @@ static void damped(const Moment *s, Real *a, Real *z) {
 
 static void test_dissipation(void **state) {
   (void)state;
-  compare("model m\ncoord x, y\nparam m = 1.3, c = 0.4, d = 0.2\nlagrangian = m/2*(x'^2 + y'^2)\ndissipation = c/2*(x' - y')^2\n"
-          "dissipation = d/3*abs(x')^3\n", damped);
+  compare("model m\ncoord x, y\nparam m = 1.3, c = 0.4, d = 0.2\nlagrangian = m/2*(x'^2 + y'^2)\ndissipation = c/2*(x' "
+          "- y')^2\n"
+          "dissipation = d/3*abs(x')^3\n",
+          damped);
 }
 
 /* ---- states ---- */
@@ -231,7 +247,9 @@ static void lorenz(const Moment *s, Real *a, Real *z) {
 
 static void test_states(void **state) {
   (void)state;
-  compare("model m\nstate x, y, w\nparam s = 10, r = 28, b = 8/3\nflow x' = s*(y - x)\nflow y' = x*(r - w) - y\nflow w' = x*y - b*w\n", lorenz);
+  compare("model m\nstate x, y, w\nparam s = 10, r = 28, b = 8/3\nflow x' = s*(y - x)\nflow y' = x*(r - w) - y\nflow "
+          "w' = x*y - b*w\n",
+          lorenz);
 }
 
 /* A momentum that contains a state takes the state's rate with it: L = z x' + x'^2/2 gives x'' = -z'. */
@@ -271,7 +289,8 @@ static void test_energy(void **state) {
     Moment s = {e, random_point(e)};
     Real out[2], u = val(&s, "x'"), v = val(&s, "y'"), x = val(&s, "x"), y = val(&s, "y");
     run_prog(e, p, s.v, out, NULL);
-    Real pv = 1.2L * (u * u + v * v) + 1.05L * (x * v - y * u), L = 0.6L * (u * u + v * v) + 1.05L * (x * v - y * u) - (x * x + y * y);
+    Real pv = 1.2L * (u * u + v * v) + 1.05L * (x * v - y * u),
+         L = 0.6L * (u * u + v * v) + 1.05L * (x * v - y * u) - (x * x + y * y);
     assert_true(fabsl(out[0] - (pv - L)) < 1e-15L);
     assert_true(fabsl(out[1] - (fabsl(pv) + fabsl(L))) < 1e-15L);
   }
@@ -280,12 +299,14 @@ static void test_energy(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_pendulum),      cmocka_unit_test(test_cart),          cmocka_unit_test(test_kepler),
-    cmocka_unit_test(test_velocity_dependent_potential), cmocka_unit_test(test_explicit_time), cmocka_unit_test(test_mass_in_time),
-    cmocka_unit_test(test_indefinite),    cmocka_unit_test(test_definite),
-    cmocka_unit_test(test_not_quadratic), cmocka_unit_test(test_force),
-    cmocka_unit_test(test_point_force),   cmocka_unit_test(test_dissipation),   cmocka_unit_test(test_states),
-    cmocka_unit_test(test_state_in_momentum), cmocka_unit_test(test_input),     cmocka_unit_test(test_energy),
+      cmocka_unit_test(test_pendulum),      cmocka_unit_test(test_cart),
+      cmocka_unit_test(test_kepler),        cmocka_unit_test(test_velocity_dependent_potential),
+      cmocka_unit_test(test_explicit_time), cmocka_unit_test(test_mass_in_time),
+      cmocka_unit_test(test_indefinite),    cmocka_unit_test(test_definite),
+      cmocka_unit_test(test_not_quadratic), cmocka_unit_test(test_force),
+      cmocka_unit_test(test_point_force),   cmocka_unit_test(test_dissipation),
+      cmocka_unit_test(test_states),        cmocka_unit_test(test_state_in_momentum),
+      cmocka_unit_test(test_input),         cmocka_unit_test(test_energy),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

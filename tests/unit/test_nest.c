@@ -1,5 +1,6 @@
-/* Unit tests of src/ir/nest*.c: sums over pairs and sites as loops inside loops. What they compute is held against formulas and
- * against the program as it was; that there are loops, against the number of instructions that are left. */
+/* Unit tests of src/ir/nest*.c: sums over pairs and sites as loops inside loops. What they compute is held against
+ * formulas and against the program as it was; that there are loops, against the number of instructions that are
+ * left. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,8 +14,8 @@
 
 typedef long double Real;
 
-/* A sum of n terms in 64 bits is off by n*2^-64 of the terms' sizes at most (Higham, Accuracy and Stability of Numerical
- * Algorithms, 2nd ed., section 4.2); the terms themselves take some 30 roundings. */
+/* A sum of n terms in 64 bits is off by n*2^-64 of the terms' sizes at most (Higham, Accuracy and Stability of
+ * Numerical Algorithms, 2nd ed., section 4.2); the terms themselves take some 30 roundings. */
 static Real bound(uint32_t terms, Real size) { return (Real)(terms + 30)*0x1p-64L*size; }
 
 /* ---- models ---- */
@@ -35,8 +36,8 @@ static uint32_t instructions(const Prog *p) {
   return n;
 }
 
-/* Compiles the model, whose M is diagonal, and compares accelerations and energy with the expressions they were made from.
- * Returns how many instructions are left; 0 where there are no nests. */
+/* Compiles the model, whose M is diagonal, and compares accelerations and energy with the expressions they were made
+ * from. Returns how many instructions are left; 0 where there are no nests. */
 static uint32_t check_model(const char *lag, uint32_t terms) {
   Arena *a = arena_new(NULL);
   Eqns *e = equations(a, lag, NULL);
@@ -45,7 +46,8 @@ static uint32_t check_model(const char *lag, uint32_t terms) {
   assert_null(prog_verify(p));
   assert_null(prog_verify(h));
   const Real *in[ARR_COUNT] = {0}, *v = random_point(e);
-  Real *got = ARENA_ARRAY(a, Real, e->n), *f = ARENA_ARRAY(a, Real, e->n), *out[2] = {got, NULL}, energy[2], *out_h[1] = {energy}, size = 0;
+  Real *got = ARENA_ARRAY(a, Real, e->n), *f = ARENA_ARRAY(a, Real, e->n), *out[2] = {got, NULL}, energy[2],
+       *out_h[1] = {energy}, size = 0;
   read_point(e, v, in);
   assert_int_equal(prog_eval(p, in, out), 0);
   expr_eval(e->g, e->f, e->n, v, f);
@@ -54,7 +56,8 @@ static uint32_t check_model(const char *lag, uint32_t terms) {
     Expr M = eqns_mass(e, i, i);
     Real m;
     expr_eval(e->g, &M, 1, v, &m);
-    if (!(fabsl(got[i] - f[i]/m) <= bound(terms, 100*size))) fail_msg("%.200s\nacceleration %u: %Lg, not %Lg", lag, i, got[i], f[i]/m);
+    if (!(fabsl(got[i] - f[i] / m) <= bound(terms, 100 * size)))
+      fail_msg("%.200s\nacceleration %u: %Lg, not %Lg", lag, i, got[i], f[i] / m);
   }
   Real want[2];
   const Expr roots[2] = {e->energy_stable, e->energy_scale};
@@ -71,16 +74,19 @@ static uint32_t check_model(const char *lag, uint32_t terms) {
   "kinetic = sum(i in 1..N, m[i]/2*dot(r[i]', r[i]'))\n"
 
 static const char *const pairs[] = {
-  "potential = -sum(i in 1..N, sum(j in 1..i-1, G*m[i]*m[j]/sqrt(dot(r[i] - r[j], r[i] - r[j]) + soft^2)))\n",
-  "potential = sum(i in 1..N, sum(j in i+1..N, G*m[i]*m[j]/sqrt(dot(r[j] - r[i], r[j] - r[i]) + soft^2))) + sum(i in 1..N, k/2*dot(r[i], r[i]))\n",
-  "potential = sum(i in 1..N, sum(j in 1..N, if(i < j, 4*k*(1/(1 + dot(r[i] - r[j], r[i] - r[j]))^6 - 1/(1 + dot(r[i] - r[j], r[i] - r[j]))^3), 0)))\n",
-  "let mu[i in 1..N] = sqrt(G)*m[i]\npotential = -sum(i in 1..N, sum(j in 1..i-1, mu[i]*mu[j]/sqrt(dot(r[i] - r[j], r[i] - r[j]) + soft^2)))\n",
-  "potential = sum(i in 1..N, sum(j in 1..i-1, exp(-norm(r[i] - r[j]))*k))\n",
-  "let near[i in 1..N, j in 1..N] = dot(r[i] - r[j], r[i] - r[j])\n"
-  "potential = sum(i in 1..N, sum(j in 1..i-1, if(near[i,j] < 1, k*(1 - near[i,j])^2, 0)))\n",
-  /* components for themselves */
-  "dissipation = sum(i in 1..N, sum(j in 1..i-1, k/2*dot(r[i]' - r[j]', r[i]' - r[j]')*sin(t)^2))\n"
-  "potential = sum(i in 1..N, sum(j in 1..i-1, exp(-dot(r[i] - r[j], r[i] - r[j]))*k))\n",
+    "potential = -sum(i in 1..N, sum(j in 1..i-1, G*m[i]*m[j]/sqrt(dot(r[i] - r[j], r[i] - r[j]) + soft^2)))\n",
+    "potential = sum(i in 1..N, sum(j in i+1..N, G*m[i]*m[j]/sqrt(dot(r[j] - r[i], r[j] - r[i]) + soft^2))) + sum(i in "
+    "1..N, k/2*dot(r[i], r[i]))\n",
+    "potential = sum(i in 1..N, sum(j in 1..N, if(i < j, 4*k*(1/(1 + dot(r[i] - r[j], r[i] - r[j]))^6 - 1/(1 + "
+    "dot(r[i] - r[j], r[i] - r[j]))^3), 0)))\n",
+    "let mu[i in 1..N] = sqrt(G)*m[i]\npotential = -sum(i in 1..N, sum(j in 1..i-1, mu[i]*mu[j]/sqrt(dot(r[i] - r[j], "
+    "r[i] - r[j]) + soft^2)))\n",
+    "potential = sum(i in 1..N, sum(j in 1..i-1, exp(-norm(r[i] - r[j]))*k))\n",
+    "let near[i in 1..N, j in 1..N] = dot(r[i] - r[j], r[i] - r[j])\n"
+    "potential = sum(i in 1..N, sum(j in 1..i-1, if(near[i,j] < 1, k*(1 - near[i,j])^2, 0)))\n",
+    /* components for themselves */
+    "dissipation = sum(i in 1..N, sum(j in 1..i-1, k/2*dot(r[i]' - r[j]', r[i]' - r[j]')*sin(t)^2))\n"
+    "potential = sum(i in 1..N, sum(j in 1..i-1, exp(-dot(r[i] - r[j], r[i] - r[j]))*k))\n",
 };
 
 /* The pairs, once, and a load and a store for each coordinate: no more than 12 instructions a body. */
@@ -90,7 +96,8 @@ static void test_pairs(void **state) {
   for (size_t step = (size_t)slow(1, 3), k = first_row(step); k < sizeof pairs / sizeof *pairs; k += step) {
     uint32_t n = 12, more = (uint32_t)slow(4, 1), few = check_model(arena_printf(a, BODIES "%s", n, pairs[k]), 2*n);
     uint32_t many = check_model(arena_printf(a, BODIES "%s", n + more, pairs[k]), 2*(n + more));
-    if (!few || !many || many > few + 12*more) fail_msg("%s%u and %u bodies leave %u and %u instructions", pairs[k], n, n + more, few, many);
+    if (!few || !many || many > few + 12 * more)
+      fail_msg("%s%u and %u bodies leave %u and %u instructions", pairs[k], n, n + more, few, many);
   }
   arena_free(a);
 }
@@ -111,7 +118,8 @@ static void test_by_hand(void **state) {
       int s = (i + d) % 2 ? i : i + d, t = 2*i + d - s;
       sb_printf(&V, " - mass%d*G*mass%d/sqrt((x%d - x%d)^2 + e + (y%d - y%d)^2)", s, t, t, s, t, s);
     }
-  Eqns *e = equations(a, arena_printf(a, "%skinetic = %s\npotential = 0%s\n", sb_text(&b), sb_text(&T), sb_text(&V)), NULL);
+  Eqns *e =
+      equations(a, arena_printf(a, "%skinetic = %s\npotential = 0%s\n", sb_text(&b), sb_text(&T), sb_text(&V)), NULL);
   assert_non_null(e);
   Prog *p = lower_accel(e, 0);
   assert_true(p->nests.n > 0 && instructions(p) < 20*N);
@@ -122,7 +130,8 @@ static void test_by_hand(void **state) {
   for (int i = 0; i < N; i++) {
     Real want[2] = {0}, size = 0;
     for (int j = 0; j < N; j++) {
-      Real dx = in[ARR_Q][2*j] - in[ARR_Q][2*i], dy = in[ARR_Q][2*j + 1] - in[ARR_Q][2*i + 1], d2 = dx*dx + dy*dy + 0.01L;
+      Real dx = in[ARR_Q][2 * j] - in[ARR_Q][2 * i], dy = in[ARR_Q][2 * j + 1] - in[ARR_Q][2 * i + 1],
+           d2 = dx * dx + dy * dy + 0.01L;
       want[0] += 0.7L*(j + 1)*dx/(d2*sqrtl(d2));
       want[1] += 0.7L*(j + 1)*dy/(d2*sqrtl(d2));
       size += 0.7L*(j + 1)/d2;
@@ -133,16 +142,19 @@ static void test_by_hand(void **state) {
 }
 
 static const char *const nets[] = {
-  /* linear, hard, hard with dissipation and a hook at one corner */
-  "potential = sum(i in 1..N, sum(j in 1..N-1, k/2*(u[i,j+1] - u[i,j])^2)) +\n"
-  "            sum(i in 1..N-1, sum(j in 1..N, k/2*(u[i+1,j] - u[i,j])^2))\n",
-  "let s[i in 1..N, j in 1..N] = if(j < N, u[i,j+1] - u[i,j], 0)\nlet d[i in 1..N, j in 1..N] = if(i < N, u[i+1,j] - u[i,j], 0)\n"
-  "potential = sum(i in 1..N, sum(j in 1..N, k/2*(s[i,j]^2 + d[i,j]^2) + s[i,j]^4 + b*d[i,j]^4))\n",
-  "potential = k*u[1,1]^2 + sum(i in 1..N, sum(j in 1..N-1, b/4*(u[i,j+1] - u[i,j])^4)) + sum(i in 1..N-1, sum(j in 1..N, b/4*(u[i+1,j] - u[i,j])^4))\n"
-  "dissipation = sum(i in 1..N, sum(j in 1..N, k*u[i,j]'^2))\n",
+    /* linear, hard, hard with dissipation and a hook at one corner */
+    "potential = sum(i in 1..N, sum(j in 1..N-1, k/2*(u[i,j+1] - u[i,j])^2)) +\n"
+    "            sum(i in 1..N-1, sum(j in 1..N, k/2*(u[i+1,j] - u[i,j])^2))\n",
+    "let s[i in 1..N, j in 1..N] = if(j < N, u[i,j+1] - u[i,j], 0)\nlet d[i in 1..N, j in 1..N] = if(i < N, u[i+1,j] - "
+    "u[i,j], 0)\n"
+    "potential = sum(i in 1..N, sum(j in 1..N, k/2*(s[i,j]^2 + d[i,j]^2) + s[i,j]^4 + b*d[i,j]^4))\n",
+    "potential = k*u[1,1]^2 + sum(i in 1..N, sum(j in 1..N-1, b/4*(u[i,j+1] - u[i,j])^4)) + sum(i in 1..N-1, sum(j in "
+    "1..N, b/4*(u[i+1,j] - u[i,j])^4))\n"
+    "dissipation = sum(i in 1..N, sum(j in 1..N, k*u[i,j]'^2))\n",
 };
 
-/* A load for each coordinate more, and what stands at corners and edges: 5 instructions for each place more on an edge. */
+/* A load for each coordinate more, and what stands at corners and edges: 5 instructions for each place more on an
+ * edge. */
 static void test_nets(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
@@ -150,7 +162,8 @@ static void test_nets(void **state) {
   for (size_t step = (size_t)slow(1, 3), k = first_row(step); k < sizeof nets / sizeof *nets; k += step) {
     static const char text[] = "model m\nconst N = %d\ncoord u[N,N]\nparam m = 1.2 > 0, k = 1, b = 0.3\n"
                                "kinetic = sum(i in 1..N, sum(j in 1..N, m/2*u[i,j]'^2))\n%s";
-    uint32_t few = check_model(arena_printf(a, text, small, nets[k]), 8), many = check_model(arena_printf(a, text, large, nets[k]), 8);
+    uint32_t few = check_model(arena_printf(a, text, small, nets[k]), 8),
+             many = check_model(arena_printf(a, text, large, nets[k]), 8);
     if (!few || !many || many > few + (large*large - small*small) + 10*(large - small))
       fail_msg("%snets of %u and %u leave %u and %u instructions", nets[k], small, large, few, many);
   }
@@ -160,25 +173,32 @@ static void test_nets(void **state) {
 /* A string, and a chain, are what they were: their loops have one level. */
 static void test_left_alone(void **state) {
   (void)state;
-  assert_int_equal(check_model("model m\nconst N = 400\ncoord u[N]\nparam k = 1, b = 0.3\nkinetic = sum(i in 1..N, u[i]'^2/2)\n"
-                               "potential = sum(i in 1..N-1, k/2*(u[i+1] - u[i])^2 + b/4*(u[i+1] - u[i])^4)\n", 400), 0);
+  assert_int_equal(
+      check_model("model m\nconst N = 400\ncoord u[N]\nparam k = 1, b = 0.3\nkinetic = sum(i in 1..N, u[i]'^2/2)\n"
+                  "potential = sum(i in 1..N-1, k/2*(u[i+1] - u[i])^2 + b/4*(u[i+1] - u[i])^4)\n",
+                  400),
+      0);
   assert_int_equal(check_model("model m\nconst N = 8\ncoord u[N]\nkinetic = sum(i in 1..N, u[i]'^2/2)\n"
                                "potential = sum(i in 2..N, sum(j in 1..i-1, cos(u[i] - u[j])))\n", 8), 0); /* short */
 }
 
 /* ---- programs at random ---- */
 
-static Slot load(Prog *p, IrArray array, uint32_t i) { return prog_ins(p, (Ins){.op = IR_LOAD, .array = array, .index = i, .name = "x"}); }
+static Slot load(Prog *p, IrArray array, uint32_t i) {
+  return prog_ins(p, (Ins){.op = IR_LOAD, .array = array, .index = i, .name = "x"});
+}
 
-static Slot either_way(Prog *p, IrOp op, Slot a, Slot b) { return uniform(0, 1) < 0.5L ? prog_op(p, op, a, b) : prog_op(p, op, b, a); }
+static Slot either_way(Prog *p, IrOp op, Slot a, Slot b) {
+  return uniform(0, 1) < 0.5L ? prog_op(p, op, a, b) : prog_op(p, op, b, a);
+}
 
 typedef struct {
   Slot value;
   int minus;
 } Term;
 
-/* Sums over bodies of what pairs give; a pair is left out with probability `holes`, terms stand in any order, some sums have a term
- * of their own. */
+/* Sums over bodies of what pairs give; a pair is left out with probability `holes`, terms stand in any order, some
+ * sums have a term of their own. */
 static Prog *random_pairs(Arena *a, uint32_t n, Real holes) {
   Prog *p = prog_new(a);
   Term *term = ARENA_ARRAY(a, Term, n*(n + 1));
@@ -187,8 +207,10 @@ static Prog *random_pairs(Arena *a, uint32_t n, Real holes) {
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t j = 0; j < i; j++) {
       if (uniform(0, 1) < holes) continue;
-      Slot d = prog_op(p, IR_SUB, load(p, ARR_Q, 2*j + 1), load(p, ARR_Q, 2*i + 1)), m = either_way(p, IR_MUL, load(p, ARR_P, i), load(p, ARR_P, j));
-      Slot square = prog_op(p, IR_MUL, d, d), below = either_way(p, IR_ADD, square, shared), over = prog_op(p, IR_DIV, m, below);
+      Slot d = prog_op(p, IR_SUB, load(p, ARR_Q, 2 * j + 1), load(p, ARR_Q, 2 * i + 1)),
+           m = either_way(p, IR_MUL, load(p, ARR_P, i), load(p, ARR_P, j));
+      Slot square = prog_op(p, IR_MUL, d, d), below = either_way(p, IR_ADD, square, shared),
+           over = prog_op(p, IR_DIV, m, below);
       Slot x = either_way(p, IR_MUL, over, d), y = either_way(p, IR_ADD, x, prog_op(p, IR_SQRT, below, 0));
       term[i*(n + 1) + terms[i]++] = (Term){x, 0};
       term[j*(n + 1) + terms[j]++] = (Term){y, 1};
@@ -255,8 +277,8 @@ static void test_verify(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_pairs), cmocka_unit_test(test_by_hand), cmocka_unit_test(test_nets), cmocka_unit_test(test_left_alone),
-    cmocka_unit_test(test_random), cmocka_unit_test(test_verify),
+      cmocka_unit_test(test_pairs),      cmocka_unit_test(test_by_hand), cmocka_unit_test(test_nets),
+      cmocka_unit_test(test_left_alone), cmocka_unit_test(test_random),  cmocka_unit_test(test_verify),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

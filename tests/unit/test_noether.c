@@ -1,6 +1,6 @@
-/* noether_prove against closed forms: delta L, F, charges and powers of textbook symmetries. Generators are written as observables of
- * the model: xi_NAME for each coordinate that moves, and tau; so are the F, the charge and the power that are expected, of which
- * F and the charge are compared up to a constant, the power exactly. */
+/* noether_prove against closed forms: delta L, F, charges and powers of textbook symmetries. Generators are written
+ * as observables of the model: xi_NAME for each coordinate that moves, and tau; so are the F, the charge and the
+ * power that are expected, of which F and the charge are compared up to a constant, the power exactly. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -43,7 +43,8 @@ static Proof prove_model(const char *lag) {
   assert_non_null(p.e);
   uint32_t n = eqns_coordinates(p.e);
   Expr *xi = ARENA_ARRAY(p.arena, Expr, n + 1);
-  for (uint32_t i = 0; i < n; i++) xi[i] = observed(p.e, arena_printf(p.arena, "xi_%s", expr_symbol(p.e->g, eqns_coordinate(p.e, i))->name));
+  for (uint32_t i = 0; i < n; i++)
+    xi[i] = observed(p.e, arena_printf(p.arena, "xi_%s", expr_symbol(p.e->g, eqns_coordinate(p.e, i))->name));
   p.n = noether_prove(p.e, &(Generator){.xi = xi, .tau = observed(p.e, "tau")});
   return p;
 }
@@ -58,7 +59,9 @@ static void same(const Proof *p, const char *what, Expr found, const char *name)
 
 static void proves(const char *lag, Invariance is) {
   Proof p = prove_model(lag);
-  if (p.n.is != is) fail_msg("verdict %d instead of %d; F = %s, remainder %s", p.n.is, is, text_of(p.e, p.n.F), text_of(p.e, p.n.remainder));
+  if (p.n.is != is)
+    fail_msg("verdict %d instead of %d; F = %s, remainder %s", p.n.is, is, text_of(p.e, p.n.F),
+             text_of(p.e, p.n.remainder));
   same(&p, "F", p.n.F, "F");
   same(&p, "the charge", p.n.charge, "Q");
   same(&p, "the power", p.n.power, "P");
@@ -70,8 +73,10 @@ static void proves(const char *lag, Invariance is) {
 
 static void kepler(void **state) {
   (void)state;
-  proves(KEPLER "observe xi_x = -y\nobserve xi_y = x\nobserve F = 0\nobserve Q = m*(x*y' - y*x')\nobserve P = 0\n", INVARIANT);
-  proves(KEPLER "observe xi_x = y\nobserve xi_y = x\nobserve left = 2*m*x'*y' - 2*k*x*y/hypot(x, y)^3\n", NOT_INVARIANT);
+  proves(KEPLER "observe xi_x = -y\nobserve xi_y = x\nobserve F = 0\nobserve Q = m*(x*y' - y*x')\nobserve P = 0\n",
+         INVARIANT);
+  proves(KEPLER "observe xi_x = y\nobserve xi_y = x\nobserve left = 2*m*x'*y' - 2*k*x*y/hypot(x, y)^3\n",
+         NOT_INVARIANT);
   proves(KEPLER "observe tau = -1\nobserve Q = m/2*(x'^2 + y'^2) - k/hypot(x, y)\nobserve P = 0\n", INVARIANT);
   proves(KEPLER "observe xi_x = 1\nobserve left = -k*x/hypot(x, y)^3\nobserve P = -k*x/hypot(x, y)^3\n", NOT_INVARIANT);
 }
@@ -79,25 +84,35 @@ static void kepler(void **state) {
 /* Boosts: F = m x; in a uniform field what it does adds up to m g t^2/2. */
 static void boosts(void **state) {
   (void)state;
-  proves("model b\ncoord x\nparam m = 2 > 0\nlagrangian = m/2*x'^2\nobserve xi_x = t\nobserve F = m*x\nobserve Q = m*t*x' - m*x\n", INVARIANT_UP_TO_F);
-  proves("model b\ncoord x\nparam m = 2 > 0, g = 9.81\nlagrangian = m/2*x'^2 - m*g*x\nobserve xi_x = t\nobserve F = m*x - m*g*t^2/2\nobserve P = 0\n",
+  proves("model b\ncoord x\nparam m = 2 > 0\nlagrangian = m/2*x'^2\nobserve xi_x = t\nobserve F = m*x\nobserve Q = "
+         "m*t*x' - m*x\n",
          INVARIANT_UP_TO_F);
-  proves("model b\ncoord x\nparam m = 2 > 0, g = 9.81\nlagrangian = m/2*x'^2 - m*g*x\nobserve xi_x = 1\nobserve F = -m*g*t\nobserve Q = m*x' + m*g*t\n",
+  proves("model b\ncoord x\nparam m = 2 > 0, g = 9.81\nlagrangian = m/2*x'^2 - m*g*x\nobserve xi_x = t\nobserve F = "
+         "m*x - m*g*t^2/2\nobserve P = 0\n",
          INVARIANT_UP_TO_F);
-  proves("model b\ncoord x\nparam m = 2 > 0, k = 3\nlagrangian = m/2*x'^2 - k/4*x^4\nobserve xi_x = t\nobserve F = m*x\nobserve left = -k*t*x^3\n",
+  proves("model b\ncoord x\nparam m = 2 > 0, g = 9.81\nlagrangian = m/2*x'^2 - m*g*x\nobserve xi_x = 1\nobserve F = "
+         "-m*g*t\nobserve Q = m*x' + m*g*t\n",
+         INVARIANT_UP_TO_F);
+  proves("model b\ncoord x\nparam m = 2 > 0, k = 3\nlagrangian = m/2*x'^2 - k/4*x^4\nobserve xi_x = t\nobserve F = "
+         "m*x\nobserve left = -k*t*x^3\n",
          NOT_INVARIANT);
 }
 
-/* x -> x + s cos(w t) with w^2 = k/m, driven at another frequency: F has the integral of the drive, products of cosines. */
+/* x -> x + s cos(w t) with w^2 = k/m, driven at another frequency: F has the integral of the drive, products of
+ * cosines. */
 static void oscillator(void **state) {
   (void)state;
-  proves("model o\ncoord x\nparam m = 2 > 0, w = 3 > 0, a = 0.5, v = 1.5 > 0\nlagrangian = m/2*x'^2 - m*w^2/2*x^2 + a*x*cos(v*t)\n"
-         "observe xi_x = cos(w*t)\nobserve F = -m*w*x*sin(w*t) + a/2*(sin((v - w)*t)/(v - w) + sin((v + w)*t)/(v + w))\n"
-         "observe Q = m*x'*cos(w*t) + m*w*x*sin(w*t) - a/2*(sin((v - w)*t)/(v - w) + sin((v + w)*t)/(v + w))\nobserve P = 0\n",
-         INVARIANT_UP_TO_F);
-  proves("model o\ncoord x\nparam m = 2 > 0, g = 0.3 > 0, k = 1\nlagrangian = exp(2*g*t)*(m/2*x'^2 - k/2*x^2)\n"
-         "observe xi_x = -g*x\nobserve tau = 1\nobserve F = 0\nobserve Q = exp(2*g*t)*(-g*m*x*x' - m/2*x'^2 - k/2*x^2)\n",
-         INVARIANT);
+  proves(
+      "model o\ncoord x\nparam m = 2 > 0, w = 3 > 0, a = 0.5, v = 1.5 > 0\nlagrangian = m/2*x'^2 - m*w^2/2*x^2 + "
+      "a*x*cos(v*t)\n"
+      "observe xi_x = cos(w*t)\nobserve F = -m*w*x*sin(w*t) + a/2*(sin((v - w)*t)/(v - w) + sin((v + w)*t)/(v + w))\n"
+      "observe Q = m*x'*cos(w*t) + m*w*x*sin(w*t) - a/2*(sin((v - w)*t)/(v - w) + sin((v + w)*t)/(v + w))\nobserve P = "
+      "0\n",
+      INVARIANT_UP_TO_F);
+  proves(
+      "model o\ncoord x\nparam m = 2 > 0, g = 0.3 > 0, k = 1\nlagrangian = exp(2*g*t)*(m/2*x'^2 - k/2*x^2)\n"
+      "observe xi_x = -g*x\nobserve tau = 1\nobserve F = 0\nobserve Q = exp(2*g*t)*(-g*m*x*x' - m/2*x'^2 - k/2*x^2)\n",
+      INVARIANT);
   proves("model o\ncoord x\nparam m = 2 > 0, g = 0.3 > 0\nlagrangian = m/2*x'^2 + x*t*exp(-g*t)\n"
          "observe xi_x = 1\nobserve F = -(t/g + 1/g^2)*exp(-g*t)\n",
          INVARIANT_UP_TO_F);
@@ -117,13 +132,20 @@ static void gauges(void **state) {
          INVARIANT_UP_TO_F);
 }
 
-/* Functions of time without an integral in closed form, and inputs: any function of time is a derivative, and their part of the balance. */
+/* Functions of time without an integral in closed form, and inputs: any function of time is a derivative, and their
+ * part of the balance. */
 static void integrals(void **state) {
   (void)state;
-  proves("model e\ncoord x\nlagrangian = x'^2/2 + x*exp(-t^2)\nobserve xi_x = 1\nobserve F = 0\nobserve Q = x'\nobserve P = exp(-t^2)\nobserve left = exp(-t^2)\n", INVARIANT_UP_TO_F);
-  proves("model e\ncoord x\ninput u = 0\nlagrangian = x'^2/2 + x*u\nobserve xi_x = t\nobserve F = x\nobserve Q = t*x' - x\nobserve P = t*u\n", INVARIANT_UP_TO_F);
-  proves("model e\ncoord x\ninput u = 0\nlagrangian = x'^2/2 + x^2*u\nobserve xi_x = 1\nobserve P = 2*x*u\n", NOT_INVARIANT);
-  proves("model e\ncoord x\nstate z\nflow z' = -z + x\nlagrangian = x'^2/2 + x*z\nobserve xi_x = 1\nobserve P = z\n", INVARIANCE_NOT_DECIDED);
+  proves("model e\ncoord x\nlagrangian = x'^2/2 + x*exp(-t^2)\nobserve xi_x = 1\nobserve F = 0\nobserve Q = "
+         "x'\nobserve P = exp(-t^2)\nobserve left = exp(-t^2)\n",
+         INVARIANT_UP_TO_F);
+  proves("model e\ncoord x\ninput u = 0\nlagrangian = x'^2/2 + x*u\nobserve xi_x = t\nobserve F = x\nobserve Q = t*x' "
+         "- x\nobserve P = t*u\n",
+         INVARIANT_UP_TO_F);
+  proves("model e\ncoord x\ninput u = 0\nlagrangian = x'^2/2 + x^2*u\nobserve xi_x = 1\nobserve P = 2*x*u\n",
+         NOT_INVARIANT);
+  proves("model e\ncoord x\nstate z\nflow z' = -z + x\nlagrangian = x'^2/2 + x*z\nobserve xi_x = 1\nobserve P = z\n",
+         INVARIANCE_NOT_DECIDED);
 }
 
 /* x -> exp(s/2) x, t -> exp(s) t leaves an inverse-square potential alone; another power does not. */
@@ -140,18 +162,24 @@ static void scaling(void **state) {
 /* Friction, a drive, and an input inside L. */
 static void balances(void **state) {
   (void)state;
-  proves("model d\ncoord th\nparam c = 0.1, a = 1, w = 2\nlagrangian = th'^2/2 + cos(th)\ndissipation = c/2*th'^2\nforce th = a*cos(w*t)\n"
+  proves("model d\ncoord th\nparam c = 0.1, a = 1, w = 2\nlagrangian = th'^2/2 + cos(th)\ndissipation = "
+         "c/2*th'^2\nforce th = a*cos(w*t)\n"
          "observe tau = -1\nobserve Q = th'^2/2 - cos(th)\nobserve P = th'*(a*cos(w*t) - c*th')\n",
          INVARIANT);
-  proves("model d\ncoord x\ninput u = sin(t)\nlagrangian = x'^2/2 - u*x\nobserve tau = -1\nobserve Q = x'^2/2 + u*x\nobserve P = x*cos(t)\n", INVARIANT);
+  proves("model d\ncoord x\ninput u = sin(t)\nlagrangian = x'^2/2 - u*x\nobserve tau = -1\nobserve Q = x'^2/2 + "
+         "u*x\nobserve P = x*cos(t)\n",
+         INVARIANT);
 }
 
 static void constrained(void **state) {
   (void)state;
-  proves("model s\ncoord x, y, z\nparam g = 9.81, l = 1 > 0\nlagrangian = (x'^2 + y'^2 + z'^2)/2 - g*z\nconstraint rod: x^2 + y^2 + z^2 = l^2\n"
+  proves("model s\ncoord x, y, z\nparam g = 9.81, l = 1 > 0\nlagrangian = (x'^2 + y'^2 + z'^2)/2 - g*z\nconstraint "
+         "rod: x^2 + y^2 + z^2 = l^2\n"
          "observe xi_x = -y\nobserve xi_y = x\nobserve Q = x*y' - y*x'\nobserve P = 0\n",
          INVARIANT);
-  proves("model s\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 - y\nconstraint slope: y = 2*x\nobserve xi_x = 1\nobserve P = -2*lambda(slope)\n", INVARIANT);
+  proves("model s\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 - y\nconstraint slope: y = 2*x\nobserve xi_x = 1\nobserve "
+         "P = -2*lambda(slope)\n",
+         INVARIANT);
   proves("model s\ncoord x, y\nparam w = 1\nlagrangian = (x'^2 + y'^2)/2\nconstraint arm: x*sin(w*t) = y*cos(w*t)\n"
          "observe tau = -1\nobserve P = -lambda(arm)*w*(x*cos(w*t) + y*sin(w*t))\n",
          INVARIANT);
@@ -160,8 +188,8 @@ static void constrained(void **state) {
          INVARIANT);
 }
 
-/* A closed contact pushes: with closed, which is 0 or 1, times lambda along the change of its gap; also where it is the only constraint, and
- * beside one that holds. */
+/* A closed contact pushes: with closed, which is 0 or 1, times lambda along the change of its gap; also where it is
+ * the only constraint, and beside one that holds. */
 static void contacts(void **state) {
   (void)state;
 #define BALL "model b\ncoord x, y\nparam m = 2 > 0, g = 9.81 > 0\nlagrangian = m/2*(x'^2 + y'^2) - m*g*y\n"
@@ -170,11 +198,13 @@ static void contacts(void **state) {
   assert_false(p.n.by_value);
   assert_string_equal(text_of(p.e, p.n.power), "floor.closed*lambda(floor)");
   arena_free(p.arena);
-  p = prove_model(BALL "contact slope: x + y >= 0, restitution = 0\nobserve xi_x = 1\nobserve xi_y = -1\nobserve F = m*g*t\n");
+  p = prove_model(
+      BALL "contact slope: x + y >= 0, restitution = 0\nobserve xi_x = 1\nobserve xi_y = -1\nobserve F = m*g*t\n");
   assert_false(p.n.by_value);
   assert_true(expr_is_zero(p.e->g, p.n.power));
   arena_free(p.arena);
-  p = prove_model(BALL "constraint rail: y = x/2\ncontact wall: x >= 0, restitution = 0\nobserve xi_x = 2\nobserve xi_y = 1\n");
+  p = prove_model(
+      BALL "constraint rail: y = x/2\ncontact wall: x >= 0, restitution = 0\nobserve xi_x = 2\nobserve xi_y = 1\n");
   assert_int_equal(p.n.broken, 0);
   assert_string_equal(text_of(p.e, p.n.power), "2*wall.closed*lambda(wall)");
   arena_free(p.arena);
@@ -183,12 +213,14 @@ static void contacts(void **state) {
 /* L = theta q' - H: rotations of the plane for vortices. */
 static void first_order(void **state) {
   (void)state;
-  proves("model v\ncoord x, y\nparam k = 1 > 0\nlagrangian = k*(x*y' - y*x')/2 - (x^2 + y^2)^2\nobserve xi_x = -y\nobserve xi_y = x\n"
+  proves("model v\ncoord x, y\nparam k = 1 > 0\nlagrangian = k*(x*y' - y*x')/2 - (x^2 + y^2)^2\nobserve xi_x = "
+         "-y\nobserve xi_y = x\n"
          "observe Q = k*(x^2 + y^2)/2\nobserve P = 0\n",
          INVARIANT);
 }
 
-/* By hand: with H = r^4/4 and Q_x = -a x', x' = -r^2 y and y' = r^2 x - a r^2 y; so (r^2/2)' = -a r^2 y^2, H' = r^2 (r^2/2)'. */
+/* By hand: with H = r^4/4 and Q_x = -a x', x' = -r^2 y and y' = r^2 x - a r^2 y; so (r^2/2)' = -a r^2 y^2, H' = r^2
+ * (r^2/2)'. */
 static void first_order_forced(void **state) {
   (void)state;
 #define EDDY "model v\ncoord x, y\nparam a = 0.7\nlagrangian = (x*y' - y*x')/2 - (x^2 + y^2)^2/4\n"
@@ -203,28 +235,39 @@ static void first_order_forced(void **state) {
   proves(EDDY "force x = -a*x\nobserve xi_x = -y\nobserve xi_y = x\nobserve P = a*x*y\n", INVARIANT);
 }
 
-/* A free particle whose L has dG/dt besides: its charges are those of the free particle, and F = xi grad G + tau dG/dt and what that has, though G is no
- * combination of what an integration by parts knows. With a potential the same ones are false. */
-#define GAUGED "model g\ncoord x, y\nparam k = 1\nlet G = x^2*y*exp(x*y) + log(1 + x^2 + exp(y)) + atan(x*y)*t + x^3*exp(sin(x*y))\n"
+/* A free particle whose L has dG/dt besides: its charges are those of the free particle, and F = xi grad G + tau
+ * dG/dt and what that has, though G is no combination of what an integration by parts knows. With a potential the
+ * same ones are false. */
+#define GAUGED                                                                                        \
+  "model g\ncoord x, y\nparam k = 1\nlet G = x^2*y*exp(x*y) + log(1 + x^2 + exp(y)) + atan(x*y)*t + " \
+  "x^3*exp(sin(x*y))\n"
 #define FREE "lagrangian = (x'^2 + y'^2)/2 + d(G, x)*x' + d(G, y)*y' + d(G, t)\n"
 #define BOUND "lagrangian = (x'^2 + y'^2)/2 + d(G, x)*x' + d(G, y)*y' + d(G, t) - k*x^4\n"
 
 static void any_gauge(void **state) {
   (void)state;
   proves(GAUGED FREE "observe xi_x = 1\nobserve Q = x'\nobserve F = d(G, x)\nobserve P = 0\n", INVARIANT_UP_TO_F);
-  proves(GAUGED FREE "observe xi_x = -y\nobserve xi_y = x\nobserve Q = x*y' - y*x'\nobserve F = x*d(G, y) - y*d(G, x)\nobserve P = 0\n", INVARIANT_UP_TO_F);
-  proves(GAUGED FREE "observe xi_x = t\nobserve Q = t*x' - x\nobserve F = x + t*d(G, x)\nobserve P = 0\n", INVARIANT_UP_TO_F);
-  proves(GAUGED FREE "observe tau = -1\nobserve Q = (x'^2 + y'^2)/2\nobserve F = -atan(x*y)\nobserve P = 0\n", INVARIANT_UP_TO_F);
-  proves(GAUGED FREE "observe xi_x = x\nobserve xi_y = y\nobserve tau = 2*t\nobserve Q = x*x' + y*y' - t*(x'^2 + y'^2)\nobserve P = 0\n", INVARIANT_UP_TO_F);
+  proves(GAUGED FREE "observe xi_x = -y\nobserve xi_y = x\nobserve Q = x*y' - y*x'\nobserve F = x*d(G, y) - y*d(G, "
+                     "x)\nobserve P = 0\n",
+         INVARIANT_UP_TO_F);
+  proves(GAUGED FREE "observe xi_x = t\nobserve Q = t*x' - x\nobserve F = x + t*d(G, x)\nobserve P = 0\n",
+         INVARIANT_UP_TO_F);
+  proves(GAUGED FREE "observe tau = -1\nobserve Q = (x'^2 + y'^2)/2\nobserve F = -atan(x*y)\nobserve P = 0\n",
+         INVARIANT_UP_TO_F);
+  proves(GAUGED FREE "observe xi_x = x\nobserve xi_y = y\nobserve tau = 2*t\nobserve Q = x*x' + y*y' - t*(x'^2 + "
+                     "y'^2)\nobserve P = 0\n",
+         INVARIANT_UP_TO_F);
   proves(GAUGED BOUND "observe xi_x = 1\n", NOT_INVARIANT);
   proves(GAUGED BOUND "observe xi_y = 1\nobserve Q = y'\nobserve P = 0\n", INVARIANT_UP_TO_F);
   proves(GAUGED BOUND "observe xi_x = -y\nobserve xi_y = x\n", NOT_INVARIANT);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(kepler),  cmocka_unit_test(boosts),   cmocka_unit_test(oscillator),
-                                     cmocka_unit_test(gauges), cmocka_unit_test(integrals),  cmocka_unit_test(scaling),  cmocka_unit_test(balances),
-                                     cmocka_unit_test(constrained), cmocka_unit_test(first_order),
-                                     cmocka_unit_test(first_order_forced), cmocka_unit_test(contacts), cmocka_unit_test(any_gauge)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(kepler),      cmocka_unit_test(boosts),
+                                     cmocka_unit_test(oscillator),  cmocka_unit_test(gauges),
+                                     cmocka_unit_test(integrals),   cmocka_unit_test(scaling),
+                                     cmocka_unit_test(balances),    cmocka_unit_test(constrained),
+                                     cmocka_unit_test(first_order), cmocka_unit_test(first_order_forced),
+                                     cmocka_unit_test(contacts),    cmocka_unit_test(any_gauge)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

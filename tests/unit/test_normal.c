@@ -320,7 +320,8 @@ static void solutions_of_the_cart_pendulum(void **state) {
   assert_int_equal(solves(p, "x''^2*l - (g*sin(th) + l*th'')^2/cos(th)^2*l"), PROVED_ZERO);
   assert_int_equal(solves(p, "x'' - (m*sin(th)*(l*th'^2 - g*cos(th)))/(M + m*sin(th)^2)"), PROVED_NONZERO);
   assert_int_equal(solves(p, "x'' - (m*sin(th)*(l*th'^2 + g*cos(th)))/(M + m*cos(th)^2)"), PROVED_NONZERO);
-  assert_int_equal(solves(p, "sin(x'')"), NOT_DECIDED); /* a state that shows the difference is claims/counterexample.h's to find */
+  /* a state that shows the difference is claims/counterexample.h's to find */
+  assert_int_equal(solves(p, "sin(x'')"), NOT_DECIDED);
   assert_int_equal(solves(p, "1/(x'' - (m*sin(th)*(l*th'^2 + g*cos(th)))/(M + m*sin(th)^2))"), NOT_DECIDED);
 }
 
@@ -345,7 +346,8 @@ static void solutions_of_the_double_pendulum(void **state) {
       snprintf(wrong, sizeof wrong, "%s", pendulum_forms[i]);
       if (wrong[at] == '+') wrong[at] = '-';
       else if (wrong[at] == '-' && wrong[at + 1] == ' ') wrong[at] = '+';
-      else if (wrong[at] == '2' && strchr("*^", wrong[at + (wrong[at - 1] != '^')]) && wrong[at - 1] != 'h') wrong[at] = '3';
+      else if (wrong[at] == '2' && strchr("*^", wrong[at + (wrong[at - 1] != '^')]) && wrong[at - 1] != 'h')
+        wrong[at] = '3';
       else continue;
       Verdict v = solves(&double_pendulum, wrong);
       if (v != PROVED_NONZERO) print_error("verdict %d: %s\n", (int)v, wrong);

@@ -1,9 +1,10 @@
-/* Charges along a run: drifts, balances with the work of forces integrated along, trends, monitors. Expected values: closed forms of
- * the damped oscillator, and orders of methods. */
+/* Charges along a run: drifts, balances with the work of forces integrated along, trends, monitors. Expected values:
+ * closed forms of the damped oscillator, and orders of methods. */
 #include "numeric/quadrature.h"
 #include "test_rt_systems.h"
 
-/* ---- a plane oscillator, damped: r'' = -r - c r', from (1, 0) with (0, 1/2); E' = -c v^2, L' = -c L; p = {c, how wrong L' is} */
+/* ---- a plane oscillator, damped: r'' = -r - c r', from (1, 0) with (0, 1/2); E' = -c v^2, L' = -c L; p = {c, how
+ * wrong L' is} */
 static const lag_var damped_p[] = {{"c", "", 1, 0, 0, 0}, {"wrong", "", 1, 0, 0, 0}};
 static const lag_var damped_u[] = {{"push", "", 1, 0, 0, 0}};
 
@@ -60,14 +61,23 @@ static void damped_start(UNUSED const double *p, double *q, double *v, UNUSED do
   q[1] = v[0] = 0;
 }
 
-static const lag_charge damped_of[] = {{"energy", "", LAG_BALANCED}, {"spin", "kg", LAG_BALANCED}, {"by_formula", "", LAG_BALANCED | LAG_BY_FORMULAS}};
+static const lag_charge damped_of[] = {
+    {"energy", "", LAG_BALANCED}, {"spin", "kg", LAG_BALANCED}, {"by_formula", "", LAG_BALANCED | LAG_BY_FORMULAS}};
 static const lag_charges damped_charges = {.n = 3, .of = damped_of, .values = damped_values, .powers = damped_powers};
-static const lag_model damped_model = {MODEL("damped"), .flags = LAG_CONSTANT_MASS | LAG_SMOOTH, .nq = 2, .np = 2, .nu = 1, .q = names_q, .p = damped_p,
-    .u = damped_u, .inputs = no_push, .accel = damped_accel, .energy = damped_energy, .charges = &damped_charges};
-static const lag_scene damped = {.name = "damped", .doc = "", .model = &damped_model, .params = damped_params, .start = damped_start, .t1 = 10, .has_span = 1};
+static const lag_model damped_model = {MODEL("damped"),
+                                       .flags = LAG_CONSTANT_MASS | LAG_SMOOTH, .nq = 2, .np = 2, .nu = 1, .q = names_q,
+                                       .p = damped_p, .u = damped_u, .inputs = no_push, .accel = damped_accel,
+                                       .energy = damped_energy,
+                                       .charges = &damped_charges};
+static const lag_scene damped = {.name = "damped",
+                                 .doc = "", .model = &damped_model, .params = damped_params, .start = damped_start,
+                                 .t1 = 10,
+                                 .has_span = 1};
 static const lag_monitor watch_spin[] = {{"spin", -2, 1e-8, 0}};
-static const lag_scene watched = {.name = "watched", .doc = "", .model = &damped_model, .params = damped_params, .start = damped_start, .t1 = 10, .has_span = 1,
-    .nmonitors = 1, .monitors = watch_spin};
+static const lag_scene watched = {.name = "watched",
+                                  .doc = "", .model = &damped_model, .params = damped_params, .start = damped_start,
+                                  .t1 = 10, .has_span = 1, .nmonitors = 1,
+                                  .monitors = watch_spin};
 
 static double energy_at(double t)
 {
@@ -107,7 +117,8 @@ static void quadratures_have_their_order(void **state)
           sum += b[i] * pow(c[i], k);
         }
         double error = fabs(sum - 1.0 / (k + 1));
-        assert_true(k == 2 * n - radau ? error > 1e-10 : error < 1e-14); /* at least (n!)^4/((2 n + 1) ((2 n)!)^2), 3.6e-10; rounding */
+        /* at least (n!)^4/((2 n + 1) ((2 n)!)^2), 3.6e-10; rounding */
+        assert_true(k == 2 * n - radau ? error > 1e-10 : error < 1e-14);
       }
       assert_true(c[0] > 0 && (radau ? c[n - 1] == 1 : c[n - 1] == 1 - c[0]));
     }
@@ -192,8 +203,9 @@ static void monitors_watch_balances(void **state)
   }
 }
 
-/* The state that the caller gets lies within a step: what it has drifted counts, against a size that counts it, too. Here the charge is
- * q, which grows as sin t from 0: in rk4's only step, of 1, it ends at sin 1/2 to the method's error, which is its whole scale as well. */
+/* The state that the caller gets lies within a step: what it has drifted counts, against a size that counts it, too.
+ * Here the charge is q, which grows as sin t from 0: in rk4's only step, of 1, it ends at sin 1/2 to the method's
+ * error, which is its whole scale as well. */
 static int swing_value(ARGS, double *out, UNUSED double *w)
 {
   out[0] = q[0];
@@ -231,7 +243,8 @@ static void the_end_within_a_step_is_watched(void **state)
 
 static void saved_balances_go_on(void **state)
 {
-  lag_sim *whole = sim(&damped, &lag_dop853, 1e-9, 0, 1), *first = sim(&damped, &lag_dop853, 1e-9, 0, 1), *second = sim(&damped, &lag_dop853, 1e-9, 0, 0);
+  lag_sim *whole = sim(&damped, &lag_dop853, 1e-9, 0, 1), *first = sim(&damped, &lag_dop853, 1e-9, 0, 1),
+          *second = sim(&damped, &lag_dop853, 1e-9, 0, 0);
   double *x = calloc(lag_sim_save_size(first), sizeof *x);
   (void)state;
   assert_non_null(x);
@@ -242,7 +255,8 @@ static void saved_balances_go_on(void **state)
   assert_int_equal(lag_sim_advance(second, 9), LAG_OK);
   for (int k = 0; k < 3; k++) {
     lag_charge_stats a = charge(whole, k), b = charge(second, k);
-    assert_true(a.work == b.work && a.drift == b.drift && a.slope == b.slope && a.flags == b.flags && a.trend == b.trend);
+    assert_true(a.work == b.work && a.drift == b.drift && a.slope == b.slope && a.flags == b.flags &&
+                a.trend == b.trend);
   }
   free(x);
   lag_sim_free(whole);
@@ -271,10 +285,12 @@ static void symplectic_methods_oscillate(void **state)
   } cases[] = {{&lag_verlet, 0.01, 2}, {&lag_verlet4, 0.02, 4}};
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    lag_charge_stats a = kepler_energy_after(cases[i].method, cases[i].step, 200), b = kepler_energy_after(cases[i].method, cases[i].step / 2, 200);
+    lag_charge_stats a = kepler_energy_after(cases[i].method, cases[i].step, 200),
+                     b = kepler_energy_after(cases[i].method, cases[i].step / 2, 200);
     assert_int_equal(a.trend, LAG_TREND_OSCILLATES);
     assert_int_equal(b.trend, LAG_TREND_OSCILLATES);
-    assert_close(log2(a.drift / b.drift), cases[i].order, 0.35); /* h^p, and terms of higher order at an eccentricity of 0.6 */
+    /* h^p, and terms of higher order at an eccentricity of 0.6 */
+    assert_close(log2(a.drift / b.drift), cases[i].order, 0.35);
   }
 }
 
@@ -296,11 +312,12 @@ static void short_runs_are_not_judged(void **state)
   assert_true(isnan(c.slope));
 }
 
-static const lag_charge orbit_of[] = {{"energy", "", LAG_CONSERVED | LAG_BALANCED}, {"spin", "", LAG_CONSERVED | LAG_BALANCED}};
+static const lag_charge orbit_of[] = {{"energy", "", LAG_CONSERVED | LAG_BALANCED},
+                                      {"spin", "", LAG_CONSERVED | LAG_BALANCED}};
 static const lag_charges orbit_charges = {.n = 2, .of = orbit_of, .values = spin_value};
 
-/* Verlet's discrete Lagrangian is as round as L: what it conserves of the angular momentum differs from L by nothing, so only rounding is
- * left, which walks with the root of the number of steps. The energy oscillates. */
+/* Verlet's discrete Lagrangian is as round as L: what it conserves of the angular momentum differs from L by
+ * nothing, so only rounding is left, which walks with the root of the number of steps. The energy oscillates. */
 static void rounding_is_told_from_drift(void **state)
 {
   lag_model model = kepler_model;

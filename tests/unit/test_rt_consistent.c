@@ -1,5 +1,5 @@
-/* lag_consistent_state without a model: a point in the plane on one constraint, M = 1. Starts that are found are the nearest, and each reason to
- * refuse one is told. */
+/* lag_consistent_state without a model: a point in the plane on one constraint, M = 1. Starts that are found are the
+ * nearest, and each reason to refuse one is told. */
 #include <float.h>
 
 #include "test_rt_models.h"
@@ -71,7 +71,9 @@ static double distance(const lag_level *w)
   return (w->x[0] - w->asked[0]) * (w->x[0] - w->asked[0]) + (w->x[1] - w->asked[1]) * (w->x[1] - w->asked[1]);
 }
 
-static int stage(const lag_level *w, int i) { return ((Curve *)w->context)->first == i ? LAG_MOVES_FIRST : LAG_MOVES_LAST; }
+static int stage(const lag_level *w, int i) {
+  return ((Curve *)w->context)->first == i ? LAG_MOVES_FIRST : LAG_MOVES_LAST;
+}
 static int is_contact(const lag_level *w, int k) { return (void)w, (void)k, 0; }
 
 /* Brings at[2] onto the curve; returns why not. */
@@ -80,10 +82,14 @@ static lag_start_kind start(Curve *curve, int exactly, double *at)
   static const int row[2] = {0, 0}, col[2] = {0, 1};
   double part[23] = {0};
   int free[2], which = -2;
-  lag_level w = {.context = curve, .n = 2, .rows = 1, .entries = 2, .row = row, .col = col, .positions = 1, .exactly = exactly, .rounding = DBL_EPSILON,
-                 .residuals = residuals, .jacobian = jacobian, .terms = terms, .scales = scales, .direction = direction, .distance = distance,
-                 .stage = stage, .is_contact = is_contact, .x = at, .asked = part, .best = part + 2, .from = part + 4, .d = part + 6,
-                 .residual = part + 8, .size = part + 9, .terms_here = part + 10, .slope = part + 11, .has_terms = part + 12, .A = part + 13, .reach = part + 17, .nearest = part + 19, .along = part + 21, .free = free};
+  lag_level w = {.context = curve,
+                 .n = 2, .rows = 1, .entries = 2, .row = row, .col = col, .positions = 1, .exactly = exactly,
+                 .rounding = DBL_EPSILON, .residuals = residuals, .jacobian = jacobian, .terms = terms,
+                 .scales = scales, .direction = direction, .distance = distance, .stage = stage,
+                 .is_contact = is_contact, .x = at, .asked = part, .best = part + 2, .from = part + 4, .d = part + 6,
+                 .residual = part + 8, .size = part + 9, .terms_here = part + 10, .slope = part + 11,
+                 .has_terms = part + 12, .A = part + 13, .reach = part + 17, .nearest = part + 19, .along = part + 21,
+                 .free = free};
   lag_start_kind kind = lag_consistent_state(&w, &which);
   assert_true(kind == LAG_START_FOUND || which == 0);
   return kind;
@@ -127,12 +133,14 @@ static void test_magnitudes(void **state)
   assert_true(times == 2);
   lag_loose_directions(2, (double[]){0, 0.5}, (double[]){0.1, 0.52}, loose);
   assert_true(loose[0] == 1 && loose[1] == 0);
-  assert_true(lag_component_scale(0.1, 1, "m") == 1 && lag_component_scale(0.1, 0, "rad") == 1 && lag_component_scale(0.1, 0, "m") == 0.1);
+  assert_true(lag_component_scale(0.1, 1, "m") == 1 && lag_component_scale(0.1, 0, "rad") == 1 &&
+              lag_component_scale(0.1, 0, "m") == 0.1);
   assert_true(lag_component_scale(0, 0, "m") == 1 && lag_component_scale(7, 0, "deg") == 7);
 }
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_found), cmocka_unit_test(test_refused), cmocka_unit_test(test_magnitudes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_found), cmocka_unit_test(test_refused),
+                                     cmocka_unit_test(test_magnitudes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

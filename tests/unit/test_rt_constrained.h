@@ -11,8 +11,8 @@ enum { MOST_Q = 6, MOST_C = 3 };
 #define MATRICES(name) static int name##_matrices(ARGS, double *A, double *M, UNUSED double *w)
 
 /* Least changes by the solver that emitted code has, of a model whose A and M are of these sizes; M is diagonal. */
-static inline int least(int nq, int n, int nj, const lag_entry *at, const double *A, const double *M, const double *g, double *d, double *force)
-{
+static inline int least(int nq, int n, int nj, const lag_entry *at, const double *A, const double *M, const double *g,
+                        double *d, double *force) {
   double w[2 * (MOST_Q * MOST_Q + MOST_C * MOST_Q) + 3 * MOST_Q + MOST_C + MOST_C * MOST_C + 9 * MOST_C] = {0};
   double *rows = w + nq * nq, *x = rows + n * nq, *l = x + nq;
   for (int i = 0; i < nq; i++) {
@@ -156,8 +156,8 @@ MATRICES(twice)
 CONSTRAINED(twice, 2, 2, 2, 4);
 HELD(twice, 2, LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_AUTONOMOUS | LAG_SMOOTH, rod_energy, FALLS(rod, 2));
 
-/* ---- reel: without gravity, on a string that gets longer, x^2 + y^2 = (1 + t/2)^2: the angular momentum, 2, stays, and the angle is
- * 4 (1 - 1/(1 + t/2)) */
+/* ---- reel: without gravity, on a string that gets longer, x^2 + y^2 = (1 + t/2)^2: the angular momentum, 2, stays,
+ * and the angle is 4 (1 - 1/(1 + t/2)) */
 #define reel_masses {1, 1}
 static const lag_constraint reel_of[] = {{"string", 1, "m^2", 3}};
 FREE_FALL(reel, 2, {0, 0})
@@ -201,11 +201,12 @@ static inline void reel_exact(double t, double *y)
   y[3] = 0.5 * sin(a) + w * y[0];
 }
 
-/* ---- turntable: a solid ball of radius 1 rolls on a plane that turns with 1 rad/s; its centre moves on a circle with 2/7 of that.
- * x' - b' = -y, y' + a' = x with the angles a and b about x and y. E.J. Routh, Dynamics of a System of Rigid Bodies, Advanced Part
- * (1905), art. 224 */
+/* ---- turntable: a solid ball of radius 1 rolls on a plane that turns with 1 rad/s; its centre moves on a circle
+ * with 2/7 of that. x' - b' = -y, y' + a' = x with the angles a and b about x and y. E.J. Routh, Dynamics of a
+ * System of Rigid Bodies, Advanced Part (1905), art. 224 */
 #define turntable_masses {1, 1, 0.4, 0.4}
-static const lag_var turntable_q[] = {{"x", "", 1, 0, 0, 0}, {"y", "", 1, 0, 0, 0}, {"a", "", 1, 0, 0, 0}, {"b", "", 1, 0, 0, 0}};
+static const lag_var turntable_q[] = {
+    {"x", "", 1, 0, 0, 0}, {"y", "", 1, 0, 0, 0}, {"a", "", 1, 0, 0, 0}, {"b", "", 1, 0, 0, 0}};
 static const lag_constraint turntable_of[] = {{"roll.x", 0, "m/s", 4}, {"roll.y", 0, "m/s", 4}};
 static const lag_entry turntable_jacobian[] = {{0, 0}, {0, 3}, {1, 1}, {1, 2}};
 FREE_FALL(turntable, 4, {0, 0, 0, 0})
@@ -257,8 +258,9 @@ static inline void turntable_exact(double t, double *y)
   y[1] = (0.5 * (1 - c) + 0.2 * s) / w;
 }
 
-/* ---- knife: a knife edge on an inclined plane, x' sin f = y' cos f, from rest and turning with 1 rad/s: x = G/2 sin^2 t, y = G/2 (t -
- * sin(2 t)/2), and it stays on the same height on average. J.I. Neimark, N.A. Fufaev, Dynamics of Nonholonomic Systems (1972), ch. I.6 */
+/* ---- knife: a knife edge on an inclined plane, x' sin f = y' cos f, from rest and turning with 1 rad/s: x = G/2
+ * sin^2 t, y = G/2 (t - sin(2 t)/2), and it stays on the same height on average. J.I. Neimark, N.A. Fufaev, Dynamics
+ * of Nonholonomic Systems (1972), ch. I.6 */
 #define knife_masses {1, 1, 0.5}
 static const lag_var knife_q[] = {{"x", "", 1, 0, 0, 0}, {"y", "", 1, 0, 0, 0}, {"f", "", 1, 0, 0, 0}};
 static const lag_constraint knife_of[] = {{"edge", 0, "m/s", 5}};

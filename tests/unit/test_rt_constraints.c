@@ -1,5 +1,6 @@
-/* Models with constraints: steps end on them, and so does what lies between steps; methods keep their order; who cannot hold them
- * refuses. Expected values: closed forms, the pendulum in its angle by a step size that leaves nothing, and published rules. */
+/* Models with constraints: steps end on them, and so does what lies between steps; methods keep their order; who
+ * cannot hold them refuses. Expected values: closed forms, the pendulum in its angle by a step size that leaves
+ * nothing, and published rules. */
 #include "test_rt_constrained.h"
 
 /* The largest |c| and |r| against what they are made of, of size 1 here. */
@@ -52,7 +53,8 @@ typedef struct Case {
   void (*exact)(double t, double *y);
 } Case;
 
-static const Case cases[] = {{&rod, rod_exact}, {&twice, rod_exact}, {&reel, reel_exact}, {&turntable, turntable_exact}, {&knife, knife_exact}};
+static const Case cases[] = {
+    {&rod, rod_exact}, {&twice, rod_exact}, {&reel, reel_exact}, {&turntable, turntable_exact}, {&knife, knife_exact}};
 enum { CASES = sizeof cases / sizeof *cases };
 
 static int watch_step(void *worst, const lag_sim *s)
@@ -63,7 +65,8 @@ static int watch_step(void *worst, const lag_sim *s)
   return 0;
 }
 
-/* Each model to t = 3 by the adaptive methods; and on the constraints, at ends of steps and between, to a few last digits. */
+/* Each model to t = 3 by the adaptive methods; and on the constraints, at ends of steps and between, to a few last
+ * digits. */
 static void adaptive_methods_follow_and_hold(void **state)
 {
   static const lag_method *const methods[] = {&lag_rk45, &lag_dop853, &lag_radau};
@@ -127,7 +130,8 @@ static void projection_keeps_the_order(void **state)
   }
 }
 
-/* Without care the radius of the rod drifts: what is measured here is that it does not, in every digit that is there. */
+/* Without care the radius of the rod drifts: what is measured here is that it does not, in every digit that is
+ * there. */
 static void long_runs_stay(void **state)
 {
   (void)state;
@@ -162,8 +166,9 @@ static void what_cannot_hold_refuses(void **state)
 
 /* ---- RATTLE */
 
-/* Exact digits of the algorithm itself, in 60-digit arithmetic by an independent script: p0+ = p0 + A(q0)^T lambda, c(q1) = 0, A(q1) v1 = 0,
- * from (1, 0) at rest, 1000 steps of 0.01; and the largest error of the energy on the way. */
+/* Exact digits of the algorithm itself, in 60-digit arithmetic by an independent script: p0+ = p0 + A(q0)^T lambda,
+ * c(q1) = 0, A(q1) v1 = 0, from (1, 0) at rest, 1000 steps of 0.01; and the largest error of the energy on the way.
+ * */
 static int watch_energy(void *worst, const lag_sim *s)
 {
   double e[2];
@@ -199,11 +204,13 @@ static void rattle_and_its_compositions_have_their_order(void **state)
   static const struct {
     const lag_method *method;
     int n;
-  } at[] = {{&lag_symplectic_euler, 40}, {&lag_verlet, 20}, {&lag_variational, 20}, {&lag_verlet4, 10}, {&lag_verlet6, 6}, {&lag_verlet8, 4}};
+  } at[] = {{&lag_symplectic_euler, 40}, {&lag_verlet, 20}, {&lag_variational, 20},
+            {&lag_verlet4, 10},          {&lag_verlet6, 6}, {&lag_verlet8, 4}};
   (void)state;
   for (size_t k = 0; k < CASES; k++) {
     for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
-      double e1 = error_at_1(&cases[k], at[i].method, at[i].n, 0, NULL), e2 = error_at_1(&cases[k], at[i].method, 2 * at[i].n, 0, NULL);
+      double e1 = error_at_1(&cases[k], at[i].method, at[i].n, 0, NULL),
+             e2 = error_at_1(&cases[k], at[i].method, 2 * at[i].n, 0, NULL);
       double slope = log2(e1 / e2), order = at[i].method->order;
       /* the reel's Euler step is of order 2: its force is that of the string alone */
       if (e2 > 1e-12 && !(slope > order - 0.5 && slope < order + 1.6)) {
@@ -264,8 +271,8 @@ static int watch_trend(void *context, const lag_sim *s)
   return 0;
 }
 
-/* The straight line through the energies of many swings is level: what is left of their error, 4e-3 that goes to and fro about 700
- * times, is at most one swing's worth at the end. */
+/* The straight line through the energies of many swings is level: what is left of their error, 4e-3 that goes to and
+ * fro about 700 times, is at most one swing's worth at the end. */
 static void energy_has_no_trend(void **state)
 {
   Trend w = {0};
@@ -301,7 +308,8 @@ typedef struct Given {
   double within;
 } Given;
 
-/* The rod from what is given of its end: the other coordinate follows; where that cannot be, both move to the nearest place. */
+/* The rod from what is given of its end: the other coordinate follows; where that cannot be, both move to the
+ * nearest place. */
 static void starts_are_made_consistent(void **state)
 {
   static const unsigned char none[4] = {0};

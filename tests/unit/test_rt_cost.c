@@ -1,4 +1,5 @@
-/* The measurements behind `lagc cost`: how often a setting is run, errors against a closed form, what ends a sweep, the front. */
+/* The measurements behind `lagc cost`: how often a setting is run, errors against a closed form, what ends a sweep,
+ * the front. */
 #include "test_rt_models.h"
 
 #include "analysis/work_precision.h"
@@ -40,11 +41,14 @@ static int half_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
   return q[0] < 0.5 ? -1 : 0;
 }
 static const lag_model half_model = {MODEL("half an oscillator"), .nq = 1, .q = names_q, .accel = half_accel};
-static const lag_scene half = {.name = "half", .doc = "", .model = &half_model, .start = osc_start, .t1 = 10, .has_span = 1};
+static const lag_scene half = {
+    .name = "half", .doc = "", .model = &half_model, .start = osc_start, .t1 = 10, .has_span = 1};
 
 static int swept(CostMethod *m, int n, Maker *maker, const Samples *reference, double target)
 {
-  CostSweep sweep = {.method = m, .n = n, .scene = {fresh, maker, 0}, .reference = reference, .scale = scale, .seconds = 2, .target = target};
+  CostSweep sweep = {.method = m,
+                     .n = n, .scene = {fresh, maker, 0}, .reference = reference, .scale = scale, .seconds = 2,
+                     .target = target};
   return lag_cost_sweep(&sweep);
 }
 
@@ -57,7 +61,8 @@ static void a_short_run_is_repeated(void **state)
   Maker maker = {.scene = &osc};
   CostMethod m = {.method = &lag_rk4};
   Samples reference = closed_form(), own;
-  CostSweep sweep = {.method = &m, .n = 1, .scene = {fresh, &maker, 0}, .reference = &reference, .scale = scale, .seconds = 1};
+  CostSweep sweep = {
+      .method = &m, .n = 1, .scene = {fresh, &maker, 0}, .reference = &reference, .scale = scale, .seconds = 1};
   CostRun run = {.knob = osc.t1 / ROWS};
   assert_int_equal(lag_samples_init(&own, ROWS, 2), LAG_OK);
   memcpy(own.t, reference.t, ROWS * sizeof *own.t);
@@ -73,7 +78,8 @@ static void a_short_run_is_repeated(void **state)
   lag_samples_free(&reference);
 }
 
-/* Of methods of order 1 and 8 the slow one is left at an error that the other reaches in a third of the time; a target is met from below, closely. */
+/* Of methods of order 1 and 8 the slow one is left at an error that the other reaches in a third of the time; a
+ * target is met from below, closely. */
 static void time_goes_where_the_front_is(void **state)
 {
   (void)state;
@@ -85,13 +91,16 @@ static void time_goes_where_the_front_is(void **state)
   assert_true(m[0].left_out > 1e-9 && m[0].left_out < 1e-2);
   assert_true(m[1].left_out == 0 && m[1].run[m[1].nruns - 1].error < 1e-13);
   assert_ptr_equal(lag_cost_cheapest(m, 2, 3e-7, &run), &m[1]);
-  assert_true(run->error > 3e-9 && run->error <= 3e-7); /* on a loaded machine a finer setting may happen to be the fastest */
+  /* on a loaded machine a finer setting may happen to be the fastest */
+  assert_true(run->error > 3e-9 && run->error <= 3e-7);
   for (int k = 1; k < m[1].nruns; k++) assert_true(m[1].run[k].knob < m[1].run[k - 1].knob);
   lag_samples_free(&reference);
 }
 
 /* The caller may end a sweep; what was measured stays. */
-static int after_nine(void *context, UNUSED const CostMethod *m, double part) { return part >= 0 && ++*(int *)context > 9; }
+static int after_nine(void *context, UNUSED const CostMethod *m, double part) {
+  return part >= 0 && ++*(int *)context > 9;
+}
 static void a_sweep_can_be_ended(void **state)
 {
   (void)state;
@@ -99,7 +108,10 @@ static void a_sweep_can_be_ended(void **state)
   CostMethod m = {.method = &lag_rk4};
   Samples reference = closed_form();
   int noted = 0;
-  CostSweep sweep = {.method = &m, .n = 1, .scene = {fresh, &maker, 0}, .reference = &reference, .scale = scale, .seconds = 2, .note = after_nine, .context = &noted};
+  CostSweep sweep = {.method = &m,
+                     .n = 1, .scene = {fresh, &maker, 0}, .reference = &reference, .scale = scale, .seconds = 2,
+                     .note = after_nine,
+                     .context = &noted};
   assert_int_equal(lag_cost_sweep(&sweep), LAG_OK);
   assert_int_equal(noted, 10);
   assert_in_range(m.nruns, 3, 9);
@@ -139,11 +151,13 @@ static void failures_are_no_runs(void **state)
   lag_samples_free(&reference);
 }
 
-/* Times and errors by hand: of runs that are as fast, the more accurate one, and of those as accurate, the faster one. */
+/* Times and errors by hand: of runs that are as fast, the more accurate one, and of those as accurate, the faster
+ * one. */
 static void the_front_is_what_nothing_beats(void **state)
 {
   (void)state;
-  CostMethod m[2] = {{.nruns = 3, .run = {{.time = 1, .error = 1e-2}, {.time = 2, .error = 1e-4}, {.time = 4, .error = 1e-4}}},
+  CostMethod m[2] = {
+      {.nruns = 3, .run = {{.time = 1, .error = 1e-2}, {.time = 2, .error = 1e-4}, {.time = 4, .error = 1e-4}}},
       {.nruns = 3, .run = {{.time = 1, .error = 1e-1}, {.time = 3, .error = 1e-6}, {.time = 5, .error = 1e-5}}}};
   const int best[2][3] = {{1, 1, 0}, {0, 1, 0}};
   const CostRun *run;

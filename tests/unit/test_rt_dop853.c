@@ -1,5 +1,5 @@
-/* dop853: its table against all order conditions, measured orders of step, error and dense output, and what dense output
- * costs. Sources of expected values: the theory (Butcher; HNW I II.2), closed forms. */
+/* dop853: its table against all order conditions, measured orders of step, error and dense output, and what dense
+ * output costs. Sources of expected values: the theory (Butcher; HNW I II.2), closed forms. */
 #include "test_rt_systems.h"
 
 #include "core/core.h"
@@ -9,7 +9,8 @@ static const lag_tableau *const tab = &lag_dop853_tableau;
 
 enum { MOST_NODES = 8, STAGES = 12 };
 
-/* ---- All rooted trees, as level sequences: T. Beyer, S.M. Hedetniemi, SIAM J. Comput. 9 (1980) 706, DOI 10.1137/0209055. */
+/* ---- All rooted trees, as level sequences: T. Beyer, S.M. Hedetniemi, SIAM J. Comput. 9 (1980) 706, DOI
+ * 10.1137/0209055. */
 
 /* The next tree of n nodes after level[n]; 0: that was the last. */
 static int next_tree(int n, int *level)
@@ -115,8 +116,9 @@ static void the_table_has_order_8(void **state)
   assert_true(fabs(sum - 1.0 / 9) > 1e-7);
 }
 
-/* ---- Measured order. In whole runs the error is soon below rounding, and where it is not, terms of order 9 and 10 rule; the
- * error of single steps, as root mean square over 24 states of a motion, shows the leading term alone: order 8 is slope 9. */
+/* ---- Measured order. In whole runs the error is soon below rounding, and where it is not, terms of order 9 and 10
+ * rule; the error of single steps, as root mean square over 24 states of a motion, shows the leading term alone:
+ * order 8 is slope 9. */
 
 /* Error at the place `at` of a step of size h, at = 1 the end; at is a multiple of 1/32. */
 static double step_error(const lag_scene *scene, double h, double span, double at)

@@ -1,10 +1,12 @@
-/* What every symplectic method keeps in the long run, in its implicit form: energy without a trend, and the area of phase space.
- * LAG_STEPS: steps of the long runs (tests/exec/long_energy.sh sets 1000000). The explicit forms: test_rt_geometry.c. */
+/* What every symplectic method keeps in the long run, in its implicit form: energy without a trend, and the area of
+ * phase space. LAG_STEPS: steps of the long runs (tests/exec/long_energy.sh sets 1000000). The explicit forms:
+ * test_rt_geometry.c. */
 #include "slow.h"
 #include "test_rt_trend.h"
 
-/* All methods that claim it, in each of their orders; h, and the bound of |E - E0|, of the double pendulum where it swings and does not tumble, the
- * pendulum from 3.0, Kepler with e = 0.6. Steps so long that the method's error stands well above rounding; the bounds are twice what 20000 steps show. */
+/* All methods that claim it, in each of their orders; h, and the bound of |E - E0|, of the double pendulum where it
+ * swings and does not tumble, the pendulum from 3.0, Kepler with e = 0.6. Steps so long that the method's error
+ * stands well above rounding; the bounds are twice what 20000 steps show. */
 typedef struct Kind {
   Setting set;
   double h[3], bound[3];
@@ -28,7 +30,9 @@ static const Kind kinds[] = {
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* Each method on one system, another each day; in `make test-all` on all three. */
-static int left_out(const Kind *k, int system) { return !all_rows() && ((size_t)(k - kinds) + first_row(3)) % 3 != (size_t)system; }
+static int left_out(const Kind *k, int system) {
+  return !all_rows() && ((size_t)(k - kinds) + first_row(3)) % 3 != (size_t)system;
+}
 
 static void regular_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
 {
@@ -63,8 +67,8 @@ static void energy_is_bounded_without_trend(void **state)
     for (int i = 0; i < 3; i++) {
       if (left_out(k, i)) continue;
       double worst, gain = trend(sim_at(&scenes[i], &k->set, k->h[i]), i == 1 ? 3.0 : NAN, k->h[i], steps, &worst);
-      print_message("# %-15s %-16s %d h %-5g worst %.2e, trend over the run %+.1e\n", scenes[i].name, k->set.method->name, (int)(k - kinds), k->h[i],
-                    worst, gain);
+      print_message("# %-15s %-16s %d h %-5g worst %.2e, trend over the run %+.1e\n", scenes[i].name,
+                    k->set.method->name, (int)(k - kinds), k->h[i], worst, gain);
       assert_true(worst < k->bound[i] && worst > 1e-11);
       assert_true(fabs(gain) < 0.1 * worst);
     }
@@ -84,8 +88,9 @@ static void all_that_claim_it(void **state)
   }
 }
 
-/* ---- A blob: the points of a closed curve in phase space, and the area inside, the integral of p dq along it, summed over the
- * coordinates (Poincare). With N points of an analytic curve, dq by differences of order 8, the rest is below 1e-12. */
+/* ---- A blob: the points of a closed curve in phase space, and the area inside, the integral of p dq along it,
+ * summed over the coordinates (Poincare). With N points of an analytic curve, dq by differences of order 8, the rest
+ * is below 1e-12. */
 
 enum { N = 144 };
 

@@ -4,9 +4,8 @@
 static lag_option step_10ms[] = {{"step", 0.01, NULL}};
 
 /* Runs a scene to t with method i; the message must hold `words`. */
-static void expect_failure(const lag_scene *scene, const lag_method *m, double t, int status, double when, double within,
-                           const char *words)
-{
+static void expect_failure(const lag_scene *scene, const lag_method *m, double t, int status, double when,
+                           double within, const char *words) {
   lag_sim *s = sim_with(scene, m, 1e-8, m == &lag_rk4, step_10ms);
   assert_int_equal(lag_sim_advance(s, t), status);
   assert_close(lag_sim_time(s), when, within);
@@ -50,7 +49,8 @@ static void cliff_start(UNUSED const double *p, double *q, double *v, UNUSED dou
 UNIT_MASS(cliff, cliff_accel, -0.5 / sqrt(1 - q[0]));
 SYSTEM(cliff, 1, LAG_AUTONOMOUS | LAG_CONSTANT_MASS | LAG_SEPARABLE, NULL, EXACT(cliff));
 
-/* Explicit and implicit, separable and not: the last state is one before the cliff, and nothing that is no number is left. */
+/* Explicit and implicit, separable and not: the last state is one before the cliff, and nothing that is no number is
+ * left. */
 static void nan_stops_every_method(void **state)
 {
   lag_option step[] = {{"step", 1e-3, NULL}};
@@ -71,7 +71,8 @@ static void nan_stops_every_method(void **state)
       fail_msg("%s: %s, \"%s\"", m->name, lag_status_name(rc), lag_sim_message(s));
     }
     assert_true(isfinite(lag_sim_q(s)[0]) && isfinite(lag_sim_v(s)[0]));
-    assert_true(lag_sim_q(s)[0] > 0.98 && lag_sim_q(s)[0] <= 1.01); /* a step is 0.003 long there; the end of one may lie past it */
+    /* a step is 0.003 long there; the end of one may lie past it */
+    assert_true(lag_sim_q(s)[0] > 0.98 && lag_sim_q(s)[0] <= 1.01);
     lag_sim_free(s);
     tried++;
   }
@@ -123,7 +124,8 @@ static void a_step_that_time_does_not_feel_is_refused(void **state)
 static void settings_are_checked(void **state)
 {
   lag_sim *s = lag_sim_new(&ball);
-  lag_option bad_name[] = {{"stepp", 0.1, NULL}}, bad_value[] = {{"step", -1, NULL}}, no_number[] = {{"atol", HUGE_VAL, NULL}}, word[] = {{"step", 0, "large"}};
+  lag_option bad_name[] = {{"stepp", 0.1, NULL}}, bad_value[] = {{"step", -1, NULL}},
+             no_number[] = {{"atol", HUGE_VAL, NULL}}, word[] = {{"step", 0, "large"}};
   (void)state;
   assert_int_equal(lag_sim_set_tolerance(s, 0), LAG_EINVAL);
   assert_int_equal(lag_sim_set_tolerance(s, -1e-9), LAG_EINVAL);

@@ -35,7 +35,8 @@ static void the_ball_lands_at_sqrt_2h_over_g(void **state)
     assert_int_equal(lag_sim_set(s, "h", 100), 0); /* cm */
     assert_int_equal(lag_sim_advance(s, 3), LAG_OK);
     assert_int_equal(log.n, 4);
-    /* t_k = t1 (1 + 2 e + 2 e^2 + ...); a method of order 1 does not solve a fall exactly: a flight is a step of 0.01 s too long or too short */
+    /* t_k = t1 (1 + 2 e + 2 e^2 + ...); a method of order 1 does not solve a fall exactly: a flight is a step of
+     * 0.01 s too long or too short */
     double t = t1, e = 0.9, within = lag_methods[i]->order > 1 ? 1e-12 : 0.05;
     for (int k = 0; k < 4; k++) {
       assert_close(log.t[k], t, within * t);
@@ -71,16 +72,20 @@ static int osc_events(ARGS, double *g, UNUSED double *w)
   return 0;
 }
 
-static const lag_model osc_ev_model = {MODEL("oscillator"), .flags = LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .nev = 3, .q = names_q, .ev = osc_ev, .accel = osc_accel,
-    .energy = osc_energy, .events = osc_events, ANALYTIC(osc)};
-static const lag_scene osc_ev_scene = {.name = "osc", .doc = "", .model = &osc_ev_model, .start = osc_start, .t1 = 100, .has_span = 1};
+static const lag_model osc_ev_model = {MODEL("oscillator"),
+                                       .flags = LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .nev = 3, .q = names_q,
+                                       .ev = osc_ev, .accel = osc_accel, .energy = osc_energy, .events = osc_events,
+                                       ANALYTIC(osc)};
+static const lag_scene osc_ev_scene = {
+    .name = "osc", .doc = "", .model = &osc_ev_model, .start = osc_start, .t1 = 100, .has_span = 1};
 
 static void events_come_in_order_and_honour_directions(void **state)
 {
   double a = acos(0.1), first, last;
   const double t[] = {a, PI / 2, 3 * PI / 2, 2 * PI - a, 2 * PI + a, 5 * PI / 2};
   const int k[] = {2, 0, 1, 2, 2, 0};
-  const double tight[21] = {[1] = 0.05, [2] = 1e-4, [4] = 2e-9, [5] = 2e-9, [6] = 2e-11, [8] = 2e-9, [12] = 2e-9, [20] = 1e-12};
+  const double tight[21] = {
+      [1] = 0.05, [2] = 1e-4, [4] = 2e-9, [5] = 2e-9, [6] = 2e-11, [8] = 2e-9, [12] = 2e-9, [20] = 1e-12};
   (void)state;
   for (int i = 0; i < lag_nmethods; i++) {
     Log log;
@@ -115,16 +120,19 @@ static int zero_events(ARGS, double *g, UNUSED double *w)
   return 0;
 }
 
-static int stop_at_second(UNUSED int k, ARGS, UNUSED double *q1, UNUSED double *v1, UNUSED double *z1, int *stop, UNUSED double *w)
-{
+static int stop_at_second(UNUSED int k, ARGS, UNUSED double *q1, UNUSED double *v1, UNUSED double *z1, int *stop,
+                          UNUSED double *w) {
   *stop = t > 5;
   return 0;
 }
 
 static const lag_event zero_ev[] = {{"turn", 0}};
-static const lag_model zero_model = {MODEL("zero"), .flags = LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .nev = 1, .q = names_q, .ev = zero_ev, .accel = osc_accel,
-    .events = zero_events, .act = stop_at_second, ANALYTIC(osc)};
-static const lag_scene zero = {.name = "zero", .doc = "", .model = &zero_model, .start = osc_start, .t1 = 100, .has_span = 1};
+static const lag_model zero_model = {MODEL("zero"),
+                                     .flags = LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .nev = 1, .q = names_q,
+                                     .ev = zero_ev, .accel = osc_accel, .events = zero_events, .act = stop_at_second,
+                                     ANALYTIC(osc)};
+static const lag_scene zero = {
+    .name = "zero", .doc = "", .model = &zero_model, .start = osc_start, .t1 = 100, .has_span = 1};
 
 static void zero_at_the_start_does_not_fire_and_stop_stops(void **state)
 {
@@ -176,9 +184,12 @@ static void free_start(UNUSED const double *p, double *q, double *v, UNUSED doub
 static const lag_event twin_ev[] = {{"first", 1}, {"second", 1}};
 UNIT_MASS(free, free_accel, 0);
 TAYLOR_LINEAR(free, 0, 0);
-static const lag_model twin_model = {MODEL("twin"), .flags = LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .nev = 2, .q = names_q, .ev = twin_ev, .accel = free_accel,
-    .events = twin_events, .act = twin_act, ANALYTIC(free)};
-static const lag_scene twin = {.name = "twin", .doc = "", .model = &twin_model, .start = free_start, .t1 = 10, .has_span = 1};
+static const lag_model twin_model = {MODEL("twin"),
+                                     .flags = LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .nev = 2, .q = names_q,
+                                     .ev = twin_ev, .accel = free_accel, .events = twin_events, .act = twin_act,
+                                     ANALYTIC(free)};
+static const lag_scene twin = {
+    .name = "twin", .doc = "", .model = &twin_model, .start = free_start, .t1 = 10, .has_span = 1};
 
 static void events_at_one_instant_all_fire(void **state)
 {
@@ -202,7 +213,8 @@ static void a_ball_coming_to_rest_is_reported(void **state)
   (void)state;
   for (int i = 0; i < lag_nmethods; i++) {
     Log log;
-    if (lag_methods[i] == &lag_euler) continue; /* a flight from v lasts 2 v/g + h and gains g h: it never comes to rest */
+    /* a flight from v lasts 2 v/g + h and gains g h: it never comes to rest */
+    if (lag_methods[i] == &lag_euler) continue;
     lag_sim *s = sim_of(&ball, i, 1e-10, &log);
     assert_int_equal(lag_sim_set(s, "e", 0.5), 0);
     assert_int_equal(lag_sim_advance(s, 3), LAG_EZENO);
@@ -213,7 +225,8 @@ static void a_ball_coming_to_rest_is_reported(void **state)
   }
 }
 
-/* x = cos t is above 1 - d for a moment of 2 acos(1 - d) only, which may lie within one step: 0.028 s and 0.0028 s here. */
+/* x = cos t is above 1 - d for a moment of 2 acos(1 - d) only, which may lie within one step: 0.028 s and 0.0028 s
+ * here. */
 static const double graze_at[] = {0.9999, 0.999999};
 static const lag_event graze_ev[] = {{"near", 0}, {"nearer", 0}};
 
@@ -224,12 +237,15 @@ static int graze_events(ARGS, double *g, UNUSED double *w)
   return 0;
 }
 
-static const lag_model graze_model = {MODEL("graze"), .flags = LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .nev = 2, .q = names_q, .ev = graze_ev, .accel = osc_accel,
-    .energy = osc_energy, .events = graze_events, ANALYTIC(osc)};
-static const lag_scene graze = {.name = "graze", .doc = "", .model = &graze_model, .start = osc_start, .t1 = 100, .has_span = 1};
+static const lag_model graze_model = {MODEL("graze"),
+                                      .flags = LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .nev = 2, .q = names_q,
+                                      .ev = graze_ev, .accel = osc_accel, .energy = osc_energy, .events = graze_events,
+                                      ANALYTIC(osc)};
+static const lag_scene graze = {
+    .name = "graze", .doc = "", .model = &graze_model, .start = osc_start, .t1 = 100, .has_span = 1};
 
-/* Once at the beginning, and twice around each of 15 turns (96 s). Methods of order 1 and 2 do not come back as closely,
- * and the path of GSL's between long steps stays below the mark. */
+/* Once at the beginning, and twice around each of 15 turns (96 s). Methods of order 1 and 2 do not come back as
+ * closely, and the path of GSL's between long steps stays below the mark. */
 static void two_crossings_within_a_step_are_found(void **state)
 {
   const lag_option steps[2] = {{"step", 0.05, NULL}, {"step", 0.3, NULL}};
@@ -257,7 +273,8 @@ static void watching_does_not_disturb(void **state)
 {
   Log log;
   double first, last;
-  lag_sim *a = sim_of(&osc_ev_scene, 0, 1e-9, &log), *b = sim_with(&osc, &lag_rk45, 1e-9, 1, (lag_option[]){{"max_step", 10, NULL}});
+  lag_sim *a = sim_of(&osc_ev_scene, 0, 1e-9, &log),
+          *b = sim_with(&osc, &lag_rk45, 1e-9, 1, (lag_option[]){{"max_step", 10, NULL}});
   lag_sim *c = sim_with(&osc_ev_scene, &lag_rk45, 1e-9, 1, (lag_option[]){{"max_step", 10, NULL}});
   (void)state;
   assert_int_equal(lag_sim_advance(b, 50), LAG_OK);
@@ -269,7 +286,8 @@ static void watching_does_not_disturb(void **state)
   lag_sim_free(c);
 }
 
-/* Events that come, one at a time, and one that never does: seen from nine values a step and those that find the instant; nothing is halved. */
+/* Events that come, one at a time, and one that never does: seen from nine values a step and those that find the
+ * instant; nothing is halved. */
 static int looks;
 static int counted_events(ARGS, double *g, UNUSED double *w)
 {

@@ -3,7 +3,8 @@
  * LAG_STEPS: steps of the long runs (tests/exec/long_geometry.sh sets 1000000). */
 #include "test_rt_trend.h"
 
-static const lag_method *const family[] = {&lag_symplectic_euler, &lag_verlet, &lag_verlet4, &lag_verlet6, &lag_verlet8};
+static const lag_method *const family[] = {&lag_symplectic_euler, &lag_verlet, &lag_verlet4, &lag_verlet6,
+                                           &lag_verlet8};
 enum { MEMBERS = sizeof family / sizeof *family };
 
 typedef struct Long {
@@ -11,8 +12,9 @@ typedef struct Long {
   double start, h[MEMBERS], bound[MEMBERS]; /* |E - E0| < bound */
 } Long;
 
-/* Steps so long that the error of the method stands well above rounding; and not so long that what a symplectic method
- * keeps is no energy near E any more (verlet6 on Henon and Heiles at h = 1: the chaos of the map itself is seen to drift). */
+/* Steps so long that the error of the method stands well above rounding; and not so long that what a symplectic
+ * method keeps is no energy near E any more (verlet6 on Henon and Heiles at h = 1: the chaos of the map itself is
+ * seen to drift). */
 static const Long runs[] = {
     {&pendulum, 3.0, {0.02, 0.1, 0.5, 0.8, 1}, {2e-2, 5e-3, 5e-6, 2e-5, 3e-5}},
     {&kepler, NAN, {0.005, 0.05, 0.2, 0.25, 0.3}, {1e-2, 1.2e-2, 3e-4, 1e-4, 3e-4}},
@@ -25,7 +27,8 @@ static void energy_is_bounded_without_trend(void **state)
   (void)state;
   for (size_t r = 0; r < sizeof runs / sizeof *runs; r++) {
     for (int m = 0; m < MEMBERS; m++) {
-      double worst, gain = trend(equal_steps(runs[r].scene, family[m], runs[r].h[m]), runs[r].start, runs[r].h[m], steps, &worst);
+      double worst,
+          gain = trend(equal_steps(runs[r].scene, family[m], runs[r].h[m]), runs[r].start, runs[r].h[m], steps, &worst);
       print_message("# %-9s %-16s h %-5g worst %.2e, trend over the run %+.1e\n", runs[r].scene->name, family[m]->name,
                     runs[r].h[m], worst, gain);
       assert_true(worst < runs[r].bound[m] && worst > 1e-11);
@@ -39,13 +42,14 @@ static void rk4_has_a_trend(void **state)
 {
   (void)state;
   for (size_t r = 0; r < sizeof runs / sizeof *runs; r++) {
-    double worst, gain = trend(equal_steps(runs[r].scene, &lag_rk4, runs[r].h[1]), runs[r].start, runs[r].h[1], 20000, &worst);
+    double worst,
+        gain = trend(equal_steps(runs[r].scene, &lag_rk4, runs[r].h[1]), runs[r].start, runs[r].h[1], 20000, &worst);
     assert_true(fabs(gain) > 0.5 * worst);
   }
 }
 
-/* ---- The symplectic form: J^T Omega J - Omega of one step, with p = v (unit mass). J by central differences of order 8:
- * rounding 1e-16/0.02, truncation 0.02^8/630 times a ninth derivative. */
+/* ---- The symplectic form: J^T Omega J - Omega of one step, with p = v (unit mass). J by central differences of
+ * order 8: rounding 1e-16/0.02, truncation 0.02^8/630 times a ninth derivative. */
 
 static void jacobian(const lag_scene *scene, const lag_method *m, double h, const double *y, double (*jac)[4])
 {
@@ -135,7 +139,8 @@ static double invariant(const double *y, double h)
   return y[1] * y[1] + y[0] * y[0] * (1 - h * h / 4);
 }
 
-/* Root mean square over the phases of the oscillator, after n steps: by the method, and by sums without compensation. */
+/* Root mean square over the phases of the oscillator, after n steps: by the method, and by sums without
+ * compensation. */
 static void lost(int n, double h, double *method, double *plain)
 {
   *method = *plain = 0;

@@ -1,5 +1,5 @@
-/* lag_planar_impact against Routh's equations integrated by small steps of the impulse, and against closed forms; lag_contact_modes and lag_cone_forces against problems whose
- * motions are known. */
+/* lag_planar_impact against Routh's equations integrated by small steps of the impulse, and against closed forms;
+ * lag_contact_modes and lag_cone_forces against problems whose motions are known. */
 #include "test_rt_models.h"
 
 #include "contacts/contact_modes.h"
@@ -18,7 +18,10 @@ static void by_steps(const double *W, const double *v, int law, double mu, doubl
   P[0] = P[1] = 0;
   for (long i = 0; i < 100000000; i++) {
     if (vn < 0) squeezed = P[0];
-    if (vn >= 0 && (law == LAG_IMPACT_STRONGE ? work >= (1 - e * e) * least : law == LAG_IMPACT_POISSON ? P[0] >= (1 + e) * squeezed : vn >= -e * v[0])) break;
+    if (vn >= 0 && (law == LAG_IMPACT_STRONGE   ? work >= (1 - e * e) * least
+                    : law == LAG_IMPACT_POISSON ? P[0] >= (1 + e) * squeezed
+                                                : vn >= -e * v[0]))
+      break;
     double f = -mu * sign(vt), hold = -(W[2] + vt / h) / W[3]; /* the friction that stops the slip in this step */
     f = fabs(hold) <= mu ? hold : vt != 0 ? f : mu * sign(hold);
     work += h * vn;
@@ -68,7 +71,8 @@ static void test_energy_never_grows(void **state) {
     double gain = lag_planar_impact(W, v, law, mu, e, back, P);
     if (!(gain == 0)) { /* told by Newton's law and by that of a superball alone */
       assert_true(back > 0 || law == LAG_IMPACT_NEWTON);
-      if (gain > 0) assert_true(fabs(gain - energy_gain(W, v, P)) <= 1e-12 * (gain + fabs(P[0] * v[0]) + fabs(P[1] * v[1])));
+      if (gain > 0)
+        assert_true(fabs(gain - energy_gain(W, v, P)) <= 1e-12 * (gain + fabs(P[0] * v[0]) + fabs(P[1] * v[1])));
       gains += back == 0;
       continue;
     }
@@ -80,7 +84,8 @@ static void test_energy_never_grows(void **state) {
   assert_true(gains > 20); /* Newton's law adds energy in some impacts whose slip turns */
 }
 
-/* A ball of I = 2/5 m r^2, m = 1: W = [1 0; 0 7/2]. Garwin, Am. J. Phys. 37 (1969) 88: both velocities of the contact are reversed. */
+/* A ball of I = 2/5 m r^2, m = 1: W = [1 0; 0 7/2]. Garwin, Am. J. Phys. 37 (1969) 88: both velocities of the
+ * contact are reversed. */
 static void test_superball(void **state) {
   (void)state;
   double W[4] = {1, 0, 0, 3.5}, v[2] = {-2, 1.3}, P[2];
@@ -102,7 +107,8 @@ static void test_block(void **state) {
   assert_true(c.mode == LAG_CONTACT_OPEN);
 }
 
-/* The same with a static friction of 0.8, and beside a block with the same pull that has begun to slip: at rest a pull of 6 is held, of 9 is not, and one that moves slips under 5. */
+/* The same with a static friction of 0.8, and beside a block with the same pull that has begun to slip: at rest a
+ * pull of 6 is held, of 9 is not, and one that moves slips under 5. */
 static void test_static(void **state) {
   (void)state;
   double W[4] = {1, 0, 0, 1}, x[4], room[4 * 9], held[2] = {-10, 6}, pulled[2] = {-10, 9};
@@ -115,9 +121,11 @@ static void test_static(void **state) {
   assert_int_equal(lag_contact_modes(1, &c, 2, W, held, x, room), 1);
   assert_true(c.mode == LAG_CONTACT_SLIPS && c.to == -1 && fabs(x[1] - 5) < 1e-10);
   double two[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, both[4] = {-10, -10, 6, 6};
-  lag_touch pair[2] = {{.mu = 0.5, .hold = 0.8, .tangent = 2, .cannot_stick = 1}, {.mu = 0.5, .hold = 0.8, .tangent = 3}};
+  lag_touch pair[2] = {{.mu = 0.5, .hold = 0.8, .tangent = 2, .cannot_stick = 1},
+                       {.mu = 0.5, .hold = 0.8, .tangent = 3}};
   assert_int_equal(lag_contact_modes(2, pair, 4, two, both, x, room), 1);
-  assert_true(pair[0].mode == LAG_CONTACT_SLIPS && pair[1].mode == LAG_CONTACT_STICKS && fabs(x[2] + 5) < 1e-10 && fabs(x[3] + 6) < 1e-10);
+  assert_true(pair[0].mode == LAG_CONTACT_SLIPS && pair[1].mode == LAG_CONTACT_STICKS && fabs(x[2] + 5) < 1e-10 &&
+              fabs(x[3] + 6) < 1e-10);
 }
 
 /* Painleve: while it slips the gap's acceleration falls as the force grows, from mu = W_nn/W_nt = 1.25 on. */
@@ -132,11 +140,12 @@ static void test_painleve(void **state) {
   assert_int_equal(lag_contact_modes(1, &c, 2, W, up, x, room), 2);
 }
 
-/* A block on two feet, N = 5 each: of the friction 2 that holds it each foot may take any part, and half is farthest from the edges, 0.3*5 - 1 = 0.5. Between two
- * walls that nothing drives apart any pressure would do. */
+/* A block on two feet, N = 5 each: of the friction 2 that holds it each foot may take any part, and half is farthest
+ * from the edges, 0.3*5 - 1 = 0.5. Between two walls that nothing drives apart any pressure would do. */
 static void test_cone_forces(void **state) {
   (void)state;
-  lag_touch feet[2] = {{.mu = 0.3, .tangent = 2, .mode = LAG_CONTACT_STICKS}, {.mu = 0.3, .tangent = 3, .mode = LAG_CONTACT_STICKS}};
+  lag_touch feet[2] = {{.mu = 0.3, .tangent = 2, .mode = LAG_CONTACT_STICKS},
+                       {.mu = 0.3, .tangent = 3, .mode = LAG_CONTACT_STICKS}};
   double x[4] = {5, 5, -2, 0}, shift[8] = {0, 0, 7, -7, 0, 0, -1, 1}, c[2];
   int wedged;
   assert_true(fabs(lag_cone_forces(2, feet, 4, x, 2, shift, c, &wedged) - 0.5) < 1e-14 && !wedged);
@@ -147,7 +156,9 @@ static void test_cone_forces(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_laws), cmocka_unit_test(test_energy_never_grows), cmocka_unit_test(test_superball),
-                                     cmocka_unit_test(test_block), cmocka_unit_test(test_static), cmocka_unit_test(test_painleve), cmocka_unit_test(test_cone_forces)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_laws),       cmocka_unit_test(test_energy_never_grows),
+                                     cmocka_unit_test(test_superball),  cmocka_unit_test(test_block),
+                                     cmocka_unit_test(test_static),     cmocka_unit_test(test_painleve),
+                                     cmocka_unit_test(test_cone_forces)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -68,7 +68,8 @@ static void test_linearise(void **state)
 }
 
 /* M = [4 2 1; 2 3 1; 1 1 2]: with f = -M D q, a = -D q, so J = -D whatever elimination does. */
-static const double full_M[3][3] = {{4, 2, 1}, {2, 3, 1}, {1, 1, 2}}, full_D[3][3] = {{1, 2, 3}, {-4, 5, 6}, {7, 8, -9}};
+static const double full_M[3][3] = {{4, 2, 1}, {2, 3, 1}, {1, 1, 2}},
+                    full_D[3][3] = {{1, 2, 3}, {-4, 5, 6}, {7, 8, -9}};
 
 static int full_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
 {
@@ -131,7 +132,8 @@ static int leaves(ARGS, UNUSED const double *a, UNUSED double *dr, UNUSED double
 static void test_errors(void **state)
 {
   (void)state;
-  const lag_linear singular = {.ndr = 6, .dr = pair_dr, .nmass = 2, .mass = pair_mass, .eval = null_mass}, outside = {.ndr = 6, .dr = pair_dr, .nmass = 2, .mass = pair_mass, .eval = leaves};
+  const lag_linear singular = {.ndr = 6, .dr = pair_dr, .nmass = 2, .mass = pair_mass, .eval = null_mass},
+                   outside = {.ndr = 6, .dr = pair_dr, .nmass = 2, .mass = pair_mass, .eval = leaves};
   const double y[5] = {0};
   double J[15], *work = calloc(lag_linear_work(&pair), sizeof *work);
   lag_model m = pair;

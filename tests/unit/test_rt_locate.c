@@ -1,5 +1,6 @@
-/* kernels/locate.h without a motion: Chebyshev coefficients, roots, pairs of crossings of any distance, poles, signs that are not known, both ways through
- * a step. Sources of expected values: T_n(cos x) = cos n x, zeros that the functions are built with. */
+/* kernels/locate.h without a motion: Chebyshev coefficients, roots, pairs of crossings of any distance, poles, signs
+ * that are not known, both ways through a step. Sources of expected values: T_n(cos x) = cos n x, zeros that the
+ * functions are built with. */
 #include "test_rt_models.h"
 
 #include <float.h>
@@ -73,7 +74,8 @@ static void test_root(void **state)
   assert_true(lag_root(value_of, &f, 1, 0, 2, 6, DBL_EPSILON) == 1);
 }
 
-/* g falls at its first zero and rises at the second; rounding of t limits what is apart: g there is apart^2/4, and is told from 4 epsilon t apart. */
+/* g falls at its first zero and rises at the second; rounding of t limits what is apart: g there is apart^2/4, and
+ * is told from 4 epsilon t apart. */
 static void test_pairs(void **state)
 {
   (void)state;
@@ -95,7 +97,8 @@ static void test_pairs(void **state)
 /* A pole is no crossing; before an event of unknown sign g leaves zero, and one at distance `apart` follows. */
 static void test_signs(void **state)
 {
-  Function pole = {.zero = 0.7, .kind = POLE}, after = {.direction = 1}, gap = {.apart = 1, .direction = LAG_LOCATE_UNSEEN};
+  Function pole = {.zero = 0.7, .kind = POLE}, after = {.direction = 1},
+           gap = {.apart = 1, .direction = LAG_LOCATE_UNSEEN};
   double sign = -1;
 
   (void)state;
@@ -105,11 +108,13 @@ static void test_signs(void **state)
     assert_close(first(&after, 0, 1, &sign, 0), after.apart, 4e-16 * after.apart);
   }
   sign = 0;
-  assert_close(first(&gap, 0, 1, &sign, 1e-3), (1 - sqrt(1 - 4e-3)) / 2, 4e-16); /* t (t - 1) = -noise: it has been above 0 */
+  /* t (t - 1) = -noise: it has been above 0 */
+  assert_close(first(&gap, 0, 1, &sign, 1e-3), (1 - sqrt(1 - 4e-3)) / 2, 4e-16);
 }
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_coefficients), cmocka_unit_test(test_root), cmocka_unit_test(test_pairs), cmocka_unit_test(test_signs)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_coefficients), cmocka_unit_test(test_root),
+                                     cmocka_unit_test(test_pairs), cmocka_unit_test(test_signs)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

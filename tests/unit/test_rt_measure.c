@@ -1,4 +1,5 @@
-/* Measures of a run against closed forms, by each method; their units; the messages for wrong expressions; the run itself, which they leave as it is. */
+/* Measures of a run against closed forms, by each method; their units; the messages for wrong expressions; the run
+ * itself, which they leave as it is. */
 #include "test_rt_systems.h"
 
 #include "analysis/measure.h"
@@ -40,10 +41,13 @@ static int measure(lag_sim *sim, double until, int n, const char *const *text, d
 /* Each function at x = cos 3: the C library's value, 1e-9 for the run's error. */
 static void functions(void **state)
 {
-  static const char *const text[] = {"sin(x(3))", "cos(x(3))", "tan(x(3))", "asin(x(3))", "acos(x(3))", "atan(x(3))",
-                                     "sinh(x(3))", "cosh(x(3))", "tanh(x(3))", "cbrt(x(3))", "exp(x(3))", "floor(x(3))"};
-  const double x = cos(3), expected[] = {sin(x), cos(x), tan(x), asin(x), acos(x), atan(x), sinh(x), cosh(x), tanh(x), cbrt(x), exp(x), -1};
-  static const char *const more[] = {"sqrt(2 + x(3))", "log(2 + x(3))", "abs(x(3))", "atan2(x(3), x(1))", "hypot(x(3), x(1))"};
+  static const char *const text[] = {"sin(x(3))",  "cos(x(3))",  "tan(x(3))",  "asin(x(3))",
+                                     "acos(x(3))", "atan(x(3))", "sinh(x(3))", "cosh(x(3))",
+                                     "tanh(x(3))", "cbrt(x(3))", "exp(x(3))",  "floor(x(3))"};
+  const double x = cos(3), expected[] = {sin(x),  cos(x),  tan(x),  asin(x), acos(x), atan(x),
+                                         sinh(x), cosh(x), tanh(x), cbrt(x), exp(x),  -1};
+  static const char *const more[] = {"sqrt(2 + x(3))", "log(2 + x(3))", "abs(x(3))", "atan2(x(3), x(1))",
+                                     "hypot(x(3), x(1))"};
   const double values[] = {sqrt(2 + x), log(2 + x), -x, atan2(x, cos(1)), hypot(x, cos(1))};
   lag_option none[] = {{"step", 0.002, NULL}};
   double value[12];
@@ -57,23 +61,31 @@ static void functions(void **state)
 /* x = cos t, x' = -sin t to t = 20: extremes inside steps, means and the period. */
 static void an_oscillator_by_every_method(void **state)
 {
-  static const char *const text[] = {"max(x')", "min(x)", "mean(x)", "rms(x)", "period(x)", "drift(x)", "x(3)", "x", "max(x^2 + x'^2)", "2*x(1) + x(2)^2", "x(end/2)", "end"};
-  const double T = 20, expected[] = {1, -1, sin(T)/T, sqrt(0.5 + sin(2*T)/(4*T)), 2*PI, 2, cos(3), cos(T), 1, 2*cos(1) + cos(2)*cos(2), cos(T/2), T};
+  static const char *const text[] = {"max(x')", "min(x)", "mean(x)",         "rms(x)",          "period(x)", "drift(x)",
+                                     "x(3)",    "x",      "max(x^2 + x'^2)", "2*x(1) + x(2)^2", "x(end/2)",  "end"};
+  const double T = 20, expected[] = {1,      -1,     sin(T) / T, sqrt(0.5 + sin(2 * T) / (4 * T)), 2 * PI,     2,
+                                     cos(3), cos(T), 1,          2 * cos(1) + cos(2) * cos(2),     cos(T / 2), T};
   double value[MOST];
   (void)state;
   for (int i = 0; i < lag_nmethods + lag_gsl_nmethods; i++) {
     const lag_method *m = i < lag_nmethods ? lag_methods[i] : lag_gsl_methods[i - lag_nmethods];
     int adaptive = m->flags & LAG_METHOD_ADAPTIVE;
-    /* Phase error of a method with equal steps: T h^2/12 of the midpoint rule, T h/2 of Euler's,
-     * whose energy explicit steps change by T h; Hermite's
-     * interpolation in GSL's steps, a third of a period with gsl-bsimp, but for values at times, to which these methods step. */
-    double within = !adaptive ? 1e-10 + T*pow(0.002, m->order)/(m == &lag_euler ? 0.9 : m->order == 1 ? 2 : 12) : 1e-7, between = m->flags & LAG_METHOD_STEPS_TO ? 0.03 : within;
+    /* Phase error of a method with equal steps: T h^2/12 of the midpoint rule, T h/2 of Euler's, whose energy
+     * explicit steps change by T h; Hermite's interpolation in GSL's steps, a third of a period with gsl-bsimp, but
+     * for values at times, to which these methods step. */
+    double within = !adaptive ? 1e-10 + T * pow(0.002, m->order) /
+                                            (m == &lag_euler ? 0.9
+                                             : m->order == 1 ? 2
+                                                             : 12)
+                              : 1e-7,
+           between = m->flags & LAG_METHOD_STEPS_TO ? 0.03 : within;
     lag_option step[] = {{"step", 0.002, NULL}};
     lag_sim *s = sim_with(&osc, m, 1e-10, adaptive ? 0 : 1, step);
     assert_int_equal(measure(s, T, MOST, text, value), LAG_OK);
     for (int k = 0; k < MOST; k++) {
       int at_time = strchr(text[k], '(') == NULL || text[k][0] == 'x' || text[k][0] == '2';
-      double off = (at_time ? within : between) + (text[k][0] == 'd' && !adaptive ? 0.002*0.002/8 : 0); /* the drift at ends of steps, half a step from the bottom */
+      /* the drift at ends of steps, half a step from the bottom */
+      double off = (at_time ? within : between) + (text[k][0] == 'd' && !adaptive ? 0.002*0.002/8 : 0);
       if (!(fabs(value[k] - expected[k]) <= off)) {
         fail_msg("%s: %s = %.15g, expected %.15g within %.2g", m->name, text[k], value[k], expected[k], off);
       }
@@ -156,12 +168,15 @@ static void forced_start(UNUSED const double *p, double *q, double *v, UNUSED do
   v[0] = 2*A*sin(phi);
 }
 
-static const lag_model forced_model = {MODEL("forced"), .flags = LAG_SMOOTH | LAG_CONSTANT_MASS, .nq = 1, .q = names_q, .accel = forced_accel};
-static const lag_scene forced = {.name = "steady", .doc = "", .model = &forced_model, .start = forced_start, .t1 = 10, .has_span = 1};
+static const lag_model forced_model = {MODEL("forced"), .flags = LAG_SMOOTH | LAG_CONSTANT_MASS, .nq = 1, .q = names_q,
+                                       .accel = forced_accel};
+static const lag_scene forced = {
+    .name = "steady", .doc = "", .model = &forced_model, .start = forced_start, .t1 = 10, .has_span = 1};
 
 static void a_driven_oscillator_in_its_steady_state(void **state)
 {
-  static const char *const text[] = {"max(x)", "min(x)", "mean(x)", "rms(x)", "period(x)", "max(x')/max(x)", "mean(x*x')"};
+  static const char *const text[] = {"max(x)",    "min(x)",         "mean(x)",   "rms(x)",
+                                     "period(x)", "max(x')/max(x)", "mean(x*x')"};
   const double A = 1/hypot(3, 0.4), expected[] = {A, -A, 0, A/sqrt(2), PI, 2, 0};
   double value[MOST];
   (void)state;
@@ -174,8 +189,10 @@ static void a_driven_oscillator_in_its_steady_state(void **state)
 /* A ball that falls from 1 m onto the ground and keeps 0.9 of its speed: fall T, flights of 2 T 0.9^n. */
 static void a_ball_that_bounces(void **state)
 {
-  static const char *const text[] = {"hit(ground)", "hit(ground, 3)", "count(ground)", "y((hit(ground, 1) + hit(ground, 2))/2)", "min(y)", "max(y')", "min(y')",
-                                     "hit(ground, 9)", "end", "y(7)", "mean(y')"};
+  static const char *const text[] = {
+      "hit(ground)", "hit(ground, 3)", "count(ground)", "y((hit(ground, 1) + hit(ground, 2))/2)",
+      "min(y)",      "max(y')",        "min(y')",       "hit(ground, 9)",
+      "end",         "y(7)",           "mean(y')"};
   const double T = sqrt(2/9.81), until = 1.5, g = 9.81;
   double value[MOST];
   (void)state;
@@ -221,7 +238,8 @@ static void an_event_that_ends_the_run(void **state)
   }
 }
 
-/* Times that are values at times: by a third run; those that lie before the run, or behind its end, have no value. Backwards in time. */
+/* Times that are values at times: by a third run; those that lie before the run, or behind its end, have no value.
+ * Backwards in time. */
 static void times_that_are_measures(void **state)
 {
   static const char *const text[] = {"x(t - 19 + 0*x(t/2))", "x(x(t/2)^2)", "x(-1)", "x(21)"};
@@ -240,7 +258,8 @@ static void times_that_are_measures(void **state)
   assert_true(isnan(value[4]));
 }
 
-/* rk4 multiplies the energy of x'' = -x by 1 - h^6/72 + h^8/576 in each step; between the ends of steps Hermite's cubic of x' is off by h^4/384. */
+/* rk4 multiplies the energy of x'' = -x by 1 - h^6/72 + h^8/576 in each step; between the ends of steps Hermite's
+ * cubic of x' is off by h^4/384. */
 static void the_drift_of_rk4(void **state)
 {
   static const char *const text[] = {"energy", "drift(energy)"};
@@ -261,7 +280,8 @@ static void the_run_stays_as_it_is(void **state)
   for (int i = 0; i < lag_nmethods; i++) {
     lag_option step[] = {{"step", 0.01, NULL}};
     int adaptive = lag_methods[i]->flags & LAG_METHOD_ADAPTIVE;
-    lag_sim *plain = sim_with(&kepler, lag_methods[i], 1e-8, adaptive ? 0 : 1, step), *measured = sim_with(&kepler, lag_methods[i], 1e-8, adaptive ? 0 : 1, step);
+    lag_sim *plain = sim_with(&kepler, lag_methods[i], 1e-8, adaptive ? 0 : 1, step),
+            *measured = sim_with(&kepler, lag_methods[i], 1e-8, adaptive ? 0 : 1, step);
     Measures *m = measures_of(&kepler, 6, text);
     lag_stats a, b;
     assert_int_equal(lag_sim_advance(plain, 10), LAG_OK);
@@ -303,7 +323,9 @@ static void a_second_run_and_one_that_fails(void **state)
 /* ---- Units */
 
 static const lag_var turn_q[] = {{"th", "deg", 3.14159265358979323846/180, 1, 0, 0}};
-static const lag_model turn_model = {MODEL("turn"), .flags = LAG_CONSTANT_MASS, .nq = 1, .np = 3, .nev = 0, .q = turn_q, .p = ball_p, .accel = osc_accel, .energy = osc_energy};
+static const lag_model turn_model = {
+    MODEL("turn"),      .flags = LAG_CONSTANT_MASS, .nq = 1, .np = 3, .nev = 0, .q = turn_q, .p = ball_p,
+    .accel = osc_accel, .energy = osc_energy};
 
 static void turn_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
 {
@@ -311,7 +333,9 @@ static void turn_start(UNUSED const double *p, double *q, double *v, UNUSED doub
   v[0] = 0;
 }
 
-static const lag_scene turn = {.name = "turn", .doc = "", .model = &turn_model, .params = ball_params, .start = turn_start, .t1 = 10, .has_span = 1};
+static const lag_scene turn = {.name = "turn",
+                               .doc = "", .model = &turn_model, .params = ball_params, .start = turn_start, .t1 = 10,
+                               .has_span = 1};
 
 static void values_are_in_their_units(void **state)
 {
@@ -319,10 +343,24 @@ static void values_are_in_their_units(void **state)
     const char *text, *unit;
     double value;
   } of[] = {
-      {"th", "deg", 90*0.40808206181339199}, {"h", "cm", 100}, {"t", "s", 20}, {"th max()", "", PI/2}, {"h []", "", 1}, {"h 2 *", "", 2},
-      {"th max() pi() - [0.017453292519943295 0 deg]", "deg", -90}, {"h 1 + [1 0 m]", "m", 2}, {"h [1 -1 above]", "above", 2}, {"\"h\" [0.5 0 half m]", "half m", 2},
-      {"ground.e", "", 0.9}, {"2 3 2 ^ ^", "", 512}, {"-2", "", -2}, {"7 2 - 1 -", "", 4}, {"8 4 / 2 /", "", 1}, {"-1.5 floor() abs() neg() sign()", "", -1}, {"1 2 lesser() 3 greater()", "", 3},
-      {"th max(1..2) ; th", "", PI/2*0.54030230586813977}, /* the first of two variants: cos t falls from t = 1 */
+      {"th", "deg", 90 * 0.40808206181339199},
+      {"h", "cm", 100},
+      {"t", "s", 20},
+      {"th max()", "", PI / 2},
+      {"h []", "", 1},
+      {"h 2 *", "", 2},
+      {"th max() pi() - [0.017453292519943295 0 deg]", "deg", -90},
+      {"h 1 + [1 0 m]", "m", 2},
+      {"h [1 -1 above]", "above", 2},
+      {"\"h\" [0.5 0 half m]", "half m", 2},
+      {"ground.e", "", 0.9},
+      {"2 3 2 ^ ^", "", 512},
+      {"-2", "", -2},
+      {"7 2 - 1 -", "", 4},
+      {"8 4 / 2 /", "", 1},
+      {"-1.5 floor() abs() neg() sign()", "", -1},
+      {"1 2 lesser() 3 greater()", "", 3},
+      {"th max(1..2) ; th", "", PI / 2 * 0.54030230586813977}, /* the first of two variants: cos t falls from t = 1 */
   };
   char why[300];
   (void)state;
@@ -352,9 +390,12 @@ static void wrong_words_get_a_message(void **state)
       {"yy", "did you mean y?"},
       {"1 hit(grund)", "no event is called grund; did you mean ground?"},
       {"max(y)", "lagc compiles them"},
-      {"max()", "`max()` is no word"}, {"y max(1)", "is no word"}, {"y sin() +", "`+` is no word"}, {"1 at()", "is no word"}, {"hit(ground)", "is no word"}, {"y y", "is no word"}, {"", "is no word"},
+      {"max()", "`max()` is no word"}, {"y max(1)", "is no word"}, {"y sin() +", "`+` is no word"},
+      {"1 at()", "is no word"}, {"hit(ground)", "is no word"}, {"y y", "is no word"}, {"", "is no word"},
       {"1.5.2", "is no word"}, {"y mxa()", "`mxa()` is no word"},
-      {"this_name_is_so_long_that_nobody_would_ever_write_it_and_no_model_has_it_for_it_has_more_than_a_hundred_and_twenty_seven_characters_and_that_is_more_than_any_word_of_a_measure_may_have_in_this_runtime", "too long"},
+      {"this_name_is_so_long_that_nobody_would_ever_write_it_and_no_model_has_it_for_it_has_more_than_a_hundred_and_"
+       "twenty_seven_characters_and_that_is_more_than_any_word_of_a_measure_may_have_in_this_runtime",
+       "too long"},
   };
   (void)state;
   for (size_t i = 0; i < sizeof of/sizeof *of; i++) {

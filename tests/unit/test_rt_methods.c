@@ -6,8 +6,9 @@
 
 /* ---- Order conditions (Butcher; HNW I II.2 theorem 2.13): sum b_i Phi_i(tree) = 1/gamma(tree). */
 
-static const char *const trees[] = {"()", "(())", "(()())", "((()))", "(()()())", "(()(()))", "((()()))", "(((())))",
-    "(()()()())", "(()()(()))", "(()(()()))", "(()((())))", "((())(()))", "((()()()))", "((()(())))", "(((()())))", "((((()))))"};
+static const char *const trees[] = {"()",         "(())",       "(()())",     "((()))",     "(()()())",   "(()(()))",
+                                    "((()()))",   "(((())))",   "(()()()())", "(()()(()))", "(()(()()))", "(()((())))",
+                                    "((())(()))", "((()()()))", "((()(())))", "(((()())))", "((((()))))"};
 
 /* Reads one tree: Phi, gamma and the number of its nodes. */
 static const char *read_tree(const lag_tableau *b, const char *s, double *phi, double *gamma, int *nodes)
@@ -254,7 +255,10 @@ static void backwards_undoes_forwards(void **state)
     lag_sim *s = sim_with(&kepler, lag_methods[i], 1e-12, 1, opt);
     assert_int_equal(lag_sim_advance(s, -2.5), LAG_OK);
     kepler_exact(-2.5, y);
-    assert_close(distance(4, lag_sim_q(s), y), 0, lag_methods[i]->order > 2 ? 1e-8 : lag_methods[i]->order == 2 ? 1e-4 : 0.05);
+    assert_close(distance(4, lag_sim_q(s), y), 0,
+                 lag_methods[i]->order > 2    ? 1e-8
+                 : lag_methods[i]->order == 2 ? 1e-4
+                                              : 0.05);
     assert_int_equal(lag_sim_advance(s, -2), LAG_EINVAL);
     lag_sim_free(s);
   }
@@ -298,8 +302,8 @@ static void a_refused_step_loses_no_state(void **state)
 
 FLOW(slow, (zd[0] = 1e-12, 0));
 
-/* E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section II.4: where y' is no larger than 1e-5 of the tolerance, h0 is 1e-6,
- * and the first step is 100 h0 if the second derivative allows it. */
+/* E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section II.4: where y' is no larger
+ * than 1e-5 of the tolerance, h0 is 1e-6, and the first step is 100 h0 if the second derivative allows it. */
 static void the_first_step_of_what_hardly_moves(void **state)
 {
   const lag_method *const adaptive[] = {&lag_rk45, &lag_dop853};

@@ -28,14 +28,16 @@
 #define DERIVATIVES(name) .variation = name##_variation, .second = name##_second, .second_at = name##_at, \
     .nsecond = (int)(sizeof name##_at / sizeof *name##_at)
 /* The linearisation that radau needs: name_linearise with the entries name_dr, and those of M's lower triangle. */
-#define LINEARISE(name) UNUSED static int name##_linearise(ARGS, UNUSED const double *a, double *dr, double *M, UNUSED double *w)
+#define LINEARISE(name) \
+  UNUSED static int name##_linearise(ARGS, UNUSED const double *a, double *dr, double *M, UNUSED double *w)
 #define LINEAR(name)                                                                                    \
   UNUSED static const lag_linear name##_linear = {.ndr = (int)(sizeof name##_dr / sizeof *name##_dr), .dr = name##_dr, \
       .nmass = (int)(sizeof name##_mass / sizeof *name##_mass), .mass = name##_mass, .eval = name##_linearise}
 #define EXACT(name) DERIVATIVES(name), .linear = &name##_linear
 /* And the series that taylor needs. */
 #define ANALYTIC(name) EXACT(name), .taylor = &name##_taylor
-UNUSED static const lag_entry full_2[] = {{0, 0}, {0, 1}, {1, 0}, {1, 1}}, diagonal_2[] = {{0, 0}, {1, 1}}, lower_2[] = {{0, 0}, {1, 0}, {1, 1}};
+UNUSED static const lag_entry full_2[] = {{0, 0}, {0, 1}, {1, 0}, {1, 1}}, diagonal_2[] = {{0, 0}, {1, 1}},
+                              lower_2[] = {{0, 0}, {1, 0}, {1, 1}};
 
 /* Of one coordinate with unit mass and a force that falls by `slope` with it. */
 #define UNIT_MASS(name, accel, slope)                                                                   \
@@ -136,7 +138,8 @@ SECOND(kepler)
   return 0;
 }
 
-UNUSED static const lag_second kepler_at[] = {{LAG_QQ, 0, 0}, {LAG_QQ, 1, 0}, {LAG_QQ, 1, 1}, {LAG_VV, 0, 0}, {LAG_VV, 1, 1}};
+UNUSED static const lag_second kepler_at[] = {
+    {LAG_QQ, 0, 0}, {LAG_QQ, 1, 0}, {LAG_QQ, 1, 1}, {LAG_VV, 0, 0}, {LAG_VV, 1, 1}};
 
 /* Of unit masses: r = dL/dq - a. */
 #define UNIT_MASSES(name)                                                                               \
@@ -156,11 +159,13 @@ UNUSED static const lag_second kepler_at[] = {{LAG_QQ, 0, 0}, {LAG_QQ, 1, 0}, {L
 UNIT_MASSES(kepler);
 TAYLOR(kepler, 2, 0);
 
-UNUSED static const lag_model kepler_model = {MODEL("kepler"), .flags = LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS | LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_SMOOTH,
-    .nq = 2,
-    .q = names_q, .accel = kepler_accel, .energy = kepler_energy, ANALYTIC(kepler)};
-UNUSED static const lag_scene kepler = {.name = "orbit", .doc = "", .model = &kepler_model, .start = kepler_start, .t1 = 10,
-    .has_span = 1};
+UNUSED static const lag_model kepler_model = {MODEL("kepler"),
+                                              .flags = LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS | LAG_CONSTANT_MASS |
+                                                       LAG_SEPARABLE | LAG_SMOOTH,
+                                              .nq = 2, .q = names_q, .accel = kepler_accel, .energy = kepler_energy,
+                                              ANALYTIC(kepler)};
+UNUSED static const lag_scene kepler = {
+    .name = "orbit", .doc = "", .model = &kepler_model, .start = kepler_start, .t1 = 10, .has_span = 1};
 
 /* ---- harmonic oscillator x'' = -x, x(0) = cos(phase): events x = 0, x = level, x = 0 rising. */
 UNUSED static int osc_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
@@ -184,9 +189,13 @@ UNUSED static void osc_start(UNUSED const double *p, double *q, double *v, UNUSE
 
 UNIT_MASS(osc, osc_accel, 1);
 TAYLOR_LINEAR(osc, 1, 0);
-UNUSED static const lag_model osc_model = {MODEL("oscillator"), .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .q = names_q,
-    .accel = osc_accel, .energy = osc_energy, ANALYTIC(osc)};
-UNUSED static const lag_scene osc = {.name = "osc", .doc = "", .model = &osc_model, .start = osc_start, .t1 = 10, .has_span = 1};
+UNUSED static const lag_model osc_model = {MODEL("oscillator"),
+                                           .flags =
+                                               LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_SMOOTH,
+                                           .nq = 1, .q = names_q, .accel = osc_accel, .energy = osc_energy,
+                                           ANALYTIC(osc)};
+UNUSED static const lag_scene osc = {
+    .name = "osc", .doc = "", .model = &osc_model, .start = osc_start, .t1 = 10, .has_span = 1};
 
 /* ---- ball: y'' = -g, y(0) = h, bounces with restitution e. p = {g, h, e}. */
 static const lag_var ball_p[] = {{"g", "m/s^2", 1, 0, 1, 0}, {"h", "cm", 0.01, 0, 1, 0}, {"ground.e", "", 1, 0, 2, 0}};
@@ -234,19 +243,22 @@ UNUSED static void ball_start(const double *p, double *q, double *v, UNUSED doub
 
 UNIT_MASS(ball, ball_accel, 0);
 TAYLOR_LINEAR(ball, 0, 0);
-UNUSED static const lag_model ball_model = {MODEL("ball"), .flags = LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .np = 3, .nev = 1,
-    .q = names_q + 1, .p = ball_p, .ev = ball_ev, .accel = ball_accel, .energy = ball_energy, .events = ball_events, .act = ball_act, ANALYTIC(ball)};
+UNUSED static const lag_model ball_model = {MODEL("ball"),
+                                            .flags =
+                                                LAG_CONSERVES_ENERGY | LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_SMOOTH,
+                                            .nq = 1, .np = 3, .nev = 1, .q = names_q + 1, .p = ball_p, .ev = ball_ev,
+                                            .accel = ball_accel, .energy = ball_energy, .events = ball_events,
+                                            .act = ball_act,
+                                            ANALYTIC(ball)};
 UNUSED static const lag_scene ball = {.name = "drop", .doc = "", .model = &ball_model, .params = ball_params,
     .start = ball_start, .t1 = 5, .has_span = 1};
 
 /* ---- a state alone: z' = f(t, z), chosen by each test through a static function. */
-#define FLOW(name_, f_)                                                                                 \
-  static int name_##_accel(ARGS, UNUSED double *a, double *zd, UNUSED double *w)                        \
-  {                                                                                                     \
-    return f_;                                                                                          \
-  }                                                                                                     \
+#define FLOW(name_, f_)                                                                                  \
+  static int name_##_accel(ARGS, UNUSED double *a, double *zd, UNUSED double *w) { return f_; }          \
   static const lag_model name_##_model = {MODEL(#name_), .nz = 1, .z = names_z, .accel = name_##_accel}; \
-  static const lag_scene name_ = {.name = #name_, .doc = "", .model = &name_##_model, .start = flow_start, .t1 = 5, .has_span = 1}
+  static const lag_scene name_ = {                                                                       \
+      .name = #name_, .doc = "", .model = &name_##_model, .start = flow_start, .t1 = 5, .has_span = 1}
 
 UNUSED static void flow_start(UNUSED const double *p, UNUSED double *q, UNUSED double *v, double *z)
 {
@@ -254,8 +266,8 @@ UNUSED static void flow_start(UNUSED const double *p, UNUSED double *q, UNUSED d
 }
 
 /* A simulation with a method and one option; tol 0: the default. */
-UNUSED static lag_sim *sim_with(const lag_scene *scene, const lag_method *m, double tol, int nopt, const lag_option *opt)
-{
+UNUSED static lag_sim *sim_with(const lag_scene *scene, const lag_method *m, double tol, int nopt,
+                                const lag_option *opt) {
   lag_sim *s = lag_sim_new(scene);
   assert_non_null(s);
   if (tol > 0) {

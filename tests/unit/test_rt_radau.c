@@ -1,5 +1,5 @@
-/* radau: order, exactness of what it is made of, stiff models, its step control, failures. Expected values: closed forms, and
- * digits published with the problems. */
+/* radau: order, exactness of what it is made of, stiff models, its step control, failures. Expected values: closed
+ * forms, and digits published with the problems. */
 #include "test_rt_systems.h"
 
 /* ---- order: nonlinear pendulum, double pendulum, Kepler */
@@ -81,14 +81,16 @@ static void errors_follow_the_tolerance(void **state)
 
 /* ---- stiff models: flows z' = f(z) */
 
-#define STIFF_FLOW(name_, nz_, z_)                                                                                   \
-  static const lag_model name_##_model = {MODEL(#name_), .nz = nz_, .z = z_, .accel = name_##_accel, .linear = &name_##_linear}; \
-  static const lag_scene name_ = {.name = #name_, .doc = "", .model = &name_##_model, .start = name_##_start, .t1 = 1, .has_span = 1}
+#define STIFF_FLOW(name_, nz_, z_)                                                                   \
+  static const lag_model name_##_model = {MODEL(#name_), .nz = nz_, .z = z_, .accel = name_##_accel, \
+                                          .linear = &name_##_linear};                                \
+  static const lag_scene name_ = {                                                                   \
+      .name = #name_, .doc = "", .model = &name_##_model, .start = name_##_start, .t1 = 1, .has_span = 1}
 
 static const lag_var three[] = {{"a", "", 1, 0, 0, 0}, {"b", "", 1, 0, 0, 0}, {"c", "", 1, 0, 0, 0}};
 
-/* van der Pol's equation, eps = 1e-6: F. Mazzia, C. Magherini, Test Set for IVP Solvers, release 2.4 (2008), problem VDPOL: z at t = 2,
- * 16 digits. */
+/* van der Pol's equation, eps = 1e-6: F. Mazzia, C. Magherini, Test Set for IVP Solvers, release 2.4 (2008), problem
+ * VDPOL: z at t = 2, 16 digits. */
 static int vdpol_accel(ARGS, UNUSED double *a, double *zd, UNUSED double *w)
 {
   zd[0] = z[1];
@@ -115,7 +117,8 @@ static const lag_entry vdpol_dr[] = {{0, 1}, {1, 0}, {1, 1}}, none[] = {{0, 0}};
 static const lag_linear vdpol_linear = {.ndr = 3, .dr = vdpol_dr, .nmass = 0, .mass = none, .eval = vdpol_linearise};
 STIFF_FLOW(vdpol, 2, three);
 
-/* Robertson's reaction, to t = 40: the values that the documentation of LSODE gives (A.C. Hindmarsh, 1983), 4 digits. */
+/* Robertson's reaction, to t = 40: the values that the documentation of LSODE gives (A.C. Hindmarsh, 1983), 4
+ * digits. */
 static int robertson_accel(ARGS, UNUSED double *a, double *zd, UNUSED double *w)
 {
   zd[0] = -0.04 * z[0] + 1e4 * z[1] * z[2];
@@ -146,7 +149,8 @@ static void robertson_start(UNUSED const double *p, UNUSED double *q, UNUSED dou
 }
 
 static const lag_entry robertson_dr[] = {{0, 0}, {0, 1}, {0, 2}, {1, 0}, {1, 1}, {1, 2}, {2, 0}, {2, 1}, {2, 2}};
-static const lag_linear robertson_linear = {.ndr = 9, .dr = robertson_dr, .nmass = 0, .mass = none, .eval = robertson_linearise};
+static const lag_linear robertson_linear = {
+    .ndr = 9, .dr = robertson_dr, .nmass = 0, .mass = none, .eval = robertson_linearise};
 STIFF_FLOW(robertson, 3, three);
 
 static void stiff_flows_are_solved(void **state)
@@ -159,7 +163,8 @@ static void stiff_flows_are_solved(void **state)
   assert_close(lag_sim_z(s)[0], vdp[0], 1e-6);
   assert_close(lag_sim_z(s)[1], vdp[1], 1e-6);
   lag_sim_stats(s, &st);
-  print_message("# van der Pol, 1e-8: %lld steps, %lld rejected, %lld right-hand sides\n", st.steps, st.rejected, st.rhs_calls);
+  print_message("# van der Pol, 1e-8: %lld steps, %lld rejected, %lld right-hand sides\n", st.steps, st.rejected,
+                st.rhs_calls);
   assert_true(st.steps < 1200 && st.iterations < 4 * st.systems);
   lag_sim_free(s);
   s = sim_with(&robertson, &lag_radau, 1e-8, 1, (lag_option[]){{"atol", 1e-12, NULL}});
@@ -214,7 +219,8 @@ static void a_stiff_spring_with_a_damper_is_solved(void **state)
   (void)state;
   lag_sim *s = sim_with(&stiff, &lag_radau, 1e-9, 0, NULL);
   assert_int_equal(lag_sim_advance(s, t), LAG_OK);
-  assert_close(lag_sim_q(s)[0], right, 3e-8); /* v, which reaches 100 times x, has 1e-6 a step, of which a hundredth is seen in x */
+  /* v, which reaches 100 times x, has 1e-6 a step, of which a hundredth is seen in x */
+  assert_close(lag_sim_q(s)[0], right, 3e-8);
   assert_int_equal(lag_sim_advance(s, 10), LAG_OK);
   assert_close(lag_sim_q(s)[0], 0, 1e-9);
   lag_sim_stats(s, &few);

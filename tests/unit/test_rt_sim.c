@@ -98,9 +98,13 @@ static int pushed_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
 static const lag_var push_u[] = {{"push", "m/s^2", 1, 0, 0, 0}};
 UNIT_MASS(pushed, pushed_accel, 0);
 TAYLOR_LINEAR(pushed, 0, 1);
-static const lag_model pushed_model = {MODEL("pushed"), .flags = LAG_SEPARABLE | LAG_SMOOTH, .nq = 1, .nu = 1, .q = names_q, .u = push_u, .inputs = ramp,
-    .accel = pushed_accel, ANALYTIC(pushed)};
-static const lag_scene pushed = {.name = "pushed", .doc = "", .model = &pushed_model, .start = osc_start, .t1 = 5, .has_span = 1};
+static const lag_model pushed_model = {MODEL("pushed"), .flags = LAG_SEPARABLE | LAG_SMOOTH,
+                                       .nq = 1,         .nu = 1,
+                                       .q = names_q,    .u = push_u,
+                                       .inputs = ramp,  .accel = pushed_accel,
+                                       ANALYTIC(pushed)};
+static const lag_scene pushed = {
+    .name = "pushed", .doc = "", .model = &pushed_model, .start = osc_start, .t1 = 5, .has_span = 1};
 
 static void inputs_follow_their_formula_or_a_constant(void **state)
 {
@@ -134,7 +138,8 @@ static void inputs_follow_a_function(void **state)
     lag_sim *s = sim_with(&pushed, m, 1e-10, 0, NULL);
     assert_int_equal(lag_sim_set(s, "push", 7), 0);
     int series = (m->flags & LAG_METHOD_TAYLOR) != 0; /* a function has none */
-    assert_int_equal(lag_sim_set_input(s, "push", slope, &rate), series ? LAG_EMETHOD : 0); /* instead of the constant */
+    /* instead of the constant */
+    assert_int_equal(lag_sim_set_input(s, "push", slope, &rate), series ? LAG_EMETHOD : 0);
     if (series) {
       assert_non_null(strstr(lag_sim_message(s), "dop853"));
       lag_sim_free(s);
@@ -195,7 +200,8 @@ static void energy_drift_is_what_the_method_loses(void **state)
 {
   lag_stats st;
   (void)state;
-  /* rk4 on the oscillator: |R(ih)|^2 = 1 - h^6/72, over 1000 steps of 0.1; scale: |p.v| + |L| = sin^2 + |cos 2t|/2, 1/2 + 1/pi in the mean of whole periods. */
+  /* rk4 on the oscillator: |R(ih)|^2 = 1 - h^6/72, over 1000 steps of 0.1; scale: |p.v| + |L| = sin^2 + |cos 2t|/2,
+   * 1/2 + 1/pi in the mean of whole periods. */
   lag_sim *s = sim_with(&osc, &lag_rk4, 0, 1, (lag_option[]){{"step", 0.1, NULL}});
   assert_int_equal(lag_sim_advance(s, 100), LAG_OK);
   lag_sim_stats(s, &st);
@@ -296,7 +302,8 @@ static void check_cut(const lag_scene *scene, const lag_method *m, double cut, d
   lag_sim_stats(whole, &a);
   lag_sim_stats(second, &b);
   assert_true(a.energy_drift == b.energy_drift && a.steps == b.steps && a.events == b.events);
-  assert_in_range(b.rhs_calls - a.rhs_calls, 0, 12); /* the state at the cut, and the search for poles, which has lost its history */
+  /* the state at the cut, and the search for poles, which has lost its history */
+  assert_in_range(b.rhs_calls - a.rhs_calls, 0, 12);
   free(x);
   lag_sim_free(whole);
   lag_sim_free(first);
@@ -392,7 +399,8 @@ static void all_methods_agree(void **state)
   lag_sim_free(s);
   for (int i = 0; i < lag_nmethods + lag_gsl_nmethods; i++) {
     const lag_method *m = i < lag_nmethods ? lag_methods[i] : lag_gsl_methods[i - lag_nmethods];
-    if (m->order < 4 || (m->flags & LAG_METHOD_TAYLOR)) { /* taylor: tests/exec/run_taylor.sh, with the emitted series */
+    /* taylor: tests/exec/run_taylor.sh, with the emitted series */
+    if (m->order < 4 || (m->flags & LAG_METHOD_TAYLOR)) {
       continue;
     }
     s = sim_with(&double_pendulum, m, 1e-11, !(m->flags & LAG_METHOD_ADAPTIVE), (lag_option[]){{"step", 1e-3, NULL}});

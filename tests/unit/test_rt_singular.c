@@ -1,4 +1,5 @@
-/* Singular places: steps that creep towards one end a run, others do not; what has neither inertia nor a constraint is named. */
+/* Singular places: steps that creep towards one end a run, others do not; what has neither inertia nor a constraint
+ * is named. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -12,8 +13,8 @@
 #include "core/core.h"
 
 /* x' = 0, x' + y y' = 0: of rows of length 1, what is left of the second beside the first is y/sqrt(1 + y^2). */
-static int matrices(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *A, double *M, double *w)
-{
+static int matrices(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
+                    double *A, double *M, double *w) {
   (void)t, (void)v, (void)z, (void)p, (void)u, (void)w;
   A[0] = 1;
   A[1] = 1;
@@ -22,8 +23,8 @@ static int matrices(double t, const double *q, const double *v, const double *z,
   return 0;
 }
 
-static int residuals(double t, const double *q, const double *v, const double *z, const double *p, const double *u, double *c, double *r, double *w)
-{
+static int residuals(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
+                     double *c, double *r, double *w) {
   (void)t, (void)z, (void)p, (void)u, (void)c, (void)w;
   r[0] = v[0];
   r[1] = v[0] + q[1] * v[1];
@@ -32,10 +33,15 @@ static int residuals(double t, const double *q, const double *v, const double *z
 
 static const lag_entry entries[] = {{0, 0}, {1, 0}, {1, 1}}, diagonal[] = {{0, 0}, {1, 1}};
 static const lag_constraint named[] = {{"first", 0, "m/s", 3}, {"second", 0, "m/s", 4}};
-static const lag_constraints held = {.n = 2, .nholonomic = 0, .of = named, .njacobian = 3, .jacobian = entries, .nmass = 2, .mass = diagonal, .matrices = matrices, .residuals = residuals};
+static const lag_constraints held = {.n = 2,
+                                     .nholonomic = 0, .of = named, .njacobian = 3, .jacobian = entries, .nmass = 2,
+                                     .mass = diagonal, .matrices = matrices,
+                                     .residuals = residuals};
 static const lag_var lengths[] = {{"x", "m", 1, 0, 0, 0}, {"y", "m", 1, 0, 0, 0}};
-static const lag_model model = {.name = "m", .flags = LAG_SMOOTH, .nq = 2, .q = lengths, .constraints = &held}, free_model = {.name = "f", .flags = LAG_SMOOTH, .nq = 2};
-static const lag_model jumps = {.name = "j", .nq = 2, .q = lengths, .constraints = &held}, free_jumps = {.name = "k", .nq = 2, .q = lengths};
+static const lag_model model = {.name = "m", .flags = LAG_SMOOTH, .nq = 2, .q = lengths, .constraints = &held},
+                       free_model = {.name = "f", .flags = LAG_SMOOTH, .nq = 2};
+static const lag_model jumps = {.name = "j", .nq = 2, .q = lengths, .constraints = &held},
+                       free_jumps = {.name = "k", .nq = 2, .q = lengths};
 
 static void independence_is_what_is_left_of_a_row(void **state)
 {
@@ -61,12 +67,15 @@ static int steps_until(const lag_model *m, double t0, double h, double y1)
   lag_scene scene = {.model = m};
   Run run = {.steps = 0};
   double ranks[100];
-  lag_sim s = {.scene = &scene, .method = &lag_rk45, .options = none, .run = &run, .y = y, .now = y, .ya = scratch, .pb = {.model = m, .nq = 2, .n = 4, .dir = 1, .ranks = ranks}};
+  lag_sim s = {.scene = &scene,
+               .method = &lag_rk45, .options = none, .run = &run, .y = y, .now = y, .ya = scratch,
+               .pb = {.model = m, .nq = 2, .n = 4, .dir = 1, .ranks = ranks}};
 
   for (int i = 1; i <= PATIENCE; i++) {
     run.t = t0 + (i - 1) * h;
     if (lag_detect_stall(&s, t0 + i * h)) {
-      assert_non_null(strstr(s.pb.detail, y1 < 1 ? "constraint second (line 4)" : "a force or a constraint jumps here"));
+      assert_non_null(
+          strstr(s.pb.detail, y1 < 1 ? "constraint second (line 4)" : "a force or a constraint jumps here"));
       assert_non_null(strstr(s.pb.detail, y1 < 1 ? "a larger tolerance" : "smooth it"));
       assert_true(s.pb.bad_t == t0 + i * h);
       return i;
@@ -81,7 +90,8 @@ static void steps_that_creep_end(void **state)
   (void)state;
   assert_int_equal(steps_until(&model, 1, 1e-12, 1e-4), 20000); /* the second of looks, which are 10000 steps apart */
   assert_int_equal(steps_until(&model, -1, -1e-12, 1e-4), 20000); /* backwards */
-  assert_int_equal(steps_until(&jumps, 1, 1e-12, 1), 20000);      /* far from a singular place, of a model that is not smooth */
+  /* far from a singular place, of a model that is not smooth */
+  assert_int_equal(steps_until(&jumps, 1, 1e-12, 1), 20000);
   assert_int_equal(steps_until(&free_jumps, 1, 1e-12, 1), 20000); /* nothing is held there */
 }
 
@@ -89,14 +99,16 @@ static void other_short_steps_do_not(void **state)
 {
   (void)state;
   assert_int_equal(steps_until(&model, 1, 1e-12, 1), 0);       /* far from a singular place */
-  assert_int_equal(steps_until(&model, 0, 1e-12, 1e-4), 0);    /* all steps are as short: that is how fast the motion is */
+  /* all steps are as short: that is how fast the motion is */
+  assert_int_equal(steps_until(&model, 0, 1e-12, 1e-4), 0);
   assert_int_equal(steps_until(&model, 1, 2e-9, 1e-4), 0);     /* 10000 of them are 2e-5 of the run */
   assert_int_equal(steps_until(&free_model, 1, 1e-12, 0), 0);  /* nothing is held, nothing jumps */
 }
 
 static void what_nothing_moves_is_named(void **state)
 {
-  double x[3], K[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, pair[9] = {1, 0, 0, 0, 1, 2, 0, 2, 4}, none[9] = {0}, one[4] = {1, 0, 0, 0};
+  double x[3], K[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, pair[9] = {1, 0, 0, 0, 1, 2, 0, 2, 4}, none[9] = {0},
+               one[4] = {1, 0, 0, 0};
   double part;
   int column[3];
   (void)state;
@@ -110,7 +122,8 @@ static void what_nothing_moves_is_named(void **state)
   assert_true(part <= 0);
 }
 
-/* What has come to rest at 0 may have velocities of 1e-323 m/s, numbers with two bits: what they make of a constraint is no residual. */
+/* What has come to rest at 0 may have velocities of 1e-323 m/s, numbers with two bits: what they make of a
+ * constraint is no residual. */
 static void what_is_below_normal_numbers_is_no_residual(void **state)
 {
   double held_room[100], begin[] = {1, 1, 0, 0}, times = -1, residual[] = {DBL_MIN / 0x1p50, DBL_MIN / 0x1p50};
@@ -129,8 +142,11 @@ static void what_is_below_normal_numbers_is_no_residual(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(independence_is_what_is_left_of_a_row), cmocka_unit_test(steps_that_creep_end), cmocka_unit_test(other_short_steps_do_not),
-      cmocka_unit_test(what_nothing_moves_is_named), cmocka_unit_test(what_is_below_normal_numbers_is_no_residual),
+      cmocka_unit_test(independence_is_what_is_left_of_a_row),
+      cmocka_unit_test(steps_that_creep_end),
+      cmocka_unit_test(other_short_steps_do_not),
+      cmocka_unit_test(what_nothing_moves_is_named),
+      cmocka_unit_test(what_is_below_normal_numbers_is_no_residual),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

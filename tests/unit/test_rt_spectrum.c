@@ -1,5 +1,5 @@
-/* lag_spectrum, and GSL's algebra under it, on matrices whose eigenvalues are known: S J S^-1 with a Jordan form J and an S of small
- * integers whose inverse is integer too. */
+/* lag_spectrum, and GSL's algebra under it, on matrices whose eigenvalues are known: S J S^-1 with a Jordan form J
+ * and an S of small integers whose inverse is integer too. */
 #include "test_rt_models.h"
 
 #include "analysis/spectrum.h"
@@ -184,7 +184,8 @@ static void test_defective(void **state)
 static void test_complex_pairs(void **state)
 {
   (void)state;
-  const double block[N][N] = {{1, 2, 1, 0}, {-2, 1, 0, 1}, {0, 0, 1, 2}, {0, 0, -2, 1}, {0, 0, 0, 0, 3}, {0, 0, 0, 0, 0, 9}};
+  const double block[N][N] = {{1, 2, 1, 0},  {-2, 1, 0, 1},   {0, 0, 1, 2},
+                              {0, 0, -2, 1}, {0, 0, 0, 0, 3}, {0, 0, 0, 0, 0, 9}};
   const double beside[N][N] = {{1, 2}, {-2, 1}, {0, 0, 1, 2}, {0, 0, -2, 1}, {0, 0, 0, 0, 3}, {0, 0, 0, 0, 0, 9}};
   double A[N][N];
   Pool pool = {0};

@@ -1,5 +1,5 @@
-/* Plans and samples of sweeps (runtime/sweep): random words against published ones, quantiles against mpmath, each part of a hypercube once, and
- * the values of runs in order. */
+/* Plans and samples of sweeps (runtime/sweep): random words against published ones, quantiles against mpmath, each
+ * part of a hypercube once, and the values of runs in order. */
 #include "test_rt_models.h"
 
 #include "sweep/sweep_grid.h"
@@ -8,10 +8,10 @@
 /* Random123 (D. E. Shaw Research), known answers of philox4x32-10. */
 static void test_philox(void **state) {
   (void)state;
-  static const uint32_t rows[][10] = {
-      {0, 0, 0, 0, 0, 0, 0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8},
-      {~0u, ~0u, ~0u, ~0u, ~0u, ~0u, 0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd},
-      {0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344, 0xa4093822, 0x299f31d0, 0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}};
+  static const uint32_t rows[][10] = {{0, 0, 0, 0, 0, 0, 0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8},
+                                      {~0u, ~0u, ~0u, ~0u, ~0u, ~0u, 0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd},
+                                      {0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344, 0xa4093822, 0x299f31d0,
+                                       0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     uint32_t out[4];
     lag_philox(rows[i], rows[i] + 4, out);
@@ -22,10 +22,12 @@ static void test_philox(void **state) {
 /* mpmath 1.2, 30 digits. Allowed: 8 roundings of the value, and of p where p is near 1. */
 static void test_quantile(void **state) {
   (void)state;
-  static const double rows[][2] = {{0.975, 1.959963984540054235525}, {1e-10, -6.361340902404056204695}, {0.3, -0.5244005127080407840383}, {1e-300, -37.04709629936119923722},
+  static const double rows[][2] = {{0.975, 1.959963984540054235525},      {1e-10, -6.361340902404056204695},
+                                   {0.3, -0.5244005127080407840383},      {1e-300, -37.04709629936119923722},
                                    {0.5001, 0.0002506628300880350989207}, {0.5, 0}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    double x = lag_normal_quantile(rows[i][0]), slope = sqrt(2 * acos(-1)) * exp(x * x / 2), uncertain = rows[i][0] > 0.1 ? 3e-16 * slope : 0;
+    double x = lag_normal_quantile(rows[i][0]), slope = sqrt(2 * acos(-1)) * exp(x * x / 2),
+           uncertain = rows[i][0] > 0.1 ? 3e-16 * slope : 0;
     assert_true(fabs(x - rows[i][1]) <= 2e-15 * fabs(x) + uncertain);
   }
 }
@@ -46,7 +48,8 @@ static void test_hypercube(void **state) {
     }
 }
 
-/* Mean of n numbers: 1/2 within 4 deviations, 1/sqrt(12 n); dimensions and seeds are independent: correlation within 4/sqrt(n). */
+/* Mean of n numbers: 1/2 within 4 deviations, 1/sqrt(12 n); dimensions and seeds are independent: correlation within
+ * 4/sqrt(n). */
 static void test_random(void **state) {
   (void)state;
   enum { N = 10000 };
@@ -76,7 +79,8 @@ static void expect_runs(int zip, long long samples, const char *const *words, lo
 
 static void test_grids(void **state) {
   (void)state;
-  expect_runs(0, 0, (const char *const[]){"a=1,2", "b=0..1:3", NULL}, 6, (const double[]){1, 0, 1, 0.5, 1, 1, 2, 0, 2, 0.5, 2, 1});
+  expect_runs(0, 0, (const char *const[]){"a=1,2", "b=0..1:3", NULL}, 6,
+              (const double[]){1, 0, 1, 0.5, 1, 1, 2, 0, 2, 0.5, 2, 1});
   expect_runs(1, 0, (const char *const[]){"a=1, 2, 5", "b=-1..1:3", NULL}, 3, (const double[]){1, -1, 2, 0, 5, 1});
   expect_runs(0, 0, (const char *const[]){"k=1e-3..1e3:log:4", NULL}, 4, (const double[]){1e-3, 1e-1, 10, 1e3});
   expect_runs(0, 10, (const char *const[]){"a=1,2", "g~normal(9.81, 0.01)", NULL}, 20, NULL);
@@ -87,7 +91,9 @@ static void test_samples(void **state) {
   (void)state;
   SweepPlan p = {.seed = 3, .sampling = SAMPLING_HYPERCUBE};
   char why[200];
-  assert_int_equal(lag_plan_add(&p, "g~uniform(2, 4)", why, sizeof why) | lag_plan_add(&p, "a=1,2", why, sizeof why) | lag_plan_finish(&p, 100, why, sizeof why), 0);
+  assert_int_equal(lag_plan_add(&p, "g~uniform(2, 4)", why, sizeof why) | lag_plan_add(&p, "a=1,2", why, sizeof why) |
+                       lag_plan_finish(&p, 100, why, sizeof why),
+                   0);
   for (long long i = 0; i < 100; i++) {
     double first[2], second[2];
     lag_plan_values(&p, i, first);
@@ -99,7 +105,9 @@ static void test_samples(void **state) {
 
 static void test_refused(void **state) {
   (void)state;
-  static const char *const words[] = {"a=1..0:3", "a=0..1:0", "a=0..1:2.5", "a=0..1:", "a=0..1:log:3", "a=0..1:log", "a=1,,2", "a=1,x", "=1,2", "a~normal(1)", "a~normal(1, 0)", "a~uniform(2, 1)", "a=0..1:1", "a=..1:2"};
+  static const char *const words[] = {"a=1..0:3",       "a=0..1:0",        "a=0..1:2.5", "a=0..1:", "a=0..1:log:3",
+                                      "a=0..1:log",     "a=1,,2",          "a=1,x",      "=1,2",    "a~normal(1)",
+                                      "a~normal(1, 0)", "a~uniform(2, 1)", "a=0..1:1",   "a=..1:2"};
   for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
     SweepPlan p = {0};
     char why[200] = "";
@@ -110,7 +118,9 @@ static void test_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_philox), cmocka_unit_test(test_quantile), cmocka_unit_test(test_hypercube), cmocka_unit_test(test_random),
-                                     cmocka_unit_test(test_grids), cmocka_unit_test(test_samples), cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_philox),    cmocka_unit_test(test_quantile),
+                                     cmocka_unit_test(test_hypercube), cmocka_unit_test(test_random),
+                                     cmocka_unit_test(test_grids),     cmocka_unit_test(test_samples),
+                                     cmocka_unit_test(test_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

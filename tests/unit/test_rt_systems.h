@@ -8,11 +8,11 @@
 
 /* name: accelerations, energy, start, flags, derivatives of L by hand from L on paper (or not) */
 #define NO_DERIVATIVES .nsecond = 0
-#define SYSTEM(name_, nq_, flags_, energy_, derivatives)                                                                  \
-  UNUSED static const lag_model name_##_model = {MODEL(#name_), .flags = flags_, .nq = nq_, .q = names_q,       \
-      .accel = name_##_accel, .energy = energy_, derivatives};                                                             \
-  UNUSED static const lag_scene name_ = {.name = #name_, .doc = "", .model = &name_##_model, .start = name_##_start, \
-      .t1 = 10, .has_span = 1}
+#define SYSTEM(name_, nq_, flags_, energy_, derivatives)                                                              \
+  UNUSED static const lag_model name_##_model = {MODEL(#name_),          .flags = flags_,   .nq = nq_,  .q = names_q, \
+                                                 .accel = name_##_accel, .energy = energy_, derivatives};             \
+  UNUSED static const lag_scene name_ = {                                                                             \
+      .name = #name_, .doc = "", .model = &name_##_model, .start = name_##_start, .t1 = 10, .has_span = 1}
 
 /* ---- pendulum, g/l = 1, from 2.5 rad at rest */
 UNUSED static int pendulum_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
@@ -139,8 +139,9 @@ SECOND(double_pendulum)
   return 0;
 }
 
-UNUSED static const lag_second double_pendulum_at[] = {{LAG_QQ, 0, 0}, {LAG_QQ, 1, 0}, {LAG_QQ, 1, 1}, {LAG_VQ, 0, 0}, {LAG_VQ, 0, 1},
-    {LAG_VQ, 1, 0}, {LAG_VQ, 1, 1}, {LAG_VV, 0, 0}, {LAG_VV, 1, 0}, {LAG_VV, 1, 1}};
+UNUSED static const lag_second double_pendulum_at[] = {{LAG_QQ, 0, 0}, {LAG_QQ, 1, 0}, {LAG_QQ, 1, 1}, {LAG_VQ, 0, 0},
+                                                       {LAG_VQ, 0, 1}, {LAG_VQ, 1, 0}, {LAG_VQ, 1, 1}, {LAG_VV, 0, 0},
+                                                       {LAG_VV, 1, 0}, {LAG_VV, 1, 1}};
 /* r1 = -2 a1 - a2 cos d - v2^2 sin d - 2 g sin q1, r2 = -a2 - a1 cos d + v1^2 sin d - g sin q2, d = q1 - q2 */
 LINEARISE(double_pendulum)
 {

@@ -1,14 +1,18 @@
-/* The tangent of the flow: exact against closed forms, the digits of variational equations integrated by mpmath, and central
- * differences of the very map that a method computes; what follows from it: symplecticity, volume, time reversal; that the run
- * is the same with it and without; what is refused. */
+/* The tangent of the flow: exact against closed forms, the digits of variational equations integrated by mpmath, and
+ * central differences of the very map that a method computes; what follows from it: symplecticity, volume, time
+ * reversal; that the run is the same with it and without; what is refused. */
 #include "test_rt_systems.h"
 
 enum { MOST = 16 };
 
-static const lag_method *const symplectic[] = {&lag_symplectic_euler, &lag_verlet, &lag_verlet4, &lag_verlet6, &lag_verlet8,
-                                               &lag_variational,      &lag_gauss};
+static const lag_method *const symplectic[] = {&lag_symplectic_euler, &lag_verlet,      &lag_verlet4, &lag_verlet6,
+                                               &lag_verlet8,          &lag_variational, &lag_gauss};
 static const lag_method *const others[] = {&lag_euler, &lag_rk4, &lag_rk45, &lag_dop853, &lag_radau};
-enum { SYMPLECTIC = sizeof symplectic / sizeof *symplectic, OTHERS = sizeof others / sizeof *others, ALL = SYMPLECTIC + OTHERS };
+enum {
+  SYMPLECTIC = sizeof symplectic / sizeof *symplectic,
+  OTHERS = sizeof others / sizeof *others,
+  ALL = SYMPLECTIC + OTHERS
+};
 
 static const lag_method *method_at(int i)
 {
@@ -25,8 +29,8 @@ static void set_start(lag_sim *s, const double *y)
 }
 
 /* J[n * n] := dy(t)/dy(0) of steps of size h from y0; y := the state there, unless NULL. */
-static void tangent(const lag_scene *scene, const lag_method *m, double h, double t, const double *y0, double *y, double *J)
-{
+static void tangent(const lag_scene *scene, const lag_method *m, double h, double t, const double *y0, double *y,
+                    double *J) {
   lag_sim *s = equal_steps(scene, m, h);
   int n = 2 * scene->model->nq;
   set_start(s, y0);
@@ -55,7 +59,8 @@ static void tangent_tol(const lag_scene *scene, const lag_method *m, double tol,
 static void oscillator_turns(void **state)
 {
   const double y0[] = {0.3, -1}, t = 3.7, turn[] = {cos(t), sin(t), -sin(t), cos(t)};
-  static const double within[] = {1e-10, 1e-12, 1e-9}; /* of rk45, dop853 at 1e-13, and radau at 1e-12, whose steps are for y */
+  /* of rk45, dop853 at 1e-13, and radau at 1e-12, whose steps are for y */
+  static const double within[] = {1e-10, 1e-12, 1e-9};
   static const lag_method *const adaptive[] = {&lag_rk45, &lag_dop853, &lag_radau};
   double J[4];
   (void)state;
@@ -78,11 +83,12 @@ static void multiply(int n, const double *A, const double *B, double *C)
   }
 }
 
-/* Of a linear model the derivative of a step is its matrix: Verlet's, the midpoint rule's (I - hA/2)^-1 (I + hA/2), Kutta's
- * exp(hA) to fourth order. */
+/* Of a linear model the derivative of a step is its matrix: Verlet's, the midpoint rule's (I - hA/2)^-1 (I + hA/2),
+ * Kutta's exp(hA) to fourth order. */
 static void matrices_of_linear_steps(void **state)
 {
-  const double h = 0.25, y0[] = {0.3, -1}, d = 1 + h * h / 4, even = 1 - h * h / 2 + h * h * h * h / 24, odd = h - h * h * h / 6;
+  const double h = 0.25, y0[] = {0.3, -1}, d = 1 + h * h / 4, even = 1 - h * h / 2 + h * h * h * h / 24,
+               odd = h - h * h * h / 6;
   const struct {
     const lag_method *method;
     double one[4];
@@ -144,7 +150,8 @@ SYSTEM(damped, 1, LAG_CONSTANT_MASS | LAG_AUTONOMOUS, NULL, EXACT(damped));
 
 static void damped_oscillator(void **state)
 {
-  const double y0[] = {1, 0}, t = 4, c = 0.1, w = sqrt(1 - c * c), e = exp(-c * t), C = e * cos(w * t), S = e * sin(w * t) / w;
+  const double y0[] = {1, 0}, t = 4, c = 0.1, w = sqrt(1 - c * c), e = exp(-c * t), C = e * cos(w * t),
+               S = e * sin(w * t) / w;
   const double want[] = {C + c * S, S, -S, C - c * S};
   double J[4];
   (void)state;
@@ -155,8 +162,8 @@ static void damped_oscillator(void **state)
   assert_close(distance(4, J, want), 0, 1e-9); /* its own error at this step */
 }
 
-/* Y' = Df Y by Taylor series with 30 digits (mpmath's odefun): Kepler, e = 0.6, from the pericentre to t = 2; the pendulum from 3
- * at rest to t = 5. */
+/* Y' = Df Y by Taylor series with 30 digits (mpmath's odefun): Kepler, e = 0.6, from the pericentre to t = 2; the
+ * pendulum from 3 at rest to t = 5. */
 static void published_digits(void **state)
 {
   static const double orbit[] = {
@@ -164,7 +171,8 @@ static void published_digits(void **state)
       18.97815706467760974298,  5.036188407217134288068,  1.67716720501291264456,   5.823298645505206873168,
       -11.62559811086058320322, -1.114558359875467963963, -0.4278707804233113189742, -3.547976715432001464607,
       11.16259427369318833165,  1.702993098995816777847,  0.5735630645712109858743, 3.723729734293752288413};
-  static const double swing[] = {9.258339196896410256779, 9.427493318920963982092, -7.026627744285790020709, -7.046996737348957355676};
+  static const double swing[] = {9.258339196896410256779, 9.427493318920963982092, -7.026627744285790020709,
+                                 -7.046996737348957355676};
   const double peri[] = {0.4, 0, 0, 2}, high[] = {3, 0};
   double J[MOST];
   (void)state;
@@ -193,8 +201,8 @@ static void published_digits(void **state)
   assert_close(J[1], sin(3.7), 1e-13);
 }
 
-/* ---- The derivative of the map itself, by central differences of order 8: rounding 1e-15/0.02, truncation 0.02^8/630 times
- * a ninth derivative of the map. */
+/* ---- The derivative of the map itself, by central differences of order 8: rounding 1e-15/0.02, truncation
+ * 0.02^8/630 times a ninth derivative of the map. */
 
 static void differences(const lag_scene *scene, const lag_method *m, double h, double t, const double *y0, double *J)
 {
@@ -242,7 +250,8 @@ static void derivative_of_the_map(void **state)
       worst = fmax(worst, distance(n * n, J, D));
     }
     print_message("# %-16s from differences of its map: %.1e\n", method_at(m)->name, worst);
-    assert_close(worst, 0, method_at(m) == &lag_radau ? 1e-8 : 1e-12); /* radau solves its equations to its tolerance, 1e-9 */
+    /* radau solves its equations to its tolerance, 1e-9 */
+    assert_close(worst, 0, method_at(m) == &lag_radau ? 1e-8 : 1e-12);
   }
 }
 
@@ -273,7 +282,8 @@ static void derivative_of_higher_orders(void **state)
       lag_sim_free(s);
     }
     for (int k = 0; k < 4; k++) {
-      assert_close((high[k] - low[k]) / (2 * delta), J[k * 4], 1e-6); /* truncation: delta^2/6 times a third derivative */
+      /* truncation: delta^2/6 times a third derivative */
+      assert_close((high[k] - low[k]) / (2 * delta), J[k * 4], 1e-6);
     }
   }
 }
@@ -315,7 +325,8 @@ static void form(int nq, const double *A, double *W)
   }
 }
 
-/* (T1 J)^T Omega (T1 J) = T0^T Omega T0 is J^T Omega J = Omega in canonical variables; relative to the largest entry of either. */
+/* (T1 J)^T Omega (T1 J) = T0^T Omega T0 is J^T Omega J = Omega in canonical variables; relative to the largest entry
+ * of either. */
 static double defect(const lag_scene *scene, const lag_method *m, double h, const double *y0)
 {
   int nq = scene->model->nq, n = 2 * nq;
@@ -332,7 +343,8 @@ static double defect(const lag_scene *scene, const lag_method *m, double h, cons
   return distance(n * n, before, after) / size;
 }
 
-/* The pendulum from 3.0, Kepler with e = 0.6 half way out, the double pendulum; steps from small to as long as Newton's method bears. */
+/* The pendulum from 3.0, Kepler with e = 0.6 half way out, the double pendulum; steps from small to as long as
+ * Newton's method bears. */
 static const struct {
   const lag_scene *scene;
   double h[3], y0[4];
@@ -350,12 +362,14 @@ static void steps_are_symplectic(void **state)
       double h = forms[k].h[i];
       for (int m = 0; m < SYMPLECTIC; m++) {
         double d = defect(forms[k].scene, symplectic[m], h, forms[k].y0);
-        print_message("# %-15s h %-5g %-16s J^T Omega J - Omega: %.1e\n", forms[k].scene->name, h, symplectic[m]->name, d);
+        print_message("# %-15s h %-5g %-16s J^T Omega J - Omega: %.1e\n", forms[k].scene->name, h, symplectic[m]->name,
+                      d);
         assert_true(symplectic[m]->flags & LAG_METHOD_SYMPLECTIC);
         assert_close(d, 0, 1e-12);
       }
     }
-    double h = 2 * forms[k].h[2], rk4 = defect(forms[k].scene, &lag_rk4, h, forms[k].y0), rk45 = defect(forms[k].scene, &lag_rk45, h, forms[k].y0);
+    double h = 2 * forms[k].h[2], rk4 = defect(forms[k].scene, &lag_rk4, h, forms[k].y0),
+           rk45 = defect(forms[k].scene, &lag_rk45, h, forms[k].y0);
     print_message("# %-15s h %-5g rk4 %.1e, rk45 %.1e\n", forms[k].scene->name, h, rk4, rk45);
     assert_true(rk4 > 1e-6 && rk45 > 1e-6);
   }
@@ -413,7 +427,8 @@ static void volume_is_kept(void **state)
   assert_true(fabs(determinant(4, J) - 1) > 1e-6);
 }
 
-/* A symmetric method: forth, velocities turned, forth, is the beginning with velocities turned; and so of derivatives. */
+/* A symmetric method: forth, velocities turned, forth, is the beginning with velocities turned; and so of
+ * derivatives. */
 static double not_reversed(const lag_scene *scene, const lag_method *m, double h, const double *y0)
 {
   int nq = scene->model->nq, n = 2 * nq;

@@ -1,5 +1,5 @@
-/* The Taylor coefficients of the models of test_rt_models.h, by hand: a rule for the accelerations of each order. No states,
- * at most two coordinates. */
+/* The Taylor coefficients of the models of test_rt_models.h, by hand: a rule for the accelerations of each order. No
+ * states, at most two coordinates. */
 #ifndef TEST_RT_TAYLOR_H
 #define TEST_RT_TAYLOR_H
 
@@ -32,21 +32,28 @@ UNUSED static void taylor_at(int n, double s, const double *x, double *y, double
   }
 }
 
-/* name_taylor, from name_accel and name_order, which finds in w[0] whether the input, if there is one, follows its formula. */
-#define TAYLOR(name, nq, nu)                                                                              \
-  UNUSED static int name##_first(ARGS, UNUSED const double *follows, double *x, double *w)              \
-  {                                                                                                     \
-    memcpy(x, q, (nq) * sizeof *q);                                                                     \
-    memcpy(x + (nq), v, (nq) * sizeof *v);                                                              \
-    w[0] = (nu) > 0 ? follows[0] : 0;                                                                   \
-    return name##_accel(t, q, v, z, p, u, x + 2 * (nq), NULL, w);                                       \
-  }                                                                                                     \
-  UNUSED static void name##_rest(int n, double T, double *x, double *w)                                 \
-  {                                                                                                     \
-    taylor_orders(name##_order, nq, n, T, x, w);                                                        \
-  }                                                                                                     \
-  UNUSED static const lag_taylor name##_taylor = {.order = LAG_TAYLOR_ORDER, .columns = TAYLOR_COLUMNS, .width = TAYLOR_WIDTH, \
-      .nw = 2 * TAYLOR_ORDERS, .cost_first = 20, .cost_next = 20, .sums = 4, .first = name##_first, .rest = name##_rest, .at = taylor_at}
+/* name_taylor, from name_accel and name_order, which finds in w[0] whether the input, if there is one, follows its
+ * formula. */
+#define TAYLOR(name, nq, nu)                                                                 \
+  UNUSED static int name##_first(ARGS, UNUSED const double *follows, double *x, double *w) { \
+    memcpy(x, q, (nq) * sizeof *q);                                                          \
+    memcpy(x + (nq), v, (nq) * sizeof *v);                                                   \
+    w[0] = (nu) > 0 ? follows[0] : 0;                                                        \
+    return name##_accel(t, q, v, z, p, u, x + 2 * (nq), NULL, w);                            \
+  }                                                                                          \
+  UNUSED static void name##_rest(int n, double T, double *x, double *w) {                    \
+    taylor_orders(name##_order, nq, n, T, x, w);                                             \
+  }                                                                                          \
+  UNUSED static const lag_taylor name##_taylor = {.order = LAG_TAYLOR_ORDER,                 \
+                                                  .columns = TAYLOR_COLUMNS,                 \
+                                                  .width = TAYLOR_WIDTH,                     \
+                                                  .nw = 2 * TAYLOR_ORDERS,                   \
+                                                  .cost_first = 20,                          \
+                                                  .cost_next = 20,                           \
+                                                  .sums = 4,                                 \
+                                                  .first = name##_first,                     \
+                                                  .rest = name##_rest,                       \
+                                                  .at = taylor_at}
 
 /* x'' = -slope x + c + rate t, where the input follows its formula. */
 #define TAYLOR_LINEAR(name, slope, rate)                                                                \

@@ -32,7 +32,8 @@ UNUSED static int record(void *context, const lag_sim *s)
   return 0;
 }
 
-/* What the fitted line gains over steps of size h of a fresh simulation, which is freed; *worst: the largest |E - E0|. start: of x, or NaN. */
+/* What the fitted line gains over steps of size h of a fresh simulation, which is freed; *worst: the largest |E -
+ * E0|. start: of x, or NaN. */
 UNUSED static double trend(lag_sim *s, double start, double h, int steps, double *worst)
 {
   const lag_scene *scene = lag_sim_scene(s);

@@ -1,7 +1,8 @@
-/* variational, gauss and the implicit form of the Verlet family: exact digits of the algorithm, solutions, which forms are the
- * same map and which are not, forces, what Newton's method costs and how it fails, what symmetries conserve. Expected values:
- * closed forms, trajectories of the algorithm itself in 40- and 60-digit arithmetic by an independent script, and dop853.
- * Orders are measured in quadruple precision: tests/exec/long_quad.sh. LAG_STEPS: steps of the long runs. */
+/* variational, gauss and the implicit form of the Verlet family: exact digits of the algorithm, solutions, which
+ * forms are the same map and which are not, forces, what Newton's method costs and how it fails, what symmetries
+ * conserve. Expected values: closed forms, trajectories of the algorithm itself in 40- and 60-digit arithmetic by an
+ * independent script, and dop853. Orders are measured in quadruple precision: tests/exec/long_quad.sh. LAG_STEPS:
+ * steps of the long runs. */
 #include "slow.h"
 #include "test_rt_systems.h"
 
@@ -14,8 +15,8 @@ typedef struct Digits {
   double start[2], h, steps, end[2], energy;
 } Digits;
 
-/* Of the midpoint rule on the pendulum, p = v: both precisions agree to 40 digits; energy: the largest |E - E0|, to 6 digits.
- * Tolerance as stated with the digits: 1e-11. */
+/* Of the midpoint rule on the pendulum, p = v: both precisions agree to 40 digits; energy: the largest |E - E0|, to
+ * 6 digits. Tolerance as stated with the digits: 1e-11. */
 static const Digits midpoint[] = {
     {{1.5, 0}, 0.1, 1000, {-0.5554837009712650754947232, 1.248327344720310737258077}, 0.000359406393757},
     {{0.5, 1.9}, 0.2, 500, {2.699866315986761219670719, -0.1897434875691169385021294}, 0.00540163363051},
@@ -87,7 +88,8 @@ static void bands_are_solved(void **state)
     for (int i = 0; i < N; i++) {
       for (int j = 0; j < N; j++) {
         seed = seed * 6364136223846793005u + 1442695040888963407u;
-        full[i][j] = abs(i - j) > band ? 0 : i == j ? 1e-8 : (double)(seed >> 11) / 9007199254740992.0 - 0.5; /* pivots elsewhere */
+        /* pivots elsewhere */
+        full[i][j] = abs(i - j) > band ? 0 : i == j ? 1e-8 : (double)(seed >> 11) / 9007199254740992.0 - 0.5;
         full[i][j] *= i == 2 ? 1e12 : 1; /* a row in other units */
         if (abs(i - j) <= band) {
           *lag_band_matrix_at(&m, i, j) = full[i][j];
@@ -173,7 +175,8 @@ static lag_scene without_flag(const lag_scene *scene, lag_model *model)
   return same;
 }
 
-/* With constant mass the generalised Stoermer-Verlet method is the explicit method. Tolerance: rounding over 400 steps. */
+/* With constant mass the generalised Stoermer-Verlet method is the explicit method. Tolerance: rounding over 400
+ * steps. */
 static void implicit_verlet_is_explicit_verlet_where_mass_is_constant(void **state)
 {
   static const Setting verlet = {&lag_verlet, {{0}}, 0, 0};
@@ -189,7 +192,8 @@ static void implicit_verlet_is_explicit_verlet_where_mass_is_constant(void **sta
   }
 }
 
-/* Both forms of the compositions are different maps of the same order: on a separable model they meet the same solution. */
+/* Both forms of the compositions are different maps of the same order: on a separable model they meet the same
+ * solution. */
 static void both_forms_of_the_family_agree(void **state)
 {
   double right[4], a[4], b[4];
@@ -252,7 +256,8 @@ static double damped_exact(double t)
 {
   double k = 1 - drive * drive, g = damping * drive, size = k * k + g * g, a = k / size, b = g / size;
   double rate = damping / 2, w = sqrt(1 - rate * rate), x0 = 1 - a, v0 = -b * drive;
-  return exp(-rate * t) * (x0 * cos(w * t) + (v0 + rate * x0) / w * sin(w * t)) + a * cos(drive * t) + b * sin(drive * t);
+  return exp(-rate * t) * (x0 * cos(w * t) + (v0 + rate * x0) / w * sin(w * t)) + a * cos(drive * t) +
+         b * sin(drive * t);
 }
 
 static void forces_are_followed(void **state)
@@ -315,12 +320,15 @@ static void failures_say_when_and_what_to_do(void **state)
 {
   (void)state;
   steepness = 256; /* 1 - h^2/4 steepness = 0 for h = 1/8: the step has no solution */
-  check_failure(&steep, 0.125, LAG_EMETHOD, "in a step of 0.125 s Newton's method has a singular matrix, the residual is 0.3 of its terms; take smaller steps");
+  check_failure(&steep, 0.125, LAG_EMETHOD,
+                "in a step of 0.125 s Newton's method has a singular matrix, the residual is 0.3 of its terms; take "
+                "smaller steps");
   /* of u - h/2 256 (1 + h/2 u) at the guess u = 0 + h/2 256 = 16: 16/48 */
   steepness = NAN;
   check_failure(&steep, 0.1, LAG_ENAN, "no finite value");
   check_failure(&steep, 0.1, LAG_ENAN, "steps of 0.1 s may be too long");
-  check_failure(&double_pendulum, 1.5, LAG_EMETHOD, "in a step of 1.5 s Newton's method did not converge in 25 corrections, the residual is");
+  check_failure(&double_pendulum, 1.5, LAG_EMETHOD,
+                "in a step of 1.5 s Newton's method did not converge in 25 corrections, the residual is");
   check_failure(&double_pendulum, 1.5, LAG_EMETHOD, "take smaller steps");
   lag_sim *s = lag_sim_new(&pendulum);
   assert_int_equal(lag_sim_set_method(s, &lag_gauss, (lag_option[]){{"step", -0.1, NULL}}, 1), LAG_EINVAL);
@@ -330,7 +338,8 @@ static void failures_say_when_and_what_to_do(void **state)
   lag_sim_free(s);
 }
 
-/* At rest where nothing moves it, a coordinate stays, to the last bit; and one that only rounding moves holds nothing up. */
+/* At rest where nothing moves it, a coordinate stays, to the last bit; and one that only rounding moves holds
+ * nothing up. */
 static void what_rests_stays(void **state)
 {
   (void)state;
@@ -419,8 +428,8 @@ static void floating_start(UNUSED const double *p, double *q, double *v, UNUSED 
 #define floating_at double_pendulum_at
 SYSTEM(floating, 2, LAG_AUTONOMOUS | LAG_CONSERVES_ENERGY, NULL, DERIVATIVES(floating));
 
-static double drift_of(const lag_scene *scene, const Setting *k, double h, double (*of)(const double *, const double *), int steps)
-{
+static double drift_of(const lag_scene *scene, const Setting *k, double h, double (*of)(const double *, const double *),
+                       int steps) {
   double y[4], p[2];
   scene->start(NULL, y, y + 2, NULL);
   momenta(scene, y, p);
@@ -432,16 +441,18 @@ static double drift_of(const lag_scene *scene, const Setting *k, double h, doubl
   return c.worst;
 }
 
-/* With compensated sums what is lost is the rounding of the residual, h times 1e-16 of its terms a step, and the orbit repeats
- * it: 1e-20 or so a step on the average. Without compensation it is ten times more, and grows. */
+/* With compensated sums what is lost is the rounding of the residual, h times 1e-16 of its terms a step, and the
+ * orbit repeats it: 1e-20 or so a step on the average. Without compensation it is ten times more, and grows. */
 static void momenta_are_conserved_to_rounding(void **state)
 {
   int steps = long_run();
   double most = 2.5e-15 + 5e-20 * steps;
   (void)state;
   for (int k = 1; k < SETTINGS; k++) {
-    double a = drift_of(&kepler, &settings[k], 0.02, turning, steps), b = drift_of(&floating, &settings[k], 0.05, both, steps);
-    print_message("# %-16s after %d steps: angular momentum %.1e, momentum of both angles %.1e\n", settings[k].method->name, steps, a, b);
+    double a = drift_of(&kepler, &settings[k], 0.02, turning, steps),
+           b = drift_of(&floating, &settings[k], 0.05, both, steps);
+    print_message("# %-16s after %d steps: angular momentum %.1e, momentum of both angles %.1e\n",
+                  settings[k].method->name, steps, a, b);
     assert_true(a <= most && b <= most);
   }
   static const Setting rk4 = {&lag_rk4, {{0}}, 0, 0};

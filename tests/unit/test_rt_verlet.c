@@ -1,6 +1,7 @@
-/* The Verlet family: its tables, measured orders of steps and of dense output, what it refuses, forces with explicit time.
- * Expected values: closed forms; for pendulum and Henon-Heiles digits of independent Taylor integrations in multiple
- * precision (pendulum also 2 asin(k sn(K - t, k)) with mpmath), on which two precisions and step sequences agree. */
+/* The Verlet family: its tables, measured orders of steps and of dense output, what it refuses, forces with explicit
+ * time. Expected values: closed forms; for pendulum and Henon-Heiles digits of independent Taylor integrations in
+ * multiple precision (pendulum also 2 asin(k sn(K - t, k)) with mpmath), on which two precisions and step sequences
+ * agree. */
 #include "test_rt_systems.h"
 
 #include "core/core.h"
@@ -12,8 +13,11 @@ typedef struct Member {
   const lag_composition *table;
 } Member;
 
-static const Member family[] = {{&lag_symplectic_euler, &lag_compose_symplectic_euler}, {&lag_verlet, &lag_compose_verlet},
-    {&lag_verlet4, &lag_compose_verlet4}, {&lag_verlet6, &lag_compose_verlet6}, {&lag_verlet8, &lag_compose_verlet8}};
+static const Member family[] = {{&lag_symplectic_euler, &lag_compose_symplectic_euler},
+                                {&lag_verlet, &lag_compose_verlet},
+                                {&lag_verlet4, &lag_compose_verlet4},
+                                {&lag_verlet6, &lag_compose_verlet6},
+                                {&lag_verlet8, &lag_compose_verlet8}};
 enum { MEMBERS = sizeof family / sizeof *family };
 
 static void tables_are_consistent_and_symmetric(void **state)
@@ -87,7 +91,8 @@ static void dense_output_has_the_order_of_the_steps(void **state)
   static const int n[] = {4000, 1000, 300, 200, 100};
   (void)state;
   for (int m = 0; m < MEMBERS; m++) {
-    double e1 = dense_error(family[m].method, 4.0 / (2 * n[m]), 4), e2 = dense_error(family[m].method, 4.0 / (3 * n[m]), 4);
+    double e1 = dense_error(family[m].method, 4.0 / (2 * n[m]), 4),
+           e2 = dense_error(family[m].method, 4.0 / (3 * n[m]), 4);
     assert_int_equal(family[m].method->dense_order, family[m].method->order);
     assert_close(log(e1 / e2) / log(1.5), family[m].method->dense_order, 0.3);
   }
@@ -161,16 +166,18 @@ static void forces_may_depend_on_time(void **state)
   }
 }
 
-/* ---- The tables that were not chosen, for comparison: compositions of Verlet steps of size w_1 h, w_2 h, ..., w_1 h. */
+/* ---- The tables that were not chosen, for comparison: compositions of Verlet steps of size w_1 h, w_2 h, ..., w_1
+ * h. */
 
-/* M. Suzuki, Phys. Lett. A 146 (1990) 319, DOI 10.1016/0375-9601(90)90962-N; W. Kahan, R.-C. Li, Math. Comp. 66 (1997) 1089, DOI
- * 10.1090/S0025-5718-97-00873-9, s9odr6a and s17odr8a. */
+/* M. Suzuki, Phys. Lett. A 146 (1990) 319, DOI 10.1016/0375-9601(90)90962-N; W. Kahan, R.-C. Li, Math. Comp. 66
+ * (1997) 1089, DOI 10.1090/S0025-5718-97-00873-9, s9odr6a and s17odr8a. */
 static const double suzuki4[] = {0.41449077179437573714, 0.41449077179437573714};
-static const double kahan_li6[] = {0.39216144400731413927925056, 0.33259913678935943859974864, -0.70624617255763935980996482,
-    0.08221359629355080023149045};
-static const double kahan_li8[] = {0.13020248308889008087881763, 0.56116298177510838456196441, -0.38947496264484728640807860,
-    0.15884190655515560089621075, -0.39590389413323757733623154, 0.18453964097831570709183254, 0.25837438768632204729397911,
-    0.29501172360931029887096624};
+static const double kahan_li6[] = {0.39216144400731413927925056, 0.33259913678935943859974864,
+                                   -0.70624617255763935980996482, 0.08221359629355080023149045};
+static const double kahan_li8[] = {0.13020248308889008087881763,  0.56116298177510838456196441,
+                                   -0.38947496264484728640807860, 0.15884190655515560089621075,
+                                   -0.39590389413323757733623154, 0.18453964097831570709183254,
+                                   0.25837438768632204729397911,  0.29501172360931029887096624};
 
 /* n steps of 2 half + 1 Verlet steps each. */
 static void compose(const lag_scene *scene, const double *weight, int half, int n, double end, double *y)
@@ -269,7 +276,8 @@ static void wall_start(UNUSED const double *p, double *q, double *v, UNUSED doub
 
 SYSTEM(wall, 1, LAG_SEPARABLE, NULL, NO_DERIVATIVES);
 
-/* Forces that change their course within a step: where a pole could be, it is looked for. All evaluations are counted, and bounded. */
+/* Forces that change their course within a step: where a pole could be, it is looked for. All evaluations are
+ * counted, and bounded. */
 static int evaluations;
 
 static int rough_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)

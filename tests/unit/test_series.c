@@ -1,5 +1,6 @@
-/* Unit tests of src/ir/series: what a model costs in sums and instructions, that M is factored at order 0 only, refusals; of
- * factor_record_solve against elimination, and of prog_reassociate. That the coefficients are right is tests/exec/run_taylor.sh. */
+/* Unit tests of src/ir/series: what a model costs in sums and instructions, that M is factored at order 0 only,
+ * refusals; of factor_record_solve against elimination, and of prog_reassociate. That the coefficients are right is
+ * tests/exec/run_taylor.sh. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -36,8 +37,8 @@ static const char double_pendulum[] =
   "model m\ncoord a, b\nparam g = 9.81\nlet x = sin(a)\nlet y = -cos(a)\nlet u = x + sin(b)\nlet v = y - cos(b)\n"
   "kinetic = (x'^2 + y'^2)/2 + (u'^2 + v'^2)/2\npotential = g*y + g*v\n";
 
-/* Sums, counted by hand: sine and cosine of a, b and a - b (6), two squares of rates, each times sin(a - b), cos(a - b) times
- * each acceleration. M[0] is factored in `first`; `next` has neither pivots nor divisions nor functions. */
+/* Sums, counted by hand: sine and cosine of a, b and a - b (6), two squares of rates, each times sin(a - b), cos(a -
+ * b) times each acceleration. M[0] is factored in `first`; `next` has neither pivots nor divisions nor functions. */
 static void test_cost(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
@@ -59,7 +60,10 @@ static void test_cost(void **state) {
   arena_free(a);
 
   a = arena_new(NULL); /* linear: no sums at all, whatever the constants */
-  s = series_of(a, "model m\ncoord x, y\nparam k = 3, m = 2 > 0\nkinetic = m/2*(x'^2 + y'^2)\npotential = k/2*(x - y)^2 + sin(k)*x\n", &why);
+  s = series_of(a,
+                "model m\ncoord x, y\nparam k = 3, m = 2 > 0\nkinetic = m/2*(x'^2 + y'^2)\npotential = k/2*(x - y)^2 + "
+                "sin(k)*x\n",
+                &why);
   assert_int_equal(s->sums, 0);
   arena_free(a);
 
@@ -74,9 +78,12 @@ static void test_cost(void **state) {
 static void chain_cost(uint32_t n, uint32_t *sums, uint32_t *instructions) {
   Arena *a = arena_new(NULL);
   const char *why = NULL;
-  const char *lag = arena_printf(a, "model m\nconst N = %u\ncoord th[N]\nlet x[0] = 0, y[0] = 0\nlet x[i in 1..N] = x[i-1] + sin(th[i])\n"
-                                    "let y[i in 1..N] = y[i-1] - cos(th[i])\nkinetic = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2)\n"
-                                    "potential = sum(i in 1..N, 9.81*y[i])\n", n);
+  const char *lag = arena_printf(
+      a,
+      "model m\nconst N = %u\ncoord th[N]\nlet x[0] = 0, y[0] = 0\nlet x[i in 1..N] = x[i-1] + sin(th[i])\n"
+      "let y[i in 1..N] = y[i-1] - cos(th[i])\nkinetic = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2)\n"
+      "potential = sum(i in 1..N, 9.81*y[i])\n",
+      n);
   Series *s = series_of(a, lag, &why);
   assert_non_null(s);
   *sums = s->sums;
@@ -136,17 +143,20 @@ static void check_again(const char *lag, int straight) {
   Slot *r = ARENA_ARRAY(a, Slot, total);
   for (uint32_t v = 0; v < total; v++) r[v] = b[v];
   factor_record_solve(sys.p, sys.factored, b, s, x);
-  /* what must vanish: rows of q: H u + C^T lambda - r, of w: w - C u - s; lambda = H u + C^T lambda - r by its own row */
+  /* what must vanish: rows of q: H u + C^T lambda - r, of w: w - C u - s; lambda = H u + C^T lambda - r by its own
+   * row */
   Slot *lambda = ARENA_ARRAY(a, Slot, total), *row = ARENA_ARRAY(a, Slot, total);
   for (uint32_t v = total; v-- > 0;) {
     row[v] = prog_op(sys.p, IR_NEG, r[v], 0);
     for (uint32_t k = 0; k < sys.H.n; k++) {
       const IrSlotEntry *h = &sys.H.at[k];
       if (h->row == v) row[v] = prog_op(sys.p, IR_ADD, row[v], prog_op(sys.p, IR_MUL, h->slot, x[h->col]));
-      if (h->col == v && h->row != v) row[v] = prog_op(sys.p, IR_ADD, row[v], prog_op(sys.p, IR_MUL, h->slot, x[h->row]));
+      if (h->col == v && h->row != v)
+        row[v] = prog_op(sys.p, IR_ADD, row[v], prog_op(sys.p, IR_MUL, h->slot, x[h->row]));
     }
     for (uint32_t k = 0; k < sys.C.n; k++)
-      if (sys.C.at[k].col == v) row[v] = prog_op(sys.p, IR_ADD, row[v], prog_op(sys.p, IR_MUL, sys.C.at[k].slot, lambda[sys.C.at[k].row]));
+      if (sys.C.at[k].col == v)
+        row[v] = prog_op(sys.p, IR_ADD, row[v], prog_op(sys.p, IR_MUL, sys.C.at[k].slot, lambda[sys.C.at[k].row]));
     lambda[v] = row[v];
     if (v < n) {
       prog_store(sys.p, 0, v, row[v], "residual");
@@ -154,7 +164,8 @@ static void check_again(const char *lag, int straight) {
     }
     Slot w = prog_op(sys.p, IR_SUB, x[v], s[v]);
     for (uint32_t k = 0; k < sys.C.n; k++)
-      if (sys.C.at[k].row == v) w = prog_op(sys.p, IR_SUB, w, prog_op(sys.p, IR_MUL, sys.C.at[k].slot, x[sys.C.at[k].col]));
+      if (sys.C.at[k].row == v)
+        w = prog_op(sys.p, IR_SUB, w, prog_op(sys.p, IR_MUL, sys.C.at[k].slot, x[sys.C.at[k].col]));
     prog_store(sys.p, 0, v, w, "residual");
   }
   assert_null(prog_verify(sys.p));
@@ -170,15 +181,19 @@ static void check_again(const char *lag, int straight) {
   arena_free(a);
 }
 
-/* Blocks by loops, of which nothing accelerates the first. By hand: M = (0 1 0; 1 0 1; 0 1 1) and f = (-d, 0, 0) give q'' = (-d, -d, d). */
+/* Blocks by loops, of which nothing accelerates the first. By hand: M = (0 1 0; 1 0 1; 0 1 1) and f = (-d, 0, 0)
+ * give q'' = (-d, -d, d). */
 static void test_rests(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
   const char *why;
-  Series *s = series_of(a, "model rests\ncoord a, b, c, d, e, f\nlagrangian = a'*b' + b'*c' + c'^2/2 + d'*e' + e'*f' + f'^2/2 - d^2/2\n", &why);
+  Series *s = series_of(
+      a, "model rests\ncoord a, b, c, d, e, f\nlagrangian = a'*b' + b'*c' + c'^2/2 + d'*e' + e'*f' + f'^2/2 - d^2/2\n",
+      &why);
   assert_non_null(s);
   assert_int_equal(count(s->next, IR_SOLVE), 1);
-  Real q[] = {0.1L, 0.2L, 0.3L, 0.4L, 0.5L, 0.6L}, v[6] = {0}, none[1] = {0}, x[64] = {0}, c[64] = {0}, *outs[] = {x, c};
+  Real q[] = {0.1L, 0.2L, 0.3L, 0.4L, 0.5L, 0.6L}, v[6] = {0}, none[1] = {0}, x[64] = {0}, c[64] = {0},
+       *outs[] = {x, c};
   const Real *in[ARR_COUNT] = {none, q, v, none, none, none};
   assert_int_equal(prog_eval(s->first, in, outs), 0);
   for (int i = 0; i < 3; i++) assert_true(x[12 + i] == 0);
@@ -190,7 +205,9 @@ static void test_again(void **state) {
   (void)state;
   check_again(double_pendulum, 1);
   check_again("model m\nconst N = 5\ncoord th[N]\nlet x[0] = 0, y[0] = 0\nlet x[i in 1..N] = x[i-1] + sin(th[i])\n"
-              "let y[i in 1..N] = y[i-1] - cos(th[i])\nkinetic = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2)\npotential = sum(i in 1..N, y[i])\n", 1);
+              "let y[i in 1..N] = y[i-1] - cos(th[i])\nkinetic = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2)\npotential = "
+              "sum(i in 1..N, y[i])\n",
+              1);
   check_again("model m\ncoord x, y\nlagrangian = x'*y'*(2 + sin(x)) - x*y\n", 0); /* a pair by Cramer's rule */
   check_again("model m\ncoord x\nparam k = 2\nlagrangian = k*(1 + x^2)*x'^2/2\n", 0);
 }
@@ -217,8 +234,12 @@ static void test_balance(void **state) {
   Prog *b = prog_reassociate(p, ready);
   assert_null(prog_verify(b));
   uint32_t through = 0; /* additions between x0 and the square */
-  for (Slot s = 1; s < b->ins.n; s++) through += (b->ins.at[s].op == IR_ADD || b->ins.at[s].op == IR_SUB) && (b->ins.at[b->ins.at[s].a].op == IR_LOAD && b->ins.at[b->ins.at[s].a].index == 0);
-  for (Slot s = 1; s < b->ins.n; s++) through += (b->ins.at[s].op == IR_ADD || b->ins.at[s].op == IR_SUB) && (b->ins.at[b->ins.at[s].b].op == IR_LOAD && b->ins.at[b->ins.at[s].b].index == 0);
+  for (Slot s = 1; s < b->ins.n; s++)
+    through += (b->ins.at[s].op == IR_ADD || b->ins.at[s].op == IR_SUB) &&
+               (b->ins.at[b->ins.at[s].a].op == IR_LOAD && b->ins.at[b->ins.at[s].a].index == 0);
+  for (Slot s = 1; s < b->ins.n; s++)
+    through += (b->ins.at[s].op == IR_ADD || b->ins.at[s].op == IR_SUB) &&
+               (b->ins.at[b->ins.at[s].b].op == IR_LOAD && b->ins.at[b->ins.at[s].b].index == 0);
   assert_int_equal(through, 1);
   assert_int_equal(count(b, IR_ADD) + count(b, IR_SUB), 5);
   Real q[6] = {1, 20, 300, 4000, 50000, 600000}, out[2], *outs[1] = {out};
@@ -228,7 +249,8 @@ static void test_balance(void **state) {
   assert_true(out[0] == -want && out[1] == want * want);
   for (Slot s = 1; s < b->ins.n; s++) { /* the square's operand is the addition in which x0 stands */
     const Ins *i = &b->ins.at[s];
-    if (i->op == IR_MUL) assert_true(b->ins.at[b->ins.at[i->a].a].index == 0 || b->ins.at[b->ins.at[i->a].b].index == 0);
+    if (i->op == IR_MUL)
+      assert_true(b->ins.at[b->ins.at[i->a].a].index == 0 || b->ins.at[b->ins.at[i->a].b].index == 0);
   }
   arena_free(a);
 }

@@ -39,7 +39,8 @@ static void assert_same_values(Texts *t, Expr a, Expr b) {
   uint32_t usable = 0;
   for (uint32_t seed = 0; seed < 10; seed++) {
     sample_state(t->g, seed, symbols);
-    long double x = value_with_bound(t->g, a, symbols, NULL, &bound_a), y = value_with_bound(t->g, b, symbols, NULL, &bound_b);
+    long double x = value_with_bound(t->g, a, symbols, NULL, &bound_a),
+                y = value_with_bound(t->g, b, symbols, NULL, &bound_b);
     if (!isfinite(x) || !isfinite(y)) continue;
     usable++;
     if (fabsl(x - y) > 100 * (bound_a + bound_b) + LDBL_MIN)
@@ -76,7 +77,8 @@ static void angles_are_combined_where_it_shortens(void **state) {
   assert_simplifies("m*sin(x)*cos(y) + m - m*cos(x)^2", "m*sin(x)*(cos(y) + sin(x))");
   assert_simplifies("sin(x)^4 + 2*sin(x)^2*cos(x)^2 + cos(x)^4 + y - 1", "y");
   /* cos(2*x) is -1 + 2*cos(x)^2: asin of it turns its sign */
-  assert_simplifies("sin(x) + sin(y)*cos(asin(cos(2*x)/2)) + cos(y)*sin(asin(cos(2*x)/2))", "sin(x) + sin(y + asin(cos(2*x)/2))");
+  assert_simplifies("sin(x) + sin(y)*cos(asin(cos(2*x)/2)) + cos(y)*sin(asin(cos(2*x)/2))",
+                    "sin(x) + sin(y + asin(cos(2*x)/2))");
 }
 
 /* --- range --- */
@@ -133,7 +135,9 @@ static void what_is_short_stays(void **state) {
 
 static void parameters_are_factored(void **state) {
   (void)state;
-  assert_simplifies("k*cos(x) + m1*l1*cos(x) + m2*l1*cos(x) + m3*l1*cos(x) + m1*g*cos(x)", "(k + m1*g + (m1 + m2 + m3)*l1)*cos(x)"); /* terms that share a factor need not stand side by side */
+  /* terms that share a factor need not stand side by side */
+  assert_simplifies("k*cos(x) + m1*l1*cos(x) + m2*l1*cos(x) + m3*l1*cos(x) + m1*g*cos(x)",
+                    "(k + m1*g + (m1 + m2 + m3)*l1)*cos(x)");
   assert_simplifies("m1*l1^2 + m2*l1^2 + m2*l2^2 + 2*m2*l1*l2*cos(x)", "(m1 + m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*cos(x)");
   assert_simplifies("m1*g*x + m2*g*x + m3*g*x + k*y", "(m1 + m2 + m3)*g*x + k*y");
   assert_simplifies("m*x'^2/2 + m*y'^2/2", "m/2*(x'^2 + y'^2)");

@@ -19,7 +19,8 @@ static long double uniform(void) { /* in (-1, 1); Knuth's MMIX generator */
   return (long double)(int64_t)(seed >> 11) / 4503599627370496.0L - 1;
 }
 
-/* A chain: element (i, j) for |i - j| <= 1, and some far ones; a column is 2^`turn`, a row 2^-`turn`, apart in scale. */
+/* A chain: element (i, j) for |i - j| <= 1, and some far ones; a column is 2^`turn`, a row 2^-`turn`, apart in
+ * scale. */
 static void random_matrix(Arena *a, uint32_t n, int turn, SparseElements *m, long double *dense) {
   memset(dense, 0, (size_t)n * n * sizeof *dense);
   for (uint32_t i = 0; i < n; i++)
@@ -96,7 +97,8 @@ static void regular_on_a_kernel(void **state) {
     Arena *a = arena_new(NULL);
     SparseElements m = {0};
     long double null[2];
-    sparse_put(a, &m, 0, 0, 1), sparse_put(a, &m, on, 2, -1e9L), sparse_put(a, &m, 2, on, 1e9L), sparse_put(a, &m, 1, 1, NAN);
+    sparse_put(a, &m, 0, 0, 1), sparse_put(a, &m, on, 2, -1e9L), sparse_put(a, &m, 2, on, 1e9L),
+        sparse_put(a, &m, 1, 1, NAN);
     assert_int_equal(sparse_is_regular_on_kernel(a, 2, 1, &m, null), on == 1);
     if (on == 0) assert_true(null[0] == 0 && null[1] != 0);
     arena_free(a);
@@ -115,7 +117,8 @@ static void rows_of_a_span(void **state) {
     assert_true(row_span_add(&s, again, 2, 1e-9L) < 1e-15L);
   }
   assert_int_equal(s.rank, ROWS);
-  /* of the last direction the part across the others is what is left: e_ROWS less its projection, which a dense Gram-Schmidt process gives, too */
+  /* of the last direction the part across the others is what is left: e_ROWS less its projection, which a dense
+   * Gram-Schmidt process gives, too */
   RowElement last = {ROWS, 1};
   long double left = row_span_add(&s, &last, 1, 2), square = 0, dot[ROWS];
   for (uint32_t j = 0; j <= ROWS; j++) square += s.left[j] * s.left[j];
@@ -133,8 +136,8 @@ static void rows_of_a_span(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_solution_comes_back), cmocka_unit_test(rank_and_kernel), cmocka_unit_test(elements_cancel), cmocka_unit_test(regular_on_a_kernel),
-    cmocka_unit_test(rows_of_a_span),
+      cmocka_unit_test(a_solution_comes_back), cmocka_unit_test(rank_and_kernel), cmocka_unit_test(elements_cancel),
+      cmocka_unit_test(regular_on_a_kernel),   cmocka_unit_test(rows_of_a_span),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,7 +97,8 @@ static double error_with(Curve *c, uint32_t n) {
   return worst;
 }
 
-/* Order 4, two-sided: 4.10 between these, 4.03 from 801 rows on (SciPy's errors give the same). The natural spline's is 2. */
+/* Order 4, two-sided: 4.10 between these, 4.03 from 801 rows on (SciPy's errors give the same). The natural spline's
+ * is 2. */
 static void test_order(void **state) {
   double coarse = error_with(*state, 201), fine = error_with(*state, 401), order = log(coarse / fine) / log(2);
   assert_near(order, 4, 0.15);

@@ -44,7 +44,8 @@ static Expr any(const Lab *l) { return l->pool[below(l->n)]; }
 static Expr random_step(Lab *l, int smooth) {
   ExprGraph *g = l->g;
   Expr x = any(l), y = any(l), z = any(l);
-  static const ExprOp unary[] = {EX_SIN, EX_COS, EX_ATAN, EX_TANH, EX_SINH, EX_COSH, EX_EXP, EX_TAN, EX_ASIN, EX_ACOS, EX_LOG, EX_CBRT};
+  static const ExprOp unary[] = {EX_SIN, EX_COS, EX_ATAN, EX_TANH, EX_SINH, EX_COSH,
+                                 EX_EXP, EX_TAN, EX_ASIN, EX_ACOS, EX_LOG,  EX_CBRT};
   switch (below(smooth ? 12 : 16)) {
     case 0: case 1: return expr_add(g, x, y);
     case 2: return expr_sub(g, x, y);
@@ -142,18 +143,32 @@ static void test_eval(void **state) {
     long double v[NSYM + 1], X, Y, A;
     random_values(v);
     X = v[1], Y = v[2], A = v[3];
-    struct { Expr e; long double want; } all[] = {
-      {expr_fn(g, EX_SIN, x), sinl(X)}, {expr_fn(g, EX_COS, x), cosl(X)}, {expr_fn(g, EX_TAN, x), tanl(X)},
-      {expr_fn(g, EX_ASIN, expr_fn(g, EX_SIN, y)), asinl(sinl(Y))}, {expr_fn(g, EX_ACOS, expr_fn(g, EX_SIN, y)), acosl(sinl(Y))},
-      {expr_fn(g, EX_ATAN, x), atanl(X)}, {expr_fn(g, EX_SINH, x), sinhl(X)}, {expr_fn(g, EX_COSH, x), coshl(X)},
-      {expr_fn(g, EX_TANH, x), tanhl(X)}, {expr_fn(g, EX_EXP, x), expl(X)}, {expr_fn(g, EX_LOG, a), logl(A)},
-      {expr_fn(g, EX_CBRT, x), cbrtl(X)}, {expr_fn(g, EX_ABS, x), fabsl(X)}, {expr_fn(g, EX_SIGN, x), X > 0 ? 1 : -1},
-      {expr_fn2(g, EX_ATAN2, y, x), atan2l(Y, X)}, {expr_fn2(g, EX_HYPOT, x, y), hypotl(X, Y)},
-      {expr_fn2(g, EX_MIN, x, y), fminl(X, Y)}, {expr_fn2(g, EX_MAX, x, y), fmaxl(X, Y)},
-      {expr_select(g, expr_fn2(g, EX_LT, x, y), a, y), X < Y ? A : Y},
-      {expr_select(g, expr_fn(g, EX_NOT, expr_fn2(g, EX_LE, x, y)), a, y), X <= Y ? Y : A},
-      {expr_pow(g, a, y), powl(A, Y)}, {expr_sqrt(g, a), sqrtl(A)}, {expr_pow_num(g, x, num_int(-3)), 1/(X*X*X)},
-      {expr_pow_num(g, a, num_ratio(5, 3)), powl(A, 5.0L/3)},
+    struct { Expr e; long double want;
+    } all[] = {
+        {expr_fn(g, EX_SIN, x), sinl(X)},
+        {expr_fn(g, EX_COS, x), cosl(X)},
+        {expr_fn(g, EX_TAN, x), tanl(X)},
+        {expr_fn(g, EX_ASIN, expr_fn(g, EX_SIN, y)), asinl(sinl(Y))},
+        {expr_fn(g, EX_ACOS, expr_fn(g, EX_SIN, y)), acosl(sinl(Y))},
+        {expr_fn(g, EX_ATAN, x), atanl(X)},
+        {expr_fn(g, EX_SINH, x), sinhl(X)},
+        {expr_fn(g, EX_COSH, x), coshl(X)},
+        {expr_fn(g, EX_TANH, x), tanhl(X)},
+        {expr_fn(g, EX_EXP, x), expl(X)},
+        {expr_fn(g, EX_LOG, a), logl(A)},
+        {expr_fn(g, EX_CBRT, x), cbrtl(X)},
+        {expr_fn(g, EX_ABS, x), fabsl(X)},
+        {expr_fn(g, EX_SIGN, x), X > 0 ? 1 : -1},
+        {expr_fn2(g, EX_ATAN2, y, x), atan2l(Y, X)},
+        {expr_fn2(g, EX_HYPOT, x, y), hypotl(X, Y)},
+        {expr_fn2(g, EX_MIN, x, y), fminl(X, Y)},
+        {expr_fn2(g, EX_MAX, x, y), fmaxl(X, Y)},
+        {expr_select(g, expr_fn2(g, EX_LT, x, y), a, y), X < Y ? A : Y},
+        {expr_select(g, expr_fn(g, EX_NOT, expr_fn2(g, EX_LE, x, y)), a, y), X <= Y ? Y : A},
+        {expr_pow(g, a, y), powl(A, Y)},
+        {expr_sqrt(g, a), sqrtl(A)},
+        {expr_pow_num(g, x, num_int(-3)), 1 / (X * X * X)},
+        {expr_pow_num(g, a, num_ratio(5, 3)), powl(A, 5.0L / 3)},
     };
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
       long double got = value(&l, all[k].e, v);
@@ -260,8 +275,9 @@ static void test_substitute(void **state) {
 static void test_latex_names(void **state) {
   (void)state;
   static const char *const rows[][2] = {
-    {"x", "x"}, {"th1", "\\theta_{1}"}, {"x_1", "x_{1}"}, {"x[3]", "x_{3}"}, {"mass", "\\mathrm{mass}"}, {"x'", "\\dot{x}"}, {"drag.c", "c_{\\mathrm{drag}}"},
-    {"p_th1", "p_{\\theta_{1}}"}, {"x\u2081", "x_{1}"}, {"\u03b8\u2081\u2080''", "\\ddot{\\theta}_{10}"}, {"\u00e9", "\\mathrm{\u00e9}"},
+      {"x", "x"}, {"th1", "\\theta_{1}"}, {"x_1", "x_{1}"}, {"x[3]", "x_{3}"}, {"mass", "\\mathrm{mass}"},
+      {"x'", "\\dot{x}"}, {"drag.c", "c_{\\mathrm{drag}}"}, {"p_th1", "p_{\\theta_{1}}"}, {"x\u2081", "x_{1}"},
+      {"\u03b8\u2081\u2080''", "\\ddot{\\theta}_{10}"}, {"\u00e9", "\\mathrm{\u00e9}"},
   };
   Arena *a = arena_new(NULL);
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -279,7 +295,8 @@ static void test_print(void **state) {
     Lab l = lab_new();
     Expr e = random_expr(&l, 9, 0);
     StrBuf lag = strbuf(l.a);
-    sb_puts(&lag, "model m\ncoord x, y\nstate z\nparam a = 1 > 0, b = 1 > 0\nflow z' = 0\nlagrangian = x'^2 + y'^2\nobserve o = ");
+    sb_puts(&lag, "model m\ncoord x, y\nstate z\nparam a = 1 > 0, b = 1 > 0\nflow z' = 0\nlagrangian = x'^2 + "
+                  "y'^2\nobserve o = ");
     expr_print(l.g, e, PRINT_TEXT, &lag);
     sb_puts(&lag, "\n");
     const char *zero[] = {"inf", "nan", "(0)", "/0"};
@@ -300,7 +317,8 @@ static void test_print(void **state) {
       Expr o = back->m->observes.at[0].value;
       expr_eval(back->g, &o, 1, w, &got);
       if (!isfinite(want) || fabsl(want) > 1e9L) continue;
-      if (!(fabsl(want - got) <= 1e-11L * (1 + fabsl(want)))) fprintf(stderr, "%s%Lg, not %Lg\n", sb_text(&lag), got, want);
+      if (!(fabsl(want - got) <= 1e-11L * (1 + fabsl(want))))
+        fprintf(stderr, "%s%Lg, not %Lg\n", sb_text(&lag), got, want);
       assert_true(fabsl(want - got) <= 1e-11L * (1 + fabsl(want)));
       judged++;
     }
@@ -363,9 +381,10 @@ static void test_long_chain(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_laws),        cmocka_unit_test(test_canonical),  cmocka_unit_test(test_eval),
-    cmocka_unit_test(test_derivatives), cmocka_unit_test(test_definitions), cmocka_unit_test(test_substitute),
-    cmocka_unit_test(test_latex_names), cmocka_unit_test(test_print),       cmocka_unit_test(test_depth),      cmocka_unit_test(test_long_chain),
+      cmocka_unit_test(test_laws),        cmocka_unit_test(test_canonical),   cmocka_unit_test(test_eval),
+      cmocka_unit_test(test_derivatives), cmocka_unit_test(test_definitions), cmocka_unit_test(test_substitute),
+      cmocka_unit_test(test_latex_names), cmocka_unit_test(test_print),       cmocka_unit_test(test_depth),
+      cmocka_unit_test(test_long_chain),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

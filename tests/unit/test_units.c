@@ -44,8 +44,9 @@ static int udunits_open(Udunits *u) {
   void *lib = dlopen("libudunits2.so.0", RTLD_NOW);
   if (!lib) lib = dlopen("libudunits2.so", RTLD_NOW);
   if (!lib) return 0;
-  if (!find(lib, "ut_read_xml", &u->read_xml) || !find(lib, "ut_parse", &u->parse) || !find(lib, "ut_get_converter", &u->get_converter) ||
-      !find(lib, "cv_convert_double", &u->convert) || !find(lib, "cv_free", &u->free_converter) || !find(lib, "ut_free", &u->free_unit) ||
+  if (!find(lib, "ut_read_xml", &u->read_xml) || !find(lib, "ut_parse", &u->parse) ||
+      !find(lib, "ut_get_converter", &u->get_converter) || !find(lib, "cv_convert_double", &u->convert) ||
+      !find(lib, "cv_free", &u->free_converter) || !find(lib, "ut_free", &u->free_unit) ||
       !find(lib, "ut_free_system", &u->free_system) || !find(lib, "ut_set_error_message_handler", &u->set_handler))
     return 0;
   u->set_handler(quiet);
@@ -93,9 +94,12 @@ static const char *si_text(Arena *a, const Dims *d, const Unit *u) {
 
 /* Names that the library spells otherwise, or defines by older values of constants. */
 static const char *theirs(const char *name) {
-  static const char *const other[][2] = {{"deg", "degree"}, {"rev", "turn"}, {"yr", "(365.25 day)"}, {"au", "(149597870700 m)"}, {"t", "tonne"},
-                                         {"u", "(1.66053906660e-27 kg)"}, {"Ω", "ohm"}, {"degC", "degree_Celsius"},
-                                         {"pc", "(30856775814913672.789 m)"}, {"ly", "(9460730472580800 m)"}, {"Msun", "(1.98840987069805e30 kg)"}};
+  static const char *const other[][2] = {{"deg", "degree"},
+                                         {"rev", "turn"}, {"yr", "(365.25 day)"}, {"au", "(149597870700 m)"},
+                                         {"t", "tonne"}, {"u", "(1.66053906660e-27 kg)"}, {"Ω", "ohm"},
+                                         {"degC", "degree_Celsius"}, {"pc", "(30856775814913672.789 m)"},
+                                         {"ly", "(9460730472580800 m)"},
+                                         {"Msun", "(1.98840987069805e30 kg)"}};
   for (size_t i = 0; i < sizeof other / sizeof *other; i++)
     if (strcmp(name, other[i][0]) == 0) return other[i][1];
   return name;
@@ -105,7 +109,8 @@ static void agree(const Udunits *lib, Arena *a, const char *ours, const char *ot
   Dims *d = dims_new(a);
   Unit u = unit_named(a, d, ours);
   double f = unit_factor(&u) + num_value(u.offset), want = converted(lib, other, si_text(a, d, &u));
-  if (!(fabs(f / want - 1) < 1e-12)) fail_msg("1 [%s] is %.17g %s here, and 1 [%s] is %.17g there", ours, f, si_text(a, d, &u), other, want);
+  if (!(fabs(f / want - 1) < 1e-12))
+    fail_msg("1 [%s] is %.17g %s here, and 1 [%s] is %.17g there", ours, f, si_text(a, d, &u), other, want);
 }
 
 /* Every unit of the compiler's own table: what is added there is judged here. */
@@ -150,7 +155,8 @@ static void test_prefixes(void **state) {
       if (strcmp(unit, "pc") == 0) other = arena_printf(a, "30856775814913672.789 %sm", prefix);
       for (size_t n = 0; n < sizeof of_2022 / sizeof *of_2022; n++)
         if (strcmp(prefix, of_2022[n].name) == 0)
-          other = arena_printf(a, "%s (%s)", of_2022[n].power, strcmp(unit, "eV") == 0 ? "1.602176634e-19 J" : theirs(unit));
+          other = arena_printf(a, "%s (%s)", of_2022[n].power,
+                               strcmp(unit, "eV") == 0 ? "1.602176634e-19 J" : theirs(unit));
       agree(lib, a, name, other);
       pairs++;
     }
@@ -163,10 +169,11 @@ static void test_compound(void **state) {
   const Udunits *lib = *state;
   if (!lib) skip();
   static const char *const pairs[][2] = {
-    {"kg*m^2/s^2", "kg m2 s-2"}, {"km/h", "km/h"}, {"N*s/m", "N s m-1"}, {"deg/s", "degree/s"}, {"rev/min", "turn/min"},
-    {"mm^2", "mm2"}, {"kg/m^3", "kg m-3"}, {"1/s", "s-1"}, {"m/s/s", "m s-2"}, {"cm^3/min", "cm3/min"}, {"kPa*L", "kPa L"},
-    {"deg^2", "degree2"}, {"µm/ns", "µm/ns"}, {"N m", "N m"}, {"N·m", "N m"}, {"N⋅m", "N m"}, {"J/kg*K", "J K/kg"}, {"J/(kg*K)", "J/kg/K"},
-    {"W/m^2/K^4", "W m-2 K-4"}, {"(km/h)^2", "km2/h2"}, {"s^-1", "s-1"}, {"m^(4/2)", "m2"}, {"V*s/A", "H"}, {"1", "1"},
+      {"kg*m^2/s^2", "kg m2 s-2"}, {"km/h", "km/h"}, {"N*s/m", "N s m-1"}, {"deg/s", "degree/s"},
+      {"rev/min", "turn/min"}, {"mm^2", "mm2"}, {"kg/m^3", "kg m-3"}, {"1/s", "s-1"}, {"m/s/s", "m s-2"},
+      {"cm^3/min", "cm3/min"}, {"kPa*L", "kPa L"}, {"deg^2", "degree2"}, {"µm/ns", "µm/ns"}, {"N m", "N m"},
+      {"N·m", "N m"}, {"N⋅m", "N m"}, {"J/kg*K", "J K/kg"}, {"J/(kg*K)", "J/kg/K"}, {"W/m^2/K^4", "W m-2 K-4"},
+      {"(km/h)^2", "km2/h2"}, {"s^-1", "s-1"}, {"m^(4/2)", "m2"}, {"V*s/A", "H"}, {"1", "1"},
   };
   Arena *a = arena_new(NULL);
   for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) agree(lib, a, pairs[i][0], pairs[i][1]);
@@ -177,7 +184,8 @@ static void test_compound(void **state) {
 
 static void test_refused(void **state) {
   (void)state;
-  static const char *const unknown[] = {"kdeg", "kmin", "kkg", "mh", "foo", "Kg", "kyr", "kt", "mdegC", "J/degC", "degC^2", "N.m"};
+  static const char *const unknown[] = {"kdeg", "kmin", "kkg",   "mh",     "foo",    "Kg",
+                                        "kyr",  "kt",   "mdegC", "J/degC", "degC^2", "N.m"};
   Arena *a = arena_new(NULL);
   Dims *d = dims_new(a);
   for (size_t i = 0; i < sizeof unknown / sizeof *unknown; i++) {
@@ -201,8 +209,11 @@ static void test_factors(void **state) {
   static const struct {
     const char *name;
     double value;
-  } others[] = {{"ft", 0.3048}, {"lb", 0.45359237}, {"ly", 299792458.0*31557600.0}, {"pc", 648000*149597870700.0/3.14159265358979323846},
-                {"Msun", 1.3271244e20/6.67430e-11}, {"\xC2\xB0", 3.14159265358979323846/180}, {"\xC2\xB0/s", 3.14159265358979323846/180}};
+  } others[] = {{"ft", 0.3048},
+                {"lb", 0.45359237}, {"ly", 299792458.0 * 31557600.0},
+                {"pc", 648000 * 149597870700.0 / 3.14159265358979323846}, {"Msun", 1.3271244e20 / 6.67430e-11},
+                {"\xC2\xB0", 3.14159265358979323846 / 180},
+                {"\xC2\xB0/s", 3.14159265358979323846 / 180}};
   for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
     Unit u = unit_named(a, d, others[i].name);
     assert_float_equal(unit_factor(&u)/others[i].value, 1, 4e-16);

@@ -1,6 +1,7 @@
-/* What discrete mechanics needs of L, against L itself: first derivatives by differences of L, second ones by differences of
- * the first, forces by what is left of M q'' = f. All scenes of models/ and tests/exec/models/. Differences are of order 4 in
- * steps of 1e-5 and extended precision: truncation is 1e-20 times a fifth derivative, rounding 1e-14. */
+/* What discrete mechanics needs of L, against L itself: first derivatives by differences of L, second ones by
+ * differences of the first, forces by what is left of M q'' = f. All scenes of models/ and tests/exec/models/.
+ * Differences are of order 4 in steps of 1e-5 and extended precision: truncation is 1e-20 times a fifth derivative,
+ * rounding 1e-14. */
 #include <glob.h>
 #include <math.h>
 #include <setjmp.h>
@@ -49,10 +50,13 @@ static const Real step = 1e-5L, weight[4] = {1, -8, 8, -1}, place[4] = {-2, -1, 
 /* of: the size of what was differenced; off: what differences by another step say that these are off by. */
 static void assert_within(const Case *c, const char *what, Real got, Real want, Real of, Real off) {
   Real size = 1 + fabsl(want) + 1e-4L * fabsl(of);
-  if (isfinite(want) && !(fabsl(got - want) <= 1e-8L * size + off)) fail_msg("%s: %s is %.12Lg, by differences %.12Lg", c->where, what, got, want);
+  if (isfinite(want) && !(fabsl(got - want) <= 1e-8L * size + off))
+    fail_msg("%s: %s is %.12Lg, by differences %.12Lg", c->where, what, got, want);
 }
 
-static void assert_near(const Case *c, const char *what, Real got, Real want, Real of) { assert_within(c, what, got, want, of, 0); }
+static void assert_near(const Case *c, const char *what, Real got, Real want, Real of) {
+  assert_within(c, what, got, want, of, 0);
+}
 
 /* d of out[k] by symbol s, for all of dL/dq, dL/dq', Q. */
 static void differences(const Case *c, SymId s, Real step, First *d) {
@@ -97,11 +101,13 @@ static void check_forces(const Case *c, const First *f, const Real *h) {
     First by_u;
     if (!m->inputs.at[k].rate) continue;
     differences(c, m->inputs.at[k].sym, step, &by_u);
-    for (uint32_t i = 0; i < c->e->n; i++) by_t.part[1][i] += by_u.part[1][i] * c->v[m->inputs.at[m->inputs.at[k].rate].sym];
+    for (uint32_t i = 0; i < c->e->n; i++)
+      by_t.part[1][i] += by_u.part[1][i] * c->v[m->inputs.at[m->inputs.at[k].rate].sym];
   }
   for (uint32_t i = 0; i < c->e->n && !m->states.n; i++) {
     Real want, size = 0;
-    expr_eval(c->e->g, c->e->constraints.n ? &c->e->system.f[i] : &c->e->f[i], 1, c->v, &want); /* without multipliers */
+    /* without multipliers */
+    expr_eval(c->e->g, c->e->constraints.n ? &c->e->system.f[i] : &c->e->f[i], 1, c->v, &want);
     want += by_t.part[1][i] - f->part[0][i];
     for (uint32_t j = 0; j < c->e->n; j++) {
       Real term = entry(c, h, SECOND_VQ, i, j) * c->v[m->coords.at[j].v];
@@ -134,8 +140,10 @@ static void check_state(const Case *c) {
     for (uint32_t i = 0; i < c->e->n; i++)
       for (int part = 0; part < 3; part++) {
         Real q = entry(c, h, by_q[part], i, j), v = part ? entry(c, h, by_v[part], i, j) : entry(c, h, SECOND_VQ, j, i);
-        assert_within(c, "a second derivative by q", q, dq.part[part][i], largest, 2 * fabsl(dq.part[part][i] - finer_q.part[part][i]));
-        assert_within(c, "a second derivative by q'", v, dv.part[part][i], largest, 2 * fabsl(dv.part[part][i] - finer_v.part[part][i]));
+        assert_within(c, "a second derivative by q", q, dq.part[part][i], largest,
+                      2 * fabsl(dq.part[part][i] - finer_q.part[part][i]));
+        assert_within(c, "a second derivative by q'", v, dv.part[part][i], largest,
+                      2 * fabsl(dv.part[part][i] - finer_v.part[part][i]));
       }
   }
   check_forces(c, &f, h);
@@ -187,7 +195,8 @@ static void test_derivatives(void **state) {
   glob_t found;
   assert_int_equal(glob("models/*.lag", 0, NULL, &found), 0);
   assert_int_equal(glob("tests/exec/models/*.lag", GLOB_APPEND, NULL, &found), 0);
-  for (size_t step = (size_t)slow(2, 12), i = first_row(step); i < found.gl_pathc; i += step) check_file(found.gl_pathv[i]);
+  for (size_t step = (size_t)slow(2, 12), i = first_row(step); i < found.gl_pathc; i += step)
+    check_file(found.gl_pathv[i]);
   globfree(&found);
 }
 
@@ -217,9 +226,11 @@ static void test_only_when_wanted(void **state) {
   const char *without = emitted(arena, 0), *with = emitted(arena, WANT_VARIATION);
   assert_null(strstr(without, "second("));
   assert_null(strstr(without, "variation"));
-  assert_non_null(strstr(with, ".variation = variation, .second = second,\n  .second_at = second_table, .nsecond = 6,"));
+  assert_non_null(
+      strstr(with, ".variation = variation, .second = second,\n  .second_at = second_table, .nsecond = 6,"));
   assert_non_null(strstr(with, "static int variation("));
-  assert_null(strstr(strstr(with, "static int variation(") + 1, "static int variation(")); /* once, though asked for twice */
+  /* once, though asked for twice */
+  assert_null(strstr(strstr(with, "static int variation(") + 1, "static int variation("));
   assert_memory_equal(digest(without), digest(with), 28); /* a saved state goes on with or without them */
   arena_free(arena);
 }
@@ -231,8 +242,8 @@ static void test_entries(void **state) {
     SecondPart part;
     uint32_t row, col;
     Real value;
-  } hand[] = {{SECOND_QQ, 0, 0, -3}, {SECOND_QQ, 1, 1, -3}, {SECOND_QQ, 1, 0, 3}, {SECOND_VV, 0, 0, 1}, {SECOND_VV, 1, 1, 1},
-              {SECOND_FV, 0, 0, -1}};
+  } hand[] = {{SECOND_QQ, 0, 0, -3}, {SECOND_QQ, 1, 1, -3}, {SECOND_QQ, 1, 0, 3},
+              {SECOND_VV, 0, 0, 1},  {SECOND_VV, 1, 1, 1},  {SECOND_FV, 0, 0, -1}};
   Arena *arena = arena_new(NULL);
   Eqns *e = equations(arena, spring, NULL);
   Variation *x = lagrangian_hessian_derive(e);

@@ -1,4 +1,5 @@
-/* N bodies in space by hand, each pair once, and each pair twice without storing what the other body gets; p: m[N], G, soft. */
+/* N bodies in space by hand, each pair once, and each pair twice without storing what the other body gets; p: m[N],
+ * G, soft. */
 #include <math.h>
 
 #include "accel.h"

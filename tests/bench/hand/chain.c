@@ -7,9 +7,10 @@
 #define N 10
 #endif
 
-/* Dense: M_ij = mu_max(i,j) l_i l_j cos(th_i - th_j), mu_i the mass from i down, by L D L^T; forces by sums from both ends, since
- * sin(th_i - th_j) falls apart into products. Up to 12 rods the compiler unrolls it; then rows go four columns at a time,
- * which GCC does not do by itself at -O2, and code is short enough for the cache of instructions. */
+/* Dense: M_ij = mu_max(i,j) l_i l_j cos(th_i - th_j), mu_i the mass from i down, by L D L^T; forces by sums from
+ * both ends, since sin(th_i - th_j) falls apart into products. Up to 12 rods the compiler unrolls it; then rows go
+ * four columns at a time, which GCC does not do by itself at -O2, and code is short enough for the cache of
+ * instructions. */
 #if N <= 12
 #define UNROLL _Pragma("GCC unroll 16")
 typedef double Lane;

@@ -1,5 +1,6 @@
-/* Callbacks of a header `--for gsl,cvode,arkode,ida --prefix mm` of any model: Jacobians against central differences of right-hand sides and residuals, dense and
- * of compressed columns. -DFILE_H="the header"; HAS_JAC, HAS_EVENTS, HAS_INPUTS: 0 or 1; TIME_STEP of differences by time. */
+/* Callbacks of a header `--for gsl,cvode,arkode,ida --prefix mm` of any model: Jacobians against central differences
+ * of right-hand sides and residuals, dense and of compressed columns. -DFILE_H="the header"; HAS_JAC, HAS_EVENTS,
+ * HAS_INPUTS: 0 or 1; TIME_STEP of differences by time. */
 #define MM_IMPLEMENTATION
 #include FILE_H
 #include <nvector/nvector_serial.h>
@@ -24,7 +25,8 @@ static void expect(int ok, const char *what, double got, double wanted) {
 static int near(double a, double b, double scale) { return fabs(a - b) <= 2e-5 * scale; }
 
 static void residual(double t, const double *y, const double *rate, double *r) {
-  N_Vector Y = N_VMake_Serial(N, (double *)y, context), D = N_VMake_Serial(N, (double *)rate, context), R = N_VMake_Serial(N, r, context);
+  N_Vector Y = N_VMake_Serial(N, (double *)y, context), D = N_VMake_Serial(N, (double *)rate, context),
+           R = N_VMake_Serial(N, r, context);
   if (mm_ida_res(t, Y, D, R, &data) != 0) faults++, puts("no residual");
   N_VDestroy(Y), N_VDestroy(D), N_VDestroy(R);
 }
@@ -62,18 +64,22 @@ int main(void) {
   double u[MM_NU], own[N];
   for (int i = 0; i < MM_NU; i++) u[i] = 0.7 + i;
   data.u = u;
-  expect(mm_cvode_rhs(s.t, N_VMake_Serial(N, y, context), N_VMake_Serial(N, own, context), &data) == 0 && mm_rhs(s.t, y, &data.p, u, f) == 0, "rates", 0, 0);
+  expect(mm_cvode_rhs(s.t, N_VMake_Serial(N, y, context), N_VMake_Serial(N, own, context), &data) == 0 &&
+             mm_rhs(s.t, y, &data.p, u, f) == 0,
+         "rates", 0, 0);
   expect(memcmp(f, own, sizeof f) == 0, "rates of the caller's inputs", own[0], f[0]);
 #endif
 #if HAS_INPUTS && HAS_EVENTS
   double g[MM_NEV];
-  expect(mm_ida_root(s.t, N_VMake_Serial(N, y, context), NULL, g, &data) == 0 && g[0] == 0.7 * y[0] - 1, "an event of an input", g[0], 0.7 * y[0] - 1);
+  expect(mm_ida_root(s.t, N_VMake_Serial(N, y, context), NULL, g, &data) == 0 && g[0] == 0.7 * y[0] - 1,
+         "an event of an input", g[0], 0.7 * y[0] - 1);
 #endif
   gsl_odeiv2_system sys = mm_gsl_system(&data);
   expect(sys.dimension == N && sys.function(s.t, y, f, sys.params) == 0, "the rates", 0, 0);
   N_Vector Y = N_VMake_Serial(N, y, context), F = N_VNew_Serial(N, context), R = N_VMake_Serial(N, rate, context);
   expect(mm_cvode_rhs(s.t, Y, F, &data) == 0 && memcmp(f, N_VGetArrayPointer(F), sizeof f) == 0, "CVODE's rates", 0, 0);
-  expect(mm_arkode_rhs(s.t, Y, F, &data) == 0 && memcmp(f, N_VGetArrayPointer(F), sizeof f) == 0, "ARKODE's rates", 0, 0);
+  expect(mm_arkode_rhs(s.t, Y, F, &data) == 0 && memcmp(f, N_VGetArrayPointer(F), sizeof f) == 0, "ARKODE's rates", 0,
+         0);
   residual(s.t, y, f, r0);
   for (int i = 0; i < N; i++) rate[i] = f[i] + 0.1 * cos(5 * i) * (1 + fabs(f[i]));
   residual(s.t, y, rate, r1);
@@ -85,31 +91,39 @@ int main(void) {
   double *J = calloc(N * N, sizeof *J), *G = calloc(N * N, sizeof *G), dfdt[N], e0[N], e1[N];
   expect(sys.jacobian && sys.jacobian(s.t, y, J, dfdt, sys.params) == 0, "GSL's Jacobian", 0, 0);
   for (int j = 0; j <= N; j++) { /* column N: time */
-    double h = j < N ? 1e-6 * (1e-2 + fabs(y[j])) : TIME_STEP, t0 = s.t - h * (j == N), t1 = s.t + h * (j == N), was = j < N ? y[j] : 0;
+    double h = j < N ? 1e-6 * (1e-2 + fabs(y[j])) : TIME_STEP, t0 = s.t - h * (j == N), t1 = s.t + h * (j == N),
+           was = j < N ? y[j] : 0;
     if (j < N) y[j] = was - h;
     sys.function(t0, y, e0, sys.params);
     if (j < N) y[j] = was + h;
     sys.function(t1, y, e1, sys.params);
     if (j < N) y[j] = was;
     scale = 0;
-    for (int i = 0; i < N; i++) scale = fmax(scale, fabs((e1[i] - e0[i]) / (2 * h)) + 1e-5 * fabs(f[i]) / (1e-2 + (j < N ? fabs(y[j]) : 1)));
+    for (int i = 0; i < N; i++)
+      scale = fmax(scale, fabs((e1[i] - e0[i]) / (2 * h)) + 1e-5 * fabs(f[i]) / (1e-2 + (j < N ? fabs(y[j]) : 1)));
     for (int i = 0; i < N; i++) {
       double got = j < N ? J[i * N + j] : dfdt[i];
-      expect(near(got, (e1[i] - e0[i]) / (2 * h), scale), j < N ? "an entry of J" : "df/dt", got, (e1[i] - e0[i]) / (2 * h));
+      expect(near(got, (e1[i] - e0[i]) / (2 * h), scale), j < N ? "an entry of J" : "df/dt", got,
+             (e1[i] - e0[i]) / (2 * h));
     }
   }
-  SUNMatrix D = SUNDenseMatrix(N, N, context), S = SUNSparseMatrix(N, N, MM_NNZ, CSC_MAT, context), T = SUNSparseMatrix(N, N, MM_NNZ_IDA, CSC_MAT, context);
+  SUNMatrix D = SUNDenseMatrix(N, N, context), S = SUNSparseMatrix(N, N, MM_NNZ, CSC_MAT, context),
+            T = SUNSparseMatrix(N, N, MM_NNZ_IDA, CSC_MAT, context);
   SUNMatrix B = SUNBandMatrix(N, 1, 1, context), W = SUNSparseMatrix(N, N, MM_NNZ, CSR_MAT, context);
-  expect(mm_cvode_jac(s.t, Y, F, D, &data, F, F, F) == 0 && mm_cvode_jac(s.t, Y, F, S, &data, F, F, F) == 0, "CVODE's Jacobians", 0, 0);
+  expect(mm_cvode_jac(s.t, Y, F, D, &data, F, F, F) == 0 && mm_cvode_jac(s.t, Y, F, S, &data, F, F, F) == 0,
+         "CVODE's Jacobians", 0, 0);
   same("an entry of CVODE's", J, D, S, MM_NNZ);
   SUNMatZero(D), SUNMatZero(S);
-  expect(mm_arkode_jac(s.t, Y, F, D, &data, F, F, F) == 0 && mm_arkode_jac(s.t, Y, F, S, &data, F, F, F) == 0, "ARKODE's Jacobians", 0, 0);
+  expect(mm_arkode_jac(s.t, Y, F, D, &data, F, F, F) == 0 && mm_arkode_jac(s.t, Y, F, S, &data, F, F, F) == 0,
+         "ARKODE's Jacobians", 0, 0);
   same("an entry of ARKODE's", J, D, S, MM_NNZ);
-  expect(mm_cvode_jac(s.t, Y, F, B, &data, F, F, F) < 0 && mm_cvode_jac(s.t, Y, F, W, &data, F, F, F) < 0, "other matrices are refused", 0, 0);
+  expect(mm_cvode_jac(s.t, Y, F, B, &data, F, F, F) < 0 && mm_cvode_jac(s.t, Y, F, W, &data, F, F, F) < 0,
+         "other matrices are refused", 0, 0);
 
   const double c = 37.5;
   SUNMatZero(D);
-  expect(mm_ida_jac(s.t, c, Y, R, F, D, &data, F, F, F) == 0 && mm_ida_jac(s.t, c, Y, R, F, T, &data, F, F, F) == 0, "IDA's Jacobians", 0, 0);
+  expect(mm_ida_jac(s.t, c, Y, R, F, D, &data, F, F, F) == 0 && mm_ida_jac(s.t, c, Y, R, F, T, &data, F, F, F) == 0,
+         "IDA's Jacobians", 0, 0);
   for (int k = 0; k < N * N; k++) G[k] = SM_ELEMENT_D(D, k / N, k % N);
   same("an entry of IDA's", G, D, T, MM_NNZ_IDA);
   for (int j = 0; j < N; j++) {
@@ -124,7 +138,9 @@ int main(void) {
     rate[j] = was_rate;
     scale = 0;
     for (int i = 0; i < N; i++) d[i] += c * (e1[i] - e0[i]) / 2, scale = fmax(scale, fabs(d[i]));
-    for (int i = 0; i < N; i++) expect(near(G[i * N + j], d[i], scale + 1e-6 * size / (1e-2 + fabs(y[j]))), "an entry of IDA's J", G[i * N + j], d[i]);
+    for (int i = 0; i < N; i++)
+      expect(near(G[i * N + j], d[i], scale + 1e-6 * size / (1e-2 + fabs(y[j]))), "an entry of IDA's J", G[i * N + j],
+             d[i]);
   }
 #else
   expect(!sys.jacobian, "no Jacobian", 0, 0);

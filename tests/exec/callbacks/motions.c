@@ -1,5 +1,5 @@
-/* A header `--for gsl,cvode,arkode,ida --prefix mm` run by each library: `motions T VALUE...` compares y(T) of every solver with the values. -DFILE_H="the header";
- * HAS_JAC, HAS_EVENTS: 0 or 1. */
+/* A header `--for gsl,cvode,arkode,ida --prefix mm` run by each library: `motions T VALUE...` compares y(T) of every
+ * solver with the values. -DFILE_H="the header"; HAS_JAC, HAS_EVENTS: 0 or 1. */
 #define MM_IMPLEMENTATION
 #include FILE_H
 #include <arkode/arkode_arkstep.h>
@@ -37,7 +37,8 @@ static void act(const mm_data *d, double t, N_Vector y, const int *found) {
   mm_to_y(&s, N_VGetArrayPointer(y));
 }
 /* The events of the header for the solver s of LIBRARY, and the actions of those that it found. */
-#define WATCH(LIBRARY, s, root) (mm_directions(direction), LIBRARY##RootInit(s, MM_NEV, root), LIBRARY##SetRootDirection(s, direction))
+#define WATCH(LIBRARY, s, root) \
+  (mm_directions(direction), LIBRARY##RootInit(s, MM_NEV, root), LIBRARY##SetRootDirection(s, direction))
 #define ACT(LIBRARY, s) (LIBRARY##GetRootInfo(s, found), act(&d, t, y, found))
 static int direction[MM_NEV], found[MM_NEV];
 #else
@@ -72,8 +73,12 @@ static void by_gsl(const char *name, const gsl_odeiv2_step_type *type, double to
 #endif
 
 #if HAS_JAC
-static SUNMatrix matrix(int sparse, int nonzero) { return sparse ? SUNSparseMatrix(N, N, nonzero, CSC_MAT, context) : SUNDenseMatrix(N, N, context); }
-static SUNLinearSolver solver(int sparse, N_Vector y, SUNMatrix A) { return sparse ? SUNLinSol_KLU(y, A, context) : SUNLinSol_Dense(y, A, context); }
+static SUNMatrix matrix(int sparse, int nonzero) {
+  return sparse ? SUNSparseMatrix(N, N, nonzero, CSC_MAT, context) : SUNDenseMatrix(N, N, context);
+}
+static SUNLinearSolver solver(int sparse, N_Vector y, SUNMatrix A) {
+  return sparse ? SUNLinSol_KLU(y, A, context) : SUNLinSol_Dense(y, A, context);
+}
 #endif
 
 /* kind: 0 Adams without Jacobian, 1 BDF dense, 2 BDF sparse. */

@@ -1,6 +1,6 @@
-/* Large systems of lag_kkt.h, as chains and ladders have them, in a random order of unknowns: those that have a band are solved within it, and
- * agree with elimination in long double; those that are singular, or nearly so, are left to the solver that decides about ranks. Exit status 1
- * when something is wrong. */
+/* Large systems of lag_kkt.h, as chains and ladders have them, in a random order of unknowns: those that have a band
+ * are solved within it, and agree with elimination in long double; those that are singular, or nearly so, are left
+ * to the solver that decides about ranks. Exit status 1 when something is wrong. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +10,10 @@
 
 enum { N = 90, M = 40, ALL = N + M, ROOM = N * N + M * N + M * M + 2 * N + 9 * M };
 enum { CHAIN, WEIGHTLESS, INDEFINITE, RING, SCALED, REDUNDANT, CLOSE, DENSE, KINDS };
-static const char *const names[] = {"a chain", "without inertia here and there", "indefinite", "a ring", "in other units", "redundant", "nearly redundant", "dense"};
+static const char *const names[] = {"a chain",          "without inertia here and there",
+                                    "indefinite",       "a ring",
+                                    "in other units",   "redundant",
+                                    "nearly redundant", "dense"};
 
 static double m[N * N], a[M * N], f[N], g[M];
 static int once, twice; /* constraints of which the second is twice the first */
@@ -32,8 +35,8 @@ static void shuffle(int n, int *place)
   }
 }
 
-/* Coordinates along a line, each coupled with the next one by inertia, and constraints of four that stand together, or, closed to a ring, of the last and the
- * first. */
+/* Coordinates along a line, each coupled with the next one by inertia, and constraints of four that stand together,
+ * or, closed to a ring, of the last and the first. */
 static void make(int kind)
 {
   int q[N], c[M];
@@ -48,12 +51,15 @@ static void make(int kind)
   }
   for (int k = 0; k < M; k++) {
     double row = kind == SCALED ? pow(10, 4 * next()) : 1;
-    for (int i = 0; i < 4; i++) a[c[k] * N + q[(2 * k + i + (kind == RING && k == M - 1 ? N - 2 * k - 2 : 0)) % N]] = (next() + (i == 1 ? 3 : 0)) * row;
+    for (int i = 0; i < 4; i++)
+      a[c[k] * N + q[(2 * k + i + (kind == RING && k == M - 1 ? N - 2 * k - 2 : 0)) % N]] =
+          (next() + (i == 1 ? 3 : 0)) * row;
     g[c[k]] = next() * row;
   }
   for (int k = 0; k < M && kind == WEIGHTLESS; k += 3) /* the coordinate that constraint k moves most */
     for (int i = 0; i < N; i++) m[q[2 * k + 1] * N + i] = m[i * N + q[2 * k + 1]] = 0;
-  for (int i = 0; i < N && (kind == REDUNDANT || kind == CLOSE); i++) a[c[1] * N + i] = 2 * a[c[0] * N + i] * (1 + (kind == CLOSE ? 1e-7 * next() : 0));
+  for (int i = 0; i < N && (kind == REDUNDANT || kind == CLOSE); i++)
+    a[c[1] * N + i] = 2 * a[c[0] * N + i] * (1 + (kind == CLOSE ? 1e-7 * next() : 0));
   once = c[0], twice = c[1];
   if (kind == REDUNDANT || kind == CLOSE) g[c[1]] = 2 * g[c[0]];
   for (int i = 0; i < N * N && kind == DENSE; i++) m[i] += 1e-3 / N;
@@ -93,7 +99,8 @@ static int ours(double *z)
 
   memcpy(x, f, sizeof f), memcpy(l, g, sizeof g);
   int banded = lag_banded(N, M, m, a, x, l, w, ROOM);
-  memcpy(w, m, sizeof m), memcpy(w + N * N, a, sizeof a), memcpy(w + N * N + M * N, f, sizeof f), memcpy(w + N * N + M * N + N, g, sizeof g);
+  memcpy(w, m, sizeof m), memcpy(w + N * N, a, sizeof a), memcpy(w + N * N + M * N, f, sizeof f),
+      memcpy(w + N * N + M * N + N, g, sizeof g);
   if (!lag_kkt(N, M, 0, w)) printf("refused\n");
   memcpy(z, w + N * N + M * N, ALL * sizeof *z);
   return banded;
@@ -133,12 +140,15 @@ int main(void)
       }
       most = fmax(most, singular ? 0 : far / size);
       off = fmax(off, residual(z));
-      if (kind == REDUNDANT) most = fmax(most, fabs(z[N + twice] - 2 * z[N + once]) / fabs(z[N + twice])); /* of multipliers the least */
+      /* of multipliers the least */
+      if (kind == REDUNDANT) most = fmax(most, fabs(z[N + twice] - 2 * z[N + once]) / fabs(z[N + twice]));
     }
-    /* Both round to the last digit times the condition of the system, of up to 1e4, and 1e12 for elimination in other units; equations are met to
-     * rounding of their terms, those of a system that is singular but for 1e-7 to 1e10 times that. */
+    /* Both round to the last digit times the condition of the system, of up to 1e4, and 1e12 for elimination in
+     * other units; equations are met to rounding of their terms, those of a system that is singular but for 1e-7 to
+     * 1e10 times that. */
     printf("%s: %d of 20 in a band, differs by %.1e, equations by %.1e\n", names[kind], in_band, most, off);
-    bad |= in_band != (singular || kind == DENSE ? 0 : 20) || !(most < (kind == SCALED ? 1e-7 : 1e-11)) || !(off < (kind == CLOSE ? 1e-6 : 1e-12));
+    bad |= in_band != (singular || kind == DENSE ? 0 : 20) || !(most < (kind == SCALED ? 1e-7 : 1e-11)) ||
+           !(off < (kind == CLOSE ? 1e-6 : 1e-12));
   }
   return bad;
 }

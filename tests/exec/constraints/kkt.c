@@ -1,7 +1,9 @@
-/* lag_kkt.h against GSL: random systems [M -A^T; A 0] [x; l] = [f; g], with constraints that are independent, redundant, nearly so, badly
- * scaled, or zero, M definite, indefinite, or singular where A fixes what it leaves open; with coordinates in units that are up to 1e12 apart, which
- * change neither the motion nor the multipliers. Expected: the solution of least norm in l by the singular value decomposition of the whole
- * matrix, in one unit. Those of which M is singular on the kernel of A are refused. Prints the largest differences; exit status 1 when one is too large. */
+/* lag_kkt.h against GSL: random systems [M -A^T; A 0] [x; l] = [f; g], with constraints that are independent,
+ * redundant, nearly so, badly scaled, or zero, M definite, indefinite, or singular where A fixes what it leaves
+ * open; with coordinates in units that are up to 1e12 apart, which change neither the motion nor the multipliers.
+ * Expected: the solution of least norm in l by the singular value decomposition of the whole matrix, in one unit.
+ * Those of which M is singular on the kernel of A are refused. Prints the largest differences; exit status 1 when
+ * one is too large. */
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -13,8 +15,9 @@
 
 enum { N = 7, M = 5, MAX = 600 };
 enum { PLAIN, REDUNDANT, SCALED, ZERO, INDEFINITE, SINGULAR, PERMUTED, SLACK, KINDS };
-static const char *const names[] = {"independent", "redundant", "redundant, scaled by 1e-3 to 1e3", "with a zero row", "indefinite M", "singular M", "redundant, in another order",
-                                    "redundant, singular M"};
+static const char *const names[] = {
+    "independent",  "redundant",  "redundant, scaled by 1e-3 to 1e3", "with a zero row",
+    "indefinite M", "singular M", "redundant, in another order",      "redundant, singular M"};
 
 static unsigned long long seed = 42;
 static double next(void)
@@ -87,11 +90,14 @@ static int ours(const System *s, double *x, double *l)
   return regular;
 }
 
-/* x from the decomposition of the whole matrix, scaled so that its rank can be seen; l of least norm from that of A^T, A^T l = M x - f. */
+/* x from the decomposition of the whole matrix, scaled so that its rank can be seen; l of least norm from that of
+ * A^T, A^T l = M x - f. */
 static void by_svd(const System *s, double *x, double *l)
 {
-  gsl_matrix *k = gsl_matrix_calloc(N + M, N + M), *v = gsl_matrix_alloc(N + M, N + M), *t = gsl_matrix_alloc(N, M), *tv = gsl_matrix_alloc(M, M);
-  gsl_vector *d = gsl_vector_alloc(N + M), *w = gsl_vector_alloc(N + M), *b = gsl_vector_alloc(N + M), *y = gsl_vector_alloc(N + M);
+  gsl_matrix *k = gsl_matrix_calloc(N + M, N + M), *v = gsl_matrix_alloc(N + M, N + M), *t = gsl_matrix_alloc(N, M),
+             *tv = gsl_matrix_alloc(M, M);
+  gsl_vector *d = gsl_vector_alloc(N + M), *w = gsl_vector_alloc(N + M), *b = gsl_vector_alloc(N + M),
+             *y = gsl_vector_alloc(N + M);
   gsl_vector *td = gsl_vector_alloc(M), *tw = gsl_vector_alloc(M), *r = gsl_vector_alloc(N), *lv = gsl_vector_alloc(M);
 
   for (int i = 0; i < N; i++)
@@ -124,7 +130,8 @@ static void by_svd(const System *s, double *x, double *l)
   gsl_linalg_SV_solve(t, tv, td, r, lv);
   for (int j = 0; j < M; j++) l[j] = gsl_vector_get(lv, (size_t)j);
   gsl_matrix_free(k), gsl_matrix_free(v), gsl_matrix_free(t), gsl_matrix_free(tv);
-  gsl_vector_free(d), gsl_vector_free(w), gsl_vector_free(b), gsl_vector_free(y), gsl_vector_free(td), gsl_vector_free(tw), gsl_vector_free(r), gsl_vector_free(lv);
+  gsl_vector_free(d), gsl_vector_free(w), gsl_vector_free(b), gsl_vector_free(y), gsl_vector_free(td),
+      gsl_vector_free(tw), gsl_vector_free(r), gsl_vector_free(lv);
 }
 
 static double difference(int n, const double *a, const double *b)
@@ -192,8 +199,8 @@ static double length_of_rest(int r, const double *rows, double *x)
   return length;
 }
 
-/* M of s gains what makes its inertia along one direction z of the kernel of A be `left` alone, against all of the kernel. Q is the projector
- * on the kernel. */
+/* M of s gains what makes its inertia along one direction z of the kernel of A be `left` alone, against all of the
+ * kernel. Q is the projector on the kernel. */
 static void make_slack(System *s, double left)
 {
   double rows[M * N], z[N], u[N], mz[N], zu = 0;
@@ -218,8 +225,8 @@ static void make_slack(System *s, double left)
     for (int j = 0; j < N; j++) s->m[i * N + j] += (zu + left) * z[i] * z[j] - u[i] * z[j] - z[i] * u[j];
 }
 
-/* Of systems without inertia along a direction that constraints leave free, but for rounding, one is solved; or one is refused, or solved badly, of
- * which the inertia there is 1e-8. */
+/* Of systems without inertia along a direction that constraints leave free, but for rounding, one is solved; or one
+ * is refused, or solved badly, of which the inertia there is 1e-8. */
 static int takes_slack(int kind, double apart)
 {
   enum { TIMES = 300 };
@@ -241,7 +248,8 @@ static int takes_slack(int kind, double apart)
     refused += !another_way(&weak, kind == PERMUTED, unit, x, l);
     most_x = fmax(most_x, difference(N, x, x0));
   }
-  printf("%s, units 1e%g apart, without inertia: %d solved; with 1e-8: %d refused, x %.1e\n", names[kind], apart, solved, refused, most_x);
+  printf("%s, units 1e%g apart, without inertia: %d solved; with 1e-8: %d refused, x %.1e\n", names[kind], apart,
+         solved, refused, most_x);
   return solved > 0 || refused > 0 || !(most_x < 1e-5); /* 1e-16 times the condition, of up to 1e11 */
 }
 

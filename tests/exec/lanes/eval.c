@@ -1,8 +1,9 @@
-/* What every function of emitted models computes at the same random states, as a double or in lanes: a line a state and function,
- * `model function status values...`, for long_lanes.sh to compare. Linked with scenes.c, which lists the models' scenes.
+/* What every function of emitted models computes at the same random states, as a double or in lanes: a line a state
+ * and function, `model function status values...`, for long_lanes.sh to compare. Linked with scenes.c, which lists
+ * the models' scenes.
  *
- * A lane's status is -1 when its bit in the negative of the function's is set. States differ in sign and size, so that lanes
- * take different branches; some have angles beyond what short reductions take. */
+ * A lane's status is -1 when its bit in the negative of the function's is set. States differ in sign and size, so
+ * that lanes take different branches; some have angles beyond what short reductions take. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -126,7 +127,8 @@ int main(void) {
     const lag_model *m = s->model;
     static const unsigned char none[ROOM];
     seed = 1;
-    if (2*(2*m->nq + m->nz) > ROOM || m->nw > ROOM || m->np + m->nderived > ROOM) return printf("%s is too large\n", m->name), 1;
+    if (2 * (2 * m->nq + m->nz) > ROOM || m->nw > ROOM || m->np + m->nderived > ROOM)
+      return printf("%s is too large\n", m->name), 1;
     for (int state = 0; state < STATES; state += LANES) {
       s->params(p, none);
       for (int lane = 0; lane < LANES; lane++) {

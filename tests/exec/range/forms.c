@@ -14,7 +14,8 @@ int main(void) {
   while (scanf("%lf %lf", &u, &expected) == 2) {
     double q = u/8, v = 1, a = NAN;
     int status = range_one.model->accel(0, &q, &v, z, p, NULL, &a, z, w);
-    double tolerance = 3e-12*fabs(expected) + 2e-14; /* exp magnifies the rounding of its argument 1e4; 1 - tanh^2, to 1e-16, comes with factors of 50 */
+    /* exp magnifies the rounding of its argument 1e4; 1 - tanh^2, to 1e-16, comes with factors of 50 */
+    double tolerance = 3e-12*fabs(expected) + 2e-14;
     if (status == 0 && fabs(a - expected) <= tolerance) continue;
     printf("at %g a: got %.17g (status %d), expected %.17g\n", u, a, status, expected);
     bad = 1;

@@ -20,7 +20,8 @@ static void print_scene(const lag_scene *s) {
   s->params(p, fixed);
   s->start(p, y, y + m->nq, y + 2 * m->nq);
   for (int i = 0; i < m->nq; i++) y[m->nq + i] += 0.1 * (i + 1) * m->q[i].factor;
-  if (ty->first(s->t0, y, y + m->nq, y + 2 * m->nq, p, u, follows, x, w) != LAG_OK) printf("%s: order 0 failed\n", m->name);
+  if (ty->first(s->t0, y, y + m->nq, y + 2 * m->nq, p, u, follows, x, w) != LAG_OK)
+    printf("%s: order 0 failed\n", m->name);
   ty->rest(ORDER, 0.125, x, w);
   ty->at(ORDER, 0.75, x, sum, slope);
   for (int k = 0; k <= ORDER; k++)

@@ -23,7 +23,8 @@ static int compare(const char *file, Real T, int print) {
   const lag_model *m = s->model;
   const lag_taylor *ty = m->taylor;
   static const unsigned char none[MOST];
-  Real z[MOST] = {0}, p[MOST], u[MOST], follows[MOST] = {1, 0}, *x = calloc((size_t)((ty->order + 1) * ty->columns), sizeof *x);
+  Real z[MOST] = {0}, p[MOST], u[MOST], follows[MOST] = {1, 0},
+       *x = calloc((size_t)((ty->order + 1) * ty->columns), sizeof *x);
   Real *w = calloc((size_t)ty->nw, sizeof *w), worst = 0;
   char name[64], digits[64];
   int k, n = 0, wrong = 0;

@@ -1,6 +1,7 @@
-/* The Taylor polynomials of models against their accelerations, in quadruple precision: y'(s) of the polynomial of order n
- * less f(y(s)) must fall as s^n, at states at random near the scenes' starts. A coefficient that is wrong by a part d adds
- * a term of lower order, which shows as soon as it is larger than the next term: at the smallest s, d of about 1e-20.
+/* The Taylor polynomials of models against their accelerations, in quadruple precision: y'(s) of the polynomial of
+ * order n less f(y(s)) must fall as s^n, at states at random near the scenes' starts. A coefficient that is wrong by
+ * a part d adds a term of lower order, which shows as soon as it is larger than the next term: at the smallest s, d
+ * of about 1e-20.
  *   defect      prints what is wrong, and the models without series; linked with all_scenes */
 #include <math.h>
 #include <stdint.h>
@@ -22,8 +23,9 @@ static Real next(void) { /* in (-1/8, 1/8) */
   return (Real)((double)(seed >> 11) / 9007199254740992.0 - 0.5) / 4;
 }
 
-/* Near the start, by an eighth of what it is at most; what is zero is moved by an eighth of a declared unit. Time by an eighth of a second, or of
- * the span where that is shorter: the phase of a fast field would have no digits after a second. */
+/* Near the start, by an eighth of what it is at most; what is zero is moved by an eighth of a declared unit. Time by
+ * an eighth of a second, or of the span where that is shorter: the phase of a fast field would have no digits after
+ * a second. */
 static void place(const lag_scene *s, Point *at) {
   const lag_model *m = s->model;
   static const unsigned char none[MOST];
@@ -32,7 +34,8 @@ static void place(const lag_scene *s, Point *at) {
   s->start(at->p, at->q, at->v, at->z);
   at->t = (Real)s->t0 + next() * (fabs(s->t1 - s->t0) < 1 ? (Real)fabs(s->t1 - s->t0) : 1);
   for (int i = 0; i < m->nq; i++) {
-    Real unit = at->q[i] == 0 ? (Real)m->q[i].factor : at->q[i], unit_v = at->v[i] == 0 ? (Real)m->q[i].factor : at->v[i];
+    Real unit = at->q[i] == 0 ? (Real)m->q[i].factor : at->q[i],
+         unit_v = at->v[i] == 0 ? (Real)m->q[i].factor : at->v[i];
     at->q[i] += next() * unit;
     at->v[i] += next() * unit_v;
   }
@@ -58,7 +61,8 @@ static Real defect_at(const lag_model *m, const Point *at, const Real *x, Real T
   ty->at(ORDER, s, x, y, dy);
   for (int i = 0; i < n; i++) y[i] += x[i];
   if (m->inputs) m->inputs(at->t + s * T, at->p, u);
-  if (m->accel(at->t + s * T, y, y + m->nq, y + 2 * m->nq, at->p, u, rates, rates + m->nq, w) != LAG_OK) return (Real)NAN;
+  if (m->accel(at->t + s * T, y, y + m->nq, y + 2 * m->nq, at->p, u, rates, rates + m->nq, w) != LAG_OK)
+    return (Real)NAN;
   for (int i = m->nq; i < n; i++) {
     Real size = i < nv ? of_v : of_z;
     if (size > 0) worst = real_max(worst, real_abs(dy[i] - T * rates[i - m->nq]) / size);
@@ -71,9 +75,13 @@ static int check_state(const lag_scene *s, Real *x, Real *w) {
   Point at = {0};
   Real T = 1, before = 0;
   place(s, &at);
-  if (m->taylor->first(at.t, at.q, at.v, at.z, at.p, at.u, at.follows, x, w) != LAG_OK) return printf("%s: order 0 failed\n", m->name), 1;
+  if (m->taylor->first(at.t, at.q, at.v, at.z, at.p, at.u, at.follows, x, w) != LAG_OK)
+    return printf("%s: order 0 failed\n", m->name), 1;
   for (int i = 0; i < 2 * m->nq + m->nz; i++) { /* a tenth of the time in which the state changes */
-    Real y = i < m->nq ? at.q[i] : i < 2 * m->nq ? at.v[i - m->nq] : at.z[i - 2 * m->nq], rate = i < m->nq ? at.v[i] : x[m->nq + m->nz + i];
+    Real y = i < m->nq       ? at.q[i]
+             : i < 2 * m->nq ? at.v[i - m->nq]
+                             : at.z[i - 2 * m->nq],
+         rate = i < m->nq ? at.v[i] : x[m->nq + m->nz + i];
     if (real_abs(rate) * T > real_abs(y) / 10 && y != 0) T = real_abs(y / rate) / 10;
   }
   m->taylor->rest(ORDER, T, x, w);
@@ -81,7 +89,9 @@ static int check_state(const lag_scene *s, Real *x, Real *w) {
     Real d = defect_at(m, &at, x, T, (Real)1 / (Real)(1 << i), w), rounding = (Real)(1000 * REAL_EPSILON);
     if (i == 8 && d < rounding) return 0; /* a polynomial, or of higher order */
     if (i > 4 && before > 1e3L * rounding && !(d < before / (Real)(1 << (ORDER - 1)) / (Real)1.7L))
-      return printf("%s: defect %.3Lg at s = 1/%d after %.3Lg: not of order %d\n", m->name, (long double)d, 1 << i, (long double)before, ORDER), 1;
+      return printf("%s: defect %.3Lg at s = 1/%d after %.3Lg: not of order %d\n", m->name, (long double)d, 1 << i,
+                    (long double)before, ORDER),
+             1;
     before = d;
   }
   return 0;
@@ -96,7 +106,8 @@ int main(void) {
       printf("without: %s\n", m->name);
       continue;
     }
-    Real *x = calloc((size_t)((ty->order + 1) * ty->columns), sizeof *x), *w = calloc((size_t)(ty->nw + m->nw + 1), sizeof *w);
+    Real *x = calloc((size_t)((ty->order + 1) * ty->columns), sizeof *x),
+         *w = calloc((size_t)(ty->nw + m->nw + 1), sizeof *w);
     for (int k = 0; k < STATES; k++) wrong |= check_state(all_scenes[i], x, w);
     free(x);
     free(w);

@@ -34,8 +34,8 @@ static void go(lag_sim *sim, double t) {
 
 /* --- from rest --- */
 
-/* A pendulum from 90 degrees: only the coefficients 2, 6, 10, ... of its angle are not zero. It passes the lowest point after K/sqrt(g),
- * K = K(sin 45 deg) = 1.854074677301371918433850..., at the speed sqrt(2 g). */
+/* A pendulum from 90 degrees: only the coefficients 2, 6, 10, ... of its angle are not zero. It passes the lowest
+ * point after K/sqrt(g), K = K(sin 45 deg) = 1.854074677301371918433850..., at the speed sqrt(2 g). */
 static void from_rest(void) {
   lag_sim *sim = start(&pendulum_wide, 1e-15, NULL, 0);
   go(sim, 1.8540746773013719184 / sqrt(9.81));
@@ -44,19 +44,23 @@ static void from_rest(void) {
   lag_sim_free(sim);
 
   /* mpmath.odefun, 30 digits, from the double that is nearest to pi/2. Errors grow about a hundred times. */
-  static const double y[] = {-0.5684746640159468775, -0.5263937279324087944, 6.078384885761968967, -9.681360681708884608};
+  static const double y[] = {-0.5684746640159468775, -0.5263937279324087944, 6.078384885761968967,
+                             -9.681360681708884608};
   lag_stats st;
   sim = start(&double_pendulum_swing, 1e-15, NULL, 0);
   go(sim, 10);
   double worst = 0;
-  for (int i = 0; i < 2; i++) worst = fmax(worst, fmax(fabs(lag_sim_q(sim)[i] / y[i] - 1), fabs(lag_sim_v(sim)[i] / y[2 + i] - 1)));
+  for (int i = 0; i < 2; i++)
+    worst = fmax(worst, fmax(fabs(lag_sim_q(sim)[i] / y[i] - 1), fabs(lag_sim_v(sim)[i] / y[2 + i] - 1)));
   small(worst, 2e-13, "the double pendulum from rest at right angles");
   lag_sim_stats(sim, &st);
-  check(st.rhs_calls == st.steps + st.rejected + 1, "M is factored once a step", (double)st.rhs_calls, (double)st.steps);
+  check(st.rhs_calls == st.steps + st.rejected + 1, "M is factored once a step", (double)st.rhs_calls,
+        (double)st.steps);
   lag_sim_free(sim);
 }
 
-/* x'' = t^8 x, x = 1 + t^10/(9 10) + t^20/(9 10 19 20) + ...: more gaps than the step rule looks at. The defect must see them. */
+/* x'' = t^8 x, x = 1 + t^10/(9 10) + t^20/(9 10 19 20) + ...: more gaps than the step rule looks at. The defect must
+ * see them. */
 static void gaps(void) {
   lag_sim *sim = start(&gap_go, 1e-15, NULL, 0);
   double worst = 0;
@@ -69,7 +73,8 @@ static void gaps(void) {
     go(sim, t);
     worst = fmax(worst, fabs(lag_sim_q(sim)[0] / (double)sum - 1));
   }
-  small(worst, 1e-12, "a series with gaps of ten"); /* x grows as exp(t^5/5): 1e21, of which rounding of t takes 1e-13 */
+  /* x grows as exp(t^5/5): 1e21, of which rounding of t takes 1e-13 */
+  small(worst, 1e-12, "a series with gaps of ten");
   lag_sim_free(sim);
 }
 
@@ -114,7 +119,8 @@ static void pieces(void) {
   lag_sim *one = start(&double_pendulum_swing, 1e-12, NULL, 0), *many = start(&double_pendulum_swing, 1e-12, NULL, 0);
   go(one, 5);
   for (int i = 1; i <= 500; i++) go(many, i * 0.01);
-  check(memcmp(lag_sim_q(one), lag_sim_q(many), 2 * sizeof(double)) == 0 && memcmp(lag_sim_v(one), lag_sim_v(many), 2 * sizeof(double)) == 0,
+  check(memcmp(lag_sim_q(one), lag_sim_q(many), 2 * sizeof(double)) == 0 &&
+            memcmp(lag_sim_v(one), lag_sim_v(many), 2 * sizeof(double)) == 0,
         "one run in five hundred pieces: the same bits", 0, 0);
   lag_sim_free(many);
 
@@ -148,7 +154,8 @@ static void pieces(void) {
   check(st.steps >= 200 && st.steps <= 201, "max_step is a limit", (double)st.steps, 200);
   lag_sim_free(one);
 
-  /* Dense output has the accuracy of the steps. Kepler's equation at t = 1 to 30 digits: tests/hard/cases/kepler_e0_6.lag. */
+  /* Dense output has the accuracy of the steps. Kepler's equation at t = 1 to 30 digits:
+   * tests/hard/cases/kepler_e0_6.lag. */
   one = start(&kepler_orbit, 1e-15, NULL, 0);
   go(one, 1);
   small(lag_sim_q(one)[0] + 0.628948176826624230582918587818, 5e-16, "between two steps: Kepler at t = 1");
@@ -188,7 +195,8 @@ static void events(void) {
 
 /* --- rounding --- */
 
-/* The root mean square of the error of the energy over a sample of orbits, after n periods; longest: the limit on steps. */
+/* The root mean square of the error of the energy over a sample of orbits, after n periods; longest: the limit on
+ * steps. */
 static double energy_error(double periods, double longest) {
   enum { ORBITS = 24 };
   double sum = 0;
@@ -210,18 +218,21 @@ static double energy_error(double periods, double longest) {
 static void rounding(void) {
   double few = energy_error(20, 100), many = energy_error(2000, 100), slope = log(many / few) / log(100);
   printf("# energy of Kepler orbits: %.2g after 20 periods, %.2g after 2000: as n^%.2f\n", few, many, slope);
-  /* Half a unit in the last place a step adds up to 2^-53 sqrt(50000) = 2.5e-14; twice that is allowed, as such means over 24 orbits were
-   * seen from 1.4e-14 to 3.9e-14. */
+  /* Half a unit in the last place a step adds up to 2^-53 sqrt(50000) = 2.5e-14; twice that is allowed, as such
+   * means over 24 orbits were seen from 1.4e-14 to 3.9e-14. */
   small(many, 5e-14, "rounding after 2000 periods, 50000 steps");
-  /* Short steps add little to the state each, and what that loses is kept: 4e-16 to 9e-16 are left. Lost, it is 2^-53 sqrt(6300) = 9e-15. */
+  /* Short steps add little to the state each, and what that loses is kept: 4e-16 to 9e-16 are left. Lost, it is
+   * 2^-53 sqrt(6300) = 9e-15. */
   small(energy_error(20, 0.02), 2e-15, "rounding of 6300 short steps is not that of their sums");
-  check(slope > 0.2 && slope < 0.75, "rounding grows as the root of the number of steps, not as the number", slope, 0.5);
+  check(slope > 0.2 && slope < 0.75, "rounding grows as the root of the number of steps, not as the number", slope,
+        0.5);
 }
 
 int main(void) {
   from_rest();
   gaps();
-  static const Setting swinging[] = {{"th", 1}, {"th'", 0.5}, {NULL, 0}}, both[] = {{"th1", 1}, {"th2", -0.4}, {"th1'", 0.7}, {NULL, 0}};
+  static const Setting swinging[] = {{"th", 1}, {"th'", 0.5}, {NULL, 0}},
+                       both[] = {{"th1", 1}, {"th2", -0.4}, {"th1'", 0.7}, {NULL, 0}};
   static const Setting round[] = {{"x", 1}, {"y'", 1.1}, {NULL, 0}};
   order_on(&pendulum_wide, swinging, 3, (const double[]){0.001, 0.004, 0.01}, "order on the pendulum");
   order_on(&double_pendulum_swing, both, 2, (const double[]){0.0005, 0.001, 0.002}, "order on the double pendulum");

@@ -83,7 +83,8 @@ void motor(double t, const double *y, double *dydt, const double *p) {
   (void)t;
 }
 
-/* A planar pendulum as a point on a constraint: x'' = -lambda x, lambda from x x'' + y y'' + v^2 = 0 and x^2 + y^2 = l^2. p = m, l, g. */
+/* A planar pendulum as a point on a constraint: x'' = -lambda x, lambda from x x'' + y y'' + v^2 = 0 and x^2 + y^2 =
+ * l^2. p = m, l, g. */
 void point_on_rod(double t, const double *y, double *dydt, const double *p) {
   double lambda = (y[2]*y[2] + y[3]*y[3] - p[2]*y[1])/(p[1]*p[1]);
   dydt[0] = y[2];
