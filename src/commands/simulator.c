@@ -24,7 +24,7 @@ static Eqns *derive_asked(Compiler *c, const char *scene, int measures) {
                                                   .measures = c->picture.measures.at,
                                                   .nmeasures = measures ? c->picture.measures.n : 0,
                                                   .given = c->given.at, .ngiven = c->given.n,
-                                                  .section = c->picture.section});
+                                                  .section = c->picture.section, .drawing = c->picture.drawing});
 }
 
 typedef VEC(const Measures *) Measured; /* the measures of the command line, of each variant */
@@ -137,7 +137,9 @@ static void lower_scene(Compiler *c, Eqns *e, int runs, int apart, Units *units,
 
 int simulator_lower(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast), named = c->picture.scenes.n ? c->picture.scenes : (SceneList){scenes.at, 1};
-  if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->o.consts.n) scenes = named;
+  if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->picture.drawing ||
+      c->o.consts.n)
+    scenes = named;
   Lowereds all = {0};
   const char *error, *first = c->picture.scene ? c->picture.scene : scenes.at[0];
   uint32_t variants = const_range_variants(c->arena, &c->o, &error);

@@ -1,0 +1,2 @@
+#include "model/drawing.h"
+void guess_drawing(Drawing *d) { (void)d; }
