@@ -433,7 +433,7 @@ typedef struct lag_measure {
  *
  * kind    a, b                       size              count
  * rod     ends                       width
- * spring  ends                       radius            coils
+ * spring  ends (no a: held at the left) radius         coils
  * damper  ends                       radius
  * disc    centre                     radius            spokes
  * box     centre                     sides, 2 or 3
