@@ -447,7 +447,7 @@ typedef struct lag_measure {
  * text    its place */
 typedef struct lag_shape {
   const char *kind;
-  const char *role; /* its colour: body, link, spring, support, force, velocity, path, text, second, ghost */
+  const char *role; /* its colour: body, link, spring, support, force, velocity, path, text, second, star, ghost */
   const char *text; /* the text; the place as the model writes it; or NULL */
   int a[3], b[3], size[3], turn[4], count;
 } lag_shape;

@@ -104,9 +104,16 @@ static void add_named(Guess *k, const Entity *const *of, uint32_t n) {
   } while (next_member(of[0], at));
 }
 
+/* Number of letters of axes in a name: `wxx` is no place. */
+static int axis_letters(const char *name) {
+  int n = 0;
+  for (; *name; name++) n += strchr("xyzXYZ", *name) != NULL;
+  return n;
+}
+
 /* x and y; px and py, xP and yP, X1 and Y1; with z where there is one. */
 static void find_names(Guess *k, const Entity *e) {
-  for (size_t i = 0; e->name[i]; i++) {
+  for (size_t i = 0; e->name[i] && axis_letters(e->name) == 1; i++) {
     int upper = e->name[i] == 'X';
     if (e->name[i] != 'x' && !upper) continue;
     const Entity *y = sibling(k, e, i, upper ? 'Y' : 'y'), *z = sibling(k, e, i, upper ? 'Z' : 'z');
@@ -271,7 +278,8 @@ static void draw_balls(Guess *k) {
 }
 
 void guess_drawing(Drawing *d) {
-  Guess k = {.d = d};
+  Guess k = {.d = d, .stretched = expr_map(d->b->arena)};
+  note_squares(&k);
   find_points(&k);
   if (!k.points.n && !d->b->rotations.n) draw_coordinates(&k);
   guess_walls(&k);

@@ -13,6 +13,7 @@ typedef struct {
 typedef struct {
   Drawing *d;
   VEC(DrawnPoint) points;
+  ExprMap stretched; /* terms of the squares of the potential */
 } Guess;
 
 /* 1 if e changes with the motion or with time. */
@@ -22,6 +23,7 @@ void add_link(Guess *k, ShapeKind kind, const char *role, const Expr *a, const E
 
 /* guess_links.c: rods of arms l*sin(th), of constraints; springs of the potential; walls of contacts, which also know
  * radii of points. */
+void note_squares(Guess *k); /* first: Guess.stretched */
 void guess_arms(Guess *k);
 void guess_rods(Guess *k);
 void guess_springs(Guess *k);

@@ -13,17 +13,18 @@ static Expr body_of(const ExprGraph *g, Expr e) {
 
 /* --- arms --- */
 
-/* Argument of the sine or cosine, of something that moves, in a term; 0: none. *plain: its other factors are
- * constant. */
-static Expr angle_of(const ExprGraph *g, Expr term, int *plain) {
+/* Argument of the first sine or cosine, of something that moves, in a term; 0: none. *length: the factor that changes
+ * beside such, or 0. */
+static Expr angle_of(const ExprGraph *g, Expr term, Expr *length) {
   Expr angle = 0;
-  *plain = 1;
+  *length = 0;
   for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++) {
     Num power;
     Expr f = expr_pair(g, term, EX_PROD, i, &power);
     ExprOp op = expr_op(g, f);
-    if (!angle && (op == EX_SIN || op == EX_COS) && num_is_one(power) && changes(g, f)) angle = expr_arg(g, f, 0);
-    else if (changes(g, f)) *plain = 0;
+    int turns = (op == EX_SIN || op == EX_COS) && num_is_one(power) && changes(g, f);
+    if (turns && !angle) angle = expr_arg(g, f, 0);
+    else if (!turns && changes(g, f)) *length = f;
   }
   return angle;
 }
@@ -32,7 +33,7 @@ enum { MOST_ARMS = 8 };
 
 typedef struct {
   Expr angle[MOST_ARMS], arm[MOST_ARMS][3], rest[3];
-  int plain[MOST_ARMS];
+  Expr length[MOST_ARMS]; /* what changes in it; 0: nothing */
   uint32_t n;
 } Arms;
 
@@ -42,16 +43,12 @@ static void split_terms(ExprGraph *g, Expr value, uint32_t c, Arms *a) {
   a->rest[c] = expr_int(g, 0);
   for (uint32_t i = 0; i < expr_pairs(g, e, EX_SUM); i++) {
     Num k;
-    int plain;
-    Expr term = expr_pair(g, e, EX_SUM, i, &k), angle = angle_of(g, term, &plain), *into = &a->rest[c];
+    Expr length, term = expr_pair(g, e, EX_SUM, i, &k), angle = angle_of(g, term, &length), *into = &a->rest[c];
     uint32_t j = 0;
     while (j < a->n && a->angle[j] != angle) j++;
     if (angle && j < MOST_ARMS) {
-      if (j == a->n) {
-        a->angle[a->n] = angle;
-        a->plain[a->n++] = 1;
-      }
-      a->plain[j] &= plain;
+      if (j == a->n) a->angle[a->n++] = angle;
+      if (length) a->length[j] = length;
       into = &a->arm[j][c];
     }
     Expr scaled = expr_scale(g, k, term);
@@ -60,6 +57,19 @@ static void split_terms(ExprGraph *g, Expr value, uint32_t c, Arms *a) {
 }
 
 static Expr sum_or(ExprGraph *g, Expr a, Expr b) { return b ? expr_add(g, a, b) : a; }
+
+/* Whether a square of the potential contains the length, or terms of it. */
+static int is_stretched(Guess *k, Expr length) {
+  const ExprGraph *g = k->d->b->g;
+  Expr e = body_of(g, length);
+  int found = expr_map_get(&k->stretched, length) != 0;
+  for (uint32_t i = 0; i < expr_pairs(g, e, EX_SUM); i++) {
+    Num c;
+    Expr term = expr_pair(g, e, EX_SUM, i, &c);
+    found |= changes(g, term) && expr_map_get(&k->stretched, term);
+  }
+  return found;
+}
 
 /* Links from the rest over each arm to the point. */
 static void link_arms(Guess *k, const DrawnPoint *p, Arms *a) {
@@ -77,7 +87,8 @@ static void link_arms(Guess *k, const DrawnPoint *p, Arms *a) {
     int last = 1;
     for (uint32_t i = j + 1; i < a->n; i++) last &= !a->arm[i][0] && !a->arm[i][1];
     for (uint32_t c = 0; c < p->n; c++) to[c] = last ? p->at[c] : sum_or(g, from[c], a->arm[j][c]);
-    add_link(k, a->plain[j] ? SHAPE_ROD : SHAPE_SPRING, a->plain[j] ? "link" : "spring", from, to, p->n);
+    if (!a->length[j]) add_link(k, SHAPE_ROD, "link", from, to, p->n);
+    else if (is_stretched(k, a->length[j])) add_link(k, SHAPE_SPRING, "spring", from, to, p->n);
     memcpy(from, to, sizeof from);
   }
 }
@@ -192,25 +203,40 @@ static void link_line(Guess *k, Expr base) {
   add_link(k, SHAPE_SPRING, "spring", n == 2 ? end[0]->at : NULL, end[n - 1]->at, 2);
 }
 
-void guess_springs(Guess *k) {
+/* Calls fn for the base of each square in the potential, or in L, that has no velocity. */
+static void each_square(Guess *k, void (*fn)(Guess *k, Expr base)) {
   Builder *b = k->d->b;
   ExprGraph *g = b->g;
   Expr root = b->m->potential ? b->m->potential : b->m->lagrangian;
   ExprList all = expr_topo(g, &root, 1);
-  for (uint32_t i = 0; i < all.n; i++) {
-    Expr e = all.at[i];
-    for (uint32_t j = 0; expr_op(g, e) == EX_PROD && j < expr_pairs(g, e, EX_PROD); j++) {
-      Num power, times;
-      Expr base = expr_pair(g, e, EX_PROD, j, &power);
-      if (!num_equal(power, num_int(2)) || !changes(g, base) || (expr_kinds(g, base) & 1u << SYM_VEL)) continue;
-      base = body_of(g, base);
-      int done = 0;
-      for (uint32_t t = 0; t < expr_pairs(g, base, EX_SUM) && !done && expr_pairs(g, base, EX_SUM) <= 3; t++)
-        done = link_distance(k, SHAPE_SPRING, "spring", expr_pair(g, base, EX_SUM, t, &times));
-      if (!done) link_line(k, base);
+  for (uint32_t i = 0; i < all.n; i++)
+    for (uint32_t j = 0; expr_op(g, all.at[i]) == EX_PROD && j < expr_pairs(g, all.at[i], EX_PROD); j++) {
+      Num power;
+      Expr base = expr_pair(g, all.at[i], EX_PROD, j, &power);
+      if (num_equal(power, num_int(2)) && changes(g, base) && !(expr_kinds(g, base) & 1u << SYM_VEL))
+        fn(k, body_of(g, base));
     }
+}
+
+static void note_square(Guess *k, Expr base) {
+  for (uint32_t i = 0; i < expr_pairs(k->d->b->g, base, EX_SUM); i++) {
+    Num c;
+    expr_map_set(&k->stretched, expr_pair(k->d->b->g, base, EX_SUM, i, &c), 1);
   }
 }
+
+static void link_square(Guess *k, Expr base) {
+  ExprGraph *g = k->d->b->g;
+  uint32_t n = expr_pairs(g, base, EX_SUM);
+  Num c;
+  int done = 0;
+  for (uint32_t i = 0; i < n && !done && n <= 3; i++)
+    done = link_distance(k, SHAPE_SPRING, "spring", expr_pair(g, base, EX_SUM, i, &c));
+  if (!done) link_line(k, base);
+}
+
+void guess_springs(Guess *k) { each_square(k, link_square); }
+void note_squares(Guess *k) { each_square(k, note_square); }
 
 /* --- walls --- */
 
