@@ -10,6 +10,7 @@
  *
  * An instance defines before it includes this text:
  *   LAG_MODEL, LAG_THE_MODEL            the first parameters of functions: the model; the same as arguments
+ *   LAG_JOINTS(w)                  w->n, where that is a constant known to compilers
  *   LAG_HOLD(w, j, value)          w->mode[j] := value, for the model, too
  *   LAG_SLIPS(t, y, x, w, g)       a status; slips g[n] for coordinates y, velocities and states x
  *   LAG_GRIPS(t, y, w, g)          a status; g[n], 1 so far, := static friction in parts of that of motion
@@ -28,30 +29,28 @@ typedef struct lag_joint_friction {
   LAG_REAL *mode, *sticks;    /* [n] in the last step; whether that held it */
   LAG_REAL *bound, *response; /* [n] the largest mode; change of the slip by a mode of 1 */
   LAG_REAL *before, *centre;  /* [n] slip at the begin; middle of the interval from there to the slip aimed at */
-  LAG_REAL *was;              /* [n] modes before a call of _solve */
   LAG_REAL *slip, *other;     /* [n] */
   LAG_REAL *d, *x;            /* [n states] rates for a mode of 1; [states] */
 } lag_joint_friction;
 
-#define LAG_JOINT_ROOM(n, states) ((n)*(9 + (states)) + (states))
+#define LAG_JOINT_ROOM(n, states) ((n)*(8 + (states)) + (states))
 
 static inline void lag_joints_place(lag_joint_friction *w, LAG_REAL *room) {
-  LAG_REAL **const parts[] = {&w->mode,   &w->sticks, &w->bound, &w->response, &w->before,
-                              &w->centre, &w->was,    &w->slip,  &w->other};
-  for (int i = 0; i < 9; i++) *parts[i] = room + i*w->n;
-  w->d = room + 9*w->n;
-  w->x = w->d + w->n*w->states;
+  const int n = w->n;
+  w->mode = room, w->sticks = room += n, w->bound = room += n, w->response = room += n, w->before = room += n;
+  w->centre = room += n, w->slip = room += n, w->other = room += n;
+  w->d = room += n, w->x = room + n*w->states;
 }
 
 /* Slips at the begin of the step from y at t, and bounds. */
 static inline int lag_joints_begin(LAG_MODEL, lag_joint_friction *w, LAG_REAL t, const LAG_REAL *y) {
   const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0);
   int status = 0;
-  for (int j = 0; j < w->n; j++) LAG_HOLD(w, j, w->mode[j]);
-  for (int j = 0; j < w->n; j++) w->bound[j] = one;
+  for (int j = 0; j < LAG_JOINTS(w); j++) LAG_HOLD(w, j, w->mode[j]);
+  for (int j = 0; j < LAG_JOINTS(w); j++) w->bound[j] = one;
   LAG_TRY(LAG_SLIPS(t, y, y, w, w->before));
   LAG_TRY(LAG_GRIPS(t, y, w, w->bound));
-  for (int j = 0; j < w->n; j++) {
+  for (int j = 0; j < LAG_JOINTS(w); j++) {
     const int rests = w->sticks[j] > zero || !(w->before[j] < zero || w->before[j] > zero);
     w->bound[j] = rests && w->bound[j] > one ? w->bound[j] : one;
   }
@@ -61,7 +60,7 @@ static inline int lag_joints_begin(LAG_MODEL, lag_joint_friction *w, LAG_REAL t,
 /* d, response: changes by a mode of 1 in a step, from the states at its middle and its end without contacts. */
 static inline int lag_joints_respond(LAG_MODEL, lag_joint_friction *w, const lag_kick *s) {
   int status = 0;
-  for (int j = 0; j < w->n; j++) {
+  for (int j = 0; j < LAG_JOINTS(w); j++) {
     const LAG_REAL mode = w->mode[j], half = LAG_C(0.5);
     LAG_REAL *const d = w->d + j*w->states;
     LAG_HOLD(w, j, -LAG_C(1.0));
@@ -80,8 +79,8 @@ static inline int lag_joints_respond(LAG_MODEL, lag_joint_friction *w, const lag
   return status;
 }
 
-/* One turn of surface k; *size, *change: the largest slip, and change of one. A surface with a response < 0 is driven to
- * the nearest slip of an interval about centre[k]; one without slips. */
+/* One turn of surface k; *size, *change: the largest slip, and change of one. A surface with a response < 0 is driven
+ * to the nearest slip of an interval about centre[k]; one without slips. */
 static inline int lag_joint_turn(LAG_MODEL, lag_joint_friction *w, const lag_kick *s, int k, LAG_REAL *size,
                                  LAG_REAL *change) {
   const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), own = w->response[k], was = w->mode[k];
@@ -109,36 +108,27 @@ static inline int lag_joint_turn(LAG_MODEL, lag_joint_friction *w, const lag_kic
   return status;
 }
 
-/* Finds modes that agree, and the end of the step. struck: the step has an impact. *moved: the largest change of a slip
- * by this call, in units of the largest slip. */
-static inline int lag_joints_solve(LAG_MODEL, lag_joint_friction *w, const lag_kick *s, int struck, LAG_REAL *moved) {
+/* Finds modes that agree, and the end of the step. struck: the step has an impact. *size: the largest slip. */
+static inline int lag_joints_solve(LAG_MODEL, lag_joint_friction *w, const lag_kick *s, int struck, LAG_REAL *size) {
   const LAG_REAL zero = LAG_C(0.0);
-  LAG_REAL last = zero, size = zero;
-  int sweep = 0, status = 0;
-  for (int k = 0; k < w->n; k++) {
-    w->was[k] = w->mode[k];
-    w->centre[k] = struck ? -w->before[k]/LAG_C(2.0) : zero;
-  }
-  for (; sweep < 10000; sweep++) {
+  LAG_REAL last = zero;
+  int status = 0;
+  *size = zero;
+  for (int k = 0; k < LAG_JOINTS(w); k++) w->centre[k] = struck ? -w->before[k]/LAG_C(2.0) : zero;
+  for (int sweep = 0; sweep < 10000; sweep++) {
     LAG_REAL change = zero;
-    for (int k = 0; k < w->n; k++) LAG_TRY(lag_joint_turn(LAG_THE_MODEL, w, s, k, &size, &change));
-    const LAG_REAL unit = s->epsilon*size;
-    if (change <= LAG_C(64.0)*unit) break;
-    if (sweep > 0 && change <= LAG_C(1e7)*unit && change >= last/LAG_C(2.0)) break;
+    for (int k = 0; k < LAG_JOINTS(w); k++) LAG_TRY(lag_joint_turn(LAG_THE_MODEL, w, s, k, size, &change));
+    const LAG_REAL unit = s->epsilon*(*size);
+    if (change <= LAG_C(64.0)*unit) return status;
+    if (sweep > 0 && change <= LAG_C(1e7)*unit && change >= last/LAG_C(2.0)) return status;
     last = change;
   }
-  if (sweep == 10000)
-    return LAG_FRICTION_FAILS(s->end, 0, "and others find no forces that agree: take smaller steps");
-  *moved = zero;
-  for (int k = 0; k < w->n; k++)
-    *moved = lag_larger(*moved, LAG_FN(fabs)((w->mode[k] - w->was[k])*w->response[k]));
-  *moved = LAG_SELECT(size > zero, *moved/size, zero);
-  return status;
+  return LAG_FRICTION_FAILS(s->end, 0, "and others find no forces that agree: take smaller steps");
 }
 
 /* Size of the terms of rate i: at rest forces cancel, and rounding is that of friction. */
 static inline LAG_REAL lag_joints_size(const lag_joint_friction *w, int i, LAG_REAL rate) {
-  for (int k = 0; k < w->n; k++) rate = LAG_FN(fabs)(rate) + LAG_FN(fabs)(w->d[k*w->states + i]);
+  for (int k = 0; k < LAG_JOINTS(w); k++) rate = LAG_FN(fabs)(rate) + LAG_FN(fabs)(w->d[k*w->states + i]);
   return rate;
 }
 

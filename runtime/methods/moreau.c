@@ -2,7 +2,7 @@
  * Holds: where no contact acts it is the symmetric method of order 2 that drifts half a step, kicks with the mean
  * velocity, and drifts again; sums over steps of q, v, z and t are compensated.
  *
- * Impacts are not located: all impulses of a step act at its middle, at once (moreau_contacts.c). So impacts may
+ * Impacts are not located: all impulses of a step act at its middle, at once (kernels/contact_step.h). So impacts may
  * follow each other in ever shorter time, or come in any number; positions at an impact are off by at most half a
  * step's path, and an error of order 1 follows. Constraints are held by projection, and impulses respect them. J.J.
  * Moreau, in: Nonsmooth Mechanics and Applications (1988), 1, DOI 10.1007/978-3-7091-2624-0_1; M. Jean, Comput.
@@ -98,8 +98,8 @@ static int changes_too_much(lag_problem *pb, double t, const char *what) {
 }
 
 static int meet(lag_problem *pb, const lag_kick *s, Laws *w) {
-  static const char others[] = "and others find no impulses that agree: take smaller steps, or look for bodies that are "
-                               "wedged";
+  static const char others[] =
+      "and others find no impulses that agree: take smaller steps, or look for bodies that are wedged";
   return lag_contacts_solve(&w->contacts, s->y1 + s->nq)
              ? lag_moreau_contact_fails(pb, s->t, (int)w->contacts.all.of[0].contact, others)
              : 0;
@@ -116,7 +116,7 @@ static int agree(lag_problem *pb, const lag_kick *s, Laws *w) {
   for (int round = 0; round < ROUNDS; round++) {
     memcpy(s->y1 + s->nq, w->end + s->nq, (size_t)(pb->n - s->nq) * sizeof *s->y1);
     int rc = meet(pb, s, w);
-    rc = rc ? rc : lag_joints_solve(pb, &f->of, s, w->contacts.impacts > 0, &moved);
+    rc = rc ? rc : lag_joint_friction_round(f, pb, s, w->contacts.impacts > 0, &moved);
     if (rc || moved <= 64 * DBL_EPSILON || (round > 0 && moved <= 1e7 * DBL_EPSILON && moved >= before / 2)) return rc;
     lag_joint_friction_lengthen(f, pb);
     lag_joint_friction_carry(f, s->h, w->end);
@@ -134,15 +134,15 @@ static int respond(lag_problem *pb, const lag_kick *s, Laws *w) {
   if (w->friction.of.n) rc = lag_joints_respond(pb, &w->friction.of, s);
   if (!meets) return rc;
   if (w->friction.of.n && rc == 0) {
-    rc = lag_joints_solve(pb, &w->friction.of, s, 0, &moved);
+    rc = lag_joint_friction_round(&w->friction, pb, s, 0, &moved);
     lag_joint_friction_carry(&w->friction, 1, s->rate0);
   }
   return rc ? rc : lag_contacts_find(pb, &w->contacts, s->t, s->h, s->mid, s->y1 + s->nq);
 }
 
 static int obey(lag_problem *pb, const lag_kick *s, Laws *w) {
-  double moved;
-  if (!w->contacts.contacts) return w->friction.of.n ? lag_joints_solve(pb, &w->friction.of, s, 0, &moved) : 0;
+  double size;
+  if (!w->contacts.contacts) return w->friction.of.n ? lag_joints_solve(pb, &w->friction.of, s, 0, &size) : 0;
   if (!w->friction.of.n) return meet(pb, s, w);
   memcpy(w->end, s->y1, (size_t)pb->n * sizeof *s->y1);
   return agree(pb, s, w);

@@ -1,4 +1,4 @@
-/* Contacts in one step of moreau: the instance of kernels/moreau_contacts.h for a lag_problem. */
+/* Contacts in one step of moreau: the instance of kernels/contact_step.h for a lag_problem. */
 #pragma once
 
 #include "core/rhs.h"
@@ -22,7 +22,7 @@ int lag_moreau_singular(lag_problem *pb, double t);
 #define LAG_FRICTIONS(t, y, u, law) 0 /* those at the start of the run */
 #define LAG_CONTACT_FAILS(t, i, words) lag_moreau_contact_fails(pb, t, i, words)
 #define LAG_SINGULAR(t) lag_moreau_singular(pb, t)
-#include "kernels/moreau_contacts.h"
+#include "kernels/contact_step.h"
 
 /* In pb->contact_room; law[2 contacts]: friction and tangential restitution. */
 lag_moreau_contacts lag_moreau_contacts_of(const lag_problem *pb, double *law);

@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <stdio.h>
+#include <string.h>
 
 /* ---- memory */
 
@@ -16,7 +17,7 @@ static int surfaces(const lag_model *m) {
 
 size_t lag_joint_friction_size(const lag_problem *pb) {
   int n = surfaces(pb->model);
-  return n ? (size_t)(LAG_JOINT_ROOM(n, pb->n) + 4 * n + pb->model->nswitch) : 0;
+  return n ? (size_t)(LAG_JOINT_ROOM(n, pb->n) + 5 * n + pb->model->nswitch) : 0;
 }
 
 JointFriction lag_joint_friction_of(const lag_problem *pb, double *room) {
@@ -26,7 +27,8 @@ JointFriction lag_joint_friction_of(const lag_problem *pb, double *room) {
   lag_joints_place(&w.of, room);
   w.at = room + LAG_JOINT_ROOM(n, pb->n);
   w.entry = w.at + n;
-  w.change = w.entry + n;
+  w.was = w.entry + n;
+  w.change = w.was + n;
   w.stride = w.change + n;
   w.all = w.stride + n;
   for (int k = 0, j = 0; j < n; k++)
@@ -87,6 +89,18 @@ void lag_joint_friction_back(const JointFriction *w, lag_problem *pb) {
   for (int j = 0; j < w->of.n; j++) *held(&w->of, pb, j) = w->entry[j];
 }
 
+int lag_joint_friction_round(JointFriction *w, lag_problem *pb, const lag_kick *s, int struck, double *moved) {
+  const lag_joint_friction *of = &w->of;
+  double size;
+  memcpy(w->was, of->mode, (size_t)of->n * sizeof *w->was);
+  int rc = lag_joints_solve(pb, &w->of, s, struck, &size);
+  *moved = 0;
+  for (int k = 0; k < of->n && rc == 0; k++)
+    *moved = fmax(*moved, fabs((of->mode[k] - w->was[k]) * of->response[k]));
+  *moved = size > 0 ? *moved / size : 0;
+  return rc;
+}
+
 int lag_joint_friction_note(JointFriction *w, lag_problem *pb, const lag_kick *s) {
   lag_joint_friction *of = &w->of;
   int rc = lag_joint_friction_slips(pb, s->end, s->mid, s->y1, of, of->slip);
@@ -101,7 +115,7 @@ int lag_joint_friction_note(JointFriction *w, lag_problem *pb, const lag_kick *s
 void lag_joint_friction_lengthen(JointFriction *w, lag_problem *pb) {
   lag_joint_friction *of = &w->of;
   for (int j = 0; j < of->n; j++) {
-    double change = of->mode[j] - of->was[j];
+    double change = of->mode[j] - w->was[j];
     int goes_on = change * w->change[j] > 0 && fabs(change) >= fabs(w->change[j]) / 2;
     w->stride[j] = goes_on ? fmin(2 * w->stride[j] + 1, 1e6) : 0;
     w->change[j] = change;
@@ -114,5 +128,5 @@ void lag_joint_friction_lengthen(JointFriction *w, lag_problem *pb) {
 void lag_joint_friction_carry(const JointFriction *w, double part, double *x) {
   const lag_joint_friction *of = &w->of;
   for (int j = 0; j < of->n; j++)
-    for (int i = of->nq; i < of->states; i++) x[i] += part * (of->mode[j] - of->was[j]) * of->d[j * of->states + i];
+    for (int i = of->nq; i < of->states; i++) x[i] += part * (of->mode[j] - w->was[j]) * of->d[j * of->states + i];
 }

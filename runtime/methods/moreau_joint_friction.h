@@ -15,6 +15,7 @@ int lag_joint_friction_fails(lag_problem *pb, double t, const struct lag_joint_f
 
 #define LAG_MODEL lag_problem *pb
 #define LAG_THE_MODEL pb
+#define LAG_JOINTS(w) (w)->n
 #define LAG_HOLD(w, j, value) lag_joint_friction_hold(pb, w, j, value)
 #define LAG_SLIPS(t, y, x, w, g) lag_joint_friction_slips(pb, t, y, x, w, g)
 #define LAG_GRIPS(t, y, w, g) lag_joint_friction_grips(pb, t, y, w, g)
@@ -26,7 +27,7 @@ int lag_joint_friction_fails(lag_problem *pb, double t, const struct lag_joint_f
 typedef struct JointFriction {
   lag_joint_friction of;    /* first */
   double *at, *all;         /* [n] the model's switch; [nswitch] its values */
-  double *entry;            /* [n] modes in pb->hold before the step */
+  double *entry, *was;      /* [n] modes in pb->hold before the step; before a round */
   double *change, *stride;  /* [n] change by the last round, and strides in parts of it */
 } JointFriction;
 
@@ -36,11 +37,13 @@ JointFriction lag_joint_friction_of(const lag_problem *pb, double *room);
 /* Modes before the step: noted, and brought back after a failure. */
 void lag_joint_friction_enter(JointFriction *w, lag_problem *pb);
 void lag_joint_friction_back(const JointFriction *w, lag_problem *pb);
+/* A round of lag_joints_solve. *moved: the largest change of a slip, in units of the largest slip. */
+int lag_joint_friction_round(JointFriction *w, lag_problem *pb, const lag_kick *s, int struck, double *moved);
 /* Beside contacts, once all agree: notes the surfaces whose slip is 0 at the end; friction may be at its limit where
  * contacts hold the body, too. */
 int lag_joint_friction_note(JointFriction *w, lag_problem *pb, const lag_kick *s);
 /* Goes on by longer strides on surfaces whose mode changes in the same direction round by round, as where contacts
  * leave a slip that is small beside what friction changes: then friction comes to its limit by small equal steps. */
 void lag_joint_friction_lengthen(JointFriction *w, lag_problem *pb);
-/* x[n] := x + part times what the last calls of solve and lengthen changed. */
+/* x[n] := x + part times what the last calls of round and lengthen changed. */
 void lag_joint_friction_carry(const JointFriction *w, double part, double *x);

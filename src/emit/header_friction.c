@@ -1,7 +1,7 @@
 /* Steps of an emitted header with dry friction, by Moreau's method. Enters: accelerations with held modes
  * (ir/program_set.h), switching functions. Leaves: what the state says of surfaces, prototypes and functions of the
  * steps. Holds: a body that sticks at the end of a step has no velocity of slipping there, to rounding; each step
- * has the digits of the runtime's (methods/moreau_joint_friction.c). Friction of contacts: header_moreau.c. */
+ * has the digits of the runtime's, whose text it carries (kernels/joint_friction.h). header_moreau.c: contacts. */
 #include "emit/header_impl.h"
 
 uint32_t header_surfaces(const ProgramSet *u) {
@@ -94,6 +94,7 @@ static const char *const instance =
     " |\n"
     " |#define LAG_MODEL const lag_params *pHELD\n"
     " |#define LAG_THE_MODEL pPASS\n"
+    " |#define LAG_JOINTS(w) LAG_NSURFACES\n"
     " |#define LAG_HOLD(w, j, value) (w)->mode[j] = value\n"
     " |#define LAG_SLIPS(t, y, x, w, g) lag_friction_slips(p, t, y, xPASS, (w)->mode, g)\n"
     "g|#define LAG_GRIPS(t, y, w, g) lag_friction_grips(p, t, yPASS, (w)->mode, g)\n"

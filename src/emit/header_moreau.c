@@ -1,6 +1,6 @@
 /* Steps of an emitted header by Moreau's method. Enters: the unit's contacts, their laws and matrices. Leaves: what
  * the state says of contacts, prototypes and functions of the steps. Holds: each step has the digits of the
- * runtime's, whose text it carries (kernels/moreau_step.h, moreau_contacts.h, joint_friction.h). */
+ * runtime's, whose text it carries (kernels/moreau_step.h, contact_step.h, joint_friction.h). */
 #include "emit/header_impl.h"
 
 /* --- declarations --- */
@@ -81,7 +81,8 @@ static const char *const tables =
     " |#define LAG_GAP_MATRICES(t, y, now, A, M) lag_contact_matrices(MID, A, M)\n"
     "k|#define LAG_UNIT_CHANGE(t, y, now, g, d, effort) lag_VELOCITY(MID, g, d, effort)\n"
     "b|#define LAG_UNIT_CHANGE(t, y, now, g, d, effort) ((void)(y), 0) /* there are no other constraints */\n"
-    " |#define LAG_STRIKE(t, y, now, i, v) lag_strike(lag_contact_at[i].constraint, lag_contact_at[i].input, MID, v)\n"
+    " |#define LAG_STRIKE(t, y, now, i, v) lag_strike(lag_contact_at[i].constraint, lag_contact_at[i].input, "
+    "MID, v)\n"
     "f|#define LAG_FRICTIONS(t, y, now, law) lag_contact_coefficients(MID, law)\n"
     "o|#define LAG_FRICTIONS(t, y, now, law) 0\n"
     " |#define LAG_CONTACT_FAILS(t, i, words) ((int)LAG_ECONTACT)\n"
@@ -89,7 +90,8 @@ static const char *const tables =
 
 static const char *const kick =
     " |\n"
-    " |static int lag_kick_rates(const lag_params *p, LAG_REAL tHELD, const LAG_REAL *y, LAG_REAL *now, LAG_REAL *k) {\n"
+    " |static int lag_kick_rates(const lag_params *p, LAG_REAL tHELD, const LAG_REAL *y, LAG_REAL *now, LAG_REAL *k) "
+    "{\n"
     " |  lag_contact_inputs(p, tPASS, -2, now);\n"
     " |  const int status = lag_rates(p, t, y, now, 0, 0, k);\n"
     " |  for (int i = 0; i < LAG_NY && status == LAG_OK; i++)\n"
@@ -113,7 +115,8 @@ static const char *const note =
     " |  for (int i = 0; i < LAG_NCONTACTS; i++) s->touch[i] = s->struck[i] = s->impulse[i] = LAG_C(0.0);\n"
     " |  for (int j = 0; j < w->all.n; j++) {\n"
     " |    const lag_pressing *const c = &w->all.of[j];\n"
-    " |    const int i = (int)c->contact, r = (int)c->row, k = lag_contact_at[i].constraint, slips = (int)c->tangents;\n"
+    " |    const int i = (int)c->contact, r = (int)c->row, k = lag_contact_at[i].constraint, slips = "
+    "(int)c->tangents;\n"
     " |    LAG_REAL rub = LAG_C(0.0);\n"
     " |    for (int a = 0; a <= slips; a++) {\n"
     " |      s->impulse[i + a] = P[r + a];\n"

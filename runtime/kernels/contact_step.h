@@ -1,4 +1,4 @@
-/* moreau_contacts.h: contacts in one step of Moreau's time-stepping. Enters: positions at the middle of a step,
+/* contact_step.h: contacts in one step of Moreau's time-stepping. Enters: positions at the middle of a step,
  * velocities at its begin, and at its end without contacts; leaves: those with contacts. Holds: no contact does work on
  * the motion, measured by its impulse and the mean of its rates at both ends.
  *
@@ -25,8 +25,8 @@
  *   LAG_FRICTIONS(t, y, u, law)     a status; friction and tangential restitution, two for each contact
  *   LAG_CONTACT_FAILS(t, i, words)  the status of a failure of contact i
  *   LAG_SINGULAR(t)                 that of a singular mass matrix */
-#ifndef LAG_MOREAU_CONTACTS_H
-#define LAG_MOREAU_CONTACTS_H
+#ifndef LAG_CONTACT_STEP_H
+#define LAG_CONTACT_STEP_H
 
 #include "kernels/band_matrix.h"
 #include "kernels/impulses.h"
@@ -57,31 +57,18 @@ enum { LAG_PRESSING_SIZE = (int)(sizeof(lag_pressing)/sizeof(LAG_REAL)) };
 #define LAG_CONTACT_ROOM(contacts, constraints, nq, entries, nmass, responses, lu) \
   ((contacts)*(LAG_PRESSING_SIZE + 8) + 2 + 6*(constraints) + 5*(nq) + 3*(entries) + 2*(responses) + (nmass) + (lu))
 
-static inline LAG_REAL *lag_slice(LAG_REAL **room, int n) {
-  LAG_REAL *const here = *room;
-  *room += n;
-  return here;
-}
-
 /* Places arrays into room[LAG_CONTACT_ROOM]; sizes are set. */
 static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG_REAL *room) {
-  const int p = w->contacts, nc = w->constraints, nq = w->nq;
-  LAG_REAL **const of_contacts[] = {&w->response, &w->b, &w->before, &w->all.P, &w->law, &w->all.A.first, &w->all.D.first};
-  LAG_REAL **const of_constraints[] = {&w->c, &w->r0, &w->r1, &w->pace, &w->bend, &w->g};
-  LAG_REAL **const of_coordinates[] = {&w->d, &w->effort, &w->x, &w->pivot, &w->scale};
-  LAG_REAL **const of_entries[] = {&w->jacobian, &w->all.A.col, &w->all.A.value};
-  w->all.of = (lag_pressing *)(void *)lag_slice(&room, p*LAG_PRESSING_SIZE);
-  for (int i = 0; i < 7; i++) *of_contacts[i] = lag_slice(&room, p + (i > 4) + (i == 4)*p);
-  for (int i = 0; i < 6; i++) *of_constraints[i] = lag_slice(&room, nc);
-  for (int i = 0; i < 5; i++) *of_coordinates[i] = lag_slice(&room, nq);
-  for (int i = 0; i < 3; i++) *of_entries[i] = lag_slice(&room, w->entries);
-  w->all.D.col = lag_slice(&room, responses);
-  w->all.D.value = lag_slice(&room, responses);
-  w->mass = lag_slice(&room, w->nmass);
-  w->lu = room;
+  const int p = w->contacts, nc = w->constraints, nq = w->nq, e = w->entries;
   w->all.n = w->rows = w->impacts = w->sweeps = 0;
-  w->all.response = w->response;
-  w->all.b = w->b;
+  w->all.of = (lag_pressing *)(void *)room, room += p*LAG_PRESSING_SIZE;
+  w->response = room, w->b = room += p, w->before = room += p, w->all.P = room += p, w->law = room += p;
+  w->all.A.first = room += 2*p, w->all.D.first = room += p + 1;
+  w->c = room += p + 1, w->r0 = room += nc, w->r1 = room += nc, w->pace = room += nc, w->bend = room += nc;
+  w->g = room += nc, w->d = room += nc, w->effort = room += nq, w->x = room += nq, w->pivot = room += nq;
+  w->scale = room += nq, w->jacobian = room += nq, w->all.A.col = room += e, w->all.A.value = room += e;
+  w->all.D.col = room += e, w->all.D.value = room += responses, w->mass = room += responses, w->lu = room + w->nmass;
+  w->all.response = w->response, w->all.b = w->b;
 }
 
 /* --- responses --- */
@@ -103,7 +90,8 @@ static inline int lag_contacts_factor(lag_moreau_contacts *w) {
 }
 
 /* d := change of velocities by a unit impulse of contact i, whose row of A is `row`, under the other constraints. */
-static inline int lag_contact_respond(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t, const LAG_REAL *y, int i, int row) {
+static inline int lag_contact_respond(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t, const LAG_REAL *y, int i,
+                                      int row) {
   const lag_sparse_rows *const A = &w->all.A;
   LAG_REAL work = LAG_C(0.0);
   int status = 0;
