@@ -54,17 +54,18 @@ int lag_moreau_close(lag_problem *pb, double t, int only) {
 
 int lag_moreau_gaps(lag_problem *pb, double t, const double *q, const double *v, const double *z, double *c,
                     double *r) {
-  return refused(pb, pb->model->constraints->residuals(t, q, v, z, pb->p, pb->u, c, r, pb->work), t);
+  const lag_constraints *of = pb->model->constraints;
+  return refused(pb, of->residuals(of, t, q, v, z, pb->p, pb->u, c, r, pb->work), t);
 }
 
 int lag_moreau_matrices(lag_problem *pb, double t, const double *y, double *A, double *M) {
   const lag_constraints *of = pb->model->constraints;
-  return refused(pb, of->matrices(t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, A, M, pb->work), t);
+  return refused(pb, of->matrices(of, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, A, M, pb->work), t);
 }
 
 int lag_moreau_unit_change(lag_problem *pb, double t, const double *y, const double *g, double *d, double *effort) {
   const lag_constraints *of = pb->model->constraints;
-  return refused(pb, of->velocity(t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, g, d, effort, pb->work), t);
+  return refused(pb, of->velocity(of, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, g, d, effort, pb->work), t);
 }
 
 int lag_moreau_strike(lag_problem *pb, double t, const double *y, int i, double *v) {
@@ -72,7 +73,7 @@ int lag_moreau_strike(lag_problem *pb, double t, const double *y, int i, double 
   double *after = pb->contact_room;
   int nq = pb->nq, stop = 0;
   memcpy(after, y, (size_t)pb->n * sizeof *y);
-  int rc = m->act(m->contacts[i].impact, t, y, v, y + 2 * nq, pb->p, pb->u, after, after + nq, after + 2 * nq, &stop,
+  int rc = m->act(m, m->contacts[i].impact, t, y, v, y + 2 * nq, pb->p, pb->u, after, after + nq, after + 2 * nq, &stop,
                   pb->work);
   memcpy(v, after + nq, (size_t)nq * sizeof *v);
   return rc ? lag_moreau_contact_fails(pb, t, i, "has no finite restitution") : 0;

@@ -58,14 +58,14 @@ int lag_joint_friction_slips(lag_problem *pb, double t, const double *y, const d
                              double *g) {
   const lag_model *m = pb->model;
   int rc = lag_inputs(pb, t);
-  rc = rc ? rc : m->switch_values(t, y, x + m->nq, x + 2 * m->nq, pb->p, pb->u, whole(w)->all, pb->work);
+  rc = rc ? rc : m->switch_values(m, t, y, x + m->nq, x + 2 * m->nq, pb->p, pb->u, whole(w)->all, pb->work);
   return chosen(pb, w, rc, t, g);
 }
 
 int lag_joint_friction_grips(lag_problem *pb, double t, const double *y, const lag_joint_friction *w, double *g) {
   const lag_model *m = pb->model;
   if (!m->switch_grips) return 0;
-  int rc = m->switch_grips(t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, whole(w)->all, pb->work);
+  int rc = m->switch_grips(m, t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, whole(w)->all, pb->work);
   return chosen(pb, w, rc, t, g);
 }
 
