@@ -47,6 +47,7 @@ typedef struct {
   int involution;          /* noether --involution */
   const char *precision;   /* --precision: double, long, quad; NULL: double */
   const char *math;        /* --math own|libm */
+  const char *compile;     /* --compile always|never|auto; NULL: auto */
   const char *with;        /* --with: optional parts of an emitted model, or of a header */
   const char *prefix, *target; /* header --prefix, --for */
   const char *fmi, *also_cc; /* fmu --fmi, --also-cc */
