@@ -43,7 +43,7 @@ typedef struct {
   int help;                /* --help: then command is CMD_HELP */
   int verbose;             /* check --verbose */
   int allow_numeric;       /* check --allow-numeric */
-  int standalone, no_gsl, ops, hamiltonian, lagrangian;
+  int standalone, bytes, no_gsl, ops, hamiltonian, lagrangian;
   int involution;          /* noether --involution */
   const char *precision;   /* --precision: double, long, quad; NULL: double */
   const char *math;        /* --math own|libm */

@@ -1,24 +1,12 @@
 /* `lagc emit`: the model as C for the runtime. */
 #include "commands/commands.h"
 
-#include <string.h>
-
-#include "commands/simulator.h"
 #include "emit/cnames.h"
 #include "emit/emit_model.h"
 #include "mech/switches.h"
 
-/* The program of all scenes, for liblag's evaluator. */
-static int emit_evaluated(Compiler *c) {
-  Units units = {0};
-  if (!simulator_lower(c, &units)) return STATUS_MODEL;
-  StrBuf bytes = simulator_bytes(c, &units);
-  return compiler_write(c, c->o.output, &bytes);
-}
-
 int command_emit(Compiler *c) {
   if (!compiler_knows_method(c)) return STATUS_USAGE;
-  if (c->o.format && strcmp(c->o.format, "bytes") == 0) return emit_evaluated(c);
   Eqns *e = compiler_derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   switches_find(e); /* for the runtime; headers, and what is verified, follow the text */
