@@ -5,7 +5,7 @@
  * which derive computes the last nderived from the others; u[nu] its inputs, and modes of switches behind them;
  * w[nw] work space for its functions. All values are in SI units. No function allocates, keeps state, or writes past
  * the sizes here. Arrays passed to one call do not overlap. Every function's first argument, self, is the structure
- * that holds it: emitted C ignores it, and a model that liblag evaluates finds its program there.
+ * that holds it, or a copy: emitted C ignores it, and a model that liblag evaluates finds its programs there.
  *
  * A function returns 0 when all went well, > 0 when a smaller step may help (the value left the model's domain), < 0
  * for a failure that no step size cures. */
@@ -389,6 +389,7 @@ typedef struct lag_model {
 
   const char *math; /* library of sin and cos that the program calls; NULL: not known */
   const char *fixed; /* names of parameters that are numbers in this program, separated by spaces; NULL: none */
+  const void *programs; /* of a model that liblag evaluates */
 } lag_model;
 
 #ifndef LAG_LANES
@@ -471,6 +472,7 @@ typedef struct lag_scene {
 
   int nmeasures;
   const lag_measure *measures; /* [nmeasures] */
+  const void *programs;        /* of a scene that liblag evaluates */
 } lag_scene;
 
 /* A compiled .lag file: all of its scenes. Several scenes may share one model. */

@@ -76,8 +76,15 @@ int command_run(Compiler *c) {
   if (c->o.budget) return cost_budget(c);
   Units units = {0};
   if (!simulator_lower(c, &units)) return STATUS_MODEL;
-  status = c->o.command == CMD_COST ? make_cost_simulator(c, &units, begin, &path)
-                                    : simulator_of_units(c, &units, NULL, &path);
+  path = simulator_evaluator(c, &units, &status);
+  if (status != STATUS_OK) return status;
+  if (path) {
+    StrBuf bytes = simulator_bytes(c, &units);
+    if (!process_give("LAG_PROGRAM", &bytes)) return usage_error("cannot write a temporary file: set TMPDIR");
+  } else {
+    status = c->o.command == CMD_COST ? make_cost_simulator(c, &units, begin, &path)
+                                      : simulator_of_units(c, &units, NULL, &path);
+  }
   if (status != STATUS_OK) return status;
   if (writes_source(c)) return STATUS_USAGE;
   fflush(stdout);

@@ -151,15 +151,13 @@ static void emit_flags(const char *stem, const char *id, const unsigned char *fl
   sb_puts(out, "};\n");
 }
 
-/* Table `given` for models with constraints: 1 for components of the state that the start sets, 2 for implied ones. */
-static void emit_given(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
-  uint32_t n = u->q.n, total = 2 * n + u->z.n, after[] = {0, n, 2 * n};
-  if (!u->constraints.of.n) return;
-  unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, total);
+const unsigned char *scene_given(const ProgramSet *u, const IrScene *s) {
+  uint32_t n = u->q.n, after[] = {0, n, 2 * n};
+  unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, 2 * n + u->z.n);
   for (uint32_t k = 0; k < s->start->stores.n; k++)
     given[after[s->start->stores.at[k].array] + s->start->stores.at[k].index] = 1;
   for (uint32_t k = 0; k < s->implied.n; k++) given[s->implied.at[k]] = 2;
-  emit_flags("given", id, given, total, out);
+  return given;
 }
 
 /* Whether an output of the scene contains forces. */
@@ -180,7 +178,7 @@ void emit_scene(const ModelFile *f, const char *name, uint32_t index) {
   emit_exact(f, s, id);
   emit_scene_lists(u, s, id, out);
   emit_measures(u, s, id, out);
-  emit_given(u, s, id, out);
+  if (u->constraints.of.n) emit_flags("given", id, scene_given(u, s), 2 * u->q.n + u->z.n, out);
   if (has_forces(s)) emit_flags("forces", id, s->forces.at, s->forces.n, out);
   sb_printf(out, "\nconst lag_scene %s_%s = {\n", name, id);
   sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
