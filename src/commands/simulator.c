@@ -71,11 +71,10 @@ static void precision_warn(const Ast *ast, const ExprGraph *g, const char *preci
     if (!expr_is_num(g, e) || num_is_exact(expr_number(g, e))) continue;
     num_format_double(text, num_value(expr_number(g, e)));
     if (strspn(text, "-0.123456789") - (text[0] == '-') - (strchr(text, '.') != NULL) <= SAFE) continue;
-    fprintf(stderr,
-            "lagc: warning: --precision %s: a product of numbers of the model, %s, is rounded to 17 digits; if more "
-            "digits matter, make them "
-            "parameters\n",
-            precision, text);
+    diag_warning(ast->diags, (Span){0},
+                 "--precision %s: a product of numbers of the model, %s, is rounded to 17 digits; if more digits "
+                 "matter, make them parameters",
+                 precision, text);
     return;
   }
 }
@@ -230,6 +229,10 @@ static int asks_ranks(const Compiler *c) {
     if (n && atoi(n) > 1) return 1;
   }
   return 0;
+}
+
+const char *simulator_surroundings(const Compiler *c) {
+  return arena_printf(c->arena, "%d %d %d", simulator_is_later_rank(c), asks_ranks(c), toolchain_has_lanes());
 }
 
 /* Links the parts of the runtime that the command line asks for: those that write its files, and MPI. Returns

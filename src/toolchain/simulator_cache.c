@@ -143,6 +143,18 @@ static int file_is_own(const char *path) {
  * read so far. */
 static const char seal_form[] = "\n#lagc %016" PRIx64 " %016" PRIx64 "\n";
 
+/* FNV-1a by words of 8 bytes, the last filled with zeros. */
+static uint64_t hash_words(uint64_t h, const char *s, size_t n) {
+  for (uint64_t word; n > 0; s += 8) {
+    size_t some = n < 8 ? n : 8;
+    word = 0;
+    memcpy(&word, s, some);
+    h = (h ^ word) * UINT64_C(0x100000001b3);
+    n -= some;
+  }
+  return h;
+}
+
 /* Hash of the next n bytes, or of all (n < 0); *n := their number. */
 static uint64_t hash_file(FILE *f, int64_t *n) {
   char block[65536];
@@ -152,7 +164,7 @@ static uint64_t hash_file(FILE *f, int64_t *n) {
   for (size_t some;
        left > 0 && (some = fread(block, 1, left < (int64_t)sizeof block ? (size_t)left : sizeof block, f)) > 0;
        left -= (int64_t)some, *n += (int64_t)some)
-    h = lag_fnv1a(h, block, some);
+    h = hash_words(h, block, some);
   return h;
 }
 
@@ -213,8 +225,10 @@ static int is_reference(const char *name) {
          strspn(name + NAME + 1, "0123456789abcdef") == SUFFIX - 1;
 }
 
+static int is_run(const char *name) { return strlen(name) > NAME && strcmp(name + NAME, ".run") == 0; }
+
 static int is_entry(const char *name) {
-  return strspn(name, "0123456789abcdef") == NAME && (name[NAME] == '\0' || is_reference(name));
+  return strspn(name, "0123456789abcdef") == NAME && (name[NAME] == '\0' || is_reference(name) || is_run(name));
 }
 
 static int by_age(const void *x, const void *y) {
@@ -258,9 +272,10 @@ void cache_limit(Arena *a, const char *keep) {
   }
 }
 
-static uint32_t count_simulators(const Entries *all) {
+/* The entries whose name has so many characters. */
+static uint32_t count(const Entries *all, size_t characters) {
   uint32_t n = 0;
-  for (uint32_t i = 0; i < all->n; i++) n += !is_reference(strrchr(all->at[i].path, '/') + 1);
+  for (uint32_t i = 0; i < all->n; i++) n += strlen(strrchr(all->at[i].path, '/') + 1) == characters;
   return n;
 }
 
@@ -272,14 +287,15 @@ void cache_print(Arena *a, StrBuf *out) {
   Entries all = entries(a, dir, &total);
   sb_printf(out, "folder      %s\n", dir ? dir : "none: set XDG_CACHE_HOME to a folder that only you can write");
   sb_printf(out,
-            "simulators  %u\nreferences  %u (lagc cost)\nsize        %.1f MiB\nlimit       %.0f MiB (LAGC_CACHE_MIB)\n",
-            count_simulators(&all), all.n - count_simulators(&all), mib(total), mib(limit()));
+            "simulators  %u\nreferences  %u (lagc cost)\nruns        %u (start at once)\nsize        %.1f MiB\n"
+            "limit       %.0f MiB (LAGC_CACHE_MIB)\n",
+            count(&all, NAME), count(&all, NAME + SUFFIX), count(&all, NAME + 4), mib(total), mib(limit()));
 }
 
 void cache_clear(Arena *a, StrBuf *out) {
   long long total;
   Entries all = entries(a, cache_folder(a), &total);
   for (uint32_t i = 0; i < all.n; i++) unlink(all.at[i].path);
-  uint32_t n = count_simulators(&all);
+  uint32_t n = count(&all, NAME);
   sb_printf(out, "removed %u simulator%s, %.1f MiB\n", n, n == 1 ? "" : "s", mib(total));
 }

@@ -338,13 +338,28 @@ int toolchain_library(Arena *a, const Toolchain *t, const SourceText *texts, siz
 
 /* --- simulators in the cache --- */
 
-/* A library is identified by path, size and modification time. */
-static uint64_t hash_library(Arena *a, uint64_t h, const char *path) {
+/* A file is identified by path, size and modification time; "" where it is not there. */
+static const char *file_identity(Arena *a, const char *path) {
   struct stat st;
-  if (stat(path, &st) != 0) return h;
-  const char *text = arena_printf(a, "%s %lld %lld.%09ld", path, (long long)st.st_size, (long long)st.st_mtim.tv_sec,
-                                  st.st_mtim.tv_nsec);
+  if (stat(path, &st) != 0) return "";
+  return arena_printf(a, "%s %lld %lld.%09ld", path, (long long)st.st_size, (long long)st.st_mtim.tv_sec,
+                      st.st_mtim.tv_nsec);
+}
+
+static uint64_t hash_library(Arena *a, uint64_t h, const char *path) {
+  const char *text = file_identity(a, path);
   return lag_fnv1a(h, text, strlen(text));
+}
+
+static const char *const part_names[] = {"png", "hdf5", "mpi"};
+
+const char *toolchain_own_build(Arena *a, const Toolchain *t, const char *argv0) {
+  char path[PATH_MAX];
+  long n = lag_own_path(path, sizeof path - 1);
+  const char *text = file_identity(a, n > 0 ? arena_strndup(a, path, (size_t)n) : argv0);
+  for (int i = 0; i < 3; i++)
+    text = arena_printf(a, "%s\n%s", text, file_identity(a, arena_printf(a, "%s/liblag_%s.a", t->lib, part_names[i])));
+  return text;
 }
 
 static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceText *texts, size_t n) {
@@ -352,20 +367,18 @@ static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceT
   h = lag_fnv1a(h, t->cc, strlen(t->cc) + 1);
   h = lag_fnv1a(h, t->optimise, strlen(t->optimise) + 1);
   h = hash_library(a, h, arena_printf(a, "%s/lib%s.a", t->lib, t->library));
-  static const char *const parts[] = {"png", "hdf5", "mpi"};
   for (int i = 0; i < 3; i++)
-    if (t->parts[i]) h = hash_library(a, h, arena_printf(a, "%s/liblag_%s.a", t->lib, parts[i]));
+    if (t->parts[i]) h = hash_library(a, h, arena_printf(a, "%s/liblag_%s.a", t->lib, part_names[i]));
   return t->gsl ? hash_library(a, h, arena_printf(a, "%s/liblag_gsl.a", t->lib)) : h;
 }
 
-/* The cache entry's name: a 128-bit hash of texts, compiler and libraries. */
-static const char *name_of(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
+const char *toolchain_entry(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
   uint64_t h1 = hash_all(a, LAG_FNV1A_START, t, texts, n), h2 = hash_all(a, 0x9e3779b97f4a7c15u, t, texts, n);
   return arena_printf(a, "%016llx%016llx", (unsigned long long)h1, (unsigned long long)h2);
 }
 
 const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error) {
-  const char *cache = cache_folder(a), *path = cache ? arena_printf(a, "%s/%s", cache, name_of(a, t, texts, n)) : NULL;
+  const char *cache = cache_folder(a), *path = cache ? arena_printf(a, "%s/%s", cache, toolchain_entry(a, t, texts, n)) : NULL;
   BuildFolder f;
   if (path && cache_has(path)) return path;
   int lock = path ? cache_take(a, path) : -1, there = lock >= 0 && cache_has(path), ok = there;

@@ -16,7 +16,7 @@ unset LAG_HOME LAGC_CACHE_MIB
 cache=$dir/cache/lagc
 here=$(pwd)
 cd "$dir" || exit 2
-entry() { find "$cache" -maxdepth 1 -type f ! -name '*.lock' | head -n 1; }
+entry() { find "$cache" -maxdepth 1 -type f ! -name '*.lock' ! -name '*.run' | head -n 1; }
 mode() { stat -c %a "$1"; }
 
 # ---- outputs
