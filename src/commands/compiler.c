@@ -94,12 +94,16 @@ int compiler_parse(Compiler *c) {
   return c->diags->errors ? STATUS_MODEL : STATUS_OK;
 }
 
-Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {
+Model *compiler_model(Compiler *c, const ModelChoice *choice) {
   ModelChoice with_defines = *choice;
   with_defines.defines = c->o.defines.at;
   with_defines.ndefines = c->o.defines.n;
   if (!choice->bare && !choice->unfixed) with_defines.fix = c->o.fix;
-  Model *m = model_build(c->ast, &with_defines);
+  return model_build(c->ast, &with_defines);
+}
+
+Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {
+  Model *m = compiler_model(c, choice);
   if (!m) return NULL;
   StrBuf listing = strbuf(c->arena);
   Eqns *e = equations_of(m);

@@ -62,6 +62,9 @@ unsigned derivatives_required(const Eqns *e, const Options *o);
 /* `lagc cost`: those of them that a C compiler has ready in a part of --seconds. */
 unsigned derivatives_in_time(unsigned wants, const ProgramSet *u, const Options *o);
 
+/* Model of a choice of scene and effects, with the definitions of the command line; NULL with the reasons in c->diags.
+ */
+Model *compiler_model(Compiler *c, const ModelChoice *choice);
 /* Equations of a choice of scene and effects; NULL with the reasons in c->diags. */
 Eqns *compiler_derive(Compiler *c, const ModelChoice *choice);
 /* The same of one scene (NULL: the first). */

@@ -10,7 +10,6 @@
 #include "commands/simulator.h"
 #include "self_check/self_check.h"
 #include "toolchain/files.h"
-#include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 #include "toolchain/process.h"
 #include "toolchain/simulator_cache.h"
 
@@ -20,7 +19,7 @@ enum { LARGE = 1000 }; /* coordinates, beyond which the compiler's memory is not
 enum { SIMULATOR = 's', ARGUMENT = 'a', NUMBER = 'n', READ = 'r', ABSENT = 'x', SAID = 'm', LISTENS = 'l' };
 
 struct KnownRun {
-  const char *paths[2];  /* of entries, for any numbers and for these; NULL: the command is never known */
+  const char *paths[2];      /* of entries, for any numbers and for these; NULL: the command is never known */
   VEC(const char *) numbers; /* words name=NUMBER */
 };
 
@@ -90,7 +89,7 @@ static void add_field(StrBuf *b, char kind, const char *text) {
 /* The next field; its kind, 0 at the end. */
 static char next_field(Arena *a, const char **at, const char *end, const char **text) {
   char kind = *at < end ? **at : '\0', *after;
-  if (!kind || kind == '\n') return 0; /* the seal */
+  if (!kind) return 0;
   size_t n = (size_t)strtoull(*at + 1, &after, 10);
   if (*after != ' ' || n > (size_t)(end - after - 1)) return 0;
   *text = arena_strndup(a, after + 1, n);
@@ -120,28 +119,28 @@ typedef struct {
 static int take_field(Compiler *c, char kind, const char *text, Found *f) {
   uint32_t k;
   switch (kind) {
-    case SIMULATOR: f->simulator = text; return 1;
-    case ARGUMENT: vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, text)); return 1;
-    case NUMBER:
-      if ((k = (uint32_t)atoi(text)) >= c->known->numbers.n) return 0;
-      vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, c->known->numbers.at[k]));
-      return 1;
-    case READ: return is_still(c, text);
-    case ABSENT: return !source_is_readable(text);
-    case SAID: f->said = text; return 1;
-    case LISTENS: return f->listens = 1;
-    default: return 0;
+  case SIMULATOR: f->simulator = text; return 1;
+  case ARGUMENT: vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, text)); return 1;
+  case NUMBER:
+    if ((k = (uint32_t)atoi(text)) >= c->known->numbers.n) return 0;
+    vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, c->known->numbers.at[k]));
+    return 1;
+  case READ: return is_still(c, text);
+  case ABSENT: return !source_is_readable(text);
+  case SAID: f->said = text; return 1;
+  case LISTENS: return f->listens = 1;
+  default: return 0;
   }
 }
 
 /* Whether there is an entry, and all is as it was; then its arguments are in c->picture.argv. */
 static int find(Compiler *c, const char *entry, Found *f) {
   StrBuf text = strbuf(c->arena);
-  const char *why, *field;
+  const char *field;
   *f = (Found){.said = ""};
   c->picture.argv.n = 0;
   c->sources->files.n = 1;
-  if (!cache_has_data(entry) || !file_append(entry, &text, &why)) return 0;
+  if (!cache_read(entry, &text)) return 0;
   const char *at = sb_text(&text), *end = at + text.n;
   for (char kind; (kind = next_field(c->arena, &at, end, &field)) != 0;)
     if (!take_field(c, kind, field, f)) return 0;
@@ -171,7 +170,6 @@ static void add_arguments(Compiler *c, StrBuf *b, int exact, uint32_t *numbers) 
 }
 
 static void keep(Compiler *c, const Found *f) {
-  Outfile o;
   StrBuf b = strbuf(c->arena), arguments = strbuf(c->arena);
   uint32_t numbers;
   add_field(&b, SIMULATOR, file_name(f->simulator));
@@ -187,10 +185,7 @@ static void keep(Compiler *c, const Found *f) {
     add_arguments(c, &arguments, exact, &numbers);
   }
   sb_putn(&b, sb_text(&arguments), arguments.n);
-  const char *path = c->known->paths[exact];
-  if (lag_outfile_open(&o, path) != 0) return;
-  int whole = fwrite(sb_text(&b), 1, b.n, o.f) == b.n && fflush(o.f) == 0 && cache_seal(o.part);
-  lag_outfile_close(&o, whole ? OUTFILE_KEEP : OUTFILE_DROP);
+  cache_write(c->known->paths[exact], &b);
 }
 
 /* --- the start --- */
@@ -224,14 +219,15 @@ static int start(Compiler *c, const Found *f) {
   if (f->listens) last_state_listen(c->arena, tell_last_state, c);
   process_become(f->simulator, c->picture.argv.at);
   const char *why = strerror(errno);
-  return usage_error(arena_printf(
-      c->arena, "cannot run %s: %s; set XDG_CACHE_HOME to a folder where programs may run", f->simulator, why));
+  return usage_error(arena_printf(c->arena, "cannot run %s: %s; set XDG_CACHE_HOME to a folder where programs may run",
+                                  f->simulator, why));
 }
 
 int known_run_start(Compiler *c, int *known) {
   Found f;
   c->known = new_known_run(c);
-  for (int exact = 0; exact < 2 && !*known; exact++) *known = c->known->paths[exact] && find(c, c->known->paths[exact], &f);
+  for (int exact = 0; exact < 2 && !*known; exact++)
+    *known = c->known->paths[exact] && find(c, c->known->paths[exact], &f);
   if (*known) return start(c, &f);
   c->picture = (RunRequest){0};
   c->sources->files.n = 1;

@@ -8,6 +8,8 @@
 #include "base/hash.h"
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 #include "base/vec.h"
+#include "toolchain/files.h"
+#include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 
 /* digits of an entry's name; those of a reference follow after a dot */
 enum { LIMIT_MIB = 1024, NAME = 32, SUFFIX = 9 };
@@ -197,6 +199,20 @@ int cache_has_data(const char *path) {
   return whole;
 }
 
+int cache_write(const char *path, const StrBuf *text) {
+  Outfile o;
+  if (lag_outfile_open(&o, path) != 0) return 0;
+  int whole = fwrite(sb_text(text), 1, text->n, o.f) == text->n && fflush(o.f) == 0 && cache_seal(o.part);
+  return lag_outfile_close(&o, whole ? OUTFILE_KEEP : OUTFILE_DROP) == 0 && whole;
+}
+
+int cache_read(const char *path, StrBuf *out) {
+  const char *why;
+  if (!cache_has_data(path) || !file_append(path, out, &why) || out->n < CACHE_SEAL) return 0;
+  out->at[out->n -= CACHE_SEAL] = '\0';
+  return 1;
+}
+
 int cache_has(const char *path) { return access(path, X_OK) == 0 && cache_has_data(path); }
 
 static const char *lock_of(Arena *a, const char *path) { return arena_printf(a, "%s.lock", path); }
@@ -225,10 +241,10 @@ static int is_reference(const char *name) {
          strspn(name + NAME + 1, "0123456789abcdef") == SUFFIX - 1;
 }
 
-static int is_run(const char *name) { return strlen(name) > NAME && strcmp(name + NAME, ".run") == 0; }
-
 static int is_entry(const char *name) {
-  return strspn(name, "0123456789abcdef") == NAME && (name[NAME] == '\0' || is_reference(name) || is_run(name));
+  if (strspn(name, "0123456789abcdef") != NAME) return 0;
+  return name[NAME] == '\0' || is_reference(name) || strcmp(name + NAME, ".run") == 0 ||
+         strcmp(name + NAME, ".cc") == 0;
 }
 
 static int by_age(const void *x, const void *y) {
