@@ -214,7 +214,9 @@ size_t lag_model_room(const EvaluatedModel *m) {
   const EvaluatedConstraints *c = (const void *)m->model.constraints;
   const EvaluatedCharges *q = (const void *)m->model.charges;
   const EvaluatedLinear *l = (const void *)m->model.linear;
-  if (c) widen(&room, c->residuals, 0), widen(&room, c->matrices, 0), widen(&room, c->position, 0), widen(&room, c->velocity, 0);
+  if (c)
+    widen(&room, c->residuals, 0), widen(&room, c->matrices, 0), widen(&room, c->position, 0),
+        widen(&room, c->velocity, 0);
   if (q) widen(&room, q->values, 0), widen(&room, q->powers, 0);
   if (l) widen(&room, l->eval, 0), widen(&room, l->jumps, 0);
   return room;

@@ -1,5 +1,5 @@
-/* Taylor coefficients by the recurrences of a program: the sums of emitted C (src/emit/emit_taylor.c), column by column,
- * with the same terms in the same order. */
+/* Taylor coefficients by the recurrences of a program: the sums of emitted C (src/emit/emit_taylor.c), column by
+ * column, with the same terms in the same order. */
 #include <string.h>
 
 #include "evaluator/evaluated_model.h"

@@ -249,13 +249,15 @@ static void read_taylor(Reader *r) {
   EvaluatedTaylor *t = lag_bytes_room(b, 1, sizeof *t);
   if (!t) return;
   t->nq = r->m->model.nq, t->nz = r->m->model.nz;
-  t->taylor = (lag_taylor){.order = LAG_TAYLOR_ORDER, .columns = lag_bytes_int(b, 1, MOST), .width = (r->ny + 3) / 4 * 4};
+  t->taylor =
+      (lag_taylor){.order = LAG_TAYLOR_ORDER, .columns = lag_bytes_int(b, 1, MOST), .width = (r->ny + 3) / 4 * 4};
   t->sums = lag_bytes_int(b, 0, MOST), t->squares = lag_bytes_int(b, 0, MOST);
   t->first_square = lag_bytes_int(b, 0, MOST), t->row = lag_bytes_int(b, 0, MOST);
   t->constants = lag_bytes_int(b, 0, MOST), t->uses_time = flag(b), t->near = flag(b);
   t->taylor.cost_first = (int)lag_bytes_below(b, INT32_MAX), t->taylor.cost_next = (int)lag_bytes_below(b, INT32_MAX);
   t->taylor.sums = (int)lag_bytes_below(b, INT32_MAX);
-  int fits = t->sums <= t->first_square && t->first_square + t->squares <= t->row && t->taylor.width <= t->taylor.columns &&
+  int fits = t->sums <= t->first_square && t->first_square + t->squares <= t->row &&
+             t->taylor.width <= t->taylor.columns &&
              (int64_t)3 * t->nq + 2 * (int64_t)t->nz + t->uses_time <= t->taylor.columns;
   lag_bytes_need(b, fits, "columns of a series are missing");
   Reader with = *r;
@@ -279,7 +281,8 @@ static void read_head(Reader *r) {
   Bytes *b = r->b;
   lag_model *m = &r->m->model;
   m->abi = LAG_ABI, m->real_size = sizeof(double);
-  m->name = name_of(b), m->doc = name_of(b), m->effects = name_of(b), m->digest = name_of(b), m->fixed = lag_bytes_text(b);
+  m->name = name_of(b), m->doc = name_of(b), m->effects = name_of(b), m->digest = name_of(b),
+  m->fixed = lag_bytes_text(b);
   m->math = flag(b) ? "sin and cos: lag_math.h" : "sin and cos: the C library's";
   m->flags = lag_bytes_word(b), m->ops = (int)lag_bytes_below(b, INT32_MAX);
   m->q = variables(b, &m->nq), m->z = variables(b, &m->nz), m->p = variables(b, &m->np), m->u = variables(b, &m->nu);
@@ -374,7 +377,8 @@ static const lag_scene *read_scene(Bytes *b, const Reader *r) {
   const lag_model *m = &r->m->model;
   s->of = r->m, c->model = m;
   c->name = name_of(b), c->doc = name_of(b), c->method = lag_bytes_text(b);
-  c->t0 = lag_bytes_number(b), c->t1 = lag_bytes_number(b), c->tolerance = lag_bytes_number(b), c->every = lag_bytes_number(b);
+  c->t0 = lag_bytes_number(b), c->t1 = lag_bytes_number(b), c->tolerance = lag_bytes_number(b),
+  c->every = lag_bytes_number(b);
   c->has_span = flag(b), c->exactly = flag(b);
   const Program **params = lag_bytes_room(b, (size_t)m->np, sizeof *params);
   for (int i = 0; params && i < m->np; i++) params[i] = program(r, m->np, 0, 0);

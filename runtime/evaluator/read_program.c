@@ -119,7 +119,8 @@ static void check_turn(Bytes *b, const Program *p, const Lengths *of, const Nest
   if (operands < 3) i->c = 0;
   const uint32_t of_op[] = {operands ? i->a : 0, i->b, i->c};
   for (int k = 0; k < 3; k++)
-    if (lag_bytes_need(b, of_op[k] < s, "a turn reads what comes later") && of_op[k]) i->moves |= all[of_op[k] - 1].moves;
+    if (lag_bytes_need(b, of_op[k] < s, "a turn reads what comes later") && of_op[k])
+      i->moves |= all[of_op[k] - 1].moves;
   if (i->op == TURN_FUNCTION) lag_bytes_need(b, i->number < lag_functions_1_count, "an unknown function");
   if (i->op == TURN_FUNCTION_2) lag_bytes_need(b, i->number < lag_functions_2_count, "an unknown function");
 }
@@ -168,7 +169,8 @@ static void read_nest(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   n->skew = bounded(b), n->turns = bounded(b), n->more = bounded(b);
   n->nsubscripts = lag_bytes_count(b, 24);
   Subscript *at = lag_bytes_room(b, n->nsubscripts, sizeof *at);
-  for (uint32_t k = 0; at && k < n->nsubscripts; k++) at[k] = (Subscript){bounded(b), 0, 0}, at[k].by_row = bounded(b), at[k].by_turn = bounded(b);
+  for (uint32_t k = 0; at && k < n->nsubscripts; k++)
+    at[k] = (Subscript){bounded(b), 0, 0}, at[k].by_row = bounded(b), at[k].by_turn = bounded(b);
   n->at = at;
   n->nouter = lag_bytes_count(b, 4);
   n->outer = lag_bytes_words(b, n->nouter);
@@ -193,10 +195,13 @@ static int is_operand(const Program *p, const Lengths *of, char kind, const uint
     case 't': return at[0] < p->ncurves;
     case 's': return at[0] < p->nsystems;
     case 'n': return at[0] < p->nnests;
-    case 'i': return at[0] < PROGRAM_CONSTANTS ? ends_within(at[1], at[3], of->in[at[0]]) && (uint64_t)at[2] + at[3] <= p->frame
-                                               : at[0] == PROGRAM_CONSTANTS && ends_within(at[1], at[3], p->nconstants) &&
-                                                     (uint64_t)at[2] + at[3] <= p->frame;
-    case 'o': return at[0] < PROGRAM_OUTPUTS && ends_within(at[1], at[3], of->out[at[0]]) && (uint64_t)at[2] + at[3] <= p->frame;
+    case 'i':
+      return at[0] < PROGRAM_CONSTANTS ? ends_within(at[1], at[3], of->in[at[0]]) && (uint64_t)at[2] + at[3] <= p->frame
+                                       : at[0] == PROGRAM_CONSTANTS && ends_within(at[1], at[3], p->nconstants) &&
+                                             (uint64_t)at[2] + at[3] <= p->frame;
+    case 'o':
+      return at[0] < PROGRAM_OUTPUTS && ends_within(at[1], at[3], of->out[at[0]]) &&
+             (uint64_t)at[2] + at[3] <= p->frame;
     default: return 1; /* k, with the array */
   }
 }

@@ -1,4 +1,5 @@
-/* Nests of loops: each operation of a turn is computed for a block of turns; sums are added to in the order of turns. */
+/* Nests of loops: each operation of a turn is computed for a block of turns; sums are added to in the order of
+ * turns. */
 #include <math.h>
 #include <string.h>
 

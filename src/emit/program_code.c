@@ -557,7 +557,8 @@ static void put_solve(const Coder *w, StrBuf *out, const Solve *k) {
   uint32_t b = solve_elements(k), n = 0;
   for (uint32_t j = 0; j < solve_unknowns(k); j++) n += k->rhs[j] != 0;
   put_word(out, k->n), put_word(out, k->m), put_word(out, (uint32_t)k->coarse), put_word(out, k->nfilled + n);
-  for (uint32_t j = 0; j < k->nfilled; j++) put_word(out, k->filled[j]), put_word(out, w->place[k->matrix[k->filled[j]]]);
+  for (uint32_t j = 0; j < k->nfilled; j++)
+    put_word(out, k->filled[j]), put_word(out, w->place[k->matrix[k->filled[j]]]);
   for (uint32_t j = 0; j < solve_unknowns(k); j++)
     if (k->rhs[j]) put_word(out, b + j), put_word(out, w->place[k->rhs[j]]);
 }

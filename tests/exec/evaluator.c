@@ -108,7 +108,8 @@ static void of_model(const lag_model *const *s) {
   for (int e = 0; e < m->nev; e++) {
     int stop[SIDES] = {0};
     for (int k = 0; k < SIDES; k++)
-      memcpy(out[k], q, (size_t)nq * sizeof *q), memcpy(out[k] + nq, v, (size_t)nq * sizeof *v), memcpy(out[k] + 2 * nq, z, (size_t)nz * sizeof *z);
+      memcpy(out[k], q, (size_t)nq * sizeof *q), memcpy(out[k] + nq, v, (size_t)nq * sizeof *v),
+          memcpy(out[k] + 2 * nq, z, (size_t)nz * sizeof *z);
     CALL(act, 2 * nq + nz, s[k]->act(s[k], e, STATE, out[k], out[k] + nq, out[k] + 2 * nq, &stop[k], w[k]));
     if (stop[0] != stop[1]) printf("%s: event %d stops one side\n", where, e), differences++;
   }
@@ -183,7 +184,8 @@ int main(int argc, char **argv) {
   size_t n;
   const char *why;
   int states = argc > 3 ? atoi(argv[3]) : 20;
-  void *bytes = bytes_of(argv[1], &n), *library = dlopen(argv[2], RTLD_NOW | RTLD_LOCAL), *f = library ? dlsym(library, "lag_library") : NULL;
+  void *bytes = bytes_of(argv[1], &n), *library = dlopen(argv[2], RTLD_NOW | RTLD_LOCAL),
+       *f = library ? dlsym(library, "lag_library") : NULL;
   const lag_program *evaluated = lag_program_read(bytes, n, &why), *compiled;
   if (!f || !evaluated) return printf("%s\n", !evaluated ? why : dlerror()), 2;
   const lag_program *(*get)(void);
@@ -197,7 +199,8 @@ int main(int argc, char **argv) {
       const lag_model *m = s[k]->model;
       w[k] = room((size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw) + 1);
     }
-    if (strcmp(s[0]->model->digest, s[1]->model->digest) != 0) printf("%s: another digest\n", s[0]->name), differences++;
+    if (strcmp(s[0]->model->digest, s[1]->model->digest) != 0)
+      printf("%s: another digest\n", s[0]->name), differences++;
     for (int turn = 0; turn < states; turn++) of_scene(s, turn);
     free(w[0]), free(w[1]);
   }
