@@ -162,7 +162,7 @@ static Scalars scalars_of(Guess *k) {
   Scalars out = {0};
   for (uint32_t i = 0; i < b->scope.all.n; i++) {
     const Entity e = b->scope.all.at[i];
-    int moves = e.kind == ENT_COORD || (e.kind == ENT_STATE && is_quantity(b, &e));
+    int moves = e.kind == ENT_COORD || (e.kind == ENT_STATE && b->m->states.at[e.index].coordinate && !is_momentum(b, &e));
     if (!moves || e.parts) continue;
     int64_t at[2] = {e.lo[0], e.lo[1]};
     do {
@@ -196,7 +196,6 @@ static void draw_angles(Guess *k, const Scalars *of) {
   }
   if (of->n != 1) return;
   Expr s = expr_fn(g, EX_SIN, of->at[0].e), c = expr_fn(g, EX_COS, of->at[0].e), at[] = {s, expr_neg(g, c)};
-  add_link(k, SHAPE_ROD, "link", (Expr[]){whole(k, 0), whole(k, 0)}, at, 2);
   add_point(k, at, 2, arena_printf(k->d->b->arena, "(sin(%s), -cos(%s))", of->at[0].name, of->at[0].name));
 }
 
