@@ -262,7 +262,10 @@ empty "its tags are closed" "$(unbalanced $page)"
 check "nothing of the template is left" not_grep '@[A-Z]*@' $page
 
 # hook FILE: its shapes, kind and text
-hook() { sed -n 's/.*"shapes": \(.*\), "cols".*/\1/p' "$1" | grep -o '\["[a-z]*", "[a-z]*", [^[]*' | sed 's/^\["\([a-z]*\)", "[a-z]*", /\1 /; s/, [0-9]*, $//; s/ null$//' | paste -s -d';' -; }
+hook() {
+  sed -n 's/.*"shapes": \(.*\), "cols".*/\1/p' "$1" | awk '{ gsub(/\]\], \["/, "\n\""); print }' |
+    sed 's/^\[*"\([a-z]*\)", "[a-z]*", /\1 /; s/, [0-9]*, \[[-0-9].*//; s/ null$//' | paste -s -d';' -
+}
 is "rods, from the origin and from the let that is added to" 'rod;rod;ball "(x1, y1)";ball "(x2, y2)"' "$(hook $page)"
 # joints FILE: of each rod the columns of its ends
 joints() { sed -n 's/.*"shapes": \(.*\), "cols".*/\1/p' "$1" | grep -o '"rod", [^[]*\[[-0-9, ]*\], \[[-0-9, ]*\]' | sed 's/.*null, [0-9]*, //' | paste -s -d' ' -; }
@@ -290,7 +293,7 @@ check "one angle" a only.lag -o b.html
 is "is a rod that hangs" 'rod;ball "(sin(th), -cos(th))"' "$(hook b.html)"
 check "points by expressions, with spaces and signs" \
   a "$p" --points "l*sin(th)/2, -l*cos(th)/2; 0 [m],-l  atan2(th, 1)*1 [m],l - 1 [m]" --from '0,l' --no-rods -o b.html
-is "are taken apart" 'ball "-l*cos(th)/2";ball "-l";ball "l - 1 ' "$(hook b.html)"
+is "are taken apart" 'ball "-l*cos(th)/2";ball "-l";ball "l - 1 [m]"' "$(hook b.html)"
 check "one point from another" a "$p" --points 'x,y' --from '0,l' -o b.html
 is "with its rod" 'rod;ball "y"' "$(hook b.html)"
 # page_frames FILE: how many lines its data have, one a frame
