@@ -49,6 +49,14 @@ static const Program *wanted(const Reader *r, int is_wanted, int64_t x, int64_t 
   return p;
 }
 
+/* A reader for functions that are called with parameters alone, or with time, too. */
+static Reader without_state(const Reader *r, int timed) {
+  Reader alone = *r;
+  memset(&alone.state, 0, sizeof alone.state);
+  alone.state.in[PROGRAM_T] = timed, alone.state.in[PROGRAM_P] = r->state.in[PROGRAM_P];
+  return alone;
+}
+
 static const lag_var *variables(Bytes *b, int *n) {
   *n = (int)lag_bytes_count(b, 32);
   lag_var *v = lag_bytes_room(b, (size_t)*n, sizeof *v);
@@ -231,7 +239,9 @@ static void read_linear(Reader *r) {
 static void read_variation(Reader *r) {
   Bytes *b = r->b;
   lag_model *m = &r->m->model;
-  r->m->variation = program(r, m->nq, m->nq, m->nq);
+  Reader with = *r;
+  with.state.in[PROGRAM_Z] = 0; /* methods that need it have no states */
+  r->m->variation = program(&with, m->nq, m->nq, m->nq);
   m->nsecond = (int)lag_bytes_count(b, 12);
   lag_second *s = lag_bytes_room(b, (size_t)m->nsecond, sizeof *s);
   for (int i = 0; s && i < m->nsecond; i++) {
@@ -239,7 +249,7 @@ static void read_variation(Reader *r) {
     s[i].row = (int)lag_bytes_below(b, (uint32_t)m->nq), s[i].col = (int)lag_bytes_below(b, (uint32_t)m->nq);
   }
   m->second_at = s;
-  r->m->second = wanted(r, r->m->variation != NULL, m->nsecond, 0);
+  r->m->second = wanted(&with, r->m->variation != NULL, m->nsecond, 0);
 }
 
 static void read_taylor(Reader *r) {
@@ -249,13 +259,15 @@ static void read_taylor(Reader *r) {
   EvaluatedTaylor *t = lag_bytes_room(b, 1, sizeof *t);
   if (!t) return;
   t->nq = r->m->model.nq, t->nz = r->m->model.nz;
-  t->taylor = (lag_taylor){.order = LAG_TAYLOR_ORDER, .columns = lag_bytes_int(b, 1, MOST), .width = (r->ny + 3) / 4 * 4};
+  t->taylor =
+      (lag_taylor){.order = LAG_TAYLOR_ORDER, .columns = lag_bytes_int(b, 1, MOST), .width = (r->ny + 3) / 4 * 4};
   t->sums = lag_bytes_int(b, 0, MOST), t->squares = lag_bytes_int(b, 0, MOST);
   t->first_square = lag_bytes_int(b, 0, MOST), t->row = lag_bytes_int(b, 0, MOST);
   t->constants = lag_bytes_int(b, 0, MOST), t->uses_time = flag(b), t->near = flag(b);
   t->taylor.cost_first = (int)lag_bytes_below(b, INT32_MAX), t->taylor.cost_next = (int)lag_bytes_below(b, INT32_MAX);
   t->taylor.sums = (int)lag_bytes_below(b, INT32_MAX);
-  int fits = t->sums <= t->first_square && t->first_square + t->squares <= t->row && t->taylor.width <= t->taylor.columns &&
+  int fits = t->sums <= t->first_square && t->first_square + t->squares <= t->row &&
+             t->taylor.width <= t->taylor.columns &&
              (int64_t)3 * t->nq + 2 * (int64_t)t->nz + t->uses_time <= t->taylor.columns;
   lag_bytes_need(b, fits, "columns of a series are missing");
   Reader with = *r;
@@ -279,13 +291,16 @@ static void read_head(Reader *r) {
   Bytes *b = r->b;
   lag_model *m = &r->m->model;
   m->abi = LAG_ABI, m->real_size = sizeof(double);
-  m->name = name_of(b), m->doc = name_of(b), m->effects = name_of(b), m->digest = name_of(b), m->fixed = lag_bytes_text(b);
+  m->name = name_of(b), m->doc = name_of(b), m->effects = name_of(b), m->digest = name_of(b),
+  m->fixed = lag_bytes_text(b);
   m->math = flag(b) ? "sin and cos: lag_math.h" : "sin and cos: the C library's";
   m->flags = lag_bytes_word(b), m->ops = (int)lag_bytes_below(b, INT32_MAX);
   m->q = variables(b, &m->nq), m->z = variables(b, &m->nz), m->p = variables(b, &m->np), m->u = variables(b, &m->nu);
   m->nderived = lag_bytes_int(b, 0, 1 << 24), m->nmodes = lag_bytes_int(b, 0, 1 << 24);
   r->m->nconstraints = lag_bytes_int(b, 0, 1 << 24);
   r->ny = 2 * m->nq + m->nz;
+  int flows = (m->flags & LAG_FIRST_ORDER) != 0, splits = flows && (m->flags & (LAG_SEPARABLE | LAG_SUM_HAMILTONIAN));
+  lag_bytes_need(b, !(flows && m->nq) && !(splits && m->nz % 2), "the flags of a model are wrong");
   int64_t *in = r->state.in;
   in[PROGRAM_T] = 1, in[PROGRAM_Q] = in[PROGRAM_V] = m->nq, in[PROGRAM_Z] = m->nz;
   in[PROGRAM_P] = (int64_t)m->np + m->nderived, in[PROGRAM_U] = (int64_t)m->nu + m->nmodes;
@@ -296,11 +311,12 @@ static Reader read_model(Bytes *b) {
   if (!r.m) return r;
   read_head(&r);
   lag_model *m = &r.m->model;
-  r.m->derive = wanted(&r, m->nderived > 0, r.state.in[PROGRAM_P], 0);
+  Reader alone = without_state(&r, 0), timed = without_state(&r, 1);
+  r.m->derive = wanted(&alone, m->nderived > 0, r.state.in[PROGRAM_P], 0);
   r.m->accel = wanted(&r, 1, m->nq, m->nz);
   r.m->energy = program(&r, 2, 0, 0);
   read_events(&r);
-  r.m->inputs = wanted(&r, m->nu > 0, m->nu, 0);
+  r.m->inputs = wanted(&timed, m->nu > 0, m->nu, 0);
   read_tables(&r);
   read_constraints(&r);
   read_contacts(&r);
@@ -374,12 +390,14 @@ static const lag_scene *read_scene(Bytes *b, const Reader *r) {
   const lag_model *m = &r->m->model;
   s->of = r->m, c->model = m;
   c->name = name_of(b), c->doc = name_of(b), c->method = lag_bytes_text(b);
-  c->t0 = lag_bytes_number(b), c->t1 = lag_bytes_number(b), c->tolerance = lag_bytes_number(b), c->every = lag_bytes_number(b);
+  c->t0 = lag_bytes_number(b), c->t1 = lag_bytes_number(b), c->tolerance = lag_bytes_number(b),
+  c->every = lag_bytes_number(b);
   c->has_span = flag(b), c->exactly = flag(b);
+  Reader alone = without_state(r, 0);
   const Program **params = lag_bytes_room(b, (size_t)m->np, sizeof *params);
-  for (int i = 0; params && i < m->np; i++) params[i] = program(r, m->np, 0, 0);
+  for (int i = 0; params && i < m->np; i++) params[i] = program(&alone, m->np, 0, 0);
   s->params = params;
-  s->start = program(r, m->nq, m->nq, m->nz);
+  s->start = program(&alone, m->nq, m->nq, m->nz);
   unsigned char *given = m->constraints ? lag_bytes_room(b, (size_t)r->ny, 1) : NULL;
   for (int i = 0; given && i < r->ny; i++) given[i] = (unsigned char)lag_bytes_int(b, 0, 2);
   c->given = given;

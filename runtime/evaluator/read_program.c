@@ -84,8 +84,10 @@ static Range range_of(Bytes *b, const Nest *n, uint32_t k) {
   for (int corner = 0; corner < 4; corner++) {
     double i = corner & 1 ? (double)(n->rows - 1) : 0, from = (double)n->skew * i,
            end = (double)(n->skew + n->more) * i + (double)n->turns,
-           j = !n->has_turns ? 0 : corner & 2 ? end - 1 : from, rows = (double)s->by_row * i,
-           turns = (double)s->by_turn * j;
+           j = !n->has_turns ? 0
+               : corner & 2  ? end - 1
+                             : from,
+           rows = (double)s->by_row * i, turns = (double)s->by_turn * j;
     lag_bytes_need(b, !n->has_turns || end > from, "a loop has no turns");
     lag_bytes_need(b, fabs(rows) < limit && fabs(j) < limit && fabs(turns) < limit, "a loop is too long");
     widen(&r, (double)s->first + rows + turns);
@@ -119,7 +121,8 @@ static void check_turn(Bytes *b, const Program *p, const Lengths *of, const Nest
   if (operands < 3) i->c = 0;
   const uint32_t of_op[] = {operands ? i->a : 0, i->b, i->c};
   for (int k = 0; k < 3; k++)
-    if (lag_bytes_need(b, of_op[k] < s, "a turn reads what comes later") && of_op[k]) i->moves |= all[of_op[k] - 1].moves;
+    if (lag_bytes_need(b, of_op[k] < s, "a turn reads what comes later") && of_op[k])
+      i->moves |= all[of_op[k] - 1].moves;
   if (i->op == TURN_FUNCTION) lag_bytes_need(b, i->number < lag_functions_1_count, "an unknown function");
   if (i->op == TURN_FUNCTION_2) lag_bytes_need(b, i->number < lag_functions_2_count, "an unknown function");
 }
@@ -168,7 +171,8 @@ static void read_nest(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   n->skew = bounded(b), n->turns = bounded(b), n->more = bounded(b);
   n->nsubscripts = lag_bytes_count(b, 24);
   Subscript *at = lag_bytes_room(b, n->nsubscripts, sizeof *at);
-  for (uint32_t k = 0; at && k < n->nsubscripts; k++) at[k] = (Subscript){bounded(b), 0, 0}, at[k].by_row = bounded(b), at[k].by_turn = bounded(b);
+  for (uint32_t k = 0; at && k < n->nsubscripts; k++)
+    at[k] = (Subscript){bounded(b), 0, 0}, at[k].by_row = bounded(b), at[k].by_turn = bounded(b);
   n->at = at;
   n->nouter = lag_bytes_count(b, 4);
   n->outer = lag_bytes_words(b, n->nouter);
@@ -187,17 +191,20 @@ static const Nest *read_nests(Bytes *b, const Program *p, const Lengths *of, uin
 
 static int is_operand(const Program *p, const Lengths *of, char kind, const uint32_t *at) {
   switch (kind) {
-    case 'a': case 'd': return at[0] < p->frame;
-    case 'f': return at[0] < lag_functions_1_count;
-    case 'F': return at[0] < lag_functions_2_count;
-    case 't': return at[0] < p->ncurves;
-    case 's': return at[0] < p->nsystems;
-    case 'n': return at[0] < p->nnests;
-    case 'i': return at[0] < PROGRAM_CONSTANTS ? ends_within(at[1], at[3], of->in[at[0]]) && (uint64_t)at[2] + at[3] <= p->frame
-                                               : at[0] == PROGRAM_CONSTANTS && ends_within(at[1], at[3], p->nconstants) &&
-                                                     (uint64_t)at[2] + at[3] <= p->frame;
-    case 'o': return at[0] < PROGRAM_OUTPUTS && ends_within(at[1], at[3], of->out[at[0]]) && (uint64_t)at[2] + at[3] <= p->frame;
-    default: return 1; /* k, with the array */
+  case 'a':
+  case 'd': return at[0] < p->frame;
+  case 'f': return at[0] < lag_functions_1_count;
+  case 'F': return at[0] < lag_functions_2_count;
+  case 't': return at[0] < p->ncurves;
+  case 's': return at[0] < p->nsystems;
+  case 'n': return at[0] < p->nnests;
+  case 'i':
+    return at[0] < PROGRAM_CONSTANTS ? ends_within(at[1], at[3], of->in[at[0]]) && (uint64_t)at[2] + at[3] <= p->frame
+                                     : at[0] == PROGRAM_CONSTANTS && ends_within(at[1], at[3], p->nconstants) &&
+                                           (uint64_t)at[2] + at[3] <= p->frame;
+  case 'o':
+    return at[0] < PROGRAM_OUTPUTS && ends_within(at[1], at[3], of->out[at[0]]) && (uint64_t)at[2] + at[3] <= p->frame;
+  default: return 1; /* k, with the array */
   }
 }
 

@@ -301,7 +301,6 @@ int simulator_of_units(Compiler *c, const Units *units, const char *output, cons
 
 /* The reason why the run must be compiled; NULL: liblag can evaluate it. */
 static const char *reason_to_compile(Compiler *c, const Toolchain *tools, ProgramKind kind) {
-  if (options_more_digits(&c->o)) return "evaluates doubles only: leave --precision out";
   if (kind & PROGRAM_WITH_PNG) return "has no pictures as PNG: give a name with .svg";
   if (kind & (PROGRAM_WITH_HDF5 | PROGRAM_WITH_MPI | PROGRAM_WITH_LANES)) return "evaluates one run at a time";
   return toolchain_evaluator(c->arena, tools) ? NULL : "needs lag-run beside liblag.a: run `make`";
@@ -313,6 +312,9 @@ const char *simulator_evaluator(Compiler *c, const Units *units, int *status) {
   Toolchain tools;
   ProgramKind kind;
   if (strcmp(how, "always") == 0 || c->o.command == CMD_COST || c->o.command == CMD_SWEEP) return NULL;
+  if (never && options_more_digits(&c->o))
+    *status = usage_error("--compile never evaluates doubles only: leave --precision out");
+  if (options_more_digits(&c->o)) return NULL;
   if ((*status = find_tools(c, units, NULL, &tools, &kind)) != STATUS_OK) return NULL;
   const char *reason = reason_to_compile(c, &tools, kind);
   if (reason && never) *status = usage_error(arena_printf(c->arena, "--compile never %s", reason));
@@ -321,8 +323,10 @@ const char *simulator_evaluator(Compiler *c, const Units *units, int *status) {
     Texts texts = simulator_texts(c, units, kind);
     if (toolchain_cached(c->arena, &tools, texts.at, texts.n)) return NULL;
     if (!toolchain_has_compiler(c->arena, &tools))
-      fprintf(stderr, "lagc: there is no C compiler `%s`: the model is evaluated, with the same digits; long runs take two "
-                      "to three times as long\n", tools.cc);
+      fprintf(stderr,
+              "lagc: there is no C compiler `%s`: the model is evaluated, with the same digits, long runs at a "
+              "third to a half of the speed\n",
+              tools.cc);
   }
   return toolchain_evaluator(c->arena, &tools);
 }

@@ -240,7 +240,8 @@ static void scene(const Unit *w, const IrScene *s) {
 void emit_bytes(const ProgramSet *const *units, const char *const *names, uint32_t n, StrBuf *out) {
   const ProgramSet *first = units[0];
   put_word(out, PROGRAM_MAGIC), put_word(out, PROGRAM_VERSION);
-  put_text(out, first->name), put_text(out, first->doc), put_text(out, first->source), put_text(out, first->all_effects);
+  put_text(out, first->name), put_text(out, first->doc), put_text(out, first->source),
+      put_text(out, first->all_effects);
   put_word(out, n);
   for (uint32_t i = 0; i < n; i++) {
     Unit w = {units[i], {!units[i]->libm, 0}, out};

@@ -1,5 +1,5 @@
-/* lag-run: a simulator of any model, which it evaluates. Enters: the bytes that lagc wrote, at the path $LAG_PROGRAM, and
- * the command line of a simulator. */
+/* lag-run: a simulator of any model, which it evaluates. Enters: the bytes that lagc wrote, at the path $LAG_PROGRAM,
+ * and the command line of a simulator. */
 #include <stdio.h>
 #include <stdlib.h>
 
