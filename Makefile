@@ -140,7 +140,7 @@ $(BUILD)/liblag.a: $(RT_OBJ)
 $(BUILD)/obj/runtime/evaluator/lag_run.o: RT_FLAGS += $(if $(GSL),-DLAG_WITH_GSL)
 $(BUILD)/obj/runtime/evaluator/lag_run.o: $(CONFIG)
 $(BUILD)/lag-run$(EXE): $(BUILD)/obj/runtime/evaluator/lag_run.o $(if $(GSL),$(BUILD)/liblag_gsl.a) $(BUILD)/liblag.a
-	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) $(if $(WINDOWS),-static) -o $@ $^ $(GSL_LIBS) -lm
+	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) $(if $(WINDOWS),-static,-rdynamic) -o $@ $^ $(GSL_LIBS) -lm $(if $(WINDOWS),,-ldl)
 # References within it are bound to its own functions.
 $(BUILD)/liblag.so.%: $(RT_OBJ) runtime/liblag.map
 	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) -shared -Wl,-soname,$(@F) -Wl,--version-script=runtime/liblag.map -Wl,-Bsymbolic -o $@ $(RT_OBJ) -lm

@@ -76,17 +76,13 @@ int command_run(Compiler *c) {
   if (c->o.budget) return cost_budget(c);
   Units units = {0};
   if (!simulator_lower(c, &units)) return STATUS_MODEL;
-  path = simulator_evaluator(c, &units, &status);
+  if (writes_source(c)) return STATUS_USAGE;
+  status = simulator_evaluate(c, &units, &path);
   if (status != STATUS_OK) return status;
-  if (path) {
-    StrBuf bytes = simulator_bytes(c, &units);
-    if (!process_give("LAG_PROGRAM", &bytes)) return usage_error("cannot write a temporary file: set TMPDIR");
-  } else {
+  if (!path)
     status = c->o.command == CMD_COST ? make_cost_simulator(c, &units, begin, &path)
                                       : simulator_of_units(c, &units, NULL, &path);
-  }
   if (status != STATUS_OK) return status;
-  if (writes_source(c)) return STATUS_USAGE;
   fflush(stdout);
   if (!simulator_is_later_rank(c)) compiler_print_messages(c); /* warnings: the simulator does not come back */
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
