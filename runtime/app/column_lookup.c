@@ -167,7 +167,8 @@ static int add_points(App *app, const char *option, const char *text, int *x, in
   return p->n ? 0 : lag_app_error(&app->args, "%s \"%s\": each point is X,Y, two names of outputs", option, text);
 }
 
-static const lag_shape no_shape = {.a = {-1, -1, -1}, .b = {-1, -1, -1}, .size = {-1, -1, -1}, .turn = {-1, -1, -1, -1}};
+static const lag_shape no_shape = {
+    .a = {-1, -1, -1}, .b = {-1, -1, -1}, .size = {-1, -1, -1}, .turn = {-1, -1, -1, -1}};
 
 static int add_shape(App *app, const char *kind, const char *role, const char *text, const int *a, const int *b) {
   Animation *show = &app->show;

@@ -12,6 +12,7 @@
  * second). */
 int lag_app_after_step(void *context, const lag_sim *sim) {
   App *app = context;
+  if (app->extras.after_step) app->extras.after_step(app->program);
   if (app->watched && sim == app->sim) lag_error_estimate_note(&app->error, app->sim);
   if (app->volume.n && sim == app->sim) lag_app_volume_step(app);
   if (app->progress >= 0 && lag_clock_seconds() - app->shown >= (app->progress ? 0.2 : 1.0)) {

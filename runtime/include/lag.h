@@ -614,6 +614,7 @@ typedef struct lag_extras {
    * lag_model.h); or NULL */
   const lag_scene *const *lanes_4, *const *lanes_8;
   const lag_ranks *ranks; /* or NULL */
+  void (*after_step)(const lag_program *program); /* called after each step of a run; or NULL */
 } lag_extras;
 
 /* The contents of liblag_gsl.a, by the GNU Scientific Library. */
