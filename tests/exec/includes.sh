@@ -52,8 +52,8 @@ runtime/include/lag_kkt.h  lag_lanes.h
 # The inside of a folder, shared by its own files only.
 private='evaluator/bytes.h evaluator/program.h evaluator/read_program.h evaluator/evaluated_model.h analysis/measure_nodes.h sweep/run_chunks_impl.h syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h
   model/scope.h model/declarations.h sym/expr_impl.h sym/ops.def symmetry/noether_theorem_impl.h lower/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h fmu/fmu_archive_impl.h methods/tableau.h methods/embedded_trial.h lanes/embedded_step.h
-  methods/steps.h methods/step_interpolant.h methods/galerkin_rule.h methods/discrete_lagrangian.h methods/implicit_symplectic.h
-  methods/predictor.h methods/newton.h methods/step_control.h'
+  methods/steps.h methods/step_interpolant.h methods/discrete_lagrangian.h methods/implicit_symplectic.h
+  methods/step_control.h'
 
 # Every #include as `FILE HEADER`; <stdio.h> keeps its brackets.
 list=$TMP/list
