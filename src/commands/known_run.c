@@ -234,11 +234,21 @@ int known_run_start(Compiler *c, int *known) {
   return STATUS_OK;
 }
 
-int known_run_keep_and_start(Compiler *c, const char *path) {
+static Found new_run(Compiler *c, const char *path) {
   StrBuf said = strbuf(c->arena);
   if (!simulator_is_later_rank(c)) compiler_messages(c, &said);
   if (c->picture.note) sb_printf(&said, "%s\n", c->picture.note);
-  Found f = {path, sb_text(&said), c->run && c->run->n <= LARGE && c->o.command != CMD_SWEEP};
+  return (Found){path, sb_text(&said), c->run && c->run->n <= LARGE && c->o.command != CMD_SWEEP};
+}
+
+int known_run_keep_and_start(Compiler *c, const char *path) {
+  Found f = new_run(c, path);
   if (c->known->paths[0]) keep(c, &f);
+  return start(c, &f);
+}
+
+int known_run_evaluate(Compiler *c, const char *path, const StrBuf *bytes) {
+  Found f = new_run(c, path);
+  if (!process_give("LAG_PROGRAM", bytes)) return usage_error("cannot write a temporary file: set TMPDIR");
   return start(c, &f);
 }

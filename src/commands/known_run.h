@@ -13,3 +13,6 @@ int known_run_start(Compiler *c, int *known);
 /* Begins the simulator at `path` with c->picture.argv: messages, the listener for its last state, exec. With an entry
  * in the cache for the next time. Returns a STATUS, if that failed. */
 int known_run_keep_and_start(Compiler *c, const char *path);
+
+/* The same with a program of bytes for the evaluator at `path`; it is not kept. */
+int known_run_evaluate(Compiler *c, const char *path, const StrBuf *bytes);

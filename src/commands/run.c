@@ -56,6 +56,12 @@ int command_run(Compiler *c) {
   if (c->o.budget) return cost_budget(c);
   Units units = {0};
   if (!simulator_lower(c, &units)) return STATUS_MODEL;
+  const char *evaluator = simulator_evaluator(c, &units, &status);
+  if (status != STATUS_OK) return status;
+  if (evaluator) {
+    StrBuf bytes = simulator_bytes(c, &units);
+    return known_run_evaluate(c, evaluator, &bytes);
+  }
   status = c->o.command == CMD_COST ? make_cost_simulator(c, &units, begin, &path)
                                     : simulator_of_units(c, &units, NULL, &path);
   return status == STATUS_OK ? known_run_keep_and_start(c, path) : status;

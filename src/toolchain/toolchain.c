@@ -312,8 +312,30 @@ const char *toolchain_entry(Arena *a, const Toolchain *t, const SourceText *text
   return arena_printf(a, "%016llx%016llx", (unsigned long long)h1, (unsigned long long)h2);
 }
 
+const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
+  const char *cache = cache_folder(a),
+             *path = cache ? arena_printf(a, "%s/%s", cache, toolchain_entry(a, t, texts, n)) : NULL;
+  return path && cache_has(path) ? path : NULL;
+}
+
+const char *toolchain_evaluator(Arena *a, const Toolchain *t) {
+  const char *path = arena_printf(a, "%s/lag-run" PROGRAM_SUFFIX, t->lib);
+  return file_exists(path) ? path : NULL;
+}
+
+int toolchain_has_compiler(Arena *a, const Toolchain *t) {
+  const char *name = arena_strndup(a, t->cc, strcspn(t->cc, " ")), *path = getenv("PATH");
+  if (strpbrk(name, "/\\")) return file_exists(name);
+  for (size_t n; path && *path; path += n + (path[n] != '\0')) {
+    n = strcspn(path, PATH_SEPARATOR);
+    if (file_exists(arena_printf(a, "%.*s/%s" PROGRAM_SUFFIX, (int)n, path, name))) return 1;
+  }
+  return 0;
+}
+
 const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error) {
-  const char *cache = cache_folder(a), *path = cache ? arena_printf(a, "%s/%s", cache, toolchain_entry(a, t, texts, n)) : NULL;
+  const char *cache = cache_folder(a),
+             *path = cache ? arena_printf(a, "%s/%s", cache, toolchain_entry(a, t, texts, n)) : NULL;
   BuildFolder f;
   if (path && cache_has(path)) return path;
   int lock = path ? cache_take(a, path) : -1, there = lock >= 0 && cache_has(path), ok = there;
