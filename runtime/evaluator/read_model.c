@@ -337,6 +337,25 @@ static void read_lists(Bytes *b, const Reader *r, lag_scene *s) {
   s->measures = k;
 }
 
+static void read_indices(Bytes *b, int nout, int *at, int n) {
+  for (int i = 0; i < n; i++) at[i] = lag_bytes_int(b, -1, nout - 1);
+}
+
+static void read_shapes(Bytes *b, lag_scene *s) {
+  s->ndrawn = lag_bytes_int(b, 0, s->nout);
+  s->nshapes = (int)lag_bytes_count(b, 68);
+  lag_shape *x = lag_bytes_room(b, (size_t)s->nshapes, sizeof *x);
+  for (int i = 0; x && i < s->nshapes; i++) {
+    x[i].kind = name_of(b), x[i].role = name_of(b), x[i].text = lag_bytes_text(b);
+    x[i].count = lag_bytes_int(b, 0, 1000);
+    read_indices(b, s->nout, x[i].a, 3);
+    read_indices(b, s->nout, x[i].b, 3);
+    read_indices(b, s->nout, x[i].size, 3);
+    read_indices(b, s->nout, x[i].turn, 4);
+  }
+  s->shapes = x;
+}
+
 static void read_actions(Bytes *b, const Reader *r, EvaluatedScene *s) {
   s->nactions = (int)lag_bytes_count(b, 16);
   EvaluatedAction *a = lag_bytes_room(b, (size_t)s->nactions, sizeof *a);
@@ -389,6 +408,7 @@ static const lag_scene *read_scene(Bytes *b, const Reader *r) {
   c->given = given;
   read_outputs(b, r, s);
   read_lists(b, r, c);
+  read_shapes(b, c);
   lag_bytes_need(b, isfinite(c->t0) && isfinite(c->t1), "a span is not finite");
   if (b->why) return NULL;
   lag_set_scene_functions(s);

@@ -46,6 +46,37 @@ static int make_cost_simulator(Compiler *c, const Units *units, double begin, co
   return status;
 }
 
+static int is_quiet(const Options *o) {
+  for (uint32_t i = 0; i < o->rest.n; i++)
+    if (strcmp(o->rest.at[i], "--quiet") == 0) return 1;
+  return 0;
+}
+
+/* "drawn by guess: 2 rods, ball at x1, y1, ball at x2, y2; ..." */
+static const char *drawing_words(Arena *a, const Scene *sc) {
+  enum { MOST = 4 };
+  StrBuf s = strbuf(a);
+  sb_puts(&s, "guessed drawing:");
+  for (uint32_t i = 0, n = 0; i < sc->shapes.n && n <= MOST; i++, n++) {
+    const Shape *x = &sc->shapes.at[i];
+    if (n == MOST) sb_printf(&s, ", ... (%u shapes)", sc->shapes.n);
+    else sb_printf(&s, "%s %s%s%s", n ? "," : "", shape_word(x->kind), x->text ? " at " : "", x->text ? x->text : "");
+  }
+  sb_puts(&s, "; `draw` statements in the model, or --points 'X,Y X,Y', say otherwise");
+  return sb_text(&s);
+}
+
+/* Whether there is something to draw; says so where it was guessed, or not. */
+static int has_drawing(Compiler *c) {
+  const Scene *sc = &c->run->m->scene;
+  if (!c->picture.drawing) return 1;
+  if (!sc->shapes.n)
+    return usage_error("nothing to draw: the model has no `draw`, no x,y, no x1,y1 x2,y2 ... and no vector among its "
+                       "coordinates; write `draw ball at (X, Y)` in it, or --points 'X,Y X,Y'"), 0;
+  if (sc->guessed && !c->picture.note && !is_quiet(&c->o)) c->picture.note = drawing_words(c->arena, sc);
+  return 1;
+}
+
 /* run, plot, animate, modes, lyapunov, cost: builds the simulator and becomes it by exec. */
 int command_run(Compiler *c) {
   const char *path;
@@ -55,6 +86,7 @@ int command_run(Compiler *c) {
   if (c->o.budget) return cost_budget(c);
   Units units = {0};
   if (!simulator_lower(c, &units)) return STATUS_MODEL;
+  if (!has_drawing(c)) return STATUS_USAGE;
   const char *evaluator = simulator_evaluator(c, &units, &status);
   if (status != STATUS_OK) return status;
   if (evaluator) {

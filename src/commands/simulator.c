@@ -26,7 +26,8 @@ static ModelChoice choice_of(const Compiler *c, const char *scene, int measures)
                        .nmeasures = measures ? c->picture.measures.n : 0,
                        .given = c->given.at,
                        .ngiven = c->given.n,
-                       .section = c->picture.section};
+                       .section = c->picture.section,
+                       .drawing = c->picture.drawing};
 }
 
 static Eqns *derive_asked(Compiler *c, const char *scene, int measures) {
@@ -176,7 +177,8 @@ static void lower_scene(Compiler *c, Eqns *e, int runs, int apart, Units *units,
 
 int simulator_lower(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast), named = c->picture.scenes.n ? c->picture.scenes : (SceneList){scenes.at, 1};
-  if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->o.consts.n) scenes = named;
+  if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->picture.drawing || c->o.consts.n)
+    scenes = named;
   else if (c->picture.argv.n && !scenes_of_run(c, scenes, named, &scenes)) return 0;
   Lowereds all = {0};
   const char *error, *first = c->picture.scene ? c->picture.scene : scenes.at[0];
