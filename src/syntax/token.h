@@ -95,6 +95,7 @@ enum {
   X(EVENT, "event", W_EACH | T_BLOCK)              \
   X(KICK, "kick", W_EACH | T_BLOCK)                \
   X(CONTACT, "contact", W_EACH)                    \
+  X(GUIDE, "guide", W_EACH)                        \
   X(OBSERVE, "observe", W_EACH)                    \
   X(FOR, "for", W_EACH | T_BLOCK)                  \
   X(EFFECT, "effect", W_FILE | T_BLOCK)            \
