@@ -37,6 +37,12 @@ int lag_guide_of(const lag_model *m, int contact) {
   return -1;
 }
 
+int lag_guide_turns(const lag_model *m, int event) {
+  for (int i = 0; i < m->nguides; i++)
+    if (m->guides[i].turn == event) return 1;
+  return 0;
+}
+
 int lag_event_is_located(const lag_sim *s, int k) { return !s->pb.contacts || !lag_contact_of(s->scene->model, k); }
 
 int lag_contact_is_closed(const lag_sim *s, const lag_contact *c) { return s->hold[c->input] > 0.5; }
@@ -179,6 +185,28 @@ double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i
   return rate_change(m, A, i, before + nq) / speed - 1;
 }
 
+/* Whether a change d of velocities, d M d = square, keeps the constraints that always hold: it does not where they imply
+ * the row that d moves, and the solver has left out one of theirs. Rates are measured by those of free coordinates. */
+static int keeps_constraints(const ContactSet *w, const double *d, double square) {
+  const double alike = 1e-6;
+  const lag_model *m = w->sim->scene->model;
+  const lag_constraints *of = m->constraints;
+  double *rate = w->c, *free = w->r;
+  memset(rate, 0, (size_t)of->n * sizeof *rate);
+  memset(free, 0, (size_t)of->n * sizeof *free);
+  for (int e = 0; e < of->njacobian; e++) {
+    const lag_entry *at = &of->jacobian[e];
+    double mass = 0;
+    for (int k = 0; k < of->nmass; k++) mass += of->mass[k].row == at->col && of->mass[k].col == at->col ? w->mass[k] : 0;
+    rate[at->row] += w->A[e] * d[at->col];
+    free[at->row] += mass > 0 ? w->A[e] * w->A[e] / mass : HUGE_VAL;
+  }
+  for (int i = 0; i < m->ncontacts; i++) rate[m->contacts[i].constraint] = 0;
+  for (int k = 0; k < of->n; k++)
+    if (rate[k] * rate[k] > alike * alike * square * free[k]) return 0;
+  return 1;
+}
+
 double lag_contacts_response(ContactSet *w, int i) {
   lag_problem *pb = &w->sim->pb;
   int nq = pb->nq, k = w->sim->scene->model->contacts[i].constraint;
@@ -188,7 +216,7 @@ double lag_contacts_response(ContactSet *w, int i) {
   w->g[k] = 1;
   if (lag_least_change(pb, w->sim->run->t, w->y, 0, w->g, w->d, w->force)) return NAN;
   for (int j = 0; j < nq; j++) s += w->d[j] * w->force[j];
-  return isnan(s) || lag_row_moves(change_of_rate(w, i, w->d)) ? 1 / s : 0;
+  return isnan(s) || (lag_row_moves(change_of_rate(w, i, w->d)) && keeps_constraints(w, w->d, s)) ? 1 / s : 0;
 }
 
 static double restitution_at(ContactSet *w, int i, double speed) {

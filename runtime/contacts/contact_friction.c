@@ -33,13 +33,14 @@ static double side_of(const lag_problem *pb, int i) {
 typedef struct Slipping {
   int n, of[LAG_MOST_TOUCHES], parts[LAG_MOST_TOUCHES];
   double mu[LAG_MOST_TOUCHES], N[LAG_MOST_TOUCHES][3], toward[LAG_MOST_TOUCHES][3];
-  double C[LAG_MOST_TOUCHES][3][LAG_MOST_TOUCHES], left[LAG_MOST_TOUCHES], size;
+  double C[LAG_MOST_TOUCHES][3][LAG_MOST_TOUCHES], left[LAG_MOST_TOUCHES], largest;
 } Slipping;
 
-/* left[n] := force + side mu |N|, which is 0 for the forces sought; N, mu. size := the largest term. */
+/* left[n] := force + side mu |N|, which is 0 for the forces sought; N, mu. largest := the largest term. */
 static int imbalance(lag_problem *pb, double t, const double *y, Slipping *s) {
   const lag_model *m = pb->model;
   int rc = lag_contact_laws_at(pb, t, y, pb->rub);
+  s->largest = 0;
   for (int k = 0; k < s->n && rc == 0; k++) {
     int guide = lag_guide_of(m, s->of[k]), input = m->contacts[s->of[k]].force;
     const double *N = guide < 0 ? &pb->rub[3 * s->of[k] - 1] : lag_guide_law(m, pb->rub, guide) + 1;
@@ -48,8 +49,8 @@ static int imbalance(lag_problem *pb, double t, const double *y, Slipping *s) {
     for (int c = 0; c < s->parts[k]; c++) s->N[k][c] = N[c];
     double press = guide < 0 ? N[0] : lag_norm(N, s->parts[k]), most = pb->hold[input] * s->mu[k] * press;
     s->left[k] = pb->u[input] + most;
-    s->size = fmax(s->size, fabs(most));
-    for (int c = 0; c < s->parts[k] && press != 0; c++) s->toward[k][c] = guide < 0 ? 1 : N[c] / press;
+    s->largest = fmax(s->largest, fabs(most));
+    for (int c = 0; c < s->parts[k]; c++) s->toward[k][c] = guide < 0 || press == 0 ? c == 0 : N[c] / press;
   }
   return rc;
 }
@@ -58,7 +59,7 @@ static int imbalance(lag_problem *pb, double t, const double *y, Slipping *s) {
 static int find_slopes(lag_problem *pb, double t, const double *y, Slipping *s) {
   const lag_model *m = pb->model;
   Slipping at = *s;
-  double unit = s->size > 0 ? s->size : 1;
+  double unit = s->largest > 0 ? s->largest : 1;
   int rc = 0;
   for (int j = 0; j < s->n && rc == 0; j++) {
     double *force = &pb->u[m->contacts[s->of[j]].force];
@@ -103,11 +104,13 @@ static int newton_step(const lag_problem *pb, const Slipping *s, double *x) {
   return lag_solve_dense((size_t)s->n, 1, A, x);
 }
 
-/* Finds the forces of contacts and guides that slip. */
+/* Finds the forces of contacts and guides that slip. Where a force passes through 0 its rounding is that of others:
+ * the largest of the run stands behind the laws in pb->rub. */
 static int find_friction(lag_problem *pb, double t, const double *y) {
-  enum { ROUNDS = 30 };
   const double enough = 16 * DBL_EPSILON, some = 1e-11;
   const lag_model *m = pb->model;
+  const int rounds = m->nguides ? 30 : 4;
+  double *size = pb->rub + 3 * m->ncontacts + 4 * m->nguides, most = HUGE_VAL;
   Slipping s = {0};
   int rc; /* no more are closed together */
   for (int i = 0; i < m->ncontacts && s.n < LAG_MOST_TOUCHES; i++)
@@ -117,16 +120,16 @@ static int find_friction(lag_problem *pb, double t, const double *y) {
   if ((rc = imbalance(pb, t, y, &s)) != 0 || (rc = find_slopes(pb, t, y, &s)) != 0) return rc;
   for (int k = 0; k < s.n; k++)
     if (lag_guide_of(m, s.of[k]) >= 0 && gain(&s, k) >= 1) return fail_slipping(pb, &s, k);
-  for (int round = 0; round < ROUNDS; round++) {
-    double x[LAG_MOST_TOUCHES], most = 0;
+  for (int round = 0; round < rounds && most > enough * fmax(*size, s.largest); round++) {
+    double x[LAG_MOST_TOUCHES];
     if (newton_step(pb, &s, x)) return LAG_ERETRY;
     for (int k = 0; k < s.n; k++) pb->u[m->contacts[s.of[k]].force] += x[k];
     if ((rc = imbalance(pb, t, y, &s)) != 0) return rc;
+    most = 0;
     for (int k = 0; k < s.n; k++) most = fmax(most, fabs(s.left[k]));
-    if (most <= enough * s.size || (!m->nguides && round == 3)) return 0;
-    if (round == ROUNDS - 1) return most <= some * s.size ? 0 : fail_slipping(pb, &s, 0);
   }
-  return 0;
+  *size = fmax(*size, s.largest);
+  return m->nguides && !(most <= some * *size) ? fail_slipping(pb, &s, 0) : 0;
 }
 
 static int is_closed(const lag_problem *pb, int i) { return pb->hold[pb->model->contacts[i].input] > 0.5; }
@@ -232,6 +235,10 @@ void lag_tangent_events(const lag_sim *s, double *g) {
     if (!c->is_tangent) continue;
     g[c->impact] = fabs(s->hold[c->force]) > 0 ? s->hold[c->force] * g[c->impact] : 1;
     g[c->release] = lag_contact_is_closed(s, c) ? g[c->release] : 1;
+  }
+  for (int i = 0; i < m->nguides; i++) {
+    const lag_guide *guide = &m->guides[i];
+    if (guide->turn >= 0 && !(fabs(s->hold[m->contacts[guide->tangent].force]) > 0)) g[guide->turn] = 1;
   }
 }
 

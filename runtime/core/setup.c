@@ -130,7 +130,7 @@ static int alloc_scratch(lag_sim *s) {
   const size_t sizes[] = {nuu,
                           nw, n, n, n, nev, nev, nout, 2 + nev, 11 * nev, held, ranks, sized, (size_t)m->ncontacts,
                           2 * nc, nc, nc, 3 * (size_t)m->nswitch, nm, nm, nm, nm, nm, nm * (9 + 2 * nm), nm * (3 + nm),
-                          m->contact_laws ? np * (5 + 2 * np) + 4 * (size_t)m->nguides : 0,
+                          m->contact_laws ? 3 * np + 4 * (size_t)m->nguides + 1 : 0,
                           (size_t)(m->nsizes + m->nmoving)};
   s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);

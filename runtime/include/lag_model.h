@@ -257,6 +257,7 @@ typedef struct lag_contact {
 /* A guide: its tangent, with friction by the force of constraints that always hold. */
 typedef struct lag_guide {
   int tangent, parts; /* index in the contacts; components of its force */
+  int turn;           /* event: the force of one component changes its side; -1: there are more */
 } lag_guide;
 
 /* An entry of lag_model.second: the second derivative of L by two of q, v, where of LAG_QQ and LAG_VV only row >=

@@ -379,7 +379,9 @@ static void emit_constraints(const ModelFile *f) {
   sb_puts(f->out, "};\n");
   if (program_set_guides(f->u)) sb_puts(f->out, "\nstatic const lag_guide guide_table[] = {\n");
   for (uint32_t i = 0; i < f->u->contacts.n; i++)
-    if (f->u->contacts.at[i].parts) sb_printf(f->out, "  {%u, %u},\n", i, f->u->contacts.at[i].parts);
+    if (f->u->contacts.at[i].parts)
+      sb_printf(f->out, "  {%u, %u, %d},\n", i, f->u->contacts.at[i].parts,
+                f->u->contacts.at[i].parts == 1 ? (int)f->u->contacts.at[i].turn : -1);
   if (program_set_guides(f->u)) sb_puts(f->out, "};\n");
   state_function(f, f->u->contact_laws, "contact_laws",
                  "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", NULL,

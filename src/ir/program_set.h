@@ -141,7 +141,7 @@ typedef struct {
 typedef struct {
   uint32_t input, constraint, impact, release, force;
   int is_tangent, conditional, law, holds;
-  uint32_t parts; /* of a tangent of a guide: components of its force */
+  uint32_t parts, turn; /* of a tangent of a guide: components of its force; of one: the event where it turns */
 } IrContact;
 
 /* A size, at least 0; open: more than 0; part: at most 1. */

@@ -151,6 +151,10 @@ void push_tangent(Builder *b, const AstStmt *st, Name owner, Contact t, Expr pre
   t.impact = add_named_event(b, owner, intern_printf(b, " sticks%s", component), t.gap, st->span);
   t.release =
       add_named_event(b, owner, intern_printf(b, " slips%s", component), expr_sub(b->g, limit, size), st->span);
+  if (t.parts == 1) {
+    t.turn = add_named_event(b, owner, " turns", t.normal[0], st->span);
+    m->events.at[t.turn].direction = CROSS_BOTH;
+  }
   vec_push(b->arena, &m->contacts, t);
 }
 

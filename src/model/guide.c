@@ -233,12 +233,19 @@ static Expr slip_of(Builder *b, const AstStmt *st, Name effect, const Entity *of
   return 0;
 }
 
+static void declare_slip(Builder *b, const AstStmt *st, Name name, uint32_t constraint) {
+  scope_add(&b->constraints, (Entity){.index = constraint, .name = intern_printf(b, "slip"), .effect = name,
+                                      .span = st->name_span});
+}
+
 void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data) {
   (void)data;
   IndexRange r = {0};
   if (st->kind != STMT_GUIDE || (st->dims && !resolve_indices(b, st->dims, effect, &r))) return;
   Name name = member_name(b->ast, st->name, r.lo, r.n);
-  const Entity *of = st->lhs ? scope_own(&b->constraints, name, effect) : NULL;
+  const Entity *found = st->lhs ? scope_own(&b->constraints, name, effect) : NULL;
+  Entity own = found ? *found : (Entity){0}, *of = found ? &own : NULL; /* declarations move entities */
+  declare_slip(b, st, name, UINT32_MAX); /* refused, unless declared again */
   if ((st->lhs && (!of || of->index >= b->m->constraints.n)) || !refuse_options(b, st)) return;
   Contact t = {.is_tangent = 1, .restitution = expr_int(b->g, 0)};
   Dim dim;
@@ -248,8 +255,7 @@ void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data) 
     t.hold = coefficient(b, st, effect, "static", HUGE_VAL, "a coefficient of static friction", t.friction);
   }
   if (!slip || (of ? !t.friction || !t.hold : !read_sizes(b, st, effect, &t))) return;
-  scope_add(&b->constraints, (Entity){.index = b->m->constraints.n, .name = intern_printf(b, "slip"), .effect = name,
-                                      .span = st->name_span});
+  declare_slip(b, st, name, b->m->constraints.n);
   t.gap = slip;
   push_tangent(b, st, name, t, norm_of(b, t.normal, t.parts), dim, "");
   if (!b->m->dissipation_span.end) b->m->dissipation_span = st->span;

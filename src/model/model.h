@@ -128,6 +128,7 @@ typedef struct {
   /* of a tangent of a guide: components of the force of the guide, linear in multipliers; parts 0: of a contact */
   Expr normal[3];
   uint32_t parts;
+  uint32_t turn; /* of a guide whose force has one component: event where that changes its side */
   /* coordinates of the space in which a guide slips by its constraints alone; nspace 0: the text gives its slip */
   uint32_t space[3], nspace;
 } Contact;
