@@ -7,6 +7,14 @@
 #include "core/core.h"
 #include "core/rhs.h"
 
+/* Refuses negative frictions at state y, by the branches of that state. */
+static int judge_moving_sizes(lag_sim *s, double t, const double *y) {
+  lag_switch_set_free(s, 1);
+  int rc = lag_check_moving_sizes(s, t, y);
+  lag_switch_set_free(s, 0);
+  return rc;
+}
+
 /* Begins the run at the first advance: start, method, monitors, events. For t = t0 only the start is computed, as
  * the direction of time is not known yet. */
 static int begin(lag_sim *s, double t) {
@@ -15,7 +23,7 @@ static int begin(lag_sim *s, double t) {
 
   rc = rc ? rc : lag_contact_begin(s);
   if (rc || t == s->scene->t0) return rc;
-  if ((rc = lag_switch_place(s)) != 0) return rc;
+  if ((rc = judge_moving_sizes(s, s->run->t, s->now)) != 0 || (rc = lag_switch_place(s)) != 0) return rc;
   if (!s->options && s->scene->method && strcmp(s->scene->method, s->method->name) != 0) {
     return lag_fail(
         s, LAG_EMETHOD,
@@ -27,7 +35,6 @@ static int begin(lag_sim *s, double t) {
   }
   lag_start_sizes(s);
   if ((rc = s->method->init(s->method_work, &s->pb, s->options)) != 0) return lag_explain(s, rc);
-  if ((rc = lag_check_moving_sizes(s, s->run->t, s->now)) != 0) return rc;
   s->run->begun = 1;
   rc = lag_monitors_begin(s);
   rc = rc ? rc : lag_tangent_begin(s);
@@ -55,14 +62,11 @@ static int make_step(lag_sim *s, double *t, double t_stop) {
   return LAG_OK;
 }
 
-/* Fails where the step, of which no event comes first, ends at a negative friction; judged by the branches of that
- * state. */
+/* Fails where the step, of which no event comes first, ends at a negative friction. */
 static int judge_end(lag_sim *s) {
   Run *r = s->run;
   if (!s->scene->model->nmoving || r->have_step == 0.0 || r->pending != 0.0) return LAG_OK;
-  lag_switch_set_free(s, 1);
-  int rc = lag_check_moving_sizes(s, r->step_t1, s->y);
-  lag_switch_set_free(s, 0);
+  int rc = judge_moving_sizes(s, r->step_t1, s->y);
   if (rc) r->have_step = 0;
   return rc;
 }

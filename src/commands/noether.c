@@ -31,7 +31,7 @@ int noether_print(Compiler *c, const char *scene, double seconds, const char *fo
   if (stderr_is_terminal()) limit.show = show_progress;
   NoetherReport *r = noether_report(e, &limit);
   if (c->o.degree) r->polynomial = polynomial_charges_find(e, &r->found, (uint32_t)(*c->o.degree - '0'), &limit);
-  if (c->o.involution) r->involution = involution_find(e, &r->found, r->polynomial);
+  if (c->o.involution) r->involution = involution_find(e, &r->found, r->polynomial, &limit);
   for (uint32_t i = 0; i < e->m->all_effects.n && !scene; i++) {
     Name effect = e->m->all_effects.at[i];
     const Eqns *with = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = effect});

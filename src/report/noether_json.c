@@ -127,7 +127,7 @@ static void put_involution(StrBuf *out, const NoetherReport *r) {
             ",\n \"involution\": {\"degrees_of_freedom\": %u, \"integrable\": %s, \"independent\": %u, "
             "\"search_ended_early\": %s, \"why_not\": \"%s\", \"charges\": [",
             v->n, !v->why_not && v->all.n == v->n ? "true" : "false", v->independent,
-            v->steps || v->left_out ? "true" : "false", v->why_not ? v->why_not : "");
+            v->steps || v->stopped || v->left_out ? "true" : "false", v->why_not ? v->why_not : "");
   for (uint32_t k = 0; k < v->all.n; k++) {
     const InvolutionCharge *x = &v->all.at[k];
     sb_puts(out, k ? ",\n  {" : "\n  {");

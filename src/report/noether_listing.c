@@ -353,8 +353,9 @@ static void involution(Page *p) {
                           : ""));
   if (v->all.n == v->n) return;
   say(p, arena_printf(a, "  %s", not_looked_for(p)));
-  if (v->steps)
-    say(p, arena_printf(a, "  the search for sets ended after %u tries: there may be a larger one", v->steps));
+  if (v->steps || v->stopped)
+    say(p, arena_printf(a, "  the search for sets ended after %u tries%s%s: there may be a larger one", v->steps,
+                        v->stopped ? ", as " : "", v->stopped ? v->stopped : ""));
   if (v->left_out)
     say(p, arena_printf(a, "  %u further charges were not looked at: there may be a larger set", v->left_out));
 }

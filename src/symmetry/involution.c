@@ -1,6 +1,6 @@
 /* A search in depth over the known charges, in their order: the next one that commutes with all chosen and adds to
  * the rank. Brackets are sorted out in numbers at random states, and those that are left are proved when they are
- * needed. The search ends after STEPS_MOST tries, and says so. */
+ * needed. The search ends after STEPS_MOST tries, or when its time is spent, and says so. */
 #include "symmetry/involution.h"
 
 #include <math.h>
@@ -29,6 +29,7 @@ typedef struct {
   Arena *scratch;
   const FoundSymmetries *found;
   const PolynomialCharges *polynomial;
+  SearchLimit *limit;
   PhaseSpace space;
   VEC(Known) known;
   long double *slope;  /* [STATES][known.n][2n] gradients by q, then by p */
@@ -95,6 +96,10 @@ static int is_same_everywhere(const Search *w, Expr x) {
 /* A function of the text, where it is conserved: {f, H} = 0, and neither f nor H jumps, as {f, H} has no part from
  * jumps, nor from the rate of an input. */
 static void add_declared(Search *w, const char *name, Expr x) {
+  if (!search_goes_on(w->limit, 0)) {
+    w->out->left_out++;
+    return;
+  }
   InvolutionCharge is = {.kind = INVOLUTION_DECLARED, .name = name, .charge = x};
   if (!name && expr_op(w->g, x) == EX_DEF) is.name = expr_def_name(w->g, x);
   Expr value = in_phase_space(w, x), rate;
@@ -237,8 +242,8 @@ static uint32_t choose(Search *w, uint32_t *best) {
   uint32_t n = w->space.n, r = w->known.n, count = 0, most = 0, k = 0,
            *chosen = ARENA_ARRAY(w->scratch, uint32_t, n + 1);
   for (uint32_t step = 0; most < n; step++) {
-    if (step == STEPS_MOST) {
-      w->out->steps = STEPS_MOST;
+    if (step == STEPS_MOST || !search_goes_on(w->limit, 0)) {
+      w->out->steps = step;
       break;
     }
     if (k < r && count + (r - k) > most) {
@@ -267,6 +272,7 @@ static void search(Arena *scratch, void *data) {
   for (uint32_t k = 0; k < r; k++) all[k] = k;
   w->out->independent = rank_of(w, all, r);
   uint32_t count = choose(w, best);
+  if (w->limit->stopped) w->out->stopped = search_stop_text(w->limit);
   for (uint32_t i = 0; i < count; i++) vec_push(w->e->m->arena, &w->out->all, w->known.at[best[i]].is);
 }
 
@@ -278,9 +284,12 @@ static const char *reason_against(const Eqns *e) {
   return eqns_has_forces(e) ? "forces stand outside L" : NULL;
 }
 
-Involution *involution_find(Eqns *e, const FoundSymmetries *found, const PolynomialCharges *polynomial) {
+Involution *involution_find(Eqns *e, const FoundSymmetries *found, const PolynomialCharges *polynomial,
+                            SearchLimit *limit) {
   Involution *out = ARENA_NEW(e->m->arena, Involution);
-  Search w = {.e = e, .g = e->g, .found = found, .polynomial = polynomial, .out = out};
+  Search w = {.e = e, .g = e->g, .found = found, .polynomial = polynomial, .limit = limit, .out = out};
+  search_stage(limit, 1, "charges in involution");
+  limit->stopped = limit->no_room = 0;
   out->n = e->m->hamiltonian ? e->m->pairs.n : e->n;
   out->why_not = reason_against(e);
   if (!out->why_not) out->why_not = phase_space_try(e, &w.space);

@@ -29,11 +29,13 @@ typedef struct {
   const char *why_not;     /* reason for no answer; or NULL */
   uint32_t n;              /* degrees of freedom */
   uint32_t independent;    /* rank of the gradients of all known charges */
-  uint32_t left_out;       /* known charges beyond the first few hundred, which are not looked at */
+  uint32_t left_out;       /* known charges that are not looked at: beyond the first few hundred, or for want of time */
   /* 0, or the number of tries after which the search ended before its end: larger sets may exist */
   uint32_t steps;
+  const char *stopped; /* or: how to go on where time ended it */
   VEC(InvolutionCharge) all; /* the set; integrable: n of them */
 } Involution;
 
 /* polynomial: NULL, or charges of higher degree. */
-Involution *involution_find(Eqns *e, const FoundSymmetries *found, const PolynomialCharges *polynomial);
+Involution *involution_find(Eqns *e, const FoundSymmetries *found, const PolynomialCharges *polynomial,
+                            SearchLimit *limit);

@@ -398,7 +398,7 @@ PolynomialCharges *polynomial_charges_find(Eqns *e, const FoundSymmetries *known
   PolynomialCharges *out = ARENA_NEW(e->m->arena, PolynomialCharges);
   SearchTask task = {{.e = e, .g = e->g, .out = out, .limit = limit}, known};
   *out = (PolynomialCharges){.degree = degree, .why_not = reason_against(e)};
-  search_stage(limit, 1, "charges of higher degree");
+  search_stage(limit, 0.8, "charges of higher degree");
   limit->stopped = limit->no_room = 0;
   if (!out->why_not) arena_with_scratch(expr_arena(e->g), search_all, &task);
   return out;

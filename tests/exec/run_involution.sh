@@ -274,6 +274,8 @@ END2
 count "a central force in nine dimensions" "5 of 9"
 check "2 N - 3 independent rotations, and the energy" says "  16 independent charges in all, by the rank of gradients at random states"
 check "a search that ends early says so" says "  the search for sets ended after 20000 tries: there may be a larger one"
+noether --seconds 0.001
+check "so does one whose time is spent" grep -qF "  the search for sets ended after 0 tries, as the time was spent; --seconds gives more: there may be a larger one" "$TMP/out"
 
 # ---- no answer ----
 check "friction" says "no charges in involution: forces stand outside L" "$(printf "model m\ncoord x\nlagrangian = x'^2/2 - x^2/2\nforce x = -x'\n" >"$TMP/m.lag")"
