@@ -228,6 +228,18 @@ int lag_contact_laws(lag_sim *s, const double *y, double *law) {
   return rc ? lag_fail(s, LAG_EMODEL, "the contacts have no finite values at t = %s s", LAG_TEXT(s->run->t)) : LAG_OK;
 }
 
+double lag_sim_guide_part(lag_sim *s, int k) {
+  const lag_model *m = s->scene->model;
+  if (!s || k < 0 || k >= m->nguides) return NAN;
+  const lag_guide *guide = &m->guides[k];
+  const lag_contact *c = &m->contacts[guide->tangent];
+  const double *law = s->pb.rub, *own = lag_guide_law(m, law, k);
+  if (!lag_contact_is_closed(s, c) || lag_inputs_at(&s->pb, s->run->t, s->now)) return NAN;
+  if (lag_contact_laws_at(&s->pb, s->run->t, s->now, s->pb.rub)) return NAN;
+  double held = fabs(law[3 * guide->tangent + 2] + s->pb.u[c->force]), most = own[0] * lag_norm(own + 1, guide->parts);
+  return held > 0 ? held / most : 0;
+}
+
 void lag_tangent_events(const lag_sim *s, double *g) {
   const lag_model *m = s->scene->model;
   for (int i = 0; i < m->ncontacts; i++) {

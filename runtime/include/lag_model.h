@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 16
+#define LAG_ABI 17
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many
  * doubles, one state or one set of parameters a lane. The status < 0 of such a call has bit k of its negative set

@@ -91,8 +91,8 @@ static int is_force(Builder *b, const Contact *t) {
   return 1;
 }
 
-/* friction and hold of t, from the sizes that the text gives; 0, reported. */
-static int read_sizes(Builder *b, const AstStmt *st, Name effect, Contact *t) {
+/* friction and hold of t, from the sizes that the text gives of a force of dimension `dim`; 0, reported. */
+static int read_sizes(Builder *b, const AstStmt *st, Name effect, Dim dim, Contact *t) {
   AstId size = ast_option_value(b->ast, st, "friction"), most = ast_option_value(b->ast, st, "static");
   Span span = ast_expr(b->ast, size)->span;
   b->in_friction = 1;
@@ -107,6 +107,10 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Contact *t) {
                       "write `mu*abs(lambda(rail))`, or `mu*r*hypot(lambda(px), lambda(py))` of a journal; two forces "
                       "are two frictions, and that of a contact is `contact NAME: y >= 0, restitution = 0, friction = "
                       "mu, slip = x'`");
+  if (!dim_equate(b->dims, f.dim, dim, span))
+    return diag_error(b->diags, span, "a force along the slip of `%s` is %s, and this is %s" HELP
+                      "of a journal of radius r it is `mu*r*hypot(lambda(px), lambda(py))`", st->name, in_dim(b, dim),
+                      in_dim(b, f.dim));
   if (g.n || !dims_agree(b, &g, &f, ast_expr(b->ast, most ? most : size)->span))
     return diag_error(b->diags, ast_expr(b->ast, most)->span, "the static limit is %s, and the friction %s",
                       g.n ? "a vector" : in_dim(b, g.dim), in_dim(b, f.dim));
@@ -229,7 +233,9 @@ static Expr slip_of(Builder *b, const AstStmt *st, Name effect, const Entity *of
   if (!v.e || !check_slip(b, st, id, &v, of ? &b->m->constraints.at[of->index] : NULL)) return 0;
   if (!of) *dim = v.dim;
   if (!v.n) return v.e;
-  diag_error(b->diags, ast_expr(b->ast, id)->span, "the slip of a guide is a number: the velocity along it");
+  diag_error(b->diags, ast_expr(b->ast, id)->span, "the slip of a guide is a number: the velocity along it" HELP
+             "on a surface in space it has two components: write two contacts, `z >= 0` and `-z >= 0`, with `slip = (x', "
+             "y')`, and take moreau");
   return 0;
 }
 
@@ -254,7 +260,7 @@ void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data) 
     t.friction = coefficient(b, st, effect, "friction", HUGE_VAL, "a coefficient of friction", 0);
     t.hold = coefficient(b, st, effect, "static", HUGE_VAL, "a coefficient of static friction", t.friction);
   }
-  if (!slip || (of ? !t.friction || !t.hold : !read_sizes(b, st, effect, &t))) return;
+  if (!slip || (of ? !t.friction || !t.hold : !read_sizes(b, st, effect, multiplier_dim(b, dim, 0), &t))) return;
   declare_slip(b, st, name, b->m->constraints.n);
   t.gap = slip;
   push_tangent(b, st, name, t, norm_of(b, t.normal, t.parts), dim, "");

@@ -205,23 +205,22 @@ static int has_multiplier(const Ast *ast, AstId root) {
   return 0;
 }
 
-/* The friction that follows the force of a constraint, and its value lambda(NAME.slip). */
-static StmtList guide_friction(Ast *ast, Span span, Ident name, AstList dims, AstList options) {
-  AstStmt *guide = stmt_guide(ast, span, name, dims, 0, 0, options);
-  AstId of = ast_name(ast, name);
+/* The friction that follows the force of a constraint, and its value lambda(NAME.slip), whose nodes stand before those
+ * of options, as an expression holds all nodes between its first and itself. */
+static StmtList guide_friction(Ast *ast, Span span, Ident name, AstList dims, AstId place, AstId f, AstId most) {
+  AstId rate = ast_prime(ast, span, span, place), of = ast_name(ast, name);
   if (dims.first) of = ast_index(ast, span, of, dims);
   AstId slip = ast_member(ast, span, of, (Ident){intern(ast->names, "slip"), span}),
         value = ast_call(ast, span, (Ident){intern(ast->names, "lambda"), span}, ast_list(slip));
-  return stmts_add(stmts_one(guide), stmt_define(ast, STMT_OBSERVE, span, name, dims, (AstUnit){0}, value));
+  AstStmt *shown = stmt_define(ast, STMT_OBSERVE, span, name, dims, (AstUnit){0}, value);
+  AstId size = ast_option(ast, span, "friction", f);
+  AstList options = ast_list_add(ast, ast_list(size), ast_option(ast, span, "slip", rate));
+  if (most) options = ast_list_add(ast, options, ast_option(ast, span, "static", most));
+  return stmts_add(stmts_one(stmt_guide(ast, span, name, dims, 0, 0, options)), shown);
 }
 
 StmtList stmts_friction(Ast *ast, Span span, Ident name, AstList dims, AstId place, AstId f, AstId most) {
-  if (has_multiplier(ast, f)) {
-    AstList options = ast_list_add(ast, ast_list(ast_option(ast, span, "friction", f)),
-                                   ast_option(ast, span, "slip", ast_prime(ast, span, span, place)));
-    if (most) options = ast_list_add(ast, options, ast_option(ast, span, "static", most));
-    return guide_friction(ast, span, name, dims, options);
-  }
+  if (has_multiplier(ast, f)) return guide_friction(ast, span, name, dims, place, f, most);
   AstId rate = ast_prime(ast, span, span, place),
         side = ast_call(ast, span, (Ident){intern(ast->names, "sign"), span}, ast_list(rate));
   AstId product = ast_binary(ast, AST_MUL, span, span, f, side), value = ast_unary(ast, AST_NEG, span, span, product);
