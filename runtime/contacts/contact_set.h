@@ -66,7 +66,7 @@ int lag_contacts_rates(ContactSet *w, const double *y, double *rate);
 double lag_contacts_response(ContactSet *w, int i);
 int lag_contacts_no_values(ContactSet *w, int i);
 
-/* guide.c. stop: takes what is left of a slip that ends, at this event, out of the velocities. find_pressed: forces
+/* guide_forces.c. stop: takes what is left of a slip that ends, at this event, out of the velocities. find_pressed: forces
  * of guides without friction and contacts, and by a unit force of each row, with `rhs` of all rows; pressed: those of
  * component c. gain: of row a, a guide's tangent, force on its guide by a unit of friction. */
 int lag_guides_stop(ContactSet *w, int event);
