@@ -66,6 +66,9 @@ for name in squared named; do
   check "x" near "$(final x)" -0.0846718237081 1e-10 # the reference starts anew beside two turning points: 1e-11
   check "the balance of the energy closes" near "$(number drift)" 0 1e-11
 done
+sed '/^friction/s/$/, static = 3*mu*abs(lambda(hoop))/' "$TMP/named.lag" >"$TMP/held.lag"
+check "where tan is 1/2" run held go x=0.22360679774997896 y=-0.44721359549995793 "x'=0"
+check "static friction holds it" near "$(final x)" 0.22360679774997896 1e-15
 fi
 
 # ---- a journal: the friction torque is mu r hypot(lx, ly)
