@@ -138,6 +138,13 @@ check "above it several" refuses 3 "several motions follow at the guide tip.slip
 check "or none" refuses 3 "no motion follows at the guide tip.slip, of friction 1.41: .*from a friction of $limit" rod go mu=1.41 "x'=-3"
 fi
 
+# ---- a start at rest that static friction holds, by a contact and by a guide, under a force that grows
+for kind in 'contact floor: y >= 0, restitution = 0,' 'guide floor: y = 0,'; do
+  printf "model held\ncoord a [rad], x [m], y [m]\nparam m = 1 [kg] > 0\nkinetic = m/2*(x'^2 + y'^2) + 0.01 [kg*m^2]/2*a'^2\npotential = m*9.81 [m/s^2]*y\nconstraint c: x = 1 [m]*cos(a)\n%s friction = 0.2, static = 0.4, slip = x'\nforce x = 2 [N] + 2.5 [N/s]*t\nscene go { start a = 1, x = cos(1); span 2 [s]; output x every 1 [s] }\n" "$kind" | model held
+  check "${kind%%:*} holds a body, then not" run held go
+  check "from 0.4 m g on" near "$(sed -n 's/.*"floor slips": {"count": 1, "first": \([-0-9.e]*\).*/\1/p' "$TMP/json")" 0.7696 1e-12
+done
+
 # ---- refusals
 check "a negative friction" refuses 2 'the model declares mu >= 0' rail go mu=-0.1
 check "moreau" refuses 2 'moreau does not follow the friction of guides .*two contacts' rail go --method 'moreau(step=1e-3)'
