@@ -149,6 +149,7 @@ typedef struct {
 typedef struct {
   uint32_t input, constraint, impact, release, force;
   int is_tangent, conditional, law, holds;
+  uint32_t parts, turn; /* of a tangent of a guide: components of its force; of one: the event where it turns */
 } IrContact;
 
 /* A size, at least 0; open: more than 0; part: at most 1. */
@@ -240,6 +241,9 @@ typedef struct {
   /* messages on constraints and switches give their source lines: simulators name their file */
   int lines;
 } ProgramSet;
+
+/* Number of guides with friction. */
+uint32_t program_set_guides(const ProgramSet *u);
 
 typedef VEC(const Prog *) ProgList;
 

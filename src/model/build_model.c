@@ -297,6 +297,7 @@ static void apply_statement(Builder *b, const AstStmt *st, Name effect, void *da
     case STMT_EVENT: add_event(b, st, effect); return;
     case STMT_CONSTRAINT: add_constraint(b, st, effect); return;
     case STMT_CONTACT: add_contact(b, st, effect); return;
+    case STMT_GUIDE: add_guide(b, st, effect); return;
     /* once L is known: build() */
     case STMT_LET: case STMT_FUNCTION: case STMT_EXPECT: case STMT_OBSERVE: case STMT_DRAW:
     case STMT_COORD: case STMT_STATE: case STMT_PARAM: case STMT_CONST:
@@ -484,6 +485,7 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order, Inpu
   check_defines(b);
   Energies en = {0};
   each_active(b, apply_statement, &en);
+  each_active(b, add_guide_friction, NULL);
   finish_energies(b, &en);
   add_rotation_inertia(b);
   if (!first_order) want_rates_of_momenta(b);

@@ -126,6 +126,12 @@ typedef struct {
   int law;
   /* of a tangent: input set by the runtime, the force of friction along the slip while the contact slips */
   SymId force;
+  /* of a tangent of a guide: components of the force of the guide, linear in multipliers; parts 0: of a contact */
+  Expr normal[3];
+  uint32_t parts;
+  uint32_t turn; /* of a guide whose force has one component: event where that changes its side */
+  /* coordinates of the space in which a guide slips by its constraints alone; nspace 0: the text gives its slip */
+  uint32_t space[3], nspace;
 } Contact;
 
 /* Origin of an output in the text: component `component` of the value of `id`; where `id` names a family, of its
