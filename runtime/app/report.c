@@ -434,6 +434,7 @@ void lag_report_text(App *app, FILE *f) {
   lag_report_events(app, f);
   switches(app, f);
   lag_report_tangent(app, f);
+  lag_report_sensitivity(app, f);
   lag_report_volume(app, f);
   if (app->written && app->args.out)
     fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
@@ -526,6 +527,7 @@ void lag_report_json(App *app, FILE *f) {
   exact_json(app, &j);
   lag_report_measures_json(app, &j);
   lag_report_tangent_json(app, &j);
+  lag_report_sensitivity_json(app, &j);
   lag_report_volume_json(app, &j);
   lag_json_string(&j, "math", m->math);
   lag_json_string(&j, "build", app->program->build);
