@@ -17,6 +17,9 @@ typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *out, *svg, *plot_x, *plot_y, *html, *points,
       *from, *save, *resume, *events, *section, *cloud, *starts;
   const char *accuracy, *sensitivity;
+  const char *fit, *data, *loss; /* for --fit */
+  const char **sigmas, **priors; /* the values of --sigma and --prior, in order */
+  int nsigmas, npriors;
   const char *transient, *exponents; /* for --lyapunov */
   const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
   /* for --sweep */
@@ -128,8 +131,8 @@ typedef struct App {
 #include "app/options.def"
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
-enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, ANY = 127,
-       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS };
+enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, FIT = 128, ANY = 255,
+       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | FIT };
 
 /* A row of options.def. */
 typedef struct Option {
@@ -324,6 +327,9 @@ int lag_app_modes(App *app);
 
 /* effect_costs.c: --effects. Returns the exit status. */
 int lag_app_effects(App *app);
+
+/* fit.c: --fit. Returns the exit status. */
+int lag_app_fit(App *app);
 
 /* sweep.c: --sweep. Returns the exit status. */
 int lag_app_sweep(App *app);

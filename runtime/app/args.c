@@ -172,7 +172,7 @@ static unsigned analyses_with(const Option *o) {
 
 /* Refuses options that a run, or the analysis that is asked for, does not use. */
 static int check_analysis(const Args *a) {
-  const unsigned what = a->sweep ? SWEEP : a->modes ? MODES : a->cost ? COST : a->reference ? REFERENCE
+  const unsigned what = a->sweep ? SWEEP : a->fit ? FIT : a->modes ? MODES : a->cost ? COST : a->reference ? REFERENCE
                         : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
   for (int i = 0; i < NOPTIONS; i++) {
     const Option *o = &options[i];
@@ -185,6 +185,7 @@ static int check_analysis(const Args *a) {
                                  analyses & COST    ? "--cost"
                                  : analyses & SWEEP ? "--sweep"
                                  : analyses & MODES ? "--modes"
+                                 : analyses & FIT   ? "--fit"
                                                     : "--lyapunov");
     }
     return lag_app_error(
@@ -193,6 +194,7 @@ static int check_analysis(const Args *a) {
         : what == SWEEP
             ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
         : what == MODES ? "--modes, which takes name=value, --steady and --json"
+        : what == FIT ? "--fit, which takes name=value, --data, --sigma, --prior, --loss, a method, --svg and --json"
         : what == EFFECTS
             ? "--effects, which takes name=value, --until and a method"
             : "--lyapunov, which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json");

@@ -639,10 +639,12 @@ typedef struct lag_extras {
    * lag_model.h); or NULL */
   const lag_scene *const *lanes_4, *const *lanes_8;
   const lag_ranks *ranks; /* or NULL */
+  const lag_least_squares *fits; /* or NULL */
 } lag_extras;
 
 /* The contents of liblag_gsl.a, by the GNU Scientific Library. */
 extern const lag_algebra lag_gsl_algebra;
+extern const lag_least_squares lag_gsl_least_squares;
 extern const lag_extras lag_gsl;
 /* liblag_png.a, by librsvg. */
 int lag_png_write(const char *svg, void *file, char *why, size_t size);

@@ -88,7 +88,7 @@ static const char *passed_option(const Options *o, const char *name) {
 }
 
 static int asks_sensitivity(const Options *o) {
-  return passed_option(o, "--sensitivity") || (o->with && strcmp(o->with, "sensitivities") == 0);
+  return o->command == CMD_FIT || passed_option(o, "--sensitivity") || (o->with && strcmp(o->with, "sensitivities") == 0);
 }
 
 unsigned derivatives_in_time(unsigned wants, const ProgramSet *u, const Options *o) {
