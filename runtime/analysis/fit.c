@@ -51,6 +51,14 @@ static int fail(Fit *f, int status, const char *why) {
   return status;
 }
 
+/* Ends a run that takes far more steps than the first: values far from those at the begin. */
+static int count_step(void *fit, const lag_sim *sim) {
+  Fit *f = fit;
+  (void)sim;
+  f->steps_of_run++;
+  return f->steps_of_first > 0 && f->steps_of_run > 50 * f->steps_of_first + 1000;
+}
+
 /* A simulation with the present values; sensitive: with a column for each. */
 static lag_sim *simulation(Fit *f, int sensitive) {
   lag_sim *sim = f->fresh(f->context);
@@ -62,7 +70,11 @@ static lag_sim *simulation(Fit *f, int sensitive) {
   }
   if (rc == LAG_OK && sensitive) rc = lag_sim_set_sensitivity(sim, f->n, names);
   free(names);
-  if (rc == LAG_OK) return sim;
+  if (rc == LAG_OK) {
+    f->steps_of_run = 0;
+    lag_sim_on_step(sim, count_step, f);
+    return sim;
+  }
   fail(f, rc, sim ? lag_sim_message(sim) : "out of memory");
   lag_sim_free(sim);
   return NULL;
@@ -83,7 +95,7 @@ static double loss(const Fit *f, double r, double *slope) {
 }
 
 /* Residuals of row i from the outputs f->row, and their derivatives from f->D by the declared units of targets. */
-static void put_row(Fit *f, int i, const double *slope, int nout, double *r, double *J, int *at) {
+static void put_row(Fit *f, int i, const double *slope, double *r, double *J, int *at) {
   for (int c = 0; c < f->ncolumns; c++) {
     double got = f->row[f->column[c].output], want = f->data[i * f->ncolumns + c], by;
     f->model[i * f->ncolumns + c] = got;
@@ -94,7 +106,6 @@ static void put_row(Fit *f, int i, const double *slope, int nout, double *r, dou
       J[*at * f->n + j] = by * f->D[f->column[c].output * f->n + j] * f->target[j].factor * slope[j] / error;
     ++*at;
   }
-  (void)nout;
 }
 
 /* Residuals of priors behind the others. */
@@ -110,15 +121,17 @@ static void put_priors(const Fit *f, const double *slope, double *r, double *J, 
 
 /* Runs the motion over the rows that count. */
 static int run_rows(Fit *f, lag_sim *sim, const double *slope, double *r, double *J) {
-  int at = 0, rc = LAG_OK, nout = lag_sim_noutputs(sim);
+  int at = 0, rc = LAG_OK;
   for (int i = 0; i < f->rows && rc == LAG_OK; i++) {
     rc = f->t[i] > lag_sim_time(sim) || i ? lag_sim_advance(sim, f->t[i]) : LAG_OK;
-    if (rc > 0) return snprintf(f->why, sizeof f->why, "the motion ends at t = %g s, before the data do",
-                                lag_sim_time(sim)), LAG_EDOMAIN;
+    if (rc > 0) {
+      snprintf(f->why, sizeof f->why, "the motion ends at t = %g s, before the data do", lag_sim_time(sim));
+      return LAG_EDOMAIN;
+    }
     rc = rc ? rc : lag_sim_outputs(sim, f->row);
     if (rc == LAG_OK && J) rc = lag_sim_tangent(sim, f->y);
     if (rc == LAG_OK && J) rc = lag_sim_output_sensitivity(sim, f->y, f->D);
-    if (rc == LAG_OK) put_row(f, i, slope, nout, r, J, &at);
+    if (rc == LAG_OK) put_row(f, i, slope, r, J, &at);
   }
   if (rc) return fail(f, rc, lag_sim_message(sim));
   put_priors(f, slope, r, J, at);
@@ -128,7 +141,7 @@ static int run_rows(Fit *f, lag_sim *sim, const double *slope, double *r, double
 /* Springs to f->centre in the last n residuals, without which rounding would move the search far along directions that
  * data do not feel; -1: x is so far away that no motion is tried. */
 static int put_springs(const Fit *f, const double *x, double *r, double *J) {
-  const double farthest = 40; /* logarithms, or scales */
+  const double farthest = 8; /* logarithms, or scales */
   int at = f->nvalues;
   for (int k = 0; k < f->n; k++) {
     if (!(fabs(x[k] - f->centre[k]) < farthest)) return -1;
@@ -315,31 +328,49 @@ static int is_flat_far_away(Fit *f, const double *v, int product, const double *
   return rc == LAG_OK && largest <= same * size;
 }
 
-/* Directions of V that belong to singular values of rounding, scaled so that the largest entry is 1. */
-static int note_flat(Fit *f, const double *V) {
-  const double rounding = 1e-8, negligible = 1e-5;
-  size_t many = (size_t)(f->nrows * f->ncolumns);
-  double *model = malloc(many * sizeof *model);
-  f->flat = calloc((size_t)f->n, sizeof *f->flat);
-  if (!f->flat || !model) return free(model), LAG_ENOMEM;
-  memcpy(model, f->model, many * sizeof *model);
-  for (int k = 0; k < f->n; k++) {
-    if (f->singular[k] > rounding) continue;
-    FitDirection *d = &f->flat[f->nflat];
-    if (!(d->change = calloc((size_t)f->n, sizeof *d->change))) return free(model), LAG_ENOMEM;
-    double largest = 0;
-    for (int j = 0; j < f->n; j++)
-      if (fabs(V[j * f->n + k]) > fabs(largest)) largest = V[j * f->n + k];
-    for (int j = 0; j < f->n; j++) {
-      double v = V[j * f->n + k] / largest;
-      d->change[j] = fabs(v) > negligible ? v : 0;
-      f->target[j].flat |= d->change[j] != 0.0;
+/* Rows d[m n] that span flat directions := a basis with as few entries as elimination gives, each with largest entry 1. */
+static void simplify_directions(int m, int n, double *d) {
+  const double negligible = 1e-5;
+  for (int k = 0; k < m; k++) {
+    int pivot = 0;
+    for (int j = 1; j < n; j++)
+      if (fabs(d[k * n + j]) > fabs(d[k * n + pivot])) pivot = j;
+    double by = d[k * n + pivot];
+    for (int j = 0; j < n; j++) d[k * n + j] /= by;
+    for (int i = 0; i < m; i++) {
+      double times = d[i * n + pivot];
+      for (int j = 0; j < n && i != k; j++) d[i * n + j] -= times * d[k * n + j];
     }
+  }
+  for (int k = 0; k < m; k++) {
+    double largest = 0;
+    for (int j = 0; j < n; j++) largest = fabs(d[k * n + j]) > fabs(largest) ? d[k * n + j] : largest;
+    for (int j = 0; j < n; j++) d[k * n + j] = fabs(d[k * n + j] / largest) > negligible ? d[k * n + j] / largest : 0;
+  }
+}
+
+/* Directions of V that belong to singular values of rounding. */
+static int note_flat(Fit *f, const double *V) {
+  const double rounding = 1e-8;
+  size_t many = (size_t)(f->nrows * f->ncolumns);
+  int n = f->n;
+  for (int k = 0; k < n; k++) f->nflat += f->singular[k] <= rounding;
+  f->flat = calloc((size_t)n, sizeof *f->flat);
+  f->directions = calloc((size_t)(n * n), sizeof *f->directions);
+  double *model = malloc(many * sizeof *model);
+  if (!f->flat || !f->directions || !model) return free(model), fail(f, LAG_ENOMEM, "out of memory");
+  memcpy(model, f->model, many * sizeof *model);
+  for (int k = 0; k < f->nflat; k++)
+    for (int j = 0; j < n; j++) f->directions[k * n + j] = V[j * n + n - f->nflat + k];
+  simplify_directions(f->nflat, n, f->directions);
+  for (int k = 0; k < f->nflat; k++) {
+    FitDirection *d = &f->flat[k];
+    d->change = f->directions + k * n;
+    for (int j = 0; j < n; j++) f->target[j].flat |= d->change[j] != 0.0;
     d->product = is_flat_far_away(f, d->change, 1, model);
     d->shift = !d->product && is_flat_far_away(f, d->change, 0, model);
-    memcpy(f->model, model, many * sizeof *model);
-    f->nflat++;
   }
+  memcpy(f->model, model, many * sizeof *model);
   free(model);
   return LAG_OK;
 }
@@ -365,8 +396,7 @@ static void take_errors(Fit *f, const double *V, const double *s, double *covari
 }
 
 /* Scales for the directions: values, so that directions are relative changes; of a value near 0 its first scale. */
-static void take_scales(Fit *f, double *r, double *J, const double *slope) {
-  (void)r;
+static void take_scales(Fit *f, double *J, const double *slope) {
   for (int j = 0; j < f->n; j++) {
     FitTarget *t = &f->target[j];
     double size = fabs(t->value);
@@ -390,7 +420,7 @@ static int take_statistics(Fit *f, const double *x) {
     f->chi_squared = 0;
     for (int i = 0; i < m; i++) f->chi_squared += r[i] * r[i];
     for (int c = 0; c < f->ncolumns; c++) test_runs(f, c);
-    take_scales(f, r, J, slope);
+    take_scales(f, J, slope);
     rc = f->by->singular_values(m, n, J, s, V);
   }
   for (int k = 0; k < n && rc == LAG_OK; k++) f->singular[k] = s[0] > 0 ? s[k] / s[0] : 0;
@@ -402,6 +432,16 @@ static int take_statistics(Fit *f, const double *x) {
 }
 
 /* ---- The fit */
+
+/* The motion at the first values: it has to reach the last row. */
+static int run_first(Fit *f) {
+  lag_sim *sim = simulation(f, 0);
+  f->rows = f->nrows;
+  int rc = sim ? run_rows(f, sim, NULL, NULL, NULL) : LAG_EINVAL;
+  f->steps_of_first = f->steps_of_run + 1;
+  lag_sim_free(sim);
+  return rc;
+}
 
 static int make_room(Fit *f) {
   lag_sim *sim = simulation(f, 1);
@@ -453,6 +493,7 @@ int lag_fit(Fit *f) {
     rc = LAG_EINVAL;
   }
   rc = rc ? rc : make_room(f);
+  rc = rc ? rc : run_first(f);
   rc = rc ? rc : search_with_errors(f, x, given);
   rc = rc ? rc : take_statistics(f, x);
   free(x);
@@ -461,7 +502,7 @@ int lag_fit(Fit *f) {
 }
 
 void lag_fit_free(Fit *f) {
-  for (int k = 0; k < f->nflat; k++) free(f->flat[k].change);
+  free(f->directions);
   free(f->flat);
   free(f->correlation);
   free(f->singular);

@@ -29,7 +29,7 @@ typedef struct FitColumn {
 
 /* A direction in which the sum of squares is flat. */
 typedef struct FitDirection {
-  double *change;      /* [n] relative changes, largest 1 */
+  const double *change; /* [n] relative changes, largest 1 */
   int product;         /* 1: products of powers are constant along it, also far away */
   int shift;           /* 1: the same for sums */
 } FitDirection;
@@ -54,9 +54,11 @@ typedef struct Fit {
   double *correlation; /* [n * n] */
   double *singular;    /* [n] of the scaled Jacobian, relative to the largest */
   FitDirection *flat;  /* [nflat] */
+  double *directions;  /* their changes */
   char why[400];
   /* within a search */
   int rows;            /* rows that count */
+  double steps_of_run, steps_of_first; /* a run may take 50 times as many steps as the first */
   double *centre, pull; /* [n] coordinates to which weak springs of this stiffness hold the search */
   double *y, *row, *D; /* scratch */
 } Fit;

@@ -150,13 +150,25 @@ size_t lag_tangent_along_size(const lag_problem *pb, int k) {
   return lag_tangent_size(pb, lag_dop853_tableau.stages, k);
 }
 
-/* sum (e_i / s_i)^2 of an error estimate, s_i = |Y_i| + |dt| mean |F_i| over the stages. */
-static double square(int m, int stages, const double *e, const double *Y, const double *F, double dt) {
+/* Size below which entry i of Y is rounding: in a column by a parameter a part of the component's size over the
+ * parameter's. */
+static double rounding_size(const lag_tangent *w, int i, double tol) {
+  const double negligible = 1e-4, difference_part = 0x1p-9;
+  for (int j = 0; w->by && j < w->by->n; j++)
+    if (w->by->column[j] == i % w->k)
+      return fmax(negligible, 8 * DBL_EPSILON / tol) * w->pb->size[i / w->k] * difference_part / w->by->h[j];
+  return 0;
+}
+
+/* sum (e_i / s_i)^2 of an error estimate, s_i = |Y_i| + |dt| mean |F_i| over the stages, and at least that size. */
+static double square(const lag_tangent *w, int stages, const double *e, const double *Y, const double *F, double dt,
+                     double tol) {
   double sum = 0;
+  int m = w->pb->n * w->k;
   for (int i = 0; i < m; i++) {
     double gain = 0;
     for (int j = 0; j < stages; j++) gain += fabs(F[j * m + i]) / stages;
-    double x = e[i] != 0.0 ? e[i] / (fabs(Y[i]) + fabs(dt) * gain) : 0;
+    double x = e[i] != 0.0 ? e[i] / fmax(fabs(Y[i]) + fabs(dt) * gain, rounding_size(w, i, tol)) : 0;
     sum += x * x;
   }
   return sum;
@@ -180,9 +192,9 @@ int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, doubl
       lag_tangent_times(&w, Ys, F + s * m);
     }
     combine(m, stages, tab->errors[0], 1, NULL, F, error);
-    double fine = square(m, stages, error, Y, F, dt);
+    double fine = square(&w, stages, error, Y, F, dt, tol);
     combine(m, stages, tab->errors[1], 1, NULL, F, error);
-    double both = fine + 0.01 * square(m, stages, error, Y, F, dt),
+    double both = fine + 0.01 * square(&w, stages, error, Y, F, dt, tol),
            err = both > 0 ? fabs(h) * fine / sqrt(m * both) / tol : 0;
     if (!isfinite(err)) return lag_step_failed(pb, LAG_ENAN, t);
     if (err <= 1 || part < least) {
