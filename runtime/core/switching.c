@@ -39,7 +39,7 @@ static int rates_at(lag_problem *pb, double t, const double *y, double *r) {
   const lag_model *m = pb->model;
   int rc = m->contact_laws ? lag_contact_friction_forces(pb, t, y) : 0;
   pb->rhs_calls++;
-  return rc ? rc : m->switch_rates(t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, r, pb->work);
+  return rc ? rc : m->switch_rates(m, t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, r, pb->work);
 }
 
 /* B[n n] := derivatives of the rates of the sliding switches by their modes; r: rates now. *size := the largest
@@ -112,15 +112,16 @@ void lag_switch_set_free(lag_sim *s, int is_free) {
 /* g[nswitch] := the switching functions at y, t. */
 static int sides_at(lag_sim *s, double t, const double *y, double *g) {
   const lag_model *m = s->scene->model;
-  int rc = m->switch_values(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, g, s->work);
+  int rc = m->switch_values(m, t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, g, s->work);
   return rc ? rc : lag_not_finite(m->nmodes, g) >= 0 ? LAG_ENAN : 0;
 }
 
-/* grip[nmodes] := the largest mode of a sliding motion at y, t. */
+/* grip[nmodes] := the largest mode of a sliding motion at y, t: 1, or more where static friction is; or less than 1
+ * by more than rounding, which choose() refuses. */
 static int find_grips(lag_sim *s, double t, const double *y) {
   const lag_model *m = s->scene->model;
-  int rc = m->switch_grips ? m->switch_grips(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, s->grip, s->work) : 0;
-  for (int k = 0; k < m->nmodes; k++) s->grip[k] = m->switch_grips && s->grip[k] > 1 ? s->grip[k] : 1;
+  int rc = m->switch_grips ? m->switch_grips(m, t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, s->grip, s->work) : 0;
+  for (int k = 0; k < m->nmodes; k++) s->grip[k] = m->switch_grips && fabs(s->grip[k] - 1) > 1e-9 ? s->grip[k] : 1;
   return rc;
 }
 
@@ -250,6 +251,8 @@ static const char no_branch[] =
   "it rests on the surface, or leaves it to either side, and no branch tells which; start beside it";
 static const char no_slide[] = "the motions on both sides do not determine one on the surface";
 static const char no_end[] = "it can neither leave the surface nor slide on it";
+static const char weak_grip[] =
+  "its static limit is smaller than the friction of a sliding body; `static = mu_s*N` has a mu_s of at least mu";
 static const char several[] =
   "it can leave the surface to either side, so that several motions follow; start beside the surface";
 
@@ -276,6 +279,8 @@ static int choose(lag_sim *s, Meeting *w, const double *left) {
   int rc = linear_rates(s, w);
   rc = rc ? rc : find_grips(s, s->run->t, s->now);
   if (rc) return fail_at(s, LAG_EMODEL, w->of[0], "the model has no rates there");
+  for (int i = 0; i < w->n; i++)
+    if (s->grip[w->of[i]] < 1) return fail_at(s, LAG_EDOMAIN, w->of[i], weak_grip);
   if ((rc = begin_choice(s, w, left)) != 0) return rc;
   lag_complementarity p = {w->n, -1, w->C, w->x, w->scale, w->box, w->at, 1e-13, 5e-14};
   int status = solve_modes(s, w, &p);

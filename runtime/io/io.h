@@ -53,6 +53,10 @@ typedef struct Rows {
   size_t nrows;
   int ncols;
   const Column *cols;
+  struct {
+    double x;
+    char text[48];
+  } known[128]; /* numbers that were written, by their bits: the values of a grid come again and again */
 } Rows;
 
 /* -1 with errno set. lag_rows_close: keep 0 removes the file. */
