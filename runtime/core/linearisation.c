@@ -136,7 +136,7 @@ static int inputs_by_parameter(lag_problem *pb, const lag_parameter_columns *by,
   memset(du, 0, (size_t)m->nu * sizeof *du);
   memset(at, 0, (size_t)m->nu * sizeof *at);
   for (int k = -3; k <= 3 && rc == LAG_OK && m->inputs; k++) {
-    rc = k ? m->inputs(t, lag_shifted_parameters(pb, by, j, k), at) : LAG_OK;
+    rc = k ? m->inputs(m, t, lag_shifted_parameters(pb, by, j, k), at) : LAG_OK;
     for (int i = 0; i < m->nu && k; i++)
       if (isnan(pb->hold[i]) && !pb->signal[i].fn) du[i] += lag_difference_weight(k) * at[i] / by->h[j];
   }
@@ -150,14 +150,14 @@ static int by_parameters(lag_problem *pb, const lag_parameter_columns *by, doubl
   const lag_partials *of = pb->model->linear->by_params, *in = pb->model->linear->by_inputs;
   int n = pb->n, nq = pb->nq, width = n + by->n, rc = LAG_OK;
   const double *a = w->rate + nq, *v = y + nq, *z = v + nq;
-  if (of && of->n) rc = of->eval(t, y, v, z, pb->p, pb->u, a, w->part, w->mass, pb->work);
+  if (of && of->n) rc = of->eval(of, t, y, v, z, pb->p, pb->u, a, w->part, w->mass, pb->work);
   for (int k = 0; of && k < of->n; k++) {
     const double *chain = by->chain + of->at[k].col * by->n, d = w->part[k];
     double *to = dr + of->at[k].row * width + n;
     const int *j = by->acts + of->at[k].col * by->n, *end = j + by->n;
     for (; j < end && *j >= 0; j++) to[*j] += d * chain[*j];
   }
-  if (rc == LAG_OK && in && pb->model->inputs) rc = in->eval(t, y, v, z, pb->p, pb->u, a, w->part, w->mass, pb->work);
+  if (rc == LAG_OK && in && pb->model->inputs) rc = in->eval(in, t, y, v, z, pb->p, pb->u, a, w->part, w->mass, pb->work);
   for (int j = 0; j < by->n && in && pb->model->inputs && rc == LAG_OK; j++) {
     rc = inputs_by_parameter(pb, by, j, t, w->u, w->u + pb->model->nu);
     for (int k = 0; k < in->n; k++) dr[in->at[k].row * width + n + j] += w->part[k] * w->u[in->at[k].col];

@@ -41,8 +41,8 @@ static void put_parameters(const lag_sim *s, int i, double x, unsigned char *fix
   memcpy(fixed, s->fixed, (size_t)m->np);
   fixed[i] = 1;
   P[i] = x;
-  if (s->scene->params) s->scene->params(P, fixed);
-  else if (m->derive) m->derive(P);
+  if (s->scene->params) s->scene->params(s->scene, P, fixed);
+  else if (m->derive) m->derive(m, P);
 }
 
 /* Step of parameter i: a part of its value, or of its unit where that is 0. */
@@ -233,7 +233,7 @@ int lag_action_by_parameters(lag_sim *s, int event, double *after, double *chang
       memcpy(after, y, (size_t)n * sizeof *y);
       rc = k ? lag_inputs(&s->pb, s->run->t) : LAG_OK;
       if (k && rc == LAG_OK)
-        rc = m->act(event, s->run->t, y, y + nq, y + 2 * nq, s->p, s->u, after, after + nq, after + 2 * nq, &stop,
+        rc = m->act(m, event, s->run->t, y, y + nq, y + 2 * nq, s->p, s->u, after, after + nq, after + 2 * nq, &stop,
                     s->work);
       for (int i = 0; i < n && k; i++)
         change[i * columns + by->column[j]] += lag_difference_weight(k) * after[i] / by->h[j];

@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 16
+#define LAG_ABI 17
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many
  * doubles, one state or one set of parameters a lane. The status < 0 of such a call has bit k of its negative set
@@ -127,8 +127,8 @@ typedef struct lag_jump {
 typedef struct lag_partials {
   int n;
   const lag_entry *at; /* [n] */
-  int (*eval)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u,
-              const LAG_REAL *a, LAG_REAL *d, LAG_REAL *M, LAG_REAL *w);
+  int (*eval)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+              const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *d, LAG_REAL *M, LAG_REAL *w);
 } lag_partials;
 
 /* The exact linearisation of a model, emitted where a method or command needs it (lagc --with linear).
