@@ -320,11 +320,7 @@ static void emit_partials(const ModelFile *f, const Prog *p, const IrEntry *at, 
                  written);
   entries(table, at, n, f->out);
   sb_printf(f->out, "\nstatic const lag_partials %s = {%u, %s, by_%s};\n", arena_printf(f->a, "%s_partials", by), n,
-            table, by);
-}
-
-static int has_partials(const ProgramSet *u, const Prog *p, uint32_t n) {
-  return p && n && (u->wants & WANT_SENSITIVITY) == WANT_SENSITIVITY;
+            n ? table : "NULL", by);
 }
 
 static void emit_linear(const ModelFile *f) {
@@ -338,8 +334,8 @@ static void emit_linear(const ModelFile *f) {
   entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
   entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
   emit_jumps(f);
-  int params = has_partials(u, u->by_params, u->by_params_dr.n),
-      inputs = has_partials(u, u->by_inputs, u->by_inputs_dr.n);
+  int sensitive = (u->wants & WANT_SENSITIVITY) == WANT_SENSITIVITY, params = sensitive && u->by_params,
+      inputs = sensitive && u->by_inputs;
   if (params) emit_partials(f, u->by_params, u->by_params_dr.at, u->by_params_dr.n, "params");
   if (inputs) emit_partials(f, u->by_inputs, u->by_inputs_dr.at, u->by_inputs_dr.n, "inputs");
   sb_printf(f->out,
