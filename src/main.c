@@ -39,6 +39,7 @@ static int do_command(Compiler *c) {
     case CMD_ANIMATE:
     case CMD_MODES:
     case CMD_LYAPUNOV:
+    case CMD_FIT:
     case CMD_COST:
     case CMD_SWEEP: return command_run(c);
     case CMD_EFFECTS: return command_effects(c);

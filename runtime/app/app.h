@@ -16,7 +16,10 @@ enum { MOST_OPTIONS = 16 };
 typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *out, *svg, *plot_x, *plot_y, *html, *points,
       *from, *save, *resume, *events, *section, *cloud, *starts;
-  const char *accuracy;
+  const char *accuracy, *sensitivity;
+  const char *fit, *data, *loss; /* for --fit */
+  const char **sigmas, **priors; /* the values of --sigma and --prior, in order */
+  int nsigmas, npriors;
   const char *transient, *exponents; /* for --lyapunov */
   const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
   /* for --sweep */
@@ -62,6 +65,8 @@ typedef struct PictureSampling {
   double *from, *last; /* [ncols] the row kept last; the last one since, if have_last */
   int have_last;
 } PictureSampling;
+
+typedef struct Sensitivity Sensitivity; /* sensitivity_columns.c */
 
 typedef struct App {
   const lag_program *program;
@@ -110,6 +115,7 @@ typedef struct App {
   int progress;     /* progress line: 1 shown, 0 not yet, -1 never (no terminal, or --quiet) */
   PhaseVolume volume; /* --volume */
   int volume_rc;    /* failure of its last step */
+  Sensitivity *sensitivity; /* --sensitivity; NULL: none */
   Measures *measures; /* of the scene and of --measure; NULL: none */
   const char **measure_texts; /* their words; of several variants, with semicolons between them */
   char **measure_names;
@@ -125,8 +131,8 @@ typedef struct App {
 #include "app/options.def"
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
-enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, ANY = 127,
-       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS };
+enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, FIT = 128, ANY = 255,
+       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | FIT };
 
 /* A row of options.def. */
 typedef struct Option {
@@ -264,6 +270,18 @@ int lag_tangent_columns_row(App *app);
 void lag_report_tangent(App *app, FILE *f);
 void lag_report_tangent_json(App *app, Json *j);
 
+/* s[n] := unit as numerator or denominator of a fraction, in parentheses if compound. */
+void lag_unit_in_fraction(char *s, size_t n, const char *unit);
+/* n more columns of the table and of app->row; NULL: no memory. */
+Column *lag_app_add_columns(App *app, int n);
+
+/* sensitivity_columns.c: --sensitivity. As the functions for --tangent. */
+int lag_sensitivity_open(App *app);
+int lag_sensitivity_row(App *app);
+void lag_report_sensitivity(App *app, FILE *f);
+void lag_report_sensitivity_json(App *app, Json *j);
+void lag_sensitivity_free(App *app);
+
 /* volume_report.c: --volume. open: gives the run its tangent; 0, or EXIT_USAGE after a message. step: at the end of
  * each step; a failure ends the run. */
 int lag_app_volume_open(App *app);
@@ -309,6 +327,9 @@ int lag_app_modes(App *app);
 
 /* effect_costs.c: --effects. Returns the exit status. */
 int lag_app_effects(App *app);
+
+/* fit.c: --fit. Returns the exit status. */
+int lag_app_fit(App *app);
 
 /* sweep.c: --sweep. Returns the exit status. */
 int lag_app_sweep(App *app);

@@ -16,6 +16,7 @@ static const EvaluatedScene *scene_of(const void *self) { return ((const lag_sce
 static const EvaluatedConstraints *constraints_of(const void *self) { return self; }
 static const EvaluatedCharges *charges_of(const void *self) { return self; }
 static const EvaluatedLinear *linear_of(const void *self) { return self; }
+static const EvaluatedPartials *partials_of(const void *self) { return self; }
 static const EvaluatedAction *action_of(const void *self) { return self; }
 
 /* FUNCTION(name, the structure, its member): a function with one array out. */
@@ -66,6 +67,11 @@ static int variation(STATE, double *Lq, double *Lv, double *Q, double *w) {
 static int linearise(STATE, const double *a, double *dr, double *M, double *w) {
   const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a};
   return lag_run_program(linear_of(self)->eval, in, (double *[]){dr, M}, w);
+}
+
+static int partials(STATE, const double *a, double *dr, double *M, double *w) {
+  const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a};
+  return lag_run_program(partials_of(self)->eval, in, (double *[]){dr, M}, w);
 }
 
 /* --- functions without w --- */
@@ -194,6 +200,8 @@ void lag_set_linear_functions(EvaluatedLinear *l) {
   if (l->jumps) l->linear.jumps = jumps;
 }
 
+void lag_set_partial_functions(EvaluatedPartials *p) { p->partials.eval = partials; }
+
 void lag_set_action_functions(EvaluatedAction *a) {
   a->curve.curve = curve;
   if (a->momenta) a->curve.momenta = momenta;
@@ -219,6 +227,10 @@ size_t lag_model_room(const EvaluatedModel *m) {
         widen(&room, c->velocity, 0);
   if (q) widen(&room, q->values, 0), widen(&room, q->powers, 0);
   if (l) widen(&room, l->eval, 0), widen(&room, l->jumps, 0);
+  const EvaluatedPartials *by_params = (const void *)(l ? l->linear.by_params : NULL),
+                          *by_inputs = (const void *)(l ? l->linear.by_inputs : NULL);
+  if (by_params) widen(&room, by_params->eval, 0);
+  if (by_inputs) widen(&room, by_inputs->eval, 0);
   return room;
 }
 

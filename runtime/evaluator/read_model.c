@@ -211,6 +211,17 @@ static void read_switches(Reader *r) {
   r->m->switch_grips = program(r, modes, 0, 0);
 }
 
+/* Derivatives of residuals by so many parameters or inputs; NULL: none. */
+static const lag_partials *read_partials(Reader *r, int columns, int nmass) {
+  Bytes *b = r->b;
+  EvaluatedPartials *p = flag(b) ? lag_bytes_room(b, 1, sizeof *p) : NULL;
+  if (!p) return NULL;
+  p->partials.at = entries(b, &p->partials.n, r->m->model.nq + r->m->model.nz, columns, 0);
+  p->eval = wanted(r, 1, p->partials.n, nmass);
+  lag_set_partial_functions(p);
+  return &p->partials;
+}
+
 static void read_linear(Reader *r) {
   Bytes *b = r->b;
   if (!flag(b)) return;
@@ -232,6 +243,8 @@ static void read_linear(Reader *r) {
   l->linear.jump = j;
   l->jumps = program(r, l->linear.njump, 0, 0);
   lag_bytes_need(b, !l->linear.njump || l->jumps, "derivatives of events are missing");
+  l->linear.by_params = read_partials(&with, r->m->model.np, l->linear.nmass);
+  l->linear.by_inputs = read_partials(&with, r->m->model.nu, l->linear.nmass);
   lag_set_linear_functions(l);
   r->m->model.linear = &l->linear;
 }

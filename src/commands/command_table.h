@@ -9,7 +9,7 @@
 
 typedef enum {
   CMD_NONE, CMD_CHECK, CMD_VERIFY, CMD_DERIVE, CMD_NOETHER, CMD_ACTION, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES,
-  CMD_LYAPUNOV, CMD_COST, CMD_SWEEP, CMD_EFFECTS, CMD_METHODS, CMD_MODELS, CMD_NEW, CMD_CACHE, CMD_BUILD, CMD_HEADER,
+  CMD_LYAPUNOV, CMD_FIT, CMD_COST, CMD_SWEEP, CMD_EFFECTS, CMD_METHODS, CMD_MODELS, CMD_NEW, CMD_CACHE, CMD_BUILD, CMD_HEADER,
   CMD_EMIT, CMD_FMU, CMD_HELP, CMD_COMPLETION, CMD_VERSION, CMD_COMPLETE, CMD_MANPAGE,
   CMD_COUNT
 } Command;
@@ -65,6 +65,7 @@ typedef struct {
   const char *section;     /* run, plot --section */
   OptionTexts y;           /* plot --y: expressions */
   const char *x, *phase;   /* plot */
+  const char *columns;     /* fit --columns */
   const char *cloud;       /* plot --cloud: N or N:PART */
   int portrait, potential, distance, energy_error;
   const char *points, *from; /* animate */
