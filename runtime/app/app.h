@@ -22,6 +22,8 @@ typedef struct Args {
   /* for --sweep */
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram;
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
+  const char *period, *guess, *hold, *relative, *segments; /* for --orbit */
+  int orbit;
   int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs,
       sweep, zip, go_on, yes, portrait, potential, distance, energy_error, no_monitors;
   char **sets; /* name=value, in order */
@@ -125,7 +127,7 @@ typedef struct App {
 #include "app/options.def"
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
-enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, ANY = 127,
+enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, ORBIT = 128, ANY = 255,
        MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS };
 
 /* A row of options.def. */
@@ -306,6 +308,9 @@ int lag_app_lyapunov(App *app);
 
 /* modes_report.c: --modes. Returns the exit status. */
 int lag_app_modes(App *app);
+
+/* orbit_report.c: --orbit. Returns the exit status. */
+int lag_app_orbit(App *app);
 
 /* effect_costs.c: --effects. Returns the exit status. */
 int lag_app_effects(App *app);
