@@ -159,30 +159,37 @@ static void multiply(int k, const double *A, const double *B, double *AB) {
     }
 }
 
+/* W[k k] := to' W from, with orthogonal matrices; scratch[k k]. */
+static void transform(int k, const double *to, const double *from, double *W, double *scratch) {
+  multiply(k, W, from, scratch);
+  for (int i = 0; i < k; i++)
+    for (int j = 0; j < k; j++) {
+      W[i * k + j] = 0;
+      for (int l = 0; l < k; l++) W[i * k + j] += to[l * k + i] * scratch[l * k + j];
+    }
+}
+
 /* W[m k k] := Q' W Q, with orthogonal matrices Q that orthogonal iteration makes block triangular: blocks of growth
  * that differ by 1.5 or more are separated, so that the product of blocks keeps the digits of small multipliers.
- * growth[k]: logarithms of their growth over a period. */
+ * growth[k]: logarithms of their growth over a period, in the mean. */
 static int separate(Pool *pool, int m, int k, double *W, double *growth) {
-  enum { ROUNDS = 100 };
+  enum { ROUNDS = 100, COUNTED = 50 };
   size_t size = (size_t)(k * k);
-  double *Q = lag_pool_doubles(pool, 2 * size), *from = Q + size, *next = lag_pool_doubles(pool, size);
+  double *Q = lag_pool_doubles(pool, ((size_t)m + 1) * size), *next = lag_pool_doubles(pool, size);
   if (pool->failed) return LAG_ENOMEM;
   for (int i = 0; i < k; i++) Q[i * k + i] = 1;
-  for (int round = 0; round <= ROUNDS; round++) {
-    memset(growth, 0, (size_t)k * sizeof *growth);
+  for (int round = 0; round < ROUNDS; round++) {
+    if (round) memcpy(Q, Q + (size_t)m * size, size * sizeof *Q);
     for (int s = 0; s < m; s++) {
-      memcpy(from, Q, size * sizeof *Q);
-      multiply(k, W + (size_t)s * size, from, next);
-      memcpy(Q, next, size * sizeof *Q);
-      if (lag_orthonormalise(k, k, Q, growth, 1, 0)) return LAG_ESINGULAR;
-      for (int i = 0; i < k && round == ROUNDS; i++)
-        for (int j = 0; j < k; j++) {
-          double *to = &W[s * k * k + i * k + j];
-          *to = 0;
-          for (int l = 0; l < k; l++) *to += Q[l * k + i] * next[l * k + j];
-        }
+      double *to = Q + (size_t)(s + 1) * size;
+      multiply(k, W + (size_t)s * size, to - size, to);
+      if (lag_orthonormalise(k, k, to, growth, round >= ROUNDS - COUNTED, 0) ||
+          lag_orthonormalise(k, k, to, growth, 0, 0)) return LAG_ESINGULAR; /* twice: of a singular W */
     }
   }
+  for (int s = 0; s < m; s++)
+    transform(k, Q + (size_t)((s + 1) % m) * size, Q + (size_t)s * size, W + (size_t)s * size, next);
+  for (int i = 0; i < k; i++) growth[i] /= COUNTED;
   return LAG_OK;
 }
 

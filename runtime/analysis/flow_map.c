@@ -117,9 +117,9 @@ double lag_flow_charge(FlowMap *f, int k, double t, const double *y) {
 
 static const double stencil[] = {0.8, -0.2, 4.0 / 105, -1.0 / 280};
 
-/* Derivative of charge k by component i at y, t; y is restored. */
-static double slope(FlowMap *f, int k, double t, double *y, int i) {
-  double was = y[i], h = 0x1p-6 * lag_difference_scale(&f->probe->pb, y, i), sum = 0;
+/* Derivative of charge k by component i at y, t, by differences of half-width 4 h; y is restored. */
+static double slope_within(FlowMap *f, int k, double t, double *y, int i, double h) {
+  double was = y[i], sum = 0;
   h = (was + h) - was; /* a number of 53 bits */
   for (int j = 1; j <= 4; j++) {
     y[i] = was + j * h;
@@ -129,6 +129,19 @@ static double slope(FlowMap *f, int k, double t, double *y, int i) {
   }
   y[i] = was;
   return sum / h;
+}
+
+/* The same by those two widths that agree best: near a singularity, as where bodies meet, narrow ones. */
+static double slope(FlowMap *f, int k, double t, double *y, int i) {
+  enum { LEVELS = 9 };
+  double h = 0x1p-4 * lag_difference_scale(&f->probe->pb, y, i), best = NAN, least = HUGE_VAL, before = NAN;
+  for (int level = 0; level < LEVELS; level++, h /= 3) {
+    double now = slope_within(f, k, t, y, i, h), off = fabs(now - before);
+    if (off < least || (isnan(best) && isfinite(now))) best = now;
+    if (off < least) least = off;
+    before = now;
+  }
+  return best;
 }
 
 int lag_flow_gradient(FlowMap *f, int k, double t, const double *y, double *d) {
