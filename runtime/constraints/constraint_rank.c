@@ -24,7 +24,7 @@ int lag_constraint_jacobian(lag_problem *pb, double t, const double *y, double *
          *top = scale + n + nq;
   int rc = lag_inputs(pb, t);
   memset(M, 0, nq * nq * sizeof *M);
-  rc = rc ? rc : of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, entries, masses, pb->work);
+  rc = rc ? rc : of->matrices(of, t, y, y + nq, y + 2 * nq, pb->p, pb->u, entries, masses, pb->work);
   for (size_t i = 0; i < n * nq; i++) A[i] = 0;
   for (int e = 0; e < of->njacobian && rc == 0; e++)
     A[(size_t)of->jacobian[e].row * nq + (size_t)of->jacobian[e].col] = entries[e];

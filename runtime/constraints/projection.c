@@ -42,7 +42,9 @@ static ConstraintScratch layout(const lag_problem *pb) {
 
 int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r) {
   int rc = lag_inputs(pb, t), nq = pb->nq;
-  rc = rc ? rc : pb->model->constraints->residuals(t, y, y + nq, y + 2 * nq, pb->p, pb->u, c, r, pb->work);
+  rc = rc ? rc
+          : pb->model->constraints->residuals(pb->model->constraints, t, y, y + nq, y + 2 * nq, pb->p, pb->u, c, r,
+                                              pb->work);
   for (int k = 0; pb->kept && k < pb->model->constraints->nholonomic; k++)
     c[k] = isnan(pb->kept[k]) ? 0 : c[k] - pb->kept[k];
   return rc;
@@ -68,7 +70,8 @@ int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, 
   const lag_constraints *of = pb->model->constraints;
   int rc = lag_inputs(pb, t), nq = pb->nq;
   return rc ? rc
-            : (holonomic ? of->position : of->velocity)(t, y, y + nq, y + 2 * nq, pb->p, pb->u, g, d, force, pb->work);
+            : (holonomic ? of->position : of->velocity)(of, t, y, y + nq, y + 2 * nq, pb->p, pb->u, g, d, force,
+                                                        pb->work);
 }
 
 /* ---- sizes of residuals */
@@ -77,7 +80,7 @@ int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, 
 static int sizes(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, double *size) {
   const lag_constraints *of = w->of;
   int nq = pb->nq, n = holonomic ? of->nholonomic : of->n, at = holonomic ? 0 : nq, rc = lag_inputs(pb, t);
-  rc = rc ? rc : of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work);
+  rc = rc ? rc : of->matrices(of, t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work);
   if (rc) return rc;
   memset(size, 0, (size_t)n * sizeof *size);
   for (int e = 0; e < of->njacobian; e++) {
@@ -350,7 +353,7 @@ int lag_project_tangent(lag_problem *pb, double t, const double *y, double *e) {
   ConstraintScratch w = layout(pb);
   int nq = pb->nq, rc = lag_inputs(pb, t);
 
-  rc = rc ? rc : w.of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w.A, w.M, pb->work);
+  rc = rc ? rc : w.of->matrices(w.of, t, y, y + nq, y + 2 * nq, pb->p, pb->u, w.A, w.M, pb->work);
   for (int level = 0; level < 2 && rc == 0; level++) {
     double *x = e + level * nq;
     if (!level && !w.of->nholonomic) continue;

@@ -78,7 +78,7 @@ int lag_tangent_project(lag_problem *pb, double t, const double *y, int k, doubl
   const lag_constraints *of = pb->model->constraints;
   int n = pb->n, rc = of ? lag_inputs_at(pb, t, y) : LAG_OK;
   double *e = scratch, *A = e + n, *M = of ? A + of->njacobian : NULL, *rest = of ? M + of->nmass : NULL;
-  rc = of && rc == LAG_OK ? of->matrices(t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, A, M, pb->work) : rc;
+  rc = of && rc == LAG_OK ? of->matrices(of, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, A, M, pb->work) : rc;
   for (int j = 0; of && j < k && rc == LAG_OK; j++) {
     for (int i = 0; i < n; i++) e[i] = Y[i * k + j];
     rc = project(pb, t, y, A, e, rest);

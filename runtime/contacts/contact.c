@@ -142,7 +142,8 @@ static int evaluate_contacts(lag_sim *s, double *y, ContactSet *w) {
   for (int i = 0; i < m->ncontacts; i++) w->rate_size[i] = w->g[m->contacts[i].constraint];
   rc = rc ? rc : lag_inputs(pb, t);
   if (rc == 0 && m->contact_laws) rc = lag_contact_laws(s, y, w->law);
-  rc = rc ? rc : m->constraints->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->mass, pb->work);
+  rc = rc ? rc
+          : m->constraints->matrices(m->constraints, t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->mass, pb->work);
   return rc ? lag_contacts_no_values(w, 0) : LAG_OK;
 }
 
@@ -167,7 +168,7 @@ double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i
   memcpy(before, y, bytes);
   for (int j = 0; j < nq; j++) before[nq + j] -= (speed + rate) * d[j];
   memcpy(after, before, bytes);
-  if (m->act(m->contacts[i].impact, t, before, before + nq, before + 2 * nq, pb->p, pb->u, after, after + nq,
+  if (m->act(m, m->contacts[i].impact, t, before, before + nq, before + 2 * nq, pb->p, pb->u, after, after + nq,
              after + 2 * nq, &stop, pb->work))
     return NAN;
   for (int j = 0; j < nq; j++) before[nq + j] = after[nq + j] - before[nq + j];

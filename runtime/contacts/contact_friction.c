@@ -21,7 +21,7 @@ static double largest_force(const double *law, int tangent) { return law[3 * tan
 static int laws_at(lag_problem *pb, double t, const double *y, double *law) {
   const lag_model *m = pb->model;
   pb->rhs_calls++;
-  return m->contact_laws(t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, law, pb->work);
+  return m->contact_laws(m, t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, law, pb->work);
 }
 
 /* The side to which tangent i slips; 0: it sticks by a force that is not unique; NaN: it sticks or is open, or is no

@@ -143,7 +143,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
   int rc = lag_inputs(&s->pb, r->t);
   memcpy(s->yb, s->now, bytes);
   if (rc == 0 && m->act && !of) {
-    rc = m->act(k, r->t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, s->yb, s->yb + nq, s->yb + 2 * nq, stop,
+    rc = m->act(m, k, r->t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, s->yb, s->yb + nq, s->yb + 2 * nq, stop,
                 s->work);
   }
   if (rc || lag_not_finite(n, s->yb) >= 0) {

@@ -368,8 +368,8 @@ int lag_tangent_jump(lag_sim *s, int k, int more) {
     return refuse(s, k,
                   "another event does so at the same time, and neighbouring motions may meet the two in either order");
   Jump j = jump_layout(s);
-  if (njump(s) &&
-      (lag_inputs(pb, t) || m->linear->jumps(t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, j.d, s->work)))
+  if (njump(s) && (lag_inputs(pb, t) ||
+                   m->linear->jumps(m->linear, t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, j.d, s->work)))
     return refuse(s, k, "its derivatives cannot be computed");
   if (!njump(s) || !collect_derivatives(s, k, &j)) {
     return refuse(s, k, "it depends on an input, whose rate a model does not have"); /* the compiler lists all others */

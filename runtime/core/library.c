@@ -127,7 +127,7 @@ static int motion(lag_sim *s, const double *y0, const double *p, int rows, const
     s->p[i] = p[i];
     s->fixed[i] = 1;
   }
-  if (p && s->scene->params) s->scene->params(s->p, s->fixed);
+  if (p && s->scene->params) s->scene->params(s->scene, s->p, s->fixed);
   if (y0) memcpy(s->start, y0, (size_t)s->pb.n * sizeof *y0);
   return lag_sim_rows(s, rows, t, y, NULL, &done);
 }

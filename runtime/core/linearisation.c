@@ -44,7 +44,7 @@ int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, d
   LinearLayout p = parts_of(m, work);
   int rc = lag_inputs_at(pb, t, y);
   if (!a) memset(p.rate, 0, n * sizeof(double));
-  rc = rc ? rc : l->eval(t, y, y + nq, y + 2 * nq, pb->p, pb->u, a ? a : p.rate, p.dr, p.mass, pb->work);
+  rc = rc ? rc : l->eval(l, t, y, y + nq, y + 2 * nq, pb->p, pb->u, a ? a : p.rate, p.dr, p.mass, pb->work);
   if (rc) return rc;
   memset(dr, 0, (nq + (size_t)m->nz) * n * sizeof(double));
   memset(M, 0, nq * nq * sizeof(double));

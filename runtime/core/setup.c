@@ -156,7 +156,7 @@ static double *default_options(const lag_method *method) {
 /* Sets the state to the start as it is set now, so that a simulation can be inspected before it runs. */
 static void set_start_state(lag_sim *s) {
   int nq = s->pb.nq, n = s->pb.n;
-  if (s->scene->start) s->scene->start(s->p, s->now, s->now + nq, s->now + 2 * nq);
+  if (s->scene->start) s->scene->start(s->scene, s->p, s->now, s->now + nq, s->now + 2 * nq);
   for (int i = 0; i < n; i++) s->now[i] = isnan(s->start[i]) ? s->now[i] : s->start[i];
   memcpy(s->begin, s->now, (size_t)n * sizeof(double));
   s->run->t = s->scene->t0;
@@ -187,7 +187,7 @@ lag_sim *lag_sim_new(const lag_scene *scene) {
     lag_sim_free(s);
     return NULL;
   }
-  if (scene->params) scene->params(s->p, s->fixed);
+  if (scene->params) scene->params(scene, s->p, s->fixed);
   set_start_state(s);
   return s;
 }
@@ -505,7 +505,7 @@ int lag_sim_set(lag_sim *s, const char *name, double value) {
   }
   if (rc) return rc;
   if (s->scene->params) {
-    s->scene->params(s->p, s->fixed); /* parameters may depend on this one */
+    s->scene->params(s->scene, s->p, s->fixed); /* parameters may depend on this one */
   }
   set_start_state(s);
   return LAG_OK;
@@ -570,7 +570,7 @@ int lag_check_parameters(lag_sim *s) {
                       m->p[i].name, sign_text(m->p[i].sign));
     }
   int rc =
-      m->nsizes ? m->size_values(s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, s->sizes, s->pb.work) : 0;
+      m->nsizes ? m->size_values(m, s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, s->sizes, s->pb.work) : 0;
   return rc ? rc : judge_sizes(s, m->nsizes, m->sizes, s->sizes, NAN);
 }
 
@@ -579,7 +579,7 @@ int lag_check_moving_sizes(lag_sim *s, double t, const double *y) {
   if (!m->nmoving) return LAG_OK;
   double *size = s->sizes;
   int rc = lag_inputs_at(&s->pb, t, y);
-  rc = rc ? rc : m->moving_sizes(t, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, size, s->pb.work);
+  rc = rc ? rc : m->moving_sizes(m, t, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, size, s->pb.work);
   return rc ? LAG_OK : judge_sizes(s, m->nmoving, m->sizes + m->nsizes, size, t);
 }
 

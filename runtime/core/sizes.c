@@ -27,16 +27,16 @@ static const double *moved_state(lag_sim *s, const double *y) {
 static void energy_at(lag_sim *s, double t, const double *y, double *e) {
   const lag_model *m = s->scene->model;
   int nq = m->nq, bad = !m->energy || lag_inputs_at(&s->pb, t, y);
-  if (bad || m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, e, s->work)) e[0] = e[1] = NAN;
+  if (bad || m->energy(m, t, y, y + nq, y + 2 * nq, s->p, s->u, e, s->work)) e[0] = e[1] = NAN;
 }
 
 /* x := values of a formula at t, y, with the inputs as they are. Not 0: there are none. */
 static int formula_at(lag_sim *s, LagFormula of, double t, const double *y, double *x) {
   const lag_model *m = s->scene->model;
   const double *v = y + m->nq, *z = v + m->nq;
-  if (of == LAG_FORMULA_ENERGY) return !m->energy || m->energy(t, y, v, z, s->p, s->u, x, s->work);
-  if (of == LAG_FORMULA_RATES) return m->accel(t, y, v, z, s->p, s->u, x, x + m->nq, s->work);
-  return m->constraints->residuals(t, y, v, z, s->p, s->u, x, s->pb.held + m->constraints->n, s->work);
+  if (of == LAG_FORMULA_ENERGY) return !m->energy || m->energy(m, t, y, v, z, s->p, s->u, x, s->work);
+  if (of == LAG_FORMULA_RATES) return m->accel(m, t, y, v, z, s->p, s->u, x, x + m->nq, s->work);
+  return m->constraints->residuals(m->constraints, t, y, v, z, s->p, s->u, x, s->pb.held + m->constraints->n, s->work);
 }
 
 int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, int n, double *noise, double *up,

@@ -56,7 +56,8 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   if (!m->contact_laws) return LAG_OK;
   rc = lag_inputs(pb, 0);
   rc = rc ? rc
-          : m->contact_laws(0, pb->begin, pb->begin + pb->nq, pb->begin + 2 * pb->nq, pb->p, pb->u, pb->rub, pb->work);
+          : m->contact_laws(m, 0, pb->begin, pb->begin + pb->nq, pb->begin + 2 * pb->nq, pb->p, pb->u, pb->rub,
+                            pb->work);
   for (int i = 0; i < 2 * m->ncontacts; i++) law_of(w, pb)[i] = pb->rub[3 * (i / 2) + i % 2];
   for (int i = 0; i + 1 < m->ncontacts && rc == 0; i++) {
     if (m->contacts[i].is_tangent || !m->contacts[i + 1].is_tangent || !(pb->rub[3 * i] > pb->rub[3 * i + 3])) continue;

@@ -107,7 +107,7 @@ static int respond(MoreauContacts *w, lag_problem *pb, double t, const double *y
   memset(w->g, 0, (size_t)of->n * sizeof *w->g);
   w->g[k] = 1;
   rc = close(pb, t, i);
-  rc = rc ? rc : of->velocity(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->g, w->d, w->effort, pb->work);
+  rc = rc ? rc : of->velocity(of, t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->g, w->d, w->effort, pb->work);
   double work = 0;
   for (int j = 0; j < nq && rc == 0; j++) work += w->d[j] * w->effort[j];
   int moves = rc == 0 && work > 0 && lag_row_moves(lag_row_product(&w->A, row, w->d));
@@ -179,11 +179,11 @@ static int evaluate(MoreauContacts *w, lag_problem *pb, double t, double h, cons
   const lag_constraints *of = pb->model->constraints;
   int nq = pb->nq, rc = close(pb, t - h / 2, -1);
   for (int i = 0; i < nq; i++) w->test[i] = y[i] - h / 2 * y[nq + i];
-  rc = rc ? rc : of->residuals(t - h / 2, w->test, y + nq, y + 2 * nq, pb->p, pb->u, w->c, w->bend, pb->work);
+  rc = rc ? rc : of->residuals(of, t - h / 2, w->test, y + nq, y + 2 * nq, pb->p, pb->u, w->c, w->bend, pb->work);
   rc = rc ? rc : close(pb, t, -1);
-  rc = rc ? rc : of->residuals(t, y, free, y + 2 * nq, pb->p, pb->u, w->c, w->r1, pb->work);
-  rc = rc ? rc : of->residuals(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->c, w->r0, pb->work);
-  rc = rc ? rc : of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->jacobian, w->mass, pb->work);
+  rc = rc ? rc : of->residuals(of, t, y, free, y + 2 * nq, pb->p, pb->u, w->c, w->r1, pb->work);
+  rc = rc ? rc : of->residuals(of, t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->c, w->r0, pb->work);
+  rc = rc ? rc : of->matrices(of, t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->jacobian, w->mass, pb->work);
   for (int k = 0; k < of->n; k++) {
     w->bend[k] = w->r0[k] - w->bend[k];
     w->pace[k] = 2 * fabs(w->bend[k]);

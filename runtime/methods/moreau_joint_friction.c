@@ -50,7 +50,7 @@ static void hold(const JointFriction *w, lag_problem *pb, int j, double mode) { 
 static int slips_at(lag_problem *pb, double t, const double *y, const double *x, double *g) {
   const lag_model *m = pb->model;
   int rc = lag_inputs(pb, t);
-  rc = rc ? rc : m->switch_values(t, y, x + m->nq, x + 2 * m->nq, pb->p, pb->u, g, pb->work);
+  rc = rc ? rc : m->switch_values(m, t, y, x + m->nq, x + 2 * m->nq, pb->p, pb->u, g, pb->work);
   return rc ? lag_step_refused(pb, rc, t) : 0;
 }
 
@@ -62,7 +62,7 @@ int lag_joint_friction_begin(JointFriction *w, lag_problem *pb, double t, const 
   }
   int rc = slips_at(pb, t, y, y, w->slip);
   if (rc) return rc;
-  if (m->switch_grips) rc = m->switch_grips(t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, w->other, pb->work);
+  if (m->switch_grips) rc = m->switch_grips(m, t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, w->other, pb->work);
   for (int j = 0; j < w->n && rc == 0; j++) {
     int k = switch_of(w, j), rests = w->sticks[j] != 0.0 || w->slip[k] == 0.0;
     w->before[j] = w->slip[k];

@@ -94,7 +94,7 @@ static int end_to_start_change(const ImplicitArrays *a, lag_problem *pb, double 
   const ConstraintBlock *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
   int nq = pb->nq, n = of->n, rc = lag_inputs(pb, t1);
-  rc = rc ? rc : of->matrices(t1, b->to, b->to + nq, b->to + 2 * nq, pb->p, pb->u, b->A, b->M, pb->work);
+  rc = rc ? rc : of->matrices(of, t1, b->to, b->to + nq, b->to + 2 * nq, pb->p, pb->u, b->A, b->M, pb->work);
   memset(b->end_jacobian, 0, (size_t)(n * n) * sizeof(double));
   for (int e = 0; e < of->njacobian && rc == 0; e++) {
     int row = of->jacobian[e].row;

@@ -87,7 +87,8 @@ static int first(Taylor *w, lag_problem *pb, double which, double t, const doubl
   pb->rhs_calls++;
   pb->bad_index = -1;
   rc = rc ? rc
-          : pb->model->taylor->first(t, y, y + nq, y + 2 * nq, pb->p, pb->u, lag_taylor_follows(w, pb), x, pb->work);
+          : pb->model->taylor->first(pb->model->taylor, t, y, y + nq, y + 2 * nq, pb->p, pb->u,
+                                     lag_taylor_follows(w, pb), x, pb->work);
   if (rc == 0) {
     int bad = lag_not_finite(nq + pb->nz, x + pb->n);
     pb->bad_index = bad < 0 ? -1 : nq + bad;
@@ -114,7 +115,7 @@ static int expand(Taylor *w, lag_problem *pb, double which, double unit) {
   double *x = lag_taylor_series(w, pb, which);
   for (int attempt = 0; attempt < 8; attempt++, unit *= 0x1p-40) {
     w->unit[which > 0] = pb->dir * unit;
-    ty->rest(order, pb->dir * unit, x, pb->work);
+    ty->rest(ty, order, pb->dir * unit, x, pb->work);
     if (lag_not_finite(pb->n, x + order * ty->columns) < 0) return 1;
   }
   return 0;
@@ -157,8 +158,8 @@ static void advance(Taylor *w, lag_problem *pb, const double *y, double dt) {
   const double *comp = lag_taylor_array(w, pb, TAYLOR_COMP);
   double *sum = lag_taylor_array(w, pb, TAYLOR_SUM), *y1 = lag_taylor_array(w, pb, TAYLOR_Y1),
          *comp1 = lag_taylor_array(w, pb, TAYLOR_COMP1);
-  pb->model->taylor->at((int)w->order, dt / w->unit[w->now > 0], lag_taylor_series(w, pb, w->now), sum,
-                        lag_taylor_array(w, pb, TAYLOR_SLOPE));
+  pb->model->taylor->at(pb->model->taylor, (int)w->order, dt / w->unit[w->now > 0], lag_taylor_series(w, pb, w->now),
+                        sum, lag_taylor_array(w, pb, TAYLOR_SLOPE));
   for (int i = 0; i < pb->n; i++) {
     comp1[i] = comp[i];
     y1[i] = lag_compensated_sum(y[i], sum[i], &comp1[i]);
@@ -219,7 +220,8 @@ static void dense(void *work, lag_problem *pb, double t, double *y) {
   Taylor *w = work;
   double which = 1 - w->now, *sum = lag_taylor_array(w, pb, TAYLOR_SUM);
   const double *x = lag_taylor_series(w, pb, which);
-  pb->model->taylor->at((int)w->order, (t - w->t0) / w->unit[which > 0], x, sum, lag_taylor_array(w, pb, TAYLOR_SLOPE));
+  pb->model->taylor->at(pb->model->taylor, (int)w->order, (t - w->t0) / w->unit[which > 0], x, sum,
+                        lag_taylor_array(w, pb, TAYLOR_SLOPE));
   for (int i = 0; i < pb->n; i++) y[i] = x[i] + sum[i];
 }
 

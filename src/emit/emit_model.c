@@ -108,14 +108,14 @@ static int is_seldom_called(const ProgramSet *u, const Prog *p) {
 
 void state_function(const ModelFile *f, const Prog *p, const char *name, const char *comment, const char *in,
                     const char *const *written) {
-  const char *own[12] = {"t", "q", "v", "z", "p", "u"};
-  uint32_t n = 6, outputs = 0;
+  const char *own[14] = {"self", "t", "q", "v", "z", "p", "u"};
+  uint32_t n = 7, outputs = 0;
   StrBuf head = strbuf(f->a);
   if (!p) return;
   while (written[outputs]) outputs++;
   sb_printf(&head,
-            "static int %s(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL "
-            "*p, const LAG_REAL *u",
+            "static int %s(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    "
+            "const LAG_REAL *p, const LAG_REAL *u",
             name);
   if (in) sb_printf(&head, ", const LAG_REAL *%s", own[n++] = in);
   for (uint32_t k = 0; k < outputs; k++)
@@ -158,11 +158,12 @@ static void emit_strike(const ModelFile *f) {
   state_function(f, u->impact, "impact", "Velocities after the impact of the contact whose entry of g is 1.", "g",
                  written);
   sb_printf(f->out,
-            "\nstatic int strike(int row, int input, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL "
-            "*z,\n    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *v1, LAG_REAL *w) {\n"
+            "\nstatic int strike(const void *self, int row, int input, LAG_REAL t, const LAG_REAL *q, const LAG_REAL "
+            "*v,\n    "
+            "const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *v1, LAG_REAL *w) {\n"
             "  LAG_REAL g[%u], with[%u];\n"
             "  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = 0; i < %u; i++) with[i] = u[i];\n"
-            "  g[row] = with[input] = LAG_C(1.0);\n  return impact(t, q, v, z, p, with, g, v1, w);\n}\n",
+            "  g[row] = with[input] = LAG_C(1.0);\n  return impact(self, t, q, v, z, p, with, g, v1, w);\n}\n",
             u->constraints.of.n, u->u.n, u->constraints.of.n, u->u.n);
 }
 
@@ -176,18 +177,21 @@ static void emit_events(const ModelFile *f) {
     if (!program_set_striking_contact(u, i))
       state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", cname_of_event(u, i)),
                      arena_printf(f->a, "What the event %s does.", u->events.at[i].name), NULL, written);
-  sb_puts(f->out, "\nstatic int act(int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    "
-                  "const LAG_REAL *p, const LAG_REAL *u,\n"
-                  "    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n  switch (k) {\n");
+  sb_puts(
+      f->out,
+      "\nstatic int act(const void *self, int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n"
+      "    const LAG_REAL *p, const LAG_REAL *u,\n"
+      "    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n  switch (k) {\n");
   for (uint32_t i = 0; i < u->events.n; i++) {
     const IrContact *c = program_set_striking_contact(u, i);
     if (c)
-      sb_printf(f->out, "    case %u: return strike(%u, %u, t, q, v, z, p, u, v1, w);\n", i, c->constraint, c->input);
+      sb_printf(f->out, "    case %u: return strike(self, %u, %u, t, q, v, z, p, u, v1, w);\n", i, c->constraint,
+                c->input);
     else
-      sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i,
+      sb_printf(f->out, "    case %u:%s return act_%s(self, t, q, v, z, p, u, q1, v1, z1, w);\n", i,
                 u->events.at[i].stop ? " *stop = 1;" : "", cname_of_event(u, i));
   }
-  sb_puts(f->out, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
+  sb_puts(f->out, "    default: (void)self; (void)stop; return LAG_OK;\n  }\n}\n");
 }
 
 static void emit_switches(const ModelFile *f) {
@@ -252,18 +256,18 @@ static void emit_charges(const ModelFile *f) {
 /* --- parameters and inputs --- */
 
 static void emit_derive(const ModelFile *f) {
-  static const char *const own[] = {"p", NULL}, *const written[] = {"p"};
+  static const char *const own[] = {"self", "p", NULL}, *const written[] = {"p"};
   if (!f->u->nderived) return;
   CStyle st = model_style(f, own, written);
   st.apart = st.prefer_short_code = 1;
   CFunction c = {.comment = arena_printf(f->a, "Derived parameters, for the functions below: %s.",
                                          op_count_text(f->u->derived, f->a)),
-                 .head = "static void derive(LAG_REAL *p)"};
+                 .head = "static void derive(const void *self, LAG_REAL *p)"};
   cfunction(f->u->derived, &st, &c, f->out);
 }
 
 static void emit_inputs(const ModelFile *f) {
-  static const char *const own[] = {"t", "p", "u", NULL}, *const written[] = {"u"};
+  static const char *const own[] = {"self", "t", "p", "u", NULL}, *const written[] = {"u"};
   const Prog *p = f->u->inputs;
   if (!f->u->u.n) return;
   CStyle st = model_style(f, own, written);
@@ -274,7 +278,8 @@ static void emit_inputs(const ModelFile *f) {
     cwrite_rows(&p->tables.at[i], st.rows[i], "LAG", "", f->a, f->out);
   }
   CFunction c = {.comment = p->tables.n ? "Inputs, by their formulas and tables." : "Inputs that have a formula.",
-                 .head = "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", .returns = 1};
+                 .head = "static int inputs(const void *self, LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)",
+                 .returns = 1};
   cfunction(p, &st, &c, f->out);
 }
 

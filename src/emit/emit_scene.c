@@ -21,9 +21,9 @@ static uint32_t same_params(const ProgramSet *u, const IrScene *s, uint32_t i) {
 
 /* Function params_ID: parameters in order, as each formula may use the parameters before it. */
 static void emit_params(const ModelFile *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"p", "fixed", NULL}, *const written[] = {"p"};
-  sb_printf(f->out, "\nstatic void params_%s(LAG_REAL *p, const unsigned char *fixed) {\n", id);
-  if (!f->u->p.n) sb_puts(f->out, "  (void)p; (void)fixed;\n");
+  static const char *const own[] = {"self", "p", "fixed", NULL}, *const written[] = {"p"};
+  sb_printf(f->out, "\nstatic void params_%s(const void *self, LAG_REAL *p, const unsigned char *fixed) {\n", id);
+  sb_puts(f->out, f->u->p.n ? "  (void)self;\n" : "  (void)self; (void)p; (void)fixed;\n");
   for (uint32_t i = 0, same; i < f->u->p.n; i += same) {
     same = same_params(f->u, s, i);
     if (same > 1) {
@@ -39,14 +39,16 @@ static void emit_params(const ModelFile *f, const IrScene *s, const char *id) {
     cwrite_body(s->params[i], &st, f->a, &body);
     cwrite_guarded(arena_printf(f->a, "if (!fixed[%u]) ", i), sb_text(&body), f->out);
   }
-  sb_puts(f->out, f->u->nderived ? "  derive(p);\n}\n" : "}\n");
+  sb_puts(f->out, f->u->nderived ? "  derive(NULL, p);\n}\n" : "}\n");
 }
 
 static void emit_start(const ModelFile *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"p", "q", "v", "z", NULL}, *const written[] = {"q", "v", "z"};
+  static const char *const own[] = {"self", "p", "q", "v", "z", NULL}, *const written[] = {"q", "v", "z"};
   CStyle st = model_style(f, own, written);
-  sb_printf(f->out, "\nstatic void start_%s(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z) {\n", id);
-  sb_puts(f->out, "  (void)p; (void)q; (void)v; (void)z;\n");
+  sb_printf(f->out,
+            "\nstatic void start_%s(const void *self, const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z) {\n",
+            id);
+  sb_puts(f->out, "  (void)self; (void)p; (void)q; (void)v; (void)z;\n");
   if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
   if (f->u->z.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) z[i] = LAG_C(0.0);\n", f->u->z.n);
   st.prefer_short_code = 1;
@@ -56,15 +58,15 @@ static void emit_start(const ModelFile *f, const IrScene *s, const char *id) {
 
 /* Function of the closed forms; its arguments q0, v0, z0 are the state at the start. */
 static void emit_exact(const ModelFile *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"t", "q0", "v0", "z0", "p", "u", "out", NULL}, *const written[] = {"out"};
+  static const char *const own[] = {"self", "t", "q0", "v0", "z0", "p", "u", "out", NULL}, *const written[] = {"out"};
   static const char *const from_start[ARR_COUNT] = {"t", "q0", "v0", "z0", "p", "u", "a"};
   if (!s->exact_of.n) return;
   CStyle st = model_style(f, own, written);
   st.in = from_start;
   CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .returns = 1};
   c.head = arena_printf(f->a,
-                        "static int exact_%s(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,\n"
-                        "    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out)",
+                        "static int exact_%s(const void *self, LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0,\n"
+                        "    const LAG_REAL *z0, const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out)",
                         id);
   cfunction(s->exact, &st, &c, f->out);
   sb_printf(f->out, "\nstatic const int exact_of_%s[] = {", id);
@@ -94,10 +96,11 @@ static void emit_observe(const ModelFile *f, const IrScene *s, const char *id) {
   }
   state_function(f, s->observe, arena_printf(f->a, "values_%s", id),
                  arena_printf(f->a, "%s Action variables stand behind the inputs.", comment), NULL, one_out);
-  sb_printf(out,
-            "\nstatic int observe_%s(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const "
-            "LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w) {\n",
-            id);
+  sb_printf(
+      out,
+      "\nstatic int observe_%s(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n"
+      "    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w) {\n",
+      id);
   sb_printf(out, "  LAG_REAL with[%u], y[%u];\n", n + s->actions.n, 2 * u->q.n + u->z.n);
   if (n) sb_printf(out, "  for (int i = 0; i < %u; i++) with[i] = u[i];\n", n);
   for (uint32_t i = 0; i < s->actions.n; i++) {
@@ -106,8 +109,8 @@ static void emit_observe(const ModelFile *f, const IrScene *s, const char *id) {
               u->z.n, a->q, a->p, a->periodic, id, i, s->momenta ? "momenta_" : "NULL", s->momenta ? id : "");
     sb_printf(out, "  with[%u] = lag_action(&of_%u, t, q, v, z, p, u, y, w);\n", n + i, i);
   }
-  sb_printf(out, "  return values_%s(t, q, v, z, p, with, out, w);\n}\n#else\n#define observe_%s NULL\n#endif\n", id,
-            id);
+  sb_printf(out, "  return values_%s(self, t, q, v, z, p, with, out, w);\n}\n#else\n#define observe_%s NULL\n#endif\n",
+            id, id);
 }
 
 static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {

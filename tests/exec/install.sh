@@ -50,9 +50,9 @@ cat >"$away/main.c" <<'END'
 
 /* x'' = -x from x = 1: x(pi) = -1 */
 static const lag_var q_names[] = {{"x", "m", 1, 0, 0, 0}};
-static int accel(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                 double *a, double *zd, double *w) {
-  (void)t, (void)v, (void)z, (void)p, (void)u, (void)zd, (void)w;
+static int accel(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
+                 const double *u, double *a, double *zd, double *w) {
+  (void)self, (void)t, (void)v, (void)z, (void)p, (void)u, (void)zd, (void)w;
   a[0] = -q[0];
   return LAG_OK;
 }
