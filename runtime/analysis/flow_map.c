@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/fastest_rate.h"
 #include "numeric/dense.h"
 
 static int keep_message(FlowMap *f, const lag_sim *sim, int rc) {
@@ -70,7 +71,7 @@ int lag_flow_open(FlowMap *f, lag_sim *like) {
   size_t rows = of ? (size_t)of->n : 0;
   *f = (FlowMap){.like = like, .n = like->pb.n, .nq = like->pb.nq, .t0 = like->scene->t0};
   double **const parts[] = {&f->at, &f->up, &f->down, &f->mass, &f->linear, &f->room, &f->square};
-  const size_t sizes[] = {n, n, n, nq * nq, lag_linear_work(like->scene->model) + 1, n * n + (rows + 1) * (nq + 1), (nq + 1) * (nq + 1)};
+  const size_t sizes[] = {n, n, n, nq * nq, lag_linear_work(like->scene->model) + 1, n * n + (rows + 1) * (nq + 1), 2 * n * n + (nq + 1) * (nq + 1)};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&f->pool, sizes[i]);
   if (f->pool.failed) return keep_message(f, NULL, LAG_ENOMEM);
   int rc = renew_probe(f);
@@ -83,11 +84,43 @@ void lag_flow_free(FlowMap *f) {
   lag_pool_free(&f->pool);
 }
 
+typedef struct StepLimit {
+  FlowMap *f;
+  double resolution; /* longest step times the fastest rate */
+} StepLimit;
+
+/* Limits the next step to the fastest rate of neighbouring motions at the present state. */
+static int limit_step(void *limit, const lag_sim *run) {
+  StepLimit *l = limit;
+  FlowMap *f = l->f;
+  lag_problem *pb = &((lag_sim *)run)->pb;
+  int n = f->n, nq = f->nq;
+  double *J = f->room, *A = f->square, *B = A + n * n;
+  if (!pb->model->linear && !pb->model->constraints) return 0;
+  if (lag_jacobian(pb, run->run->t, run->now, J, f->linear) || lag_not_finite((n - nq) * n, J) >= 0) return 0;
+  memset(A, 0, (size_t)(nq * n) * sizeof *A);
+  for (int i = 0; i < nq; i++) A[i * n + nq + i] = 1;
+  memcpy(A + nq * n, J, (size_t)((n - nq) * n) * sizeof *A);
+  double rate = lag_fastest_rate(n, A, B);
+  pb->longest = rate > 0 ? l->resolution / rate : 0;
+  return 0;
+}
+
+/* A run with a tangent: one step of order p has an error of about (step rate)^(p + 1) / (p + 1)! of each column. */
+static int advance_with_tangent(FlowMap *f, lag_sim *sim, double t) {
+  double order = sim->method->order;
+  StepLimit limit = {f, fmin(0.5, pow(sim->tol * tgamma(order + 2), 1 / (order + 1)))};
+  int rc = lag_sim_set_tangent(sim, f->n, NULL);
+  if (rc) return rc;
+  limit_step(&limit, sim);
+  lag_sim_on_step(sim, limit_step, &limit);
+  return lag_sim_advance(sim, t);
+}
+
 int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, double *Phi) {
   lag_sim *sim = lag_flow_sim(f, t, y0);
   if (!sim) return keep_message(f, NULL, LAG_ENOMEM);
-  int rc = Phi ? lag_sim_set_tangent(sim, f->n, NULL) : LAG_OK;
-  rc = rc ? rc : lag_sim_advance(sim, t + dt);
+  int rc = Phi ? advance_with_tangent(f, sim, t + dt) : lag_sim_advance(sim, t + dt);
   rc = rc || !Phi ? rc : lag_sim_tangent(sim, Phi);
   f->stopped = rc == LAG_STOPPED;
   if (f->stopped)
@@ -100,6 +133,64 @@ int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, 
 
 int lag_flow_rates(FlowMap *f, double t, const double *y, double *rates) {
   return lag_rhs(&f->probe->pb, t, y, rates);
+}
+
+/* ---- The drive */
+
+enum { DRIVE_SAMPLES = 12, DRIVE_LOOKS = 4000 };
+
+/* Rates of change at time t of a state that differs from sample to sample. */
+static int sample_rates(FlowMap *f, int k, double t, double *rates) {
+  for (int i = 0; i < f->n; i++)
+    f->at[i] = f->probe->begin[i] + 0.1 * (k % 3) * lag_difference_scale(&f->probe->pb, f->probe->begin, i);
+  return lag_rhs(&f->probe->pb, t, f->at, rates);
+}
+
+/* Difference of the rates a time T later, relative to them, and *step: the change of T that makes it least, to first
+ * order. */
+static double drive_difference(FlowMap *f, double T, double *step) {
+  double off = 0, size = 0, along = 0, slope = 0, h = 1e-6 * T, *a = f->up, *b = f->down, *c = f->room;
+  for (int k = 0; k < DRIVE_SAMPLES; k++) {
+    double t = f->t0 + 0.7548776662 * (k + 0.3) * T / DRIVE_SAMPLES * 1.3;
+    if (sample_rates(f, k, t, a) || sample_rates(f, k, t + T - h, b) || sample_rates(f, k, t + T + h, c)) return HUGE_VAL;
+    for (int i = 0; i < f->n; i++) c[i] = (c[i] - b[i]) / (2 * h);
+    if (sample_rates(f, k, t + T, b)) return HUGE_VAL;
+    for (int i = 0; i < f->n; i++) {
+      off += (b[i] - a[i]) * (b[i] - a[i]);
+      size += a[i] * a[i] + b[i] * b[i];
+      along += (b[i] - a[i]) * c[i];
+      slope += c[i] * c[i];
+    }
+  }
+  *step = slope > 0 ? -along / slope : 0;
+  return size > 0 ? sqrt(off / size) : 0;
+}
+
+double lag_flow_drive(FlowMap *f, double *T) {
+  double step = 0, off = drive_difference(f, *T, &step);
+  for (int k = 0; k < 20 && isfinite(off); k++) {
+    double next = *T + fmin(fmax(step, -*T / 8), *T / 8), further, now = drive_difference(f, next, &further);
+    if (!(now < off)) break;
+    *T = next;
+    off = now;
+    step = further;
+  }
+  return off;
+}
+
+double lag_flow_find_drive(FlowMap *f, double longest) {
+  const double same = 1e-9;
+  double step, before = 0, now = 0;
+  for (int k = 1; k <= DRIVE_LOOKS; k++) { /* a local minimum of the difference, which is 0 */
+    double T = longest * k / DRIVE_LOOKS, next = drive_difference(f, T, &step);
+    if (k > 2 && now <= before && now <= next) {
+      T -= longest / DRIVE_LOOKS;
+      if (lag_flow_drive(f, &T) < same) return T;
+    }
+    before = now;
+    now = next;
+  }
+  return 0;
 }
 
 /* ---- Charges */

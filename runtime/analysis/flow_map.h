@@ -35,6 +35,12 @@ int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, 
 /* f[n] := y' at y, t. */
 int lag_flow_rates(FlowMap *f, double t, const double *y, double *rates);
 
+/* *T := the period of what drives the model next to *T, to rounding, by Gauss-Newton steps on the rates at several
+ * states and times. Returns what is left of their difference a period later, relative to the rates; HUGE_VAL: they
+ * have no values. find: the shortest one up to `longest`, or 0. */
+double lag_flow_drive(FlowMap *f, double *T);
+double lag_flow_find_drive(FlowMap *f, double longest);
+
 /* Number of charges, the energy first; whether charge k is conserved, by proof. */
 int lag_flow_charges(const FlowMap *f);
 int lag_flow_conserves(const FlowMap *f, int k);

@@ -137,8 +137,22 @@ static double off(PeriodicOrbit *o, const OrbitHold *h) {
   return (now - h->value) / (size > 0 ? size : 1);
 }
 
+/* Value of condition k, of which the present parameter may be the one that it keeps. */
+static double off_by(PeriodicOrbit *o, int k) {
+  OrbitHold h = o->held[k];
+  if (o->continues && k == o->led) h.value = o->parameter;
+  return off(o, &h);
+}
+
+static double size_of(const PeriodicOrbit *o, const OrbitHold *h) {
+  double size = h->kind == ORBIT_STATE    ? o->unit[h->of]
+                : h->kind == ORBIT_PERIOD ? o->time
+                                          : o->flow.probe->charge_now[2 * h->of + 1];
+  return size > 0 ? size : 1;
+}
+
 /* Runs all segments; residual := what is left. */
-static int shoot(PeriodicOrbit *o, int tangents) {
+int lag_orbit_shoot(PeriodicOrbit *o, int tangents) {
   int n = o->n, rc = LAG_OK;
   double sum = 0;
   for (int k = 0; k < o->m && rc == LAG_OK; k++)
@@ -147,7 +161,7 @@ static int shoot(PeriodicOrbit *o, int tangents) {
   set_target(o);
   for (int k = 0; k < o->m; k++)
     for (int i = 0; i < n; i++) sum += gap(o, k, i) * gap(o, k, i);
-  for (int k = 0; k < o->nheld; k++) sum += off(o, &o->held[k]) * off(o, &o->held[k]);
+  for (int k = 0; k < o->nheld; k++) sum += off_by(o, k) * off_by(o, k);
   o->residual = rc ? HUGE_VAL : sqrt(sum / (o->m * n));
   return rc;
 }
@@ -170,6 +184,50 @@ static void shooting_rows(PeriodicOrbit *o) {
       }
       o->b[k * n + i] = -gap(o, k, i);
     }
+}
+
+int lag_orbit_set_parameter(PeriodicOrbit *o, double value) {
+  o->parameter = value;
+  if (o->led >= 0) return LAG_OK;
+  int rc = lag_flow_set(&o->flow, o->name, value);
+  if (rc == LAG_OK && o->flow.forced) lag_flow_drive(&o->flow, &o->T); /* the drive may have another period now */
+  return rc;
+}
+
+/* Column of the parameter: of one of the model by central differences of order 2 of all rows, as flows have no
+ * derivatives by parameters yet; Newton's steps and tangents need no more of them than some eight digits. */
+static int continuation_column(PeriodicOrbit *o) {
+  const double part = 1e-5;
+  int all = o->m * o->n, col = o->cols - 1, rc = LAG_OK;
+  if (o->led >= 0) {
+    o->A[(all + o->led) * o->cols + col] = -o->parameter_unit / size_of(o, &o->held[o->led]);
+    return LAG_OK;
+  }
+  double was = o->parameter, h = part * o->parameter_unit;
+  for (int side = -1; side <= 1 && rc == LAG_OK; side += 2) {
+    rc = lag_orbit_set_parameter(o, was + side * h);
+    rc = rc ? rc : lag_orbit_shoot(o, 0);
+    for (int r = 0; r < all && rc == LAG_OK; r++) o->A[r * o->cols + col] += side * gap(o, r / o->n, r % o->n) / (2 * part);
+    for (int k = 0; k < o->nheld && rc == LAG_OK; k++)
+      o->A[(all + k) * o->cols + col] += side * off_by(o, k) / (2 * part);
+  }
+  rc = rc ? rc : lag_orbit_set_parameter(o, was);
+  return rc ? rc : lag_orbit_shoot(o, 0);
+}
+
+/* Rows across the motion, and across the symmetries of conserved charges. */
+static int phase_rows(PeriodicOrbit *o) {
+  int n = o->n, row = o->m * n + o->nheld, rc = LAG_OK;
+  double *X = o->x;
+  for (int k = -1; k < o->ncharges && rc == LAG_OK; k++) {
+    if (k < 0 ? o->flow.forced : o->charge[k] == 0) continue;
+    if (lag_flow_field(&o->flow, k < 0 ? 0 : o->charge[k], o->flow.t0, o->y, X)) continue;
+    double size = 0;
+    for (int i = 0; i < n; i++) size += X[i] * X[i] / (o->unit[i] * o->unit[i]);
+    for (int i = 0; i < n && size > 0; i++) o->A[row * o->cols + i] = X[i] / o->unit[i] / sqrt(size);
+    row++;
+  }
+  return rc;
 }
 
 /* Columns of the period and of shifts. */
@@ -195,14 +253,14 @@ static int held_rows(PeriodicOrbit *o) {
   double *d = o->x;
   for (int k = 0; k < o->nheld && rc == LAG_OK; k++) {
     const OrbitHold *h = &o->held[k];
-    double *row = o->A + (o->m * n + k) * o->cols, value = off(o, h);
-    o->b[o->m * n + k] = -value;
-    double size = o->flow.probe->charge_now ? o->flow.probe->charge_now[2 * (h->kind == ORBIT_CHARGE ? h->of : 0) + 1] : 1;
+    double *row = o->A + (o->m * n + k) * o->cols;
+    o->b[o->m * n + k] = -off_by(o, k);
+    double size = size_of(o, h);
     if (h->kind == ORBIT_STATE) row[h->of] = 1;
     if (h->kind == ORBIT_PERIOD && period_is_free(o)) row[column_of_period(o)] = 1;
     if (h->kind != ORBIT_CHARGE) continue;
     rc = lag_flow_gradient(&o->flow, h->of, o->flow.t0, o->y, d);
-    for (int i = 0; i < n && rc == LAG_OK; i++) row[i] = d[i] * o->unit[i] / (size > 0 ? size : 1);
+    for (int i = 0; i < n && rc == LAG_OK; i++) row[i] = d[i] * o->unit[i] / size;
   }
   return rc;
 }
@@ -255,13 +313,15 @@ static int remove_charges(PeriodicOrbit *o) {
   return rc;
 }
 
-static int assemble(PeriodicOrbit *o) {
+int lag_orbit_assemble(PeriodicOrbit *o) {
   memset(o->A, 0, (size_t)o->rows * (size_t)o->cols * sizeof *o->A);
   memset(o->b, 0, (size_t)o->rows * sizeof *o->b);
   shooting_rows(o);
-  int rc = parameter_columns(o);
+  int rc = o->continues ? continuation_column(o) : LAG_OK;
+  rc = rc ? rc : parameter_columns(o);
   rc = rc ? rc : remove_charges(o);
-  return rc ? rc : held_rows(o);
+  rc = rc ? rc : held_rows(o);
+  return rc || !o->continues ? rc : phase_rows(o);
 }
 
 /* ---- Newton's steps */
@@ -289,7 +349,7 @@ static int falling_step(PeriodicOrbit *o, double *size) {
   memcpy(x, o->x, (size_t)o->cols * sizeof *x);
   for (int tries = 0; tries < 10; tries++, part /= 2) {
     move(o, x, part);
-    int rc = o->T > 0 ? shoot(o, 1) : LAG_EDOMAIN;
+    int rc = o->T > 0 ? lag_orbit_shoot(o, 1) : LAG_EDOMAIN;
     *size = part * step;
     if (rc == LAG_ENOMEM) return rc;
     if (rc == LAG_OK && (o->residual < before || (o->residual < rounding && step < 1e-9))) return 1;
@@ -298,7 +358,7 @@ static int falling_step(PeriodicOrbit *o, double *size) {
     o->T = T;
     if (o->residual < 1e3 * rounding && step < 1e-9) break; /* rounding: no step helps */
   }
-  int rc = shoot(o, 1);
+  int rc = lag_orbit_shoot(o, 1);
   *size = 0;
   return rc < 0 ? rc : 0;
 }
@@ -307,10 +367,10 @@ static double accepted(const PeriodicOrbit *o) { return fmax(rounding, 1e3 * o->
 
 static int newton(PeriodicOrbit *o) {
   double size = HUGE_VAL;
-  int rc = shoot(o, 1), rank = 0, moved = 1;
+  int rc = lag_orbit_shoot(o, 1), rank = 0, moved = 1;
   for (int k = 0; k < MOST_STEPS && rc == LAG_OK && moved == 1; k++) {
     if (k < ORBIT_TRACE) o->trace[k] = o->residual;
-    if ((rc = assemble(o)) != LAG_OK) break;
+    if ((rc = lag_orbit_assemble(o)) != LAG_OK) break;
     lag_singular_values(o->rows, o->cols, o->A, o->V, o->sigma);
     rank = lag_least_norm(o->rows, o->cols, o->A, o->V, o->sigma, 1e-8, o->residual * o->residual, o->b, o->x);
     if (o->residual <= accepted(o) && size < 1e-11) break;
@@ -323,12 +383,18 @@ static int newton(PeriodicOrbit *o) {
 
 /* ---- Preparation */
 
+void lag_orbit_count(PeriodicOrbit *o) {
+  int phases = !o->flow.forced;
+  for (int k = 0; k < o->ncharges; k++) phases += o->charge[k] != 0;
+  o->rows = o->m * o->n + o->nheld + (o->continues ? phases : 0);
+  o->cols = o->m * o->n + period_is_free(o) + o->ngroup + (o->continues != 0);
+}
+
 static int allocate(PeriodicOrbit *o) {
   size_t n = (size_t)o->n, m = (size_t)o->m, size = (size_t)o->flow.nq + 1, group = (size_t)o->ngroup;
   size_t charges = (size_t)lag_flow_charges(&o->flow);
-  o->rows = (int)(m * n) + o->nheld;
-  o->cols = (int)(m * n) + period_is_free(o) + o->ngroup;
-  size_t rows = (size_t)o->rows, cols = (size_t)o->cols;
+  lag_orbit_count(o);
+  size_t rows = m * n + (size_t)o->nheld + charges + 1, cols = m * n + 2 + group; /* with continuation */
   double **const parts[] = {&o->y, &o->end, &o->Phi, &o->unit, &o->turns, &o->affine, &o->target, &o->G,
                             &o->A, &o->b,   &o->V,   &o->sigma, &o->x,    &o->saved,  &o->w,      &o->re, &o->im};
   const size_t sizes[] = {m * n, m * n, m * n * n, n, n, group * size * size + 1, n, n * n, rows * cols, rows,
@@ -505,8 +571,8 @@ int lag_orbit_refine(PeriodicOrbit *o) {
     if (is_back(o, k)) o->repeats = k;
   like->tol = like->pb.tol = fmax(tol / 100, 1e-15);
   if (like->tol == tol) like->tol = like->pb.tol = 100 * tol;
-  int rc = shoot(o, 1);
-  rc = rc ? rc : assemble(o);
+  int rc = lag_orbit_shoot(o, 1);
+  rc = rc ? rc : lag_orbit_assemble(o);
   if (rc == LAG_OK) {
     lag_singular_values(o->rows, o->cols, o->A, o->V, o->sigma);
     lag_least_norm(o->rows, o->cols, o->A, o->V, o->sigma, 1e-8, 0, o->b, step);
@@ -514,7 +580,7 @@ int lag_orbit_refine(PeriodicOrbit *o) {
     if (like->tol < tol) move(o, step, 1);
   }
   if (like->tol > tol) like->tol = like->pb.tol = tol;
-  rc = rc ? rc : shoot(o, 1);
+  rc = rc ? rc : lag_orbit_shoot(o, 1);
   like->tol = like->pb.tol = tol;
   return rc;
 }

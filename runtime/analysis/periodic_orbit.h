@@ -32,6 +32,11 @@ typedef struct PeriodicOrbit {
   int ngroup, group[ORBIT_MOST_GROUP]; /* charges whose symmetries close the motion */
   double shift[ORBIT_MOST_GROUP];      /* their parameters */
   double *affine;         /* [ngroup (nq + 1)^2] their generators */
+  /* 1: one more unknown, `parameter`: the value that condition `led` keeps, or, for -1, that of the model's parameter
+   * `name`; and rows that fix the phase and the place along symmetries */
+  int continues, led;
+  const char *name;
+  double parameter, parameter_unit;
   double *target;         /* [n] G y(0), */
   double *G;              /* [n n] and its derivative */
   /* the linear system, in units: rows and columns; A[rows cols], b[rows], V, sigma and a step */
@@ -58,6 +63,14 @@ void lag_orbit_free(PeriodicOrbit *o);
 /* *T := the time after which the motion from the start of `like` comes back next to it, until the time given; 0: it
  * does not. LAG_OK, or a status with the message in message[size]. */
 int lag_orbit_guess(lag_sim *like, double until, double *T, char *message, size_t size);
+
+/* For continuation (branch_problems.c): runs all segments at the present unknowns; then A and b. */
+int lag_orbit_shoot(PeriodicOrbit *o, int tangents);
+int lag_orbit_assemble(PeriodicOrbit *o);
+/* The parameter of the continuation := value. */
+int lag_orbit_set_parameter(PeriodicOrbit *o, double value);
+/* rows and cols for the present settings. */
+void lag_orbit_count(PeriodicOrbit *o);
 
 /* Solves. 1: found; 0: not, o->residual and o->trace say how near it came; < 0: a status with its message. */
 int lag_orbit_solve(PeriodicOrbit *o);

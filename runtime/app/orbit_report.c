@@ -64,16 +64,47 @@ static int read_names(App *app, PeriodicOrbit *o, const char *names,
   return rc;
 }
 
-/* *T := --period, or --guess, or the first close return of the motion. */
-static int choose_period(App *app, PeriodicOrbit *o, double *T) {
-  const Args *a = &app->args;
-  char message[600];
+/* *T := the time that the option gives; 0: none is given. */
+static int given_period(const Args *a, double *T) {
   const char *option = a->period ? "--period" : "--guess", *text = a->period ? a->period : a->guess;
   *T = 0;
   if (text && !lag_args_number(a, option, text, a->period ? "--period 6.28" : "--guess 6.28", T)) return EXIT_USAGE;
-  if (text && *T <= 0) return lag_app_error(a, "%s %s: a period is a positive time", option, text);
-  if (a->period) o->held[o->nheld++] = (OrbitHold){.kind = ORBIT_PERIOD, .value = *T};
-  if (text) return 0;
+  return text && *T <= 0 ? lag_app_error(a, "%s %s: a period is a positive time", option, text) : 0;
+}
+
+/* *T := the period of what drives the scene next to *T, for *T = 0 the shortest. */
+static int driven_period(App *app, FlowMap *f, double *T) {
+  const double rounding = 1e-9;
+  double asked = *T;
+  if (asked > 0 && lag_flow_drive(f, T) < rounding && fabs(*T - asked) <= (app->args.period ? 1e-3 : 0.2) * asked) return 0;
+  double shortest = lag_flow_find_drive(f, app->until - f->t0);
+  *T = shortest;
+  if (asked == 0 && shortest > 0) return 0;
+  if (shortest > 0)
+    lag_app_error(&app->args,
+                  "%s %g: the equations are not the same that time later; what drives scene %s has the period %.16g s: "
+                  "write a multiple of it, or leave the option out",
+                  app->args.period ? "--period" : "--guess", asked, app->scene->name, shortest);
+  else
+    lag_app_error(&app->args,
+                  "scene %s depends on time, and no period of what drives it is found until t = %g s: only with one "
+                  "motions can be periodic; a longer one: --until, or --period T",
+                  app->scene->name, app->until);
+  return EXIT_RUN;
+}
+
+/* *T := the period, or a guess of it: of the drive, as given, or the first close return of the motion. */
+static int choose_period(App *app, PeriodicOrbit *o, double *T) {
+  const Args *a = &app->args;
+  char message[600];
+  FlowMap f;
+  int rc = given_period(a, T);
+  if (rc) return rc;
+  rc = lag_flow_open(&f, app->sim) ? lag_app_error(a, "%s", f.message), EXIT_RUN : LAG_OK;
+  if (rc == 0 && f.forced) rc = driven_period(app, &f, T);
+  else if (rc == 0 && a->period) o->held[o->nheld++] = (OrbitHold){.kind = ORBIT_PERIOD, .value = *T};
+  lag_flow_free(&f);
+  if (rc || *T > 0) return rc;
   if (lag_orbit_guess(app->sim, app->until, T, message, sizeof message)) return lag_app_error(a, "%s", message), EXIT_RUN;
   if (*T > 0) return 0;
   lag_app_error(a,
@@ -81,28 +112,6 @@ static int choose_period(App *app, PeriodicOrbit *o, double *T) {
                 "start; run longer: --until, start nearer to one: name=VALUE, or write about how long it takes: "
                 "--guess T",
                 app->scene->name, app->until);
-  return EXIT_RUN;
-}
-
-/* Whether the rates are the same a period later; else EXIT_RUN after a message. */
-static int check_drive(App *app, PeriodicOrbit *o) {
-  double *y = o->flow.probe->now, *before = o->end, *after = o->target, most = 0, size = 0;
-  if (!o->flow.forced) return 0;
-  if (!app->args.period)
-    return lag_app_error(&app->args,
-                         "scene %s depends on time, so that its periodic motions have the period of what drives it, or "
-                         "a multiple: write --period T",
-                         app->scene->name);
-  for (int k = 0; k < 5; k++) {
-    double t = o->flow.t0 + 0.17 * k * o->T;
-    if (lag_flow_rates(&o->flow, t, y, before) || lag_flow_rates(&o->flow, t + o->T, y, after)) continue;
-    for (int i = 0; i < o->n; i++) most = fmax(most, fabs(after[i] - before[i])), size = fmax(size, fabs(before[i]));
-  }
-  if (most <= 1e-7 * size) return 0;
-  lag_app_error(&app->args,
-                "--period %s: the equations are not the same %s s later (rates differ by %.2g of their size): write the "
-                "period of what drives scene %s, or a multiple of it, with all its digits",
-                app->args.period, app->args.period, most / size, app->scene->name);
   return EXIT_RUN;
 }
 
@@ -213,7 +222,7 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
   lag_report_method(app, method, sizeof method);
   fprintf(f, "%s: scene %s, method %s\n", app->scene->model->name, app->scene->name, method);
   fprintf(f, "periodic motion: period %s s", lag_number_text(o->T, text));
-  if (o->flow.forced) fputs(", as given", f);
+  if (o->flow.forced) fputs(", that of the drive or a multiple", f);
   else fprintf(f, ", error %.1g s", o->period_error);
   fprintf(f, "\nfound in %d step%s over %d segment%s; the motion closes to %.1g of its size\n", o->steps,
           o->steps == 1 ? "" : "s", o->m, o->m == 1 ? "" : "s", o->residual);
@@ -330,7 +339,6 @@ int lag_app_orbit(App *app) {
     lag_app_error(a, "%s", o.flow.message[0] ? o.flow.message : "out of memory");
     rc = EXIT_RUN;
   }
-  rc = rc ? rc : check_drive(app, &o);
   if (rc == 0) take_values(&o);
   rc = rc ? rc : solve(app, &o);
   if (rc == 0 && a->json) put_json(stdout, app, &o);

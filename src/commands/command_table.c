@@ -118,7 +118,7 @@ static const CommandRow commands[] = {
      "prints its period, the Floquet multipliers with their meaning, and a scene to paste that starts on it. The error "
      "of the period is its change by a more precise run.\n\n"
      "The period is unknown: without --guess the motion is run until it first comes back next to its start. Where a "
-     "scene is driven in time, --period T names the period of the drive, or a multiple. Where motions form families, "
+     "scene is driven in time, it is the period of the drive, which is found; --period T names a multiple. Where motions form families, "
      "as where energy is conserved, the nearest one is taken; --hold energy, or the name of any conserved charge, "
      "coordinate or velocity, keeps its value at the start: --hold y is the section y = y(0). --relative spin: the "
      "motion may close after a rotation, or another symmetry that the model declares and lagc has proved.\n\n"
