@@ -38,6 +38,7 @@ static int do_command(Compiler *c) {
     case CMD_ANIMATE:
     case CMD_MODES:
     case CMD_ORBIT:
+    case CMD_CONTINUE:
     case CMD_LYAPUNOV:
     case CMD_COST:
     case CMD_SWEEP: return command_run(c);

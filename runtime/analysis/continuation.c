@@ -229,10 +229,8 @@ static int first_point(Walk *w, const double *u0, const double *d, int sign) {
   if (!correct(w, u, along)) return LAG_EDOMAIN;
   BranchPoint *at = make_point(w, u, along);
   if (!at) return w->b->pool.failed ? LAG_ENOMEM : LAG_EDOMAIN;
-  if (!d) {
-    w->p->place(w->p->of, u);
-    if (find_tangent(w, along, at->tangent) == LAG_ESINGULAR) return LAG_ESINGULAR;
-  }
+  if (!d && find_tangent(w, along, at->tangent) == LAG_ESINGULAR) return LAG_ESINGULAR;
+  if (d) memcpy(at->tangent, d, (size_t)w->cols * sizeof *d); /* at a branch point there are several */
   append(w->b, at);
   return LAG_OK;
 }

@@ -186,12 +186,21 @@ static void shooting_rows(PeriodicOrbit *o) {
     }
 }
 
+/* T := as many periods of the drive as before, which may have another one now. */
+static int follow_drive(PeriodicOrbit *o) {
+  const double same = 1e-9, near = 0.02;
+  double T = o->T / o->drives;
+  if (lag_flow_drive(&o->flow, &T) > same || fabs(T - o->T / o->drives) > near * T)
+    T = lag_flow_find_drive(&o->flow, 8 * o->time / o->drives);
+  if (T > 0) o->T = o->drives * T;
+  return T > 0 ? LAG_OK : LAG_EDOMAIN;
+}
+
 int lag_orbit_set_parameter(PeriodicOrbit *o, double value) {
   o->parameter = value;
   if (o->led >= 0) return LAG_OK;
   int rc = lag_flow_set(&o->flow, o->name, value);
-  if (rc == LAG_OK && o->flow.forced) lag_flow_drive(&o->flow, &o->T); /* the drive may have another period now */
-  return rc;
+  return rc == LAG_OK && o->flow.forced ? follow_drive(o) : rc;
 }
 
 /* Column of the parameter: of one of the model by central differences of order 2 of all rows, as flows have no
@@ -446,12 +455,19 @@ static int list_charges(PeriodicOrbit *o) {
   return rc;
 }
 
+/* drives := how many periods of the drive T is. */
+static void count_drives(PeriodicOrbit *o) {
+  double shortest = lag_flow_find_drive(&o->flow, 1.01 * o->T);
+  o->drives = shortest > 0 ? (int)fmax(1, rint(o->T / shortest)) : 1;
+}
+
 int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, double T, int m) {
   int rc = lag_flow_open(&o->flow, like);
   if (rc) return rc;
   o->n = o->flow.n;
   o->T = o->time = T;
   o->algebra = algebra;
+  if (o->flow.forced) count_drives(o);
   o->unit = lag_pool_doubles(&o->pool, (size_t)o->n);
   o->x = lag_pool_doubles(&o->pool, 2 * (size_t)o->n);
   if (o->pool.failed) return LAG_ENOMEM;
@@ -545,7 +561,8 @@ int lag_orbit_guess(lag_sim *like, double until, double *T, char *message, size_
 
 /* Whether the motion is back already after T / k. */
 static int is_back(PeriodicOrbit *o, int k) {
-  double *y = o->x;
+  double *y = o->x, T = o->T / k;
+  if (o->flow.forced && (lag_flow_drive(&o->flow, &T) > 1e-9 || fabs(T * k - o->T) > 1e-6 * o->T)) return 0;
   if (lag_flow_run(&o->flow, o->flow.t0, o->T / k, o->y, y, NULL)) return 0;
   for (int i = 0; i < o->n; i++) {
     double d = y[i] - o->y[i], turn = 2 * acos(-1);
@@ -567,7 +584,7 @@ int lag_orbit_refine(PeriodicOrbit *o) {
   lag_sim *like = o->flow.like;
   double tol = like->tol, T = o->T, *step = o->x;
   o->at_rest = is_at_rest(o);
-  for (int k = 2; k <= 7 && !o->ngroup && !o->flow.forced && !o->at_rest; k++)
+  for (int k = 2; k <= 7 && !o->ngroup && !o->at_rest; k++)
     if (is_back(o, k)) o->repeats = k;
   like->tol = like->pb.tol = fmax(tol / 100, 1e-15);
   if (like->tol == tol) like->tol = like->pb.tol = 100 * tol;

@@ -22,6 +22,7 @@ typedef struct PeriodicOrbit {
   const lag_algebra *algebra;
   int n, m;               /* size of the state; segments */
   double T;               /* the period [s] */
+  int drives;             /* of a driven model: periods of the drive in it */
   double *y;              /* [m n] the states at the begin of each segment */
   double *end, *Phi;      /* [m n], [m n n] states at the ends, and their derivatives */
   double *unit, time;     /* [n] sizes of the motion's components, and of the period */

@@ -11,8 +11,7 @@ static const double same = 1e-6; /* multipliers that are nearer to 1, or to the 
 
 /* ---- Settings */
 
-/* Index of the charge of this name; -1: none. */
-static int charge_named(const App *app, const char *name, size_t n) {
+int lag_charge_named(const App *app, const char *name, size_t n) {
   const lag_charges *of = app->scene->model->charges;
   if (!of) return n == 6 && memcmp(name, "energy", n) == 0 ? 0 : -1;
   for (int k = 0; k < of->n; k++)
@@ -20,7 +19,7 @@ static int charge_named(const App *app, const char *name, size_t n) {
   return -1;
 }
 
-static int state_named(const App *app, const char *name, size_t n) {
+int lag_state_named(const App *app, const char *name, size_t n) {
   for (int i = 0; i < app->sim->pb.n; i++) {
     Column c = lag_state_column(app->sim, i);
     if (strlen(c.name) == n && memcmp(c.name, name, n) == 0) return i;
@@ -29,7 +28,7 @@ static int state_named(const App *app, const char *name, size_t n) {
 }
 
 static int add_held(App *app, PeriodicOrbit *o, const char *name, size_t n) {
-  int charge = charge_named(app, name, n), state = state_named(app, name, n);
+  int charge = lag_charge_named(app, name, n), state = lag_state_named(app, name, n);
   if (o->nheld == ORBIT_MOST_HELD) return lag_app_error(&app->args, "--hold: at most %d names", ORBIT_MOST_HELD);
   if (charge < 0 && state < 0)
     return lag_app_error(&app->args,
@@ -42,7 +41,7 @@ static int add_held(App *app, PeriodicOrbit *o, const char *name, size_t n) {
 }
 
 static int add_group(App *app, PeriodicOrbit *o, const char *name, size_t n) {
-  int charge = charge_named(app, name, n);
+  int charge = lag_charge_named(app, name, n);
   if (o->ngroup == ORBIT_MOST_GROUP) return lag_app_error(&app->args, "--relative: at most %d names", ORBIT_MOST_GROUP);
   if (charge < 1 || !(app->scene->model->charges->of[charge].flags & LAG_CONSERVED))
     return lag_app_error(&app->args,
@@ -179,7 +178,7 @@ static void put_scene(FILE *f, const App *app, const PeriodicOrbit *o) {
   fprintf(f, "\nscene orbit \"periodic\" {\n  like %s\n", app->scene->name);
   for (int k = 0; k < app->args.nsets; k++) {
     const char *set = app->args.sets[k], *eq = strchr(set, '=');
-    if (state_named(app, set, (size_t)(eq - set)) < 0) fprintf(f, "  %.*s = %s\n", (int)(eq - set), set, eq + 1);
+    if (lag_state_named(app, set, (size_t)(eq - set)) < 0) fprintf(f, "  %.*s = %s\n", (int)(eq - set), set, eq + 1);
   }
   for (int i = 0; i < o->n; i++) {
     Column c = lag_state_column(app->sim, i);
@@ -293,7 +292,7 @@ static int not_found(App *app, const PeriodicOrbit *o) {
   return EXIT_RUN;
 }
 
-static int solve(App *app, PeriodicOrbit *o) {
+int lag_app_orbit_solve(App *app, PeriodicOrbit *o) {
   const Args *a = &app->args;
   int rc = lag_orbit_solve(o);
   if (rc == 0) return not_found(app, o);
@@ -311,7 +310,7 @@ static int solve(App *app, PeriodicOrbit *o) {
 }
 
 /* app->sim with the values, method and tolerance of the search. */
-static int set_up(App *app) {
+int lag_app_orbit_set_up(App *app) {
   const double fine = 1e-13;
   int rc = lag_app_set_up_start(app);
   if (rc) return rc;
@@ -322,25 +321,31 @@ static int set_up(App *app) {
   return lag_app_choose_method(app);
 }
 
-int lag_app_orbit(App *app) {
-  PeriodicOrbit o = {0};
+int lag_app_orbit_open(App *app, PeriodicOrbit *o) {
   const Args *a = &app->args;
   double T = 0, segments = 0;
-  int rc = set_up(app);
-  rc = rc ? rc : read_names(app, &o, a->hold, add_held);
-  rc = rc ? rc : read_names(app, &o, a->relative, add_group);
+  int rc = read_names(app, o, a->hold, add_held);
+  rc = rc ? rc : read_names(app, o, a->relative, add_group);
   if (rc == 0 && a->segments) {
     long long count = 0;
     rc = lag_args_count(a, "--segments", a->segments, "--segments 4", &count);
     segments = (double)count;
   }
-  rc = rc ? rc : choose_period(app, &o, &T);
-  if (rc == 0 && lag_orbit_open(&o, app->sim, app->extras.algebra, T, (int)fmin(segments, 1000))) {
-    lag_app_error(a, "%s", o.flow.message[0] ? o.flow.message : "out of memory");
+  rc = rc ? rc : choose_period(app, o, &T);
+  if (rc == 0 && lag_orbit_open(o, app->sim, app->extras.algebra, T, (int)fmin(segments, 1000))) {
+    lag_app_error(a, "%s", o->flow.message[0] ? o->flow.message : "out of memory");
     rc = EXIT_RUN;
   }
-  if (rc == 0) take_values(&o);
-  rc = rc ? rc : solve(app, &o);
+  if (rc == 0) take_values(o);
+  return rc;
+}
+
+int lag_app_orbit(App *app) {
+  PeriodicOrbit o = {0};
+  const Args *a = &app->args;
+  int rc = lag_app_orbit_set_up(app);
+  rc = rc ? rc : lag_app_orbit_open(app, &o);
+  rc = rc ? rc : lag_app_orbit_solve(app, &o);
   if (rc == 0 && a->json) put_json(stdout, app, &o);
   else if (rc == 0) put_text(stdout, app, &o);
   lag_orbit_free(&o);

@@ -126,6 +126,22 @@ static const CommandRow commands[] = {
      "may go over events that set velocities, and over switches; contacts have no tangent yet. Needs GSL. Exit status "
      "3: no periodic motion was found.\n\n"
      "  name=value            a parameter, another start (th=3), an input to hold"},
+    {CMD_CONTINUE, "continue", "bifurcation",
+     "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T] [--hold NAMES] [--branches] [-o FILE.csv] [--svg "
+     "FILE.svg] [--json]",
+     "states of rest and periodic motions over a parameter: folds, bifurcations",
+     "Follows a state of rest, or a periodic motion, while a parameter runs over a range, round folds, too "
+     "(pseudo-arclength continuation), and locates the points where it changes: folds, branch points, Hopf points, period "
+     "doublings, Neimark-Sacker points, collisions of multipliers of Hamilton's equations. It begins at the scene's value "
+     "of the parameter if that lies in the range, and goes both ways.\n\n"
+     "NAME is a parameter; or, for a family of periodic motions, `energy` or another conserved charge, `period`, a "
+     "coordinate or velocity at the start: the amplitude of a nonlinear mode. Periodic motions are followed where the "
+     "scene depends on time, and where one of --guess, --period, --hold, --relative or such a NAME is given (the options "
+     "of `lagc orbit`); else states of rest. Conserved charges keep their values unless one is NAME or --hold names "
+     "others.\n\n"
+     "Derivatives by the parameter are central differences. A and B are numbers in the declared unit. Needs GSL. Exit "
+     "status 3: no solution was found to begin with.\n\n"
+     "  name=value            a parameter, another start (th=3), an input to hold"},
     {CMD_LYAPUNOV, "lyapunov", "exponents", "MODEL [SCENE] [name=value ...] [--until T] [--exponents K] [--json]",
      "Lyapunov exponents: how fast neighbouring motions part",
      "Runs the scene for a long time with the exact tangent of its flow, and prints the Lyapunov exponents: the mean "
@@ -277,7 +293,7 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 #define SIMULATE (C(RUN) | C(PLOT) | C(ANIMATE))
 #define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS))
 #define MODELS                                                                                                    \
-  (STEPS | C(SWEEP) | C(MODES) | C(ORBIT) | C(COST) | C(CHECK) | C(VERIFY) | C(DERIVE) | C(NOETHER) | C(ACTION) | C(BUILD) | \
+  (STEPS | C(SWEEP) | C(MODES) | C(ORBIT) | C(CONTINUE) | C(COST) | C(CHECK) | C(VERIFY) | C(DERIVE) | C(NOETHER) | C(ACTION) | C(BUILD) | \
    C(HEADER) | C(EMIT) | C(FMU))
 
 static const OptionRow options[] = {
@@ -339,6 +355,6 @@ int option_listed(const OptionRow *o, Command c) {
 
 int option_expert(const OptionRow *o) { return has_word("--math --fix --dump --no-gsl --define --precision", o->name); }
 
-int command_simulates(Command c) { return ((STEPS | C(MODES) | C(ORBIT) | C(COST) | C(SWEEP)) & 1u << c) != 0; }
+int command_simulates(Command c) { return ((STEPS | C(MODES) | C(ORBIT) | C(CONTINUE) | C(COST) | C(SWEEP)) & 1u << c) != 0; }
 int command_takes_values(Command c) { return command_simulates(c) || c == CMD_VERIFY || c == CMD_ACTION; }
 int command_reads_model(Command c) { return (MODELS & 1u << c) != 0; }
