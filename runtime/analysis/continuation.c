@@ -245,7 +245,8 @@ int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const
     const BranchPoint *from = b->last;
     BranchPoint *at = next_point(&w, &step, limits->longest);
     if (!at) return b->end = b->pool.failed ? BRANCH_NO_MEMORY : BRANCH_LOST, LAG_OK;
-    BranchKind kind = between(p, from, at);
+    /* from a branch point, where test functions are 0 but for rounding, nothing is looked for in the first step */
+    BranchKind kind = d && b->npoints == 1 ? BRANCH_REGULAR : between(p, from, at);
     BranchPoint *found = kind == BRANCH_REGULAR ? NULL : locate(&w, from, at, w.made, kind);
     if (found && !outside(found, last, limits)) append(b, found);
     if (outside(at, last, limits)) {

@@ -197,10 +197,16 @@ static int follow_drive(PeriodicOrbit *o) {
 }
 
 int lag_orbit_set_parameter(PeriodicOrbit *o, double value) {
+  const double stride = 0.02; /* of the range, in which the drive's period is followed from value to value */
+  double from = o->parameter;
+  int strides = o->flow.forced && o->led < 0 ? 1 + (int)(fabs(value - from) / (stride * o->parameter_unit)) : 1;
+  int rc = LAG_OK;
   o->parameter = value;
-  if (o->led >= 0) return LAG_OK;
-  int rc = lag_flow_set(&o->flow, o->name, value);
-  return rc == LAG_OK && o->flow.forced ? follow_drive(o) : rc;
+  for (int k = 1; k <= strides && o->led < 0 && rc == LAG_OK; k++) {
+    rc = lag_flow_set(&o->flow, o->name, k == strides ? value : from + (value - from) * k / strides);
+    rc = rc || !o->flow.forced ? rc : follow_drive(o);
+  }
+  return rc;
 }
 
 /* Column of the parameter: of one of the model by central differences of order 2 of all rows, as flows have no

@@ -511,7 +511,7 @@ static int read_limits(Job *job) {
   if (a->most && lag_args_count(a, "--most", a->most, "--most 400", &most)) return EXIT_USAGE;
   double a0 = job->low * job->factor + job->offset, b0 = job->high * job->factor + job->offset;
   double unit = job->size * fabs(job->factor);
-  job->limits = (BranchLimits){.low = fmin(a0, b0) / unit, .high = fmax(a0, b0) / unit, .step = 0.01, .longest = 0.04,
+  job->limits = (BranchLimits){.low = fmin(a0, b0) / unit, .high = fmax(a0, b0) / unit, .step = 0.01, .longest = 0.1,
                                .most = (int)(most < 100000 ? most : 100000)};
   return 0;
 }
