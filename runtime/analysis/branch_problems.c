@@ -142,15 +142,25 @@ void lag_orbit_branch_unknowns(const PeriodicOrbit *o, double *u) {
   u[k] = o->parameter / o->parameter_unit;
 }
 
+/* Whether the motion has become a state of rest, where its period means nothing. */
+static int shrinks(PeriodicOrbit *o) {
+  const double least = 1e-3;
+  double most = 0;
+  if (o->flow.forced || lag_flow_rates(&o->flow, o->flow.t0, o->y, o->x)) return 0;
+  for (int i = 0; i < o->n; i++) most = fmax(most, fabs(o->x[i]) * o->time / o->unit[i]);
+  return most < least;
+}
+
 static int place_orbit(void *of, const double *u) {
+  const double longest = 30; /* near a homoclinic motion the period grows without limit */
   PeriodicOrbit *o = of;
   int n = o->n, k = o->m * n;
   for (int i = 0; i < k; i++) o->y[i] = u[i] * o->unit[i % n];
   if (!o->flow.forced) o->T = u[k++] * o->time;
   for (int j = 0; j < o->ngroup; j++) o->shift[j] = u[k++];
-  if (!(o->T > 0)) return LAG_EDOMAIN;
-  int rc = lag_orbit_set_parameter(o, u[k] * o->parameter_unit);
-  return rc ? LAG_EDOMAIN : lag_orbit_shoot(o, 1) ? LAG_EDOMAIN : LAG_OK;
+  if (!(o->T > 0 && o->T < longest * o->time)) return LAG_EDOMAIN;
+  if (lag_orbit_set_parameter(o, u[k] * o->parameter_unit) || shrinks(o)) return LAG_EDOMAIN;
+  return lag_orbit_shoot(o, 1) ? LAG_EDOMAIN : LAG_OK;
 }
 
 static int orbit_system(void *of, double *J, double *b) {
