@@ -495,68 +495,120 @@ int lag_orbit_solve(PeriodicOrbit *o) { return newton(o); }
 
 /* ---- The period that is not known */
 
-enum { LOOKS = 4000 };
+/* A motion at several places within each step, so that close passages are seen. */
+typedef struct Track {
+  const lag_model *m;
+  int n, rows, room;
+  double *t, *y;  /* [rows], [rows n] */
+  double *size;   /* [n] largest excursion from the first row */
+} Track;
 
-/* Distance of y from y0 in parts of the excursions: the largest over components, periodic angles modulo a turn. */
-static double away(const lag_model *m, int n, const double *y, const double *y0, const double *size) {
-  double most = 0, turn = 2 * acos(-1);
-  for (int i = 0; i < n; i++) {
-    double d = y[i] - y0[i];
-    if (i < m->nq && m->q[i].periodic) d -= turn * rint(d / turn);
-    most = size[i] > 0 ? fmax(most, fabs(d) / size[i]) : most;
+static int add_row(Track *k, double t, const double *y) {
+  if (k->rows == k->room) {
+    int room = k->room ? 2 * k->room : 1024;
+    double *times = realloc(k->t, (size_t)room * sizeof *times);
+    if (times) k->t = times;
+    double *states = times ? realloc(k->y, (size_t)room * (size_t)k->n * sizeof *states) : NULL;
+    if (!states) return LAG_ENOMEM;
+    k->y = states;
+    k->room = room;
   }
+  k->t[k->rows] = t;
+  memcpy(k->y + (size_t)k->rows * (size_t)k->n, y, (size_t)k->n * sizeof *y);
+  for (int i = 0; i < k->n; i++) k->size[i] = fmax(k->size[i], fabs(y[i] - k->y[i]));
+  k->rows++;
+  return LAG_OK;
+}
+
+/* Follows the motion until a time, or the event that ends it. */
+static int follow_motion(Track *k, lag_sim *sim, double until, double *y) {
+  enum { PLACES = 4, MOST_ROWS = 1 << 20 };
+  int rc = lag_sim_advance(sim, lag_sim_time(sim));
+  rc = rc ? rc : add_row(k, lag_sim_time(sim), sim->now);
+  for (double reach; rc == LAG_OK && lag_sim_time(sim) < until && k->rows < MOST_ROWS;) {
+    double from = lag_sim_time(sim);
+    rc = lag_sim_ensure_step(sim, until, &reach);
+    for (int j = 1; j <= PLACES && rc == LAG_OK && reach > from; j++) {
+      rc = lag_sim_eval(sim, j == PLACES ? reach : from + (reach - from) * j / PLACES, y);
+      rc = rc ? rc : add_row(k, from + (reach - from) * j / PLACES, y);
+    }
+    rc = rc ? rc : lag_sim_advance(sim, reach);
+  }
+  return rc == LAG_STOPPED ? LAG_OK : rc;
+}
+
+/* y - y0 of component i, periodic angles modulo a turn. */
+static double change(const lag_model *m, int i, const double *y, const double *y0) {
+  double d = y[i] - y0[i], turn = 2 * acos(-1);
+  return i < m->nq && m->q[i].periodic ? d - turn * rint(d / turn) : d;
+}
+
+/* Distance of row r from the first one in parts of the excursions: the largest over components. */
+static double away(const Track *k, int r) {
+  double most = 0;
+  for (int i = 0; i < k->n; i++)
+    if (k->size[i] > 0) most = fmax(most, fabs(change(k->m, i, k->y + (size_t)r * (size_t)k->n, k->y)) / k->size[i]);
   return most;
 }
 
-/* Row of the first close return among `rows` states, one apart; 0: none. */
-static int first_return(const lag_model *m, int n, int rows, const double *y, const double *size) {
+/* Row of the first close return; 0: none. */
+static int first_return(const Track *k) {
   const double near = 0.15;
   double before = 0, now = 0;
   int left = 0;
-  for (int k = 1; k < rows; k++) {
-    double next = away(m, n, y + k * n, y, size);
+  for (int r = 1; r < k->rows; r++) {
+    double next = away(k, r);
     left |= now > 2 * near;
-    if (left && now <= before && now < next && now < near) return k - 1;
+    if (left && now <= before && now < next && now < near) return r - 1;
     before = now;
     now = next;
   }
   return 0;
 }
 
-/* Time by which a motion at y comes still nearer to y0: along its rates, in excursions. */
-static double nearer(FlowMap *f, const double *y, const double *y0, const double *size) {
-  const lag_model *m = f->like->scene->model;
-  double along = 0, length = 0, turn = 2 * acos(-1);
-  if (lag_flow_rates(f, f->t0, y0, f->up)) return 0;
-  for (int i = 0; i < f->n; i++) {
-    double d = y0[i] - y[i], weight = size[i] > 0 ? 1 / (size[i] * size[i]) : 0;
-    if (i < m->nq && m->q[i].periodic) d -= turn * rint(d / turn);
-    along += d * f->up[i] * weight;
+/* Row next to time t0 + about that is nearest to the first; 0: none is near. */
+static int nearest_return(const Track *k, double about) {
+  const double part = 0.2;
+  double least = 0.3;
+  int best = 0;
+  for (int r = 1; r < k->rows; r++) {
+    if (fabs(k->t[r] - k->t[0] - about) > part * about) continue;
+    double off = away(k, r);
+    if (off < least) best = r, least = off;
+  }
+  return best;
+}
+
+/* Time by which the motion at row r comes still nearer to the first: along its rates, in excursions. */
+static double nearer(FlowMap *f, const Track *k, int r) {
+  double along = 0, length = 0;
+  const double *y = k->y + (size_t)r * (size_t)k->n;
+  if (lag_flow_rates(f, f->t0, k->y, f->up)) return 0;
+  for (int i = 0; i < k->n; i++) {
+    double weight = k->size[i] > 0 ? 1 / (k->size[i] * k->size[i]) : 0;
+    along -= change(k->m, i, y, k->y) * f->up[i] * weight;
     length += f->up[i] * f->up[i] * weight;
   }
   return length > 0 ? along / length : 0;
 }
 
-int lag_orbit_guess(lag_sim *like, double until, double *T, char *message, size_t size) {
+int lag_orbit_guess(lag_sim *like, double until, double about, double *T, char *message, size_t size) {
   FlowMap f;
   Pool pool = {0};
-  int n = like->pb.n, rc = lag_flow_open(&f, like), rows = 1;
-  double *y = lag_pool_doubles(&pool, LOOKS * (size_t)n), *excursion = lag_pool_doubles(&pool, (size_t)n);
+  Track k = {.m = like->scene->model, .n = like->pb.n};
+  int rc = lag_flow_open(&f, like);
+  k.size = lag_pool_doubles(&pool, 2 * (size_t)k.n);
   lag_sim *sim = rc ? NULL : lag_flow_sim(&f, f.t0, NULL);
   *T = 0;
   if (rc == LAG_OK && (!sim || pool.failed)) rc = LAG_ENOMEM;
-  for (int k = 0; k < LOOKS && rc == LAG_OK; k++) {
-    rc = lag_sim_advance(sim, f.t0 + (until - f.t0) * k / (LOOKS - 1));
-    if (rc == LAG_OK) memcpy(y + k * n, sim->now, (size_t)n * sizeof *y), rows = k + 1;
-    for (int i = 0; i < n && rc == LAG_OK; i++) excursion[i] = fmax(excursion[i], fabs(y[k * n + i] - y[i]));
-  }
-  if (rc == LAG_STOPPED) rc = LAG_OK;
+  rc = rc ? rc : follow_motion(&k, sim, until, k.size + k.n);
   if (rc) snprintf(message, size, "%s", sim ? lag_sim_message(sim) : f.message);
   if (rc == LAG_OK) {
-    int at = first_return(like->scene->model, n, rows, y, excursion);
-    *T = (until - f.t0) * at / (LOOKS - 1);
-    if (at) *T += nearer(&f, y + at * n, y, excursion);
+    int at = about > 0 ? nearest_return(&k, about) : first_return(&k);
+    *T = at ? k.t[at] - k.t[0] + nearer(&f, &k, at) : 0;
   }
+  free(k.t);
+  free(k.y);
   lag_sim_free(sim);
   lag_flow_free(&f);
   lag_pool_free(&pool);
@@ -570,12 +622,8 @@ static int is_back(PeriodicOrbit *o, int k) {
   double *y = o->x, T = o->T / k;
   if (o->flow.forced && (lag_flow_drive(&o->flow, &T) > 1e-9 || fabs(T * k - o->T) > 1e-6 * o->T)) return 0;
   if (lag_flow_run(&o->flow, o->flow.t0, o->T / k, o->y, y, NULL)) return 0;
-  for (int i = 0; i < o->n; i++) {
-    double d = y[i] - o->y[i], turn = 2 * acos(-1);
-    const lag_model *m = o->flow.like->scene->model;
-    if (i < m->nq && m->q[i].periodic) d -= turn * rint(d / turn);
-    if (fabs(d) > 1e-6 * o->unit[i]) return 0;
-  }
+  for (int i = 0; i < o->n; i++)
+    if (fabs(change(o->flow.like->scene->model, i, y, o->y)) > 1e-6 * o->unit[i]) return 0;
   return 1;
 }
 

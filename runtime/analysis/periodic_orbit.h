@@ -61,9 +61,9 @@ typedef struct PeriodicOrbit {
 int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, double T, int m);
 void lag_orbit_free(PeriodicOrbit *o);
 
-/* *T := the time after which the motion from the start of `like` comes back next to it, until the time given; 0: it
- * does not. LAG_OK, or a status with the message in message[size]. */
-int lag_orbit_guess(lag_sim *like, double until, double *T, char *message, size_t size);
+/* *T := the time after which the motion from the start of `like` comes back next to it, until the time given; about >
+ * 0: next to that time. 0: it does not. LAG_OK, or a status with the message in message[size]. */
+int lag_orbit_guess(lag_sim *like, double until, double about, double *T, char *message, size_t size);
 
 /* For continuation (branch_problems.c): runs all segments at the present unknowns; then A and b. */
 int lag_orbit_shoot(PeriodicOrbit *o, int tangents);

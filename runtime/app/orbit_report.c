@@ -71,12 +71,17 @@ static int given_period(const Args *a, double *T) {
   return text && *T <= 0 ? lag_app_error(a, "%s %s: a period is a positive time", option, text) : 0;
 }
 
+/* End of the search for a period: --until, or a little more than the scene's span, which may be the period. */
+static double search_end(const App *app) {
+  return app->args.until ? app->until : app->until + 0.05 * (app->until - app->scene->t0);
+}
+
 /* *T := the period of what drives the scene next to *T, for *T = 0 the shortest. */
 static int driven_period(App *app, FlowMap *f, double *T) {
   const double rounding = 1e-9;
   double asked = *T;
   if (asked > 0 && lag_flow_drive(f, T) < rounding && fabs(*T - asked) <= (app->args.period ? 1e-3 : 0.2) * asked) return 0;
-  double shortest = lag_flow_find_drive(f, app->until - f->t0);
+  double shortest = lag_flow_find_drive(f, search_end(app) - f->t0);
   *T = shortest;
   if (asked == 0 && shortest > 0) return 0;
   if (shortest > 0)
@@ -103,8 +108,11 @@ static int choose_period(App *app, PeriodicOrbit *o, double *T) {
   if (rc == 0 && f.forced) rc = driven_period(app, &f, T);
   else if (rc == 0 && a->period) o->held[o->nheld++] = (OrbitHold){.kind = ORBIT_PERIOD, .value = *T};
   lag_flow_free(&f);
-  if (rc || *T > 0) return rc;
-  if (lag_orbit_guess(app->sim, app->until, T, message, sizeof message)) return lag_app_error(a, "%s", message), EXIT_RUN;
+  if (rc || f.forced || a->period) return rc;
+  double about = *T, until = about > 0 ? app->scene->t0 + 1.25 * about : search_end(app);
+  rc = lag_orbit_guess(app->sim, until, about, T, message, sizeof message);
+  if (about > 0) *T = rc == 0 && *T > 0 && !o->ngroup ? *T : about;
+  else if (rc) return lag_app_error(a, "%s", message), EXIT_RUN;
   if (*T > 0) return 0;
   lag_app_error(a,
                 "no periodic motion found near scene %s: until t = %g s the motion does not come back next to its "
