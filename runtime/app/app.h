@@ -25,6 +25,9 @@ typedef struct Args {
   /* for --sweep */
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram;
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
+  const char *period, *guess, *hold, *relative, *segments; /* for --orbit */
+  const char *most; /* for --continue */
+  int orbit, continues, branches;
   int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs,
       sweep, zip, go_on, yes, portrait, potential, distance, energy_error, no_monitors;
   char **sets; /* name=value, in order */
@@ -131,7 +134,8 @@ typedef struct App {
 #include "app/options.def"
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
-enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, FIT = 128, ANY = 255,
+enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, FIT = 128, ORBIT = 256,
+       CONTINUE = 512, ANY = 1023, MOTION_PERIODIC = ORBIT | CONTINUE,
        MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | FIT };
 
 /* A row of options.def. */
@@ -324,6 +328,21 @@ int lag_app_lyapunov(App *app);
 
 /* modes_report.c: --modes. Returns the exit status. */
 int lag_app_modes(App *app);
+
+/* orbit_report.c: --orbit. Returns the exit status. */
+int lag_app_orbit(App *app);
+/* For both: app->sim with the tolerance of searches; the orbit near its start, with the period and conditions of the
+ * command line; its solution, with multipliers. 0, or the exit status after a message. */
+struct PeriodicOrbit;
+int lag_app_orbit_set_up(App *app);
+int lag_app_orbit_open(App *app, struct PeriodicOrbit *o);
+int lag_app_orbit_solve(App *app, struct PeriodicOrbit *o);
+/* Index of the charge, or the component of the state, of this name[n]; -1: none. */
+int lag_charge_named(const App *app, const char *name, size_t n);
+int lag_state_named(const App *app, const char *name, size_t n);
+
+/* continue_report.c: --continue. Returns the exit status. */
+int lag_app_continue(App *app);
 
 /* effect_costs.c: --effects. Returns the exit status. */
 int lag_app_effects(App *app);

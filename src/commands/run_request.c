@@ -426,6 +426,8 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
   if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);
   if (o->command == CMD_FIT) ok = ok && prepare_columns(&k, error);
+  if (o->command == CMD_ORBIT) add_argument(&k, "--orbit", NULL);
+  if (o->command == CMD_CONTINUE) add_argument(&k, "--continue", NULL);
   if (o->command == CMD_LYAPUNOV) add_argument(&k, "--lyapunov", NULL);
   if (o->command == CMD_COST) add_argument(&k, "--cost", NULL);
   if (o->command == CMD_SWEEP) add_argument(&k, "--sweep", NULL);
