@@ -405,6 +405,7 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   b->scope.arena = b->members.arena = b->outputs.arena = b->constraints.arena = a;
   b->defines = choice->defines;
   b->ndefines = choice->ndefines;
+  b->sums_from = choice->sums_from ? choice->sums_from : SUMS_FROM;
   b->domains = choice->bare || choice->domains; /* claims are judged on models without a scene */
   Model *m = b->m = ARENA_NEW(a, Model);
   m->ast = ast;
