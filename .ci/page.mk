@@ -16,4 +16,17 @@ $(BUILD)/lag.wasm: $(WASM_OBJ) runtime/page/motion.js
 $(BUILD)/lag.wasm.gz: $(BUILD)/lag.wasm
 	gzip -9nc $< >$@
 
+
+# The page of `lagc page`: a frame with the scripts in it.
+LIVE := $(addprefix runtime/page/,live.html motion.js live.js)
+$(BUILD)/gen/page/live_page.txt: $(LIVE) runtime/io/page.html
+	@mkdir -p $(@D)
+	sed -n '/^\/\/ ---- drawing/,/^\/\/ ---- marks/p' runtime/io/page.html >$(@D)/drawing.js
+	sed -e '/@DRAWING@/{r $(@D)/drawing.js' -e 'd}' runtime/page/live.js >$(@D)/live.js
+	sed -e '/@MOTION@/{r runtime/page/motion.js' -e 'd}' -e '/@LIVE@/{r $(@D)/live.js' -e 'd}' runtime/page/live.html >$@
+$(eval $(call as_text,commands/live_page.h,$(BUILD)/gen/page/live_page.txt))
+$(BUILD)/obj/src/commands/page.o: $(BUILD)/gen/commands/live_page.h
+
+page: all $(BUILD)/lag.wasm.gz
+
 -include $(WASM_OBJ:.o=.d)

@@ -66,6 +66,7 @@ function choose() {
     span.t0 = s.t0; span.t1 = s.t1 > s.t0 ? s.t1 : s.t0 + 20;
     sliders();
     methods();
+    look();
   }
 }
 
@@ -74,7 +75,7 @@ function sliders() {
   const box = $("values");
   box.textContent = "";
   const probe = new Motion(lag, scene, {until: span.t1}), p = lag.parameters(probe.sim, items.length);
-  names.outputs = probe.names("page_output"); names.state = probe.names("page_state").map(n => n.name);
+  names.outputs = probe.names("page_output").slice(0, probe.count - lag.f.page_drawn(scene)); names.state = probe.names("page_state").map(n => n.name);
   items.forEach((item, i) => {
     const value = (p[i] - item.offset)/item.factor, log = value > 0 && item.positive,
       [lo, hi] = log ? [value/10, value*10] : value ? [-2*Math.abs(value), 2*Math.abs(value)] : [-1, 1],
@@ -220,15 +221,15 @@ function report() {
   lines.push((settings.method ? "" : "chosen: ") + motion.method + ", " + cost.steps + " steps, " + cost.calls + " right-hand sides" +
     (passed ? ", " + short(spent/passed) + " ms of computing a second" : ""));
   if (twin) {
-    const a = motion.outputs, b = twin.outputs;
+    const a = Object.values(motion.state), b = Object.values(twin.state);
     lines.push("the twin is " + Math.hypot(...a.map((x, i) => x - b[i])).toExponential(1) + " away");
   }
   $("report").textContent = lines.join("\n");
   $("time").value = "t = " + motion.t.toFixed(2) + " s";
 }
 function draw() {
-  if (!motion) return;
-  picture();
+  if (!motion || !track.length) return;
+  if (picture) picture.draw(track);
   plots();
   report();
 }
@@ -248,8 +249,115 @@ function save(name, type, text) {
   a.click();
 }
 
+// ---- the machine, drawn as in `lagc animate` (io/page.html). run: {shapes, rows: [{t, x}] of a trial run, for its extent}
+function machineOf(run) {
+  const shapes = run.shapes, deep = shapes.some(s => s.a[2] >= 0 || s.b[2] >= 0 || s.turn[3] >= 0);
+  const solid = shapes.filter(s => ["ball", "disc", "box", "body"].includes(s.kind));
+  const moves = c => c >= 0 && run.rows.some(r => r.x[c] != run.rows[0].x[c]), carried = s => s.a.some(moves);
+  const bodies = [solid.filter(carried), shapes.filter(s => s.kind == "path"), solid].find(l => l.length) || [];
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const bright = ["#4aa3df", "#ff8f3f", "#2cc295", "#e6a3cb", "#f2b632", "#7cc9f2", "#b8ac2e", "#aaaaaa"];
+  let rows = run.rows, at = rows.length - 1;
+  const last = at, value = (c, k = at, other = 0) => c < 0 ? other : rows[Math.floor(k)].x[c];
+  const place = (of, k = at) => of.map(c => value(c, k)), timeOf = k => rows[Math.floor(k)].t;
+  const frameOf = t => { let k = rows.length - 1; while (k > 0 && (rows[k].t - t)*run.tick > 0) k--; return k; };
+@DRAWING@
+  return {
+    deep, eye, bodies, toCanvas, place,
+    inPlane: (x, y) => [(x - left)/scaleX, (top_ - y)/scaleY],
+    draw(of) {
+      rows = of;
+      at = rows.length - 1;
+      ratio = devicePixelRatio || 1;
+      style = getComputedStyle(document.documentElement);
+      wide = canvas.clientWidth;
+      high = canvas.clientHeight;
+      if (canvas.width != Math.round(wide*ratio) || canvas.height != Math.round(high*ratio)) {
+        canvas.width = Math.round(wide*ratio);
+        canvas.height = Math.round(high*ratio);
+      }
+      pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+      pen.clearRect(0, 0, wide, high);
+      fit();
+      grid();
+      machine();
+    },
+  };
+}
+let picture = null;
+// A trial run over the span, for at most a fifth of a second, gives the extent of the picture.
+function look() {
+  const rows = [], began = performance.now(), parts = 300;
+  try {
+    const trial = new Motion(lag, scene, options(settings.start, NaN));
+    for (let k = 0; k <= parts && performance.now() - began < 200; k++) {
+      if (trial.advance(span.t0 + k*(span.t1 - span.t0)/parts) > 0) k = parts;
+      rows.push({t: trial.t, x: trial.outputs});
+    }
+    trial.free();
+  } catch (e) { if (!rows.length) { say(e.message); return; } }
+  picture = machineOf({shapes: lag.shapes(scene), rows, tick: 1, speed: 1, horizon: null, free: false, unit: ""});
+}
+
+// ---- dragging: the coordinates that bring the body nearest to the pointer with the least change, at rest
+function dragged(body, to) {
+  const names_ = names.state.filter(n => !n.includes("'") && names.state.includes(n + "'")), now = motion.state, t = motion.t;
+  for (const n of names_) now[n + "'"] = 0;
+  const at = values => {
+    const m = new Motion(lag, scene, options(values, t));
+    try { m.advance(t); const x = m.outputs; return {p: [x[body.a[0]], x[body.a[1]]], state: m.state}; } finally { m.free(); }
+  };
+  let here = at(now);
+  for (let turn = 0; turn < 4; turn++) {
+    const r = [to[0] - here.p[0], to[1] - here.p[1]], J = names_.map(n => {
+      const h = 1e-6*(Math.abs(here.state[n]) || 1), p = at({...here.state, [n]: here.state[n] + h}).p;
+      return [(p[0] - here.p[0])/h, (p[1] - here.p[1])/h];
+    });
+    let a = 0, b = 0, d = 0;
+    for (const [x, y] of J) { a += x*x; b += x*y; d += y*y; }
+    const soft = 1e-9*(a + d) + 1e-300;
+    a += soft; d += soft;
+    const det = a*d - b*b, u = (d*r[0] - b*r[1])/det, v = (a*r[1] - b*r[0])/det;
+    const next = {...here.state};
+    names_.forEach((n, k) => { next[n] += J[k][0]*u + J[k][1]*v; });
+    here = at(next);
+  }
+  return here.state;
+}
+function pointers() {
+  const canvas = $("picture"), spot = e => { const r = canvas.getBoundingClientRect(); return [e.clientX - r.left, e.clientY - r.top]; };
+  let held = null, from = null, resumes = false;
+  canvas.onpointerdown = e => {
+    canvas.setPointerCapture(e.pointerId);
+    from = spot(e);
+    if (!picture || picture.deep) return;
+    const far = b => { const [x, y] = picture.toCanvas(picture.place(b.a)); return Math.hypot(x - from[0], y - from[1]); };
+    held = picture.bodies.filter(b => b.a[0] >= 0 && b.a[1] >= 0).sort((a, b) => far(a) - far(b)).find(b => far(b) < 40) || null;
+    resumes = playing;
+    if (held) pause();
+  };
+  canvas.onpointermove = e => {
+    if (!from || !picture) return;
+    const now = spot(e);
+    if (held) {
+      try { if (begin(dragged(held, picture.inPlane(...now)), motion.t)) { track = []; record(); draw(); } } catch (x) { say(x.message); }
+      return;
+    }
+    if (picture.deep && !e.shiftKey) {
+      picture.eye.turn -= (now[0] - from[0])/150;
+      picture.eye.rise = clamp(picture.eye.rise + (now[1] - from[1])/150, -1.57, 1.57);
+    } else { picture.eye.x += now[0] - from[0]; picture.eye.y += now[1] - from[1]; }
+    from = now;
+    draw();
+  };
+  canvas.onpointerup = canvas.onpointercancel = () => {
+    if (held) { settings.start = motion.state; share(); if (resumes) play(); }
+    held = from = null;
+  };
+  canvas.onwheel = e => { picture.eye.zoom = clamp(picture.eye.zoom*Math.exp(-e.deltaY/500), 0.1, 50); e.preventDefault(); draw(); };
+}
+
 // ---- the page
-function picture() {}
 
 async function unpack(text) {
   const stream = new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("gzip"));
@@ -282,6 +390,8 @@ function wire() {
     else return;
     e.preventDefault();
   };
+  pointers();
+  $("trace").onchange = draw;
   new ResizeObserver(draw).observe($("picture"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
 }
@@ -304,6 +414,17 @@ async function main() {
   choose();
   wire();
   restart();
-  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(); else pause();
+  if (said && Number.isFinite(said.t)) { // shows that time, paused
+    try { motion.advance(said.t); record(); } catch (e) { say(e.message); }
+    pause();
+    document.body.dataset.state = JSON.stringify(motion.state);
+  } else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play();
+  else pause();
 }
+// The page for other scripts: window.lagc.motion.state, .set("g", 3.7), .play(), .pause(), .reset(), .pass(seconds).
+window.lagc = {
+  get motion() { return motion; }, get playing() { return playing; }, play, pause, reset: restart,
+  pass(seconds) { pass(seconds); draw(); },
+  set(name, value) { settings.values[name] = value; go_on(); },
+};
 main().catch(e => say(e.message));

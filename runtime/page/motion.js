@@ -6,7 +6,7 @@ class Lag {
   constructor(module) {
     const imports = {};
     for (const {module: from, name} of WebAssembly.Module.imports(module))
-      (imports[from] ??= {})[name] = name == "clock_time_get" ? (_, __, to) => {
+      (imports[from] ||= {})[name] = name == "clock_time_get" ? (_, __, to) => {
         new DataView(this.f.memory.buffer).setBigUint64(to, BigInt(Math.round(performance.now()*1e6)), true);
         return 0;
       } : () => 52; // "not supported" of WASI: there are no files
@@ -51,6 +51,15 @@ class Lag {
     const [t0, t1] = new Float64Array(this.f.memory.buffer, room, 2);
     this.f.free(room);
     return {t0, t1};
+  }
+  // The scene's drawing: shapes as lag_shape of lag_model.h, with numbers of outputs.
+  shapes(scene) {
+    const all = [];
+    for (let i = 0, at; (at = this.f.page_shape(scene, i)); i++) {
+      const [kind, role, text, ...n] = this.text(at).split("\t"), k = n.map(Number);
+      all.push({kind, role, text, count: k[0], a: k.slice(1, 4), b: k.slice(4, 7), size: k.slice(7, 10), turn: k.slice(10, 14)});
+    }
+    return all;
   }
   // The n parameters of a simulation, in SI.
   parameters(sim, n) { return Array.from(new Float64Array(this.f.memory.buffer, this.f.lag_sim_p(sim), n)); }

@@ -7,10 +7,31 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "include/lag.h"
+#include "evaluator/evaluator.h"
+#include "lag.h"
 
 /* A text for the script, valid until the next call that returns one. */
 static char text[512];
+
+static const char *why = "";
+
+/* The program of bytes[n], which `lagc page` wrote; NULL: page_why. */
+const lag_program *page_program(const unsigned char *bytes, int n) { return lag_program_read(bytes, (size_t)n, &why); }
+const char *page_why(void) { return why; }
+
+/* Shape i of the scene's drawing, its fields behind tabs: kind, role, text, count, and the outputs a, b, size, turn;
+ * NULL past the last. */
+const char *page_shape(const lag_scene *scene, int i) {
+  if (i < 0 || i >= scene->nshapes) return NULL;
+  const lag_shape *s = &scene->shapes[i];
+  int n = snprintf(text, sizeof text, "%s\t%s\t%.200s\t%d", s->kind, s->role, s->text ? s->text : "", s->count);
+  for (int k = 0; k < 13; k++)
+    n += snprintf(text + n, sizeof text - (size_t)n, "\t%d",
+                  k < 3 ? s->a[k] : k < 6 ? s->b[k - 3] : k < 9 ? s->size[k - 6] : s->turn[k - 9]);
+  return text;
+}
+/* Outputs that only the drawing has, the last ones. */
+int page_drawn(const lag_scene *scene) { return scene->ndrawn; }
 
 /* Sets a method by name, with a step [s] where it has that option and step > 0, and a tolerance; an empty name: the one
  * of `lagc run` for a run until `until`. Returns LAG_OK or a status with a message (lag_sim_message). */

@@ -237,7 +237,7 @@ static int read_word(Arena *a, const char *arg, Options *o, const char **error) 
     vec_push(a, &o->rest, arg);
     return 1;
   }
-  if (o->scene)
+  if (o->scene && o->command != CMD_PAGE)
     return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
   add_scene(a, o, arg);
   return 1;

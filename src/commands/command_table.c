@@ -264,6 +264,14 @@ static const CommandRow commands[] = {
      "x86_64-w64-mingw32-gcc` makes one for both. A model with contacts is for co-simulation alone, "
      "by steps of the method moreau, of the size that its scene gives, whatever the tolerance is. Constraints that "
      "hold while a condition is true are refused."},
+    {CMD_PAGE, "page", NULL, "MODEL [SCENE ...] -o FILE.html",
+     "a page that computes the motion, as one HTML file",
+     "Writes one HTML file that computes the motion as one watches: it has liblag as WebAssembly and the programs that "
+     "were compared with the text, and needs no network and no compiler. Bodies can be dragged, parameters have "
+     "sliders, effects switches: a program for each set of effects, where there are at most four, so that only what is "
+     "switched on is computed. Methods and their tolerance or step can be changed while it runs, beside the drift of "
+     "the energy and the time that a second of motion takes. The drawing is the model's (`lagc help draw`). The state "
+     "of all controls is in the page's address."},
     {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
      "Lists the methods of integration: their order, the quantities that they keep, their demands on a model, and "
      "their options."},
@@ -304,7 +312,7 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 #define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS) | C(FIT))
 #define MODELS                                                                                                    \
   (STEPS | C(SWEEP) | C(MODES) | C(ORBIT) | C(CONTINUE) | C(COST) | C(CHECK) | C(VERIFY) | C(DERIVE) | C(NOETHER) | C(ACTION) | C(BUILD) | \
-   C(HEADER) | C(EMIT) | C(FMU))
+   C(HEADER) | C(EMIT) | C(FMU) | C(PAGE))
 
 static const OptionRow options[] = {
 #define LAGC(name, brief, value, takes, hint, commands, field, text) \

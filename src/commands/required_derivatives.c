@@ -105,6 +105,7 @@ unsigned derivatives_required(const Eqns *e, const Options *o) {
     const char *methods = passed_option(o, "--methods");
     return methods ? required_by_method(e, methods) | WANT_TAYLOR : required_by_all(e); /* taylor: for the reference */
   }
+  if (o->command == CMD_PAGE) return required_by_all(e);
   unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) |
                    required_by_choice(e, o) |
                    (o->command == CMD_FMU             ? fmu_wants()
