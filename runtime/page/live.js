@@ -328,7 +328,7 @@ function pointers() {
   const canvas = $("picture"), spot = e => { const r = canvas.getBoundingClientRect(); return [e.clientX - r.left, e.clientY - r.top]; };
   let held = null, from = null, resumes = false;
   canvas.onpointerdown = e => {
-    canvas.setPointerCapture(e.pointerId);
+    if (e.isTrusted) canvas.setPointerCapture(e.pointerId);
     from = spot(e);
     if (!picture || picture.deep) return;
     const far = b => { const [x, y] = picture.toCanvas(picture.place(b.a)); return Math.hypot(x - from[0], y - from[1]); };
@@ -415,7 +415,9 @@ async function main() {
   wire();
   restart();
   if (said && Number.isFinite(said.t)) { // shows that time, paused
-    try { motion.advance(said.t); record(); } catch (e) { say(e.message); }
+    try {
+      for (let k = 1, from = motion.t; k <= 200; k++) { motion.advance(from + (said.t - from)*k/200); record(); }
+    } catch (e) { say(e.message); }
     pause();
     document.body.dataset.state = JSON.stringify(motion.state);
   } else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play();
@@ -423,7 +425,7 @@ async function main() {
 }
 // The page for other scripts: window.lagc.motion.state, .set("g", 3.7), .play(), .pause(), .reset(), .pass(seconds).
 window.lagc = {
-  get motion() { return motion; }, get playing() { return playing; }, play, pause, reset: restart,
+  get motion() { return motion; }, get picture() { return picture; }, get playing() { return playing; }, play, pause, reset: restart,
   pass(seconds) { pass(seconds); draw(); },
   set(name, value) { settings.values[name] = value; go_on(); },
 };

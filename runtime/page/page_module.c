@@ -38,6 +38,7 @@ int page_drawn(const lag_scene *scene) { return scene->ndrawn; }
 int page_set_method(lag_sim *sim, const char *name, double tol, double step, double until) {
   const lag_option option = {.name = "step", .value = step};
   int rc = tol > 0 ? lag_sim_set_tolerance(sim, tol) : LAG_OK;
+  rc = rc ? rc : lag_sim_balance(sim);
   if (rc) return rc;
   if (!*name) return lag_sim_choose_method(sim, until, 0, &option, step > 0, text, sizeof text);
   return lag_sim_set_method(sim, lag_find_method(name), &option, step > 0);

@@ -37,6 +37,7 @@ runtime/io        io/ numeric/ lag.h lag_model.h
 runtime/sweep     sweep/ lanes/lane_choice.h lanes/lane_kernel.h analysis/measure.h io/posix.h numeric/ lag.h lag_model.h
 runtime/app       app/ sweep/ core/ io/ analysis/ numeric/ lag.h lag_model.h
 runtime/gsl       gsl/ lag.h lag_model.h
+runtime/page      evaluator/evaluator.h lag.h
 runtime/png       lag.h
 runtime/hdf5      lag.h
 runtime/mpi       lag.h
