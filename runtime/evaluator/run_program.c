@@ -23,6 +23,10 @@ lag_function_2 *const lag_functions_2[] = {
 const uint32_t lag_functions_1_count = sizeof lag_functions_1 / sizeof *lag_functions_1,
                lag_functions_2_count = sizeof lag_functions_2 / sizeof *lag_functions_2;
 
+static const double *array(const Program *p, const double *const *in, const uint32_t *at) {
+  return (at[1] == PROGRAM_CONSTANTS ? p->constants : in[at[1]]) + at[2];
+}
+
 static void copy(double *to, const double *from, uint32_t n) {
   enum { MANY = 16 };
   if (n >= MANY) memcpy(to, from, n * sizeof *to);
@@ -66,7 +70,8 @@ static void two_sines(const uint32_t *at, double *r) {
 
 int lag_run_program(const Program *p, const double *const *in, double *const *out, double *r) {
   const uint32_t *at = p->words;
-  double x = 0;
+  const double *from;
+  double x = 0, *to;
   r[0] = 0;
   if (p->ncells) memset(r + p->cells, 0, p->ncells * sizeof *r);
 #if defined(__GNUC__)
@@ -96,11 +101,23 @@ again:
   PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
 
   TARGET(END) : return LAG_OK;
-  TARGET(READ) : copy(r + at[3], (at[1] == PROGRAM_CONSTANTS ? p->constants : in[at[1]]) + at[2], at[4]);
+  TARGET(READ) : copy(r + at[3], array(p, in, at), at[4]);
   at += 5;
+  NEXT;
+  TARGET(READ_1) : C = *array(p, in, at);
+  at += 4;
+  NEXT;
+  TARGET(READ_2) : from = array(p, in, at), to = r + at[3], to[0] = from[0], to[1] = from[1];
+  at += 4;
   NEXT;
   TARGET(WRITE) : copy(out[at[1]] + at[2], r + at[3], at[4]);
   at += 5;
+  NEXT;
+  TARGET(WRITE_1) : out[at[1]][at[2]] = C;
+  at += 4;
+  NEXT;
+  TARGET(WRITE_2) : from = r + at[3], to = out[at[1]] + at[2], to[0] = from[0], to[1] = from[1];
+  at += 4;
   NEXT;
   TARGET(STORE) : A = x;
   at += 2;

@@ -25,9 +25,9 @@ StrBuf simulator_bytes(Compiler *c, const Units *units);
 /* The toolchain and the kind of program that the command line asks for. Returns a STATUS. */
 int simulator_tools(Compiler *c, const Units *units, const char *output, Toolchain *tools, ProgramKind *kind);
 
-/* evaluation.c: lag-run in place of a simulator, with what it runs: where --compile allows it, the command line asks for
- * nothing that is linked, and the cache has no simulator. *path is NULL where the units must be compiled. Returns a
- * STATUS. */
+/* evaluation.c: lag-run in place of a simulator, with what it runs: where --compile allows it, the command line asks
+ * for nothing that is linked, and the cache has no simulator. *path is NULL where the units must be compiled. Returns
+ * a STATUS. */
 int simulator_evaluate(Compiler *c, const Units *units, const char **path);
 
 /* Makes a program from the texts at `output`, or in the cache (NULL), and gives its path. Returns a STATUS. */
