@@ -73,7 +73,7 @@ typedef struct {
 /* for i < rows, for j in skew i .. (skew + more) i + turns - 1; without turns: for i < rows. */
 typedef struct {
   int64_t rows, skew, turns, more;
-  /* in_order: turns read sums that others of the nest change; apart: no two sums have an element in common */
+  /* in_order: turns read sums that others of the nest change; apart: no two sums share an element in a row */
   int has_turns, in_order, apart;
   uint32_t nsubscripts, nouter, nins, nsums;
   const Subscript *at;

@@ -137,13 +137,21 @@ static int reads_own_sums(Bytes *b, const Nest *n) {
   return 0;
 }
 
-/* Whether the elements of each sum are its own. */
+/* Whether two sums have no element in common in a row: their ranges are apart, or their indices differ modulo their
+ * common stride. */
+static int are_apart(Bytes *b, const Nest *n, uint32_t i, uint32_t k) {
+  Range x = range_of(b, n, i), y = range_of(b, n, k);
+  const Subscript *s = &n->at[i], *t = &n->at[k];
+  int64_t step = n->has_turns ? s->by_turn : s->by_row, other = n->has_turns ? t->by_turn : t->by_row;
+  int64_t rows = n->has_turns ? s->by_row - t->by_row : 0;
+  return x.least > y.most || y.least > x.most ||
+         (step == other && step != 0 && rows % step == 0 && (s->first - t->first) % step != 0);
+}
+
 static int sums_are_apart(Bytes *b, const Nest *n) {
   for (uint32_t i = 0; i < n->nsums; i++)
-    for (uint32_t k = 0; k < i; k++) {
-      Range x = range_of(b, n, n->sum[i].subscript), y = range_of(b, n, n->sum[k].subscript);
-      if (n->sum[i].moves && n->sum[k].moves && x.least <= y.most && y.least <= x.most) return 0;
-    }
+    for (uint32_t k = 0; k < i && n->sum[i].moves; k++)
+      if (n->sum[k].moves && !are_apart(b, n, n->sum[i].subscript, n->sum[k].subscript)) return 0;
   return 1;
 }
 
