@@ -83,7 +83,8 @@ static const CommandRow commands[] = {
      "  name=value            a parameter, or another start\n\n"
      "Exit status 3: there is no action variable."},
     {CMD_RUN, "run", NULL, "MODEL [SCENE] [name=value ...] [options]", "simulate",
-     "Builds the simulator (or takes it from the cache) and runs it.\n\n"
+     "Runs the model: at once, evaluated by liblag, or by its simulator from the cache. What runs long is compiled "
+     "meanwhile, kept in the cache, and changed over to, with the same digits.\n\n"
      "  name=value            a parameter, a start (th=1.2, \"th'=0.5\", th='90[deg]',\n"
      "                        th=pi/3) or an input; a bare number is in the declared\n"
      "                        unit; drag.c=0.2 for one of an effect, m=3 for a family\n"
@@ -214,6 +215,7 @@ static const CommandRow commands[] = {
      "Compiles the model to a simulator with all its scenes; it has the options of `lagc run`, which `SIMULATOR "
      "--help` "
      "lists.\n\n"
+     "With --bytes it writes what `lag-run`, which stands beside liblag.a, evaluates: LAG_PROGRAM=FILE lag-run. "
      "With --shared it compiles a shared library, which exports the functions of lag.h by the same names for every "
      "model: simulations, rows, events, charges, tangents, "
      "batches. It links no GSL. Without -o it is kept in the cache, and its path is printed. lagc.py uses it from "
