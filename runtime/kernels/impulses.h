@@ -13,7 +13,6 @@
 #define LAG_IMPULSES_H
 
 #include "kernels/compensated_sum.h"
-#include "kernels/scalar.h"
 
 /* ---- friction ---- */
 

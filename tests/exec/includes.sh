@@ -25,7 +25,7 @@ src/commands  app/options.def kernels/steppers.def commands/ toolchain/ fmu/ emi
 src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
-runtime/kernels   kernels/ lag_math.h
+runtime/kernels   kernels/ lag_lanes.h lag_math.h
 runtime/core      core/ kernels/ numeric/ lag.h lag_model.h
 runtime/constraints constraints/ core/core.h core/rhs.h numeric/ lag.h lag_model.h lag_kkt.h
 runtime/contacts  contacts/ core/core.h core/rhs.h numeric/ lag.h lag_model.h
