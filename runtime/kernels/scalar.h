@@ -1,5 +1,5 @@
-/* scalar.h: the scalar of all kernels, which is double unless defined, with selections and logic (lag_lanes.h), and what
- * failures do within a step: of one state, or of the lanes of vectors. */
+/* scalar.h: the scalar of all kernels, which is double unless defined, with selections and logic (lag_lanes.h), and
+ * what failures do within a step: of one state, or of the lanes of vectors. */
 #ifndef LAG_SCALAR_H
 #define LAG_SCALAR_H
 
