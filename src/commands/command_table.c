@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/words.h"
+#include "kernels/steppers.def"
 
 /* ---- the commands ---- */
 

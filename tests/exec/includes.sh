@@ -5,7 +5,7 @@
 
 # FOLDER: the folders whose headers it may include. `mech/eqns.h` etc.: these files only.
 allowed='
-src/base      base/ numeric/
+src/base      base/ numeric/ kernels/steppers.def
 src/sym       sym/ base/ numeric/functions.def
 src/syntax    syntax/ base/ numeric/functions.def
 src/model     model/ syntax/ sym/ base/ numeric/functions.def
@@ -21,11 +21,11 @@ src/self_check      self_check/ lower/lower.h ir/ mech/ model/ syntax/ base/ num
 src/emit      emit/ ir/ base/ numeric/functions.def numeric/program_code.def kernels/steppers.def
 src/fmu       fmu/ emit/ ir/ base/
 src/toolchain toolchain/ base/
-src/commands  app/options.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ phase_space/ mech/ model/ sym/ syntax/ base/
+src/commands  app/options.def kernels/steppers.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ phase_space/ mech/ model/ sym/ syntax/ base/
 src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
-runtime/kernels   kernels/ lag_math.h
+runtime/kernels   kernels/ lag_lanes.h lag_math.h
 runtime/core      core/ kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/constraints constraints/ core/core.h core/rhs.h numeric/ lag.h lag_model.h lag_kkt.h
 runtime/contacts  contacts/ core/core.h core/rhs.h numeric/ lag.h lag_model.h
