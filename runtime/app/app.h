@@ -40,7 +40,7 @@ typedef struct Args {
 
 /* A column that pictures draw: its range so far, the deviation allowed, and the slopes of the swinging door. */
 typedef struct DrawnColumn {
-  int col;
+  int col, place; /* 1: a coordinate of a place */
   double least, most, width, low, high;
 } DrawnColumn;
 
@@ -56,7 +56,7 @@ typedef struct PictureSampling {
   size_t kept;
   double part;      /* deviation allowed, as a part of the drawn range */
   double longest;   /* longest time between kept rows */
-  int common;       /* 1: drawn columns share one scale, of the widest range */
+  int common;       /* 1: drawn places share one scale, of the widest range */
   int ndrawn;
   DrawnColumn *drawn; /* [ncols] */
   double *from, *last; /* [ncols] the row kept last; the last one since, if have_last */
@@ -197,11 +197,11 @@ int lag_app_draw_table(const App *app, const char *title);
 
 /* column_lookup.c: app->drawn := columns of --plot-x and --plot-y, or all. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_curves(App *app);
-/* app->show := points of --points and --from. 0, or EXIT_USAGE after a message. */
-int lag_app_choose_points(App *app);
+/* app->show := the points of --points and --from, or the shapes of the scene. 0, or EXIT_USAGE after a message. */
+int lag_app_choose_shapes(App *app);
 
 /* picture_sampling.c: rows of pictures. lag_sampling_open comes after lag_app_choose_curves and
- * lag_app_choose_points. lag_sampling_advance is lag_sim_advance that samples the motion on the way.
+ * lag_app_choose_shapes. lag_sampling_advance is lag_sim_advance that samples the motion on the way.
  * lag_sampling_close thins the rows at the end. lag_sampling_warn: note := a warning about the picture, or ""; also
  * printed. */
 int lag_sampling_open(App *app);

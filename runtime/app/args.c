@@ -304,9 +304,6 @@ static int check(const Args *a) {
     return lag_app_error(a, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x);
   if ((a->points || a->from || a->trace || a->no_rods) && !a->html)
     return lag_app_error(a, "--points, --from, --trace and --no-rods need an animation: add --html FILE");
-  if (a->html && !a->points)
-    return lag_app_error(a, "--html %s: points are missing; add --points 'X,Y X,Y ...' with the names of outputs",
-                         a->html);
   if (a->section && a->html)
     return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
   if ((a->tangent || a->volume) && (a->save || a->resume))

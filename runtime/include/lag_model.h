@@ -5,7 +5,7 @@
  * which derive computes the last nderived from the others; u[nu] its inputs, and modes of switches behind them;
  * w[nw] work space for its functions. All values are in SI units. No function allocates, keeps state, or writes past
  * the sizes here. Arrays passed to one call do not overlap. Every function's first argument, self, is the structure
- * that holds it: emitted C ignores it, and a model that liblag evaluates finds its program there.
+ * that holds it, or a copy: emitted C ignores it, and a model that liblag evaluates finds its programs there.
  *
  * A function returns 0 when all went well, > 0 when a smaller step may help (the value left the model's domain), < 0
  * for a failure that no step size cures. */
@@ -399,6 +399,7 @@ typedef struct lag_model {
 
   const char *math; /* library of sin and cos that the program calls; NULL: not known */
   const char *fixed; /* names of parameters that are numbers in this program, separated by spaces; NULL: none */
+  const void *programs; /* of a model that liblag evaluates */
 } lag_model;
 
 #ifndef LAG_LANES
@@ -437,6 +438,30 @@ typedef struct lag_monitor {
 typedef struct lag_measure {
   const char *name, *text;
 } lag_measure;
+
+/* A shape of a drawing. Numbers are indices of the scene's outputs, in SI, -1: not given. a, b: places, x y z, or x y
+ * of a picture in a plane; size: width or radius, or the sides of a box; turn: an angle, or the rotation w x y z.
+ *
+ * kind    a, b                       size              count
+ * rod     ends                       width
+ * spring  ends (no a: held at the left) radius         coils
+ * damper  ends                       radius
+ * disc    centre                     radius            spokes
+ * box     centre                     sides, 2 or 3
+ * body    centre (none: the origin)  3 sides, or none
+ * ball    centre                     radius
+ * wall    ends
+ * ground  a place on it; turn: its slope
+ * curve   a point                                      points from here on, each a shape, of one curve
+ * path    the place whose path is drawn
+ * arrow   its foot; b: its vector                      1: b is no length, and scaled to the picture
+ * text    its place */
+typedef struct lag_shape {
+  const char *kind;
+  const char *role; /* its colour: body, link, spring, support, force, velocity, path, text, second, star, ghost */
+  const char *text; /* the text; the place as the model writes it; or NULL */
+  int a[3], b[3], size[3], turn[4], count;
+} lag_shape;
 
 typedef struct lag_scene {
   const char *name;
@@ -481,6 +506,11 @@ typedef struct lag_scene {
 
   int nmeasures;
   const lag_measure *measures; /* [nmeasures] */
+  const void *programs;        /* of a scene that liblag evaluates */
+
+  /* The drawing, in programs for `lagc animate` and `lagc page`; the last ndrawn outputs belong to it alone. */
+  int ndrawn, nshapes;
+  const lag_shape *shapes; /* [nshapes] */
 } lag_scene;
 
 /* A compiled .lag file: all of its scenes. Several scenes may share one model. */

@@ -43,10 +43,11 @@ typedef struct {
   int help;                /* --help: then command is CMD_HELP */
   int verbose;             /* check --verbose */
   int allow_numeric;       /* check --allow-numeric */
-  int standalone, no_gsl, ops, hamiltonian, lagrangian;
+  int standalone, bytes, no_gsl, ops, hamiltonian, lagrangian;
   int involution;          /* noether --involution */
   const char *precision;   /* --precision: double, long, quad; NULL: double */
   const char *math;        /* --math own|libm */
+  const char *compile;     /* --compile always|never|auto; NULL: auto */
   const char *with;        /* --with: optional parts of an emitted model, or of a header */
   const char *prefix, *target; /* header --prefix, --for */
   const char *fmi, *also_cc; /* fmu --fmi, --also-cc */

@@ -37,7 +37,7 @@ static unsigned required_by_method(const Eqns *e, const char *text) {
 
 /* The method of a saved state, from the line `method NAME` near its head; NULL: none, and the simulator refuses the
  * file. */
-static const char *method_of_state(Arena *a, const char *path) {
+const char *method_of_state(Arena *a, const char *path) {
   char line[256];
   const char *name = NULL, *error;
   FILE *f = source_open(path, &error);

@@ -306,13 +306,13 @@ static void emit_jumps(const ModelFile *f) {
   sb_puts(f->out, "\n};\n");
 }
 
-/* With constraints the derivatives are those of headers: see WANT_CONSTRAINED. */
-static int has_linear(const ProgramSet *u) { return u->linear && !u->constraints.of.n; }
+/* See WANT_CONSTRAINED. */
+int model_has_linear(const ProgramSet *u) { return u->linear && !u->constraints.of.n; }
 
 static void emit_linear(const ModelFile *f) {
   static const char *const written[] = {"dr", "M", NULL};
   const ProgramSet *u = f->u;
-  if (!has_linear(u)) return;
+  if (!model_has_linear(u)) return;
   const char *comment =
       arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.",
                    op_count_text(u->linear, f->a));
@@ -508,7 +508,7 @@ static void emit_tables(const ProgramSet *u, const char *name, const char *diges
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
-  if (has_linear(u)) sb_puts(out, "  .linear = &linear,\n");
+  if (model_has_linear(u)) sb_puts(out, "  .linear = &linear,\n");
   sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n");
   if (u->fixed[0]) sb_printf(out, "  .fixed = %s,\n", c_string(u->arena, u->fixed));
   sb_puts(out, "};\n");
@@ -525,21 +525,31 @@ static void emit_head(const ProgramSet *u, StrBuf *out) {
   sb_puts(out, "#include <math.h>\n\n#include \"lag_model.h\"\n");
 }
 
+/* The functions on which a saved state depends; returns their digest. */
+static const char *emit_equations(const ModelFile *f) {
+  size_t begin = f->out->n;
+  emit_derive(f);
+  accel(f);
+  state_function(f, f->u->energy, "energy",
+                 "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", NULL, one_out);
+  emit_events(f);
+  emit_inputs(f);
+  emit_constraints(f);
+  return digest_text(f->a, sb_text(f->out) + begin);
+}
+
+const char *model_digest(const ProgramSet *u, const char *name) {
+  StrBuf text = strbuf(u->arena);
+  return emit_equations(&(ModelFile){.u = u, .a = u->arena, .globals = globals_of(u, name), .out = &text});
+}
+
 void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
   ModelFile f = {.u = u, .a = u->arena, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
   MathText math = {u, "LAG", "lag", needs_solver(u)};
   math_of_model(&math, alone, out);
   if (has_long_tables(u)) table_macros(out);
-  size_t begin = out->n;
-  emit_derive(&f);
-  accel(&f);
-  state_function(&f, u->energy, "energy",
-                 "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", NULL, one_out);
-  emit_events(&f);
-  emit_inputs(&f);
-  emit_constraints(&f);
-  const char *digest = digest_text(u->arena, sb_text(out) + begin);
+  const char *digest = emit_equations(&f);
   emit_sizes(&f);
   emit_charges(&f);
   emit_switches(&f);

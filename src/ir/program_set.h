@@ -69,6 +69,12 @@ typedef struct {
   double value;
 } IrMove;
 
+/* A shape of the scene's drawing: lag_shape of lag_model.h. */
+typedef struct {
+  const char *kind, *role, *text;
+  int a[3], b[3], size[3], turn[4], count;
+} IrShape;
+
 typedef struct {
   const char *name, *doc;
   const Prog *const *params; /* [np] */
@@ -94,6 +100,8 @@ typedef struct {
   const Prog *momenta;       /* dL/dq'[nq], for actions; NULL: there are none, or momenta are states */
   VEC(IrMonitor) monitors;
   VEC(IrMeasure) measures;
+  VEC(IrShape) shapes;
+  uint32_t ndrawn;           /* the last outputs, which only shapes have */
 } IrScene;
 
 /* Position of an entry of a sparse matrix. */

@@ -439,6 +439,10 @@ void explain_dims(Builder *b, Dim x, Dim y);
 /* Replaces missing units in the model by the inferred ones. */
 void fill_inferred_units(Builder *b);
 
+/* drawing.c: Scene.shapes and their outputs, the last of the scene; guessed where the text has no `draw`. wanted 0:
+ * statements are checked, and leave nothing. */
+void build_drawing(Builder *b, int wanted);
+
 /* rotation.c */
 
 /* Adds the constraint q.q = 1 for the quaternion whose first coordinate is `coord`. */

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/spline.h"
+#include "model/drawing.def"
 #include "model/units.h"
 #include "sym/expr.h"
 #include "syntax/ast.h"
@@ -262,6 +263,19 @@ typedef struct {
 
 typedef VEC(Measure) Measures;
 
+#define SHAPE_ENUM_(NAME, ...) SHAPE_##NAME,
+typedef enum { SHAPES(SHAPE_ENUM_) } ShapeKind;
+#undef SHAPE_ENUM_
+
+/* A shape of a drawing, as lag_shape of lag_model.h; its numbers are indices of the scene's outputs, -1: none. */
+typedef struct {
+  ShapeKind kind;
+  const char *role, *text;
+  int a[3], b[3], size[3], turn[4], count;
+} Shape;
+
+const char *shape_word(ShapeKind kind);
+
 typedef struct {
   Name name;
   Span span; /* of its name; empty: the file has no scene */
@@ -280,6 +294,9 @@ typedef struct {
   VEC(Monitor) monitors;
   Measures measures;
   VEC(Exact) exacts;
+  VEC(Shape) shapes;
+  uint32_t ndrawn; /* the last outputs, which only the drawing has */
+  int guessed;     /* the text has no `draw` */
 } Scene;
 
 typedef struct {
@@ -405,6 +422,7 @@ typedef struct {
   uint32_t ndefines;
   const CommandOutput *asked; /* outputs besides the scene's own */
   uint32_t nextra_outputs;
+  int drawing;     /* Scene.shapes are wanted; otherwise `draw` statements are only checked */
   const CommandOutput *measures; /* measures besides the scene's own */
   uint32_t nmeasures;
   const CommandInput *given; /* values that override the scene's */

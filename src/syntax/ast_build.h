@@ -76,6 +76,8 @@ AstStmt *stmt_param(Ast *ast, Span span, Ident name, AstList dims, Ident type, A
 AstStmt *stmt_define(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstUnit unit, AstId rhs);
 AstStmt *stmt_function(Ast *ast, Span span, Ident name, AstList args, AstId rhs);
 AstStmt *stmt_value(Ast *ast, AstStmtKind kind, Span span, AstId rhs);
+/* `draw SHAPE[members] SUBJECT = VALUE OPTIONS`; 0 and empty: not written. */
+AstStmt *stmt_draw(Ast *ast, Span span, Ident shape, AstList members, AstId subject, AstId value, AstList options);
 AstStmt *stmt_measure(Ast *ast, Span span, Ident name, AstId rhs);
 AstStmt *stmt_pair(Ast *ast, AstStmtKind kind, Span span, AstId lhs, AstId rhs);
 AstStmt *stmt_constraint(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstId condition);

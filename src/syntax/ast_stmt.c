@@ -283,6 +283,12 @@ AstStmt *stmt_output(Ast *ast, Span span, AstList what, AstId every) {
   return s;
 }
 
+AstStmt *stmt_draw(Ast *ast, Span span, Ident shape, AstList members, AstId subject, AstId value, AstList options) {
+  AstStmt *s = stmt_equation(ast, STMT_DRAW, span, shape, members, subject, value);
+  s->args = options.first;
+  return s;
+}
+
 AstStmt *stmt_measure(Ast *ast, Span span, Ident name, AstId rhs) {
   AstStmt *s = stmt_name(ast, STMT_MEASURE, span, name);
   s->rhs = rhs;

@@ -20,11 +20,13 @@
  *     operand, in the statements that take them, and so is `while` in a constraint; `restitution` after the `,` of a
  *     contact, `on` and `static` of a friction, `exactly`
  *     after `start` when a name follows; `for` after the `:` or `,` of a symmetry when a name
- *     follows; `sum` and `product` before `(`.
+ *     follows; `sum` and `product` before `(`; in a `draw` the shape, and each name behind an operand.
  * Everywhere else a name is a name: a coordinate may be called `force`, `every` or `sum`.
  *
  * Must hold: at most two raw tokens of lookahead, no recursion; the depth of blocks is limited. */
 #include "syntax/token_filter.h"
+
+#include "base/words.h"
 
 Filter *filter_new(Scan *scan, int single) {
   Filter *f = ARENA_NEW(scan->arena, Filter);
@@ -140,6 +142,21 @@ static TokKind contact_word(const char *name) {
   return TOK_IDENT;
 }
 
+/* A name of `draw ball[i in 1..N] at P radius r`: the shape, then what it draws unless the name is one of `heads`;
+ * behind an operand a word. */
+static TokKind drawing_word(Filter *f, const Token *t) {
+  static const char heads[] = "from at of to";
+  if (f->prev == TOK_DRAW) {
+    f->headed = 1;
+    return TOK_SHAPE;
+  }
+  if (f->brackets.n) return TOK_IDENT;
+  int subject = f->headed && (f->prev == TOK_SHAPE || f->prev == TOK_RBRACKET) && !has_word(heads, t->name);
+  int word = !subject && (token_ends_operand(f->prev) || f->prev == TOK_SHAPE);
+  f->headed = 0;
+  return word ? TOK_CLAUSE : TOK_IDENT;
+}
+
 /* Classifies a name inside a statement: a keyword in its slot, otherwise IDENT. */
 static TokKind slot_word(Filter *f, const Token *t) {
   static const struct {
@@ -159,6 +176,7 @@ static TokKind slot_word(Filter *f, const Token *t) {
     if (strcmp(t->name, "sum") == 0) return TOK_SUM;
     if (strcmp(t->name, "product") == 0) return TOK_PRODUCT;
   }
+  if (f->word == TOK_DRAW) return drawing_word(f, t);
   if (!token_ends_operand(f->prev) || f->brackets.n) return TOK_IDENT;
   for (size_t i = 0; i < sizeof slots / sizeof *slots; i++)
     if (slots[i].statement == f->word && strcmp(t->name, token_word(slots[i].word)) == 0) return slots[i].word;

@@ -16,6 +16,10 @@ int process_to_file(const char *path, char *const *argv, FILE *out);
 /* Becomes the program at path, which takes over the standard streams. Returns only where that fails. */
 void process_become(const char *path, char *const *argv);
 
+/* Puts the bytes in a file that only programs begun by this one find, at the path in the environment variable `name`.
+ * Returns 0 where that fails. */
+int process_give(const char *name, const StrBuf *bytes);
+
 /* Begins work(data) in a child process, whose exit status is what work returns. Returns the process, or -1, as
  * on Windows, which has no fork. */
 long process_begin(int (*work)(void *data), void *data);
