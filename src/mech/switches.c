@@ -257,6 +257,27 @@ const Switch *switch_of(const Eqns *e, Expr side, int is_floor, int *sign) {
   return i < e->switches.nmodes ? &e->switches.at[i] : NULL;
 }
 
+Expr switches_keep(const Eqns *e, Expr x, Expr (*rewrite)(ExprGraph *g, Expr x)) {
+  ExprGraph *g = e->g;
+  ExprVec nodes = {0}, names = {0};
+  VEC(SymId) symbols = {0};
+  ExprList all = expr_topo(g, &x, 1), known = {0};
+  ExprMap equations = expr_map(e->m->arena);
+  for (uint32_t i = 0; i < all.n; i++) {
+    if (!side_of(e, all.at[i])) continue;
+    if (!known.n) known = nodes_of(e);
+    for (uint32_t k = 0; k < known.n && !nodes.n; k++) expr_map_set(&equations, known.at[k], 1);
+    if (!expr_map_get(&equations, all.at[i])) continue;
+    SymId s = expr_declare(g, SYM_LOCAL, 0, arena_printf(e->m->arena, "held_%u", all.at[i]), expr_sign(g, all.at[i]));
+    vec_push(e->m->arena, &nodes, all.at[i]);
+    vec_push(e->m->arena, &symbols, s);
+    vec_push(e->m->arena, &names, expr_symbol(g, s)->node);
+  }
+  if (!nodes.n) return rewrite(g, x);
+  expr_replace_nodes(g, &x, 1, nodes.at, names.at, nodes.n, &x);
+  return expr_replace(g, rewrite(g, x), symbols.at, nodes.at, nodes.n);
+}
+
 const Expr *switch_rates(const Eqns *e) {
   const Model *m = e->m;
   uint32_t n = e->switches.nmodes, nseed = expr_symbol_count(e->g) + 1;

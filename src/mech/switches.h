@@ -18,6 +18,9 @@ void switches_find(Eqns *e);
  * none. */
 const Switch *switch_of(const Eqns *e, Expr side, int is_floor, int *sign);
 
+/* x rewritten, but for its jumps that the equations contain, too: runs hold both, and know them by their nodes. */
+Expr switches_keep(const Eqns *e, Expr x, Expr (*rewrite)(ExprGraph *g, Expr x));
+
 /* Total time derivative of each followed switching function, in accelerations and rates: [e->switches.nmodes]. */
 const Expr *switch_rates(const Eqns *e);
 
