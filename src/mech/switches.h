@@ -10,8 +10,8 @@
 
 #include "mech/eqns.h"
 
-/* Fills e->switches; call before lowering. Programs of models without switches stay as they are. Sides with inputs
- * have no rate and no switch. */
+/* Fills e->switches; call before lowering. Programs of models without switches stay as they are. Sides with
+ * inputs that have no rate have no switch. */
 void switches_find(Eqns *e);
 
 /* The switch of which `side`, or its negative (*sign := -1), is the switching function, or whose floor it is; NULL:

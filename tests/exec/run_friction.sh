@@ -230,6 +230,15 @@ END_OF
 check "a body held on x = acos(a/2)" run acos s
 check "by the force that balances 0.3 = rub/sqrt(4 - a^2)" near "$(final rub)" "$(awk -v a="$(final a)" "BEGIN { printf \"%.17g\", 0.3*sqrt(4 - a*a) }")" 1e-14
 
+# ---- on a support that an input moves: as on the same formula
+for u in 'input u [m] = 0.1 [m]*sin(3 [1/s]*t)' 'let u = 0.1 [m]*sin(3 [1/s]*t)'; do
+  printf "model shaken\ncoord x [m]\n%s\nlet s = x - u\nkinetic = 1 [kg]/2*x'^2\nfriction rub on s: 0.5 [N]\nscene go { span 4 [s]; output x }\n" "$u" >"$TMP/shaken.lag"
+  check "a block on ${u%% *} u" run shaken go
+  [ "${u%% *}" = input ] && by_input=$(final x)
+done
+check "moves alike" near "$by_input" "$(final x)" 1e-15
+check "and sticks" most 1 "$(number slides)"
+
 # ---- sticking that ends by itself: the shaken oscillator at rest 19 times, and the belt's period (digits: the facts of these models), by every method
 cp models/stick_slip.lag models/coulomb_oscillator.lag "$TMP"
 for method in rk45 dop853 radau rk4; do
