@@ -546,12 +546,15 @@ static int resolve_contacts(ContactSet *w, const char *who, int event, int last)
 void lag_contact_mute(const lag_sim *s, double *g) {
   const lag_model *m = s->scene->model;
   for (int i = 0; i < m->ncontacts; i++) g[m->contacts[i].impact] = g[m->contacts[i].release] = 1;
+  for (int i = 0; i < m->nguides; i++)
+    if (m->guides[i].turn >= 0) g[m->guides[i].turn] = 1;
 }
 
 void lag_contact_show(lag_sim *s) {
   const lag_model *m = s->scene->model;
   for (int i = 0; i < m->ncontacts; i++) {
     const lag_contact *c = &m->contacts[i];
+    if (lag_guide_of(m, i) >= 0) continue; /* forces, not impulses */
     s->pb.u[c->input] = !c->is_tangent && s->pb.contact_impulse[i] > 0;
     if (c->is_tangent) s->pb.u[c->force] = s->pb.contact_impulse[i] / s->pb.contacts->length;
   }

@@ -218,7 +218,7 @@ static int share_forces(lag_problem *pb, double t, const double *y) {
 
 int lag_contact_friction_forces(lag_problem *pb, double t, const double *y) {
   for (int i = 0; i < pb->model->ncontacts; i++)
-    if (side_of(pb, i) == 0) return share_forces(pb, t, y);
+    if (side_of(pb, i) == 0 && is_closed(pb, i)) return share_forces(pb, t, y);
   return find_friction(pb, t, y);
 }
 

@@ -194,8 +194,10 @@ static void add_grip(Builder *b, const AstStmt *st, Name effect) {
   AstId rate = st->args, size = ast_expr(b->ast, rate)->next, most = ast_expr(b->ast, size)->next;
   Value f = resolve(b, size, IN_DYNAMICS, effect);
   if (f.e && !f.n) add_size(b, f.e, "this friction has a size", ast_expr(b->ast, size)->span, 0);
+  Value v = resolve(b, rate, IN_DYNAMICS, effect);
+  if (v.e && !v.n) want_rates_of(b, v.e, 1); /* where the body sticks */
   if (!most) return;
-  Value v = resolve(b, rate, IN_DYNAMICS, effect), g = resolve(b, most, IN_DYNAMICS, effect);
+  Value g = resolve(b, most, IN_DYNAMICS, effect);
   Span span = ast_expr(b->ast, most)->span;
   if (!v.e || !f.e || !g.e) return;
   if (!dims_agree(b, &g, &f, span)) {
