@@ -198,6 +198,7 @@ void lag_app_free(App *app) {
   lag_app_measures_free(app);
   lag_phase_volume_free(&app->volume);
   free(app->show.shapes);
+  free(app->show.words);
   free(app->portrait);
   free(app->drawn.x);
   free(app->drawn.note);

@@ -145,6 +145,7 @@ typedef struct Marks {
 typedef struct Animation {
   int nshapes;
   lag_shape *shapes; /* [nshapes] */
+  char *words;       /* texts of shapes that are not the scene's, or NULL */
   int trace;         /* 1: draw paths from the start on */
   const char *unit;
   const char *note; /* text below the animation, or "" */

@@ -107,9 +107,9 @@ static void read_sizes(DrawReader *r, AstId id, int least, int most) {
   int n = v.n ? (int)v.n : 1;
   if (!v.e) return;
   if (n < least || n > most) {
+    const char *many = most == 1 ? "a number is" : least == 3 ? "three lengths are" : "two or three lengths are";
     diag_error(b->diags, ast_expr(b->ast, id)->span, "this is %s, but %s needed here" HELP "for example `%s`",
-               shape_text(b, v.n), most == 1 ? "a number is" : least == 3 ? "three lengths are" : "two or three lengths are",
-               r->row->example);
+               shape_text(b, v.n), many, r->row->example);
     return;
   }
   if (!is_length(r, &v, id)) return;
@@ -124,8 +124,8 @@ static void read_turn(DrawReader *r, AstId id, int only_rotation) {
   if ((v.n && v.n != ROTATION) || (only_rotation && v.n != ROTATION)) {
     diag_error(b->diags, span, "this is %s, but %s is needed here", shape_text(b, v.n),
                only_rotation ? "a rotation" : "an angle or a rotation");
-    diag_help(b->diags, only_rotation ? "declare `coord R: rotation`, or draw a box: `draw box at (x, y) size (a, b) turn phi`"
-                                      : "for example `%s`", r->row->example);
+    if (only_rotation) diag_help(b->diags, "declare `coord R: rotation`; with an angle, `%s`", rows[SHAPE_BOX].example);
+    else diag_help(b->diags, "for example `%s`", r->row->example);
   } else if (!v.n && !v.bare && !is_zero(b, &v) && !dim_equate(b->dims, v.dim, DIM_NONE, span)) {
     diag_error(b->diags, span, "this is %s, but an angle is needed here", in_dim(b, v.dim));
   } else {
