@@ -72,14 +72,7 @@ static int is_length(DrawReader *r, const Value *v, AstId id) {
   return 0;
 }
 
-static Value option_value(DrawReader *r, AstId id) {
-  Value v = resolve(r->d->b, id, IN_OUTPUT, r->effect);
-  if (v.condition) {
-    diag_error(r->d->b->diags, ast_expr(r->d->b->ast, id)->span, "this is a condition, not a number");
-    return (Value){0};
-  }
-  return v;
-}
+static Value option_value(DrawReader *r, AstId id) { return resolve(r->d->b, id, IN_OUTPUT, r->effect); }
 
 /* Value of a place: a vector, or a number along the first axis. e = 0 after an error. */
 static Value place_value(DrawReader *r, AstId id) {
@@ -198,7 +191,8 @@ static int read_range(DrawReader *r, AstId bind, Value ends[2]) {
     }
     if (!ends[k].e || (r->st->rhs && !is_length(r, &ends[k], ids[k]))) return 0;
   }
-  if (dims_agree(b, &ends[0], &ends[1], x->span)) return 1;
+  int plain = r->st->rhs && (ends[0].bare || ends[1].bare); /* a number is a length */
+  if (plain || dims_agree(b, &ends[0], &ends[1], x->span)) return 1;
   diag_error(b->diags, x->span, "units do not match: the range begins at %s and ends at %s", in_dim(b, ends[0].dim),
              in_dim(b, ends[1].dim));
   return 0;

@@ -203,19 +203,21 @@ static void link_line(Guess *k, Expr base) {
   add_link(k, SHAPE_SPRING, "spring", n == 2 ? end[0]->at : NULL, end[n - 1]->at, 2);
 }
 
-/* Calls fn for the base of each square in the potential, or in L, that has no velocity. */
+/* Calls fn for the base of each square in the potential, or in L, in products without velocities. */
 static void each_square(Guess *k, void (*fn)(Guess *k, Expr base)) {
   Builder *b = k->d->b;
   ExprGraph *g = b->g;
   Expr root = b->m->potential ? b->m->potential : b->m->lagrangian;
   ExprList all = expr_topo(g, &root, 1);
-  for (uint32_t i = 0; i < all.n; i++)
-    for (uint32_t j = 0; expr_op(g, all.at[i]) == EX_PROD && j < expr_pairs(g, all.at[i], EX_PROD); j++) {
+  for (uint32_t i = 0; i < all.n; i++) {
+    Expr e = all.at[i];
+    if (expr_op(g, e) != EX_PROD || (expr_kinds(g, e) & (1u << SYM_VEL | 1u << SYM_RATE))) continue;
+    for (uint32_t j = 0; j < expr_pairs(g, e, EX_PROD); j++) {
       Num power;
-      Expr base = expr_pair(g, all.at[i], EX_PROD, j, &power);
-      if (num_equal(power, num_int(2)) && changes(g, base) && !(expr_kinds(g, base) & 1u << SYM_VEL))
-        fn(k, body_of(g, base));
+      Expr base = expr_pair(g, e, EX_PROD, j, &power);
+      if (num_equal(power, num_int(2)) && changes(g, base)) fn(k, body_of(g, base));
     }
+  }
 }
 
 static void note_square(Guess *k, Expr base) {
