@@ -274,16 +274,15 @@ static int compare(const void *x, const void *y) {
   return a->at != b->at ? (a->at > b->at) - (a->at < b->at) : (a->shape > b->shape) - (a->shape < b->shape);
 }
 
-/* Shapes of one instant, in their order; the first instant alone has grounds, walls, curves and paths. */
-static void put_instant(View *v, Ordered *of, int first, double opacity) {
+/* Shapes of one instant, in their order: those that are timed, or grounds, walls, curves and paths. */
+static void put_instant(View *v, Ordered *of, int timed, double opacity) {
   int n = 0;
   for (int i = 0; i < v->a->nshapes; i++) {
     const lag_shape *s = &v->a->shapes[i];
     int l = layer(s);
-    if ((l < TIMED && !first) || (is(s, "curve") && i && is(s - 1, "curve") && s[-1].count > 1)) continue;
+    if ((l >= TIMED) != timed || (is(s, "curve") && i && is(s - 1, "curve") && s[-1].count > 1)) continue;
     double near = (spot_of(v, s->a).near + (s->b[0] >= 0 ? spot_of(v, s->b).near : spot_of(v, s->a).near)) / 2;
-    of[n++] = (Ordered){s, v->deep && l >= TIMED && l < NEAREST ? 10 + atan(near / v->size) : l < TIMED ? l : 20 + l};
-    if (!v->deep) of[n - 1].at = l;
+    of[n++] = (Ordered){s, v->deep && timed && l < NEAREST ? atan(near / v->size) : l};
   }
   qsort(of, (size_t)n, sizeof *of, compare);
   fprintf(v->f, "<g opacity=\"%.2g\">\n", opacity);
@@ -341,7 +340,7 @@ int lag_drawing_write(const char *path, const Table *t, const char *title, const
   View v = {.t = t, .a = a};
   char label[80];
   Ordered *order = malloc(((size_t)a->nshapes + 1) * sizeof *order);
-  if (!order || lag_outfile_open(&o, path)) {
+  if (!order || !t->nrows || lag_outfile_open(&o, path)) {
     free(order);
     return -1;
   }
@@ -355,9 +354,11 @@ int lag_drawing_write(const char *path, const Table *t, const char *title, const
   if (!v.deep) lag_svg_axes(o.f, &v.panel, label, 1);
   fprintf(o.f, "<clipPath id=\"c\"><rect x=\"%.0f\" y=\"%.0f\" width=\"%.0f\" height=\"%.0f\"/></clipPath>\n"
                "<g clip-path=\"url(#c)\">\n", v.panel.x, v.panel.y, v.panel.w, v.panel.h);
-  for (int k = 0; k < instants && t->nrows; k++) {
+  v.row = t->nrows - 1;
+  put_instant(&v, order, 0, 1);
+  for (int k = 0; k < instants; k++) {
     v.row = row_at(t, instants > 1 ? (double)k / (instants - 1) : 1);
-    put_instant(&v, order, k == 0, instants == 1 ? 1 : 0.25 + 0.75 * k / (instants - 1));
+    put_instant(&v, order, 1, instants == 1 ? 1 : 0.25 + 0.75 * k / (instants - 1));
   }
   fputs("</g>\n</svg>\n", o.f);
   free(order);

@@ -101,10 +101,11 @@ is "each shape with its numbers" "$(cat expected)" "$(shapes all.lag)"
 is "an effect that is on, and the scene, add to it" 'ball star 0 | 7 7 - | - - - | - - - | - - - - "(7, 7)";ball body 0 | 8 8 - | - - - | - - - | - - - - "(8, 8)"' \
   "$(shapes all.lag t | tail -n 2 | paste -s -d';' -)"
 is "the last scene first" 16 "$(shapes all.lag s | wc -l | tr -d ' ')"
-cp page.html compiled.html
-"$LAGC" animate all.lag s --quiet --compile always -o compiled.html >out 2>err
-"$LAGC" animate all.lag s --quiet --compile never -o page.html >out 2>err
-check "evaluated as compiled" cmp compiled.html page.html
+as_compiled() {
+  "$LAGC" animate all.lag s --quiet --compile always -o compiled.html &&
+    "$LAGC" animate all.lag s --quiet --compile never -o page.html && cmp compiled.html page.html
+}
+slow check "evaluated as compiled" as_compiled
 
 # A curve has 65 points, its ends where the range has them; its variable hides the coordinate of that name.
 cat >curve.lag <<'END'
@@ -177,6 +178,20 @@ scene s { start r = 1, phi' = 1; span 1e-9 }
 END
 is "a distance that no spring holds has no link" 'ball body 0 | 1 0 - | - - - | - - - | - - - - "(x, y)"' "$(shapes polar.lag)"
 
+# ---- lagc plot --drawing ----
+# Both rods of a double pendulum are as long in the picture as a metre of its axes; positions are written to 0.1 pixels.
+picture() { "$LAGC" plot "$1" --drawing "$2" --quiet -o drawing.svg >out 2>err || cat err; }
+rods() { grep 'stroke="#777"' drawing.svg | sed 's/.* d="M//; s/".*//; s/L/ /' | awk '{ print sqrt(($3 - $1)^2 + ($4 - $2)^2) }'; }
+metre() { # pixels between the labels 0 and -1 of y
+  sed -n 's/^<text x="[0-9.]*" y="\([0-9.]*\)" text-anchor="end">\(0\|-1\)<.*/\2 \1/p' drawing.svg | sort -n | awk '{ y[NR] = $2 } END { print y[1] - y[2] }'
+}
+picture "$OLDPWD/models/double_pendulum.lag" 3
+is "two balls at three times" 6 "$(grep -c '<circle' drawing.svg)"
+check "rods have their length" sh -c 'echo "$1" | awk -v m="$2" "{ d = \$1 - m; n++; if (d > 0.3 || d < -0.3) exit 1 } END { exit n != 6 }"' - "$(rods)" "$(metre)"
+check "well-formed" sh -c 'head -n 1 drawing.svg | grep -q "^<svg " && tail -n 1 drawing.svg | grep -qx "</svg>" && ! grep -q "<[^>]*<" drawing.svg'
+picture links.lag 1
+is "in space: a box of three faces, each on a white one" 6 "$(grep -c 'fill="#fff" fill-opacity\|fill="#0072b2" fill-opacity' drawing.svg)"
+
 # ---- mistakes ----
 says() {
   want=$1 words=$2
@@ -187,5 +202,7 @@ says() {
 printf 'model m\ncoord x [m]\nlagrangian = x%s^2\ndraw ball at (x, 2 [s])\n' "'" >bad.lag
 check "units that do not match, before a run" says 1 'bad.lag:4:18: error: units do not match' animate bad.lag
 check "lagc check says so, too" says 1 'bad.lag:4:18: error: units do not match' check bad.lag
+check "no instant" says 2 "from 1 to 100" plot all.lag --drawing 0
+check "two pictures in one" says 2 "a picture of its own" plot all.lag --drawing 2 --y x
 check "--from without points" says 2 "needs --points" animate all.lag --from '0,0'
 tap_end
