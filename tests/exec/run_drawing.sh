@@ -135,7 +135,7 @@ kinetic = M/2*X'^2 + m/2*(x1'^2 + y1'^2 + x2'^2 + y2'^2)
 potential = m*g*(y1 + y2)
 scene s { start X = 0.1, a = 90 [deg]; span 1e-9 [s] }
 END
-is "each hangs on the sum that it adds to" 'rod link 0 | -0.2 0 - | 0.05 0 - | - - - | - - - - null;rod link 0 | 0.4 0 - | 0.4 -0.25 - | - - - | - - - - null' \
+is "each hangs on the sum that it adds to, and both on the beam" 'rod link 0 | -0.2 0 - | 0.05 0 - | - - - | - - - - null;rod link 0 | 0.4 0 - | 0.4 -0.25 - | - - - | - - - - null;rod support 0 | -0.2 0 - | 0.4 0 - | - - - | - - - - null' \
   "$(shapes clocks.lag | grep '^rod' | paste -s -d';' -)"
 # A distance in a constraint, one in a spring, a floor under a ball with its radius, a slope, a rotation.
 cat >links.lag <<'END'
