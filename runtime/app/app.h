@@ -15,7 +15,7 @@ enum { MOST_OPTIONS = 16 };
 /* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *out, *svg, *plot_x, *plot_y, *html, *points,
-      *from, *save, *resume, *events, *section, *cloud, *starts;
+      *from, *save, *resume, *events, *section, *cloud, *starts, *drawing;
   const char *accuracy, *sensitivity;
   const char *fit, *data, *loss; /* for --fit */
   const char **sigmas, **priors; /* the values of --sigma and --prior, in order */

@@ -314,6 +314,10 @@ static int check(const Args *a) {
     return lag_app_error(a, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x);
   if ((a->points || a->from || a->trace || a->no_rods) && !a->html)
     return lag_app_error(a, "--points, --from, --trace and --no-rods need an animation: add --html FILE");
+  if (a->drawing && !(atoi(a->drawing) >= 1 && atoi(a->drawing) <= 100))
+    return lag_app_error(a, "--drawing %s: a number of instants from 1 to 100 is needed", a->drawing);
+  if (a->drawing && (!a->svg || a->section || a->plot_x || a->plot_y || a->portrait || a->potential))
+    return lag_app_error(a, "--drawing is a picture of its own, which `lagc plot` draws; leave out other axes");
   if (a->section && a->html)
     return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
   const char *const tangents[] = {a->tangent ? "tangent" : NULL, a->sensitivity ? "sensitivity" : NULL,
