@@ -328,7 +328,8 @@ static int is_flat_far_away(Fit *f, const double *v, int product, const double *
   return rc == LAG_OK && largest <= same * size;
 }
 
-/* Rows d[m n] that span flat directions := a basis with as few entries as elimination gives, each with largest entry 1. */
+/* Rows d[m n] that span flat directions := a basis with as few entries as elimination gives, each with largest entry 1.
+ */
 static void simplify_directions(int m, int n, double *d) {
   const double negligible = 1e-5;
   for (int k = 0; k < m; k++) {
