@@ -131,18 +131,8 @@ typedef struct App {
 #include "app/options.def"
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
-enum {
-  RUN = 1,
-  LYAPUNOV = 2,
-  COST = 4,
-  SWEEP = 8,
-  MODES = 16,
-  EFFECTS = 32,
-  REFERENCE = 64,
-  FIT = 128,
-  ANY = 255,
-  MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | FIT
-};
+enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, FIT = 128, ANY = 255,
+       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | FIT };
 
 /* A row of options.def. */
 typedef struct Option {

@@ -172,14 +172,8 @@ static unsigned analyses_with(const Option *o) {
 
 /* Refuses options that a run, or the analysis that is asked for, does not use. */
 static int check_analysis(const Args *a) {
-  const unsigned what = a->sweep       ? SWEEP
-                        : a->fit       ? FIT
-                        : a->modes     ? MODES
-                        : a->cost      ? COST
-                        : a->reference ? REFERENCE
-                        : a->lyapunov  ? LYAPUNOV
-                        : a->effects   ? EFFECTS
-                                       : RUN;
+  const unsigned what = a->sweep ? SWEEP : a->fit ? FIT : a->modes ? MODES : a->cost ? COST : a->reference ? REFERENCE
+                        : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
   for (int i = 0; i < NOPTIONS; i++) {
     const Option *o = &options[i];
     unsigned analyses = analyses_with(o);
@@ -200,7 +194,7 @@ static int check_analysis(const Args *a) {
         : what == SWEEP
             ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
         : what == MODES ? "--modes, which takes name=value, --steady and --json"
-        : what == FIT   ? "--fit, which takes name=value, --data, --sigma, --prior, --loss, a method, --svg and --json"
+        : what == FIT ? "--fit, which takes name=value, --data, --sigma, --prior, --loss, a method, --svg and --json"
         : what == EFFECTS
             ? "--effects, which takes name=value, --until and a method"
             : "--lyapunov, which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json");

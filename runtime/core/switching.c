@@ -252,7 +252,7 @@ static const char no_branch[] =
 static const char no_slide[] = "the motions on both sides do not determine one on the surface";
 static const char no_end[] = "it can neither leave the surface nor slide on it";
 static const char weak_grip[] =
-    "its static limit is smaller than the friction of a sliding body; `static = mu_s*N` has a mu_s of at least mu";
+  "its static limit is smaller than the friction of a sliding body; `static = mu_s*N` has a mu_s of at least mu";
 static const char several[] =
   "it can leave the surface to either side, so that several motions follow; start beside the surface";
 

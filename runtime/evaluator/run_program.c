@@ -85,13 +85,10 @@ again:
   switch (*at) {
 #endif
 
-#define PLAIN(name, kinds, formula)                 \
-  TARGET(name) : x = (formula), at += WORDS(kinds); \
-  NEXT;
-#define BOTH(name, kinds, formula)                                                    \
-  PLAIN(name, kinds, formula)                                                         \
-  TARGET(name##_TO) : x = (formula), r[at[WORDS(kinds)]] = x, at += WORDS(kinds) + 1; \
-  NEXT;
+#define PLAIN(name, kinds, formula) TARGET(name) : x = (formula), at += WORDS(kinds); NEXT;
+#define BOTH(name, kinds, formula) \
+  PLAIN(name, kinds, formula)      \
+  TARGET(name##_TO) : x = (formula), r[at[WORDS(kinds)]] = x, at += WORDS(kinds) + 1; NEXT;
 #define SPECIAL(name, kinds) /* below */
   PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
 
@@ -133,7 +130,7 @@ again:
   at += 2;
   NEXT;
 #if !defined(__GNUC__)
-}
-return LAG_ESINGULAR;
+  }
+  return LAG_ESINGULAR;
 #endif
 }

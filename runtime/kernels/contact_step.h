@@ -48,23 +48,22 @@ typedef struct lag_moreau_contacts {
   /* [constraints] gaps, rates at the begin, rates without contacts, their changes by forces and curvature in a step, by
    * curvature in its first half, a unit */
   LAG_REAL *c, *r0, *r1, *pace, *bend, *g;
-  LAG_REAL *d, *effort, *x; /* [nq] */
+  LAG_REAL *d, *effort, *x;        /* [nq] */
   LAG_REAL *jacobian, *mass, *lu, *pivot, *scale;
 } lag_moreau_contacts;
 
-enum { LAG_PRESSING_SIZE = (int)(sizeof(lag_pressing) / sizeof(LAG_REAL)) };
+enum { LAG_PRESSING_SIZE = (int)(sizeof(lag_pressing)/sizeof(LAG_REAL)) };
 /* Scalars that a step with these sizes needs; entries of D: `responses`; of the factored mass matrix: `lu`. */
-#define LAG_CONTACT_ROOM(contacts, constraints, nq, entries, nmass, responses, lu)                             \
-  ((contacts) * (LAG_PRESSING_SIZE + 8) + 2 + 6 * (constraints) + 5 * (nq) + 3 * (entries) + 2 * (responses) + \
-   (nmass) + (lu))
+#define LAG_CONTACT_ROOM(contacts, constraints, nq, entries, nmass, responses, lu) \
+  ((contacts)*(LAG_PRESSING_SIZE + 8) + 2 + 6*(constraints) + 5*(nq) + 3*(entries) + 2*(responses) + (nmass) + (lu))
 
 /* Places arrays into room[LAG_CONTACT_ROOM]; sizes are set. */
 static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG_REAL *room) {
   const int p = w->contacts, nc = w->constraints, nq = w->nq, e = w->entries;
   w->all.n = w->rows = w->impacts = w->sweeps = 0;
-  w->all.of = (lag_pressing *)(void *)room, room += p * LAG_PRESSING_SIZE;
+  w->all.of = (lag_pressing *)(void *)room, room += p*LAG_PRESSING_SIZE;
   w->response = room, w->b = room += p, w->before = room += p, w->all.P = room += p, w->law = room += p;
-  w->all.A.first = room += 2 * p, w->all.D.first = room += p + 1;
+  w->all.A.first = room += 2*p, w->all.D.first = room += p + 1;
   w->c = room += p + 1, w->r0 = room += nc, w->r1 = room += nc, w->pace = room += nc, w->bend = room += nc;
   w->g = room += nc, w->d = room += nc, w->effort = room += nq, w->x = room += nq, w->pivot = room += nq;
   w->scale = room += nq, w->jacobian = room += nq, w->all.A.col = room += e, w->all.A.value = room += e;
@@ -106,9 +105,9 @@ static inline int lag_contact_respond(LAG_MODEL, lag_moreau_contacts *w, LAG_REA
   for (int k = 0; k < w->constraints; k++) w->g[k] = k == w->at[i].constraint ? LAG_C(1.0) : LAG_C(0.0);
   LAG_TRY(LAG_CLOSE(t, i, w->u));
   LAG_TRY(LAG_UNIT_CHANGE(t, y, w->u, w->g, w->d, w->effort));
-  for (int j = 0; j < w->nq; j++) work += w->d[j] * w->effort[j];
+  for (int j = 0; j < w->nq; j++) work += w->d[j]*w->effort[j];
   const int moves = work > LAG_C(0.0) && LAG_FN(fabs)(lag_row_product(A, row, w->d) - LAG_C(1.0)) < LAG_C(0.5);
-  for (int j = 0; j < w->nq; j++) w->d[j] = moves ? w->d[j] / work : LAG_C(0.0);
+  for (int j = 0; j < w->nq; j++) w->d[j] = moves ? w->d[j]/work : LAG_C(0.0);
   return status;
 }
 
@@ -150,8 +149,8 @@ static inline int lag_contact_bounce(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL
   LAG_TRY(LAG_STRIKE(t, y, w->u, i, w->x));
   for (int j = 0; j < w->entries; j++)
     if (w->jacobian_at[j].row == k)
-      change += w->jacobian[j] * (w->x[w->jacobian_at[j].col] - y[nq + w->jacobian_at[j].col]);
-  *e = change / -w->r0[k] - LAG_C(1.0);
+      change += w->jacobian[j]*(w->x[w->jacobian_at[j].col] - y[nq + w->jacobian_at[j].col]);
+  *e = change/-w->r0[k] - LAG_C(1.0);
   return lag_is_number(*e) ? status : LAG_CONTACT_FAILS(t, i, "has no finite restitution");
 }
 
@@ -170,8 +169,8 @@ static inline int lag_contact_add(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
   const int moves = w->response[row] > zero, strikes = lag_contact_strikes(w->r0[k], w->pace[k]) && moves;
   if (strikes) LAG_TRY(lag_contact_bounce(LAG_THE_MODEL, w, t, y, i, &e));
   w->impacts += strikes;
-  c->mu = tangents > 0 ? w->law[2 * (i + 1)] : zero;
-  lag_contact_law(c, w->c[k], w->r0[k], w->bend[k], h, e, strikes && tangents > 0 ? w->law[2 * (i + 1) + 1] : zero,
+  c->mu = tangents > 0 ? w->law[2*(i + 1)] : zero;
+  lag_contact_law(c, w->c[k], w->r0[k], w->bend[k], h, e, strikes && tangents > 0 ? w->law[2*(i + 1) + 1] : zero,
                   strikes, w->before + row + 1);
   return moves || w->r1[k] >= zero ? 0 : LAG_CONTACT_FAILS(t, i, "closes, and nothing can keep it from closing");
 }
@@ -179,11 +178,11 @@ static inline int lag_contact_add(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
 /* Gaps, rates at both ends without contacts, their changes by forces and curvature, and matrices. */
 static inline int lag_contacts_evaluate(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t, LAG_REAL h, const LAG_REAL *y,
                                         const LAG_REAL *end) {
-  const LAG_REAL half = h / LAG_C(2.0), *const v = y + w->nq, *const z = v + w->nq;
+  const LAG_REAL half = h/LAG_C(2.0), *const v = y + w->nq, *const z = v + w->nq;
   int status = 0;
   (void)z;
   LAG_TRY(LAG_CLOSE(t - half, -1, w->u));
-  for (int i = 0; i < w->nq; i++) w->x[i] = y[i] - half * v[i];
+  for (int i = 0; i < w->nq; i++) w->x[i] = y[i] - half*v[i];
   LAG_TRY(LAG_GAPS(t - half, w->x, v, z, w->u, w->c, w->bend));
   LAG_TRY(LAG_CLOSE(t, -1, w->u));
   LAG_TRY(LAG_GAPS(t, y, end, z, w->u, w->c, w->r1));
@@ -192,11 +191,11 @@ static inline int lag_contacts_evaluate(LAG_MODEL, lag_moreau_contacts *w, LAG_R
   LAG_TRY(LAG_FRICTIONS(t, y, w->u, w->law));
   for (int k = 0; k < w->constraints; k++) {
     w->bend[k] = w->r0[k] - w->bend[k];
-    w->pace[k] = LAG_C(2.0) * LAG_FN(fabs)(w->bend[k]);
+    w->pace[k] = LAG_C(2.0)*LAG_FN(fabs)(w->bend[k]);
   }
   for (int e = 0; e < w->entries; e++) {
     const int j = w->jacobian_at[e].col;
-    w->pace[w->jacobian_at[e].row] += LAG_FN(fabs)(w->jacobian[e] * (end[j] - v[j]));
+    w->pace[w->jacobian_at[e].row] += LAG_FN(fabs)(w->jacobian[e]*(end[j] - v[j]));
   }
   for (int i = 0; i < w->contacts; i++) {
     const int k = w->at[i].constraint;
@@ -230,9 +229,9 @@ static inline int lag_contacts_solve(lag_moreau_contacts *w, LAG_REAL *v) {
   LAG_REAL size = LAG_C(0.0);
   if (w->all.n == 0) return 0;
   for (int e = 0; e < (int)A->first[w->rows]; e++)
-    size = lag_larger(size, LAG_FN(fabs)(A->value[e] * v[(int)A->col[e]]));
+    size = lag_larger(size, LAG_FN(fabs)(A->value[e]*v[(int)A->col[e]]));
   w->all.v = v;
-  const LAG_REAL enough = LAG_C(64.0) * w->epsilon * size;
+  const LAG_REAL enough = LAG_C(64.0)*w->epsilon*size;
   const int sweeps = lag_contact_impulses(&w->all, enough, MOST);
   w->sweeps += sweeps;
   return sweeps > MOST;

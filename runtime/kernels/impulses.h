@@ -69,12 +69,12 @@ static inline LAG_REAL lag_kick_mean(const lag_kick *s, LAG_REAL part) {
   LAG_REAL most = LAG_C(0.0), fastest = LAG_C(0.0);
   for (int i = nq; i < 2*nq; i++) {
     const LAG_REAL v0 = LAG_FN(fabs)(y0[i]), v1 = LAG_FN(fabs)(y1[i]);
-    fastest = lag_larger(fastest, lag_larger(LAG_FN(fabs)(s->h * s->size[i]), lag_larger(v0, v1)));
+    fastest = lag_larger(fastest, lag_larger(LAG_FN(fabs)(s->h*s->size[i]), lag_larger(v0, v1)));
   }
-  for (int i = nq; i < 2 * nq + s->nz; i++) {
+  for (int i = nq; i < 2*nq + s->nz; i++) {
     const LAG_REAL next = y0[i] + part*(y1[i] - y0[i]), own = LAG_FN(fabs)(y0[i]) + LAG_FN(fabs)(y1[i]);
-    const LAG_REAL size = LAG_SELECT(i < 2 * nq, fastest, own), was = s->mid[i];
-    if (next < was || next > was) most = lag_larger(most, LAG_FN(fabs)(next - was) / (s->epsilon * size));
+    const LAG_REAL size = LAG_SELECT(i < 2*nq, fastest, own), was = s->mid[i];
+    if (next < was || next > was) most = lag_larger(most, LAG_FN(fabs)(next - was)/(s->epsilon*size));
     s->mid[i] = next;
   }
   return most;
@@ -83,15 +83,15 @@ static inline LAG_REAL lag_kick_mean(const lag_kick *s, LAG_REAL part) {
 /* mid := the state from which the step from y begins; lost[nq]: rounding that positions have lost. */
 static inline void lag_kick_begin(const lag_kick *s, const LAG_REAL *lost) {
   const int nq = s->nq;
-  for (int i = 0; i < 2 * nq + s->nz; i++) s->mid[i] = s->y1[i] = s->y[i];
-  for (int i = 0; i < nq; i++) s->mid[i] = s->y[i] + (lost[i] + s->h / LAG_C(2.0) * s->y[nq + i]);
+  for (int i = 0; i < 2*nq + s->nz; i++) s->mid[i] = s->y1[i] = s->y[i];
+  for (int i = 0; i < nq; i++) s->mid[i] = s->y[i] + (lost[i] + s->h/LAG_C(2.0)*s->y[nq + i]);
 }
 
 /* out := the end of the step, with compensated sums. */
 static inline void lag_kick_end(const lag_kick *s, LAG_REAL *lost, LAG_REAL *out) {
   const int nq = s->nq;
-  for (int i = 0; i < 2 * nq + s->nz; i++) {
-    const LAG_REAL d = i < nq ? s->h / LAG_C(2.0) * (s->y[nq + i] + s->y1[nq + i]) : s->y1[i] - s->y[i];
+  for (int i = 0; i < 2*nq + s->nz; i++) {
+    const LAG_REAL d = i < nq ? s->h/LAG_C(2.0)*(s->y[nq + i] + s->y1[nq + i]) : s->y1[i] - s->y[i];
     out[i] = lag_compensated_sum(s->y[i], d, &lost[i]);
   }
 }

@@ -33,13 +33,13 @@ typedef struct lag_joint_friction {
   LAG_REAL *d, *x;            /* [n states] rates for a mode of 1; [states] */
 } lag_joint_friction;
 
-#define LAG_JOINT_ROOM(n, states) ((n) * (8 + (states)) + (states))
+#define LAG_JOINT_ROOM(n, states) ((n)*(8 + (states)) + (states))
 
 static inline void lag_joints_place(lag_joint_friction *w, LAG_REAL *room) {
   const int n = w->n;
   w->mode = room, w->sticks = room += n, w->bound = room += n, w->response = room += n, w->before = room += n;
   w->centre = room += n, w->slip = room += n, w->other = room += n;
-  w->d = room += n, w->x = room + n * w->states;
+  w->d = room += n, w->x = room + n*w->states;
 }
 
 /* Slips at the begin of the step from y at t, and bounds. */
@@ -62,15 +62,15 @@ static inline int lag_joints_respond(LAG_MODEL, lag_joint_friction *w, const lag
   int status = 0;
   for (int j = 0; j < LAG_JOINTS(w); j++) {
     const LAG_REAL mode = w->mode[j], half = LAG_C(0.5);
-    LAG_REAL *const d = w->d + j * w->states;
+    LAG_REAL *const d = w->d + j*w->states;
     LAG_HOLD(w, j, -LAG_C(1.0));
     LAG_TRY(LAG_MODE_RATES(s->t, s->mid, w, w->x));
     LAG_HOLD(w, j, LAG_C(1.0));
     LAG_TRY(LAG_MODE_RATES(s->t, s->mid, w, d));
     LAG_HOLD(w, j, mode);
     for (int i = 0; i < w->states; i++) {
-      d[i] = half * (d[i] - w->x[i]);
-      w->x[i] = s->y1[i] + s->h * d[i];
+      d[i] = half*(d[i] - w->x[i]);
+      w->x[i] = s->y1[i] + s->h*d[i];
     }
     LAG_TRY(LAG_SLIPS(s->end, s->mid, s->y1, w, w->slip));
     LAG_TRY(LAG_SLIPS(s->end, s->mid, w->x, w, w->other));
@@ -84,7 +84,7 @@ static inline int lag_joints_respond(LAG_MODEL, lag_joint_friction *w, const lag
 static inline int lag_joint_turn(LAG_MODEL, lag_joint_friction *w, const lag_kick *s, int k, LAG_REAL *size,
                                  LAG_REAL *change) {
   const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), own = w->response[k], was = w->mode[k];
-  const LAG_REAL *const d = w->d + k * w->states;
+  const LAG_REAL *const d = w->d + k*w->states;
   LAG_REAL slip[1], to[1];
   int status = 0;
   LAG_TRY(LAG_SLIPS(s->end, s->mid, s->y1, w, w->slip));
@@ -100,10 +100,10 @@ static inline int lag_joint_turn(LAG_MODEL, lag_joint_friction *w, const lag_kic
   if (!lag_is_number(to[0])) return LAG_FRICTION_FAILS(s->end, k, "has no finite values");
   const LAG_REAL part = LAG_FN(fabs)(to[0]);
   const int at_limit = !(part < one || part > one);
-  for (int i = w->nq; i < w->states; i++) s->y1[i] += s->h * (to[0] - was) * d[i];
+  for (int i = w->nq; i < w->states; i++) s->y1[i] += s->h*(to[0] - was)*d[i];
   LAG_HOLD(w, k, to[0]);
   w->sticks[k] = LAG_SELECT(slip[0] < zero || slip[0] > zero || at_limit, zero, one);
-  *change = lag_larger(LAG_FN(fabs)((to[0] - was) * own), *change);
+  *change = lag_larger(LAG_FN(fabs)((to[0] - was)*own), *change);
   *size = lag_larger(lag_larger(g, response), *size);
   return status;
 }
@@ -114,13 +114,13 @@ static inline int lag_joints_solve(LAG_MODEL, lag_joint_friction *w, const lag_k
   LAG_REAL last = zero;
   int status = 0;
   *size = zero;
-  for (int k = 0; k < LAG_JOINTS(w); k++) w->centre[k] = struck ? -w->before[k] / LAG_C(2.0) : zero;
+  for (int k = 0; k < LAG_JOINTS(w); k++) w->centre[k] = struck ? -w->before[k]/LAG_C(2.0) : zero;
   for (int sweep = 0; sweep < 10000; sweep++) {
     LAG_REAL change = zero;
     for (int k = 0; k < LAG_JOINTS(w); k++) LAG_TRY(lag_joint_turn(LAG_THE_MODEL, w, s, k, size, &change));
-    const LAG_REAL unit = s->epsilon * (*size);
-    if (change <= LAG_C(64.0) * unit) return status;
-    if (sweep > 0 && change <= LAG_C(1e7) * unit && change >= last / LAG_C(2.0)) return status;
+    const LAG_REAL unit = s->epsilon*(*size);
+    if (change <= LAG_C(64.0)*unit) return status;
+    if (sweep > 0 && change <= LAG_C(1e7)*unit && change >= last/LAG_C(2.0)) return status;
     last = change;
   }
   return LAG_FRICTION_FAILS(s->end, 0, "and others find no forces that agree: take smaller steps");
@@ -128,7 +128,7 @@ static inline int lag_joints_solve(LAG_MODEL, lag_joint_friction *w, const lag_k
 
 /* Size of the terms of rate i: at rest forces cancel, and rounding is that of friction. */
 static inline LAG_REAL lag_joints_size(const lag_joint_friction *w, int i, LAG_REAL rate) {
-  for (int k = 0; k < LAG_JOINTS(w); k++) rate = LAG_FN(fabs)(rate) + LAG_FN(fabs)(w->d[k * w->states + i]);
+  for (int k = 0; k < LAG_JOINTS(w); k++) rate = LAG_FN(fabs)(rate) + LAG_FN(fabs)(w->d[k*w->states + i]);
   return rate;
 }
 

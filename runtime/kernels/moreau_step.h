@@ -19,22 +19,22 @@
 /* ---- kick ---- */
 
 static inline int lag_moreau_kick(LAG_MODEL, const lag_kick *s, LAG_LAWS *w) {
-  const int nq = s->nq, n = 2 * nq + s->nz;
+  const int nq = s->nq, n = 2*nq + s->nz;
   LAG_REAL before = -LAG_C(1.0);
   int status = 0;
   for (int turn = 0; turn < 100; turn++) {
     LAG_TRY(LAG_KICK_RATES(s->t, s->mid, w, s->rate));
     for (int i = 0; i < n && turn == 0; i++) s->rate0[i] = s->rate[i];
     for (int i = nq; i < n; i++) {
-      if (LAG_STRUCK(w)) s->rate[i] = (s->rate0[i] + s->rate[i]) / LAG_C(2.0);
-      s->y1[i] = s->y[i] + s->h * s->rate[i];
+      if (LAG_STRUCK(w)) s->rate[i] = (s->rate0[i] + s->rate[i])/LAG_C(2.0);
+      s->y1[i] = s->y[i] + s->h*s->rate[i];
     }
     if (turn == 0) LAG_TRY(LAG_RESPONSES(s, w));
     LAG_TRY(LAG_OBEY(s, w));
     if (s->is_explicit) return status;
     for (int i = nq; i < n; i++) s->size[i] = LAG_TERM_SIZE(w, i, s->rate[i]);
     const LAG_REAL most = lag_kick_mean(s, LAG_STRUCK(w) ? LAG_C(1.0) : LAG_C(0.5));
-    if (most <= LAG_C(8.0) || (turn > 0 && most <= LAG_C(1e4) && most >= before / LAG_C(2.0))) return status;
+    if (most <= LAG_C(8.0) || (turn > 0 && most <= LAG_C(1e4) && most >= before/LAG_C(2.0))) return status;
     before = most;
   }
   return LAG_KICK_FAILS(s->t);

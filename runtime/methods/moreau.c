@@ -155,8 +155,8 @@ static int obey(lag_problem *pb, const lag_kick *s, Laws *w) {
 #define LAG_OBEY(s, w) obey(pb, s, w)
 #define LAG_STRUCK(w) ((w)->contacts.impacts > 0)
 #define LAG_TERM_SIZE(w, i, rate) lag_joints_size(&(w)->friction.of, i, rate)
-#define LAG_KICK_FAILS(t)                                                                                           \
-  changes_too_much(pb, t,                                                                                           \
+#define LAG_KICK_FAILS(t)                                                                                         \
+  changes_too_much(pb, t,                                                                                         \
                    "forces that depend on velocities or states change too much within a step: take smaller steps, " \
                    "or radau")
 #include "kernels/moreau_step.h"
@@ -186,19 +186,8 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   (void)t_stop;
   if ((rc = lag_fixed_step_begin(&w->step, pb, *t, &next)) != 0) return rc;
   Laws laws = {lag_moreau_contacts_of(pb, law_of(w, pb)), friction_of(w, pb), x + FREE * n};
-  const lag_kick s = {nq,
-                      pb->nz,
-                      is_explicit(pb) && !laws.friction.of.n,
-                      *t + next.dt / 2,
-                      *t + next.dt,
-                      next.dt,
-                      DBL_EPSILON,
-                      y,
-                      x + MID * n,
-                      x + Y1 * n,
-                      x + RATE * n,
-                      x + RATE0 * n,
-                      x + SIZE * n};
+  const lag_kick s = {nq, pb->nz, is_explicit(pb) && !laws.friction.of.n, *t + next.dt / 2, *t + next.dt, next.dt,
+                      DBL_EPSILON, y, x + MID * n, x + Y1 * n, x + RATE * n, x + RATE0 * n, x + SIZE * n};
   lag_kick_begin(&s, lost);
   lag_joint_friction_enter(&laws.friction, pb);
   rc = kick(pb, &s, &laws, *t);

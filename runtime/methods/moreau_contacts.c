@@ -30,17 +30,9 @@ lag_moreau_contacts lag_moreau_contacts_of(const lag_problem *pb, double *law) {
   const lag_model *m = pb->model;
   const lag_constraints *of = m->constraints;
   if (!m->ncontacts) return (lag_moreau_contacts){0};
-  lag_moreau_contacts w = {.contacts = m->ncontacts,
-                           .constraints = of->n,
-                           .nq = m->nq,
-                           .entries = of->njacobian,
-                           .nmass = of->nmass,
-                           .band = band_of(of),
-                           .at = m->contacts,
-                           .jacobian_at = of->jacobian,
-                           .mass_at = of->mass,
-                           .epsilon = DBL_EPSILON,
-                           .guess = pb->contact_impulse};
+  lag_moreau_contacts w = {.contacts = m->ncontacts, .constraints = of->n, .nq = m->nq, .entries = of->njacobian,
+                           .nmass = of->nmass, .band = band_of(of), .at = m->contacts, .jacobian_at = of->jacobian,
+                           .mass_at = of->mass, .epsilon = DBL_EPSILON, .guess = pb->contact_impulse};
   lag_contacts_place(&w, m->ncontacts * m->nq, pb->contact_room + pb->n);
   w.law = law;
   return w;
@@ -117,7 +109,7 @@ void lag_moreau_contacts_note(const lag_moreau_contacts *w, lag_problem *pb, dou
       work[j > 0] += mean;
       own += mean + P[r] * w->b[r];
       size += fabs(P[r]) * (fabs(w->before[r]) + fabs(lag_row_product(A, r, v1) + w->b[r]) +
-                            w->pace[pb->model->contacts[(int)of[i].contact + j].constraint]);
+                               w->pace[pb->model->contacts[(int)of[i].contact + j].constraint]);
     }
   s->length = h;
   s->work = work[0];

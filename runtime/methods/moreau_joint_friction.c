@@ -95,7 +95,8 @@ int lag_joint_friction_round(JointFriction *w, lag_problem *pb, const lag_kick *
   memcpy(w->was, of->mode, (size_t)of->n * sizeof *w->was);
   int rc = lag_joints_solve(pb, &w->of, s, struck, &size);
   *moved = 0;
-  for (int k = 0; k < of->n && rc == 0; k++) *moved = fmax(*moved, fabs((of->mode[k] - w->was[k]) * of->response[k]));
+  for (int k = 0; k < of->n && rc == 0; k++)
+    *moved = fmax(*moved, fabs((of->mode[k] - w->was[k]) * of->response[k]));
   *moved = size > 0 ? *moved / size : 0;
   return rc;
 }

@@ -25,10 +25,10 @@ int lag_joint_friction_fails(lag_problem *pb, double t, const struct lag_joint_f
 
 /* The kernel's part lasts from step to step; the rest is scratch. */
 typedef struct JointFriction {
-  lag_joint_friction of;   /* first */
-  double *at, *all;        /* [n] the model's switch; [nswitch] its values */
-  double *entry, *was;     /* [n] modes in pb->hold before the step; before a round */
-  double *change, *stride; /* [n] change by the last round, and strides in parts of it */
+  lag_joint_friction of;    /* first */
+  double *at, *all;         /* [n] the model's switch; [nswitch] its values */
+  double *entry, *was;      /* [n] modes in pb->hold before the step; before a round */
+  double *change, *stride;  /* [n] change by the last round, and strides in parts of it */
 } JointFriction;
 
 size_t lag_joint_friction_size(const lag_problem *pb);

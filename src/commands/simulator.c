@@ -327,9 +327,9 @@ static int find_tools(Compiler *c, const Units *units, const char *output, Toolc
   tools->lanes = units->at[0]->lanes;
   int parts = find_parts(c, tools, &error);
   if (parts < 0) return usage_error(error);
-  *kind = c->o.shared
-              ? PROGRAM_LIBRARY
-              : (ProgramKind)((tools->gsl ? PROGRAM_WITH_GSL : 0) | parts | (tools->lanes ? PROGRAM_WITH_LANES : 0));
+  *kind = c->o.shared ? PROGRAM_LIBRARY
+                      : (ProgramKind)((tools->gsl ? PROGRAM_WITH_GSL : 0) | parts |
+                                      (tools->lanes ? PROGRAM_WITH_LANES : 0));
   return STATUS_OK;
 }
 

@@ -31,25 +31,12 @@ static const struct {
   const char *const *line;
   size_t n;
 } embedded[] = {LINES(lag_lanes),
-                LINES(lag_math),
-                LINES(lag_sincos),
-                LINES(lag_support),
-                LINES(lag_kkt),
-                LINES(scalar_kernel),
-                LINES(compensated_sum_kernel),
-                LINES(composition_kernel),
-                LINES(splitting_kernel),
-                LINES(runge_kutta_tables_kernel),
-                LINES(runge_kutta_kernel),
-                LINES(step_size_kernel),
-                LINES(taylor_order_kernel),
-                LINES(taylor_size_kernel),
-                LINES(dense_output_kernel),
-                LINES(band_matrix_kernel),
-                LINES(impulses_kernel),
-                LINES(contact_step_kernel),
-                LINES(joint_friction_kernel),
-                LINES(moreau_step_kernel),
+                LINES(lag_math), LINES(lag_sincos), LINES(lag_support), LINES(lag_kkt), LINES(scalar_kernel),
+                LINES(compensated_sum_kernel), LINES(composition_kernel), LINES(splitting_kernel),
+                LINES(runge_kutta_tables_kernel), LINES(runge_kutta_kernel), LINES(step_size_kernel),
+                LINES(taylor_order_kernel), LINES(taylor_size_kernel), LINES(dense_output_kernel),
+                LINES(band_matrix_kernel), LINES(impulses_kernel), LINES(contact_step_kernel),
+                LINES(joint_friction_kernel), LINES(moreau_step_kernel),
                 LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";

@@ -263,8 +263,9 @@ static CStyle style_for(const TaylorWriter *w, const char *const *own, const cha
 
 /* Whether the sums are few enough that the coefficients of the last order stay in registers. */
 int taylor_sums_fit_registers(const Series *s) {
-  return s->first_square <= s->group && s->width - s->first_square <= s->group && s->sums <= REGISTER_SUMS_MAX &&
-         s->squares <= REGISTER_SUMS_MAX && ops_total(prog_count(s->next)) <= TAYLOR_INLINE_MAX;
+  return s->first_square <= s->group && s->width - s->first_square <= s->group &&
+         s->sums <= REGISTER_SUMS_MAX && s->squares <= REGISTER_SUMS_MAX &&
+         ops_total(prog_count(s->next)) <= TAYLOR_INLINE_MAX;
 }
 
 static int sums_fit_registers(const TaylorWriter *w) { return !w->lanes && taylor_sums_fit_registers(w->s); }
@@ -491,10 +492,9 @@ static void orders_in_registers(const TaylorWriter *w, const char *suffix) {
 static void rest(const TaylorWriter *w, const char *suffix, const char *attribute) {
   const Series *s = w->s;
   uint32_t nq = s->nq, nz = s->nz, t = 3 * nq + 2 * nz;
-  sb_printf(w->out,
-            "\n%sstatic void taylor_rest%s(%sint n, LAG_REAL T, LAG_REAL *x, %s *work) {\n"
-            "  taylor_work *const w = (taylor_work *)(void *)work;\n"
-            "  LAG_REAL per_k = LAG_C(1.0);\n%s",
+  sb_printf(w->out, "\n%sstatic void taylor_rest%s(%sint n, LAG_REAL T, LAG_REAL *x, %s *work) {\n"
+                    "  taylor_work *const w = (taylor_work *)(void *)work;\n"
+                    "  LAG_REAL per_k = LAG_C(1.0);\n%s",
             attribute, suffix, self_parameter(w), work_type(w), self_unused(w));
   if (s->uses_time) sb_printf(w->out, "  x[TAYLOR_COLUMNS + %u] = T;\n", t);
   if (!w->lanes) clear_padding(w);
@@ -523,25 +523,25 @@ static void row_operations(const TaylorWriter *w, const char *suffix, const char
 static int is_wide(const Series *s) { return s->group > LANES || 2 * s->nq + s->nz > 2 * LANES; }
 
 static void choose_width(StrBuf *out) {
-  sb_puts(out, "\nstatic void taylor_rest_any(const void *self, int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *work) {\n"
-               "#ifdef TAYLOR_WIDE\n"
-               "  if (__builtin_cpu_supports(\"avx2\")) {\n"
-               "    taylor_rest_wide(self, n, T, x, work);\n"
-               "    return;\n"
-               "  }\n"
-               "#endif\n"
-               "  taylor_rest(self, n, T, x, work);\n"
-               "}\n"
-               "\nstatic void taylor_at_any(const void *self, int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, "
-               "LAG_REAL *dy) {\n"
-               "#ifdef TAYLOR_WIDE\n"
-               "  if (__builtin_cpu_supports(\"avx2\")) {\n"
-               "    taylor_at_wide(self, n, s, x, y, dy);\n"
-               "    return;\n"
-               "  }\n"
-               "#endif\n"
-               "  taylor_at(self, n, s, x, y, dy);\n"
-               "}\n");
+  sb_puts(out,
+    "\nstatic void taylor_rest_any(const void *self, int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *work) {\n"
+    "#ifdef TAYLOR_WIDE\n"
+    "  if (__builtin_cpu_supports(\"avx2\")) {\n"
+    "    taylor_rest_wide(self, n, T, x, work);\n"
+    "    return;\n"
+    "  }\n"
+    "#endif\n"
+    "  taylor_rest(self, n, T, x, work);\n"
+    "}\n"
+    "\nstatic void taylor_at_any(const void *self, int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
+    "#ifdef TAYLOR_WIDE\n"
+    "  if (__builtin_cpu_supports(\"avx2\")) {\n"
+    "    taylor_at_wide(self, n, s, x, y, dy);\n"
+    "    return;\n"
+    "  }\n"
+    "#endif\n"
+    "  taylor_at(self, n, s, x, y, dy);\n"
+    "}\n");
 }
 
 /* The lag_taylor of a model file. */

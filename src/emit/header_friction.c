@@ -102,14 +102,15 @@ static const char *const instance =
     " |#define LAG_MODE_RATES(t, y, w, k) lag_friction_rates(p, t, yPASS, (w)->mode, k)\n"
     " |#define LAG_FRICTION_FAILS(t, j, words) ((int)LAG_ECONTACT)\n";
 
-static const char *const step = " |\n"
-                                " |#define LAG_LAWS lag_joint_friction\n"
-                                " |#define LAG_KICK_RATES(t, y, w, k) LAG_MODE_RATES(t, y, w, k)\n"
-                                " |#define LAG_RESPONSES(s, w) lag_joints_respond(LAG_THE_MODEL, w, s)\n"
-                                " |#define LAG_OBEY(s, w) lag_joints_solve(LAG_THE_MODEL, w, s, 0, (w)->x)\n"
-                                " |#define LAG_STRUCK(w) 0\n"
-                                " |#define LAG_TERM_SIZE(w, i, rate) lag_joints_size(w, i, rate)\n"
-                                " |#define LAG_KICK_FAILS(t) ((int)LAG_ENEWTON)\n";
+static const char *const step =
+    " |\n"
+    " |#define LAG_LAWS lag_joint_friction\n"
+    " |#define LAG_KICK_RATES(t, y, w, k) LAG_MODE_RATES(t, y, w, k)\n"
+    " |#define LAG_RESPONSES(s, w) lag_joints_respond(LAG_THE_MODEL, w, s)\n"
+    " |#define LAG_OBEY(s, w) lag_joints_solve(LAG_THE_MODEL, w, s, 0, (w)->x)\n"
+    " |#define LAG_STRUCK(w) 0\n"
+    " |#define LAG_TERM_SIZE(w, i, rate) lag_joints_size(w, i, rate)\n"
+    " |#define LAG_KICK_FAILS(t) ((int)LAG_ENEWTON)\n";
 
 static const char *const note =
     " |\n"

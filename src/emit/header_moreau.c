@@ -290,8 +290,8 @@ static void write_step(const Header *h, const char *text) {
       {"NRESPONSES", arena_printf(h->a, "%u", band || holds ? u->contacts.n * nq : c->jacobian.n)},
       {"BANDWIDTH", arena_printf(h->a, "%u", band)},
       {NULL, NULL}};
-  const LineChoice choices[] = {
-      {'c', meets}, {'d', !meets}, {'k', meets && holds}, {'h', holds}, {'w', !meets && holds && u->u.n}, {0, 0}};
+  const LineChoice choices[] = {{'c', meets}, {'d', !meets},          {'k', meets && holds},
+                                {'h', holds}, {'w', !meets && holds && u->u.n}, {0, 0}};
   header_template(h, header_chosen(h, text, choices), words);
 }
 

@@ -38,16 +38,16 @@ static void compare(const char *what, int n) {
   if (bad && differences++ < 20)
     printf("%s: %s: status %d and %d, element %d: %.17g and %.17g\n", where, what, status[0], status[1], at,
            at < 0 ? 0 : out[0][at], at < 0 ? 0 : out[1][at]);
-  for (int k = 0; k < SIDES; k++) memset(out[k], 0, ROOM * sizeof(double));
+  for (int k = 0; k < SIDES; k++) memset(out[k], 0, ROOM * sizeof(double)); 
 }
 
 #define STATE t, q, v, z, p, u
 /* Calls a function of both sides, s[0] and s[1] being structures with the same functions. */
-#define CALL(what, n, expression)                                                               \
-  do {                                                                                          \
-    for (int k = 0; k < SIDES; k++) status[k] = s[k]->what ? (expression) : 0;                  \
+#define CALL(what, n, expression)                                                  \
+  do {                                                                             \
+    for (int k = 0; k < SIDES; k++) status[k] = s[k]->what ? (expression) : 0;     \
     if (!s[0]->what != !s[1]->what) printf("%s: %s is missing\n", where, #what), differences++; \
-    if (s[0]->what) compare(#what, n);                                                          \
+    if (s[0]->what) compare(#what, n);                                             \
   } while (0)
 
 static void of_constraints(const lag_constraints *const *s, int nq) {

@@ -61,7 +61,7 @@ static void actions(const lag_model *m) {
     copy(out, q, m->nq);
     copy(out + m->nq, v, m->nq);
     copy(out + 2*m->nq, z, m->nz);
-    const int status = m->act(m, k, t, q, v, z, p, u, out, out + m->nq, out + 2 * m->nq, &stop, w);
+    const int status = m->act(m, k, t, q, v, z, p, u, out, out + m->nq, out + 2*m->nq, &stop, w);
     char name[32];
     snprintf(name, sizeof name, "%s%d", stop ? "stops" : "acts", k);
     print(m->name, name, status, out, 2*m->nq + m->nz);
@@ -70,7 +70,7 @@ static void actions(const lag_model *m) {
 
 static void derivatives(const lag_model *m) {
   if (m->variation) {
-    int status = m->variation(m, t, q, v, z, p, u, out, out + m->nq, out + 2 * m->nq, w);
+    int status = m->variation(m, t, q, v, z, p, u, out, out + m->nq, out + 2*m->nq, w);
     print(m->name, "variation", status, out, 3*m->nq);
     status = m->second(m, t, q, v, z, p, u, out, w);
     print(m->name, "second", status, out, m->nsecond);
