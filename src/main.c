@@ -38,6 +38,8 @@ static int do_command(Compiler *c) {
     case CMD_PLOT:
     case CMD_ANIMATE:
     case CMD_MODES:
+    case CMD_ORBIT:
+    case CMD_CONTINUE:
     case CMD_LYAPUNOV:
     case CMD_FIT:
     case CMD_COST:

@@ -131,6 +131,10 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     rc = lag_app_fit(&app);
   } else if (rc == 0 && app.args.modes) {
     rc = lag_app_modes(&app);
+  } else if (rc == 0 && app.args.orbit) {
+    rc = lag_app_orbit(&app);
+  } else if (rc == 0 && app.args.continues) {
+    rc = lag_app_continue(&app);
   } else if (rc == 0 && app.args.lyapunov) {
     rc = lag_app_lyapunov(&app);
   } else if (rc == 0 && app.args.effects) {

@@ -130,7 +130,7 @@ static int alloc_scratch(lag_sim *s) {
   const size_t sizes[] = {nuu,
                           nw, n, n, n, nev, nev, nout, 2 + nev, 11 * nev, held, ranks, sized, (size_t)m->ncontacts,
                           2 * nc, nc, nc, 3 * (size_t)m->nswitch, nm, nm, nm, nm, nm, nm * (9 + 2 * nm), nm * (3 + nm),
-                          m->contact_laws ? np * (5 + 2 * np) : 0,
+                          m->contact_laws ? 3 * np + 4 * (size_t)m->nguides + 1 : 0,
                           (size_t)(m->nsizes + m->nmoving)};
   s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
@@ -299,7 +299,7 @@ static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
         method->name, m->switches[k].text);
   }
   for (int i = 1; i < m->ncontacts && !(needs & LAG_METHOD_IMPULSES); i++)
-    if (m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent)
+    if (m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent && lag_guide_of(m, i) < 0)
       return lag_fail(s, LAG_EMETHOD,
                       "method %s follows friction in a plane, and the slip of a contact has two components here (%s); "
                       "--method \"moreau(step=1e-3)\" follows it",
@@ -316,6 +316,11 @@ static int check_method(lag_sim *s, const lag_method *method) {
     return lag_fail(s, LAG_EMETHOD,
                     "method %s cannot follow contacts with friction (%s); rk45, dop853, radau, rk4 and moreau can",
                     method->name, m->ev[m->contacts[0].impact].name);
+  if (m->nguides && needs & LAG_METHOD_IMPULSES)
+    return lag_fail(s, LAG_EMETHOD,
+                    "method %s does not follow the friction of guides (%s); rk45, dop853, radau and rk4 do; for %s write "
+                    "the guide as two contacts, `y >= 0` and `-y >= 0`, with `friction` and `slip`",
+                    method->name, m->ev[m->contacts[m->guides[0].tangent].impact].name, method->name);
   if (m->constraints && !(needs & LAG_METHOD_CONSTRAINTS)) {
     return lag_fail(s, LAG_EMETHOD, "method %s cannot hold constraints (%s); rk45, dop853 and variational can",
                     method->name, m->constraints->of[0].name);

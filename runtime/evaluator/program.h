@@ -15,21 +15,21 @@ typedef enum {
 #undef SPECIAL
 #undef PLAIN
 #undef BOTH
-  CODES
+      CODES
 } Code;
 
 enum {
 #define OP(name, operands, formula) TURN_##name,
   PROGRAM_TURN_OPS(OP)
 #undef OP
-  TURN_OPS
+      TURN_OPS
 };
 
 enum {
 #define ARRAY(name) PROGRAM_##name,
   PROGRAM_ARRAYS(ARRAY)
 #undef ARRAY
-  PROGRAM_ARRAY_COUNT
+      PROGRAM_ARRAY_COUNT
 };
 
 enum { PROGRAM_OUTPUTS = 4 }; /* the most arrays that a function writes */
@@ -82,9 +82,9 @@ typedef struct {
 } Nest;
 
 typedef struct {
-  uint32_t frame;        /* numbers that a call needs, with scratch of nests at its end */
+  uint32_t frame; /* numbers that a call needs, with scratch of nests at its end */
   uint32_t scratch;
-  int regular;           /* the systems were found regular before */
+  int regular; /* the systems were found regular before */
   uint32_t cells, ncells, work, nwork;
   const double *constants;
   const Curve *curves;

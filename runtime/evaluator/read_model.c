@@ -49,6 +49,14 @@ static const Program *wanted(const Reader *r, int is_wanted, int64_t x, int64_t 
   return p;
 }
 
+/* A reader for functions that are called with parameters alone, or with time, too. */
+static Reader without_state(const Reader *r, int timed) {
+  Reader alone = *r;
+  memset(&alone.state, 0, sizeof alone.state);
+  alone.state.in[PROGRAM_T] = timed, alone.state.in[PROGRAM_P] = r->state.in[PROGRAM_P];
+  return alone;
+}
+
 static const lag_var *variables(Bytes *b, int *n) {
   *n = (int)lag_bytes_count(b, 32);
   lag_var *v = lag_bytes_room(b, (size_t)*n, sizeof *v);
@@ -244,7 +252,9 @@ static void read_linear(Reader *r) {
 static void read_variation(Reader *r) {
   Bytes *b = r->b;
   lag_model *m = &r->m->model;
-  r->m->variation = program(r, m->nq, m->nq, m->nq);
+  Reader with = *r;
+  with.state.in[PROGRAM_Z] = 0; /* methods that need it have no states */
+  r->m->variation = program(&with, m->nq, m->nq, m->nq);
   m->nsecond = (int)lag_bytes_count(b, 12);
   lag_second *s = lag_bytes_room(b, (size_t)m->nsecond, sizeof *s);
   for (int i = 0; s && i < m->nsecond; i++) {
@@ -252,7 +262,7 @@ static void read_variation(Reader *r) {
     s[i].row = (int)lag_bytes_below(b, (uint32_t)m->nq), s[i].col = (int)lag_bytes_below(b, (uint32_t)m->nq);
   }
   m->second_at = s;
-  r->m->second = wanted(r, r->m->variation != NULL, m->nsecond, 0);
+  r->m->second = wanted(&with, r->m->variation != NULL, m->nsecond, 0);
 }
 
 static void read_taylor(Reader *r) {
@@ -302,6 +312,8 @@ static void read_head(Reader *r) {
   m->nderived = lag_bytes_int(b, 0, 1 << 24), m->nmodes = lag_bytes_int(b, 0, 1 << 24);
   r->m->nconstraints = lag_bytes_int(b, 0, 1 << 24);
   r->ny = 2 * m->nq + m->nz;
+  int flows = (m->flags & LAG_FIRST_ORDER) != 0, splits = flows && (m->flags & (LAG_SEPARABLE | LAG_SUM_HAMILTONIAN));
+  lag_bytes_need(b, !(flows && m->nq) && !(splits && m->nz % 2), "the flags of a model are wrong");
   int64_t *in = r->state.in;
   in[PROGRAM_T] = 1, in[PROGRAM_Q] = in[PROGRAM_V] = m->nq, in[PROGRAM_Z] = m->nz;
   in[PROGRAM_P] = (int64_t)m->np + m->nderived, in[PROGRAM_U] = (int64_t)m->nu + m->nmodes;
@@ -312,11 +324,12 @@ static Reader read_model(Bytes *b) {
   if (!r.m) return r;
   read_head(&r);
   lag_model *m = &r.m->model;
-  r.m->derive = wanted(&r, m->nderived > 0, r.state.in[PROGRAM_P], 0);
+  Reader alone = without_state(&r, 0), timed = without_state(&r, 1);
+  r.m->derive = wanted(&alone, m->nderived > 0, r.state.in[PROGRAM_P], 0);
   r.m->accel = wanted(&r, 1, m->nq, m->nz);
   r.m->energy = program(&r, 2, 0, 0);
   read_events(&r);
-  r.m->inputs = wanted(&r, m->nu > 0, m->nu, 0);
+  r.m->inputs = wanted(&timed, m->nu > 0, m->nu, 0);
   read_tables(&r);
   read_constraints(&r);
   read_contacts(&r);
@@ -348,6 +361,25 @@ static void read_lists(Bytes *b, const Reader *r, lag_scene *s) {
   lag_measure *k = lag_bytes_room(b, (size_t)s->nmeasures, sizeof *k);
   for (int i = 0; k && i < s->nmeasures; i++) k[i].name = name_of(b), k[i].text = name_of(b);
   s->measures = k;
+}
+
+static void read_indices(Bytes *b, int nout, int *at, int n) {
+  for (int i = 0; i < n; i++) at[i] = lag_bytes_int(b, -1, nout - 1);
+}
+
+static void read_shapes(Bytes *b, lag_scene *s) {
+  s->ndrawn = lag_bytes_int(b, 0, s->nout);
+  s->nshapes = (int)lag_bytes_count(b, 68);
+  lag_shape *x = lag_bytes_room(b, (size_t)s->nshapes, sizeof *x);
+  for (int i = 0; x && i < s->nshapes; i++) {
+    x[i].kind = name_of(b), x[i].role = name_of(b), x[i].text = lag_bytes_text(b);
+    x[i].count = lag_bytes_int(b, 0, 1000);
+    read_indices(b, s->nout, x[i].a, 3);
+    read_indices(b, s->nout, x[i].b, 3);
+    read_indices(b, s->nout, x[i].size, 3);
+    read_indices(b, s->nout, x[i].turn, 4);
+  }
+  s->shapes = x;
 }
 
 static void read_actions(Bytes *b, const Reader *r, EvaluatedScene *s) {
@@ -393,15 +425,17 @@ static const lag_scene *read_scene(Bytes *b, const Reader *r) {
   c->t0 = lag_bytes_number(b), c->t1 = lag_bytes_number(b), c->tolerance = lag_bytes_number(b),
   c->every = lag_bytes_number(b);
   c->has_span = flag(b), c->exactly = flag(b);
+  Reader alone = without_state(r, 0);
   const Program **params = lag_bytes_room(b, (size_t)m->np, sizeof *params);
-  for (int i = 0; params && i < m->np; i++) params[i] = program(r, m->np, 0, 0);
+  for (int i = 0; params && i < m->np; i++) params[i] = program(&alone, m->np, 0, 0);
   s->params = params;
-  s->start = program(r, m->nq, m->nq, m->nz);
+  s->start = program(&alone, m->nq, m->nq, m->nz);
   unsigned char *given = m->constraints ? lag_bytes_room(b, (size_t)r->ny, 1) : NULL;
   for (int i = 0; given && i < r->ny; i++) given[i] = (unsigned char)lag_bytes_int(b, 0, 2);
   c->given = given;
   read_outputs(b, r, s);
   read_lists(b, r, c);
+  read_shapes(b, c);
   lag_bytes_need(b, isfinite(c->t0) && isfinite(c->t1), "a span is not finite");
   if (b->why) return NULL;
   lag_set_scene_functions(s);

@@ -84,8 +84,10 @@ static Range range_of(Bytes *b, const Nest *n, uint32_t k) {
   for (int corner = 0; corner < 4; corner++) {
     double i = corner & 1 ? (double)(n->rows - 1) : 0, from = (double)n->skew * i,
            end = (double)(n->skew + n->more) * i + (double)n->turns,
-           j = !n->has_turns ? 0 : corner & 2 ? end - 1 : from, rows = (double)s->by_row * i,
-           turns = (double)s->by_turn * j;
+           j = !n->has_turns ? 0
+               : corner & 2  ? end - 1
+                             : from,
+           rows = (double)s->by_row * i, turns = (double)s->by_turn * j;
     lag_bytes_need(b, !n->has_turns || end > from, "a loop has no turns");
     lag_bytes_need(b, fabs(rows) < limit && fabs(j) < limit && fabs(turns) < limit, "a loop is too long");
     widen(&r, (double)s->first + rows + turns);
@@ -189,20 +191,20 @@ static const Nest *read_nests(Bytes *b, const Program *p, const Lengths *of, uin
 
 static int is_operand(const Program *p, const Lengths *of, char kind, const uint32_t *at) {
   switch (kind) {
-    case 'a': case 'd': return at[0] < p->frame;
-    case 'f': return at[0] < lag_functions_1_count;
-    case 'F': return at[0] < lag_functions_2_count;
-    case 't': return at[0] < p->ncurves;
-    case 's': return at[0] < p->nsystems;
-    case 'n': return at[0] < p->nnests;
-    case 'i':
-      return at[0] < PROGRAM_CONSTANTS ? ends_within(at[1], at[3], of->in[at[0]]) && (uint64_t)at[2] + at[3] <= p->frame
-                                       : at[0] == PROGRAM_CONSTANTS && ends_within(at[1], at[3], p->nconstants) &&
-                                             (uint64_t)at[2] + at[3] <= p->frame;
-    case 'o':
-      return at[0] < PROGRAM_OUTPUTS && ends_within(at[1], at[3], of->out[at[0]]) &&
-             (uint64_t)at[2] + at[3] <= p->frame;
-    default: return 1; /* k, with the array */
+  case 'a':
+  case 'd': return at[0] < p->frame;
+  case 'f': return at[0] < lag_functions_1_count;
+  case 'F': return at[0] < lag_functions_2_count;
+  case 't': return at[0] < p->ncurves;
+  case 's': return at[0] < p->nsystems;
+  case 'n': return at[0] < p->nnests;
+  case 'i':
+    return at[0] < PROGRAM_CONSTANTS ? ends_within(at[1], at[3], of->in[at[0]]) && (uint64_t)at[2] + at[3] <= p->frame
+                                     : at[0] == PROGRAM_CONSTANTS && ends_within(at[1], at[3], p->nconstants) &&
+                                           (uint64_t)at[2] + at[3] <= p->frame;
+  case 'o':
+    return at[0] < PROGRAM_OUTPUTS && ends_within(at[1], at[3], of->out[at[0]]) && (uint64_t)at[2] + at[3] <= p->frame;
+  default: return 1; /* k, with the array */
   }
 }
 

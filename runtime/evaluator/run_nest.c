@@ -1,5 +1,5 @@
-/* Nests of loops: each operation of a turn is computed for a block of turns; sums are added to in the order of
- * turns. */
+/* Nests of loops: each operation of a turn is computed for a block of turns; sums are added to in the order of turns.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -47,8 +47,8 @@ static void compute(const Block *b, uint32_t s) {
 #define A x[j]
 #define B y[j]
 #define C z[j]
-#define EACH(name, formula) \
-  case TURN_##name: \
+#define EACH(name, formula)                        \
+  case TURN_##name:                                \
     for (int j = 0; j < n; j++) to[j] = (formula); \
     return;
 #define OP(name, operands, formula) OP_##operands(name, formula)
@@ -58,11 +58,11 @@ static void compute(const Block *b, uint32_t s) {
 #define OP_3 EACH
   switch (i->op) {
     PROGRAM_TURN_OPS(OP)
-    case TURN_CONSTANT: fill(to, b->p->constants[k], n); return;
-    case TURN_ELEMENT: gather(b, to, b->in[i->a], k); return;
-    case TURN_SCALAR: fill(to, b->in[i->a][0], n); return;
-    case TURN_CELL: gather(b, to, b->r + b->p->cells, k); return;
-    case TURN_OUTER: fill(to, b->r[b->n->outer[k]], n); return;
+  case TURN_CONSTANT: fill(to, b->p->constants[k], n); return;
+  case TURN_ELEMENT: gather(b, to, b->in[i->a], k); return;
+  case TURN_SCALAR: fill(to, b->in[i->a][0], n); return;
+  case TURN_CELL: gather(b, to, b->r + b->p->cells, k); return;
+  case TURN_OUTER: fill(to, b->r[b->n->outer[k]], n); return;
   }
   (void)y, (void)z;
 }

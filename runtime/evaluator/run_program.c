@@ -1,5 +1,5 @@
-/* Executes a program: the operations of its C text, in the same order or with the same operands, hence the same
- * bits. */
+/* Executes a program: the operations of its C text, in the same order or with the same operands, hence the same bits.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -85,10 +85,13 @@ again:
   switch (*at) {
 #endif
 
-#define PLAIN(name, kinds, formula) TARGET(name) : x = (formula), at += WORDS(kinds); NEXT;
-#define BOTH(name, kinds, formula) \
-  PLAIN(name, kinds, formula)      \
-  TARGET(name##_TO) : x = (formula), r[at[WORDS(kinds)]] = x, at += WORDS(kinds) + 1; NEXT;
+#define PLAIN(name, kinds, formula)                 \
+  TARGET(name) : x = (formula), at += WORDS(kinds); \
+  NEXT;
+#define BOTH(name, kinds, formula)                                                    \
+  PLAIN(name, kinds, formula)                                                         \
+  TARGET(name##_TO) : x = (formula), r[at[WORDS(kinds)]] = x, at += WORDS(kinds) + 1; \
+  NEXT;
 #define SPECIAL(name, kinds) /* below */
   PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
 
@@ -130,7 +133,7 @@ again:
   at += 2;
   NEXT;
 #if !defined(__GNUC__)
-  }
-  return LAG_ESINGULAR;
+}
+return LAG_ESINGULAR;
 #endif
 }

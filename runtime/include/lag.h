@@ -560,6 +560,9 @@ long long lag_sim_event_times(const lag_sim *sim, int k, double *first, double *
 /* Switching surface k < model->nmodes: the time during which the motion has slid on it, how often it has crossed the
  * surface, and begun to slide; NULL: not wanted. */
 double lag_sim_switch_times(const lag_sim *sim, int k, long long *crossings, long long *slides);
+/* Guide k < model->nguides sticks: the part of the largest friction by which its own force holds it, which loads that
+ * grow alike do not change; NaN: it slips. */
+double lag_sim_guide_part(lag_sim *sim, int k);
 /* The last error, "" when there was none. */
 const char *lag_sim_message(const lag_sim *sim);
 
@@ -639,6 +642,7 @@ typedef struct lag_extras {
    * lag_model.h); or NULL */
   const lag_scene *const *lanes_4, *const *lanes_8;
   const lag_ranks *ranks; /* or NULL */
+  void (*after_step)(const lag_program *program); /* called after each step of a run; or NULL */
   const lag_least_squares *fits; /* or NULL */
 } lag_extras;
 

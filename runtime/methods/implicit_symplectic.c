@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "methods/discrete_lagrangian.h"
-#include "methods/predictor.h"
+#include "kernels/predictor.h"
 #include "methods/step_interpolant.h"
 #include "methods/steps.h"
 #include "methods/method_tangent.h"
@@ -16,7 +16,7 @@
 
 /* Doubles of the history of one substep. */
 static size_t substep_history(const lag_problem *pb, const Implicit *w) {
-  return lag_predictor_size(pb->nq * (int)w->rule[0].free);
+  return (size_t)LAG_PREDICTOR_SIZE(pb->nq * (int)w->rule[0].free);
 }
 
 /* Sets the pointers of a block, unless x is NULL; returns its length. */
@@ -28,7 +28,7 @@ static size_t block_layout(ConstraintBlock *b, const lag_problem *pb, int subste
   const size_t sizes[] = {n,
                           n, nq, nq, nq, nq, nq, nc, nc, nc, nc, (size_t)of->njacobian, (size_t)of->nmass, nc * nq,
                           nc * nc,
-                          (size_t)substeps * lag_predictor_size(of->n)};
+                          (size_t)substeps * (size_t)LAG_PREDICTOR_SIZE(of->n)};
   return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
@@ -39,7 +39,7 @@ static size_t state_layout(ImplicitArrays *a, const lag_problem *pb, int free, i
   double **const parts[] = {&a->p,  &a->qc, &a->pc, &a->dq, &a->dp,    &a->ql,      &a->pl,   &a->v,       &a->y0,
                             &a->y1, &a->f0, &a->f1, &a->u,  &a->force, &a->history, &a->path, &a->discrete};
   const size_t sizes[] = {nq, nq, nq, nq, nq, nq, nq, nq, n, n, n, n, 2 * m, m,
-                          (size_t)substeps * lag_predictor_size((int)m) + lag_predictor_size(pb->nq),
+                          (size_t)substeps * (size_t)LAG_PREDICTOR_SIZE((int)m) + (size_t)LAG_PREDICTOR_SIZE(pb->nq),
                           lag_interpolant_size(pb->nq),
                           /* the search for its band takes time in each step */
                           x && !constrained ? 0 : lag_discrete_size(pb, free)};
@@ -80,18 +80,15 @@ int lag_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, dou
   const lag_rule *r = &w->rule[k % 2];
   int nq = pb->nq, m = nq * (int)r->free, rc = LAG_EMETHOD;
   double *history = a->history + (size_t)k * substep_history(pb, w), h = w->part[k] * dt;
-  lag_discrete d = {.rule = r, .pb = pb, .t = t + at * dt, .h = h, .size = w->step.h, .q = y, .dq = a->ql, .p = a->p,
+  lag_discrete d = {.rule = r, .t = t + at * dt, .h = h, .size = w->step.h, .q = y, .dq = a->ql, .p = a->p,
                     .dp = a->pl, .u = u, .force = a->force, .work = a->discrete, .counted = 1};
 
   lag_substeps_gather(a, nq);
-  if (known || lag_predictor_guess(history, m, u)) rc = lag_discrete_solve(&d);
+  if (known || lag_predictor_guess(history, m, u)) rc = lag_discrete_solve(pb, &d);
   pb->detail = NULL; /* forget the message of the first attempt */
-  if (rc != 0 && (rc = linear_guess(w, a, pb, t, y, dt, k, at, u)) == 0) rc = lag_discrete_solve(&d);
+  if (rc != 0 && (rc = linear_guess(w, a, pb, t, y, dt, k, at, u)) == 0) rc = lag_discrete_solve(pb, &d);
   if (rc) return rc;
-  for (int i = 0; i < nq; i++) {
-    for (int j = 0; j < (int)r->free; j++) a->dq[i] += h * (r->whole[j] * u[j * nq + i]);
-    for (int j = 0; j < (int)r->points; j++) a->dp[i] += h * (r->b[j] * a->force[j * nq + i]);
-  }
+  lag_discrete_move(&d, nq, a->dq, a->dp);
   return LAG_OK;
 }
 
@@ -103,11 +100,11 @@ int lag_substeps_velocity(const Implicit *w, const ImplicitArrays *a, lag_proble
                           int known) {
   int nq = pb->nq;
   const double *history = a->history + (size_t)w->substeps * substep_history(pb, w);
-  lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = tb, .h = 0, .size = w->step.h, .q = y, .dq = a->ql, .p = a->p,
+  lag_discrete d = {.rule = &w->momentum, .t = tb, .h = 0, .size = w->step.h, .q = y, .dq = a->ql, .p = a->p,
                     .dp = a->pl, .u = a->v, .force = a->force, .work = a->discrete};
   lag_substeps_gather(a, nq);
   if (!known && !lag_predictor_guess(history, nq, a->v)) memcpy(a->v, a->u, (size_t)nq * sizeof(double));
-  return lag_discrete_solve(&d);
+  return lag_discrete_solve(pb, &d);
 }
 
 /* ---- A step */
@@ -131,6 +128,7 @@ void lag_implicit_init(void *work, lag_problem *pb, double h, int order, const l
   w->order = order;
   w->substeps = w->part[0] = 1;
   w->rule[0] = *rule;
+  memset(&w->momentum, 0, sizeof w->momentum);
   lag_rule_euler(&w->momentum, 0);
   lag_implicit_reset(work, pb);
 }
@@ -150,9 +148,10 @@ static int substeps_of(const lag_composition *c, double *part) {
 
 void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_composition *c) {
   Implicit *w = work;
-  lag_rule rule;
+  lag_rule rule = {0};
   lag_rule_euler(&rule, 0);
   lag_implicit_init(work, pb, h, c->order, &rule);
+  w->rule[1] = rule;
   lag_rule_euler(&w->rule[1], 1);
   w->substeps = substeps_of(c, w->part);
 }
@@ -171,7 +170,8 @@ static int begin(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t
   memset(a->pc, 0, bytes);
   memset(a->history, 0, (size_t)(a->path - a->history) * sizeof(double));
   if (pb->model->constraints)
-    memset(a->block.history, 0, (size_t)w->substeps * lag_predictor_size(pb->model->constraints->n) * sizeof(double));
+    memset(a->block.history, 0,
+           (size_t)w->substeps * (size_t)LAG_PREDICTOR_SIZE(pb->model->constraints->n) * sizeof(double));
   w->ready = 1;
   return LAG_OK;
 }
@@ -254,7 +254,7 @@ static size_t layout(Changes *c, const lag_problem *pb, int k, double *x) {
   size_t nq = (size_t)pb->nq, m = nq * (size_t)k;
   double **const parts[] = {&c->p, &c->ql, &c->pl, &c->v, &c->u, &c->force, &c->second, &c->dv, &c->du, &c->rest};
   const size_t sizes[] = {nq,
-                          nq, nq, nq, LAG_RULE_FREE * nq, LAG_RULE_POINTS * nq, (size_t)pb->model->nsecond, m,
+                          nq, nq, nq, LAG_RULE_FREE * nq, LAG_RULE_FREE * nq, (size_t)pb->model->nsecond, m,
                           LAG_RULE_FREE * m,
                           lag_discrete_tangent_size(pb, LAG_RULE_FREE, k)};
   return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
@@ -284,13 +284,13 @@ static int over_substep(const Implicit *w, const ImplicitArrays *a, lag_problem 
   int nq = pb->nq, rc = 0;
   double h = w->part[j] * dt;
   lag_discrete d = {.rule = r,
-                    .pb = pb, .t = w->step.t0 + at * dt, .h = h, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p,
+                    .t = w->step.t0 + at * dt, .h = h, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p,
                     .dp = c->pl, .u = c->u, .force = c->force,
                     .work = a->discrete};
 
   lag_predictor_last(a->history + (size_t)j * substep_history(pb, w), nq * (int)r->free, c->u);
-  rc = whole ? 0 : lag_discrete_solve(&d);
-  rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + nq * k, c->du, c->rest);
+  rc = whole ? 0 : lag_discrete_solve(pb, &d);
+  rc = rc ? rc : lag_discrete_tangent(pb, &d, k, Y, Y + nq * k, c->du, c->rest);
   for (int i = 0; i < (int)r->free && rc == 0; i++) lag_tangent_add(nq, h * r->whole[i], c->u + i * nq, c->ql);
   for (int i = 0; i < (int)r->points && rc == 0 && !whole; i++)
     lag_tangent_add(nq, h * r->b[i], c->force + i * nq, c->pl);
@@ -302,12 +302,12 @@ static int to_velocities(const Implicit *w, const ImplicitArrays *a, lag_problem
                          int whole, int k, double *Y) {
   int nq = pb->nq, m = nq * k, rc = 0;
   lag_discrete d = {.rule = &w->momentum,
-                    .pb = pb, .t = t, .h = 0, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p, .dp = c->pl,
+                    .t = t, .h = 0, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p, .dp = c->pl,
                     .u = c->v, .force = c->force,
                     .work = a->discrete};
   memcpy(c->v, a->y1 + nq, (size_t)nq * sizeof *Y);
-  rc = whole ? 0 : lag_discrete_solve(&d);
-  rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + m, c->du, c->rest);
+  rc = whole ? 0 : lag_discrete_solve(pb, &d);
+  rc = rc ? rc : lag_discrete_tangent(pb, &d, k, Y, Y + m, c->du, c->rest);
   memcpy(Y + m, c->du, (size_t)m * sizeof *Y);
   return rc;
 }

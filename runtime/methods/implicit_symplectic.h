@@ -4,7 +4,7 @@
 
 #include "lag.h"
 #include "kernels/composition.h"
-#include "methods/galerkin_rule.h"
+#include "kernels/galerkin_rule.h"
 #include "methods/steps.h"
 
 /* Doubles of state: for one rule with this number of free velocities, or for a composition of symplectic Euler and

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "methods/implicit_symplectic.h"
-#include "methods/predictor.h"
+#include "kernels/predictor.h"
 #include "methods/steps.h"
 #include "numeric/dense.h"
 
@@ -137,7 +137,7 @@ static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem 
   const lag_constraints *of = pb->model->constraints;
   int nq = pb->nq, m = nq * (int)w->rule[0].free, steered = 0, known = 0, rc, holonomic = of->nholonomic == of->n;
   size_t bytes = (size_t)nq * sizeof(double);
-  double h = 0, before = HUGE_VAL, least = 0.1, *history = b->history + (size_t)k * lag_predictor_size(of->n);
+  double h = 0, before = HUGE_VAL, least = 0.1, *history = b->history + (size_t)k * (size_t)LAG_PREDICTOR_SIZE(of->n);
 
   for (int j = 0; j < length; j++) h += w->part[k + j] * dt;
   memcpy(b->dq, a->dq, bytes);

@@ -20,15 +20,14 @@ static double seconds_now(void) {
   return (double)now.tv_sec + 1e-9*(double)now.tv_nsec;
 }
 
-/* Makes the simulator of `lagc cost`, beside it the reference where three fifths of the time, or five seconds,
- * suffice, and tells it how much is left: at least a third. */
+/* Makes the simulator of `lagc cost`, beside it the reference where three fifths of the time, or a fifth after the
+ * build, suffice, and tells it how much is left: at least a third. */
 static int make_cost_simulator(Compiler *c, const Units *units, double begin, const char **path) {
-  enum { LEAST_WAIT = 5 };
   double asked = c->o.seconds ? strtod(c->o.seconds, NULL) : 10;
   CostReference reference;
   cost_reference_begin(c, 0.4*asked, &reference);
   int status = simulator_of_units(c, units, NULL, path),
-      given = cost_reference_end(&reference, fmax(0.6 * asked - (seconds_now() - begin), LEAST_WAIT));
+      given = cost_reference_end(&reference, fmax(0.6 * asked - (seconds_now() - begin), 0.2 * asked));
   double left = asked - (seconds_now() - begin);
   c->picture.argv.n--; /* the NULL at the end */
   vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--seconds"));
@@ -47,6 +46,37 @@ static int make_cost_simulator(Compiler *c, const Units *units, double begin, co
   return status;
 }
 
+static int is_quiet(const Options *o) {
+  for (uint32_t i = 0; i < o->rest.n; i++)
+    if (strcmp(o->rest.at[i], "--quiet") == 0) return 1;
+  return 0;
+}
+
+/* "drawn by guess: 2 rods, ball at x1, y1, ball at x2, y2; ..." */
+static const char *drawing_words(Arena *a, const Scene *sc) {
+  enum { MOST = 4 };
+  StrBuf s = strbuf(a);
+  sb_puts(&s, "guessed drawing:");
+  for (uint32_t i = 0, n = 0; i < sc->shapes.n && n <= MOST; i++, n++) {
+    const Shape *x = &sc->shapes.at[i];
+    if (n == MOST) sb_printf(&s, ", ... (%u shapes)", sc->shapes.n);
+    else sb_printf(&s, "%s %s%s%s", n ? "," : "", shape_word(x->kind), x->text ? " at " : "", x->text ? x->text : "");
+  }
+  sb_puts(&s, "; `draw` statements in the model, or --points 'X,Y X,Y', say otherwise");
+  return sb_text(&s);
+}
+
+/* Whether there is something to draw; says so where it was guessed, or not. */
+static int has_drawing(Compiler *c) {
+  const Scene *sc = &c->run->m->scene;
+  if (!c->picture.drawing) return 1;
+  if (!sc->shapes.n)
+    return usage_error("nothing to draw: the model has no `draw`, no x,y, no x1,y1 x2,y2 ... and no vector among its "
+                       "coordinates; write `draw ball at (X, Y)` in it, or --points 'X,Y X,Y'"), 0;
+  if (sc->guessed && !c->picture.note && !is_quiet(&c->o)) c->picture.note = drawing_words(c->arena, sc);
+  return 1;
+}
+
 /* run, plot, animate, modes, lyapunov, cost: builds the simulator and becomes it by exec. */
 int command_run(Compiler *c) {
   const char *path;
@@ -56,12 +86,10 @@ int command_run(Compiler *c) {
   if (c->o.budget) return cost_budget(c);
   Units units = {0};
   if (!simulator_lower(c, &units)) return STATUS_MODEL;
-  const char *evaluator = simulator_evaluator(c, &units, &status);
+  if (!has_drawing(c)) return STATUS_USAGE;
+  status = simulator_evaluate(c, &units, &path);
   if (status != STATUS_OK) return status;
-  if (evaluator) {
-    StrBuf bytes = simulator_bytes(c, &units);
-    return known_run_evaluate(c, evaluator, &bytes);
-  }
+  if (path) return known_run_evaluate(c, path);
   status = c->o.command == CMD_COST ? make_cost_simulator(c, &units, begin, &path)
                                     : simulator_of_units(c, &units, NULL, &path);
   return status == STATUS_OK ? known_run_keep_and_start(c, path) : status;

@@ -301,98 +301,6 @@ static int points_split(Arena *a, const char *text, PointTexts *points, const ch
 
 /* --- animate --- */
 
-/* Points of the model, found by the names of its quantities. */
-typedef struct {
-  const char *points, *from;
-  int rods; /* joined by rods: their positions are lets of other coordinates */
-} FoundPoints;
-
-static int find_pair(RequestBuilder *k, const char *x, const char *y, StrBuf *points, int *rods) {
-  const AstStmt *s = find_quantity(k->ast, x), *t = find_quantity(k->ast, y);
-  if (!s || !t || !s->dims != !t->dims) return 0;
-  sb_printf(points, "%s%s,%s", points->n ? " " : "", x, y);
-  *rods = s->kind == STMT_LET;
-  return 1;
-}
-
-/* Whether the text declares an angle: periodic, or in [rad] or [deg]. */
-static int is_angle(const AstStmt *s) { return s->periodic || (s->unit.text && has_word("rad deg", s->unit.text)); }
-
-/* The point of a model with one coordinate; an angle is drawn as a hanging rod of length 1. */
-static void find_only(RequestBuilder *k, FoundPoints *f) {
-  const AstStmt *only = NULL;
-  uint32_t n = 0;
-  for (const AstStmt *s = k->ast->first; s; s = s->next)
-    if (s->kind == STMT_COORD) {
-      only = s;
-      n++;
-    }
-  if (n != 1 || !only->name || only->dims || only->type) return;
-  f->rods = is_angle(only);
-  f->points = arena_printf(k->arena, f->rods ? "sin(%s),-cos(%s)" : "%s,0", only->name, only->name);
-}
-
-/* Points of a family u[1] u[2] ...: abscissa the index, ordinate the value. */
-static void find_row(const Model *m, StrBuf *points) {
-  enum { MOST = 1000 };
-  CoordList coords = model_coordinates(m);
-  for (uint32_t i = 0; i < coords.n && i < MOST; i++) {
-    const char *name = coords.at[i], *at = strchr(name, '[');
-    if (!at || strchr(at, ',') || strchr(at, '.') || (i && strncmp(name, coords.at[0], (size_t)(at - name + 1)) != 0)) {
-      points->n = 0;
-      return;
-    }
-    sb_printf(points, "%s%.*s,%s", i ? " " : "", (int)strcspn(at + 1, "]"), at + 1, name);
-  }
-}
-
-/* Points from vectors among the coordinates, families included: r.x,r.y or b[1].x,b[1].y b[2].x,b[2].y; else from a
- * family of numbers. Builds the model, which knows their number; returns 0 when it has mistakes. */
-static int find_vectors(RequestBuilder *k, FoundPoints *f) {
-  enum { MOST = 1000 };
-  ModelChoice choice = {.scene = k->p->scene, .defines = k->o->defines.at, .ndefines = k->o->defines.n};
-  const Model *m = model_build(k->ast, &choice);
-  StrBuf points = strbuf(k->arena);
-  if (!m) return 0;
-  CoordList coords = model_coordinates(m);
-  for (uint32_t i = 0, n = 0; i + 1 < coords.n && n < MOST; i++) {
-    const char *x = coords.at[i], *y = coords.at[i + 1];
-    size_t len = strlen(x);
-    if (len < 3 || strcmp(x + len - 2, ".x") != 0 || strlen(y) != len || strncmp(x, y, len - 1) != 0) continue;
-    sb_printf(&points, "%s%s,%s", n++ ? " " : "", x, y);
-  }
-  if (!points.n) find_row(m, &points);
-  if (points.n) f->points = sb_text(&points);
-  return 1;
-}
-
-/* Whether the let `name` contains the quantity `other`. */
-static int contains(RequestBuilder *k, const char *name, const char *other) {
-  const AstStmt *s = find_quantity(k->ast, name);
-  if (s->kind != STMT_LET) return 0;
-  for (AstId id = ast_expr(k->ast, s->rhs)->first; id <= s->rhs; id++)
-    if (ast_expr(k->ast, id)->kind == AST_NAME && strcmp(ast_expr(k->ast, id)->name, other) == 0) return 1;
-  return 0;
-}
-
-/* x1,y1 x2,y2 ...: joined by rods where each hangs on the one before, and not where two hang beside each other. */
-static void find_chain(RequestBuilder *k, StrBuf *points, int *rods) {
-  int chain = 1;
-  for (int i = 1; find_pair(k, arena_printf(k->arena, "x%d", i), arena_printf(k->arena, "y%d", i), points, rods); i++)
-    chain = chain && (i == 1 || contains(k, arena_printf(k->arena, "x%d", i), arena_printf(k->arena, "x%d", i - 1)));
-  *rods = *rods && chain;
-}
-
-static FoundPoints find_points(RequestBuilder *k) {
-  FoundPoints f = {0};
-  StrBuf points = strbuf(k->arena);
-  if (!find_pair(k, "x", "y", &points, &f.rods)) find_chain(k, &points, &f.rods);
-  if (!points.n && find_pair(k, "px", "py", &points, &f.rods) && find_quantity(k->ast, "x")) f.from = "x,0";
-  if (points.n) f.points = sb_text(&points);
-  else find_only(k, &f);
-  return f;
-}
-
 /* Makes each part of "x1,y1 x2,y2" an output of the scene and returns the names of the columns, written likewise;
  * NULL after a mistake. */
 static const char *add_points(RequestBuilder *k, const char *from, const char *text, uint32_t most,
@@ -413,40 +321,20 @@ static const char *add_points(RequestBuilder *k, const char *from, const char *t
   return ok ? sb_text(&out) : NULL;
 }
 
-static int is_quiet(const Options *o) {
-  for (uint32_t i = 0; i < o->rest.n; i++)
-    if (strcmp(o->rest.at[i], "--quiet") == 0) return 1;
-  return 0;
-}
-
+/* Points of the command line, or the drawing of the model. */
 static int prepare_animate(RequestBuilder *k, const char **error) {
-  enum { SHOWN_POINTS = 60 };
   const Options *o = k->o;
-  FoundPoints f = {.points = o->points, .rods = 1};
-  if (!f.points) {
-    f = find_points(k);
-    if (!f.points && !find_vectors(k, &f)) return 0;
-    if (!f.points) {
-      *error = "no points to draw: the model has no x,y, no x1,y1 x2,y2 ..., no px,py and no vector among its "
-               "coordinates; write "
-               "--points 'X,Y X,Y', each two expressions";
-      return 0;
-    }
-  }
-  if (o->from) f.from = o->from;
-  int rods = (f.rods || o->from) && !o->no_rods;
-  if (!o->points && !is_quiet(o))
-    k->p->note = arena_printf(k->arena, "points %.*s%s%s%s; --points 'X,Y X,Y' takes others", SHOWN_POINTS, f.points,
-                              strlen(f.points) > SHOWN_POINTS ? "..." : "", rods ? ", joined by rods from " : "",
-                              !rods    ? ""
-                              : f.from ? f.from
-                                       : "the origin");
-  const char *points = add_points(k, "--points", f.points, UINT32_MAX, error), *from = NULL;
-  if (!points || (f.from && rods && !(from = add_points(k, "--from", f.from, 1, error)))) return 0;
+  k->p->drawing = !o->points;
   add_argument(k, "--html", file_name(k, "html"));
+  if (!o->points && (o->from || o->no_rods))
+    return fail_with(error, arena_printf(k->arena, "%s needs --points 'X,Y X,Y'; the model's `draw` statements say "
+                                         "what else is drawn", o->from ? "--from" : "--no-rods"));
+  if (!o->points) return 1;
+  const char *points = add_points(k, "--points", o->points, UINT32_MAX, error), *from = NULL;
+  if (!points || (o->from && !o->no_rods && !(from = add_points(k, "--from", o->from, 1, error)))) return 0;
   add_argument(k, "--points", points);
   if (from) add_argument(k, "--from", from);
-  if (!rods) add_argument(k, "--no-rods", NULL);
+  if (o->no_rods) add_argument(k, "--no-rods", NULL);
   return 1;
 }
 
@@ -531,6 +419,8 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
   if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);
   if (o->command == CMD_FIT) ok = ok && prepare_columns(&k, error);
+  if (o->command == CMD_ORBIT) add_argument(&k, "--orbit", NULL);
+  if (o->command == CMD_CONTINUE) add_argument(&k, "--continue", NULL);
   if (o->command == CMD_LYAPUNOV) add_argument(&k, "--lyapunov", NULL);
   if (o->command == CMD_COST) add_argument(&k, "--cost", NULL);
   if (o->command == CMD_SWEEP) add_argument(&k, "--sweep", NULL);

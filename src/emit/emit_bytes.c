@@ -217,6 +217,19 @@ static void scene_lists(const Unit *w, const IrScene *s) {
   for (uint32_t i = 0; i < s->measures.n; i++) text(w, s->measures.at[i].name), text(w, s->measures.at[i].text);
 }
 
+static void indices(const Unit *w, const int *at, int n) {
+  for (int i = 0; i < n; i++) integer(w, at[i]);
+}
+
+static void shapes(const Unit *w, const IrScene *s) {
+  word(w, s->ndrawn), word(w, s->shapes.n);
+  for (uint32_t i = 0; i < s->shapes.n; i++) {
+    const IrShape *x = &s->shapes.at[i];
+    text(w, x->kind), text(w, x->role), text(w, x->text), integer(w, x->count);
+    indices(w, x->a, 3), indices(w, x->b, 3), indices(w, x->size, 3), indices(w, x->turn, 4);
+  }
+}
+
 static void outputs(const Unit *w, const IrScene *s) {
   variables(w, s->outputs.at, s->outputs.n);
   int forces = s->forces.n && memchr(s->forces.at, 1, s->forces.n);
@@ -245,7 +258,7 @@ static void scene(const Unit *w, const IrScene *s) {
   const unsigned char *given = u->constraints.of.n ? scene_given(u, s) : NULL;
   for (uint32_t i = 0; given && i < 2 * u->q.n + u->z.n; i++) word(w, given[i]);
   outputs(w, s);
-  scene_lists(w, s);
+  scene_lists(w, s), shapes(w, s);
 }
 
 void emit_bytes(const ProgramSet *const *units, const char *const *names, uint32_t n, StrBuf *out) {

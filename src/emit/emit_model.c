@@ -402,6 +402,12 @@ static void emit_constraints(const ModelFile *f) {
               c->is_tangent, c->force, c->conditional, c->law);
   }
   sb_puts(f->out, "};\n");
+  if (program_set_guides(f->u)) sb_puts(f->out, "\nstatic const lag_guide guide_table[] = {\n");
+  for (uint32_t i = 0; i < f->u->contacts.n; i++)
+    if (f->u->contacts.at[i].parts)
+      sb_printf(f->out, "  {%u, %u, %d},\n", i, f->u->contacts.at[i].parts,
+                f->u->contacts.at[i].parts == 1 ? (int)f->u->contacts.at[i].turn : -1);
+  if (program_set_guides(f->u)) sb_puts(f->out, "};\n");
   state_function(f, f->u->contact_laws, "contact_laws",
                  "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", NULL,
                  one_out);
@@ -508,6 +514,7 @@ static void emit_tables(const ProgramSet *u, const char *name, const char *diges
   if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->contact_laws) sb_puts(out, "  .contact_laws = contact_laws,\n");
+  if (program_set_guides(u)) sb_printf(out, "  .nguides = %u, .guides = guide_table,\n", program_set_guides(u));
   if (u->sizes.n)
     sb_printf(out, "  .nsizes = %u, .sizes = size_table, .size_values = %s,\n", u->sizes.n - u->nmoving,
               u->size_values ? "size_values" : "NULL");

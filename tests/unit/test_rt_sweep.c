@@ -1,5 +1,7 @@
 /* Plans and samples of sweeps (runtime/sweep): random words against published ones, quantiles against mpmath, each
  * part of a hypercube once, and the values of runs in order. */
+#include <stdio.h>
+
 #include "test_rt_models.h"
 
 #include "sweep/sweep_grid.h"
