@@ -68,7 +68,7 @@ static void put_direction(const Fit *f, const FitDirection *d, FILE *out) {
     for (int j = 0; j < f->n; j++) {
       if (d->change[j] == 0.0) continue;
       if (n++) fputs(", ", out);
-      if (values) fprintf(out, "%.4g", d->change[j] * f->target[j].scale / (d->shift ? unit : 1));
+      if (values) fprintf(out, "%.3g", d->change[j] * f->target[j].scale / (d->shift ? unit : 1));
       else fputs(f->target[j].label, out);
     }
     putc(')', out);
@@ -117,7 +117,7 @@ static void put_columns(const FitRun *r, FILE *out) {
   const Fit *f = &r->fit;
   for (int c = 0; c < f->ncolumns; c++) {
     const FitColumn *k = &f->column[c];
-    fprintf(out, "residuals of %s: %d values, rms %.3g%s; %d runs of one sign, %.1f +- %.1f expected: %s\n", k->label,
+    fprintf(out, "residuals of %s: %d values, rms %.3g%s\n  %d runs of one sign, %.1f +- %.1f expected: %s\n", k->label,
             k->n, k->rms, k->per_row || f->known_errors ? "" : ", taken as their error", k->runs, k->runs_expected,
             k->runs_deviation,
             k->runs_chance > unlikely    ? "no trend is left"
