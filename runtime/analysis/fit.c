@@ -364,6 +364,12 @@ static int note_flat(Fit *f, const double *V) {
   for (int k = 0; k < f->nflat; k++)
     for (int j = 0; j < n; j++) f->directions[k * n + j] = V[j * n + n - f->nflat + k];
   simplify_directions(f->nflat, n, f->directions);
+  if (f->nflat < n) {
+    double *weakest = f->directions + f->nflat * n;
+    for (int j = 0; j < n; j++) weakest[j] = V[j * n + n - f->nflat - 1];
+    simplify_directions(1, n, weakest);
+    f->weakest.change = weakest;
+  }
   for (int k = 0; k < f->nflat; k++) {
     FitDirection *d = &f->flat[k];
     d->change = f->directions + k * n;

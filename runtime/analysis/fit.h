@@ -55,7 +55,8 @@ typedef struct Fit {
   double *correlation;         /* [n * n] */
   double *singular;            /* [n] of the scaled Jacobian, relative to the largest */
   FitDirection *flat;          /* [nflat] */
-  double *directions;          /* their changes */
+  double *directions;          /* their changes; behind them that of the flattest other direction: */
+  FitDirection weakest;
   char why[400];
   /* within a search */
   int rows;                            /* rows that count */

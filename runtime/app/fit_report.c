@@ -159,6 +159,11 @@ void lag_fit_report(const FitRun *r, FILE *out) {
   fprintf(out, "%s after %d steps, %d runs of the motion\n", f->converged ? "converged" : "not converged", f->steps,
           f->evaluations);
   put_values(f, out);
+  if (!f->converged && f->weakest.change) {
+    fputs("flattest direction: ", out);
+    put_direction(f, &f->weakest, out);
+    fputs("; hold one of these, add a prior, or begin nearer\n", out);
+  }
   for (int k = 0; k < f->nflat; k++) {
     fputs(k ? "  " : "cannot be told apart: ", out);
     put_flat(f, &f->flat[k], out);
