@@ -328,7 +328,8 @@ static int is_flat_far_away(Fit *f, const double *v, int product, const double *
   return rc == LAG_OK && largest <= same * size;
 }
 
-/* Rows d[m n] that span flat directions := a basis with as few entries as elimination gives, each with largest entry 1. */
+/* Rows d[m n] that span flat directions := a basis with as few entries as elimination gives, each with largest entry 1.
+ */
 static void simplify_directions(int m, int n, double *d) {
   const double negligible = 1e-5;
   for (int k = 0; k < m; k++) {
@@ -363,6 +364,12 @@ static int note_flat(Fit *f, const double *V) {
   for (int k = 0; k < f->nflat; k++)
     for (int j = 0; j < n; j++) f->directions[k * n + j] = V[j * n + n - f->nflat + k];
   simplify_directions(f->nflat, n, f->directions);
+  if (f->nflat < n) {
+    double *weakest = f->directions + f->nflat * n;
+    for (int j = 0; j < n; j++) weakest[j] = V[j * n + n - f->nflat - 1];
+    simplify_directions(1, n, weakest);
+    f->weakest.change = weakest;
+  }
   for (int k = 0; k < f->nflat; k++) {
     FitDirection *d = &f->flat[k];
     d->change = f->directions + k * n;

@@ -36,8 +36,8 @@ static int take_prior(FitRun *r, const char *text) {
     FitTarget *t = &r->fit.target[j];
     if (!starts_with(text, t->name, &rest) || *rest != '~') continue;
     if (sscanf(rest, "~normal(%lf,%lf)", &t->prior, &t->prior_error) == 2 && t->prior_error > 0) return 0;
-    return lag_app_error(&r->app->args, "--prior '%s': write --prior '%s~normal(MEAN, DEVIATION)', in %s", text, t->name,
-                         t->unit[0] ? t->unit : "its own unit");
+    return lag_app_error(&r->app->args, "--prior '%s': write --prior '%s~normal(MEAN, DEVIATION)', in %s", text,
+                         t->name, t->unit[0] ? t->unit : "its own unit");
   }
   return lag_app_error(&r->app->args, "--prior '%s': write NAME~normal(MEAN, DEVIATION), with a NAME of --fit", text);
 }
@@ -77,8 +77,8 @@ static int take_targets(FitRun *r) {
   lag_sim *sim = lag_app_fresh_bare_sim(r->app);
   int rc = !name || !f->target || !sim ? lag_app_error(a, "out of memory") : 0;
   for (int j = 0; j < f->n && rc == 0; j++) f->target[j].name = name[j] = bare(name[j]);
-  if (rc == 0 && (lag_app_copy_method(r->app->sim, sim, 1) ||
-                  lag_sim_set_sensitivity(sim, f->n, (const char *const *)name)))
+  if (rc == 0 &&
+      (lag_app_copy_method(r->app->sim, sim, 1) || lag_sim_set_sensitivity(sim, f->n, (const char *const *)name)))
     rc = lag_app_error(a, "--fit: %s", lag_sim_message(sim));
   for (int j = 0; j < f->n && rc == 0; j++) {
     FitTarget *t = &f->target[j];
@@ -204,10 +204,11 @@ static int take_times(FitRun *r) {
       rc = lag_app_error(a, "%s:%lld: t = %.9g s comes after %.9g s; sort the rows by time", a->data, r->data.line[i],
                          t[i], t[i - 1]);
     else if (t[i] < t0)
-      rc = lag_app_error(a,
-                         "%s:%lld: t = %.9g s lies before the scene, which begins at %.9g s; write `span %.9g..` into the "
-                         "scene",
-                         a->data, r->data.line[i], t[i], t0, t[0]);
+      rc = lag_app_error(
+          a,
+          "%s:%lld: t = %.9g s lies before the scene, which begins at %.9g s; write `span %.9g..` into the "
+          "scene",
+          a->data, r->data.line[i], t[i], t0, t[0]);
   }
   r->fit.t = t;
   return rc;

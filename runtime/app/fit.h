@@ -9,10 +9,10 @@ typedef struct FitRun {
   App *app;
   Fit fit;
   DataFile data;
-  char *names;  /* of targets, as text */
-  double *t;    /* [rows] times [s] */
+  char *names;      /* of targets, as text */
+  double *t;        /* [rows] times [s] */
   double time_unit; /* of the file, in seconds */
-  int status;   /* LAG_... of the fit */
+  int status;       /* LAG_... of the fit */
 } FitRun;
 
 /* fit_report.c, fit_picture.c; the latter: 0, or -1 with errno set. */

@@ -1,4 +1,5 @@
-/* The report of a fit: values with errors, what data cannot tell apart, how well the motion fits, and a scene to paste. */
+/* The report of a fit: values with errors, what data cannot tell apart, how well the motion fits, and a scene to paste.
+ */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,13 +60,15 @@ static int count_of(const Fit *f, const FitDirection *d) {
 
 /* "(g, l) along (9.81, 1)" */
 static void put_direction(const Fit *f, const FitDirection *d, FILE *out) {
+  double unit = 0; /* of shifts: the largest is 1 */
+  for (int j = 0; j < f->n; j++) unit = fmax(unit, fabs(d->change[j] * f->target[j].scale));
   for (int values = 0; values < 2; values++) {
     int n = 0;
     fputs(values ? " along (" : "(", out);
     for (int j = 0; j < f->n; j++) {
       if (d->change[j] == 0.0) continue;
       if (n++) fputs(", ", out);
-      if (values) fprintf(out, "%.4g", d->change[j] * f->target[j].scale);
+      if (values) fprintf(out, "%.3g", d->change[j] * f->target[j].scale / (d->shift ? unit : 1));
       else fputs(f->target[j].label, out);
     }
     putc(')', out);
@@ -114,13 +117,12 @@ static void put_columns(const FitRun *r, FILE *out) {
   const Fit *f = &r->fit;
   for (int c = 0; c < f->ncolumns; c++) {
     const FitColumn *k = &f->column[c];
-    fprintf(out, "residuals of %s: %d values, rms %.3g%s; %d runs of one sign, %.1f +- %.1f expected: %s\n", k->label,
+    fprintf(out, "residuals of %s: %d values, rms %.3g%s\n  %d runs of one sign, %.1f +- %.1f expected: %s\n", k->label,
             k->n, k->rms, k->per_row || f->known_errors ? "" : ", taken as their error", k->runs, k->runs_expected,
             k->runs_deviation,
-            k->runs_chance > unlikely ? "no trend is left"
-            : k->runs < k->runs_expected
-                ? "a trend is left, which the model lacks"
-                : "they swing from row to row");
+            k->runs_chance > unlikely    ? "no trend is left"
+            : k->runs < k->runs_expected ? "a trend is left, which the model lacks"
+                                         : "they swing from row to row");
   }
 }
 
@@ -157,6 +159,11 @@ void lag_fit_report(const FitRun *r, FILE *out) {
   fprintf(out, "%s after %d steps, %d runs of the motion\n", f->converged ? "converged" : "not converged", f->steps,
           f->evaluations);
   put_values(f, out);
+  if (!f->converged && f->weakest.change) {
+    fputs("flattest direction: ", out);
+    put_direction(f, &f->weakest, out);
+    fputs("; hold one of these, add a prior, or begin nearer\n", out);
+  }
   for (int k = 0; k < f->nflat; k++) {
     fputs(k ? "  " : "cannot be told apart: ", out);
     put_flat(f, &f->flat[k], out);
@@ -181,7 +188,8 @@ void lag_fit_report_json(const FitRun *r, FILE *out) {
   lag_json_count(&j, "runs", f->evaluations);
   for (int what = 0; what < 2; what++) {
     lag_json_begin(&j, what ? "errors" : "values", '{');
-    for (int i = 0; i < f->n; i++) lag_json_number(&j, f->target[i].label, what ? f->target[i].error : f->target[i].value);
+    for (int i = 0; i < f->n; i++)
+      lag_json_number(&j, f->target[i].label, what ? f->target[i].error : f->target[i].value);
     lag_json_end(&j, '}');
   }
   lag_json_begin(&j, "correlations", '[');

@@ -1,6 +1,6 @@
-/* lag_least_squares by the GNU Scientific Library: trust-region steps with geodesic acceleration (M. K. Transtrum, J. P.
- * Sethna, arXiv:1201.5885), singular values by one-sided Jacobi rotations. Holds: GSL's abort handler is off while it
- * runs, and its allocations are freed on every way out. */
+/* lag_least_squares by the GNU Scientific Library: trust-region steps with geodesic acceleration (M. K. Transtrum, J.
+ * P. Sethna, arXiv:1201.5885), singular values by one-sided Jacobi rotations. Holds: GSL's abort handler is off while
+ * it runs, and its allocations are freed on every way out. */
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
@@ -67,7 +67,8 @@ static int minimise(int m, int n, double *x, lag_residuals_at *residuals, void *
 
 static int singular_values(int m, int n, double *A, double *values, double *V) {
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-  gsl_matrix_view a = gsl_matrix_view_array(A, (size_t)m, (size_t)n), v = gsl_matrix_view_array(V, (size_t)n, (size_t)n);
+  gsl_matrix_view a = gsl_matrix_view_array(A, (size_t)m, (size_t)n),
+                  v = gsl_matrix_view_array(V, (size_t)n, (size_t)n);
   gsl_vector_view s = gsl_vector_view_array(values, (size_t)n);
   int rc = gsl_linalg_SV_decomp_jacobi(&a.matrix, &v.matrix, &s.vector);
   gsl_set_error_handler(handler);

@@ -1,5 +1,5 @@
-/* Files of measurements (data_file.h). Enters: a path; leaves: names and numbers. Holds: each field is a finite number or
- * empty, or the file is refused with its line. */
+/* Files of measurements (data_file.h). Enters: a path; leaves: names and numbers. Holds: each field is a finite number
+ * or empty, or the file is refused with its line. */
 #include "io/data_file.h"
 
 #include <errno.h>
@@ -83,8 +83,9 @@ static int take_number(const DataFile *d, const char *path, long long line, int 
   if (!*field) return 0;
   double value = strtod(field, &end);
   if (*end || !isfinite(value))
-    return snprintf(why, size, "%s:%lld: column %s: \"%.40s\" is not a finite number; leave the field empty where "
-                               "nothing was measured",
+    return snprintf(why, size,
+                    "%s:%lld: column %s: \"%.40s\" is not a finite number; leave the field empty where "
+                    "nothing was measured",
                     path, line, d->names[col], field),
            -1;
   *x = value;

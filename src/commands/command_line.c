@@ -295,6 +295,16 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
   return 1;
 }
 
+const char *options_passed(const Options *o, const char *name) {
+  size_t n = strlen(name);
+  for (uint32_t i = 0; i < o->rest.n; i++) {
+    const char *word = o->rest.at[i];
+    if (strncmp(word, name, n) == 0 && word[n] == '=') return word + n + 1;
+    if (strcmp(word, name) == 0 && i + 1 < o->rest.n) return o->rest.at[i + 1];
+  }
+  return NULL;
+}
+
 int options_more_digits(const Options *o) { return o->precision && strcmp(o->precision, "double") != 0; }
 
 int options_read(Arena *a, int argc, char **argv, Options *o, const char **error) {

@@ -381,19 +381,12 @@ static int add_column(RequestBuilder *k, const char *label, int is_time) {
   return 1;
 }
 
-static const char *data_file(const Options *o) {
-  for (uint32_t i = 0; i < o->rest.n; i++) {
-    if (strncmp(o->rest.at[i], "--data=", 7) == 0) return o->rest.at[i] + 7;
-    if (strcmp(o->rest.at[i], "--data") == 0 && i + 1 < o->rest.n) return o->rest.at[i + 1];
-  }
-  return NULL;
-}
-
 /* Columns of --data, by the first line of the file. */
 static int prepare_columns(RequestBuilder *k, const char **error) {
   enum { LONGEST = 1 << 16 };
-  const char *path = data_file(k->o), *why = NULL, *label;
-  if (!path) return fail_with(error, "lagc fit needs the record and what to find: --data motion.csv --fit g,l");
+  const char *path = options_passed(k->o, "--data"), *why = NULL, *label;
+  if (!path || !options_passed(k->o, "--fit"))
+    return fail_with(error, "lagc fit needs the record and what to find: --data motion.csv --fit g,l");
   FILE *f = source_open(path, &why);
   if (!f) return fail_with(error, arena_printf(k->arena, "--data %s cannot be read: %s", path, why));
   char *line = arena_alloc(k->arena, LONGEST);
