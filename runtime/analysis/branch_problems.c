@@ -84,9 +84,10 @@ static int find_rest(RestBranch *r) {
   if (found > 0) memcpy(r->y, rest.y, (size_t)r->flow.n * sizeof *r->y);
   lag_equilibrium_free(&rest);
   if (found > 0) return LAG_OK;
-  snprintf(r->flow.message, sizeof r->flow.message,
-           "no state of rest found near the start: start near one: name=VALUE; for periodic motions write about how long "
-           "they take: --guess T");
+  snprintf(
+      r->flow.message, sizeof r->flow.message,
+      "no state of rest found near the start: start near one: name=VALUE; for periodic motions write about how long "
+      "they take: --guess T");
   return LAG_EDOMAIN;
 }
 
@@ -99,14 +100,16 @@ int lag_rest_branch_open(RestBranch *r, lag_sim *like, const lag_algebra *algebr
                          double size) {
   const lag_model *m = like->scene->model;
   size_t n = (size_t)(like->pb.nq + like->pb.nz), all = (size_t)like->pb.n;
-  *r = (RestBranch){.algebra = algebra, .n = (int)n, .cols = (int)n + 1, .name = name, .parameter = value,
-                    .parameter_unit = size};
+  *r = (RestBranch){
+      .algebra = algebra, .n = (int)n, .cols = (int)n + 1, .name = name, .parameter = value, .parameter_unit = size};
   int rc = lag_flow_open(&r->flow, like);
   if (rc) return rc;
-  if (m->constraints) return refuse(r, "states of rest with constraints are not continued yet: write coordinates that "
-                                       "obey them, or continue periodic motions: --guess T");
-  if (r->flow.forced) return refuse(r, "the scene depends on time, so that nothing rests: continue its periodic motions: "
-                                       "--guess T");
+  if (m->constraints)
+    return refuse(r, "states of rest with constraints are not continued yet: write coordinates that "
+                     "obey them, or continue periodic motions: --guess T");
+  if (r->flow.forced)
+    return refuse(r, "the scene depends on time, so that nothing rests: continue its periodic motions: "
+                     "--guess T");
   double **const parts[] = {&r->unit, &r->row, &r->y, &r->rates, &r->up, &r->down, &r->J, &r->v};
   const size_t sizes[] = {n, n, all, all, n, n, all * all, 3 * all * all};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&r->pool, sizes[i]);
@@ -116,7 +119,11 @@ int lag_rest_branch_open(RestBranch *r, lag_sim *like, const lag_algebra *algebr
     int at = component(r, i);
     r->unit[i] = lag_difference_scale(&r->flow.probe->pb, r->y, at);
   }
-  r->problem = (BranchProblem){.of = r, .rows = r->n, .cols = r->cols, .place = place_rest, .system = rest_system,
+  r->problem = (BranchProblem){.of = r,
+                               .rows = r->n,
+                               .cols = r->cols,
+                               .place = place_rest,
+                               .system = rest_system,
                                .spectrum = rest_spectrum,
                                .pairs = (lag_facts(&r->flow.probe->pb) & LAG_CONSERVES_ENERGY) != 0};
   return LAG_OK;
@@ -182,6 +189,12 @@ static int orbit_spectrum(void *of, Spectrum *s) {
 
 void lag_orbit_branch(BranchProblem *p, PeriodicOrbit *o) {
   lag_orbit_count(o);
-  *p = (BranchProblem){.of = o, .rows = o->rows, .cols = o->cols, .maps = 1, .pairs = isfinite(o->pairing),
-                       .place = place_orbit, .system = orbit_system, .spectrum = orbit_spectrum};
+  *p = (BranchProblem){.of = o,
+                       .rows = o->rows,
+                       .cols = o->cols,
+                       .maps = 1,
+                       .pairs = isfinite(o->pairing),
+                       .place = place_orbit,
+                       .system = orbit_system,
+                       .spectrum = orbit_spectrum};
 }

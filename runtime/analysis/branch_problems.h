@@ -11,11 +11,11 @@ typedef struct RestBranch {
   FlowMap flow;
   const lag_algebra *algebra;
   BranchProblem problem;
-  int n, cols;          /* coordinates and states; with the parameter */
+  int n, cols; /* coordinates and states; with the parameter */
   const char *name;
   double parameter, parameter_unit;
-  double *unit, *row;   /* [n] sizes of unknowns, and of rows once they are known (0) */
-  double *y;            /* [2 nq + nz] the state */
+  double *unit, *row; /* [n] sizes of unknowns, and of rows once they are known (0) */
+  double *y;          /* [2 nq + nz] the state */
   double *rates, *up, *down, *J, *v;
 } RestBranch;
 

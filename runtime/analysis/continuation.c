@@ -15,10 +15,10 @@ static const double least_rank = 1e-8; /* singular values below this part of the
 typedef struct Walk {
   Branch *b;
   const BranchProblem *p;
-  int rows, cols;        /* of the equations with the row across the tangent */
+  int rows, cols; /* of the equations with the row across the tangent */
   double *J, *rhs, *V, *sigma, *x;
-  int newton;            /* steps of the last correction */
-  double made;           /* arclength of the last step */
+  int newton;  /* steps of the last correction */
+  double made; /* arclength of the last step */
 } Walk;
 
 static double dot(int n, const double *a, const double *b) {
@@ -122,7 +122,10 @@ static BranchPoint *point_at(Walk *w, const BranchPoint *from, double s) {
 /* ---- Bifurcations between two points */
 
 static double test_of(const BranchPoint *at, BranchKind kind) {
-  return kind == BRANCH_FOLD ? at->fold : kind == BRANCH_POINT ? at->zero : kind == BRANCH_DOUBLING ? at->minus : at->pair;
+  return kind == BRANCH_FOLD       ? at->fold
+         : kind == BRANCH_POINT    ? at->zero
+         : kind == BRANCH_DOUBLING ? at->minus
+                                   : at->pair;
 }
 
 static int changes_sign(double a, double b) { return (a < 0 && b > 0) || (a > 0 && b < 0); }

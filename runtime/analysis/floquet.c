@@ -184,7 +184,8 @@ static int separate(Pool *pool, int m, int k, double *W, double *growth) {
       double *to = Q + (size_t)(s + 1) * size;
       multiply(k, W + (size_t)s * size, to - size, to);
       if (lag_orthonormalise(k, k, to, growth, round >= ROUNDS - COUNTED, 0) ||
-          lag_orthonormalise(k, k, to, growth, 0, 0)) return LAG_ESINGULAR; /* twice: of a singular W */
+          lag_orthonormalise(k, k, to, growth, 0, 0))
+        return LAG_ESINGULAR; /* twice: of a singular W */
     }
   }
   for (int s = 0; s < m; s++)
@@ -260,8 +261,7 @@ int lag_orbit_multipliers(PeriodicOrbit *o) {
   for (int s = 0; s < m && rc == LAG_OK; s++) rc = b[s].k == k ? LAG_OK : LAG_ESINGULAR;
   double *W = lag_pool_doubles(&pool, (size_t)(m * k * k) + 1);
   if (rc == LAG_OK && pool.failed) rc = LAG_ENOMEM;
-  for (int s = 0; s < m && rc == LAG_OK; s++)
-    rc = reduced(&pool, o, s, &b[s], &b[(s + 1) % m], W + s * k * k);
+  for (int s = 0; s < m && rc == LAG_OK; s++) rc = reduced(&pool, o, s, &b[s], &b[(s + 1) % m], W + s * k * k);
   rc = rc ? rc : eigenvalues(&pool, o, k, W);
   if (rc == LAG_OK) sort(o);
   o->ntrivial = all - o->nmultipliers;

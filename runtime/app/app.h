@@ -128,7 +128,8 @@ typedef struct App {
 #include "app/options.def"
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
-enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, ORBIT = 128, CONTINUE = 256, ANY = 511,
+enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, ORBIT = 128,
+       CONTINUE = 256, ANY = 511,
        MOTION_PERIODIC = ORBIT | CONTINUE,
        MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS };
 
@@ -141,6 +142,9 @@ typedef struct Option {
   size_t field, count;  /* in Args: an int, a text, or a list with its number at count */
   const char *text;     /* NULL: not in help */
 } Option;
+
+/* Whether the analysis carries tangents along its runs. */
+static inline int lag_args_tangents(const Args *a) { return a->lyapunov || a->orbit || a->continues; }
 
 /* Row i; NULL past the end. */
 const Option *lag_args_option(int i);

@@ -20,8 +20,8 @@ typedef struct Part {
 
 typedef struct Job {
   App *app;
-  char name[128];       /* of the parameter */
-  const lag_var *unit;  /* of a parameter of the model; NULL: of another quantity */
+  char name[128];                                /* of the parameter */
+  const lag_var *unit;                           /* of a parameter of the model; NULL: of another quantity */
   double low, high, begin, size, offset, factor; /* range; first value; SI = factor x + offset */
   RestBranch rest;
   PeriodicOrbit orbit, doubled;
@@ -57,7 +57,8 @@ static int take_range(Job *job) {
   snprintf(job->name, sizeof job->name, "%.*s", (int)n, found);
   snprintf(low, sizeof low, "%.*s", (int)(dots - found - (long)n - 1), found + n + 1);
   if (!lag_args_number(a, job->name, low, "mu=0.1..3", &job->low) ||
-      !lag_args_number(a, job->name, dots + 2, "mu=0.1..3", &job->high)) return EXIT_USAGE;
+      !lag_args_number(a, job->name, dots + 2, "mu=0.1..3", &job->high))
+    return EXIT_USAGE;
   return job->low != job->high ? 0 : lag_app_error(a, "%s: the ends of the range are equal", found);
 }
 
@@ -97,11 +98,12 @@ static int choose_begin(Job *job) {
 /* ---- Following */
 
 static const char *words_of(int rc, const char *message) {
-  return rc == LAG_ENOMEM         ? "out of memory"
-         : rc == LAG_ESINGULAR    ? "at each value of the parameter there is a family of solutions: --hold energy, or another "
-                                    "charge, coordinate or `period`, chooses one"
-         : message && message[0]  ? message
-                                  : "there is no solution to begin with";
+  return rc == LAG_ENOMEM ? "out of memory"
+         : rc == LAG_ESINGULAR
+             ? "at each value of the parameter there is a family of solutions: --hold energy, or another "
+               "charge, coordinate or `period`, chooses one"
+         : message && message[0] ? message
+                                 : "there is no solution to begin with";
 }
 
 static int failed(Job *job, int rc, const char *message) {
@@ -151,14 +153,18 @@ static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
   lag_sim *like = job->doubled_like = lag_flow_sim(&o->flow, o->flow.t0, o->y);
   if (!like) return LAG_ENOMEM;
   like->scene = job->app->sim->scene;
-  *two = (PeriodicOrbit){.nheld = o->nheld, .continues = 1, .led = o->led, .name = o->name, .parameter = o->parameter,
-                         .parameter_unit = o->parameter_unit, .ngroup = o->ngroup};
+  *two = (PeriodicOrbit){.nheld = o->nheld,
+                         .continues = 1,
+                         .led = o->led,
+                         .name = o->name,
+                         .parameter = o->parameter,
+                         .parameter_unit = o->parameter_unit,
+                         .ngroup = o->ngroup};
   memcpy(two->held, o->held, sizeof o->held);
   memcpy(two->group, o->group, sizeof o->group);
   int rc = lag_orbit_open(two, like, o->algebra, 2 * o->T, 2 * o->m);
   if (rc) return rc == LAG_ENOMEM ? rc : LAG_OK;
-  for (int s = 0; s < two->m; s++)
-    memcpy(two->y + s * o->n, o->y + s % o->m * o->n, (size_t)o->n * sizeof *o->y);
+  for (int s = 0; s < two->m; s++) memcpy(two->y + s * o->n, o->y + s % o->m * o->n, (size_t)o->n * sizeof *o->y);
   two->pairing = o->pairing;
   lag_orbit_branch(&job->doubled_problem, two);
   BranchPoint start = *at;
@@ -234,14 +240,17 @@ static int begin_periodic(Job *job) {
     o->held[o->nheld++] = (OrbitHold){.kind = job->led_kind, .of = job->led_of};
     job->begin = (led_value(job) - job->offset) / job->factor;
     if (job->begin < fmin(job->low, job->high) || job->begin > fmax(job->low, job->high))
-      return lag_app_error(&app->args, "the periodic motion near the start has %s = %.6g, outside of %g..%g: start within: "
-                           "name=VALUE, or widen the range", job->name, job->begin, job->low, job->high);
+      return lag_app_error(&app->args,
+                           "the periodic motion near the start has %s = %.6g, outside of %g..%g: start within: "
+                           "name=VALUE, or widen the range",
+                           job->name, job->begin, job->low, job->high);
   } else o->led = -1;
   o->name = job->led_kind < 0 ? job->name : NULL;
   o->parameter = job->led_kind < 0 ? job->begin : led_value(job);
   o->parameter_unit = job->size * (job->led_kind < 0 ? 1 : fabs(job->factor));
   o->continues = 1;
-  if (job->led_kind < 0 && lag_flow_set(&o->flow, o->name, o->parameter)) return failed(job, LAG_EINVAL, o->flow.message);
+  if (job->led_kind < 0 && lag_flow_set(&o->flow, o->name, o->parameter))
+    return failed(job, LAG_EINVAL, o->flow.message);
   lag_orbit_branch(&job->problem, o);
   double *u = malloc((size_t)o->cols * sizeof *u);
   if (!u) return failed(job, LAG_ENOMEM, NULL);
@@ -254,14 +263,16 @@ static int begin_periodic(Job *job) {
 /* ---- The report */
 
 static const char *kind_word(BranchKind kind, int periodic) {
-  static const char *const words[] = {"", "fold", "branch point", "period doubling", "Hopf", "Neimark-Sacker", "collision"};
+  static const char *const words[] = {"",     "fold",           "branch point", "period doubling",
+                                      "Hopf", "Neimark-Sacker", "collision"};
   return kind == BRANCH_COLLISION ? periodic ? "multipliers collide" : "frequencies collide" : words[kind];
 }
 
 /* The parameter at a point, in its declared unit. */
 static double parameter_at(const Job *job, const Part *part, const BranchPoint *at) {
   double x = at->u[part->problem->cols - 1];
-  return part->orbit && job->led_kind >= 0 ? (x * part->orbit->parameter_unit - job->offset) / job->factor : x * job->size;
+  return part->orbit && job->led_kind >= 0 ? (x * part->orbit->parameter_unit - job->offset) / job->factor
+                                           : x * job->size;
 }
 
 static double period_at(const Part *part, const BranchPoint *at) {
@@ -323,9 +334,11 @@ static void put_point(FILE *f, const Job *job, const Part *part, const BranchPoi
   putc('\n', f);
 }
 
-static const char *const ends[] = {
-  [BRANCH_AT_RANGE] = "end of the range", [BRANCH_AT_NUMBER] = "as many points as --most allows",
-  [BRANCH_CLOSED] = "closed", [BRANCH_LOST] = "lost: no solution beside it", [BRANCH_NO_MEMORY] = "out of memory"};
+static const char *const ends[] = {[BRANCH_AT_RANGE] = "end of the range",
+                                   [BRANCH_AT_NUMBER] = "as many points as --most allows",
+                                   [BRANCH_CLOSED] = "closed",
+                                   [BRANCH_LOST] = "lost: no solution beside it",
+                                   [BRANCH_NO_MEMORY] = "out of memory"};
 
 static void put_text(FILE *f, const Job *job) {
   const App *app = job->app;
@@ -334,8 +347,8 @@ static void put_text(FILE *f, const Job *job) {
           job->unit && job->unit->unit[0] ? " " : "", job->unit ? job->unit->unit : "");
   for (int k = 0; k < job->nparts; k++) {
     const Part *part = &job->part[k];
-    fprintf(f, "branch %d%s, %d points", part->number, k && job->part[k - 1].number == part->number ? ", other direction" : "",
-            part->branch.npoints);
+    fprintf(f, "branch %d%s, %d points", part->number,
+            k && job->part[k - 1].number == part->number ? ", other direction" : "", part->branch.npoints);
     if (part->from) fprintf(f, ", from branch %d", part->from);
     putc('\n', f);
     for (const BranchPoint *at = part->branch.first; at; at = at->next) {
@@ -398,11 +411,13 @@ static void put_json(FILE *f, const Job *job) {
 enum { OF_BRANCH = 4 }; /* columns before those of the state: parameter, branch, kind, growing directions */
 
 static int make_table(Job *job) {
-  static const char *const kinds[] = {"", "fold", "branch point", "period doubling", "Hopf", "Neimark-Sacker", "collision"};
+  static const char *const kinds[] = {"",     "fold",           "branch point", "period doubling",
+                                      "Hopf", "Neimark-Sacker", "collision"};
   App *app = job->app;
   Table *t = &app->table;
   int n = app->sim->pb.n, k = 0;
-  *t = (Table){.ncols = OF_BRANCH + 2 + 2 * n, .keep = 0, .cols = calloc((size_t)(OF_BRANCH + 2 + 2 * n), sizeof *t->cols)};
+  *t = (Table){
+      .ncols = OF_BRANCH + 2 + 2 * n, .keep = 0, .cols = calloc((size_t)(OF_BRANCH + 2 + 2 * n), sizeof *t->cols)};
   app->row = calloc((size_t)t->ncols, sizeof *app->row);
   if (!t->cols || !app->row) return lag_app_error(&app->args, "out of memory");
   snprintf(t->cols[k].name, sizeof t->cols[k].name, "%s", job->name);
@@ -416,7 +431,8 @@ static int make_table(Job *job) {
   strcpy(t->cols[++k].name, job->periodic ? "largest multiplier" : "fastest growth");
   for (int i = 0; i < 2 * n; i++) {
     Column c = lag_state_column(app->sim, i % n);
-    if (i >= n) memmove(c.name + 4, c.name, sizeof c.name - 4), memcpy(c.name, "max ", 4), c.name[sizeof c.name - 1] = '\0';
+    if (i >= n)
+      memmove(c.name + 4, c.name, sizeof c.name - 4), memcpy(c.name, "max ", 4), c.name[sizeof c.name - 1] = '\0';
     t->cols[++k] = c;
   }
   return 0;
@@ -463,13 +479,11 @@ static int drawn_rows(Job *job, Table *t, double *most) {
   int rc = 0;
   for (int k = 0; k < job->nparts && rc == 0; k++) {
     const Part *part = &job->part[k];
-    int was = -1;
     for (const BranchPoint *at = part->branch.first; at && rc == 0; at = at->next) {
       largest_values(job, part, at, most);
       double y = lag_sim_declared(job->app->sim, 0, most[0]), x = parameter_at(job, part, at);
-      int grows = at->unstable > 0;
-      double row[] = {x, grows && was != 0 ? NAN : y, grows || was == 1 ? y : NAN};
-      was = grows;
+      int changes = at->kind != BRANCH_REGULAR; /* here both curves meet */
+      double row[] = {x, at->unstable && !changes ? NAN : y, at->unstable || changes ? y : NAN};
       rc = lag_table_add(t, row);
     }
     double gap[] = {NAN, NAN, NAN};
@@ -495,12 +509,16 @@ static int draw(Job *job) {
   snprintf(app->table.cols[0].name, sizeof app->table.cols[0].name, "%s", job->name);
   if (job->unit) snprintf(app->table.cols[0].unit, sizeof app->table.cols[0].unit, "%s", job->unit->unit);
   for (int k = 1; k < 3; k++) {
-    snprintf(app->table.cols[k].name, sizeof app->table.cols[k].name, "%s, %s", name, k == 1 ? "nothing grows" : "unstable");
+    snprintf(app->table.cols[k].name, sizeof app->table.cols[k].name, "%s, %s", name,
+             k == 1 ? "nothing grows" : "unstable");
     memcpy(app->table.cols[k].unit, first.unit, sizeof first.unit);
   }
   snprintf(title, sizeof title, "%s: %s, %s over %s", app->scene->model->name, app->scene->name,
            job->periodic ? "periodic motions" : "states of rest", job->name);
-  return lag_app_choose_curves(app) ? EXIT_USAGE : lag_app_draw_table(app, title);
+  if (lag_app_choose_curves(app)) return EXIT_USAGE;
+  snprintf(app->drawn_ys, sizeof app->drawn_ys, "%s", name);
+  app->drawn.yname = app->drawn_ys;
+  return lag_app_draw_table(app, title);
 }
 
 /* ---- The command */
@@ -511,7 +529,10 @@ static int read_limits(Job *job) {
   if (a->most && lag_args_count(a, "--most", a->most, "--most 400", &most)) return EXIT_USAGE;
   double a0 = job->low * job->factor + job->offset, b0 = job->high * job->factor + job->offset;
   double unit = job->size * fabs(job->factor);
-  job->limits = (BranchLimits){.low = fmin(a0, b0) / unit, .high = fmax(a0, b0) / unit, .step = 0.01, .longest = 0.1,
+  job->limits = (BranchLimits){.low = fmin(a0, b0) / unit,
+                               .high = fmax(a0, b0) / unit,
+                               .step = 0.01,
+                               .longest = 0.1,
                                .most = (int)(most < 100000 ? most : 100000)};
   return 0;
 }
