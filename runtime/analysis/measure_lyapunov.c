@@ -1,5 +1,5 @@
-/* The measures `lyapunov`, the largest Lyapunov exponent of a run (lyapunov.h), and `megno`, the mean exponential growth
- * of nearby orbits: the mean over t of Y(t) = 2/t int s d(log |d|), which tends to 2 for regular motions and grows as
+/* The measures `lyapunov`, the largest Lyapunov exponent of a run (lyapunov.h), and `megno`, the mean exponential
+ * growth of nearby orbits: the mean over t of Y(t) = 2/t int s d(log |d|), which tends to 2 for regular motions and grows as
  * half the exponent times t for chaotic ones (P. M. Cincotta, C. Simo, Astron. Astrophys. Suppl. 147 (2000) 205, DOI
  * 10.1051/aas:2000108). Enters: a run that has ended; leaves: the number, or why there is none. Holds: each takes a run
  * of its own, with a tangent, so that the first has the steps that it has without. */
@@ -52,7 +52,8 @@ static int begin(Exponent *e, const lag_sim *first, double until, MeasureKind ki
   if (!e->sim) return snprintf(why, size, "out of memory"), LAG_ENOMEM;
   double t0 = lag_sim_time(e->sim), from = kind == MEASURE_MEGNO ? t0 : t0 + (until - t0) / TURNING;
   int rc = until > t0 ? lag_lyapunov_begin(&e->l, e->sim, 1, from, until) : LAG_EINVAL;
-  if (kind == MEASURE_MEGNO) e->l.begun = e->l.block_from = e->l.traced = e->t = t0; /* the first step counts, too */
+  if (kind == MEASURE_MEGNO) /* the first step counts, too */
+    e->l.begun = e->l.block_from = e->l.traced = e->t = t0;
   if (rc)
     snprintf(why, size, "%s",
              until > t0 ? lag_sim_message(e->sim) : "an exponent is a mean over a long time, forwards");

@@ -8,7 +8,7 @@
 #include "analysis/branch_problems.h"
 #include "app/app.h"
 
-enum { MOST_BRANCHES = 12, POINTS = 400, LOOKS = 128 };
+enum { MOST_BRANCHES = 24, MOST_DOUBLINGS = 4, POINTS = 400, LOOKS = 128 };
 
 /* A branch and the equations that it solves. */
 typedef struct Part {
@@ -18,15 +18,23 @@ typedef struct Part {
   int number, from;     /* of the branch that it is a half of; of the one that it leaves, 0: none */
 } Part;
 
+/* Motions of twice the period of another one. */
+typedef struct Doubled {
+  lag_sim *like;
+  PeriodicOrbit orbit;
+  BranchProblem problem;
+} Doubled;
+
 typedef struct Job {
   App *app;
-  char name[128];                                /* of the parameter */
+  char name[96];                                 /* of the parameter */
   const lag_var *unit;                           /* of a parameter of the model; NULL: of another quantity */
   double low, high, begin, size, offset, factor; /* range; first value; SI = factor x + offset */
   RestBranch rest;
-  PeriodicOrbit orbit, doubled;
-  lag_sim *doubled_like;
-  BranchProblem problem, doubled_problem;
+  PeriodicOrbit orbit;
+  BranchProblem problem;
+  Doubled doubled[MOST_DOUBLINGS];
+  int ndoubled;
   int periodic, led_kind, led_of; /* led_kind: of OrbitHold; -1: a parameter */
   BranchLimits limits;
   Part part[MOST_BRANCHES];
@@ -146,49 +154,59 @@ static int follow_other(Job *job, const Part *of, const BranchPoint *at) {
   return rc;
 }
 
-/* Motions of twice the period, from a point where it doubles. */
-static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
-  PeriodicOrbit *o = of->orbit, *two = &job->doubled;
-  if (job->doubled_like || of->problem->place(o, at->u)) return LAG_OK; /* once */
-  lag_sim *like = job->doubled_like = lag_flow_sim(&o->flow, o->flow.t0, o->y);
-  if (!like) return LAG_ENOMEM;
-  like->scene = job->app->sim->scene;
-  *two = (PeriodicOrbit){.nheld = o->nheld,
-                         .continues = 1,
-                         .led = o->led,
-                         .name = o->name,
-                         .parameter = o->parameter,
-                         .parameter_unit = o->parameter_unit,
-                         .ngroup = o->ngroup};
-  memcpy(two->held, o->held, sizeof o->held);
-  memcpy(two->group, o->group, sizeof o->group);
-  int rc = lag_orbit_open(two, like, o->algebra, 2 * o->T, 2 * o->m);
-  if (rc) return rc == LAG_ENOMEM ? rc : LAG_OK;
-  for (int s = 0; s < two->m; s++) memcpy(two->y + s * o->n, o->y + s % o->m * o->n, (size_t)o->n * sizeof *o->y);
-  two->pairing = o->pairing;
-  lag_orbit_branch(&job->doubled_problem, two);
-  BranchPoint start = *at;
-  double *u = malloc(2 * (size_t)two->cols * sizeof *u);
-  if (!u) return LAG_ENOMEM;
-  lag_orbit_branch_unknowns(two, u);
-  start.u = u;
-  start.tangent = u + two->cols; /* the same branch: each half moves as the whole does */
-  for (int i = 0; i < two->cols; i++) {
-    int k = i < two->m * o->n ? i % (o->m * o->n) : o->m * o->n + i - two->m * o->n;
-    start.tangent[i] = at->tangent[k];
-  }
-  Part whole = {.problem = &job->doubled_problem, .orbit = two, .number = of->number};
-  rc = follow_other(job, &whole, &start);
-  free(u);
+/* The orbit over twice the period at a point where it doubles; its parts hold the same motion. */
+static int open_doubled(Doubled *two, PeriodicOrbit *o, const lag_scene *scene) {
+  two->like = lag_flow_sim(&o->flow, o->flow.t0, o->y);
+  if (!two->like) return LAG_ENOMEM;
+  two->like->scene = scene;
+  two->orbit = (PeriodicOrbit){.nheld = o->nheld,
+                               .continues = 1,
+                               .led = o->led,
+                               .name = o->name,
+                               .parameter = o->parameter,
+                               .parameter_unit = o->parameter_unit,
+                               .ngroup = o->ngroup};
+  memcpy(two->orbit.held, o->held, sizeof o->held);
+  memcpy(two->orbit.group, o->group, sizeof o->group);
+  int rc = lag_orbit_open(&two->orbit, two->like, o->algebra, 2 * o->T, 2 * o->m);
+  for (int s = 0; s < two->orbit.m && rc == LAG_OK; s++)
+    memcpy(two->orbit.y + s * o->n, o->y + s % o->m * o->n, (size_t)o->n * sizeof *o->y);
+  two->orbit.pairing = o->pairing;
+  lag_orbit_branch(&two->problem, &two->orbit);
   return rc;
 }
 
+/* tangent[cols] := that of the same branch for twice the period: each half moves as the whole does. */
+static void double_tangent(const PeriodicOrbit *o, const PeriodicOrbit *two, const double *of, double *tangent) {
+  int part = o->m * o->n, whole = two->m * two->n;
+  for (int i = 0; i < two->cols; i++) tangent[i] = of[i < whole ? i % part : part + i - whole];
+}
+
+/* Motions of twice the period, from a point where it doubles: in one direction, as the other one is the same motion
+ * a period later. */
+static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
+  if (job->ndoubled == MOST_DOUBLINGS || of->problem->place(of->orbit, at->u)) return LAG_OK;
+  Doubled *two = &job->doubled[job->ndoubled++];
+  int rc = open_doubled(two, of->orbit, job->app->sim->scene), cols = two->orbit.cols;
+  double *u = rc ? NULL : malloc(3 * (size_t)cols * sizeof *u);
+  if (rc || !u) return rc == LAG_ENOMEM || !u ? LAG_ENOMEM : LAG_OK;
+  BranchPoint start = {.u = u, .tangent = u + cols};
+  lag_orbit_branch_unknowns(&two->orbit, u);
+  double_tangent(of->orbit, &two->orbit, at->tangent, start.tangent);
+  rc = lag_branch_other(&two->problem, &start, u + 2 * cols);
+  if (rc == LAG_OK) job->nbranches++;
+  if (rc == LAG_OK) rc = follow(job, &two->problem, &two->orbit, u, u + 2 * cols, 0, of->number);
+  free(u);
+  return rc == LAG_ENOMEM ? rc : LAG_OK;
+}
+
+/* Branches that leave the first one, and of those the motions whose period doubles again. */
 static int follow_branches(Job *job) {
-  int rc = LAG_OK, parts = job->nparts;
-  for (int k = 0; k < parts && rc == LAG_OK; k++)
+  int rc = LAG_OK, first = job->nparts;
+  for (int k = 0; k < job->nparts && rc == LAG_OK; k++)
     for (const BranchPoint *at = job->part[k].branch.first; at && rc == LAG_OK; at = at->next) {
       if (job->nparts >= MOST_BRANCHES - 1) return LAG_OK;
-      if (at->kind == BRANCH_POINT) rc = follow_other(job, &job->part[k], at);
+      if (at->kind == BRANCH_POINT && k < first) rc = follow_other(job, &job->part[k], at);
       if (at->kind == BRANCH_DOUBLING) rc = follow_doubled(job, &job->part[k], at);
     }
   return rc;
@@ -555,9 +573,11 @@ static int run(Job *job) {
 static void close_job(Job *job) {
   for (int k = 0; k < job->nparts; k++) lag_branch_free(&job->part[k].branch);
   lag_rest_branch_free(&job->rest);
-  lag_orbit_free(&job->doubled);
+  for (int k = 0; k < job->ndoubled; k++) {
+    lag_orbit_free(&job->doubled[k].orbit);
+    lag_sim_free(job->doubled[k].like);
+  }
   lag_orbit_free(&job->orbit);
-  lag_sim_free(job->doubled_like);
 }
 
 int lag_app_continue(App *app) {

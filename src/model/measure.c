@@ -83,7 +83,8 @@ static const Part *argument(const MeasureReader *r, Name name) {
 
 /* "end", "lyapunov", "megno" where the model has no such name; NULL: another node. */
 static const char *word_of_run(MeasureReader *r, const AstExpr *x) {
-  return x->kind == AST_NAME && has_word("end lyapunov megno", x->name) && !entity_named(r->b, x->name) ? x->name : NULL;
+  if (x->kind != AST_NAME || !has_word("end lyapunov megno", x->name)) return NULL;
+  return entity_named(r->b, x->name) ? NULL : x->name;
 }
 
 /* Whether the node by itself is a value of the whole run, or an argument of the frame. */

@@ -57,6 +57,11 @@ long() {
   kinds "period doubling;end;end;period doubling;end;period doubling;end;"
   close 1 parameter 0.0151 5e-5
   close 4 parameter 0.0177 5e-5
+  # J. R. Taylor, Classical Mechanics, 12.5: the driven pendulum's period doubles at 1.0663, 1.0793, 1.0821, 1.0827; M. Feigenbaum's ratio 4.6692
+  follow models/driven_damped_pendulum.lag taylor drive.gamma=1.06..1.085 th=-0.56 "th'=18.2" --branches
+  sed -n 's/.*"period doubling", "parameter": \([^,]*\),.*/\1/p' "$TMP/points" >"$TMP/doublings"
+  is "$title: doublings" "1.0664 1.0793 1.0821 1.0827 " "$(head -4 "$TMP/doublings" | awk '{ printf "%.4f ", $1 }')"
+  near "$title: ratio" 0.01 4.6692 "$(awk '{ x[NR] = $1 } END { print (x[4] - x[3])/(x[5] - x[4]) }' "$TMP/doublings")"
 }
 slow long
 
