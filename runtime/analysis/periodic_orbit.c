@@ -348,6 +348,7 @@ static void move(PeriodicOrbit *o, const double *x, double part) {
   for (int i = 0; i < o->m * n; i++) o->y[i] += part * x[i] * o->unit[i % n];
   if (period_is_free(o)) o->T += part * x[column_of_period(o)] * o->time;
   for (int j = 0; j < o->ngroup; j++) o->shift[j] += part * x[column_of_shift(o, j)];
+  if (o->continues) lag_orbit_set_parameter(o, o->parameter + part * x[o->cols - 1] * o->parameter_unit);
 }
 
 static double largest(int n, const double *x) {
@@ -358,7 +359,8 @@ static double largest(int n, const double *x) {
 
 /* A step, halved until the residual falls; *size: of the step made. 0: none does, and the unknowns stay. */
 static int falling_step(PeriodicOrbit *o, double *size) {
-  double before = o->residual, step = largest(o->cols, o->x), T = o->T, shift[ORBIT_MOST_GROUP];
+  double before = o->residual, step = largest(o->cols, o->x), T = o->T, parameter = o->parameter,
+         shift[ORBIT_MOST_GROUP];
   double part = step > 0.25 ? 0.25 / step : 1, *x = o->saved + o->m * o->n, *y = o->saved;
   memcpy(y, o->y, (size_t)(o->m * o->n) * sizeof *y);
   memcpy(shift, o->shift, sizeof shift);
@@ -372,6 +374,7 @@ static int falling_step(PeriodicOrbit *o, double *size) {
     memcpy(o->y, y, (size_t)(o->m * o->n) * sizeof *y);
     memcpy(o->shift, shift, sizeof shift);
     o->T = T;
+    if (o->continues) lag_orbit_set_parameter(o, parameter);
     if (o->residual < 1e3 * rounding && step < 1e-9) break; /* rounding: no step helps */
   }
   int rc = lag_orbit_shoot(o, 1);

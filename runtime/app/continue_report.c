@@ -200,6 +200,24 @@ static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
   return rc == LAG_ENOMEM ? rc : LAG_OK;
 }
 
+/* The periodic motions that leave a Hopf point. */
+static int follow_cycle(Job *job, const Part *of, const BranchPoint *at) {
+  if (job->ndoubled == MOST_DOUBLINGS) return LAG_OK;
+  Doubled *cycle = &job->doubled[job->ndoubled++];
+  double *d = NULL;
+  int rc = lag_hopf_orbit(&job->rest, at, &cycle->orbit, &cycle->like, &cycle->problem, &d);
+  if (rc != 1) return rc;
+  double *u = malloc((size_t)cycle->orbit.cols * sizeof *u), size = 0;
+  if (!u) return LAG_ENOMEM;
+  lag_orbit_branch_unknowns(&cycle->orbit, u);
+  for (int i = 0; i < cycle->orbit.cols; i++) size += d[i] * d[i];
+  for (int i = 0; i < cycle->orbit.cols; i++) d[i] /= sqrt(size);
+  job->nbranches++;
+  rc = follow(job, &cycle->problem, &cycle->orbit, u, d, 0, of->number);
+  free(u);
+  return rc == LAG_ENOMEM ? rc : LAG_OK;
+}
+
 /* Branches that leave the first one, and of those the motions whose period doubles again. */
 static int follow_branches(Job *job) {
   int rc = LAG_OK, first = job->nparts;
@@ -207,6 +225,7 @@ static int follow_branches(Job *job) {
     for (const BranchPoint *at = job->part[k].branch.first; at && rc == LAG_OK; at = at->next) {
       if (job->nparts >= MOST_BRANCHES - 1) return LAG_OK;
       if (at->kind == BRANCH_POINT && k < first) rc = follow_other(job, &job->part[k], at);
+      if (at->kind == BRANCH_HOPF) rc = follow_cycle(job, &job->part[k], at);
       if (at->kind == BRANCH_DOUBLING) rc = follow_doubled(job, &job->part[k], at);
     }
   return rc;
@@ -371,7 +390,7 @@ static void put_text(FILE *f, const Job *job) {
     putc('\n', f);
     for (const BranchPoint *at = part->branch.first; at; at = at->next) {
       if (at == part->branch.first) put_point(f, job, part, at, "begins");
-      else if (at->kind != BRANCH_REGULAR) put_point(f, job, part, at, kind_word(at->kind, job->periodic));
+      else if (at->kind != BRANCH_REGULAR) put_point(f, job, part, at, kind_word(at->kind, part->orbit != NULL));
       else if (!at->next) put_point(f, job, part, at, ends[part->branch.end]);
     }
   }
@@ -379,7 +398,7 @@ static void put_text(FILE *f, const Job *job) {
 
 static void json_point(Json *j, const Job *job, const Part *part, const BranchPoint *at) {
   lag_json_begin(j, NULL, '{');
-  lag_json_string(j, "kind", at->kind == BRANCH_REGULAR ? "end" : kind_word(at->kind, job->periodic));
+  lag_json_string(j, "kind", at->kind == BRANCH_REGULAR ? "end" : kind_word(at->kind, part->orbit != NULL));
   lag_json_number(j, "parameter", parameter_at(job, part, at));
   if (part->orbit) lag_json_number(j, "period", period_at(part, at));
   lag_json_begin(j, "state", '{');
@@ -446,7 +465,7 @@ static int make_table(Job *job) {
   strcpy(t->cols[++k].name, "growing");
   strcpy(t->cols[++k].name, "period");
   strcpy(t->cols[k].unit, "s");
-  strcpy(t->cols[++k].name, job->periodic ? "largest multiplier" : "fastest growth");
+  strcpy(t->cols[++k].name, "growth");
   for (int i = 0; i < 2 * n; i++) {
     Column c = lag_state_column(app->sim, i % n);
     if (i >= n)
