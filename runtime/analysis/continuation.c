@@ -175,7 +175,11 @@ static BranchPoint *locate(Walk *w, const BranchPoint *from, const BranchPoint *
     narrow(&r, s, f);
     if (counts) r.fa = -1, r.fb = 1;
   }
-  if (best) best->kind = kind;
+  if (!best) return NULL;
+  best->kind = kind;
+  double size = 0; /* at a branch point the equations leave two directions free: that of the secant is this branch's */
+  for (int i = 0; i < w->cols; i++) size += (far->u[i] - from->u[i]) * (far->u[i] - from->u[i]);
+  for (int i = 0; i < w->cols && kind != BRANCH_FOLD; i++) best->tangent[i] = (far->u[i] - from->u[i]) / sqrt(size);
   return best;
 }
 

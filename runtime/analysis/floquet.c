@@ -169,6 +169,16 @@ static void transform(int k, const double *to, const double *from, double *W, do
     }
 }
 
+/* Q[k k] := a reflection along no axis, so that all directions mix, those of parts that do not act on each other, too. */
+static void reflect(int k, double *Q) {
+  double size = 0, v = 0;
+  for (int i = 0; i < k; i++) size += (1 + 0.31 * i) * (1 + 0.31 * i);
+  for (int i = 0; i < k; i++) {
+    v = 1 + 0.31 * i;
+    for (int j = 0; j < k; j++) Q[i * k + j] = (i == j) - 2 * v * (1 + 0.31 * j) / size;
+  }
+}
+
 /* W[m k k] := Q' W Q, with orthogonal matrices Q that orthogonal iteration makes block triangular: blocks of growth
  * that differ by 1.5 or more are separated, so that the product of blocks keeps the digits of small multipliers.
  * growth[k]: logarithms of their growth over a period, in the mean. */
@@ -177,7 +187,7 @@ static int separate(Pool *pool, int m, int k, double *W, double *growth) {
   size_t size = (size_t)(k * k);
   double *Q = lag_pool_doubles(pool, ((size_t)m + 1) * size), *next = lag_pool_doubles(pool, size);
   if (pool->failed) return LAG_ENOMEM;
-  for (int i = 0; i < k; i++) Q[i * k + i] = 1;
+  reflect(k, Q);
   for (int round = 0; round < ROUNDS; round++) {
     if (round) memcpy(Q, Q + (size_t)m * size, size * sizeof *Q);
     for (int s = 0; s < m; s++) {

@@ -232,6 +232,16 @@ static int continuation_column(PeriodicOrbit *o) {
   return rc ? rc : lag_orbit_shoot(o, 0);
 }
 
+/* Whether a component that keeps its value chooses the phase: the motion crosses that value. */
+static int holds_phase(const PeriodicOrbit *o, const double *rates) {
+  const double least = 0.1;
+  for (int k = 0; k < o->nheld; k++) {
+    int i = o->held[k].of;
+    if (o->held[k].kind == ORBIT_STATE && k != o->led && fabs(rates[i]) * o->time > least * o->unit[i]) return 1;
+  }
+  return 0;
+}
+
 /* Rows across the motion, and across the symmetries of conserved charges. */
 static int phase_rows(PeriodicOrbit *o) {
   int n = o->n, row = o->m * n + o->nheld, rc = LAG_OK;
@@ -240,6 +250,7 @@ static int phase_rows(PeriodicOrbit *o) {
     if (k < 0 ? o->flow.forced : o->charge[k] == 0) continue;
     if (lag_flow_field(&o->flow, k < 0 ? 0 : o->charge[k], o->flow.t0, o->y, X)) continue;
     double size = 0;
+    if (k < 0 && holds_phase(o, X)) continue;
     for (int i = 0; i < n; i++) size += X[i] * X[i] / (o->unit[i] * o->unit[i]);
     for (int i = 0; i < n && size > 0; i++) o->A[row * o->cols + i] = X[i] / o->unit[i] / sqrt(size);
     row++;
