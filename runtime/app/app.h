@@ -148,6 +148,9 @@ typedef struct Option {
   const char *text;     /* NULL: not in help */
 } Option;
 
+/* Whether the analysis carries tangents along its runs. */
+static inline int lag_args_tangents(const Args *a) { return a->lyapunov || a->orbit || a->continues; }
+
 /* Row i; NULL past the end. */
 const Option *lag_args_option(int i);
 
