@@ -328,7 +328,8 @@ static Expr sum_over(const Arguments *a, LoopRange range, Expr body) {
   NestShare *share = ARENA_NEW(a->arena, NestShare);
   share->value = body;
   SumNest s = {.range = range, .reads = a->reads.at, .nreads = a->reads.n, .shares = share, .nshares = 1,
-               .nargs = a->args.n};
+               .nargs = a->args.n, .row = a->q->pair[0][0] - a->q->lo,
+               .turn = a->q->pair[0][1] - a->q->from.first - a->q->from.by_i*a->q->lo};
   return expr_sum_cell(a->g, &s, a->args.at, 0);
 }
 

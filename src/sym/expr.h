@@ -90,13 +90,16 @@ typedef struct {
   const NestRead *reads;
   const NestShare *shares;
   uint32_t nreads, nshares, nargs;
+  int64_t row, turn; /* the turn whose arguments are the body's symbols themselves */
   uint32_t gradient; /* nest of the partial derivatives; 0: not made yet */
 } SumNest;
 
 ExprGraph *expr_graph(Arena *a, Interner *names);
 Arena *expr_arena(const ExprGraph *g);
 uint32_t expr_count(const ExprGraph *g); /* ids are 1 .. count */
-int expr_writes_sums_out(const ExprGraph *g); /* a quantified sum has been written out, for whatever purpose */
+/* Whether quantified sums have been written out, but for proofs; expr_note_sums_out: now they are. */
+int expr_writes_sums_out(const ExprGraph *g);
+void expr_note_sums_out(ExprGraph *g);
 
 /* --- leaves --- */
 Expr expr_num(ExprGraph *g, Num n);

@@ -84,7 +84,6 @@ void expr_write_out(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *cel
   if (n && out != roots) memcpy(out, roots, n * sizeof *roots);
   for (uint32_t k = 0; k < ncells; k++) sums[k] = written_out(g, cells[k]);
   if (ncells) expr_replace_nodes(g, roots, n, cells, sums, ncells, out);
-  g->writes_sums_out |= ncells > 0;
 }
 
 void expr_expand_sums(ExprGraph *g, const Expr *roots, uint32_t n, Expr *out) {

@@ -30,3 +30,7 @@ void expr_expand_sums(ExprGraph *g, const Expr *roots, uint32_t n, Expr *out);
 
 /* The same for the cells of a list. */
 void expr_write_out(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *cells, uint32_t ncells, Expr *out);
+
+/* sum_gather.c: the body whose sum over all turns is what the cells of one nest contribute to the sum e, linear in
+ * them; *rest: the other terms. 0: e has no cells, or their factors differ from turn to turn. */
+Expr expr_gather_sum(ExprGraph *g, Expr e, Expr *rest);
