@@ -218,6 +218,7 @@ typedef struct {
   const Model *m;
   const struct Quantified *q;
   Arena *arena;
+  Interner *names;
   VEC(Expr) args;
   VEC(NestRead) reads;
   VEC(Read) blocks; /* families whose members are arguments: all with one index */
@@ -276,6 +277,16 @@ static int is_plain(const Symbol *s) {
          !strchr(s->name, '[');
 }
 
+/* The parts of the name r[5].x around its indices, and these as functions of the turn. */
+static void name_read(const Arguments *a, const Read *r, Name name, NestRead *to) {
+  Interner *names = a->names;
+  const char *open = strchr(name, '['), *close = strchr(name, ']');
+  to->stem = intern(names, arena_strndup(a->arena, name, (size_t)(open - name)));
+  to->tail = intern(names, close + 1);
+  to->nindices = r->e->ndims;
+  for (uint32_t k = 0; k < r->e->ndims; k++) to->index[k] = in_turns(a->q, r->at[k]);
+}
+
 /* Makes the symbol an argument; 0: it is none. */
 static int add_symbol(Arguments *a, Expr node) {
   const Symbol *s = expr_sym_of(a->g, node);
@@ -295,7 +306,9 @@ static int add_symbol(Arguments *a, Expr node) {
   } else {
     vec_push(a->arena, &a->args, node);
   }
-  vec_push(a->arena, &a->reads, ((NestRead){id, at}));
+  NestRead read = {.symbol = id, .at = at};
+  if (r) name_read(a, r, s->name, &read);
+  vec_push(a->arena, &a->reads, read);
   return 1;
 }
 
@@ -328,7 +341,8 @@ static Expr sum_over(const Arguments *a, LoopRange range, Expr body) {
   NestShare *share = ARENA_NEW(a->arena, NestShare);
   share->value = body;
   SumNest s = {.range = range, .reads = a->reads.at, .nreads = a->reads.n, .shares = share, .nshares = 1,
-               .nargs = a->args.n, .row = a->q->pair[0][0] - a->q->lo,
+               .nargs = a->args.n, .i = a->q->i, .j = a->q->j, .i0 = a->q->lo,
+               .j0 = a->q->from.first + a->q->from.by_i*a->q->lo, .row = a->q->pair[0][0] - a->q->lo,
                .turn = a->q->pair[0][1] - a->q->from.first - a->q->from.by_i*a->q->lo};
   return expr_sum_cell(a->g, &s, a->args.at, 0);
 }
@@ -337,7 +351,7 @@ static Expr sum_over(const Arguments *a, LoopRange range, Expr body) {
 static Expr component_sum(Eval *ev, const struct Quantified *q, uint32_t c) {
   Builder *b = ev->b;
   ExprGraph *g = b->g;
-  Arguments a = {.g = g, .m = b->m, .q = q, .arena = b->arena};
+  Arguments a = {.g = g, .m = b->m, .q = q, .arena = b->arena, .names = b->ast->names};
   const Value *body = q->body, *whole = q->whole;
   uint32_t n = component_count(&body[0]);
   if (n != component_count(&whole[0])) return 0; /* the vector inside became a number */

@@ -14,18 +14,6 @@ static Verdict zero_by_form(ExprGraph *g, Expr e, const NormalLimits *limits);
 
 /* --- quantified sums --- */
 
-/* Writes out the sums of e, unless they have too many terms: then 0. */
-static int open_sums(ExprGraph *g, Expr *e) {
-  enum { MOST_TURNS = 50000 };
-  uint64_t turns = 0;
-  ExprList l = expr_topo_to_sums(g, e, 1);
-  for (uint32_t k = 0; k < l.n; k++)
-    if (expr_op(g, l.at[k]) == EX_NEST) turns += expr_sum_turns(g, l.at[k]);
-  if (turns > MOST_TURNS) return 0;
-  if (turns) expr_expand_sums(g, e, 1, e);
-  return 1;
-}
-
 /* e without the cells of nests whose contribution vanishes in each turn, as the normal form proves. */
 static Expr drop_vanishing_sums(ExprGraph *g, Expr e, const NormalLimits *limits) {
   Expr rest, body = expr_gather_sum(g, e, &rest);
@@ -36,7 +24,7 @@ static Expr drop_vanishing_sums(ExprGraph *g, Expr e, const NormalLimits *limits
 
 /* One of 16 states in the domain decides; few states may lie there, as of roots of several differences. */
 int prove_nonzero(ExprGraph *g, Expr e) {
-  if (!open_sums(g, &e)) return 0;
+  if (!expr_open_sums(g, &e)) return 0;
   long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
   uint32_t most = 2 * STATES + MOST_WORK / (e + 1);
   if (most > MOST_STATES) most = MOST_STATES;
@@ -79,7 +67,7 @@ static Verdict zero_by_form(ExprGraph *g, Expr e, const NormalLimits *limits) {
     last = e;
     e = drop_vanishing_sums(g, e, limits);
   }
-  if (!open_sums(g, &e)) return NOT_DECIDED;
+  if (!expr_open_sums(g, &e)) return NOT_DECIDED;
   if (expr_is_zero(g, e)) return PROVED_ZERO;
   ZeroTask t = {.g = g, .e = e, .limits = limits ? *limits : prove_limits()};
   arena_with_scratch(expr_arena(g), zero_work, &t);
