@@ -196,18 +196,27 @@ static int tells_apart(const struct Quantified *q, const int64_t *pair) {
   return 1;
 }
 
-static int find_pairs(struct Quantified *q) {
+/* Two pairs of the last rows that differ in both indices. */
+static int find_pairs(struct Quantified *q, Arena *arena) {
   enum { TRIED = 12 };
-  int found = 0;
-  for (int64_t row = (int64_t)q->range.rows - 1; row >= 0 && row + TRIED >= (int64_t)q->range.rows; row--) {
+  VEC(int64_t) at = {0};
+  int64_t rows = (int64_t)q->range.rows;
+  for (int64_t row = rows - 1; row >= 0 && row + TRIED >= rows; row--) {
     int64_t i = q->lo + row, from = q->from.first + q->from.by_i * i, n = loop_turns(&q->range, row);
     for (int64_t k = 0; k < n && k < TRIED; k++) {
-      int64_t pair[2] = {i, from + k}, *first = q->pair[0];
-      if (!tells_apart(q, pair) || (found && (pair[0] == first[0] || pair[1] == first[1]))) continue;
-      memcpy(q->pair[found], pair, sizeof pair);
-      if (++found == REPRESENTATIVES) return 1;
+      int64_t pair[2] = {i, from + k};
+      if (!tells_apart(q, pair)) continue;
+      vec_push(arena, &at, pair[0]);
+      vec_push(arena, &at, pair[1]);
     }
   }
+  for (uint32_t x = 0; x < at.n; x += 2)
+    for (uint32_t y = 0; y < x; y += 2) {
+      if (at.at[x] == at.at[y] || at.at[x + 1] == at.at[y + 1]) continue;
+      memcpy(q->pair[0], at.at + y, sizeof q->pair[0]);
+      memcpy(q->pair[1], at.at + x, sizeof q->pair[1]);
+      return 1;
+    }
   return 0;
 }
 
@@ -383,7 +392,7 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   if (!read_text(ev, q)) return 0;
   uint64_t pairs = 0;
   for (uint32_t row = 0; row < q->range.rows; row++) pairs += (uint64_t)loop_turns(&q->range, row);
-  if (pairs < b->sums_from || !find_pairs(q)) return 0;
+  if (pairs < b->sums_from || !find_pairs(q, b->arena)) return 0;
   for (int k = 0; k < COMPONENTS; k++) q->inside[k] = expr_declare(b->g, SYM_LOCAL, 0, x->name, SIGN_UNKNOWN);
   ev->sums = q;
   vec_push(b->arena, &ev->loops, ((Loop){id, q->pair[0][0], q->pair[0][0], ev->terms.n}));
