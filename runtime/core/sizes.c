@@ -5,6 +5,7 @@
 #include <fenv.h>
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/core.h"
@@ -311,11 +312,48 @@ static void state_sizes(lag_sim *s, const double *f, double time) {
   }
 }
 
+/* f[n] := the larger of |f| and of its change, by what is held otherwise now, beyond its rounding; of coordinates that
+ * are at rest. */
+static void raise_rates(lag_sim *s, double *f) {
+  const double rounding = 1e3; /* of a few hundred operations */
+  const int nq = s->pb.nq, n = s->pb.n;
+  double *noise = malloc(3 * (size_t)n * sizeof *noise);
+  rates_beside(s, 0, 0, NULL, f, s->yc);
+  int known = noise && !lag_formula_rounding(s, LAG_FORMULA_RATES, s->run->t, s->now, nq, noise, noise + n, noise + 2 * n);
+  for (int i = 0; i < nq && known; i++) {
+    double change = fabs(s->yc[nq + i]), v = largest_of_unit(nq, s->scene->model->q, s->now + nq, i);
+    if (!(v > 0) && change > rounding * noise[i]) f[nq + i] = fmax(fabs(f[nq + i]), change);
+  }
+  free(noise);
+}
+
+/* Accelerations of a body that friction holds are rounding: raises f[n], rates at the start, to those without it. */
+static void raise_held(lag_sim *s, double *f) {
+  const lag_model *m = s->scene->model;
+  for (int k = 0; k < m->nmodes; k++) {
+    if (!m->switches[k].jumps || !lag_switch_sticks(s, k)) continue;
+    lag_switch_hold(s, k, 1);
+    raise_rates(s, f);
+    lag_switch_hold(s, k, 0);
+  }
+  int sticks = 0;
+  for (int i = 0; i < m->ncontacts && !s->pb.contacts; i++) {
+    double *held = &s->hold[m->contacts[i].input];
+    s->contact_was[i] = *held;
+    if (!m->contacts[i].is_tangent || !(*held > 0.5)) continue;
+    *held = NAN;
+    sticks = 1;
+  }
+  if (sticks) raise_rates(s, f);
+  for (int i = 0; i < m->ncontacts && !s->pb.contacts; i++) s->hold[m->contacts[i].input] = s->contact_was[i];
+}
+
 void lag_start_sizes(lag_sim *s) {
   const lag_model *m = s->scene->model;
   const int nq = m->nq, n = s->pb.n;
   double *f = s->yb, *bend = s->yc, *size = s->pb.size, time = HUGE_VAL, calls = s->pb.rhs_calls;
   rates_beside(s, 0, 0, NULL, NULL, f);
+  raise_held(s, f);
   memset(bend, 0, (size_t)n * sizeof *bend);
   for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, i), time) : time;
   const double span = s->pb.span;

@@ -78,9 +78,11 @@ LAG_ALWAYS_INLINE double embedded_square(embedded_part x) {
 /* 1/(allowed errors) of components i, of y before a step and x after. */
 LAG_ALWAYS_INLINE embedded_part embedded_weight(const Embedded *w, const lag_problem *pb, int i, const double *y,
                                                 const double *x) {
-  double scale[EMBEDDED_WIDTH];
-  for (int j = 0; j < EMBEDDED_WIDTH; j++) scale[j] = embedded_scale(w, pb, i + j, y[i + j], x[i + j]);
-  return 1 / embedded_at(scale);
+#if EMBEDDED_VECTORS /* not by way of memory: a pair is not forwarded from two stores */
+  return 1 / (embedded_part){embedded_scale(w, pb, i, y[i], x[i]), embedded_scale(w, pb, i + 1, y[i + 1], x[i + 1])};
+#else
+  return 1 / embedded_scale(w, pb, i, y[i], x[i]);
+#endif
 }
 
 #define LAG_EACH(i) for (int i = 0; i < as.n; i += EMBEDDED_WIDTH)

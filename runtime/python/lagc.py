@@ -26,7 +26,7 @@ import numpy as np
 
 __all__ = ["load", "Model", "Result", "Batch", "Error", "CompileError", "RunError"]
 
-_ABI = 16  # LAG_ABI of lag_model.h
+_ABI = 17  # LAG_ABI of lag_model.h
 _STOPPED, _INTERRUPTED = 2, 3
 _CHUNK, _PATIENCE = 4096, 0.2  # rows and seconds of one call: between calls Ctrl-C is heard
 

@@ -312,7 +312,7 @@ int options_read(Arena *a, int argc, char **argv, Options *o, const char **error
     for (int i = 2; i < argc; i++) vec_push(a, &o->rest, argv[i]);
     return 1;
   }
-  if (o->command == CMD_MODES || o->command == CMD_LYAPUNOV) o->with = "linear";
+  if (o->command == CMD_MODES || o->command == CMD_ORBIT || o->command == CMD_CONTINUE || o->command == CMD_LYAPUNOV) o->with = "linear";
   if (command_reads_model(o->command) || o->command == CMD_NEW) return read_arguments(a, argc, argv, o, error);
   return read_one_word(a, argc, argv, o, error);
 }

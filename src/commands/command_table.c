@@ -112,6 +112,37 @@ static const CommandRow commands[] = {
      "unit; 0.5@-90 is an amplitude of 0.5, a quarter of a period behind. A zero mode is `free` if no force arises far "
      "along the mode. Needs GSL. Exit status 3: no equilibrium was found.\n\n"
      "  name=value            a parameter, another start (th=3), an input to hold"},
+    {CMD_ORBIT, "orbit", "periodic",
+     "MODEL [SCENE] [name=value ...] [--guess T | --period T] [--hold NAMES] [--relative NAMES] [--json]",
+     "periodic motions: period, multipliers, stability",
+     "Finds the periodic motion next to the scene's start, by Newton's method on the exact tangent of the flow, and "
+     "prints its period, the Floquet multipliers with their meaning, and a scene to paste that starts on it. The error "
+     "of the period is its change by a more precise run.\n\n"
+     "The period is unknown: without --guess the motion is run until it first comes back next to its start. Where a "
+     "scene is driven in time, it is the period of the drive, which is found; --period T names a multiple. Where motions form families, "
+     "as where energy is conserved, the nearest one is taken; --hold energy, or the name of any conserved charge, "
+     "coordinate or velocity, keeps its value at the start: --hold y is the section y = y(0). --relative spin: the "
+     "motion may close after a rotation, or another symmetry that the model declares and lagc has proved.\n\n"
+     "Multipliers that are 1 by the phase, by conserved charges and by their symmetries are counted, not listed. Motions "
+     "may go over events that set velocities, and over switches; contacts have no tangent yet. Needs GSL. Exit status "
+     "3: no periodic motion was found.\n\n"
+     "  name=value            a parameter, another start (th=3), an input to hold"},
+    {CMD_CONTINUE, "continue", "bifurcation",
+     "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T] [--hold NAMES] [--branches] [-o FILE.csv] [--svg "
+     "FILE.svg] [--json]",
+     "states of rest and periodic motions over a parameter: folds, bifurcations",
+     "Follows a state of rest, or a periodic motion, while a parameter runs over a range, round folds, too "
+     "(pseudo-arclength continuation), and locates the points where it changes: folds, branch points, Hopf points, period "
+     "doublings, Neimark-Sacker points, collisions of multipliers of Hamilton's equations. It begins at the scene's value "
+     "of the parameter if that lies in the range, and goes both ways.\n\n"
+     "NAME is a parameter; or, for a family of periodic motions, `energy` or another conserved charge, `period`, a "
+     "coordinate or velocity at the start: the amplitude of a nonlinear mode. Periodic motions are followed where the "
+     "scene depends on time, and where one of --guess, --period, --hold, --relative or such a NAME is given (the options "
+     "of `lagc orbit`); else states of rest. Conserved charges keep their values unless one is NAME or --hold names "
+     "others.\n\n"
+     "Derivatives by the parameter are central differences. A and B are numbers in the declared unit. Needs GSL. Exit "
+     "status 3: no solution was found to begin with.\n\n"
+     "  name=value            a parameter, another start (th=3), an input to hold"},
     {CMD_LYAPUNOV, "lyapunov", "exponents", "MODEL [SCENE] [name=value ...] [--until T] [--exponents K] [--json]",
      "Lyapunov exponents: how fast neighbouring motions part",
      "Runs the scene for a long time with the exact tangent of its flow, and prints the Lyapunov exponents: the mean "
@@ -121,6 +152,16 @@ static const CommandRow commands[] = {
      "measured; `at half the time` is the estimate then. An exponent of zero approaches 0 as log(t)/t. "
      "Method and steps are chosen as for `lagc run`: --method, --tol, --step.\n\n"
      "  name=value            a parameter, another start, an input: as for lagc run"},
+    {CMD_FIT, "fit", "estimate", "MODEL [SCENE] [name=value ...] --data FILE.csv --fit NAME,NAME [--sigma X] [--svg FILE]",
+     "parameters and starts from a measured motion, with errors",
+     "Finds the parameters and starts with which the motion is nearest to measured values, by nonlinear least squares on "
+     "exact derivatives. A column of the data is any expression of the model with its unit: t [s],th [deg],l*sin(th) [cm]; "
+     "rows are at any times. Records are fitted from short to long. A parameter that is declared > 0 stays so.\n\n"
+     "The report has values with standard errors, chi squared where the errors of the data are given, a test whether the "
+     "residuals have a trend, the combinations that the data cannot tell apart, `only g/l: (g, l) along (9.81, 1) "
+     "changes nothing`, and a scene to paste. Needs GSL.\n\n"
+     "  name=value            a parameter or start: where the search begins, or held\n\n"
+     "Exit status 3: the motion failed at the first values, or the search did not converge."},
     {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [--seconds S] [-o FILE.svg]",
      "time against accuracy: all methods, side by side",
      "Names the fastest settings for errors of 1e-3, 1e-6, 1e-9 and 1e-12, or of --target X; then prints the time that "
@@ -261,9 +302,9 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 #define C(name) (1u << CMD_##name)
 #define SIMULATE (C(RUN) | C(PLOT) | C(ANIMATE))
-#define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS))
+#define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS) | C(FIT))
 #define MODELS                                                                                                    \
-  (STEPS | C(SWEEP) | C(MODES) | C(COST) | C(CHECK) | C(VERIFY) | C(DERIVE) | C(NOETHER) | C(ACTION) | C(BUILD) | \
+  (STEPS | C(SWEEP) | C(MODES) | C(ORBIT) | C(CONTINUE) | C(COST) | C(CHECK) | C(VERIFY) | C(DERIVE) | C(NOETHER) | C(ACTION) | C(BUILD) | \
    C(HEADER) | C(EMIT) | C(FMU))
 
 static const OptionRow options[] = {
@@ -325,6 +366,6 @@ int option_listed(const OptionRow *o, Command c) {
 
 int option_expert(const OptionRow *o) { return has_word("--math --fix --dump --no-gsl --define --precision", o->name); }
 
-int command_simulates(Command c) { return ((STEPS | C(MODES) | C(COST) | C(SWEEP)) & 1u << c) != 0; }
+int command_simulates(Command c) { return ((STEPS | C(MODES) | C(ORBIT) | C(CONTINUE) | C(COST) | C(SWEEP)) & 1u << c) != 0; }
 int command_takes_values(Command c) { return command_simulates(c) || c == CMD_VERIFY || c == CMD_ACTION; }
 int command_reads_model(Command c) { return (MODELS & 1u << c) != 0; }

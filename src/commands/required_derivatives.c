@@ -37,7 +37,7 @@ static unsigned required_by_method(const Eqns *e, const char *text) {
 
 /* The method of a saved state, from the line `method NAME` near its head; NULL: none, and the simulator refuses the
  * file. */
-static const char *method_of_state(Arena *a, const char *path) {
+const char *method_of_state(Arena *a, const char *path) {
   char line[256];
   const char *name = NULL, *error;
   FILE *f = source_open(path, &error);
@@ -87,6 +87,10 @@ static const char *passed_option(const Options *o, const char *name) {
   return NULL;
 }
 
+static int asks_sensitivity(const Options *o) {
+  return o->command == CMD_FIT || passed_option(o, "--sensitivity") || (o->with && strcmp(o->with, "sensitivities") == 0);
+}
+
 unsigned derivatives_in_time(unsigned wants, const ProgramSet *u, const Options *o) {
   /* instructions of accelerations with second derivatives of L: gcc 12 -O2, 400 to 880 (bicycle) */
   const double a_second = 400;
@@ -105,6 +109,7 @@ unsigned derivatives_required(const Eqns *e, const Options *o) {
                    required_by_choice(e, o) |
                    (o->command == CMD_FMU             ? fmu_wants()
                     : o->command == CMD_HEADER        ? WANT_HELD | header_wants(o->with) | header_wants(o->target)
+                    : asks_sensitivity(o)             ? WANT_SENSITIVITY
                     : o->with || measures_exponent(e) ? WANT_LINEAR
                                                       : 0u);
   return o->resume ? wants | required_by_method(e, method_of_state(e->m->arena, o->resume)) : wants;

@@ -242,6 +242,8 @@ static void define_contacts(const Header *h) {
 
 const char *header_moreau_lacks(const ProgramSet *u) {
   if (!u->contacts.n || header_surfaces(u)) return header_friction_lacks(u);
+  if (program_set_guides(u))
+    return "no friction of guides: write a guide as two contacts, `y >= 0` and `-y >= 0`, with `friction` and `slip`";
   for (uint32_t i = 0; i < u->contacts.n; i++)
     if (u->contacts.at[i].law || u->contacts.at[i].holds)
       return "contacts of one friction, at rest and slipping, and of one law of impact, `stronge`";

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "sym/expr_impl.h"
+#include "sym/sum_nest.h"
 
 typedef enum { PREC_OR, PREC_AND, PREC_NOT, PREC_CMP, PREC_SUM, PREC_PROD, PREC_POW, PREC_ATOM } Prec;
 
@@ -217,6 +218,19 @@ static const char *named(Printer *p, Name name) {
   return sb_text(&b);
 }
 
+/* A quantified sum by the representative of its terms. */
+static const char *cell_text(Printer *p, Expr e) {
+  const SumNest *s = expr_sum_nest(p->g, expr_cell_nest(p->g, e));
+  StrBuf b = strbuf(p->g->arena);
+  sb_printf(&b, "sum_%u(", expr_cell_number(p->g, e));
+  for (uint32_t k = 0; k < s->nshares; k++) {
+    if (k) sb_puts(&b, "; ");
+    expr_print(p->g, s->shares[k].value, p->style, &b);
+  }
+  sb_puts(&b, ")");
+  return sb_text(&b);
+}
+
 static Prec prec_of(const ExprGraph *g, Expr e) {
   switch (expr_op(g, e)) {
     case EX_NUM: {
@@ -249,6 +263,8 @@ static void expand(Printer *p, Expr e) {
     case EX_DEF: text(p, named(p, expr_def_name(g, e))); return;
     case EX_SUM: sum(p, e); return;
     case EX_PROD: term(p, e, num_int(1)); return;
+    case EX_NEST: return;
+    case EX_CELL: text(p, cell_text(p, e)); return;
     case EX_POW:
       node(p, expr_arg(g, e, 0), PREC_ATOM);
       text(p, by_style(p, "^", "^{"));

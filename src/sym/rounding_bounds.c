@@ -123,6 +123,7 @@ static Real slope(ExprOp op, Real x, Real f) {
     FUNCTIONS(SLOPE)
     case EX_ABS: case EX_DEF: return 1;
     case EX_SIGN: case EX_FLOOR: case EX_NOT: case EX_NUM: case EX_SYM: case EX_SUM: case EX_PROD: case EX_POW:
+    case EX_NEST: case EX_CELL:
     case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ:
     case EX_AND: case EX_OR: case EX_SELECT: case EX_COUNT: break;
   }
@@ -148,7 +149,7 @@ static Real binary_bound(const Bounds *b, Expr e, Real f) {
     case EX_LT: case EX_LE: case EX_EQ: return compare_bound(b, e);
     case EX_AND: case EX_OR: return dx + dy;
     case EX_SELECT: return dx > 0 ? INFINITY : x != 0 ? dy : bound_of(b, expr_arg(b->g, e, 2));
-    case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: EX_FUNCTION_CASES
+    case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_NEST: case EX_CELL: EX_FUNCTION_CASES
     case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_NOT: case EX_COUNT: break;
   }
   return INFINITY;
@@ -190,6 +191,8 @@ static Real node_bound(const Bounds *b, Expr e, Real value, const Real *errors) 
   case EX_SIGN:
   case EX_FLOOR:
   case EX_NOT: return unary_bound(b, e, value);
+  case EX_NEST: return 0;
+  case EX_CELL: /* not known: nothing is decided by such a value */
   case EX_COUNT: break;
   }
   return INFINITY;

@@ -18,7 +18,7 @@ src/ir        ir/ base/ numeric/functions.def
 src/series    series/ ir/ base/
 src/lower     lower/ series/ ir/ symmetry/charges.h mech/ model/ sym/ base/
 src/self_check      self_check/ lower/lower.h ir/ mech/ model/ syntax/ base/ numeric/functions.def
-src/emit      emit/ ir/ base/ numeric/functions.def kernels/steppers.def
+src/emit      emit/ ir/ base/ numeric/functions.def numeric/program_code.def kernels/steppers.def
 src/fmu       fmu/ emit/ ir/ base/
 src/toolchain toolchain/ base/
 src/commands  app/options.def kernels/steppers.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ phase_space/ mech/ model/ sym/ syntax/ base/
@@ -26,12 +26,13 @@ src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
 runtime/kernels   kernels/ lag_lanes.h lag_math.h
-runtime/core      core/ kernels/ numeric/ lag.h lag_model.h
+runtime/core      core/ kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/constraints constraints/ core/core.h core/rhs.h numeric/ lag.h lag_model.h lag_kkt.h
 runtime/contacts  contacts/ core/core.h core/rhs.h numeric/ lag.h lag_model.h
 runtime/methods   methods/ core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/lanes     lanes/ kernels/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
 runtime/analysis  analysis/ core/ kernels/ numeric/ lag.h lag_model.h
+runtime/evaluator evaluator/ numeric/ lag.h lag_model.h lag_math.h lag_support.h lag_kkt.h
 runtime/io        io/ numeric/ lag.h lag_model.h
 runtime/sweep     sweep/ lanes/lane_choice.h lanes/lane_kernel.h analysis/measure.h io/posix.h numeric/ lag.h lag_model.h
 runtime/app       app/ sweep/ core/ io/ analysis/ numeric/ lag.h lag_model.h
@@ -49,7 +50,7 @@ runtime/include/lag_support.h  lag_lanes.h
 runtime/include/lag_kkt.h  lag_lanes.h
 '
 # The inside of a folder, shared by its own files only.
-private='analysis/measure_nodes.h sweep/run_chunks_impl.h syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h
+private='evaluator/bytes.h evaluator/program.h evaluator/read_program.h evaluator/evaluated_model.h analysis/measure_nodes.h sweep/run_chunks_impl.h syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h
   model/scope.h model/declarations.h sym/expr_impl.h sym/ops.def symmetry/noether_theorem_impl.h lower/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h fmu/fmu_archive_impl.h methods/tableau.h methods/embedded_trial.h lanes/embedded_step.h
   methods/steps.h methods/step_interpolant.h methods/discrete_lagrangian.h methods/implicit_symplectic.h
   methods/step_control.h'

@@ -201,6 +201,21 @@ for vs in 1e-3 1e-6 1e-9; do
   check "in few steps" most "$(number steps)" 400
 done
 
+# ---- a start at rest, held on a curved path under a load that grows: velocities have the size of what friction holds, and no step is as short as rounding
+model curve <<'END_OF'
+model curve
+coord a [rad]
+param I = 1 [kg*m^2] > 0
+let x = 1 [m]*a^2
+kinetic = I/2*a'^2
+force a = 1.8 [N*m] + 1 [N*m/s]*t
+friction rub on x: 0.8 [N], static = 1.2 [N]
+scene s { start a = 0.9; span 1 [s]; output a every 0.5 [s] }
+END_OF
+check "a body held on a curve" run curve s
+check "in a few steps" most "$(number steps)" 100
+check "breaks loose where 1.8 + t = 1.2 dx/da" near "$(number sliding_s)" 0.36 1e-12
+
 # ---- sticking that ends by itself: the shaken oscillator at rest 19 times, and the belt's period (digits: the facts of these models), by every method
 cp models/stick_slip.lag models/coulomb_oscillator.lag "$TMP"
 for method in rk45 dop853 radau rk4; do

@@ -338,7 +338,7 @@ friction rub on x: 0.5*lambda(floor)
 contact floor: y >= 0, restitution = 0
 scene s { span 2 [s] }
 END_OF
-check "a size that follows the force of a contact" refuses 1 'multipliers follow from the equations of motion' run rubs s --method $m3
+check "a size that follows the force of a contact" refuses 1 'a coefficient times the size of that force' run rubs s --method $m3
 
 # ---- reports, sweeps, saved runs
 check "the report counts" sh -c "$LAGC run $TMP/ball.lag drop --method '$m3' >$TMP/log && grep -q 'contacts: at most [12] acts\{0,1\} at once, [0-9]* impacts, 1[.0-9]* iterations a step with contacts; the deepest is 0.004[0-9]* inside (in SI)' $TMP/log"

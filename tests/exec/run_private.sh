@@ -16,7 +16,7 @@ unset LAG_HOME LAGC_CACHE_MIB
 cache=$dir/cache/lagc
 here=$(pwd)
 cd "$dir" || exit 2
-entry() { find "$cache" -maxdepth 1 -type f ! -name '*.lock' | head -n 1; }
+entry() { find "$cache" -maxdepth 1 -type f ! -name '*.lock' ! -name '*.run' ! -name '*.cc' | head -n 1; }
 mode() { stat -c %a "$1"; }
 
 # ---- outputs
@@ -106,7 +106,7 @@ chmod 700 "$dir/tmp"
 # ---- interruptions while the C compiler works
 cat >slow_cc <<'END'
 #!/bin/sh
-case "$*" in *-dM*) exec cc "$@" ;; esac
+case "$*" in *-dM* | *--version*) exec cc "$@" ;; esac
 : >"$TMPDIR/of_the_compiler" 2>/dev/null
 echo $$ >"$PID_FILE"
 sleep 60
