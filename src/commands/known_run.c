@@ -72,6 +72,8 @@ static const char *entry_path(Compiler *c, const KnownRun *k, const Toolchain *t
   sb_printf(&b, "%d %s\n", exact, c->o.file);
   add_words(c, k, exact, &b);
   sb_printf(&b, "%s\n%s", toolchain_own_build(c->arena, t, c->argv0), simulator_surroundings(c));
+  const char *data = options_passed(&c->o, "--data"), *why, *head = data ? data_head(c->arena, data, &why) : NULL;
+  if (head) sb_printf(&b, "\n%s", head);
   if (c->o.resume) sb_printf(&b, "\n%s", method_of_state(c->arena, c->o.resume));
   SourceText texts[] = {{"words", sb_text(&b)}, {"model", c->sources->files.at[0].text}};
   return arena_printf(c->arena, "%s/%s.run", cache, toolchain_entry(c->arena, t, texts, 2));

@@ -113,6 +113,14 @@ check 'sines are linked' grep -q -e -DLAG_LINKED_SINES words
 for how in never auto always auto; do check "known, --compile $how" known_by $how; done
 is 'runs that are known' 3 "$(runs)"
 
+# The columns of a record are outputs of the program.
+"$LAGC" run units.lag free --every 0.1 --quiet -o record.csv
+fits() { "$LAGC" fit units.lag free --data record.csv --fit k >out 2>&1; }
+check 'a fit' fits
+sed -i '1s/x.*/y/' record.csv
+other_columns() { ! fits && grep -q 'column y:1:1: error: unknown name `y`' out; }
+check 'of other columns' other_columns
+
 # A start of a rotation is compiled.
 cat >top.lag <<'EOF'
 model top
