@@ -166,7 +166,8 @@ static int read_text(Eval *ev, struct Quantified *q) {
     return 0;
   mark_index(ev, y->a, first, inside);
   mark_index(ev, y->b, first, inside);
-  q->range = (LoopRange){.rows = (uint32_t)(q->hi - q->lo + 1), .skew = q->from.by_i, .more = q->to.by_i - q->from.by_i};
+  q->range =
+      (LoopRange){.rows = (uint32_t)(q->hi - q->lo + 1), .skew = q->from.by_i, .more = q->to.by_i - q->from.by_i};
   q->range.turns = q->to.first - q->from.first + q->range.more * q->lo + 1;
   for (AstId k = last + 1; k-- > first;) {
     const AstExpr *n = ast_expr(ast, k);
@@ -367,7 +368,8 @@ static Expr component_sum(Eval *ev, const struct Quantified *q, uint32_t c) {
   Expr inside = expr_symbol(g, q->inside[c])->node, factor = expr_diff(g, whole[0].at[c], q->inside[c]), back;
   Expr alone = expr_mul(g, factor, inside), turned[REPRESENTATIVES];
   if (alone != whole[0].at[c]) return 0;
-  for (int k = 0; k < REPRESENTATIVES; k++) expr_replace_nodes(g, &whole[k].at[c], 1, &inside, &body[k].at[c], 1, &turned[k]);
+  for (int k = 0; k < REPRESENTATIVES; k++)
+    expr_replace_nodes(g, &whole[k].at[c], 1, &inside, &body[k].at[c], 1, &turned[k]);
   back = expr_mul(g, factor, body[0].at[c]);
   if (back != turned[0] || !find_arguments(&a, turned[0]) || !same_for_both(&a, turned[0], turned[1])) return 0;
   return expr_is_zero(g, turned[0]) ? turned[0] : sum_over(&a, q->range, turned[0]);
