@@ -38,15 +38,15 @@ static void gather(const Block *b, double *to, const double *from, uint32_t k) {
   for (int j = 0; j < b->count; j++) to[j] = from[j * step];
 }
 
-/* Four turns at once, where the compiler has vectors; the last ones may compute values that nobody needs. */
+/* Two turns at once, where the compiler has vectors; the last may compute a value that nobody needs. */
 #if defined(__GNUC__)
-typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
+typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
 #else
-typedef double four;
+typedef double pair;
 #endif
-enum { FOUR = (int)(sizeof(four) / sizeof(double)) };
+enum { PAIR = (int)(sizeof(pair) / sizeof(double)) };
 
-static void compute(const Block *b, uint32_t s) {
+static inline void compute(const Block *b, uint32_t s) {
   const TurnIns *i = &b->n->ins[s - 1];
   double *to = value(b, s);
   const double *of[] = {value(b, i->a), value(b, i->b), value(b, i->c)};
@@ -64,7 +64,7 @@ static void compute(const Block *b, uint32_t s) {
     (void)x, (void)y, (void)z;                                                               \
     return;                                                                                  \
   }
-#define VECTOR(name, operands, formula) LOOP(four, (n + FOUR - 1) / FOUR, name, formula)
+#define VECTOR(name, operands, formula) LOOP(pair, (n + PAIR - 1) / PAIR, name, formula)
 #define OP(name, operands, formula) OP_##operands(name, formula)
 #define OP_0(name, formula)
 #define OP_1(name, formula) LOOP(double, n, name, formula)
@@ -80,11 +80,8 @@ static void compute(const Block *b, uint32_t s) {
   }
 }
 
-/* Loads come first, as in C; then the other values. */
-static void compute_all(const Block *b, int moves) {
-  for (int loads = 1; loads >= 0; loads--)
-    for (uint32_t s = 1; s <= b->n->nins; s++)
-      if (b->n->ins[s - 1].moves == moves && (b->n->ins[s - 1].op <= TURN_OUTER) == loads) compute(b, s);
+static void compute_all(const Block *b, uint32_t from, uint32_t end) {
+  for (uint32_t k = from; k < end; k++) compute(b, b->n->order[k]);
 }
 
 /* Adds turns from .. end - 1 to sum k. */
@@ -109,12 +106,12 @@ static void run_row(Block *b, int64_t from, int64_t end) {
   int most = n->in_order ? 1 : NEST_BLOCK;
   b->from = from;
   b->count = end - from < NEST_BLOCK ? (int)(end - from) : NEST_BLOCK;
-  compute_all(b, 0);
+  compute_all(b, 0, n->fixed);
   for (uint32_t k = 0; k < n->nsums; k++) b->part[k] = 0;
   for (int64_t j = from; j < end; j += b->count) {
     b->from = j;
     b->count = end - j < most ? (int)(end - j) : most;
-    compute_all(b, 1);
+    compute_all(b, n->fixed, n->nins);
     add(b);
   }
   for (uint32_t k = 0; k < n->nsums; k++)
