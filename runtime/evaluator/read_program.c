@@ -267,7 +267,7 @@ static int part_of_frame(const Program *p, uint32_t at, uint32_t n) { return (ui
 static void add_scratch(Bytes *b, Program *p) {
   uint64_t most = 0;
   for (uint32_t k = 0; !b->why && k < p->nnests; k++) {
-    uint64_t need = ((uint64_t)p->nests[k].nins + 1) * NEST_BLOCK + p->nests[k].nsums;
+    uint64_t need = ((uint64_t)p->nests[k].nins + 1) * NEST_BLOCK + p->nests[k].nsums + 1;
     if (need > most) most = need;
   }
   lag_bytes_need(b, most < FRAME_MOST, "a nest is too large");
