@@ -68,8 +68,8 @@ static int is_num(const Prog *p, Slot s, int64_t value) {
   return s && i->op == IR_CONST && num_equal(i->number, num_int(value));
 }
 
-/* Identities x + 0, x - 0, 1*x, 0*x, x/1, 0/x, x + (-y), x - (-y), x^1, x^2; slot 0 is the structural zero. NOT_A_SLOT: none
- * applies. */
+/* Identities x + 0, x - 0, 1*x, 0*x, x/1, 0/x, x + (-y), x - (-y), x^1, x^2; slot 0 is the structural zero.
+ * NOT_A_SLOT: none applies. */
 static Slot fold(Prog *p, const Ins *i) {
   switch (i->op) {
     case IR_ADD:
