@@ -46,34 +46,52 @@ static int read_squares(Builder *b, Expr sum, Contact *t) {
   return 1;
 }
 
-/* The norm that contains the multipliers of e: abs, hypot, or the root of a sum of squares; t->normal := its
- * components. 0: e is no product with one. */
+/* The factor of base[i]^power[i] of a product that contains no multiplier, times *of; *base, *power: of the other one.
+ * 0: there are several. */
+static Expr split_product(Builder *b, Expr product, Expr of, Expr *base, Num *power) {
+  ExprGraph *g = b->g;
+  *base = 0;
+  for (uint32_t i = 0; i < expr_pairs(g, product, EX_PROD); i++) {
+    Num k;
+    Expr x = expr_pair(g, product, EX_PROD, i, &k);
+    if (!has_multiplier(b, x)) {
+      Expr factor = expr_pow_num(g, x, k);
+      of = expr_mul(g, of, factor);
+    } else if (*base) return 0;
+    else *base = x, *power = k;
+  }
+  return of;
+}
+
+/* The coefficient of the norm that contains the multipliers of e: abs, hypot, or the root of a sum of squares;
+ * t->normal := its components. 0: e is no product with one. */
 static Expr find_norm(Builder *b, Expr e, Contact *t) {
   ExprGraph *g = b->g;
-  for (Expr at = e;;) {
-    Num power = num_int(1);
+  Expr coefficient = expr_int(g, 1);
+  for (Expr at = e; at;) {
+    Num power;
     ExprOp op = expr_op(g, at);
     if (op == EX_ABS || op == EX_HYPOT) {
       t->parts = expr_nargs(g, at);
       for (uint32_t k = 0; k < t->parts; k++) t->normal[k] = expr_arg(g, at, k);
-      return at;
+      return coefficient;
     }
-    if (op == EX_SUM && expr_pairs(g, at, op) == 1) at = expr_pair(g, at, op, 0, &power);
-    else if (op == EX_PROD) {
-      Expr found = 0;
-      for (uint32_t i = 0; i < expr_pairs(g, at, op); i++) {
-        Num k;
-        Expr base = expr_pair(g, at, op, i, &k);
-        if (!has_multiplier(b, base)) continue;
-        if (found) return 0;
-        found = base;
-        power = k;
-      }
-      if (num_cmp(power, num_ratio(1, 2)) == 0) return read_squares(b, found, t) ? expr_sqrt(g, found) : 0;
-      if (!num_is_one(power) || !found) return 0;
-      at = found;
-    } else return 0;
+    if (op == EX_SUM && expr_pairs(g, at, op) == 1) {
+      at = expr_pair(g, at, op, 0, &power);
+      coefficient = expr_scale(g, power, coefficient);
+      continue;
+    }
+    if (op != EX_PROD || !(coefficient = split_product(b, at, coefficient, &at, &power)) || !at) return 0;
+    if (num_cmp(power, num_ratio(1, 2)) == 0) return read_squares(b, at, t) ? coefficient : 0;
+    if (!num_is_one(power)) return 0;
   }
+  return 0;
+}
+
+static int same_force(const Contact *a, const Contact *b) {
+  for (uint32_t k = 0; k < a->parts && a->parts == b->parts; k++)
+    if (a->normal[k] != b->normal[k]) return 0;
+  return a->parts == b->parts;
 }
 
 /* Whether the components are linear in multipliers of constraints, none of them a contact's. */
@@ -99,9 +117,8 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Dim dim, Conta
   Value f = resolve(b, size, IN_DYNAMICS, effect), g = most ? resolve(b, most, IN_DYNAMICS, effect) : f;
   b->in_friction = 0;
   if (!f.e || !g.e) return 0;
-  Expr norm = f.n ? 0 : find_norm(b, f.e, t);
-  t->friction = norm ? expr_div(b->g, f.e, norm) : 0;
-  if (!norm || has_multiplier(b, t->friction) || !is_force(b, t))
+  t->friction = f.n ? 0 : find_norm(b, f.e, t);
+  if (!t->friction || !is_force(b, t))
     return diag_error(b->diags, span,
                       "friction by the force of a constraint is a coefficient times the size of that force" HELP
                       "write `mu*abs(lambda(rail))`, or `mu*r*hypot(lambda(px), lambda(py))` of a journal; two forces "
@@ -114,8 +131,9 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Dim dim, Conta
   if (g.n || !dims_agree(b, &g, &f, ast_expr(b->ast, most ? most : size)->span))
     return diag_error(b->diags, ast_expr(b->ast, most)->span, "the static limit is %s, and the friction %s",
                       g.n ? "a vector" : in_dim(b, g.dim), in_dim(b, f.dim));
-  t->hold = expr_div(b->g, g.e, norm);
-  if (has_multiplier(b, t->hold))
+  Contact held = {0};
+  t->hold = find_norm(b, g.e, &held);
+  if (!t->hold || !same_force(t, &held))
     return diag_error(b->diags, ast_expr(b->ast, most)->span,
                       "static friction follows the same force as friction: `static = mu_s*abs(lambda(rail))`");
   if (expr_is_constant(b->g, t->friction)) add_size(b, t->friction, "this friction has a coefficient", span, 0);
