@@ -34,7 +34,7 @@ static int choose(lag_touch *c, int k) {
   if (k >= (c->guide ? 5 : 4)) return 0;
   c->mode = c->guide ? modes[k > 0] : modes[k];
   c->to = (c->guide ? k % 2 == 0 : k == 2) ? -1 : 1;
-  for (int i = 0; i < c->parts; i++) c->toward[i] = i > 0 ? 0 : k > 2 ? -1 : 1;
+  c->presses = k > 2 ? -1 : 1;
   return 1;
 }
 
@@ -112,6 +112,8 @@ static int turn_guide(const Trial *t, lag_touch *c) {
 static int solve(Trial *t) {
   enum { ROUNDS = 50 };
   int turned = 1;
+  for (int i = 0; i < t->n; i++)
+    for (int k = 0; k < t->of[i].parts; k++) t->of[i].toward[k] = k ? 0 : t->of[i].presses;
   for (int round = 0; turned && round < ROUNDS; round++) {
     set_rows(t);
     if (lag_solve_dense((size_t)t->rows, 1, t->A, t->x)) return 0;
@@ -294,6 +296,7 @@ static void find_edges(Trial *t) {
     leaves |= c->cannot_stick;
     c->mode = c->tangent >= 0 && c->slip == 0 ? LAG_CONTACT_STICKS : LAG_CONTACT_SLIPS;
     c->to = c->slip ? c->slip : 1;
+    c->presses = 1;
   }
   if (!leaves || !solve(t)) return;
   choose_forces(t);

@@ -17,6 +17,7 @@ typedef struct lag_touch {
   /* of a guide: not 0; its force N[parts] = pressed[parts][1 + rows] (1, x); and the direction of N */
   int guide, parts;
   double *pressed, toward[3];
+  int presses;           /* side of its force from which the direction is sought: -1, 1 */
 } lag_touch;
 
 enum { LAG_MOST_TOUCHES = 6 };
