@@ -448,7 +448,8 @@ static void list_pressed(const ContactSet *w, Touches *to) {
     for (int c = 0; c < of->parts; c++) {
       const double *from = lag_guide_pressed(w, of->guide - 1, c);
       to->pressed[k][c][0] = from[0];
-      for (int r = 0; r < to->rows; r++) of->pressed[c * (1 + to->rows) + 1 + r] = to->row[r] < 0 ? 0 : from[1 + to->row[r]];
+      for (int r = 0; r < to->rows; r++)
+        of->pressed[c * (1 + to->rows) + 1 + r] = to->row[r] < 0 ? 0 : from[1 + to->row[r]];
     }
   }
 }
@@ -477,8 +478,7 @@ int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration) {
   if (rc || motions != 1) return rc ? rc : fail_paradox(w, to.of, n, motions);
   for (int a = 0; a < w->n; a++) {
     acceleration[a] = w->rhs[a];
-    for (int k = 0; k < rows; k++)
-      acceleration[a] += to.row[k] < 0 ? 0 : w->response[a * w->rows + to.row[k]] * x[k];
+    for (int k = 0; k < rows; k++) acceleration[a] += to.row[k] < 0 ? 0 : w->response[a * w->rows + to.row[k]] * x[k];
   }
   for (int k = 0; k < n; k++) {
     int a = to.of[k].contact;

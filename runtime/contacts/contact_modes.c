@@ -22,7 +22,7 @@ typedef struct Trial {
   int may_wedge; /* forces that only their own size bounds, and prestress */
   /* [sets of closed contacts, as bits] some of them can press on each other without any load */
   unsigned char prestress[1 << LAG_MOST_TOUCHES];
-  int breaks;    /* contacts at rest that slip although static friction may hold them */
+  int breaks; /* contacts at rest that slip although static friction may hold them */
   /* [rows], [rows rows], accelerations, those of the first motion found, forces of it, sizes of the terms */
   double *x, *A, *a, *first, *force, *size;
 } Trial;
@@ -352,7 +352,20 @@ static int try_breaks(Trial *t, lag_touch *found) {
 
 int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const double *pull, double *x, double *room) {
   Trial t = {n,
-             rows, of, W, pull, {0}, {0}, {0}, 0, {0}, 0, x, room, room + rows * rows, room + rows * (rows + 1),
+             rows,
+             of,
+             W,
+             pull,
+             {0},
+             {0},
+             {0},
+             0,
+             {0},
+             0,
+             x,
+             room,
+             room + rows * rows,
+             room + rows * (rows + 1),
              room + rows * (rows + 2),
              room + rows * (rows + 3)};
   lag_touch found[LAG_MOST_TOUCHES];

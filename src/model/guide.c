@@ -125,9 +125,10 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Dim dim, Conta
                       "are two frictions, and that of a contact is `contact NAME: y >= 0, restitution = 0, friction = "
                       "mu, slip = x'`");
   if (!dim_equate(b->dims, f.dim, dim, span))
-    return diag_error(b->diags, span, "a force along the slip of `%s` is %s, and this is %s" HELP
-                      "of a journal of radius r it is `mu*r*hypot(lambda(px), lambda(py))`", st->name, in_dim(b, dim),
-                      in_dim(b, f.dim));
+    return diag_error(b->diags, span,
+                      "a force along the slip of `%s` is %s, and this is %s" HELP
+                      "of a journal of radius r it is `mu*r*hypot(lambda(px), lambda(py))`",
+                      st->name, in_dim(b, dim), in_dim(b, f.dim));
   if (g.n || !dims_agree(b, &g, &f, ast_expr(b->ast, most ? most : size)->span))
     return diag_error(b->diags, ast_expr(b->ast, most)->span, "the static limit is %s, and the friction %s",
                       g.n ? "a vector" : in_dim(b, g.dim), in_dim(b, f.dim));
@@ -215,14 +216,18 @@ static int refuse_options(Builder *b, const AstStmt *st) {
     const AstExpr *x = ast_expr(b->ast, i);
     int known = strcmp(x->name, "tangential") != 0 && strcmp(x->name, "law") != 0;
     if (!known)
-      return diag_error(b->diags, x->span, "`%s` is a law of impacts, which a guide has not" HELP
-                        "a guide has `friction = mu`, and perhaps `static = mu_s` and `slip = x'`", x->name);
+      return diag_error(b->diags, x->span,
+                        "`%s` is a law of impacts, which a guide has not" HELP
+                        "a guide has `friction = mu`, and perhaps `static = mu_s` and `slip = x'`",
+                        x->name);
     if (ast_option_value(b->ast, st, x->name) != x->args)
       return diag_error(b->diags, x->span, "the guide `%s` has `%s` twice", st->name, x->name);
   }
   if (!ast_option_value(b->ast, st, "friction"))
-    return diag_error(b->diags, st->span, "the guide `%s` has no friction" HELP
-                      "`guide %s: y = 0, friction = mu`; without friction it is a `constraint`", st->name, st->name);
+    return diag_error(b->diags, st->span,
+                      "the guide `%s` has no friction" HELP
+                      "`guide %s: y = 0, friction = mu`; without friction it is a `constraint`",
+                      st->name, st->name);
   return 1;
 }
 
@@ -238,7 +243,8 @@ static Expr slip_of(Builder *b, const AstStmt *st, Name effect, const Entity *of
       diag_error(b->diags, st->span,
                  "the guide `%s` does not say how it slips" HELP
                  "give the velocity along it: `guide %s: ..., friction = mu, slip = x'`, of a journal `slip = "
-                 "r*(th1' - th2')`", st->name, st->name);
+                 "r*(th1' - th2')`",
+                 st->name, st->name);
     return slip;
   }
   for (uint32_t k = 0; of && k < parts; k++) t->normal[k] = multiplier_node(b, of->index + k);
@@ -249,15 +255,16 @@ static Expr slip_of(Builder *b, const AstStmt *st, Name effect, const Entity *of
   if (!v.e || !check_slip(b, st, id, &v, of ? &b->m->constraints.at[of->index] : NULL)) return 0;
   if (!of) *dim = v.dim;
   if (!v.n) return v.e;
-  diag_error(b->diags, ast_expr(b->ast, id)->span, "the slip of a guide is a number: the velocity along it" HELP
-             "on a surface in space it has two components: write two contacts, `z >= 0` and `-z >= 0`, with `slip = (x', "
-             "y')`, and take moreau");
+  diag_error(b->diags, ast_expr(b->ast, id)->span,
+             "the slip of a guide is a number: the velocity along it" HELP
+             "on a surface in space it has two components: write two contacts, `z >= 0` and `-z >= 0`, with `slip = "
+             "(x', y')`, and take moreau");
   return 0;
 }
 
 static void declare_slip(Builder *b, const AstStmt *st, Name name, uint32_t constraint) {
-  scope_add(&b->constraints, (Entity){.index = constraint, .name = intern_printf(b, "slip"), .effect = name,
-                                      .span = st->name_span});
+  scope_add(&b->constraints,
+            (Entity){.index = constraint, .name = intern_printf(b, "slip"), .effect = name, .span = st->name_span});
 }
 
 void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data) {
@@ -267,7 +274,7 @@ void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data) 
   Name name = member_name(b->ast, st->name, r.lo, r.n);
   const Entity *found = st->lhs ? scope_own(&b->constraints, name, effect) : NULL;
   Entity own = found ? *found : (Entity){0}, *of = found ? &own : NULL; /* declarations move entities */
-  declare_slip(b, st, name, UINT32_MAX); /* refused, unless declared again */
+  declare_slip(b, st, name, UINT32_MAX);                                /* refused, unless declared again */
   if ((st->lhs && (!of || of->index >= b->m->constraints.n)) || !refuse_options(b, st)) return;
   Contact t = {.is_tangent = 1, .restitution = expr_int(b->g, 0)};
   Dim dim;
