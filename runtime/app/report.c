@@ -262,7 +262,8 @@ static void caveat(const App *app, const lag_stats *st, FILE *f) {
     const char *name = lag_state_column(app->sim, 0).name;
     int held = app->scene->model->nguides && !isnan(lag_sim_guide_part(app->sim, 0));
     fprintf(f, "note: nothing moves: the scene begins at rest, where %s", held ? "friction holds it" : "no force acts");
-    if (!started && !held) fprintf(f, "; write a start into it, `start %s = 0.1`, or give one here: %s=0.1", name, name);
+    if (!started && !held)
+      fprintf(f, "; write a start into it, `start %s = 0.1`, or give one here: %s=0.1", name, name);
     putc('\n', f);
   }
   if (isfinite(st->unresolved)) {

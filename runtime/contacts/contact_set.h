@@ -55,10 +55,11 @@ static inline double lag_norm(const double *x, int n) {
   return s;
 }
 
-/* contact.c. tangent_of: the tangent of contact i of the model; -1: it has no friction. set_closed: closes or opens contact i of the model; a tangent sticks, or has no friction. close_only:
- * closes all, or `which` alone, or none (-1). rates: rate[i] := rate of each gap, and slip velocity of each tangent,
- * at y; leaves all closed. response: d := the least change of velocities that changes the rate of contact i by 1,
- * the others open; returns the change per unit impulse. no_values: reports that contact i has none. */
+/* contact.c. tangent_of: the tangent of contact i of the model; -1: it has no friction. set_closed: closes or opens
+ * contact i of the model; a tangent sticks, or has no friction. close_only: closes all, or `which` alone, or none (-1).
+ * rates: rate[i] := rate of each gap, and slip velocity of each tangent, at y; leaves all closed. response: d := the
+ * least change of velocities that changes the rate of contact i by 1, the others open; returns the change per unit
+ * impulse. no_values: reports that contact i has none. */
 int lag_tangent_of(const lag_model *m, int i);
 void lag_contact_set_closed(lag_sim *sim, int i, int closed);
 void lag_contacts_close_only(const ContactSet *w, int all, int which);

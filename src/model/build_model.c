@@ -300,7 +300,11 @@ static void apply_statement(Builder *b, const AstStmt *st, Name effect, void *da
     case STMT_CONSTRAINT: add_constraint(b, st, effect); return;
     case STMT_CONTACT: add_contact(b, st, effect); return;
     case STMT_GUIDE: add_guide(b, st, effect); return;
-    case STMT_LET: case STMT_FUNCTION: case STMT_EXPECT: case STMT_OBSERVE: case STMT_DRAW: /* once L is known: build() */
+    case STMT_LET:
+    case STMT_FUNCTION:
+    case STMT_EXPECT:
+    case STMT_OBSERVE:
+    case STMT_DRAW: /* once L is known: build() */
     case STMT_COORD: case STMT_STATE: case STMT_PARAM: case STMT_CONST:
     case STMT_SYMMETRY: case STMT_CANONICAL: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE:
     case STMT_MAP: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
