@@ -68,7 +68,8 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %token MODEL "model" INCLUDE "include" COORD "coord" MOMENTUM "momentum" PARAM "param" CONST "const" INPUT "input" STATE "state"
 %token LET "let" FUNCTION "function" HAMILTONIAN "hamiltonian" LAGRANGIAN "lagrangian" KINETIC "kinetic" POTENTIAL "potential"
 %token DISSIPATION "dissipation" FORCE "force" FRICTION "friction" FLOW "flow" CONSTRAINT "constraint" SYMMETRY "symmetry" CANONICAL "canonical"
-%token EXPECT "expect" EVENT "event" KICK "kick" CONTACT "contact" OBSERVE "observe" DRAW "draw" FOR "for" EFFECT "effect"
+%token EXPECT "expect" EVENT "event" KICK "kick" CONTACT "contact" GUIDE "guide" OBSERVE "observe" DRAW "draw" FOR "for"
+%token EFFECT "effect"
 %token REQUIRES "requires" EXCLUDES "excludes" SCENE "scene" START "start" EXACT "exact" USE "use"
 %token SPAN "span" METHOD "method" TOLERANCE "tolerance" OUTPUT "output" MONITOR "monitor" MEASURE "measure" LIKE "like"
 %token STOP "stop" PERIODIC "periodic" RISING "rising" FALLING "falling" CROSSING "crossing"
@@ -150,6 +151,7 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "event" IDENT[n] dims[d] ":" arith[g] direction[w] block[b] { $$ = stmt_event(ast, @$, $n, $d, $g, $w, $b); }
       | "kick" IDENT[n] dims[d] "every" arith[T] block[b] { $$ = stmt_event(ast, @$, $n, $d, $T, AT_EQUAL_TIMES, $b); }
       | "contact" IDENT[n] dims[d] ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
+      | "guide" IDENT[n] dims[d] ":" arith[a] "=" expr[b] laws[r] { $$ = stmt_guide(ast, @$, $n, $d, $a, $b, $r); }
       | "for" IDENT[i] "in" arith[lo] ".." arith[hi] block[b] { $$ = stmt_for(ast, @$, $i, $lo, $hi, $b); }
       | "effect" IDENT[n] doc[d] block[b]       { $$ = stmt_titled(ast, STMT_EFFECT, @$, $n, $d, $b); }
       | "scene" IDENT[n] doc[d] block[b]        { $$ = stmt_titled(ast, STMT_SCENE, @$, $n, $d, $b); }

@@ -158,7 +158,8 @@ int lag_sampling_open(App *app) {
   double span = fabs(app->until - lag_sim_time(app->sim));
   size_t ncols = (size_t)app->table.ncols;
   /* a tangent is known at rows only */
-  if (!app->table.keep || app->section >= 0 || app->args.tangent || lag_app_equal_times(&app->args)) {
+  if (!app->table.keep || app->section >= 0 || app->args.tangent || app->args.sensitivity ||
+      lag_app_equal_times(&app->args)) {
     return 0;
   }
   *f = (PictureSampling){.on = 1,

@@ -130,7 +130,7 @@ static int alloc_scratch(lag_sim *s) {
   const size_t sizes[] = {nuu,
                           nw, n, n, n, nev, nev, nout, 2 + nev, 11 * nev, held, ranks, sized, (size_t)m->ncontacts,
                           2 * nc, nc, nc, 3 * (size_t)m->nswitch, nm, nm, nm, nm, nm, nm * (9 + 2 * nm), nm * (3 + nm),
-                          m->contact_laws ? np * (5 + 2 * np) : 0,
+                          m->contact_laws ? 3 * np + 4 * (size_t)m->nguides + 1 : 0,
                           (size_t)(m->nsizes + m->nmoving)};
   s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
@@ -299,7 +299,7 @@ static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
         method->name, m->switches[k].text);
   }
   for (int i = 1; i < m->ncontacts && !(needs & LAG_METHOD_IMPULSES); i++)
-    if (m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent)
+    if (m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent && lag_guide_of(m, i) < 0)
       return lag_fail(s, LAG_EMETHOD,
                       "method %s follows friction in a plane, and the slip of a contact has two components here (%s); "
                       "--method \"moreau(step=1e-3)\" follows it",
@@ -614,12 +614,15 @@ int lag_check_moving_sizes(lag_sim *s, double t, const double *y) {
 }
 
 int lag_setup_start(lag_sim *s) {
-  const lag_scene *c = s->scene;
-  int n = s->pb.n;
   int rc = check_digits(s, s->method);
+  rc = rc ? rc : lag_check_parameters(s);
+  rc = rc ? rc : check_rates(s);
+  return rc ? rc : lag_start_state(s);
+}
 
-  if (rc) return rc;
-  if ((rc = lag_check_parameters(s)) != 0 || (rc = check_rates(s)) != 0) return rc;
+int lag_start_state(lag_sim *s) {
+  const lag_scene *c = s->scene;
+  int n = s->pb.n, rc;
   set_start_state(s);
   if (lag_not_finite(n, s->now) >= 0) return lag_fail(s, LAG_ENAN, "the start is not finite");
   memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */

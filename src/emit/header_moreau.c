@@ -62,7 +62,7 @@ static const char *const tables =
     " |typedef struct lag_contact { short input, constraint, is_tangent, force; } lag_contact;\n"
     " |typedef struct lag_entry { unsigned short row, col; } lag_entry;\n"
     " |static const lag_contact lag_contact_at[] = {AT_CONTACTS};\n"
-    " |static const lag_entry lag_jacobian_at[] = {JACOBIAN}, lag_mass_at[] = {ENTRIES};\n"
+    " |static const lag_entry lag_gap_jacobian_at[] = {JACOBIAN}, lag_gap_mass_at[] = {ENTRIES};\n"
     " |\n"
     " |/* now := the inputs at time t, with contact `only` closed, or -1: all of them, -2: none. */\n"
     " |static void lag_contact_inputs(const lag_params *p, LAG_REAL tHELD, int only, LAG_REAL *now) {\n"
@@ -147,7 +147,7 @@ static const char *const whole_step =
     " |  lag_kick_begin(&k, s->lost + 1);\n"
     "c|  w.contacts = LAG_NCONTACTS, w.constraints = LAG_NC, w.nq = LAG_NQ, w.entries = NJACOBIAN, w.nmass = NMASS, "
     "w.band = BANDWIDTH;\n"
-    "c|  w.at = lag_contact_at, w.jacobian_at = lag_jacobian_at, w.mass_at = lag_mass_at;\n"
+    "c|  w.at = lag_contact_at, w.jacobian_at = lag_gap_jacobian_at, w.mass_at = lag_gap_mass_at;\n"
     "c|  w.epsilon = epsilon, w.guess = s->impulse, w.u = now;\n"
     "c|  lag_contacts_place(&w, NRESPONSES, room);\n"
     "d|  w.n = LAG_NSURFACES, w.states = LAG_NY, w.nq = LAG_NQ;\n"
@@ -242,6 +242,8 @@ static void define_contacts(const Header *h) {
 
 const char *header_moreau_lacks(const ProgramSet *u) {
   if (!u->contacts.n || header_surfaces(u)) return header_friction_lacks(u);
+  if (program_set_guides(u))
+    return "no friction of guides: write a guide as two contacts, `y >= 0` and `-y >= 0`, with `friction` and `slip`";
   for (uint32_t i = 0; i < u->contacts.n; i++)
     if (u->contacts.at[i].law || u->contacts.at[i].holds)
       return "contacts of one friction, at rest and slipping, and of one law of impact, `stronge`";

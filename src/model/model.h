@@ -126,6 +126,12 @@ typedef struct {
   int law;
   /* of a tangent: input set by the runtime, the force of friction along the slip while the contact slips */
   SymId force;
+  /* of a tangent of a guide: components of the force of the guide, linear in multipliers; parts 0: of a contact */
+  Expr normal[3];
+  uint32_t parts;
+  uint32_t turn; /* of a guide whose force has one component: event where that changes its side */
+  /* coordinates of the space in which a guide slips by its constraints alone; nspace 0: the text gives its slip */
+  uint32_t space[3], nspace;
 } Contact;
 
 /* Origin of an output in the text: component `component` of the value of `id`; where `id` names a family, of its
@@ -338,6 +344,7 @@ typedef struct {
   VEC(Output) observes;
   Scene scene;
   VEC(FoundUnit) found;    /* inferred units of names declared without one */
+  VEC(AstId) sums; /* sums over pairs that are not written out: the outer `sum` of each */
   ExprMap written; /* nodes that may jump (comparisons, sign, tan, atan2) -> AstId where the text writes them */
   Measures asked_measures; /* of the command line */
   int measured_outputs;    /* 1: they added outputs to the scene's */
@@ -405,6 +412,8 @@ typedef struct {
 } Define;
 
 /* Arguments of model_build: scene, effects, and definitions from the command line. */
+enum { SUMS_FROM = 2000 };
+
 typedef struct {
   const char *scene; /* NULL: the first */
   Name also;         /* an effect to turn on besides the scene's, with its required effects; or NULL */
@@ -430,6 +439,7 @@ typedef struct {
   /* the point transformation (Canonical.is_point) in whose new coordinates the model is built; or NULL */
   Name coordinates;
   int domains;     /* Model.domain is wanted; without a scene it always is */
+  uint32_t sums_from; /* sums over at least so many pairs are not written out; 0: the usual number */
   int unfixed;     /* set by callers that ignore the command line's --fix */
 } ModelChoice;
 

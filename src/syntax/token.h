@@ -95,6 +95,7 @@ enum {
   X(EVENT, "event", W_EACH | T_BLOCK)              \
   X(KICK, "kick", W_EACH | T_BLOCK)                \
   X(CONTACT, "contact", W_EACH)                    \
+  X(GUIDE, "guide", W_EACH)                        \
   X(OBSERVE, "observe", W_EACH)                    \
   X(DRAW, "draw", W_EACH | W_SCENE)                \
   X(FOR, "for", W_EACH | T_BLOCK)                  \

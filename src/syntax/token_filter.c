@@ -134,7 +134,7 @@ static Token first_name(Filter *f, Token t) {
   return t;
 }
 
-/* A word after a comma of a contact. */
+/* A word after a comma of a contact or a guide. */
 static TokKind contact_word(const char *name) {
   static const TokKind words[] = {TOK_RESTITUTION, TOK_FRICTION, TOK_STATIC, TOK_SLIP, TOK_TANGENTIAL, TOK_LAW};
   for (size_t i = 0; i < sizeof words / sizeof *words; i++)
@@ -166,7 +166,7 @@ static TokKind slot_word(Filter *f, const Token *t) {
                {TOK_FRICTION, TOK_ON},    {TOK_MOMENTUM, TOK_OF},  {TOK_CONSTRAINT, TOK_WHILE}};
   if (f->prev == TOK_START && peek(f)->kind == TOK_IDENT)
     return strcmp(t->name, "exactly") == 0 ? TOK_EXACTLY : TOK_IDENT;
-  if (f->word == TOK_CONTACT && f->prev == TOK_COMMA && !f->brackets.n)
+  if ((f->word == TOK_CONTACT || f->word == TOK_GUIDE) && f->prev == TOK_COMMA && !f->brackets.n)
     return contact_word(t->name);
   if (f->word == TOK_FRICTION && f->prev == TOK_COMMA && !f->brackets.n)
     return strcmp(t->name, "static") == 0 ? TOK_STATIC : TOK_IDENT;
