@@ -90,7 +90,7 @@ static double pixels(const View *v, const lag_shape *s, double other) {
 static void put_spring(const View *v, const lag_shape *s, Spot a, Spot b) {
   enum { MOST = 60 };
   int turns = s->count ? s->count < MOST ? s->count : MOST : 8, n = 0;
-  double l = hypot(b.x - a.x, b.y - a.y), lead = fmin(10, l / 8), r = pixels(v, s, 7);
+  double l = hypot(b.x - a.x, b.y - a.y), lead = fmin(10, l / 8), r = pixels(v, s, fmin(7, l / 8));
   Spot at[2 * MOST + 3];
   at[n++] = a;
   for (int k = 0; k <= 2 * turns; k++)
@@ -239,6 +239,7 @@ static void put_shape(View *v, const lag_shape *s) {
   Spot a = spot_of(v, s->a), b = spot_of(v, s->b);
   const char *colour = colour_of(v, s);
   if (is(s, "spring") && s->a[0] < 0 && s->a[1] < 0) a = (Spot){v->panel.x, b.y, 0};
+  if (is(s, "spring") && s->b[0] < 0 && s->b[1] < 0) b = (Spot){v->panel.x + v->panel.w, a.y, 0};
   if (!isfinite(a.x) || !isfinite(a.y)) return;
   if (is(s, "rod")) stroke(v, (Spot[]){a, b}, 2, colour, fmax(3, pixels(v, s, 0)));
   else if (is(s, "spring")) put_spring(v, s, a, b);
