@@ -552,10 +552,10 @@ static int add_row(Track *k, double t, const double *y) {
 
 /* Follows the motion until a time, or the event that ends it. */
 static int follow_motion(Track *k, lag_sim *sim, double until, double *y) {
-  enum { PLACES = 4, MOST_ROWS = 1 << 20 };
+  enum { PLACES = 4, MOST_NUMBERS = 40000000 };
   int rc = lag_sim_advance(sim, lag_sim_time(sim));
   rc = rc ? rc : add_row(k, lag_sim_time(sim), sim->now);
-  for (double reach; rc == LAG_OK && lag_sim_time(sim) < until && k->rows < MOST_ROWS;) {
+  for (double reach; rc == LAG_OK && lag_sim_time(sim) < until && k->rows < MOST_NUMBERS / k->n;) {
     double from = lag_sim_time(sim);
     rc = lag_sim_ensure_step(sim, until, &reach);
     for (int j = 1; j <= PLACES && rc == LAG_OK && reach > from; j++) {

@@ -299,9 +299,27 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
 
 /* ---- The command */
 
+/* How near the search came, as JSON. */
+static void json_not_found(App *app, const PeriodicOrbit *o) {
+  Json j = {.f = stdout};
+  lag_json_begin(&j, NULL, '{');
+  lag_json_string(&j, "model", app->scene->model->name);
+  lag_json_string(&j, "scene", app->scene->name);
+  lag_json_string(&j, "status", "no periodic motion");
+  lag_json_number(&j, "period", o->T);
+  lag_json_number(&j, "residual", o->residual);
+  lag_json_count(&j, "newton_steps", o->steps);
+  lag_json_begin(&j, "residuals", '[');
+  for (int k = 0; k < ORBIT_TRACE && o->trace[k] > 0; k++) lag_json_number(&j, NULL, o->trace[k]);
+  lag_json_end(&j, ']');
+  lag_json_end(&j, '}');
+  putchar('\n');
+}
+
 static int not_found(App *app, const PeriodicOrbit *o) {
   char course[200] = "", text[64];
   size_t n = 0;
+  if (app->args.json) json_not_found(app, o);
   for (int k = 0; k < ORBIT_TRACE && o->trace[k] > 0 && n < sizeof course - 20; k++)
     n += (size_t)snprintf(course + n, sizeof course - n, "%s%.2g", k ? ", " : "", o->trace[k]);
   lag_app_error(
