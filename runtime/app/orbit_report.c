@@ -251,7 +251,7 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
             lag_number_text(o->shift[j], text));
   put_free(f, o);
   if (o->repeats > 1)
-    fprintf(f, "note: the motion comes back already after a %dth of this period: --guess %s\n", o->repeats,
+    fprintf(f, "note: the motion comes back already after 1/%d of this period: --guess %s\n", o->repeats,
             lag_number_text(o->T / o->repeats, text));
   put_multipliers(f, o);
   reason(o, v, why, sizeof why);
