@@ -70,7 +70,7 @@ static int rest_spectrum(void *of, Spectrum *s) {
   double *J = r->J;
   memset(J, 0, (size_t)(n * n) * sizeof *J);
   for (int i = 0; i < nq; i++) J[i * n + nq + i] = 1;
-  int rc = lag_fine_jacobian(&r->flow.probe->pb, r->flow.t0, r->y, J + nq * n, r->flow.linear);
+  int rc = lag_fine_jacobian(&r->flow.probe->pb, NULL, r->flow.t0, r->y, J + nq * n, r->flow.linear);
   s->n = n;
   return rc ? rc : r->algebra->general(n, J, s->re, s->im, r->v, r->v + n * n, r->v + 2 * n * n);
 }

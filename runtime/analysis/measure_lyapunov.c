@@ -46,8 +46,8 @@ static void at_event(void *exponent, int k, double t, const double *before, cons
   if (memcmp(before, after, (size_t)e->l.n * sizeof *before) != 0) lag_lyapunov_event(&e->l, e->sim, t, before);
 }
 
-/* A run like `first`, with a tangent; for MEGNO, which needs the growth from the begin, without a transient. 0,
- * or a status with the reason in why. */
+/* A run like `first`, with a tangent; for MEGNO, which needs the growth from the begin, without a transient. 0, or a
+ * status with the reason in why. */
 static int begin(Exponent *e, const lag_sim *first, double until, MeasureKind kind, char *why, size_t size) {
   *e = (Exponent){.sim = lag_sim_like(first), .first = first};
   if (!e->sim) return snprintf(why, size, "out of memory"), LAG_ENOMEM;

@@ -15,8 +15,11 @@ enum { MOST_OPTIONS = 16 };
 /* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *out, *svg, *plot_x, *plot_y, *html, *points,
-      *from, *save, *resume, *events, *section, *cloud, *starts;
-  const char *accuracy;
+      *from, *save, *resume, *events, *section, *cloud, *starts, *drawing;
+  const char *accuracy, *sensitivity;
+  const char *fit, *data, *loss; /* for --fit */
+  const char **sigmas, **priors; /* the values of --sigma and --prior, in order */
+  int nsigmas, npriors;
   const char *transient, *exponents; /* for --lyapunov */
   const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
   /* for --sweep */
@@ -43,7 +46,7 @@ typedef struct Args {
 
 /* A column that pictures draw: its range so far, the deviation allowed, and the slopes of the swinging door. */
 typedef struct DrawnColumn {
-  int col;
+  int col, place; /* 1: a coordinate of a place */
   double least, most, width, low, high;
 } DrawnColumn;
 
@@ -59,12 +62,14 @@ typedef struct PictureSampling {
   size_t kept;
   double part;      /* deviation allowed, as a part of the drawn range */
   double longest;   /* longest time between kept rows */
-  int common;       /* 1: drawn columns share one scale, of the widest range */
+  int common;       /* 1: drawn places share one scale, of the widest range */
   int ndrawn;
   DrawnColumn *drawn; /* [ncols] */
   double *from, *last; /* [ncols] the row kept last; the last one since, if have_last */
   int have_last;
 } PictureSampling;
+
+typedef struct Sensitivity Sensitivity; /* sensitivity_columns.c */
 
 typedef struct App {
   const lag_program *program;
@@ -113,6 +118,7 @@ typedef struct App {
   int progress;     /* progress line: 1 shown, 0 not yet, -1 never (no terminal, or --quiet) */
   PhaseVolume volume; /* --volume */
   int volume_rc;    /* failure of its last step */
+  Sensitivity *sensitivity; /* --sensitivity; NULL: none */
   Measures *measures; /* of the scene and of --measure; NULL: none */
   const char **measure_texts; /* their words; of several variants, with semicolons between them */
   char **measure_names;
@@ -128,10 +134,9 @@ typedef struct App {
 #include "app/options.def"
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
-enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, ORBIT = 128,
-       CONTINUE = 256, ANY = 511,
-       MOTION_PERIODIC = ORBIT | CONTINUE,
-       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS };
+enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, FIT = 128, ORBIT = 256,
+       CONTINUE = 512, ANY = 1023, MOTION_PERIODIC = ORBIT | CONTINUE,
+       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | FIT };
 
 /* A row of options.def. */
 typedef struct Option {
@@ -205,11 +210,11 @@ int lag_app_draw_table(const App *app, const char *title);
 
 /* column_lookup.c: app->drawn := columns of --plot-x and --plot-y, or all. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_curves(App *app);
-/* app->show := points of --points and --from. 0, or EXIT_USAGE after a message. */
-int lag_app_choose_points(App *app);
+/* app->show := the points of --points and --from, or the shapes of the scene. 0, or EXIT_USAGE after a message. */
+int lag_app_choose_shapes(App *app);
 
 /* picture_sampling.c: rows of pictures. lag_sampling_open comes after lag_app_choose_curves and
- * lag_app_choose_points. lag_sampling_advance is lag_sim_advance that samples the motion on the way.
+ * lag_app_choose_shapes. lag_sampling_advance is lag_sim_advance that samples the motion on the way.
  * lag_sampling_close thins the rows at the end. lag_sampling_warn: note := a warning about the picture, or ""; also
  * printed. */
 int lag_sampling_open(App *app);
@@ -272,6 +277,18 @@ int lag_tangent_columns_row(App *app);
 void lag_report_tangent(App *app, FILE *f);
 void lag_report_tangent_json(App *app, Json *j);
 
+/* s[n] := unit as numerator or denominator of a fraction, in parentheses if compound. */
+void lag_unit_in_fraction(char *s, size_t n, const char *unit);
+/* n more columns of the table and of app->row; NULL: no memory. */
+Column *lag_app_add_columns(App *app, int n);
+
+/* sensitivity_columns.c: --sensitivity. As the functions for --tangent. */
+int lag_sensitivity_open(App *app);
+int lag_sensitivity_row(App *app);
+void lag_report_sensitivity(App *app, FILE *f);
+void lag_report_sensitivity_json(App *app, Json *j);
+void lag_sensitivity_free(App *app);
+
 /* volume_report.c: --volume. open: gives the run its tangent; 0, or EXIT_USAGE after a message. step: at the end of
  * each step; a failure ends the run. */
 int lag_app_volume_open(App *app);
@@ -332,6 +349,9 @@ int lag_app_continue(App *app);
 
 /* effect_costs.c: --effects. Returns the exit status. */
 int lag_app_effects(App *app);
+
+/* fit.c: --fit. Returns the exit status. */
+int lag_app_fit(App *app);
 
 /* sweep.c: --sweep. Returns the exit status. */
 int lag_app_sweep(App *app);

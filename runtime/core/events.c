@@ -164,7 +164,8 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
   if (rc == 0 && !kick) rc = watch_restarts(s, k, rest);
   if (rc) return rc;
   int before = *changed;
-  *changed |= of != NULL; /* the set of closed contacts may be another */
+  /* the set of closed contacts may be another; a force that has a corner goes on from there */
+  *changed |= of != NULL || lag_guide_turns(m, k);
   /* slips back at once: no event */
   int turns = contact && contact->is_tangent && k == contact->impact && !lag_contact_is_closed(s, contact);
   if (turns) {

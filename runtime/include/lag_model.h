@@ -5,7 +5,7 @@
  * which derive computes the last nderived from the others; u[nu] its inputs, and modes of switches behind them;
  * w[nw] work space for its functions. All values are in SI units. No function allocates, keeps state, or writes past
  * the sizes here. Arrays passed to one call do not overlap. Every function's first argument, self, is the structure
- * that holds it: emitted C ignores it, and a model that liblag evaluates finds its program there.
+ * that holds it, or a copy: emitted C ignores it, and a model that liblag evaluates finds its programs there.
  *
  * A function returns 0 when all went well, > 0 when a smaller step may help (the value left the model's domain), < 0
  * for a failure that no step size cures. */
@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 16
+#define LAG_ABI 17
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many
  * doubles, one state or one set of parameters a lane. The status < 0 of such a call has bit k of its negative set
@@ -122,6 +122,15 @@ typedef struct lag_jump {
   int event, row, col;
 } lag_jump;
 
+/* Derivatives d[n] of the residuals of lag_linear by parameters, or by inputs (col), at accelerations a[nq]; others are
+ * zero. */
+typedef struct lag_partials {
+  int n;
+  const lag_entry *at; /* [n] */
+  int (*eval)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+              const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *d, LAG_REAL *M, LAG_REAL *w);
+} lag_partials;
+
 /* The exact linearisation of a model, emitted where a method or command needs it (lagc --with linear).
  *
  * The residuals r[nq + nz] vanish along a motion: r_i = f_i - sum_j M_ij a_j for coordinates i, r_(nq + k) = flow_k
@@ -146,6 +155,9 @@ typedef struct lag_linear {
   const lag_jump *jump;
   int (*jumps)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                const LAG_REAL *u, LAG_REAL *d, LAG_REAL *w);
+
+  /* For sensitivities; NULL: not emitted (lagc --with sensitivities), or there are none. */
+  const lag_partials *by_params, *by_inputs;
 } lag_linear;
 
 /* One scalar constraint. */
@@ -254,6 +266,12 @@ typedef struct lag_contact {
   /* of a tangent: the coefficient of restitution is Stronge's (0), Poisson's (1) or Newton's (2) */
   int law;
 } lag_contact;
+
+/* A guide: its tangent, with friction by the force of constraints that always hold. */
+typedef struct lag_guide {
+  int tangent, parts; /* index in the contacts; components of its force */
+  int turn;           /* event: the force of one component changes its side; -1: there are more */
+} lag_guide;
 
 /* An entry of lag_model.second: the second derivative of L by two of q, v, where of LAG_QQ and LAG_VV only row >=
  * col is given and the row of LAG_VQ belongs to v; or the derivative of generalised force `row` by q or v. */
@@ -387,8 +405,13 @@ typedef struct lag_model {
   int (*contact_laws)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
                       const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
+  int nguides;
+  const lag_guide *guides; /* [nguides]; behind out[3 ncontacts] of contact_laws, for each, its static friction and 3
+                            * components of its force, linear in the multipliers */
+
   const char *math; /* library of sin and cos that the program calls; NULL: not known */
   const char *fixed; /* names of parameters that are numbers in this program, separated by spaces; NULL: none */
+  const void *programs; /* of a model that liblag evaluates */
 } lag_model;
 
 #ifndef LAG_LANES
@@ -427,6 +450,30 @@ typedef struct lag_monitor {
 typedef struct lag_measure {
   const char *name, *text;
 } lag_measure;
+
+/* A shape of a drawing. Numbers are indices of the scene's outputs, in SI, -1: not given. a, b: places, x y z, or x y
+ * of a picture in a plane; size: width or radius, or the sides of a box; turn: an angle, or the rotation w x y z.
+ *
+ * kind    a, b                       size              count
+ * rod     ends                       width
+ * spring  ends (no a: held at the left) radius         coils
+ * damper  ends                       radius
+ * disc    centre                     radius            spokes
+ * box     centre                     sides, 2 or 3
+ * body    centre (none: the origin)  3 sides, or none
+ * ball    centre                     radius
+ * wall    ends
+ * ground  a place on it; turn: its slope
+ * curve   a point                                      points from here on, each a shape, of one curve
+ * path    the place whose path is drawn
+ * arrow   its foot; b: its vector                      1: b is no length, and scaled to the picture
+ * text    its place */
+typedef struct lag_shape {
+  const char *kind;
+  const char *role; /* its colour: body, link, spring, support, force, velocity, path, text, second, star, ghost */
+  const char *text; /* the text; the place as the model writes it; or NULL */
+  int a[3], b[3], size[3], turn[4], count;
+} lag_shape;
 
 typedef struct lag_scene {
   const char *name;
@@ -471,6 +518,11 @@ typedef struct lag_scene {
 
   int nmeasures;
   const lag_measure *measures; /* [nmeasures] */
+  const void *programs;        /* of a scene that liblag evaluates */
+
+  /* The drawing, in programs for `lagc animate` and `lagc page`; the last ndrawn outputs belong to it alone. */
+  int ndrawn, nshapes;
+  const lag_shape *shapes; /* [nshapes] */
 } lag_scene;
 
 /* A compiled .lag file: all of its scenes. Several scenes may share one model. */

@@ -23,7 +23,9 @@ static const char *const abi_names[] = {
     "mass_table",       "second_table",     "linear",           "curves",
     "singular",         "constraint_table", "jacobian_table",   "inertia_table",
     "constraints",      "contact_table",    "charge_table",     "charges",
-    "switch_table",     "taylor_far",       "taylor_add",
+    "switch_table",     "taylor_far",       "taylor_add",       "by_params",
+    "by_params_table",  "params_partials",  "by_inputs",        "by_inputs_table",
+    "inputs_partials",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -306,13 +308,25 @@ static void emit_jumps(const ModelFile *f) {
   sb_puts(f->out, "\n};\n");
 }
 
-/* With constraints the derivatives are those of headers: see WANT_CONSTRAINED. */
-static int has_linear(const ProgramSet *u) { return u->linear && !u->constraints.of.n; }
+/* See WANT_CONSTRAINED. */
+int model_has_linear(const ProgramSet *u) { return u->linear && !u->constraints.of.n; }
+
+/* Derivatives by parameters or inputs, with their table. */
+static void emit_partials(const ModelFile *f, const Prog *p, const IrEntry *at, uint32_t n, const char *by) {
+  static const char *const written[] = {"dr", "M", NULL};
+  const char *table = arena_printf(f->a, "by_%s_table", by);
+  state_function(f, p, arena_printf(f->a, "by_%s", by),
+                 arena_printf(f->a, "The same, dr: each equation by the %s; M: %s.", by, op_count_text(p, f->a)), "a",
+                 written);
+  entries(table, at, n, f->out);
+  sb_printf(f->out, "\nstatic const lag_partials %s = {%u, %s, by_%s};\n", arena_printf(f->a, "%s_partials", by), n,
+            n ? table : "NULL", by);
+}
 
 static void emit_linear(const ModelFile *f) {
   static const char *const written[] = {"dr", "M", NULL};
   const ProgramSet *u = f->u;
-  if (!has_linear(u)) return;
+  if (!model_has_linear(u)) return;
   const char *comment =
       arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.",
                    op_count_text(u->linear, f->a));
@@ -320,12 +334,18 @@ static void emit_linear(const ModelFile *f) {
   entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
   entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
   emit_jumps(f);
+  int sensitive = (u->wants & WANT_SENSITIVITY) == WANT_SENSITIVITY, params = sensitive && u->by_params,
+      inputs = sensitive && u->by_inputs;
+  if (params) emit_partials(f, u->by_params, u->by_params_dr.at, u->by_params_dr.n, "params");
+  if (inputs) emit_partials(f, u->by_inputs, u->by_inputs_dr.at, u->by_inputs_dr.n, "inputs");
   sb_printf(f->out,
             "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval "
             "= linearise,\n",
             u->linear_dr.n, u->linear_dr.n ? "dr_table" : "NULL", u->linear_mass.n,
             u->linear_mass.n ? "mass_table" : "NULL", ops_as_int(ops_total(prog_count(u->linear))));
   if (u->jumps) sb_printf(f->out, "  .njump = %u, .jump = jump_table, .jumps = jumps,\n", u->jump_at.n);
+  if (params) sb_puts(f->out, "  .by_params = &params_partials,\n");
+  if (inputs) sb_puts(f->out, "  .by_inputs = &inputs_partials,\n");
   sb_puts(f->out, "};\n");
 }
 
@@ -382,6 +402,12 @@ static void emit_constraints(const ModelFile *f) {
               c->is_tangent, c->force, c->conditional, c->law);
   }
   sb_puts(f->out, "};\n");
+  if (program_set_guides(f->u)) sb_puts(f->out, "\nstatic const lag_guide guide_table[] = {\n");
+  for (uint32_t i = 0; i < f->u->contacts.n; i++)
+    if (f->u->contacts.at[i].parts)
+      sb_printf(f->out, "  {%u, %u, %d},\n", i, f->u->contacts.at[i].parts,
+                f->u->contacts.at[i].parts == 1 ? (int)f->u->contacts.at[i].turn : -1);
+  if (program_set_guides(f->u)) sb_puts(f->out, "};\n");
   state_function(f, f->u->contact_laws, "contact_laws",
                  "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", NULL,
                  one_out);
@@ -488,6 +514,7 @@ static void emit_tables(const ProgramSet *u, const char *name, const char *diges
   if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->contact_laws) sb_puts(out, "  .contact_laws = contact_laws,\n");
+  if (program_set_guides(u)) sb_printf(out, "  .nguides = %u, .guides = guide_table,\n", program_set_guides(u));
   if (u->sizes.n)
     sb_printf(out, "  .nsizes = %u, .sizes = size_table, .size_values = %s,\n", u->sizes.n - u->nmoving,
               u->size_values ? "size_values" : "NULL");
@@ -501,7 +528,7 @@ static void emit_tables(const ProgramSet *u, const char *name, const char *diges
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
-  if (has_linear(u)) sb_puts(out, "  .linear = &linear,\n");
+  if (model_has_linear(u)) sb_puts(out, "  .linear = &linear,\n");
   sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n");
   if (u->fixed[0]) sb_printf(out, "  .fixed = %s,\n", c_string(u->arena, u->fixed));
   sb_puts(out, "};\n");
@@ -518,21 +545,31 @@ static void emit_head(const ProgramSet *u, StrBuf *out) {
   sb_puts(out, "#include <math.h>\n\n#include \"lag_model.h\"\n");
 }
 
+/* The functions on which a saved state depends; returns their digest. */
+static const char *emit_equations(const ModelFile *f) {
+  size_t begin = f->out->n;
+  emit_derive(f);
+  accel(f);
+  state_function(f, f->u->energy, "energy",
+                 "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", NULL, one_out);
+  emit_events(f);
+  emit_inputs(f);
+  emit_constraints(f);
+  return digest_text(f->a, sb_text(f->out) + begin);
+}
+
+const char *model_digest(const ProgramSet *u, const char *name) {
+  StrBuf text = strbuf(u->arena);
+  return emit_equations(&(ModelFile){.u = u, .a = u->arena, .globals = globals_of(u, name), .out = &text});
+}
+
 void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
   ModelFile f = {.u = u, .a = u->arena, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
   MathText math = {u, "LAG", "lag", needs_solver(u)};
   math_of_model(&math, alone, out);
   if (has_long_tables(u)) table_macros(out);
-  size_t begin = out->n;
-  emit_derive(&f);
-  accel(&f);
-  state_function(&f, u->energy, "energy",
-                 "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", NULL, one_out);
-  emit_events(&f);
-  emit_inputs(&f);
-  emit_constraints(&f);
-  const char *digest = digest_text(u->arena, sb_text(out) + begin);
+  const char *digest = emit_equations(&f);
   emit_sizes(&f);
   emit_charges(&f);
   emit_switches(&f);

@@ -145,21 +145,41 @@ static void emit_measures(const ProgramSet *u, const IrScene *s, const char *id,
   sb_puts(out, "};\n");
 }
 
+static void emit_indices(const char *name, const int *at, int n, StrBuf *out) {
+  sb_printf(out, ", .%s = {", name);
+  for (int i = 0; i < n; i++) sb_printf(out, "%s%d", i ? ", " : "", at[i]);
+  sb_putc(out, '}');
+}
+
+static void emit_shapes(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
+  if (!s->shapes.n) return;
+  sb_printf(out, "\nstatic const lag_shape shapes_%s[] = {\n", id);
+  for (uint32_t i = 0; i < s->shapes.n; i++) {
+    const IrShape *x = &s->shapes.at[i];
+    sb_printf(out, "  {%s, %s, ", c_string(u->arena, x->kind), c_string(u->arena, x->role));
+    sb_printf(out, "%s, .count = %d", x->text ? c_string(u->arena, x->text) : "NULL", x->count);
+    emit_indices("a", x->a, 3, out);
+    emit_indices("b", x->b, 3, out);
+    emit_indices("size", x->size, 3, out);
+    emit_indices("turn", x->turn, 4, out);
+    sb_puts(out, "},\n");
+  }
+  sb_puts(out, "};\n");
+}
+
 static void emit_flags(const char *stem, const char *id, const unsigned char *flags, uint32_t n, StrBuf *out) {
   sb_printf(out, "\nstatic const unsigned char %s_%s[] = {", stem, id);
   for (uint32_t i = 0; i < n; i++) sb_printf(out, "%s%d", i ? ", " : "", flags[i]);
   sb_puts(out, "};\n");
 }
 
-/* Table `given` for models with constraints: 1 for components of the state that the start sets, 2 for implied ones. */
-static void emit_given(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
-  uint32_t n = u->q.n, total = 2 * n + u->z.n, after[] = {0, n, 2 * n};
-  if (!u->constraints.of.n) return;
-  unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, total);
+const unsigned char *scene_given(const ProgramSet *u, const IrScene *s) {
+  uint32_t n = u->q.n, after[] = {0, n, 2 * n};
+  unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, 2 * n + u->z.n);
   for (uint32_t k = 0; k < s->start->stores.n; k++)
     given[after[s->start->stores.at[k].array] + s->start->stores.at[k].index] = 1;
   for (uint32_t k = 0; k < s->implied.n; k++) given[s->implied.at[k]] = 2;
-  emit_flags("given", id, given, total, out);
+  return given;
 }
 
 /* Whether an output of the scene contains forces. */
@@ -180,7 +200,8 @@ void emit_scene(const ModelFile *f, const char *name, uint32_t index) {
   emit_exact(f, s, id);
   emit_scene_lists(u, s, id, out);
   emit_measures(u, s, id, out);
-  emit_given(u, s, id, out);
+  emit_shapes(u, s, id, out);
+  if (u->constraints.of.n) emit_flags("given", id, scene_given(u, s), 2 * u->q.n + u->z.n, out);
   if (has_forces(s)) emit_flags("forces", id, s->forces.at, s->forces.n, out);
   sb_printf(out, "\nconst lag_scene %s_%s = {\n", name, id);
   sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
@@ -198,5 +219,7 @@ void emit_scene(const ModelFile *f, const char *name, uint32_t index) {
   if (s->exact_of.n)
     sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
   if (s->measures.n) sb_printf(out, "  .nmeasures = %u, .measures = measures_%s,\n", s->measures.n, id);
+  if (s->shapes.n)
+    sb_printf(out, "  .ndrawn = %u, .nshapes = %u, .shapes = shapes_%s,\n", s->ndrawn, s->shapes.n, id);
   sb_puts(out, "};\n");
 }

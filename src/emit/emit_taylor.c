@@ -262,12 +262,13 @@ static CStyle style_for(const TaylorWriter *w, const char *const *own, const cha
 }
 
 /* Whether the sums are few enough that the coefficients of the last order stay in registers. */
-static int sums_fit_registers(const TaylorWriter *w) {
-  const Series *s = w->s;
-  return !w->lanes && s->first_square <= s->group && s->width - s->first_square <= s->group &&
+int taylor_sums_fit_registers(const Series *s) {
+  return s->first_square <= s->group && s->width - s->first_square <= s->group &&
          s->sums <= REGISTER_SUMS_MAX && s->squares <= REGISTER_SUMS_MAX &&
          ops_total(prog_count(s->next)) <= TAYLOR_INLINE_MAX;
 }
+
+static int sums_fit_registers(const TaylorWriter *w) { return !w->lanes && taylor_sums_fit_registers(w->s); }
 
 static uint32_t even(uint32_t n) { return (n + 1) / 2 * 2; }
 

@@ -256,6 +256,8 @@ void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_LAGRANGIAN:
     case STMT_CONSTRAINT:
     case STMT_CONTACT:
+    case STMT_DRAW:
+    case STMT_GUIDE:
     case STMT_KINETIC:
     case STMT_POTENTIAL:
     case STMT_DISSIPATION: case STMT_FORCE: case STMT_FLOW: case STMT_MAP: case STMT_EXPECT:
