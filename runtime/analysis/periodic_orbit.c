@@ -210,8 +210,8 @@ int lag_orbit_set_parameter(PeriodicOrbit *o, double value) {
   return rc;
 }
 
-/* Column of the parameter: of one of the model by central differences of order 2 of all rows, as flows have no
- * derivatives by parameters yet; Newton's steps and tangents need no more of them than some eight digits. */
+/* Column of the parameter: of one of the model by central differences of order 2 of all rows, in any program: Newton's
+ * steps and tangents need no more than some eight digits, and the period of a drive may change, too. */
 static int continuation_column(PeriodicOrbit *o) {
   const double part = 1e-5;
   int all = o->m * o->n, col = o->cols - 1, rc = LAG_OK;

@@ -48,6 +48,11 @@ follow models/pendulum.lag wide energy=9..18
 close 1 period 3.40802289484 1e-10
 
 long() {
+  # the bead by a constraint: w = sqrt(g/R); on the other branch at w = 8 the height -g/w^2
+  follow $dir/hoop.lag w=1..8 --branches
+  kinds "branch point;end;end;end;end;"
+  close 1 parameter 4.42944691807002 1e-9
+  close 4 y -0.15328125 1e-10
   # folds of Duffing's oscillator, by SciPy: P(u) = u, det(P' - 1) = 0 by fsolve, period map by DOP853 at 1e-13
   follow $dir/oscillator.lag driven w=0.5..2.5
   kinds "fold;fold;end;end;"
