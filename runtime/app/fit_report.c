@@ -6,9 +6,9 @@
 
 #include "app/fit.h"
 
-/* A value with the digits that its error leaves, and two more. */
-static void put_value(FILE *f, const FitTarget *t) {
-  double digits = t->error > 0 && t->value != 0.0 ? ceil(log10(fabs(t->value) / t->error)) + 2 : 10;
+/* A value with the digits that its error leaves, and two more; or so many where it is not determined. */
+static void put_value(FILE *f, const FitTarget *t, int undetermined) {
+  double digits = t->error > 0 && t->value != 0.0 ? ceil(log10(fabs(t->value) / t->error)) + 2 : undetermined;
   fprintf(f, "%.*g", (int)fmin(fmax(digits, 3), 15), t->value);
 }
 
@@ -16,7 +16,7 @@ static void put_values(const Fit *f, FILE *out) {
   for (int j = 0; j < f->n; j++) {
     const FitTarget *t = &f->target[j];
     fprintf(out, "  %-14s ", t->label);
-    put_value(out, t);
+    put_value(out, t, 4);
     if (t->flat) fputs(" not determined", out);
     else fprintf(out, " +- %.2g", t->error);
     fprintf(out, "%s%s", t->unit[0] ? " " : "", t->unit);
@@ -144,7 +144,7 @@ static void put_scene(const FitRun *r, FILE *out) {
     const FitTarget *t = &f->target[j];
     int is_start = strcmp(t->label, t->name) != 0 && strstr(t->label, "(0)");
     fprintf(out, "  %s%s = ", is_start ? "start " : "", t->name);
-    put_value(out, t);
+    put_value(out, t, 8);
     if (t->unit[0]) fprintf(out, " [%s]", t->unit);
     putc('\n', out);
   }
