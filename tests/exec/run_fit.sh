@@ -55,6 +55,10 @@ check "other units, errors of rows, a missing value" other_units
 title="in ms and cm"
 near k "$(member values k)" 17.98538768 1e-6
 near "error of x" "$(member errors 'x(0)')" 0.0036876919 1e-4
+sed 's|k = 20 \[N/m\]|k = 0.2 [N/cm]|' "$M/damped.lag" >"$TMP/cm.lag"
+fit "$TMP/cm.lag" "$M/damped.csv" "k,c,x,x'" --sigma 0.01
+near "k in N/cm" "$(member values k)" 0.1798538768 1e-6
+near "its error" "$(member errors k)" 0.00031861071 1e-4
 # Two columns without errors: each is weighed by its residuals. The second has exact values: it decides.
 two_columns() {
   awk -F, 'NR == 1 { print $0 ",10*x"; next } { t = $1; w = sqrt(9 - 0.015625); printf "%s,%.12g\n", $0, 10*exp(-0.125*t)*(0.3*cos(w*t) + (-0.2 + 0.0375)/w*sin(w*t)) }' "$M/damped.csv" >"$TMP/two.csv"
