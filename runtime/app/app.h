@@ -17,7 +17,7 @@ typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *out, *svg, *plot_x, *plot_y, *html, *points,
       *from, *save, *resume, *events, *section, *cloud, *starts;
   const char *accuracy, *sensitivity;
-  const char *fit, *data, *loss; /* for --fit */
+  const char *fit, *data, *columns, *loss; /* for --fit */
   const char **sigmas, **priors; /* the values of --sigma and --prior, in order */
   int nsigmas, npriors;
   const char *transient, *exponents; /* for --lyapunov */

@@ -147,13 +147,26 @@ static int copy_column(FitRun *r, int c, int k) {
   return take_sigma(r, &f->column[c]);
 }
 
+/* Whether --columns names the column, or is not given. */
+static int is_asked(const Args *a, const char *label) {
+  const char *list = a->columns, *unit = strstr(label, " [");
+  size_t length = unit ? (size_t)(unit - label) : strlen(label);
+  if (!list) return 1;
+  while (*list) {
+    size_t n = strcspn(list, ",");
+    if (n == length && memcmp(list, label, n) == 0) return 1;
+    list += n + (list[n] == ',');
+  }
+  return 0;
+}
+
 static int take_columns(FitRun *r) {
   const Args *a = &r->app->args;
   Fit *f = &r->fit;
   f->nrows = (int)r->data.nrows;
   f->column = calloc((size_t)r->data.ncols, sizeof *f->column);
   for (int k = 1; k < r->data.ncols && f->column; k++) {
-    int output = output_named(r, r->data.names[k]);
+    int output = is_asked(a, r->data.names[k]) ? output_named(r, r->data.names[k]) : -1;
     if (output >= 0) f->column[f->ncolumns++] = (FitColumn){.label = r->data.names[k], .output = output};
   }
   if (f->ncolumns == 0)

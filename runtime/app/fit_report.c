@@ -120,7 +120,8 @@ static void put_columns(const FitRun *r, FILE *out) {
     fprintf(out, "residuals of %s: %d values, rms %.3g%s\n  %d runs of one sign, %.1f +- %.1f expected: %s\n", k->label,
             k->n, k->rms, k->per_row || f->known_errors ? "" : ", taken as their error", k->runs, k->runs_expected,
             k->runs_deviation,
-            k->runs_chance > unlikely    ? "no trend is left"
+            k->exact                     ? "rounding"
+            : k->runs_chance > unlikely    ? "no trend is left"
             : k->runs < k->runs_expected ? "a trend is left, which the model lacks"
                                          : "they swing from row to row");
   }
