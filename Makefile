@@ -102,7 +102,7 @@ SHARED   := action_integral consistent_state magnitudes option_range quadrature
 NOT_HERE := $(if $(WINDOWS),%/process.c %/clock.c %/threads.c,%windows.c)
 LAGC_SRC := $(filter-out src/main.c $(NOT_HERE),$(wildcard src/*.c src/*/*.c))
 GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c toolchain/outfile.c $(if $(WINDOWS),base/windows.c) $(SHARED:%=numeric/%.c))
-RT_SRC   := $(filter-out runtime/gsl/% runtime/png/% runtime/hdf5/% runtime/mpi/% runtime/matlab/% runtime/evaluator/lag_run.c $(NOT_HERE),$(wildcard runtime/*/*.c))
+RT_SRC   := $(filter-out runtime/gsl/% runtime/png/% runtime/hdf5/% runtime/mpi/% runtime/matlab/% runtime/page/% runtime/evaluator/lag_run.c $(NOT_HERE),$(wildcard runtime/*/*.c))
 GSL_SRC  := $(wildcard runtime/gsl/*.c)
 
 LAGC_OBJ := $(LAGC_SRC:%.c=$(BUILD)/obj/%.o) $(GEN_SRC:$(BUILD)/gen/%.c=$(BUILD)/obj/gen/%.o)
@@ -311,7 +311,7 @@ run-demo: all
 gallery: all precisions
 	@sed -n 's|^Drawn by `build/lagc \(.*\)`:$$|$(BUILD)/lagc \1 --quiet|p' models/README.md | sh -e
 
-include tests/tests.mk .ci/install.mk
+include tests/tests.mk .ci/install.mk .ci/page.mk
 
 # ---- the rest ---------------------------------------------------------------------------------------
 clean:
@@ -351,4 +351,4 @@ ifneq ($(BUILDS),)
 endif
 
 FORCE:
-.PHONY: FORCE all demo run-demo precisions gallery test check-quick test-long test-all bless hard bench cost-report build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall dist clean help
+.PHONY: FORCE all page demo run-demo precisions gallery test check-quick test-long test-all bless hard bench cost-report build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall dist clean help

@@ -33,6 +33,7 @@ static int do_command(Compiler *c) {
     case CMD_EMIT: return command_emit(c);
     case CMD_HEADER: return command_header(c);
     case CMD_FMU: return command_fmu(c);
+    case CMD_PAGE: return command_page(c);
     case CMD_BUILD: return command_build(c);
     case CMD_RUN:
     case CMD_PLOT:

@@ -84,9 +84,10 @@ static int find_rest(RestBranch *r) {
   if (found > 0) memcpy(r->y, rest.y, (size_t)r->flow.n * sizeof *r->y);
   lag_equilibrium_free(&rest);
   if (found > 0) return LAG_OK;
-  snprintf(r->flow.message, sizeof r->flow.message,
-           "no state of rest found near the start: start near one: name=VALUE; for periodic motions write about how long "
-           "they take: --guess T");
+  snprintf(
+      r->flow.message, sizeof r->flow.message,
+      "no state of rest found near the start: start near one: name=VALUE; for periodic motions write about how long "
+      "they take: --guess T");
   return LAG_EDOMAIN;
 }
 
@@ -99,16 +100,18 @@ int lag_rest_branch_open(RestBranch *r, lag_sim *like, const lag_algebra *algebr
                          double size) {
   const lag_model *m = like->scene->model;
   size_t n = (size_t)(like->pb.nq + like->pb.nz), all = (size_t)like->pb.n;
-  *r = (RestBranch){.algebra = algebra, .n = (int)n, .cols = (int)n + 1, .name = name, .parameter = value,
-                    .parameter_unit = size};
+  *r = (RestBranch){
+      .algebra = algebra, .n = (int)n, .cols = (int)n + 1, .name = name, .parameter = value, .parameter_unit = size};
   int rc = lag_flow_open(&r->flow, like);
   if (rc) return rc;
-  if (m->constraints) return refuse(r, "states of rest with constraints are not continued yet: write coordinates that "
-                                       "obey them, or continue periodic motions: --guess T");
-  if (r->flow.forced) return refuse(r, "the scene depends on time, so that nothing rests: continue its periodic motions: "
-                                       "--guess T");
-  double **const parts[] = {&r->unit, &r->row, &r->y, &r->rates, &r->up, &r->down, &r->J, &r->v};
-  const size_t sizes[] = {n, n, all, all, n, n, all * all, 3 * all * all};
+  if (m->constraints)
+    return refuse(r, "states of rest with constraints are not continued yet: write coordinates that "
+                     "obey them, or continue periodic motions: --guess T");
+  if (r->flow.forced)
+    return refuse(r, "the scene depends on time, so that nothing rests: continue its periodic motions: "
+                     "--guess T");
+  double **const parts[] = {&r->unit, &r->row, &r->y, &r->rates, &r->up, &r->down, &r->J, &r->v, &r->room};
+  const size_t sizes[] = {n, n, all, all, n, n, all * all, 3 * all * all, 2 * all};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&r->pool, sizes[i]);
   if (r->pool.failed) return refuse(r, "out of memory"), LAG_ENOMEM;
   if ((rc = find_rest(r)) != LAG_OK) return rc;
@@ -116,7 +119,11 @@ int lag_rest_branch_open(RestBranch *r, lag_sim *like, const lag_algebra *algebr
     int at = component(r, i);
     r->unit[i] = lag_difference_scale(&r->flow.probe->pb, r->y, at);
   }
-  r->problem = (BranchProblem){.of = r, .rows = r->n, .cols = r->cols, .place = place_rest, .system = rest_system,
+  r->problem = (BranchProblem){.of = r,
+                               .rows = r->n,
+                               .cols = r->cols,
+                               .place = place_rest,
+                               .system = rest_system,
                                .spectrum = rest_spectrum,
                                .pairs = (lag_facts(&r->flow.probe->pb) & LAG_CONSERVES_ENERGY) != 0};
   return LAG_OK;
@@ -133,6 +140,50 @@ void lag_rest_branch_unknowns(const RestBranch *r, double *u) {
 }
 
 /* ---- Periodic motions */
+
+/* y[n] := the state at the Hopf point, moved along the real part of the mode with frequency *w; returns the
+ * component that moves most, by `part` of its size. */
+static int along_mode(RestBranch *r, double part, double *y, double *w) {
+  int n = r->flow.n, k = 0, most = 0;
+  double *re = r->room, *im = re + n, size = 0;
+  Spectrum s = {0, re, im};
+  if (rest_spectrum(r, &s)) return -1;
+  for (int i = 0; i < n; i++) /* the pair nearest to the axis */
+    if (im[i] > 0 && (im[k] <= 0 || fabs(re[i]) < fabs(re[k]))) k = i;
+  *w = im[k];
+  for (int i = 0; i < n; i++) {
+    double moved = fabs(r->v[i * n + k]) / lag_difference_scale(&r->flow.probe->pb, r->y, i);
+    if (moved > size) most = i, size = moved;
+  }
+  for (int i = 0; i < n; i++) y[i] = r->y[i] + part / size * r->v[i * n + k];
+  return most;
+}
+
+int lag_hopf_orbit(RestBranch *r, const BranchPoint *at, PeriodicOrbit *o, lag_sim **like, BranchProblem *p,
+                   double **d) {
+  const double part = 0.02, larger = 10; /* first amplitude; units of the branch in it */
+  double w = 0, *y = lag_pool_doubles(&r->pool, (size_t)r->flow.n);
+  if (!y) return LAG_ENOMEM;
+  if (place_rest(r, at->u)) return 0;
+  int most = along_mode(r, part, y, &w), n = r->flow.n;
+  if (most < 0 || !(w > 0) || !(*like = lag_flow_sim(&r->flow, r->flow.t0, y))) return *like ? 0 : LAG_ENOMEM;
+  (*like)->scene = r->flow.like->scene;
+  *o = (PeriodicOrbit){.nheld = 1, .led = -1, .name = r->name, .parameter = r->parameter,
+                       .parameter_unit = r->parameter_unit, .continues = 1};
+  o->held[0] = (OrbitHold){.kind = ORBIT_STATE, .of = most, .value = y[most]};
+  int rc = lag_orbit_open(o, *like, r->algebra, 2 * acos(-1) / w, 0);
+  rc = rc ? 0 : lag_flow_set(&o->flow, o->name, o->parameter) ? 0 : lag_orbit_solve(o);
+  if (rc != 1) return rc == LAG_ENOMEM ? rc : 0;
+  o->nheld = 0;
+  for (int i = 0; i < n; i++) o->unit[i] *= larger;
+  o->pairing = NAN;
+  lag_orbit_branch(p, o);
+  *d = lag_pool_doubles(&o->pool, (size_t)o->cols);
+  if (!*d) return LAG_ENOMEM;
+  for (int s = 0; s < o->m; s++)
+    for (int i = 0; i < n; i++) (*d)[s * n + i] = (o->y[s * n + i] - r->y[i]) / o->unit[i];
+  return 1;
+}
 
 void lag_orbit_branch_unknowns(const PeriodicOrbit *o, double *u) {
   int n = o->n, k = o->m * n;
@@ -182,6 +233,12 @@ static int orbit_spectrum(void *of, Spectrum *s) {
 
 void lag_orbit_branch(BranchProblem *p, PeriodicOrbit *o) {
   lag_orbit_count(o);
-  *p = (BranchProblem){.of = o, .rows = o->rows, .cols = o->cols, .maps = 1, .pairs = isfinite(o->pairing),
-                       .place = place_orbit, .system = orbit_system, .spectrum = orbit_spectrum};
+  *p = (BranchProblem){.of = o,
+                       .rows = o->rows,
+                       .cols = o->cols,
+                       .maps = 1,
+                       .pairs = isfinite(o->pairing),
+                       .place = place_orbit,
+                       .system = orbit_system,
+                       .spectrum = orbit_spectrum};
 }

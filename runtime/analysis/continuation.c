@@ -15,10 +15,10 @@ static const double least_rank = 1e-8; /* singular values below this part of the
 typedef struct Walk {
   Branch *b;
   const BranchProblem *p;
-  int rows, cols;        /* of the equations with the row across the tangent */
+  int rows, cols; /* of the equations with the row across the tangent */
   double *J, *rhs, *V, *sigma, *x;
-  int newton;            /* steps of the last correction */
-  double made;           /* arclength of the last step */
+  int newton;  /* steps of the last correction */
+  double made; /* arclength of the last step */
 } Walk;
 
 static double dot(int n, const double *a, const double *b) {
@@ -122,7 +122,10 @@ static BranchPoint *point_at(Walk *w, const BranchPoint *from, double s) {
 /* ---- Bifurcations between two points */
 
 static double test_of(const BranchPoint *at, BranchKind kind) {
-  return kind == BRANCH_FOLD ? at->fold : kind == BRANCH_POINT ? at->zero : kind == BRANCH_DOUBLING ? at->minus : at->pair;
+  return kind == BRANCH_FOLD       ? at->fold
+         : kind == BRANCH_POINT    ? at->zero
+         : kind == BRANCH_DOUBLING ? at->minus
+                                   : at->pair;
 }
 
 static int changes_sign(double a, double b) { return (a < 0 && b > 0) || (a > 0 && b < 0); }
@@ -172,7 +175,11 @@ static BranchPoint *locate(Walk *w, const BranchPoint *from, const BranchPoint *
     narrow(&r, s, f);
     if (counts) r.fa = -1, r.fb = 1;
   }
-  if (best) best->kind = kind;
+  if (!best) return NULL;
+  best->kind = kind;
+  double size = 0; /* at a branch point the equations leave two directions free: that of the secant is this branch's */
+  for (int i = 0; i < w->cols; i++) size += (far->u[i] - from->u[i]) * (far->u[i] - from->u[i]);
+  for (int i = 0; i < w->cols && kind != BRANCH_FOLD; i++) best->tangent[i] = (far->u[i] - from->u[i]) / sqrt(size);
   return best;
 }
 

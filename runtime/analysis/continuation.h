@@ -17,23 +17,29 @@ typedef struct Spectrum {
 typedef struct BranchProblem {
   void *of;
   int rows, cols;
-  int maps;   /* 1: eigenvalues are multipliers, with stability inside the unit circle; 0: rates */
-  int pairs;  /* 1: eigenvalues come in pairs, as of Hamilton's equations */
-  int (*place)(void *of, const double *u);       /* takes the unknowns. LAG_OK, or > 0: no values there */
+  int maps;  /* 1: eigenvalues are multipliers, with stability inside the unit circle; 0: rates */
+  int pairs; /* 1: eigenvalues come in pairs, as of Hamilton's equations */
+  int (*place)(void *of, const double *u); /* takes the unknowns. LAG_OK, or > 0: no values there */
   /* J[rows cols] and b[rows], the negative residual, at the unknowns that are placed */
   int (*system)(void *of, double *J, double *b);
   int (*spectrum)(void *of, Spectrum *s);
 } BranchProblem;
 
 typedef enum BranchKind {
-  BRANCH_REGULAR, BRANCH_FOLD, BRANCH_POINT, BRANCH_DOUBLING, BRANCH_HOPF, BRANCH_TORUS, BRANCH_COLLISION
+  BRANCH_REGULAR,
+  BRANCH_FOLD,
+  BRANCH_POINT,
+  BRANCH_DOUBLING,
+  BRANCH_HOPF,
+  BRANCH_TORUS,
+  BRANCH_COLLISION
 } BranchKind;
 
 typedef struct BranchPoint {
   struct BranchPoint *next;
-  double *u, *tangent;  /* [cols] */
+  double *u, *tangent; /* [cols] */
   Spectrum spectrum;
-  int unstable;         /* number of eigenvalues that grow */
+  int unstable;                   /* number of eigenvalues that grow */
   double fold, zero, minus, pair; /* test functions, and the growth of the complex pair nearest to the border */
   BranchKind kind;
 } BranchPoint;
@@ -49,9 +55,9 @@ typedef struct Branch {
 } Branch;
 
 typedef struct BranchLimits {
-  double low, high; /* range of the parameter, in units */
+  double low, high;     /* range of the parameter, in units */
   double step, longest; /* the first step, and the longest */
-  int most;         /* points */
+  int most;             /* points */
 } BranchLimits;
 
 /* Follows the branch from u0[cols], a solution up to Newton's steps, in direction d[cols] (NULL: with the last

@@ -169,6 +169,17 @@ static void transform(int k, const double *to, const double *from, double *W, do
     }
 }
 
+/* Q[k k] := a reflection along no axis, so that all directions mix, those of parts that do not act on each other,
+ * too. */
+static void reflect(int k, double *Q) {
+  double size = 0, v = 0;
+  for (int i = 0; i < k; i++) size += (1 + 0.31 * i) * (1 + 0.31 * i);
+  for (int i = 0; i < k; i++) {
+    v = 1 + 0.31 * i;
+    for (int j = 0; j < k; j++) Q[i * k + j] = (i == j) - 2 * v * (1 + 0.31 * j) / size;
+  }
+}
+
 /* W[m k k] := Q' W Q, with orthogonal matrices Q that orthogonal iteration makes block triangular: blocks of growth
  * that differ by 1.5 or more are separated, so that the product of blocks keeps the digits of small multipliers.
  * growth[k]: logarithms of their growth over a period, in the mean. */
@@ -177,14 +188,15 @@ static int separate(Pool *pool, int m, int k, double *W, double *growth) {
   size_t size = (size_t)(k * k);
   double *Q = lag_pool_doubles(pool, ((size_t)m + 1) * size), *next = lag_pool_doubles(pool, size);
   if (pool->failed) return LAG_ENOMEM;
-  for (int i = 0; i < k; i++) Q[i * k + i] = 1;
+  reflect(k, Q);
   for (int round = 0; round < ROUNDS; round++) {
     if (round) memcpy(Q, Q + (size_t)m * size, size * sizeof *Q);
     for (int s = 0; s < m; s++) {
       double *to = Q + (size_t)(s + 1) * size;
       multiply(k, W + (size_t)s * size, to - size, to);
       if (lag_orthonormalise(k, k, to, growth, round >= ROUNDS - COUNTED, 0) ||
-          lag_orthonormalise(k, k, to, growth, 0, 0)) return LAG_ESINGULAR; /* twice: of a singular W */
+          lag_orthonormalise(k, k, to, growth, 0, 0))
+        return LAG_ESINGULAR; /* twice: of a singular W */
     }
   }
   for (int s = 0; s < m; s++)
@@ -260,8 +272,7 @@ int lag_orbit_multipliers(PeriodicOrbit *o) {
   for (int s = 0; s < m && rc == LAG_OK; s++) rc = b[s].k == k ? LAG_OK : LAG_ESINGULAR;
   double *W = lag_pool_doubles(&pool, (size_t)(m * k * k) + 1);
   if (rc == LAG_OK && pool.failed) rc = LAG_ENOMEM;
-  for (int s = 0; s < m && rc == LAG_OK; s++)
-    rc = reduced(&pool, o, s, &b[s], &b[(s + 1) % m], W + s * k * k);
+  for (int s = 0; s < m && rc == LAG_OK; s++) rc = reduced(&pool, o, s, &b[s], &b[(s + 1) % m], W + s * k * k);
   rc = rc ? rc : eigenvalues(&pool, o, k, W);
   if (rc == LAG_OK) sort(o);
   o->ntrivial = all - o->nmultipliers;

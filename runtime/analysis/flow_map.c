@@ -60,7 +60,8 @@ static int depends_on_time(FlowMap *f) {
     if (lag_rhs(&f->probe->pb, f->t0, f->at, f->up)) continue;
     for (size_t k = 0; k < sizeof times / sizeof *times; k++)
       if (lag_rhs(&f->probe->pb, f->t0 + times[k], f->at, f->down) ||
-          memcmp(f->up, f->down, (size_t)f->n * sizeof(double)) != 0) return 1;
+          memcmp(f->up, f->down, (size_t)f->n * sizeof(double)) != 0)
+        return 1;
   }
   return 0;
 }
@@ -71,7 +72,13 @@ int lag_flow_open(FlowMap *f, lag_sim *like) {
   size_t rows = of ? (size_t)of->n : 0;
   *f = (FlowMap){.like = like, .n = like->pb.n, .nq = like->pb.nq, .t0 = like->scene->t0};
   double **const parts[] = {&f->at, &f->up, &f->down, &f->mass, &f->linear, &f->room, &f->square};
-  const size_t sizes[] = {n, n, n, nq * nq, lag_linear_work(like->scene->model) + 1, n * n + (rows + 1) * (nq + 1), 2 * n * n + (nq + 1) * (nq + 1)};
+  const size_t sizes[] = {n,
+                          n,
+                          n,
+                          nq * nq,
+                          lag_linear_work(like->scene->model) + 1,
+                          n * n + (rows + 1) * (nq + 1),
+                          2 * n * n + (nq + 1) * (nq + 1)};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&f->pool, sizes[i]);
   if (f->pool.failed) return keep_message(f, NULL, LAG_ENOMEM);
   int rc = renew_probe(f);
@@ -131,9 +138,7 @@ int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, 
   return rc;
 }
 
-int lag_flow_rates(FlowMap *f, double t, const double *y, double *rates) {
-  return lag_rhs(&f->probe->pb, t, y, rates);
-}
+int lag_flow_rates(FlowMap *f, double t, const double *y, double *rates) { return lag_rhs(&f->probe->pb, t, y, rates); }
 
 /* ---- The drive */
 
@@ -152,7 +157,8 @@ static double drive_difference(FlowMap *f, double T, double *step) {
   double off = 0, size = 0, along = 0, slope = 0, h = 1e-6 * T, *a = f->up, *b = f->down, *c = f->room;
   for (int k = 0; k < DRIVE_SAMPLES; k++) {
     double t = f->t0 + 0.7548776662 * (k + 0.3) * T / DRIVE_SAMPLES * 1.3;
-    if (sample_rates(f, k, t, a) || sample_rates(f, k, t + T - h, b) || sample_rates(f, k, t + T + h, c)) return HUGE_VAL;
+    if (sample_rates(f, k, t, a) || sample_rates(f, k, t + T - h, b) || sample_rates(f, k, t + T + h, c))
+      return HUGE_VAL;
     for (int i = 0; i < f->n; i++) c[i] = (c[i] - b[i]) / (2 * h);
     if (sample_rates(f, k, t + T, b)) return HUGE_VAL;
     for (int i = 0; i < f->n; i++) {
@@ -197,9 +203,7 @@ double lag_flow_find_drive(FlowMap *f, double longest) {
 
 int lag_flow_charges(const FlowMap *f) { return lag_sim_ncharges(f->probe); }
 
-int lag_flow_conserves(const FlowMap *f, int k) {
-  return (lag_charge_flags(f->probe, k) & LAG_CONSERVED) != 0;
-}
+int lag_flow_conserves(const FlowMap *f, int k) { return (lag_charge_flags(f->probe, k) & LAG_CONSERVED) != 0; }
 
 double lag_flow_charge(FlowMap *f, int k, double t, const double *y) {
   lag_charges_at(f->probe, t, y);

@@ -7,17 +7,17 @@
 
 typedef struct FlowMap {
   Pool pool;
-  lag_sim *like;        /* values, method and tolerance of all runs; not advanced here */
-  lag_sim *probe;       /* at the start: right-hand sides and charges at any state */
+  lag_sim *like;  /* values, method and tolerance of all runs; not advanced here */
+  lag_sim *probe; /* at the start: right-hand sides and charges at any state */
   int n, nq;
   double t0;
-  int forced;           /* 1: the rates depend on time */
-  const char *name;     /* parameter with another value, in its declared unit; NULL: none */
+  int forced;       /* 1: the rates depend on time */
+  const char *name; /* parameter with another value, in its declared unit; NULL: none */
   double value;
-  lag_scene scene;      /* of the runs: the scene's, with another start of the span */
-  int stopped;          /* 1: the last run was ended by an event */
+  lag_scene scene;                                        /* of the runs: the scene's, with another start of the span */
+  int stopped;                                            /* 1: the last run was ended by an event */
   double *at, *up, *down, *mass, *linear, *room, *square; /* scratch */
-  char message[600];    /* of the last failure */
+  char message[600];                                      /* of the last failure */
 } FlowMap;
 
 /* `like` has values, method and tolerance, and has not begun. LAG_OK, or a status with its message. Free in any

@@ -35,9 +35,10 @@ static int choose_units(PeriodicOrbit *o, const double *y0) {
     for (int i = 0; i < o->n && rc == LAG_OK; i++) moved[i] = fmax(moved[i], fabs(sim->now[i] - y0[i]));
   }
   if (rc)
-    snprintf(f->message, sizeof f->message, "%s", rc == LAG_STOPPED ? "an event ends the motion within a period"
-             : rc == LAG_ENOMEM                                      ? "out of memory"
-                                                                     : lag_sim_message(sim));
+    snprintf(f->message, sizeof f->message, "%s",
+             rc == LAG_STOPPED  ? "an event ends the motion within a period"
+             : rc == LAG_ENOMEM ? "out of memory"
+                                : lag_sim_message(sim));
   lag_sim_free(sim);
   for (int i = 0; i < o->n; i++) {
     double most = 0, size = 0;
@@ -222,12 +223,23 @@ static int continuation_column(PeriodicOrbit *o) {
   for (int side = -1; side <= 1 && rc == LAG_OK; side += 2) {
     rc = lag_orbit_set_parameter(o, was + side * h);
     rc = rc ? rc : lag_orbit_shoot(o, 0);
-    for (int r = 0; r < all && rc == LAG_OK; r++) o->A[r * o->cols + col] += side * gap(o, r / o->n, r % o->n) / (2 * part);
+    for (int r = 0; r < all && rc == LAG_OK; r++)
+      o->A[r * o->cols + col] += side * gap(o, r / o->n, r % o->n) / (2 * part);
     for (int k = 0; k < o->nheld && rc == LAG_OK; k++)
       o->A[(all + k) * o->cols + col] += side * off_by(o, k) / (2 * part);
   }
   rc = rc ? rc : lag_orbit_set_parameter(o, was);
   return rc ? rc : lag_orbit_shoot(o, 0);
+}
+
+/* Whether a component that keeps its value chooses the phase: the motion crosses that value. */
+static int holds_phase(const PeriodicOrbit *o, const double *rates) {
+  const double least = 0.1;
+  for (int k = 0; k < o->nheld; k++) {
+    int i = o->held[k].of;
+    if (o->held[k].kind == ORBIT_STATE && k != o->led && fabs(rates[i]) * o->time > least * o->unit[i]) return 1;
+  }
+  return 0;
 }
 
 /* Rows across the motion, and across the symmetries of conserved charges. */
@@ -238,6 +250,7 @@ static int phase_rows(PeriodicOrbit *o) {
     if (k < 0 ? o->flow.forced : o->charge[k] == 0) continue;
     if (lag_flow_field(&o->flow, k < 0 ? 0 : o->charge[k], o->flow.t0, o->y, X)) continue;
     double size = 0;
+    if (k < 0 && holds_phase(o, X)) continue;
     for (int i = 0; i < n; i++) size += X[i] * X[i] / (o->unit[i] * o->unit[i]);
     for (int i = 0; i < n && size > 0; i++) o->A[row * o->cols + i] = X[i] / o->unit[i] / sqrt(size);
     row++;
@@ -257,8 +270,7 @@ static int parameter_columns(PeriodicOrbit *o) {
   for (int j = 0; j < o->ngroup && rc == LAG_OK; j++) {
     memcpy(y, o->y, (size_t)n * sizeof *y);
     close_motion(o, y, 0, j, rates);
-    for (int i = 0; i < n; i++)
-      o->A[((o->m - 1) * n + i) * cols + column_of_shift(o, j)] = -rates[i] / o->unit[i];
+    for (int i = 0; i < n; i++) o->A[((o->m - 1) * n + i) * cols + column_of_shift(o, j)] = -rates[i] / o->unit[i];
   }
   return rc;
 }
@@ -347,6 +359,7 @@ static void move(PeriodicOrbit *o, const double *x, double part) {
   for (int i = 0; i < o->m * n; i++) o->y[i] += part * x[i] * o->unit[i % n];
   if (period_is_free(o)) o->T += part * x[column_of_period(o)] * o->time;
   for (int j = 0; j < o->ngroup; j++) o->shift[j] += part * x[column_of_shift(o, j)];
+  if (o->continues) lag_orbit_set_parameter(o, o->parameter + part * x[o->cols - 1] * o->parameter_unit);
 }
 
 static double largest(int n, const double *x) {
@@ -357,7 +370,8 @@ static double largest(int n, const double *x) {
 
 /* A step, halved until the residual falls; *size: of the step made. 0: none does, and the unknowns stay. */
 static int falling_step(PeriodicOrbit *o, double *size) {
-  double before = o->residual, step = largest(o->cols, o->x), T = o->T, shift[ORBIT_MOST_GROUP];
+  double before = o->residual, step = largest(o->cols, o->x), T = o->T, parameter = o->parameter,
+         shift[ORBIT_MOST_GROUP];
   double part = step > 0.25 ? 0.25 / step : 1, *x = o->saved + o->m * o->n, *y = o->saved;
   memcpy(y, o->y, (size_t)(o->m * o->n) * sizeof *y);
   memcpy(shift, o->shift, sizeof shift);
@@ -371,6 +385,7 @@ static int falling_step(PeriodicOrbit *o, double *size) {
     memcpy(o->y, y, (size_t)(o->m * o->n) * sizeof *y);
     memcpy(o->shift, shift, sizeof shift);
     o->T = T;
+    if (o->continues) lag_orbit_set_parameter(o, parameter);
     if (o->residual < 1e3 * rounding && step < 1e-9) break; /* rounding: no step helps */
   }
   int rc = lag_orbit_shoot(o, 1);
@@ -410,10 +425,25 @@ static int allocate(PeriodicOrbit *o) {
   size_t charges = (size_t)lag_flow_charges(&o->flow);
   lag_orbit_count(o);
   size_t rows = m * n + (size_t)o->nheld + charges + 1, cols = m * n + 2 + group; /* with continuation */
-  double **const parts[] = {&o->y, &o->end, &o->Phi, &o->unit, &o->turns, &o->affine, &o->target, &o->G,
-                            &o->A, &o->b,   &o->V,   &o->sigma, &o->x,    &o->saved,  &o->w,      &o->re, &o->im};
-  const size_t sizes[] = {m * n, m * n, m * n * n, n, n, group * size * size + 1, n, n * n, rows * cols, rows,
-                          cols * cols, cols, cols + 2 * n, m * n * (charges + 2) + cols, 4 * size * size + 4 * n, n, n};
+  double **const parts[] = {&o->y, &o->end, &o->Phi,   &o->unit, &o->turns, &o->affine, &o->target, &o->G, &o->A,
+                            &o->b, &o->V,   &o->sigma, &o->x,    &o->saved, &o->w,      &o->re,     &o->im};
+  const size_t sizes[] = {m * n,
+                          m * n,
+                          m * n * n,
+                          n,
+                          n,
+                          group * size * size + 1,
+                          n,
+                          n * n,
+                          rows * cols,
+                          rows,
+                          cols * cols,
+                          cols,
+                          cols + 2 * n,
+                          m * n * (charges + 2) + cols,
+                          4 * size * size + 4 * n,
+                          n,
+                          n};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&o->pool, sizes[i]);
   o->charge = (int *)(void *)lag_pool_doubles(&o->pool, charges + 1);
   return o->pool.failed ? LAG_ENOMEM : LAG_OK;
@@ -499,8 +529,8 @@ int lag_orbit_solve(PeriodicOrbit *o) { return newton(o); }
 typedef struct Track {
   const lag_model *m;
   int n, rows, room;
-  double *t, *y;  /* [rows], [rows n] */
-  double *size;   /* [n] largest excursion from the first row */
+  double *t, *y; /* [rows], [rows n] */
+  double *size;  /* [n] largest excursion from the first row */
 } Track;
 
 static int add_row(Track *k, double t, const double *y) {

@@ -20,40 +20,40 @@ typedef struct PeriodicOrbit {
   Pool pool;
   FlowMap flow;
   const lag_algebra *algebra;
-  int n, m;               /* size of the state; segments */
-  double T;               /* the period [s] */
-  int drives;             /* of a driven model: periods of the drive in it */
-  double *y;              /* [m n] the states at the begin of each segment */
-  double *end, *Phi;      /* [m n], [m n n] states at the ends, and their derivatives */
-  double *unit, time;     /* [n] sizes of the motion's components, and of the period */
-  double *turns;          /* [n] advance of periodic angles over a period */
-  int ncharges, *charge;  /* conserved charges */
+  int n, m;              /* size of the state; segments */
+  double T;              /* the period [s] */
+  int drives;            /* of a driven model: periods of the drive in it */
+  double *y;             /* [m n] the states at the begin of each segment */
+  double *end, *Phi;     /* [m n], [m n n] states at the ends, and their derivatives */
+  double *unit, time;    /* [n] sizes of the motion's components, and of the period */
+  double *turns;         /* [n] advance of periodic angles over a period */
+  int ncharges, *charge; /* conserved charges */
   int nheld;
   OrbitHold held[ORBIT_MOST_HELD];
   int ngroup, group[ORBIT_MOST_GROUP]; /* charges whose symmetries close the motion */
   double shift[ORBIT_MOST_GROUP];      /* their parameters */
-  double *affine;         /* [ngroup (nq + 1)^2] their generators */
+  double *affine;                      /* [ngroup (nq + 1)^2] their generators */
   /* 1: one more unknown, `parameter`: the value that condition `led` keeps, or, for -1, that of the model's parameter
    * `name`; and rows that fix the phase and the place along symmetries */
   int continues, led;
   const char *name;
   double parameter, parameter_unit;
-  double *target;         /* [n] G y(0), */
-  double *G;              /* [n n] and its derivative */
+  double *target; /* [n] G y(0), */
+  double *G;      /* [n n] and its derivative */
   /* the linear system, in units: rows and columns; A[rows cols], b[rows], V, sigma and a step */
   int rows, cols;
   double *A, *b, *V, *sigma, *x, *saved, *w;
-  double residual;        /* of y(T) = G y(0), in units: root of the mean square */
-  int nfree;              /* directions in which there are other solutions */
-  int steps;              /* Newton's steps made */
+  double residual;           /* of y(T) = G y(0), in units: root of the mean square */
+  int nfree;                 /* directions in which there are other solutions */
+  int steps;                 /* Newton's steps made */
   double trace[ORBIT_TRACE]; /* the first residuals */
-  double period_error;    /* change of the period by a run that is a hundred times as precise, or more */
-  int repeats;            /* > 1: the period is that many times the shortest one */
-  int at_rest;            /* 1: it is an equilibrium */
+  double period_error;       /* change of the period by a run that is a hundred times as precise, or more */
+  int repeats;               /* > 1: the period is that many times the shortest one */
+  int at_rest;               /* 1: it is an equilibrium */
   /* multipliers: of the directions that no charge, no symmetry and no phase fixes */
   int nmultipliers, ntrivial;
   double *re, *im;
-  double pairing;         /* largest |a b - 1| over pairs a, b of reciprocals; NaN: they are none */
+  double pairing; /* largest |a b - 1| over pairs a, b of reciprocals; NaN: they are none */
 } PeriodicOrbit;
 
 /* Prepares: period T > 0, m segments (0: by the growth over a period). like: as of lag_flow_open. The members held

@@ -15,7 +15,7 @@ enum { MOST_OPTIONS = 16 };
 /* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *out, *svg, *plot_x, *plot_y, *html, *points,
-      *from, *save, *resume, *events, *section, *cloud, *starts;
+      *from, *save, *resume, *events, *section, *cloud, *starts, *drawing;
   const char *accuracy, *sensitivity;
   const char *fit, *data, *columns, *loss; /* for --fit */
   const char **sigmas, **priors; /* the values of --sigma and --prior, in order */
@@ -147,6 +147,9 @@ typedef struct Option {
   size_t field, count;  /* in Args: an int, a text, or a list with its number at count */
   const char *text;     /* NULL: not in help */
 } Option;
+
+/* Whether the analysis carries tangents along its runs. */
+static inline int lag_args_tangents(const Args *a) { return a->lyapunov || a->orbit || a->continues; }
 
 /* Row i; NULL past the end. */
 const Option *lag_args_option(int i);

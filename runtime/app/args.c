@@ -172,7 +172,8 @@ static unsigned analyses_with(const Option *o) {
 
 /* Refuses options that a run, or the analysis that is asked for, does not use. */
 static int check_analysis(const Args *a) {
-  const unsigned what = a->sweep ? SWEEP : a->fit ? FIT : a->modes ? MODES : a->orbit ? ORBIT : a->continues ? CONTINUE : a->cost ? COST : a->reference ? REFERENCE
+  const unsigned what = a->sweep ? SWEEP : a->fit ? FIT : a->modes ? MODES : a->orbit ? ORBIT : a->continues ? CONTINUE
+                        : a->cost ? COST : a->reference ? REFERENCE
                         : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
   for (int i = 0; i < NOPTIONS; i++) {
     const Option *o = &options[i];
@@ -198,9 +199,11 @@ static int check_analysis(const Args *a) {
         : what == MODES ? "--modes, which takes name=value, --steady and --json"
         : what == FIT ? "--fit, which takes name=value, --data, --sigma, --prior, --loss, a method, --svg and --json"
         : what == CONTINUE
-            ? "--continue, which takes NAME=A..B, name=value, the options of --orbit, --most, --branches, -o, --svg and --json"
-        : what == ORBIT ? "--orbit, which takes name=value, --period, --guess, --hold, --relative, --segments, --until, a "
-                          "method and --json"
+            ? "--continue, which takes NAME=A..B, name=value, the options of --orbit, --most, --branches, -o, "
+              "--svg and --json"
+        : what == ORBIT
+            ? "--orbit, which takes name=value, --period, --guess, --hold, --relative, --segments, --until, "
+              "a method and --json"
         : what == EFFECTS
             ? "--effects, which takes name=value, --until and a method"
             : "--lyapunov, which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
@@ -271,7 +274,7 @@ static int check_overlay(const Args *a) {
   if (a->starts && (a->vs || a->distance))
     return lag_app_error(a, "--starts and --%s: the range says which runs are drawn; leave one of them out",
                          a->vs ? "vs" : "distance");
-  if (a->modes || a->orbit || a->continues || a->lyapunov || a->cost || a->reference || a->effects || a->sweep || !a->svg) {
+  if (a->modes || lag_args_tangents(a) || a->cost || a->reference || a->effects || a->sweep || !a->svg) {
     return a->nscenes > 1 ? lag_app_error(a,
                                           "two scenes are named: %s and %s; `lagc plot` draws several in one picture; "
                                           "to set a value write name=value",
@@ -314,6 +317,10 @@ static int check(const Args *a) {
     return lag_app_error(a, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x);
   if ((a->points || a->from || a->trace || a->no_rods) && !a->html)
     return lag_app_error(a, "--points, --from, --trace and --no-rods need an animation: add --html FILE");
+  if (a->drawing && !(atoi(a->drawing) >= 1 && atoi(a->drawing) <= 100))
+    return lag_app_error(a, "--drawing %s: a number of instants from 1 to 100 is needed", a->drawing);
+  if (a->drawing && (!a->svg || a->section || a->plot_x || a->plot_y || a->portrait || a->potential))
+    return lag_app_error(a, "--drawing is a picture of its own, which `lagc plot` draws; leave out other axes");
   if (a->section && a->html)
     return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
   const char *const tangents[] = {a->tangent ? "tangent" : NULL, a->sensitivity ? "sensitivity" : NULL,

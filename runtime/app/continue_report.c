@@ -8,7 +8,7 @@
 #include "analysis/branch_problems.h"
 #include "app/app.h"
 
-enum { MOST_BRANCHES = 12, POINTS = 400, LOOKS = 128 };
+enum { MOST_BRANCHES = 24, MOST_DOUBLINGS = 4, POINTS = 400, LOOKS = 128 };
 
 /* A branch and the equations that it solves. */
 typedef struct Part {
@@ -18,15 +18,23 @@ typedef struct Part {
   int number, from;     /* of the branch that it is a half of; of the one that it leaves, 0: none */
 } Part;
 
+/* Motions of twice the period of another one. */
+typedef struct Doubled {
+  lag_sim *like;
+  PeriodicOrbit orbit;
+  BranchProblem problem;
+} Doubled;
+
 typedef struct Job {
   App *app;
-  char name[128];       /* of the parameter */
-  const lag_var *unit;  /* of a parameter of the model; NULL: of another quantity */
+  char name[96];                                 /* of the parameter */
+  const lag_var *unit;                           /* of a parameter of the model; NULL: of another quantity */
   double low, high, begin, size, offset, factor; /* range; first value; SI = factor x + offset */
   RestBranch rest;
-  PeriodicOrbit orbit, doubled;
-  lag_sim *doubled_like;
-  BranchProblem problem, doubled_problem;
+  PeriodicOrbit orbit;
+  BranchProblem problem;
+  Doubled doubled[MOST_DOUBLINGS];
+  int ndoubled;
   int periodic, led_kind, led_of; /* led_kind: of OrbitHold; -1: a parameter */
   BranchLimits limits;
   Part part[MOST_BRANCHES];
@@ -57,7 +65,8 @@ static int take_range(Job *job) {
   snprintf(job->name, sizeof job->name, "%.*s", (int)n, found);
   snprintf(low, sizeof low, "%.*s", (int)(dots - found - (long)n - 1), found + n + 1);
   if (!lag_args_number(a, job->name, low, "mu=0.1..3", &job->low) ||
-      !lag_args_number(a, job->name, dots + 2, "mu=0.1..3", &job->high)) return EXIT_USAGE;
+      !lag_args_number(a, job->name, dots + 2, "mu=0.1..3", &job->high))
+    return EXIT_USAGE;
   return job->low != job->high ? 0 : lag_app_error(a, "%s: the ends of the range are equal", found);
 }
 
@@ -97,11 +106,12 @@ static int choose_begin(Job *job) {
 /* ---- Following */
 
 static const char *words_of(int rc, const char *message) {
-  return rc == LAG_ENOMEM         ? "out of memory"
-         : rc == LAG_ESINGULAR    ? "at each value of the parameter there is a family of solutions: --hold energy, or another "
-                                    "charge, coordinate or `period`, chooses one"
-         : message && message[0]  ? message
-                                  : "there is no solution to begin with";
+  return rc == LAG_ENOMEM ? "out of memory"
+         : rc == LAG_ESINGULAR
+             ? "at each value of the parameter there is a family of solutions: --hold energy, or another "
+               "charge, coordinate or `period`, chooses one"
+         : message && message[0] ? message
+                                 : "there is no solution to begin with";
 }
 
 static int failed(Job *job, int rc, const char *message) {
@@ -144,45 +154,78 @@ static int follow_other(Job *job, const Part *of, const BranchPoint *at) {
   return rc;
 }
 
-/* Motions of twice the period, from a point where it doubles. */
-static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
-  PeriodicOrbit *o = of->orbit, *two = &job->doubled;
-  if (job->doubled_like || of->problem->place(o, at->u)) return LAG_OK; /* once */
-  lag_sim *like = job->doubled_like = lag_flow_sim(&o->flow, o->flow.t0, o->y);
-  if (!like) return LAG_ENOMEM;
-  like->scene = job->app->sim->scene;
-  *two = (PeriodicOrbit){.nheld = o->nheld, .continues = 1, .led = o->led, .name = o->name, .parameter = o->parameter,
-                         .parameter_unit = o->parameter_unit, .ngroup = o->ngroup};
-  memcpy(two->held, o->held, sizeof o->held);
-  memcpy(two->group, o->group, sizeof o->group);
-  int rc = lag_orbit_open(two, like, o->algebra, 2 * o->T, 2 * o->m);
-  if (rc) return rc == LAG_ENOMEM ? rc : LAG_OK;
-  for (int s = 0; s < two->m; s++)
-    memcpy(two->y + s * o->n, o->y + s % o->m * o->n, (size_t)o->n * sizeof *o->y);
-  two->pairing = o->pairing;
-  lag_orbit_branch(&job->doubled_problem, two);
-  BranchPoint start = *at;
-  double *u = malloc(2 * (size_t)two->cols * sizeof *u);
-  if (!u) return LAG_ENOMEM;
-  lag_orbit_branch_unknowns(two, u);
-  start.u = u;
-  start.tangent = u + two->cols; /* the same branch: each half moves as the whole does */
-  for (int i = 0; i < two->cols; i++) {
-    int k = i < two->m * o->n ? i % (o->m * o->n) : o->m * o->n + i - two->m * o->n;
-    start.tangent[i] = at->tangent[k];
-  }
-  Part whole = {.problem = &job->doubled_problem, .orbit = two, .number = of->number};
-  rc = follow_other(job, &whole, &start);
-  free(u);
+/* The orbit over twice the period at a point where it doubles; its parts hold the same motion. */
+static int open_doubled(Doubled *two, PeriodicOrbit *o, const lag_scene *scene) {
+  two->like = lag_flow_sim(&o->flow, o->flow.t0, o->y);
+  if (!two->like) return LAG_ENOMEM;
+  two->like->scene = scene;
+  two->orbit = (PeriodicOrbit){.nheld = o->nheld,
+                               .continues = 1,
+                               .led = o->led,
+                               .name = o->name,
+                               .parameter = o->parameter,
+                               .parameter_unit = o->parameter_unit,
+                               .ngroup = o->ngroup};
+  memcpy(two->orbit.held, o->held, sizeof o->held);
+  memcpy(two->orbit.group, o->group, sizeof o->group);
+  int rc = lag_orbit_open(&two->orbit, two->like, o->algebra, 2 * o->T, 2 * o->m);
+  for (int s = 0; s < two->orbit.m && rc == LAG_OK; s++)
+    memcpy(two->orbit.y + s * o->n, o->y + s % o->m * o->n, (size_t)o->n * sizeof *o->y);
+  two->orbit.pairing = o->pairing;
+  lag_orbit_branch(&two->problem, &two->orbit);
   return rc;
 }
 
+/* tangent[cols] := that of the same branch for twice the period: each half moves as the whole does. */
+static void double_tangent(const PeriodicOrbit *o, const PeriodicOrbit *two, const double *of, double *tangent) {
+  int part = o->m * o->n, whole = two->m * two->n;
+  for (int i = 0; i < two->cols; i++) tangent[i] = of[i < whole ? i % part : part + i - whole];
+}
+
+/* Motions of twice the period, from a point where it doubles: in one direction, as the other one is the same motion
+ * a period later. */
+static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
+  if (job->ndoubled == MOST_DOUBLINGS || of->problem->place(of->orbit, at->u)) return LAG_OK;
+  Doubled *two = &job->doubled[job->ndoubled++];
+  int rc = open_doubled(two, of->orbit, job->app->sim->scene), cols = two->orbit.cols;
+  double *u = rc ? NULL : malloc(3 * (size_t)cols * sizeof *u);
+  if (rc || !u) return rc == LAG_ENOMEM || !u ? LAG_ENOMEM : LAG_OK;
+  BranchPoint start = {.u = u, .tangent = u + cols};
+  lag_orbit_branch_unknowns(&two->orbit, u);
+  double_tangent(of->orbit, &two->orbit, at->tangent, start.tangent);
+  rc = lag_branch_other(&two->problem, &start, u + 2 * cols);
+  if (rc == LAG_OK) job->nbranches++;
+  if (rc == LAG_OK) rc = follow(job, &two->problem, &two->orbit, u, u + 2 * cols, 0, of->number);
+  free(u);
+  return rc == LAG_ENOMEM ? rc : LAG_OK;
+}
+
+/* The periodic motions that leave a Hopf point. */
+static int follow_cycle(Job *job, const Part *of, const BranchPoint *at) {
+  if (job->ndoubled == MOST_DOUBLINGS) return LAG_OK;
+  Doubled *cycle = &job->doubled[job->ndoubled++];
+  double *d = NULL;
+  int rc = lag_hopf_orbit(&job->rest, at, &cycle->orbit, &cycle->like, &cycle->problem, &d);
+  if (rc != 1) return rc;
+  double *u = malloc((size_t)cycle->orbit.cols * sizeof *u), size = 0;
+  if (!u) return LAG_ENOMEM;
+  lag_orbit_branch_unknowns(&cycle->orbit, u);
+  for (int i = 0; i < cycle->orbit.cols; i++) size += d[i] * d[i];
+  for (int i = 0; i < cycle->orbit.cols; i++) d[i] /= sqrt(size);
+  job->nbranches++;
+  rc = follow(job, &cycle->problem, &cycle->orbit, u, d, 0, of->number);
+  free(u);
+  return rc == LAG_ENOMEM ? rc : LAG_OK;
+}
+
+/* Branches that leave the first one, and of those the motions whose period doubles again. */
 static int follow_branches(Job *job) {
-  int rc = LAG_OK, parts = job->nparts;
-  for (int k = 0; k < parts && rc == LAG_OK; k++)
+  int rc = LAG_OK, first = job->nparts;
+  for (int k = 0; k < job->nparts && rc == LAG_OK; k++)
     for (const BranchPoint *at = job->part[k].branch.first; at && rc == LAG_OK; at = at->next) {
       if (job->nparts >= MOST_BRANCHES - 1) return LAG_OK;
-      if (at->kind == BRANCH_POINT) rc = follow_other(job, &job->part[k], at);
+      if (at->kind == BRANCH_POINT && k < first) rc = follow_other(job, &job->part[k], at);
+      if (at->kind == BRANCH_HOPF) rc = follow_cycle(job, &job->part[k], at);
       if (at->kind == BRANCH_DOUBLING) rc = follow_doubled(job, &job->part[k], at);
     }
   return rc;
@@ -234,14 +277,17 @@ static int begin_periodic(Job *job) {
     o->held[o->nheld++] = (OrbitHold){.kind = job->led_kind, .of = job->led_of};
     job->begin = (led_value(job) - job->offset) / job->factor;
     if (job->begin < fmin(job->low, job->high) || job->begin > fmax(job->low, job->high))
-      return lag_app_error(&app->args, "the periodic motion near the start has %s = %.6g, outside of %g..%g: start within: "
-                           "name=VALUE, or widen the range", job->name, job->begin, job->low, job->high);
+      return lag_app_error(&app->args,
+                           "the periodic motion near the start has %s = %.6g, outside of %g..%g: start within: "
+                           "name=VALUE, or widen the range",
+                           job->name, job->begin, job->low, job->high);
   } else o->led = -1;
   o->name = job->led_kind < 0 ? job->name : NULL;
   o->parameter = job->led_kind < 0 ? job->begin : led_value(job);
   o->parameter_unit = job->size * (job->led_kind < 0 ? 1 : fabs(job->factor));
   o->continues = 1;
-  if (job->led_kind < 0 && lag_flow_set(&o->flow, o->name, o->parameter)) return failed(job, LAG_EINVAL, o->flow.message);
+  if (job->led_kind < 0 && lag_flow_set(&o->flow, o->name, o->parameter))
+    return failed(job, LAG_EINVAL, o->flow.message);
   lag_orbit_branch(&job->problem, o);
   double *u = malloc((size_t)o->cols * sizeof *u);
   if (!u) return failed(job, LAG_ENOMEM, NULL);
@@ -254,14 +300,16 @@ static int begin_periodic(Job *job) {
 /* ---- The report */
 
 static const char *kind_word(BranchKind kind, int periodic) {
-  static const char *const words[] = {"", "fold", "branch point", "period doubling", "Hopf", "Neimark-Sacker", "collision"};
+  static const char *const words[] = {"",     "fold",           "branch point", "period doubling",
+                                      "Hopf", "Neimark-Sacker", "collision"};
   return kind == BRANCH_COLLISION ? periodic ? "multipliers collide" : "frequencies collide" : words[kind];
 }
 
 /* The parameter at a point, in its declared unit. */
 static double parameter_at(const Job *job, const Part *part, const BranchPoint *at) {
   double x = at->u[part->problem->cols - 1];
-  return part->orbit && job->led_kind >= 0 ? (x * part->orbit->parameter_unit - job->offset) / job->factor : x * job->size;
+  return part->orbit && job->led_kind >= 0 ? (x * part->orbit->parameter_unit - job->offset) / job->factor
+                                           : x * job->size;
 }
 
 static double period_at(const Part *part, const BranchPoint *at) {
@@ -323,9 +371,11 @@ static void put_point(FILE *f, const Job *job, const Part *part, const BranchPoi
   putc('\n', f);
 }
 
-static const char *const ends[] = {
-  [BRANCH_AT_RANGE] = "end of the range", [BRANCH_AT_NUMBER] = "as many points as --most allows",
-  [BRANCH_CLOSED] = "closed", [BRANCH_LOST] = "lost: no solution beside it", [BRANCH_NO_MEMORY] = "out of memory"};
+static const char *const ends[] = {[BRANCH_AT_RANGE] = "end of the range",
+                                   [BRANCH_AT_NUMBER] = "as many points as --most allows",
+                                   [BRANCH_CLOSED] = "closed",
+                                   [BRANCH_LOST] = "lost: no solution beside it",
+                                   [BRANCH_NO_MEMORY] = "out of memory"};
 
 static void put_text(FILE *f, const Job *job) {
   const App *app = job->app;
@@ -334,13 +384,13 @@ static void put_text(FILE *f, const Job *job) {
           job->unit && job->unit->unit[0] ? " " : "", job->unit ? job->unit->unit : "");
   for (int k = 0; k < job->nparts; k++) {
     const Part *part = &job->part[k];
-    fprintf(f, "branch %d%s, %d points", part->number, k && job->part[k - 1].number == part->number ? ", other direction" : "",
-            part->branch.npoints);
+    fprintf(f, "branch %d%s, %d points", part->number,
+            k && job->part[k - 1].number == part->number ? ", other direction" : "", part->branch.npoints);
     if (part->from) fprintf(f, ", from branch %d", part->from);
     putc('\n', f);
     for (const BranchPoint *at = part->branch.first; at; at = at->next) {
       if (at == part->branch.first) put_point(f, job, part, at, "begins");
-      else if (at->kind != BRANCH_REGULAR) put_point(f, job, part, at, kind_word(at->kind, job->periodic));
+      else if (at->kind != BRANCH_REGULAR) put_point(f, job, part, at, kind_word(at->kind, part->orbit != NULL));
       else if (!at->next) put_point(f, job, part, at, ends[part->branch.end]);
     }
   }
@@ -348,7 +398,7 @@ static void put_text(FILE *f, const Job *job) {
 
 static void json_point(Json *j, const Job *job, const Part *part, const BranchPoint *at) {
   lag_json_begin(j, NULL, '{');
-  lag_json_string(j, "kind", at->kind == BRANCH_REGULAR ? "end" : kind_word(at->kind, job->periodic));
+  lag_json_string(j, "kind", at->kind == BRANCH_REGULAR ? "end" : kind_word(at->kind, part->orbit != NULL));
   lag_json_number(j, "parameter", parameter_at(job, part, at));
   if (part->orbit) lag_json_number(j, "period", period_at(part, at));
   lag_json_begin(j, "state", '{');
@@ -398,11 +448,13 @@ static void put_json(FILE *f, const Job *job) {
 enum { OF_BRANCH = 4 }; /* columns before those of the state: parameter, branch, kind, growing directions */
 
 static int make_table(Job *job) {
-  static const char *const kinds[] = {"", "fold", "branch point", "period doubling", "Hopf", "Neimark-Sacker", "collision"};
+  static const char *const kinds[] = {"",     "fold",           "branch point", "period doubling",
+                                      "Hopf", "Neimark-Sacker", "collision"};
   App *app = job->app;
   Table *t = &app->table;
   int n = app->sim->pb.n, k = 0;
-  *t = (Table){.ncols = OF_BRANCH + 2 + 2 * n, .keep = 0, .cols = calloc((size_t)(OF_BRANCH + 2 + 2 * n), sizeof *t->cols)};
+  *t = (Table){
+      .ncols = OF_BRANCH + 2 + 2 * n, .keep = 0, .cols = calloc((size_t)(OF_BRANCH + 2 + 2 * n), sizeof *t->cols)};
   app->row = calloc((size_t)t->ncols, sizeof *app->row);
   if (!t->cols || !app->row) return lag_app_error(&app->args, "out of memory");
   snprintf(t->cols[k].name, sizeof t->cols[k].name, "%s", job->name);
@@ -413,10 +465,11 @@ static int make_table(Job *job) {
   strcpy(t->cols[++k].name, "growing");
   strcpy(t->cols[++k].name, "period");
   strcpy(t->cols[k].unit, "s");
-  strcpy(t->cols[++k].name, job->periodic ? "largest multiplier" : "fastest growth");
+  strcpy(t->cols[++k].name, "growth");
   for (int i = 0; i < 2 * n; i++) {
     Column c = lag_state_column(app->sim, i % n);
-    if (i >= n) memmove(c.name + 4, c.name, sizeof c.name - 4), memcpy(c.name, "max ", 4), c.name[sizeof c.name - 1] = '\0';
+    if (i >= n)
+      memmove(c.name + 4, c.name, sizeof c.name - 4), memcpy(c.name, "max ", 4), c.name[sizeof c.name - 1] = '\0';
     t->cols[++k] = c;
   }
   return 0;
@@ -463,13 +516,11 @@ static int drawn_rows(Job *job, Table *t, double *most) {
   int rc = 0;
   for (int k = 0; k < job->nparts && rc == 0; k++) {
     const Part *part = &job->part[k];
-    int was = -1;
     for (const BranchPoint *at = part->branch.first; at && rc == 0; at = at->next) {
       largest_values(job, part, at, most);
       double y = lag_sim_declared(job->app->sim, 0, most[0]), x = parameter_at(job, part, at);
-      int grows = at->unstable > 0;
-      double row[] = {x, grows && was != 0 ? NAN : y, grows || was == 1 ? y : NAN};
-      was = grows;
+      int changes = at->kind != BRANCH_REGULAR; /* here both curves meet */
+      double row[] = {x, at->unstable && !changes ? NAN : y, at->unstable || changes ? y : NAN};
       rc = lag_table_add(t, row);
     }
     double gap[] = {NAN, NAN, NAN};
@@ -495,12 +546,16 @@ static int draw(Job *job) {
   snprintf(app->table.cols[0].name, sizeof app->table.cols[0].name, "%s", job->name);
   if (job->unit) snprintf(app->table.cols[0].unit, sizeof app->table.cols[0].unit, "%s", job->unit->unit);
   for (int k = 1; k < 3; k++) {
-    snprintf(app->table.cols[k].name, sizeof app->table.cols[k].name, "%s, %s", name, k == 1 ? "nothing grows" : "unstable");
+    snprintf(app->table.cols[k].name, sizeof app->table.cols[k].name, "%s, %s", name,
+             k == 1 ? "nothing grows" : "unstable");
     memcpy(app->table.cols[k].unit, first.unit, sizeof first.unit);
   }
   snprintf(title, sizeof title, "%s: %s, %s over %s", app->scene->model->name, app->scene->name,
            job->periodic ? "periodic motions" : "states of rest", job->name);
-  return lag_app_choose_curves(app) ? EXIT_USAGE : lag_app_draw_table(app, title);
+  if (lag_app_choose_curves(app)) return EXIT_USAGE;
+  snprintf(app->drawn_ys, sizeof app->drawn_ys, "%s", name);
+  app->drawn.yname = app->drawn_ys;
+  return lag_app_draw_table(app, title);
 }
 
 /* ---- The command */
@@ -511,7 +566,10 @@ static int read_limits(Job *job) {
   if (a->most && lag_args_count(a, "--most", a->most, "--most 400", &most)) return EXIT_USAGE;
   double a0 = job->low * job->factor + job->offset, b0 = job->high * job->factor + job->offset;
   double unit = job->size * fabs(job->factor);
-  job->limits = (BranchLimits){.low = fmin(a0, b0) / unit, .high = fmax(a0, b0) / unit, .step = 0.01, .longest = 0.1,
+  job->limits = (BranchLimits){.low = fmin(a0, b0) / unit,
+                               .high = fmax(a0, b0) / unit,
+                               .step = 0.01,
+                               .longest = 0.1,
                                .most = (int)(most < 100000 ? most : 100000)};
   return 0;
 }
@@ -534,9 +592,11 @@ static int run(Job *job) {
 static void close_job(Job *job) {
   for (int k = 0; k < job->nparts; k++) lag_branch_free(&job->part[k].branch);
   lag_rest_branch_free(&job->rest);
-  lag_orbit_free(&job->doubled);
+  for (int k = 0; k < job->ndoubled; k++) {
+    lag_orbit_free(&job->doubled[k].orbit);
+    lag_sim_free(job->doubled[k].like);
+  }
   lag_orbit_free(&job->orbit);
-  lag_sim_free(job->doubled_like);
 }
 
 int lag_app_continue(App *app) {

@@ -35,8 +35,8 @@ static int add_held(App *app, PeriodicOrbit *o, const char *name, size_t n) {
                          "--hold %.*s: write `energy`, a conserved charge of the model, a coordinate, a velocity or a "
                          "state, several with commas between",
                          (int)n, name);
-  o->held[o->nheld++] = state >= 0 ? (OrbitHold){.kind = ORBIT_STATE, .of = state}
-                                   : (OrbitHold){.kind = ORBIT_CHARGE, .of = charge};
+  o->held[o->nheld++] =
+      state >= 0 ? (OrbitHold){.kind = ORBIT_STATE, .of = state} : (OrbitHold){.kind = ORBIT_CHARGE, .of = charge};
   return 0;
 }
 
@@ -80,7 +80,8 @@ static double search_end(const App *app) {
 static int driven_period(App *app, FlowMap *f, double *T) {
   const double rounding = 1e-9;
   double asked = *T;
-  if (asked > 0 && lag_flow_drive(f, T) < rounding && fabs(*T - asked) <= (app->args.period ? 1e-3 : 0.2) * asked) return 0;
+  if (asked > 0 && lag_flow_drive(f, T) < rounding && fabs(*T - asked) <= (app->args.period ? 1e-3 : 0.2) * asked)
+    return 0;
   double shortest = lag_flow_find_drive(f, search_end(app) - f->t0);
   *T = shortest;
   if (asked == 0 && shortest > 0) return 0;
@@ -132,11 +133,19 @@ static void take_values(PeriodicOrbit *o) {
 
 /* ---- The report */
 
-typedef enum OrbitVerdict { ORBIT_ATTRACTS, ORBIT_UNSTABLE, ORBIT_ELLIPTIC, ORBIT_BORDER, ORBIT_NO_OTHERS } OrbitVerdict;
+typedef enum OrbitVerdict {
+  ORBIT_ATTRACTS,
+  ORBIT_UNSTABLE,
+  ORBIT_ELLIPTIC,
+  ORBIT_BORDER,
+  ORBIT_NO_OTHERS
+} OrbitVerdict;
 
-static const char *const verdict_names[] = {
-  [ORBIT_ATTRACTS] = "attracts", [ORBIT_UNSTABLE] = "unstable", [ORBIT_ELLIPTIC] = "stable by the linearisation",
-  [ORBIT_BORDER] = "undecided", [ORBIT_NO_OTHERS] = "stable"};
+static const char *const verdict_names[] = {[ORBIT_ATTRACTS] = "attracts",
+                                            [ORBIT_UNSTABLE] = "unstable",
+                                            [ORBIT_ELLIPTIC] = "stable by the linearisation",
+                                            [ORBIT_BORDER] = "undecided",
+                                            [ORBIT_NO_OTHERS] = "stable"};
 
 static double size_of(const PeriodicOrbit *o, int i) { return hypot(o->re[i], o->im[i]); }
 
@@ -151,7 +160,8 @@ static int collides(const PeriodicOrbit *o) {
   for (int i = 0; i < o->nmultipliers; i++)
     for (int j = 0; j < i; j++)
       if (fabs(o->im[i]) > same && fabs(size_of(o, i) - 1) < 1e-3 &&
-          hypot(o->re[i] - o->re[j], o->im[i] - o->im[j]) < 1e-3) return 1;
+          hypot(o->re[i] - o->re[j], o->im[i] - o->im[j]) < 1e-3)
+        return 1;
   return 0;
 }
 
@@ -171,14 +181,16 @@ static void reason(const PeriodicOrbit *o, OrbitVerdict v, char *s, size_t n) {
   else if (v == ORBIT_ATTRACTS)
     snprintf(s, n, "every small disturbance decays, the slowest by a factor of %.6g in each period", size_of(o, 0));
   else if (v == ORBIT_ELLIPTIC)
-    snprintf(s, n, "all multipliers lie on the unit circle, apart from each other: small disturbances turn around the "
-                   "motion");
+    snprintf(s, n,
+             "all multipliers lie on the unit circle, apart from each other: small disturbances turn around the "
+             "motion");
   else
-    snprintf(s, n, "%s", near_one(o, 1) ? "a further multiplier is 1: a family, a fold or a branch point, or a charge that "
-                                          "is not proved"
-                         : near_one(o, -1) ? "a multiplier is -1: the period doubles here"
-                         : collides(o)     ? "two pairs of multipliers meet on the unit circle"
-                                           : "a multiplier lies on the unit circle");
+    snprintf(s, n, "%s",
+             near_one(o, 1)    ? "a further multiplier is 1: a family, a fold or a branch point, or a charge that "
+                                 "is not proved"
+             : near_one(o, -1) ? "a multiplier is -1: the period doubles here"
+             : collides(o)     ? "two pairs of multipliers meet on the unit circle"
+                               : "a multiplier lies on the unit circle");
 }
 
 static void put_scene(FILE *f, const App *app, const PeriodicOrbit *o) {
@@ -218,8 +230,9 @@ static void put_free(FILE *f, const PeriodicOrbit *o) {
   if (o->nfree == 0) fputs("isolated: there is no other periodic motion of this period beside it\n", f);
   else if (o->nfree == 1 && phase) fputs("isolated: beside it there are only its other phases\n", f);
   else
-    fprintf(f, "one of a family: %d direction%s to others%s; the nearest one to the start is shown; --hold NAME fixes a "
-               "charge or a coordinate\n",
+    fprintf(f,
+            "one of a family: %d direction%s to others%s; the nearest one to the start is shown; --hold NAME fixes a "
+            "charge or a coordinate\n",
             o->nfree, o->nfree > 1 ? "s lead" : " leads", phase ? ", one of them along the motion" : "");
 }
 
@@ -234,8 +247,8 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
   fprintf(f, "\nfound in %d step%s over %d segment%s; the motion closes to %.1g of its size\n", o->steps,
           o->steps == 1 ? "" : "s", o->m, o->m == 1 ? "" : "s", o->residual);
   for (int j = 0; j < o->ngroup; j++)
-    fprintf(f, "relative: it closes after the symmetry of %s by %s\n",
-            app->scene->model->charges->of[o->group[j]].name, lag_number_text(o->shift[j], text));
+    fprintf(f, "relative: it closes after the symmetry of %s by %s\n", app->scene->model->charges->of[o->group[j]].name,
+            lag_number_text(o->shift[j], text));
   put_free(f, o);
   if (o->repeats > 1)
     fprintf(f, "note: the motion comes back already after a %dth of this period: --guess %s\n", o->repeats,
@@ -291,12 +304,13 @@ static int not_found(App *app, const PeriodicOrbit *o) {
   size_t n = 0;
   for (int k = 0; k < ORBIT_TRACE && o->trace[k] > 0 && n < sizeof course - 20; k++)
     n += (size_t)snprintf(course + n, sizeof course - n, "%s%.2g", k ? ", " : "", o->trace[k]);
-  lag_app_error(&app->args,
-                "no periodic motion found near the start of scene %s: after %d steps the motion of %s s still misses its "
-                "start by %.2g of its size (before: %s). Start nearer to one: name=VALUE; another period: --guess T; "
-                "%sor more segments: --segments %d",
-                app->scene->name, o->steps, lag_number_text(o->T, text), o->residual, course,
-                o->nheld > (o->flow.forced != 0) ? "without --hold; " : "", 2 * o->m);
+  lag_app_error(
+      &app->args,
+      "no periodic motion found near the start of scene %s: after %d steps the motion of %s s still misses its "
+      "start by %.2g of its size (before: %s). Start nearer to one: name=VALUE; another period: --guess T; "
+      "%sor more segments: --segments %d",
+      app->scene->name, o->steps, lag_number_text(o->T, text), o->residual, course,
+      o->nheld > (o->flow.forced != 0) ? "without --hold; " : "", 2 * o->m);
   return EXIT_RUN;
 }
 
@@ -306,14 +320,18 @@ int lag_app_orbit_solve(App *app, PeriodicOrbit *o) {
   if (rc == 0) return not_found(app, o);
   if (rc > 0) rc = lag_orbit_refine(o);
   if (rc == 0 && o->at_rest) {
-    lag_app_error(a, "the search from scene %s ends at rest, which has no period: `lagc modes` analyses it; start on a "
-                     "motion that comes back: name=VALUE, or hold one: --hold NAME", app->scene->name);
+    lag_app_error(a,
+                  "the search from scene %s ends at rest, which has no period: `lagc modes` analyses it; start on a "
+                  "motion that comes back: name=VALUE, or hold one: --hold NAME",
+                  app->scene->name);
     return EXIT_RUN;
   }
   rc = rc ? rc : lag_orbit_multipliers(o);
   if (rc == LAG_OK) return 0;
-  lag_app_error(a, "%s", rc == LAG_ENOMEM ? "out of memory" : rc == LAG_EMETHOD && !o->flow.message[0]
-                                                                   ? "the multipliers do not converge" : o->flow.message);
+  lag_app_error(a, "%s",
+                rc == LAG_ENOMEM                           ? "out of memory"
+                : rc == LAG_EMETHOD && !o->flow.message[0] ? "the multipliers do not converge"
+                                                           : o->flow.message);
   return EXIT_RUN;
 }
 
@@ -325,7 +343,8 @@ int lag_app_orbit_set_up(App *app) {
   if (!app->extras.algebra)
     return lag_app_error(&app->args, "this simulator was built without GSL, which finds eigenvalues; install GSL "
                                      "(libgsl-dev), make lagc anew, and leave out --no-gsl");
-  if (!app->args.tol && lag_sim_tolerance(app->sim) > fine && sizeof(double) == 8) lag_sim_set_tolerance(app->sim, fine);
+  if (!app->args.tol && lag_sim_tolerance(app->sim) > fine && sizeof(double) == 8)
+    lag_sim_set_tolerance(app->sim, fine);
   return lag_app_choose_method(app);
 }
 

@@ -156,7 +156,7 @@ static int open_output(App *app) {
   if (lag_tangent_columns_open(app) || lag_sensitivity_open(app) || lag_app_volume_open(app) ||
       lag_app_choose_curves(app) || lag_portrait_open(app))
     return EXIT_USAGE;
-  if (a->html && lag_app_choose_shapes(app)) return EXIT_USAGE;
+  if ((a->html || a->drawing) && lag_app_choose_shapes(app)) return EXIT_USAGE;
   if (lag_app_try_file(app, a->svg) || lag_app_try_file(app, a->html) || lag_app_try_file(app, a->save))
     return EXIT_USAGE;
   int rc = lag_sampling_open(app);
@@ -202,6 +202,7 @@ void lag_app_free(App *app) {
   lag_phase_volume_free(&app->volume);
   free(app->show.shapes);
   lag_sensitivity_free(app);
+  free(app->show.words);
   free(app->portrait);
   free(app->drawn.x);
   free(app->drawn.note);

@@ -218,7 +218,7 @@ static int share_forces(lag_problem *pb, double t, const double *y) {
 
 int lag_contact_friction_forces(lag_problem *pb, double t, const double *y) {
   for (int i = 0; i < pb->model->ncontacts; i++)
-    if (side_of(pb, i) == 0) return share_forces(pb, t, y);
+    if (side_of(pb, i) == 0 && is_closed(pb, i)) return share_forces(pb, t, y);
   return find_friction(pb, t, y);
 }
 
@@ -440,7 +440,8 @@ static void list_pressed(const ContactSet *w, Touches *to) {
     for (int c = 0; c < of->parts; c++) {
       const double *from = lag_guide_pressed(w, of->guide - 1, c);
       to->pressed[k][c][0] = from[0];
-      for (int r = 0; r < to->rows; r++) of->pressed[c * (1 + to->rows) + 1 + r] = to->row[r] < 0 ? 0 : from[1 + to->row[r]];
+      for (int r = 0; r < to->rows; r++)
+        of->pressed[c * (1 + to->rows) + 1 + r] = to->row[r] < 0 ? 0 : from[1 + to->row[r]];
     }
   }
 }

@@ -316,11 +316,6 @@ static int check_method(lag_sim *s, const lag_method *method) {
     return lag_fail(s, LAG_EMETHOD,
                     "method %s cannot follow contacts with friction (%s); rk45, dop853, radau, rk4 and moreau can",
                     method->name, m->ev[m->contacts[0].impact].name);
-  if (m->nguides && needs & LAG_METHOD_IMPULSES)
-    return lag_fail(s, LAG_EMETHOD,
-                    "method %s does not follow the friction of guides (%s); rk45, dop853, radau and rk4 do; for %s write "
-                    "the guide as two contacts, `y >= 0` and `-y >= 0`, with `friction` and `slip`",
-                    method->name, m->ev[m->contacts[m->guides[0].tangent].impact].name, method->name);
   if (m->constraints && !(needs & LAG_METHOD_CONSTRAINTS)) {
     return lag_fail(s, LAG_EMETHOD, "method %s cannot hold constraints (%s); rk45, dop853 and variational can",
                     method->name, m->constraints->of[0].name);

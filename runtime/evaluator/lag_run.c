@@ -1,5 +1,7 @@
-/* lag-run: a simulator of any model, which it evaluates. Enters: the bytes that lagc wrote, at the path $LAG_PROGRAM,
- * and the command line of a simulator. */
+/* lag-run: a simulator of any model. Enters: the command line of a simulator; the bytes that lagc wrote, at the path
+ * $LAG_PROGRAM, which are evaluated, or a library of the model, $LAG_LIBRARY; $LAG_NO_GSL leaves GSL out. While it
+ * evaluates lagc may compile: then the path of the library comes from the descriptor $LAG_COMPILED, and the run changes
+ * over between two steps. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,7 +88,7 @@ static const lag_program *find_program(int *evaluated) {
 
 int main(int argc, char **argv) {
 #ifdef LAG_WITH_GSL
-  lag_extras extras = lag_gsl;
+  lag_extras extras = getenv("LAG_NO_GSL") ? (lag_extras){0} : lag_gsl;
 #else
   lag_extras extras = {0};
 #endif

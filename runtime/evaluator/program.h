@@ -20,7 +20,7 @@ typedef enum {
 
 enum {
 #define OP(name, operands, formula) TURN_##name,
-  PROGRAM_TURN_OPS(OP)
+  PROGRAM_TURN_OPS(OP, OP)
 #undef OP
       TURN_OPS
 };
@@ -73,7 +73,8 @@ typedef struct {
 /* for i < rows, for j in skew i .. (skew + more) i + turns - 1; without turns: for i < rows. */
 typedef struct {
   int64_t rows, skew, turns, more;
-  int has_turns, in_order; /* in_order: turns read sums that others of the nest change */
+  /* in_order: turns read sums that others of the nest change; apart: no two sums share an element in a row */
+  int has_turns, in_order, apart;
   uint32_t nsubscripts, nouter, nins, nsums;
   const Subscript *at;
   const uint32_t *outer; /* places in the frame */

@@ -149,6 +149,25 @@ static void read_constraints(Reader *r) {
   r->m->model.constraints = k;
 }
 
+/* Guides, which own the tangents that follow no contact. */
+static void read_guides(Reader *r, const lag_contact *c, int n) {
+  Bytes *b = r->b;
+  lag_model *m = &r->m->model;
+  int of = 0, have = m->nguides = (int)lag_bytes_count(b, 12);
+  lag_guide *g = lag_bytes_room(b, (size_t)have, sizeof *g);
+  for (int i = 0; g && i < have; i++) {
+    g[i].tangent = (int)lag_bytes_below(b, (uint32_t)n), g[i].parts = lag_bytes_int(b, 1, 3);
+    g[i].turn = lag_bytes_int(b, -1, m->nev - 1);
+    lag_bytes_need(b, c && c[g[i].tangent].is_tangent, "a guide has no tangent");
+  }
+  m->guides = g;
+  for (int i = 0; c && g && i < n; i++) {
+    while (of < have && g[of].tangent < i) of++;
+    int own = of < have && g[of].tangent == i;
+    lag_bytes_need(b, own || !c[i].is_tangent || i > 0, "a tangent has no contact");
+  }
+}
+
 static void read_contacts(Reader *r) {
   Bytes *b = r->b;
   lag_model *m = &r->m->model;
@@ -160,10 +179,10 @@ static void read_contacts(Reader *r) {
     c[i].impact = (int)lag_bytes_below(b, (uint32_t)m->nev), c[i].release = (int)lag_bytes_below(b, (uint32_t)m->nev);
     c[i].is_tangent = flag(b), c[i].force = (int)lag_bytes_below(b, (uint32_t)m->nu);
     c[i].conditional = flag(b), c[i].law = lag_bytes_int(b, 0, 2);
-    lag_bytes_need(b, !c[i].is_tangent || i > 0, "a tangent has no contact");
   }
   m->contacts = c;
-  r->m->contact_laws = program(r, 3 * (int64_t)n, 0, 0);
+  read_guides(r, c, n);
+  r->m->contact_laws = program(r, 3 * (int64_t)n + 4 * (int64_t)m->nguides, 0, 0);
 }
 
 static void read_sizes(Reader *r) {

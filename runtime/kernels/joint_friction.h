@@ -92,7 +92,8 @@ static inline int lag_joint_turn(LAG_MODEL, lag_joint_friction *w, const lag_kic
   const LAG_REAL g = LAG_FN(fabs)(slip[0]), response = LAG_FN(fabs)(own);
   to[0] = was;
   if (own < zero) {
-    lag_friction_turn(1, own, w->centre + k, LAG_FN(fabs)(w->centre[k]), w->bound[k], one, slip, to);
+    const lag_coulomb law = {1, own, LAG_FN(fabs)(w->centre[k]), w->bound[k], one, w->centre + k};
+    lag_friction_turn(&law, slip, to);
   } else {
     to[0] = LAG_SELECT(slip[0] > zero, one, LAG_SELECT(slip[0] < zero, -one, zero));
     slip[0] = zero;
@@ -120,7 +121,9 @@ static inline int lag_joints_solve(LAG_MODEL, lag_joint_friction *w, const lag_k
     for (int k = 0; k < LAG_JOINTS(w); k++) LAG_TRY(lag_joint_turn(LAG_THE_MODEL, w, s, k, size, &change));
     const LAG_REAL unit = s->epsilon*(*size);
     if (change <= LAG_C(64.0)*unit) return status;
-    if (sweep > 0 && change <= LAG_C(1e7)*unit && change >= last/LAG_C(2.0)) return status;
+    /* surfaces that hold one motion, to what positions leave of their slips */
+    const LAG_REAL little = sweep < 100 ? LAG_C(1e7) : LAG_C(1e10);
+    if (sweep > 0 && change <= little*unit && change >= last/LAG_C(2.0)) return status;
     last = change;
   }
   return LAG_FRICTION_FAILS(s->end, 0, "and others find no forces that agree: take smaller steps");

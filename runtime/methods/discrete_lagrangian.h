@@ -1,4 +1,4 @@
-/* Steps of discrete Lagrangians: the instance of kernels/discrete_lagrangian.h for a lag_problem, and derivatives. */
+/* Steps of discrete Lagrangians: the instance of kernels/galerkin_step.h for a lag_problem, and derivatives. */
 #pragma once
 
 #include <stddef.h>
@@ -26,7 +26,7 @@ int lag_discrete_fails(lag_problem *pb, const struct lag_discrete *d, const stru
 #define LAG_NEWTON_LEAVES(d, w, status) lag_discrete_leaves(pb, d, w, status)
 #define LAG_NEWTON_SINGULAR(d, w) lag_discrete_fails(pb, d, w, NULL)
 #define LAG_NEWTON_FAILS(d, w) lag_discrete_fails(pb, d, w, "did not converge in 25 corrections")
-#include "kernels/discrete_lagrangian.h"
+#include "kernels/galerkin_step.h"
 
 /* Doubles of lag_discrete.work, for rules with up to this number of free velocities. */
 size_t lag_discrete_size(const lag_problem *pb, int free);

@@ -12,12 +12,17 @@ static int is_surface(const lag_model *m, int k) { return m->switches[k].jumps; 
 static int surfaces(const lag_model *m) {
   int n = 0;
   for (int k = 0; k < m->nmodes; k++) n += is_surface(m, k) != 0;
-  return n;
+  return n + m->nguides;
+}
+
+/* Values of all switches, or of the gaps and rates of all constraints for the slips of guides. */
+static int values(const lag_model *m) {
+  return m->nswitch + (m->nguides ? m->constraints->nholonomic + m->constraints->n : 0);
 }
 
 size_t lag_joint_friction_size(const lag_problem *pb) {
   int n = surfaces(pb->model);
-  return n ? (size_t)(LAG_JOINT_ROOM(n, pb->n) + 5 * n + pb->model->nswitch) : 0;
+  return n ? (size_t)(LAG_JOINT_ROOM(n, pb->n) + 5 * n + values(pb->model)) : 0;
 }
 
 JointFriction lag_joint_friction_of(const lag_problem *pb, double *room) {
@@ -31,8 +36,8 @@ JointFriction lag_joint_friction_of(const lag_problem *pb, double *room) {
   w.change = w.was + n;
   w.stride = w.change + n;
   w.all = w.stride + n;
-  for (int k = 0, j = 0; j < n; k++)
-    if (is_surface(m, k)) w.at[j++] = k;
+  for (int k = 0, j = 0; j < n; k++) /* guides behind the switches */
+    if (k >= m->nmodes || is_surface(m, k)) w.at[j++] = k;
   return w;
 }
 
@@ -40,38 +45,64 @@ JointFriction lag_joint_friction_of(const lag_problem *pb, double *room) {
 
 static const JointFriction *whole(const lag_joint_friction *w) { return (const JointFriction *)(const void *)w; }
 static int switch_of(const lag_joint_friction *w, int j) { return (int)whole(w)->at[j]; }
+/* The tangent of a guide; NULL: surface j is a switch. */
+static const lag_contact *tangent_of(const lag_model *m, const lag_joint_friction *w, int j) {
+  int guide = switch_of(w, j) - m->nmodes;
+  return guide < 0 ? NULL : &m->contacts[m->guides[guide].tangent];
+}
 static double *held(const lag_joint_friction *w, lag_problem *pb, int j) {
-  return &pb->hold[pb->model->nu + switch_of(w, j)];
+  const lag_contact *c = tangent_of(pb->model, w, j);
+  return &pb->hold[c ? c->force : pb->model->nu + switch_of(w, j)];
 }
 
 void lag_joint_friction_hold(lag_problem *pb, lag_joint_friction *w, int j, double mode) {
   w->mode[j] = *held(w, pb, j) = mode;
 }
 
-/* g[n] := values of the surfaces among those of all switches. */
-static int chosen(lag_problem *pb, const lag_joint_friction *w, int rc, double t, double *g) {
-  for (int j = 0; j < w->n; j++) g[j] = whole(w)->all[switch_of(w, j)];
-  return rc ? lag_step_refused(pb, rc, t) : 0;
+/* Slips of guides, as rates of their tangents. */
+static int guide_slips(lag_problem *pb, double t, const double *y, const double *x, const lag_joint_friction *w,
+                       double *g) {
+  const lag_model *m = pb->model;
+  const lag_constraints *of = m->constraints;
+  double *c = whole(w)->all + m->nswitch, *r = c + of->nholonomic;
+  for (int j = 0; j < w->n; j++)
+    if (tangent_of(m, w, j)) pb->u[tangent_of(m, w, j)->input] = 1;
+  int rc = of->residuals(of, t, y, x + m->nq, x + 2 * m->nq, pb->p, pb->u, c, r, pb->work);
+  for (int j = 0; j < w->n; j++)
+    if (tangent_of(m, w, j)) g[j] = r[tangent_of(m, w, j)->constraint];
+  return rc;
 }
 
 int lag_joint_friction_slips(lag_problem *pb, double t, const double *y, const double *x, const lag_joint_friction *w,
                              double *g) {
   const lag_model *m = pb->model;
+  double *all = whole(w)->all;
   int rc = lag_inputs(pb, t);
-  rc = rc ? rc : m->switch_values(m, t, y, x + m->nq, x + 2 * m->nq, pb->p, pb->u, whole(w)->all, pb->work);
-  return chosen(pb, w, rc, t, g);
+  if (rc == 0 && w->n > m->nguides)
+    rc = m->switch_values(m, t, y, x + m->nq, x + 2 * m->nq, pb->p, pb->u, all, pb->work);
+  for (int j = 0; j < w->n - m->nguides; j++) g[j] = all[switch_of(w, j)];
+  if (rc == 0 && m->nguides) rc = guide_slips(pb, t, y, x, w, g);
+  return rc ? lag_step_refused(pb, rc, t) : 0;
 }
 
 int lag_joint_friction_grips(lag_problem *pb, double t, const double *y, const lag_joint_friction *w, double *g) {
   const lag_model *m = pb->model;
-  if (!m->switch_grips) return 0;
-  int rc = m->switch_grips(m, t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, whole(w)->all, pb->work);
-  return chosen(pb, w, rc, t, g);
+  const double *v = y + m->nq, *z = v + m->nq;
+  double *all = whole(w)->all;
+  int rc = m->switch_grips ? m->switch_grips(m, t, y, v, z, pb->p, pb->u, all, pb->work) : 0;
+  for (int j = 0; j < w->n - m->nguides && m->switch_grips; j++) g[j] = all[switch_of(w, j)];
+  if (rc == 0 && m->nguides) rc = m->contact_laws(m, t, y, v, z, pb->p, pb->u, pb->rub, pb->work);
+  for (int k = 0; k < m->nguides; k++) {
+    double mu = pb->rub[3 * m->guides[k].tangent], hold = pb->rub[3 * m->ncontacts + 4 * k];
+    g[w->n - m->nguides + k] = mu > 0 ? hold / mu : 1;
+  }
+  return rc ? lag_step_refused(pb, rc, t) : 0;
 }
 
 int lag_joint_friction_fails(lag_problem *pb, double t, const lag_joint_friction *w, int j, const char *words) {
-  snprintf(pb->words, sizeof pb->words, "the dry friction of `%s` %s", pb->model->switches[switch_of(w, j)].text,
-           words);
+  const lag_contact *c = tangent_of(pb->model, w, j);
+  snprintf(pb->words, sizeof pb->words, "the dry friction of `%s` %s",
+           c ? pb->model->constraints->of[c->constraint].name : pb->model->switches[switch_of(w, j)].text, words);
   pb->detail = pb->words;
   return lag_step_failed(pb, LAG_EMETHOD, t);
 }

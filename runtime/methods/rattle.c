@@ -155,7 +155,7 @@ static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem 
     memcpy(a->dq, b->dq, bytes);
     for (int i = 0; i < nq; i++) a->dp[i] = b->dp[i] + b->impulse[i];
     for (int j = 0; j < length; j++) {
-      if ((rc = lag_substep(w, a, pb, t, y, dt, k + j, from, a->u + j * m, known)) != 0) return rc;
+      if ((rc = lag_substep(w, a, pb, &(Substep){k + j, t, dt, from, y}, a->u + j * m, known)) != 0) return rc;
       from += w->part[k + j];
     }
     known = 1;

@@ -43,6 +43,7 @@ static void compile_beside(void *data, int run) {
 /* Hands lag-run a library from the cache, or the program as bytes, compiled meanwhile. Returns a STATUS. */
 static int hand_over(Compiler *c, const Units *units, const Toolchain *tools, int compiles) {
   ModelLibrary m = {0};
+  if (c->o.no_gsl) process_set("LAG_NO_GSL", "1");
   if (compiles) {
     m = library_of(c, units, tools);
     const char *cached = toolchain_cached(c->arena, &m.tools, m.texts.at, m.texts.n);

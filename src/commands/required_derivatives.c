@@ -67,12 +67,14 @@ static unsigned required_by_choice(const Eqns *e, const Options *o) {
          (e->conserves_energy && !e->m->states.n ? 0u : WANT_LINEAR);
 }
 
-/* Whether a measure of the scene or of --measure contains the Lyapunov exponent, for which the run has a tangent. */
+/* Whether a measure of the scene or of --measure contains the Lyapunov exponent or MEGNO, for which runs have
+ * tangents. */
 static int measures_exponent(const Eqns *e) {
   int found = 0;
   const Measures *lists[] = {&e->m->scene.measures, &e->m->asked_measures};
   for (int k = 0; k < 2; k++)
-    for (uint32_t i = 0; i < lists[k]->n; i++) found |= strstr(lists[k]->at[i].text, "lyapunov()") != NULL;
+    for (uint32_t i = 0; i < lists[k]->n; i++)
+      found |= strstr(lists[k]->at[i].text, "lyapunov()") || strstr(lists[k]->at[i].text, "megno()");
   return found;
 }
 
@@ -95,6 +97,7 @@ unsigned derivatives_required(const Eqns *e, const Options *o) {
     const char *methods = options_passed(o, "--methods");
     return methods ? required_by_method(e, methods) | WANT_TAYLOR : required_by_all(e); /* taylor: for the reference */
   }
+  if (o->command == CMD_PAGE) return required_by_all(e);
   unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) |
                    required_by_choice(e, o) |
                    (o->command == CMD_FMU             ? fmu_wants()

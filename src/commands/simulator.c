@@ -27,7 +27,7 @@ static ModelChoice choice_of(const Compiler *c, const char *scene, int measures)
                        .given = c->given.at,
                        .ngiven = c->given.n,
                        .section = c->picture.section,
-                       .drawing = c->picture.drawing};
+                       .drawing = c->picture.drawing ? DRAWING_WANTED : DRAWING_NONE};
 }
 
 static Eqns *derive_asked(Compiler *c, const char *scene, int measures) {

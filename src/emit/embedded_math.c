@@ -8,7 +8,7 @@
 #include "emit/compensated_sum_kernel.h"
 #include "emit/composition_kernel.h"
 #include "emit/dense_output_kernel.h"
-#include "emit/discrete_lagrangian_kernel.h"
+#include "emit/galerkin_step_kernel.h"
 #include "emit/galerkin_rule_kernel.h"
 #include "emit/impulses_kernel.h"
 #include "emit/lag_kkt.h"             /* static const char *const NAME[]: and of runtime/include/NAME.h */
@@ -41,7 +41,7 @@ static const struct {
                 LINES(taylor_order_kernel), LINES(taylor_size_kernel), LINES(dense_output_kernel),
                 LINES(band_matrix_kernel), LINES(impulses_kernel), LINES(contact_step_kernel),
                 LINES(joint_friction_kernel), LINES(moreau_step_kernel), LINES(newton_kernel),
-                LINES(predictor_kernel), LINES(galerkin_rule_kernel), LINES(discrete_lagrangian_kernel),
+                LINES(predictor_kernel), LINES(galerkin_rule_kernel), LINES(galerkin_step_kernel),
                 LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";

@@ -81,6 +81,11 @@ static void contacts(const Unit *w) {
     word(w, c->input), word(w, c->constraint), word(w, c->impact), word(w, c->release), integer(w, c->is_tangent);
     word(w, c->force), integer(w, c->conditional), integer(w, c->law);
   }
+  word(w, program_set_guides(w->u));
+  for (uint32_t i = 0; i < w->u->contacts.n; i++) {
+    const IrContact *c = &w->u->contacts.at[i];
+    if (c->parts) word(w, i), word(w, c->parts), word(w, c->parts == 1 ? c->turn : UINT32_MAX);
+  }
   program(w, w->u->contact_laws);
 }
 

@@ -395,7 +395,8 @@ static void define_fixed(const Header *h, const HeaderMethod *m) {
   for (int with = 0; h->u->u.n && with < 2; with++) {
     line(h, "\n");
     write_prototype(h, arena_printf(h->a, "LAG_API %s", prototype(h, m, with)));
-    line(h, arena_printf(h->a, " {\n  return lag_%s(p, s, h, %s);\n}\n", inner, with ? "0, input, context" : "u, 0, 0"));
+    line(h, arena_printf(h->a, " {\n  return lag_%s(p, s, h, %s);\n}\n", inner,
+                         with ? "0, input, context" : "u, 0, 0"));
   }
 }
 

@@ -1,6 +1,6 @@
 /* Steps of an emitted header by the variational integrator. Enters: the unit's derivatives of L. Leaves: the memory
  * of the method, its prototypes and functions. Holds: each step has the digits of the runtime's, whose text it carries
- * (kernels/discrete_lagrangian.h, galerkin_rule.h, predictor.h); it has one rule and no constraints. */
+ * (kernels/galerkin_step.h, galerkin_rule.h, predictor.h); it has one rule and no constraints. */
 #include "emit/header_impl.h"
 
 static const char *const orders =

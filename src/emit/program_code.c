@@ -43,7 +43,7 @@ enum {
 
 enum {
 #define OP(name, operands, formula) TURN_##name,
-  PROGRAM_TURN_OPS(OP)
+  PROGRAM_TURN_OPS(OP, OP)
 #undef OP
 };
 
@@ -355,9 +355,8 @@ static uint32_t take(Coder *w, uint32_t n) {
 static void read(Coder *w, uint32_t array, uint32_t index, uint32_t at, uint32_t n) {
   uint32_t to = temporary(w);
   w->place[to] = at;
-  code_2(w, CODE_READ, array, index);
-  operand(w, to);
-  operand(w, n);
+  code_3(w, n == 1 ? CODE_READ_1 : n == 2 ? CODE_READ_2 : CODE_READ, array, index, to);
+  if (n > 2) operand(w, n);
 }
 
 static void place_constants(Coder *w) {
@@ -419,8 +418,8 @@ static void write_stores(Coder *w) {
       if (st[k + n].array != st[k].array || st[k + n].index != st[k].index + n ||
           w->place[st[k + n].slot] != w->place[st[k].slot] + n)
         break;
-    code_3(w, CODE_WRITE, st[k].array, st[k].index, st[k].slot);
-    operand(w, n);
+    code_3(w, n == 1 ? CODE_WRITE_1 : n == 2 ? CODE_WRITE_2 : CODE_WRITE, st[k].array, st[k].index, st[k].slot);
+    if (n > 2) operand(w, n);
   }
   code(w, CODE_END);
 }

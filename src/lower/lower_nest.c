@@ -32,7 +32,8 @@ static int array_index(const NestBuilder *b, const Subscript *at, Ins *load, IrS
     const Ins *x = &p->ins.at[arg_slot(b, k)];
     if (x->op != IR_LOAD || x->array != load->array || x->index != load->index + (k - least) / step * by) return 0;
   }
-  *index = (IrSubscript){load->index + (at->first - least) / step * by, at->by_row / step * by, at->by_turn / step * by};
+  *index =
+      (IrSubscript){load->index + (at->first - least) / step * by, at->by_row / step * by, at->by_turn / step * by};
   return 1;
 }
 
@@ -193,6 +194,7 @@ void lower_nest(Lower *l, Expr nest, const ExprList *list) {
   if (!cells.n || (!l->direct && lower_as_nest(&b, cells.at, cells.n))) return;
   Expr *sums = ARENA_ARRAY(l->p->arena, Expr, cells.n + 1);
   expr_expand_sums(g, cells.at, cells.n, sums);
+  expr_note_sums_out(g);
   lower_roots(l, sums, cells.n);
   for (uint32_t k = 0; k < cells.n; k++) expr_map_set(&l->slots, cells.at[k], lower_slot(l, sums[k]) + 1);
 }

@@ -441,7 +441,7 @@ void explain_dims(Builder *b, Dim x, Dim y);
 void fill_inferred_units(Builder *b);
 
 /* drawing.c: Scene.shapes and their outputs, the last of the scene; guessed where the text has no `draw`. wanted 0:
- * statements are checked, and leave nothing. */
+ * statements are checked, and leave nothing but nodes. */
 void build_drawing(Builder *b, int wanted);
 
 /* rotation.c */

@@ -186,10 +186,8 @@ static Expr slip_along(Builder *b, uint32_t from, uint32_t parts, Contact *t) {
   }
   for (uint32_t i = 0; i < n; i++) part[i] = expr_mul(g, along[i], vel_node(b, t->space[i]));
   Expr speed = expr_add_n(g, part, n), size = n == 2 ? norm_of(b, d[0], 2) : norm_of(b, along, n);
-  uint32_t kept = 0;
-  for (uint32_t i = 0; i < n; i++)
-    if (!expr_is_zero(g, t->normal[i])) t->normal[kept++] = t->normal[i];
-  t->parts = kept;
+  if (n == 2) t->normal[0] = expr_mul(g, size, multiplier_node(b, from)); /* the length of the gradient */
+  t->parts = n == 2 ? 1 : n;
   t->nspace = n;
   return expr_div(g, speed, size);
 }
@@ -233,9 +231,11 @@ static Expr slip_of(Builder *b, const AstStmt *st, Name effect, const Entity *of
   if (!v.e || !check_slip(b, st, id, &v, of ? &b->m->constraints.at[of->index] : NULL)) return 0;
   if (!of) *dim = v.dim;
   if (!v.n) return v.e;
-  diag_error(b->diags, ast_expr(b->ast, id)->span, "the slip of a guide is a number: the velocity along it" HELP
-             "on a surface in space it has two components: write two contacts, `z >= 0` and `-z >= 0`, with `slip = (x', "
-             "y')`, and take moreau");
+  diag_error(
+      b->diags, ast_expr(b->ast, id)->span,
+      "the slip of a guide is a number: the velocity along it" HELP
+      "on a surface in space it has two components: write two contacts, `z >= 0` and `-z >= 0`, with `slip = (x', "
+      "y')`, and take moreau");
   return 0;
 }
 

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "base/spline.h"
-#include "model/drawing.def"
+#include "model/shapes.def"
 #include "model/units.h"
 #include "sym/expr.h"
 #include "syntax/ast.h"
@@ -425,7 +425,7 @@ typedef struct {
   uint32_t ndefines;
   const CommandOutput *asked; /* outputs besides the scene's own */
   uint32_t nextra_outputs;
-  int drawing;     /* Scene.shapes are wanted; otherwise `draw` statements are only checked */
+  enum { DRAWING_NONE, DRAWING_WANTED, DRAWING_CHECKED } drawing; /* of Scene.shapes */
   const CommandOutput *measures; /* measures besides the scene's own */
   uint32_t nmeasures;
   const CommandInput *given; /* values that override the scene's */

@@ -166,7 +166,8 @@ static int read_text(Eval *ev, struct Quantified *q) {
     return 0;
   mark_index(ev, y->a, first, inside);
   mark_index(ev, y->b, first, inside);
-  q->range = (LoopRange){.rows = (uint32_t)(q->hi - q->lo + 1), .skew = q->from.by_i, .more = q->to.by_i - q->from.by_i};
+  q->range =
+      (LoopRange){.rows = (uint32_t)(q->hi - q->lo + 1), .skew = q->from.by_i, .more = q->to.by_i - q->from.by_i};
   q->range.turns = q->to.first - q->from.first + q->range.more * q->lo + 1;
   for (AstId k = last + 1; k-- > first;) {
     const AstExpr *n = ast_expr(ast, k);
@@ -196,18 +197,27 @@ static int tells_apart(const struct Quantified *q, const int64_t *pair) {
   return 1;
 }
 
-static int find_pairs(struct Quantified *q) {
+/* Two pairs of the last rows that differ in both indices. */
+static int find_pairs(struct Quantified *q, Arena *arena) {
   enum { TRIED = 12 };
-  int found = 0;
-  for (int64_t row = (int64_t)q->range.rows - 1; row >= 0 && row + TRIED >= (int64_t)q->range.rows; row--) {
+  VEC(int64_t) at = {0};
+  int64_t rows = (int64_t)q->range.rows;
+  for (int64_t row = rows - 1; row >= 0 && row + TRIED >= rows; row--) {
     int64_t i = q->lo + row, from = q->from.first + q->from.by_i * i, n = loop_turns(&q->range, row);
     for (int64_t k = 0; k < n && k < TRIED; k++) {
-      int64_t pair[2] = {i, from + k}, *first = q->pair[0];
-      if (!tells_apart(q, pair) || (found && (pair[0] == first[0] || pair[1] == first[1]))) continue;
-      memcpy(q->pair[found], pair, sizeof pair);
-      if (++found == REPRESENTATIVES) return 1;
+      int64_t pair[2] = {i, from + k};
+      if (!tells_apart(q, pair)) continue;
+      vec_push(arena, &at, pair[0]);
+      vec_push(arena, &at, pair[1]);
     }
   }
+  for (uint32_t x = 0; x < at.n; x += 2)
+    for (uint32_t y = 0; y < x; y += 2) {
+      if (at.at[x] == at.at[y] || at.at[x + 1] == at.at[y + 1]) continue;
+      memcpy(q->pair[0], at.at + y, sizeof q->pair[0]);
+      memcpy(q->pair[1], at.at + x, sizeof q->pair[1]);
+      return 1;
+    }
   return 0;
 }
 
@@ -218,6 +228,7 @@ typedef struct {
   const Model *m;
   const struct Quantified *q;
   Arena *arena;
+  Interner *names;
   VEC(Expr) args;
   VEC(NestRead) reads;
   VEC(Read) blocks; /* families whose members are arguments: all with one index */
@@ -276,6 +287,16 @@ static int is_plain(const Symbol *s) {
          !strchr(s->name, '[');
 }
 
+/* The parts of the name r[5].x around its indices, and these as functions of the turn. */
+static void name_read(const Arguments *a, const Read *r, Name name, NestRead *to) {
+  Interner *names = a->names;
+  const char *open = strchr(name, '['), *close = strchr(name, ']');
+  to->stem = intern(names, arena_strndup(a->arena, name, (size_t)(open - name)));
+  to->tail = intern(names, close + 1);
+  to->nindices = r->e->ndims;
+  for (uint32_t k = 0; k < r->e->ndims; k++) to->index[k] = in_turns(a->q, r->at[k]);
+}
+
 /* Makes the symbol an argument; 0: it is none. */
 static int add_symbol(Arguments *a, Expr node) {
   const Symbol *s = expr_sym_of(a->g, node);
@@ -295,7 +316,9 @@ static int add_symbol(Arguments *a, Expr node) {
   } else {
     vec_push(a->arena, &a->args, node);
   }
-  vec_push(a->arena, &a->reads, ((NestRead){id, at}));
+  NestRead read = {.symbol = id, .at = at};
+  if (r) name_read(a, r, s->name, &read);
+  vec_push(a->arena, &a->reads, read);
   return 1;
 }
 
@@ -328,7 +351,9 @@ static Expr sum_over(const Arguments *a, LoopRange range, Expr body) {
   NestShare *share = ARENA_NEW(a->arena, NestShare);
   share->value = body;
   SumNest s = {.range = range, .reads = a->reads.at, .nreads = a->reads.n, .shares = share, .nshares = 1,
-               .nargs = a->args.n};
+               .nargs = a->args.n, .i = a->q->i, .j = a->q->j, .i0 = a->q->lo,
+               .j0 = a->q->from.first + a->q->from.by_i*a->q->lo, .row = a->q->pair[0][0] - a->q->lo,
+               .turn = a->q->pair[0][1] - a->q->from.first - a->q->from.by_i*a->q->lo};
   return expr_sum_cell(a->g, &s, a->args.at, 0);
 }
 
@@ -336,14 +361,15 @@ static Expr sum_over(const Arguments *a, LoopRange range, Expr body) {
 static Expr component_sum(Eval *ev, const struct Quantified *q, uint32_t c) {
   Builder *b = ev->b;
   ExprGraph *g = b->g;
-  Arguments a = {.g = g, .m = b->m, .q = q, .arena = b->arena};
+  Arguments a = {.g = g, .m = b->m, .q = q, .arena = b->arena, .names = b->ast->names};
   const Value *body = q->body, *whole = q->whole;
   uint32_t n = component_count(&body[0]);
   if (n != component_count(&whole[0])) return 0; /* the vector inside became a number */
   Expr inside = expr_symbol(g, q->inside[c])->node, factor = expr_diff(g, whole[0].at[c], q->inside[c]), back;
   Expr alone = expr_mul(g, factor, inside), turned[REPRESENTATIVES];
   if (alone != whole[0].at[c]) return 0;
-  for (int k = 0; k < REPRESENTATIVES; k++) expr_replace_nodes(g, &whole[k].at[c], 1, &inside, &body[k].at[c], 1, &turned[k]);
+  for (int k = 0; k < REPRESENTATIVES; k++)
+    expr_replace_nodes(g, &whole[k].at[c], 1, &inside, &body[k].at[c], 1, &turned[k]);
   back = expr_mul(g, factor, body[0].at[c]);
   if (back != turned[0] || !find_arguments(&a, turned[0]) || !same_for_both(&a, turned[0], turned[1])) return 0;
   return expr_is_zero(g, turned[0]) ? turned[0] : sum_over(&a, q->range, turned[0]);
@@ -368,7 +394,7 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   if (!read_text(ev, q)) return 0;
   uint64_t pairs = 0;
   for (uint32_t row = 0; row < q->range.rows; row++) pairs += (uint64_t)loop_turns(&q->range, row);
-  if (pairs < b->sums_from || !find_pairs(q)) return 0;
+  if (pairs < b->sums_from || !find_pairs(q, b->arena)) return 0;
   for (int k = 0; k < COMPONENTS; k++) q->inside[k] = expr_declare(b->g, SYM_LOCAL, 0, x->name, SIGN_UNKNOWN);
   ev->sums = q;
   vec_push(b->arena, &ev->loops, ((Loop){id, q->pair[0][0], q->pair[0][0], ev->terms.n}));

@@ -97,6 +97,7 @@ static void prepare_sums(ExprGraph *g, const Expr *roots, uint32_t n, Expr *out)
     if (is_only_cell(g, l.at[k])) make_gradient(g, expr_nest_number(g, expr_cell_nest(g, l.at[k])));
     else vec_push(g->arena, &several, l.at[k]);
   }
+  g->writes_sums_out |= several.n > 0;
   expr_write_out(g, roots, n, several.at, several.n, out);
 }
 

@@ -32,6 +32,7 @@ ExprGraph *expr_graph(Arena *a, Interner *names) {
 Arena *expr_arena(const ExprGraph *g) { return g->arena; }
 uint32_t expr_count(const ExprGraph *g) { return g->nodes.n - 1; }
 int expr_writes_sums_out(const ExprGraph *g) { return g->writes_sums_out; }
+void expr_note_sums_out(ExprGraph *g) { g->writes_sums_out = 1; }
 
 /* --- hash-consing --- */
 

@@ -77,6 +77,9 @@ typedef struct ExprGraph ExprGraph;
 typedef struct {
   SymId symbol;
   Subscript at;
+  Name stem, tail;    /* of r[i].x: "r" and ".x"; NULL: a name without index */
+  uint32_t nindices;
+  Subscript index[2]; /* values of the indices */
 } NestRead;
 
 /* A value of the body, and the sum to which each turn adds it. */
@@ -90,13 +93,18 @@ typedef struct {
   const NestRead *reads;
   const NestShare *shares;
   uint32_t nreads, nshares, nargs;
+  Name i, j;         /* indices in the text: i is i0 in row 0, j is j0 in turn 0 */
+  int64_t i0, j0;
+  int64_t row, turn; /* the turn whose arguments are the body's symbols themselves */
   uint32_t gradient; /* nest of the partial derivatives; 0: not made yet */
 } SumNest;
 
 ExprGraph *expr_graph(Arena *a, Interner *names);
 Arena *expr_arena(const ExprGraph *g);
 uint32_t expr_count(const ExprGraph *g); /* ids are 1 .. count */
-int expr_writes_sums_out(const ExprGraph *g); /* a quantified sum has been written out, for whatever purpose */
+/* Whether quantified sums have been written out, but for proofs; expr_note_sums_out: now they are. */
+int expr_writes_sums_out(const ExprGraph *g);
+void expr_note_sums_out(ExprGraph *g);
 
 /* --- leaves --- */
 Expr expr_num(ExprGraph *g, Num n);

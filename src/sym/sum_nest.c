@@ -84,7 +84,6 @@ void expr_write_out(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *cel
   if (n && out != roots) memcpy(out, roots, n * sizeof *roots);
   for (uint32_t k = 0; k < ncells; k++) sums[k] = written_out(g, cells[k]);
   if (ncells) expr_replace_nodes(g, roots, n, cells, sums, ncells, out);
-  g->writes_sums_out |= ncells > 0;
 }
 
 void expr_expand_sums(ExprGraph *g, const Expr *roots, uint32_t n, Expr *out) {
@@ -93,4 +92,15 @@ void expr_expand_sums(ExprGraph *g, const Expr *roots, uint32_t n, Expr *out) {
   for (uint32_t k = 0; k < l.n; k++)
     if (expr_op(g, l.at[k]) == EX_CELL) vec_push(g->arena, &cells, l.at[k]);
   expr_write_out(g, roots, n, cells.at, cells.n, out);
+}
+
+int expr_open_sums(ExprGraph *g, Expr *e) {
+  enum { MOST_TURNS = 50000 };
+  uint64_t turns = 0;
+  ExprList l = g->nests.n ? expr_topo_to_sums(g, e, 1) : (ExprList){0};
+  for (uint32_t k = 0; k < l.n; k++)
+    if (expr_op(g, l.at[k]) == EX_NEST) turns += expr_sum_turns(g, l.at[k]);
+  if (turns > MOST_TURNS) return 0;
+  if (turns) expr_expand_sums(g, e, 1, e);
+  return 1;
 }

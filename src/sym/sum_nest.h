@@ -28,5 +28,26 @@ uint64_t expr_sum_turns(const ExprGraph *g, Expr nest);
 /* out[i] = roots[i] with all cells written out as sums. */
 void expr_expand_sums(ExprGraph *g, const Expr *roots, uint32_t n, Expr *out);
 
+/* Writes out the sums of *e; 0: they have too many terms for a proof or a reader. */
+int expr_open_sums(ExprGraph *g, Expr *e);
+
 /* The same for the cells of a list. */
 void expr_write_out(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *cells, uint32_t ncells, Expr *out);
+
+/* sum_gather.c: the body whose sum over all turns is what the cells of one nest contribute to the sum e, linear in
+ * them; *rest: the other terms. 0: e has no cells, or their factors differ from turn to turn. */
+Expr expr_gather_sum(ExprGraph *g, Expr e, Expr *rest);
+
+/* sum_terms.c: a cell as a person writes it: a sum over i and j, or for a derivative the sums over the index that is
+ * left; the body is in symbols that have the names r[i].x. */
+typedef struct {
+  int minus;
+  const char *index[2], *from[2], *to[2]; /* index NULL: no (second) sum */
+  Expr body;
+} SumTerm;
+
+typedef struct {
+  const SumTerm *at;
+  uint32_t n;
+} SumTerms;
+SumTerms expr_sum_terms(ExprGraph *g, Expr cell);

@@ -28,9 +28,16 @@ check "$title: rows" awk -F, 'NR == 1 { ok = $1 == "w [rad/s]" && $3 == "kind" &
 check "$title: picture" grep -q '<svg' "$TMP/bead.svg"
 # Lorenz (1963): rolls begin at rho = 1, and lose stability by Hopf at sigma (sigma + beta + 3)/(sigma - beta - 1) = 470/19
 follow models/lorenz.lag x=0 y=0 z=0 rho=0.5..26 --branches
-kinds "branch point;end;end;Hopf;end;Hopf;end;"
+kinds "branch point;end;end;Hopf;end;Hopf;end;end;end;"
 close 1 parameter 1 1e-10
 close 4 parameter 24.7368421052631579 1e-9
+# Hopf's normal form: at the end of the range, lam = 0.25, a circle of radius 0.5, period 2 pi, multiplier exp(-pi)
+follow $dir/hopf.lag lam=-1..0.25 --branches
+kinds "Hopf;end;end;end;"
+close 1 parameter 0 1e-12
+close 4 period 6.28318530717959 1e-11
+near "$title: radius" 1e-11 0.5 "$(sed -n '4s/.*"x": \([^,]*\), "y": \([^}]*\)}.*/\1 \2/p' "$TMP/points" | awk '{ printf "%.17g", sqrt($1*$1 + $2*$2) }')"
+near "$title: multiplier" 1e-10 0.0432139182637723 "$(sed -n '4s/.*"multipliers": \[\[\([^,]*\),.*/\1/p' "$TMP/points")"
 # parametric resonance with friction: a multiplier of -1 at a = 0.2001..., by SciPy's DOP853 at 1e-13 and Brent's method; the motions of twice the period
 follow $dir/oscillator.lag parametric a=0.05..0.3
 kinds "period doubling;end;end;"
@@ -54,9 +61,14 @@ long() {
   near "$title: 6 E" 5e-7 0.986709 "$(of_point 4 parameter | awk '{ printf "%.12g", 6*$1 }')"
   # M. Garcia et al. (1998): the walker's gait doubles at a slope of 0.0151; its motions of two steps at 0.0177
   follow $dir/walker.lag slope=0.008..0.018 --guess 3.88 --branches
-  kinds "period doubling;end;end;period doubling;end;period doubling;end;"
+  kinds "period doubling;end;end;period doubling;end;end;"
   close 1 parameter 0.0151 5e-5
   close 4 parameter 0.0177 5e-5
+  # J. R. Taylor, Classical Mechanics, 12.5: the driven pendulum's period doubles at 1.0663, 1.0793, 1.0821, 1.0827; M. Feigenbaum's ratio 4.6692
+  follow models/driven_damped_pendulum.lag taylor drive.gamma=1.06..1.085 th=-0.56 "th'=18.2" --branches
+  sed -n 's/.*"period doubling", "parameter": \([^,]*\),.*/\1/p' "$TMP/points" >"$TMP/doublings"
+  is "$title: doublings" "1.0664 1.0793 1.0821 1.0827 " "$(head -4 "$TMP/doublings" | awk '{ printf "%.4f ", $1 }')"
+  near "$title: ratio" 0.01 4.6692 "$(awk '{ x[NR] = $1 } END { print (x[4] - x[3])/(x[5] - x[4]) }' "$TMP/doublings")"
 }
 slow long
 

@@ -329,6 +329,16 @@ check "an impact turns the slip round" run bump s --method 'moreau(step=0.01)'
 check "once" near "$(number impacts)" 1 0
 check "nor then does friction bring energy in" awk -F, 'NR > 2 && $4 > was + 1e-12 { print; bad = 1 } { was = $4 } END { exit bad }' "$TMP/csv"
 check "momentum is what friction leaves, 1 N before and -1 N behind, to the step" near "$(calc "$(final "x'") + 3*($(final "y'"))")" "$(calc '2 - 0.0635 + (0.5 - 0.0635)')" 0.02
+model held <<'END_OF'
+model held
+coord a [m]
+kinetic = 1 [kg]/2*a'^2
+force a = 0.9 [N] + 0.5 [N/s]*t
+friction rub on a: 0.8 [N], static = 1.2 [N]
+scene s { span 1 [s]; output a }
+END_OF
+check "energy that is rounding of what friction holds is none to lose" run held s --method $m3
+check "it breaks loose at 0.6 s" near "$(final "a'")" 0.2 1e-3
 model rubs <<'END_OF'
 model rubs
 coord x [m], y [m]

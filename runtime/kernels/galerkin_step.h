@@ -1,4 +1,4 @@
-/* discrete_lagrangian.h: one step of a discrete Lagrangian: its equations, and Newton's method for them. Enters: q, p
+/* galerkin_step.h: one step of a discrete Lagrangian: its equations, and Newton's method for them. Enters: q, p
  * and a guess; leaves: the velocities inside the step, and the forces at its points. Holds: all derivatives are exact.
  *
  * A step of length h from (q, p) at t, by a rule. With L_i = L(t + c_i h, Q_i, V_i), F = dL/dq + Q and the free
@@ -20,8 +20,8 @@
  *   LAG_NEWTON_LEAVES(d, w, status)  of a state behind a correction at which the model returned `status`,
  *   LAG_NEWTON_SINGULAR(d, w)        of a singular matrix,
  *   LAG_NEWTON_FAILS(d, w)           of too many corrections */
-#ifndef LAG_DISCRETE_LAGRANGIAN_H
-#define LAG_DISCRETE_LAGRANGIAN_H
+#ifndef LAG_GALERKIN_STEP_H
+#define LAG_GALERKIN_STEP_H
 
 #include "kernels/band_matrix.h"
 #include "kernels/galerkin_rule.h"
