@@ -1,6 +1,6 @@
-/* A fit of several scenes to the same data: which effects do the data call for. Enters: scenes with other effects; leaves:
- * how well each fits for the number of values it takes, by Akaike's and the Bayesian criterion, and an F test against
- * the scene with the fewest. */
+/* A fit of several scenes to the same data: which effects do the data call for. Enters: scenes with other effects;
+ * leaves: how well each fits for the number of values it takes, by Akaike's and the Bayesian criterion, and an F test
+ * against the scene with the fewest. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

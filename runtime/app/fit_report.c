@@ -177,6 +177,30 @@ void lag_fit_report(const FitRun *r, FILE *out) {
   put_scene(r, out);
 }
 
+static void correlations_json(const Fit *f, Json *j) {
+  lag_json_begin(j, "correlations", '[');
+  for (int i = 0; i < f->n; i++) {
+    lag_json_begin(j, NULL, '[');
+    for (int k = 0; k < f->n; k++) lag_json_number(j, NULL, f->correlation[i * f->n + k]);
+    lag_json_end(j, ']');
+  }
+  lag_json_end(j, ']');
+}
+
+static void columns_json(const Fit *f, Json *j) {
+  lag_json_begin(j, "columns", '{');
+  for (int c = 0; c < f->ncolumns; c++) {
+    lag_json_begin(j, f->column[c].label, '{');
+    lag_json_count(j, "values", f->column[c].n);
+    lag_json_number(j, "rms", f->column[c].rms);
+    lag_json_count(j, "runs", f->column[c].runs);
+    lag_json_number(j, "runs_expected", f->column[c].runs_expected);
+    lag_json_number(j, "runs_chance", f->column[c].runs_chance);
+    lag_json_end(j, '}');
+  }
+  lag_json_end(j, '}');
+}
+
 void lag_fit_report_json(const FitRun *r, FILE *out) {
   const Fit *f = &r->fit;
   Json j = {out, 0};
@@ -193,13 +217,7 @@ void lag_fit_report_json(const FitRun *r, FILE *out) {
       lag_json_number(&j, f->target[i].label, what ? f->target[i].error : f->target[i].value);
     lag_json_end(&j, '}');
   }
-  lag_json_begin(&j, "correlations", '[');
-  for (int i = 0; i < f->n; i++) {
-    lag_json_begin(&j, NULL, '[');
-    for (int k = 0; k < f->n; k++) lag_json_number(&j, NULL, f->correlation[i * f->n + k]);
-    lag_json_end(&j, ']');
-  }
-  lag_json_end(&j, ']');
+  correlations_json(f, &j);
   lag_json_begin(&j, "flat", '[');
   for (int k = 0; k < f->nflat; k++) {
     lag_json_begin(&j, NULL, '{');
@@ -214,17 +232,7 @@ void lag_fit_report_json(const FitRun *r, FILE *out) {
   lag_json_end(&j, ']');
   lag_json_number(&j, "chi_squared", f->chi_squared);
   lag_json_number(&j, "freedom", f->freedom);
-  lag_json_begin(&j, "columns", '{');
-  for (int c = 0; c < f->ncolumns; c++) {
-    lag_json_begin(&j, f->column[c].label, '{');
-    lag_json_count(&j, "values", f->column[c].n);
-    lag_json_number(&j, "rms", f->column[c].rms);
-    lag_json_count(&j, "runs", f->column[c].runs);
-    lag_json_number(&j, "runs_expected", f->column[c].runs_expected);
-    lag_json_number(&j, "runs_chance", f->column[c].runs_chance);
-    lag_json_end(&j, '}');
-  }
-  lag_json_end(&j, '}');
+  columns_json(f, &j);
   lag_json_end(&j, '}');
   putc('\n', out);
 }

@@ -151,7 +151,8 @@ static int by_parameters(lag_problem *pb, const lag_parameter_columns *by, doubl
   int n = pb->n, nq = pb->nq, width = n + by->n, rc = LAG_OK;
   const double *a = w->rate + nq, *v = y + nq, *z = v + nq;
   if (of && of->n) rc = of->eval(of, t, y, v, z, pb->p, pb->u, a, w->part, w->mass, pb->work);
-  for (const lag_parameter_term *k = by->term; k < by->term + by->nterms; k++) dr[k->to] += k->factor * w->part[k->from];
+  for (const lag_parameter_term *k = by->term; k < by->term + by->nterms; k++)
+    dr[k->to] += k->factor * w->part[k->from];
   if (rc == LAG_OK && in && pb->model->inputs)
     rc = in->eval(in, t, y, v, z, pb->p, pb->u, a, w->part, w->mass, pb->work);
   for (int j = 0; j < by->n && in && pb->model->inputs && rc == LAG_OK; j++) {

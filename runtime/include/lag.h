@@ -70,7 +70,8 @@ typedef struct lag_contact_stats {
   double work, rubbed, due, from, length;
 } lag_contact_stats;
 
-/* Adds `factor` times derivative `from` of lag_linear.by_params to element `to` of a Jacobian with columns by parameters. */
+/* Adds `factor` times derivative `from` of lag_linear.by_params to element `to` of a Jacobian with columns by
+ * parameters. */
 typedef struct lag_parameter_term {
   int from, to;
   double factor;
