@@ -355,7 +355,7 @@ static size_t csv_field(Arena *a, const char *s, const char **text) {
 
 /* Whether --columns names the column, or is not given. */
 static int is_column_asked(const Options *o, const char *label, size_t length) {
-  const char *list = o->columns;
+  const char *list = options_passed(o, "--columns");
   if (!list) return 1;
   while (*list) {
     size_t n = strcspn(list, ",");
