@@ -102,7 +102,7 @@ SHARED   := action_integral consistent_state magnitudes option_range quadrature
 NOT_HERE := $(if $(WINDOWS),%/process.c %/clock.c %/threads.c,%windows.c)
 LAGC_SRC := $(filter-out src/main.c $(NOT_HERE),$(wildcard src/*.c src/*/*.c))
 GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c toolchain/outfile.c $(if $(WINDOWS),base/windows.c) $(SHARED:%=numeric/%.c))
-RT_SRC   := $(filter-out runtime/gsl/% runtime/png/% runtime/hdf5/% runtime/mpi/% runtime/matlab/% $(NOT_HERE),$(wildcard runtime/*/*.c))
+RT_SRC   := $(filter-out runtime/gsl/% runtime/png/% runtime/hdf5/% runtime/mpi/% runtime/matlab/% runtime/page/% runtime/evaluator/lag_run.c $(NOT_HERE),$(wildcard runtime/*/*.c))
 GSL_SRC  := $(wildcard runtime/gsl/*.c)
 
 LAGC_OBJ := $(LAGC_SRC:%.c=$(BUILD)/obj/%.o) $(GEN_SRC:$(BUILD)/gen/%.c=$(BUILD)/obj/gen/%.o)
@@ -116,7 +116,7 @@ DYNAMIC ?= $(ELF_FOUND)
 LIBLAG_SO = $(if $(DYNAMIC),$(BUILD)/liblag.so.$(SOVERSION))
 
 # Libraries of other precisions are kept up to date once they are there.
-all: $(BUILD)/lagc$(EXE) $(LIBLAG) $(wildcard $(LIBLAG_MORE))
+all: $(BUILD)/lagc$(EXE) $(LIBLAG) $(BUILD)/lag-run$(EXE) $(wildcard $(LIBLAG_MORE))
 # The runtime for long double and quad takes as long to build as all the rest.
 precisions: $(LIBLAG_MORE)
 install: $(LIBLAG_SO)
@@ -136,6 +136,11 @@ $(BUILD)/liblagc.a: $(LAGC_OBJ)
 $(BUILD)/liblag.a: $(RT_OBJ)
 	$(ARCHIVE) $^
 	$(INDEX)
+# The simulator that evaluates models, as `lagc run` begins: it needs no compiler.
+$(BUILD)/obj/runtime/evaluator/lag_run.o: RT_FLAGS += $(if $(GSL),-DLAG_WITH_GSL)
+$(BUILD)/obj/runtime/evaluator/lag_run.o: $(CONFIG)
+$(BUILD)/lag-run$(EXE): $(BUILD)/obj/runtime/evaluator/lag_run.o $(if $(GSL),$(BUILD)/liblag_gsl.a) $(BUILD)/liblag.a
+	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) $(if $(WINDOWS),-static,-rdynamic) -o $@ $^ $(GSL_LIBS) -lm $(if $(WINDOWS),,-ldl)
 # References within it are bound to its own functions.
 $(BUILD)/liblag.so.%: $(RT_OBJ) runtime/liblag.map
 	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) -shared -Wl,-soname,$(@F) -Wl,--version-script=runtime/liblag.map -Wl,-Bsymbolic -o $@ $(RT_OBJ) -lm
@@ -185,10 +190,13 @@ REAL_quad := -std=gnu11 -include quadmath.h -DLAG_REAL=__float128 '-DLAG_OF_REAL
 DIGITS_long := $(if $(filter long,$(PRECISIONS)),$(LONG_DIGITS))
 DIGITS_quad := 36
 RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
-TABLES   := $(BUILD)/gen/app/options.def $(BUILD)/gen/numeric/functions.def $(BUILD)/gen/kernels/steppers.def
+TABLES   := $(BUILD)/gen/app/options.def $(BUILD)/gen/numeric/functions.def $(BUILD)/gen/numeric/program_code.def $(BUILD)/gen/kernels/steppers.def
 API_HEAD := lag.h lag_libraries.h lag_model.h
 # Of every scalar; emitted C includes them.
 ANY_HEAD := lag_lanes.h lag_math.h lag_sincos.h lag_support.h lag_kkt.h
+
+# Bytes are evaluated in doubles.
+REAL_SRC := $(filter-out runtime/evaluator/%,$(RT_SRC))
 
 define precision_rules
 $(BUILD)/gen/$(1)/%: runtime/% runtime/precision.awk
@@ -204,12 +212,12 @@ $(ANY_HEAD:%=$(BUILD)/lag-$(1)/%): $(BUILD)/lag-$(1)/%.h: runtime/include/%.h
 $(BUILD)/obj/$(1)/%.o: $(BUILD)/gen/$(1)/%.c $(RT_HEAD:%=$(BUILD)/gen/$(1)/%) | $(BUILD)/gen/io/page.h $(TABLES)
 	@mkdir -p $$(@D)
 	$$(CCACHE) $$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(PIC) $$(CFLAGS) $$(SAFE) -c -o $$@ $$<
-$(BUILD)/liblag_$(1).a: $(RT_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%) $(ANY_HEAD:%=$(BUILD)/lag-$(1)/%)
+$(BUILD)/liblag_$(1).a: $(REAL_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%) $(ANY_HEAD:%=$(BUILD)/lag-$(1)/%)
 	$$(ARCHIVE) $$(filter %.o,$$^)
 	$$(INDEX)
 endef
 $(foreach p,$(PRECISIONS),$(eval $(call precision_rules,$(p))))
-.SECONDARY: $(foreach p,$(PRECISIONS),$(RT_HEAD:%=$(BUILD)/gen/$(p)/%) $(RT_SRC:runtime/%=$(BUILD)/gen/$(p)/%))
+.SECONDARY: $(foreach p,$(PRECISIONS),$(RT_HEAD:%=$(BUILD)/gen/$(p)/%) $(REAL_SRC:runtime/%=$(BUILD)/gen/$(p)/%))
 
 SHELLS := bash zsh fish
 # Texts as C, in the order of their lines: `static const char *const NAME[]`, with the name of the file that they become.
@@ -269,14 +277,14 @@ $(BUILD)/obj/src/toolchain/toolchain.o: SRC_FLAGS += '-DLAGC_LIBDIR="$(LIB_FROM_
 $(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/fmu/zip.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
 $(BUILD)/obj/src/emit/embedded_math.o: $(patsubst %,$(BUILD)/gen/emit/lag_%.h,lanes math sincos support kkt) $(patsubst runtime/kernels/%.h,$(BUILD)/gen/emit/%_kernel.h,$(wildcard runtime/kernels/*.h))
-$(BUILD)/obj/src/toolchain/toolchain.o: $(BUILD)/gen/toolchain/probe_text.h
+$(BUILD)/obj/src/toolchain/compiler_probe.o: $(BUILD)/gen/toolchain/probe_text.h
 $(BUILD)/obj/src/fmu/fmu_archive.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimulation fmi2 fmi3)
 $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,language python readme tutorial)
 $(BUILD)/obj/src/commands/verify.o: $(BUILD)/gen/commands/verify_driver.h
 $(BUILD)/obj/src/commands/man_page.o: $(BUILD)/gen/commands/man_frame.h
 $(BUILD)/obj/src/commands/completion.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
 $(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(TABLES) $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(patsubst %,$(BUILD)/gen/numeric/%.h,edit_distance fnv1a)
-$(patsubst %,$(BUILD)/obj/src/%.o,toolchain/files commands/build commands/command_line commands/cost_reference) $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
+$(patsubst %,$(BUILD)/obj/src/%.o,toolchain/files toolchain/simulator_cache commands/build commands/command_line commands/cost_reference) $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
 $(BUILD)/obj/gen/toolchain/outfile.o $(BUILD)/obj/gen/base/windows.o: | $(BUILD)/gen/base/posix.h
 # Generated code is not ours to warn about.
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
@@ -303,7 +311,7 @@ run-demo: all
 gallery: all precisions
 	@sed -n 's|^Drawn by `build/lagc \(.*\)`:$$|$(BUILD)/lagc \1 --quiet|p' models/README.md | sh -e
 
-include tests/tests.mk .ci/install.mk
+include tests/tests.mk .ci/install.mk .ci/page.mk
 
 # ---- the rest ---------------------------------------------------------------------------------------
 clean:
@@ -343,4 +351,4 @@ ifneq ($(BUILDS),)
 endif
 
 FORCE:
-.PHONY: FORCE all demo run-demo precisions gallery test check-quick test-long test-all bless hard bench cost-report build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall dist clean help
+.PHONY: FORCE all page demo run-demo precisions gallery test check-quick test-long test-all bless hard bench cost-report build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall dist clean help

@@ -68,16 +68,20 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %token MODEL "model" INCLUDE "include" COORD "coord" MOMENTUM "momentum" PARAM "param" CONST "const" INPUT "input" STATE "state"
 %token LET "let" FUNCTION "function" HAMILTONIAN "hamiltonian" LAGRANGIAN "lagrangian" KINETIC "kinetic" POTENTIAL "potential"
 %token DISSIPATION "dissipation" FORCE "force" FRICTION "friction" FLOW "flow" CONSTRAINT "constraint" SYMMETRY "symmetry" CANONICAL "canonical"
-%token EXPECT "expect" EVENT "event" KICK "kick" CONTACT "contact" OBSERVE "observe" FOR "for" EFFECT "effect"
+%token EXPECT "expect" EVENT "event" KICK "kick" CONTACT "contact" GUIDE "guide" OBSERVE "observe" DRAW "draw" FOR "for"
+%token EFFECT "effect"
 %token REQUIRES "requires" EXCLUDES "excludes" SCENE "scene" START "start" EXACT "exact" USE "use"
 %token SPAN "span" METHOD "method" TOLERANCE "tolerance" OUTPUT "output" MONITOR "monitor" MEASURE "measure" LIKE "like"
 %token STOP "stop" PERIODIC "periodic" RISING "rising" FALLING "falling" CROSSING "crossing"
 %token ON "on" OF "of" STATIC "static" RESTITUTION "restitution" SLIP "slip" TANGENTIAL "tangential" LAW "law" EXACTLY "exactly" EVERY "every" WHILE "while"
+%token <ident> SHAPE CLAUSE
 
 %type <stmts> stmts block stmt coords momenta params consts inputs states lets observed requires excludes assigns maps items
 %type <stmts> options options_opt uses monitors
 %type <one> single coord momentum param const input_ state let observable item map map_item each required excluded
 %type <one> assign option use monitor
+%type <list> drawn clauses several
+%type <id> clause
 %type <list> rubbing laws dims indices places_bound exprs args names variables
 %type <id> window
 %type <id> happening expr arith primary reach place moved bound value comparison every number literal declared gap law tuple condition
@@ -147,6 +151,7 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "event" IDENT[n] dims[d] ":" arith[g] direction[w] block[b] { $$ = stmt_event(ast, @$, $n, $d, $g, $w, $b); }
       | "kick" IDENT[n] dims[d] "every" arith[T] block[b] { $$ = stmt_event(ast, @$, $n, $d, $T, AT_EQUAL_TIMES, $b); }
       | "contact" IDENT[n] dims[d] ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
+      | "guide" IDENT[n] dims[d] ":" arith[a] "=" expr[b] laws[r] { $$ = stmt_guide(ast, @$, $n, $d, $a, $b, $r); }
       | "for" IDENT[i] "in" arith[lo] ".." arith[hi] block[b] { $$ = stmt_for(ast, @$, $i, $lo, $hi, $b); }
       | "effect" IDENT[n] doc[d] block[b]       { $$ = stmt_titled(ast, STMT_EFFECT, @$, $n, $d, $b); }
       | "scene" IDENT[n] doc[d] block[b]        { $$ = stmt_titled(ast, STMT_SCENE, @$, $n, $d, $b); }
@@ -155,6 +160,9 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "tolerance" arith[e]                    { $$ = stmt_value(ast, STMT_TOLERANCE, @$, $e); }
       | "output" exprs[l] every[e]              { $$ = stmt_output(ast, @$, $l, $e); }
       | "measure" IDENT[n] "=" expr[e]          { $$ = stmt_measure(ast, @$, $n, $e); }
+      | "draw" SHAPE[k] drawn[d] clauses[c]     { $$ = stmt_draw(ast, @$, $k, $d, 0, 0, $c); }
+      | "draw" SHAPE[k] drawn[d] value[e] clauses[c] { $$ = stmt_draw(ast, @$, $k, $d, $e, 0, $c); }
+      | "draw" SHAPE[k] drawn[d] IDENT[n] "=" expr[e] clauses[c] { $$ = stmt_draw(ast, @$, $k, $d, ast_name(ast, $n), $e, $c); }
       | "like" IDENT[n]                         { $$ = stmt_name(ast, STMT_LIKE, @$, $n); }
       | "stop"                                  { $$ = stmt_plain(ast, STMT_STOP, @$); }
       | moved[p] "=" value[v]                   { $$ = stmt_pair(ast, STMT_SET, @$, $p, $v); }
@@ -213,6 +221,21 @@ excludes: excluded[x]                 { $$ = stmts_one($x); }
         | excludes[l] "," excluded[x] { $$ = stmts_add($l, $x); }
         ;
 excluded: IDENT[n] { $$ = stmt_name(ast, STMT_EXCLUDES, @$, $n); };
+
+/* ---- drawings ---- */
+
+drawn: %empty                     { $$ = NONE_LIST; }
+     | "[" places_bound[l] "]"    { $$ = $l; }
+     ;
+clauses: %empty { $$ = NONE_LIST; }
+       | several
+       ;
+several: clause[x]              { $$ = ast_list($x); }
+       | several[l] clause[x]   { $$ = ast_list_add(ast, $l, $x); }
+       ;
+clause: CLAUSE[w] expr[e] { $$ = ast_option(ast, @$, $w.name, $e); }
+      | CLAUSE[w] IDENT[i] "in" arith[lo] ".." arith[hi] { $$ = ast_option(ast, @$, $w.name, ast_bind(ast, @$, $i, $lo, $hi)); }
+      ;
 
 /* ---- symmetries: maps after `for ...:` belong to it, up to the next `for` ---- */
 

@@ -1,7 +1,7 @@
 /* lagc: reads the command line, compiles, and exits.
  *
  *   text --parse--> Ast --model_build--> Model --equations_of--> Eqns --unit_new--> ProgramSet --emit--> C
- *        compiler_read     compiler_derive                       compiler_lower_scene
+ *        compiler_parse    compiler_derive                       compiler_lower_scene
  *
  * These stages stand in commands/compiler.c; what a command does with them, in commands/NAME.c.
  * Exit status: 0 ok, 1 bad model, 2 usage or files, 3 the run failed (a simulator's status). */
@@ -12,6 +12,7 @@
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 #include "commands/check_json.h"
 #include "commands/commands.h"
+#include "commands/known_run.h"
 #include "syntax/parse.h"
 #include "toolchain/gallery.h"
 
@@ -32,12 +33,16 @@ static int do_command(Compiler *c) {
     case CMD_EMIT: return command_emit(c);
     case CMD_HEADER: return command_header(c);
     case CMD_FMU: return command_fmu(c);
+    case CMD_PAGE: return command_page(c);
     case CMD_BUILD: return command_build(c);
     case CMD_RUN:
     case CMD_PLOT:
     case CMD_ANIMATE:
     case CMD_MODES:
+    case CMD_ORBIT:
+    case CMD_CONTINUE:
     case CMD_LYAPUNOV:
+    case CMD_FIT:
     case CMD_COST:
     case CMD_SWEEP: return command_run(c);
     case CMD_EFFECTS: return command_effects(c);
@@ -66,7 +71,10 @@ static int compile(Compiler *c) {
   c->sources->library = gallery_library(c->arena, c->argv0);
   c->diags = diags_new(c->arena, c->sources);
   c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
-  int status = compiler_read(c);
+  int known = 0, status = compiler_open(c);
+  if (status == STATUS_OK) status = known_run_start(c, &known);
+  if (known) return status;
+  if (status == STATUS_OK) status = compiler_parse(c);
   if (status == STATUS_OK) status = folds_digits(c) ? do_command(c) : STATUS_USAGE;
   compiler_print_messages(c);
   if (c->o.command == CMD_CHECK && c->o.json && status != STATUS_USAGE && check_json_print(c) != STATUS_OK)
@@ -77,6 +85,7 @@ static int compile(Compiler *c) {
 static int run_lagc(Compiler *c, int argc, char **argv) {
   const char *error;
   c->argv0 = argv[0];
+  c->words = argv;
   if (!options_read(c->arena, argc, argv, &c->o, &error)) return usage_error(error);
   return command_reads_model(c->o.command) ? compile(c) : do_command(c);
 }

@@ -67,7 +67,7 @@ int lag_perturbation_noise(Equilibrium *r, lag_values *values, const double *x, 
     memcpy(p, given, (size_t)np * sizeof *p);
     memcpy(at, x, (size_t)n * sizeof *at);
     perturb(p, np, 0, turn);
-    if (pb->model->derive) pb->model->derive(p);
+    if (pb->model->derive) pb->model->derive(pb->model, p);
     perturb(at, n, np, turn);
     pb->p = p;
     if (values(r, at, out) == 0 && lag_not_finite((int)count, out) < 0)
@@ -458,7 +458,8 @@ static int is_held(Equilibrium *r) {
   const double *y = r->y;
   int held = 0;
   lag_equilibrium_state(r, r->x);
-  if (!m->nmodes || m->switch_values(s->run->t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, s->sides, s->work)) return 0;
+  if (!m->nmodes || m->switch_values(m, s->run->t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, s->sides, s->work))
+    return 0;
   for (int k = 0; k < m->nmodes; k++) held |= m->switches[k].jumps && s->sides[k] == 0;
   return held;
 }

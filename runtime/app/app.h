@@ -15,13 +15,19 @@ enum { MOST_OPTIONS = 16 };
 /* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *out, *svg, *plot_x, *plot_y, *html, *points,
-      *from, *save, *resume, *events, *section, *cloud, *starts;
-  const char *accuracy;
+      *from, *save, *resume, *events, *section, *cloud, *starts, *drawing;
+  const char *accuracy, *sensitivity;
+  const char *fit, *data, *loss; /* for --fit */
+  const char **sigmas, **priors; /* the values of --sigma and --prior, in order */
+  int nsigmas, npriors;
   const char *transient, *exponents; /* for --lyapunov */
   const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
   /* for --sweep */
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram;
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
+  const char *period, *guess, *hold, *relative, *segments; /* for --orbit */
+  const char *most; /* for --continue */
+  int orbit, continues, branches;
   int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs,
       sweep, zip, go_on, yes, portrait, potential, distance, energy_error, no_monitors;
   char **sets; /* name=value, in order */
@@ -40,7 +46,7 @@ typedef struct Args {
 
 /* A column that pictures draw: its range so far, the deviation allowed, and the slopes of the swinging door. */
 typedef struct DrawnColumn {
-  int col;
+  int col, place; /* 1: a coordinate of a place */
   double least, most, width, low, high;
 } DrawnColumn;
 
@@ -56,12 +62,14 @@ typedef struct PictureSampling {
   size_t kept;
   double part;      /* deviation allowed, as a part of the drawn range */
   double longest;   /* longest time between kept rows */
-  int common;       /* 1: drawn columns share one scale, of the widest range */
+  int common;       /* 1: drawn places share one scale, of the widest range */
   int ndrawn;
   DrawnColumn *drawn; /* [ncols] */
   double *from, *last; /* [ncols] the row kept last; the last one since, if have_last */
   int have_last;
 } PictureSampling;
+
+typedef struct Sensitivity Sensitivity; /* sensitivity_columns.c */
 
 typedef struct App {
   const lag_program *program;
@@ -110,6 +118,7 @@ typedef struct App {
   int progress;     /* progress line: 1 shown, 0 not yet, -1 never (no terminal, or --quiet) */
   PhaseVolume volume; /* --volume */
   int volume_rc;    /* failure of its last step */
+  Sensitivity *sensitivity; /* --sensitivity; NULL: none */
   Measures *measures; /* of the scene and of --measure; NULL: none */
   const char **measure_texts; /* their words; of several variants, with semicolons between them */
   char **measure_names;
@@ -125,8 +134,9 @@ typedef struct App {
 #include "app/options.def"
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
-enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, ANY = 127,
-       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS };
+enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, FIT = 128, ORBIT = 256,
+       CONTINUE = 512, ANY = 1023, MOTION_PERIODIC = ORBIT | CONTINUE,
+       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | FIT };
 
 /* A row of options.def. */
 typedef struct Option {
@@ -137,6 +147,9 @@ typedef struct Option {
   size_t field, count;  /* in Args: an int, a text, or a list with its number at count */
   const char *text;     /* NULL: not in help */
 } Option;
+
+/* Whether the analysis carries tangents along its runs. */
+static inline int lag_args_tangents(const Args *a) { return a->lyapunov || a->orbit || a->continues; }
 
 /* Row i; NULL past the end. */
 const Option *lag_args_option(int i);
@@ -197,11 +210,11 @@ int lag_app_draw_table(const App *app, const char *title);
 
 /* column_lookup.c: app->drawn := columns of --plot-x and --plot-y, or all. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_curves(App *app);
-/* app->show := points of --points and --from. 0, or EXIT_USAGE after a message. */
-int lag_app_choose_points(App *app);
+/* app->show := the points of --points and --from, or the shapes of the scene. 0, or EXIT_USAGE after a message. */
+int lag_app_choose_shapes(App *app);
 
 /* picture_sampling.c: rows of pictures. lag_sampling_open comes after lag_app_choose_curves and
- * lag_app_choose_points. lag_sampling_advance is lag_sim_advance that samples the motion on the way.
+ * lag_app_choose_shapes. lag_sampling_advance is lag_sim_advance that samples the motion on the way.
  * lag_sampling_close thins the rows at the end. lag_sampling_warn: note := a warning about the picture, or ""; also
  * printed. */
 int lag_sampling_open(App *app);
@@ -264,6 +277,18 @@ int lag_tangent_columns_row(App *app);
 void lag_report_tangent(App *app, FILE *f);
 void lag_report_tangent_json(App *app, Json *j);
 
+/* s[n] := unit as numerator or denominator of a fraction, in parentheses if compound. */
+void lag_unit_in_fraction(char *s, size_t n, const char *unit);
+/* n more columns of the table and of app->row; NULL: no memory. */
+Column *lag_app_add_columns(App *app, int n);
+
+/* sensitivity_columns.c: --sensitivity. As the functions for --tangent. */
+int lag_sensitivity_open(App *app);
+int lag_sensitivity_row(App *app);
+void lag_report_sensitivity(App *app, FILE *f);
+void lag_report_sensitivity_json(App *app, Json *j);
+void lag_sensitivity_free(App *app);
+
 /* volume_report.c: --volume. open: gives the run its tangent; 0, or EXIT_USAGE after a message. step: at the end of
  * each step; a failure ends the run. */
 int lag_app_volume_open(App *app);
@@ -307,8 +332,26 @@ int lag_app_lyapunov(App *app);
 /* modes_report.c: --modes. Returns the exit status. */
 int lag_app_modes(App *app);
 
+/* orbit_report.c: --orbit. Returns the exit status. */
+int lag_app_orbit(App *app);
+/* For both: app->sim with the tolerance of searches; the orbit near its start, with the period and conditions of the
+ * command line; its solution, with multipliers. 0, or the exit status after a message. */
+struct PeriodicOrbit;
+int lag_app_orbit_set_up(App *app);
+int lag_app_orbit_open(App *app, struct PeriodicOrbit *o);
+int lag_app_orbit_solve(App *app, struct PeriodicOrbit *o);
+/* Index of the charge, or the component of the state, of this name[n]; -1: none. */
+int lag_charge_named(const App *app, const char *name, size_t n);
+int lag_state_named(const App *app, const char *name, size_t n);
+
+/* continue_report.c: --continue. Returns the exit status. */
+int lag_app_continue(App *app);
+
 /* effect_costs.c: --effects. Returns the exit status. */
 int lag_app_effects(App *app);
+
+/* fit.c: --fit. Returns the exit status. */
+int lag_app_fit(App *app);
 
 /* sweep.c: --sweep. Returns the exit status. */
 int lag_app_sweep(App *app);

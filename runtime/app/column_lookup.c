@@ -136,15 +136,13 @@ static int columns_at(const App *app, const char **s, int *cols) {
   return columns_of(app, word, cols);
 }
 
-/* If the points are a family from index 0 on, member 0 is the fixed point that the rods hang from. */
-static void suspend_at_zero(App *app, int x) {
-  const char *name = app->table.cols[x].name, *at = strstr(name, "[0]");
-  if (at && app->show.rods && !app->show.from && app->show.npoints == 0) app->show.from = 1;
-}
+/* Points of the command line. */
+typedef struct Points {
+  int n, *cols; /* x, y of each: [2 n] */
+} Points;
 
-/* Appends the points "X,Y X,Y ..." to app->show; x and y are scratch for the indices of all columns. */
-static int add_points(App *app, const char *option, const char *text, int *x, int *y) {
-  Animation *show = &app->show;
+/* Appends the points "X,Y X,Y ..."; x and y are scratch for the indices of all columns. */
+static int add_points(App *app, const char *option, const char *text, int *x, int *y, Points *p) {
   const char *s = text + strspn(text, " ,;");
   while (*s) {
     int nx = columns_at(app, &s, x), ny = 0;
@@ -158,26 +156,61 @@ static int add_points(App *app, const char *option, const char *text, int *x, in
     if (nx != ny && nx != 1 && ny != 1)
       return lag_app_error(&app->args, "%s \"%s\": %d places across for %d up", option, text, nx, ny);
     int n = nx > ny ? nx : ny;
-    int *cols = realloc(show->cols, 2 * (size_t)(show->npoints + n) * sizeof *cols);
+    int *cols = realloc(p->cols, 2 * (size_t)(p->n + n) * sizeof *cols);
     if (!cols) return lag_app_error(&app->args, "out of memory");
-    show->cols = cols;
-    if (nx > 1) suspend_at_zero(app, x[0]);
+    p->cols = cols;
     for (int k = 0; k < n; k++) {
-      cols[2 * show->npoints] = x[nx > 1 ? k : 0];
-      cols[2 * show->npoints++ + 1] = y[ny > 1 ? k : 0];
+      cols[2 * p->n] = x[nx > 1 ? k : 0];
+      cols[2 * p->n++ + 1] = y[ny > 1 ? k : 0];
     }
   }
-  return show->npoints ? 0
-                       : lag_app_error(&app->args, "%s \"%s\": each point is X,Y, two names of outputs", option, text);
+  return p->n ? 0 : lag_app_error(&app->args, "%s \"%s\": each point is X,Y, two names of outputs", option, text);
 }
 
-/* show->unit := the common unit of all points; columns without a unit fit any. */
+static const lag_shape no_shape = {
+    .a = {-1, -1, -1}, .b = {-1, -1, -1}, .size = {-1, -1, -1}, .turn = {-1, -1, -1, -1}};
+
+static int add_shape(App *app, const char *kind, const char *role, const char *text, const int *a, const int *b) {
+  Animation *show = &app->show;
+  lag_shape *more = realloc(show->shapes, ((size_t)show->nshapes + 1) * sizeof *more);
+  if (!more) return lag_app_error(&app->args, "out of memory");
+  show->shapes = more;
+  more[show->nshapes] = no_shape;
+  lag_shape *s = &more[show->nshapes++];
+  s->kind = kind;
+  s->role = role;
+  s->text = text;
+  if (a) memcpy(s->a, a, 2 * sizeof *a);
+  if (b) memcpy(s->b, b, 2 * sizeof *b);
+  return 0;
+}
+
+/* Points as bodies, each hanging by a rod from the one before, the first from the origin. first: 1, point 0 is the
+ * suspension. */
+static int points_to_shapes(App *app, const Points *p, int first) {
+  enum { LONGEST = 2 * sizeof app->table.cols->name + 8 };
+  int rods = !app->args.no_rods, rc = 0;
+  char *words = app->show.words = malloc((size_t)p->n * LONGEST);
+  if (!words) return lag_app_error(&app->args, "out of memory");
+  for (int i = first; i < p->n && rods && rc == 0; i++)
+    rc = add_shape(app, "rod", "link", NULL, i ? p->cols + 2 * i - 2 : NULL, p->cols + 2 * i);
+  for (int i = first; i < p->n && rc == 0; i++) {
+    const int *xy = p->cols + 2 * i;
+    snprintf(words, LONGEST, "(%s, %s)", app->table.cols[xy[0]].name, app->table.cols[xy[1]].name);
+    rc = add_shape(app, "ball", "body", words, xy, NULL);
+    words += LONGEST;
+  }
+  return rc;
+}
+
+/* show->unit := the common unit of all places; columns without a unit fit any. */
 static int choose_unit(App *app) {
   Animation *show = &app->show;
   const Column *first = NULL;
-  for (int i = 0; i < 2 * show->npoints; i++) {
-    const Column *c = &app->table.cols[show->cols[i]];
-    if (!c->unit[0]) continue;
+  for (int i = 0; i < 3 * show->nshapes; i++) {
+    int k = show->shapes[i / 3].a[i % 3];
+    const Column *c = k < 0 ? NULL : &app->table.cols[k];
+    if (!c || !c->unit[0]) continue;
     if (first && strcmp(first->unit, c->unit) != 0) {
       return lag_app_error(&app->args, "--points: %s is in [%s], %s in [%s]; a picture of places needs one unit",
                            first->name, first->unit, c->name, c->unit);
@@ -188,15 +221,39 @@ static int choose_unit(App *app) {
   return 0;
 }
 
-int lag_app_choose_points(App *app) {
-  const Args *a = &app->args;
+/* The shapes of the scene; outputs are the columns behind the time. */
+static int copy_shapes(App *app) {
+  const lag_scene *sc = app->scene;
   Animation *show = &app->show;
+  if (!sc->nshapes)
+    return lag_app_error(&app->args, "this program has no drawing: `lagc animate` makes one; or add --points 'X,Y "
+                                     "X,Y ...' with the names of outputs");
+  show->shapes = malloc((size_t)(sc->nshapes + 1) * sizeof *show->shapes);
+  if (!show->shapes) return lag_app_error(&app->args, "out of memory");
+  for (int i = 0; i < sc->nshapes; i++) {
+    lag_shape *s = &show->shapes[show->nshapes++];
+    int *parts[] = {s->a, s->b, s->size, s->turn};
+    *s = sc->shapes[i];
+    for (int k = 0; k < 4; k++)
+      for (int c = 0; c < (k < 3 ? 3 : 4); c++) parts[k][c] += parts[k][c] >= 0;
+  }
+  return 0;
+}
+
+int lag_app_choose_shapes(App *app) {
+  const Args *a = &app->args;
   int *found = calloc(2 * (size_t)app->table.ncols, sizeof *found), *x = found, *y = found + app->table.ncols, rc = 0;
-  *show = (Animation){.rods = !a->no_rods, .trace = a->trace, .from = a->from && !a->no_rods};
+  Points points = {0};
+  app->show = (Animation){.trace = a->trace};
   if (!found) return lag_app_error(a, "out of memory");
-  if (show->from) rc = add_points(app, "--from", a->from, x, y);
-  if (rc == 0 && show->from && show->npoints != 1) rc = lag_app_error(a, "--from \"%s\": one point, X,Y", a->from);
-  rc = rc ? rc : add_points(app, "--points", a->points, x, y);
+  if (a->from && !a->no_rods) rc = add_points(app, "--from", a->from, x, y, &points);
+  int from = points.n, rods = !a->no_rods;
+  if (rc == 0 && from > 1) rc = lag_app_error(a, "--from \"%s\": one point, X,Y", a->from);
+  if (rc == 0 && a->points) rc = add_points(app, "--points", a->points, x, y, &points);
+  if (rc == 0 && a->points && rods && !from && strstr(app->table.cols[points.cols[0]].name, "[0]"))
+    from = points.n > 1; /* member 0 of a family is where the rods hang from */
+  if (rc == 0) rc = a->points ? points_to_shapes(app, &points, from) : copy_shapes(app);
   free(found);
+  free(points.cols);
   return rc ? rc : choose_unit(app);
 }

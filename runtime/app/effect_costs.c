@@ -58,7 +58,7 @@ static void copy_start(const lag_sim *first, lag_sim *sim) {
       sim->p[at] = first->p[i];
       sim->fixed[at] = 1;
     }
-  if (own->derive) own->derive(sim->p);
+  if (own->derive) own->derive(own, sim->p);
   for (int i = 0; i < first->pb.n; i++) {
     at = lag_component_index(own, lag_state_column(first, i).name);
     if (at >= 0 && sim->now[at] != first->now[i]) sim->start[at] = first->now[i];

@@ -23,11 +23,11 @@ static const double ROUNDING = 1e-11;
 
 /* ---- Thinning */
 
-/* Adds a column to the drawn ones. */
-static void add_column(PictureSampling *w, int col) {
+/* Adds a column to the drawn ones. place: 1, on the scale that places share. */
+static void add_column(PictureSampling *w, int col, int place) {
   for (int i = 0; i < w->ndrawn; i++)
     if (w->drawn[i].col == col) return;
-  if (col > 0) w->drawn[w->ndrawn++] = (DrawnColumn){.col = col, .least = HUGE_VAL, .most = -HUGE_VAL};
+  if (col > 0) w->drawn[w->ndrawn++] = (DrawnColumn){.col = col, .place = place, .least = HUGE_VAL, .most = -HUGE_VAL};
 }
 
 /* Widens the ranges by a row; called before `thin` of the row. */
@@ -39,10 +39,10 @@ static void extend_range(PictureSampling *w, const double *row) {
       d->least = fmin(d->least, x);
       d->most = fmax(d->most, x);
     }
-    widest = fmax(widest, d->most - d->least);
+    if (d->place) widest = fmax(widest, d->most - d->least);
   }
   for (DrawnColumn *d = w->drawn; d < w->drawn + w->ndrawn; d++)
-    d->width = fmax(w->part * (w->common ? widest : fmax(0, d->most - d->least)),
+    d->width = fmax(w->part * (w->common && d->place ? widest : fmax(0, d->most - d->least)),
                     ROUNDING * fmax(fabs(d->least), fabs(d->most)));
 }
 
@@ -137,13 +137,19 @@ static int reduce(App *app, size_t most) {
 /* Selects the columns that pictures draw. */
 static void choose_columns(App *app) {
   PictureSampling *w = &app->sampling;
-  if (app->args.html) {
-    for (int i = 0; i < 2 * app->show.npoints; i++) add_column(w, app->show.cols[i]);
-    w->common = !app->args.svg && !app->args.sketch;
+  if (app->args.html || app->args.drawing) {
+    for (int i = 0; i < app->show.nshapes; i++) {
+      const lag_shape *s = &app->show.shapes[i];
+      for (int k = 0; k < 3; k++) add_column(w, s->a[k], 1);
+      for (int k = 0; k < 3; k++) add_column(w, s->b[k], lag_shape_has_length(s));
+      for (int k = 0; k < 3; k++) add_column(w, s->size[k], 0);
+      for (int k = 0; k < 4; k++) add_column(w, s->turn[k], 0);
+    }
+    w->common = (!app->args.svg || app->args.drawing) && !app->args.sketch;
   }
-  for (int i = 0; i < app->drawn.n && (app->args.svg || app->args.sketch); i++) {
-    add_column(w, app->drawn.x[i]);
-    add_column(w, app->drawn.y[i]);
+  for (int i = 0; i < app->drawn.n && ((app->args.svg && !app->args.drawing) || app->args.sketch); i++) {
+    add_column(w, app->drawn.x[i], 0);
+    add_column(w, app->drawn.y[i], 0);
   }
 }
 
@@ -152,7 +158,8 @@ int lag_sampling_open(App *app) {
   double span = fabs(app->until - lag_sim_time(app->sim));
   size_t ncols = (size_t)app->table.ncols;
   /* a tangent is known at rows only */
-  if (!app->table.keep || app->section >= 0 || app->args.tangent || lag_app_equal_times(&app->args)) {
+  if (!app->table.keep || app->section >= 0 || app->args.tangent || app->args.sensitivity ||
+      lag_app_equal_times(&app->args)) {
     return 0;
   }
   *f = (PictureSampling){.on = 1,
@@ -267,7 +274,7 @@ int lag_sampling_advance(App *app, double until) {
 int lag_sampling_close(App *app) {
   enum { MOST_NUMBERS = 2000000 }; /* 12 MB */
   PictureSampling *f = &app->sampling;
-  size_t most = app->args.html ? MOST_NUMBERS / (size_t)(2 * app->show.npoints + 1) : SIZE_MAX;
+  size_t most = app->args.html ? MOST_NUMBERS / (size_t)(f->ndrawn + 1) : SIZE_MAX;
 
   return f->on && reduce(app, most) ? -1 : 0;
 }

@@ -18,7 +18,7 @@ static double energy_at(void *app, double x, double y) {
   at[0] = x * a->portrait_unit[0];
   at[1] = y * a->portrait_unit[1];
   if (lag_inputs_at(&s->pb, s->scene->t0, at) ||
-      m->energy(s->scene->t0, at, at + m->nq, at + 2 * m->nq, s->p, s->u, e, s->work))
+      m->energy(m, s->scene->t0, at, at + m->nq, at + 2 * m->nq, s->p, s->u, e, s->work))
     return NAN;
   return e[0] / a->portrait_unit[2];
 }

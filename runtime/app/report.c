@@ -210,6 +210,12 @@ static void singular(const App *app, FILE *f) {
   fprintf(f, "%s%s", n > MOST_LINES ? ", ..." : "", n ? " decides the branch of the motion" : "");
 }
 
+/* Constraints that are independent at the start; what friction holds there does not count. */
+static int independent(const App *app) {
+  int held = app->scene->model->constraints->n - app->scene->model->ncontacts, rank = lag_sim_rank(app->sim);
+  return rank < held ? rank : held;
+}
+
 /* Constraints: changes of the start, rank, redundant ones, largest residuals. */
 static void constraints(const App *app, const lag_stats *st, FILE *f) {
   const lag_model *m = app->scene->model;
@@ -226,7 +232,7 @@ static void constraints(const App *app, const lag_stats *st, FILE *f) {
   if (moved > MOST_LINES) fprintf(f, "  (and %d more)\n", moved - MOST_LINES);
   if (!of) return;
   if (of->n > m->ncontacts)
-    fprintf(f, "constraints: %d, %d independent at the start", of->n - m->ncontacts, lag_sim_rank(app->sim));
+    fprintf(f, "constraints: %d, %d independent at the start", of->n - m->ncontacts, independent(app));
   for (int k = 0; k < of->n; k++)
     if (is_redundant(app, k) && redundant++ < MOST_LINES)
       fprintf(f, "%s%s", redundant == 1 ? "; redundant: " : ", ", of->of[k].name);
@@ -254,8 +260,9 @@ static void caveat(const App *app, const lag_stats *st, FILE *f) {
   int started;
   if (st->steps > 0 && stands_still(app, &started)) {
     const char *name = lag_state_column(app->sim, 0).name;
-    fputs("note: nothing moves: the scene begins at rest, where no force acts", f);
-    if (!started) fprintf(f, "; write a start into it, `start %s = 0.1`, or give one here: %s=0.1", name, name);
+    int held = app->scene->model->nguides && !isnan(lag_sim_guide_part(app->sim, 0));
+    fprintf(f, "note: nothing moves: the scene begins at rest, where %s", held ? "friction holds it" : "no force acts");
+    if (!started && !held) fprintf(f, "; write a start into it, `start %s = 0.1`, or give one here: %s=0.1", name, name);
     putc('\n', f);
   }
   if (isfinite(st->unresolved)) {
@@ -388,6 +395,30 @@ static void switches(const App *app, FILE *f) {
   }
 }
 
+/* Guides that stick at the end of the run. */
+static void guides(const App *app, FILE *f) {
+  const lag_model *m = app->scene->model;
+  for (int k = 0; k < m->nguides && k < MOST_LINES; k++) {
+    double part = lag_sim_guide_part(app->sim, k);
+    if (isnan(part)) continue;
+    fprintf(f, "guide %s sticks", m->constraints->of[m->contacts[m->guides[k].tangent].constraint].name);
+    if (part > 1e-9) /* beyond rounding */
+      fprintf(f, ", self-locking: it needs %.3g %% of the friction that its force allows, also where all loads grow alike",
+              100 * part);
+    putc('\n', f);
+  }
+}
+
+static void guides_json(const App *app, Json *j) {
+  const lag_model *m = app->scene->model;
+  if (m->nguides == 0) return;
+  lag_json_begin(j, "guides", '{');
+  for (int k = 0; k < m->nguides; k++)
+    lag_json_number(j, m->constraints->of[m->contacts[m->guides[k].tangent].constraint].name,
+                    lag_sim_guide_part(app->sim, k));
+  lag_json_end(j, '}');
+}
+
 static void switches_json(const App *app, Json *j) {
   const lag_model *m = app->scene->model;
   if (m->nmodes == 0) return;
@@ -433,7 +464,9 @@ void lag_report_text(App *app, FILE *f) {
   }
   lag_report_events(app, f);
   switches(app, f);
+  guides(app, f);
   lag_report_tangent(app, f);
+  lag_report_sensitivity(app, f);
   lag_report_volume(app, f);
   if (app->written && app->args.out)
     fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
@@ -523,9 +556,11 @@ void lag_report_json(App *app, FILE *f) {
   charges_json(app, &j);
   lag_report_events_json(app, &j);
   switches_json(app, &j);
+  guides_json(app, &j);
   exact_json(app, &j);
   lag_report_measures_json(app, &j);
   lag_report_tangent_json(app, &j);
+  lag_report_sensitivity_json(app, &j);
   lag_report_volume_json(app, &j);
   lag_json_string(&j, "math", m->math);
   lag_json_string(&j, "build", app->program->build);

@@ -47,7 +47,8 @@ static int jacobian(const lag_level *w, double *A) {
   lag_problem *pb = s->pb;
   const double *y = put(w);
   int rc = lag_inputs(pb, s->sim->scene->t0);
-  return rc ? rc : s->of->matrices(s->sim->scene->t0, y, y + s->nq, y + 2 * s->nq, pb->p, pb->u, A, s->M, pb->work);
+  return rc ? rc
+            : s->of->matrices(s->of, s->sim->scene->t0, y, y + s->nq, y + 2 * s->nq, pb->p, pb->u, A, s->M, pb->work);
 }
 
 static int terms(const lag_level *w, double *size) {

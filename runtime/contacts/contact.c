@@ -31,6 +31,18 @@ const lag_contact *lag_contact_of(const lag_model *m, int event) {
   return NULL;
 }
 
+int lag_guide_of(const lag_model *m, int contact) {
+  for (int i = 0; i < m->nguides; i++)
+    if (m->guides[i].tangent == contact) return i;
+  return -1;
+}
+
+int lag_guide_turns(const lag_model *m, int event) {
+  for (int i = 0; i < m->nguides; i++)
+    if (m->guides[i].turn == event) return 1;
+  return 0;
+}
+
 int lag_event_is_located(const lag_sim *s, int k) { return !s->pb.contacts || !lag_contact_of(s->scene->model, k); }
 
 int lag_contact_is_closed(const lag_sim *s, const lag_contact *c) { return s->hold[c->input] > 0.5; }
@@ -41,9 +53,8 @@ void lag_contact_set_closed(lag_sim *s, int i, int closed) {
   if (c->is_tangent) s->hold[c->force] = NAN;
 }
 
-/* The tangent of contact i; -1: it has no friction. */
-static int tangent_of(const lag_model *m, int i) {
-  return i + 1 < m->ncontacts && m->contacts[i + 1].is_tangent ? i + 1 : -1;
+int lag_tangent_of(const lag_model *m, int i) {
+  return i + 1 < m->ncontacts && m->contacts[i + 1].is_tangent && lag_guide_of(m, i + 1) < 0 ? i + 1 : -1;
 }
 
 void lag_contact_open(lag_sim *s) {
@@ -77,11 +88,11 @@ static int make_room(ContactSet *w) {
   const lag_constraints *of = m->constraints;
   size_t p = (size_t)m->ncontacts, n = (size_t)of->n, nq = (size_t)m->nq;
   double **const parts[] = {&w->gap,   &w->rate, &w->gap_size, &w->rate_size, &w->g, &w->c,    &w->r,   &w->d,
-                            &w->force, &w->test, &w->events,   &w->ahead,     &w->A, &w->mass, &w->law, &w->side};
+                            &w->force, &w->test, &w->events,   &w->ahead,     &w->A, &w->mass, &w->law, &w->side, &w->pressed};
   const size_t sizes[] = {p,
                           p, p, p, n, n, n, nq, nq, (size_t)w->sim->pb.n, (size_t)(m->nev + m->nmodes), p,
-                          (size_t)of->njacobian, (size_t)of->nmass, 3 * p,
-                          p};
+                          (size_t)of->njacobian, (size_t)of->nmass, 3 * p + 4 * (size_t)m->nguides,
+                          p, 3 * (size_t)m->nguides * (p + 1)};
   w->block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   w->of = calloc(p, sizeof *w->of);
   w->at = calloc(p, sizeof *w->at);
@@ -142,7 +153,8 @@ static int evaluate_contacts(lag_sim *s, double *y, ContactSet *w) {
   for (int i = 0; i < m->ncontacts; i++) w->rate_size[i] = w->g[m->contacts[i].constraint];
   rc = rc ? rc : lag_inputs(pb, t);
   if (rc == 0 && m->contact_laws) rc = lag_contact_laws(s, y, w->law);
-  rc = rc ? rc : m->constraints->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->mass, pb->work);
+  rc = rc ? rc
+          : m->constraints->matrices(m->constraints, t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->mass, pb->work);
   return rc ? lag_contacts_no_values(w, 0) : LAG_OK;
 }
 
@@ -167,11 +179,33 @@ double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i
   memcpy(before, y, bytes);
   for (int j = 0; j < nq; j++) before[nq + j] -= (speed + rate) * d[j];
   memcpy(after, before, bytes);
-  if (m->act(m->contacts[i].impact, t, before, before + nq, before + 2 * nq, pb->p, pb->u, after, after + nq,
+  if (m->act(m, m->contacts[i].impact, t, before, before + nq, before + 2 * nq, pb->p, pb->u, after, after + nq,
              after + 2 * nq, &stop, pb->work))
     return NAN;
   for (int j = 0; j < nq; j++) before[nq + j] = after[nq + j] - before[nq + j];
   return rate_change(m, A, i, before + nq) / speed - 1;
+}
+
+/* Whether a change d of velocities, d M d = square, keeps the constraints that always hold: it does not where they imply
+ * the row that d moves, and the solver has left out one of theirs. Rates are measured by those of free coordinates. */
+static int keeps_constraints(const ContactSet *w, const double *d, double square) {
+  const double alike = 1e-6;
+  const lag_model *m = w->sim->scene->model;
+  const lag_constraints *of = m->constraints;
+  double *rate = w->c, *free = w->r;
+  memset(rate, 0, (size_t)of->n * sizeof *rate);
+  memset(free, 0, (size_t)of->n * sizeof *free);
+  for (int e = 0; e < of->njacobian; e++) {
+    const lag_entry *at = &of->jacobian[e];
+    double mass = 0;
+    for (int k = 0; k < of->nmass; k++) mass += of->mass[k].row == at->col && of->mass[k].col == at->col ? w->mass[k] : 0;
+    rate[at->row] += w->A[e] * d[at->col];
+    free[at->row] += mass > 0 ? w->A[e] * w->A[e] / mass : HUGE_VAL;
+  }
+  for (int i = 0; i < m->ncontacts; i++) rate[m->contacts[i].constraint] = 0;
+  for (int k = 0; k < of->n; k++)
+    if (rate[k] * rate[k] > alike * alike * square * free[k]) return 0;
+  return 1;
 }
 
 double lag_contacts_response(ContactSet *w, int i) {
@@ -183,7 +217,7 @@ double lag_contacts_response(ContactSet *w, int i) {
   w->g[k] = 1;
   if (lag_least_change(pb, w->sim->run->t, w->y, 0, w->g, w->d, w->force)) return NAN;
   for (int j = 0; j < nq; j++) s += w->d[j] * w->force[j];
-  return isnan(s) || lag_row_moves(change_of_rate(w, i, w->d)) ? 1 / s : 0;
+  return isnan(s) || (lag_row_moves(change_of_rate(w, i, w->d)) && keeps_constraints(w, w->d, s)) ? 1 / s : 0;
 }
 
 static double restitution_at(ContactSet *w, int i, double speed) {
@@ -342,7 +376,7 @@ static const double no_speed = 1e-9, no_flight = 0x1p6 * DBL_EPSILON;
 
 /* ---- contacts that take part */
 
-/* of[n] := contacts that take part: closed before, of this event, or without a gap. Refuses a state set by `who` (if
+/* of[n] := contacts that take part, behind them tangents, those of guides last: closed before, of this event, or without a gap. Refuses a state set by `who` (if
  * not NULL) with a negative gap. */
 static int find_touching(ContactSet *w, const char *who, int event) {
   lag_sim *s = w->sim;
@@ -362,10 +396,11 @@ static int find_touching(ContactSet *w, const char *who, int event) {
   }
   w->rows = w->n;
   for (int a = 0; a < w->n; a++) {
-    int tangent = tangent_of(m, w->of[a]);
+    int tangent = lag_tangent_of(m, w->of[a]);
     w->at[a] = tangent < 0 ? -1 : w->rows;
     if (tangent >= 0) w->of[w->rows++] = tangent;
   }
+  for (int i = 0; i < m->nguides; i++) w->of[w->rows++] = m->guides[i].tangent;
   return LAG_OK;
 }
 
@@ -383,18 +418,23 @@ static int check_restitution(lag_sim *s, int i, double e) {
   return LAG_OK;
 }
 
+/* law: of the model's contact_laws. */
 static int check_friction(lag_sim *s, int i, const double *law) {
-  if (!(law[0] >= 0))
-    return lag_fail(s, LAG_EINVAL, "the contact %s has a friction of %.3g, which must be at least 0",
-                    constraint_of(s, i - 1)->name, law[0]);
-  if (!(law[-3] >= law[0]))
+  const lag_model *m = s->scene->model;
+  int guide = lag_guide_of(m, i);
+  const char *name = guide < 0 ? constraint_of(s, i - 1)->name : constraint_of(s, i)->name;
+  const char *what = guide < 0 ? "contact" : "friction";
+  double mu = law[3 * i], hold = guide < 0 ? law[3 * i - 3] : law[3 * m->ncontacts + 4 * guide], back = law[3 * i + 1];
+  if (!(mu >= 0))
+    return lag_fail(s, LAG_EINVAL, "the %s %s has a friction of %.3g, which must be at least 0", what, name, mu);
+  if (!(hold >= mu))
     return lag_fail(
         s, LAG_EINVAL,
-        "the contact %s has a static friction of %.3g, which must be at least its friction while it slips, %.3g",
-        constraint_of(s, i - 1)->name, law[-3], law[0]);
-  if (law[1] >= 0 && law[1] <= 1) return LAG_OK;
+        "the %s %s has a static friction of %.3g, which must be at least its friction while it slips, %.3g", what, name,
+        hold, mu);
+  if (back >= 0 && back <= 1) return LAG_OK;
   return lag_fail(s, LAG_EINVAL, "the contact %s has a tangential restitution of %.3g, which must be between 0 and 1",
-                  constraint_of(s, i - 1)->name, law[1]);
+                  name, back);
 }
 
 /* ---- impacts */
@@ -487,12 +527,13 @@ static int strike_and_rest(ContactSet *w, int event, unsigned char *ends, double
 static int resolve_contacts(ContactSet *w, const char *who, int event, int last) {
   int rc = find_touching(w, who, event);
   lag_contact_open(w->sim);
-  if (rc || w->n == 0) return rc;
+  if (rc || w->rows == 0) return rc;
   size_t n = (size_t)w->n, others = (size_t)w->sim->pb.n + (size_t)w->sim->scene->model->ncontacts;
   double *room = calloc(3 * n + others, sizeof *room), *y = room + 3 * n;
-  unsigned char *ends = calloc(3 * n, 1);
+  unsigned char *ends = calloc(3 * n + 1, 1);
   rc = room && ends ? find_responses(w) : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
   for (size_t a = 0; a < n && rc == 0; a++) ends[a] = last && lag_contacts_at(w, (int)a)->impact == event;
+  rc = rc ? rc : lag_guides_stop(w, event);
   rc = rc ? rc : strike_and_rest(w, event, ends, room, room + n, room + 2 * n, ends + n, y, y + w->sim->pb.n);
   rc = rc ? rc : close_gaps(w);
   free(room);
@@ -505,12 +546,15 @@ static int resolve_contacts(ContactSet *w, const char *who, int event, int last)
 void lag_contact_mute(const lag_sim *s, double *g) {
   const lag_model *m = s->scene->model;
   for (int i = 0; i < m->ncontacts; i++) g[m->contacts[i].impact] = g[m->contacts[i].release] = 1;
+  for (int i = 0; i < m->nguides; i++)
+    if (m->guides[i].turn >= 0) g[m->guides[i].turn] = 1;
 }
 
 void lag_contact_show(lag_sim *s) {
   const lag_model *m = s->scene->model;
   for (int i = 0; i < m->ncontacts; i++) {
     const lag_contact *c = &m->contacts[i];
+    if (lag_guide_of(m, i) >= 0) continue; /* forces, not impulses */
     s->pb.u[c->input] = !c->is_tangent && s->pb.contact_impulse[i] > 0;
     if (c->is_tangent) s->pb.u[c->force] = s->pb.contact_impulse[i] / s->pb.contacts->length;
   }
@@ -543,7 +587,7 @@ static int check_all(lag_sim *s) {
   int rc = evaluate_contacts(s, s->now, &w);
   for (int i = 0; i < s->scene->model->ncontacts && rc == 0; i++) {
     if (s->scene->model->contacts[i].is_tangent) {
-      rc = check_friction(s, i, w.law + 3 * i);
+      rc = check_friction(s, i, w.law);
       continue;
     }
     double e = s->scene->model->contacts[i].conditional ? NAN : restitution(&w, i);

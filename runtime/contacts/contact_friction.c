@@ -5,6 +5,7 @@
  * sticks by a force that is not unique, or NaN: it sticks or is open. */
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "contacts/contact_set.h"
@@ -15,13 +16,10 @@
 
 /* ---- forces while contacts slip */
 
-/* A tangent's contact is the one before it. law: of pb->model->contact_laws. */
-static double largest_force(const double *law, int tangent) { return law[3 * tangent] * law[3 * (tangent - 1) + 2]; }
-
-static int laws_at(lag_problem *pb, double t, const double *y, double *law) {
+int lag_contact_laws_at(lag_problem *pb, double t, const double *y, double *law) {
   const lag_model *m = pb->model;
   pb->rhs_calls++;
-  return m->contact_laws(t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, law, pb->work);
+  return m->contact_laws(m, t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, law, pb->work);
 }
 
 /* The side to which tangent i slips; 0: it sticks by a force that is not unique; NaN: it sticks or is open, or is no
@@ -30,82 +28,161 @@ static double side_of(const lag_problem *pb, int i) {
   return pb->model->contacts[i].is_tangent ? pb->hold[pb->model->contacts[i].force] : NAN;
 }
 
-/* left[n] := force + side * largest force of the contacts of[n], which is 0 for the forces sought. *size := the
- * largest term. */
-static int imbalance(lag_problem *pb, double t, const double *y, const int *of, int n, double *law, double *left,
-                     double *size) {
-  int rc = laws_at(pb, t, y, law);
-  for (int k = 0; k < n && rc == 0; k++) {
-    int input = pb->model->contacts[of[k]].force;
-    double most = pb->hold[input] * largest_force(law, of[k]);
-    left[k] = pb->u[input] + most;
-    *size = fmax(*size, fabs(most));
+/* Tangents that slip, of contacts and guides: force x, laws x + side mu |N| = 0 with N = N0 + sum C[.][j] x[j], of a
+ * contact one component along `toward` = 1, of a guide with |N| along its own direction. */
+typedef struct Slipping {
+  int n, of[LAG_MOST_TOUCHES], parts[LAG_MOST_TOUCHES];
+  double mu[LAG_MOST_TOUCHES], N[LAG_MOST_TOUCHES][3], toward[LAG_MOST_TOUCHES][3];
+  double C[LAG_MOST_TOUCHES][3][LAG_MOST_TOUCHES], left[LAG_MOST_TOUCHES], largest;
+} Slipping;
+
+/* left[n] := force + side mu |N|, which is 0 for the forces sought; N, mu. largest := the largest term. */
+static int imbalance(lag_problem *pb, double t, const double *y, Slipping *s) {
+  const lag_model *m = pb->model;
+  int rc = lag_contact_laws_at(pb, t, y, pb->rub);
+  s->largest = 0;
+  for (int k = 0; k < s->n && rc == 0; k++) {
+    int guide = lag_guide_of(m, s->of[k]), input = m->contacts[s->of[k]].force;
+    const double *N = guide < 0 ? &pb->rub[3 * s->of[k] - 1] : lag_guide_law(m, pb->rub, guide) + 1;
+    s->parts[k] = guide < 0 ? 1 : m->guides[guide].parts;
+    s->mu[k] = pb->rub[3 * s->of[k]];
+    for (int c = 0; c < s->parts[k]; c++) s->N[k][c] = N[c];
+    double press = guide < 0 ? N[0] : lag_norm(N, s->parts[k]), most = pb->hold[input] * s->mu[k] * press;
+    s->left[k] = pb->u[input] + most;
+    s->largest = fmax(s->largest, fabs(most));
+    for (int c = 0; c < s->parts[k]; c++) s->toward[k][c] = guide < 0 || press == 0 ? c == 0 : N[c] / press;
   }
   return rc;
 }
 
-/* Finds the forces of contacts that slip. */
-static int find_friction(lag_problem *pb, double t, const double *y) {
-  enum { ROUNDS = 4 };
-  const double enough = 16 * DBL_EPSILON;
+/* C: the model is linear in forces. */
+static int find_slopes(lag_problem *pb, double t, const double *y, Slipping *s) {
   const lag_model *m = pb->model;
-  int of[LAG_MOST_TOUCHES], n = 0, rc; /* no more are closed together */
-  for (int i = 0; i < m->ncontacts && n < LAG_MOST_TOUCHES; i++)
-    if (fabs(side_of(pb, i)) > 0) of[n++] = i;
-  if (!n) return 0;
-  double *law = pb->rub, *left = law + 3 * m->ncontacts, *x = left + n, *B = x + n, *A = B + n * n, size = 0;
-  for (int k = 0; k < n; k++) pb->u[m->contacts[of[k]].force] = 0;
-  if ((rc = imbalance(pb, t, y, of, n, law, left, &size)) != 0) return rc;
-  double unit = size > 0 ? size : 1;
-  for (int j = 0; j < n; j++) { /* the equations are linear */
-    double *force = &pb->u[m->contacts[of[j]].force];
+  Slipping at = *s;
+  double unit = s->largest > 0 ? s->largest : 1;
+  int rc = 0;
+  for (int j = 0; j < s->n && rc == 0; j++) {
+    double *force = &pb->u[m->contacts[s->of[j]].force];
     *force = unit;
-    if ((rc = imbalance(pb, t, y, of, n, law, x, &size)) != 0) return rc;
+    rc = imbalance(pb, t, y, &at);
     *force = 0;
-    for (int k = 0; k < n; k++) B[k * n + j] = (x[k] - left[k]) / unit;
+    for (int k = 0; k < s->n; k++)
+      for (int c = 0; c < s->parts[k]; c++) s->C[k][c][j] = (at.N[k][c] - s->N[k][c]) / unit;
   }
-  for (int round = 0; round < ROUNDS; round++) {
-    for (int k = 0; k < n * n; k++) A[k] = B[k];
-    for (int k = 0; k < n; k++) x[k] = -left[k];
-    if (lag_solve_dense((size_t)n, 1, A, x)) return LAG_ERETRY;
-    for (int k = 0; k < n; k++) pb->u[m->contacts[of[k]].force] += x[k];
-    if ((rc = imbalance(pb, t, y, of, n, law, left, &size)) != 0) return rc;
-    double most = 0;
-    for (int k = 0; k < n; k++) most = fmax(most, fabs(left[k]));
-    if (most <= enough * size) break;
+  return rc;
+}
+
+/* Part by which force j on its guide presses that guide: from 1 on friction feeds itself. */
+static double gain(const Slipping *s, int j) {
+  double by[3];
+  for (int c = 0; c < s->parts[j]; c++) by[c] = s->mu[j] * s->C[j][c][j];
+  return lag_norm(by, s->parts[j]);
+}
+
+static int fail_slipping(lag_problem *pb, const Slipping *s, int k) {
+  const lag_model *m = pb->model;
+  snprintf(pb->words, sizeof pb->words,
+           "the friction %s, of %.6g, presses its guide more than the force that it follows: no motion or several "
+           "(Painleve's paradox, from a friction of %.6g on)",
+           m->constraints->of[m->contacts[s->of[k]].constraint].name, s->mu[k], s->mu[k] / gain(s, k));
+  pb->detail = pb->words;
+  return LAG_ERETRY;
+}
+
+/* Newton's step x[n] for the forces that slip. */
+static int newton_step(const lag_problem *pb, const Slipping *s, double *x) {
+  double A[LAG_MOST_TOUCHES * LAG_MOST_TOUCHES];
+  for (int k = 0; k < s->n; k++) {
+    double side = pb->hold[pb->model->contacts[s->of[k]].force];
+    x[k] = -s->left[k];
+    for (int j = 0; j < s->n; j++) {
+      double *a = &A[k * s->n + j];
+      *a = k == j;
+      for (int c = 0; c < s->parts[k]; c++) *a += side * s->mu[k] * s->toward[k][c] * s->C[k][c][j];
+    }
   }
-  return 0;
+  return lag_solve_dense((size_t)s->n, 1, A, x);
+}
+
+/* Finds the forces of contacts and guides that slip. Where a force passes through 0 its rounding is that of others:
+ * the largest of the run stands behind the laws in pb->rub. */
+static int find_friction(lag_problem *pb, double t, const double *y) {
+  const double enough = 16 * DBL_EPSILON, some = 1e-11;
+  const lag_model *m = pb->model;
+  const int rounds = m->nguides ? 30 : 4;
+  double *size = pb->rub + 3 * m->ncontacts + 4 * m->nguides, most = HUGE_VAL;
+  Slipping s = {0};
+  int rc; /* no more are closed together */
+  for (int i = 0; i < m->ncontacts && s.n < LAG_MOST_TOUCHES; i++)
+    if (fabs(side_of(pb, i)) > 0) s.of[s.n++] = i;
+  if (!s.n) return 0;
+  for (int k = 0; k < s.n; k++) pb->u[m->contacts[s.of[k]].force] = 0;
+  if ((rc = imbalance(pb, t, y, &s)) != 0 || (rc = find_slopes(pb, t, y, &s)) != 0) return rc;
+  for (int k = 0; k < s.n; k++)
+    if (lag_guide_of(m, s.of[k]) >= 0 && gain(&s, k) >= 1) return fail_slipping(pb, &s, k);
+  for (int round = 0; round < rounds && most > enough * fmax(*size, s.largest); round++) {
+    double x[LAG_MOST_TOUCHES];
+    if (newton_step(pb, &s, x)) return LAG_ERETRY;
+    for (int k = 0; k < s.n; k++) pb->u[m->contacts[s.of[k]].force] += x[k];
+    if ((rc = imbalance(pb, t, y, &s)) != 0) return rc;
+    most = 0;
+    for (int k = 0; k < s.n; k++) most = fmax(most, fabs(s.left[k]));
+  }
+  *size = fmax(*size, s.largest);
+  return m->nguides && !(most <= some * *size) ? fail_slipping(pb, &s, 0) : 0;
 }
 
 static int is_closed(const lag_problem *pb, int i) { return pb->hold[pb->model->contacts[i].input] > 0.5; }
 
-/* of[n] := the closed contacts, with rows as in lag_contact_modes; at[rows] := their numbers in the model. Returns
- * the number of rows. */
-static int list_closed(const lag_problem *pb, const double *law, lag_touch *of, int *at, int *n) {
-  const lag_model *m = pb->model;
-  *n = 0;
-  for (int i = 0; i < m->ncontacts && *n < LAG_MOST_TOUCHES; i++) {
-    if (m->contacts[i].conditional || m->contacts[i].is_tangent || !is_closed(pb, i)) continue;
-    at[*n] = i;
-    of[(*n)++] = (lag_touch){.tangent = -1, .mode = LAG_CONTACT_SLIPS};
-  }
-  int rows = *n;
-  for (int k = 0; k < *n; k++) {
-    int tangent = at[k] + 1;
-    if (tangent >= m->ncontacts || !m->contacts[tangent].is_tangent || !is_closed(pb, tangent)) continue;
-    of[k] = (lag_touch){.mu = law[3 * tangent], .hold = law[3 * at[k]], .tangent = rows, .mode = LAG_CONTACT_STICKS};
-    at[rows++] = tangent;
-  }
-  return rows;
+/* Closed contacts and guides that stick: touches of[n] and rows as in lag_contact_modes; at[rows]: their numbers in
+ * the model, for the row of a guide that of its tangent. */
+typedef struct Closed {
+  int n, rows, at[2 * LAG_MOST_TOUCHES];
+  lag_touch of[LAG_MOST_TOUCHES];
+} Closed;
+
+static void add_closed(Closed *w, int i, lag_touch touch) {
+  if (w->n == LAG_MOST_TOUCHES) return;
+  w->at[w->n] = i;
+  w->of[w->n++] = touch;
 }
 
-/* x[rows] := forces of the contacts at[rows]. */
-static int forces_at(lag_problem *pb, double t, const double *y, int rows, const int *at, double *x) {
+static Closed list_closed(const lag_problem *pb, const double *law) {
+  const lag_model *m = pb->model;
+  Closed w = {0};
+  for (int i = 0; i < m->ncontacts; i++)
+    if (!m->contacts[i].conditional && !m->contacts[i].is_tangent && is_closed(pb, i))
+      add_closed(&w, i, (lag_touch){.tangent = -1, .mode = LAG_CONTACT_SLIPS});
+  for (int g = 0; g < m->nguides; g++)
+    if (is_closed(pb, m->guides[g].tangent))
+      add_closed(&w, m->guides[g].tangent, (lag_touch){.hold = lag_guide_law(m, law, g)[0], .guide = 1 + g});
+  w.rows = w.n;
+  for (int k = 0; k < w.n; k++) {
+    lag_touch *of = &w.of[k];
+    int tangent = of->guide ? w.at[k] : lag_tangent_of(m, w.at[k]);
+    if (tangent < 0 || !is_closed(pb, tangent)) continue;
+    of->mu = law[3 * tangent];
+    of->hold = of->guide ? of->hold : law[3 * w.at[k]];
+    of->tangent = w.rows;
+    of->mode = LAG_CONTACT_STICKS;
+    w.at[w.rows++] = tangent;
+  }
+  return w;
+}
+
+/* x[rows] := their forces, of a guide along of.toward, which `begins` sets to the direction of its force. */
+static int forces_at(lag_problem *pb, double t, const double *y, Closed *w, int begins, double *x) {
+  const lag_model *m = pb->model;
   int rc = find_friction(pb, t, y);
-  rc = rc ? rc : laws_at(pb, t, y, pb->rub);
-  for (int k = 0; k < rows && rc == 0; k++) {
-    const lag_contact *c = &pb->model->contacts[at[k]];
-    x[k] = pb->rub[3 * at[k] + 2] + (c->is_tangent ? pb->u[c->force] : 0);
+  rc = rc ? rc : lag_contact_laws_at(pb, t, y, pb->rub);
+  for (int k = 0; k < w->rows && rc == 0; k++) {
+    const lag_contact *c = &m->contacts[w->at[k]];
+    x[k] = pb->rub[3 * w->at[k] + 2] + (c->is_tangent ? pb->u[c->force] : 0);
+    lag_touch *of = k < w->n && w->of[k].guide ? &w->of[k] : NULL;
+    const double *N = of ? lag_guide_law(m, pb->rub, of->guide - 1) + 1 : NULL;
+    double size = of ? lag_norm(N, 3) : 0;
+    for (int i = 0; of && begins && i < 3; i++) of->toward[i] = size > 0 ? N[i] / size : i == 0;
+    if (of) x[k] = N[0] * of->toward[0] + N[1] * of->toward[1] + N[2] * of->toward[2];
   }
   return rc;
 }
@@ -114,20 +191,19 @@ static int forces_at(lag_problem *pb, double t, const double *y, int rows, const
  * that the least multipliers lack. */
 static int share_forces(lag_problem *pb, double t, const double *y) {
   const double none = 1e-9; /* rounding of a part of a force */
-  lag_touch of[LAG_MOST_TOUCHES];
-  int at[2 * LAG_MOST_TOUCHES], row[LAG_MOST_TOUCHES], n, shared = 0, wedged, rc = laws_at(pb, t, y, pb->rub);
+  int row[LAG_MOST_TOUCHES], shared = 0, wedged, rc = lag_contact_laws_at(pb, t, y, pb->rub);
   double x[2 * LAG_MOST_TOUCHES], D[2 * LAG_MOST_TOUCHES * LAG_MOST_TOUCHES], c[LAG_MOST_TOUCHES], size = 0;
-  int rows = list_closed(pb, pb->rub, of, at, &n);
-  rc = rc ? rc : forces_at(pb, t, y, rows, at, x);
-  for (int k = 0; k < rows && rc == 0; k++) size = fmax(size, fabs(x[k]));
+  Closed w = list_closed(pb, pb->rub);
+  rc = rc ? rc : forces_at(pb, t, y, &w, 1, x);
+  for (int k = 0; k < w.rows && rc == 0; k++) size = fmax(size, fabs(x[k]));
   double unit = size > 0 ? size : 1;
-  for (int k = n; k < rows && rc == 0; k++) {
-    if (side_of(pb, at[k]) != 0) continue;
-    double *force = &pb->u[pb->model->contacts[at[k]].force], *d = D + shared * rows, most = 0;
+  for (int k = w.n; k < w.rows && rc == 0; k++) {
+    if (side_of(pb, w.at[k]) != 0) continue;
+    double *force = &pb->u[pb->model->contacts[w.at[k]].force], *d = D + shared * w.rows, most = 0;
     *force = unit;
-    rc = forces_at(pb, t, y, rows, at, d);
+    rc = forces_at(pb, t, y, &w, 0, d);
     *force = 0;
-    for (int i = 0; i < rows; i++) {
+    for (int i = 0; i < w.rows; i++) {
       d[i] = (d[i] - x[i]) / unit;
       d[i] = fabs(d[i]) > none ? d[i] : 0;
       most = fmax(most, fabs(d[i]));
@@ -135,21 +211,33 @@ static int share_forces(lag_problem *pb, double t, const double *y) {
     if (most > 0) row[shared++] = k;
   }
   if (rc) return rc;
-  lag_cone_forces(n, of, rows, x, shared, D, c, &wedged);
-  for (int j = 0; j < shared; j++) pb->u[pb->model->contacts[at[row[j]]].force] = c[j];
+  lag_cone_forces(w.n, w.of, w.rows, x, shared, D, c, &wedged);
+  for (int j = 0; j < shared; j++) pb->u[pb->model->contacts[w.at[row[j]]].force] = c[j];
   return find_friction(pb, t, y);
 }
 
 int lag_contact_friction_forces(lag_problem *pb, double t, const double *y) {
   for (int i = 0; i < pb->model->ncontacts; i++)
-    if (side_of(pb, i) == 0) return share_forces(pb, t, y);
+    if (side_of(pb, i) == 0 && is_closed(pb, i)) return share_forces(pb, t, y);
   return find_friction(pb, t, y);
 }
 
 int lag_contact_laws(lag_sim *s, const double *y, double *law) {
   int rc = lag_inputs(&s->pb, s->run->t);
-  rc = rc ? rc : laws_at(&s->pb, s->run->t, y, law);
+  rc = rc ? rc : lag_contact_laws_at(&s->pb, s->run->t, y, law);
   return rc ? lag_fail(s, LAG_EMODEL, "the contacts have no finite values at t = %s s", LAG_TEXT(s->run->t)) : LAG_OK;
+}
+
+double lag_sim_guide_part(lag_sim *s, int k) {
+  const lag_model *m = s->scene->model;
+  if (!s || k < 0 || k >= m->nguides) return NAN;
+  const lag_guide *guide = &m->guides[k];
+  const lag_contact *c = &m->contacts[guide->tangent];
+  const double *law = s->pb.rub, *own = lag_guide_law(m, law, k);
+  if (!lag_contact_is_closed(s, c) || lag_inputs_at(&s->pb, s->run->t, s->now)) return NAN;
+  if (lag_contact_laws_at(&s->pb, s->run->t, s->now, s->pb.rub)) return NAN;
+  double held = fabs(law[3 * guide->tangent + 2] + s->pb.u[c->force]), most = own[0] * lag_norm(own + 1, guide->parts);
+  return held > 0 ? held / most : 0;
 }
 
 void lag_tangent_events(const lag_sim *s, double *g) {
@@ -159,6 +247,10 @@ void lag_tangent_events(const lag_sim *s, double *g) {
     if (!c->is_tangent) continue;
     g[c->impact] = fabs(s->hold[c->force]) > 0 ? s->hold[c->force] * g[c->impact] : 1;
     g[c->release] = lag_contact_is_closed(s, c) ? g[c->release] : 1;
+  }
+  for (int i = 0; i < m->nguides; i++) {
+    const lag_guide *guide = &m->guides[i];
+    if (guide->turn >= 0 && !(fabs(s->hold[m->contacts[guide->tangent].force]) > 0)) g[guide->turn] = 1;
   }
 }
 
@@ -277,77 +369,113 @@ static int fail_paradox(ContactSet *w, const lag_touch *of, int n, int motions) 
   int worst = 0;
   double least = HUGE_VAL;
   for (int k = 0; k < n; k++) { /* the contact that comes closest to jamming */
-    int a = of[k].contact, t = w->at[a];
-    double limit = t < 0 ? HUGE_VAL : w->response[a * w->rows + a] / fabs(w->response[a * w->rows + t]);
+    int a = of[k].contact, t = of[k].guide ? a : w->at[a];
+    double limit = t < 0         ? HUGE_VAL
+                   : of[k].guide ? 1 / lag_guide_gain(w, a)
+                                 : w->response[a * w->rows + a] / fabs(w->response[a * w->rows + t]);
     if (limit >= least) continue;
     least = limit;
-    worst = a;
+    worst = k;
   }
   return lag_fail(w->sim, LAG_ESTALL,
-                  "at t = %.9g s %s at the contact %s, of friction %.6g: %s (Painleve's paradox, from a friction of "
+                  "at t = %.9g s %s at the %s %s, of friction %.6g: %s (Painleve's paradox, from a friction of "
                   "%.6g on in this position)",
-                  w->sim->run->t, motions ? "several motions follow" : "no motion follows", lag_contacts_name(w, worst),
-                  w->law[3 * w->of[w->at[worst] < 0 ? 0 : w->at[worst]]],
+                  w->sim->run->t, motions ? "several motions follow" : "no motion follows",
+                  of[worst].guide ? "guide" : "contact", lag_contacts_name(w, of[worst].contact), of[worst].mu,
                   motions ? "it may slip on or lift off"
                           : "friction would press it against the surface more than the surface presses back",
                   least);
 }
 
-/* of[*n], row[rows] := the contacts that take part and their rows in w, gaps first. Returns the number of rows; -1:
- * there are too many. */
-static int list_touches(const ContactSet *w, int event, lag_touch *of, int *row, int *n) {
+static int slip_side(const ContactSet *w, int t, int event) {
+  int i = w->of[t];
+  double slip = w->rate[i];
+  int rests = fabs(slip) <= lag_no_gap * w->rate_size[i] || lag_contacts_at(w, t)->impact == event || w->was_closed[i];
+  return rests ? 0 : slip > 0 ? 1 : -1;
+}
+
+/* Contacts and guides that take part, as problem of lag_contact_modes: touches of[n], row[rows]: their rows in the
+ * set, -1 for the force of a guide, whose map from forces stands in pressed. */
+typedef struct Touches {
+  int n, rows, row[2 * LAG_MOST_TOUCHES];
+  lag_touch of[LAG_MOST_TOUCHES];
+  double pressed[LAG_MOST_TOUCHES][3][1 + 2 * LAG_MOST_TOUCHES];
+} Touches;
+
+/* Returns 0 where there are too many. */
+static int list_touches(const ContactSet *w, int event, Touches *to) {
   const lag_model *m = w->sim->scene->model;
-  *n = 0;
-  for (int a = 0; a < w->n; a++) {
-    if (!w->active[a]) continue;
-    if (*n == LAG_MOST_TOUCHES) return -1;
-    of[*n] = (lag_touch){.contact = a, .tangent = -1};
-    row[(*n)++] = a;
+  int guides = w->rows - m->nguides;
+  *to = (Touches){0};
+  for (int a = 0; a < w->rows; a++) {
+    if (a < w->n ? !w->active[a] : a < guides) continue;
+    if (to->n == LAG_MOST_TOUCHES) return 0;
+    int guide = a < guides ? 0 : 1 + a - guides;
+    to->of[to->n] = (lag_touch){.contact = a, .tangent = -1, .guide = guide};
+    to->row[to->n++] = guide ? -1 : a;
   }
-  int rows = *n;
-  for (int k = 0; k < *n; k++) {
-    int t = w->at[row[k]];
+  to->rows = to->n;
+  for (int k = 0; k < to->n; k++) {
+    lag_touch *of = &to->of[k];
+    int a = of->contact, t = of->guide ? a : w->at[a];
     if (t < 0) continue;
-    const lag_contact *c = &m->contacts[w->of[t]];
-    double slip = w->rate[w->of[t]];
-    of[k].mu = w->law[3 * w->of[t]];
-    of[k].hold = w->law[3 * w->of[row[k]]];
-    of[k].slip = fabs(slip) <= lag_no_gap * w->rate_size[w->of[t]] || c->impact == event || w->was_closed[w->of[t]] ? 0
-                 : slip > 0                                                                                         ? 1
-                            : -1;
-    of[k].cannot_stick = c->release == event;
-    of[k].tangent = rows;
-    row[rows++] = t;
+    of->mu = w->law[3 * w->of[t]];
+    of->hold = of->guide ? lag_guide_law(m, w->law, of->guide - 1)[0] : w->law[3 * w->of[a]];
+    of->slip = slip_side(w, t, event);
+    of->cannot_stick = lag_contacts_at(w, t)->release == event;
+    of->tangent = to->rows;
+    to->row[to->rows++] = t;
   }
-  return rows;
+  return 1;
+}
+
+/* Forces of guides as maps from those of the rows. */
+static void list_pressed(const ContactSet *w, Touches *to) {
+  const lag_model *m = w->sim->scene->model;
+  for (int k = 0; k < to->n; k++) {
+    lag_touch *of = &to->of[k];
+    if (!of->guide) continue;
+    of->parts = m->guides[of->guide - 1].parts;
+    of->pressed = &to->pressed[k][0][0];
+    for (int c = 0; c < of->parts; c++) {
+      const double *from = lag_guide_pressed(w, of->guide - 1, c);
+      to->pressed[k][c][0] = from[0];
+      for (int r = 0; r < to->rows; r++) of->pressed[c * (1 + to->rows) + 1 + r] = to->row[r] < 0 ? 0 : from[1 + to->row[r]];
+    }
+  }
 }
 
 int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration) {
   lag_sim *s = w->sim;
-  lag_touch of[LAG_MOST_TOUCHES];
-  int row[2 * LAG_MOST_TOUCHES], n, rows = list_touches(w, event, of, row, &n);
-  for (int a = 0; a < w->n; a++) w->closed[a] = 0;
-  if (rows < 0)
+  Touches to;
+  int some = list_touches(w, event, &to), n = to.n, rows = to.rows;
+  for (int a = 0; a < w->rows; a++) w->closed[a] = 0;
+  if (!some)
     return lag_fail(s, LAG_EMODEL,
                     "at t = %.9g s more than %d contacts touch at once, some of them with friction, which only moreau "
                     "follows: take --method \"moreau(step=1e-3)\"",
                     s->run->t, LAG_MOST_TOUCHES);
   int rc = find_free_accelerations(w);
+  rc = rc ? rc : lag_guides_find_pressed(w);
+  list_pressed(w, &to);
   double W[4 * LAG_MOST_TOUCHES * LAG_MOST_TOUCHES], pull[2 * LAG_MOST_TOUCHES], x[2 * LAG_MOST_TOUCHES],
       room[2 * LAG_MOST_TOUCHES * (2 * LAG_MOST_TOUCHES + 5)];
   for (int i = 0; i < rows && rc == 0; i++) {
-    pull[i] = w->rhs[row[i]];
-    for (int j = 0; j < rows; j++) W[i * rows + j] = w->response[row[i] * w->rows + row[j]];
+    pull[i] = to.row[i] < 0 ? 0 : w->rhs[to.row[i]];
+    for (int j = 0; j < rows; j++)
+      W[i * rows + j] = to.row[i] < 0 || to.row[j] < 0 ? 0 : w->response[to.row[i] * w->rows + to.row[j]];
   }
-  int motions = rc ? 0 : n == 0 ? 1 : lag_contact_modes(n, of, rows, W, pull, x, room);
-  if (rc || motions != 1) return rc ? rc : fail_paradox(w, of, n, motions);
+  int motions = rc ? 0 : n == 0 ? 1 : lag_contact_modes(n, to.of, rows, W, pull, x, room);
+  if (rc || motions != 1) return rc ? rc : fail_paradox(w, to.of, n, motions);
   for (int a = 0; a < w->n; a++) {
     acceleration[a] = w->rhs[a];
-    for (int k = 0; k < rows; k++) acceleration[a] += w->response[a * w->rows + row[k]] * x[k];
+    for (int k = 0; k < rows; k++)
+      acceleration[a] += to.row[k] < 0 ? 0 : w->response[a * w->rows + to.row[k]] * x[k];
   }
   for (int k = 0; k < n; k++) {
-    w->closed[row[k]] = of[k].mode != LAG_CONTACT_OPEN;
-    w->side[row[k]] = of[k].mode == LAG_CONTACT_SLIPS ? of[k].to : of[k].shared ? 0 : (double)NAN;
+    int a = to.of[k].contact;
+    w->closed[a] = to.of[k].mode != LAG_CONTACT_OPEN;
+    w->side[a] = to.of[k].mode == LAG_CONTACT_SLIPS ? to.of[k].to : to.of[k].shared ? 0 : (double)NAN;
   }
   lag_contacts_close_only(w, 0, -1);
   return LAG_OK;
@@ -355,9 +483,11 @@ int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration) {
 
 void lag_contacts_set_friction(ContactSet *w) {
   lag_sim *s = w->sim;
-  for (int a = 0; a < w->n; a++) {
-    if (w->at[a] < 0 || !w->closed[a]) continue;
-    int i = w->of[w->at[a]], slips = fabs(w->side[a]) > 0;
+  int guides = w->rows - s->scene->model->nguides;
+  for (int a = 0; a < w->rows; a++) {
+    int t = a < w->n ? w->at[a] : a < guides ? -1 : a;
+    if (t < 0 || !w->closed[a]) continue;
+    int i = w->of[t], slips = fabs(w->side[a]) > 0;
     if (w->was_closed[i] && slips) lag_mark_due(s, s->scene->model->contacts[i].release);
     lag_contact_set_closed(s, i, !slips);
     s->hold[s->scene->model->contacts[i].force] = w->side[a];

@@ -27,12 +27,14 @@ typedef struct Trial {
   double *x, *A, *a, *first, *force, *size;
 } Trial;
 
-/* Mode number k of a contact, in the order in which they are tried; 0: there are no more. */
+/* Mode number k of a contact, in the order in which they are tried; 0: there are no more. A guide has no open one, and
+ * slips with a force to either side, from which those of several components are sought. */
 static int choose(lag_touch *c, int k) {
   static const lag_contact_mode modes[] = {LAG_CONTACT_STICKS, LAG_CONTACT_SLIPS, LAG_CONTACT_SLIPS, LAG_CONTACT_OPEN};
-  if (k >= 4) return 0;
-  c->mode = modes[k];
-  c->to = k == 2 ? -1 : 1;
+  if (k >= (c->guide ? 5 : 4)) return 0;
+  c->mode = c->guide ? modes[k > 0] : modes[k];
+  c->to = (c->guide ? k % 2 == 0 : k == 2) ? -1 : 1;
+  for (int i = 0; i < c->parts; i++) c->toward[i] = i > 0 ? 0 : k > 2 ? -1 : 1;
   return 1;
 }
 
@@ -57,10 +59,22 @@ static void set_row(Trial *t, int k, int held, int other, double factor) {
   t->held[k] = held;
 }
 
+/* Row i says that x[i] is the force of its guide along `toward`. */
+static void set_guide_row(Trial *t, int i) {
+  const lag_touch *c = &t->of[i];
+  set_row(t, i, 0, -1, 0);
+  for (int k = 0; k < c->parts; k++) {
+    const double *from = c->pressed + k * (1 + t->rows);
+    t->x[i] += c->toward[k] * from[0];
+    for (int j = 0; j < t->rows; j++) t->A[i * t->rows + j] -= c->toward[k] * from[1 + j];
+  }
+}
+
 static void set_rows(Trial *t) {
   for (int i = 0; i < t->n; i++) {
     const lag_touch *c = &t->of[i];
-    set_row(t, i, c->mode != LAG_CONTACT_OPEN, -1, 0);
+    if (c->guide) set_guide_row(t, i);
+    else set_row(t, i, c->mode != LAG_CONTACT_OPEN, -1, 0);
     if (c->tangent >= 0)
       set_row(t, c->tangent, c->mode == LAG_CONTACT_STICKS, c->mode == LAG_CONTACT_SLIPS ? i : -1, c->to * c->mu);
   }
@@ -77,11 +91,40 @@ static void find_accelerations(Trial *t) {
   }
 }
 
+/* Turns `toward` of guide c into the direction of its force at x. Returns whether it has turned. */
+static int turn_guide(const Trial *t, lag_touch *c) {
+  double N[3], size = 0, turned = 0;
+  for (int k = 0; k < c->parts; k++) {
+    const double *from = c->pressed + k * (1 + t->rows);
+    N[k] = from[0];
+    for (int j = 0; j < t->rows; j++) N[k] += from[1 + j] * t->x[j];
+    size = hypot(size, N[k]);
+  }
+  for (int k = 0; k < c->parts && size > 0; k++) {
+    turned = fmax(turned, fabs(N[k] / size - c->toward[k]));
+    c->toward[k] = N[k] / size;
+  }
+  return turned > nothing;
+}
+
+/* Forces of the modes: of guides with several components by Newton's method, of the others at once. 0: none, or a
+ * guide slips that presses to its other side. */
 static int solve(Trial *t) {
-  set_rows(t);
-  if (lag_solve_dense((size_t)t->rows, 1, t->A, t->x)) return 0;
+  enum { ROUNDS = 50 };
+  int turned = 1;
+  for (int round = 0; turned && round < ROUNDS; round++) {
+    set_rows(t);
+    if (lag_solve_dense((size_t)t->rows, 1, t->A, t->x)) return 0;
+    turned = 0;
+    for (int i = 0; i < t->n; i++) {
+      lag_touch *c = &t->of[i];
+      int other = c->guide && turn_guide(t, c);
+      if (other && c->parts == 1 && c->mode == LAG_CONTACT_SLIPS) return 0;
+      turned |= other;
+    }
+  }
   find_accelerations(t);
-  return 1;
+  return !turned;
 }
 
 /* The acceleration that unit force of row k makes there. */
@@ -141,7 +184,8 @@ static double rounding(const Trial *t, int k) { return response(t, k) > 0 ? noth
 static int fits(const Trial *t, int i) {
   const lag_touch *c = &t->of[i];
   if (c->mode == LAG_CONTACT_OPEN) return t->a[i] >= -nothing * t->size[i];
-  if (!(t->x[i] > rounding(t, i)) || !(response(t, i) > 0) || fabs(t->a[i]) > alike * t->size[i]) return 0;
+  if (!c->guide && (!(t->x[i] > rounding(t, i)) || !(response(t, i) > 0) || fabs(t->a[i]) > alike * t->size[i]))
+    return 0;
   if (c->mode == LAG_CONTACT_STICKS)
     return fabs(t->a[c->tangent]) <= alike * t->size[c->tangent] &&
            fabs(t->x[c->tangent]) <= lag_touch_holds(c) * t->x[i] * (1 + nothing) + rounding(t, c->tangent);

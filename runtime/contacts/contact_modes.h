@@ -14,6 +14,9 @@ typedef struct lag_touch {
   int shared;            /* it sticks, and its force is not unique */
   lag_contact_mode mode; /* without friction a closed contact slips */
   int to;                /* the side to which it slips: -1, 1 */
+  /* of a guide: not 0; its force N[parts] = pressed[parts][1 + rows] (1, x); and the direction of N */
+  int guide, parts;
+  double *pressed, toward[3];
 } lag_touch;
 
 enum { LAG_MOST_TOUCHES = 6 };
@@ -21,12 +24,12 @@ enum { LAG_MOST_TOUCHES = 6 };
 /* The largest friction of a contact that sticks, beside the force that presses. */
 static inline double lag_touch_holds(const lag_touch *c) { return c->hold > c->mu ? c->hold : c->mu; }
 
-/* Rows 0..n-1 are gaps, behind them the tangents: accelerations are W[rows rows] x + pull for
+/* Rows 0..n-1 are gaps, or forces |N| of guides, without W and pull; behind them the tangents: accelerations are W[rows rows] x + pull for
  * forces x[rows]. Fills in mode, to, shared and x. A contact sticks where some forces that hold
  * it obey Coulomb's law; at rest, with a larger static friction, as few contacts begin to slip
  * as can. Returns the number of motions, 0, 1 or 2: none (Painleve's paradox, where friction is
  * large), one, or more than one. room[rows (rows + 5)] is scratch. All combinations are tried,
- * at most 4^n: n <= LAG_MOST_TOUCHES. P. Loetstedt, SIAM J. Appl. Math. 42 (1982) 281, DOI
+ * at most 5^n: n <= LAG_MOST_TOUCHES. P. Loetstedt, SIAM J. Appl. Math. 42 (1982) 281, DOI
  * 10.1137/0142022. */
 int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const double *pull, double *x, double *room);
 

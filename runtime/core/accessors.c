@@ -81,7 +81,7 @@ int lag_observe(lag_sim *s, double t, const double *y, double *out) {
   int weakest, rc = lag_inputs_at(&s->pb, t, y);
   rc = rc ? rc : lag_closed_form_at(s, t);
   if (rc == 0 && s->pb.contacts && c->forces && s->pb.contacts->length > 0) lag_contact_show(s);
-  rc = rc ? rc : c->observe(t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
+  rc = rc ? rc : c->observe(c, t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
   if (rc == 0 && c->forces && c->model->constraints && lag_independence(&s->pb, t, y, &weakest) < doubtful)
     for (int i = 0; i < c->nout; i++) out[i] = c->forces[i] ? NAN : out[i];
   return rc;

@@ -17,7 +17,8 @@ static lag_phase_point point_at(void *context, double q, double p) {
   int nq = c->of->nq;
   y[c->of->q] = q;
   y[c->of->p] = p;
-  if (c->of->curve(c->t, y, y + nq, y + 2 * nq, c->p, c->u, out, c->w)) return (lag_phase_point){NAN, NAN, NAN, NAN};
+  if (c->of->curve(c->of, c->t, y, y + nq, y + 2 * nq, c->p, c->u, out, c->w))
+    return (lag_phase_point){NAN, NAN, NAN, NAN};
   return (lag_phase_point){out[0], out[1], out[2], out[3]};
 }
 
@@ -26,7 +27,7 @@ double lag_action(const lag_action_curve *of, double t, const double *q, const d
   Place c = {of, t, p, u, y, w};
   for (int i = 0; i < of->nq; i++) y[i] = q[i];
   for (int i = 0; i < of->nz; i++) y[2 * of->nq + i] = z[i];
-  if (of->momenta && of->momenta(t, q, v, z, p, u, y + of->nq, w)) return NAN;
+  if (of->momenta && of->momenta(of, t, q, v, z, p, u, y + of->nq, w)) return NAN;
   lag_action_integral x = lag_action_of_curve(point_at, &c, y[of->q], y[of->p], of->periodic);
   return x.why_not ? NAN : x.J;
 }

@@ -54,9 +54,10 @@ void lag_charges_at(lag_sim *s, double t, const double *y) {
     no_values(s, 0);
     return;
   }
-  if (m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now, s->work))
+  if (m->energy(m, t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now, s->work))
     s->charge_now[0] = s->charge_now[1] = NAN;
-  if (n > 1 && m->charges->values(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now + 2, s->work)) no_values(s, 1);
+  if (n > 1 && m->charges->values(m->charges, t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now + 2, s->work))
+    no_values(s, 1);
 }
 
 int lag_sim_balance(lag_sim *s) {
@@ -110,7 +111,7 @@ static void add_piece(lag_sim *s, double a, double b, double *gain) {
     double t = a + s->node[i] * (b - a);
     s->method->dense(s->method_work, &s->pb, t, y);
     int rc = lag_inputs_at(&s->pb, t, y);
-    rc = rc ? rc : m->charges->powers(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_power, s->work);
+    rc = rc ? rc : m->charges->powers(m->charges, t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_power, s->work);
     for (int k = 0; k < n; k++) gain[k] += rc ? NAN : (b - a) * s->weight[i] * s->charge_power[k];
   }
 }

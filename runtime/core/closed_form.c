@@ -7,7 +7,7 @@
 int lag_closed_form_at(lag_sim *s, double t) {
   const lag_scene *c = s->scene;
   int nq = s->pb.nq;
-  return c->nexact ? c->exact(t, s->begin, s->begin + nq, s->begin + 2 * nq, s->p, s->u,
+  return c->nexact ? c->exact(c, t, s->begin, s->begin + nq, s->begin + 2 * nq, s->p, s->u,
                               s->u + c->model->nu + c->model->nmodes)
                    : 0;
 }

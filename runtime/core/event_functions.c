@@ -10,7 +10,7 @@ int lag_events_eval(lag_sim *s, double t, const double *y, double *g) {
                     LAG_TEXT(t));
   if (rc == 0 && lag_watched(s) > m->nev && lag_switch_eval(s, t, y, g + m->nev))
     return lag_fail(s, LAG_ENAN, "a switching function is not a number at t = %s s", LAG_TEXT(t));
-  if (rc == 0 && m->nev) rc = m->events(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, g, s->work);
+  if (rc == 0 && m->nev) rc = m->events(m, t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, g, s->work);
   if (rc == 0 && s->pb.contacts) lag_contact_mute(s, g);
   else if (rc == 0 && m->contact_laws) lag_tangent_events(s, g);
   int bad = rc ? -1 : lag_not_finite(m->nev, g);

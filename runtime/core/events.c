@@ -143,7 +143,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
   int rc = lag_inputs(&s->pb, r->t);
   memcpy(s->yb, s->now, bytes);
   if (rc == 0 && m->act && !of) {
-    rc = m->act(k, r->t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, s->yb, s->yb + nq, s->yb + 2 * nq, stop,
+    rc = m->act(m, k, r->t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, s->yb, s->yb + nq, s->yb + 2 * nq, stop,
                 s->work);
   }
   if (rc || lag_not_finite(n, s->yb) >= 0) {
@@ -164,7 +164,8 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
   if (rc == 0 && !kick) rc = watch_restarts(s, k, rest);
   if (rc) return rc;
   int before = *changed;
-  *changed |= of != NULL; /* the set of closed contacts may be another */
+  /* the set of closed contacts may be another; a force that has a corner goes on from there */
+  *changed |= of != NULL || lag_guide_turns(m, k);
   /* slips back at once: no event */
   int turns = contact && contact->is_tangent && k == contact->impact && !lag_contact_is_closed(s, contact);
   if (turns) {

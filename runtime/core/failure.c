@@ -1,6 +1,4 @@
 /* Statuses and messages: what a simulation, a method or the model notes of a failure. */
-#include <float.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,14 +20,6 @@ const char *lag_status_name(int status) {
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (names[i].status == status) return names[i].name;
   return "failed";
-}
-
-const char *lag_number_text(double x, char text[64]) {
-  for (int digits = DBL_DIG; digits <= DBL_DIG + 3; digits++) {
-    snprintf(text, 64, "%.*g", digits, x);
-    if (strtod(text, NULL) == x) break;
-  }
-  return text;
 }
 
 int lag_fail(lag_sim *s, int status, const char *format, ...) {

@@ -92,32 +92,6 @@ int lag_sim_rows(lag_sim *s, int rows, const double *t, double *y, double *out, 
   return LAG_OK;
 }
 
-/* The values of `from`: parameters, inputs, start. */
-static void copy_values(const lag_sim *from, lag_sim *s) {
-  const lag_model *m = s->scene->model;
-  memcpy(s->p, from->p, (size_t)m->np * sizeof *s->p);
-  memcpy(s->derived, from->derived, (size_t)m->nderived * sizeof *s->p);
-  memcpy(s->fixed, from->fixed, (size_t)m->np);
-  memcpy(s->start, from->start, (size_t)s->pb.n * sizeof *s->start);
-  memcpy(s->hold, from->hold, (size_t)m->nu * sizeof *s->hold);
-  memcpy(s->signal, from->signal, (size_t)m->nu * sizeof *s->signal);
-}
-
-lag_sim *lag_sim_like(const lag_sim *from) {
-  lag_option opt[64];
-  lag_sim *s = from ? lag_sim_new(from->scene) : NULL;
-  if (!s) return NULL;
-  copy_values(from, s);
-  s->tol = s->pb.tol = from->tol;
-  const lag_method *m = from->method;
-  int n = m->noptions < 64 ? m->noptions : 64;
-  for (int i = 0; from->options && i < n; i++)
-    opt[i] = (lag_option){.name = m->options[i].name, .value = from->options[i]};
-  if (!from->options || lag_sim_set_method(s, m, opt, n) == LAG_OK) return s;
-  lag_sim_free(s);
-  return NULL;
-}
-
 /* One motion; y[rows * n] is NaN already. */
 static int motion(lag_sim *s, const double *y0, const double *p, int rows, const double *t, double *y) {
   const lag_model *m = s->scene->model;
@@ -127,7 +101,7 @@ static int motion(lag_sim *s, const double *y0, const double *p, int rows, const
     s->p[i] = p[i];
     s->fixed[i] = 1;
   }
-  if (p && s->scene->params) s->scene->params(s->p, s->fixed);
+  if (p && s->scene->params) s->scene->params(s->scene, s->p, s->fixed);
   if (y0) memcpy(s->start, y0, (size_t)s->pb.n * sizeof *y0);
   return lag_sim_rows(s, rows, t, y, NULL, &done);
 }

@@ -36,7 +36,7 @@ int lag_massless_direction(int n, double *K, double *x, int *column, double *par
 /* Kinetic energy: E at y less E at rest there. */
 static double kinetic(lag_problem *pb, double t, const double *y, double rest) {
   double e[2];
-  return pb->model->energy(t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, e, pb->work) ? NAN : e[0] - rest;
+  return pb->model->energy(pb->model, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, e, pb->work) ? NAN : e[0] - rest;
 }
 
 /* M[nq nq] by second differences of the energy p.v - L over velocities, from rest: exact up to rounding where L is

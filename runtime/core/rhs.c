@@ -11,7 +11,7 @@ int lag_inputs(lag_problem *pb, double t) {
   for (int i = m->nu; i < m->nu + m->nmodes; i++) pb->u[i] = pb->hold[i];
   if (m->nu == 0) return 0;
   if (m->inputs) {
-    int rc = m->inputs(t, pb->p, pb->u);
+    int rc = m->inputs(m, t, pb->p, pb->u);
     if (rc) return rc;
   }
   for (int i = 0; i < m->nu; i++) {
@@ -74,12 +74,12 @@ double lag_next_row(const lag_problem *pb, double t, double *row) {
 int lag_variation(lag_problem *pb, double t, const double *q, const double *v, double *Lq, double *Lv, double *Q) {
   int rc = lag_inputs(pb, t);
   pb->rhs_calls++;
-  return rc ? rc : pb->model->variation(t, q, v, NULL, pb->p, pb->u, Lq, Lv, Q, pb->work);
+  return rc ? rc : pb->model->variation(pb->model, t, q, v, NULL, pb->p, pb->u, Lq, Lv, Q, pb->work);
 }
 
 int lag_second_derivatives(lag_problem *pb, double t, const double *q, const double *v, double *h) {
   int rc = lag_inputs(pb, t);
-  return rc ? rc : pb->model->second(t, q, v, NULL, pb->p, pb->u, h, pb->work);
+  return rc ? rc : pb->model->second(pb->model, t, q, v, NULL, pb->p, pb->u, h, pb->work);
 }
 
 int lag_not_finite(int n, const double *x) {

@@ -71,7 +71,7 @@ LAG_ALWAYS_INLINE int lag_rhs_inline(lag_problem *pb, int nq, double t, const do
     if (rc) return rc;
   }
   lag_copy(nq, y + nq, dy);
-  return m->accel(t, y, y + nq, y + 2 * nq, pb->p, pb->u, dy + nq, dy + 2 * nq, pb->work);
+  return m->accel(m, t, y, y + nq, y + 2 * nq, pb->p, pb->u, dy + nq, dy + 2 * nq, pb->work);
 }
 #endif
 

@@ -55,7 +55,7 @@ static void take_over(lag_sim *s) {
   s->pb.systems = s->run->systems;
   s->pb.iterations = s->run->iterations;
   s->pb.dir = s->run->dir != 0.0 ? s->run->dir : 1;
-  if (m->derive) m->derive(s->p);
+  if (m->derive) m->derive(m, s->p);
   lag_note_redundant(s);
   lag_switch_count(s);
 }

@@ -130,7 +130,7 @@ static int alloc_scratch(lag_sim *s) {
   const size_t sizes[] = {nuu,
                           nw, n, n, n, nev, nev, nout, 2 + nev, 11 * nev, held, ranks, sized, (size_t)m->ncontacts,
                           2 * nc, nc, nc, 3 * (size_t)m->nswitch, nm, nm, nm, nm, nm, nm * (9 + 2 * nm), nm * (3 + nm),
-                          m->contact_laws ? np * (5 + 2 * np) : 0,
+                          m->contact_laws ? 3 * np + 4 * (size_t)m->nguides + 1 : 0,
                           (size_t)(m->nsizes + m->nmoving)};
   s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
@@ -156,38 +156,68 @@ static double *default_options(const lag_method *method) {
 /* Sets the state to the start as it is set now, so that a simulation can be inspected before it runs. */
 static void set_start_state(lag_sim *s) {
   int nq = s->pb.nq, n = s->pb.n;
-  if (s->scene->start) s->scene->start(s->p, s->now, s->now + nq, s->now + 2 * nq);
+  if (s->scene->start) s->scene->start(s->scene, s->p, s->now, s->now + nq, s->now + 2 * nq);
   for (int i = 0; i < n; i++) s->now[i] = isnan(s->start[i]) ? s->now[i] : s->start[i];
   memcpy(s->begin, s->now, (size_t)n * sizeof(double));
   s->run->t = s->scene->t0;
 }
 
-lag_sim *lag_sim_new(const lag_scene *scene) {
-  if (!scene || !scene->model) return NULL;
+/* A simulation with its memory, for a method with these options (NULL: its own); no values are set. */
+static lag_sim *allocate(const lag_scene *scene, double tol, const lag_method *method, const double *options) {
   const lag_model *m = scene->model;
   lag_sim *s = m->abi == LAG_ABI && m->real_size == sizeof(double) ? calloc(1, sizeof *s) : NULL;
-
   if (!s) return NULL;
   s->scene = scene;
   s->pb = (lag_problem){.model = m, .nq = m->nq, .nz = m->nz, .n = 2 * m->nq + m->nz, .dir = 1, .bad_index = -1};
   s->pb.span = scene->has_span ? fabs(scene->t1 - scene->t0) : 0;
-  s->tol = s->pb.tol = scene->tolerance > 0 ? scene->tolerance : 1e-9;
-  const lag_method *method = lag_find_method(scene->method), *chosen = method ? method : lag_methods[0];
-  double *opt = default_options(chosen);
-  int bad = !opt || alloc_scratch(s) || set_blocks(s, chosen, opt);
-  free(opt);
-  s->pb.opt = NULL;
+  s->tol = s->pb.tol = tol;
+  double *opt = default_options(method);
+  if (opt && options) memcpy(opt, options, (size_t)method->noptions * sizeof *opt);
+  int bad = !opt || alloc_scratch(s) || set_blocks(s, method, opt);
+  s->options = options ? opt : NULL;
+  if (!options) {
+    free(opt);
+    s->pb.opt = NULL;
+  }
   if (bad) {
     lag_sim_free(s);
     return NULL;
   }
   for (int i = 0; i < m->nu + m->nmodes; i++) s->hold[i] = i < m->nu ? NAN : LAG_FREE;
+  return s;
+}
+
+lag_sim *lag_sim_new(const lag_scene *scene) {
+  if (!scene || !scene->model) return NULL;
+  const lag_method *method = lag_find_method(scene->method), *chosen = method ? method : lag_methods[0];
+  lag_sim *s = allocate(scene, scene->tolerance > 0 ? scene->tolerance : 1e-9, chosen, NULL);
+  if (!s) return NULL;
   if ((method || !scene->method) &&
       lag_sim_set_method(s, chosen, scene->options, method ? scene->noptions : 0) == LAG_ENOMEM) {
     lag_sim_free(s);
     return NULL;
   }
-  if (scene->params) scene->params(s->p, s->fixed);
+  if (scene->params) scene->params(scene, s->p, s->fixed);
+  set_start_state(s);
+  return s;
+}
+
+/* The values of `from`: parameters, inputs, start. */
+static void copy_values(const lag_sim *from, lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  memcpy(s->p, from->p, (size_t)m->np * sizeof *s->p);
+  memcpy(s->derived, from->derived, (size_t)m->nderived * sizeof *s->p);
+  memcpy(s->fixed, from->fixed, (size_t)m->np);
+  memcpy(s->start, from->start, (size_t)s->pb.n * sizeof *s->start);
+  memcpy(s->hold, from->hold, (size_t)m->nu * sizeof *s->hold);
+  memcpy(s->signal, from->signal, (size_t)m->nu * sizeof *s->signal);
+}
+
+lag_sim *lag_sim_like(const lag_sim *from) {
+  lag_sim *s = from ? allocate(from->scene, from->tol, from->method, from->options) : NULL;
+  if (!s) return NULL;
+  copy_values(from, s);
+  s->steps_equal = s->options && lag_equal_step(s) > 0;
   set_start_state(s);
   return s;
 }
@@ -269,7 +299,7 @@ static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
         method->name, m->switches[k].text);
   }
   for (int i = 1; i < m->ncontacts && !(needs & LAG_METHOD_IMPULSES); i++)
-    if (m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent)
+    if (m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent && lag_guide_of(m, i) < 0)
       return lag_fail(s, LAG_EMETHOD,
                       "method %s follows friction in a plane, and the slip of a contact has two components here (%s); "
                       "--method \"moreau(step=1e-3)\" follows it",
@@ -505,7 +535,7 @@ int lag_sim_set(lag_sim *s, const char *name, double value) {
   }
   if (rc) return rc;
   if (s->scene->params) {
-    s->scene->params(s->p, s->fixed); /* parameters may depend on this one */
+    s->scene->params(s->scene, s->p, s->fixed); /* parameters may depend on this one */
   }
   set_start_state(s);
   return LAG_OK;
@@ -570,7 +600,7 @@ int lag_check_parameters(lag_sim *s) {
                       m->p[i].name, sign_text(m->p[i].sign));
     }
   int rc =
-      m->nsizes ? m->size_values(s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, s->sizes, s->pb.work) : 0;
+      m->nsizes ? m->size_values(m, s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, s->sizes, s->pb.work) : 0;
   return rc ? rc : judge_sizes(s, m->nsizes, m->sizes, s->sizes, NAN);
 }
 
@@ -579,17 +609,20 @@ int lag_check_moving_sizes(lag_sim *s, double t, const double *y) {
   if (!m->nmoving) return LAG_OK;
   double *size = s->sizes;
   int rc = lag_inputs_at(&s->pb, t, y);
-  rc = rc ? rc : m->moving_sizes(t, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, size, s->pb.work);
+  rc = rc ? rc : m->moving_sizes(m, t, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, size, s->pb.work);
   return rc ? LAG_OK : judge_sizes(s, m->nmoving, m->sizes + m->nsizes, size, t);
 }
 
 int lag_setup_start(lag_sim *s) {
-  const lag_scene *c = s->scene;
-  int n = s->pb.n;
   int rc = check_digits(s, s->method);
+  rc = rc ? rc : lag_check_parameters(s);
+  rc = rc ? rc : check_rates(s);
+  return rc ? rc : lag_start_state(s);
+}
 
-  if (rc) return rc;
-  if ((rc = lag_check_parameters(s)) != 0 || (rc = check_rates(s)) != 0) return rc;
+int lag_start_state(lag_sim *s) {
+  const lag_scene *c = s->scene;
+  int n = s->pb.n, rc;
   set_start_state(s);
   if (lag_not_finite(n, s->now) >= 0) return lag_fail(s, LAG_ENAN, "the start is not finite");
   memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */

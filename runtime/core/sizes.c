@@ -5,6 +5,7 @@
 #include <fenv.h>
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/core.h"
@@ -27,16 +28,16 @@ static const double *moved_state(lag_sim *s, const double *y) {
 static void energy_at(lag_sim *s, double t, const double *y, double *e) {
   const lag_model *m = s->scene->model;
   int nq = m->nq, bad = !m->energy || lag_inputs_at(&s->pb, t, y);
-  if (bad || m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, e, s->work)) e[0] = e[1] = NAN;
+  if (bad || m->energy(m, t, y, y + nq, y + 2 * nq, s->p, s->u, e, s->work)) e[0] = e[1] = NAN;
 }
 
 /* x := values of a formula at t, y, with the inputs as they are. Not 0: there are none. */
 static int formula_at(lag_sim *s, LagFormula of, double t, const double *y, double *x) {
   const lag_model *m = s->scene->model;
   const double *v = y + m->nq, *z = v + m->nq;
-  if (of == LAG_FORMULA_ENERGY) return !m->energy || m->energy(t, y, v, z, s->p, s->u, x, s->work);
-  if (of == LAG_FORMULA_RATES) return m->accel(t, y, v, z, s->p, s->u, x, x + m->nq, s->work);
-  return m->constraints->residuals(t, y, v, z, s->p, s->u, x, s->pb.held + m->constraints->n, s->work);
+  if (of == LAG_FORMULA_ENERGY) return !m->energy || m->energy(m, t, y, v, z, s->p, s->u, x, s->work);
+  if (of == LAG_FORMULA_RATES) return m->accel(m, t, y, v, z, s->p, s->u, x, x + m->nq, s->work);
+  return m->constraints->residuals(m->constraints, t, y, v, z, s->p, s->u, x, s->pb.held + m->constraints->n, s->work);
 }
 
 int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, int n, double *noise, double *up,
@@ -131,8 +132,22 @@ static double energy_of_force(lag_sim *s, double t, const double *y, int i, doub
   return 0;
 }
 
+/* ya[n] := changes of the rates by the friction of switch k, from slipping at its size to none, where the motion sticks
+ * at it; 0: it does not. Uses yc. */
+static int friction_rates(lag_sim *s, int k, double t, const double *y) {
+  double *mode = &s->hold[s->scene->model->nu + k], was = *mode;
+  if (!s->scene->model->switches[k].jumps || !lag_switch_sticks(s, k)) return 0;
+  lag_switch_hold(s, k, -1);
+  int rc = lag_rhs(&s->pb, t, y, s->ya);
+  lag_switch_hold(s, k, 1);
+  rc = rc || lag_rhs(&s->pb, t, y, s->yc);
+  lag_switch_hold(s, k, was);
+  for (int i = 0; i < s->pb.n; i++) s->ya[i] = rc ? 0 : fabs(s->yc[i] - s->ya[i]) / 2;
+  return !rc;
+}
+
 /* The size of the energy e of which rounding is what a body at rest has: of its formula, of rates and of forces in
- * balance in a step h, and of lengths in constraints. */
+ * balance in a step h, friction among them, and of lengths in constraints. */
 static double resting_terms(lag_sim *s, double t, const double *y, double h, double e) {
   const lag_model *m = s->scene->model;
   double of[2], up[2], down[2];
@@ -144,6 +159,11 @@ static double resting_terms(lag_sim *s, double t, const double *y, double h, dou
   }
   for (int i = 0; i < m->nq && h > 0 && !(m->flags & LAG_FIRST_ORDER); i++)
     terms += is_first(m, i) ? energy_of_force(s, t, y, i, h, e, least) : 0;
+  for (int k = 0; k < m->nmodes && h > 0; k++) {
+    if (!friction_rates(s, k, t, y)) continue;
+    for (int i = 0; i < m->nq; i++) s->ya[m->nq + i] *= h;
+    terms += change_of_energy(s, t, y, m->nq, s->ya + m->nq, e);
+  }
   return constraint_lengths(s, t, y) ? terms : terms + change_of_energy(s, t, y, 0, s->yb, e);
 }
 
@@ -311,11 +331,50 @@ static void state_sizes(lag_sim *s, const double *f, double time) {
   }
 }
 
+/* f[n] := the larger of |f| and of change[n], beyond its rounding (NULL: it has none), of coordinates that are at
+ * rest. */
+static void raise_rates(const lag_sim *s, const double *change, const double *noise, double *f) {
+  const double rounding = 1e3; /* of a few hundred operations */
+  const int nq = s->pb.nq;
+  for (int i = 0; i < nq; i++) {
+    double by = fabs(change[nq + i]), v = largest_of_unit(nq, s->scene->model->q, s->now + nq, i);
+    if (!(v > 0) && by > rounding * (noise ? noise[i] : 0)) f[nq + i] = fmax(fabs(f[nq + i]), by);
+  }
+}
+
+/* The same by what contacts that are open now change. */
+static void raise_open(lag_sim *s, double *f) {
+  const size_t n = (size_t)s->pb.n;
+  double *noise = malloc(3 * n * sizeof *noise);
+  rates_beside(s, 0, 0, NULL, f, s->yc);
+  if (noise && !lag_formula_rounding(s, LAG_FORMULA_RATES, s->run->t, s->now, s->pb.nq, noise, noise + n, noise + 2 * n))
+    raise_rates(s, s->yc, noise, f);
+  free(noise);
+}
+
+/* Accelerations of a body that friction holds are rounding: raises f[n], rates at the start, to those without it. */
+static void raise_held(lag_sim *s, double *f) {
+  const lag_model *m = s->scene->model;
+  for (int k = 0; k < m->nmodes; k++)
+    if (friction_rates(s, k, s->run->t, s->now)) raise_rates(s, s->ya, NULL, f);
+  int sticks = 0;
+  for (int i = 0; i < m->ncontacts && !s->pb.contacts; i++) {
+    double *held = &s->hold[m->contacts[i].input];
+    s->contact_was[i] = *held;
+    if (!m->contacts[i].is_tangent || !(*held > 0.5)) continue;
+    *held = NAN;
+    sticks = 1;
+  }
+  if (sticks) raise_open(s, f);
+  for (int i = 0; i < m->ncontacts && !s->pb.contacts; i++) s->hold[m->contacts[i].input] = s->contact_was[i];
+}
+
 void lag_start_sizes(lag_sim *s) {
   const lag_model *m = s->scene->model;
   const int nq = m->nq, n = s->pb.n;
   double *f = s->yb, *bend = s->yc, *size = s->pb.size, time = HUGE_VAL, calls = s->pb.rhs_calls;
   rates_beside(s, 0, 0, NULL, NULL, f);
+  raise_held(s, f);
   memset(bend, 0, (size_t)n * sizeof *bend);
   for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, i), time) : time;
   const double span = s->pb.span;

@@ -30,7 +30,7 @@ enum { MOST = 10000 };
 static int sides_at(lag_sim *s, double t, const double *y, double *to) {
   const lag_model *m = s->scene->model;
   int rc = lag_inputs(&s->pb, t);
-  rc = rc ? rc : m->switch_values(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, to, s->work);
+  rc = rc ? rc : m->switch_values(m, t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, to, s->work);
   return rc || lag_not_finite(m->nswitch, to) >= 0;
 }
 

@@ -39,7 +39,7 @@ static int rates_at(lag_problem *pb, double t, const double *y, double *r) {
   const lag_model *m = pb->model;
   int rc = m->contact_laws ? lag_contact_friction_forces(pb, t, y) : 0;
   pb->rhs_calls++;
-  return rc ? rc : m->switch_rates(t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, r, pb->work);
+  return rc ? rc : m->switch_rates(m, t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, r, pb->work);
 }
 
 /* B[n n] := derivatives of the rates of the sliding switches by their modes; r: rates now. *size := the largest
@@ -112,7 +112,7 @@ void lag_switch_set_free(lag_sim *s, int is_free) {
 /* g[nswitch] := the switching functions at y, t. */
 static int sides_at(lag_sim *s, double t, const double *y, double *g) {
   const lag_model *m = s->scene->model;
-  int rc = m->switch_values(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, g, s->work);
+  int rc = m->switch_values(m, t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, g, s->work);
   return rc ? rc : lag_not_finite(m->nmodes, g) >= 0 ? LAG_ENAN : 0;
 }
 
@@ -120,7 +120,7 @@ static int sides_at(lag_sim *s, double t, const double *y, double *g) {
  * by more than rounding, which choose() refuses. */
 static int find_grips(lag_sim *s, double t, const double *y) {
   const lag_model *m = s->scene->model;
-  int rc = m->switch_grips ? m->switch_grips(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, s->grip, s->work) : 0;
+  int rc = m->switch_grips ? m->switch_grips(m, t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, s->grip, s->work) : 0;
   for (int k = 0; k < m->nmodes; k++) s->grip[k] = m->switch_grips && fabs(s->grip[k] - 1) > 1e-9 ? s->grip[k] : 1;
   return rc;
 }

@@ -21,7 +21,19 @@
 #include "lag_lanes.h"
 
 /* ---- a file of its own ---- */
+/* With LAG_LINKED_SINES a program has liblag's, which compile to the same bits: without FMA, and not in lanes. */
+#if defined(LAG_LINKED_SINES) && LAG_OWN && !LAG_FMA && !defined(LAG_LANES) && !defined(LAG_AS_LANES)
+void lag_sincos(double x, double *s, double *c);
+double lag_sin(double x);
+double lag_cos(double x);
+void lag_sincos2(double a, double *sin_a, double *cos_a, double b, double *sin_b, double *cos_b);
+#define lag_sincos4(a, sin_a, cos_a, b, sin_b, cos_b, c, sin_c, cos_c, d, sin_d, cos_d) \
+  (lag_sincos2(a, sin_a, cos_a, b, sin_b, cos_b), lag_sincos2(c, sin_c, cos_c, d, sin_d, cos_d))
+#define lag_lanes_sin lag_sin
+#define lag_lanes_cos lag_cos
+#else
 #include "lag_sincos.h"
+#endif
 
 /* ---- exp: front ---- */
 #if LAG_OWN

@@ -4,7 +4,8 @@
  * coordinates), v[nq] (their time derivatives) and z[nz] (other states); p[np + nderived] are its parameters, of
  * which derive computes the last nderived from the others; u[nu] its inputs, and modes of switches behind them;
  * w[nw] work space for its functions. All values are in SI units. No function allocates, keeps state, or writes past
- * the sizes here. Arrays passed to one call do not overlap.
+ * the sizes here. Arrays passed to one call do not overlap. Every function's first argument, self, is the structure
+ * that holds it, or a copy: emitted C ignores it, and a model that liblag evaluates finds its programs there.
  *
  * A function returns 0 when all went well, > 0 when a smaller step may help (the value left the model's domain), < 0
  * for a failure that no step size cures. */
@@ -22,7 +23,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 15
+#define LAG_ABI 17
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many
  * doubles, one state or one set of parameters a lane. The status < 0 of such a call has bit k of its negative set
@@ -121,6 +122,15 @@ typedef struct lag_jump {
   int event, row, col;
 } lag_jump;
 
+/* Derivatives d[n] of the residuals of lag_linear by parameters, or by inputs (col), at accelerations a[nq]; others are
+ * zero. */
+typedef struct lag_partials {
+  int n;
+  const lag_entry *at; /* [n] */
+  int (*eval)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+              const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *d, LAG_REAL *M, LAG_REAL *w);
+} lag_partials;
+
 /* The exact linearisation of a model, emitted where a method or command needs it (lagc --with linear).
  *
  * The residuals r[nq + nz] vanish along a motion: r_i = f_i - sum_j M_ij a_j for coordinates i, r_(nq + k) = flow_k
@@ -135,7 +145,7 @@ typedef struct lag_linear {
   int ops;               /* operations of one call */
 
   /* dr[ndr] and M[nmass] at a state, for the accelerations a[nq] there (or for others: a = 0 gives df/dy). */
-  int (*eval)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+  int (*eval)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
               const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w);
 
   /* Derivatives for the saltation matrices of events: d[njump], as listed in jump. Derivatives of g that are not
@@ -143,8 +153,11 @@ typedef struct lag_linear {
    * component. Events that depend on inputs are not listed. */
   int njump;
   const lag_jump *jump;
-  int (*jumps)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+  int (*jumps)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                const LAG_REAL *u, LAG_REAL *d, LAG_REAL *w);
+
+  /* For sensitivities; NULL: not emitted (lagc --with sensitivities), or there are none. */
+  const lag_partials *by_params, *by_inputs;
 } lag_linear;
 
 /* One scalar constraint. */
@@ -172,19 +185,19 @@ typedef struct lag_constraints {
   const lag_entry *mass;     /* [nmass] entries of M's lower triangle, col <= row */
 
   /* c[nholonomic] and r[n]. */
-  int (*residuals)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                   const LAG_REAL *u, LAG_REAL *c, LAG_REAL *r, LAG_REAL *w);
+  int (*residuals)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                   const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *c, LAG_REAL *r, LAG_REAL *w);
 
   /* A[njacobian] and M[nmass]. */
-  int (*matrices)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                  const LAG_REAL *u, LAG_REAL *A, LAG_REAL *M, LAG_REAL *w);
+  int (*matrices)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                  const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *A, LAG_REAL *M, LAG_REAL *w);
 
   /* d[nq] and force[nq] = A^T mu. position: for g[nholonomic] and the holonomic constraints alone; velocity: for
    * g[n] and all constraints. A and M are taken at the state given. */
-  int (*position)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                  const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
-  int (*velocity)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                  const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
+  int (*position)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                  const LAG_REAL *p, const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
+  int (*velocity)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                  const LAG_REAL *p, const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
 } lag_constraints;
 
 /* Knowledge of the rate dQ/dt of a charge Q. */
@@ -208,13 +221,13 @@ typedef struct lag_charges {
 
   /* out[2 (n - 1)]: for each charge but the energy, its value and the sum of its |terms|, the scale of its drift.
    * NULL where n is 1. */
-  int (*values)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*values)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
   /* out[n]: dQ/dt of each charge, 0 where it is not known; with dry_friction out[n + 1], the last the power of dry
    * friction. NULL: all are conserved. */
-  int (*powers)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*powers)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
   int dry_friction;
 } lag_charges;
 
@@ -254,6 +267,12 @@ typedef struct lag_contact {
   int law;
 } lag_contact;
 
+/* A guide: its tangent, with friction by the force of constraints that always hold. */
+typedef struct lag_guide {
+  int tangent, parts; /* index in the contacts; components of its force */
+  int turn;           /* event: the force of one component changes its side; -1: there are more */
+} lag_guide;
+
 /* An entry of lag_model.second: the second derivative of L by two of q, v, where of LAG_QQ and LAG_VV only row >=
  * col is given and the row of LAG_VQ belongs to v; or the derivative of generalised force `row` by q or v. */
 enum { LAG_QQ, LAG_VQ, LAG_VV, LAG_FQ, LAG_FV };
@@ -274,13 +293,13 @@ typedef struct lag_taylor {
   int cost_first, cost_next, sums;
 
   /* follows[nu]: 1 where the input follows its formula, 0 where it is constant, as in u. Returns as accel does. */
-  int (*first)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+  int (*first)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *x, LAG_REAL *w);
-  void (*rest)(int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *w);
+  void (*rest)(const void *self, int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *w);
 
   /* y[width] := the sum of orders 1 to n at t + s T, of which only the first 2 nq + nz elements are meant; dy := its
    * derivative by s. */
-  void (*at)(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy);
+  void (*at)(const void *self, int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy);
 } lag_taylor;
 
 /* A size: at least 0, more than 0 where open, at most 1 where it is a part. */
@@ -308,38 +327,37 @@ typedef struct lag_model {
   /* Derived parameters: p[np ... np + nderived - 1] from p[0 ... np - 1]. A scene's params calls derive; so must
    * code that changes p afterwards. NULL where nderived is 0. */
   int nderived;
-  void (*derive)(LAG_REAL *p);
+  void (*derive)(const void *self, LAG_REAL *p);
 
   /* u[nu] at time t, of the inputs to which the model gives a formula. */
-  int (*inputs)(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u);
+  int (*inputs)(const void *self, LAG_REAL t, const LAG_REAL *p, LAG_REAL *u);
 
   /* Accelerations a[nq] from M(q) a = f(t, q, v), and rates zd[nz]. */
-  int (*accel)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-               const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w);
+  int (*accel)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+               const LAG_REAL *u, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w);
 
   /* e[0] = energy p.v - L, e[1] = |p.v| + |L|, the scale against which its drift is judged. */
-  int (*energy)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+  int (*energy)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
                 const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *e, LAG_REAL *w);
 
   /* g[nev]: the event functions. */
-  int (*events)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+  int (*events)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
                 const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *g, LAG_REAL *w);
 
   /* Applies the actions of event k: q1, v1, z1 hold the state after it (on entry: a copy of the
    * state before it). *stop is set to 1 when the event ends the run. */
-  int (*act)(int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-             const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1,
-             int *stop, LAG_REAL *w);
+  int (*act)(const void *self, int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+             const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w);
 
   /* out[nsizes]: the sizes, of parameters alone, that a run checks when it begins. NULL where nsizes is 0. */
   int nsizes;
   const lag_size *sizes; /* [nsizes + nmoving] */
-  int (*size_values)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                     const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*size_values)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                     const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
   /* out[nmoving]: the sizes of states, inputs and time, that a run checks at each step. NULL where nmoving is 0. */
   int nmoving;
-  int (*moving_sizes)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                      const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*moving_sizes)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                      const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
   int ntables;
   const lag_table *tables; /* [ntables] */
@@ -353,11 +371,11 @@ typedef struct lag_model {
    * NAME). */
 
   /* Lq[nq] = dL/dq, the momenta Lv[nq] = dL/dv, and Q[nq], the generalised forces outside L. */
-  int (*variation)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+  int (*variation)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
                    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q, LAG_REAL *w);
 
   /* h[nsecond]: second derivatives of L and derivatives of Q, the entries listed in second_at; the others are zero. */
-  int (*second)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+  int (*second)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
                 const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *h, LAG_REAL *w);
   const lag_second *second_at;
   int nsecond;
@@ -370,25 +388,30 @@ typedef struct lag_model {
   int nswitch;
   const lag_switch *switches; /* [nswitch] */
   /* out[nswitch]: the switching functions. */
-  int (*switch_values)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                       const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*switch_values)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                       const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
   int nmodes;
   /* out[nmodes]: rates dg/dt of the first nmodes, along the motion. NULL where nmodes is 0. */
-  int (*switch_rates)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                      const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*switch_rates)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                      const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
   /* out[nmodes]: the largest mode of a sliding motion, for static friction above that of motion; less than 1 counts
    * as 1. NULL: 1. */
-  int (*switch_grips)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                      const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*switch_grips)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                      const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
   /* out[3 ncontacts]: of a tangent its coefficient of friction and its tangential restitution, of a contact with
    * friction that of static friction and 0, of others 0; and the multiplier of its constraint. NULL: no contact has
    * friction. */
-  int (*contact_laws)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                      const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*contact_laws)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                      const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+
+  int nguides;
+  const lag_guide *guides; /* [nguides]; behind out[3 ncontacts] of contact_laws, for each, its static friction and 3
+                            * components of its force, linear in the multipliers */
 
   const char *math; /* library of sin and cos that the program calls; NULL: not known */
   const char *fixed; /* names of parameters that are numbers in this program, separated by spaces; NULL: none */
+  const void *programs; /* of a model that liblag evaluates */
 } lag_model;
 
 #ifndef LAG_LANES
@@ -397,10 +420,10 @@ typedef struct lag_model {
  * dH/dp, d2H/dp2, dH/dq at such a state; momenta: out[nq]; NULL: momenta are states. */
 typedef struct lag_action_curve {
   int nq, nz, q, p, periodic;
-  int (*curve)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+  int (*curve)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
-  int (*momenta)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-                 const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*momenta)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                 const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 } lag_action_curve;
 
 /* J of the curve through a state; NaN: it has none there. y[2 nq + nz] is work space. Of liblag; emitted `observe`
@@ -428,16 +451,40 @@ typedef struct lag_measure {
   const char *name, *text;
 } lag_measure;
 
+/* A shape of a drawing. Numbers are indices of the scene's outputs, in SI, -1: not given. a, b: places, x y z, or x y
+ * of a picture in a plane; size: width or radius, or the sides of a box; turn: an angle, or the rotation w x y z.
+ *
+ * kind    a, b                       size              count
+ * rod     ends                       width
+ * spring  ends (no a: held at the left) radius         coils
+ * damper  ends                       radius
+ * disc    centre                     radius            spokes
+ * box     centre                     sides, 2 or 3
+ * body    centre (none: the origin)  3 sides, or none
+ * ball    centre                     radius
+ * wall    ends
+ * ground  a place on it; turn: its slope
+ * curve   a point                                      points from here on, each a shape, of one curve
+ * path    the place whose path is drawn
+ * arrow   its foot; b: its vector                      1: b is no length, and scaled to the picture
+ * text    its place */
+typedef struct lag_shape {
+  const char *kind;
+  const char *role; /* its colour: body, link, spring, support, force, velocity, path, text, second, star, ghost */
+  const char *text; /* the text; the place as the model writes it; or NULL */
+  int a[3], b[3], size[3], turn[4], count;
+} lag_shape;
+
 typedef struct lag_scene {
   const char *name;
   const char *doc;
   const lag_model *model;
 
   /* Sets parameters in order of declaration, then derived ones; p[i] with fixed[i] != 0, i < np, keeps its value. */
-  void (*params)(LAG_REAL *p, const unsigned char *fixed);
+  void (*params)(const void *self, LAG_REAL *p, const unsigned char *fixed);
 
   /* The state at the start of the span. */
-  void (*start)(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z);
+  void (*start)(const void *self, const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z);
 
   /* For a model with constraints: given[i] is 1 where the start sets component i of [q|v|z], 2 where i belongs to a
    * rotation that the start does not set, else 0. Components with 0 give way to the constraints first, then those
@@ -457,7 +504,7 @@ typedef struct lag_scene {
   const lag_var *outputs;
   const unsigned char *forces; /* [nout] 1: the output contains multipliers or accelerations; NULL: none does */
   double every;       /* 0: the runtime's choice */
-  int (*observe)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+  int (*observe)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
                  const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
   int nmonitors;
   const lag_monitor *monitors;
@@ -466,11 +513,16 @@ typedef struct lag_scene {
    * has nexact elements more: closed forms stand behind the inputs and modes. */
   int nexact;
   const int *exact_of; /* [nexact] the component of [q|v|z] that each closed form describes */
-  int (*exact)(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0, const LAG_REAL *p,
-               const LAG_REAL *u, LAG_REAL *out);
+  int (*exact)(const void *self, LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,
+               const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out);
 
   int nmeasures;
   const lag_measure *measures; /* [nmeasures] */
+  const void *programs;        /* of a scene that liblag evaluates */
+
+  /* The drawing, in programs for `lagc animate` and `lagc page`; the last ndrawn outputs belong to it alone. */
+  int ndrawn, nshapes;
+  const lag_shape *shapes; /* [nshapes] */
 } lag_scene;
 
 /* A compiled .lag file: all of its scenes. Several scenes may share one model. */

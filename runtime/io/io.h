@@ -53,6 +53,10 @@ typedef struct Rows {
   size_t nrows;
   int ncols;
   const Column *cols;
+  struct {
+    double x;
+    char text[48];
+  } known[128]; /* numbers that were written, by their bits: the values of a grid come again and again */
 } Rows;
 
 /* -1 with errno set. lag_rows_close: keep 0 removes the file. */
@@ -137,19 +141,26 @@ typedef struct Marks {
   Mark *at;           /* [n] in the order of time */
 } Marks;
 
-/* An animation: points whose x and y are columns of the table, all in one unit. */
+/* An animation: shapes whose numbers are columns of the table, all places in one unit. */
 typedef struct Animation {
-  int npoints;
-  int *cols;        /* x, y of each point: [2 * npoints] */
-  int from;         /* 1: point 0 is the start of the first rod, not a body */
-  int rods, trace;  /* 1: draw rods between the points; draw the path of the last point */
+  int nshapes;
+  lag_shape *shapes; /* [nshapes] */
+  char *words;       /* texts of shapes that are not the scene's, or NULL */
+  int trace;         /* 1: draw paths from the start on */
   const char *unit;
   const char *note; /* text below the animation, or "" */
   Marks marks;
 } Animation;
 
+/* Whether b of a shape is a place or a length: not of an arrow that is scaled to the picture. */
+static inline int lag_shape_has_length(const lag_shape *s) { return s->kind[0] != 'a' || s->count == 0; }
+
 /* Writes an HTML page that plays the table. -1 with errno set. */
 int lag_html_write(const char *path, const Table *t, const char *title, const Animation *a);
+
+/* Writes an SVG picture of the shapes at some instants, at equal times from the first row to the last. -1 with errno
+ * set. */
+int lag_drawing_write(const char *path, const Table *t, const char *title, const Animation *a, int instants);
 
 /* JSON writer: commas between members are its own. A name is NULL for elements of an array. */
 typedef struct Json {

@@ -84,6 +84,8 @@ int lag_sigaction(int number, const struct sigaction *action, struct sigaction *
 #define CACHE_FOLDER "lagc"
 /* The C compiler where CC is not set. */
 #define DEFAULT_CC "gcc"
+#define PROGRAM_SUFFIX ".exe"
+#define PATH_SEPARATOR ";"
 /* Whether programs may fork, and end by alarms. */
 #define HAS_POSIX 0
 
@@ -138,6 +140,8 @@ static inline int lag_is_null_device(const char *path) { return _stricmp(path, "
 #define CACHE_VARIABLE "HOME"
 #define CACHE_FOLDER ".cache/lagc"
 #define DEFAULT_CC "cc"
+#define PROGRAM_SUFFIX ""
+#define PATH_SEPARATOR ":"
 #define HAS_POSIX 1
 
 static inline int lag_file_lock(int fd) {

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "io/io.h"
+#include "numeric/fnv1a.h"
 
 const char *lag_column_label(const Column *c, char *s, size_t n) {
   snprintf(s, n, c->unit[0] ? "%s [%s]" : "%s", c->name, c->unit);
@@ -152,6 +153,16 @@ int lag_rows_open(Rows *r, const char *path, const Table *t) {
   return r->npy ? npy_head(r) : 0;
 }
 
+static const char *text_of(Rows *r, double x) {
+  uint64_t h = lag_fnv1a(LAG_FNV1A_START, (const char *)&x, sizeof x);
+  size_t k = (size_t)(h ^ h >> 32) % (sizeof r->known / sizeof *r->known);
+  char text[64];
+  if (r->known[k].text[0] && memcmp(&r->known[k].x, &x, sizeof x) == 0) return r->known[k].text;
+  snprintf(r->known[k].text, sizeof r->known[k].text, "%s", lag_number_text(x, text));
+  r->known[k].x = x;
+  return r->known[k].text;
+}
+
 int lag_rows_write(Rows *r, const double *row) {
   FILE *f = r->out.f;
   if (!r->npy && r->nrows == 0) csv_head(r);
@@ -164,7 +175,7 @@ int lag_rows_write(Rows *r, const double *row) {
     const Column *c = &r->cols[i];
     fputs(i ? "," : "", f);
     if (c->words) csv_text(f, c->words[(int)row[i]]);
-    else fputs(lag_number_text(row[i], (char[64]){0}), f);
+    else fputs(text_of(r, row[i]), f);
   }
   putc('\n', f);
   return ferror(f) ? -1 : 0;

@@ -12,7 +12,7 @@
 #ifndef LAG_IMPULSES_H
 #define LAG_IMPULSES_H
 
-#include "kernels/scalar.h"
+#include "kernels/compensated_sum.h"
 
 /* ---- friction ---- */
 
@@ -31,108 +31,74 @@ static inline void lag_into_ball(int n, const LAG_REAL *centre, LAG_REAL radius,
   for (int k = 0; k < n && far > radius; k++) x[k] = centre[k] + (x[k] - centre[k])*(radius/far);
 }
 
-/* Coulomb's law. slip[n]: now, under the friction x[n], of which 1 changes it by `response`. x := friction
- * that drives the slip to the nearest point of a ball, if it is at most `holds`, else `most` against it.
- * slip := that point. */
-static inline void lag_friction_turn(int n, LAG_REAL response, const LAG_REAL *centre, LAG_REAL radius,
-                                     LAG_REAL holds, LAG_REAL most, LAG_REAL *slip, LAG_REAL *x) {
-  const LAG_REAL origin[2] = {LAG_C(0.0), LAG_C(0.0)};
+/* Coulomb's law along n directions. response: of the slip to friction; friction drives the slip to the nearest point
+ * of a ball about centre[n] if it is at most `holds`, else it is `most` against it. */
+typedef struct lag_coulomb {
+  int n;
+  LAG_REAL response, radius, holds, most;
+  const LAG_REAL *centre;
+} lag_coulomb;
+
+/* slip[n]: now, under the friction x[n]. x := friction by the law; slip := the point that it aims at. */
+static inline void lag_friction_turn(const lag_coulomb *of, LAG_REAL *slip, LAG_REAL *x) {
+  const LAG_REAL origin[2] = {LAG_C(0.0), LAG_C(0.0)}, response = of->response;
+  const int n = of->n;
   LAG_REAL to[2], size = LAG_C(0.0);
   for (int k = 0; k < n; k++) to[k] = slip[k] - response*x[k];
-  lag_into_ball(n, centre, radius, to);
+  lag_into_ball(n, of->centre, of->radius, to);
   for (int k = 0; k < n; k++) {
     x[k] += (to[k] - slip[k])/response;
     slip[k] = to[k];
   }
   if (n > 1) size = LAG_FN(hypot)(x[0], x[1]);
   else size = LAG_FN(fabs)(x[0]);
-  if (size > holds) lag_into_ball(n, origin, most, x);
+  if (size > of->holds) lag_into_ball(n, origin, of->most, x);
 }
 
 /* ---- mean ---- */
 
-typedef struct lag_moreau_ends {
-  LAG_REAL h;
-  const LAG_REAL *y0, *y1, *rate; /* (q, v, z) at both ends of a step; the rates of v and z, or their terms */
-} lag_moreau_ends;
+/* A step of Moreau's: states (q, v, z) at its begin, middle (with the velocities and states at which forces are taken)
+ * and end; rates there, in the first turn, and sizes of their terms. is_explicit: forces depend on no velocity. */
+typedef struct lag_kick {
+  int nq, nz, is_explicit;
+  LAG_REAL t, end, h, epsilon; /* times of the middle and of the end; rounding of LAG_REAL */
+  const LAG_REAL *y;
+  LAG_REAL *mid, *y1, *rate, *rate0, *size;
+} lag_kick;
 
-/* mid := y0 + part (y1 - y0) for velocities and states. Returns its largest change, in units of rounding: of
- * the largest velocity, or of the state itself. */
-static inline LAG_REAL lag_moreau_mean(const lag_moreau_ends *e, LAG_REAL part, LAG_REAL epsilon, int nq, int nz,
-                                       LAG_REAL *mid) {
-  const LAG_REAL *const y0 = e->y0, *const y1 = e->y1;
+/* mid := y + part (y1 - y) for velocities and states. Returns its largest change, in units of rounding: of the largest
+ * velocity, or of the state itself. */
+static inline LAG_REAL lag_kick_mean(const lag_kick *s, LAG_REAL part) {
+  const int nq = s->nq;
+  const LAG_REAL *const y0 = s->y, *const y1 = s->y1;
   LAG_REAL most = LAG_C(0.0), fastest = LAG_C(0.0);
   for (int i = nq; i < 2*nq; i++) {
     const LAG_REAL v0 = LAG_FN(fabs)(y0[i]), v1 = LAG_FN(fabs)(y1[i]);
-    fastest = lag_larger(fastest, lag_larger(LAG_FN(fabs)(e->h*e->rate[i]), lag_larger(v0, v1)));
+    fastest = lag_larger(fastest, lag_larger(LAG_FN(fabs)(s->h*s->size[i]), lag_larger(v0, v1)));
   }
-  for (int i = nq; i < 2*nq + nz; i++) {
+  for (int i = nq; i < 2*nq + s->nz; i++) {
     const LAG_REAL next = y0[i] + part*(y1[i] - y0[i]), own = LAG_FN(fabs)(y0[i]) + LAG_FN(fabs)(y1[i]);
-    const LAG_REAL size = LAG_SELECT(i < 2*nq, fastest, own);
-    if (next < mid[i] || next > mid[i]) most = lag_larger(most, LAG_FN(fabs)(next - mid[i])/(epsilon*size));
-    mid[i] = next;
+    const LAG_REAL size = LAG_SELECT(i < 2*nq, fastest, own), was = s->mid[i];
+    if (next < was || next > was) most = lag_larger(most, LAG_FN(fabs)(next - was)/(s->epsilon*size));
+    s->mid[i] = next;
   }
   return most;
 }
 
-/* ---- surfaces ---- */
-
-/* Dry friction along n surfaces in a step. mode[n]: the mean of the sign of each slip, so friction in parts
- * of its size while it slips; sticks[n]: its slip is 0 at the end. Surfaces with a response < 0 are driven
- * to the nearest slip of an interval about centre[n]; those without one slip. */
-typedef struct lag_surfaces {
-  int n;
-  int (*slip)(void *context, int k, LAG_REAL *slip);   /* slip of surface k. Not 0: the search ends */
-  void (*change)(void *context, int k, LAG_REAL mode); /* mode k becomes `mode` */
-  void *context;
-  LAG_REAL epsilon;                                  /* rounding of LAG_REAL */
-  const LAG_REAL *response, *bound, *centre;         /* [n]; bound: largest mode of a body that sticks */
-  LAG_REAL *mode, *sticks;
-} lag_surfaces;
-
-enum { LAG_SURFACE_INFINITE = -101, LAG_SURFACES_DISAGREE = -102 };
-
-/* One turn of surface k; *size, *change: the largest slip, and change of one. */
-static inline int lag_surface_turn(const lag_surfaces *s, int k, LAG_REAL *size, LAG_REAL *change) {
-  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), own = s->response[k], was = s->mode[k];
-  LAG_REAL slip[1], to[1];
-  const int status = s->slip(s->context, k, slip);
-  const LAG_REAL g = LAG_FN(fabs)(slip[0]), response = LAG_FN(fabs)(own);
-  if (status != 0) return status;
-  to[0] = was;
-  if (own < zero) {
-    lag_friction_turn(1, own, s->centre + k, LAG_FN(fabs)(s->centre[k]), s->bound[k], one, slip, to);
-  } else {
-    to[0] = LAG_SELECT(slip[0] > zero, one, LAG_SELECT(slip[0] < zero, -one, zero));
-    slip[0] = zero;
-  }
-  if (!lag_is_number(to[0])) return LAG_SURFACE_INFINITE;
-  const LAG_REAL part = LAG_FN(fabs)(to[0]);
-  const int at_limit = !(part < one || part > one);
-  s->change(s->context, k, to[0]);
-  s->sticks[k] = LAG_SELECT(slip[0] < zero || slip[0] > zero || at_limit, zero, one);
-  *change = lag_larger(LAG_FN(fabs)((to[0] - was)*own), *change);
-  *size = lag_larger(lag_larger(g, response), *size);
-  return 0;
+/* mid := the state from which the step from y begins; lost[nq]: rounding that positions have lost. */
+static inline void lag_kick_begin(const lag_kick *s, const LAG_REAL *lost) {
+  const int nq = s->nq;
+  for (int i = 0; i < 2*nq + s->nz; i++) s->mid[i] = s->y1[i] = s->y[i];
+  for (int i = 0; i < nq; i++) s->mid[i] = s->y[i] + (lost[i] + s->h/LAG_C(2.0)*s->y[nq + i]);
 }
 
-/* Finds modes that agree. *size: the largest slip. LAG_SURFACE_INFINITE: that of *row has no finite values. */
-static inline int lag_surface_sweeps(const lag_surfaces *s, LAG_REAL *size, int *row) {
-  LAG_REAL last = LAG_C(0.0);
-  *size = LAG_C(0.0);
-  for (int sweep = 0; sweep < 10000; sweep++) {
-    LAG_REAL change = LAG_C(0.0);
-    for (int k = 0; k < s->n; k++) {
-      const int status = lag_surface_turn(s, *row = k, size, &change);
-      if (status != 0) return status;
-    }
-    const LAG_REAL unit = s->epsilon*(*size);
-    if (change <= LAG_C(64.0)*unit) return 0;
-    if (sweep > 0 && change <= LAG_C(1e7)*unit && change >= last/LAG_C(2.0)) return 0;
-    last = change;
+/* out := the end of the step, with compensated sums. */
+static inline void lag_kick_end(const lag_kick *s, LAG_REAL *lost, LAG_REAL *out) {
+  const int nq = s->nq;
+  for (int i = 0; i < 2*nq + s->nz; i++) {
+    const LAG_REAL d = i < nq ? s->h/LAG_C(2.0)*(s->y[nq + i] + s->y1[nq + i]) : s->y1[i] - s->y[i];
+    out[i] = lag_compensated_sum(s->y[i], d, &lost[i]);
   }
-  *row = 0;
-  return LAG_SURFACES_DISAGREE;
 }
 
 /* ---- impulses ---- */
@@ -171,16 +137,16 @@ static inline int lag_contact_takes_part(LAG_REAL gap, LAG_REAL r0, LAG_REAL r1,
 /* Whether it strikes: the gap closes faster than forces and curvature alone make it close in a step. */
 static inline int lag_contact_strikes(LAG_REAL r0, LAG_REAL pace) { return r0 < -pace; }
 
-/* Fills in c->least, centre and radius. bend: change of the rate of the gap by its curvature until the middle;
- * e: restitution of an impact, 0 where there is none; back: the same along the surface; slip[c->tangents]: at
- * the begin.
+/* Fills in c->least, centre and radius from the others. bend: change of the rate of the gap by its curvature until the
+ * middle; e: restitution of an impact, 0 where there is none; back: the same along the surface.
  *
  * Half a gap is left by its rate -gap/h, and the next middle has none. On a curve that bends towards the body
  * the rate is that which curvature takes away until the end; the middle lies inside by h/4 of it, and a body
  * deeper than that is led out, no faster than the gap closed. */
-static inline void lag_contact_law(lag_pressing *c, LAG_REAL gap, LAG_REAL r0, LAG_REAL bend, LAG_REAL h, LAG_REAL e,
-                                   LAG_REAL back, int strikes, const LAG_REAL *slip) {
-  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), two = LAG_C(2.0);
+static inline void lag_contact_law(lag_pressing *c, LAG_REAL gap, LAG_REAL bend, LAG_REAL h, LAG_REAL e,
+                                   LAG_REAL back) {
+  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), two = LAG_C(2.0), r0 = c->rate;
+  const int strikes = c->strikes > zero;
   const LAG_REAL down = lag_smaller(bend, zero), part = LAG_SELECT(strikes, back, (one + back)/two);
   const LAG_REAL left = gap - down*(h/LAG_C(4.0));
   LAG_REAL size = zero;
@@ -188,13 +154,10 @@ static inline void lag_contact_law(lag_pressing *c, LAG_REAL gap, LAG_REAL r0, L
   if (r0 > zero || down < zero) c->least = lag_smaller(-r0, c->least);
   if (strikes) c->least = lag_larger(-down, -lag_smaller(lag_larger(e, zero), one)*r0);
   for (int j = 0; j < (int)c->tangents; j++) {
-    c->slip[j] = slip[j];
-    c->centre[j] = -part*slip[j];
-    size = LAG_FN(hypot)(size, slip[j]);
+    c->centre[j] = -part*c->slip[j];
+    size = LAG_FN(hypot)(size, c->slip[j]);
   }
   c->radius = LAG_SELECT(strikes, zero, (one - back)/two*size);
-  c->strikes = LAG_SELECT(strikes, one, zero);
-  c->rate = r0;
 }
 
 /* --- sweeps --- */
@@ -274,7 +237,8 @@ static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressin
     slip[k] = lag_rate_of(s, r + 1 + k);
     x[k] = s->P[r + 1 + k];
   }
-  lag_friction_turn(n, w, c->centre, c->radius, c->mu*s->P[r], c->mu*s->P[r], slip, x);
+  const lag_coulomb law = {n, w, c->radius, c->mu*s->P[r], c->mu*s->P[r], c->centre};
+  lag_friction_turn(&law, slip, x);
   for (int k = 0; k < n; k++) {
     const LAG_REAL by = x[k] - s->P[r + 1 + k];
     change = lag_larger(change, LAG_FN(fabs)(by)*w);

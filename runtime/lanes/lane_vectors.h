@@ -137,7 +137,7 @@ static inline void lane_problem_load(LaneProblem *pb, int lane, const lag_sim *s
 
 /* u := the inputs at t. */
 static inline int lane_inputs(LaneProblem *pb, Lanes t) {
-  int rc = pb->nu && pb->model->inputs ? pb->model->inputs(t, pb->p, pb->u) : 0;
+  int rc = pb->nu && pb->model->inputs ? pb->model->inputs(pb->model, t, pb->p, pb->u) : 0;
   for (int i = 0; i < pb->nu; i++)
     pb->u[i] = lane_select(pb->hold[i] == pb->hold[i], pb->hold[i], pb->model->inputs ? pb->u[i] : lane_all(0));
   return rc;
@@ -149,7 +149,7 @@ static inline LaneMask lane_energy_lost(LaneProblem *pb) {
   Lanes e[2];
   const lag_model *m = pb->model;
   if (!m->energy || !lag_lanes_any(~pb->pause)) return lane_mask(0);
-  if (m->energy(pb->t, pb->y, pb->y + pb->nq, pb->y + 2 * pb->nq, pb->p, pb->u, e, pb->work)) return lane_mask(~0u);
+  if (m->energy(m, pb->t, pb->y, pb->y + pb->nq, pb->y + 2 * pb->nq, pb->p, pb->u, e, pb->work)) return lane_mask(~0u);
   const Lanes d = lane_abs(e[0] - pb->energy);
   return ~pb->pause & (((d > pb->floor) & pb->judged) | lane_not_finite(1, e));
 }
@@ -183,7 +183,7 @@ static inline LaneMask lane_rough(LaneProblem *pb, LaneMask taken) {
 static inline LaneMask lane_rates(LaneProblem *pb, Lanes t, const Lanes *y, Lanes *f) {
   int nq = pb->nq, rc = lane_inputs(pb, t);
   for (int i = 0; i < nq; i++) f[i] = y[nq + i];
-  rc = rc ? 1 : pb->model->accel(t, y, y + nq, y + 2 * nq, pb->p, pb->u, f + nq, f + 2 * nq, pb->work);
+  rc = rc ? 1 : pb->model->accel(pb->model, t, y, y + nq, y + 2 * nq, pb->p, pb->u, f + nq, f + 2 * nq, pb->work);
   return rc == 0 ? (LaneMask){0} : lane_mask(rc > 0 ? ~0u : (unsigned)-rc);
 }
 

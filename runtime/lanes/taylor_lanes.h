@@ -96,7 +96,7 @@ LAG_INLINE Lanes taylor_sizes(int n, TaylorLanes *b) {
 
 /* y1, comp1 := the states after steps of dt. */
 LAG_INLINE void taylor_ends(int n, TaylorLanes *b, Lanes dt) {
-  b->ty->at(b->order, dt / b->unit, b->x[b->now], b->sum, b->slope);
+  b->ty->at(b->ty, b->order, dt / b->unit, b->x[b->now], b->sum, b->slope);
   for (int i = 0; i < n; i++) {
     b->comp1[i] = b->comp[i];
     b->y1[i] = lag_compensated_sum(b->pb.y[i], b->sum[i], &b->comp1[i]);
@@ -133,14 +133,14 @@ LAG_INLINE LaneMask taylor_lane_step(int n, TaylorLanes *b, LaneMask busy, LaneM
   *bad = ~((lane_abs(dt) > lane_all(4 * DBL_EPSILON) * lane_abs(pb->t)) & (h >= lane_all(DBL_MIN / DBL_EPSILON)));
   taylor_ends(n, b, dt);
   int rc = lane_inputs(pb, end);
-  rc = rc ? 1 : b->ty->first(end, b->y1, b->y1 + pb->nq, b->y1 + 2 * pb->nq, pb->p, pb->u, b->follows, next, pb->work);
+  rc = rc ? 1
+          : b->ty->first(b->ty, end, b->y1, b->y1 + pb->nq, b->y1 + 2 * pb->nq, pb->p, pb->u, b->follows, next,
+                         pb->work);
   *bad |= lane_mask(rc > 0 ? ~0u : (unsigned)-rc) | lane_not_finite(n - pb->nq, next + n);
   Lanes error = taylor_errors(n, b, dt), unit = lane_all(pb->dir) * taylor_power_of_2(dt);
-  Lanes noise = lane_select(error > b->last * lane_all(0.5), error, b->noise);
-  LaneMask taken = busy & ~*bad & ((error <= lane_all(1)) | (error <= lane_all(2) * noise));
-  b->ty->rest(b->order, unit, next, pb->work);
+  LaneMask taken = lag_taylor_takes(busy & ~*bad, error, b->last, &b->noise);
+  b->ty->rest(b->ty, b->order, unit, next, pb->work);
   *bad = busy & (*bad | (taken & lane_not_finite(n, next + b->order * b->columns)));
-  b->noise = lane_select(taken, noise * lane_all(0.9), lane_select(busy, noise, b->noise));
   LaneMask rejected = busy & ~taken & ~*bad;
   if (lag_lanes_any(~taken)) taylor_keep(b, taken);
   if (lag_lanes_any(rejected)) taylor_reject(b, rejected, h, error);

@@ -2,7 +2,7 @@
  * Holds: where no contact acts it is the symmetric method of order 2 that drifts half a step, kicks with the mean
  * velocity, and drifts again; sums over steps of q, v, z and t are compensated.
  *
- * Impacts are not located: all impulses of a step act at its middle, at once (moreau_contacts.c). So impacts may
+ * Impacts are not located: all impulses of a step act at its middle, at once (kernels/contact_step.h). So impacts may
  * follow each other in ever shorter time, or come in any number; positions at an impact are off by at most half a
  * step's path, and an error of order 1 follows. Constraints are held by projection, and impulses respect them. J.J.
  * Moreau, in: Nonsmooth Mechanics and Applications (1988), 1, DOI 10.1007/978-3-7091-2624-0_1; M. Jean, Comput.
@@ -36,7 +36,7 @@ static size_t work_size(const lag_problem *pb) {
 
 static double *law_of(Moreau *w, const lag_problem *pb) { return w->x + ARRAYS * pb->n; }
 static JointFriction friction_of(Moreau *w, const lag_problem *pb) {
-  return lag_joint_friction(pb, law_of(w, pb) + 2 * pb->model->ncontacts);
+  return lag_joint_friction_of(pb, law_of(w, pb) + 2 * pb->model->ncontacts);
 }
 
 static void reset(void *work, lag_problem *pb) {
@@ -56,7 +56,8 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   if (!m->contact_laws) return LAG_OK;
   rc = lag_inputs(pb, 0);
   rc = rc ? rc
-          : m->contact_laws(0, pb->begin, pb->begin + pb->nq, pb->begin + 2 * pb->nq, pb->p, pb->u, pb->rub, pb->work);
+          : m->contact_laws(m, 0, pb->begin, pb->begin + pb->nq, pb->begin + 2 * pb->nq, pb->p, pb->u, pb->rub,
+                            pb->work);
   for (int i = 0; i < 2 * m->ncontacts; i++) law_of(w, pb)[i] = pb->rub[3 * (i / 2) + i % 2];
   for (int i = 0; i + 1 < m->ncontacts && rc == 0; i++) {
     if (m->contacts[i].is_tangent || !m->contacts[i + 1].is_tangent || !(pb->rub[3 * i] > pb->rub[3 * i + 3])) continue;
@@ -85,109 +86,124 @@ static int is_explicit(const lag_problem *pb) {
   return (m->flags & LAG_SEPARABLE) && (!m->constraints || m->constraints->n == m->ncontacts);
 }
 
-/* Y1 := FREE with impulses of contacts and dry friction, which agree: in turns, until friction changes nothing more. */
-static int agree(Moreau *w, lag_problem *pb, double tm, double t, double dt, MoreauContacts *contacts,
-                 JointFriction *f) {
+/* Contacts and dry friction of a step; end[n]: its end without contacts. */
+typedef struct Laws {
+  lag_moreau_contacts contacts;
+  JointFriction friction;
+  double *end;
+} Laws;
+
+static int changes_too_much(lag_problem *pb, double t, const char *what) {
+  pb->detail = what;
+  return lag_step_failed(pb, LAG_EMETHOD, t);
+}
+
+static int meet(lag_problem *pb, const lag_kick *s, Laws *w) {
+  static const char others[] =
+      "and others find no impulses that agree: take smaller steps, or look for bodies that are wedged";
+  return lag_contacts_solve(&w->contacts, s->y1 + s->nq)
+             ? lag_moreau_contact_fails(pb, s->t, (int)w->contacts.all.of[0].contact, others)
+             : 0;
+}
+
+/* s->y1 := w->end with impulses of contacts and dry friction, which agree: in turns, until friction changes nothing
+ * more. */
+static int agree(lag_problem *pb, const lag_kick *s, Laws *w) {
   enum { ROUNDS = 500 };
   /* of the largest slip, or of what friction changes: friction that follows it to its limit by many small steps */
   const double little = 1e-5;
-  int n = pb->n, nq = pb->nq, rc = 0;
-  double *y1 = w->x + Y1 * n, *free = w->x + FREE * n, moved = 0, before = 0;
+  JointFriction *f = &w->friction;
+  double moved = 0, before = 0;
   for (int round = 0; round < ROUNDS; round++) {
-    memcpy(y1 + nq, free + nq, (size_t)(n - nq) * sizeof *y1);
-    rc = lag_moreau_contacts_solve(contacts, pb, tm, y1 + nq);
-    rc = rc ? rc : lag_joint_friction_solve(f, pb, t, dt, contacts->impacts > 0, w->x + MID * n, y1, &moved);
+    memcpy(s->y1 + s->nq, w->end + s->nq, (size_t)(pb->n - s->nq) * sizeof *s->y1);
+    int rc = meet(pb, s, w);
+    rc = rc ? rc : lag_joint_friction_round(f, pb, s, w->contacts.impacts > 0, &moved);
     if (rc || moved <= 64 * DBL_EPSILON || (round > 0 && moved <= 1e7 * DBL_EPSILON && moved >= before / 2)) return rc;
     lag_joint_friction_lengthen(f, pb);
-    lag_joint_friction_carry(f, pb, dt, free);
-    lag_joint_friction_carry(f, pb, 1, w->x + RATE0 * n);
+    lag_joint_friction_carry(f, s->h, w->end);
+    lag_joint_friction_carry(f, 1, s->rate0);
     before = moved;
   }
   if (moved <= little) return 0;
-  pb->detail = "impulses of contacts and dry friction do not agree: take smaller steps";
-  return lag_step_failed(pb, LAG_EMETHOD, tm);
+  return changes_too_much(pb, s->t, "impulses of contacts and dry friction do not agree: take smaller steps");
 }
 
-/* Y1: velocities and states at the end t of a step from y. Forces are those at the mean velocity; of a step with an
- * impact the mean of those at both ends, since the mean of velocities that jump is none that occurs. */
-static int kick(Moreau *w, lag_problem *pb, double tm, double t, double dt, const double *y, MoreauContacts *contacts,
-                JointFriction *f) {
-  enum { TURNS = 100 };
-  int n = pb->n, nq = pb->nq, meets = pb->model->ncontacts > 0, rc = 0;
-  double *y1 = w->x + Y1 * n, *rate = w->x + RATE * n, *rate0 = w->x + RATE0 * n, *mid = w->x + MID * n,
-         *size = w->x + SIZE * n, before = HUGE_VAL, moved;
-  for (int turn = 0; turn < TURNS; turn++) {
-    if ((rc = lag_step_rhs(pb, tm, mid, rate)) != 0) return rc;
-    if (turn == 0) memcpy(rate0, rate, (size_t)n * sizeof *rate);
-    for (int i = nq; i < n && contacts->impacts > 0; i++) rate[i] = (rate0[i] + rate[i]) / 2;
-    for (int i = nq; i < n; i++) y1[i] = y[i] + dt * rate[i];
-    if (f->n && turn == 0) rc = lag_joint_friction_response(f, pb, tm, t, dt, mid, y1);
-    if (f->n && (turn == 0 || !meets) && rc == 0) {
-      rc = lag_joint_friction_solve(f, pb, t, dt, 0, mid, y1, &moved);
-      if (turn == 0) lag_joint_friction_carry(f, pb, 1, rate0);
-    }
-    if (meets && turn == 0 && rc == 0) rc = lag_moreau_contacts_find(contacts, pb, tm, dt, mid, y1 + nq, law_of(w, pb));
-    memcpy(w->x + FREE * n, y1, (size_t)n * sizeof *y1);
-    if (meets && rc == 0)
-      rc = f->n ? agree(w, pb, tm, t, dt, contacts, f) : lag_moreau_contacts_solve(contacts, pb, tm, y1 + nq);
-    if (rc || (is_explicit(pb) && !f->n)) return rc;
-    for (int i = nq; i < n; i++) {
-      size[i] = rate[i];
-      /* at rest forces cancel: rounding is that of friction */
-      for (int k = 0; k < f->n; k++) size[i] = fabs(size[i]) + fabs(f->d[k * n + i]);
-    }
-    const lag_moreau_ends ends = {dt, y, y1, size};
-    double most = lag_moreau_mean(&ends, contacts->impacts > 0 ? 1 : 0.5, DBL_EPSILON, nq, pb->nz, mid);
-    if (most <= 8 || (most <= 1e4 && most >= before / 2)) return LAG_OK;
-    before = most;
+/* Responses at the first middle; beside contacts friction acts once before they are chosen. */
+static int respond(lag_problem *pb, const lag_kick *s, Laws *w) {
+  int meets = w->contacts.contacts > 0, rc = 0;
+  double moved;
+  if (w->friction.of.n) rc = lag_joints_respond(pb, &w->friction.of, s);
+  if (!meets) return rc;
+  if (w->friction.of.n && rc == 0) {
+    rc = lag_joint_friction_round(&w->friction, pb, s, 0, &moved);
+    lag_joint_friction_carry(&w->friction, 1, s->rate0);
   }
-  pb->detail = "forces that depend on velocities or states change too much within a step: take smaller steps, or radau";
-  return lag_step_failed(pb, LAG_EMETHOD, tm);
+  return rc ? rc : lag_contacts_find(pb, &w->contacts, s->t, s->h, s->mid, s->y1 + s->nq);
 }
 
-/* y := the end of the step from Y0, with compensated sums. */
-static void drift(Moreau *w, const lag_problem *pb, double dt, double *y) {
-  int n = pb->n, nq = pb->nq;
-  const double *y0 = w->x + Y0 * n, *y1 = w->x + Y1 * n;
-  double *lost = w->x + COMP * n;
-  for (int i = 0; i < n; i++)
-    y[i] = lag_compensated_sum(y0[i], i < nq ? dt / 2 * (y0[nq + i] + y1[nq + i]) : y1[i] - y0[i], &lost[i]);
+static int obey(lag_problem *pb, const lag_kick *s, Laws *w) {
+  double size;
+  if (!w->contacts.contacts) return w->friction.of.n ? lag_joints_solve(pb, &w->friction.of, s, 0, &size) : 0;
+  if (!w->friction.of.n) return meet(pb, s, w);
+  memcpy(w->end, s->y1, (size_t)pb->n * sizeof *s->y1);
+  return agree(pb, s, w);
+}
+
+#define LAG_LAWS Laws
+#define LAG_KICK_RATES(t, y, w, k) lag_step_rhs(pb, t, y, k)
+#define LAG_RESPONSES(s, w) respond(pb, s, w)
+#define LAG_OBEY(s, w) obey(pb, s, w)
+#define LAG_STRUCK(w) ((w)->contacts.impacts > 0)
+#define LAG_TERM_SIZE(w, i, rate) lag_joints_size(&(w)->friction.of, i, rate)
+#define LAG_KICK_FAILS(t)                                                                                         \
+  changes_too_much(pb, t,                                                                                         \
+                   "forces that depend on velocities or states change too much within a step: take smaller steps, " \
+                   "or radau")
+#include "kernels/moreau_step.h"
+
+/* From y, with no effect outside s and w after a failure but in pb->hold. */
+static int kick(lag_problem *pb, const lag_kick *s, Laws *w, double t) {
+  int rc = w->friction.of.n ? lag_joints_begin(pb, &w->friction.of, t, s->y) : 0;
+  rc = rc ? rc : lag_moreau_kick(pb, s, w);
+  if (rc == 0 && w->friction.of.n && w->contacts.contacts) rc = lag_joint_friction_note(&w->friction, pb, s);
+  return rc;
+}
+
+/* y := the end of the step from y0, on the constraints. */
+static int drift(lag_problem *pb, const lag_kick *s, double *lost, double tb, const double *y0, double *y) {
+  lag_kick_end(s, lost, y);
+  pb->bad_index = lag_not_finite(pb->n, y);
+  if (pb->bad_index >= 0) return lag_step_failed(pb, LAG_ENAN, tb);
+  int rc = lag_project_step(pb, tb, y0, y, lost);
+  return rc ? lag_step_not_projected(pb, rc, tb) : 0;
 }
 
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   Moreau *w = work;
   int n = pb->n, nq = pb->nq, rc;
-  double *y0 = w->x + Y0 * n, *y1 = w->x + Y1 * n, *mid = w->x + MID * n;
-  const double *lost = w->x + COMP * n;
+  double *x = w->x, *y0 = x + Y0 * n, *lost = x + COMP * n;
   lag_next_step next;
   (void)t_stop;
   if ((rc = lag_fixed_step_begin(&w->step, pb, *t, &next)) != 0) return rc;
-  MoreauContacts contacts = lag_moreau_contacts(pb);
-  double tm = *t + next.dt / 2;
-  memcpy(mid, y, (size_t)n * sizeof *y);
-  for (int i = 0; i < nq; i++) mid[i] = y[i] + (lost[i] + next.dt / 2 * y[nq + i]);
-  JointFriction friction = friction_of(w, pb);
-  rc = friction.n ? lag_joint_friction_begin(&friction, pb, *t, y) : 0;
-  rc = rc ? rc : kick(w, pb, tm, *t + next.dt, next.dt, y, &contacts, &friction);
-  if (rc == 0 && friction.n && pb->model->ncontacts) rc = lag_joint_friction_note(&friction, pb, *t + next.dt, mid, y1);
+  Laws laws = {lag_moreau_contacts_of(pb, law_of(w, pb)), friction_of(w, pb), x + FREE * n};
+  const lag_kick s = {nq, pb->nz, is_explicit(pb) && !laws.friction.of.n, *t + next.dt / 2, *t + next.dt, next.dt,
+                      DBL_EPSILON, y, x + MID * n, x + Y1 * n, x + RATE * n, x + RATE0 * n, x + SIZE * n};
+  lag_kick_begin(&s, lost);
+  lag_joint_friction_enter(&laws.friction, pb);
+  rc = kick(pb, &s, &laws, *t);
+  if (rc == 0) {
+    memcpy(y0, y, (size_t)n * sizeof *y);
+    rc = drift(pb, &s, lost, next.tb, y0, y);
+    if (rc) memcpy(y, y0, (size_t)n * sizeof *y);
+  }
   if (rc) {
-    if (friction.n) lag_joint_friction_back(&friction, pb);
+    lag_joint_friction_back(&laws.friction, pb);
     return rc;
   }
-  memcpy(y0, y, (size_t)n * sizeof *y);
-  drift(w, pb, next.dt, y);
-  pb->bad_index = lag_not_finite(n, y);
-  rc = pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, next.tb)
-                          : lag_project_step(pb, next.tb, y0, y, w->x + COMP * n);
-  if (rc) {
-    memcpy(y, y0, (size_t)n * sizeof *y);
-    if (friction.n) lag_joint_friction_back(&friction, pb);
-    return rc == LAG_ENAN ? rc : lag_step_not_projected(pb, rc, next.tb);
-  }
-  w->struck = contacts.impacts;
+  w->struck = laws.contacts.impacts;
   if (pb->model->ncontacts)
-    lag_moreau_contacts_note(&contacts, pb, next.dt, contacts.impacts > 0 ? tm : next.tb, y0 + nq, y1 + nq);
-  memcpy(y1, y, (size_t)n * sizeof *y);
+    lag_moreau_contacts_note(&laws.contacts, pb, next.dt, w->struck > 0 ? s.t : next.tb, y0 + nq, s.y1 + nq);
+  memcpy(s.y1, y, (size_t)n * sizeof *y);
   lag_fixed_step_end(&w->step, &next, t);
   return LAG_OK;
 }

@@ -1,38 +1,32 @@
-/* Contacts in one step of moreau. Enters: positions at the middle of a step, velocities at its begin, and at its end
- * without contacts; leaves: those with contacts. */
+/* Contacts in one step of moreau: the instance of kernels/contact_step.h for a lag_problem. */
 #pragma once
 
 #include "core/rhs.h"
-#include "kernels/impulses.h"
 
-/* Scratch in pb->contact_room. Rows are those of the contacts that take part, of[n]. */
-typedef struct MoreauContacts {
-  int n, rows;
-  lag_pressing *of;
-  lag_sparse_rows A, D;
-  double *response, *b, *P, *before; /* [rows]; before: rates at the begin of the step */
-  double *force;                     /* [contacts of the model] impulses, a guess for the next step */
-  /* [constraints] gaps, rates at the begin, rates without contacts, their changes by forces and curvature in a step,
-   * by curvature in its first half, a unit; [nq], [nq] */
-  double *c, *r0, *r1, *pace, *bend, *g, *d, *effort;
-  double *jacobian, *mass, *band, *pivot, *scale; /* M, factored */
-  double *test, *after;              /* [n of the state] twice */
-  double sweeps, impacts;            /* of this step */
-} MoreauContacts;
+/* Calls of the model for a state y, with the inputs of lag_moreau_close; each returns 0 or the status of the step. */
+int lag_moreau_close(lag_problem *pb, double t, int only);
+int lag_moreau_gaps(lag_problem *pb, double t, const double *q, const double *v, const double *z, double *c, double *r);
+int lag_moreau_matrices(lag_problem *pb, double t, const double *y, double *A, double *M);
+int lag_moreau_unit_change(lag_problem *pb, double t, const double *y, const double *g, double *d, double *effort);
+int lag_moreau_strike(lag_problem *pb, double t, const double *y, int i, double *v);
+int lag_moreau_contact_fails(lag_problem *pb, double t, int i, const char *words);
+int lag_moreau_singular(lag_problem *pb, double t);
 
-MoreauContacts lag_moreau_contacts(const lag_problem *pb);
+#define LAG_MODEL lag_problem *pb
+#define LAG_THE_MODEL pb
+#define LAG_CLOSE(t, only, u) lag_moreau_close(pb, t, only)
+#define LAG_GAPS(t, q, v, z, u, c, r) lag_moreau_gaps(pb, t, q, v, z, c, r)
+#define LAG_GAP_MATRICES(t, y, u, A, M) lag_moreau_matrices(pb, t, y, A, M)
+#define LAG_UNIT_CHANGE(t, y, u, g, d, effort) lag_moreau_unit_change(pb, t, y, g, d, effort)
+#define LAG_STRIKE(t, y, u, i, v) lag_moreau_strike(pb, t, y, i, v)
+#define LAG_FRICTIONS(t, y, u, law) 0 /* those at the start of the run */
+#define LAG_CONTACT_FAILS(t, i, words) lag_moreau_contact_fails(pb, t, i, words)
+#define LAG_SINGULAR(t) lag_moreau_singular(pb, t)
+#include "kernels/contact_step.h"
 
-/* Tangents of contact i of the model, which follow it: 0, 1 or 2. */
-int lag_contact_tangents(const lag_model *m, int i);
-
-/* Chooses the contacts that take part in the step h with its middle at t: y = [middle q|v at the begin|z], free[nq]:
- * velocities at the end without contacts. law[2 contacts]: friction and tangential restitution. 0, or the status of
- * the step. */
-int lag_moreau_contacts_find(MoreauContacts *w, lag_problem *pb, double t, double h, const double *y,
-                             const double *free, const double *law);
-/* v[nq], velocities without contacts, := those with them. 0, or the status of the step. */
-int lag_moreau_contacts_solve(MoreauContacts *w, lag_problem *pb, double t, double *v);
+/* In pb->contact_room; law[2 contacts]: friction and tangential restitution. */
+lag_moreau_contacts lag_moreau_contacts_of(const lag_problem *pb, double *law);
 /* Notes forces, counts and work of the step in pb; v0, v1: velocities at both ends, from: time from which on dense
  * output contains the impulses. */
-void lag_moreau_contacts_note(MoreauContacts *w, lag_problem *pb, double h, double from, const double *v0,
+void lag_moreau_contacts_note(const lag_moreau_contacts *w, lag_problem *pb, double h, double from, const double *v0,
                               const double *v1);

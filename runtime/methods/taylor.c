@@ -87,7 +87,8 @@ static int first(Taylor *w, lag_problem *pb, double which, double t, const doubl
   pb->rhs_calls++;
   pb->bad_index = -1;
   rc = rc ? rc
-          : pb->model->taylor->first(t, y, y + nq, y + 2 * nq, pb->p, pb->u, lag_taylor_follows(w, pb), x, pb->work);
+          : pb->model->taylor->first(pb->model->taylor, t, y, y + nq, y + 2 * nq, pb->p, pb->u,
+                                     lag_taylor_follows(w, pb), x, pb->work);
   if (rc == 0) {
     int bad = lag_not_finite(nq + pb->nz, x + pb->n);
     pb->bad_index = bad < 0 ? -1 : nq + bad;
@@ -114,7 +115,7 @@ static int expand(Taylor *w, lag_problem *pb, double which, double unit) {
   double *x = lag_taylor_series(w, pb, which);
   for (int attempt = 0; attempt < 8; attempt++, unit *= 0x1p-40) {
     w->unit[which > 0] = pb->dir * unit;
-    ty->rest(order, pb->dir * unit, x, pb->work);
+    ty->rest(ty, order, pb->dir * unit, x, pb->work);
     if (lag_not_finite(pb->n, x + order * ty->columns) < 0) return 1;
   }
   return 0;
@@ -157,8 +158,8 @@ static void advance(Taylor *w, lag_problem *pb, const double *y, double dt) {
   const double *comp = lag_taylor_array(w, pb, TAYLOR_COMP);
   double *sum = lag_taylor_array(w, pb, TAYLOR_SUM), *y1 = lag_taylor_array(w, pb, TAYLOR_Y1),
          *comp1 = lag_taylor_array(w, pb, TAYLOR_COMP1);
-  pb->model->taylor->at((int)w->order, dt / w->unit[w->now > 0], lag_taylor_series(w, pb, w->now), sum,
-                        lag_taylor_array(w, pb, TAYLOR_SLOPE));
+  pb->model->taylor->at(pb->model->taylor, (int)w->order, dt / w->unit[w->now > 0], lag_taylor_series(w, pb, w->now),
+                        sum, lag_taylor_array(w, pb, TAYLOR_SLOPE));
   for (int i = 0; i < pb->n; i++) {
     comp1[i] = comp[i];
     y1[i] = lag_compensated_sum(y[i], sum[i], &comp1[i]);
@@ -185,7 +186,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int cause = LAG_ESTEP, rc = lag_taylor_prepare(w, pb, *t, y);
   (void)t_stop;
   if (rc) return rc;
-  double h = root_test_step(w, pb, y), most = lag_longest_step(&w->limits, *t, 0), last = HUGE_VAL;
+  double h = root_test_step(w, pb, y), most = lag_longest_step(&w->limits, *t, 0), last = -1;
   h = w->limits.fixed != 0.0 ? w->limits.h_option : h < most ? h : most;
   h = isfinite(h) ? h : 1;
   for (;;) {
@@ -197,11 +198,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     rc = first(w, pb, 1 - w->now, tb, lag_taylor_array(w, pb, TAYLOR_Y1));
     if (rc < 0 && rc != LAG_ESINGULAR) return lag_step_refused(pb, rc, tb);
     double error = rc ? NAN : error_of(w, pb, dt);
-    if (error > last / 2) { /* the defect did not shrink with the step: rounding */
-      w->noise = error;
-    }
-    if (error <= 1 || error <= 2 * w->noise || (w->limits.fixed != 0.0 && rc == 0)) {
-      w->noise *= 0.9;
+    if (lag_taylor_takes(rc == 0, error, last, &w->noise) || (w->limits.fixed != 0.0 && rc == 0)) {
       accept(w, pb, t, y, dt, tb);
       w->tc = tc;
       return LAG_OK;
@@ -209,7 +206,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     cause = rc ? (pb->bad_index >= 0 ? LAG_ENAN : rc < 0 ? LAG_ESINGULAR : LAG_EDOMAIN) : LAG_ESTEP;
     pb->bad_t = tb;
     if (w->limits.fixed != 0.0) return cause;
-    last = rc ? HUGE_VAL : error;
+    last = rc ? -1 : error;
     h *= lag_taylor_shrinkage((int)w->order, rc ? -1 : error);
     pb->rejected++;
   }
@@ -219,7 +216,8 @@ static void dense(void *work, lag_problem *pb, double t, double *y) {
   Taylor *w = work;
   double which = 1 - w->now, *sum = lag_taylor_array(w, pb, TAYLOR_SUM);
   const double *x = lag_taylor_series(w, pb, which);
-  pb->model->taylor->at((int)w->order, (t - w->t0) / w->unit[which > 0], x, sum, lag_taylor_array(w, pb, TAYLOR_SLOPE));
+  pb->model->taylor->at(pb->model->taylor, (int)w->order, (t - w->t0) / w->unit[which > 0], x, sum,
+                        lag_taylor_array(w, pb, TAYLOR_SLOPE));
   for (int i = 0; i < pb->n; i++) y[i] = x[i] + sum[i];
 }
 

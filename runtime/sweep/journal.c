@@ -18,6 +18,13 @@ typedef struct Record {
   int64_t chunk, n;
 } Record;
 
+/* Room for so many numbers at most [256 MB]. */
+enum { KEPT_MOST = 32 << 20 };
+
+static void keep(Journal *j, long long chunk, const double *row, size_t n) {
+  if (j->kept) memcpy(j->kept + (size_t)chunk * j->size, row, n * sizeof *row);
+}
+
 static uint64_t hash_of(const Record *r, const double *row) {
   return lag_fnv1a(lag_fnv1a(LAG_FNV1A_START, (const char *)r, sizeof *r), (const char *)row,
                    (size_t)r->n * sizeof *row);
@@ -49,6 +56,7 @@ static int scan(Journal *j, double *row) {
       break;
     j->finished += !j->at[r.chunk];
     j->at[r.chunk] = at;
+    keep(j, r.chunk, row, (size_t)r.n);
     at = end + (long long)sizeof hash;
   }
   j->end = at;
@@ -87,6 +95,7 @@ int lag_journal_open(Journal *j, const char *path, int resume, char *why, size_t
   memcpy(head.magic, magic, sizeof magic);
   snprintf(j->path, sizeof j->path, "%s", path);
   j->at = calloc((size_t)j->chunks + 1, sizeof *j->at);
+  if ((double)j->chunks * (double)j->size <= KEPT_MOST) j->kept = malloc((size_t)j->chunks * j->size * sizeof *j->kept);
   double *row = malloc((j->size + 1) * sizeof *row);
   long long cut = -1;
   int rc = -1;
@@ -139,6 +148,7 @@ int lag_journal_put(Journal *j, long long chunk, const double *row, size_t n) {
     fsync(j->fd); /* where that is not possible, the file is as safe as the system makes it */
     j->synced = now;
   }
+  keep(j, chunk, row, n);
   j->finished += !j->at[chunk];
   j->at[chunk] = j->end;
   j->end += (long long)(sizeof r + n * sizeof *row + sizeof hash);
@@ -147,6 +157,10 @@ int lag_journal_put(Journal *j, long long chunk, const double *row, size_t n) {
 
 int lag_journal_get(const Journal *j, long long chunk, double *row, size_t n) {
   Record r;
+  if (j->at[chunk] && j->kept) {
+    memcpy(row, j->kept + (size_t)chunk * j->size, n * sizeof *row);
+    return 0;
+  }
   if (!j->at[chunk] || fflush(j->f) || read_all(j->fd, &r, sizeof r, j->at[chunk]) || r.chunk != chunk ||
       r.n < (int64_t)n)
     return -1;
@@ -158,5 +172,6 @@ void lag_journal_close(Journal *j, int remove) {
   if (j->f) fclose(j->f);
   else if (j->fd >= 0) close(j->fd);
   free(j->at);
+  free(j->kept);
   *j = (Journal){.fd = -1};
 }

@@ -16,6 +16,7 @@ typedef struct Journal {
   long long finished; /* chunks that are there */
   uint64_t signature; /* of the sweep */
   long long end;      /* length of the file, with what is not yet written */
+  double *kept;       /* [chunks][size] the numbers, too; NULL: more than memory is taken for */
   FILE *f;            /* fd */
   double written, synced; /* clock at the last write, and at the last write to the disk [s] */
 } Journal;
@@ -30,7 +31,8 @@ int lag_journal_open(Journal *j, const char *path, int resume, char *why, size_t
 int lag_journal_put(Journal *j, long long chunk, const double *row, size_t n);
 int lag_journal_flush(Journal *j);
 
-/* row[n] := the first numbers of a chunk that is there. -1: it cannot be read. */
+/* row[n] := the first numbers of a chunk that is there: from memory, or where that is too much from the file. -1: it
+ * cannot be read. */
 int lag_journal_get(const Journal *j, long long chunk, double *row, size_t n);
 
 /* remove 1: the file, too. */

@@ -50,8 +50,12 @@ static const Source *read_file(Sources *s, FILE *f, const char *path, const char
     return NULL;
   }
   size_t mark = len >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* byte order mark of some editors */
-  const Source *file = source_add(s, arena_strdup(s->arena, path), text + mark, len - mark);
-  if (!file) *error = "it is larger than 64 MiB";
+  if (!source_add(s, arena_strdup(s->arena, path), text + mark, len - mark)) {
+    *error = "it is larger than 64 MiB";
+    return NULL;
+  }
+  Source *file = &s->files.at[s->files.n - 1];
+  file->is_file = 1;
   return file;
 }
 
@@ -145,16 +149,18 @@ const char *path_relative_to(Arena *a, const char *from, const char *path) {
   return out;
 }
 
-static int is_readable(const char *path) {
+int source_is_readable(const char *path) {
   const char *error;
   FILE *f = source_open(path, &error);
   if (f) fclose(f);
   return f != NULL;
 }
 
-const char *source_locate(const Sources *s, const char *from, const char *path) {
+const char *source_locate(Sources *s, const char *from, const char *path) {
   const char *beside = path_relative_to(s->arena, from, path);
-  if (!s->library || lag_is_absolute(path) || is_readable(beside)) return beside;
+  if (!s->library || lag_is_absolute(path) || source_is_readable(beside)) return beside;
   const char *other = arena_printf(s->arena, "%s/%s", s->library, path);
-  return is_readable(other) ? other : beside;
+  if (!source_is_readable(other)) return beside;
+  vec_push(s->arena, &s->absent, beside);
+  return other;
 }

@@ -21,6 +21,7 @@ static inline Span span_join(Span a, Span b) {
 
 typedef struct {
   const char *path; /* as the user named it */
+  int is_file;      /* or a word of the command line */
   const char *text; /* NUL-terminated */
   uint32_t len;
   uint32_t base; /* offset of text[0] */
@@ -32,6 +33,7 @@ typedef struct {
   VEC(Source) files;
   uint32_t next_base;
   const char *library; /* folder of files that models name from anywhere; NULL: none */
+  VEC(const char *) absent; /* files that were looked for beside the one that names them, and found in the library */
 } Sources;
 
 typedef struct {
@@ -70,4 +72,5 @@ const char *path_relative_to(Arena *a, const char *from, const char *path);
 
 /* The file that is `path` in the file `from`: beside it; or, where none can be read there, in the library that comes
  * with lagc. */
-const char *source_locate(const Sources *s, const char *from, const char *path);
+const char *source_locate(Sources *s, const char *from, const char *path);
+int source_is_readable(const char *path);

@@ -52,6 +52,11 @@ static uint32_t show_contacts(const Eqns *e, const Contact *contact, uint32_t k,
   const char *name = e->constraints.of[k]->name, *to = many ? " to " : "",
              *end = many ? e->constraints.of[last]->name : "";
   const char *s = many ? "s" : "", *are = many ? "are" : "is", *they = many ? "they" : "it";
+  if (contact->parts) {
+    sb_printf(out, "  friction %s (line %u): a constraint, %s = 0, while it sticks\n", e->constraints.of[k]->name,
+              source_place(e->m->ast->sources, e->constraints.of[k]->span.begin).line, e->constraints.of[k]->name);
+    return k;
+  }
   if (contact->is_tangent) {
     sb_printf(out, "  %s friction: %s, %s%s%s = 0, while %s stick%s\n", many ? "their" : "its",
               many ? "constraints" : "a constraint", name, to, end, they, many ? "" : "s");
@@ -221,12 +226,12 @@ static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbo
 static const char *contact_mistake(const Eqns *e, const Contact *c, const long double *value, long double far) {
   Arena *a = e->m->arena;
   const Contact *gap = c;
-  while (gap->is_tangent) gap--;
+  while (gap->is_tangent && !gap->parts) gap--;
   const char *name = gap->name;
   if (c->is_tangent && !(value[3] >= value[2]))
     return arena_printf(
-        a, "the contact `%s` has a static friction of %.3Lg, which must be at least its friction while it slips, %.3Lg",
-        name, value[3], value[2]);
+        a, "the %s `%s` has a static friction of %.3Lg, which must be at least its friction while it slips, %.3Lg",
+        c->parts ? "friction" : "contact", name, value[3], value[2]);
   if (c->is_tangent && !(value[2] >= 0))
     return arena_printf(a, "the contact `%s` has a friction of %.3Lg, which must be at least 0", name, value[2]);
   if (!c->is_tangent && value[0] < -1e-12L * (far > 1 ? far : 1))

@@ -4,8 +4,19 @@
 #include "commands/simulator.h"
 #include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 
+/* The program for liblag's evaluator. */
+static int build_bytes(Compiler *c) {
+  Units units = {0};
+  if (options_more_digits(&c->o) || c->o.shared) return usage_error("--bytes are evaluated in doubles: give it alone");
+  if (!c->o.output) return usage_error("`lagc build --bytes` needs -o FILE");
+  if (!simulator_lower(c, &units)) return STATUS_MODEL;
+  StrBuf bytes = simulator_bytes(c, &units);
+  return compiler_write(c, c->o.output, &bytes);
+}
+
 int command_build(Compiler *c) {
   if (!compiler_knows_method(c)) return STATUS_USAGE;
+  if (c->o.bytes) return build_bytes(c);
   const char *path;
   Units units = {0};
   int is_so = c->o.output && lag_outfile_has_suffix(c->o.output, "so");

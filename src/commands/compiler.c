@@ -21,11 +21,15 @@
 #include "toolchain/files.h"
 #include "toolchain/gallery.h"
 
-void compiler_print_messages(const Compiler *c) {
-  StrBuf messages = strbuf(c->arena);
+void compiler_messages(const Compiler *c, StrBuf *out) {
   if (!c->diags->errors) model_warn_unused(c->ast); /* by now the command line's expressions are read, too */
   if (c->o.command == CMD_CHECK && c->o.json) return;
-  diags_print(c->diags, &messages);
+  diags_print(c->diags, out);
+}
+
+void compiler_print_messages(const Compiler *c) {
+  StrBuf messages = strbuf(c->arena);
+  compiler_messages(c, &messages);
   fputs(sb_text(&messages), stderr);
 }
 
@@ -65,19 +69,22 @@ int compiler_report(Compiler *c, const char *path, const StrBuf *text) {
 
 /* --- the stages --- */
 
-int compiler_read(Compiler *c) {
+int compiler_open(Compiler *c) {
   const char *why = NULL, *path = gallery_path(c->arena, c->argv0, c->o.file, &why);
   if (!path) return usage_error(why);
   c->o.file = path;
-  const Source *source = source_read_model(c->sources, path, &why);
-  if (!source) {
+  if (!source_read_model(c->sources, path, &why)) {
     const char *model = gallery_name(c->arena, c->argv0, path), *whole = arena_printf(c->arena, "%s.lag", path);
     if (file_exists(whole))
       return usage_error(arena_printf(c->arena, "cannot read %s: %s; did you mean %s?", path, why, whole));
     return usage_error(arena_printf(c->arena, model ? "cannot read %s: %s; the gallery has @%s" : "cannot read %s: %s",
                                     path, why, model));
   }
-  parse(c->ast, source);
+  return STATUS_OK;
+}
+
+int compiler_parse(Compiler *c) {
+  parse(c->ast, &c->sources->files.at[0]);
   settings_defines(c->ast, c->o.defines.at, c->o.defines.n);
   if (wants_dump(c, "ast")) {
     StrBuf b = strbuf(c->arena);
@@ -87,12 +94,16 @@ int compiler_read(Compiler *c) {
   return c->diags->errors ? STATUS_MODEL : STATUS_OK;
 }
 
-Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {
+Model *compiler_model(Compiler *c, const ModelChoice *choice) {
   ModelChoice with_defines = *choice;
   with_defines.defines = c->o.defines.at;
   with_defines.ndefines = c->o.defines.n;
   if (!choice->bare && !choice->unfixed) with_defines.fix = c->o.fix;
-  Model *m = model_build(c->ast, &with_defines);
+  return model_build(c->ast, &with_defines);
+}
+
+Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {
+  Model *m = compiler_model(c, choice);
   if (!m) return NULL;
   StrBuf listing = strbuf(c->arena);
   Eqns *e = equations_of(m);

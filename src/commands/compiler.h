@@ -13,6 +13,8 @@ enum { STATUS_OK, STATUS_MODEL, STATUS_USAGE, STATUS_RUN };
 
 typedef enum { JSON_FACTS, JSON_SCENES, JSON_SYMMETRIES, JSON_EXPECTS, JSON_UNITS, JSON_REPORT, JSON_LISTS } JsonList;
 
+typedef struct KnownRun KnownRun;
+
 typedef struct {
   Arena *arena;
   Options o;
@@ -24,6 +26,8 @@ typedef struct {
   /* values, -D and --until of the command line, as a shell reads them: for commands that a report names */
   const char *given_words;
   GivenList given; /* values that the command line gives to names, for run, plot and animate */
+  char *const *words; /* argv */
+  KnownRun *known;    /* entry of this command in the cache (known_run.h) */
   StrBuf told;     /* comparisons with the text, for check --verbose */
   StrBuf json[JSON_LISTS]; /* lists of check --json (check_json.h) */
   const Eqns *run; /* equations of the scene that the command runs, */
@@ -32,6 +36,8 @@ typedef struct {
 
 /* Prints the messages so far; warnings about unused names too, if there is no error. */
 void compiler_print_messages(const Compiler *c);
+/* Appends them to the text instead. */
+void compiler_messages(const Compiler *c, StrBuf *out);
 
 /* "lagc: MESSAGE" on standard error. Returns STATUS_USAGE. */
 int usage_error(const char *message);
@@ -44,15 +50,21 @@ int compiler_write(Compiler *c, const char *path, const StrBuf *text);
 /* The same of a report, unless an error was found while it was made. */
 int compiler_report(Compiler *c, const char *path, const StrBuf *text);
 
-/* Reads c->o.file into c->ast. Returns a STATUS. */
-int compiler_read(Compiler *c);
+/* Reads the text of c->o.file, the first of c->sources. Returns a STATUS. */
+int compiler_open(Compiler *c);
+/* Parses it into c->ast. Returns a STATUS. */
+int compiler_parse(Compiler *c);
 
 /* required_derivatives.c: flags WANT_... (ir/program_set.h) that the methods of e's scene, of --method and of the
  * state of --resume need, and --with. */
+const char *method_of_state(Arena *a, const char *path);
 unsigned derivatives_required(const Eqns *e, const Options *o);
 /* `lagc cost`: those of them that a C compiler has ready in a part of --seconds. */
 unsigned derivatives_in_time(unsigned wants, const ProgramSet *u, const Options *o);
 
+/* Model of a choice of scene and effects, with the definitions of the command line; NULL with the reasons in c->diags.
+ */
+Model *compiler_model(Compiler *c, const ModelChoice *choice);
 /* Equations of a choice of scene and effects; NULL with the reasons in c->diags. */
 Eqns *compiler_derive(Compiler *c, const ModelChoice *choice);
 /* The same of one scene (NULL: the first). */

@@ -2,7 +2,6 @@
  * command line says. */
 #include "commands/commands.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,27 +11,8 @@
 #include "commands/budget.h"
 #include "commands/command_table.h"
 #include "commands/cost_reference.h"
+#include "commands/known_run.h"
 #include "commands/simulator.h"
-#include "self_check/self_check.h"
-#include "toolchain/process.h"
-
-enum { LARGE = 1000 }; /* coordinates, beyond which the compiler's memory is not kept during the run */
-
-/* Whether an output of the simulator would overwrite a file of the model. */
-static int writes_source(Compiler *c) {
-  for (char *const *a = c->picture.argv.at; *a; a++) {
-    const char *eq = strncmp(*a, "--", 2) == 0 ? strchr(*a, '=') : NULL;
-    if (compiler_is_source(c, eq ? eq + 1 : *a)) return 1;
-  }
-  return 0;
-}
-
-/* After a run that lacked a finite value: reports the expression of the text that has none. */
-static void tell_last_state(void *compiler, const double *number, uint32_t n) {
-  Compiler *c = compiler;
-  c->diags->list.n = 0; /* they have been printed */
-  if (nonfinite_note(c->run, c->run_by, number, n)) compiler_print_messages(c);
-}
 
 static double seconds_now(void) {
   struct timespec now;
@@ -40,15 +20,14 @@ static double seconds_now(void) {
   return (double)now.tv_sec + 1e-9*(double)now.tv_nsec;
 }
 
-/* Makes the simulator of `lagc cost`, beside it the reference where three fifths of the time, or five seconds,
- * suffice, and tells it how much is left: at least a third. */
+/* Makes the simulator of `lagc cost`, beside it the reference where three fifths of the time, or a fifth after the
+ * build, suffice, and tells it how much is left: at least a third. */
 static int make_cost_simulator(Compiler *c, const Units *units, double begin, const char **path) {
-  enum { LEAST_WAIT = 5 };
   double asked = c->o.seconds ? strtod(c->o.seconds, NULL) : 10;
   CostReference reference;
   cost_reference_begin(c, 0.4*asked, &reference);
   int status = simulator_of_units(c, units, NULL, path),
-      given = cost_reference_end(&reference, fmax(0.6 * asked - (seconds_now() - begin), LEAST_WAIT));
+      given = cost_reference_end(&reference, fmax(0.6 * asked - (seconds_now() - begin), 0.2 * asked));
   double left = asked - (seconds_now() - begin);
   c->picture.argv.n--; /* the NULL at the end */
   vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--seconds"));
@@ -67,6 +46,37 @@ static int make_cost_simulator(Compiler *c, const Units *units, double begin, co
   return status;
 }
 
+static int is_quiet(const Options *o) {
+  for (uint32_t i = 0; i < o->rest.n; i++)
+    if (strcmp(o->rest.at[i], "--quiet") == 0) return 1;
+  return 0;
+}
+
+/* "drawn by guess: 2 rods, ball at x1, y1, ball at x2, y2; ..." */
+static const char *drawing_words(Arena *a, const Scene *sc) {
+  enum { MOST = 4 };
+  StrBuf s = strbuf(a);
+  sb_puts(&s, "guessed drawing:");
+  for (uint32_t i = 0, n = 0; i < sc->shapes.n && n <= MOST; i++, n++) {
+    const Shape *x = &sc->shapes.at[i];
+    if (n == MOST) sb_printf(&s, ", ... (%u shapes)", sc->shapes.n);
+    else sb_printf(&s, "%s %s%s%s", n ? "," : "", shape_word(x->kind), x->text ? " at " : "", x->text ? x->text : "");
+  }
+  sb_puts(&s, "; `draw` statements in the model, or --points 'X,Y X,Y', say otherwise");
+  return sb_text(&s);
+}
+
+/* Whether there is something to draw; says so where it was guessed, or not. */
+static int has_drawing(Compiler *c) {
+  const Scene *sc = &c->run->m->scene;
+  if (!c->picture.drawing) return 1;
+  if (!sc->shapes.n)
+    return usage_error("nothing to draw: the model has no `draw`, no x,y, no x1,y1 x2,y2 ... and no vector among its "
+                       "coordinates; write `draw ball at (X, Y)` in it, or --points 'X,Y X,Y'"), 0;
+  if (sc->guessed && !c->picture.note && !is_quiet(&c->o)) c->picture.note = drawing_words(c->arena, sc);
+  return 1;
+}
+
 /* run, plot, animate, modes, lyapunov, cost: builds the simulator and becomes it by exec. */
 int command_run(Compiler *c) {
   const char *path;
@@ -76,16 +86,11 @@ int command_run(Compiler *c) {
   if (c->o.budget) return cost_budget(c);
   Units units = {0};
   if (!simulator_lower(c, &units)) return STATUS_MODEL;
+  if (!has_drawing(c)) return STATUS_USAGE;
+  status = simulator_evaluate(c, &units, &path);
+  if (status != STATUS_OK) return status;
+  if (path) return known_run_evaluate(c, path);
   status = c->o.command == CMD_COST ? make_cost_simulator(c, &units, begin, &path)
                                     : simulator_of_units(c, &units, NULL, &path);
-  if (status != STATUS_OK) return status;
-  if (writes_source(c)) return STATUS_USAGE;
-  fflush(stdout);
-  if (!simulator_is_later_rank(c)) compiler_print_messages(c); /* warnings: the simulator does not come back */
-  if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
-  if (c->run && c->run->n <= LARGE && c->o.command != CMD_SWEEP) last_state_listen(c->arena, tell_last_state, c);
-  process_become(path, c->picture.argv.at);
-  const char *why = strerror(errno);
-  return usage_error(
-      arena_printf(c->arena, "cannot run %s: %s; set XDG_CACHE_HOME to a folder where programs may run", path, why));
+  return status == STATUS_OK ? known_run_keep_and_start(c, path) : status;
 }

@@ -2,8 +2,10 @@
  * writes the simulator's argv. */
 #include "commands/run_request.h"
 
+#include <stdio.h>
 #include <string.h>
 
+#include "base/source.h"
 #include "base/words.h"
 #include "commands/command_table.h"
 #include "syntax/parse.h"
@@ -216,6 +218,7 @@ static int prepare_plot(RequestBuilder *k, const char **error) {
   if (o->cloud && o->phase) *error = "--cloud draws the coordinate and its momentum, or --x and --y; leave out --phase";
   else if (o->cloud && !x && !y && (x = only_coordinate(k, "--cloud", &second, error)))
     y = second ? second : arena_printf(k->arena, "p_%s", x);
+  for (uint32_t i = 0; i < o->rest.n && !k->p->drawing; i++) k->p->drawing = strncmp(o->rest.at[i], "--drawing", 9) == 0;
   if (o->cloud) add_argument(k, "--cloud", o->cloud);
   if (o->energy_error) add_argument(k, "--energy-error", NULL);
   if (o->distance) add_argument(k, "--distance", NULL);
@@ -299,98 +302,6 @@ static int points_split(Arena *a, const char *text, PointTexts *points, const ch
 
 /* --- animate --- */
 
-/* Points of the model, found by the names of its quantities. */
-typedef struct {
-  const char *points, *from;
-  int rods; /* joined by rods: their positions are lets of other coordinates */
-} FoundPoints;
-
-static int find_pair(RequestBuilder *k, const char *x, const char *y, StrBuf *points, int *rods) {
-  const AstStmt *s = find_quantity(k->ast, x), *t = find_quantity(k->ast, y);
-  if (!s || !t || !s->dims != !t->dims) return 0;
-  sb_printf(points, "%s%s,%s", points->n ? " " : "", x, y);
-  *rods = s->kind == STMT_LET;
-  return 1;
-}
-
-/* Whether the text declares an angle: periodic, or in [rad] or [deg]. */
-static int is_angle(const AstStmt *s) { return s->periodic || (s->unit.text && has_word("rad deg", s->unit.text)); }
-
-/* The point of a model with one coordinate; an angle is drawn as a hanging rod of length 1. */
-static void find_only(RequestBuilder *k, FoundPoints *f) {
-  const AstStmt *only = NULL;
-  uint32_t n = 0;
-  for (const AstStmt *s = k->ast->first; s; s = s->next)
-    if (s->kind == STMT_COORD) {
-      only = s;
-      n++;
-    }
-  if (n != 1 || !only->name || only->dims || only->type) return;
-  f->rods = is_angle(only);
-  f->points = arena_printf(k->arena, f->rods ? "sin(%s),-cos(%s)" : "%s,0", only->name, only->name);
-}
-
-/* Points of a family u[1] u[2] ...: abscissa the index, ordinate the value. */
-static void find_row(const Model *m, StrBuf *points) {
-  enum { MOST = 1000 };
-  CoordList coords = model_coordinates(m);
-  for (uint32_t i = 0; i < coords.n && i < MOST; i++) {
-    const char *name = coords.at[i], *at = strchr(name, '[');
-    if (!at || strchr(at, ',') || strchr(at, '.') || (i && strncmp(name, coords.at[0], (size_t)(at - name + 1)) != 0)) {
-      points->n = 0;
-      return;
-    }
-    sb_printf(points, "%s%.*s,%s", i ? " " : "", (int)strcspn(at + 1, "]"), at + 1, name);
-  }
-}
-
-/* Points from vectors among the coordinates, families included: r.x,r.y or b[1].x,b[1].y b[2].x,b[2].y; else from a
- * family of numbers. Builds the model, which knows their number; returns 0 when it has mistakes. */
-static int find_vectors(RequestBuilder *k, FoundPoints *f) {
-  enum { MOST = 1000 };
-  ModelChoice choice = {.scene = k->p->scene, .defines = k->o->defines.at, .ndefines = k->o->defines.n};
-  const Model *m = model_build(k->ast, &choice);
-  StrBuf points = strbuf(k->arena);
-  if (!m) return 0;
-  CoordList coords = model_coordinates(m);
-  for (uint32_t i = 0, n = 0; i + 1 < coords.n && n < MOST; i++) {
-    const char *x = coords.at[i], *y = coords.at[i + 1];
-    size_t len = strlen(x);
-    if (len < 3 || strcmp(x + len - 2, ".x") != 0 || strlen(y) != len || strncmp(x, y, len - 1) != 0) continue;
-    sb_printf(&points, "%s%s,%s", n++ ? " " : "", x, y);
-  }
-  if (!points.n) find_row(m, &points);
-  if (points.n) f->points = sb_text(&points);
-  return 1;
-}
-
-/* Whether the let `name` contains the quantity `other`. */
-static int contains(RequestBuilder *k, const char *name, const char *other) {
-  const AstStmt *s = find_quantity(k->ast, name);
-  if (s->kind != STMT_LET) return 0;
-  for (AstId id = ast_expr(k->ast, s->rhs)->first; id <= s->rhs; id++)
-    if (ast_expr(k->ast, id)->kind == AST_NAME && strcmp(ast_expr(k->ast, id)->name, other) == 0) return 1;
-  return 0;
-}
-
-/* x1,y1 x2,y2 ...: joined by rods where each hangs on the one before, and not where two hang beside each other. */
-static void find_chain(RequestBuilder *k, StrBuf *points, int *rods) {
-  int chain = 1;
-  for (int i = 1; find_pair(k, arena_printf(k->arena, "x%d", i), arena_printf(k->arena, "y%d", i), points, rods); i++)
-    chain = chain && (i == 1 || contains(k, arena_printf(k->arena, "x%d", i), arena_printf(k->arena, "x%d", i - 1)));
-  *rods = *rods && chain;
-}
-
-static FoundPoints find_points(RequestBuilder *k) {
-  FoundPoints f = {0};
-  StrBuf points = strbuf(k->arena);
-  if (!find_pair(k, "x", "y", &points, &f.rods)) find_chain(k, &points, &f.rods);
-  if (!points.n && find_pair(k, "px", "py", &points, &f.rods) && find_quantity(k->ast, "x")) f.from = "x,0";
-  if (points.n) f.points = sb_text(&points);
-  else find_only(k, &f);
-  return f;
-}
-
 /* Makes each part of "x1,y1 x2,y2" an output of the scene and returns the names of the columns, written likewise;
  * NULL after a mistake. */
 static const char *add_points(RequestBuilder *k, const char *from, const char *text, uint32_t most,
@@ -411,41 +322,86 @@ static const char *add_points(RequestBuilder *k, const char *from, const char *t
   return ok ? sb_text(&out) : NULL;
 }
 
-static int is_quiet(const Options *o) {
-  for (uint32_t i = 0; i < o->rest.n; i++)
-    if (strcmp(o->rest.at[i], "--quiet") == 0) return 1;
+/* Points of the command line, or the drawing of the model. */
+static int prepare_animate(RequestBuilder *k, const char **error) {
+  const Options *o = k->o;
+  k->p->drawing = !o->points;
+  add_argument(k, "--html", file_name(k, "html"));
+  if (!o->points && (o->from || o->no_rods))
+    return fail_with(error, arena_printf(k->arena, "%s needs --points 'X,Y X,Y'; the model's `draw` statements say "
+                                         "what else is drawn", o->from ? "--from" : "--no-rods"));
+  if (!o->points) return 1;
+  const char *points = add_points(k, "--points", o->points, UINT32_MAX, error), *from = NULL;
+  if (!points || (o->from && !o->no_rods && !(from = add_points(k, "--from", o->from, 1, error)))) return 0;
+  add_argument(k, "--points", points);
+  if (from) add_argument(k, "--from", from);
+  if (o->no_rods) add_argument(k, "--no-rods", NULL);
+  return 1;
+}
+
+/* --- columns of data --- */
+
+/* Length of the field of a CSV line at s, and its text without quotes and blanks around it. */
+static size_t csv_field(Arena *a, const char *s, const char **text) {
+  size_t n = 0;
+  for (int quoted = 0; s[n] && !strchr("\r\n", s[n]) && (s[n] != ',' || quoted); n++) quoted ^= s[n] == '"';
+  const char *trimmed = text_trimmed(a, s, n);
+  size_t length = strlen(trimmed);
+  int in_quotes = length > 1 && trimmed[0] == '"' && trimmed[length - 1] == '"';
+  *text = in_quotes ? arena_strndup(a, trimmed + 1, length - 2) : trimmed;
+  return n;
+}
+
+/* Whether --columns names the column, or is not given. */
+static int is_column_asked(const Options *o, const char *label, size_t length) {
+  const char *list = o->columns;
+  if (!list) return 1;
+  while (*list) {
+    size_t n = strcspn(list, ",");
+    if (n == length && memcmp(list, label, n) == 0) return 1;
+    list += n + (list[n] == ',');
+  }
   return 0;
 }
 
-static int prepare_animate(RequestBuilder *k, const char **error) {
-  enum { SHOWN_POINTS = 60 };
-  const Options *o = k->o;
-  FoundPoints f = {.points = o->points, .rods = 1};
-  if (!f.points) {
-    f = find_points(k);
-    if (!f.points && !find_vectors(k, &f)) return 0;
-    if (!f.points) {
-      *error = "no points to draw: the model has no x,y, no x1,y1 x2,y2 ..., no px,py and no vector among its "
-               "coordinates; write "
-               "--points 'X,Y X,Y', each two expressions";
-      return 0;
-    }
-  }
-  if (o->from) f.from = o->from;
-  int rods = (f.rods || o->from) && !o->no_rods;
-  if (!o->points && !is_quiet(o))
-    k->p->note = arena_printf(k->arena, "points %.*s%s%s%s; --points 'X,Y X,Y' takes others", SHOWN_POINTS, f.points,
-                              strlen(f.points) > SHOWN_POINTS ? "..." : "", rods ? ", joined by rods from " : "",
-                              !rods    ? ""
-                              : f.from ? f.from
-                                       : "the origin");
-  const char *points = add_points(k, "--points", f.points, UINT32_MAX, error), *from = NULL;
-  if (!points || (f.from && rods && !(from = add_points(k, "--from", f.from, 1, error)))) return 0;
-  add_argument(k, "--html", file_name(k, "html"));
-  add_argument(k, "--points", points);
-  if (from) add_argument(k, "--from", from);
-  if (!rods) add_argument(k, "--no-rods", NULL);
+/* Makes the column an output called by its label: a number in its unit, or the quantity in its own where the label has
+ * none. The sum has both in one unit, which the compiler checks. */
+static int add_column(RequestBuilder *k, const char *label, int is_time) {
+  const char *unit = strstr(label, " [");
+  size_t n = unit ? (size_t)(unit - label) : strlen(label);
+  const char *name = is_time ? "1 [s]" : arena_strndup(k->arena, label, n), *text = name;
+  if (strncmp(label, "sigma(", 6) == 0 || (!is_time && !is_column_asked(k->o, label, n))) return 1;
+  if (unit && strcmp(unit, " [degC]") == 0) text = arena_printf(k->arena, "(%s - 0 [degC])/(1 [K]) + 1 - 1", name);
+  else if (unit) text = arena_printf(k->arena, "(%s)/(1%s) + 1 - 1", name, unit);
+  const Source *source =
+      source_add(k->ast->sources, arena_printf(k->arena, "--data, column %s", label), text, strlen(text));
+  CommandOutput asked = {source ? parse_expression(k->ast, source) : 0, intern(k->ast->names, label)};
+  if (!asked.expr) return 0;
+  vec_push(k->arena, &k->p->asked, asked);
   return 1;
+}
+
+/* Columns of --data, by the first line of the file. */
+static int prepare_columns(RequestBuilder *k, const char **error) {
+  enum { LONGEST = 1 << 16 };
+  const char *path = options_passed(k->o, "--data"), *why = NULL, *label;
+  if (!path || !options_passed(k->o, "--fit"))
+    return fail_with(error, "lagc fit needs the record and what to find: --data motion.csv --fit g,l");
+  FILE *f = source_open(path, &why);
+  if (!f) return fail_with(error, arena_printf(k->arena, "--data %s cannot be read: %s", path, why));
+  char *line = arena_alloc(k->arena, LONGEST);
+  char *at = fgets(line, LONGEST, f);
+  fclose(f);
+  if (!at) return fail_with(error, arena_printf(k->arena, "--data %s: the file is empty", path));
+  if (strncmp(at, "\xEF\xBB\xBF", 3) == 0) at += 3;
+  for (int column = 0, ok = 1;; column++) {
+    at += csv_field(k->arena, at, &label);
+    int is_time = column == 0 && strncmp(label, "t [", 3) == 0 && strcmp(label, "t [s]") != 0;
+    /* the simulator refuses a first line without names */
+    if ((column || is_time) && !text_is_number(label)) ok = add_column(k, label, is_time);
+    if (!ok) return 0;
+    if (*at++ != ',') return 1;
+  }
 }
 
 int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **error) {
@@ -463,6 +419,9 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   if (o->command == CMD_PLOT) ok = ok && prepare_plot(&k, error);
   if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
   if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);
+  if (o->command == CMD_FIT) ok = ok && prepare_columns(&k, error);
+  if (o->command == CMD_ORBIT) add_argument(&k, "--orbit", NULL);
+  if (o->command == CMD_CONTINUE) add_argument(&k, "--continue", NULL);
   if (o->command == CMD_LYAPUNOV) add_argument(&k, "--lyapunov", NULL);
   if (o->command == CMD_COST) add_argument(&k, "--cost", NULL);
   if (o->command == CMD_SWEEP) add_argument(&k, "--sweep", NULL);

@@ -15,7 +15,8 @@ typedef struct {
   SceneList scenes; /* scenes that the command line names: a picture may show several */
   VEC(char *) argv; /* the simulator's, NULL-terminated */
   const char *error; /* cost --error: name of the output that is judged, "final" or "residual"; NULL: the state */
-  const char *note; /* points that were chosen for the user, or NULL */
+  int drawing;       /* 1: the drawing of the model is wanted */
+  const char *note;  /* what was left out, or NULL */
 } RunRequest;
 
 /* --- settings.c: values on the command line. A simulator takes plain numbers in declared units; so inputs with a

@@ -17,14 +17,55 @@
 #include "toolchain/simulator_cache.h"
 #include "toolchain/files.h"
 
-/* The equations of a scene with the outputs, inputs and section of the command line. */
+/* A scene with the outputs, inputs and section of the command line. */
+static ModelChoice choice_of(const Compiler *c, const char *scene, int measures) {
+  return (ModelChoice){.scene = scene,
+                       .asked = c->picture.asked.at,
+                       .nextra_outputs = c->picture.asked.n,
+                       .measures = c->picture.measures.at,
+                       .nmeasures = measures ? c->picture.measures.n : 0,
+                       .given = c->given.at,
+                       .ngiven = c->given.n,
+                       .section = c->picture.section,
+                       .drawing = c->picture.drawing ? DRAWING_WANTED : DRAWING_NONE};
+}
+
 static Eqns *derive_asked(Compiler *c, const char *scene, int measures) {
-  return compiler_derive_wanted(c, &(ModelChoice){.scene = scene,
-                                                  .asked = c->picture.asked.at, .nextra_outputs = c->picture.asked.n,
-                                                  .measures = c->picture.measures.at,
-                                                  .nmeasures = measures ? c->picture.measures.n : 0,
-                                                  .given = c->given.at, .ngiven = c->given.n,
-                                                  .section = c->picture.section});
+  ModelChoice choice = choice_of(c, scene, measures);
+  return compiler_derive_wanted(c, &choice);
+}
+
+static int is_named(SceneList named, const char *scene) {
+  for (uint32_t i = 0; i < named.n; i++)
+    if (strcmp(named.at[i], scene) == 0) return 1;
+  return 0;
+}
+
+static int same_effects(const Model *a, const Model *b) {
+  for (uint32_t i = 0; i < a->effects.n && i < b->effects.n; i++)
+    if (a->effects.at[i] != b->effects.at[i]) return 0;
+  return a->effects.n == b->effects.n;
+}
+
+/* The scenes that a run compiles: those that it names, and others with the effects of one of them, which share its
+ * programs. 0: a scene is wrong. */
+static int scenes_of_run(Compiler *c, SceneList all, SceneList named, SceneList *run) {
+  Name *at = ARENA_ARRAY(c->arena, Name, all.n + 1);
+  VEC(const Model *) models = {0};
+  *run = (SceneList){at, 0};
+  for (uint32_t i = 0; i < all.n; i++) {
+    ModelChoice choice = choice_of(c, all.at[i], 0);
+    const Model *m = compiler_model(c, &choice);
+    if (!m) return 0;
+    vec_push(c->arena, &models, m);
+  }
+  for (uint32_t i = 0; i < all.n; i++) {
+    int shared = 0;
+    for (uint32_t k = 0; k < all.n; k++)
+      shared |= is_named(named, all.at[k]) && same_effects(models.at[i], models.at[k]);
+    if (shared) at[run->n++] = all.at[i];
+  }
+  return 1;
 }
 
 typedef VEC(const Measures *) Measured; /* the measures of the command line, of each variant */
@@ -71,11 +112,10 @@ static void precision_warn(const Ast *ast, const ExprGraph *g, const char *preci
     if (!expr_is_num(g, e) || num_is_exact(expr_number(g, e))) continue;
     num_format_double(text, num_value(expr_number(g, e)));
     if (strspn(text, "-0.123456789") - (text[0] == '-') - (strchr(text, '.') != NULL) <= SAFE) continue;
-    fprintf(stderr,
-            "lagc: warning: --precision %s: a product of numbers of the model, %s, is rounded to 17 digits; if more "
-            "digits matter, make them "
-            "parameters\n",
-            precision, text);
+    diag_warning(ast->diags, (Span){0},
+                 "--precision %s: a product of numbers of the model, %s, is rounded to 17 digits; if more digits "
+                 "matter, make them parameters",
+                 precision, text);
     return;
   }
 }
@@ -137,7 +177,9 @@ static void lower_scene(Compiler *c, Eqns *e, int runs, int apart, Units *units,
 
 int simulator_lower(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast), named = c->picture.scenes.n ? c->picture.scenes : (SceneList){scenes.at, 1};
-  if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->o.consts.n) scenes = named;
+  if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->picture.drawing || c->o.consts.n)
+    scenes = named;
+  else if (c->picture.argv.n && !scenes_of_run(c, scenes, named, &scenes)) return 0;
   Lowereds all = {0};
   const char *error, *first = c->picture.scene ? c->picture.scene : scenes.at[0];
   uint32_t variants = const_range_variants(c->arena, &c->o, &error);
@@ -177,12 +219,25 @@ static void add_lanes(Compiler *c, const ProgramSet *u, const char *name, const 
   vec_push(c->arena, texts, ((SourceText){arena_printf(c->arena, "lanes_%d_%s", lanes, file), sb_text(&b)}));
 }
 
+/* C names of the models. */
+static const char *const *unit_names(Compiler *c, const Units *units) {
+  const char **names = ARENA_ARRAY(c->arena, const char *, units->n);
+  for (uint32_t i = 0; i < units->n; i++)
+    names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units->at[i]->name), i);
+  return names;
+}
+
+StrBuf simulator_bytes(Compiler *c, const Units *units) {
+  StrBuf out = strbuf(c->arena);
+  emit_bytes((const ProgramSet *const *)units->at, unit_names(c, units), units->n, &out);
+  return out;
+}
+
 /* A text for each unit, the last of them with the program: a file less to compile. */
 Texts simulator_texts(Compiler *c, const Units *units, ProgramKind kind) {
   Texts texts = {0};
-  const char **names = ARENA_ARRAY(c->arena, const char *, units->n);
+  const char *const *names = unit_names(c, units);
   for (uint32_t i = 0; i < units->n; i++) {
-    names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units->at[i]->name), i);
     StrBuf b = strbuf(c->arena);
     const char *file = arena_printf(c->arena, "model_%u.c", i);
     emit_model(units->at[i], names[i], 0, &b);
@@ -232,6 +287,10 @@ static int asks_ranks(const Compiler *c) {
   return 0;
 }
 
+const char *simulator_surroundings(const Compiler *c) {
+  return arena_printf(c->arena, "%d %d %d", simulator_is_later_rank(c), asks_ranks(c), toolchain_has_lanes());
+}
+
 /* Links the parts of the runtime that the command line asks for: those that write its files, and MPI. Returns
  * PROGRAM_WITH_..., or -1 with *error. */
 static int find_parts(Compiler *c, Toolchain *t, const char **error) {
@@ -260,20 +319,27 @@ static int find_parts(Compiler *c, Toolchain *t, const char **error) {
   return kind;
 }
 
+int simulator_tools(Compiler *c, const Units *units, const char *output, Toolchain *tools, ProgramKind *kind) {
+  const char *error = NULL;
+  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl && !c->o.shared, tools, &error)) return usage_error(error);
+  if (c->o.precision && !toolchain_precision(c->arena, tools, c->o.precision, &error)) return usage_error(error);
+  if (c->o.command == CMD_MODES) tools->optimise = "-O0";
+  tools->soname = c->o.shared ? arena_printf(c->arena, "lib%s.so", file_stem(c, output ? output : c->o.file)) : NULL;
+  tools->lanes = units->at[0]->lanes;
+  int parts = find_parts(c, tools, &error);
+  if (parts < 0) return usage_error(error);
+  *kind = c->o.shared ? PROGRAM_LIBRARY
+                      : (ProgramKind)((tools->gsl ? PROGRAM_WITH_GSL : 0) | parts |
+                                      (tools->lanes ? PROGRAM_WITH_LANES : 0));
+  return STATUS_OK;
+}
+
 int simulator_of_units(Compiler *c, const Units *units, const char *output, const char **path) {
   if (output && compiler_is_source(c, output)) return STATUS_USAGE;
   Toolchain tools;
-  const char *error = NULL;
-  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl && !c->o.shared, &tools, &error)) return usage_error(error);
-  if (c->o.precision && !toolchain_precision(c->arena, &tools, c->o.precision, &error)) return usage_error(error);
-  if (c->o.command == CMD_MODES) tools.optimise = "-O0";
-  tools.soname = c->o.shared ? arena_printf(c->arena, "lib%s.so", file_stem(c, output ? output : c->o.file)) : NULL;
-  tools.lanes = units->at[0]->lanes;
-  int parts = find_parts(c, &tools, &error);
-  if (parts < 0) return usage_error(error);
-  ProgramKind kind =
-      c->o.shared ? PROGRAM_LIBRARY
-                  : (ProgramKind)((tools.gsl ? PROGRAM_WITH_GSL : 0) | parts | (tools.lanes ? PROGRAM_WITH_LANES : 0));
+  ProgramKind kind;
+  int status = simulator_tools(c, units, output, &tools, &kind);
+  if (status != STATUS_OK) return status;
   Texts texts = simulator_texts(c, units, kind);
   return simulator_make(c, &tools, &texts, output, path);
 }

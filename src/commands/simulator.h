@@ -19,6 +19,17 @@ int simulator_lower(Compiler *c, Units *units);
 /* The C texts of a program of these units. */
 Texts simulator_texts(Compiler *c, const Units *units, ProgramKind kind);
 
+/* The same program as bytes for liblag's evaluator. */
+StrBuf simulator_bytes(Compiler *c, const Units *units);
+
+/* The toolchain and the kind of program that the command line asks for. Returns a STATUS. */
+int simulator_tools(Compiler *c, const Units *units, const char *output, Toolchain *tools, ProgramKind *kind);
+
+/* evaluation.c: lag-run in place of a simulator, with what it runs: where --compile allows it, the command line asks
+ * for nothing that is linked, and the cache has no simulator. *path is NULL where the units must be compiled.
+ * Returns a STATUS. */
+int simulator_evaluate(Compiler *c, const Units *units, const char **path);
+
 /* Makes a program from the texts at `output`, or in the cache (NULL), and gives its path. Returns a STATUS. */
 int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path);
 
@@ -27,6 +38,9 @@ int simulator_of_units(Compiler *c, const Units *units, const char *output, cons
 
 /* Whether mpirun or srun started this sweep as another process than the first one, which prints the warnings. */
 int simulator_is_later_rank(const Compiler *c);
+
+/* What the command finds beside text and words: other processes of a sweep, the lanes of this machine. */
+const char *simulator_surroundings(const Compiler *c);
 
 /* The words of the command line that say which motion is run: scene, name=value, --until. */
 OptionTexts simulator_values(Compiler *c);

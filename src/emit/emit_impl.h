@@ -39,6 +39,15 @@ typedef struct {
   uint32_t first, next, sums;
 } TaylorCosts;
 TaylorCosts taylor_costs(const Series *s);
+int taylor_sums_fit_registers(const Series *s);
+
+/* For models with constraints, by component of [q|v|z]: 1 where the start sets it, 2 for implied ones. */
+const unsigned char *scene_given(const ProgramSet *u, const IrScene *s);
+
+/* Digest of the equations of a model whose lag_model is called NAME. */
+const char *model_digest(const ProgramSet *u, const char *name);
+/* Whether its lag_model has a linearisation: with constraints the derivatives are those of headers. */
+int model_has_linear(const ProgramSet *u);
 
 enum { TAYLOR_INLINE_MAX = 300 }; /* most operations of taylor_next that are inlined several times */
 

@@ -23,7 +23,9 @@ static const char *const abi_names[] = {
     "mass_table",       "second_table",     "linear",           "curves",
     "singular",         "constraint_table", "jacobian_table",   "inertia_table",
     "constraints",      "contact_table",    "charge_table",     "charges",
-    "switch_table",     "taylor_far",       "taylor_add",
+    "switch_table",     "taylor_far",       "taylor_add",       "by_params",
+    "by_params_table",  "params_partials",  "by_inputs",        "by_inputs_table",
+    "inputs_partials",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -108,14 +110,14 @@ static int is_seldom_called(const ProgramSet *u, const Prog *p) {
 
 void state_function(const ModelFile *f, const Prog *p, const char *name, const char *comment, const char *in,
                     const char *const *written) {
-  const char *own[12] = {"t", "q", "v", "z", "p", "u"};
-  uint32_t n = 6, outputs = 0;
+  const char *own[14] = {"self", "t", "q", "v", "z", "p", "u"};
+  uint32_t n = 7, outputs = 0;
   StrBuf head = strbuf(f->a);
   if (!p) return;
   while (written[outputs]) outputs++;
   sb_printf(&head,
-            "static int %s(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL "
-            "*p, const LAG_REAL *u",
+            "static int %s(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    "
+            "const LAG_REAL *p, const LAG_REAL *u",
             name);
   if (in) sb_printf(&head, ", const LAG_REAL *%s", own[n++] = in);
   for (uint32_t k = 0; k < outputs; k++)
@@ -158,11 +160,12 @@ static void emit_strike(const ModelFile *f) {
   state_function(f, u->impact, "impact", "Velocities after the impact of the contact whose entry of g is 1.", "g",
                  written);
   sb_printf(f->out,
-            "\nstatic int strike(int row, int input, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL "
-            "*z,\n    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *v1, LAG_REAL *w) {\n"
+            "\nstatic int strike(const void *self, int row, int input, LAG_REAL t, const LAG_REAL *q, const LAG_REAL "
+            "*v,\n    "
+            "const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *v1, LAG_REAL *w) {\n"
             "  LAG_REAL g[%u], with[%u];\n"
             "  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = 0; i < %u; i++) with[i] = u[i];\n"
-            "  g[row] = with[input] = LAG_C(1.0);\n  return impact(t, q, v, z, p, with, g, v1, w);\n}\n",
+            "  g[row] = with[input] = LAG_C(1.0);\n  return impact(self, t, q, v, z, p, with, g, v1, w);\n}\n",
             u->constraints.of.n, u->u.n, u->constraints.of.n, u->u.n);
 }
 
@@ -176,18 +179,21 @@ static void emit_events(const ModelFile *f) {
     if (!program_set_striking_contact(u, i))
       state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", cname_of_event(u, i)),
                      arena_printf(f->a, "What the event %s does.", u->events.at[i].name), NULL, written);
-  sb_puts(f->out, "\nstatic int act(int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    "
-                  "const LAG_REAL *p, const LAG_REAL *u,\n"
-                  "    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n  switch (k) {\n");
+  sb_puts(
+      f->out,
+      "\nstatic int act(const void *self, int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n"
+      "    const LAG_REAL *p, const LAG_REAL *u,\n"
+      "    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n  switch (k) {\n");
   for (uint32_t i = 0; i < u->events.n; i++) {
     const IrContact *c = program_set_striking_contact(u, i);
     if (c)
-      sb_printf(f->out, "    case %u: return strike(%u, %u, t, q, v, z, p, u, v1, w);\n", i, c->constraint, c->input);
+      sb_printf(f->out, "    case %u: return strike(self, %u, %u, t, q, v, z, p, u, v1, w);\n", i, c->constraint,
+                c->input);
     else
-      sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i,
+      sb_printf(f->out, "    case %u:%s return act_%s(self, t, q, v, z, p, u, q1, v1, z1, w);\n", i,
                 u->events.at[i].stop ? " *stop = 1;" : "", cname_of_event(u, i));
   }
-  sb_puts(f->out, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
+  sb_puts(f->out, "    default: (void)self; (void)stop; return LAG_OK;\n  }\n}\n");
 }
 
 static void emit_switches(const ModelFile *f) {
@@ -252,18 +258,18 @@ static void emit_charges(const ModelFile *f) {
 /* --- parameters and inputs --- */
 
 static void emit_derive(const ModelFile *f) {
-  static const char *const own[] = {"p", NULL}, *const written[] = {"p"};
+  static const char *const own[] = {"self", "p", NULL}, *const written[] = {"p"};
   if (!f->u->nderived) return;
   CStyle st = model_style(f, own, written);
   st.apart = st.prefer_short_code = 1;
   CFunction c = {.comment = arena_printf(f->a, "Derived parameters, for the functions below: %s.",
                                          op_count_text(f->u->derived, f->a)),
-                 .head = "static void derive(LAG_REAL *p)"};
+                 .head = "static void derive(const void *self, LAG_REAL *p)"};
   cfunction(f->u->derived, &st, &c, f->out);
 }
 
 static void emit_inputs(const ModelFile *f) {
-  static const char *const own[] = {"t", "p", "u", NULL}, *const written[] = {"u"};
+  static const char *const own[] = {"self", "t", "p", "u", NULL}, *const written[] = {"u"};
   const Prog *p = f->u->inputs;
   if (!f->u->u.n) return;
   CStyle st = model_style(f, own, written);
@@ -274,7 +280,8 @@ static void emit_inputs(const ModelFile *f) {
     cwrite_rows(&p->tables.at[i], st.rows[i], "LAG", "", f->a, f->out);
   }
   CFunction c = {.comment = p->tables.n ? "Inputs, by their formulas and tables." : "Inputs that have a formula.",
-                 .head = "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", .returns = 1};
+                 .head = "static int inputs(const void *self, LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)",
+                 .returns = 1};
   cfunction(p, &st, &c, f->out);
 }
 
@@ -301,13 +308,25 @@ static void emit_jumps(const ModelFile *f) {
   sb_puts(f->out, "\n};\n");
 }
 
-/* With constraints the derivatives are those of headers: see WANT_CONSTRAINED. */
-static int has_linear(const ProgramSet *u) { return u->linear && !u->constraints.of.n; }
+/* See WANT_CONSTRAINED. */
+int model_has_linear(const ProgramSet *u) { return u->linear && !u->constraints.of.n; }
+
+/* Derivatives by parameters or inputs, with their table. */
+static void emit_partials(const ModelFile *f, const Prog *p, const IrEntry *at, uint32_t n, const char *by) {
+  static const char *const written[] = {"dr", "M", NULL};
+  const char *table = arena_printf(f->a, "by_%s_table", by);
+  state_function(f, p, arena_printf(f->a, "by_%s", by),
+                 arena_printf(f->a, "The same, dr: each equation by the %s; M: %s.", by, op_count_text(p, f->a)), "a",
+                 written);
+  entries(table, at, n, f->out);
+  sb_printf(f->out, "\nstatic const lag_partials %s = {%u, %s, by_%s};\n", arena_printf(f->a, "%s_partials", by), n,
+            n ? table : "NULL", by);
+}
 
 static void emit_linear(const ModelFile *f) {
   static const char *const written[] = {"dr", "M", NULL};
   const ProgramSet *u = f->u;
-  if (!has_linear(u)) return;
+  if (!model_has_linear(u)) return;
   const char *comment =
       arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.",
                    op_count_text(u->linear, f->a));
@@ -315,12 +334,18 @@ static void emit_linear(const ModelFile *f) {
   entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
   entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
   emit_jumps(f);
+  int sensitive = (u->wants & WANT_SENSITIVITY) == WANT_SENSITIVITY, params = sensitive && u->by_params,
+      inputs = sensitive && u->by_inputs;
+  if (params) emit_partials(f, u->by_params, u->by_params_dr.at, u->by_params_dr.n, "params");
+  if (inputs) emit_partials(f, u->by_inputs, u->by_inputs_dr.at, u->by_inputs_dr.n, "inputs");
   sb_printf(f->out,
             "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval "
             "= linearise,\n",
             u->linear_dr.n, u->linear_dr.n ? "dr_table" : "NULL", u->linear_mass.n,
             u->linear_mass.n ? "mass_table" : "NULL", ops_as_int(ops_total(prog_count(u->linear))));
   if (u->jumps) sb_printf(f->out, "  .njump = %u, .jump = jump_table, .jumps = jumps,\n", u->jump_at.n);
+  if (params) sb_puts(f->out, "  .by_params = &params_partials,\n");
+  if (inputs) sb_puts(f->out, "  .by_inputs = &inputs_partials,\n");
   sb_puts(f->out, "};\n");
 }
 
@@ -377,6 +402,12 @@ static void emit_constraints(const ModelFile *f) {
               c->is_tangent, c->force, c->conditional, c->law);
   }
   sb_puts(f->out, "};\n");
+  if (program_set_guides(f->u)) sb_puts(f->out, "\nstatic const lag_guide guide_table[] = {\n");
+  for (uint32_t i = 0; i < f->u->contacts.n; i++)
+    if (f->u->contacts.at[i].parts)
+      sb_printf(f->out, "  {%u, %u, %d},\n", i, f->u->contacts.at[i].parts,
+                f->u->contacts.at[i].parts == 1 ? (int)f->u->contacts.at[i].turn : -1);
+  if (program_set_guides(f->u)) sb_puts(f->out, "};\n");
   state_function(f, f->u->contact_laws, "contact_laws",
                  "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", NULL,
                  one_out);
@@ -483,6 +514,7 @@ static void emit_tables(const ProgramSet *u, const char *name, const char *diges
   if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->contact_laws) sb_puts(out, "  .contact_laws = contact_laws,\n");
+  if (program_set_guides(u)) sb_printf(out, "  .nguides = %u, .guides = guide_table,\n", program_set_guides(u));
   if (u->sizes.n)
     sb_printf(out, "  .nsizes = %u, .sizes = size_table, .size_values = %s,\n", u->sizes.n - u->nmoving,
               u->size_values ? "size_values" : "NULL");
@@ -496,7 +528,7 @@ static void emit_tables(const ProgramSet *u, const char *name, const char *diges
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
-  if (has_linear(u)) sb_puts(out, "  .linear = &linear,\n");
+  if (model_has_linear(u)) sb_puts(out, "  .linear = &linear,\n");
   sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n");
   if (u->fixed[0]) sb_printf(out, "  .fixed = %s,\n", c_string(u->arena, u->fixed));
   sb_puts(out, "};\n");
@@ -513,21 +545,31 @@ static void emit_head(const ProgramSet *u, StrBuf *out) {
   sb_puts(out, "#include <math.h>\n\n#include \"lag_model.h\"\n");
 }
 
+/* The functions on which a saved state depends; returns their digest. */
+static const char *emit_equations(const ModelFile *f) {
+  size_t begin = f->out->n;
+  emit_derive(f);
+  accel(f);
+  state_function(f, f->u->energy, "energy",
+                 "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", NULL, one_out);
+  emit_events(f);
+  emit_inputs(f);
+  emit_constraints(f);
+  return digest_text(f->a, sb_text(f->out) + begin);
+}
+
+const char *model_digest(const ProgramSet *u, const char *name) {
+  StrBuf text = strbuf(u->arena);
+  return emit_equations(&(ModelFile){.u = u, .a = u->arena, .globals = globals_of(u, name), .out = &text});
+}
+
 void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
   ModelFile f = {.u = u, .a = u->arena, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
   MathText math = {u, "LAG", "lag", needs_solver(u)};
   math_of_model(&math, alone, out);
   if (has_long_tables(u)) table_macros(out);
-  size_t begin = out->n;
-  emit_derive(&f);
-  accel(&f);
-  state_function(&f, u->energy, "energy",
-                 "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", NULL, one_out);
-  emit_events(&f);
-  emit_inputs(&f);
-  emit_constraints(&f);
-  const char *digest = digest_text(u->arena, sb_text(out) + begin);
+  const char *digest = emit_equations(&f);
   emit_sizes(&f);
   emit_charges(&f);
   emit_switches(&f);

@@ -27,6 +27,9 @@ typedef enum {
  * the name of units[i] in emit_model. */
 void emit_program(const ProgramSet *const *units, const char *const *names, uint32_t n, ProgramKind kind, StrBuf *out);
 
+/* Appends the same program as bytes, which runtime/evaluator executes: all but what lanes need. */
+void emit_bytes(const ProgramSet *const *units, const char *const *names, uint32_t n, StrBuf *out);
+
 /* Appends the file that compiles a unit's text, in the file `text`, once more for vectors of so many doubles, where
  * the processor may have them. */
 void emit_lanes(const ProgramSet *u, const char *name, const char *text, int lanes, StrBuf *out);

@@ -21,9 +21,9 @@ static uint32_t same_params(const ProgramSet *u, const IrScene *s, uint32_t i) {
 
 /* Function params_ID: parameters in order, as each formula may use the parameters before it. */
 static void emit_params(const ModelFile *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"p", "fixed", NULL}, *const written[] = {"p"};
-  sb_printf(f->out, "\nstatic void params_%s(LAG_REAL *p, const unsigned char *fixed) {\n", id);
-  if (!f->u->p.n) sb_puts(f->out, "  (void)p; (void)fixed;\n");
+  static const char *const own[] = {"self", "p", "fixed", NULL}, *const written[] = {"p"};
+  sb_printf(f->out, "\nstatic void params_%s(const void *self, LAG_REAL *p, const unsigned char *fixed) {\n", id);
+  sb_puts(f->out, f->u->p.n ? "  (void)self;\n" : "  (void)self; (void)p; (void)fixed;\n");
   for (uint32_t i = 0, same; i < f->u->p.n; i += same) {
     same = same_params(f->u, s, i);
     if (same > 1) {
@@ -39,14 +39,16 @@ static void emit_params(const ModelFile *f, const IrScene *s, const char *id) {
     cwrite_body(s->params[i], &st, f->a, &body);
     cwrite_guarded(arena_printf(f->a, "if (!fixed[%u]) ", i), sb_text(&body), f->out);
   }
-  sb_puts(f->out, f->u->nderived ? "  derive(p);\n}\n" : "}\n");
+  sb_puts(f->out, f->u->nderived ? "  derive(NULL, p);\n}\n" : "}\n");
 }
 
 static void emit_start(const ModelFile *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"p", "q", "v", "z", NULL}, *const written[] = {"q", "v", "z"};
+  static const char *const own[] = {"self", "p", "q", "v", "z", NULL}, *const written[] = {"q", "v", "z"};
   CStyle st = model_style(f, own, written);
-  sb_printf(f->out, "\nstatic void start_%s(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z) {\n", id);
-  sb_puts(f->out, "  (void)p; (void)q; (void)v; (void)z;\n");
+  sb_printf(f->out,
+            "\nstatic void start_%s(const void *self, const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z) {\n",
+            id);
+  sb_puts(f->out, "  (void)self; (void)p; (void)q; (void)v; (void)z;\n");
   if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
   if (f->u->z.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) z[i] = LAG_C(0.0);\n", f->u->z.n);
   st.prefer_short_code = 1;
@@ -56,15 +58,15 @@ static void emit_start(const ModelFile *f, const IrScene *s, const char *id) {
 
 /* Function of the closed forms; its arguments q0, v0, z0 are the state at the start. */
 static void emit_exact(const ModelFile *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"t", "q0", "v0", "z0", "p", "u", "out", NULL}, *const written[] = {"out"};
+  static const char *const own[] = {"self", "t", "q0", "v0", "z0", "p", "u", "out", NULL}, *const written[] = {"out"};
   static const char *const from_start[ARR_COUNT] = {"t", "q0", "v0", "z0", "p", "u", "a"};
   if (!s->exact_of.n) return;
   CStyle st = model_style(f, own, written);
   st.in = from_start;
   CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .returns = 1};
   c.head = arena_printf(f->a,
-                        "static int exact_%s(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,\n"
-                        "    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out)",
+                        "static int exact_%s(const void *self, LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0,\n"
+                        "    const LAG_REAL *z0, const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out)",
                         id);
   cfunction(s->exact, &st, &c, f->out);
   sb_printf(f->out, "\nstatic const int exact_of_%s[] = {", id);
@@ -94,10 +96,11 @@ static void emit_observe(const ModelFile *f, const IrScene *s, const char *id) {
   }
   state_function(f, s->observe, arena_printf(f->a, "values_%s", id),
                  arena_printf(f->a, "%s Action variables stand behind the inputs.", comment), NULL, one_out);
-  sb_printf(out,
-            "\nstatic int observe_%s(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const "
-            "LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w) {\n",
-            id);
+  sb_printf(
+      out,
+      "\nstatic int observe_%s(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n"
+      "    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w) {\n",
+      id);
   sb_printf(out, "  LAG_REAL with[%u], y[%u];\n", n + s->actions.n, 2 * u->q.n + u->z.n);
   if (n) sb_printf(out, "  for (int i = 0; i < %u; i++) with[i] = u[i];\n", n);
   for (uint32_t i = 0; i < s->actions.n; i++) {
@@ -106,8 +109,8 @@ static void emit_observe(const ModelFile *f, const IrScene *s, const char *id) {
               u->z.n, a->q, a->p, a->periodic, id, i, s->momenta ? "momenta_" : "NULL", s->momenta ? id : "");
     sb_printf(out, "  with[%u] = lag_action(&of_%u, t, q, v, z, p, u, y, w);\n", n + i, i);
   }
-  sb_printf(out, "  return values_%s(t, q, v, z, p, with, out, w);\n}\n#else\n#define observe_%s NULL\n#endif\n", id,
-            id);
+  sb_printf(out, "  return values_%s(self, t, q, v, z, p, with, out, w);\n}\n#else\n#define observe_%s NULL\n#endif\n",
+            id, id);
 }
 
 static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
@@ -142,21 +145,41 @@ static void emit_measures(const ProgramSet *u, const IrScene *s, const char *id,
   sb_puts(out, "};\n");
 }
 
+static void emit_indices(const char *name, const int *at, int n, StrBuf *out) {
+  sb_printf(out, ", .%s = {", name);
+  for (int i = 0; i < n; i++) sb_printf(out, "%s%d", i ? ", " : "", at[i]);
+  sb_putc(out, '}');
+}
+
+static void emit_shapes(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
+  if (!s->shapes.n) return;
+  sb_printf(out, "\nstatic const lag_shape shapes_%s[] = {\n", id);
+  for (uint32_t i = 0; i < s->shapes.n; i++) {
+    const IrShape *x = &s->shapes.at[i];
+    sb_printf(out, "  {%s, %s, ", c_string(u->arena, x->kind), c_string(u->arena, x->role));
+    sb_printf(out, "%s, .count = %d", x->text ? c_string(u->arena, x->text) : "NULL", x->count);
+    emit_indices("a", x->a, 3, out);
+    emit_indices("b", x->b, 3, out);
+    emit_indices("size", x->size, 3, out);
+    emit_indices("turn", x->turn, 4, out);
+    sb_puts(out, "},\n");
+  }
+  sb_puts(out, "};\n");
+}
+
 static void emit_flags(const char *stem, const char *id, const unsigned char *flags, uint32_t n, StrBuf *out) {
   sb_printf(out, "\nstatic const unsigned char %s_%s[] = {", stem, id);
   for (uint32_t i = 0; i < n; i++) sb_printf(out, "%s%d", i ? ", " : "", flags[i]);
   sb_puts(out, "};\n");
 }
 
-/* Table `given` for models with constraints: 1 for components of the state that the start sets, 2 for implied ones. */
-static void emit_given(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
-  uint32_t n = u->q.n, total = 2 * n + u->z.n, after[] = {0, n, 2 * n};
-  if (!u->constraints.of.n) return;
-  unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, total);
+const unsigned char *scene_given(const ProgramSet *u, const IrScene *s) {
+  uint32_t n = u->q.n, after[] = {0, n, 2 * n};
+  unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, 2 * n + u->z.n);
   for (uint32_t k = 0; k < s->start->stores.n; k++)
     given[after[s->start->stores.at[k].array] + s->start->stores.at[k].index] = 1;
   for (uint32_t k = 0; k < s->implied.n; k++) given[s->implied.at[k]] = 2;
-  emit_flags("given", id, given, total, out);
+  return given;
 }
 
 /* Whether an output of the scene contains forces. */
@@ -177,7 +200,8 @@ void emit_scene(const ModelFile *f, const char *name, uint32_t index) {
   emit_exact(f, s, id);
   emit_scene_lists(u, s, id, out);
   emit_measures(u, s, id, out);
-  emit_given(u, s, id, out);
+  emit_shapes(u, s, id, out);
+  if (u->constraints.of.n) emit_flags("given", id, scene_given(u, s), 2 * u->q.n + u->z.n, out);
   if (has_forces(s)) emit_flags("forces", id, s->forces.at, s->forces.n, out);
   sb_printf(out, "\nconst lag_scene %s_%s = {\n", name, id);
   sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
@@ -195,5 +219,7 @@ void emit_scene(const ModelFile *f, const char *name, uint32_t index) {
   if (s->exact_of.n)
     sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
   if (s->measures.n) sb_printf(out, "  .nmeasures = %u, .measures = measures_%s,\n", s->measures.n, id);
+  if (s->shapes.n)
+    sb_printf(out, "  .ndrawn = %u, .nshapes = %u, .shapes = shapes_%s,\n", s->ndrawn, s->shapes.n, id);
   sb_puts(out, "};\n");
 }

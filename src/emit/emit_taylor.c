@@ -55,10 +55,10 @@ static const char *const wide_head =
     "#endif\n";
 
 /* Templates, see fill(): $ is the suffix (none or _wide), # the vector type, @ an attribute, % the place of an
- * unroll pragma, ~N an unrolled loop over N vectors. */
+ * unroll pragma, ~N an unrolled loop over N vectors, ^ the argument self of model files, at a line's begin unused. */
 static const char *const at =
-    "\n@static void taylor_at$(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
-    "  enum { PARTS = 4*sizeof(LAG_REAL)/sizeof(#) };\n"
+    "\n@static void taylor_at$(^int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
+    "^  enum { PARTS = 4*sizeof(LAG_REAL)/sizeof(#) };\n"
     "  const LAG_REAL u = s*s, twice = LAG_C(2.0);\n"
     "  for (int i = 0; i < TAYLOR_WIDTH; i += 4) {\n"
     "    # e[PARTS] = {0}, de[PARTS] = {0}, o[PARTS] = {0}, d[PARTS] = {0};\n"
@@ -262,12 +262,13 @@ static CStyle style_for(const TaylorWriter *w, const char *const *own, const cha
 }
 
 /* Whether the sums are few enough that the coefficients of the last order stay in registers. */
-static int sums_fit_registers(const TaylorWriter *w) {
-  const Series *s = w->s;
-  return !w->lanes && s->first_square <= s->group && s->width - s->first_square <= s->group &&
+int taylor_sums_fit_registers(const Series *s) {
+  return s->first_square <= s->group && s->width - s->first_square <= s->group &&
          s->sums <= REGISTER_SUMS_MAX && s->squares <= REGISTER_SUMS_MAX &&
          ops_total(prog_count(s->next)) <= TAYLOR_INLINE_MAX;
 }
+
+static int sums_fit_registers(const TaylorWriter *w) { return !w->lanes && taylor_sums_fit_registers(w->s); }
 
 static uint32_t even(uint32_t n) { return (n + 1) / 2 * 2; }
 
@@ -323,20 +324,24 @@ static const char *const lane_head =
   "#define TAYLOR_UNROLL\n"
   "#endif\n";
 
+/* The first parameter of a model's functions; headers have none. */
+static const char *self_parameter(const TaylorWriter *w) { return w->lower ? "" : "const void *self, "; }
+static const char *self_unused(const TaylorWriter *w) { return w->lower ? "" : "  (void)self;\n"; }
 static const char *work_type(const TaylorWriter *w) { return w->lower ? "taylor_work" : "LAG_REAL"; }
 
 static void first(const TaylorWriter *w) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "follows", "x", "c", "w", "work", NULL};
+  static const char *const own[] = {"self", "t", "q", "v", "z", "p", "u", "follows", "x", "c", "w", "work", NULL};
   static const char *const written[] = {"x", "c"};
   const Series *s = w->s;
   CStyle st = style_for(w, own, written);
   sb_printf(w->out, "\n/* Order 0: %s. */\n", op_count_text(s->first, w->a));
   sb_printf(
       w->out,
-      "static int taylor_first(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const %s *p,\n"
-      "    const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *x, %s *work) {\n"
-      "  LAG_REAL *const c = ((taylor_work *)(void *)work)->c;\n",
-      w->lower ? "lag_params" : "LAG_REAL", work_type(w));
+      "static int taylor_first(%sLAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,%sconst %s *p,%s"
+      "const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *x, %s *work) {\n"
+      "  LAG_REAL *const c = ((taylor_work *)(void *)work)->c;\n%s",
+      self_parameter(w), w->lower ? " " : "\n    ", w->lower ? "lag_params" : "LAG_REAL", w->lower ? "\n    " : " ",
+      work_type(w), self_unused(w));
   if (s->room) sb_puts(w->out, "  LAG_REAL *const w = ((taylor_work *)(void *)work)->m;\n");
   sb_puts(w->out, "  (void)t; (void)q; (void)v; (void)z; (void)p; (void)u; (void)follows; (void)c;\n");
   copy(w, "q", s->nq, 0);
@@ -389,6 +394,8 @@ static void fill(const TaylorWriter *w, const char *text, const char *suffix, co
     else if (*text == '#' && text[1] == ' ') sb_puts(out, type);
     else if (*text == '#' && text[1] == ')') sb_puts(out, type);
     else if (*text == '@') sb_puts(out, attribute);
+    else if (*text == '^' && text[1] == ' ') sb_puts(out, self_unused(w));
+    else if (*text == '^' && text[1] == 'i') sb_puts(out, self_parameter(w));
     else if (w->lower && strncmp(text, "  TAYLOR_UNROLL_4\n", 18) == 0) text += 17;
     else if (w->lower && strncmp(text, "taylor_part$(far, g)", 20) == 0) sb_puts(out, "far[g]"), text += 19;
     else if (*text == '~') text += unrolled(w, begin, text);
@@ -485,9 +492,10 @@ static void orders_in_registers(const TaylorWriter *w, const char *suffix) {
 static void rest(const TaylorWriter *w, const char *suffix, const char *attribute) {
   const Series *s = w->s;
   uint32_t nq = s->nq, nz = s->nz, t = 3 * nq + 2 * nz;
-  sb_printf(w->out, "\n%sstatic void taylor_rest%s(int n, LAG_REAL T, LAG_REAL *x, %s *work) {\n"
+  sb_printf(w->out, "\n%sstatic void taylor_rest%s(%sint n, LAG_REAL T, LAG_REAL *x, %s *work) {\n"
                     "  taylor_work *const w = (taylor_work *)(void *)work;\n"
-                    "  LAG_REAL per_k = LAG_C(1.0);\n", attribute, suffix, work_type(w));
+                    "  LAG_REAL per_k = LAG_C(1.0);\n%s",
+            attribute, suffix, self_parameter(w), work_type(w), self_unused(w));
   if (s->uses_time) sb_printf(w->out, "  x[TAYLOR_COLUMNS + %u] = T;\n", t);
   if (!w->lanes) clear_padding(w);
   if (sums_fit_registers(w)) {
@@ -516,23 +524,23 @@ static int is_wide(const Series *s) { return s->group > LANES || 2 * s->nq + s->
 
 static void choose_width(StrBuf *out) {
   sb_puts(out,
-    "\nstatic void taylor_rest_any(int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *work) {\n"
+    "\nstatic void taylor_rest_any(const void *self, int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *work) {\n"
     "#ifdef TAYLOR_WIDE\n"
     "  if (__builtin_cpu_supports(\"avx2\")) {\n"
-    "    taylor_rest_wide(n, T, x, work);\n"
+    "    taylor_rest_wide(self, n, T, x, work);\n"
     "    return;\n"
     "  }\n"
     "#endif\n"
-    "  taylor_rest(n, T, x, work);\n"
+    "  taylor_rest(self, n, T, x, work);\n"
     "}\n"
-    "\nstatic void taylor_at_any(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
+    "\nstatic void taylor_at_any(const void *self, int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
     "#ifdef TAYLOR_WIDE\n"
     "  if (__builtin_cpu_supports(\"avx2\")) {\n"
-    "    taylor_at_wide(n, s, x, y, dy);\n"
+    "    taylor_at_wide(self, n, s, x, y, dy);\n"
     "    return;\n"
     "  }\n"
     "#endif\n"
-    "  taylor_at(n, s, x, y, dy);\n"
+    "  taylor_at(self, n, s, x, y, dy);\n"
     "}\n");
 }
 

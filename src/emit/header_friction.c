@@ -1,7 +1,7 @@
 /* Steps of an emitted header with dry friction, by Moreau's method. Enters: accelerations with held modes
  * (ir/program_set.h), switching functions. Leaves: what the state says of surfaces, prototypes and functions of the
  * steps. Holds: a body that sticks at the end of a step has no velocity of slipping there, to rounding; each step
- * has the digits of the runtime's (methods/moreau_joint_friction.c). Friction of contacts: header_moreau.c. */
+ * has the digits of the runtime's, whose text it carries (kernels/joint_friction.h). header_moreau.c: contacts. */
 #include "emit/header_impl.h"
 
 uint32_t header_surfaces(const ProgramSet *u) {
@@ -51,13 +51,6 @@ static const char *const values =
     " |\n"
     " |static const unsigned short lag_surface_at[] = {AT_SURFACES}; /* mode of each surface */\n"
     " |\n"
-    " |/* Room of a step. d: rates for a mode of 1; response: change of a quantity by its own mode; bound: the largest "
-    "mode. */\n"
-    " |typedef struct lag_moreau_room {\n"
-    " |  LAG_REAL d[LAG_NSURFACES][LAG_NY], mode[LAG_NSURFACES], response[LAG_NSURFACES], bound[LAG_NSURFACES], "
-    "epsilon;\n"
-    " |} lag_moreau_room;\n"
-    " |\n"
     " |/* now := the inputs at time t, and modes behind them; those of corners are not held. */\n"
     " |static void lag_friction_inputs(PARAMSconst LAG_REAL *mode, LAG_REAL *now) {\n"
     "u|  const LAG_REAL *const x = lag_held(p, t, u, input, context, now);\n"
@@ -71,7 +64,7 @@ static const char *const values =
     " |  LAG_REAL now[LAG_NU + NMODES], finite = LAG_C(0.0);\n"
     " |  lag_friction_inputs(INPUTSmode, now);\n"
     "q|  for (int i = 0; i < LAG_NQ; i++) k[i] = y[LAG_NQ + i];\n"
-    " |  const int status = lag_held_accel(STATE, p, now, RATES);\n"
+    " |  const int status = lag_held_accel(STATE, p, now, DERIVED);\n"
     " |  for (int i = 0; i < LAG_NY; i++) finite += LAG_C(0.0)*k[i];\n"
     " |  return status != LAG_OK || finite == LAG_C(0.0) ? status : (int)LAG_ECONTACT;\n"
     " |}\n"
@@ -87,116 +80,44 @@ static const char *const values =
     " |  return status;\n"
     " |}\n";
 
-static const char *const solve =
+static const char *const instance =
+    "g|\n"
+    "g|/* bound := static friction, in parts of that of motion. */\n"
+    "g|static int lag_friction_grips(const lag_params *p, LAG_REAL t, const LAG_REAL *yHELD, const LAG_REAL *mode, "
+    "LAG_REAL *bound) {\n"
+    "g|  LAG_REAL now[LAG_NU + NMODES], grip[NMODES];\n"
+    "g|  lag_friction_inputs(INPUTSmode, now);\n"
+    "g|  const int status = lag_switch_grips(STATE, p, now, grip);\n"
+    "g|  for (int j = 0; j < LAG_NSURFACES; j++) bound[j] = grip[lag_surface_at[j]];\n"
+    "g|  return status;\n"
+    "g|}\n"
     " |\n"
-    " |/* End of a step at time t, from its middle y: velocities and states x change with the modes, by d for a mode "
-    "of 1. */\n"
-    " |typedef struct lag_friction_end {\n"
-    " |  const lag_params *p;\n"
-    " |  LAG_REAL t, h, (*d)[LAG_NY], *mode, *x;\n"
-    " |  const LAG_REAL *y;\n"
-    "u|  const LAG_REAL *u;\n"
-    "u|  lag_input_fn *input;\n"
-    "u|  void *context;\n"
-    " |} lag_friction_end;\n"
-    " |\n"
-    " |static int lag_friction_slip(void *end, int k, LAG_REAL *slip) {\n"
-    " |  const lag_friction_end *const a = (const lag_friction_end *)end;\n"
-    " |  LAG_REAL g[LAG_NSURFACES];\n"
-    " |  const int status = lag_friction_slips(a->p, a->t, a->y, a->xOF_END, a->mode, g);\n"
-    " |  *slip = g[k];\n"
-    " |  return status;\n"
-    " |}\n"
-    " |\n"
-    " |static void lag_friction_change(void *end, int k, LAG_REAL mode) {\n"
-    " |  const lag_friction_end *const a = (const lag_friction_end *)end;\n"
-    " |  const LAG_REAL by = mode - a->mode[k];\n"
-    " |  for (int i = LAG_NQ; i < LAG_NY; i++) a->x[i] += a->h*by*a->d[k][i];\n"
-    " |  a->mode[k] = mode;\n"
-    " |}\n"
-    " |\n"
-    " |/* Finds modes, and x: each quantity is 0 where its mode is within its bounds, else the mode is 1 or -1. */\n"
-    " |static int lag_friction_solve(lag_friction_end *end, const LAG_REAL *response, const LAG_REAL *bound, LAG_REAL "
-    "epsilon) {\n"
-    " |  LAG_REAL sticks[LAG_NSURFACES], centre[LAG_NSURFACES] = {0}, size;\n"
-    " |  const lag_surfaces s = {LAG_NSURFACES, lag_friction_slip, lag_friction_change, end, epsilon, response, bound, "
-    "centre, end->mode, sticks};\n"
-    " |  int row;\n"
-    " |  const int status = lag_surface_sweeps(&s, &size, &row);\n"
-    " |  return status == LAG_SURFACE_INFINITE || status == LAG_SURFACES_DISAGREE ? (int)LAG_ECONTACT : status;\n"
-    " |}\n"
-    " |\n"
-    " |/* d, response: what a mode of 1 changes in a step, from the states at its middle, mid, and at its end, x. */\n"
-    " |static int lag_friction_response(const lag_params *p, const lag_state *s, LAG_REAL h, const LAG_REAL *midHELD, "
-    "const LAG_REAL *mode, const LAG_REAL *x, LAG_REAL (*d)[LAG_NY], LAG_REAL *response) {\n"
-    " |  const LAG_REAL half = LAG_C(0.5);\n"
-    " |  for (int j = 0; j < LAG_NSURFACES; j++) {\n"
-    " |    LAG_REAL one[LAG_NSURFACES], up[LAG_NY], down[LAG_NY], g0[LAG_NSURFACES], g1[LAG_NSURFACES];\n"
-    " |    for (int k = 0; k < LAG_NSURFACES; k++) one[k] = k == j ? LAG_C(1.0) : mode[k];\n"
-    " |    int status = lag_friction_rates(p, s->t + half*h, midPASS, one, up);\n"
-    " |    one[j] = -LAG_C(1.0);\n"
-    " |    if (status == LAG_OK) status = lag_friction_rates(p, s->t + half*h, midPASS, one, down);\n"
-    " |    for (int i = 0; i < LAG_NY && status == LAG_OK; i++) {\n"
-    " |      d[j][i] = half*(up[i] - down[i]);\n"
-    " |      up[i] = x[i] + h*d[j][i];\n"
-    " |    }\n"
-    " |    if (status == LAG_OK) status = lag_friction_slips(p, s->t + h, mid, xPASS, mode, g0);\n"
-    " |    if (status == LAG_OK) status = lag_friction_slips(p, s->t + h, mid, upPASS, mode, g1);\n"
-    " |    if (status != LAG_OK) return status;\n"
-    " |    response[j] = g1[j] - g0[j];\n"
-    " |  }\n"
-    " |  return LAG_OK;\n"
-    " |}\n";
+    " |#define LAG_MODEL const lag_params *pHELD\n"
+    " |#define LAG_THE_MODEL pPASS\n"
+    " |#define LAG_JOINTS(w) LAG_NSURFACES\n"
+    " |#define LAG_HOLD(w, j, value) (w)->mode[j] = value\n"
+    " |#define LAG_SLIPS(t, y, x, w, g) lag_friction_slips(p, t, y, xPASS, (w)->mode, g)\n"
+    "g|#define LAG_GRIPS(t, y, w, g) lag_friction_grips(p, t, yPASS, (w)->mode, g)\n"
+    "o|#define LAG_GRIPS(t, y, w, g) 0\n"
+    " |#define LAG_MODE_RATES(t, y, w, k) lag_friction_rates(p, t, yPASS, (w)->mode, k)\n"
+    " |#define LAG_FRICTION_FAILS(t, j, words) ((int)LAG_ECONTACT)\n";
 
 static const char *const step =
     " |\n"
-    " |/* Modes before the step and their bounds: static friction, in parts of that of motion, where a body sticks. "
-    "*/\n"
-    " |static int lag_friction_begin(const lag_params *p, const lag_state *s, const LAG_REAL *yHELD, lag_moreau_room "
-    "*w) {\n"
-    " |  LAG_REAL g[LAG_NSURFACES];\n"
-    " |  int status = lag_friction_slips(p, s->t, y, yPASS, s->mode, g);\n"
-    "g|  LAG_REAL now[LAG_NU + NMODES], grip[NMODES];\n"
-    "g|  const LAG_REAL t = s->t;\n"
-    "g|  lag_friction_inputs(INPUTSs->mode, now);\n"
-    "g|  if (status == LAG_OK) status = lag_switch_grips(STATE, p, now, grip);\n"
-    " |  for (int j = 0; j < LAG_NSURFACES && status == LAG_OK; j++) {\n"
-    " |    w->mode[j] = s->mode[j];\n"
-    " |    w->bound[j] = LAG_C(1.0);\n"
-    "g|    const int rests = s->touch[j] == LAG_STICKS || g[j] == LAG_C(0.0);\n"
-    "g|    if (rests && grip[lag_surface_at[j]] > LAG_C(1.0)) w->bound[j] = grip[lag_surface_at[j]];\n"
-    " |  }\n"
-    " |  return status;\n"
-    " |}\n"
+    " |#define LAG_LAWS lag_joint_friction\n"
+    " |#define LAG_KICK_RATES(t, y, w, k) LAG_MODE_RATES(t, y, w, k)\n"
+    " |#define LAG_RESPONSES(s, w) lag_joints_respond(LAG_THE_MODEL, w, s)\n"
+    " |#define LAG_OBEY(s, w) lag_joints_solve(LAG_THE_MODEL, w, s, 0, (w)->x)\n"
+    " |#define LAG_STRUCK(w) 0\n"
+    " |#define LAG_TERM_SIZE(w, i, rate) lag_joints_size(w, i, rate)\n"
+    " |#define LAG_KICK_FAILS(t) ((int)LAG_ENEWTON)\n";
+
+static const char *const note =
     " |\n"
-    " |/* x: velocities and states at the end of a step from y; mid: its middle, at t. */\n"
-    " |static int lag_moreau_kick(const lag_params *p, const lag_state *s, LAG_REAL t, LAG_REAL hHELD, const LAG_REAL "
-    "*y, LAG_REAL *mid, LAG_REAL *x, lag_moreau_room *w) {\n"
-    " |  const LAG_REAL half = LAG_C(0.5);\n"
-    " |  LAG_REAL rate[LAG_NY], before = -LAG_C(1.0);\n"
-    " |  lag_friction_end a = {p, s->t + h, h, w->d, w->mode, x, midTO_END};\n"
-    " |  for (int turn = 0; turn < 100; turn++) {\n"
-    " |    int status = lag_friction_rates(p, t, midPASS, w->mode, rate);\n"
-    " |    for (int i = LAG_NQ; i < LAG_NY && status == LAG_OK; i++) x[i] = y[i] + h*rate[i];\n"
-    " |    if (status == LAG_OK && turn == 0) status = lag_friction_response(p, s, h, midPASS, w->mode, x, w->d, "
-    "w->response);\n"
-    " |    if (status == LAG_OK) status = lag_friction_solve(&a, w->response, w->bound, w->epsilon);\n"
-    " |    if (status != LAG_OK) return status;\n"
-    " |    for (int j = 0; j < LAG_NSURFACES; j++) /* at rest forces cancel: rounding is that of friction */\n"
-    " |      for (int i = LAG_NQ; i < LAG_NY; i++) rate[i] = LAG_FN(fabs)(rate[i]) + LAG_FN(fabs)(w->d[j][i]);\n"
-    " |    const lag_moreau_ends ends = {h, y, x, rate};\n"
-    " |    const LAG_REAL most = lag_moreau_mean(&ends, half, w->epsilon, LAG_NQ, LAG_NZ, mid);\n"
-    " |    if (most <= LAG_C(8.0) || (turn > 0 && most <= LAG_C(1e4) && most >= half*before)) return LAG_OK;\n"
-    " |    before = most;\n"
-    " |  }\n"
-    " |  return LAG_ENEWTON;\n"
-    " |}\n"
-    " |\n"
-    " |static void lag_moreau_note(const lag_moreau_room *w, lag_state *s) {\n"
+    " |static void lag_moreau_note(const lag_joint_friction *w, lag_state *s) {\n"
     " |  for (int j = 0; j < LAG_NSURFACES; j++) {\n"
-    " |    const LAG_REAL part = LAG_FN(fabs)(w->mode[j]);\n"
     " |    s->mode[j] = w->mode[j];\n"
-    " |    s->touch[j] = part < LAG_C(1.0) || part > LAG_C(1.0) ? (LAG_REAL)LAG_STICKS : (LAG_REAL)LAG_SLIPS;\n"
+    " |    s->touch[j] = w->sticks[j] > LAG_C(0.0) ? (LAG_REAL)LAG_STICKS : (LAG_REAL)LAG_SLIPS;\n"
     " |  }\n"
     " |}\n";
 
@@ -205,6 +126,13 @@ static void held_function(const Header *h, const Prog *p, const char *name, cons
                           const char *const *extra, const char *const *out) {
   if (!h->u->u.n) params = arena_printf(h->a, "const %s_REAL *u, %s", h->upper, params);
   header_internal_function(h, p, name, params, h->u->u.n ? extra + 1 : extra, out);
+}
+
+/* Lines for models without coordinates, with static friction, without. */
+static void write_part(const Header *h, const char *text, const HeaderWord *words) {
+  int grips = h->u->switch_grips != NULL;
+  const LineChoice choices[] = {{'n', !h->u->q.n}, {'g', grips}, {'o', !grips}, {0, 0}};
+  header_template(h, header_chosen(h, text, choices), words);
 }
 
 void header_friction_define(const Header *h) {
@@ -222,11 +150,8 @@ void header_friction_define(const Header *h) {
       {"INPUTS", u->u.n ? "p, t, u, input, context, " : ""},
       {"STATE", arena_printf(h->a, "t%s%s", u->q.n ? ", y, y + LAG_NQ" : "", z)},
       {"QUANTITY", arena_printf(h->a, "t%s%s", u->q.n ? ", y, x + LAG_NQ" : "", x)},
-      {"RATES", u->q.n && u->z.n ? "k + LAG_NQ, k + 2*LAG_NQ" : "k + LAG_NQ"},
-      {"OF_END", u->u.n ? ", a->u, a->input, a->context" : ""},
-      {"TO_END", u->u.n ? ", u, input, context" : ""},
+      {"DERIVED", u->q.n && u->z.n ? "k + LAG_NQ, k + 2*LAG_NQ" : "k + LAG_NQ"},
       {NULL, NULL}};
-  const char *const parts[] = {values, solve, step};
   const char *rates = u->q.n && u->z.n ? "%s_REAL *a, %s_REAL *zd" : u->q.n ? "%s_REAL *a" : "%s_REAL *zd";
   held_function(h, u->held_accel, "held_accel", arena_printf(h->a, rates, R, R),
                 u->q.n && u->z.n ? both
@@ -239,11 +164,12 @@ void header_friction_define(const Header *h) {
   if (h->parts.follows && h->scene->observe_held)
     held_function(h, h->scene->observe_held, "held_observe", arena_printf(h->a, "%s_REAL *out", R), outputs,
                   outputs + 1);
-  embedded_section("friction", h->upper, h->lower, h->out);
-  embedded_section("surfaces", h->upper, h->lower, h->out);
-  embedded_section("mean", h->upper, h->lower, h->out);
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-    const LineChoice choices[] = {{'n', !u->q.n}, {'g', u->switch_grips != NULL}, {0, 0}};
-    header_template(h, header_chosen(h, parts[i], choices), words);
-  }
+  write_part(h, values, words);
+  header_section(h, "friction");
+  header_section(h, "mean");
+  write_part(h, instance, words);
+  header_section(h, "surfaces");
+  write_part(h, step, words);
+  header_section(h, "kick");
+  write_part(h, note, words);
 }

@@ -61,3 +61,9 @@ const IrContact *program_set_striking_contact(const ProgramSet *u, uint32_t i) {
       return &u->contacts.at[k];
   return NULL;
 }
+
+uint32_t program_set_guides(const ProgramSet *u) {
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < u->contacts.n; i++) n += u->contacts.at[i].parts > 0;
+  return n;
+}

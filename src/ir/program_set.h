@@ -69,6 +69,12 @@ typedef struct {
   double value;
 } IrMove;
 
+/* A shape of the scene's drawing: lag_shape of lag_model.h. */
+typedef struct {
+  const char *kind, *role, *text;
+  int a[3], b[3], size[3], turn[4], count;
+} IrShape;
+
 typedef struct {
   const char *name, *doc;
   const Prog *const *params; /* [np] */
@@ -94,6 +100,8 @@ typedef struct {
   const Prog *momenta;       /* dL/dq'[nq], for actions; NULL: there are none, or momenta are states */
   VEC(IrMonitor) monitors;
   VEC(IrMeasure) measures;
+  VEC(IrShape) shapes;
+  uint32_t ndrawn;           /* the last outputs, which only shapes have */
 } IrScene;
 
 /* Position of an entry of a sparse matrix. */
@@ -110,10 +118,18 @@ typedef struct {
 
 /* Programs that only some methods of integration, or headers, need; made on request. */
 enum {
-  WANT_VARIATION = 1, WANT_TAYLOR = 2, WANT_LINEAR = 4, WANT_MASS = 8, WANT_INVERSE = 16, WANT_BY_INPUTS = 32,
-  WANT_BY_PARAMS = 64, WANT_MULTIPLIERS = 128, WANT_OUTPUTS = 256,
+  WANT_VARIATION = 1,
+  WANT_TAYLOR = 2,
+  WANT_LINEAR = 4,
+  WANT_MASS = 8,
+  WANT_INVERSE = 16,
+  WANT_BY_INPUTS = 32,
+  WANT_BY_PARAMS = 64,
+  WANT_MULTIPLIERS = 128,
+  WANT_OUTPUTS = 256,
   WANT_CONSTRAINED = 512 /* derivatives also of models with constraints, which simulators take by differences */,
-  WANT_HELD = 1024
+  WANT_HELD = 1024,
+  WANT_SENSITIVITY = 4 | 32 | 64 /* what a tangent by parameters needs */
 };
 
 /* Position of a second derivative of L or of a force; part: SECOND_... of mech/lagrangian_hessian.h. */
@@ -141,6 +157,7 @@ typedef struct {
 typedef struct {
   uint32_t input, constraint, impact, release, force;
   int is_tangent, conditional, law, holds;
+  uint32_t parts, turn; /* of a tangent of a guide: components of its force; of one: the event where it turns */
 } IrContact;
 
 /* A size, at least 0; open: more than 0; part: at most 1. */
@@ -232,6 +249,9 @@ typedef struct {
   /* messages on constraints and switches give their source lines: simulators name their file */
   int lines;
 } ProgramSet;
+
+/* Number of guides with friction. */
+uint32_t program_set_guides(const ProgramSet *u);
 
 typedef VEC(const Prog *) ProgList;
 

@@ -70,7 +70,7 @@ static void add_contacts(ProgramSet *u, const Eqns *e) {
     const Contact *c = &m->contacts.at[k];
     IrContact one = {
         expr_symbol(e->g, c->closed)->index,    0, c->impact, c->release, 0, c->is_tangent, c->margin != 0, c->law,
-        c->is_tangent && c->hold != c->friction};
+        c->is_tangent && c->hold != c->friction, c->parts, c->turn};
     if (c->is_tangent) one.force = expr_symbol(e->g, c->force)->index;
     while (e->constraints.of[one.constraint] != &m->constraints.at[c->constraint]) one.constraint++;
     vec_push(u->arena, &u->contacts, one);
@@ -393,5 +393,15 @@ void unit_add_scene(ProgramSet *u, const Eqns *e) {
     IrMeasure x = {sc->measures.at[i].name, measure_words(m->arena, &sc->measures.at[i])};
     vec_push(m->arena, &s.measures, x);
   }
+  for (uint32_t i = 0; i < sc->shapes.n; i++) {
+    const Shape *of = &sc->shapes.at[i];
+    IrShape x = {.kind = shape_word(of->kind), .role = of->role, .text = of->text, .count = of->count};
+    memcpy(x.a, of->a, sizeof x.a);
+    memcpy(x.b, of->b, sizeof x.b);
+    memcpy(x.size, of->size, sizeof x.size);
+    memcpy(x.turn, of->turn, sizeof x.turn);
+    vec_push(m->arena, &s.shapes, x);
+  }
+  s.ndrawn = sc->ndrawn;
   vec_push(m->arena, &u->scenes, s);
 }

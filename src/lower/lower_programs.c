@@ -298,12 +298,12 @@ Prog *lower_switches(const Eqns *e) {
   return lower_finish_seldom(&l);
 }
 
-/* each: numbers of a contact, 2 or 3. */
+/* each: numbers of a contact, 2 or 3, behind which those of guides stand. */
 static Prog *lower_contacts(const Eqns *e, uint32_t each) {
   Lower l = lower_new(e);
   const Model *m = e->m;
-  uint32_t n = m->contacts.n, some = 0;
-  Expr *law = ARENA_ARRAY(m->arena, Expr, each * (size_t)n + 1);
+  uint32_t n = m->contacts.n, some = 0, all = each * n, *of = ARENA_ARRAY(m->arena, uint32_t, (each + 4) * (size_t)n + 1);
+  Expr *law = ARENA_ARRAY(m->arena, Expr, (each + 4) * (size_t)n + 1);
   for (uint32_t i = 0; i < n; i++) {
     const Contact *c = &m->contacts.at[i];
     some += (uint32_t)c->is_tangent;
@@ -311,9 +311,17 @@ static Prog *lower_contacts(const Eqns *e, uint32_t each) {
     law[each * i + 1] = c->is_tangent ? c->restitution : expr_int(e->g, 0);
     if (each > 2) law[each * i + 2] = expr_symbol(e->g, m->constraints.at[c->constraint].multiplier)->node;
   }
+  for (uint32_t i = 0; i < all; i++) of[i] = i / each;
+  for (uint32_t i = 0; i < n && each > 2; i++) {
+    const Contact *c = &m->contacts.at[i];
+    for (uint32_t k = 0; k < 4 && c->parts; k++) {
+      of[all] = i;
+      law[all++] = k == 0 ? c->hold : k <= c->parts ? c->normal[k - 1] : expr_int(e->g, 0);
+    }
+  }
   if (!some) return NULL;
-  lower_with_accelerations(&l, law, each * n);
-  for (uint32_t i = 0; i < each * n; i++) prog_store(l.p, 0, i, lower_slot(&l, law[i]), m->contacts.at[i / each].name);
+  lower_with_accelerations(&l, law, all);
+  for (uint32_t i = 0; i < all; i++) prog_store(l.p, 0, i, lower_slot(&l, law[i]), m->contacts.at[of[i]].name);
   return lower_finish_seldom(&l);
 }
 

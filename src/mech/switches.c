@@ -4,9 +4,9 @@
 
 #include <math.h>
 
-#include "mech/discontinuity.h"
 #include "sym/diff.h"
 #include "sym/expr_eval.h"
+#include "sym/jump.h"
 #include "sym/print.h"
 #include "sym/prove.h"
 
@@ -113,7 +113,7 @@ static void add_directions(const Eqns *e, Expr x, SwitchList *to) {
 }
 
 static void add_from(const Eqns *e, Expr x, SwitchList *to) {
-  ExprJumps jumps = discontinuities_of(e, x);
+  ExprJumps jumps = expr_jumps(e->g, x); /* formulas of inputs jump in time */
   for (uint32_t i = 0; i < jumps.n; i++) {
     ExprOp op = expr_op(e->g, jumps.at[i].node);
     if (op != EX_TAN && op != EX_FLOOR && expr_kinds(e->g, jumps.at[i].side) & sudden)
@@ -160,17 +160,28 @@ static ExprList nodes_of(const Eqns *e) {
   return expr_topo(e->g, roots.at, roots.n);
 }
 
+/* Whether x contains an input without a rate. */
+static int has_rateless_input(const Eqns *e, Expr x) {
+  if (!(expr_kinds(e->g, x) & 1u << SYM_INPUT)) return 0;
+  ExprList l = expr_topo(e->g, &x, 1);
+  for (uint32_t i = 0; i < l.n; i++) {
+    const Symbol *s = expr_op(e->g, l.at[i]) == EX_SYM ? expr_sym_of(e->g, l.at[i]) : NULL;
+    if (s && s->kind == SYM_INPUT && (s->index >= e->m->inputs.n || !e->m->inputs.at[s->index].rate)) return 1;
+  }
+  return 0;
+}
+
 /* Switching function of a node; 0: it has none that a run can follow. */
 static Expr side_of(const Eqns *e, Expr node) {
   const unsigned varying = sudden | 1u << SYM_TIME | 1u << SYM_COORD,
-                 unknown = 1u << SYM_INPUT | 1u << SYM_MULTIPLIER | 1u << SYM_ACC;
+                 unknown = 1u << SYM_MULTIPLIER | 1u << SYM_ACC;
   ExprOp op = expr_op(e->g, node);
   Expr side = 0;
   if (op == EX_SIGN || op == EX_ABS || op == EX_FLOOR) side = expr_arg(e->g, node, 0);
   if (op == EX_MIN || op == EX_MAX || op == EX_LT || op == EX_LE)
     side = expr_sub(e->g, expr_arg(e->g, node, 1), expr_arg(e->g, node, 0));
   unsigned kinds = side ? expr_kinds(e->g, side) : 0;
-  return kinds & varying && !(kinds & unknown) ? side : 0;
+  return kinds & varying && !(kinds & unknown) && !has_rateless_input(e, side) ? side : 0;
 }
 
 /* Whether factor i of a product is a root of what may be negative. */
@@ -255,6 +266,27 @@ void switches_find(Eqns *e) {
 const Switch *switch_of(const Eqns *e, Expr side, int is_floor, int *sign) {
   uint32_t i = find(e->g, e->switches.at, e->switches.nmodes, side, is_floor, sign);
   return i < e->switches.nmodes ? &e->switches.at[i] : NULL;
+}
+
+Expr switches_keep(const Eqns *e, Expr x, Expr (*rewrite)(ExprGraph *g, Expr x)) {
+  ExprGraph *g = e->g;
+  ExprVec nodes = {0}, names = {0};
+  VEC(SymId) symbols = {0};
+  ExprList all = expr_topo(g, &x, 1), known = {0};
+  ExprMap equations = expr_map(e->m->arena);
+  for (uint32_t i = 0; i < all.n; i++) {
+    if (!side_of(e, all.at[i])) continue;
+    if (!known.n) known = nodes_of(e);
+    for (uint32_t k = 0; k < known.n && !nodes.n; k++) expr_map_set(&equations, known.at[k], 1);
+    if (!expr_map_get(&equations, all.at[i])) continue;
+    SymId s = expr_declare(g, SYM_LOCAL, 0, arena_printf(e->m->arena, "held_%u", all.at[i]), expr_sign(g, all.at[i]));
+    vec_push(e->m->arena, &nodes, all.at[i]);
+    vec_push(e->m->arena, &symbols, s);
+    vec_push(e->m->arena, &names, expr_symbol(g, s)->node);
+  }
+  if (!nodes.n) return rewrite(g, x);
+  expr_replace_nodes(g, &x, 1, nodes.at, names.at, nodes.n, &x);
+  return expr_replace(g, rewrite(g, x), symbols.at, nodes.at, nodes.n);
 }
 
 const Expr *switch_rates(const Eqns *e) {

@@ -10,13 +10,16 @@
 
 #include "mech/eqns.h"
 
-/* Fills e->switches; call before lowering. Programs of models without switches stay as they are. Sides with inputs
- * have no rate and no switch. */
+/* Fills e->switches; call before lowering. Programs of models without switches stay as they are. Sides with
+ * inputs that have no rate have no switch. */
 void switches_find(Eqns *e);
 
 /* The switch of which `side`, or its negative (*sign := -1), is the switching function, or whose floor it is; NULL:
  * none. */
 const Switch *switch_of(const Eqns *e, Expr side, int is_floor, int *sign);
+
+/* x rewritten, but for its jumps that the equations contain, too: runs hold both, and know them by their nodes. */
+Expr switches_keep(const Eqns *e, Expr x, Expr (*rewrite)(ExprGraph *g, Expr x));
 
 /* Total time derivative of each followed switching function, in accelerations and rates: [e->switches.nmodes]. */
 const Expr *switch_rates(const Eqns *e);

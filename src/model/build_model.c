@@ -194,8 +194,10 @@ static void add_grip(Builder *b, const AstStmt *st, Name effect) {
   AstId rate = st->args, size = ast_expr(b->ast, rate)->next, most = ast_expr(b->ast, size)->next;
   Value f = resolve(b, size, IN_DYNAMICS, effect);
   if (f.e && !f.n) add_size(b, f.e, "this friction has a size", ast_expr(b->ast, size)->span, 0);
+  Value v = resolve(b, rate, IN_DYNAMICS, effect);
+  if (v.e && !v.n) want_rates_of(b, v.e, 1); /* where the body sticks */
   if (!most) return;
-  Value v = resolve(b, rate, IN_DYNAMICS, effect), g = resolve(b, most, IN_DYNAMICS, effect);
+  Value g = resolve(b, most, IN_DYNAMICS, effect);
   Span span = ast_expr(b->ast, most)->span;
   if (!v.e || !f.e || !g.e) return;
   if (!dims_agree(b, &g, &f, span)) {
@@ -297,7 +299,9 @@ static void apply_statement(Builder *b, const AstStmt *st, Name effect, void *da
     case STMT_EVENT: add_event(b, st, effect); return;
     case STMT_CONSTRAINT: add_constraint(b, st, effect); return;
     case STMT_CONTACT: add_contact(b, st, effect); return;
+    case STMT_GUIDE: add_guide(b, st, effect); return;
     case STMT_LET: case STMT_FUNCTION: case STMT_EXPECT: case STMT_OBSERVE: /* once L is known: build() */
+    case STMT_DRAW: /* scene_build() */
     case STMT_COORD: case STMT_STATE: case STMT_PARAM: case STMT_CONST:
     case STMT_SYMMETRY: case STMT_CANONICAL: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE:
     case STMT_MAP: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
@@ -484,6 +488,7 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order, Inpu
   check_defines(b);
   Energies en = {0};
   each_active(b, apply_statement, &en);
+  each_active(b, add_guide_friction, NULL);
   finish_energies(b, &en);
   add_rotation_inertia(b);
   if (!first_order) want_rates_of_momenta(b);

@@ -150,6 +150,7 @@ struct Builder {
   const BoundName *bound;
   uint32_t nbound;
   int gives_lagrangian; /* the model itself has L, T or V */
+  int in_friction; /* lambda(NAME) may stand in the size of a friction */
   int brackets;    /* {f, g} in an expression is a Poisson bracket */
   int domains;     /* compute Value.domain, for claims */
   uint32_t sums_from; /* sums over at least so many pairs are not written out; 0: none is */
@@ -439,6 +440,10 @@ void explain_dims(Builder *b, Dim x, Dim y);
 /* Replaces missing units in the model by the inferred ones. */
 void fill_inferred_units(Builder *b);
 
+/* drawing.c: Scene.shapes and their outputs, the last of the scene; guessed where the text has no `draw`. wanted 0:
+ * statements are checked, and leave nothing but nodes. */
+void build_drawing(Builder *b, int wanted);
+
 /* rotation.c */
 
 /* Adds the constraint q.q = 1 for the quaternion whose first coordinate is `coord`. */
@@ -483,6 +488,9 @@ Value action_of_momentum(Builder *b, const AstStmt *st, Name effect);
 /* constraint.c: adds a constraint statement, or a contact statement, to the model. */
 void add_constraint(Builder *b, const AstStmt *st, Name effect);
 void add_contact(Builder *b, const AstStmt *st, Name effect);
+/* guide.c: the constraint of a guide; its friction, once all constraints are known. */
+void add_guide(Builder *b, const AstStmt *st, Name effect);
+void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data);
 
 /* symmetry.c: declares a symmetry and its charge; reads its maps, once L is known. */
 void declare_symmetry(Builder *b, const AstStmt *st, Name effect);

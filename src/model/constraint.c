@@ -97,8 +97,10 @@ static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *
                     in_dim(b, e->dim));
 }
 
+static const char *kind_of(const AstStmt *st) { return st->kind == STMT_GUIDE ? "guide" : "contact"; }
+
 /* A pure number made of parameters, at least 0 and at most `most`; what: its name. */
-static int check_coefficient(Builder *b, Name contact, AstId id, const Value *x, double most, const char *what) {
+static int check_coefficient(Builder *b, const AstStmt *st, AstId id, const Value *x, double most, const char *what) {
   Span span = ast_expr(b->ast, id)->span;
   if (!x->e) return 0;
   if (x->n) return diag_error(b->diags, span, "this is %s, but a number is needed here", shape_text(b, x->n));
@@ -106,16 +108,15 @@ static int check_coefficient(Builder *b, Name contact, AstId id, const Value *x,
   if (!expr_is_constant(b->g, x->e)) return diag_error(b->diags, span, "%s is a number, or made of parameters", what);
   if (value < 0 || value > most)
     return diag_error(b->diags, span, most > 1 ? "%s is at least 0" : "%s is a number from 0 to 1", what);
-  add_size(b, x->e, arena_printf(b->arena, "the contact `%s` has %s", contact, what), span, !(most > 1));
+  add_size(b, x->e, arena_printf(b->arena, "the %s `%s` has %s", kind_of(st), st->name, what), span, !(most > 1));
   return dims_agree(b, x, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, span) ||
          diag_error(b->diags, span, "%s is a pure number, and this is %s", what, in_dim(b, x->dim));
 }
 
-/* The velocity of slipping: linear in velocities, as derive checks; a number in a plane, two components in space. */
-static int check_slip(Builder *b, AstId id, const Value *slip, const Contact *c) {
+int check_slip(Builder *b, const AstStmt *st, AstId id, const Value *slip, const Constraint *gap) {
   Span span = ast_expr(b->ast, id)->span;
-  Name name = c->name;
-  Dim speed = dim_per_second(b->dims, b->m->constraints.at[c->constraint].dim);
+  Name name = st->name;
+  Dim speed = gap ? dim_per_second(b->dims, gap->dim) : DIM_NONE;
   if (!slip->e) return 0;
   if (slip->n && slip->n != 2)
     return diag_error(b->diags, span,
@@ -123,37 +124,37 @@ static int check_slip(Builder *b, AstId id, const Value *slip, const Contact *c)
                       "the slip has one component in a plane, and two along a surface in space: `slip = (x', y')`",
                       shape_text(b, slip->n));
   for (uint32_t k = 0; k < component_count(slip); k++) {
-    if (!can_be_held(b, slip->at[k], "slip of the contact", name, span)) return 0;
+    if (!can_be_held(b, slip->at[k], arena_printf(b->arena, "slip of the %s", kind_of(st)), name, span)) return 0;
     if (!(expr_kinds(b->g, slip->at[k]) & 1u << SYM_VEL))
       return diag_error(b->diags, span,
-                        "the slip of the contact `%s` contains no velocity" HELP
+                        "the slip of the %s `%s` contains no velocity" HELP
                         "it is the velocity of the point of contact along the surface: `slip = x' + r*th'` of a wheel",
-                        name);
+                        kind_of(st), name);
   }
-  return dims_agree(b, slip, &(Value){.e = c->gap, .dim = speed}, span) ||
+  return !gap || dims_agree(b, slip, &(Value){.e = gap->c, .dim = speed}, span) ||
          diag_error(b->diags, span,
-                    "the slip of the contact `%s` is %s, its gap per second %s" HELP
+                    "the slip of the %s `%s` is %s, its gap per second %s" HELP
                     "friction compares two forces: let the gap be the distance from the surface, and the slip the "
                     "velocity along it",
-                    name, in_dim(b, slip->dim), in_dim(b, speed));
+                    kind_of(st), name, in_dim(b, slip->dim), in_dim(b, speed));
 }
 
-/* A tangent of contact c, along one component of its slip: "" in a plane, ".x", ".y" in space. t: what both share. */
-static void push_tangent(Builder *b, const AstStmt *st, const Contact *c, Contact t, Expr slip, Dim dim,
-                         const char *component) {
+void push_tangent(Builder *b, const AstStmt *st, Name owner, Contact t, Expr pressed, Dim dim, const char *component) {
   Model *m = b->m;
-  t.gap = slip;
-  t.name = intern_printf(b, "%s.slip%s", c->name, component);
+  t.name = intern_printf(b, "%s.slip%s", owner, component);
   t.constraint = m->constraints.n;
   t.closed = add_signal(b, t.name, "sticks", SIGN_NONNEGATIVE, DIM_NONE, st->name_span);
-  add_scalar_constraint(b, t.name, expr_mul(b->g, symbol_node(b, t.closed), slip), dim, st->span);
+  add_scalar_constraint(b, t.name, expr_mul(b->g, symbol_node(b, t.closed), t.gap), dim, st->span);
   t.force = add_signal(b, t.name, "force", SIGN_UNKNOWN, multiplier_dim(b, dim, 0), st->name_span);
-  Expr pressed = symbol_node(b, m->constraints.at[c->constraint].multiplier),
-       held = expr_add(b->g, symbol_node(b, m->constraints.at[t.constraint].multiplier), symbol_node(b, t.force));
+  Expr held = expr_add(b->g, symbol_node(b, m->constraints.at[t.constraint].multiplier), symbol_node(b, t.force));
   Expr limit = expr_mul(b->g, t.hold, pressed), size = expr_fn(b->g, EX_ABS, held);
-  t.impact = add_named_event(b, c->name, intern_printf(b, " sticks%s", component), slip, st->span);
+  t.impact = add_named_event(b, owner, intern_printf(b, " sticks%s", component), t.gap, st->span);
   t.release =
-      add_named_event(b, c->name, intern_printf(b, " slips%s", component), expr_sub(b->g, limit, size), st->span);
+      add_named_event(b, owner, intern_printf(b, " slips%s", component), expr_sub(b->g, limit, size), st->span);
+  if (t.parts == 1) {
+    t.turn = add_named_event(b, owner, " turns", t.normal[0], st->span);
+    m->events.at[t.turn].direction = CROSS_BOTH;
+  }
   vec_push(b->arena, &m->contacts, t);
 }
 
@@ -195,13 +196,12 @@ static int impact_law(Builder *b, const AstStmt *st) {
   return law ? -1 : 0;
 }
 
-/* A coefficient of the contact, or `other` where it is not given; 0, reported: it is wrong. */
-static Expr coefficient(Builder *b, const AstStmt *st, Name effect, const char *word, double most, const char *what,
+Expr coefficient(Builder *b, const AstStmt *st, Name effect, const char *word, double most, const char *what,
                         Expr other) {
   AstId id = ast_option_value(b->ast, st, word);
   if (!id) return other;
   Value x = resolve(b, id, IN_DYNAMICS, effect);
-  return check_coefficient(b, st->name, id, &x, most, what) ? x.e : 0;
+  return check_coefficient(b, st, id, &x, most, what) ? x.e : 0;
 }
 
 /* The friction of contact c: its tangents. */
@@ -215,14 +215,17 @@ static void add_tangents(Builder *b, const AstStmt *st, Name effect, const Conta
   t.hold = coefficient(b, st, effect, "static", HUGE_VAL, "a coefficient of static friction", t.friction);
   t.restitution = coefficient(b, st, effect, "tangential", 1, "a tangential restitution", expr_int(b->g, 0));
   Value slip = resolve(b, v, IN_DYNAMICS, effect);
-  if (!check_slip(b, v, &slip, c) || !t.friction || !t.hold || !t.restitution || t.law < 0) return;
+  if (!check_slip(b, st, v, &slip, &m->constraints.at[c->constraint]) || !t.friction || !t.hold || !t.restitution || t.law < 0) return;
   scope_add(&b->constraints, (Entity){.index = m->constraints.n,
                                       .name = intern_printf(b, "slip"),
                                       .effect = c->name,
                                       .span = st->name_span,
                                       .parts = (uint8_t)slip.n});
-  for (uint32_t k = 0; k < component_count(&slip); k++)
-    push_tangent(b, st, c, t, slip.at[k], slip.dim, slip.n ? components[k] : "");
+  Expr pressed = symbol_node(b, m->constraints.at[c->constraint].multiplier);
+  for (uint32_t k = 0; k < component_count(&slip); k++) {
+    t.gap = slip.at[k];
+    push_tangent(b, st, c->name, t, pressed, slip.dim, slip.n ? components[k] : "");
+  }
   if (!m->dissipation_span.end) m->dissipation_span = st->span;
 }
 

@@ -17,10 +17,11 @@ void find_hamiltonian(Builder *b) {
 }
 
 Span velocity_in(const Builder *b, AstId id, const Value *v) {
+  int known = v && v->e, moves = known && expr_kinds(b->g, v->e) & (1u << SYM_VEL | 1u << SYM_RATE);
+  if (known && !moves) return (Span){0}; /* rates of inputs are functions of time */
   for (AstId k = ast_expr(b->ast, id)->first; k <= id; k++)
     if (ast_expr(b->ast, k)->kind == AST_PRIME) return ast_expr(b->ast, k)->span;
-  return v && v->e && (expr_kinds(b->g, v->e) & (1u << SYM_VEL | 1u << SYM_RATE)) ? ast_expr(b->ast, id)->span
-                                                                                  : (Span){0};
+  return moves ? ast_expr(b->ast, id)->span : (Span){0};
 }
 
 int is_free_of_velocities(Builder *b, const AstStmt *st, const Value *v) {

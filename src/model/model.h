@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/spline.h"
+#include "model/shapes.def"
 #include "model/units.h"
 #include "sym/expr.h"
 #include "syntax/ast.h"
@@ -125,6 +126,12 @@ typedef struct {
   int law;
   /* of a tangent: input set by the runtime, the force of friction along the slip while the contact slips */
   SymId force;
+  /* of a tangent of a guide: components of the force of the guide, linear in multipliers; parts 0: of a contact */
+  Expr normal[3];
+  uint32_t parts;
+  uint32_t turn; /* of a guide whose force has one component: event where that changes its side */
+  /* coordinates of the space in which a guide slips by its constraints alone; nspace 0: the text gives its slip */
+  uint32_t space[3], nspace;
 } Contact;
 
 /* Origin of an output in the text: component `component` of the value of `id`; where `id` names a family, of its
@@ -256,6 +263,19 @@ typedef struct {
 
 typedef VEC(Measure) Measures;
 
+#define SHAPE_ENUM_(NAME, ...) SHAPE_##NAME,
+typedef enum { SHAPES(SHAPE_ENUM_) } ShapeKind;
+#undef SHAPE_ENUM_
+
+/* A shape of a drawing, as lag_shape of lag_model.h; its numbers are indices of the scene's outputs, -1: none. */
+typedef struct {
+  ShapeKind kind;
+  const char *role, *text;
+  int a[3], b[3], size[3], turn[4], count;
+} Shape;
+
+const char *shape_word(ShapeKind kind);
+
 typedef struct {
   Name name;
   Span span; /* of its name; empty: the file has no scene */
@@ -274,6 +294,9 @@ typedef struct {
   VEC(Monitor) monitors;
   Measures measures;
   VEC(Exact) exacts;
+  VEC(Shape) shapes;
+  uint32_t ndrawn; /* the last outputs, which only the drawing has */
+  int guessed;     /* the text has no `draw` */
 } Scene;
 
 typedef struct {
@@ -402,6 +425,7 @@ typedef struct {
   uint32_t ndefines;
   const CommandOutput *asked; /* outputs besides the scene's own */
   uint32_t nextra_outputs;
+  enum { DRAWING_NONE, DRAWING_WANTED, DRAWING_CHECKED } drawing; /* of Scene.shapes */
   const CommandOutput *measures; /* measures besides the scene's own */
   uint32_t nmeasures;
   const CommandInput *given; /* values that override the scene's */

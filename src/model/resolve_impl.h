@@ -129,6 +129,15 @@ Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why);
 Dim multiplier_dim(Builder *b, Dim dim, int holonomic);
 void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span);
 
+/* constraint.c, for guides, too. check_slip: the velocity of slipping is linear in velocities, as derive checks, and
+ * that of the gap, unless NULL, in units; one component in a plane, two in space. coefficient: option `word` of st, a
+ * number up to `most` called `what`, or `other` where it is not given; each 0, reported. push_tangent: the tangent
+ * NAME.slip of `owner`, along t.gap; `pressed` is the force that friction follows. */
+int check_slip(Builder *b, const AstStmt *st, AstId id, const Value *slip, const Constraint *gap);
+Expr coefficient(Builder *b, const AstStmt *st, Name effect, const char *word, double most, const char *what,
+                 Expr other);
+void push_tangent(Builder *b, const AstStmt *st, Name owner, Contact t, Expr pressed, Dim dim, const char *component);
+
 /* resolve_multiplier.c: value of lambda(NAME), the constraint's multiplier; a vector for a vector constraint. */
 Value multiplier_value(Eval *ev, const AstExpr *x);
 

@@ -8,7 +8,7 @@ typedef struct {
   IndexVars around;
   TextDynamics *dynamics;
   TextOutputs *outputs;
-  uint32_t constraint, event; /* index in the model of the next one */
+  uint32_t constraint, event, guide; /* index in the model of the next one; contacts with a guide's tangent */
   const char *why;
 } Walk;
 
@@ -165,6 +165,55 @@ static void read_constraint(Walk *w, const AstStmt *st, Name effect) {
   }
 }
 
+/* --- guides --- */
+
+static Ref sum_of(Tape *t, TapeOp op, Ref a, Ref b) {
+  if (!a || !b) return a ? a : b && op == TAPE_SUB ? tape_op(t, TAPE_NEG, b, 0, 0) : b;
+  return tape_op(t, op, a, b, 0);
+}
+
+/* The slip along the direction that constraints c[n - 1] leave free in the space of n coordinates. */
+static Ref slip_along(Walk *w, const uint32_t *space, uint32_t n, const Ref *c) {
+  Tape *t = w->text->tape;
+  Ref q[3], d[2][3], speed = 0, square = 0;
+  for (uint32_t i = 0; i < n; i++) q[i] = tape_input(t, INPUT_COORD, space[i]);
+  for (uint32_t k = 0; k + 1 < n; k++)
+    for (uint32_t i = 0; i < n; i++) d[k][i] = tape_partial(t, c[k], q[i]);
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t j = (i + 1) % n, k = (i + 2) % n;
+    Ref along = n == 2 ? i ? sum_of(t, TAPE_SUB, 0, d[0][0]) : d[0][1]
+                       : sum_of(t, TAPE_SUB, tape_op(t, TAPE_MUL, d[0][j], d[1][k], 0),
+                                tape_op(t, TAPE_MUL, d[0][k], d[1][j], 0));
+    if (!along) continue;
+    speed = sum_of(t, TAPE_ADD, speed, tape_op(t, TAPE_MUL, along, tape_op(t, TAPE_RATE, q[i], 0, 0), 0));
+    square = sum_of(t, TAPE_ADD, square, tape_op(t, TAPE_MUL, along, along, 0));
+  }
+  return tape_op(t, TAPE_DIV, speed, tape_power(t, square, num_ratio(1, 2)), 0);
+}
+
+/* The tangent of the next guide: as that of a contact. */
+static void read_guide(Walk *w, const AstStmt *st, Name effect) {
+  const Model *m = w->text->m;
+  if (st->kind != STMT_GUIDE) return;
+  while (w->guide < m->contacts.n && !m->contacts.at[w->guide].parts) w->guide++;
+  if (w->guide == m->contacts.n) return;
+  const Contact *tangent = &m->contacts.at[w->guide++];
+  if (!tangent->nspace) {
+    read_tangent(w, tangent, slip_value(w, st, effect).at[0]);
+    return;
+  }
+  Ref c[2];
+  TextValue l = value(w, st->lhs, effect), r = value(w, st->rhs, effect);
+  for (uint32_t k = 0; k + 1 < tangent->nspace; k++) c[k] = tape_op(w->text->tape, TAPE_SUB, l.at[k], r.at[k], 0);
+  read_tangent(w, tangent, slip_along(w, tangent->space, tangent->nspace, c));
+}
+
+static void read_guide_constraint(Walk *w, const AstStmt *st, Name effect) {
+  AstStmt constraint = *st;
+  constraint.args = 0;
+  if (st->lhs) read_constraint(w, &constraint, effect);
+}
+
 static void read_dynamics(Walk *w, const AstStmt *st, Name effect) {
   TextDynamics *d = w->dynamics;
   switch (st->kind) {
@@ -178,6 +227,7 @@ static void read_dynamics(Walk *w, const AstStmt *st, Name effect) {
   case STMT_FLOW: read_flow(w, st, effect); return;
   case STMT_CONSTRAINT: read_constraint(w, st, effect); return;
   case STMT_CONTACT: read_contact(w, st, effect); return;
+  case STMT_GUIDE: read_guide_constraint(w, st, effect); return;
   default: return; /* no part of the equations of motion */
   }
 }
@@ -188,6 +238,7 @@ TextDynamics *text_dynamics(const Model *m, int samples, Arena *a) {
   d->constraints = ARENA_ARRAY(a, Ref, m->constraints.n + 1);
   Walk w = {.text = text_new(m, samples, a), .dynamics = d};
   walk(&w, read_dynamics);
+  walk(&w, read_guide); /* behind all others, as in model/guide.c */
   d->tape = w.text->tape;
   d->why = d->tape->too_long ? "its length" : w.why;
   VEC(Ref) roots = {0};

@@ -26,13 +26,15 @@ static Expr drop_vanishing_sums(ExprGraph *g, Expr e, const NormalLimits *limits
 int prove_nonzero(ExprGraph *g, Expr e) {
   if (!expr_open_sums(g, &e)) return 0;
   long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
+  BoundTape *tape = bound_tape(g, &e, 1);
   uint32_t most = 2 * STATES + MOST_WORK / (e + 1);
   if (most > MOST_STATES) most = MOST_STATES;
   for (uint32_t seed = 1, inside = 0; seed <= most && inside < 2 * STATES; seed++) {
     long double bound, value;
     if (seed % (2 * STATES) <= STATES) sample_state(g, seed, symbols);
     else sample_state_wide(g, seed, symbols);
-    value = value_with_bound(g, e, symbols, NULL, &bound);
+    bound_run(tape, symbols, NULL);
+    value = bound_value(tape, e, &bound);
     if (!isfinite(value) || !isfinite(bound)) continue;
     inside++;
     if (fabsl(value) > 1000 * bound + LDBL_MIN) return 1;

@@ -5,6 +5,7 @@
 #include "mech/constrain.h"
 #include "mech/derive_equations.h"
 #include "mech/lagrange.h"
+#include "mech/switches.h"
 #include "phase_space/action_outputs.h"
 #include "phase_space/expression_brackets.h"
 #include "sym/simplify.h"
@@ -98,7 +99,7 @@ static int fill_outputs(Eqns *e) {
     out[i] = m->scene.outputs.at[i];
     out[i].value = charges_substitute(e, out[i].value);
     if (e->energy) out[i].value = expr_substitute(g, out[i].value, with, nsymbols, "");
-    out[i].value = simplify_stable(g, out[i].value);
+    out[i].value = switches_keep(e, out[i].value, simplify_stable);
   }
   e->outputs = out;
   e->noutputs = m->scene.outputs.n;

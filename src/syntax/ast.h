@@ -106,7 +106,10 @@ typedef enum {
   STMT_EXPECT,      /* name or NULL, lhs, rhs */
   STMT_EVENT,       /* name, lhs, direction, body of STMT_SET and STMT_STOP */
   STMT_CONTACT,     /* name, lhs (>= 0), rhs = restitution; with friction also args: options, see ast_option_value */
+  /* name, lhs, rhs, args: options as of a contact; lhs 0: a friction whose size contains a multiplier */
+  STMT_GUIDE,
   STMT_OBSERVE,     /* name, unit, rhs */
+  STMT_DRAW,        /* name = the shape, dims, lhs = what it draws or 0, rhs: of `lhs = rhs`; args: options */
   STMT_FOR,         /* name, lhs = lo, rhs = hi, body */
   STMT_EFFECT,      /* name, doc, body */
   STMT_REQUIRES,    /* name */

@@ -76,14 +76,17 @@ AstStmt *stmt_param(Ast *ast, Span span, Ident name, AstList dims, Ident type, A
 AstStmt *stmt_define(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstUnit unit, AstId rhs);
 AstStmt *stmt_function(Ast *ast, Span span, Ident name, AstList args, AstId rhs);
 AstStmt *stmt_value(Ast *ast, AstStmtKind kind, Span span, AstId rhs);
+/* `draw SHAPE[members] SUBJECT = VALUE OPTIONS`; 0 and empty: not written. */
+AstStmt *stmt_draw(Ast *ast, Span span, Ident shape, AstList members, AstId subject, AstId value, AstList options);
 AstStmt *stmt_measure(Ast *ast, Span span, Ident name, AstId rhs);
 AstStmt *stmt_pair(Ast *ast, AstStmtKind kind, Span span, AstId lhs, AstId rhs);
 AstStmt *stmt_constraint(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstId condition);
 AstStmt *stmt_equation(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstId lhs, AstId rhs);
 /* rubbing: options. */
 AstStmt *stmt_contact(Ast *ast, Span span, Ident name, AstList dims, AstId gap, AstId restitution, AstList rubbing);
+AstStmt *stmt_guide(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstList rubbing);
 /* `friction NAME on q: f, static = most`: the force -f*sign(q') on q, and its value, the observable NAME. most: 0
- * where there is none. */
+ * where there is none. Where f contains `lambda(...)`, a guide whose slip is q'. */
 StmtList stmts_friction(Ast *ast, Span span, Ident name, AstList dims, AstId place, AstId f, AstId most);
 AstStmt *stmt_symmetry(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList maps);
 /* `canonical NAME(args): maps`: items `Q = ...` and `F2(q, P) = ...`. */

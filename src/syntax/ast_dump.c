@@ -28,9 +28,9 @@ static const char *const kind_texts[] = {AST_EXPR_KINDS(KIND_TEXT_)};
 static const char *const stmt_names[] = {
     "model",     "include",     "coord",      "momentum", "param",     "const",       "input",   "state", "let",
     "function",  "hamiltonian", "lagrangian", "kinetic",  "potential", "dissipation", "force",   "flow",  "constraint",
-    "symmetry",  "canonical",   "map",        "expect",   "event",     "contact",     "observe", "for",   "effect",
-    "requires",  "excludes",    "scene",      "start",    "exact",     "set",         "use",     "span",  "method",
-    "tolerance", "output",      "monitor",    "measure",  "like",      "stop"};
+    "symmetry",  "canonical",   "map",        "expect",   "event",     "contact",     "guide",   "observe", "draw",
+    "for",       "effect",      "requires",   "excludes", "scene",     "start",       "exact",   "set",     "use",
+    "span",      "method",      "tolerance",  "output",   "monitor",   "measure",     "like",    "stop"};
 _Static_assert(sizeof stmt_names / sizeof *stmt_names == STMT_STOP + 1, "a name for each statement");
 
 static void indent(Dump *d, uint32_t level) {

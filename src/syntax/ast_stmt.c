@@ -187,13 +187,40 @@ AstStmt *stmt_contact(Ast *ast, Span span, Ident name, AstList dims, AstId gap, 
   return s;
 }
 
+AstStmt *stmt_guide(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstList rubbing) {
+  AstStmt *s = stmt_equation(ast, STMT_GUIDE, span, name, dims, lhs, rhs);
+  s->args = rubbing.first;
+  return s;
+}
+
 AstStmt *stmt_constraint(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstId condition) {
   AstStmt *s = stmt_equation(ast, STMT_CONSTRAINT, span, name, dims, lhs, rhs);
   s->args = condition;
   return s;
 }
 
+static int has_multiplier(const Ast *ast, AstId root) {
+  for (AstId i = ast_expr(ast, root)->first; i <= root; i++)
+    if (ast_expr(ast, i)->kind == AST_CALL && strcmp(ast_expr(ast, i)->name, "lambda") == 0) return 1;
+  return 0;
+}
+
+/* The friction that follows the force of a constraint, and its value lambda(NAME.slip), whose nodes stand before those
+ * of options, as an expression holds all nodes between its first and itself. */
+static StmtList guide_friction(Ast *ast, Span span, Ident name, AstList dims, AstId place, AstId f, AstId most) {
+  AstId rate = ast_prime(ast, span, span, place), of = ast_name(ast, name);
+  if (dims.first) of = ast_index(ast, span, of, dims);
+  AstId slip = ast_member(ast, span, of, (Ident){intern(ast->names, "slip"), span}),
+        value = ast_call(ast, span, (Ident){intern(ast->names, "lambda"), span}, ast_list(slip));
+  AstStmt *shown = stmt_define(ast, STMT_OBSERVE, span, name, dims, (AstUnit){0}, value);
+  AstId size = ast_option(ast, span, "friction", f);
+  AstList options = ast_list_add(ast, ast_list(size), ast_option(ast, span, "slip", rate));
+  if (most) options = ast_list_add(ast, options, ast_option(ast, span, "static", most));
+  return stmts_add(stmts_one(stmt_guide(ast, span, name, dims, 0, 0, options)), shown);
+}
+
 StmtList stmts_friction(Ast *ast, Span span, Ident name, AstList dims, AstId place, AstId f, AstId most) {
+  if (has_multiplier(ast, f)) return guide_friction(ast, span, name, dims, place, f, most);
   AstId rate = ast_prime(ast, span, span, place),
         side = ast_call(ast, span, (Ident){intern(ast->names, "sign"), span}, ast_list(rate));
   AstId product = ast_binary(ast, AST_MUL, span, span, f, side), value = ast_unary(ast, AST_NEG, span, span, product);
@@ -253,6 +280,12 @@ AstStmt *stmt_options(Ast *ast, AstStmtKind kind, Span span, Ident name, StmtLis
 AstStmt *stmt_output(Ast *ast, Span span, AstList what, AstId every) {
   AstStmt *s = stmt_value(ast, STMT_OUTPUT, span, every);
   s->args = what.first;
+  return s;
+}
+
+AstStmt *stmt_draw(Ast *ast, Span span, Ident shape, AstList members, AstId subject, AstId value, AstList options) {
+  AstStmt *s = stmt_equation(ast, STMT_DRAW, span, shape, members, subject, value);
+  s->args = options.first;
   return s;
 }
 

@@ -158,6 +158,8 @@ static const char *word_in_list(const Parse *cx, const TokKind *set, int n) {
   "a contact has a restitution, and with friction also the velocity of slipping: `contact NAME: y >= 0, restitution " \
   "= 0.5, friction = mu, slip = x'`"
 
+#define GUIDE_FORM "a guide holds on both sides, with friction by its own force: `guide NAME: y = 0, friction = mu`"
+
 #define PARAM_FORM "a parameter has a value, which scenes can change: `param m = 1 [kg]`"
 #define INPUT_FORM "an input has a value, which scenes and runs can replace: `input u [N] = 0`"
 #define FORCE_FORM "a force acts along a coordinate, `force x = …`, or at a point, `force (px, py) = (…, …)`"
@@ -188,6 +190,8 @@ static const struct {
     {TOK_CONTACT, TOK_IDENT, TOK_ASSIGN, ANY, CONTACT_FORM},
     {TOK_CONTACT, TOK_NUMBER, TOK_ASSIGN, ANY, CONTACT_FORM},
     {TOK_CONTACT, COMPARISON, ANY, ANY, "a contact is written `contact NAME: g >= 0, restitution = e`"},
+    {TOK_GUIDE, COMPARISON, ANY, ANY, GUIDE_FORM "; a surface on one side is a contact"},
+    {TOK_GUIDE, ANY, ANY, ANY, GUIDE_FORM},
     {TOK_MOMENTUM, ANY, TOK_OF, ANY, "a momentum names its coordinate: `momentum p of x`"},
     {TOK_SPAN, TOK_RANGE, ANY, ANY, "a run begins at 0, and lasts a time: `span 20 [s]`"},
     {TOK_METHOD, ANY, TOK_IDENT, ANY,

@@ -95,7 +95,9 @@ enum {
   X(EVENT, "event", W_EACH | T_BLOCK)              \
   X(KICK, "kick", W_EACH | T_BLOCK)                \
   X(CONTACT, "contact", W_EACH)                    \
+  X(GUIDE, "guide", W_EACH)                        \
   X(OBSERVE, "observe", W_EACH)                    \
+  X(DRAW, "draw", W_EACH | W_SCENE)                \
   X(FOR, "for", W_EACH | T_BLOCK)                  \
   X(EFFECT, "effect", W_FILE | T_BLOCK)            \
   X(REQUIRES, "requires", W_EFFECT)                \
@@ -126,7 +128,9 @@ enum {
   X(LAW, "law", 0)                                 \
   X(EXACTLY, "exactly", 0)                         \
   X(EVERY, "every", 0)                             \
-  X(WHILE, "while", 0)
+  X(WHILE, "while", 0)                             \
+  X(SHAPE, "a shape such as `ball`", 0)            \
+  X(CLAUSE, "an option", T_OPENS)
 
 #define TOKEN_ENUM_(name, word, flags) TOK_##name,
 typedef enum { TOKENS(TOKEN_ENUM_) TOK_COUNT } TokKind;

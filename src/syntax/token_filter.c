@@ -20,11 +20,13 @@
  *     operand, in the statements that take them, and so is `while` in a constraint; `restitution` after the `,` of a
  *     contact, `on` and `static` of a friction, `exactly`
  *     after `start` when a name follows; `for` after the `:` or `,` of a symmetry when a name
- *     follows; `sum` and `product` before `(`.
+ *     follows; `sum` and `product` before `(`; in a `draw` the shape, and each name behind an operand.
  * Everywhere else a name is a name: a coordinate may be called `force`, `every` or `sum`.
  *
  * Must hold: at most two raw tokens of lookahead, no recursion; the depth of blocks is limited. */
 #include "syntax/token_filter.h"
+
+#include "base/words.h"
 
 Filter *filter_new(Scan *scan, int single) {
   Filter *f = ARENA_NEW(scan->arena, Filter);
@@ -132,12 +134,27 @@ static Token first_name(Filter *f, Token t) {
   return t;
 }
 
-/* A word after a comma of a contact. */
+/* A word after a comma of a contact or a guide. */
 static TokKind contact_word(const char *name) {
   static const TokKind words[] = {TOK_RESTITUTION, TOK_FRICTION, TOK_STATIC, TOK_SLIP, TOK_TANGENTIAL, TOK_LAW};
   for (size_t i = 0; i < sizeof words / sizeof *words; i++)
     if (strcmp(name, token_word(words[i])) == 0) return words[i];
   return TOK_IDENT;
+}
+
+/* A name of `draw ball[i in 1..N] at P radius r`: the shape, then what it draws unless the name is one of `heads`;
+ * behind an operand a word. */
+static TokKind drawing_word(Filter *f, const Token *t) {
+  static const char heads[] = "from at of to width radius size turn coils spokes box scale as for";
+  if (f->prev == TOK_DRAW) {
+    f->headed = 1;
+    return TOK_SHAPE;
+  }
+  if (f->brackets.n) return TOK_IDENT;
+  int subject = f->headed && (f->prev == TOK_SHAPE || f->prev == TOK_RBRACKET) && !has_word(heads, t->name);
+  int word = !subject && (token_ends_operand(f->prev) || f->prev == TOK_SHAPE);
+  f->headed = 0;
+  return word ? TOK_CLAUSE : TOK_IDENT;
 }
 
 /* Classifies a name inside a statement: a keyword in its slot, otherwise IDENT. */
@@ -149,7 +166,7 @@ static TokKind slot_word(Filter *f, const Token *t) {
                {TOK_FRICTION, TOK_ON},    {TOK_MOMENTUM, TOK_OF},  {TOK_CONSTRAINT, TOK_WHILE}};
   if (f->prev == TOK_START && peek(f)->kind == TOK_IDENT)
     return strcmp(t->name, "exactly") == 0 ? TOK_EXACTLY : TOK_IDENT;
-  if (f->word == TOK_CONTACT && f->prev == TOK_COMMA && !f->brackets.n)
+  if ((f->word == TOK_CONTACT || f->word == TOK_GUIDE) && f->prev == TOK_COMMA && !f->brackets.n)
     return contact_word(t->name);
   if (f->word == TOK_FRICTION && f->prev == TOK_COMMA && !f->brackets.n)
     return strcmp(t->name, "static") == 0 ? TOK_STATIC : TOK_IDENT;
@@ -159,6 +176,7 @@ static TokKind slot_word(Filter *f, const Token *t) {
     if (strcmp(t->name, "sum") == 0) return TOK_SUM;
     if (strcmp(t->name, "product") == 0) return TOK_PRODUCT;
   }
+  if (f->word == TOK_DRAW) return drawing_word(f, t);
   if (!token_ends_operand(f->prev) || f->brackets.n) return TOK_IDENT;
   for (size_t i = 0; i < sizeof slots / sizeof *slots; i++)
     if (slots[i].statement == f->word && strcmp(t->name, token_word(slots[i].word)) == 0) return slots[i].word;

@@ -27,6 +27,7 @@ typedef struct {
   int single;      /* the text is one expression: no statement words, no blocks */
   int inside;      /* a statement has begun */
   TokKind word;    /* its statement word, or IDENT */
+  int headed;      /* the shape of a `draw` was read, and nothing behind it */
   int assigned;    /* an `=` was seen since its last `,` outside brackets */
   int has_block;   /* its next `{` outside brackets opens a block */
   VEC(OpenBracket) brackets;

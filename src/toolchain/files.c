@@ -80,3 +80,10 @@ const char *file_absolute(Arena *a, const char *path) {
   free(found);
   return copy;
 }
+
+const char *file_identity(Arena *a, const char *path) {
+  struct stat st;
+  if (stat(path, &st) != 0) return "";
+  return arena_printf(a, "%s %lld %lld.%09ld", path, (long long)st.st_size, (long long)st.st_mtim.tv_sec,
+                      st.st_mtim.tv_nsec);
+}

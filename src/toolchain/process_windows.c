@@ -97,6 +97,24 @@ void process_become(const char *path, char *const *argv) {
   if (process) exit(wait_for(process));
 }
 
+/* Beside the program's other temporary files, which the system's own care removes. */
+int process_give(const char *name, const StrBuf *bytes) {
+  char folder[MAX_PATH + 1], path[MAX_PATH + 1];
+  FILE *f = GetTempPathA(MAX_PATH, folder) && GetTempFileNameA(folder, "lag", 0, path) ? fopen(path, "wb") : NULL;
+  int ok = f && fwrite(bytes->at, 1, bytes->n, f) == bytes->n;
+  if (f && fclose(f) != 0) ok = 0;
+  return ok && _putenv_s(name, path) == 0;
+}
+
+void process_beside(void (*work)(void *data, int fd), void *data, const char *name) {
+  (void)work, (void)data, (void)name;
+}
+
+void process_set(const char *name, const char *value) { _putenv_s(name, value); }
+void process_tell(int fd, const char *line) { (void)fd, (void)line; }
+
+int process_reader_ends(int fd, double seconds) { return (void)seconds, fd < 0; }
+
 long process_begin(int (*work)(void *data), void *data) {
   (void)work;
   (void)data;

@@ -8,6 +8,8 @@
 #include "base/hash.h"
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 #include "base/vec.h"
+#include "toolchain/files.h"
+#include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 
 /* digits of an entry's name; those of a reference follow after a dot */
 enum { LIMIT_MIB = 1024, NAME = 32, SUFFIX = 9 };
@@ -143,6 +145,18 @@ static int file_is_own(const char *path) {
  * read so far. */
 static const char seal_form[] = "\n#lagc %016" PRIx64 " %016" PRIx64 "\n";
 
+/* FNV-1a by words of 8 bytes, the last filled with zeros. */
+static uint64_t hash_words(uint64_t h, const char *s, size_t n) {
+  for (uint64_t word; n > 0; s += 8) {
+    size_t some = n < 8 ? n : 8;
+    word = 0;
+    memcpy(&word, s, some);
+    h = (h ^ word) * UINT64_C(0x100000001b3);
+    n -= some;
+  }
+  return h;
+}
+
 /* Hash of the next n bytes, or of all (n < 0); *n := their number. */
 static uint64_t hash_file(FILE *f, int64_t *n) {
   char block[65536];
@@ -152,7 +166,7 @@ static uint64_t hash_file(FILE *f, int64_t *n) {
   for (size_t some;
        left > 0 && (some = fread(block, 1, left < (int64_t)sizeof block ? (size_t)left : sizeof block, f)) > 0;
        left -= (int64_t)some, *n += (int64_t)some)
-    h = lag_fnv1a(h, block, some);
+    h = hash_words(h, block, some);
   return h;
 }
 
@@ -185,6 +199,20 @@ int cache_has_data(const char *path) {
   return whole;
 }
 
+int cache_write(const char *path, const StrBuf *text) {
+  Outfile o;
+  if (lag_outfile_open(&o, path) != 0) return 0;
+  int whole = fwrite(sb_text(text), 1, text->n, o.f) == text->n && fflush(o.f) == 0 && cache_seal(o.part);
+  return lag_outfile_close(&o, whole ? OUTFILE_KEEP : OUTFILE_DROP) == 0 && whole;
+}
+
+int cache_read(const char *path, StrBuf *out) {
+  const char *why;
+  if (!cache_has_data(path) || !file_append(path, out, &why) || out->n < CACHE_SEAL) return 0;
+  out->at[out->n -= CACHE_SEAL] = '\0';
+  return 1;
+}
+
 int cache_has(const char *path) { return access(path, X_OK) == 0 && cache_has_data(path); }
 
 static const char *lock_of(Arena *a, const char *path) { return arena_printf(a, "%s.lock", path); }
@@ -214,7 +242,9 @@ static int is_reference(const char *name) {
 }
 
 static int is_entry(const char *name) {
-  return strspn(name, "0123456789abcdef") == NAME && (name[NAME] == '\0' || is_reference(name));
+  if (strspn(name, "0123456789abcdef") != NAME) return 0;
+  return name[NAME] == '\0' || is_reference(name) || strcmp(name + NAME, ".run") == 0 ||
+         strcmp(name + NAME, ".cc") == 0;
 }
 
 static int by_age(const void *x, const void *y) {
@@ -258,9 +288,10 @@ void cache_limit(Arena *a, const char *keep) {
   }
 }
 
-static uint32_t count_simulators(const Entries *all) {
+/* The entries whose name has so many characters. */
+static uint32_t count(const Entries *all, size_t characters) {
   uint32_t n = 0;
-  for (uint32_t i = 0; i < all->n; i++) n += !is_reference(strrchr(all->at[i].path, '/') + 1);
+  for (uint32_t i = 0; i < all->n; i++) n += strlen(strrchr(all->at[i].path, '/') + 1) == characters;
   return n;
 }
 
@@ -272,14 +303,15 @@ void cache_print(Arena *a, StrBuf *out) {
   Entries all = entries(a, dir, &total);
   sb_printf(out, "folder      %s\n", dir ? dir : "none: set XDG_CACHE_HOME to a folder that only you can write");
   sb_printf(out,
-            "simulators  %u\nreferences  %u (lagc cost)\nsize        %.1f MiB\nlimit       %.0f MiB (LAGC_CACHE_MIB)\n",
-            count_simulators(&all), all.n - count_simulators(&all), mib(total), mib(limit()));
+            "simulators  %u\nreferences  %u (lagc cost)\nruns        %u (start at once)\nsize        %.1f MiB\n"
+            "limit       %.0f MiB (LAGC_CACHE_MIB)\n",
+            count(&all, NAME), count(&all, NAME + SUFFIX), count(&all, NAME + 4), mib(total), mib(limit()));
 }
 
 void cache_clear(Arena *a, StrBuf *out) {
   long long total;
   Entries all = entries(a, cache_folder(a), &total);
   for (uint32_t i = 0; i < all.n; i++) unlink(all.at[i].path);
-  uint32_t n = count_simulators(&all);
+  uint32_t n = count(&all, NAME);
   sb_printf(out, "removed %u simulator%s, %.1f MiB\n", n, n == 1 ? "" : "s", mib(total));
 }

@@ -28,6 +28,10 @@ int cache_has_data(const char *path);
  * overwritten, are built anew. 0: not written. */
 enum { CACHE_SEAL = 41 };
 int cache_seal(const char *path);
+/* Writes a text as an entry. 0: not written. */
+int cache_write(const char *path, const StrBuf *text);
+/* Appends the text of an entry. 0: it is not there, not whole or not the user's own. */
+int cache_read(const char *path, StrBuf *out);
 /* Waits while another process builds this entry, as ranks of mpirun do together; then others wait, until cache_give.
  * A descriptor; -1: locks do not work there. */
 int cache_take(Arena *a, const char *path);

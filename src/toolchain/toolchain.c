@@ -9,15 +9,10 @@
 #include "base/hash.h"
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 #include "base/vec.h"
+#include "toolchain/compiler_probe.h"
 #include "toolchain/simulator_cache.h"
 #include "toolchain/files.h"
-#include "toolchain/probe_text.h" /* static const char *const probe_text[]: generated from compiler_probe.in */
 #include "toolchain/process.h"
-
-/* No vector stores in emitted C: the stages of an integrator read results number by number, and store forwarding
- * needs loads of the size of the store; vector stores cost 5 to 7 ns of latency a stage (make bench
- * T=bench/methods). They are also what triggers the compiler fault of compiler_probe.in. */
-#define TOOLCHAIN_SCALAR "-fno-tree-slp-vectorize"
 
 /* The program that the compiler makes. Compilers for Windows would append .exe to a name without it. */
 #define SIMULATOR "simulator.exe"
@@ -114,59 +109,6 @@ int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const cha
                                 t->lib, t->library, t->needs ? ", where the C compiler has libquadmath" : ""));
 }
 
-/* --- the probe for compilers that store wrong numbers --- */
-
-enum { N_LINES = sizeof probe_text / sizeof *probe_text, WRONG = 1 };
-
-/* Runs the compiler with the words `more` after those of cc, which may hold options; returns its exit status. */
-static int run_compiler(Arena *a, const char *cc, const char *const *more, char **said) {
-  VEC(char *) argv = {0};
-  for (char *w = strtok(arena_strdup(a, cc), " "); w; w = strtok(NULL, " ")) vec_push(a, &argv, w);
-  for (; *more; more++)
-    if (**more) vec_push(a, &argv, arena_strdup(a, *more));
-  vec_push(a, &argv, NULL);
-  return process_run(a, argv.at[0], argv.at, said);
-}
-
-/* Whether the compiler is GCC with AVX-512, the only one known to fail; its predefined macros tell, in 10 ms. */
-static int is_suspect(Arena *a, const char *cc, const char *source) {
-  const char *const more[] = {"-dM", "-E", source, NULL};
-  char *said = NULL;
-  return run_compiler(a, cc, more, &said) == 0 && strstr(said, "#define __AVX512F__ ") &&
-         !strstr(said, "#define __clang__ ");
-}
-
-static int fails_with(Arena *a, const char *cc, const char *optimise, const char *flag, const char *source,
-                      const char *program) {
-  const char *const more[] = {optimise, TOOLCHAIN_SCALAR, flag, "-o", program, source, NULL};
-  char *said = NULL, *argv[] = {arena_strdup(a, program), NULL};
-  if (run_compiler(a, cc, more, &said) != 0) return 0; /* the build itself will report that */
-  return process_run(a, program, argv, &said) == WRONG;
-}
-
-/* The flag that the compiler `cc` (with its options, as in $CC) needs besides `optimise` and TOOLCHAIN_SCALAR: ""
- * for most. Compilers for processors with AVX-512 are probed by a program that is written, run and removed in the
- * folder dir. NULL, with *error, when no flag helps. */
-static const char *probe_flag(Arena *a, const char *cc, const char *optimise, const char *dir, const char **error) {
-  static const char *const flags[] = {"", "-march=x86-64-v3"};
-  enum { N_FLAGS = sizeof flags / sizeof *flags };
-  const char *source = arena_printf(a, "%s/probe.c", dir), *program = arena_printf(a, "%s/probe", dir), *why;
-  StrBuf text = strbuf(a);
-  size_t found = 0;
-  for (size_t i = 0; i < N_LINES; i++) sb_puts(&text, probe_text[i]);
-  if (!file_write(source, sb_text(&text), text.n, &why)) return "";
-  if (is_suspect(a, cc, source))
-    while (found < N_FLAGS && fails_with(a, cc, optimise, flags[found], source, program)) found++;
-  remove(source);
-  remove(program);
-  if (found < N_FLAGS) return flags[found];
-  *error = arena_printf(a,
-                        "the C compiler `%s` stores wrong numbers, with " TOOLCHAIN_SCALAR
-                        " and -march=x86-64-v3 too; set CC to another",
-                        cc);
-  return NULL;
-}
-
 /* --- running the compiler; a toolchain without the runtime makes shared libraries --- */
 
 /* A library of the text alone, without the runtime. */
@@ -205,15 +147,16 @@ int toolchain_has_lanes(void) { return 0; }
  * without fused multiply-add), no vector stores, and the flag of the probe. */
 static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n,
                    const char **error) {
-  const char *safe = probe_flag(a, t->cc, t->optimise, dir, error);
-  if (!safe) return 0;
+  CompilerTraits is;
+  if (!compiler_probe(a, t->cc, t->optimise, dir, &is, error)) return 0;
   char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc,
-                             t->optimise, *safe ? " " : "", safe);
+                             t->optimise, *is.safe ? " " : "", is.safe);
   for (char *c = build + strlen("-DLAG_BUILD=\""); c[1]; c++)
     if (*c == '"' || *c == '\\') *c = ' ';
-  int alone = is_alone(t);
+  int alone = is_alone(t), single = alone && !t->models,
+      links_sines = !alone && !t->lanes && strcmp(t->library, "lag") == 0;
   const char *first[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, "-o", made_in(a, t, dir)};
-  const char *runtime[] = {build, "-I", t->include};
+  const char *runtime[] = {build, links_sines ? "-DLAG_LINKED_SINES" : "", "-I", t->include};
   const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : "")},
              *hidden[] = {"-fvisibility=hidden", "-s", alone ? steady_flags(a, t) : ""};
   const char *whole[] = {"-Wl,-Bsymbolic", arena_printf(a, "-Wl,--version-script=%s/exports.map", dir),
@@ -229,13 +172,14 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
                         NULL};
   VEC(const char *) words = {0}, parts = {0};
   for (size_t i = 0; i < sizeof first / sizeof *first; i++) vec_push(a, &words, first[i]);
-  for (size_t i = 0; i < sizeof runtime / sizeof *runtime && !alone; i++) vec_push(a, &words, runtime[i]);
+  for (size_t i = 0; i < sizeof runtime / sizeof *runtime && !single; i++) vec_push(a, &words, runtime[i]);
   for (size_t i = 0; i < sizeof library / sizeof *library && t->soname; i++) vec_push(a, &words, library[i]);
-  for (size_t i = 0; i < sizeof hidden / sizeof *hidden && alone; i++) vec_push(a, &words, hidden[i]);
+  for (size_t i = 0; i < sizeof hidden / sizeof *hidden && single; i++) vec_push(a, &words, hidden[i]);
   for (const char *const *f = t->flags; *f; f++) vec_push(a, &words, *f);
   for (const char *const *f = lane_flags; t->lanes && *f; f++) vec_push(a, &words, *f);
-  vec_push(a, &words, safe);
-  for (size_t i = alone ? n - 1 : 0; i < n; i++) vec_push(a, &words, arena_printf(a, "%s/%s", dir, texts[i].name));
+  vec_push(a, &words, is.safe);
+  if (!t->soname) vec_push(a, &words, is.linker);
+  for (size_t i = single ? n - 1 : 0; i < n; i++) vec_push(a, &words, arena_printf(a, "%s/%s", dir, texts[i].name));
   for (size_t i = 0; i < sizeof whole / sizeof *whole && t->soname && !alone; i++) vec_push(a, &words, whole[i]);
   for (int i = 0; i < 3; i++)
     for (char *w = t->parts[i] ? strtok(arena_strdup(a, t->parts[i]), " ") : NULL; w; w = strtok(NULL, " "))
@@ -246,7 +190,7 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
       for (uint32_t k = 0; k < parts.n; k++) vec_push(a, &words, parts.at[k]);
   }
   char *said = NULL;
-  int status = run_compiler(a, t->cc, words.at, &said);
+  int status = compiler_run(a, t->cc, words.at, &said);
   if (status == 0) return 1;
   if (status == 127)
     *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
@@ -322,7 +266,7 @@ int toolchain_run_once(Arena *a, const Toolchain *t, const SourceText *texts, si
 const char *toolchain_machine(Arena *a, const Toolchain *t) {
   const char *const more[] = {"-dumpmachine", NULL};
   char *said = NULL;
-  return run_compiler(a, t->cc, more, &said) == 0 ? said : "";
+  return compiler_run(a, t->cc, more, &said) == 0 ? said : "";
 }
 
 int toolchain_library(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, StrBuf *out,
@@ -338,34 +282,61 @@ int toolchain_library(Arena *a, const Toolchain *t, const SourceText *texts, siz
 
 /* --- simulators in the cache --- */
 
-/* A library is identified by path, size and modification time. */
+const char *toolchain_evaluator(Arena *a, const Toolchain *t) {
+  const char *path = arena_printf(a, "%s/lag-run" PROGRAM_SUFFIX, t->lib);
+  return file_exists(path) ? path : NULL;
+}
+
 static uint64_t hash_library(Arena *a, uint64_t h, const char *path) {
-  struct stat st;
-  if (stat(path, &st) != 0) return h;
-  const char *text = arena_printf(a, "%s %lld %lld.%09ld", path, (long long)st.st_size, (long long)st.st_mtim.tv_sec,
-                                  st.st_mtim.tv_nsec);
+  const char *text = file_identity(a, path);
   return lag_fnv1a(h, text, strlen(text));
+}
+
+static const char *const part_names[] = {"png", "hdf5", "mpi"};
+
+const char *toolchain_own_build(Arena *a, const Toolchain *t, const char *argv0) {
+  char path[PATH_MAX];
+  long n = lag_own_path(path, sizeof path - 1);
+  const char *text = file_identity(a, n > 0 ? arena_strndup(a, path, (size_t)n) : argv0);
+  for (int i = 0; i < 3; i++)
+    text = arena_printf(a, "%s\n%s", text, file_identity(a, arena_printf(a, "%s/liblag_%s.a", t->lib, part_names[i])));
+  return text;
 }
 
 static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceText *texts, size_t n) {
   for (size_t i = 0; i < n; i++) h = lag_fnv1a(h, texts[i].text, strlen(texts[i].text) + 1);
   h = lag_fnv1a(h, t->cc, strlen(t->cc) + 1);
   h = lag_fnv1a(h, t->optimise, strlen(t->optimise) + 1);
-  h = hash_library(a, h, arena_printf(a, "%s/lib%s.a", t->lib, t->library));
-  static const char *const parts[] = {"png", "hdf5", "mpi"};
+  h = hash_library(a, h, t->models ? toolchain_evaluator(a, t) : arena_printf(a, "%s/lib%s.a", t->lib, t->library));
   for (int i = 0; i < 3; i++)
-    if (t->parts[i]) h = hash_library(a, h, arena_printf(a, "%s/liblag_%s.a", t->lib, parts[i]));
+    if (t->parts[i]) h = hash_library(a, h, arena_printf(a, "%s/liblag_%s.a", t->lib, part_names[i]));
   return t->gsl ? hash_library(a, h, arena_printf(a, "%s/liblag_gsl.a", t->lib)) : h;
 }
 
-/* The cache entry's name: a 128-bit hash of texts, compiler and libraries. */
-static const char *name_of(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
+const char *toolchain_entry(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
   uint64_t h1 = hash_all(a, LAG_FNV1A_START, t, texts, n), h2 = hash_all(a, 0x9e3779b97f4a7c15u, t, texts, n);
   return arena_printf(a, "%016llx%016llx", (unsigned long long)h1, (unsigned long long)h2);
 }
 
+const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
+  const char *cache = cache_folder(a),
+             *path = cache ? arena_printf(a, "%s/%s", cache, toolchain_entry(a, t, texts, n)) : NULL;
+  return path && cache_has(path) ? path : NULL;
+}
+
+int toolchain_has_compiler(Arena *a, const Toolchain *t) {
+  const char *name = arena_strndup(a, t->cc, strcspn(t->cc, " ")), *path = getenv("PATH");
+  if (strpbrk(name, "/\\")) return file_exists(name);
+  for (size_t n; path && *path; path += n + (path[n] != '\0')) {
+    n = strcspn(path, PATH_SEPARATOR);
+    if (file_exists(arena_printf(a, "%.*s/%s" PROGRAM_SUFFIX, (int)n, path, name))) return 1;
+  }
+  return 0;
+}
+
 const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error) {
-  const char *cache = cache_folder(a), *path = cache ? arena_printf(a, "%s/%s", cache, name_of(a, t, texts, n)) : NULL;
+  const char *cache = cache_folder(a),
+             *path = cache ? arena_printf(a, "%s/%s", cache, toolchain_entry(a, t, texts, n)) : NULL;
   BuildFolder f;
   if (path && cache_has(path)) return path;
   int lock = path ? cache_take(a, path) : -1, there = lock >= 0 && cache_has(path), ok = there;

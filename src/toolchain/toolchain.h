@@ -19,6 +19,7 @@ typedef struct {
   /* of the shared library that is made instead of a program, with the runtime where `library` names it; NULL: a
    * program */
   const char *soname;
+  int models;            /* that shared library is a program for lag-run, which has the runtime */
   const char *optimise;  /* -O2 or $LAGC_OPTIMISE; -O0 where compilation takes longer than the run */
 } Toolchain;
 
@@ -62,8 +63,22 @@ int toolchain_library(Arena *a, const Toolchain *t, const SourceText *texts, siz
 int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char *output,
                     const char **error);
 
+/* Path, size and time of lagc itself and of the parts of the runtime. */
+const char *toolchain_own_build(Arena *a, const Toolchain *t, const char *argv0);
+
+/* The name of a cache entry: a 128-bit hash of texts, compiler and libraries. */
+const char *toolchain_entry(Arena *a, const Toolchain *t, const SourceText *texts, size_t n);
+
 /* The path of a simulator of these texts, from the cache or built; NULL, with *error. */
 const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error);
+
+/* The same if it is in the cache; else NULL. */
+const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n);
+
+/* lag-run, the simulator that evaluates models; NULL: it is not there. */
+const char *toolchain_evaluator(Arena *a, const Toolchain *t);
+/* Whether the C compiler is a program of $PATH, or of its own. */
+int toolchain_has_compiler(Arena *a, const Toolchain *t);
 
 /* One run of a program, from `in` to `out`. */
 typedef struct {

@@ -55,12 +55,12 @@ static Bench bench_new(void) {
   unsigned char *fixed = calloc((size_t)b.m->np + 1, 1);
   if (!fixed) exit(2);
   b.p = room(b.m->np + b.m->nderived), b.a = room(n), b.w = room(b.m->nw);
-  SCENE.params(b.p, fixed);
+  SCENE.params(&SCENE, b.p, fixed);
   free(fixed);
   for (int s = 0; s < STATES; s++) {
     b.q[s] = room(n), b.v[s] = room(n);
 #ifdef SCENE_START
-    SCENE.start(b.p, b.q[s], b.v[s], NULL);
+    SCENE.start(&SCENE, b.p, b.q[s], b.v[s], NULL);
 #endif
     for (int i = 0; i < 2*n; i++) {
       seed = seed*6364136223846793005u + 1442695040888963407u;
@@ -88,7 +88,7 @@ static int check(const Bench *b) {
     double worst = 0;
     for (int s = 0; s < STATES; s++) {
       double size = 0, off = 0;
-      if (b->m->accel(0, b->q[s], b->v[s], NULL, b->p, NULL, ours, NULL, b->w) != 0) return 3;
+      if (b->m->accel(b->m, 0, b->q[s], b->v[s], NULL, b->p, NULL, ours, NULL, b->w) != 0) return 3;
       if (b->all[k].f(0, b->q[s], b->v[s], NULL, b->p, NULL, b->a, NULL, b->w) != 0) return 3;
       for (int i = 0; i < b->m->nq; i++) size = fmax(size, fabs(ours[i])), off = fmax(off, fabs(ours[i] - b->a[i]));
       worst = fmax(worst, off/size);

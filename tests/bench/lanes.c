@@ -36,7 +36,7 @@ KERNEL(own_sincos, lag_sincos(x[i], &s[i], &c[i]))
 KERNEL(own_exp, s[i] = lag_exp(x[i]))
 KERNEL(own_log, s[i] = lag_log(x[i]))
 KERNEL(own_rsqrt, s[i] = lag_rsqrt(x[i]))
-KERNEL(accelerations, SCENE.model->accel(t, q[i % STATES], v[i % STATES], NULL, p, NULL, a, NULL, NULL))
+KERNEL(accelerations, SCENE.model->accel(SCENE.model, t, q[i % STATES], v[i % STATES], NULL, p, NULL, a, NULL, NULL))
 #ifndef LAG_LANES
 KERNEL(libm_sincos, (s[i] = sin(x[i]), c[i] = cos(x[i])))
 KERNEL(libm_exp, s[i] = exp(x[i]))
@@ -65,7 +65,7 @@ int main(void) {
   fill(x, N, 0.1, 3);
   fill(q[0], STATES*MOST, -2, 2);
   fill(v[0], STATES*MOST, -2, 2);
-  SCENE.params(p, none);
+  SCENE.params(&SCENE, p, none);
   measure("sincos", own_sincos);
   measure("exp", own_exp);
   measure("log", own_log);

@@ -208,7 +208,7 @@ static double waiting_call(const Problem *p, bench_rhs *f) {
     double t0 = bench_now();
     for (int k = 0; k < 1000; k++) {
       if (f) f(0, y, d, NULL);
-      else memcpy(d, y + n, (size_t)n*sizeof *d), m->accel(0, y, y + n, y + 2*n, work, NULL, d + n, NULL, work);
+      else memcpy(d, y + n, (size_t)n * sizeof *d), m->accel(m, 0, y, y + n, y + 2 * n, work, NULL, d + n, NULL, work);
       for (int i = 0; i < 2*n; i++) y[i] += 1e-9*d[i];
     }
     best = fmin(best, (bench_now() - t0)/1000);

@@ -52,8 +52,8 @@ int main(void) {
   static const unsigned char none[N + 2];
   const lag_model *m = bodies_drift.model;
   if (m->nq != 3*N || m->np != N + 2 || m->nderived > 6 || m->nw > 1024) return 2;
-  bodies_drift.params(p, none);
-  bodies_drift.start(p, q, v, NULL);
+  bodies_drift.params(&bodies_drift, p, none);
+  bodies_drift.start(&bodies_drift, p, q, v, NULL);
   /* masses and velocities of their own; the start by its formulas, to rounding of arguments up to 435 */
   for (int i = 0; i < N; i++) {
     const double want[3] = {cos(i + 1), sin(1.7*(i + 1)), sin(0.6*(i + 1))};
@@ -63,8 +63,9 @@ int main(void) {
     }
     p[i] = 1 + 0.5*want[0];
   }
-  if (m->derive) m->derive(p);
-  if (m->accel(0, q, v, NULL, p, NULL, a, NULL, room) != 0 || m->energy(0, q, v, NULL, p, NULL, energy, room) != 0)
+  if (m->derive) m->derive(m, p);
+  if (m->accel(m, 0, q, v, NULL, p, NULL, a, NULL, room) != 0 ||
+      m->energy(m, 0, q, v, NULL, p, NULL, energy, room) != 0)
     return 4;
   return check_accelerations() | check_energy();
 }

@@ -68,7 +68,7 @@ int main(void) {
   if (m->np != PARAMETERS || m->nq > MOST || (size_t)(m->np + m->nderived) > sizeof p / sizeof *p ||
       (size_t)m->nw > sizeof w / sizeof *w)
     return 2;
-  SCENE.params(p, none);
+  SCENE.params(&SCENE, p, none);
   for (int turn = 0; turn < 50; turn++) {
     for (int k = 0; k < LANES; k++) {
       const int s = turn*LANES + k;
@@ -76,8 +76,8 @@ int main(void) {
       for (int i = 0; i < m->nq; i++) *lane(&q[i], k) = sin(s + 7*i);
     }
     for (int fresh = 0; fresh < 2; fresh++) {
-      if (fresh && m->derive) m->derive(p);
-      if (m->accel(q[0], q, v, NULL, p, NULL, a, NULL, w) != 0) return 3;
+      if (fresh && m->derive) m->derive(m, p);
+      if (m->accel(m, q[0], q, v, NULL, p, NULL, a, NULL, w) != 0) return 3;
       for (int k = 0; k < LANES; k++) {
         const double r = residual(m->nq, k);
         if (fresh) worst = fmax(worst, r);

@@ -48,7 +48,7 @@ static State random_state(void) {
   /* masses 1/4..4, lengths 1/2..2 */
   for (int i = 0; i < 4; i++) s.p[i] = exp2(uniform(i < 2 ? -2 : -1, i < 2 ? 2 : 1));
   s.p[4] = uniform(0, 20);
-  if (double_pendulum.derive) double_pendulum.derive(s.p);
+  if (double_pendulum.derive) double_pendulum.derive(&double_pendulum, s.p);
   return s;
 }
 
@@ -87,7 +87,7 @@ int main(int argc, char **argv) {
     const State s = random_state();
     double a[2];
     quad want[2], size[2];
-    int status = double_pendulum.accel(0, s.q, s.v, NULL, s.p, NULL, a, NULL, work);
+    int status = double_pendulum.accel(&double_pendulum, 0, s.q, s.v, NULL, s.p, NULL, a, NULL, work);
     by_hand(&s, want, size);
     for (int i = 0; i < 2; i++) {
       double error = status ? INFINITY : (double)(fabsq(a[i] - want[i])/ulp_of(size[i]));

@@ -81,11 +81,11 @@ static int compare(const lag_model *m, const Prog *accel, const Prog *energy, Po
   Real a[2 * MAX], b[2 * MAX], e[2], f[2];
   const Real *in[ARR_COUNT] = {&s->t, s->q, s->v, s->z, s->p, s->u};
   Real *out[] = {b, b + m->nq}, *out_energy[] = {f};
-  int got = m->accel(s->t, s->q, s->v, s->z, s->p, s->u, a, a + m->nq, s->w), want = prog_eval(accel, in, out);
+  int got = m->accel(m, s->t, s->q, s->v, s->z, s->p, s->u, a, a + m->nq, s->w), want = prog_eval(accel, in, out);
   if (got != want) return printf("%s: status %d in emitted C, %d evaluated\n", m->name, got, want), 1;
   if (got == 0 && differs(m->name, "accel", a, b, m->nq + m->nz, is_exact(accel))) return 1;
   if (!m->energy) return 0;
-  m->energy(s->t, s->q, s->v, s->z, s->p, s->u, e, s->w);
+  m->energy(m, s->t, s->q, s->v, s->z, s->p, s->u, e, s->w);
   prog_eval(energy, in, out_energy);
   return differs(m->name, "energy", e, f, 2, is_exact(energy));
 }
@@ -175,11 +175,11 @@ static int compare_variation(const lag_model *m, const Eqns *e, Point *s) {
   Real a[3 * MAX], b[3 * MAX], *h = ARENA_ARRAY(e->m->arena, Real, n + 1), *k = ARENA_ARRAY(e->m->arena, Real, n + 1);
   const Real *in[ARR_COUNT] = {&s->t, s->q, s->v, s->z, s->p, s->u};
   Real *out[] = {b, b + MAX, b + 2 * MAX}, *out_second[] = {k};
-  m->variation(s->t, s->q, s->v, s->z, s->p, s->u, a, a + MAX, a + 2 * MAX, s->w);
+  m->variation(m, s->t, s->q, s->v, s->z, s->p, s->u, a, a + MAX, a + 2 * MAX, s->w);
   prog_eval(first, in, out);
   for (int part = 0; part < 3; part++)
     if (differs(m->name, "variation", a + part * MAX, b + part * MAX, m->nq, is_exact(first))) return 1;
-  m->second(s->t, s->q, s->v, s->z, s->p, s->u, h, s->w);
+  m->second(m, s->t, s->q, s->v, s->z, s->p, s->u, h, s->w);
   prog_eval(second, in, out_second);
   for (uint32_t i = 0; i < n; i++)
     if (m->second_at[i].part != (int)x->second.at[i].part || m->second_at[i].row != (int)x->second.at[i].row ||
@@ -208,7 +208,7 @@ static int check_model(Arena *arena, const char *path, const lag_scene *scene) {
   loose = strcmp(m->name, "compass_walker") == 0 ? fmaxl(LOOSE, 1e-9L) : LOOSE;
   Point s;
   seed = 7; /* the states of a model do not depend on which models come before it */
-  scene->params(s.p, none);
+  scene->params(scene, s.p, none);
   eqns_derive_mass(e); /* where the program does without */
   for (int i = 0; i < STATES; i++) {
     random_state(&s);

@@ -34,14 +34,14 @@ static void print(const char *scene, const char *function, int status, const LAG
 
 static void evaluate(const lag_scene *s) {
   const lag_model *m = s->model;
-  if (m->inputs) m->inputs(k.t, k.p, k.u);
-  int status = m->accel(k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.out + m->nq, k.w);
+  if (m->inputs) m->inputs(m, k.t, k.p, k.u);
+  int status = m->accel(m, k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.out + m->nq, k.w);
   print(m->name, "accel", status, k.out, m->nq + m->nz);
   if (m->energy)
-    status = m->energy(k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.w), print(m->name, "energy", status, k.out, 2);
+    status = m->energy(m, k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.w), print(m->name, "energy", status, k.out, 2);
   if (m->events)
-    status = m->events(k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.w), print(m->name, "events", status, k.out, m->nev);
-  status = s->observe(k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.w);
+    status = m->events(m, k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.w), print(m->name, "events", status, k.out, m->nev);
+  status = s->observe(s, k.t, k.q, k.v, k.z, k.p, k.u, k.out, k.w);
   print(m->name, "observe", status, k.out, s->nout);
 }
 
@@ -50,7 +50,7 @@ int main(void) {
   for (int i = 0; all_scenes[i]; i++) {
     const lag_scene *s = all_scenes[i];
     if (s->model->np + s->model->nderived > PARAMS || s->model->nw > WORK) return 1;
-    s->params(k.p, none);
+    s->params(s, k.p, none);
     seed = 1;
     for (int i = 0; i < s->model->nu; i++) k.u[i] = 0; /* contacts are open */
     for (int i = 0; i < s->model->nmodes; i++) k.u[s->model->nu + i] = (LAG_REAL)LAG_FREE;

@@ -28,7 +28,7 @@ static Real next(void) {
 static Real size_of(Real x) { return x < 0 ? -x : x; }
 
 static int rhs(const lag_model *m, Point *s, Real *f) {
-  return m->accel(s->t, s->y, s->y + m->nq, s->y + 2 * m->nq, s->p, s->u, f, f + m->nq, s->w);
+  return m->accel(m, s->t, s->y, s->y + m->nq, s->y + 2 * m->nq, s->p, s->u, f, f + m->nq, s->w);
 }
 
 /* B[n * k] := M^-1 B by elimination with partial pivoting. */
@@ -55,7 +55,7 @@ static Real J[2 * MAX * 3 * MAX], M[MAX * MAX], dr[2 * MAX * 3 * MAX], mass[MAX 
 static int jacobian(const lag_model *m, Point *s, const Real *f) {
   int n = 2 * m->nq + m->nz;
   const lag_linear *l = m->linear;
-  int rc = l->eval(s->t, s->y, s->y + m->nq, s->y + 2 * m->nq, s->p, s->u, f, dr, mass, s->w);
+  int rc = l->eval(l, s->t, s->y, s->y + m->nq, s->y + 2 * m->nq, s->p, s->u, f, dr, mass, s->w);
   if (rc) return rc;
   for (int i = 0; i < (m->nq + m->nz) * n; i++) J[i] = 0;
   for (int i = 0; i < m->nq * m->nq; i++) M[i] = 0;
@@ -99,11 +99,11 @@ static int check_model(const lag_scene *scene) {
   if (m->constraints) return 0; /* multipliers would change, too: there is none */
   if (!m->linear) return printf("%s has no linearisation\n", m->name), 1;
   if (m->np + m->nderived > PARAMS) return printf("%s has too many parameters\n", m->name), 1;
-  scene->params(s.p, none);
+  scene->params(scene, s.p, none);
   for (int trial = 0; trial < STATES; trial++) {
     s.t = next();
     for (int i = 0; i < n; i++) s.y[i] = next();
-    if (m->inputs && m->inputs(s.t, s.p, s.u)) continue;
+    if (m->inputs && m->inputs(m, s.t, s.p, s.u)) continue;
     if (rhs(m, &s, f) || jacobian(m, &s, f)) continue;
     int finite = 1;
     for (int i = 0; i < m->nq + m->nz; i++) finite &= f[i] - f[i] == 0;

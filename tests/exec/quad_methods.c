@@ -189,9 +189,9 @@ static void form(const Case *c, const double *p, const double *y, double *omega)
   int nq = m->nq, n = 2 * nq;
   double h[64], T[4 * MOST * MOST] = {0}, u[4] = {0};
   if (m->inputs) {
-    m->inputs(0, p, u);
+    m->inputs(m, 0, p, u);
   }
-  m->second(0, y, y + nq, NULL, p, u, h, NULL);
+  m->second(m, 0, y, y + nq, NULL, p, u, h, NULL);
   for (int i = 0; i < nq; i++) {
     T[i * n + i] = 1;
   }

@@ -10,43 +10,38 @@ static const lag_var ball_p[] = {{"g", "m/s^2", 1, 0, 1, 0}, {"e", "", 1, 0, 2, 
 static const lag_var ball_u[] = {{"wind", "m/s^2", 1, 0, 0, 0}};
 static const lag_event ball_ev[] = {{"ground", -1}, {"apex", -1}};
 
-static int ball_inputs(double t, const double *p, double *u)
-{
-  (void)t, (void)p;
+static int ball_inputs(const void *self, double t, const double *p, double *u) {
+  (void)self, (void)t, (void)p;
   u[0] = 0;
   return 0;
 }
 
-static int ball_accel(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                      double *a, double *zd, double *w)
-{
-  (void)t, (void)q, (void)z, (void)zd, (void)w;
+static int ball_accel(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
+                      const double *u, double *a, double *zd, double *w) {
+  (void)self, (void)t, (void)q, (void)z, (void)zd, (void)w;
   a[0] = -p[0] - p[2] * v[0] + u[0];
   return 0;
 }
 
-static int ball_energy(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                       double *e, double *w)
-{
-  (void)t, (void)z, (void)u, (void)w;
+static int ball_energy(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
+                       const double *u, double *e, double *w) {
+  (void)self, (void)t, (void)z, (void)u, (void)w;
   e[0] = 0.5 * v[0] * v[0] + p[0] * q[0];
   e[1] = v[0] * v[0] + fabs(0.5 * v[0] * v[0] - p[0] * q[0]);
   return 0;
 }
 
-static int ball_events(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                       double *g, double *w)
-{
-  (void)t, (void)z, (void)p, (void)u, (void)w;
+static int ball_events(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
+                       const double *u, double *g, double *w) {
+  (void)self, (void)t, (void)z, (void)p, (void)u, (void)w;
   g[0] = q[0];
   g[1] = v[0];
   return 0;
 }
 
-static int ball_act(int k, double t, const double *q, const double *v, const double *z, const double *p,
-                    const double *u, double *q1, double *v1, double *z1, int *stop, double *w)
-{
-  (void)t, (void)q, (void)z, (void)u, (void)q1, (void)z1, (void)stop, (void)w;
+static int ball_act(const void *self, int k, double t, const double *q, const double *v, const double *z,
+                    const double *p, const double *u, double *q1, double *v1, double *z1, int *stop, double *w) {
+  (void)self, (void)t, (void)q, (void)z, (void)u, (void)q1, (void)z1, (void)stop, (void)w;
   if (k == 0) {
     v1[0] = -p[1] * v[0];
   }
@@ -60,15 +55,15 @@ static const lag_model ball = {.abi = LAG_ABI,
                                .events = ball_events,
                                .act = ball_act};
 
-static void ball_params(double *p, const unsigned char *fixed)
-{
+static void ball_params(const void *self, double *p, const unsigned char *fixed) {
+  (void)self;
   if (!fixed[0]) p[0] = 9.81;
   if (!fixed[1]) p[1] = 0.9;
   if (!fixed[2]) p[2] = 0;
 }
 
-static void ball_start(const double *p, double *q, double *v, double *z)
-{
+static void ball_start(const void *self, const double *p, double *q, double *v, double *z) {
+  (void)self;
   (void)p, (void)z;
   q[0] = 1;
   v[0] = 0;
@@ -84,29 +79,27 @@ static const lag_var pend_out[] = {{"th", "deg", 3.14159265358979323846 / 180, 1
                                    {"E \"total\", T+V", "J", 1, 0, 0, 0}};
 static const lag_monitor pend_mon[] = {{"energy", -1, 1e-6, 0}, {"H", 1, 1e-6, 0}};
 
-static int pend_accel(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                      double *a, double *zd, double *w)
-{
-  (void)t, (void)v, (void)z, (void)u, (void)zd, (void)w;
+static int pend_accel(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
+                      const double *u, double *a, double *zd, double *w) {
+  (void)self, (void)t, (void)v, (void)z, (void)u, (void)zd, (void)w;
   a[0] = -(p[1] / p[0]) * sin(q[0]);
   return 0;
 }
 
-static int pend_energy(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                       double *e, double *w)
-{
-  (void)t, (void)z, (void)u, (void)w;
+static int pend_energy(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
+                       const double *u, double *e, double *w) {
+  (void)self, (void)t, (void)z, (void)u, (void)w;
   double T = 0.5 * p[0] * p[0] * v[0] * v[0], V = -p[1] * p[0] * cos(q[0]);
   e[0] = T + V;
   e[1] = 2 * T + fabs(T - V);
   return 0;
 }
 
-static int pend_observe(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                        double *out, double *w)
-{
+static int pend_observe(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
+                        const double *u, double *out, double *w) {
+  (void)self;
   double e[2];
-  pend_energy(t, q, v, z, p, u, e, w);
+  pend_energy(self, t, q, v, z, p, u, e, w);
   out[0] = q[0];
   out[1] = e[0];
   return 0;
@@ -125,14 +118,14 @@ static const lag_model pendulum = {.abi = LAG_ABI,
                                    .accel = pend_accel,
                                    .energy = pend_energy};
 
-static void pend_params(double *p, const unsigned char *fixed)
-{
+static void pend_params(const void *self, double *p, const unsigned char *fixed) {
+  (void)self;
   if (!fixed[0]) p[0] = 1;
   if (!fixed[1]) p[1] = 9.81;
 }
 
-static void pend_start(const double *p, double *q, double *v, double *z)
-{
+static void pend_start(const void *self, const double *p, double *q, double *v, double *z) {
+  (void)self;
   (void)p, (void)z;
   q[0] = 1.5;
   v[0] = 0;
@@ -150,9 +143,9 @@ static const lag_scene fixed_swing = {.name = "fixed",
                                       .options = pend_opt};
 
 /* ---- a force that becomes infinite at t = 1 */
-static int wall_accel(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                      double *a, double *zd, double *w)
-{
+static int wall_accel(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
+                      const double *u, double *a, double *zd, double *w) {
+  (void)self;
   (void)q, (void)v, (void)z, (void)u, (void)zd, (void)w, (void)p;
   a[0] = sqrt(1 - t);
   return 0;

@@ -201,6 +201,44 @@ for vs in 1e-3 1e-6 1e-9; do
   check "in few steps" most "$(number steps)" 400
 done
 
+# ---- a start at rest, held on a curved path under a load that grows: velocities have the size of what friction holds, and no step is as short as rounding
+model curve <<'END_OF'
+model curve
+coord a [rad]
+param I = 1 [kg*m^2] > 0
+let x = 1 [m]*a^2
+kinetic = I/2*a'^2
+force a = 1.8 [N*m] + 1 [N*m/s]*t
+friction rub on x: 0.8 [N], static = 1.2 [N]
+scene s { start a = 0.9; span 1 [s]; output a every 0.5 [s] }
+END_OF
+check "a body held on a curve" run curve s
+check "in a few steps" most "$(number steps)" 100
+check "breaks loose where 1.8 + t = 1.2 dx/da" near "$(number sliding_s)" 0.36 1e-12
+
+# ---- an output is the held force, also where its text has a short form of its own, as that of acos'
+model acos <<'END_OF'
+model acos
+coord a [rad]
+param I = 1 [kg*m^2] > 0
+let x = 1 [m]*acos(a/2)
+kinetic = I/2*a'^2
+force a = 0.3 [N*m]
+friction rub on x: 2 [N]
+scene s { start a = 0.9, a' = 1 [rad/s]; span 2 [s]; output a, rub every 1 [s] }
+END_OF
+check "a body held on x = acos(a/2)" run acos s
+check "by the force that balances 0.3 = rub/sqrt(4 - a^2)" near "$(final rub)" "$(awk -v a="$(final a)" "BEGIN { printf \"%.17g\", 0.3*sqrt(4 - a*a) }")" 1e-14
+
+# ---- on a support that an input moves: as on the same formula
+for u in 'input u [m] = 0.1 [m]*sin(3 [1/s]*t)' 'let u = 0.1 [m]*sin(3 [1/s]*t)'; do
+  printf "model shaken\ncoord x [m]\n%s\nlet s = x - u\nkinetic = 1 [kg]/2*x'^2\nfriction rub on s: 0.5 [N]\nscene go { span 4 [s]; output x }\n" "$u" >"$TMP/shaken.lag"
+  check "a block on ${u%% *} u" run shaken go
+  [ "${u%% *}" = input ] && by_input=$(final x)
+done
+check "moves alike" near "$by_input" "$(final x)" 1e-15
+check "and sticks" most 1 "$(number slides)"
+
 # ---- sticking that ends by itself: the shaken oscillator at rest 19 times, and the belt's period (digits: the facts of these models), by every method
 cp models/stick_slip.lag models/coulomb_oscillator.lag "$TMP"
 for method in rk45 dop853 radau rk4; do

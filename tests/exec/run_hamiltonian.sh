@@ -201,4 +201,8 @@ check "a rate is not set: it follows from the momentum" refuses_run "x': the rat
 check "and forces of momenta" refuses_run "forces depend on momenta or velocities" "$TMP/fast.lag" air --method verlet8 --step 0.1
 check "the power of drag in dH/dt" sh -c '"$0" derive "$1" air | grep -q -x -F "  dH/dt = -drag.c*L^2/(m^2*l^4)"' "$LAGC" "$TMP/pendulum.lag"
 check "charges are found, and their brackets" sh -c '"$0" noether "$1" | grep -q "total angular momentum"' "$LAGC" tests/exec/hamiltonian/kepler.lag
+# ---- rates of inputs are functions of time
+printf "model hu\ncoord x [m]\ninput u [m] = 0.1 [m]*sin(2 [1/s]*t)\nparam m = 1 [kg]\nmomentum p of x\nhamiltonian = p^2/(2*m) + p*u%s\nscene s { start x = 1; span 1; output x }\n" "'" >"$TMP/hu.lag"
+"$LAGC" run "$TMP/hu.lag" --json >"$TMP/out" 2>"$TMP/err"
+check "H = p^2/(2 m) + p u': x follows u" close_to "$(sed "s/.*\"final\": {//" "$TMP/out" | sed -n "s/.*\"x\": \([-0-9.e]*\).*/\1/p")" 1.0909297426825682 1e-9
 tap_end

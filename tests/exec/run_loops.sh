@@ -178,8 +178,8 @@ static double p[8], q[10000], v[10000];
 int main(void) {
   static const unsigned char none[8];
   char name[16];
-  string_hard.params(p, none);
-  string_hard.start(p, q, v, NULL);
+  string_hard.params(&string_hard, p, none);
+  string_hard.start(&string_hard, p, q, v, NULL);
   for (int i = 1; i <= 10000; i++) {
     snprintf(name, sizeof name, "u[%d]", i);
     if (strcmp(string_hard.model->q[i - 1].name, name) != 0 || strcmp(string_hard.model->q[i - 1].unit, "m") != 0) return 1;

@@ -329,6 +329,16 @@ check "an impact turns the slip round" run bump s --method 'moreau(step=0.01)'
 check "once" near "$(number impacts)" 1 0
 check "nor then does friction bring energy in" awk -F, 'NR > 2 && $4 > was + 1e-12 { print; bad = 1 } { was = $4 } END { exit bad }' "$TMP/csv"
 check "momentum is what friction leaves, 1 N before and -1 N behind, to the step" near "$(calc "$(final "x'") + 3*($(final "y'"))")" "$(calc '2 - 0.0635 + (0.5 - 0.0635)')" 0.02
+model held <<'END_OF'
+model held
+coord a [m]
+kinetic = 1 [kg]/2*a'^2
+force a = 0.9 [N] + 0.5 [N/s]*t
+friction rub on a: 0.8 [N], static = 1.2 [N]
+scene s { span 1 [s]; output a }
+END_OF
+check "energy that is rounding of what friction holds is none to lose" run held s --method $m3
+check "it breaks loose at 0.6 s" near "$(final "a'")" 0.2 1e-3
 model rubs <<'END_OF'
 model rubs
 coord x [m], y [m]
@@ -338,7 +348,7 @@ friction rub on x: 0.5*lambda(floor)
 contact floor: y >= 0, restitution = 0
 scene s { span 2 [s] }
 END_OF
-check "a size that follows the force of a contact" refuses 1 'multipliers follow from the equations of motion' run rubs s --method $m3
+check "a size that follows the force of a contact" refuses 1 'a coefficient times the size of that force' run rubs s --method $m3
 
 # ---- reports, sweeps, saved runs
 check "the report counts" sh -c "$LAGC run $TMP/ball.lag drop --method '$m3' >$TMP/log && grep -q 'contacts: at most [12] acts\{0,1\} at once, [0-9]* impacts, 1[.0-9]* iterations a step with contacts; the deepest is 0.004[0-9]* inside (in SI)' $TMP/log"

@@ -247,9 +247,9 @@ a() { runs animate "$@" --quiet; }
 d=$models/double_pendulum.lag
 check "animate" runs animate "$d" --until 5
 check "its file is MODEL_SCENE.html, and said" grep -q 'animation in double_pendulum_swing.html' out
-check "the points taken are said" grep -q "points x1,y1 x2,y2, joined by rods from the origin" err
+check "a guess is said" grep -q "guessed drawing: rod, rod, ball at (x1, y1), ball at (x2, y2)" err
 page=double_pendulum_swing.html
-check "the page without its data is small" [ "$(sed '/^{"t0"/,/]}$/d' $page | wc -c)" -lt 40000 ]
+check "the page without its data is small" [ "$(sed '/^{"t0"/,/]}$/d' $page | wc -c)" -lt 50000 ]
 foreign() { grep -n -i -e 'https\{0,1\}:' -e 'src=' -e '[^a-z]url(' -e '@import' -e 'import(' -e 'fetch(' "$1"; }
 empty "it asks for nothing from elsewhere" "$(foreign $page)"
 unbalanced() {
@@ -261,20 +261,27 @@ unbalanced() {
 empty "its tags are closed" "$(unbalanced $page)"
 check "nothing of the template is left" not_grep '@[A-Z]*@' $page
 
-hook() { sed -n 's/.*"rods": \([a-z]*\), "trace": \([a-z]*\), "from": \([a-z]*\),.*"names": \(.*\), "dt".*/\1 \2 \3 \4/p' "$1"; }
-is "rods, no trace, from the origin" 'true false false [["x1", "y1"], ["x2", "y2"]]' "$(hook $page)"
-check "a cart" a "$models/cart_pendulum.lag" -o b.html
-is "hangs its pendulum from itself" 'true false true [["x", "0"], ["px", "py"]]' "$(hook b.html)"
-check "a planet" a "$models/kepler.lag" --trace -o b.html
-is "is on no rod" 'false true false [["x", "y"]]' "$(hook b.html)"
-check "a spring" a "$models/spring.lag" -o b.html
-is "moves along a line" 'false false false [["x", "0"]]' "$(hook b.html)"
+# hook FILE: its shapes, kind and text
+hook() {
+  sed -n 's/.*"shapes": \(.*\), "cols".*/\1/p' "$1" | awk '{ gsub(/\]\], \["/, "\n\""); print }' |
+    sed 's/^\[*"\([a-z]*\)", "[a-z]*", /\1 /; s/, [0-9]*, \[[-0-9].*//; s/ null$//' | paste -s -d';' -
+}
+is "rods, from the origin and from the let that is added to" 'rod;rod;ball "(x1, y1)";ball "(x2, y2)"' "$(hook $page)"
+# joints FILE: of each rod the columns of its ends
+joints() { sed -n 's/.*"shapes": \(.*\), "cols".*/\1/p' "$1" | grep -o '"rod", [^[]*\[[-0-9, ]*\], \[[-0-9, ]*\]' | sed 's/.*null, [0-9]*, //' | paste -s -d' ' -; }
+is "the second on the end of the first" '[0, 0, -1], [1, 2, -1] [1, 2, -1], [3, 4, -1]' "$(joints $page)"
 check "a family of points hangs from its number 0" a "$c" -o b.html
-is "each from the one before" 'true false true [["x[0]", "y[0]"], ["x[1]", "y[1]"], ["x[2]", "y[2]"], ["x[3]", "y[3]"]]' "$(hook b.html)"
+is "each from the one before" '[0, 0, -1], [1, 2, -1] [1, 2, -1], [3, 4, -1] [3, 4, -1], [5, 6, -1]' "$(joints b.html)"
 check "or is named" a "$c" --points 'x,y' --no-rods --until 1 -o b.html
-is "point by point" 'false false false [["x[0]", "y[0]"], ["x[1]", "y[1]"], ["x[2]", "y[2]"], ["x[3]", "y[3]"]]' "$(hook b.html)"
-check "a row of masses" a "$models/string.lag" -D N=3 -o b.html
-is "each at its number" 'false false false [["1", "u[1]"], ["2", "u[2]"], ["3", "u[3]"]]' "$(hook b.html)"
+is "point by point" 'ball "(x[0], y[0])";ball "(x[1], y[1])";ball "(x[2], y[2])";ball "(x[3], y[3])"' "$(hook b.html)"
+cat >row.lag <<'END'
+model row "A row of masses"
+coord u[3]
+lagrangian = sum(i in 1..3, u[i]'^2/2 - u[i]^2/2)
+scene s { start u[1] = 1; span 1 }
+END
+check "a row of masses" a row.lag -o b.html
+is "each at its number" 'ball;ball;ball' "$(hook b.html)"
 check "each axis on its own scale" grep -q '"free": true' b.html
 cat >only.lag <<'END'
 model only "One angle"
@@ -283,12 +290,12 @@ lagrangian = th'^2/2 + cos(th)
 scene s { start th = 1; span 4 [s] }
 END
 check "one angle" a only.lag -o b.html
-is "is a rod that hangs" 'true false false [["sin(th)", "-cos(th)"]]' "$(hook b.html)"
+is "is a rod that hangs" 'rod;ball "(sin(th), -cos(th))"' "$(hook b.html)"
 check "points by expressions, with spaces and signs" \
   a "$p" --points "l*sin(th)/2, -l*cos(th)/2; 0 [m],-l  atan2(th, 1)*1 [m],l - 1 [m]" --from '0,l' --no-rods -o b.html
-is "are taken apart" 'false false false [["l*sin(th)/2", "-l*cos(th)/2"], ["0 [m]", "-l"], ["atan2(th, 1)*1 [m]", "l - 1 [m]"]]' "$(hook b.html)"
+is "are taken apart" 'ball "(l*sin(th)/2, -l*cos(th)/2)";ball "(0 [m], -l)";ball "(atan2(th, 1)*1 [m], l - 1 [m])"' "$(hook b.html)"
 check "one point from another" a "$p" --points 'x,y' --from '0,l' -o b.html
-is "with its rod" 'true false true [["0", "l"], ["x", "y"]]' "$(hook b.html)"
+is "with its rod" 'rod;ball "(x, y)"' "$(hook b.html)"
 # page_frames FILE: how many lines its data have, one a frame
 page_frames() { sed -n '/^, "v"/,/]}$/p' "$1" | wc -l; }
 check "frames as asked" a "$p" --every 0.001 -o b.html
@@ -310,11 +317,6 @@ flat() {
 check "a constant, in a terminal" flat
 
 check "no points" says 2 'no point is given' animate "$p" --points ''
-cat >two.lag <<'END'
-model two "Two coordinates without a place"
-coord a, b
-lagrangian = (a'^2 + b'^2)/2
-END
 cat >vectors.lag <<'END'
 model vectors
 const N = 2
@@ -322,16 +324,17 @@ coord r: vec2 [m], b[N]: vec3 [m]
 lagrangian = dot(r', r')/2 + sum(i in 1..N, dot(b[i]', b[i]')/2)
 scene s { start r' = (1, 2); span 1 }
 END
-check "vectors among the coordinates are points" says 0 'points r.x,r.y b[1].x,b[1].y b[2].x,b[2].y;' animate vectors.lag
-check "as many as there are" says 0 'points r.x,r.y b[1].x,b[1].y;' animate vectors.lag -D N=1
+check "vectors among the coordinates are points" says 0 'guessed drawing: ball at r, ball, ball;' animate vectors.lag
+check "as many as there are" says 0 'guessed drawing: ball at r, ball;' animate vectors.lag -D N=1
 printf 'model hangs\ncoord a [deg]\nparam l = 1 [m] > 0, g = 9.81 [m/s^2]\nlagrangian = a%s^2/2 + g/l*cos(a)\n' "'" >hangs.lag
-check "an angle that is not declared periodic is a rod, too" says 0 'points sin(a),-cos(a), joined by rods from the origin' animate hangs.lag
+check "an angle that is not declared periodic is a rod, too" says 0 'guessed drawing: rod, ball at (sin(a), -cos(a))' animate hangs.lag
 sed 's/\[deg\]/[m]/; s/cos(a)/cos(a\/l)/; s/g\/l/g*l/' hangs.lag >slides.lag
-check "a length is a point on a line" says 0 'points a,0;' animate slides.lag
-check "which points?" says 2 'no points to draw' animate two.lag
+check "a length is a point on a line" says 0 'guessed drawing: ball at a;' animate slides.lag
+printf 'model still\nstate n [kg]\nflow n%s = 1 [kg/s]\n' "'" >still.lag
+check "nothing to draw" says 2 'write `draw ball at (X, Y)`' animate still.lag
 check "half a point" says 2 'each point is x,y' animate "$p" --points 'x,y l' -o none.html
 check "three numbers" says 2 'each point is x,y' animate "$p" --points 'x,y,l' -o none.html
-check "two places to begin from" says 2 'takes one point' animate "$p" --from 'x,y x,y' -o none.html
+check "two places to begin from" says 2 'takes one point' animate "$p" --points 'x,y' --from 'x,y x,y' -o none.html
 check "an unknown name, with its place" says 1 '--points:1:1: error: unknown name `xx`' animate "$p" --points 'xx,y' -o none.html
 check "two units" says 2 'needs one unit' animate "$p" --points 'x,th' -o none.html
 check "nothing is left of all that" [ -z "$(ls none* ./*.part* 2>/dev/null)" ]

@@ -37,6 +37,7 @@ END
 chmod +x "$TMP/bin/wrong"
 built_with() { # MEND WORDS: the simulator says that it was built with these
   : >"$TMP/calls"
+  "$LAGC" cache --clear >/dev/null # what was found out about this compiler
   MEND=$1 CC=$TMP/bin/wrong "$LAGC" build models/pendulum.lag -o "$TMP/sim" || return 1
   "$TMP/sim" --help | grep '^built by:' | grep -q -e "$2"
 }
@@ -44,10 +45,20 @@ check "lagc: the flag that it has anyway mends it" built_with -fno-tree-slp-vect
 check "lagc: another where that is not enough" built_with -march=x86-64-v3 '-ffp-contract=off -fno-tree-slp-vectorize -march=x86-64-v3$'
 no_help() {
   rm -f "$TMP/none"
+  "$LAGC" cache --clear >/dev/null
   MEND= CC=$TMP/bin/wrong "$LAGC" build models/pendulum.lag -o "$TMP/none" 2>"$TMP/err"
   [ $? = 2 ] && ! [ -e "$TMP/none" ] && grep -q 'stores wrong numbers.*set CC' "$TMP/err"
 }
 check "lagc: an error where nothing helps" no_help
+is "a compiler that fails is asked again" 0 "$(ls "$TMP/cache/lagc" | grep -c 'cc$')"
+once() { # the probe runs once for a compiler
+  built_with -march=x86-64-v3 -march=x86-64-v3 && [ "$(grep -c -e -dM "$TMP/calls")" = 1 ] || return 1
+  : >"$TMP/calls"
+  MEND=-march=x86-64-v3 CC=$TMP/bin/wrong "$LAGC" build models/spring.lag -o "$TMP/sim" && ! grep -q -e -dM "$TMP/calls" && grep -q -e -march=x86-64-v3 "$TMP/calls" || return 1
+  echo '# another' >>"$TMP/bin/wrong"
+  MEND=-march=x86-64-v3 CC=$TMP/bin/wrong "$LAGC" build models/spring.lag -o "$TMP/sim" && grep -q -e -dM "$TMP/calls"
+}
+check "lagc: a compiler is probed once, and again when its file is another" once
 plain() { "$LAGC" build models/pendulum.lag -o "$TMP/sim" && "$TMP/sim" --help | grep '^built by:' | grep -q -e '-ffp-contract=off -fno-tree-slp-vectorize$'; }
 check "lagc: no other flag where nothing is wrong" plain
 empty "the folder of the build is removed" "$(ls -d "$TMP"/sim.* "$TMP"/none.* 2>/dev/null)"

@@ -214,7 +214,7 @@ static double energy_of(const lag_sim *sim, double *work) {
   const lag_model *m = lag_sim_scene(sim)->model;
   double e[2] = {NAN, NAN};
   if (m->energy)
-    m->energy(lag_sim_time(sim), lag_sim_q(sim), lag_sim_v(sim), lag_sim_z(sim), lag_sim_p(sim), NULL, e, work);
+    m->energy(m, lag_sim_time(sim), lag_sim_q(sim), lag_sim_v(sim), lag_sim_z(sim), lag_sim_p(sim), NULL, e, work);
   return e[0];
 }
 
@@ -223,7 +223,8 @@ static double residual_of(const lag_sim *sim, double *work) {
   const lag_constraints *k = m->constraints;
   double most = 0, *c = work + m->nw, *r = c + (k ? k->nholonomic : 0);
   if (!k) return 0;
-  if (k->residuals(lag_sim_time(sim), lag_sim_q(sim), lag_sim_v(sim), lag_sim_z(sim), lag_sim_p(sim), NULL, c, r, work))
+  if (k->residuals(k, lag_sim_time(sim), lag_sim_q(sim), lag_sim_v(sim), lag_sim_z(sim), lag_sim_p(sim), NULL, c, r,
+                   work))
     return NAN;
   for (int i = 0; i < k->nholonomic; i++) most = fmax(most, fabs(c[i]));
   for (int i = 0; i < k->n; i++) most = fmax(most, fabs(r[i]));

@@ -32,8 +32,8 @@ static int spin_value(ARGS, double *out, UNUSED double *w)
 
 static int damped_values(ARGS, double *out, UNUSED double *w)
 {
-  spin_value(t, q, v, z, p, u, out, w);
-  return spin_value(t, q, v, z, p, u, out + 2, w);
+  spin_value(self, t, q, v, z, p, u, out, w);
+  return spin_value(self, t, q, v, z, p, u, out + 2, w);
 }
 
 static int damped_powers(ARGS, double *out, UNUSED double *w)
@@ -43,19 +43,14 @@ static int damped_powers(ARGS, double *out, UNUSED double *w)
   return 0;
 }
 
-static int no_push(UNUSED double t, UNUSED const double *p, double *u)
-{
+static int no_push(SELF, UNUSED double t, UNUSED const double *p, double *u) {
   u[0] = 0;
   return 0;
 }
 
-static void damped_params(double *p, const unsigned char *fixed)
-{
-  p[0] = fixed[0] ? p[0] : 0.2;
-}
+static void damped_params(SELF, double *p, const unsigned char *fixed) { p[0] = fixed[0] ? p[0] : 0.2; }
 
-static void damped_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void damped_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 1;
   v[1] = 0.5;
   q[1] = v[0] = 0;
@@ -213,8 +208,7 @@ static int swing_value(ARGS, double *out, UNUSED double *w)
   return 0;
 }
 
-static void swing_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void swing_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = q[1] = v[1] = 0;
   v[0] = 1;
 }

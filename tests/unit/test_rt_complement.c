@@ -387,14 +387,23 @@ static void test_friction_in_space(void **state) {
   }
 }
 
-static int slip_of(void *context, int k, double *slip) {
-  const Problem *p = context;
-  *slip = -p->q[k];
-  for (int j = 0; j < p->n; j++) *slip -= p->M[k * p->n + j] * p->z[j];
+/* Instance of kernels/joint_friction.h: slips that are linear in modes. */
+static int slips_of(const Problem *p, double *slip) {
+  for (int k = 0; k < p->n; k++) {
+    slip[k] = -p->q[k];
+    for (int j = 0; j < p->n; j++) slip[k] -= p->M[k * p->n + j] * p->z[j];
+  }
   return 0;
 }
-
-static void change_mode(void *context, int k, double mode) { ((Problem *)context)->z[k] = mode; }
+#define LAG_MODEL const Problem *problem
+#define LAG_THE_MODEL problem
+#define LAG_JOINTS(w) (w)->n
+#define LAG_HOLD(w, j, value) (w)->mode[j] = value
+#define LAG_SLIPS(t, y, x, w, g) ((void)(t), (void)(y), slips_of(problem, g))
+#define LAG_GRIPS(t, y, w, g) 0
+#define LAG_MODE_RATES(t, y, w, k) ((void)problem, 0)
+#define LAG_FRICTION_FAILS(t, j, words) -1
+#include "kernels/joint_friction.h"
 
 /* Surfaces of dry friction, by sweeps and by pivoting; a mode is 1 where the slip is positive, so w = -slip. */
 static void test_sweeps_of_surfaces(void **state) {
@@ -403,23 +412,25 @@ static void test_sweeps_of_surfaces(void **state) {
   for (int k = 0; k < 200; k++) {
     Sweeps s;
     Problem p = {.n = 1 + k % 4}, q;
-    double own[4], one[4] = {1, 1, 1, 1}, zero[4] = {0}, sticks[4], size;
-    int row;
+    double room[LAG_JOINT_ROOM(4, 0)] = {0}, size;
+    const lag_kick step = {.epsilon = 0x1p-52};
+    lag_joint_friction of = {.n = p.n};
     lag_complementarity solver;
     begin_sweeps(&s, p.n, &seed);
     memcpy(p.M, s.M, sizeof s.M);
     for (int i = 0; i < p.n; i++) {
-      own[i] = -s.response[i];
       p.q[i] = 2 * chance(&seed);
       p.box[i] = (lag_box){-1, 1, 0, 0};
     }
     q = p;
-    const lag_surfaces of = {p.n, slip_of, change_mode, &q, 0x1p-52, own, one, zero, q.z, sticks};
-    assert_int_equal(lag_surface_sweeps(&of, &size, &row), 0);
+    lag_joints_place(&of, room);
+    of.mode = q.z;
+    for (int i = 0; i < p.n; i++) of.response[i] = -s.response[i], of.bound[i] = 1;
+    assert_int_equal(lag_joints_solve(&q, &of, &step, 0, &size), 0);
     assert_int_equal(solve(&p, &solver), LAG_SOLVED);
     for (int i = 0; i < p.n; i++) {
       assert_true(fabs(q.z[i] - p.z[i]) <= 1e-7); /* sweeps may end at changes of 2e-9, if slow */
-      assert_true(sticks[i] == (p.at[i] == LAG_BETWEEN));
+      assert_true(of.sticks[i] == (p.at[i] == LAG_BETWEEN));
     }
   }
 }

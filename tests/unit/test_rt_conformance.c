@@ -44,7 +44,7 @@ static int watch(void *context, const lag_sim *s)
 {
   Energy *e = context;
   double now[2];
-  lag_sim_scene(s)->model->energy(0, lag_sim_q(s), lag_sim_v(s), NULL, NULL, NULL, now, NULL);
+  lag_sim_scene(s)->model->energy(lag_sim_scene(s)->model, 0, lag_sim_q(s), lag_sim_v(s), NULL, NULL, NULL, now, NULL);
   e->worst = fmax(e->worst, fabs(now[0] - e->first));
   return ++e->steps < 0;
 }
@@ -61,7 +61,7 @@ static void algorithms_reproduce_their_digits(void **state)
     for (int i = 0; i < 2 * nq; i++) {
       assert_int_equal(lag_sim_set(s, names[nq - 1][i], d->start[i]), 0);
     }
-    d->scene->model->energy(0, d->start, d->start + nq, NULL, NULL, NULL, e0, NULL);
+    d->scene->model->energy(d->scene->model, 0, d->start, d->start + nq, NULL, NULL, NULL, e0, NULL);
     Energy e = {e0[0], 0, 0};
     lag_sim_on_step(s, watch, &e);
     /* To the end of the last step itself: h is no binary number, and the sum of the steps knows better than n h. */
@@ -106,8 +106,7 @@ static int arenstorf_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
   return 0;
 }
 
-static void arenstorf_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void arenstorf_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 0.994;
   q[1] = v[0] = 0;
   v[1] = -2.00158510637908252240537862224;

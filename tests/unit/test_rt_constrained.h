@@ -33,22 +33,28 @@ static inline int least(int nq, int n, int nj, const lag_entry *at, const double
 }
 
 /* nq coordinates, nc constraints, nh of them holonomic, nj entries of A. */
-#define CONSTRAINED(name_, nq_, nc_, nh_, nj_)                                                                  \
-  static int name_##_position(ARGS, const double *g, double *d, double *force, double *w)                      \
-  {                                                                                                            \
-    double A[nj_], M[nq_];                                                                                     \
-    name_##_matrices(t, q, v, z, p, u, A, M, w);                                                               \
-    return least(nq_, nh_, nj_, name_##_jacobian, A, M, g, d, force);                                          \
-  }                                                                                                            \
-  static int name_##_velocity(ARGS, const double *g, double *d, double *force, double *w)                      \
-  {                                                                                                            \
-    double A[nj_], M[nq_];                                                                                     \
-    name_##_matrices(t, q, v, z, p, u, A, M, w);                                                               \
-    return least(nq_, nc_, nj_, name_##_jacobian, A, M, g, d, force);                                          \
-  }                                                                                                            \
-  static const lag_constraints name_##_held = {.n = nc_, .nholonomic = nh_, .of = name_##_of, .njacobian = nj_,       \
-      .jacobian = name_##_jacobian, .nmass = nq_, .mass = diagonal, .residuals = name_##_residuals,               \
-      .matrices = name_##_matrices, .position = name_##_position, .velocity = name_##_velocity}
+#define CONSTRAINED(name_, nq_, nc_, nh_, nj_)                                              \
+  static int name_##_position(ARGS, const double *g, double *d, double *force, double *w) { \
+    double A[nj_], M[nq_];                                                                  \
+    name_##_matrices(self, t, q, v, z, p, u, A, M, w);                                      \
+    return least(nq_, nh_, nj_, name_##_jacobian, A, M, g, d, force);                       \
+  }                                                                                         \
+  static int name_##_velocity(ARGS, const double *g, double *d, double *force, double *w) { \
+    double A[nj_], M[nq_];                                                                  \
+    name_##_matrices(self, t, q, v, z, p, u, A, M, w);                                      \
+    return least(nq_, nc_, nj_, name_##_jacobian, A, M, g, d, force);                       \
+  }                                                                                         \
+  static const lag_constraints name_##_held = {.n = nc_,                                    \
+                                               .nholonomic = nh_,                           \
+                                               .of = name_##_of,                            \
+                                               .njacobian = nj_,                            \
+                                               .jacobian = name_##_jacobian,                \
+                                               .nmass = nq_,                                \
+                                               .mass = diagonal,                            \
+                                               .residuals = name_##_residuals,              \
+                                               .matrices = name_##_matrices,                \
+                                               .position = name_##_position,                \
+                                               .velocity = name_##_velocity}
 
 #define HELD(name_, nq_, flags_, energy_, derivatives)                                                          \
   static const lag_model name_##_model = {MODEL(#name_), .flags = flags_, .nq = nq_, .q = name_##_q,           \
@@ -121,8 +127,7 @@ static int rod_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
   return 0;
 }
 
-static void rod_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void rod_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 1;
   q[1] = v[0] = v[1] = 0;
 }
@@ -136,7 +141,7 @@ static const lag_entry twice_jacobian[] = {{0, 0}, {0, 1}, {1, 0}, {1, 1}};
 
 RESIDUALS(twice)
 {
-  rod_residuals(t, q, v, z, p, u, c, r, w);
+  rod_residuals(self, t, q, v, z, p, u, c, r, w);
   c[1] = 3 * q[0] * q[0] + 3 * q[1] * q[1] - 3;
   r[1] = 6 * (q[0] * v[0] + q[1] * v[1]);
   return 0;
@@ -144,7 +149,7 @@ RESIDUALS(twice)
 
 MATRICES(twice)
 {
-  rod_matrices(t, q, v, z, p, u, A, M, w);
+  rod_matrices(self, t, q, v, z, p, u, A, M, w);
   A[2] = 6 * q[0];
   A[3] = 6 * q[1];
   return 0;
@@ -178,8 +183,7 @@ static int reel_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
   return 0;
 }
 
-static void reel_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void reel_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 1;
   q[1] = 0;
   v[0] = 0.5;
@@ -236,8 +240,7 @@ static int turntable_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
   return 0;
 }
 
-static void turntable_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void turntable_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   memset(q, 0, 4 * sizeof *q);
   q[0] = 0.3;
   v[0] = 0.5;
@@ -291,8 +294,7 @@ static int knife_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
   return 0;
 }
 
-static void knife_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void knife_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   memset(q, 0, 3 * sizeof *q);
   memset(v, 0, 3 * sizeof *v);
   v[2] = 1;

@@ -8,7 +8,7 @@ static double off(const lag_scene *scene, double t, const double *y)
 {
   const lag_model *m = scene->model;
   double c[MOST_C] = {0}, r[MOST_C], most = 0;
-  m->constraints->residuals(t, y, y + m->nq, NULL, NULL, NULL, c, r, NULL);
+  m->constraints->residuals(m->constraints, t, y, y + m->nq, NULL, NULL, NULL, c, r, NULL);
   for (int k = 0; k < m->constraints->n; k++) {
     most = fmax(most, fmax(k < m->constraints->nholonomic ? fabs(c[k]) : 0, fabs(r[k])));
   }
@@ -28,8 +28,7 @@ static int angle_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
   return 0;
 }
 
-static void angle_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void angle_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 1.57079632679489661923;
   v[0] = 0;
 }
@@ -172,7 +171,7 @@ static void what_cannot_hold_refuses(void **state)
 static int watch_energy(void *worst, const lag_sim *s)
 {
   double e[2];
-  lag_sim_scene(s)->model->energy(0, lag_sim_q(s), lag_sim_v(s), NULL, NULL, NULL, e, NULL);
+  lag_sim_scene(s)->model->energy(lag_sim_scene(s)->model, 0, lag_sim_q(s), lag_sim_v(s), NULL, NULL, NULL, e, NULL);
   *(double *)worst = fmax(*(double *)worst, fabs(e[0]));
   return 0;
 }
@@ -245,7 +244,7 @@ static void steps_are_their_own_reverse(void **state)
       fail_msg("%s: %s", m->name, lag_sim_message(s));
     }
     double q0[MOST_Q], v0[MOST_Q];
-    cases[k].scene->start(NULL, q0, v0, NULL);
+    cases[k].scene->start(cases[k].scene, NULL, q0, v0, NULL);
     worst = fmax(distance(m->nq, lag_sim_q(s), q0), distance(m->nq, lag_sim_v(s), v0));
     assert_close(worst, 0, 1e-12); /* 64 steps, rounding */
     lag_sim_free(s);
@@ -261,7 +260,7 @@ static int watch_trend(void *context, const lag_sim *s)
   Trend *w = context;
   double e[2], t = lag_sim_time(s), y[4];
   memcpy(y, lag_sim_q(s), sizeof y);
-  rod_energy(0, y, y + 2, NULL, NULL, NULL, e, NULL);
+  rod_energy(NULL, 0, y, y + 2, NULL, NULL, NULL, e, NULL);
   w->n += 1;
   w->st += t;
   w->se += e[0];
@@ -417,7 +416,7 @@ static void exactly_means_that(void **state)
 /* x^2 + y^2 = 1 and x^2 + y^2 = -1. */
 static int never_residuals(ARGS, double *c, double *r, double *w)
 {
-  twice_residuals(t, q, v, z, p, u, c, r, w);
+  twice_residuals(self, t, q, v, z, p, u, c, r, w);
   c[1] = q[0] * q[0] + q[1] * q[1] + 1;
   return 0;
 }
@@ -441,7 +440,7 @@ static void impossible_starts_are_refused(void **state)
 /* x^2 + y^2 = 1 and 3 (x^2 + y^2) = 3 + t^3, which agree at the start. */
 static int parting_residuals(ARGS, double *c, double *r, double *w)
 {
-  twice_residuals(t, q, v, z, p, u, c, r, w);
+  twice_residuals(self, t, q, v, z, p, u, c, r, w);
   c[1] -= t * t * t;
   r[1] -= 3 * t * t;
   return 0;

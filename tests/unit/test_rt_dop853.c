@@ -127,7 +127,7 @@ static double step_error(const lag_scene *scene, double h, double span, double a
   double sum = 0;
   for (int k = 0; k < 24; k++) {
     double y0[4], y[4], fine[4], start[4];
-    scene->start(NULL, start, start + nq, NULL);
+    scene->start(scene, NULL, start, start + nq, NULL);
     flow(scene, &lag_dop853, span / 24 / 64, (k + 1) * span / 24, start, y0);
     flow(scene, &lag_dop853, h, at * h, y0, y);
     flow(scene, &lag_dop853, h / 32, at * h, y0, fine);

@@ -34,8 +34,7 @@ static int left_out(const Kind *k, int system) {
   return !all_rows() && ((size_t)(k - kinds) + first_row(3)) % 3 != (size_t)system;
 }
 
-static void regular_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void regular_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 0.7;
   q[1] = -0.4;
   v[0] = v[1] = 0;
@@ -98,7 +97,7 @@ static void at_blob(int i, const lag_scene *scene, double *y)
 {
   int nq = scene->model->nq;
   double angle = 2 * acos(-1) * i / N;
-  scene->start(NULL, y, y + nq, NULL);
+  scene->start(scene, NULL, y, y + nq, NULL);
   y[0] += 0.03 * cos(angle);
   y[nq] += 0.03 * sin(angle);
   if (nq > 1) {

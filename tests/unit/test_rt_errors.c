@@ -40,8 +40,7 @@ static int cliff_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
   return 0;
 }
 
-static void cliff_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void cliff_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 0;
   v[0] = 3;
 }

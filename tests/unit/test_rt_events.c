@@ -120,7 +120,7 @@ static int zero_events(ARGS, double *g, UNUSED double *w)
   return 0;
 }
 
-static int stop_at_second(UNUSED int k, ARGS, UNUSED double *q1, UNUSED double *v1, UNUSED double *z1, int *stop,
+static int stop_at_second(SELF, UNUSED int k, STATE, UNUSED double *q1, UNUSED double *v1, UNUSED double *z1, int *stop,
                           UNUSED double *w) {
   *stop = t > 5;
   return 0;
@@ -163,8 +163,8 @@ static int twin_events(ARGS, double *g, UNUSED double *w)
   return 0;
 }
 
-static int twin_act(int k, ARGS, UNUSED double *q1, double *v1, UNUSED double *z1, UNUSED int *stop, UNUSED double *w)
-{
+static int twin_act(SELF, int k, STATE, UNUSED double *q1, double *v1, UNUSED double *z1, UNUSED int *stop,
+                    UNUSED double *w) {
   v1[0] = k == 0 ? 2 * v[0] : v[0] + 1;
   return 0;
 }
@@ -175,8 +175,7 @@ static int free_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
   return 0;
 }
 
-static void free_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void free_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 0;
   v[0] = 3;
 }

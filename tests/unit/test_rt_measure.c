@@ -107,8 +107,7 @@ static double pendulum_period(double a)
 
 static double amplitude;
 
-static void released(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void released(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = amplitude;
   v[0] = 0;
 }
@@ -129,8 +128,7 @@ static void the_period_of_a_pendulum_over_its_amplitude(void **state)
 
 static double phase;
 
-static void begun_at_phase(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void begun_at_phase(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = sin(phase);
   v[0] = cos(phase);
 }
@@ -161,8 +159,7 @@ static int forced_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
   return 0;
 }
 
-static void forced_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void forced_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   double A = 1/hypot(3, 0.4), phi = atan2(0.4, -3);
   q[0] = A*cos(phi);
   v[0] = 2*A*sin(phi);
@@ -211,8 +208,8 @@ static void a_ball_that_bounces(void **state)
 }
 
 /* At the ground the ball is thrown up with 100 m/s, and the run ends. */
-static int throw_up(UNUSED int k, ARGS, UNUSED double *q1, double *v1, UNUSED double *z1, int *stop, UNUSED double *w)
-{
+static int throw_up(SELF, UNUSED int k, STATE, UNUSED double *q1, double *v1, UNUSED double *z1, int *stop,
+                    UNUSED double *w) {
   v1[0] = 100;
   *stop = 1;
   return 0;
@@ -327,8 +324,7 @@ static const lag_model turn_model = {
     MODEL("turn"),      .flags = LAG_CONSTANT_MASS, .nq = 1, .np = 3, .nev = 0, .q = turn_q, .p = ball_p,
     .accel = osc_accel, .energy = osc_energy};
 
-static void turn_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void turn_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = PI/2;
   v[0] = 0;
 }

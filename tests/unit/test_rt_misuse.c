@@ -12,16 +12,16 @@
 #include "lag.h"
 
 /* x'' = -x */
-static int accel(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                 double *a, double *zd, double *w) {
-  (void)t, (void)v, (void)z, (void)p, (void)u, (void)zd, (void)w;
+static int accel(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
+                 const double *u, double *a, double *zd, double *w) {
+  (void)self, (void)t, (void)v, (void)z, (void)p, (void)u, (void)zd, (void)w;
   a[0] = -q[0];
   return 0;
 }
 
-static int energy(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                  double *e, double *w) {
-  (void)t, (void)z, (void)p, (void)u, (void)w;
+static int energy(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
+                  const double *u, double *e, double *w) {
+  (void)self, (void)t, (void)z, (void)p, (void)u, (void)w;
   e[0] = e[1] = (v[0] * v[0] + q[0] * q[0]) / 2;
   return 0;
 }
@@ -33,8 +33,8 @@ static const lag_model model = {.abi = LAG_ABI,
                                 .accel = accel,
                                 .energy = energy};
 
-static void start(const double *p, double *q, double *v, double *z)
-{
+static void start(const void *self, const double *p, double *q, double *v, double *z) {
+  (void)self;
   (void)p, (void)z;
   q[0] = 1;
   v[0] = 0;

@@ -15,9 +15,11 @@
 #include "lag.h"
 
 #define UNUSED __attribute__((unused))
-#define ARGS                                                                                            \
-  UNUSED double t, UNUSED const double *q, UNUSED const double *v, UNUSED const double *z,              \
-      UNUSED const double *p, UNUSED const double *u
+#define SELF UNUSED const void *self
+#define STATE                                                                                                      \
+  UNUSED double t, UNUSED const double *q, UNUSED const double *v, UNUSED const double *z, UNUSED const double *p, \
+      UNUSED const double *u
+#define ARGS SELF, STATE
 #define MODEL(text) .abi = LAG_ABI, .real_size = sizeof(double), .name = text, .doc = "", .effects = ""
 
 #include "test_rt_taylor.h"
@@ -40,27 +42,24 @@ UNUSED static const lag_entry full_2[] = {{0, 0}, {0, 1}, {1, 0}, {1, 1}}, diago
                               lower_2[] = {{0, 0}, {1, 0}, {1, 1}};
 
 /* Of one coordinate with unit mass and a force that falls by `slope` with it. */
-#define UNIT_MASS(name, accel, slope)                                                                   \
-  FIRST(name)                                                                                           \
-  {                                                                                                     \
-    Lv[0] = v[0];                                                                                       \
-    Q[0] = 0;                                                                                           \
-    return accel(t, q, v, z, p, u, Lq, NULL, w);                                                        \
-  }                                                                                                     \
-  SECOND(name)                                                                                          \
-  {                                                                                                     \
-    h[0] = -(slope);                                                                                    \
-    h[1] = 1;                                                                                           \
-    return 0;                                                                                           \
-  }                                                                                                     \
-  LINEARISE(name)                                                                                       \
-  {                                                                                                     \
-    dr[0] = -(slope);                                                                                   \
-    M[0] = 1;                                                                                           \
-    return 0;                                                                                           \
-  }                                                                                                     \
-  UNUSED static const lag_entry name##_dr[] = {{0, 0}}, name##_mass[] = {{0, 0}};                       \
-  LINEAR(name);                                                                                         \
+#define UNIT_MASS(name, accel, slope)                                             \
+  FIRST(name) {                                                                   \
+    Lv[0] = v[0];                                                                 \
+    Q[0] = 0;                                                                     \
+    return accel(self, t, q, v, z, p, u, Lq, NULL, w);                            \
+  }                                                                               \
+  SECOND(name) {                                                                  \
+    h[0] = -(slope);                                                              \
+    h[1] = 1;                                                                     \
+    return 0;                                                                     \
+  }                                                                               \
+  LINEARISE(name) {                                                               \
+    dr[0] = -(slope);                                                             \
+    M[0] = 1;                                                                     \
+    return 0;                                                                     \
+  }                                                                               \
+  UNUSED static const lag_entry name##_dr[] = {{0, 0}}, name##_mass[] = {{0, 0}}; \
+  LINEAR(name);                                                                   \
   UNUSED static const lag_second name##_at[] = {{LAG_QQ, 0, 0}, {LAG_VV, 0, 0}}
 
 static const double PI = 3.14159265358979323846264338327950288;
@@ -94,8 +93,7 @@ UNUSED static int kepler_energy(ARGS, double *e, UNUSED double *w)
   return 0;
 }
 
-UNUSED static void kepler_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+UNUSED static void kepler_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 1 - ecc;
   q[1] = 0;
   v[0] = 0;
@@ -142,17 +140,16 @@ UNUSED static const lag_second kepler_at[] = {
     {LAG_QQ, 0, 0}, {LAG_QQ, 1, 0}, {LAG_QQ, 1, 1}, {LAG_VV, 0, 0}, {LAG_VV, 1, 1}};
 
 /* Of unit masses: r = dL/dq - a. */
-#define UNIT_MASSES(name)                                                                               \
-  LINEARISE(name)                                                                                       \
-  {                                                                                                     \
-    double h[5];                                                                                        \
-    name##_second(t, q, v, z, p, u, h, w);                                                              \
-    dr[0] = h[0];                                                                                       \
-    dr[1] = dr[2] = h[1];                                                                               \
-    dr[3] = h[2];                                                                                       \
-    M[0] = M[1] = 1;                                                                                    \
-    return 0;                                                                                           \
-  }                                                                                                     \
+#define UNIT_MASSES(name)                        \
+  LINEARISE(name) {                              \
+    double h[5];                                 \
+    name##_second(self, t, q, v, z, p, u, h, w); \
+    dr[0] = h[0];                                \
+    dr[1] = dr[2] = h[1];                        \
+    dr[3] = h[2];                                \
+    M[0] = M[1] = 1;                             \
+    return 0;                                    \
+  }                                              \
   LINEAR(name)
 #define kepler_dr full_2
 #define kepler_mass diagonal_2
@@ -181,8 +178,7 @@ UNUSED static int osc_energy(ARGS, double *e, UNUSED double *w)
   return 0;
 }
 
-UNUSED static void osc_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+UNUSED static void osc_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 1;
   v[0] = 0;
 }
@@ -220,23 +216,20 @@ UNUSED static int ball_events(ARGS, double *g, UNUSED double *w)
   return 0;
 }
 
-UNUSED static int ball_act(UNUSED int k, ARGS, UNUSED double *q1, double *v1, UNUSED double *z1, UNUSED int *stop,
-                           UNUSED double *w)
-{
+UNUSED static int ball_act(SELF, UNUSED int k, STATE, UNUSED double *q1, double *v1, UNUSED double *z1,
+                           UNUSED int *stop, UNUSED double *w) {
   v1[0] = -p[2] * v[0];
   return 0;
 }
 
-UNUSED static void ball_params(double *p, const unsigned char *fixed)
-{
+UNUSED static void ball_params(SELF, double *p, const unsigned char *fixed) {
   static const double value[] = {9.81, 1, 0.9};
   for (int i = 0; i < 3; i++) {
     p[i] = fixed[i] ? p[i] : value[i];
   }
 }
 
-UNUSED static void ball_start(const double *p, double *q, double *v, UNUSED double *z)
-{
+UNUSED static void ball_start(SELF, const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = p[1];
   v[0] = 0;
 }
@@ -260,10 +253,7 @@ UNUSED static const lag_scene ball = {.name = "drop", .doc = "", .model = &ball_
   static const lag_scene name_ = {                                                                       \
       .name = #name_, .doc = "", .model = &name_##_model, .start = flow_start, .t1 = 5, .has_span = 1}
 
-UNUSED static void flow_start(UNUSED const double *p, UNUSED double *q, UNUSED double *v, double *z)
-{
-  z[0] = 1;
-}
+UNUSED static void flow_start(SELF, UNUSED const double *p, UNUSED double *q, UNUSED double *v, double *z) { z[0] = 1; }
 
 /* A simulation with a method and one option; tol 0: the default. */
 UNUSED static lag_sim *sim_with(const lag_scene *scene, const lag_method *m, double tol, int nopt,

@@ -107,8 +107,7 @@ LINEARISE(vdpol)
   return 0;
 }
 
-static void vdpol_start(UNUSED const double *p, UNUSED double *q, UNUSED double *v, double *z)
-{
+static void vdpol_start(SELF, UNUSED const double *p, UNUSED double *q, UNUSED double *v, double *z) {
   z[0] = 2;
   z[1] = 0;
 }
@@ -142,8 +141,7 @@ LINEARISE(robertson)
   return 0;
 }
 
-static void robertson_start(UNUSED const double *p, UNUSED double *q, UNUSED double *v, double *z)
-{
+static void robertson_start(SELF, UNUSED const double *p, UNUSED double *q, UNUSED double *v, double *z) {
   z[0] = 1;
   z[1] = z[2] = 0;
 }

@@ -83,8 +83,7 @@ static void outputs_have_names_and_units(void **state)
 
 /* ---- inputs: x'' = u, u = t; or held at a constant */
 
-static int ramp(double t, UNUSED const double *p, double *u)
-{
+static int ramp(SELF, double t, UNUSED const double *p, double *u) {
   u[0] = t;
   return 0;
 }

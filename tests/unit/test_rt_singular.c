@@ -13,9 +13,9 @@
 #include "core/core.h"
 
 /* x' = 0, x' + y y' = 0: of rows of length 1, what is left of the second beside the first is y/sqrt(1 + y^2). */
-static int matrices(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                    double *A, double *M, double *w) {
-  (void)t, (void)v, (void)z, (void)p, (void)u, (void)w;
+static int matrices(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
+                    const double *u, double *A, double *M, double *w) {
+  (void)self, (void)t, (void)v, (void)z, (void)p, (void)u, (void)w;
   A[0] = 1;
   A[1] = 1;
   A[2] = q[1];
@@ -23,9 +23,9 @@ static int matrices(double t, const double *q, const double *v, const double *z,
   return 0;
 }
 
-static int residuals(double t, const double *q, const double *v, const double *z, const double *p, const double *u,
-                     double *c, double *r, double *w) {
-  (void)t, (void)z, (void)p, (void)u, (void)c, (void)w;
+static int residuals(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
+                     const double *u, double *c, double *r, double *w) {
+  (void)self, (void)t, (void)z, (void)p, (void)u, (void)c, (void)w;
   r[0] = v[0];
   r[1] = v[0] + q[1] * v[1];
   return 0;

@@ -2,6 +2,10 @@
  * part of a hypercube once, and the values of runs in order. */
 #include "test_rt_models.h"
 
+#include <stdio.h>
+#include <unistd.h>
+
+#include "sweep/journal.h"
 #include "sweep/sweep_grid.h"
 #include "sweep/sampling.h"
 
@@ -117,10 +121,61 @@ static void test_refused(void **state) {
   }
 }
 
+/* Chunks are read from memory: the file is there for other processes. */
+static void test_journal(void **state) {
+  (void)state;
+  char path[100], why[4400];
+  double row[2] = {1.5, -2}, got[2] = {0, 0};
+  snprintf(path, sizeof path, "/tmp/test_journal.%ld", (long)getpid());
+  Journal j = {.chunks = 3, .size = 2, .signature = 7};
+  assert_int_equal(lag_journal_open(&j, path, 0, why, sizeof why), 0);
+  assert_int_equal(lag_journal_put(&j, 1, row, 2), 0);
+  assert_int_equal(lag_journal_flush(&j), 0);
+  lag_journal_close(&j, 0);
+  j = (Journal){.chunks = 3, .size = 2, .signature = 7};
+  assert_int_equal(lag_journal_open(&j, path, 1, why, sizeof why), 0);
+  assert_int_equal(truncate(path, 0), 0);
+  assert_int_equal(lag_journal_get(&j, 1, got, 2), 0);
+  assert_true(got[0] == row[0] && got[1] == row[1]);
+  assert_int_equal(lag_journal_get(&j, 0, got, 2), -1);
+  lag_journal_close(&j, 1);
+}
+
+/* The shortest of 15 and more digits that reads as the same number, by trying them; in all ranges of exponents, whole
+ * numbers, hundredths, ends of decades. */
+static void test_number_text(void **state) {
+  (void)state;
+  static const double ends[] = {0,
+                                -0.0,
+                                1e15,
+                                1e16,
+                                1e17,
+                                1e-4,
+                                1e-5,
+                                9.9999999999999995e22,
+                                99999999999999.99,
+                                0x1p-1074,
+                                1.7976931348623157e308,
+                                9007199254740993,
+                                INFINITY};
+  uint64_t r = 88172645463325252u;
+  for (int i = 0; i < 4000; i++) {
+    r ^= r << 13, r ^= r >> 7, r ^= r << 17;
+    double x = (double)(int64_t)r * 0x1p-60;
+    if (i % 4 == 0) memcpy(&x, &r, sizeof x);
+    if (i % 4 == 1) x = (double)(r % 100000) / 100;
+    if (i < (int)(sizeof ends / sizeof *ends)) x = ends[i];
+    char text[64], expected[64] = "";
+    for (int digits = 15; digits < 18 && !(digits > 15 && strtod(expected, NULL) == x); digits++)
+      snprintf(expected, sizeof expected, "%.*g", digits, x);
+    if (!isnan(x)) assert_string_equal(lag_number_text(x, text), expected);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_philox),    cmocka_unit_test(test_quantile),
-                                     cmocka_unit_test(test_hypercube), cmocka_unit_test(test_random),
-                                     cmocka_unit_test(test_grids),     cmocka_unit_test(test_samples),
-                                     cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_philox),  cmocka_unit_test(test_quantile),    cmocka_unit_test(test_hypercube),
+      cmocka_unit_test(test_random),  cmocka_unit_test(test_grids),       cmocka_unit_test(test_samples),
+      cmocka_unit_test(test_refused), cmocka_unit_test(test_number_text), cmocka_unit_test(test_journal)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

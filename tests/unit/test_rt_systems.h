@@ -29,8 +29,7 @@ UNUSED static int pendulum_energy(ARGS, double *e, UNUSED double *w)
   return 0;
 }
 
-UNUSED static void pendulum_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+UNUSED static void pendulum_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 2.5;
   v[0] = 0;
 }
@@ -56,8 +55,7 @@ UNUSED static int henon_energy(ARGS, double *e, UNUSED double *w)
   return 0;
 }
 
-UNUSED static void henon_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+UNUSED static void henon_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 0;
   q[1] = -0.25;
   v[0] = 0.420812705765086581390141079878;
@@ -69,7 +67,7 @@ FIRST(henon)
 {
   memcpy(Lv, v, 2 * sizeof *v);
   Q[0] = Q[1] = 0;
-  return henon_accel(t, q, v, z, p, u, Lq, NULL, w);
+  return henon_accel(self, t, q, v, z, p, u, Lq, NULL, w);
 }
 
 SECOND(henon)
@@ -104,8 +102,7 @@ UNUSED static int double_energy(ARGS, double *e, UNUSED double *w)
   return 0;
 }
 
-UNUSED static void double_pendulum_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+UNUSED static void double_pendulum_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 1;
   q[1] = -0.5;
   v[0] = v[1] = 0;
@@ -180,7 +177,7 @@ UNUSED static void momenta(const lag_scene *scene, const double *y, double *p)
 {
   double Lq[2], Q[2];
   int nq = scene->model->nq;
-  assert_int_equal(scene->model->variation(0, y, y + nq, NULL, NULL, NULL, Lq, p, Q, NULL), 0);
+  assert_int_equal(scene->model->variation(scene->model, 0, y, y + nq, NULL, NULL, NULL, Lq, p, Q, NULL), 0);
 }
 
 /* ---- steps of equal size */

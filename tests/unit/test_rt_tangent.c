@@ -296,7 +296,7 @@ static void canonical(const lag_scene *scene, const double *y, double *T)
   const lag_model *m = scene->model;
   int nq = m->nq, n = 2 * nq;
   double h[16];
-  assert_int_equal(m->second(0, y, y + nq, NULL, NULL, NULL, h, NULL), 0);
+  assert_int_equal(m->second(m, 0, y, y + nq, NULL, NULL, NULL, h, NULL), 0);
   memset(T, 0, (size_t)(n * n) * sizeof *T);
   for (int i = 0; i < nq; i++) {
     T[i * n + i] = 1;

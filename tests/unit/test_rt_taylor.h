@@ -19,8 +19,7 @@ UNUSED static void taylor_orders(taylor_order *order, int nq, int n, double T, d
   }
 }
 
-UNUSED static void taylor_at(int n, double s, const double *x, double *y, double *dy)
-{
+UNUSED static void taylor_at(SELF, int n, double s, const double *x, double *y, double *dy) {
   for (int i = 0; i < TAYLOR_WIDTH; i++) {
     double sum = 0, slope = 0;
     for (int k = n; k > 0; k--) {
@@ -39,9 +38,9 @@ UNUSED static void taylor_at(int n, double s, const double *x, double *y, double
     memcpy(x, q, (nq) * sizeof *q);                                                          \
     memcpy(x + (nq), v, (nq) * sizeof *v);                                                   \
     w[0] = (nu) > 0 ? follows[0] : 0;                                                        \
-    return name##_accel(t, q, v, z, p, u, x + 2 * (nq), NULL, w);                            \
+    return name##_accel(self, t, q, v, z, p, u, x + 2 * (nq), NULL, w);                      \
   }                                                                                          \
-  UNUSED static void name##_rest(int n, double T, double *x, double *w) {                    \
+  UNUSED static void name##_rest(SELF, int n, double T, double *x, double *w) {              \
     taylor_orders(name##_order, nq, n, T, x, w);                                             \
   }                                                                                          \
   UNUSED static const lag_taylor name##_taylor = {.order = LAG_TAYLOR_ORDER,                 \

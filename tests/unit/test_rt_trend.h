@@ -21,7 +21,7 @@ UNUSED static int record(void *context, const lag_sim *s)
 {
   Trend *t = context;
   double e[2];
-  lag_sim_scene(s)->model->energy(0, lag_sim_q(s), lag_sim_v(s), NULL, NULL, NULL, e, NULL);
+  lag_sim_scene(s)->model->energy(lag_sim_scene(s)->model, 0, lag_sim_q(s), lag_sim_v(s), NULL, NULL, NULL, e, NULL);
   double d = e[0] - t->e0;
   t->worst = fmax(t->worst, fabs(d));
   t->sx += t->k;
@@ -40,12 +40,12 @@ UNUSED static double trend(lag_sim *s, double start, double h, int steps, double
   double q[4], e[2];
   int nq = scene->model->nq;
   Trend t = {0};
-  scene->start(NULL, q, q + nq, NULL);
+  scene->start(scene, NULL, q, q + nq, NULL);
   if (!isnan(start)) {
     q[0] = start;
     assert_int_equal(lag_sim_set(s, "x", start), 0);
   }
-  scene->model->energy(0, q, q + nq, NULL, NULL, NULL, e, NULL);
+  scene->model->energy(scene->model, 0, q, q + nq, NULL, NULL, NULL, e, NULL);
   t.e0 = e[0];
   lag_sim_on_step(s, record, &t);
   assert_int_equal(lag_sim_advance(s, steps * h), LAG_OK);

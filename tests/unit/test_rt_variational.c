@@ -7,7 +7,7 @@
 #include "test_rt_systems.h"
 
 #include "kernels/band_matrix.h"
-#include "methods/galerkin_rule.h"
+#include "kernels/galerkin_rule.h"
 
 /* ---- Digits */
 
@@ -30,7 +30,7 @@ static int watch(void *context, const lag_sim *s)
 {
   Watch *w = context;
   double e[2];
-  lag_sim_scene(s)->model->energy(0, lag_sim_q(s), lag_sim_v(s), NULL, NULL, NULL, e, NULL);
+  lag_sim_scene(s)->model->energy(lag_sim_scene(s)->model, 0, lag_sim_q(s), lag_sim_v(s), NULL, NULL, NULL, e, NULL);
   w->worst = fmax(w->worst, fabs(e[0] - w->first));
   return 0;
 }
@@ -44,7 +44,7 @@ static void the_midpoint_rule_reproduces_its_digits(void **state)
     lag_sim *s = equal_steps(&pendulum, &lag_variational, d->h);
     assert_int_equal(lag_sim_set(s, "x", d->start[0]), 0);
     assert_int_equal(lag_sim_set(s, "x'", d->start[1]), 0);
-    pendulum_energy(0, d->start, d->start + 1, NULL, NULL, NULL, e, NULL);
+    pendulum_energy(NULL, 0, d->start, d->start + 1, NULL, NULL, NULL, e, NULL);
     Watch w = {e[0], 0};
     lag_sim_on_step(s, watch, &w);
     assert_int_equal(lag_sim_advance(s, (d->steps - 0.5) * d->h), LAG_OK);
@@ -395,7 +395,7 @@ static int measure(void *context, const lag_sim *s)
 /* The double pendulum without weight: L depends on q1 - q2 only. */
 FIRST(floating)
 {
-  double_pendulum_variation(t, q, v, z, p, u, Lq, Lv, Q, w);
+  double_pendulum_variation(self, t, q, v, z, p, u, Lq, Lv, Q, w);
   double s = v[0] * v[1] * sin(q[0] - q[1]);
   Lq[0] = -s;
   Lq[1] = s;
@@ -404,7 +404,7 @@ FIRST(floating)
 
 SECOND(floating)
 {
-  double_pendulum_second(t, q, v, z, p, u, h, w);
+  double_pendulum_second(self, t, q, v, z, p, u, h, w);
   h[0] = h[2] = -v[0] * v[1] * cos(q[0] - q[1]);
   return 0;
 }
@@ -417,8 +417,7 @@ static int floating_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
   return 0;
 }
 
-static void floating_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void floating_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 1;
   q[1] = -0.5;
   v[0] = 0.7;
@@ -431,7 +430,7 @@ SYSTEM(floating, 2, LAG_AUTONOMOUS | LAG_CONSERVES_ENERGY, NULL, DERIVATIVES(flo
 static double drift_of(const lag_scene *scene, const Setting *k, double h, double (*of)(const double *, const double *),
                        int steps) {
   double y[4], p[2];
-  scene->start(NULL, y, y + 2, NULL);
+  scene->start(scene, NULL, y, y + 2, NULL);
   momenta(scene, y, p);
   Charge c = {of, of(y, p), 0};
   lag_sim *s = sim_at(scene, k, h);

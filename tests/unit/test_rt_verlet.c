@@ -186,12 +186,12 @@ static void compose(const lag_scene *scene, const double *weight, int half, int 
   for (int i = 0; i < half; i++) {
     total += 2 * weight[i];
   }
-  scene->start(NULL, q, v, NULL);
+  scene->start(scene, NULL, q, v, NULL);
   for (int k = 0; k < n * (2 * half + 1); k++) {
     int j = k % (2 * half + 1), i = j > half ? 2 * half - j : j;
     double w = h * (i == half ? 1 - total : weight[i]);
     for (int pass = 0; pass < 2; pass++) {
-      scene->model->accel(0, q, v, NULL, NULL, NULL, a, zd, work);
+      scene->model->accel(scene->model, 0, q, v, NULL, NULL, NULL, a, zd, work);
       for (int c = 0; c < scene->model->nq; c++) {
         v[c] += w / 2 * a[c];
         q[c] += pass ? 0 : w * v[c];
@@ -268,8 +268,7 @@ static int wall_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
   return 0;
 }
 
-static void wall_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
-{
+static void wall_start(SELF, UNUSED const double *p, double *q, double *v, UNUSED double *z) {
   q[0] = 0;
   v[0] = 1;
 }

@@ -61,7 +61,7 @@ static void actions(const lag_model *m) {
     copy(out, q, m->nq);
     copy(out + m->nq, v, m->nq);
     copy(out + 2*m->nq, z, m->nz);
-    const int status = m->act(k, t, q, v, z, p, u, out, out + m->nq, out + 2*m->nq, &stop, w);
+    const int status = m->act(m, k, t, q, v, z, p, u, out, out + m->nq, out + 2*m->nq, &stop, w);
     char name[32];
     snprintf(name, sizeof name, "%s%d", stop ? "stops" : "acts", k);
     print(m->name, name, status, out, 2*m->nq + m->nz);
@@ -70,14 +70,14 @@ static void actions(const lag_model *m) {
 
 static void derivatives(const lag_model *m) {
   if (m->variation) {
-    int status = m->variation(t, q, v, z, p, u, out, out + m->nq, out + 2*m->nq, w);
+    int status = m->variation(m, t, q, v, z, p, u, out, out + m->nq, out + 2*m->nq, w);
     print(m->name, "variation", status, out, 3*m->nq);
-    status = m->second(t, q, v, z, p, u, out, w);
+    status = m->second(m, t, q, v, z, p, u, out, w);
     print(m->name, "second", status, out, m->nsecond);
   }
   if (m->linear) {
     const lag_linear *l = m->linear;
-    const int status = l->eval(t, q, v, z, p, u, a, out, out + l->ndr, w);
+    const int status = l->eval(l, t, q, v, z, p, u, a, out, out + l->ndr, w);
     print(m->name, "linear", status, out, l->ndr + l->nmass);
   }
 }
@@ -89,22 +89,22 @@ static void series(const lag_model *m) {
   for (int lane = 0; lane < LANES; lane++) put(&unit, lane, 0.03125), put(&step, lane, 0.25);
   for (int i = 0; i < m->nu; i++) follows[i] = unit*32;
   memset(out, 0, ROOM * sizeof *out); /* what pads rows is not written */
-  int status = s->first(t, q, v, z, p, u, follows, out, w);
-  if (status >= 0) s->rest(ORDER, unit, out, w);
+  int status = s->first(s, t, q, v, z, p, u, follows, out, w);
+  if (status >= 0) s->rest(s, ORDER, unit, out, w);
   print(m->name, "taylor", status, out, s->columns*ORDER);
   LAG_REAL *const y = out + ROOM/2;
-  s->at(ORDER, step, out, y, y + s->width);
+  s->at(s, ORDER, step, out, y, y + s->width);
   print(m->name, "taylor_at", status, y, 2*m->nq + m->nz);
 }
 
 static void evaluate(const lag_scene *s) {
   const lag_model *m = s->model;
-  if (m->inputs) print(m->name, "inputs", m->inputs(t, p, u), u, m->nu);
-  int status = m->accel(t, q, v, z, p, u, a, a + m->nq, w);
+  if (m->inputs) print(m->name, "inputs", m->inputs(m, t, p, u), u, m->nu);
+  int status = m->accel(m, t, q, v, z, p, u, a, a + m->nq, w);
   print(m->name, "accel", status, a, m->nq + m->nz);
-  if (m->energy) status = m->energy(t, q, v, z, p, u, out, w), print(m->name, "energy", status, out, 2);
-  if (m->events) status = m->events(t, q, v, z, p, u, out, w), print(m->name, "events", status, out, m->nev);
-  status = s->observe(t, q, v, z, p, u, out, w);
+  if (m->energy) status = m->energy(m, t, q, v, z, p, u, out, w), print(m->name, "energy", status, out, 2);
+  if (m->events) status = m->events(m, t, q, v, z, p, u, out, w), print(m->name, "events", status, out, m->nev);
+  status = s->observe(s, t, q, v, z, p, u, out, w);
   print(m->name, "observe", status, out, s->nout);
   actions(m);
   for (int i = 0; i < m->nq; i++) a[i] = q[i] + v[i];
@@ -130,7 +130,7 @@ int main(void) {
     if (2 * (2 * m->nq + m->nz) > ROOM || m->nw > ROOM || m->np + m->nderived > ROOM)
       return printf("%s is too large\n", m->name), 1;
     for (int state = 0; state < STATES; state += LANES) {
-      s->params(p, none);
+      s->params(s, p, none);
       for (int lane = 0; lane < LANES; lane++) {
         const double scale = (state + lane) % 7 == 6 ? 1e6 : (state + lane) % 5 == 4 ? 0.01 : 1;
         put(&t, lane, next());
@@ -144,7 +144,7 @@ int main(void) {
         fill(u + m->nu + m->nmodes, s->nexact, lane, 1); /* closed forms, as observe has them */
         for (int k = 0; k < m->np; k++) put(&p[k], lane, get(&p[k], lane) * (1 + next() / 16));
       }
-      if (m->derive) m->derive(p);
+      if (m->derive) m->derive(m, p);
       evaluate(s);
     }
   }

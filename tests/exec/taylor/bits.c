@@ -17,13 +17,13 @@ static void print_scene(const lag_scene *s) {
   double *p = room(m->np + m->nderived), *y = room(2 * m->nq + m->nz), *u = room(m->nu), *follows = room(m->nu);
   double *x = room((ty->order + 1) * ty->columns), *w = room(ty->nw), *sum = room(ty->width), *slope = room(ty->width);
   unsigned char *fixed = calloc((size_t)m->np + 1, 1);
-  s->params(p, fixed);
-  s->start(p, y, y + m->nq, y + 2 * m->nq);
+  s->params(s, p, fixed);
+  s->start(s, p, y, y + m->nq, y + 2 * m->nq);
   for (int i = 0; i < m->nq; i++) y[m->nq + i] += 0.1 * (i + 1) * m->q[i].factor;
-  if (ty->first(s->t0, y, y + m->nq, y + 2 * m->nq, p, u, follows, x, w) != LAG_OK)
+  if (ty->first(ty, s->t0, y, y + m->nq, y + 2 * m->nq, p, u, follows, x, w) != LAG_OK)
     printf("%s: order 0 failed\n", m->name);
-  ty->rest(ORDER, 0.125, x, w);
-  ty->at(ORDER, 0.75, x, sum, slope);
+  ty->rest(ty, ORDER, 0.125, x, w);
+  ty->at(ty, ORDER, 0.75, x, sum, slope);
   for (int k = 0; k <= ORDER; k++)
     for (int i = 0; i < 2 * m->nq + m->nz; i++) printf("%s %d %d %a\n", m->name, k, i, x[k * ty->columns + i]);
   for (int i = 0; i < 2 * m->nq + m->nz; i++) printf("%s %d %a %a\n", m->name, i, sum[i], slope[i]);

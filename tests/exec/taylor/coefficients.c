@@ -29,13 +29,13 @@ static int compare(const char *file, Real T, int print) {
   char name[64], digits[64];
   int k, n = 0, wrong = 0;
   if (m->np + m->nderived > MOST) return 1;
-  s->params(p, none);
+  s->params(s, p, none);
   z[state_named(m, "x")] = REAL_READ("0.3");
   z[state_named(m, "y")] = REAL_READ("0.8");
-  m->inputs(REAL_READ("0.25"), p, u);
+  m->inputs(m, REAL_READ("0.25"), p, u);
   u[1] = 3; /* `still`, held */
-  if (ty->first(REAL_READ("0.25"), NULL, NULL, z, p, u, follows, x, w) != LAG_OK) return 1;
-  ty->rest(ORDERS + 2, T, x, w);
+  if (ty->first(ty, REAL_READ("0.25"), NULL, NULL, z, p, u, follows, x, w) != LAG_OK) return 1;
+  ty->rest(ty, ORDERS + 2, T, x, w);
   FILE *f = fopen(file, "r");
   while (f && fscanf(f, "%63s %d %63s", name, &k, digits) == 3) {
     Real scale = 1, want = REAL_READ(digits);

@@ -30,8 +30,8 @@ static void place(const lag_scene *s, Point *at) {
   const lag_model *m = s->model;
   static const unsigned char none[MOST];
   if (m->np + m->nderived > MOST) exit(1);
-  s->params(at->p, none);
-  s->start(at->p, at->q, at->v, at->z);
+  s->params(s, at->p, none);
+  s->start(s, at->p, at->q, at->v, at->z);
   at->t = (Real)s->t0 + next() * (fabs(s->t1 - s->t0) < 1 ? (Real)fabs(s->t1 - s->t0) : 1);
   for (int i = 0; i < m->nq; i++) {
     Real unit = at->q[i] == 0 ? (Real)m->q[i].factor : at->q[i],
@@ -41,7 +41,7 @@ static void place(const lag_scene *s, Point *at) {
   }
   for (int i = 0; i < m->nz; i++) at->z[i] += next() * (at->z[i] == 0 ? (Real)m->z[i].factor : at->z[i]);
   for (int i = 0; i < m->nu; i++) at->follows[i] = 1;
-  if (m->inputs) m->inputs(at->t, at->p, at->u);
+  if (m->inputs) m->inputs(m, at->t, at->p, at->u);
 }
 
 /* The largest k |x[k]| of the components from i to j. */
@@ -58,10 +58,10 @@ static Real defect_at(const lag_model *m, const Point *at, const Real *x, Real T
   int nv = 2 * m->nq, n = nv + m->nz;
   static Real y[3 * MOST], dy[3 * MOST], rates[2 * MOST], u[MOST];
   Real of_v = size_of(x, ty->columns, m->nq, nv), of_z = size_of(x, ty->columns, nv, n), worst = 0;
-  ty->at(ORDER, s, x, y, dy);
+  ty->at(ty, ORDER, s, x, y, dy);
   for (int i = 0; i < n; i++) y[i] += x[i];
-  if (m->inputs) m->inputs(at->t + s * T, at->p, u);
-  if (m->accel(at->t + s * T, y, y + m->nq, y + 2 * m->nq, at->p, u, rates, rates + m->nq, w) != LAG_OK)
+  if (m->inputs) m->inputs(m, at->t + s * T, at->p, u);
+  if (m->accel(m, at->t + s * T, y, y + m->nq, y + 2 * m->nq, at->p, u, rates, rates + m->nq, w) != LAG_OK)
     return (Real)NAN;
   for (int i = m->nq; i < n; i++) {
     Real size = i < nv ? of_v : of_z;
@@ -75,7 +75,7 @@ static int check_state(const lag_scene *s, Real *x, Real *w) {
   Point at = {0};
   Real T = 1, before = 0;
   place(s, &at);
-  if (m->taylor->first(at.t, at.q, at.v, at.z, at.p, at.u, at.follows, x, w) != LAG_OK)
+  if (m->taylor->first(m->taylor, at.t, at.q, at.v, at.z, at.p, at.u, at.follows, x, w) != LAG_OK)
     return printf("%s: order 0 failed\n", m->name), 1;
   for (int i = 0; i < 2 * m->nq + m->nz; i++) { /* a tenth of the time in which the state changes */
     Real y = i < m->nq       ? at.q[i]
@@ -84,7 +84,7 @@ static int check_state(const lag_scene *s, Real *x, Real *w) {
          rate = i < m->nq ? at.v[i] : x[m->nq + m->nz + i];
     if (real_abs(rate) * T > real_abs(y) / 10 && y != 0) T = real_abs(y / rate) / 10;
   }
-  m->taylor->rest(ORDER, T, x, w);
+  m->taylor->rest(m->taylor, ORDER, T, x, w);
   for (int i = 1; i <= 8; i++) { /* halves of s */
     Real d = defect_at(m, &at, x, T, (Real)1 / (Real)(1 << i), w), rounding = (Real)(1000 * REAL_EPSILON);
     if (i == 8 && d < rounding) return 0; /* a polynomial, or of higher order */

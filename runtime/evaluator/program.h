@@ -1,0 +1,106 @@
+/* A program as liblag executes it, and its parts; numeric/program_code.def says what its words mean. */
+#ifndef EVALUATOR_PROGRAM_H
+#define EVALUATOR_PROGRAM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "numeric/program_code.def"
+
+typedef enum {
+#define SPECIAL(name, kinds) CODE_##name,
+#define PLAIN(name, kinds, formula) CODE_##name,
+#define BOTH(name, kinds, formula) CODE_##name, CODE_##name##_TO,
+  PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
+#undef SPECIAL
+#undef PLAIN
+#undef BOTH
+      CODES
+} Code;
+
+enum {
+#define OP(name, operands, formula) TURN_##name,
+  PROGRAM_TURN_OPS(OP, OP)
+#undef OP
+      TURN_OPS
+};
+
+enum {
+#define ARRAY(name) PROGRAM_##name,
+  PROGRAM_ARRAYS(ARRAY)
+#undef ARRAY
+      PROGRAM_ARRAY_COUNT
+};
+
+enum { PROGRAM_OUTPUTS = 4 }; /* the most arrays that a function writes */
+
+typedef double lag_function_1(double);
+typedef double lag_function_2(double, double);
+extern lag_function_1 *const lag_functions_1[];
+extern lag_function_2 *const lag_functions_2[];
+extern const uint32_t lag_functions_1_count, lag_functions_2_count;
+
+/* Rows of a spline of 3 columns, or 4 with derivatives. */
+typedef struct {
+  int order, columns, n;
+  const double *row;
+} Curve;
+
+/* w[at] = r[from] for the entries; then lag_solve or lag_kkt. */
+typedef struct {
+  int n, m, coarse;
+  uint32_t entries;
+  const uint32_t *entry; /* [2 entries] at, from */
+} System;
+
+/* Index first + by_row i + by_turn j. */
+typedef struct {
+  int64_t first, by_row, by_turn;
+} Subscript;
+
+/* One instruction of a turn; moves: its value changes from turn to turn. */
+typedef struct {
+  uint32_t op, a, b, c, number;
+  int moves;
+} TurnIns;
+
+/* What a turn adds to a sum, or subtracts. */
+typedef struct {
+  uint32_t minus, subscript, value;
+  int moves;
+} TurnSum;
+
+/* for i < rows, for j in skew i .. (skew + more) i + turns - 1; without turns: for i < rows. */
+typedef struct {
+  int64_t rows, skew, turns, more;
+  /* in_order: turns read sums that others of the nest change; apart: no two sums share an element in a row */
+  int has_turns, in_order, apart;
+  uint32_t nsubscripts, nouter, nins, nsums;
+  const Subscript *at;
+  const uint32_t *outer; /* places in the frame */
+  const TurnIns *ins;
+  const TurnSum *sum;
+} Nest;
+
+typedef struct {
+  uint32_t frame; /* numbers that a call needs, with scratch of nests at its end */
+  uint32_t scratch;
+  int regular; /* the systems were found regular before */
+  uint32_t cells, ncells, work, nwork;
+  const double *constants;
+  const Curve *curves;
+  const System *systems;
+  const Nest *nests;
+  const uint32_t *words;
+  uint32_t nconstants, ncurves, nsystems, nnests, nwords;
+} Program;
+
+/* in[PROGRAM_ARRAY_COUNT], of which the last is set here; r[frame]: memory. Returns LAG_OK or LAG_ESINGULAR. */
+int lag_run_program(const Program *p, const double *const *in, double *const *out, double *r);
+
+/* Runs a nest of the program; see lag_run_program. */
+void lag_run_nest(const Program *p, const Nest *n, const double *const *in, double *r);
+
+enum { NEST_BLOCK = 32 }; /* turns that an operation of a nest computes at once */
+
+#endif

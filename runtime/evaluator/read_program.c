@@ -1,0 +1,289 @@
+/* Programs from bytes, checked: no index leaves what it indexes, and every program ends. */
+#include "evaluator/read_program.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { FRAME_MOST = 1 << 27, LARGEST = INT32_MAX };
+
+static const struct {
+  const char *kinds;
+} codes[] = {
+#define SPECIAL(name, kinds) {kinds},
+#define PLAIN(name, kinds, formula) {kinds},
+#define BOTH(name, kinds, formula) {kinds}, {kinds "d"},
+    PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
+#undef SPECIAL
+#undef PLAIN
+#undef BOTH
+};
+
+static const int operands_of[] = {
+#define OP(name, operands, formula) operands,
+    PROGRAM_TURN_OPS(OP, OP)
+#undef OP
+};
+
+static int ends_within(uint64_t at, uint64_t n, int64_t length) {
+  return length > 0 && n > 0 && at + n <= (uint64_t)length;
+}
+
+/* --- parts --- */
+
+static const Curve *read_curves(Bytes *b, uint32_t n) {
+  Curve *c = lag_bytes_room(b, n, sizeof *c);
+  for (uint32_t k = 0; c && k < n; k++) {
+    c[k].order = lag_bytes_int(b, 0, 2);
+    c[k].columns = lag_bytes_int(b, 3, 4);
+    c[k].n = (int)lag_bytes_count(b, 24);
+    lag_bytes_need(b, c[k].n >= 2 && (c[k].columns == 4 || !c[k].order), "a table is too short");
+    c[k].row = lag_bytes_numbers(b, (size_t)c[k].n * (size_t)c[k].columns);
+  }
+  return c;
+}
+
+/* Work space that lag_solve and lag_kkt use, in doubles. */
+static int64_t work_of(int64_t n, int64_t m) {
+  int64_t system = n * n + m * n + n + m;
+  return system + (m ? n * n + m * n + m * m + 2 * n + 9 * m : 0);
+}
+
+static const System *read_systems(Bytes *b, const Program *p, uint32_t n) {
+  enum { MOST = 1 << 13 };
+  System *s = lag_bytes_room(b, n, sizeof *s);
+  for (uint32_t k = 0; s && k < n; k++) {
+    s[k].n = lag_bytes_int(b, 0, MOST);
+    s[k].m = lag_bytes_int(b, 0, MOST);
+    s[k].coarse = lag_bytes_int(b, 0, 1);
+    s[k].entries = lag_bytes_count(b, 8);
+    s[k].entry = lag_bytes_words(b, 2 * s[k].entries);
+    lag_bytes_need(b, work_of(s[k].n, s[k].m) <= p->nwork, "a system has too little room");
+    uint64_t size = (uint64_t)(s[k].n + s[k].m) * (uint64_t)(s[k].n + 1);
+    for (uint32_t i = 0; !b->why && i < s[k].entries; i++)
+      lag_bytes_need(b, s[k].entry[2 * i] < size && s[k].entry[2 * i + 1] < p->frame, "a system reads out of range");
+  }
+  return s;
+}
+
+/* --- nests --- */
+
+typedef struct {
+  double least, most;
+} Range;
+
+static void widen(Range *r, double x) {
+  r->least = fmin(r->least, x);
+  r->most = fmax(r->most, x);
+}
+
+/* Indices of a subscript in all turns, at the corners of the loops. Sizes below 2^52 keep the sums exact. */
+static Range range_of(Bytes *b, const Nest *n, uint32_t k) {
+  const Subscript *s = &n->at[k];
+  const double limit = 4503599627370496.0;
+  Range r = {INFINITY, -INFINITY};
+  for (int corner = 0; corner < 4; corner++) {
+    double i = corner & 1 ? (double)(n->rows - 1) : 0, from = (double)n->skew * i,
+           end = (double)(n->skew + n->more) * i + (double)n->turns,
+           j = !n->has_turns ? 0
+               : corner & 2  ? end - 1
+                             : from,
+           rows = (double)s->by_row * i, turns = (double)s->by_turn * j;
+    lag_bytes_need(b, !n->has_turns || end > from, "a loop has no turns");
+    lag_bytes_need(b, fabs(rows) < limit && fabs(j) < limit && fabs(turns) < limit, "a loop is too long");
+    widen(&r, (double)s->first + rows + turns);
+  }
+  return r;
+}
+
+static int is_within(Range r, int64_t length) { return r.least >= 0 && r.most < (double)length; }
+
+static int moves(const Nest *n, uint32_t k) { return (n->has_turns ? n->at[k].by_turn : n->at[k].by_row) != 0; }
+
+static void check_load(Bytes *b, const Program *p, const Lengths *of, const Nest *n, TurnIns *i) {
+  if (i->op == TURN_CONSTANT) lag_bytes_need(b, i->number < p->nconstants, "a turn reads out of range");
+  if (i->op == TURN_OUTER) lag_bytes_need(b, i->number < n->nouter, "a turn reads out of range");
+  if (i->op == TURN_SCALAR)
+    lag_bytes_need(b, i->a < PROGRAM_CONSTANTS && of->in[i->a] > 0, "a turn reads out of range");
+  if (i->op != TURN_ELEMENT && i->op != TURN_CELL) return;
+  if (!lag_bytes_need(b, i->number < n->nsubscripts && i->a <= PROGRAM_CONSTANTS, "a turn reads out of range")) return;
+  int64_t length = i->op == TURN_CELL ? p->ncells : i->a < PROGRAM_CONSTANTS ? of->in[i->a] : 0;
+  lag_bytes_need(b, is_within(range_of(b, n, i->number), length), "a turn reads out of range");
+  i->moves = !b->why && moves(n, i->number);
+}
+
+static void check_turn(Bytes *b, const Program *p, const Lengths *of, const Nest *n, uint32_t s, TurnIns *all) {
+  TurnIns *i = &all[s - 1];
+  if (!lag_bytes_need(b, i->op < TURN_OPS, "a turn has an unknown operation")) return;
+  int operands = operands_of[i->op];
+  if (!operands) check_load(b, p, of, n, i);
+  if (operands < 1) i->a = i->op == TURN_ELEMENT || i->op == TURN_SCALAR ? i->a : 0;
+  if (operands < 2) i->b = 0;
+  if (operands < 3) i->c = 0;
+  const uint32_t of_op[] = {operands ? i->a : 0, i->b, i->c};
+  for (int k = 0; k < 3; k++)
+    if (lag_bytes_need(b, of_op[k] < s, "a turn reads what comes later") && of_op[k])
+      i->moves |= all[of_op[k] - 1].moves;
+  if (i->op == TURN_FUNCTION) lag_bytes_need(b, i->number < lag_functions_1_count, "an unknown function");
+  if (i->op == TURN_FUNCTION_2) lag_bytes_need(b, i->number < lag_functions_2_count, "an unknown function");
+}
+
+/* Whether turns read a sum to which other turns may add. */
+static int reads_own_sums(Bytes *b, const Nest *n) {
+  for (uint32_t s = 0; s < n->nins; s++)
+    for (uint32_t k = 0; n->ins[s].op == TURN_CELL && k < n->nsums; k++) {
+      Range x = range_of(b, n, n->ins[s].number), y = range_of(b, n, n->sum[k].subscript);
+      if (n->sum[k].moves && x.least <= y.most && y.least <= x.most) return 1;
+    }
+  return 0;
+}
+
+/* Whether two sums have no element in common in a row: their ranges are apart, or their indices differ modulo their
+ * common stride. */
+static int are_apart(Bytes *b, const Nest *n, uint32_t i, uint32_t k) {
+  Range x = range_of(b, n, i), y = range_of(b, n, k);
+  const Subscript *s = &n->at[i], *t = &n->at[k];
+  int64_t step = n->has_turns ? s->by_turn : s->by_row, other = n->has_turns ? t->by_turn : t->by_row;
+  int64_t rows = n->has_turns ? s->by_row - t->by_row : 0;
+  return x.least > y.most || y.least > x.most ||
+         (step == other && step != 0 && rows % step == 0 && (s->first - t->first) % step != 0);
+}
+
+static int sums_are_apart(Bytes *b, const Nest *n) {
+  for (uint32_t i = 0; i < n->nsums; i++)
+    for (uint32_t k = 0; k < i && n->sum[i].moves; k++)
+      if (n->sum[k].moves && !are_apart(b, n, n->sum[i].subscript, n->sum[k].subscript)) return 0;
+  return 1;
+}
+
+static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
+  n->nins = lag_bytes_count(b, 20);
+  TurnIns *ins = lag_bytes_room(b, n->nins, sizeof *ins);
+  for (uint32_t s = 1; ins && s <= n->nins; s++) {
+    const uint32_t *x = lag_bytes_words(b, 5);
+    if (x) ins[s - 1] = (TurnIns){x[0], x[1], x[2], x[3], x[4], 0};
+    if (x) check_turn(b, p, of, n, s, ins);
+  }
+  n->ins = ins;
+  n->nsums = lag_bytes_count(b, 12);
+  TurnSum *sum = lag_bytes_room(b, n->nsums, sizeof *sum);
+  for (uint32_t k = 0; sum && k < n->nsums; k++) {
+    sum[k].minus = lag_bytes_below(b, 2);
+    sum[k].subscript = lag_bytes_below(b, n->nsubscripts);
+    sum[k].value = lag_bytes_below(b, n->nins + 1);
+    if (b->why) return;
+    sum[k].moves = moves(n, sum[k].subscript);
+    lag_bytes_need(b, is_within(range_of(b, n, sum[k].subscript), p->ncells), "a turn adds out of range");
+  }
+  n->sum = sum;
+  if (!b->why) n->in_order = reads_own_sums(b, n), n->apart = sums_are_apart(b, n);
+}
+
+static int64_t bounded(Bytes *b) {
+  int64_t x = lag_bytes_signed(b);
+  return lag_bytes_need(b, x > -LARGEST && x < LARGEST, "a loop is too long") ? x : 0;
+}
+
+static void read_nest(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
+  n->rows = lag_bytes_int(b, 1, LARGEST);
+  n->has_turns = lag_bytes_int(b, 0, 1);
+  n->skew = bounded(b), n->turns = bounded(b), n->more = bounded(b);
+  n->nsubscripts = lag_bytes_count(b, 24);
+  Subscript *at = lag_bytes_room(b, n->nsubscripts, sizeof *at);
+  for (uint32_t k = 0; at && k < n->nsubscripts; k++)
+    at[k] = (Subscript){bounded(b), 0, 0}, at[k].by_row = bounded(b), at[k].by_turn = bounded(b);
+  n->at = at;
+  n->nouter = lag_bytes_count(b, 4);
+  n->outer = lag_bytes_words(b, n->nouter);
+  for (uint32_t k = 0; !b->why && k < n->nouter; k++)
+    lag_bytes_need(b, n->outer[k] < p->frame, "a nest reads out of range");
+  if (!b->why) read_turn(b, p, of, n);
+}
+
+static const Nest *read_nests(Bytes *b, const Program *p, const Lengths *of, uint32_t count) {
+  Nest *n = lag_bytes_room(b, count, sizeof *n);
+  for (uint32_t k = 0; n && !b->why && k < count; k++) read_nest(b, p, of, &n[k]);
+  return n;
+}
+
+/* --- words --- */
+
+/* Elements that a code moves between an array and the frame. */
+static uint32_t moved(uint32_t c, const uint32_t *at) {
+  if (c == CODE_READ || c == CODE_WRITE) return at[3];
+  return c == CODE_READ_2 || c == CODE_WRITE_2 ? 2 : 1;
+}
+
+static int moves_within(const Program *p, int64_t length, const uint32_t *at, uint32_t n) {
+  return ends_within(at[1], n, length) && (uint64_t)at[2] + n <= p->frame;
+}
+
+static int is_operand(const Program *p, const Lengths *of, uint32_t c, char kind, const uint32_t *at) {
+  switch (kind) {
+  case 'a':
+  case 'd': return at[0] < p->frame;
+  case 'f': return at[0] < lag_functions_1_count;
+  case 'F': return at[0] < lag_functions_2_count;
+  case 't': return at[0] < p->ncurves;
+  case 's': return at[0] < p->nsystems;
+  case 'n': return at[0] < p->nnests;
+  case 'i':
+    return at[0] <= PROGRAM_CONSTANTS &&
+           moves_within(p, at[0] == PROGRAM_CONSTANTS ? p->nconstants : of->in[at[0]], at, moved(c, at));
+  case 'o': return at[0] < PROGRAM_OUTPUTS && moves_within(p, of->out[at[0]], at, moved(c, at));
+  default: return 1; /* k, with the array */
+  }
+}
+
+static void check_words(Bytes *b, const Program *p, const Lengths *of) {
+  int ended = 0;
+  for (uint32_t k = 0; !b->why && k < p->nwords;) {
+    uint32_t c = p->words[k++];
+    if (!lag_bytes_need(b, c < CODES && !ended, "an unknown code")) return;
+    ended = c == CODE_END;
+    const char *kinds = codes[c].kinds;
+    uint32_t wide = (uint32_t)strlen(kinds) + (strpbrk(kinds, "io") != NULL);
+    if (!lag_bytes_need(b, p->nwords - k >= wide, "a program ends too early")) return;
+    for (; *kinds; k += *kinds == 'i' || *kinds == 'o' ? 2 : 1, kinds++)
+      lag_bytes_need(b, is_operand(p, of, c, *kinds, p->words + k), "an operand is out of range");
+  }
+  lag_bytes_need(b, ended, "a program ends too early");
+}
+
+static int part_of_frame(const Program *p, uint32_t at, uint32_t n) { return (uint64_t)at + n <= p->frame; }
+
+/* Room for the values of the turns of a nest: of one nest at a time. */
+static void add_scratch(Bytes *b, Program *p) {
+  uint64_t most = 0;
+  for (uint32_t k = 0; !b->why && k < p->nnests; k++) {
+    uint64_t need = ((uint64_t)p->nests[k].nins + 1) * NEST_BLOCK + p->nests[k].nsums;
+    if (need > most) most = need;
+  }
+  lag_bytes_need(b, most < FRAME_MOST, "a nest is too large");
+  p->scratch = p->frame;
+  p->frame += (uint32_t)most;
+}
+
+const Program *lag_read_program(Bytes *b, const Lengths *of) {
+  if (!lag_bytes_below(b, 2)) return NULL;
+  Program *p = lag_bytes_room(b, 1, sizeof *p);
+  if (!p) return NULL;
+  p->frame = lag_bytes_below(b, FRAME_MOST);
+  p->regular = lag_bytes_int(b, 0, 1);
+  p->cells = lag_bytes_word(b), p->ncells = lag_bytes_word(b);
+  p->work = lag_bytes_word(b), p->nwork = lag_bytes_word(b);
+  lag_bytes_need(b, p->frame >= 1 && part_of_frame(p, p->cells, p->ncells) && part_of_frame(p, p->work, p->nwork),
+                 "a frame is too small");
+  p->nconstants = lag_bytes_count(b, 8);
+  p->constants = lag_bytes_numbers(b, p->nconstants);
+  p->ncurves = lag_bytes_count(b, 12);
+  p->curves = read_curves(b, p->ncurves);
+  p->nsystems = lag_bytes_count(b, 16);
+  p->systems = read_systems(b, p, p->nsystems);
+  p->nnests = lag_bytes_count(b, 40);
+  p->nests = read_nests(b, p, of, p->nnests);
+  p->nwords = lag_bytes_count(b, 4);
+  p->words = lag_bytes_words(b, p->nwords);
+  if (!b->why) check_words(b, p, of);
+  if (!b->why) add_scratch(b, p);
+  return b->why ? NULL : p;
+}

@@ -1,0 +1,175 @@
+#!/bin/sh
+# Guides: joints and sliders with Coulomb's friction by their own force. Held against closed forms, and against integrations of the same motions in one
+# coordinate, where the force of the guide is solved for at each state (SciPy's DOP853, tolerance 1e-12), whose numbers stand here.
+. tests/exec/lib_motion.sh
+
+refuses() { # refuses STATUS WORDS MODEL ARGS...
+  status=$1 words=$2 name=$3
+  shift 3
+  "$LAGC" run "$TMP/$name.lag" "$@" >"$TMP/log" 2>&1
+  [ $? = "$status" ] && grep -q -e "$words" "$TMP/log" || { cat "$TMP/log"; return 1; }
+}
+
+# ---- a block on a rail: N = F - m g, of either sign
+model rail <<'END_OF'
+model rail
+coord x [m], y [m]
+param m = 2 [kg] > 0, g = 9.81 [m/s^2], mu = 0.2 >= 0, F = 30 [N], pull = 0 [N]
+kinetic = m/2*(x'^2 + y'^2)
+potential = m*g*y
+force (x, y) = (pull, F)
+guide rail: y = 0, friction = mu, static = 1.5*mu
+scene go { start x' = 1 [m/s]; span 2 [s]; output x, lambda(rail), lambda(rail.slip) every 1 [s] }
+END_OF
+check "it slides to rest" run rail go
+check "after v^2/(2 mu N/m)" near "$(final x)" "$(calc '1/(2*0.2*(30 - 19.62)/2)')" 1e-12
+check "its friction then is 0" near "$(cell 2 4)" 0 1e-15
+check "static friction holds up to 3.114 N" run rail go pull=3.11 "x'=0"
+check "by itself" near "$(final x)" 0 0
+check "and reports the part that it needs" near "$(number rail.slip)" "$(calc '3.11/3.114')" 1e-12
+check "more moves it" run rail go pull=3.12 "x'=0"
+check "against friction" near "$(final x)" "$(calc '(3.12 - 0.2*10.38)/2*2')" 1e-12
+
+# ---- a drawer pulled beside its middle: forces F b/(2 a) and two frictions; it jams from mu = a/b on, whatever F
+if one_of 3; then
+model drawer <<'END_OF'
+model drawer
+coord x [m], y [m], th [rad]
+param m = 2 [kg] > 0, I = 0.1 [kg*m^2] > 0, a = 0.2 [m] > 0, b = 0.3 [m], F = 10 [N], mu = 0.3 >= 0
+kinetic = m/2*(x'^2 + y'^2) + I/2*th'^2
+force (x - b*sin(th), y + b*cos(th)) = (F, 0)
+guide back: y - a*sin(th) = 0, friction = mu, slip = x'
+guide front: y + a*sin(th) = 0, friction = mu, slip = x'
+scene go { span 2 [s]; output x, lambda(back), lambda(front.slip) every 1 [s] }
+END_OF
+check "a drawer slides" run drawer go
+check "by F - mu F b/a" near "$(final x)" "$(calc '(10 - 0.3*10*1.5)/2*2')" 1e-12
+check "its friction jams it" run drawer go mu=0.7 F=1000
+check "at any force" near "$(final x)" 0 0
+check "which the report says" near "$(number back.slip)" "$(calc '1/(0.7*1.5)')" 1e-9
+says_jammed() { "$LAGC" run "$TMP/drawer.lag" mu=0.7 | grep -q 'guide back.slip sticks, self-locking: it needs 95.2 %'; }
+check "and its words" says_jammed
+fi
+
+# ---- a bead on a hoop: by a guide, by the multiplier; the force of the hoop changes its side twice
+if one_of 3; then
+hoop() { # NAME FRICTION: a model
+  printf 'model %s\ncoord x [m], y [m]\nparam m = 0.1 [kg] > 0, R = 0.5 [m] > 0, g = 9.81 [m/s^2], mu = 0.2 >= 0\nkinetic = m/2*(x%s^2 + y%s^2)\npotential = m*g*y\n%s\nscene go { start y = -0.5, x%s = 6 [m/s]; span 2 [s]; output x every 1 [s] }\n' \
+    "$1" "'" "'" "$2" "'" >"$TMP/$1.lag"
+}
+hoop squared 'guide hoop: x^2 + y^2 = R^2, friction = mu'
+hoop named "constraint hoop: hypot(x, y) = R
+let s = R*atan2(x, -y)
+friction rub on s: mu*abs(lambda(hoop))"
+for name in squared named; do
+  check "a bead on a hoop, $name" run $name go --tol 1e-12
+  check "x" near "$(final x)" -0.0846718237081 1e-10 # the reference starts anew beside two turning points: 1e-11
+  check "the balance of the energy closes" near "$(number drift)" 0 1e-11
+done
+sed '/^friction/s/$/, static = 3*mu*abs(lambda(hoop))/' "$TMP/named.lag" >"$TMP/held.lag"
+check "where tan is 1/2" run held go x=0.22360679774997896 y=-0.44721359549995793 "x'=0"
+check "static friction holds it" near "$(final x)" 0.22360679774997896 1e-15
+fi
+
+# ---- a journal: the friction torque is mu r hypot(lx, ly)
+if one_of 3; then
+model journal <<'END_OF'
+model journal
+coord x [m], y [m], th [rad]
+param m = 2 [kg] > 0, I = 0.05 [kg*m^2] > 0, l = 0.4 [m] > 0, r = 0.03 [m] > 0, g = 9.81 [m/s^2], mu = 0.3 >= 0
+kinetic = m/2*(x'^2 + y'^2) + I/2*th'^2
+potential = m*g*y
+guide pin: (x, y) = l*(sin(th), -cos(th)), friction = mu, slip = r*th'
+scene go { start th = 2, th' = 0; span 6 [s]; output th every 1 [s] }
+END_OF
+check "a pendulum on a rough journal" run journal go --tol 1e-12
+check "its angle" near "$(final th)" 0.06505133 1e-8 # the digits of the reference behind six turning points
+fi
+
+# ---- a wire in space: of a helix, N = m hypot(v^2/rho, g cos(alpha))
+if one_of 3; then
+model helix <<'END_OF'
+model helix
+coord r: vec3 [m]
+param m = 0.1 [kg] > 0, R = 0.5 [m] > 0, h = 0.3 [m] > 0, g = 9.81 [m/s^2] > 0, mu = 0.2 >= 0
+kinetic = m/2*dot(r', r')
+potential = m*g*r.z
+guide wire: (r.x, r.y) = R*(cos(r.z/h), sin(r.z/h)), friction = mu
+scene go { start r = (R, 0, 0); span 3 [s]; output r.z every 1 [s] }
+END_OF
+check "a bead on a helix" run helix go --tol 1e-12
+check "its depth" near "$(final r.z)" -4.704727772553328 1e-11
+fi
+
+# ---- a crank with friction at pin and rail, over the turning points of both slips
+if one_of 3; then
+model press <<'END_OF'
+model press
+coord a [rad], b [rad], x [m], y [m]
+param r = 0.1 [m] > 0, l = 0.3 [m] > 0, d = 15 [mm] > 0, mu = 0.1 >= 0
+param I = 0.05 [kg*m^2] > 0, J = 0.01 [kg*m^2] > 0, m = 1.5 [kg] > 0, g = 9.81 [m/s^2]
+kinetic = I/2*a'^2 + J/2*b'^2 + m/2*(x'^2 + y'^2)
+potential = m*g*y
+guide pin: (x, y) = (r*cos(a) + l*cos(b), r*sin(a) - l*sin(b)), friction = mu, slip = d*b'
+guide rail: y = 0, friction = mu, static = 1.5*mu
+scene coast { start a = 1, a' = 5 [rad/s], b = asin(r*sin(1)/l), x = r*cos(1) + l*cos(asin(r*sin(1)/l)); span 0.5 [s]; output a every 0.5 [s] }
+END_OF
+check "a crank passes the turning points of its slips" run press coast --tol 1e-11
+check "its angle" near "$(final a)" 3.4085322936455413 1e-10
+check "and comes to rest" run press coast --until 10
+check "without a step more" near "$(final "a'")" 0 1e-15
+fi
+
+# ---- Painleve: a rod whose tip is guided, friction W_nn/|W_nt| = (1 + 3 sin^2)/(3 sin cos)
+if one_of 3; then
+model rod <<'END_OF'
+model rod
+coord x [m], y [m], th [rad]
+param m = 1 [kg] > 0, l = 1 [m] > 0, g = 9.81 [m/s^2] > 0, mu = 0.5 >= 0
+let px = x - l*sin(th), py = y - l*cos(th)
+kinetic = m/2*(x'^2 + y'^2) + m*l^2/6*th'^2
+potential = m*g*y
+guide tip: py = 0, friction = mu, slip = px'
+scene go { start th = 0.6, y = l*cos(0.6), x' = 3 [m/s]; span 0.01 [s] }
+END_OF
+limit=$(calc '(1 + 3*sin(0.6)^2)/(3*sin(0.6)*cos(0.6))' | cut -c1-6)
+check "below the limit one motion follows" run rod go mu=1.39
+check "above it several" refuses 3 "several motions follow at the guide tip.slip, of friction 1.41: .*from a friction of $limit" rod go mu=1.41
+check "or none" refuses 3 "no motion follows at the guide tip.slip, of friction 1.41: .*from a friction of $limit" rod go mu=1.41 "x'=-3"
+fi
+
+# ---- a start at rest that static friction holds, by a contact and by a guide, under a force that grows
+for kind in 'contact floor: y >= 0, restitution = 0,' 'guide floor: y = 0,'; do
+  printf "model held\ncoord a [rad], x [m], y [m]\nparam m = 1 [kg] > 0\nkinetic = m/2*(x'^2 + y'^2) + 0.01 [kg*m^2]/2*a'^2\npotential = m*9.81 [m/s^2]*y\nconstraint c: x = 1 [m]*cos(a)\n%s friction = 0.2, static = 0.4, slip = x'\nforce x = 2 [N] + 2.5 [N/s]*t\nscene go { start a = 1, x = cos(1); span 2 [s]; output x every 1 [s] }\n" "$kind" | model held
+  check "${kind%%:*} holds a body, then not" run held go
+  check "from 0.4 m g on" near "$(sed -n 's/.*"floor slips": {"count": 1, "first": \([-0-9.e]*\).*/\1/p' "$TMP/json")" 0.7696 1e-12
+done
+
+# ---- by moreau: the same laws, where it stops to the order of a step
+check "a block by moreau" run rail go --method 'moreau(step=1e-3)'
+check "slides to rest" near "$(final x)" "$(calc '1/(2*0.2*(30 - 19.62)/2)')" 1e-6
+check "and stays" near "$(final "x'")" 0 1e-15
+model beside <<'END_OF'
+model beside
+coord x [m], y [m], u [m], w [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0
+kinetic = m/2*(x'^2 + y'^2 + u'^2 + w'^2)
+potential = m*g*(y + w)
+guide rail: y = 0, friction = 0.1, slip = x'
+contact wall: 1 [m] - x >= 0, restitution = 0.5
+contact floor: w >= 0, restitution = 0, friction = 0.2, slip = u'
+scene go { start x' = 3 [m/s], u' = 1 [m/s]; span 3 [s]; output x, u }
+END_OF
+turned=$(calc '1 - (9 - 2*0.981)/4/(2*0.981)')
+check "beside contacts, one of which it strikes" run beside go
+check "with half its speed left" near "$(final x)" "$turned" 1e-12
+check "by moreau" run beside go --method 'moreau(step=1e-3)'
+check "to the path of a step" near "$(final x)" "$turned" 2e-3
+check "beside a contact with friction" near "$(final u)" "$(calc '1/(2*0.2*9.81)')" 1e-6
+
+# ---- refusals
+check "a negative friction" refuses 2 'the model declares mu >= 0' rail go mu=-0.1
+no_header() { ! "$LAGC" header "$TMP/rail.lag" -o "$TMP/h" 2>"$TMP/log" && grep -q 'write a guide as two contacts' "$TMP/log" || { cat "$TMP/log"; return 1; }; }
+check "headers" no_header
+
+tap_end
