@@ -26,7 +26,8 @@ int lag_rest_branch_open(RestBranch *r, lag_sim *like, const lag_algebra *algebr
 void lag_rest_branch_free(RestBranch *r);
 /* The periodic motions that leave a Hopf point: o, which is open then and solved for a small amplitude, with a start
  * from *like, which must outlive it; d[cols]: the direction of growing amplitude. 1: found, 0: not, < 0: a status. */
-int lag_hopf_orbit(RestBranch *r, const BranchPoint *at, PeriodicOrbit *o, lag_sim **like, BranchProblem *p, double **d);
+int lag_hopf_orbit(RestBranch *r, const BranchPoint *at, PeriodicOrbit *o, lag_sim **like, BranchProblem *p,
+                   double **d);
 /* u[cols] := the present unknowns. */
 void lag_rest_branch_unknowns(const RestBranch *r, double *u);
 

@@ -169,7 +169,8 @@ static void transform(int k, const double *to, const double *from, double *W, do
     }
 }
 
-/* Q[k k] := a reflection along no axis, so that all directions mix, those of parts that do not act on each other, too. */
+/* Q[k k] := a reflection along no axis, so that all directions mix, those of parts that do not act on each other,
+ * too. */
 static void reflect(int k, double *Q) {
   double size = 0, v = 0;
   for (int i = 0; i < k; i++) size += (1 + 0.31 * i) * (1 + 0.31 * i);

@@ -1,8 +1,8 @@
 /* The measures `lyapunov`, the largest Lyapunov exponent of a run (lyapunov.h), and `megno`, the mean exponential
- * growth of nearby orbits: the mean over t of Y(t) = 2/t int s d(log |d|), which tends to 2 for regular motions and grows as
- * half the exponent times t for chaotic ones (P. M. Cincotta, C. Simo, Astron. Astrophys. Suppl. 147 (2000) 205, DOI
- * 10.1051/aas:2000108). Enters: a run that has ended; leaves: the number, or why there is none. Holds: each takes a run
- * of its own, with a tangent, so that the first has the steps that it has without. */
+ * growth of nearby orbits: the mean over t of Y(t) = 2/t int s d(log |d|), which tends to 2 for regular motions and
+ * grows as half the exponent times t for chaotic ones (P. M. Cincotta, C. Simo, Astron. Astrophys. Suppl. 147 (2000)
+ * 205, DOI 10.1051/aas:2000108). Enters: a run that has ended; leaves: the number, or why there is none. Holds: each
+ * takes a run of its own, with a tangent, so that the first has the steps that it has without. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -46,7 +46,8 @@ static void at_event(void *exponent, int k, double t, const double *before, cons
   if (memcmp(before, after, (size_t)e->l.n * sizeof *before) != 0) lag_lyapunov_event(&e->l, e->sim, t, before);
 }
 
-/* A run like `first`, with a tangent; for MEGNO, which needs the growth from the begin, without a transient. 0, or a status with the reason in why. */
+/* A run like `first`, with a tangent; for MEGNO, which needs the growth from the begin, without a transient. 0, or a
+ * status with the reason in why. */
 static int begin(Exponent *e, const lag_sim *first, double until, MeasureKind kind, char *why, size_t size) {
   *e = (Exponent){.sim = lag_sim_like(first), .first = first};
   if (!e->sim) return snprintf(why, size, "out of memory"), LAG_ENOMEM;

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/fit.h"
+#include "app/fit_run.h"
 #include "io/svg_panel.h"
 
 enum { HIGH = 240, LOW = 110, GAP = 26 };

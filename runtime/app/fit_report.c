@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/fit.h"
+#include "app/fit_run.h"
 
 /* A value with the digits that its error leaves, and two more. */
 static void put_value(FILE *f, const FitTarget *t) {

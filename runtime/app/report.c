@@ -262,7 +262,8 @@ static void caveat(const App *app, const lag_stats *st, FILE *f) {
     const char *name = lag_state_column(app->sim, 0).name;
     int held = app->scene->model->nguides && !isnan(lag_sim_guide_part(app->sim, 0));
     fprintf(f, "note: nothing moves: the scene begins at rest, where %s", held ? "friction holds it" : "no force acts");
-    if (!started && !held) fprintf(f, "; write a start into it, `start %s = 0.1`, or give one here: %s=0.1", name, name);
+    if (!started && !held)
+      fprintf(f, "; write a start into it, `start %s = 0.1`, or give one here: %s=0.1", name, name);
     putc('\n', f);
   }
   if (isfinite(st->unresolved)) {
@@ -403,7 +404,8 @@ static void guides(const App *app, FILE *f) {
     if (isnan(part)) continue;
     fprintf(f, "guide %s sticks", m->constraints->of[m->contacts[m->guides[k].tangent].constraint].name);
     if (part > 1e-9) /* beyond rounding */
-      fprintf(f, ", self-locking: it needs %.3g %% of the friction that its force allows, also where all loads grow alike",
+      fprintf(f,
+              ", self-locking: it needs %.3g %% of the friction that its force allows, also where all loads grow alike",
               100 * part);
     putc('\n', f);
   }

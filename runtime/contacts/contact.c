@@ -87,8 +87,9 @@ static int make_room(ContactSet *w) {
   const lag_model *m = w->sim->scene->model;
   const lag_constraints *of = m->constraints;
   size_t p = (size_t)m->ncontacts, n = (size_t)of->n, nq = (size_t)m->nq;
-  double **const parts[] = {&w->gap,   &w->rate, &w->gap_size, &w->rate_size, &w->g, &w->c,    &w->r,   &w->d,
-                            &w->force, &w->test, &w->events,   &w->ahead,     &w->A, &w->mass, &w->law, &w->side, &w->pressed};
+  double **const parts[] = {&w->gap, &w->rate, &w->gap_size, &w->rate_size, &w->g,      &w->c,
+                            &w->r,   &w->d,    &w->force,    &w->test,      &w->events, &w->ahead,
+                            &w->A,   &w->mass, &w->law,      &w->side,      &w->pressed};
   const size_t sizes[] = {p,
                           p, p, p, n, n, n, nq, nq, (size_t)w->sim->pb.n, (size_t)(m->nev + m->nmodes), p,
                           (size_t)of->njacobian, (size_t)of->nmass, 3 * p + 4 * (size_t)m->nguides,
@@ -186,8 +187,9 @@ double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i
   return rate_change(m, A, i, before + nq) / speed - 1;
 }
 
-/* Whether a change d of velocities, d M d = square, keeps the constraints that always hold: it does not where they imply
- * the row that d moves, and the solver has left out one of theirs. Rates are measured by those of free coordinates. */
+/* Whether a change d of velocities, d M d = square, keeps the constraints that always hold: it does not where they
+ * imply the row that d moves, and the solver has left out one of theirs. Rates are measured by those of free
+ * coordinates. */
 static int keeps_constraints(const ContactSet *w, const double *d, double square) {
   const double alike = 1e-6;
   const lag_model *m = w->sim->scene->model;
@@ -198,7 +200,8 @@ static int keeps_constraints(const ContactSet *w, const double *d, double square
   for (int e = 0; e < of->njacobian; e++) {
     const lag_entry *at = &of->jacobian[e];
     double mass = 0;
-    for (int k = 0; k < of->nmass; k++) mass += of->mass[k].row == at->col && of->mass[k].col == at->col ? w->mass[k] : 0;
+    for (int k = 0; k < of->nmass; k++)
+      mass += of->mass[k].row == at->col && of->mass[k].col == at->col ? w->mass[k] : 0;
     rate[at->row] += w->A[e] * d[at->col];
     free[at->row] += mass > 0 ? w->A[e] * w->A[e] / mass : HUGE_VAL;
   }
@@ -376,8 +379,8 @@ static const double no_speed = 1e-9, no_flight = 0x1p6 * DBL_EPSILON;
 
 /* ---- contacts that take part */
 
-/* of[n] := contacts that take part, behind them tangents, those of guides last: closed before, of this event, or without a gap. Refuses a state set by `who` (if
- * not NULL) with a negative gap. */
+/* of[n] := contacts that take part, behind them tangents, those of guides last: closed before, of this event, or
+ * without a gap. Refuses a state set by `who` (if not NULL) with a negative gap. */
 static int find_touching(ContactSet *w, const char *who, int event) {
   lag_sim *s = w->sim;
   const lag_model *m = s->scene->model;

@@ -18,7 +18,9 @@ int lag_guides_stop(ContactSet *w, int event) {
   return LAG_OK;
 }
 
-double *lag_guide_pressed(const ContactSet *w, int guide, int c) { return w->pressed + (3 * guide + c) * (1 + w->rows); }
+double *lag_guide_pressed(const ContactSet *w, int guide, int c) {
+  return w->pressed + (3 * guide + c) * (1 + w->rows);
+}
 
 /* to[guides][3] := forces of the guides, with the inputs as they are. */
 static int forces(ContactSet *w, double *to, double *law) {

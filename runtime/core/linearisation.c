@@ -157,7 +157,8 @@ static int by_parameters(lag_problem *pb, const lag_parameter_columns *by, doubl
     const int *j = by->acts + of->at[k].col * by->n, *end = j + by->n;
     for (; j < end && *j >= 0; j++) to[*j] += d * chain[*j];
   }
-  if (rc == LAG_OK && in && pb->model->inputs) rc = in->eval(in, t, y, v, z, pb->p, pb->u, a, w->part, w->mass, pb->work);
+  if (rc == LAG_OK && in && pb->model->inputs)
+    rc = in->eval(in, t, y, v, z, pb->p, pb->u, a, w->part, w->mass, pb->work);
   for (int j = 0; j < by->n && in && pb->model->inputs && rc == LAG_OK; j++) {
     rc = inputs_by_parameter(pb, by, j, t, w->u, w->u + pb->model->nu);
     for (int k = 0; k < in->n; k++) dr[in->at[k].row * width + n + j] += w->part[k] * w->u[in->at[k].col];

@@ -347,7 +347,8 @@ static void raise_open(lag_sim *s, double *f) {
   const size_t n = (size_t)s->pb.n;
   double *noise = malloc(3 * n * sizeof *noise);
   rates_beside(s, 0, 0, NULL, f, s->yc);
-  if (noise && !lag_formula_rounding(s, LAG_FORMULA_RATES, s->run->t, s->now, s->pb.nq, noise, noise + n, noise + 2 * n))
+  if (noise &&
+      !lag_formula_rounding(s, LAG_FORMULA_RATES, s->run->t, s->now, s->pb.nq, noise, noise + n, noise + 2 * n))
     raise_rates(s, s->yc, noise, f);
   free(noise);
 }

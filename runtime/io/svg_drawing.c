@@ -47,8 +47,8 @@ static Spot spot_of(const View *v, const int *of) {
 
 static const char *colour_of(const View *v, const lag_shape *s) {
   static const char *const tone[][2] = {
-      {"link", "#777"},     {"spring", "#5a6b7b"}, {"support", "#8a8178"}, {"force", "#c1121f"}, {"velocity", "#00755c"},
-      {"path", "#d98200"},  {"text", "#666"},      {"second", "#7a5195"},  {"star", "#e0a100"},  {"ghost", "#c4c4c4"}};
+      {"link", "#777"},    {"spring", "#5a6b7b"}, {"support", "#8a8178"}, {"force", "#c1121f"}, {"velocity", "#00755c"},
+      {"path", "#d98200"}, {"text", "#666"},      {"second", "#7a5195"},  {"star", "#e0a100"},  {"ghost", "#c4c4c4"}};
   int n = 0;
   for (size_t i = 0; i < sizeof tone / sizeof *tone; i++)
     if (strcmp(tone[i][0], s->role) == 0) return tone[i][1];
@@ -71,7 +71,8 @@ static void stroke(const View *v, const Spot *at, int n, const char *colour, dou
 }
 
 static void fill(const View *v, const Spot *at, int n, const char *colour, double opacity) {
-  fprintf(v->f, "<path fill=\"%s\" fill-opacity=\"%.2g\" stroke=\"%s\" stroke-width=\"1.5\" d=\"", colour, opacity, colour);
+  fprintf(v->f, "<path fill=\"%s\" fill-opacity=\"%.2g\" stroke=\"%s\" stroke-width=\"1.5\" d=\"", colour, opacity,
+          colour);
   trail(v, at, n, "Z\"/>\n");
 }
 
@@ -176,7 +177,8 @@ static void put_cuboid(const View *v, const lag_shape *s) {
 
 static void put_box(const View *v, const lag_shape *s) {
   double a = value(v, s->size[0], 0) / 2, b = value(v, s->size[1], 0) / 2;
-  Spot at[] = {body_spot(v, s, -a, -b, 0), body_spot(v, s, a, -b, 0), body_spot(v, s, a, b, 0), body_spot(v, s, -a, b, 0)};
+  Spot at[] = {body_spot(v, s, -a, -b, 0), body_spot(v, s, a, -b, 0), body_spot(v, s, a, b, 0),
+               body_spot(v, s, -a, b, 0)};
   fill(v, at, 4, colour_of(v, s), 0.35);
 }
 
@@ -257,8 +259,8 @@ static void put_shape(View *v, const lag_shape *s) {
 /* Place of a kind from the back to the front; what does not move, and whole paths, are below TIMED. */
 enum { TIMED = 4, NEAREST = 11 };
 static int layer(const lag_shape *s) {
-  static const char *const kinds[] = {"ground", "wall", "curve", "path", "rod", "spring", "damper", "disc", "box", "body",
-                                      "ball",   "arrow", "text"};
+  static const char *const kinds[] = {"ground", "wall", "curve", "path", "rod",   "spring", "damper",
+                                      "disc",   "box",  "body",  "ball", "arrow", "text"};
   int k = 0;
   while (strcmp(kinds[k], s->kind) != 0 && k + 1 < (int)(sizeof kinds / sizeof *kinds)) k++;
   return k;

@@ -30,9 +30,17 @@ lag_moreau_contacts lag_moreau_contacts_of(const lag_problem *pb, double *law) {
   const lag_model *m = pb->model;
   const lag_constraints *of = m->constraints;
   if (!m->ncontacts) return (lag_moreau_contacts){0};
-  lag_moreau_contacts w = {.contacts = m->ncontacts - m->nguides, .constraints = of->n, .nq = m->nq, .entries = of->njacobian,
-                           .nmass = of->nmass, .band = band_of(of), .at = m->contacts, .jacobian_at = of->jacobian,
-                           .mass_at = of->mass, .epsilon = DBL_EPSILON, .guess = pb->contact_impulse};
+  lag_moreau_contacts w = {.contacts = m->ncontacts - m->nguides,
+                           .constraints = of->n,
+                           .nq = m->nq,
+                           .entries = of->njacobian,
+                           .nmass = of->nmass,
+                           .band = band_of(of),
+                           .at = m->contacts,
+                           .jacobian_at = of->jacobian,
+                           .mass_at = of->mass,
+                           .epsilon = DBL_EPSILON,
+                           .guess = pb->contact_impulse};
   lag_contacts_place(&w, m->ncontacts * m->nq, pb->contact_room + pb->n);
   w.law = law;
   return w;

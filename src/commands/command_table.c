@@ -154,12 +154,16 @@ static const CommandRow commands[] = {
      "measured; `at half the time` is the estimate then. An exponent of zero approaches 0 as log(t)/t. "
      "Method and steps are chosen as for `lagc run`: --method, --tol, --step.\n\n"
      "  name=value            a parameter, another start, an input: as for lagc run"},
-    {CMD_FIT, "fit", "estimate", "MODEL [SCENE] [name=value ...] --data FILE.csv --fit NAME,NAME [--sigma X] [--svg FILE]",
+    {CMD_FIT, "fit", "estimate",
+     "MODEL [SCENE] [name=value ...] --data FILE.csv --fit NAME,NAME [--sigma X] [--svg FILE]",
      "parameters and starts from a measured motion, with errors",
-     "Finds the parameters and starts with which the motion is nearest to measured values, by nonlinear least squares on "
-     "exact derivatives. A column of the data is any expression of the model with its unit: t [s],th [deg],l*sin(th) [cm]; "
+     "Finds the parameters and starts with which the motion is nearest to measured values, by nonlinear least squares "
+     "on "
+     "exact derivatives. A column of the data is any expression of the model with its unit: t [s],th [deg],l*sin(th) "
+     "[cm]; "
      "rows are at any times. Records are fitted from short to long. A parameter that is declared > 0 stays so.\n\n"
-     "The report has values with standard errors, chi squared where the errors of the data are given, a test whether the "
+     "The report has values with standard errors, chi squared where the errors of the data are given, a test whether "
+     "the "
      "residuals have a trend, the combinations that the data cannot tell apart, `only g/l: (g, l) along (9.81, 1) "
      "changes nothing`, and a scene to paste. Needs GSL.\n\n"
      "  name=value            a parameter or start: where the search begins, or held\n\n"
@@ -268,8 +272,7 @@ static const CommandRow commands[] = {
      "x86_64-w64-mingw32-gcc` makes one for both. A model with contacts is for co-simulation alone, "
      "by steps of the method moreau, of the size that its scene gives, whatever the tolerance is. Constraints that "
      "hold while a condition is true are refused."},
-    {CMD_PAGE, "page", NULL, "MODEL [SCENE ...] -o FILE.html",
-     "a page that computes the motion, as one HTML file",
+    {CMD_PAGE, "page", NULL, "MODEL [SCENE ...] -o FILE.html", "a page that computes the motion, as one HTML file",
      "Writes one HTML file that computes the motion as one watches: it has liblag as WebAssembly and the programs that "
      "were compared with the text, and needs no network and no compiler. Bodies can be dragged, parameters have "
      "sliders, effects switches: a program for each set of effects, where there are at most four, so that only what is "

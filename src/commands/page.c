@@ -16,8 +16,9 @@
 
 enum { SETS_MOST = 16 };
 
-static const char need[] = "`lagc page` needs %s, liblag as WebAssembly: run `make page` where lagc is built, with Clang "
-                           "for it (apt-get install clang lld wasi-libc libclang-rt-14-dev-wasm32)";
+static const char need[] =
+    "`lagc page` needs %s, liblag as WebAssembly: run `make page` where lagc is built, with Clang "
+    "for it (apt-get install clang lld wasi-libc libclang-rt-14-dev-wasm32)";
 
 /* Appends bytes in base 64 (RFC 4648, 4). */
 static void put_base64(StrBuf *out, const char *bytes, size_t n) {

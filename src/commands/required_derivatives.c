@@ -67,7 +67,8 @@ static unsigned required_by_choice(const Eqns *e, const Options *o) {
          (e->conserves_energy && !e->m->states.n ? 0u : WANT_LINEAR);
 }
 
-/* Whether a measure of the scene or of --measure contains the Lyapunov exponent or MEGNO, for which runs have tangents. */
+/* Whether a measure of the scene or of --measure contains the Lyapunov exponent or MEGNO, for which runs have
+ * tangents. */
 static int measures_exponent(const Eqns *e) {
   int found = 0;
   const Measures *lists[] = {&e->m->scene.measures, &e->m->asked_measures};

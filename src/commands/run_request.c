@@ -218,7 +218,8 @@ static int prepare_plot(RequestBuilder *k, const char **error) {
   if (o->cloud && o->phase) *error = "--cloud draws the coordinate and its momentum, or --x and --y; leave out --phase";
   else if (o->cloud && !x && !y && (x = only_coordinate(k, "--cloud", &second, error)))
     y = second ? second : arena_printf(k->arena, "p_%s", x);
-  for (uint32_t i = 0; i < o->rest.n && !k->p->drawing; i++) k->p->drawing = strncmp(o->rest.at[i], "--drawing", 9) == 0;
+  for (uint32_t i = 0; i < o->rest.n && !k->p->drawing; i++)
+    k->p->drawing = strncmp(o->rest.at[i], "--drawing", 9) == 0;
   if (o->cloud) add_argument(k, "--cloud", o->cloud);
   if (o->energy_error) add_argument(k, "--energy-error", NULL);
   if (o->distance) add_argument(k, "--distance", NULL);

@@ -32,7 +32,8 @@ static int array_index(const NestBuilder *b, const Subscript *at, Ins *load, IrS
     const Ins *x = &p->ins.at[arg_slot(b, k)];
     if (x->op != IR_LOAD || x->array != load->array || x->index != load->index + (k - least) / step * by) return 0;
   }
-  *index = (IrSubscript){load->index + (at->first - least) / step * by, at->by_row / step * by, at->by_turn / step * by};
+  *index =
+      (IrSubscript){load->index + (at->first - least) / step * by, at->by_row / step * by, at->by_turn / step * by};
   return 1;
 }
 

@@ -302,7 +302,8 @@ Prog *lower_switches(const Eqns *e) {
 static Prog *lower_contacts(const Eqns *e, uint32_t each) {
   Lower l = lower_new(e);
   const Model *m = e->m;
-  uint32_t n = m->contacts.n, some = 0, all = each * n, *of = ARENA_ARRAY(m->arena, uint32_t, (each + 4) * (size_t)n + 1);
+  uint32_t n = m->contacts.n, some = 0, all = each * n,
+           *of = ARENA_ARRAY(m->arena, uint32_t, (each + 4) * (size_t)n + 1);
   Expr *law = ARENA_ARRAY(m->arena, Expr, (each + 4) * (size_t)n + 1);
   for (uint32_t i = 0; i < n; i++) {
     const Contact *c = &m->contacts.at[i];

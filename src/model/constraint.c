@@ -215,7 +215,9 @@ static void add_tangents(Builder *b, const AstStmt *st, Name effect, const Conta
   t.hold = coefficient(b, st, effect, "static", HUGE_VAL, "a coefficient of static friction", t.friction);
   t.restitution = coefficient(b, st, effect, "tangential", 1, "a tangential restitution", expr_int(b->g, 0));
   Value slip = resolve(b, v, IN_DYNAMICS, effect);
-  if (!check_slip(b, st, v, &slip, &m->constraints.at[c->constraint]) || !t.friction || !t.hold || !t.restitution || t.law < 0) return;
+  if (!check_slip(b, st, v, &slip, &m->constraints.at[c->constraint]) || !t.friction || !t.hold || !t.restitution ||
+      t.law < 0)
+    return;
   scope_add(&b->constraints, (Entity){.index = m->constraints.n,
                                       .name = intern_printf(b, "slip"),
                                       .effect = c->name,

@@ -182,7 +182,8 @@ static int read_text(Eval *ev, struct Quantified *q) {
     return 0;
   mark_index(ev, y->a, first, inside);
   mark_index(ev, y->b, first, inside);
-  q->range = (LoopRange){.rows = (uint32_t)(q->hi - q->lo + 1), .skew = q->from.by_i, .more = q->to.by_i - q->from.by_i};
+  q->range =
+      (LoopRange){.rows = (uint32_t)(q->hi - q->lo + 1), .skew = q->from.by_i, .more = q->to.by_i - q->from.by_i};
   q->range.turns = q->to.first - q->from.first + q->range.more * q->lo + 1;
   for (AstId k = last + 1; k-- > first;) {
     const AstExpr *n = ast_expr(ast, k);

@@ -38,8 +38,8 @@ void expr_write_out(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *cel
  * them; *rest: the other terms. 0: e has no cells, or their factors differ from turn to turn. */
 Expr expr_gather_sum(ExprGraph *g, Expr e, Expr *rest);
 
-/* sum_terms.c: a cell as a person writes it: a sum over i and j, or for a derivative the sums over the index that is left;
- * the body is in symbols that have the names r[i].x. */
+/* sum_terms.c: a cell as a person writes it: a sum over i and j, or for a derivative the sums over the index that is
+ * left; the body is in symbols that have the names r[i].x. */
 typedef struct {
   int minus;
   const char *index[2], *from[2], *to[2]; /* index NULL: no (second) sum */

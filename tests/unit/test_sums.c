@@ -152,8 +152,10 @@ static void other_texts_are_written_out(void **state) {
   for (size_t k = 0; k < sizeof other / sizeof *other; k++) {
     Arena *a = arena_new(NULL);
     Real out[2][10];
-    const char *text = arena_printf(a, "const N = %%d\ncoord x[N]\nparam k = 1\nlet c[i in 1..N] = x[i]^2\n"
-                                       "function far(s) = s*x[4]\nlagrangian = sum(i in 1..N, x[i]'^2/2) - %s", other[k]);
+    const char *text = arena_printf(a,
+                                    "const N = %%d\ncoord x[N]\nparam k = 1\nlet c[i in 1..N] = x[i]^2\n"
+                                    "function far(s) = s*x[4]\nlagrangian = sum(i in 1..N, x[i]'^2/2) - %s",
+                                    other[k]);
     Eqns *whole = family(a, text, 5, 1), *pairs = family(a, text, 5, UINT32_MAX);
     assert_int_equal(whole->m->sums.n, 0);
     values(whole, 3, out[0]);

@@ -1,7 +1,7 @@
 /* --fit: parameters and starts from measured motions (analysis/fit.h). Enters: names, and a file of data whose columns
  * lagc has made outputs of the scene; leaves: values with errors, a report, a picture. Holds: columns are matched by
  * name and unit, times are taken as they are, and what does not fit is refused with its line. */
-#include "app/fit.h"
+#include "app/fit_run.h"
 
 #include <errno.h>
 #include <math.h>
