@@ -47,6 +47,13 @@ check "compiled, too" cmp "$TMP/never" "$TMP/always"
 "$LAGC" run models/pendulum.lag --compile never --precision long >/dev/null 2>"$TMP/err"
 is "other numbers than doubles need the compiler" "lagc: --compile never evaluates doubles only: leave --precision out" "$(cat "$TMP/err")"
 
+# A run of some seconds changes over to what was compiled beside it; nobody can see where.
+changes_over() {
+  "$LAGC" run models/double_pendulum.lag --until 20000 --every 1 --quiet -o "$TMP/auto.csv" && "$LAGC" run models/double_pendulum.lag --until 20000 --every 1 --compile never --quiet -o "$TMP/never.csv" &&
+    cmp "$TMP/auto.csv" "$TMP/never.csv" && [ -n "$(find "$XDG_CACHE_HOME" -type f)" ]
+}
+slow check "rows of a run that changes over" changes_over
+
 # Bytes cut short, or with changed bits, bytes and words.
 "$LAGC" build models/bouncing_ball.lag --bytes -o "$TMP/ball"
 "$LAGC" build models/lennard_jones.lag -D N=14 --method taylor --bytes -o "$TMP/nests"
