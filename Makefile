@@ -102,7 +102,7 @@ SHARED   := action_integral consistent_state magnitudes option_range quadrature
 NOT_HERE := $(if $(WINDOWS),%/process.c %/clock.c %/threads.c,%windows.c)
 LAGC_SRC := $(filter-out src/main.c $(NOT_HERE),$(wildcard src/*.c src/*/*.c))
 GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c toolchain/outfile.c $(if $(WINDOWS),base/windows.c) $(SHARED:%=numeric/%.c))
-RT_SRC   := $(filter-out runtime/gsl/% runtime/png/% runtime/hdf5/% runtime/mpi/% runtime/matlab/% runtime/run/% $(NOT_HERE),$(wildcard runtime/*/*.c))
+RT_SRC   := $(filter-out runtime/gsl/% runtime/png/% runtime/hdf5/% runtime/mpi/% runtime/matlab/% runtime/page/% runtime/evaluator/lag_run.c $(NOT_HERE),$(wildcard runtime/*/*.c))
 GSL_SRC  := $(wildcard runtime/gsl/*.c)
 
 LAGC_OBJ := $(LAGC_SRC:%.c=$(BUILD)/obj/%.o) $(GEN_SRC:$(BUILD)/gen/%.c=$(BUILD)/obj/gen/%.o)
@@ -137,10 +137,10 @@ $(BUILD)/liblag.a: $(RT_OBJ)
 	$(ARCHIVE) $^
 	$(INDEX)
 # The simulator that evaluates models, as `lagc run` begins: it needs no compiler.
-$(BUILD)/obj/runtime/run/main.o: RT_FLAGS += $(if $(GSL),-DLAG_WITH_GSL)
-$(BUILD)/obj/runtime/run/main.o: $(CONFIG)
-$(BUILD)/lag-run$(EXE): $(BUILD)/obj/runtime/run/main.o $(if $(GSL),$(BUILD)/liblag_gsl.a) $(BUILD)/liblag.a
-	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) $(if $(WINDOWS),-static) -o $@ $^ $(GSL_LIBS) -lm
+$(BUILD)/obj/runtime/evaluator/lag_run.o: RT_FLAGS += $(if $(GSL),-DLAG_WITH_GSL)
+$(BUILD)/obj/runtime/evaluator/lag_run.o: $(CONFIG)
+$(BUILD)/lag-run$(EXE): $(BUILD)/obj/runtime/evaluator/lag_run.o $(if $(GSL),$(BUILD)/liblag_gsl.a) $(BUILD)/liblag.a
+	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) $(if $(WINDOWS),-static,-rdynamic) -o $@ $^ $(GSL_LIBS) -lm $(if $(WINDOWS),,-ldl)
 # References within it are bound to its own functions.
 $(BUILD)/liblag.so.%: $(RT_OBJ) runtime/liblag.map
 	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) -shared -Wl,-soname,$(@F) -Wl,--version-script=runtime/liblag.map -Wl,-Bsymbolic -o $@ $(RT_OBJ) -lm
@@ -195,6 +195,9 @@ API_HEAD := lag.h lag_libraries.h lag_model.h
 # Of every scalar; emitted C includes them.
 ANY_HEAD := lag_lanes.h lag_math.h lag_sincos.h lag_support.h lag_kkt.h
 
+# Bytes are evaluated in doubles.
+REAL_SRC := $(filter-out runtime/evaluator/%,$(RT_SRC))
+
 define precision_rules
 $(BUILD)/gen/$(1)/%: runtime/% runtime/precision.awk
 	@mkdir -p $$(@D)
@@ -209,12 +212,12 @@ $(ANY_HEAD:%=$(BUILD)/lag-$(1)/%): $(BUILD)/lag-$(1)/%.h: runtime/include/%.h
 $(BUILD)/obj/$(1)/%.o: $(BUILD)/gen/$(1)/%.c $(RT_HEAD:%=$(BUILD)/gen/$(1)/%) | $(BUILD)/gen/io/page.h $(TABLES)
 	@mkdir -p $$(@D)
 	$$(CCACHE) $$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(PIC) $$(CFLAGS) $$(SAFE) -c -o $$@ $$<
-$(BUILD)/liblag_$(1).a: $(RT_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%) $(ANY_HEAD:%=$(BUILD)/lag-$(1)/%)
+$(BUILD)/liblag_$(1).a: $(REAL_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%) $(ANY_HEAD:%=$(BUILD)/lag-$(1)/%)
 	$$(ARCHIVE) $$(filter %.o,$$^)
 	$$(INDEX)
 endef
 $(foreach p,$(PRECISIONS),$(eval $(call precision_rules,$(p))))
-.SECONDARY: $(foreach p,$(PRECISIONS),$(RT_HEAD:%=$(BUILD)/gen/$(p)/%) $(RT_SRC:runtime/%=$(BUILD)/gen/$(p)/%))
+.SECONDARY: $(foreach p,$(PRECISIONS),$(RT_HEAD:%=$(BUILD)/gen/$(p)/%) $(REAL_SRC:runtime/%=$(BUILD)/gen/$(p)/%))
 
 SHELLS := bash zsh fish
 # Texts as C, in the order of their lines: `static const char *const NAME[]`, with the name of the file that they become.
@@ -308,7 +311,7 @@ run-demo: all
 gallery: all precisions
 	@sed -n 's|^Drawn by `build/lagc \(.*\)`:$$|$(BUILD)/lagc \1 --quiet|p' models/README.md | sh -e
 
-include tests/tests.mk .ci/install.mk
+include tests/tests.mk .ci/install.mk .ci/page.mk
 
 # ---- the rest ---------------------------------------------------------------------------------------
 clean:
@@ -348,4 +351,4 @@ ifneq ($(BUILDS),)
 endif
 
 FORCE:
-.PHONY: FORCE all demo run-demo precisions gallery test check-quick test-long test-all bless hard bench cost-report build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall dist clean help
+.PHONY: FORCE all page demo run-demo precisions gallery test check-quick test-long test-all bless hard bench cost-report build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall dist clean help

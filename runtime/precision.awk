@@ -9,7 +9,7 @@ BEGIN {
   suffix = kind == "quad" ? "Q" : "L"
   limits = kind == "quad" ? "FLT128_" : "LDBL_"
   n = split("acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh erfc exp exp2 expm1 fabs floor fma fmax fmin fmod " \
-            "frexp hypot ilogb ldexp llround log log10 log1p log2 logb lrint lround nearbyint nextafter pow remainder rint round scalbn sin sinh sqrt tan " \
+            "frexp hypot ilogb ldexp llround log log10 log1p log2 logb lrint lround nearbyint nextafter pow remainder rint round scalbn sin sinh sqrt tan tgamma " \
             "tanh trunc", names, " ")
   for (i = 1; i <= n; i++) renamed[names[i]] = names[i] (kind == "quad" ? "q" : "l")
   renamed["strtod"] = kind == "quad" ? "strtoflt128" : "strtold"

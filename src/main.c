@@ -33,12 +33,16 @@ static int do_command(Compiler *c) {
     case CMD_EMIT: return command_emit(c);
     case CMD_HEADER: return command_header(c);
     case CMD_FMU: return command_fmu(c);
+    case CMD_PAGE: return command_page(c);
     case CMD_BUILD: return command_build(c);
     case CMD_RUN:
     case CMD_PLOT:
     case CMD_ANIMATE:
     case CMD_MODES:
+    case CMD_ORBIT:
+    case CMD_CONTINUE:
     case CMD_LYAPUNOV:
+    case CMD_FIT:
     case CMD_COST:
     case CMD_SWEEP: return command_run(c);
     case CMD_EFFECTS: return command_effects(c);

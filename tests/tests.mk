@@ -89,7 +89,7 @@ build-san:
 	$(SAN_MAKE) $(if $(ONLY),,$(SAN_BUILD)/lagc) $(SAN_LAGC) $(SAN_RT)
 build-plain:
 	@echo 'building $(BUILD)/lagc'
-	$(QUIET) all
+	$(QUIET) all $(if $(WASM),page)
 build-more: build-san build-plain
 	@echo 'building other precisions$(if $(CLANG), and $(BUILD)/clang by clang)'
 	$(QUIET) precisions

@@ -25,7 +25,7 @@ typedef struct Plan {
   CostSweep *s;
   MethodProgress *of; /* [s->n] */
   Samples own;
-  double begin; /* by the clock [s] */
+  double begin, worked; /* by the clock, and by the processor's [s] */
   int stopped;  /* 1: the caller ended the sweep */
 } Plan;
 
@@ -35,6 +35,12 @@ static const double rough = 0.3;
 static const double behind = 3;
 
 static double used(const Plan *p) { return lag_clock_seconds() - p->begin; }
+
+/* Time by the clock for one of the processor: more than 1 beside other programs. */
+static double slowness(const Plan *p) {
+  double worked = lag_processor_seconds() - p->worked;
+  return worked > 1e-3 ? fmax(used(p) / worked, 1) : 1;
+}
 
 static int is_adaptive(const CostMethod *m) { return (m->method->flags & LAG_METHOD_ADAPTIVE) != 0; }
 
@@ -72,13 +78,13 @@ static double front_time(const CostSweep *s, double error) {
 /* Number of the method whose setting is run next; -1: nothing is left that the time allows. */
 static int choose(const Plan *p) {
   const CostSweep *s = p->s;
-  double left = 0.7 * s->seconds - used(p), least = HUGE_VAL;
+  double slow = slowness(p), left = 0.7 * s->seconds - used(p), least = HUGE_VAL;
   int which = -1, near = 0;
   for (int i = 0; i < s->n; i++) {
     const MethodProgress *g = &p->of[i];
     if (g->done) continue;
     int pilot = s->method[i].nruns < 2, front = pilot || g->time <= behind * front_time(s, g->error);
-    if (g->time > fmin(left, s->seconds * (pilot ? 0.05 : front ? 0.3 : 0.01))) continue;
+    if (slow * g->time > fmin(left, s->seconds * (pilot ? 0.05 : front ? 0.3 : 0.01))) continue;
     if (front > near || (front == near && g->time < least)) {
       which = i;
       near = front;
@@ -169,7 +175,7 @@ static int repeat_front(Plan *p) {
   for (int i = 0; i < s->n; i++)
     for (int k = 0; k < s->method[i].nruns && rc == LAG_OK && !p->stopped; k++) {
       CostRun *run = &s->method[i].run[k], again = *run;
-      if (run->time > close * front_time(s, run->error) || used(p) + 3 * run->time > s->seconds) continue;
+      if (run->time > close * front_time(s, run->error) || used(p) + 3 * slowness(p) * run->time > s->seconds) continue;
       p->stopped = s->note && s->note(s->context, &s->method[i], used(p) / s->seconds);
       rc = lag_cost_run(&s->method[i], s, fmax(enough, 3 * run->time), run->time > enough ? 3 : 41, HUGE_VAL, &p->own,
                         &again);
@@ -180,9 +186,11 @@ static int repeat_front(Plan *p) {
 }
 
 int lag_cost_sweep(CostSweep *s) {
-  Plan p = {.s = s, .of = calloc((size_t)s->n + 1, sizeof *p.of), .begin = lag_clock_seconds()};
+  Plan p = {.s = s, .of = calloc((size_t)s->n + 1, sizeof *p.of), .begin = lag_clock_seconds(),
+            .worked = lag_processor_seconds()};
   int rc = lag_samples_init(&p.own, s->reference->rows, s->reference->n), i;
   p.own.output = s->reference->output;
+  s->end = p.begin + s->seconds;
   if (rc == LAG_OK) memcpy(p.own.t, s->reference->t, (size_t)s->reference->rows * sizeof *p.own.t);
   if (!p.of) rc = LAG_ENOMEM;
   for (i = 0; i < s->n && rc == LAG_OK; i++) {

@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "analysis/fastest_rate.h"
 #include "analysis/orthonormalise.h"
 #include "core/core.h"
 
@@ -54,28 +55,6 @@ static void close_block(Lyapunov *l) {
   l->nblocks++;
 }
 
-/* Upper bound of the spectral radius of A = Df: |A^16|^(1/16), in which units hardly count. A is destroyed. */
-static double fastest(Lyapunov *l) {
-  double rate = 1, root = 1;
-  int n = l->n;
-  for (int turn = 0; turn < 5; turn++, root /= 2) {
-    double size = 0;
-    for (int i = 0; i < n * n; i++) size += l->A[i] * l->A[i];
-    size = sqrt(size);
-    rate *= pow(size, root);
-    if (!(size > 0)) return 0;
-    memset(l->B, 0, (size_t)(n * n) * sizeof(double));
-    for (int i = 0; i < n * n; i++) l->A[i] /= size;
-    for (int i = 0; i < n && turn < 4; i++)
-      for (int k = 0; k < n; k++) {
-        double a = l->A[i * n + k];
-        for (int j = 0; j < n && a != 0.0; j++) l->B[i * n + j] += a * l->A[k * n + j];
-      }
-    memcpy(l->A, l->B, (size_t)(n * n) * sizeof(double));
-  }
-  return rate;
-}
-
 /* Df at y, t: adds its trace to the divergence since the last call, once that counts, and sets the longest next
  * step. */
 static int examine_jacobian(Lyapunov *l, lag_sim *sim, double t, const double *y) {
@@ -93,7 +72,7 @@ static int examine_jacobian(Lyapunov *l, lag_sim *sim, double t, const double *y
   }
   l->traced = t;
   l->divergence += dt * (before + l->trace) / 2;
-  double rate = fastest(l);
+  double rate = lag_fastest_rate(n, l->A, l->B);
   pb->longest = rate > 0 ? resolution / rate : 0;
   return LAG_OK;
 }

@@ -6,8 +6,8 @@
  *   max() min() mean() rms() drift() period()   of the expression before, along the run; max(10..20) from 10 to 20 s
  *   at()                    the quantity at the time [s] before; without these words, at the end of the run
  *   hit(EVENT) count(EVENT) the time of its firing number n, which stands before; the number of firings
- *   end() lyapunov() the time at which the run ends; the largest Lyapunov exponent without the run's first tenth,
- *                           by a second run with a tangent
+ *   end() lyapunov() megno() the time at which the run ends; the largest Lyapunov exponent without the run's first
+ *                           tenth; the mean exponential growth of nearby orbits; by runs with a tangent
  *   [FACTOR OFFSET UNIT] the last word: the unit of the value; without it a quantity alone is in its own, others in
  *   SI.
  * All is computed in SI.

@@ -1,6 +1,8 @@
-/* The measure `lyapunov`: the largest Lyapunov exponent of a run (lyapunov.h). Enters: a run that has ended; leaves:
- * the exponent, or why there is none. Holds: it takes a run of its own, with a tangent, so that the first has the
- * steps that it has without. */
+/* The measures `lyapunov`, the largest Lyapunov exponent of a run (lyapunov.h), and `megno`, the mean exponential
+ * growth of nearby orbits: the mean over t of Y(t) = 2/t int s d(log |d|), which tends to 2 for regular motions and
+ * grows as half the exponent times t for chaotic ones (P. M. Cincotta, C. Simo, Astron. Astrophys. Suppl. 147 (2000)
+ * 205, DOI 10.1051/aas:2000108). Enters: a run that has ended; leaves: the number, or why there is none. Holds: each
+ * takes a run of its own, with a tangent, so that the first has the steps that it has without. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,11 +18,25 @@ typedef struct Exponent {
   lag_sim *sim;
   const lag_sim *first; /* the run that is measured: its hook ends this one, too */
   int rc;
+  double t, growth, y, mean; /* end of the last step; int s d(log |d|), Y and its integral until then, since l.begun */
 } Exponent;
+
+/* MEGNO over the last step, in whose middle its growth counts. */
+static void add_growth(Exponent *e, double growth) {
+  const Lyapunov *l = &e->l;
+  double from = e->t - l->begun, to = l->t - l->begun, before = e->y;
+  e->t = l->t;
+  if (!(to > 0) || !(from >= 0)) return;
+  e->growth += (from + to) / 2 * growth;
+  e->y = 2 * e->growth / to;
+  e->mean += (before + e->y) / 2 * (to - from);
+}
 
 static int after_step(void *exponent, const lag_sim *sim) {
   Exponent *e = exponent;
+  double before = e->l.sum[0];
   if (e->rc == 0) e->rc = lag_lyapunov_step(&e->l, e->sim);
+  if (e->rc == 0) add_growth(e, e->l.sum[0] - before);
   return e->rc != 0 || (e->first->on_step && e->first->on_step(e->first->on_step_context, sim));
 }
 
@@ -30,12 +46,15 @@ static void at_event(void *exponent, int k, double t, const double *before, cons
   if (memcmp(before, after, (size_t)e->l.n * sizeof *before) != 0) lag_lyapunov_event(&e->l, e->sim, t, before);
 }
 
-/* A run like `first`, with a tangent. 0, or a status with the reason in why. */
-static int begin(Exponent *e, const lag_sim *first, double until, char *why, size_t size) {
+/* A run like `first`, with a tangent; for MEGNO, which needs the growth from the begin, without a transient. 0, or a
+ * status with the reason in why. */
+static int begin(Exponent *e, const lag_sim *first, double until, MeasureKind kind, char *why, size_t size) {
   *e = (Exponent){.sim = lag_sim_like(first), .first = first};
   if (!e->sim) return snprintf(why, size, "out of memory"), LAG_ENOMEM;
-  double t0 = lag_sim_time(e->sim);
-  int rc = until > t0 ? lag_lyapunov_begin(&e->l, e->sim, 1, t0 + (until - t0) / TURNING, until) : LAG_EINVAL;
+  double t0 = lag_sim_time(e->sim), from = kind == MEASURE_MEGNO ? t0 : t0 + (until - t0) / TURNING;
+  int rc = until > t0 ? lag_lyapunov_begin(&e->l, e->sim, 1, from, until) : LAG_EINVAL;
+  if (kind == MEASURE_MEGNO) /* the first step counts, too */
+    e->l.begun = e->l.block_from = e->l.traced = e->t = t0;
   if (rc)
     snprintf(why, size, "%s",
              until > t0 ? lag_sim_message(e->sim) : "an exponent is a mean over a long time, forwards");
@@ -50,8 +69,8 @@ static void end(Exponent *e) {
 int lag_measures_refused(const Measures *m, const lag_sim *like, double until, char *why, size_t size) {
   Exponent e;
   int rc = 0;
-  if (m->exponent) {
-    rc = begin(&e, like, until, why, size);
+  if (m->exponent || m->megno) {
+    rc = begin(&e, like, until, MEASURE_LYAPUNOV, why, size);
     if (rc == 0 && lag_sim_time(like) != lag_sim_time(e.sim))
       rc = LAG_EINVAL, snprintf(why, size, "a saved state holds no tangent; run it in one piece");
     end(&e);
@@ -59,7 +78,7 @@ int lag_measures_refused(const Measures *m, const lag_sim *like, double until, c
   return rc ? -1 : 0;
 }
 
-double lag_measure_lyapunov(Measures *m, const lag_sim *first, double until) {
+double lag_measure_lyapunov(Measures *m, const lag_sim *first, double until, MeasureKind kind) {
   Exponent e;
   double x = NAN;
   char *why = m->no_exponent;
@@ -69,7 +88,7 @@ double lag_measure_lyapunov(Measures *m, const lag_sim *first, double until) {
              LAG_TEXT(until));
   else if (m->status) snprintf(why, size, "the run is not complete");
   if (m->status) return NAN;
-  if (begin(&e, first, until, why, size) == 0) {
+  if (begin(&e, first, until, kind, why, size) == 0) {
     lag_sim_on_step(e.sim, after_step, &e);
     lag_sim_on_event(e.sim, at_event, &e);
     int rc = lag_sim_advance(e.sim, until);
@@ -84,6 +103,7 @@ double lag_measure_lyapunov(Measures *m, const lag_sim *first, double until) {
       snprintf(why, size,
                "neighbouring motions become one where the motion begins to slide, an exponent of minus infinity");
     if (e.rc || rc || x == -HUGE_VAL) x = NAN;
+    else if (kind == MEASURE_MEGNO) x = e.mean / (e.l.t - e.l.begun);
   }
   end(&e);
   return x;

@@ -13,7 +13,8 @@ typedef enum MeasureKind {
   MEASURE_HIT,      /* firing number a of event `index` */
   MEASURE_FIRINGS,  /* of event `index` */
   MEASURE_END,
-  MEASURE_LYAPUNOV
+  MEASURE_LYAPUNOV,
+  MEASURE_MEGNO
 } MeasureKind;
 
 typedef enum QuantityKind {
@@ -80,7 +81,7 @@ struct Measures {
   double *y, *out;      /* the state and outputs of the present evaluation */
   double *sampled;      /* [ntracks][MEASURE_SAMPLES + 1] of the present part */
   double *firings;      /* [nev] so far */
-  int exponent;         /* 1: an expression contains the Lyapunov exponent, */
+  int exponent, megno;  /* 1: an expression contains the Lyapunov exponent, or MEGNO, */
   char no_exponent[200]; /* and why the last run has none */
   int status;           /* of the run under way, as lag_measures_advance returned it last */
   lag_sim *sim;         /* the run under way */
@@ -92,5 +93,6 @@ struct Measures {
 /* measure_text.c: reads measure k; m->root[k], m->unit[k] := its node and unit. 0, or -1 after a message in why. */
 int lag_measure_read(Measures *m, int k, const char *text, char *why, size_t size);
 
-/* measure_lyapunov.c: the largest exponent of a run that has come to `until`; NaN with the reason in m->no_exponent. */
-double lag_measure_lyapunov(Measures *m, const lag_sim *first, double until);
+/* measure_lyapunov.c: the largest exponent, or MEGNO, of a run that has come to `until`; NaN with the reason in
+ * m->no_exponent. */
+double lag_measure_lyapunov(Measures *m, const lag_sim *first, double until, MeasureKind kind);

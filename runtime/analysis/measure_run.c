@@ -462,7 +462,7 @@ static void explain(Measures *m, int k, double end) {
       else if (!isnan(track->bad)) snprintf(why, size, "it has no value at t = %s s", LAG_TEXT(track->bad));
       else snprintf(why, size, "no period: it passes 0 upwards %s", track->passages ? "once" : "never");
       return;
-    } else if (n->kind == MEASURE_LYAPUNOV && isnan(n->result)) {
+    } else if ((n->kind == MEASURE_LYAPUNOV || n->kind == MEASURE_MEGNO) && isnan(n->result)) {
       snprintf(why, size, "%s", m->no_exponent);
       return;
     } else if (n->kind == MEASURE_HIT && isnan(n->result)) {
@@ -489,13 +489,15 @@ int lag_measures_end(Measures *m, double *value) {
   lag_sim_on_event(sim, m->on_event, m->on_event_context);
   enter_windows(m, end, end);
   if (m->samples) sample(m, end, end); /* what a last event has changed */
-  double exponent = m->exponent ? lag_measure_lyapunov(m, sim, end) : NAN;
+  double exponent = m->exponent ? lag_measure_lyapunov(m, sim, end, MEASURE_LYAPUNOV) : NAN;
+  double megno = m->megno ? lag_measure_lyapunov(m, sim, end, MEASURE_MEGNO) : NAN;
   m->t = end;
   for (const Track *k = m->track; k < m->track + m->ntracks; k++) m->node[k->node].result = track_value(m, k);
   for (MeasureNode *n = m->node; n < m->node + m->nnodes; n++) {
     if (n->kind == MEASURE_END) n->result = end;
     if (n->kind == MEASURE_FIRINGS) n->result = m->firings[n->index];
     if (n->kind == MEASURE_LYAPUNOV) n->result = exponent;
+    if (n->kind == MEASURE_MEGNO) n->result = megno;
   }
   take_row(m, end);
   for (int k = 0; k < m->n; k++) evaluate(m, m->root[k]);

@@ -225,7 +225,10 @@ static const MeasureFunction *find_function(const Reader *r, const char *name) {
 static int put_operation(Reader *r, const char *word, const char *name, const char *argument) {
   r->unit = (MeasureUnit){"", 1, 0};
   const MeasureFunction *f = find_function(r, name);
-  int hit = strcmp(name, "hit") == 0, at = strcmp(name, "at") == 0, exponent = strcmp(name, "lyapunov") == 0, track = 0;
+  int hit = strcmp(name, "hit") == 0, at = strcmp(name, "at") == 0, track = 0;
+  MeasureKind run = strcmp(name, "lyapunov") == 0 ? MEASURE_LYAPUNOV
+                    : strcmp(name, "megno") == 0  ? MEASURE_MEGNO
+                                                  : MEASURE_END;
   while (track < TRACK_KINDS && strcmp(name, track_words[track]) != 0) track++;
   if (r->waiting < (f ? f->two ? 2 : 1 : at ? 2 : hit || track < TRACK_KINDS)) return not_compiled(r, word);
   if (track < TRACK_KINDS) return put_track(r, (TrackKind)track, argument);
@@ -236,8 +239,9 @@ static int put_operation(Reader *r, const char *word, const char *name, const ch
       .kind = kind, .one = f ? f->one : NULL, .two = f ? f->two : NULL, .known = MEASURE_STATIC, .result = NAN};
   if (f) return put(r, call, f->two ? 2 : 1);
   if (strcmp(name, "pi") == 0) return put_number(r, 3.14159265358979323846264338327950288);
-  r->m->exponent |= exponent;
-  if (exponent || strcmp(name, "end") == 0) return put(r, whole(exponent ? MEASURE_LYAPUNOV : MEASURE_END, 0), 0);
+  r->m->exponent |= run == MEASURE_LYAPUNOV;
+  r->m->megno |= run == MEASURE_MEGNO;
+  if (run != MEASURE_END || strcmp(name, "end") == 0) return put(r, whole(run, 0), 0);
   return not_compiled(r, word);
 }
 

@@ -265,7 +265,8 @@ static int is_too_long(void *watch, const lag_sim *sim) {
   if (++w->steps < w->next) return 0;
   double used = lag_processor_seconds() - w->begin;
   w->next = w->steps + 1 + (long long)fmin((double)w->steps, 1e-3 * (double)w->steps / fmax(used, 1e-9));
-  return used > w->longest || (w->s->note && w->s->note(w->s->context, w->m, -1));
+  return used > w->longest || (w->s->end > 0 && lag_clock_seconds() > w->s->end) ||
+         (w->s->note && w->s->note(w->s->context, w->m, -1));
 }
 
 /* One run: own, *run's time, steps and calls. `watched`: it is left after `longest` [s]. */

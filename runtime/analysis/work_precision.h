@@ -89,6 +89,7 @@ typedef struct CostSweep {
   const Samples *reference;
   const double *scale;
   double seconds;  /* time to spend, by the clock */
+  double end;      /* its end, set by lag_cost_sweep; 0: none */
   double target;   /* an error for which settings between those of the grid are tried, too; 0: none */
   /* before each setting, with the part of the time that is used, and about once a millisecond of it, with -1; != 0
    * ends the sweep */
@@ -103,7 +104,7 @@ int lag_cost_sweep(CostSweep *s);
 
 /* One setting of *m, run once, and again while `enough` processor time [s] is not used, at most `most` times.
  * LAG_OK: *run has its result; LAG_STOPPED: the run ended before the reference; LAG_INTERRUPTED: it took longer than
- * `longest` [s]; < 0: it failed. Not LAG_OK: m->why says why. */
+ * `longest` [s of the processor], or the sweep has ended; < 0: it failed. Not LAG_OK: m->why says why. */
 int lag_cost_run(CostMethod *m, const CostSweep *s, double enough, int most, double longest, Samples *own,
                  CostRun *run);
 /* A simulation with the method at this setting; NULL without memory, or with *rc and m->why set. */

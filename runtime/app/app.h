@@ -15,13 +15,19 @@ enum { MOST_OPTIONS = 16 };
 /* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *out, *svg, *plot_x, *plot_y, *html, *points,
-      *from, *save, *resume, *events, *section, *cloud, *starts;
-  const char *accuracy;
+      *from, *save, *resume, *events, *section, *cloud, *starts, *drawing;
+  const char *accuracy, *sensitivity;
+  const char *fit, *data, *loss; /* for --fit */
+  const char **sigmas, **priors; /* the values of --sigma and --prior, in order */
+  int nsigmas, npriors;
   const char *transient, *exponents; /* for --lyapunov */
   const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
   /* for --sweep */
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram;
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
+  const char *period, *guess, *hold, *relative, *segments; /* for --orbit */
+  const char *most; /* for --continue */
+  int orbit, continues, branches;
   int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs,
       sweep, zip, go_on, yes, portrait, potential, distance, energy_error, no_monitors;
   char **sets; /* name=value, in order */
@@ -62,6 +68,8 @@ typedef struct PictureSampling {
   double *from, *last; /* [ncols] the row kept last; the last one since, if have_last */
   int have_last;
 } PictureSampling;
+
+typedef struct Sensitivity Sensitivity; /* sensitivity_columns.c */
 
 typedef struct App {
   const lag_program *program;
@@ -110,6 +118,7 @@ typedef struct App {
   int progress;     /* progress line: 1 shown, 0 not yet, -1 never (no terminal, or --quiet) */
   PhaseVolume volume; /* --volume */
   int volume_rc;    /* failure of its last step */
+  Sensitivity *sensitivity; /* --sensitivity; NULL: none */
   Measures *measures; /* of the scene and of --measure; NULL: none */
   const char **measure_texts; /* their words; of several variants, with semicolons between them */
   char **measure_names;
@@ -125,8 +134,9 @@ typedef struct App {
 #include "app/options.def"
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
-enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, ANY = 127,
-       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS };
+enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, FIT = 128, ORBIT = 256,
+       CONTINUE = 512, ANY = 1023, MOTION_PERIODIC = ORBIT | CONTINUE,
+       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | FIT };
 
 /* A row of options.def. */
 typedef struct Option {
@@ -137,6 +147,9 @@ typedef struct Option {
   size_t field, count;  /* in Args: an int, a text, or a list with its number at count */
   const char *text;     /* NULL: not in help */
 } Option;
+
+/* Whether the analysis carries tangents along its runs. */
+static inline int lag_args_tangents(const Args *a) { return a->lyapunov || a->orbit || a->continues; }
 
 /* Row i; NULL past the end. */
 const Option *lag_args_option(int i);
@@ -264,6 +277,18 @@ int lag_tangent_columns_row(App *app);
 void lag_report_tangent(App *app, FILE *f);
 void lag_report_tangent_json(App *app, Json *j);
 
+/* s[n] := unit as numerator or denominator of a fraction, in parentheses if compound. */
+void lag_unit_in_fraction(char *s, size_t n, const char *unit);
+/* n more columns of the table and of app->row; NULL: no memory. */
+Column *lag_app_add_columns(App *app, int n);
+
+/* sensitivity_columns.c: --sensitivity. As the functions for --tangent. */
+int lag_sensitivity_open(App *app);
+int lag_sensitivity_row(App *app);
+void lag_report_sensitivity(App *app, FILE *f);
+void lag_report_sensitivity_json(App *app, Json *j);
+void lag_sensitivity_free(App *app);
+
 /* volume_report.c: --volume. open: gives the run its tangent; 0, or EXIT_USAGE after a message. step: at the end of
  * each step; a failure ends the run. */
 int lag_app_volume_open(App *app);
@@ -307,8 +332,26 @@ int lag_app_lyapunov(App *app);
 /* modes_report.c: --modes. Returns the exit status. */
 int lag_app_modes(App *app);
 
+/* orbit_report.c: --orbit. Returns the exit status. */
+int lag_app_orbit(App *app);
+/* For both: app->sim with the tolerance of searches; the orbit near its start, with the period and conditions of the
+ * command line; its solution, with multipliers. 0, or the exit status after a message. */
+struct PeriodicOrbit;
+int lag_app_orbit_set_up(App *app);
+int lag_app_orbit_open(App *app, struct PeriodicOrbit *o);
+int lag_app_orbit_solve(App *app, struct PeriodicOrbit *o);
+/* Index of the charge, or the component of the state, of this name[n]; -1: none. */
+int lag_charge_named(const App *app, const char *name, size_t n);
+int lag_state_named(const App *app, const char *name, size_t n);
+
+/* continue_report.c: --continue. Returns the exit status. */
+int lag_app_continue(App *app);
+
 /* effect_costs.c: --effects. Returns the exit status. */
 int lag_app_effects(App *app);
+
+/* fit.c: --fit. Returns the exit status. */
+int lag_app_fit(App *app);
 
 /* sweep.c: --sweep. Returns the exit status. */
 int lag_app_sweep(App *app);

@@ -172,7 +172,8 @@ static unsigned analyses_with(const Option *o) {
 
 /* Refuses options that a run, or the analysis that is asked for, does not use. */
 static int check_analysis(const Args *a) {
-  const unsigned what = a->sweep ? SWEEP : a->modes ? MODES : a->cost ? COST : a->reference ? REFERENCE
+  const unsigned what = a->sweep ? SWEEP : a->fit ? FIT : a->modes ? MODES : a->orbit ? ORBIT : a->continues ? CONTINUE
+                        : a->cost ? COST : a->reference ? REFERENCE
                         : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
   for (int i = 0; i < NOPTIONS; i++) {
     const Option *o = &options[i];
@@ -185,6 +186,9 @@ static int check_analysis(const Args *a) {
                                  analyses & COST    ? "--cost"
                                  : analyses & SWEEP ? "--sweep"
                                  : analyses & MODES ? "--modes"
+                                 : analyses & FIT   ? "--fit"
+                                 : analyses & ORBIT ? "--orbit"
+                                 : analyses & CONTINUE ? "--continue"
                                                     : "--lyapunov");
     }
     return lag_app_error(
@@ -193,6 +197,13 @@ static int check_analysis(const Args *a) {
         : what == SWEEP
             ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
         : what == MODES ? "--modes, which takes name=value, --steady and --json"
+        : what == FIT ? "--fit, which takes name=value, --data, --sigma, --prior, --loss, a method, --svg and --json"
+        : what == CONTINUE
+            ? "--continue, which takes NAME=A..B, name=value, the options of --orbit, --most, --branches, -o, "
+              "--svg and --json"
+        : what == ORBIT
+            ? "--orbit, which takes name=value, --period, --guess, --hold, --relative, --segments, --until, "
+              "a method and --json"
         : what == EFFECTS
             ? "--effects, which takes name=value, --until and a method"
             : "--lyapunov, which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
@@ -220,6 +231,7 @@ static int check_cloud(const Args *a) {
                       : a->events       ? "--events"
                       : a->measures     ? "--measure"
                       : a->tangent      ? "--tangent"
+                      : a->sensitivity  ? "--sensitivity"
                       : a->volume       ? "--volume"
                       : a->accuracy     ? "--accuracy"
                       : a->section      ? "--section"
@@ -243,17 +255,18 @@ static int check_cloud(const Args *a) {
 
 /* Several scenes or methods, or --vs, draw one picture, and write nothing else. */
 static int check_overlay(const Args *a) {
-  const char *other = a->out        ? "-o"
-                      : a->json     ? "--json"
-                      : a->html     ? "--html"
-                      : a->save     ? "--save-state"
-                      : a->resume   ? "--resume"
-                      : a->events   ? "--events"
-                      : a->measures ? "--measure"
-                      : a->tangent  ? "--tangent"
-                      : a->volume   ? "--volume"
-                      : a->accuracy ? "--accuracy"
-                                    : NULL;
+  const char *other = a->out           ? "-o"
+                      : a->json        ? "--json"
+                      : a->html        ? "--html"
+                      : a->save        ? "--save-state"
+                      : a->resume      ? "--resume"
+                      : a->events      ? "--events"
+                      : a->measures    ? "--measure"
+                      : a->tangent     ? "--tangent"
+                      : a->sensitivity ? "--sensitivity"
+                      : a->volume      ? "--volume"
+                      : a->accuracy    ? "--accuracy"
+                                       : NULL;
   if (a->cloud) return check_cloud(a);
   if (!lag_app_overlays(a)) return 0;
   for (int i = 0; i < a->nvs; i++)
@@ -261,7 +274,7 @@ static int check_overlay(const Args *a) {
   if (a->starts && (a->vs || a->distance))
     return lag_app_error(a, "--starts and --%s: the range says which runs are drawn; leave one of them out",
                          a->vs ? "vs" : "distance");
-  if (a->modes || a->lyapunov || a->cost || a->reference || a->effects || a->sweep || !a->svg) {
+  if (a->modes || lag_args_tangents(a) || a->cost || a->reference || a->effects || a->sweep || !a->svg) {
     return a->nscenes > 1 ? lag_app_error(a,
                                           "two scenes are named: %s and %s; `lagc plot` draws several in one picture; "
                                           "to set a value write name=value",
@@ -292,7 +305,7 @@ static int check(const Args *a) {
                                             : "--distance is between runs: add one with another value, for example "
                                               "--vs th=1.2, or another method or scene");
   if ((a->distance || a->energy_error) &&
-      (!a->svg || a->section || a->plot_x || a->portrait || a->potential || a->tangent))
+      (!a->svg || a->section || a->plot_x || a->portrait || a->potential || a->tangent || a->sensitivity))
     return lag_app_error(a, "--%s is a picture over time, which `lagc plot` draws",
                          a->distance ? "distance" : "energy-error");
   if ((a->portrait || a->potential) && !(a->svg && a->plot_x && a->plot_y))
@@ -304,13 +317,23 @@ static int check(const Args *a) {
     return lag_app_error(a, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x);
   if ((a->points || a->from || a->trace || a->no_rods) && !a->html)
     return lag_app_error(a, "--points, --from, --trace and --no-rods need an animation: add --html FILE");
+  if (a->drawing && !(atoi(a->drawing) >= 1 && atoi(a->drawing) <= 100))
+    return lag_app_error(a, "--drawing %s: a number of instants from 1 to 100 is needed", a->drawing);
+  if (a->drawing && (!a->svg || a->section || a->plot_x || a->plot_y || a->portrait || a->potential))
+    return lag_app_error(a, "--drawing is a picture of its own, which `lagc plot` draws; leave out other axes");
   if (a->section && a->html)
     return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
-  if ((a->tangent || a->volume) && (a->save || a->resume))
-    return lag_app_error(a, "--%s and --%s: a saved state holds no tangent; run it in one piece",
-                         a->tangent ? "tangent" : "volume", a->save ? "save-state" : "resume");
-  if (a->tangent && a->volume)
-    return lag_app_error(a, "--tangent and --volume: each takes the tangent of the run for itself; make two runs");
+  const char *const tangents[] = {a->tangent ? "tangent" : NULL, a->sensitivity ? "sensitivity" : NULL,
+                                  a->volume ? "volume" : NULL};
+  for (int i = 0; i < 3; i++) {
+    if (tangents[i] && (a->save || a->resume))
+      return lag_app_error(a, "--%s and --%s: a saved state holds no tangent; run it in one piece", tangents[i],
+                           a->save ? "save-state" : "resume");
+    for (int k = 0; k < i; k++)
+      if (tangents[i] && tangents[k])
+        return lag_app_error(a, "--%s and --%s: each takes the tangent of the run for itself; make two runs",
+                             tangents[k], tangents[i]);
+  }
   if (a->accuracy && (a->tol || a->step || a->resume))
     return lag_app_error(a, "--accuracy chooses the tolerance or step; leave out --%s",
                          a->tol    ? "tol"

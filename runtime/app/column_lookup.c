@@ -167,7 +167,8 @@ static int add_points(App *app, const char *option, const char *text, int *x, in
   return p->n ? 0 : lag_app_error(&app->args, "%s \"%s\": each point is X,Y, two names of outputs", option, text);
 }
 
-static const lag_shape no_shape = {.a = {-1, -1, -1}, .b = {-1, -1, -1}, .size = {-1, -1, -1}, .turn = {-1, -1, -1, -1}};
+static const lag_shape no_shape = {
+    .a = {-1, -1, -1}, .b = {-1, -1, -1}, .size = {-1, -1, -1}, .turn = {-1, -1, -1, -1}};
 
 static int add_shape(App *app, const char *kind, const char *role, const char *text, const int *a, const int *b) {
   Animation *show = &app->show;
@@ -187,11 +188,18 @@ static int add_shape(App *app, const char *kind, const char *role, const char *t
 /* Points as bodies, each hanging by a rod from the one before, the first from the origin. first: 1, point 0 is the
  * suspension. */
 static int points_to_shapes(App *app, const Points *p, int first) {
+  enum { LONGEST = 2 * sizeof app->table.cols->name + 8 };
   int rods = !app->args.no_rods, rc = 0;
+  char *words = app->show.words = malloc((size_t)p->n * LONGEST);
+  if (!words) return lag_app_error(&app->args, "out of memory");
   for (int i = first; i < p->n && rods && rc == 0; i++)
     rc = add_shape(app, "rod", "link", NULL, i ? p->cols + 2 * i - 2 : NULL, p->cols + 2 * i);
-  for (int i = first; i < p->n && rc == 0; i++)
-    rc = add_shape(app, "ball", "body", app->table.cols[p->cols[2 * i + 1]].name, p->cols + 2 * i, NULL);
+  for (int i = first; i < p->n && rc == 0; i++) {
+    const int *xy = p->cols + 2 * i;
+    snprintf(words, LONGEST, "(%s, %s)", app->table.cols[xy[0]].name, app->table.cols[xy[1]].name);
+    rc = add_shape(app, "ball", "body", words, xy, NULL);
+    words += LONGEST;
+  }
   return rc;
 }
 

@@ -68,7 +68,7 @@ static lag_sim *begin_run(App *app, const lag_method *method, double tol) {
 static int note_step(void *pair, const lag_sim *sim) {
   Pair *p = pair;
   if (sim == p->fine) lag_samples_note(p->reference, p->fine);
-  return lag_processor_seconds() > p->latest || lag_app_interrupted() != EXIT_SIGNAL;
+  return lag_clock_seconds() > p->latest || lag_app_interrupted() != EXIT_SIGNAL;
 }
 
 /* y := state of sim at time t, or the output that is judged. LAG_OK, or what ended the run. */
@@ -126,7 +126,7 @@ int lag_cost_reference(App *app, Cost *c, double seconds, int *limited) {
   double tol;
   const lag_method *method = most_accurate(app, &tol);
   Pair p = {
-      .fine = begin_run(app, method, tol), .reference = &c->reference, .latest = lag_processor_seconds() + seconds};
+      .fine = begin_run(app, method, tol), .reference = &c->reference, .latest = lag_clock_seconds() + seconds};
   p.coarse = p.fine ? begin_run(app, method, 10 * tol) : NULL;
   int rc = p.coarse ? LAG_OK : LAG_EINVAL;
   *limited = 0;
@@ -333,10 +333,12 @@ static int note_progress(void *progress, const CostMethod *m, double part) {
 }
 
 static int measure(App *app, Cost *c) {
-  ProgressLine p = {app, c->seconds, 0, -1};
+  /* what reference and precisions have left */
+  double left = fmax(c->seconds - (lag_clock_seconds() - c->begun), 0.3 * c->seconds);
+  ProgressLine p = {app, left, 0, -1};
   CostSweep sweep = {.method = c->method,
                      .n = c->nmethods, .scene = {fresh, app, app->scene->t0}, .reference = &c->reference,
-                     .scale = c->scale, .seconds = c->seconds, .target = c->target, .note = note_progress,
+                     .scale = c->scale, .seconds = left, .target = c->target, .note = note_progress,
                      .context = &p};
   lag_app_catch_interrupt();
   int rc = lag_cost_sweep(&sweep);
@@ -448,7 +450,7 @@ static int find_output(const App *app, const char *name) {
 }
 
 int lag_app_cost(App *app) {
-  Cost cost = {.seconds = 10, .reached = NAN};
+  Cost cost = {.seconds = 10, .begun = lag_clock_seconds(), .reached = NAN};
   const Args *a = &app->args;
   int limited, rc = lag_app_set_up_start(app);
   if (rc) return rc;

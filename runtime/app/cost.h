@@ -26,7 +26,7 @@ typedef struct Cost {
   CostMethod *method;        /* [nmethods] */
   int nmethods;
   int named;                 /* 1: --methods names them, few enough to show each: each is then a family of its own */
-  double seconds;            /* time to spend, by the clock */
+  double seconds, begun;     /* time to spend, by the clock, and its begin */
   double target;             /* error of --target; 0: none */
   char monitor[200];         /* a monitor's message, where it stops settings that would be answers; "" */
   int stopped;               /* 1: Ctrl-C ended the sweep */

@@ -44,6 +44,7 @@ int lag_app_put_row(App *app) {
   int rc = lag_sim_outputs(app->sim, app->row + 1);
   rc = rc ? rc : lag_marks_note(app);
   rc = rc ? rc : lag_tangent_columns_row(app);
+  rc = rc ? rc : lag_sensitivity_row(app);
   if (rc) return rc;
   note_empty(app, t);
   /* otherwise picture_sampling.c chooses the rows of pictures */

@@ -137,7 +137,7 @@ static int reduce(App *app, size_t most) {
 /* Selects the columns that pictures draw. */
 static void choose_columns(App *app) {
   PictureSampling *w = &app->sampling;
-  if (app->args.html) {
+  if (app->args.html || app->args.drawing) {
     for (int i = 0; i < app->show.nshapes; i++) {
       const lag_shape *s = &app->show.shapes[i];
       for (int k = 0; k < 3; k++) add_column(w, s->a[k], 1);
@@ -145,9 +145,9 @@ static void choose_columns(App *app) {
       for (int k = 0; k < 3; k++) add_column(w, s->size[k], 0);
       for (int k = 0; k < 4; k++) add_column(w, s->turn[k], 0);
     }
-    w->common = !app->args.svg && !app->args.sketch;
+    w->common = (!app->args.svg || app->args.drawing) && !app->args.sketch;
   }
-  for (int i = 0; i < app->drawn.n && (app->args.svg || app->args.sketch); i++) {
+  for (int i = 0; i < app->drawn.n && ((app->args.svg && !app->args.drawing) || app->args.sketch); i++) {
     add_column(w, app->drawn.x[i], 0);
     add_column(w, app->drawn.y[i], 0);
   }
@@ -158,7 +158,8 @@ int lag_sampling_open(App *app) {
   double span = fabs(app->until - lag_sim_time(app->sim));
   size_t ncols = (size_t)app->table.ncols;
   /* a tangent is known at rows only */
-  if (!app->table.keep || app->section >= 0 || app->args.tangent || lag_app_equal_times(&app->args)) {
+  if (!app->table.keep || app->section >= 0 || app->args.tangent || app->args.sensitivity ||
+      lag_app_equal_times(&app->args)) {
     return 0;
   }
   *f = (PictureSampling){.on = 1,

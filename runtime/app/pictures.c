@@ -1,5 +1,6 @@
 /* Pictures as SVG, and as PNG where the path ends so and the program was built with librsvg. */
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
@@ -43,6 +44,8 @@ typedef struct Drawing {
 
 static int write_table(const char *svg, void *drawing) {
   const Drawing *d = drawing;
+  const char *instants = d->app->args.drawing;
+  if (instants) return lag_drawing_write(svg, &d->app->table, d->title, &d->app->show, atoi(instants));
   return lag_svg_write(svg, &d->app->table, d->title, &d->app->drawn);
 }
 

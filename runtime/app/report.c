@@ -404,7 +404,8 @@ static void guides(const App *app, FILE *f) {
     if (isnan(part)) continue;
     fprintf(f, "guide %s sticks", m->constraints->of[m->contacts[m->guides[k].tangent].constraint].name);
     if (part > 1e-9) /* beyond rounding */
-      fprintf(f, ", self-locking: it needs %.3g %% of the friction that its force allows, also where all loads grow alike",
+      fprintf(f,
+              ", self-locking: it needs %.3g %% of the friction that its force allows, also where all loads grow alike",
               100 * part);
     putc('\n', f);
   }
@@ -467,6 +468,7 @@ void lag_report_text(App *app, FILE *f) {
   switches(app, f);
   guides(app, f);
   lag_report_tangent(app, f);
+  lag_report_sensitivity(app, f);
   lag_report_volume(app, f);
   if (app->written && app->args.out)
     fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
@@ -560,6 +562,7 @@ void lag_report_json(App *app, FILE *f) {
   exact_json(app, &j);
   lag_report_measures_json(app, &j);
   lag_report_tangent_json(app, &j);
+  lag_report_sensitivity_json(app, &j);
   lag_report_volume_json(app, &j);
   lag_json_string(&j, "math", m->math);
   lag_json_string(&j, "build", app->program->build);

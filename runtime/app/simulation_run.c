@@ -12,6 +12,7 @@
  * second). */
 int lag_app_after_step(void *context, const lag_sim *sim) {
   App *app = context;
+  if (app->extras.after_step) app->extras.after_step(app->program);
   if (app->watched && sim == app->sim) lag_error_estimate_note(&app->error, app->sim);
   if (app->volume.n && sim == app->sim) lag_app_volume_step(app);
   if (app->progress >= 0 && lag_clock_seconds() - app->shown >= (app->progress ? 0.2 : 1.0)) {
@@ -83,7 +84,8 @@ static int choose_grid(App *app) {
     if (h > 0) every = h * ceil(every / h * (1 - 1e-9));
     origin = t;
   }
-  if (app->section < 0 && (a->out || ((a->every || a->tangent) && (a->svg || a->html || a->sketch))) &&
+  if (app->section < 0 &&
+      (a->out || ((a->every || a->tangent || a->sensitivity) && (a->svg || a->html || a->sketch))) &&
       fabs(app->until - t) / every > 1e9) {
     return lag_app_error(a, "a row every %g s for %g s is %.3g rows; write a larger --every", every,
                          fabs(app->until - t), fabs(app->until - t) / every);
@@ -151,9 +153,10 @@ static int open_output(App *app) {
     return lag_app_error(a, "out of memory");
   }
   app->table.points = app->section >= 0;
-  if (lag_tangent_columns_open(app) || lag_app_volume_open(app) || lag_app_choose_curves(app) || lag_portrait_open(app))
+  if (lag_tangent_columns_open(app) || lag_sensitivity_open(app) || lag_app_volume_open(app) ||
+      lag_app_choose_curves(app) || lag_portrait_open(app))
     return EXIT_USAGE;
-  if (a->html && lag_app_choose_shapes(app)) return EXIT_USAGE;
+  if ((a->html || a->drawing) && lag_app_choose_shapes(app)) return EXIT_USAGE;
   if (lag_app_try_file(app, a->svg) || lag_app_try_file(app, a->html) || lag_app_try_file(app, a->save))
     return EXIT_USAGE;
   int rc = lag_sampling_open(app);
@@ -198,6 +201,8 @@ void lag_app_free(App *app) {
   lag_app_measures_free(app);
   lag_phase_volume_free(&app->volume);
   free(app->show.shapes);
+  lag_sensitivity_free(app);
+  free(app->show.words);
   free(app->portrait);
   free(app->drawn.x);
   free(app->drawn.note);

@@ -39,8 +39,8 @@ static int choose_scene(App *app) {
     if (!name || strcmp(p->scenes[i]->name, name) == 0) {
       app->scene = p->scenes[i];
       app->whole = app->scene;
-      if (app->args.lyapunov || app->args.cost || app->args.reference || app->args.energy_error || app->args.distance ||
-          app->args.cloud || app->compared) app->scene = bare_scene(app, app->scene);
+      if (lag_args_tangents(&app->args) || app->args.cost || app->args.reference || app->args.energy_error ||
+          app->args.distance || app->args.cloud || app->compared) app->scene = bare_scene(app, app->scene);
       if (app->args.no_monitors) {
         app->unwatched = *app->scene;
         app->unwatched.nmonitors = 0;
@@ -149,7 +149,8 @@ int lag_app_unknown_method(const App *app, const char *name) {
 }
 
 int lag_app_choose_automatically(App *app, const lag_option *opt, int n) {
-  int rc = lag_sim_choose_method(app->sim, app->until, app->args.lyapunov, opt, n, app->why, sizeof app->why);
+  int tangents = lag_args_tangents(&app->args);
+  int rc = lag_sim_choose_method(app->sim, app->until, tangents, opt, n, app->why, sizeof app->why);
   return rc ? lag_app_error(&app->args, "%s", lag_sim_message(app->sim)) : 0;
 }
 

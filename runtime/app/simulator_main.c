@@ -127,8 +127,14 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     lag_app_list_methods(&app, app.args.method + 5, stdout);
   } else if (rc == 0 && app.args.sweep) {
     rc = lag_app_sweep(&app);
+  } else if (rc == 0 && app.args.fit) {
+    rc = lag_app_fit(&app);
   } else if (rc == 0 && app.args.modes) {
     rc = lag_app_modes(&app);
+  } else if (rc == 0 && app.args.orbit) {
+    rc = lag_app_orbit(&app);
+  } else if (rc == 0 && app.args.continues) {
+    rc = lag_app_continue(&app);
   } else if (rc == 0 && app.args.lyapunov) {
     rc = lag_app_lyapunov(&app);
   } else if (rc == 0 && app.args.effects) {
@@ -145,5 +151,7 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
   free(app.args.measures);
   free(app.args.plot_ys);
   free(app.args.vs);
+  free(app.args.sigmas);
+  free(app.args.priors);
   return rc;
 }

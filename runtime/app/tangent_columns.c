@@ -11,8 +11,7 @@ enum { SHOWN = 8, MOST_COMPONENTS = 64 };
 
 static int components(const App *app) { return app->sim->pb.n; }
 
-/* s[n] := unit as numerator or denominator of a fraction, in parentheses if compound. */
-static void put_in_fraction(char *s, size_t n, const char *unit) {
+void lag_unit_in_fraction(char *s, size_t n, const char *unit) {
   int several = strpbrk(unit, "/*") != NULL;
   snprintf(s, n, "%s%s%s", several ? "(" : "", unit[0] ? unit : "1", several ? ")" : "");
 }
@@ -21,17 +20,28 @@ static void put_in_fraction(char *s, size_t n, const char *unit) {
 static Column describe(const App *app, int i, int j) {
   Column x = lag_state_column(app->sim, i), y = lag_state_column(app->sim, j), c = {0};
   char over[72], under[72];
-  put_in_fraction(over, sizeof over, x.unit);
-  put_in_fraction(under, sizeof under, y.unit);
+  lag_unit_in_fraction(over, sizeof over, x.unit);
+  lag_unit_in_fraction(under, sizeof under, y.unit);
   snprintf(c.name, sizeof c.name, "d%.40s/d%.40s(0)", x.name, y.name);
   if (strcmp(x.unit, y.unit) != 0) snprintf(c.unit, sizeof c.unit, "%.30s/%.30s", over, under);
   return c;
 }
 
+Column *lag_app_add_columns(App *app, int n) {
+  Table *t = &app->table;
+  size_t all = (size_t)(t->ncols + n);
+  Column *cols = realloc(t->cols, all * sizeof *cols);
+  double *row = realloc(app->row, all * sizeof *row);
+  t->cols = cols ? cols : t->cols;
+  app->row = row ? row : app->row;
+  if (!cols || !row) return NULL;
+  t->ncols += n;
+  return t->cols + t->ncols - n;
+}
+
 int lag_tangent_columns_open(App *app) {
   const Args *a = &app->args;
-  Table *t = &app->table;
-  int n = components(app), before = t->ncols;
+  int n = components(app);
   if (!a->tangent) return 0;
   if (lag_sim_set_tangent(app->sim, n, NULL)) return lag_app_error(a, "%s", lag_sim_message(app->sim));
   if (n > MOST_COMPONENTS) {
@@ -41,13 +51,9 @@ int lag_tangent_columns_open(App *app) {
                          "liblag takes as many as you give it",
                          n, n * n, MOST_COMPONENTS);
   }
-  Column *cols = realloc(t->cols, (size_t)(before + n * n) * sizeof *cols);
-  double *row = realloc(app->row, (size_t)(before + n * n) * sizeof *row);
-  t->cols = cols ? cols : t->cols;
-  app->row = row ? row : app->row;
-  if (!cols || !row) return lag_app_error(a, "out of memory");
-  t->ncols = before + n * n;
-  for (int k = 0; k < n * n; k++) cols[before + k] = describe(app, k / n, k % n);
+  Column *cols = lag_app_add_columns(app, n * n);
+  if (!cols) return lag_app_error(a, "out of memory");
+  for (int k = 0; k < n * n; k++) cols[k] = describe(app, k / n, k % n);
   return 0;
 }
 

@@ -40,14 +40,31 @@ int lag_constraint_jacobian(lag_problem *pb, double t, const double *y, double *
   return rc;
 }
 
-/* Removes from x its projection on the rows of Q, twice, for the rounding of the first pass; returns |x|. */
+/* Indices of the components of x that are not 0, in order; -1: more than MOST_SPARSE. */
+enum { MOST_SPARSE = 64 };
+static int support_of(int n, const double *x, int *at) {
+  int count = 0;
+  for (int i = 0; i < n; i++) {
+    if (x[i] == 0) continue;
+    if (count == MOST_SPARSE) return -1;
+    at[count++] = i;
+  }
+  return count;
+}
+
+/* Removes from x its projection on the rows of Q, twice, for the rounding of the first pass; returns |x|. Most rows
+ * have nothing in common with a constraint of few coordinates. */
 static double remainder_of(int n, int r, const double *Q, double *x) {
   double s = 0;
+  int at[MOST_SPARSE], count = support_of(n, x, at);
   for (int k = 0; k < 2 * r; k++) {
     const double *q = Q + k % r * n;
     double along = 0;
-    for (int i = 0; i < n; i++) along += q[i] * x[i];
+    for (int i = 0; i < count; i++) along += q[at[i]] * x[at[i]];
+    for (int i = 0; i < n && count < 0; i++) along += q[i] * x[i];
+    if (along == 0.0) continue;
     for (int i = 0; i < n; i++) x[i] -= along * q[i];
+    if (count >= 0) count = support_of(n, x, at);
   }
   for (int i = 0; i < n; i++) s += x[i] * x[i];
   return sqrt(s);

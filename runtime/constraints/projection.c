@@ -178,9 +178,15 @@ static double ratio(double x, double y) { return x == 0.0 ? 0 : fabs(x / y); }
 /* Whether the rest of a correction d, its part `left`, is rounding of the largest component with the same unit: one
  * that is 0 never stops moving. */
 static int is_rounding(const lag_problem *pb, const double *x, const double *d, double left) {
+  const lag_var *q = pb->model->q;
+  const char *unit = NULL;
+  double most = 0;
   for (int i = 0; i < pb->nq; i++) {
     double rest = left * fabs(d[i]), rounding = 4 * DBL_EPSILON;
-    if (!(rest <= rounding * fabs(x[i])) && !(rest <= rounding * lag_unit_magnitude(pb, x, i))) return 0;
+    if (rest <= rounding * fabs(x[i])) continue;
+    if (!unit || strcmp(unit, q[i].unit) != 0) most = lag_unit_magnitude(pb, x, i);
+    unit = q[i].unit;
+    if (!(rest <= rounding * most)) return 0;
   }
   return 1;
 }
@@ -292,25 +298,32 @@ static double extent(const lag_problem *pb, const double *y0, const double *y, i
   return fmax(fmax(lag_typical_magnitude(pb, y0, 1, i), lag_typical_magnitude(pb, y, 1, i)), fmax(begin, 1e-10));
 }
 
-/* Whether one constraint on positions contains coordinates i and j. */
-static int are_tied(const lag_constraints *of, int i, int j) {
-  for (int a = 0; a < of->njacobian; a++)
-    for (int b = 0; of->jacobian[a].col == i && of->jacobian[a].row < of->nholonomic && b < of->njacobian; b++)
-      if (of->jacobian[b].row == of->jacobian[a].row && of->jacobian[b].col == j) return 1;
-  return 0;
+/* w->other[j] := the largest |led| of coordinates with the unit of i that a constraint on positions ties to j; for
+ * the coordinates j of constraints. */
+static void find_tied(const ConstraintScratch *w, const lag_problem *pb, const double *led, int i) {
+  const lag_entry *e = w->of->jacobian, *end = e + w->of->njacobian;
+  const lag_var *q = pb->model->q;
+  double *row = w->before, *tied = w->other;
+  for (int k = 0; k < w->of->nholonomic; k++) row[k] = 0;
+  for (int j = 0; j < pb->nq; j++) tied[j] = 0;
+  for (const lag_entry *a = e; a < end; a++)
+    if (a->row < w->of->nholonomic && strcmp(q[a->col].unit, q[i].unit) == 0)
+      row[a->row] = fmax(row[a->row], fabs(led[a->col]));
+  for (const lag_entry *a = e; a < end; a++)
+    if (a->row < w->of->nholonomic) tied[a->col] = fmax(tied[a->col], row[a->row]);
 }
 
 int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y, const double *moved,
                         const double *led) {
-  const lag_constraints *of = pb->model->constraints;
+  const ConstraintScratch w = layout(pb);
+  const lag_var *q = pb->model->q;
   const double small = 1e-6;
+  int found = -1; /* the coordinate for whose unit w.other is */
   for (int i = 0; i < pb->nq; i++) {
     double most = fabs(led[i]);
     if (!(fabs(moved[i]) > 2 * most + small * fabs(y[i]))) continue;
-    for (int j = 0; j < pb->nq; j++) {
-      int alike = strcmp(pb->model->q[i].unit, pb->model->q[j].unit) == 0 && are_tied(of, i, j);
-      most = alike ? fmax(most, fabs(led[j])) : most;
-    }
+    if (found < 0 || strcmp(q[found].unit, q[i].unit) != 0) find_tied(&w, pb, led, found = i);
+    most = fmax(most, w.other[i]);
     if (fabs(moved[i]) > 2 * most + small * extent(pb, y0, y, i)) return i;
   }
   return -1;

@@ -52,15 +52,47 @@ static int residual_change(lag_problem *pb, double t, const double *y, const dou
 
 size_t lag_tangent_projection_size(const lag_problem *pb) {
   const lag_constraints *of = pb->model->constraints;
-  return of ? (size_t)(2 * pb->n + 2 * pb->nq + 3 * of->n + of->njacobian + of->nmass) : 0;
+  return of ? (size_t)(2 * pb->n + 2 * pb->nq + 5 * of->n + of->njacobian + of->nmass) : 0;
 }
 
-/* Adds to e the least change by which positions, then velocities, obey the constraints. */
-static int project(lag_problem *pb, double t, const double *y, const double *A, double *e, double *scratch) {
+/* c_by, r_by[constraints] := change of the residuals by parameter j; c[2 constraints] is scratch. */
+static int residuals_by_parameter(lag_problem *pb, double t, const double *y, int j, double *c, double *c_by,
+                                  double *r_by) {
+  const lag_constraints *of = pb->model->constraints;
+  const double *p = pb->p;
+  double *r = c + of->n;
+  int rc = LAG_OK;
+  memset(c_by, 0, (size_t)(2 * of->n) * sizeof *c_by);
+  for (int k = -3; k <= 3 && rc == LAG_OK; k++) {
+    pb->p = lag_shifted_parameters(pb, pb->by, j, k);
+    rc = k ? lag_residuals(pb, t, y, c, r) : LAG_OK;
+    for (int i = 0; i < of->n && k; i++) {
+      c_by[i] += i < of->nholonomic ? lag_difference_weight(k) * c[i] / pb->by->h[j] : 0;
+      r_by[i] += lag_difference_weight(k) * r[i] / pb->by->h[j];
+    }
+    pb->p = p;
+  }
+  return rc;
+}
+
+/* The parameter of column c; -1: none. */
+static int parameter_of(const lag_problem *pb, int c) {
+  for (int j = 0; pb->by && j < pb->by->n; j++)
+    if (pb->by->column[j] == c) return j;
+  return -1;
+}
+
+/* Adds to e, which goes with a change of parameter j (-1: none), the least change by which positions, then velocities,
+ * obey the constraints. */
+static int project(lag_problem *pb, double t, const double *y, const double *A, int j, double *e, double *scratch) {
   const lag_constraints *of = pb->model->constraints;
   int n = pb->n, nq = pb->nq, rc;
-  double *there = scratch, *d = there + n, *force = d + nq, *c = force + nq, *r = c + of->n, *g = r + of->n;
+  double *there = scratch, *d = there + n, *force = d + nq, *c = force + nq, *r = c + of->n, *g = r + of->n,
+         *c_by = g + of->n, *r_by = c_by + of->n;
   memset(g, 0, (size_t)of->n * sizeof *g);
+  memset(c_by, 0, (size_t)(2 * of->n) * sizeof *c_by);
+  if (j >= 0 && (rc = residuals_by_parameter(pb, t, y, j, c, c_by, r_by)) != 0) return rc;
+  for (int k = 0; k < of->n; k++) g[k] = of->of[k].holonomic ? -c_by[k] : 0;
   for (int k = 0; k < of->njacobian; k++) {
     const lag_entry *at = &of->jacobian[k];
     if (of->of[at->row].holonomic) g[at->row] -= A[k] * e[at->col];
@@ -68,7 +100,7 @@ static int project(lag_problem *pb, double t, const double *y, const double *A, 
   rc = of->nholonomic ? lag_least_change(pb, t, y, 1, g, d, force) : LAG_OK;
   for (int i = 0; i < nq && of->nholonomic && rc == LAG_OK; i++) e[i] += d[i];
   rc = rc ? rc : residual_change(pb, t, y, e, there, c, g);
-  for (int k = 0; k < of->n; k++) g[k] = -g[k];
+  for (int k = 0; k < of->n; k++) g[k] = -g[k] - r_by[k];
   rc = rc ? rc : lag_least_change(pb, t, y, 0, g, d, force);
   for (int i = 0; i < nq && rc == LAG_OK; i++) e[nq + i] += d[i];
   return rc;
@@ -81,7 +113,7 @@ int lag_tangent_project(lag_problem *pb, double t, const double *y, int k, doubl
   rc = of && rc == LAG_OK ? of->matrices(of, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, A, M, pb->work) : rc;
   for (int j = 0; of && j < k && rc == LAG_OK; j++) {
     for (int i = 0; i < n; i++) e[i] = Y[i * k + j];
-    rc = project(pb, t, y, A, e, rest);
+    rc = project(pb, t, y, A, parameter_of(pb, j), e, rest);
     for (int i = 0; i < n; i++) Y[i * k + j] = e[i];
   }
   return rc;

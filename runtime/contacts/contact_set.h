@@ -56,10 +56,10 @@ static inline double lag_norm(const double *x, int n) {
 }
 
 /* contact.c. tangent_of: the tangent of contact i of the model; -1: it has no friction. set_closed: closes or opens
- * contact i of the model; a tangent sticks, or has no friction. close_only: closes all, or `which` alone, or none (-1).
- * rates: rate[i] := rate of each gap, and slip velocity of each tangent, at y; leaves all closed. response: d := the
- * least change of velocities that changes the rate of contact i by 1, the others open; returns the change per unit
- * impulse. no_values: reports that contact i has none. */
+ * contact i of the model; a tangent sticks, or has no friction. close_only: closes all, or `which` alone, or none
+ * (-1). rates: rate[i] := rate of each gap, and slip velocity of each tangent, at y; leaves all closed. response: d
+ * := the least change of velocities that changes the rate of contact i by 1, the others open; returns the change per
+ * unit impulse. no_values: reports that contact i has none. */
 int lag_tangent_of(const lag_model *m, int i);
 void lag_contact_set_closed(lag_sim *sim, int i, int closed);
 void lag_contacts_close_only(const ContactSet *w, int all, int which);
@@ -67,17 +67,18 @@ int lag_contacts_rates(ContactSet *w, const double *y, double *rate);
 double lag_contacts_response(ContactSet *w, int i);
 int lag_contacts_no_values(ContactSet *w, int i);
 
-/* guide_forces.c. stop: takes what is left of a slip that ends, at this event, out of the velocities. find_pressed: forces
- * of guides without friction and contacts, and by a unit force of each row, with `rhs` of all rows; pressed: those of
- * component c. gain: of row a, a guide's tangent, force on its guide by a unit of friction. */
+/* guide_forces.c. stop: takes what is left of a slip that ends, at this event, out of the velocities. find_pressed:
+ * forces of guides without friction and contacts, and by a unit force of each row, with `rhs` of all rows; pressed:
+ * those of component c. gain: of row a, a guide's tangent, force on its guide by a unit of friction. */
 int lag_guides_stop(ContactSet *w, int event);
 int lag_guides_find_pressed(ContactSet *w);
 double *lag_guide_pressed(const ContactSet *w, int guide, int c);
 double lag_guide_gain(const ContactSet *w, int a);
 
-/* contact_friction.c, where some contact of w has friction. laws_at: values of contact_laws. strike: impacts one after the other, the fastest first,
- * until no gap closes; e[n]: restitution. choose_modes: in[n] and side[n] of the contacts that take part, after the
- * event, or -1; acceleration[n] of all gaps then. set_friction: sets the friction of those closed. */
+/* contact_friction.c, where some contact of w has friction. laws_at: values of contact_laws. strike: impacts one
+ * after the other, the fastest first, until no gap closes; e[n]: restitution. choose_modes: in[n] and side[n] of the
+ * contacts that take part, after the event, or -1; acceleration[n] of all gaps then. set_friction: sets the friction
+ * of those closed. */
 int lag_contact_laws_at(lag_problem *pb, double t, const double *y, double *law);
 int lag_contacts_strike(ContactSet *w, const double *e);
 int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration);

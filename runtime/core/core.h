@@ -139,6 +139,7 @@ struct lag_sim {
   size_t nwork;
   /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
   double *tangent, *tangent_jump, *tangent_scratch;
+  struct lag_sensitivity *sensitivity;   /* parameter_columns.c; NULL: the tangent is one by starts alone */
   int tangent_columns, tangent_at_event; /* tangent_at_event: the event at this time is already applied to it */
   /* switches met at this time; whether that time depends on the state; whether the last one is only touched */
   int tangent_meets, tangent_moves, tangent_touches;
@@ -220,6 +221,8 @@ void lag_note_redundant(lag_sim *sim);
 
 /* setup.c: sets the state at the start of a run. */
 int lag_setup_start(lag_sim *sim);
+/* The same without checks of parameters and inputs. */
+int lag_start_state(lag_sim *sim);
 /* Fail, with a message: a parameter, or a size that parameters determine, has another sign than declared; a friction is
  * negative at y, t. */
 int lag_check_parameters(lag_sim *sim);
@@ -338,12 +341,35 @@ int lag_tangent_corner(lag_sim *sim);
 int lag_tangent_begin(lag_sim *sim);
 int lag_tangent_jump(lag_sim *sim, int k, int more);
 void lag_tangent_free(lag_sim *sim);
+/* As lag_sim_set_tangent, which first frees columns by parameters. */
+int lag_tangent_set(lag_sim *sim, int k, const double *Y);
 /* tangent_space.c. dimension: of the tangent space of the constraints at the present state; of a run that has not
  * begun at its start, which is computed; n without constraints; or a status < 0 with its message. project: each
  * column of Y[n k] at y, t onto that space, in the mass metric; scratch[lag_tangent_projection_size]. */
 int lag_tangent_dimension(lag_sim *sim);
 size_t lag_tangent_projection_size(const lag_problem *pb);
 int lag_tangent_project(lag_problem *pb, double t, const double *y, int k, double *Y, double *scratch);
+
+/* Differences of order 6: the weight of a value k steps away, k = -3 ... 3, times the step; a step as a part of the
+ * scale. Wrong by rounding over 2^-9, and by 2^-54/140 of a seventh derivative, for a scale of 1. */
+#define LAG_DIFFERENCE_PART 0x1p-9
+static inline double lag_difference_weight(int k) {
+  const double weight[] = {0, 0.75, -0.15, 1.0 / 60};
+  return k < 0 ? -weight[-k] : weight[k];
+}
+/* Parameters k steps along parameter column j. */
+static inline const double *lag_shifted_parameters(const lag_problem *pb, const lag_parameter_columns *by, int j,
+                                                   int k) {
+  return by->shifted + (size_t)(7 * j + k + 3) * (size_t)(pb->model->np + pb->model->nderived);
+}
+
+/* parameter_columns.c. use: the run computes with parameters k steps along parameter column j; k = 0: with its own
+ * again. event: change[columns] := derivatives of event function `event` by parameters, 0 in columns of starts;
+ * action: change[n columns], of the state that its action sets; after[n] is scratch. They use g1. */
+void lag_parameter_columns_free(lag_sim *sim);
+void lag_use_parameters(lag_sim *sim, int j, int k);
+int lag_event_by_parameters(lag_sim *sim, int event, double *change);
+int lag_action_by_parameters(lag_sim *sim, int event, double *after, double *change);
 
 /* closed_form.c. at: the closed forms at t, stored behind the inputs in s->u; call lag_inputs first. see: as in
  * monitors.c. */

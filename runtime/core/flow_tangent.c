@@ -19,6 +19,7 @@
 static size_t block(const lag_sim *s) { return (size_t)s->pb.n * (size_t)s->tangent_columns; }
 
 void lag_tangent_free(lag_sim *s) {
+  lag_parameter_columns_free(s);
   free(s->tangent);
   s->tangent = s->tangent_jump = s->tangent_scratch = NULL;
   s->tangent_at_event = 0;
@@ -47,6 +48,11 @@ static int check(lag_sim *s) {
     return lag_fail(s, LAG_EMETHOD, "method %s has no derivative of its steps; %s has", s->method->name,
                     s->method->flags & LAG_METHOD_SYMPLECTIC ? "verlet8" : "dop853");
   }
+  if (in_p && s->pb.by)
+    return lag_fail(s, LAG_EMETHOD,
+                    "method %s steps in momenta, and has no derivative of its steps by parameters; dop853, rk45, radau "
+                    "and taylor have",
+                    s->method->name);
   if (!in_p && !m->linear && !m->constraints) {
     return lag_fail(s, LAG_EMETHOD,
                     "the tangent needs the derivatives of the equations, which this program was built without; `lagc "
@@ -63,22 +69,22 @@ static int njump(const lag_sim *s) {
 
 /* Scratch of a corner: rates before and after it, a state, the gradient of the event function and its rate, and
  * event functions. */
-static size_t corner_size(const lag_sim *s) {
+static size_t corner_size(const lag_sim *s, int k) {
   const lag_model *m = s->scene->model;
-  return m->nmodes ? 4 * (size_t)s->pb.n + 1 + (size_t)(m->nev + m->nmodes) : 0;
+  return m->nmodes ? 4 * (size_t)s->pb.n + 1 + (size_t)(m->nev + m->nmodes) + (size_t)k : 0;
 }
 
 /* Scratch of a jump: its entries, S[n n] and a copy, four vectors and a copy of Y[n k]. */
 static size_t jump_size(const lag_sim *s, int k) {
   size_t n = (size_t)s->pb.n;
-  return corner_size(s) + (njump(s) ? (size_t)njump(s) + 2 * n * n + 4 * (n + 1) + n * (size_t)k : 0);
+  return corner_size(s, k) + (njump(s) ? (size_t)njump(s) + 2 * n * n + 4 * (n + 1) + (2 * n + 1) * (size_t)k : 0);
 }
 
 /* Allocates k columns, when there is another number of them. */
 static int make_room(lag_sim *s, int k) {
   size_t n = (size_t)s->pb.n, size = n * (size_t)k;
   if (s->tangent && s->tangent_columns == k) return LAG_OK;
-  lag_tangent_free(s);
+  if (s->tangent) lag_tangent_free(s);
   size_t step = s->method->tangent_size(&s->pb, k), projection = lag_tangent_projection_size(&s->pb);
   s->tangent = calloc(size + jump_size(s, k) + (step > projection ? step : projection) + 1, sizeof *s->tangent);
   if (!s->tangent) return lag_fail(s, LAG_ENOMEM, "out of memory");
@@ -114,7 +120,11 @@ static int check_start(lag_sim *s) {
 }
 
 int lag_sim_set_tangent(lag_sim *s, int k, const double *Y) {
-  if (!s) return LAG_EINVAL;
+  if (s && s->sensitivity) lag_tangent_free(s);
+  return s ? lag_tangent_set(s, k, Y) : LAG_EINVAL;
+}
+
+int lag_tangent_set(lag_sim *s, int k, const double *Y) {
   int n = s->pb.n, rc;
 
   if (k == 0) {
@@ -170,15 +180,17 @@ static int only_touches(lag_sim *s, int k, double rate) {
 typedef struct Corner {
   /* f and f+; a state; gradient of the event function and its rate along f; event functions */
   double *before, *after, *there, *gradient, *g;
+  double *by; /* its change by the parameter of each column */
 } Corner;
 
 static Corner corner_layout(const lag_sim *s) {
   int n = s->pb.n;
-  Corner c = {.before = s->tangent_scratch - corner_size(s)};
+  Corner c = {.before = s->tangent_scratch - corner_size(s, s->tangent_columns)};
   c.after = c.before + n;
   c.there = c.after + n;
   c.gradient = c.there + n;
   c.g = c.gradient + n + 1;
+  c.by = c.g + s->scene->model->nev + s->scene->model->nmodes;
   return c;
 }
 
@@ -203,6 +215,13 @@ static int event_slope(lag_sim *s, const Corner *w, int k, int i, double *slope)
   return rc;
 }
 
+/* Change of the event function along column c, where its gradient is w->gradient. */
+static double change_along(const lag_sim *s, const Corner *w, int c) {
+  double along = w->by[c];
+  for (int i = 0; i < s->pb.n; i++) along += w->gradient[i] * s->tangent[i * s->tangent_columns + c];
+  return along;
+}
+
 int lag_tangent_meet(lag_sim *s, int k) {
   if (!s->tangent) return LAG_OK;
   int n = s->pb.n,
@@ -218,6 +237,8 @@ int lag_tangent_meet(lag_sim *s, int k) {
     s->tangent_moves |= w.gradient[i] != 0.0;
   }
   w.gradient[n] = slope;
+  rc = rc ? rc : lag_event_by_parameters(s, k, w.by);
+  for (int c = 0; c < s->tangent_columns && rc == LAG_OK; c++) s->tangent_moves |= w.by[c] != 0.0;
   s->pb.rhs_calls = calls;
   s->tangent_touches = rc == LAG_OK && only_touches(s, k, slope);
   return rc;
@@ -250,8 +271,7 @@ int lag_tangent_corner(lag_sim *s) {
   if (s->tangent_touches)
     return refuse_corner(s, "the motion only touches its surface, which neighbouring motions may miss");
   for (int c = 0; c < k; c++) {
-    double along = 0;
-    for (int i = 0; i < n; i++) along += w.gradient[i] * s->tangent[i * k + c];
+    double along = change_along(s, &w, c);
     for (int i = 0; i < n; i++) s->tangent[i * k + c] += (w.after[i] - w.before[i]) * along / rate;
   }
   int joins = fabs(left) <= same * terms; /* a slide begins */
@@ -274,12 +294,12 @@ int lag_tangent_begin(lag_sim *s) {
     rc = lag_rhs(&s->pb, s->run->t, s->now, side < 0 ? w.before : w.after);
   }
   for (int i = 0; i < n && rc == LAG_OK; i++) rc = event_slope(s, &w, s->scene->model->nev + k, i, &w.gradient[i]);
+  rc = rc ? rc : lag_event_by_parameters(s, s->scene->model->nev + k, w.by);
   lag_switch_hold(s, k, 0);
   s->pb.rhs_calls = calls;
   for (int i = 0; i < n && rc == LAG_OK; i++) across += w.gradient[i] * (w.after[i] - w.before[i]);
   for (int c = 0; c < columns && rc == LAG_OK; c++) {
-    double along = 0;
-    for (int i = 0; i < n; i++) along += w.gradient[i] * s->tangent[i * columns + c];
+    double along = change_along(s, &w, c);
     for (int i = 0; i < n; i++) s->tangent[i * columns + c] -= (w.after[i] - w.before[i]) * along / across;
   }
   s->tangent_log = -HUGE_VAL;
@@ -297,8 +317,9 @@ static int refuse(lag_sim *s, int k, const char *why) {
 }
 
 typedef struct Jump {
-  /* entries; S[n n]; gradient of g and g_t; R_t; f and f+; copies of the tangent and of S */
-  double *d, *S, *g, *Rt, *before, *after, *Y, *copy;
+  /* entries; S[n n]; gradient of g and g_t; R_t; f and f+; copies of the tangent and of S; changes of g and R by the
+   * parameter of each column, [k] and [n k] */
+  double *d, *S, *g, *Rt, *before, *after, *Y, *copy, *g_by, *R_by;
 } Jump;
 
 static Jump jump_layout(const lag_sim *s) {
@@ -312,6 +333,8 @@ static Jump jump_layout(const lag_sim *s) {
   j.after = j.before + n + 1;
   j.Y = j.after + n + 1;
   j.copy = j.Y + n * s->tangent_columns;
+  j.g_by = j.copy + n * n;
+  j.R_by = j.g_by + s->tangent_columns;
   return j;
 }
 
@@ -343,6 +366,22 @@ static int apply_saltation(lag_sim *s, const Jump *j) {
     for (int c = 0; c < n; c++)
       for (int b = 0; b < k; b++) s->tangent[i * k + b] += j->S[i * n + c] * j->Y[c * k + b];
   return lag_not_finite(n * k, s->tangent) < 0;
+}
+
+/* R_by := what parameters add to the tangent behind event k, with the gain of each component for a later event: the
+ * event's delay is -g_by/rate, of a kick that of its number of periods. */
+static int parameters_at_jump(lag_sim *s, int k, const Jump *j, const double *gain, double rate) {
+  int n = s->pb.n, columns = s->tangent_columns, kick = lag_is_kick(s->scene->model, k), rc;
+  double *there = j->copy;
+  if ((rc = lag_action_by_parameters(s, k, there, j->R_by)) != 0) return rc;
+  if ((rc = lag_event_by_parameters(s, k, j->g_by)) != 0) return rc;
+  if (kick) { /* g is the period */
+    if ((rc = lag_events_eval(s, s->run->t, s->now, s->g1)) != 0) return rc;
+    rate = -s->g1[k] / (s->run->t - s->scene->t0);
+  }
+  for (int i = 0; i < n; i++)
+    for (int c = 0; c < columns; c++) j->R_by[i * columns + c] += gain[i] * j->g_by[c] / rate;
+  return LAG_OK;
 }
 
 /* log |det S|, in `a`, a copy of S. */
@@ -385,16 +424,19 @@ int lag_tangent_jump(lag_sim *s, int k, int more) {
   for (int c = 0; c < n; c++) rate += j.g[c] * j.before[c];
   rate += j.g[n];
   int kick = lag_is_kick(m, k), touches = !kick && only_touches(s, k, rate);
-  for (int i = 0; i < n && !kick; i++) { /* the time of a kick does not move */
+  for (int i = 0; i < n; i++) {
     double gain = j.after[i] - j.Rt[i];
     for (int c = 0; c < n; c++) gain -= j.S[i * n + c] * j.before[c];
-    for (int c = 0; c < n; c++) j.S[i * n + c] += gain * j.g[c] / rate;
+    for (int c = 0; c < n && !kick; c++) j.S[i * n + c] += gain * j.g[c] / rate; /* no state moves a kick */
+    j.Rt[i] = gain;
   }
+  if (s->pb.by && parameters_at_jump(s, k, &j, j.Rt, rate))
+    return refuse(s, k, "its derivatives by parameters cannot be computed");
   s->tangent_at_event = 1;
   s->tangent_log += log_det(n, j.S, j.copy);
-  return apply_saltation(s, &j) && !touches
-             ? LAG_OK
-             : refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
+  int finite = apply_saltation(s, &j);
+  for (size_t i = 0; i < block(s) && s->pb.by; i++) s->tangent[i] += j.R_by[i];
+  return finite && !touches ? LAG_OK : refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
 }
 
 int lag_sim_tangent(lag_sim *s, double *Y) {

@@ -15,7 +15,14 @@ typedef struct LinearLayout {
   double *dr;   /* [ndr] sparse */
   double *mass; /* [nmass] sparse */
   double *M;    /* [nq * nq] */
+  double *part; /* derivatives by parameters or inputs */
+  double *u;    /* [2 nu] */
 } LinearLayout;
+
+static size_t partials_size(const lag_linear *l) {
+  int params = l->by_params ? l->by_params->n : 0, inputs = l->by_inputs ? l->by_inputs->n : 0;
+  return (size_t)(params > inputs ? params : inputs);
+}
 
 static LinearLayout parts_of(const lag_model *m, double *work) {
   LinearLayout p;
@@ -23,17 +30,23 @@ static LinearLayout parts_of(const lag_model *m, double *work) {
   p.dr = p.rate + 2 * m->nq + m->nz;
   p.mass = p.dr + m->linear->ndr;
   p.M = p.mass + m->linear->nmass;
+  p.part = p.M + m->nq * m->nq;
+  p.u = p.part + partials_size(m->linear);
   return p;
 }
 
 size_t lag_linear_work(const lag_model *m) {
   size_t nq = (size_t)m->nq, n = 2 * nq + (size_t)m->nz;
-  size_t exact = m->linear ? n + (size_t)m->linear->ndr + (size_t)m->linear->nmass + nq * nq : 0,
+  size_t exact = m->linear ? n + (size_t)m->linear->ndr + (size_t)m->linear->nmass + nq * nq +
+                                 partials_size(m->linear) + 2 * (size_t)m->nu
+                           : 0,
          differences = m->constraints || m->nmodes ? 3 * n : 0;
   return exact > differences ? exact : differences;
 }
 
-int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, double *dr, double *M, double *work) {
+/* lag_linearise with rows of dr `width` apart; columns past n are 0. */
+static int linearise(lag_problem *pb, double t, const double *y, const double *a, size_t width, double *dr, double *M,
+                     double *work) {
   const lag_model *m = pb->model;
   const lag_linear *l = m->linear;
   size_t nq = (size_t)m->nq, n = (size_t)pb->n;
@@ -46,14 +59,18 @@ int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, d
   if (!a) memset(p.rate, 0, n * sizeof(double));
   rc = rc ? rc : l->eval(l, t, y, y + nq, y + 2 * nq, pb->p, pb->u, a ? a : p.rate, p.dr, p.mass, pb->work);
   if (rc) return rc;
-  memset(dr, 0, (nq + (size_t)m->nz) * n * sizeof(double));
+  memset(dr, 0, (nq + (size_t)m->nz) * width * sizeof(double));
   memset(M, 0, nq * nq * sizeof(double));
-  for (int k = 0; k < l->ndr; k++) dr[(size_t)l->dr[k].row * n + (size_t)l->dr[k].col] = p.dr[k];
+  for (int k = 0; k < l->ndr; k++) dr[(size_t)l->dr[k].row * width + (size_t)l->dr[k].col] = p.dr[k];
   for (int k = 0; k < l->nmass; k++) {
     size_t i = (size_t)l->mass[k].row, j = (size_t)l->mass[k].col;
     M[i * nq + j] = M[j * nq + i] = p.mass[k];
   }
   return LAG_OK;
+}
+
+int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, double *dr, double *M, double *work) {
+  return linearise(pb, t, y, a, (size_t)pb->n, dr, M, work);
 }
 
 static double component_magnitude(lag_problem *pb, const double *y, int k) {
@@ -91,26 +108,75 @@ double lag_difference_scale(lag_problem *pb, const double *y, int k) {
 
 /* J by central differences of order 6, column by column: wrong by rounding over 2^-9, and by 2^-54/140 of a seventh
  * derivative, for a scale of 1. */
-static int central_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work) {
-  static const double weight[] = {0.75, -0.15, 1.0 / 60};
-  const double part = 0x1p-9;
-  int n = pb->n, nq = pb->nq, rc = LAG_OK;
+static int central_jacobian(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, double *J,
+                            double *work) {
+  int n = pb->n, nq = pb->nq, width = n + (by ? by->n : 0), rc = LAG_OK;
   double *there = work + n, *rate = there + n;
-  memset(J, 0, (size_t)((n - nq) * n) * sizeof *J);
-  for (int k = 0; k < n; k++) {
-    double h = part * lag_difference_scale(pb, y, k);
+  const double *p = pb->p;
+  memset(J, 0, (size_t)((n - nq) * width) * sizeof *J);
+  for (int k = 0; k < width; k++) {
+    double h = k < n ? LAG_DIFFERENCE_PART * lag_difference_scale(pb, y, k) : by->h[k - n];
     memcpy(there, y, (size_t)n * sizeof *y);
     for (int j = -3; j <= 3 && rc == LAG_OK; j++) {
-      there[k] = y[k] + j * h;
+      if (k < n) there[k] = y[k] + j * h;
+      else pb->p = lag_shifted_parameters(pb, by, k - n, j);
       rc = j ? lag_rhs(pb, t, there, rate) : LAG_OK;
-      for (int i = nq; i < n && j; i++) J[(i - nq) * n + k] += (j < 0 ? -weight[-j - 1] : weight[j - 1]) * rate[i] / h;
+      for (int i = nq; i < n && j; i++) J[(i - nq) * width + k] += lag_difference_weight(j) * rate[i] / h;
     }
+    pb->p = p;
   }
   return rc ? rc : lag_rhs(pb, t, y, work);
 }
 
-int lag_fine_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work) {
-  return pb->model->constraints || pb->nslide ? central_jacobian(pb, t, y, J, work) : lag_jacobian(pb, t, y, J, work);
+/* du[nu] := derivatives of inputs that follow their formulas by parameter j; at[nu] is scratch. */
+static int inputs_by_parameter(lag_problem *pb, const lag_parameter_columns *by, int j, double t, double *du,
+                               double *at) {
+  const lag_model *m = pb->model;
+  int rc = LAG_OK;
+  memset(du, 0, (size_t)m->nu * sizeof *du);
+  memset(at, 0, (size_t)m->nu * sizeof *at);
+  for (int k = -3; k <= 3 && rc == LAG_OK && m->inputs; k++) {
+    rc = k ? m->inputs(m, t, lag_shifted_parameters(pb, by, j, k), at) : LAG_OK;
+    for (int i = 0; i < m->nu && k; i++)
+      if (isnan(pb->hold[i]) && !pb->signal[i].fn) du[i] += lag_difference_weight(k) * at[i] / by->h[j];
+  }
+  return rc;
+}
+
+/* Adds to columns n ... of dr, rows width apart, the derivatives of residuals by parameters, with those by inputs that
+ * depend on them. */
+static int by_parameters(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, double *dr,
+                         const LinearLayout *w) {
+  const lag_partials *of = pb->model->linear->by_params, *in = pb->model->linear->by_inputs;
+  int n = pb->n, nq = pb->nq, width = n + by->n, rc = LAG_OK;
+  const double *a = w->rate + nq, *v = y + nq, *z = v + nq;
+  if (of && of->n) rc = of->eval(of, t, y, v, z, pb->p, pb->u, a, w->part, w->mass, pb->work);
+  for (int k = 0; of && k < of->n; k++) {
+    const double *chain = by->chain + of->at[k].col * by->n, d = w->part[k];
+    double *to = dr + of->at[k].row * width + n;
+    const int *j = by->acts + of->at[k].col * by->n, *end = j + by->n;
+    for (; j < end && *j >= 0; j++) to[*j] += d * chain[*j];
+  }
+  if (rc == LAG_OK && in && pb->model->inputs)
+    rc = in->eval(in, t, y, v, z, pb->p, pb->u, a, w->part, w->mass, pb->work);
+  for (int j = 0; j < by->n && in && pb->model->inputs && rc == LAG_OK; j++) {
+    rc = inputs_by_parameter(pb, by, j, t, w->u, w->u + pb->model->nu);
+    for (int k = 0; k < in->n; k++) dr[in->at[k].row * width + n + j] += w->part[k] * w->u[in->at[k].col];
+  }
+  return rc;
+}
+
+int lag_fine_jacobian(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, double *J,
+                      double *work) {
+  const lag_model *m = pb->model;
+  if (m->constraints || pb->nslide) return central_jacobian(pb, by, t, y, J, work);
+  if (!by || !m->linear) return lag_jacobian(pb, t, y, J, work);
+  LinearLayout p = parts_of(m, work);
+  size_t width = (size_t)(pb->n + by->n);
+  int rc = lag_rhs(pb, t, y, p.rate);
+  rc = rc ? rc : linearise(pb, t, y, p.rate + m->nq, width, J, p.M, work);
+  rc = rc ? rc : by_parameters(pb, by, t, y, J, &p);
+  return rc ? rc : lag_solve_dense((size_t)m->nq, width, p.M, J) ? LAG_ESINGULAR : LAG_OK;
 }
 
 int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work) {

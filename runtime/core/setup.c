@@ -614,12 +614,15 @@ int lag_check_moving_sizes(lag_sim *s, double t, const double *y) {
 }
 
 int lag_setup_start(lag_sim *s) {
-  const lag_scene *c = s->scene;
-  int n = s->pb.n;
   int rc = check_digits(s, s->method);
+  rc = rc ? rc : lag_check_parameters(s);
+  rc = rc ? rc : check_rates(s);
+  return rc ? rc : lag_start_state(s);
+}
 
-  if (rc) return rc;
-  if ((rc = lag_check_parameters(s)) != 0 || (rc = check_rates(s)) != 0) return rc;
+int lag_start_state(lag_sim *s) {
+  const lag_scene *c = s->scene;
+  int n = s->pb.n, rc;
   set_start_state(s);
   if (lag_not_finite(n, s->now) >= 0) return lag_fail(s, LAG_ENAN, "the start is not finite");
   memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STATE                                                                                                 \
+#define STATE \
   const void *self, double t, const double *q, const double *v, const double *z, const double *p, const double *u
 #define IN const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u}
 
@@ -16,13 +16,14 @@ static const EvaluatedScene *scene_of(const void *self) { return ((const lag_sce
 static const EvaluatedConstraints *constraints_of(const void *self) { return self; }
 static const EvaluatedCharges *charges_of(const void *self) { return self; }
 static const EvaluatedLinear *linear_of(const void *self) { return self; }
+static const EvaluatedPartials *partials_of(const void *self) { return self; }
 static const EvaluatedAction *action_of(const void *self) { return self; }
 
 /* FUNCTION(name, the structure, its member): a function with one array out. */
-#define FUNCTION(name, of, member)                                                 \
-  static int name(STATE, double *x, double *w) {                                     \
-    IN;                                                                              \
-    return lag_run_program(of(self)->member, in, (double *[]){x}, w);    \
+#define FUNCTION(name, of, member)                                    \
+  static int name(STATE, double *x, double *w) {                      \
+    IN;                                                               \
+    return lag_run_program(of(self)->member, in, (double *[]){x}, w); \
   }
 
 FUNCTION(energy, model_of, energy)
@@ -41,15 +42,15 @@ FUNCTION(curve, action_of, of)
 FUNCTION(momenta, action_of, momenta)
 
 /* The same with two arrays out, and with g between. */
-#define FUNCTION_2(name, of, member)                                               \
-  static int name(STATE, double *x, double *y, double *w) {                          \
-    IN;                                                                              \
+#define FUNCTION_2(name, of, member)                                     \
+  static int name(STATE, double *x, double *y, double *w) {              \
+    IN;                                                                  \
     return lag_run_program(of(self)->member, in, (double *[]){x, y}, w); \
   }
-#define FUNCTION_G(name, of, member)                                               \
-  static int name(STATE, const double *g, double *x, double *y, double *w) {         \
+#define FUNCTION_G(name, of, member)                                                    \
+  static int name(STATE, const double *g, double *x, double *y, double *w) {            \
     const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_G] = g}; \
-    return lag_run_program(of(self)->member, in, (double *[]){x, y}, w); \
+    return lag_run_program(of(self)->member, in, (double *[]){x, y}, w);                \
   }
 
 FUNCTION_2(accel, model_of, accel)
@@ -66,6 +67,11 @@ static int variation(STATE, double *Lq, double *Lv, double *Q, double *w) {
 static int linearise(STATE, const double *a, double *dr, double *M, double *w) {
   const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a};
   return lag_run_program(linear_of(self)->eval, in, (double *[]){dr, M}, w);
+}
+
+static int partials(STATE, const double *a, double *dr, double *M, double *w) {
+  const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a};
+  return lag_run_program(partials_of(self)->eval, in, (double *[]){dr, M}, w);
 }
 
 /* --- functions without w --- */
@@ -101,7 +107,7 @@ static void params(const void *self, double *p, const unsigned char *fixed) {
 
 static void start(const void *self, const double *p, double *q, double *v, double *z) {
   const EvaluatedScene *s = scene_of(self);
-  const double *const in[PROGRAM_ARRAY_COUNT] = {&s->scene.t0, [PROGRAM_P] = p};
+  const double *const in[PROGRAM_ARRAY_COUNT] = {[PROGRAM_P] = p};
   for (int i = 0; i < s->of->model.nq; i++) q[i] = v[i] = 0;
   for (int i = 0; i < s->of->model.nz; i++) z[i] = 0;
   if (s->start) run_alone(s->start, in, (double *[]){q, v, z});
@@ -143,8 +149,7 @@ static int observe(STATE, double *out, double *w) {
   if (s->nactions) { /* w: inputs and action variables, a state, the frame */
     double *with = w, *y = with + n + s->nactions, *rest = y + ny;
     for (int i = 0; i < n; i++) with[i] = u[i];
-    for (int i = 0; i < s->nactions; i++)
-      with[n + i] = lag_action(&s->action[i].curve, t, q, v, z, p, u, y, rest);
+    for (int i = 0; i < s->nactions; i++) with[n + i] = lag_action(&s->action[i].curve, t, q, v, z, p, u, y, rest);
     u = with, w = rest;
   }
   IN;
@@ -195,6 +200,8 @@ void lag_set_linear_functions(EvaluatedLinear *l) {
   if (l->jumps) l->linear.jumps = jumps;
 }
 
+void lag_set_partial_functions(EvaluatedPartials *p) { p->partials.eval = partials; }
+
 void lag_set_action_functions(EvaluatedAction *a) {
   a->curve.curve = curve;
   if (a->momenta) a->curve.momenta = momenta;
@@ -205,8 +212,9 @@ static void widen(size_t *room, const Program *p, size_t more) {
 }
 
 size_t lag_model_room(const EvaluatedModel *m) {
-  const Program *const all[] = {m->accel, m->energy, m->events, m->sizes, m->moving_sizes, m->variation, m->second,
-                                m->switch_values, m->switch_rates, m->switch_grips, m->contact_laws};
+  const Program *const all[] = {m->accel,        m->energy,       m->events,      m->sizes,
+                                m->moving_sizes, m->variation,    m->second,      m->switch_values,
+                                m->switch_rates, m->switch_grips, m->contact_laws};
   size_t room = 0;
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) widen(&room, all[i], 0);
   for (int k = 0; k < m->model.nev; k++) widen(&room, m->event[k].action, 0);
@@ -219,6 +227,10 @@ size_t lag_model_room(const EvaluatedModel *m) {
         widen(&room, c->velocity, 0);
   if (q) widen(&room, q->values, 0), widen(&room, q->powers, 0);
   if (l) widen(&room, l->eval, 0), widen(&room, l->jumps, 0);
+  const EvaluatedPartials *by_params = (const void *)(l ? l->linear.by_params : NULL),
+                          *by_inputs = (const void *)(l ? l->linear.by_inputs : NULL);
+  if (by_params) widen(&room, by_params->eval, 0);
+  if (by_inputs) widen(&room, by_inputs->eval, 0);
   return room;
 }
 

@@ -31,6 +31,11 @@ typedef struct {
 } EvaluatedCharges;
 
 typedef struct {
+  lag_partials partials;
+  const Program *eval;
+} EvaluatedPartials;
+
+typedef struct {
   lag_linear linear;
   const Program *eval, *jumps;
 } EvaluatedLinear;
@@ -64,6 +69,7 @@ void lag_set_taylor_functions(EvaluatedTaylor *t);
 void lag_set_constraint_functions(EvaluatedConstraints *c);
 void lag_set_charge_functions(EvaluatedCharges *c);
 void lag_set_linear_functions(EvaluatedLinear *l);
+void lag_set_partial_functions(EvaluatedPartials *p);
 void lag_set_action_functions(EvaluatedAction *a);
 
 /* Doubles that functions of a model, of a scene and of a series need in w. */

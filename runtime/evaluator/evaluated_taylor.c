@@ -122,7 +122,7 @@ static void rest(const void *self, int n, double T, double *x, double *work) {
     const double per_next = 1.0 / (k + 1), order = k, up = T * per_next;
     sums(s, k, &w);
     const double *const in[PROGRAM_ARRAY_COUNT] = {
-        [PROGRAM_COEF] = row, [PROGRAM_SUMS] = w.s, [PROGRAM_STEP] = w.c,
+        [PROGRAM_COEF] = row,     [PROGRAM_SUMS] = w.s,         [PROGRAM_STEP] = w.c,
         [PROGRAM_ORDER] = &order, [PROGRAM_PER_ORDER] = &per_k, [PROGRAM_UP] = &up};
     double *const out[] = {row, row + columns, w.a + (size_t)k * w.na, w.b + (size_t)k * w.nb};
     lag_run_program(s->next, in, out, w.frame);
@@ -152,6 +152,4 @@ static void at(const void *self, int n, double s, const double *x, double *y, do
   }
 }
 
-void lag_set_taylor_functions(EvaluatedTaylor *t) {
-  t->taylor.first = first, t->taylor.rest = rest, t->taylor.at = at;
-}
+void lag_set_taylor_functions(EvaluatedTaylor *t) { t->taylor.first = first, t->taylor.rest = rest, t->taylor.at = at; }

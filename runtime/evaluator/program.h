@@ -15,21 +15,21 @@ typedef enum {
 #undef SPECIAL
 #undef PLAIN
 #undef BOTH
-  CODES
+      CODES
 } Code;
 
 enum {
 #define OP(name, operands, formula) TURN_##name,
-  PROGRAM_TURN_OPS(OP)
+  PROGRAM_TURN_OPS(OP, OP)
 #undef OP
-  TURN_OPS
+      TURN_OPS
 };
 
 enum {
 #define ARRAY(name) PROGRAM_##name,
   PROGRAM_ARRAYS(ARRAY)
 #undef ARRAY
-  PROGRAM_ARRAY_COUNT
+      PROGRAM_ARRAY_COUNT
 };
 
 enum { PROGRAM_OUTPUTS = 4 }; /* the most arrays that a function writes */
@@ -73,7 +73,8 @@ typedef struct {
 /* for i < rows, for j in skew i .. (skew + more) i + turns - 1; without turns: for i < rows. */
 typedef struct {
   int64_t rows, skew, turns, more;
-  int has_turns, in_order; /* in_order: turns read sums that others of the nest change */
+  /* in_order: turns read sums that others of the nest change; apart: no two sums share an element in a row */
+  int has_turns, in_order, apart;
   uint32_t nsubscripts, nouter, nins, nsums;
   const Subscript *at;
   const uint32_t *outer; /* places in the frame */
@@ -82,9 +83,9 @@ typedef struct {
 } Nest;
 
 typedef struct {
-  uint32_t frame;        /* numbers that a call needs, with scratch of nests at its end */
+  uint32_t frame; /* numbers that a call needs, with scratch of nests at its end */
   uint32_t scratch;
-  int regular;           /* the systems were found regular before */
+  int regular; /* the systems were found regular before */
   uint32_t cells, ncells, work, nwork;
   const double *constants;
   const Curve *curves;

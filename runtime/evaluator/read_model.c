@@ -49,6 +49,14 @@ static const Program *wanted(const Reader *r, int is_wanted, int64_t x, int64_t 
   return p;
 }
 
+/* A reader for functions that are called with parameters alone, or with time, too. */
+static Reader without_state(const Reader *r, int timed) {
+  Reader alone = *r;
+  memset(&alone.state, 0, sizeof alone.state);
+  alone.state.in[PROGRAM_T] = timed, alone.state.in[PROGRAM_P] = r->state.in[PROGRAM_P];
+  return alone;
+}
+
 static const lag_var *variables(Bytes *b, int *n) {
   *n = (int)lag_bytes_count(b, 32);
   lag_var *v = lag_bytes_room(b, (size_t)*n, sizeof *v);
@@ -222,6 +230,17 @@ static void read_switches(Reader *r) {
   r->m->switch_grips = program(r, modes, 0, 0);
 }
 
+/* Derivatives of residuals by so many parameters or inputs; NULL: none. */
+static const lag_partials *read_partials(Reader *r, int columns, int nmass) {
+  Bytes *b = r->b;
+  EvaluatedPartials *p = flag(b) ? lag_bytes_room(b, 1, sizeof *p) : NULL;
+  if (!p) return NULL;
+  p->partials.at = entries(b, &p->partials.n, r->m->model.nq + r->m->model.nz, columns, 0);
+  p->eval = wanted(r, 1, p->partials.n, nmass);
+  lag_set_partial_functions(p);
+  return &p->partials;
+}
+
 static void read_linear(Reader *r) {
   Bytes *b = r->b;
   if (!flag(b)) return;
@@ -243,6 +262,8 @@ static void read_linear(Reader *r) {
   l->linear.jump = j;
   l->jumps = program(r, l->linear.njump, 0, 0);
   lag_bytes_need(b, !l->linear.njump || l->jumps, "derivatives of events are missing");
+  l->linear.by_params = read_partials(&with, r->m->model.np, l->linear.nmass);
+  l->linear.by_inputs = read_partials(&with, r->m->model.nu, l->linear.nmass);
   lag_set_linear_functions(l);
   r->m->model.linear = &l->linear;
 }
@@ -250,7 +271,9 @@ static void read_linear(Reader *r) {
 static void read_variation(Reader *r) {
   Bytes *b = r->b;
   lag_model *m = &r->m->model;
-  r->m->variation = program(r, m->nq, m->nq, m->nq);
+  Reader with = *r;
+  with.state.in[PROGRAM_Z] = 0; /* methods that need it have no states */
+  r->m->variation = program(&with, m->nq, m->nq, m->nq);
   m->nsecond = (int)lag_bytes_count(b, 12);
   lag_second *s = lag_bytes_room(b, (size_t)m->nsecond, sizeof *s);
   for (int i = 0; s && i < m->nsecond; i++) {
@@ -258,7 +281,7 @@ static void read_variation(Reader *r) {
     s[i].row = (int)lag_bytes_below(b, (uint32_t)m->nq), s[i].col = (int)lag_bytes_below(b, (uint32_t)m->nq);
   }
   m->second_at = s;
-  r->m->second = wanted(r, r->m->variation != NULL, m->nsecond, 0);
+  r->m->second = wanted(&with, r->m->variation != NULL, m->nsecond, 0);
 }
 
 static void read_taylor(Reader *r) {
@@ -308,6 +331,8 @@ static void read_head(Reader *r) {
   m->nderived = lag_bytes_int(b, 0, 1 << 24), m->nmodes = lag_bytes_int(b, 0, 1 << 24);
   r->m->nconstraints = lag_bytes_int(b, 0, 1 << 24);
   r->ny = 2 * m->nq + m->nz;
+  int flows = (m->flags & LAG_FIRST_ORDER) != 0, splits = flows && (m->flags & (LAG_SEPARABLE | LAG_SUM_HAMILTONIAN));
+  lag_bytes_need(b, !(flows && m->nq) && !(splits && m->nz % 2), "the flags of a model are wrong");
   int64_t *in = r->state.in;
   in[PROGRAM_T] = 1, in[PROGRAM_Q] = in[PROGRAM_V] = m->nq, in[PROGRAM_Z] = m->nz;
   in[PROGRAM_P] = (int64_t)m->np + m->nderived, in[PROGRAM_U] = (int64_t)m->nu + m->nmodes;
@@ -318,11 +343,12 @@ static Reader read_model(Bytes *b) {
   if (!r.m) return r;
   read_head(&r);
   lag_model *m = &r.m->model;
-  r.m->derive = wanted(&r, m->nderived > 0, r.state.in[PROGRAM_P], 0);
+  Reader alone = without_state(&r, 0), timed = without_state(&r, 1);
+  r.m->derive = wanted(&alone, m->nderived > 0, r.state.in[PROGRAM_P], 0);
   r.m->accel = wanted(&r, 1, m->nq, m->nz);
   r.m->energy = program(&r, 2, 0, 0);
   read_events(&r);
-  r.m->inputs = wanted(&r, m->nu > 0, m->nu, 0);
+  r.m->inputs = wanted(&timed, m->nu > 0, m->nu, 0);
   read_tables(&r);
   read_constraints(&r);
   read_contacts(&r);
@@ -418,10 +444,11 @@ static const lag_scene *read_scene(Bytes *b, const Reader *r) {
   c->t0 = lag_bytes_number(b), c->t1 = lag_bytes_number(b), c->tolerance = lag_bytes_number(b),
   c->every = lag_bytes_number(b);
   c->has_span = flag(b), c->exactly = flag(b);
+  Reader alone = without_state(r, 0);
   const Program **params = lag_bytes_room(b, (size_t)m->np, sizeof *params);
-  for (int i = 0; params && i < m->np; i++) params[i] = program(r, m->np, 0, 0);
+  for (int i = 0; params && i < m->np; i++) params[i] = program(&alone, m->np, 0, 0);
   s->params = params;
-  s->start = program(r, m->nq, m->nq, m->nz);
+  s->start = program(&alone, m->nq, m->nq, m->nz);
   unsigned char *given = m->constraints ? lag_bytes_room(b, (size_t)r->ny, 1) : NULL;
   for (int i = 0; given && i < r->ny; i++) given[i] = (unsigned char)lag_bytes_int(b, 0, 2);
   c->given = given;

@@ -20,7 +20,7 @@ static const struct {
 
 static const int operands_of[] = {
 #define OP(name, operands, formula) operands,
-    PROGRAM_TURN_OPS(OP)
+    PROGRAM_TURN_OPS(OP, OP)
 #undef OP
 };
 
@@ -84,8 +84,10 @@ static Range range_of(Bytes *b, const Nest *n, uint32_t k) {
   for (int corner = 0; corner < 4; corner++) {
     double i = corner & 1 ? (double)(n->rows - 1) : 0, from = (double)n->skew * i,
            end = (double)(n->skew + n->more) * i + (double)n->turns,
-           j = !n->has_turns ? 0 : corner & 2 ? end - 1 : from, rows = (double)s->by_row * i,
-           turns = (double)s->by_turn * j;
+           j = !n->has_turns ? 0
+               : corner & 2  ? end - 1
+                             : from,
+           rows = (double)s->by_row * i, turns = (double)s->by_turn * j;
     lag_bytes_need(b, !n->has_turns || end > from, "a loop has no turns");
     lag_bytes_need(b, fabs(rows) < limit && fabs(j) < limit && fabs(turns) < limit, "a loop is too long");
     widen(&r, (double)s->first + rows + turns);
@@ -135,6 +137,24 @@ static int reads_own_sums(Bytes *b, const Nest *n) {
   return 0;
 }
 
+/* Whether two sums have no element in common in a row: their ranges are apart, or their indices differ modulo their
+ * common stride. */
+static int are_apart(Bytes *b, const Nest *n, uint32_t i, uint32_t k) {
+  Range x = range_of(b, n, i), y = range_of(b, n, k);
+  const Subscript *s = &n->at[i], *t = &n->at[k];
+  int64_t step = n->has_turns ? s->by_turn : s->by_row, other = n->has_turns ? t->by_turn : t->by_row;
+  int64_t rows = n->has_turns ? s->by_row - t->by_row : 0;
+  return x.least > y.most || y.least > x.most ||
+         (step == other && step != 0 && rows % step == 0 && (s->first - t->first) % step != 0);
+}
+
+static int sums_are_apart(Bytes *b, const Nest *n) {
+  for (uint32_t i = 0; i < n->nsums; i++)
+    for (uint32_t k = 0; k < i && n->sum[i].moves; k++)
+      if (n->sum[k].moves && !are_apart(b, n, n->sum[i].subscript, n->sum[k].subscript)) return 0;
+  return 1;
+}
+
 static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   n->nins = lag_bytes_count(b, 20);
   TurnIns *ins = lag_bytes_room(b, n->nins, sizeof *ins);
@@ -155,7 +175,7 @@ static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
     lag_bytes_need(b, is_within(range_of(b, n, sum[k].subscript), p->ncells), "a turn adds out of range");
   }
   n->sum = sum;
-  if (!b->why) n->in_order = reads_own_sums(b, n);
+  if (!b->why) n->in_order = reads_own_sums(b, n), n->apart = sums_are_apart(b, n);
 }
 
 static int64_t bounded(Bytes *b) {
@@ -187,22 +207,30 @@ static const Nest *read_nests(Bytes *b, const Program *p, const Lengths *of, uin
 
 /* --- words --- */
 
-static int is_operand(const Program *p, const Lengths *of, char kind, const uint32_t *at) {
+/* Elements that a code moves between an array and the frame. */
+static uint32_t moved(uint32_t c, const uint32_t *at) {
+  if (c == CODE_READ || c == CODE_WRITE) return at[3];
+  return c == CODE_READ_2 || c == CODE_WRITE_2 ? 2 : 1;
+}
+
+static int moves_within(const Program *p, int64_t length, const uint32_t *at, uint32_t n) {
+  return ends_within(at[1], n, length) && (uint64_t)at[2] + n <= p->frame;
+}
+
+static int is_operand(const Program *p, const Lengths *of, uint32_t c, char kind, const uint32_t *at) {
   switch (kind) {
-    case 'a': case 'd': return at[0] < p->frame;
-    case 'f': return at[0] < lag_functions_1_count;
-    case 'F': return at[0] < lag_functions_2_count;
-    case 't': return at[0] < p->ncurves;
-    case 's': return at[0] < p->nsystems;
-    case 'n': return at[0] < p->nnests;
-    case 'i':
-      return at[0] < PROGRAM_CONSTANTS ? ends_within(at[1], at[3], of->in[at[0]]) && (uint64_t)at[2] + at[3] <= p->frame
-                                       : at[0] == PROGRAM_CONSTANTS && ends_within(at[1], at[3], p->nconstants) &&
-                                             (uint64_t)at[2] + at[3] <= p->frame;
-    case 'o':
-      return at[0] < PROGRAM_OUTPUTS && ends_within(at[1], at[3], of->out[at[0]]) &&
-             (uint64_t)at[2] + at[3] <= p->frame;
-    default: return 1; /* k, with the array */
+  case 'a':
+  case 'd': return at[0] < p->frame;
+  case 'f': return at[0] < lag_functions_1_count;
+  case 'F': return at[0] < lag_functions_2_count;
+  case 't': return at[0] < p->ncurves;
+  case 's': return at[0] < p->nsystems;
+  case 'n': return at[0] < p->nnests;
+  case 'i':
+    return at[0] <= PROGRAM_CONSTANTS &&
+           moves_within(p, at[0] == PROGRAM_CONSTANTS ? p->nconstants : of->in[at[0]], at, moved(c, at));
+  case 'o': return at[0] < PROGRAM_OUTPUTS && moves_within(p, of->out[at[0]], at, moved(c, at));
+  default: return 1; /* k, with the array */
   }
 }
 
@@ -216,7 +244,7 @@ static void check_words(Bytes *b, const Program *p, const Lengths *of) {
     uint32_t wide = (uint32_t)strlen(kinds) + (strpbrk(kinds, "io") != NULL);
     if (!lag_bytes_need(b, p->nwords - k >= wide, "a program ends too early")) return;
     for (; *kinds; k += *kinds == 'i' || *kinds == 'o' ? 2 : 1, kinds++)
-      lag_bytes_need(b, is_operand(p, of, *kinds, p->words + k), "an operand is out of range");
+      lag_bytes_need(b, is_operand(p, of, c, *kinds, p->words + k), "an operand is out of range");
   }
   lag_bytes_need(b, ended, "a program ends too early");
 }

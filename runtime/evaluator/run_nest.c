@@ -1,5 +1,5 @@
-/* Nests of loops: each operation of a turn is computed for a block of turns; sums are added to in the order of
- * turns. */
+/* Nests of loops: each operation of a turn is computed for a block of turns; sums are added to in the order of turns.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -33,13 +33,23 @@ static void fill(double *to, double x, int n) {
 static void gather(const Block *b, double *to, const double *from, uint32_t k) {
   int64_t step = stride(b->n, k);
   from += first_index(b, k);
+  if (step == 1) memcpy(to, from, (size_t)b->count * sizeof *to);
+  if (step == 1) return;
   for (int j = 0; j < b->count; j++) to[j] = from[j * step];
 }
+
+/* Four turns at once, where the compiler has vectors; the last ones may compute values that nobody needs. */
+#if defined(__GNUC__)
+typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
+#else
+typedef double four;
+#endif
+enum { FOUR = (int)(sizeof(four) / sizeof(double)) };
 
 static void compute(const Block *b, uint32_t s) {
   const TurnIns *i = &b->n->ins[s - 1];
   double *to = value(b, s);
-  const double *x = value(b, i->a), *y = value(b, i->b), *z = value(b, i->c);
+  const double *of[] = {value(b, i->a), value(b, i->b), value(b, i->c)};
   lag_function_1 *const *one = lag_functions_1;
   lag_function_2 *const *two = lag_functions_2;
   uint32_t k = i->number;
@@ -47,24 +57,27 @@ static void compute(const Block *b, uint32_t s) {
 #define A x[j]
 #define B y[j]
 #define C z[j]
-#define EACH(name, formula) \
-  case TURN_##name: \
-    for (int j = 0; j < n; j++) to[j] = (formula); \
-    return;
+#define LOOP(Type, turns, name, formula)                                                     \
+  case TURN_##name: {                                                                        \
+    const Type *x = (const void *)of[0], *y = (const void *)of[1], *z = (const void *)of[2]; \
+    for (int j = 0; j < (turns); j++) ((Type *)(void *)to)[j] = (formula);                   \
+    (void)x, (void)y, (void)z;                                                               \
+    return;                                                                                  \
+  }
+#define VECTOR(name, operands, formula) LOOP(four, (n + FOUR - 1) / FOUR, name, formula)
 #define OP(name, operands, formula) OP_##operands(name, formula)
 #define OP_0(name, formula)
-#define OP_1 EACH
-#define OP_2 EACH
-#define OP_3 EACH
+#define OP_1(name, formula) LOOP(double, n, name, formula)
+#define OP_2 OP_1
+#define OP_3 OP_1
   switch (i->op) {
-    PROGRAM_TURN_OPS(OP)
-    case TURN_CONSTANT: fill(to, b->p->constants[k], n); return;
-    case TURN_ELEMENT: gather(b, to, b->in[i->a], k); return;
-    case TURN_SCALAR: fill(to, b->in[i->a][0], n); return;
-    case TURN_CELL: gather(b, to, b->r + b->p->cells, k); return;
-    case TURN_OUTER: fill(to, b->r[b->n->outer[k]], n); return;
+    PROGRAM_TURN_OPS(OP, VECTOR)
+  case TURN_CONSTANT: fill(to, b->p->constants[k], n); return;
+  case TURN_ELEMENT: gather(b, to, b->in[i->a], k); return;
+  case TURN_SCALAR: fill(to, b->in[i->a][0], n); return;
+  case TURN_CELL: gather(b, to, b->r + b->p->cells, k); return;
+  case TURN_OUTER: fill(to, b->r[b->n->outer[k]], n); return;
   }
-  (void)y, (void)z;
 }
 
 /* Loads come first, as in C; then the other values. */
@@ -74,15 +87,20 @@ static void compute_all(const Block *b, int moves) {
       if (b->n->ins[s - 1].moves == moves && (b->n->ins[s - 1].op <= TURN_OUTER) == loads) compute(b, s);
 }
 
+/* Adds turns from .. end - 1 to sum k. */
+static void add_to(const Block *b, uint32_t k, int from, int end) {
+  const TurnSum *s = &b->n->sum[k];
+  const double *x = value(b, s->value);
+  int64_t step = s->moves ? stride(b->n, s->subscript) : 0;
+  double *to = s->moves ? b->r + b->p->cells + first_index(b, s->subscript) : &b->part[k];
+  for (int j = from; j < end && !s->minus; j++) to[j * step] += x[j];
+  for (int j = from; j < end && s->minus; j++) to[j * step] -= x[j];
+}
+
 static void add(const Block *b) {
-  double *sums = b->r + b->p->cells;
-  for (int j = 0; j < b->count; j++)
-    for (uint32_t k = 0; k < b->n->nsums; k++) {
-      const TurnSum *s = &b->n->sum[k];
-      double x = value(b, s->value)[j];
-      double *to = s->moves ? &sums[first_index(b, s->subscript) + j * stride(b->n, s->subscript)] : &b->part[k];
-      *to = s->minus ? *to - x : *to + x;
-    }
+  for (uint32_t k = 0; b->n->apart && k < b->n->nsums; k++) add_to(b, k, 0, b->count);
+  for (int j = 0; !b->n->apart && j < b->count; j++)
+    for (uint32_t k = 0; k < b->n->nsums; k++) add_to(b, k, j, j + 1);
 }
 
 static void run_row(Block *b, int64_t from, int64_t end) {

@@ -1,5 +1,5 @@
-/* Executes a program: the operations of its C text, in the same order or with the same operands, hence the same
- * bits. */
+/* Executes a program: the operations of its C text, in the same order or with the same operands, hence the same bits.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -23,20 +23,24 @@ lag_function_2 *const lag_functions_2[] = {
 const uint32_t lag_functions_1_count = sizeof lag_functions_1 / sizeof *lag_functions_1,
                lag_functions_2_count = sizeof lag_functions_2 / sizeof *lag_functions_2;
 
-static void copy(double *to, const double *from, uint32_t n) {
-  enum { MANY = 16 };
-  if (n >= MANY) memcpy(to, from, n * sizeof *to);
-  else
-    for (uint32_t i = 0; i < n; i++) to[i] = from[i];
+static const double *array(const Program *p, const double *const *in, const uint32_t *at) {
+  return (at[1] == PROGRAM_CONSTANTS ? p->constants : in[at[1]]) + at[2];
 }
 
-static double value_of(const Curve *c, double t) {
+/* What the loop below calls stays outside of it, which needs the registers. */
+#if defined(__GNUC__)
+#define APART __attribute__((noinline)) static
+#else
+#define APART static
+#endif
+
+APART double value_of(const Curve *c, double t) {
   if (c->columns == 4) return lag_curve(t, c->n, (const double(*)[4])(const void *)c->row, c->order);
   return lag_spline(t, c->n, (const double(*)[3])(const void *)c->row);
 }
 
 /* Whether the system is regular; its solution stands behind the matrix. */
-static int solve(const Program *p, const System *s, double *r) {
+APART int solve(const Program *p, const System *s, double *r) {
   double *w = r + p->work;
   int n = s->n, m = s->m, matrix = (n + m) * n;
   memset(w, 0, (size_t)(matrix + n + m) * sizeof *w);
@@ -45,9 +49,21 @@ static int solve(const Program *p, const System *s, double *r) {
 }
 
 /* Two angles are read before anything is written. */
-static void two_sines(const uint32_t *at, double *r) {
+APART void two_sines(const uint32_t *at, double *r) {
   double a = r[at[1]], b = r[at[4]];
   lag_sincos2(a, &r[at[2]], &r[at[3]], b, &r[at[5]], &r[at[6]]);
+}
+
+APART void one_sine(const uint32_t *at, double *r) { lag_sincos(r[at[1]], &r[at[2]], &r[at[3]]); }
+APART double sine(double x) { return lag_sin(x); }
+APART double cosine(double x) { return lag_cos(x); }
+APART void copy_many(double *to, const double *from, uint32_t n) { memcpy(to, from, n * sizeof *to); }
+
+static void copy(double *to, const double *from, uint32_t n) {
+  enum { MANY = 16 };
+  if (n >= MANY) copy_many(to, from, n);
+  else
+    for (uint32_t i = 0; i < n; i++) to[i] = from[i];
 }
 
 #if defined(__GNUC__)
@@ -66,7 +82,8 @@ static void two_sines(const uint32_t *at, double *r) {
 
 int lag_run_program(const Program *p, const double *const *in, double *const *out, double *r) {
   const uint32_t *at = p->words;
-  double x = 0;
+  const double *from;
+  double x = 0, *to;
   r[0] = 0;
   if (p->ncells) memset(r + p->cells, 0, p->ncells * sizeof *r);
 #if defined(__GNUC__)
@@ -85,19 +102,34 @@ again:
   switch (*at) {
 #endif
 
-#define PLAIN(name, kinds, formula) TARGET(name) : x = (formula), at += WORDS(kinds); NEXT;
-#define BOTH(name, kinds, formula) \
-  PLAIN(name, kinds, formula)      \
-  TARGET(name##_TO) : x = (formula), r[at[WORDS(kinds)]] = x, at += WORDS(kinds) + 1; NEXT;
+#define PLAIN(name, kinds, formula)                 \
+  TARGET(name) : x = (formula), at += WORDS(kinds); \
+  NEXT;
+#define BOTH(name, kinds, formula)                                                    \
+  PLAIN(name, kinds, formula)                                                         \
+  TARGET(name##_TO) : x = (formula), r[at[WORDS(kinds)]] = x, at += WORDS(kinds) + 1; \
+  NEXT;
 #define SPECIAL(name, kinds) /* below */
   PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
 
   TARGET(END) : return LAG_OK;
-  TARGET(READ) : copy(r + at[3], (at[1] == PROGRAM_CONSTANTS ? p->constants : in[at[1]]) + at[2], at[4]);
+  TARGET(READ) : copy(r + at[3], array(p, in, at), at[4]);
   at += 5;
+  NEXT;
+  TARGET(READ_1) : C = *array(p, in, at);
+  at += 4;
+  NEXT;
+  TARGET(READ_2) : from = array(p, in, at), to = r + at[3], to[0] = from[0], to[1] = from[1];
+  at += 4;
   NEXT;
   TARGET(WRITE) : copy(out[at[1]] + at[2], r + at[3], at[4]);
   at += 5;
+  NEXT;
+  TARGET(WRITE_1) : out[at[1]][at[2]] = C;
+  at += 4;
+  NEXT;
+  TARGET(WRITE_2) : from = r + at[3], to = out[at[1]] + at[2], to[0] = from[0], to[1] = from[1];
+  at += 4;
   NEXT;
   TARGET(STORE) : A = x;
   at += 2;
@@ -108,7 +140,7 @@ again:
   TARGET(FUNCTION_2) : x = lag_functions_2[at[1]](B, C);
   at += 4;
   NEXT;
-  TARGET(SINCOS) : lag_sincos(A, &B, &C);
+  TARGET(SINCOS) : one_sine(at, r);
   at += 4;
   NEXT;
   TARGET(SINCOS_2) : two_sines(at, r);
@@ -130,7 +162,7 @@ again:
   at += 2;
   NEXT;
 #if !defined(__GNUC__)
-  }
-  return LAG_ESINGULAR;
+}
+return LAG_ESINGULAR;
 #endif
 }

@@ -188,4 +188,5 @@ enum { NMETHODS = sizeof lag_gsl_methods / sizeof *lag_gsl_methods };
 const int lag_gsl_nmethods = NMETHODS;
 
 const lag_extras lag_gsl = {
-    .methods = lag_gsl_methods, .nmethods = NMETHODS, .algebra = &lag_gsl_algebra, .points = lag_gsl_points};
+    .methods = lag_gsl_methods, .nmethods = NMETHODS, .algebra = &lag_gsl_algebra, .points = lag_gsl_points,
+    .fits = &lag_gsl_least_squares};

@@ -70,6 +70,15 @@ typedef struct lag_contact_stats {
   double work, rubbed, due, from, length;
 } lag_contact_stats;
 
+/* Columns of a tangent by parameters: n of them, each with its column of Y; derivatives of all parameters by these,
+ * chain[np * n], and in acts[np * n] those that are not 0, row by row, -1 behind the last; steps h[n], and parameters
+ * at k h from their values, k = -3 ... 3, shifted[n][7][np + nderived]. */
+typedef struct lag_parameter_columns {
+  int n;
+  const int *column, *acts;
+  const double *chain, *h, *shifted;
+} lag_parameter_columns;
+
 /* The problem that a method integrates: the model as y' = f(t, y), and the method's counts. */
 typedef struct lag_problem {
   const lag_model *model;
@@ -112,6 +121,7 @@ typedef struct lag_problem {
   double *contact_room;        /* scratch */
   /* [n + 2] size of each component in this run, and last of the time: powers of 1024; tolerances are parts of it */
   double *size;
+  const lag_parameter_columns *by; /* of the run's tangent; NULL: none */
 } lag_problem;
 
 /* The model's facts (LAG_AUTONOMOUS, ...) less those that an input function of the caller takes away. */
@@ -152,8 +162,10 @@ size_t lag_linear_work(const lag_model *model);
  * and leaves f(t, y) in the first n of work. */
 int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
 /* The same with central differences of order 6, correct to 11 digits or so, as a tangent needs; six calls of lag_rhs
- * a column. */
-int lag_fine_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
+ * a column. With `by`, NULL: none, J[(nq + nz) * (n + by->n)] has columns by these parameters, too, behind the others
+ * in each row. */
+int lag_fine_jacobian(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, double *J,
+                      double *work);
 
 /* dr[(nq + nz) * n]: derivatives of the residuals r = (f - M a, flow) by y at given accelerations a[nq] (NULL: 0);
  * M[nq * nq]: the mass matrix. J above is M^-1 dr in its first nq rows. */
@@ -519,6 +531,19 @@ int lag_sim_set_tangent(lag_sim *sim, int k, const double *Y);
 /* Y[n * k] at the present time; between the ends of steps, by one shorter step of the method. */
 int lag_sim_tangent(lag_sim *sim, double *Y);
 
+/* The same with a column for each of k names: a parameter, or the start of a coordinate, velocity or state ("th",
+ * "th'", "th(0)"): Y = dy/dname, in SI units. A parameter acts by the equations, the scene's start, inputs' formulas,
+ * other parameters that depend on it, events, constraints. Call it before the first advance, after the method and all
+ * values are set. Needs, without constraints, `lagc build --with sensitivities`; methods that step in momenta have no
+ * derivatives by parameters (LAG_EMETHOD). LAG_EINVAL: a name that is none of these. */
+int lag_sim_set_sensitivity(lag_sim *sim, int k, const char *const *names);
+/* Name of column c, of a start with "(0)", and declared unit, as lag_sim_state_info; its value in SI. */
+double lag_sim_sensitivity_info(const lag_sim *sim, int c, char *name, size_t nname, char *unit, size_t nunit);
+double lag_sim_sensitivity_value(const lag_sim *sim, int c);
+/* D[noutputs * k]: the change of each output, in its declared unit, by each name, in SI, where Y[n * k] changes the
+ * present state. Outputs are differentiated by differences of order 6, correct to 11 digits or so. */
+int lag_sim_output_sensitivity(lag_sim *sim, const double *Y, double *D);
+
 void lag_sim_stats(lag_sim *sim, lag_stats *stats);
 /* The drift of monitor i so far, as judged against its limit: at ends of steps, and at the present time. */
 double lag_sim_monitor_drift(lag_sim *sim, int i);
@@ -617,10 +642,13 @@ typedef struct lag_extras {
    * lag_model.h); or NULL */
   const lag_scene *const *lanes_4, *const *lanes_8;
   const lag_ranks *ranks; /* or NULL */
+  void (*after_step)(const lag_program *program); /* called after each step of a run; or NULL */
+  const lag_least_squares *fits; /* or NULL */
 } lag_extras;
 
 /* The contents of liblag_gsl.a, by the GNU Scientific Library. */
 extern const lag_algebra lag_gsl_algebra;
+extern const lag_least_squares lag_gsl_least_squares;
 extern const lag_extras lag_gsl;
 /* liblag_png.a, by librsvg. */
 int lag_png_write(const char *svg, void *file, char *why, size_t size);

@@ -16,6 +16,7 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 #define LAG_REAL lag_lanes
 #else
 #define LAG_REAL double
+#define LAG_REAL_IS_DOUBLE 1
 #endif
 #endif
 

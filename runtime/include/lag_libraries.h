@@ -36,6 +36,21 @@ typedef struct lag_algebra {
   int (*kernel)(int n, const double *A, double tol, double *Q, int *rank);
 } lag_algebra;
 
+/* f[m] at x[n]; J[m * n], row-major, their derivatives; either may be NULL. Not 0: no values at x. */
+typedef int lag_residuals_at(void *context, const double *x, double *f, double *J);
+
+/* Nonlinear least squares, and the statistics that go with them. */
+typedef struct lag_least_squares {
+  /* Moves x[n] to a minimum of |f|^2, m >= n, in at most `most` steps; *steps: made. LAG_OK; LAG_EMETHOD: not reached;
+   * LAG_EDOMAIN: no values at the start; LAG_ENOMEM. J may be of lower rank than n. */
+  int (*minimise)(int m, int n, double *x, lag_residuals_at *residuals, void *context, int most, int *steps);
+  /* A[m * n] = U diag(values) V^T, m >= n, values descending; A := U, V[n * n]. LAG_OK or LAG_EMETHOD. */
+  int (*singular_values)(int m, int n, double *A, double *values, double *V);
+  /* Probability that chi squared with so many degrees of freedom is larger; quantile of Student's distribution. */
+  double (*chance_of_more)(double chi_squared, double freedom);
+  double (*student)(double part, double freedom);
+} lag_least_squares;
+
 /* Rows or motions of a sweep as arrays: the columns x[n of all axes, multiplied], the last axis fastest. */
 enum { LAG_GRID_MOST = 32 };
 typedef struct lag_axis {

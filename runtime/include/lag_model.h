@@ -122,6 +122,15 @@ typedef struct lag_jump {
   int event, row, col;
 } lag_jump;
 
+/* Derivatives d[n] of the residuals of lag_linear by parameters, or by inputs (col), at accelerations a[nq]; others are
+ * zero. */
+typedef struct lag_partials {
+  int n;
+  const lag_entry *at; /* [n] */
+  int (*eval)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+              const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *d, LAG_REAL *M, LAG_REAL *w);
+} lag_partials;
+
 /* The exact linearisation of a model, emitted where a method or command needs it (lagc --with linear).
  *
  * The residuals r[nq + nz] vanish along a motion: r_i = f_i - sum_j M_ij a_j for coordinates i, r_(nq + k) = flow_k
@@ -146,6 +155,9 @@ typedef struct lag_linear {
   const lag_jump *jump;
   int (*jumps)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                const LAG_REAL *u, LAG_REAL *d, LAG_REAL *w);
+
+  /* For sensitivities; NULL: not emitted (lagc --with sensitivities), or there are none. */
+  const lag_partials *by_params, *by_inputs;
 } lag_linear;
 
 /* One scalar constraint. */

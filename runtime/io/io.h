@@ -145,6 +145,7 @@ typedef struct Marks {
 typedef struct Animation {
   int nshapes;
   lag_shape *shapes; /* [nshapes] */
+  char *words;       /* texts of shapes that are not the scene's, or NULL */
   int trace;         /* 1: draw paths from the start on */
   const char *unit;
   const char *note; /* text below the animation, or "" */
@@ -156,6 +157,10 @@ static inline int lag_shape_has_length(const lag_shape *s) { return s->kind[0] !
 
 /* Writes an HTML page that plays the table. -1 with errno set. */
 int lag_html_write(const char *path, const Table *t, const char *title, const Animation *a);
+
+/* Writes an SVG picture of the shapes at some instants, at equal times from the first row to the last. -1 with errno
+ * set. */
+int lag_drawing_write(const char *path, const Table *t, const char *title, const Animation *a, int instants);
 
 /* JSON writer: commas between members are its own. A name is NULL for elements of an array. */
 typedef struct Json {

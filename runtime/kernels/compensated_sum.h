@@ -2,10 +2,7 @@
 #ifndef LAG_COMPENSATED_SUM_H
 #define LAG_COMPENSATED_SUM_H
 
-#ifndef LAG_REAL
-#define LAG_REAL double
-#define LAG_REAL_IS_DOUBLE 1
-#endif
+#include "kernels/scalar.h"
 
 /* ---- sum ---- */
 

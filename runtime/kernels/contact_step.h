@@ -170,8 +170,10 @@ static inline int lag_contact_add(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
   if (strikes) LAG_TRY(lag_contact_bounce(LAG_THE_MODEL, w, t, y, i, &e));
   w->impacts += strikes;
   c->mu = tangents > 0 ? w->law[2*(i + 1)] : zero;
-  lag_contact_law(c, w->c[k], w->r0[k], w->bend[k], h, e, strikes && tangents > 0 ? w->law[2*(i + 1) + 1] : zero,
-                  strikes, w->before + row + 1);
+  c->strikes = strikes ? LAG_C(1.0) : zero;
+  c->rate = w->r0[k];
+  for (int j = 0; j < tangents; j++) c->slip[j] = w->before[row + 1 + j];
+  lag_contact_law(c, w->c[k], w->bend[k], h, e, strikes && tangents > 0 ? w->law[2*(i + 1) + 1] : zero);
   return moves || w->r1[k] >= zero ? 0 : LAG_CONTACT_FAILS(t, i, "closes, and nothing can keep it from closing");
 }
 

@@ -13,7 +13,6 @@
 #define LAG_IMPULSES_H
 
 #include "kernels/compensated_sum.h"
-#include "kernels/scalar.h"
 
 /* ---- friction ---- */
 
@@ -32,22 +31,28 @@ static inline void lag_into_ball(int n, const LAG_REAL *centre, LAG_REAL radius,
   for (int k = 0; k < n && far > radius; k++) x[k] = centre[k] + (x[k] - centre[k])*(radius/far);
 }
 
-/* Coulomb's law. slip[n]: now, under the friction x[n], of which 1 changes it by `response`. x := friction
- * that drives the slip to the nearest point of a ball, if it is at most `holds`, else `most` against it.
- * slip := that point. */
-static inline void lag_friction_turn(int n, LAG_REAL response, const LAG_REAL *centre, LAG_REAL radius,
-                                     LAG_REAL holds, LAG_REAL most, LAG_REAL *slip, LAG_REAL *x) {
-  const LAG_REAL origin[2] = {LAG_C(0.0), LAG_C(0.0)};
+/* Coulomb's law along n directions. response: of the slip to friction; friction drives the slip to the nearest point
+ * of a ball about centre[n] if it is at most `holds`, else it is `most` against it. */
+typedef struct lag_coulomb {
+  int n;
+  LAG_REAL response, radius, holds, most;
+  const LAG_REAL *centre;
+} lag_coulomb;
+
+/* slip[n]: now, under the friction x[n]. x := friction by the law; slip := the point that it aims at. */
+static inline void lag_friction_turn(const lag_coulomb *of, LAG_REAL *slip, LAG_REAL *x) {
+  const LAG_REAL origin[2] = {LAG_C(0.0), LAG_C(0.0)}, response = of->response;
+  const int n = of->n;
   LAG_REAL to[2], size = LAG_C(0.0);
   for (int k = 0; k < n; k++) to[k] = slip[k] - response*x[k];
-  lag_into_ball(n, centre, radius, to);
+  lag_into_ball(n, of->centre, of->radius, to);
   for (int k = 0; k < n; k++) {
     x[k] += (to[k] - slip[k])/response;
     slip[k] = to[k];
   }
   if (n > 1) size = LAG_FN(hypot)(x[0], x[1]);
   else size = LAG_FN(fabs)(x[0]);
-  if (size > holds) lag_into_ball(n, origin, most, x);
+  if (size > of->holds) lag_into_ball(n, origin, of->most, x);
 }
 
 /* ---- mean ---- */
@@ -132,16 +137,16 @@ static inline int lag_contact_takes_part(LAG_REAL gap, LAG_REAL r0, LAG_REAL r1,
 /* Whether it strikes: the gap closes faster than forces and curvature alone make it close in a step. */
 static inline int lag_contact_strikes(LAG_REAL r0, LAG_REAL pace) { return r0 < -pace; }
 
-/* Fills in c->least, centre and radius. bend: change of the rate of the gap by its curvature until the middle;
- * e: restitution of an impact, 0 where there is none; back: the same along the surface; slip[c->tangents]: at
- * the begin.
+/* Fills in c->least, centre and radius from the others. bend: change of the rate of the gap by its curvature until the
+ * middle; e: restitution of an impact, 0 where there is none; back: the same along the surface.
  *
  * Half a gap is left by its rate -gap/h, and the next middle has none. On a curve that bends towards the body
  * the rate is that which curvature takes away until the end; the middle lies inside by h/4 of it, and a body
  * deeper than that is led out, no faster than the gap closed. */
-static inline void lag_contact_law(lag_pressing *c, LAG_REAL gap, LAG_REAL r0, LAG_REAL bend, LAG_REAL h, LAG_REAL e,
-                                   LAG_REAL back, int strikes, const LAG_REAL *slip) {
-  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), two = LAG_C(2.0);
+static inline void lag_contact_law(lag_pressing *c, LAG_REAL gap, LAG_REAL bend, LAG_REAL h, LAG_REAL e,
+                                   LAG_REAL back) {
+  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), two = LAG_C(2.0), r0 = c->rate;
+  const int strikes = c->strikes > zero;
   const LAG_REAL down = lag_smaller(bend, zero), part = LAG_SELECT(strikes, back, (one + back)/two);
   const LAG_REAL left = gap - down*(h/LAG_C(4.0));
   LAG_REAL size = zero;
@@ -149,13 +154,10 @@ static inline void lag_contact_law(lag_pressing *c, LAG_REAL gap, LAG_REAL r0, L
   if (r0 > zero || down < zero) c->least = lag_smaller(-r0, c->least);
   if (strikes) c->least = lag_larger(-down, -lag_smaller(lag_larger(e, zero), one)*r0);
   for (int j = 0; j < (int)c->tangents; j++) {
-    c->slip[j] = slip[j];
-    c->centre[j] = -part*slip[j];
-    size = LAG_FN(hypot)(size, slip[j]);
+    c->centre[j] = -part*c->slip[j];
+    size = LAG_FN(hypot)(size, c->slip[j]);
   }
   c->radius = LAG_SELECT(strikes, zero, (one - back)/two*size);
-  c->strikes = LAG_SELECT(strikes, one, zero);
-  c->rate = r0;
 }
 
 /* --- sweeps --- */
@@ -235,7 +237,8 @@ static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressin
     slip[k] = lag_rate_of(s, r + 1 + k);
     x[k] = s->P[r + 1 + k];
   }
-  lag_friction_turn(n, w, c->centre, c->radius, c->mu*s->P[r], c->mu*s->P[r], slip, x);
+  const lag_coulomb law = {n, w, c->radius, c->mu*s->P[r], c->mu*s->P[r], c->centre};
+  lag_friction_turn(&law, slip, x);
   for (int k = 0; k < n; k++) {
     const LAG_REAL by = x[k] - s->P[r + 1 + k];
     change = lag_larger(change, LAG_FN(fabs)(by)*w);

@@ -92,7 +92,8 @@ static inline int lag_joint_turn(LAG_MODEL, lag_joint_friction *w, const lag_kic
   const LAG_REAL g = LAG_FN(fabs)(slip[0]), response = LAG_FN(fabs)(own);
   to[0] = was;
   if (own < zero) {
-    lag_friction_turn(1, own, w->centre + k, LAG_FN(fabs)(w->centre[k]), w->bound[k], one, slip, to);
+    const lag_coulomb law = {1, own, LAG_FN(fabs)(w->centre[k]), w->bound[k], one, w->centre + k};
+    lag_friction_turn(&law, slip, to);
   } else {
     to[0] = LAG_SELECT(slip[0] > zero, one, LAG_SELECT(slip[0] < zero, -one, zero));
     slip[0] = zero;

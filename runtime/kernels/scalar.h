@@ -1,37 +1,10 @@
-/* scalar.h: the scalar of all kernels, selections and logic over it, and what failures do within a
- * step: of one state, or of the lanes of vectors, by lag_math.h with LAG_LANES. Includes <math.h>
- * only. */
+/* scalar.h: the scalar of all kernels, which is double unless defined, with selections and logic (lag_lanes.h), and
+ * what failures do within a step: of one state, or of the lanes of vectors. */
 #ifndef LAG_SCALAR_H
 #define LAG_SCALAR_H
 
-#include <math.h>
+#include "lag_lanes.h"
 
-#ifndef LAG_REAL
-#define LAG_REAL double
-#define LAG_REAL_IS_DOUBLE 1
-#endif
-#ifndef LAG_FN
-#define LAG_FN(f) f
-#endif
-#ifndef LAG_C
-#define LAG_C(x) x
-#endif
-
-/* ---- logic of kernels: in headers that of lag_lanes.h ---- */
-#ifndef LAG_SELECT
-#define LAG_SELECT(c, a, b) ((c) ? (LAG_REAL)(a) : (LAG_REAL)(b))
-#define LAG_NOT(c) (!(c))
-#define LAG_AND(a, b) ((a) && (b))
-#define LAG_OR(a, b) ((a) || (b))
-#define LAG_ANY(c) (c)
-#define LAG_MASK int
-#define LAG_PIVOTS (void)0
-#define LAG_PIVOT(c) do { if (!(c)) return LAG_ESINGULAR; } while (0)
-#define LAG_PIVOTS_STATUS LAG_OK
-#endif
-#ifndef LAG_LANE
-#define LAG_LANE LAG_REAL
-#endif
 /* ---- failures ---- */
 
 #define LAG_OVER(n, d) (LAG_C(n)/LAG_C(d))

@@ -41,6 +41,17 @@ static inline LAG_REAL lag_taylor_error(int order, int nq, int nz, LAG_REAL unit
   return worst;
 }
 
+/* Whether steps of lanes `of` are taken: their errors are within the tolerance, or rounding, of the size *noise: that
+ * is seen where the defect did not shrink with the step. last: error of the try before, negative if there was none. */
+static inline LAG_MASK lag_taylor_takes(LAG_MASK of, LAG_REAL error, LAG_REAL last, LAG_REAL *noise) {
+  const LAG_REAL zero = LAG_C(0.0), two = LAG_C(2.0);
+  const LAG_MASK same = LAG_AND(of, LAG_AND(last >= zero, error > last/two));
+  const LAG_REAL level = LAG_SELECT(same, error, *noise);
+  const LAG_MASK taken = LAG_AND(of, LAG_OR(error <= LAG_C(1.0), error <= two*level));
+  *noise = LAG_SELECT(taken, level*LAG_C(0.9), level);
+  return taken;
+}
+
 /* Factor from a rejected step to its next try, at least 1/2. error: in tolerances; a negative one
  * halves the step. */
 static inline LAG_REAL lag_taylor_shrinkage(int order, LAG_REAL error) {

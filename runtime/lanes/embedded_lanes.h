@@ -2,6 +2,7 @@
  * runs at once. A lane whose step is rejected tries a shorter one in the next turn. */
 #pragma once
 
+#include "kernels/steppers.def"
 #include "lanes/lane_vectors.h"
 #include "methods/adaptive_rk.h"
 
@@ -97,16 +98,18 @@ static void embedded_lane_sizes(EmbeddedLanes *b, Lanes h, Lanes err2, LaneMask 
   b->err_power = lane_select(taken, memory, lane_select(busy, lane_all(0), b->err_power));
 }
 
-#define EMBEDDED_ID rk4
-#define EMBEDDED_STAGES LAG_RK4_STAGES LAG_RK4_RESULT
+/* Methods by number: where it is a constant, compilers leave the others out. */
+enum {
+#define RK_ID(name, NAME, kind, dense, order, line, words) ID_##name,
+  LAG_RUNGE_KUTTA_METHODS(RK_ID)
+};
+#define RK_STAGES(name, NAME, kind, dense, order, line, words) \
+  case ID_##name: { LAG_##NAME##_STAGES LAG_##NAME##_RESULT } break;
+#define FIXED_ERRORS(name, NAME)
+#define ADAPTIVE_ERRORS(name, NAME) case ID_##name: { LAG_##NAME##_ERRORS } break;
+#define LATE_ERRORS ADAPTIVE_ERRORS
+#define RK_ERRORS(name, NAME, kind, dense, order, line, words) kind##_ERRORS(name, NAME)
+#define EMBEDDED_STAGES switch (id) { LAG_RUNGE_KUTTA_METHODS(RK_STAGES) default: break; }
+#define EMBEDDED_ERRORS switch (id) { LAG_RUNGE_KUTTA_METHODS(RK_ERRORS) default: break; }
 #include "lanes/embedded_step.h"
-
-#define EMBEDDED_ID rk45
-#define EMBEDDED_STAGES LAG_RK45_STAGES LAG_RK45_RESULT
-#define EMBEDDED_ERRORS LAG_RK45_ERRORS
-#include "lanes/embedded_step.h"
-
-#define EMBEDDED_ID dop853
-#define EMBEDDED_STAGES LAG_DOP853_STAGES LAG_DOP853_RESULT
-#define EMBEDDED_ERRORS LAG_DOP853_ERRORS
-#include "lanes/embedded_step.h"
+LAG_RUNGE_KUTTA_METHODS(EMBEDDED_KERNEL)

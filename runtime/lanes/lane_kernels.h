@@ -6,5 +6,6 @@
 #include "lanes/verlet_lanes.h"
 
 #define VERLET_ENTRY(name, general, order, flags, line, words) &name##_kernel,
-static const LaneKernel *const kernels[] = {&taylor_kernel, &dop853_kernel, &rk45_kernel, &rk4_kernel,
+#define RK_ENTRY(name, NAME, kind, dense, order, line, words) &name##_kernel,
+static const LaneKernel *const kernels[] = {&taylor_kernel, LAG_RUNGE_KUTTA_METHODS(RK_ENTRY)
                                             LAG_SPLITTING_METHODS(VERLET_ENTRY) NULL};

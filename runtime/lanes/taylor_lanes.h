@@ -138,11 +138,9 @@ LAG_INLINE LaneMask taylor_lane_step(int n, TaylorLanes *b, LaneMask busy, LaneM
                          pb->work);
   *bad |= lane_mask(rc > 0 ? ~0u : (unsigned)-rc) | lane_not_finite(n - pb->nq, next + n);
   Lanes error = taylor_errors(n, b, dt), unit = lane_all(pb->dir) * taylor_power_of_2(dt);
-  Lanes noise = lane_select(error > b->last * lane_all(0.5), error, b->noise);
-  LaneMask taken = busy & ~*bad & ((error <= lane_all(1)) | (error <= lane_all(2) * noise));
+  LaneMask taken = lag_taylor_takes(busy & ~*bad, error, b->last, &b->noise);
   b->ty->rest(b->ty, b->order, unit, next, pb->work);
   *bad = busy & (*bad | (taken & lane_not_finite(n, next + b->order * b->columns)));
-  b->noise = lane_select(taken, noise * lane_all(0.9), lane_select(busy, noise, b->noise));
   LaneMask rejected = busy & ~taken & ~*bad;
   if (lag_lanes_any(~taken)) taylor_keep(b, taken);
   if (lag_lanes_any(rejected)) taylor_reject(b, rejected, h, error);

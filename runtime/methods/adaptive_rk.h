@@ -1,4 +1,4 @@
-/* Explicit Runge-Kutta methods, shared by euler, rk4, rk45 and dop853: a method is a tableau, the constants of its
+/* Explicit Runge-Kutta methods, shared by all: a method is a tableau, the constants of its
  * step control, and its dense output. A tableau whose order_embedded is 0 has no error estimate: all its steps are
  * of equal size. */
 #pragma once
@@ -79,7 +79,8 @@ double lag_adaptive_rk_error_along(const lag_tableau *tab, int late, Embedded *w
 #define EMBEDDED_DESCRIPTOR                                                                                          \
   .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_CONSTRAINTS,                                                     \
   .noptions = LAG_NADAPTIVE_OPTIONS, .options = lag_adaptive_rk_options, EMBEDDED_FUNCTIONS
-#define EMBEDDED_FUNCTIONS                                                                \
+#define EMBEDDED_FUNCTIONS EMBEDDED_MEMBERS(pair)
+#define EMBEDDED_MEMBERS(pair)                                                            \
   .variant = &pair, .work_size = lag_adaptive_rk_work_size, .init = lag_adaptive_rk_init, \
   .step = lag_adaptive_rk_step, .dense = dense, .reset = lag_adaptive_rk_reset,           \
   .tangent_size = lag_adaptive_rk_tangent_size, .tangent = lag_adaptive_rk_tangent

@@ -25,9 +25,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "methods/predictor.h"
-#include "methods/galerkin_rule.h"
-#include "methods/newton.h"
+#include "kernels/predictor.h"
+#include "kernels/galerkin_rule.h"
+#include "kernels/newton.h"
 #include "methods/steps.h"
 #include "methods/method_tangent.h"
 #include "numeric/workspace.h"
@@ -57,7 +57,7 @@ static size_t layout(CollocationArrays *a, const lag_problem *pb, int stages, do
   double **const parts[] = {&a->comp, &a->y0,    &a->y1,      &a->f0,       &a->f1,     &a->Y,       &a->u,  &a->other,
                             &a->R,    &a->scale, &a->J.pivot, &a->jacobian, &a->linear, &a->history, &a->J.a};
   const size_t sizes[] = {
-      n, n, n, n, n, n, m, m, m, m, m, n * n, lag_linear_work(pb->model), lag_predictor_size((int)m), m * m};
+      n, n, n, n, n, n, m, m, m, m, m, n * n, lag_linear_work(pb->model), (size_t)LAG_PREDICTOR_SIZE((int)m), m * m};
   a->J.n = (int)m;
   a->J.band = (int)m - 1;
   return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
@@ -80,12 +80,13 @@ void lag_collocation_reset(void *work, lag_problem *pb) {
   int m = pb->n * (int)w->rule.free;
   w->step.tc = w->ends = 0;
   memset(a.comp, 0, (size_t)pb->n * sizeof(double));
-  memset(a.history, 0, lag_predictor_size(m) * sizeof(double));
+  memset(a.history, 0, (size_t)LAG_PREDICTOR_SIZE(m) * sizeof(double));
 }
 
 void lag_collocation_init(void *work, lag_problem *pb, double h, int stages) {
   Collocation *w = work;
   w->step.h = h;
+  memset(&w->rule, 0, sizeof w->rule);
   lag_rule_gauss(&w->rule, stages);
   lag_collocation_reset(work, pb);
 }
@@ -125,7 +126,7 @@ static int residual(const Collocation *w, const CollocationArrays *a, lag_proble
 
 /* Factors Newton's matrix 1 - h a_ik J_i at the present stages. */
 static int matrix(const Collocation *w, CollocationArrays *a, lag_problem *pb, const Step *s) {
-  lag_tangent at = {pb, 0, a->jacobian, a->linear};
+  lag_tangent at = {pb, 0, a->jacobian, a->linear, NULL};
   for (int i = 0; i < (int)w->rule.free; i++) {
     stage(w, s, pb->n, i, a->Y);
     int rc = lag_tangent_at(&at, time_of(w, s, i), a->Y, NULL);
@@ -162,7 +163,7 @@ static int solve(const Collocation *w, CollocationArrays *a, lag_problem *pb, co
     if (rc) return rc;
     lag_correction now = correct(w, a, pb->n, s);
     pb->iterations += s->counted;
-    if (lag_newton_has_converged(now, before, fresh, turn)) return LAG_OK;
+    if (lag_newton_has_converged(now, before, fresh, turn, DBL_EPSILON)) return LAG_OK;
     before = now;
   }
   snprintf(

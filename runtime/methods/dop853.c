@@ -12,10 +12,10 @@
 static double trial(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc);
 static const EmbeddedPair pair = {.tab = &lag_dop853_tableau, .late = 1, .control = {LAG_DOP853_CONTROL},
                                  .more = LAG_MAX_DENSE, .trial = trial};
-#define EMBEDDED_STAGES LAG_DOP853_STAGES
-#define EMBEDDED_RESULT LAG_DOP853_RESULT
+#define EMBEDDED_STAGES LAG_DOP853_STAGES LAG_DOP853_RESULT
 #define EMBEDDED_ERRORS LAG_DOP853_ERRORS
 #include "methods/embedded_trial.h"
+EMBEDDED_TRIAL(trial, pair, 0)
 
 /* arrays HIGH..HIGH+3: the highest terms of dense output */
 enum { LAST = 12, EXTRA = 3, NSTAGES = 16, HIGH = EMBEDDED_K1 + NSTAGES };

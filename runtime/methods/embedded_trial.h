@@ -1,6 +1,6 @@
-/* Stages and error of one trial step by kernels/runge_kutta.h: euler.c, rk4.c, rk45.c and dop853.c include this file
- * behind `pair` and the method's tables, EMBEDDED_STAGES, EMBEDDED_RESULT and, of a pair, EMBEDDED_ERRORS. Holds:
- * each component is summed in the same order for every n, so its value does not depend on the other components. */
+/* Stages and error of one trial step by kernels/runge_kutta.h: files of methods include this one behind their tables,
+ * EMBEDDED_STAGES with the result and EMBEDDED_ERRORS, of method `id` where they have several. Holds: each component
+ * is summed in the same order for every n, so its value does not depend on the other components. */
 #pragma once
 
 #include <math.h>
@@ -78,9 +78,11 @@ LAG_ALWAYS_INLINE double embedded_square(embedded_part x) {
 /* 1/(allowed errors) of components i, of y before a step and x after. */
 LAG_ALWAYS_INLINE embedded_part embedded_weight(const Embedded *w, const lag_problem *pb, int i, const double *y,
                                                 const double *x) {
-  double scale[EMBEDDED_WIDTH];
-  for (int j = 0; j < EMBEDDED_WIDTH; j++) scale[j] = embedded_scale(w, pb, i + j, y[i + j], x[i + j]);
-  return 1 / embedded_at(scale);
+#if EMBEDDED_VECTORS /* not by way of memory: a pair is not forwarded from two stores */
+  return 1 / (embedded_part){embedded_scale(w, pb, i, y[i], x[i]), embedded_scale(w, pb, i + 1, y[i + 1], x[i + 1])};
+#else
+  return 1 / embedded_scale(w, pb, i, y[i], x[i]);
+#endif
 }
 
 #define LAG_EACH(i) for (int i = 0; i < as.n; i += EMBEDDED_WIDTH)
@@ -96,25 +98,25 @@ LAG_ALWAYS_INLINE embedded_part embedded_weight(const Embedded *w, const lag_pro
 #include "kernels/runge_kutta.h"
 
 /* All stages but the last, and the result. > 0: a smaller step may help. */
-LAG_ALWAYS_INLINE int embedded_stages(Embedded *w, lag_problem *pb, EmbeddedShape as, double t, double h) {
+LAG_ALWAYS_INLINE int embedded_stages(int id, Embedded *w, lag_problem *pb, EmbeddedShape as, double t,
+                                      double h) {
   double *k = w->x + EMBEDDED_K1 * as.row, *x = w->x + EMBEDDED_YS * as.row;
   const double *y = w->x + EMBEDDED_Y0 * as.row;
   int status = 0;
-  (void)pb, (void)t, (void)x, (void)y; /* euler has no stages */
+  (void)id, (void)pb, (void)t, (void)x, (void)y; /* euler has no stages */
   EMBEDDED_STAGES
-  EMBEDDED_RESULT
   return status;
 }
 
-#ifdef EMBEDDED_ERRORS
 /* Squared norm of the error of the step just computed; NaN where it is not finite. */
-LAG_ALWAYS_INLINE double embedded_error(Embedded *w, const lag_problem *pb, EmbeddedShape as, double h) {
+LAG_ALWAYS_INLINE double embedded_error(const EmbeddedPair *of, int id, Embedded *w, const lag_problem *pb,
+                                        EmbeddedShape as, double h) {
   const double *y = w->x + EMBEDDED_Y0 * as.row, *x = w->x + EMBEDDED_Y1 * as.row, *k = w->x + EMBEDDED_K1 * as.row;
   double square[2] = {0, 0};
+  (void)id, (void)k;
   LAG_SQUARES(EMBEDDED_ERRORS)
-  return lag_squared_error(square, pair.late, h, w->per);
+  return lag_squared_error(square, of->late, h, w->per);
 }
-#endif
 
 /* The last stage: projects the end of the step to the constraints, then k := f there. > 0: a smaller step may help. */
 LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double tb, double *k) {
@@ -126,29 +128,41 @@ LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape a
   return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
 }
 
-LAG_ALWAYS_INLINE double embedded_trial(Embedded *w, lag_problem *pb, EmbeddedShape as, double t, double tb, double dt,
-                                        int *rc) {
-  int row = as.row, last = pair.tab->stages - 1;
+/* A trial step from t to tb = t + dt. */
+typedef struct EmbeddedStep {
+  double t, tb, dt;
+} EmbeddedStep;
+
+LAG_ALWAYS_INLINE double embedded_trial(const EmbeddedPair *of, int id, Embedded *w, lag_problem *pb,
+                                        EmbeddedShape as, EmbeddedStep s, int *rc) {
+  int row = as.row, last = of->tab->stages - 1, adapts = of->control.order > 0;
   double *end = w->x + EMBEDDED_K1 * row + last * row, err = 0;
-  if ((*rc = embedded_stages(w, pb, as, t, dt)) != 0) return NAN;
-#ifdef EMBEDDED_ERRORS
-  if (!pair.late && (*rc = embedded_end(pb, w, as, tb, end)) != 0) return NAN;
-  err = embedded_error(w, pb, as, dt);
-  if (err > 1 && pb->model->constraints) err = lag_adaptive_rk_error_along(pair.tab, pair.late, w, pb, tb, dt, err);
-  if (!pair.late || !(err <= 1 || (w->limits.fixed != 0.0 && !isnan(err)))) return err;
-#else
-  if (lag_not_finite(pb->n, w->x + EMBEDDED_Y1 * row) >= 0) return NAN;
-#endif
-  *rc = embedded_end(pb, w, as, tb, end);
+  if ((*rc = embedded_stages(id, w, pb, as, s.t, s.dt)) != 0) return NAN;
+  if (!adapts && lag_not_finite(pb->n, w->x + EMBEDDED_Y1 * row) >= 0) return NAN;
+  if (adapts) {
+    if (!of->late && (*rc = embedded_end(pb, w, as, s.tb, end)) != 0) return NAN;
+    err = embedded_error(of, id, w, pb, as, s.dt);
+    if (err > 1 && pb->model->constraints)
+      err = lag_adaptive_rk_error_along(of->tab, of->late, w, pb, s.tb, s.dt, err);
+    if (!of->late || !(err <= 1 || (w->limits.fixed != 0.0 && !isnan(err)))) return err;
+  }
+  *rc = embedded_end(pb, w, as, s.tb, end);
   return *rc || lag_not_finite(pb->n, end) >= 0 ? NAN : err;
 }
 
 /* EmbeddedPair.trial, specialised for one, two and three coordinates. */
-static double trial(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc) {
+LAG_ALWAYS_INLINE double embedded_try(const EmbeddedPair *of, int id, Embedded *w, lag_problem *pb, EmbeddedStep s,
+                                      int *rc) {
   switch (pb->nz == 0 ? pb->nq : 0) {
-  case 1: return embedded_trial(w, pb, (EmbeddedShape){1, 2, EMBEDDED_SMALL}, t, tb, dt, rc);
-  case 2: return embedded_trial(w, pb, (EmbeddedShape){2, 4, EMBEDDED_SMALL}, t, tb, dt, rc);
-  case 3: return embedded_trial(w, pb, (EmbeddedShape){3, 6, EMBEDDED_SMALL}, t, tb, dt, rc);
-  default: return embedded_trial(w, pb, embedded_shape(pb), t, tb, dt, rc);
+  case 1: return embedded_trial(of, id, w, pb, (EmbeddedShape){1, 2, EMBEDDED_SMALL}, s, rc);
+  case 2: return embedded_trial(of, id, w, pb, (EmbeddedShape){2, 4, EMBEDDED_SMALL}, s, rc);
+  case 3: return embedded_trial(of, id, w, pb, (EmbeddedShape){3, 6, EMBEDDED_SMALL}, s, rc);
+  default: return embedded_trial(of, id, w, pb, embedded_shape(pb), s, rc);
   }
 }
+
+/* The trial step of a pair, and the pair. */
+#define EMBEDDED_TRIAL(trial, pair, id)                                                               \
+  static double trial(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc) {        \
+    return embedded_try(&pair, id, w, pb, (EmbeddedStep){t, tb, dt}, rc);                             \
+  }

@@ -8,9 +8,10 @@
 /* The method's tables, and its trial step. */
 static double trial(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc);
 static const EmbeddedPair pair = {.tab = &lag_euler_tableau, .trial = trial};
-#define EMBEDDED_STAGES LAG_EULER_STAGES
-#define EMBEDDED_RESULT LAG_EULER_RESULT
+#define EMBEDDED_STAGES LAG_EULER_STAGES LAG_EULER_RESULT
+#define EMBEDDED_ERRORS (void)per;
 #include "methods/embedded_trial.h"
+EMBEDDED_TRIAL(trial, pair, 0)
 
 static const lag_method_option options[] = {LAG_STEP_OPTION};
 

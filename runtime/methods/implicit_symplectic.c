@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "methods/discrete_lagrangian.h"
-#include "methods/predictor.h"
+#include "kernels/predictor.h"
 #include "methods/step_interpolant.h"
 #include "methods/steps.h"
 #include "methods/method_tangent.h"
@@ -16,7 +16,7 @@
 
 /* Doubles of the history of one substep. */
 static size_t substep_history(const lag_problem *pb, const Implicit *w) {
-  return lag_predictor_size(pb->nq * (int)w->rule[0].free);
+  return (size_t)LAG_PREDICTOR_SIZE(pb->nq * (int)w->rule[0].free);
 }
 
 /* Sets the pointers of a block, unless x is NULL; returns its length. */
@@ -28,7 +28,7 @@ static size_t block_layout(ConstraintBlock *b, const lag_problem *pb, int subste
   const size_t sizes[] = {n,
                           n, nq, nq, nq, nq, nq, nc, nc, nc, nc, (size_t)of->njacobian, (size_t)of->nmass, nc * nq,
                           nc * nc,
-                          (size_t)substeps * lag_predictor_size(of->n)};
+                          (size_t)substeps * (size_t)LAG_PREDICTOR_SIZE(of->n)};
   return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
@@ -39,7 +39,7 @@ static size_t state_layout(ImplicitArrays *a, const lag_problem *pb, int free, i
   double **const parts[] = {&a->p,  &a->qc, &a->pc, &a->dq, &a->dp,    &a->ql,      &a->pl,   &a->v,       &a->y0,
                             &a->y1, &a->f0, &a->f1, &a->u,  &a->force, &a->history, &a->path, &a->discrete};
   const size_t sizes[] = {nq, nq, nq, nq, nq, nq, nq, nq, n, n, n, n, 2 * m, m,
-                          (size_t)substeps * lag_predictor_size((int)m) + lag_predictor_size(pb->nq),
+                          (size_t)substeps * (size_t)LAG_PREDICTOR_SIZE((int)m) + (size_t)LAG_PREDICTOR_SIZE(pb->nq),
                           lag_interpolant_size(pb->nq),
                           /* the search for its band takes time in each step */
                           x && !constrained ? 0 : lag_discrete_size(pb, free)};
@@ -58,13 +58,13 @@ static size_t state_size(const lag_problem *pb, int free, int substeps) {
   return sizeof(Implicit) / sizeof(double) + state_layout(&a, pb, free, substeps, NULL);
 }
 
-/* Initial guess: u := velocities at the nodes of substep k, extrapolated linearly from y at t. */
-static int linear_guess(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y,
-                        double dt, int k, double at, double *u) {
-  const lag_rule *r = &w->rule[k % 2];
-  int nq = pb->nq, rc = lag_step_rhs(pb, t, y, a->f1);
+/* Initial guess: u := velocities at the nodes of the substep, extrapolated linearly from y at t. */
+static int linear_guess(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Substep *s, double *u) {
+  const lag_rule *r = &w->rule[s->k % 2];
+  int nq = pb->nq, rc = lag_step_rhs(pb, s->t, s->y, a->f1);
   for (int j = 0; j < (int)r->free && rc == 0; j++)
-    for (int i = 0; i < nq; i++) u[j * nq + i] = y[nq + i] + dt * (at + w->part[k] * r->node[j]) * a->f1[nq + i];
+    for (int i = 0; i < nq; i++)
+      u[j * nq + i] = s->y[nq + i] + s->dt * (s->at + w->part[s->k] * r->node[j]) * a->f1[nq + i];
   return rc;
 }
 
@@ -75,23 +75,19 @@ void lag_substeps_gather(const ImplicitArrays *a, int nq) {
   }
 }
 
-int lag_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y, double dt,
-                int k, double at, double *u, int known) {
-  const lag_rule *r = &w->rule[k % 2];
+int lag_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Substep *s, double *u, int known) {
+  const lag_rule *r = &w->rule[s->k % 2];
   int nq = pb->nq, m = nq * (int)r->free, rc = LAG_EMETHOD;
-  double *history = a->history + (size_t)k * substep_history(pb, w), h = w->part[k] * dt;
-  lag_discrete d = {.rule = r, .pb = pb, .t = t + at * dt, .h = h, .size = w->step.h, .q = y, .dq = a->ql, .p = a->p,
+  double *history = a->history + (size_t)s->k * substep_history(pb, w), h = w->part[s->k] * s->dt;
+  lag_discrete d = {.rule = r, .t = s->t + s->at * s->dt, .h = h, .size = w->step.h, .q = s->y, .dq = a->ql, .p = a->p,
                     .dp = a->pl, .u = u, .force = a->force, .work = a->discrete, .counted = 1};
 
   lag_substeps_gather(a, nq);
-  if (known || lag_predictor_guess(history, m, u)) rc = lag_discrete_solve(&d);
+  if (known || lag_predictor_guess(history, m, u)) rc = lag_discrete_solve(pb, &d);
   pb->detail = NULL; /* forget the message of the first attempt */
-  if (rc != 0 && (rc = linear_guess(w, a, pb, t, y, dt, k, at, u)) == 0) rc = lag_discrete_solve(&d);
+  if (rc != 0 && (rc = linear_guess(w, a, pb, s, u)) == 0) rc = lag_discrete_solve(pb, &d);
   if (rc) return rc;
-  for (int i = 0; i < nq; i++) {
-    for (int j = 0; j < (int)r->free; j++) a->dq[i] += h * (r->whole[j] * u[j * nq + i]);
-    for (int j = 0; j < (int)r->points; j++) a->dp[i] += h * (r->b[j] * a->force[j * nq + i]);
-  }
+  lag_discrete_move(&d, nq, a->dq, a->dp);
   return LAG_OK;
 }
 
@@ -103,11 +99,11 @@ int lag_substeps_velocity(const Implicit *w, const ImplicitArrays *a, lag_proble
                           int known) {
   int nq = pb->nq;
   const double *history = a->history + (size_t)w->substeps * substep_history(pb, w);
-  lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = tb, .h = 0, .size = w->step.h, .q = y, .dq = a->ql, .p = a->p,
+  lag_discrete d = {.rule = &w->momentum, .t = tb, .h = 0, .size = w->step.h, .q = y, .dq = a->ql, .p = a->p,
                     .dp = a->pl, .u = a->v, .force = a->force, .work = a->discrete};
   lag_substeps_gather(a, nq);
   if (!known && !lag_predictor_guess(history, nq, a->v)) memcpy(a->v, a->u, (size_t)nq * sizeof(double));
-  return lag_discrete_solve(&d);
+  return lag_discrete_solve(pb, &d);
 }
 
 /* ---- A step */
@@ -131,6 +127,7 @@ void lag_implicit_init(void *work, lag_problem *pb, double h, int order, const l
   w->order = order;
   w->substeps = w->part[0] = 1;
   w->rule[0] = *rule;
+  memset(&w->momentum, 0, sizeof w->momentum);
   lag_rule_euler(&w->momentum, 0);
   lag_implicit_reset(work, pb);
 }
@@ -150,9 +147,10 @@ static int substeps_of(const lag_composition *c, double *part) {
 
 void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_composition *c) {
   Implicit *w = work;
-  lag_rule rule;
+  lag_rule rule = {0};
   lag_rule_euler(&rule, 0);
   lag_implicit_init(work, pb, h, c->order, &rule);
+  w->rule[1] = rule;
   lag_rule_euler(&w->rule[1], 1);
   w->substeps = substeps_of(c, w->part);
 }
@@ -171,7 +169,8 @@ static int begin(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t
   memset(a->pc, 0, bytes);
   memset(a->history, 0, (size_t)(a->path - a->history) * sizeof(double));
   if (pb->model->constraints)
-    memset(a->block.history, 0, (size_t)w->substeps * lag_predictor_size(pb->model->constraints->n) * sizeof(double));
+    memset(a->block.history, 0,
+           (size_t)w->substeps * (size_t)LAG_PREDICTOR_SIZE(pb->model->constraints->n) * sizeof(double));
   w->ready = 1;
   return LAG_OK;
 }
@@ -179,11 +178,11 @@ static int begin(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t
 /* All substeps of a step, without constraints; then v at its end. */
 static int chain(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double tb, const double *y,
                  double dt) {
-  double at = 0;
+  Substep s = {0, t, dt, 0, y};
   int rc = 0;
-  for (int k = 0; k < (int)w->substeps && rc == 0; k++) {
-    if ((rc = lag_substep(w, a, pb, t, y, dt, k, at, a->u, 0)) == 0) lag_substep_record(w, a, pb, k, a->u);
-    at += w->part[k];
+  for (; s.k < (int)w->substeps && rc == 0; s.k++) {
+    if ((rc = lag_substep(w, a, pb, &s, a->u, 0)) == 0) lag_substep_record(w, a, pb, s.k, a->u);
+    s.at += w->part[s.k];
   }
   return rc ? rc : lag_substeps_velocity(w, a, pb, tb, y, 0);
 }
@@ -244,6 +243,7 @@ void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y) {
 /* Scratch of the derivative. q, p at a substep: y0 + ql, p + pl, as in lag_discrete; u, force: of one substep; du,
  * rest: of its derivative. */
 typedef struct Changes {
+  int k, whole;               /* changes; 1: the step that was taken, whose velocities are known */
   double *p, *ql, *pl, *v;    /* [nq] */
   double *u, *force, *second; /* [free nq], [points nq], [nsecond] */
   double *dv, *du, *rest;     /* [nq k], [free nq k] */
@@ -254,7 +254,7 @@ static size_t layout(Changes *c, const lag_problem *pb, int k, double *x) {
   size_t nq = (size_t)pb->nq, m = nq * (size_t)k;
   double **const parts[] = {&c->p, &c->ql, &c->pl, &c->v, &c->u, &c->force, &c->second, &c->dv, &c->du, &c->rest};
   const size_t sizes[] = {nq,
-                          nq, nq, nq, LAG_RULE_FREE * nq, LAG_RULE_POINTS * nq, (size_t)pb->model->nsecond, m,
+                          nq, nq, nq, LAG_RULE_FREE * nq, LAG_RULE_FREE * nq, (size_t)pb->model->nsecond, m,
                           LAG_RULE_FREE * m,
                           lag_discrete_tangent_size(pb, LAG_RULE_FREE, k)};
   return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
@@ -266,8 +266,8 @@ size_t lag_implicit_tangent_size(const lag_problem *pb, int k) {
 }
 
 /* Start of the last step: Y = (dq, dv) becomes (dq, dp), and c->p := p. */
-static int to_momenta(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, int k, double *Y) {
-  int nq = pb->nq, m = nq * k, rc = lag_variation(pb, w->step.t0, a->y0, a->y0 + nq, c->v, c->p, c->force);
+static int to_momenta(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, double *Y) {
+  int nq = pb->nq, k = c->k, m = nq * k, rc = lag_variation(pb, w->step.t0, a->y0, a->y0 + nq, c->v, c->p, c->force);
   rc = rc ? rc : lag_second_derivatives(pb, w->step.t0, a->y0, a->y0 + nq, c->second);
   if (rc) return lag_step_refused(pb, rc, w->step.t0);
   memcpy(c->dv, Y + m, (size_t)m * sizeof *Y);
@@ -276,38 +276,33 @@ static int to_momenta(const Implicit *w, const ImplicitArrays *a, lag_problem *p
   return LAG_OK;
 }
 
-/* Y over substep j, which begins at t0 + at dt. whole: the step that was taken, whose velocities are known; else
- * they are solved for. */
-static int over_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, int j, double at,
-                        double dt, int whole, int k, double *Y) {
-  const lag_rule *r = &w->rule[j % 2];
+/* Y over a substep. */
+static int over_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, const Substep *s,
+                        double *Y) {
+  const lag_rule *r = &w->rule[s->k % 2];
   int nq = pb->nq, rc = 0;
-  double h = w->part[j] * dt;
-  lag_discrete d = {.rule = r,
-                    .pb = pb, .t = w->step.t0 + at * dt, .h = h, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p,
-                    .dp = c->pl, .u = c->u, .force = c->force,
-                    .work = a->discrete};
+  double h = w->part[s->k] * s->dt;
+  lag_discrete d = {.rule = r, .t = s->t + s->at * s->dt, .h = h, .size = w->step.h, .q = s->y, .dq = c->ql, .p = c->p,
+                    .dp = c->pl, .u = c->u, .force = c->force, .work = a->discrete};
 
-  lag_predictor_last(a->history + (size_t)j * substep_history(pb, w), nq * (int)r->free, c->u);
-  rc = whole ? 0 : lag_discrete_solve(&d);
-  rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + nq * k, c->du, c->rest);
+  lag_predictor_last(a->history + (size_t)s->k * substep_history(pb, w), nq * (int)r->free, c->u);
+  rc = c->whole ? 0 : lag_discrete_solve(pb, &d);
+  rc = rc ? rc : lag_discrete_tangent(pb, &d, c->k, Y, Y + nq * c->k, c->du, c->rest);
   for (int i = 0; i < (int)r->free && rc == 0; i++) lag_tangent_add(nq, h * r->whole[i], c->u + i * nq, c->ql);
-  for (int i = 0; i < (int)r->points && rc == 0 && !whole; i++)
+  for (int i = 0; i < (int)r->points && rc == 0 && !c->whole; i++)
     lag_tangent_add(nq, h * r->b[i], c->force + i * nq, c->pl);
   return rc;
 }
 
 /* End of the step, t: Y = (dq, dp) becomes (dq, dv). */
 static int to_velocities(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, double t,
-                         int whole, int k, double *Y) {
-  int nq = pb->nq, m = nq * k, rc = 0;
-  lag_discrete d = {.rule = &w->momentum,
-                    .pb = pb, .t = t, .h = 0, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p, .dp = c->pl,
-                    .u = c->v, .force = c->force,
-                    .work = a->discrete};
+                         double *Y) {
+  int nq = pb->nq, m = nq * c->k, rc = 0;
+  lag_discrete d = {.rule = &w->momentum, .t = t, .h = 0, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p,
+                    .dp = c->pl, .u = c->v, .force = c->force, .work = a->discrete};
   memcpy(c->v, a->y1 + nq, (size_t)nq * sizeof *Y);
-  rc = whole ? 0 : lag_discrete_solve(&d);
-  rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + m, c->du, c->rest);
+  rc = c->whole ? 0 : lag_discrete_solve(pb, &d);
+  rc = rc ? rc : lag_discrete_tangent(pb, &d, c->k, Y, Y + m, c->du, c->rest);
   memcpy(Y + m, c->du, (size_t)m * sizeof *Y);
   return rc;
 }
@@ -315,16 +310,18 @@ static int to_velocities(const Implicit *w, const ImplicitArrays *a, lag_problem
 int lag_implicit_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   Implicit *w = work;
   ImplicitArrays a = arrays(w, pb);
+  double step = w->step.h * pb->dir, dt = lag_tangent_span(w->step.t0, t, step);
+  Substep s = {0, w->step.t0, dt, 0, a.y0};
   Changes c;
-  double step = w->step.h * pb->dir, dt = lag_tangent_span(w->step.t0, t, step), at = 0;
-  int whole = dt == step;
   layout(&c, pb, k, scratch);
+  c.k = k;
+  c.whole = dt == step;
   memset(c.ql, 0, (size_t)(2 * pb->nq) * sizeof *scratch);
-  int rc = to_momenta(w, &a, pb, &c, k, Y);
+  int rc = to_momenta(w, &a, pb, &c, Y);
 
-  for (int j = 0; j < (int)w->substeps && rc == 0; j++) {
-    rc = over_substep(w, &a, pb, &c, j, at, dt, whole, k, Y);
-    at += w->part[j];
+  for (; s.k < (int)w->substeps && rc == 0; s.k++) {
+    rc = over_substep(w, &a, pb, &c, &s, Y);
+    s.at += w->part[s.k];
   }
-  return rc ? rc : to_velocities(w, &a, pb, &c, t, whole, k, Y);
+  return rc ? rc : to_velocities(w, &a, pb, &c, t, Y);
 }

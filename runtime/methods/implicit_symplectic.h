@@ -4,7 +4,7 @@
 
 #include "lag.h"
 #include "kernels/composition.h"
-#include "methods/galerkin_rule.h"
+#include "kernels/galerkin_rule.h"
 #include "methods/steps.h"
 
 /* Doubles of state: for one rule with this number of free velocities, or for a composition of symplectic Euler and
@@ -66,10 +66,16 @@ typedef struct ImplicitArrays {
 /* ql := qc + dq, pl := pc + dp: the present q and p less those at the start of the step. */
 void lag_substeps_gather(const ImplicitArrays *a, int nq);
 
-/* Solves substep k, which begins at t + at dt of the step from y at t: velocities u and forces; adds its increments
- * to dq and dp. known: u holds a guess. LAG_OK, or a failure with time and reason in pb. */
-int lag_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y, double dt,
-                int k, double at, double *u, int known);
+/* Substep k of a step of dt from y at t; it begins at t + at dt. */
+typedef struct Substep {
+  int k;
+  double t, dt, at;
+  const double *y;
+} Substep;
+
+/* Solves a substep: velocities u and forces; adds its increments to dq and dp. known: u holds a guess. LAG_OK, or a
+ * failure with time and reason in pb. */
+int lag_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Substep *s, double *u, int known);
 /* Appends the velocities u of substep k to its history. */
 void lag_substep_record(const Implicit *w, const ImplicitArrays *a, const lag_problem *pb, int k, const double *u);
 

@@ -8,7 +8,8 @@
 #include "methods/steps.h"
 
 lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double **rest) {
-  lag_tangent w = {pb, k, scratch, scratch + (pb->nq + pb->nz) * pb->n};
+  int width = pb->n + (pb->by ? pb->by->n : 0);
+  lag_tangent w = {pb, k, scratch, scratch + (pb->nq + pb->nz) * width, pb->by};
   *rest = w.linear + lag_linear_work(pb->model);
   return w;
 }
@@ -16,34 +17,68 @@ lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double *
 /* Scratch: Jacobian, scratch of the linearisation, y and f of a stage, Y of a stage and of the result; f and its
  * derivative for each stage. */
 size_t lag_tangent_size(const lag_problem *pb, int stages, int k) {
-  size_t n = (size_t)pb->n, block = n * (size_t)k;
-  return (size_t)(pb->nq + pb->nz) * n + lag_linear_work(pb->model) + 2 * n + 2 * block + (size_t)stages * (n + block);
+  size_t n = (size_t)pb->n, block = n * (size_t)k, width = n + (size_t)(pb->by ? pb->by->n : 0);
+  return (size_t)(pb->nq + pb->nz) * width + lag_linear_work(pb->model) + 2 * n + 2 * block +
+         (size_t)stages * (n + block);
 }
 
 int lag_tangent_at(const lag_tangent *w, double t, const double *y, double *f) {
-  int n = w->pb->n, rc = lag_fine_jacobian(w->pb, t, y, w->jacobian, w->linear);
+  int n = w->pb->n, rc = lag_fine_jacobian(w->pb, w->by, t, y, w->jacobian, w->linear);
   if (rc == LAG_EMETHOD) return lag_step_failed(w->pb, rc, t);
   if (rc) return lag_step_refused(w->pb, rc, t);
   if (f) memcpy(f, w->linear, (size_t)n * sizeof *f);
-  return lag_not_finite((w->pb->nq + w->pb->nz) * n, w->jacobian) >= 0 ? lag_step_failed(w->pb, LAG_ENAN, t) : LAG_OK;
+  return lag_not_finite((w->pb->nq + w->pb->nz) * lag_tangent_width(w), w->jacobian) >= 0
+             ? lag_step_failed(w->pb, LAG_ENAN, t)
+             : LAG_OK;
+}
+
+enum { AT_ONCE = 16 }; /* terms of a sum; no table has more stages */
+
+/* The coefficients from[first ... first + n - 1] that are not 0, times dt, and their numbers; returns how many. */
+static int gather(int n, int first, const double *from, double dt, double *c, int *at) {
+  int some = 0;
+  for (int j = first; j < first + n; j++) {
+    if (from[j] == 0.0) continue;
+    c[some] = dt * from[j];
+    at[some++] = j;
+  }
+  return some;
+}
+
+/* out[m] += sum_j c_j x_j[m], in this order; the row x_j begins at x + at[j] m. Four terms in one pass over out. */
+static void add_rows(int m, int count, const double *c, const int *at, const double *x, double *restrict out) {
+  int j = 0;
+  for (; j + 4 <= count; j += 4) {
+    const double *x0 = x + at[j] * m, *x1 = x + at[j + 1] * m, *x2 = x + at[j + 2] * m, *x3 = x + at[j + 3] * m;
+    const double c0 = c[j], c1 = c[j + 1], c2 = c[j + 2], c3 = c[j + 3];
+    for (int i = 0; i < m; i++) out[i] = out[i] + c0 * x0[i] + c1 * x1[i] + c2 * x2[i] + c3 * x3[i];
+  }
+  for (; j < count; j++) lag_tangent_add(m, c[j], x + at[j] * m, out);
 }
 
 void lag_tangent_times(const lag_tangent *w, const double *Y, double *out) {
-  int n = w->pb->n, nq = w->pb->nq, k = w->k;
+  int n = w->pb->n, nq = w->pb->nq, k = w->k, width = lag_tangent_width(w);
   memcpy(out, Y + nq * k, (size_t)(nq * k) * sizeof *out);
   memset(out + nq * k, 0, (size_t)((n - nq) * k) * sizeof *out);
-  for (int i = 0; i < n - nq; i++)
-    for (int j = 0; j < n; j++) {
-      double c = w->jacobian[i * n + j];
-      if (c != 0.0) lag_tangent_add(k, c, Y + j * k, out + (nq + i) * k);
+  for (int i = 0; i < n - nq; i++) {
+    const double *J = w->jacobian + i * width;
+    for (int j = 0, some; j < n; j += AT_ONCE) {
+      double c[AT_ONCE];
+      int at[AT_ONCE];
+      some = gather(n - j < AT_ONCE ? n - j : AT_ONCE, j, J, 1, c, at);
+      add_rows(k, some, c, at, Y, out + (nq + i) * k);
     }
+    for (int j = n; j < width; j++) out[(nq + i) * k + w->by->column[j - n]] += J[j];
+  }
 }
 
 /* v[m] := from + dt sum_j coef_j k_j over j < count; from NULL: 0. */
 static void combine(int m, int count, const double *coef, double dt, const double *from, const double *k, double *v) {
-  for (int i = 0; i < m; i++) v[i] = from ? from[i] : 0;
-  for (int j = 0; j < count; j++)
-    if (coef[j] != 0.0) lag_tangent_add(m, dt * coef[j], k + j * m, v);
+  double c[AT_ONCE];
+  int at[AT_ONCE];
+  if (from) memcpy(v, from, (size_t)m * sizeof *v);
+  else memset(v, 0, (size_t)m * sizeof *v);
+  add_rows(m, gather(count, 0, coef, dt, c, at), c, at, k, v);
 }
 
 int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, int k,
@@ -76,7 +111,7 @@ void lag_tangent_put_stage(const lag_tangent *w, const lag_band_matrix *m, int s
                            const double *a) {
   int n = w->pb->n, nq = w->pb->nq;
   for (int i = 0; i < n; i++) {
-    const double *J = i < nq ? NULL : w->jacobian + (i - nq) * n;
+    const double *J = i < nq ? NULL : w->jacobian + (i - nq) * lag_tangent_width(w);
     for (int q = 0; q < stages; q++) {
       double *row = lag_band_matrix_at(m, s * n + i, q * n);
       for (int j = 0; j < n; j++) row[j] = (q == s && i == j ? 1 : 0) - dt * a[q] * (J ? J[j] : j == nq + i);
@@ -115,13 +150,25 @@ size_t lag_tangent_along_size(const lag_problem *pb, int k) {
   return lag_tangent_size(pb, lag_dop853_tableau.stages, k);
 }
 
-/* sum (e_i / s_i)^2 of an error estimate, s_i = |Y_i| + |dt| mean |F_i| over the stages. */
-static double square(int m, int stages, const double *e, const double *Y, const double *F, double dt) {
+/* Size below which entry i of Y is rounding: in a column by a parameter a part of the component's size over the
+ * parameter's. */
+static double rounding_size(const lag_tangent *w, int i, double tol) {
+  const double negligible = 1e-4, difference_part = 0x1p-9;
+  for (int j = 0; w->by && j < w->by->n; j++)
+    if (w->by->column[j] == i % w->k)
+      return fmax(negligible, 8 * DBL_EPSILON / tol) * w->pb->size[i / w->k] * difference_part / w->by->h[j];
+  return 0;
+}
+
+/* sum (e_i / s_i)^2 of an error estimate, s_i = |Y_i| + |dt| mean |F_i| over the stages, and at least that size. */
+static double square(const lag_tangent *w, int stages, const double *e, const double *Y, const double *F, double dt,
+                     double tol) {
   double sum = 0;
+  int m = w->pb->n * w->k;
   for (int i = 0; i < m; i++) {
     double gain = 0;
     for (int j = 0; j < stages; j++) gain += fabs(F[j * m + i]) / stages;
-    double x = e[i] != 0.0 ? e[i] / (fabs(Y[i]) + fabs(dt) * gain) : 0;
+    double x = e[i] != 0.0 ? e[i] / fmax(fabs(Y[i]) + fabs(dt) * gain, rounding_size(w, i, tol)) : 0;
     sum += x * x;
   }
   return sum;
@@ -145,9 +192,9 @@ int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, doubl
       lag_tangent_times(&w, Ys, F + s * m);
     }
     combine(m, stages, tab->errors[0], 1, NULL, F, error);
-    double fine = square(m, stages, error, Y, F, dt);
+    double fine = square(&w, stages, error, Y, F, dt, tol);
     combine(m, stages, tab->errors[1], 1, NULL, F, error);
-    double both = fine + 0.01 * square(m, stages, error, Y, F, dt),
+    double both = fine + 0.01 * square(&w, stages, error, Y, F, dt, tol),
            err = both > 0 ? fabs(h) * fine / sqrt(m * both) / tol : 0;
     if (!isfinite(err)) return lag_step_failed(pb, LAG_ENAN, t);
     if (err <= 1 || part < least) {

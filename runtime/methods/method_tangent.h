@@ -35,13 +35,17 @@ int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, doubl
 typedef struct lag_tangent {
   lag_problem *pb;
   int k;
-  double *jacobian; /* [(nq + nz) n] */
+  double *jacobian; /* [(nq + nz) width] */
   double *linear;   /* scratch of lag_jacobian */
+  const lag_parameter_columns *by; /* columns by parameters; NULL: none */
 } lag_tangent;
+
+static inline int lag_tangent_width(const lag_tangent *w) { return w->pb->n + (w->by ? w->by->n : 0); }
 
 /* A lag_tangent in scratch; *rest := the unused remainder of scratch. */
 lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double **rest);
-/* w->jacobian := df/dy at (t, y), and f[n], unless NULL, := f(t, y). LAG_OK, or a failure. */
+/* w->jacobian := df/dy, and behind it in each row df by the parameters of columns, at (t, y), and f[n], unless NULL, :=
+ * f(t, y). LAG_OK, or a failure. */
 int lag_tangent_at(const lag_tangent *w, double t, const double *y, double *f);
 
 /* Sets the rows of stage s of m = 1 - dt A (x) df/dy, the matrix of an implicit Runge-Kutta method; a[stages]: row s
@@ -49,7 +53,7 @@ int lag_tangent_at(const lag_tangent *w, double t, const double *y, double *f);
 void lag_tangent_put_stage(const lag_tangent *w, const lag_band_matrix *m, int stages, int s, double dt,
                            const double *a);
 
-/* out[n k] := df/dy Y. */
+/* out[n k] := df/dy Y, and df by its parameter in each column that has one. */
 void lag_tangent_times(const lag_tangent *w, const double *Y, double *out);
 
 /* Length of the step from t0 to t: exactly dt where t is the end of the last step, up to rounding. */

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "methods/implicit_symplectic.h"
-#include "methods/predictor.h"
+#include "kernels/predictor.h"
 #include "methods/steps.h"
 #include "numeric/dense.h"
 
@@ -137,7 +137,7 @@ static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem 
   const lag_constraints *of = pb->model->constraints;
   int nq = pb->nq, m = nq * (int)w->rule[0].free, steered = 0, known = 0, rc, holonomic = of->nholonomic == of->n;
   size_t bytes = (size_t)nq * sizeof(double);
-  double h = 0, before = HUGE_VAL, least = 0.1, *history = b->history + (size_t)k * lag_predictor_size(of->n);
+  double h = 0, before = HUGE_VAL, least = 0.1, *history = b->history + (size_t)k * (size_t)LAG_PREDICTOR_SIZE(of->n);
 
   for (int j = 0; j < length; j++) h += w->part[k + j] * dt;
   memcpy(b->dq, a->dq, bytes);
@@ -155,7 +155,7 @@ static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem 
     memcpy(a->dq, b->dq, bytes);
     for (int i = 0; i < nq; i++) a->dp[i] = b->dp[i] + b->impulse[i];
     for (int j = 0; j < length; j++) {
-      if ((rc = lag_substep(w, a, pb, t, y, dt, k + j, from, a->u + j * m, known)) != 0) return rc;
+      if ((rc = lag_substep(w, a, pb, &(Substep){k + j, t, dt, from, y}, a->u + j * m, known)) != 0) return rc;
       from += w->part[k + j];
     }
     known = 1;

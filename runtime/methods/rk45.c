@@ -10,10 +10,10 @@
 /* The method's tables, and its trial step. */
 static double trial(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc);
 static const EmbeddedPair pair = {.tab = &lag_rk45_tableau, .control = {LAG_RK45_CONTROL}, .trial = trial};
-#define EMBEDDED_STAGES LAG_RK45_STAGES
-#define EMBEDDED_RESULT LAG_RK45_RESULT
+#define EMBEDDED_STAGES LAG_RK45_STAGES LAG_RK45_RESULT
 #define EMBEDDED_ERRORS LAG_RK45_ERRORS
 #include "methods/embedded_trial.h"
+EMBEDDED_TRIAL(trial, pair, 0)
 
 /* HNW II.6, code dopri5, function contd5. At the ends it returns the states themselves. */
 static void dense(void *work, lag_problem *pb, double t, double *y) {

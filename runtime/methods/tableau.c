@@ -15,7 +15,16 @@
 #define LAG_DENSE(j, terms) .d[j] = {terms},
 
 const lag_tableau lag_euler_tableau = {.stages = 2, .order = 1, LAG_EULER_RESULT};
-const lag_tableau lag_rk4_tableau = {.stages = 5, .order = 4, LAG_RK4_STAGES LAG_RK4_RESULT};
+
+#define FIXED_NUMBERS(NAME, order)
+#define ADAPTIVE_NUMBERS(NAME, order) .order_embedded = order - 1, LAG_##NAME##_ERRORS
+#define LATE_NUMBERS ADAPTIVE_NUMBERS
+#define OWN_TABLEAU(name, NAME, kind, of_order)
+#define HERMITE_TABLEAU(name, NAME, kind, of_order)                                                  \
+  const lag_tableau lag_##name##_tableau = {.stages = LAG_##NAME##_LAST + 1, .order = of_order,       \
+                                            LAG_##NAME##_STAGES LAG_##NAME##_RESULT kind##_NUMBERS(NAME, of_order)};
+#define TABLEAU(name, NAME, kind, dense, order, line, words) dense##_TABLEAU(name, NAME, kind, order)
+LAG_RUNGE_KUTTA_METHODS(TABLEAU)
 const lag_tableau lag_rk45_tableau = {.stages = 7, .order = 5, .order_embedded = 4, LAG_RK45_STAGES LAG_RK45_RESULT
                                       LAG_RK45_ERRORS LAG_RK45_DENSE};
 const lag_tableau lag_dop853_tableau = {

@@ -1,6 +1,8 @@
 /* Butcher tableau of an explicit Runge-Kutta method with an embedded error estimate, as data that a test can check. */
 #pragma once
 
+#include "kernels/steppers.def"
+
 enum { LAG_MAX_STAGES = 16, LAG_MAX_DENSE = 4 };
 
 typedef struct lag_tableau {
@@ -13,4 +15,6 @@ typedef struct lag_tableau {
   double d[LAG_MAX_DENSE][LAG_MAX_STAGES];  /* weights of the highest terms of dense output */
 } lag_tableau;
 
-extern const lag_tableau lag_euler_tableau, lag_rk4_tableau, lag_rk45_tableau, lag_dop853_tableau;
+#define LAG_DECLARE_TABLEAU(name, NAME, kind, dense, order, line, words) extern const lag_tableau lag_##name##_tableau;
+LAG_RUNGE_KUTTA_METHODS(LAG_DECLARE_TABLEAU)
+extern const lag_tableau lag_euler_tableau;

@@ -186,7 +186,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int cause = LAG_ESTEP, rc = lag_taylor_prepare(w, pb, *t, y);
   (void)t_stop;
   if (rc) return rc;
-  double h = root_test_step(w, pb, y), most = lag_longest_step(&w->limits, *t, 0), last = HUGE_VAL;
+  double h = root_test_step(w, pb, y), most = lag_longest_step(&w->limits, *t, 0), last = -1;
   h = w->limits.fixed != 0.0 ? w->limits.h_option : h < most ? h : most;
   h = isfinite(h) ? h : 1;
   for (;;) {
@@ -198,11 +198,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     rc = first(w, pb, 1 - w->now, tb, lag_taylor_array(w, pb, TAYLOR_Y1));
     if (rc < 0 && rc != LAG_ESINGULAR) return lag_step_refused(pb, rc, tb);
     double error = rc ? NAN : error_of(w, pb, dt);
-    if (error > last / 2) { /* the defect did not shrink with the step: rounding */
-      w->noise = error;
-    }
-    if (error <= 1 || error <= 2 * w->noise || (w->limits.fixed != 0.0 && rc == 0)) {
-      w->noise *= 0.9;
+    if (lag_taylor_takes(rc == 0, error, last, &w->noise) || (w->limits.fixed != 0.0 && rc == 0)) {
       accept(w, pb, t, y, dt, tb);
       w->tc = tc;
       return LAG_OK;
@@ -210,7 +206,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     cause = rc ? (pb->bad_index >= 0 ? LAG_ENAN : rc < 0 ? LAG_ESINGULAR : LAG_EDOMAIN) : LAG_ESTEP;
     pb->bad_t = tb;
     if (w->limits.fixed != 0.0) return cause;
-    last = rc ? HUGE_VAL : error;
+    last = rc ? -1 : error;
     h *= lag_taylor_shrinkage((int)w->order, rc ? -1 : error);
     pb->rejected++;
   }

@@ -41,7 +41,7 @@ static size_t work_size(const lag_problem *pb) {
 static int init(void *work, lag_problem *pb, const double *opt) {
   int u = points(pb);
   double h = lag_step_size(pb, opt[OPT_STEP]);
-  lag_rule rule;
+  lag_rule rule = {0};
   if (pb->nq == 0) {
     lag_collocation_init(work, pb, h, u);
     return LAG_OK;

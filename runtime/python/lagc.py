@@ -124,7 +124,8 @@ def _open(path):
         "lag_sim_output_info": (d, p, i, s, ctypes.c_size_t, s, ctypes.c_size_t), "lag_sim_state_info": (d, p, i, s, ctypes.c_size_t, s, ctypes.c_size_t),
         "lag_sim_rhs": (i, p, i, p, p, p), "lag_sim_rows": (i, p, i, p, p, p, p), "lag_sim_batch": (i, p, i, p, p, i, p, p, p),
         "lag_sim_stats": (None, p, p), "lag_sim_ncharges": (i, p), "lag_sim_charge": (None, p, i, p), "lag_sim_balance": (i, p),
-        "lag_sim_set_tangent": (i, p, i, p), "lag_sim_tangent": (i, p, p), "lag_sim_on_event": (None, p, _EventHook, p),
+        "lag_sim_set_tangent": (i, p, i, p), "lag_sim_tangent": (i, p, p), "lag_sim_set_sensitivity": (i, p, i, p), "lag_sim_output_sensitivity": (i, p, p, p),
+        "lag_sim_sensitivity_info": (d, p, i, s, ctypes.c_size_t, s, ctypes.c_size_t), "lag_sim_on_event": (None, p, _EventHook, p),
         "lag_sim_on_step": (None, p, p, p), "lag_time_is_up": (i, p, p), "lag_clock_seconds": (d,),
     }
     for name, (returns, *takes) in signatures.items():
@@ -347,12 +348,12 @@ class Model:
             raise Error(f"step={step}: a step is positive")
         if step is not None:
             options["step"] = step
-        words = (["--method", name.strip()] if method else []) + (["--with", "linear"] if tangent else [])
+        words = (["--method", name.strip()] if method else []) + (["--with", tangent] if tangent else [])
         if tol is not None and tol < 1e-9 and not method:
             words += ["--method", "taylor"]
         s = self._scene(scene, *words)
         sim = _Simulation(s.lib, s, _named(values, more))
-        return sim, sim.choose(name.strip(), options, tol, s.t1 if until is None else until, tangent)
+        return sim, sim.choose(name.strip(), options, tol, s.t1 if until is None else until, bool(tangent))
 
     def parameters(self, scene=None):
         """Values of the parameters in a scene, in declared units."""
@@ -360,12 +361,16 @@ class Model:
         sim = _Simulation(s.lib, s, {})
         return {k: (s.lib.lag_sim_p(sim.sim)[i] - offset) / factor for i, (k, (_, factor, offset)) in enumerate(s.p.items())}
 
-    def run(self, scene=None, values=None, *, until=None, every=None, times=None, method=None, tol=None, step=None, tangent=False, **more):
+    def run(self, scene=None, values=None, *, until=None, every=None, times=None, method=None, tol=None, step=None, tangent=False, sensitivity=None, **more):
         """Runs a scene, as `lagc run` does. values, or keywords: parameters, starts ({"th'": 0.5}, th=1.2) and inputs, in declared units; an input may
-        be a function of t. times: the rows, instead of `every`. tangent: also dy(end)/dy(0). RunError, with the rows so far, if it fails. A warning, and
+        be a function of t. times: the rows, instead of `every`. tangent: also dy(end)/dy(0). sensitivity: names of
+        parameters and starts, ("g", "th(0)"): also the derivatives of each row's outputs, result.sensitivity["g"]["th"], in declared units. RunError, with the rows so far, if it fails. A warning, and
         start_moved of the result, if the start does not obey the constraints."""
         until, every = (None if x is None else _number(k, x) for k, x in (("until", until), ("every", every)))
-        sim, chosen = self._simulate(scene, values, more, method, tol, step, until, tangent)
+        by = [sensitivity] if isinstance(sensitivity, str) else list(sensitivity or [])
+        if by and tangent:
+            raise Error("tangent and sensitivity: each takes the tangent of the run for itself; make two runs")
+        sim, chosen = self._simulate(scene, values, more, method, tol, step, until, "sensitivities" if by else "linear" if tangent else None)
         s, lib = sim.scene, sim.lib
         end = s.t1 if until is None else until
         times = _grid(s.t0, end, (s.every or abs(end - s.t0) / 1000) if every is None else every) if times is None else _array(times, (-1,), "times")
@@ -382,16 +387,22 @@ class Model:
         sim.check(lib.lag_sim_balance(sim.sim))
         if tangent:
             sim.check(lib.lag_sim_set_tangent(sim.sim, s.n, None))
-        return self._rows(sim, chosen, times, events, tangent)
+        if by:
+            sim.check(lib.lag_sim_set_sensitivity(sim.sim, len(by), (ctypes.c_char_p * len(by))(*[k.encode() for k in by])))
+        return self._rows(sim, chosen, times, events, tangent, by)
 
-    def _rows(self, sim, chosen, times, events, tangent):
+    def _rows(self, sim, chosen, times, events, tangent, by):
         s, lib = sim.scene, sim.lib
         outputs = sim.info(lib.lag_sim_output_info, lib.lag_sim_noutputs(sim.sim))
         y, out = np.empty((len(times) + 1, s.n)), np.empty((len(times) + 1, len(outputs)))
-        done, rows, status = ctypes.c_int(), 0, 0
+        done, rows, status, chunk = ctypes.c_int(), 0, 0, 1 if by else _CHUNK
+        Y, D = np.empty((s.n, len(by))), np.empty((len(times) + 1, len(outputs), len(by)))
         while rows < len(times) and status == 0:
-            part, sim.until.value = times[rows:rows + _CHUNK], lib.lag_clock_seconds() + _PATIENCE
+            part, sim.until.value = times[rows:rows + chunk], lib.lag_clock_seconds() + _PATIENCE
             status = lib.lag_sim_rows(sim.sim, len(part), _address(part), y[rows:].ctypes.data, out[rows:].ctypes.data, ctypes.byref(done))
+            if by and status == 0 and done.value:
+                sim.check(lib.lag_sim_tangent(sim.sim, _address(Y)))
+                sim.check(lib.lag_sim_output_sensitivity(sim.sim, _address(Y), D[rows:].ctypes.data))
             rows, status = rows + done.value, 0 if status == _INTERRUPTED else status
         times = times[:rows]
         now = lib.lag_sim_time(sim.sim)
@@ -405,6 +416,9 @@ class Model:
         if result.start_moved:
             said = [f"{k} from {asked:.15g} to {begun:.15g} {result.units[k] or ''}".rstrip() for k, (asked, begun) in result.start_moved.items()]
             warnings.warn("start moved to the constraints: " + ", ".join(said), stacklevel=3)
+        if by:
+            factors = [lib.lag_sim_sensitivity_info(sim.sim, j, None, 0, None, 0) for j in range(len(by))]
+            result.sensitivity = {k: dict(zip(outputs, (D[:rows, :, j] * factors[j]).T)) for j, k in enumerate(by)}
         if tangent:
             result.tangent = np.empty((s.n, s.n))
             sim.check(lib.lag_sim_tangent(sim.sim, _address(result.tangent)))

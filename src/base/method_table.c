@@ -6,10 +6,21 @@
 
 #include "base/words.h"
 #include "base/vec.h"
+#include "kernels/steppers.def"
 #include "numeric/edit_distance.h"
 #include "numeric/option_range.h"
 
+#define STEP {"step", 0, HUGE_VAL, NULL, 0, 0}
+#define NO_MORE {NULL, 0, 0, NULL, 0, 0}
+#define FIXED_OPTIONS (const MethodOption[]){STEP, NO_MORE}
+#define ADAPTIVE_OPTIONS                                                                          \
+  (const MethodOption[]){STEP, {"max_step", 0, HUGE_VAL, NULL, 0, 0}, {"atol", 0, HUGE_VAL, NULL, 0, 0}, \
+                         {"adapt", 0, 1, (const char *const[]){"on", "off", NULL}, 0, 0}, NO_MORE}
+#define LATE_OPTIONS ADAPTIVE_OPTIONS
+#define RUNGE_KUTTA_ROW(name, NAME, kind, dense, order, line, words) {#name, line, METHOD_CONSTRAINTS, kind##_OPTIONS},
+
 static const MethodInfo methods[] = {
+LAG_RUNGE_KUTTA_METHODS(RUNGE_KUTTA_ROW)
 #include "base/method_rows.def"
 };
 

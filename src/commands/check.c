@@ -64,7 +64,7 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
   ExpectResults results = {0};
   for (uint32_t i = 0; i < scenes.n; i++) {
     if (scene && strcmp(scene, scenes.at[i]) != 0) continue;
-    Eqns *e = compiler_derive_compared(c, &(ModelChoice){.scene = scenes.at[i]});
+    Eqns *e = compiler_derive_compared(c, &(ModelChoice){.scene = scenes.at[i], .drawing = DRAWING_CHECKED});
     if (!e) check_json_scene(c, "scene", scenes.at[i], NULL, 0);
     if (!e) continue;
     if (!out->n) {
@@ -86,7 +86,7 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
   if (scene && !out->n) compiler_derive_compared(c, &(ModelChoice){.scene = scene}); /* reports the unknown scene */
   EffectList unused = model_unused_effects(ast);
   for (uint32_t i = 0; i < unused.n && !scene; i++) {
-    Eqns *e = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = unused.at[i]});
+    Eqns *e = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = unused.at[i], .drawing = DRAWING_CHECKED});
     if (!e) continue;
     switches_find(e);
     switches_warn(e);

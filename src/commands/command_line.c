@@ -237,7 +237,7 @@ static int read_word(Arena *a, const char *arg, Options *o, const char **error) 
     vec_push(a, &o->rest, arg);
     return 1;
   }
-  if (o->scene)
+  if (o->scene && o->command != CMD_PAGE)
     return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
   add_scene(a, o, arg);
   return 1;
@@ -295,6 +295,16 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
   return 1;
 }
 
+const char *options_passed(const Options *o, const char *name) {
+  size_t n = strlen(name);
+  for (uint32_t i = 0; i < o->rest.n; i++) {
+    const char *word = o->rest.at[i];
+    if (strncmp(word, name, n) == 0 && word[n] == '=') return word + n + 1;
+    if (strcmp(word, name) == 0 && i + 1 < o->rest.n) return o->rest.at[i + 1];
+  }
+  return NULL;
+}
+
 int options_more_digits(const Options *o) { return o->precision && strcmp(o->precision, "double") != 0; }
 
 int options_read(Arena *a, int argc, char **argv, Options *o, const char **error) {
@@ -312,7 +322,8 @@ int options_read(Arena *a, int argc, char **argv, Options *o, const char **error
     for (int i = 2; i < argc; i++) vec_push(a, &o->rest, argv[i]);
     return 1;
   }
-  if (o->command == CMD_MODES || o->command == CMD_LYAPUNOV) o->with = "linear";
+  if (o->command == CMD_MODES || o->command == CMD_ORBIT || o->command == CMD_CONTINUE || o->command == CMD_LYAPUNOV)
+    o->with = "linear";
   if (command_reads_model(o->command) || o->command == CMD_NEW) return read_arguments(a, argc, argv, o, error);
   return read_one_word(a, argc, argv, o, error);
 }

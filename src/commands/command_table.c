@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/words.h"
+#include "kernels/steppers.def"
 
 /* ---- the commands ---- */
 
@@ -83,7 +84,8 @@ static const CommandRow commands[] = {
      "  name=value            a parameter, or another start\n\n"
      "Exit status 3: there is no action variable."},
     {CMD_RUN, "run", NULL, "MODEL [SCENE] [name=value ...] [options]", "simulate",
-     "Builds the simulator (or takes it from the cache) and runs it.\n\n"
+     "Runs the model: at once, evaluated by liblag, or by its simulator from the cache. What runs long is compiled "
+     "meanwhile, kept in the cache, and changed over to, with the same digits.\n\n"
      "  name=value            a parameter, a start (th=1.2, \"th'=0.5\", th='90[deg]',\n"
      "                        th=pi/3) or an input; a bare number is in the declared\n"
      "                        unit; drag.c=0.2 for one of an effect, m=3 for a family\n"
@@ -111,6 +113,38 @@ static const CommandRow commands[] = {
      "unit; 0.5@-90 is an amplitude of 0.5, a quarter of a period behind. A zero mode is `free` if no force arises far "
      "along the mode. Needs GSL. Exit status 3: no equilibrium was found.\n\n"
      "  name=value            a parameter, another start (th=3), an input to hold"},
+    {CMD_ORBIT, "orbit", "periodic",
+     "MODEL [SCENE] [name=value ...] [--guess T | --period T] [--hold NAMES] [--relative NAMES] [--json]",
+     "periodic motions: period, multipliers, stability",
+     "Finds the periodic motion next to the scene's start, by Newton's method on the exact tangent of the flow, and "
+     "prints its period, the Floquet multipliers with their meaning, and a scene to paste that starts on it. The "
+     "error of the period is its change by a more precise run.\n\n"
+     "The period is unknown: without --guess the motion is run until it first comes back next to its start. Where a "
+     "scene is driven in time, it is the period of the drive, which is found; --period T names a multiple. Where "
+     "motions form families, as where energy is conserved, the nearest one is taken; --hold energy, or the name of "
+     "any conserved charge, coordinate or velocity, keeps its value at the start: --hold y is the section y = y(0). "
+     "--relative spin: the motion may close after a rotation, or another symmetry that the model declares and lagc "
+     "has proved.\n\n"
+     "Multipliers that are 1 by the phase, by conserved charges and by their symmetries are counted, not listed. "
+     "Motions may go over events that set velocities, and over switches; contacts have no tangent yet. Needs GSL. "
+     "Exit status 3: no periodic motion was found.\n\n"
+     "  name=value            a parameter, another start (th=3), an input to hold"},
+    {CMD_CONTINUE, "continue", "bifurcation",
+     "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T] [--hold NAMES] [--branches] [-o "
+     "FILE.csv] [--svg FILE.svg] [--json]",
+     "states of rest and periodic motions over a parameter: folds, bifurcations",
+     "Follows a state of rest, or a periodic motion, while a parameter runs over a range, round folds, too "
+     "(pseudo-arclength continuation), and locates the points where it changes: folds, branch points, Hopf points, "
+     "period doublings, Neimark-Sacker points, collisions of multipliers of Hamilton's equations. It begins at the "
+     "scene's value of the parameter if that lies in the range, and goes both ways.\n\n"
+     "NAME is a parameter; or, for a family of periodic motions, `energy` or another conserved charge, `period`, a "
+     "coordinate or velocity at the start: the amplitude of a nonlinear mode. Periodic motions are followed where "
+     "the scene depends on time, and where one of --guess, --period, --hold, --relative or such a NAME is given "
+     "(the options of `lagc orbit`); else states of rest. Conserved charges keep their values unless one is NAME or "
+     "--hold names others.\n\n"
+     "Derivatives by the parameter are central differences. A and B are numbers in the declared unit. Needs GSL. "
+     "Exit status 3: no solution was found to begin with.\n\n"
+     "  name=value            a parameter, another start (th=3), an input to hold"},
     {CMD_LYAPUNOV, "lyapunov", "exponents", "MODEL [SCENE] [name=value ...] [--until T] [--exponents K] [--json]",
      "Lyapunov exponents: how fast neighbouring motions part",
      "Runs the scene for a long time with the exact tangent of its flow, and prints the Lyapunov exponents: the mean "
@@ -120,6 +154,20 @@ static const CommandRow commands[] = {
      "measured; `at half the time` is the estimate then. An exponent of zero approaches 0 as log(t)/t. "
      "Method and steps are chosen as for `lagc run`: --method, --tol, --step.\n\n"
      "  name=value            a parameter, another start, an input: as for lagc run"},
+    {CMD_FIT, "fit", "estimate",
+     "MODEL [SCENE] [name=value ...] --data FILE.csv --fit NAME,NAME [--sigma X] [--svg FILE]",
+     "parameters and starts from a measured motion, with errors",
+     "Finds the parameters and starts with which the motion is nearest to measured values, by nonlinear least squares "
+     "on "
+     "exact derivatives. A column of the data is any expression of the model with its unit: t [s],th [deg],l*sin(th) "
+     "[cm]; "
+     "rows are at any times. Records are fitted from short to long. A parameter that is declared > 0 stays so.\n\n"
+     "The report has values with standard errors, chi squared where the errors of the data are given, a test whether "
+     "the "
+     "residuals have a trend, the combinations that the data cannot tell apart, `only g/l: (g, l) along (9.81, 1) "
+     "changes nothing`, and a scene to paste. Needs GSL.\n\n"
+     "  name=value            a parameter or start: where the search begins, or held\n\n"
+     "Exit status 3: the motion failed at the first values, or the search did not converge."},
     {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [--seconds S] [-o FILE.svg]",
      "time against accuracy: all methods, side by side",
      "Names the fastest settings for errors of 1e-3, 1e-6, 1e-9 and 1e-12, or of --target X; then prints the time that "
@@ -173,6 +221,7 @@ static const CommandRow commands[] = {
      "Compiles the model to a simulator with all its scenes; it has the options of `lagc run`, which `SIMULATOR "
      "--help` "
      "lists.\n\n"
+     "With --bytes it writes what `lag-run`, which stands beside liblag.a, evaluates: LAG_PROGRAM=FILE lag-run. "
      "With --shared it compiles a shared library, which exports the functions of lag.h by the same names for every "
      "model: simulations, rows, events, charges, tangents, "
      "batches. It links no GSL. Without -o it is kept in the cache, and its path is printed. lagc.py uses it from "
@@ -223,6 +272,13 @@ static const CommandRow commands[] = {
      "x86_64-w64-mingw32-gcc` makes one for both. A model with contacts is for co-simulation alone, "
      "by steps of the method moreau, of the size that its scene gives, whatever the tolerance is. Constraints that "
      "hold while a condition is true are refused."},
+    {CMD_PAGE, "page", NULL, "MODEL [SCENE ...] -o FILE.html", "a page that computes the motion, as one HTML file",
+     "Writes one HTML file that computes the motion as one watches: it has liblag as WebAssembly and the programs that "
+     "were compared with the text, and needs no network and no compiler. Bodies can be dragged, parameters have "
+     "sliders, effects switches: a program for each set of effects, where there are at most four, so that only what is "
+     "switched on is computed. Methods and their tolerance or step can be changed while it runs, beside the drift of "
+     "the energy and the time that a second of motion takes. The drawing is the model's (`lagc help draw`). The state "
+     "of all controls is in the page's address."},
     {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
      "Lists the methods of integration: their order, the quantities that they keep, their demands on a model, and "
      "their options."},
@@ -260,10 +316,11 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 #define C(name) (1u << CMD_##name)
 #define SIMULATE (C(RUN) | C(PLOT) | C(ANIMATE))
-#define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS))
-#define MODELS                                                                                                    \
-  (STEPS | C(SWEEP) | C(MODES) | C(COST) | C(CHECK) | C(VERIFY) | C(DERIVE) | C(NOETHER) | C(ACTION) | C(BUILD) | \
-   C(HEADER) | C(EMIT) | C(FMU))
+#define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS) | C(FIT))
+#define RUNS (STEPS | C(SWEEP) | C(ORBIT) | C(CONTINUE)) /* commands that run a scene, once or many times */
+#define MODELS                                                                                                        \
+  (RUNS | C(MODES) | C(COST) | C(CHECK) | C(VERIFY) | C(DERIVE) | C(NOETHER) | C(ACTION) | C(BUILD) | C(HEADER) |   \
+   C(EMIT) | C(FMU) | C(PAGE))
 
 static const OptionRow options[] = {
 #define LAGC(name, brief, value, takes, hint, commands, field, text) \
@@ -324,6 +381,6 @@ int option_listed(const OptionRow *o, Command c) {
 
 int option_expert(const OptionRow *o) { return has_word("--math --fix --dump --no-gsl --define --precision", o->name); }
 
-int command_simulates(Command c) { return ((STEPS | C(MODES) | C(COST) | C(SWEEP)) & 1u << c) != 0; }
+int command_simulates(Command c) { return ((RUNS | C(MODES) | C(COST)) & 1u << c) != 0; }
 int command_takes_values(Command c) { return command_simulates(c) || c == CMD_VERIFY || c == CMD_ACTION; }
 int command_reads_model(Command c) { return (MODELS & 1u << c) != 0; }

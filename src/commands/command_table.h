@@ -9,8 +9,9 @@
 
 typedef enum {
   CMD_NONE, CMD_CHECK, CMD_VERIFY, CMD_DERIVE, CMD_NOETHER, CMD_ACTION, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES,
-  CMD_LYAPUNOV, CMD_COST, CMD_SWEEP, CMD_EFFECTS, CMD_METHODS, CMD_MODELS, CMD_NEW, CMD_CACHE, CMD_BUILD, CMD_HEADER,
-  CMD_EMIT, CMD_FMU, CMD_HELP, CMD_COMPLETION, CMD_VERSION, CMD_COMPLETE, CMD_MANPAGE,
+  CMD_LYAPUNOV, CMD_FIT, CMD_ORBIT, CMD_CONTINUE, CMD_COST, CMD_SWEEP, CMD_EFFECTS, CMD_METHODS, CMD_MODELS, CMD_NEW,
+  CMD_CACHE, CMD_BUILD, CMD_HEADER, CMD_EMIT, CMD_FMU, CMD_PAGE, CMD_HELP, CMD_COMPLETION, CMD_VERSION, CMD_COMPLETE,
+  CMD_MANPAGE,
   CMD_COUNT
 } Command;
 
@@ -65,6 +66,7 @@ typedef struct {
   const char *section;     /* run, plot --section */
   OptionTexts y;           /* plot --y: expressions */
   const char *x, *phase;   /* plot */
+  const char *columns;     /* fit --columns */
   const char *cloud;       /* plot --cloud: N or N:PART */
   int portrait, potential, distance, energy_error;
   const char *points, *from; /* animate */
@@ -94,6 +96,9 @@ typedef struct {
 
 /* Parses argv. Returns 0 on a mistake, with the message and advice in *error. */
 int options_read(Arena *a, int argc, char **argv, Options *o, const char **error);
+
+/* The value of an option that the simulator reads: --NAME VALUE or --NAME=VALUE; NULL if it is not given. */
+const char *options_passed(const Options *o, const char *name);
 
 /* Whether simulators compute with more digits than a double has. */
 int options_more_digits(const Options *o);

@@ -11,6 +11,7 @@ int command_action(Compiler *c);
 int command_emit(Compiler *c);
 int command_header(Compiler *c);
 int command_fmu(Compiler *c);
+int command_page(Compiler *c);
 int command_build(Compiler *c);
 int command_run(Compiler *c); /* run, plot, animate, modes, lyapunov, cost */
 int command_effects(Compiler *c);

@@ -247,8 +247,7 @@ int known_run_keep_and_start(Compiler *c, const char *path) {
   return start(c, &f);
 }
 
-int known_run_evaluate(Compiler *c, const char *path, const StrBuf *bytes) {
+int known_run_evaluate(Compiler *c, const char *path) {
   Found f = new_run(c, path);
-  if (!process_give("LAG_PROGRAM", bytes)) return usage_error("cannot write a temporary file: set TMPDIR");
   return start(c, &f);
 }

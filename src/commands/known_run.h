@@ -14,5 +14,5 @@ int known_run_start(Compiler *c, int *known);
  * in the cache for the next time. Returns a STATUS, if that failed. */
 int known_run_keep_and_start(Compiler *c, const char *path);
 
-/* The same with a program of bytes for the evaluator at `path`; it is not kept. */
-int known_run_evaluate(Compiler *c, const char *path, const StrBuf *bytes);
+/* The same with lag-run at `path`, which has been given what it runs (simulator_evaluate); it is not kept. */
+int known_run_evaluate(Compiler *c, const char *path);

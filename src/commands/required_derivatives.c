@@ -67,24 +67,20 @@ static unsigned required_by_choice(const Eqns *e, const Options *o) {
          (e->conserves_energy && !e->m->states.n ? 0u : WANT_LINEAR);
 }
 
-/* Whether a measure of the scene or of --measure contains the Lyapunov exponent, for which the run has a tangent. */
+/* Whether a measure of the scene or of --measure contains the Lyapunov exponent or MEGNO, for which runs have
+ * tangents. */
 static int measures_exponent(const Eqns *e) {
   int found = 0;
   const Measures *lists[] = {&e->m->scene.measures, &e->m->asked_measures};
   for (int k = 0; k < 2; k++)
-    for (uint32_t i = 0; i < lists[k]->n; i++) found |= strstr(lists[k]->at[i].text, "lyapunov()") != NULL;
+    for (uint32_t i = 0; i < lists[k]->n; i++)
+      found |= strstr(lists[k]->at[i].text, "lyapunov()") || strstr(lists[k]->at[i].text, "megno()");
   return found;
 }
 
-/* The value of an option that the simulator reads: --NAME VALUE or --NAME=VALUE; NULL if it is not given. */
-static const char *passed_option(const Options *o, const char *name) {
-  size_t n = strlen(name);
-  for (uint32_t i = 0; i < o->rest.n; i++) {
-    const char *word = o->rest.at[i];
-    if (strncmp(word, name, n) == 0 && word[n] == '=') return word + n + 1;
-    if (strcmp(word, name) == 0 && i + 1 < o->rest.n) return o->rest.at[i + 1];
-  }
-  return NULL;
+static int asks_sensitivity(const Options *o) {
+  return o->command == CMD_FIT || options_passed(o, "--sensitivity") ||
+         (o->with && strcmp(o->with, "sensitivities") == 0);
 }
 
 unsigned derivatives_in_time(unsigned wants, const ProgramSet *u, const Options *o) {
@@ -92,19 +88,21 @@ unsigned derivatives_in_time(unsigned wants, const ProgramSet *u, const Options 
   const double a_second = 400;
   double seconds = o->seconds ? strtod(o->seconds, NULL) : 10;
   int takes_long =
-      o->command == CMD_COST && !passed_option(o, "--methods") && u->accel && u->accel->ins.n > seconds / 2 * a_second;
+      o->command == CMD_COST && !options_passed(o, "--methods") && u->accel && u->accel->ins.n > seconds / 2 * a_second;
   return takes_long ? wants & ~(unsigned)WANT_VARIATION : wants;
 }
 
 unsigned derivatives_required(const Eqns *e, const Options *o) {
   if (o->command == CMD_COST) {
-    const char *methods = passed_option(o, "--methods");
+    const char *methods = options_passed(o, "--methods");
     return methods ? required_by_method(e, methods) | WANT_TAYLOR : required_by_all(e); /* taylor: for the reference */
   }
+  if (o->command == CMD_PAGE) return required_by_all(e);
   unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) |
                    required_by_choice(e, o) |
                    (o->command == CMD_FMU             ? fmu_wants()
                     : o->command == CMD_HEADER        ? WANT_HELD | header_wants(o->with) | header_wants(o->target)
+                    : asks_sensitivity(o)             ? WANT_SENSITIVITY
                     : o->with || measures_exponent(e) ? WANT_LINEAR
                                                       : 0u);
   return o->resume ? wants | required_by_method(e, method_of_state(e->m->arena, o->resume)) : wants;

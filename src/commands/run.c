@@ -20,15 +20,14 @@ static double seconds_now(void) {
   return (double)now.tv_sec + 1e-9*(double)now.tv_nsec;
 }
 
-/* Makes the simulator of `lagc cost`, beside it the reference where three fifths of the time, or five seconds,
- * suffice, and tells it how much is left: at least a third. */
+/* Makes the simulator of `lagc cost`, beside it the reference where three fifths of the time, or a fifth after the
+ * build, suffice, and tells it how much is left: at least a third. */
 static int make_cost_simulator(Compiler *c, const Units *units, double begin, const char **path) {
-  enum { LEAST_WAIT = 5 };
   double asked = c->o.seconds ? strtod(c->o.seconds, NULL) : 10;
   CostReference reference;
   cost_reference_begin(c, 0.4*asked, &reference);
   int status = simulator_of_units(c, units, NULL, path),
-      given = cost_reference_end(&reference, fmax(0.6 * asked - (seconds_now() - begin), LEAST_WAIT));
+      given = cost_reference_end(&reference, fmax(0.6 * asked - (seconds_now() - begin), 0.2 * asked));
   double left = asked - (seconds_now() - begin);
   c->picture.argv.n--; /* the NULL at the end */
   vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--seconds"));
@@ -88,12 +87,9 @@ int command_run(Compiler *c) {
   Units units = {0};
   if (!simulator_lower(c, &units)) return STATUS_MODEL;
   if (!has_drawing(c)) return STATUS_USAGE;
-  const char *evaluator = simulator_evaluator(c, &units, &status);
+  status = simulator_evaluate(c, &units, &path);
   if (status != STATUS_OK) return status;
-  if (evaluator) {
-    StrBuf bytes = simulator_bytes(c, &units);
-    return known_run_evaluate(c, evaluator, &bytes);
-  }
+  if (path) return known_run_evaluate(c, path);
   status = c->o.command == CMD_COST ? make_cost_simulator(c, &units, begin, &path)
                                     : simulator_of_units(c, &units, NULL, &path);
   return status == STATUS_OK ? known_run_keep_and_start(c, path) : status;

@@ -2,8 +2,10 @@
  * writes the simulator's argv. */
 #include "commands/run_request.h"
 
+#include <stdio.h>
 #include <string.h>
 
+#include "base/source.h"
 #include "base/words.h"
 #include "commands/command_table.h"
 #include "syntax/parse.h"
@@ -216,6 +218,8 @@ static int prepare_plot(RequestBuilder *k, const char **error) {
   if (o->cloud && o->phase) *error = "--cloud draws the coordinate and its momentum, or --x and --y; leave out --phase";
   else if (o->cloud && !x && !y && (x = only_coordinate(k, "--cloud", &second, error)))
     y = second ? second : arena_printf(k->arena, "p_%s", x);
+  for (uint32_t i = 0; i < o->rest.n && !k->p->drawing; i++)
+    k->p->drawing = strncmp(o->rest.at[i], "--drawing", 9) == 0;
   if (o->cloud) add_argument(k, "--cloud", o->cloud);
   if (o->energy_error) add_argument(k, "--energy-error", NULL);
   if (o->distance) add_argument(k, "--distance", NULL);
@@ -336,6 +340,71 @@ static int prepare_animate(RequestBuilder *k, const char **error) {
   return 1;
 }
 
+/* --- columns of data --- */
+
+/* Length of the field of a CSV line at s, and its text without quotes and blanks around it. */
+static size_t csv_field(Arena *a, const char *s, const char **text) {
+  size_t n = 0;
+  for (int quoted = 0; s[n] && !strchr("\r\n", s[n]) && (s[n] != ',' || quoted); n++) quoted ^= s[n] == '"';
+  const char *trimmed = text_trimmed(a, s, n);
+  size_t length = strlen(trimmed);
+  int in_quotes = length > 1 && trimmed[0] == '"' && trimmed[length - 1] == '"';
+  *text = in_quotes ? arena_strndup(a, trimmed + 1, length - 2) : trimmed;
+  return n;
+}
+
+/* Whether --columns names the column, or is not given. */
+static int is_column_asked(const Options *o, const char *label, size_t length) {
+  const char *list = o->columns;
+  if (!list) return 1;
+  while (*list) {
+    size_t n = strcspn(list, ",");
+    if (n == length && memcmp(list, label, n) == 0) return 1;
+    list += n + (list[n] == ',');
+  }
+  return 0;
+}
+
+/* Makes the column an output called by its label: a number in its unit, or the quantity in its own where the label has
+ * none. The sum has both in one unit, which the compiler checks. */
+static int add_column(RequestBuilder *k, const char *label, int is_time) {
+  const char *unit = strstr(label, " [");
+  size_t n = unit ? (size_t)(unit - label) : strlen(label);
+  const char *name = is_time ? "1 [s]" : arena_strndup(k->arena, label, n), *text = name;
+  if (strncmp(label, "sigma(", 6) == 0 || (!is_time && !is_column_asked(k->o, label, n))) return 1;
+  if (unit && strcmp(unit, " [degC]") == 0) text = arena_printf(k->arena, "(%s - 0 [degC])/(1 [K]) + 1 - 1", name);
+  else if (unit) text = arena_printf(k->arena, "(%s)/(1%s) + 1 - 1", name, unit);
+  const Source *source =
+      source_add(k->ast->sources, arena_printf(k->arena, "--data, column %s", label), text, strlen(text));
+  CommandOutput asked = {source ? parse_expression(k->ast, source) : 0, intern(k->ast->names, label)};
+  if (!asked.expr) return 0;
+  vec_push(k->arena, &k->p->asked, asked);
+  return 1;
+}
+
+/* Columns of --data, by the first line of the file. */
+static int prepare_columns(RequestBuilder *k, const char **error) {
+  enum { LONGEST = 1 << 16 };
+  const char *path = options_passed(k->o, "--data"), *why = NULL, *label;
+  if (!path || !options_passed(k->o, "--fit"))
+    return fail_with(error, "lagc fit needs the record and what to find: --data motion.csv --fit g,l");
+  FILE *f = source_open(path, &why);
+  if (!f) return fail_with(error, arena_printf(k->arena, "--data %s cannot be read: %s", path, why));
+  char *line = arena_alloc(k->arena, LONGEST);
+  char *at = fgets(line, LONGEST, f);
+  fclose(f);
+  if (!at) return fail_with(error, arena_printf(k->arena, "--data %s: the file is empty", path));
+  if (strncmp(at, "\xEF\xBB\xBF", 3) == 0) at += 3;
+  for (int column = 0, ok = 1;; column++) {
+    at += csv_field(k->arena, at, &label);
+    int is_time = column == 0 && strncmp(label, "t [", 3) == 0 && strcmp(label, "t [s]") != 0;
+    /* the simulator refuses a first line without names */
+    if ((column || is_time) && !text_is_number(label)) ok = add_column(k, label, is_time);
+    if (!ok) return 0;
+    if (*at++ != ',') return 1;
+  }
+}
+
 int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **error) {
   RequestBuilder k = {p, ast, o, ast->arena};
   int ok = 1;
@@ -351,6 +420,9 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   if (o->command == CMD_PLOT) ok = ok && prepare_plot(&k, error);
   if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
   if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);
+  if (o->command == CMD_FIT) ok = ok && prepare_columns(&k, error);
+  if (o->command == CMD_ORBIT) add_argument(&k, "--orbit", NULL);
+  if (o->command == CMD_CONTINUE) add_argument(&k, "--continue", NULL);
   if (o->command == CMD_LYAPUNOV) add_argument(&k, "--lyapunov", NULL);
   if (o->command == CMD_COST) add_argument(&k, "--cost", NULL);
   if (o->command == CMD_SWEEP) add_argument(&k, "--sweep", NULL);

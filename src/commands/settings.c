@@ -182,7 +182,7 @@ static int convert_setting(Converter *c, const char **arg) {
 
 /* Converts the value of an option that is a time: --until 2[min], --until=2[min]. */
 static int convert_time(Converter *c, uint32_t *i) {
-  static const char *const options[] = {"--until", "--every", "--step", "--transient"};
+  static const char *const options[] = {"--until", "--every", "--step", "--transient", "--period", "--guess"};
   const char **at = c->o->rest.at;
   for (size_t k = 0; k < sizeof options / sizeof *options; k++) {
     size_t n = strlen(options[k]);

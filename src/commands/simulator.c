@@ -27,7 +27,7 @@ static ModelChoice choice_of(const Compiler *c, const char *scene, int measures)
                        .given = c->given.at,
                        .ngiven = c->given.n,
                        .section = c->picture.section,
-                       .drawing = c->picture.drawing};
+                       .drawing = c->picture.drawing ? DRAWING_WANTED : DRAWING_NONE};
 }
 
 static Eqns *derive_asked(Compiler *c, const char *scene, int measures) {
@@ -319,8 +319,7 @@ static int find_parts(Compiler *c, Toolchain *t, const char **error) {
   return kind;
 }
 
-/* The toolchain and the kind of program that the command line asks for. Returns a STATUS. */
-static int find_tools(Compiler *c, const Units *units, const char *output, Toolchain *tools, ProgramKind *kind) {
+int simulator_tools(Compiler *c, const Units *units, const char *output, Toolchain *tools, ProgramKind *kind) {
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl && !c->o.shared, tools, &error)) return usage_error(error);
   if (c->o.precision && !toolchain_precision(c->arena, tools, c->o.precision, &error)) return usage_error(error);
@@ -339,40 +338,10 @@ int simulator_of_units(Compiler *c, const Units *units, const char *output, cons
   if (output && compiler_is_source(c, output)) return STATUS_USAGE;
   Toolchain tools;
   ProgramKind kind;
-  int status = find_tools(c, units, output, &tools, &kind);
+  int status = simulator_tools(c, units, output, &tools, &kind);
   if (status != STATUS_OK) return status;
   Texts texts = simulator_texts(c, units, kind);
   return simulator_make(c, &tools, &texts, output, path);
-}
-
-/* The reason why the run must be compiled; NULL: liblag can evaluate it. */
-static const char *reason_to_compile(Compiler *c, const Toolchain *tools, ProgramKind kind) {
-  if (options_more_digits(&c->o)) return "evaluates doubles only: leave --precision out";
-  if (kind & PROGRAM_WITH_PNG) return "has no pictures as PNG: give a name with .svg";
-  if (kind & (PROGRAM_WITH_HDF5 | PROGRAM_WITH_MPI | PROGRAM_WITH_LANES)) return "evaluates one run at a time";
-  return toolchain_evaluator(c->arena, tools) ? NULL : "needs lag-run beside liblag.a: run `make`";
-}
-
-const char *simulator_evaluator(Compiler *c, const Units *units, int *status) {
-  const char *how = c->o.compile ? c->o.compile : "auto";
-  int never = strcmp(how, "never") == 0;
-  Toolchain tools;
-  ProgramKind kind;
-  if (strcmp(how, "always") == 0 || c->o.command == CMD_COST || c->o.command == CMD_SWEEP) return NULL;
-  if ((*status = find_tools(c, units, NULL, &tools, &kind)) != STATUS_OK) return NULL;
-  const char *reason = reason_to_compile(c, &tools, kind);
-  if (reason && never) *status = usage_error(arena_printf(c->arena, "--compile never %s", reason));
-  if (reason) return NULL;
-  if (!never) {
-    Texts texts = simulator_texts(c, units, kind);
-    if (toolchain_cached(c->arena, &tools, texts.at, texts.n)) return NULL;
-    if (!toolchain_has_compiler(c->arena, &tools))
-      fprintf(stderr,
-              "lagc: there is no C compiler `%s`: the model is evaluated, with the same digits; long runs take two "
-              "to three times as long\n",
-              tools.cc);
-  }
-  return toolchain_evaluator(c->arena, &tools);
 }
 
 static const char *simulator_in(Compiler *c, const Units *units, const char *precision) {

@@ -22,10 +22,13 @@ Texts simulator_texts(Compiler *c, const Units *units, ProgramKind kind);
 /* The same program as bytes for liblag's evaluator. */
 StrBuf simulator_bytes(Compiler *c, const Units *units);
 
-/* lag-run, which evaluates the units instead of a simulator that is compiled: where --compile allows it, the command
- * line asks for nothing that is linked, and the cache has no simulator. NULL: compile; or, with *status, a refusal.
- * */
-const char *simulator_evaluator(Compiler *c, const Units *units, int *status);
+/* The toolchain and the kind of program that the command line asks for. Returns a STATUS. */
+int simulator_tools(Compiler *c, const Units *units, const char *output, Toolchain *tools, ProgramKind *kind);
+
+/* evaluation.c: lag-run in place of a simulator, with what it runs: where --compile allows it, the command line asks
+ * for nothing that is linked, and the cache has no simulator. *path is NULL where the units must be compiled.
+ * Returns a STATUS. */
+int simulator_evaluate(Compiler *c, const Units *units, const char **path);
 
 /* Makes a program from the texts at `output`, or in the cache (NULL), and gives its path. Returns a STATUS. */
 int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path);

@@ -8,6 +8,8 @@
 #include "emit/compensated_sum_kernel.h"
 #include "emit/composition_kernel.h"
 #include "emit/dense_output_kernel.h"
+#include "emit/galerkin_step_kernel.h"
+#include "emit/galerkin_rule_kernel.h"
 #include "emit/impulses_kernel.h"
 #include "emit/lag_kkt.h"             /* static const char *const NAME[]: and of runtime/include/NAME.h */
 #include "emit/lag_lanes.h"
@@ -18,6 +20,8 @@
 #include "emit/locate_kernel.h"
 #include "emit/contact_step_kernel.h"
 #include "emit/moreau_step_kernel.h"
+#include "emit/newton_kernel.h"
+#include "emit/predictor_kernel.h"
 #include "emit/runge_kutta_kernel.h"
 #include "emit/scalar_kernel.h"
 #include "emit/splitting_kernel.h"
@@ -36,7 +40,8 @@ static const struct {
                 LINES(runge_kutta_tables_kernel), LINES(runge_kutta_kernel), LINES(step_size_kernel),
                 LINES(taylor_order_kernel), LINES(taylor_size_kernel), LINES(dense_output_kernel),
                 LINES(band_matrix_kernel), LINES(impulses_kernel), LINES(contact_step_kernel),
-                LINES(joint_friction_kernel), LINES(moreau_step_kernel),
+                LINES(joint_friction_kernel), LINES(moreau_step_kernel), LINES(newton_kernel),
+                LINES(predictor_kernel), LINES(galerkin_rule_kernel), LINES(galerkin_step_kernel),
                 LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";

@@ -126,6 +126,14 @@ static void switches(const Unit *w) {
   program(w, u->switch_grips);
 }
 
+/* Derivatives by parameters or inputs; p NULL: none. */
+static void partials(const Unit *w, const Prog *p, const IrEntry *at, uint32_t n) {
+  integer(w, p != NULL);
+  if (!p) return;
+  entries(w, at, n);
+  program(w, p);
+}
+
 static void linear(const Unit *w) {
   const ProgramSet *u = w->u;
   int has = model_has_linear(u);
@@ -139,6 +147,9 @@ static void linear(const Unit *w) {
   for (uint32_t i = 0; u->jumps && i < u->jump_at.n; i++)
     word(w, u->jump_at.at[i].event), integer(w, u->jump_at.at[i].row), word(w, u->jump_at.at[i].col);
   program(w, u->jumps);
+  int sensitive = (u->wants & WANT_SENSITIVITY) == WANT_SENSITIVITY;
+  partials(w, sensitive ? u->by_params : NULL, u->by_params_dr.at, u->by_params_dr.n);
+  partials(w, sensitive ? u->by_inputs : NULL, u->by_inputs_dr.at, u->by_inputs_dr.n);
 }
 
 static void variation(const Unit *w) {

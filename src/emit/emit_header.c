@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "emit/header_impl.h"
+#include "kernels/steppers.def"
 
 /* --- names --- */
 
@@ -17,6 +18,7 @@ static const char *cased(Arena *a, const char *s, int upper) {
   return t;
 }
 
+#define LAST_STAGE(name, NAME, kind, dense, order, line, words) #NAME "_LAST",
 static const char *const header_names[] = {"REAL",
                                            "API", "STATIC", "IMPLEMENTATION", "IMPLEMENTED", "H_INCLUDED", "MASK",
                                            "LANE", "LANES", "LIBM", "OWN", "COMPLEX", "ABS", "BITS", "IS_float",
@@ -26,8 +28,10 @@ static const char *const header_names[] = {"REAL",
                                            "NEV", "NOUT", "NNZ", "NNZ_IDA", "ENEWTON", "ENAN", "EZENO", "ETOLERANCE",
                                            "ESIZE", "IS_FINITE", "ECONTACT", "DEGREE", "LOCATE_ROWS", "LOCATE_UNSEEN",
                                            "LOCATE_ROUGH", "LOCATE_FINEST", "PRESSING_SIZE", "THE_MODEL", "LAWS",
-                                           "MODEL", "MAX_DRIFTS", "RK4_LAST", "RK45_LAST", "DOP853_LAST", "NCONTACTS",
-                                           "NSURFACES", "OPEN", "SLIPS", "STICKS", "NFREE", "NNEWTON", "NBAND",
+                                           "MODEL", "MAX_DRIFTS", LAG_RUNGE_KUTTA_METHODS(LAST_STAGE) "NCONTACTS",
+                                           "NSURFACES", "OPEN", "SLIPS", "STICKS", "RULE_FREE", "NNEWTON",
+                                           "NBAND", "QQ", "VQ", "VV", "FQ", "FV",
+                                           "MOST_CORRECTIONS", "PREDICTOR_DEGREE",
                                            "VARIATIONAL_ORDER", "TAYLOR_ORDER", "TAYLOR_COLUMNS", "TAYLOR_WIDTH",
                                            "TAYLOR_GROUP", "TAYLOR_SQUARES", "TAYLOR_SUMS", "TAYLOR_CONSTANTS",
                                            "TAYLOR_STATE", "TAYLOR_PAIRED", "TAYLOR_SQUARED",

@@ -23,7 +23,9 @@ static const char *const abi_names[] = {
     "mass_table",       "second_table",     "linear",           "curves",
     "singular",         "constraint_table", "jacobian_table",   "inertia_table",
     "constraints",      "contact_table",    "charge_table",     "charges",
-    "switch_table",     "taylor_far",       "taylor_add",
+    "switch_table",     "taylor_far",       "taylor_add",       "by_params",
+    "by_params_table",  "params_partials",  "by_inputs",        "by_inputs_table",
+    "inputs_partials",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -309,6 +311,18 @@ static void emit_jumps(const ModelFile *f) {
 /* See WANT_CONSTRAINED. */
 int model_has_linear(const ProgramSet *u) { return u->linear && !u->constraints.of.n; }
 
+/* Derivatives by parameters or inputs, with their table. */
+static void emit_partials(const ModelFile *f, const Prog *p, const IrEntry *at, uint32_t n, const char *by) {
+  static const char *const written[] = {"dr", "M", NULL};
+  const char *table = arena_printf(f->a, "by_%s_table", by);
+  state_function(f, p, arena_printf(f->a, "by_%s", by),
+                 arena_printf(f->a, "The same, dr: each equation by the %s; M: %s.", by, op_count_text(p, f->a)), "a",
+                 written);
+  entries(table, at, n, f->out);
+  sb_printf(f->out, "\nstatic const lag_partials %s = {%u, %s, by_%s};\n", arena_printf(f->a, "%s_partials", by), n,
+            n ? table : "NULL", by);
+}
+
 static void emit_linear(const ModelFile *f) {
   static const char *const written[] = {"dr", "M", NULL};
   const ProgramSet *u = f->u;
@@ -320,12 +334,18 @@ static void emit_linear(const ModelFile *f) {
   entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
   entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
   emit_jumps(f);
+  int sensitive = (u->wants & WANT_SENSITIVITY) == WANT_SENSITIVITY, params = sensitive && u->by_params,
+      inputs = sensitive && u->by_inputs;
+  if (params) emit_partials(f, u->by_params, u->by_params_dr.at, u->by_params_dr.n, "params");
+  if (inputs) emit_partials(f, u->by_inputs, u->by_inputs_dr.at, u->by_inputs_dr.n, "inputs");
   sb_printf(f->out,
             "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval "
             "= linearise,\n",
             u->linear_dr.n, u->linear_dr.n ? "dr_table" : "NULL", u->linear_mass.n,
             u->linear_mass.n ? "mass_table" : "NULL", ops_as_int(ops_total(prog_count(u->linear))));
   if (u->jumps) sb_printf(f->out, "  .njump = %u, .jump = jump_table, .jumps = jumps,\n", u->jump_at.n);
+  if (params) sb_puts(f->out, "  .by_params = &params_partials,\n");
+  if (inputs) sb_puts(f->out, "  .by_inputs = &inputs_partials,\n");
   sb_puts(f->out, "};\n");
 }
 

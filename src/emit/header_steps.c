@@ -8,23 +8,26 @@
 
 /* Method of a header: of kernels/steppers.def (table: its name there in upper case), or of header_taylor.c,
  * header_variational.c, header_moreau.c. */
-typedef enum { OTHER, FIXED, ADAPTIVE, SPLITTING } MethodKind;
+typedef enum { OTHER, FIXED, ADAPTIVE, LATE, SPLITTING } MethodKind;
 typedef struct {
   const char *name, *table, *words;
   MethodKind kind;
-  int late;
   unsigned wants;
 } HeaderMethod;
 
-#define RUNGE_KUTTA_ROW(name, table, kind, late, words) {#name, #table, words, kind, late, 0},
-#define SPLITTING_ROW(name, general, order, flags, line, words) {#name, NULL, words, SPLITTING, 0, 0},
+#define RUNGE_KUTTA_ROW(name, table, kind, dense, order, line, words) {#name, #table, words, kind, 0},
+#define SPLITTING_ROW(name, general, order, flags, line, words) {#name, NULL, words, SPLITTING, 0},
 static const HeaderMethod methods[] = {
-  LAG_RUNGE_KUTTA_METHODS(RUNGE_KUTTA_ROW) /* rk4, which every header has, is the first */
+  LAG_RUNGE_KUTTA_METHODS(RUNGE_KUTTA_ROW)
   LAG_SPLITTING_METHODS(SPLITTING_ROW)
-  {"variational", NULL, NULL, OTHER, 0, WANT_VARIATION},
-  {"taylor", NULL, NULL, OTHER, 0, WANT_TAYLOR},
-  {"moreau", NULL, NULL, OTHER, 0, 0},
+  {"variational", NULL, NULL, OTHER, WANT_VARIATION},
+  {"taylor", NULL, NULL, OTHER, WANT_TAYLOR},
+  {"moreau", NULL, NULL, OTHER, 0},
 };
+#define RUNGE_KUTTA_ID(name, table, kind, dense, order, line, words) ID_##name,
+enum { LAG_RUNGE_KUTTA_METHODS(RUNGE_KUTTA_ID) NMETHODS = sizeof methods / sizeof *methods };
+
+static int adapts(const HeaderMethod *m) { return m->kind == ADAPTIVE || m->kind == LATE; }
 
 static void line(const Header *h, const char *text) { csupport_expand(text, h->upper, h->lower, h->out); }
 
@@ -80,20 +83,20 @@ static const char *const trial =
   " |}\n";
 
 static void write_trial(const Header *h, const HeaderMethod *m) {
-  int adapts = m->kind == ADAPTIVE, holds = header_has(h, FN_HOLD), early = adapts && !m->late;
-  const LineChoice choices[] = {{'A', adapts},
-                                {'I', holds && h->u->u.n}, {'F', holds && !adapts}, {'H', holds && early},
-                                {'E', !holds && early}, {'L', holds && m->late},
+  int holds = header_has(h, FN_HOLD), early = m->kind == ADAPTIVE, late = m->kind == LATE;
+  const LineChoice choices[] = {{'A', adapts(m)},
+                                {'I', holds && h->u->u.n}, {'F', holds && !adapts(m)}, {'H', holds && early},
+                                {'E', !holds && early}, {'L', holds && late},
                                 {0, 0}};
   const char *onto = arena_printf(h->a, "lag_onto(p, end%s, end->lost + 1)",
                                   h->u->u.n ? ", lag_held(p, end->t, u, input, context, now)" : "");
   const HeaderWord words[] = {{"WORDS", m->words},
                               {"METHOD", m->name},
                               {"TABLE", m->table},
-                              {"MORE", adapts ? ", const lag_adaptive *w, LAG_REAL *error" : ""},
+                              {"MORE", adapts(m) ? ", const lag_adaptive *w, LAG_REAL *error" : ""},
                               {"ONTO", onto},
                               {"LAST", arena_printf(h->a, "LAG_%s_LAST", m->table)},
-                              {"TWO", m->late ? "1" : "0"},
+                              {"TWO", late ? "1" : "0"},
                               {NULL, NULL}};
   header_section(h, m->name);
   header_template(h, header_chosen(h, trial, choices), words);
@@ -140,7 +143,7 @@ static const char *const support =
 /* Steps of one size. */
 static const char *const fixed_step =
   " | {\n"
-  " |  LAG_REAL y[LAG_NY], k[LAG_RK4_LAST][LAG_NY];\n"
+  " |  LAG_REAL y[LAG_NY], k[LAG_TABLE_LAST][LAG_NY];\n"
   " |  lag_state end = *s;\n"
   " |  end.t = lag_compensated_sum(s->t, h, &end.lost[0]);\n"
   " |  lag_gather(s, y);\n"
@@ -188,15 +191,15 @@ static const char *const splitting_step =
 
 /* --- the methods of a header --- */
 
-static int is_wanted(const Header *h, uint32_t i) { return i == 0 || (h->parts.methods >> i & 1) != 0; }
+static int is_wanted(const Header *h, int i) { return i == ID_rk4 || (h->parts.methods >> i & 1) != 0; }
 static int some_adaptive(const Header *h) {
-  for (uint32_t i = 0; i < sizeof methods / sizeof *methods; i++)
-    if (is_wanted(h, i) && methods[i].kind == ADAPTIVE) return 1;
+  for (int i = 0; i < NMETHODS; i++)
+    if (is_wanted(h, i) && adapts(&methods[i])) return 1;
   return 0;
 }
 
 int header_method(const char *name, size_t n) {
-  for (int i = 0; i < (int)(sizeof methods / sizeof *methods); i++)
+  for (int i = 0; i < NMETHODS; i++)
     if (strlen(methods[i].name) == n && strncmp(methods[i].name, name, n) == 0) return i;
   return -1;
 }
@@ -204,7 +207,7 @@ int header_method(const char *name, size_t n) {
 unsigned header_method_wants(int method) { return methods[method].wants; }
 
 int header_has_method(const Header *h, const char *name) {
-  return is_wanted(h, (uint32_t)header_method(name, strlen(name)));
+  return is_wanted(h, header_method(name, strlen(name)));
 }
 
 const char *header_method_refusal(const ProgramSet *u, int i) {
@@ -223,7 +226,7 @@ const char *header_method_refusal(const ProgramSet *u, int i) {
 
 unsigned header_methods(const ProgramSet *u) {
   unsigned all = 0;
-  for (int i = 0; i < (int)(sizeof methods / sizeof *methods); i++) all |= header_method_refusal(u, i) ? 0 : 1u << i;
+  for (int i = 0; i < NMETHODS; i++) all |= header_method_refusal(u, i) ? 0 : 1u << i;
   return all;
 }
 
@@ -233,9 +236,9 @@ static const char *prototype(const Header *h, const HeaderMethod *m, int with) {
                   : h->u->u.n ? ", const LAG_REAL *u"
                               : "",
              *step = with ? "step_with" : "step";
-  if (m->kind == SPLITTING)
-    return arena_printf(h->a, "int lag_%s_%s(const lag_params *p, lag_state *s, LAG_REAL h%s, LAG_REAL *a)", m->name,
-                        step, u);
+  if (!adapts(m))
+    return arena_printf(h->a, "int lag_%s_%s(const lag_params *p, lag_state *s, LAG_REAL h%s%s)", m->name, step, u,
+                        m->kind == SPLITTING ? ", LAG_REAL *a" : "");
   return arena_printf(h->a, "int lag_%s_%s(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL until%s)",
                       m->name, step, u);
 }
@@ -264,9 +267,9 @@ void header_steps_declare(const Header *h) {
     line(h, ordered);
     header_adaptive_declare(h);
   }
-  for (uint32_t i = 1; i < sizeof methods / sizeof *methods; i++) {
+  for (int i = 0; i < NMETHODS; i++) {
     const HeaderMethod *m = &methods[i];
-    if (!is_wanted(h, i) || m->kind != ADAPTIVE) continue;
+    if (!is_wanted(h, i) || !adapts(m)) continue;
     line(h, arena_printf(h->a, "\n/* One step by %s, towards the time `until` and not beyond it.%s%s */\n", m->words,
                          h->u->u.n ? header_held_inputs : "", header_adaptive_lanes));
     declare_both(h, m);
@@ -288,7 +291,12 @@ void header_steps_declare(const Header *h) {
   }
   if (header_has_method(h, "moreau")) header_one_state(h, "moreau_step", "make such steps");
   if (has_single(h)) line(h, "#endif\n");
-  for (uint32_t i = 1; i < sizeof methods / sizeof *methods; i++) {
+  for (int i = 0; i < NMETHODS; i++) {
+    if (i == ID_rk4 || !is_wanted(h, i) || methods[i].kind != FIXED) continue;
+    line(h, arena_printf(h->a, "\n/* A step h by %s.%s */\n", methods[i].words, h->u->u.n ? header_held_inputs : ""));
+    declare_both(h, &methods[i]);
+  }
+  for (int i = 0; i < NMETHODS; i++) {
     const HeaderMethod *m = &methods[i];
     if (!is_wanted(h, i) || m->kind != SPLITTING) continue;
     line(h, arena_printf(h->a,
@@ -330,7 +338,7 @@ static void define_method(const Header *h, const HeaderMethod *m) {
 
 static void define_splitting(const Header *h) {
   int some = 0;
-  for (uint32_t i = 1; i < sizeof methods / sizeof *methods; i++) {
+  for (int i = 0; i < NMETHODS; i++) {
     if (!is_wanted(h, i) || methods[i].kind != SPLITTING) continue;
     if (!some++) {
       header_section(h, "composition");
@@ -371,24 +379,25 @@ static void define_dense_steps(const Header *h) {
     " |}\n", NULL);
 }
 
-/* The step that every header has. */
-static void define_rk4(const Header *h) {
-  const HeaderMethod *m = &methods[0];
-  const HeaderWord words[] = {{"METHOD", m->name}, {NULL, NULL}};
-  header_section(h, "runge_kutta");
-  header_template(h, runge_kutta, NULL);
+/* Steps of one size: rk4, which every header has, and others. */
+static void define_fixed(const Header *h, const HeaderMethod *m) {
+  const HeaderWord words[] = {{"METHOD", m->name}, {"TABLE", m->table}, {NULL, NULL}};
+  const char *inner = m == &methods[ID_rk4] ? "step" : m->name;
   write_trial(h, m);
   line(h, "\n");
-  if (!h->u->u.n) line(h, header_wrapped(h, arena_printf(h->a, "LAG_API %s", header_prototype(h, FN_RK4_STEP))));
+  if (!h->u->u.n) write_prototype(h, arena_printf(h->a, "LAG_API %s", prototype(h, m, 0)));
   else
-    line(h, "static int lag_step(const lag_params *p, lag_state *s, LAG_REAL h, const LAG_REAL *u,\n   lag_input_fn "
-            "*input, void *context)");
+    line(h, arena_printf(h->a,
+                         "static int lag_%s(const lag_params *p, lag_state *s, LAG_REAL h, const LAG_REAL *u,\n   "
+                         "lag_input_fn *input, void *context)",
+                         inner));
   header_template(h, fixed_step, words);
-  if (!h->u->u.n) return;
-  line(h, arena_printf(h->a, "\nLAG_API %s {\n  return lag_step(p, s, h, u, 0, 0);\n}\n",
-                       header_wrapped(h, header_prototype(h, FN_RK4_STEP))));
-  line(h, arena_printf(h->a, "\nLAG_API %s {\n  return lag_step(p, s, h, 0, input, context);\n}\n",
-                       header_wrapped(h, header_prototype(h, FN_RK4_STEP_WITH))));
+  for (int with = 0; h->u->u.n && with < 2; with++) {
+    line(h, "\n");
+    write_prototype(h, arena_printf(h->a, "LAG_API %s", prototype(h, m, with)));
+    line(h, arena_printf(h->a, " {\n  return lag_%s(p, s, h, %s);\n}\n", inner,
+                         with ? "0, input, context" : "u, 0, 0"));
+  }
 }
 
 static const char *const epsilon =
@@ -413,9 +422,9 @@ static void define_adaptive(const Header *h) {
   header_section(h, "errors");
   header_section(h, "step_size");
   header_adaptive_define(h, longest(h));
-  for (uint32_t i = 1; i < sizeof methods / sizeof *methods; i++) {
+  for (int i = 0; i < NMETHODS; i++) {
     const HeaderMethod *m = &methods[i];
-    if (!is_wanted(h, i) || m->kind != ADAPTIVE) continue;
+    if (!is_wanted(h, i) || !adapts(m)) continue;
     write_trial(h, m);
     define_method(h, m);
     if (h->parts.parts & PART_PATH && !header_has_method(h, "moreau")) define_dense_steps(h);
@@ -449,7 +458,10 @@ void header_steps_define(const Header *h) {
   }
   if (holds) header_hold_define(h);
   header_move(h);
-  define_rk4(h);
+  header_section(h, "runge_kutta");
+  header_template(h, runge_kutta, NULL);
+  for (int i = 0; i < NMETHODS; i++)
+    if (is_wanted(h, i) && methods[i].kind == FIXED) define_fixed(h, &methods[i]);
   if (some_adaptive(h)) define_adaptive(h);
   if (header_has_method(h, "taylor")) define_taylor(h);
   if (has_single(h)) define_single(h);

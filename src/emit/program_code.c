@@ -29,7 +29,7 @@ static const struct {
 #define SPECIAL(name, kinds) {kinds, 0},
 #define PLAIN(name, kinds, formula) {kinds, 0},
 #define BOTH(name, kinds, formula) {kinds, 1}, {kinds "d", 0},
-  PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
+    PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
 #undef SPECIAL
 #undef PLAIN
 #undef BOTH
@@ -43,53 +43,22 @@ enum {
 
 enum {
 #define OP(name, operands, formula) TURN_##name,
-  PROGRAM_TURN_OPS(OP)
+  PROGRAM_TURN_OPS(OP, OP)
 #undef OP
 };
 
 static const char *const one_functions[] = {
 #define ROW(OP, name, ...) #name,
-  FUNCTIONS(ROW)
+    FUNCTIONS(ROW)
 #undef ROW
 };
 static const char *const two_functions[] = {
 #define ROW(name) #name,
-  PROGRAM_FUNCTIONS_2(ROW)
+    PROGRAM_FUNCTIONS_2(ROW)
 #undef ROW
 };
 
-/* --- bytes --- */
-
-void put_word(StrBuf *out, uint32_t x) {
-  const char bytes[] = {(char)(x & 255), (char)(x >> 8 & 255), (char)(x >> 16 & 255), (char)(x >> 24)};
-  sb_putn(out, bytes, sizeof bytes);
-}
-
-void put_words(StrBuf *out, const uint32_t *x, uint32_t n) {
-  put_word(out, n);
-  for (uint32_t i = 0; i < n; i++) put_word(out, x[i]);
-}
-
-void put_signed(StrBuf *out, int64_t x) {
-  put_word(out, (uint32_t)((uint64_t)x & UINT32_MAX));
-  put_word(out, (uint32_t)((uint64_t)x >> 32));
-}
-
-void put_number(StrBuf *out, double x) {
-  int64_t bits;
-  memcpy(&bits, &x, sizeof bits);
-  put_signed(out, bits);
-}
-
-void put_text(StrBuf *out, const char *s) {
-  uint32_t n = s ? (uint32_t)strlen(s) : 0;
-  put_word(out, s ? n + 1 : 0);
-  for (uint32_t i = 0; s && i < n + 1; i += 4) {
-    char four[4] = {0};
-    memcpy(four, s + i, n + 1 - i < 4 ? n + 1 - i : 4);
-    sb_putn(out, four, 4);
-  }
-}
+/* --- constants --- */
 
 /* A constant as the double that its C text means. */
 static double emitted_constant(Arena *a, Num n) {
@@ -117,12 +86,12 @@ typedef struct {
   unsigned char *done;   /* by slot: the sines and cosines that are computed */
   Slot *pair;            /* by slot of a sine: its cosine, and the other way */
   Words words;
-  uint32_t last;         /* where the last code of `words` begins */
-  uint32_t values;       /* slots and temporary values */
-  uint32_t *place;       /* by value: its place in the frame */
+  uint32_t last;   /* where the last code of `words` begins */
+  uint32_t values; /* slots and temporary values */
+  uint32_t *place; /* by value: its place in the frame */
   Constants constants;
-  uint32_t frame;        /* size of the frame */
-  uint32_t cells, work;  /* places of sums, of the work space of linear systems */
+  uint32_t frame;       /* size of the frame */
+  uint32_t cells, work; /* places of sums, of the work space of linear systems */
 } Coder;
 
 static const Ins *ins(const Coder *w, Slot s) { return &w->p->ins.at[s]; }
@@ -291,27 +260,37 @@ static void function(Coder *w, const Ins *i) {
 static void compute(Coder *w, Slot s) {
   const Ins *i = ins(w, s);
   switch (i->op) {
-    case IR_ADD: if (!sum_with_product(w, i)) binary(w, i, CODE_ADD_2, CODE_ADD, CODE_ADD); break;
-    case IR_SUB: if (!sum_with_product(w, i)) binary(w, i, CODE_SUB_2, CODE_SUB, CODE_SUB_FROM); break;
-    case IR_MUL: multiply(w, i); break;
-    case IR_DIV: binary(w, i, CODE_DIV_2, CODE_DIV, CODE_DIV_INTO); break;
-    case IR_NEG: bring(w, i->a), code(w, CODE_NEG); break;
-    case IR_SQRT: bring(w, i->a), code(w, CODE_SQRT); break;
-    case IR_FN1: function(w, i); break;
-    case IR_FN2: code_3(w, CODE_FUNCTION_2, NUMBER_OF(two_functions, i->text), i->a, i->b); break;
-    case IR_MIN: code_2(w, CODE_MIN, i->a, i->b); break;
-    case IR_MAX: code_2(w, CODE_MAX, i->a, i->b); break;
-    case IR_SIGN: bring(w, i->a), code(w, CODE_SIGN); break;
-    case IR_LT: code_2(w, CODE_LESS, i->a, i->b); break;
-    case IR_LE: code_2(w, CODE_LESS_EQUAL, i->a, i->b); break;
-    case IR_EQ: code_2(w, CODE_EQUAL, i->a, i->b); break;
-    case IR_NOT: code_1(w, CODE_NOT, i->a); break;
-    case IR_AND: code_2(w, CODE_AND, i->a, i->b); break;
-    case IR_OR: code_2(w, CODE_OR, i->a, i->b); break;
-    case IR_SELECT: code_3(w, CODE_SELECT, i->a, i->b, i->c); break;
-    case IR_TABLE: bring(w, i->a), code_1(w, CODE_TABLE, i->index); break;
-    case IR_CONST: case IR_PI: case IR_LOAD: case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_NEST: case IR_TITLE:
-      break;
+  case IR_ADD:
+    if (!sum_with_product(w, i)) binary(w, i, CODE_ADD_2, CODE_ADD, CODE_ADD);
+    break;
+  case IR_SUB:
+    if (!sum_with_product(w, i)) binary(w, i, CODE_SUB_2, CODE_SUB, CODE_SUB_FROM);
+    break;
+  case IR_MUL: multiply(w, i); break;
+  case IR_DIV: binary(w, i, CODE_DIV_2, CODE_DIV, CODE_DIV_INTO); break;
+  case IR_NEG: bring(w, i->a), code(w, CODE_NEG); break;
+  case IR_SQRT: bring(w, i->a), code(w, CODE_SQRT); break;
+  case IR_FN1: function(w, i); break;
+  case IR_FN2: code_3(w, CODE_FUNCTION_2, NUMBER_OF(two_functions, i->text), i->a, i->b); break;
+  case IR_MIN: code_2(w, CODE_MIN, i->a, i->b); break;
+  case IR_MAX: code_2(w, CODE_MAX, i->a, i->b); break;
+  case IR_SIGN: bring(w, i->a), code(w, CODE_SIGN); break;
+  case IR_LT: code_2(w, CODE_LESS, i->a, i->b); break;
+  case IR_LE: code_2(w, CODE_LESS_EQUAL, i->a, i->b); break;
+  case IR_EQ: code_2(w, CODE_EQUAL, i->a, i->b); break;
+  case IR_NOT: code_1(w, CODE_NOT, i->a); break;
+  case IR_AND: code_2(w, CODE_AND, i->a, i->b); break;
+  case IR_OR: code_2(w, CODE_OR, i->a, i->b); break;
+  case IR_SELECT: code_3(w, CODE_SELECT, i->a, i->b, i->c); break;
+  case IR_TABLE: bring(w, i->a), code_1(w, CODE_TABLE, i->index); break;
+  case IR_CONST:
+  case IR_PI:
+  case IR_LOAD:
+  case IR_PIVOT:
+  case IR_SOLVE:
+  case IR_SOLVED:
+  case IR_NEST:
+  case IR_TITLE: break;
   }
 }
 
@@ -376,9 +355,8 @@ static uint32_t take(Coder *w, uint32_t n) {
 static void read(Coder *w, uint32_t array, uint32_t index, uint32_t at, uint32_t n) {
   uint32_t to = temporary(w);
   w->place[to] = at;
-  code_2(w, CODE_READ, array, index);
-  operand(w, to);
-  operand(w, n);
+  code_3(w, n == 1 ? CODE_READ_1 : n == 2 ? CODE_READ_2 : CODE_READ, array, index, to);
+  if (n > 2) operand(w, n);
 }
 
 static void place_constants(Coder *w) {
@@ -440,8 +418,8 @@ static void write_stores(Coder *w) {
       if (st[k + n].array != st[k].array || st[k + n].index != st[k].index + n ||
           w->place[st[k + n].slot] != w->place[st[k].slot] + n)
         break;
-    code_3(w, CODE_WRITE, st[k].array, st[k].index, st[k].slot);
-    operand(w, n);
+    code_3(w, n == 1 ? CODE_WRITE_1 : n == 2 ? CODE_WRITE_2 : CODE_WRITE, st[k].array, st[k].index, st[k].slot);
+    if (n > 2) operand(w, n);
   }
   code(w, CODE_END);
 }
@@ -493,10 +471,11 @@ static void place_others(Coder *w) {
 /* --- nests --- */
 
 static const unsigned char turn_ops[] = {
-    [IR_CONST] = TURN_CONSTANT, [IR_PI] = TURN_CONSTANT, [IR_ADD] = TURN_ADD, [IR_SUB] = TURN_SUB, [IR_MUL] = TURN_MUL,
-    [IR_DIV] = TURN_DIV, [IR_NEG] = TURN_NEG, [IR_SQRT] = TURN_SQRT, [IR_FN2] = TURN_FUNCTION_2, [IR_MIN] = TURN_MIN,
-    [IR_MAX] = TURN_MAX, [IR_SIGN] = TURN_SIGN, [IR_LT] = TURN_LESS, [IR_LE] = TURN_LESS_EQUAL, [IR_EQ] = TURN_EQUAL,
-    [IR_NOT] = TURN_NOT, [IR_AND] = TURN_AND, [IR_OR] = TURN_OR, [IR_SELECT] = TURN_SELECT};
+    [IR_CONST] = TURN_CONSTANT, [IR_PI] = TURN_CONSTANT,   [IR_ADD] = TURN_ADD,      [IR_SUB] = TURN_SUB,
+    [IR_MUL] = TURN_MUL,        [IR_DIV] = TURN_DIV,       [IR_NEG] = TURN_NEG,      [IR_SQRT] = TURN_SQRT,
+    [IR_FN2] = TURN_FUNCTION_2, [IR_MIN] = TURN_MIN,       [IR_MAX] = TURN_MAX,      [IR_SIGN] = TURN_SIGN,
+    [IR_LT] = TURN_LESS,        [IR_LE] = TURN_LESS_EQUAL, [IR_EQ] = TURN_EQUAL,     [IR_NOT] = TURN_NOT,
+    [IR_AND] = TURN_AND,        [IR_OR] = TURN_OR,         [IR_SELECT] = TURN_SELECT};
 
 /* Code and number of a function of one argument. */
 static uint32_t turn_function(const Coder *w, const char *name, uint32_t *number) {
@@ -514,10 +493,10 @@ static void put_turn(Coder *w, StrBuf *out, const Ins *i) {
   if (i->op == IR_FN1) op = turn_function(w, i->text, &number);
   if (i->op == IR_FN2) number = NUMBER_OF(two_functions, i->text);
   if (i->op == IR_LOAD) {
-    op = i->array == ARR_CELL         ? TURN_CELL
-         : i->array == ARR_OUTER      ? TURN_OUTER
-         : ir_is_scalar(i->array)     ? TURN_SCALAR
-                                      : TURN_ELEMENT;
+    op = i->array == ARR_CELL     ? TURN_CELL
+         : i->array == ARR_OUTER  ? TURN_OUTER
+         : ir_is_scalar(i->array) ? TURN_SCALAR
+                                  : TURN_ELEMENT;
     a = i->array;
   }
   if (i->op == IR_CONST || i->op == IR_PI) {

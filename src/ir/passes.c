@@ -25,7 +25,7 @@ Prog *passes_run(Prog *p, const PassPlan *plan, StrBuf *trace) {
   int sound = take(&p, p, "lowering", trace), is_short = 0;
   if (sound) sound = take(&p, prog_tidy(p), "tidy", trace);
   if (sound && plan->every_step) sound = take(&p, prog_factor(p), "factor", trace);
-  is_short = plan->every_step && p->ins.n <= ROLL_FROM;
+  is_short = plan->every_step && p->ins.n <= ROLL_FROM && !p->nests.n;
   if (sound && is_short) sound = take(&p, prog_product_cse(p), "product_cse", trace);
   if (sound && is_short) sound = take(&p, prog_reassociate_fma(p), "reassociate_fma", trace);
   if (sound && is_short && p->ins.n > PAGE)

@@ -7,6 +7,7 @@
 
 #include "base/id_table.h"
 #include "base/intern.h"
+#include "base/loop_nest.h"
 #include "base/num.h"
 #include "base/spline.h"
 #include "base/vec.h"
@@ -94,10 +95,8 @@ typedef struct {
 static inline uint32_t solve_elements(const Solve *k) { return (k->n + k->m) * k->n; }
 static inline uint32_t solve_unknowns(const Solve *k) { return k->n + k->m; }
 
-/* Array index in row i, turn j of a nest: first + by_row*i + by_turn*j. */
-typedef struct {
-  int64_t first, by_row, by_turn;
-} IrSubscript;
+/* Array index in row i, turn j of a nest. */
+typedef Subscript IrSubscript;
 
 /* Two loops that accumulate sums: for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1. Sums
  * (ARR_CELL) are 0 before the first nest. A sum that stays the same in all turns of the inner (or only) loop gets
@@ -112,6 +111,7 @@ typedef struct {
   const IrSubscript *at;    /* [n] */
   const Slot *outer;    /* [nouter] values of the program that the nest is in */
   uint32_t n, nouter;
+  int family; /* of a quantified sum, which is not written out anywhere */
 } Nest;
 
 /* Whether there is a loop over j: where each row has one turn, the loop over i is the only one. */
@@ -128,8 +128,7 @@ static inline int64_t nest_to(const Nest *n, int64_t i) { return (n->skew + n->m
 
 /* Value of the index at[k] in turn j of row i. */
 static inline int64_t nest_index(const Nest *n, uint32_t k, int64_t i, int64_t j) {
-  const IrSubscript *x = &n->at[k];
-  return x->first + x->by_row*i + x->by_turn*j;
+  return subscript_at(&n->at[k], i, j);
 }
 
 /* The spline of the table that the user gave for input `name`; order: of its derivative, 0 unless the curve is
@@ -290,3 +289,6 @@ uint32_t ops_as_int(uint64_t ops);
 /* Evaluates the program in extended precision, with the range of doubles: in[array] are the inputs,
  * out[array][index] the stores. Returns 0, or -1 when a pivot failed. */
 int prog_eval(const Prog *p, const long double *const in[ARR_COUNT], long double *const *out);
+
+/* The same with a sample of the turns of quantified sums (loop_samples). */
+int prog_eval_sample(const Prog *p, const long double *const in[ARR_COUNT], long double *const *out);

@@ -57,6 +57,7 @@ typedef struct {
   const Real *const *in;
   Real *v, *cells;
   const Real **solution;
+  int samples; /* quantified sums by a sample of their turns */
 } Run;
 
 static int run_nest(Run *r, const Nest *n);
@@ -137,7 +138,10 @@ static int run_nest(Run *r, const Nest *n) {
   Run body = {.p = p, .in = r->in, .v = ARENA_ARRAY(p->arena, Real, p->ins.n), .cells = r->cells};
   Real *part = ARENA_ARRAY(p->arena, Real, p->stores.n + 1);
   for (int64_t i = 0; i < n->rows; i++) {
-    for (int64_t j = nest_from(n, i); j < nest_to(n, i); j++) {
+    int64_t from = nest_from(n, i), turns = nest_to(n, i) - from;
+    if (r->samples && n->family && !loop_samples(i, n->rows)) continue;
+    for (int64_t j = from; j < from + turns; j++) {
+      if (r->samples && n->family && !loop_samples(j - from, turns)) continue;
       if (run_turn(&body, r, n, i, j) != 0) return -1;
       add_stores(r, &body, n, part, i, j);
     }
@@ -152,10 +156,11 @@ static int run_all(Run *r) {
   return 0;
 }
 
-int prog_eval(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out) {
+static int evaluate(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out, int samples) {
   ArenaMark before = arena_mark(p->arena);
   Run r = {.p = p,
            .in = in,
+           .samples = samples,
            .v = ARENA_ARRAY(p->arena, Real, p->ins.n),
            .cells = ARENA_ARRAY(p->arena, Real, p->cells + 1),
            .solution = ARENA_ARRAY(p->arena, const Real *, p->ins.n)};
@@ -164,4 +169,10 @@ int prog_eval(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out) 
     out[p->stores.at[k].array][p->stores.at[k].index] = r.v[p->stores.at[k].slot];
   arena_forget(p->arena, before);
   return status;
+}
+
+int prog_eval(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out) { return evaluate(p, in, out, 0); }
+
+int prog_eval_sample(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out) {
+  return evaluate(p, in, out, 1);
 }

@@ -118,10 +118,18 @@ typedef struct {
 
 /* Programs that only some methods of integration, or headers, need; made on request. */
 enum {
-  WANT_VARIATION = 1, WANT_TAYLOR = 2, WANT_LINEAR = 4, WANT_MASS = 8, WANT_INVERSE = 16, WANT_BY_INPUTS = 32,
-  WANT_BY_PARAMS = 64, WANT_MULTIPLIERS = 128, WANT_OUTPUTS = 256,
+  WANT_VARIATION = 1,
+  WANT_TAYLOR = 2,
+  WANT_LINEAR = 4,
+  WANT_MASS = 8,
+  WANT_INVERSE = 16,
+  WANT_BY_INPUTS = 32,
+  WANT_BY_PARAMS = 64,
+  WANT_MULTIPLIERS = 128,
+  WANT_OUTPUTS = 256,
   WANT_CONSTRAINED = 512 /* derivatives also of models with constraints, which simulators take by differences */,
-  WANT_HELD = 1024
+  WANT_HELD = 1024,
+  WANT_SENSITIVITY = 4 | 32 | 64 /* what a tangent by parameters needs */
 };
 
 /* Position of a second derivative of L or of a force; part: SECOND_... of mech/lagrangian_hessian.h. */

@@ -242,6 +242,7 @@ static Slot lower_node(Lower *l, Expr e) {
     }
     case EX_SUM: return lower_sum(l, e);
     case EX_PROD: return lower_prod(l, e);
+    case EX_NEST: case EX_CELL: return 0; /* lower_nest */
     case EX_POW: return call2(l, "pow", e);
     EX_FUNCTION_CASES
       return o == EX_SIN || o == EX_COS ? lower_circular(l, o, a) : call1(l, expr_op_text(o), lower_slot(l, a));
@@ -274,6 +275,7 @@ void lower_roots(Lower *l, const Expr *roots, uint32_t n) {
     if (o == EX_SIN || o == EX_COS) expr_map_set(&l->circular, expr_arg(l->g, list.at[i], 0), 1);
   }
   for (uint32_t i = 0; i < list.n; i++) {
+    if (expr_op(l->g, list.at[i]) == EX_NEST) lower_nest(l, list.at[i], &list);
     if (expr_map_get(&l->slots, list.at[i])) continue;
     Slot s = lower_node(l, list.at[i]);
     expr_map_set(&l->slots, list.at[i], s + 1);

@@ -29,6 +29,9 @@ Lower lower_new(const Eqns *e);
 void lower_roots(Lower *l, const Expr *roots, uint32_t n);
 Slot lower_slot(const Lower *l, Expr e);
 
+/* lower_nest.c: the cells of a nest that occur in the list and have no slot yet. */
+void lower_nest(Lower *l, Expr nest, const ExprList *list);
+
 /* The element of an array that holds the value of a symbol. */
 Slot lower_load(Lower *l, IrArray array, const Symbol *s);
 

@@ -276,12 +276,14 @@ Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs) {
 
 /* 1: x is rounding at a state that obeys the constraints; 0: it is more; -1: it has no value there. */
 static int is_small(const Eqns *e, Expr x, const long double *symbols, long double tiny) {
-  long double bound, value = value_with_bound(e->g, x, symbols, NULL, &bound), size = 0;
+  BoundTape *tape = bound_tape(e->g, &x, 1);
+  bound_run(tape, symbols, NULL);
+  long double bound, value = bound_value(tape, x, &bound), size = 0;
   if (!isfinite(value)) return -1;
   for (uint32_t i = 0; i < expr_pairs(e->g, x, EX_SUM); i++) {
     Num c;
     Expr term = expr_pair(e->g, x, EX_SUM, i, &c);
-    size += fabsl((long double)num_value(c) * value_with_bound(e->g, term, symbols, NULL, &bound));
+    size += fabsl((long double)num_value(c) * bound_value(tape, term, &bound));
   }
   return fabsl(value) <= tiny * fmaxl(size, 1);
 }

@@ -300,11 +300,8 @@ static void apply_statement(Builder *b, const AstStmt *st, Name effect, void *da
     case STMT_CONSTRAINT: add_constraint(b, st, effect); return;
     case STMT_CONTACT: add_contact(b, st, effect); return;
     case STMT_GUIDE: add_guide(b, st, effect); return;
-    case STMT_LET:
-    case STMT_FUNCTION:
-    case STMT_EXPECT:
-    case STMT_OBSERVE:
-    case STMT_DRAW: /* once L is known: build() */
+    case STMT_LET: case STMT_FUNCTION: case STMT_EXPECT: case STMT_OBSERVE: /* once L is known: build() */
+    case STMT_DRAW: /* scene_build() */
     case STMT_COORD: case STMT_STATE: case STMT_PARAM: case STMT_CONST:
     case STMT_SYMMETRY: case STMT_CANONICAL: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE:
     case STMT_MAP: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
@@ -410,6 +407,7 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   b->scope.arena = b->members.arena = b->outputs.arena = b->constraints.arena = a;
   b->defines = choice->defines;
   b->ndefines = choice->ndefines;
+  b->sums_from = choice->sums_from ? choice->sums_from : SUMS_FROM;
   b->domains = choice->bare || choice->domains; /* claims are judged on models without a scene */
   Model *m = b->m = ARENA_NEW(a, Model);
   m->ast = ast;

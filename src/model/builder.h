@@ -153,6 +153,7 @@ struct Builder {
   int in_friction; /* lambda(NAME) may stand in the size of a friction */
   int brackets;    /* {f, g} in an expression is a Poisson bracket */
   int domains;     /* compute Value.domain, for claims */
+  uint32_t sums_from; /* sums over at least so many pairs are not written out; 0: none is */
   InputRates *rates_wanted;
 };
 
@@ -440,7 +441,7 @@ void explain_dims(Builder *b, Dim x, Dim y);
 void fill_inferred_units(Builder *b);
 
 /* drawing.c: Scene.shapes and their outputs, the last of the scene; guessed where the text has no `draw`. wanted 0:
- * statements are checked, and leave nothing. */
+ * statements are checked, and leave nothing but nodes. */
 void build_drawing(Builder *b, int wanted);
 
 /* rotation.c */

@@ -72,7 +72,7 @@ static void declare_motion(Builder *b, const AstStmt *st, Name effect) {
   int is_state = st->kind == STMT_STATE || b->m->first_order;
   EntKind kind = is_state ? ENT_STATE : ENT_COORD;
   uint32_t first = is_state ? b->m->states.n : b->m->coords.n;
-  if (has_word("energy lagrangian if end lyapunov", st->name))
+  if (has_word("energy lagrangian if end lyapunov megno", st->name))
     diag_error(b->diags, st->name_span,
                "`%s` is a word of formulas, outputs and measures, and cannot be %s" HELP "choose another name",
                st->name, ent_kind_text(kind));
@@ -256,8 +256,8 @@ void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_LAGRANGIAN:
     case STMT_CONSTRAINT:
     case STMT_CONTACT:
-    case STMT_GUIDE:
     case STMT_DRAW:
+    case STMT_GUIDE:
     case STMT_KINETIC:
     case STMT_POTENTIAL:
     case STMT_DISSIPATION: case STMT_FORCE: case STMT_FLOW: case STMT_MAP: case STMT_EXPECT:

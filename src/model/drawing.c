@@ -72,14 +72,7 @@ static int is_length(DrawReader *r, const Value *v, AstId id) {
   return 0;
 }
 
-static Value option_value(DrawReader *r, AstId id) {
-  Value v = resolve(r->d->b, id, IN_OUTPUT, r->effect);
-  if (v.condition) {
-    diag_error(r->d->b->diags, ast_expr(r->d->b->ast, id)->span, "this is a condition, not a number");
-    return (Value){0};
-  }
-  return v;
-}
+static Value option_value(DrawReader *r, AstId id) { return resolve(r->d->b, id, IN_OUTPUT, r->effect); }
 
 /* Value of a place: a vector, or a number along the first axis. e = 0 after an error. */
 static Value place_value(DrawReader *r, AstId id) {
@@ -107,9 +100,9 @@ static void read_sizes(DrawReader *r, AstId id, int least, int most) {
   int n = v.n ? (int)v.n : 1;
   if (!v.e) return;
   if (n < least || n > most) {
+    const char *many = most == 1 ? "a number is" : least == 3 ? "three lengths are" : "two or three lengths are";
     diag_error(b->diags, ast_expr(b->ast, id)->span, "this is %s, but %s needed here" HELP "for example `%s`",
-               shape_text(b, v.n), most == 1 ? "a number is" : least == 3 ? "three lengths are" : "two or three lengths are",
-               r->row->example);
+               shape_text(b, v.n), many, r->row->example);
     return;
   }
   if (!is_length(r, &v, id)) return;
@@ -124,8 +117,8 @@ static void read_turn(DrawReader *r, AstId id, int only_rotation) {
   if ((v.n && v.n != ROTATION) || (only_rotation && v.n != ROTATION)) {
     diag_error(b->diags, span, "this is %s, but %s is needed here", shape_text(b, v.n),
                only_rotation ? "a rotation" : "an angle or a rotation");
-    diag_help(b->diags, only_rotation ? "declare `coord R: rotation`, or draw a box: `draw box at (x, y) size (a, b) turn phi`"
-                                      : "for example `%s`", r->row->example);
+    if (only_rotation) diag_help(b->diags, "declare `coord R: rotation`; with an angle, `%s`", rows[SHAPE_BOX].example);
+    else diag_help(b->diags, "for example `%s`", r->row->example);
   } else if (!v.n && !v.bare && !is_zero(b, &v) && !dim_equate(b->dims, v.dim, DIM_NONE, span)) {
     diag_error(b->diags, span, "this is %s, but an angle is needed here", in_dim(b, v.dim));
   } else {
@@ -198,7 +191,8 @@ static int read_range(DrawReader *r, AstId bind, Value ends[2]) {
     }
     if (!ends[k].e || (r->st->rhs && !is_length(r, &ends[k], ids[k]))) return 0;
   }
-  if (dims_agree(b, &ends[0], &ends[1], x->span)) return 1;
+  int plain = r->st->rhs && (ends[0].bare || ends[1].bare); /* a number is a length */
+  if (plain || dims_agree(b, &ends[0], &ends[1], x->span)) return 1;
   diag_error(b->diags, x->span, "units do not match: the range begins at %s and ends at %s", in_dim(b, ends[0].dim),
              in_dim(b, ends[1].dim));
   return 0;

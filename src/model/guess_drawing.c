@@ -162,8 +162,8 @@ static Scalars scalars_of(Guess *k) {
   Scalars out = {0};
   for (uint32_t i = 0; i < b->scope.all.n; i++) {
     const Entity e = b->scope.all.at[i];
-    int moves = e.kind == ENT_COORD || (e.kind == ENT_STATE && b->m->states.at[e.index].coordinate && !is_momentum(b, &e));
-    if (!moves || e.parts) continue;
+    int moves = e.kind == ENT_COORD || (e.kind == ENT_STATE && b->m->states.at[e.index].coordinate);
+    if (!moves || e.parts || is_momentum(b, &e)) continue;
     int64_t at[2] = {e.lo[0], e.lo[1]};
     do {
       Value v = member_value(k, &e, at);
@@ -241,6 +241,10 @@ static void draw_coordinates(Guess *k) {
 
 /* --- bodies --- */
 
+static int is_coordinate(const ExprGraph *g, const DrawnPoint *p) {
+  return p->n == 3 && expr_op(g, p->at[0]) == EX_SYM;
+}
+
 /* Rotations as boxes with axes, the k-th at the k-th vector of space among the coordinates. */
 static void draw_rotations(Guess *k) {
   Builder *b = k->d->b;
@@ -252,7 +256,7 @@ static void draw_rotations(Guess *k) {
       r.at[c] = expr_symbol(b->g, b->m->coords.at[b->rotations.at[i] + c].q)->node;
       s.turn[c] = drawn_value(k->d, r.at[c], DIM_NONE);
     }
-    while (next < k->points.n && (k->points.at[next].n != 3 || expr_op(b->g, k->points.at[next].at[0]) != EX_SYM)) next++;
+    while (next < k->points.n && !is_coordinate(b->g, &k->points.at[next])) next++;
     if (next < k->points.n) {
       place_of(k, k->points.at[next].at, 3, s.a);
       s.text = k->points.at[next].text;

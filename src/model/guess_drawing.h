@@ -13,6 +13,7 @@ typedef struct {
 typedef struct {
   Drawing *d;
   VEC(DrawnPoint) points;
+  VEC(DrawnPoint) pivots; /* that arms hang from, and move */
   ExprMap stretched; /* terms of the squares of the potential */
 } Guess;
 

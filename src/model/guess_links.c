@@ -71,6 +71,28 @@ static int is_stretched(Guess *k, Expr length) {
   return found;
 }
 
+static void note_pivot(Guess *k, const Expr *at, uint32_t n) {
+  DrawnPoint pivot = {.n = n};
+  int moves = 0;
+  for (uint32_t c = 0; c < n; c++) moves |= changes(k->d->b->g, pivot.at[c] = at[c]);
+  if (moves) vec_push(k->d->b->arena, &k->pivots, pivot);
+}
+
+/* Pivots that keep their distance are on one beam. */
+static void link_pivots(Guess *k) {
+  ExprGraph *g = k->d->b->g;
+  for (uint32_t i = 1; i < k->pivots.n; i++) {
+    const DrawnPoint *a = &k->pivots.at[i - 1], *b = &k->pivots.at[i];
+    int apart = 0, rigid = a->n == b->n;
+    for (uint32_t c = 0; c < a->n && rigid; c++) {
+      Expr d = expr_sub(g, b->at[c], a->at[c]);
+      apart |= !expr_is_zero(g, d);
+      rigid = !changes(g, d);
+    }
+    if (rigid && apart) add_link(k, SHAPE_ROD, "support", a->at, b->at, a->n);
+  }
+}
+
 /* Links from the rest over each arm to the point. */
 static void link_arms(Guess *k, const DrawnPoint *p, Arms *a) {
   ExprGraph *g = k->d->b->g;
@@ -82,6 +104,7 @@ static void link_arms(Guess *k, const DrawnPoint *p, Arms *a) {
     if (parts < 2) memset(a->arm[j], 0, sizeof a->arm[j]);
   }
   memcpy(from, a->rest, sizeof from);
+  note_pivot(k, from, p->n);
   for (uint32_t j = 0; j < a->n; j++) {
     if (!a->arm[j][0] && !a->arm[j][1]) continue;
     int last = 1;
@@ -101,6 +124,7 @@ void guess_arms(Guess *k) {
     for (uint32_t c = 0; c < p->n; c++) split_terms(g, p->at[c], c, &a);
     if (a.n) link_arms(k, p, &a);
   }
+  link_pivots(k);
 }
 
 /* --- distances --- */
@@ -203,19 +227,21 @@ static void link_line(Guess *k, Expr base) {
   add_link(k, SHAPE_SPRING, "spring", n == 2 ? end[0]->at : NULL, end[n - 1]->at, 2);
 }
 
-/* Calls fn for the base of each square in the potential, or in L, that has no velocity. */
+/* Calls fn for the base of each square in the potential, or in L, in products without velocities. */
 static void each_square(Guess *k, void (*fn)(Guess *k, Expr base)) {
   Builder *b = k->d->b;
   ExprGraph *g = b->g;
   Expr root = b->m->potential ? b->m->potential : b->m->lagrangian;
   ExprList all = expr_topo(g, &root, 1);
-  for (uint32_t i = 0; i < all.n; i++)
-    for (uint32_t j = 0; expr_op(g, all.at[i]) == EX_PROD && j < expr_pairs(g, all.at[i], EX_PROD); j++) {
+  for (uint32_t i = 0; i < all.n; i++) {
+    Expr e = all.at[i];
+    if (expr_op(g, e) != EX_PROD || (expr_kinds(g, e) & (1u << SYM_VEL | 1u << SYM_RATE))) continue;
+    for (uint32_t j = 0; j < expr_pairs(g, e, EX_PROD); j++) {
       Num power;
-      Expr base = expr_pair(g, all.at[i], EX_PROD, j, &power);
-      if (num_equal(power, num_int(2)) && changes(g, base) && !(expr_kinds(g, base) & 1u << SYM_VEL))
-        fn(k, body_of(g, base));
+      Expr base = expr_pair(g, e, EX_PROD, j, &power);
+      if (num_equal(power, num_int(2)) && changes(g, base)) fn(k, body_of(g, base));
     }
+  }
 }
 
 static void note_square(Guess *k, Expr base) {

@@ -255,10 +255,11 @@ static Expr slip_of(Builder *b, const AstStmt *st, Name effect, const Entity *of
   if (!v.e || !check_slip(b, st, id, &v, of ? &b->m->constraints.at[of->index] : NULL)) return 0;
   if (!of) *dim = v.dim;
   if (!v.n) return v.e;
-  diag_error(b->diags, ast_expr(b->ast, id)->span,
-             "the slip of a guide is a number: the velocity along it" HELP
-             "on a surface in space it has two components: write two contacts, `z >= 0` and `-z >= 0`, with `slip = "
-             "(x', y')`, and take moreau");
+  diag_error(
+      b->diags, ast_expr(b->ast, id)->span,
+      "the slip of a guide is a number: the velocity along it" HELP
+      "on a surface in space it has two components: write two contacts, `z >= 0` and `-z >= 0`, with `slip = (x', "
+      "y')`, and take moreau");
   return 0;
 }
 

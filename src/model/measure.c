@@ -81,9 +81,10 @@ static const Part *argument(const MeasureReader *r, Name name) {
   return NULL;
 }
 
-/* "end", "lyapunov" where the model has no such name; NULL: another node. */
+/* "end", "lyapunov", "megno" where the model has no such name; NULL: another node. */
 static const char *word_of_run(MeasureReader *r, const AstExpr *x) {
-  return x->kind == AST_NAME && has_word("end lyapunov", x->name) && !entity_named(r->b, x->name) ? x->name : NULL;
+  if (x->kind != AST_NAME || !has_word("end lyapunov megno", x->name)) return NULL;
+  return entity_named(r->b, x->name) ? NULL : x->name;
 }
 
 /* Whether the node by itself is a value of the whole run, or an argument of the frame. */
@@ -477,6 +478,7 @@ static Part read_node(MeasureReader *r, AstId id) {
   const Part *given = x.kind == AST_NAME ? argument(r, x.name) : NULL;
   if (given) return *given;
   if (word && *word == 'e') return part_of("end()", seconds(b, "s"), 1);
+  if (word && *word == 'm') return part_of("megno()", unit_si(DIM_NONE, ""), 1);
   if (word) return part_of("lyapunov()", unit_si(dim_div(b->dims, DIM_NONE, seconds(b, "").dim), "1/s"), 1);
   if (x.kind == AST_CALL) return call(r, id);
   if (x.kind == AST_AT) return at_time(r, x.a, x.b);

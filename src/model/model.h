@@ -6,7 +6,7 @@
 #pragma once
 
 #include "base/spline.h"
-#include "model/drawing.def"
+#include "model/shapes.def"
 #include "model/units.h"
 #include "sym/expr.h"
 #include "syntax/ast.h"
@@ -345,6 +345,7 @@ typedef struct {
   VEC(Output) observes;
   Scene scene;
   VEC(FoundUnit) found;    /* inferred units of names declared without one */
+  VEC(AstId) sums; /* sums over pairs that are not written out: the outer `sum` of each */
   ExprMap written; /* nodes that may jump (comparisons, sign, tan, atan2) -> AstId where the text writes them */
   Measures asked_measures; /* of the command line */
   int measured_outputs;    /* 1: they added outputs to the scene's */
@@ -412,6 +413,8 @@ typedef struct {
 } Define;
 
 /* Arguments of model_build: scene, effects, and definitions from the command line. */
+enum { SUMS_FROM = 2000 };
+
 typedef struct {
   const char *scene; /* NULL: the first */
   Name also;         /* an effect to turn on besides the scene's, with its required effects; or NULL */
@@ -423,7 +426,7 @@ typedef struct {
   uint32_t ndefines;
   const CommandOutput *asked; /* outputs besides the scene's own */
   uint32_t nextra_outputs;
-  int drawing;     /* Scene.shapes are wanted; otherwise `draw` statements are only checked */
+  enum { DRAWING_NONE, DRAWING_WANTED, DRAWING_CHECKED } drawing; /* of Scene.shapes */
   const CommandOutput *measures; /* measures besides the scene's own */
   uint32_t nmeasures;
   const CommandInput *given; /* values that override the scene's */
@@ -437,6 +440,7 @@ typedef struct {
   /* the point transformation (Canonical.is_point) in whose new coordinates the model is built; or NULL */
   Name coordinates;
   int domains;     /* Model.domain is wanted; without a scene it always is */
+  uint32_t sums_from; /* sums over at least so many pairs are not written out; 0: the usual number */
   int unfixed;     /* set by callers that ignore the command line's --fix */
 } ModelChoice;
 

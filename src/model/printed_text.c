@@ -157,11 +157,19 @@ static int differs(ExprGraph *g, EvalTape *tape, uint32_t seed, long double *sym
   return isfinite(v[0]) ? !(fabsl(v[0] - v[1]) <= rounding * (fabsl(v[0]) + fabsl(v[1]) + 1e-6L)) : isfinite(v[1]) != 0;
 }
 
+static int has_sums(ExprGraph *g, Expr e) {
+  ExprList l = expr_topo_to_sums(g, &e, 1);
+  for (uint32_t k = 0; k < l.n; k++)
+    if (expr_op(g, l.at[k]) == EX_CELL) return 1;
+  return 0;
+}
+
 int printed_says(const Model *m, const char *text, Expr e) {
   enum { STATES = 5, MOST = 1 };                 /* one state may lie beside a pole or a branch */
   /* of models whose texts people read; the bicycle has 22,500 nodes */
   enum { SYMBOLS_MOST = 2000, NODES_MOST = 50000 };
   if (expr_symbol_count(m->g) > SYMBOLS_MOST || expr_count(m->g) > NODES_MOST) return 1;
+  if (has_sums(m->g, e)) return 1; /* they are not read again */
   Expr both[2] = {e, printed_value(m, text, e, NULL, NULL)};
   if (!both[1] || both[0] == both[1]) return both[1] != 0;
   EvalTape *tape = eval_tape(m->g, both, 2);

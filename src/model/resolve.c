@@ -267,6 +267,8 @@ static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
   ev->first = ev->pc = root->first;
   ev->root = id;
   ev->index.n = ev->loops.n = ev->terms.n = 0;
+  ev->sums = NULL;
+  ev->written_out = 0;
   mark(ev);
   return ev;
 }

@@ -248,7 +248,7 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
   else if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else if (b->is_measuring)
     diag_help(b->diags, "of a run there are max, min, mean, rms, drift, period, hit, count and, without parentheses, "
-              "end and lyapunov");
+              "end, lyapunov and megno");
   else diag_help(b->diags, "`lagc help functions` lists them; declare your own: `function %s(x) = ...`", x->name);
   return FAILED;
 }

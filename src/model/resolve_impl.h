@@ -36,6 +36,8 @@ struct Eval {
   AstId *guarded;      /* [i] the sum, product or `if` whose body or branch begins at node first + i, or 0 */
   VEC(Loop) loops;
   VEC(Value) terms;    /* terms of all loops in progress */
+  struct Quantified *sums; /* the sum over pairs in progress that is not written out; NULL: none */
+  AstId written_out;       /* the last sum over pairs that has no such form */
   uint32_t rounds;     /* body evaluations so far, all loops together */
   VEC(Operand) operands;
 };
@@ -141,6 +143,14 @@ Value multiplier_value(Eval *ev, const AstExpr *x);
 
 /* Converts the value of an index expression to an integer; 0, reported, if it is none. */
 int whole_number(Builder *b, const Value *v, AstId id, int64_t *out);
+
+/* quantified_sum.c: starts the sum `id` over i in lo .. hi, or the sum inside it, as one over representative pairs; 0:
+ * it has no such form. quantified_next takes the value v of a body: 1: evaluate it again; 0: *v is that of the sum. */
+int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi);
+int quantified_next(Eval *ev, Value *v);
+
+/* Value of a sum or product x from its terms. */
+Value terms_value(Eval *ev, const Value *term, uint32_t n, const AstExpr *x);
 
 /* `sum` and `product`: loop_begin evaluates the range and starts a loop (0: empty or wrong range, the value is set);
  * loop_next appends the body's value as a term (1: next index; 0: end, the value is set). */

@@ -323,6 +323,7 @@ int loop_begin(Eval *ev, AstId id) {
     return 0;
   }
   if (!range_fits(b, lo, hi, x->span)) return 0;
+  if (quantified_begin(ev, id, lo, hi)) return 1;
   vec_push(b->arena, &ev->loops, ((Loop){id, lo, hi, ev->terms.n}));
   vec_push(b->arena, &ev->index, ((IndexVar){x->name, lo}));
   return 1;
@@ -363,10 +364,8 @@ static int type_of_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr 
   return 1;
 }
 
-static Value loop_value(Eval *ev, const Loop *l, const AstExpr *x) {
+Value terms_value(Eval *ev, const Value *term, uint32_t n, const AstExpr *x) {
   Builder *b = ev->b;
-  const Value *term = ev->terms.at + l->base;
-  uint32_t n = ev->terms.n - l->base;
   Value r;
   if (!type_of_terms(ev, term, n, x, &r)) return FAILED;
   for (uint32_t i = 0; i < n; i++) r.domain = domain_and(b, r.domain, term[i].domain);
@@ -387,6 +386,7 @@ int loop_next(Eval *ev) {
     report_condition(b, x->c);
     v = FAILED;
   }
+  if (ev->sums && quantified_next(ev, &v)) return 1;
   if (v.e) vec_push(b->arena, &ev->terms, v);
   if (v.e && ++ev->rounds > RANGE_MAX) {
     diag_error(b->diags, x->span, "sums inside sums run through more than %d terms here", RANGE_MAX);
@@ -397,7 +397,7 @@ int loop_next(Eval *ev) {
     ev->index.at[ev->index.n - 1].at = ++l->at;
     return 1;
   }
-  *value_of(ev, l->construct) = v.e ? loop_value(ev, l, x) : FAILED;
+  *value_of(ev, l->construct) = v.e ? terms_value(ev, ev->terms.at + l->base, ev->terms.n - l->base, x) : FAILED;
   ev->terms.n = l->base;
   ev->index.n--;
   ev->loops.n--;

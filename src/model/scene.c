@@ -257,7 +257,8 @@ static void scene_statement(Builder *b, const AstStmt *st) {
     case STMT_METHOD: scene_method(b, st); return;
     case STMT_TOLERANCE: set_tolerance(b, st); return;
     case STMT_OUTPUT: set_output(b, st); return;
-    case STMT_EXACT: case STMT_MONITOR: case STMT_MEASURE: case STMT_DRAW: case STMT_LIKE: return; /* see scene_build, scene_chain */
+    case STMT_EXACT: case STMT_MONITOR: case STMT_MEASURE: case STMT_DRAW: case STMT_LIKE:
+      return; /* see scene_build, scene_chain */
     default: diag_error(b->diags, st->span, "this does not belong in a scene"); return;
   }
 }
@@ -414,5 +415,5 @@ void scene_build(Builder *b, const ModelChoice *choice) {
     before = errors;
   }
   for (uint32_t i = 0; i < choice->nmeasures; i++) ask_measure(b, &choice->measures[i]);
-  build_drawing(b, choice->drawing);
+  if (choice->drawing) build_drawing(b, choice->drawing == DRAWING_WANTED);
 }

@@ -30,7 +30,7 @@ int check_run(const Check *c, const Prog *p, Real *const *out) {
   in[ARR_U] = c->signal;
   in[ARR_A] = c->a;
   in[ARR_G] = c->gap;
-  return prog_eval(p, in, out) == 0;
+  return (c->samples ? prog_eval_sample : prog_eval)(p, in, out) == 0;
 }
 
 /* --- states --- */
@@ -235,8 +235,8 @@ void check_prepare(Check *c) {
   c->zd_error = alloc_reals(c, nz);
   c->gap = alloc_reals(c, m->constraints.n);
   c->n = n;
-  c->dynamics = text_dynamics(m, c->arena);
-  c->outputs = text_outputs(m, c->e->outputs, c->e->noutputs, c->arena);
+  c->dynamics = text_dynamics(m, c->samples, c->arena);
+  c->outputs = text_outputs(m, c->samples, c->e->outputs, c->e->noutputs, c->arena);
   c->at = ARENA_ARRAY(c->arena, Jet, c->dynamics->tape->slots + 1);
   c->at_outputs = ARENA_ARRAY(c->arena, Jet, c->outputs->tape->slots + 1);
   c->multipliers = !c->e->constraints.n ? NULL : c->u->multipliers ? c->u->multipliers : lower_multipliers(c->e);

@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 
+#include "base/loop_nest.h"
 #include "self_check/direct_eval_impl.h"
 
 static TextValue number_of(DirectEval *t, Num n) { return (TextValue){.at = {tape_number(t->tape, n)}, .bare = 1}; }
@@ -95,6 +96,20 @@ static void finish(DirectEval *t, Frame *f, Frame *caller) {
 
 /* --- sums and products --- */
 
+/* Whether the model does not write the sum out, nor the one around it. */
+static int is_quantified(const DirectEval *t, const Frame *f, AstId id) {
+  for (uint32_t k = 0; k < t->m->sums.n; k++)
+    if (t->m->sums.at[k] == id) return 1;
+  return f->loops.n && f->loops.at[f->loops.n - 1].samples;
+}
+
+/* Next index of the loop; past its end: none. */
+static int64_t next_index(const TextLoop *l) {
+  int64_t at = l->at + 1;
+  while (l->samples && at <= l->hi && !loop_samples(at - l->lo, l->hi - l->lo + 1)) at++;
+  return at;
+}
+
 /* Starts a loop; 0: empty or unknown range, the value is set. */
 static int loop_enter(DirectEval *t, Frame *f, AstId id) {
   const AstExpr *x = ast_expr(t->b->ast, id);
@@ -106,7 +121,8 @@ static int loop_enter(DirectEval *t, Frame *f, AstId id) {
   }
   *r = number_of(t, num_int(x->kind == AST_PRODUCT));
   if (lo > hi) return 0;
-  vec_push(t->arena, &f->loops, ((TextLoop){.construct = id, .at = lo, .hi = hi}));
+  int samples = t->samples && is_quantified(t, f, id);
+  vec_push(t->arena, &f->loops, ((TextLoop){.construct = id, .lo = lo, .at = lo, .hi = hi, .samples = samples}));
   vec_push(t->arena, &f->index, ((IndexVar){x->name, lo}));
   return 1;
 }
@@ -117,8 +133,9 @@ static int loop_again(DirectEval *t, Frame *f) {
   const AstExpr *x = ast_expr(t->b->ast, l->construct);
   const TextValue *term = &f->value[x->c - f->first];
   l->sum = l->terms++ == 0 ? *term : text_pair(t, x->kind == AST_SUM ? AST_ADD : AST_MUL, &l->sum, term);
-  if (l->at < l->hi && l->sum.at[0]) {
-    f->index.at[f->index.n - 1].at = ++l->at;
+  l->at = next_index(l);
+  if (l->at <= l->hi && l->sum.at[0]) {
+    f->index.at[f->index.n - 1].at = l->at;
     return 1;
   }
   f->value[l->construct - f->first] = l->sum;
@@ -196,10 +213,10 @@ int text_range(DirectEval *t, AstId lo, AstId hi, Name effect, const IndexVars *
   return whole(t, &a, from) && whole(t, &b, to);
 }
 
-DirectEval *text_new(const Model *m, Arena *a) {
+DirectEval *text_new(const Model *m, int samples, Arena *a) {
   DirectEval *t = ARENA_NEW(a, DirectEval);
   const Declarations *b = m->declared;
-  *t = (DirectEval){.m = m, .b = b, .arena = a, .tape = tape_new(a)};
+  *t = (DirectEval){.m = m, .b = b, .arena = a, .tape = tape_new(a), .samples = samples};
   t->lets = ARENA_ARRAY(a, TextValue, b->lets.n + 1);
   t->observes = ARENA_ARRAY(a, TextValue, b->observes.n + 1);
   t->constants = ARENA_ARRAY(a, TextValue, b->constants.n + 1);

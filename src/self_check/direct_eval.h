@@ -29,11 +29,13 @@ struct DirectEval {
   Ref lagrangian, kinetic, potential;
   /* indices for a family named without any, in outputs; NULL: such a family has no value */
   const int64_t *member;
+  int samples;                                    /* as in text_new */
   int needs_energies;                             /* an energy was needed before it was set */
   VEC(struct Frame *) idle;             /* free list of frames */
 };
 
-DirectEval *text_new(const Model *m, Arena *a);
+/* samples: sums over pairs that are not written out (Model.sums) have a sample of their terms. */
+DirectEval *text_new(const Model *m, int samples, Arena *a);
 
 /* Evaluates an expression inside `effect` (NULL: the model), with the enclosing indices `around`. */
 TextValue text_value(DirectEval *t, AstId id, Name effect, const IndexVars *around);

@@ -6,7 +6,8 @@
 /* A `sum` or `product` in progress: its body is evaluated once per index value. */
 typedef struct {
   AstId construct;
-  int64_t at, hi;
+  int64_t lo, at, hi;
+  int samples; /* only some of the terms: loop_samples */
   TextValue sum; /* sum or product of the first `terms` terms */
   uint64_t terms;
 } TextLoop;

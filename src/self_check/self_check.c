@@ -92,6 +92,7 @@ static const char *outputs_left_out(const Check *c) {
 
 static int check_states(Check *c, const void *data) {
   (void)data;
+  c->samples = !expr_writes_sums_out(c->e->g);
   check_prepare(c);
   uint32_t length = c->dynamics->tape->ins.n, wanted = length > LONG_TAPE                           ? 1
                                                        : length > SHORT_TAPE || c->m->constraints.n ? STATES_FEW

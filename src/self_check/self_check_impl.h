@@ -34,6 +34,7 @@ typedef struct {
   /* Change of each acceleration, rate and multiplier under rounding of the state: large where M is almost singular. */
   Real *a_error, *zd_error, *lambda_error;
   uint32_t n, scene;
+  int samples; /* quantified sums have a sample of their terms, in the text and in programs alike */
   int far;
   Real reach; /* relative distance of near states from the start: 1, reduced when projection on the constraints fails */
   BoundedSum energy;     /* energy of the text at this state, if has_energy */

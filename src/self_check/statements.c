@@ -232,11 +232,11 @@ static void read_dynamics(Walk *w, const AstStmt *st, Name effect) {
   }
 }
 
-TextDynamics *text_dynamics(const Model *m, Arena *a) {
+TextDynamics *text_dynamics(const Model *m, int samples, Arena *a) {
   TextDynamics *d = ARENA_NEW(a, TextDynamics);
   d->flows = ARENA_ARRAY(a, Ref, m->states.n + 1);
   d->constraints = ARENA_ARRAY(a, Ref, m->constraints.n + 1);
-  Walk w = {.text = text_new(m, a), .dynamics = d};
+  Walk w = {.text = text_new(m, samples, a), .dynamics = d};
   walk(&w, read_dynamics);
   walk(&w, read_guide); /* behind all others, as in model/guide.c */
   d->tape = w.text->tape;
@@ -339,13 +339,13 @@ static void give_energies(Walk *w) {
   if (w->why) t->lagrangian = t->kinetic = t->potential = 0;
 }
 
-TextOutputs *text_outputs(const Model *m, const Output *outputs, uint32_t noutputs, Arena *a) {
+TextOutputs *text_outputs(const Model *m, int samples, const Output *outputs, uint32_t noutputs, Arena *a) {
   TextOutputs *o = ARENA_NEW(a, TextOutputs);
   o->events = ARENA_ARRAY(a, Ref, m->events.n + 1);
   o->outputs = ARENA_ARRAY(a, Ref, noutputs + 1);
   o->is_energy = ARENA_ARRAY(a, unsigned char, noutputs + 1);
   o->signals = ARENA_ARRAY(a, Ref, m->inputs.n + 1);
-  Walk w = {.text = text_new(m, a), .outputs = o};
+  Walk w = {.text = text_new(m, samples, a), .outputs = o};
   walk(&w, read_output_statement);
   for (uint32_t i = 0; i < m->inputs.n; i++)
     o->signals[i] = m->inputs.at[i].order ? rate_of(&w, o->signals[i - 1]) : signal_value(&w, &m->inputs.at[i]);

@@ -37,5 +37,5 @@ typedef struct {
   Ref *signals; /* [inputs of the model] their formulas */
 } TextOutputs;
 
-TextDynamics *text_dynamics(const Model *m, Arena *a);
-TextOutputs *text_outputs(const Model *m, const Output *outputs, uint32_t noutputs, Arena *a);
+TextDynamics *text_dynamics(const Model *m, int samples, Arena *a);
+TextOutputs *text_outputs(const Model *m, int samples, const Output *outputs, uint32_t noutputs, Arena *a);

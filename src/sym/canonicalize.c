@@ -253,7 +253,7 @@ void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e) {
       }
       push_factor(g, r, base, e);
       return;
-    case EX_SYM: case EX_DEF: case EX_POW: EX_FUNCTION_CASES
+    case EX_SYM: case EX_DEF: case EX_NEST: case EX_CELL: case EX_POW: EX_FUNCTION_CASES
     case EX_SIGN: case EX_FLOOR: case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT:
     case EX_LE: case EX_EQ: case EX_NOT: case EX_AND: case EX_OR: case EX_SELECT: case EX_COUNT: break;
   }
@@ -440,7 +440,8 @@ static Expr fold_fn2(ExprGraph *g, ExprOp op, Expr a, Expr b) {
       if (a == g->zero) return expr_fn(g, EX_ABS, b);
       return b == g->zero ? expr_fn(g, EX_ABS, a) : 0;
     case EX_ATAN2: return a == g->zero && expr_sign(g, b) == SIGN_POSITIVE ? g->zero : 0;
-    case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_POW: EX_FUNCTION_CASES
+    case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_NEST: case EX_CELL: case EX_POW:
+    EX_FUNCTION_CASES
     case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_NOT:
     case EX_SELECT: case EX_COUNT: break;
   }
@@ -489,6 +490,7 @@ Expr expr_rebuild(ExprGraph *g, Expr e, const Expr *args) {
       }
       return finish_product(g, &r);
     }
+    case EX_NEST: case EX_CELL: return expr_make(g, expr_op(g, e), args, n);
     case EX_POW: return expr_pow(g, args[0], args[1]);
     case EX_SELECT: return expr_select(g, args[0], args[1], args[2]);
     EX_FUNCTION_CASES

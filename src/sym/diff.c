@@ -6,6 +6,7 @@
 
 #include "base/strbuf.h"
 #include "sym/expr_impl.h"
+#include "sym/sum_nest.h"
 
 /* The partial derivative of node e with respect to its argument i (pairs: the i-th term or base). */
 static Expr partial_pair(ExprGraph *g, Expr e, uint32_t i) {
@@ -37,8 +38,8 @@ static Expr partial_unary(ExprGraph *g, Expr f, Expr x) {
     case EX_DEF: return g->one;
     case EX_ABS: return expr_fn(g, EX_SIGN, x);
     case EX_SIGN: case EX_FLOOR: case EX_NOT: return g->zero;
-    case EX_NUM: case EX_SYM: case EX_SUM: case EX_PROD: case EX_POW: case EX_ATAN2: case EX_HYPOT:
-    case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ: case EX_AND: case EX_OR:
+    case EX_NUM: case EX_SYM: case EX_SUM: case EX_PROD: case EX_NEST: case EX_CELL: case EX_POW: case EX_ATAN2:
+    case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ: case EX_AND: case EX_OR:
     case EX_SELECT: case EX_COUNT: break;
   }
   return g->zero;
@@ -62,10 +63,66 @@ static Expr partial_atan2(ExprGraph *g, Expr y, Expr x, uint32_t i) {
   return expr_div(g, top, rr);
 }
 
+/* --- quantified sums --- */
+
+/* Whether the nest of the cell has one sum, whose derivatives are a nest again. */
+static int is_only_cell(const ExprGraph *g, Expr cell) {
+  const SumNest *s = expr_sum_nest(g, expr_cell_nest(g, cell));
+  return s->nshares == 1 && !s->shares->at.by_row && !s->shares->at.by_turn;
+}
+
+/* Makes the nest of the derivatives of the only sum of nest `number`, one cell for each argument. */
+static void make_gradient(ExprGraph *g, uint32_t number) {
+  SumNest s = g->nests.at[number - 1];
+  if (s.gradient) return;
+  SymId *syms = ARENA_ARRAY(g->arena, SymId, s.nreads + 1);
+  Expr *d = ARENA_ARRAY(g->arena, Expr, s.nreads + 1);
+  NestShare *shares = ARENA_ARRAY(g->arena, NestShare, s.nreads + 1);
+  for (uint32_t k = 0; k < s.nreads; k++) syms[k] = s.reads[k].symbol;
+  expr_gradient(g, s.shares->value, syms, s.nreads, d);
+  s.shares = shares;
+  s.nshares = 0;
+  for (uint32_t k = 0; k < s.nreads; k++)
+    if (d[k] != g->zero) shares[s.nshares++] = (NestShare){d[k], s.reads[k].at};
+  vec_push(g->arena, &g->nests, s);
+  g->nests.at[number - 1].gradient = g->nests.n;
+}
+
+/* Makes the derivatives of sums below the roots; cells of nests with several sums are written out. */
+static void prepare_sums(ExprGraph *g, const Expr *roots, uint32_t n, Expr *out) {
+  VEC(Expr) several = {0};
+  ExprList l = g->nests.n ? expr_topo(g, roots, n) : (ExprList){0};
+  for (uint32_t k = 0; k < l.n; k++) {
+    if (expr_op(g, l.at[k]) != EX_CELL) continue;
+    if (is_only_cell(g, l.at[k])) make_gradient(g, expr_nest_number(g, expr_cell_nest(g, l.at[k])));
+    else vec_push(g->arena, &several, l.at[k]);
+  }
+  g->writes_sums_out |= several.n > 0;
+  expr_write_out(g, roots, n, several.at, several.n, out);
+}
+
+/* Whether a share may add to cell k: with steps, if they meet it. */
+static int may_add(const SumNest *s, int64_t k) {
+  for (uint32_t n = 0; n < s->nshares; n++) {
+    const Subscript *at = &s->shares[n].at;
+    int64_t gap = k - at->first, step = subscript_step(at);
+    if (step ? gap % step == 0 : gap == 0) return 1;
+  }
+  return 0;
+}
+
+/* Partial derivative of a cell, the only one of its nest, by argument i of the nest. */
+static Expr cell_partial(ExprGraph *g, Expr cell, uint32_t i) {
+  Expr nest = expr_cell_nest(g, cell);
+  uint32_t gradient = expr_sum_nest(g, nest)->gradient;
+  return may_add(&g->nests.at[gradient - 1], i) ? expr_twin_cell(g, nest, gradient, i) : g->zero;
+}
+
 static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
   Expr a = expr_arg(g, e, 0), b = expr_arg(g, e, 1);
   switch (expr_op(g, e)) {
     case EX_POW: return partial_pow(g, e, a, b, i);
+    case EX_CELL: return cell_partial(g, e, i);
     case EX_ATAN2: return partial_atan2(g, a, b, i);
     case EX_HYPOT: return expr_div(g, i == 0 ? a : b, e);
     case EX_NUM:
@@ -75,6 +132,7 @@ static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
     case EX_SYM:
     case EX_DEF:
     case EX_SUM:
+    case EX_NEST:
     case EX_PROD: EX_FUNCTION_CASES
     case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_LT: case EX_LE:
     case EX_EQ: case EX_NOT: case EX_AND: case EX_OR: case EX_COUNT: break;
@@ -90,12 +148,15 @@ static int is_log_of_size(ExprGraph *g, Expr e) {
 /* Number of arguments of e that are nodes to differentiate; coefficients and exponents do not count. */
 static uint32_t inputs(ExprGraph *g, Expr e) {
   ExprOp op = expr_op(g, e);
+  if (op == EX_NEST) return 0; /* its cells differentiate by its arguments */
+  if (op == EX_CELL) return expr_sum_args(g, expr_cell_nest(g, e));
   return op == EX_SUM || op == EX_PROD ? expr_pairs(g, e, op) : expr_nargs(g, e);
 }
 
 static Expr input(ExprGraph *g, Expr e, uint32_t i) {
   ExprOp op = expr_op(g, e);
   if (is_log_of_size(g, e)) return expr_arg(g, expr_arg(g, e, 0), 0);
+  if (op == EX_CELL) return expr_sum_arg(g, expr_cell_nest(g, e), i);
   return expr_arg(g, e, op == EX_SUM || op == EX_PROD ? 2 * i : i);
 }
 
@@ -185,8 +246,10 @@ typedef struct {
   const Expr *at;
 } Seeds;
 
-static void sweep_forward(ExprGraph *g, const Expr *roots, uint32_t n, Seeds seed, const char *suffix, ExprMap *known,
+static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, const char *suffix, ExprMap *known,
                           Expr *out) {
+  Expr *roots = ARENA_ARRAY(g->arena, Expr, n + 1);
+  prepare_sums(g, of, n, roots);
   ExprList l = expr_topo_until(g, roots, n, known);
   ExprMap *dot = &g->work; /* node -> its tangent; absent: zero */
   expr_map_clear(dot);
@@ -289,6 +352,7 @@ static int is_wanted(const Symbol *s, const void *data) {
 
 /* Reverse sweep: adjoints of all nodes of e that contain a wanted symbol; *l: the nodes of e. */
 static Adjoints sweep(ExprGraph *g, Expr e, const Wanted *w, ExprList *l) {
+  prepare_sums(g, &e, 1, &e);
   *l = expr_topo(g, &e, 1);
   ExprMap *live = &g->live;
   expr_mark_containing(g, *l, is_wanted, w, live);

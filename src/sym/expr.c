@@ -31,6 +31,8 @@ ExprGraph *expr_graph(Arena *a, Interner *names) {
 
 Arena *expr_arena(const ExprGraph *g) { return g->arena; }
 uint32_t expr_count(const ExprGraph *g) { return g->nodes.n - 1; }
+int expr_writes_sums_out(const ExprGraph *g) { return g->writes_sums_out; }
+void expr_note_sums_out(ExprGraph *g) { g->writes_sums_out = 1; }
 
 /* --- hash-consing --- */
 
@@ -249,6 +251,8 @@ ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32
       return expr_sign(g, args[1]) == expr_sign(g, args[2]) ? expr_sign(g, args[1]) : SIGN_UNKNOWN;
     case EX_NUM:
     case EX_SYM:
+    case EX_NEST:
+    case EX_CELL:
     case EX_FLOOR:
     case EX_ATAN2:
     case EX_MIN:

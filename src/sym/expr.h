@@ -21,6 +21,7 @@
 #pragma once
 
 #include "base/intern.h"
+#include "base/loop_nest.h"
 #include "base/num.h"
 #include "base/vec.h"
 #include "numeric/functions.def"
@@ -71,9 +72,39 @@ typedef struct {
 
 typedef struct ExprGraph ExprGraph;
 
+/* --- quantified sums: sum_nest.h --- */
+/* A symbol of the body, and the argument that it stands for in each turn. */
+typedef struct {
+  SymId symbol;
+  Subscript at;
+  Name stem, tail;    /* of r[i].x: "r" and ".x"; NULL: a name without index */
+  uint32_t nindices;
+  Subscript index[2]; /* values of the indices */
+} NestRead;
+
+/* A value of the body, and the sum to which each turn adds it. */
+typedef struct {
+  Expr value;
+  Subscript at;
+} NestShare;
+
+typedef struct {
+  LoopRange range;
+  const NestRead *reads;
+  const NestShare *shares;
+  uint32_t nreads, nshares, nargs;
+  Name i, j;         /* indices in the text: i is i0 in row 0, j is j0 in turn 0 */
+  int64_t i0, j0;
+  int64_t row, turn; /* the turn whose arguments are the body's symbols themselves */
+  uint32_t gradient; /* nest of the partial derivatives; 0: not made yet */
+} SumNest;
+
 ExprGraph *expr_graph(Arena *a, Interner *names);
 Arena *expr_arena(const ExprGraph *g);
 uint32_t expr_count(const ExprGraph *g); /* ids are 1 .. count */
+/* Whether quantified sums have been written out, but for proofs; expr_note_sums_out: now they are. */
+int expr_writes_sums_out(const ExprGraph *g);
+void expr_note_sums_out(ExprGraph *g);
 
 /* --- leaves --- */
 Expr expr_num(ExprGraph *g, Num n);
@@ -139,7 +170,10 @@ typedef struct {
 /* All nodes reachable from the roots, ascending: arguments before their nodes. Zero roots are skipped. */
 ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n);
 
-/* expr_topo that stops at definitions: their bodies are left out. */
+/* expr_topo without the arguments of quantified sums. */
+ExprList expr_topo_to_sums(ExprGraph *g, const Expr *roots, uint32_t n);
+
+/* expr_topo_to_sums that stops at definitions: their bodies are left out. */
 ExprList expr_topo_shallow(ExprGraph *g, const Expr *roots, uint32_t n);
 
 /* Whether e contains a symbol for which want() is true; bodies of definitions count. */

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "sym/sum_nest.h"
+
 static long double power(long double base, Num e) {
   if (!num_is_exact(e)) return powl(base, num_value(e));
   if (e.den == 1) {
@@ -18,6 +20,15 @@ static long double power(long double base, Num e) {
 
 static long double number(Num n) { return num_is_exact(n) ? (long double)n.num / (long double)n.den : n.approx; }
 
+/* The sums of a nest: its body as a tape, where its arguments stand among the steps, and its sums so far. */
+typedef struct {
+  const SumNest *sums;
+  EvalTape *body;
+  const SymId *outside; /* [noutside] symbols of the body that are no arguments: t, pi */
+  uint32_t noutside, ncells;
+  long double *symbols, *share, *cell;
+} NestStep;
+
 /* TapeStep of a tape, for one node: its arguments are t->arg[first ..], indices of earlier steps; coefficients or
  * exponents of a sum or product are t->number[first ..]. */
 typedef struct {
@@ -25,6 +36,8 @@ typedef struct {
   uint32_t first, n;
   SymId symbol;
   long double constant;
+  NestStep *nest; /* of a NEST; of a CELL that of its nest, */
+  uint32_t cell;  /* and its number */
 } TapeStep;
 
 struct EvalTape {
@@ -48,6 +61,22 @@ static long double pairs_value(const EvalTape *t, const TapeStep *o) {
   return r;
 }
 
+/* Runs all turns; the arguments of the nest have their values. outside: of its other symbols. */
+static void run_nest(const EvalTape *t, const TapeStep *o, const long double *outside) {
+  NestStep *n = o->nest;
+  const SumNest *s = n->sums;
+  const uint32_t *arg = t->arg.at + o->first + 1; /* behind the nest's number */
+  for (uint32_t k = 0; k < n->noutside; k++) n->symbols[n->outside[k]] = outside[n->outside[k]];
+  for (uint32_t k = 0; k < n->ncells; k++) n->cell[k] = 0;
+  for (int64_t i = 0; i < s->range.rows; i++)
+    for (int64_t j = loop_from(&s->range, i); j < loop_to(&s->range, i); j++) {
+      for (uint32_t k = 0; k < s->nreads; k++)
+        n->symbols[s->reads[k].symbol] = t->value[arg[subscript_at(&s->reads[k].at, i, j)]];
+      eval_run(n->body, n->symbols, n->share);
+      for (uint32_t k = 0; k < s->nshares; k++) n->cell[subscript_at(&s->shares[k].at, i, j)] += n->share[k];
+    }
+}
+
 static long double step_value(const EvalTape *t, const TapeStep *o, const long double *symbols) {
   const uint32_t *arg = t->arg.at + o->first;
   long double x = 0, y = 0;
@@ -60,6 +89,8 @@ static long double step_value(const EvalTape *t, const TapeStep *o, const long d
     case EX_SYM: return symbols[o->symbol];
     case EX_DEF: return x;
     case EX_SUM: case EX_PROD: return pairs_value(t, o);
+    case EX_NEST: run_nest(t, o, symbols); return 0;
+    case EX_CELL: return o->nest->cell[o->cell];
     case EX_POW: return powl(x, y);
 #define VALUE(OP, name, ...) case EX_##OP: return name##l(x);
     FUNCTIONS(VALUE)
@@ -82,6 +113,28 @@ static long double step_value(const EvalTape *t, const TapeStep *o, const long d
   return NAN;
 }
 
+static NestStep *compile_nest(ExprGraph *g, Arena *a, Expr e) {
+  NestStep *n = ARENA_NEW(a, NestStep);
+  const SumNest *s = n->sums = expr_sum_nest(g, e);
+  Expr *values = ARENA_ARRAY(a, Expr, s->nshares + 1);
+  VEC(SymId) outside = {0};
+  for (uint32_t k = 0; k < s->nshares; k++) values[k] = s->shares[k].value;
+  n->body = eval_tape(g, values, s->nshares);
+  n->symbols = ARENA_ARRAY(a, long double, expr_symbol_count(g) + 1);
+  n->share = ARENA_ARRAY(a, long double, s->nshares + 1);
+  n->ncells = s->nargs + 1;
+  n->cell = ARENA_ARRAY(a, long double, n->ncells);
+  for (uint32_t i = 0; i < n->body->n; i++) {
+    if (n->body->step[i].op != EX_SYM) continue;
+    uint32_t k = 0;
+    while (k < s->nreads && s->reads[k].symbol != n->body->step[i].symbol) k++;
+    if (k == s->nreads) vec_push(a, &outside, n->body->step[i].symbol);
+  }
+  n->outside = outside.at;
+  n->noutside = outside.n;
+  return n;
+}
+
 static TapeStep compile_step(EvalTape *t, ExprGraph *g, Arena *a, Expr e, const ExprMap *place) {
   ExprOp op = expr_op(g, e);
   TapeStep o = {.op = op, .first = t->arg.n};
@@ -96,6 +149,11 @@ static TapeStep compile_step(EvalTape *t, ExprGraph *g, Arena *a, Expr e, const 
     vec_push(a, &t->number, k);
   }
   o.n = n;
+  if (op == EX_NEST) o.nest = compile_nest(g, a, e);
+  if (op == EX_CELL) {
+    o.nest = t->step[expr_map_get(place, expr_cell_nest(g, e)) - 1].nest;
+    o.cell = expr_cell_number(g, e);
+  }
   return o;
 }
 
@@ -128,12 +186,20 @@ void eval_run(EvalTape *t, const long double *symbols, long double *out) {
   read_roots(t, out);
 }
 
+/* Values of the symbols of a nest that are no arguments, by symbol. */
+static const long double *symbols_outside(NestStep *n, long double (*symbol)(SymId s, const void *data),
+                                          const void *data) {
+  for (uint32_t k = 0; k < n->noutside; k++) n->symbols[n->outside[k]] = symbol(n->outside[k], data);
+  return n->symbols;
+}
+
 void eval_run_double(EvalTape *t, long double (*symbol)(SymId s, const void *data), const void *data,
                      long double *out) {
   t->round_to_double = 1;
   for (uint32_t i = 0; i < t->n; i++) {
     const TapeStep *o = &t->step[i];
-    t->value[i] = (double)(o->op == EX_SYM ? symbol(o->symbol, data) : step_value(t, o, NULL));
+    const long double *outside = o->op == EX_NEST ? symbols_outside(o->nest, symbol, data) : NULL;
+    t->value[i] = (double)(o->op == EX_SYM ? symbol(o->symbol, data) : step_value(t, o, outside));
   }
   t->round_to_double = 0;
   read_roots(t, out);

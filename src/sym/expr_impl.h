@@ -42,6 +42,12 @@ struct ExprGraph {
   uint32_t found_cap, spare_n;
   VEC(Named) named;          /* definitions by requested name and body: see expr_def_unique */
   IdTable named_table;       /* of `named` */
+  VEC(SumNest) nests;        /* number k at [k - 1] */
+  Expr twin_of, twin;        /* the last nest that expr_twin_cell was asked for, and its answer */
+  uint32_t twin_number;
+  VEC(SymId) index_names;    /* symbols with names such as r[i].x, for the printer */
+  VEC(Expr) terms;           /* scratch of sums written out */
+  int writes_sums_out;       /* one was */
   Expr zero, one, minus_one;
 };
 

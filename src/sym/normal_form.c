@@ -103,9 +103,11 @@ static Frac number_frac(Normal *n, Num v) {
   return num_sign(v) < 0 ? frac_neg(n->field, f) : f;
 }
 
-static Frac definition_frac(Normal *n, Expr e) {
-  uint32_t key[2] = {EX_DEF, e};
-  return opaque_by_key(n, key, 2, (GenInfo){.kind = GEN_OPAQUE, .expr = e, .op = EX_DEF});
+/* A definition or a quantified sum as a generator of its own. */
+static Frac whole_frac(Normal *n, Expr e) {
+  ExprOp op = expr_op(n->g, e);
+  uint32_t key[2] = {(uint32_t)op, e};
+  return opaque_by_key(n, key, 2, (GenInfo){.kind = GEN_OPAQUE, .expr = e, .op = op});
 }
 
 /* --- operations --- */
@@ -216,7 +218,7 @@ static Frac convert(Normal *n, Expr e) {
   ExprGraph *g = n->g;
   ExprOp op = expr_op(g, e);
   Frac u = {0};
-  if (op == EX_DEF && n->shallow) return definition_frac(n, e);
+  if (op == EX_DEF && n->shallow) return whole_frac(n, e);
   if (expr_nargs(g, e) > 0) u = value_of(n, expr_arg(g, e, 0));
   switch (op) {
     case EX_NUM: return number_frac(n, expr_number(g, e));
@@ -224,6 +226,8 @@ static Frac convert(Normal *n, Expr e) {
     case EX_DEF: return u;
     case EX_SUM: return sum_frac(n, e);
     case EX_PROD: return prod_frac(n, e);
+    case EX_NEST: return frac_poly(poly_zero()); /* read by nobody: its cells are generators */
+    case EX_CELL: return whole_frac(n, e);
     case EX_POW: return normal_power(n, u, value_of(n, expr_arg(g, e, 1)));
 #define CIRCULAR circular_fn(n, e, u)
 #define HYPERBOLIC n->keep_range ? opaque_call(n, e, u) : hyperbolic(n, op, u)
@@ -263,7 +267,7 @@ static void run_once(Normal *n, ExprList nodes) {
 
 PolyStatus normal_run(Normal *n, const Expr *roots, uint32_t count, Frac *out) {
   enum { MAX_ROUNDS = 16 };
-  ExprList nodes = n->shallow ? expr_topo_shallow(n->g, roots, count) : expr_topo(n->g, roots, count);
+  ExprList nodes = n->shallow ? expr_topo_shallow(n->g, roots, count) : expr_topo_to_sums(n->g, roots, count);
   int rounds = 0;
   do {
     if (++rounds > MAX_ROUNDS) poly_fail(n->ring, POLY_TOO_LARGE);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "sym/expr_impl.h"
+#include "sym/sum_nest.h"
 
 typedef enum { PREC_OR, PREC_AND, PREC_NOT, PREC_CMP, PREC_SUM, PREC_PROD, PREC_POW, PREC_ATOM } Prec;
 
@@ -217,6 +218,27 @@ static const char *named(Printer *p, Name name) {
   return sb_text(&b);
 }
 
+static void print_cell(Printer *p, Expr e) {
+  SumTerms terms = expr_sum_terms(p->g, e);
+  for (uint32_t k = 0; k < terms.n; k++) {
+    const SumTerm *t = &terms.at[k];
+    text(p, t->minus ? (k ? " - " : "-") : k ? " + " : "");
+    for (int n = 0; n < 2; n++)
+      if (t->index[n])
+        text(p, arena_printf(p->g->arena, by_style(p, "sum(%s in %s..%s, ", "\\sum_{%s=%s}^{%s} "), t->index[n],
+                             t->from[n], t->to[n]));
+    node(p, t->body, latex(p) || !t->index[0] ? PREC_PROD : PREC_OR);
+    for (int n = 0; n < 2; n++)
+      if (t->index[n]) text(p, by_style(p, ")", ""));
+  }
+  if (!terms.n) text(p, "0");
+}
+
+static Prec prec_of_cell(const Printer *p, Expr e) {
+  SumTerms terms = expr_sum_terms(p->g, e);
+  return terms.n > 1 || (terms.n && terms.at[0].minus) ? PREC_SUM : latex(p) ? PREC_PROD : PREC_ATOM;
+}
+
 static Prec prec_of(const ExprGraph *g, Expr e) {
   switch (expr_op(g, e)) {
     case EX_NUM: {
@@ -249,6 +271,8 @@ static void expand(Printer *p, Expr e) {
     case EX_DEF: text(p, named(p, expr_def_name(g, e))); return;
     case EX_SUM: sum(p, e); return;
     case EX_PROD: term(p, e, num_int(1)); return;
+    case EX_NEST: return;
+    case EX_CELL: print_cell(p, e); return;
     case EX_POW:
       node(p, expr_arg(g, e, 0), PREC_ATOM);
       text(p, by_style(p, "^", "^{"));
@@ -287,7 +311,8 @@ void expr_print(ExprGraph *g, Expr e, PrintStyle style, StrBuf *out) {
       sb_puts(out, top.text);
       continue;
     }
-    int group = prec_of(g, top.node) < top.prec;
+    Prec prec = expr_op(g, top.node) == EX_CELL ? prec_of_cell(&p, top.node) : prec_of(g, top.node);
+    int group = prec < top.prec;
     p.part.n = 0;
     int flat = group && is_flat(g, top.node);
     if (group) text(&p, flat ? "(" : by_style(&p, "(", "\\left("));

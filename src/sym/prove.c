@@ -4,22 +4,37 @@
 #include <float.h>
 #include <math.h>
 
+#include "sym/sum_nest.h"
+
 NormalLimits prove_limits(void) { return (NormalLimits){.max_terms = 20000, .max_work = 2000000, .proof = 1}; }
 
 enum { STATES = 8, MOST_STATES = 2000, MOST_WORK = 4000000 };
+
+static Verdict zero_by_form(ExprGraph *g, Expr e, const NormalLimits *limits);
+
+/* --- quantified sums --- */
+
+/* e without the cells of nests whose contribution vanishes in each turn, as the normal form proves. */
+static Expr drop_vanishing_sums(ExprGraph *g, Expr e, const NormalLimits *limits) {
+  Expr rest, body = expr_gather_sum(g, e, &rest);
+  return body && zero_by_form(g, body, limits) == PROVED_ZERO ? rest : e;
+}
 
 /* --- by value --- */
 
 /* One of 16 states in the domain decides; few states may lie there, as of roots of several differences. */
 int prove_nonzero(ExprGraph *g, Expr e) {
+  if (!expr_open_sums(g, &e)) return 0;
   long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
+  BoundTape *tape = bound_tape(g, &e, 1);
   uint32_t most = 2 * STATES + MOST_WORK / (e + 1);
   if (most > MOST_STATES) most = MOST_STATES;
   for (uint32_t seed = 1, inside = 0; seed <= most && inside < 2 * STATES; seed++) {
     long double bound, value;
     if (seed % (2 * STATES) <= STATES) sample_state(g, seed, symbols);
     else sample_state_wide(g, seed, symbols);
-    value = value_with_bound(g, e, symbols, NULL, &bound);
+    bound_run(tape, symbols, NULL);
+    value = bound_value(tape, e, &bound);
     if (!isfinite(value) || !isfinite(bound)) continue;
     inside++;
     if (fabsl(value) > 1000 * bound + LDBL_MIN) return 1;
@@ -50,6 +65,12 @@ static void zero_work(Arena *scratch, void *data) {
 
 static Verdict zero_by_form(ExprGraph *g, Expr e, const NormalLimits *limits) {
   if (e == 0 || expr_is_zero(g, e)) return PROVED_ZERO;
+  for (Expr last = 0; last != e;) {
+    last = e;
+    e = drop_vanishing_sums(g, e, limits);
+  }
+  if (!expr_open_sums(g, &e)) return NOT_DECIDED;
+  if (expr_is_zero(g, e)) return PROVED_ZERO;
   ZeroTask t = {.g = g, .e = e, .limits = limits ? *limits : prove_limits()};
   arena_with_scratch(expr_arena(g), zero_work, &t);
   if (t.overflowed) {

@@ -6,6 +6,7 @@
 
 #include "sym/expr_eval.h"
 #include "sym/prove.h"
+#include "sym/sum_nest.h"
 
 typedef long double Real;
 
@@ -123,6 +124,7 @@ static Real slope(ExprOp op, Real x, Real f) {
     FUNCTIONS(SLOPE)
     case EX_ABS: case EX_DEF: return 1;
     case EX_SIGN: case EX_FLOOR: case EX_NOT: case EX_NUM: case EX_SYM: case EX_SUM: case EX_PROD: case EX_POW:
+    case EX_NEST: case EX_CELL:
     case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ:
     case EX_AND: case EX_OR: case EX_SELECT: case EX_COUNT: break;
   }
@@ -148,7 +150,7 @@ static Real binary_bound(const Bounds *b, Expr e, Real f) {
     case EX_LT: case EX_LE: case EX_EQ: return compare_bound(b, e);
     case EX_AND: case EX_OR: return dx + dy;
     case EX_SELECT: return dx > 0 ? INFINITY : x != 0 ? dy : bound_of(b, expr_arg(b->g, e, 2));
-    case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: EX_FUNCTION_CASES
+    case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_NEST: case EX_CELL: EX_FUNCTION_CASES
     case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_NOT: case EX_COUNT: break;
   }
   return INFINITY;
@@ -190,6 +192,8 @@ static Real node_bound(const Bounds *b, Expr e, Real value, const Real *errors) 
   case EX_SIGN:
   case EX_FLOOR:
   case EX_NOT: return unary_bound(b, e, value);
+  case EX_NEST: return 0;
+  case EX_CELL: /* cell_bound */
   case EX_COUNT: break;
   }
   return INFINITY;
@@ -207,9 +211,69 @@ struct BoundTape {
   ExprGraph *g;
   ExprList nodes;
   EvalTape *tape; /* its roots are all nodes */
+  struct NestBounds **nests; /* by place, of quantified sums; NULL: none */
   ExprMap place;  /* node -> position + 1 */
   Real *value, *bound;
 };
+
+/* Bounds of the sums of a nest. */
+typedef struct NestBounds {
+  const SumNest *sums;
+  BoundTape *body;
+  Real *symbols, *errors, *value, *bound; /* by symbol; by cell */
+} NestBounds;
+
+/* Longer sums have no bound: nothing is decided by their values. */
+enum { MOST_TURNS = 50000 };
+
+static NestBounds *nest_bounds(ExprGraph *g, Expr nest) {
+  Arena *a = expr_arena(g);
+  const SumNest *s = expr_sum_nest(g, nest);
+  if (expr_sum_turns(g, nest) > MOST_TURNS) return NULL;
+  Expr *values = ARENA_ARRAY(a, Expr, s->nshares + 1);
+  for (uint32_t k = 0; k < s->nshares; k++) values[k] = s->shares[k].value;
+  NestBounds *n = ARENA_NEW(a, NestBounds);
+  uint32_t symbols = expr_symbol_count(g) + 1;
+  *n = (NestBounds){s, bound_tape(g, values, s->nshares), ARENA_ARRAY(a, Real, symbols), ARENA_ARRAY(a, Real, symbols),
+                    ARENA_ARRAY(a, Real, s->nargs + 1), ARENA_ARRAY(a, Real, s->nargs + 1)};
+  return n;
+}
+
+static void add_shares(NestBounds *n, int64_t i, int64_t j) {
+  for (uint32_t k = 0; k < n->sums->nshares; k++) {
+    const NestShare *x = &n->sums->shares[k];
+    int64_t c = subscript_at(&x->at, i, j);
+    Real bound, value = bound_value(n->body, x->value, &bound);
+    n->value[c] += fabsl(value);
+    n->bound[c] += bound + LDBL_EPSILON * n->value[c];
+  }
+}
+
+static void run_nest_bounds(const BoundTape *t, NestBounds *n, Expr nest, const Real *symbols, const Real *errors) {
+  const SumNest *s = n->sums;
+  for (SymId k = 1; k <= expr_symbol_count(t->g); k++) {
+    n->symbols[k] = symbols[k];
+    n->errors[k] = errors ? errors[k] : 0;
+  }
+  for (uint32_t c = 0; c <= s->nargs; c++) n->value[c] = n->bound[c] = 0;
+  for (int64_t i = 0; i < s->range.rows; i++)
+    for (int64_t j = loop_from(&s->range, i); j < loop_to(&s->range, i); j++) {
+      for (uint32_t k = 0; k < s->nreads; k++) {
+        Expr arg = expr_sum_arg(t->g, nest, (uint32_t)subscript_at(&s->reads[k].at, i, j));
+        uint32_t place = expr_map_get(&t->place, arg) - 1;
+        n->symbols[s->reads[k].symbol] = t->value[place];
+        n->errors[s->reads[k].symbol] = t->bound[place];
+      }
+      bound_run(n->body, n->symbols, n->errors);
+      add_shares(n, i, j);
+    }
+}
+
+/* Bound of a quantified sum, which its nest has computed. */
+static Real cell_bound(const BoundTape *t, Expr cell) {
+  const NestBounds *n = t->nests[expr_map_get(&t->place, expr_cell_nest(t->g, cell)) - 1];
+  return n ? n->bound[expr_cell_number(t->g, cell)] : INFINITY;
+}
 
 BoundTape *bound_tape(ExprGraph *g, const Expr *roots, uint32_t n) {
   Arena *a = expr_arena(g);
@@ -218,7 +282,11 @@ BoundTape *bound_tape(ExprGraph *g, const Expr *roots, uint32_t n) {
   t->tape = eval_tape(g, t->nodes.at, t->nodes.n);
   t->value = ARENA_ARRAY(a, Real, t->nodes.n + 1);
   t->bound = ARENA_ARRAY(a, Real, t->nodes.n + 1);
-  for (uint32_t i = 0; i < t->nodes.n; i++) expr_map_set(&t->place, t->nodes.at[i], i + 1);
+  t->nests = ARENA_ARRAY(a, NestBounds *, t->nodes.n + 1);
+  for (uint32_t i = 0; i < t->nodes.n; i++) {
+    expr_map_set(&t->place, t->nodes.at[i], i + 1);
+    if (expr_op(g, t->nodes.at[i]) == EX_NEST) t->nests[i] = nest_bounds(g, t->nodes.at[i]);
+  }
   return t;
 }
 
@@ -227,7 +295,8 @@ void bound_run(BoundTape *t, const long double *symbols, const long double *erro
   Bounds b = {.g = t->g, .value = t->value, .bound = t->bound, .place = &t->place};
   for (uint32_t i = 0; i < t->nodes.n; i++) {
     Expr e = t->nodes.at[i];
-    Real bound = node_bound(&b, e, t->value[i], errors);
+    if (t->nests[i]) run_nest_bounds(t, t->nests[i], e, symbols, errors);
+    Real bound = expr_op(t->g, e) == EX_CELL ? cell_bound(t, e) : node_bound(&b, e, t->value[i], errors);
     t->bound[i] = expr_op(t->g, e) == EX_PROD && bound == 0 ? 0 : bound + underflow(t->g, e, t->value[i]);
   }
 }

@@ -164,17 +164,17 @@ static int has_variable(const ExprGraph *g, ExprList nodes, const ExprMap *in, E
 }
 
 Expr simplify_stable_quotients(ExprGraph *g, Expr e) {
-  ExprList nodes = expr_topo(g, &e, 1);
+  ExprList nodes = expr_topo_to_sums(g, &e, 1);
   ExprMap divisors = expr_map(expr_arena(g));
   for (uint32_t i = 0; i < nodes.n && nodes.n <= MAX_TERMS; i++)
     for (uint32_t k = 0; expr_op(g, nodes.at[i]) == EX_PROD && k < expr_pairs(g, nodes.at[i], EX_PROD); k++) {
       Num power;
       Expr base = expr_pair(g, nodes.at[i], EX_PROD, k, &power);
-      if (num_sign(power) < 0) has_variable(g, expr_topo(g, &base, 1), NULL, &divisors);
+      if (num_sign(power) < 0) has_variable(g, expr_topo_to_sums(g, &base, 1), NULL, &divisors);
     }
   for (uint32_t i = 0; i < nodes.n && nodes.n <= MAX_TERMS; i++) {
     Expr x = nodes.at[i], u = expr_op(g, x) == EX_COS || expr_op(g, x) == EX_COSH ? expr_arg(g, x, 0) : 0;
-    if (u && has_variable(g, expr_topo(g, &u, 1), &divisors, NULL)) return rewrite_sums(g, e, with_half_angles);
+    if (u && has_variable(g, expr_topo_to_sums(g, &u, 1), &divisors, NULL)) return rewrite_sums(g, e, with_half_angles);
   }
   return e;
 }

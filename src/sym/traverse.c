@@ -4,6 +4,7 @@
 #include "base/strbuf.h"
 #include "sym/expr.h"
 #include "sym/expr_impl.h"
+#include "sym/sum_nest.h"
 
 /* --- maps --- */
 
@@ -76,9 +77,11 @@ static void sort_ids(ExprGraph *g, Expr *at, uint32_t n) {
   }
 }
 
-/* Nodes reachable from the roots, ascending; not below nodes of `leaves` (or NULL) nor, if shallow, below
- * definitions. */
-static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, int shallow) {
+/* Nodes below which a traversal does not go: the arguments of quantified sums; definitions, too. */
+typedef enum { TO_LEAVES, TO_SUMS, TO_DEFINITIONS } Depth;
+
+/* Nodes reachable from the roots, ascending; not below nodes of `leaves` (or NULL). */
+static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, Depth depth) {
   VEC(Expr) found = {g->found, 0, g->found_cap};
   expr_map_clear(&g->seen);
   for (uint32_t i = 0; i < n; i++)
@@ -88,7 +91,10 @@ static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap 
     }
   for (uint32_t k = 0; k < found.n; k++) {
     Expr e = found.at[k];
-    if ((leaves && expr_map_get(leaves, e)) || (shallow && expr_op(g, e) == EX_DEF)) continue;
+    ExprOp op = expr_op(g, e);
+    if ((leaves && expr_map_get(leaves, e)) || (op == EX_DEF && depth == TO_DEFINITIONS) ||
+        (op == EX_NEST && depth != TO_LEAVES))
+      continue;
     for (uint32_t i = 0; i < expr_nargs(g, e); i++) {
       Expr a = expr_arg(g, e, i);
       if (expr_map_get(&g->seen, a)) continue;
@@ -104,10 +110,13 @@ static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap 
   return (ExprList){list, found.n};
 }
 
-ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, 0); }
-ExprList expr_topo_shallow(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, 1); }
+ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, TO_LEAVES); }
+ExprList expr_topo_to_sums(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, TO_SUMS); }
+ExprList expr_topo_shallow(ExprGraph *g, const Expr *roots, uint32_t n) {
+  return topo(g, roots, n, NULL, TO_DEFINITIONS);
+}
 ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves) {
-  return topo(g, roots, n, leaves, 0);
+  return topo(g, roots, n, leaves, TO_LEAVES);
 }
 
 int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data) {
@@ -231,7 +240,8 @@ double expr_tree_size(ExprGraph *g, Expr e, uint32_t *distinct) {
   for (uint32_t k = 0; k < l.n; k++) {
     expr_map_set(&g->seen, l.at[k], k + 1);
     size[k] = 1;
-    for (uint32_t i = 0; expr_op(g, l.at[k]) != EX_DEF && i < expr_nargs(g, l.at[k]); i++)
+    int whole = expr_op(g, l.at[k]) == EX_DEF || expr_op(g, l.at[k]) == EX_NEST;
+    for (uint32_t i = 0; !whole && i < expr_nargs(g, l.at[k]); i++)
       size[k] += size[expr_map_get(&g->seen, expr_arg(g, l.at[k], i)) - 1];
   }
   *distinct = l.n;
@@ -269,12 +279,19 @@ static uint32_t prod_ops(const ExprGraph *g, Expr e) {
   return ops + (inverse == n);
 }
 
+/* Operations of one turn: the number of turns is the same in all forms that are compared. */
+static uint32_t nest_ops(const ExprGraph *g, Expr e) {
+  const SumNest *s = expr_sum_nest(g, e);
+  return s->nshares + s->nreads;
+}
+
 static uint32_t count_ops(const ExprGraph *g, ExprList l) {
   uint32_t ops = 0;
   for (uint32_t i = 0; i < l.n; i++) {
     Expr e = l.at[i];
     switch (expr_op(g, e)) {
-      case EX_NUM: case EX_SYM: case EX_DEF: case EX_COUNT: break;
+      case EX_NUM: case EX_SYM: case EX_DEF: case EX_CELL: case EX_COUNT: break;
+      case EX_NEST: ops += nest_ops(g, e); break;
       case EX_SUM: ops += sum_ops(g, e); break;
       case EX_PROD: ops += prod_ops(g, e); break;
       EX_FUNCTION_CASES

@@ -73,10 +73,12 @@ static int works_over_a_turn(const ProofWork *w, uint32_t i, Expr force) {
   const long double rounding = may_jump(w, force) ? 0.05L : 1e-9L;
   long double bound, sum[2] = {0, 0}, size = 0;
   long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
+  BoundTape *tape = bound_tape(w->g, &force, 1);
   sample_state(w->g, 1, symbols);
   for (int k = 0; k < 2 * POINTS; k++) {
     symbols[w->q[i]] = turn * k / (2 * POINTS);
-    long double value = value_with_bound(w->g, force, symbols, NULL, &bound);
+    bound_run(tape, symbols, NULL);
+    long double value = bound_value(tape, force, &bound);
     sum[k % 2] += value;
     size += fabsl(value);
   }

@@ -74,7 +74,7 @@ static Words expected_words(const Parse *cx, const TokKind *set, int n) {
     /* an index, a type or a unit may follow most names: not worth listing */
     if (k == TOK_INDEX || ((k == TOK_UNIT || k == TOK_COLON) && token_is_in(set, n, TOK_UNIT) && n > 1)) continue;
     const char *word = token_word(k);
-    int phrase = k == TOK_STRING || k == TOK_UNIT;
+    int phrase = k == TOK_STRING || k == TOK_UNIT || k == TOK_SHAPE || k == TOK_CLAUSE;
     add_word(&w, phrase ? word : arena_printf(cx->ast->arena, "`%s`", word));
   }
   if (token_is_in(set, n, TOK_END)) add_word(&w, "the end of the statement");

@@ -131,7 +131,7 @@ enum {
   X(EVERY, "every", 0)                             \
   X(WHILE, "while", 0)                             \
   X(SHAPE, "a shape such as `ball`", 0)            \
-  X(CLAUSE, "a word such as `radius`", T_OPENS)
+  X(CLAUSE, "an option", T_OPENS)
 
 #define TOKEN_ENUM_(name, word, flags) TOK_##name,
 typedef enum { TOKENS(TOKEN_ENUM_) TOK_COUNT } TokKind;

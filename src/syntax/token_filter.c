@@ -145,7 +145,7 @@ static TokKind contact_word(const char *name) {
 /* A name of `draw ball[i in 1..N] at P radius r`: the shape, then what it draws unless the name is one of `heads`;
  * behind an operand a word. */
 static TokKind drawing_word(Filter *f, const Token *t) {
-  static const char heads[] = "from at of to";
+  static const char heads[] = "from at of to width radius size turn coils spokes box scale as for";
   if (f->prev == TOK_DRAW) {
     f->headed = 1;
     return TOK_SHAPE;

@@ -2,6 +2,8 @@
 #include "toolchain/process.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -83,6 +85,40 @@ long process_begin(int (*work)(void *data), void *data) {
     _exit(work(data));
   }
   return pid;
+}
+
+void process_set(const char *name, const char *value) { setenv(name, value, 1); }
+void process_tell(int fd, const char *line) { dprintf(fd, "%s\n", line); }
+
+int process_reader_ends(int fd, double seconds) {
+  struct pollfd of = {.fd = fd};
+  return poll(&of, 1, (int)(1000 * seconds)) != 0;
+}
+
+/* The process of work has no streams but fd, so that nobody who reads from this program waits for it, and no parent. */
+static void work_beside(void (*work)(void *data, int fd), void *data, int fd) {
+  int null = open("/dev/null", O_RDWR);
+  if (fork() != 0) _exit(0);
+  signal(SIGPIPE, SIG_IGN);
+  for (int k = 0; k < 3; k++) dup2(null, k);
+  for (int k = 3; k < (int)sysconf(_SC_OPEN_MAX) && k < 256; k++)
+    if (k != fd) close(k);
+  if (nice(5) == -1) errno = 0; /* the run goes first */
+  work(data, fd);
+  _exit(0);
+}
+
+void process_beside(void (*work)(void *data, int fd), void *data, const char *name) {
+  int end[2];
+  char number[16];
+  if (pipe(end) != 0) return;
+  fflush(NULL);
+  pid_t pid = fork();
+  if (pid == 0) work_beside(work, data, end[1]);
+  close(end[1]);
+  snprintf(number, sizeof number, "%d", end[0]);
+  if (pid > 0 && wait_for(pid) == 0) setenv(name, number, 1);
+  else close(end[0]);
 }
 
 int process_end(long process, double seconds) {

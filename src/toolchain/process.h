@@ -20,6 +20,18 @@ void process_become(const char *path, char *const *argv);
  * Returns 0 where that fails. */
 int process_give(const char *name, const StrBuf *bytes);
 
+/* Sets an environment variable of the programs begun by this one. */
+void process_set(const char *name, const char *value);
+/* Writes a line to a descriptor. */
+void process_tell(int fd, const char *line);
+
+/* Begins work(data, fd) beside the program that this one becomes, without its standard streams. That program finds in
+ * the variable `name` the number of the descriptor from which it reads what work writes to fd; where that fails, as on
+ * Windows, it finds none. */
+void process_beside(void (*work)(void *data, int fd), void *data, const char *name);
+/* Whether the reader of fd ends within so many seconds. */
+int process_reader_ends(int fd, double seconds);
+
 /* Begins work(data) in a child process, whose exit status is what work returns. Returns the process, or -1, as
  * on Windows, which has no fork. */
 long process_begin(int (*work)(void *data), void *data);

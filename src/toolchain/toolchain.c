@@ -153,7 +153,8 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
                              t->optimise, *is.safe ? " " : "", is.safe);
   for (char *c = build + strlen("-DLAG_BUILD=\""); c[1]; c++)
     if (*c == '"' || *c == '\\') *c = ' ';
-  int alone = is_alone(t), links_sines = !alone && !t->lanes && strcmp(t->library, "lag") == 0;
+  int alone = is_alone(t), single = alone && !t->models,
+      links_sines = !alone && !t->lanes && strcmp(t->library, "lag") == 0;
   const char *first[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, "-o", made_in(a, t, dir)};
   const char *runtime[] = {build, links_sines ? "-DLAG_LINKED_SINES" : "", "-I", t->include};
   const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : "")},
@@ -171,14 +172,14 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
                         NULL};
   VEC(const char *) words = {0}, parts = {0};
   for (size_t i = 0; i < sizeof first / sizeof *first; i++) vec_push(a, &words, first[i]);
-  for (size_t i = 0; i < sizeof runtime / sizeof *runtime && !alone; i++) vec_push(a, &words, runtime[i]);
+  for (size_t i = 0; i < sizeof runtime / sizeof *runtime && !single; i++) vec_push(a, &words, runtime[i]);
   for (size_t i = 0; i < sizeof library / sizeof *library && t->soname; i++) vec_push(a, &words, library[i]);
-  for (size_t i = 0; i < sizeof hidden / sizeof *hidden && alone; i++) vec_push(a, &words, hidden[i]);
+  for (size_t i = 0; i < sizeof hidden / sizeof *hidden && single; i++) vec_push(a, &words, hidden[i]);
   for (const char *const *f = t->flags; *f; f++) vec_push(a, &words, *f);
   for (const char *const *f = lane_flags; t->lanes && *f; f++) vec_push(a, &words, *f);
   vec_push(a, &words, is.safe);
   if (!t->soname) vec_push(a, &words, is.linker);
-  for (size_t i = alone ? n - 1 : 0; i < n; i++) vec_push(a, &words, arena_printf(a, "%s/%s", dir, texts[i].name));
+  for (size_t i = single ? n - 1 : 0; i < n; i++) vec_push(a, &words, arena_printf(a, "%s/%s", dir, texts[i].name));
   for (size_t i = 0; i < sizeof whole / sizeof *whole && t->soname && !alone; i++) vec_push(a, &words, whole[i]);
   for (int i = 0; i < 3; i++)
     for (char *w = t->parts[i] ? strtok(arena_strdup(a, t->parts[i]), " ") : NULL; w; w = strtok(NULL, " "))
@@ -281,6 +282,11 @@ int toolchain_library(Arena *a, const Toolchain *t, const SourceText *texts, siz
 
 /* --- simulators in the cache --- */
 
+const char *toolchain_evaluator(Arena *a, const Toolchain *t) {
+  const char *path = arena_printf(a, "%s/lag-run" PROGRAM_SUFFIX, t->lib);
+  return file_exists(path) ? path : NULL;
+}
+
 static uint64_t hash_library(Arena *a, uint64_t h, const char *path) {
   const char *text = file_identity(a, path);
   return lag_fnv1a(h, text, strlen(text));
@@ -301,7 +307,7 @@ static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceT
   for (size_t i = 0; i < n; i++) h = lag_fnv1a(h, texts[i].text, strlen(texts[i].text) + 1);
   h = lag_fnv1a(h, t->cc, strlen(t->cc) + 1);
   h = lag_fnv1a(h, t->optimise, strlen(t->optimise) + 1);
-  h = hash_library(a, h, arena_printf(a, "%s/lib%s.a", t->lib, t->library));
+  h = hash_library(a, h, t->models ? toolchain_evaluator(a, t) : arena_printf(a, "%s/lib%s.a", t->lib, t->library));
   for (int i = 0; i < 3; i++)
     if (t->parts[i]) h = hash_library(a, h, arena_printf(a, "%s/liblag_%s.a", t->lib, part_names[i]));
   return t->gsl ? hash_library(a, h, arena_printf(a, "%s/liblag_gsl.a", t->lib)) : h;
@@ -316,11 +322,6 @@ const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *tex
   const char *cache = cache_folder(a),
              *path = cache ? arena_printf(a, "%s/%s", cache, toolchain_entry(a, t, texts, n)) : NULL;
   return path && cache_has(path) ? path : NULL;
-}
-
-const char *toolchain_evaluator(Arena *a, const Toolchain *t) {
-  const char *path = arena_printf(a, "%s/lag-run" PROGRAM_SUFFIX, t->lib);
-  return file_exists(path) ? path : NULL;
 }
 
 int toolchain_has_compiler(Arena *a, const Toolchain *t) {

@@ -19,6 +19,7 @@ typedef struct {
   /* of the shared library that is made instead of a program, with the runtime where `library` names it; NULL: a
    * program */
   const char *soname;
+  int models;            /* that shared library is a program for lag-run, which has the runtime */
   const char *optimise;  /* -O2 or $LAGC_OPTIMISE; -O0 where compilation takes longer than the run */
 } Toolchain;
 

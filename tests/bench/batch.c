@@ -1,10 +1,11 @@
 /* 800 double pendulums from starts at rest to t = 10, one after the other or in lanes, by code that others would
  * write: microseconds a motion and the median error of th1, for some tolerances. Argument: the file of rows
  * `th1,th2,th1 at t = 10` that lagc wrote with 19 digits. */
+#define lag_euler_tableau unused_euler
+#define lag_rk4_tableau unused_rk4
+#define lag_rk45_tableau unused_rk45
 #define lag_dop853_tableau coefficients
-#define lag_dop853 unused_method
-#include "methods/dop853.c"
-#undef lag_dop853
+#include "methods/tableau.c"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -137,7 +138,7 @@ static void by_hand(double tol) {
     for (int i = 0; i < 4; i++) {
       y1[i] = y[i] + h*sum(STAGES, coefficients.a[12], k, i);
       const real a = size(y[i]), b = size(y1[i]), per = 1/(tol + tol*pick(a > b, a, b));
-      const real e = per*sum(STAGES, coefficients.e, k, i), e3 = per*sum(STAGES, coefficients.e3, k, i);
+      const real e = per*sum(STAGES, coefficients.errors[0], k, i), e3 = per*sum(STAGES, coefficients.errors[1], k, i);
       fine += e*e;
       coarse += e3*e3;
     }

@@ -1,10 +1,11 @@
 /* dop853 as one would write it by hand for one problem: number of equations, coefficients and right-hand side known
  * to the compiler, Hairer's step control (dop853.f: safety 0.9, factors from 1/3 to 6, no memory), nothing watched.
- * The coefficients are those of runtime/methods/dop853.c. */
+ * The coefficients are those of runtime/methods/tableau.c. */
+#define lag_euler_tableau unused_euler
+#define lag_rk4_tableau unused_rk4
+#define lag_rk45_tableau unused_rk45
 #define lag_dop853_tableau coefficients
-#define lag_dop853 unused_method
-#include "methods/dop853.c"
-#undef lag_dop853
+#include "methods/tableau.c"
 
 #include <string.h>
 
@@ -54,8 +55,8 @@ INLINE double integrate(rhs *f, int n, double t, double tol, double *y) {
     f(at + coefficients.c[s]*h, x, k[s], NULL);
     STAGE(1) STAGE(2) STAGE(3) STAGE(4) STAGE(5) STAGE(6) STAGE(7) STAGE(8) STAGE(9) STAGE(10) STAGE(11)
     sum(n, 12, coefficients.a[12], k, x);
-    sum(n, 12, coefficients.e, k, fine);
-    sum(n, 12, coefficients.e3, k, coarse);
+    sum(n, 12, coefficients.errors[0], k, fine);
+    sum(n, 12, coefficients.errors[1], k, coarse);
     double e = 0, e3 = 0;
     for (int i = 0; i < n; i++) {
       x[i] = y[i] + h*x[i];

@@ -40,6 +40,7 @@ int main(void) {
   if (ADAPTIVE) opt[0] = (lag_option){"atol", TOL}; /* headers know no sizes of the motion */
   const int options = ORDER ? 2 : 1;
   lag_sim *sim = lag_sim_new(&SCENE);
+  extern const lag_method JOIN(lag_, METHOD);
   const lag_method *method = &JOIN(lag_, METHOD);
   if (!sim || lag_sim_set_method(sim, method, opt, options) != LAG_OK) return 2;
   if (ADAPTIVE && lag_sim_set_tolerance(sim, TOL) != LAG_OK) return 2;

@@ -1,5 +1,6 @@
 /* Evaluated against compiled: every function of every scene of a program, at random states, bit for bit.
- * evaluator BYTES LIBRARY.so [STATES]: the same program as bytes and as a shared library. Prints what differs. */
+ * evaluator BYTES LIBRARY.so STATES: the same program as bytes and as a shared library. Prints what differs.
+ * evaluator BYTES - COUNT: bytes are changed or cut off, COUNT times; what is not refused runs. */
 #include <dlfcn.h>
 #include <math.h>
 #include <stdio.h>
@@ -18,6 +19,7 @@ static double uniform(void) {
 
 /* A state, and what a function wrote on each side. */
 static double t, *q, *v, *z, *p, *u, *a, *g, *out[SIDES], *w[SIDES], *x[SIDES];
+static void copy(double *to, const double *from, int n) { memcpy(to, from, (size_t)n * sizeof *to); }
 static int status[SIDES], differences, calls;
 static const char *where;
 
@@ -38,21 +40,26 @@ static void compare(const char *what, int n) {
   if (bad && differences++ < 20)
     printf("%s: %s: status %d and %d, element %d: %.17g and %.17g\n", where, what, status[0], status[1], at,
            at < 0 ? 0 : out[0][at], at < 0 ? 0 : out[1][at]);
-  for (int k = 0; k < SIDES; k++) memset(out[k], 0, ROOM * sizeof(double)); 
+  for (int k = 0; k < SIDES; k++) memset(out[k], 0, (size_t)(n < 0 ? 0 : n) * sizeof(double));
+}
+
+/* Whether both sides have a part, or neither. */
+static int both(const void *const *s, const char *what) {
+  if (!s[0] != !s[1]) printf("%s: %s is missing\n", where, what), differences++;
+  return s[0] && s[1];
 }
 
 #define STATE t, q, v, z, p, u
 /* Calls a function of both sides, s[0] and s[1] being structures with the same functions. */
-#define CALL(what, n, expression)                                                  \
-  do {                                                                             \
-    for (int k = 0; k < SIDES; k++) status[k] = s[k]->what ? (expression) : 0;     \
+#define CALL(what, n, expression)                                                               \
+  do {                                                                                          \
+    for (int k = 0; k < SIDES; k++) status[k] = s[k]->what ? (expression) : 0;                  \
     if (!s[0]->what != !s[1]->what) printf("%s: %s is missing\n", where, #what), differences++; \
-    if (s[0]->what) compare(#what, n);                                             \
+    if (s[0]->what) compare(#what, n);                                                          \
   } while (0)
 
 static void of_constraints(const lag_constraints *const *s, int nq) {
-  if (!s[0] != !s[1]) printf("%s: constraints are missing\n", where), differences++;
-  if (!s[0] || !s[1]) return;
+  if (!both((const void *const *)s, "constraints")) return;
   int n = s[0]->n;
   CALL(residuals, 2 * n, s[k]->residuals(s[k], STATE, out[k], out[k] + n, w[k]));
   CALL(matrices, s[0]->njacobian + s[0]->nmass, s[k]->matrices(s[k], STATE, out[k], out[k] + s[0]->njacobian, w[k]));
@@ -61,22 +68,19 @@ static void of_constraints(const lag_constraints *const *s, int nq) {
 }
 
 static void of_charges(const lag_charges *const *s) {
-  if (!s[0] != !s[1]) printf("%s: charges are missing\n", where), differences++;
-  if (!s[0] || !s[1]) return;
+  if (!both((const void *const *)s, "charges")) return;
   CALL(values, 2 * (s[0]->n - 1), s[k]->values(s[k], STATE, out[k], w[k]));
   CALL(powers, s[0]->n + s[0]->dry_friction, s[k]->powers(s[k], STATE, out[k], w[k]));
 }
 
 static void of_linear(const lag_linear *const *s) {
-  if (!s[0] != !s[1]) printf("%s: the linearisation is missing\n", where), differences++;
-  if (!s[0] || !s[1]) return;
+  if (!both((const void *const *)s, "linear")) return;
   CALL(eval, s[0]->ndr + s[0]->nmass, s[k]->eval(s[k], STATE, a, out[k], out[k] + s[0]->ndr, w[k]));
   CALL(jumps, s[0]->njump, s[k]->jumps(s[k], STATE, out[k], w[k]));
 }
 
 static void of_taylor(const lag_taylor *const *s, const lag_model *m) {
-  if (!s[0] != !s[1]) printf("%s: the series is missing\n", where), differences++;
-  if (!s[0] || !s[1] || (s[0]->order + 1) * s[0]->columns > ROOM) return;
+  if (!both((const void *const *)s, "taylor") || (s[0]->order + 1) * s[0]->columns > ROOM) return;
   double *follows = room((size_t)m->nu), T = uniform() < 0.5 ? 0.125 : uniform(), at = 2 * uniform() - 1;
   for (int i = 0; i < m->nu; i++) follows[i] = uniform() < 0.5;
   int n = 1 + (int)(uniform() * ORDERS), ny = 2 * m->nq + m->nz, columns = s[0]->columns, failed = 0;
@@ -107,9 +111,7 @@ static void of_model(const lag_model *const *s) {
   CALL(events, m->nev, s[k]->events(s[k], STATE, out[k], w[k]));
   for (int e = 0; e < m->nev; e++) {
     int stop[SIDES] = {0};
-    for (int k = 0; k < SIDES; k++)
-      memcpy(out[k], q, (size_t)nq * sizeof *q), memcpy(out[k] + nq, v, (size_t)nq * sizeof *v),
-          memcpy(out[k] + 2 * nq, z, (size_t)nz * sizeof *z);
+    for (int k = 0; k < SIDES; k++) copy(out[k], q, nq), copy(out[k] + nq, v, nq), copy(out[k] + 2 * nq, z, nz);
     CALL(act, 2 * nq + nz, s[k]->act(s[k], e, STATE, out[k], out[k] + nq, out[k] + 2 * nq, &stop[k], w[k]));
     if (stop[0] != stop[1]) printf("%s: event %d stops one side\n", where, e), differences++;
   }
@@ -180,31 +182,79 @@ static void *bytes_of(const char *path, size_t *n) {
   return bytes;
 }
 
-int main(int argc, char **argv) {
-  size_t n;
-  const char *why;
-  int states = argc > 3 ? atoi(argv[3]) : 20;
-  void *bytes = bytes_of(argv[1], &n), *library = dlopen(argv[2], RTLD_NOW | RTLD_LOCAL),
-       *f = library ? dlsym(library, "lag_library") : NULL;
-  const lag_program *evaluated = lag_program_read(bytes, n, &why), *compiled;
-  if (!f || !evaluated) return printf("%s\n", !evaluated ? why : dlerror()), 2;
-  const lag_program *(*get)(void);
-  memcpy(&get, &f, sizeof get);
-  compiled = get();
-  if (compiled->nscenes != evaluated->nscenes) return printf("other scenes\n"), 1;
-  for (int k = 0; k < SIDES; k++) out[k] = room(ROOM), x[k] = room(ROOM);
-  for (int i = 0; i < compiled->nscenes; i++) {
-    const lag_scene *s[] = {compiled->scenes[i], evaluated->scenes[i]};
+/* All functions of all scenes of two programs. */
+static void of_programs(const lag_program *const *of, int states) {
+  enum { MOST = 1 << 20 };
+  for (int i = 0; i < of[0]->nscenes; i++) {
+    const lag_scene *s[] = {of[0]->scenes[i], of[1]->scenes[i]};
+    int too_large = 0;
     for (int k = 0; k < SIDES; k++) {
       const lag_model *m = s[k]->model;
-      w[k] = room((size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw) + 1);
+      size_t need = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw);
+      too_large |= need > MOST || m->nderived > ROOM || m->nmodes > ROOM;
+      w[k] = too_large ? NULL : room(need);
     }
     if (strcmp(s[0]->model->digest, s[1]->model->digest) != 0)
       printf("%s: another digest\n", s[0]->name), differences++;
-    for (int turn = 0; turn < states; turn++) of_scene(s, turn);
-    free(w[0]), free(w[1]);
+    for (int turn = 0; turn < states && !too_large; turn++) of_scene(s, turn);
+    for (int k = 0; k < SIDES; k++) free(w[k]);
   }
+}
+
+/* Changes a bit, a byte or a word, or cuts the end off. */
+static size_t damage(unsigned char *bytes, size_t n) {
+  size_t at = (size_t)(uniform() * (double)n), word = at / 4 * 4;
+  switch ((int)(uniform() * 5)) {
+  case 0: bytes[at] ^= (unsigned char)(1 << (int)(uniform() * 8)); break;
+  case 1: bytes[at] = (unsigned char)(uniform() * 256); break;
+  case 2: memset(bytes + word, uniform() < 0.5 ? 255 : 0, n - word < 4 ? n - word : 4); break;
+  case 3: bytes[word] = (unsigned char)(bytes[word] + (uniform() < 0.5 ? 1 : 255)); break;
+  default: return at;
+  }
+  return n;
+}
+
+static int fuzz(const unsigned char *bytes, size_t n, int count) {
+  int refused = 0;
+  for (int i = 0; i < count; i++) {
+    unsigned char *copy = malloc(n + 1);
+    const char *why = NULL;
+    memcpy(copy, bytes, n);
+    size_t left = damage(copy, n);
+    unsigned char *exact = malloc(left ? left : 1); /* a read past the end is seen */
+    memcpy(exact, copy, left);
+    const lag_program *p = lag_program_read(exact, left, &why);
+    free(copy), free(exact);
+    refused += !p;
+    if (!p && !why) return printf("refused without a reason\n"), 1;
+    if (p) of_programs((const lag_program *const[]){p, p}, 2);
+    lag_program_free(p);
+  }
+  printf("%d refused, %d run\n", refused, count - refused);
+  return 0;
+}
+
+static const lag_program *load(const char *path) {
+  void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL), *f = library ? dlsym(library, "lag_library") : NULL;
+  const lag_program *(*get)(void);
+  if (!f) printf("%s\n", dlerror()), exit(2);
+  memcpy(&get, &f, sizeof get);
+  return get();
+}
+
+int main(int argc, char **argv) {
+  size_t n;
+  const char *why;
+  if (argc != 4) return 2;
+  void *bytes = bytes_of(argv[1], &n);
+  for (int k = 0; k < SIDES; k++) out[k] = room(ROOM), x[k] = room(ROOM);
+  if (strcmp(argv[2], "-") == 0) return status[0] = fuzz(bytes, n, atoi(argv[3])), free(bytes), status[0];
+  const lag_program *evaluated = lag_program_read(bytes, n, &why), *compiled = load(argv[2]);
+  if (!evaluated) return printf("%s\n", why), 2;
+  if (compiled->nscenes != evaluated->nscenes) return printf("other scenes\n"), 1;
+  of_programs((const lag_program *const[]){compiled, evaluated}, atoi(argv[3]));
   printf("%d calls, %d differ\n", calls, differences);
   lag_program_free(evaluated);
+  free(bytes);
   return differences > 0;
 }

@@ -31,7 +31,7 @@ is "a base unit" 'unit:
   [s] of the SI, a base unit; takes the SI prefixes' "$(chapter s)"
 is "a unit with a prefix" 'unit:
   [kN], with an SI prefix; `lagc help units` has the table' "$(chapter kN)"
-is "an option" 'option of run, plot, animate, lyapunov, sweep, effects:
+is "an option" 'option of run, plot, animate, orbit, continue, lyapunov, fit, sweep, effects:
   --tol X               tolerance, relative to values and to the size of the
                         motion' "$(chapter tol)"
 is "an option with its dashes" "$(chapter tol)" "$(chapter --tol)"
@@ -107,7 +107,7 @@ check "a mistyped function" says 'no help on `sinn`: did you mean `sin`?' help s
 check "nothing near" says 'no help on `xyzzy`; `lagc help` lists the topics' help xyzzy
 m=models/pendulum.lag
 check "a command of other tools leads to what does exist" says 'unknown command `linearize`: `lagc modes MODEL` linearizes about the equilibrium' linearize $m
-check "a command for what lagc does not do" says 'unknown command `fit`: parameters are not fitted here; call the model from an optimizer' fit $m
+check "a command for what lagc does not do" says 'unknown command `optimise`: controls are not optimised here; `lagc sweep` scans ranges' optimise $m
 check "a mistyped command" says 'unknown command `rum`: did you mean `run`?' rum $m
 check "no command" says "a command is missing before $m: \`lagc run $m\`" $m
 check "no model" says 'a model is missing; usage: lagc check MODEL [SCENE] [--allow-numeric] [--verbose]' check

@@ -5,7 +5,7 @@
 
 # FOLDER: the folders whose headers it may include. `mech/eqns.h` etc.: these files only.
 allowed='
-src/base      base/ numeric/
+src/base      base/ numeric/ kernels/steppers.def
 src/sym       sym/ base/ numeric/functions.def
 src/syntax    syntax/ base/ numeric/functions.def
 src/model     model/ syntax/ sym/ base/ numeric/functions.def
@@ -18,24 +18,26 @@ src/ir        ir/ base/ numeric/functions.def
 src/series    series/ ir/ base/
 src/lower     lower/ series/ ir/ symmetry/charges.h mech/ model/ sym/ base/
 src/self_check      self_check/ lower/lower.h ir/ mech/ model/ syntax/ base/ numeric/functions.def
-src/emit      emit/ ir/ base/ numeric/functions.def kernels/steppers.def
+src/emit      emit/ ir/ base/ numeric/functions.def numeric/program_code.def kernels/steppers.def
 src/fmu       fmu/ emit/ ir/ base/
 src/toolchain toolchain/ base/
-src/commands  app/options.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ phase_space/ mech/ model/ sym/ syntax/ base/
+src/commands  app/options.def kernels/steppers.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ phase_space/ mech/ model/ sym/ syntax/ base/
 src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
-runtime/kernels   kernels/ lag_math.h
+runtime/kernels   kernels/ lag_lanes.h lag_math.h
 runtime/core      core/ kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/constraints constraints/ core/core.h core/rhs.h numeric/ lag.h lag_model.h lag_kkt.h
 runtime/contacts  contacts/ core/core.h core/rhs.h numeric/ lag.h lag_model.h
 runtime/methods   methods/ core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/lanes     lanes/ kernels/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
 runtime/analysis  analysis/ core/ kernels/ numeric/ lag.h lag_model.h
+runtime/evaluator evaluator/ numeric/ lag.h lag_model.h lag_math.h lag_support.h lag_kkt.h
 runtime/io        io/ numeric/ lag.h lag_model.h
 runtime/sweep     sweep/ lanes/lane_choice.h lanes/lane_kernel.h analysis/measure.h io/posix.h numeric/ lag.h lag_model.h
 runtime/app       app/ sweep/ core/ io/ analysis/ numeric/ lag.h lag_model.h
 runtime/gsl       gsl/ lag.h lag_model.h
+runtime/page      evaluator/evaluator.h lag.h
 runtime/png       lag.h
 runtime/hdf5      lag.h
 runtime/mpi       lag.h
@@ -49,10 +51,10 @@ runtime/include/lag_support.h  lag_lanes.h
 runtime/include/lag_kkt.h  lag_lanes.h
 '
 # The inside of a folder, shared by its own files only.
-private='analysis/measure_nodes.h sweep/run_chunks_impl.h syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h
+private='evaluator/bytes.h evaluator/program.h evaluator/read_program.h evaluator/evaluated_model.h analysis/measure_nodes.h sweep/run_chunks_impl.h syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h
   model/scope.h model/declarations.h sym/expr_impl.h sym/ops.def symmetry/noether_theorem_impl.h lower/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h fmu/fmu_archive_impl.h methods/tableau.h methods/embedded_trial.h lanes/embedded_step.h
-  methods/steps.h methods/step_interpolant.h methods/galerkin_rule.h methods/discrete_lagrangian.h methods/implicit_symplectic.h
-  methods/predictor.h methods/newton.h methods/step_control.h'
+  methods/steps.h methods/step_interpolant.h methods/discrete_lagrangian.h methods/implicit_symplectic.h
+  methods/step_control.h'
 
 # Every #include as `FILE HEADER`; <stdio.h> keeps its brackets.
 list=$TMP/list
@@ -124,7 +126,7 @@ empty "lag_model.h includes only <stddef.h>" \
 # ISO C11 everywhere; POSIX where a program meets its system.
 c11='assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic
   stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype'
-posix='src/base/source\.c src/toolchain/.*\.c runtime/app/.*\.c runtime/io/.*\.[ch] runtime/sweep/.*\.c runtime/numeric/clock_windows\.c runtime/matlab/.*\.c'
+posix='src/base/source\.c src/toolchain/.*\.c runtime/app/.*\.c runtime/io/.*\.[ch] runtime/sweep/.*\.c runtime/evaluator/lag_run\.c runtime/numeric/clock_windows\.c runtime/matlab/.*\.c'
 empty "system headers: ISO C11; POSIX in base/source, toolchain, runtime/app, io, sweep and matlab" "$(awk -v c11="$c11" -v posix="$posix" '
   BEGIN {
     n = split(c11, w); for (i = 1; i <= n; i++) standard["<" w[i] ".h>"] = 1

@@ -24,7 +24,7 @@ if [ "$(id -u)" = 0 ] && command -v setpriv >/dev/null && setpriv --reuid 65534 
   other() { setpriv --reuid 65534 --regid 65534 --clear-groups env HOME=/nonexistent "$@"; }
   # The other user was there first: with the cache folder that this user would take, a simulator in it, and links at names of outputs.
   other mkdir "$shared/lagc" "$shared/lagc-0"
-  "$LAGC" run spring.lag --quiet
+  "$LAGC" run spring.lag --compile always --quiet
   for e in cache/lagc/*; do
     for d in lagc lagc-0; do
       printf '#!/bin/sh\necho EVIL >"%s/evil"\n' "$shared" | other tee "$shared/$d/${e##*/}" >/dev/null
@@ -34,7 +34,7 @@ if [ "$(id -u)" = 0 ] && command -v setpriv >/dev/null && setpriv --reuid 65534 
   echo keep >precious
   other ln -s "$dir/precious" "$shared/out.csv"
   other ln -s "$dir/precious" "$shared/out.csv.part"
-  mine() { XDG_CACHE_HOME=$shared TMPDIR=$shared "$LAGC" run spring.lag --until 1 --json >log 2>&1 && grep -q '"status": "ok"' log && [ ! -e "$shared/evil" ]; }
+  mine() { XDG_CACHE_HOME=$shared TMPDIR=$shared "$LAGC" run spring.lag --compile always --until 1 --json >log 2>&1 && grep -q '"status": "ok"' log && [ ! -e "$shared/evil" ]; }
   check "a cache that another user has made is not used" mine
   check "once more" mine
   ./sim --until 1 -o "$shared/out.csv" --quiet 2>log
@@ -44,8 +44,8 @@ if [ "$(id -u)" = 0 ] && command -v setpriv >/dev/null && setpriv --reuid 65534 
   other "$LAGC" derive spring.lag -o "$shared/other.csv" 2>/dev/null
   check "another user's output stays" grep -q '^t' "$shared/other.csv"
   both() {
-    XDG_CACHE_HOME=$shared TMPDIR=$shared "$LAGC" run spring.lag --until 5 --quiet & a=$!
-    other env XDG_CACHE_HOME="$shared" TMPDIR="$shared" "$LAGC" run spring.lag --until 5 --quiet || return 1
+    XDG_CACHE_HOME=$shared TMPDIR=$shared "$LAGC" run spring.lag --compile always --until 5 --quiet & a=$!
+    other env XDG_CACHE_HOME="$shared" TMPDIR="$shared" "$LAGC" run spring.lag --compile always --until 5 --quiet || return 1
     wait $a && [ ! -e "$shared/evil" ]
   }
   check "two users at once, one TMPDIR" both
@@ -77,11 +77,11 @@ if [ "$(id -u)" = 0 ] && mkdir full && mount -t tmpfs -o size=512k tmpfs full 2>
   is "the old rows stay" old "$(cat full/out.csv)"
   check "a simulator on a full disk" refused "$LAGC" build spring.lag -o full/sim
   mkdir full/cache
-  check "a cache on a full disk" sh -c 'XDG_CACHE_HOME=$1/full/cache "$0" run spring.lag --quiet >log 2>&1; [ $? = 2 ] && grep -qi "no space left\|failed" log' "$LAGC" "$dir"
+  check "a cache on a full disk" sh -c 'XDG_CACHE_HOME=$1/full/cache "$0" run spring.lag --compile always --quiet >log 2>&1; [ $? = 2 ] && grep -qi "no space left\|failed" log' "$LAGC" "$dir"
   is "nothing is left" "cache
 out.csv" "$(ls full)"
   empty "nor in the cache" "$(find full/cache -type f)"
-  check "and with room again it works" sh -c 'umount "$1/full" && mkdir -p "$1/full/cache" && XDG_CACHE_HOME=$1/full/cache "$0" run spring.lag --quiet' "$LAGC" "$dir"
+  check "and with room again it works" sh -c 'umount "$1/full" && mkdir -p "$1/full/cache" && XDG_CACHE_HOME=$1/full/cache "$0" run spring.lag --compile always --quiet' "$LAGC" "$dir"
   mounted=
 else
   full_disk() { (trap '' XFSZ; ulimit -f 1; "$@"); }
@@ -136,7 +136,7 @@ if command -v python3 >/dev/null; then
   check "${KILLS:-50} kills at random moments" fifty
   # Waits for C compilers that a kill has orphaned: files that they write after a folder is emptied are removed by the command after the next.
   for _ in $(seq 60); do ps -eo args | grep -v grep | grep -q "lagc-build-" || break; sleep 1; done
-  "$LAGC" run spring.lag --until 1 -o out.csv --save-state state --quiet
+  "$LAGC" run spring.lag --compile always --until 1 -o out.csv --save-state state --quiet
   "$LAGC" build spring.lag -o made
   empty "the next commands remove what is left" "$(remains)"
   check "and do their work" sh -c './made --until 1 --quiet && grep -q "^t" out.csv && grep -q "^sum" state'

@@ -250,9 +250,9 @@ check "svg is closed and has both panels" sh -c 'tail -1 p.svg | grep -q "</svg>
 check "svg escapes names" grep -q "E &quot;total&quot;" p.svg
 check "one against the other" status 0 fixed --svg q.svg --plot-x th --plot-y "th'"
 check "html" status 0 swing --html a.html --points th,th
-check "html says what it shows" sh -c 'grep -q "\"rods\": true.*\"names\": \[\[\"th\", \"th\"\]\]" a.html && tail -1 a.html | grep -q "</html>"'
+check "html says what it shows" sh -c 'grep -q "\"shapes\": \[\[\"rod\".*\[\"ball\", \"body\", \"(th, th)\"" a.html && tail -1 a.html | grep -q "</html>"'
 check "names with commas and quotes" status 0 swing --html b.html --points 'E "total", T+V,E "total", T+V;E "total", T+V,E "total", T+V' --no-rods
-check "are escaped in a script" sh -c 'grep -qF "[\"E \\\"total\\\", T+V\", " b.html'
+check "are escaped in a script" sh -c 'grep -qF "\"(E \\\"total\\\", T+V, " b.html'
 check "html of what points?" says 2 "add --points" swing --html c.html
 check "points of what?" says 2 "need an animation" swing --points th,th
 check "a point that is no output" says 2 "no output is named tt; did you mean t?" swing --html c.html --points th,tt

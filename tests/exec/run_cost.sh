@@ -294,4 +294,14 @@ if has_precision long; then check "a reference from the start of the command" pr
 own_reference() { "$TMP/sim" --reference >"$TMP/reference" && "$TMP/sim" --cost --against "$TMP/reference" --methods rk45 --runs >"$TMP/out" && grep -q 'rk45(tol=1e-10)' "$TMP/out"; }
 check "one simulator's reference serves another" own_reference
 check "--math libm" "$LAGC" cost models/pendulum.lag --math libm --methods verlet4 --until 1 --seconds 0.5 --quiet
+# Beside other programs, too, the time is the clock's: a command that was stopped for two seconds has none left but for a third of what it was given.
+ends_in_time() {
+  "$LAGC" build models/figure_eight.lag --method taylor -o "$TMP/cost_sim" || return 1
+  "$TMP/cost_sim" --cost --seconds 1 --until 3e5 >"$TMP/out" 2>&1 &
+  sleep 0.3; kill -STOP $!; sleep 2; kill -CONT $!
+  begin=$(date +%s%N); wait $!
+  took=$((($(date +%s%N) - begin)/1000000)); echo "$took ms"; cat "$TMP/out"
+  [ $took -lt 900 ]
+}
+[ "$(date +%N)" = N ] || slow check "a command that was stopped ends in time" ends_in_time
 tap_end

@@ -48,19 +48,19 @@ for c in emit header; do
   check "$c: the disk is full" refused 2 'cannot write .*out/file' full_disk "$LAGC" $c "$model" -o "$dir/out/file"
 done
 check 'build: the disk is full' refused 2 'cannot write' full_disk "$LAGC" build "$model" -o "$dir/out/sim"
-check 'run: the disk is full' refused 2 'cannot write' full_disk "$LAGC" run "$model"
+check 'run: the disk is full' refused 2 'cannot write' full_disk "$LAGC" run "$model" --compile always
 check 'run: the cache is empty after that' sh -c '! ls -A "$0" | grep -v "[.]cc$"' "$dir/cache/lagc"
 
 
 # An entry of the cache that a loss of power has cut short, or that holds other bytes, is built anew.
-"$LAGC" run "$model" --quiet
+"$LAGC" run "$model" --compile always --quiet
 entry=$(ls -d "$dir"/cache/lagc/* | grep -v '[.][a-z]*$')
 size=$(wc -c <"$entry")
 head -c $((size*2/3)) "$entry" >"$dir/cut" && cat "$dir/cut" >"$entry"
-check 'run: a simulator that is cut short' "$LAGC" run "$model" --quiet --until 1
+check 'run: a simulator that is cut short' "$LAGC" run "$model" --compile always --quiet --until 1
 is 'it is whole again' "$size" "$(wc -c <"$entry")"
 dd if=/dev/zero of="$entry" bs=1000 seek=8 count=9 conv=notrunc 2>/dev/null
-check 'run: a simulator with zeroed bytes' "$LAGC" run "$model" --quiet --until 1
+check 'run: a simulator with zeroed bytes' "$LAGC" run "$model" --compile always --quiet --until 1
 # A limit of file sizes does not end a run without a word; rows that were begun do not stay.
 for type in csv npy; do
   check "run: no room for rows of .$type" refused 2 "cannot write $dir/out/rows.$type: File too large" \
@@ -107,7 +107,7 @@ else
   skip 'a folder without permission' 'root may write everywhere'
 fi
 
-check 'run: no C compiler' refused 2 '/nonexistent. cannot be run' env CC=/nonexistent "$LAGC" run "$model"
+check 'run: no C compiler' refused 2 '/nonexistent. cannot be run' env CC=/nonexistent "$LAGC" run "$model" --compile always
 check 'build: no C compiler' refused 2 '/nonexistent. cannot be run' env CC=/nonexistent "$LAGC" build "$model" -o "$dir/out/sim"
 check 'build: a C compiler that fails' refused 2 'false. failed' env CC=false "$LAGC" build "$model" -o "$dir/out/sim"
 check 'build: a C compiler that writes nothing' refused 2 'cannot write' env CC=true "$LAGC" build "$model" -o "$dir/out/sim"

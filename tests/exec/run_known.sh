@@ -78,6 +78,33 @@ done
 sed 's/^scene.*/scene s { start x = 2; span 1; output x }/' kept.lag >m.lag
 check 'a model that changed' gives "$(awk 'BEGIN { printf "%.9f", 0.5 + 1.5*cos(2) }')"
 
+# A run compiles the programs of its scene alone, which scenes with the same effects share; build has all. Sines are linked.
+cat >units.lag <<'EOF'
+model units
+coord x
+param k = 1
+kinetic = x'^2/2
+potential = -k*cos(x)
+effect drag { param c = 1; dissipation = c/2*x'^2 }
+scene free { start x = 1; span 1; output x }
+scene other { start x = 2; span 1; output x }
+scene slow { like free; use drag }
+EOF
+printf '#!/bin/sh\necho "$*" >>%s/words\nexec %s "$@"\n' "$dir" "$CC" >cc_words
+chmod 755 cc_words
+units() { # WORDS...: number of files that this command compiles
+  : >words
+  CC=$dir/cc_words "$LAGC" "$@" >out 2>&1
+  grep -o 'model_[0-9]*[.]c' words | sort -u | wc -l
+}
+is 'a run: one of two units' 1 "$(units run units.lag free --quiet)"
+is 'a scene that shares it: none' 0 "$(units run units.lag other --quiet)"
+is 'the other unit' 1 "$(units run units.lag slow --quiet)"
+is 'both scenes in a picture: both' 2 "$(units plot units.lag free slow --svg p.svg)"
+is 'build: both' 2 "$(units build units.lag -o sim)"
+check 'a scene of the other unit' ./sim slow --quiet
+check 'sines are linked' grep -q -e -DLAG_LINKED_SINES words
+
 # A start of a rotation is compiled.
 cat >top.lag <<'EOF'
 model top

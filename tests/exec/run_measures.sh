@@ -121,6 +121,12 @@ printf 'model ridge\ncoord x [m]\nparam w = 2 [rad/s]\nlagrangian = (x'"'"'^2 + 
 sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
 check "an exponent" near rate 2 1/s 3e-5
 check "in arithmetic" near doubling 0.34657359 s 5e-6
+# MEGNO of |d| ~ exp(w t): w t/2, but for the turning of the first vector; of regular motion 2 (Cincotta and Simo), an ellipse but for its wobble
+"$LAGC" run ridge.lag --measure 'm=megno' >out 2>err
+sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
+check "megno of a ridge" near m 20 '' 1 # the first step's growth is that of a random vector
+regular() { "$LAGC" run "$OLDPWD/models/kepler.lag" orbit --until 3000 --measure 'm=megno' >out 2>err; sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals; near m 2 '' 0.02; }
+slow check "megno of an ellipse" regular
 own() { "$LAGC" lyapunov "$OLDPWD/models/lorenz.lag" --until 40 --exponents 1 --json | sed 's/.*"exponents": \[\([^]]*\)\].*/\1/'; }
 measured() { "$LAGC" run "$OLDPWD/models/lorenz.lag" --until 40 --measure lyapunov --json | sed 's/.*"lyapunov": \([^}]*\)}.*/\1/'; }
 is "the one of lagc lyapunov, bit by bit" "$(own)" "$(measured)"

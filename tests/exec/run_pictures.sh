@@ -273,7 +273,7 @@ is "the second on the end of the first" '[0, 0, -1], [1, 2, -1] [1, 2, -1], [3, 
 check "a family of points hangs from its number 0" a "$c" -o b.html
 is "each from the one before" '[0, 0, -1], [1, 2, -1] [1, 2, -1], [3, 4, -1] [3, 4, -1], [5, 6, -1]' "$(joints b.html)"
 check "or is named" a "$c" --points 'x,y' --no-rods --until 1 -o b.html
-is "point by point" 'ball "y[0]";ball "y[1]";ball "y[2]";ball "y[3]"' "$(hook b.html)"
+is "point by point" 'ball "(x[0], y[0])";ball "(x[1], y[1])";ball "(x[2], y[2])";ball "(x[3], y[3])"' "$(hook b.html)"
 cat >row.lag <<'END'
 model row "A row of masses"
 coord u[3]
@@ -293,9 +293,9 @@ check "one angle" a only.lag -o b.html
 is "is a rod that hangs" 'rod;ball "(sin(th), -cos(th))"' "$(hook b.html)"
 check "points by expressions, with spaces and signs" \
   a "$p" --points "l*sin(th)/2, -l*cos(th)/2; 0 [m],-l  atan2(th, 1)*1 [m],l - 1 [m]" --from '0,l' --no-rods -o b.html
-is "are taken apart" 'ball "-l*cos(th)/2";ball "-l";ball "l - 1 [m]"' "$(hook b.html)"
+is "are taken apart" 'ball "(l*sin(th)/2, -l*cos(th)/2)";ball "(0 [m], -l)";ball "(atan2(th, 1)*1 [m], l - 1 [m])"' "$(hook b.html)"
 check "one point from another" a "$p" --points 'x,y' --from '0,l' -o b.html
-is "with its rod" 'rod;ball "y"' "$(hook b.html)"
+is "with its rod" 'rod;ball "(x, y)"' "$(hook b.html)"
 # page_frames FILE: how many lines its data have, one a frame
 page_frames() { sed -n '/^, "v"/,/]}$/p' "$1" | wc -l; }
 check "frames as asked" a "$p" --every 0.001 -o b.html

@@ -81,8 +81,8 @@ check 'remains of more runs than files can be open' sh -c 'ulimit -n 40; ./sim -
 
 # ---- simulators
 evil() { printf '#!/bin/sh\necho EVIL >"%s"\n' "$dir/evil" >"$1"; chmod 755 "$1"; }
-clean_run() { rm -f "$dir/evil"; "$LAGC" run "$model" --quiet && [ ! -e "$dir/evil" ]; }
-check 'run: a simulator is kept' sh -c '"$0" run "$1" --quiet && [ -n "$(ls "$2")" ]' "$LAGC" "$model" "$cache"
+clean_run() { rm -f "$dir/evil"; "$LAGC" run "$model" --compile always --quiet && [ ! -e "$dir/evil" ]; }
+check 'run: a simulator is kept' sh -c '"$0" run "$1" --compile always --quiet && [ -n "$(ls "$2")" ]' "$LAGC" "$model" "$cache"
 is 'the cache is for the user alone' 700 "$(mode "$cache")"
 e=$(entry)
 evil "$dir/planted"
@@ -97,10 +97,10 @@ if [ "$(id -u)" = 0 ]; then
   check "run: another user's simulator is not run" clean_run
 fi
 mkdir "$dir/open"; chmod 777 "$dir/open"
-check 'run: a cache where others can put another folder is not used' sh -c 'XDG_CACHE_HOME="$2/open" "$0" run "$1" --quiet && ! ls "$2"/open/lagc/* 2>/dev/null' "$LAGC" "$model" "$dir"
-is 'an open cache is closed' 755 "$(chmod 777 "$cache"; "$LAGC" run "$model" --quiet; mode "$cache")"
+check 'run: a cache where others can put another folder is not used' sh -c 'XDG_CACHE_HOME="$2/open" "$0" run "$1" --compile always --quiet && ! ls "$2"/open/lagc/* 2>/dev/null' "$LAGC" "$model" "$dir"
+is 'an open cache is closed' 755 "$(chmod 777 "$cache"; "$LAGC" run "$model" --compile always --quiet; mode "$cache")"
 chmod 777 "$dir/tmp" "$dir/open"
-check 'without a safe folder of the environment, /tmp has one' sh -c 'cd "$2" && HOME="$2/open" XDG_CACHE_HOME="$2/open" TMPDIR="$2/open" "$0" run "$1" --quiet' "$LAGC" "$model" "$dir"
+check 'without a safe folder of the environment, /tmp has one' sh -c 'cd "$2" && HOME="$2/open" XDG_CACHE_HOME="$2/open" TMPDIR="$2/open" "$0" run "$1" --compile always --quiet' "$LAGC" "$model" "$dir"
 chmod 700 "$dir/tmp"
 
 # ---- interruptions while the C compiler works
@@ -130,7 +130,7 @@ for signal in TERM HUP; do # background commands of a script ignore INT
   empty "build, SIG$signal: the next command removes what is left" "$(leftovers)"
 done
 "$LAGC" cache --clear >/dev/null
-start run "$model" --quiet
+start run "$model" --compile always --quiet
 kill -9 $command 2>/dev/null; wait $command 2>/dev/null
 kill "$(cat "$PID_FILE")" 2>/dev/null
 check 'run, kill -9: there are remains' [ -n "$(leftovers)" ]
@@ -142,11 +142,11 @@ mkdir "$cache/lagc-build-abcdef" "$cache/lagc-build-abcdeg"; : >"$cache/lagc-bui
 empty 'and what a kill left before the lock was made' "$(leftovers)"
 
 # ---- limit of the cache
-"$LAGC" run "$model" --quiet; "$LAGC" run "$here/models/kepler.lag" --quiet
+"$LAGC" run "$model" --compile always --quiet; "$LAGC" run "$here/models/kepler.lag" --compile always --quiet
 is 'cache: two simulators' 2 "$("$LAGC" cache | sed -n 's/^simulators *//p')"
 check 'cache: its folder, size and limit' sh -c '"$0" cache >log && grep -q "^folder  *$1\$" log && grep -q "^size  *[1-9]" log && grep -q "^limit  *1024 MiB" log' "$LAGC" "$cache"
 newest=$(ls -t "$cache" | head -n 1)
-"$LAGC" run "$model" --quiet
+"$LAGC" run "$model" --compile always --quiet
 check 'what was used last is the newest' [ "$(ls -t "$cache" | head -n 1)" != "$newest" ]
 LAGC_CACHE_MIB=0 "$LAGC" methods >/dev/null
 is 'cache: beyond the limit only what is needed stays' 1 "$("$LAGC" cache | sed -n 's/^simulators *//p')"

@@ -1,11 +1,25 @@
-/* Prints the methods of the runtime as rows of the table in src/base/method_table.c. Runs once, when lagc is built:
- * the compiler includes no header of the runtime, and so needs no second list of names, options and requirements of
- * methods. */
+/* Prints the methods of the runtime as rows of the table in src/base/method_table.c: the compiler includes no header of
+ * the runtime. Explicit Runge-Kutta methods have their rows there from kernels/steppers.def; they are compared. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "lag.h"
+#include "kernels/steppers.def"
+
+/* Whether m is such a row; *differs: not as method_table.c has it. */
+static int is_row(const lag_method *m, int *differs)
+{
+  enum { FIXED, ADAPTIVE, LATE };
+#define COMPARE(id, NAME, kind, dense, of_order, line, words) \
+  if (strcmp(m->name, #id) == 0) { \
+    unsigned flags = LAG_METHOD_CONSTRAINTS | (kind == FIXED ? 0 : LAG_METHOD_ADAPTIVE); \
+    *differs |= m->flags != flags || m->noptions != (kind == FIXED ? 1 : 4) || strcmp(m->doc, line) != 0; \
+    return 1; \
+  }
+  LAG_RUNGE_KUTTA_METHODS(COMPARE)
+  return 0;
+}
 
 static void list_options(const lag_method *m)
 {
@@ -31,6 +45,11 @@ static void list(const lag_method *const *methods, int n)
 {
   for (int i = 0; i < n; i++) {
     const lag_method *m = methods[i];
+    int differs = 0;
+    if (is_row(m, &differs)) {
+      if (differs) printf("%s is not as its row says\n", m->name);
+      continue;
+    }
     printf("  {\"%s\", \"%.*s\", 0%s%s%s%s%s%s%s,\n", m->name, (int)strcspn(m->doc, "\n"), m->doc,
            m->flags & LAG_METHOD_NO_STATES ? " | METHOD_NO_STATES" : "",
            m->flags & LAG_METHOD_VARIATION ? " | METHOD_VARIATION" : "",
@@ -44,8 +63,8 @@ static void list(const lag_method *const *methods, int n)
 
 int main(void)
 {
-  printf("/* The runtime's methods, as liblag describes them: `make bless T=golden/run_method_rows` writes this file.\n"
-         " * {name, description, flags, options} */\n");
+  printf("/* The runtime's methods that are no rows of kernels/steppers.def, as liblag describes them: `make bless\n"
+         " * T=golden/run_method_rows` writes this file. {name, description, flags, options} */\n");
   list(lag_methods, lag_nmethods);
 #ifdef WITH_GSL
   printf("#ifdef LAGC_WITH_GSL\n");

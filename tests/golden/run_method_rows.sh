@@ -5,7 +5,7 @@
 : "${CC:=cc}"
 rows=src/base/method_rows.def
 # shellcheck disable=SC2086 # lists of flags and libraries
-"$CC" -std=c11 -I$INC ${GSL:+-DWITH_GSL} -o "$TMP/list_methods" tests/golden/list_methods.c $LIBLAG $LIBLAG $LIBS >"$TMP/log" 2>&1 || cat "$TMP/log"
+"$CC" -std=c11 -I$INC -Iruntime ${GSL:+-DWITH_GSL} -o "$TMP/list_methods" tests/golden/list_methods.c $LIBLAG $LIBLAG $LIBS >"$TMP/log" 2>&1 || cat "$TMP/log"
 "$TMP/list_methods" >"$TMP/rows"
 if [ -n "${BLESS:-}" ] && [ -n "$GSL" ]; then cp "$TMP/rows" "$rows"; fi
 if [ -n "$GSL" ]; then cp "$rows" "$TMP/want"; else sed '/^#ifdef/,/^#endif/d' "$rows" >"$TMP/want"; fi

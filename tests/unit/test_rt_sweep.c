@@ -1,9 +1,11 @@
 /* Plans and samples of sweeps (runtime/sweep): random words against published ones, quantiles against mpmath, each
  * part of a hypercube once, and the values of runs in order. */
-#include <stdio.h>
-
 #include "test_rt_models.h"
 
+#include <stdio.h>
+#include <unistd.h>
+
+#include "sweep/journal.h"
 #include "sweep/sweep_grid.h"
 #include "sweep/sampling.h"
 
@@ -119,6 +121,26 @@ static void test_refused(void **state) {
   }
 }
 
+/* Chunks are read from memory: the file is there for other processes. */
+static void test_journal(void **state) {
+  (void)state;
+  char path[100], why[4400];
+  double row[2] = {1.5, -2}, got[2] = {0, 0};
+  snprintf(path, sizeof path, "/tmp/test_journal.%ld", (long)getpid());
+  Journal j = {.chunks = 3, .size = 2, .signature = 7};
+  assert_int_equal(lag_journal_open(&j, path, 0, why, sizeof why), 0);
+  assert_int_equal(lag_journal_put(&j, 1, row, 2), 0);
+  assert_int_equal(lag_journal_flush(&j), 0);
+  lag_journal_close(&j, 0);
+  j = (Journal){.chunks = 3, .size = 2, .signature = 7};
+  assert_int_equal(lag_journal_open(&j, path, 1, why, sizeof why), 0);
+  assert_int_equal(truncate(path, 0), 0);
+  assert_int_equal(lag_journal_get(&j, 1, got, 2), 0);
+  assert_true(got[0] == row[0] && got[1] == row[1]);
+  assert_int_equal(lag_journal_get(&j, 0, got, 2), -1);
+  lag_journal_close(&j, 1);
+}
+
 /* The shortest of 15 and more digits that reads as the same number, by trying them; in all ranges of exponents, whole
  * numbers, hundredths, ends of decades. */
 static void test_number_text(void **state) {
@@ -151,9 +173,9 @@ static void test_number_text(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_philox),    cmocka_unit_test(test_quantile),
-                                     cmocka_unit_test(test_hypercube), cmocka_unit_test(test_random),
-                                     cmocka_unit_test(test_grids),     cmocka_unit_test(test_samples),
-                                     cmocka_unit_test(test_refused),   cmocka_unit_test(test_number_text)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_philox),  cmocka_unit_test(test_quantile),    cmocka_unit_test(test_hypercube),
+      cmocka_unit_test(test_random),  cmocka_unit_test(test_grids),       cmocka_unit_test(test_samples),
+      cmocka_unit_test(test_refused), cmocka_unit_test(test_number_text), cmocka_unit_test(test_journal)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,7 +7,7 @@
 #include "test_rt_systems.h"
 
 #include "kernels/band_matrix.h"
-#include "methods/galerkin_rule.h"
+#include "kernels/galerkin_rule.h"
 
 /* ---- Digits */
 

@@ -53,6 +53,9 @@ near("a step of 0.1 is coarser", abs(spring.run("free", until=1, method="rk4", s
 ok("... and has errors", abs(spring.run("free", until=1, method="rk4", step=0.1)["x"][-1] - np.cos(2)) > 1e-7)
 c, s = np.cos(10), np.sin(10)
 near("the tangent of the flow", spring.run("free", until=5, tangent=True).tangent, [[c, s / 2], [-2 * s, c]], 1e-9)
+r = spring.run("free", times=[0.5, 1.0], sensitivity=("k", "x(0)"))  # x = cos(wt), w^2 = k/m = 4
+near("derivatives by a parameter", r.sensitivity["k"]["x"], -r.t * np.sin(2 * r.t) / 4, 1e-9)
+near("... and by a start", r.sensitivity["x(0)"]["x"], np.cos(2 * r.t), 1e-9)
 r = spring.run("free", {"x'": 2}, until=1)
 near("a start by its primed name", r["x"], np.cos(2 * r.t) + np.sin(2 * r.t), 1e-9)
 near("rates of many states", spring.rhs(0, [[1, 2], [3, 4]], k=5), [[2, -5], [4, -15]], 1e-14)

@@ -1,0 +1,244 @@
+/* Equations of states of rest and of periodic motions over a parameter (branch_problems.h). */
+#include "analysis/branch_problems.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- States of rest */
+
+/* Component of the state that unknown i is. */
+static int component(const RestBranch *r, int i) { return i < r->flow.nq ? i : r->flow.nq + i; }
+
+/* Unknowns u[cols] become the state and the parameter. */
+static int place_rest(void *of, const double *u) {
+  RestBranch *r = of;
+  for (int i = 0; i < r->n; i++) r->y[component(r, i)] = u[i] * r->unit[i];
+  r->parameter = u[r->n] * r->parameter_unit;
+  int rc = lag_flow_set(&r->flow, r->name, r->parameter);
+  rc = rc ? rc : lag_flow_rates(&r->flow, r->flow.t0, r->y, r->rates);
+  return rc || lag_not_finite(2 * r->flow.nq + r->n - r->flow.nq, r->rates) >= 0 ? LAG_EDOMAIN : LAG_OK;
+}
+
+/* out[n] := accelerations and rates of states at the present state and parameter. */
+static int balance(RestBranch *r, double *out) {
+  int nq = r->flow.nq, rc = lag_flow_rates(&r->flow, r->flow.t0, r->y, r->rates);
+  memcpy(out, r->rates + nq, (size_t)r->n * sizeof *out);
+  return rc;
+}
+
+/* Column k of J by central differences of order 4, of states and of the parameter alike. */
+static int column(RestBranch *r, int k, double *J) {
+  static const double weight[] = {2.0 / 3, -1.0 / 12};
+  const double part = 0x1p-10;
+  int rc = LAG_OK;
+  double was = k < r->n ? r->y[component(r, k)] : r->parameter;
+  for (int e = 0; e < 4 && rc == LAG_OK; e++) {
+    int j = e / 2 + 1, side = e % 2 ? 1 : -1;
+    double at = was + side * j * part * (k < r->n ? r->unit[k] : r->parameter_unit);
+    if (k < r->n) r->y[component(r, k)] = at;
+    else rc = lag_flow_set(&r->flow, r->name, at);
+    rc = rc ? rc : balance(r, r->up);
+    for (int i = 0; i < r->n && rc == LAG_OK; i++) J[i * r->cols + k] += side * weight[j - 1] * r->up[i] / part;
+  }
+  if (k < r->n) r->y[component(r, k)] = was;
+  else rc = rc ? rc : lag_flow_set(&r->flow, r->name, was);
+  return rc;
+}
+
+static int rest_system(void *of, double *J, double *b) {
+  RestBranch *r = of;
+  int n = r->n, cols = r->cols, rc = balance(r, r->down);
+  memset(J, 0, (size_t)(n * cols) * sizeof *J);
+  for (int k = 0; k < cols && rc == LAG_OK; k++) rc = column(r, k, J);
+  for (int i = 0; i < n && rc == LAG_OK; i++) {
+    double size = 0;
+    for (int k = 0; k < cols; k++) size = fmax(size, fabs(J[i * cols + k]));
+    if (r->row[i] == 0.0) r->row[i] = size > 0 ? size : 1;
+  }
+  for (int i = 0; i < n && rc == LAG_OK; i++) {
+    for (int k = 0; k < cols; k++) J[i * cols + k] /= r->row[i];
+    b[i] = -r->down[i] / r->row[i];
+  }
+  return rc;
+}
+
+static int rest_spectrum(void *of, Spectrum *s) {
+  RestBranch *r = of;
+  int n = r->flow.n, nq = r->flow.nq;
+  double *J = r->J;
+  memset(J, 0, (size_t)(n * n) * sizeof *J);
+  for (int i = 0; i < nq; i++) J[i * n + nq + i] = 1;
+  int rc = lag_fine_jacobian(&r->flow.probe->pb, NULL, r->flow.t0, r->y, J + nq * n, r->flow.linear);
+  s->n = n;
+  return rc ? rc : r->algebra->general(n, J, s->re, s->im, r->v, r->v + n * n, r->v + 2 * n * n);
+}
+
+/* y := the state of rest next to the start, at the parameter's first value. */
+static int find_rest(RestBranch *r) {
+  Equilibrium rest = {0};
+  int rc = lag_flow_set(&r->flow, r->name, r->parameter);
+  if (rc) return rc;
+  int found = lag_equilibrium_find(&rest, r->flow.probe, r->algebra);
+  if (found > 0) memcpy(r->y, rest.y, (size_t)r->flow.n * sizeof *r->y);
+  lag_equilibrium_free(&rest);
+  if (found > 0) return LAG_OK;
+  snprintf(
+      r->flow.message, sizeof r->flow.message,
+      "no state of rest found near the start: start near one: name=VALUE; for periodic motions write about how long "
+      "they take: --guess T");
+  return LAG_EDOMAIN;
+}
+
+static int refuse(RestBranch *r, const char *words) {
+  snprintf(r->flow.message, sizeof r->flow.message, "%s", words);
+  return LAG_EMETHOD;
+}
+
+int lag_rest_branch_open(RestBranch *r, lag_sim *like, const lag_algebra *algebra, const char *name, double value,
+                         double size) {
+  const lag_model *m = like->scene->model;
+  size_t n = (size_t)(like->pb.nq + like->pb.nz), all = (size_t)like->pb.n;
+  *r = (RestBranch){
+      .algebra = algebra, .n = (int)n, .cols = (int)n + 1, .name = name, .parameter = value, .parameter_unit = size};
+  int rc = lag_flow_open(&r->flow, like);
+  if (rc) return rc;
+  if (m->constraints)
+    return refuse(r, "states of rest with constraints are not continued yet: write coordinates that "
+                     "obey them, or continue periodic motions: --guess T");
+  if (r->flow.forced)
+    return refuse(r, "the scene depends on time, so that nothing rests: continue its periodic motions: "
+                     "--guess T");
+  double **const parts[] = {&r->unit, &r->row, &r->y, &r->rates, &r->up, &r->down, &r->J, &r->v, &r->room};
+  const size_t sizes[] = {n, n, all, all, n, n, all * all, 3 * all * all, 2 * all};
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&r->pool, sizes[i]);
+  if (r->pool.failed) return refuse(r, "out of memory"), LAG_ENOMEM;
+  if ((rc = find_rest(r)) != LAG_OK) return rc;
+  for (int i = 0; i < r->n; i++) {
+    int at = component(r, i);
+    r->unit[i] = lag_difference_scale(&r->flow.probe->pb, r->y, at);
+  }
+  r->problem = (BranchProblem){.of = r,
+                               .rows = r->n,
+                               .cols = r->cols,
+                               .place = place_rest,
+                               .system = rest_system,
+                               .spectrum = rest_spectrum,
+                               .pairs = (lag_facts(&r->flow.probe->pb) & LAG_CONSERVES_ENERGY) != 0};
+  return LAG_OK;
+}
+
+void lag_rest_branch_free(RestBranch *r) {
+  lag_flow_free(&r->flow);
+  lag_pool_free(&r->pool);
+}
+
+void lag_rest_branch_unknowns(const RestBranch *r, double *u) {
+  for (int i = 0; i < r->n; i++) u[i] = r->y[component(r, i)] / r->unit[i];
+  u[r->n] = r->parameter / r->parameter_unit;
+}
+
+/* ---- Periodic motions */
+
+/* y[n] := the state at the Hopf point, moved along the real part of the mode with frequency *w; returns the
+ * component that moves most, by `part` of its size. */
+static int along_mode(RestBranch *r, double part, double *y, double *w) {
+  int n = r->flow.n, k = 0, most = 0;
+  double *re = r->room, *im = re + n, size = 0;
+  Spectrum s = {0, re, im};
+  if (rest_spectrum(r, &s)) return -1;
+  for (int i = 0; i < n; i++) /* the pair nearest to the axis */
+    if (im[i] > 0 && (im[k] <= 0 || fabs(re[i]) < fabs(re[k]))) k = i;
+  *w = im[k];
+  for (int i = 0; i < n; i++) {
+    double moved = fabs(r->v[i * n + k]) / lag_difference_scale(&r->flow.probe->pb, r->y, i);
+    if (moved > size) most = i, size = moved;
+  }
+  for (int i = 0; i < n; i++) y[i] = r->y[i] + part / size * r->v[i * n + k];
+  return most;
+}
+
+int lag_hopf_orbit(RestBranch *r, const BranchPoint *at, PeriodicOrbit *o, lag_sim **like, BranchProblem *p,
+                   double **d) {
+  const double part = 0.02, larger = 10; /* first amplitude; units of the branch in it */
+  double w = 0, *y = lag_pool_doubles(&r->pool, (size_t)r->flow.n);
+  if (!y) return LAG_ENOMEM;
+  if (place_rest(r, at->u)) return 0;
+  int most = along_mode(r, part, y, &w), n = r->flow.n;
+  if (most < 0 || !(w > 0) || !(*like = lag_flow_sim(&r->flow, r->flow.t0, y))) return *like ? 0 : LAG_ENOMEM;
+  (*like)->scene = r->flow.like->scene;
+  *o = (PeriodicOrbit){.nheld = 1, .led = -1, .name = r->name, .parameter = r->parameter,
+                       .parameter_unit = r->parameter_unit, .continues = 1};
+  o->held[0] = (OrbitHold){.kind = ORBIT_STATE, .of = most, .value = y[most]};
+  int rc = lag_orbit_open(o, *like, r->algebra, 2 * acos(-1) / w, 0);
+  rc = rc ? 0 : lag_flow_set(&o->flow, o->name, o->parameter) ? 0 : lag_orbit_solve(o);
+  if (rc != 1) return rc == LAG_ENOMEM ? rc : 0;
+  o->nheld = 0;
+  for (int i = 0; i < n; i++) o->unit[i] *= larger;
+  o->pairing = NAN;
+  lag_orbit_branch(p, o);
+  *d = lag_pool_doubles(&o->pool, (size_t)o->cols);
+  if (!*d) return LAG_ENOMEM;
+  for (int s = 0; s < o->m; s++)
+    for (int i = 0; i < n; i++) (*d)[s * n + i] = (o->y[s * n + i] - r->y[i]) / o->unit[i];
+  return 1;
+}
+
+void lag_orbit_branch_unknowns(const PeriodicOrbit *o, double *u) {
+  int n = o->n, k = o->m * n;
+  for (int i = 0; i < k; i++) u[i] = o->y[i] / o->unit[i % n];
+  if (!o->flow.forced) u[k++] = o->T / o->time;
+  for (int j = 0; j < o->ngroup; j++) u[k++] = o->shift[j];
+  u[k] = o->parameter / o->parameter_unit;
+}
+
+/* Whether the motion has become a state of rest, where its period means nothing. */
+static int shrinks(PeriodicOrbit *o) {
+  const double least = 1e-3;
+  double most = 0;
+  if (o->flow.forced || lag_flow_rates(&o->flow, o->flow.t0, o->y, o->x)) return 0;
+  for (int i = 0; i < o->n; i++) most = fmax(most, fabs(o->x[i]) * o->time / o->unit[i]);
+  return most < least;
+}
+
+static int place_orbit(void *of, const double *u) {
+  const double longest = 30; /* near a homoclinic motion the period grows without limit */
+  PeriodicOrbit *o = of;
+  int n = o->n, k = o->m * n;
+  for (int i = 0; i < k; i++) o->y[i] = u[i] * o->unit[i % n];
+  if (!o->flow.forced) o->T = u[k++] * o->time;
+  for (int j = 0; j < o->ngroup; j++) o->shift[j] = u[k++];
+  if (!(o->T > 0 && o->T < longest * o->time)) return LAG_EDOMAIN;
+  if (lag_orbit_set_parameter(o, u[k] * o->parameter_unit) || shrinks(o)) return LAG_EDOMAIN;
+  return lag_orbit_shoot(o, 1) ? LAG_EDOMAIN : LAG_OK;
+}
+
+static int orbit_system(void *of, double *J, double *b) {
+  PeriodicOrbit *o = of;
+  int rc = lag_orbit_assemble(o);
+  memcpy(J, o->A, (size_t)o->rows * (size_t)o->cols * sizeof *J);
+  memcpy(b, o->b, (size_t)o->rows * sizeof *b);
+  return rc;
+}
+
+static int orbit_spectrum(void *of, Spectrum *s) {
+  PeriodicOrbit *o = of;
+  int rc = lag_orbit_multipliers(o);
+  s->n = rc ? 0 : o->nmultipliers;
+  memcpy(s->re, o->re, (size_t)s->n * sizeof *s->re);
+  memcpy(s->im, o->im, (size_t)s->n * sizeof *s->im);
+  return rc;
+}
+
+void lag_orbit_branch(BranchProblem *p, PeriodicOrbit *o) {
+  lag_orbit_count(o);
+  *p = (BranchProblem){.of = o,
+                       .rows = o->rows,
+                       .cols = o->cols,
+                       .maps = 1,
+                       .pairs = isfinite(o->pairing),
+                       .place = place_orbit,
+                       .system = orbit_system,
+                       .spectrum = orbit_spectrum};
+}

@@ -1,0 +1,291 @@
+/* Pseudo-arclength continuation (continuation.h). */
+#include "analysis/continuation.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "lag.h"
+#include "numeric/singular_values.h"
+
+enum { MOST_NEWTON = 12, MOST_LOCATE = 60 };
+
+static const double least_rank = 1e-8; /* singular values below this part of the first count as 0 */
+
+typedef struct Walk {
+  Branch *b;
+  const BranchProblem *p;
+  int rows, cols; /* of the equations with the row across the tangent */
+  double *J, *rhs, *V, *sigma, *x;
+  int newton;  /* steps of the last correction */
+  double made; /* arclength of the last step */
+} Walk;
+
+static double dot(int n, const double *a, const double *b) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+static int open_walk(Walk *w, Branch *b, const BranchProblem *p) {
+  size_t rows = (size_t)p->rows + 1, cols = (size_t)p->cols;
+  *w = (Walk){.b = b, .p = p, .rows = p->rows + 1, .cols = p->cols};
+  double **const parts[] = {&w->J, &w->rhs, &w->V, &w->sigma, &w->x};
+  const size_t sizes[] = {rows * cols, rows, cols * cols, cols, cols};
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&b->pool, sizes[i]);
+  return b->pool.failed ? LAG_ENOMEM : LAG_OK;
+}
+
+/* Newton's steps from u, each across the direction d: u := a solution. 0: none. */
+static int correct(Walk *w, double *u, const double *d) {
+  double last = HUGE_VAL;
+  for (w->newton = 0; w->newton < MOST_NEWTON; w->newton++) {
+    if (w->p->place(w->p->of, u) || w->p->system(w->p->of, w->J, w->rhs)) return 0;
+    memcpy(w->J + w->p->rows * w->cols, d, (size_t)w->cols * sizeof *d);
+    w->rhs[w->p->rows] = 0;
+    lag_singular_values(w->rows, w->cols, w->J, w->V, w->sigma);
+    lag_least_norm(w->rows, w->cols, w->J, w->V, w->sigma, least_rank, 0, w->rhs, w->x);
+    double size = sqrt(dot(w->cols, w->x, w->x));
+    if (!(size < 1)) return 0;
+    for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
+    if (size < 1e-12 || (size < 1e-9 && size > 0.3 * last)) return w->p->place(w->p->of, u) == LAG_OK;
+    if (w->newton > 3 && size > 0.9 * last) return 0;
+    last = size;
+  }
+  return 0;
+}
+
+/* Test functions from eigenvalues: products that vanish where one is 0 (a multiplier 1), or a multiplier -1; growth
+ * of the complex pair that is nearest to the border. */
+static void judge(const BranchProblem *p, BranchPoint *at) {
+  const Spectrum *s = &at->spectrum;
+  const double border = 1e-7;
+  at->zero = at->minus = 1;
+  at->pair = HUGE_VAL;
+  at->unstable = 0;
+  for (int i = 0; i < s->n; i++) {
+    double growth = p->maps ? log(fmax(hypot(s->re[i], s->im[i]), 1e-300)) : s->re[i], size = hypot(s->re[i], s->im[i]);
+    at->unstable += growth > border * fmax(1, p->maps ? 1 : size);
+    if (s->im[i] > 0 && fabs(growth) < fabs(at->pair)) at->pair = growth;
+    if (s->im[i] < 0) continue; /* with its conjugate */
+    double re = s->re[i] - (p->maps ? 1 : 0);
+    at->zero *= s->im[i] > 0 ? re * re + s->im[i] * s->im[i] : re;
+    at->minus *= s->im[i] > 0 ? (s->re[i] + 1) * (s->re[i] + 1) + s->im[i] * s->im[i] : s->re[i] + 1;
+  }
+}
+
+/* The tangent of the branch at the solution that is placed: the unit vector that the equations leave free, with a
+ * positive part along d. LAG_ESINGULAR: there are several. */
+static int find_tangent(Walk *w, const double *d, double *tangent) {
+  if (w->p->system(w->p->of, w->J, w->rhs)) return LAG_EDOMAIN;
+  lag_singular_values(w->p->rows, w->cols, w->J, w->V, w->sigma);
+  int free = 0;
+  for (int i = 0; i < w->cols; i++) free += w->sigma[i] <= least_rank * w->sigma[0];
+  double sign = 0;
+  for (int i = 0; i < w->cols; i++) sign += w->V[i * w->cols + w->cols - 1] * d[i];
+  for (int i = 0; i < w->cols; i++) tangent[i] = (sign < 0 ? -1 : 1) * w->V[i * w->cols + w->cols - 1];
+  return free > 1 ? LAG_ESINGULAR : LAG_OK;
+}
+
+/* A point at the solution u that is placed. NULL: no memory, or no values. */
+static BranchPoint *make_point(Walk *w, const double *u, const double *d) {
+  size_t cols = (size_t)w->cols, room = sizeof(BranchPoint) / sizeof(double) + 1;
+  BranchPoint *at = (BranchPoint *)(void *)lag_pool_doubles(&w->b->pool, room + 4 * cols);
+  if (!at) return NULL;
+  at->u = (double *)(void *)at + room;
+  at->tangent = at->u + cols;
+  at->spectrum = (Spectrum){0, at->tangent + cols, at->tangent + 2 * cols};
+  memcpy(at->u, u, cols * sizeof *u);
+  int rc = find_tangent(w, d, at->tangent);
+  if (rc == LAG_EDOMAIN || w->p->spectrum(w->p->of, &at->spectrum)) return NULL;
+  at->fold = at->tangent[cols - 1];
+  at->kind = BRANCH_REGULAR;
+  judge(w->p, at);
+  return at;
+}
+
+static void append(Branch *b, BranchPoint *at) {
+  if (b->last) b->last->next = at;
+  else b->first = at;
+  b->last = at;
+  b->npoints++;
+}
+
+/* The point at arclength s from `from` along its tangent. NULL: there is none. */
+static BranchPoint *point_at(Walk *w, const BranchPoint *from, double s) {
+  double *u = lag_pool_doubles(&w->b->pool, (size_t)w->cols);
+  if (!u) return NULL;
+  for (int i = 0; i < w->cols; i++) u[i] = from->u[i] + s * from->tangent[i];
+  return correct(w, u, from->tangent) ? make_point(w, u, from->tangent) : NULL;
+}
+
+/* ---- Bifurcations between two points */
+
+static double test_of(const BranchPoint *at, BranchKind kind) {
+  return kind == BRANCH_FOLD       ? at->fold
+         : kind == BRANCH_POINT    ? at->zero
+         : kind == BRANCH_DOUBLING ? at->minus
+                                   : at->pair;
+}
+
+static int changes_sign(double a, double b) { return (a < 0 && b > 0) || (a > 0 && b < 0); }
+
+/* What lies between two points; BRANCH_REGULAR: nothing, or nothing more after `after`. */
+static BranchKind between(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b) {
+  int fold = changes_sign(a->fold, b->fold), zero = changes_sign(a->zero, b->zero),
+      minus = p->maps && changes_sign(a->minus, b->minus);
+  if (fold) return BRANCH_FOLD;
+  if (minus) return BRANCH_DOUBLING;
+  if (zero) return BRANCH_POINT;
+  if (abs(a->unstable - b->unstable) < 2) return BRANCH_REGULAR;
+  if (p->pairs) return BRANCH_COLLISION;
+  return changes_sign(a->pair, b->pair) ? p->maps ? BRANCH_TORUS : BRANCH_HOPF : BRANCH_REGULAR;
+}
+
+/* An interval of arclength at whose ends a test function has values of different sign. */
+typedef struct Bracket {
+  double a, b, fa, fb;
+  int side; /* the end that moved last */
+} Bracket;
+
+/* Takes the value f at s; of an end that stays twice half the value, by the method of Illinois (M. Dowell, P.
+ * Jarratt, BIT 11 (1971) 168). */
+static void narrow(Bracket *r, double s, double f) {
+  int upper = changes_sign(r->fa, f);
+  if (upper) r->b = s, r->fb = f, r->fa /= r->side > 0 ? 2 : 1;
+  else r->a = s, r->fa = f, r->fb /= r->side < 0 ? 2 : 1;
+  r->side = upper ? 1 : -1;
+}
+
+/* The point of this kind between `from` and `far`, which is at arclength `to`. Where only the number of growing
+ * eigenvalues tells, by bisection. */
+static BranchPoint *locate(Walk *w, const BranchPoint *from, const BranchPoint *far, double to, BranchKind kind) {
+  int counts = kind == BRANCH_COLLISION;
+  Bracket r = {0, to, counts ? -1 : test_of(from, kind), counts ? 1 : test_of(far, kind), 0};
+  double least = HUGE_VAL;
+  BranchPoint *best = NULL;
+  for (int k = 0; k < MOST_LOCATE && r.b - r.a > 1e-13 * to; k++) {
+    double s = counts ? (r.a + r.b) / 2 : (r.a * r.fb - r.b * r.fa) / (r.fb - r.fa);
+    if (!(s > r.a && s < r.b)) s = (r.a + r.b) / 2;
+    BranchPoint *at = point_at(w, from, s);
+    if (!at) break;
+    double f = !counts ? test_of(at, kind) : at->unstable == from->unstable ? -1 : 1;
+    if (counts || fabs(f) < least) best = at, least = fabs(f);
+    if (f == 0.0) break;
+    narrow(&r, s, f);
+    if (counts) r.fa = -1, r.fb = 1;
+  }
+  if (!best) return NULL;
+  best->kind = kind;
+  double size = 0; /* at a branch point the equations leave two directions free: that of the secant is this branch's */
+  for (int i = 0; i < w->cols; i++) size += (far->u[i] - from->u[i]) * (far->u[i] - from->u[i]);
+  for (int i = 0; i < w->cols && kind != BRANCH_FOLD; i++) best->tangent[i] = (far->u[i] - from->u[i]) / sqrt(size);
+  return best;
+}
+
+/* ---- The walk */
+
+/* Whether the branch has come back to its first point. */
+static int is_closed(const Branch *b, const BranchPoint *at, double step, int cols) {
+  double d = 0;
+  for (int i = 0; i < cols; i++) d += (at->u[i] - b->first->u[i]) * (at->u[i] - b->first->u[i]);
+  return b->npoints > 6 && sqrt(d) < 0.6 * step && dot(cols, at->tangent, b->first->tangent) > 0.9;
+}
+
+/* The point where the branch leaves the range, between `from` and the one at arclength `to`. */
+static BranchPoint *at_border(Walk *w, const BranchPoint *from, const BranchPoint *far, const BranchLimits *l) {
+  int last = w->cols - 1;
+  double border = far->u[last] > l->high ? l->high : l->low;
+  double part = (border - from->u[last]) / (far->u[last] - from->u[last]);
+  double *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols), *d = u + w->cols;
+  if (!u) return NULL;
+  for (int i = 0; i < w->cols; i++) u[i] = from->u[i] + part * (far->u[i] - from->u[i]);
+  u[last] = border;
+  d[last] = 1;
+  return correct(w, u, d) ? make_point(w, u, far->tangent) : NULL;
+}
+
+static int outside(const BranchPoint *at, int last, const BranchLimits *l) {
+  return at->u[last] > l->high * (1 + 4 * DBL_EPSILON) || at->u[last] < l->low - 4 * DBL_EPSILON * fabs(l->low);
+}
+
+/* Makes the next step; its length adapts to the number of Newton's steps and the turn of the tangent. NULL: none is
+ * short enough. */
+static BranchPoint *next_point(Walk *w, double *step, double longest) {
+  const BranchPoint *from = w->b->last;
+  for (; *step > 1e-7; *step /= 2) {
+    BranchPoint *at = point_at(w, from, *step);
+    if (!at) continue;
+    double turn = dot(w->cols, at->tangent, from->tangent);
+    if (turn < 0.9) continue;
+    int easy = w->newton <= 4 && turn > 0.98;
+    double made = *step;
+    *step = easy ? fmin(1.4 * made, longest) : made;
+    w->made = made;
+    return at;
+  }
+  return NULL;
+}
+
+static int first_point(Walk *w, const double *u0, const double *d, int sign) {
+  double *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols), *along = u + w->cols;
+  if (!u) return LAG_ENOMEM;
+  memcpy(u, u0, (size_t)w->cols * sizeof *u);
+  if (d) memcpy(along, d, (size_t)w->cols * sizeof *d);
+  else along[w->cols - 1] = sign;
+  if (!correct(w, u, along)) return LAG_EDOMAIN;
+  BranchPoint *at = make_point(w, u, along);
+  if (!at) return w->b->pool.failed ? LAG_ENOMEM : LAG_EDOMAIN;
+  if (!d && find_tangent(w, along, at->tangent) == LAG_ESINGULAR) return LAG_ESINGULAR;
+  if (d) memcpy(at->tangent, d, (size_t)w->cols * sizeof *d); /* at a branch point there are several */
+  append(w->b, at);
+  return LAG_OK;
+}
+
+int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const double *d, int sign,
+                      const BranchLimits *limits) {
+  Walk w;
+  *b = (Branch){.end = BRANCH_AT_NUMBER};
+  int rc = open_walk(&w, b, p), last = p->cols - 1;
+  rc = rc ? rc : first_point(&w, u0, d, sign);
+  for (double step = limits->step; rc == LAG_OK && b->npoints < limits->most;) {
+    const BranchPoint *from = b->last;
+    BranchPoint *at = next_point(&w, &step, limits->longest);
+    if (!at) return b->end = b->pool.failed ? BRANCH_NO_MEMORY : BRANCH_LOST, LAG_OK;
+    /* from a branch point, where test functions are 0 but for rounding, nothing is looked for in the first step */
+    BranchKind kind = d && b->npoints == 1 ? BRANCH_REGULAR : between(p, from, at);
+    BranchPoint *found = kind == BRANCH_REGULAR ? NULL : locate(&w, from, at, w.made, kind);
+    if (found && !outside(found, last, limits)) append(b, found);
+    if (outside(at, last, limits)) {
+      if ((at = at_border(&w, from, at, limits)) != NULL) append(b, at);
+      return b->end = BRANCH_AT_RANGE, LAG_OK;
+    }
+    append(b, at);
+    if (is_closed(b, at, step, p->cols)) return b->end = BRANCH_CLOSED, LAG_OK;
+  }
+  return rc;
+}
+
+void lag_branch_free(Branch *b) { lag_pool_free(&b->pool); }
+
+int lag_branch_other(const BranchProblem *p, const BranchPoint *at, double *d) {
+  Walk w;
+  Branch scratch = {0};
+  int cols = p->cols, rc = open_walk(&w, &scratch, p);
+  rc = rc ? rc : p->place(p->of, at->u) || p->system(p->of, w.J, w.rhs) ? LAG_EDOMAIN : LAG_OK;
+  if (rc == LAG_OK) {
+    lag_singular_values(p->rows, cols, w.J, w.V, w.sigma);
+    double size = 0, a = 0, b = 0; /* in the plane of the last two directions, across the tangent */
+    for (int i = 0; i < cols; i++) {
+      a += w.V[i * cols + cols - 2] * at->tangent[i];
+      b += w.V[i * cols + cols - 1] * at->tangent[i];
+    }
+    for (int i = 0; i < cols; i++) {
+      d[i] = b * w.V[i * cols + cols - 2] - a * w.V[i * cols + cols - 1];
+      size += d[i] * d[i];
+    }
+    for (int i = 0; i < cols; i++) d[i] /= sqrt(size);
+  }
+  lag_branch_free(&scratch);
+  return rc;
+}

@@ -1,0 +1,70 @@
+/* Branches of solutions over a parameter, by pseudo-arclength continuation: predictor along the tangent, Newton's
+ * steps across it (H. B. Keller, in: Applications of Bifurcation Theory (1977) 359; E. Doedel, H. B. Keller, J. P.
+ * Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493, DOI 10.1142/S0218127491000397). Enters: a solution and the
+ * equations about it; leaves: points along its branch, with folds and bifurcations located. */
+#pragma once
+
+#include "analysis/memory_pool.h"
+
+/* Eigenvalues that decide on stability: of a state of rest rates, of a periodic motion multipliers. */
+typedef struct Spectrum {
+  int n;
+  double *re, *im;
+} Spectrum;
+
+/* The equations: u[cols] are unknowns in units, of which the last is the parameter; rows of rank cols - 1 at regular
+ * points. */
+typedef struct BranchProblem {
+  void *of;
+  int rows, cols;
+  int maps;  /* 1: eigenvalues are multipliers, with stability inside the unit circle; 0: rates */
+  int pairs; /* 1: eigenvalues come in pairs, as of Hamilton's equations */
+  int (*place)(void *of, const double *u); /* takes the unknowns. LAG_OK, or > 0: no values there */
+  /* J[rows cols] and b[rows], the negative residual, at the unknowns that are placed */
+  int (*system)(void *of, double *J, double *b);
+  int (*spectrum)(void *of, Spectrum *s);
+} BranchProblem;
+
+typedef enum BranchKind {
+  BRANCH_REGULAR,
+  BRANCH_FOLD,
+  BRANCH_POINT,
+  BRANCH_DOUBLING,
+  BRANCH_HOPF,
+  BRANCH_TORUS,
+  BRANCH_COLLISION
+} BranchKind;
+
+typedef struct BranchPoint {
+  struct BranchPoint *next;
+  double *u, *tangent; /* [cols] */
+  Spectrum spectrum;
+  int unstable;                   /* number of eigenvalues that grow */
+  double fold, zero, minus, pair; /* test functions, and the growth of the complex pair nearest to the border */
+  BranchKind kind;
+} BranchPoint;
+
+/* Why a branch ends. */
+typedef enum BranchEnd { BRANCH_AT_RANGE, BRANCH_AT_NUMBER, BRANCH_CLOSED, BRANCH_LOST, BRANCH_NO_MEMORY } BranchEnd;
+
+typedef struct Branch {
+  Pool pool;
+  BranchPoint *first, *last;
+  int npoints;
+  BranchEnd end;
+} Branch;
+
+typedef struct BranchLimits {
+  double low, high;     /* range of the parameter, in units */
+  double step, longest; /* the first step, and the longest */
+  int most;             /* points */
+} BranchLimits;
+
+/* Follows the branch from u0[cols], a solution up to Newton's steps, in direction d[cols] (NULL: with the last
+ * unknown growing, sign 1, or falling, -1), until it leaves the range. Free in any case. LAG_OK, or a status: u0 is no
+ * solution (LAG_EDOMAIN), or solutions beside it form a family (LAG_ESINGULAR). */
+int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const double *d, int sign,
+                      const BranchLimits *limits);
+void lag_branch_free(Branch *b);
+/* d[cols] := the direction of another branch that crosses this one at a branch point. LAG_OK, or a status. */
+int lag_branch_other(const BranchProblem *p, const BranchPoint *at, double *d);

@@ -1,0 +1,282 @@
+/* Floquet multipliers of a periodic motion (periodic_orbit.h): the eigenvalues of its derivative over a period, in
+ * the space that is left of the tangent space of constraints when the levels of conserved charges, the direction of
+ * motion and those of symmetries are taken out: along these the multipliers are 1, in Jordan blocks, whose eigenvalues
+ * would have half of the digits. */
+#include <math.h>
+#include <string.h>
+
+#include "analysis/orthonormalise.h"
+#include "analysis/periodic_orbit.h"
+#include "numeric/dense.h"
+#include "numeric/singular_values.h"
+
+/* A basis of vectors, the columns of B[n * k], orthonormal. */
+typedef struct Basis {
+  int n, k;
+  double *B;
+} Basis;
+
+/* The columns of C[n * c] in the coordinates of the basis := X[k * c]. */
+static void coordinates(const Basis *b, int c, const double *C, double *X) {
+  for (int i = 0; i < b->k; i++)
+    for (int j = 0; j < c; j++) {
+      double sum = 0;
+      for (int r = 0; r < b->n; r++) sum += b->B[r * b->k + i] * C[r * c + j];
+      X[i * c + j] = sum;
+    }
+}
+
+/* The basis := its part orthogonal to the columns of C[n * c]. Singular values below `least` of the largest count as
+ * 0. */
+static int take_out(Pool *pool, Basis *b, int c, const double *C) {
+  const double least = 1e-7;
+  int k = b->k, rank = 0;
+  double *X = lag_pool_doubles(pool, (size_t)(k * c) + 1), *R = lag_pool_doubles(pool, (size_t)(k * c) + 1);
+  double *V = lag_pool_doubles(pool, (size_t)(k * k) + 1), *sigma = lag_pool_doubles(pool, (size_t)k + 1),
+         *left = lag_pool_doubles(pool, (size_t)(b->n * k) + 1);
+  if (pool->failed) return LAG_ENOMEM;
+  coordinates(b, c, C, X);
+  for (int i = 0; i < k; i++)
+    for (int j = 0; j < c; j++) R[j * k + i] = X[i * c + j];
+  lag_singular_values(c, k, R, V, sigma);
+  while (rank < k && sigma[rank] > least) rank++;
+  for (int r = 0; r < b->n; r++)
+    for (int j = rank; j < k; j++)
+      for (int i = 0; i < k; i++) left[r * (k - rank) + j - rank] += b->B[r * k + i] * V[i * k + j];
+  b->B = left;
+  b->k = k - rank;
+  return LAG_OK;
+}
+
+/* Scales the columns of C[n * c] to unit length; those that vanish stay. */
+static void normalise(int n, int c, double *C) {
+  for (int j = 0; j < c; j++) {
+    double size = 0;
+    for (int r = 0; r < n; r++) size += C[r * c + j] * C[r * c + j];
+    for (int r = 0; r < n && size > 0; r++) C[r * c + j] /= sqrt(size);
+  }
+}
+
+/* The basis of the tangent space at y, t, in units. */
+static int tangent_basis(Pool *pool, PeriodicOrbit *o, double t, const double *y, Basis *b) {
+  int n = o->n;
+  lag_problem *pb = &o->flow.probe->pb;
+  *b = (Basis){n, n, lag_pool_doubles(pool, (size_t)(n * n))};
+  double *Y = lag_pool_doubles(pool, (size_t)(n * n)), *V = lag_pool_doubles(pool, (size_t)(n * n)),
+         *sigma = lag_pool_doubles(pool, (size_t)n),
+         *scratch = lag_pool_doubles(pool, lag_tangent_projection_size(pb) + 1);
+  if (pool->failed) return LAG_ENOMEM;
+  for (int i = 0; i < n; i++) b->B[i * n + i] = Y[i * n + i] = 1;
+  if (!pb->model->constraints) return LAG_OK;
+  int rc = lag_tangent_project(pb, t, y, n, Y, scratch);
+  for (int e = 0; e < n * n; e++) Y[e] *= o->unit[e % n] / o->unit[e / n];
+  lag_singular_values(n, n, Y, V, sigma);
+  for (b->k = 0; b->k < n && sigma[b->k] > 1e-7 * sigma[0];) b->k++;
+  for (int r = 0; r < n; r++)
+    for (int j = 0; j < b->k; j++) b->B[r * b->k + j] = Y[r * n + j] / sigma[j];
+  return rc;
+}
+
+/* At y, t: L[n c] := the gradients of conserved charges, R[n *nr] := the direction of motion and those of
+ * symmetries, in units and of length 1. */
+static int invariants(PeriodicOrbit *o, double t, const double *y, double *L, double *R, int *nr) {
+  int n = o->n, c = o->ncharges, most = c + 1, rc = LAG_OK;
+  double *d = o->x;
+  *nr = 0;
+  for (int k = 0; k < c && rc == LAG_OK; k++) {
+    rc = lag_flow_gradient(&o->flow, o->charge[k], t, y, d);
+    for (int i = 0; i < n; i++) L[i * c + k] = d[i] * o->unit[i];
+  }
+  for (int k = -1; k < c && rc == LAG_OK; k++) {
+    if (k < 0 ? o->flow.forced : o->charge[k] == 0) continue;
+    if (lag_flow_field(&o->flow, k < 0 ? 0 : o->charge[k], t, y, d)) continue;
+    for (int i = 0; i < n; i++) R[i * most + *nr] = d[i] / o->unit[i];
+    ++*nr;
+  }
+  for (int i = 0; i < n; i++) /* rows of *nr elements, one behind the other */
+    for (int j = 0; j < *nr; j++) R[i * *nr + j] = R[i * most + j];
+  normalise(n, c, L);
+  normalise(n, *nr, R);
+  return rc;
+}
+
+/* C[n *nr] := those combinations of its columns along which no charge of L[n c] changes. */
+static int within_levels(Pool *pool, int n, int c, const double *L, int *nr, double *C) {
+  int k = *nr, rank = 0;
+  double *X = lag_pool_doubles(pool, (size_t)(c * k) + 1), *V = lag_pool_doubles(pool, (size_t)(k * k) + 1),
+         *sigma = lag_pool_doubles(pool, (size_t)k + 1), *was = lag_pool_doubles(pool, (size_t)(n * k) + 1);
+  if (pool->failed) return LAG_ENOMEM;
+  for (int i = 0; i < c; i++)
+    for (int j = 0; j < k; j++)
+      for (int r = 0; r < n; r++) X[i * k + j] += L[r * c + i] * C[r * k + j];
+  lag_singular_values(c, k, X, V, sigma);
+  while (rank < k && sigma[rank] > 1e-7) rank++;
+  memcpy(was, C, (size_t)(n * k) * sizeof *C);
+  for (int r = 0; r < n; r++)
+    for (int j = rank; j < k; j++) {
+      C[r * (k - rank) + j - rank] = 0;
+      for (int i = 0; i < k; i++) C[r * (k - rank) + j - rank] += was[r * k + i] * V[i * k + j];
+    }
+  *nr = k - rank;
+  return LAG_OK;
+}
+
+/* The space of other changes at y, t: basis *b; *all: dimension of the tangent space there. */
+static int quotient(Pool *pool, PeriodicOrbit *o, double t, const double *y, Basis *b, int *all) {
+  int n = o->n, nr = 0, rc = tangent_basis(pool, o, t, y, b);
+  double *L = lag_pool_doubles(pool, (size_t)(n * (o->ncharges + 1))),
+         *R = lag_pool_doubles(pool, (size_t)(n * (o->ncharges + 1)));
+  rc = pool->failed ? LAG_ENOMEM : rc;
+  *all = b->k;
+  rc = rc ? rc : invariants(o, t, y, L, R, &nr);
+  rc = rc ? rc : within_levels(pool, n, o->ncharges, L, &nr, R);
+  rc = rc ? rc : take_out(pool, b, o->ncharges, L);
+  return rc ? rc : take_out(pool, b, nr, R);
+}
+
+/* W[k k] := P, the derivative over segment s, from basis a to basis b. The last segment ends with the inverse of what
+ * closes the motion. */
+static int reduced(Pool *pool, const PeriodicOrbit *o, int s, const Basis *a, const Basis *b, double *W) {
+  int n = o->n, k = a->k;
+  double *P = lag_pool_doubles(pool, (size_t)(n * n)), *G = lag_pool_doubles(pool, (size_t)(n * n)),
+         *PB = lag_pool_doubles(pool, (size_t)(n * k) + 1);
+  if (pool->failed) return LAG_ENOMEM;
+  memcpy(P, o->Phi + s * n * n, (size_t)(n * n) * sizeof *P);
+  memcpy(G, o->G, (size_t)(n * n) * sizeof *G);
+  if (s == o->m - 1 && o->ngroup && lag_solve_dense((size_t)n, (size_t)n, G, P)) return LAG_ESINGULAR;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < k; j++)
+      for (int l = 0; l < n; l++) PB[i * k + j] += P[i * n + l] * o->unit[l] / o->unit[i] * a->B[l * k + j];
+  coordinates(b, k, PB, W);
+  return LAG_OK;
+}
+
+static void multiply(int k, const double *A, const double *B, double *AB) {
+  for (int i = 0; i < k; i++)
+    for (int j = 0; j < k; j++) {
+      AB[i * k + j] = 0;
+      for (int l = 0; l < k; l++) AB[i * k + j] += A[i * k + l] * B[l * k + j];
+    }
+}
+
+/* W[k k] := to' W from, with orthogonal matrices; scratch[k k]. */
+static void transform(int k, const double *to, const double *from, double *W, double *scratch) {
+  multiply(k, W, from, scratch);
+  for (int i = 0; i < k; i++)
+    for (int j = 0; j < k; j++) {
+      W[i * k + j] = 0;
+      for (int l = 0; l < k; l++) W[i * k + j] += to[l * k + i] * scratch[l * k + j];
+    }
+}
+
+/* Q[k k] := a reflection along no axis, so that all directions mix, those of parts that do not act on each other,
+ * too. */
+static void reflect(int k, double *Q) {
+  double size = 0, v = 0;
+  for (int i = 0; i < k; i++) size += (1 + 0.31 * i) * (1 + 0.31 * i);
+  for (int i = 0; i < k; i++) {
+    v = 1 + 0.31 * i;
+    for (int j = 0; j < k; j++) Q[i * k + j] = (i == j) - 2 * v * (1 + 0.31 * j) / size;
+  }
+}
+
+/* W[m k k] := Q' W Q, with orthogonal matrices Q that orthogonal iteration makes block triangular: blocks of growth
+ * that differ by 1.5 or more are separated, so that the product of blocks keeps the digits of small multipliers.
+ * growth[k]: logarithms of their growth over a period, in the mean. */
+static int separate(Pool *pool, int m, int k, double *W, double *growth) {
+  enum { ROUNDS = 100, COUNTED = 50 };
+  size_t size = (size_t)(k * k);
+  double *Q = lag_pool_doubles(pool, ((size_t)m + 1) * size), *next = lag_pool_doubles(pool, size);
+  if (pool->failed) return LAG_ENOMEM;
+  reflect(k, Q);
+  for (int round = 0; round < ROUNDS; round++) {
+    if (round) memcpy(Q, Q + (size_t)m * size, size * sizeof *Q);
+    for (int s = 0; s < m; s++) {
+      double *to = Q + (size_t)(s + 1) * size;
+      multiply(k, W + (size_t)s * size, to - size, to);
+      if (lag_orthonormalise(k, k, to, growth, round >= ROUNDS - COUNTED, 0) ||
+          lag_orthonormalise(k, k, to, growth, 0, 0))
+        return LAG_ESINGULAR; /* twice: of a singular W */
+    }
+  }
+  for (int s = 0; s < m; s++)
+    transform(k, Q + (size_t)((s + 1) % m) * size, Q + (size_t)s * size, W + (size_t)s * size, next);
+  for (int i = 0; i < k; i++) growth[i] /= COUNTED;
+  return LAG_OK;
+}
+
+/* re + i im := the eigenvalues of the product of the diagonal blocks from row `first` of W[m k k], c wide. */
+static int block_eigenvalues(Pool *pool, PeriodicOrbit *o, int k, const double *W, int first, int c) {
+  size_t size = (size_t)(c * c);
+  double *M = lag_pool_doubles(pool, 6 * size), *D = M + size, *next = D + size, *v = next + size;
+  if (pool->failed) return LAG_ENOMEM;
+  for (int i = 0; i < c; i++) M[i * c + i] = 1;
+  for (int s = 0; s < o->m; s++) {
+    for (int i = 0; i < c; i++)
+      for (int j = 0; j < c; j++) D[i * c + j] = W[(s * k + first + i) * k + first + j];
+    multiply(c, D, M, next);
+    memcpy(M, next, size * sizeof *M);
+  }
+  return o->algebra->general(c, M, o->re + first, o->im + first, v, v + size, v + 2 * size);
+}
+
+/* re + i im := the eigenvalues of the product of W[m k k]. */
+static int eigenvalues(Pool *pool, PeriodicOrbit *o, int k, double *W) {
+  const double gap = log(1.5);
+  double *growth = lag_pool_doubles(pool, (size_t)k + 1), *own = lag_pool_doubles(pool, (size_t)(o->m * k * k) + 1);
+  if (pool->failed) return LAG_ENOMEM;
+  o->nmultipliers = k;
+  memcpy(own, W, (size_t)(o->m * k * k) * sizeof *W);
+  int rc = k ? separate(pool, o->m, k, W, growth) : LAG_OK;
+  if (rc == LAG_ESINGULAR) return block_eigenvalues(pool, o, k, own, 0, k); /* a slide: multipliers of 0 */
+  for (int first = 0, c; first < k && rc == LAG_OK; first += c) {
+    for (c = 1; first + c < k && growth[first + c - 1] - growth[first + c] < gap;) c++;
+    rc = block_eigenvalues(pool, o, k, W, first, c);
+  }
+  return rc;
+}
+
+/* Sorts multipliers by size, the largest first; of a pair the one with the positive angle. */
+static void sort(PeriodicOrbit *o) {
+  for (int i = 0; i < o->nmultipliers; i++)
+    for (int j = i + 1; j < o->nmultipliers; j++) {
+      double d = hypot(o->re[j], o->im[j]) - hypot(o->re[i], o->im[i]);
+      if (d < -1e-9 || (d <= 1e-9 && o->im[j] <= o->im[i])) continue;
+      lag_swap(&o->re[i], &o->re[j]);
+      lag_swap(&o->im[i], &o->im[j]);
+    }
+}
+
+/* The largest |a b - 1|, where each multiplier a has the other b for which this is least. */
+static double pairing(const PeriodicOrbit *o) {
+  double worst = o->nmultipliers ? 0 : NAN;
+  for (int i = 0; i < o->nmultipliers; i++) {
+    double least = HUGE_VAL;
+    for (int j = 0; j < o->nmultipliers; j++) {
+      double re = o->re[i] * o->re[j] - o->im[i] * o->im[j], im = o->re[i] * o->im[j] + o->im[i] * o->re[j];
+      if (i != j) least = fmin(least, hypot(re - 1, im));
+    }
+    worst = fmax(worst, least);
+  }
+  return worst < 1e-3 ? worst : NAN;
+}
+
+int lag_orbit_multipliers(PeriodicOrbit *o) {
+  Pool pool = {0};
+  int m = o->m, all = 0, rc = LAG_OK;
+  Basis *b = (Basis *)(void *)lag_pool_doubles(&pool, (size_t)(m + 1) * (sizeof(Basis) / sizeof(double) + 1));
+  for (int s = 0; s < m && b && rc == LAG_OK; s++)
+    rc = quotient(&pool, o, o->flow.t0 + o->T * s / m, o->y + s * o->n, &b[s], &all);
+  if (!b) rc = LAG_ENOMEM;
+  int k = rc ? 0 : b[0].k;
+  for (int s = 0; s < m && rc == LAG_OK; s++) rc = b[s].k == k ? LAG_OK : LAG_ESINGULAR;
+  double *W = lag_pool_doubles(&pool, (size_t)(m * k * k) + 1);
+  if (rc == LAG_OK && pool.failed) rc = LAG_ENOMEM;
+  for (int s = 0; s < m && rc == LAG_OK; s++) rc = reduced(&pool, o, s, &b[s], &b[(s + 1) % m], W + s * k * k);
+  rc = rc ? rc : eigenvalues(&pool, o, k, W);
+  if (rc == LAG_OK) sort(o);
+  o->ntrivial = all - o->nmultipliers;
+  o->pairing = rc ? NAN : pairing(o);
+  lag_pool_free(&pool);
+  return rc;
+}

@@ -1,0 +1,317 @@
+/* The flow of a model as a map (flow_map.h). */
+#include "analysis/flow_map.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/fastest_rate.h"
+#include "numeric/dense.h"
+
+static int keep_message(FlowMap *f, const lag_sim *sim, int rc) {
+  snprintf(f->message, sizeof f->message, "%s", rc == LAG_ENOMEM ? "out of memory" : lag_sim_message(sim));
+  return rc;
+}
+
+lag_sim *lag_flow_sim(FlowMap *f, double t, const double *y0) {
+  const lag_scene *own = f->like->scene;
+  f->scene = *own;
+  f->scene.t0 = t;
+  f->scene.t1 = own->t1 + (t - own->t0);
+  f->like->scene = &f->scene;
+  lag_sim *sim = lag_sim_like(f->like);
+  f->like->scene = own;
+  if (!sim) return NULL;
+  if (f->name) lag_sim_set(sim, f->name, f->value);
+  if (y0) memcpy(sim->start, y0, (size_t)f->n * sizeof *y0);
+  return sim;
+}
+
+static int renew_probe(FlowMap *f) {
+  lag_sim_free(f->probe);
+  f->probe = lag_flow_sim(f, f->t0, NULL);
+  if (!f->probe) return keep_message(f, NULL, LAG_ENOMEM);
+  int rc = lag_sim_advance(f->probe, f->t0);
+  if (rc) return keep_message(f, f->probe, rc < 0 ? rc : LAG_EINVAL);
+  lag_switch_set_free(f->probe, 1);
+  return LAG_OK;
+}
+
+int lag_flow_set(FlowMap *f, const char *name, double value) {
+  f->name = name;
+  f->value = value;
+  lag_sim *trial = lag_flow_sim(f, f->t0, NULL);
+  f->name = NULL; /* a value of the wrong sign is refused with its words */
+  int rc = trial ? lag_sim_set(trial, name, value) : LAG_ENOMEM;
+  if (rc) keep_message(f, trial, rc);
+  lag_sim_free(trial);
+  if (rc) return rc;
+  f->name = name;
+  return renew_probe(f);
+}
+
+/* Whether the rates at the start change with time. */
+static int depends_on_time(FlowMap *f) {
+  static const double times[] = {0.1234567, 0.5772157, 2.7182818, 31.41592653};
+  if (lag_facts(&f->probe->pb) & LAG_AUTONOMOUS) return 0;
+  for (int place = 0; place < 2; place++) {
+    for (int i = 0; i < f->n; i++) f->at[i] = f->probe->now[i] + place * 0.1 * (1 + i % 3);
+    if (lag_rhs(&f->probe->pb, f->t0, f->at, f->up)) continue;
+    for (size_t k = 0; k < sizeof times / sizeof *times; k++)
+      if (lag_rhs(&f->probe->pb, f->t0 + times[k], f->at, f->down) ||
+          memcmp(f->up, f->down, (size_t)f->n * sizeof(double)) != 0)
+        return 1;
+  }
+  return 0;
+}
+
+int lag_flow_open(FlowMap *f, lag_sim *like) {
+  size_t n = (size_t)like->pb.n, nq = (size_t)like->pb.nq;
+  const lag_constraints *of = like->scene->model->constraints;
+  size_t rows = of ? (size_t)of->n : 0;
+  *f = (FlowMap){.like = like, .n = like->pb.n, .nq = like->pb.nq, .t0 = like->scene->t0};
+  double **const parts[] = {&f->at, &f->up, &f->down, &f->mass, &f->linear, &f->room, &f->square};
+  const size_t sizes[] = {n,
+                          n,
+                          n,
+                          nq * nq,
+                          lag_linear_work(like->scene->model) + 1,
+                          n * n + (rows + 1) * (nq + 1),
+                          2 * n * n + (nq + 1) * (nq + 1)};
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&f->pool, sizes[i]);
+  if (f->pool.failed) return keep_message(f, NULL, LAG_ENOMEM);
+  int rc = renew_probe(f);
+  f->forced = rc == LAG_OK && depends_on_time(f);
+  return rc;
+}
+
+void lag_flow_free(FlowMap *f) {
+  lag_sim_free(f->probe);
+  lag_pool_free(&f->pool);
+}
+
+typedef struct StepLimit {
+  FlowMap *f;
+  double resolution; /* longest step times the fastest rate */
+} StepLimit;
+
+/* Limits the next step to the fastest rate of neighbouring motions at the present state. */
+static int limit_step(void *limit, const lag_sim *run) {
+  StepLimit *l = limit;
+  FlowMap *f = l->f;
+  lag_problem *pb = &((lag_sim *)run)->pb;
+  int n = f->n, nq = f->nq;
+  double *J = f->room, *A = f->square, *B = A + n * n;
+  if (!pb->model->linear && !pb->model->constraints) return 0;
+  if (lag_jacobian(pb, run->run->t, run->now, J, f->linear) || lag_not_finite((n - nq) * n, J) >= 0) return 0;
+  memset(A, 0, (size_t)(nq * n) * sizeof *A);
+  for (int i = 0; i < nq; i++) A[i * n + nq + i] = 1;
+  memcpy(A + nq * n, J, (size_t)((n - nq) * n) * sizeof *A);
+  double rate = lag_fastest_rate(n, A, B);
+  pb->longest = rate > 0 ? l->resolution / rate : 0;
+  return 0;
+}
+
+/* A run with a tangent: one step of order p has an error of about (step rate)^(p + 1) / (p + 1)! of each column. */
+static int advance_with_tangent(FlowMap *f, lag_sim *sim, double t) {
+  double order = sim->method->order;
+  StepLimit limit = {f, fmin(0.5, pow(sim->tol * tgamma(order + 2), 1 / (order + 1)))};
+  int rc = lag_sim_set_tangent(sim, f->n, NULL);
+  if (rc) return rc;
+  limit_step(&limit, sim);
+  lag_sim_on_step(sim, limit_step, &limit);
+  return lag_sim_advance(sim, t);
+}
+
+int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, double *Phi) {
+  lag_sim *sim = lag_flow_sim(f, t, y0);
+  if (!sim) return keep_message(f, NULL, LAG_ENOMEM);
+  int rc = Phi ? advance_with_tangent(f, sim, t + dt) : lag_sim_advance(sim, t + dt);
+  rc = rc || !Phi ? rc : lag_sim_tangent(sim, Phi);
+  f->stopped = rc == LAG_STOPPED;
+  if (f->stopped)
+    snprintf(f->message, sizeof f->message, "an event ends the motion at t = %s s", LAG_TEXT(lag_sim_time(sim)));
+  else if (rc) keep_message(f, sim, rc);
+  memcpy(y1, sim->now, (size_t)f->n * sizeof *y1);
+  lag_sim_free(sim);
+  return rc;
+}
+
+int lag_flow_rates(FlowMap *f, double t, const double *y, double *rates) { return lag_rhs(&f->probe->pb, t, y, rates); }
+
+/* ---- The drive */
+
+enum { DRIVE_SAMPLES = 12, DRIVE_LOOKS = 4000 };
+
+/* Rates of change at time t of a state that differs from sample to sample. */
+static int sample_rates(FlowMap *f, int k, double t, double *rates) {
+  for (int i = 0; i < f->n; i++)
+    f->at[i] = f->probe->begin[i] + 0.1 * (k % 3) * lag_difference_scale(&f->probe->pb, f->probe->begin, i);
+  return lag_rhs(&f->probe->pb, t, f->at, rates);
+}
+
+/* Difference of the rates a time T later, relative to them, and *step: the change of T that makes it least, to first
+ * order. */
+static double drive_difference(FlowMap *f, double T, double *step) {
+  double off = 0, size = 0, along = 0, slope = 0, h = 1e-6 * T, *a = f->up, *b = f->down, *c = f->room;
+  for (int k = 0; k < DRIVE_SAMPLES; k++) {
+    double t = f->t0 + 0.7548776662 * (k + 0.3) * T / DRIVE_SAMPLES * 1.3;
+    if (sample_rates(f, k, t, a) || sample_rates(f, k, t + T - h, b) || sample_rates(f, k, t + T + h, c))
+      return HUGE_VAL;
+    for (int i = 0; i < f->n; i++) c[i] = (c[i] - b[i]) / (2 * h);
+    if (sample_rates(f, k, t + T, b)) return HUGE_VAL;
+    for (int i = 0; i < f->n; i++) {
+      off += (b[i] - a[i]) * (b[i] - a[i]);
+      size += a[i] * a[i] + b[i] * b[i];
+      along += (b[i] - a[i]) * c[i];
+      slope += c[i] * c[i];
+    }
+  }
+  *step = slope > 0 ? -along / slope : 0;
+  return size > 0 ? sqrt(off / size) : 0;
+}
+
+double lag_flow_drive(FlowMap *f, double *T) {
+  double step = 0, off = drive_difference(f, *T, &step);
+  for (int k = 0; k < 20 && isfinite(off); k++) {
+    double next = *T + fmin(fmax(step, -*T / 8), *T / 8), further, now = drive_difference(f, next, &further);
+    if (!(now < off)) break;
+    *T = next;
+    off = now;
+    step = further;
+  }
+  return off;
+}
+
+double lag_flow_find_drive(FlowMap *f, double longest) {
+  const double same = 1e-9;
+  double step, before = 0, now = 0;
+  for (int k = 1; k <= DRIVE_LOOKS; k++) { /* a local minimum of the difference, which is 0 */
+    double T = longest * k / DRIVE_LOOKS, next = drive_difference(f, T, &step);
+    if (k > 2 && now <= before && now <= next) {
+      T -= longest / DRIVE_LOOKS;
+      if (lag_flow_drive(f, &T) < same) return T;
+    }
+    before = now;
+    now = next;
+  }
+  return 0;
+}
+
+/* ---- Charges */
+
+int lag_flow_charges(const FlowMap *f) { return lag_sim_ncharges(f->probe); }
+
+int lag_flow_conserves(const FlowMap *f, int k) { return (lag_charge_flags(f->probe, k) & LAG_CONSERVED) != 0; }
+
+double lag_flow_charge(FlowMap *f, int k, double t, const double *y) {
+  lag_charges_at(f->probe, t, y);
+  return f->probe->charge_now[2 * k];
+}
+
+static const double stencil[] = {0.8, -0.2, 4.0 / 105, -1.0 / 280};
+
+/* Derivative of charge k by component i at y, t, by differences of half-width 4 h; y is restored. */
+static double slope_within(FlowMap *f, int k, double t, double *y, int i, double h) {
+  double was = y[i], sum = 0;
+  h = (was + h) - was; /* a number of 53 bits */
+  for (int j = 1; j <= 4; j++) {
+    y[i] = was + j * h;
+    double up = lag_flow_charge(f, k, t, y);
+    y[i] = was - j * h;
+    sum += stencil[j - 1] * (up - lag_flow_charge(f, k, t, y));
+  }
+  y[i] = was;
+  return sum / h;
+}
+
+/* The same by those two widths that agree best: near a singularity, as where bodies meet, narrow ones. */
+static double slope(FlowMap *f, int k, double t, double *y, int i) {
+  enum { LEVELS = 9 };
+  double h = 0x1p-4 * lag_difference_scale(&f->probe->pb, y, i), best = NAN, least = HUGE_VAL, before = NAN;
+  for (int level = 0; level < LEVELS; level++, h /= 3) {
+    double now = slope_within(f, k, t, y, i, h), off = fabs(now - before);
+    if (off < least || (isnan(best) && isfinite(now))) best = now;
+    if (off < least) least = off;
+    before = now;
+  }
+  return best;
+}
+
+int lag_flow_gradient(FlowMap *f, int k, double t, const double *y, double *d) {
+  memcpy(f->at, y, (size_t)f->n * sizeof *y);
+  for (int i = 0; i < f->n; i++) d[i] = slope(f, k, t, f->at, i);
+  return lag_not_finite(f->n, d) >= 0 ? LAG_EDOMAIN : LAG_OK;
+}
+
+/* f->mass := the mass matrix at y, t. */
+static int mass_matrix(FlowMap *f, double t, const double *y) {
+  lag_problem *pb = &f->probe->pb;
+  if (pb->model->constraints) {
+    double *A = f->room, *unit = A + pb->model->constraints->n * f->nq;
+    return lag_constraint_jacobian(pb, t, y, A, unit, f->mass);
+  }
+  return pb->model->linear && f->nq ? lag_linearise(pb, t, y, NULL, f->room, f->mass, f->linear) : LAG_EMETHOD;
+}
+
+/* xi[nq] := M^-1 dQ/dv of charge k at y[n], which is changed and restored. */
+static int shift_of(FlowMap *f, int k, double t, double *y, double *xi) {
+  int rc = mass_matrix(f, t, y);
+  if (rc) return rc;
+  for (int i = 0; i < f->nq; i++) xi[i] = slope(f, k, t, y, f->nq + i);
+  return lag_solve_dense((size_t)f->nq, 1, f->mass, xi) ? LAG_ESINGULAR : LAG_OK;
+}
+
+int lag_flow_field(FlowMap *f, int k, double t, const double *y, double *X) {
+  int n = f->n, nq = f->nq, rc = lag_flow_rates(f, t, y, f->up);
+  if (k == 0 || rc) return memcpy(X, f->up, (size_t)n * sizeof *X), rc;
+  memcpy(f->at, y, (size_t)n * sizeof *y);
+  if ((rc = shift_of(f, k, t, f->at, X)) != 0) return rc;
+  double fastest = 0;
+  for (int i = 0; i < n; i++) fastest = fmax(fastest, fabs(f->up[i]) / lag_difference_scale(&f->probe->pb, y, i));
+  double h = fastest > 0 ? 0x1p-6 / fastest : 1;
+  memset(X + nq, 0, (size_t)(n - nq) * sizeof *X);
+  for (int j = -4; j <= 4 && rc == LAG_OK; j++) { /* the rate of xi along the motion */
+    if (j == 0) continue;
+    for (int i = 0; i < n; i++) f->at[i] = y[i] + j * h * f->up[i];
+    rc = shift_of(f, k, t + j * h, f->at, f->down);
+    for (int i = 0; i < nq; i++) X[nq + i] += (j < 0 ? -stencil[-j - 1] : stencil[j - 1]) * f->down[i] / h;
+  }
+  return rc;
+}
+
+/* G[nq][nq + 1] := derivatives of xi by the coordinates, with y and all its components moved by `off`. */
+static int linear_part(FlowMap *f, int k, double t, const double *y, double off, double *G) {
+  int nq = f->nq, size = nq + 1, rc = LAG_OK;
+  memset(G, 0, (size_t)size * (size_t)size * sizeof *G);
+  for (int e = 0; e < 2 * nq && rc == LAG_OK; e++) {
+    int j = e / 2, side = e % 2 ? 1 : -1;
+    for (int i = 0; i < f->n; i++) f->at[i] = y[i] + off * (1 + i % 5);
+    double h = 0.25 * lag_difference_scale(&f->probe->pb, y, j);
+    f->at[j] += side * h;
+    rc = shift_of(f, k, t, f->at, f->down);
+    for (int i = 0; i < nq; i++) G[i * size + j] += side * f->down[i] / (2 * h);
+  }
+  return rc;
+}
+
+int lag_flow_affine(FlowMap *f, int k, double t, const double *y, double *G) {
+  const double same = 1e-7, rounding = 1e-9;
+  int nq = f->nq, size = nq + 1;
+  double *other = f->square, most = 0;
+  int rc = linear_part(f, k, t, y, 0.03, other);
+  rc = rc ? rc : linear_part(f, k, t, y, 0, G);
+  for (int e = 0; e < size * size && rc == LAG_OK; e++) {
+    most = fmax(most, fabs(G[e] - other[e]));
+    double half = rint(2 * G[e]) / 2; /* coefficients of proved symmetries are halves, mostly */
+    G[e] = fabs(G[e] - half) < rounding ? half : G[e];
+  }
+  memcpy(f->at, y, (size_t)f->n * sizeof *y);
+  rc = rc ? rc : most > same ? LAG_EMETHOD : shift_of(f, k, t, f->at, f->down);
+  for (int i = 0; i < nq && rc == LAG_OK; i++) {
+    G[i * size + nq] = f->down[i];
+    for (int j = 0; j < nq; j++) G[i * size + nq] -= G[i * size + j] * y[j];
+  }
+  return rc;
+}

@@ -1,0 +1,687 @@
+/* Periodic motions by multiple shooting (periodic_orbit.h). Multiple shooting: J. Stoer, R. Bulirsch, Introduction
+ * to Numerical Analysis, 3rd ed. (2002), section 7.3. */
+#include "analysis/periodic_orbit.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "numeric/singular_values.h"
+
+enum { MOST_STEPS = 60, SAMPLES = 64, MOST_SEGMENTS = 40 };
+
+static const double rounding = 1e-11; /* a residual, in units, that is a solution's; of rough tolerances more */
+
+/* ---- Sizes */
+
+static int of_one_unit(const lag_model *m, int i, int j) {
+  const lag_var *a = i < m->nq ? &m->q[i] : i < 2 * m->nq ? &m->q[i - m->nq] : &m->z[i - 2 * m->nq];
+  const lag_var *b = j < m->nq ? &m->q[j] : j < 2 * m->nq ? &m->q[j - m->nq] : &m->z[j - 2 * m->nq];
+  return (i < m->nq) == (j < m->nq) && (i < 2 * m->nq) == (j < 2 * m->nq) && strcmp(a->unit, b->unit) == 0;
+}
+
+/* unit[n] := the largest excursion from y0 of components of that unit, over a period; of those that do not move the
+ * largest value, or 1 declared unit. */
+static int choose_units(PeriodicOrbit *o, const double *y0) {
+  FlowMap *f = &o->flow;
+  const lag_model *m = f->like->scene->model;
+  lag_sim *sim = lag_flow_sim(f, f->t0, y0);
+  double *moved = o->x, *value = moved + o->n;
+  int rc = sim ? LAG_OK : LAG_ENOMEM;
+  for (int i = 0; i < o->n; i++) moved[i] = 0, value[i] = fabs(y0[i]);
+  for (int k = 1; k <= SAMPLES && rc == LAG_OK; k++) {
+    rc = lag_sim_advance(sim, f->t0 + o->T * k / SAMPLES);
+    for (int i = 0; i < o->n && rc == LAG_OK; i++) moved[i] = fmax(moved[i], fabs(sim->now[i] - y0[i]));
+  }
+  if (rc)
+    snprintf(f->message, sizeof f->message, "%s",
+             rc == LAG_STOPPED  ? "an event ends the motion within a period"
+             : rc == LAG_ENOMEM ? "out of memory"
+                                : lag_sim_message(sim));
+  lag_sim_free(sim);
+  for (int i = 0; i < o->n; i++) {
+    double most = 0, size = 0;
+    for (int j = 0; j < o->n; j++) {
+      most = of_one_unit(m, i, j) ? fmax(most, moved[j]) : most;
+      size = of_one_unit(m, i, j) ? fmax(size, value[j]) : size;
+    }
+    o->unit[i] = most > 1e-6 * size && most > 0 ? most : size > 0 ? size : 1;
+  }
+  return rc;
+}
+
+/* ---- The symmetries that close a motion */
+
+/* E[size * size] := exp(c G), by scaling and squaring of its series. scratch[2 * size * size]. */
+static void exponential(int size, const double *G, double c, double *E, double *scratch) {
+  double norm = 0, *term = scratch, *next = scratch + size * size;
+  int halvings = 0;
+  for (int e = 0; e < size * size; e++) norm += fabs(c * G[e]);
+  for (; norm > 0.5; norm /= 2) halvings++;
+  double part = ldexp(c, -halvings);
+  for (int e = 0; e < size * size; e++) E[e] = term[e] = e % (size + 1) == 0;
+  for (int k = 1; k <= 24 + halvings; k++) {
+    const double *left = k <= 24 ? term : E, *right = k <= 24 ? G : E;
+    for (int i = 0; i < size; i++)
+      for (int j = 0; j < size; j++) {
+        double sum = 0;
+        for (int l = 0; l < size; l++) sum += left[i * size + l] * right[l * size + j];
+        next[i * size + j] = k <= 24 ? sum * part / k : sum;
+      }
+    memcpy(k <= 24 ? term : E, next, (size_t)(size * size) * sizeof *E);
+    for (int e = 0; e < size * size && k <= 24; e++) E[e] += term[e];
+  }
+}
+
+/* y[n] := the affine map E of the coordinates, and its linear part of the velocities; linear: of the coordinates,
+ * too. */
+static void act(const PeriodicOrbit *o, const double *E, int linear, double *y, double *scratch) {
+  int nq = o->flow.nq, size = nq + 1;
+  for (int i = 0; i < 2 * nq; i++) {
+    const double *row = E + i % nq * size, *x = y + i / nq * nq;
+    scratch[i] = i < nq && !linear ? row[nq] : 0;
+    for (int j = 0; j < nq; j++) scratch[i] += row[j] * x[j];
+  }
+  memcpy(y, scratch, 2 * (size_t)nq * sizeof *y);
+}
+
+/* y[n] := G y; d[n], unless NULL, := its derivative by shift j. */
+static void close_motion(const PeriodicOrbit *o, double *y, int linear, int j, double *d) {
+  int size = o->flow.nq + 1;
+  double *E = o->w, *scratch = E + size * size;
+  for (int k = o->ngroup - 1; k >= 0; k--) {
+    const double *G = o->affine + k * size * size;
+    exponential(size, G, o->shift[k], E, scratch);
+    if (d && k < j) act(o, E, 1, d, scratch);
+    act(o, E, linear, y, scratch);
+    if (!d || k != j) continue;
+    memset(d, 0, (size_t)o->n * sizeof *d);
+    memcpy(d, y, 2 * (size_t)o->flow.nq * sizeof *d);
+    act(o, G, linear, d, scratch);
+  }
+  for (int i = 0; i < o->n && !linear; i++) y[i] += o->turns[i];
+}
+
+/* target and G at the present y and shifts. */
+static void set_target(PeriodicOrbit *o) {
+  int n = o->n;
+  memcpy(o->target, o->y, (size_t)n * sizeof *o->y);
+  close_motion(o, o->target, 0, -1, NULL);
+  for (int c = 0; c < n; c++) {
+    double *e = o->x;
+    memset(e, 0, (size_t)n * sizeof *e);
+    e[c] = 1;
+    if (o->ngroup) close_motion(o, e, 1, -1, NULL);
+    for (int r = 0; r < n; r++) o->G[r * n + c] = e[r];
+  }
+}
+
+/* ---- Shooting */
+
+/* Time at the begin of segment k. */
+static double begins(const PeriodicOrbit *o, int k) { return o->flow.t0 + o->T * k / o->m; }
+
+/* Residual row i of segment k, in units. */
+static double gap(const PeriodicOrbit *o, int k, int i) {
+  const double *next = k < o->m - 1 ? o->y + (k + 1) * o->n : o->target;
+  return (o->end[k * o->n + i] - next[i]) / o->unit[i];
+}
+
+/* Value of a condition less what it shall be, relative to its size. */
+static double off(PeriodicOrbit *o, const OrbitHold *h) {
+  double size = h->kind == ORBIT_STATE ? o->unit[h->of] : h->kind == ORBIT_PERIOD ? o->time : 0;
+  double now = h->kind == ORBIT_STATE    ? o->y[h->of]
+               : h->kind == ORBIT_PERIOD ? o->T
+                                         : lag_flow_charge(&o->flow, h->of, o->flow.t0, o->y);
+  if (h->kind == ORBIT_CHARGE) size = o->flow.probe->charge_now[2 * h->of + 1];
+  return (now - h->value) / (size > 0 ? size : 1);
+}
+
+/* Value of condition k, of which the present parameter may be the one that it keeps. */
+static double off_by(PeriodicOrbit *o, int k) {
+  OrbitHold h = o->held[k];
+  if (o->continues && k == o->led) h.value = o->parameter;
+  return off(o, &h);
+}
+
+static double size_of(const PeriodicOrbit *o, const OrbitHold *h) {
+  double size = h->kind == ORBIT_STATE    ? o->unit[h->of]
+                : h->kind == ORBIT_PERIOD ? o->time
+                                          : o->flow.probe->charge_now[2 * h->of + 1];
+  return size > 0 ? size : 1;
+}
+
+/* Runs all segments; residual := what is left. */
+int lag_orbit_shoot(PeriodicOrbit *o, int tangents) {
+  int n = o->n, rc = LAG_OK;
+  double sum = 0;
+  for (int k = 0; k < o->m && rc == LAG_OK; k++)
+    rc = lag_flow_run(&o->flow, begins(o, k), o->T / o->m, o->y + k * n, o->end + k * n,
+                      tangents ? o->Phi + k * n * n : NULL);
+  set_target(o);
+  for (int k = 0; k < o->m; k++)
+    for (int i = 0; i < n; i++) sum += gap(o, k, i) * gap(o, k, i);
+  for (int k = 0; k < o->nheld; k++) sum += off_by(o, k) * off_by(o, k);
+  o->residual = rc ? HUGE_VAL : sqrt(sum / (o->m * n));
+  return rc;
+}
+
+/* ---- The linear system */
+
+static int period_is_free(const PeriodicOrbit *o) { return !o->flow.forced; }
+static int column_of_period(const PeriodicOrbit *o) { return o->m * o->n; }
+static int column_of_shift(const PeriodicOrbit *o, int j) { return o->m * o->n + period_is_free(o) + j; }
+
+static void shooting_rows(PeriodicOrbit *o) {
+  int n = o->n, cols = o->cols;
+  for (int k = 0; k < o->m; k++)
+    for (int i = 0; i < n; i++) {
+      double *row = o->A + (k * n + i) * cols;
+      for (int j = 0; j < n; j++) {
+        row[k * n + j] += o->Phi[(k * n + i) * n + j] * o->unit[j] / o->unit[i];
+        if (k == o->m - 1) row[j] -= o->G[i * n + j] * o->unit[j] / o->unit[i];
+        else if (i == j) row[(k + 1) * n + j] -= 1;
+      }
+      o->b[k * n + i] = -gap(o, k, i);
+    }
+}
+
+/* T := as many periods of the drive as before, which may have another one now. */
+static int follow_drive(PeriodicOrbit *o) {
+  const double same = 1e-9, near = 0.02;
+  double T = o->T / o->drives;
+  if (lag_flow_drive(&o->flow, &T) > same || fabs(T - o->T / o->drives) > near * T)
+    T = lag_flow_find_drive(&o->flow, 8 * o->time / o->drives);
+  if (T > 0) o->T = o->drives * T;
+  return T > 0 ? LAG_OK : LAG_EDOMAIN;
+}
+
+int lag_orbit_set_parameter(PeriodicOrbit *o, double value) {
+  const double stride = 0.02; /* of the range, in which the drive's period is followed from value to value */
+  double from = o->parameter;
+  int strides = o->flow.forced && o->led < 0 ? 1 + (int)(fabs(value - from) / (stride * o->parameter_unit)) : 1;
+  int rc = LAG_OK;
+  o->parameter = value;
+  for (int k = 1; k <= strides && o->led < 0 && rc == LAG_OK; k++) {
+    rc = lag_flow_set(&o->flow, o->name, k == strides ? value : from + (value - from) * k / strides);
+    rc = rc || !o->flow.forced ? rc : follow_drive(o);
+  }
+  return rc;
+}
+
+/* Column of the parameter: of one of the model by central differences of order 2 of all rows, as flows have no
+ * derivatives by parameters yet; Newton's steps and tangents need no more of them than some eight digits. */
+static int continuation_column(PeriodicOrbit *o) {
+  const double part = 1e-5;
+  int all = o->m * o->n, col = o->cols - 1, rc = LAG_OK;
+  if (o->led >= 0) {
+    o->A[(all + o->led) * o->cols + col] = -o->parameter_unit / size_of(o, &o->held[o->led]);
+    return LAG_OK;
+  }
+  double was = o->parameter, h = part * o->parameter_unit;
+  for (int side = -1; side <= 1 && rc == LAG_OK; side += 2) {
+    rc = lag_orbit_set_parameter(o, was + side * h);
+    rc = rc ? rc : lag_orbit_shoot(o, 0);
+    for (int r = 0; r < all && rc == LAG_OK; r++)
+      o->A[r * o->cols + col] += side * gap(o, r / o->n, r % o->n) / (2 * part);
+    for (int k = 0; k < o->nheld && rc == LAG_OK; k++)
+      o->A[(all + k) * o->cols + col] += side * off_by(o, k) / (2 * part);
+  }
+  rc = rc ? rc : lag_orbit_set_parameter(o, was);
+  return rc ? rc : lag_orbit_shoot(o, 0);
+}
+
+/* Whether a component that keeps its value chooses the phase: the motion crosses that value. */
+static int holds_phase(const PeriodicOrbit *o, const double *rates) {
+  const double least = 0.1;
+  for (int k = 0; k < o->nheld; k++) {
+    int i = o->held[k].of;
+    if (o->held[k].kind == ORBIT_STATE && k != o->led && fabs(rates[i]) * o->time > least * o->unit[i]) return 1;
+  }
+  return 0;
+}
+
+/* Rows across the motion, and across the symmetries of conserved charges. */
+static int phase_rows(PeriodicOrbit *o) {
+  int n = o->n, row = o->m * n + o->nheld, rc = LAG_OK;
+  double *X = o->x;
+  for (int k = -1; k < o->ncharges && rc == LAG_OK; k++) {
+    if (k < 0 ? o->flow.forced : o->charge[k] == 0) continue;
+    if (lag_flow_field(&o->flow, k < 0 ? 0 : o->charge[k], o->flow.t0, o->y, X)) continue;
+    double size = 0;
+    if (k < 0 && holds_phase(o, X)) continue;
+    for (int i = 0; i < n; i++) size += X[i] * X[i] / (o->unit[i] * o->unit[i]);
+    for (int i = 0; i < n && size > 0; i++) o->A[row * o->cols + i] = X[i] / o->unit[i] / sqrt(size);
+    row++;
+  }
+  return rc;
+}
+
+/* Columns of the period and of shifts. */
+static int parameter_columns(PeriodicOrbit *o) {
+  int n = o->n, cols = o->cols, rc = LAG_OK;
+  double *rates = o->w + 4 * (o->flow.nq + 1) * (o->flow.nq + 1), *y = rates + n;
+  for (int k = 0; k < o->m && rc == LAG_OK && period_is_free(o); k++) {
+    rc = lag_flow_rates(&o->flow, begins(o, k + 1), o->end + k * n, rates);
+    for (int i = 0; i < n && rc == LAG_OK; i++)
+      o->A[(k * n + i) * cols + column_of_period(o)] = rates[i] / o->m * o->time / o->unit[i];
+  }
+  for (int j = 0; j < o->ngroup && rc == LAG_OK; j++) {
+    memcpy(y, o->y, (size_t)n * sizeof *y);
+    close_motion(o, y, 0, j, rates);
+    for (int i = 0; i < n; i++) o->A[((o->m - 1) * n + i) * cols + column_of_shift(o, j)] = -rates[i] / o->unit[i];
+  }
+  return rc;
+}
+
+static int held_rows(PeriodicOrbit *o) {
+  int n = o->n, rc = LAG_OK;
+  double *d = o->x;
+  for (int k = 0; k < o->nheld && rc == LAG_OK; k++) {
+    const OrbitHold *h = &o->held[k];
+    double *row = o->A + (o->m * n + k) * o->cols;
+    o->b[o->m * n + k] = -off_by(o, k);
+    double size = size_of(o, h);
+    if (h->kind == ORBIT_STATE) row[h->of] = 1;
+    if (h->kind == ORBIT_PERIOD && period_is_free(o)) row[column_of_period(o)] = 1;
+    if (h->kind != ORBIT_CHARGE) continue;
+    rc = lag_flow_gradient(&o->flow, h->of, o->flow.t0, o->y, d);
+    for (int i = 0; i < n && rc == LAG_OK; i++) row[i] = d[i] * o->unit[i] / size;
+  }
+  return rc;
+}
+
+/* Removes the part of the shooting rows along w[m n], of unit length. */
+static void remove_part(PeriodicOrbit *o, const double *w) {
+  int all = o->m * o->n;
+  double part = 0;
+  for (int r = 0; r < all; r++) part += w[r] * o->b[r];
+  for (int r = 0; r < all; r++) o->b[r] -= part * w[r];
+  for (int c = 0; c < o->cols; c++) {
+    part = 0;
+    for (int r = 0; r < all; r++) part += w[r] * o->A[r * o->cols + c];
+    for (int r = 0; r < all; r++) o->A[r * o->cols + c] -= part * w[r];
+  }
+}
+
+/* w := the gradients of conserved charge k at the ends of all segments, in units. */
+static int charge_row(PeriodicOrbit *o, int k, double *w) {
+  int n = o->n, rc = LAG_OK;
+  for (int s = 0; s < o->m && rc == LAG_OK; s++) {
+    rc = lag_flow_gradient(&o->flow, k, begins(o, s + 1), o->end + s * n, w + s * n);
+    for (int i = 0; i < n; i++) w[s * n + i] *= o->unit[i];
+  }
+  return rc;
+}
+
+/* Makes w[all] orthogonal to the `before` rows at W, and of unit length; 0: nothing is left. */
+static int orthogonal_unit(int all, int before, const double *W, double *w) {
+  double size = 0, left = 0;
+  for (int i = 0; i < all; i++) size += w[i] * w[i];
+  for (int k = 0; k < before; k++) {
+    double part = 0;
+    for (int i = 0; i < all; i++) part += W[k * all + i] * w[i];
+    for (int i = 0; i < all; i++) w[i] -= part * W[k * all + i];
+  }
+  for (int i = 0; i < all; i++) left += w[i] * w[i];
+  if (!(left > 1e-16 * size)) return 0;
+  for (int i = 0; i < all; i++) w[i] /= sqrt(left);
+  return 1;
+}
+
+static int remove_charges(PeriodicOrbit *o) {
+  int all = o->m * o->n, found = 0, rc = LAG_OK;
+  double *W = o->saved + o->m * o->n;
+  for (int k = 0; k < o->ncharges && rc == LAG_OK; k++) {
+    rc = charge_row(o, o->charge[k], W + found * all);
+    if (rc == LAG_OK && orthogonal_unit(all, found, W, W + found * all)) remove_part(o, W + found++ * all);
+  }
+  return rc;
+}
+
+int lag_orbit_assemble(PeriodicOrbit *o) {
+  memset(o->A, 0, (size_t)o->rows * (size_t)o->cols * sizeof *o->A);
+  memset(o->b, 0, (size_t)o->rows * sizeof *o->b);
+  shooting_rows(o);
+  int rc = o->continues ? continuation_column(o) : LAG_OK;
+  rc = rc ? rc : parameter_columns(o);
+  rc = rc ? rc : remove_charges(o);
+  rc = rc ? rc : held_rows(o);
+  return rc || !o->continues ? rc : phase_rows(o);
+}
+
+/* ---- Newton's steps */
+
+/* Adds `part` of the step x to the unknowns. */
+static void move(PeriodicOrbit *o, const double *x, double part) {
+  int n = o->n;
+  for (int i = 0; i < o->m * n; i++) o->y[i] += part * x[i] * o->unit[i % n];
+  if (period_is_free(o)) o->T += part * x[column_of_period(o)] * o->time;
+  for (int j = 0; j < o->ngroup; j++) o->shift[j] += part * x[column_of_shift(o, j)];
+  if (o->continues) lag_orbit_set_parameter(o, o->parameter + part * x[o->cols - 1] * o->parameter_unit);
+}
+
+static double largest(int n, const double *x) {
+  double most = 0;
+  for (int i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
+  return most;
+}
+
+/* A step, halved until the residual falls; *size: of the step made. 0: none does, and the unknowns stay. */
+static int falling_step(PeriodicOrbit *o, double *size) {
+  double before = o->residual, step = largest(o->cols, o->x), T = o->T, parameter = o->parameter,
+         shift[ORBIT_MOST_GROUP];
+  double part = step > 0.25 ? 0.25 / step : 1, *x = o->saved + o->m * o->n, *y = o->saved;
+  memcpy(y, o->y, (size_t)(o->m * o->n) * sizeof *y);
+  memcpy(shift, o->shift, sizeof shift);
+  memcpy(x, o->x, (size_t)o->cols * sizeof *x);
+  for (int tries = 0; tries < 10; tries++, part /= 2) {
+    move(o, x, part);
+    int rc = o->T > 0 ? lag_orbit_shoot(o, 1) : LAG_EDOMAIN;
+    *size = part * step;
+    if (rc == LAG_ENOMEM) return rc;
+    if (rc == LAG_OK && (o->residual < before || (o->residual < rounding && step < 1e-9))) return 1;
+    memcpy(o->y, y, (size_t)(o->m * o->n) * sizeof *y);
+    memcpy(o->shift, shift, sizeof shift);
+    o->T = T;
+    if (o->continues) lag_orbit_set_parameter(o, parameter);
+    if (o->residual < 1e3 * rounding && step < 1e-9) break; /* rounding: no step helps */
+  }
+  int rc = lag_orbit_shoot(o, 1);
+  *size = 0;
+  return rc < 0 ? rc : 0;
+}
+
+static double accepted(const PeriodicOrbit *o) { return fmax(rounding, 1e3 * o->flow.like->tol); }
+
+static int newton(PeriodicOrbit *o) {
+  double size = HUGE_VAL;
+  int rc = lag_orbit_shoot(o, 1), rank = 0, moved = 1;
+  for (int k = 0; k < MOST_STEPS && rc == LAG_OK && moved == 1; k++) {
+    if (k < ORBIT_TRACE) o->trace[k] = o->residual;
+    if ((rc = lag_orbit_assemble(o)) != LAG_OK) break;
+    lag_singular_values(o->rows, o->cols, o->A, o->V, o->sigma);
+    rank = lag_least_norm(o->rows, o->cols, o->A, o->V, o->sigma, 1e-8, o->residual * o->residual, o->b, o->x);
+    if (o->residual <= accepted(o) && size < 1e-11) break;
+    moved = falling_step(o, &size);
+    o->steps += moved == 1;
+  }
+  o->nfree = o->cols - rank;
+  return rc < 0 ? rc : moved < 0 ? moved : rc == LAG_OK && o->residual <= accepted(o);
+}
+
+/* ---- Preparation */
+
+void lag_orbit_count(PeriodicOrbit *o) {
+  int phases = !o->flow.forced;
+  for (int k = 0; k < o->ncharges; k++) phases += o->charge[k] != 0;
+  o->rows = o->m * o->n + o->nheld + (o->continues ? phases : 0);
+  o->cols = o->m * o->n + period_is_free(o) + o->ngroup + (o->continues != 0);
+}
+
+static int allocate(PeriodicOrbit *o) {
+  size_t n = (size_t)o->n, m = (size_t)o->m, size = (size_t)o->flow.nq + 1, group = (size_t)o->ngroup;
+  size_t charges = (size_t)lag_flow_charges(&o->flow);
+  lag_orbit_count(o);
+  size_t rows = m * n + (size_t)o->nheld + charges + 1, cols = m * n + 2 + group; /* with continuation */
+  double **const parts[] = {&o->y, &o->end, &o->Phi,   &o->unit, &o->turns, &o->affine, &o->target, &o->G, &o->A,
+                            &o->b, &o->V,   &o->sigma, &o->x,    &o->saved, &o->w,      &o->re,     &o->im};
+  const size_t sizes[] = {m * n,
+                          m * n,
+                          m * n * n,
+                          n,
+                          n,
+                          group * size * size + 1,
+                          n,
+                          n * n,
+                          rows * cols,
+                          rows,
+                          cols * cols,
+                          cols,
+                          cols + 2 * n,
+                          m * n * (charges + 2) + cols,
+                          4 * size * size + 4 * n,
+                          n,
+                          n};
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&o->pool, sizes[i]);
+  o->charge = (int *)(void *)lag_pool_doubles(&o->pool, charges + 1);
+  return o->pool.failed ? LAG_ENOMEM : LAG_OK;
+}
+
+/* Number of segments, so that small changes grow at most about a hundredfold in each. */
+static int count_segments(PeriodicOrbit *o, int m) {
+  int n = o->n, most = 1 + 240 / n;
+  if (m > 0) return m;
+  double *Phi = lag_pool_doubles(&o->pool, (size_t)(n * n)), *y = lag_pool_doubles(&o->pool, (size_t)n), size = 0;
+  if (o->pool.failed || lag_flow_run(&o->flow, o->flow.t0, o->T, o->flow.probe->now, y, Phi)) return 1;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) size = fmax(size, fabs(Phi[i * n + j]) * o->unit[j] / o->unit[i]);
+  most = most < MOST_SEGMENTS ? most : MOST_SEGMENTS;
+  m = 1 + (int)(log(fmax(size, 1)) / log(100));
+  return m < most ? m : most;
+}
+
+/* The states at the begin of segments, along the motion from the start; turns of periodic angles. */
+static int place_nodes(PeriodicOrbit *o) {
+  int n = o->n, rc = LAG_OK;
+  const lag_model *m = o->flow.like->scene->model;
+  memcpy(o->y, o->flow.probe->now, (size_t)n * sizeof *o->y);
+  for (int k = 0; k < o->m && rc == LAG_OK; k++) {
+    rc = lag_flow_run(&o->flow, begins(o, k), o->T / o->m, o->y + k * n, o->end + k * n, NULL);
+    if (k < o->m - 1) memcpy(o->y + (k + 1) * n, o->end + k * n, (size_t)n * sizeof *o->y);
+  }
+  const double *last = o->end + (o->m - 1) * n, turn = 2 * acos(-1);
+  for (int i = 0; i < m->nq && rc == LAG_OK; i++)
+    o->turns[i] = m->q[i].periodic ? turn * rint((last[i] - o->y[i]) / turn) : 0;
+  return rc;
+}
+
+static int list_charges(PeriodicOrbit *o) {
+  int size = o->flow.nq + 1, rc = LAG_OK;
+  for (int k = 0; k < lag_flow_charges(&o->flow); k++)
+    if (lag_flow_conserves(&o->flow, k)) o->charge[o->ncharges++] = k;
+  for (int j = 0; j < o->ngroup && rc == LAG_OK; j++) {
+    rc = lag_flow_affine(&o->flow, o->group[j], o->flow.t0, o->y, o->affine + j * size * size);
+    if (rc)
+      snprintf(o->flow.message, sizeof o->flow.message,
+               "the symmetry of %s is not an affine map of the coordinates, such as a shift or a rotation",
+               o->flow.like->scene->model->charges->of[o->group[j]].name);
+  }
+  return rc;
+}
+
+/* drives := how many periods of the drive T is. */
+static void count_drives(PeriodicOrbit *o) {
+  double shortest = lag_flow_find_drive(&o->flow, 1.01 * o->T);
+  o->drives = shortest > 0 ? (int)fmax(1, rint(o->T / shortest)) : 1;
+}
+
+int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, double T, int m) {
+  int rc = lag_flow_open(&o->flow, like);
+  if (rc) return rc;
+  o->n = o->flow.n;
+  o->T = o->time = T;
+  o->algebra = algebra;
+  if (o->flow.forced) count_drives(o);
+  o->unit = lag_pool_doubles(&o->pool, (size_t)o->n);
+  o->x = lag_pool_doubles(&o->pool, 2 * (size_t)o->n);
+  if (o->pool.failed) return LAG_ENOMEM;
+  if ((rc = choose_units(o, o->flow.probe->now)) != 0) return rc;
+  const double *unit = o->unit;
+  o->m = count_segments(o, m);
+  if ((rc = allocate(o)) != 0) return rc;
+  memcpy(o->unit, unit, (size_t)o->n * sizeof *unit);
+  rc = place_nodes(o);
+  return rc ? rc : list_charges(o);
+}
+
+void lag_orbit_free(PeriodicOrbit *o) {
+  lag_flow_free(&o->flow);
+  lag_pool_free(&o->pool);
+}
+
+int lag_orbit_solve(PeriodicOrbit *o) { return newton(o); }
+
+/* ---- The period that is not known */
+
+/* A motion at several places within each step, so that close passages are seen. */
+typedef struct Track {
+  const lag_model *m;
+  int n, rows, room;
+  double *t, *y; /* [rows], [rows n] */
+  double *size;  /* [n] largest excursion from the first row */
+} Track;
+
+static int add_row(Track *k, double t, const double *y) {
+  if (k->rows == k->room) {
+    int room = k->room ? 2 * k->room : 1024;
+    double *times = realloc(k->t, (size_t)room * sizeof *times);
+    if (times) k->t = times;
+    double *states = times ? realloc(k->y, (size_t)room * (size_t)k->n * sizeof *states) : NULL;
+    if (!states) return LAG_ENOMEM;
+    k->y = states;
+    k->room = room;
+  }
+  k->t[k->rows] = t;
+  memcpy(k->y + (size_t)k->rows * (size_t)k->n, y, (size_t)k->n * sizeof *y);
+  for (int i = 0; i < k->n; i++) k->size[i] = fmax(k->size[i], fabs(y[i] - k->y[i]));
+  k->rows++;
+  return LAG_OK;
+}
+
+/* Follows the motion until a time, or the event that ends it. */
+static int follow_motion(Track *k, lag_sim *sim, double until, double *y) {
+  enum { PLACES = 4, MOST_ROWS = 1 << 20 };
+  int rc = lag_sim_advance(sim, lag_sim_time(sim));
+  rc = rc ? rc : add_row(k, lag_sim_time(sim), sim->now);
+  for (double reach; rc == LAG_OK && lag_sim_time(sim) < until && k->rows < MOST_ROWS;) {
+    double from = lag_sim_time(sim);
+    rc = lag_sim_ensure_step(sim, until, &reach);
+    for (int j = 1; j <= PLACES && rc == LAG_OK && reach > from; j++) {
+      rc = lag_sim_eval(sim, j == PLACES ? reach : from + (reach - from) * j / PLACES, y);
+      rc = rc ? rc : add_row(k, from + (reach - from) * j / PLACES, y);
+    }
+    rc = rc ? rc : lag_sim_advance(sim, reach);
+  }
+  return rc == LAG_STOPPED ? LAG_OK : rc;
+}
+
+/* y - y0 of component i, periodic angles modulo a turn. */
+static double change(const lag_model *m, int i, const double *y, const double *y0) {
+  double d = y[i] - y0[i], turn = 2 * acos(-1);
+  return i < m->nq && m->q[i].periodic ? d - turn * rint(d / turn) : d;
+}
+
+/* Distance of row r from the first one in parts of the excursions: the largest over components. */
+static double away(const Track *k, int r) {
+  double most = 0;
+  for (int i = 0; i < k->n; i++)
+    if (k->size[i] > 0) most = fmax(most, fabs(change(k->m, i, k->y + (size_t)r * (size_t)k->n, k->y)) / k->size[i]);
+  return most;
+}
+
+/* Row of the first close return; 0: none. */
+static int first_return(const Track *k) {
+  const double near = 0.15;
+  double before = 0, now = 0;
+  int left = 0;
+  for (int r = 1; r < k->rows; r++) {
+    double next = away(k, r);
+    left |= now > 2 * near;
+    if (left && now <= before && now < next && now < near) return r - 1;
+    before = now;
+    now = next;
+  }
+  return 0;
+}
+
+/* Row next to time t0 + about that is nearest to the first; 0: none is near. */
+static int nearest_return(const Track *k, double about) {
+  const double part = 0.2;
+  double least = 0.3;
+  int best = 0;
+  for (int r = 1; r < k->rows; r++) {
+    if (fabs(k->t[r] - k->t[0] - about) > part * about) continue;
+    double off = away(k, r);
+    if (off < least) best = r, least = off;
+  }
+  return best;
+}
+
+/* Time by which the motion at row r comes still nearer to the first: along its rates, in excursions. */
+static double nearer(FlowMap *f, const Track *k, int r) {
+  double along = 0, length = 0;
+  const double *y = k->y + (size_t)r * (size_t)k->n;
+  if (lag_flow_rates(f, f->t0, k->y, f->up)) return 0;
+  for (int i = 0; i < k->n; i++) {
+    double weight = k->size[i] > 0 ? 1 / (k->size[i] * k->size[i]) : 0;
+    along -= change(k->m, i, y, k->y) * f->up[i] * weight;
+    length += f->up[i] * f->up[i] * weight;
+  }
+  return length > 0 ? along / length : 0;
+}
+
+int lag_orbit_guess(lag_sim *like, double until, double about, double *T, char *message, size_t size) {
+  FlowMap f;
+  Pool pool = {0};
+  Track k = {.m = like->scene->model, .n = like->pb.n};
+  int rc = lag_flow_open(&f, like);
+  k.size = lag_pool_doubles(&pool, 2 * (size_t)k.n);
+  lag_sim *sim = rc ? NULL : lag_flow_sim(&f, f.t0, NULL);
+  *T = 0;
+  if (rc == LAG_OK && (!sim || pool.failed)) rc = LAG_ENOMEM;
+  rc = rc ? rc : follow_motion(&k, sim, until, k.size + k.n);
+  if (rc) snprintf(message, size, "%s", sim ? lag_sim_message(sim) : f.message);
+  if (rc == LAG_OK) {
+    int at = about > 0 ? nearest_return(&k, about) : first_return(&k);
+    *T = at ? k.t[at] - k.t[0] + nearer(&f, &k, at) : 0;
+  }
+  free(k.t);
+  free(k.y);
+  lag_sim_free(sim);
+  lag_flow_free(&f);
+  lag_pool_free(&pool);
+  return rc;
+}
+
+/* ---- Error of the period, and what kind of a motion it is */
+
+/* Whether the motion is back already after T / k. */
+static int is_back(PeriodicOrbit *o, int k) {
+  double *y = o->x, T = o->T / k;
+  if (o->flow.forced && (lag_flow_drive(&o->flow, &T) > 1e-9 || fabs(T * k - o->T) > 1e-6 * o->T)) return 0;
+  if (lag_flow_run(&o->flow, o->flow.t0, o->T / k, o->y, y, NULL)) return 0;
+  for (int i = 0; i < o->n; i++)
+    if (fabs(change(o->flow.like->scene->model, i, y, o->y)) > 1e-6 * o->unit[i]) return 0;
+  return 1;
+}
+
+static int is_at_rest(PeriodicOrbit *o) {
+  double most = 0;
+  if (lag_flow_rates(&o->flow, o->flow.t0, o->y, o->x)) return 0;
+  for (int i = 0; i < o->n; i++) most = fmax(most, fabs(o->x[i]) * o->T / o->unit[i]);
+  return !o->flow.forced && most < 1e-6;
+}
+
+int lag_orbit_refine(PeriodicOrbit *o) {
+  lag_sim *like = o->flow.like;
+  double tol = like->tol, T = o->T, *step = o->x;
+  o->at_rest = is_at_rest(o);
+  for (int k = 2; k <= 7 && !o->ngroup && !o->at_rest; k++)
+    if (is_back(o, k)) o->repeats = k;
+  like->tol = like->pb.tol = fmax(tol / 100, 1e-15);
+  if (like->tol == tol) like->tol = like->pb.tol = 100 * tol;
+  int rc = lag_orbit_shoot(o, 1);
+  rc = rc ? rc : lag_orbit_assemble(o);
+  if (rc == LAG_OK) {
+    lag_singular_values(o->rows, o->cols, o->A, o->V, o->sigma);
+    lag_least_norm(o->rows, o->cols, o->A, o->V, o->sigma, 1e-8, 0, o->b, step);
+    o->period_error = period_is_free(o) ? fmax(fabs(step[column_of_period(o)]) * o->time, 4 * DBL_EPSILON * T) : 0;
+    if (like->tol < tol) move(o, step, 1);
+  }
+  if (like->tol > tol) like->tol = like->pb.tol = tol;
+  rc = rc ? rc : lag_orbit_shoot(o, 1);
+  like->tol = like->pb.tol = tol;
+  return rc;
+}

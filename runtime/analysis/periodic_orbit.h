@@ -1,0 +1,81 @@
+/* Periodic motions by multiple shooting: y(T) = G y(0), with G the turns of periodic angles and, for relative ones,
+ * the action of proved symmetries. Newton's steps are those of Levenberg and Marquardt with a damping of the squared
+ * residual, which converge quadratically to the nearest solution of a family (N. Yamashita, M. Fukushima, Computing
+ * Suppl. 15 (2001) 239): no phase needs to be chosen. Proved charges make the rows dependent; the part of the
+ * residual along their gradients is left out. */
+#pragma once
+
+#include "analysis/flow_map.h"
+
+enum { ORBIT_MOST_HELD = 16, ORBIT_MOST_GROUP = 8, ORBIT_TRACE = 8 };
+
+/* A condition: component `of` of the state (ORBIT_STATE), a charge, or the period, equals `value`. */
+typedef struct OrbitHold {
+  enum { ORBIT_STATE, ORBIT_CHARGE, ORBIT_PERIOD } kind;
+  int of;
+  double value;
+} OrbitHold;
+
+typedef struct PeriodicOrbit {
+  Pool pool;
+  FlowMap flow;
+  const lag_algebra *algebra;
+  int n, m;              /* size of the state; segments */
+  double T;              /* the period [s] */
+  int drives;            /* of a driven model: periods of the drive in it */
+  double *y;             /* [m n] the states at the begin of each segment */
+  double *end, *Phi;     /* [m n], [m n n] states at the ends, and their derivatives */
+  double *unit, time;    /* [n] sizes of the motion's components, and of the period */
+  double *turns;         /* [n] advance of periodic angles over a period */
+  int ncharges, *charge; /* conserved charges */
+  int nheld;
+  OrbitHold held[ORBIT_MOST_HELD];
+  int ngroup, group[ORBIT_MOST_GROUP]; /* charges whose symmetries close the motion */
+  double shift[ORBIT_MOST_GROUP];      /* their parameters */
+  double *affine;                      /* [ngroup (nq + 1)^2] their generators */
+  /* 1: one more unknown, `parameter`: the value that condition `led` keeps, or, for -1, that of the model's parameter
+   * `name`; and rows that fix the phase and the place along symmetries */
+  int continues, led;
+  const char *name;
+  double parameter, parameter_unit;
+  double *target; /* [n] G y(0), */
+  double *G;      /* [n n] and its derivative */
+  /* the linear system, in units: rows and columns; A[rows cols], b[rows], V, sigma and a step */
+  int rows, cols;
+  double *A, *b, *V, *sigma, *x, *saved, *w;
+  double residual;           /* of y(T) = G y(0), in units: root of the mean square */
+  int nfree;                 /* directions in which there are other solutions */
+  int steps;                 /* Newton's steps made */
+  double trace[ORBIT_TRACE]; /* the first residuals */
+  double period_error;       /* change of the period by a run that is a hundred times as precise, or more */
+  int repeats;               /* > 1: the period is that many times the shortest one */
+  int at_rest;               /* 1: it is an equilibrium */
+  /* multipliers: of the directions that no charge, no symmetry and no phase fixes */
+  int nmultipliers, ntrivial;
+  double *re, *im;
+  double pairing; /* largest |a b - 1| over pairs a, b of reciprocals; NaN: they are none */
+} PeriodicOrbit;
+
+/* Prepares: period T > 0, m segments (0: by the growth over a period). like: as of lag_flow_open. The members held
+ * and group are set before. LAG_OK, or a status with the message in o->flow. Free in any case. */
+int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, double T, int m);
+void lag_orbit_free(PeriodicOrbit *o);
+
+/* *T := the time after which the motion from the start of `like` comes back next to it, until the time given; about >
+ * 0: next to that time. 0: it does not. LAG_OK, or a status with the message in message[size]. */
+int lag_orbit_guess(lag_sim *like, double until, double about, double *T, char *message, size_t size);
+
+/* For continuation (branch_problems.c): runs all segments at the present unknowns; then A and b. */
+int lag_orbit_shoot(PeriodicOrbit *o, int tangents);
+int lag_orbit_assemble(PeriodicOrbit *o);
+/* The parameter of the continuation := value. */
+int lag_orbit_set_parameter(PeriodicOrbit *o, double value);
+/* rows and cols for the present settings. */
+void lag_orbit_count(PeriodicOrbit *o);
+
+/* Solves. 1: found; 0: not, o->residual and o->trace say how near it came; < 0: a status with its message. */
+int lag_orbit_solve(PeriodicOrbit *o);
+/* Solves again more precisely, for the error of the period; how often it repeats; whether it is at rest. */
+int lag_orbit_refine(PeriodicOrbit *o);
+/* Multipliers of the solution. LAG_OK, or a status. */
+int lag_orbit_multipliers(PeriodicOrbit *o);

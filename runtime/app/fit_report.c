@@ -1,0 +1,229 @@
+/* The report of a fit: values with errors, what data cannot tell apart, how well the motion fits, and a scene to paste.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/fit_run.h"
+
+/* A value with the digits that its error leaves, and two more. */
+static void put_value(FILE *f, const FitTarget *t) {
+  double digits = t->error > 0 && t->value != 0.0 ? ceil(log10(fabs(t->value) / t->error)) + 2 : 10;
+  fprintf(f, "%.*g", (int)fmin(fmax(digits, 3), 15), t->value);
+}
+
+static void put_values(const Fit *f, FILE *out) {
+  for (int j = 0; j < f->n; j++) {
+    const FitTarget *t = &f->target[j];
+    fprintf(out, "  %-14s ", t->label);
+    put_value(out, t);
+    if (t->flat) fputs(" not determined", out);
+    else fprintf(out, " +- %.2g", t->error);
+    fprintf(out, "%s%s", t->unit[0] ? " " : "", t->unit);
+    if (t->prior_error > 0) fprintf(out, " (prior: %.6g +- %.2g)", t->prior, t->prior_error);
+    putc('\n', out);
+  }
+}
+
+/* ---- Directions that data do not feel */
+
+/* The exponent of a quotient as a small fraction p/q. 0: it is none. */
+static int small_fraction(double x, int *p, int *q) {
+  for (*q = 1; *q <= 4; ++*q) {
+    *p = (int)lround(x * *q);
+    if (abs(*p) <= 8 && fabs(x * *q - *p) < 1e-4) return 1;
+  }
+  return 0;
+}
+
+static void put_power(FILE *out, const char *name, int p) {
+  if (p == 1) fputs(name, out);
+  else fprintf(out, "%s^%d", name, p);
+}
+
+/* "g/l", "k*m": the combination of name and pivot that is constant where both move by factors exp(v), exp(pivot's). */
+static void put_combination(FILE *out, const char *name, double v, const char *pivot, double by) {
+  int p, q;
+  if (!small_fraction(v / by, &p, &q)) fprintf(out, "%s/%s^%.4g", name, pivot, v / by);
+  else {
+    put_power(out, name, q);
+    putc(p > 0 ? '/' : '*', out);
+    put_power(out, pivot, abs(p));
+  }
+}
+
+static int count_of(const Fit *f, const FitDirection *d) {
+  int n = 0;
+  for (int j = 0; j < f->n; j++) n += d->change[j] != 0.0;
+  return n;
+}
+
+/* "(g, l) along (9.81, 1)" */
+static void put_direction(const Fit *f, const FitDirection *d, FILE *out) {
+  double unit = 0; /* of shifts: the largest is 1 */
+  for (int j = 0; j < f->n; j++) unit = fmax(unit, fabs(d->change[j] * f->target[j].scale));
+  for (int values = 0; values < 2; values++) {
+    int n = 0;
+    fputs(values ? " along (" : "(", out);
+    for (int j = 0; j < f->n; j++) {
+      if (d->change[j] == 0.0) continue;
+      if (n++) fputs(", ", out);
+      if (values) fprintf(out, "%.3g", d->change[j] * f->target[j].scale / (d->shift ? unit : 1));
+      else fputs(f->target[j].label, out);
+    }
+    putc(')', out);
+  }
+}
+
+/* "only g/l: (g, l) along (9.81, 1) changes nothing" */
+static void put_flat(const Fit *f, const FitDirection *d, FILE *out) {
+  int pivot = 0, n = count_of(f, d), put = 0;
+  while (d->change[pivot] == 0.0) pivot++;
+  for (int j = 0; j < f->n; j++)
+    if (d->change[j] != 0.0) pivot = j; /* the last one is the divisor */
+  if (n == 1) {
+    fprintf(out, "%s: no value of the data feels it", f->target[pivot].label);
+    return;
+  }
+  for (int j = 0; j < pivot && (d->product || d->shift); j++) {
+    if (d->change[j] == 0.0) continue;
+    fputs(put++ ? ", " : "only ", out);
+    double factor = d->change[j] * f->target[j].scale / (d->change[pivot] * f->target[pivot].scale);
+    if (d->product) put_combination(out, f->target[j].label, d->change[j], f->target[pivot].label, d->change[pivot]);
+    else if (fabs(fabs(factor) - 1) < 1e-4)
+      fprintf(out, "%s %c %s", f->target[j].label, factor > 0 ? '-' : '+', f->target[pivot].label);
+    else fprintf(out, "%s - %.4g*%s", f->target[j].label, factor, f->target[pivot].label);
+  }
+  if (put) fputs(": ", out);
+  put_direction(f, d, out);
+  fputs(put ? " changes nothing" : " changes nothing, near these values", out);
+}
+
+/* ---- How well the motion fits */
+
+static void put_correlations(const Fit *f, FILE *out) {
+  const double strong = 0.9;
+  int n = 0;
+  for (int i = 0; i < f->n; i++)
+    for (int j = 0; j < i; j++)
+      if (fabs(f->correlation[i * f->n + j]) > strong)
+        fprintf(out, "%s%s with %s %.4f", n++ ? ", " : "correlated: ", f->target[j].label, f->target[i].label,
+                f->correlation[i * f->n + j]);
+  if (n) putc('\n', out);
+}
+
+static void put_columns(const FitRun *r, FILE *out) {
+  const double unlikely = 0.01;
+  const Fit *f = &r->fit;
+  for (int c = 0; c < f->ncolumns; c++) {
+    const FitColumn *k = &f->column[c];
+    fprintf(out, "residuals of %s: %d values, rms %.3g%s\n  %d runs of one sign, %.1f +- %.1f expected: %s\n", k->label,
+            k->n, k->rms, k->per_row || f->known_errors ? "" : ", taken as their error", k->runs, k->runs_expected,
+            k->runs_deviation,
+            k->runs_chance > unlikely    ? "no trend is left"
+            : k->runs < k->runs_expected ? "a trend is left, which the model lacks"
+                                         : "they swing from row to row");
+  }
+}
+
+static void put_chi_squared(const FitRun *r, FILE *out) {
+  const Fit *f = &r->fit;
+  if (!f->known_errors || f->huber || !(f->freedom > 0)) return;
+  double chance = f->by->chance_of_more(f->chi_squared, f->freedom);
+  fprintf(out, "chi squared %.4g for %.0f degrees of freedom, p = %.2g%s\n", f->chi_squared, f->freedom, chance,
+          chance < 0.001   ? ": the model or the errors are wrong"
+          : chance > 0.999 ? ": the errors are too large"
+                           : "");
+}
+
+/* The scene to paste. */
+static void put_scene(const FitRun *r, FILE *out) {
+  const Fit *f = &r->fit;
+  fprintf(out, "scene fitted { like %s\n", r->app->scene->name);
+  for (int j = 0; j < f->n; j++) {
+    const FitTarget *t = &f->target[j];
+    int is_start = strcmp(t->label, t->name) != 0 && strstr(t->label, "(0)");
+    fprintf(out, "  %s%s = ", is_start ? "start " : "", t->name);
+    put_value(out, t);
+    if (t->unit[0]) fprintf(out, " [%s]", t->unit);
+    putc('\n', out);
+  }
+  fputs("}\n", out);
+}
+
+void lag_fit_report(const FitRun *r, FILE *out) {
+  const Fit *f = &r->fit;
+  char method[200];
+  lag_report_method(r->app, method, sizeof method);
+  fprintf(out, "model %s, scene %s, method %s\n", r->app->scene->model->name, r->app->scene->name, method);
+  fprintf(out, "%s after %d steps, %d runs of the motion\n", f->converged ? "converged" : "not converged", f->steps,
+          f->evaluations);
+  put_values(f, out);
+  if (!f->converged && f->weakest.change) {
+    fputs("flattest direction: ", out);
+    put_direction(f, &f->weakest, out);
+    fputs("; hold one of these, add a prior, or begin nearer\n", out);
+  }
+  for (int k = 0; k < f->nflat; k++) {
+    fputs(k ? "  " : "cannot be told apart: ", out);
+    put_flat(f, &f->flat[k], out);
+    putc('\n', out);
+  }
+  put_correlations(f, out);
+  put_chi_squared(r, out);
+  put_columns(r, out);
+  if (r->app->args.svg) fprintf(out, "picture in %s\n", r->app->args.svg);
+  put_scene(r, out);
+}
+
+void lag_fit_report_json(const FitRun *r, FILE *out) {
+  const Fit *f = &r->fit;
+  Json j = {out, 0};
+  lag_json_begin(&j, NULL, '{');
+  lag_json_string(&j, "model", r->app->scene->model->name);
+  lag_json_string(&j, "scene", r->app->scene->name);
+  lag_json_string(&j, "method", lag_sim_method(r->app->sim)->name);
+  lag_json_truth(&j, "converged", f->converged);
+  lag_json_count(&j, "steps", f->steps);
+  lag_json_count(&j, "runs", f->evaluations);
+  for (int what = 0; what < 2; what++) {
+    lag_json_begin(&j, what ? "errors" : "values", '{');
+    for (int i = 0; i < f->n; i++)
+      lag_json_number(&j, f->target[i].label, what ? f->target[i].error : f->target[i].value);
+    lag_json_end(&j, '}');
+  }
+  lag_json_begin(&j, "correlations", '[');
+  for (int i = 0; i < f->n; i++) {
+    lag_json_begin(&j, NULL, '[');
+    for (int k = 0; k < f->n; k++) lag_json_number(&j, NULL, f->correlation[i * f->n + k]);
+    lag_json_end(&j, ']');
+  }
+  lag_json_end(&j, ']');
+  lag_json_begin(&j, "flat", '[');
+  for (int k = 0; k < f->nflat; k++) {
+    lag_json_begin(&j, NULL, '{');
+    for (int i = 0; i < f->n; i++)
+      if (f->flat[k].change[i] != 0.0)
+        lag_json_number(&j, f->target[i].label, f->flat[k].change[i] * f->target[i].scale);
+    lag_json_end(&j, '}');
+  }
+  lag_json_end(&j, ']');
+  lag_json_begin(&j, "singular_values", '[');
+  for (int k = 0; k < f->n; k++) lag_json_number(&j, NULL, f->singular[k]);
+  lag_json_end(&j, ']');
+  lag_json_number(&j, "chi_squared", f->chi_squared);
+  lag_json_number(&j, "freedom", f->freedom);
+  lag_json_begin(&j, "columns", '{');
+  for (int c = 0; c < f->ncolumns; c++) {
+    lag_json_begin(&j, f->column[c].label, '{');
+    lag_json_count(&j, "values", f->column[c].n);
+    lag_json_number(&j, "rms", f->column[c].rms);
+    lag_json_count(&j, "runs", f->column[c].runs);
+    lag_json_number(&j, "runs_expected", f->column[c].runs_expected);
+    lag_json_number(&j, "runs_chance", f->column[c].runs_chance);
+    lag_json_end(&j, '}');
+  }
+  lag_json_end(&j, '}');
+  lag_json_end(&j, '}');
+  putc('\n', out);
+}

@@ -1,0 +1,260 @@
+/* --fit: parameters and starts from measured motions (analysis/fit.h). Enters: names, and a file of data whose columns
+ * lagc has made outputs of the scene; leaves: values with errors, a report, a picture. Holds: columns are matched by
+ * name and unit, times are taken as they are, and what does not fit is refused with its line. */
+#include "app/fit_run.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/core.h"
+
+enum { MOST_STEPS = 200 };
+
+/* A new simulation with the settings of the command line. */
+static lag_sim *fresh(void *run) {
+  FitRun *r = run;
+  lag_sim *sim = lag_app_fresh_bare_sim(r->app);
+  if (!sim || lag_app_copy_method(r->app->sim, sim, 1) == LAG_OK) return sim;
+  lag_sim_free(sim);
+  return NULL;
+}
+
+/* ---- Targets */
+
+static int starts_with(const char *list, const char *name, const char **rest) {
+  size_t n = strlen(name);
+  *rest = list + n;
+  return strncmp(list, name, n) == 0;
+}
+
+/* name~normal(MEAN, DEVIATION) of --prior. */
+static int take_prior(FitRun *r, const char *text) {
+  const char *rest;
+  for (int j = 0; j < r->fit.n; j++) {
+    FitTarget *t = &r->fit.target[j];
+    if (!starts_with(text, t->name, &rest) || *rest != '~') continue;
+    if (sscanf(rest, "~normal(%lf,%lf)", &t->prior, &t->prior_error) == 2 && t->prior_error > 0) return 0;
+    return lag_app_error(&r->app->args, "--prior '%s': write --prior '%s~normal(MEAN, DEVIATION)', in %s", text,
+                         t->name, t->unit[0] ? t->unit : "its own unit");
+  }
+  return lag_app_error(&r->app->args, "--prior '%s': write NAME~normal(MEAN, DEVIATION), with a NAME of --fit", text);
+}
+
+/* Splits "g,l,th(0)" at commas outside of brackets. */
+static int split(char *text, char **name) {
+  int n = 0, depth = 0;
+  if (name) name[0] = text;
+  for (char *c = text; *c; c++) {
+    depth += *c == '(' || *c == '[' ? 1 : *c == ')' || *c == ']' ? -1 : 0;
+    if (*c != ',' || depth > 0) continue;
+    n++;
+    if (name) {
+      name[n] = c + 1;
+      *c = '\0';
+    }
+  }
+  return n + 1;
+}
+
+/* The name without blanks around it and without "(0)". */
+static char *bare(char *name) {
+  name += strspn(name, " ");
+  size_t n = strlen(name);
+  while (n && name[n - 1] == ' ') name[--n] = '\0';
+  if (n > 3 && strcmp(name + n - 3, "(0)") == 0) name[n - 3] = '\0';
+  return name;
+}
+
+static int take_targets(FitRun *r) {
+  const Args *a = &r->app->args;
+  Fit *f = &r->fit;
+  r->names = malloc(strlen(a->fit) + 1);
+  char **name = r->names ? (strcpy(r->names, a->fit), calloc((size_t)split(r->names, NULL), sizeof *name)) : NULL;
+  f->n = name ? split(r->names, name) : 0;
+  f->target = calloc((size_t)f->n + 1, sizeof *f->target);
+  lag_sim *sim = lag_app_fresh_bare_sim(r->app);
+  int rc = !name || !f->target || !sim ? lag_app_error(a, "out of memory") : 0;
+  for (int j = 0; j < f->n && rc == 0; j++) f->target[j].name = name[j] = bare(name[j]);
+  if (rc == 0 &&
+      (lag_app_copy_method(r->app->sim, sim, 1) || lag_sim_set_sensitivity(sim, f->n, (const char *const *)name)))
+    rc = lag_app_error(a, "--fit: %s", lag_sim_message(sim));
+  for (int j = 0; j < f->n && rc == 0; j++) {
+    FitTarget *t = &f->target[j];
+    const lag_var *var;
+    int i;
+    t->factor = lag_sim_sensitivity_info(sim, j, t->label, sizeof t->label, t->unit, sizeof t->unit);
+    t->sign = lag_find_name(sim->scene->model, t->name, &i, &var) == LAG_IS_P ? var->sign : 0;
+    t->begin = lag_declared(var, lag_sim_sensitivity_value(sim, j));
+    t->scale = t->begin != 0.0 ? fabs(t->begin) : 1;
+  }
+  lag_sim_free(sim);
+  free(name);
+  for (int i = 0; i < a->npriors && rc == 0; i++) rc = take_prior(r, a->priors[i]);
+  return rc;
+}
+
+/* ---- Columns */
+
+/* Number of the output with this name; -1: none. */
+static int output_named(const FitRun *r, const char *label) {
+  char name[96];
+  int n = lag_sim_noutputs(r->app->sim), i = n - 1; /* those of the data stand last */
+  while (i >= 0 && (lag_sim_output_info(r->app->sim, i, name, sizeof name, NULL, 0), strcmp(name, label) != 0)) i--;
+  return i;
+}
+
+/* The column with the errors of another one: "sigma(th) [deg]" for "th [deg]"; 0: none. */
+static int errors_of(const FitRun *r, const char *label) {
+  char want[160];
+  const char *unit = strstr(label, " [");
+  int n = (int)(unit ? (size_t)(unit - label) : strlen(label));
+  for (int k = 1; k < r->data.ncols; k++) {
+    snprintf(want, sizeof want, "sigma(%.*s)%s", n, label, unit ? unit : "");
+    if (strcmp(r->data.names[k], want) == 0) return k;
+  }
+  return 0;
+}
+
+/* Error of column c by --sigma X or --sigma NAME=X, in the column's unit; 0: not given. */
+static int take_sigma(FitRun *r, FitColumn *c) {
+  const Args *a = &r->app->args;
+  size_t n = strcspn(c->label, " ");
+  for (int i = 0; i < a->nsigmas; i++) {
+    const char *text = a->sigmas[i], *eq = strchr(text, '=');
+    if (eq && ((size_t)(eq - text) != n || strncmp(text, c->label, n) != 0)) continue;
+    if (!lag_args_number(a, "--sigma", eq ? eq + 1 : text, "--sigma 0.01, or --sigma th=0.5", &c->sigma))
+      return EXIT_USAGE;
+    if (!(c->sigma > 0)) return lag_app_error(a, "--sigma %s: the error of a value is positive", text);
+  }
+  return 0;
+}
+
+/* Copies column k of the file, and its errors. */
+static int copy_column(FitRun *r, int c, int k) {
+  Fit *f = &r->fit;
+  int errors = errors_of(r, f->column[c].label);
+  f->column[c].per_row = errors > 0;
+  for (int i = 0; i < f->nrows; i++) {
+    const double *row = r->data.x + (size_t)i * (size_t)r->data.ncols;
+    f->data[i * f->ncolumns + c] = row[k];
+    if (errors) f->errors[i * f->ncolumns + c] = row[errors];
+    if (errors && !isnan(row[k]) && !(row[errors] > 0))
+      return lag_app_error(&r->app->args, "%s:%lld: column %s: an error is positive, or its value is missing, too",
+                           r->app->args.data, r->data.line[i], r->data.names[errors]);
+  }
+  return take_sigma(r, &f->column[c]);
+}
+
+static int take_columns(FitRun *r) {
+  const Args *a = &r->app->args;
+  Fit *f = &r->fit;
+  f->nrows = (int)r->data.nrows;
+  f->column = calloc((size_t)r->data.ncols, sizeof *f->column);
+  for (int k = 1; k < r->data.ncols && f->column; k++) {
+    int output = output_named(r, r->data.names[k]);
+    if (output >= 0) f->column[f->ncolumns++] = (FitColumn){.label = r->data.names[k], .output = output};
+  }
+  if (f->ncolumns == 0)
+    return lag_app_error(a, "%s: no column besides the time is an output here; `lagc fit` makes them outputs", a->data);
+  size_t many = (size_t)(f->nrows * f->ncolumns);
+  f->data = calloc(many, sizeof *f->data);
+  f->errors = calloc(many, sizeof *f->errors);
+  if (!f->data || !f->errors) return lag_app_error(a, "out of memory");
+  int rc = 0;
+  for (int c = 0; c < f->ncolumns && rc == 0; c++) {
+    int k = 1;
+    while (strcmp(r->data.names[k], f->column[c].label) != 0) k++;
+    rc = copy_column(r, c, k);
+  }
+  return rc;
+}
+
+/* The unit of the file's times in seconds: the value of the output that lagc has named after the column. */
+static int take_time_unit(FitRun *r) {
+  const Args *a = &r->app->args;
+  const char *label = r->data.names[0];
+  r->time_unit = 1;
+  if (strcmp(label, "t") == 0 || strcmp(label, "t [s]") == 0) return 0;
+  if (strncmp(label, "t [", 3) != 0)
+    return lag_app_error(a, "%s: the first column is \"%.40s\"; it must be the time: t [s]", a->data, label);
+  int k = output_named(r, label), n = lag_sim_noutputs(r->app->sim);
+  double *out = calloc((size_t)n + 1, sizeof *out);
+  int rc = k < 0 || !out || lag_sim_outputs(r->app->sim, out)
+               ? lag_app_error(a, "%s: the unit of the time, %s, is not known here; write t [s]", a->data, label)
+               : 0;
+  if (rc == 0) r->time_unit = 1 / out[k];
+  free(out);
+  return rc;
+}
+
+static int take_times(FitRun *r) {
+  const Args *a = &r->app->args;
+  int rc = take_time_unit(r);
+  double *t = r->t = calloc(r->data.nrows, sizeof *t), t0 = r->app->scene->t0;
+  if (!t) return lag_app_error(a, "out of memory");
+  for (size_t i = 0; i < r->data.nrows && rc == 0; i++) {
+    t[i] = r->data.x[i * (size_t)r->data.ncols] * r->time_unit;
+    if (isnan(t[i])) rc = lag_app_error(a, "%s:%lld: the time is missing", a->data, r->data.line[i]);
+    else if (i && t[i] == t[i - 1])
+      rc = lag_app_error(a, "%s:%lld: t = %.9g s stands twice; join the rows, for example by their mean", a->data,
+                         r->data.line[i], t[i]);
+    else if (i && t[i] < t[i - 1])
+      rc = lag_app_error(a, "%s:%lld: t = %.9g s comes after %.9g s; sort the rows by time", a->data, r->data.line[i],
+                         t[i], t[i - 1]);
+    else if (t[i] < t0)
+      rc = lag_app_error(
+          a,
+          "%s:%lld: t = %.9g s lies before the scene, which begins at %.9g s; write `span %.9g..` into the "
+          "scene",
+          a->data, r->data.line[i], t[i], t0, t[0]);
+  }
+  r->fit.t = t;
+  return rc;
+}
+
+/* ---- The analysis */
+
+static int prepare(FitRun *r) {
+  App *app = r->app;
+  const Args *a = &app->args;
+  char why[400];
+  if (!app->extras.fits)
+    return lag_app_error(a, "fits need GSL, which this simulator was built without: `apt-get install libgsl-dev`, make "
+                            "lagc again, and leave out --no-gsl");
+  if (!a->data) return lag_app_error(a, "--fit %s: the data are missing: --data motion.csv", a->fit);
+  int rc = lag_data_read(a->data, &r->data, why, sizeof why) ? lag_app_error(a, "--data %s", why) : 0;
+  if (rc || (rc = lag_app_set_up_start(app)) != 0 || (rc = take_times(r)) != 0) return rc;
+  app->until = r->t[r->data.nrows - 1];
+  if ((rc = lag_app_choose_method(app)) != 0 || (rc = take_columns(r)) != 0) return rc;
+  r->fit.by = app->extras.fits;
+  r->fit.fresh = fresh;
+  r->fit.context = r;
+  r->fit.most = MOST_STEPS;
+  r->fit.huber = a->loss && strcmp(a->loss, "huber") == 0;
+  return take_targets(r);
+}
+
+int lag_app_fit(App *app) {
+  FitRun r = {.app = app};
+  const Args *a = &app->args;
+  int rc = prepare(&r);
+  if (rc == 0 && (r.status = lag_fit(&r.fit)) != 0) {
+    rc = r.status == LAG_EINVAL ? EXIT_USAGE : EXIT_RUN;
+    lag_app_error(a, "%s", r.fit.why);
+  }
+  if (rc == 0 && a->svg && lag_fit_picture(&r, a->svg)) rc = lag_app_io_error(app, a->svg);
+  if (rc == 0 && a->json) lag_fit_report_json(&r, stdout);
+  if (rc == 0 && !a->json) lag_fit_report(&r, stdout);
+  if (rc == 0 && !r.fit.converged) rc = EXIT_RUN;
+  lag_fit_free(&r.fit);
+  free(r.fit.target);
+  free(r.fit.column);
+  free(r.fit.data);
+  free(r.fit.errors);
+  free(r.t);
+  free(r.names);
+  lag_data_free(&r.data);
+  return rc;
+}

@@ -1,0 +1,21 @@
+/* Shared by the files of `lagc fit`. */
+#pragma once
+
+#include "analysis/fit.h"
+#include "app/app.h"
+#include "io/data_file.h"
+
+typedef struct FitRun {
+  App *app;
+  Fit fit;
+  DataFile data;
+  char *names;      /* of targets, as text */
+  double *t;        /* [rows] times [s] */
+  double time_unit; /* of the file, in seconds */
+  int status;       /* LAG_... of the fit */
+} FitRun;
+
+/* fit_report.c, fit_picture.c; the latter: 0, or -1 with errno set. */
+void lag_fit_report(const FitRun *r, FILE *f);
+void lag_fit_report_json(const FitRun *r, FILE *f);
+int lag_fit_picture(FitRun *r, const char *path);

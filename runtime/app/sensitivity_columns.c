@@ -1,0 +1,168 @@
+/* --sensitivity: derivatives of outputs by parameters and starts. Enters: a run and names; leaves: additional columns
+ * dx/dg, output by output, in declared units; the derivatives at the end for the report; and which names the outputs
+ * feel. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "core/core.h"
+
+enum { MOST_COLUMNS = 4096 };
+
+struct Sensitivity {
+  int n, nout;       /* names, outputs */
+  char **names;      /* [n] "g", "th(0)"; their texts stand behind them */
+  double *factor;    /* [n] of each name's unit */
+  double *Y, *D;     /* [state n], [nout n] */
+  double *by, *size; /* [nout n] largest |D| so far; [nout] largest |output| */
+};
+
+/* Splits "g,l,th(0)" at commas outside of brackets: number of names, which are written to names (NULL: counted). */
+static int split_names(const char *list, char *text, char **names) {
+  int n = 0, depth = 0;
+  if (text) strcpy(text, list);
+  for (size_t i = 0, from = 0;; i++) {
+    char c = list[i];
+    depth += c == '(' || c == '[' ? 1 : c == ')' || c == ']' ? -1 : 0;
+    if (c && (c != ',' || depth > 0)) continue;
+    if (names) {
+      names[n] = text + from;
+      text[i] = '\0';
+    }
+    n++;
+    from = i + 1;
+    if (!c) return n;
+  }
+}
+
+/* Name and unit of d(output)/d(name j). */
+static Column describe(const App *app, int output, int j) {
+  Column x = {0}, y = {0}, c = {0};
+  char over[72], under[72];
+  lag_sim_output_info(app->sim, output, x.name, sizeof x.name, x.unit, sizeof x.unit);
+  lag_sim_sensitivity_info(app->sim, j, y.name, sizeof y.name, y.unit, sizeof y.unit);
+  lag_unit_in_fraction(over, sizeof over, x.unit);
+  lag_unit_in_fraction(under, sizeof under, y.unit);
+  snprintf(c.name, sizeof c.name, "d%.40s/d%.40s", x.name, y.name);
+  if (strcmp(x.unit, y.unit) == 0) return c;
+  snprintf(c.unit, sizeof c.unit, y.unit[0] ? "%.30s/%.30s" : "%.30s", y.unit[0] ? over : x.unit, under);
+  return c;
+}
+
+static Sensitivity *sensitivity_new(const App *app, const char *list) {
+  int n = split_names(list, NULL, NULL), state = app->sim->pb.n, nout = lag_sim_noutputs(app->sim);
+  size_t reals = (size_t)(n + state * n + 2 * nout * n + nout);
+  Sensitivity *s = calloc(1, sizeof *s + reals * sizeof(double) + (size_t)n * sizeof(char *) + strlen(list) + 1);
+  if (!s) return NULL;
+  s->n = n;
+  s->nout = nout;
+  s->factor = (double *)(s + 1);
+  s->Y = s->factor + n;
+  s->D = s->Y + state * n;
+  s->by = s->D + nout * n;
+  s->size = s->by + nout * n;
+  s->names = (char **)(s->size + nout);
+  split_names(list, (char *)(s->names + n), s->names);
+  return s;
+}
+
+int lag_sensitivity_open(App *app) {
+  const Args *a = &app->args;
+  if (!a->sensitivity) return 0;
+  Sensitivity *s = app->sensitivity = sensitivity_new(app, a->sensitivity);
+  if (!s) return lag_app_error(a, "out of memory");
+  if (s->n * s->nout > MOST_COLUMNS)
+    return lag_app_error(a, "--sensitivity: %d outputs by %d names would make %d columns; %d are allowed", s->nout,
+                         s->n, s->nout * s->n, MOST_COLUMNS);
+  if (lag_sim_set_sensitivity(app->sim, s->n, (const char *const *)s->names))
+    return lag_app_error(a, "--sensitivity: %s", lag_sim_message(app->sim));
+  for (int j = 0; j < s->n; j++) s->factor[j] = lag_sim_sensitivity_info(app->sim, j, NULL, 0, NULL, 0);
+  Column *cols = lag_app_add_columns(app, s->n * s->nout);
+  if (!cols) return lag_app_error(a, "out of memory");
+  for (int k = 0; k < s->n * s->nout; k++) cols[k] = describe(app, k / s->n, k % s->n);
+  return 0;
+}
+
+/* s->D at the present time, per declared unit of each name. */
+static int derivatives(App *app) {
+  Sensitivity *s = app->sensitivity;
+  int rc = lag_sim_tangent(app->sim, s->Y);
+  rc = rc ? rc : lag_sim_output_sensitivity(app->sim, s->Y, s->D);
+  for (int i = 0; i < s->nout && rc == 0; i++)
+    for (int j = 0; j < s->n; j++) {
+      s->D[i * s->n + j] *= s->factor[j];
+      s->by[i * s->n + j] = fmax(s->by[i * s->n + j], fabs(s->D[i * s->n + j]));
+    }
+  return rc;
+}
+
+int lag_sensitivity_row(App *app) {
+  Sensitivity *s = app->sensitivity;
+  if (!s) return LAG_OK;
+  int rc = derivatives(app), many = s->n * s->nout;
+  if (rc) return rc;
+  memcpy(app->row + app->table.ncols - many, s->D, (size_t)many * sizeof(double));
+  for (int i = 0; i < s->nout; i++) s->size[i] = fmax(s->size[i], fabs(app->row[1 + i]));
+  return LAG_OK;
+}
+
+/* ---- The report */
+
+/* Whether an output changes, beyond rounding, with name j. */
+static int is_felt(const App *app, int j) {
+  const double rounding = 1e-10;
+  const Sensitivity *s = app->sensitivity;
+  double value = fabs(lag_sim_sensitivity_value(app->sim, j) / s->factor[j]);
+  int felt = 0;
+  for (int i = 0; i < s->nout; i++)
+    felt |= s->by[i * s->n + j] * (value > 0 ? value : 1) > rounding * (s->size[i] > 0 ? s->size[i] : 1);
+  return felt;
+}
+
+static int known_at_end(App *app) { return app->sensitivity && app->status >= 0 && derivatives(app) == 0; }
+
+static void report_felt(App *app, FILE *f) {
+  const Sensitivity *s = app->sensitivity;
+  int count[2] = {0};
+  for (int felt = 1; felt >= 0; felt--) {
+    for (int j = 0; j < s->n; j++)
+      if (is_felt(app, j) == felt)
+        fprintf(f, "%s%s",
+                count[felt]++ ? ", "
+                : felt        ? "outputs feel "
+                : count[1]    ? "; not "
+                              : "outputs feel none of ",
+                s->names[j]);
+  }
+  putc('\n', f);
+}
+
+void lag_report_sensitivity(App *app, FILE *f) {
+  const Sensitivity *s = app->sensitivity;
+  if (!known_at_end(app)) return;
+  for (int i = 0; i < s->nout; i++)
+    s->size[i] = fmax(s->size[i], lag_sim_outputs(app->sim, app->row + 1) ? 0 : fabs(app->row[1 + i]));
+  fprintf(f, "sensitivity: derivative of the outputs at the end\n");
+  for (int k = 0; k < s->n * s->nout; k++) {
+    Column c = describe(app, k / s->n, k % s->n);
+    fprintf(f, "  %-20s %.15g%s%s\n", c.name, s->D[k], c.unit[0] ? " " : "", c.unit);
+  }
+  report_felt(app, f);
+}
+
+void lag_report_sensitivity_json(App *app, Json *out) {
+  const Sensitivity *s = app->sensitivity;
+  if (!known_at_end(app)) return;
+  lag_json_begin(out, "sensitivity", '{');
+  for (int i = 0; i < s->nout; i++) {
+    char name[64];
+    lag_sim_output_info(app->sim, i, name, sizeof name, NULL, 0);
+    lag_json_begin(out, name, '{');
+    for (int j = 0; j < s->n; j++) lag_json_number(out, s->names[j], s->D[i * s->n + j]);
+    lag_json_end(out, '}');
+  }
+  lag_json_end(out, '}');
+}
+
+void lag_sensitivity_free(App *app) { free(app->sensitivity); }

@@ -1,0 +1,81 @@
+/* lag_least_squares by the GNU Scientific Library: trust-region steps with geodesic acceleration (M. K. Transtrum, J.
+ * P. Sethna, arXiv:1201.5885), singular values by one-sided Jacobi rotations. Holds: GSL's abort handler is off while
+ * it runs, and its allocations are freed on every way out. */
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_multifit_nlinear.h>
+#include <math.h>
+
+#include "lag.h"
+
+typedef struct Problem {
+  lag_residuals_at *residuals;
+  void *context;
+} Problem;
+
+/* Residuals; 1e100 each where a run fails, so that the step is refused. */
+static int residuals_f(const gsl_vector *x, void *context, gsl_vector *f) {
+  const Problem *p = context;
+  if (p->residuals(p->context, x->data, f->data, NULL)) gsl_vector_set_all(f, 1e100);
+  return GSL_SUCCESS;
+}
+
+static int residuals_df(const gsl_vector *x, void *context, gsl_matrix *J) {
+  const Problem *p = context;
+  return p->residuals(p->context, x->data, NULL, J->data) ? GSL_EDOM : GSL_SUCCESS;
+}
+
+/* Steps until one gains less than a part of 1e-9 of |f|^2, which is a step of 1e-4 standard errors for a few hundred
+ * residuals, or until none gains. */
+static int descend(gsl_multifit_nlinear_workspace *w, int most, int *steps) {
+  const double least_gain = 1e-9;
+  const gsl_vector *f = gsl_multifit_nlinear_residual(w);
+  double before, now = HUGE_VAL;
+  gsl_blas_ddot(f, f, &now);
+  for (*steps = 0; *steps < most; ++*steps) {
+    before = now;
+    if (gsl_multifit_nlinear_iterate(w)) return LAG_OK;
+    gsl_blas_ddot(f, f, &now);
+    if (before - now <= least_gain * now) return LAG_OK;
+  }
+  return LAG_EMETHOD;
+}
+
+static int minimise(int m, int n, double *x, lag_residuals_at *residuals, void *context, int most, int *steps) {
+  Problem problem = {residuals, context};
+  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
+  parameters.trs = gsl_multifit_nlinear_trs_lmaccel;
+  parameters.scale = gsl_multifit_nlinear_scale_levenberg; /* coordinates have scales of their own */
+  parameters.solver = gsl_multifit_nlinear_solver_qr; /* that by singular values may not end for columns of rounding */
+  gsl_multifit_nlinear_fdf fdf = {
+      .f = residuals_f, .df = residuals_df, .n = (size_t)m, .p = (size_t)n, .params = &problem};
+  gsl_multifit_nlinear_workspace *w =
+      gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, (size_t)m, (size_t)n);
+  gsl_vector_view start = gsl_vector_view_array(x, (size_t)n);
+  int rc = !w ? LAG_ENOMEM : gsl_multifit_nlinear_init(&start.vector, &fdf, w) ? LAG_EDOMAIN : LAG_OK;
+  if (rc == LAG_OK) {
+    rc = descend(w, most, steps);
+    gsl_vector_memcpy(&start.vector, gsl_multifit_nlinear_position(w));
+  }
+  gsl_multifit_nlinear_free(w);
+  gsl_set_error_handler(handler);
+  return rc;
+}
+
+static int singular_values(int m, int n, double *A, double *values, double *V) {
+  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  gsl_matrix_view a = gsl_matrix_view_array(A, (size_t)m, (size_t)n),
+                  v = gsl_matrix_view_array(V, (size_t)n, (size_t)n);
+  gsl_vector_view s = gsl_vector_view_array(values, (size_t)n);
+  int rc = gsl_linalg_SV_decomp_jacobi(&a.matrix, &v.matrix, &s.vector);
+  gsl_set_error_handler(handler);
+  return rc ? LAG_EMETHOD : LAG_OK;
+}
+
+static double chance_of_more(double chi_squared, double freedom) { return gsl_cdf_chisq_Q(chi_squared, freedom); }
+static double student(double part, double freedom) { return gsl_cdf_tdist_Pinv(part, freedom); }
+
+const lag_least_squares lag_gsl_least_squares = {minimise, singular_values, chance_of_more, student};

@@ -1,0 +1,112 @@
+"use strict";
+// Motions computed in the page: liblag as WebAssembly, and one program of `lagc`. Used by live.html, and by tests in node.
+
+// An instance of the module with a program. Memory may grow with each call, so that views are made where they are used.
+class Lag {
+  constructor(module) {
+    const imports = {};
+    for (const {module: from, name} of WebAssembly.Module.imports(module))
+      (imports[from] ||= {})[name] = name == "clock_time_get" ? (_, __, to) => {
+        new DataView(this.f.memory.buffer).setBigUint64(to, BigInt(Math.round(performance.now()*1e6)), true);
+        return 0;
+      } : () => 52; // "not supported" of WASI: there are no files
+    this.f = new WebAssembly.Instance(module, imports).exports;
+    this.f._initialize();
+  }
+  text(at) {
+    if (!at) return null;
+    const bytes = new Uint8Array(this.f.memory.buffer);
+    return new TextDecoder().decode(bytes.slice(at, bytes.indexOf(0, at)));
+  }
+  // Calls use(address) with bytes in the module's memory.
+  lend(bytes, use) {
+    const at = this.f.malloc(bytes.length || 1);
+    new Uint8Array(this.f.memory.buffer).set(bytes, at);
+    try { return use(at); } finally { this.f.free(at); }
+  }
+  word(text, use) { return this.lend(new TextEncoder().encode(text + "\0"), use); }
+  // The program of these bytes; an error tells why it is none.
+  open(bytes) {
+    const program = this.lend(bytes, at => this.f.page_program(at, bytes.length));
+    if (!program) throw new Error(this.text(this.f.page_why()));
+    const scenes = [];
+    for (let i = 0, scene; (scene = this.f.lag_library_scene(program, i)); i++) scenes.push(scene);
+    return scenes;
+  }
+  // Names and units of a scene's items of a kind, as lag_item has them, with factor and offset to SI.
+  items(scene, kind) {
+    const all = [], room = this.f.malloc(24);
+    for (let i = 0, at; (at = this.f.lag_item(scene, kind.charCodeAt(0), i, room, room + 8, room + 16)); i++) {
+      const view = new DataView(this.f.memory.buffer);
+      all.push({name: this.text(at), unit: this.text(view.getUint32(room, true)), factor: view.getFloat64(room + 8, true),
+        offset: view.getFloat64(room + 16, true)});
+    }
+    this.f.free(room);
+    return all;
+  }
+  // Times of the start and the end of a scene's span [s]; the same where it has none.
+  span(scene) {
+    const room = this.f.malloc(24);
+    this.f.lag_scene_span(scene, room, room + 8, room + 16);
+    const [t0, t1] = new Float64Array(this.f.memory.buffer, room, 2);
+    this.f.free(room);
+    return {t0, t1};
+  }
+  // The scene's drawing: shapes as lag_shape of lag_model.h, with numbers of outputs.
+  shapes(scene) {
+    const all = [];
+    for (let i = 0, at; (at = this.f.page_shape(scene, i)); i++) {
+      const [kind, role, text, ...n] = this.text(at).split("\t"), k = n.map(Number);
+      all.push({kind, role, text, count: k[0], a: k.slice(1, 4), b: k.slice(4, 7), size: k.slice(7, 10), turn: k.slice(10, 14)});
+    }
+    return all;
+  }
+  // The n parameters of a simulation, in SI.
+  parameters(sim, n) { return Array.from(new Float64Array(this.f.memory.buffer, this.f.lag_sim_p(sim), n)); }
+  methods(scene) { return this.items(scene, "m").map(m => m.name); }
+}
+
+// A motion of a scene. settings: {method, tol, step, until, values: {name: value in its unit}, t: time of the start [s]}.
+class Motion {
+  constructor(lag, scene, settings = {}) {
+    const {method = "", tol = 0, step = 0, until = 1, values = {}, t = NaN} = settings;
+    this.lag = lag;
+    this.sim = lag.f.page_begin(scene, t);
+    if (!this.sim) throw new Error("out of memory");
+    for (const name in values) this.must(lag.word(name, at => lag.f.lag_sim_set(this.sim, at, values[name])));
+    this.must(lag.word(method, at => lag.f.page_set_method(this.sim, at, tol, step, until)));
+    this.room = lag.f.malloc(8*Math.max(1, this.count = lag.f.lag_sim_noutputs(this.sim)));
+  }
+  must(status) {
+    if (status < 0) throw new Error(this.message);
+    return status;
+  }
+  get message() { return this.lag.text(this.lag.f.lag_sim_message(this.sim)); }
+  get method() { return this.lag.text(this.lag.f.page_method(this.sim)); }
+  get t() { return this.lag.f.lag_sim_time(this.sim); }
+  // Integrates to t. Returns 0, or 1 where an event ended the motion before; throws where it failed.
+  advance(t) { return this.must(this.lag.f.lag_sim_advance(this.sim, t)); }
+  names(which) { // page_output or page_state
+    const all = [];
+    for (let i = 0, at; (at = this.lag.f[which](this.sim, i)); i++) all.push(this.lag.text(at).split("\t"));
+    return all.map(([name, unit]) => ({name, unit}));
+  }
+  get outputs() {
+    this.lag.f.lag_sim_outputs(this.sim, this.room);
+    return Array.from(new Float64Array(this.lag.f.memory.buffer, this.room, this.count));
+  }
+  // {name: value} of the present state, as a start of another motion takes it.
+  get state() {
+    const now = {};
+    this.names("page_state").forEach(({name}, i) => { now[name] = this.lag.f.lag_sim_state_value(this.sim, i); });
+    return now;
+  }
+  charge(k) { const f = what => this.lag.f.page_charge(this.sim, k, what); return {now: f(0), drift: f(1), absolute: f(2), work: f(3)}; }
+  get cost() { return {steps: this.lag.f.page_count(this.sim, 0), calls: this.lag.f.page_count(this.sim, 1)}; }
+  free() {
+    this.lag.f.page_end(this.sim);
+    this.lag.f.free(this.room);
+    this.sim = 0;
+  }
+}
+if (typeof module != "undefined") module.exports = {Lag, Motion};

@@ -1,0 +1,83 @@
+/* Runs that begin at once: lag-run evaluates the programs as bytes. What runs longer is compiled beside it, as a
+ * library that lag-run then changes over to, and that the cache keeps. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands/simulator.h"
+#include "toolchain/process.h"
+
+/* The reason why the run must be compiled; NULL: liblag can evaluate it. */
+static const char *reason_to_compile(Compiler *c, const Toolchain *tools, ProgramKind kind) {
+  if (kind & PROGRAM_WITH_PNG) return "has no pictures as PNG: give a name with .svg";
+  if (kind & (PROGRAM_WITH_HDF5 | PROGRAM_WITH_MPI | PROGRAM_WITH_LANES)) return "evaluates one run at a time";
+  return toolchain_evaluator(c->arena, tools) ? NULL : "needs lag-run beside liblag.a: run `make`";
+}
+
+/* The same program as a library for lag-run. */
+typedef struct {
+  Arena *arena;
+  Toolchain tools;
+  Texts texts;
+} ModelLibrary;
+
+static ModelLibrary library_of(Compiler *c, const Units *units, const Toolchain *tools) {
+  ModelLibrary m = {c->arena, *tools, simulator_texts(c, units, PROGRAM_LIBRARY)};
+  m.tools.soname = "model.so";
+  m.tools.models = 1;
+  m.tools.library = NULL;
+  m.tools.gsl = 0;
+  return m;
+}
+
+/* Compiles if the run goes on for a while, and tells lag-run the library's path. */
+static void compile_beside(void *data, int run) {
+  const double a_while = 0.5;
+  ModelLibrary *m = data;
+  const char *error;
+  if (process_reader_ends(run, a_while)) return;
+  const char *path = toolchain_simulator(m->arena, &m->tools, m->texts.at, m->texts.n, &error);
+  if (path) process_tell(run, path);
+}
+
+/* Hands lag-run a library from the cache, or the program as bytes, compiled meanwhile. Returns a STATUS. */
+static int hand_over(Compiler *c, const Units *units, const Toolchain *tools, int compiles) {
+  ModelLibrary m = {0};
+  if (c->o.no_gsl) process_set("LAG_NO_GSL", "1");
+  if (compiles) {
+    m = library_of(c, units, tools);
+    const char *cached = toolchain_cached(c->arena, &m.tools, m.texts.at, m.texts.n);
+    if (cached) return process_set("LAG_LIBRARY", cached), STATUS_OK;
+  }
+  StrBuf bytes = simulator_bytes(c, units);
+  if (!process_give("LAG_PROGRAM", &bytes)) return usage_error("cannot write a temporary file: set TMPDIR");
+  if (!compiles) return STATUS_OK;
+  if (toolchain_has_compiler(c->arena, tools)) process_beside(compile_beside, &m, "LAG_COMPILED");
+  else
+    fprintf(
+        stderr,
+        "lagc: there is no C compiler `%s`: the model is evaluated, with the same digits, long runs at a third to a "
+        "half of the speed\n",
+        tools->cc);
+  return STATUS_OK;
+}
+
+int simulator_evaluate(Compiler *c, const Units *units, const char **path) {
+  const char *how = c->o.compile ? c->o.compile : "auto";
+  int never = strcmp(how, "never") == 0, digits = options_more_digits(&c->o);
+  Toolchain tools;
+  ProgramKind kind;
+  *path = NULL;
+  if (strcmp(how, "always") == 0 || c->o.command == CMD_COST || c->o.command == CMD_SWEEP) return STATUS_OK;
+  if (digits) return never ? usage_error("--compile never evaluates doubles only: leave --precision out") : STATUS_OK;
+  int status = simulator_tools(c, units, NULL, &tools, &kind);
+  const char *reason = status == STATUS_OK ? reason_to_compile(c, &tools, kind) : NULL;
+  if (reason && never) return usage_error(arena_printf(c->arena, "--compile never %s", reason));
+  if (reason || status != STATUS_OK) return status;
+  if (!never) {
+    Texts texts = simulator_texts(c, units, kind);
+    if (toolchain_cached(c->arena, &tools, texts.at, texts.n)) return STATUS_OK;
+  }
+  *path = toolchain_evaluator(c->arena, &tools);
+  return hand_over(c, units, &tools, !never);
+}

@@ -1,0 +1,200 @@
+/* Quantified sums (sym/sum_nest.h) as nests of loops (Nest in ir/prog.h): arguments become array elements with affine
+ * indices, what stays the same in all turns is computed before the loops. Sums without that form, and those in series,
+ * are written out. */
+#include "lower/lower_impl.h"
+#include "sym/sum_nest.h"
+
+typedef struct {
+  Lower *l;
+  const SumNest *s;
+  Expr nest;
+  Lower body;
+  VEC(IrSubscript) at;
+  VEC(Slot) outer;
+} NestBuilder;
+
+static Slot arg_slot(const NestBuilder *b, int64_t i) {
+  return lower_slot(b->l, expr_sum_arg(b->l->g, b->nest, (uint32_t)i));
+}
+
+static int varies(const Subscript *at) { return at->by_row || at->by_turn; }
+
+/* Whether the arguments of a read are elements of one array at equal steps; then the load of the first, and the index
+ * of each turn. */
+static int array_index(const NestBuilder *b, const Subscript *at, Ins *load, IrSubscript *index) {
+  const Prog *p = b->l->p;
+  int64_t least, most, step = subscript_step(at);
+  if (!loop_extent(&b->s->range, at, &least, &most)) return 0;
+  *load = p->ins.at[arg_slot(b, least)];
+  if (load->op != IR_LOAD || ir_is_scalar(load->array) || load->array == ARR_CELL) return 0;
+  int64_t by = least == most ? 0 : (int64_t)p->ins.at[arg_slot(b, least + step)].index - load->index;
+  for (int64_t k = least; k <= most; k += step) {
+    const Ins *x = &p->ins.at[arg_slot(b, k)];
+    if (x->op != IR_LOAD || x->array != load->array || x->index != load->index + (k - least) / step * by) return 0;
+  }
+  *index =
+      (IrSubscript){load->index + (at->first - least) / step * by, at->by_row / step * by, at->by_turn / step * by};
+  return 1;
+}
+
+/* Slots of the body for the reads that vary; 0: one has no index. Row by row first: sums and products begin with
+ * them. */
+static int load_reads(NestBuilder *b) {
+  for (int by_turn = 0; by_turn < 2; by_turn++)
+    for (uint32_t k = 0; k < b->s->nreads; k++) {
+      const NestRead *r = &b->s->reads[k];
+      Ins load;
+      IrSubscript at;
+      if (!varies(&r->at) || (r->at.by_turn != 0) != by_turn) continue;
+      if (!array_index(b, &r->at, &load, &at)) return 0;
+      vec_push(b->l->p->arena, &b->at, at);
+      Slot s = prog_ins(b->body.p,
+                        (Ins){.op = IR_LOAD, .array = load.array, .index = b->at.n - 1, .name = load.name});
+      expr_map_set(&b->body.slots, expr_symbol(b->l->g, r->symbol)->node, s + 1);
+    }
+  return 1;
+}
+
+/* A node that is the same in all turns, as a value of the program around. */
+static void load_outer(NestBuilder *b, Expr e) {
+  ExprGraph *g = b->l->g;
+  SymId *syms = ARENA_ARRAY(b->l->p->arena, SymId, b->s->nreads + 1);
+  Expr *with = ARENA_ARRAY(b->l->p->arena, Expr, b->s->nreads + 1);
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < b->s->nreads; k++) {
+    if (varies(&b->s->reads[k].at)) continue;
+    syms[n] = b->s->reads[k].symbol;
+    with[n++] = expr_sum_arg(g, b->nest, (uint32_t)b->s->reads[k].at.first);
+  }
+  Expr around = expr_replace(g, e, syms, with, n);
+  lower_roots(b->l, &around, 1);
+  Slot outer = lower_slot(b->l, around);
+  vec_push(b->l->p->arena, &b->outer, outer);
+  Slot s = prog_ins(b->body.p, (Ins){.op = IR_LOAD,
+                                     .array = ARR_OUTER, .index = b->outer.n - 1,
+                                     .name = b->l->p->ins.at[outer].name});
+  expr_map_set(&b->body.slots, e, s + 1);
+}
+
+/* Finds what stays the same in all turns and is not part of something that does. */
+static void load_constants(NestBuilder *b, const Expr *values, uint32_t n) {
+  ExprGraph *g = b->l->g;
+  ExprList list = expr_topo(g, values, n);
+  ExprMap moving = expr_map(b->l->p->arena);
+  for (uint32_t k = 0; k < list.n; k++) {
+    Expr e = list.at[k];
+    int moves = expr_op(g, e) == EX_SYM && expr_map_get(&b->body.slots, e);
+    for (uint32_t i = 0; i < expr_nargs(g, e); i++) moves |= expr_map_get(&moving, expr_arg(g, e, i)) != 0;
+    if (!moves) continue;
+    expr_map_set(&moving, e, 1);
+    for (uint32_t i = 0; i < expr_nargs(g, e); i++) {
+      Expr a = expr_arg(g, e, i);
+      if (!expr_is_num(g, a) && !expr_map_get(&moving, a) && !expr_map_get(&b->body.slots, a)) load_outer(b, a);
+    }
+  }
+  for (uint32_t k = 0; k < n; k++)
+    if (!expr_map_get(&moving, values[k]) && !expr_is_num(g, values[k])) load_outer(b, values[k]);
+}
+
+/* -x for x; 0: e is no negative multiple. */
+static Expr negated(ExprGraph *g, Expr e) {
+  Num c;
+  if (expr_op(g, e) != EX_SUM || expr_pairs(g, e, EX_SUM) != 1) return 0;
+  expr_pair(g, e, EX_SUM, 0, &c);
+  return num_sign(c) < 0 ? expr_neg(g, e) : 0;
+}
+
+/* Shares in the list that cells want: values without a sign in front, so that action and reaction are one value. */
+typedef struct {
+  Expr value;
+  Subscript at;
+  int minus;
+} Share;
+
+typedef VEC(Share) Shares;
+
+static Shares wanted_shares(const NestBuilder *b, const unsigned char *wanted, int64_t *least, int64_t *most) {
+  ExprGraph *g = b->l->g;
+  Shares all = {0};
+  for (uint32_t k = 0; k < b->s->nshares; k++) {
+    const NestShare *x = &b->s->shares[k];
+    int64_t lo, hi, some = 0;
+    if (!loop_extent(&b->s->range, &x->at, &lo, &hi)) continue;
+    int64_t step = subscript_step(&x->at);
+    for (int64_t c = lo; c <= hi && !some; c += step ? step : 1) some = wanted[c];
+    if (!some) continue;
+    if (!all.n || lo < *least) *least = lo;
+    if (!all.n || hi > *most) *most = hi;
+    Share one = {x->value, x->at, 0};
+    Expr other = negated(g, x->value), opposite = expr_neg(g, x->value);
+    for (uint32_t j = 0; j < all.n && !other; j++)
+      if (all.at[j].value == opposite) other = opposite;
+    if (other) one.value = other, one.minus = 1;
+    vec_push(b->l->p->arena, &all, one);
+  }
+  return all;
+}
+
+/* Appends the nest; cell `least` is number `base` of the program's sums. */
+static Slot append_nest(NestBuilder *b, const Shares *shares, int64_t least, uint32_t base) {
+  Prog *p = b->l->p;
+  const LoopRange *r = &b->s->range;
+  for (uint32_t k = 0; k < shares->n; k++) {
+    const Share *x = &shares->at[k];
+    IrSubscript at = x->at;
+    at.first += (int64_t)base - least;
+    vec_push(p->arena, &b->at, at);
+    prog_store(b->body.p, (uint32_t)x->minus, b->at.n - 1, lower_slot(&b->body, x->value), "");
+  }
+  const Prog *body = prog_product_cse(prog_factor(prog_tidy(b->body.p)));
+  Nest n = {.rows = r->rows, .count = (uint32_t)expr_sum_turns(b->l->g, b->nest), .skew = r->skew, .turns = r->turns,
+            .more = r->more, .body = body, .at = b->at.at, .outer = b->outer.at, .n = b->at.n, .nouter = b->outer.n,
+            .family = 1};
+  vec_push(p->arena, &p->nests, n);
+  Slot before = 0;
+  for (Slot s = p->ins.n; s-- > 1 && !before;)
+    if (p->ins.at[s].op == IR_NEST) before = s;
+  return prog_ins(p, (Ins){.op = IR_NEST, .a = before, .index = p->nests.n - 1});
+}
+
+/* The cells as sums in a nest of loops; 0: their arguments are no arrays. */
+static int lower_as_nest(NestBuilder *b, const Expr *cells, uint32_t n) {
+  Lower *l = b->l;
+  Arena *a = l->p->arena;
+  unsigned char *wanted = ARENA_ARRAY(a, unsigned char, b->s->nargs + 1);
+  int64_t least = 0, most = -1;
+  for (uint32_t k = 0; k < n; k++) wanted[expr_cell_number(l->g, cells[k])] = 1;
+  Shares shares = wanted_shares(b, wanted, &least, &most);
+  b->body = lower_new(l->e);
+  if (!load_reads(b)) return 0;
+  Expr *values = ARENA_ARRAY(a, Expr, shares.n + 1);
+  for (uint32_t k = 0; k < shares.n; k++) values[k] = shares.at[k].value;
+  load_constants(b, values, shares.n);
+  lower_roots(&b->body, values, shares.n);
+  uint32_t base = l->p->cells;
+  l->p->cells += (uint32_t)(most - least + 1);
+  Slot nest = shares.n ? append_nest(b, &shares, least, base) : 0;
+  for (uint32_t k = 0; k < n; k++) {
+    int64_t c = expr_cell_number(l->g, cells[k]);
+    Ins load = {.op = IR_LOAD, .array = ARR_CELL, .a = nest, .index = (uint32_t)(base + c - least), .name = "sum"};
+    Slot s = c >= least && c <= most ? prog_ins(l->p, load) : 0;
+    expr_map_set(&l->slots, cells[k], s + 1);
+  }
+  return 1;
+}
+
+void lower_nest(Lower *l, Expr nest, const ExprList *list) {
+  ExprGraph *g = l->g;
+  NestBuilder b = {.l = l, .s = expr_sum_nest(g, nest), .nest = nest};
+  VEC(Expr) cells = {0};
+  for (uint32_t k = 0; k < list->n; k++)
+    if (expr_op(g, list->at[k]) == EX_CELL && expr_cell_nest(g, list->at[k]) == nest &&
+        !expr_map_get(&l->slots, list->at[k]))
+      vec_push(l->p->arena, &cells, list->at[k]);
+  if (!cells.n || (!l->direct && lower_as_nest(&b, cells.at, cells.n))) return;
+  Expr *sums = ARENA_ARRAY(l->p->arena, Expr, cells.n + 1);
+  expr_expand_sums(g, cells.at, cells.n, sums);
+  expr_note_sums_out(g);
+  lower_roots(l, sums, cells.n);
+  for (uint32_t k = 0; k < cells.n; k++) expr_map_set(&l->slots, cells.at[k], lower_slot(l, sums[k]) + 1);
+}

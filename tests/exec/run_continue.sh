@@ -1,0 +1,85 @@
+#!/bin/sh
+# lagc continue: folds and bifurcations against closed forms, published energies and SciPy; families of periodic motions; rows, picture; refusals.
+: "${LAGC:=build/lagc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+export TMP
+. tests/tap.sh
+[ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ] || skip_all "GSL is not installed"
+LAGC_OPTIMISE=-O0
+export LAGC_OPTIMISE
+dir=tests/exec/orbits
+
+follow() {
+  title="$*"
+  "$LAGC" continue "$@" --json >"$TMP/json" 2>"$TMP/err" || cat "$TMP/err" >&2
+  sed 's/{"kind"/\n&/g' "$TMP/json" | grep '^{"kind"' >"$TMP/points"
+}
+kinds() { is "$title: kinds" "$1" "$(sed 's/^{"kind": "\([^"]*\)".*/\1/' "$TMP/points" | tr '\n' ';')"; }
+of_point() { sed -n "$1s/.*\"$2\": \([^,}]*\).*/\1/p" "$TMP/points"; }
+close() { near "$title: point $1, $2" "$4" "$3" "$(of_point "$1" "$2")"; } # NUMBER MEMBER EXPECTED TOLERANCE
+
+# pitchfork of the bead at w = sqrt(g/R); the other branch: cos(th) = g/(w^2 R)
+follow models/bead_on_hoop.lag slow th=0 w=1..8 --branches -o "$TMP/bead.csv" --svg "$TMP/bead.svg"
+kinds "branch point;end;end;end;end;"
+close 1 parameter 4.42944691807002 1e-11
+near "$title: the branch that leaves" 1e-11 1.2592167912414885 "$(of_point 4 th | tr -d -)" # acos(9.81/32)
+check "$title: rows" awk -F, 'NR == 1 { ok = $1 == "w [rad/s]" && $3 == "kind" && $7 == "th [rad]" }
+  NR > 1 && $3 == "branch point" { found = $7 == 0 } END { exit !(ok && found && NR > 30) }' "$TMP/bead.csv"
+check "$title: picture" grep -q '<svg' "$TMP/bead.svg"
+# Lorenz (1963): rolls begin at rho = 1, and lose stability by Hopf at sigma (sigma + beta + 3)/(sigma - beta - 1) = 470/19
+follow models/lorenz.lag x=0 y=0 z=0 rho=0.5..26 --branches
+kinds "branch point;end;end;Hopf;end;Hopf;end;end;end;"
+close 1 parameter 1 1e-10
+close 4 parameter 24.7368421052631579 1e-9
+# Hopf's normal form: at the end of the range, lam = 0.25, a circle of radius 0.5, period 2 pi, multiplier exp(-pi)
+follow $dir/hopf.lag lam=-1..0.25 --branches
+kinds "Hopf;end;end;end;"
+close 1 parameter 0 1e-12
+close 4 period 6.28318530717959 1e-11
+near "$title: radius" 1e-11 0.5 "$(sed -n '4s/.*"x": \([^,]*\), "y": \([^}]*\)}.*/\1 \2/p' "$TMP/points" | awk '{ printf "%.17g", sqrt($1*$1 + $2*$2) }')"
+near "$title: multiplier" 1e-10 0.0432139182637723 "$(sed -n '4s/.*"multipliers": \[\[\([^,]*\),.*/\1/p' "$TMP/points")"
+# parametric resonance with friction: a multiplier of -1 at a = 0.2001..., by SciPy's DOP853 at 1e-13 and Brent's method; the motions of twice the period
+follow $dir/oscillator.lag parametric a=0.05..0.3
+kinds "period doubling;end;end;"
+close 1 parameter 0.20010934214887058 1e-11
+close 1 period 3.14159265358979 1e-13
+# the pendulum's family by energy: 4 sqrt(l/g) K(k), k^2 = E/(2 m g l), at the end of the range
+follow models/pendulum.lag wide energy=9..18
+close 1 period 3.40802289484 1e-10
+
+long() {
+  # folds of Duffing's oscillator, by SciPy: P(u) = u, det(P' - 1) = 0 by fsolve, period map by DOP853 at 1e-13
+  follow $dir/oscillator.lag driven w=0.5..2.5
+  kinds "fold;fold;end;end;"
+  close 1 parameter 2.39964925875596 1e-10
+  close 2 parameter 1.32917435250243 1e-10
+  # M. Brack, in Foundations of Physics 31 (2001) 209: the straight motion of Henon and Heiles bifurcates at 6 E = 0.969309, 0.986709
+  follow models/henon_heiles.lag regular x=0 y=0.3 "x'=0" "y'=0" energy=0.03..0.165 --guess 6.5
+  kinds "period doubling;period doubling;branch point;branch point;end;end;"
+  close 1 parameter 0.1352859193003538 1e-11 # SciPy: trace of the equation across is -2
+  close 3 parameter 0.1615515151108141 1e-11 # SciPy: it is 2
+  near "$title: 6 E" 5e-7 0.986709 "$(of_point 4 parameter | awk '{ printf "%.12g", 6*$1 }')"
+  # M. Garcia et al. (1998): the walker's gait doubles at a slope of 0.0151; its motions of two steps at 0.0177
+  follow $dir/walker.lag slope=0.008..0.018 --guess 3.88 --branches
+  kinds "period doubling;end;end;period doubling;end;end;"
+  close 1 parameter 0.0151 5e-5
+  close 4 parameter 0.0177 5e-5
+  # J. R. Taylor, Classical Mechanics, 12.5: the driven pendulum's period doubles at 1.0663, 1.0793, 1.0821, 1.0827; M. Feigenbaum's ratio 4.6692
+  follow models/driven_damped_pendulum.lag taylor drive.gamma=1.06..1.085 th=-0.56 "th'=18.2" --branches
+  sed -n 's/.*"period doubling", "parameter": \([^,]*\),.*/\1/p' "$TMP/points" >"$TMP/doublings"
+  is "$title: doublings" "1.0664 1.0793 1.0821 1.0827 " "$(head -4 "$TMP/doublings" | awk '{ printf "%.4f ", $1 }')"
+  near "$title: ratio" 0.01 4.6692 "$(awk '{ x[NR] = $1 } END { print (x[4] - x[3])/(x[5] - x[4]) }' "$TMP/doublings")"
+}
+slow long
+
+refused() {
+  case_words=$1
+  shift
+  check "refused: $case_words" says "$@"
+}
+refused "no range" 2 "a range is missing: NAME=A..B" "$LAGC" continue models/pendulum.lag wide
+refused "no such name" 2 "the model has no parameter of this name" "$LAGC" continue models/pendulum.lag wide gg=1..2
+refused "a range without length" 2 "the ends of the range are equal" "$LAGC" continue models/pendulum.lag wide l=1..1
+refused "two ranges" 2 "one value runs over a range" "$LAGC" continue models/pendulum.lag wide l=1..2 m=1..2
+refused "outside" 2 "outside of 10..18: start within" "$LAGC" continue models/pendulum.lag wide energy=10..18
+tap_end

@@ -1,0 +1,161 @@
+#!/bin/sh
+# lagc fit: values, standard errors and chi squared against scipy.optimize.least_squares on closed forms (fit/reference.py
+# makes data and digits); combinations that data cannot tell apart, in models made for them; bad input. slow: coverage
+# of the errors.
+: "${LAGC:=build/lagc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+export TMP
+. tests/tap.sh
+[ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ] || { skip "fits" "GSL is not installed"; tap_end; exit; }
+M=tests/exec/fit
+
+fit() { # MODEL DATA NAMES ARGS...: as JSON
+  title=$3
+  model=$1 data=$2 names=$3
+  shift 3
+  "$LAGC" fit "$model" --data "$data" --fit "$names" --json "$@" >"$TMP/json" 2>"$TMP/err" || cat "$TMP/json" "$TMP/err"
+}
+# member OBJECT NAME: of the JSON on one line
+member() { sed "s/.*\"$1\": {\([^}]*\)}.*/\1/" "$TMP/json" | tr ',' '\n' | sed -n "s/^ *\"$2\": //p"; }
+near() { # NAME GOT WANT TOLERANCE, relative
+  check "$title: $1" awk -v got="$2" -v want="$3" -v tolerance="$4" 'BEGIN { d = (got - want)/want; if (got != "" && d*d <= tolerance*tolerance) exit 0; print got, "not", want; exit 1 }'
+}
+# Values to a hundredth of a standard error or better; errors to 1e-4: scipy takes derivatives by differences.
+fit "$M/damped.lag" "$M/damped.csv" "k,c,x,x'(0)" --sigma 0.01
+near k "$(member values k)" 17.98538768 1e-6
+near c "$(member values c)" 0.5048159859 1e-5
+near x "$(member values 'x(0)')" 0.2979286858 1e-6
+near "x'" "$(member values "x'(0)")" -0.2022078221 1e-5
+near "error of k" "$(member errors k)" 0.031861071 1e-4
+near "error of c" "$(member errors c)" 0.011070453 1e-4
+near "error of x" "$(member errors 'x(0)')" 0.0036876919 1e-4
+near "error of x'" "$(member errors "x'(0)")" 0.01101132 1e-4
+near "chi squared" "$(sed 's/.*"chi_squared": \([^,]*\).*/\1/' "$TMP/json")" 83.67726798 1e-7
+fit "$M/damped.lag" "$M/damped.csv" "k,c,x,x'" # errors from the residuals: those above times sqrt(chi^2/116)
+near "error of k from the residuals" "$(member errors k)" 0.0270599 1e-4
+title="with a prior"
+"$LAGC" fit "$M/damped.lag" --data "$M/damped.csv" --fit "k,c,x,x'" --sigma x=0.01 --prior 'k~normal(18.2, 0.02)' --json >"$TMP/json"
+near k "$(member values k)" 18.13922659 1e-6
+near "error of k" "$(member errors k)" 0.01697107 1e-4
+fit "$M/damped.lag" "$M/outliers.csv" "k,c,x,x'" --sigma 0.01 --loss huber
+near "k beside outliers" "$(member values k)" 17.96801863 1e-6
+near "c" "$(member values c)" 0.5014086105 1e-5
+fit models/pendulum.lag "$M/pendulum.csv" "l,th" wide --sigma 0.5 # degrees in a model with radians; derivatives of elliptic functions
+near l "$(member values l)" 1.01987556 1e-7
+near th "$(member values 'th(0)')" 1.40002282 1e-7
+near "error of l" "$(member errors l)" 0.00049355 1e-3
+
+# ---- columns, units, errors in the file, missing values
+other_units() {
+  awk -F, 'NR == 1 { print "t [ms],x [cm],sigma(x) [cm],note [m]"; next } { print 1000*$1 "," 100*$2 ",1," }
+    NR == 9 { print 1000*$1 + 1 ",,," }' "$M/damped.csv" >"$TMP/units.csv"
+  "$LAGC" fit "$M/damped.lag" --data "$TMP/units.csv" --columns x --fit "k,c,x,x'" --json >"$TMP/json"
+}
+check "other units, errors of rows, a missing value" other_units
+title="in ms and cm"
+near k "$(member values k)" 17.98538768 1e-6
+near "error of x" "$(member errors 'x(0)')" 0.0036876919 1e-4
+# Two columns without errors: each is weighed by its residuals. The second has exact values: it decides.
+two_columns() {
+  awk -F, 'NR == 1 { print $0 ",10*x"; next } { t = $1; w = sqrt(9 - 0.015625); printf "%s,%.12g\n", $0, 10*exp(-0.125*t)*(0.3*cos(w*t) + (-0.2 + 0.0375)/w*sin(w*t)) }' "$M/damped.csv" >"$TMP/two.csv"
+  "$LAGC" fit "$M/damped.lag" --data "$TMP/two.csv" --fit "k,c,x,x'" --json >"$TMP/json"
+}
+check "two columns" two_columns
+title="the better column decides"
+near k "$(member values k)" 18 1e-6
+near c "$(member values c)" 0.5 1e-6
+
+# ---- what data cannot tell apart
+says() { # TEXT MODEL DATA NAMES ARGS...
+  text=$1 model=$2 data=$3 names=$4
+  shift 4
+  "$LAGC" fit "$model" --data "$data" --fit "$names" "$@" >"$TMP/out" 2>&1
+  grep -q -e "$text" "$TMP/out" || { cat "$TMP/out"; return 1; }
+}
+check "g and l of a pendulum" says "^cannot be told apart: only g/l: (g, l) along (9\.[0-9]*, 1\.[0-9]*) changes nothing$" models/pendulum.lag "$M/pendulum.csv" "g,l,th" wide
+check "m of a pendulum" says "^cannot be told apart: m: no value of the data feels it$" models/pendulum.lag "$M/pendulum.csv" "l,th,m" wide
+check "m, k and c" says "^cannot be told apart: only m/c, k/c: (m, k, c) along " "$M/damped.lag" "$M/damped.csv" "m,k,c,x,x'"
+sed 's/x \[m\]/reading [m]/' "$M/damped.csv" >"$TMP/reading.csv"
+check "two zeros of a ruler" says "^cannot be told apart: only a + b: (a, b) along (1, -1) changes nothing$" "$M/damped.lag" "$TMP/reading.csv" "k,c,x,a,b" "x'=-0.2"
+cat >"$TMP/power.lag" <<'X'
+model power
+coord x
+param k = 2 > 0, n = 3 > 0
+lagrangian = x'^2/2 - k^2*n*x^2/2
+scene run { start x = 0.3; span 12; output x }
+X
+sed 's/x \[m\]/x/' "$M/damped.csv" >"$TMP/power.csv"
+check "a product of powers" says "^cannot be told apart: only n\*k^2: (n, k) along " "$TMP/power.lag" "$TMP/power.csv" "n,k"
+determined() { says "^  th(0)  *1.400[0-9]* +- 0.0012 rad" models/pendulum.lag "$M/pendulum.csv" "g,l,th" wide --sigma 0.5 && grep -q "^  g .* not determined m/s^2" "$TMP/out"; }
+check "the others are determined" determined
+check "a trend is left" says "a trend is left, which the model lacks" models/pendulum.lag "$M/pendulum.csv" "l" small
+pasted() {
+  "$LAGC" fit models/pendulum.lag wide --data "$M/pendulum.csv" --fit l,th | sed -n '/^scene fitted/,$p' | cat models/pendulum.lag - >"$TMP/pasted.lag" &&
+    "$LAGC" run "$TMP/pasted.lag" fitted --until 1 >/dev/null
+}
+check "the scene can be pasted" pasted
+picture() { "$LAGC" fit models/pendulum.lag wide --data "$M/pendulum.csv" --fit l,th --svg "$TMP/fit.svg" | grep -q "^picture in" && [ "$(grep -c '<circle' "$TMP/fit.svg")" = 200 ] && tail -1 "$TMP/fit.svg" | grep -q '</svg>'; }
+check "a picture" picture
+
+# The example of the reference: its report, to the byte; after a change `build/lagc fit` of the same files prints the new one.
+as_printed() {
+  awk -v dir="$TMP" '/^## /{ on = $0 == "## Fits" } !on { next } /^```lag/ { f = dir "/swing.lag"; next } /^```csv/ { f = dir "/swing.csv"; next }
+    /^```text/ { f = dir "/want"; next } /^```$/ { f = ""; next } f { print > f }' grammar/LANGUAGE.md
+  case $LAGC in /*) tool=$LAGC ;; *) tool=$(pwd)/$LAGC ;; esac
+  (cd "$TMP" && "$tool" fit swing.lag --data swing.csv --fit l,c,m,th --sigma 0.3 >got)
+  tail -n +2 "$TMP/want" | diff - "$TMP/got"
+}
+check "the example of the reference" as_printed
+
+# ---- bad input
+refused() { # STATUS TEXT ARGS...
+  status=$1 text=$2
+  shift 2
+  "$LAGC" fit "$M/damped.lag" "$@" >"$TMP/out" 2>&1
+  [ $? = "$status" ] && grep -q -e "$text" "$TMP/out" || { cat "$TMP/out"; return 1; }
+}
+bad() { # NAME TEXT LINES...
+  what=$1 text=$2
+  shift 2
+  printf '%b' "$*" >"$TMP/bad.csv"
+  check "$what" refused 2 "$text" --data "$TMP/bad.csv" --fit k
+}
+bad "not a number" 'bad.csv:3: column x \[m\]: "nan" is not a finite number; leave the field empty' 't [s],x [m]\n0,1\n1,nan\n'
+bad "times not sorted" 'bad.csv:4: t = 1 s comes after 2 s; sort the rows' 't [s],x [m]\n0,1\n2,1\n1,2\n'
+bad "a time twice" 'bad.csv:4: t = 2 s stands twice' 't [s],x [m]\n0,1\n2,1\n2,2\n'
+bad "no names" 'the first line has numbers; write the names' '0,1\n2,1\n'
+bad "too many fields" 'bad.csv:2: 3 fields, and the first line has 2 names' 't [s],x [m]\n0,1,2\n'
+bad "no time" 'the first column is "x \[m\]"; it must be the time: t \[s\]' 'x [m],t [s]\n0,1\n'
+bad "before the scene" 'bad.csv:2: t = -1 s lies before the scene' 't [s],x [m]\n-1,1\n0,1\n'
+unit() { printf 't [s],x [kg]\n0,1\n' >"$TMP/bad.csv"; refused 1 "units do not match" --data "$TMP/bad.csv" --fit k; }
+check "another unit" unit
+few() { printf 't [s],x [m]\n1,0.1\n' >"$TMP/bad.csv"; refused 2 "1 values cannot determine 2 quantities" --data "$TMP/bad.csv" --fit k,c; }
+check "too few values" few
+check "an unknown name" refused 2 "kk: no such parameter or coordinate in model damped; did you mean k?" --data "$M/damped.csv" --fit kk
+check "no data" refused 2 "needs the record and what to find" --fit k
+check "nothing to find" refused 2 "needs the record and what to find" --data "$M/damped.csv"
+check "a prior without numbers" refused 2 "write --prior 'k~normal(MEAN, DEVIATION)'" --data "$M/damped.csv" --fit k --prior 'k~normal'
+cat >"$TMP/pole.lag" <<'X'
+model pole "runs into the pole of its force"
+coord x
+param k = 1
+lagrangian = x'^2/2 + k/x^2
+scene run { start x = 1; span 12; output x }
+X
+fails() { "$LAGC" fit "$TMP/pole.lag" --data "$TMP/power.csv" --fit k >"$TMP/out" 2>&1; [ $? = 3 ] && grep -q "lagc fit: " "$TMP/out"; }
+check "a motion that fails at the first values" fails
+
+# Slow: 100 records of the same oscillator; intervals of 1.96 errors hold the truth 95 times of 100 +- 2.2. Four times
+# as far away is no chance.
+coverage() {
+  for seed in $(seq 100); do
+    awk -F, -v seed="$seed" 'BEGIN { srand(seed) } NR == 1 { print; next }
+      { t = $1; w = sqrt(9 - 0.015625); n = sqrt(-2*log(1 - rand()))*cos(6.283185307179586*rand())
+        printf "%s,%.10g\n", t, exp(-0.125*t)*(0.3*cos(w*t) + (-0.2 + 0.0375)/w*sin(w*t)) + 0.01*n }' "$M/damped.csv" >"$TMP/seed.csv"
+    "$LAGC" fit "$M/damped.lag" --data "$TMP/seed.csv" --fit "k,c,x,x'" --json >"$TMP/json" || return 1
+    echo "$(member values k) $(member errors k) $(member values c) $(member errors c) $(member values 'x(0)') $(member errors 'x(0)')"
+  done | awk '{ n++; k += ($1 - 18)^2 < (1.96*$2)^2; c += ($3 - 0.5)^2 < (1.96*$4)^2; x += ($5 - 0.3)^2 < (1.96*$6)^2 }
+    END { print n, k, c, x; exit !(n == 100 && k >= 87 && c >= 87 && x >= 87 && k + c + x < 299) }'
+}
+slow check "coverage of the errors" coverage
+tap_end

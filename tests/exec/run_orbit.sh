@@ -1,0 +1,93 @@
+#!/bin/sh
+# lagc orbit: periods against elliptic integrals, Kepler's law and published digits; multipliers against published ones and their own pairs; conditions;
+# the scene to paste; refusals. numeric/singular_values has a unit test of its own.
+: "${LAGC:=build/lagc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+export TMP
+. tests/tap.sh
+[ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ] || skip_all "GSL is not installed"
+LAGC_OPTIMISE=-O0
+export LAGC_OPTIMISE
+dir=tests/exec/orbits
+
+orbit() {
+  title="$*"
+  "$LAGC" orbit "$@" --json >"$TMP/json" 2>"$TMP/err" || cat "$TMP/err" >&2
+}
+value() { sed -n "s/.*\"$1\": \([^,}]*\).*/\1/p" "$TMP/json"; }
+word() { is "$title: $1" "$2" "$(value "$1" | tr -d '"')"; }
+close() { near "$title: $1" "$3" "$2" "$(value "$1")"; } # MEMBER EXPECTED TOLERANCE
+multiplier() { sed 's/.*"multipliers": \[//; s/\]\],.*//; s/\[//g; s/\], */\n/g' "$TMP/json" | sed -n "$1p" | cut -d, -f"$2" | tr -d ' ]'; }
+closes() { near "$title: multiplier $1, part $2" "$4" "$3" "$(multiplier "$1" "$2")"; } # NUMBER PART EXPECTED TOLERANCE
+
+# 4 sqrt(l/g) K(sin 45 deg), mpmath; 1e-12 of 2.4
+orbit models/pendulum.lag wide --hold energy
+close period 2.3678419475762374493 1e-12
+word verdict stable
+word trivial_multipliers 2
+# Kepler's third law; the charges' symmetries leave nothing
+orbit models/kepler.lag orbit --hold energy,spin
+close period 6.2831853071795864769 1e-11 # of motions whose speed changes by a factor of 4
+word trivial_multipliers 4
+# C. Moore, A. Chenciner, R. Montgomery: the period; C. Simo (2002): the angles 0.00842272 and 0.29809253 of a turn of its two pairs
+orbit models/figure_eight.lag eight --hold energy,spin,drift_x,drift_y
+close period 6.3259139829262116776 1e-11
+closes 1 1 -0.2975966675 1e-8 # cos(2 pi 0.29809253)
+closes 2 1 0.998599982 1e-8
+word trivial_multipliers 8
+check "$title: multipliers come in pairs" close_to "$(value pairing)" 0 1e-12 # double precision
+# van der Pol, mu = 1: published period
+orbit $dir/vanderpol.lag
+close period 6.66328685932313 3e-14
+word verdict attracts
+# M. Garcia, A. Chatterjee, A. Ruina, M. Coleman, J. Biomech. Eng. 120 (1998) 281: the long gait at slope 0.009 has multipliers of size 0.59;
+# a strike forgets the swinging leg, a multiplier of 0. SciPy: the return map differentiated
+orbit $dir/walker.lag
+closes 1 1 -0.190099841 1e-8
+closes 1 2 0.557598777 1e-8
+closes 3 1 0 1e-12
+word verdict attracts
+
+# the scene starts on the motion: a run of it comes back
+"$LAGC" orbit $dir/vanderpol.lag | sed -n '/^scene/,$p' >"$TMP/scene"
+cat $dir/vanderpol.lag "$TMP/scene" >"$TMP/pasted.lag"
+orbit "$TMP/pasted.lag" orbit
+close period 6.66328685932313 3e-14
+close residual 0 1e-13
+
+long() {
+  # R. Arenstorf's orbit: E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I, II.0
+  orbit models/cr3bp.lag arenstorf --guess 17
+  close period 17.0652165601579625588917206249 1e-11
+  # M. Henon, C. Heiles: along x = 0, by SciPy's DOP853 at 1e-13 with the equation of x beside it
+  orbit models/henon_heiles.lag regular x=0 y=0.3 "x'=0" "y'=0" --hold y
+  close period 6.497297178873413 1e-12
+  closes 1 1 0.980866982205496 1e-11
+  # planar Lyapunov orbit about L1 of Earth and Moon that begins at x = 0.823385182: the jacobi and the section are kept
+  orbit models/cr3bp.lag departure mu=0.01215058560962404 x=0.823385182 "y'=0.1263" --guess 2.743 --hold x,y
+  check "$title: pairs of a saddle" close_to "$(value pairing)" 0 1e-9 # of a multiplier of 2361
+  near "$title: crosses the axis at a right angle" 1e-12 0 "$(sed -n "s/.*\"x'\": \([^,}]*\).*/\1/p" "$TMP/json")"
+  # the segments do not matter
+  orbit models/cr3bp.lag arenstorf --guess 17 --segments 12
+  closes 1 1 285.40371175 1e-6
+}
+slow long
+
+# a relative motion: with b/r^2 more the ellipse turns by 2 pi (L/sqrt(L^2 + 2 b) - 1) in a period 2 pi/(-2 E)^1.5; here E = -0.375, L = 0.8, b = 0.02
+orbit models/kepler.lag rosette --relative spin --guess 9.7 --hold energy,spin
+close spin -0.187600204395967282 1e-11
+close period 9.67359660924916187 1e-10
+
+refused() {
+  case_words=$1
+  shift
+  check "refused: $case_words" says "$@"
+}
+refused "no name" 2 "--hold enrgy: write \`energy\`" "$LAGC" orbit models/pendulum.lag wide --hold enrgy
+refused "a symmetry that moves nothing" 2 "--relative energy: write the charge of a symmetry" "$LAGC" orbit models/pendulum.lag wide --relative energy
+refused "no return" 3 "does not come back next to its start" "$LAGC" orbit models/free_fall.lag
+refused "rest" 3 "ends at rest" "$LAGC" orbit models/pendulum.lag fading
+refused "contacts" 3 "have no derivatives yet" "$LAGC" orbit models/compass_walker.lag --guess 3.88
+refused "another period than the drive's" 3 "has the period 5.2359877559829" "$LAGC" orbit $dir/oscillator.lag driven --period 5
+refused "no length" 2 "a period is a positive time" "$LAGC" orbit models/pendulum.lag wide --guess -1
+tap_end

@@ -1,0 +1,96 @@
+#!/bin/sh
+# lagc page: its module computes the digits of lagc run, in node; the page opens and moves in a browser; hostile titles and bytes.
+. tests/tap.sh
+. tests/exec/lib_motion.sh
+: "${LAGC:=build/lagc}"
+wasm=$(dirname "$LAGC")/lag.wasm
+if [ ! -f "$wasm.gz" ]; then
+  skip "pages" "no Clang for WebAssembly: .ci/setup ci, then make page"
+  tap_end
+  exit
+fi
+
+# digits MODEL SCENE T: outputs at T, of the page in node and of the run, as numbers.
+digits() {
+  "$LAGC" page "models/$1.lag" "$2" -o "$TMP/page.html" || return
+  there=$(node tests/exec/page_digits.js "$wasm" runtime/page/motion.js "$TMP/page.html" "$2" "$3")
+  "$LAGC" run "models/$1.lag" "$2" --method dop853 --tol 1e-10 --until "$3" --every "$3" -o "$TMP/rows.csv" --quiet || return
+  here=$(tail -1 "$TMP/rows.csv")
+  node -e 'const [a, b] = process.argv.slice(1).map(s => s.split(",").map(Number));
+    if (!(a.length == b.length && a.length > 1 && a.every((x, i) => Object.is(x, b[i])))) { console.log(a, b); process.exit(1); }' "$there" "$here"
+}
+if command -v node >/dev/null 2>&1; then
+  check "a double pendulum has the digits of lagc run" digits double_pendulum swing 5
+  check "a slider-crank, held by constraints" digits slider_crank idle 1
+  check "impacts of a ball" digits bouncing_ball drop 2
+  slow check "a planet" digits kepler orbit 20
+  slow check "a body that turns about all axes" digits free_body free 5
+  "$LAGC" page models/pendulum.lag small -o "$TMP/page.html"
+  damaged() { # each damage is an error, or another number; never a trap
+    for k in 3 40 201 350 777 1203; do
+      DAMAGE=$k node tests/exec/page_digits.js "$wasm" runtime/page/motion.js "$TMP/page.html" small 1 || return
+    done
+  }
+  check "damaged bytes are told" damaged
+else
+  skip "digits of pages" "no node"
+fi
+
+printf '%s\n' 'model m "A <b>ball</b> & </script><script>bad()</script>"' 'coord x' "lagrangian = x'^2/2 - x^2/2" '# </script>' 'scene s { start x = 1; span 5 }' 'effect drag { dissipation = x'"'"'^2 }' >"$TMP/m.lag"
+check "a title with markup" "$LAGC" page "$TMP/m.lag" -o "$TMP/m.html"
+is "stays text" "0 2 2" "$(grep -c '<script>bad' "$TMP/m.html") $(grep -c '</script>' "$TMP/m.html") $(grep -c '&lt;b>ball' "$TMP/m.html")"
+is "a program for each set of effects" 2 "$(grep -c '^{"scene": ' "$TMP/m.html")"
+check "no file to write" sh -c '"$1" page models/pendulum.lag 2>&1 | grep -q "needs -o FILE.html"' sh "$LAGC"
+echo "model m" >"$TMP/wrong.lag"
+check "a wrong model" sh -c '! "$1" page "$2" -o "$3" 2>/dev/null && [ ! -e "$3" ]' sh "$LAGC" "$TMP/wrong.lag" "$TMP/none.html"
+
+for name in chromium chromium-browser google-chrome; do
+  command -v $name >/dev/null 2>&1 && browser=$name
+done
+if [ "${browser:-}" ]; then
+  # dom PAGE FRAGMENT: the page after some seconds, once more where the module was not compiled by then
+  dom() {
+    for _ in 1 2 3 4; do
+      once "$@" >"$TMP/once"
+      grep -q data-state "$TMP/once" && break
+    done
+    cat "$TMP/once"
+  }
+  once() {
+    "$browser" --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$TMP/profile" --virtual-time-budget=8000 \
+      --dump-dom "file://$1#$(node -e 'console.log(encodeURIComponent(process.argv[1]))' "$2")" 2>"$TMP/browser.log"
+  }
+  dom "$TMP/m.html" '{"scene":"s","effects":[],"t":3.5,"fine":90}' >"$TMP/dom"
+  x=$(sed -n 's/.*data-state="{&quot;x&quot;:\([-.0-9e]*\),.*/\1/p' "$TMP/dom")
+  check "a browser computes x = cos t" near "${x:-none}" "$(calc 'cos(3.5)')" 1e-9
+  check "without a complaint" grep -q '<p id="said" role="alert"></p>' "$TMP/dom"
+  dom "$TMP/m.html" '{"scene":"s","effects":["drag"],"t":3.5,"fine":90}' >"$TMP/dom"
+  x=$(sed -n 's/.*data-state="{&quot;x&quot;:\([-.0-9e]*\),.*/\1/p' "$TMP/dom")
+  # x'' + 2 x' + x = 0 from x = 1 at rest: (1 + t) exp(-t)
+  check "with drag, (1 + t) exp(-t)" near "${x:-none}" "$(calc '4.5*exp(-3.5)')" 1e-9
+  # The bob of a pendulum, dragged to a place beside its circle: it follows the direction, and stays there until it is let go.
+  "$LAGC" page models/pendulum.lag small -o "$TMP/drag.html"
+  cat >>"$TMP/drag.html" <<'END'
+<script>
+const drag = () => {
+  if (!(window.lagc && lagc.motion && lagc.picture)) { setTimeout(drag, 100); return; }
+  lagc.pause();
+  const c = document.getElementById("picture"), r = c.getBoundingClientRect(), p = lagc.picture, bob = p.bodies[p.bodies.length - 1].a;
+  const [x, y] = p.toCanvas(p.place(bob)), to = [x + 90, y - 60], send = (type, at) =>
+    c.dispatchEvent(new PointerEvent(type, {pointerId: 1, clientX: r.left + at[0], clientY: r.top + at[1], bubbles: true}));
+  send("pointerdown", [x, y]);
+  for (let k = 1; k <= 10; k++) send("pointermove", [x + (to[0] - x)*k/10, y + (to[1] - y)*k/10]);
+  const [px, py] = p.inPlane(...to), wanted = Math.atan2(px, -py);
+  send("pointerup", to);
+  document.body.dataset.drag = Math.abs(lagc.motion.state.th - wanted).toExponential(1);
+  document.body.dataset.state = "";
+};
+drag();
+</script>
+END
+  dom "$TMP/drag.html" '{"scene":"small","effects":[]}' >"$TMP/dom"
+  check "a bob that is dragged follows the pointer" sh -c 'sed -n "s/.*data-drag=\"\([^\"]*\)\".*/\1/p" "$1" | awk "{ ok = \$1 < 1e-3 } END { exit !ok }"' sh "$TMP/dom"
+else
+  skip "pages in a browser" "no chromium"
+fi
+tap_end

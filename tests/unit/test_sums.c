@@ -1,0 +1,224 @@
+/* Quantified sums as nodes: accelerations and energies of the same text with its sums written out pair by pair, for
+ * N = 3 .. 8; a trap whose motion is known; programs whose length does not know N; symmetries by one pair; and texts
+ * that have no such form. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "compile_text.h"
+#include "ir/program_set.h"
+#include "self_check/self_check.h"
+#include "sym/prove.h"
+
+typedef long double Real;
+
+#define BODIES "const N = %d\ncoord r[N]: vec2\nparam m[N] = 1 > 0, e[N] = 1, G = 2, soft = 0.3 > 0, K[N,N] = 0.2\n" \
+  "kinetic = sum(i in 1..N, m[i]/2*dot(r[i]', r[i]'))\nfunction pair(s) = 1/sqrt(s + soft^2)\n"
+#define APART "dot(r[i] - r[j], r[i] - r[j])"
+
+/* Sums over pairs, each with a potential of its own. */
+static const char *const texts[] = {
+    /* half sums, from below and from above */
+    BODIES "potential = -sum(i in 1..N, sum(j in 1..i-1, G*m[i]*m[j]/sqrt(" APART " + soft^2)))",
+    BODIES "potential = -sum(i in 1..N, sum(j in i+1..N, G*m[i]*m[j]*pair(" APART ")))",
+    /* full sums, a table of couplings, a factor of the inner sum, a sign */
+    BODIES "potential = 1/2*sum(i in 1..N, sum(j in 1..N, K[i,j]/2*" APART "))",
+    BODIES "potential = sum(i in 1..N, -e[i]*sum(j in 1..i-1, e[j]*pair(" APART ")))",
+    /* next neighbours of a lattice, with its boundary; indices that mix i and j */
+    "const N = %d\ncoord u[N,N]\nparam k = 3, c[2*N] = 1\nkinetic = sum(i in 1..N, sum(j in 1..N, u[i,j]'^2/2))\n"
+    "potential = sum(i in 1..N-1, sum(j in 1..N, k/2*(u[i+1,j] - u[i,j])^2)) +\n"
+    "  sum(i in 1..N, sum(j in 2..N, k/4*(u[i,j] - u[i,j-1])^4)) + sum(i in 1..N, sum(j in 1..N, c[i+j]*cos(u[i,j])))",
+    /* a member by number beside running ones; the time; three components */
+    "const N = %d\ncoord r[N]: vec3, x\nparam w = 2\nkinetic = x'^2/2 + sum(i in 1..N, dot(r[i]', r[i]')/2)\n"
+    "potential = sum(i in 2..N, sum(j in 1..i-1, (1 + sin(w*t)/2)*exp(-" APART ") + x*r[i].x*r[1].y*r[j].z))",
+    /* first order: vortices */
+    "const N = %d\ncoord x[N], y[N]\nparam g[N] = 1\nlagrangian = sum(i in 1..N, g[i]*x[i]*y[i]') -\n"
+    "  sum(i in 1..N, sum(j in 1..i-1, g[i]*g[j]*log((x[i] - x[j])^2 + (y[i] - y[j])^2)))",
+};
+
+/* The equations of a text for n bodies; sums from so many pairs on are nodes. */
+static Eqns *try_family(Arena *a, const char *text, int n, uint32_t from, const char **messages) {
+  StrBuf b = strbuf(a);
+  sb_puts(&b, "model m\n");
+  sb_printf(&b, text, n);
+  Sources *sources = sources_new(a);
+  Ast *ast = ast_new(a, interner_new(a), sources, diags_new(a, sources));
+  parse(ast, source_add(sources, "test.lag", sb_text(&b), b.n));
+  Model *m = ast->diags->errors ? NULL : model_build(ast, &(ModelChoice){.sums_from = from});
+  Eqns *e = m ? equations_of(m) : NULL;
+  StrBuf out = strbuf(a);
+  diags_print(ast->diags, &out);
+  *messages = sb_text(&out);
+  return e;
+}
+
+static Eqns *family(Arena *a, const char *text, int n, uint32_t from) {
+  const char *messages;
+  Eqns *e = try_family(a, text, n, from, &messages);
+  if (!e) fail_msg("%s", messages);
+  return e;
+}
+
+/* Accelerations, rates, energy and its scale at a random state; the same random numbers for each call with one seed. */
+static uint32_t values(const Eqns *e, uint64_t seed, Real *out) {
+  Arena *a = e->m->arena;
+  uint32_t n = e->n, nz = e->m->states.n;
+  Real *state[3], t = 0.3L, *p = ARENA_ARRAY(a, Real, e->m->params.n + 1);
+  const uint32_t size[3] = {n, n, nz};
+  test_rng = seed;
+  for (int k = 0; k < 3; k++) {
+    state[k] = ARENA_ARRAY(a, Real, size[k] + 1);
+    for (uint32_t i = 0; i < size[k]; i++) state[k][i] = uniform(-1, 1);
+  }
+  for (uint32_t i = 0; i < e->m->params.n; i++) p[e->m->params.at[i].place] = uniform(0.5L, 1);
+  const Real *in[ARR_COUNT] = {0};
+  in[ARR_T] = &t, in[ARR_Q] = state[0], in[ARR_V] = state[1], in[ARR_Z] = state[2], in[ARR_P] = p;
+  assert_int_equal(prog_eval(lower_accel(e, 0), in, (Real *const[]){out, out + n}), 0);
+  if (e->energy) assert_int_equal(prog_eval(lower_energy(e), in, (Real *const[]){out + n + nz}), 0);
+  return n + nz + (e->energy ? 2 : 0);
+}
+
+/* Rounding in long doubles: sums of at most 64 terms of size about 1, in two orders, divided by masses above 1/2. */
+static const Real ROUNDING = 1e-16L;
+
+static void sums_and_pairs_agree(void **state) {
+  (void)state;
+  for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
+    for (int n = k == 5 ? 4 : 3; n <= 8; n++) { /* text 5 needs two pairs without r[1] */
+      Arena *a = arena_new(NULL);
+      Real out[2][300];
+      Eqns *whole = family(a, texts[k], n, 1), *pairs = family(a, texts[k], n, UINT32_MAX);
+      if (!whole->m->sums.n || pairs->m->sums.n) fail_msg("text %zu, N = %d: %u sums", k, n, whole->m->sums.n);
+      uint32_t count = values(whole, (uint64_t)n, out[0]);
+      assert_int_equal(values(pairs, (uint64_t)n, out[1]), count);
+      for (uint32_t i = 0; i < count; i++)
+        if (!(fabsl(out[0][i] - out[1][i]) <= ROUNDING * (1 + fabsl(out[1][i])) * n))
+          fail_msg("text %zu, N = %d, value %u: %.18Lg and %.18Lg", k, n, i, out[0][i], out[1][i]);
+      arena_free(a);
+    }
+}
+
+/* A program has as many instructions for 50 bodies as for 5, but for one load and one store of each component. */
+static void programs_do_not_know_the_pairs(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  uint32_t parts[2], length[2];
+  for (int k = 0; k < 2; k++) {
+    const Prog *p = lower_accel(family(a, texts[0], k ? 50 : 5, 1), 0);
+    parts[k] = prog_part(p, 1)->ins.n;
+    length[k] = p->ins.n;
+    assert_int_equal(prog_parts(p), 2);
+  }
+  assert_int_equal(parts[0], parts[1]);
+  assert_true(length[1] < 10 * length[0] + 50);
+  arena_free(a);
+}
+
+/* Two bodies on a spring: x'' of the first is -k (x1 - x2)/m1, by hand. */
+static void a_spring_is_right(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  Real out[4];
+  Eqns *e = family(a, "const N = 2 + 0*%d\ncoord x[N]\nlagrangian = sum(i in 1..N, i*x[i]'^2/2) -\n"
+                      "  sum(i in 1..N, sum(j in 1..i-1, 3/2*(x[i] - x[j])^2))", 0, 1);
+  assert_int_equal(e->m->sums.n, 0); /* one pair has no second one to compare with */
+  values(e, 7, out);
+  test_rng = 7;
+  Real x1 = uniform(-1, 1), x2 = uniform(-1, 1);
+  assert_true(fabsl(out[0] + 3 * (x1 - x2)) < 1e-17L);
+  assert_true(fabsl(out[1] - 3 * (x1 - x2) / 2) < 1e-17L);
+  arena_free(a);
+}
+
+/* Texts without the form: written out, and right as before. */
+static void other_texts_are_written_out(void **state) {
+  (void)state;
+  static const char *const other[] = {
+      "sum(i in 1..N, sum(j in 1..i-1, k*x[i]'*x[j]'/8))",             /* velocities */
+      "sum(i in 1..N, sum(j in 1..i-1, x[i]*x[j]/(i - j)))",           /* an index as a number */
+      "sum(i in 1..N, sum(j in 1..N, if(i == j, 0, x[i]*x[j])))",      /* a condition on indices */
+      "sum(i in 1..N, sum(j in 1..i-1, abs(x[i] - x[j])))",            /* a kink */
+      "sum(i in 1..N, sum(j in 1..i-1, c[i]*x[j]))",                   /* lets by index */
+      "sum(i in 1..N, x[i] + sum(j in 1..i-1, x[i]*x[j]))",            /* a term beside the inner sum */
+      "sum(i in 1..N, sum(j in 1..i-1, far(x[i])*x[j]))",              /* a function that reads a member */
+  };
+  for (size_t k = 0; k < sizeof other / sizeof *other; k++) {
+    Arena *a = arena_new(NULL);
+    Real out[2][10];
+    const char *text = arena_printf(a,
+                                    "const N = %%d\ncoord x[N]\nparam k = 1\nlet c[i in 1..N] = x[i]^2\n"
+                                    "function far(s) = s*x[4]\nlagrangian = sum(i in 1..N, x[i]'^2/2) - %s",
+                                    other[k]);
+    Eqns *whole = family(a, text, 5, 1), *pairs = family(a, text, 5, UINT32_MAX);
+    assert_int_equal(whole->m->sums.n, 0);
+    values(whole, 3, out[0]);
+    values(pairs, 3, out[1]);
+    for (int i = 0; i < 5; i++) assert_true(fabsl(out[0][i] - out[1][i]) <= ROUNDING * (1 + fabsl(out[1][i])));
+    arena_free(a);
+  }
+}
+
+/* The self-check compares them with the text, by a sample of their pairs; and notices a wrong body. */
+static void the_text_is_compared(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  SelfCheck told;
+  Eqns *e = family(a, texts[0], 40, 1);
+  ProgramSet *u = unit_new(e, "test.lag", 0);
+  unit_add_scene(u, e);
+  assert_true(self_check(e, u, 0, &told));
+  assert_true(told.states > 0 && told.directions > 0);
+  Nest *n = (Nest *)&u->accel->nests.at[0];
+  IrSubscript *at = (IrSubscript *)n->at;
+  at[0].by_row++; /* a body is read at the wrong place */
+  assert_false(self_check(e, u, 0, &told));
+  arena_free(a);
+}
+
+/* Shifts and rotations of all bodies, with 1,000 of them. */
+static void one_pair_proves_a_symmetry(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  const char *text = BODIES "potential = -sum(i in 1..N, sum(j in 1..i-1, G*m[i]*m[j]*pair(" APART ")))\n"
+    "symmetry shift(s): for i in 1..N: r[i] -> r[i] + s*(1, 2)\n"
+    "symmetry turn(s): for i in 1..N: r[i] -> (r[i].x*cos(s) - r[i].y*sin(s), r[i].x*sin(s) + r[i].y*cos(s))\n";
+  text = arena_printf(a, "%s", text);
+  StrBuf plain = strbuf(a); /* without the table of couplings, which has N^2 members */
+  const char *table = strstr(text, ", K[N,N] = 0.2");
+  sb_printf(&plain, "%.*s%s", (int)(table - text), text, table + strlen(", K[N,N] = 0.2"));
+  Eqns *e = family(a, sb_text(&plain), 1000, 0);
+  assert_int_equal(e->ncharges, 3);
+  for (uint32_t i = 0; i < e->ncharges; i++) assert_int_equal(e->charges[i].proof.drift, PROVED_ZERO);
+  arena_free(a);
+}
+
+/* What is no symmetry is refused, and the remainder has the two half sums of the derivative by r[3].x. */
+static void a_wrong_symmetry_is_refused(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  const char *messages;
+  Eqns *e = try_family(a, "const N = %d\ncoord r[N]: vec2\nlagrangian = sum(i in 1..N, dot(r[i]', r[i]')/2) -\n"
+                          "  sum(i in 1..N, sum(j in 1..i-1, (r[i].x - r[j].x)^4 + 2*(r[i].y - r[j].y)^4))\n"
+                          "symmetry odd(s): r[3] -> r[3] + s*(1, 0)\n", 6, 1, &messages);
+  assert_null(e);
+  assert_non_null(strstr(messages, "sum(i in 4..6, 4*(r[3].x - r[i].x)^3)"));
+  assert_non_null(strstr(messages, "sum(j in 1..2, 4*(r[3].x - r[j].x)^3)"));
+  arena_free(a);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(sums_and_pairs_agree),
+      cmocka_unit_test(programs_do_not_know_the_pairs),
+      cmocka_unit_test(a_spring_is_right),
+      cmocka_unit_test(other_texts_are_written_out),
+      cmocka_unit_test(the_text_is_compared),
+      cmocka_unit_test(one_pair_proves_a_symmetry),
+      cmocka_unit_test(a_wrong_symmetry_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
