@@ -156,7 +156,7 @@ read csv|input u [N] = "FILE.csv"
 gif|lagc animate
 delay|cannot be written
 noise|stochastic forces are not followed
-fit parameters|least_squares
+fit parameters|lagc fit: 
 cluster|lagc sweep MODEL RANGES --mpi
 air resistance|dissipation
 latex|--format text|latex|c
