@@ -111,7 +111,9 @@ typedef struct {
   const IrSubscript *at;    /* [n] */
   const Slot *outer;    /* [nouter] values of the program that the nest is in */
   uint32_t n, nouter;
-  int family; /* of a quantified sum, which is not written out anywhere */
+  /* of a quantified sum, which is not written out anywhere: rows of its text, of which those without turns are left
+   * out, and the number of the first; 0: of another nest */
+  uint32_t text_rows, first_row;
 } Nest;
 
 /* Whether there is a loop over j: where each row has one turn, the loop over i is the only one. */

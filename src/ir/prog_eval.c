@@ -139,9 +139,10 @@ static int run_nest(Run *r, const Nest *n) {
   Real *part = ARENA_ARRAY(p->arena, Real, p->stores.n + 1);
   for (int64_t i = 0; i < n->rows; i++) {
     int64_t from = nest_from(n, i), turns = nest_to(n, i) - from;
-    if (r->samples && n->family && !loop_samples(i, n->rows)) continue;
+    int samples = r->samples && n->text_rows;
+    if (samples && !loop_samples(i + n->first_row, n->text_rows)) continue;
     for (int64_t j = from; j < from + turns; j++) {
-      if (r->samples && n->family && !loop_samples(j - from, turns)) continue;
+      if (samples && !loop_samples(j - from, turns)) continue;
       if (run_turn(&body, r, n, i, j) != 0) return -1;
       add_stores(r, &body, n, part, i, j);
     }

@@ -37,8 +37,8 @@ static int array_index(const NestBuilder *b, const Subscript *at, Ins *load, IrS
   return 1;
 }
 
-/* Slots of the body for the reads that vary; 0: one has no index. Row by row first: sums and products begin with
- * them. */
+/* Slots of the body for the reads that vary; 0: one has no index. Those of the row stand before those of the turn:
+ * products begin with what changes least. */
 static int load_reads(NestBuilder *b) {
   for (int by_turn = 0; by_turn < 2; by_turn++)
     for (uint32_t k = 0; k < b->s->nreads; k++) {
@@ -81,9 +81,11 @@ static void load_constants(NestBuilder *b, const Expr *values, uint32_t n) {
   ExprGraph *g = b->l->g;
   ExprList list = expr_topo(g, values, n);
   ExprMap moving = expr_map(b->l->p->arena);
+  for (uint32_t k = 0; k < b->s->nreads; k++)
+    if (varies(&b->s->reads[k].at)) expr_map_set(&moving, expr_symbol(g, b->s->reads[k].symbol)->node, 1);
   for (uint32_t k = 0; k < list.n; k++) {
     Expr e = list.at[k];
-    int moves = expr_op(g, e) == EX_SYM && expr_map_get(&b->body.slots, e);
+    int moves = expr_map_get(&moving, e) != 0;
     for (uint32_t i = 0; i < expr_nargs(g, e); i++) moves |= expr_map_get(&moving, expr_arg(g, e, i)) != 0;
     if (!moves) continue;
     expr_map_set(&moving, e, 1);
@@ -135,6 +137,19 @@ static Shares wanted_shares(const NestBuilder *b, const unsigned char *wanted, i
   return all;
 }
 
+/* Leaves out the first and the last rows, which have no turns. */
+static void trim(Nest *n) {
+  uint32_t first = 0, end = n->rows;
+  while (first < end && nest_to(n, first) <= nest_from(n, first)) first++;
+  while (end > first && nest_to(n, end - 1) <= nest_from(n, end - 1)) end--;
+  IrSubscript *at = (IrSubscript *)n->at;
+  for (uint32_t k = 0; k < n->n; k++) at[k].first += first * (at[k].by_row + at[k].by_turn * n->skew);
+  n->turns += n->more * first;
+  n->text_rows = n->rows;
+  n->first_row = first;
+  n->rows = end - first;
+}
+
 /* Appends the nest; cell `least` is number `base` of the program's sums. */
 static Slot append_nest(NestBuilder *b, const Shares *shares, int64_t least, uint32_t base) {
   Prog *p = b->l->p;
@@ -148,8 +163,8 @@ static Slot append_nest(NestBuilder *b, const Shares *shares, int64_t least, uin
   }
   const Prog *body = prog_product_cse(prog_factor(prog_tidy(b->body.p)));
   Nest n = {.rows = r->rows, .count = (uint32_t)expr_sum_turns(b->l->g, b->nest), .skew = r->skew, .turns = r->turns,
-            .more = r->more, .body = body, .at = b->at.at, .outer = b->outer.at, .n = b->at.n, .nouter = b->outer.n,
-            .family = 1};
+            .more = r->more, .body = body, .at = b->at.at, .outer = b->outer.at, .n = b->at.n, .nouter = b->outer.n};
+  trim(&n);
   vec_push(p->arena, &p->nests, n);
   Slot before = 0;
   for (Slot s = p->ins.n; s-- > 1 && !before;)
@@ -166,10 +181,10 @@ static int lower_as_nest(NestBuilder *b, const Expr *cells, uint32_t n) {
   for (uint32_t k = 0; k < n; k++) wanted[expr_cell_number(l->g, cells[k])] = 1;
   Shares shares = wanted_shares(b, wanted, &least, &most);
   b->body = lower_new(l->e);
-  if (!load_reads(b)) return 0;
   Expr *values = ARENA_ARRAY(a, Expr, shares.n + 1);
   for (uint32_t k = 0; k < shares.n; k++) values[k] = shares.at[k].value;
   load_constants(b, values, shares.n);
+  if (!load_reads(b)) return 0;
   lower_roots(&b->body, values, shares.n);
   uint32_t base = l->p->cells;
   l->p->cells += (uint32_t)(most - least + 1);

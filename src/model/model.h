@@ -222,6 +222,7 @@ typedef struct {
   SymId target;
   Expr value; /* of parameters */
   int implied; /* default value: constraints may move it */
+  int guess;   /* constraints move it before those that are given */
 } Start;
 
 /* Closed form (`exact q = ...`) of a coordinate, a velocity or a state. */
@@ -299,6 +300,12 @@ typedef struct {
   int guessed;     /* the text has no `draw` */
 } Scene;
 
+/* A sum over pairs; beside: its outer terms have more than the inner sum. */
+typedef struct {
+  AstId outer;
+  int beside;
+} PairSum;
+
 typedef struct {
   const Ast *ast;
   Diags *diags;
@@ -344,7 +351,7 @@ typedef struct {
   VEC(Output) observes;
   Scene scene;
   VEC(FoundUnit) found;    /* inferred units of names declared without one */
-  VEC(AstId) sums; /* sums over pairs that are not written out: the outer `sum` of each */
+  VEC(PairSum) sums; /* sums over pairs that are not written out */
   ExprMap written; /* nodes that may jump (comparisons, sign, tan, atan2) -> AstId where the text writes them */
   Measures asked_measures; /* of the command line */
   int measured_outputs;    /* 1: they added outputs to the scene's */

@@ -4,7 +4,7 @@
  * The text is evaluated at two representative pairs. Each family in f is read at indices affine in i and j, so that a
  * symbol of f is an element of a family for all pairs alike; what the second pair gives must be what the first gives
  * with its symbols in their places. What has no such form (velocities, if, abs, lets by index, i as a number) is
- * written out, pair by pair. */
+ * written out, pair by pair; terms beside the inner sum are, too. */
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
 #include "sym/sum_nest.h"
@@ -32,6 +32,8 @@ struct Quantified {
   int64_t pair[REPRESENTATIVES][2]; /* i and j */
   int pass;
   Value body[REPRESENTATIVES], whole[REPRESENTATIVES];
+  int beside;         /* the outer terms have more than the inner sum: they are written out, with `pairs` at the end */
+  Expr pairs;
   SymId inside[COMPONENTS]; /* stand for the inner sum in the whole */
 };
 
@@ -145,12 +147,25 @@ static int note_read(Eval *ev, struct Quantified *q, const AstExpr *x) {
   return 1;
 }
 
+/* Marks the terms beside the one with the inner sum: they are written out, whatever they contain. */
+static void mark_beside(const Eval *ev, const struct Quantified *q, unsigned char *beside) {
+  const Ast *ast = ev->b->ast;
+  AstId at = ast_expr(ast, q->outer)->c, first = ast_expr(ast, at)->first;
+  while (ast_expr(ast, at)->kind == AST_ADD || ast_expr(ast, at)->kind == AST_SUB) {
+    AstId a = ast_expr(ast, at)->a, b = ast_expr(ast, at)->b;
+    int in_b = q->inner >= ast_expr(ast, b)->first && q->inner <= b;
+    mark_index(ev, in_b ? a : b, first, beside);
+    at = in_b ? b : a;
+  }
+}
+
 /* Finds the inner sum, and all that the terms read; 0: the text has no such form. */
 static int read_text(Eval *ev, struct Quantified *q) {
   const Ast *ast = ev->b->ast;
   const AstExpr *x = ast_expr(ast, q->outer);
   AstId first = ast_expr(ast, x->c)->first, last = x->c;
-  unsigned char *inside = ARENA_ARRAY(ev->b->arena, unsigned char, last - first + 1);
+  unsigned char *inside = ARENA_ARRAY(ev->b->arena, unsigned char, last - first + 1),
+                *beside = ARENA_ARRAY(ev->b->arena, unsigned char, last - first + 1);
   for (AstId k = first; k <= last; k++) {
     AstKind kind = ast_expr(ast, k)->kind;
     if (kind == AST_SUM && q->inner) return 0;
@@ -158,6 +173,7 @@ static int read_text(Eval *ev, struct Quantified *q) {
     if (kind == AST_PRODUCT || kind == AST_AT || kind == AST_LIST || kind == AST_BIND || kind == AST_STRING) return 0;
   }
   if (!q->inner) return 0;
+  mark_beside(ev, q, beside);
   const AstExpr *y = ast_expr(ast, q->inner);
   q->i = x->name;
   q->j = y->name;
@@ -171,6 +187,7 @@ static int read_text(Eval *ev, struct Quantified *q) {
   q->range.turns = q->to.first - q->from.first + q->range.more * q->lo + 1;
   for (AstId k = last + 1; k-- > first;) {
     const AstExpr *n = ast_expr(ast, k);
+    if (beside[k - first]) continue;
     for (AstId at = n->kind == AST_INDEX ? n->args : 0; at; at = ast_expr(ast, at)->next)
       mark_index(ev, at, first, inside);
     if (n->kind == AST_INDEX && !note_read(ev, q, n)) return 0;
@@ -357,21 +374,24 @@ static Expr sum_over(const Arguments *a, LoopRange range, Expr body) {
   return expr_sum_cell(a->g, &s, a->args.at, 0);
 }
 
-/* Component c of the whole sum; 0: it has no such form. */
-static Expr component_sum(Eval *ev, const struct Quantified *q, uint32_t c) {
+/* Component c of the sum over pairs: the factor of the inner sum, which must be linear in the whole, times the inner
+ * terms. 0: it has no such form. */
+static Expr component_sum(Eval *ev, struct Quantified *q, uint32_t c) {
   Builder *b = ev->b;
   ExprGraph *g = b->g;
   Arguments a = {.g = g, .m = b->m, .q = q, .arena = b->arena, .names = b->ast->names};
   const Value *body = q->body, *whole = q->whole;
   uint32_t n = component_count(&body[0]);
   if (n != component_count(&whole[0])) return 0; /* the vector inside became a number */
-  Expr inside = expr_symbol(g, q->inside[c])->node, factor = expr_diff(g, whole[0].at[c], q->inside[c]), back;
-  Expr alone = expr_mul(g, factor, inside), turned[REPRESENTATIVES];
-  if (alone != whole[0].at[c]) return 0;
-  for (int k = 0; k < REPRESENTATIVES; k++)
-    expr_replace_nodes(g, &whole[k].at[c], 1, &inside, &body[k].at[c], 1, &turned[k]);
-  back = expr_mul(g, factor, body[0].at[c]);
-  if (back != turned[0] || !find_arguments(&a, turned[0]) || !same_for_both(&a, turned[0], turned[1])) return 0;
+  Expr turned[REPRESENTATIVES];
+  for (int k = 0; k < REPRESENTATIVES; k++) {
+    Expr factor = expr_diff(g, whole[k].at[c], q->inside[c]);
+    if (expr_contains_sym(g, factor, q->inside[c])) return 0;
+    turned[k] = expr_mul(g, factor, body[k].at[c]);
+    Expr zero = expr_int(g, 0), rest = expr_replace(g, whole[k].at[c], &q->inside[c], &zero, 1);
+    q->beside |= !expr_is_zero(g, rest);
+  }
+  if ((q->beside && n > 1) || !find_arguments(&a, turned[0]) || !same_for_both(&a, turned[0], turned[1])) return 0;
   return expr_is_zero(g, turned[0]) ? turned[0] : sum_over(&a, q->range, turned[0]);
 }
 
@@ -380,6 +400,10 @@ static Expr component_sum(Eval *ev, const struct Quantified *q, uint32_t c) {
 int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   Builder *b = ev->b;
   const AstExpr *x = ast_expr(b->ast, id);
+  if (ev->sums && id == ev->sums->inner && ev->sums->pairs) {
+    *value_of(ev, id) = a_value(expr_int(b->g, 0), ev->sums->body[0].dim, 0);
+    return -1;
+  }
   if (ev->sums && id == ev->sums->inner) {
     int64_t j = ev->sums->pair[ev->sums->pass][1];
     vec_push(b->arena, &ev->loops, ((Loop){id, j, j, ev->terms.n}));
@@ -416,6 +440,12 @@ int quantified_next(Eval *ev, Value *v) {
   Loop *l = &ev->loops.at[ev->loops.n - 1];
   if (l->construct == q->inner) keep_inner(ev, v);
   if (l->construct != q->outer) return 0;
+  if (q->pairs) {
+    if (l->at < l->hi || !v->e) return 0;
+    ev->sums = NULL;
+    v->e = expr_add(b->g, v->e, q->pairs);
+    return 0;
+  }
   q->whole[q->pass] = *v;
   int failed = !v->e || !q->body[q->pass].e;
   if (!failed && ++q->pass < REPRESENTATIVES) {
@@ -427,12 +457,17 @@ int quantified_next(Eval *ev, Value *v) {
   Value r = *v;
   for (uint32_t c = 0; c < component_count(v) && r.e; c++)
     if (!(r.at[c] = component_sum(ev, q, c))) r.e = 0;
-  if (r.e) {
-    vec_push(b->arena, &b->m->sums, q->outer);
+  if (r.e) vec_push(b->arena, &b->m->sums, ((PairSum){q->outer, q->beside}));
+  if (r.e && !q->beside) {
     *v = r;
     return 0;
   }
-  ev->written_out = q->outer;
+  if (r.e) {
+    q->pairs = r.e;
+    ev->sums = q;
+  } else {
+    ev->written_out = q->outer;
+  }
   ev->terms.n = l->base;
   l->at = ev->index.at[ev->index.n - 1].at = q->lo;
   l->hi = q->hi;

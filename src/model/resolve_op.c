@@ -323,7 +323,8 @@ int loop_begin(Eval *ev, AstId id) {
     return 0;
   }
   if (!range_fits(b, lo, hi, x->span)) return 0;
-  if (quantified_begin(ev, id, lo, hi)) return 1;
+  int quantified = quantified_begin(ev, id, lo, hi);
+  if (quantified) return quantified > 0;
   vec_push(b->arena, &ev->loops, ((Loop){id, lo, hi, ev->terms.n}));
   vec_push(b->arena, &ev->index, ((IndexVar){x->name, lo}));
   return 1;

@@ -96,17 +96,25 @@ static void finish(DirectEval *t, Frame *f, Frame *caller) {
 
 /* --- sums and products --- */
 
-/* Whether the model does not write the sum out, nor the one around it. */
-static int is_quantified(const DirectEval *t, const Frame *f, AstId id) {
-  for (uint32_t k = 0; k < t->m->sums.n; k++)
-    if (t->m->sums.at[k] == id) return 1;
-  return f->loops.n && f->loops.at[f->loops.n - 1].samples;
+/* Whether only some terms of the sum take part: the model does not write it out, nor the one around it. *none: no term
+ * of an inner sum does, in this row. */
+static int is_sampled(const DirectEval *t, const Frame *f, AstId id, int *beside, int *none) {
+  const TextLoop *around = f->loops.n ? &f->loops.at[f->loops.n - 1] : NULL;
+  *beside = *none = 0;
+  for (uint32_t k = 0; t->samples && k < t->m->sums.n; k++) {
+    if (t->m->sums.at[k].outer != id) continue;
+    *beside = t->m->sums.at[k].beside;
+    return 1;
+  }
+  if (!around || !around->samples) return 0;
+  *none = !loop_samples(around->at - around->lo, around->hi - around->lo + 1);
+  return 1;
 }
 
 /* Next index of the loop; past its end: none. */
 static int64_t next_index(const TextLoop *l) {
   int64_t at = l->at + 1;
-  while (l->samples && at <= l->hi && !loop_samples(at - l->lo, l->hi - l->lo + 1)) at++;
+  while (l->samples && !l->beside && at <= l->hi && !loop_samples(at - l->lo, l->hi - l->lo + 1)) at++;
   return at;
 }
 
@@ -121,8 +129,10 @@ static int loop_enter(DirectEval *t, Frame *f, AstId id) {
   }
   *r = number_of(t, num_int(x->kind == AST_PRODUCT));
   if (lo > hi) return 0;
-  int samples = t->samples && is_quantified(t, f, id);
-  vec_push(t->arena, &f->loops, ((TextLoop){.construct = id, .lo = lo, .at = lo, .hi = hi, .samples = samples}));
+  int beside, none, samples = is_sampled(t, f, id, &beside, &none);
+  if (none) return 0;
+  TextLoop l = {.construct = id, .lo = lo, .at = lo, .hi = hi, .samples = samples, .beside = beside};
+  vec_push(t->arena, &f->loops, l);
   vec_push(t->arena, &f->index, ((IndexVar){x->name, lo}));
   return 1;
 }
