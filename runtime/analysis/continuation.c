@@ -157,9 +157,92 @@ static void narrow(Bracket *r, double s, double f) {
   r->side = upper ? 1 : -1;
 }
 
-/* The point of this kind between `from` and `far`, which is at arclength `to`. Where only the number of growing
- * eigenvalues tells, by bisection. */
-static BranchPoint *locate(Walk *w, const BranchPoint *from, const BranchPoint *far, double to, BranchKind kind) {
+/* u[cols] := the cubic through two points with their tangents, at arclength s of `to`; d[cols], unless NULL, := its
+ * direction. */
+static void between_points(int cols, const BranchPoint *a, const BranchPoint *b, double to, double s, double *u,
+                           double *d) {
+  double x = s / to, size = 0;
+  for (int i = 0; i < cols; i++) {
+    double p = a->u[i], q = b->u[i], v = to * a->tangent[i], w = to * b->tangent[i];
+    u[i] = p + x * (v + x * (3 * (q - p) - 2 * v - w + x * (2 * (p - q) + v + w)));
+    if (!d) continue;
+    d[i] = v + x * (2 * (3 * (q - p) - 2 * v - w) + 3 * x * (2 * (p - q) + v + w));
+    size += d[i] * d[i];
+  }
+  for (int i = 0; i < cols && d; i++) d[i] /= sqrt(size);
+}
+
+/* Points beside a branch point, at arclengths x[n] relative to a middle, in units of a width; for Lagrange's
+ * polynomials. */
+typedef struct Nodes {
+  int n;
+  double x[8];
+  BranchPoint *at[8];
+} Nodes;
+
+/* weight[n] of the values at the nodes in that of their polynomial at x. */
+static void lagrange(const Nodes *k, double x, double *weight) {
+  for (int i = 0; i < k->n; i++) {
+    weight[i] = 1;
+    for (int j = 0; j < k->n; j++) weight[i] *= j != i ? (x - k->x[j]) / (k->x[i] - k->x[j]) : 1;
+  }
+}
+
+static double zero_at(const Nodes *k, double x) {
+  double weight[8], sum = 0;
+  lagrange(k, x, weight);
+  for (int i = 0; i < k->n; i++) sum += weight[i] * k->at[i]->zero;
+  return sum;
+}
+
+/* Root of the polynomial of the test function between -1 and 1, by bisection; NAN: its signs agree there. */
+static double root_of(const Nodes *k) {
+  double a = -1, b = 1, fa = zero_at(k, a);
+  if (!changes_sign(fa, zero_at(k, b))) return NAN;
+  for (int i = 0; i < 60; i++) {
+    double x = (a + b) / 2, f = zero_at(k, x);
+    if (changes_sign(fa, f)) b = x;
+    else a = x, fa = f;
+  }
+  return (a + b) / 2;
+}
+
+/* A branch point between two points: next to it another branch is near, and the equations are singular, so that it
+ * is found by interpolation between points at some distance, in smaller and smaller widths. NULL: it is not found. */
+static BranchPoint *locate_branch_point(Walk *w, const BranchPoint *from, const BranchPoint *far, double to) {
+  static const double places[] = {-1, -0.7, -0.4, 0.4, 0.7, 1};
+  double middle = to / 2, width = to / 2, *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols);
+  if (!u) return NULL;
+  BranchPoint *best = NULL;
+  for (int round = 0; round < 3; round++) {
+    Nodes k = {0};
+    for (int i = 0; i < 6; i++) {
+      double s = fmin(fmax(middle + width * places[i], 0), to);
+      between_points(w->cols, from, far, to, s, u, u + w->cols);
+      BranchPoint *at = correct(w, u, u + w->cols) ? make_point(w, u, from->tangent) : NULL;
+      if (!at || (k.n && (s - middle) / width <= k.x[k.n - 1])) continue;
+      k.x[k.n] = (s - middle) / width;
+      k.at[k.n++] = at;
+    }
+    double x = k.n > 3 ? root_of(&k) : NAN, weight[8];
+    if (isnan(x)) return best;
+    lagrange(&k, x, weight);
+    memset(u, 0, (size_t)w->cols * sizeof *u);
+    for (int i = 0; i < k.n; i++)
+      for (int c = 0; c < w->cols; c++) u[c] += weight[i] * k.at[i]->u[c];
+    BranchPoint *at = w->p->place(w->p->of, u) ? NULL : make_point(w, u, from->tangent);
+    if (!at) return best;
+    best = at;
+    middle += width * x;
+    width = to / (round ? 400 : 20);
+  }
+  return best;
+}
+
+/* The point of this kind between two points by its test function; where only the number of growing eigenvalues tells,
+ * by bisection. */
+static BranchPoint *locate_by_test(Walk *w, const BranchPoint *from, const BranchPoint *far, double to,
+                                   BranchKind kind) {
   int counts = kind == BRANCH_COLLISION;
   Bracket r = {0, to, counts ? -1 : test_of(from, kind), counts ? 1 : test_of(far, kind), 0};
   double least = HUGE_VAL;
@@ -175,6 +258,13 @@ static BranchPoint *locate(Walk *w, const BranchPoint *from, const BranchPoint *
     narrow(&r, s, f);
     if (counts) r.fa = -1, r.fb = 1;
   }
+  return best;
+}
+
+/* The point of this kind between `from` and `far`, which is at arclength `to`. */
+static BranchPoint *locate(Walk *w, const BranchPoint *from, const BranchPoint *far, double to, BranchKind kind) {
+  BranchPoint *best = kind == BRANCH_POINT ? locate_branch_point(w, from, far, to) : NULL;
+  if (!best) best = locate_by_test(w, from, far, to, kind);
   if (!best) return NULL;
   best->kind = kind;
   double size = 0; /* at a branch point the equations leave two directions free: that of the secant is this branch's */
@@ -211,13 +301,13 @@ static int outside(const BranchPoint *at, int last, const BranchLimits *l) {
 
 /* Makes the next step; its length adapts to the number of Newton's steps and the turn of the tangent. NULL: none is
  * short enough. */
-static BranchPoint *next_point(Walk *w, double *step, double longest) {
+static BranchPoint *next_point(Walk *w, double *step, double longest, double least) {
   const BranchPoint *from = w->b->last;
   for (; *step > 1e-7; *step /= 2) {
     BranchPoint *at = point_at(w, from, *step);
     if (!at) continue;
     double turn = dot(w->cols, at->tangent, from->tangent);
-    if (turn < 0.9) continue;
+    if (turn < least) continue;
     int easy = w->newton <= 4 && turn > 0.98;
     double made = *step;
     *step = easy ? fmin(1.4 * made, longest) : made;
@@ -236,8 +326,9 @@ static int first_point(Walk *w, const double *u0, const double *d, int sign) {
   if (!correct(w, u, along)) return LAG_EDOMAIN;
   BranchPoint *at = make_point(w, u, along);
   if (!at) return w->b->pool.failed ? LAG_ENOMEM : LAG_EDOMAIN;
-  if (!d && find_tangent(w, along, at->tangent) == LAG_ESINGULAR) return LAG_ESINGULAR;
-  if (d) memcpy(at->tangent, d, (size_t)w->cols * sizeof *d); /* at a branch point there are several */
+  if (!sign) memcpy(at->tangent, d, (size_t)w->cols * sizeof *d); /* at a branch point there are several */
+  else if (find_tangent(w, along, at->tangent) == LAG_ESINGULAR) return LAG_ESINGULAR;
+  at->fold = at->tangent[w->cols - 1];
   append(w->b, at);
   return LAG_OK;
 }
@@ -250,10 +341,14 @@ int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const
   rc = rc ? rc : first_point(&w, u0, d, sign);
   for (double step = limits->step; rc == LAG_OK && b->npoints < limits->most;) {
     const BranchPoint *from = b->last;
-    BranchPoint *at = next_point(&w, &step, limits->longest);
+    BranchPoint *at = next_point(&w, &step, limits->longest, 0.9);
+    if (!at && !sign && b->npoints == 1) { /* the direction was across the other branch, not yet along this one */
+      step = limits->step;
+      at = next_point(&w, &step, limits->longest, 0.3);
+    }
     if (!at) return b->end = b->pool.failed ? BRANCH_NO_MEMORY : BRANCH_LOST, LAG_OK;
     /* from a branch point, where test functions are 0 but for rounding, nothing is looked for in the first step */
-    BranchKind kind = d && b->npoints == 1 ? BRANCH_REGULAR : between(p, from, at);
+    BranchKind kind = !sign && b->npoints == 1 ? BRANCH_REGULAR : between(p, from, at);
     BranchPoint *found = kind == BRANCH_REGULAR ? NULL : locate(&w, from, at, w.made, kind);
     if (found && !outside(found, last, limits)) append(b, found);
     if (outside(at, last, limits)) {

@@ -60,9 +60,10 @@ typedef struct BranchLimits {
   int most;             /* points */
 } BranchLimits;
 
-/* Follows the branch from u0[cols], a solution up to Newton's steps, in direction d[cols] (NULL: with the last
- * unknown growing, sign 1, or falling, -1), until it leaves the range. Free in any case. LAG_OK, or a status: u0 is no
- * solution (LAG_EDOMAIN), or solutions beside it form a family (LAG_ESINGULAR). */
+/* Follows the branch from u0[cols], a solution up to Newton's steps, in direction d[cols], or with sign 1 in that of
+ * the branch that is nearest to it (NULL: with the last unknown growing, sign 1, or falling, -1), until it leaves the
+ * range. Free in any case. LAG_OK, or a status: u0 is no solution (LAG_EDOMAIN), or solutions beside it form a family
+ * (LAG_ESINGULAR). */
 int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const double *d, int sign,
                       const BranchLimits *limits);
 void lag_branch_free(Branch *b);

@@ -213,7 +213,7 @@ static int follow_cycle(Job *job, const Part *of, const BranchPoint *at) {
   for (int i = 0; i < cycle->orbit.cols; i++) size += d[i] * d[i];
   for (int i = 0; i < cycle->orbit.cols; i++) d[i] /= sqrt(size);
   job->nbranches++;
-  rc = follow(job, &cycle->problem, &cycle->orbit, u, d, 0, of->number);
+  rc = follow(job, &cycle->problem, &cycle->orbit, u, d, 1, of->number);
   free(u);
   return rc == LAG_ENOMEM ? rc : LAG_OK;
 }

@@ -31,6 +31,10 @@ follow models/lorenz.lag x=0 y=0 z=0 rho=0.5..26 --branches
 kinds "branch point;end;end;Hopf;end;Hopf;end;end;end;"
 close 1 parameter 1 1e-10
 close 4 parameter 24.7368421052631579 1e-9
+# transcritical points: the prey meets the predators at u = 1/3, p = p2 u (1 - u)/(1 - exp(-p3 u)), and vanishes at p = p2/p3
+follow $dir/prey.lag p=0.3..1 u=0.95 --branches --most 60
+near "$title: predators" 1e-11 0.8219043453739907 "$(sed -n 's/^{"kind": "branch point", "parameter": \([^,]*\),.*/\1/p' "$TMP/points" | sed -n 1p)"
+near "$title: no prey" 1e-10 0.6 "$(sed -n 's/^{"kind": "branch point", "parameter": \([^,]*\),.*/\1/p' "$TMP/points" | sed -n 2p)"
 # Hopf's normal form: at the end of the range, lam = 0.25, a circle of radius 0.5, period 2 pi, multiplier exp(-pi)
 follow $dir/hopf.lag lam=-1..0.25 --branches
 kinds "Hopf;end;end;end;"
@@ -53,6 +57,12 @@ long() {
   kinds "branch point;end;end;end;end;"
   close 1 parameter 4.42944691807002 1e-9
   close 4 y -0.15328125 1e-10
+  # AUTO's manual: folds at 0.105739 and 0.0889318, a Hopf point at 0.1309
+  follow $dir/reaction.lag p1=0..0.15
+  kinds "fold;fold;Hopf;end;end;"
+  close 1 parameter 0.105739 5e-7
+  close 2 parameter 0.0889318 5e-8
+  close 3 parameter 0.1309 5e-7
   # folds of Duffing's oscillator, by SciPy: P(u) = u, det(P' - 1) = 0 by fsolve, period map by DOP853 at 1e-13
   follow $dir/oscillator.lag driven w=0.5..2.5
   kinds "fold;fold;end;end;"
