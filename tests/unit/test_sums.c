@@ -91,7 +91,7 @@ static const Real ROUNDING = 1e-16L;
 static void sums_and_pairs_agree(void **state) {
   (void)state;
   for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
-    for (int n = k == 6 ? 4 : 3; n <= 8; n++) { /* text 6 needs two pairs without r[1] */
+    for (int n = k == 6 ? 4 : 3; n <= 8; n += n < 5 ? 1 : 3) { /* text 6 needs two pairs without r[1] */
       Arena *a = arena_new(NULL);
       Real out[2][300];
       Eqns *whole = family(a, texts[k], n, 1), *pairs = family(a, texts[k], n, UINT32_MAX);
@@ -182,7 +182,7 @@ static void the_text_is_compared(void **state) {
   arena_free(a);
 }
 
-/* Shifts and rotations of all bodies, with 1,000 of them. */
+/* Shifts and rotations of all bodies, with 200 of them. */
 static void one_pair_proves_a_symmetry(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
@@ -193,7 +193,7 @@ static void one_pair_proves_a_symmetry(void **state) {
   StrBuf plain = strbuf(a); /* without the table of couplings, which has N^2 members */
   const char *table = strstr(text, ", K[N,N] = 0.2");
   sb_printf(&plain, "%.*s%s", (int)(table - text), text, table + strlen(", K[N,N] = 0.2"));
-  Eqns *e = family(a, sb_text(&plain), 1000, 0);
+  Eqns *e = family(a, sb_text(&plain), 200, 0);
   assert_int_equal(e->ncharges, 3);
   for (uint32_t i = 0; i < e->ncharges; i++) assert_int_equal(e->charges[i].proof.drift, PROVED_ZERO);
   arena_free(a);
