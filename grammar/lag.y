@@ -73,7 +73,7 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %token REQUIRES "requires" EXCLUDES "excludes" SCENE "scene" START "start" EXACT "exact" USE "use"
 %token SPAN "span" METHOD "method" TOLERANCE "tolerance" OUTPUT "output" MONITOR "monitor" MEASURE "measure" LIKE "like"
 %token STOP "stop" PERIODIC "periodic" RISING "rising" FALLING "falling" CROSSING "crossing"
-%token ON "on" OF "of" STATIC "static" RESTITUTION "restitution" SLIP "slip" TANGENTIAL "tangential" LAW "law" EXACTLY "exactly" EVERY "every" WHILE "while"
+%token ON "on" OF "of" STATIC "static" RESTITUTION "restitution" SLIP "slip" TANGENTIAL "tangential" LAW "law" EXACTLY "exactly" GUESS "guess" EVERY "every" WHILE "while"
 %token <ident> SHAPE CLAUSE
 
 %type <stmts> stmts block stmt coords momenta params consts inputs states lets observed requires excludes assigns maps items
@@ -316,7 +316,8 @@ periodic: %empty     { $$ = 0; }
         | "periodic" { $$ = 1; }
         ;
 exactly: %empty    { $$ = 0; }
-       | "exactly" { $$ = 1; }
+       | "exactly" { $$ = START_EXACTLY; }
+       | "guess"   { $$ = START_GUESS; }
        ;
 sign: %empty          { $$ = SIGN_ANY; }
     | ">" NUMBER[n]   { $$ = sign_of(ast, @n, SIGN_GT, $n); }

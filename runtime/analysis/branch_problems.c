@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/steady_motion.h"
+
 /* ---- States of rest */
 
 /* Component of the state that unknown i is. */
@@ -21,11 +23,13 @@ static int place_rest(void *of, const double *u) {
   return rc || lag_not_finite(2 * r->flow.nq + r->n - r->flow.nq, r->rates) >= 0 ? LAG_EDOMAIN : LAG_OK;
 }
 
-/* out[n] := accelerations and rates of states at the present state and parameter. */
+/* out[rows] := accelerations, rates of states and residuals of constraints on positions at the present state and
+ * parameter. */
 static int balance(RestBranch *r, double *out) {
   int nq = r->flow.nq, rc = lag_flow_rates(&r->flow, r->flow.t0, r->y, r->rates);
   memcpy(out, r->rates + nq, (size_t)r->n * sizeof *out);
-  return rc;
+  if (rc || r->rows == r->n) return rc;
+  return lag_residuals(&r->flow.probe->pb, r->flow.t0, r->y, out + r->n, out + r->rows);
 }
 
 /* Column k of J by central differences of order 4, of states and of the parameter alike. */
@@ -40,7 +44,7 @@ static int column(RestBranch *r, int k, double *J) {
     if (k < r->n) r->y[component(r, k)] = at;
     else rc = lag_flow_set(&r->flow, r->name, at);
     rc = rc ? rc : balance(r, r->up);
-    for (int i = 0; i < r->n && rc == LAG_OK; i++) J[i * r->cols + k] += side * weight[j - 1] * r->up[i] / part;
+    for (int i = 0; i < r->rows && rc == LAG_OK; i++) J[i * r->cols + k] += side * weight[j - 1] * r->up[i] / part;
   }
   if (k < r->n) r->y[component(r, k)] = was;
   else rc = rc ? rc : lag_flow_set(&r->flow, r->name, was);
@@ -49,7 +53,7 @@ static int column(RestBranch *r, int k, double *J) {
 
 static int rest_system(void *of, double *J, double *b) {
   RestBranch *r = of;
-  int n = r->n, cols = r->cols, rc = balance(r, r->down);
+  int n = r->rows, cols = r->cols, rc = balance(r, r->down);
   memset(J, 0, (size_t)(n * cols) * sizeof *J);
   for (int k = 0; k < cols && rc == LAG_OK; k++) rc = column(r, k, J);
   for (int i = 0; i < n && rc == LAG_OK; i++) {
@@ -64,15 +68,34 @@ static int rest_system(void *of, double *J, double *b) {
   return rc;
 }
 
+/* J[n n] := its part in the tangent space of the constraints, k by k. */
+static int within_constraints(RestBranch *r, double *J, int *k) {
+  Pool pool = {0};
+  int n = r->flow.n;
+  double *B = lag_pool_doubles(&pool, 2 * (size_t)(n * n)), *JB = B ? B + n * n : NULL, *unit = r->room;
+  for (int i = 0; i < n; i++) unit[i] = lag_difference_scale(&r->flow.probe->pb, r->y, i);
+  int rc = B ? lag_flow_tangent_basis(&r->flow, &pool, r->flow.t0, r->y, unit, B, k) : LAG_ENOMEM;
+  for (int i = 0; i < n * *k && rc == LAG_OK; i++)
+    for (int l = 0; l < n; l++) JB[i] += J[i / *k * n + l] * unit[l] / unit[i / *k] * B[l * *k + i % *k];
+  for (int i = 0; i < *k * *k && rc == LAG_OK; i++) {
+    J[i] = 0;
+    for (int l = 0; l < n; l++) J[i] += B[l * *k + i / *k] * JB[l * *k + i % *k];
+  }
+  lag_pool_free(&pool);
+  return rc;
+}
+
+/* Rates of small motion. */
 static int rest_spectrum(void *of, Spectrum *s) {
   RestBranch *r = of;
   int n = r->flow.n, nq = r->flow.nq;
   double *J = r->J;
+  s->n = n;
   memset(J, 0, (size_t)(n * n) * sizeof *J);
   for (int i = 0; i < nq; i++) J[i * n + nq + i] = 1;
   int rc = lag_fine_jacobian(&r->flow.probe->pb, NULL, r->flow.t0, r->y, J + nq * n, r->flow.linear);
-  s->n = n;
-  return rc ? rc : r->algebra->general(n, J, s->re, s->im, r->v, r->v + n * n, r->v + 2 * n * n);
+  rc = rc || r->rows == r->n ? rc : within_constraints(r, J, &s->n);
+  return rc ? rc : r->algebra->general(s->n, J, s->re, s->im, r->v, r->v + n * n, r->v + 2 * n * n);
 }
 
 /* y := the state of rest next to the start, at the parameter's first value. */
@@ -80,8 +103,11 @@ static int find_rest(RestBranch *r) {
   Equilibrium rest = {0};
   int rc = lag_flow_set(&r->flow, r->name, r->parameter);
   if (rc) return rc;
-  int found = lag_equilibrium_find(&rest, r->flow.probe, r->algebra);
+  SteadyMotion steady = {0};
+  int found = r->flow.probe->pb.model->constraints ? lag_steady_find(&steady, &rest, r->flow.probe, r->algebra, 0)
+                                                   : lag_equilibrium_find(&rest, r->flow.probe, r->algebra);
   if (found > 0) memcpy(r->y, rest.y, (size_t)r->flow.n * sizeof *r->y);
+  lag_steady_free(&steady);
   lag_equilibrium_free(&rest);
   if (found > 0) return LAG_OK;
   snprintf(
@@ -102,16 +128,16 @@ int lag_rest_branch_open(RestBranch *r, lag_sim *like, const lag_algebra *algebr
   size_t n = (size_t)(like->pb.nq + like->pb.nz), all = (size_t)like->pb.n;
   *r = (RestBranch){
       .algebra = algebra, .n = (int)n, .cols = (int)n + 1, .name = name, .parameter = value, .parameter_unit = size};
+  const lag_constraints *of = m->constraints;
+  size_t rows = n + (size_t)(of ? of->nholonomic : 0), residuals = rows + (size_t)(of ? of->n : 0);
+  r->rows = (int)rows;
   int rc = lag_flow_open(&r->flow, like);
   if (rc) return rc;
-  if (m->constraints)
-    return refuse(r, "states of rest with constraints are not continued yet: write coordinates that "
-                     "obey them, or continue periodic motions: --guess T");
   if (r->flow.forced)
     return refuse(r, "the scene depends on time, so that nothing rests: continue its periodic motions: "
                      "--guess T");
   double **const parts[] = {&r->unit, &r->row, &r->y, &r->rates, &r->up, &r->down, &r->J, &r->v, &r->room};
-  const size_t sizes[] = {n, n, all, all, n, n, all * all, 3 * all * all, 2 * all};
+  const size_t sizes[] = {n, rows, all, all, residuals, residuals, all * all, 3 * all * all, 2 * all};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&r->pool, sizes[i]);
   if (r->pool.failed) return refuse(r, "out of memory"), LAG_ENOMEM;
   if ((rc = find_rest(r)) != LAG_OK) return rc;
@@ -120,7 +146,7 @@ int lag_rest_branch_open(RestBranch *r, lag_sim *like, const lag_algebra *algebr
     r->unit[i] = lag_difference_scale(&r->flow.probe->pb, r->y, at);
   }
   r->problem = (BranchProblem){.of = r,
-                               .rows = r->n,
+                               .rows = r->rows,
                                .cols = r->cols,
                                .place = place_rest,
                                .system = rest_system,
@@ -147,8 +173,8 @@ static int along_mode(RestBranch *r, double part, double *y, double *w) {
   int n = r->flow.n, k = 0, most = 0;
   double *re = r->room, *im = re + n, size = 0;
   Spectrum s = {0, re, im};
-  if (rest_spectrum(r, &s)) return -1;
-  for (int i = 0; i < n; i++) /* the pair nearest to the axis */
+  if (r->rows > r->n || rest_spectrum(r, &s)) return -1; /* modes have other components with constraints */
+  for (int i = 0; i < n; i++)                            /* the pair nearest to the axis */
     if (im[i] > 0 && (im[k] <= 0 || fabs(re[i]) < fabs(re[k]))) k = i;
   *w = im[k];
   for (int i = 0; i < n; i++) {
@@ -168,8 +194,12 @@ int lag_hopf_orbit(RestBranch *r, const BranchPoint *at, PeriodicOrbit *o, lag_s
   int most = along_mode(r, part, y, &w), n = r->flow.n;
   if (most < 0 || !(w > 0) || !(*like = lag_flow_sim(&r->flow, r->flow.t0, y))) return *like ? 0 : LAG_ENOMEM;
   (*like)->scene = r->flow.like->scene;
-  *o = (PeriodicOrbit){.nheld = 1, .led = -1, .name = r->name, .parameter = r->parameter,
-                       .parameter_unit = r->parameter_unit, .continues = 1};
+  *o = (PeriodicOrbit){.nheld = 1,
+                       .led = -1,
+                       .name = r->name,
+                       .parameter = r->parameter,
+                       .parameter_unit = r->parameter_unit,
+                       .continues = 1};
   o->held[0] = (OrbitHold){.kind = ORBIT_STATE, .of = most, .value = y[most]};
   int rc = lag_orbit_open(o, *like, r->algebra, 2 * acos(-1) / w, 0);
   rc = rc ? 0 : lag_flow_set(&o->flow, o->name, o->parameter) ? 0 : lag_orbit_solve(o);

@@ -11,16 +11,16 @@ typedef struct RestBranch {
   FlowMap flow;
   const lag_algebra *algebra;
   BranchProblem problem;
-  int n, cols; /* coordinates and states; with the parameter */
+  int n, cols, rows; /* coordinates and states; with the parameter; with constraints on positions */
   const char *name;
   double parameter, parameter_unit;
-  double *unit, *row; /* [n] sizes of unknowns, and of rows once they are known (0) */
+  double *unit, *row; /* [n], [rows] sizes of unknowns, and of rows once they are known (0) */
   double *y;          /* [2 nq + nz] the state */
   double *rates, *up, *down, *J, *v, *room;
 } RestBranch;
 
 /* like: as of lag_flow_open, with its start near a state of rest. size: of the parameter's range. LAG_OK, or a status
- * with its message in flow; LAG_EMETHOD: the model has constraints, or depends on time. */
+ * with its message in flow; LAG_EMETHOD: the model depends on time. */
 int lag_rest_branch_open(RestBranch *r, lag_sim *like, const lag_algebra *algebra, const char *name, double value,
                          double size);
 void lag_rest_branch_free(RestBranch *r);

@@ -38,11 +38,11 @@ static int open_walk(Walk *w, Branch *b, const BranchProblem *p) {
 
 /* Newton's steps from u, each across the direction d: u := a solution. 0: none. */
 static int correct(Walk *w, double *u, const double *d) {
-  double last = HUGE_VAL;
+  double last = HUGE_VAL, along = dot(w->cols, u, d);
   for (w->newton = 0; w->newton < MOST_NEWTON; w->newton++) {
     if (w->p->place(w->p->of, u) || w->p->system(w->p->of, w->J, w->rhs)) return 0;
     memcpy(w->J + w->p->rows * w->cols, d, (size_t)w->cols * sizeof *d);
-    w->rhs[w->p->rows] = 0;
+    w->rhs[w->p->rows] = along - dot(w->cols, u, d);
     lag_singular_values(w->rows, w->cols, w->J, w->V, w->sigma);
     lag_least_norm(w->rows, w->cols, w->J, w->V, w->sigma, least_rank, 0, w->rhs, w->x);
     double size = sqrt(dot(w->cols, w->x, w->x));

@@ -299,6 +299,7 @@ static void test_runs(Fit *f, int c) {
   double n = above + below, product = 2.0 * above * below;
   k->n = (int)n;
   k->rms = n > 0 ? sqrt(squares / n) : 0;
+  k->exact = k->rms <= 1e-10 * spread_of(f, c);
   k->runs_expected = n > 0 ? product / n + 1 : 0;
   k->runs_deviation = n > 1 ? sqrt(product * (product - n) / (n * n * (n - 1))) : 0;
   double far = k->runs_deviation > 0 ? (k->runs - k->runs_expected) / k->runs_deviation : 0;

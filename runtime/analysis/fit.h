@@ -23,6 +23,7 @@ typedef struct FitColumn {
   int per_row;       /* 1: errors stand in `errors` */
   int n;             /* values that are there */
   double rms;        /* of the residuals */
+  int exact;           /* 1: that is rounding */
   int runs;          /* of residuals with one sign; */
   double runs_expected, runs_deviation,
       runs_chance; /* expected of independent ones; chance of being as far from that */

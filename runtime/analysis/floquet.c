@@ -57,26 +57,6 @@ static void normalise(int n, int c, double *C) {
   }
 }
 
-/* The basis of the tangent space at y, t, in units. */
-static int tangent_basis(Pool *pool, PeriodicOrbit *o, double t, const double *y, Basis *b) {
-  int n = o->n;
-  lag_problem *pb = &o->flow.probe->pb;
-  *b = (Basis){n, n, lag_pool_doubles(pool, (size_t)(n * n))};
-  double *Y = lag_pool_doubles(pool, (size_t)(n * n)), *V = lag_pool_doubles(pool, (size_t)(n * n)),
-         *sigma = lag_pool_doubles(pool, (size_t)n),
-         *scratch = lag_pool_doubles(pool, lag_tangent_projection_size(pb) + 1);
-  if (pool->failed) return LAG_ENOMEM;
-  for (int i = 0; i < n; i++) b->B[i * n + i] = Y[i * n + i] = 1;
-  if (!pb->model->constraints) return LAG_OK;
-  int rc = lag_tangent_project(pb, t, y, n, Y, scratch);
-  for (int e = 0; e < n * n; e++) Y[e] *= o->unit[e % n] / o->unit[e / n];
-  lag_singular_values(n, n, Y, V, sigma);
-  for (b->k = 0; b->k < n && sigma[b->k] > 1e-7 * sigma[0];) b->k++;
-  for (int r = 0; r < n; r++)
-    for (int j = 0; j < b->k; j++) b->B[r * b->k + j] = Y[r * n + j] / sigma[j];
-  return rc;
-}
-
 /* At y, t: L[n c] := the gradients of conserved charges, R[n *nr] := the direction of motion and those of
  * symmetries, in units and of length 1. */
 static int invariants(PeriodicOrbit *o, double t, const double *y, double *L, double *R, int *nr) {
@@ -123,7 +103,9 @@ static int within_levels(Pool *pool, int n, int c, const double *L, int *nr, dou
 
 /* The space of other changes at y, t: basis *b; *all: dimension of the tangent space there. */
 static int quotient(Pool *pool, PeriodicOrbit *o, double t, const double *y, Basis *b, int *all) {
-  int n = o->n, nr = 0, rc = tangent_basis(pool, o, t, y, b);
+  int n = o->n, nr = 0, rc;
+  *b = (Basis){n, n, lag_pool_doubles(pool, (size_t)(n * n))};
+  rc = b->B ? lag_flow_tangent_basis(&o->flow, pool, t, y, o->unit, b->B, &b->k) : LAG_ENOMEM;
   double *L = lag_pool_doubles(pool, (size_t)(n * (o->ncharges + 1))),
          *R = lag_pool_doubles(pool, (size_t)(n * (o->ncharges + 1)));
   rc = pool->failed ? LAG_ENOMEM : rc;

@@ -8,6 +8,7 @@
 
 #include "analysis/fastest_rate.h"
 #include "numeric/dense.h"
+#include "numeric/singular_values.h"
 
 static int keep_message(FlowMap *f, const lag_sim *sim, int rc) {
   snprintf(f->message, sizeof f->message, "%s", rc == LAG_ENOMEM ? "out of memory" : lag_sim_message(sim));
@@ -313,5 +314,25 @@ int lag_flow_affine(FlowMap *f, int k, double t, const double *y, double *G) {
     G[i * size + nq] = f->down[i];
     for (int j = 0; j < nq; j++) G[i * size + nq] -= G[i * size + j] * y[j];
   }
+  return rc;
+}
+
+int lag_flow_tangent_basis(FlowMap *f, Pool *pool, double t, const double *y, const double *unit, double *B, int *k) {
+  const double least = 1e-7;
+  int n = f->n;
+  lag_problem *pb = &f->probe->pb;
+  double *Y = lag_pool_doubles(pool, (size_t)(n * n)), *V = lag_pool_doubles(pool, (size_t)(n * n)),
+         *sigma = lag_pool_doubles(pool, (size_t)n),
+         *scratch = lag_pool_doubles(pool, lag_tangent_projection_size(pb) + 1);
+  if (pool->failed) return LAG_ENOMEM;
+  for (int e = 0; e < n * n; e++) B[e] = Y[e] = e % (n + 1) == 0;
+  *k = n;
+  if (!pb->model->constraints) return LAG_OK;
+  int rc = lag_tangent_project(pb, t, y, n, Y, scratch);
+  for (int e = 0; e < n * n; e++) Y[e] *= unit[e % n] / unit[e / n];
+  lag_singular_values(n, n, Y, V, sigma);
+  for (*k = 0; *k < n && sigma[*k] > least * sigma[0];) ++*k;
+  for (int r = 0; r < n; r++)
+    for (int j = 0; j < *k; j++) B[r * *k + j] = Y[r * n + j] / sigma[j];
   return rc;
 }

@@ -50,6 +50,9 @@ int lag_flow_gradient(FlowMap *f, int k, double t, const double *y, double *d);
 /* X[n] := the field of the symmetry of charge k at y, t: changes of coordinates M^-1 dQ/dv, and their rate; of the
  * energy, y'. LAG_EMETHOD: the model has no mass matrix. */
 int lag_flow_field(FlowMap *f, int k, double t, const double *y, double *X);
+/* B[n *k] := an orthonormal basis of the tangent space of the constraints at y, t, components in unit[n]; without
+ * constraints all of them. */
+int lag_flow_tangent_basis(FlowMap *f, Pool *pool, double t, const double *y, const double *unit, double *B, int *k);
 /* G[nq + 1][nq + 1] := the affine map of coordinates by which the symmetry of charge k acts, per unit of its
  * parameter: q -> A q + b in the first nq rows. LAG_EMETHOD: it is not affine. */
 int lag_flow_affine(FlowMap *f, int k, double t, const double *y, double *G);

@@ -210,8 +210,8 @@ int lag_orbit_set_parameter(PeriodicOrbit *o, double value) {
   return rc;
 }
 
-/* Column of the parameter: of one of the model by central differences of order 2 of all rows, as flows have no
- * derivatives by parameters yet; Newton's steps and tangents need no more of them than some eight digits. */
+/* Column of the parameter: of one of the model by central differences of order 2 of all rows, in any program: Newton's
+ * steps and tangents need no more than some eight digits, and the period of a drive may change, too. */
 static int continuation_column(PeriodicOrbit *o) {
   const double part = 1e-5;
   int all = o->m * o->n, col = o->cols - 1, rc = LAG_OK;
@@ -497,6 +497,32 @@ static void count_drives(PeriodicOrbit *o) {
   o->drives = shortest > 0 ? (int)fmax(1, rint(o->T / shortest)) : 1;
 }
 
+/* Square of the distance of the end of the motion from G y(0), in units. */
+static double miss(PeriodicOrbit *o) {
+  double sum = 0;
+  set_target(o);
+  for (int i = 0; i < o->n; i++) sum += gap(o, o->m - 1, i) * gap(o, o->m - 1, i);
+  return sum;
+}
+
+/* Shifts with which the first motion closes best: one by one the best of many, narrowed; of angles all values. */
+static void guess_shifts(PeriodicOrbit *o) {
+  enum { TRIES = 32, ROUNDS = 3 };
+  const double half = acos(-1);
+  for (int j = 0; j < o->ngroup * ROUNDS; j++) {
+    double *shift = &o->shift[j % o->ngroup], width = half / pow(TRIES / 2, j / o->ngroup), middle = *shift,
+           best = middle;
+    double least = miss(o);
+    for (int k = -TRIES; k <= TRIES; k++) {
+      *shift = middle + width * k / TRIES;
+      double off = miss(o);
+      if (off < least) best = *shift, least = off;
+    }
+    *shift = best;
+  }
+  set_target(o);
+}
+
 int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, double T, int m) {
   int rc = lag_flow_open(&o->flow, like);
   if (rc) return rc;
@@ -513,7 +539,9 @@ int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, 
   if ((rc = allocate(o)) != 0) return rc;
   memcpy(o->unit, unit, (size_t)o->n * sizeof *unit);
   rc = place_nodes(o);
-  return rc ? rc : list_charges(o);
+  rc = rc ? rc : list_charges(o);
+  if (rc == LAG_OK) guess_shifts(o);
+  return rc;
 }
 
 void lag_orbit_free(PeriodicOrbit *o) {
@@ -552,10 +580,10 @@ static int add_row(Track *k, double t, const double *y) {
 
 /* Follows the motion until a time, or the event that ends it. */
 static int follow_motion(Track *k, lag_sim *sim, double until, double *y) {
-  enum { PLACES = 4, MOST_ROWS = 1 << 20 };
+  enum { PLACES = 4, MOST_NUMBERS = 40000000 };
   int rc = lag_sim_advance(sim, lag_sim_time(sim));
   rc = rc ? rc : add_row(k, lag_sim_time(sim), sim->now);
-  for (double reach; rc == LAG_OK && lag_sim_time(sim) < until && k->rows < MOST_ROWS;) {
+  for (double reach; rc == LAG_OK && lag_sim_time(sim) < until && k->rows < MOST_NUMBERS / k->n;) {
     double from = lag_sim_time(sim);
     rc = lag_sim_ensure_step(sim, until, &reach);
     for (int j = 1; j <= PLACES && rc == LAG_OK && reach > from; j++) {

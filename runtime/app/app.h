@@ -17,7 +17,7 @@ typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *out, *svg, *plot_x, *plot_y, *html, *points,
       *from, *save, *resume, *events, *section, *cloud, *starts, *drawing;
   const char *accuracy, *sensitivity;
-  const char *fit, *data, *loss; /* for --fit */
+  const char *fit, *data, *columns, *loss; /* for --fit */
   const char **sigmas, **priors; /* the values of --sigma and --prior, in order */
   int nsigmas, npriors;
   const char *transient, *exponents; /* for --lyapunov */
@@ -288,6 +288,9 @@ int lag_sensitivity_row(App *app);
 void lag_report_sensitivity(App *app, FILE *f);
 void lag_report_sensitivity_json(App *app, Json *j);
 void lag_sensitivity_free(App *app);
+/* sensitivity_measures.c: d[measures] := derivatives of the measures by name j of --sensitivity, in declared units; by
+ * four more runs. LAG_OK, or a failure. */
+int lag_measures_by(App *app, int j, double *d);
 
 /* volume_report.c: --volume. open: gives the run its tangent; 0, or EXIT_USAGE after a message. step: at the end of
  * each step; a failure ends the run. */

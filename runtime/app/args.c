@@ -268,6 +268,7 @@ static int check_overlay(const Args *a) {
                       : a->accuracy    ? "--accuracy"
                                        : NULL;
   if (a->cloud) return check_cloud(a);
+  if (a->fit && !a->vs && !a->starts) return 0;
   if (!lag_app_overlays(a)) return 0;
   for (int i = 0; i < a->nvs; i++)
     if (!strchr(a->vs[i], '=')) return lag_app_error(a, "--vs %s: write name=value, for example --vs th=1.2", a->vs[i]);

@@ -6,9 +6,9 @@
 
 #include "app/fit_run.h"
 
-/* A value with the digits that its error leaves, and two more. */
-static void put_value(FILE *f, const FitTarget *t) {
-  double digits = t->error > 0 && t->value != 0.0 ? ceil(log10(fabs(t->value) / t->error)) + 2 : 10;
+/* A value with the digits that its error leaves, and two more; or so many where it is not determined. */
+static void put_value(FILE *f, const FitTarget *t, int undetermined) {
+  double digits = t->error > 0 && t->value != 0.0 ? ceil(log10(fabs(t->value) / t->error)) + 2 : undetermined;
   fprintf(f, "%.*g", (int)fmin(fmax(digits, 3), 15), t->value);
 }
 
@@ -16,7 +16,7 @@ static void put_values(const Fit *f, FILE *out) {
   for (int j = 0; j < f->n; j++) {
     const FitTarget *t = &f->target[j];
     fprintf(out, "  %-14s ", t->label);
-    put_value(out, t);
+    put_value(out, t, 4);
     if (t->flat) fputs(" not determined", out);
     else fprintf(out, " +- %.2g", t->error);
     fprintf(out, "%s%s", t->unit[0] ? " " : "", t->unit);
@@ -120,7 +120,8 @@ static void put_columns(const FitRun *r, FILE *out) {
     fprintf(out, "residuals of %s: %d values, rms %.3g%s\n  %d runs of one sign, %.1f +- %.1f expected: %s\n", k->label,
             k->n, k->rms, k->per_row || f->known_errors ? "" : ", taken as their error", k->runs, k->runs_expected,
             k->runs_deviation,
-            k->runs_chance > unlikely    ? "no trend is left"
+            k->exact                     ? "rounding"
+            : k->runs_chance > unlikely    ? "no trend is left"
             : k->runs < k->runs_expected ? "a trend is left, which the model lacks"
                                          : "they swing from row to row");
   }
@@ -144,7 +145,7 @@ static void put_scene(const FitRun *r, FILE *out) {
     const FitTarget *t = &f->target[j];
     int is_start = strcmp(t->label, t->name) != 0 && strstr(t->label, "(0)");
     fprintf(out, "  %s%s = ", is_start ? "start " : "", t->name);
-    put_value(out, t);
+    put_value(out, t, 8);
     if (t->unit[0]) fprintf(out, " [%s]", t->unit);
     putc('\n', out);
   }
@@ -176,6 +177,30 @@ void lag_fit_report(const FitRun *r, FILE *out) {
   put_scene(r, out);
 }
 
+static void correlations_json(const Fit *f, Json *j) {
+  lag_json_begin(j, "correlations", '[');
+  for (int i = 0; i < f->n; i++) {
+    lag_json_begin(j, NULL, '[');
+    for (int k = 0; k < f->n; k++) lag_json_number(j, NULL, f->correlation[i * f->n + k]);
+    lag_json_end(j, ']');
+  }
+  lag_json_end(j, ']');
+}
+
+static void columns_json(const Fit *f, Json *j) {
+  lag_json_begin(j, "columns", '{');
+  for (int c = 0; c < f->ncolumns; c++) {
+    lag_json_begin(j, f->column[c].label, '{');
+    lag_json_count(j, "values", f->column[c].n);
+    lag_json_number(j, "rms", f->column[c].rms);
+    lag_json_count(j, "runs", f->column[c].runs);
+    lag_json_number(j, "runs_expected", f->column[c].runs_expected);
+    lag_json_number(j, "runs_chance", f->column[c].runs_chance);
+    lag_json_end(j, '}');
+  }
+  lag_json_end(j, '}');
+}
+
 void lag_fit_report_json(const FitRun *r, FILE *out) {
   const Fit *f = &r->fit;
   Json j = {out, 0};
@@ -192,13 +217,7 @@ void lag_fit_report_json(const FitRun *r, FILE *out) {
       lag_json_number(&j, f->target[i].label, what ? f->target[i].error : f->target[i].value);
     lag_json_end(&j, '}');
   }
-  lag_json_begin(&j, "correlations", '[');
-  for (int i = 0; i < f->n; i++) {
-    lag_json_begin(&j, NULL, '[');
-    for (int k = 0; k < f->n; k++) lag_json_number(&j, NULL, f->correlation[i * f->n + k]);
-    lag_json_end(&j, ']');
-  }
-  lag_json_end(&j, ']');
+  correlations_json(f, &j);
   lag_json_begin(&j, "flat", '[');
   for (int k = 0; k < f->nflat; k++) {
     lag_json_begin(&j, NULL, '{');
@@ -213,17 +232,7 @@ void lag_fit_report_json(const FitRun *r, FILE *out) {
   lag_json_end(&j, ']');
   lag_json_number(&j, "chi_squared", f->chi_squared);
   lag_json_number(&j, "freedom", f->freedom);
-  lag_json_begin(&j, "columns", '{');
-  for (int c = 0; c < f->ncolumns; c++) {
-    lag_json_begin(&j, f->column[c].label, '{');
-    lag_json_count(&j, "values", f->column[c].n);
-    lag_json_number(&j, "rms", f->column[c].rms);
-    lag_json_count(&j, "runs", f->column[c].runs);
-    lag_json_number(&j, "runs_expected", f->column[c].runs_expected);
-    lag_json_number(&j, "runs_chance", f->column[c].runs_chance);
-    lag_json_end(&j, '}');
-  }
-  lag_json_end(&j, '}');
+  columns_json(f, &j);
   lag_json_end(&j, '}');
   putc('\n', out);
 }

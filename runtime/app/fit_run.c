@@ -67,6 +67,14 @@ static char *bare(char *name) {
   return name;
 }
 
+/* Whether the name belongs to an effect that the scene does not use. */
+static int is_of_other_effect(const App *app, const char *name) {
+  const char *dot = strchr(name, '.');
+  size_t n = dot ? (size_t)(dot - name) : 0;
+  return dot && lag_app_has_word(app->program->effects, name, n) &&
+         !lag_app_has_word(app->scene->model->effects, name, n);
+}
+
 static int take_targets(FitRun *r) {
   const Args *a = &r->app->args;
   Fit *f = &r->fit;
@@ -76,7 +84,12 @@ static int take_targets(FitRun *r) {
   f->target = calloc((size_t)f->n + 1, sizeof *f->target);
   lag_sim *sim = lag_app_fresh_bare_sim(r->app);
   int rc = !name || !f->target || !sim ? lag_app_error(a, "out of memory") : 0;
-  for (int j = 0; j < f->n && rc == 0; j++) f->target[j].name = name[j] = bare(name[j]);
+  int all = f->n;
+  f->n = 0;
+  for (int j = 0; j < all && rc == 0; j++) {
+    char *one = bare(name[j]);
+    if (!r->compares || !is_of_other_effect(r->app, one)) f->target[f->n].name = name[f->n] = one, f->n++;
+  }
   if (rc == 0 &&
       (lag_app_copy_method(r->app->sim, sim, 1) || lag_sim_set_sensitivity(sim, f->n, (const char *const *)name)))
     rc = lag_app_error(a, "--fit: %s", lag_sim_message(sim));
@@ -147,13 +160,26 @@ static int copy_column(FitRun *r, int c, int k) {
   return take_sigma(r, &f->column[c]);
 }
 
+/* Whether --columns names the column, or is not given. */
+static int is_asked(const Args *a, const char *label) {
+  const char *list = a->columns, *unit = strstr(label, " [");
+  size_t length = unit ? (size_t)(unit - label) : strlen(label);
+  if (!list) return 1;
+  while (*list) {
+    size_t n = strcspn(list, ",");
+    if (n == length && memcmp(list, label, n) == 0) return 1;
+    list += n + (list[n] == ',');
+  }
+  return 0;
+}
+
 static int take_columns(FitRun *r) {
   const Args *a = &r->app->args;
   Fit *f = &r->fit;
   f->nrows = (int)r->data.nrows;
   f->column = calloc((size_t)r->data.ncols, sizeof *f->column);
   for (int k = 1; k < r->data.ncols && f->column; k++) {
-    int output = output_named(r, r->data.names[k]);
+    int output = is_asked(a, r->data.names[k]) ? output_named(r, r->data.names[k]) : -1;
     if (output >= 0) f->column[f->ncolumns++] = (FitColumn){.label = r->data.names[k], .output = output};
   }
   if (f->ncolumns == 0)
@@ -236,25 +262,34 @@ static int prepare(FitRun *r) {
   return take_targets(r);
 }
 
+int lag_fit_run(FitRun *r) {
+  int rc = prepare(r);
+  if (rc || (r->status = lag_fit(&r->fit)) == LAG_OK) return rc;
+  lag_app_error(&r->app->args, "%s", r->fit.why);
+  return r->status == LAG_EINVAL ? EXIT_USAGE : EXIT_RUN;
+}
+
+void lag_fit_run_free(FitRun *r) {
+  lag_fit_free(&r->fit);
+  free(r->fit.target);
+  free(r->fit.column);
+  free(r->fit.data);
+  free(r->fit.errors);
+  free(r->t);
+  free(r->names);
+  lag_data_free(&r->data);
+}
+
 int lag_app_fit(App *app) {
   FitRun r = {.app = app};
   const Args *a = &app->args;
-  int rc = prepare(&r);
-  if (rc == 0 && (r.status = lag_fit(&r.fit)) != 0) {
-    rc = r.status == LAG_EINVAL ? EXIT_USAGE : EXIT_RUN;
-    lag_app_error(a, "%s", r.fit.why);
-  }
+  if (a->nscenes > 1 && a->svg) return lag_app_error(a, "--svg: a picture is of one fit; name one scene");
+  if (a->nscenes > 1) return lag_fit_compare(app);
+  int rc = lag_fit_run(&r);
   if (rc == 0 && a->svg && lag_fit_picture(&r, a->svg)) rc = lag_app_io_error(app, a->svg);
   if (rc == 0 && a->json) lag_fit_report_json(&r, stdout);
   if (rc == 0 && !a->json) lag_fit_report(&r, stdout);
   if (rc == 0 && !r.fit.converged) rc = EXIT_RUN;
-  lag_fit_free(&r.fit);
-  free(r.fit.target);
-  free(r.fit.column);
-  free(r.fit.data);
-  free(r.fit.errors);
-  free(r.t);
-  free(r.names);
-  lag_data_free(&r.data);
+  lag_fit_run_free(&r);
   return rc;
 }

@@ -13,7 +13,14 @@ typedef struct FitRun {
   double *t;        /* [rows] times [s] */
   double time_unit; /* of the file, in seconds */
   int status;       /* LAG_... of the fit */
+  int compares;     /* 1: one of several scenes: names of effects that it lacks are left out */
 } FitRun;
+
+/* fit_run.c: the fit; 0, or an exit status after a message. */
+int lag_fit_run(FitRun *r);
+void lag_fit_run_free(FitRun *r);
+/* fit_compare.c: fits several scenes. Returns the exit status. */
+int lag_fit_compare(App *app);
 
 /* fit_report.c, fit_picture.c; the latter: 0, or -1 with errno set. */
 void lag_fit_report(const FitRun *r, FILE *f);

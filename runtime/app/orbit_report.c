@@ -251,7 +251,7 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
             lag_number_text(o->shift[j], text));
   put_free(f, o);
   if (o->repeats > 1)
-    fprintf(f, "note: the motion comes back already after a %dth of this period: --guess %s\n", o->repeats,
+    fprintf(f, "note: the motion comes back already after 1/%d of this period: --guess %s\n", o->repeats,
             lag_number_text(o->T / o->repeats, text));
   put_multipliers(f, o);
   reason(o, v, why, sizeof why);
@@ -299,9 +299,27 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
 
 /* ---- The command */
 
+/* How near the search came, as JSON. */
+static void json_not_found(App *app, const PeriodicOrbit *o) {
+  Json j = {.f = stdout};
+  lag_json_begin(&j, NULL, '{');
+  lag_json_string(&j, "model", app->scene->model->name);
+  lag_json_string(&j, "scene", app->scene->name);
+  lag_json_string(&j, "status", "no periodic motion");
+  lag_json_number(&j, "period", o->T);
+  lag_json_number(&j, "residual", o->residual);
+  lag_json_count(&j, "newton_steps", o->steps);
+  lag_json_begin(&j, "residuals", '[');
+  for (int k = 0; k < ORBIT_TRACE && o->trace[k] > 0; k++) lag_json_number(&j, NULL, o->trace[k]);
+  lag_json_end(&j, ']');
+  lag_json_end(&j, '}');
+  putchar('\n');
+}
+
 static int not_found(App *app, const PeriodicOrbit *o) {
   char course[200] = "", text[64];
   size_t n = 0;
+  if (app->args.json) json_not_found(app, o);
   for (int k = 0; k < ORBIT_TRACE && o->trace[k] > 0 && n < sizeof course - 20; k++)
     n += (size_t)snprintf(course + n, sizeof course - n, "%s%.2g", k ? ", " : "", o->trace[k]);
   lag_app_error(

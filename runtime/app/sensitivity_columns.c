@@ -36,11 +36,10 @@ static int split_names(const char *list, char *text, char **names) {
   }
 }
 
-/* Name and unit of d(output)/d(name j). */
-static Column describe(const App *app, int output, int j) {
-  Column x = {0}, y = {0}, c = {0};
+/* Name and unit of dx/d(name j). */
+static Column quotient(const App *app, const Column *of, int j) {
+  Column x = *of, y = {0}, c = {0};
   char over[72], under[72];
-  lag_sim_output_info(app->sim, output, x.name, sizeof x.name, x.unit, sizeof x.unit);
   lag_sim_sensitivity_info(app->sim, j, y.name, sizeof y.name, y.unit, sizeof y.unit);
   lag_unit_in_fraction(over, sizeof over, x.unit);
   lag_unit_in_fraction(under, sizeof under, y.unit);
@@ -48,6 +47,12 @@ static Column describe(const App *app, int output, int j) {
   if (strcmp(x.unit, y.unit) == 0) return c;
   snprintf(c.unit, sizeof c.unit, y.unit[0] ? "%.30s/%.30s" : "%.30s", y.unit[0] ? over : x.unit, under);
   return c;
+}
+
+static Column describe(const App *app, int output, int j) {
+  Column x = {0};
+  lag_sim_output_info(app->sim, output, x.name, sizeof x.name, x.unit, sizeof x.unit);
+  return quotient(app, &x, j);
 }
 
 static Sensitivity *sensitivity_new(const App *app, const char *list) {
@@ -138,6 +143,34 @@ static void report_felt(App *app, FILE *f) {
   putc('\n', f);
 }
 
+/* D[measures n] := derivatives of the measures; returns their number, 0: there are none, or a run fails. */
+static int derive_measures(App *app, double **D) {
+  const Sensitivity *s = app->sensitivity;
+  int n = app->measures ? lag_measures_count(app->measures) : 0;
+  *D = n ? calloc((size_t)(n * s->n) + (size_t)n, sizeof **D) : NULL;
+  for (int j = 0; *D && j < s->n; j++) {
+    double *one = *D + n * s->n;
+    if (lag_measures_by(app, j, one)) return 0;
+    for (int i = 0; i < n; i++) (*D)[i * s->n + j] = one[i];
+  }
+  return *D ? n : 0;
+}
+
+static void report_measures(App *app, FILE *f) {
+  const Sensitivity *s = app->sensitivity;
+  double *D;
+  int n = derive_measures(app, &D);
+  if (n) fputs("derivatives of measures, by differences of runs\n", f);
+  for (int k = 0; k < n * s->n; k++) {
+    Column c = {0}, x = {0};
+    snprintf(x.name, sizeof x.name, "%.40s", app->measure_names[k / s->n]);
+    snprintf(x.unit, sizeof x.unit, "%s", lag_measures_unit(app->measures, k / s->n));
+    c = quotient(app, &x, k % s->n);
+    fprintf(f, "  %-20s %.9g%s%s\n", c.name, D[k], c.unit[0] ? " " : "", c.unit);
+  }
+  free(D);
+}
+
 void lag_report_sensitivity(App *app, FILE *f) {
   const Sensitivity *s = app->sensitivity;
   if (!known_at_end(app)) return;
@@ -149,6 +182,7 @@ void lag_report_sensitivity(App *app, FILE *f) {
     fprintf(f, "  %-20s %.15g%s%s\n", c.name, s->D[k], c.unit[0] ? " " : "", c.unit);
   }
   report_felt(app, f);
+  report_measures(app, f);
 }
 
 void lag_report_sensitivity_json(App *app, Json *out) {
@@ -162,6 +196,14 @@ void lag_report_sensitivity_json(App *app, Json *out) {
     for (int j = 0; j < s->n; j++) lag_json_number(out, s->names[j], s->D[i * s->n + j]);
     lag_json_end(out, '}');
   }
+  double *D;
+  int n = derive_measures(app, &D);
+  for (int i = 0; i < n; i++) {
+    lag_json_begin(out, app->measure_names[i], '{');
+    for (int j = 0; j < s->n; j++) lag_json_number(out, s->names[j], D[i * s->n + j]);
+    lag_json_end(out, '}');
+  }
+  free(D);
   lag_json_end(out, '}');
 }
 

@@ -63,10 +63,10 @@ static int residuals_by_parameter(lag_problem *pb, double t, const double *y, in
   double *r = c + of->n;
   int rc = LAG_OK;
   memset(c_by, 0, (size_t)(2 * of->n) * sizeof *c_by);
-  for (int k = -3; k <= 3 && rc == LAG_OK; k++) {
+  LAG_EACH_DIFFERENCE(k) {
     pb->p = lag_shifted_parameters(pb, pb->by, j, k);
-    rc = k ? lag_residuals(pb, t, y, c, r) : LAG_OK;
-    for (int i = 0; i < of->n && k; i++) {
+    rc = rc ? rc : lag_residuals(pb, t, y, c, r);
+    for (int i = 0; i < of->n; i++) {
       c_by[i] += i < of->nholonomic ? lag_difference_weight(k) * c[i] / pb->by->h[j] : 0;
       r_by[i] += lag_difference_weight(k) * r[i] / pb->by->h[j];
     }

@@ -31,18 +31,6 @@ const lag_contact *lag_contact_of(const lag_model *m, int event) {
   return NULL;
 }
 
-int lag_guide_of(const lag_model *m, int contact) {
-  for (int i = 0; i < m->nguides; i++)
-    if (m->guides[i].tangent == contact) return i;
-  return -1;
-}
-
-int lag_guide_turns(const lag_model *m, int event) {
-  for (int i = 0; i < m->nguides; i++)
-    if (m->guides[i].turn == event) return 1;
-  return 0;
-}
-
 int lag_event_is_located(const lag_sim *s, int k) { return !s->pb.contacts || !lag_contact_of(s->scene->model, k); }
 
 int lag_contact_is_closed(const lag_sim *s, const lag_contact *c) { return s->hold[c->input] > 0.5; }
@@ -91,9 +79,22 @@ static int make_room(ContactSet *w) {
                             &w->r,   &w->d,    &w->force,    &w->test,      &w->events, &w->ahead,
                             &w->A,   &w->mass, &w->law,      &w->side,      &w->pressed};
   const size_t sizes[] = {p,
-                          p, p, p, n, n, n, nq, nq, (size_t)w->sim->pb.n, (size_t)(m->nev + m->nmodes), p,
-                          (size_t)of->njacobian, (size_t)of->nmass, 3 * p + 4 * (size_t)m->nguides,
-                          p, 3 * (size_t)m->nguides * (p + 1)};
+                          p,
+                          p,
+                          p,
+                          n,
+                          n,
+                          n,
+                          nq,
+                          nq,
+                          (size_t)w->sim->pb.n,
+                          (size_t)(m->nev + m->nmodes),
+                          p,
+                          (size_t)of->njacobian,
+                          (size_t)of->nmass,
+                          3 * p + 4 * (size_t)m->nguides,
+                          p,
+                          3 * (size_t)m->nguides * (p + 1)};
   w->block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   w->of = calloc(p, sizeof *w->of);
   w->at = calloc(p, sizeof *w->at);
@@ -431,10 +432,9 @@ static int check_friction(lag_sim *s, int i, const double *law) {
   if (!(mu >= 0))
     return lag_fail(s, LAG_EINVAL, "the %s %s has a friction of %.3g, which must be at least 0", what, name, mu);
   if (!(hold >= mu))
-    return lag_fail(
-        s, LAG_EINVAL,
-        "the %s %s has a static friction of %.3g, which must be at least its friction while it slips, %.3g", what, name,
-        hold, mu);
+    return lag_fail(s, LAG_EINVAL,
+                    "the %s %s has a static friction of %.3g, which must be at least its friction while it slips, %.3g",
+                    what, name, hold, mu);
   if (back >= 0 && back <= 1) return LAG_OK;
   return lag_fail(s, LAG_EINVAL, "the contact %s has a tangential restitution of %.3g, which must be between 0 and 1",
                   name, back);
@@ -651,7 +651,7 @@ int lag_contact_arm(lag_sim *s, const double *g) {
     if (g[k] <= noise) { /* no sign yet; below -noise the event fires */
       s->sign[k] = 0;
       s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* with a larger factor it would grow at each impact */
-    } else if (k == c->release && !c->conditional) { /* its force before may be that of an open contact */
+    } else if (k == c->release && !c->conditional) {         /* its force before may be that of an open contact */
       s->sign[k] = 1;
     }
   }

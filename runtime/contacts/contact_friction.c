@@ -104,6 +104,14 @@ static int newton_step(const lag_problem *pb, const Slipping *s, double *x) {
   return lag_solve_dense((size_t)s->n, 1, A, x);
 }
 
+/* Whether friction holds a motion, in which others that slip may have none. */
+static int some_sticks(const lag_problem *pb) {
+  const lag_model *m = pb->model;
+  for (int i = 0; i < m->ncontacts; i++)
+    if (m->contacts[i].is_tangent && pb->hold[m->contacts[i].input] > 0.5) return 1;
+  return 0;
+}
+
 /* Finds the forces of contacts and guides that slip. Where a force passes through 0 its rounding is that of others:
  * the largest of the run stands behind the laws in pb->rub. */
 static int find_friction(lag_problem *pb, double t, const double *y) {
@@ -118,7 +126,7 @@ static int find_friction(lag_problem *pb, double t, const double *y) {
   if (!s.n) return 0;
   for (int k = 0; k < s.n; k++) pb->u[m->contacts[s.of[k]].force] = 0;
   if ((rc = imbalance(pb, t, y, &s)) != 0 || (rc = find_slopes(pb, t, y, &s)) != 0) return rc;
-  for (int k = 0; k < s.n; k++)
+  for (int k = 0; k < s.n && !some_sticks(pb); k++)
     if (lag_guide_of(m, s.of[k]) >= 0 && gain(&s, k) >= 1) return fail_slipping(pb, &s, k);
   for (int round = 0; round < rounds && most > enough * fmax(*size, s.largest); round++) {
     double x[LAG_MOST_TOUCHES];
@@ -470,8 +478,7 @@ int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration) {
   if (rc || motions != 1) return rc ? rc : fail_paradox(w, to.of, n, motions);
   for (int a = 0; a < w->n; a++) {
     acceleration[a] = w->rhs[a];
-    for (int k = 0; k < rows; k++)
-      acceleration[a] += to.row[k] < 0 ? 0 : w->response[a * w->rows + to.row[k]] * x[k];
+    for (int k = 0; k < rows; k++) acceleration[a] += to.row[k] < 0 ? 0 : w->response[a * w->rows + to.row[k]] * x[k];
   }
   for (int k = 0; k < n; k++) {
     int a = to.of[k].contact;

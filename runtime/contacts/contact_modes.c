@@ -22,7 +22,7 @@ typedef struct Trial {
   int may_wedge; /* forces that only their own size bounds, and prestress */
   /* [sets of closed contacts, as bits] some of them can press on each other without any load */
   unsigned char prestress[1 << LAG_MOST_TOUCHES];
-  int breaks;    /* contacts at rest that slip although static friction may hold them */
+  int breaks; /* contacts at rest that slip although static friction may hold them */
   /* [rows], [rows rows], accelerations, those of the first motion found, forces of it, sizes of the terms */
   double *x, *A, *a, *first, *force, *size;
 } Trial;
@@ -34,7 +34,7 @@ static int choose(lag_touch *c, int k) {
   if (k >= (c->guide ? 5 : 4)) return 0;
   c->mode = c->guide ? modes[k > 0] : modes[k];
   c->to = (c->guide ? k % 2 == 0 : k == 2) ? -1 : 1;
-  for (int i = 0; i < c->parts; i++) c->toward[i] = i > 0 ? 0 : k > 2 ? -1 : 1;
+  c->presses = k > 2 ? -1 : 1;
   return 1;
 }
 
@@ -112,6 +112,8 @@ static int turn_guide(const Trial *t, lag_touch *c) {
 static int solve(Trial *t) {
   enum { ROUNDS = 50 };
   int turned = 1;
+  for (int i = 0; i < t->n; i++)
+    for (int k = 0; k < t->of[i].parts; k++) t->of[i].toward[k] = k ? 0 : t->of[i].presses;
   for (int round = 0; turned && round < ROUNDS; round++) {
     set_rows(t);
     if (lag_solve_dense((size_t)t->rows, 1, t->A, t->x)) return 0;
@@ -294,6 +296,7 @@ static void find_edges(Trial *t) {
     leaves |= c->cannot_stick;
     c->mode = c->tangent >= 0 && c->slip == 0 ? LAG_CONTACT_STICKS : LAG_CONTACT_SLIPS;
     c->to = c->slip ? c->slip : 1;
+    c->presses = 1;
   }
   if (!leaves || !solve(t)) return;
   choose_forces(t);
@@ -349,7 +352,20 @@ static int try_breaks(Trial *t, lag_touch *found) {
 
 int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const double *pull, double *x, double *room) {
   Trial t = {n,
-             rows, of, W, pull, {0}, {0}, {0}, 0, {0}, 0, x, room, room + rows * rows, room + rows * (rows + 1),
+             rows,
+             of,
+             W,
+             pull,
+             {0},
+             {0},
+             {0},
+             0,
+             {0},
+             0,
+             x,
+             room,
+             room + rows * rows,
+             room + rows * (rows + 1),
              room + rows * (rows + 2),
              room + rows * (rows + 3)};
   lag_touch found[LAG_MOST_TOUCHES];

@@ -6,10 +6,10 @@
 typedef enum { LAG_CONTACT_OPEN, LAG_CONTACT_STICKS, LAG_CONTACT_SLIPS } lag_contact_mode;
 
 typedef struct lag_touch {
-  double mu, hold;       /* friction while it slips; while it sticks, where that is larger */
-  int contact;           /* the caller's number */
-  int tangent;           /* its row; -1: there is no friction */
-  int slip;              /* sign of the slip velocity; 0: at rest */
+  double mu, hold; /* friction while it slips; while it sticks, where that is larger */
+  int contact;     /* the caller's number */
+  int tangent;     /* its row; -1: there is no friction */
+  int slip;        /* sign of the slip velocity; 0: at rest */
   int cannot_stick;
   int shared;            /* it sticks, and its force is not unique */
   lag_contact_mode mode; /* without friction a closed contact slips */
@@ -17,6 +17,7 @@ typedef struct lag_touch {
   /* of a guide: not 0; its force N[parts] = pressed[parts][1 + rows] (1, x); and the direction of N */
   int guide, parts;
   double *pressed, toward[3];
+  int presses; /* side of its force from which the direction is sought: -1, 1 */
 } lag_touch;
 
 enum { LAG_MOST_TOUCHES = 6 };

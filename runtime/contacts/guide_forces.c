@@ -6,6 +6,18 @@
 #include "contacts/contact_set.h"
 #include "core/rhs.h"
 
+int lag_guide_of(const lag_model *m, int contact) {
+  for (int i = 0; i < m->nguides; i++)
+    if (m->guides[i].tangent == contact) return i;
+  return -1;
+}
+
+int lag_guide_turns(const lag_model *m, int event) {
+  for (int i = 0; i < m->nguides; i++)
+    if (m->guides[i].turn == event) return 1;
+  return 0;
+}
+
 int lag_guides_stop(ContactSet *w, int event) {
   const lag_model *m = w->sim->scene->model;
   int nq = w->sim->pb.nq;
@@ -57,8 +69,7 @@ static int press_gap(ContactSet *w, int a, double unit, const double *N0, double
   if (best >= w->n) push(w, w->of[best], unit);
   rc = rc ? rc : forces(w, N, law);
   double by = law[3 * w->of[a] + 2];
-  for (int k = 0; k < 3 * m->nguides && best >= w->n; k++)
-    N[k] -= unit * lag_guide_pressed(w, k / 3, k % 3)[1 + best];
+  for (int k = 0; k < 3 * m->nguides && best >= w->n; k++) N[k] -= unit * lag_guide_pressed(w, k / 3, k % 3)[1 + best];
   set_column(w, a, N, N0, by);
   return rc;
 }

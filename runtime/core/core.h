@@ -357,6 +357,8 @@ static inline double lag_difference_weight(int k) {
   const double weight[] = {0, 0.75, -0.15, 1.0 / 60};
   return k < 0 ? -weight[-k] : weight[k];
 }
+/* Loops over k = -1, 1, -2, 2, -3, 3: in this order a value that does not change has the difference 0, not rounding. */
+#define LAG_EACH_DIFFERENCE(k) for (int k = -1; k >= -3; k = k < 0 ? -k : -k - 1)
 /* Parameters k steps along parameter column j. */
 static inline const double *lag_shifted_parameters(const lag_problem *pb, const lag_parameter_columns *by, int j,
                                                    int k) {

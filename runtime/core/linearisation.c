@@ -117,11 +117,11 @@ static int central_jacobian(lag_problem *pb, const lag_parameter_columns *by, do
   for (int k = 0; k < width; k++) {
     double h = k < n ? LAG_DIFFERENCE_PART * lag_difference_scale(pb, y, k) : by->h[k - n];
     memcpy(there, y, (size_t)n * sizeof *y);
-    for (int j = -3; j <= 3 && rc == LAG_OK; j++) {
+    LAG_EACH_DIFFERENCE(j) {
       if (k < n) there[k] = y[k] + j * h;
       else pb->p = lag_shifted_parameters(pb, by, k - n, j);
-      rc = j ? lag_rhs(pb, t, there, rate) : LAG_OK;
-      for (int i = nq; i < n && j; i++) J[(i - nq) * width + k] += lag_difference_weight(j) * rate[i] / h;
+      rc = rc ? rc : lag_rhs(pb, t, there, rate);
+      for (int i = nq; i < n; i++) J[(i - nq) * width + k] += lag_difference_weight(j) * rate[i] / h;
     }
     pb->p = p;
   }
@@ -135,9 +135,9 @@ static int inputs_by_parameter(lag_problem *pb, const lag_parameter_columns *by,
   int rc = LAG_OK;
   memset(du, 0, (size_t)m->nu * sizeof *du);
   memset(at, 0, (size_t)m->nu * sizeof *at);
-  for (int k = -3; k <= 3 && rc == LAG_OK && m->inputs; k++) {
-    rc = k ? m->inputs(m, t, lag_shifted_parameters(pb, by, j, k), at) : LAG_OK;
-    for (int i = 0; i < m->nu && k; i++)
+  LAG_EACH_DIFFERENCE(k) {
+    rc = rc ? rc : m->inputs(m, t, lag_shifted_parameters(pb, by, j, k), at);
+    for (int i = 0; i < m->nu; i++)
       if (isnan(pb->hold[i]) && !pb->signal[i].fn) du[i] += lag_difference_weight(k) * at[i] / by->h[j];
   }
   return rc;
@@ -151,12 +151,8 @@ static int by_parameters(lag_problem *pb, const lag_parameter_columns *by, doubl
   int n = pb->n, nq = pb->nq, width = n + by->n, rc = LAG_OK;
   const double *a = w->rate + nq, *v = y + nq, *z = v + nq;
   if (of && of->n) rc = of->eval(of, t, y, v, z, pb->p, pb->u, a, w->part, w->mass, pb->work);
-  for (int k = 0; of && k < of->n; k++) {
-    const double *chain = by->chain + of->at[k].col * by->n, d = w->part[k];
-    double *to = dr + of->at[k].row * width + n;
-    const int *j = by->acts + of->at[k].col * by->n, *end = j + by->n;
-    for (; j < end && *j >= 0; j++) to[*j] += d * chain[*j];
-  }
+  for (const lag_parameter_term *k = by->term; k < by->term + by->nterms; k++)
+    dr[k->to] += k->factor * w->part[k->from];
   if (rc == LAG_OK && in && pb->model->inputs)
     rc = in->eval(in, t, y, v, z, pb->p, pb->u, a, w->part, w->mass, pb->work);
   for (int j = 0; j < by->n && in && pb->model->inputs && rc == LAG_OK; j++) {

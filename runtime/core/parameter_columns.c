@@ -19,11 +19,13 @@ struct lag_sensitivity {
   double *own, *shifted; /* the run's parameters; by.shifted */
   double *begin;         /* [n k] change of the start */
   Target *of;            /* [k] */
+  lag_parameter_term *term;
   double room[];
 };
 
 void lag_parameter_columns_free(lag_sim *s) {
   s->pb.by = NULL;
+  if (s->sensitivity) free(s->sensitivity->term);
   free(s->sensitivity);
   s->sensitivity = NULL;
 }
@@ -50,40 +52,58 @@ static double step_of(const lag_sim *s, int i) {
   return LAG_DIFFERENCE_PART * (s->p[i] != 0.0 ? fabs(s->p[i]) : fabs(s->scene->model->p[i].factor));
 }
 
+/* Derivative of parameter i by parameter column j. */
+static double chain(const lag_sim *s, const lag_parameter_columns *by, int i, int j) {
+  double sum = 0;
+  LAG_EACH_DIFFERENCE(k)
+    sum += lag_difference_weight(k) * lag_shifted_parameters(&s->pb, by, j, k)[i] / by->h[j];
+  return sum;
+}
+
+/* The terms of each derivative of residuals by a parameter; term NULL: they are counted. */
+static int put_terms(const lag_sim *s, const lag_parameter_columns *by, lag_parameter_term *term) {
+  const lag_linear *l = s->scene->model->linear;
+  const lag_partials *of = l ? l->by_params : NULL;
+  int n = 0, width = s->pb.n + by->n;
+  for (int k = 0; of && k < of->n; k++)
+    for (int j = 0; j < by->n; j++) {
+      double factor = chain(s, by, of->at[k].col, j);
+      if (factor == 0.0) continue;
+      if (term) term[n] = (lag_parameter_term){k, of->at[k].row * width + s->pb.n + j, factor};
+      n++;
+    }
+  return n;
+}
+
 /* Memory of m parameters in k columns, with the parameters beside the run's. */
 static struct lag_sensitivity *sensitivity_new(const lag_sim *s, const Target *of, int m, int k) {
   const lag_model *model = s->scene->model;
   size_t np = (size_t)model->np, all = np + (size_t)model->nderived, n = (size_t)s->pb.n, some = (size_t)m;
-  struct lag_sensitivity *w = calloc(1, sizeof *w + (some * (np + 1 + 7 * all) + n * (size_t)k) * sizeof(double) +
-                                            (size_t)k * sizeof(Target) + (some + np * some + 1) * sizeof(int) + np);
+  struct lag_sensitivity *w = calloc(1, sizeof *w + (some * (1 + 7 * all) + n * (size_t)k) * sizeof(double) +
+                                            (size_t)k * sizeof(Target) + some * sizeof(int) + np);
   if (!w) return NULL;
-  double *chain = w->room, *h = chain + np * some, *shifted = h + some;
+  double *h = w->room;
   w->own = s->p;
-  w->shifted = shifted;
-  w->begin = shifted + 7 * all * some;
+  w->shifted = h + some;
+  w->begin = w->shifted + 7 * all * some;
   w->of = (Target *)(w->begin + n * (size_t)k);
   memcpy(w->of, of, (size_t)k * sizeof *of);
   int *column = (int *)(w->of + k);
-  int *acts = column + m;
-  unsigned char *fixed = (unsigned char *)(acts + np * some + 1);
-  w->by = (lag_parameter_columns){.n = m, .column = column, .acts = acts, .chain = chain, .h = h, .shifted = shifted};
+  unsigned char *fixed = (unsigned char *)(column + m);
+  w->by = (lag_parameter_columns){.n = m, .column = column, .h = h, .shifted = w->shifted};
   for (int c = 0, j = 0; c < k; c++) {
     if (of[c].kind != LAG_IS_P) continue;
     column[j] = c;
     h[j] = step_of(s, of[c].index);
-    for (int step = -3; step <= 3; step++) {
-      double *P = shifted + (size_t)(7 * j + step + 3) * all;
-      put_parameters(s, of[c].index, s->p[of[c].index] + step * h[j], fixed, P);
-      for (size_t i = 0; i < np; i++) chain[i * some + (size_t)j] += lag_difference_weight(step) * P[i] / h[j];
-    }
+    for (int step = -3; step <= 3; step++)
+      put_parameters(s, of[c].index, s->p[of[c].index] + step * h[j], fixed,
+                     w->shifted + (size_t)(7 * j + step + 3) * all);
     j++;
   }
-  for (size_t i = 0; i < np; i++) {
-    int *at = acts + i * some;
-    for (int j = 0; j < m; j++)
-      if (chain[i * some + (size_t)j] != 0.0) *at++ = j;
-    while (at < acts + (i + 1) * some) *at++ = -1;
-  }
+  int terms = put_terms(s, &w->by, NULL);
+  if (!(w->term = calloc((size_t)terms + 1, sizeof *w->term))) return free(w), NULL;
+  w->by.term = w->term;
+  w->by.nterms = put_terms(s, &w->by, w->term);
   return w;
 }
 
@@ -98,11 +118,11 @@ static int start_column(lag_sim *s, Target of, int j, int c, int k, double *to) 
     if (!is_p) to[of.index * k + c] = 1;
     return LAG_OK;
   }
-  for (int step = -3; step <= 3 && rc == LAG_OK; step++) {
+  LAG_EACH_DIFFERENCE(step) {
     if (is_p) lag_use_parameters(s, j, step);
     else s->start[of.index] = at + step * h;
-    rc = step ? lag_start_state(s) : LAG_OK;
-    for (int i = 0; i < n && step; i++) to[i * k + c] += lag_difference_weight(step) * s->now[i] / h;
+    rc = rc ? rc : lag_start_state(s);
+    for (int i = 0; i < n; i++) to[i * k + c] += lag_difference_weight(step) * s->now[i] / h;
   }
   if (is_p) lag_use_parameters(s, 0, 0);
   else s->start[of.index] = given;
@@ -212,10 +232,10 @@ int lag_event_by_parameters(lag_sim *s, int event, double *change) {
   int rc = LAG_OK;
   memset(change, 0, (size_t)s->tangent_columns * sizeof *change);
   for (int j = 0; by && j < by->n; j++)
-    for (int k = -3; k <= 3 && rc == LAG_OK; k++) {
+    LAG_EACH_DIFFERENCE(k) {
       lag_use_parameters(s, j, k);
-      rc = k ? lag_events_eval(s, s->run->t, s->now, s->g1) : LAG_OK;
-      if (k) change[by->column[j]] += lag_difference_weight(k) * s->g1[event] / by->h[j];
+      rc = rc ? rc : lag_events_eval(s, s->run->t, s->now, s->g1);
+      change[by->column[j]] += lag_difference_weight(k) * s->g1[event] / by->h[j];
       lag_use_parameters(s, 0, 0);
     }
   return rc;
@@ -228,14 +248,14 @@ int lag_action_by_parameters(lag_sim *s, int event, double *after, double *chang
   const double *y = s->now;
   memset(change, 0, (size_t)(n * columns) * sizeof *change);
   for (int j = 0; by && j < by->n; j++)
-    for (int k = -3; k <= 3 && rc == LAG_OK; k++) {
+    LAG_EACH_DIFFERENCE(k) {
       lag_use_parameters(s, j, k);
       memcpy(after, y, (size_t)n * sizeof *y);
-      rc = k ? lag_inputs(&s->pb, s->run->t) : LAG_OK;
-      if (k && rc == LAG_OK)
+      rc = rc ? rc : lag_inputs(&s->pb, s->run->t);
+      if (rc == LAG_OK)
         rc = m->act(m, event, s->run->t, y, y + nq, y + 2 * nq, s->p, s->u, after, after + nq, after + 2 * nq, &stop,
                     s->work);
-      for (int i = 0; i < n && k; i++)
+      for (int i = 0; i < n; i++)
         change[i * columns + by->column[j]] += lag_difference_weight(k) * after[i] / by->h[j];
       lag_use_parameters(s, 0, 0);
     }
@@ -269,10 +289,10 @@ static int outputs_along(lag_sim *s, const double *Y, int c, double *y, double *
   if (!(far > 0)) return LAG_OK;
   double h = LAG_DIFFERENCE_PART / far, *kept = out + lag_sim_noutputs(s);
   memcpy(kept, s->begin, (size_t)n * sizeof *kept);
-  for (int k = -3; k <= 3 && rc == LAG_OK; k++) {
+  LAG_EACH_DIFFERENCE(k) {
     for (int i = 0; i < n; i++) y[i] = s->now[i] + k * h * Y[i * columns + c];
     if (s->scene->nexact) move_begin(s, c, k * h);
-    rc = k ? add_outputs(s, y, lag_difference_weight(k) / h, out, c, D) : LAG_OK;
+    rc = rc ? rc : add_outputs(s, y, lag_difference_weight(k) / h, out, c, D);
     memcpy(s->begin, kept, (size_t)n * sizeof *kept);
   }
   return rc;
@@ -281,9 +301,9 @@ static int outputs_along(lag_sim *s, const double *Y, int c, double *y, double *
 static int outputs_by_parameter(lag_sim *s, int j, double *out, double *D) {
   const lag_parameter_columns *by = s->pb.by;
   int rc = LAG_OK;
-  for (int k = -3; k <= 3 && rc == LAG_OK; k++) {
+  LAG_EACH_DIFFERENCE(k) {
     lag_use_parameters(s, j, k);
-    rc = k ? add_outputs(s, s->now, lag_difference_weight(k) / by->h[j], out, by->column[j], D) : LAG_OK;
+    rc = rc ? rc : add_outputs(s, s->now, lag_difference_weight(k) / by->h[j], out, by->column[j], D);
   }
   lag_use_parameters(s, 0, 0);
   return rc;

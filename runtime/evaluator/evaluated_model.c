@@ -30,7 +30,6 @@ FUNCTION(energy, model_of, energy)
 FUNCTION(events, model_of, events)
 FUNCTION(size_values, model_of, sizes)
 FUNCTION(moving_sizes, model_of, moving_sizes)
-FUNCTION(second, model_of, second)
 FUNCTION(switch_values, model_of, switch_values)
 FUNCTION(switch_rates, model_of, switch_rates)
 FUNCTION(switch_grips, model_of, switch_grips)
@@ -59,9 +58,17 @@ FUNCTION_2(matrices, constraints_of, matrices)
 FUNCTION_G(position, constraints_of, position)
 FUNCTION_G(velocity, constraints_of, velocity)
 
+/* Methods that call these two refuse models with states, and give no z. */
 static int variation(STATE, double *Lq, double *Lv, double *Q, double *w) {
   IN;
+  if (!z && model_of(self)->model.nz) return LAG_ERETRY;
   return lag_run_program(model_of(self)->variation, in, (double *[]){Lq, Lv, Q}, w);
+}
+
+static int second(STATE, double *h, double *w) {
+  IN;
+  if (!z && model_of(self)->model.nz) return LAG_ERETRY;
+  return lag_run_program(model_of(self)->second, in, (double *[]){h}, w);
 }
 
 static int linearise(STATE, const double *a, double *dr, double *M, double *w) {

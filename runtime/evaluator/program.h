@@ -79,6 +79,8 @@ typedef struct {
   const Subscript *at;
   const uint32_t *outer; /* places in the frame */
   const TurnIns *ins;
+  const uint32_t *order; /* [nins] loads that do not move, other values that do not, then the same that move */
+  uint32_t fixed;        /* number of those that do not move */
   const TurnSum *sum;
 } Nest;
 

@@ -271,9 +271,7 @@ static void read_linear(Reader *r) {
 static void read_variation(Reader *r) {
   Bytes *b = r->b;
   lag_model *m = &r->m->model;
-  Reader with = *r;
-  with.state.in[PROGRAM_Z] = 0; /* methods that need it have no states */
-  r->m->variation = program(&with, m->nq, m->nq, m->nq);
+  r->m->variation = program(r, m->nq, m->nq, m->nq);
   m->nsecond = (int)lag_bytes_count(b, 12);
   lag_second *s = lag_bytes_room(b, (size_t)m->nsecond, sizeof *s);
   for (int i = 0; s && i < m->nsecond; i++) {
@@ -281,7 +279,7 @@ static void read_variation(Reader *r) {
     s[i].row = (int)lag_bytes_below(b, (uint32_t)m->nq), s[i].col = (int)lag_bytes_below(b, (uint32_t)m->nq);
   }
   m->second_at = s;
-  r->m->second = wanted(&with, r->m->variation != NULL, m->nsecond, 0);
+  r->m->second = wanted(r, r->m->variation != NULL, m->nsecond, 0);
 }
 
 static void read_taylor(Reader *r) {
@@ -492,6 +490,7 @@ static void read_all(Bytes *b, lag_program *p) {
   int room = 0;
   for (uint32_t i = 0; !b->why && i < units; i++) read_unit(b, &scenes, &room, &p->nscenes);
   p->scenes = scenes;
+  p->build = "evaluated by liblag";
   lag_bytes_need(b, p->nscenes > 0, "a program has no scenes");
   lag_bytes_need(b, b->at == b->end, "bytes are left over");
 }

@@ -155,6 +155,17 @@ static int sums_are_apart(Bytes *b, const Nest *n) {
   return 1;
 }
 
+/* The order of execution within a row and a turn: loads come first, as in C. */
+static void order_turn(Bytes *b, Nest *n) {
+  uint32_t *order = lag_bytes_room(b, n->nins, sizeof *order), at = 0;
+  for (int part = 0; order && part < 4; part++) {
+    for (uint32_t s = 1; s <= n->nins; s++)
+      if (n->ins[s - 1].moves == part / 2 && (n->ins[s - 1].op > TURN_OUTER) == part % 2) order[at++] = s;
+    if (part == 1) n->fixed = at;
+  }
+  n->order = order;
+}
+
 static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   n->nins = lag_bytes_count(b, 20);
   TurnIns *ins = lag_bytes_room(b, n->nins, sizeof *ins);
@@ -175,6 +186,7 @@ static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
     lag_bytes_need(b, is_within(range_of(b, n, sum[k].subscript), p->ncells), "a turn adds out of range");
   }
   n->sum = sum;
+  if (!b->why) order_turn(b, n);
   if (!b->why) n->in_order = reads_own_sums(b, n), n->apart = sums_are_apart(b, n);
 }
 
@@ -255,7 +267,7 @@ static int part_of_frame(const Program *p, uint32_t at, uint32_t n) { return (ui
 static void add_scratch(Bytes *b, Program *p) {
   uint64_t most = 0;
   for (uint32_t k = 0; !b->why && k < p->nnests; k++) {
-    uint64_t need = ((uint64_t)p->nests[k].nins + 1) * NEST_BLOCK + p->nests[k].nsums;
+    uint64_t need = ((uint64_t)p->nests[k].nins + 1) * NEST_BLOCK + p->nests[k].nsums + 1;
     if (need > most) most = need;
   }
   lag_bytes_need(b, most < FRAME_MOST, "a nest is too large");

@@ -35,72 +35,117 @@ static void gather(const Block *b, double *to, const double *from, uint32_t k) {
   from += first_index(b, k);
   if (step == 1) memcpy(to, from, (size_t)b->count * sizeof *to);
   if (step == 1) return;
-  for (int j = 0; j < b->count; j++) to[j] = from[j * step];
+  for (int j = 0; j < b->count; j++, from += step) to[j] = *from;
 }
 
-/* Four turns at once, where the compiler has vectors; the last ones may compute values that nobody needs. */
-#if defined(__GNUC__)
-typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
-#else
-typedef double four;
-#endif
-enum { FOUR = (int)(sizeof(four) / sizeof(double)) };
+/* to[n] := an operation of x, y, z; k: number of a function. */
+typedef void turn_op(double *to, const double *x, const double *y, const double *z, int n, uint32_t k);
 
-static void compute(const Block *b, uint32_t s) {
-  const TurnIns *i = &b->n->ins[s - 1];
-  double *to = value(b, s);
-  const double *of[] = {value(b, i->a), value(b, i->b), value(b, i->c)};
-  lag_function_1 *const *one = lag_functions_1;
-  lag_function_2 *const *two = lag_functions_2;
-  uint32_t k = i->number;
-  int n = b->count;
 #define A x[j]
 #define B y[j]
 #define C z[j]
-#define LOOP(Type, turns, name, formula)                                                     \
-  case TURN_##name: {                                                                        \
-    const Type *x = (const void *)of[0], *y = (const void *)of[1], *z = (const void *)of[2]; \
-    for (int j = 0; j < (turns); j++) ((Type *)(void *)to)[j] = (formula);                   \
-    (void)x, (void)y, (void)z;                                                               \
-    return;                                                                                  \
+#define ARGUMENTS double *to, const double *x, const double *y, const double *z, int n, uint32_t k
+#define UNUSED_ARGUMENTS (void)one, (void)two, (void)x, (void)y, (void)z, (void)k
+#define EACH(name, formula)                        \
+  static void of_##name(ARGUMENTS) {               \
+    lag_function_1 *const *one = lag_functions_1;  \
+    lag_function_2 *const *two = lag_functions_2;  \
+    for (int j = 0; j < n; j++) to[j] = (formula); \
+    UNUSED_ARGUMENTS;                              \
   }
-#define VECTOR(name, operands, formula) LOOP(four, (n + FOUR - 1) / FOUR, name, formula)
+#if defined(__GNUC__)
+/* Pairs of turns by vectors, two pairs at once: the last turns may be ones that nobody needs. */
+typedef double pair __attribute__((vector_size(16)));
+enum { PAIR = 2, FOUR = 4 };
+#define AT(turn, formula) \
+  {                       \
+    const int j = turn;   \
+    sum[j] = (formula);   \
+  }
+#define VECTOR(name, operands, formula)                                                                     \
+  static void of_##name(double *to, const double *a, const double *b, const double *c, int n, uint32_t k) { \
+    const pair *x = (const void *)a, *y = (const void *)b;                                                  \
+    pair *sum = (void *)to;                                                                                 \
+    int end = (n + FOUR - 1) / FOUR * PAIR;                                                                 \
+    for (int part = 0; part < end; part += 2) {                                                             \
+      AT(part, formula)                                                                                     \
+      AT(part + 1, formula)                                                                                 \
+    }                                                                                                       \
+    (void)y, (void)c, (void)k;                                                                              \
+  }
+#else
+#define VECTOR(name, operands, formula) EACH(name, formula)
+#endif
 #define OP(name, operands, formula) OP_##operands(name, formula)
 #define OP_0(name, formula)
-#define OP_1(name, formula) LOOP(double, n, name, formula)
-#define OP_2 OP_1
-#define OP_3 OP_1
+#define OP_1 EACH
+#define OP_2 EACH
+#define OP_3 EACH
+PROGRAM_TURN_OPS(OP, VECTOR)
+#undef OP
+#undef OP_0
+#undef OP_1
+#undef OP_2
+#undef OP_3
+#undef VECTOR
+
+static turn_op *const turn_ops[] = {
+#define OP_0(name) NULL
+#define OP_1(name) of_##name
+#define OP_2(name) of_##name
+#define OP_3(name) of_##name
+#define OP(name, operands, formula) OP_##operands(name),
+    PROGRAM_TURN_OPS(OP, OP)};
+
+static void load(const Block *b, double *to, const TurnIns *i) {
+  uint32_t k = i->number;
   switch (i->op) {
-    PROGRAM_TURN_OPS(OP, VECTOR)
-  case TURN_CONSTANT: fill(to, b->p->constants[k], n); return;
+  case TURN_CONSTANT: fill(to, b->p->constants[k], b->count); return;
   case TURN_ELEMENT: gather(b, to, b->in[i->a], k); return;
-  case TURN_SCALAR: fill(to, b->in[i->a][0], n); return;
+  case TURN_SCALAR: fill(to, b->in[i->a][0], b->count); return;
   case TURN_CELL: gather(b, to, b->r + b->p->cells, k); return;
-  case TURN_OUTER: fill(to, b->r[b->n->outer[k]], n); return;
+  case TURN_OUTER: fill(to, b->r[b->n->outer[k]], b->count); return;
   }
 }
 
-/* Loads come first, as in C; then the other values. */
-static void compute_all(const Block *b, int moves) {
-  for (int loads = 1; loads >= 0; loads--)
-    for (uint32_t s = 1; s <= b->n->nins; s++)
-      if (b->n->ins[s - 1].moves == moves && (b->n->ins[s - 1].op <= TURN_OUTER) == loads) compute(b, s);
+static void compute(const Block *b, uint32_t s) {
+  const TurnIns *i = &b->n->ins[s - 1];
+  if (i->op <= TURN_OUTER) load(b, value(b, s), i);
+  else turn_ops[i->op](value(b, s), value(b, i->a), value(b, i->b), value(b, i->c), b->count, i->number);
 }
 
-/* Adds turns from .. end - 1 to sum k. */
-static void add_to(const Block *b, uint32_t k, int from, int end) {
+static void compute_all(const Block *b, uint32_t from, uint32_t end) {
+  for (uint32_t k = from; k < end; k++) compute(b, b->n->order[k]);
+}
+
+/* *to := *to + x[0] + ...; or, minus, less them. */
+static void add_up(double *to, const double *x, int n, int minus) {
+  double sum = *to;
+  for (int j = 0; j < n; j++) sum = minus ? sum - x[j] : sum + x[j];
+  *to = sum;
+}
+
+/* The same to elements that lie `step` apart. */
+static void add_each(double *to, int64_t step, const double *x, int n, int minus) {
+  if (minus)
+    for (int j = 0; j < n; j++, to += step) *to -= x[j];
+  else
+    for (int j = 0; j < n; j++, to += step) *to += x[j];
+}
+
+/* Adds n turns, from j on, to sum k. */
+static void add_to(const Block *b, uint32_t k, int j, int n) {
   const TurnSum *s = &b->n->sum[k];
-  const double *x = value(b, s->value);
+  const double *x = value(b, s->value) + j;
   int64_t step = s->moves ? stride(b->n, s->subscript) : 0;
-  double *to = s->moves ? b->r + b->p->cells + first_index(b, s->subscript) : &b->part[k];
-  for (int j = from; j < end && !s->minus; j++) to[j * step] += x[j];
-  for (int j = from; j < end && s->minus; j++) to[j * step] -= x[j];
+  if (s->moves) add_each(b->r + b->p->cells + first_index(b, s->subscript) + j * step, step, x, n, (int)s->minus);
+  else add_up(&b->part[k], x, n, (int)s->minus);
 }
 
 static void add(const Block *b) {
   for (uint32_t k = 0; b->n->apart && k < b->n->nsums; k++) add_to(b, k, 0, b->count);
   for (int j = 0; !b->n->apart && j < b->count; j++)
-    for (uint32_t k = 0; k < b->n->nsums; k++) add_to(b, k, j, j + 1);
+    for (uint32_t k = 0; k < b->n->nsums; k++) add_to(b, k, j, 1);
 }
 
 static void run_row(Block *b, int64_t from, int64_t end) {
@@ -109,12 +154,12 @@ static void run_row(Block *b, int64_t from, int64_t end) {
   int most = n->in_order ? 1 : NEST_BLOCK;
   b->from = from;
   b->count = end - from < NEST_BLOCK ? (int)(end - from) : NEST_BLOCK;
-  compute_all(b, 0);
+  compute_all(b, 0, n->fixed);
   for (uint32_t k = 0; k < n->nsums; k++) b->part[k] = 0;
   for (int64_t j = from; j < end; j += b->count) {
     b->from = j;
     b->count = end - j < most ? (int)(end - j) : most;
-    compute_all(b, 1);
+    compute_all(b, n->fixed, n->nins);
     add(b);
   }
   for (uint32_t k = 0; k < n->nsums; k++)
@@ -123,6 +168,7 @@ static void run_row(Block *b, int64_t from, int64_t end) {
 
 void lag_run_nest(const Program *p, const Nest *n, const double *const *in, double *r) {
   Block b = {.p = p, .n = n, .in = in, .r = r, .values = r + p->scratch};
+  if ((uintptr_t)(void *)b.values % (2 * sizeof(double))) b.values++; /* as vectors lie */
   b.part = b.values + (size_t)(n->nins + 1) * NEST_BLOCK;
   fill(b.values, 0, NEST_BLOCK);
   if (!n->has_turns) run_row(&b, 0, n->rows);

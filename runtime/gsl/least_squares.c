@@ -76,6 +76,6 @@ static int singular_values(int m, int n, double *A, double *values, double *V) {
 }
 
 static double chance_of_more(double chi_squared, double freedom) { return gsl_cdf_chisq_Q(chi_squared, freedom); }
-static double student(double part, double freedom) { return gsl_cdf_tdist_Pinv(part, freedom); }
+static double chance_of_f(double f, double above, double below) { return gsl_cdf_fdist_Q(f, above, below); }
 
-const lag_least_squares lag_gsl_least_squares = {minimise, singular_values, chance_of_more, student};
+const lag_least_squares lag_gsl_least_squares = {minimise, singular_values, chance_of_more, chance_of_f};

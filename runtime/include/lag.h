@@ -70,13 +70,21 @@ typedef struct lag_contact_stats {
   double work, rubbed, due, from, length;
 } lag_contact_stats;
 
-/* Columns of a tangent by parameters: n of them, each with its column of Y; derivatives of all parameters by these,
- * chain[np * n], and in acts[np * n] those that are not 0, row by row, -1 behind the last; steps h[n], and parameters
- * at k h from their values, k = -3 ... 3, shifted[n][7][np + nderived]. */
+/* Adds `factor` times derivative `from` of lag_linear.by_params to element `to` of a Jacobian with columns by
+ * parameters. */
+typedef struct lag_parameter_term {
+  int from, to;
+  double factor;
+} lag_parameter_term;
+
+/* Columns of a tangent by parameters: n of them, each with its column of Y; how derivatives of residuals by all
+ * parameters add to those by these; steps h[n], and parameters at k h from their values, k = -3 ... 3,
+ * shifted[n][7][np + nderived]. */
 typedef struct lag_parameter_columns {
-  int n;
-  const int *column, *acts;
-  const double *chain, *h, *shifted;
+  int n, nterms;
+  const int *column;
+  const lag_parameter_term *term; /* [nterms] */
+  const double *h, *shifted;
 } lag_parameter_columns;
 
 /* The problem that a method integrates: the model as y' = f(t, y), and the method's counts. */

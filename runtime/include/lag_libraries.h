@@ -46,9 +46,9 @@ typedef struct lag_least_squares {
   int (*minimise)(int m, int n, double *x, lag_residuals_at *residuals, void *context, int most, int *steps);
   /* A[m * n] = U diag(values) V^T, m >= n, values descending; A := U, V[n * n]. LAG_OK or LAG_EMETHOD. */
   int (*singular_values)(int m, int n, double *A, double *values, double *V);
-  /* Probability that chi squared with so many degrees of freedom is larger; quantile of Student's distribution. */
+  /* Probability that chi squared, or Fisher's F, with so many degrees of freedom is larger. */
   double (*chance_of_more)(double chi_squared, double freedom);
-  double (*student)(double part, double freedom);
+  double (*chance_of_f)(double f, double above, double below);
 } lag_least_squares;
 
 /* Rows or motions of a sweep as arrays: the columns x[n of all axes, multiplied], the last axis fastest. */

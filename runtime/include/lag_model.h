@@ -456,7 +456,8 @@ typedef struct lag_measure {
  *
  * kind    a, b                       size              count
  * rod     ends                       width
- * spring  ends (no a: held at the left) radius         coils
+ * spring  ends (no a: held at the left, no b: at the right)
+ *                                    radius            coils
  * damper  ends                       radius
  * disc    centre                     radius            spokes
  * box     centre                     sides, 2 or 3

@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,10 +13,30 @@
 
 enum { MOST_BYTES = 256000000 };
 
-static int read_text(const char *path, DataFile *d, char *why, size_t size) {
-  FILE *f = lag_open_to_read(path);
+/* A file as it is read. */
+typedef struct Reader {
+  DataFile *d;
+  const char *path;
+  long long line; /* its number; 0: the file as a whole */
+  char *why;
+  size_t size;
+} Reader;
+
+static int refuse(const Reader *r, const char *format, ...) {
+  va_list args;
+  int n =
+      r->line ? snprintf(r->why, r->size, "%s:%lld: ", r->path, r->line) : snprintf(r->why, r->size, "%s ", r->path);
+  va_start(args, format);
+  if (n >= 0 && (size_t)n < r->size) vsnprintf(r->why + n, r->size - (size_t)n, format, args);
+  va_end(args);
+  return -1;
+}
+
+static int read_text(const Reader *r) {
+  FILE *f = lag_open_to_read(r->path);
+  DataFile *d = r->d;
   size_t n = 0, room = 0, got = 1;
-  if (!f) return snprintf(why, size, "%s cannot be read: %s", path, lag_read_error()), -1;
+  if (!f) return refuse(r, "cannot be read: %s", lag_read_error());
   while (got && n <= MOST_BYTES) {
     if (n + 1 >= room) {
       char *more = realloc(d->text, room = 2 * room + 65536);
@@ -27,9 +48,9 @@ static int read_text(const char *path, DataFile *d, char *why, size_t size) {
   }
   int failed = ferror(f) || got || !d->text;
   fclose(f);
-  if (failed) return snprintf(why, size, "%s cannot be read, or has more than 256 MB", path), -1;
+  if (failed) return refuse(r, "cannot be read, or has more than 256 MB");
   d->text[n] = '\0';
-  return strlen(d->text) == n ? 0 : (snprintf(why, size, "%s is no text: it has a byte 0; save it as CSV", path), -1);
+  return strlen(d->text) == n ? 0 : refuse(r, "is no text: it has a byte 0; save it as CSV");
 }
 
 /* Ends the line at its end; returns the next line, or NULL. */
@@ -60,66 +81,63 @@ static char *take_field(char **at) {
 
 static int is_blank(const char *line) { return !line[strspn(line, " \t")]; }
 
-static int take_names(DataFile *d, const char *path, char *line, char *why, size_t size) {
+static int take_names(const Reader *r, char *line) {
+  DataFile *d = r->d;
   int n = 1;
-  for (const char *c = line; *c; c++) n += *c == ',';
-  d->names = calloc((size_t)n, sizeof *d->names);
-  for (char *at = line; at && d->names; d->ncols++) d->names[d->ncols] = take_field(&at);
   char *end;
-  if (d->names && (strtod(d->names[0], &end), end != d->names[0]))
-    return snprintf(why, size,
-                    "%s:1: the first line has numbers; write the names of the columns above them, with units: t [s],th "
-                    "[deg]",
-                    path),
-           -1;
-  return d->names ? 0 : (snprintf(why, size, "out of memory"), -1);
+  for (const char *c = line; *c; c++) n += *c == ',';
+  if (!(d->names = calloc((size_t)n, sizeof *d->names))) return refuse(r, "out of memory");
+  for (char *at = line; at; d->ncols++) d->names[d->ncols] = take_field(&at);
+  strtod(d->names[0], &end);
+  return end == d->names[0]
+             ? 0
+             : refuse(
+                   r,
+                   "the first line has numbers; write the names of the columns above them, with units: t [s],th [deg]");
 }
 
 /* *x := the number of a field, NaN where it is empty. */
-static int take_number(const DataFile *d, const char *path, long long line, int col, const char *field, double *x,
-                       char *why, size_t size) {
+static int take_number(const Reader *r, int col, const char *field, double *x) {
   char *end;
-  *x = NAN;
-  if (!*field) return 0;
   double value = strtod(field, &end);
-  if (*end || !isfinite(value))
-    return snprintf(why, size,
-                    "%s:%lld: column %s: \"%.40s\" is not a finite number; leave the field empty where "
-                    "nothing was measured",
-                    path, line, d->names[col], field),
-           -1;
-  *x = value;
-  return 0;
+  *x = *field ? value : NAN;
+  if (!*field || (!*end && isfinite(value))) return 0;
+  return refuse(r, "column %s: \"%.40s\" is not a finite number; leave the field empty where nothing was measured",
+                r->d->names[col], field);
 }
 
-static int take_row(DataFile *d, const char *path, long long line, char *text, char *why, size_t size) {
+static int take_row(const Reader *r, char *text) {
+  DataFile *d = r->d;
   double *row = d->x + d->nrows * (size_t)d->ncols;
   int n = 0;
   for (char *at = text; at; n++) {
     char *field = take_field(&at);
-    if (n < d->ncols && take_number(d, path, line, n, field, &row[n], why, size)) return -1;
+    if (n < d->ncols && take_number(r, n, field, &row[n])) return -1;
   }
-  if (n != d->ncols)
-    return snprintf(why, size, "%s:%lld: %d fields, and the first line has %d names", path, line, n, d->ncols), -1;
-  d->line[d->nrows++] = line;
+  if (n != d->ncols) return refuse(r, "%d fields, and the first line has %d names", n, d->ncols);
+  d->line[d->nrows++] = r->line;
   return 0;
 }
 
 int lag_data_read(const char *path, DataFile *d, char *why, size_t size) {
+  Reader r = {d, path, 0, why, size};
   *d = (DataFile){0};
-  if (read_text(path, d, why, size)) return -1;
+  if (read_text(&r)) return -1;
   size_t lines = 1;
   for (const char *c = d->text; *c; c++) lines += *c == '\n' || *c == '\r';
   char *line = d->text + (strncmp(d->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0), *next = end_line(line);
-  if (take_names(d, path, line, why, size)) return -1;
+  r.line = 1;
+  if (take_names(&r, line)) return -1;
   d->x = calloc(lines * (size_t)d->ncols, sizeof *d->x);
   d->line = calloc(lines, sizeof *d->line);
-  if (!d->x || !d->line) return snprintf(why, size, "out of memory"), -1;
-  for (long long number = 2; (line = next) != NULL; number++) {
+  if (!d->x || !d->line) return refuse(&r, "out of memory");
+  while ((line = next) != NULL) {
     next = end_line(line);
-    if (!is_blank(line) && take_row(d, path, number, line, why, size)) return -1;
+    r.line++;
+    if (!is_blank(line) && take_row(&r, line)) return -1;
   }
-  return d->nrows ? 0 : (snprintf(why, size, "%s has no rows below its names", path), -1);
+  r.line = 0;
+  return d->nrows ? 0 : refuse(&r, "has no rows below its names");
 }
 
 void lag_data_free(DataFile *d) {

@@ -47,8 +47,9 @@ static Spot spot_of(const View *v, const int *of) {
 
 static const char *colour_of(const View *v, const lag_shape *s) {
   static const char *const tone[][2] = {
-      {"link", "#777"},    {"spring", "#5a6b7b"}, {"support", "#8a8178"}, {"force", "#c1121f"}, {"velocity", "#00755c"},
-      {"path", "#d98200"}, {"text", "#666"},      {"second", "#7a5195"},  {"star", "#e0a100"},  {"ghost", "#c4c4c4"}};
+      {"link", "#777"},        {"spring", "#5a6b7b"}, {"support", "#8a8178"}, {"force", "#c1121f"},
+      {"velocity", "#00755c"}, {"path", "#d98200"},   {"text", "#666"},       {"second", "#7a5195"},
+      {"star", "#e0a100"},     {"ghost", "#c4c4c4"}};
   int n = 0;
   for (size_t i = 0; i < sizeof tone / sizeof *tone; i++)
     if (strcmp(tone[i][0], s->role) == 0) return tone[i][1];
@@ -89,7 +90,7 @@ static double pixels(const View *v, const lag_shape *s, double other) {
 static void put_spring(const View *v, const lag_shape *s, Spot a, Spot b) {
   enum { MOST = 60 };
   int turns = s->count ? s->count < MOST ? s->count : MOST : 8, n = 0;
-  double l = hypot(b.x - a.x, b.y - a.y), lead = fmin(10, l / 8), r = pixels(v, s, 7);
+  double l = hypot(b.x - a.x, b.y - a.y), lead = fmin(10, l / 8), r = pixels(v, s, fmin(7, l / 8));
   Spot at[2 * MOST + 3];
   at[n++] = a;
   for (int k = 0; k <= 2 * turns; k++)
@@ -177,8 +178,8 @@ static void put_cuboid(const View *v, const lag_shape *s) {
 
 static void put_box(const View *v, const lag_shape *s) {
   double a = value(v, s->size[0], 0) / 2, b = value(v, s->size[1], 0) / 2;
-  Spot at[] = {body_spot(v, s, -a, -b, 0), body_spot(v, s, a, -b, 0), body_spot(v, s, a, b, 0),
-               body_spot(v, s, -a, b, 0)};
+  Spot at[4];
+  for (int k = 0; k < 4; k++) at[k] = body_spot(v, s, k % 3 ? a : -a, k / 2 ? b : -b, 0);
   fill(v, at, 4, colour_of(v, s), 0.35);
 }
 
@@ -238,6 +239,7 @@ static void put_shape(View *v, const lag_shape *s) {
   Spot a = spot_of(v, s->a), b = spot_of(v, s->b);
   const char *colour = colour_of(v, s);
   if (is(s, "spring") && s->a[0] < 0 && s->a[1] < 0) a = (Spot){v->panel.x, b.y, 0};
+  if (is(s, "spring") && s->b[0] < 0 && s->b[1] < 0) b = (Spot){v->panel.x + v->panel.w, a.y, 0};
   if (!isfinite(a.x) || !isfinite(a.y)) return;
   if (is(s, "rod")) stroke(v, (Spot[]){a, b}, 2, colour, fmax(3, pixels(v, s, 0)));
   else if (is(s, "spring")) put_spring(v, s, a, b);

@@ -41,7 +41,7 @@ static void move(lag_level *w, const double *from, double part) {
 
 double lag_level_weight(const lag_level *w, int i) {
   const double open = 1e-3;
-  return w->at == LAG_MOVES_LAST && !w->alike && w->stage(w, i) < LAG_MOVES_LAST ? open : 1;
+  return w->at > LAG_MOVES_FIRST && !w->alike && w->stage(w, i) < w->at ? open : 1;
 }
 
 /* The part of the step d that moves no position by more than half of what is typical: far steps lead to other

@@ -142,8 +142,8 @@ static const CommandRow commands[] = {
      "the scene depends on time, and where one of --guess, --period, --hold, --relative or such a NAME is given "
      "(the options of `lagc orbit`); else states of rest. Conserved charges keep their values unless one is NAME or "
      "--hold names others.\n\n"
-     "Derivatives by the parameter are central differences. A and B are numbers in the declared unit. Needs GSL. "
-     "Exit status 3: no solution was found to begin with.\n\n"
+     "Derivatives by the parameter are central differences. A and B are in the declared unit, or the unit behind them: "
+     "th=5..170[deg]. Needs GSL. Exit status 3: no solution was found to begin with.\n\n"
      "  name=value            a parameter, another start (th=3), an input to hold"},
     {CMD_LYAPUNOV, "lyapunov", "exponents", "MODEL [SCENE] [name=value ...] [--until T] [--exponents K] [--json]",
      "Lyapunov exponents: how fast neighbouring motions part",
@@ -155,7 +155,7 @@ static const CommandRow commands[] = {
      "Method and steps are chosen as for `lagc run`: --method, --tol, --step.\n\n"
      "  name=value            a parameter, another start, an input: as for lagc run"},
     {CMD_FIT, "fit", "estimate",
-     "MODEL [SCENE] [name=value ...] --data FILE.csv --fit NAME,NAME [--sigma X] [--svg FILE]",
+     "MODEL [SCENE ...] [name=value ...] --data FILE.csv --fit NAME,NAME [--sigma X] [--svg FILE]",
      "parameters and starts from a measured motion, with errors",
      "Finds the parameters and starts with which the motion is nearest to measured values, by nonlinear least squares "
      "on "
@@ -165,7 +165,8 @@ static const CommandRow commands[] = {
      "The report has values with standard errors, chi squared where the errors of the data are given, a test whether "
      "the "
      "residuals have a trend, the combinations that the data cannot tell apart, `only g/l: (g, l) along (9.81, 1) "
-     "changes nothing`, and a scene to paste. Needs GSL.\n\n"
+     "changes nothing`, and a scene to paste. Several scenes are ranked: which effects do the data call for? Needs "
+     "GSL.\n\n"
      "  name=value            a parameter or start: where the search begins, or held\n\n"
      "Exit status 3: the motion failed at the first values, or the search did not converge."},
     {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [--seconds S] [-o FILE.svg]",

@@ -66,7 +66,6 @@ typedef struct {
   const char *section;     /* run, plot --section */
   OptionTexts y;           /* plot --y: expressions */
   const char *x, *phase;   /* plot */
-  const char *columns;     /* fit --columns */
   const char *cloud;       /* plot --cloud: N or N:PART */
   int portrait, potential, distance, energy_error;
   const char *points, *from; /* animate */

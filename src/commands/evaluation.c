@@ -6,6 +6,7 @@
 
 #include "commands/simulator.h"
 #include "toolchain/process.h"
+#include "toolchain/simulator_cache.h"
 
 /* The reason why the run must be compiled; NULL: liblag can evaluate it. */
 static const char *reason_to_compile(Compiler *c, const Toolchain *tools, ProgramKind kind) {
@@ -30,44 +31,62 @@ static ModelLibrary library_of(Compiler *c, const Units *units, const Toolchain 
   return m;
 }
 
+int simulator_derive_again(Compiler *c, Units *units) {
+  c->picture = (RunRequest){0};
+  return compiler_parse(c) == STATUS_OK && simulator_prepare(c) == STATUS_OK && simulator_lower(c, units);
+}
+
+typedef struct {
+  Compiler *c;
+  Units units; /* none: the run is known, and derived only now */
+  Toolchain tools;
+} Beside;
+
 /* Compiles if the run goes on for a while, and tells lag-run the library's path. */
 static void compile_beside(void *data, int run) {
   const double a_while = 0.5;
-  ModelLibrary *m = data;
+  Beside *b = data;
   const char *error;
   if (process_reader_ends(run, a_while)) return;
-  const char *path = toolchain_simulator(m->arena, &m->tools, m->texts.at, m->texts.n, &error);
+  if (!b->units.n && !simulator_derive_again(b->c, &b->units)) return;
+  ModelLibrary m = library_of(b->c, &b->units, &b->tools);
+  const char *path = toolchain_simulator(m.arena, &m.tools, m.texts.at, m.texts.n, &error);
   if (path) process_tell(run, path);
 }
 
-/* Hands lag-run a library from the cache, or the program as bytes, compiled meanwhile. Returns a STATUS. */
-static int hand_over(Compiler *c, const Units *units, const Toolchain *tools, int compiles) {
-  ModelLibrary m = {0};
+static const char *in_cache(Compiler *c, const char *name) {
+  const char *cache = name ? cache_folder(c->arena) : NULL;
+  const char *path = cache ? arena_printf(c->arena, "%s/%s", cache, name) : NULL;
+  return path && cache_has(path) ? path : NULL;
+}
+
+const char *simulator_compiled(Compiler *c, const EvaluatedRun *e) { return in_cache(c, e->simulator); }
+
+int simulator_hand_over(Compiler *c, const EvaluatedRun *e, const Units *units) {
+  Beside b = {.c = c};
+  const char *error, *library = in_cache(c, e->library);
   if (c->o.no_gsl) process_set("LAG_NO_GSL", "1");
-  if (compiles) {
-    m = library_of(c, units, tools);
-    const char *cached = toolchain_cached(c->arena, &m.tools, m.texts.at, m.texts.n);
-    if (cached) return process_set("LAG_LIBRARY", cached), STATUS_OK;
-  }
-  StrBuf bytes = simulator_bytes(c, units);
-  if (!process_give("LAG_PROGRAM", &bytes)) return usage_error("cannot write a temporary file: set TMPDIR");
-  if (!compiles) return STATUS_OK;
-  if (toolchain_has_compiler(c->arena, tools)) process_beside(compile_beside, &m, "LAG_COMPILED");
+  if (library) return process_set("LAG_LIBRARY", library), STATUS_OK;
+  if (!process_give("LAG_PROGRAM", &e->bytes)) return usage_error("cannot write a temporary file: set TMPDIR");
+  if (!e->library) return STATUS_OK;
+  if (!toolchain_find(c->arena, c->argv0, 0, &b.tools, &error)) return usage_error(error);
+  if (units) b.units = *units;
+  if (toolchain_has_compiler(c->arena, &b.tools)) process_beside(compile_beside, &b, "LAG_COMPILED");
   else
     fprintf(
         stderr,
         "lagc: there is no C compiler `%s`: the model is evaluated, with the same digits, long runs at a third to a "
         "half of the speed\n",
-        tools->cc);
+        b.tools.cc);
   return STATUS_OK;
 }
 
-int simulator_evaluate(Compiler *c, const Units *units, const char **path) {
+int simulator_evaluate(Compiler *c, const Units *units, EvaluatedRun *e) {
   const char *how = c->o.compile ? c->o.compile : "auto";
   int never = strcmp(how, "never") == 0, digits = options_more_digits(&c->o);
   Toolchain tools;
   ProgramKind kind;
-  *path = NULL;
+  *e = (EvaluatedRun){.bytes = strbuf(c->arena)};
   if (strcmp(how, "always") == 0 || c->o.command == CMD_COST || c->o.command == CMD_SWEEP) return STATUS_OK;
   if (digits) return never ? usage_error("--compile never evaluates doubles only: leave --precision out") : STATUS_OK;
   int status = simulator_tools(c, units, NULL, &tools, &kind);
@@ -76,8 +95,12 @@ int simulator_evaluate(Compiler *c, const Units *units, const char **path) {
   if (reason || status != STATUS_OK) return status;
   if (!never) {
     Texts texts = simulator_texts(c, units, kind);
-    if (toolchain_cached(c->arena, &tools, texts.at, texts.n)) return STATUS_OK;
+    ModelLibrary m = library_of(c, units, &tools);
+    e->simulator = toolchain_entry(c->arena, &tools, texts.at, texts.n);
+    e->library = toolchain_entry(c->arena, &m.tools, m.texts.at, m.texts.n);
+    if (in_cache(c, e->simulator)) return STATUS_OK;
   }
-  *path = toolchain_evaluator(c->arena, &tools);
-  return hand_over(c, units, &tools, !never);
+  e->evaluator = toolchain_evaluator(c->arena, &tools);
+  e->bytes = simulator_bytes(c, units);
+  return STATUS_OK;
 }

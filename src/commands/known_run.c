@@ -16,7 +16,17 @@
 enum { LARGE = 1000 }; /* coordinates, beyond which the compiler's memory is not kept during the run */
 
 /* Fields of an entry: a letter, a length, a space and so many bytes. */
-enum { SIMULATOR = 's', ARGUMENT = 'a', NUMBER = 'n', READ = 'r', ABSENT = 'x', SAID = 'm', LISTENS = 'l' };
+enum {
+  SIMULATOR = 's',
+  EVALUATOR = 'e',
+  LIBRARY = 'c',
+  ARGUMENT = 'a',
+  NUMBER = 'n',
+  READ = 'r',
+  ABSENT = 'x',
+  SAID = 'm',
+  LISTENS = 'l'
+};
 
 struct KnownRun {
   const char *paths[2];      /* of entries, for any numbers and for these; NULL: the command is never known */
@@ -62,6 +72,8 @@ static const char *entry_path(Compiler *c, const KnownRun *k, const Toolchain *t
   sb_printf(&b, "%d %s\n", exact, c->o.file);
   add_words(c, k, exact, &b);
   sb_printf(&b, "%s\n%s", toolchain_own_build(c->arena, t, c->argv0), simulator_surroundings(c));
+  const char *data = options_passed(&c->o, "--data"), *why, *head = data ? data_head(c->arena, data, &why) : NULL;
+  if (head) sb_printf(&b, "\n%s", head);
   if (c->o.resume) sb_printf(&b, "\n%s", method_of_state(c->arena, c->o.resume));
   SourceText texts[] = {{"words", sb_text(&b)}, {"model", c->sources->files.at[0].text}};
   return arena_printf(c->arena, "%s/%s.run", cache, toolchain_entry(c->arena, t, texts, 2));
@@ -113,13 +125,16 @@ typedef struct {
   const char *simulator; /* in the cache */
   const char *said;      /* messages */
   int listens;
+  EvaluatedRun by; /* evaluator NULL: the run is compiled */
 } Found;
 
 /* Takes a field of an entry; whether the run is still known. */
 static int take_field(Compiler *c, char kind, const char *text, Found *f) {
   uint32_t k;
   switch (kind) {
-  case SIMULATOR: f->simulator = text; return 1;
+  case SIMULATOR: f->by.simulator = text; return 1;
+  case EVALUATOR: f->by.evaluator = text; return 1;
+  case LIBRARY: f->by.library = text; return 1;
   case ARGUMENT: vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, text)); return 1;
   case NUMBER:
     if ((k = (uint32_t)atoi(text)) >= c->known->numbers.n) return 0;
@@ -133,21 +148,28 @@ static int take_field(Compiler *c, char kind, const char *text, Found *f) {
   }
 }
 
+/* Programs of an entry as bytes, where they are evaluated. */
+static const char *program_path(Compiler *c, const char *entry) {
+  return arena_printf(c->arena, "%.*s.bytes", (int)(strrchr(entry, '.') - entry), entry);
+}
+
 /* Whether there is an entry, and all is as it was; then its arguments are in c->picture.argv. */
 static int find(Compiler *c, const char *entry, Found *f) {
   StrBuf text = strbuf(c->arena);
   const char *field;
-  *f = (Found){.said = ""};
+  *f = (Found){.said = "", .by.bytes = strbuf(c->arena)};
   c->picture.argv.n = 0;
   c->sources->files.n = 1;
   if (!cache_read(entry, &text)) return 0;
   const char *at = sb_text(&text), *end = at + text.n;
   for (char kind; (kind = next_field(c->arena, &at, end, &field)) != 0;)
     if (!take_field(c, kind, field, f)) return 0;
-  if (!f->simulator || !c->picture.argv.n) return 0;
-  f->simulator = arena_printf(c->arena, "%.*s/%s", (int)(strrchr(entry, '/') - entry), entry, f->simulator);
+  if (!c->picture.argv.n) return 0;
   vec_push(c->arena, &c->picture.argv, NULL);
-  return cache_has(f->simulator);
+  f->simulator = simulator_compiled(c, &f->by);
+  if (f->simulator) f->by.evaluator = NULL;
+  else f->simulator = cache_read(program_path(c, entry), &f->by.bytes) ? f->by.evaluator : NULL;
+  return f->simulator != NULL;
 }
 
 /* Which of the numbers the argument is; -1: none. */
@@ -172,7 +194,9 @@ static void add_arguments(Compiler *c, StrBuf *b, int exact, uint32_t *numbers) 
 static void keep(Compiler *c, const Found *f) {
   StrBuf b = strbuf(c->arena), arguments = strbuf(c->arena);
   uint32_t numbers;
-  add_field(&b, SIMULATOR, file_name(f->simulator));
+  if (f->by.simulator) add_field(&b, SIMULATOR, f->by.simulator);
+  if (f->by.library) add_field(&b, LIBRARY, f->by.library);
+  if (f->by.evaluator) add_field(&b, EVALUATOR, f->by.evaluator);
   for (uint32_t i = 1; i < c->sources->files.n; i++)
     if (c->sources->files.at[i].is_file) add_field(&b, READ, hash_and_path(c->arena, &c->sources->files.at[i]));
   for (uint32_t i = 0; i < c->sources->absent.n; i++) add_field(&b, ABSENT, c->sources->absent.at[i]);
@@ -185,7 +209,8 @@ static void keep(Compiler *c, const Found *f) {
     add_arguments(c, &arguments, exact, &numbers);
   }
   sb_putn(&b, sb_text(&arguments), arguments.n);
-  cache_write(c->known->paths[exact], &b);
+  const char *path = c->known->paths[exact];
+  if (!f->by.evaluator || cache_write(program_path(c, path), &f->by.bytes)) cache_write(path, &b);
 }
 
 /* --- the start --- */
@@ -204,16 +229,15 @@ static int writes_source(Compiler *c) {
 static void tell_last_state(void *compiler, const double *number, uint32_t n) {
   Compiler *c = compiler;
   Units units = {0};
-  if (!c->run) {
-    c->picture = (RunRequest){0};
-    if (compiler_parse(c) != STATUS_OK || simulator_prepare(c) != STATUS_OK || !simulator_lower(c, &units)) return;
-  }
+  if (!c->run && !simulator_derive_again(c, &units)) return;
   c->diags->list.n = 0; /* they have been printed */
   if (nonfinite_note(c->run, c->run_by, number, n)) compiler_print_messages(c);
 }
 
-static int start(Compiler *c, const Found *f) {
+static int start(Compiler *c, const Found *f, const Units *units) {
   if (writes_source(c)) return STATUS_USAGE;
+  int status = f->by.evaluator ? simulator_hand_over(c, &f->by, units) : STATUS_OK;
+  if (status != STATUS_OK) return status;
   fflush(stdout);
   fputs(f->said, stderr); /* before: the simulator does not come back */
   if (f->listens) last_state_listen(c->arena, tell_last_state, c);
@@ -228,7 +252,7 @@ int known_run_start(Compiler *c, int *known) {
   c->known = new_known_run(c);
   for (int exact = 0; exact < 2 && !*known; exact++)
     *known = c->known->paths[exact] && find(c, c->known->paths[exact], &f);
-  if (*known) return start(c, &f);
+  if (*known) return start(c, &f, NULL);
   c->picture = (RunRequest){0};
   c->sources->files.n = 1;
   return STATUS_OK;
@@ -238,16 +262,20 @@ static Found new_run(Compiler *c, const char *path) {
   StrBuf said = strbuf(c->arena);
   if (!simulator_is_later_rank(c)) compiler_messages(c, &said);
   if (c->picture.note) sb_printf(&said, "%s\n", c->picture.note);
-  return (Found){path, sb_text(&said), c->run && c->run->n <= LARGE && c->o.command != CMD_SWEEP};
+  return (Found){
+      .simulator = path, .said = sb_text(&said), .listens = c->run && c->run->n <= LARGE && c->o.command != CMD_SWEEP};
 }
 
 int known_run_keep_and_start(Compiler *c, const char *path) {
   Found f = new_run(c, path);
+  f.by.simulator = file_name(path);
   if (c->known->paths[0]) keep(c, &f);
-  return start(c, &f);
+  return start(c, &f, NULL);
 }
 
-int known_run_evaluate(Compiler *c, const char *path) {
-  Found f = new_run(c, path);
-  return start(c, &f);
+int known_run_evaluate(Compiler *c, const EvaluatedRun *by, const Units *units) {
+  Found f = new_run(c, by->evaluator);
+  f.by = *by;
+  if (c->known->paths[0]) keep(c, &f);
+  return start(c, &f, units);
 }

@@ -87,9 +87,10 @@ int command_run(Compiler *c) {
   Units units = {0};
   if (!simulator_lower(c, &units)) return STATUS_MODEL;
   if (!has_drawing(c)) return STATUS_USAGE;
-  status = simulator_evaluate(c, &units, &path);
+  EvaluatedRun e;
+  status = simulator_evaluate(c, &units, &e);
   if (status != STATUS_OK) return status;
-  if (path) return known_run_evaluate(c, path);
+  if (e.evaluator) return known_run_evaluate(c, &e, &units);
   status = c->o.command == CMD_COST ? make_cost_simulator(c, &units, begin, &path)
                                     : simulator_of_units(c, &units, NULL, &path);
   return status == STATUS_OK ? known_run_keep_and_start(c, path) : status;

@@ -218,8 +218,8 @@ static int prepare_plot(RequestBuilder *k, const char **error) {
   if (o->cloud && o->phase) *error = "--cloud draws the coordinate and its momentum, or --x and --y; leave out --phase";
   else if (o->cloud && !x && !y && (x = only_coordinate(k, "--cloud", &second, error)))
     y = second ? second : arena_printf(k->arena, "p_%s", x);
-  for (uint32_t i = 0; i < o->rest.n && !k->p->drawing; i++)
-    k->p->drawing = strncmp(o->rest.at[i], "--drawing", 9) == 0;
+  for (uint32_t i = 0; i < o->rest.n; i++)
+    if (strncmp(o->rest.at[i], "--drawing", strlen("--drawing")) == 0) k->p->drawing = 1;
   if (o->cloud) add_argument(k, "--cloud", o->cloud);
   if (o->energy_error) add_argument(k, "--energy-error", NULL);
   if (o->distance) add_argument(k, "--distance", NULL);
@@ -355,7 +355,7 @@ static size_t csv_field(Arena *a, const char *s, const char **text) {
 
 /* Whether --columns names the column, or is not given. */
 static int is_column_asked(const Options *o, const char *label, size_t length) {
-  const char *list = o->columns;
+  const char *list = options_passed(o, "--columns");
   if (!list) return 1;
   while (*list) {
     size_t n = strcspn(list, ",");
@@ -382,18 +382,23 @@ static int add_column(RequestBuilder *k, const char *label, int is_time) {
   return 1;
 }
 
+const char *data_head(Arena *a, const char *path, const char **why) {
+  enum { LONGEST = 1 << 16 };
+  FILE *f = source_open(path, why);
+  if (!f) return NULL;
+  char *line = arena_alloc(a, LONGEST), *at = fgets(line, LONGEST, f);
+  fclose(f);
+  if (!at) *why = "the file is empty";
+  return at;
+}
+
 /* Columns of --data, by the first line of the file. */
 static int prepare_columns(RequestBuilder *k, const char **error) {
-  enum { LONGEST = 1 << 16 };
   const char *path = options_passed(k->o, "--data"), *why = NULL, *label;
   if (!path || !options_passed(k->o, "--fit"))
     return fail_with(error, "lagc fit needs the record and what to find: --data motion.csv --fit g,l");
-  FILE *f = source_open(path, &why);
-  if (!f) return fail_with(error, arena_printf(k->arena, "--data %s cannot be read: %s", path, why));
-  char *line = arena_alloc(k->arena, LONGEST);
-  char *at = fgets(line, LONGEST, f);
-  fclose(f);
-  if (!at) return fail_with(error, arena_printf(k->arena, "--data %s: the file is empty", path));
+  const char *at = data_head(k->arena, path, &why);
+  if (!at) return fail_with(error, arena_printf(k->arena, "--data %s cannot be read: %s", path, why));
   if (strncmp(at, "\xEF\xBB\xBF", 3) == 0) at += 3;
   for (int column = 0, ok = 1;; column++) {
     at += csv_field(k->arena, at, &label);

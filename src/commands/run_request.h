@@ -40,5 +40,8 @@ int text_is_number(const char *text);
 /* A text on one line, without white space at its ends and with single spaces inside. */
 const char *text_trimmed(Arena *a, const char *text, size_t n);
 
+/* The first line of a record, which has the names of its columns; NULL, with *why. */
+const char *data_head(Arena *a, const char *path, const char **why);
+
 /* Returns 0 on a mistake, which *error or ast->diags describes. */
 int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **error);

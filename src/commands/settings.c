@@ -92,9 +92,12 @@ static const char *value_beside(Arena *a, const Options *o, uint32_t i, const ch
   return NULL;
 }
 
+/* Whether values may be ranges. */
+static int takes_ranges(const Options *o) { return o->command == CMD_SWEEP || o->command == CMD_CONTINUE; }
+
 /* Refuses names with a range and a value. */
 static int check_ranges(Ast *ast, const Options *o, const char **error) {
-  for (uint32_t i = 0; i < o->rest.n && o->command == CMD_SWEEP; i++) {
+  for (uint32_t i = 0; i < o->rest.n && takes_ranges(o); i++) {
     const char *word = o->rest.at[i];
     if (word[0] == '-' && option_takes_next(o->command, word)) i++;
     if (word[0] == '-' || !range_split(ast->arena, word)) continue;
@@ -118,11 +121,16 @@ int settings_compiled(Ast *ast, Options *o, int all, GivenList *given, const cha
     }
     const char *arg = o->rest.at[i], *eq = arg[0] != '-' ? strpbrk(arg, o->command == CMD_SWEEP ? "=~" : "=") : NULL;
     const char *name = eq ? text_trimmed(ast->arena, arg, (size_t)(eq - arg)) : "";
-    int ranges = eq && o->command == CMD_SWEEP && range_split(ast->arena, arg) != NULL;
+    int ranges = eq && takes_ranges(o) && range_split(ast->arena, arg) != NULL;
     int constant = eq && find_declared(ast, STMT_CONST, name) && !find_declared(ast, STMT_PARAM, name);
     if (constant && !ranges)
       return fail_with(
           error, arena_printf(ast->arena, "%s: `%s` is a constant, fixed when compiling: write -D %s", arg, name, arg));
+    if (constant && o->command == CMD_CONTINUE)
+      return fail_with(error, arena_printf(ast->arena,
+                                           "%s: `%s` is a constant, fixed when compiling, and cannot vary "
+                                           "continuously: declare it as a `param`",
+                                           arg, name));
     if (constant && !const_range_take(ast, o, i, name, error)) return 0;
     arg = o->rest.at[i];
     if (ranges && starts_rotation(ast, name))
@@ -251,7 +259,7 @@ int settings_units(Ast *ast, const Options *o) {
   for (uint32_t i = 0; i < o->rest.n; i++) {
     const char *word = o->rest.at[i];
     uint32_t at = i;
-    Range *range = o->command == CMD_SWEEP && word[0] != '-' ? range_split(ast->arena, word) : NULL;
+    Range *range = takes_ranges(o) && word[0] != '-' ? range_split(ast->arena, word) : NULL;
     if (range && is_constant(o, range->name)) continue;
     if (range) {
       note_range(&c, &ranges, range, i, &ok);

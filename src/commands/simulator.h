@@ -25,10 +25,25 @@ StrBuf simulator_bytes(Compiler *c, const Units *units);
 /* The toolchain and the kind of program that the command line asks for. Returns a STATUS. */
 int simulator_tools(Compiler *c, const Units *units, const char *output, Toolchain *tools, ProgramKind *kind);
 
-/* evaluation.c: lag-run in place of a simulator, with what it runs: where --compile allows it, the command line asks
- * for nothing that is linked, and the cache has no simulator. *path is NULL where the units must be compiled.
- * Returns a STATUS. */
-int simulator_evaluate(Compiler *c, const Units *units, const char **path);
+/* How a run goes that lag-run evaluates. */
+typedef struct {
+  const char *evaluator; /* path of lag-run; NULL: the run is compiled */
+  /* names in the cache of the simulator and of the model's library, which take its place once they are there; NULL:
+   * --compile never */
+  const char *simulator, *library;
+  StrBuf bytes; /* the programs */
+} EvaluatedRun;
+
+/* evaluation.c: lag-run in place of a simulator, where --compile allows it, the command line asks for nothing that is
+ * linked, and the cache has no simulator. Returns a STATUS. */
+int simulator_evaluate(Compiler *c, const Units *units, EvaluatedRun *e);
+/* The simulator that is compiled by now; NULL: there is none. */
+const char *simulator_compiled(Compiler *c, const EvaluatedRun *e);
+/* Gives lag-run, which this process becomes, what it runs: a library, or programs, of which one is compiled meanwhile
+ * (units NULL: derived there). Returns a STATUS. */
+int simulator_hand_over(Compiler *c, const EvaluatedRun *e, const Units *units);
+/* The units of a known run, whose text has not been parsed. 0 with the reasons in c->diags. */
+int simulator_derive_again(Compiler *c, Units *units);
 
 /* Makes a program from the texts at `output`, or in the cache (NULL), and gives its path. Returns a STATUS. */
 int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path);

@@ -68,8 +68,8 @@ static int is_num(const Prog *p, Slot s, int64_t value) {
   return s && i->op == IR_CONST && num_equal(i->number, num_int(value));
 }
 
-/* Identities x + 0, x - 0, 1*x, 0*x, x/1, 0/x, x + (-y), x - (-y); slot 0 is the structural zero. NOT_A_SLOT: none
- * applies. */
+/* Identities x + 0, x - 0, 1*x, 0*x, x/1, 0/x, x + (-y), x - (-y), x^1, x^2; slot 0 is the structural zero.
+ * NOT_A_SLOT: none applies. */
 static Slot fold(Prog *p, const Ins *i) {
   switch (i->op) {
     case IR_ADD:
@@ -95,7 +95,11 @@ static Slot fold(Prog *p, const Ins *i) {
       if (!i->a) return 0;
       if (p->ins.at[i->a].op == IR_CONST) return prog_num(p, num_neg(p->ins.at[i->a].number));
       return p->ins.at[i->a].op == IR_NEG ? p->ins.at[i->a].a : NOT_A_SLOT;
-    case IR_CONST: case IR_PI: case IR_LOAD: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_MIN: case IR_MAX:
+    case IR_FN2: /* C compilers make these of such powers */
+      if (strcmp(i->text, "pow") != 0) return NOT_A_SLOT;
+      if (is_num(p, i->b, 1)) return i->a;
+      return is_num(p, i->b, 2) ? prog_op(p, IR_MUL, i->a, i->a) : NOT_A_SLOT;
+    case IR_CONST: case IR_PI: case IR_LOAD: case IR_SQRT: case IR_FN1: case IR_MIN: case IR_MAX:
     case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND: case IR_OR: case IR_SELECT:
     case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
   }

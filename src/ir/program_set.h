@@ -84,7 +84,7 @@ typedef struct {
   const char *t1_digits; /* decimal text where a double has too few digits, or NULL */
   int has_span;
   int exactly;        /* constraints may not move the given start values */
-  VEC(uint32_t) implied; /* quaternion coordinates without a given start value */
+  VEC(uint32_t) implied; /* components with a guess, and quaternion coordinates without a given start value */
   const char *method; /* or NULL */
   VEC(IrOption) options;
   double tolerance, every;

@@ -227,7 +227,15 @@ int unit_accepts_scenes(const ProgramSet *a, const ProgramSet *b) {
          is_same(a->size_values, b->size_values) && is_same(a->moving_sizes, b->moving_sizes);
 }
 
-/* Quaternion coordinates of rotations with an implied start, except those to which the scene gives a value. */
+/* Index in [q|v|z]. */
+static uint32_t place_of_start(const Model *m, SymId target) {
+  const Symbol *of = expr_symbol(m->g, target);
+  uint32_t n = m->coords.n;
+  return of->kind == SYM_COORD ? of->index : of->kind == SYM_VEL ? n + of->index : 2 * n + of->index;
+}
+
+/* Guesses, and quaternion coordinates of rotations with an implied start, except those to which the scene gives a
+ * value. */
 static void add_implied(IrScene *s, const Model *m) {
   unsigned char *said = ARENA_ARRAY(m->arena, unsigned char, m->coords.n + 1);
   for (uint32_t i = 0; i < m->scene.starts.n; i++) {
@@ -238,6 +246,7 @@ static void add_implied(IrScene *s, const Model *m) {
     uint32_t first = expr_symbol(m->g, m->scene.starts.at[i].target)->index;
     for (uint32_t k = first; m->scene.starts.at[i].implied && k < first + 4; k++)
       if (!said[k]) vec_push(m->arena, &s->implied, k);
+    if (m->scene.starts.at[i].guess) vec_push(m->arena, &s->implied, place_of_start(m, m->scene.starts.at[i].target));
   }
 }
 

@@ -227,7 +227,8 @@ static const unsigned char *given_by(const Eqns *e) {
   const Model *m = e->m;
   unsigned char *given = ARENA_ARRAY(m->arena, unsigned char, expr_symbol_count(e->g) + 1);
   for (uint32_t i = 0; i < m->scene.starts.n; i++)
-    if (!m->scene.starts.at[i].implied) given[m->scene.starts.at[i].target] = LAG_MOVES_LAST;
+    if (!m->scene.starts.at[i].implied)
+      given[m->scene.starts.at[i].target] = m->scene.starts.at[i].guess ? LAG_MOVES_SECOND : LAG_MOVES_LAST;
   for (uint32_t i = 0; i < m->scene.starts.n; i++) { /* implied: target is the first of a rotation's four components */
     uint32_t first = expr_symbol(m->g, m->scene.starts.at[i].target)->index;
     for (uint32_t k = first; m->scene.starts.at[i].implied && k < first + 4; k++)

@@ -324,6 +324,11 @@ static void read_member(DrawReader *r) {
   Builder *b = r->d->b;
   ShapeKind kind = (ShapeKind)(r->row - rows);
   uint32_t at = b->m->scene.shapes.n;
+  if (at >= MOST_SHAPES) {
+    diag_error(b->diags, st->span, "a drawing has at most %d shapes" HELP "draw fewer members of the family",
+               MOST_SHAPES);
+    return;
+  }
   Shape own = *add_shape(r->d, kind, usual_role(kind), place_words(r));
   r->shape = &own;
   for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next)

@@ -3,7 +3,7 @@
 
 #include "model/builder.h"
 
-enum { CURVE_PARTS = 64 };
+enum { CURVE_PARTS = 64, MOST_SHAPES = 20000 };
 
 typedef struct {
   Builder *b;

@@ -207,7 +207,8 @@ void guess_rods(Guess *k) {
 
 /* --- springs --- */
 
-/* x2 - x1 - l, or x - l: a spring along the line of points; alone it is held at the left. */
+/* x2 - x1 - l, or x - l: a spring along the line of points; alone it is held at the left, of the last point at the
+ * right. */
 static void link_line(Guess *k, Expr base) {
   ExprGraph *g = k->d->b->g;
   const DrawnPoint *end[2] = {NULL, NULL};
@@ -224,7 +225,9 @@ static void link_line(Guess *k, Expr base) {
     }
   }
   if (!n || n != moving) return;
-  add_link(k, SHAPE_SPRING, "spring", n == 2 ? end[0]->at : NULL, end[n - 1]->at, 2);
+  int right = n == 1 && k->points.n > 1 && end[0] == &k->points.at[k->points.n - 1];
+  const Expr *from = n == 2 || right ? end[0]->at : NULL, *to = right ? NULL : end[n - 1]->at;
+  add_link(k, SHAPE_SPRING, "spring", from, to, 2);
 }
 
 /* Calls fn for the base of each square in the potential, or in L, in products without velocities. */

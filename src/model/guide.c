@@ -46,34 +46,52 @@ static int read_squares(Builder *b, Expr sum, Contact *t) {
   return 1;
 }
 
-/* The norm that contains the multipliers of e: abs, hypot, or the root of a sum of squares; t->normal := its
- * components. 0: e is no product with one. */
+/* The factor of base[i]^power[i] of a product that contains no multiplier, times *of; *base, *power: of the other one.
+ * 0: there are several. */
+static Expr split_product(Builder *b, Expr product, Expr of, Expr *base, Num *power) {
+  ExprGraph *g = b->g;
+  *base = 0;
+  for (uint32_t i = 0; i < expr_pairs(g, product, EX_PROD); i++) {
+    Num k;
+    Expr x = expr_pair(g, product, EX_PROD, i, &k);
+    if (!has_multiplier(b, x)) {
+      Expr factor = expr_pow_num(g, x, k);
+      of = expr_mul(g, of, factor);
+    } else if (*base) return 0;
+    else *base = x, *power = k;
+  }
+  return of;
+}
+
+/* The coefficient of the norm that contains the multipliers of e: abs, hypot, or the root of a sum of squares;
+ * t->normal := its components. 0: e is no product with one. */
 static Expr find_norm(Builder *b, Expr e, Contact *t) {
   ExprGraph *g = b->g;
-  for (Expr at = e;;) {
-    Num power = num_int(1);
+  Expr coefficient = expr_int(g, 1);
+  for (Expr at = e; at;) {
+    Num power;
     ExprOp op = expr_op(g, at);
     if (op == EX_ABS || op == EX_HYPOT) {
       t->parts = expr_nargs(g, at);
       for (uint32_t k = 0; k < t->parts; k++) t->normal[k] = expr_arg(g, at, k);
-      return at;
+      return coefficient;
     }
-    if (op == EX_SUM && expr_pairs(g, at, op) == 1) at = expr_pair(g, at, op, 0, &power);
-    else if (op == EX_PROD) {
-      Expr found = 0;
-      for (uint32_t i = 0; i < expr_pairs(g, at, op); i++) {
-        Num k;
-        Expr base = expr_pair(g, at, op, i, &k);
-        if (!has_multiplier(b, base)) continue;
-        if (found) return 0;
-        found = base;
-        power = k;
-      }
-      if (num_cmp(power, num_ratio(1, 2)) == 0) return read_squares(b, found, t) ? expr_sqrt(g, found) : 0;
-      if (!num_is_one(power) || !found) return 0;
-      at = found;
-    } else return 0;
+    if (op == EX_SUM && expr_pairs(g, at, op) == 1) {
+      at = expr_pair(g, at, op, 0, &power);
+      coefficient = expr_scale(g, power, coefficient);
+      continue;
+    }
+    if (op != EX_PROD || !(coefficient = split_product(b, at, coefficient, &at, &power)) || !at) return 0;
+    if (num_cmp(power, num_ratio(1, 2)) == 0) return read_squares(b, at, t) ? coefficient : 0;
+    if (!num_is_one(power)) return 0;
   }
+  return 0;
+}
+
+static int same_force(const Contact *a, const Contact *b) {
+  for (uint32_t k = 0; k < a->parts && a->parts == b->parts; k++)
+    if (a->normal[k] != b->normal[k]) return 0;
+  return a->parts == b->parts;
 }
 
 /* Whether the components are linear in multipliers of constraints, none of them a contact's. */
@@ -99,23 +117,24 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Dim dim, Conta
   Value f = resolve(b, size, IN_DYNAMICS, effect), g = most ? resolve(b, most, IN_DYNAMICS, effect) : f;
   b->in_friction = 0;
   if (!f.e || !g.e) return 0;
-  Expr norm = f.n ? 0 : find_norm(b, f.e, t);
-  t->friction = norm ? expr_div(b->g, f.e, norm) : 0;
-  if (!norm || has_multiplier(b, t->friction) || !is_force(b, t))
+  t->friction = f.n ? 0 : find_norm(b, f.e, t);
+  if (!t->friction || !is_force(b, t))
     return diag_error(b->diags, span,
                       "friction by the force of a constraint is a coefficient times the size of that force" HELP
                       "write `mu*abs(lambda(rail))`, or `mu*r*hypot(lambda(px), lambda(py))` of a journal; two forces "
                       "are two frictions, and that of a contact is `contact NAME: y >= 0, restitution = 0, friction = "
                       "mu, slip = x'`");
   if (!dim_equate(b->dims, f.dim, dim, span))
-    return diag_error(b->diags, span, "a force along the slip of `%s` is %s, and this is %s" HELP
-                      "of a journal of radius r it is `mu*r*hypot(lambda(px), lambda(py))`", st->name, in_dim(b, dim),
-                      in_dim(b, f.dim));
+    return diag_error(b->diags, span,
+                      "a force along the slip of `%s` is %s, and this is %s" HELP
+                      "of a journal of radius r it is `mu*r*hypot(lambda(px), lambda(py))`",
+                      st->name, in_dim(b, dim), in_dim(b, f.dim));
   if (g.n || !dims_agree(b, &g, &f, ast_expr(b->ast, most ? most : size)->span))
     return diag_error(b->diags, ast_expr(b->ast, most)->span, "the static limit is %s, and the friction %s",
                       g.n ? "a vector" : in_dim(b, g.dim), in_dim(b, f.dim));
-  t->hold = expr_div(b->g, g.e, norm);
-  if (has_multiplier(b, t->hold))
+  Contact held = {0};
+  t->hold = find_norm(b, g.e, &held);
+  if (!t->hold || !same_force(t, &held))
     return diag_error(b->diags, ast_expr(b->ast, most)->span,
                       "static friction follows the same force as friction: `static = mu_s*abs(lambda(rail))`");
   if (expr_is_constant(b->g, t->friction)) add_size(b, t->friction, "this friction has a coefficient", span, 0);
@@ -197,14 +216,18 @@ static int refuse_options(Builder *b, const AstStmt *st) {
     const AstExpr *x = ast_expr(b->ast, i);
     int known = strcmp(x->name, "tangential") != 0 && strcmp(x->name, "law") != 0;
     if (!known)
-      return diag_error(b->diags, x->span, "`%s` is a law of impacts, which a guide has not" HELP
-                        "a guide has `friction = mu`, and perhaps `static = mu_s` and `slip = x'`", x->name);
+      return diag_error(b->diags, x->span,
+                        "`%s` is a law of impacts, which a guide has not" HELP
+                        "a guide has `friction = mu`, and perhaps `static = mu_s` and `slip = x'`",
+                        x->name);
     if (ast_option_value(b->ast, st, x->name) != x->args)
       return diag_error(b->diags, x->span, "the guide `%s` has `%s` twice", st->name, x->name);
   }
   if (!ast_option_value(b->ast, st, "friction"))
-    return diag_error(b->diags, st->span, "the guide `%s` has no friction" HELP
-                      "`guide %s: y = 0, friction = mu`; without friction it is a `constraint`", st->name, st->name);
+    return diag_error(b->diags, st->span,
+                      "the guide `%s` has no friction" HELP
+                      "`guide %s: y = 0, friction = mu`; without friction it is a `constraint`",
+                      st->name, st->name);
   return 1;
 }
 
@@ -220,7 +243,8 @@ static Expr slip_of(Builder *b, const AstStmt *st, Name effect, const Entity *of
       diag_error(b->diags, st->span,
                  "the guide `%s` does not say how it slips" HELP
                  "give the velocity along it: `guide %s: ..., friction = mu, slip = x'`, of a journal `slip = "
-                 "r*(th1' - th2')`", st->name, st->name);
+                 "r*(th1' - th2')`",
+                 st->name, st->name);
     return slip;
   }
   for (uint32_t k = 0; of && k < parts; k++) t->normal[k] = multiplier_node(b, of->index + k);
@@ -240,8 +264,8 @@ static Expr slip_of(Builder *b, const AstStmt *st, Name effect, const Entity *of
 }
 
 static void declare_slip(Builder *b, const AstStmt *st, Name name, uint32_t constraint) {
-  scope_add(&b->constraints, (Entity){.index = constraint, .name = intern_printf(b, "slip"), .effect = name,
-                                      .span = st->name_span});
+  scope_add(&b->constraints,
+            (Entity){.index = constraint, .name = intern_printf(b, "slip"), .effect = name, .span = st->name_span});
 }
 
 void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data) {
@@ -251,7 +275,7 @@ void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data) 
   Name name = member_name(b->ast, st->name, r.lo, r.n);
   const Entity *found = st->lhs ? scope_own(&b->constraints, name, effect) : NULL;
   Entity own = found ? *found : (Entity){0}, *of = found ? &own : NULL; /* declarations move entities */
-  declare_slip(b, st, name, UINT32_MAX); /* refused, unless declared again */
+  declare_slip(b, st, name, UINT32_MAX);                                /* refused, unless declared again */
   if ((st->lhs && (!of || of->index >= b->m->constraints.n)) || !refuse_options(b, st)) return;
   Contact t = {.is_tangent = 1, .restitution = expr_int(b->g, 0)};
   Dim dim;

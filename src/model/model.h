@@ -222,6 +222,7 @@ typedef struct {
   SymId target;
   Expr value; /* of parameters */
   int implied; /* default value: constraints may move it */
+  int guess;   /* constraints move it before those that are given */
 } Start;
 
 /* Closed form (`exact q = ...`) of a coordinate, a velocity or a state. */

@@ -7,6 +7,7 @@ typedef struct {
   EntKind kind;
   int velocity;
   Unit unit;
+  int guess;
 } StartOf;
 
 static SymId start_target(const Builder *b, const StartOf *of, uint32_t i) {
@@ -25,13 +26,15 @@ static const Unit *start_unit(Builder *b, uint32_t i, void *data) {
 static void give_start(Builder *b, uint32_t i, Expr value, Span span, void *data) {
   (void)span;
   Scene *sc = &b->m->scene;
-  SymId target = start_target(b, data, i);
+  const StartOf *of = data;
+  SymId target = start_target(b, of, i);
   if (!b->start_index) b->start_index = ARENA_ARRAY(b->arena, uint32_t, expr_symbol_count(b->g) + 1);
   if (b->start_index[target]) {
     sc->starts.at[b->start_index[target] - 1].value = value;
+    sc->starts.at[b->start_index[target] - 1].guess = of->guess;
     return;
   }
-  vec_push(b->arena, &sc->starts, ((Start){target, value, 0}));
+  vec_push(b->arena, &sc->starts, ((Start){target, value, 0, of->guess}));
   b->start_index[target] = sc->starts.n;
 }
 
@@ -103,8 +106,8 @@ void set_motion(Builder *b, const AstStmt *st) {
   }
   if (e->kind == ENT_COORD && !p.primes && !exact && e->parts != ROTATION)
     warn_of_degrees(b, &b->m->coords.at[e->index], st->rhs);
-  if (st->exactly && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;
-  StartOf of = {.kind = e->kind, .velocity = p.primes > 0};
+  if (st->exactly == START_EXACTLY && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;
+  StartOf of = {.kind = e->kind, .velocity = p.primes > 0, .guess = st->exactly == START_GUESS};
   Assigner assigner = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of, NULL};
   assign_values(b, &p, e, st->lhs, st->rhs, &assigner);
 }
@@ -221,6 +224,6 @@ void complete_rotation_starts(Builder *b) {
   for (uint32_t i = 0; i < b->spins.n; i++) complete_spin_start(b, &b->spins.at[i]);
   for (uint32_t i = 0; i < b->rotations.n && b->m->coords.n; i++) {
     SymId w = b->m->coords.at[b->rotations.at[i]].q;
-    if (!starts(b, w)) vec_push(b->arena, &b->m->scene.starts, ((Start){w, expr_int(b->g, 1), 1}));
+    if (!starts(b, w)) vec_push(b->arena, &b->m->scene.starts, ((Start){w, expr_int(b->g, 1), 1, 0}));
   }
 }

@@ -131,6 +131,7 @@ typedef enum {
   STMT_STOP
 } AstStmtKind;
 
+typedef enum { START_PLAIN, START_EXACTLY, START_GUESS } AstStartKind; /* `exactly` of a start */
 typedef enum { SIGN_ANY, SIGN_GT, SIGN_GE, SIGN_LT, SIGN_LE } AstSign; /* param ... > 0 */
 /* the last: a kick, whose lhs is its period */
 typedef enum { CROSS_BOTH, CROSS_RISING, CROSS_FALLING, AT_EQUAL_TIMES } AstDirection;

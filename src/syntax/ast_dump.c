@@ -114,7 +114,7 @@ static void dump_head(Dump *d, const AstStmt *s) {
   sb_puts(d->out, signs[s->sign]);
   if (s->kind == STMT_EVENT) sb_puts(d->out, ways[s->direction]);
   if (s->periodic) sb_puts(d->out, " periodic");
-  if (s->exactly) sb_puts(d->out, " exactly");
+  if (s->exactly) sb_puts(d->out, s->exactly == START_GUESS ? " guess" : " exactly");
   sb_putc(d->out, '\n');
 }
 

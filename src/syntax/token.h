@@ -127,6 +127,7 @@ enum {
   X(TANGENTIAL, "tangential", 0)                   \
   X(LAW, "law", 0)                                 \
   X(EXACTLY, "exactly", 0)                         \
+  X(GUESS, "guess", 0)                             \
   X(EVERY, "every", 0)                             \
   X(WHILE, "while", 0)                             \
   X(SHAPE, "a shape such as `ball`", 0)            \

@@ -19,7 +19,7 @@
  *   - `periodic`, `rising`, `falling`, `crossing` and `every` are keywords directly after an
  *     operand, in the statements that take them, and so is `while` in a constraint; `restitution` after the `,` of a
  *     contact, `on` and `static` of a friction, `exactly`
- *     after `start` when a name follows; `for` after the `:` or `,` of a symmetry when a name
+ *     and `guess` after `start` when a name follows; `for` after the `:` or `,` of a symmetry when a name
  *     follows; `sum` and `product` before `(`; in a `draw` the shape, and each name behind an operand.
  * Everywhere else a name is a name: a coordinate may be called `force`, `every` or `sum`.
  *
@@ -165,7 +165,7 @@ static TokKind slot_word(Filter *f, const Token *t) {
                {TOK_EVENT, TOK_CROSSING}, {TOK_OUTPUT, TOK_EVERY}, {TOK_KICK, TOK_EVERY},
                {TOK_FRICTION, TOK_ON},    {TOK_MOMENTUM, TOK_OF},  {TOK_CONSTRAINT, TOK_WHILE}};
   if (f->prev == TOK_START && peek(f)->kind == TOK_IDENT)
-    return strcmp(t->name, "exactly") == 0 ? TOK_EXACTLY : TOK_IDENT;
+    return strcmp(t->name, "exactly") == 0 ? TOK_EXACTLY : strcmp(t->name, "guess") == 0 ? TOK_GUESS : TOK_IDENT;
   if ((f->word == TOK_CONTACT || f->word == TOK_GUIDE) && f->prev == TOK_COMMA && !f->brackets.n)
     return contact_word(t->name);
   if (f->word == TOK_FRICTION && f->prev == TOK_COMMA && !f->brackets.n)

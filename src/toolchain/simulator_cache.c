@@ -244,7 +244,7 @@ static int is_reference(const char *name) {
 static int is_entry(const char *name) {
   if (strspn(name, "0123456789abcdef") != NAME) return 0;
   return name[NAME] == '\0' || is_reference(name) || strcmp(name + NAME, ".run") == 0 ||
-         strcmp(name + NAME, ".cc") == 0;
+         strcmp(name + NAME, ".cc") == 0 || strcmp(name + NAME, ".bytes") == 0;
 }
 
 static int by_age(const void *x, const void *y) {

@@ -48,6 +48,11 @@ follow models/pendulum.lag wide energy=9..18
 close 1 period 3.40802289484 1e-10
 
 long() {
+  # the bead by a constraint: w = sqrt(g/R); on the other branch at w = 8 the height -g/w^2
+  follow $dir/hoop.lag w=1..8 --branches
+  kinds "branch point;end;end;end;end;"
+  close 1 parameter 4.42944691807002 1e-9
+  close 4 y -0.15328125 1e-10
   # folds of Duffing's oscillator, by SciPy: P(u) = u, det(P' - 1) = 0 by fsolve, period map by DOP853 at 1e-13
   follow $dir/oscillator.lag driven w=0.5..2.5
   kinds "fold;fold;end;end;"
@@ -59,6 +64,11 @@ long() {
   close 1 parameter 0.1352859193003538 1e-11 # SciPy: trace of the equation across is -2
   close 3 parameter 0.1615515151108141 1e-11 # SciPy: it is 2
   near "$title: 6 E" 5e-7 0.986709 "$(of_point 4 parameter | awk '{ printf "%.12g", 6*$1 }')"
+  # halo orbits leave the planar ones about L1 where motions across the plane have a trace of 2: SciPy's DOP853 at 1e-13 and Brent's method
+  follow $dir/cr3bp_space.lag period=2.71..2.75 --guess 2.743 --hold y --branches
+  kinds "end;branch point;end;end;end;"
+  close 2 parameter 2.7429940694621724 1e-11
+  close 2 x 0.8233908986333198 1e-10
   # M. Garcia et al. (1998): the walker's gait doubles at a slope of 0.0151; its motions of two steps at 0.0177
   follow $dir/walker.lag slope=0.008..0.018 --guess 3.88 --branches
   kinds "period doubling;end;end;period doubling;end;end;"

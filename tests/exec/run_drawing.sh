@@ -169,6 +169,8 @@ potential = k/2*(x2 - x1 - l)^2
 scene s { start x2 = 1; span 1e-9 [s] }
 END
 is "a spring in a line" 'spring | 0 0 - | 1 0 - ' "$(shapes spring.lag | sed -n 's/^\(spring\) spring 0\( | [^|]*| [^|]*\).*/\1\2/p')"
+sed 's/^potential.*/potential = k\/2*(x1 - l)^2 + k\/2*(x2 - x1 - l)^2 + k\/2*(3*l - x2 - l)^2/' spring.lag >walls.lag
+is "between walls" ' | - - - | 0 0 - ; | 0 0 - | 1 0 - ; | 1 0 - | - - - ' "$(shapes walls.lag | sed -n 's/^spring spring 0\( | [^|]*| [^|]*\).*/\1/p' | paste -s -d';' -)"
 cat >polar.lag <<'END'
 model polar "A planet by distance and angle: no spring holds it"
 coord r, phi

@@ -35,6 +35,9 @@ gives() { # gives NUMBER WORDS...
   cat err
   [ "$(last)" = "$expected" ] || { echo "$(last), expected $expected"; return 1; }
 }
+known_by() { # HOW: the rows are those of the first
+  for _ in 1 2; do "$LAGC" run units.lag free --quiet --compile "$1" -o "$1.csv" || return 1; cmp never.csv "$1.csv" || return 1; done
+}
 check 'a first run' gives "$(motion 1)"
 is 'is kept' 1 "$(runs)"
 cp err err1
@@ -97,13 +100,26 @@ units() { # WORDS...: number of files that this command compiles
   CC=$dir/cc_words "$LAGC" "$@" >out 2>&1
   grep -o 'model_[0-9]*[.]c' words | sort -u | wc -l
 }
-is 'a run: one of two units' 1 "$(units run units.lag free --quiet)"
-is 'a scene that shares it: none' 0 "$(units run units.lag other --quiet)"
-is 'the other unit' 1 "$(units run units.lag slow --quiet)"
-is 'both scenes in a picture: both' 2 "$(units plot units.lag free slow --svg p.svg)"
+is 'a run: one of two units' 1 "$(units run units.lag free --quiet --compile always)"
+is 'a scene that shares it: none' 0 "$(units run units.lag other --quiet --compile always)"
+is 'the other unit' 1 "$(units run units.lag slow --quiet --compile always)"
+is 'both scenes in a picture: both' 2 "$(units plot units.lag free slow --svg p.svg --compile always)"
 is 'build: both' 2 "$(units build units.lag -o sim)"
 check 'a scene of the other unit' ./sim slow --quiet
 check 'sines are linked' grep -q -e -DLAG_LINKED_SINES words
+
+# Evaluated or compiled: all of the above, with the simulators that are compiled; and a known run takes one that is there by now.
+"$LAGC" cache --clear >out
+for how in never auto always auto; do check "known, --compile $how" known_by $how; done
+is 'runs that are known' 3 "$(runs)"
+
+# The columns of a record are outputs of the program.
+"$LAGC" run units.lag free --every 0.1 --quiet -o record.csv
+fits() { "$LAGC" fit units.lag free --data record.csv --fit k >out 2>&1; }
+check 'a fit' fits
+sed -i '1s/x.*/y/' record.csv
+other_columns() { ! fits && grep -q 'column y:1:1: error: unknown name `y`' out; }
+check 'of other columns' other_columns
 
 # A start of a rotation is compiled.
 cat >top.lag <<'EOF'

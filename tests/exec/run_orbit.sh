@@ -67,6 +67,16 @@ long() {
   orbit models/cr3bp.lag departure mu=0.01215058560962404 x=0.823385182 "y'=0.1263" --guess 2.743 --hold x,y
   check "$title: pairs of a saddle" close_to "$(value pairing)" 0 1e-9 # of a multiplier of 2361
   near "$title: crosses the axis at a right angle" 1e-12 0 "$(sed -n "s/.*\"x'\": \([^,}]*\).*/\1/p" "$TMP/json")"
+  # motions across the plane do not act on those within: their trace by SciPy's DOP853 at 1e-13, 1.9999512850751
+  orbit $dir/cr3bp_space.lag "y'=0.12623" --guess 2.743 --hold x,y
+  close period 2.7429120843285 1e-11
+  closes 2 1 0.99997564253756 1e-10
+  # a relative motion has the multipliers that it has without the angle, by Routh; the two programs share no equation
+  orbit $dir/elastic_routh.lag --hold energy --guess 1.383
+  routh=$(value period) half=$(multiplier 1 1)
+  orbit $dir/elastic.lag --hold energy,spin --relative spin --guess 1.383
+  close period "$routh" 1e-12
+  closes 1 1 "$half" 1e-10
   # the segments do not matter
   orbit models/cr3bp.lag arenstorf --guess 17 --segments 12
   closes 1 1 285.40371175 1e-6

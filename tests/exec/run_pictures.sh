@@ -462,7 +462,7 @@ between=$(echo "$(at 152) $(at 153)" | awk '{ print ($1 + $5)/2, ($2 + $6)/2, ($
 # tried FILE: the page's own test of its controls
 tried() {
   visit "$1#test" && grep -q '^<*.*ok - seek to the start' dom && ! grep -e '^not ok' -e '>not ok' dom &&
-    [ "$(grep -c 'ok - ' dom)" -ge 12 ] && quiet_console
+    [ "$(grep -c 'ok - ' dom)" -ge 15 ] && quiet_console
 }
 check "its controls do what they say" tried double.html
 cat >odd.lag <<'END'

@@ -331,4 +331,21 @@ given() { "$LAGC" run "$TMP/given.lag" "$@" -o - --until 1 --quiet | sed -n 2p; 
 near_given() { given "$@" | awk -F, -v A="$A" '{ split("0.91796875 0.71875 0.47265625", h, " "); for (i = 1; i <= 3; i++) bad += ($(i + 1) - h[i]*A)^2 > 1e-30; exit bad || ($5 - 3*A)^2 > 1e-29 || $6 != "60" }'; }
 A=1.9166666666666667 check "starts by functions and lets" near_given
 A=5 check "starts by functions and lets, with another parameter" near_given A=5
+# ---- guesses: of a four-bar linkage with its crank at 1 the rod has two places, b = 0.3576 and -0.8348 (cosine rule: the ends are d apart, at angle f)
+cat >"$TMP/guess.lag" <<'END_OF'
+model four
+coord a [rad], b [rad], c [rad]
+kinetic = 0.1 [kg*m^2]/2*(a'^2 + b'^2 + c'^2)
+constraint px: 1 [m]*cos(a) + 3 [m]*cos(b) = 4 [m] + 2 [m]*cos(c)
+constraint py: 1 [m]*sin(a) + 3 [m]*sin(b) = 2 [m]*sin(c)
+scene up { start a = 1; start guess b = 0.6; span 1 [s]; output a }
+scene down { start a = 1; start guess b = -1.2; span 1 [s]; output a }
+END_OF
+for side in up down; do
+  check "a guess chooses the assembly, $side" sh -c '"$1" run "$2" "$3" --until 1e-9 --json >"$4" 2>/dev/null' sh "$LAGC" "$TMP/guess.lag" $side "$TMP/guess"
+  sign=$([ $side = up ] && echo 1 || echo -1)
+  right=$(awk -v s="$sign" 'BEGIN { x = 4 - cos(1); y = -sin(1); d = x*x + y*y; z = (9 + d - 4)/(6*sqrt(d)); printf "%.15g", atan2(y, x) + s*atan2(sqrt(1 - z*z), z) }')
+  check "the nearest to it" close_to "$(sed -n 's/.*"final": {.*"b": \([-0-9.e]*\).*/\1/p' "$TMP/guess")" "$right" 1e-9
+  check "and what is given stays" close_to "$(sed -n 's/.*"final": {"a": \([-0-9.e]*\).*/\1/p' "$TMP/guess")" 1 1e-12
+done
 tap_end

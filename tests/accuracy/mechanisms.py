@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""Random planar mechanisms with friction at pins and guides: cranks, four-bars, beads on ellipses.
+
+Counts runs that hang (20 s), end with an error, gain energy by friction, or whose energy is off by more than 1e-5 of its
+size at a tolerance of 1e-9.    python3 tests/accuracy/mechanisms.py [FIRST LAST]    LAGC=build/lagc
+"""
+import os
+import random
+import re
+import subprocess
+import sys
+import tempfile
+
+LAGC = os.environ.get("LAGC", "build/lagc")
+
+CRANK = """coord a [rad], b [rad], x [m], y [m]
+kinetic = {i} [kg*m^2]/2*a'^2 + {j} [kg*m^2]/2*b'^2 + {m} [kg]/2*(x'^2 + y'^2)
+potential = {m} [kg]*9.81 [m/s^2]*({g}*y + {h}*x)
+guide pin: (x, y) = ({r} [m]*cos(a) + {l} [m]*cos(b), {r} [m]*sin(a) - {l} [m]*sin(b)), friction = {mu}, slip = {d} [m]*(a' + b')
+guide rail: y = {off} [m], friction = {mu}, static = {hold}, slip = x'
+scene go {{ start a = {a}, a' = {w} [rad/s]; start guess b = 0, x = {l} [m], y = {off} [m]; span 3 [s]; output a }}
+"""
+FOURBAR = """coord a [rad], b [rad], c [rad]
+kinetic = {i} [kg*m^2]*a'^2 + {j} [kg*m^2]*b'^2 + {m} [kg*m^2]/50*c'^2
+potential = {g}*2 [N*m]*sin(a)
+constraint px: {r} [m]*cos(a) + {l} [m]*cos(b) = {l} [m] + {s} [m]*cos(c)
+constraint py: {r} [m]*sin(a) + {l} [m]*sin(b) = {s} [m]*sin(c)
+let ab = a - b, bc = b - c
+friction one on ab: {mu}*{d} [m]*hypot(lambda(px), lambda(py))
+friction two on bc: {mu}*{d} [m]*hypot(lambda(px), lambda(py)), static = {hold}*{d} [m]*hypot(lambda(px), lambda(py))
+friction three on c: {mu}*{d} [m]*hypot(lambda(px), lambda(py))
+scene go {{ start a = {a}, a' = {w} [rad/s]; start guess b = 0.2, c = 1.5; span 3 [s]; output a }}
+"""
+BEAD = """coord x [m], y [m]
+kinetic = {m} [kg]/2*(x'^2 + y'^2)
+potential = {m} [kg]*9.81 [m/s^2]*y
+guide wire: x^2/(1 + {l}) + 2*y^2 = 1 [m^2], friction = {mu}, static = {hold}
+scene go {{ start guess x = 0, y = -0.7; start x' = {w}/4 [m/s]; span 5 [s]; output x }}
+"""
+
+
+def model(seed):
+    pick = random.Random(seed)
+    r, mu = pick.uniform(0.05, 0.15), pick.uniform(0.02, 0.4)
+    text = pick.choice([CRANK, FOURBAR, BEAD])
+    return f"model m{seed}\n" + text.format(
+        r=r, s=1.3 * r + 0.02, l=pick.uniform(0.25, 0.5), mu=mu, hold=mu * pick.uniform(1, 1.6), d=pick.uniform(0.005, 0.03),
+        w=pick.uniform(-20, 20), off=pick.uniform(-0.05, 0.05), a=pick.uniform(-3, 3), m=pick.uniform(0.2, 2),
+        i=pick.uniform(0.002, 0.05), j=pick.uniform(0.001, 0.02), g=pick.choice([0, 1]), h=pick.choice([0, 1]))
+
+
+def judge(path):
+    try:
+        run = subprocess.run([LAGC, "run", path, "--tol", "1e-9"], capture_output=True, text=True, timeout=20)
+    except subprocess.TimeoutExpired:
+        return "hangs"
+    said = run.stdout + run.stderr
+    if "reached" not in said:
+        return (re.findall(r"(?:FAILED|error): (.*)", said) or ["?"])[0]
+    work = re.search(r"work of dry friction: (\S+)", said)
+    drift = re.search(r"energy balance: (\S+)", said)
+    if work and float(work[1]) > 1e-9:
+        return "gains energy by friction"
+    return "its energy is off" if drift and float(drift[1]) > 1e-5 else ""
+
+
+first, last = (int(x) for x in sys.argv[1:3]) if len(sys.argv) > 2 else (0, 200)
+with tempfile.TemporaryDirectory() as folder:
+    wrong = 0
+    for seed in range(first, last):
+        path = os.path.join(folder, "m.lag")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(model(seed))
+        why = judge(path)
+        wrong += why != ""
+        if why:
+            print(f"seed {seed}: {why}")
+print(f"{last - first} mechanisms, {wrong} of them wrong")
+sys.exit(wrong > 0)
