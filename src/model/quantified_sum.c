@@ -354,9 +354,17 @@ static int find_arguments(Arguments *a, Expr e) {
   return 1;
 }
 
-/* Whether `second` is `first` with the symbols of the second pair in the places of the first's. */
+/* Whether `second` is `first` with the symbols of the second pair in the places of the first's; members read by number
+ * inside functions and lets are in neither place. */
 static int same_for_both(const Arguments *a, Expr first, Expr second) {
   Expr back;
+  ExprList l = expr_topo(a->g, &second, 1);
+  for (uint32_t k = 0; k < l.n; k++) {
+    uint32_t place = 0;
+    if (expr_op(a->g, l.at[k]) != EX_SYM || !strchr(expr_sym_of(a->g, l.at[k])->name, '[')) continue;
+    while (place < a->second.n && a->second.at[place] != l.at[k]) place++;
+    if (place == a->second.n) return 0;
+  }
   expr_replace_nodes(a->g, &second, 1, a->second.at, a->first.at, a->first.n, &back);
   return back == first;
 }
