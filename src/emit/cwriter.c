@@ -94,9 +94,17 @@ static const char *wrapped(Writer *w, Slot s, int prec) {
   return x.prec < prec ? arena_printf(w->a, "(%s)", x.text) : x.text;
 }
 
+/* Whether i is a power of two: scaling by it is exact, so 2*(a*b) may be written 2*a*b. */
+static int is_power_of_two(const Ins *i) {
+  int64_t n = i->number.num, d = i->number.den;
+  return i->op == IR_CONST && num_is_exact(i->number) && n > 0 && (n & (n - 1)) == 0 && (d & (d - 1)) == 0;
+}
+
 /* a op b, grouped as computed: the text rounds as the program does. */
 static CExpr infix(Writer *w, const Ins *i, const char *op, int prec) {
-  const char *a = wrapped(w, i->a, prec), *b = wrapped(w, i->b, prec == C_MUL ? C_ATOM : prec + 1);
+  CExpr right = cwriter_operand(w, i->b);
+  int flat = i->op == IR_MUL && right.prec == C_MUL && right.text[0] != '-' && is_power_of_two(&w->p->ins.at[i->a]);
+  const char *a = wrapped(w, i->a, prec), *b = flat ? right.text : wrapped(w, i->b, prec == C_MUL ? C_ATOM : prec + 1);
   return (CExpr){arena_printf(w->a, "%s%s%s", a, op, b), prec, 0};
 }
 
