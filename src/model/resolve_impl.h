@@ -144,15 +144,9 @@ Value multiplier_value(Eval *ev, const AstExpr *x);
 /* Converts the value of an index expression to an integer; 0, reported, if it is none. */
 int whole_number(Builder *b, const Value *v, AstId id, int64_t *out);
 
-<<<<<<< HEAD
 /* quantified_sum.c: starts the sum `id` over i in lo .. hi, or the sum inside it, as one over representative pairs;
  * 0: it has no such form; -1: its value is set. quantified_next takes the value v of a body: 1: evaluate it again;
  * 0: *v is that of the sum. */
-=======
-/* quantified_sum.c: starts the sum `id` over i in lo .. hi, or the sum inside it, as one over representative pairs; 0:
- * it has no such form; -1: its value is set. quantified_next takes the value v of a body: 1: evaluate it again; 0: *v
- * is that of the sum. */
->>>>>>> w-sums
 int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi);
 int quantified_next(Eval *ev, Value *v);
 
