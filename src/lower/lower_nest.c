@@ -37,6 +37,26 @@ static int array_index(const NestBuilder *b, const Subscript *at, Ins *load, IrS
   return 1;
 }
 
+/* The value that all arguments of a read have, as of parameters fixed to one number; NOT_A_SLOT: they differ. */
+static Slot common_value(const NestBuilder *b, const Subscript *at) {
+  int64_t least, most, step = subscript_step(at);
+  if (!loop_extent(&b->s->range, at, &least, &most)) return NOT_A_SLOT;
+  Slot first = arg_slot(b, least);
+  for (int64_t k = least; k <= most; k += step)
+    if (arg_slot(b, k) != first) return NOT_A_SLOT;
+  return first;
+}
+
+/* A value of the program around, in the body. */
+static Slot outer_value(NestBuilder *b, Slot outer) {
+  const Ins *i = &b->l->p->ins.at[outer];
+  if (!outer) return 0;
+  if (i->op == IR_CONST) return prog_num(b->body.p, i->number);
+  vec_push(b->l->p->arena, &b->outer, outer);
+  return prog_ins(b->body.p,
+                  (Ins){.op = IR_LOAD, .array = ARR_OUTER, .index = b->outer.n - 1, .name = i->name});
+}
+
 /* Slots of the body for the reads that vary; 0: one has no index. Those of the row stand before those of the turn:
  * products begin with what changes least. */
 static int load_reads(NestBuilder *b) {
@@ -46,6 +66,11 @@ static int load_reads(NestBuilder *b) {
       Ins load;
       IrSubscript at;
       if (!varies(&r->at) || (r->at.by_turn != 0) != by_turn) continue;
+      Slot common = common_value(b, &r->at);
+      if (common != NOT_A_SLOT) {
+        expr_map_set(&b->body.slots, expr_symbol(b->l->g, r->symbol)->node, outer_value(b, common) + 1);
+        continue;
+      }
       if (!array_index(b, &r->at, &load, &at)) return 0;
       vec_push(b->l->p->arena, &b->at, at);
       Slot s = prog_ins(b->body.p,
@@ -68,11 +93,7 @@ static void load_outer(NestBuilder *b, Expr e) {
   }
   Expr around = expr_replace(g, e, syms, with, n);
   lower_roots(b->l, &around, 1);
-  Slot outer = lower_slot(b->l, around);
-  vec_push(b->l->p->arena, &b->outer, outer);
-  Slot s = prog_ins(b->body.p, (Ins){.op = IR_LOAD,
-                                     .array = ARR_OUTER, .index = b->outer.n - 1,
-                                     .name = b->l->p->ins.at[outer].name});
+  Slot s = outer_value(b, lower_slot(b->l, around));
   expr_map_set(&b->body.slots, e, s + 1);
 }
 

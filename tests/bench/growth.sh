@@ -23,6 +23,7 @@ scene swing {
   span 1 [s]
 }
 MODEL
+  bodies) sed "s/^const N = .*/const N = $n/" tests/bench/models/bodies.lag ;;
   scenes)
     cat <<MODEL
 model scenes "an oscillator, started in N ways"
@@ -66,6 +67,7 @@ grows() {
   row "lagc check, $1, slope of log memory" '<= 1.15' '' "${slopes#* }" '' "$(at_most "${slopes#* }" 1.15)"
 }
 grows 'N rods' rods 100 800
+grows 'N bodies, a sum over all pairs,' bodies 200 2000
 grows 'N scenes' scenes 1000 8000
 grows 'N outputs' outputs 10000 100000
 

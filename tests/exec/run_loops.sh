@@ -155,6 +155,8 @@ check "links in space" has_loops spatial 800
 check "pairs of 20 bodies" has_loops bodies 70
 check "24 bodies by hand" has_loops bodies_by_hand 80
 check "2,415 pairs, which stay a sum, run" "$LAGC" run tests/bench/models/bodies.lag -DN=70 --until 0.001 --quiet -o "$TMP/seventy.csv"
+check "and stays one where all parameters are numbers" "$LAGC" emit tests/bench/models/bodies.lag -DN=70 --fix all -o "$TMP/seventy.c"
+is "with one nest for its forces" 1 "$(sed -n '/^static int accel/,/^}/p' "$TMP/seventy.c" | grep -c 'for (int j')"
 slow check "choices and functions" has_loops odd 120
 check "side rods along a chain" has_loops comb 330
 check "all pulled by the first" has_loops star 20
