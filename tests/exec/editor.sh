@@ -77,6 +77,7 @@ slots() {
       static) line='friction rub on x: mu*N, static = mu_s*N' ;;
       of) line='momentum p of x [kg*m/s]' ;;
       exactly) line='start exactly q = 1' ;;
+      guess) line='start guess b = 1' ;;
       every) line='output x every 0.1 [s]' ;;
       *) line="no sample for $w" ;;
     esac

@@ -186,7 +186,7 @@ check "an unknown name in --map" says 2 "\`thh\` is no component of y" verify mo
 check "a wrong model" says 1 error verify tests/golden/err/sem_unit_of_divisor.lag --against $hand:pendulum
 leaves_nothing() {
   for f in pendulum crashes of_three; do XDG_CACHE_HOME=$TMP/cache verify models/pendulum.lag --against $hand:$f; done
-  [ -d "$TMP/cache/lagc" ] && [ -z "$(ls "$TMP/cache/lagc")" ]
+  [ -d "$TMP/cache/lagc" ] && [ -z "$(ls "$TMP/cache/lagc" | grep -v "[.]cc$")" ]
 }
 check "nothing is left in the cache's folder" leaves_nothing
 
