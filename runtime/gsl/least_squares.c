@@ -49,7 +49,7 @@ static int minimise(int m, int n, double *x, lag_residuals_at *residuals, void *
   gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
   parameters.trs = gsl_multifit_nlinear_trs_lmaccel;
   parameters.scale = gsl_multifit_nlinear_scale_levenberg; /* coordinates have scales of their own */
-  parameters.solver = gsl_multifit_nlinear_solver_qr; /* that by singular values may not end for columns of rounding */
+  parameters.solver = gsl_multifit_nlinear_solver_qr;
   gsl_multifit_nlinear_fdf fdf = {
       .f = residuals_f, .df = residuals_df, .n = (size_t)m, .p = (size_t)n, .params = &problem};
   gsl_multifit_nlinear_workspace *w =
