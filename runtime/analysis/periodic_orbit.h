@@ -9,9 +9,11 @@
 
 enum { ORBIT_MOST_HELD = 16, ORBIT_MOST_GROUP = 8, ORBIT_TRACE = 8 };
 
+typedef enum { ORBIT_STATE, ORBIT_CHARGE, ORBIT_PERIOD } OrbitHoldKind;
+
 /* A condition: component `of` of the state (ORBIT_STATE), a charge, or the period, equals `value`. */
 typedef struct OrbitHold {
-  enum { ORBIT_STATE, ORBIT_CHARGE, ORBIT_PERIOD } kind;
+  OrbitHoldKind kind;
   int of;
   double value;
 } OrbitHold;

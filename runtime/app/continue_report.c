@@ -274,7 +274,7 @@ static int begin_periodic(Job *job) {
   if (rc) return rc;
   if (job->led_kind >= 0) {
     o->led = o->nheld;
-    o->held[o->nheld++] = (OrbitHold){.kind = job->led_kind, .of = job->led_of};
+    o->held[o->nheld++] = (OrbitHold){.kind = (OrbitHoldKind)job->led_kind, .of = job->led_of};
     job->begin = (led_value(job) - job->offset) / job->factor;
     if (job->begin < fmin(job->low, job->high) || job->begin > fmax(job->low, job->high))
       return lag_app_error(&app->args,

@@ -6,7 +6,9 @@
 #define lag_sincos inline_sincos
 #define lag_sin inline_sin
 #define lag_cos inline_cos
+#ifdef __SSE2__ /* elsewhere lag_sincos2 is a macro of lag_math.h */
 #define lag_sincos2 inline_sincos2
+#endif
 #include "lag_model.h"
 #include "lag_math.h"
 #undef lag_sincos
