@@ -154,7 +154,7 @@ static const char *const whole_step =
     "d|  lag_joints_place(&w, room);\n"
     "d|  for (int j = 0; j < LAG_NSURFACES; j++) {\n"
     "d|    w.mode[j] = s->mode[j];\n"
-    "d|    w.sticks[j] = s->touch[j] == LAG_STICKS ? LAG_C(1.0) : LAG_C(0.0);\n"
+    "d|    w.sticks[j] = s->touch[j] == (LAG_REAL)LAG_STICKS ? LAG_C(1.0) : LAG_C(0.0);\n"
     "d|  }\n"
     "d|  LAG_TRY(lag_joints_begin(LAG_THE_MODEL, &w, s->t, y));\n"
     " |  LAG_TRY(lag_moreau_kick(LAG_THE_MODEL, &k, &w));\n"

@@ -47,12 +47,13 @@ static void random_state(Point *s) {
 }
 
 /* Of constraints with `while`, which contradict each other, the first alone holds; so do contacts beyond the number
- * of coordinates, which are open. */
+ * of coordinates that other constraints leave free, which are open. */
 static void close_first(const Model *m, Point *s) {
   Name first = model_conditional(m);
+  uint32_t always = m->constraints.n - m->contacts.n;
   for (uint32_t i = 0; i < m->contacts.n; i++) {
     const Contact *c = &m->contacts.at[i];
-    if (c->margin || i >= m->coords.n) s->u[expr_symbol(m->g, c->closed)->index] = c->margin && c->name == first;
+    if (c->margin || always + i >= m->coords.n) s->u[expr_symbol(m->g, c->closed)->index] = c->margin && c->name == first;
   }
 }
 
