@@ -11,7 +11,6 @@
 #include <string.h>
 
 #include "numeric/dense.h"
-#include "numeric/singular_values.h"
 
 enum { LEVELS = 10, MOST_STEPS = 60, MOST_PLANES = 24, SAMPLES = 4, DESCENT = 2000 };
 
@@ -299,17 +298,28 @@ static int find_symmetries(SteadyMotion *s) {
 /* ---- The nearest steady motion */
 
 /* x[cols] := the shortest vector of those that make A x + b least. A[rows * cols] and b[rows]. A status < 0, or 0. */
-static int least_squares(int rows, int cols, const double *A, const double *b, double *x) {
+static int least_squares(SteadyMotion *s, int rows, int cols, const double *A, const double *b, double *x) {
   Pool pool = {0};
-  double *AV = lag_pool_doubles(&pool, (size_t)rows * (size_t)cols), *sigma = lag_pool_doubles(&pool, (size_t)cols);
-  double *V = lag_pool_doubles(&pool, (size_t)cols * (size_t)cols);
-  if (pool.failed) return lag_pool_free(&pool), LAG_ENOMEM;
-  memcpy(AV, A, (size_t)rows * (size_t)cols * sizeof *A);
-  lag_singular_values(rows, cols, AV, V, sigma);
-  lag_least_norm(rows, cols, AV, V, sigma, 1e-7, 0, b, x);
-  for (int j = 0; j < cols; j++) x[j] = -x[j];
+  int size = rows > cols ? rows : cols;
+  double *Q = lag_pool_doubles(&pool, (size_t)size * (size_t)size),
+         *B = lag_pool_doubles(&pool, (size_t)rows * (size_t)size);
+  double *N = lag_pool_doubles(&pool, (size_t)size * (size_t)size), *z = lag_pool_doubles(&pool, (size_t)size);
+  int rank = pool.failed ? LAG_ENOMEM : lag_padded_kernel(&pool, s->algebra, size, (Rectangle){rows, cols, A},
+                                                          1e-7 * largest(rows * cols, A), Q);
+  for (int i = 0; i < rows && rank > 0; i++)
+    for (int k = 0; k < rank; k++)
+      for (int j = 0; j < cols; j++) B[i * rank + k] += A[i * cols + j] * Q[j * size + k];
+  for (int k = 0; k < rank; k++)
+    for (int i = 0; i < rows; i++) {
+      z[k] -= B[i * rank + k] * b[i];
+      for (int l = 0; l < rank; l++) N[k * rank + l] += B[i * rank + k] * B[i * rank + l];
+    }
+  int rc = rank < 0 ? rank : rank && lag_solve_dense((size_t)rank, 1, N, z) ? LAG_ESINGULAR : LAG_OK;
+  memset(x, 0, (size_t)cols * sizeof *x);
+  for (int j = 0; j < cols && rc == LAG_OK; j++)
+    for (int k = 0; k < rank; k++) x[j] += Q[j * size + k] * z[k];
   lag_pool_free(&pool);
-  return LAG_OK;
+  return rc;
 }
 
 /* J[nrows * (n + m)], b[nrows]: the equations f - X = 0 and the constraints at y, in units; at rest velocities are
@@ -366,7 +376,7 @@ static int choose_generator(SteadyMotion *s, double *J, double *b, double *X) {
     for (int r = 0; r < n; r++) J[r * m + k] = X[r] / s->unit[r];
   }
   for (int r = 0; r < n; r++) b[r] = -s->f[r] / s->unit[r];
-  return rc ? rc : m ? least_squares(n, m, J, b, s->c) : LAG_OK;
+  return rc ? rc : m ? least_squares(s, n, m, J, b, s->c) : LAG_OK;
 }
 
 /* y := the state on the constraints next to y; where there is none, y stays. */
@@ -390,7 +400,7 @@ static int newton(SteadyMotion *s, int *steps) {
     if ((rc = equations(s, m, J, b, X, DX)) != LAG_OK) break;
     found = is_root(s, cols, J, b);
     weigh_rows(s, cols, J, b);
-    if ((rc = least_squares(s->nrows, cols, J, b, x)) != LAG_OK) break;
+    if ((rc = least_squares(s, s->nrows, cols, J, b, x)) != LAG_OK) break;
     step = largest(n, x);
     found &= step < 1e-9;
     if (found && (k == 0 || step < 1e-14 || step > 0.5 * last)) break; /* a start that is steady to rounding stays */

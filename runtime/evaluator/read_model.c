@@ -158,7 +158,7 @@ static void read_guides(Reader *r, const lag_contact *c, int n) {
   for (int i = 0; g && i < have; i++) {
     g[i].tangent = (int)lag_bytes_below(b, (uint32_t)n), g[i].parts = lag_bytes_int(b, 1, 3);
     g[i].turn = lag_bytes_int(b, -1, m->nev - 1);
-    lag_bytes_need(b, c && c[g[i].tangent].is_tangent, "a guide has no tangent");
+    lag_bytes_need(b, c && n > 0 && c[g[i].tangent].is_tangent, "a guide has no tangent");
   }
   m->guides = g;
   for (int i = 0; c && g && i < n; i++) {

@@ -80,7 +80,7 @@ if ! has_precision long; then
 else
   says 'taylor, 19 digits, itself uncertain by [0-9.]*e-1[6-9]'
   # A model with constraints has no Taylor series; dop853 computes with as many digits as errors of doubles are judged by.
-  "$LAGC" cost tests/exec/models/rod.lag --until 2 --methods rk4 --seconds 1 >"$TMP/rod"
+  "$LAGC" cost tests/exec/models/rod.lag --until 2 --methods rk4 --seconds 8 >"$TMP/rod"
   check "with constraints, enough digits" awk '/uncertain by/ { x = $NF; exit } END { print x; exit !(x > 1e-20 && x < 1e-16) }' "$TMP/rod"
 fi
 says '^cheapest setting for an error of 1e-06: .* ms, error '
