@@ -128,7 +128,7 @@ two_of_five() { weigh models/satellite.lag low --accuracy 1e-4 && of effects | t
 slow check "satellite: two of five" two_of_five
 pasted() { # the proposed `use` line, put into the scene, gives a result of that accuracy
   use=$(smallest models/satellite.lag low --accuracy 1e-4)
-  sed "/^scene low /,/^}/s/^  use .*/  $use/" models/satellite.lag >"$dir/pasted.lag"
+  sed "/^scene low /s/use [a-z, ]*/$use /" models/satellite.lag >"$dir/pasted.lag"
   for f in models/satellite.lag "$dir/pasted.lag"; do "$LAGC" run "$f" low -o - --quiet 2>/dev/null | tail -1 | tr , '\n' | sed -n 2,4p; done >"$dir/ends"
   awk '{ x[NR] = $1 } END { d = sqrt((x[1]-x[4])^2 + (x[2]-x[5])^2 + (x[3]-x[6])^2)/sqrt(x[1]^2 + x[2]^2 + x[3]^2); print d; exit !(NR == 6 && d > 0 && d < 1e-4) }' "$dir/ends"
 }
