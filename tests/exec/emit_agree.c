@@ -53,7 +53,8 @@ static void close_first(const Model *m, Point *s) {
   uint32_t always = m->constraints.n - m->contacts.n;
   for (uint32_t i = 0; i < m->contacts.n; i++) {
     const Contact *c = &m->contacts.at[i];
-    if (c->margin || always + i >= m->coords.n) s->u[expr_symbol(m->g, c->closed)->index] = c->margin && c->name == first;
+    if (c->margin || always + i >= m->coords.n)
+      s->u[expr_symbol(m->g, c->closed)->index] = c->margin && c->name == first;
   }
 }
 
