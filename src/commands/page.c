@@ -10,6 +10,7 @@
 #include "commands/live_page.h" /* generated from runtime/page */
 #include "commands/simulator.h"
 #include "emit/emit_model.h"
+#include "mech/switches.h"
 #include "report/equation_listing.h"
 #include "toolchain/files.h"
 #include "toolchain/toolchain.h"
@@ -44,6 +45,7 @@ static void put_text(StrBuf *out, Arena *a, const char *text) {
 static int put_program(Compiler *c, const char *scene, const EffectList *only, int first, StrBuf *out, Eqns **of) {
   ModelChoice choice = {.scene = scene, .only = only, .drawing = 1, .given = c->given.at, .ngiven = c->given.n};
   Eqns *e = *of = compiler_derive(c, &choice);
+  if (e) switches_find(e);
   ProgramSet *u = e ? compiler_lower_scene(c, e, 1) : NULL;
   if (!u) return 0;
   StrBuf bytes = strbuf(c->arena);

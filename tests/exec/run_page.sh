@@ -23,6 +23,7 @@ if command -v node >/dev/null 2>&1; then
   check "a double pendulum has the digits of lagc run" digits double_pendulum swing 5
   check "a slider-crank, held by constraints" digits slider_crank idle 1
   check "impacts of a ball" digits bouncing_ball drop 2
+  check "dry friction, sticking and slipping" digits stick_slip squeak 2
   slow check "a planet" digits kepler orbit 20
   slow check "a body that turns about all axes" digits free_body free 5
   "$LAGC" page models/pendulum.lag small -o "$TMP/page.html"
