@@ -33,13 +33,15 @@ const char *page_shape(const lag_scene *scene, int i) {
 /* Outputs that only the drawing has, the last ones. */
 int page_drawn(const lag_scene *scene) { return scene->ndrawn; }
 
-/* Sets a method by name, with a step [s] where it has that option and step > 0, and a tolerance; an empty name: the one
- * of `lagc run` for a run until `until`. Returns LAG_OK or a status with a message (lag_sim_message). */
+/* Sets a method by name, with a step [s] where it has that option and step > 0, and a tolerance; an empty name: the
+ * scene's, or the one of `lagc run` for a run until `until`. Returns LAG_OK or a status with a message
+ * (lag_sim_message). */
 int page_set_method(lag_sim *sim, const char *name, double tol, double step, double until) {
   const lag_option option = {.name = "step", .value = step};
   int rc = tol > 0 ? lag_sim_set_tolerance(sim, tol) : LAG_OK;
   rc = rc ? rc : lag_sim_balance(sim);
   if (rc) return rc;
+  if (!*name && lag_sim_scene(sim)->method) return LAG_OK;
   if (!*name) return lag_sim_choose_method(sim, until, 0, &option, step > 0, text, sizeof text);
   return lag_sim_set_method(sim, lag_find_method(name), &option, step > 0);
 }
@@ -98,6 +100,7 @@ lag_sim *page_begin(const lag_scene *scene, double t) {
   lag_scene *own = malloc(sizeof *own);
   if (!own) return NULL;
   *own = *scene;
+  own->nmonitors = 0; /* limits for the scene's own method */
   if (!isnan(t)) own->t0 = t;
   lag_sim *sim = lag_sim_new(own);
   if (!sim) free(own);
