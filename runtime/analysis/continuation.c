@@ -130,7 +130,7 @@ static double test_of(const BranchPoint *at, BranchKind kind) {
 
 static int changes_sign(double a, double b) { return (a < 0 && b > 0) || (a > 0 && b < 0); }
 
-/* What lies between two points; BRANCH_REGULAR: nothing, or nothing more after `after`. */
+/* Kind of the point between two others; BRANCH_REGULAR: none, or no further one after `after`. */
 static BranchKind between(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b) {
   int fold = changes_sign(a->fold, b->fold), zero = changes_sign(a->zero, b->zero),
       minus = p->maps && changes_sign(a->minus, b->minus);

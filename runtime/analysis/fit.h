@@ -3,7 +3,7 @@
 
 #include "lag.h"
 
-/* What is fitted. Values are in declared units. */
+/* Targets of a fit. Values are in declared units. */
 typedef struct FitTarget {
   const char *name; /* as lag_sim_set takes it */
   char label[96], unit[64];

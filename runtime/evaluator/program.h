@@ -64,7 +64,7 @@ typedef struct {
   int moves;
 } TurnIns;
 
-/* What a turn adds to a sum, or subtracts. */
+/* Term that a turn adds to a sum, or subtracts. */
 typedef struct {
   uint32_t minus, subscript, value;
   int moves;

@@ -27,7 +27,7 @@ static const double *array(const Program *p, const double *const *in, const uint
   return (at[1] == PROGRAM_CONSTANTS ? p->constants : in[at[1]]) + at[2];
 }
 
-/* What the loop below calls stays outside of it, which needs the registers. */
+/* Calls of the loop below, functions of their own, so that the loop keeps its registers. */
 #if defined(__GNUC__)
 #define APART __attribute__((noinline)) static
 #else

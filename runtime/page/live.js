@@ -268,19 +268,7 @@ function machineOf(run) {
     draw(of) {
       rows = of;
       at = rows.length - 1;
-      ratio = devicePixelRatio || 1;
-      style = getComputedStyle(document.documentElement);
-      wide = canvas.clientWidth;
-      high = canvas.clientHeight;
-      if (canvas.width != Math.round(wide*ratio) || canvas.height != Math.round(high*ratio)) {
-        canvas.width = Math.round(wide*ratio);
-        canvas.height = Math.round(high*ratio);
-      }
-      pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-      pen.clearRect(0, 0, wide, high);
-      fit();
-      grid();
-      machine();
+      drawMachine();
     },
   };
 }

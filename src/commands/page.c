@@ -15,8 +15,6 @@
 #include "toolchain/files.h"
 #include "toolchain/toolchain.h"
 
-enum { SETS_MOST = 16 };
-
 static const char need[] =
     "`lagc page` needs %s, liblag as WebAssembly: run `make page` where lagc is built, with Clang "
     "for it (apt-get install clang lld wasi-libc libclang-rt-14-dev-wasm32)";

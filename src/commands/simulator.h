@@ -54,7 +54,7 @@ int simulator_of_units(Compiler *c, const Units *units, const char *output, cons
 /* Whether mpirun or srun started this sweep as another process than the first one, which prints the warnings. */
 int simulator_is_later_rank(const Compiler *c);
 
-/* What the command finds beside text and words: other processes of a sweep, the lanes of this machine. */
+/* Surroundings of the command, beside text and words: other processes of a sweep, the lanes of this machine. */
 const char *simulator_surroundings(const Compiler *c);
 
 /* The words of the command line that say which motion is run: scene, name=value, --until. */
