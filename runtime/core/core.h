@@ -47,6 +47,7 @@ enum { LAG_BINS = 32, LAG_NODES = 8 };
 typedef struct Charge {
   double begin;      /* Q at the start */
   double first;      /* Q at the start, plus the jumps of Q at events */
+  double left, jumped; /* Q before the event that acts; sum of the |jumps| of Q at events */
   double peak;       /* largest |difference| */
   double size;       /* sum of |terms of Q| at the start: the size of Q, until there are bins */
   double terms;      /* size of Q where that is rounding (sizes.c), */
