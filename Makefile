@@ -221,7 +221,7 @@ $(foreach p,$(PRECISIONS),$(eval $(call precision_rules,$(p))))
 
 SHELLS := bash zsh fish
 # Texts as C, in the order of their lines: `static const char *const NAME[]`, with the name of the file that they become.
-AS_C = { echo 'static const char *const $(basename $(@F))[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $<; echo '};'; }
+AS_C = { echo 'static const char *const $(basename $(@F))[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $^; echo '};'; }
 define as_text
 $(BUILD)/gen/$(1): $(2)
 	@mkdir -p $$(@D)
@@ -231,9 +231,7 @@ endef
 $(eval $(call as_text,io/page.h,runtime/io/page.html))
 $(eval $(call as_text,commands/verify_driver.h,src/commands/verify_driver.in))
 $(eval $(call as_text,toolchain/probe_text.h,src/toolchain/compiler_probe.in))
-$(eval $(call as_text,emit/lag_%.h,runtime/include/lag_%.h))
-$(eval $(call as_text,emit/%_kernel.h,runtime/kernels/%.h))
-$(eval $(call as_text,emit/%_text.h,runtime/methods/%.c))
+$(eval $(call as_text,emit/embedded_texts.h,$(patsubst %,runtime/include/lag_%.h,lanes math sincos support kkt) $(sort $(wildcard runtime/kernels/*.h))))
 $(eval $(call as_text,fmu/%_text.h,src/fmu/%.in))
 $(eval $(call as_text,commands/language.h,$(BUILD)/gen/commands/language.txt))
 $(eval $(call as_text,commands/tutorial.h,models/TUTORIAL.md))
@@ -276,7 +274,7 @@ $(BUILD)/obj/src/fmu/zip.o: SRC_FLAGS += $(if $(ZIP),-DLAGC_WITH_ZIP)
 $(BUILD)/obj/src/toolchain/toolchain.o: SRC_FLAGS += '-DLAGC_LIBDIR="$(LIB_FROM_BIN)"' '-DLAGC_INCLUDEDIR="$(INCLUDE_FROM_BIN)"'
 $(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/fmu/zip.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
-$(BUILD)/obj/src/emit/embedded_math.o: $(patsubst %,$(BUILD)/gen/emit/lag_%.h,lanes math sincos support kkt) $(patsubst runtime/kernels/%.h,$(BUILD)/gen/emit/%_kernel.h,$(wildcard runtime/kernels/*.h))
+$(BUILD)/obj/src/emit/embedded_math.o: $(BUILD)/gen/emit/embedded_texts.h
 $(BUILD)/obj/src/toolchain/compiler_probe.o: $(BUILD)/gen/toolchain/probe_text.h
 $(BUILD)/obj/src/fmu/fmu_archive.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimulation fmi2 fmi3)
 $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,language python readme tutorial)
