@@ -173,8 +173,12 @@ static double change_of_rate(const ContactSet *w, int i, const double *d) {
   return rate_change(w->sim->scene->model, w->A, i, d);
 }
 
-double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed,
-                               const double *d, const double *A, double *before, double *after) {
+/* contact.c: the coefficient of restitution of contact i, from Newton's law in the model for a state y whose
+ * velocities are changed by d[nq] times -(rate + speed), so that the gap closes with `speed`. rate: of its gap at y,
+ * t; d changes that by 1; pb->u: this contact is closed, others are open; A: entries of the Jacobian; before[n],
+ * after[n] are scratch. NaN: there is none. */
+static double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed,
+                                      const double *d, const double *A, double *before, double *after) {
   const lag_model *m = pb->model;
   int nq = m->nq, stop = 0;
   size_t bytes = (size_t)pb->n * sizeof *y;

@@ -13,7 +13,8 @@ void lag_step_limits_init(lag_step_limits *l, const lag_problem *pb, const doubl
   l->atol = opt[LAG_OPT_ATOL];
 }
 
-double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const double *x, const double *y) {
+/* Weighted root mean square of x[n], with weights 1/(relative (floor_i + |y_i|)). */
+static double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const double *x, const double *y) {
   double s = 0;
   for (int i = 0; i < pb->n; i++) {
     double r = x[i] / (tol->relative * lag_tolerance_floor(tol->limits, pb, i) + tol->relative * fabs(y[i]));
