@@ -9,6 +9,7 @@
 #include "core/core.h"
 #include "core/rhs.h"
 #include "numeric/magnitudes.h"
+#include "numeric/workspace.h"
 
 enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
 
@@ -30,13 +31,11 @@ size_t lag_constraint_scratch_size(const lag_model *m) {
 
 static ConstraintScratch layout(const lag_problem *pb) {
   ConstraintScratch w = {.of = pb->model->constraints};
-  double *x = pb->held, **const parts[] = {&w.c, &w.r, &w.before, &w.g,     &w.terms[0], &w.terms[1],
-                                           &w.A, &w.M, &w.d,      &w.force, &w.step,     &w.other};
-  const int n = w.of->n, sizes[] = {n, n, n, n, n, n, w.of->njacobian, w.of->nmass, pb->nq, pb->nq, pb->nq, 0};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-    *parts[i] = x;
-    x += sizes[i];
-  }
+  const size_t n = (size_t)w.of->n, nq = (size_t)pb->nq;
+  const lag_part parts[] = {{&w.c, n}, {&w.r, n}, {&w.before, n}, {&w.g, n}, {&w.terms[0], n}, {&w.terms[1], n},
+      {&w.A, (size_t)w.of->njacobian}, {&w.M, (size_t)w.of->nmass}, {&w.d, nq}, {&w.force, nq}, {&w.step, nq},
+      {&w.other, 0}};
+  lag_workspace_slice(pb->held, sizeof parts / sizeof *parts, parts);
   return w;
 }
 

@@ -308,8 +308,7 @@ void set_measure(Builder *b, const AstStmt *st);
 void ask_measure(Builder *b, const CommandOutput *asked);
 
 /* input_rates.c: notes that the rate of this order of the inputs in e, or of those of momenta, is needed;
- declares the rates of an input that an earlier build noted, behind it; gives them formulas and
- * tables. */
+ * declares the rates of an input that an earlier build noted, behind it; gives them formulas and tables. */
 void want_rates_of(Builder *b, Expr e, int order);
 void want_rates_of_momenta(Builder *b);
 void declare_input_rates(Builder *b, uint32_t input);
