@@ -380,7 +380,8 @@ static int prepare(Radau *w, const RadauArrays *a, lag_problem *pb, double t, co
   w->ready = 1;
   for (int i = 0; i < pb->n; i++) a->scale[i] = w->rtol * lag_tolerance_floor(&w->limits, pb, i) + w->rtol * fabs(y[i]);
   lag_step_limits_begin(&w->limits, t);
-  if (w->h == 0.0) w->h = lag_first_step(pb, &tol, 5, w->limits.h_max, t, y, a->f0, a->ys, a->fs);
+  if (w->h == 0.0)
+    w->h = lag_first_step(pb, &tol, (lag_first_try){.order = 5, .t = t, .y = y, .f = a->f0, .y1 = a->ys, .f1 = a->fs});
   return LAG_OK;
 }
 

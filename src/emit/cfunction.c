@@ -1,6 +1,7 @@
 /* C text of the support functions, and the frame of a function around the body of a Prog. */
 #include "emit/cfunction.h"
 
+#include <ctype.h>
 #include <string.h>
 
 #include "base/num.h"
@@ -8,7 +9,7 @@
 void csupport_expand(const char *text, const char *prefix, const char *lower, StrBuf *out) {
   for (const char *s = text; *s;) {
     int upper = strncmp(s, "LAG_", 4) == 0, is_lower = strncmp(s, "lag_", 4) == 0;
-    if (upper || is_lower) {
+    if ((upper || is_lower) && (s == text || !(isalnum((unsigned char)s[-1]) || s[-1] == '_'))) {
       sb_printf(out, "%s_", upper ? prefix : lower);
       s += 4;
     } else {

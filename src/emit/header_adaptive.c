@@ -40,7 +40,6 @@ static const char *const move =
   " |#define LAG_MOVE(taken, s, end) do { if (taken) *(s) = *(end); } while (0)\n"
   " |#endif\n";
 
-/* The first step. */
 static const char *const begin =
     " |\n"
     " |/* A trial step of an adaptive method. */\n"
@@ -48,27 +47,10 @@ static const char *const begin =
     "*end,\n"
     " |    const lag_adaptive *w, LAG_REAL *error);\n"
     " |\n"
-    " |static LAG_REAL lag_norm(const lag_adaptive *w, const LAG_REAL *x, const LAG_REAL *y) {\n"
-    " |  LAG_REAL sum = LAG_C(0.0);\n"
-    " |  for (int i = 0; i < LAG_NY; i++) {\n"
-    " |    const LAG_REAL r = x[i]/(w->absolute + w->tolerance*LAG_FN(fabs)(y[i]));\n"
-    " |    sum += r*r;\n"
-    " |  }\n"
-    " |  return LAG_FN(sqrt)(sum/(LAG_LANE)LAG_NY);\n"
-    " |}\n"
-    " |\n"
-    " |/* The first step to try. */\n"
-    " |static LAG_REAL lag_first_step(const lag_params *p, const lag_adaptive *w, int order, LAG_REAL dir, LAG_REAL t, "
-    "const LAG_REAL *yHELD,\n"
-    " |    LAG_REAL (*k)[LAG_NY]) {\n"
-    " |  const LAG_REAL d1 = lag_norm(w, k[0], y), h0 = lag_first_euler_step(lag_norm(w, y, y), d1, w->longest);\n"
-    " |  LAG_REAL x[LAG_NY];\n"
-    " |  for (int i = 0; i < LAG_NY; i++) x[i] = y[i] + dir*h0*k[0][i];\n"
-    " |  const LAG_MASK failed = LAG_FAILED(lag_rates(p, t + dir*h0, xPASS, k[1]));\n"
-    " |  if (!LAG_ANY(LAG_NOT(failed))) return h0*LAG_C(1e-3);\n"
-    " |  for (int i = 0; i < LAG_NY; i++) k[1][i] -= k[0][i];\n"
-    " |  return LAG_SELECT(failed, h0*LAG_C(1e-3), lag_first_size(order, h0, d1, lag_norm(w, k[1], y)/h0));\n"
-    " |}\n";
+    " |#define LAG_START_MODEL const lag_params *p, const lag_adaptive *wHELD\n"
+    " |#define LAG_THE_START p, wPASS\n"
+    " |#define LAG_START_ALLOWED(i, size) (USESLAG_ALLOWED(i, size))\n"
+    " |#define LAG_START_RATES(t, y, f) lag_rates(p, t, yPASS, f)\n";
 
 /* A step of one state, or a try of several, each with its own size: memory is negative where the last try was
  * rejected. */
@@ -80,7 +62,7 @@ static const char *const adapt =
     " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), dir = LAG_SELECT(until < s->t, -one, one), gap = "
     "dir*(until - s->t);\n"
     " |  const LAG_MASK busy = until != s->t;\n"
-    " |  LAG_REAL y[LAG_NY], error;\n"
+    " |  LAG_REAL y[LAG_NY], y1[LAG_NY], error;\n"
     " |  int status = LAG_OK;\n"
     " |  LAG_TRY(LAG_STATUS(LAG_NOT(LAG_AND(w->tolerance >= zero, LAG_AND(w->absolute >= zero, w->tolerance + "
     "w->absolute > zero))), LAG_ETOLERANCE));\n"
@@ -88,8 +70,8 @@ static const char *const adapt =
     " |  lag_gather(s, y);\n"
     " |  LAG_TRY(lag_rates(p, s->t, yPASS, k[0]));\n"
     " |  const LAG_MASK first = LAG_AND(LAG_AND(busy, LAG_NOT(w->step > zero)), LAG_NOT(LAG_FAILED(status)));\n"
-    " |  if (LAG_ANY(first)) w->step = LAG_SELECT(first, lag_first_step(p, w, c->order, dir, s->t, yPASS, k), "
-    "w->step);\n"
+    " |  const lag_first_try start = {LAG_NY, c->order, dir, s->t, w->longest, one, y, k[0], y1, k[1]};\n"
+    " |  if (LAG_ANY(first)) w->step = LAG_SELECT(first, lag_start_step(p, wPASS, &start), w->step);\n"
     " |  for (;;) {\n"
     " |    const LAG_REAL wanted = LAG_SELECT(LAG_AND(w->longest > zero, w->longest < w->step), w->longest, w->step);\n"
     " |    const LAG_MASK clipped = LAG_NOT(wanted*(one + LAG_C(1e-4)) < gap); /* of NaN, too */\n"
@@ -129,8 +111,11 @@ void header_adaptive_declare(const Header *h) { csupport_expand(type, h->upper, 
 void header_move(const Header *h) { header_template(h, move, NULL); }
 
 void header_adaptive_define(const Header *h, const char *longest) {
-  const HeaderWord words[] = {{"LONGEST", longest}, {NULL, NULL}};
-  header_template(h, begin, NULL);
+  const HeaderWord words[] = {{"LONGEST", longest},
+                              {"USES", h->u->u.n ? "(void)p, (void)u, (void)input, (void)context, " : "(void)p, "},
+                              {NULL, NULL}};
+  header_template(h, begin, words);
+  header_section(h, "first_step");
   header_template(h, adapt, NULL);
   csupport_expand("\nLAG_API void lag_adaptive_begin(lag_adaptive *w, LAG_REAL tolerance)", h->upper, h->lower, h->out);
   header_template(h, adaptive_begin, words);
