@@ -25,11 +25,11 @@ const char *header_wrapped(const Header *h, const char *prototype) {
 
 const char *header_state_args(const Header *h, int typed, const char *from) {
   StrBuf b = strbuf(h->a);
-  const char *real = arena_printf(h->a, "const %s_REAL *", h->upper);
+  const char *real = typed ? arena_printf(h->a, "const %s_REAL *", h->upper) : from;
   if (typed) sb_printf(&b, "%s_REAL t", h->upper);
   else sb_printf(&b, "%st", from);
-  if (h->u->q.n) sb_printf(&b, typed ? ", %sq, %sv" : ", %sq, %sv", typed ? real : from, typed ? real : from);
-  if (h->u->z.n) sb_printf(&b, ", %sz", typed ? real : from);
+  if (h->u->q.n) sb_printf(&b, ", %sq, %sv", real, real);
+  if (h->u->z.n) sb_printf(&b, ", %sz", real);
   if (typed) sb_printf(&b, ", const %s_params *p", h->lower);
   else sb_puts(&b, ", p");
   if (h->u->u.n) sb_printf(&b, ", %su", typed ? real : "");
