@@ -254,19 +254,23 @@ void header_hold_define(const Header *h) {
   if (k->nholonomic) change(h, k->position, both ? "correct" : "correct_positions");
   if (!both) change(h, k->velocity, "correct_velocities");
   const char *correct =
-      both ? arena_printf(h->a, "lag_correct(%s, g, d, force)", args)
+      both ? arena_printf(h->a, "lag_correct(%s, g, d, at->force)", args)
       : !k->nholonomic
-          ? arena_printf(h->a, "lag_correct_velocities(%s, g, d, force)", args)
+          ? arena_printf(h->a, "lag_correct_velocities(%s, g, d, at->force)", args)
           : arena_printf(h->a,
-                         "level ? lag_correct_velocities(%s, g, d, force) : lag_correct_positions(%s, g, d, force)",
+                         "level ? lag_correct_velocities(%s, g, d, at->force) "
+                         ": lag_correct_positions(%s, g, d, at->force)",
                          args, args);
   const HeaderWord words[] = {{"STATE", args},
                               {"BESIDE", header_state_args(h, 0, "beside.")},
                               {"CORRECT", correct},
                               {"FIRST", k->nholonomic ? "0" : "1"},
                               {"INPUTS", h->u->u.n ? ", const LAG_REAL *u" : ""},
+                              {"GIVEN", u},
                               {"WITH", units(h) ? "if (lag_unit_of[j] == lag_unit_of[i]) " : ""},
                               {NULL, NULL}};
+  header_template(h, hold, words);
+  header_section(h, "hold");
   header_template(h, onto, words);
   sb_printf(h->out, "\n%s {\n  return %s_onto(p, s%s, 0);\n}\n", header_api(h, FN_HOLD), m, u);
 }
