@@ -14,8 +14,8 @@ enum { MOST_OPTIONS = 16 };
 
 /* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
-  const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *out, *svg, *plot_x, *plot_y, *html, *points,
-      *from, *save, *resume, *events, *section, *cloud, *starts, *drawing;
+  const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *crossings, *out, *svg, *plot_x, *plot_y,
+      *html, *points, *from, *save, *resume, *events, *section, *cloud, *starts, *drawing;
   const char *accuracy, *sensitivity;
   const char *fit, *data, *columns, *loss; /* for --fit */
   const char **sigmas, **priors; /* the values of --sigma and --prior, in order */
@@ -266,6 +266,13 @@ int lag_app_overlay(App *app);
 
 /* area_plot.c: --cloud. Returns the exit status. */
 int lag_app_cloud(App *app);
+
+/* column_lookup.c: the period of an angle that is declared periodic, in the unit of its column, over which pictures of
+ * more than a turn, and points of a section, are drawn; 0: none. */
+double lag_app_period(const App *app, const char *name);
+
+/* simulation_run.c: app->skip := the end of the transient, --skip; NaN: none is left out. The same. */
+int lag_app_choose_skip(App *app);
 
 /* event_log.c: --section. 0, or EXIT_USAGE after a message. */
 int lag_section_choose(App *app);

@@ -69,11 +69,9 @@ static int columns_of(const App *app, const char *name, int *cols) {
   return n ? n : no_column(app, name);
 }
 
-/* The period of an angle that is declared periodic, in the unit of its column, over which pictures of more than a
- * turn, and points of a section, are drawn; 0: none. */
-static double period_of(const App *app, int col) {
+double lag_app_period(const App *app, const char *name) {
   const lag_model *m = app->scene->model;
-  int i = lag_component_index(m, app->table.cols[col].name);
+  int i = lag_component_index(m, name);
   const lag_var *v = i >= 0 && i < m->nq ? &m->q[i] : i >= 2 * m->nq ? &m->z[i - 2 * m->nq] : NULL;
   return v && v->periodic ? 2 * acos(-1) / v->factor : 0;
 }
@@ -109,7 +107,7 @@ int lag_app_choose_curves(App *app) {
     return lag_app_error(a, "--plot-x %s has %d parts, --plot-y %s has %d; draw one against the other by naming a part",
                          a->plot_x, nx, a->plot_y, d->n);
   for (int i = nx; i < d->n; i++) d->x[i] = d->x[0];
-  if (a->plot_x) d->beneath.period = period_of(app, d->x[0]);
+  if (a->plot_x) d->beneath.period = lag_app_period(app, app->table.cols[d->x[0]].name);
   return 0;
 }
 

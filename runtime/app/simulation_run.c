@@ -53,13 +53,12 @@ static void note_tables(const App *app) {
   }
 }
 
-/* app->skip := the end of the transient; NaN: none is left out. */
-static int choose_skip(App *app) {
+int lag_app_choose_skip(App *app) {
   const Args *a = &app->args;
   app->skip = NAN;
   if (!a->skip) return 0;
   if (!lag_args_number(a, "--skip", a->skip, "--skip 100", &app->skip)) return EXIT_USAGE;
-  double t = lag_sim_time(app->sim), dir = app->until < t ? -1 : 1;
+  double t = app->resumed ? lag_sim_time(app->sim) : app->scene->t0, dir = app->until < t ? -1 : 1;
   if ((app->skip - t) * dir < 0 || (app->until - app->skip) * dir <= 0)
     return lag_app_error(a, "--skip %s: the run is from %g to %g s; what is left out ends between them", a->skip, t,
                          app->until);
@@ -169,7 +168,7 @@ int lag_app_run(App *app) {
   int rc = lag_app_set_up(app);
   rc = rc || !app->args.accuracy ? rc : lag_app_choose_by_accuracy(app);
   if (rc || (rc = lag_section_choose(app)) != 0 || (rc = lag_app_check_outputs(app)) != 0 ||
-      (rc = choose_end(app)) != 0 || (rc = choose_skip(app)) != 0 || (rc = choose_grid(app)) != 0)
+      (rc = choose_end(app)) != 0 || (rc = lag_app_choose_skip(app)) != 0 || (rc = choose_grid(app)) != 0)
     return rc;
   if (app->args.save && (lag_sim_method(app->sim)->flags & LAG_METHOD_NO_SAVE)) {
     return lag_app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",

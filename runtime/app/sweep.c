@@ -346,12 +346,18 @@ static uint64_t hash_variant(uint64_t h, const SweepApp *s, const SweepVariant *
 uint64_t lag_sweep_signature(const SweepApp *s) {
   const SweepPlan *p = &s->plan;
   const double numbers[] = {lag_sim_tolerance(s->app->sim),
-                            s->sweep.until, (double)p->runs, (double)p->samples, (double)p->seed, p->sampling,
+                            s->sweep.until,
+                            isnan(s->sweep.skip) ? s->app->scene->t0 : s->sweep.skip,
+                            (double)p->runs,
+                            (double)p->samples,
+                            (double)p->seed,
+                            p->sampling,
                             p->zip};
   /* sines and sums have other last digits */
   uint64_t h = hash_text(hash_text(LAG_FNV1A_START, LAG_PRECISION), s->app->extras.lanes_4 ? "lanes" : "");
   for (int v = 0; v < s->sweep.nvariants; v++) h = hash_variant(h, s, &s->variants[v]);
-  h = hash_numbers(h, s->sweep.nrows, s->times);
+  h = s->times ? hash_numbers(h, s->sweep.nrows, s->times)
+               : hash_text(h, s->app->args.section ? s->app->args.section : "");
   h = hash_numbers(h, sizeof numbers / sizeof *numbers, numbers);
   for (const Factor *f = p->factor; f < p->factor + p->n; f++) {
     const double range[] = {f->kind, f->a, f->b, (double)f->n};
@@ -572,6 +578,7 @@ static int set_up(SweepApp *s) {
   rc = rc ? rc : lag_app_choose_method(app);
   rc = rc ? rc : share_method(s);
   rc = rc ? rc : choose_lanes(s);
+  rc = rc ? rc : lag_app_choose_skip(app);
   rc = rc ? rc : choose_threads(&app->args, &s->sweep);
   rc = rc ? rc : read_shard(s);
   rc = rc ? rc : choose_measures(s);
@@ -590,6 +597,7 @@ static int set_up(SweepApp *s) {
     return lag_app_error(&app->args, "%d names vary; up to %d may", s->plan.n, LAG_GRID_MOST - 1);
   s->sweep.plan = &s->plan;
   s->sweep.until = app->until;
+  s->sweep.skip = app->skip;
   s->sweep.chunk = chunk_size(s);
   s->sweep.journal = &s->journal;
   s->sweep.note = note;

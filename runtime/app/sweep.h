@@ -12,7 +12,8 @@ typedef struct SweepApp {
   Table table;       /* columns: names that vary, measures, status */
   SweepVariant *variants; /* one, or one for each combination of values of constants */
   Table motions;     /* columns of --motions: run, t, outputs */
-  double *times;     /* of their rows */
+  double *times;     /* of their rows; NULL: they are crossings of --section */
+  long long full;    /* runs that crossed it more often than is kept, of those read last */
   char *names;       /* of the measures where nobody gave one */
   double *points;    /* of a quasi-random sequence */
   const char *no_lanes; /* why runs are computed one by one; NULL: they are in lanes, or were asked for so */
@@ -49,8 +50,8 @@ int lag_sweep_picture(SweepApp *s);
 int lag_sweep_write_arrays(SweepApp *s);
 int lag_sweep_write_motion_arrays(SweepApp *s);
 
-/* sweep_motions.c: chooses the rows of --motions, before the runs; writes the file, after them. Without --motions
- * nothing. The same. */
+/* sweep_motions.c: chooses the rows of --motions or --section, before the runs; writes the file, after them. Without
+ * --motions nothing. The same. */
 int lag_sweep_motions_open(SweepApp *s);
 int lag_sweep_motions_write(SweepApp *s);
 

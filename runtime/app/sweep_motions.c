@@ -1,6 +1,7 @@
 /* --sweep --motions FILE: the rows of each run, t and the outputs, with the number of the run. Enters: the times of
- * rows; leaves: one file of all runs, in order. Holds: rows are kept in the journal, beside the measures of their
- * runs, so they are the same on any number of threads and after an interruption; one chunk of runs is in memory. */
+ * rows, or the section that they lie on; leaves: one file of all runs, in order. Holds: rows are kept in the
+ * journal, beside the measures of their runs, so they are the same on any number of threads and after an
+ * interruption; one chunk of runs is in memory. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,17 +20,41 @@ static int choose_times(SweepApp *s) {
   if (a->every && !lag_args_number(a, "--every", a->every, "--every 0.01", &every)) return EXIT_USAGE;
   if (!(every > 0))
     return lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
-  double n = floor(lag_app_row_at(app, (double[]){app->scene->t0, every}, app->until)) + 1;
+  double grid[3] = {app->scene->t0, every}, first = isnan(app->skip) ? 0 : ceil(lag_app_row_at(app, grid, app->skip)),
+         n = floor(lag_app_row_at(app, grid, app->until)) + 1 - first;
   if (n * s->sweep.width > MOST_NUMBERS)
     return lag_app_error(a, "--motions: a row every %g s for %g s is %.3g rows a run; write a larger --every", every,
                          fabs(app->until - app->scene->t0), n);
   s->times = malloc((size_t)n * sizeof *s->times);
   if (!s->times) return lag_app_error(a, "out of memory");
   for (int k = 0; k < (int)n; k++) {
-    double t = lag_app_row_time(app, (double[]){app->scene->t0, every, k});
+    double t = lag_app_row_time(app, (double[]){app->scene->t0, every, first + k});
     s->times[k] = (t - app->until) * dir > 0 ? app->until : t;
   }
   s->sweep.time = s->times;
+  s->sweep.nrows = (int)n;
+  return 0;
+}
+
+/* --section: rows are crossings, of the event that all variants have. */
+static int choose_crossings(SweepApp *s) {
+  App *app = s->app;
+  const Args *a = &app->args;
+  long long n = 200;
+  if (!a->motions && !a->svg)
+    return lag_app_error(a, "--section: the crossings need a file: --motions FILE.csv, or --svg FILE for a picture");
+  if (a->crossings && lag_args_count(a, "--crossings", a->crossings, "--crossings 500", &n)) return EXIT_USAGE;
+  if (lag_section_choose(app)) return EXIT_USAGE;
+  if ((double)n * s->sweep.width > MOST_NUMBERS)
+    return lag_app_error(a, "--crossings %lld: that is more than a run can keep; write fewer", n);
+  for (int v = 0; v < s->sweep.nvariants; v++) {
+    const lag_model *m = lag_sim_scene(s->variants[v].like)->model;
+    int k = 0;
+    while (k < m->nev && strcmp(m->ev[k].name, a->section) != 0) k++;
+    if (k == m->nev)
+      return lag_app_error(a, "--section %s: not for each value of %s is there such an event", a->section, a->consts);
+    s->variants[v].section = k;
+  }
   s->sweep.nrows = (int)n;
   return 0;
 }
@@ -65,9 +90,11 @@ static int choose_columns(SweepApp *s) {
 int lag_sweep_motions_open(SweepApp *s) {
   const Args *a = &s->app->args;
   const double much = 1e9; /* bytes */
+  if (a->crossings && !a->section)
+    return lag_app_error(a, "--crossings is for sections: add --section 'x rising', of any expression");
   if (a->every && !a->motions) return lag_app_error(a, "--every is for the rows of motions: add --motions FILE.csv");
-  if (!a->motions) return 0;
-  if (choose_columns(s) || choose_times(s)) return EXIT_USAGE;
+  if (!a->motions && !a->section) return 0;
+  if (choose_columns(s) || (a->section ? choose_crossings(s) : choose_times(s))) return EXIT_USAGE;
   double bytes = (double)s->plan.runs * (double)lag_sweep_numbers(&s->sweep) * sizeof(double);
   if (bytes > much && !a->quiet)
     fprintf(
@@ -82,7 +109,17 @@ int lag_sweep_motions_open(SweepApp *s) {
 int lag_sweep_motion_reader(MotionReader *r, SweepApp *s) {
   *r =
       (MotionReader){.s = s, .chunk = malloc((size_t)s->sweep.chunk * lag_sweep_numbers(&s->sweep) * sizeof *r->chunk)};
+  s->full = 0;
   return r->chunk ? 0 : -1;
+}
+
+/* The last row of a motion of crossings only says that there are more. */
+static double *without_next(MotionReader *r, double *motion) {
+  const Sweep *w = &r->s->sweep;
+  double *next = motion + (size_t)w->nrows * (size_t)w->width;
+  r->s->full += !w->time && !isnan(*next);
+  if (!w->time) *next = NAN;
+  return motion;
 }
 
 const double *lag_sweep_next_motion(MotionReader *r) {
@@ -90,7 +127,7 @@ const double *lag_sweep_next_motion(MotionReader *r) {
   long long c = r->run / w->chunk, k = r->run++ % w->chunk, n = lag_sweep_chunk_runs(w, c);
   size_t each = lag_sweep_numbers(w), before = (size_t)lag_sweep_columns(w);
   if (k == 0 && lag_journal_get(&r->s->journal, c, r->chunk, (size_t)n * each)) return NULL;
-  return r->chunk + (size_t)n * before + (size_t)k * (each - before);
+  return without_next(r, r->chunk + (size_t)n * before + (size_t)k * (each - before));
 }
 
 /* The rows of a run, motion[nrows + 1][width]; those after its end have no time. */

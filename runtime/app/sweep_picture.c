@@ -1,12 +1,13 @@
-/* --sweep --svg: the measures over the range of one name, the first measure over those of two, or else a matrix of
- * scatter plots; with --histogram histograms of the measures. Ranges in equal ratios have logarithmic axes. */
+/* --sweep --svg: with --section the crossings over the range of one name; the measures over the range of one name,
+ * the first measure over those of two, or else a matrix of scatter plots; with --histogram histograms of the
+ * measures. Ranges in equal ratios have logarithmic axes. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/sweep.h"
 
-enum { MOST_CELLS = 512 * 512, MOST_COLUMNS = 8, MOST_BARS = 500 };
+enum { MOST_CELLS = 512 * 512, MOST_COLUMNS = 8, MOST_BARS = 500, CLASSES = 6 };
 
 /* Whether a list has equal steps, as that of a constant from FIRST..LAST:NUMBER. */
 static int has_steps(const Factor *f) {
@@ -39,6 +40,9 @@ int lag_sweep_picture_check(const SweepApp *s) {
   const SweepPlan *p = &s->plan;
   int columns = p->n + s->sweep.nmeasures;
   if (a->histogram && !bars_of(a)) return EXIT_USAGE;
+  if (a->svg && a->section && !a->histogram && !is_curves(p))
+    return lag_app_error(a, "--section --svg: crossings are drawn over the range of one name; let one vary, or leave "
+                            "--svg out and write --motions FILE.csv");
   if (!a->svg || is_curves(p) || a->histogram) return 0;
   if (is_map(p))
     return p->runs > MOST_CELLS
@@ -98,6 +102,98 @@ static int draw_curves(const char *path, void *drawing) {
   return rc;
 }
 
+/* ---- Crossings of a section over the range of a name: a bifurcation diagram */
+
+/* The class of each run by the first measure, among equal parts of its range. */
+typedef struct RunClasses {
+  int n; /* 1: all runs alike, as without --measure */
+  double lo, hi, *value;
+} RunClasses;
+
+static int take_class(void *classes, long long run, const double *row) {
+  RunClasses *c = classes;
+  c->value[run] = row[1];
+  if (isfinite(row[1])) c->lo = fmin(c->lo, row[1]), c->hi = fmax(c->hi, row[1]);
+  return 0;
+}
+
+static int choose_classes(SweepApp *s, RunClasses *c) {
+  *c = (RunClasses){1, INFINITY, -INFINITY, NULL};
+  if (s->names) return 0;
+  c->value = malloc((size_t)s->plan.runs * sizeof *c->value);
+  if (!c->value || lag_sweep_each_row(s, take_class, c)) return -1;
+  if (c->hi > c->lo) c->n = CLASSES;
+  return 0;
+}
+
+static int class_of(const RunClasses *c, long long run) {
+  if (c->n == 1 || !isfinite(c->value[run])) return 0;
+  int k = (int)((c->value[run] - c->lo) / (c->hi - c->lo) * c->n);
+  return k < c->n ? k : c->n - 1;
+}
+
+/* The column of motions that is drawn: --plot-y, or the first output. */
+static int drawn_column(const SweepApp *s) {
+  const char *name = s->app->args.nplot_ys ? s->app->args.plot_ys[0] : NULL;
+  for (int i = 2; name && i < s->motions.ncols; i++)
+    if (strcmp(s->motions.cols[i].name, name) == 0) return i;
+  return 2;
+}
+
+/* Columns: the value, and the drawn output for each class. */
+static int name_classes(Drawing *d, const RunClasses *c) {
+  const Column *of = &d->s->table.cols[1];
+  d->table =
+      (Table){.ncols = c->n + 1, .cols = calloc((size_t)c->n + 1, sizeof *d->table.cols), .keep = 1, .points = 1};
+  if (!d->table.cols) return -1;
+  d->table.cols[0] = d->s->table.cols[0];
+  for (int k = 0; k < c->n; k++) {
+    Column *y = &d->table.cols[k + 1];
+    *y = d->s->motions.cols[drawn_column(d->s)];
+    if (c->n > 1)
+      snprintf(y->name, sizeof y->name, "%.40s %.3g..%.3g", of->name, c->lo + (c->hi - c->lo) * k / c->n,
+               c->lo + (c->hi - c->lo) * (k + 1) / c->n);
+  }
+  return 0;
+}
+
+static int add_crossings(Drawing *d, const RunClasses *c) {
+  const Sweep *w = &d->s->sweep;
+  MotionReader r;
+  int drawn = drawn_column(d->s);
+  double row[CLASSES + 1], value, period = lag_app_period(d->s->app, d->s->motions.cols[drawn].name);
+  int rc = lag_sweep_motion_reader(&r, d->s);
+  for (long long i = 0; i < d->s->plan.runs && rc == 0; i++) {
+    const double *motion = lag_sweep_next_motion(&r);
+    lag_plan_values(&d->s->plan, i, &value);
+    for (int k = 0; k <= CLASSES; k++) row[k] = NAN;
+    row[0] = drawn_value(&d->s->plan, 0, value);
+    rc = motion ? 0 : -1;
+    for (int k = 0; rc == 0 && !isnan(motion[k * w->width]); k++) {
+      double y = motion[k * w->width + drawn - 1];
+      row[1 + class_of(c, i)] = period > 0 ? remainder(y, period) : y;
+      rc = lag_table_add(&d->table, row);
+    }
+  }
+  free(r.chunk);
+  return rc;
+}
+
+static int draw_crossings(const char *path, void *drawing) {
+  Drawing *d = drawing;
+  static const int x[CLASSES] = {0}, y[CLASSES] = {1, 2, 3, 4, 5, 6};
+  RunClasses c;
+  int rc = choose_classes(d->s, &c) ? -1 : name_classes(d, &c) ? -1 : add_crossings(d, &c);
+  const PlottedCurves curves = {.n = c.n, .x = (int *)x, .y = (int *)y, .xlog = is_log(&d->s->plan, 0), .ordered = 1,
+                                .xname = d->s->table.cols[0].name,
+                                .yname = d->s->motions.cols[drawn_column(d->s)].name};
+  if (rc == 0) rc = lag_svg_write(path, &d->table, d->title, &curves);
+  free(d->table.cols);
+  free(d->table.data);
+  free(c.value);
+  return rc;
+}
+
 static int draw_matrix(const char *path, void *drawing) {
   Drawing *d = drawing;
   const SweepPlan *p = &d->s->plan;
@@ -146,6 +242,7 @@ int lag_sweep_picture(SweepApp *s) {
   const Args *a = &s->app->args;
   return a->svg ? lag_app_picture(s->app, a->svg,
                                   a->histogram          ? draw_histograms
+                                  : a->section          ? draw_crossings
                                   : is_curves(&s->plan) ? draw_curves
                                   : is_map(&s->plan)    ? draw_map
                                                         : draw_matrix,

@@ -190,7 +190,10 @@ static void print_text(SweepApp *s, FILE *f, const Statistics *t, const Failures
     print_lacking(s, f, &bad->none[k], label, k);
   }
   if (a->out) fprintf(f, "%s has a row a run\n", a->out);
-  if (a->motions) fprintf(f, "%s has the motions, up to %d rows a run\n", a->motions, s->sweep.nrows + 1);
+  if (a->motions) fprintf(f, "%s has the motions, up to %d rows a run\n", a->motions, s->sweep.nrows + !a->section);
+  if (s->full)
+    fprintf(f, "%s crosse%s the section more than %d times: --crossings N keeps more\n", runs_text(s->full, runs),
+            s->full == 1 ? "s" : "", s->sweep.nrows);
 }
 
 static void print_json(SweepApp *s, const Statistics *t, const Failures *bad, long long failed) {

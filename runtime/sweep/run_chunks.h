@@ -13,6 +13,7 @@
 typedef struct SweepVariant {
   lag_sim *like;        /* values, method, tolerance; not begun */
   const char **measure; /* [nmeasures] */
+  int section;          /* the event at which rows are put, where there are sections */
   LaneChoice lanes;     /* kernel NULL, for all variants: one run after the other */
 } SweepVariant;
 
@@ -23,7 +24,8 @@ typedef struct Sweep {
   double until;
   int nmeasures, threads;
   int nrows, width;     /* rows of a motion and their columns, t and the outputs; 0: no motions are kept */
-  const double *time;   /* [nrows] of rows */
+  const double *time;   /* [nrows] of rows; NULL: the first nrows crossings of the section */
+  double skip;          /* measures and crossings begin at this time; NaN: at the start */
   long long chunk;      /* runs of a chunk, the last one may have fewer */
   long long shard, shards; /* chunks shard, shard + shards, ... are run here */
   Journal *journal;     /* of rank 0 */
@@ -39,8 +41,8 @@ typedef struct Sweep {
 /* Numbers of a row: measures, then the status of the run (LAG_OK, LAG_STOPPED, or that of its failure). */
 static inline int lag_sweep_columns(const Sweep *s) { return s->nmeasures + 1; }
 
-/* Numbers of a run in the journal: its row, and its motion: a row for each time, one for its end, and NaN after
- * that. A chunk has the rows of its runs, then their motions. */
+/* Numbers of a run in the journal: its row, and its motion: a row for each time, one for its end, or one for each
+ * crossing and the next one, and NaN after that. A chunk has the rows of its runs, then their motions. */
 static inline size_t lag_sweep_numbers(const Sweep *s) {
   return (size_t)lag_sweep_columns(s) + (s->nrows ? (size_t)(s->nrows + 1) * (size_t)s->width : 0);
 }

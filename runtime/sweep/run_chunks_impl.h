@@ -19,6 +19,9 @@ typedef struct SweepRun {
   double *row;          /* [columns] */
   double *motion, *next; /* [nrows + 1][width] and the row to come; motion NULL: it is not kept */
   int k;                /* rows of the motion that are there */
+  int begun;            /* 1: the transient is over, and measures are taken */
+  const Sweep *sweep;
+  int section;          /* event of its scene */
 } SweepRun;
 
 /* Numbers of run k of chunk c, which has the numbers `row`: its columns, then motion, or NULL. */

@@ -163,7 +163,8 @@ static const char *unknown_option(Arena *a, const Options *o, const char *word) 
   size_t n = 0;
   for (size_t i = 0; option_row(i); i++)
     if (option_row(i)->commands & 1u << o->command && n < 64) names[n++] = option_row(i)->name;
-  Name near = suggest(arg, names, n), meant = meant_option(arg);
+  int letter = arg[0] == '-' && arg[1] == '-' && arg[2] && !arg[3]; /* one for another is no typing mistake */
+  Name near = letter ? NULL : suggest(arg, names, n), meant = meant_option(arg);
   const char *says =
       !meant                      ? NULL
       : strcmp(arg, "--fps") == 0 ? "--every DT is the time between two frames in s: --every 0.0333 shows 30 a second"

@@ -205,6 +205,16 @@ static const char *only_coordinate(RequestBuilder *k, const char *option, const 
   return NULL;
 }
 
+/* --y of a sweep: what its section draws. */
+static int prepare_sweep(RequestBuilder *k, const char **error) {
+  add_argument(k, "--sweep", NULL);
+  if (k->o->y.n > 1 || (k->o->y.n && !k->o->section))
+    return fail_with(error, "--y EXPR is one expression, which --section draws over the values");
+  const char *drawn = k->o->y.n ? add_output(k, "--y", k->o->y.at[0]) : NULL;
+  if (drawn) add_argument(k, "--plot-y", drawn);
+  return !k->o->y.n || drawn;
+}
+
 static int prepare_plot(RequestBuilder *k, const char **error) {
   const Options *o = k->o;
   const char *x = o->phase ? o->phase : o->x,
@@ -430,7 +440,7 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   if (o->command == CMD_CONTINUE) add_argument(&k, "--continue", NULL);
   if (o->command == CMD_LYAPUNOV) add_argument(&k, "--lyapunov", NULL);
   if (o->command == CMD_COST) add_argument(&k, "--cost", NULL);
-  if (o->command == CMD_SWEEP) add_argument(&k, "--sweep", NULL);
+  if (o->command == CMD_SWEEP) ok = ok && prepare_sweep(&k, error);
   if (o->command == CMD_COST && o->error) {
     p->error = strcmp(o->error, "final") == 0 || strcmp(o->error, "residual") == 0
                    ? o->error

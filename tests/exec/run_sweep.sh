@@ -249,6 +249,22 @@ lost() { "$LAGC" sweep "$TMP/comet.lag" m=2,2 --method verlet8 --step 0.05 --mea
 is "a run that is judged at its end: lagc run" 3 $?
 is "a row of it" '2,nan,drift' "$(lost)"
 is "one by one" '2,nan,drift' "$(lost --lanes 1)"
+# Crossings of a section: once a period of the drive, w t = 2 pi n, where the driven oscillator has x = Re 1/(k - m w^2 + i c w).
+strobe() { sweep "$osc" steady w=0.5..3.5:7 --section 'sin(w*t) rising' --skip 100 "$@"; }
+check "crossings" strobe --measure 'max(x)' -o "$TMP/top.csv" --motions "$TMP/strobe.csv" --crossings 3
+is "three of each run, as far as there are" "1 2,2 3,3 3,4 3,5 3,6 3,7 3" "$(awk -F , 'FNR > 1 { n[$1]++ } END { for (i = 1; i < 8; i++) printf "%d %d%s", i, n[i], i == 7 ? "" : "," }' "$TMP/strobe.csv")"
+near "behind the transient" 1 1 "$(awk -F , 'FNR > 1 && $2 < 100 { early = 1 } END { print 1 - early }' "$TMP/strobe.csv")"
+near "are where the closed form says, but for exp(-c t/2m) = 2e-9" 4e-9 0 "$(awk -F , 'FNR > 1 { w = $1/2; d = 4 - w*w; x = d/(d*d + 0.16*w*w) - $3; if (x*x > most) most = x*x } END { print sqrt(most) }' "$TMP/strobe.csv")"
+near "and measures are taken behind it" 1e-9 0 "$(worst '1/sqrt((4 - $1*$1)^2 + (0.4*$1)^2)' "$TMP/top.csv")"
+check "more are said" grep -q 'crosses\? the section more than 3 times: --crossings N keeps more' "$TMP/text"
+strobe_same() { strobe --motions "$TMP/strobe.1.csv" --crossings 3 --threads 1 --lanes 1 && cmp "$TMP/strobe.csv" "$TMP/strobe.1.csv"; }
+check "the same one by one" strobe_same
+check "a diagram over the values" strobe --svg "$TMP/strobe.svg" --y "x'" --measure 'max(x)'
+check "in classes of the measure" grep -q '>max(x) 0.12.*[.][.]' "$TMP/strobe.svg"
+check "crossings without a section" says 2 "crossings is for sections: add --section" "$LAGC" sweep "$osc" steady w=1,2 --crossings 3 -o "$TMP/no.csv"
+check "and without a file" says 2 "the crossings need a file" "$LAGC" sweep "$osc" steady w=1,2 --section 'x rising' -o "$TMP/no.csv"
+check "a diagram over two names" says 2 "crossings are drawn over the range of one name" "$LAGC" sweep "$osc" steady w=1,2 k=1,2 --section 'x rising' --svg "$TMP/no.svg"
+check "a transient that is too long" says 2 "what is left out ends between them" "$LAGC" sweep "$osc" steady w=1,2 --skip 120 -o "$TMP/no.csv"
 check "one file for rows and motions" says 2 "would be written twice" "$LAGC" sweep "$osc" swing x=1,2 -o "$TMP/no.csv" --motions "$TMP/no.csv"
 check "outputs that depend on a constant" says 2 "the outputs depend on N" "$LAGC" sweep "$TMP/chain.lag" N=2,4 --motions "$TMP/no.csv"
 
