@@ -1,23 +1,16 @@
 # lagc and liblag. `make help` lists what can be made; README.md says what it is for.
 
-# ---- settings: make NAME=value ----------------------------------------------------------------------
+# ---- settings: make NAME=value; CPPFLAGS, LDFLAGS, RANLIB, WERROR, SAN, DESTDIR and T are empty ---------------------
 .DEFAULT_GOAL := all
 CC      ?= cc
 CFLAGS  ?= -O2
-CPPFLAGS ?=
-LDFLAGS ?=
-RANLIB  ?=
-WERROR  ?=
 WARN    := -std=c11 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes $(WERROR)
 BUILD   ?= build
-SAN     ?=
 FLEX    ?= flex
 BISON   ?= bison
 PREFIX  ?= /usr/local
 LIBDIR  ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
-DESTDIR ?=
-T       ?=
 
 # Position-independent code lets liblag go into shared objects. It costs nothing measurable: without interposition calls within a file stay direct,
 # and of 92 files 73 keep their instructions; the others take addresses of a few data from a table. Results keep their bits.
@@ -126,16 +119,13 @@ $(BUILD)/lagc$(EXE): $(BUILD)/obj/src/main.o $(BUILD)/liblagc.a
 	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) $(if $(WINDOWS),-static) -o $@ $^ $(ZIP_LIBS) -lm
 
 # `ar s` writes the index; RANLIB is for an ar that does not.
-ARCHIVE = rm -f $@ && $(AR) rcs $@
-INDEX   = $(if $(RANLIB),$(RANLIB) $@)
+ARCHIVE = rm -f $@ && $(AR) rcs $@ $(1)$(if $(RANLIB), && $(RANLIB) $@)
 
 # Everything of the compiler but main: what the unit tests link.
 $(BUILD)/liblagc.a: $(LAGC_OBJ)
-	$(ARCHIVE) $^
-	$(INDEX)
+	$(call ARCHIVE,$^)
 $(BUILD)/liblag.a: $(RT_OBJ)
-	$(ARCHIVE) $^
-	$(INDEX)
+	$(call ARCHIVE,$^)
 # The simulator that evaluates models, as `lagc run` begins: it needs no compiler.
 $(BUILD)/obj/runtime/evaluator/lag_run.o: RT_FLAGS += $(if $(GSL),-DLAG_WITH_GSL)
 $(BUILD)/obj/runtime/evaluator/lag_run.o: $(CONFIG)
@@ -145,20 +135,16 @@ $(BUILD)/lag-run$(EXE): $(BUILD)/obj/runtime/evaluator/lag_run.o $(if $(GSL),$(B
 $(BUILD)/liblag.so.%: $(RT_OBJ) runtime/liblag.map
 	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) -shared -Wl,-soname,$(@F) -Wl,--version-script=runtime/liblag.map -Wl,-Bsymbolic -o $@ $(RT_OBJ) -lm
 $(BUILD)/liblag_gsl.a: $(GSL_OBJ)
-	$(ARCHIVE) $^
-	$(INDEX)
+	$(call ARCHIVE,$^)
 # Beside it, what links it.
 $(BUILD)/liblag_png.a: $(BUILD)/obj/runtime/png/png.o
-	$(ARCHIVE) $^
-	$(INDEX)
+	$(call ARCHIVE,$^)
 	@pkg-config --libs librsvg-2.0 >$(@:.a=.libs)
 $(BUILD)/liblag_hdf5.a: $(BUILD)/obj/runtime/hdf5/hdf5.o
-	$(ARCHIVE) $^
-	$(INDEX)
+	$(call ARCHIVE,$^)
 	@pkg-config --libs-only-L --libs-only-l $(HDF5) | sed 's/-lhdf5/-lhdf5_hl &/' >$(@:.a=.libs)
 $(BUILD)/liblag_mpi.a: $(BUILD)/obj/runtime/mpi/mpi.o
-	$(ARCHIVE) $^
-	$(INDEX)
+	$(call ARCHIVE,$^)
 	@pkg-config --libs ompi-c >$(@:.a=.libs)
 # gcc takes the vectors from a pragma in the file; Clang passes vectors as the file's flags say.
 $(BUILD)/obj/runtime/lanes/lanes_4.o: override CFLAGS += $(if $(CLANG_X86),-mavx2)
@@ -213,15 +199,22 @@ $(BUILD)/obj/$(1)/%.o: $(BUILD)/gen/$(1)/%.c $(RT_HEAD:%=$(BUILD)/gen/$(1)/%) | 
 	@mkdir -p $$(@D)
 	$$(CCACHE) $$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(PIC) $$(CFLAGS) $$(SAFE) -c -o $$@ $$<
 $(BUILD)/liblag_$(1).a: $(REAL_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%) $(ANY_HEAD:%=$(BUILD)/lag-$(1)/%)
-	$$(ARCHIVE) $$(filter %.o,$$^)
-	$$(INDEX)
+	$$(call ARCHIVE,$$(filter %.o,$$^))
 endef
 $(foreach p,$(PRECISIONS),$(eval $(call precision_rules,$(p))))
 .SECONDARY: $(foreach p,$(PRECISIONS),$(RT_HEAD:%=$(BUILD)/gen/$(p)/%) $(REAL_SRC:runtime/%=$(BUILD)/gen/$(p)/%))
 
+# Texts of emitted headers, for the file beside them.
+EMIT_TEXT := $(patsubst src/emit/%.in,%,$(wildcard src/emit/*.in))
+$(BUILD)/gen/emit/%_text.h: src/emit/%.in src/emit/sections.awk
+	@mkdir -p $(@D)
+	awk -f src/emit/sections.awk $< >$@.part
+	@mv $@.part $@
+$(EMIT_TEXT:%=$(BUILD)/obj/src/emit/%.o): $(BUILD)/obj/src/emit/%.o: $(BUILD)/gen/emit/%_text.h
+
 SHELLS := bash zsh fish
 # Texts as C, in the order of their lines: `static const char *const NAME[]`, with the name of the file that they become.
-AS_C = { echo 'static const char *const $(basename $(@F))[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $<; echo '};'; }
+AS_C = { echo 'static const char *const $(basename $(@F))[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $^; echo '};'; }
 define as_text
 $(BUILD)/gen/$(1): $(2)
 	@mkdir -p $$(@D)
@@ -231,9 +224,7 @@ endef
 $(eval $(call as_text,io/page.h,runtime/io/page.html))
 $(eval $(call as_text,commands/verify_driver.h,src/commands/verify_driver.in))
 $(eval $(call as_text,toolchain/probe_text.h,src/toolchain/compiler_probe.in))
-$(eval $(call as_text,emit/lag_%.h,runtime/include/lag_%.h))
-$(eval $(call as_text,emit/%_kernel.h,runtime/kernels/%.h))
-$(eval $(call as_text,emit/%_text.h,runtime/methods/%.c))
+$(eval $(call as_text,emit/embedded_texts.h,$(patsubst %,runtime/include/lag_%.h,lanes math sincos support kkt) $(sort $(wildcard runtime/kernels/*.h))))
 $(eval $(call as_text,fmu/%_text.h,src/fmu/%.in))
 $(eval $(call as_text,commands/language.h,$(BUILD)/gen/commands/language.txt))
 $(eval $(call as_text,commands/tutorial.h,models/TUTORIAL.md))
@@ -276,7 +267,7 @@ $(BUILD)/obj/src/fmu/zip.o: SRC_FLAGS += $(if $(ZIP),-DLAGC_WITH_ZIP)
 $(BUILD)/obj/src/toolchain/toolchain.o: SRC_FLAGS += '-DLAGC_LIBDIR="$(LIB_FROM_BIN)"' '-DLAGC_INCLUDEDIR="$(INCLUDE_FROM_BIN)"'
 $(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/fmu/zip.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
-$(BUILD)/obj/src/emit/embedded_math.o: $(patsubst %,$(BUILD)/gen/emit/lag_%.h,lanes math sincos support kkt) $(patsubst runtime/kernels/%.h,$(BUILD)/gen/emit/%_kernel.h,$(wildcard runtime/kernels/*.h))
+$(BUILD)/obj/src/emit/embedded_math.o: $(BUILD)/gen/emit/embedded_texts.h
 $(BUILD)/obj/src/toolchain/compiler_probe.o: $(BUILD)/gen/toolchain/probe_text.h
 $(BUILD)/obj/src/fmu/fmu_archive.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimulation fmi2 fmi3)
 $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,language python readme tutorial)

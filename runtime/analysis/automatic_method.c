@@ -112,9 +112,9 @@ static int run_trial(const lag_sim *sim, double until, const lag_method *method,
   lag_sim *trial = lag_sim_like(sim);
   size_t n = (size_t)sim->pb.n, rows = n - (size_t)sim->pb.nq;
   Look l = {.s = s, .bound = bound, .last = sim->scene->t0, .n = (int)n, .every = n <= 40 ? 1 : 5};
-  double **const parts[] = {&l.J, &l.x, &l.y, &l.z, &l.work};
-  const size_t sizes[] = {rows * n, n, n, n, lag_linear_work(sim->scene->model)};
-  double *block = lag_workspace(sizeof parts / sizeof *parts, parts, sizes);
+  const lag_part parts[] = {{&l.J, rows * n}, {&l.x, n}, {&l.y, n}, {&l.z, n},
+      {&l.work, lag_linear_work(sim->scene->model)}};
+  double *block = lag_workspace(sizeof parts / sizeof *parts, parts);
   int rc = trial && block ? lag_sim_set_method(trial, method, NULL, 0) : LAG_ENOMEM, ready = rc == 0;
   *s = (Stiffness){0};
   if (ready) {

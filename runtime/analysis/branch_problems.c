@@ -136,9 +136,9 @@ int lag_rest_branch_open(RestBranch *r, lag_sim *like, const lag_algebra *algebr
   if (r->flow.forced)
     return refuse(r, "the scene depends on time, so that nothing rests: continue its periodic motions: "
                      "--guess T");
-  double **const parts[] = {&r->unit, &r->row, &r->y, &r->rates, &r->up, &r->down, &r->J, &r->v, &r->room};
-  const size_t sizes[] = {n, rows, all, all, residuals, residuals, all * all, 3 * all * all, 2 * all};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&r->pool, sizes[i]);
+  const lag_part parts[] = {{&r->unit, n}, {&r->row, rows}, {&r->y, all}, {&r->rates, all}, {&r->up, residuals},
+      {&r->down, residuals}, {&r->J, all * all}, {&r->v, 3 * all * all}, {&r->room, 2 * all}};
+  lag_pool_parts(&r->pool, sizeof parts / sizeof *parts, parts);
   if (r->pool.failed) return refuse(r, "out of memory"), LAG_ENOMEM;
   if ((rc = find_rest(r)) != LAG_OK) return rc;
   for (int i = 0; i < r->n; i++) {

@@ -30,9 +30,9 @@ static double dot(int n, const double *a, const double *b) {
 static int open_walk(Walk *w, Branch *b, const BranchProblem *p) {
   size_t rows = (size_t)p->rows + 1, cols = (size_t)p->cols;
   *w = (Walk){.b = b, .p = p, .rows = p->rows + 1, .cols = p->cols};
-  double **const parts[] = {&w->J, &w->rhs, &w->V, &w->sigma, &w->x};
-  const size_t sizes[] = {rows * cols, rows, cols * cols, cols, cols};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&b->pool, sizes[i]);
+  const lag_part parts[] = {{&w->J, rows * cols}, {&w->rhs, rows}, {&w->V, cols * cols}, {&w->sigma, cols},
+      {&w->x, cols}};
+  lag_pool_parts(&b->pool, sizeof parts / sizeof *parts, parts);
   return b->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
 

@@ -441,13 +441,12 @@ static int search(Equilibrium *r, const lag_algebra *algebra) {
 static int allocate(Equilibrium *r) {
   const lag_model *m = r->sim->scene->model;
   size_t n = (size_t)r->n, nq = (size_t)m->nq, ny = (size_t)r->sim->pb.n;
-  double **const parts[] = {&r->start,   &r->found, &r->y,      &r->rate, &r->scale, &r->x,      &r->begin,
-                            &r->from,    &r->first, &r->trial,  &r->near, &r->kept,  &r->f,      &r->row,
-                            &r->dx,      &r->step,  &r->spread, &r->J,    &r->W,     &r->values, &r->noise,
-                            &r->scratch, &r->dr,    &r->M,      &r->work};
-  const size_t sizes[] = {n, n, ny, ny, n, n, n, n, n, n, n, n, n, n, n, n, n, n * n, n * n, n + n * n, n + n * n,
-                          n * n + 3 * n + (size_t)(m->np + m->nderived), n * ny, nq * nq, lag_linear_work(m)};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&r->pool, sizes[i]);
+  const lag_part parts[] = {{&r->start, n}, {&r->found, n}, {&r->y, ny}, {&r->rate, ny}, {&r->scale, n}, {&r->x, n},
+      {&r->begin, n}, {&r->from, n}, {&r->first, n}, {&r->trial, n}, {&r->near, n}, {&r->kept, n}, {&r->f, n},
+      {&r->row, n}, {&r->dx, n}, {&r->step, n}, {&r->spread, n}, {&r->J, n * n}, {&r->W, n * n},
+      {&r->values, n + n * n}, {&r->noise, n + n * n}, {&r->scratch, n * n + 3 * n + (size_t)(m->np + m->nderived)},
+      {&r->dr, n * ny}, {&r->M, nq * nq}, {&r->work, lag_linear_work(m)}};
+  lag_pool_parts(&r->pool, sizeof parts / sizeof *parts, parts);
   return r->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
 

@@ -102,16 +102,11 @@ int lag_flow_open(FlowMap *f, lag_sim *like) {
   const lag_constraints *of = like->scene->model->constraints;
   size_t rows = of ? (size_t)of->n : 0;
   *f = (FlowMap){.like = like, .n = like->pb.n, .nq = like->pb.nq, .t0 = like->scene->t0};
-  double **const parts[] = {&f->at, &f->up, &f->down, &f->mass, &f->linear, &f->room, &f->square, &f->jumps};
-  const size_t sizes[] = {n,
-                          driven,
-                          driven,
-                          nq * nq,
-                          lag_linear_work(like->scene->model) + 1,
-                          n * n + (rows + 1) * (nq + 1) + driven,
-                          2 * n * n + (nq + 1) * (nq + 1),
-                          (size_t)lag_sim_ncharges(like) + 1};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&f->pool, sizes[i]);
+  const lag_part parts[] = {{&f->at, n}, {&f->up, driven}, {&f->down, driven}, {&f->mass, nq * nq},
+      {&f->linear, lag_linear_work(like->scene->model) + 1}, {&f->room, n * n + (rows + 1) * (nq + 1) + driven},
+      {&f->square, 2 * n * n + (nq + 1) * (nq + 1)},
+      {&f->jumps, (size_t)lag_sim_ncharges(like) + 1}};
+  lag_pool_parts(&f->pool, sizeof parts / sizeof *parts, parts);
   if (f->pool.failed) return keep_message(f, NULL, LAG_ENOMEM);
   int rc = renew_probe(f);
   f->forced = rc == LAG_OK && depends_on_time(f);

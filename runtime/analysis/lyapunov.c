@@ -30,10 +30,10 @@ int lag_lyapunov_begin(Lyapunov *l, lag_sim *sim, int k, double from, double unt
   size_t n = (size_t)sim->pb.n, kk = (size_t)k, nn = n * n;
   *l = (Lyapunov){
       .n = sim->pb.n, .d = sim->pb.n, .k = k, .from = from, .until = until, .begun = NAN, .t = NAN, .half = NAN};
-  double **const parts[] = {&l->sum, &l->at_half, &l->block_sum, &l->block, &l->Y, &l->J, &l->A, &l->B, &l->work};
-  const size_t sizes[] = {kk, kk, kk, LAG_LYAPUNOV_BLOCKS * (kk + 1),    n * kk,
-                          nn, nn, nn, lag_linear_work(sim->pb.model) + 1};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&l->pool, sizes[i]);
+  const lag_part parts[] = {{&l->sum, kk}, {&l->at_half, kk}, {&l->block_sum, kk},
+      {&l->block, LAG_LYAPUNOV_BLOCKS * (kk + 1)}, {&l->Y, n * kk}, {&l->J, nn}, {&l->A, nn}, {&l->B, nn},
+      {&l->work, lag_linear_work(sim->pb.model) + 1}};
+  lag_pool_parts(&l->pool, sizeof parts / sizeof *parts, parts);
   if (l->pool.failed) return LAG_ENOMEM;
   random_vectors(l);
   lag_orthonormalise(l->n, k, l->Y, l->sum, 0, 0);

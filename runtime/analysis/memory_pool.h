@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "numeric/workspace.h"
+
 typedef struct Pool {
   void *last;  /* the newest block; each begins with a pointer to the one before it */
   int failed;  /* 1: an allocation failed */
@@ -18,6 +20,10 @@ static inline double *lag_pool_doubles(Pool *p, size_t n) {
   *block = p->last;
   p->last = block;
   return (double *)(void *)block + 2;
+}
+
+static inline void lag_pool_parts(Pool *p, size_t n, const lag_part parts[]) {
+  for (size_t i = 0; i < n; i++) *parts[i].at = lag_pool_doubles(p, parts[i].n);
 }
 
 static inline void lag_pool_free(Pool *p) {

@@ -433,26 +433,11 @@ static int allocate(PeriodicOrbit *o) {
   size_t charges = (size_t)lag_flow_charges(&o->flow);
   lag_orbit_count(o);
   size_t rows = m * n + (size_t)o->nheld + charges + group + 1, cols = m * n + 2 + group; /* with continuation */
-  double **const parts[] = {&o->y, &o->end, &o->Phi,   &o->unit, &o->turns, &o->affine, &o->target, &o->G, &o->A,
-                            &o->b, &o->V,   &o->sigma, &o->x,    &o->saved, &o->w,      &o->re,     &o->im};
-  const size_t sizes[] = {m * n,
-                          m * n,
-                          m * n * n,
-                          n,
-                          n,
-                          group * size * size + 1,
-                          n,
-                          n * n,
-                          rows * cols,
-                          rows,
-                          cols * cols,
-                          cols,
-                          cols + 2 * n,
-                          m * n * (charges + 2) + cols,
-                          4 * size * size + 4 * n,
-                          n,
-                          n};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&o->pool, sizes[i]);
+  const lag_part parts[] = {{&o->y, m * n}, {&o->end, m * n}, {&o->Phi, m * n * n}, {&o->unit, n}, {&o->turns, n},
+      {&o->affine, group * size * size + 1}, {&o->target, n}, {&o->G, n * n}, {&o->A, rows * cols}, {&o->b, rows},
+      {&o->V, cols * cols}, {&o->sigma, cols}, {&o->x, cols + 2 * n}, {&o->saved, m * n * (charges + 2) + cols},
+      {&o->w, 4 * size * size + 4 * n}, {&o->re, n}, {&o->im, n}};
+  lag_pool_parts(&o->pool, sizeof parts / sizeof *parts, parts);
   o->charge = (int *)(void *)lag_pool_doubles(&o->pool, charges + 1);
   return o->pool.failed ? LAG_ENOMEM : LAG_OK;
 }

@@ -33,9 +33,9 @@ int lag_phase_volume_begin(PhaseVolume *v, lag_sim *sim) {
     return lag_fail(sim, LAG_EMETHOD,
                     "the volume of the phase space needs the mass matrix, which this program was built without; `lagc "
                     "run --volume` builds it in, and so does `lagc build --with linear`");
-  double **const parts[] = {&v->sum, &v->Y, &v->grown, &v->M, &v->dr, &v->work};
-  const size_t sizes[] = {n, n * n, n, nq * nq, n * n, lag_linear_work(m) + 1};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&v->pool, sizes[i]);
+  const lag_part parts[] = {{&v->sum, n}, {&v->Y, n * n}, {&v->grown, n}, {&v->M, nq * nq}, {&v->dr, n * n},
+      {&v->work, lag_linear_work(m) + 1}};
+  lag_pool_parts(&v->pool, sizeof parts / sizeof *parts, parts);
   if (v->pool.failed) return LAG_ENOMEM;
   int rc = lag_sim_set_tangent(sim, sim->pb.n, NULL);
   v->mass = rc ? 0 : log_mass(v, sim);

@@ -492,12 +492,11 @@ static void choose_rows(SteadyMotion *s) {
 
 static int allocate(SteadyMotion *s, Equilibrium *rest) {
   size_t n = (size_t)s->n, rows = (size_t)s->nrows;
-  double **const parts[] = {&s->unit, &s->row,   &s->y, &s->at,    &s->f,         &s->out,
-                            &s->G,    &s->noise, &s->D, &s->error, &s->direction, &s->table};
-  const size_t sizes[] = {n,        rows,     n,        n > (size_t)s->ncandidates ? n : (size_t)s->ncandidates,
-                          rows,     2 * rows, rows * n, rows * n,
-                          rows * n, rows * n, n,        2 * LEVELS * rows + (size_t)s->ncandidates};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&s->pool, sizes[i]);
+  const lag_part parts[] = {{&s->unit, n}, {&s->row, rows}, {&s->y, n},
+      {&s->at, n > (size_t)s->ncandidates ? n : (size_t)s->ncandidates}, {&s->f, rows}, {&s->out, 2 * rows},
+      {&s->G, rows * n}, {&s->noise, rows * n}, {&s->D, rows * n}, {&s->error, rows * n}, {&s->direction, n},
+      {&s->table, 2 * LEVELS * rows + (size_t)s->ncandidates}};
+  lag_pool_parts(&s->pool, sizeof parts / sizeof *parts, parts);
   double **const report[] = {&rest->start, &rest->found, &rest->scale, &rest->y, &rest->rate};
   for (size_t i = 0; i < sizeof report / sizeof *report; i++) *report[i] = lag_pool_doubles(&rest->pool, n);
   return s->pool.failed || rest->pool.failed ? LAG_ENOMEM : LAG_OK;

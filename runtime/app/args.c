@@ -221,20 +221,25 @@ int lag_app_overlays(const Args *a) {
   return a->nscenes > 1 || a->nvs > 0 || a->starts || (a->method && a->method[lag_app_method_length(a->method)] == ',');
 }
 
+/* An option for one run that a picture of several goes without, or NULL. */
+static const char *of_one_run(const Args *a) {
+  return a->out           ? "-o"
+         : a->json        ? "--json"
+         : a->html        ? "--html"
+         : a->save        ? "--save-state"
+         : a->resume      ? "--resume"
+         : a->events      ? "--events"
+         : a->measures    ? "--measure"
+         : a->tangent     ? "--tangent"
+         : a->sensitivity ? "--sensitivity"
+         : a->volume      ? "--volume"
+         : a->accuracy    ? "--accuracy"
+                          : NULL;
+}
+
 /* --cloud draws one scene by several methods, and writes nothing else. */
 static int check_cloud(const Args *a) {
-  const char *other = a->out            ? "-o"
-                      : a->json         ? "--json"
-                      : a->html         ? "--html"
-                      : a->save         ? "--save-state"
-                      : a->resume       ? "--resume"
-                      : a->events       ? "--events"
-                      : a->measures     ? "--measure"
-                      : a->tangent      ? "--tangent"
-                      : a->sensitivity  ? "--sensitivity"
-                      : a->volume       ? "--volume"
-                      : a->accuracy     ? "--accuracy"
-                      : a->section      ? "--section"
+  const char *other = a->section        ? "--section"
                       : a->vs           ? "--vs"
                       : a->starts       ? "--starts"
                       : a->distance     ? "--distance"
@@ -242,7 +247,7 @@ static int check_cloud(const Args *a) {
                       : a->portrait     ? "--portrait"
                       : a->potential    ? "--potential"
                       : a->sketch       ? "--sketch"
-                                        : NULL;
+                                        : of_one_run(a);
   if (other) return lag_app_error(a, "%s and --cloud: a cloud is a picture of its own; leave one of them out", other);
   if (a->nscenes > 1)
     return lag_app_error(a, "--cloud: two scenes are named, %s and %s; a cloud is around the start of one",
@@ -255,18 +260,7 @@ static int check_cloud(const Args *a) {
 
 /* Several scenes or methods, or --vs, draw one picture, and write nothing else. */
 static int check_overlay(const Args *a) {
-  const char *other = a->out           ? "-o"
-                      : a->json        ? "--json"
-                      : a->html        ? "--html"
-                      : a->save        ? "--save-state"
-                      : a->resume      ? "--resume"
-                      : a->events      ? "--events"
-                      : a->measures    ? "--measure"
-                      : a->tangent     ? "--tangent"
-                      : a->sensitivity ? "--sensitivity"
-                      : a->volume      ? "--volume"
-                      : a->accuracy    ? "--accuracy"
-                                       : NULL;
+  const char *other = of_one_run(a);
   if (a->cloud) return check_cloud(a);
   if (a->fit && !a->vs && !a->starts) return 0;
   if (!lag_app_overlays(a)) return 0;
@@ -290,40 +284,47 @@ static int check_overlay(const Args *a) {
   return other ? lag_app_error(a, "%s is for one run; a picture of several goes without it", other) : 0;
 }
 
-static int check(const Args *a) {
-  if (check_overlay(a)) return EXIT_USAGE;
-  int on_stdout = a->out && strcmp(a->out, "-") == 0;
-  if (a->motions && strcmp(a->motions, "-") == 0)
-    return lag_app_error(a, "--motions -: motions are written to a file, for example --motions motions.csv");
-  if (on_stdout && a->json)
-    return lag_app_error(a, "-o - and --json both write to standard output; give -o a file name");
-  if (a->events && strcmp(a->events, "-") == 0 && a->json)
-    return lag_app_error(a, "--events - and --json both write to standard output; give --events a file name");
-  if ((a->plot_x || a->plot_y) && !a->svg && !a->sketch)
-    return lag_app_error(a, "--plot-x and --plot-y need a picture: add --svg FILE or --sketch");
-  if (a->distance && (a->energy_error || !lag_app_overlays(a)))
-    return lag_app_error(a, a->energy_error ? "--distance and --energy-error are two pictures; leave one of them out"
-                                            : "--distance is between runs: add one with another value, for example "
-                                              "--vs th=1.2, or another method or scene");
-  if ((a->distance || a->energy_error) &&
-      (!a->svg || a->section || a->plot_x || a->portrait || a->potential || a->tangent || a->sensitivity))
-    return lag_app_error(a, "--%s is a picture over time, which `lagc plot` draws",
-                         a->distance ? "distance" : "energy-error");
-  if ((a->portrait || a->potential) && !(a->svg && a->plot_x && a->plot_y))
-    return lag_app_error(
-        a, "--portrait and --potential need a picture: `lagc plot` makes it, or add --svg FILE and --plot-x, --plot-y");
-  if (a->portrait && a->potential)
-    return lag_app_error(a, "--portrait and --potential are two pictures; leave one of them out");
-  if (a->plot_x && !a->plot_y)
-    return lag_app_error(a, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x);
-  if ((a->points || a->from || a->trace || a->no_rods) && !a->html)
-    return lag_app_error(a, "--points, --from, --trace and --no-rods need an animation: add --html FILE");
-  if (a->drawing && !(atoi(a->drawing) >= 1 && atoi(a->drawing) <= 100))
-    return lag_app_error(a, "--drawing %s: a number of instants from 1 to 100 is needed", a->drawing);
-  if (a->drawing && (!a->svg || a->section || a->plot_x || a->plot_y || a->portrait || a->potential))
-    return lag_app_error(a, "--drawing is a picture of its own, which `lagc plot` draws; leave out other axes");
-  if (a->section && a->html)
-    return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
+/* A mistake, and a word in its message. */
+typedef struct Mistake {
+  int made;
+  const char *text, *word;
+} Mistake;
+
+static int first_mistake(const Args *a, size_t n, const Mistake m[]) {
+  for (size_t i = 0; i < n; i++)
+    if (m[i].made) return lag_app_error(a, m[i].text, m[i].word);
+  return 0;
+}
+
+static int is_stdout(const char *path) { return path && strcmp(path, "-") == 0; }
+
+/* Pictures: what they need, and what excludes what. */
+static int check_pictures(const Args *a) {
+  int axes = a->plot_x || a->plot_y, energies = a->portrait || a->potential, over_time = a->distance || a->energy_error;
+  const Mistake m[] = {
+      {axes && !a->svg && !a->sketch, "--plot-x and --plot-y need a picture: add --svg FILE or --sketch", NULL},
+      {a->distance && a->energy_error, "--distance and --energy-error are two pictures; leave one of them out", NULL},
+      {a->distance && !lag_app_overlays(a),
+       "--distance is between runs: add one with another value, for example --vs th=1.2, or another method or scene",
+       NULL},
+      {over_time && (!a->svg || a->section || a->plot_x || energies || a->tangent || a->sensitivity),
+       "--%s is a picture over time, which `lagc plot` draws", a->distance ? "distance" : "energy-error"},
+      {energies && !(a->svg && a->plot_x && a->plot_y),
+       "--portrait and --potential need a picture: `lagc plot` makes it, or add --svg FILE and --plot-x, --plot-y",
+       NULL},
+      {a->portrait && a->potential, "--portrait and --potential are two pictures; leave one of them out", NULL},
+      {a->plot_x && !a->plot_y, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x},
+      {(a->points || a->from || a->trace || a->no_rods) && !a->html,
+       "--points, --from, --trace and --no-rods need an animation: add --html FILE", NULL},
+      {a->drawing && !(atoi(a->drawing) >= 1 && atoi(a->drawing) <= 100),
+       "--drawing %s: a number of instants from 1 to 100 is needed", a->drawing},
+      {a->drawing && (!a->svg || a->section || axes || energies),
+       "--drawing is a picture of its own, which `lagc plot` draws; leave out other axes", NULL},
+      {a->section && a->html, "--section and --html: a motion is shown in time; leave one of them out", NULL}};
+  return first_mistake(a, sizeof m / sizeof *m, m);
+}
+
+static int check_tangents(const Args *a) {
   const char *const tangents[] = {a->tangent ? "tangent" : NULL, a->sensitivity ? "sensitivity" : NULL,
                                   a->volume ? "volume" : NULL};
   for (int i = 0; i < 3; i++) {
@@ -335,24 +336,36 @@ static int check(const Args *a) {
         return lag_app_error(a, "--%s and --%s: each takes the tangent of the run for itself; make two runs",
                              tangents[k], tangents[i]);
   }
-  if (a->accuracy && (a->tol || a->step || a->resume))
-    return lag_app_error(a, "--accuracy chooses the tolerance or step; leave out --%s",
-                         a->tol    ? "tol"
-                         : a->step ? "step"
-                                   : "resume");
-  if (a->section && a->every)
-    return lag_app_error(
-        a,
-        "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
-  const char *const rows[] = {a->out, a->motions};
-  for (int i = 0; i < 2; i++)
-    /* there is no type of 34 digits */
-    if (strcmp(LAG_PRECISION, "double") != 0 && rows[i] &&
-        (lag_outfile_has_suffix(rows[i], "npy") || lag_outfile_has_suffix(rows[i], "h5")))
-      return lag_app_error(a,
-                           "%s: .npy and .h5 files hold doubles, this run computes in " LAG_PRECISION
-                           " precision; write to a .csv file",
-                           rows[i]);
+  return 0;
+}
+
+/* No file of doubles for 34 digits. */
+static const char *file_of_doubles(const char *path) {
+  int of_doubles = path && (lag_outfile_has_suffix(path, "npy") || lag_outfile_has_suffix(path, "h5"));
+  return of_doubles && strcmp(LAG_PRECISION, "double") != 0 ? path : NULL;
+}
+
+static int check(const Args *a) {
+  const char *doubles = file_of_doubles(a->out) ? a->out : file_of_doubles(a->motions);
+  const Mistake streams[] = {
+      {is_stdout(a->motions), "--motions -: motions are written to a file, for example --motions motions.csv", NULL},
+      {is_stdout(a->out) && a->json, "-o - and --json both write to standard output; give -o a file name", NULL},
+      {is_stdout(a->events) && a->json,
+       "--events - and --json both write to standard output; give --events a file name", NULL}};
+  const Mistake rows[] = {
+      {a->accuracy && (a->tol || a->step || a->resume), "--accuracy chooses the tolerance or step; leave out --%s",
+       a->tol    ? "tol"
+       : a->step ? "step"
+                 : "resume"},
+      {a->section && a->every,
+       "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out",
+       NULL},
+      {doubles != NULL,
+       "%s: .npy and .h5 files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file",
+       doubles}};
+  if (check_overlay(a) || first_mistake(a, sizeof streams / sizeof *streams, streams) || check_pictures(a) ||
+      check_tangents(a) || first_mistake(a, sizeof rows / sizeof *rows, rows))
+    return EXIT_USAGE;
   return check_analysis(a);
 }
 

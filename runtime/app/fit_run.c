@@ -123,9 +123,9 @@ static int errors_of(const FitRun *r, const char *label) {
   char want[160];
   const char *unit = strstr(label, " [");
   int n = (int)(unit ? (size_t)(unit - label) : strlen(label));
-  for (int k = 1; k < r->data.ncols; k++) {
+  for (int k = 1; k < r->data.file.ncols; k++) {
     snprintf(want, sizeof want, "sigma(%.*s)%s", n, label, unit ? unit : "");
-    if (strcmp(r->data.names[k], want) == 0) return k;
+    if (strcmp(r->data.file.names[k], want) == 0) return k;
   }
   return 0;
 }
@@ -150,12 +150,12 @@ static int copy_column(FitRun *r, int c, int k) {
   int errors = errors_of(r, f->column[c].label);
   f->column[c].per_row = errors > 0;
   for (int i = 0; i < f->nrows; i++) {
-    const double *row = r->data.x + (size_t)i * (size_t)r->data.ncols;
+    const double *row = r->data.x + (size_t)i * (size_t)r->data.file.ncols;
     f->data[i * f->ncolumns + c] = row[k];
     if (errors) f->errors[i * f->ncolumns + c] = row[errors];
     if (errors && !isnan(row[k]) && !(row[errors] > 0))
       return lag_app_error(&r->app->args, "%s:%lld: column %s: an error is positive, or its value is missing, too",
-                           r->app->args.data, r->data.line[i], r->data.names[errors]);
+                           r->app->args.data, r->data.line[i], r->data.file.names[errors]);
   }
   return take_sigma(r, &f->column[c]);
 }
@@ -177,10 +177,10 @@ static int take_columns(FitRun *r) {
   const Args *a = &r->app->args;
   Fit *f = &r->fit;
   f->nrows = (int)r->data.nrows;
-  f->column = calloc((size_t)r->data.ncols, sizeof *f->column);
-  for (int k = 1; k < r->data.ncols && f->column; k++) {
-    int output = is_asked(a, r->data.names[k]) ? output_named(r, r->data.names[k]) : -1;
-    if (output >= 0) f->column[f->ncolumns++] = (FitColumn){.label = r->data.names[k], .output = output};
+  f->column = calloc((size_t)r->data.file.ncols, sizeof *f->column);
+  for (int k = 1; k < r->data.file.ncols && f->column; k++) {
+    int output = is_asked(a, r->data.file.names[k]) ? output_named(r, r->data.file.names[k]) : -1;
+    if (output >= 0) f->column[f->ncolumns++] = (FitColumn){.label = r->data.file.names[k], .output = output};
   }
   if (f->ncolumns == 0)
     return lag_app_error(a, "%s: no column besides the time is an output here; `lagc fit` makes them outputs", a->data);
@@ -191,7 +191,7 @@ static int take_columns(FitRun *r) {
   int rc = 0;
   for (int c = 0; c < f->ncolumns && rc == 0; c++) {
     int k = 1;
-    while (strcmp(r->data.names[k], f->column[c].label) != 0) k++;
+    while (strcmp(r->data.file.names[k], f->column[c].label) != 0) k++;
     rc = copy_column(r, c, k);
   }
   return rc;
@@ -200,7 +200,7 @@ static int take_columns(FitRun *r) {
 /* The unit of the file's times in seconds: the value of the output that lagc has named after the column. */
 static int take_time_unit(FitRun *r) {
   const Args *a = &r->app->args;
-  const char *label = r->data.names[0];
+  const char *label = r->data.file.names[0];
   r->time_unit = 1;
   if (strcmp(label, "t") == 0 || strcmp(label, "t [s]") == 0) return 0;
   if (strncmp(label, "t [", 3) != 0)
@@ -221,7 +221,7 @@ static int take_times(FitRun *r) {
   double *t = r->t = calloc(r->data.nrows, sizeof *t), t0 = r->app->scene->t0;
   if (!t) return lag_app_error(a, "out of memory");
   for (size_t i = 0; i < r->data.nrows && rc == 0; i++) {
-    t[i] = r->data.x[i * (size_t)r->data.ncols] * r->time_unit;
+    t[i] = r->data.x[i * (size_t)r->data.file.ncols] * r->time_unit;
     if (isnan(t[i])) rc = lag_app_error(a, "%s:%lld: the time is missing", a->data, r->data.line[i]);
     else if (i && t[i] == t[i - 1])
       rc = lag_app_error(a, "%s:%lld: t = %.9g s stands twice; join the rows, for example by their mean", a->data,

@@ -282,14 +282,12 @@ static void keep_rounding_out(const Start *w) {
 static int make_room(Start *s, double **block) {
   lag_level *w = &s->level;
   size_t n = (size_t)s->pb->n, nq = (size_t)s->nq, m = (size_t)s->of->n, entries = (size_t)s->of->njacobian;
-  const size_t sizes[] = {n,
-                          n, n, m, (size_t)s->of->nmass, nq * nq, 2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m,
-                          nq, nq, nq, nq, nq, nq, nq, nq, m, m, m, m, m,
-                          entries};
-  double **const parts[] = {&s->y,       &s->asked,    &s->best, &s->other,      &s->M,     &s->full,      &s->kkt,
-                            &w->x,       &w->asked,    &w->best, &w->from,       &w->d,     &w->along,     &w->reach,
-                            &w->nearest, &w->residual, &w->size, &w->terms_here, &w->slope, &w->has_terms, &w->A};
-  *block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
+  const lag_part parts[] = {{&s->y, n}, {&s->asked, n}, {&s->best, n}, {&s->other, m}, {&s->M, (size_t)s->of->nmass},
+      {&s->full, nq * nq}, {&s->kkt, 2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m}, {&w->x, nq},
+      {&w->asked, nq}, {&w->best, nq}, {&w->from, nq}, {&w->d, nq}, {&w->along, nq}, {&w->reach, nq},
+      {&w->nearest, nq}, {&w->residual, m}, {&w->size, m}, {&w->terms_here, m}, {&w->slope, m}, {&w->has_terms, m},
+      {&w->A, entries}};
+  *block = lag_workspace(sizeof parts / sizeof *parts, parts);
   s->index = malloc((nq + 2 * entries + 1) * sizeof *s->index);
   if (!*block || !s->index) return 0;
   int *row = s->index + nq, *col = row + entries;

@@ -9,8 +9,7 @@
 #include "core/core.h"
 #include "core/rhs.h"
 #include "numeric/magnitudes.h"
-
-enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
+#include "numeric/workspace.h"
 
 /* The layout of pb->held; behind it a state for lag_rhs_prepare. */
 typedef struct ConstraintScratch {
@@ -30,13 +29,11 @@ size_t lag_constraint_scratch_size(const lag_model *m) {
 
 static ConstraintScratch layout(const lag_problem *pb) {
   ConstraintScratch w = {.of = pb->model->constraints};
-  double *x = pb->held, **const parts[] = {&w.c, &w.r, &w.before, &w.g,     &w.terms[0], &w.terms[1],
-                                           &w.A, &w.M, &w.d,      &w.force, &w.step,     &w.other};
-  const int n = w.of->n, sizes[] = {n, n, n, n, n, n, w.of->njacobian, w.of->nmass, pb->nq, pb->nq, pb->nq, 0};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-    *parts[i] = x;
-    x += sizes[i];
-  }
+  const size_t n = (size_t)w.of->n, nq = (size_t)pb->nq;
+  const lag_part parts[] = {{&w.c, n}, {&w.r, n}, {&w.before, n}, {&w.g, n}, {&w.terms[0], n}, {&w.terms[1], n},
+      {&w.A, (size_t)w.of->njacobian}, {&w.M, (size_t)w.of->nmass}, {&w.d, nq}, {&w.force, nq}, {&w.step, nq},
+      {&w.other, 0}};
+  lag_workspace_slice(pb->held, sizeof parts / sizeof *parts, parts);
   return w;
 }
 
@@ -173,8 +170,6 @@ void lag_report_residual(lag_problem *pb, int k, int holonomic, double residual,
 
 /* ---- Newton's iteration */
 
-static double ratio(double x, double y) { return x == 0.0 ? 0 : fabs(x / y); }
-
 /* Whether the rest of a correction d, its part `left`, is rounding of the largest component with the same unit: one
  * that is 0 never stops moving. */
 static int is_rounding(const lag_problem *pb, const double *x, const double *d, double left) {
@@ -189,18 +184,6 @@ static int is_rounding(const lag_problem *pb, const double *x, const double *d, 
     if (!(rest <= rounding * most)) return 0;
   }
   return 1;
-}
-
-/* The largest, and *least the smallest, ratio of a residual to the one before the correction. */
-static double parts_left(int n, const double *now, const double *before, double *least) {
-  double most = 0;
-  *least = HUGE_VAL;
-  for (int k = 0; k < n; k++) {
-    double part = ratio(now[k], before[k]);
-    most = fmax(most, part);
-    *least = now[k] == 0.0 ? *least : fmin(*least, part);
-  }
-  return most;
 }
 
 /* Reports the worst of constraints that cannot be met. */
@@ -247,35 +230,42 @@ int lag_constraint_is_met(lag_problem *pb, double t, const double *y, int holono
   return met;
 }
 
-/* Newton's iteration of positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of
- * y, before and after. Headers take the same turns (emit/header_definitions.c); where the residuals shrink no more,
- * the state is judged here alone. */
+/* A level of constraints: 1 of positions, 0 of velocities. c and r are the residuals of y, before and after. */
+typedef struct Level {
+  const ConstraintScratch *w;
+  double t, *y;
+  int holonomic;
+} Level;
+
+static double *residuals_of(const Level *l) { return l->holonomic ? l->w->c : l->w->r; }
+
+static int residuals(lag_problem *pb, const Level *l, int turn, double *g) {
+  int n = l->holonomic ? l->w->of->nholonomic : l->w->of->n;
+  int rc = turn ? lag_residuals(pb, l->t, l->y, l->w->c, l->w->r) : 0;
+  for (int k = 0; k < n; k++) g[k] = -residuals_of(l)[k];
+  return rc;
+}
+
+static int correct(lag_problem *pb, const Level *l, const double *g, double *d) {
+  int rc = lag_least_change(pb, l->t, l->y, l->holonomic, g, d, l->w->force);
+  if (rc < 0 || (rc == 0 && lag_not_finite(pb->nq, d) < 0)) return rc;
+  return report_unmet(pb, l->w, l->t, l->y, l->holonomic);
+}
+
+/* Instance of kernels/hold.h. */
+#define LAG_HOLD_MODEL lag_problem *pb, const Level *l
+#define LAG_HOLD_RESIDUALS(turn, g) residuals(pb, l, turn, g)
+#define LAG_HOLD_CHANGE(g, d) correct(pb, l, g, d)
+#define LAG_HOLD_ROUNDING(x, d, left) is_rounding(pb, x, d, left)
+#define LAG_HOLD_MET(done) ((void)(done), lag_constraint_is_met(pb, l->t, l->y, l->holonomic, residuals_of(l)))
+#include "kernels/hold.h"
+
 static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double *y, double *lost, int holonomic) {
-  int n = holonomic ? w->of->nholonomic : w->of->n, nq = pb->nq, strikes = 0;
-  double *x = holonomic ? y : y + nq, *residual = holonomic ? w->c : w->r, least;
-  double *lost_x = lost ? lost + (x - y) : NULL;
-  for (int turn = 0; turn < MOST_TURNS; turn++) {
-    int busy = 0;
-    for (int k = 0; k < n; k++) busy |= !(residual[k] == 0.0);
-    if (!busy) return LAG_OK;
-    for (int k = 0; k < n; k++) {
-      w->before[k] = residual[k];
-      w->g[k] = -residual[k];
-    }
-    int rc = lag_least_change(pb, t, y, holonomic, w->g, w->d, w->force);
-    if (rc || lag_not_finite(nq, w->d) >= 0) return rc < 0 ? rc : report_unmet(pb, w, t, y, holonomic);
-    for (int i = 0; i < nq; i++) x[i] = lost_x ? lag_compensated_sum(x[i], w->d[i], &lost_x[i]) : x[i] + w->d[i];
-    if ((rc = lag_residuals(pb, t, y, w->c, w->r)) != 0) return rc;
-    double most = parts_left(n, residual, w->before, &least);
-    int lost_in_rounding = is_rounding(pb, x, w->d, most);
-    if (lost_in_rounding && most < 0.5) return LAG_OK;
-    /* no residual shrinks any more, or one that the correction cannot reach does not */
-    if (lost_in_rounding || !(least < 0.5)) {
-      if (lag_constraint_is_met(pb, t, y, holonomic, residual)) return LAG_OK;
-      if (++strikes == MOST_STRIKES) return report_unmet(pb, w, t, y, holonomic);
-    }
-  }
-  return lag_constraint_is_met(pb, t, y, holonomic, residual) ? LAG_OK : report_unmet(pb, w, t, y, holonomic);
+  const Level l = {w, t, y, holonomic};
+  int n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : pb->nq, unmet = 0;
+  const lag_held_level of = {n, pb->nq, y + at, lost ? lost + at : NULL, w->g, w->before, w->d};
+  int rc = lag_hold_turns(pb, &l, &of, &unmet);
+  return rc == 0 && unmet ? report_unmet(pb, w, t, y, holonomic) : rc;
 }
 
 int lag_project(lag_problem *pb, double t, double *y, double *lost) {

@@ -75,27 +75,12 @@ static int make_room(ContactSet *w) {
   const lag_model *m = w->sim->scene->model;
   const lag_constraints *of = m->constraints;
   size_t p = (size_t)m->ncontacts, n = (size_t)of->n, nq = (size_t)m->nq;
-  double **const parts[] = {&w->gap, &w->rate, &w->gap_size, &w->rate_size, &w->g,      &w->c,
-                            &w->r,   &w->d,    &w->force,    &w->test,      &w->events, &w->ahead,
-                            &w->A,   &w->mass, &w->law,      &w->side,      &w->pressed};
-  const size_t sizes[] = {p,
-                          p,
-                          p,
-                          p,
-                          n,
-                          n,
-                          n,
-                          nq,
-                          nq,
-                          (size_t)w->sim->pb.n,
-                          (size_t)(m->nev + m->nmodes),
-                          p,
-                          (size_t)of->njacobian,
-                          (size_t)of->nmass,
-                          3 * p + 4 * (size_t)m->nguides,
-                          p,
-                          3 * (size_t)m->nguides * (p + 1)};
-  w->block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
+  const lag_part parts[] = {{&w->gap, p}, {&w->rate, p}, {&w->gap_size, p}, {&w->rate_size, p}, {&w->g, n},
+      {&w->c, n}, {&w->r, n}, {&w->d, nq}, {&w->force, nq}, {&w->test, (size_t)w->sim->pb.n},
+      {&w->events, (size_t)(m->nev + m->nmodes)}, {&w->ahead, p}, {&w->A, (size_t)of->njacobian},
+      {&w->mass, (size_t)of->nmass}, {&w->law, 3 * p + 4 * (size_t)m->nguides}, {&w->side, p},
+      {&w->pressed, 3 * (size_t)m->nguides * (p + 1)}};
+  w->block = lag_workspace(sizeof parts / sizeof *parts, parts);
   w->of = calloc(p, sizeof *w->of);
   w->at = calloc(p, sizeof *w->at);
   w->active = calloc(4 * p, 1);
@@ -173,8 +158,12 @@ static double change_of_rate(const ContactSet *w, int i, const double *d) {
   return rate_change(w->sim->scene->model, w->A, i, d);
 }
 
-double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed,
-                               const double *d, const double *A, double *before, double *after) {
+/* contact.c: the coefficient of restitution of contact i, from Newton's law in the model for a state y whose
+ * velocities are changed by d[nq] times -(rate + speed), so that the gap closes with `speed`. rate: of its gap at y,
+ * t; d changes that by 1; pb->u: this contact is closed, others are open; A: entries of the Jacobian; before[n],
+ * after[n] are scratch. NaN: there is none. */
+static double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed,
+                                      const double *d, const double *A, double *before, double *after) {
   const lag_model *m = pb->model;
   int nq = m->nq, stop = 0;
   size_t bytes = (size_t)pb->n * sizeof *y;

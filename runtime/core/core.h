@@ -445,11 +445,6 @@ int lag_is_member(const char *var, const char *family, size_t length);
 int lag_nearest_name(const lag_model *model, const char *name, char *best, size_t nbest);
 /* part := member or component k of the family `name` ("th": "th[1]", "th'": "th[1]'", "r": "r.x"); 0 past the last. */
 int lag_family_member(const lag_model *model, const char *name, int k, char *part, size_t npart);
-/* Edit distance where `name` may be a typing error for `known`; LAG_NO_TYPO where it is another name: too many
- * edits, or a single letter replaced. */
-enum { LAG_NO_TYPO = 1000 };
-int lag_typo_distance(const char *name, const char *known);
-
 /* The nearest of several names, while they are tried one by one; best: NULL where none is near. */
 typedef struct lag_nearest {
   const char *name, *best;

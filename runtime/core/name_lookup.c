@@ -103,18 +103,21 @@ int lag_family_member(const lag_model *m, const char *name, int k, char *part, s
   return 0;
 }
 
-int lag_typo_distance(const char *name, const char *known) {
+/* Edit distance where `name` may be a typing error for `known`; NO_TYPO where it is another name: too many
+ * edits, or a single letter replaced. */
+enum { NO_TYPO = 1000 };
+static int typo_distance(const char *name, const char *known) {
   size_t na = strlen(name), nb = strlen(known);
-  if (na > LAG_LONGEST_WORD || nb > LAG_LONGEST_WORD) return strcmp(name, known) ? LAG_NO_TYPO : 0;
+  if (na > LAG_LONGEST_WORD || nb > LAG_LONGEST_WORD) return strcmp(name, known) ? NO_TYPO : 0;
   int n = (int)na, d = lag_edit_distance(name, na, known, nb, 2) / 2;
   int guess = n == 1 && known[0] && !known[1] && tolower((unsigned char)name[0]) != tolower((unsigned char)known[0]);
 
-  return guess || d > n / 3 + 1 ? LAG_NO_TYPO : d;
+  return guess || d > n / 3 + 1 ? NO_TYPO : d;
 }
 
 void lag_try_nearest(lag_nearest *near, const char *known) {
-  int d = lag_typo_distance(near->name, known);
-  if (d < (near->best ? near->least : LAG_NO_TYPO)) {
+  int d = typo_distance(near->name, known);
+  if (d < (near->best ? near->least : NO_TYPO)) {
     near->least = d;
     near->best = known;
   }
@@ -126,7 +129,7 @@ int lag_nearest_name(const lag_model *m, const char *name, char *best, size_t nb
     const lag_var *vars;
     const char *suffix;
   } tables[] = {{m->np, m->p, ""}, {m->nq, m->q, ""}, {m->nq, m->q, "'"}, {m->nz, m->z, ""}, {m->nu, m->u, ""}};
-  int least = LAG_NO_TYPO;
+  int least = NO_TYPO;
   size_t n = strlen(name);
 
   best[0] = '\0';
@@ -135,7 +138,7 @@ int lag_nearest_name(const lag_model *m, const char *name, char *best, size_t nb
       char full[64];
       snprintf(full, sizeof full, "%s%s", tables[k].vars[i].name, tables[k].suffix);
       int part = strncmp(full, name, n) == 0 && (full[n] == '.' || full[n] == '['); /* r of r.x, drag of drag.c */
-      int d = part ? 0 : lag_typo_distance(name, full);
+      int d = part ? 0 : typo_distance(name, full);
       if (d < least && !is_switch(m, &tables[k].vars[i])) {
         least = d;
         snprintf(best, nbest, "%s", full);

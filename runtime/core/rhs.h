@@ -37,13 +37,6 @@ int lag_contact_friction_forces(lag_problem *pb, double t, const double *y);
 /* moreau_contacts.c: size of pb->contact_room in doubles. */
 size_t lag_moreau_contacts_size(const lag_model *m);
 
-/* contact.c: the coefficient of restitution of contact i, from Newton's law in the model for a state y whose
- * velocities are changed by d[nq] times -(rate + speed), so that the gap closes with `speed`. rate: of its gap at y,
- * t; d changes that by 1; pb->u: this contact is closed, others are open; A: entries of the Jacobian; before[n],
- * after[n] are scratch. NaN: there is none. */
-double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed,
-                               const double *d, const double *A, double *before, double *after);
-
 /* Inline lag_inputs; the distance to the next row of a table or kick, as lag_next_row. */
 LAG_ALWAYS_INLINE int lag_inputs_inline(lag_problem *pb, double t) {
   return pb->model->nu | pb->model->nmodes ? lag_inputs(pb, t) : 0;

@@ -14,31 +14,36 @@
 
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_DOUBLES = LINE / sizeof(double) };
 
+/* Cuts x into the arrays that are saved behind Run; returns their length. x NULL: only that. */
+static size_t saved_arrays(lag_sim *s, const lag_method *method, double *x) {
+  const lag_model *m = s->scene->model;
+  size_t nm = (size_t)m->nmodes, nu = (size_t)m->nu + nm, n = (size_t)s->pb.n, nev = (size_t)m->nev + nm;
+  size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
+  size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0;
+  double *contacts;
+  const lag_part parts[] = {{&s->p, (size_t)m->np}, {&s->derived, (size_t)m->nderived}, {&s->hold, nu},
+      {&s->begin, n}, {&s->asked, n}, {&s->redundant, nc}, {&s->loose, (size_t)m->nq}, {&s->kept, nc}, {&s->y, n},
+      {&s->y0, n}, {&s->now, n}, {&s->sign, nev}, {&s->noise, nev}, {&s->root, nev}, {&s->sign_end, nev},
+      {&s->count, nev}, {&s->first, nev}, {&s->last, nev}, {&s->interval, nev}, {&s->shorter, nev},
+      {&s->flight, nev}, {&s->skipped, nev}, {&s->crossed, nm}, {&s->slips, nm}, {&s->slid, nm},
+      {&s->slid_since, nm}, {&s->mon_first, nmon}, {&s->mon_peak, nmon}, {&s->exact_peak, (size_t)s->scene->nexact},
+      {&contacts, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0}, {&s->pb.contact_impulse, pushed},
+      {&s->pb.contact_change, pushed ? (size_t)m->nq : 0},
+      {&s->charge_block, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double)}, {&s->rate_history, 3 * n},
+      {&s->pb.size, n + 2}};
+  size_t length = lag_workspace_slice(x, sizeof parts / sizeof *parts, parts);
+  if (x) s->pb.contacts = pushed ? (lag_contact_stats *)(void *)contacts : NULL;
+  return length;
+}
+
 /* Allocates and lays out the blocks for this method, keeping only the settings of the caller (p, hold). opt: option
  * values, which must live on. */
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   const lag_model *m = s->scene->model;
-  size_t np = (size_t)(m->np + m->nderived), nm = (size_t)m->nmodes, nu = (size_t)m->nu + nm, n = (size_t)s->pb.n,
-         nev = (size_t)m->nev + nm;
-  size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0,
-         pushes = pushed ? lag_moreau_contacts_size(m) : 0;
-  double *contacts, *contact_room = calloc(pushes + 1, sizeof *contact_room),
-                    **const parts[] = {&s->p,
-                                       &s->derived, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept,
-                                       &s->y, &s->y0, &s->now, &s->sign, &s->noise, &s->root, &s->sign_end, &s->count,
-                                       &s->first, &s->last, &s->interval, &s->shorter, &s->flight, &s->skipped,
-                                       &s->crossed, &s->slips, &s->slid, &s->slid_since, &s->mon_first, &s->mon_peak,
-                                       &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change,
-                                       &s->charge_block, &s->rate_history,
-                                       &s->pb.size};
-  const size_t sizes[] = {(size_t)m->np, (size_t)m->nderived, nu, n, n, nc, (size_t)m->nq, nc, n, n, n, nev, nev, nev,
-                          nev, nev, nev, nev, nev, nev, nev, nev, nm, nm, nm, nm, nmon, nmon,
-                          (size_t)s->scene->nexact, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0, pushed,
-                          pushed ? (size_t)m->nq : 0, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double),
-                          3 * n, n + 2};
-  const size_t nparts = sizeof sizes / sizeof *sizes,
-               fixed = RUN_DOUBLES + lag_workspace_slice(NULL, nparts, parts, sizes);
+  size_t np = (size_t)(m->np + m->nderived), nu = (size_t)(m->nu + m->nmodes), n = (size_t)s->pb.n;
+  size_t pushes = method->flags & LAG_METHOD_IMPULSES && m->ncontacts ? lag_moreau_contacts_size(m) : 0;
+  size_t fixed = RUN_DOUBLES + saved_arrays(s, method, NULL);
+  double *contact_room = calloc(pushes + 1, sizeof *contact_room);
   lag_problem sized = s->pb;
 
   sized.opt = opt;
@@ -62,12 +67,11 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  lag_workspace_slice(x, nparts, parts, sizes);
+  saved_arrays(s, method, x);
   s->method_work = b + before;
   s->nwork = work;
   free(s->pb.contact_room);
   s->pb.contact_room = contact_room;
-  s->pb.contacts = pushed ? (lag_contact_stats *)(void *)contacts : NULL;
   s->pb.p = s->p;
   s->pb.hold = s->hold;
   s->pb.kept = s->kept;
@@ -91,18 +95,15 @@ static int alloc_scratch(lag_sim *s) {
   size_t held = lag_constraint_scratch_size(m), ranks = lag_rank_scratch_size(m),
          sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
   size_t nc = (size_t)lag_sim_ncharges(s) + 1, np = (size_t)m->ncontacts;
-  double **const parts[] = {&s->u,
-                            &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held,
-                            &s->pb.ranks, &s->contact_scratch, &s->contact_was, &s->charge_now, &s->charge_power,
-                            &s->charge_gain, &s->sides, &s->grip, &s->side_noise, &s->slid_off, &s->meets, &s->left,
-                            &s->meeting, &s->pb.slide, &s->pb.rub,
-                            &s->sizes};
-  const size_t sizes[] = {nuu,
-                          nw, n, n, n, nev, nev, nout, 2 + nev, 11 * nev, held, ranks, sized, (size_t)m->ncontacts,
-                          2 * nc, nc, nc, 3 * (size_t)m->nswitch, nm, nm, nm, nm, nm, nm * (9 + 2 * nm), nm * (3 + nm),
-                          m->contact_laws ? 3 * np + 4 * (size_t)m->nguides + 1 : 0,
-                          (size_t)(m->nsizes + m->nmoving)};
-  s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
+  const lag_part parts[] = {{&s->u, nuu}, {&s->work, nw}, {&s->ya, n}, {&s->yb, n}, {&s->yc, n}, {&s->g0, nev},
+      {&s->g1, nev}, {&s->out, nout}, {&s->e, 2 + nev}, {&s->spare, 11 * nev}, {&s->pb.held, held},
+      {&s->pb.ranks, ranks}, {&s->contact_scratch, sized}, {&s->contact_was, (size_t)m->ncontacts},
+      {&s->charge_now, 2 * nc}, {&s->charge_power, nc}, {&s->charge_gain, nc}, {&s->sides, 3 * (size_t)m->nswitch},
+      {&s->grip, nm}, {&s->side_noise, nm}, {&s->slid_off, nm}, {&s->meets, nm}, {&s->left, nm},
+      {&s->meeting, nm * (9 + 2 * nm)}, {&s->pb.slide, nm * (3 + nm)},
+      {&s->pb.rub, m->contact_laws ? 3 * np + 4 * (size_t)m->nguides + 1 : 0},
+      {&s->sizes, (size_t)(m->nsizes + m->nmoving)}};
+  s->scratch = lag_workspace(sizeof parts / sizeof *parts, parts);
   s->fixed = calloc((size_t)m->np + 1, 1);
   s->start = malloc((n + 1) * sizeof(double));
   s->signal = calloc(nu + 1, sizeof *s->signal);

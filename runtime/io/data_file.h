@@ -1,15 +1,13 @@
 /* A file of measurements as CSV: names with units in the first line, a row of numbers in each other one. */
 #pragma once
 
-#include <stddef.h>
+#include "io/csv_file.h"
 
 typedef struct DataFile {
-  int ncols;
+  CsvFile file;    /* its names as they stand in the first line: "th [deg]" */
   size_t nrows;
-  char **names;    /* [ncols] as they stand in the first line: "th [deg]" */
   double *x;       /* [nrows * ncols]; NaN where a field is empty */
   long long *line; /* [nrows] line of the file */
-  char *text;
 } DataFile;
 
 /* 0; or -1 with the reason in why[size], which names file and line. */

@@ -61,5 +61,14 @@ static inline LAG_REAL lag_first_size(int order, LAG_REAL h0, LAG_REAL d1, LAG_R
   return LAG_SELECT(LAG_AND(h > zero, h - h == zero), h, little);
 }
 
+/* State y and rates f at the time t; the longest step, 0: no limit; the unit of time of steps as numbers; y1[n] and
+ * f1[n]: scratch. */
+typedef struct lag_first_try {
+  int n, order;
+  LAG_REAL dir, t, longest, unit;
+  const LAG_REAL *y, *f;
+  LAG_REAL *y1, *f1;
+} lag_first_try;
+
 /* ---- end ---- */
 #endif

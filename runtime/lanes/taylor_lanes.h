@@ -79,39 +79,28 @@ static int taylor_aim(void *batch, int lane, const lag_sim *s) {
   return ((const Taylor *)(const void *)s->method_work)->ready != 0.0;
 }
 
-/* Sizes of steps by the root test. */
-LAG_INLINE Lanes taylor_sizes(int n, TaylorLanes *b) {
-  int columns = b->columns;
-  const Lanes *x = b->x[b->now], none = lane_all(0);
-  for (int i = 0; i < n; i++)
-    b->scale[i] = lane_all(1) / (lane_abs(b->pb.y[i]) + lane_abs(x[columns + i]) + b->floor[i]);
-  Lanes root = lag_taylor_root(x, b->order, columns, n, b->scale, lane_all(DBL_MIN));
-  Lanes h = lane_select(root > none, lane_abs(b->unit) * lane_all(b->reach) / root, lane_all(HUGE_VAL)),
-        seen = lane_abs(b->pb.t - b->pb.t_begin);
+/* Instance of kernels/taylor_step.h. */
+#define LAG_SERIES_MODEL TaylorLanes *b
+#define LAG_SERIES_FLOOR(i) b->floor[i]
+#define LAG_SERIES_BEGIN(t, y, x) taylor_first(b, t, y, x)
+#define LAG_SERIES_REST(order, unit, x) b->ty->rest(b->ty, order, unit, x, b->pb.work)
+#define LAG_SERIES_AT(order, s, x, sum, slope) b->ty->at(b->ty, order, s, x, sum, slope)
+LAG_INLINE int taylor_first(TaylorLanes *b, Lanes t, const Lanes *y, Lanes *x) {
+  LaneProblem *pb = &b->pb;
+  int rc = lane_inputs(pb, t);
+  rc = rc ? 1 : b->ty->first(b->ty, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, b->follows, x, pb->work);
+  unsigned lost = (unsigned)lag_lanes_bits(lane_not_finite(pb->nq + pb->nz, x + pb->n));
+  return -(int)(lost | (rc > 0 ? (1u << LAG_LANES) - 1 : (unsigned)-rc));
+}
+#include "kernels/taylor_step.h"
+
+/* Sizes of steps by the root test, or those of tries after a rejected one. */
+LAG_INLINE Lanes taylor_sizes(TaylorLanes *b, const lag_taylor_frame *f) {
+  Lanes none = lane_all(0), seen = lane_abs(b->pb.t - b->pb.t_begin);
   Lanes most = b->h_max > 0 ? lane_all(b->h_max) : lane_select(seen > none, seen, lane_all(HUGE_VAL));
-  h = lane_min(h, most);
-  h = lane_select(lane_abs(h) <= lane_all(DBL_MAX), h, lane_all(1));
+  Lanes h = lag_taylor_size(b, f, b->pb.y, lane_abs(b->unit), lane_all(b->reach), most);
   return lane_select(b->again, b->h, h);
 }
-
-/* y1, comp1 := the states after steps of dt. */
-LAG_INLINE void taylor_ends(int n, TaylorLanes *b, Lanes dt) {
-  b->ty->at(b->ty, b->order, dt / b->unit, b->x[b->now], b->sum, b->slope);
-  for (int i = 0; i < n; i++) {
-    b->comp1[i] = b->comp[i];
-    b->y1[i] = lag_compensated_sum(b->pb.y[i], b->sum[i], &b->comp1[i]);
-  }
-}
-
-/* Errors of steps of dt that end at y1, in tolerances. */
-LAG_INLINE Lanes taylor_errors(int n, const TaylorLanes *b, Lanes dt) {
-  const Lanes *rates = b->x[1 - b->now] + n;
-  int nq = b->pb.nq, nz = n - 2 * nq;
-  return lag_taylor_error(b->order, nq, nz, b->unit, lane_abs(dt), b->slope, rates, b->scale) / lane_all(b->pb.tol);
-}
-
-/* 2^k <= |x| < 2^(k+1). */
-LAG_INLINE Lanes taylor_power_of_2(Lanes x) { return (Lanes)((LaneMask)x & 0x7ff0000000000000LL); }
 
 /* Lanes other than those in `taken` get back the series of before. */
 static void taylor_keep(TaylorLanes *b, LaneMask taken) {
@@ -129,15 +118,14 @@ static void taylor_reject(TaylorLanes *b, LaneMask lanes, Lanes h, Lanes error) 
 /* A step of each lane of `busy`, of n components. Returns those accepted; *bad: those left to taylor.c. */
 LAG_INLINE LaneMask taylor_lane_step(int n, TaylorLanes *b, LaneMask busy, LaneMask *bad) {
   LaneProblem *pb = &b->pb;
-  Lanes h = taylor_sizes(n, b), end = pb->t + lane_all(pb->dir) * h, dt = end - pb->t, *next = b->x[1 - b->now];
+  Lanes *const now = b->x[b->now], *const next = b->x[1 - b->now], error;
+  const lag_taylor_frame f = {b->order, b->columns, pb->nq, n - 2 * pb->nq, now, next, b->sum, b->slope, b->scale,
+                              b->comp, b->y1, b->comp1};
+  Lanes h = taylor_sizes(b, &f), end = pb->t + lane_all(pb->dir) * h, dt = end - pb->t;
+  Lanes unit = lane_all(pb->dir) * lag_power_below(dt);
   *bad = ~((lane_abs(dt) > lane_all(4 * DBL_EPSILON) * lane_abs(pb->t)) & (h >= lane_all(DBL_MIN / DBL_EPSILON)));
-  taylor_ends(n, b, dt);
-  int rc = lane_inputs(pb, end);
-  rc = rc ? 1
-          : b->ty->first(b->ty, end, b->y1, b->y1 + pb->nq, b->y1 + 2 * pb->nq, pb->p, pb->u, b->follows, next,
-                         pb->work);
-  *bad |= lane_mask(rc > 0 ? ~0u : (unsigned)-rc) | lane_not_finite(n - pb->nq, next + n);
-  Lanes error = taylor_errors(n, b, dt), unit = lane_all(pb->dir) * taylor_power_of_2(dt);
+  *bad |= lag_failed(lag_taylor_try(b, &f, pb->y, b->unit, end, dt, &error));
+  error /= lane_all(pb->tol);
   LaneMask taken = lag_taylor_takes(busy & ~*bad, error, b->last, &b->noise);
   b->ty->rest(b->ty, b->order, unit, next, pb->work);
   *bad = busy & (*bad | (taken & lane_not_finite(n, next + b->order * b->columns)));

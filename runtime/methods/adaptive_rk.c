@@ -68,8 +68,8 @@ int lag_adaptive_rk_prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *
   lag_step_limits_begin(&w->limits, t);
   if (w->h == 0.0) {
     lag_tolerance tol = {pb->tol, &w->limits};
-    w->h = lag_first_step(pb, &tol, pair->tab->order, w->limits.h_max, t, y, k1,
-                          lag_adaptive_rk_array(w, pb, EMBEDDED_Y1), k1 + row);
+    w->h = lag_first_step(pb, &tol, (lag_first_try){.order = pair->tab->order, .t = t, .y = y, .f = k1,
+                                                .y1 = lag_adaptive_rk_array(w, pb, EMBEDDED_Y1), .f1 = k1 + row});
   }
   return LAG_OK;
 }

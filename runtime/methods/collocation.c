@@ -54,13 +54,12 @@ typedef struct CollocationArrays {
 /* Sets the pointers, unless x is NULL; returns the length of Collocation.x. */
 static size_t layout(CollocationArrays *a, const lag_problem *pb, int stages, double *x) {
   size_t n = (size_t)pb->n, m = n * (size_t)stages;
-  double **const parts[] = {&a->comp, &a->y0,    &a->y1,      &a->f0,       &a->f1,     &a->Y,       &a->u,  &a->other,
-                            &a->R,    &a->scale, &a->J.pivot, &a->jacobian, &a->linear, &a->history, &a->J.a};
-  const size_t sizes[] = {
-      n, n, n, n, n, n, m, m, m, m, m, n * n, lag_linear_work(pb->model), (size_t)LAG_PREDICTOR_SIZE((int)m), m * m};
+  const lag_part parts[] = {{&a->comp, n}, {&a->y0, n}, {&a->y1, n}, {&a->f0, n}, {&a->f1, n}, {&a->Y, n},
+      {&a->u, m}, {&a->other, m}, {&a->R, m}, {&a->scale, m}, {&a->J.pivot, m}, {&a->jacobian, n * n},
+      {&a->linear, lag_linear_work(pb->model)}, {&a->history, (size_t)LAG_PREDICTOR_SIZE((int)m)}, {&a->J.a, m * m}};
   a->J.n = (int)m;
   a->J.band = (int)m - 1;
-  return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
+  return lag_workspace_slice(x, sizeof parts / sizeof *parts, parts);
 }
 
 static CollocationArrays arrays(Collocation *w, const lag_problem *pb) {

@@ -23,27 +23,24 @@ static size_t substep_history(const lag_problem *pb, const Implicit *w) {
 static size_t block_layout(ConstraintBlock *b, const lag_problem *pb, int substeps, double *x) {
   const lag_constraints *of = pb->model->constraints;
   size_t n = (size_t)pb->n, nq = (size_t)pb->nq, nc = (size_t)of->n;
-  double **const parts[] = {&b->from, &b->to, &b->dq,  &b->dp, &b->impulse, &b->d,      &b->force,        &b->c,
-                            &b->r,    &b->g,  &b->sum, &b->A,  &b->M,       &b->change, &b->end_jacobian, &b->history};
-  const size_t sizes[] = {n,
-                          n, nq, nq, nq, nq, nq, nc, nc, nc, nc, (size_t)of->njacobian, (size_t)of->nmass, nc * nq,
-                          nc * nc,
-                          (size_t)substeps * (size_t)LAG_PREDICTOR_SIZE(of->n)};
-  return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
+  const lag_part parts[] = {{&b->from, n}, {&b->to, n}, {&b->dq, nq}, {&b->dp, nq}, {&b->impulse, nq}, {&b->d, nq},
+      {&b->force, nq}, {&b->c, nc}, {&b->r, nc}, {&b->g, nc}, {&b->sum, nc}, {&b->A, (size_t)of->njacobian},
+      {&b->M, (size_t)of->nmass}, {&b->change, nc * nq}, {&b->end_jacobian, nc * nc},
+      {&b->history, (size_t)substeps * (size_t)LAG_PREDICTOR_SIZE(of->n)}};
+  return lag_workspace_slice(x, sizeof parts / sizeof *parts, parts);
 }
 
 /* Sets the pointers, unless x is NULL; returns the length of Implicit.x. */
 static size_t state_layout(ImplicitArrays *a, const lag_problem *pb, int free, int substeps, double *x) {
   const int constrained = pb->model->constraints != NULL;
   size_t n = (size_t)pb->n, nq = (size_t)pb->nq, m = nq * (size_t)free;
-  double **const parts[] = {&a->p,  &a->qc, &a->pc, &a->dq, &a->dp,    &a->ql,      &a->pl,   &a->v,       &a->y0,
-                            &a->y1, &a->f0, &a->f1, &a->u,  &a->force, &a->history, &a->path, &a->discrete};
-  const size_t sizes[] = {nq, nq, nq, nq, nq, nq, nq, nq, n, n, n, n, 2 * m, m,
-                          (size_t)substeps * (size_t)LAG_PREDICTOR_SIZE((int)m) + (size_t)LAG_PREDICTOR_SIZE(pb->nq),
-                          lag_interpolant_size(pb->nq),
-                          /* the search for its band takes time in each step */
-                          x && !constrained ? 0 : lag_discrete_size(pb, free)};
-  size_t length = lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
+  const lag_part parts[] = {{&a->p, nq}, {&a->qc, nq}, {&a->pc, nq}, {&a->dq, nq}, {&a->dp, nq}, {&a->ql, nq},
+      {&a->pl, nq}, {&a->v, nq}, {&a->y0, n}, {&a->y1, n}, {&a->f0, n}, {&a->f1, n}, {&a->u, 2 * m}, {&a->force, m},
+      {&a->history, (size_t)substeps * (size_t)LAG_PREDICTOR_SIZE((int)m) + (size_t)LAG_PREDICTOR_SIZE(pb->nq)},
+      {&a->path, lag_interpolant_size(pb->nq)},
+      /* the search for its band takes time in each step */
+      {&a->discrete, x && !constrained ? 0 : lag_discrete_size(pb, free)}};
+  size_t length = lag_workspace_slice(x, sizeof parts / sizeof *parts, parts);
   return length + (constrained ? block_layout(&a->block, pb, substeps, x ? x + length : NULL) : 0);
 }
 
@@ -252,12 +249,10 @@ typedef struct Changes {
 /* Sets the pointers, unless x is NULL; returns the length of the scratch. */
 static size_t layout(Changes *c, const lag_problem *pb, int k, double *x) {
   size_t nq = (size_t)pb->nq, m = nq * (size_t)k;
-  double **const parts[] = {&c->p, &c->ql, &c->pl, &c->v, &c->u, &c->force, &c->second, &c->dv, &c->du, &c->rest};
-  const size_t sizes[] = {nq,
-                          nq, nq, nq, LAG_RULE_FREE * nq, LAG_RULE_FREE * nq, (size_t)pb->model->nsecond, m,
-                          LAG_RULE_FREE * m,
-                          lag_discrete_tangent_size(pb, LAG_RULE_FREE, k)};
-  return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
+  const lag_part parts[] = {{&c->p, nq}, {&c->ql, nq}, {&c->pl, nq}, {&c->v, nq}, {&c->u, LAG_RULE_FREE * nq},
+      {&c->force, LAG_RULE_FREE * nq}, {&c->second, (size_t)pb->model->nsecond}, {&c->dv, m},
+      {&c->du, LAG_RULE_FREE * m}, {&c->rest, lag_discrete_tangent_size(pb, LAG_RULE_FREE, k)}};
+  return lag_workspace_slice(x, sizeof parts / sizeof *parts, parts);
 }
 
 size_t lag_implicit_tangent_size(const lag_problem *pb, int k) {

@@ -94,20 +94,15 @@ typedef struct RadauArrays {
 /* Sets the pointers, unless x is NULL; returns the length of Radau.x. */
 static size_t layout(RadauArrays *a, const lag_problem *pb, double *x) {
   size_t n = (size_t)pb->n, m = STAGES * n;
-  double **const parts[] = {&a->f0,
-                            &a->y0, &a->y1, &a->comp, &a->comp1, &a->scale, &a->ys, &a->fs, &a->err, &a->real.pivot,
-                            &a->z, &a->w, &a->dw, &a->path, &a->jacobian, &a->row, &a->complex.pivot, &a->real.a,
-                            &a->complex.a,
-                            &a->linear};
-  const size_t sizes[] = {n,     n,     n,     n,         n,
-                          n,     n,     n,     n,         n,
-                          m,     m,     m,     m,         (size_t)(pb->nq + pb->nz) * n,
-                          2 * n, 2 * n, n * n, 4 * n * n, lag_linear_work(pb->model)};
+  const lag_part parts[] = {{&a->f0, n}, {&a->y0, n}, {&a->y1, n}, {&a->comp, n}, {&a->comp1, n}, {&a->scale, n},
+      {&a->ys, n}, {&a->fs, n}, {&a->err, n}, {&a->real.pivot, n}, {&a->z, m}, {&a->w, m}, {&a->dw, m},
+      {&a->path, m}, {&a->jacobian, (size_t)(pb->nq + pb->nz) * n}, {&a->row, 2 * n}, {&a->complex.pivot, 2 * n},
+      {&a->real.a, n * n}, {&a->complex.a, 4 * n * n}, {&a->linear, lag_linear_work(pb->model)}};
   a->real.n = pb->n;
   a->complex.n = 2 * pb->n;
   a->real.band = pb->n - 1;
   a->complex.band = 2 * pb->n - 1;
-  return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
+  return lag_workspace_slice(x, sizeof parts / sizeof *parts, parts);
 }
 
 static RadauArrays arrays(Radau *w, const lag_problem *pb) {
@@ -385,7 +380,8 @@ static int prepare(Radau *w, const RadauArrays *a, lag_problem *pb, double t, co
   w->ready = 1;
   for (int i = 0; i < pb->n; i++) a->scale[i] = w->rtol * lag_tolerance_floor(&w->limits, pb, i) + w->rtol * fabs(y[i]);
   lag_step_limits_begin(&w->limits, t);
-  if (w->h == 0.0) w->h = lag_first_step(pb, &tol, 5, w->limits.h_max, t, y, a->f0, a->ys, a->fs);
+  if (w->h == 0.0)
+    w->h = lag_first_step(pb, &tol, (lag_first_try){.order = 5, .t = t, .y = y, .f = a->f0, .y1 = a->ys, .f1 = a->fs});
   return LAG_OK;
 }
 

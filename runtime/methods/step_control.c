@@ -13,23 +13,18 @@ void lag_step_limits_init(lag_step_limits *l, const lag_problem *pb, const doubl
   l->atol = opt[LAG_OPT_ATOL];
 }
 
-double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const double *x, const double *y) {
-  double s = 0;
-  for (int i = 0; i < pb->n; i++) {
-    double r = x[i] / (tol->relative * lag_tolerance_floor(tol->limits, pb, i) + tol->relative * fabs(y[i]));
-    s += r * r;
-  }
-  return sqrt(s / (pb->n ? pb->n : 1));
-}
+/* Instance of kernels/first_step.h. */
+#define LAG_START_MODEL lag_problem *pb, const lag_tolerance *tol
+#define LAG_THE_START pb, tol
+#define LAG_START_ALLOWED(i, size) \
+  (tol->relative * lag_tolerance_floor(tol->limits, pb, i) + tol->relative * (size))
+#define LAG_START_RATES(t, y, f) lag_rhs(pb, t, y, f)
+#include "kernels/first_step.h"
 
-double lag_first_step(lag_problem *pb, const lag_tolerance *tol, int order, double h_max, double t, const double *y,
-                      const double *f0, double *y1, double *f1) {
-  const double unit = tol->limits->atol > 0 ? 1 : pb->size[pb->n + 1]; /* of h0, h1, 1/d1 and 1/d2 */
-  double d0 = lag_error_norm(pb, tol, y, y), d1 = unit * lag_error_norm(pb, tol, f0, y);
-  double h0 = lag_first_euler_step(d0, d1, h_max / unit);
-
-  for (int i = 0; i < pb->n; i++) y1[i] = y[i] + pb->dir * h0 * unit * f0[i];
-  if (lag_rhs(pb, t + pb->dir * h0 * unit, y1, f1) != 0) return h0 * unit * 1e-3;
-  for (int i = 0; i < pb->n; i++) f1[i] -= f0[i];
-  return unit * lag_first_size(order, h0, d1, unit * lag_error_norm(pb, tol, f1, y) / h0);
+double lag_first_step(lag_problem *pb, const lag_tolerance *tol, lag_first_try s) {
+  s.n = pb->n;
+  s.dir = pb->dir;
+  s.longest = tol->limits->h_max;
+  s.unit = tol->limits->atol > 0 ? 1 : pb->size[pb->n + 1]; /* of h0, h1, 1/d1 and 1/d2 */
+  return lag_start_step(pb, tol, &s);
 }

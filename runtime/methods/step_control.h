@@ -56,11 +56,5 @@ static inline double lag_longest_step(const lag_step_limits *l, double t, double
 
 #include "kernels/step_size.h"
 
-/* Weighted root mean square of x[n], with weights 1/(relative (floor_i + |y_i|)). */
-double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const double *x, const double *y);
-
-/* The first step to try from y, where f0 = f(t, y), for a method of this order; at most h_max (0: no limit). y1[n]
- * and f1[n] are scratch. E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.
- * (1993), II.4 "starting step size": one Euler step measures the second derivative. */
-double lag_first_step(lag_problem *pb, const lag_tolerance *tol, int order, double h_max, double t, const double *y,
-                      const double *f0, double *y1, double *f1);
+/* The first step to try; of s: order, t, y, f and scratch are given. */
+double lag_first_step(lag_problem *pb, const lag_tolerance *tol, lag_first_try s);

@@ -79,11 +79,10 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   return LAG_OK;
 }
 
-/* Order 0 of series[which] at t, y. Returns 0 or the model's status; > 0 with pb->bad_index >= 0 where a rate is not
+/* x := order 0 of the series at t, y. Returns 0 or the model's status; > 0 with pb->bad_index >= 0 where a rate is not
  * finite. */
-static int first(Taylor *w, lag_problem *pb, double which, double t, const double *y) {
+static int first(Taylor *w, lag_problem *pb, double t, const double *y, double *x) {
   int nq = pb->nq, rc = lag_inputs_inline(pb, t);
-  double *x = lag_taylor_series(w, pb, which);
   pb->rhs_calls++;
   pb->bad_index = -1;
   rc = rc ? rc
@@ -97,36 +96,39 @@ static int first(Taylor *w, lag_problem *pb, double which, double t, const doubl
   return rc;
 }
 
-/* Unit of time of the first series: the time scale of the state, as a power of 2. Later series use about the last
- * step. */
-static double guess_unit(Taylor *w, const lag_problem *pb, const double *y) {
-  double fastest = 0;
-  const double *rates = lag_taylor_series(w, pb, w->now) + pb->n;
-  for (int i = 0; i < pb->n; i++)
-    fastest = fmax(fastest, fabs(i < pb->nq ? y[pb->nq + i] : rates[i - pb->nq]) /
-                                (fabs(y[i]) + lag_tolerance_floor(&w->limits, pb, i)));
-  return fastest > 0 && isfinite(fastest) ? ldexp(1, -ilogb(fastest)) : 1;
+/* Instance of kernels/taylor_step.h. */
+#define LAG_SERIES_MODEL Taylor *w, lag_problem *pb
+#define LAG_SERIES_FLOOR(i) lag_tolerance_floor(&w->limits, pb, i)
+#define LAG_SERIES_BEGIN(t, y, x) first(w, pb, t, y, x)
+#define LAG_SERIES_REST(order, unit, x) ((void)w, pb->model->taylor->rest(pb->model->taylor, order, unit, x, pb->work))
+#define LAG_SERIES_AT(order, s, x, sum, slope) pb->model->taylor->at(pb->model->taylor, order, s, x, sum, slope)
+#include "kernels/taylor_step.h"
+
+static lag_taylor_frame frame_of(Taylor *w, lag_problem *pb) {
+  return (lag_taylor_frame){
+      .order = (int)w->order, .columns = pb->model->taylor->columns, .nq = pb->nq, .nz = pb->nz,
+      .x = lag_taylor_series(w, pb, w->now), .end = lag_taylor_series(w, pb, 1 - w->now),
+      .sum = lag_taylor_array(w, pb, TAYLOR_SUM), .slope = lag_taylor_array(w, pb, TAYLOR_SLOPE),
+      .scale = lag_taylor_array(w, pb, TAYLOR_SCALE), .lost = lag_taylor_array(w, pb, TAYLOR_COMP),
+      .y1 = lag_taylor_array(w, pb, TAYLOR_Y1), .lost1 = lag_taylor_array(w, pb, TAYLOR_COMP1)};
 }
 
-/* Expands series[which] from its order 0, with the given unit of time. 0: coefficients are not finite. */
-static int expand(Taylor *w, lag_problem *pb, double which, double unit) {
-  const lag_taylor *ty = pb->model->taylor;
-  int order = (int)w->order;
-  double *x = lag_taylor_series(w, pb, which);
-  for (int attempt = 0; attempt < 8; attempt++, unit *= 0x1p-40) {
-    w->unit[which > 0] = pb->dir * unit;
-    ty->rest(ty, order, pb->dir * unit, x, pb->work);
-    if (lag_not_finite(pb->n, x + order * ty->columns) < 0) return 1;
-  }
-  return 0;
+/* Expands the series of the next step from its order 0; the unit: of y, or else about the last step. Returns 0 where
+ * there is none. */
+static int expand(Taylor *w, lag_problem *pb, const double *y) {
+  const lag_taylor_frame f = frame_of(w, pb);
+  double unit = y ? lag_taylor_unit(w, pb, &f, y) : lag_power_below(w->dt);
+  int none = lag_taylor_expand(w, pb, &f, pb->dir, 1, &unit);
+  w->unit[w->now > 0] = pb->dir * unit;
+  return !none;
 }
 
 int lag_taylor_prepare(Taylor *w, lag_problem *pb, double t, const double *y) {
   lag_step_limits_begin(&w->limits, t);
   if (w->ready != 0.0) return LAG_OK;
-  int rc = first(w, pb, w->now, t, y);
+  int rc = first(w, pb, t, y, lag_taylor_series(w, pb, w->now));
   if (rc) return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, t) : lag_step_refused(pb, rc, t);
-  if (!expand(w, pb, w->now, guess_unit(w, pb, y))) {
+  if (!expand(w, pb, y)) {
     pb->detail = "the Taylor series does not exist here; dop853 needs none";
     return lag_step_failed(pb, LAG_ENAN, t);
   }
@@ -134,51 +136,15 @@ int lag_taylor_prepare(Taylor *w, lag_problem *pb, double t, const double *y) {
   return LAG_OK;
 }
 
-/* Step size by the root test, item 1 above. HUGE_VAL where the last coefficients are zero. */
-static double root_test_step(Taylor *w, lag_problem *pb, const double *y) {
-  int n = pb->n, columns = pb->model->taylor->columns;
-  const double *x = lag_taylor_series(w, pb, w->now);
-  double *scale = lag_taylor_array(w, pb, TAYLOR_SCALE);
-  for (int i = 0; i < n; i++)
-    scale[i] = 1 / (fabs(y[i]) + fabs(x[columns + i]) + lag_tolerance_floor(&w->limits, pb, i));
-  double root = lag_taylor_root(x, (int)w->order, columns, n, scale, DBL_MIN);
-  return root > 0 ? fabs(w->unit[w->now > 0]) * w->reach / root : HUGE_VAL;
-}
-
-/* Error of a step of dt that ends at Y1, in tolerances: item 2 above. */
-static double error_of(Taylor *w, lag_problem *pb, double dt) {
-  const double *rates = lag_taylor_series(w, pb, 1 - w->now) + pb->n;
-  const double *slope = lag_taylor_array(w, pb, TAYLOR_SLOPE), *scale = lag_taylor_array(w, pb, TAYLOR_SCALE);
-  double unit = w->unit[w->now > 0];
-  return lag_taylor_error((int)w->order, pb->nq, pb->nz, unit, fabs(dt), slope, rates, scale) / pb->tol;
-}
-
-/* Y1, COMP1 := the state at t + dt and its compensation. */
-static void advance(Taylor *w, lag_problem *pb, const double *y, double dt) {
-  const double *comp = lag_taylor_array(w, pb, TAYLOR_COMP);
-  double *sum = lag_taylor_array(w, pb, TAYLOR_SUM), *y1 = lag_taylor_array(w, pb, TAYLOR_Y1),
-         *comp1 = lag_taylor_array(w, pb, TAYLOR_COMP1);
-  pb->model->taylor->at(pb->model->taylor, (int)w->order, dt / w->unit[w->now > 0], lag_taylor_series(w, pb, w->now),
-                        sum, lag_taylor_array(w, pb, TAYLOR_SLOPE));
-  for (int i = 0; i < pb->n; i++) {
-    comp1[i] = comp[i];
-    y1[i] = lag_compensated_sum(y[i], sum[i], &comp1[i]);
-  }
-}
-
 /* Accepts the step, and expands the next series from order 0 at its end. */
 static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, double tb) {
-  const double *y1 = lag_taylor_array(w, pb, TAYLOR_Y1), *comp1 = lag_taylor_array(w, pb, TAYLOR_COMP1);
-  double *comp = lag_taylor_array(w, pb, TAYLOR_COMP);
-  for (int i = 0; i < pb->n; i++) {
-    y[i] = y1[i];
-    comp[i] = comp1[i];
-  }
+  lag_copy(pb->n, lag_taylor_array(w, pb, TAYLOR_Y1), y);
+  lag_copy(pb->n, lag_taylor_array(w, pb, TAYLOR_COMP1), lag_taylor_array(w, pb, TAYLOR_COMP));
   w->t0 = *t;
   w->dt = dt;
   *t = tb;
   w->now = 1 - w->now;
-  w->ready = expand(w, pb, w->now, ldexp(1, ilogb(dt)));
+  w->ready = expand(w, pb, NULL);
 }
 
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
@@ -186,18 +152,18 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int cause = LAG_ESTEP, rc = lag_taylor_prepare(w, pb, *t, y);
   (void)t_stop;
   if (rc) return rc;
-  double h = root_test_step(w, pb, y), most = lag_longest_step(&w->limits, *t, 0), last = -1;
-  h = w->limits.fixed != 0.0 ? w->limits.h_option : h < most ? h : most;
-  h = isfinite(h) ? h : 1;
+  const lag_taylor_frame f = frame_of(w, pb);
+  double unit = w->unit[w->now > 0], last = -1, error;
+  double h = lag_taylor_size(w, pb, &f, y, fabs(unit), w->reach, lag_longest_step(&w->limits, *t, 0));
+  if (w->limits.fixed != 0.0) h = w->limits.h_option;
   for (;;) {
     double tc = w->tc, tb = w->limits.fixed != 0.0 ? lag_compensated_sum(*t, pb->dir * h, &tc) : *t + pb->dir * h;
     double dt = tb - *t; /* the step between two times as rounded */
     if (!(fabs(dt) > 4 * DBL_EPSILON * fabs(*t)) || h < DBL_MIN / DBL_EPSILON)
       return cause == LAG_ESTEP || cause == LAG_ESINGULAR ? lag_step_failed(pb, cause, *t) : cause;
-    advance(w, pb, y, dt);
-    rc = first(w, pb, 1 - w->now, tb, lag_taylor_array(w, pb, TAYLOR_Y1));
+    rc = lag_taylor_try(w, pb, &f, y, unit, tb, dt, &error);
     if (rc < 0 && rc != LAG_ESINGULAR) return lag_step_refused(pb, rc, tb);
-    double error = rc ? NAN : error_of(w, pb, dt);
+    error = rc ? -1 : error / pb->tol;
     if (lag_taylor_takes(rc == 0, error, last, &w->noise) || (w->limits.fixed != 0.0 && rc == 0)) {
       accept(w, pb, t, y, dt, tb);
       w->tc = tc;
@@ -206,8 +172,8 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     cause = rc ? (pb->bad_index >= 0 ? LAG_ENAN : rc < 0 ? LAG_ESINGULAR : LAG_EDOMAIN) : LAG_ESTEP;
     pb->bad_t = tb;
     if (w->limits.fixed != 0.0) return cause;
-    last = rc ? -1 : error;
-    h *= lag_taylor_shrinkage((int)w->order, rc ? -1 : error);
+    last = error;
+    h *= lag_taylor_shrinkage((int)w->order, error);
     pb->rejected++;
   }
 }

@@ -17,13 +17,13 @@ enum { GAP = 2 };
 enum { GAP = 0 };
 #endif
 
-double *lag_workspace(size_t n, double **const parts[], const size_t sizes[]) {
+double *lag_workspace(size_t n, const lag_part parts[]) {
   size_t total = 1;
-  for (size_t i = 0; i < n; i++) total += sizes[i] + GAP;
+  for (size_t i = 0; i < n; i++) total += parts[i].n + GAP;
   double *block = calloc(total, sizeof *block), *x = block;
   for (size_t i = 0; i < n && block; i++) {
-    *parts[i] = x;
-    x += sizes[i] + GAP;
+    *parts[i].at = x;
+    x += parts[i].n + GAP;
     POISON(x - GAP, GAP * sizeof *x);
   }
   return block;

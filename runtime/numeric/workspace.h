@@ -3,16 +3,22 @@
 
 #include <stddef.h>
 
-/* Cuts block into n parts of these sizes; returns the sum of the sizes. block NULL: only that. */
-static inline size_t lag_workspace_slice(double *block, size_t n, double **const parts[], const size_t sizes[]) {
+/* A part, and its length. */
+typedef struct lag_part {
+  double **at;
+  size_t n;
+} lag_part;
+
+/* Cuts block into n parts; returns the sum of their lengths. block NULL: only that. */
+static inline size_t lag_workspace_slice(double *block, size_t n, const lag_part parts[]) {
   size_t at = 0;
   for (size_t i = 0; i < n; i++) {
-    if (block) *parts[i] = block + at;
-    at += sizes[i];
+    if (block) *parts[i].at = block + at;
+    at += parts[i].n;
   }
   return at;
 }
 
-/* A block of zeros with `n` parts of these sizes, whose places go to `parts`. Give it to free(). NULL: no memory.
- * Under the address sanitizer a gap that must not be touched follows each part. */
-double *lag_workspace(size_t n, double **const parts[], const size_t sizes[]);
+/* A block of zeros with these n parts. Give it to free(). NULL: no memory. Under the address sanitizer a gap that must
+ * not be touched follows each part. */
+double *lag_workspace(size_t n, const lag_part parts[]);

@@ -5,7 +5,8 @@
 
 #include "numeric/edit_distance.h"
 
-int has_word_n(const char *words, const char *word, size_t n) {
+int has_word(const char *words, const char *word) {
+  size_t n = strlen(word);
   for (const char *s = words; *s; s += strspn(s, " ")) {
     size_t len = strcspn(s, " ");
     if (len == n && strncmp(s, word, n) == 0) return 1;
@@ -13,8 +14,6 @@ int has_word_n(const char *words, const char *word, size_t n) {
   }
   return 0;
 }
-
-int has_word(const char *words, const char *word) { return has_word_n(words, word, strlen(word)); }
 
 const char *word_at(Arena *a, const char *words, size_t i) {
   words += strspn(words, " ");

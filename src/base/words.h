@@ -3,8 +3,7 @@
 
 #include "base/intern.h"
 
-/* Whether `word`, of n bytes or up to its NUL, is one of `words`. */
-int has_word_n(const char *words, const char *word, size_t n);
+/* Whether `word` is one of `words`. */
 int has_word(const char *words, const char *word);
 
 /* Word i of `words`, or NULL. */

@@ -1,14 +1,21 @@
 /* C text of the support functions, and the frame of a function around the body of a Prog. */
 #include "emit/cfunction.h"
 
+#include <ctype.h>
 #include <string.h>
 
 #include "base/num.h"
 
+/* Whether a name begins at s: FLAG_REAL, of a model `flag`, stays; -DLAG_REAL is an option, jac_lag_ode CasADi's. */
+static int begins_name(const char *text, const char *s) {
+  if (s == text || !(isalnum((unsigned char)s[-1]) || s[-1] == '_')) return 1;
+  return (s >= text + 2 && memcmp(s - 2, "-D", 2) == 0) || (s >= text + 4 && memcmp(s - 4, "jac_", 4) == 0);
+}
+
 void csupport_expand(const char *text, const char *prefix, const char *lower, StrBuf *out) {
   for (const char *s = text; *s;) {
     int upper = strncmp(s, "LAG_", 4) == 0, is_lower = strncmp(s, "lag_", 4) == 0;
-    if (upper || is_lower) {
+    if ((upper || is_lower) && begins_name(text, s)) {
       sb_printf(out, "%s_", upper ? prefix : lower);
       s += 4;
     } else {

@@ -4,45 +4,7 @@
 
 #include <string.h>
 
-#include "emit/band_matrix_kernel.h" /* static const char *const NAME_kernel[]: lines of runtime/kernels/NAME.h */
-#include "emit/compensated_sum_kernel.h"
-#include "emit/composition_kernel.h"
-#include "emit/dense_output_kernel.h"
-#include "emit/galerkin_step_kernel.h"
-#include "emit/galerkin_rule_kernel.h"
-#include "emit/impulses_kernel.h"
-#include "emit/lag_kkt.h"             /* static const char *const NAME[]: and of runtime/include/NAME.h */
-#include "emit/lag_lanes.h"
-#include "emit/lag_math.h"
-#include "emit/lag_sincos.h"
-#include "emit/lag_support.h"
-#include "emit/joint_friction_kernel.h"
-#include "emit/locate_kernel.h"
-#include "emit/contact_step_kernel.h"
-#include "emit/moreau_step_kernel.h"
-#include "emit/newton_kernel.h"
-#include "emit/predictor_kernel.h"
-#include "emit/runge_kutta_kernel.h"
-#include "emit/scalar_kernel.h"
-#include "emit/splitting_kernel.h"
-#include "emit/step_size_kernel.h"
-#include "emit/taylor_order_kernel.h"
-#include "emit/taylor_size_kernel.h"
-#include "emit/runge_kutta_tables_kernel.h"
-
-#define LINES(text) {text, sizeof text / sizeof *text}
-static const struct {
-  const char *const *line;
-  size_t n;
-} embedded[] = {LINES(lag_lanes),
-                LINES(lag_math), LINES(lag_sincos), LINES(lag_support), LINES(lag_kkt), LINES(scalar_kernel),
-                LINES(compensated_sum_kernel), LINES(composition_kernel), LINES(splitting_kernel),
-                LINES(runge_kutta_tables_kernel), LINES(runge_kutta_kernel), LINES(step_size_kernel),
-                LINES(taylor_order_kernel), LINES(taylor_size_kernel), LINES(dense_output_kernel),
-                LINES(band_matrix_kernel), LINES(impulses_kernel), LINES(contact_step_kernel),
-                LINES(joint_friction_kernel), LINES(moreau_step_kernel), LINES(newton_kernel),
-                LINES(predictor_kernel), LINES(galerkin_rule_kernel), LINES(galerkin_step_kernel),
-                LINES(locate_kernel)};
+#include "emit/embedded_texts.h" /* static const char *const embedded_texts[]: lines of runtime/include, kernels */
 
 static const char mark[] = "/* ---- ";
 static int is_marker(const char *line, const char *name) {
@@ -51,12 +13,10 @@ static int is_marker(const char *line, const char *name) {
 
 void embedded_section(const char *name, const char *prefix, const char *lower, StrBuf *out) {
   const char *whole = arena_printf(out->arena, "%s ----", name);
-  for (size_t text = 0; text < sizeof embedded / sizeof *embedded; text++) {
-    const char *const *line = embedded[text].line;
-    size_t n = embedded[text].n, i = 0;
-    while (i < n && !is_marker(line[i], whole)) i++;
-    for (i++; i < n && !is_marker(line[i], ""); i++) csupport_expand(line[i], prefix, lower, out);
-  }
+  const char *const *line = embedded_texts;
+  size_t n = sizeof embedded_texts / sizeof *line, i = 0;
+  while (i < n && !is_marker(line[i], whole)) i++;
+  for (i++; i < n && !is_marker(line[i], ""); i++) csupport_expand(line[i], prefix, lower, out);
 }
 
 static int calls(const Prog *p, const char *name) {

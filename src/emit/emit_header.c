@@ -35,7 +35,10 @@ static const char *const header_names[] = {"REAL",
                                            "VARIATIONAL_ORDER", "TAYLOR_ORDER", "TAYLOR_COLUMNS", "TAYLOR_WIDTH",
                                            "TAYLOR_GROUP", "TAYLOR_SQUARES", "TAYLOR_SUMS", "TAYLOR_CONSTANTS",
                                            "TAYLOR_STATE", "TAYLOR_PAIRED", "TAYLOR_SQUARED",
-                                           "TAYLOR_PER_PAIR"};
+                                           "TAYLOR_PER_PAIR", "SERIES_MODEL", "SERIES_FLOOR", "SERIES_BEGIN",
+                                           "SERIES_REST", "SERIES_AT", "START_MODEL", "THE_START",
+                                           "START_ALLOWED", "START_RATES", "HOLD_MODEL", "THE_HOLD", "HOLD_RESIDUALS",
+                                           "HOLD_CHANGE", "HOLD_ROUNDING", "HOLD_MET"};
 
 /* Enumerators PREFIX_NAME of the variables, unique in the header. */
 static const char **enumerators(Header *h, CNames *taken, const char *stem, const IrVar *v, uint32_t n) {

@@ -2,6 +2,7 @@
  * their scenes, and the convolution sums of Taylor series. */
 #include "emit/emit_impl.h"
 #include "emit/emit_model.h"
+#include "emit/emit_lanes_text.h"
 
 /* Where a file is compiled for lanes. Clang passes vectors of 8 doubles as the file's flags say, whatever the
  * function's target. */
@@ -29,49 +30,6 @@ void emit_lane_scenes(const ProgramSet *const *units, const char *const *names, 
       sb_printf(out, "  &%s_%s_lanes_%d,\n", names[i], scene_id(units[i], k), lanes);
   sb_printf(out, "};\n#else\nstatic const lag_scene *const *const lanes_%d = NULL;\n#endif\n\n", lanes);
 }
-
-/* Over lanes memory limits the speed. So the sums of three orders are begun at once, in pairs: each coefficient is
- * loaded once for them. And coefficients that are factors of several sums are kept once, where all sums are written
- * out. For a double the operations are the same. */
-static const char *const sums =
-    "\n/* Along rows of numbers: s = a[1] b[k-1] + ... + a[k-1] b[1] for order k, where a and b are columns of f.\n"
-    " *   taylor_far       for order k, and the terms of the two after it that are known at order k, of two sums g and "
-    "h\n"
-    " *   taylor_near_1, 2 adds the others\n"
-    " *   taylor_rest      orders 1 to n\n"
-    " *   taylor_at        y = x[1] s + ... + x[n] s^n for q, v and z, and dy its derivative by s */\n"
-    "typedef const LAG_REAL (*taylor_rows)[TAYLOR_FACTORS];\n"
-    "static TAYLOR_INLINE void taylor_far(int k, taylor_rows f, int g, int ag, int bg, int h, int ah, int bh, LAG_REAL "
-    "*s, LAG_REAL (*far)[TAYLOR_SUMS]) {\n"
-    "  LAG_REAL g1 = f[k - 2][bg], g2 = f[k - 1][bg], h1 = f[k - 2][bh], h2 = f[k - 1][bh];\n"
-    "  LAG_REAL sg0 = lag_mad(f[2][ag], g1, f[1][ag]*g2), sg1 = f[2][ag]*g2, sg2 = LAG_C(0.0);\n"
-    "  LAG_REAL sh0 = lag_mad(f[2][ah], h1, f[1][ah]*h2), sh1 = f[2][ah]*h2, sh2 = LAG_C(0.0);\n"
-    "  for (int j = 3; j < k; j++) {\n"
-    "    const LAG_REAL a = f[j][ag], b = f[j][ah], g0 = f[k - j][bg], h0 = f[k - j][bh];\n"
-    "    sg0 = lag_mad(a, g0, sg0);\n"
-    "    sg1 = lag_mad(a, g1, sg1);\n"
-    "    sg2 = lag_mad(a, g2, sg2);\n"
-    "    sh0 = lag_mad(b, h0, sh0);\n"
-    "    sh1 = lag_mad(b, h1, sh1);\n"
-    "    sh2 = lag_mad(b, h2, sh2);\n"
-    "    g2 = g1;\n"
-    "    g1 = g0;\n"
-    "    h2 = h1;\n"
-    "    h1 = h0;\n"
-    "  }\n"
-    "  s[g] = sg0;\n"
-    "  s[h] = sh0;\n"
-    "  far[0][g] = sg1;\n"
-    "  far[0][h] = sh1;\n"
-    "  far[1][g] = sg2;\n"
-    "  far[1][h] = sh2;\n"
-    "}\n"
-    "\nstatic TAYLOR_INLINE LAG_REAL taylor_near_1(int k, taylor_rows f, int a, int b, LAG_REAL far) {\n"
-    "  return lag_mad(f[1][a], f[k - 1][b], lag_mad(f[k - 1][a], f[1][b], far));\n"
-    "}\n"
-    "\nstatic TAYLOR_INLINE LAG_REAL taylor_near_2(int k, taylor_rows f, int a, int b, LAG_REAL far) {\n"
-    "  return taylor_near_1(k, f, a, b, lag_mad(f[2][a], f[k - 2][b], lag_mad(f[k - 2][a], f[2][b], far)));\n"
-    "}\n";
 
 enum { WRITTEN_MOST = 24 }; /* sums that are written out, where the step of an order is inlined, too */
 enum { ARRAY_A = 2, ARRAY_B = 3 }; /* outputs of Series.next */

@@ -3,6 +3,7 @@
  * doubles (AVX2); in headers plain C, whose names begin with the header's prefix. Order of operations, and so the
  * bits, are the same. */
 #include "emit/emit_impl.h"
+#include "emit/emit_taylor_text.h"
 
 #include <string.h>
 
@@ -17,188 +18,9 @@ static const char *const arrays[ARR_COUNT] = {
   [ARR_ORDER] = "order", [ARR_PER_ORDER] = "per_order", [ARR_UP] = "up",
 };
 
-static const char *const head =
-  "\n/* --- Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... --- */\n"
-  "\n/* Numbers side by side, where the compiler has such types: pairs. */\n"
-  "#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE)\n"
-  "typedef double taylor_pair __attribute__((vector_size(16), aligned(8), may_alias));\n"
-  "#define LAG_PAIR(a, i, x, y) (((taylor_pair *)(a))[(i)/2] = (taylor_pair){x, y})\n"
-  "#define TAYLOR_INLINE __attribute__((always_inline)) inline\n"
-  "#else\n"
-  "typedef LAG_REAL taylor_pair;\n"
-  "#define LAG_PAIR(a, i, x, y) ((a)[i] = (x), (a)[(i) + 1] = (y))\n"
-  "#define TAYLOR_INLINE inline\n"
-  "#endif\n"
-  "#if defined(__GNUC__) && !defined(__clang__)\n"
-  "#define TAYLOR_UNROLL _Pragma(\"GCC unroll 16\")\n"
-  "#define TAYLOR_UNROLL_4 _Pragma(\"GCC unroll 4\")\n"
-  "#else\n"
-  "#define TAYLOR_UNROLL\n"
-  "#define TAYLOR_UNROLL_4\n"
-  "#endif\n";
-
 /* Pair g of a row held in pairs, or in fours. */
 static const char *const part =
     "static TAYLOR_INLINE taylor_pair taylor_part(const taylor_pair *x, int g) { return x[g]; }\n";
-static const char *const wide_part =
-  "TAYLOR_WIDE static TAYLOR_INLINE taylor_pair taylor_part_wide(const taylor_four *x, int g) {\n"
-  "  return g % 2 ? (taylor_pair){x[g/2][2], x[g/2][3]} : (taylor_pair){x[g/2][0], x[g/2][1]};\n"
-  "}\n";
-
-/* Vectors of four, for models whose rows are long enough: shorter rows gain nothing over pairs. */
-static const char *const wide_head =
-    "/* Fours on processors with AVX2: whatever the file was compiled for, this is asked as it runs. The bits are the "
-    "same. */\n"
-    "#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE) && defined(__x86_64__)\n"
-    "#define TAYLOR_WIDE __attribute__((target(\"avx2\")))\n"
-    "typedef double taylor_four __attribute__((vector_size(32), aligned(8), may_alias));\n"
-    "#endif\n";
-
-/* Templates, see fill(): $ is the suffix (none or _wide), # the vector type, @ an attribute, % the place of an
- * unroll pragma, ~N an unrolled loop over N vectors, ^ the argument self of model files, at a line's begin unused. */
-static const char *const at =
-    "\n@static void taylor_at$(^int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
-    "^  enum { PARTS = 4*sizeof(LAG_REAL)/sizeof(#) };\n"
-    "  const LAG_REAL u = s*s, twice = LAG_C(2.0);\n"
-    "  for (int i = 0; i < TAYLOR_WIDTH; i += 4) {\n"
-    "    # e[PARTS] = {0}, de[PARTS] = {0}, o[PARTS] = {0}, d[PARTS] = {0};\n"
-    "    int k = n;\n"
-    "    for (const # *const row = (const # *)(x + k*TAYLOR_COLUMNS + i); k%2 == 0; k--)\n"
-    "      for (int g = 0; g < (int)PARTS; g++) e[g] = row[g];\n"
-    "    for (; k > 0; k -= 2) {\n"
-    "      const # *const odd = (const # *)(x + k*TAYLOR_COLUMNS + i), *const even = (const # *)(x + (k - "
-    "1)*TAYLOR_COLUMNS + i);\n"
-    "      ~PARTS {\n"
-    "        d[g] = d[g]*u + o[g];\n"
-    "        o[g] = o[g]*u + odd[g];\n"
-    "      }\n"
-    "      if (k == 1) break;\n"
-    "      ~PARTS {\n"
-    "        de[g] = de[g]*u + e[g];\n"
-    "        e[g] = e[g]*u + even[g];\n"
-    "      }\n"
-    "    }\n"
-    "    ~PARTS {\n"
-    "      ((# *)(y + i))[g] = e[g]*u + o[g]*s;\n"
-    "      ((# *)(dy + i))[g] = (de[g]*u + e[g])*(twice*s) + d[g]*(twice*u) + o[g];\n"
-    "    }\n"
-    "  }\n"
-    "}\n";
-
-static const char *const sums =
-    "\n@static void taylor_sums$(int k, taylor_work *w) {\n"
-    "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = "
-    "TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
-    "  const int last = k - 1;\n"
-    "  for (int i = 0; i < TAYLOR_SQUARES; i += TAYLOR_GROUP) {\n"
-    "    # s[PARTS] = {0};\n"
-    "%    for (int j = 2; j < last; j++) {\n"
-    "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->b[k - j] + i);\n"
-    "      ~PARTS s[g] += a[g]*b[g];\n"
-    "    }\n"
-    "    ~PARTS ((# *)(w->s + i))[g] = s[g];\n"
-    "    const taylor_pair *const a1 = (const taylor_pair *)(w->a[1] + i), *const b1 = (const taylor_pair *)(w->b[1] + "
-    "i);\n"
-    "    const taylor_pair *const an = (const taylor_pair *)(w->a[last] + i), *const bn = (const taylor_pair "
-    "*)(w->b[last] + i);\n"
-    "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
-    "    if (k > 2) {\n"
-    "      ~PAIRS out[g] = out[g] + an[g]*b1[g] + a1[g]*bn[g];\n"
-    "    } else if (k == 2) {\n"
-    "      ~PAIRS out[g] = a1[g]*bn[g];\n"
-    "    }\n"
-    "  }\n"
-    "}\n";
-
-static const char *const squares =
-    "\n@static void taylor_squares$(int k, taylor_work *w) {\n"
-    "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = "
-    "TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
-    "  const int last = k - 1, half = k/2;\n"
-    "  const LAG_REAL twice = LAG_C(2.0);\n"
-    "  for (int i = TAYLOR_SQUARES; i < TAYLOR_SUMS; i += TAYLOR_GROUP) {\n"
-    "    # s[PARTS] = {0};\n"
-    "%    for (int j = 2; j < k - j; j++) {\n"
-    "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->a[k - j] + i);\n"
-    "      ~PARTS s[g] += a[g]*b[g];\n"
-    "    }\n"
-    "    ~PARTS s[g] *= twice;\n"
-    "    const # *const m = (const # *)(w->a[half] + i);\n"
-    "    if (half > 1 && 2*half == k) {\n"
-    "      ~PARTS s[g] += m[g]*m[g];\n"
-    "    }\n"
-    "    ~PARTS ((# *)(w->s + i))[g] = s[g];\n"
-    "    if (k < 2) continue;\n"
-    "    const taylor_pair *const a = (const taylor_pair *)(w->a[1] + i), *const b = (const taylor_pair *)(w->a[last] "
-    "+ i);\n"
-    "    const LAG_REAL weight = k > 2 ? twice : LAG_C(1.0);\n"
-    "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
-    "    ~PAIRS out[g] += weight*(a[g]*b[g]);\n"
-    "  }\n"
-    "}\n";
-
-/* Convolution sums for few sums. Coefficients of order k - 1 come from registers, those of order k - 2 are loaded in
- * pairs, as they were stored: neither load waits for a store, and the sum over the other orders is ready early. */
-static const char *const register_sums =
-    "\n@static TAYLOR_INLINE void taylor_sums$(int k, const taylor_work *w, const taylor_pair *a, const taylor_pair "
-    "*b, taylor_pair *s) {\n"
-    "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = "
-    "TAYLOR_PAIRED*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
-    "  const taylor_pair *const a1 = (const taylor_pair *)w->a[1], *const b1 = (const taylor_pair *)w->b[1];\n"
-    "  const taylor_pair *const a2 = (const taylor_pair *)w->a[2], *const b2 = (const taylor_pair *)w->b[2];\n"
-    "  # far[PARTS] = {0};\n"
-    "  TAYLOR_UNROLL_4\n"
-    "  for (int j = 3; j < k - 2; j++) {\n"
-    "    const # *const aj = (const # *)w->a[j], *const bj = (const # *)w->b[k - j];\n"
-    "    ~PARTS far[g] += aj[g]*bj[g];\n"
-    "  }\n"
-    "  ~PAIRS s[g] = taylor_part$(far, g);\n"
-    "  if (k > 4) {\n"
-    "    const taylor_pair *const am = (const taylor_pair *)w->a[k - 2], *const bm = (const taylor_pair *)w->b[k - "
-    "2];\n"
-    "    ~PAIRS s[g] += am[g]*b2[g] + a2[g]*bm[g];\n"
-    "  } else if (k == 4) {\n"
-    "    ~PAIRS s[g] = a2[g]*b2[g];\n"
-    "  }\n"
-    "  if (k > 2) {\n"
-    "    ~PAIRS s[g] += a[g]*b1[g] + a1[g]*b[g];\n"
-    "  } else if (k == 2) {\n"
-    "    ~PAIRS s[g] = a[g]*b[g];\n"
-    "  }\n"
-    "}\n";
-
-static const char *const register_squares =
-    "\n@static TAYLOR_INLINE void taylor_squares$(int k, const taylor_work *w, const taylor_pair *a, taylor_pair *s) "
-    "{\n"
-    "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = "
-    "TAYLOR_SQUARED*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
-    "  const taylor_pair *const a1 = (const taylor_pair *)(w->a[1] + TAYLOR_SQUARES), *const a2 = (const taylor_pair "
-    "*)(w->a[2] + TAYLOR_SQUARES);\n"
-    "  const LAG_REAL twice = LAG_C(2.0);\n"
-    "  const int half = k/2;\n"
-    "  # far[PARTS] = {0};\n"
-    "  TAYLOR_UNROLL_4\n"
-    "  for (int j = 3; j < k - j; j++) {\n"
-    "    const # *const aj = (const # *)(w->a[j] + TAYLOR_SQUARES), *const bj = (const # *)(w->a[k - j] + "
-    "TAYLOR_SQUARES);\n"
-    "    ~PARTS far[g] += aj[g]*bj[g];\n"
-    "  }\n"
-    "  ~PAIRS s[g] = twice*taylor_part$(far, g);\n"
-    "  if (half > 1 && 2*half == k) {\n"
-    "    const taylor_pair *const m = (const taylor_pair *)(w->a[half] + TAYLOR_SQUARES);\n"
-    "    ~PAIRS s[g] += m[g]*m[g];\n"
-    "  }\n"
-    "  if (k > 4) {\n"
-    "    const taylor_pair *const am = (const taylor_pair *)(w->a[k - 2] + TAYLOR_SQUARES);\n"
-    "    ~PAIRS s[g] += twice*(am[g]*a2[g]);\n"
-    "  }\n"
-    "  if (k > 2) {\n"
-    "    ~PAIRS s[g] += twice*(a[g]*a1[g]);\n"
-    "  } else if (k == 2) {\n"
-    "    ~PAIRS s[g] = a[g]*a[g];\n"
-    "  }\n"
-    "}\n";
-
 static const char *const along_rows_comment =
     "\n/* Along rows of numbers.\n"
     " *   taylor_sums      s = a[1] b[k-1] + ... + a[k-1] b[1]. What order k - 1 has just made comes last, and in "
@@ -307,22 +129,6 @@ static void copy(const TaylorWriter *w, const char *name, uint32_t n, uint32_t f
                    : "  for (int i = 0; i < %u; i++) x[i%.0u] = %s[i];\n",
               n, from, name);
 }
-
-/* Types of a text for lanes: single numbers. */
-static const char *const lane_head =
-  "\n/* --- Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... --- */\n"
-  "typedef LAG_REAL taylor_pair;\n"
-  "#define LAG_PAIR(a, i, x, y) ((a)[i] = (x), (a)[(i) + 1] = (y))\n"
-  "#if defined(__GNUC__)\n"
-  "#define TAYLOR_INLINE __attribute__((always_inline)) inline\n"
-  "#else\n"
-  "#define TAYLOR_INLINE inline\n"
-  "#endif\n"
-  "#if defined(__GNUC__) && !defined(__clang__)\n"
-  "#define TAYLOR_UNROLL _Pragma(\"GCC unroll 16\")\n"
-  "#else\n"
-  "#define TAYLOR_UNROLL\n"
-  "#endif\n";
 
 /* The first parameter of a model's functions; headers have none. */
 static const char *self_parameter(const TaylorWriter *w) { return w->lower ? "" : "const void *self, "; }

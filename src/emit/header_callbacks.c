@@ -5,6 +5,7 @@
 
 #include "base/union_find.h"
 #include "emit/header_impl.h"
+#include "emit/header_callbacks_text.h"
 
 enum { SUNDIALS = PART_CVODE | PART_ARKODE | PART_IDA, WITH_DATA = SUNDIALS | PART_GSL };
 
@@ -97,23 +98,6 @@ static const char *compressed(const Header *h, const Pattern *x, uint32_t column
   "u|  const LAG_REAL *const u = d->u ? d->u : now;\n"           \
   "u|  if (!d->u) lag_inputs(t, p, now);\n"
 
-static const char *const data_struct =
-  " |\n"
-  " |/* Data of the callbacks, for one integration at a time: `lag_data d = {0}; lag_defaults(&d.p);`. */\n"
-  " |typedef struct lag_data {\n"
-  " |  lag_params p;\n"
-  "u|  const LAG_REAL *u; /* the inputs, constant; 0: the model's formulas */\n"
-  " |WORK} lag_data;\n";
-
-static const char *const data =
-  " |\n"
-  " |LAG_API void lag_to_y(const lag_state *s, LAG_REAL *y) { lag_gather(s, y); }\n"
-  " |LAG_API void lag_from_y(LAG_REAL t, const LAG_REAL *y, lag_state *s) {\n"
-  " |  s->t = t;\n"
-  " |  lag_scatter(y, s);\n"
-  " |  for (int i = 0; i <= LAG_NY; i++) s->lost[i] = LAG_C(0.0);\n"
-  " |}\n";
-
 static const char *const jac_of_y =
   " |\n"
   " |static int lag_jac_of_y(LAG_REAL t, const LAG_REAL *y, const lag_data *d, LAG_REAL *J) {\n"
@@ -128,102 +112,7 @@ static const char *const events_of_y =
   " |  return lag_events(ARGS, g);\n"
   " |}\n";
 
-static const char *const directions =
-  " |\n"
-  " |LAG_API void lag_directions(int *direction) {\n"
-  " |  static const signed char of[] = {DIRECTIONS};\n"
-  " |  for (int k = 0; k < LAG_NEV; k++) direction[k] = of[k];\n"
-  " |}\n";
-
-static const char *const by_time =
-  " |\n"
-  " |/* Derivatives of the rates by time: central differences. */\n"
-  " |static int lag_by_time(LAG_REAL t, const LAG_REAL *y, const lag_params *pTYPED_U, LAG_REAL *out) {\n"
-  " |  const LAG_REAL before = t - STEP, after = t + STEP;\n"
-  " |  LAG_REAL f[LAG_NY];\n"
-  " |  int status = lag_rhs(before, y, pWITH_U, f);\n"
-  " |  if (status == LAG_OK) status = lag_rhs(after, y, pWITH_U, out);\n"
-  " |  for (int i = 0; i < LAG_NY && status == LAG_OK; i++) out[i] = (out[i] - f[i])/(after - before);\n"
-  " |  return status;\n"
-  " |}\n";
-
-static const char *const gsl_rhs =
-  " |\n"
-  " |/* LAG_ESINGULAR is GSL_FAILURE: a shorter step is tried. */\n"
-  " |static int lag_gsl_rhs(double t, const double *y, double *dydt, void *data) {\n"
-  " |  return lag_rhs(t, y, &((lag_data *)data)->pDATA_U, dydt);\n"
-  " |}\n";
-
-static const char *const gsl_jac =
-  " |\n"
-  " |static int lag_gsl_jac(double t, const double *y, double *dfdy, double *dfdt, void *data) {\n"
-  " |  const lag_data *const d = (const lag_data *)data;\n"
-  " |  const int status = lag_jac_of_y(t, y, d, dfdy);\n"
-  " |  for (int i = 0; i < LAG_NY; i++) dfdt[i] = 0.0;\n"
-  " |  return BY_TIME;\n"
-  " |}\n";
-
-static const char *const gsl_system =
-  " |\n"
-  " |LAG_API gsl_odeiv2_system lag_gsl_system(lag_data *d) {\n"
-  " |  const gsl_odeiv2_system s = {lag_gsl_rhs, JACOBIAN, LAG_NY, d};\n"
-  " |  return s;\n"
-  " |}\n";
-
-static const char *const store_matrix =
-    " |\n"
-    " |/* Row-major J with the pattern at (columns, then rows), to a dense matrix or one of compressed columns. */\n"
-    " |static int lag_store_matrix(const int *at, const LAG_REAL *J, SUNMatrix to) {\n"
-    " |  if (SUNMatGetID(to) == SUNMATRIX_DENSE) {\n"
-    " |    for (int j = 0; j < LAG_NY; j++)\n"
-    " |      for (int i = 0; i < LAG_NY; i++) SM_ELEMENT_D(to, i, j) = J[i*LAG_NY + j];\n"
-    " |    return 0;\n"
-    " |  }\n"
-    " |  if (SUNMatGetID(to) != SUNMATRIX_SPARSE || SM_SPARSETYPE_S(to) != CSC_MAT || SM_NNZ_S(to) < at[LAG_NY]) "
-    "return -1;\n"
-    " |  for (int j = 0; j <= LAG_NY; j++) SM_INDEXPTRS_S(to)[j] = at[j];\n"
-    " |  for (int j = 0; j < LAG_NY; j++)\n"
-    " |    for (int k = at[j]; k < at[j + 1]; k++) {\n"
-    " |      const int i = at[LAG_NY + 1 + k];\n"
-    " |      SM_INDEXVALS_S(to)[k] = i;\n"
-    " |      SM_DATA_S(to)[k] = J[i*LAG_NY + j];\n"
-    " |    }\n"
-    " |  return 0;\n"
-    " |}\n";
-
-/* CVODE and ARKODE call the same forms. */
-static const char *const ode_rhs =
-  " |\n"
-  " |LAG_API int lag_LIBRARY_rhs(sunrealtype t, N_Vector y, N_Vector dydt, void *data) {\n"
-  " |  return lag_rhs(t, N_VGetArrayPointer(y), &((lag_data *)data)->pDATA_U, N_VGetArrayPointer(dydt)) != LAG_OK;\n"
-  " |}\n";
-
 static const char *const jac_pattern_table = " |\n |static const int lag_jac_at[] = {JAC_AT};\n";
-
-static const char *const ode_jac =
-  " |\n"
-  " |LAG_API int lag_LIBRARY_jac(sunrealtype t, N_Vector y, N_Vector dydt, SUNMatrix J, void *data,\n"
-  " |   N_Vector w1, N_Vector w2, N_Vector w3) {\n"
-  " |  lag_data *const d = (lag_data *)data;\n"
-  " |  (void)dydt; (void)w1; (void)w2; (void)w3;\n"
-  " |  return lag_jac_of_y(t, N_VGetArrayPointer(y), d, d->J) != LAG_OK ? 1 : lag_store_matrix(lag_jac_at, d->J, J);\n"
-  " |}\n";
-
-static const char *const ode_root =
-  " |\n"
-  " |LAG_API int lag_LIBRARY_root(sunrealtype t, N_Vector y, sunrealtype *g, void *data) {\n"
-  " |  return lag_events_of_y(t, N_VGetArrayPointer(y), (const lag_data *)data, g) != LAG_OK;\n"
-  " |}\n";
-
-static const char *const ida_plain =
-  " |\n"
-  " |LAG_API int lag_ida_res(sunrealtype t, N_Vector y, N_Vector dydt, N_Vector r, void *data) {\n"
-  " |  const LAG_REAL *const rate = N_VGetArrayPointer(dydt);\n"
-  " |  LAG_REAL *const out = N_VGetArrayPointer(r);\n"
-  " |  const int status = lag_rhs(t, N_VGetArrayPointer(y), &((lag_data *)data)->pDATA_U, out);\n"
-  " |  for (int i = 0; i < LAG_NY; i++) out[i] = rate[i] - out[i];\n"
-  " |  return status != LAG_OK;\n"
-  " |}\n";
 
 /* The residual from the forces M q'' + b that the rates need; rates of states by _accel. */
 static const char *const ida_implicit =
@@ -268,109 +157,6 @@ static const char *const ida_jac =
     " |  (void)r; (void)w1; (void)w2; (void)w3;\n"
     " |  lag_residual_jac(t, c, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt), d, d->J);\n"
     " |  return lag_store_matrix(lag_residual_at, d->J, J);\n"
-    " |}\n";
-
-/* Of models with constraints, whose residual is y' - f(t, y). */
-static const char *const ida_plain_jac =
-    " |\n"
-    " |static const int lag_residual_at[] = {RESIDUAL_AT};\n"
-    " |\n"
-    " |LAG_API int lag_ida_jac(sunrealtype t, sunrealtype c, N_Vector y, N_Vector dydt, N_Vector r, SUNMatrix J, void "
-    "*data,\n"
-    " |   N_Vector w1, N_Vector w2, N_Vector w3) {\n"
-    " |  lag_data *const d = (lag_data *)data;\n"
-    " |  (void)dydt; (void)r; (void)w1; (void)w2; (void)w3;\n"
-    " |  if (lag_jac_of_y(t, N_VGetArrayPointer(y), d, d->J) != LAG_OK) return 1;\n"
-    " |  for (int i = 0; i < LAG_NY*LAG_NY; i++) d->J[i] = (i%(LAG_NY + 1) ? LAG_C(0.0) : c) - d->J[i];\n"
-    " |  return lag_store_matrix(lag_residual_at, d->J, J);\n"
-    " |}\n";
-
-static const char *const ida_root =
-  " |\n"
-  " |LAG_API int lag_ida_root(sunrealtype t, N_Vector y, N_Vector dydt, sunrealtype *g, void *data) {\n"
-  " |  (void)dydt;\n"
-  " |  return lag_events_of_y(t, N_VGetArrayPointer(y), (const lag_data *)data, g) != LAG_OK;\n"
-  " |}\n";
-
-/* Queries of CasADi about a function. */
-static const char *const casadi_facts =
-    " |\n"
-    " |LAG_API casadi_int FUNCTION_n_in(void) { return N_IN; }\n"
-    " |LAG_API casadi_int FUNCTION_n_out(void) { return N_OUT; }\n"
-    " |LAG_API const char *FUNCTION_name_in(casadi_int i) {\n"
-    " |  static const char *const names[] = {\"x\", \"u\", \"p\", \"t\", \"out_xdot\"};\n"
-    " |  return i >= 0 && i < N_IN ? names[i] : 0;\n"
-    " |}\n"
-    " |LAG_API const char *FUNCTION_name_out(casadi_int i) {\n"
-    " |  static const char *const names[] = {OUTPUTS};\n"
-    " |  return i >= 0 && i < N_OUT ? names[i] : 0;\n"
-    " |}\n"
-    " |LAG_API const casadi_int *FUNCTION_sparsity_in(casadi_int i) {\n"
-    " |  static const casadi_int at[][4] = {{LAG_NY, 1, 1, 0}, {LAG_NU, 1, 1, 0}, {LAG_NP, 1, 1, 0}, {1, 1, 1, 0}, "
-    "{LAG_NY, 1, 0, 0}};\n"
-    " |  return i >= 0 && i < N_IN ? at[i] : 0;\n"
-    " |}\n"
-    " |LAG_API const casadi_int *FUNCTION_sparsity_out(casadi_int i) {\n"
-    " |  PATTERNS;\n"
-    " |  return i >= 0 && i < N_OUT ? at[i] : 0;\n"
-    " |}\n"
-    " |LAG_API int FUNCTION_work(casadi_int *sz_arg, casadi_int *sz_res, casadi_int *sz_iw, casadi_int *sz_w) {\n"
-    " |  if (sz_arg) *sz_arg = N_IN;\n"
-    " |  if (sz_res) *sz_res = N_OUT;\n"
-    " |  if (sz_iw) *sz_iw = 0;\n"
-    " |  if (sz_w) *sz_w = LAG_NY + LAG_NUMATRICES;\n"
-    " |  return 0;\n"
-    " |}\n";
-
-static const char *const casadi_ode =
-  " |\n"
-  " |/* Arguments to the state and the inputs in w, and parameters; NULL stands for zeros. Returns t. */\n"
-  " |static casadi_real lag_ode_arguments(const casadi_real **arg, casadi_real *w, lag_params *p) {\n"
-  " |  for (int i = 0; i < LAG_NY; i++) w[i] = arg[0] ? arg[0][i] : 0.0;\n"
-  "u|  for (int i = 0; i < LAG_NU; i++) w[LAG_NY + i] = arg[1] ? arg[1][i] : 0.0;\n"
-  " |  lag_defaults(p);\n"
-  " |  for (int i = 0; i < LAG_NP; i++) *lag_param(p, i) = arg[2] ? arg[2][i] : 0.0;\n"
-  " |  return arg[3] ? arg[3][0] : 0.0;\n"
-  " |}\n"
-  " |\n"
-  " |LAG_API int lag_ode(const casadi_real **arg, casadi_real **res, casadi_int *iw, casadi_real *w, int mem) {\n"
-  " |  lag_params p;\n"
-  " |  const casadi_real t = lag_ode_arguments(arg, w, &p);\n"
-  " |  (void)iw; (void)mem;\n"
-  " |  return res[0] ? lag_rhs(t, w, &pW_U, res[0]) != LAG_OK : 0;\n"
-  " |}\n";
-
-static const char *const casadi_jac =
-    " |\n"
-    " |static const casadi_int lag_ode_A[] = {LAG_NY, LAG_NY, JAC_AT};\n"
-    " |static const casadi_int lag_ode_B[] = {LAG_NY, LAG_NU, INPUTS_AT};\n"
-    " |static const casadi_int lag_ode_P[] = {LAG_NY, LAG_NP, PARAMS_AT};\n"
-    " |static const casadi_int lag_ode_T[] = {LAG_NY, 1, TIME_AT};\n"
-    " |\n"
-    " |/* The entries of a row-major matrix that CasADi stores. */\n"
-    " |static void lag_ode_gather(const casadi_int *at, const casadi_real *from, casadi_real *to) {\n"
-    " |  const casadi_int columns = at[1], *const first = at + 2, *const row = first + columns + 1;\n"
-    " |  for (casadi_int j = 0; j < columns && to; j++)\n"
-    " |    for (casadi_int k = first[j]; k < first[j + 1]; k++) to[k] = from[row[k]*columns + j];\n"
-    " |}\n"
-    " |\n"
-    " |LAG_API int jac_lag_ode(const casadi_real **arg, casadi_real **res, casadi_int *iw, casadi_real *w, int mem) {\n"
-    " |  lag_params values;\n"
-    " |  const lag_params *const p = &values;\n"
-    " |  const casadi_real t = lag_ode_arguments(arg, w, &values);\n"
-    "q|  const casadi_real *const q = w, *const v = w + LAG_NQ;\n"
-    "z|  const casadi_real *const z = w + 2*LAG_NQ;\n"
-    "u|  const casadi_real *const u = w + LAG_NY;\n"
-    " |  casadi_real *const A = w + LAG_NY + LAG_NU, *const B = A + LAG_NY*LAG_NY, *const P = B + LAG_NY*LAG_NU, "
-    "*const T = P + LAG_NY*LAG_NP;\n"
-    " |  int status = lag_linearize(ARGS, AINPUT_MATRIX);\n"
-    " |  (void)iw; (void)mem;\n"
-    " |PARAMS_MATRIXTIME_COLUMN  if (status != LAG_OK) return 1;\n"
-    " |  lag_ode_gather(lag_ode_A, A, res[0]);\n"
-    " |  lag_ode_gather(lag_ode_B, B, res[1]);\n"
-    " |  lag_ode_gather(lag_ode_P, P, res[2]);\n"
-    " |  lag_ode_gather(lag_ode_T, T, res[3]);\n"
-    " |  return 0;\n"
     " |}\n";
 
 /* --- which of them a header has --- */

@@ -2,22 +2,7 @@
 #include <string.h>
 
 #include "emit/header_impl.h"
-
-static const char *const options =
-    "/* The scalar. */\n"
-    "#ifndef LAG_REAL\n#ifdef LAG_LANES\n"
-    "typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));\n#define LAG_REAL lag_lanes\n"
-    "#else\n#define LAG_REAL double\n#endif\n#endif\n\n"
-    "/* Linkage. */\n"
-    "#ifndef LAG_API\n#ifdef LAG_STATIC\n#define LAG_API static inline\n#else\n#define LAG_API\n#endif\n#endif\n\n"
-    "/* Number of the interface of headers: it changes with functions and structs. */\n"
-    "enum { LAG_ABI = 2 };\n\n"
-    "/* Status codes of functions. */\n"
-    "enum {\n  LAG_OK = 0,\n  LAG_ESINGULAR = -1, /* the mass matrix is singular at this state, or not positive "
-    "definite as elsewhere */\n"
-    "  LAG_ENAN = -4,      /* an acceleration, or the state after a step, is not finite */\n"
-    "  LAG_ESIZE = -9      /* a parameter breaks its declared sign, or makes a friction, an inertia or a coefficient "
-    "negative */\n};\n";
+#include "emit/header_declarations_text.h"
 
 /* --- indices --- */
 

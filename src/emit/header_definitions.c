@@ -2,137 +2,12 @@
 #include <string.h>
 
 #include "emit/header_impl.h"
+#include "emit/header_definitions_text.h"
 
 /* Compilers that drop NaN, or reorder sums. As in lag_model.h. */
 #define FAST_MATH                                                                                 \
   "defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && " \
   "__FINITE_MATH_ONLY__) || defined(_M_FP_FAST)"
-
-static const char *const macros =
-  "/* Functions and constants in the scalar's precision. */\n"
-  "#ifndef LAG_FN\n"
-  "#if defined(__cplusplus)\n"
-  "#define LAG_FN(name) name\n"
-  "#elif defined(__GNUC__)\n"
-  "#define LAG_FN(name) (__extension__ _Generic((LAG_REAL)0, float: name##f, long double: name##l, default: name))\n"
-  "#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L\n"
-  "#define LAG_FN(name) _Generic((LAG_REAL)0, float: name##f, long double: name##l, default: name)\n"
-  "#else\n"
-  "#define LAG_FN_float(name) name##f\n"
-  "#define LAG_FN_double(name) name\n"
-  "#define LAG_FN_2(real) LAG_FN_##real\n"
-  "#define LAG_FN_1(real) LAG_FN_2(real)\n"
-  "#define LAG_FN(name) LAG_FN_1(LAG_REAL)(name)\n"
-  "#endif\n"
-  "#endif\n"
-  "#ifdef LAG_COMPLEX /* scales of drifts are sums then */\n"
-  "#define LAG_ABS(x) (x)\n"
-  "#else\n"
-  "#define LAG_ABS(x) LAG_FN(fabs)(x)\n"
-  "#endif\n"
-  "#ifndef LAG_C\n"
-  "#define LAG_C(x) (sizeof(LAG_REAL) > sizeof(double) ? (LAG_REAL)x##L : (LAG_REAL)x)\n"
-  "#endif\n"
-  "#ifdef LAG_COMPLEX /* has no order */\n"
-  "#define LAG_POSITIVE(d) LAG_PIVOT((d) != LAG_C(0.0))\n"
-  "#elif !defined(LAG_POSITIVE) /* NaN does not pass: a program around a header gets a status */\n"
-  "#define LAG_POSITIVE(d) LAG_PIVOT((d) > LAG_C(0.0))\n"
-  "#endif\n";
-
-/* cbrt and hypot of float and long double, once in a program text: libc++ has them for every standard. */
-static const char *const overloads =
-  "#if defined(__cplusplus) && __cplusplus < 201103L && !defined(_LIBCPP_VERSION) && !defined(LAGC_OVERLOADS)\n"
-  "#define LAGC_OVERLOADS /* C++98 has these for double alone */\n"
-  "namespace lagc_overloads {\n"
-  "inline float cbrt(float x) { return ::cbrtf(x); }\n"
-  "inline long double cbrt(long double x) { return ::cbrtl(x); }\n"
-  "inline float hypot(float x, float y) { return ::hypotf(x, y); }\n"
-  "inline long double hypot(long double x, long double y) { return ::hypotl(x, y); }\n"
-  "}\n"
-  "using lagc_overloads::cbrt;\n"
-  "using lagc_overloads::hypot;\n"
-  "#endif\n";
-
-/* Newton's method onto the constraints, positions first, then velocities, by the turns of the runtime
- * (constraints/projection.c), each lane by itself. */
-static const char *const onto =
-    " |\n"
-    " |/* The state nearest to the constraints. lost: rounding that q, v have lost so far, or 0. */\n"
-    " |static int lag_onto(const lag_params *p, lag_state *sINPUTS, LAG_REAL *lost) {\n"
-    " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), half = LAG_C(0.5), strikes = LAG_C(3.0);\n"
-    " |  const LAG_LANE epsilon = lag_epsilon();\n"
-    " |  LAG_LANE root = epsilon; /* of epsilon, or up to twice that */\n"
-    " |  while (root*root < epsilon) root *= (LAG_LANE)2;\n"
-    " |  LAG_LANE little = root; /* of root */\n"
-    " |  while (little*little < root) little *= (LAG_LANE)2;\n"
-    " |  LAG_MASK unmet = zero < zero;\n"
-    " |  int status = LAG_OK;\n"
-    " |  for (int level = FIRST; level < 2; level++) {\n"
-    " |    LAG_REAL c[LAG_NC], r[LAG_NC], g[LAG_NC], before[LAG_NC], first[LAG_NC], d[LAG_NQ], reach[LAG_NQ], "
-    "force[LAG_NQ], *const x = level ? s->v : s->q;\n"
-    " |    LAG_REAL vain = zero;\n"
-    " |    LAG_MASK on = LAG_NOT(unmet), tiny = on; /* still comes nearer; the last correction is tiny */\n"
-    " |    for (int turn = 0; turn < 20; turn++) {\n"
-    " |      LAG_REAL most = zero, least = one, size = zero;\n"
-    " |      LAG_TRY(lag_residuals(STATE, c, r));\n"
-    " |      for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++) {\n"
-    " |        g[k] = -(level ? r[k] : c[k]);\n"
-    " |        const LAG_REAL now = LAG_FN(fabs)(g[k]), part = turn ? LAG_SELECT(now > zero, now/before[k], zero) : "
-    "zero;\n"
-    " |        most = LAG_SELECT(part > most, part, most);\n"
-    " |        least = LAG_SELECT(LAG_AND(now > zero, part < least), part, least);\n"
-    " |        before[k] = now;\n"
-    " |        if (!turn) first[k] = now;\n"
-    " |        size += now;\n"
-    " |      }\n"
-    " |      unmet = LAG_OR(unmet, LAG_AND(on, LAG_NOT(size >= zero)));\n"
-    " |      on = LAG_AND(LAG_AND(on, size > zero), LAG_NOT(LAG_FAILED(status)));\n"
-    " |      if (turn) {\n"
-    " |        LAG_MASK done = zero <= zero; /* what is left is rounding of the largest component with its unit */\n"
-    " |        tiny = done;\n"
-    " |        for (int i = 0; i < LAG_NQ; i++) {\n"
-    " |          const LAG_REAL change = LAG_FN(fabs)(d[i]);\n"
-    " |          LAG_REAL largest = zero;\n"
-    " |          for (int j = 0; j < LAG_NQ; j++)\n"
-    " |            WITHlargest = LAG_SELECT(LAG_FN(fabs)(x[j]) > largest, LAG_FN(fabs)(x[j]), largest);\n"
-    " |          done = LAG_AND(done, most*change <= LAG_C(4.0)*epsilon*largest);\n"
-    " |          reach[i] = one + largest;\n"
-    " |          tiny = LAG_AND(tiny, change <= root*reach[i]);\n"
-    " |        }\n"
-    " |        vain = LAG_SELECT(LAG_OR(least < half, tiny), vain, vain + one);\n"
-    " |        unmet = LAG_OR(unmet, LAG_AND(on, LAG_AND(LAG_NOT(done), vain >= strikes)));\n"
-    " |        on = LAG_AND(LAG_AND(on, LAG_NOT(done)), LAG_OR(least < half, LAG_AND(LAG_NOT(tiny), vain < "
-    "strikes)));\n"
-    " |      }\n"
-    " |      if (!LAG_ANY(on)) break;\n"
-    " |      LAG_TRY(LAG_WHERE(on, CORRECT));\n"
-    " |      for (int i = 0; i < LAG_NQ; i++) {\n"
-    " |        LAG_REAL rest = lost ? lost[level*LAG_NQ + i] : zero;\n"
-    " |        const LAG_REAL sum = lag_compensated_sum(x[i], d[i], &rest);\n"
-    " |        x[i] = LAG_SELECT(on, sum, x[i]);\n"
-    " |        if (lost) lost[level*LAG_NQ + i] = LAG_SELECT(on, rest, lost[level*LAG_NQ + i]);\n"
-    " |      }\n"
-    " |    }\n"
-    " |    unmet = LAG_OR(unmet, LAG_AND(on, LAG_NOT(tiny)));\n"
-    " |    const LAG_MASK whole = LAG_NOT(LAG_OR(unmet, LAG_FAILED(status)));\n"
-    " |    LAG_MASK stays = zero < zero;\n"
-    " |    for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++) stays = LAG_OR(stays, before[k] > "
-    "LAG_C(1e-3)*first[k]);\n"
-    " |    if (!LAG_ANY(LAG_AND(whole, stays))) continue;\n"
-    " |    lag_state beside = *s; /* what stays is rounding if little changes of the state are more */\n"
-    " |    LAG_LANE uneven = (LAG_LANE)0.5;\n"
-    " |    for (int i = 0; i < LAG_NQ; i++) {\n"
-    " |      uneven *= (LAG_LANE)3.9*((LAG_LANE)1 - uneven);\n"
-    " |      (level ? beside.v : beside.q)[i] += uneven*little*reach[i];\n"
-    " |    }\n"
-    " |    LAG_TRY(lag_residuals(BESIDE, c, r));\n"
-    " |    for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++)\n"
-    " |      unmet = LAG_OR(unmet, LAG_AND(LAG_AND(whole, before[k] > LAG_C(1e-3)*first[k]), before[k] > "
-    "LAG_FN(fabs)((level ? r[k] : c[k]) + g[k])));\n"
-    " |  }\n"
-    " |  LAG_TRY(LAG_STATUS(unmet, LAG_EUNMET));\n"
-    " |  return status;\n"
-    " |}\n";
 
 /* --- functions around programs --- */
 
@@ -280,7 +155,7 @@ static void inputs(const Header *h) {
 
 /* --- events --- */
 
-const char *header_action(const Header *h, uint32_t i) {
+static const char *header_action(const Header *h, uint32_t i) {
   return arena_printf(h->a, "%s_act_%s", h->lower, cname_of_event(h->u, i));
 }
 
@@ -379,19 +254,23 @@ void header_hold_define(const Header *h) {
   if (k->nholonomic) change(h, k->position, both ? "correct" : "correct_positions");
   if (!both) change(h, k->velocity, "correct_velocities");
   const char *correct =
-      both ? arena_printf(h->a, "lag_correct(%s, g, d, force)", args)
+      both ? arena_printf(h->a, "lag_correct(%s, g, d, at->force)", args)
       : !k->nholonomic
-          ? arena_printf(h->a, "lag_correct_velocities(%s, g, d, force)", args)
+          ? arena_printf(h->a, "lag_correct_velocities(%s, g, d, at->force)", args)
           : arena_printf(h->a,
-                         "level ? lag_correct_velocities(%s, g, d, force) : lag_correct_positions(%s, g, d, force)",
+                         "level ? lag_correct_velocities(%s, g, d, at->force) "
+                         ": lag_correct_positions(%s, g, d, at->force)",
                          args, args);
   const HeaderWord words[] = {{"STATE", args},
                               {"BESIDE", header_state_args(h, 0, "beside.")},
                               {"CORRECT", correct},
                               {"FIRST", k->nholonomic ? "0" : "1"},
                               {"INPUTS", h->u->u.n ? ", const LAG_REAL *u" : ""},
+                              {"GIVEN", u},
                               {"WITH", units(h) ? "if (lag_unit_of[j] == lag_unit_of[i]) " : ""},
                               {NULL, NULL}};
+  header_template(h, hold, words);
+  header_section(h, "hold");
   header_template(h, onto, words);
   sb_printf(h->out, "\n%s {\n  return %s_onto(p, s%s, 0);\n}\n", header_api(h, FN_HOLD), m, u);
 }

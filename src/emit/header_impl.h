@@ -112,11 +112,9 @@ CStyle header_style(const Header *h, const char *const *own, const char *const *
 /* A function of the state around p; own: its further parameters; out: its output arrays. */
 void header_state_function(const Header *h, const Prog *p, const char *comment, const char *head,
                            const char *const *own, const char *const *out, int returns);
-/* `static int lower_NAME(state, params)` around p; extra, out: as own and out above. The name of the action of an
- * event. */
+/* `static int lower_NAME(state, params)` around p; extra, out: as own and out above. */
 void header_internal_function(const Header *h, const Prog *p, const char *name, const char *params,
                               const char *const *extra, const char *const *out);
-const char *header_action(const Header *h, uint32_t event);
 /* A double as a constant of the scalar's type, with a point, so that it takes suffixes. */
 const char *header_constant(const Header *h, double x);
 const char *header_api(const Header *h, HeaderFn f);

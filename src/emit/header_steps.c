@@ -5,6 +5,7 @@
 
 #include "emit/header_impl.h"
 #include "kernels/steppers.def"
+#include "emit/header_steps_text.h"
 
 /* Method of a header: of kernels/steppers.def (table: its name there in upper case), or of header_taylor.c,
  * header_variational.c, header_moreau.c. */
@@ -40,48 +41,6 @@ static void write_prototype(const Header *h, const char *text) {
 
 /* --- explicit Runge-Kutta methods --- */
 
-/* Instance of kernels/runge_kutta.h. */
-static const char *const runge_kutta =
-  " |\n"
-  " |#define LAG_RATES(t, x, s) lag_rates(p, t, xPASS, k[s])\n"
-  " |#define LAG_ADD(i, d) x[i] = lag_compensated_sum(y[i], d, &end->lost[i + 1])\n"
-  " |#define LAG_ALLOWED(i, size) (w->absolute + w->tolerance*(size))\n";
-
-/* A step from *s to end->t. Lines by their mark: A with an error estimate, F and H with constraints, of fixed and
- * adaptive steps, E without constraints, L if the last stage is computed once the step is accepted; I inputs during
- * projection. */
-static const char *const trial =
-  " |\n"
-  " |/* The state after a step h by WORDS; k[0]: the rates at *s.\n"
-  "A| * *error: squared, relative to the tolerances; negative or not a number where it is not finite.\n"
-  " | */\n"
-  " |static int lag_METHOD_trial(const lag_params *p, const lag_state *s, LAG_REAL hHELD,\n"
-  " |    LAG_REAL (*k)[LAG_NY], lag_state *endMORE) {\n"
-  " |  const int n = LAG_NY;\n"
-  " |  const LAG_REAL t = s->t;\n"
-  " |  LAG_REAL y[LAG_NY], x[LAG_NY];\n"
-  "A|  LAG_REAL square[2] = {LAG_C(0.0), LAG_C(0.0)}, even[2] = {LAG_C(0.0), LAG_C(0.0)};\n"
-  "I|  LAG_REAL now[LAG_NU];\n"
-  " |  int status = LAG_OK;\n"
-  " |  lag_gather(s, y);\n"
-  " |  LAG_TABLE_STAGES\n"
-  " |  LAG_TABLE_RESULT\n"
-  " |  lag_scatter(x, end);\n"
-  "F|  LAG_TRY(ONTO);\n"
-  "H|  const LAG_MASK held = LAG_NOT(LAG_FAILED(ONTO)); /* a shorter step where it cannot be */\n"
-  "H|  *error = -LAG_C(1.0);\n"
-  "H|  if (!LAG_ANY(held)) return status;\n"
-  "H|  lag_gather(end, x);\n"
-  "H|  LAG_TRY(LAG_WHERE(held, LAG_RATES(end->t, x, LAST)));\n"
-  "E|  LAG_TRY(LAG_RATES(end->t, x, LAST));\n"
-  "A|  LAG_SQUARES(LAG_TABLE_ERRORS)\n"
-  "A|  *error = lag_squared_error(square, TWO, h, LAG_COEF(1.0)/(LAG_LANE)LAG_NY);\n"
-  "H|  *error = LAG_SELECT(held, *error, -LAG_C(1.0));\n"
-  "L|  const LAG_MASK taken = LAG_AND(*error >= LAG_C(0.0), *error <= LAG_C(1.0));\n"
-  "L|  if (LAG_ANY(taken)) *error = LAG_SELECT(LAG_FAILED(LAG_WHERE(taken, ONTO)), -LAG_C(1.0), *error);\n"
-  " |  return status;\n"
-  " |}\n";
-
 static void write_trial(const Header *h, const HeaderMethod *m) {
   int holds = header_has(h, FN_HOLD), early = m->kind == ADAPTIVE, late = m->kind == LATE;
   const LineChoice choices[] = {{'A', adapts(m)},
@@ -103,91 +62,6 @@ static void write_trial(const Header *h, const HeaderMethod *m) {
 }
 
 /* --- the frame --- */
-
-/* Lines marked q, z or u are for models with coordinates, states or inputs. */
-static const char *const support =
-    " |\n"
-    " |/* The state as one array: q, v, z. */\n"
-    " |static void lag_gather(const lag_state *s, LAG_REAL *y) {\n"
-    "q|  for (int i = 0; i < LAG_NQ; i++) {\n"
-    "q|    y[i] = s->q[i];\n"
-    "q|    y[LAG_NQ + i] = s->v[i];\n"
-    "q|  }\n"
-    "z|  for (int i = 0; i < LAG_NZ; i++) y[2*LAG_NQ + i] = s->z[i];\n"
-    " |}\n"
-    " |\n"
-    " |static void lag_scatter(const LAG_REAL *y, lag_state *s) {\n"
-    "q|  for (int i = 0; i < LAG_NQ; i++) {\n"
-    "q|    s->q[i] = y[i];\n"
-    "q|    s->v[i] = y[LAG_NQ + i];\n"
-    "q|  }\n"
-    "z|  for (int i = 0; i < LAG_NZ; i++) s->z[i] = y[2*LAG_NQ + i];\n"
-    " |}\n"
-    " |\n"
-    "u|\n"
-    "u|/* The inputs at time t: those held, or the model's own and the caller's. */\n"
-    "u|static const LAG_REAL *lag_held(const lag_params *p, LAG_REAL t, const LAG_REAL *u, lag_input_fn *input, void "
-    "*context, LAG_REAL *now) {\n"
-    "u|  if (u) return u;\n"
-    "u|  lag_inputs(t, p, now);\n"
-    "u|  if (input) input(context, t, now);\n"
-    "u|  return now;\n"
-    "u|}\n"
-    " |\n"
-    " |static int lag_rates(const lag_params *p, LAG_REAL t, const LAG_REAL *yHELD, LAG_REAL *k) {\n"
-    "u|  LAG_REAL now[LAG_NU];\n"
-    "q|  for (int i = 0; i < LAG_NQ; i++) k[i] = y[LAG_NQ + i];\n"
-    " |  return lag_rates_at(CALL);\n"
-    " |}\n";
-
-/* Steps of one size. */
-static const char *const fixed_step =
-  " | {\n"
-  " |  LAG_REAL y[LAG_NY], k[LAG_TABLE_LAST][LAG_NY];\n"
-  " |  lag_state end = *s;\n"
-  " |  end.t = lag_compensated_sum(s->t, h, &end.lost[0]);\n"
-  " |  lag_gather(s, y);\n"
-  " |  int status = LAG_OK;\n"
-  " |  LAG_TRY(lag_rates(p, s->t, yPASS, k[0]));\n"
-  " |  LAG_TRY(lag_METHOD_trial(p, s, hPASS, k, &end));\n"
-  " |  LAG_TRY(lag_check(&end));\n"
-  " |  LAG_MOVE(LAG_NOT(LAG_FAILED(status)), s, &end);\n"
-  " |  return status;\n"
-  " |}\n";
-
-/* Adaptive steps: a frame around header_adaptive.c. */
-static const char *const adaptive_step =
-  " | {\n"
-  " |  LAG_REAL k[LAG_TABLE_LAST + 1][LAG_NY];\n"
-  " |  const lag_controller c = {LAG_TABLE_CONTROL};\n"
-  " |  return lag_adapt(lag_METHOD_trial, &c, p, s, w, untilPASS, k);\n"
-  " |}\n";
-
-/* Kicks and drifts: the frame of kernels/splitting.h, whose text comes after what it calls. */
-static const char *const splitting_forces =
-  " |#define LAG_MODEL const lag_params *pHELD\n"
-  " |#define LAG_FORCES(t, q, v, a) lag_forces(p, t, q, vPASS, a)\n"
-  " |static int lag_forces(const lag_params *p, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *vHELD, LAG_REAL *a) {\n"
-  "u|  LAG_REAL now[LAG_NU];\n"
-  "u|  return lag_accel(t, q, v, p, lag_held(p, t, u, input, context, now), a);\n"
-  "n|  return lag_accel(t, q, v, p, a);\n"
-  " |}\n";
-
-static const char *const splitting_step =
-    " |static int lag_splitting_step(const lag_composition *c, const lag_params *p, lag_state *s, LAG_REAL h, LAG_REAL "
-    "*aHELD) {\n"
-    " |  LAG_REAL dq[LAG_NQ], dv[LAG_NQ], b[LAG_NQ];\n"
-    " |  lag_state end = *s;\n"
-    " |  const lag_splitting m = {LAG_NQ, s->q, s->v, a, s->lost + 1, end.q, end.v, b, end.lost + 1, end.v, dq, dv};\n"
-    " |  int status = LAG_OK;\n"
-    " |  end.t = lag_compensated_sum(s->t, h, &end.lost[0]);\n"
-    " |  LAG_TRY(lag_split(pPASS, &m, c, s->t, end.t, h));\n"
-    " |  LAG_TRY(lag_check(&end));\n"
-    " |  const LAG_MASK taken = LAG_NOT(LAG_FAILED(status));\n"
-    " |  for (int i = 0; i < LAG_NQ; i++) a[i] = LAG_SELECT(taken, b[i], a[i]);\n"
-    " |  LAG_MOVE(taken, s, &end);\n"
-    " |  return status;\n"
-    " |}\n";
 
 /* --- the methods of a header --- */
 
@@ -399,15 +273,6 @@ static void define_fixed(const Header *h, const HeaderMethod *m) {
                          with ? "0, input, context" : "u, 0, 0"));
   }
 }
-
-static const char *const epsilon =
-  " |\n"
-  " |/* Rounding of the scalar: the least power of 2 that 1 can be told from 1 plus it. */\n"
-  " |static LAG_LANE lag_epsilon(void) {\n"
-  " |  LAG_LANE one = (LAG_LANE)1, half = one/(LAG_LANE)2, e = one;\n"
-  " |  while (one + half*e > one) e *= half;\n"
-  " |  return e;\n"
-  " |}\n";
 
 static const char *longest(const Header *h) {
   const IrScene *s = h->scene;

@@ -1,206 +1,11 @@
 /* Steps of an emitted header by Taylor series, of one state and of the lanes of vectors. Enters: the unit's
- * recurrences. Leaves: the memory of the method, its prototypes and functions. Holds: each step has the order, the
- * size and the digits of runtime/methods/taylor.c, which explains the control of steps; a step that the caller's
- * time ends is shorter; a lane has the digits of a state alone. No step uses values of the step before except sizes,
- * so that the state, parameters and inputs may have changed. */
+ * recurrences. Leaves: the memory of the method, its prototypes and functions, an instance of the runtime's kernels.
+ * Holds: each step has the digits of runtime/methods/taylor.c, which explains the control of steps; a step that the
+ * caller's time ends is shorter; a lane has the digits of a state alone. No step uses values of the step before
+ * except sizes, so that the state, parameters and inputs may have changed. */
 #include "emit/emit_impl.h"
 #include "emit/header_impl.h"
-
-static const char *const memory =
-    " |/* Memory of the Taylor method: sizeof(lag_taylor), here about NUMBERS numbers; a smaller LAG_TAYLOR_ORDER "
-    "takes fewer. _taylor_begin\n"
-    " | * fills it, and again after a jump of the state. */\n"
-    " |typedef struct lag_taylor {\n"
-    " |  LAG_REAL tolerance, absolute; /* error of a step, component by component: absolute + tolerance*|y|; "
-    "tolerance: by _taylor_begin */\n"
-    " |  LAG_REAL longest; /* step; 0: no limit */\n"
-    " |  LAG_REAL unit;    /* of time in the coefficients; 0: found from the state */\n"
-    " |  LAG_REAL noise;   /* error that is rounding, in tolerances */\n"
-    " |  LAG_REAL step, last; /* step to try next, and the error of the last try; 0: by the series */\n"
-    " |  LAG_REAL reach, epsilon; /* step as a part of the radius of convergence; rounding of the scalar */\n"
-    " |  int order;        /* of the series */\n"
-    " |  LAG_REAL x[LAG_TAYLOR_ORDER + 1][LAG_TAYLOR_COLUMNS], end[LAG_TAYLOR_COLUMNS]; /* the series; order 0 at the "
-    "end of the step */\n"
-    " |  LAG_REAL sum[LAG_TAYLOR_WIDTH], slope[LAG_TAYLOR_WIDTH], scale[LAG_TAYLOR_WIDTH];\n"
-    " |  lag_taylor_work work;\n"
-    " |} lag_taylor;\n"
-    " |\n"
-    " |/* order: of the series, at most LAG_TAYLOR_ORDER; 0: chosen from the tolerance (of lanes the least) and what "
-    "an order costs. */\n"
-    " |LAG_API void lag_taylor_begin(lag_taylor *w, LAG_REAL tolerance, int order);\n"
-    " |\n"
-    " |/* One step by a Taylor series, towards the time `until` and not beyond it. LAG_ESTEP: no step is short "
-    "enough.MORE */\n";
-
-static const char *const overloads =
-  "#if defined(__cplusplus) && __cplusplus < 201103L && !defined(_LIBCPP_VERSION) && !defined(LAGC_OVERLOADS_2)\n"
-  "#define LAGC_OVERLOADS_2 /* C++98 has these for double alone */\n"
-  "namespace lagc_overloads_2 {\n"
-  "inline float exp2(float x) { return ::exp2f(x); }\n"
-  "inline long double exp2(long double x) { return ::exp2l(x); }\n"
-  "inline float log2(float x) { return ::log2f(x); }\n"
-  "inline long double log2(long double x) { return ::log2l(x); }\n"
-  "}\n"
-  "using lagc_overloads_2::exp2;\n"
-  "using lagc_overloads_2::log2;\n"
-  "#endif\n";
-
-/* Functions of vectors that kernels/taylor_order.h calls; the largest of the lanes. */
-static const char *const vectors =
-  " |\n"
-  " |#ifdef LAG_LANES\n"
-  " |LAG_LANES_1(exp2) LAG_LANES_1(log2)\n"
-  " |/* The largest of the lanes. */\n"
-  " |static LAG_LANE lag_most(LAG_REAL x) {\n"
-  " |  LAG_LANE most = x[0];\n"
-  " |  for (int i = 1; i < LAG_LANES; i++) most = x[i] > most ? x[i] : most;\n"
-  " |  return most;\n"
-  " |}\n"
-  " |#else\n"
-  " |static LAG_LANE lag_most(LAG_REAL x) { return x; }\n"
-  " |#endif\n";
-
-static const char *const begin =
-    " |\n"
-    " |LAG_API void lag_taylor_begin(lag_taylor *w, LAG_REAL tolerance, int order) {\n"
-    " |  w->tolerance = w->absolute = tolerance;\n"
-    " |  w->longest = LONGEST;\n"
-    " |  w->unit = w->noise = w->step = w->last = LAG_C(0.0);\n"
-    " |  w->epsilon = LAG_C(0.0) + lag_epsilon();\n"
-    " |  for (int k = 0; k <= LAG_TAYLOR_ORDER; k++)\n"
-    " |    for (int i = 0; i < LAG_TAYLOR_COLUMNS; i++) w->x[k][i] = LAG_C(0.0);\n"
-    " |  const int wide = sizeof(LAG_LANE) <= sizeof(double); /* sums are in vectors then */\n"
-    " |  const lag_taylor_costs c = {wide ? LAG_COEF(400.0) : LAG_COEF(100.0), wide ? LAG_COEF(0.5) : LAG_COEF(1.0), "
-    "LAG_COEF(1.0),\n"
-    " |    wide ? LAG_COEF(0.2) : LAG_COEF(2.0), LAG_COEF(FIRST.0), LAG_COEF(NEXT.0), LAG_COEF(SUMS.0)};\n"
-    " |  if (order <= 0) order = (int)lag_most(lag_taylor_best_order(&c, w->tolerance, w->epsilon, 1, "
-    "LAG_TAYLOR_ORDER));\n"
-    " |  w->order = order > 0 && order < LAG_TAYLOR_ORDER ? order : LAG_TAYLOR_ORDER;\n"
-    " |  w->reach = LAG_FN(exp2)(-lag_taylor_bits(w->tolerance, w->epsilon)/(LAG_C(1.0) + (LAG_LANE)w->order));\n"
-    " |}\n";
-
-static const char *const parts =
-    " |\n"
-    " |/* The largest power of 2 that is not above x > 0. */\n"
-    " |static LAG_REAL lag_power_below(LAG_REAL x) {\n"
-    " |#ifdef LAG_LANES\n"
-    " |  return (LAG_REAL)((LAG_MASK)x & 0x7ff0000000000000LL);\n"
-    " |#else\n"
-    " |  LAG_REAL r = LAG_C(1.0);\n"
-    " |  while (r > x) r *= LAG_C(0.5);\n"
-    " |  while (r*LAG_C(2.0) <= x) r *= LAG_C(2.0);\n"
-    " |  return r;\n"
-    " |#endif\n"
-    " |}\n"
-    " |\n"
-    " |/* x := order 0 at t and y. LAG_ESTEP: a rate is not finite. */\n"
-    " |static int lag_taylor_order_0(const lag_params *p, LAG_REAL t, const LAG_REAL *y, LAG_REAL *x, lag_taylor_work "
-    "*workHOLDS) {\n"
-    "u|  LAG_REAL now[LAG_NU], follows[LAG_NU];\n"
-    "u|  for (int i = 0; i < LAG_NU; i++) follows[i] = u ? LAG_C(0.0) : LAG_C(1.0);\n"
-    "u|  if (!u) lag_inputs(t, p, now);\n"
-    " |  int status = LAG_OK;\n"
-    " |  LAG_TRY(lag_taylor_first(t, y, y + LAG_NQ, y + 2*LAG_NQ, p, INPUTS, x, work));\n"
-    " |  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(x + LAG_NY, LAG_NQ + LAG_NZ)), LAG_ESTEP));\n"
-    " |  return status;\n"
-    " |}\n"
-    " |\n";
-
-static const char *const series =
-    " |/* Expands the series of `live` from its order 0, in a unit of time about the last step or the time scale of "
-    "the state. */\n"
-    " |static int lag_taylor_expand(lag_taylor *w, const LAG_REAL *y, LAG_REAL dir, LAG_MASK live) {\n"
-    " |  const LAG_REAL *const rates = w->x[0] + LAG_NY, zero = LAG_C(0.0), one = LAG_C(1.0);\n"
-    " |  LAG_REAL fastest = zero, unit = w->unit;\n"
-    " |  const LAG_MASK guess = LAG_NOT(unit > zero);\n"
-    " |  for (int i = 0; i < LAG_NY && LAG_ANY(guess); i++) {\n"
-    " |    const LAG_REAL rate = LAG_FN(fabs)(i < LAG_NQ ? y[LAG_NQ + i] : rates[i - LAG_NQ])/(LAG_FN(fabs)(y[i]) + "
-    "w->absolute/w->tolerance);\n"
-    " |    fastest = LAG_SELECT(rate > fastest, rate, fastest);\n"
-    " |  }\n"
-    " |  if (LAG_ANY(guess))\n"
-    " |    unit = LAG_SELECT(guess, LAG_SELECT(LAG_AND(fastest > zero, fastest - fastest == zero), "
-    "one/lag_power_below(fastest), one), unit);\n"
-    " |  for (int attempt = 0; attempt < 8; attempt++) {\n"
-    " |    w->unit = LAG_SELECT(live, unit, w->unit);\n"
-    " |    lag_taylor_rest(w->order, dir*unit, w->x[0], &w->work);\n"
-    " |    const LAG_MASK ready = LAG_OR(LAG_NOT(live), lag_finite(w->x[w->order], LAG_NY));\n"
-    " |    if (!LAG_ANY(LAG_NOT(ready))) return LAG_OK;\n"
-    " |    unit = LAG_SELECT(ready, unit, unit*LAG_C(9.094947017729282379150390625e-13));\n"
-    " |  }\n"
-    " |  return LAG_STATUS(LAG_AND(live, LAG_NOT(lag_finite(w->x[w->order], LAG_NY))), LAG_ESTEP);\n"
-    " |}\n"
-    " |\n"
-    " |/* The step by the root test of the last coefficients; 0: they are 0. */\n"
-    " |static LAG_REAL lag_taylor_size(lag_taylor *w, const LAG_REAL *y) {\n"
-    " |  for (int i = 0; i < LAG_NY; i++) w->scale[i] = LAG_C(1.0)/(LAG_FN(fabs)(y[i]) + LAG_FN(fabs)(w->x[1][i]) + "
-    "w->absolute/w->tolerance);\n"
-    " |  const LAG_REAL root = lag_taylor_root(w->x[0], w->order, LAG_TAYLOR_COLUMNS, LAG_NY, w->scale, LAG_TINY);\n"
-    " |  return LAG_SELECT(root > LAG_C(0.0), w->unit*w->reach/root, LAG_C(0.0));\n"
-    " |}\n"
-    " |\n";
-
-static const char *const try =
-    " |/* A try of a step of the lanes in `busy`. *why: failure of the model at the end of a step that is tried again. "
-    "*/\n"
-    " |static int lag_taylor_try(const lag_params *p, lag_state *s, lag_taylor *w, LAG_REAL until, LAG_MASK busy, int "
-    "*whyHOLDS) {\n"
-    " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), dir = LAG_SELECT(until < s->t, -one, one);\n"
-    " |  const LAG_MASK again = w->step > zero;\n"
-    " |  LAG_REAL y[LAG_NY], y1[LAG_NY];\n"
-    " |  int status = LAG_OK;\n"
-    " |  lag_gather(s, y);\n"
-    " |  LAG_TRY(LAG_STATUS(LAG_NOT(LAG_AND(w->tolerance > zero, w->absolute >= zero)), LAG_ETOLERANCE));\n"
-    " |  LAG_TRY(lag_taylor_order_0(p, s->t, y, w->x[0], &w->workGIVEN));\n"
-    " |  LAG_TRY(lag_taylor_expand(w, y, dir, LAG_AND(busy, LAG_NOT(LAG_FAILED(status)))));\n"
-    " |  LAG_REAL h = lag_taylor_size(w, y);\n"
-    " |  h = LAG_SELECT(LAG_AND(w->longest > zero, LAG_NOT(LAG_AND(h > zero, h < w->longest))), w->longest, h);\n"
-    " |  h = LAG_SELECT(again, w->step, LAG_SELECT(LAG_AND(h > zero, h - h == zero), h, one));\n"
-    " |  const LAG_MASK clipped = LAG_NOT(h*(one + LAG_C(1e-4)) < dir*(until - s->t)); /* of NaN, too */\n"
-    " |  lag_state end = *s;\n"
-    " |  end.t = LAG_SELECT(clipped, until, s->t + dir*h);\n"
-    " |  const LAG_REAL dt = end.t - s->t, length = LAG_FN(fabs)(dt);\n"
-    " |  const LAG_REAL least = LAG_SELECT(LAG_AND(clipped, LAG_NOT(again)), zero, "
-    "LAG_C(4.0)*w->epsilon*LAG_FN(fabs)(s->t));\n"
-    " |  w->step = LAG_SELECT(busy, zero, w->step);\n"
-    " |  LAG_TRY(LAG_STATUS(LAG_NOT(LAG_AND(length > least, h >= LAG_TINY/w->epsilon)), LAG_ESTEP));\n"
-    " |  lag_taylor_at(w->order, dt/(dir*w->unit), w->x[0], w->sum, w->slope);\n"
-    " |  for (int i = 0; i < LAG_NY; i++) y1[i] = lag_compensated_sum(y[i], w->sum[i], &end.lost[1 + i]);\n"
-    " |  *why = lag_taylor_order_0(p, end.t, y1, w->end, &w->workGIVEN);\n"
-    " |  const LAG_MASK good = LAG_AND(busy, LAG_NOT(LAG_FAILED(status)));\n"
-    " |  const LAG_REAL defect = lag_taylor_error(w->order, LAG_NQ, LAG_NZ, dir*w->unit, LAG_FN(fabs)(dt), w->slope, "
-    "w->end + LAG_NY, w->scale);\n"
-    " |  const LAG_REAL error = LAG_SELECT(LAG_FAILED(*why), -one, defect/w->tolerance);\n"
-    " |  const LAG_REAL last = LAG_SELECT(again, w->last, -one);\n"
-    " |  const LAG_MASK taken = lag_taylor_takes(LAG_AND(good, error >= zero), error, last, &w->noise);\n"
-    " |  const LAG_MASK shorter = LAG_AND(good, LAG_NOT(taken));\n"
-    " |  w->unit = LAG_SELECT(LAG_AND(taken, LAG_NOT(clipped)), lag_power_below(length), w->unit);\n"
-    " |  if (LAG_ANY(shorter)) {\n"
-    " |    w->last = LAG_SELECT(shorter, error, w->last);\n"
-    " |    w->step = LAG_SELECT(shorter, LAG_SELECT(clipped, length, h)*lag_taylor_shrinkage(w->order, error), "
-    "w->step);\n"
-    " |  }\n"
-    " |  lag_scatter(y1, &end);\n"
-    " |  LAG_MOVE(taken, s, &end);\n"
-    " |  return LAG_WHERE(busy, status);\n"
-    " |}\n"
-    " |\n";
-
-static const char *const step =
-  " | {\n"
-  " |  int why = LAG_OK;\n"
-  " |#ifdef LAG_LANES\n"
-  " |  const LAG_MASK busy = until != s->t;\n"
-  " |  return LAG_ANY(busy) ? lag_taylor_try(p, s, w, until, busy, &whyGIVEN) : (int)LAG_OK;\n"
-  " |#else\n"
-  " |  for (const LAG_REAL t = s->t; until < t || !(until <= t);) {\n"
-  " |    const int before = why, status = lag_taylor_try(p, s, w, until, 1, &whyGIVEN);\n"
-  " |    if (status != LAG_OK) return before != LAG_OK ? before : status;\n"
-  " |    if (s->t > t || s->t < t) return LAG_OK;\n"
-  " |  }\n"
-  " |  return LAG_OK;\n"
-  " |#endif\n"
-  " |}\n";
+#include "emit/header_taylor_text.h"
 
 static CStyle base(const Header *h) {
   return (CStyle){.prefix = h->upper,
@@ -249,7 +54,7 @@ void header_taylor_define(const Header *h, const char *longest) {
                               {"FIRST", arena_printf(h->a, "%u", c.first)},
                               {"HOLDS", inputs ? ", const LAG_REAL *u" : ""},
                               {"INPUTS", inputs ? "u ? u : now, follows" : "0, 0"}, {"GIVEN", inputs ? ", u" : ""},
-                              {"LAG_TINY", "LAG_C(2.2250738585072014e-308)"},
+                              {"USES", inputs ? "(void)p, (void)u, " : "(void)p, "},
                               {NULL, NULL}};
   csupport_expand(
       "\n/* Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... */",
@@ -260,8 +65,8 @@ void header_taylor_define(const Header *h, const char *longest) {
   header_section(h, "taylor_size");
   header_template(h, begin, words);
   header_template(h, parts, words);
-  header_template(h, series, words);
-  header_template(h, try, words);
+  header_section(h, "taylor_step");
+  header_template(h, attempt, words);
   sb_printf(h->out, "%s", header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, prototype(h))));
   header_template(h, step, words);
 }

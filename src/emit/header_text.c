@@ -25,11 +25,11 @@ const char *header_wrapped(const Header *h, const char *prototype) {
 
 const char *header_state_args(const Header *h, int typed, const char *from) {
   StrBuf b = strbuf(h->a);
-  const char *real = arena_printf(h->a, "const %s_REAL *", h->upper);
+  const char *real = typed ? arena_printf(h->a, "const %s_REAL *", h->upper) : from;
   if (typed) sb_printf(&b, "%s_REAL t", h->upper);
   else sb_printf(&b, "%st", from);
-  if (h->u->q.n) sb_printf(&b, typed ? ", %sq, %sv" : ", %sq, %sv", typed ? real : from, typed ? real : from);
-  if (h->u->z.n) sb_printf(&b, ", %sz", typed ? real : from);
+  if (h->u->q.n) sb_printf(&b, ", %sq, %sv", real, real);
+  if (h->u->z.n) sb_printf(&b, ", %sz", real);
   if (typed) sb_printf(&b, ", const %s_params *p", h->lower);
   else sb_puts(&b, ", p");
   if (h->u->u.n) sb_printf(&b, ", %su", typed ? real : "");
@@ -59,59 +59,6 @@ int header_has(const Header *h, HeaderFn f) {
     case FN_DEFAULTS: case FN_PARAM: case FN_START: case FN_ACCEL: case FN_RK4_STEP: case FN_COUNT: break;
   }
   return 1;
-}
-
-const char *header_prototype(const Header *h, HeaderFn f) {
-  Arena *a = h->a;
-  const char *R = h->upper, *m = h->lower, *state = header_state_args(h, 1, "");
-  const char *u = h->u->u.n ? arena_printf(a, ", const %s_REAL *u", R) : "";
-  switch (f) {
-    case FN_DEFAULTS: return arena_printf(a, "void %s_defaults(%s_params *p)", m, m);
-    case FN_PARAM: return arena_printf(a, "%s_REAL *%s_param(%s_params *p, int index)", R, m, m);
-    case FN_START: return arena_printf(a, "int %s_start(const %s_params *p, %s_state *s)", m, m, m);
-    case FN_INPUTS: return arena_printf(a, "void %s_inputs(%s_REAL t, const %s_params *p, %s_REAL *u)", m, R, m, R);
-    case FN_ACCEL: {
-      const char *q = h->u->q.n ? arena_printf(a, ", %s_REAL *a", R) : "",
-                 *z = h->u->z.n ? arena_printf(a, ", %s_REAL *zd", R) : "";
-      return arena_printf(a, "int %s_accel(%s%s%s)", m, state, q, z);
-    }
-    case FN_ENERGY: return arena_printf(a, "void %s_energy(%s, %s_REAL *e)", m, state, R);
-    case FN_CHARGES: return arena_printf(a, "int %s_charges(%s, %s_REAL *out)", m, state, R);
-    case FN_POWERS: return arena_printf(a, "int %s_powers(%s, %s_REAL *out)", m, state, R);
-    case FN_OBSERVE: return arena_printf(a, "int %s_observe(%s, %s_REAL *out)", m, state, R);
-    case FN_EVENTS: return arena_printf(a, "int %s_events(%s, %s_REAL *g)", m, state, R);
-    case FN_ACT:
-      return arena_printf(a, "int %s_act(int event, const %s_params *p, %s_state *s%s, int *stop)", m, m, m, u);
-    case FN_HOLD: return arena_printf(a, "int %s_hold(const %s_params *p, %s_state *s%s)", m, m, m, u);
-    case FN_RK4_STEP:
-      return arena_printf(a, "int %s_rk4_step(const %s_params *p, %s_state *s, %s_REAL h%s)", m, m, m, R, u);
-    case FN_RK4_STEP_WITH:
-      return arena_printf(
-          a, "int %s_rk4_step_with(const %s_params *p, %s_state *s, %s_REAL h, %s_input_fn *input, void *context)", m,
-          m, m, R, m);
-    case FN_UNTIL_EVENT:
-      return arena_printf(a, "int %s_step_until_event(const %s_params *p, %s_state *s, %s_REAL h%s, int *event)", m, m,
-                          m, R, u);
-    case FN_RHS:
-      return arena_printf(a, "int %s_rhs(%s_REAL t, const %s_REAL *y, const %s_params *p%s, %s_REAL *dydt)", m, R, R, m,
-                          u, R);
-    case FN_MASS: return arena_printf(a, "int %s_mass(%s, %s_REAL *M)", m, state, R);
-    case FN_BIAS: return arena_printf(a, "int %s_bias(%s, %s_REAL *b)", m, state, R);
-    case FN_INVERSE:
-      return arena_printf(a, "int %s_inverse_dynamics(%s, const %s_REAL *a, %s_REAL *force)", m, state, R, R);
-    case FN_JAC: return arena_printf(a, "int %s_jac(%s, %s_REAL *J)", m, state, R);
-    case FN_JVP: return arena_printf(a, "int %s_jvp(%s, const %s_REAL *x, %s_REAL *out)", m, state, R, R);
-    case FN_VJP: return arena_printf(a, "int %s_vjp(%s, const %s_REAL *x, %s_REAL *out)", m, state, R, R);
-    case FN_LINEARIZE:
-      return arena_printf(a, "int %s_linearize(%s, %s_REAL *A%s)", m, state, R,
-                          h->u->u.n ? arena_printf(a, ", %s_REAL *B", R) : "");
-    case FN_DPARAMS: return arena_printf(a, "int %s_dparams(%s, %s_REAL *P)", m, state, R);
-    case FN_CONSTRAINTS: return arena_printf(a, "int %s_constraints(%s, %s_REAL *c, %s_REAL *r)", m, state, R, R);
-    case FN_CONSTRAINT_JACOBIAN: return arena_printf(a, "int %s_constraint_jacobian(%s, %s_REAL *A)", m, state, R);
-    case FN_MULTIPLIERS: return arena_printf(a, "int %s_multipliers(%s, %s_REAL *lambda)", m, state, R);
-    case FN_COUNT: break;
-  }
-  return "";
 }
 
 void header_one_state(const Header *h, const char *name, const char *way) {
@@ -161,10 +108,6 @@ void header_internal_function(const Header *h, const Prog *p, const char *name, 
   header_state_function(h, p, NULL, header_wrapped(h, head), extra, out, 1);
 }
 
-const char *header_api(const Header *h, HeaderFn f) {
-  return header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, header_prototype(h, f)));
-}
-
 const char *header_constant(const Header *h, double x) {
   const char *text = shortest_double(h->a, x);
   return arena_printf(h->a, "%s_C(%s%s)", h->upper, text, strpbrk(text, ".en") ? "" : ".0");
@@ -189,7 +132,7 @@ const char *const header_adaptive_lanes = "\n * Over lanes: a try in each lane t
 
 const char *const header_held_parameters = ", const LAG_REAL *u, lag_input_fn *input, void *context";
 
-void header_template(const Header *h, const char *text, const HeaderWord *more) {
+static void expand_template(const Header *h, const char *text, const HeaderWord *more, StrBuf *out) {
   const ProgramSet *u = h->u;
   const char *call =
       arena_printf(h->a, "t%s%s, p%s%s%s", u->q.n ? ", y, y + LAG_NQ" : "", u->z.n ? ", y + 2*LAG_NQ" : "",
@@ -202,7 +145,8 @@ void header_template(const Header *h, const char *text, const HeaderWord *more) 
                               {NULL, NULL}};
   StrBuf b = strbuf(h->a);
   for (const char *s = text; *s;) {
-    size_t n = strcspn(s, "\n") + 1;
+    size_t n = strcspn(s, "\n");
+    n += s[n] != '\0';
     int wanted = *s == 'q' ? u->q.n > 0 : *s == 'z' ? u->z.n > 0 : *s == 'u' ? u->u.n > 0 : *s == 'n' ? !u->u.n : 1;
     for (const char *at = s + 2; wanted && at < s + n;) {
       const HeaderWord *w = usual;
@@ -213,7 +157,59 @@ void header_template(const Header *h, const char *text, const HeaderWord *more) 
     }
     s += n;
   }
-  csupport_expand(sb_text(&b), h->upper, h->lower, h->out);
+  csupport_expand(sb_text(&b), h->upper, h->lower, out);
+}
+
+void header_template(const Header *h, const char *text, const HeaderWord *more) {
+  expand_template(h, text, more, h->out);
+}
+
+/* STATE: the typed arguments of header_state_args; INPUT, RATES, BY_INPUTS: where there are inputs, q, z. */
+static const char *const prototypes[FN_COUNT] = {
+    [FN_DEFAULTS] = " |void lag_defaults(lag_params *p)",
+    [FN_PARAM] = " |LAG_REAL *lag_param(lag_params *p, int index)",
+    [FN_START] = " |int lag_start(const lag_params *p, lag_state *s)",
+    [FN_INPUTS] = " |void lag_inputs(LAG_REAL t, const lag_params *p, LAG_REAL *u)",
+    [FN_ACCEL] = " |int lag_accel(STATERATES)",
+    [FN_ENERGY] = " |void lag_energy(STATE, LAG_REAL *e)",
+    [FN_CHARGES] = " |int lag_charges(STATE, LAG_REAL *out)",
+    [FN_POWERS] = " |int lag_powers(STATE, LAG_REAL *out)",
+    [FN_OBSERVE] = " |int lag_observe(STATE, LAG_REAL *out)",
+    [FN_EVENTS] = " |int lag_events(STATE, LAG_REAL *g)",
+    [FN_ACT] = " |int lag_act(int event, const lag_params *p, lag_state *sINPUT, int *stop)",
+    [FN_HOLD] = " |int lag_hold(const lag_params *p, lag_state *sINPUT)",
+    [FN_RK4_STEP] = " |int lag_rk4_step(const lag_params *p, lag_state *s, LAG_REAL hINPUT)",
+    [FN_RK4_STEP_WITH] = " |int lag_rk4_step_with(const lag_params *p, lag_state *s, LAG_REAL h, lag_input_fn *input, "
+                         "void *context)",
+    [FN_UNTIL_EVENT] = " |int lag_step_until_event(const lag_params *p, lag_state *s, LAG_REAL hINPUT, int *event)",
+    [FN_RHS] = " |int lag_rhs(LAG_REAL t, const LAG_REAL *y, const lag_params *pINPUT, LAG_REAL *dydt)",
+    [FN_MASS] = " |int lag_mass(STATE, LAG_REAL *M)",
+    [FN_BIAS] = " |int lag_bias(STATE, LAG_REAL *b)",
+    [FN_INVERSE] = " |int lag_inverse_dynamics(STATE, const LAG_REAL *a, LAG_REAL *force)",
+    [FN_JAC] = " |int lag_jac(STATE, LAG_REAL *J)",
+    [FN_JVP] = " |int lag_jvp(STATE, const LAG_REAL *x, LAG_REAL *out)",
+    [FN_VJP] = " |int lag_vjp(STATE, const LAG_REAL *x, LAG_REAL *out)",
+    [FN_LINEARIZE] = " |int lag_linearize(STATE, LAG_REAL *ABY_INPUTS)",
+    [FN_DPARAMS] = " |int lag_dparams(STATE, LAG_REAL *P)",
+    [FN_CONSTRAINTS] = " |int lag_constraints(STATE, LAG_REAL *c, LAG_REAL *r)",
+    [FN_CONSTRAINT_JACOBIAN] = " |int lag_constraint_jacobian(STATE, LAG_REAL *A)",
+    [FN_MULTIPLIERS] = " |int lag_multipliers(STATE, LAG_REAL *lambda)",
+};
+
+const char *header_prototype(const Header *h, HeaderFn f) {
+  const char *q = h->u->q.n ? ", LAG_REAL *a" : "", *z = h->u->z.n ? ", LAG_REAL *zd" : "";
+  const HeaderWord words[] = {{"STATE", header_state_args(h, 1, "")},
+                              {"INPUT", h->u->u.n ? ", const LAG_REAL *u" : ""},
+                              {"BY_INPUTS", h->u->u.n ? ", LAG_REAL *B" : ""},
+                              {"RATES", arena_printf(h->a, "%s%s", q, z)},
+                              {NULL, NULL}};
+  StrBuf b = strbuf(h->a);
+  expand_template(h, prototypes[f], words, &b);
+  return sb_text(&b);
+}
+
+const char *header_api(const Header *h, HeaderFn f) {
+  return header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, header_prototype(h, f)));
 }
 
 const char *header_chosen(const Header *h, const char *text, const LineChoice *choices) {

@@ -31,7 +31,8 @@ static void take_factors(const Partition *c, Slot s, Children *to) {
   }
 }
 
-void nest_children(const Partition *c, Slot s, Children *to) {
+/* Operands of a node: terms of a sum or factors of a product in canonical order, else the instruction's operands. */
+static void nest_children(const Partition *c, Slot s, Children *to) {
   const Ins *i = &c->p->ins.at[s];
   to->n = 0;
   if (nest_is_sum(i->op)) {

@@ -78,9 +78,6 @@ typedef struct {
 
 typedef VEC(Child) Children;
 
-/* Operands of a node: terms of a sum or factors of a product in canonical order, else the instruction's operands. */
-void nest_children(const Partition *c, Slot s, Children *children);
-
 typedef enum { NODE_LOAD, NODE_CELL, NODE_OUTER, NODE_CONST, NODE_OP } NodeKind;
 
 typedef struct {

@@ -307,10 +307,8 @@ void set_measure(Builder *b, const AstStmt *st);
 /* The same of the command line: plain numbers are in the unit beside them, units that do not match draw warnings. */
 void ask_measure(Builder *b, const CommandOutput *asked);
 
-/* input_rates.c: notes that the rate of this order of an input, of the inputs in e, or of those that momenta depend
- * on, is needed; declares the rates of an input that an earlier build noted, behind it; gives them formulas and
- * tables. */
-void want_input_rate(Builder *b, uint32_t input, int order);
+/* input_rates.c: notes that the rate of this order of the inputs in e, or of those of momenta, is needed;
+ * declares the rates of an input that an earlier build noted, behind it; gives them formulas and tables. */
 void want_rates_of(Builder *b, Expr e, int order);
 void want_rates_of_momenta(Builder *b);
 void declare_input_rates(Builder *b, uint32_t input);

@@ -85,7 +85,8 @@ static Dim of_key(Dims *d, uint32_t key) {
 }
 
 Dim dim_base(Dims *d, DimBase base) { return of_key(d, base); }
-Dim dim_of_unknown(Dims *d, uint32_t u) { return of_key(d, u + DIM_BASES); }
+/* Dimension that consists of unknown u alone. */
+static Dim dim_of_unknown(Dims *d, uint32_t u) { return of_key(d, u + DIM_BASES); }
 uint32_t dim_unknowns(const Dims *d) { return d->unknowns.n; }
 
 Dim dim_unknown(Dims *d, Name name) {

@@ -50,9 +50,6 @@ int dim_is_open(Dims *d, Dim a);
 /* Substitutes with[k] for unknown first + k, k < n; DIM_ANY where a replacement is DIM_ANY. */
 Dim dim_replace(Dims *d, Dim a, uint32_t first, uint32_t n, const Dim *with);
 
-/* Dimension that consists of unknown u alone. */
-Dim dim_of_unknown(Dims *d, uint32_t u);
-
 /* A name whose dimension was inferred, and the span that decided it. */
 typedef struct {
   Name name;

@@ -10,7 +10,7 @@
 
 enum { HIGHEST = 2 };
 
-void want_input_rate(Builder *b, uint32_t input, int order) {
+static void want_input_rate(Builder *b, uint32_t input, int order) {
   while (b->m->inputs.at[input].order) input--, order++;
   InputRates *r = b->rates_wanted;
   Name name = b->m->inputs.at[input].name;

@@ -150,9 +150,6 @@ int whole_number(Builder *b, const Value *v, AstId id, int64_t *out);
 int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi);
 int quantified_next(Eval *ev, Value *v);
 
-/* Value of a sum or product x from its terms. */
-Value terms_value(Eval *ev, const Value *term, uint32_t n, const AstExpr *x);
-
 /* `sum` and `product`: loop_begin evaluates the range and starts a loop (0: empty or wrong range, the value is set);
  * loop_next appends the body's value as a term (1: next index; 0: end, the value is set). */
 int loop_begin(Eval *ev, AstId id);

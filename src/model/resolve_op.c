@@ -365,7 +365,8 @@ static int type_of_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr 
   return 1;
 }
 
-Value terms_value(Eval *ev, const Value *term, uint32_t n, const AstExpr *x) {
+/* Value of a sum or product x from its terms. */
+static Value terms_value(Eval *ev, const Value *term, uint32_t n, const AstExpr *x) {
   Builder *b = ev->b;
   Value r;
   if (!type_of_terms(ev, term, n, x, &r)) return FAILED;

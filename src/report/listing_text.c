@@ -5,7 +5,9 @@
 #include "symmetry/charges.h"
 
 int text_latex(const Text *t) { return t->style == PRINT_LATEX; }
-void text_put(Text *t, const char *text, const char *in_latex) { sb_puts(t->out, text_latex(t) ? in_latex : text); }
+static void text_put(Text *t, const char *text, const char *in_latex) {
+  sb_puts(t->out, text_latex(t) ? in_latex : text);
+}
 
 void text_heading(Text *t, const char *title) {
   if (text_latex(t)) sb_printf(t->out, "\n%% %s\n\\begin{align*}\n", title);

@@ -12,7 +12,6 @@ typedef struct {
 } Text;
 
 int text_latex(const Text *t);
-void text_put(Text *t, const char *text, const char *in_latex);
 
 /* Model, scene and effects, on the first lines. */
 void text_title(Text *t);

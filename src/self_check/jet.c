@@ -19,7 +19,7 @@ Bounded bounded_mul(Bounded x, Bounded y) {
   return with_rounding(x.v * y.v, fabsl(x.v) * y.e + x.e * fabsl(y.v) + x.e * y.e);
 }
 
-Bounded bounded_div(Bounded x, Bounded y) {
+static Bounded bounded_div(Bounded x, Bounded y) {
   JetReal q = x.v / y.v;
   return with_rounding(q, (x.e + fabsl(q) * y.e) / fabsl(y.v));
 }

@@ -54,4 +54,3 @@ void jet_pow(Jet *out, const Jet *x, const Jet *y); /* a varying exponent: x > 0
 Bounded bounded_add(Bounded x, Bounded y);
 Bounded bounded_sub(Bounded x, Bounded y);
 Bounded bounded_mul(Bounded x, Bounded y);
-Bounded bounded_div(Bounded x, Bounded y);

@@ -220,7 +220,8 @@ int charges_judge(const Eqns *e, Name effect) {
   return good;
 }
 
-const char *charge_verdict(const Noether *is) {
+/* "conserved", "changes" or "not decided whether it changes". */
+static const char *charge_verdict(const Noether *is) {
   static const char *const words[] = {
     [PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided whether it changes"};
   return words[is->drift];

@@ -19,9 +19,6 @@ Eqns *equations_of(const Model *m);
 /* The complete equations of the same model with a regular mass matrix (eqns_derive_regularised). */
 Eqns *equations_regularised(const Eqns *singular);
 
-/* "conserved", "changes" or "not decided whether it changes". */
-const char *charge_verdict(const Noether *is);
-
 /* "energy is conserved", "energy changes: dE/dt = ..." or "not decided whether the energy is conserved: ...". */
 const char *charges_energy_text(const Eqns *e);
 /* The word of a verdict on dQ/dt: conserved, changes, not decided. */

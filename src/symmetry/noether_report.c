@@ -21,7 +21,8 @@ static const Generator *shift(const Eqns *e, uint32_t i) {
   return by;
 }
 
-Indices noether_cyclic(const Eqns *e) {
+/* Coordinates that L does not contain. */
+static Indices noether_cyclic(const Eqns *e) {
   Indices all = {0};
   for (uint32_t i = 0; i < e->n; i++) {
     int absent = expr_is_zero(e->g, e->dLdq[i]);

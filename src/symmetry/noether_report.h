@@ -43,9 +43,6 @@ Conditions noether_conditions(const NoetherReport *r, uint32_t k);
 /* Whether no state shows that found symmetry k has another charge with the effect on; symbols are matched by name. */
 int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t k);
 
-/* Coordinates that L does not contain. */
-Indices noether_cyclic(const Eqns *e);
-
 /* Appends "cyclic coordinate: x; L does not contain it, and p_x is conserved" for each one, after `before`. */
 void show_cyclic(const Eqns *e, const char *before, StrBuf *out);
 

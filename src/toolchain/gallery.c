@@ -11,7 +11,8 @@
 
 static int by_name(const void *a, const void *b) { return strcmp(*(const Name *)a, *(const Name *)b); }
 
-const char *gallery_folder(Arena *a, const char *argv0) {
+/* Folder of the gallery, or NULL. */
+static const char *gallery_folder(Arena *a, const char *argv0) {
   const char *own = toolchain_own_folder(a, argv0), *home = getenv("LAG_HOME");
   const char *places[] = {home && home[0] ? arena_printf(a, "%s/share/lagc/models", home) : NULL,
                           arena_printf(a, "%s/../share/lagc/models", own), arena_printf(a, "%s/../models", own)};

@@ -11,9 +11,7 @@ typedef struct {
   VEC(Name) names;    /* pendulum for pendulum.lag, in alphabetical order */
 } Gallery;
 
-/* Its folder, or NULL. argv0: the name that lagc was called by. */
-const char *gallery_folder(Arena *a, const char *argv0);
-/* The folder of files that models include; NULL without a gallery. */
+/* The folder of files that models include; NULL without a gallery. argv0: the name that lagc was called by. */
 const char *gallery_library(Arena *a, const char *argv0);
 Gallery gallery_find(Arena *a, const char *argv0);
 

@@ -318,12 +318,6 @@ const char *toolchain_entry(Arena *a, const Toolchain *t, const SourceText *text
   return arena_printf(a, "%016llx%016llx", (unsigned long long)h1, (unsigned long long)h2);
 }
 
-const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
-  const char *cache = cache_folder(a),
-             *path = cache ? arena_printf(a, "%s/%s", cache, toolchain_entry(a, t, texts, n)) : NULL;
-  return path && cache_has(path) ? path : NULL;
-}
-
 int toolchain_has_compiler(Arena *a, const Toolchain *t) {
   const char *name = arena_strndup(a, t->cc, strcspn(t->cc, " ")), *path = getenv("PATH");
   if (strpbrk(name, "/\\")) return file_exists(name);

@@ -72,9 +72,6 @@ const char *toolchain_entry(Arena *a, const Toolchain *t, const SourceText *text
 /* The path of a simulator of these texts, from the cache or built; NULL, with *error. */
 const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error);
 
-/* The same if it is in the cache; else NULL. */
-const char *toolchain_cached(Arena *a, const Toolchain *t, const SourceText *texts, size_t n);
-
 /* lag-run, the simulator that evaluates models; NULL: it is not there. */
 const char *toolchain_evaluator(Arena *a, const Toolchain *t);
 /* Whether the C compiler is a program of $PATH, or of its own. */

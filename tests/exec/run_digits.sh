@@ -120,4 +120,9 @@ prefixed() {
     ! grep -qi 'pend_' "$TMP/pend.h"
 }
 check "a prefix of the user's" prefixed
+named() { # names that contain `lag`
+  sed 's/model pendulum/model phase_lag/' models/pendulum.lag >"$TMP/phase_lag.lag" && "$LAGC" header "$TMP/phase_lag.lag" --with rk45,taylor,jac --prefix flag -o "$TMP/pend.h" &&
+    printf '#define FLAG_IMPLEMENTATION\n#include "pend.h"\n' >"$TMP/pend.c" && "$CC" -Werror -c "$TMP/pend.c" -o "$TMP/pend.o"
+}
+check "a prefix that ends in lag" named
 tap_end

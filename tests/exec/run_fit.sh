@@ -171,7 +171,7 @@ bad "not a number" 'bad.csv:3: column x \[m\]: "nan" is not a finite number; lea
 bad "times not sorted" 'bad.csv:4: t = 1 s comes after 2 s; sort the rows' 't [s],x [m]\n0,1\n2,1\n1,2\n'
 bad "a time twice" 'bad.csv:4: t = 2 s stands twice' 't [s],x [m]\n0,1\n2,1\n2,2\n'
 bad "no names" 'the first line has numbers; write the names' '0,1\n2,1\n'
-bad "too many fields" 'bad.csv:2: 3 fields, and the first line has 2 names' 't [s],x [m]\n0,1,2\n'
+bad "too many fields" 'bad.csv:2: there are more fields than the 2 names' 't [s],x [m]\n0,1,2\n'
 bad "no time" 'the first column is "x \[m\]"; it must be the time: t \[s\]' 'x [m],t [s]\n0,1\n'
 bad "before the scene" 'bad.csv:2: t = -1 s lies before the scene' 't [s],x [m]\n-1,1\n0,1\n'
 unit() { printf 't [s],x [kg]\n0,1\n' >"$TMP/bad.csv"; refused 1 "units do not match" --data "$TMP/bad.csv" --fit k; }

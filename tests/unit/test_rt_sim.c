@@ -31,10 +31,10 @@ int __asan_address_is_poisoned(void const volatile *p);
 /* The number behind each part of a work space is out of bounds. */
 static void parts_of_a_work_space_have_gaps(void **state)
 {
-  double *a, *b, *c, **const parts[] = {&a, &b, &c};
-  const size_t sizes[] = {3, 0, 5};
+  double *a, *b, *c;
+  const lag_part parts[] = {{&a, 3}, {&b, 0}, {&c, 5}};
   (void)state;
-  double *block = lag_workspace(3, parts, sizes);
+  double *block = lag_workspace(3, parts);
   for (int i = 0; i < 3; i++) {
     assert_true(__asan_address_is_poisoned(*parts[i] + sizes[i]));
     assert_false(sizes[i] && __asan_address_is_poisoned(*parts[i] + sizes[i] - 1));
