@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 #include "numeric/line_fit.h"
 
 enum { PLACES_A_STEP = 4 };
@@ -280,6 +281,7 @@ static void extrapolate(ErrorEstimate *e, double until, double level) {
   double rest = e->growth == LAG_ERROR_EXPONENTIAL ? fmin(left, t) : 0;
   e->known_to = rest < left ? e->t0 + dir * (t + rest) : until;
   if (!(rest > 0)) return;
+  e->floor *= 1 + rest / t;
   double reach = fmax(log(no_digit / level) / e->rate, 0);
   e->largest = fmin(e->largest * exp(e->rate * fmin(rest, reach)), fmax(e->largest, 1));
   if (reach < rest) e->horizon = e->t0 + dir * (t + reach);
@@ -306,9 +308,18 @@ static int is_confirmed(const ErrorEstimate *e, Parting *p, double t, double err
   return 0;
 }
 
+/* Error of the present state by the rounding of the time, half a unit in its last place: all runs share it. */
+static double clock_error(lag_sim *sim, const double *scale, double *rates) {
+  double t = sim->run->t, most = 0, calls = sim->pb.rhs_calls;
+  if (t == 0 || lag_rhs(&sim->pb, t, sim->now, rates)) return 0;
+  sim->pb.rhs_calls = calls;
+  for (int i = 0; i < sim->pb.n; i++) most = fmax(most, fabs(rates[i]) / scale[i]);
+  return most * ldexp(DBL_EPSILON / 2, ilogb(t));
+}
+
 /* Compares rows up to the end, the horizon, or where `other` stops. Two runs meet an event at times that differ by
  * their errors: rows between, where one has met it and the other has not, say nothing, unless they go on. */
-static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
+static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale, double *rates) {
   enum { LONG = 4 };
   Parting parting = {NAN, HUGE_VAL};
   double apart = 0, skipped = 0; /* of the counts of events; largest error of rows that differ */
@@ -330,6 +341,7 @@ static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
     if (n > 0) apart = now;
     e->error[i] = error;
     e->largest = fmax(e->largest, fmax(error, skipped));
+    e->floor = fmax(e->floor, clock_error(other, scale, rates));
     if (is_confirmed(e, &parting, e->motion.t[i], e->error[i], i + 1 == e->motion.rows)) e->horizon = parting.t;
   }
   return LAG_OK;
@@ -350,10 +362,11 @@ int lag_formula_is_lossy(const ErrorEstimate *e) {
 }
 
 int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
-  double *scale = calloc((size_t)e->motion.n + 1, sizeof *scale), power, level;
+  size_t n = (size_t)e->motion.n;
+  double *scale = calloc(2 * n + 1, sizeof *scale), power, level;
   int rc = scale ? lag_cost_scales(&e->motion, other, scale) : LAG_ENOMEM;
   if (rc == LAG_OK) rc = lag_formula_noise(other, &e->motion, &e->formula);
-  if (rc == LAG_OK) rc = compare_rows(e, other, scale);
+  if (rc == LAG_OK) rc = compare_rows(e, other, scale, scale + n);
   free(scale);
   if (rc == LAG_ENOMEM) return rc;
   find_growth(e, &power, &level);
@@ -374,6 +387,10 @@ void lag_error_estimate_reset(ErrorEstimate *e) {
   e->largest = e->horizon = e->known_to = NAN;
   e->growth = LAG_ERROR_UNKNOWN;
   e->why[0] = 0;
+}
+
+double lag_error_size(const ErrorEstimate *e) {
+  return isnan(e->largest) ? NAN : fmax(e->largest, fmax(e->floor, DBL_EPSILON));
 }
 
 int lag_error_estimate_is_blind(ErrorEstimate *e) {
