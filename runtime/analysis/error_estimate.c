@@ -202,12 +202,13 @@ static int is_exponential(Slope all, Slope late, Slope power_all, Slope power_la
  * none is told apart from others. Where a charge drifts, it is bounded never, and as t only where that fits well: it
  * grows by more later. rough: of a few errors, the nearest power. */
 static int power_of(Slope all, Slope late, int drifts, int rough) {
-  const double near = 0.35, sure = 0.4, well = 0.13, flat = 0.1, nearest = 0.45; /* by tests/accuracy/estimates.py */
+  const double near = 0.35, sure = 0.4, alike = 0.25, well = 0.13, flat = 0.1, nearest = 0.45; /* by estimates.py */
   int k = (int)lround(fmin(fmax(all.slope, 0), 9));
   double off = fabs(all.slope - k), off_late = fabs(late.slope - k);
   double most = fmax(all.slope + 1.5 * all.uncertain, late.slope + 2 * late.uncertain);
   if (rough) return all.slope < fmax(nearest, 2 * all.plain) ? 0 : k && k <= 2 && off < nearest ? k : -1;
   if (k == 0) return !drifts && most < flat ? 0 : -1; /* what decays does not grow */
+  if (fabs(all.slope - late.slope) > alike) return -1;
   if (k == 1 && drifts && fmax(off, fmax(off_late, late.uncertain)) > well) return -1;
   return k <= 2 && off < near && off_late + late.uncertain < sure ? k : -1;
 }

@@ -82,8 +82,8 @@ static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim
   return lag_app_copy_method(run, other, run->tol >= apart * least_tolerance ? tighter : apart);
 }
 
-/* Rounding has no law that is worth telling. */
-static int is_rounding(const ErrorEstimate *e) { return e->largest < 500 * DBL_EPSILON || e->largest < e->floor; }
+/* Near rounding, that of the second run is part of the error, and its law is not the run's. */
+static int is_rounding(const ErrorEstimate *e) { return e->largest < fmax(5e4 * DBL_EPSILON, e->floor); }
 
 /* Moves the start by four roundings, one of which the first sum may take away, up and down in turns. What cannot be
  * set stays. */
