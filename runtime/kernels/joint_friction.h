@@ -52,6 +52,9 @@ static inline int lag_joints_begin(LAG_MODEL, lag_joint_friction *w, LAG_REAL t,
   LAG_TRY(LAG_GRIPS(t, y, w, w->bound));
   for (int j = 0; j < LAG_JOINTS(w); j++) {
     const int rests = w->sticks[j] > zero || !(w->before[j] < zero || w->before[j] > zero);
+    if (rests && w->bound[j] < one - LAG_C(1e-9))
+      return LAG_FRICTION_FAILS(t, j, "has a static limit smaller than the friction of a sliding body: let "
+                                      "`static = mu_s*N` have a mu_s of at least mu");
     w->bound[j] = rests && w->bound[j] > one ? w->bound[j] : one;
   }
   return status;
