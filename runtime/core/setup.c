@@ -90,7 +90,7 @@ static int alloc_scratch(lag_sim *s) {
          nuu = nu + nm + (size_t)s->scene->nexact;
   size_t held = lag_constraint_scratch_size(m), ranks = lag_rank_scratch_size(m),
          sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
-  size_t nc = (size_t)lag_sim_ncharges(s) + 1, np = (size_t)m->ncontacts;
+  size_t nc = (size_t)lag_sim_ncharges(s) + 1;
   double **const parts[] = {&s->u,
                             &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held,
                             &s->pb.ranks, &s->contact_scratch, &s->contact_was, &s->charge_now, &s->charge_power,
@@ -100,7 +100,7 @@ static int alloc_scratch(lag_sim *s) {
   const size_t sizes[] = {nuu,
                           nw, n, n, n, nev, nev, nout, 2 + nev, 11 * nev, held, ranks, sized, (size_t)m->ncontacts,
                           2 * nc, nc, nc, 3 * (size_t)m->nswitch, nm, nm, nm, nm, nm, nm * (9 + 2 * nm), nm * (3 + nm),
-                          m->contact_laws ? 3 * np + 4 * (size_t)m->nguides + 1 : 0,
+                          lag_contact_law_size(m),
                           (size_t)(m->nsizes + m->nmoving)};
   s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);

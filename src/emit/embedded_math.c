@@ -24,6 +24,7 @@
 #include "emit/predictor_kernel.h"
 #include "emit/runge_kutta_kernel.h"
 #include "emit/scalar_kernel.h"
+#include "emit/slipping_forces_kernel.h"
 #include "emit/splitting_kernel.h"
 #include "emit/step_size_kernel.h"
 #include "emit/taylor_order_kernel.h"
@@ -40,8 +41,8 @@ static const struct {
                 LINES(runge_kutta_tables_kernel), LINES(runge_kutta_kernel), LINES(step_size_kernel),
                 LINES(taylor_order_kernel), LINES(taylor_size_kernel), LINES(dense_output_kernel),
                 LINES(band_matrix_kernel), LINES(impulses_kernel), LINES(contact_step_kernel),
-                LINES(joint_friction_kernel), LINES(moreau_step_kernel), LINES(newton_kernel),
-                LINES(predictor_kernel), LINES(galerkin_rule_kernel), LINES(galerkin_step_kernel),
+                LINES(joint_friction_kernel), LINES(slipping_forces_kernel), LINES(moreau_step_kernel),
+                LINES(newton_kernel), LINES(predictor_kernel), LINES(galerkin_rule_kernel), LINES(galerkin_step_kernel),
                 LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";
