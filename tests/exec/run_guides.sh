@@ -118,6 +118,9 @@ check "a crank passes the turning points of its slips" run press coast --tol 1e-
 check "its angle" near "$(final a)" 3.4085322936455413 1e-10
 check "and comes to rest" run press coast --until 10
 check "without a step more" near "$(final "a'")" 0 1e-15
+run press coast mu=0.4 --until 2 && rests=$(final a)
+check "by moreau two frictions hold its one motion" run press coast mu=0.4 --until 2 --method 'moreau(step=2e-3)'
+check "where events end it" near "$(final a)" "$rests" 1e-3 # half a step at 1 rad/s
 fi
 
 # ---- Painleve: a rod whose tip is guided, friction W_nn/|W_nt| = (1 + 3 sin^2)/(3 sin cos)
