@@ -14,6 +14,7 @@ functions() {
   "$LAGC" build "$model" "$@" --bytes -o "$TMP/bytes" && "$LAGC" build "$model" "$@" --shared -o "$TMP/model.so" && "$TMP/evaluator" "$TMP/bytes" "$TMP/model.so" 12
 }
 check "functions of models/lennard_jones.lag with nests of loops" functions models/lennard_jones.lag -D N=14 --method taylor
+check "nests whose rows are longer than a block" functions models/lennard_jones.lag -D N=80
 for model in models/*.lag; do
   case $model in
     */double_pendulum.lag) one_of 2 && check "functions of $model" functions "$model" --method taylor --with linear ;;
