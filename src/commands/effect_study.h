@@ -66,8 +66,8 @@ const char *effect_use_statement(const EffectStudy *s, EffectSet set);
 
 /* *path := a compiled program of these variants, in the cache. Returns a STATUS. */
 int effect_sets_build(Compiler *c, EffectStudy *s, const EffectSets *sets, const char **path);
-/* Makes such a program, evaluated or compiled, and runs it with these arguments, `--effects report` or `--effects runs` among them;
- * *measured := [sets->n]. Returns a STATUS. */
+/* Makes such a program, evaluated or compiled, and runs it with these arguments, `--effects report` or
+ * `--effects runs` among them; *measured := [sets->n]. Returns a STATUS. */
 int effect_sets_run(Compiler *c, EffectStudy *s, const EffectSets *sets, char *const *argv,
                     EffectMeasurement **measured);
 

@@ -77,6 +77,18 @@ for file in motion.csv plot.svg chaos.html motion.svg; do check "and written: $f
 near() { paste -d , "$1" "$2" | awk -F , 'NR > 1 { for (i = 1; i < 4; i++) if (($i - $(i + 4))^2 > 1e-18) exit 1; n++ } END { exit n != 5 }'; }
 check "and a sweep, whose rows are those of runs in lanes up to roundings" near "$TMP/with/sweep.csv" "$TMP/without/sweep.csv"
 
+# Compilers that link no libgcc: tcc.
+empty "liblag asks for no symbols of gcc's own library" "$(nm -u "$BUILD/liblag.a" 2>/dev/null | grep __cpu_)"
+if command -v tcc >/dev/null; then
+  by_tcc() {
+    CC=tcc "$LAGC" run models/bouncing_ball.lag --compile always --quiet -o "$TMP/tcc.csv" && "$LAGC" run models/bouncing_ball.lag --compile never --quiet -o "$TMP/never.csv" &&
+      cmp "$TMP/tcc.csv" "$TMP/never.csv" && CC=tcc "$LAGC" build models/pendulum.lag --shared -o "$TMP/libtcc.so"
+  }
+  check "tcc compiles simulators and libraries" by_tcc
+else
+  skip "tcc compiles simulators and libraries" "tcc is not installed"
+fi
+
 # A run of some seconds changes over to what was compiled beside it; nobody can see where.
 changes_over() {
   "$LAGC" run models/double_pendulum.lag --until 20000 --every 1 --quiet -o "$TMP/auto.csv" && "$LAGC" run models/double_pendulum.lag --until 20000 --every 1 --compile never --quiet -o "$TMP/never.csv" &&
