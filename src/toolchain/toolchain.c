@@ -159,7 +159,8 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   const char *runtime[] = {build, links_sines ? "-DLAG_LINKED_SINES" : "", "-I", t->include};
   const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : "")},
              *hidden[] = {"-fvisibility=hidden", "-s", alone ? steady_flags(a, t) : ""};
-  const char *whole[] = {"-Wl,-Bsymbolic", arena_printf(a, "-Wl,--version-script=%s/exports.map", dir),
+  const char *exports = is.exports ? arena_printf(a, "-Wl,--version-script=%s/exports.map", dir) : "";
+  const char *whole[] = {"-Wl,-Bsymbolic", exports,
                          "-Wl,--whole-archive", arena_printf(a, "%s/lib%s.a", t->lib, t->library),
                          "-Wl,--no-whole-archive"};
   const char *last[] = {alone ? "" : arena_printf(a, "-L%s", t->lib),
