@@ -1,5 +1,6 @@
-/* Responses of velocities to impulses of contacts. Contract: contact_set.h. Where contacts alone constrain the motion, M
- * is factored once for all of them, within its band; else each response is that of all constraints together. */
+/* Responses of velocities to impulses of contacts. Contract: contact_set.h. Where contacts alone constrain the
+ * motion, M is factored once for all of them, within its band; else each response is that of all constraints
+ * together. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
