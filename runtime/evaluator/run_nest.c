@@ -104,6 +104,9 @@ static void load(const Block *b, double *to, const TurnIns *i) {
   case TURN_ELEMENT: gather(b, to, b->in[i->a], k); return;
   case TURN_SCALAR: fill(to, b->in[i->a][0], b->count); return;
   case TURN_CELL: gather(b, to, b->r + b->p->cells, k); return;
+  case TURN_INDEX:
+    for (int64_t j = 0, at = first_index(b, k); j < b->count; j++, at += stride(b->n, k)) to[j] = (double)at;
+    return;
   case TURN_OUTER: fill(to, b->r[b->n->outer[k]], b->count); return;
   }
 }

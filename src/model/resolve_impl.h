@@ -150,6 +150,9 @@ int whole_number(Builder *b, const Value *v, AstId id, int64_t *out);
 int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi);
 int quantified_next(Eval *ev, Value *v);
 
+/* Whether the name of an index stands for its symbol there, as all turns have one body. */
+int quantified_counts(const Eval *ev, const AstExpr *name);
+
 /* Value of a sum or product x from its terms. */
 Value terms_value(Eval *ev, const Value *term, uint32_t n, const AstExpr *x);
 
