@@ -64,6 +64,7 @@ typedef struct {
   VEC(NestRead) reads;
   VEC(Read) blocks; /* families whose members are arguments: all with one index */
   VEC(uint32_t) base;
+  const char *why;         /* reason why the sum is written out */
   VEC(Expr) first, second; /* symbols of the two representatives in the same places */
 } Arguments;
 
@@ -193,8 +194,11 @@ static int switches_suddenly(ExprGraph *g, Expr e) {
 static int find_arguments(Arguments *a, Expr e) {
   ExprList l = expr_topo(a->g, &e, 1);
   for (uint32_t k = 0; k < l.n; k++) {
-    if (expr_op(a->g, l.at[k]) == EX_CELL || switches_suddenly(a->g, l.at[k])) return 0;
-    if (expr_op(a->g, l.at[k]) == EX_SYM && !add_symbol(a, l.at[k])) return 0;
+    if (expr_op(a->g, l.at[k]) == EX_CELL) a->why = "it contains another sum over many terms";
+    if (switches_suddenly(a->g, l.at[k])) a->why = "runs locate each of its switches by velocities";
+    if (expr_op(a->g, l.at[k]) == EX_SYM && !add_symbol(a, l.at[k]))
+      a->why = arena_printf(a->arena, "`%s` is no member at indices of this sum", expr_sym_of(a->g, l.at[k])->name);
+    if (a->why) return 0;
   }
   return 1;
 }
@@ -241,13 +245,20 @@ static Expr component_sum(Eval *ev, struct Quantified *q, uint32_t c) {
   for (int k = 0; k < REPRESENTATIVES && !q->inner; k++) turned[k] = whole[k].at[c];
   for (int k = 0; k < REPRESENTATIVES && q->inner; k++) {
     Expr factor = expr_diff(g, whole[k].at[c], q->inside[c]);
-    if (expr_contains_sym(g, factor, q->inside[c])) return 0;
+    if (expr_contains_sym(g, factor, q->inside[c])) {
+      q->why = "it is not linear in the sum inside";
+      return 0;
+    }
     turned[k] = expr_mul(g, factor, body[k].at[c]);
     Expr zero = expr_int(g, 0), rest = expr_replace(g, whole[k].at[c], &q->inside[c], &zero, 1);
     q->beside |= !expr_is_zero(g, rest);
   }
   for (int k = 0; k < REPRESENTATIVES && q->has_lets; k++) turned[k] = expr_expand_defs(g, turned[k]);
-  if ((q->beside && n > 1) || !find_arguments(&a, turned[0]) || !same_for_both(&a, turned[0], turned[1])) return 0;
+  q->why = "its terms differ by more than the members that they read";
+  if ((q->beside && n > 1) || !find_arguments(&a, turned[0]) || !same_for_both(&a, turned[0], turned[1])) {
+    if (a.why) q->why = a.why;
+    return 0;
+  }
   return expr_is_zero(g, turned[0]) ? turned[0] : sum_over(&a, turned[0], q->sampled);
 }
 
@@ -265,6 +276,19 @@ static int has_many_turns(const struct Quantified *q, uint64_t turns) {
   uint64_t members = 0;
   for (uint32_t k = 0; k < q->reads.n; k++) members += entity_size(q->reads.at[k].e);
   return turns > MANY * members;
+}
+
+/* Says that a long sum is written out, and why. */
+static void note_written_out(const Eval *ev, const struct Quantified *q, uint64_t turns) {
+  enum { TERM_KB = 4, LIMIT_MB = 2048 }; /* of a short term: potential of a pair, in a plane */
+  Builder *b = ev->b;
+  const char *sum = ast_short(b, q->outer), *why = q->why ? q->why : "its terms have no common form";
+  uint64_t mb = turns * TERM_KB / 1024;
+  diag_note(b->diags, ast_expr(b->ast, q->where ? q->where : q->outer)->span,
+            "`%s` is written out, %llu terms, some %llu MB%s: %s", sum, (unsigned long long)turns,
+            (unsigned long long)mb, mb > LIMIT_MB ? ", more than lagc takes" : "", why);
+  diag_help(b->diags, "a sum whose terms read families at indices such as `i`, `j`, `i+1` stays a sum, whatever N is: "
+                      "`lagc help families`");
 }
 
 int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
@@ -288,7 +312,13 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   int read = quantified_text(ev, q);
   uint64_t turns = 0;
   for (uint32_t row = 0; row < q->range.rows; row++) turns += (uint64_t)loop_turns(&q->range, row);
-  if (turns < b->sums_from || !read || !find_pairs(q, b->arena)) return 0;
+  uint64_t guessed = !read && q->inner ? (uint64_t)q->range.rows * q->range.rows / 2 : 0; /* unknown range inside */
+  if ((turns > guessed ? turns : guessed) < b->sums_from) return 0;
+  if (!read || !find_pairs(q, b->arena)) {
+    note_written_out(ev, q, turns);
+    return 0;
+  }
+  q->turns = turns;
   q->sampled = has_many_turns(q, turns);
   for (int k = 0; k < COMPONENTS; k++) q->inside[k] = expr_declare(b->g, SYM_LOCAL, 0, x->name, SIGN_UNKNOWN);
   ev->sums = q;
@@ -339,6 +369,7 @@ int quantified_next(Eval *ev, Value *v) {
     ev->sums = q;
   } else {
     ev->written_out = q->outer;
+    note_written_out(ev, q, q->turns);
   }
   ev->terms.n = l->base;
   l->at = ev->index.at[ev->index.n - 1].at = q->lo;

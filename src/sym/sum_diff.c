@@ -1,5 +1,5 @@
-/* Derivatives of quantified sums. The partial derivatives of a sum by its arguments are the cells of one nest; those of
- * a cell k of such a nest by argument l are the cell k*nargs + l of the next, as both subscripts are affine in the turn.
+/* Derivatives of quantified sums. The partial derivatives of a sum by its arguments are the cells of one nest; that of
+ * cell k of such a nest by argument l is the cell k*nargs + l of the next, as both subscripts are affine in the turn.
  * What few turns add to stands as an expression instead. */
 #include "sym/sum_diff.h"
 

@@ -20,5 +20,5 @@ typedef struct {
 /* Partial derivatives of a cell by those arguments of its nest that a map has, where they are not 0 everywhere. */
 SumPartials expr_sum_partials(ExprGraph *g, Expr cell, const ExprMap *live);
 
-/* The nest of the directional derivatives of the sums of a nest: rate[argument], absent where it is 0. 0: all vanish. */
+/* The nest of directional derivatives of the sums of a nest. rate[argument]: absent where it is 0. 0: all vanish. */
 Expr expr_sum_rates(ExprGraph *g, Expr nest, const ExprMap *rate);

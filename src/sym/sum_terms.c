@@ -51,8 +51,9 @@ static Expr read_symbol(const Reader *r, const NestRead *read, const Turn *at) {
   const char *first = affine_text(r, read->index[0], at);
   if (!*read->stem) return expr_named_symbol(r->g, first);
   const char *second = read->nindices == 2 ? affine_text(r, read->index[1], at) : "";
-  return expr_named_symbol(r->g, arena_printf(r->g->arena, "%s[%s%s%s]%s", read->stem, first, *second ? "," : "", second,
-                                         read->tail));
+  const char *comma = *second ? "," : "";
+  const char *text = arena_printf(r->g->arena, "%s[%s%s%s]%s", read->stem, first, comma, second, read->tail);
+  return expr_named_symbol(r->g, text);
 }
 
 static void add_term(Reader *r, const NestShare *x, const Turn *at, Subscript from, Subscript to, uint32_t rows[2]) {
