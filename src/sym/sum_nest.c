@@ -164,7 +164,7 @@ void expr_expand_sums(ExprGraph *g, const Expr *roots, uint32_t n, Expr *out) {
 }
 
 int expr_open_sums(ExprGraph *g, Expr *e) {
-  enum { MOST_TURNS = 50000 };
+  enum { MOST_TURNS = 8000 };
   uint64_t turns = 0;
   ExprList l = g->nests.n ? expr_topo_to_sums(g, e, 1) : (ExprList){0};
   for (uint32_t k = 0; k < l.n; k++)
