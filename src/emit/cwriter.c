@@ -570,7 +570,7 @@ static unsigned arrays_by_index(const CStyle *style) {
 static int stores_apart(const Prog *p, const CStyle *style) {
   if (style->apart) return 1;
   for (int k = 0; k < ARR_COUNT; k++) {
-    if (k == ARR_CELL || k == ARR_OUTER || !prog_reads(p, (IrArray)k)) continue; /* local */
+    if (k == ARR_CELL || k == ARR_OUTER || k == ARR_INDEX || !prog_reads(p, (IrArray)k)) continue; /* local */
     for (uint32_t s = 0; s < p->stores.n; s++)
       if (strcmp(style->in[k], style->out[p->stores.at[s].array]) == 0) return 0;
   }

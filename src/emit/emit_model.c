@@ -172,12 +172,13 @@ static void emit_strike(const ModelFile *f) {
 static void emit_events(const ModelFile *f) {
   static const char *const written[] = {"q1", "v1", "z1", NULL};
   const ProgramSet *u = f->u;
-  if (!u->events.n) return;
+  const char *const *id = u->events.n ? cnames_of_events(u) : NULL;
+  if (!id) return;
   state_function(f, u->event_values, "events", "An event happens where its function changes sign.", NULL, one_out);
   emit_strike(f);
   for (uint32_t i = 0; i < u->events.n; i++)
     if (!program_set_striking_contact(u, i))
-      state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", cname_of_event(u, i)),
+      state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", id[i]),
                      arena_printf(f->a, "What the event %s does.", u->events.at[i].name), NULL, written);
   sb_puts(
       f->out,
@@ -191,7 +192,7 @@ static void emit_events(const ModelFile *f) {
                 c->input);
     else
       sb_printf(f->out, "    case %u:%s return act_%s(self, t, q, v, z, p, u, q1, v1, z1, w);\n", i,
-                u->events.at[i].stop ? " *stop = 1;" : "", cname_of_event(u, i));
+                u->events.at[i].stop ? " *stop = 1;" : "", id[i]);
   }
   sb_puts(f->out, "    default: (void)self; (void)stop; return LAG_OK;\n  }\n}\n");
 }

@@ -156,7 +156,7 @@ static void inputs(const Header *h) {
 /* --- events --- */
 
 static const char *header_action(const Header *h, uint32_t i) {
-  return arena_printf(h->a, "%s_act_%s", h->lower, cname_of_event(h->u, i));
+  return arena_printf(h->a, "%s_act_%s", h->lower, h->event_ids[i]);
 }
 
 static void action(const Header *h, uint32_t i) {
