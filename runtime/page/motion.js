@@ -95,14 +95,19 @@ class Motion {
     this.lag.f.lag_sim_outputs(this.sim, this.room);
     return Array.from(new Float64Array(this.lag.f.memory.buffer, this.room, this.count));
   }
+  // Names and units of the state's components, and their present values.
+  get components() { return this.named ||= this.names("page_state"); }
+  get values() { return this.components.map((_, i) => this.lag.f.lag_sim_state_value(this.sim, i)); }
   // {name: value} of the present state, as a start of another motion takes it.
   get state() {
-    const now = {};
-    this.names("page_state").forEach(({name}, i) => { now[name] = this.lag.f.lag_sim_state_value(this.sim, i); });
+    const now = {}, values = this.values;
+    this.components.forEach(({name}, i) => { now[name] = values[i]; });
     return now;
   }
+  // Charge k: 0 is the energy. name: [name, unit], null past the last.
+  charge_name(k) { const of = this.lag.text(this.lag.f.page_charge_name(this.sim, k)); return of && of.split("\t"); }
   charge(k) { const f = what => this.lag.f.page_charge(this.sim, k, what); return {now: f(0), drift: f(1), absolute: f(2), work: f(3)}; }
-  get cost() { return {steps: this.lag.f.page_count(this.sim, 0), calls: this.lag.f.page_count(this.sim, 1)}; }
+  get cost() { return {steps: this.lag.f.page_count(this.sim, 0), calls: this.lag.f.page_count(this.sim, 1), constraint: this.lag.f.page_count(this.sim, 3)}; }
   free() {
     this.lag.f.page_end(this.sim);
     this.lag.f.free(this.room);

@@ -71,6 +71,15 @@ double page_charge(lag_sim *sim, int k, int what) {
   return what >= 0 && what < (int)(sizeof of / sizeof *of) ? of[what] : NAN;
 }
 
+/* Name and SI unit of charge k, a tab between them; NULL past the last. */
+const char *page_charge_name(lag_sim *sim, int k) {
+  lag_charge_stats c = {.name = "", .unit = ""};
+  if (k < 0 || k >= lag_sim_ncharges(sim)) return NULL;
+  lag_sim_charge(sim, k, &c);
+  snprintf(text, sizeof text, "%s\t%s", c.name ? c.name : "", c.unit ? c.unit : "");
+  return text;
+}
+
 /* 0: steps, 1: right-hand sides, 2: events, 3: the largest residual of a constraint [SI]. */
 double page_count(lag_sim *sim, int what) {
   lag_stats s = {0};
