@@ -1,6 +1,5 @@
 // The live page: controls, clocks and plots around motion.js. Enters: model, parts and packed of live.html; leaves: the page.
 const $ = id => document.getElementById(id);
-const bytesOf = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
 const clamp = (x, lo, hi) => Math.min(hi, Math.max(lo, x));
 const short = x => Number.isFinite(x) ? String(+x.toPrecision(4)) : "?";
 const colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7f00", "#888888"];
@@ -505,7 +504,7 @@ function view(dx, dy, shift) {
 
 // ---- the page
 async function unpack(text) {
-  const bytes = bytesOf(text);
+  const bytes = bytes_of(text);
   if (bytes[0] != 0x1f || bytes[1] != 0x8b) return bytes; // lagc without zlib
   return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer());
 }
@@ -575,7 +574,7 @@ async function main() {
   if (query.get("controls") == "0") document.body.classList.add("plain");
   $("source").textContent = model.source;
   named_play();
-  bytes = await unpack(parts);
+  bytes = copied(await unpack(parts));
   more = JSON.parse(new TextDecoder().decode(bytes.subarray(model.more[0], model.more[0] + model.more[1])));
   if (typeof WebAssembly == "undefined") return show_recording(more.recording);
   wasm = await WebAssembly.compile(await unpack(packed));

@@ -1,6 +1,35 @@
 "use strict";
 // Motions computed in the page: liblag as WebAssembly, and one program of `lagc`. Used by live.html, and by tests in node.
 
+// Bytes of a text of `lagc page`: two of 91 characters for 13 bits, the low ones first; one at the end for 6.
+function bytes_of(text) {
+  const value = new Uint8Array(128), bytes = new Uint8Array((text.length*13 >> 4) + 1);
+  for (let c = 33, k = 0; c < 127; c++) if (!'"<\\'.includes(String.fromCharCode(c))) value[c] = k++;
+  let bits = 0, have = 0, n = 0;
+  for (let i = 0; i < text.length; i += 2) {
+    const pair = i + 1 < text.length, first = value[text.charCodeAt(i)];
+    bits |= (pair ? first*91 + value[text.charCodeAt(i + 1)] : first) << have;
+    for (have += pair ? 13 : 6; have >= 8; have -= 8, bits >>>= 8) bytes[n++] = bits & 255;
+  }
+  return bytes.subarray(0, n);
+}
+// The bytes that records of literals and copies give (src/base/far_copies.h).
+function copied(records) {
+  const view = new DataView(records.buffer, records.byteOffset, records.length);
+  let total = 0;
+  for (let i = 0; i < records.length;) { const n = view.getUint32(i, true); i += n + 4; total += n + view.getUint32(i + 4, true); i += 8; }
+  const bytes = new Uint8Array(total);
+  for (let i = 0, at = 0; i < records.length;) {
+    const n = view.getUint32(i, true);
+    bytes.set(records.subarray(i + 4, i + 4 + n), at);
+    i += n + 4; at += n;
+    const from = view.getUint32(i, true), m = view.getUint32(i + 4, true);
+    for (let k = 0; k < m; k++) bytes[at + k] = bytes[from + k];
+    i += 8; at += m;
+  }
+  return bytes;
+}
+
 // An instance of the module with a program. Memory may grow with each call, so that views are made where they are used.
 class Lag {
   constructor(module) {
@@ -114,4 +143,4 @@ class Motion {
     this.sim = 0;
   }
 }
-if (typeof module != "undefined") module.exports = {Lag, Motion};
+if (typeof module != "undefined") module.exports = {Lag, Motion, bytes_of, copied};

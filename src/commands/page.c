@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/far_copies.h"
 #include "commands/effect_study.h"
 #include "commands/live_page.h" /* generated from runtime/page */
 #include "commands/simulator.h"
@@ -21,14 +22,25 @@ static const char need[] =
     "`lagc page` needs %s, liblag as WebAssembly: run `make page` where lagc is built, with Clang "
     "for it (apt-get install clang lld wasi-libc libclang-rt-14-dev-wasm32)";
 
-/* Appends bytes in base 64 (RFC 4648, 4). */
-static void put_base64(StrBuf *out, const char *bytes, size_t n) {
-  static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  for (size_t i = 0; i < n; i += 3) {
-    uint32_t x = 0;
-    for (size_t k = 0; k < 3; k++) x = x << 8 | (i + k < n ? (unsigned char)bytes[i + k] : 0u);
-    for (size_t k = 0; k < 4; k++) sb_putc(out, i + k > n ? '=' : digit[x >> (18 - 6 * k) & 63]);
+/* Appends bytes as text: 13 bits, the low ones first, as two of the 91 printable characters without " < and \;
+ * up to 6 bits at the end as one. */
+static void put_text91(StrBuf *out, const char *bytes, size_t n) {
+  enum { BITS = 13, BASE = 91 };
+  char digit[BASE];
+  uint32_t bits = 0, have = 0;
+  for (int c = '!', k = 0; c <= '~'; c++)
+    if (c != '"' && c != '<' && c != '\\') digit[k++] = (char)c;
+  for (size_t i = 0; i < n; i++) {
+    bits |= (uint32_t)(unsigned char)bytes[i] << have;
+    have += 8;
+    if (have < BITS) continue;
+    uint32_t x = bits & ((1u << BITS) - 1);
+    sb_putc(out, digit[x / BASE]);
+    sb_putc(out, digit[x % BASE]);
+    bits >>= BITS, have -= BITS;
   }
+  if (have > 6) sb_putc(out, digit[bits / BASE]);
+  if (have) sb_putc(out, digit[bits % BASE]);
 }
 
 /* Appends a text as JSON that may stand in a script: without `<`, nothing in it is markup. */
@@ -98,11 +110,12 @@ static int put_scene(Compiler *c, const char *scene, PageData *d) {
   return 1;
 }
 
-/* A recording of the scene, for browsers without WebAssembly: what `lagc animate` embeds, 150 rows. */
+/* A recording of the scene, for browsers without WebAssembly: what `lagc animate` embeds. */
 typedef struct {
   Compiler *c;
   const Scene *scene;
   const char *to;
+  int rows;
 } Recording;
 
 static int record(void *data) {
@@ -110,26 +123,32 @@ static int record(void *data) {
   Arena *a = r->c->arena;
   char *said, *argv[] = {arena_strdup(a, "lagc"), arena_strdup(a, "animate"), arena_strdup(a, r->c->o.file),
                          arena_strdup(a, r->scene->name), arena_strdup(a, "--quiet"), arena_strdup(a, "--every"),
-                         arena_printf(a, "%.9g", (r->scene->t1 - r->scene->t0) / 150), arena_strdup(a, "-o"),
+                         arena_printf(a, "%.9g", (r->scene->t1 - r->scene->t0) / r->rows), arena_strdup(a, "-o"),
                          arena_strdup(a, r->to), NULL};
   const char *self = arena_printf(a, "%s/%s", toolchain_own_folder(a, r->c->argv0), file_name(r->c->argv0));
   return process_run(a, self, argv, &said);
 }
 
-/* Appends the recording, or null: a run that takes longer than a second, or a megabyte, has none. */
-static void put_recording(Compiler *c, const Scene *scene, StrBuf *out) {
-  enum { LONGEST = 300000 };
-  const char *to = arena_printf(c->arena, "%s.recording.html", c->o.output), *why;
-  Recording r = {c, scene, to};
+/* Appends a recording of so many rows. 0: it takes longer than a second, or is longer than a page should hold. */
+static int put_rows(Compiler *c, const Scene *scene, int rows, StrBuf *out) {
+  enum { LONGEST = 60000 };
+  static const char begin[] = "\nconst run =\n";
+  const char *to = arena_printf(c->arena, "%s.recording.html", c->o.output), *why, *from = NULL, *end = NULL;
+  Recording r = {c, scene, to, rows};
   StrBuf page = strbuf(c->arena);
-  long process = scene->has_span && strcmp(c->o.file, "-") != 0 ? process_begin(record, &r) : -1;
-  const char *from = NULL, *end = NULL;
+  long process = process_begin(record, &r);
   if (process > 0 && process_end(process, 1) == STATUS_OK && file_append(to, &page, &why))
-    from = strstr(sb_text(&page), "\nconst run =\n");
-  if (from) end = strstr(from += strlen("\nconst run =\n"), "\n;\n");
-  if (end && end - from < LONGEST) sb_putn(out, from, (size_t)(end - from));
-  else sb_puts(out, "null");
+    from = strstr(sb_text(&page), begin);
   remove(to);
+  if (from) end = strstr(from += strlen(begin), "\n;\n");
+  if (!end || end - from > LONGEST) return 0;
+  sb_putn(out, from, (size_t)(end - from));
+  return 1;
+}
+
+static void put_recording(Compiler *c, const Scene *scene, StrBuf *out) {
+  int can = scene->has_span && strcmp(c->o.file, "-") != 0;
+  if (!can || (!put_rows(c, scene, 150, out) && !put_rows(c, scene, 40, out))) sb_puts(out, "null");
 }
 
 /* The JSON that live.js calls `model`; its member "more" is the place of a JSON text among the bytes. */
@@ -180,7 +199,7 @@ static void put_page(StrBuf *out, const char *title, const PageData *d, const St
       if (!mark) continue;
       sb_putn(out, line, (size_t)(mark - line));
       if (marks[k].text) sb_putn(out, sb_text(marks[k].text), marks[k].text->n);
-      else put_base64(out, marks[k].bytes->at, marks[k].bytes->n);
+      else put_text91(out, marks[k].bytes->at, marks[k].bytes->n);
       line = mark + strlen(marks[k].mark);
     }
     sb_puts(out, line);
@@ -191,7 +210,7 @@ int command_page(Compiler *c) {
   Toolchain tools;
   const char *error = NULL, *why;
   Arena *a = c->arena;
-  StrBuf module = strbuf(a), page = strbuf(a), packed = strbuf(a);
+  StrBuf module = strbuf(a), page = strbuf(a), copies = strbuf(a), packed = strbuf(a);
   PageData d = {.model = strbuf(a), .bytes = strbuf(a), .letters = strbuf(a)};
   if (!c->o.output) return usage_error("`lagc page` needs -o FILE.html");
   if (!toolchain_find(a, c->argv0, 0, &tools, &error)) return usage_error(error);
@@ -199,7 +218,8 @@ int command_page(Compiler *c) {
   if (!file_append(path, &module, &why)) return usage_error(arena_printf(a, need, path));
   if (compiler_is_source(c, c->o.output)) return STATUS_USAGE;
   if (!put_model(c, &d)) return STATUS_MODEL;
-  gzip_append(&d.bytes, &packed);
+  far_copies_append(&d.bytes, &copies);
+  gzip_append(&copies, &packed);
   const Model *m = d.shown->m;
   put_page(&page, m->doc ? m->doc : m->name, &d, &packed, &module);
   return compiler_write(c, c->o.output, &page);
