@@ -30,4 +30,9 @@ $(BUILD)/obj/src/commands/page.o: $(BUILD)/gen/commands/live_page.h
 
 page: all $(BUILD)/lag.wasm.gz
 
+# The gallery as live pages: build/site/index.html.
+site: page
+	.ci/site $(BUILD)/lagc $(BUILD)/site
+.PHONY: site
+
 -include $(WASM_OBJ:.o=.d)
