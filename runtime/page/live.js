@@ -124,8 +124,8 @@ function find_columns(probe) {
   probe.components.forEach((c, i) => { if (!many && !known.has(c.name)) columns.push({...c, of: () => motion.now[i]}); });
   for (let k = 0, found; k < 12 && (found = probe.charge_name(k)); k++)
     if (!known.has(found[0])) {
-      columns.push({name: found[0], unit: found[1], of: () => motion.charge(k).now});
-      columns.push({name: word("drift") + " " + found[0], unit: "", of: () => motion.charge(k).drift});
+      columns.push({name: found[0], unit: found[1], of: () => lag.f.page_charge(motion.sim, k, 0)});
+      columns.push({name: word("drift") + " " + found[0], unit: "", of: () => lag.f.page_charge(motion.sim, k, 1)});
     }
   columns.push({name: word("distance"), unit: "", of: () => twin ? Math.hypot(...motion.now.map((x, i) => x - twin.now[i])) : NaN});
 }
@@ -320,14 +320,18 @@ function numbers() {
     return row;
   }));
 }
-let told = 0;
+let told = 0, plotted = 0;
+// The picture each frame; while it plays, plots ten times a second, words five times.
 function draw() {
+  const now = performance.now();
   if (!motion || !track.length) return;
+  if (machine) machine.horizon = horizon;
   if (picture) picture.draw(track);
+  if (playing && now - plotted < 95) return;
+  plotted = now;
   plots();
   $("time").value = "t = " + motion.t.toFixed(Math.abs(span.t1 - span.t0) < 1 ? 4 : 2) + " s";
-  const now = performance.now();
-  if (playing && now - told < 200) return; // words are read, not watched
+  if (playing && now - told < 195) return;
   told = now;
   report();
   numbers();
