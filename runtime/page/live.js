@@ -120,8 +120,8 @@ function find_columns(probe) {
   names.outputs = outputs;
   names.state = probe.components.map(n => n.name);
   columns = outputs.map((o, i) => ({...o, of: () => motion.row[i]}));
-  const known = new Set(outputs.map(o => o.name)), many = names.state.length > 200;
-  probe.components.forEach((c, i) => { if (!many && !known.has(c.name)) columns.push({...c, of: () => motion.now[i]}); });
+  const known = new Set(outputs.map(o => o.name)), half = names.state.length >> 1;
+  probe.components.forEach((c, i) => { if (i % half < 60 && !known.has(c.name)) columns.push({...c, of: () => motion.now[i]}); });
   for (let k = 0, found; k < 12 && (found = probe.charge_name(k)); k++)
     if (!known.has(found[0])) {
       columns.push({name: found[0], unit: found[1], of: () => lag.f.page_charge(motion.sim, k, 0)});
@@ -229,7 +229,7 @@ function cross(k, a, b, dir) {
   const turn = columns[k].unit == "rad" ? 2*Math.PI : columns[k].unit == "deg" ? 360 : 0, [from, to] = dir > 0 ? [a, b] : [b, a];
   const f = turn ? turn*Math.ceil((from.y[k] + 1e-300)/turn) : 0, [p, q] = [from.y[k] - f, to.y[k] - f];
   if (!(p < 0 && q >= 0)) return;
-  const s = p/(p - q), at = c => from.y[c] + s*(to.y[c] - from.y[c]);
+  const s = p/(p - q), within = (x, c) => columns[c].unit == "rad" ? x - 2*Math.PI*Math.round(x/2/Math.PI) : x, at = c => within(from.y[c] + s*(to.y[c] - from.y[c]), c);
   section.x.push(at(+$("px").value)); section.y.push(at(+$("py").value));
   if (section.x.length > 20000) { section.x.splice(0, 5000); section.y.splice(0, 5000); }
 }

@@ -29,6 +29,7 @@ function typeset(latex) {
     const t = token[k++];
     if (t === undefined) return "";
     if (t == "{") { k--; return group(); }
+    if (t == "(") { const all = list(")"); k++; return '<mrow><mo stretchy="false">(</mo>' + all.join("") + '<mo stretchy="false">)</mo></mrow>'; }
     if (/^[0-9]/.test(t)) return "<mn>" + t + "</mn>";
     if (t[0] != "\\") return /^\p{L}$/u.test(t) ? "<mi>" + t + "</mi>" : "<mo" + ("()[]|".includes(t) ? ' stretchy="false"' : "") + ">" + plain(t == "-" ? "−" : t == "'" ? "′" : t) + "</mo>";
     const name = t.slice(1);
