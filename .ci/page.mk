@@ -18,12 +18,12 @@ $(BUILD)/lag.wasm.gz: $(BUILD)/lag.wasm
 
 
 # The page of `lagc page`: a frame with the scripts in it.
-LIVE := $(addprefix runtime/page/,live.html motion.js words.js typeset.js plots.js live.js)
+LIVE := $(addprefix runtime/page/,live.html motion.js words.js typeset.js plots.js drag.js live.js)
 $(BUILD)/gen/page/live_page.txt: $(LIVE) runtime/io/page.html
 	@mkdir -p $(@D)
 	sed -n '/^\/\/ ---- drawing/,/^\/\/ ---- marks/p' runtime/io/page.html >$(@D)/drawing.js
 	sed -n '/^\/\/ ---- numbers/,/^\/\/ ---- drawing/p' runtime/io/page.html >$(@D)/numbers.js
-	sed -e '/@DRAWING@/{r $(@D)/drawing.js' -e 'd}' $(@D)/numbers.js runtime/page/words.js runtime/page/typeset.js runtime/page/plots.js runtime/page/live.js >$(@D)/live.js
+	sed -e '/@DRAWING@/{r $(@D)/drawing.js' -e 'd}' $(@D)/numbers.js runtime/page/words.js runtime/page/typeset.js runtime/page/plots.js runtime/page/drag.js runtime/page/live.js >$(@D)/live.js
 	sed -e '/@MOTION@/{r runtime/page/motion.js' -e 'd}' -e '/@LIVE@/{r $(@D)/live.js' -e 'd}' runtime/page/live.html | sed 's/^  *//; /^\/\/ /d' >$@
 $(eval $(call as_text,commands/live_page.h,$(BUILD)/gen/page/live_page.txt))
 $(BUILD)/obj/src/commands/page.o: $(BUILD)/gen/commands/live_page.h

@@ -20,9 +20,10 @@ function tell(text) { $("status").textContent = text; }
 const wrong = e => e instanceof WebAssembly.RuntimeError ? "the program is damaged (" + e.message + ")" : e.message;
 
 // ---- motions
-const takesSteps = () => !!lag.word(settings.method, at => lag.f.page_takes_steps(at));
+const own_method = () => lag.text(lag.f.lag_scene_method(scene)) || "";
+const takesSteps = () => !!lag.word(settings.method || own_method(), at => lag.f.page_takes_steps(at));
 function options(values, t, finer = 1) {
-  const steps = settings.method && takesSteps(), fine = settings.fine/finer;
+  const steps = takesSteps(), fine = settings.fine/finer;
   return {method: settings.method, tol: steps ? 0 : Math.max(fine, 1e-15), step: steps ? fine : 0, until: span.t1, t, values: {...settings.values, ...values}};
 }
 function end_beside() {
@@ -34,7 +35,7 @@ function begin_beside() {
   end_beside();
   const now = state(), first = Object.keys(now)[0];
   if ($("twin").checked && first) twin = new Motion(lag, scene, options({...now, [first]: now[first] + 1e-9*(Math.abs(now[first]) || 1)}, motion.t));
-  if ($("estimate").checked) finer = new Motion(lag, scene, options(now, motion.t, takesSteps() && settings.method ? 4 : 100));
+  if ($("estimate").checked) finer = new Motion(lag, scene, options(now, motion.t, takesSteps() ? 4 : 100));
   for (const other of [twin, finer]) if (other) { other.advance(other.t); other.direction = motion.direction; }
 }
 // A new motion from `values`, at time t; the old one stays where that is refused.
@@ -167,15 +168,17 @@ function starts() {
 }
 function methods() {
   const kept = settings.method;
-  fill("method", [[word("automatic"), ""], ...lag.methods(scene).map(m => [m, m])], "");
+  fill("method", [[own_method() || word("automatic"), ""], ...lag.methods(scene).map(m => [m, m])], "");
   $("method").value = kept;
   settings.method = $("method").value;
   fine();
 }
-// The slider of accuracy: a tolerance 1e-3 to 1e-14, or a step of 1/50 to 1/50000 of the span.
+// The slider of accuracy: a tolerance 1e-3 to 1e-14, or a step of 1/50 to 1/50000 of the span; at first the scene's own.
 function fine() {
-  const steps = settings.method && takesSteps(), x = +$("fine").value/100;
-  settings.fine = steps ? Math.abs(span.t1 - span.t0)/50*10**(-3*x) : 10**(-3 - 11*x);
+  const steps = takesSteps(), most = Math.abs(span.t1 - span.t0)/50, x = +$("fine").value/100;
+  const own = settings.method || settings.moved ? 0 : steps ? lag.f.page_step(scene) : lag.f.page_tolerance(scene);
+  settings.fine = own > 0 ? own : steps ? most*10**(-3*x) : 10**(-3 - 11*x);
+  if (own > 0) $("fine").value = 100*(steps ? Math.log10(most/own)/3 : (-3 - Math.log10(own))/11);
   $("finename").textContent = word(steps ? "stepsize" : "tolerance");
   $("finevalue").value = short(settings.fine) + (steps ? " s" : "");
   $("fine").setAttribute("aria-valuetext", $("finevalue").value);
@@ -302,7 +305,7 @@ function plots() {
 function report() {
   const e = motion.charge(0), named = motion.charge_name(0), cost = motion.cost, lines = [];
   if (Number.isFinite(e.now)) lines.push(word("energy") + " " + short(e.now) + (named && named[1] ? " " + named[1] : "") + ", " + word("drift") + " " + (Number.isFinite(e.drift) ? e.drift.toExponential(1) : "?"));
-  lines.push((settings.method ? "" : word("chosen")) + motion.method + ", " + cost.steps + " " + word("steps") + ", " + cost.calls + " " + word("calls") +
+  lines.push((settings.method || own_method() ? "" : word("chosen")) + motion.method + ", " + cost.steps + " " + word("steps") + ", " + cost.calls + " " + word("calls") +
     (passed ? ", " + short(spent/passed) + " " + word("cost") : ""));
   if (horizon !== null) lines.push(word("lost") + " " + short(horizon) + " s");
   else if (finer) lines.push(word("error") + " " + (error < 1e-16 ? "1e-16" : error.toExponential(0)));
@@ -339,7 +342,7 @@ function draw() {
 
 // ---- sharing: the state of the controls is the address's fragment
 function share() {
-  const said = {scene: $("scene").value, effects: wanted(), method: settings.method, fine: +$("fine").value, values: settings.values, start: settings.start, lang: language};
+  const said = {scene: $("scene").value, effects: wanted(), method: settings.method, fine: settings.moved ? +$("fine").value : undefined, values: settings.values, start: settings.start, lang: language};
   try { history.replaceState(null, "", "#" + encodeURIComponent(JSON.stringify(said))); } catch { /* a frame without an address */ }
 }
 function shared() {
@@ -410,102 +413,6 @@ function look() {
   if (eye) Object.assign(picture.eye, eye);
 }
 
-// ---- dragging: the coordinates that bring the body nearest to the pointer with the least change, at rest. project: a place to two lengths of the
-// screen. Least squares after Levenberg and Marquardt; where no coordinate moves the body towards the pointer, as with rods in one line, they
-// are first bent a little.
-function dragged(body, project, to) {
-  const free = names.state.filter(n => !n.includes("'") && names.state.includes(n + "'")), start = state(), began = performance.now();
-  for (const n of free) start[n + "'"] = 0;
-  const at = values => {
-    const m = new Motion(lag, scene, {...options(values, motion.t), method: motion.method});
-    try { m.advance(m.t); const x = m.outputs, p = project(body.a.map(c => c < 0 ? 0 : x[c])); return {r: [to[0] - p[0], to[1] - p[1]], state: m.state}; } finally { m.free(); }
-  };
-  const far = x => Math.hypot(...x.r);
-  let here = at(start), best = here, damping = 1e-6, bent = 0;
-  const near = 1e-5*(Math.hypot(...to) + far(here)) + 1e-300, keep = s => Object.fromEntries(Object.entries(s).filter(([n]) => names.state.includes(n)));
-  for (let turn = 0; turn < 16 && far(here) > near && performance.now() - began < 60; turn++) {
-    const base = keep(here.state), J = free.map(n => {
-      const h = 1e-6*(Math.abs(base[n]) || 1), r = at({...base, [n]: base[n] + h}).r;
-      return [(here.r[0] - r[0])/h, (here.r[1] - r[1])/h];
-    });
-    let a = 0, b = 0, d = 0, done = false;
-    for (const [x, y] of J) { a += x*x; b += x*y; d += y*y; }
-    for (let k = 0; k < 4 && !done; k++) {
-      const soft = damping*(a + d) + 1e-300, det = (a + soft)*(d + soft) - b*b, u = ((d + soft)*here.r[0] - b*here.r[1])/det, v = ((a + soft)*here.r[1] - b*here.r[0])/det;
-      const next = {...base};
-      free.forEach((n, i) => { next[n] += J[i][0]*u + J[i][1]*v; });
-      const there = at(next);
-      done = far(there) < (1 - 1e-9)*far(here);
-      if (done) { here = there; damping = Math.max(1e-9, damping/10); } else damping = Math.min(1, 30*damping);
-    }
-    if (far(here) < far(best)) best = here;
-    if (done) continue;
-    if (bent++) break;
-    const next = {...base}; // at a place where the body cannot move that way at first
-    free.forEach((n, i) => { next[n] += (i % 2 ? -0.05 : 0.05)*(Math.abs(base[n]) > 1 ? Math.abs(base[n]) : 1); });
-    here = at(next);
-    damping = 1e-6;
-  }
-  return keep((far(here) < far(best) ? here : best).state);
-}
-function pointers() {
-  const canvas = $("picture"), spot = e => { const r = canvas.getBoundingClientRect(); return [e.clientX - r.left, e.clientY - r.top]; };
-  const fingers = new Map();
-  let held = null, project, target, from = null, resumes = false, asked = null;
-  canvas.onpointerdown = e => {
-    if (e.isTrusted) canvas.setPointerCapture(e.pointerId);
-    fingers.set(e.pointerId, from = spot(e));
-    if (!picture || !lag || fingers.size > 1) return;
-    const far = b => { const [x, y] = picture.toCanvas(picture.place(b.a)); return Math.hypot(x - from[0], y - from[1]); };
-    held = picture.bodies.filter(b => b.a.some(c => c >= 0)).sort((a, b) => far(a) - far(b)).find(b => far(b) < (e.pointerType == "touch" ? 40 : 25)) || null;
-    if (!held) return;
-    [project, target] = picture.screen(picture.place(held.a), from);
-    resumes = playing;
-    pause();
-  };
-  const move = () => {
-    const now = asked;
-    asked = null;
-    if (!held || !now) return;
-    try {
-      const t = motion.t, shown = $("said").textContent;
-      if (begin(dragged(held, project, target(now)), t)) { clear(); record(); draw(); } else if (!shown) tell($("said").textContent);
-    } catch (x) { say(wrong(x)); }
-  };
-  canvas.onpointermove = e => {
-    const was = fingers.get(e.pointerId);
-    if (!was || !picture) return;
-    const now = spot(e), other = [...fingers.keys()].find(k => k != e.pointerId);
-    if (held) { // once a frame
-      if (!e.isTrusted) { asked = now; move(); } else { if (!asked) requestAnimationFrame(move); asked = now; }
-    } else if (other !== undefined) {
-      const o = fingers.get(other), far = p => Math.hypot(p[0] - o[0], p[1] - o[1]) || 1;
-      picture.eye.zoom = clamp(picture.eye.zoom*far(now)/far(was), 0.1, 50);
-    } else view(now[0] - was[0], now[1] - was[1], e.shiftKey);
-    fingers.set(e.pointerId, now);
-    if (!held) draw();
-  };
-  canvas.onpointerup = canvas.onpointercancel = e => {
-    fingers.delete(e.pointerId);
-    if (held) { move(); settings.start = state(); starts(); share(); if (resumes) play(); }
-    held = null;
-  };
-  canvas.onwheel = e => { if (!picture) return; picture.eye.zoom = clamp(picture.eye.zoom*Math.exp(-e.deltaY/500), 0.1, 50); e.preventDefault(); draw(); };
-  canvas.onkeydown = e => {
-    const by = {ArrowLeft: [-15, 0], ArrowRight: [15, 0], ArrowUp: [0, -15], ArrowDown: [0, 15]}[e.key], zoom = {"+": 1.15, "-": 1/1.15}[e.key];
-    if (!picture || e.ctrlKey || e.altKey || e.metaKey || !(by || zoom)) return;
-    if (by) view(...by, e.shiftKey); else picture.eye.zoom = clamp(picture.eye.zoom*zoom, 0.1, 50);
-    e.preventDefault();
-    e.stopPropagation();
-    draw();
-  };
-}
-// Turns a picture in space, moves one in the plane.
-function view(dx, dy, shift) {
-  const eye = picture.eye;
-  if (picture.deep && !shift) { eye.turn -= dx/150; eye.rise = clamp(eye.rise + dy/150, -1.57, 1.57); } else { eye.x += dx; eye.y += dy; }
-}
-
 // ---- the page
 async function unpack(text) {
   const bytes = bytes_of(text);
@@ -516,9 +423,9 @@ function wire() {
   $("play").onclick = () => playing ? pause() : play();
   $("step").onclick = () => { pause(); pass(1/60); draw(); };
   $("reset").onclick = restart;
-  $("scene").onchange = () => { settings.values = {}; settings.start = {}; effects(); choose(); restart(); share(); };
+  $("scene").onchange = () => { settings.moved = false; settings.values = {}; settings.start = {}; effects(); choose(); restart(); share(); };
   $("method").onchange = () => { settings.method = $("method").value; fine(); go_on(); share(); };
-  $("fine").oninput = () => { fine(); go_on(); share(); };
+  $("fine").oninput = () => { settings.moved = true; fine(); go_on(); share(); };
   $("twin").onchange = $("estimate").onchange = () => { slow = 0; horizon = null; if (motion) { begin_beside(); draw(); } };
   for (const id of ["over", "px", "py", "section"]) $(id).onchange = () => { if (id != "over") section.x = [], section.y = []; draw(); };
   $("link").onclick = () => { share(); copy(location.href, "copied"); };
@@ -590,6 +497,7 @@ async function main() {
     settings.values = said.values || {};
     settings.start = said.start || {};
     settings.method = said.method || "";
+    settings.moved = said.fine !== undefined;
     $("fine").value = said.fine ?? 55;
     for (const box of document.querySelectorAll("#effects input")) box.checked = (said.effects || []).includes(box.value);
   }
