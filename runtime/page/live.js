@@ -15,7 +15,7 @@ const isOf = name => model.programs.filter(p => p.scene == name);
 const wanted = () => [...document.querySelectorAll("#effects input:checked")].map(e => e.value);
 const sameSet = (a, b) => a.length == b.length && a.every(x => b.includes(x));
 
-function say(text) { $("said").textContent = text; }
+function say(text, kind = "fault") { $("said").textContent = text; $("said").className = kind; }
 function tell(text) { $("status").textContent = text; }
 const wrong = e => e instanceof WebAssembly.RuntimeError ? "the program is damaged (" + e.message + ")" : e.message;
 
@@ -120,13 +120,13 @@ function find_columns(probe) {
   const outputs = probe.names("page_output").slice(0, probe.count - lag.f.page_drawn(scene));
   names.outputs = outputs;
   names.state = probe.components.map(n => n.name);
-  columns = outputs.map((o, i) => ({...o, of: () => motion.row[i]}));
+  columns = outputs.map((o, i) => ({...o, of: m => m.row[i]}));
   const known = new Set(outputs.map(o => o.name)), half = names.state.length >> 1;
-  probe.components.forEach((c, i) => { if (i % half < 60 && !known.has(c.name)) columns.push({...c, of: () => motion.now[i]}); });
+  probe.components.forEach((c, i) => { if (i % half < 60 && !known.has(c.name)) columns.push({...c, of: m => m.now[i]}); });
   for (let k = 0, found; k < 12 && (found = probe.charge_name(k)); k++)
     if (!known.has(found[0])) {
-      columns.push({name: found[0], unit: found[1], of: () => lag.f.page_charge(motion.sim, k, 0)});
-      columns.push({name: word("drift") + " " + found[0], unit: "", of: () => lag.f.page_charge(motion.sim, k, 1)});
+      columns.push({name: found[0], unit: found[1], of: m => lag.f.page_charge(m.sim, k, 0)});
+      columns.push({name: word("drift") + " " + found[0], unit: "", of: m => lag.f.page_charge(m.sim, k, 1)});
     }
   columns.push({name: word("distance"), unit: "", of: () => twin ? Math.hypot(...motion.now.map((x, i) => x - twin.now[i])) : NaN});
 }
@@ -211,16 +211,14 @@ function light(name) {
 }
 function equations() {
   if ($("listing").firstChild) return;
-  $("listing").innerHTML = more.latex ? typeset_listing(more.latex) : "";
+  $("listing").innerHTML = more.latex ? typeset_listing(more.latex, word("headings")) : "";
   if (!more.latex) $("listing").textContent = word("long");
 }
 
 // ---- the motion over time
 function record() {
-  motion.now = motion.values;
-  motion.row = motion.outputs;
-  if (twin) twin.now = twin.values;
-  const row = {t: motion.t, x: motion.row, y: columns.map((c, i) => i < names.outputs.length ? motion.row[i] : c.of())}, last = track.at(-1);
+  for (const m of [motion, twin]) if (m) { m.now = m.values; m.row = m.outputs; }
+  const row = {t: motion.t, x: motion.row, y: columns.map(c => c.of(motion)), twin: twin && columns.map(c => c.of(twin))}, last = track.at(-1);
   estimate();
   track.push(row);
   if (track.length > 4000) track.splice(0, 1000);
@@ -262,14 +260,19 @@ function pass(seconds) {
       const took = performance.now() - a;
       if (took > 8) piece = Math.max(Math.min(piece, step)/2, 1e-7*Math.abs(span.t1 - span.t0));
       else if (took < 3) piece = Math.min(2*piece, Math.abs(span.t1 - span.t0));
-      if (ended) { say(word("ended") + " " + short(motion.t) + " s. " + word("again")); pause(); }
+      if (ended) { say(word("ended") + " " + short(motion.t) + " s. " + word("again"), "note"); pause(); }
       done = ended || performance.now() - began > 25;
     }
-  } catch (e) { say(word("failed") + " " + short(motion.t) + " s: " + wrong(e) + ". " + word("again")); record(); pause(); }
+  } catch (e) {
+    const why = wrong(e);
+    say((/^at t = /.test(why) ? "" : word("failed") + " " + short(motion.t) + " s: ") + why + ". " + word("again"));
+    record();
+    pause();
+  }
   spent += performance.now() - began;
   passed += Math.abs(motion.t - from);
   slow = 0.9*slow + 0.1*(Math.abs(goal - motion.t) > 0.01*asked);
-  if (slow > 0.5 && finer) { $("estimate").checked = false; end_beside(); begin_beside(); horizon = null; tell(word("dear")); }
+  if (slow > 0.5 && finer) { $("estimate").checked = false; end_beside(); begin_beside(); horizon = null; say(word("dear"), "note"); }
 }
 function tick(now) {
   if (!playing) return;
@@ -299,7 +302,7 @@ const titled = i => columns[i] ? columns[i].name + (columns[i].unit ? " [" + col
 function plots() {
   const recent = track.slice(-1500), of = i => recent.map(r => r.y[i]), a = +$("over").value, px = +$("px").value, py = +$("py").value;
   if (!recent.length || !columns.length || document.body.classList.contains("plain")) return;
-  plot_series(recent.map(r => r.t), of(a), null, titled(a), horizon, motion.direction || 1);
+  plot_series(recent.map(r => r.t), of(a), twin && recent.map(r => r.twin ? r.twin[a] : NaN), titled(a), horizon, motion.direction || 1);
   plot_phase(of(px), of(py), titled(px), titled(py), +$("section").value >= 0 ? section : null);
 }
 function report() {
@@ -355,7 +358,7 @@ function save(name, type, text) {
   a.click();
 }
 async function copy(text, said) {
-  try { await navigator.clipboard.writeText(text); tell(word(said)); say(word(said)); } catch { say(text); }
+  try { await navigator.clipboard.writeText(text); say(word(said), "note"); } catch { say(text, "note"); }
 }
 // The picture on its background.
 function picture_url() {
@@ -436,7 +439,7 @@ function wire() {
   $("print").onclick = () => print();
   $("equations").ontoggle = equations;
   $("now").ontoggle = numbers;
-  $("language").onchange = () => { speak($("language").value); named_play(); if (lag) { controls(); methods(); draw(); starts(); share(); } };
+  $("language").onchange = () => { speak($("language").value); named_play(); $("listing").textContent = ""; if ($("equations").open) equations(); if (lag) { controls(); methods(); draw(); starts(); share(); } };
   addEventListener("beforeprint", () => { document.documentElement.classList.add("paper"); draw(); });
   addEventListener("afterprint", () => { document.documentElement.classList.remove("paper"); draw(); });
   document.onkeydown = e => {

@@ -67,10 +67,10 @@ function terms(all) {
   for (const x of all) /^<mo>[+−=<≤]<\/mo>$/.test(x) && rows.at(-1).length ? rows.push([x]) : rows.at(-1).push(x);
   return rows.map(r => "<math displaystyle=\"true\"><mrow>" + (/^<mo/.test(r[0]) ? r[0] + '<mspace width="0.25em"></mspace>' + r.slice(1).join("") : r.join("")) + "</mrow></math>").join(" ");
 }
-function typeset_listing(latex) {
+function typeset_listing(latex, headings = {}) { // headings: the compiler's and another language's
   const out = [];
   for (const [, title, body] of latex.matchAll(/^% (.*)\n\\begin\{align\*\}\n([^]*?)\\end\{align\*\}/gm)) {
-    out.push("<h3>" + plain(title) + "</h3>");
+    out.push("<h3>" + plain(headings[title] || title) + "</h3>");
     for (const line of body.split(/\\\\\s*\n|\n\s*\n/))
       if (line.trim()) out.push('<div class="equation">' + line.split(/(?<!\\)&/).map(side => terms(typeset(side))).join(" ") + "</div>");
   }

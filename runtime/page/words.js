@@ -11,6 +11,7 @@ const words = {
     framed: "an iframe is in the clipboard", dear: "the estimate of the error is off: it took too long", now: "at t =", playing: "plays", range: "back to the value before.",
     long: "The equations are too long for a page; `lagc derive` prints them.", section_points: "points of the section", distance: "distance of the twin",
     no_wasm: "This browser has no WebAssembly, with which the page computes; this is a recording.", no_record: "This browser has no WebAssembly, with which the page computes.",
+    headings: {},
     keys: "Space: play or pause. Right arrow: step. R or Home: reset. On the picture: arrow keys, + and -."},
   de: {scene: "Szene", effects: "Effekte", play: "Start", pause: "Pause", step: "Schritt", reset: "Zurück", speed: "Tempo", back: "rückwärts", trace: "Spur",
     twin: "Zwilling, um 1e-9 versetzt", estimate: "Fehler schätzen", over: "über der Zeit", phase: "Phase", against: "gegen", section: "Schnitt, wenn",
@@ -23,6 +24,9 @@ const words = {
     framed: "ein iframe ist in der Zwischenablage", dear: "die Schätzung des Fehlers ist aus: sie dauerte zu lange", now: "bei t =", playing: "läuft", range: "zurück zum Wert davor.",
     long: "Die Gleichungen sind zu lang für eine Seite; `lagc derive` druckt sie.", section_points: "Punkte des Schnitts", distance: "Abstand des Zwillings",
     no_wasm: "Dieser Browser hat kein WebAssembly, womit die Seite rechnet; dies ist eine Aufzeichnung.", no_record: "Dieser Browser hat kein WebAssembly, womit die Seite rechnet.",
+    headings: {Lagrangian: "Lagrangefunktion", momenta: "Impulse", "equations of motion": "Bewegungsgleichungen", energy: "Energie", where: "wobei", constraints: "Zwangsbedingungen",
+      "conditions of the constraints on accelerations": "Bedingungen der Zwänge an die Beschleunigungen", "constraints with a condition": "Zwänge mit einer Bedingung",
+      "Hamilton's equations": "Hamiltons Gleichungen", Hamiltonian: "Hamiltonfunktion", "charges of symmetries": "Erhaltungsgrößen der Symmetrien"},
     keys: "Leertaste: Start oder Pause. Pfeil rechts: Schritt. R oder Pos1: von vorn. Auf dem Bild: Pfeiltasten, + und -."},
 };
 let language = "en";
