@@ -54,15 +54,20 @@ static unsigned required_by_all(const Eqns *e) {
   return wants;
 }
 
-/* Flags of the methods that the simulator may choose when none is named: taylor for small tolerances, radau where
- * friction or flows may be stiff. None for long models, whose series and Jacobians take long to compile. */
-static unsigned required_by_choice(const Eqns *e, const Options *o) {
+/* Whether series and Jacobians take long to compile. */
+static int is_long(const Eqns *e) {
   enum { LONG = 40 };
+  return e->n + e->m->states.n > LONG;
+}
+
+/* Flags of the methods that the simulator may choose when none is named: taylor for small tolerances, radau where
+ * friction or flows may be stiff. None for long models. */
+static unsigned required_by_choice(const Eqns *e, const Options *o) {
   const double below_taylor = 1e-9; /* as in runtime/analysis/automatic_method.c */
   /* --accuracy tries several tolerances */
   double tol = o->accurate ? 0.1 * below_taylor : o->tol ? strtod(o->tol, NULL) : e->m->scene.tolerance;
   int runs = command_simulates(o->command) || o->command == CMD_BUILD;
-  if (!runs || (e->m->scene.method && !o->accurate) || o->method || e->n + e->m->states.n > LONG) return 0;
+  if (!runs || (e->m->scene.method && !o->accurate) || o->method || is_long(e)) return 0;
   return (tol > 0 && tol < below_taylor ? WANT_TAYLOR : 0u) |
          (e->conserves_energy && !e->m->states.n ? 0u : WANT_LINEAR);
 }
@@ -97,7 +102,7 @@ unsigned derivatives_required(const Eqns *e, const Options *o) {
     const char *methods = options_passed(o, "--methods");
     return methods ? required_by_method(e, methods) | WANT_TAYLOR : required_by_all(e); /* taylor: for the reference */
   }
-  if (o->command == CMD_PAGE) return required_by_all(e);
+  if (o->command == CMD_PAGE && !is_long(e)) return required_by_all(e);
   unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) |
                    required_by_choice(e, o) |
                    (o->command == CMD_FMU             ? fmu_wants()

@@ -33,6 +33,10 @@ if command -v node >/dev/null 2>&1; then
     done
   }
   check "damaged bytes are told" damaged
+  for m in pendulum slider_crank kerr; do "$LAGC" derive "models/$m.lag" --format latex >"$TMP/$m.tex"; done
+  empty "contrast AA, words in each language, equations as MathML" "$(node tests/exec/page_words.js runtime/page "$TMP"/*.tex)"
+  # 350 KB, of which the module has 236
+  empty "pages of the gallery's small models are at most 350 KB" "$(wc -c "$TMP/page.html" | awk '$1 > 350e3')"
 else
   skip "digits of pages" "no node"
 fi
@@ -94,6 +98,13 @@ END
     sed -n 's/.*data-drag="\([^"]*\)".*/\1/p' "$TMP/dom" | awk '{ print; ok = $1 < 1e-3 } END { exit !ok }'
   }
   check "a bob that is dragged follows the pointer" follows pendulum small
+  events() { # pages under real events, and the site
+    for m in pendulum double_pendulum slider_crank kepler; do "$LAGC" page "models/$m.lag" -o "$TMP/$m.html" || return; done
+    printf '%s\n' 'model wall' 'state z' "flow z' = z^2" 'scene s { start z = 1; span 5 }' >"$TMP/wall.lag" # z = 1/(1 - t)
+    "$LAGC" page "$TMP/wall.lag" -o "$TMP/wall.html" && .ci/site "$LAGC" "$TMP/site" pendulum lorenz string || return
+    timeout 300 node tests/exec/page_events.js "$browser" "$TMP" pendulum lorenz
+  }
+  slow relay events
 else
   skip "pages in a browser" "no chromium"
 fi
