@@ -321,6 +321,9 @@ int lag_settle_constraints(lag_sim *sim, double *y, const char *who, int event, 
 /* linearisation.c: the scale of component i of the state at which a smooth model bends, for differences; of an angle
  * at most 1. */
 double lag_difference_scale(lag_problem *pb, const double *y, int i);
+/* J[(nq + nz) * nu]: exact derivatives by inputs of the rates below the first nq; work[lag_linear_work()]. LAG_EMETHOD:
+ * there are none. */
+int lag_input_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
 
 /* kicks.c: events at equal times (LAG_KICK). begin: checks their periods, values of the event functions. plan:
  * pb.kick := the time of the next. locate: root[] of those in the step, whose event functions at its start are
@@ -369,6 +372,9 @@ static inline const double *lag_shifted_parameters(const lag_problem *pb, const 
  * again. event: change[columns] := derivatives of event function `event` by parameters, 0 in columns of starts;
  * action: change[n columns], of the state that its action sets; after[n] is scratch. They use g1. */
 void lag_parameter_columns_free(lag_sim *sim);
+/* Columns by each parameter, pb.by, in place of those of the run, `kept`, until _end. */
+int lag_all_parameters(lag_sim *sim);
+void lag_all_parameters_end(lag_sim *sim, struct lag_sensitivity *kept);
 void lag_use_parameters(lag_sim *sim, int j, int k);
 int lag_event_by_parameters(lag_sim *sim, int event, double *change);
 int lag_action_by_parameters(lag_sim *sim, int event, double *after, double *change);

@@ -107,6 +107,24 @@ static struct lag_sensitivity *sensitivity_new(const lag_sim *s, const Target *o
   return w;
 }
 
+int lag_all_parameters(lag_sim *s) {
+  int np = s->scene->model->np;
+  Target *of = malloc(((size_t)np + 1) * sizeof *of);
+  for (int i = 0; of && i < np; i++) of[i] = (Target){LAG_IS_P, i};
+  struct lag_sensitivity *all = of ? sensitivity_new(s, of, np, np) : NULL;
+  free(of);
+  if (!all) return lag_fail(s, LAG_ENOMEM, "out of memory");
+  s->sensitivity = all;
+  s->pb.by = &all->by;
+  return LAG_OK;
+}
+
+void lag_all_parameters_end(lag_sim *s, struct lag_sensitivity *kept) {
+  lag_parameter_columns_free(s);
+  s->sensitivity = kept;
+  s->pb.by = kept && kept->by.n ? &kept->by : NULL;
+}
+
 /* ---- The columns at the start */
 
 /* Column c of `to` := the change of the start by target c. The run has not begun. */

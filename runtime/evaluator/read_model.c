@@ -280,6 +280,9 @@ static void read_variation(Reader *r) {
   }
   m->second_at = s;
   r->m->second = wanted(r, r->m->variation != NULL, m->nsecond, 0);
+  Reader with = *r;
+  with.state.in[PROGRAM_A] = m->nq;
+  r->m->inverse = program(&with, m->nq, 0, 0);
 }
 
 static void read_taylor(Reader *r) {

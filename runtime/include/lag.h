@@ -616,8 +616,27 @@ const char *lag_item(const lag_scene *scene, int kind, int i, const char **unit,
 /* The method of this name, or NULL. */
 const lag_method *lag_find_method(const char *name);
 
-/* dy[count * n] := f(t[k], y[k]) for `count` states in SI, with the parameters and inputs as set; constraints with a
- * condition hold where that is true, contacts as in the run. Returns the first status that is not 0. */
+/* Quantities of a model at a state. Derivatives are by y, by the inputs u[nu], held at their values, or by the
+ * parameters p[np], which others and inputs follow as the scene says. Outputs are in SI here. */
+typedef enum lag_quantity {
+  LAG_RATES,                 /* dy/dt [n] */
+  LAG_RATES_BY_STATE,        /* [n n], A of control theory */
+  LAG_RATES_BY_INPUTS,       /* [n nu], B */
+  LAG_RATES_BY_PARAMETERS,   /* [n np] */
+  LAG_OUTPUTS,               /* [noutputs] */
+  LAG_OUTPUTS_BY_STATE,      /* [noutputs n], C */
+  LAG_OUTPUTS_BY_INPUTS,     /* [noutputs nu], D */
+  LAG_OUTPUTS_BY_PARAMETERS, /* [noutputs np] */
+  LAG_MASS_MATRIX,           /* M [nq nq] */
+  LAG_INVERSE_DYNAMICS       /* [nq] forces that accelerations a[nq] need besides the model's; 0 of multipliers */
+} lag_quantity;
+
+/* out[count * rows * columns] := the quantity at t[k], y[k], a[k] for `count` states in SI (a for inverse dynamics
+ * alone), with parameters and inputs as set; constraints with a condition hold where that is true, contacts as in the
+ * run. Returns the first status that is not 0; LAG_EMETHOD: build it --with derivatives. rhs: LAG_RATES. */
+int lag_sim_quantity(lag_sim *sim, lag_quantity of, int count, const double *t, const double *y, const double *a,
+                     double *out);
+void lag_sim_quantity_size(const lag_sim *sim, lag_quantity of, int *rows, int *columns);
 int lag_sim_rhs(lag_sim *sim, int count, const double *t, const double *y, double *dy);
 
 /* Advances to t[0] .. t[rows - 1]: y[rows * n] := the states [SI], out[rows * noutputs] := the outputs, in declared

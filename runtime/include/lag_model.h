@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 17
+#define LAG_ABI 18
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many
  * doubles, one state or one set of parameters a lane. The status < 0 of such a call has bit k of its negative set
@@ -379,6 +379,11 @@ typedef struct lag_model {
                 const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *h, LAG_REAL *w);
   const lag_second *second_at;
   int nsecond;
+
+  /* Inverse dynamics: the generalised forces out[nq] = M a - f that the accelerations a[nq] need besides those of the
+   * model; multipliers count as 0. NULL: not emitted (lagc build --with derivatives). */
+  int (*inverse)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                 const LAG_REAL *p, const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *out, LAG_REAL *w);
 
   /* NULL also where a value of the model is not analytic (if, abs, sign, min, max). */
   const lag_taylor *taylor;

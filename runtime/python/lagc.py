@@ -13,6 +13,7 @@ built when a model is loaded, and kept in lagc's cache. While the library comput
 """
 import ctypes
 import difflib
+import json
 import os
 import re
 import shutil
@@ -24,10 +25,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-__all__ = ["load", "Model", "Result", "Batch", "Error", "CompileError", "RunError"]
+__all__ = ["load", "Model", "Result", "Batch", "Error", "CompileError", "RunError", "Linear"]
 
-_ABI = 17  # LAG_ABI of lag_model.h
+_ABI = 18  # LAG_ABI of lag_model.h
 _STOPPED, _INTERRUPTED = 2, 3
+_RATES, _OUTPUTS, _MASS, _INVERSE = 0, 4, 8, 9  # lag_quantity; behind _RATES and _OUTPUTS derivatives by state, inputs, parameters
 _CHUNK, _PATIENCE = 4096, 0.2  # rows and seconds of one call: between calls Ctrl-C is heard
 
 
@@ -122,7 +124,7 @@ def _open(path):
         "lag_sim_requested_start": (d, p, i), "lag_sim_actual_start": (d, p, i), "lag_sim_choose_method": (i, p, d, i, p, i, s, ctypes.c_size_t), "lag_sim_message": (s, p), "lag_sim_q": (ctypes.POINTER(d), p),
         "lag_sim_p": (ctypes.POINTER(d), p), "lag_sim_time": (d, p), "lag_sim_noutputs": (i, p), "lag_sim_outputs": (i, p, p),
         "lag_sim_output_info": (d, p, i, s, ctypes.c_size_t, s, ctypes.c_size_t), "lag_sim_state_info": (d, p, i, s, ctypes.c_size_t, s, ctypes.c_size_t),
-        "lag_sim_rhs": (i, p, i, p, p, p), "lag_sim_rows": (i, p, i, p, p, p, p), "lag_sim_batch": (i, p, i, p, p, i, p, p, p),
+        "lag_sim_quantity": (i, p, i, i, p, p, p, p), "lag_sim_quantity_size": (None, p, i, p, p), "lag_sim_rows": (i, p, i, p, p, p, p), "lag_sim_batch": (i, p, i, p, p, i, p, p, p),
         "lag_sim_stats": (None, p, p), "lag_sim_ncharges": (i, p), "lag_sim_charge": (None, p, i, p), "lag_sim_balance": (i, p),
         "lag_sim_set_tangent": (i, p, i, p), "lag_sim_tangent": (i, p, p), "lag_sim_set_sensitivity": (i, p, i, p), "lag_sim_output_sensitivity": (i, p, p, p),
         "lag_sim_sensitivity_info": (d, p, i, s, ctypes.c_size_t, s, ctypes.c_size_t), "lag_sim_on_event": (None, p, _EventHook, p),
@@ -424,22 +426,84 @@ class Model:
             sim.check(lib.lag_sim_tangent(sim.sim, _address(result.tangent)))
         return result
 
-    def rhs(self, t, y, scene=None, values=None, **more):
-        """dy/dt at one state y[n], or at many, y[k, n]; SI units. values, or keywords: parameters and inputs."""
-        key = (scene, tuple(sorted(_named(values, more).items())))
+    def _at(self, quantity, t, y, scene, values, more, a=None, derived=True):
+        """A quantity of lag.h at one state y[n], or at many, y[k, n], as an array, with its _Scene; derived: of a library with derivatives."""
+        words = ("--with", "derivatives") if derived else ()
+        key = (scene, words, tuple(sorted(_named(values, more).items())))
         if not self._simulation or self._simulation[0] != key:
-            s = self._scene(scene)
-            self._simulation = key, _Simulation(s.lib, s, dict(key[1]))
+            s = self._scene(scene, *words)
+            self._simulation = key, _Simulation(s.lib, s, dict(key[2]))
         sim = self._simulation[1]
+        s = sim.scene
         y = np.ascontiguousarray(y, dtype=np.float64)
-        states = _array(y if y.ndim == 2 else y[None], (-1, sim.scene.n), "y")
+        states = _array(y if y.ndim == 2 else y[None], (-1, s.n), "y")
+        if a is not None:
+            a = _array(np.broadcast_to(np.asarray(a, dtype=np.float64), (len(states), len(s.items("q")))), (-1, -1), "a")
         t = np.ascontiguousarray(np.broadcast_to(np.asarray(t, dtype=np.float64), (len(states),)))
-        dy = np.empty_like(states)
-        status = sim.lib.lag_sim_rhs(sim.sim, len(states), _address(t), _address(states), _address(dy))
+        rows, columns = ctypes.c_int(), ctypes.c_int()
+        s.lib.lag_sim_quantity_size(sim.sim, quantity, ctypes.byref(rows), ctypes.byref(columns))
+        flat = quantity in (_RATES, _OUTPUTS, _INVERSE)
+        out = np.empty((len(states), rows.value) if flat else (len(states), rows.value, columns.value))
+        status = s.lib.lag_sim_quantity(sim.sim, quantity, len(states), _address(t), _address(states), _address(a), _address(out))
         sim.raise_what_inputs_raised()
         if status:
             raise RunError(sim.message(), status)
-        return dy if y.ndim == 2 else dy[0]
+        return out if y.ndim == 2 else out[0]
+
+    def rhs(self, t, y, scene=None, values=None, **more):
+        """dy/dt at one state y[n], or at many, y[k, n]; SI units. values, or keywords: parameters and inputs."""
+        return self._at(_RATES, t, y, scene, values, more, derived=False)
+
+    def jac(self, t, y, scene=None, values=None, **more):
+        """A = d(dy/dt)/dy, [n, n], or [k, n, n] at many states; SI units."""
+        return self._at(_RATES + 1, t, y, scene, values, more)
+
+    def input_jacobian(self, t, y, scene=None, values=None, **more):
+        """B = d(dy/dt)/du by the inputs, in the order of `inputs`."""
+        return self._at(_RATES + 2, t, y, scene, values, more)
+
+    def parameter_jacobian(self, t, y, scene=None, values=None, **more):
+        """d(dy/dt)/dp by the parameters, in the order of parameters(); those that follow from others by formulas follow."""
+        return self._at(_RATES + 3, t, y, scene, values, more)
+
+    def jvp(self, t, y, x, scene=None, values=None, **more):
+        """J x with J = jac(t, y): of one state, or of each of many."""
+        return np.einsum("...ij,...j->...i", self.jac(t, y, scene, values, **more), np.asarray(x, dtype=np.float64))
+
+    def vjp(self, t, y, x, scene=None, values=None, **more):
+        """J^T x with J = jac(t, y)."""
+        return np.einsum("...ij,...i->...j", self.jac(t, y, scene, values, **more), np.asarray(x, dtype=np.float64))
+
+    def outputs(self, t, y, scene=None, values=None, **more):
+        """The scene's outputs at states, in SI units."""
+        return self._at(_OUTPUTS, t, y, scene, values, more, derived=False)
+
+    def output_jacobian(self, t, y, scene=None, values=None, **more):
+        """C and D: derivatives of the scene's outputs by the state and by the inputs, in SI units."""
+        return tuple(self._at(_OUTPUTS + k, t, y, scene, values, more) for k in (1, 2))
+
+    def mass(self, t, y, scene=None, values=None, **more):
+        """The mass matrix M, [nq, nq]."""
+        return self._at(_MASS, t, y, scene, values, more)
+
+    def inverse_dynamics(self, t, y, a, scene=None, values=None, **more):
+        """The generalised forces M a + bias that the accelerations a need besides those of the model."""
+        return self._at(_INVERSE, t, y, scene, values, more, a)
+
+    def bias(self, t, y, scene=None, values=None, **more):
+        """b of M q'' + b = 0: Coriolis and centrifugal terms, weight and the forces of the model, with their signs changed."""
+        return self._at(_INVERSE, t, y, scene, values, more, 0.0)
+
+    def linearize(self, scene=None, values=None, *, equilibrium=False, steady=False, **more):
+        """The system y' = A y + B u, out = C y + D u of small changes about the scene's start, the equilibrium or the steady motion next to it, in SI units:
+        arrays A, B, C, D, the names and units of states, inputs and outputs, and values, the state where it holds. values, or keywords: numbers, or texts with units."""
+        words = [f"{k}={v if isinstance(v, str) else repr(_number(k, v))}" for k, v in _named(values, more).items()]
+        words += ["--equilibrium"] * bool(equilibrium) + ["--steady"] * bool(steady)
+        return Linear(json.loads(_lagc("linearize", self._source(), *([scene] if scene else []), *words, *self._defines, "--json")))
+
+    def sensitivity(self, names, scene=None, values=None, **more):
+        """Derivatives of a run's outputs by parameters and starts: run(sensitivity=names).sensitivity."""
+        return self.run(scene, values, sensitivity=names, **more).sensitivity
 
     def batch(self, scene=None, values=None, *, times, y0=None, p=None, out=None, method=None, tol=None, step=None, threads=1, **more):
         """Many motions in one call. values, or keywords: a number, or an array with one number a motion, in declared units; or y0[count, n] and
@@ -618,6 +682,23 @@ class Result:
                          f'<text x="{wide + 8}" y="{16 * i + 16}" fill="{colour}">{label}: {low:.4g} to {top:.4g} {self.units[name]}</text>')
         return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-4 -4 {wide + 248} {max(high, 16 * len(self.names)) + 24}" font-size="13" font-family="sans-serif">'
                 f'{"".join(parts)}<text x="0" y="{high + 16}">t = {self.t[0]:g} to {self.t[-1]:g} s</text></svg>')
+
+
+class Linear:
+    """y' = A y + B u, out = C y + D u; states, inputs, outputs: their names; units: those declared, whose size in SI is in factors; values: the state where it holds, in declared units."""
+
+    def __init__(self, of):
+        self.states, self.inputs, self.outputs = ([x["name"] for x in of[k]] for k in ("states", "inputs", "outputs"))
+        variables = [x for k in ("states", "inputs", "outputs") for x in of[k]]
+        self.units, self.factors = ({x["name"]: x[k] for x in variables} for k in ("unit", "factor"))
+        n, nu, nout = len(self.states), len(self.inputs), len(self.outputs)
+        shapes = {"A": (n, n), "B": (n, nu), "C": (nout, n), "D": (nout, nu), "rate": (n,)}
+        for name, shape in shapes.items():
+            setattr(self, name, np.array(of[name], dtype=np.float64).reshape(shape))
+        self.about, self.values = of["about"], {x["name"]: x["value"] for x in of["states"]}
+
+    def __repr__(self):
+        return f"<linear system about the {self.about}: y = {', '.join(self.states)}; u = {', '.join(self.inputs)}; out = {', '.join(self.outputs)}>"
 
 
 class Batch:

@@ -425,6 +425,7 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   if (o->command == CMD_PLOT) ok = ok && prepare_plot(&k, error);
   if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
   if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);
+  if (o->command == CMD_LINEARIZE) add_argument(&k, "--linearize", NULL);
   if (o->command == CMD_FIT) ok = ok && prepare_columns(&k, error);
   if (o->command == CMD_ORBIT) add_argument(&k, "--orbit", NULL);
   if (o->command == CMD_CONTINUE) add_argument(&k, "--continue", NULL);

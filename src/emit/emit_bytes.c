@@ -159,6 +159,7 @@ static void variation(const Unit *w) {
   for (uint32_t i = 0; u->variation && i < u->second_at.n; i++)
     integer(w, u->second_at.at[i].part), word(w, u->second_at.at[i].row), word(w, u->second_at.at[i].col);
   program(w, u->variation ? u->second : NULL);
+  program(w, u->inverse);
 }
 
 static void taylor(const Unit *w) {

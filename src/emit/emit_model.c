@@ -58,7 +58,7 @@ const char *model_id(Arena *a, const char *name) {
                                       "curves", "exact", "exact_of", "residuals", "matrices", "charge_values",
                                       "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws",
                                       "size_values", "size_table", "correct_positions",
-                                      "correct_velocities"};
+                                      "correct_velocities", "inverse_dynamics"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -150,6 +150,14 @@ static void emit_variation(const ModelFile *f) {
   state_function(f, u->second, "second",
                  arena_printf(f->a, "Their nonzero derivatives: %s.", op_count_text(u->second, f->a)), NULL,
                  derivatives);
+}
+
+static void emit_inverse(const ModelFile *f) {
+  const Prog *p = f->u->inverse;
+  if (p)
+    state_function(f, p, "inverse_dynamics",
+                   arena_printf(f->a, "Forces that the accelerations a need: %s.", op_count_text(p, f->a)), "a",
+                   one_out);
 }
 
 /* Newton's law of impact for the contact whose constraint is `row`, which its input closes. */
@@ -527,6 +535,7 @@ static void emit_tables(const ProgramSet *u, const char *name, const char *diges
   if (u->variation)
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
+  if (u->inverse) sb_puts(out, "  .inverse = inverse_dynamics,\n");
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (model_has_linear(u)) sb_puts(out, "  .linear = &linear,\n");
   sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n");
@@ -580,6 +589,7 @@ void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
                 &(CStyle){.prefix = "LAG", .globals = f.globals, .solve = "lag_solve", .math = math_prefix(u, "lag")},
                 u->lanes, out);
   emit_variation(&f);
+  emit_inverse(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, name, i);
   if (!alone) return;

@@ -136,6 +136,47 @@ ok("values in declared units, [mH]", (b.y[1, 0] == motor.run("lift", L=8, times=
 b = spring.batch("free", x=[1, 2], times=[1], method="gauss(stages=3)", step=0.01)
 ok("a method with options", (b.y[0, 0] == spring.run("free", times=[1], method="gauss(stages=3)", step=0.01).y[0]).all())
 
+# ---- matrices, against the textbook's double pendulum, m = 1 kg, l = 1 m: M = [[2, c], [c, 1]], c = cos(th1 - th2) ----
+def pendulum(y, m1=1.0, m2=1.0, g=9.81):
+    """Mass matrix and bias, from dL/dq and the Christoffel terms."""
+    a, b, va, vb = y
+    c, s = np.cos(a - b), np.sin(a - b)
+    return np.array([[m1 + m2, m2 * c], [m2 * c, m2]]), np.array([m2 * s * vb * vb + (m1 + m2) * g * np.sin(a), -m2 * s * va * va + m2 * g * np.sin(b)])
+
+
+def pendulum_rates(y, **p):
+    M, h = pendulum(y, **p)
+    return np.concatenate([y[2:], -np.linalg.solve(M, h)])
+
+
+def complex_step(f, x):
+    """Derivatives of an analytic function without cancellation (Squire and Trapp 1998), to rounding."""
+    x = np.asarray(x, dtype=float)
+    return np.array([f(x + 1e-30j * e).imag / 1e-30 for e in np.eye(len(x))]).T
+
+
+ys = np.array([[0.3, -0.4, 0.5, 0.6], [2, 1, -3, 0.2]])
+near("mass matrices of two states", double.mass(0, ys), [pendulum(y)[0] for y in ys], 4e-15)
+near("the bias", double.bias(0, ys), [pendulum(y)[1] for y in ys], 4e-14)
+near("inverse dynamics", double.inverse_dynamics(0, ys, [[1, -2], [0.5, 3]]), [pendulum(y)[0] @ a + pendulum(y)[1] for y, a in zip(ys, [[1, -2], [0.5, 3]])], 4e-14)
+J = np.array([complex_step(pendulum_rates, y) for y in ys])
+near("Jacobians", double.jac(0, ys), J, 1e-13)  # some twenty roundings of numbers up to 50
+near("J x", double.jvp(0, ys[0], [1, 2, 3, 4]), J[0] @ [1, 2, 3, 4], 1e-12)
+near("J^T x", double.vjp(0, ys, np.ones((2, 4))), J.sum(axis=1), 1e-12)
+by_p = double.parameter_jacobian(0, ys[0])
+near("derivatives by parameters", by_p[:, [0, 1, 4]], complex_step(lambda p: pendulum_rates(ys[0], m1=p[0], m2=p[1], g=p[2]), [1, 1, 9.81]), 1e-12)
+C, D = double.output_jacobian(0, ys[0])
+c, s = np.cos(ys[0, :2]), np.sin(ys[0, :2])
+near("C of the outputs th1, th2, x2, y2", C[:4], [[1, 0, 0, 0], [0, 1, 0, 0], [c[0], c[1], 0, 0], [s[0], s[1], 0, 0]], 1e-11)  # differences of order 6
+ok("D has a column an input", D.shape == (5, 0))
+near("outputs", double.outputs(0, ys[0])[2:4], [s.sum(), -c.sum()], 1e-15)
+linear = double.linearize("swing", th1=0, th2=0)
+near("a linear system", linear.A, complex_step(pendulum_rates, np.zeros(4)), 1e-14)
+ok("... its names and units", linear.states == ["th1", "th2", "th1'", "th2'"] and linear.outputs[2] == "x2" and linear.units["th1'"] == "rad/s" and linear.values["th1"] == 0, linear)
+near("texts with units", double.linearize("swing", th1="180[deg]", th2=0).A[2, 0], complex_step(pendulum_rates, [np.pi, 0, 0, 0])[2, 0], 1e-13)
+near("sensitivities by a name of its own", spring.sensitivity("k", "free", times=[1.0])["k"]["x"], -np.sin(2) / 4, 1e-9)
+raises("a wrong shape of accelerations", lagc.Error, "not (any, 4)", lambda: double.inverse_dynamics(0, [1, 2], [0, 0]))
+
 # ---- other threads run meanwhile ----
 ticks, ended = [], threading.Event()
 
