@@ -8,8 +8,8 @@
     b = m.batch("small", th=numpy.linspace(0, 3, 10000), times=[10])
     b.y                                       # (10000, 1, 2), in SI units
 
-This file needs Python 3.8, NumPy, and the program lagc: the one in $LAGC, that of the same source tree or installation, or that in $PATH. Libraries are
-built when a model is loaded, and kept in lagc's cache. While the library computes, other Python threads run.
+This file needs Python 3.8, NumPy, and the program lagc: the one in $LAGC, that of the same package, source tree or installation, or that in $PATH. Libraries
+are built when a model is loaded, and kept in lagc's cache; without a C compiler models are evaluated. While the library computes, other Python threads run.
 """
 import ctypes
 import difflib
@@ -18,6 +18,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import warnings
 import weakref
@@ -53,11 +54,21 @@ class RunError(Error):
 
 def _compiler():
     here = os.path.dirname(os.path.abspath(__file__))
-    places = [os.environ.get("LAGC"), os.path.join(here, "../../build/lagc"), os.path.join(here, "../../../bin/lagc"), shutil.which("lagc")]
+    places = [os.environ.get("LAGC"), os.path.join(here, "files/bin/lagc"), os.path.join(here, "../../build/lagc"), os.path.join(here, "../../../bin/lagc"), shutil.which("lagc")]
     for place in places:
         if place and os.access(place, os.X_OK):
             return os.path.normpath(place)
     raise Error("lagc is not found: set LAGC to its path, or put its folder into PATH")
+
+
+def _main():
+    """The program lagc of this package, as a command."""
+    program = _compiler()
+    os.execv(program, [program, *sys.argv[1:]])
+
+
+def _has_c_compiler():
+    return shutil.which((os.environ.get("CC") or "cc").split()[0]) is not None
 
 
 def _lagc(*words):
@@ -118,7 +129,7 @@ def _open(path):
     lib = ctypes.CDLL(path)
     d, i, s, p = ctypes.c_double, ctypes.c_int, ctypes.c_char_p, _Pointer
     signatures = {
-        "lag_library": (p,), "lag_library_abi": (i,), "lag_library_scene": (p, p, i), "lag_scene_span": (s, p, p, p, p), "lag_scene_method": (s, p),
+        "lag_library_abi": (i,), "lag_program_read": (p, p, ctypes.c_size_t, p), "lag_program_free": (None, p), "lag_library_scene": (p, p, i), "lag_scene_span": (s, p, p, p, p), "lag_scene_method": (s, p),
         "lag_item": (s, p, i, i, p, p, p), "lag_find_method": (p, s), "lag_sim_new": (p, p), "lag_sim_free": (None, p), "lag_sim_set": (i, p, s, d),
         "lag_sim_set_input": (i, p, s, _InputHook, p), "lag_sim_set_tolerance": (i, p, d), "lag_sim_set_method": (i, p, p, p, i),
         "lag_sim_requested_start": (d, p, i), "lag_sim_actual_start": (d, p, i), "lag_sim_choose_method": (i, p, d, i, p, i, s, ctypes.c_size_t), "lag_sim_message": (s, p), "lag_sim_q": (ctypes.POINTER(d), p),
@@ -136,6 +147,36 @@ def _open(path):
     if lib.lag_library_abi() != _ABI:
         raise Error(f"{path} has the interface {lib.lag_library_abi()}, lagc.py knows {_ABI}: use the lagc.py of that lagc")
     return lib
+
+
+class _Program:
+    """The scenes of a library that `lagc build --shared` wrote; or of the bytes of `lagc build --bytes`, which liblag evaluates."""
+
+    def __init__(self, compiled, *words):
+        if compiled:
+            self.lib = _open(_lagc("build", *words, "--shared").strip())
+            self.lib.lag_library.restype = _Pointer
+            self.handle = self.lib.lag_library()
+            return
+        folder = os.path.dirname(_compiler())
+        places = [os.path.join(folder, where, f"liblag.so.{_ABI}") for where in (".", "../lib")]
+        found = [x for x in places if os.path.exists(x)]
+        if not found:
+            raise Error(f"liblag.so.{_ABI}, which evaluates models where there is no C compiler, is not found beside {_compiler()}: `make install` brings it")
+        self.lib, why = _open(found[0]), ctypes.c_char_p()
+        with tempfile.TemporaryDirectory() as kept:
+            _lagc("build", *words, "--bytes", "-o", os.path.join(kept, "program"))
+            program = _read(os.path.join(kept, "program"))
+        self.handle = self.lib.lag_program_read(program, len(program), ctypes.byref(why))
+        if not self.handle:
+            raise Error((why.value or b"no memory").decode())
+        weakref.finalize(self, self.lib.lag_program_free, self.handle)
+
+    def scenes(self):
+        found = []
+        while self.lib.lag_library_scene(self.handle, len(found)):
+            found.append(_Scene(self, self.lib.lag_library_scene(self.handle, len(found))))
+        return {s.name: s for s in found}
 
 
 def _address(a):
@@ -260,8 +301,9 @@ class _Simulation:
 
 
 class _Scene:
-    def __init__(self, lib, handle):
-        self.lib, self.handle = lib, handle
+    def __init__(self, program, handle):
+        self.program, self.lib, self.handle = program, program.lib, handle
+        lib = self.lib
         t0, t1, every = (ctypes.c_double() for _ in range(3))
         self.name = lib.lag_scene_span(handle, *map(ctypes.byref, (t0, t1, every))).decode()
         self.t0, self.t1, self.every = t0.value, t1.value, every.value
@@ -285,22 +327,26 @@ class _Scene:
 
 # ---- models ----
 
-def load(path, defines=None):
-    """Compiles a model. defines: values of its constants, {"N": 50}. CompileError: the compiler's text."""
-    return Model(path, defines)
+def load(path, defines=None, compile="auto"):
+    """Compiles a model: the path of a file, or "@pendulum" of the gallery. defines: values of its constants, {"N": 50}. compile: "always", or "never": it is
+    evaluated, with the same digits, at a third of the speed; "auto": compiled where there is a C compiler. CompileError: the compiler's text."""
+    return Model(path, defines, compile)
 
 
 class Model:
     """A compiled model: its scenes, and what they have."""
 
-    def __init__(self, path, defines=None):
+    def __init__(self, path, defines=None, compile="auto"):
+        if compile not in ("auto", "always", "never"):
+            raise Error(f"compile = {compile!r}: give \"auto\", \"always\" or \"never\"")
+        self._compiled = compile == "always" or compile == "auto" and _has_c_compiler()
         self.path = os.fspath(path)
         self._texts, self._kept = _texts(self.path), None
         self._defines = [word for k, v in (defines or {}).items() for word in ("-D", f"{k}={v}")]
         self._opened, self._simulation = {}, None
         scenes = self._scenes()
         self.scenes = list(scenes)
-        self.name = os.path.splitext(os.path.basename(self.path))[0]
+        self.name = os.path.splitext(os.path.basename(self.path))[0].lstrip("@")
         first = next(iter(scenes.values()))
         self.coordinates, self.states = list(first.items("q")), list(first.items("z"))
         self.inputs, self.events, self.charges = list(first.items("u")), list(first.items("e")), list(first.items("c"))
@@ -323,11 +369,7 @@ class Model:
     def _scenes(self, *words):
         """The scenes in a library with these options of `lagc build`: derivatives that a method or a tangent needs."""
         if words not in self._opened:
-            lib = _open(_lagc("build", self._source(), "--shared", *self._defines, *words).strip())
-            scenes = []
-            while lib.lag_library_scene(lib.lag_library(), len(scenes)):
-                scenes.append(_Scene(lib, lib.lag_library_scene(lib.lag_library(), len(scenes))))
-            self._opened[words] = {s.name: s for s in scenes}
+            self._opened[words] = _Program(self._compiled, self._source(), *self._defines, *words).scenes()
         return self._opened[words]
 
     def _scene(self, name, *words):
@@ -498,7 +540,7 @@ class Model:
         """The system y' = A y + B u, out = C y + D u of small changes about the scene's start, the equilibrium or the steady motion next to it, in SI units:
         arrays A, B, C, D, the names and units of states, inputs and outputs, and values, the state where it holds. values, or keywords: numbers, or texts with units."""
         words = [f"{k}={v if isinstance(v, str) else repr(_number(k, v))}" for k, v in _named(values, more).items()]
-        words += ["--equilibrium"] * bool(equilibrium) + ["--steady"] * bool(steady)
+        words += ["--equilibrium"] * bool(equilibrium) + ["--steady"] * bool(steady) + ["--compile", "auto" if self._compiled else "never"]
         return Linear(json.loads(_lagc("linearize", self._source(), *([scene] if scene else []), *words, *self._defines, "--json")))
 
     def sensitivity(self, names, scene=None, values=None, **more):
