@@ -140,6 +140,7 @@ struct lag_sim {
   /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
   double *tangent, *tangent_jump, *tangent_scratch;
   struct lag_sensitivity *sensitivity;   /* parameter_columns.c; NULL: the tangent is one by starts alone */
+  struct lag_record *record;             /* gradient.c; NULL: steps are not kept */
   int tangent_columns, tangent_at_event; /* tangent_at_event: the event at this time is already applied to it */
   /* switches met at this time; whether that time depends on the state; whether the last one is only touched */
   int tangent_meets, tangent_moves, tangent_touches;
@@ -346,6 +347,11 @@ int lag_tangent_jump(lag_sim *sim, int k, int more);
 void lag_tangent_free(lag_sim *sim);
 /* As lag_sim_set_tangent, which first frees columns by parameters. */
 int lag_tangent_set(lag_sim *sim, int k, const double *Y);
+/* gradient.c: in place of advancing the tangent: keeps the last step up to t; the matrix by which a jump has multiplied
+ * the columns, which begin anew. */
+int lag_record_step(lag_sim *sim, double t);
+int lag_record_jump(lag_sim *sim);
+void lag_record_free(lag_sim *sim);
 /* tangent_space.c. dimension: of the tangent space of the constraints at the present state; of a run that has not
  * begun at its start, which is computed; n without constraints; or a status < 0 with its message. project: each
  * column of Y[n k] at y, t onto that space, in the mass metric; scratch[lag_tangent_projection_size]. */
@@ -375,6 +381,11 @@ void lag_parameter_columns_free(lag_sim *sim);
 /* Columns by each parameter, pb.by, in place of those of the run, `kept`, until _end. */
 int lag_all_parameters(lag_sim *sim);
 void lag_all_parameters_end(lag_sim *sim, struct lag_sensitivity *kept);
+/* A tangent with a column for each component of the start and for each parameter, in this order; its columns at the
+ * start [n (n + np)]; derivative of parameter i by parameter j, which it may follow. */
+int lag_all_columns(lag_sim *sim);
+const double *lag_columns_at_start(const lag_sim *sim);
+double lag_parameter_chain(const lag_sim *sim, int i, int j);
 void lag_use_parameters(lag_sim *sim, int j, int k);
 int lag_event_by_parameters(lag_sim *sim, int event, double *change);
 int lag_action_by_parameters(lag_sim *sim, int event, double *after, double *change);

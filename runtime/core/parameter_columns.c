@@ -212,6 +212,19 @@ static int set_columns(lag_sim *s, int k, const Target *of) {
   return lag_tangent_set(s, k, s->sensitivity->begin);
 }
 
+int lag_all_columns(lag_sim *s) {
+  int n = s->pb.n, np = s->scene->model->np;
+  Target *of = malloc((size_t)(n + np + 1) * sizeof *of);
+  for (int c = 0; of && c < n + np; c++) of[c] = c < n ? (Target){LAG_IS_Q, c} : (Target){LAG_IS_P, c - n};
+  int rc = of ? set_columns(s, n + np, of) : lag_fail(s, LAG_ENOMEM, "out of memory");
+  free(of);
+  return rc;
+}
+
+const double *lag_columns_at_start(const lag_sim *s) { return s->sensitivity->begin; }
+
+double lag_parameter_chain(const lag_sim *s, int i, int j) { return chain(s, &s->sensitivity->by, i, j); }
+
 int lag_sim_set_sensitivity(lag_sim *s, int k, const char *const *names) {
   if (!s) return LAG_EINVAL;
   if (k <= 0 || !names) return lag_fail(s, LAG_EINVAL, "a sensitivity without names");

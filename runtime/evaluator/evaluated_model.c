@@ -86,6 +86,12 @@ static int partials(STATE, const double *a, double *dr, double *M, double *w) {
   return lag_run_program(partials_of(self)->eval, in, (double *[]){dr, M}, w);
 }
 
+static int adjoint(STATE, const double *a, const double *g, double *by_y, double *by_up, double *d, double *w) {
+  const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a, [PROGRAM_G] = g};
+  const EvaluatedAdjoint *of = self;
+  return lag_run_program(of->eval, in, (double *[]){by_y, by_up, d}, w);
+}
+
 /* --- functions without w --- */
 
 /* Executes a program in memory of its own; without memory as if a value left its domain. */
@@ -215,6 +221,8 @@ void lag_set_linear_functions(EvaluatedLinear *l) {
 
 void lag_set_partial_functions(EvaluatedPartials *p) { p->partials.eval = partials; }
 
+void lag_set_adjoint_functions(EvaluatedAdjoint *a) { a->adjoint.eval = adjoint; }
+
 void lag_set_action_functions(EvaluatedAction *a) {
   a->curve.curve = curve;
   if (a->momenta) a->curve.momenta = momenta;
@@ -244,6 +252,8 @@ size_t lag_model_room(const EvaluatedModel *m) {
                           *by_inputs = (const void *)(l ? l->linear.by_inputs : NULL);
   if (by_params) widen(&room, by_params->eval, 0);
   if (by_inputs) widen(&room, by_inputs->eval, 0);
+  const EvaluatedAdjoint *of = (const void *)(l ? l->linear.adjoint : NULL);
+  if (of) widen(&room, of->eval, 0);
   return room;
 }
 

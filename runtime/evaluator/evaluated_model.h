@@ -36,6 +36,11 @@ typedef struct {
 } EvaluatedPartials;
 
 typedef struct {
+  lag_adjoint adjoint;
+  const Program *eval;
+} EvaluatedAdjoint;
+
+typedef struct {
   lag_linear linear;
   const Program *eval, *jumps;
 } EvaluatedLinear;
@@ -70,6 +75,7 @@ void lag_set_constraint_functions(EvaluatedConstraints *c);
 void lag_set_charge_functions(EvaluatedCharges *c);
 void lag_set_linear_functions(EvaluatedLinear *l);
 void lag_set_partial_functions(EvaluatedPartials *p);
+void lag_set_adjoint_functions(EvaluatedAdjoint *a);
 void lag_set_action_functions(EvaluatedAction *a);
 
 /* Doubles that functions of a model, of a scene and of a series need in w. */

@@ -335,6 +335,12 @@ typedef struct lag_method {
   size_t (*tangent_size)(const lag_problem *pb, int k);
   int (*tangent)(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
 
+  /* Reverse mode of a step from (t0, y0) of length dt: x[n] := (dy1/dy0)^T x, g[nu + np] += (dy1/du, dy1/dp)^T x,
+   * inputs counted where they are held. span: the dt of the last step up to t. scratch[adjoint_size]. NULL: none. */
+  double (*span)(const void *work, const lag_problem *pb, double t);
+  size_t (*adjoint_size)(const lag_problem *pb);
+  int (*adjoint)(lag_problem *pb, double t0, double dt, const double *y0, double *x, double *g, double *scratch);
+
   /* constants by which it differs from other methods with the same functions; these read lag_problem.variant */
   const void *variant;
   /* the smallest tolerance that the digits of its coefficients support; 0: coefficients have all digits of the
@@ -551,6 +557,15 @@ double lag_sim_sensitivity_value(const lag_sim *sim, int c);
 /* D[noutputs * k]: the change of each output, in its declared unit, by each name, in SI, where Y[n * k] changes the
  * present state. Outputs are differentiated by differences of order 6, correct to 11 digits or so. */
 int lag_sim_output_sensitivity(lag_sim *sim, const double *Y, double *D);
+
+/* Reverse mode, for the gradient of few numbers by many values: record keeps the steps of a run, before its first
+ * advance, after method and all values are set. Gradient: J depends on the states y at t[rows], in the order of the
+ * run and not beyond it, by weight[rows * n] = dJ/dy in SI; by_start[n] := dJ by the starts, by_p[np] := by the
+ * parameters, with all that follows from them as in sensitivities, both in SI. It is the derivative of the steps that
+ * were made, their sizes held, and takes some three times as long as the run, however many parameters there are. Needs
+ * `lagc build --with derivatives`; LAG_EMETHOD: a method without reverse mode, constraints, slides. */
+int lag_sim_record(lag_sim *sim);
+int lag_sim_gradient(lag_sim *sim, int rows, const double *t, const double *weight, double *by_start, double *by_p);
 
 void lag_sim_stats(lag_sim *sim, lag_stats *stats);
 /* The drift of monitor i so far, as judged against its limit: at ends of steps, and at the present time. */

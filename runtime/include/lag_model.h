@@ -131,6 +131,17 @@ typedef struct lag_partials {
               const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *d, LAG_REAL *M, LAG_REAL *w);
 } lag_partials;
 
+/* Reverse mode: for weights g[nq + nz] of the accelerations and of the rates of states, and accelerations a[nq], the
+ * sums of g_i times their derivatives: by_y[2 nq + nz], by_up[nu + np] by inputs and parameters, each as if it were free;
+ * and the derivatives d[n] of the inputs' formulas (row) by parameters (col). About three calls of accel. */
+typedef struct lag_adjoint {
+  int n;
+  const lag_entry *at; /* [n] */
+  int (*eval)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+              const LAG_REAL *u, const LAG_REAL *a, const LAG_REAL *g, LAG_REAL *by_y, LAG_REAL *by_up, LAG_REAL *d,
+              LAG_REAL *w);
+} lag_adjoint;
+
 /* The exact linearisation of a model, emitted where a method or command needs it (lagc --with linear).
  *
  * The residuals r[nq + nz] vanish along a motion: r_i = f_i - sum_j M_ij a_j for coordinates i, r_(nq + k) = flow_k
@@ -158,6 +169,7 @@ typedef struct lag_linear {
 
   /* For sensitivities; NULL: not emitted (lagc --with sensitivities), or there are none. */
   const lag_partials *by_params, *by_inputs;
+  const lag_adjoint *adjoint; /* NULL: not emitted (lagc --with derivatives) */
 } lag_linear;
 
 /* One scalar constraint. */

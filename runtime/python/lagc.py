@@ -26,7 +26,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-__all__ = ["load", "Model", "Result", "Batch", "Error", "CompileError", "RunError", "Linear"]
+__all__ = ["load", "Model", "Result", "Batch", "Error", "CompileError", "RunError", "Linear", "Gradient"]
 
 _ABI = 18  # LAG_ABI of lag_model.h
 _STOPPED, _INTERRUPTED = 2, 3
@@ -139,6 +139,7 @@ def _open(path):
         "lag_sim_stats": (None, p, p), "lag_sim_ncharges": (i, p), "lag_sim_charge": (None, p, i, p), "lag_sim_balance": (i, p),
         "lag_sim_set_tangent": (i, p, i, p), "lag_sim_tangent": (i, p, p), "lag_sim_set_sensitivity": (i, p, i, p), "lag_sim_output_sensitivity": (i, p, p, p),
         "lag_sim_sensitivity_info": (d, p, i, s, ctypes.c_size_t, s, ctypes.c_size_t), "lag_sim_on_event": (None, p, _EventHook, p),
+        "lag_sim_record": (i, p), "lag_sim_gradient": (i, p, i, p, p, p, p),
         "lag_sim_on_step": (None, p, p, p), "lag_time_is_up": (i, p, p), "lag_clock_seconds": (d,),
     }
     for name, (returns, *takes) in signatures.items():
@@ -547,6 +548,52 @@ class Model:
         """Derivatives of a run's outputs by parameters and starts: run(sensitivity=names).sensitivity."""
         return self.run(scene, values, sensitivity=names, **more).sensitivity
 
+    def gradient(self, objective, scene=None, values=None, *, until=None, times=None, method=None, tol=None, step=None, **more):
+        """The gradient of one number by all starts and parameters, by reverse mode: some four runs, however many there are. objective: an output or a
+        component of the state, at the end of the run; or a function f(t, y) that gives J and dJ/dy[rows, n] of the states y[rows, n] at `times`, in SI units."""
+        method = method or "dop853"
+        sim, _ = self._simulate(scene, values, more, method, tol, step, until, "derivatives")
+        s, lib = sim.scene, sim.lib
+        end = until if until is not None else times[-1] if times is not None and len(times) else s.t1
+        times = np.array([float(end)]) if times is None else _array(times, (-1,), "times")
+        y, done = np.empty((len(times), s.n)), ctypes.c_int()
+        sim.check(lib.lag_sim_record(sim.sim))
+        status = lib.lag_sim_rows(sim.sim, len(times), _address(times), _address(y), None, ctypes.byref(done))
+        sim.raise_what_inputs_raised()
+        if status:
+            raise RunError(sim.message() or "the run ends before the last time", status)
+        by_p = np.zeros(len(s.p))
+        if callable(objective):
+            value, weight = objective(times, y)
+            weight = _array(weight, y.shape, "dJ/dy")
+        else:
+            value, weight, by_p = self._output(sim, objective, times[-1], y)
+        start, parameters = np.empty(s.n), np.empty(len(s.p))
+        if lib.lag_sim_gradient(sim.sim, len(times), _address(times), _address(weight), _address(start), _address(parameters)):
+            raise Error(sim.message())
+        return Gradient(s, float(value), start, parameters + by_p)
+
+    @staticmethod
+    def _output(sim, name, t, y):
+        """Value of an output, or component of the state, in its declared unit; its derivatives by y[rows, n], of which only the last count, and by parameters."""
+        s, lib = sim.scene, sim.lib
+        names = list(sim.info(lib.lag_sim_output_info, lib.lag_sim_noutputs(sim.sim)))
+        if name not in names and name not in s.y:
+            raise Error(f"{name}: no such output" + _near(name, [*names, *s.y]))
+        weight, by_p = np.zeros_like(y), np.zeros(len(s.p))
+        if name not in names:
+            k, (_, factor, offset) = list(s.y).index(name), s.y[name]
+            weight[-1, k] = 1 / factor
+            return (y[-1, k] - offset) / factor, weight, by_p
+        i, when = names.index(name), np.array([t])
+        factor, values = lib.lag_sim_output_info(sim.sim, i, None, 0, None, 0), np.empty(len(names))
+        C, P = np.empty((len(names), s.n)), np.empty((len(names), len(s.p)))
+        sim.check(lib.lag_sim_outputs(sim.sim, _address(values)))
+        for of, to in ((_OUTPUTS + 1, C), (_OUTPUTS + 3, P)):
+            sim.check(lib.lag_sim_quantity(sim.sim, of, 1, _address(when), y[-1:].ctypes.data, None, _address(to)))
+        weight[-1] = C[i] / factor
+        return values[i], weight, P[i] / factor
+
     def batch(self, scene=None, values=None, *, times, y0=None, p=None, out=None, method=None, tol=None, step=None, threads=1, **more):
         """Many motions in one call. values, or keywords: a number, or an array with one number a motion, in declared units; or y0[count, n] and
         p[count, np], in SI units, in the order of parameters(). times: when states are kept. out: an array [count, len(times), n] to fill. Arrays of doubles are not copied."""
@@ -741,6 +788,17 @@ class Linear:
 
     def __repr__(self):
         return f"<linear system about the {self.about}: y = {', '.join(self.states)}; u = {', '.join(self.inputs)}; out = {', '.join(self.outputs)}>"
+
+
+class Gradient:
+    """A number and its derivatives: value; start and parameters by name, in declared units; by_start[n], by_p[np] in SI."""
+
+    def __init__(self, scene, value, by_start, by_p):
+        self.value, self.by_start, self.by_p = value, by_start, by_p
+        self.start, self.parameters = ({k: d * factor for (k, (_, factor, _)), d in zip(of.items(), by)} for of, by in ((scene.y, by_start), (scene.p, by_p)))
+
+    def __repr__(self):
+        return f"<gradient of {self.value:.9g}: {', '.join(f'{k} {d:.4g}' for k, d in [*self.start.items(), *self.parameters.items()])}>"
 
 
 class Batch:

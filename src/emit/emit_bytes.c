@@ -150,6 +150,7 @@ static void linear(const Unit *w) {
   int sensitive = (u->wants & WANT_SENSITIVITY) == WANT_SENSITIVITY;
   partials(w, sensitive ? u->by_params : NULL, u->by_params_dr.at, u->by_params_dr.n);
   partials(w, sensitive ? u->by_inputs : NULL, u->by_inputs_dr.at, u->by_inputs_dr.n);
+  partials(w, u->adjoint, u->formulas_at.at, u->formulas_at.n);
 }
 
 static void variation(const Unit *w) {

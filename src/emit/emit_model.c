@@ -25,7 +25,7 @@ static const char *const abi_names[] = {
     "constraints",      "contact_table",    "charge_table",     "charges",
     "switch_table",     "taylor_far",       "taylor_add",       "by_params",
     "by_params_table",  "params_partials",  "by_inputs",        "by_inputs_table",
-    "inputs_partials",
+    "inputs_partials",  "formula_table",    "adjoint_of",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -58,7 +58,7 @@ const char *model_id(Arena *a, const char *name) {
                                       "curves", "exact", "exact_of", "residuals", "matrices", "charge_values",
                                       "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws",
                                       "size_values", "size_table", "correct_positions",
-                                      "correct_velocities", "inverse_dynamics"};
+                                      "correct_velocities", "inverse_dynamics", "adjoint"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -119,9 +119,10 @@ void state_function(const ModelFile *f, const Prog *p, const char *name, const c
             "static int %s(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    "
             "const LAG_REAL *p, const LAG_REAL *u",
             name);
-  if (in) sb_printf(&head, ", const LAG_REAL *%s", own[n++] = in);
+  for (; in && *in; in++) sb_printf(&head, ", const LAG_REAL *%s", own[n++] = arena_strndup(f->a, in, 1));
+  int wraps = n > 7 || outputs > 2;
   for (uint32_t k = 0; k < outputs; k++)
-    sb_printf(&head, "%s LAG_REAL *%s", !k && (in || outputs > 2) ? ",\n   " : ",", own[n++] = written[k]);
+    sb_printf(&head, "%s LAG_REAL *%s", !k && wraps ? ",\n   " : ",", own[n++] = written[k]);
   sb_puts(&head, ", LAG_REAL *w)");
   own[n] = "w";
   CStyle st = model_style(f, own, written);
@@ -331,6 +332,18 @@ static void emit_partials(const ModelFile *f, const Prog *p, const IrEntry *at, 
             n ? table : "NULL", by);
 }
 
+static void emit_adjoint(const ModelFile *f) {
+  static const char *const written[] = {"by_y", "by_up", "d", NULL};
+  const ProgramSet *u = f->u;
+  state_function(f, u->adjoint, "adjoint",
+                 arena_printf(f->a, "Reverse mode: products g^T dF/dy and by inputs and parameters: %s.",
+                              op_count_text(u->adjoint, f->a)),
+                 "ag", written);
+  entries("formula_table", u->formulas_at.at, u->formulas_at.n, f->out);
+  sb_printf(f->out, "\nstatic const lag_adjoint adjoint_of = {%u, %s, adjoint};\n", u->formulas_at.n,
+            u->formulas_at.n ? "formula_table" : "NULL");
+}
+
 static void emit_linear(const ModelFile *f) {
   static const char *const written[] = {"dr", "M", NULL};
   const ProgramSet *u = f->u;
@@ -345,6 +358,7 @@ static void emit_linear(const ModelFile *f) {
   int sensitive = (u->wants & WANT_SENSITIVITY) == WANT_SENSITIVITY, params = sensitive && u->by_params,
       inputs = sensitive && u->by_inputs;
   if (params) emit_partials(f, u->by_params, u->by_params_dr.at, u->by_params_dr.n, "params");
+  if (u->adjoint) emit_adjoint(f);
   if (inputs) emit_partials(f, u->by_inputs, u->by_inputs_dr.at, u->by_inputs_dr.n, "inputs");
   sb_printf(f->out,
             "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval "
@@ -354,6 +368,7 @@ static void emit_linear(const ModelFile *f) {
   if (u->jumps) sb_printf(f->out, "  .njump = %u, .jump = jump_table, .jumps = jumps,\n", u->jump_at.n);
   if (params) sb_puts(f->out, "  .by_params = &params_partials,\n");
   if (inputs) sb_puts(f->out, "  .by_inputs = &inputs_partials,\n");
+  if (u->adjoint) sb_puts(f->out, "  .adjoint = &adjoint_of,\n");
   sb_puts(f->out, "};\n");
 }
 

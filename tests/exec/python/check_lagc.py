@@ -177,6 +177,35 @@ near("texts with units", double.linearize("swing", th1="180[deg]", th2=0).A[2, 0
 near("sensitivities by a name of its own", spring.sensitivity("k", "free", times=[1.0])["k"]["x"], -np.sin(2) / 4, 1e-9)
 raises("a wrong shape of accelerations", lagc.Error, "not (any, 4)", lambda: double.inverse_dynamics(0, [1, 2], [0, 0]))
 
+# ---- gradients by reverse mode ----
+g = spring.gradient("x", "free", x=0.7, until=1.25, tol=1e-12)  # x = 0.7 cos wt + v0/w sin wt, w = sqrt(k/m)
+want = [np.cos(2.5), np.sin(2.5) / 2, 0.7 * 1.25 * np.sin(2.5), -0.7 * 1.25 * np.sin(2.5) / 4]  # by x, x', m, k
+near("a spring: its closed form", [g.start["x"], g.start["x'"], g.parameters["m"], g.parameters["k"]], want, 1e-10)
+near("... and the value", g.value, 0.7 * np.cos(2.5), 1e-11)
+weight = np.array([[1, -2, 0.5, 3], [0.3, 1, 2, -1], [2, 1, -1, 0.25]])
+times = np.array([0.31, 0.8, 1.3])
+for method in ("rk45", "rk4(step=0.01)", "dop853"):  # rows within steps count as ends of shorter ones, as for tangents
+    tangents = [double.run("swing", times=[t], tangent=True, method=method).tangent for t in times]
+    g = double.gradient(lambda t, y: ((weight * y).sum(), weight), "swing", times=times, method=method)
+    forward = sum(w @ Y for w, Y in zip(weight, tangents))
+    near(f"{method}: the dot product of forward and reverse mode", g.by_start, forward, 1e-12 * np.max(np.abs(forward)))
+for model, scene, out, method, until in (("bouncing_ball", "drop", "y", "dop853", 1.5), ("henon_heiles", None, "x", "verlet4(step=0.02)", 3.01), ("kepler", None, "x", "verlet8(step=0.02)", 1)):
+    m = lagc.load(f"models/{model}.lag")
+    g = m.gradient(out, scene, method=method, until=until)
+    names = [k + "(0)" for k in g.start] + list(g.parameters)
+    r = m.run(scene, times=[until], method=method, sensitivity=names)
+    forward = np.array([r.sensitivity[k][out][0] for k in names])  # outputs are differentiated by differences of order 6
+    near(f"{model}, {method}: starts, events and parameters", [*g.start.values(), *g.parameters.values()], forward, 1e-11 * np.max(np.abs(forward)))
+path = os.path.join(os.environ["TMP"], "drive.lag")
+with open(path, "w") as f:  # an input's formula, parameters that follow others, a start by a parameter: x'' = -4 x + F/2 sin wt, x(0) = 2 x0, F = 2 f
+    f.write("model drive\nparam f = 1.5, F = 2*f, w = 1.5, x0 = 0.2\ncoord x\ninput u = F*sin(w*t)\nlagrangian = x'^2 - 4*x^2\nforce x = u\n"
+            "scene a { start x = 2*x0; span 3 [s]; tolerance 1e-11; output x }\n")
+g = lagc.load(path).gradient("x", until=2)
+drive = lambda f, w, x0: 2 * x0 * np.cos(4) + f * (np.sin(2 * w) - w / 2 * np.sin(4)) / (4 - w * w)
+near("inputs, formulas and starts: closed form", [g.parameters[k] for k in ("f", "w", "x0")], complex_step(lambda p: np.array([drive(*p)]), [1.5, 1.5, 0.2])[0], 1e-9)
+raises("a method without reverse mode", lagc.Error, "no reverse mode", lambda: double.gradient("x2", "swing", method="radau"))
+raises("an output that is none", lagc.Error, "did you mean x2?", lambda: double.gradient("x22", "swing"))
+
 # ---- other threads run meanwhile ----
 ticks, ended = [], threading.Event()
 
