@@ -1,7 +1,7 @@
-/* Reverse mode of a run: the steps and jumps of its tangent, recorded, and the sweep back over them. Enters: a run with a
- * record; leaves: gradients by starts and parameters. Holds: where a tangent would be multiplied by the derivative of a
- * step the record has the step, where by a saltation matrix that matrix (flow_tangent.c decides both), so the gradient is
- * the transpose of sensitivities, up to rounding. */
+/* Reverse mode of a run: the steps and jumps of its tangent, recorded, and the sweep back over them. Enters: a run with
+ * a record; leaves: gradients by starts and parameters. Holds: where a tangent would be multiplied by the derivative of
+ * a step the record has the step, where by a saltation matrix that matrix (flow_tangent.c decides both), so the
+ * gradient is the transpose of sensitivities, up to rounding. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,8 +109,8 @@ int lag_record_jump(lag_sim *s) {
 
 /* ---- The sweep */
 
-/* x[n]: dJ by the state; g[nu + np] by inputs and parameters, each as if it were free. Weights that are not used yet: the
- * first `rows`. */
+/* x[n]: dJ by the state; g[nu + np] by inputs and parameters, each as if it were free. Weights that are not used yet:
+ * the first `rows`. */
 typedef struct Sweep {
   lag_sim *s;
   int rows;
@@ -188,21 +188,22 @@ static int check_rows(lag_sim *s, int rows, const double *t) {
   const Run *r = s->run;
   for (int k = 0; k < rows; k++)
     if (!((t[k] - (k ? t[k - 1] : s->scene->t0)) * s->pb.dir >= 0 && (r->t - t[k]) * s->pb.dir >= 0))
-      return lag_fail(s, LAG_EINVAL, "time %d of a gradient, %s s, is not in order within the run, which is at t = %s s",
-                      k, LAG_TEXT(t[k]), LAG_TEXT(r->t));
+      return lag_fail(s, LAG_EINVAL,
+                      "time %d of a gradient, %s s, is not in order within the run, which is at t = %s s", k, LAG_TEXT(t[k]), LAG_TEXT(r->t));
   return LAG_OK;
 }
 
 int lag_sim_gradient(lag_sim *s, int rows, const double *t, const double *weight, double *by_start, double *by_p) {
   if (!s || rows < 0 || !t || !weight || !by_start || !by_p) return LAG_EINVAL;
-  if (!s->record) return lag_fail(s, LAG_EINVAL, "this run keeps no steps: lag_sim_record before its first advance");
+  if (!s->record)
+    return lag_fail(s, LAG_EINVAL, "this run keeps no steps: lag_sim_record before its first advance");
   int rc = check_rows(s, rows, t), n = s->pb.n, nu = s->pb.model->nu, nmodes = s->pb.model->nmodes;
   if (rc) return rc;
-  size_t ups = (size_t)(nu + s->pb.model->np), stride = (size_t)s->record->stride;
-  double calls = s->pb.rhs_calls,
-         *block = calloc(2 * (size_t)n + ups + stride + (size_t)nmodes + s->method->adjoint_size(&s->pb) + 1, sizeof *block);
+  size_t ups = (size_t)(nu + s->pb.model->np), stride = (size_t)s->record->stride,
+         size = 2 * (size_t)n + ups + stride + (size_t)nmodes + s->method->adjoint_size(&s->pb);
+  double calls = s->pb.rhs_calls, *block = calloc(size + 1, sizeof *block);
   if (!block) return lag_fail(s, LAG_ENOMEM, "out of memory");
-  Sweep w = {.s = s, .rows = rows, .t = t, .weight = weight, .x = block, .one = block + n, .g = block + 2 * n};
+  Sweep w = {s, rows, t, weight, .x = block, .one = block + n, .g = block + 2 * n};
   w.step = w.g + ups;
   double *modes = w.step + stride;
   w.scratch = modes + nmodes;

@@ -132,8 +132,8 @@ typedef struct lag_partials {
 } lag_partials;
 
 /* Reverse mode: for weights g[nq + nz] of the accelerations and of the rates of states, and accelerations a[nq], the
- * sums of g_i times their derivatives: by_y[2 nq + nz], by_up[nu + np] by inputs and parameters, each as if it were free;
- * and the derivatives d[n] of the inputs' formulas (row) by parameters (col). About three calls of accel. */
+ * sums of g_i times their derivatives: by_y[2 nq + nz], by_up[nu + np] by inputs and parameters, each as if it were
+ * free; and the derivatives d[n] of the inputs' formulas (row) by parameters (col). About three calls of accel. */
 typedef struct lag_adjoint {
   int n;
   const lag_entry *at; /* [n] */

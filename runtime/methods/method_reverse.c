@@ -15,12 +15,16 @@ size_t lag_reverse_size(const lag_problem *pb, int stages) {
   return (3 * (size_t)stages + 2) * n + (size_t)(m->nu + m->np + (of ? of->n : 0));
 }
 
-int lag_reverse_at(lag_problem *pb, double t, const double *y, const double *f, const double *x, double *out, double *g,
-                   double *room) {
+lag_reverse lag_reverse_layout(lag_problem *pb, double *g, double *scratch) {
+  return (lag_reverse){pb, g, scratch, scratch + pb->n, scratch + 2 * pb->n};
+}
+
+int lag_reverse_at(const lag_reverse *w, double t, const double *y, const double *f, const double *x, double *out) {
+  lag_problem *pb = w->pb;
   const lag_model *m = pb->model;
   const lag_adjoint *of = adjoint_of(m);
   int n = pb->n, nq = pb->nq, nu = m->nu;
-  double *by_up = room, *d = by_up + nu + m->np;
+  double *by_up = w->room, *d = by_up + nu + m->np, *g = w->g;
   if (!of) return lag_step_failed(pb, LAG_EMETHOD, t);
   int rc = lag_inputs_at(pb, t, y);
   rc = rc ? rc : of->eval(of, t, y, y + nq, y + 2 * nq, pb->p, pb->u, f + nq, x + nq, out, by_up, d, pb->work);
@@ -38,7 +42,8 @@ int lag_reverse_at(lag_problem *pb, double t, const double *y, const double *f, 
 int lag_reverse_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, double *x,
                          double *g, double *scratch) {
   int n = pb->n, last = tab->stages - 1, rc = LAG_OK;
-  double *ys = scratch, *f = ys + last * n, *X = f + last * n, *k = X + last * n, *room = k + n;
+  double *ys = scratch, *f = ys + last * n, *X = f + last * n;
+  const lag_reverse w = lag_reverse_layout(pb, g, X + last * n);
   for (int s = 0; s < last && rc == LAG_OK; s++) {
     double *y = ys + s * n;
     memcpy(y, y0, (size_t)n * sizeof *y);
@@ -47,11 +52,11 @@ int lag_reverse_explicit(const lag_tableau *tab, lag_problem *pb, double t0, dou
     rc = lag_step_rhs(pb, t0 + tab->c[s] * dt, y, f + s * n);
   }
   for (int s = last - 1; s >= 0 && rc == LAG_OK; s--) {
-    memset(k, 0, (size_t)n * sizeof *k);
-    lag_tangent_add(n, dt * tab->a[last][s], x, k);
+    memset(w.k, 0, (size_t)n * sizeof *w.k);
+    lag_tangent_add(n, dt * tab->a[last][s], x, w.k);
     for (int r = s + 1; r < last; r++)
-      if (tab->a[r][s] != 0.0) lag_tangent_add(n, dt * tab->a[r][s], X + r * n, k);
-    rc = lag_reverse_at(pb, t0 + tab->c[s] * dt, ys + s * n, f + s * n, k, X + s * n, g, room);
+      if (tab->a[r][s] != 0.0) lag_tangent_add(n, dt * tab->a[r][s], X + r * n, w.k);
+    rc = lag_reverse_at(&w, t0 + tab->c[s] * dt, ys + s * n, f + s * n, w.k, X + s * n);
   }
   for (int s = 0; s < last && rc == LAG_OK; s++) lag_tangent_add(n, 1, X + s * n, x);
   return rc;

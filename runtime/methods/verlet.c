@@ -196,15 +196,14 @@ static int places_of(const lag_problem *pb) { return 2 * table_of(pb)->stages + 
 static size_t adjoint_size(const lag_problem *pb) { return is_explicit(pb) ? lag_reverse_size(pb, places_of(pb)) : 0; }
 
 /* x[n] := transposed kick (of the second half by `part` of the rates f at y) or drift (of the first half). */
-static int reverse_part(lag_problem *pb, double t, double part, int is_kick, const double *y, const double *f, double *x,
-                        double *g, double *k, double *room) {
-  int n = pb->n, nq = half_of(pb), from = is_kick ? nq : 0;
-  double *out = room + pb->model->nu + pb->model->np + pb->model->linear->adjoint->n;
-  memset(k, 0, (size_t)n * sizeof *k);
-  lag_tangent_add(nq, part, x + from, k + from);
-  if (!is_kick && pb->nq) return lag_tangent_add(nq, 1, k, x + nq), LAG_OK;
-  int rc = lag_reverse_at(pb, t, y, f, k, out, g, room);
-  if (rc == LAG_OK) lag_tangent_add(n, 1, out, x);
+static int reverse_part(const lag_reverse *w, int is_kick, double t, double part, const double *y, const double *f,
+                        double *x) {
+  int n = w->pb->n, nq = half_of(w->pb), from = is_kick ? nq : 0;
+  memset(w->k, 0, (size_t)n * sizeof *w->k);
+  lag_tangent_add(nq, part, x + from, w->k + from);
+  if (!is_kick && w->pb->nq) return lag_tangent_add(nq, 1, w->k, x + nq), LAG_OK;
+  int rc = lag_reverse_at(w, t, y, f, w->k, w->out);
+  if (rc == LAG_OK) lag_tangent_add(n, 1, w->out, x);
   return rc;
 }
 
@@ -212,7 +211,8 @@ static int reverse_part(lag_problem *pb, double t, double part, int is_kick, con
 static int adjoint(lag_problem *pb, double t0, double dt, const double *y0, double *x, double *g, double *scratch) {
   const lag_composition *c = table_of(pb);
   int n = pb->n, nq = half_of(pb), places = places_of(pb), rc = is_explicit(pb) ? LAG_OK : LAG_EMETHOD;
-  double *ys = scratch, *f = ys + places * n, *k = f + places * n, *room = k + n, at = 0, times[2 * LAG_MAX_DRIFTS + 1];
+  double *ys = scratch, *f = ys + places * n, at = 0, times[2 * LAG_MAX_DRIFTS + 1];
+  const lag_reverse w = lag_reverse_layout(pb, g, f + places * n);
   memcpy(ys, y0, (size_t)n * sizeof *ys);
   for (int i = 0; i < places && rc == LAG_OK; i++) {
     double *y = ys + i * n, *rate = f + i * n;
@@ -225,8 +225,7 @@ static int adjoint(lag_problem *pb, double t0, double dt, const double *y0, doub
     else lag_tangent_add(nq, c->kick[i / 2] * dt, rate + nq, y + n + nq);
   }
   for (int i = places - 1; i >= 0 && rc == LAG_OK; i--)
-    rc = reverse_part(pb, times[i], dt * (i % 2 ? c->drift : c->kick)[i / 2], i % 2 == 0, ys + i * n, f + i * n, x, g, k,
-                      room);
+    rc = reverse_part(&w, i % 2 == 0, times[i], dt * (i % 2 ? c->drift : c->kick)[i / 2], ys + i * n, f + i * n, x);
   return rc;
 }
 

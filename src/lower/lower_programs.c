@@ -200,7 +200,8 @@ Prog *lower_linear(const Eqns *e, Partials dr, PartialsBy by) {
 }
 
 static Slot load_weight(Lower *l, uint32_t i) {
-  return prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = i, .name = arena_printf(l->p->arena, "x%u", i + 1)});
+  Name name = arena_printf(l->p->arena, "x%u", i + 1);
+  return prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = i, .name = name});
 }
 
 /* M w = x for the entries of M, which are lowered: by division where M is diagonal, else by one elimination. */

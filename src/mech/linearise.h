@@ -23,9 +23,10 @@ typedef struct {
  *   M dq'' - A^T dlambda = dr_i,   A dq'' = dr_(n + states + k). */
 Partials eqns_linearise(Eqns *e);
 
-/* Reverse mode for all at once: S = sum_i w_i r_i over the residuals above, with new symbols w[n + states]; the nonzero
- * derivatives of S by y, by inputs, and by parameters as in PartialsBy; and those of the inputs' formulas (row: input) by
- * parameters. Where M w = x for the first n, these are the products x^T dq''/dy and so on. Not for constraints. */
+/* Reverse mode for all at once: S = sum_i w_i r_i over the residuals above, with new symbols w[n + states]; the
+ * nonzero derivatives of S by y, by inputs, and by parameters as in PartialsBy; and those of the inputs' formulas (row:
+ * input) by parameters. Where M w = x for the first n, these are the products x^T dq''/dy and so on. Not for
+ * constraints. */
 typedef struct {
   const SymId *w;
   ExprPartials by_state, by_inputs, by_params;
