@@ -28,9 +28,8 @@ typedef struct Args {
   const char *period, *guess, *hold, *relative, *segments; /* for --orbit */
   const char *most; /* for --continue */
   int orbit, continues, branches;
-  int json, sketch, quiet, help, trace, no_rods, modes, linearize, equilibrium, steady, tangent, volume,
-      lyapunov, cost, reference, all, runs,
-      sweep, zip, go_on, yes, portrait, potential, distance, energy_error, no_monitors;
+  int json, sketch, quiet, help, trace, no_rods, modes, linearize, equilibrium, gradient, steady, tangent,
+      volume, lyapunov, cost, reference, all, runs, sweep, zip, go_on, yes, portrait, potential, distance, energy_error, no_monitors;
   char **sets; /* name=value, in order */
   int nsets;
   const char **scenes; /* all scenes named; scene is the first */
@@ -310,6 +309,10 @@ int lag_app_measures_end(App *app);
 void lag_app_measures_free(App *app);
 void lag_report_measures(const App *app, FILE *f);
 void lag_report_measures_json(const App *app, Json *j);
+/* gradient_report.c: --gradient. open: refuses what has none. */
+int lag_app_gradient_open(App *app);
+void lag_report_gradient(App *app, FILE *f);
+void lag_report_gradient_json(App *app, Json *j);
 
 /* error_report.c: the error of the run, by a second run. begin: before the run; 0, or EXIT_USAGE after a message.
  * end: after it. */

@@ -189,7 +189,8 @@ static int check_rows(lag_sim *s, int rows, const double *t) {
   for (int k = 0; k < rows; k++)
     if (!((t[k] - (k ? t[k - 1] : s->scene->t0)) * s->pb.dir >= 0 && (r->t - t[k]) * s->pb.dir >= 0))
       return lag_fail(s, LAG_EINVAL,
-                      "time %d of a gradient, %s s, is not in order within the run, which is at t = %s s", k, LAG_TEXT(t[k]), LAG_TEXT(r->t));
+                      "time %d of a gradient, %s s, is not in order within the run, which is at t = %s s", k,
+                      LAG_TEXT(t[k]), LAG_TEXT(r->t));
   return LAG_OK;
 }
 

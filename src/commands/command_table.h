@@ -63,6 +63,7 @@ typedef struct {
   OptionTexts scenes;      /* plot: all scenes named, each once */
   OptionTexts rest;        /* run, plot, animate: the simulator's arguments, the scene included; complete: the words */
   OptionTexts observe;     /* run --observe: expressions */
+  OptionTexts gradient;    /* run --gradient: EXPR, NAME=EXPR */
   OptionTexts measure;     /* run, plot, animate, sweep --measure: EXPR, NAME=EXPR */
   const char *section;     /* run, plot --section */
   OptionTexts y;           /* plot --y: expressions */
