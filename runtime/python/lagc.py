@@ -548,10 +548,15 @@ class Model:
         """Derivatives of a run's outputs by parameters and starts: run(sensitivity=names).sensitivity."""
         return self.run(scene, values, sensitivity=names, **more).sensitivity
 
-    def gradient(self, objective, scene=None, values=None, *, until=None, times=None, method=None, tol=None, step=None, **more):
+    def gradient(self, objective, scene=None, values=None, *, until=None, times=None, y0=None, p=None, method=None, tol=None, step=None, **more):
         """The gradient of one number by all starts and parameters, by reverse mode: some four runs, however many there are. objective: an output or a
-        component of the state, at the end of the run; or a function f(t, y) that gives J and dJ/dy[rows, n] of the states y[rows, n] at `times`, in SI units."""
-        method = method or "dop853"
+        component of the state, at the end of the run; or a function f(t, y) that gives J and dJ/dy[rows, n] of the states y[rows, n] at `times`, in SI units.
+        y0[n], p[np]: starts and parameters as arrays, in SI units, as for batch."""
+        method, s = method or "dop853", self._scene(scene)
+        for what, array, table in (("y0", y0, s.y), ("p", p, s.p)):
+            if array is not None:
+                given = _array(array, (len(table),), what)
+                values = {**{k: (x - offset) / factor for (k, (_, factor, offset)), x in zip(table.items(), given)}, **(values or {})}
         sim, _ = self._simulate(scene, values, more, method, tol, step, until, "derivatives")
         s, lib = sim.scene, sim.lib
         end = until if until is not None else times[-1] if times is not None and len(times) else s.t1

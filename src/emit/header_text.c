@@ -53,6 +53,8 @@ int header_has(const Header *h, HeaderFn f) {
     case FN_JAC: case FN_JVP: case FN_VJP: return (h->parts.parts & PART_JAC) != 0;
     case FN_LINEARIZE: return (h->parts.parts & PART_LINEAR) != 0;
     case FN_DPARAMS: return (h->parts.parts & PART_PARAMS) != 0;
+    case FN_OUTPUT_JACOBIAN: return (h->parts.parts & PART_OUTPUT_JACOBIAN) != 0;
+    case FN_ADJOINT_STEP: return (h->parts.parts & PART_ADJOINT) != 0;
     case FN_CONSTRAINTS: case FN_CONSTRAINT_JACOBIAN: return (h->parts.parts & PART_CONSTRAINTS) != 0;
     case FN_MULTIPLIERS:
       return u->constraints.of.n && (h->parts.parts & (PART_CONSTRAINTS | PART_JAC | PART_LINEAR | PART_PARAMS)) != 0;
@@ -109,6 +111,13 @@ const char *header_prototype(const Header *h, HeaderFn f) {
     case FN_CONSTRAINTS: return arena_printf(a, "int %s_constraints(%s, %s_REAL *c, %s_REAL *r)", m, state, R, R);
     case FN_CONSTRAINT_JACOBIAN: return arena_printf(a, "int %s_constraint_jacobian(%s, %s_REAL *A)", m, state, R);
     case FN_MULTIPLIERS: return arena_printf(a, "int %s_multipliers(%s, %s_REAL *lambda)", m, state, R);
+    case FN_OUTPUT_JACOBIAN:
+      return arena_printf(a, "int %s_output_jacobian(%s, %s_REAL *C%s)", m, state, R,
+                          h->u->u.n ? arena_printf(a, ", %s_REAL *D", R) : "");
+    case FN_ADJOINT_STEP:
+      return arena_printf(
+          a, "int %s_adjoint_step(const %s_params *p, const %s_state *s, %s_REAL h%s, %s_REAL *x, %s_REAL *g)", m, m, m,
+          R, u, R, R);
     case FN_COUNT: break;
   }
   return "";

@@ -204,7 +204,8 @@ static Slot load_weight(Lower *l, uint32_t i) {
   return prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = i, .name = name});
 }
 
-/* M w = x for the entries of M, which are lowered: by division where M is diagonal, else by one elimination. */
+/* M w = x for the entries of M, which are lowered: by division where M is diagonal, by Cramer's rule for two
+ * coordinates, else by one elimination. */
 static void solve_weights(Lower *l, Slot *w) {
   const Eqns *e = l->e;
   size_t n = e->n;
@@ -217,7 +218,13 @@ static void solve_weights(Lower *l, Slot *w) {
   }
   for (uint32_t i = 0; i < n; i++) x[i] = load_weight(l, i);
   for (uint32_t i = 0; i < n && diagonal; i++) w[i] = op(l, IR_DIV, x[i], M[i * n + i]);
-  if (!diagonal) prog_solve(l->p, (Solve){.n = e->n, .matrix = M, .rhs = x}, w);
+  if (!diagonal && n == 2) {
+    Slot square = op(l, IR_MUL, M[0], M[3]), det = prog_sub_product(l->p, square, M[1], M[1]);
+    for (uint32_t i = 0; i < 2; i++) {
+      Slot top = op(l, IR_MUL, x[i], M[3 - 3 * i]), less = prog_sub_product(l->p, top, M[1], x[1 - i]);
+      w[i] = op(l, IR_DIV, less, det);
+    }
+  } else if (!diagonal) prog_solve(l->p, (Solve){.n = e->n, .matrix = M, .rhs = x}, w);
 }
 
 static void store_partials(Lower *l, PartialsBy by, uint32_t array, uint32_t first, ExprPartials d) {

@@ -72,6 +72,33 @@ assert [[float(x) for x in row] for row in lines] == [a + b for a, b in zip(A + 
 P
 text() { "$LAGC" linearize "$TMP/pole.lag" up >"$TMP/text" && grep -q "^  th'' *= 16.35 th + 0.0952381 x' - 0.4761905 F$" "$TMP/text"; }
 check "as equations" text
+# The header's: exact, so to the rounding of a few operations.
+cat >"$TMP/header.c" <<'C'
+#define POLE_IMPLEMENTATION
+#include "pole.h"
+#include <stdio.h>
+int main(void) {
+  pole_params p;
+  pole_state s;
+  double u[POLE_NU], C[POLE_NOUT*POLE_NY], D[POLE_NOUT*POLE_NU];
+  pole_defaults(&p);
+  if (pole_start(&p, &s)) return 1;
+  pole_inputs(s.t, &p, u);
+  if (pole_output_jacobian(s.t, s.q, s.v, &p, u, C, D)) return 1;
+  for (int i = 0; i < POLE_NOUT; i++)
+    printf("%s[[%.17g, %.17g, %.17g, %.17g], %.17g]", i ? ", " : "{\"A\": 0, \"B\": 0, \"C\": 0, \"D\": 0, \"rows\": [", C[4*i], C[4*i + 1],
+           C[4*i + 2], C[4*i + 3], D[i]);
+  puts("]}");
+  return 0;
+}
+C
+header() { "$LAGC" header "$TMP/pole.lag" up --with outputs -o "$TMP/pole.h" && "$CC" -O0 -Wall -Werror "$TMP/header.c" -o "$TMP/header" -lm && "$TMP/header" >"$TMP/out.json"; }
+check "a header with the Jacobians of outputs" header
+holds header "C and D in C" <<'P'
+M, m, l, g, c = 3, 0.5, 0.7, 9.81, 0.2
+near([r[0] for r in o["rows"]], [[1, 0, 0, 0], [0, 1, 0, 0], [0, -m*g/M, -c/M, 0], [1, l, 0, 0]], 1e-14)
+near([[r[1]] for r in o["rows"]], [[0], [0], [1/M], [0]], 1e-14)
+P
 says() { "$LAGC" linearize "$2" $3 >"$TMP/out" 2>"$TMP/err"; [ $? = "$1" ] && grep -q -e "$4" "$TMP/err"; }
 if [ -n "${GSL:-}" ]; then
   json "$TMP/pole.lag" near --equilibrium

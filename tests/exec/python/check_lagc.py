@@ -203,6 +203,22 @@ with open(path, "w") as f:  # an input's formula, parameters that follow others,
 g = lagc.load(path).gradient("x", until=2)
 drive = lambda f, w, x0: 2 * x0 * np.cos(4) + f * (np.sin(2 * w) - w / 2 * np.sin(4)) / (4 - w * w)
 near("inputs, formulas and starts: closed form", [g.parameters[k] for k in ("f", "w", "x0")], complex_step(lambda p: np.array([drive(*p)]), [1.5, 1.5, 0.2])[0], 1e-9)
+y0, p = np.array([0.3, 0.5]), np.array([2.0, 8.0])  # of the spring, as arrays: J = x(1)^2
+g = spring.gradient(lambda t, y: ((y[-1, 0] ** 2), np.array([[2 * y[-1, 0], 0]])), "free", y0=y0, p=p, times=[1.0], tol=1e-11)
+square = lambda a: np.array([(a[0] * np.cos(np.sqrt(a[3] / a[2])) + a[1] / np.sqrt(a[3] / a[2]) * np.sin(np.sqrt(a[3] / a[2]))) ** 2])
+near("starts and parameters as arrays", [*g.by_start, *g.by_p], complex_step(square, [*y0, *p])[0], 1e-9)
+for library in ("jax", "torch"):  # where they are installed
+    try:
+        example = __import__(f"{library}_motion")
+    except ImportError:
+        continue
+    if library == "jax":
+        got = np.concatenate(example.jax.grad(lambda a, b: (example.of(spring, "free", [1.0])(a, b)[-1, 0]) ** 2, (0, 1))(y0, p))
+    else:
+        a, b = (example.torch.tensor(x, requires_grad=True) for x in (y0, p))
+        (example.Motion.apply(spring, "free", [1.0], a, b)[-1, 0] ** 2).backward()
+        got = np.concatenate([a.grad, b.grad])
+    near(f"through {library}", got, complex_step(square, [*y0, *p])[0], 1e-7)
 raises("a method without reverse mode", lagc.Error, "no reverse mode", lambda: double.gradient("x2", "swing", method="radau"))
 raises("an output that is none", lagc.Error, "did you mean x2?", lambda: double.gradient("x22", "swing"))
 
