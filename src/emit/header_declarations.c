@@ -166,8 +166,8 @@ static const char *const docs[FN_COUNT] = {
     [FN_OUTPUT_JACOBIAN] = "C[LAG_NOUT*LAG_NY], row by row: derivatives of the outputs of _observe by y = (q, v, z); "
                            "D[LAG_NOUT*LAG_NU] by the inputs.",
     [FN_ADJOINT_STEP] =
-        "The step of _rk4_step from *s, in reverse: for x[LAG_NY] = dJ/dy after the step x becomes dJ/dy before it, and\n"
-        " * g[LAG_NP] grows by dJ/dp, each parameter as if it were free. Keep the states of a run, and go back over them.",
+        "The step of _rk4_step from *s, in reverse: for x[LAG_NY] = dJ/dy after the step x becomes dJ/dy before it,\n"
+        " * and g[LAG_NP] grows by dJ/dp, each parameter as if it were free. Keep the states of a run, and go back.",
     [FN_CONSTRAINTS] =
         "Residuals of the constraints: c of those on positions, r of all on velocities (rates of the former first).",
     [FN_CONSTRAINT_JACOBIAN] =
