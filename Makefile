@@ -100,7 +100,7 @@ endif
 # Of runtime/numeric, the files that the compiler calls, too.
 SHARED   := action_integral consistent_state magnitudes option_range quadrature
 NOT_HERE := $(if $(WINDOWS),%/process.c %/clock.c %/threads.c,%windows.c)
-LAGC_SRC := $(filter-out src/main.c $(NOT_HERE),$(wildcard src/*.c src/*/*.c))
+LAGC_SRC := $(filter-out src/main.c src/playground/% $(NOT_HERE),$(wildcard src/*.c src/*/*.c))
 GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c toolchain/outfile.c $(if $(WINDOWS),base/windows.c) $(SHARED:%=numeric/%.c))
 RT_SRC   := $(filter-out runtime/gsl/% runtime/png/% runtime/hdf5/% runtime/mpi/% runtime/matlab/% runtime/page/% runtime/evaluator/lag_run.c $(NOT_HERE),$(wildcard runtime/*/*.c))
 GSL_SRC  := $(wildcard runtime/gsl/*.c)
@@ -311,7 +311,7 @@ run-demo: all
 gallery: all precisions
 	@sed -n 's|^Drawn by `build/lagc \(.*\)`:$$|$(BUILD)/lagc \1 --quiet|p' models/README.md | sh -e
 
-include tests/tests.mk .ci/install.mk .ci/page.mk
+include tests/tests.mk .ci/install.mk .ci/page.mk .ci/playground.mk
 
 # ---- the rest ---------------------------------------------------------------------------------------
 clean:

@@ -25,8 +25,8 @@ $(BUILD)/gen/page/live_page.txt: $(LIVE) runtime/io/page.html
 	sed -e '/@DRAWING@/{r $(@D)/drawing.js' -e 'd}' runtime/page/live.js >$(@D)/live.js
 	sed -e '/@MOTION@/{r runtime/page/motion.js' -e 'd}' -e '/@LIVE@/{r $(@D)/live.js' -e 'd}' runtime/page/live.html >$@
 $(eval $(call as_text,commands/live_page.h,$(BUILD)/gen/page/live_page.txt))
-$(BUILD)/obj/src/commands/page.o: $(BUILD)/gen/commands/live_page.h
+$(BUILD)/obj/src/commands/page.o $(BUILD)/obj/src/commands/playground.o: $(BUILD)/gen/commands/live_page.h
 
-page: all $(BUILD)/lag.wasm.gz
+page: all $(BUILD)/lag.wasm.gz $(BUILD)/lagc.wasm.gz
 
 -include $(WASM_OBJ:.o=.d)

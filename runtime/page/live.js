@@ -204,7 +204,8 @@ function frame(x, y, lo, hi, xname, yname, pen, w, h) {
   pen.fillStyle = colours[1]; pen.beginPath(); pen.arc(X(x.at(-1)), Y(y.at(-1)), 4, 0, 7); pen.fill();
   pen.restore();
 }
-const range = list => { let lo = Math.min(...list), hi = Math.max(...list); if (!(hi > lo)) { lo -= 0.5; hi += 0.5; } const m = 0.05*(hi - lo); return [lo - m, hi + m]; };
+// With room around it; roundings of a constant are none, and would need more ticks than doubles can count.
+const range = list => { let lo = Math.min(...list), hi = Math.max(...list); if (!(hi - lo > 1e-13*Math.max(hi, -lo))) { lo -= 0.5; hi += 0.5; } const m = 0.05*(hi - lo); return [lo - m, hi + m]; };
 const titled = i => names.outputs[i] ? names.outputs[i].name + (names.outputs[i].unit ? " [" + names.outputs[i].unit + "]" : "") : "";
 function plots() {
   const recent = track.slice(-1500);
@@ -236,6 +237,7 @@ function draw() {
 
 // ---- sharing: the state of the controls is the address's fragment
 function share() {
+  if (location.protocol == "about:") return; // the frame of a playground has no address
   const said = {scene: $("scene").value, effects: wanted(), method: settings.method, fine: +$("fine").value, values: settings.values, start: settings.start};
   history.replaceState(null, "", "#" + encodeURIComponent(JSON.stringify(said)));
 }
@@ -383,13 +385,29 @@ function wire() {
   new ResizeObserver(draw).observe($("picture"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
 }
+// The model's scenes, with one chosen, its effects, equations and text.
+function offer(chosen) {
+  $("scene").textContent = "";
+  for (const name of new Set(model.programs.map(p => p.scene))) $("scene").add(new Option(name, name));
+  if (isOf(chosen).length) $("scene").value = chosen;
+  effects();
+  $("source").textContent = model.source;
+  $("equations").querySelector("pre").textContent = model.equations;
+}
+// Another model from its start, in the same scene where it has that.
+function load(other) {
+  const chosen = $("scene").value;
+  model = other;
+  Object.assign(settings, {method: "", values: {}, start: {}});
+  offer(chosen);
+  choose();
+  restart();
+}
 async function main() {
   if (typeof WebAssembly == "undefined") return say("this browser has no WebAssembly, with which the page computes");
   const said = shared();
   wasm = await unpack(packed);
-  for (const name of new Set(model.programs.map(p => p.scene))) $("scene").add(new Option(name, name));
-  if (said && isOf(said.scene).length) $("scene").value = said.scene;
-  effects();
+  offer(said && said.scene);
   if (said) {
     settings.values = said.values || {};
     settings.start = said.start || {};
@@ -397,8 +415,6 @@ async function main() {
     $("fine").value = said.fine ?? $("fine").value;
     for (const box of document.querySelectorAll("#effects input")) box.checked = (said.effects || []).includes(box.value);
   } else $("fine").value = 55;
-  $("source").textContent = model.source;
-  if (model.equations) $("equations").querySelector("pre").textContent = model.equations; else $("equations").remove();
   choose();
   wire();
   restart();
@@ -413,7 +429,7 @@ async function main() {
 }
 // The page for other scripts: window.lagc.motion.state, .set("g", 3.7), .play(), .pause(), .reset(), .pass(seconds).
 window.lagc = {
-  get motion() { return motion; }, get picture() { return picture; }, get playing() { return playing; }, play, pause, reset: restart,
+  get motion() { return motion; }, get picture() { return picture; }, get playing() { return playing; }, play, pause, reset: restart, load,
   pass(seconds) { pass(seconds); draw(); },
   set(name, value) { settings.values[name] = value; go_on(); },
 };

@@ -2,7 +2,7 @@
 const fs = require("fs");
 const [wasm, script, page, scene, T] = process.argv.slice(2);
 const {Lag, Motion} = require(require("path").resolve(script));
-const model = JSON.parse(/const model = (\{[^]*?\});\nconst packed/.exec(fs.readFileSync(page, "utf8"))[1]);
+const model = JSON.parse(/let model = (\{[^]*?\});\nconst packed/.exec(fs.readFileSync(page, "utf8"))[1]);
 const lag = new Lag(new WebAssembly.Module(fs.readFileSync(wasm)));
 const bytes = Uint8Array.from(Buffer.from(model.programs.find(p => p.scene == scene).bytes, "base64"));
 if (process.env.DAMAGE) bytes[+process.env.DAMAGE % bytes.length] ^= 1 << +process.env.DAMAGE % 8;
