@@ -142,22 +142,23 @@ function record() {
   track.push(row);
   if (track.length > 4000) track.splice(0, 1000);
 }
-function pass(seconds) {
-  const dir = $("back").checked ? -1 : 1, t = motion.t + dir*seconds*+$("speed").value, began = performance.now();
+// For at most `time` [ms], so that a motion that is computed slower is shown slower.
+function pass(seconds, time = Infinity) {
+  const dir = $("back").checked ? -1 : 1, from = motion.t, t = from + dir*seconds*+$("speed").value, began = performance.now();
   try {
     if (motion.direction && motion.direction != dir) begin(motion.state, motion.t);
     motion.direction = dir;
-    const ended = motion.advance(t) > 0;
-    if (twin) twin.advance(t);
+    const ended = motion.advance_for(t, time) > 0;
+    if (twin) twin.advance_for(motion.t, time);
     if (ended) { say("an event ends the motion at t = " + short(motion.t) + " s"); pause(); }
   } catch (e) { say(e.message); pause(); }
   spent += performance.now() - began;
-  passed += Math.abs(seconds*+$("speed").value);
+  passed += Math.abs(motion.t - from);
   record();
 }
 function tick(now) {
   if (!playing) return;
-  pass(clamp(now - before, 0, 100)/1000);
+  pass(clamp(now - before, 0, 100)/1000, 40);
   before = now;
   draw();
   requestAnimationFrame(tick);
@@ -281,7 +282,7 @@ function look() {
   try {
     const trial = new Motion(lag, scene, options(settings.start, NaN));
     for (let k = 0; k <= parts && performance.now() - began < 200; k++) {
-      if (trial.advance(span.t0 + k*(span.t1 - span.t0)/parts) > 0) k = parts;
+      if (trial.advance_for(span.t0 + k*(span.t1 - span.t0)/parts, 100) > 0) k = parts;
       rows.push({t: trial.t, x: trial.outputs});
     }
     trial.free();
@@ -355,7 +356,7 @@ async function unpack(text) {
 }
 function wire() {
   $("play").onclick = () => playing ? pause() : play();
-  $("step").onclick = () => { pause(); pass(1/60); draw(); };
+  $("step").onclick = () => { pause(); pass(1/60, 1000); draw(); };
   $("reset").onclick = restart;
   $("scene").onchange = () => { settings.values = {}; effects(); choose(); restart(); share(); };
   $("method").onchange = () => { settings.method = $("method").value; fine(); go_on(); share(); };
