@@ -10,8 +10,8 @@ LAGC_WASM_FLAGS := -std=c11 -O2 -w -mbulk-memory -ftls-model=local-exec -ffp-con
 
 # Headers of src/playground in place of those of systems with jumps and files.
 LAGC_WASM_HEAD := $(BUILD)/gen/wasm/setjmp.h $(BUILD)/gen/wasm/base/posix.h
-$(BUILD)/gen/wasm/setjmp.h: src/playground/setjmp.h
-$(BUILD)/gen/wasm/base/posix.h: src/playground/posix.h
+$(BUILD)/gen/wasm/setjmp.h: src/playground/no_jumps.h
+$(BUILD)/gen/wasm/base/posix.h: src/playground/no_files.h
 $(LAGC_WASM_HEAD):
 	@mkdir -p $(@D)
 	cp $< $@

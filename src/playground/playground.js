@@ -2,7 +2,7 @@
 // modules, the live page and examples of playground.html; leaves: the page.
 const $ = id => document.getElementById(id);
 const bytesOf = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
-const PAUSE = 150, LIMITS = {derive: 10000, page: 20000, check: 20000, noether: 6000}; // [ms]
+const PAUSE = 150, LIMITS = {derive: 20000, page: 20000, check: 20000, noether: 6000}; // [ms]
 const COMMANDS = ["derive", "page", "check", "noether"];
 
 async function through(stream, bytes) {
@@ -36,7 +36,7 @@ function send(text, commands) {
 }
 function watch(command) {
   clearTimeout(timer);
-  timer = setTimeout(() => endWorker("this takes longer than " + LIMITS[command]/1000 + " s in a page; lagc itself is faster"), LIMITS[command]);
+  timer = setTimeout(() => endWorker("it takes longer than " + LIMITS[command]/1000 + " s in a page; lagc itself is faster"), LIMITS[command]);
 }
 function heard({id, command, begins, ends, answer, time}) {
   if (id != asked || !doing) return;
@@ -50,10 +50,13 @@ function heard({id, command, begins, ends, answer, time}) {
 }
 
 // ---- what is shown
-let messages = [], began = 0;
+const words = {derive: "equations", page: "motion", check: "checks", noether: "symmetries"};
+let messages = [], failures = [], began = 0;
 function show(command, result, time) {
   const ok = !result.failed && result.check.ok, put = (id, text) => { $(id).textContent = text; $(id).parentElement.hidden = !text; };
-  if (result.failed) say([{severity: "error", line: null, message: result.failed}]);
+  if (command == "derive") failures = [];
+  if (result.failed) failures.push({severity: "error", line: null, message: words[command] + ": " + result.failed});
+  if (result.failed) say(messages);
   else if (command == "derive" || command == "check") say(result.check.messages, result.check.messages_not_shown);
   if (command == "derive") {
     document.body.classList.toggle("stale", !ok);
@@ -61,7 +64,7 @@ function show(command, result, time) {
     if (ok) equations(result.text);
   } else if (command == "page" && ok) move(JSON.parse(result.text));
   else if (command == "check") put("proofs", ok ? result.check.report.join("\n").replaceAll("model.lag:", "line ") : "");
-  else if (command == "noether") put("symmetries", ok ? result.text.trim() : result.failed || "");
+  else if (command == "noether") put("symmetries", ok ? result.text.trim() : "");
 }
 function settled() { document.body.dataset.settled = asked; $("busy").hidden = true; }
 function equations(listing) {
@@ -75,7 +78,7 @@ function say(list, more = 0) {
   const box = $("messages");
   box.textContent = "";
   const lines = $("text").value.split("\n");
-  for (const m of list) {
+  for (const m of [...failures, ...list]) {
     const item = document.createElement("li"), words = document.createElement(m.line ? "button" : "p"), line = m.line && lines[m.line - 1];
     item.className = m.severity;
     words.textContent = (m.line ? m.line + ":" + m.column + " " : "") + m.severity + ": " + m.message;
@@ -83,7 +86,9 @@ function say(list, more = 0) {
     item.append(words);
     if (line !== undefined && line !== null) {
       const pre = document.createElement("pre"), n = m.end_line == m.line ? Math.max(1, m.end_column - m.column) : 1;
-      pre.textContent = line + "\n" + Array.from(line).slice(0, m.column - 1).map(c => c == "\t" ? c : " ").join("") + "^" + "~".repeat(n - 1);
+      const letters = Array.from(line), from = Math.max(0, m.column - 70), end = m.column + 70;
+      pre.textContent = (from ? "…" : "") + letters.slice(from, end).join("") + (end < letters.length ? "…" : "") + "\n" + (from ? " " : "") +
+        letters.slice(from, m.column - 1).map(c => c == "\t" ? c : " ").join("") + "^" + "~".repeat(Math.min(n, 70) - 1);
       item.append(pre);
     }
     for (const text of [m.help, m.note && m.note.message + (m.note.line ? " (line " + m.note.line + ")" : "")])
@@ -138,7 +143,7 @@ function move(model) {
 }
 function fit() {
   const page = $("motion").contentDocument;
-  if (page && page.body) new ResizeObserver(() => { $("motion").style.height = page.documentElement.scrollHeight + "px"; }).observe(page.body);
+  if (page && page.body) new ResizeObserver(() => { $("motion").style.height = page.body.offsetHeight + "px"; }).observe(page.body);
 }
 
 // ---- typing and sharing
