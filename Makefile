@@ -336,6 +336,7 @@ help:
 	@echo 'make fuzz-coverage  the share of lines of src/ir, src/mech and src/emit that its inputs reach'
 	@echo 'make coverage     the share of lines of each folder that the suites of make test reach, by gcov; T= as above'
 	@echo 'make mutants      plants one-token changes and prints those that no suite sees; N=100 SEED=1 JOBS=2 ONLY_IN=src/ir/ SUITES=unit,exec'
+	@echo 'make page         the WebAssembly modules of lagc page and lagc playground: needs Clang for wasm32-wasi'
 	@echo 'make gallery      draws the pictures of models/README.md'
 	@echo 'make install      PREFIX=/usr/local LIBDIR=PREFIX/lib INCLUDEDIR=PREFIX/include DESTDIR='
 	@echo 'make uninstall    the same, backwards'

@@ -63,7 +63,7 @@ function show(command, result, time) {
     $("took").value = ok ? "equations in " + Math.round(performance.now() - began) + " ms" : "";
     if (ok) equations(result.text);
   } else if (command == "page" && ok) move(JSON.parse(result.text));
-  else if (command == "check") put("proofs", ok ? result.check.report.join("\n").replaceAll("model.lag:", "line ") : "");
+  else if (command == "check") put("proofs", result.failed ? "" : result.check.report.join("\n").replaceAll("model.lag:", "line "));
   else if (command == "noether") put("symmetries", ok ? result.text.trim() : "");
 }
 function settled() { document.body.dataset.settled = asked; $("busy").hidden = true; }

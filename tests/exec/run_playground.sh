@@ -72,4 +72,22 @@ digits() {
 check "a double pendulum has the digits of lagc run" digits 7 models/double_pendulum.lag swing 5
 check "impacts of a ball" digits 8 models/bouncing_ball.lag drop 2
 check "an oscillator" digits 9 "$TMP/oscillator.lag" s 3
+
+for name in chromium chromium-browser google-chrome; do
+  command -v $name >/dev/null 2>&1 && browser=$name
+done
+typed() {
+  "$LAGC" playground "$TMP/oscillator.lag" -o "$TMP/play.html" || return
+  timeout 300 node tests/exec/playground_typed.js "$browser" "$TMP/profile" "$TMP/play.html" >"$TMP/facts"
+  sed "s/^/# /" "$TMP/facts"
+  is "a mistake that is typed, at its place" '4:27 error: unknown name `xx`; xx' "$(fact mistake)"
+  is "its repair: the false claim remains" '6; 1 of 2 expectations proved: for all states at which both sides have real values' "$(fact repaired)"
+  near "the motion: x = cos 2t, at the page's tolerance of 1e-9" 1e-8 0 "$(fact off)" # ten times it, for errors that add up
+  is "no errors of the script" "faults: " "$(grep '^faults' "$TMP/facts")"
+}
+if [ "${browser:-}" ]; then
+  slow typed
+elif [ "${SLOW:-}" ]; then
+  skip "playground in a browser" "no chromium"
+fi
 tap_end
