@@ -1,6 +1,6 @@
 # The WebAssembly module of playgrounds: the stages of lagc on one text in memory (src/playground), for where WASM is found (.ci/page.mk).
 # Without src/toolchain, fmu and the commands that need files or processes: the linker drops what no answer calls.
-LAGC_WASM_SRC := $(filter-out src/toolchain/% src/fmu/% src/commands/%,$(LAGC_SRC)) $(wildcard src/playground/*.c) \
+LAGC_WASM_SRC := $(filter-out src/toolchain/% src/fmu/% src/commands/% src/base/source_file.c,$(LAGC_SRC)) $(wildcard src/playground/*.c) \
   $(patsubst %,src/commands/%.c,check check_json compiler const_ranges effect_study noether page_model page_parts range required_derivatives run_request settings command_table)
 LAGC_WASM_GEN := $(filter-out toolchain/%,$(GEN_SRC:$(BUILD)/gen/%=%))
 LAGC_WASM_OBJ := $(LAGC_WASM_SRC:%.c=$(BUILD)/obj/wasm/%.o) $(LAGC_WASM_GEN:%.c=$(BUILD)/obj/wasm/gen/%.o)
@@ -27,6 +27,13 @@ $(BUILD)/lagc.wasm: $(LAGC_WASM_OBJ)
 	  -lc-printscan-long-double -lwasi-emulated-process-clocks -lm
 $(BUILD)/lagc.wasm.gz: $(BUILD)/lagc.wasm
 	gzip -9nc $< >$@
+
+# The files of models/lib as `library[]`, {name, text}.
+LIBRARY := $(sort $(wildcard models/lib/*.lag models/lib/*.csv))
+$(BUILD)/gen/playground/library.h: $(LIBRARY)
+	@mkdir -p $(@D)
+	@{ echo 'static const struct { const char *name, *text; } library[] = {'; for f in $^; do echo "{\"$${f##*/}\","; sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' $$f; echo '},'; done; echo '};'; } >$@
+$(BUILD)/obj/wasm/src/playground/library_files.o: $(BUILD)/gen/playground/library.h
 
 # The page of `lagc playground`: a frame with the scripts in it.
 PLAY := $(addprefix src/playground/,playground.html mathml.js answer.js worker.js playground.js)

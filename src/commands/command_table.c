@@ -284,7 +284,8 @@ static const CommandRow commands[] = {
      "Writes one HTML file that has lagc as WebAssembly: one types a model, and sees messages at their places, the "
      "equations, what is proved, the symmetries that a search finds, and the motion. It needs no network and no "
      "compiler; nothing is sent anywhere. It begins with MODEL, or offers some of the gallery. The text is in the "
-     "page's address, to be shared as a link; a model that includes files is for lagc itself."},
+     "page's address, to be shared as a link; of files that a model names it has "
+     "those of models/lib."},
     {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
      "Lists the methods of integration: their order, the quantities that they keep, their demands on a model, and "
      "their options."},

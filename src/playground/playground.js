@@ -79,12 +79,12 @@ function say(list, more = 0) {
   box.textContent = "";
   const lines = $("text").value.split("\n");
   for (const m of [...failures, ...list]) {
-    const item = document.createElement("li"), words = document.createElement(m.line ? "button" : "p"), line = m.line && lines[m.line - 1];
+    const item = document.createElement("li"), here = m.line && m.file == "model.lag", words = document.createElement(here ? "button" : "p"), line = here && lines[m.line - 1];
     item.className = m.severity;
-    words.textContent = (m.line ? m.line + ":" + m.column + " " : "") + m.severity + ": " + m.message;
-    if (m.line) { words.type = "button"; words.onclick = () => select(m); }
+    words.textContent = (here ? "" : m.line ? m.file + ":" : "") + (m.line ? m.line + ":" + m.column + " " : "") + m.severity + ": " + m.message;
+    if (here) { words.type = "button"; words.onclick = () => select(m); }
     item.append(words);
-    if (line !== undefined && line !== null) {
+    if (typeof line == "string") {
       const pre = document.createElement("pre"), n = m.end_line == m.line ? Math.max(1, m.end_column - m.column) : 1;
       const letters = Array.from(line), from = Math.max(0, m.column - 70), end = m.column + 70;
       pre.textContent = (from ? "…" : "") + letters.slice(from, end).join("") + (end < letters.length ? "…" : "") + "\n" + (from ? " " : "") +
@@ -118,7 +118,7 @@ function mark() {
   const text = $("text").value, back = $("back");
   back.textContent = "";
   let done = 0;
-  const places = messages.filter(m => m.line && m.severity != "note").map(m => [...placeOf(m), m.severity]).sort((a, b) => a[0] - b[0]);
+  const places = messages.filter(m => m.line && m.file == "model.lag" && m.severity != "note").map(m => [...placeOf(m), m.severity]).sort((a, b) => a[0] - b[0]);
   for (const [from, to, severity] of places) {
     if (from < done) continue;
     const mark = document.createElement("mark");

@@ -41,6 +41,7 @@ const char *playground_answer(const char *command, const char *text) {
   arena_guard(c.arena, &out_of_memory);
   c.o.command = command_named(command);
   compiler_begin(&c);
+  c.sources->library = "lib"; /* library_files.c */
   StrBuf said = strbuf(c.arena), out = strbuf(c.arena);
   if (!source_add(c.sources, c.o.file, text, strlen(text))) playground_fail();
   c.sources->files.at[0].is_file = 1;

@@ -32,6 +32,7 @@ END
 sed 's/k\*x^2/k*xx^2/' "$TMP/oscillator.lag" >"$TMP/mistake.lag"
 printf 'model deep\ncoord x\nlagrangian = x'"'"'^2/2 - %s\n' "$(awk 'BEGIN { for (i = 0; i < 3000; i++) printf "sin("; printf "x"; for (i = 0; i < 3000; i++) printf ")" }')" >"$TMP/deep.lag"
 printf 'include "other.lag"\nmodel m\ncoord x\nlagrangian = x'"'"'^2/2\n' >"$TMP/parts.lag"
+printf 'model m\ninclude "bodies.lag"\ncoord th\nlagrangian = hoop(2, 3)*th'"'"'^2/2\n' >"$TMP/library.lag"
 node tests/exec/playground_answers.js "$here/lagc.wasm" >"$TMP/answers" <<END
 check $TMP/oscillator.lag
 check $TMP/mistake.lag
@@ -42,6 +43,7 @@ check $TMP/parts.lag
 page models/double_pendulum.lag
 page models/bouncing_ball.lag
 page $TMP/oscillator.lag
+derive $TMP/library.lag
 END
 # as the command: `digits` are of long double, which differs
 same() { # NUMBER FILE
@@ -59,7 +61,9 @@ is "equations as MathML" "<tr><td><math>m l^2 θ¨</math></td><td><math>=−m l 
 is "names are no markup" '<mi mathvariant="normal">a&lt;b&gt;&amp;</mi>' "$(fact markup)"
 is "symmetries: energy and angular momentum" "Q1: energy, Q2: angular momentum" "$(fact symmetries)"
 is "a text too deep" "functions are nested 3000 deep here, and at most 2000 in one expression" "$(fact deep)"
-is "no files" '1:9 cannot read `other.lag`: a page has no files' "$(fact file)"
+is "no files" '1:9 cannot read `other.lag`: a page has no files but bodies.lag, quake.csv, road.csv' "$(fact file)"
+
+is "but those of the library: a hoop of mass 2 and radius 3 has m*r^2 = 18" "p_θ = 18 θ˙" "$(fact library)"
 
 # digits NUMBER FILE SCENE T: outputs at T of the program that the page compiled, moved in node, and of the run, as numbers.
 digits() {
