@@ -29,7 +29,7 @@ static int put_example(Compiler *c, const char *name, const char *path, StrBuf *
 static int put_examples(Compiler *c, StrBuf *out) {
   static const char *const shown[] = {"pendulum", "double_pendulum", "spring", "kepler", "bouncing_ball",
                                       "lagrange_top", "slider_crank", "stick_slip", "henon_heiles"};
-  const char *folder = gallery_folder(c->arena, c->argv0), *why = NULL;
+  const char *folder = gallery_find(c->arena, c->argv0).folder, *why = NULL;
   const char *own = c->o.file ? gallery_path(c->arena, c->argv0, c->o.file, &why) : NULL;
   sb_putc(out, '[');
   if (why) return usage_error(why), 0;
