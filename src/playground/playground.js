@@ -69,8 +69,9 @@ function show(command, result, time) {
 function settled() { document.body.dataset.settled = asked; $("busy").hidden = true; }
 function equations(listing) {
   const lines = listing.split("\n").filter(line => !line.startsWith("% accelerations"));
-  $("equations").innerHTML = listing.length < 30000 ? typeset(lines.join("\n"))
-    : "<p>" + Math.round(listing.length/1000) + " thousand characters of formulas: <code>lagc derive</code> prints them.</p>";
+  const long = "<p>The formulas have " + Math.ceil(listing.length/1000) + " thousand characters: <code>lagc derive</code> prints them.</p>";
+  try { $("equations").innerHTML = listing.length < 30000 ? typeset(lines.join("\n")) : long; }
+  catch { $("equations").innerHTML = long; } // too deep for the browser
 }
 // Messages as lagc prints them; each leads to its place.
 function say(list, more = 0) {
@@ -147,7 +148,7 @@ function fit() {
 }
 
 // ---- typing and sharing
-let waits = 0, busyAt = 0;
+let waits = 0;
 function typed() {
   clearTimeout(waits);
   mark();
@@ -166,9 +167,13 @@ function compile() {
   send(text, COMMANDS);
   share();
 }
+// A text in the address, where there is room for it.
 async function share() {
   const packed = await through(new CompressionStream("deflate-raw"), new TextEncoder().encode($("text").value));
-  history.replaceState(null, "", "#" + btoa(Array.from(packed, b => String.fromCharCode(b)).join("")).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", ""));
+  const room = packed.length < 50000;
+  try { history.replaceState(null, "", room ? "#" + btoa(Array.from(packed, b => String.fromCharCode(b)).join("")).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "") : "#"); }
+  catch { return false; } // some browsers allow few changes a second
+  return room;
 }
 async function shared() {
   try {
@@ -183,7 +188,19 @@ function save() {
   a.click();
   setTimeout(() => URL.revokeObjectURL(a.href), 1000);
 }
-function open(text) { $("text").value = text; $("text").scrollTop = 0; say([]); compile(); }
+// Another text, which the editor's undo takes back; long ones take browsers minutes that way.
+function open(text) {
+  const focused = document.activeElement;
+  $("text").focus();
+  $("text").select();
+  if (text.length > 20000 || !document.execCommand("insertText", false, text)) $("text").value = text;
+  $("text").setSelectionRange(0, 0);
+  $("text").scrollTop = 0;
+  if (focused && focused != document.body) focused.focus();
+  clearTimeout(waits);
+  say([]);
+  compile();
+}
 async function main() {
   if (typeof WebAssembly == "undefined") throw new Error("this browser has no WebAssembly, with which the page computes");
   for (const {name, title} of examples) $("examples").add(new Option(name.replaceAll("_", " ") + (title ? ": " + title : ""), name));
@@ -195,7 +212,7 @@ async function main() {
   $("examples").onchange = () => open(examples.find(e => e.name == $("examples").value).text);
   $("save").onclick = save;
   $("link").onclick = async () => {
-    await share();
+    if (!await share()) { $("took").value = "the text is too long for a link: save it"; return; }
     try { await navigator.clipboard.writeText(location.href); $("took").value = "the link is in the clipboard"; }
     catch { $("took").value = "the link is in the address bar"; }
   };
