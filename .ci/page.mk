@@ -26,9 +26,9 @@ $(BUILD)/gen/page/live_page.txt: $(LIVE) runtime/io/page.html
 	sed -e '/@DRAWING@/{r $(@D)/drawing.js' -e 'd}' $(@D)/numbers.js runtime/page/words.js runtime/page/typeset.js runtime/page/plots.js runtime/page/drag.js runtime/page/live.js >$(@D)/live.js
 	sed -e '/@MOTION@/{r runtime/page/motion.js' -e 'd}' -e '/@LIVE@/{r $(@D)/live.js' -e 'd}' runtime/page/live.html | sed 's/^  *//; /^\/\/ /d' >$@
 $(eval $(call as_text,commands/live_page.h,$(BUILD)/gen/page/live_page.txt))
-$(BUILD)/obj/src/commands/page.o: $(BUILD)/gen/commands/live_page.h
+$(BUILD)/obj/src/commands/page.o $(BUILD)/obj/src/commands/playground.o: $(BUILD)/gen/commands/live_page.h
 
-page: all $(BUILD)/lag.wasm.gz
+page: all $(BUILD)/lag.wasm.gz $(BUILD)/lagc.wasm.gz
 
 # The gallery as live pages: build/site/index.html.
 site: page

@@ -405,7 +405,7 @@ function look() {
   try {
     const trial = new Motion(lag, scene, options(settings.start, NaN));
     for (let k = 0; k <= parts && performance.now() - began < 200; k++) {
-      if (trial.advance(span.t0 + k*step) > 0) k = parts;
+      if (trial.advance_for(span.t0 + k*step, 100) > 0) k = parts;
       rows.push({t: trial.t, x: trial.outputs});
     }
     trial.free();
@@ -481,20 +481,35 @@ function show_recording(run) {
   show();
   $("play").click();
 }
+// Takes a model: its scenes, with one chosen, its effects, equations and text.
+async function offer(chosen) {
+  bytes = model.raw !== undefined ? bytes_of(model.raw) : copied(await unpack(parts));
+  more = JSON.parse(new TextDecoder().decode(bytes.subarray(model.more[0], model.more[0] + model.more[1])));
+  $("source").textContent = model.source;
+  $("scene").textContent = "";
+  for (const name of new Set(model.programs.map(p => p.scene))) $("scene").add(new Option(name, name));
+  if (isOf(chosen).length) $("scene").value = chosen;
+  effects();
+}
+// Another model from its start, in the same scene where it has that.
+async function load(other) {
+  const chosen = $("scene").value;
+  model = other;
+  Object.assign(settings, {method: "", values: {}, start: {}, moved: false});
+  await offer(chosen);
+  if ($("equations").open) equations();
+  choose();
+  restart();
+}
 async function main() {
   const said = shared(), query = new URLSearchParams(location.search);
   speak(query.get("lang") || said?.lang || navigator.language.slice(0, 2));
   $("language").value = language;
   if (query.get("controls") == "0") document.body.classList.add("plain");
-  $("source").textContent = model.source;
   named_play();
-  bytes = copied(await unpack(parts));
-  more = JSON.parse(new TextDecoder().decode(bytes.subarray(model.more[0], model.more[0] + model.more[1])));
+  await offer(said?.scene);
   if (typeof WebAssembly == "undefined") return show_recording(more.recording);
   wasm = await WebAssembly.compile(await unpack(packed));
-  for (const name of new Set(model.programs.map(p => p.scene))) $("scene").add(new Option(name, name));
-  if (said && isOf(said.scene).length) $("scene").value = said.scene;
-  effects();
   $("fine").value = 55;
   if (said) {
     settings.values = said.values || {};
@@ -520,7 +535,7 @@ async function main() {
 // The page for other scripts: window.lagc.motion.state, .set("g", 3.7), .play(), .pause(), .reset(), .pass(seconds).
 window.lagc = {
   get motion() { return motion; }, get picture() { return picture; }, get playing() { return playing; }, get horizon() { return horizon; }, get columns() { return columns; },
-  get track() { return track; }, get section() { return section; }, play, pause, reset: restart,
+  get track() { return track; }, get section() { return section; }, play, pause, reset: restart, load,
   pass(seconds) { pass(seconds); draw(); },
   set(name, value) { settings.values[name] = value; go_on(); },
 };

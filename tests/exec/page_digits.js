@@ -2,8 +2,9 @@
 const fs = require("fs");
 const [wasm, script, page, scene, T] = process.argv.slice(2);
 const {Lag, Motion, bytes_of, copied} = require(require("path").resolve(script));
-const [, text, parts] = /const model = (\{[^]*?\});\nconst parts = "([^"]*)/.exec(fs.readFileSync(page, "utf8")), packed = bytes_of(parts);
-const model = JSON.parse(text), all = copied(packed[0] == 0x1f ? new Uint8Array(require("zlib").gunzipSync(packed)) : packed); // lagc without zlib
+const [, text, parts] = /let model = (\{[^]*?\});\n(?:const parts = "([^"]*))?/.exec(fs.readFileSync(page, "utf8")), model = JSON.parse(text), packed = bytes_of(parts || "");
+const all = model.raw !== undefined ? bytes_of(model.raw) // of a playground
+  : copied(packed[0] == 0x1f ? new Uint8Array(require("zlib").gunzipSync(packed)) : packed); // lagc without zlib
 const lag = new Lag(new WebAssembly.Module(fs.readFileSync(wasm)));
 const found = model.programs.find(p => p.scene == scene), bytes = Uint8Array.from(all.subarray(found.at, found.at + found.n));
 if (process.env.DAMAGE) bytes[+process.env.DAMAGE % bytes.length] ^= 1 << +process.env.DAMAGE % 8;
