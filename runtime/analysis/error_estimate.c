@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 #include "numeric/line_fit.h"
 
 enum { PLACES_A_STEP = 4 };
@@ -201,12 +202,13 @@ static int is_exponential(Slope all, Slope late, Slope power_all, Slope power_la
  * none is told apart from others. Where a charge drifts, it is bounded never, and as t only where that fits well: it
  * grows by more later. rough: of a few errors, the nearest power. */
 static int power_of(Slope all, Slope late, int drifts, int rough) {
-  const double near = 0.35, sure = 0.4, well = 0.13, flat = 0.1, nearest = 0.45; /* by tests/accuracy/estimates.py */
+  const double near = 0.35, sure = 0.4, alike = 0.25, well = 0.13, flat = 0.1, nearest = 0.45; /* by estimates.py */
   int k = (int)lround(fmin(fmax(all.slope, 0), 9));
   double off = fabs(all.slope - k), off_late = fabs(late.slope - k);
   double most = fmax(all.slope + 1.5 * all.uncertain, late.slope + 2 * late.uncertain);
   if (rough) return all.slope < fmax(nearest, 2 * all.plain) ? 0 : k && k <= 2 && off < nearest ? k : -1;
   if (k == 0) return !drifts && most < flat ? 0 : -1; /* what decays does not grow */
+  if (fabs(all.slope - late.slope) > alike) return -1;
   if (k == 1 && drifts && fmax(off, fmax(off_late, late.uncertain)) > well) return -1;
   return k <= 2 && off < near && off_late + late.uncertain < sure ? k : -1;
 }
@@ -280,6 +282,7 @@ static void extrapolate(ErrorEstimate *e, double until, double level) {
   double rest = e->growth == LAG_ERROR_EXPONENTIAL ? fmin(left, t) : 0;
   e->known_to = rest < left ? e->t0 + dir * (t + rest) : until;
   if (!(rest > 0)) return;
+  e->floor *= 1 + rest / t;
   double reach = fmax(log(no_digit / level) / e->rate, 0);
   e->largest = fmin(e->largest * exp(e->rate * fmin(rest, reach)), fmax(e->largest, 1));
   if (reach < rest) e->horizon = e->t0 + dir * (t + reach);
@@ -306,9 +309,18 @@ static int is_confirmed(const ErrorEstimate *e, Parting *p, double t, double err
   return 0;
 }
 
+/* Error of the present state by the rounding of the time, half a unit in its last place: all runs share it. */
+static double clock_error(lag_sim *sim, const double *scale, double *rates) {
+  double t = sim->run->t, most = 0, calls = sim->pb.rhs_calls;
+  if (t == 0 || lag_rhs(&sim->pb, t, sim->now, rates)) return 0;
+  sim->pb.rhs_calls = calls;
+  for (int i = 0; i < sim->pb.n; i++) most = fmax(most, fabs(rates[i]) / scale[i]);
+  return most * ldexp(DBL_EPSILON / 2, ilogb(t));
+}
+
 /* Compares rows up to the end, the horizon, or where `other` stops. Two runs meet an event at times that differ by
  * their errors: rows between, where one has met it and the other has not, say nothing, unless they go on. */
-static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
+static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale, double *rates) {
   enum { LONG = 4 };
   Parting parting = {NAN, HUGE_VAL};
   double apart = 0, skipped = 0; /* of the counts of events; largest error of rows that differ */
@@ -330,6 +342,7 @@ static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
     if (n > 0) apart = now;
     e->error[i] = error;
     e->largest = fmax(e->largest, fmax(error, skipped));
+    e->floor = fmax(e->floor, clock_error(other, scale, rates));
     if (is_confirmed(e, &parting, e->motion.t[i], e->error[i], i + 1 == e->motion.rows)) e->horizon = parting.t;
   }
   return LAG_OK;
@@ -350,10 +363,11 @@ int lag_formula_is_lossy(const ErrorEstimate *e) {
 }
 
 int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
-  double *scale = calloc((size_t)e->motion.n + 1, sizeof *scale), power, level;
+  size_t n = (size_t)e->motion.n;
+  double *scale = calloc(2 * n + 1, sizeof *scale), power, level;
   int rc = scale ? lag_cost_scales(&e->motion, other, scale) : LAG_ENOMEM;
   if (rc == LAG_OK) rc = lag_formula_noise(other, &e->motion, &e->formula);
-  if (rc == LAG_OK) rc = compare_rows(e, other, scale);
+  if (rc == LAG_OK) rc = compare_rows(e, other, scale, scale + n);
   free(scale);
   if (rc == LAG_ENOMEM) return rc;
   find_growth(e, &power, &level);
@@ -374,6 +388,10 @@ void lag_error_estimate_reset(ErrorEstimate *e) {
   e->largest = e->horizon = e->known_to = NAN;
   e->growth = LAG_ERROR_UNKNOWN;
   e->why[0] = 0;
+}
+
+double lag_error_size(const ErrorEstimate *e) {
+  return isnan(e->largest) ? NAN : fmax(e->largest, fmax(e->floor, DBL_EPSILON));
 }
 
 int lag_error_estimate_is_blind(ErrorEstimate *e) {

@@ -27,6 +27,7 @@ typedef struct ErrorEstimate {
   int rough;             /* 1: errors at a few times only, where laws are a guess */
   int drifts;            /* 1: a charge of the run drifts with a trend */
   double largest;        /* largest error up to known_to; NaN: no estimate */
+  double floor;          /* error by the rounding of the time, which all runs share */
   double known_to;       /* the end of the run or of the second one, or beyond it where growth is exponential */
   double horizon;        /* NaN: not before known_to */
   FormulaNoise formula;  /* rounding that both runs share */
@@ -60,6 +61,9 @@ void lag_error_estimate_reset(ErrorEstimate *e);
 
 /* After a comparison: whether the motions are the same to the last bit. If so, *e is as before it, for another one. */
 int lag_error_estimate_is_blind(ErrorEstimate *e);
+
+/* After a comparison: the error up to known_to, of rounding at least; NaN: no estimate. */
+double lag_error_size(const ErrorEstimate *e);
 
 /* After a comparison: whether a formula has lost many digits. */
 int lag_formula_is_lossy(const ErrorEstimate *e);

@@ -57,10 +57,23 @@ static void normalise(int n, int c, double *C) {
   }
 }
 
-/* At y, t: L[n c] := the gradients of conserved charges, R[n *nr] := the direction of motion and those of
- * symmetries, in units and of length 1. */
+/* Whether state i only counts, as which foot stands: without events it keeps its value at the nodes, and each segment
+ * leaves a change of it as it is, but for its sign. */
+static int is_counter(PeriodicOrbit *o, int i) {
+  const double least = 1e-6;
+  for (int k = 0; k < o->m; k++)
+    if (lag_flow_rates(&o->flow, o->flow.t0, o->y + k * o->n, o->w) || o->w[i] != 0.0) return 0;
+  for (int e = 0; e < o->m * o->n; e++) {
+    double left = fabs(o->Phi[e * o->n + i]) * o->unit[i] / o->unit[e % o->n] - (e % o->n == i);
+    if (!(fabs(left) < least)) return 0;
+  }
+  return 1;
+}
+
+/* At y, t: L[n c] := the gradients of conserved charges, R[n *nr] := the direction of motion, those of symmetries and
+ * of counters, in units and of length 1. */
 static int invariants(PeriodicOrbit *o, double t, const double *y, double *L, double *R, int *nr) {
-  int n = o->n, c = o->ncharges, most = c + 1, rc = LAG_OK;
+  int n = o->n, c = o->ncharges, most = c + 1 + o->ngroup + n - 2 * o->flow.nq, rc = LAG_OK;
   double *d = o->x;
   *nr = 0;
   for (int k = 0; k < c && rc == LAG_OK; k++) {
@@ -71,6 +84,17 @@ static int invariants(PeriodicOrbit *o, double t, const double *y, double *L, do
     if (k < 0 ? o->flow.forced : o->charge[k] == 0) continue;
     if (lag_flow_field(&o->flow, k < 0 ? 0 : o->charge[k], t, y, d)) continue;
     for (int i = 0; i < n; i++) R[i * most + *nr] = d[i] / o->unit[i];
+    ++*nr;
+  }
+  for (int j = 0; j < o->ngroup; j++) {
+    const OrbitClosing *g = &o->group[j];
+    for (int i = 0; i < n && g->n; i++) R[i * most + *nr] = 0;
+    for (int i = 0; i < g->n; i++) R[g->shifted[i] * most + *nr] = 1 / o->unit[g->shifted[i]];
+    *nr += g->n > 0;
+  }
+  for (int s = 2 * o->flow.nq; s < n; s++) {
+    if (!is_counter(o, s)) continue;
+    for (int i = 0; i < n; i++) R[i * most + *nr] = i == s;
     ++*nr;
   }
   for (int i = 0; i < n; i++) /* rows of *nr elements, one behind the other */
@@ -107,7 +131,7 @@ static int quotient(Pool *pool, PeriodicOrbit *o, double t, const double *y, Bas
   *b = (Basis){n, n, lag_pool_doubles(pool, (size_t)(n * n))};
   rc = b->B ? lag_flow_tangent_basis(&o->flow, pool, t, y, o->unit, b->B, &b->k) : LAG_ENOMEM;
   double *L = lag_pool_doubles(pool, (size_t)(n * (o->ncharges + 1))),
-         *R = lag_pool_doubles(pool, (size_t)(n * (o->ncharges + 1)));
+         *R = lag_pool_doubles(pool, (size_t)(n * (o->ncharges + 1 + o->ngroup + n)));
   rc = pool->failed ? LAG_ENOMEM : rc;
   *all = b->k;
   rc = rc ? rc : invariants(o, t, y, L, R, &nr);

@@ -52,29 +52,60 @@ int lag_flow_set(FlowMap *f, const char *name, double value) {
   return renew_probe(f);
 }
 
-/* Whether the rates at the start change with time. */
+/* What a drive changes, n + nev: the rates, and the event functions, as of a contact with a plate that moves. */
+static int driven_numbers(const FlowMap *f) { return f->n + f->like->scene->model->nev; }
+
+static int driven_at(FlowMap *f, double t, const double *y, double *out) {
+  lag_sim *s = f->probe;
+  const lag_model *m = s->scene->model;
+  int rc = lag_rhs(&s->pb, t, y, out);
+  if (rc == 0 && m->nev)
+    rc = m->events(m, t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, out + f->n, s->work);
+  return rc;
+}
+
+/* Whether they change with time at the start. */
 static int depends_on_time(FlowMap *f) {
   static const double times[] = {0.1234567, 0.5772157, 2.7182818, 31.41592653};
-  if (lag_facts(&f->probe->pb) & LAG_AUTONOMOUS) return 0;
+  if (lag_facts(&f->probe->pb) & LAG_AUTONOMOUS && !f->like->scene->model->nev) return 0;
   for (int place = 0; place < 2; place++) {
     for (int i = 0; i < f->n; i++) f->at[i] = f->probe->now[i] + place * 0.1 * (1 + i % 3);
-    if (lag_rhs(&f->probe->pb, f->t0, f->at, f->up)) continue;
+    if (driven_at(f, f->t0, f->at, f->up)) continue;
     for (size_t k = 0; k < sizeof times / sizeof *times; k++)
-      if (lag_rhs(&f->probe->pb, f->t0 + times[k], f->at, f->down) ||
-          memcmp(f->up, f->down, (size_t)f->n * sizeof(double)) != 0)
+      if (driven_at(f, f->t0 + times[k], f->at, f->down) ||
+          memcmp(f->up, f->down, (size_t)driven_numbers(f) * sizeof(double)) != 0)
         return 1;
   }
   return 0;
 }
 
+int lag_flow_shifts(FlowMap *f, int k, const int *q) {
+  const double rounding = 1e-8; /* of light masses */
+  int seen = 0;
+  for (int place = 0; place < 5; place++) {
+    double t = f->t0 + 0.7548776662 * place, size = 0, off = 0;
+    for (int j = 0; j < f->n; j++)
+      f->at[j] = f->probe->begin[j] + 0.1 * ((place + j) % 3) * lag_difference_scale(&f->probe->pb, f->probe->begin, j);
+    if (driven_at(f, t, f->at, f->up)) continue;
+    for (int i = 0; i < k; i++) f->at[q[i]] += 0.37 * lag_difference_scale(&f->probe->pb, f->probe->begin, q[0]);
+    if (driven_at(f, t, f->at, f->down)) return 0;
+    for (int j = 0; j < driven_numbers(f); j++)
+      size = fmax(size, fabs(f->up[j])), off = fmax(off, fabs(f->up[j] - f->down[j]));
+    if (!(off <= rounding * size)) return 0;
+    seen = 1;
+  }
+  return seen;
+}
+
 int lag_flow_open(FlowMap *f, lag_sim *like) {
-  size_t n = (size_t)like->pb.n, nq = (size_t)like->pb.nq;
+  size_t n = (size_t)like->pb.n, nq = (size_t)like->pb.nq, driven = n + (size_t)like->scene->model->nev;
   const lag_constraints *of = like->scene->model->constraints;
   size_t rows = of ? (size_t)of->n : 0;
   *f = (FlowMap){.like = like, .n = like->pb.n, .nq = like->pb.nq, .t0 = like->scene->t0};
-  const lag_part parts[] = {{&f->at, n}, {&f->up, n}, {&f->down, n}, {&f->mass, nq * nq},
-      {&f->linear, lag_linear_work(like->scene->model) + 1}, {&f->room, n * n + (rows + 1) * (nq + 1)},
-      {&f->square, 2 * n * n + (nq + 1) * (nq + 1)}};
+  const lag_part parts[] = {{&f->at, n}, {&f->up, driven}, {&f->down, driven}, {&f->mass, nq * nq},
+      {&f->linear, lag_linear_work(like->scene->model) + 1}, {&f->room, n * n + (rows + 1) * (nq + 1) + driven},
+      {&f->square, 2 * n * n + (nq + 1) * (nq + 1)},
+      {&f->jumps, (size_t)lag_sim_ncharges(like) + 1}};
   lag_pool_parts(&f->pool, sizeof parts / sizeof *parts, parts);
   if (f->pool.failed) return keep_message(f, NULL, LAG_ENOMEM);
   int rc = renew_probe(f);
@@ -120,11 +151,49 @@ static int advance_with_tangent(FlowMap *f, lag_sim *sim, double t) {
   return lag_sim_advance(sim, t);
 }
 
+int lag_flow_differences(const FlowMap *f) { return f->like->scene->model->ncontacts > 0; }
+
+/* d[n] := derivative of the end by the start in direction b[n], column j of B[n k] in units: differences of order 4. */
+static int end_slope(FlowMap *f, double t, double dt, const double *y0, const double *b, int k, double *d) {
+  static const double weight[] = {2.0 / 3, -1.0 / 12};
+  const double h = 0x1p-11;
+  double *start = f->down, *end = f->square;
+  int rc = LAG_OK;
+  memset(d, 0, (size_t)f->n * sizeof *d);
+  for (int e = 0; e < 4 && rc == LAG_OK; e++) {
+    double off = (e % 2 ? -1 : 1) * (1 + e / 2) * h;
+    for (int i = 0; i < f->n; i++) start[i] = y0[i] + off * b[i * k] * f->at[i];
+    rc = lag_flow_run(f, t, dt, start, end, NULL);
+    for (int i = 0; i < f->n; i++) d[i] += (off < 0 ? -1 : 1) * weight[e / 2] * end[i] / h;
+  }
+  return rc;
+}
+
+/* Phi := derivatives of the end by the start, on the tangent space of the constraints: impacts have no tangent. */
+static int end_derivatives(FlowMap *f, double t, double dt, const double *y0, double *Phi) {
+  int n = f->n, k = 0;
+  Pool pool = {0};
+  double *B = lag_pool_doubles(&pool, (size_t)(n * n)), *d = lag_pool_doubles(&pool, (size_t)n);
+  for (int i = 0; i < n; i++) f->at[i] = lag_difference_scale(&f->probe->pb, y0, i);
+  int rc = B && d ? lag_flow_tangent_basis(f, &pool, t, y0, f->at, B, &k) : LAG_ENOMEM;
+  memset(Phi, 0, (size_t)(n * n) * sizeof *Phi);
+  for (int j = 0; j < k && rc == LAG_OK; j++) {
+    rc = end_slope(f, t, dt, y0, B + j, k, d);
+    for (int e = 0; e < n * n && rc == LAG_OK; e++) Phi[e] += d[e / n] * B[e % n * k + j] / f->at[e % n];
+  }
+  lag_pool_free(&pool);
+  return rc;
+}
+
 int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, double *Phi) {
+  int differences = Phi && lag_flow_differences(f), rc = differences ? end_derivatives(f, t, dt, y0, Phi) : LAG_OK;
+  if (rc) return rc;
   lag_sim *sim = lag_flow_sim(f, t, y0);
   if (!sim) return keep_message(f, NULL, LAG_ENOMEM);
-  int rc = Phi ? advance_with_tangent(f, sim, t + dt) : lag_sim_advance(sim, t + dt);
-  rc = rc || !Phi ? rc : lag_sim_tangent(sim, Phi);
+  rc = Phi && !differences ? advance_with_tangent(f, sim, t + dt) : lag_sim_advance(sim, t + dt);
+  rc = rc || !Phi || differences ? rc : lag_sim_tangent(sim, Phi);
+  for (int k = 0; k < lag_sim_ncharges(sim); k++)
+    if (sim->charges[k].jumped > 1e-12 * sim->charges[k].size) f->jumps[k] = 1;
   f->stopped = rc == LAG_STOPPED;
   if (f->stopped)
     snprintf(f->message, sizeof f->message, "an event ends the motion at t = %s s", LAG_TEXT(lag_sim_time(sim)));
@@ -144,7 +213,7 @@ enum { DRIVE_SAMPLES = 12, DRIVE_LOOKS = 4000 };
 static int sample_rates(FlowMap *f, int k, double t, double *rates) {
   for (int i = 0; i < f->n; i++)
     f->at[i] = f->probe->begin[i] + 0.1 * (k % 3) * lag_difference_scale(&f->probe->pb, f->probe->begin, i);
-  return lag_rhs(&f->probe->pb, t, f->at, rates);
+  return driven_at(f, t, f->at, rates);
 }
 
 /* Difference of the rates a time T later, relative to them, and *step: the change of T that makes it least, to first
@@ -155,9 +224,9 @@ static double drive_difference(FlowMap *f, double T, double *step) {
     double t = f->t0 + 0.7548776662 * (k + 0.3) * T / DRIVE_SAMPLES * 1.3;
     if (sample_rates(f, k, t, a) || sample_rates(f, k, t + T - h, b) || sample_rates(f, k, t + T + h, c))
       return HUGE_VAL;
-    for (int i = 0; i < f->n; i++) c[i] = (c[i] - b[i]) / (2 * h);
+    for (int i = 0; i < driven_numbers(f); i++) c[i] = (c[i] - b[i]) / (2 * h);
     if (sample_rates(f, k, t + T, b)) return HUGE_VAL;
-    for (int i = 0; i < f->n; i++) {
+    for (int i = 0; i < driven_numbers(f); i++) {
       off += (b[i] - a[i]) * (b[i] - a[i]);
       size += a[i] * a[i] + b[i] * b[i];
       along += (b[i] - a[i]) * c[i];
@@ -199,7 +268,9 @@ double lag_flow_find_drive(FlowMap *f, double longest) {
 
 int lag_flow_charges(const FlowMap *f) { return lag_sim_ncharges(f->probe); }
 
-int lag_flow_conserves(const FlowMap *f, int k) { return (lag_charge_flags(f->probe, k) & LAG_CONSERVED) != 0; }
+int lag_flow_conserves(const FlowMap *f, int k) {
+  return (lag_charge_flags(f->probe, k) & LAG_CONSERVED) && f->jumps[k] == 0;
+}
 
 double lag_flow_charge(FlowMap *f, int k, double t, const double *y) {
   lag_charges_at(f->probe, t, y);

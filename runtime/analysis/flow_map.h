@@ -16,6 +16,7 @@ typedef struct FlowMap {
   double value;
   lag_scene scene;                                        /* of the runs: the scene's, with another start of the span */
   int stopped;                                            /* 1: the last run was ended by an event */
+  double *jumps;                                          /* of each charge: 1: events changed it in a run */
   double *at, *up, *down, *mass, *linear, *room, *square; /* scratch */
   char message[600];                                      /* of the last failure */
 } FlowMap;
@@ -32,6 +33,8 @@ lag_sim *lag_flow_sim(FlowMap *f, double t, const double *y0);
 /* y1[n] := the state a time dt after y0[n] at t; Phi[n n], row-major, unless NULL := its derivative by y0. LAG_OK, or
  * a status with its message; LAG_STOPPED: an event ended the run before. */
 int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, double *Phi);
+/* Whether these derivatives are differences of runs, to some eight digits: of models with contacts. */
+int lag_flow_differences(const FlowMap *f);
 /* f[n] := y' at y, t. */
 int lag_flow_rates(FlowMap *f, double t, const double *y, double *rates);
 
@@ -41,7 +44,8 @@ int lag_flow_rates(FlowMap *f, double t, const double *y, double *rates);
 double lag_flow_drive(FlowMap *f, double *T);
 double lag_flow_find_drive(FlowMap *f, double longest);
 
-/* Number of charges, the energy first; whether charge k is conserved, by proof. */
+/* Number of charges, the energy first; whether charge k is conserved, by proof, and by the events of all runs so
+ * far. */
 int lag_flow_charges(const FlowMap *f);
 int lag_flow_conserves(const FlowMap *f, int k);
 /* Value of charge k at y, t; d[n] := its derivatives by y, by central differences of order 8. */
@@ -50,6 +54,9 @@ int lag_flow_gradient(FlowMap *f, int k, double t, const double *y, double *d);
 /* X[n] := the field of the symmetry of charge k at y, t: changes of coordinates M^-1 dQ/dv, and their rate; of the
  * energy, y'. LAG_EMETHOD: the model has no mass matrix. */
 int lag_flow_field(FlowMap *f, int k, double t, const double *y, double *X);
+/* Whether neither rates nor event functions change where coordinates q[k] are shifted by one amount, seen at some
+ * states and times. */
+int lag_flow_shifts(FlowMap *f, int k, const int *q);
 /* B[n *k] := an orthonormal basis of the tangent space of the constraints at y, t, components in unit[n]; without
  * constraints all of them. */
 int lag_flow_tangent_basis(FlowMap *f, Pool *pool, double t, const double *y, const double *unit, double *B, int *k);

@@ -255,6 +255,10 @@ static int phase_rows(PeriodicOrbit *o) {
     for (int i = 0; i < n && size > 0; i++) o->A[row * o->cols + i] = X[i] / o->unit[i] / sqrt(size);
     row++;
   }
+  for (int j = 0; j < o->ngroup; j++) {
+    for (int i = 0; i < o->group[j].n; i++) o->A[row * o->cols + o->group[j].shifted[i]] = 1;
+    row += o->group[j].n > 0;
+  }
   return rc;
 }
 
@@ -393,7 +397,10 @@ static int falling_step(PeriodicOrbit *o, double *size) {
   return rc < 0 ? rc : 0;
 }
 
-static double accepted(const PeriodicOrbit *o) { return fmax(rounding, 1e3 * o->flow.like->tol); }
+/* The residual that is a solution's; at impacts, where runs differ by more than rounding, a hundred times it. */
+static double accepted(const PeriodicOrbit *o) {
+  return fmax((lag_flow_differences(&o->flow) ? 100 : 1) * rounding, 1e3 * o->flow.like->tol);
+}
 
 static int newton(PeriodicOrbit *o) {
   double size = HUGE_VAL;
@@ -416,6 +423,7 @@ static int newton(PeriodicOrbit *o) {
 void lag_orbit_count(PeriodicOrbit *o) {
   int phases = !o->flow.forced;
   for (int k = 0; k < o->ncharges; k++) phases += o->charge[k] != 0;
+  for (int j = 0; j < o->ngroup; j++) phases += o->group[j].n > 0;
   o->rows = o->m * o->n + o->nheld + (o->continues ? phases : 0);
   o->cols = o->m * o->n + period_is_free(o) + o->ngroup + (o->continues != 0);
 }
@@ -424,7 +432,7 @@ static int allocate(PeriodicOrbit *o) {
   size_t n = (size_t)o->n, m = (size_t)o->m, size = (size_t)o->flow.nq + 1, group = (size_t)o->ngroup;
   size_t charges = (size_t)lag_flow_charges(&o->flow);
   lag_orbit_count(o);
-  size_t rows = m * n + (size_t)o->nheld + charges + 1, cols = m * n + 2 + group; /* with continuation */
+  size_t rows = m * n + (size_t)o->nheld + charges + group + 1, cols = m * n + 2 + group; /* with continuation */
   const lag_part parts[] = {{&o->y, m * n}, {&o->end, m * n}, {&o->Phi, m * n * n}, {&o->unit, n}, {&o->turns, n},
       {&o->affine, group * size * size + 1}, {&o->target, n}, {&o->G, n * n}, {&o->A, rows * cols}, {&o->b, rows},
       {&o->V, cols * cols}, {&o->sigma, cols}, {&o->x, cols + 2 * n}, {&o->saved, m * n * (charges + 2) + cols},
@@ -467,11 +475,22 @@ static int list_charges(PeriodicOrbit *o) {
   for (int k = 0; k < lag_flow_charges(&o->flow); k++)
     if (lag_flow_conserves(&o->flow, k)) o->charge[o->ncharges++] = k;
   for (int j = 0; j < o->ngroup && rc == LAG_OK; j++) {
-    rc = lag_flow_affine(&o->flow, o->group[j], o->flow.t0, o->y, o->affine + j * size * size);
-    if (rc)
+    const OrbitClosing *c = &o->group[j];
+    double *G = o->affine + j * size * size;
+    if (c->n) {
+      memset(G, 0, (size_t)(size * size) * sizeof *G);
+      for (int i = 0; i < c->n; i++) G[c->shifted[i] * size + size - 1] = 1;
+      if (!lag_flow_shifts(&o->flow, c->n, c->shifted)) rc = LAG_EMETHOD;
+    } else rc = lag_flow_affine(&o->flow, c->charge, o->flow.t0, o->y, G);
+    if (rc && c->n)
+      snprintf(o->flow.message, sizeof o->flow.message,
+               "--relative %s: the equations of motion or the events depend on where it is; coordinates that move "
+               "together are written with +: --relative x[1]+x[2]",
+               o->flow.like->scene->model->q[c->shifted[0]].name);
+    else if (rc)
       snprintf(o->flow.message, sizeof o->flow.message,
                "the symmetry of %s is not an affine map of the coordinates, such as a shift or a rotation",
-               o->flow.like->scene->model->charges->of[o->group[j]].name);
+               o->flow.like->scene->model->charges->of[c->charge].name);
   }
   return rc;
 }
@@ -494,11 +513,15 @@ static double miss(PeriodicOrbit *o) {
 static void guess_shifts(PeriodicOrbit *o) {
   enum { TRIES = 32, ROUNDS = 3 };
   const double half = acos(-1);
+  for (int j = 0; j < o->ngroup; j++) {
+    int i = o->group[j].shifted[0];
+    if (o->group[j].n) o->shift[j] = o->end[(o->m - 1) * o->n + i] - o->y[i];
+  }
   for (int j = 0; j < o->ngroup * ROUNDS; j++) {
     double *shift = &o->shift[j % o->ngroup], width = half / pow(TRIES / 2, j / o->ngroup), middle = *shift,
            best = middle;
     double least = miss(o);
-    for (int k = -TRIES; k <= TRIES; k++) {
+    for (int k = -TRIES; k <= TRIES && !o->group[j % o->ngroup].n; k++) {
       *shift = middle + width * k / TRIES;
       double off = miss(o);
       if (off < least) best = *shift, least = off;
@@ -684,7 +707,7 @@ int lag_orbit_refine(PeriodicOrbit *o) {
   for (int k = 2; k <= 7 && !o->ngroup && !o->at_rest; k++)
     if (is_back(o, k)) o->repeats = k;
   like->tol = like->pb.tol = fmax(tol / 100, 1e-15);
-  if (like->tol == tol) like->tol = like->pb.tol = 100 * tol;
+  if (like->tol == tol || lag_flow_differences(&o->flow)) like->tol = like->pb.tol = 100 * tol;
   int rc = lag_orbit_shoot(o, 1);
   rc = rc ? rc : lag_orbit_assemble(o);
   if (rc == LAG_OK) {

@@ -7,7 +7,7 @@
 
 #include "analysis/flow_map.h"
 
-enum { ORBIT_MOST_HELD = 16, ORBIT_MOST_GROUP = 8, ORBIT_TRACE = 8 };
+enum { ORBIT_MOST_HELD = 16, ORBIT_MOST_GROUP = 8, ORBIT_MOST_JOINT = 16, ORBIT_TRACE = 8 };
 
 typedef enum { ORBIT_STATE, ORBIT_CHARGE, ORBIT_PERIOD } OrbitHoldKind;
 
@@ -17,6 +17,12 @@ typedef struct OrbitHold {
   int of;
   double value;
 } OrbitHold;
+
+/* The symmetry of a charge, or the shift of n > 0 coordinates by one amount. */
+typedef struct OrbitClosing {
+  int charge;
+  int n, shifted[ORBIT_MOST_JOINT];
+} OrbitClosing;
 
 typedef struct PeriodicOrbit {
   Pool pool;
@@ -32,8 +38,10 @@ typedef struct PeriodicOrbit {
   int ncharges, *charge; /* conserved charges */
   int nheld;
   OrbitHold held[ORBIT_MOST_HELD];
-  int ngroup, group[ORBIT_MOST_GROUP]; /* charges whose symmetries close the motion */
-  double shift[ORBIT_MOST_GROUP];      /* their parameters */
+  /* what closes the motion: the symmetry of a charge, or a shift of coordinates, on which nothing depends */
+  int ngroup;
+  OrbitClosing group[ORBIT_MOST_GROUP];
+  double shift[ORBIT_MOST_GROUP]; /* their parameters */
   double *affine;                      /* [ngroup (nq + 1)^2] their generators */
   /* 1: one more unknown, `parameter`: the value that condition `led` keeps, or, for -1, that of the model's parameter
    * `name`; and rows that fix the phase and the place along symmetries */

@@ -100,7 +100,7 @@ int lag_app_choose_by_accuracy(App *app) {
     if (rc) return app->args.method ? lag_app_error(a, "%s", lag_sim_message(app->sim)) : rc;
     rc = try_setting(app, &e);
     int unknown = rc || !isnan(e.horizon) || isnan(e.largest) || e.continued || lag_formula_is_lossy(&e);
-    double error = unknown ? HUGE_VAL : fmax(e.largest, DBL_EPSILON); /* 0: both runs round alike */
+    double error = unknown ? HUGE_VAL : lag_error_size(&e);
     horizon = rc ? NAN : e.horizon;
     lag_error_estimate_free(&e);
     vain = best < HUGE_VAL && !(error < 0.5 * best) ? vain + 1 : 0; /* rounding, which smaller tolerances make larger */

@@ -24,7 +24,7 @@ static int meant_number(const char *text, int units, char *out, size_t size) {
   if (!n || n + letters > size - 8) return 0;
   if (text[n] == ',' && n + 1 + strspn(text + n + 1, "0123456789") == strlen(text))
     return snprintf(out, size, "%.*s.%s", (int)n, text, text + n + 1);
-  if (!letters || text[n + letters]) return 0;
+  if (!letters || text[n + letters] || (!units && text[n] != 's')) return 0;
   return units ? snprintf(out, size, "'%.*s[%s]'", (int)n, text, text + n)
                : snprintf(out, size, "%.*s, in s", (int)n, text);
 }

@@ -82,8 +82,8 @@ static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim
   return lag_app_copy_method(run, other, run->tol >= apart * least_tolerance ? tighter : apart);
 }
 
-/* Rounding has no law that is worth telling. */
-static int is_rounding(const ErrorEstimate *e) { return e->largest < 500 * DBL_EPSILON; }
+/* Near rounding, that of the second run is part of the error, and its law is not the run's. */
+static int is_rounding(const ErrorEstimate *e) { return e->largest < fmax(5e4 * DBL_EPSILON, e->floor); }
 
 /* Moves the start by four roundings, one of which the first sum may take away, up and down in turns. What cannot be
  * set stays. */
@@ -199,9 +199,6 @@ static int is_beyond(const App *app) {
   return isnan(app->error.horizon) && app->error.known_to != lag_sim_time(app->sim);
 }
 
-/* The number that text and JSON show: less than an epsilon is less than rounding makes in two runs alike. */
-static double shown(const ErrorEstimate *e) { return e->largest < DBL_EPSILON ? DBL_EPSILON : e->largest; }
-
 /* A formula cancels, in both runs alike. */
 static void put_lost_formula(const App *app, FILE *f) {
   const ErrorEstimate *e = &app->error;
@@ -209,7 +206,7 @@ static void put_lost_formula(const App *app, FILE *f) {
   fprintf(f,
           "the error is not known: the formula of %s%s cancels along this motion, and has lost digits in any run; two "
           "runs agree to %.1g. Write terms that cancel in another form, as 2*sin(x/2)^2 for 1 - cos(x)%s\n",
-          lag_state_column(app->sim, of).name, second ? "''" : "'", shown(e), LAG_MORE_PRECISION);
+          lag_state_column(app->sim, of).name, second ? "''" : "'", lag_error_size(e), LAG_MORE_PRECISION);
 }
 
 void lag_report_error(const App *app, FILE *f) {
@@ -229,7 +226,8 @@ void lag_report_error(const App *app, FILE *f) {
     return;
   }
   if (is_beyond(app)) fprintf(f, "the error is not known after t = %.3g s; up to there ", e->known_to);
-  fprintf(f, "%s%s %.1g", is_beyond(app) ? "" : "error ", e->largest >= DBL_EPSILON ? "about" : "below", shown(e));
+  double size = lag_error_size(e);
+  fprintf(f, "%s%s %.1g", is_beyond(app) ? "" : "error ", size > DBL_EPSILON ? "about" : "below", size);
   if (app->asked > 0) fprintf(f, " (asked %g)", app->asked);
   fprintf(f, "%s%s\n", is_rounding(e) ? "" : growth_text[growth_of(e)], from);
 }
@@ -237,12 +235,12 @@ void lag_report_error(const App *app, FILE *f) {
 void lag_report_error_json(const App *app, Json *j) {
   const ErrorEstimate *e = &app->error;
   int known = app->watched && !isnan(e->largest);
-  lag_json_number(j, "error", known && !is_beyond(app) && !lag_formula_is_lossy(e) ? shown(e) : NAN);
+  lag_json_number(j, "error", known && !is_beyond(app) && !lag_formula_is_lossy(e) ? lag_error_size(e) : NAN);
   lag_json_string(j, "error_growth", known && growth_of(e) ? lag_growth_name(growth_of(e)) : NULL);
   lag_json_number(j, "error_seen_to", app->watched && e->compared ? e->motion.t[e->compared - 1] : NAN);
   double to = lag_formula_is_lossy(e) ? app->scene->t0 : isnan(e->horizon) ? e->known_to : e->horizon;
   lag_json_number(j, "error_known_to", known ? to : NAN);
-  lag_json_number(j, "error_up_to_there", known ? shown(e) : NAN);
+  lag_json_number(j, "error_up_to_there", known ? lag_error_size(e) : NAN);
   lag_json_number(j, "formula_noise", known && e->formula.of >= 0 ? e->formula.part : NAN);
   lag_json_number(j, "horizon", app->watched ? e->horizon : NAN);
 }

@@ -40,15 +40,35 @@ static int add_held(App *app, PeriodicOrbit *o, const char *name, size_t n) {
   return 0;
 }
 
+/* shifted := the coordinates of name[n], x or x[1]+x[2]. Returns their number; 0: it names others. */
+static int coordinates_named(const App *app, const char *name, size_t n, int *shifted) {
+  int count = 0;
+  for (const char *s = name, *end = name + n; s < end && count < ORBIT_MOST_JOINT; count++) {
+    const char *plus = memchr(s, '+', (size_t)(end - s));
+    size_t length = (size_t)((plus ? plus : end) - s);
+    int i = lag_state_named(app, s, length);
+    if (i < 0 || i >= app->sim->pb.nq) return 0;
+    shifted[count] = i;
+    s += length + (plus != NULL);
+  }
+  return count;
+}
+
 static int add_group(App *app, PeriodicOrbit *o, const char *name, size_t n) {
   int charge = lag_charge_named(app, name, n);
   if (o->ngroup == ORBIT_MOST_GROUP) return lag_app_error(&app->args, "--relative: at most %d names", ORBIT_MOST_GROUP);
+  OrbitClosing *c = &o->group[o->ngroup];
+  c->charge = charge;
+  c->n = charge < 1 ? coordinates_named(app, name, n, c->shifted) : 0;
+  if (c->n) return o->ngroup++, 0;
   if (charge < 1 || !(app->scene->model->charges->of[charge].flags & LAG_CONSERVED))
-    return lag_app_error(&app->args,
-                         "--relative %.*s: write the charge of a symmetry that was proved and moves coordinates, such "
-                         "as an angular momentum; `lagc noether` lists them, and `symmetry` declares one",
-                         (int)n, name);
-  o->group[o->ngroup++] = charge;
+    return lag_app_error(
+        &app->args,
+        "--relative %.*s: write the charge of a symmetry that was proved and moves coordinates, such "
+        "as an angular momentum; `lagc noether` lists them, and `symmetry` declares one; or a coordinate on which "
+        "nothing depends, several that move together with + between",
+        (int)n, name);
+  o->ngroup++;
   return 0;
 }
 
@@ -236,6 +256,11 @@ static void put_free(FILE *f, const PeriodicOrbit *o) {
             o->nfree, o->nfree > 1 ? "s lead" : " leads", phase ? ", one of them along the motion" : "");
 }
 
+static const char *group_name(const App *app, const PeriodicOrbit *o, int j) {
+  const lag_model *m = app->scene->model;
+  return o->group[j].n ? m->q[o->group[j].shifted[0]].name : m->charges->of[o->group[j].charge].name;
+}
+
 static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
   char method[256], why[400], text[64];
   OrbitVerdict v = verdict_of(o);
@@ -246,9 +271,17 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
   else fprintf(f, ", error %.1g s", o->period_error);
   fprintf(f, "\nfound in %d step%s over %d segment%s; the motion closes to %.1g of its size\n", o->steps,
           o->steps == 1 ? "" : "s", o->m, o->m == 1 ? "" : "s", o->residual);
-  for (int j = 0; j < o->ngroup; j++)
-    fprintf(f, "relative: it closes after the symmetry of %s by %s\n", app->scene->model->charges->of[o->group[j]].name,
-            lag_number_text(o->shift[j], text));
+  for (int j = 0; j < o->ngroup; j++) {
+    int i = o->group[j].shifted[0];
+    if (!o->group[j].n)
+      fprintf(f, "relative: it closes after the symmetry of %s by %s\n", group_name(app, o, j),
+              lag_number_text(o->shift[j], text));
+    else
+      fprintf(f, "relative: %s moves on by %s %s in each period\n", group_name(app, o, j),
+              lag_number_text(lag_sim_declared(app->sim, i, o->shift[j]), text), app->scene->model->q[i].unit);
+  }
+  if (lag_flow_differences(&o->flow))
+    fputs("multipliers to about 8 digits: contacts have no tangent, and runs from beside the start replace it\n", f);
   put_free(f, o);
   if (o->repeats > 1)
     fprintf(f, "note: the motion comes back already after 1/%d of this period: --guess %s\n", o->repeats,
@@ -270,12 +303,16 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
   lag_json_number(&j, "period_error", o->flow.forced ? NAN : o->period_error);
   lag_json_number(&j, "residual", o->residual);
   lag_json_count(&j, "newton_steps", o->steps);
+  lag_json_string(&j, "multipliers_by", lag_flow_differences(&o->flow) ? "differences" : "tangent");
   lag_json_count(&j, "segments", o->m);
   lag_json_count(&j, "free_directions", o->nfree);
   lag_json_count(&j, "repeats", o->repeats > 1 ? o->repeats : 1);
   lag_json_begin(&j, "shifts", '{');
-  for (int k = 0; k < o->ngroup; k++)
-    lag_json_number(&j, app->scene->model->charges->of[o->group[k]].name, o->shift[k]);
+  for (int k = 0, i; k < o->ngroup; k++) {
+    i = o->group[k].shifted[0];
+    lag_json_number(&j, group_name(app, o, k),
+                    !o->group[k].n ? o->shift[k] : lag_sim_declared(app->sim, i, o->shift[k]));
+  }
   lag_json_end(&j, '}');
   lag_json_begin(&j, "start", '{');
   for (int i = 0; i < o->n; i++)

@@ -22,6 +22,7 @@
 
 #include "contacts/contact_set.h"
 #include "core/rhs.h"
+#include "kernels/band_matrix.h"
 #include "numeric/complementarity.h"
 #include "numeric/workspace.h"
 
@@ -75,23 +76,29 @@ static int make_room(ContactSet *w) {
   const lag_model *m = w->sim->scene->model;
   const lag_constraints *of = m->constraints;
   size_t p = (size_t)m->ncontacts, n = (size_t)of->n, nq = (size_t)m->nq;
+  size_t apart = (w->band = lag_contacts_band(m)) < 0 ? 0 : nq;
   const lag_part parts[] = {{&w->gap, p}, {&w->rate, p}, {&w->gap_size, p}, {&w->rate_size, p}, {&w->g, n},
       {&w->c, n}, {&w->r, n}, {&w->d, nq}, {&w->force, nq}, {&w->test, (size_t)w->sim->pb.n},
       {&w->events, (size_t)(m->nev + m->nmodes)}, {&w->ahead, p}, {&w->A, (size_t)of->njacobian},
       {&w->mass, (size_t)of->nmass}, {&w->law, 3 * p + 4 * (size_t)m->nguides}, {&w->side, p},
-      {&w->pressed, 3 * (size_t)m->nguides * (p + 1)}};
+      {&w->pressed, 3 * (size_t)m->nguides * (p + 1)}, {&w->pivot, apart}, {&w->diagonal, apart},
+      {&w->lu, apart ? (size_t)lag_band_matrix_size(m->nq, w->band) : 0}};
   w->block = lag_workspace(sizeof parts / sizeof *parts, parts);
+  w->row = calloc(n + 2 + (size_t)of->njacobian, sizeof *w->row);
   w->of = calloc(p, sizeof *w->of);
   w->at = calloc(p, sizeof *w->at);
   w->active = calloc(4 * p, 1);
   w->closed = w->active + p;
   w->was_closed = w->closed + p;
   w->follows = w->was_closed + p;
-  return w->block && w->of && w->at && w->active ? LAG_OK : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  if (!w->block || !w->row || !w->of || !w->at || !w->active) return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  lag_contacts_list_entries(w);
+  return LAG_OK;
 }
 
 static void free_contacts(ContactSet *w) {
   free(w->block);
+  free(w->row);
   free(w->of);
   free(w->at);
   free(w->active);
@@ -142,28 +149,16 @@ static int evaluate_contacts(lag_sim *s, double *y, ContactSet *w) {
   if (rc == 0 && m->contact_laws) rc = lag_contact_laws(s, y, w->law);
   rc = rc ? rc
           : m->constraints->matrices(m->constraints, t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->mass, pb->work);
+  lag_contacts_factor_mass(w);
   return rc ? lag_contacts_no_values(w, 0) : LAG_OK;
 }
 
-/* Change of the rate of contact i by a change d of velocities; A: entries of the Jacobian. */
-static double rate_change(const lag_model *m, const double *A, int i, const double *d) {
-  const lag_constraints *of = m->constraints;
-  double s = 0;
-  for (int e = 0; e < of->njacobian; e++)
-    s += of->jacobian[e].row == m->contacts[i].constraint ? A[e] * d[of->jacobian[e].col] : 0;
-  return s;
-}
-
-static double change_of_rate(const ContactSet *w, int i, const double *d) {
-  return rate_change(w->sim->scene->model, w->A, i, d);
-}
-
-/* contact.c: the coefficient of restitution of contact i, from Newton's law in the model for a state y whose
- * velocities are changed by d[nq] times -(rate + speed), so that the gap closes with `speed`. rate: of its gap at y,
- * t; d changes that by 1; pb->u: this contact is closed, others are open; A: entries of the Jacobian; before[n],
- * after[n] are scratch. NaN: there is none. */
+/* The coefficient of restitution of contact i, from Newton's law in the model for a state y whose velocities are
+ * changed by d[nq] times -(rate + speed), so that the gap closes with `speed`. rate: of its gap at y, t; d changes that
+ * by 1; pb->u: this contact is closed, others are open; A: entries of the Jacobian; before[n], after[n] are scratch.
+ * NaN: there is none. */
 static double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed,
-                                      const double *d, const double *A, double *before, double *after) {
+                               const double *d, const double *A, double *before, double *after) {
   const lag_model *m = pb->model;
   int nq = m->nq, stop = 0;
   size_t bytes = (size_t)pb->n * sizeof *y;
@@ -174,43 +169,7 @@ static double lag_contact_restitution(lag_problem *pb, double t, const double *y
              after + 2 * nq, &stop, pb->work))
     return NAN;
   for (int j = 0; j < nq; j++) before[nq + j] = after[nq + j] - before[nq + j];
-  return rate_change(m, A, i, before + nq) / speed - 1;
-}
-
-/* Whether a change d of velocities, d M d = square, keeps the constraints that always hold: it does not where they
- * imply the row that d moves, and the solver has left out one of theirs. Rates are measured by those of free
- * coordinates. */
-static int keeps_constraints(const ContactSet *w, const double *d, double square) {
-  const double alike = 1e-6;
-  const lag_model *m = w->sim->scene->model;
-  const lag_constraints *of = m->constraints;
-  double *rate = w->c, *free = w->r;
-  memset(rate, 0, (size_t)of->n * sizeof *rate);
-  memset(free, 0, (size_t)of->n * sizeof *free);
-  for (int e = 0; e < of->njacobian; e++) {
-    const lag_entry *at = &of->jacobian[e];
-    double mass = 0;
-    for (int k = 0; k < of->nmass; k++)
-      mass += of->mass[k].row == at->col && of->mass[k].col == at->col ? w->mass[k] : 0;
-    rate[at->row] += w->A[e] * d[at->col];
-    free[at->row] += mass > 0 ? w->A[e] * w->A[e] / mass : HUGE_VAL;
-  }
-  for (int i = 0; i < m->ncontacts; i++) rate[m->contacts[i].constraint] = 0;
-  for (int k = 0; k < of->n; k++)
-    if (rate[k] * rate[k] > alike * alike * square * free[k]) return 0;
-  return 1;
-}
-
-double lag_contacts_response(ContactSet *w, int i) {
-  lag_problem *pb = &w->sim->pb;
-  int nq = pb->nq, k = w->sim->scene->model->contacts[i].constraint;
-  double s = 0;
-  lag_contacts_close_only(w, 0, i);
-  memset(w->g, 0, (size_t)pb->model->constraints->n * sizeof *w->g);
-  w->g[k] = 1;
-  if (lag_least_change(pb, w->sim->run->t, w->y, 0, w->g, w->d, w->force)) return NAN;
-  for (int j = 0; j < nq; j++) s += w->d[j] * w->force[j];
-  return isnan(s) || (lag_row_moves(change_of_rate(w, i, w->d)) && keeps_constraints(w, w->d, s)) ? 1 / s : 0;
+  return lag_contacts_rate_change(m, A, i, before + nq) / speed - 1;
 }
 
 static double restitution_at(ContactSet *w, int i, double speed) {
@@ -223,30 +182,10 @@ static double restitution_at(ContactSet *w, int i, double speed) {
 static double restitution(ContactSet *w, int i) {
   const double same = 1e-6, roundings = 1e4 * DBL_EPSILON;
   double to = lag_contacts_response(w, i), typical = w->rate_size[i] > 0 ? w->rate_size[i] : 1;
-  if (!(to > 0)) return NAN;
+  lag_contacts_close_only(w, 0, i);
+  if (!(to > 0) || lag_inputs(&w->sim->pb, w->sim->run->t)) return NAN;
   double e = restitution_at(w, i, typical), now = w->rate[i] < 0 ? restitution_at(w, i, -w->rate[i]) : e;
   return fabs(now - e) > fmax(same, roundings * typical / -w->rate[i]) ? now : e;
-}
-
-/* Computes W for the contacts of[n]. */
-static int find_responses(ContactSet *w) {
-  size_t n = (size_t)w->rows;
-  double *x = w->response = calloc(2 * n * n + 3 * n + 1, sizeof *x);
-  if (!x) return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
-  w->lcp = x + n * n;
-  w->rhs = w->lcp + n * n;
-  w->impulse = w->rhs + n;
-  w->scale = w->impulse + n;
-  for (int a = 0; a < w->rows; a++) {
-    double to = lag_contacts_response(w, w->of[a]);
-    if (!isfinite(to)) return lag_contacts_no_values(w, w->of[a]);
-    for (int b = 0; b < w->rows; b++) w->response[b * w->rows + a] = to * change_of_rate(w, w->of[b], w->d);
-    w->response[a * w->rows + a] = to;
-  }
-  for (int k = 0; k < w->rows * w->rows; k++) /* what constraints imply, others do not move either */
-    if (!(w->response[k / w->rows * (w->rows + 1)] > 0 && w->response[k % w->rows * (w->rows + 1)] > 0))
-      w->response[k] = 0;
-  return LAG_OK;
 }
 
 /* ---- complementarity */
@@ -316,13 +255,32 @@ static int impact(ContactSet *w, const double *e, const unsigned char *struck) {
 
 /* ---- forces */
 
-/* pull[n] := acceleration of each open gap: -(force if this contact alone is closed) * (its response). */
-static int find_pulls(ContactSet *w) {
+/* Whether contact b and those of the group move each other by no more than rounding. */
+static int is_apart(const ContactSet *w, const unsigned char *group, int b) {
+  const double *W = w->response, own = W[b * w->n + b];
   for (int a = 0; a < w->n; a++) {
-    lag_contacts_close_only(w, 0, w->of[a]);
+    double both = W[a * w->n + b] * W[b * w->n + a], square = DBL_EPSILON * DBL_EPSILON * own * W[a * w->n + a];
+    if (group[a] && !(own > 0 && W[a * w->n + a] > 0 && fabs(both) <= square)) return 0;
+  }
+  return 1;
+}
+
+/* pull[n] := acceleration of each open gap: -(force if this contact alone is closed) * (its response). Contacts that
+ * do not move each other are closed together. */
+static int find_pulls(ContactSet *w) {
+  const int n = w->n;
+  unsigned char *done = w->follows, *group = w->closed;
+  memset(done, 0, (size_t)n);
+  for (int a = 0; a < n; a++) {
+    if (done[a]) continue;
+    memset(group, 0, (size_t)n);
+    for (int b = a; b < n; b++)
+      if (!done[b] && is_apart(w, group, b)) group[b] = done[b] = 1;
+    close_contacts(w, group);
     int rc = lag_events_eval(w->sim, w->sim->run->t, w->y, w->events);
     if (rc) return rc;
-    w->rhs[a] = -w->response[a * w->n + a] * w->events[lag_contacts_at(w, a)->release];
+    for (int b = a; b < n; b++)
+      if (group[b]) w->rhs[b] = -w->response[b * n + b] * w->events[lag_contacts_at(w, b)->release];
   }
   return LAG_OK;
 }
@@ -523,7 +481,7 @@ static int resolve_contacts(ContactSet *w, const char *who, int event, int last)
   size_t n = (size_t)w->n, others = (size_t)w->sim->pb.n + (size_t)w->sim->scene->model->ncontacts;
   double *room = calloc(3 * n + others, sizeof *room), *y = room + 3 * n;
   unsigned char *ends = calloc(3 * n + 1, 1);
-  rc = room && ends ? find_responses(w) : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  rc = room && ends ? lag_contacts_find_responses(w) : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
   for (size_t a = 0; a < n && rc == 0; a++) ends[a] = last && lag_contacts_at(w, (int)a)->impact == event;
   rc = rc ? rc : lag_guides_stop(w, event);
   rc = rc ? rc : strike_and_rest(w, event, ends, room, room + n, room + 2 * n, ends + n, y, y + w->sim->pb.n);

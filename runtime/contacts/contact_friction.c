@@ -28,80 +28,48 @@ static double side_of(const lag_problem *pb, int i) {
   return pb->model->contacts[i].is_tangent ? pb->hold[pb->model->contacts[i].force] : NAN;
 }
 
-/* Tangents that slip, of contacts and guides: force x, laws x + side mu |N| = 0 with N = N0 + sum C[.][j] x[j], of a
- * contact one component along `toward` = 1, of a guide with |N| along its own direction. */
+/* The friction of tangents that slip, of contacts and guides: kernels/slipping_forces.h for a lag_problem. */
+typedef struct lag_slipping lag_slipping;
 typedef struct Slipping {
-  int n, of[LAG_MOST_TOUCHES], parts[LAG_MOST_TOUCHES];
-  double mu[LAG_MOST_TOUCHES], N[LAG_MOST_TOUCHES][3], toward[LAG_MOST_TOUCHES][3];
-  double C[LAG_MOST_TOUCHES][3][LAG_MOST_TOUCHES], left[LAG_MOST_TOUCHES], largest;
+  lag_problem *pb;
+  double t;
+  const double *y;
 } Slipping;
 
-/* left[n] := force + side mu |N|, which is 0 for the forces sought; N, mu. largest := the largest term. */
-static int imbalance(lag_problem *pb, double t, const double *y, Slipping *s) {
+static int pressing(const Slipping *s, lag_slipping *w);
+static int fail_slipping(const Slipping *s, const lag_slipping *w, int k, double gain);
+
+#define LAG_MODEL const Slipping *s
+#define LAG_THE_MODEL s
+#define LAG_PRESSING(w) pressing(s, w)
+#define LAG_SLIPPING_FAILS(w, k, by) fail_slipping(s, w, k, by)
+#include "kernels/slipping_forces.h"
+
+/* mu, N: in the laws, of a contact the number before its tangent's. */
+static int pressing(const Slipping *s, lag_slipping *w) {
+  const lag_problem *pb = s->pb;
   const lag_model *m = pb->model;
-  int rc = lag_contact_laws_at(pb, t, y, pb->rub);
-  s->largest = 0;
-  for (int k = 0; k < s->n && rc == 0; k++) {
-    int guide = lag_guide_of(m, s->of[k]), input = m->contacts[s->of[k]].force;
-    const double *N = guide < 0 ? &pb->rub[3 * s->of[k] - 1] : lag_guide_law(m, pb->rub, guide) + 1;
-    s->parts[k] = guide < 0 ? 1 : m->guides[guide].parts;
-    s->mu[k] = pb->rub[3 * s->of[k]];
-    for (int c = 0; c < s->parts[k]; c++) s->N[k][c] = N[c];
-    double press = guide < 0 ? N[0] : lag_norm(N, s->parts[k]), most = pb->hold[input] * s->mu[k] * press;
-    s->left[k] = pb->u[input] + most;
-    s->largest = fmax(s->largest, fabs(most));
-    for (int c = 0; c < s->parts[k]; c++) s->toward[k][c] = guide < 0 || press == 0 ? c == 0 : N[c] / press;
+  for (int k = 0; k < w->n; k++) pb->u[m->contacts[(int)w->of[k]].force] = w->x[k];
+  int rc = lag_contact_laws_at(s->pb, s->t, s->y, pb->rub);
+  for (int k = 0; k < w->n && rc == 0; k++) {
+    int i = (int)w->of[k], guide = lag_guide_of(m, i);
+    w->mu[k] = pb->rub[3 * i];
+    for (int c = 0; c < 3; c++)
+      w->N[3 * k + c] = guide >= 0 ? lag_guide_law(m, pb->rub, guide)[1 + c] : c == 0 ? pb->rub[3 * i - 1] : 0;
   }
   return rc;
 }
 
-/* C: the model is linear in forces. */
-static int find_slopes(lag_problem *pb, double t, const double *y, Slipping *s) {
+static int fail_slipping(const Slipping *s, const lag_slipping *w, int k, double gain) {
+  lag_problem *pb = s->pb;
   const lag_model *m = pb->model;
-  Slipping at = *s;
-  double unit = s->largest > 0 ? s->largest : 1;
-  int rc = 0;
-  for (int j = 0; j < s->n && rc == 0; j++) {
-    double *force = &pb->u[m->contacts[s->of[j]].force];
-    *force = unit;
-    rc = imbalance(pb, t, y, &at);
-    *force = 0;
-    for (int k = 0; k < s->n; k++)
-      for (int c = 0; c < s->parts[k]; c++) s->C[k][c][j] = (at.N[k][c] - s->N[k][c]) / unit;
-  }
-  return rc;
-}
-
-/* Part by which force j on its guide presses that guide: from 1 on friction feeds itself. */
-static double gain(const Slipping *s, int j) {
-  double by[3];
-  for (int c = 0; c < s->parts[j]; c++) by[c] = s->mu[j] * s->C[j][c][j];
-  return lag_norm(by, s->parts[j]);
-}
-
-static int fail_slipping(lag_problem *pb, const Slipping *s, int k) {
-  const lag_model *m = pb->model;
+  if (k < 0) return LAG_ERETRY;
   snprintf(pb->words, sizeof pb->words,
            "the friction %s, of %.6g, presses its guide more than the force that it follows: no motion or several "
            "(Painleve's paradox, from a friction of %.6g on)",
-           m->constraints->of[m->contacts[s->of[k]].constraint].name, s->mu[k], s->mu[k] / gain(s, k));
+           m->constraints->of[m->contacts[(int)w->of[k]].constraint].name, w->mu[k], w->mu[k] / gain);
   pb->detail = pb->words;
   return LAG_ERETRY;
-}
-
-/* Newton's step x[n] for the forces that slip. */
-static int newton_step(const lag_problem *pb, const Slipping *s, double *x) {
-  double A[LAG_MOST_TOUCHES * LAG_MOST_TOUCHES];
-  for (int k = 0; k < s->n; k++) {
-    double side = pb->hold[pb->model->contacts[s->of[k]].force];
-    x[k] = -s->left[k];
-    for (int j = 0; j < s->n; j++) {
-      double *a = &A[k * s->n + j];
-      *a = k == j;
-      for (int c = 0; c < s->parts[k]; c++) *a += side * s->mu[k] * s->toward[k][c] * s->C[k][c][j];
-    }
-  }
-  return lag_solve_dense((size_t)s->n, 1, A, x);
 }
 
 /* Whether friction holds a motion, in which others that slip may have none. */
@@ -112,32 +80,33 @@ static int some_sticks(const lag_problem *pb) {
   return 0;
 }
 
-/* Finds the forces of contacts and guides that slip. Where a force passes through 0 its rounding is that of others:
- * the largest of the run stands behind the laws in pb->rub. */
+/* Frictions that act together: those of all guides, and of so many contacts. */
+static int most_slipping(const lag_model *m) { return m->nguides + LAG_MOST_TOUCHES; }
+
+static int law_size(const lag_model *m) { return 3 * m->ncontacts + 4 * m->nguides; }
+
+size_t lag_contact_law_size(const lag_model *m) {
+  return m->contact_laws ? (size_t)(law_size(m) + 1 + LAG_SLIPPING_ROOM(most_slipping(m))) : 0;
+}
+
+/* Finds the forces of contacts and guides that slip; the largest of the run stands behind the laws in pb->rub. */
 static int find_friction(lag_problem *pb, double t, const double *y) {
-  const double enough = 16 * DBL_EPSILON, some = 1e-11;
   const lag_model *m = pb->model;
-  const int rounds = m->nguides ? 30 : 4;
-  double *size = pb->rub + 3 * m->ncontacts + 4 * m->nguides, most = HUGE_VAL;
-  Slipping s = {0};
-  int rc; /* no more are closed together */
-  for (int i = 0; i < m->ncontacts && s.n < LAG_MOST_TOUCHES; i++)
-    if (fabs(side_of(pb, i)) > 0) s.of[s.n++] = i;
-  if (!s.n) return 0;
-  for (int k = 0; k < s.n; k++) pb->u[m->contacts[s.of[k]].force] = 0;
-  if ((rc = imbalance(pb, t, y, &s)) != 0 || (rc = find_slopes(pb, t, y, &s)) != 0) return rc;
-  for (int k = 0; k < s.n && !some_sticks(pb); k++)
-    if (lag_guide_of(m, s.of[k]) >= 0 && gain(&s, k) >= 1) return fail_slipping(pb, &s, k);
-  for (int round = 0; round < rounds && most > enough * fmax(*size, s.largest); round++) {
-    double x[LAG_MOST_TOUCHES];
-    if (newton_step(pb, &s, x)) return LAG_ERETRY;
-    for (int k = 0; k < s.n; k++) pb->u[m->contacts[s.of[k]].force] += x[k];
-    if ((rc = imbalance(pb, t, y, &s)) != 0) return rc;
-    most = 0;
-    for (int k = 0; k < s.n; k++) most = fmax(most, fabs(s.left[k]));
+  const Slipping s = {pb, t, y};
+  double *size = pb->rub + law_size(m);
+  int contacts = 0;
+  lag_slipping w = {.guides = m->nguides, .alone = !some_sticks(pb), .epsilon = DBL_EPSILON, .size = *size};
+  lag_slipping_place(&w, most_slipping(m), size + 1);
+  for (int i = 0; i < m->ncontacts; i++) {
+    int guide = lag_guide_of(m, i);
+    if (!(fabs(side_of(pb, i)) > 0) || (guide < 0 && contacts++ >= LAG_MOST_TOUCHES)) continue;
+    w.of[w.n] = i;
+    w.parts[w.n] = guide < 0 ? 0 : m->guides[guide].parts;
+    w.mode[w.n++] = side_of(pb, i);
   }
-  *size = fmax(*size, s.largest);
-  return m->nguides && !(most <= some * *size) ? fail_slipping(pb, &s, 0) : 0;
+  int rc = w.n ? lag_slipping_solve(&s, &w) : 0;
+  *size = w.size;
+  return rc;
 }
 
 static int is_closed(const lag_problem *pb, int i) { return pb->hold[pb->model->contacts[i].input] > 0.5; }

@@ -31,6 +31,9 @@ typedef struct ContactSet {
   double *law, *side;
   double *pressed;              /* [guides][3][rows + 1] force of each guide: without other forces, and by each */
   double *A, *mass;             /* sparse entries of the constraints' Jacobian, with all contacts closed, and of M */
+  int *row, *entry;             /* entry[row[k]] to entry[row[k + 1]]: entries of the Jacobian of constraint k */
+  int band;                     /* of M, half; -1: other constraints hold, too, or M is singular */
+  double *lu, *pivot, *diagonal; /* M factored within its band */
   double *block;
 } ContactSet;
 
@@ -66,6 +69,15 @@ void lag_contacts_close_only(const ContactSet *w, int all, int which);
 int lag_contacts_rates(ContactSet *w, const double *y, double *rate);
 double lag_contacts_response(ContactSet *w, int i);
 int lag_contacts_no_values(ContactSet *w, int i);
+
+/* contact_response.c. rate_change: of contact i by a change d of velocities; A: entries of the Jacobian. band: half
+ * bandwidth of M, -1: constraints hold besides the contacts. list_entries: sorts those of the Jacobian by rows.
+ * factor_mass: for responses; w->band := -1 where M is singular. find_responses: W for the contacts of[n]. */
+double lag_contacts_rate_change(const lag_model *m, const double *A, int i, const double *d);
+int lag_contacts_band(const lag_model *m);
+void lag_contacts_list_entries(ContactSet *w);
+void lag_contacts_factor_mass(ContactSet *w);
+int lag_contacts_find_responses(ContactSet *w);
 
 /* guide_forces.c. stop: takes what is left of a slip that ends, at this event, out of the velocities. find_pressed:
  * forces of guides without friction and contacts, and by a unit force of each row, with `rhs` of all rows; pressed:

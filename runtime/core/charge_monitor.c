@@ -335,8 +335,13 @@ int lag_charges_record(lag_sim *s, double t, const double *y) {
 void lag_charges_jump(lag_sim *s, double t, const double *ya, const double *yb) {
   for (int pass = 0; pass < 2; pass++) {
     lag_charges_at(s, t, pass ? yb : ya);
-    for (int k = 0; k < lag_sim_ncharges(s); k++)
-      s->charges[k].first += pass ? s->charge_now[2 * k] : -s->charge_now[2 * k];
+    for (int k = 0; k < lag_sim_ncharges(s); k++) {
+      Charge *c = &s->charges[k];
+      double Q = s->charge_now[2 * k];
+      c->first += pass ? Q : -Q;
+      if (pass) c->jumped += fabs(Q - c->left);
+      c->left = Q;
+    }
     if (lag_sim_ncharges(s)) s->run->at_events += pass ? s->charge_now[0] : -s->charge_now[0];
   }
 }
@@ -349,6 +354,7 @@ void lag_charges_add_work(lag_sim *s, double at_events, double rubbed) {
   *(known ? &c->work : &c->first) += rubbed;
   *(known ? &s->run->dry_work : &s->run->at_events) += rubbed;
   c->first += at_events;
+  c->jumped += fabs(at_events);
   s->run->at_events += at_events;
 }
 

@@ -47,6 +47,7 @@ enum { LAG_BINS = 32, LAG_NODES = 8 };
 typedef struct Charge {
   double begin;      /* Q at the start */
   double first;      /* Q at the start, plus the jumps of Q at events */
+  double left, jumped; /* Q before the event that acts; sum of the |jumps| of Q at events */
   double peak;       /* largest |difference| */
   double size;       /* sum of |terms of Q| at the start: the size of Q, until there are bins */
   double terms;      /* size of Q where that is rounding (sizes.c), */
@@ -301,8 +302,9 @@ void lag_contact_open(lag_sim *sim);
 int lag_contact_resolve(lag_sim *sim, double *y, const char *who, int event, int ends);
 int lag_contact_begin(lag_sim *sim);
 int lag_contact_arm(lag_sim *sim, const double *g);
-/* contact_friction.c: law[3 contacts] at y, now. Failures have their message. */
+/* contact_friction.c: law[3 contacts] at y, now. Failures have their message. law_size: numbers in pb.rub. */
 int lag_contact_laws(lag_sim *sim, const double *y, double *law);
+size_t lag_contact_law_size(const lag_model *m);
 /* Event functions g[nev] of tangents: 1 where they are none, 1 or -1 times the slip velocity. */
 void lag_tangent_events(const lag_sim *sim, double *g);
 /* Event functions g[nev] of contacts that are met by impulses: 1, as they do not happen. show: u of these contacts,

@@ -94,14 +94,14 @@ static int alloc_scratch(lag_sim *s) {
          nuu = nu + nm + (size_t)s->scene->nexact;
   size_t held = lag_constraint_scratch_size(m), ranks = lag_rank_scratch_size(m),
          sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
-  size_t nc = (size_t)lag_sim_ncharges(s) + 1, np = (size_t)m->ncontacts;
+  size_t nc = (size_t)lag_sim_ncharges(s) + 1;
   const lag_part parts[] = {{&s->u, nuu}, {&s->work, nw}, {&s->ya, n}, {&s->yb, n}, {&s->yc, n}, {&s->g0, nev},
       {&s->g1, nev}, {&s->out, nout}, {&s->e, 2 + nev}, {&s->spare, 11 * nev}, {&s->pb.held, held},
       {&s->pb.ranks, ranks}, {&s->contact_scratch, sized}, {&s->contact_was, (size_t)m->ncontacts},
       {&s->charge_now, 2 * nc}, {&s->charge_power, nc}, {&s->charge_gain, nc}, {&s->sides, 3 * (size_t)m->nswitch},
       {&s->grip, nm}, {&s->side_noise, nm}, {&s->slid_off, nm}, {&s->meets, nm}, {&s->left, nm},
       {&s->meeting, nm * (9 + 2 * nm)}, {&s->pb.slide, nm * (3 + nm)},
-      {&s->pb.rub, m->contact_laws ? 3 * np + 4 * (size_t)m->nguides + 1 : 0},
+      {&s->pb.rub, lag_contact_law_size(m)},
       {&s->sizes, (size_t)(m->nsizes + m->nmoving)}};
   s->scratch = lag_workspace(sizeof parts / sizeof *parts, parts);
   s->fixed = calloc((size_t)m->np + 1, 1);

@@ -58,10 +58,13 @@ typedef struct {
   int64_t first, by_row, by_turn;
 } Subscript;
 
-/* One instruction of a turn; moves: its value changes from turn to turn. */
+/* Where values of a turn change: nowhere, from row to row, from turn to turn. */
+typedef enum { IN_NEST, IN_ROW, IN_TURN, LEVELS } TurnLevel;
+
+/* One instruction of a turn. */
 typedef struct {
   uint32_t op, a, b, c, number;
-  int moves;
+  TurnLevel level;
 } TurnIns;
 
 /* Term that a turn adds to a sum, or subtracts. */
@@ -70,17 +73,20 @@ typedef struct {
   int moves;
 } TurnSum;
 
-/* for i < rows, for j in skew i .. (skew + more) i + turns - 1; without turns: for i < rows. */
+/* Order in which turns are computed: any; row by row, as a turn reads sums of earlier rows; one by one. */
+typedef enum { ANY_ORDER, ROW_BY_ROW, TURN_BY_TURN } TurnOrder;
+
+/* for i < rows, for j in skew i .. (skew + more) i + turns - 1. A loop without turns is one row of them. */
 typedef struct {
   int64_t rows, skew, turns, more;
-  /* in_order: turns read sums that others of the nest change; apart: no two sums share an element in a row */
-  int has_turns, in_order, apart;
+  int apart; /* apart: no two sums share an element in a row */
+  TurnOrder turn_order;
   uint32_t nsubscripts, nouter, nins, nsums;
   const Subscript *at;
   const uint32_t *outer; /* places in the frame */
   const TurnIns *ins;
-  const uint32_t *order; /* [nins] loads that do not move, other values that do not, then the same that move */
-  uint32_t fixed;        /* number of those that do not move */
+  const uint32_t *order; /* [nins] instructions by level, in each loads first */
+  uint32_t end[LEVELS];  /* of each level in order */
   const TurnSum *sum;
 } Nest;
 
@@ -103,6 +109,6 @@ int lag_run_program(const Program *p, const double *const *in, double *const *ou
 /* Runs a nest of the program; see lag_run_program. */
 void lag_run_nest(const Program *p, const Nest *n, const double *const *in, double *r);
 
-enum { NEST_BLOCK = 32 }; /* turns that an operation of a nest computes at once */
+enum { NEST_BLOCK = 64 }; /* turns that an operation of a nest computes at once */
 
 #endif

@@ -84,11 +84,9 @@ static Range range_of(Bytes *b, const Nest *n, uint32_t k) {
   for (int corner = 0; corner < 4; corner++) {
     double i = corner & 1 ? (double)(n->rows - 1) : 0, from = (double)n->skew * i,
            end = (double)(n->skew + n->more) * i + (double)n->turns,
-           j = !n->has_turns ? 0
-               : corner & 2  ? end - 1
-                             : from,
+           j = corner & 2 ? end - 1 : from,
            rows = (double)s->by_row * i, turns = (double)s->by_turn * j;
-    lag_bytes_need(b, !n->has_turns || end > from, "a loop has no turns");
+    lag_bytes_need(b, end > from, "a loop has no turns");
     lag_bytes_need(b, fabs(rows) < limit && fabs(j) < limit && fabs(turns) < limit, "a loop is too long");
     widen(&r, (double)s->first + rows + turns);
   }
@@ -96,8 +94,6 @@ static Range range_of(Bytes *b, const Nest *n, uint32_t k) {
 }
 
 static int is_within(Range r, int64_t length) { return r.least >= 0 && r.most < (double)length; }
-
-static int moves(const Nest *n, uint32_t k) { return (n->has_turns ? n->at[k].by_turn : n->at[k].by_row) != 0; }
 
 static void check_load(Bytes *b, const Program *p, const Lengths *of, const Nest *n, TurnIns *i) {
   if (i->op == TURN_CONSTANT) lag_bytes_need(b, i->number < p->nconstants, "a turn reads out of range");
@@ -108,7 +104,9 @@ static void check_load(Bytes *b, const Program *p, const Lengths *of, const Nest
   if (!lag_bytes_need(b, i->number < n->nsubscripts && i->a <= PROGRAM_CONSTANTS, "a turn reads out of range")) return;
   int64_t length = i->op == TURN_CELL ? p->ncells : i->a < PROGRAM_CONSTANTS ? of->in[i->a] : 0;
   lag_bytes_need(b, is_within(range_of(b, n, i->number), length), "a turn reads out of range");
-  i->moves = !b->why && moves(n, i->number);
+  if (b->why) return;
+  int rows = n->at[i->number].by_row != 0 || i->op == TURN_CELL; /* rows may change sums */
+  i->level = n->at[i->number].by_turn ? IN_TURN : rows ? IN_ROW : IN_NEST;
 }
 
 static void check_turn(Bytes *b, const Program *p, const Lengths *of, const Nest *n, uint32_t s, TurnIns *all) {
@@ -121,20 +119,24 @@ static void check_turn(Bytes *b, const Program *p, const Lengths *of, const Nest
   if (operands < 3) i->c = 0;
   const uint32_t of_op[] = {operands ? i->a : 0, i->b, i->c};
   for (int k = 0; k < 3; k++)
-    if (lag_bytes_need(b, of_op[k] < s, "a turn reads what comes later") && of_op[k])
-      i->moves |= all[of_op[k] - 1].moves;
+    if (lag_bytes_need(b, of_op[k] < s, "a turn reads what comes later") && of_op[k] &&
+        all[of_op[k] - 1].level > i->level)
+      i->level = all[of_op[k] - 1].level;
   if (i->op == TURN_FUNCTION) lag_bytes_need(b, i->number < lag_functions_1_count, "an unknown function");
   if (i->op == TURN_FUNCTION_2) lag_bytes_need(b, i->number < lag_functions_2_count, "an unknown function");
 }
 
-/* Whether turns read a sum to which other turns may add. */
-static int reads_own_sums(Bytes *b, const Nest *n) {
+/* Turns that read a sum come after those that may add to it. */
+static TurnOrder order_of_turns(Bytes *b, const Nest *n) {
+  TurnOrder order = ANY_ORDER;
   for (uint32_t s = 0; s < n->nins; s++)
     for (uint32_t k = 0; n->ins[s].op == TURN_CELL && k < n->nsums; k++) {
       Range x = range_of(b, n, n->ins[s].number), y = range_of(b, n, n->sum[k].subscript);
-      if (n->sum[k].moves && x.least <= y.most && y.least <= x.most) return 1;
+      if (x.least > y.most || y.least > x.most) continue;
+      if (n->sum[k].moves) return TURN_BY_TURN;
+      order = ROW_BY_ROW;
     }
-  return 0;
+  return order;
 }
 
 /* Whether two sums have no element in common in a row: their ranges are apart, or their indices differ modulo their
@@ -142,10 +144,9 @@ static int reads_own_sums(Bytes *b, const Nest *n) {
 static int are_apart(Bytes *b, const Nest *n, uint32_t i, uint32_t k) {
   Range x = range_of(b, n, i), y = range_of(b, n, k);
   const Subscript *s = &n->at[i], *t = &n->at[k];
-  int64_t step = n->has_turns ? s->by_turn : s->by_row, other = n->has_turns ? t->by_turn : t->by_row;
-  int64_t rows = n->has_turns ? s->by_row - t->by_row : 0;
+  int64_t step = s->by_turn, rows = s->by_row - t->by_row;
   return x.least > y.most || y.least > x.most ||
-         (step == other && step != 0 && rows % step == 0 && (s->first - t->first) % step != 0);
+         (step == t->by_turn && step != 0 && rows % step == 0 && (s->first - t->first) % step != 0);
 }
 
 static int sums_are_apart(Bytes *b, const Nest *n) {
@@ -155,13 +156,13 @@ static int sums_are_apart(Bytes *b, const Nest *n) {
   return 1;
 }
 
-/* The order of execution within a row and a turn: loads come first, as in C. */
+/* The order of execution within a level: loads come first, as in C. */
 static void order_turn(Bytes *b, Nest *n) {
   uint32_t *order = lag_bytes_room(b, n->nins, sizeof *order), at = 0;
-  for (int part = 0; order && part < 4; part++) {
+  for (int part = 0; order && part < 2 * LEVELS; part++) {
     for (uint32_t s = 1; s <= n->nins; s++)
-      if (n->ins[s - 1].moves == part / 2 && (n->ins[s - 1].op > TURN_OUTER) == part % 2) order[at++] = s;
-    if (part == 1) n->fixed = at;
+      if ((int)n->ins[s - 1].level == part / 2 && (n->ins[s - 1].op > TURN_OUTER) == part % 2) order[at++] = s;
+    n->end[part / 2] = at;
   }
   n->order = order;
 }
@@ -171,7 +172,7 @@ static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   TurnIns *ins = lag_bytes_room(b, n->nins, sizeof *ins);
   for (uint32_t s = 1; ins && s <= n->nins; s++) {
     const uint32_t *x = lag_bytes_words(b, 5);
-    if (x) ins[s - 1] = (TurnIns){x[0], x[1], x[2], x[3], x[4], 0};
+    if (x) ins[s - 1] = (TurnIns){x[0], x[1], x[2], x[3], x[4], IN_NEST};
     if (x) check_turn(b, p, of, n, s, ins);
   }
   n->ins = ins;
@@ -182,12 +183,12 @@ static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
     sum[k].subscript = lag_bytes_below(b, n->nsubscripts);
     sum[k].value = lag_bytes_below(b, n->nins + 1);
     if (b->why) return;
-    sum[k].moves = moves(n, sum[k].subscript);
+    sum[k].moves = n->at[sum[k].subscript].by_turn != 0;
     lag_bytes_need(b, is_within(range_of(b, n, sum[k].subscript), p->ncells), "a turn adds out of range");
   }
   n->sum = sum;
   if (!b->why) order_turn(b, n);
-  if (!b->why) n->in_order = reads_own_sums(b, n), n->apart = sums_are_apart(b, n);
+  if (!b->why) n->turn_order = order_of_turns(b, n), n->apart = sums_are_apart(b, n);
 }
 
 static int64_t bounded(Bytes *b) {
@@ -197,12 +198,14 @@ static int64_t bounded(Bytes *b) {
 
 static void read_nest(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   n->rows = lag_bytes_int(b, 1, LARGEST);
-  n->has_turns = lag_bytes_int(b, 0, 1);
+  int has_turns = lag_bytes_int(b, 0, 1);
   n->skew = bounded(b), n->turns = bounded(b), n->more = bounded(b);
+  if (!has_turns) n->turns = n->rows, n->rows = 1, n->skew = n->more = 0;
   n->nsubscripts = lag_bytes_count(b, 24);
   Subscript *at = lag_bytes_room(b, n->nsubscripts, sizeof *at);
   for (uint32_t k = 0; at && k < n->nsubscripts; k++)
-    at[k] = (Subscript){bounded(b), 0, 0}, at[k].by_row = bounded(b), at[k].by_turn = bounded(b);
+    at[k].first = bounded(b), at[k].by_row = bounded(b), at[k].by_turn = bounded(b);
+  for (uint32_t k = 0; at && !has_turns && k < n->nsubscripts; k++) at[k].by_turn = at[k].by_row, at[k].by_row = 0;
   n->at = at;
   n->nouter = lag_bytes_count(b, 4);
   n->outer = lag_bytes_words(b, n->nouter);

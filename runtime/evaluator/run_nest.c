@@ -1,41 +1,57 @@
-/* Nests of loops: each operation of a turn is computed for a block of turns; sums are added to in the order of turns.
- */
+/* Nests of loops: each operation is computed for a block of turns, of several rows; sums are added to in the order
+ * of turns. */
 #include <math.h>
 #include <string.h>
 
 #include "evaluator/program.h"
 #include "lag_math.h"
 
-/* The values of a block: NEST_BLOCK of each instruction, from 1; those that do not move are equal in all turns. */
+/* Turns of one row that lie side by side in a block. */
+typedef struct {
+  int64_t row, from; /* the first turn */
+  int at, count, ends; /* place of the first in the block; ends: the row has no more turns */
+} Segment;
+
+/* The values of a block: NEST_BLOCK of each instruction, from 1. */
 typedef struct {
   const Program *p;
   const Nest *n;
   const double *const *in;
   double *r, *values, *part; /* part: sums of the row, by sum of the nest */
-  int64_t row, from;         /* row, first turn of the block */
-  int count;                 /* turns of the block */
+  int64_t last_row;          /* first row of the last block; -1: none */
+  int count, nsegments;
+  Segment *segment;
 } Block;
 
 static double *value(const Block *b, uint32_t k) { return b->values + (size_t)k * NEST_BLOCK; }
 
-/* Element of an array, or of the sums, in the first turn of the block. */
-static int64_t first_index(const Block *b, uint32_t k) {
-  const Subscript *s = &b->n->at[k];
-  return b->n->has_turns ? s->first + s->by_row * b->row + s->by_turn * b->from : s->first + s->by_row * b->from;
+/* Element of an array, or of the sums, in the first turn of a segment. */
+static int64_t first_index(const Nest *n, const Segment *g, uint32_t k) {
+  const Subscript *s = &n->at[k];
+  return s->first + s->by_row * g->row + s->by_turn * g->from;
 }
 
-static int64_t stride(const Nest *n, uint32_t k) { return n->has_turns ? n->at[k].by_turn : n->at[k].by_row; }
-
 static void fill(double *to, double x, int n) {
-  for (int j = 0; j < n; j++) to[j] = x;
+  int j = 0;
+  for (; j + 4 <= n; j += 4) to[j] = to[j + 1] = to[j + 2] = to[j + 3] = x;
+  for (; j < n; j++) to[j] = x;
+}
+
+/* to[n] := elements that lie `step` apart. */
+static void copy_apart(double *to, const double *from, int64_t step, int n) {
+  int j = 0;
+  for (; j + 4 <= n; j += 4, from += 4 * step)
+    to[j] = from[0], to[j + 1] = from[step], to[j + 2] = from[2 * step], to[j + 3] = from[3 * step];
+  for (; j < n; j++, from += step) to[j] = *from;
 }
 
 static void gather(const Block *b, double *to, const double *from, uint32_t k) {
-  int64_t step = stride(b->n, k);
-  from += first_index(b, k);
-  if (step == 1) memcpy(to, from, (size_t)b->count * sizeof *to);
-  if (step == 1) return;
-  for (int j = 0; j < b->count; j++, from += step) to[j] = *from;
+  int64_t step = b->n->at[k].by_turn;
+  for (const Segment *g = b->segment; g < b->segment + b->nsegments; g++) {
+    const double *first = from + first_index(b->n, g, k);
+    if (step) copy_apart(to + g->at, first, step, g->count);
+    else fill(to + g->at, *first, g->count);
+  }
 }
 
 /* to[n] := an operation of x, y, z; k: number of a function. */
@@ -114,64 +130,97 @@ static void compute(const Block *b, uint32_t s) {
   else turn_ops[i->op](value(b, s), value(b, i->a), value(b, i->b), value(b, i->c), b->count, i->number);
 }
 
-static void compute_all(const Block *b, uint32_t from, uint32_t end) {
-  for (uint32_t k = from; k < end; k++) compute(b, b->n->order[k]);
+static void compute_all(const Block *b, TurnLevel level) {
+  for (uint32_t k = level ? b->n->end[level - 1] : 0; k < b->n->end[level]; k++) compute(b, b->n->order[k]);
 }
 
 /* *to := *to + x[0] + ...; or, minus, less them. */
 static void add_up(double *to, const double *x, int n, int minus) {
   double sum = *to;
-  for (int j = 0; j < n; j++) sum = minus ? sum - x[j] : sum + x[j];
+  if (minus)
+    for (int j = 0; j < n; j++) sum -= x[j];
+  else
+    for (int j = 0; j < n; j++) sum += x[j];
   *to = sum;
 }
 
-/* The same to elements that lie `step` apart. */
+/* The same to elements that lie `step` apart, or are one. */
 static void add_each(double *to, int64_t step, const double *x, int n, int minus) {
-  if (minus)
-    for (int j = 0; j < n; j++, to += step) *to -= x[j];
-  else
-    for (int j = 0; j < n; j++, to += step) *to += x[j];
+  int j = 0;
+  if (minus) {
+    for (; j + 2 <= n; j += 2, to += 2 * step) to[0] -= x[j], to[step] -= x[j + 1];
+    if (j < n) *to -= x[j];
+  } else {
+    for (; j + 2 <= n; j += 2, to += 2 * step) to[0] += x[j], to[step] += x[j + 1];
+    if (j < n) *to += x[j];
+  }
 }
 
-/* Adds n turns, from j on, to sum k. */
-static void add_to(const Block *b, uint32_t k, int j, int n) {
+/* Adds n turns of a segment, from j on, to sum k. */
+static void add_to(const Block *b, const Segment *g, uint32_t k, int j, int n) {
   const TurnSum *s = &b->n->sum[k];
-  const double *x = value(b, s->value) + j;
-  int64_t step = s->moves ? stride(b->n, s->subscript) : 0;
-  if (s->moves) add_each(b->r + b->p->cells + first_index(b, s->subscript) + j * step, step, x, n, (int)s->minus);
-  else add_up(&b->part[k], x, n, (int)s->minus);
+  const double *x = value(b, s->value) + g->at + j;
+  if (!s->moves) {
+    add_up(&b->part[k], x, n, (int)s->minus);
+    return;
+  }
+  int64_t step = b->n->at[s->subscript].by_turn, at = first_index(b->n, g, s->subscript) + j * step;
+  add_each(b->r + b->p->cells + at, step, x, n, (int)s->minus);
+}
+
+/* Sums of a row go to their elements at its end. */
+static void end_row(const Block *b, const Segment *g) {
+  for (uint32_t k = 0; k < b->n->nsums; k++) {
+    const TurnSum *s = &b->n->sum[k];
+    if (!s->moves) b->r[b->p->cells + (uint64_t)first_index(b->n, g, s->subscript)] += b->part[k];
+    b->part[k] = 0;
+  }
 }
 
 static void add(const Block *b) {
-  for (uint32_t k = 0; b->n->apart && k < b->n->nsums; k++) add_to(b, k, 0, b->count);
-  for (int j = 0; !b->n->apart && j < b->count; j++)
-    for (uint32_t k = 0; k < b->n->nsums; k++) add_to(b, k, j, 1);
+  const Nest *n = b->n;
+  for (const Segment *g = b->segment; g < b->segment + b->nsegments; g++) {
+    for (uint32_t k = 0; n->apart && k < n->nsums; k++) add_to(b, g, k, 0, g->count);
+    for (int j = 0; !n->apart && j < g->count; j++)
+      for (uint32_t k = 0; k < n->nsums; k++) add_to(b, g, k, j, 1);
+    if (g->ends) end_row(b, g);
+  }
 }
 
-static void run_row(Block *b, int64_t from, int64_t end) {
-  const Nest *n = b->n;
-  double *sums = b->r + b->p->cells;
-  int most = n->in_order ? 1 : NEST_BLOCK;
-  b->from = from;
-  b->count = end - from < NEST_BLOCK ? (int)(end - from) : NEST_BLOCK;
-  compute_all(b, 0, n->fixed);
-  for (uint32_t k = 0; k < n->nsums; k++) b->part[k] = 0;
-  for (int64_t j = from; j < end; j += b->count) {
-    b->from = j;
-    b->count = end - j < most ? (int)(end - j) : most;
-    compute_all(b, n->fixed, n->nins);
-    add(b);
+/* Computes the block, adds it up, and begins the next. */
+static void finish_block(Block *b) {
+  const Segment *g = b->segment;
+  if (!b->count) return;
+  if (b->nsegments > 1 || g->row != b->last_row) compute_all(b, IN_ROW);
+  b->last_row = g->row;
+  compute_all(b, IN_TURN);
+  add(b);
+  b->count = b->nsegments = 0;
+}
+
+static void run_row(Block *b, int64_t row, int64_t from, int64_t end, int most) {
+  while (from < end) {
+    int room = most - b->count, count = end - from < room ? (int)(end - from) : room;
+    b->segment[b->nsegments++] = (Segment){row, from, b->count, count, from + count == end};
+    b->count += count, from += count;
+    if (b->count == most) finish_block(b);
   }
-  for (uint32_t k = 0; k < n->nsums; k++)
-    if (!n->sum[k].moves) sums[first_index(b, n->sum[k].subscript)] += b->part[k];
 }
 
 void lag_run_nest(const Program *p, const Nest *n, const double *const *in, double *r) {
-  Block b = {.p = p, .n = n, .in = in, .r = r, .values = r + p->scratch};
+  Segment segment[NEST_BLOCK];
+  Block b = {p, n, in, r, .values = r + p->scratch, .last_row = -1, .count = NEST_BLOCK, .segment = segment};
+  int most = n->turn_order == TURN_BY_TURN ? 1 : NEST_BLOCK;
   if ((uintptr_t)(void *)b.values % (2 * sizeof(double))) b.values++; /* as vectors lie */
   b.part = b.values + (size_t)(n->nins + 1) * NEST_BLOCK;
   fill(b.values, 0, NEST_BLOCK);
-  if (!n->has_turns) run_row(&b, 0, n->rows);
-  for (b.row = 0; n->has_turns && b.row < n->rows; b.row++)
-    run_row(&b, n->skew * b.row, (n->skew + n->more) * b.row + n->turns);
+  fill(b.part, 0, (int)n->nsums);
+  b.segment[b.nsegments++] = (Segment){.count = NEST_BLOCK};
+  compute_all(&b, IN_NEST);
+  b.count = b.nsegments = 0;
+  for (int64_t row = 0; row < n->rows; row++) {
+    run_row(&b, row, n->skew * row, (n->skew + n->more) * row + n->turns, most);
+    if (n->turn_order != ANY_ORDER) finish_block(&b);
+  }
+  finish_block(&b);
 }

@@ -52,6 +52,9 @@ static inline int lag_joints_begin(LAG_MODEL, lag_joint_friction *w, LAG_REAL t,
   LAG_TRY(LAG_GRIPS(t, y, w, w->bound));
   for (int j = 0; j < LAG_JOINTS(w); j++) {
     const int rests = w->sticks[j] > zero || !(w->before[j] < zero || w->before[j] > zero);
+    if (rests && w->bound[j] < one - LAG_C(1e-9))
+      return LAG_FRICTION_FAILS(t, j, "has a static limit smaller than the friction of a sliding body: let "
+                                      "`static = mu_s*N` have a mu_s of at least mu");
     w->bound[j] = rests && w->bound[j] > one ? w->bound[j] : one;
   }
   return status;
@@ -121,8 +124,9 @@ static inline int lag_joints_solve(LAG_MODEL, lag_joint_friction *w, const lag_k
     for (int k = 0; k < LAG_JOINTS(w); k++) LAG_TRY(lag_joint_turn(LAG_THE_MODEL, w, s, k, size, &change));
     const LAG_REAL unit = s->epsilon*(*size);
     if (change <= LAG_C(64.0)*unit) return status;
-    /* surfaces that hold one motion, to what positions leave of their slips */
-    const LAG_REAL little = sweep < 100 ? LAG_C(1e7) : LAG_C(1e10);
+    /* surfaces that hold one motion, to what positions leave of their slips: on curves they drift by equal steps */
+    const int drifts = change >= last*(LAG_C(1.0) - LAG_C(1e-6));
+    const LAG_REAL little = sweep < 100 ? LAG_C(1e7) : drifts ? LAG_C(1e13) : LAG_C(1e10);
     if (sweep > 0 && change <= little*unit && change >= last/LAG_C(2.0)) return status;
     last = change;
   }

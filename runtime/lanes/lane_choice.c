@@ -17,14 +17,31 @@ int lag_lane_doubts(lag_sim *s) {
          !(fabs(energy.now - s->charges[0].first) <= fmax(0.5 * fabs(energy.begin), 1e-12));
 }
 
-static int processor_has(int lanes) {
 #if defined(__GNUC__) && defined(__x86_64__)
-  return lanes == 4 ? __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
-                    : __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
-#else
-  return lanes == 4;
-#endif
+typedef struct {
+  unsigned a, b, c, d;
+} Registers;
+
+static Registers cpuid(unsigned leaf) {
+  Registers r;
+  __asm__("cpuid" : "=a"(r.a), "=b"(r.b), "=c"(r.c), "=d"(r.d) : "a"(leaf), "c"(0));
+  return r;
 }
+
+/* By cpuid, not __builtin_cpu_supports: that is a symbol of libgcc, which other compilers do not link. Intel, Software
+ * Developer's Manual 1, 14.3 and 15.2: the processor has the instructions, the system saves the registers. */
+static int processor_has(int lanes) {
+  enum { OSXSAVE = 1 << 27, FMA = 1 << 12, AVX2 = 1 << 5, AVX512F = 1 << 16, AVX512DQ = 1 << 17, YMM = 6, ZMM = 0xe6 };
+  unsigned saved, high;
+  if (cpuid(0).a < 7 || !(cpuid(1).c & OSXSAVE)) return 0;
+  Registers more = cpuid(7);
+  __asm__ volatile("xgetbv" : "=a"(saved), "=d"(high) : "c"(0));
+  return lanes == 4 ? (saved & YMM) == YMM && cpuid(1).c & FMA && more.b & AVX2
+                    : (saved & ZMM) == ZMM && more.b & AVX512F && more.b & AVX512DQ;
+}
+#else
+static int processor_has(int lanes) { return lanes == 4; }
+#endif
 
 static const LaneKernel *kernel_of(const LaneWidth *w, const lag_method *method) {
   for (int i = 0; w->kernels && w->kernels[i]; i++)

@@ -114,7 +114,7 @@ static int measure(Compiler *c, EffectStudy *s, Budget *b, const EffectSets *set
   if (o->methods) words[4] = "--methods", words[5] = o->methods;
   b->all.n = 0;
   c->o.precision = b->precision;
-  int status = effect_sets_build(c, s, sets, 1, &path);
+  int status = effect_sets_build(c, s, sets, &path);
   if (status != STATUS_OK) return status;
   void (*before)(int) = signal(SIGINT, SIG_IGN); /* Ctrl-C ends the program, which prints what is known by then */
   status = process_run(c->arena, path, arguments(c, "budget", words), &said);

@@ -126,8 +126,8 @@ static const CommandRow commands[] = {
      "--relative spin: the motion may close after a rotation, or another symmetry that the model declares and lagc "
      "has proved.\n\n"
      "Multipliers that are 1 by the phase, by conserved charges and by their symmetries are counted, not listed. "
-     "Motions may go over events that set velocities, and over switches; contacts have no tangent yet. Needs GSL. "
-     "Exit status 3: no periodic motion was found.\n\n"
+     "Motions may go over events that set velocities, and over switches; where there are contacts runs from beside "
+     "the start replace the tangent. Needs GSL. Exit status 3: no periodic motion was found.\n\n"
      "  name=value            a parameter, another start (th=3), an input to hold"},
     {CMD_CONTINUE, "continue", "bifurcation",
      "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T] [--hold NAMES] [--branches] [-o "

@@ -173,29 +173,55 @@ static ProgramSet *lower_variant(Compiler *c, EffectList effects, unsigned *want
   return compiler_agrees(e, u, 0) ? u : NULL;
 }
 
-int effect_sets_build(Compiler *c, EffectStudy *s, const EffectSets *sets, int optimised, const char **path) {
-  Toolchain tools;
-  Units units = {0};
+static int lower_variants(Compiler *c, EffectStudy *s, const EffectSets *sets, Units *units) {
   unsigned wants = 0;
-  const char *error = NULL;
   for (uint32_t i = 0; i < sets->n; i++) {
     ProgramSet *u = lower_variant(c, effect_names(s, sets->at[i]), &wants);
     if (!u) return STATUS_MODEL;
-    vec_push(c->arena, &units, u);
+    vec_push(c->arena, units, u);
   }
-  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return usage_error(error);
-  if (c->o.precision && !toolchain_precision(c->arena, &tools, c->o.precision, &error)) return usage_error(error);
-  if (!optimised) tools.optimise = "-O0";
+  return STATUS_OK;
+}
+
+static int find_tools(Compiler *c, Toolchain *tools) {
+  const char *error = NULL;
+  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, tools, &error)) return usage_error(error);
+  if (c->o.precision && !toolchain_precision(c->arena, tools, c->o.precision, &error)) return usage_error(error);
+  return STATUS_OK;
+}
+
+int effect_sets_build(Compiler *c, EffectStudy *s, const EffectSets *sets, const char **path) {
+  Toolchain tools;
+  Units units = {0};
+  int status = lower_variants(c, s, sets, &units);
+  if (status == STATUS_OK) status = find_tools(c, &tools);
+  if (status != STATUS_OK) return status;
   Texts texts = simulator_texts(c, &units, tools.gsl ? PROGRAM_WITH_GSL : PROGRAM_PLAIN);
   return simulator_make(c, &tools, &texts, NULL, path);
+}
+
+/* *path := lag-run, which finds the variants as bytes; or else their compiled program. */
+static int make_program(Compiler *c, EffectStudy *s, const EffectSets *sets, const char **path) {
+  Toolchain tools;
+  Units units = {0};
+  int status = find_tools(c, &tools);
+  if (status != STATUS_OK) return status;
+  *path = simulator_evaluator(c, &tools);
+  s->evaluated = *path != NULL;
+  if (!s->evaluated) return effect_sets_build(c, s, sets, path);
+  status = lower_variants(c, s, sets, &units);
+  if (status != STATUS_OK) return status;
+  StrBuf bytes = simulator_bytes(c, &units);
+  if (!process_give("LAG_PROGRAM", &bytes)) return usage_error("cannot write a temporary file: set TMPDIR");
+  if (c->o.no_gsl) process_set("LAG_NO_GSL", "1");
+  return STATUS_OK;
 }
 
 int effect_sets_run(Compiler *c, EffectStudy *s, const EffectSets *sets, char *const *argv,
                     EffectMeasurement **measured) {
   const char *path, *rest;
   char *said = NULL;
-  /* compilation takes longer than these runs */
-  int status = effect_sets_build(c, s, sets, strcmp(argv[2], "runs") != 0, &path);
+  int status = make_program(c, s, sets, &path);
   if (status != STATUS_OK) return status;
   status = process_run(c->arena, path, argv, &said);
   *measured = read_measurements(s, said, sets->n, &rest);

@@ -43,6 +43,7 @@ typedef struct {
   const char *method;
   double span, error; /* length of the run [s]; error of integration, NaN: not known */
   EffectMeasurement *measured; /* [variants.n] */
+  int evaluated;               /* times are those of evaluated functions */
 
   double accuracy;    /* --accuracy; 0: not given */
   EffectSet least;    /* smallest set within the accuracy */
@@ -63,11 +64,10 @@ const char *effect_names_joined(const EffectStudy *s, EffectSet set);
 /* The `use` statement of a set, with the scene's values: `use j2, drag(c = 2)`. */
 const char *effect_use_statement(const EffectStudy *s, EffectSet set);
 
-/* *path := a program of these variants, in the cache; optimised or, for a few runs, not: the bits are the same.
- * Returns a STATUS. */
-int effect_sets_build(Compiler *c, EffectStudy *s, const EffectSets *sets, int optimised, const char **path);
-/* Builds such a program and runs it with these arguments, `--effects report` or `--effects runs` among them;
- * *measured := [sets->n]. Returns a STATUS. */
+/* *path := a compiled program of these variants, in the cache. Returns a STATUS. */
+int effect_sets_build(Compiler *c, EffectStudy *s, const EffectSets *sets, const char **path);
+/* Makes such a program, evaluated or compiled, and runs it with these arguments, `--effects report` or
+ * `--effects runs` among them; *measured := [sets->n]. Returns a STATUS. */
 int effect_sets_run(Compiler *c, EffectStudy *s, const EffectSets *sets, char *const *argv,
                     EffectMeasurement **measured);
 

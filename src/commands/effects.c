@@ -115,7 +115,7 @@ static void put_text(const EffectStudy *s, StrBuf *out) {
     sb_putc(out, '\n');
   }
   put_total(s, "scene", scene->ops, width, out);
-  sb_printf(out, "         %.3g ns a call\n", scene->time * 1e9);
+  sb_printf(out, "         %.3g ns a call%s\n", scene->time * 1e9, s->evaluated ? ", evaluated" : "");
   put_failures(s, out);
   put_least(s, out);
 }
@@ -167,6 +167,7 @@ static void put_json(const EffectStudy *s, StrBuf *out) {
             shared_ops(s));
   json_number(out, "time_s", s->measured[0].time);
   json_number(out, "base_time_s", s->measured[s->base].time);
+  sb_printf(out, ", \"evaluated\": %s", s->evaluated ? "true" : "false");
   sb_puts(out, ", \"effects\": [");
   for (uint32_t i = 0; i < s->rows.n; i++) {
     if (i) sb_puts(out, ", ");

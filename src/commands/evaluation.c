@@ -11,7 +11,8 @@
 /* The reason why the run must be compiled; NULL: liblag can evaluate it. */
 static const char *reason_to_compile(Compiler *c, const Toolchain *tools, ProgramKind kind) {
   if (kind & PROGRAM_WITH_PNG) return "has no pictures as PNG: give a name with .svg";
-  if (kind & (PROGRAM_WITH_HDF5 | PROGRAM_WITH_MPI | PROGRAM_WITH_LANES)) return "evaluates one run at a time";
+  if (kind & PROGRAM_WITH_HDF5) return "writes no HDF5: give a name with .csv or .npy";
+  if (kind & PROGRAM_WITH_MPI) return "runs in one process: leave out --mpi and mpirun";
   return toolchain_evaluator(c->arena, tools) ? NULL : "needs lag-run beside liblag.a: run `make`";
 }
 
@@ -62,6 +63,10 @@ static const char *in_cache(Compiler *c, const char *name) {
 
 const char *simulator_compiled(Compiler *c, const EvaluatedRun *e) { return in_cache(c, e->simulator); }
 
+static void say_no_compiler(const Toolchain *tools, const char *how) {
+  fprintf(stderr, "lagc: there is no C compiler `%s`: %s\n", tools->cc, how);
+}
+
 int simulator_hand_over(Compiler *c, const EvaluatedRun *e, const Units *units) {
   Beside b = {.c = c};
   const char *error, *library = in_cache(c, e->library);
@@ -73,32 +78,42 @@ int simulator_hand_over(Compiler *c, const EvaluatedRun *e, const Units *units) 
   if (units) b.units = *units;
   if (toolchain_has_compiler(c->arena, &b.tools)) process_beside(compile_beside, &b, "LAG_COMPILED");
   else
-    fprintf(
-        stderr,
-        "lagc: there is no C compiler `%s`: the model is evaluated, with the same digits, long runs at a third to a "
-        "half of the speed\n",
-        b.tools.cc);
+    say_no_compiler(&b.tools,
+                    "the model is evaluated, with the same digits, long runs at a third to a half of the speed");
   return STATUS_OK;
 }
 
+/* Whether `--compile` has this value; auto is its default. */
+static int compiles(const Compiler *c, const char *how) {
+  return strcmp(c->o.compile ? c->o.compile : "auto", how) == 0;
+}
+
+const char *simulator_evaluator(Compiler *c, const Toolchain *tools) {
+  return compiles(c, "always") || options_more_digits(&c->o) ? NULL : toolchain_evaluator(c->arena, tools);
+}
+
 int simulator_evaluate(Compiler *c, const Units *units, EvaluatedRun *e) {
-  const char *how = c->o.compile ? c->o.compile : "auto";
-  int never = strcmp(how, "never") == 0, digits = options_more_digits(&c->o);
+  int never = compiles(c, "never"), digits = options_more_digits(&c->o), sweeps = c->o.command == CMD_SWEEP;
   Toolchain tools;
   ProgramKind kind;
   *e = (EvaluatedRun){.bytes = strbuf(c->arena)};
-  if (strcmp(how, "always") == 0 || c->o.command == CMD_COST || c->o.command == CMD_SWEEP) return STATUS_OK;
+  if (compiles(c, "always") || c->o.command == CMD_COST) return STATUS_OK;
   if (digits) return never ? usage_error("--compile never evaluates doubles only: leave --precision out") : STATUS_OK;
   int status = simulator_tools(c, units, NULL, &tools, &kind);
   const char *reason = status == STATUS_OK ? reason_to_compile(c, &tools, kind) : NULL;
   if (reason && never) return usage_error(arena_printf(c->arena, "--compile never %s", reason));
   if (reason || status != STATUS_OK) return status;
+  if (sweeps && !never && toolchain_has_compiler(c->arena, &tools)) return STATUS_OK;
   if (!never) {
     Texts texts = simulator_texts(c, units, kind);
     ModelLibrary m = library_of(c, units, &tools);
     e->simulator = toolchain_entry(c->arena, &tools, texts.at, texts.n);
     e->library = toolchain_entry(c->arena, &m.tools, m.texts.at, m.texts.n);
     if (in_cache(c, e->simulator)) return STATUS_OK;
+  }
+  if (sweeps && !never) {
+    e->simulator = e->library = NULL; /* nothing is compiled beside its many runs */
+    say_no_compiler(&tools, "the runs are evaluated one by one, with the digits of `lagc run`, not in vector lanes");
   }
   e->evaluator = toolchain_evaluator(c->arena, &tools);
   e->bytes = simulator_bytes(c, units);

@@ -44,7 +44,8 @@ int command_header(Compiler *c) {
     return usage_error(error);
   if (u->contact_laws && !header_parts(u, "moreau", &parts, &error))
     return usage_error(arena_printf(
-        c->arena, "%s, and contacts with friction need it: `lagc build --shared` makes a library that follows them",
+        c->arena,
+        "%s, and contacts and guides with friction need it: `lagc build --shared` makes a library that follows them",
         error));
   StrBuf equations = strbuf(c->arena), out = strbuf(c->arena);
   show_equations(e, "", PRINT_TEXT, &equations);

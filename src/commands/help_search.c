@@ -100,14 +100,15 @@ static const char *const endings[] = {"isations", "izations", "isation", "izatio
                                       "ing",      "ed",       "es",      "ic",      "s",      "e",     "y"};
 enum { N_ENDINGS = sizeof endings / sizeof *endings };
 
-/* The word in small letters without its ending: linearizing, linearisation -> linear; at least four letters stay. */
+/* The word in small letters without its ending: linearizing, linearisation -> linear; at least four letters
+ * stay, before a y five: unity is no unit. */
 static const char *stem(Arena *a, const char *word) {
   char *w = arena_strdup(a, word);
   size_t n = strlen(w);
   for (char *s = w; *s; s++) *s = (char)tolower((unsigned char)*s);
   for (size_t i = 0; i < N_ENDINGS; i++) {
     size_t m = strlen(endings[i]);
-    if (n < m + 4 || strcmp(w + n - m, endings[i]) != 0) continue;
+    if (n < m + 4 + (*endings[i] == 'y') || strcmp(w + n - m, endings[i]) != 0) continue;
     w[n - m] = '\0';
     break;
   }

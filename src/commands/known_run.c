@@ -276,6 +276,6 @@ int known_run_keep_and_start(Compiler *c, const char *path) {
 int known_run_evaluate(Compiler *c, const EvaluatedRun *by, const Units *units) {
   Found f = new_run(c, by->evaluator);
   f.by = *by;
-  if (c->known->paths[0]) keep(c, &f);
+  if (c->known->paths[0] && c->o.command != CMD_SWEEP) keep(c, &f); /* a sweep is compiled once there is a compiler */
   return start(c, &f, units);
 }

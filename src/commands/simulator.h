@@ -37,6 +37,8 @@ typedef struct {
 /* evaluation.c: lag-run in place of a simulator, where --compile allows it, the command line asks for nothing that is
  * linked, and the cache has no simulator. Returns a STATUS. */
 int simulator_evaluate(Compiler *c, const Units *units, EvaluatedRun *e);
+/* lag-run for programs that this command line need not compile; NULL: it must. */
+const char *simulator_evaluator(Compiler *c, const Toolchain *tools);
 /* The simulator that is compiled by now; NULL: there is none. */
 const char *simulator_compiled(Compiler *c, const EvaluatedRun *e);
 /* Gives lag-run, which this process becomes, what it runs: a library, or programs, of which one is compiled meanwhile

@@ -57,17 +57,25 @@ static const char **event_enumerators(Header *h, CNames *taken) {
   return enumerators(h, taken, "EV_", v, n);
 }
 
+static const char *contact_name(const Header *h, uint32_t i) {
+  return h->u->constraints.of.at[h->u->contacts.at[i].constraint].name;
+}
+
 static const char **contact_enumerators(Header *h, CNames *taken) {
-  uint32_t n = h->u->contacts.n;
+  uint32_t n = header_guides(h->u) ? 0 : h->u->contacts.n;
   IrVar *v = ARENA_ARRAY(h->a, IrVar, n + 1);
-  for (uint32_t i = 0; i < n; i++) v[i].name = h->u->constraints.of.at[h->u->contacts.at[i].constraint].name;
+  for (uint32_t i = 0; i < n; i++) v[i].name = contact_name(h, i);
   return enumerators(h, taken, "CONTACT_", v, n);
 }
 
-/* Of the switches that a motion may stick on, which alone have an index. */
+/* Switches that a motion may stick on, which alone have an index, and behind them guides. */
 static const char **surface_enumerators(Header *h, CNames *taken) {
-  uint32_t n = h->u->switches.n;
-  const char **names = ARENA_ARRAY(h->a, const char *, n + 1);
+  uint32_t n = h->u->switches.n, guides = header_guides(h->u);
+  const char **names = ARENA_ARRAY(h->a, const char *, n + guides + 1);
+  for (uint32_t i = 0; i < guides; i++) {
+    IrVar v = {.name = contact_name(h, i)};
+    names[n + i] = enumerators(h, taken, "SURFACE_", &v, 1)[0];
+  }
   for (uint32_t i = 0; i < n; i++) {
     IrVar v = {.name = h->u->switches.at[i].surface};
     if (h->u->switches.at[i].jumps && i < h->u->nmodes) names[i] = enumerators(h, taken, "SURFACE_", &v, 1)[0];
@@ -177,7 +185,7 @@ static void write_moreau_loop(const Header *h, const char *end, const char *step
   const IrScene *s = h->scene;
   for (uint32_t i = 0; i < s->options.n && s->method && strcmp(s->method, "moreau") == 0; i++)
     if (strcmp(s->options.at[i].name, "step") == 0) step = shortest_double(h->a, s->options.at[i].value);
-  if (!h->u->contacts.n) {
+  if (!program_set_contacts(h->u)) {
     sb_printf(h->out, " *   while (s.t < %s)\n *     if (%s_moreau_step(&p, &s, %s%s) != %s_OK) break;\n", end,
               h->lower, step, h->u->u.n ? ", NULL" : "", h->upper);
     return;
@@ -291,7 +299,9 @@ static void write_head(const Header *h, const char *equations) {
                                        h->lower)
                         : " * Dry friction: steps decide at each state, and go to and fro where a body sticks; `lagc "
                           "header --with moreau` adds a step that sticks.\n");
-  if (header_has_method(h, "moreau") && u->contacts.n)
+  if (header_guides(u))
+    sb_printf(h->out, " * Guides: %s_moreau_step has their friction; other steps slide without.\n", h->lower);
+  else if (header_has_method(h, "moreau") && u->contacts.n)
     sb_printf(h->out, " * Contacts: %s_moreau_step follows them; other steps ignore them.\n", h->lower);
   else if (u->contacts.n)
     sb_printf(h->out,

@@ -73,6 +73,7 @@ void header_moreau_define(const Header *h);
 
 /* header_friction.c: the same for models without contacts whose motion may stick; the number of surfaces. */
 uint32_t header_surfaces(const ProgramSet *u);
+uint32_t header_guides(const ProgramSet *u); /* guides, beside no contact */
 const char *header_friction_lacks(const ProgramSet *u);
 void header_friction_indices(const Header *h);
 void header_friction_members(const Header *h);

@@ -137,10 +137,11 @@ static const char *const whole_step =
     "d|  enum { ROOM = LAG_JOINT_ROOM(LAG_NSURFACES, LAG_NY) };\n"
     " |  LAG_REAL y[LAG_NY], mid[LAG_NY], y1[LAG_NY], rate[LAG_NY], rate0[LAG_NY], room[ROOM];\n"
     "c|  LAG_REAL now[LAG_NU];\n"
-    "w|  LAG_REAL now[LAG_NU];\n"
+    "w|  LAG_REAL now[LAG_NU + NMODES];\n"
     " |  const LAG_REAL t = s->t + h/LAG_C(2.0), epsilon = lag_epsilon();\n"
     " |  const lag_kick k = {LAG_NQ, LAG_NZ, EXPLICIT, t, s->t + h, h, epsilon, y, mid, y1, rate, rate0, rate};\n"
     " |  lag_state end = *s;\n"
+    "g|  LAG_REAL *const rubs = &end.rubs;\n"
     " |  int status = LAG_OK;\n"
     " |  LAG_LAWS w;\n"
     " |  lag_gather(s, y);\n"
@@ -165,6 +166,7 @@ static const char *const whole_step =
     " |  lag_scatter(mid, &end);\n"
     " |  lag_moreau_note(&w, &end);\n"
     "k|  lag_contact_inputs(p, end.tPASS, -2, now);\n"
+    "g|  lag_friction_inputs(p, end.tPASS, w.mode, now);\n"
     "h|  LAG_TRY(lag_onto(p, &endAT_END, end.lost + 1));\n"
     " |  LAG_TRY(lag_check(&end));\n"
     " |  *s = end;\n"
@@ -241,9 +243,7 @@ static void define_contacts(const Header *h) {
 /* --- contacts, or dry friction --- */
 
 const char *header_moreau_lacks(const ProgramSet *u) {
-  if (!u->contacts.n || header_surfaces(u)) return header_friction_lacks(u);
-  if (program_set_guides(u))
-    return "no friction of guides: write a guide as two contacts, `y >= 0` and `-y >= 0`, with `friction` and `slip`";
+  if (!program_set_contacts(u) || header_surfaces(u) + program_set_guides(u)) return header_friction_lacks(u);
   for (uint32_t i = 0; i < u->contacts.n; i++)
     if (u->contacts.at[i].law || u->contacts.at[i].holds)
       return "contacts of one friction, at rest and slipping, and of one law of impact, `stronge`";
@@ -252,7 +252,7 @@ const char *header_moreau_lacks(const ProgramSet *u) {
 }
 
 void header_moreau_indices(const Header *h) {
-  if (h->u->contacts.n) contact_indices(h);
+  if (program_set_contacts(h->u)) contact_indices(h);
   else header_friction_indices(h);
   csupport_expand("\n/* A contact, or a surface of friction, in the last step by Moreau's method: nothing presses; it "
                   "slips, or has no friction; friction holds it. */\nenum { LAG_OPEN, LAG_SLIPS, LAG_STICKS };\n",
@@ -260,47 +260,55 @@ void header_moreau_indices(const Header *h) {
 }
 
 void header_moreau_members(const Header *h) {
-  if (h->u->contacts.n) contact_members(h);
+  if (program_set_contacts(h->u)) contact_members(h);
   else header_friction_members(h);
 }
 
 void header_moreau_start(const Header *h) {
   const char *text =
-      h->u->contacts.n
+      program_set_contacts(h->u)
           ? "  for (int i = 0; i < LAG_NCONTACTS; i++) s->touch[i] = s->struck[i] = s->impulse[i] = LAG_C(0.0);\n"
           : "  for (int i = 0; i < LAG_NSURFACES; i++) s->touch[i] = s->mode[i] = LAG_C(0.0);\n";
   csupport_expand(text, h->upper, h->lower, h->out);
+  if (header_guides(h->u)) csupport_expand("  s->rubs = LAG_C(0.0);\n", h->upper, h->lower, h->out);
 }
+
+static const char *const of_inputs = "\n * u: the inputs, constant during the step; 0 for the model's formulas.",
+                  *const of_guides = "\n * LAG_ECONTACT also where friction presses a guide more than the force that "
+                                     "it follows.\n * u: the inputs, constant during the step; 0 for the model's "
+                                     "formulas. Those of guides are not read.";
 
 /* contacts, dry friction, contacts and steps that hold constraints beside them, steps that hold constraints, without
  * contacts and with inputs */
 static void write_step(const Header *h, const char *text) {
   const ProgramSet *u = h->u;
   const IrConstraints *c = &u->constraints;
-  int meets = u->contacts.n > 0, holds = c->of.n > u->contacts.n;
+  int meets = program_set_contacts(u) > 0, holds = c->of.n > u->contacts.n, guides = header_guides(u) > 0;
   uint32_t band = bandwidth(u), nq = u->q.n, width = 3 * band + 1 < nq ? 3 * band + 1 : nq;
-  const char *at_end = meets ? ", now" : u->u.n ? ", lag_held(p, end.t, u, input, context, now)" : "";
+  const char *at_end = meets || guides ? ", now" : u->u.n ? ", lag_held(p, end.t, u, input, context, now)" : "";
   const HeaderWord words[] = {
       {"INPUT", u->u.n ? ", const LAG_REAL *u" : ""},
       {"NOW", u->u.n ? ", u, 0, 0" : ""},
       {"AT_END", at_end},
-      {"OF_INPUTS", u->u.n ? "\n * u: the inputs, constant during the step; 0 for the model's formulas." : ""},
+      {"OF_INPUTS", !u->u.n ? "" : guides ? of_guides : of_inputs},
       {"EXPLICIT", meets && u->flags & 1u << UNIT_SEPARABLE && !holds ? "1" : "0"},
       {"NJACOBIAN", arena_printf(h->a, "%u", c->jacobian.n)},
       {"NMASS", arena_printf(h->a, "%u", c->mass.n)},
       {"NBAND", arena_printf(h->a, "%u", nq * width)},
       {"NRESPONSES", arena_printf(h->a, "%u", band || holds ? u->contacts.n * nq : c->jacobian.n)},
       {"BANDWIDTH", arena_printf(h->a, "%u", band)},
+      {"NMODES", arena_printf(h->a, "%u", meets ? 0 : u->nmodes)},
       {NULL, NULL}};
   const LineChoice choices[] = {{'c', meets}, {'d', !meets},          {'k', meets && holds},
-                                {'h', holds}, {'w', !meets && holds && u->u.n}, {0, 0}};
+                                {'h', holds}, {'g', guides},
+                                {'w', !meets && holds && u->u.n}, {0, 0}};
   header_template(h, header_chosen(h, text, choices), words);
 }
 
 void header_moreau_declare(const Header *h) { write_step(h, prototypes); }
 
 void header_moreau_define(const Header *h) {
-  if (h->u->contacts.n) define_contacts(h);
+  if (program_set_contacts(h->u)) define_contacts(h);
   else header_friction_define(h);
   write_step(h, whole_step);
 }

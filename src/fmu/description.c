@@ -108,7 +108,9 @@ static int is_contact_input(const ProgramSet *u, uint32_t i) {
 
 static int is_contact_event(const ProgramSet *u, uint32_t i) {
   for (uint32_t k = 0; k < u->contacts.n; k++)
-    if (u->contacts.at[k].impact == i || u->contacts.at[k].release == i) return 1;
+    if (u->contacts.at[k].impact == i || u->contacts.at[k].release == i ||
+        (u->contacts.at[k].parts == 1 && u->contacts.at[k].turn == i))
+      return 1;
   return 0;
 }
 

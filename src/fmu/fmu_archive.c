@@ -44,14 +44,16 @@ static void write_head(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   define(out, "NEV", u->events.n);
   define(out, "NOUT", s->plain.n);
   define(out, "HOLDS", u->constraints.of.n > 0);
-  define(out, "CONTACTS", u->contacts.n);
+  define(out, "CONTACTS", program_set_contacts(u) ? u->contacts.n : 0);
+  define(out, "GUIDES", f->moreau && !program_set_contacts(u) ? u->contacts.n : 0);
   if (u->constraints.of.n)
     sb_printf(out, "#define CORRECT model_correct%s\n",
               u->constraints.position == u->constraints.velocity ? "" : "_velocities");
-  define(out, "FRICTION", (uint32_t)(f->moreau && !u->contacts.n));
+  define(out, "FRICTION", (uint32_t)(f->moreau && !program_set_contacts(u)));
   const char *with = u->u.n ? "_with(&(m)->p, &(m)->s, h, set_inputs, m)" : "(&(m)->p, &(m)->s, h)";
   if (f->moreau)
     sb_printf(out, "#define MOREAU_STEP %.17g\n#define MOREAU(m, h) model_moreau_step%s\n", moreau_step(s), with);
+  define(out, "HELD", u->held_accel != NULL);
   define(out, "NMODES", u->nmodes);
   define(out, "KICKS", program_set_kick(u) != NULL);
   define(out, "DERIVATIVES", (uint32_t)f->has_derivatives);
@@ -82,15 +84,20 @@ static void write_tables(const ProgramSet *u, StrBuf *out) {
   for (uint32_t i = 0; i < u->events.n; i++) sb_printf(out, "%d, ", u->events.at[i].direction);
   sb_puts(out, "0};\n");
   if (!u->contacts.n) return;
-  sb_puts(out, "static const int contact_input[][2] = {");
+  if (program_set_contacts(u)) {
+    sb_puts(out, "static const int contact_input[][2] = {");
+    for (uint32_t i = 0; i < u->contacts.n; i++) {
+      const IrContact *c = &u->contacts.at[i];
+      sb_printf(out, "%s{%u, %d}", i ? ", " : "", c->input, c->is_tangent ? (int)c->force : -1);
+    }
+    sb_puts(out, "}; /* input that closes it; input of its force, -1: it is a gap */\n");
+  }
+  sb_puts(out, "static const int contact_event[] = {");
   for (uint32_t i = 0; i < u->contacts.n; i++) {
     const IrContact *c = &u->contacts.at[i];
-    sb_printf(out, "%s{%u, %d}", i ? ", " : "", c->input, c->is_tangent ? (int)c->force : -1);
+    sb_printf(out, "%s%u, %u", i ? ", " : "", c->impact, c->release);
+    if (c->parts == 1) sb_printf(out, ", %u", c->turn);
   }
-  sb_puts(out,
-          "}; /* input that closes it; input of its force, -1: it is a gap */\nstatic const int contact_event[] = {");
-  for (uint32_t i = 0; i < u->contacts.n; i++)
-    sb_printf(out, "%s%u, %u", i ? ", " : "", u->contacts.at[i].impact, u->contacts.at[i].release);
   sb_puts(out, "};\n");
 }
 

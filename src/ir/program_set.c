@@ -67,3 +67,5 @@ uint32_t program_set_guides(const ProgramSet *u) {
   for (uint32_t i = 0; i < u->contacts.n; i++) n += u->contacts.at[i].parts > 0;
   return n;
 }
+
+uint32_t program_set_contacts(const ProgramSet *u) { return u->contacts.n - program_set_guides(u); }

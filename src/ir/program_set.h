@@ -250,8 +250,9 @@ typedef struct {
   int lines;
 } ProgramSet;
 
-/* Number of guides with friction. */
+/* Number of guides with friction; of contacts and their tangents. */
 uint32_t program_set_guides(const ProgramSet *u);
+uint32_t program_set_contacts(const ProgramSet *u);
 
 typedef VEC(const Prog *) ProgList;
 

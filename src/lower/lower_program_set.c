@@ -345,6 +345,7 @@ static void add_held(ProgramSet *u, const Eqns *e) {
   add_switches(u, &held);
   for (uint32_t k = 0; k < u->nmodes; k++) some |= u->switches.at[k].jumps;
   if (some) u->held_accel = lower_accel(&held, u->libm);
+  if (some && program_set_guides(u)) u->contact_laws = lower_contact_laws(&held);
 }
 
 void unit_require(ProgramSet *u, Eqns *e, unsigned wants) {

@@ -206,9 +206,9 @@ static int is_definite(Eqns *e, const LinearSystem *s) {
 }
 
 /* Forces keep the digits that the text has near a removable singularity. */
-static void stabilise(const Eqns *e, LinearSystem *s) {
+static void stabilise(const Eqns *e, const Expr *raw, LinearSystem *s) {
   Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
-  for (uint32_t i = 0; i < e->n; i++) f[i] = simplify_stable_quotients(e->g, s->f[i]);
+  for (uint32_t i = 0; i < e->n; i++) f[i] = simplify_stable_quotients(e->g, s->f[i], raw[i]);
   s->f = f;
 }
 
@@ -225,14 +225,14 @@ void lagrange_momenta_and_forces(Eqns *e) {
     return;
   }
   LinearSystem raw = {.n = e->n, .H = raw_mass(e), .f = f}, dense = best_form(e, &raw, LOOK_THROUGH, &dense_ops);
-  stabilise(e, &dense);
+  stabilise(e, f, &dense);
   e->mass = dense.H;
   e->mass_known = 1;
   e->f = dense.f;
   e->system = dense;
   if (!is_definite(e, &dense) || constrained || !lifted.ndefs) return;
   lifted = best_form(e, &lifted, LOOK_THROUGH, &lifted_ops);
-  stabilise(e, &lifted);
+  stabilise(e, f, &lifted);
   if (lifted_ops < dense_ops) e->system = lifted;
 }
 

@@ -205,12 +205,7 @@ static void add_grip(Builder *b, const AstStmt *st, Name effect) {
     return;
   }
   Grip grip = {v.e, expr_div(b->g, g.e, f.e)};
-  if (expr_is_num(b->g, grip.ratio) && num_value(expr_number(b->g, grip.ratio)) < 1) {
-    diag_error(b->diags, span,
-               "the static limit is smaller than the friction of a sliding body" HELP
-               "static friction is at least as large: `static = mu_s*N` with mu_s >= mu");
-    return;
-  }
+  add_static_limit(b, g.e, f.e, span);
   vec_push(b->arena, &b->m->grips, grip);
 }
 

@@ -385,6 +385,7 @@ void warn_signs(Builder *b);
 /* Adds a size made of parameters, or of them and of a factor that is not negative; others are left out, as are those
  * whose sign is proved. */
 void add_size(Builder *b, Expr value, const char *what, Span span, int part);
+void add_static_limit(Builder *b, Expr limit, Expr friction, Span span);
 /* Errors where the values of the scene make sizes of friction and contacts negative, or too large. */
 void check_sizes(Builder *b);
 

@@ -204,6 +204,13 @@ Expr coefficient(Builder *b, const AstStmt *st, Name effect, const char *word, d
   return check_coefficient(b, st, id, &x, most, what) ? x.e : 0;
 }
 
+Expr static_coefficient(Builder *b, const AstStmt *st, Name effect, Expr friction) {
+  AstId most = ast_option_value(b->ast, st, "static");
+  Expr hold = coefficient(b, st, effect, "static", HUGE_VAL, "a coefficient of static friction", friction);
+  if (most && hold && friction) add_static_limit(b, hold, friction, ast_expr(b->ast, most)->span);
+  return hold;
+}
+
 /* The friction of contact c: its tangents. */
 static void add_tangents(Builder *b, const AstStmt *st, Name effect, const Contact *c) {
   static const char *const components[] = {".x", ".y"};
@@ -212,7 +219,7 @@ static void add_tangents(Builder *b, const AstStmt *st, Name effect, const Conta
   AstId v = ast_option_value(b->ast, st, "slip");
   Contact t = {.is_tangent = 1, .law = impact_law(b, st)};
   t.friction = coefficient(b, st, effect, "friction", HUGE_VAL, "a coefficient of friction", 0);
-  t.hold = coefficient(b, st, effect, "static", HUGE_VAL, "a coefficient of static friction", t.friction);
+  t.hold = static_coefficient(b, st, effect, t.friction);
   t.restitution = coefficient(b, st, effect, "tangential", 1, "a tangential restitution", expr_int(b->g, 0));
   Value slip = resolve(b, v, IN_DYNAMICS, effect);
   if (!check_slip(b, st, v, &slip, &m->constraints.at[c->constraint]) || !t.friction || !t.hold || !t.restitution ||

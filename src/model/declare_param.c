@@ -56,7 +56,29 @@ void add_size(Builder *b, Expr value, const char *what, Span span, int part) {
   int moves = !of && !part && !(expr_kinds(b->g, value) & beyond);
   of = moves ? value : of;
   if (!of || (!part && sign_is_nonnegative(expr_sign(b->g, of)))) return;
-  vec_push(b->arena, &b->m->sizes, ((ModelSize){of, what, span, 0, part, moves}));
+  vec_push(b->arena, &b->m->sizes, ((ModelSize){of, what, span, 0, part, moves, 0}));
+}
+
+/* The product of the factors with negative exponents, inverted. */
+static Expr denominator_of(ExprGraph *g, Expr e) {
+  Expr of = expr_int(g, 1);
+  Num number;
+  if (expr_pairs(g, e, EX_SUM) == 1) e = expr_pair(g, e, EX_SUM, 0, &number);
+  for (uint32_t i = 0; i < expr_pairs(g, e, EX_PROD); i++) {
+    Expr base = expr_pair(g, e, EX_PROD, i, &number);
+    if (num_sign(number) < 0) of = expr_mul(g, of, expr_pow_num(g, base, num_neg(number)));
+  }
+  return of;
+}
+
+/* A static limit is at least the friction of a sliding body. Limits that parameters alone do not tell from it are
+ * judged where a body rests. */
+void add_static_limit(Builder *b, Expr limit, Expr friction, Span span) {
+  Expr ratio = expr_div(b->g, limit, friction), of = denominator_of(b->g, ratio);
+  Expr excess = expr_sub(b->g, expr_mul(b->g, ratio, of), of);
+  if (!is_of_parameters(b->g, ratio) || sign_is_nonnegative(expr_sign(b->g, excess))) return;
+  const char *what = "the static limit minus the friction of a sliding body has a value";
+  vec_push(b->arena, &b->m->sizes, ((ModelSize){.value = excess, .what = what, .span = span, .excess = 1}));
 }
 
 void check_sizes(Builder *b) {
@@ -71,6 +93,10 @@ void check_sizes(Builder *b) {
     const char *size = arena_printf(b->arena, "%.6Lg", f);
     if (!(f < 0) && !(one->part && f > 1)) continue;
     if (one->part) diag_error(b->diags, one->span, "%s of %s, which must be between 0 and 1", one->what, size);
+    else if (one->excess)
+      diag_error(b->diags, one->span,
+                 "the static limit is smaller than the friction of a sliding body" HELP
+                 "static friction is at least as large: `static = mu_s*N` with mu_s >= mu");
     else
       diag_error(b->diags, one->span,
                  "%s of %s, and would drive the motion" HELP

@@ -138,6 +138,7 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Dim dim, Conta
     return diag_error(b->diags, ast_expr(b->ast, most)->span,
                       "static friction follows the same force as friction: `static = mu_s*abs(lambda(rail))`");
   if (expr_is_constant(b->g, t->friction)) add_size(b, t->friction, "this friction has a coefficient", span, 0);
+  if (most) add_static_limit(b, t->hold, t->friction, ast_expr(b->ast, most)->span);
   return 1;
 }
 
@@ -282,7 +283,7 @@ void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data) 
   Expr slip = slip_of(b, st, effect, of, &t, &dim);
   if (slip && of) {
     t.friction = coefficient(b, st, effect, "friction", HUGE_VAL, "a coefficient of friction", 0);
-    t.hold = coefficient(b, st, effect, "static", HUGE_VAL, "a coefficient of static friction", t.friction);
+    t.hold = static_coefficient(b, st, effect, t.friction);
   }
   if (!slip || (of ? !t.friction || !t.hold : !read_sizes(b, st, effect, multiplier_dim(b, dim, 0), &t))) return;
   declare_slip(b, st, name, b->m->constraints.n);

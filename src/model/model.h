@@ -215,7 +215,7 @@ typedef struct {
   Expr value;
   const char *what; /* "this friction has a size" */
   Span span;
-  int open, part, moves;
+  int open, part, moves, excess; /* excess: of one size over another; else it acts against the velocity by itself */
 } ModelSize;
 
 typedef struct {

@@ -134,6 +134,8 @@ void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span);
  * number up to `most` called `what`, or `other` where it is not given; each 0, reported. push_tangent: the tangent
  * NAME.slip of `owner`, along t.gap; `pressed` is the force that friction follows. */
 int check_slip(Builder *b, const AstStmt *st, AstId id, const Value *slip, const Constraint *gap);
+/* The coefficient of static friction of st, at least `friction`; 0: reported. */
+Expr static_coefficient(Builder *b, const AstStmt *st, Name effect, Expr friction);
 Expr coefficient(Builder *b, const AstStmt *st, Name effect, const char *word, double most, const char *what,
                  Expr other);
 void push_tangent(Builder *b, const AstStmt *st, Name owner, Contact t, Expr pressed, Dim dim, const char *component);

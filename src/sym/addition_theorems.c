@@ -151,13 +151,41 @@ static int pi_angle(Normal *n, Num c, Circular *cs) {
   return 1;
 }
 
+/* cos and sin of asin(u), acos(u) or atan(u). */
+static Circular circular_of_inverse(Normal *n, ExprOp op, Frac u) {
+  Num half = num_ratio(1, 2);
+  Frac one = frac_num(n->field, num_int(1)), square = frac_mul(n->field, u, u);
+  if (op == EX_ATAN) {
+    Frac size = normal_pow_num(n, frac_add(n->field, one, square), num_neg(half));
+    return (Circular){.cos = size, .sin = frac_mul(n->field, u, size)};
+  }
+  Frac other = normal_pow_num(n, frac_sub(n->field, one, square), half);
+  return op == EX_ASIN ? (Circular){.cos = other, .sin = u} : (Circular){.cos = u, .sin = other};
+}
+
+/* *cs := cos and sin of a multiple of an inverse function; 0: t/den is none. For proofs, as the inverse has a
+ * domain. */
+static int inverse_angle(Normal *n, Term t, DenId den, Circular *cs) {
+  enum { MOST = 12 };
+  const Mono *mono = mono_at(n->ring, t.mono);
+  if (!n->proof || den || mono->n != 1 || mono->at[0].exp != 1 || t.c.den != 1 || t.c.num > MOST || t.c.num < -MOST)
+    return 0;
+  GenInfo info = n->gens.at[mono->at[0].gen];
+  if (info.kind != GEN_OPAQUE || (info.op != EX_ASIN && info.op != EX_ACOS && info.op != EX_ATAN)) return 0;
+  Circular one = circular_of_inverse(n, info.op, info.arg);
+  if (t.c.num < 0) one.sin = frac_neg(n->field, one.sin);
+  *cs = zero_angle(n);
+  for (int64_t k = t.c.num; k != 0; k += k < 0 ? 1 : -1) *cs = add_angles(n, *cs, one);
+  return 1;
+}
+
 static Circular circular_of(Normal *n, Frac u) {
   Circular sum = zero_angle(n);
   for (uint32_t i = 0; i < u.num.n && n->ring->status == POLY_OK; i++) {
     Term t = u.num.at[i];
     Circular one;
     int pi = is_pi(n, t.mono, u.den);
-    if (!pi || !pi_angle(n, t.c, &one)) {
+    if ((!pi || !pi_angle(n, t.c, &one)) && !inverse_angle(n, t, u.den, &one)) {
       uint32_t at = find_atom(n, GEN_NONE, 0, mono_part(n, t.mono), u.den);
       int32_t k = multiple_of(n, at, t.c);
       if (pi) n->canonical = 0;

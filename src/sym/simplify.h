@@ -19,6 +19,6 @@ Expr simplify_shallow(ExprGraph *g, Expr e);
  *   a^2 - b^2 -> (a - b)*(a + b) where each of a, b is a symbol or 1.
  * Definitions keep their names. */
 Expr simplify_stable(ExprGraph *g, Expr e);
-/* Its half angles alone, where e divides by what a cosine in it depends on, as (1 - cos x)/x: near 0 such a quotient
- * has no digits left otherwise. */
-Expr simplify_stable_quotients(ExprGraph *g, Expr e);
+/* Its half angles alone, where e, or the text before simplification, divides by what a cosine in e depends on, as
+ * (1 - cos x)/x or sin(x)^2/(1 + cos x): near 0 such a quotient has no digits left otherwise. */
+Expr simplify_stable_quotients(ExprGraph *g, Expr e, Expr text);

@@ -163,15 +163,22 @@ static int has_variable(const ExprGraph *g, ExprList nodes, const ExprMap *in, E
   return found;
 }
 
-Expr simplify_stable_quotients(ExprGraph *g, Expr e) {
+/* Adds the variables that e divides by. */
+static void add_divisors(ExprGraph *g, Expr e, ExprMap *divisors) {
   ExprList nodes = expr_topo_to_sums(g, &e, 1);
-  ExprMap divisors = expr_map(expr_arena(g));
   for (uint32_t i = 0; i < nodes.n && nodes.n <= MAX_TERMS; i++)
     for (uint32_t k = 0; expr_op(g, nodes.at[i]) == EX_PROD && k < expr_pairs(g, nodes.at[i], EX_PROD); k++) {
       Num power;
       Expr base = expr_pair(g, nodes.at[i], EX_PROD, k, &power);
-      if (num_sign(power) < 0) has_variable(g, expr_topo_to_sums(g, &base, 1), NULL, &divisors);
+      if (num_sign(power) < 0) has_variable(g, expr_topo_to_sums(g, &base, 1), NULL, divisors);
     }
+}
+
+Expr simplify_stable_quotients(ExprGraph *g, Expr e, Expr text) {
+  ExprList nodes = expr_topo_to_sums(g, &e, 1);
+  ExprMap divisors = expr_map(expr_arena(g));
+  add_divisors(g, e, &divisors);
+  add_divisors(g, text, &divisors);
   for (uint32_t i = 0; i < nodes.n && nodes.n <= MAX_TERMS; i++) {
     Expr x = nodes.at[i], u = expr_op(g, x) == EX_COS || expr_op(g, x) == EX_COSH ? expr_arg(g, x, 0) : 0;
     if (u && has_variable(g, expr_topo_to_sums(g, &u, 1), &divisors, NULL)) return rewrite_sums(g, e, with_half_angles);

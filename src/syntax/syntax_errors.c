@@ -143,6 +143,11 @@ static void report_word(Parse *cx, const Token *t) {
   else if (t->follows != TOK_ASSIGN && ((token_flags(t->follows) & T_BINARY) || t->follows == TOK_PRIME))
     diag_help(d, "equations of motion follow from the Lagrangian; `expect m*x'' = …` checks one of yours, `force x = "
                  "…` adds a force");
+  else if (t->follows == TOK_STRING || t->follows == TOK_BAD)
+    diag_help(d,
+              "a second derivative has two primes, `%s''`; equations of motion follow from the Lagrangian, and "
+              "`expect %s'' = …` checks one of yours",
+              t->name, t->name);
   else if (t->follows == TOK_ASSIGN)
     diag_help(d, "a name is given a meaning with `let %s = …` or `param %s = …`", t->name, t->name);
   else diag_help(d, "`lagc help language` shows a model, `lagc help` lists the statements");

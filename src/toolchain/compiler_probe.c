@@ -71,6 +71,19 @@ static const char *find_linker(const Probe *p) {
   return "";
 }
 
+/* Whether a shared library is linked with a version script: not by tcc. */
+static int takes_exports(const Probe *p) {
+  static const char script[] = "{ local: *; };\n";
+  const char *why, *map = arena_printf(p->arena, "%s.map", p->program);
+  const char *flag = arena_printf(p->arena, "-Wl,--version-script=%s", map);
+  const char *const more[] = {"-shared", "-fPIC", flag, "-o", p->program, p->source, NULL};
+  char *said = NULL;
+  int takes = file_write(map, script, strlen(script), &why);
+  takes = takes && compiler_run(p->arena, p->cc, more, &said) == 0;
+  remove(map);
+  return takes;
+}
+
 /* The file that the first word of cc names, from $PATH. */
 static const char *compiler_file(Arena *a, const char *cc) {
   const char *word = arena_strndup(a, cc, strcspn(cc, " ")), *path = getenv("PATH");
@@ -89,7 +102,8 @@ static const char *entry_of(Arena *a, const char *cc, const char *optimise, cons
   static const char *const more[] = {"--version", NULL};
   char *said = NULL;
   if (compiler_run(a, cc, more, &said) != 0) return NULL;
-  const char *is = arena_printf(a, "%s %s\n%s\n%s", cc, optimise, file_identity(a, compiler_file(a, cc)), said);
+  const char *file = file_identity(a, compiler_file(a, cc));
+  const char *is = arena_printf(a, "%s %s\n%s\n%s\nexports", cc, optimise, file, said);
   uint64_t h1 = lag_fnv1a(LAG_FNV1A_START, is, strlen(is)),
            h2 = lag_fnv1a(UINT64_C(0x9e3779b97f4a7c15), is, strlen(is));
   return arena_printf(a, "%.*s/%016llx%016llx.cc", (int)(strrchr(dir, '/') - dir), dir, (unsigned long long)h1,
@@ -102,7 +116,10 @@ static int recall(Arena *a, const char *entry, CompilerTraits *t) {
   const char *lines = sb_text(&text);
   size_t n = strcspn(lines, "\n");
   t->safe = arena_strndup(a, lines, n);
-  t->linker = arena_strndup(a, lines + n + 1, strcspn(lines + n + 1, "\n"));
+  lines += n + 1;
+  n = strcspn(lines, "\n");
+  t->linker = arena_strndup(a, lines, n);
+  t->exports = lines[n] == '\n' && lines[n + 1] == 'e';
   return 1;
 }
 
@@ -111,14 +128,14 @@ int compiler_probe(Arena *a, const char *cc, const char *optimise, const char *d
   Probe p = {a, cc, optimise, arena_printf(a, "%s/probe.c", dir), arena_printf(a, "%s/probe", dir)};
   StrBuf text = strbuf(a), kept = strbuf(a);
   const char *entry = entry_of(a, cc, optimise, dir), *why;
-  *t = (CompilerTraits){"", ""};
+  *t = (CompilerTraits){"", "", 1};
   if (recall(a, entry, t)) return 1;
   for (size_t i = 0; i < N_LINES; i++) sb_puts(&text, probe_text[i]);
   if (!file_write(p.source, sb_text(&text), text.n, &why)) return 1;
-  if ((t->safe = find_safe(&p, error)) != NULL) t->linker = find_linker(&p);
+  if ((t->safe = find_safe(&p, error)) != NULL) t->linker = find_linker(&p), t->exports = takes_exports(&p);
   remove(p.source);
   remove(p.program);
-  sb_printf(&kept, "%s\n%s\n", t->safe ? t->safe : "", t->linker);
+  sb_printf(&kept, "%s\n%s\n%s\n", t->safe ? t->safe : "", t->linker, t->exports ? "exports" : "");
   if (t->safe && entry) cache_write(entry, &kept);
   return t->safe != NULL;
 }

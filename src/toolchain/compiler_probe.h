@@ -11,6 +11,7 @@
 typedef struct {
   const char *safe;   /* a flag that it needs to store right numbers; "" for most */
   const char *linker; /* the flag of the fastest linker that works, or "" */
+  int exports;        /* its linker takes a version script, which hides what a library does not show */
 } CompilerTraits;
 
 /* Runs the compiler with the words `more` after those of cc, which may hold options; returns its exit status. */

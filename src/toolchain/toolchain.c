@@ -169,8 +169,8 @@ static const char *const *compiler_words(Arena *a, const Toolchain *t, const cha
   const char *runtime[] = {build_macro(a, t, is->safe), links_sines ? "-DLAG_LINKED_SINES" : "", "-I", t->include};
   const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : "")},
              *hidden[] = {"-fvisibility=hidden", "-s", alone ? steady_flags(a, t) : ""};
-  const char *whole[] = {"-Wl,-Bsymbolic", arena_printf(a, "-Wl,--version-script=%s/exports.map", dir),
-                         "-Wl,--whole-archive", archive, "-Wl,--no-whole-archive"};
+  const char *exports = is->exports ? arena_printf(a, "-Wl,--version-script=%s/exports.map", dir) : "";
+  const char *whole[] = {"-Wl,-Bsymbolic", exports, "-Wl,--whole-archive", archive, "-Wl,--no-whole-archive"};
   const char *last[] = {t->gsl ? "-llag_gsl" : "", t->soname ? "" : archive,    t->gsl ? "-lgsl" : "",
                         t->gsl ? "-lgslcblas" : "", t->needs ? t->needs : "", "-lm", NULL};
   Words words = {0};

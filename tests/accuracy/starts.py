@@ -9,6 +9,7 @@ a model are kept, or estimates are off by more.
 """
 import argparse
 import csv
+import decimal
 import glob
 import json
 import math
@@ -22,9 +23,9 @@ LAGC = os.environ.get("LAGC", "build/lagc")
 
 
 def exact(x):
-    """A number near x with few bits, whose decimal form both precisions read as the same."""
+    """A number near x with few bits, in all of its decimals: both precisions read the same."""
     k = 2 ** (24 - math.frexp(x)[1]) if x else 1
-    return repr(round(x * k) / k)
+    return format(decimal.Decimal(round(x * k) / k), "f")
 
 
 def run(args, timeout=120):

@@ -28,7 +28,7 @@ runtime/numeric   numeric/
 runtime/kernels   kernels/ lag_lanes.h lag_math.h
 runtime/core      core/ kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/constraints constraints/ core/core.h core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_kkt.h
-runtime/contacts  contacts/ core/core.h core/rhs.h numeric/ lag.h lag_model.h
+runtime/contacts  contacts/ core/core.h core/rhs.h kernels/ numeric/ lag.h lag_model.h
 runtime/methods   methods/ core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/lanes     lanes/ kernels/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
 runtime/analysis  analysis/ core/ kernels/ numeric/ lag.h lag_model.h

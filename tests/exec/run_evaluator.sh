@@ -14,6 +14,7 @@ functions() {
   "$LAGC" build "$model" "$@" --bytes -o "$TMP/bytes" && "$LAGC" build "$model" "$@" --shared -o "$TMP/model.so" && "$TMP/evaluator" "$TMP/bytes" "$TMP/model.so" 12
 }
 check "functions of models/lennard_jones.lag with nests of loops" functions models/lennard_jones.lag -D N=14 --method taylor
+check "nests whose rows are longer than a block" functions models/lennard_jones.lag -D N=80
 for model in models/*.lag; do
   case $model in
     */double_pendulum.lag) one_of 2 && check "functions of $model" functions "$model" --method taylor --with linear ;;
@@ -46,6 +47,47 @@ is "one line says that there is none" 1 "$(grep -c 'there is no C compiler `/no/
 check "compiled, too" cmp "$TMP/never" "$TMP/always"
 "$LAGC" run models/pendulum.lag --compile never --precision long >/dev/null 2>"$TMP/err"
 is "other numbers than doubles need the compiler" "lagc: --compile never evaluates doubles only: leave --precision out" "$(cat "$TMP/err")"
+
+# Without any compiler in PATH: README's commands and others print the same, but for times.
+mkdir "$TMP/tools"
+for tool in sh grep sed; do ln -s "$(command -v $tool)" "$TMP/tools/$tool"; done
+case $LAGC in /*) there=$LAGC ;; *) there=$(pwd)/$LAGC ;; esac
+commands() {
+  sed -n 's/^\$ build\/lagc \(header\|build\) .*//; s/^\$ build\/lagc //p' README.md
+  echo plot models/pendulum.lag -o plot.svg
+  echo modes models/double_pendulum.lag
+  echo lyapunov models/double_pendulum.lag --until 5
+  echo orbit models/pendulum.lag
+  echo effects models/projectile_world.lag gusty --json
+  echo "sweep models/pendulum.lag th=0.1..1:5 --quiet -o sweep.csv"
+}
+commands >"$TMP/commands"
+by() { # by FOLDER PATH CC: what the commands print and write
+  mkdir "$TMP/$1" && ln -s "$(pwd)/models" "$TMP/$1/models"
+  while read -r command; do
+    (cd "$TMP/$1" && PATH=$2 CC=$3 sh -c "$there $command" 2>>errors) || echo "failed: $command"
+  done <"$TMP/commands" | sed 's/, [0-9.e-]* s$//; s/time_s": [0-9.e-]*//g' >"$TMP/$1/printed"
+}
+by with "$PATH" "$CC"
+by without "$TMP/tools" no-compiler
+is "no command fails" "" "$(grep failed "$TMP/without/printed")"
+check "the same is printed without a compiler" diff "$TMP/with/printed" "$TMP/without/printed"
+for file in motion.csv plot.svg chaos.html motion.svg; do check "and written: $file" cmp "$TMP/with/$file" "$TMP/without/$file"; done
+# Lanes have sines of their own, which the motion of a libration over 10 periods makes no more than the tolerance, 1e-11, times a hundred.
+near() { paste -d , "$1" "$2" | awk -F , 'NR > 1 { for (i = 1; i < 4; i++) if (($i - $(i + 4))^2 > 1e-18) exit 1; n++ } END { exit n != 5 }'; }
+check "and a sweep, whose rows are those of runs in lanes up to roundings" near "$TMP/with/sweep.csv" "$TMP/without/sweep.csv"
+
+# Compilers that link no libgcc: tcc.
+empty "liblag asks for no symbols of gcc's own library" "$(nm -u "$BUILD/liblag.a" 2>/dev/null | grep __cpu_)"
+if command -v tcc >/dev/null; then
+  by_tcc() {
+    CC=tcc "$LAGC" run models/bouncing_ball.lag --compile always --quiet -o "$TMP/tcc.csv" && "$LAGC" run models/bouncing_ball.lag --compile never --quiet -o "$TMP/never.csv" &&
+      cmp "$TMP/tcc.csv" "$TMP/never.csv" && CC=tcc "$LAGC" build models/pendulum.lag --shared -o "$TMP/libtcc.so"
+  }
+  check "tcc compiles simulators and libraries" by_tcc
+else
+  skip "tcc compiles simulators and libraries" "tcc is not installed"
+fi
 
 # A run of some seconds changes over to what was compiled beside it; nobody can see where.
 changes_over() {

@@ -118,6 +118,9 @@ check "a crank passes the turning points of its slips" run press coast --tol 1e-
 check "its angle" near "$(final a)" 3.4085322936455413 1e-10
 check "and comes to rest" run press coast --until 10
 check "without a step more" near "$(final "a'")" 0 1e-15
+run press coast mu=0.4 --until 2 && rests=$(final a)
+check "by moreau two frictions hold its one motion" run press coast mu=0.4 --until 2 --method 'moreau(step=2e-3)'
+check "where events end it" near "$(final a)" "$rests" 1e-3 # half a step at 1 rad/s
 fi
 
 # ---- Painleve: a rod whose tip is guided, friction W_nn/|W_nt| = (1 + 3 sin^2)/(3 sin cos)
@@ -149,6 +152,18 @@ done
 check "a block by moreau" run rail go --method 'moreau(step=1e-3)'
 check "slides to rest" near "$(final x)" "$(calc '1/(2*0.2*(30 - 19.62)/2)')" 1e-6
 check "and stays" near "$(final "x'")" 0 1e-15
+model many <<'END_OF'
+model many
+const N = 9
+coord x[N] [m], y[N] [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0, mu = 0.3 >= 0
+kinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2))
+potential = sum(i in 1..N, m*g*y[i])
+for i in 1..N { guide rail[i]: y[i] = 0, friction = mu, slip = x[i]' }
+scene go { start x[i in 1..N]' = 1.1 [m/s]; span 1 [s]; output x[1], x[9] }
+END_OF
+check "nine guides by moreau" run many go --method 'moreau(step=1e-2)'
+check "of which the last stops, too" near "$(final 'x.9.')" "$(calc '1.21/(2*0.3*9.81)')" 1e-4 # h^2 mu g/8 and more in the step where it stops
 model beside <<'END_OF'
 model beside
 coord x [m], y [m], u [m], w [m]
@@ -169,7 +184,7 @@ check "beside a contact with friction" near "$(final u)" "$(calc '1/(2*0.2*9.81)
 
 # ---- refusals
 check "a negative friction" refuses 2 'the model declares mu >= 0' rail go mu=-0.1
-no_header() { ! "$LAGC" header "$TMP/rail.lag" -o "$TMP/h" 2>"$TMP/log" && grep -q 'write a guide as two contacts' "$TMP/log" || { cat "$TMP/log"; return 1; }; }
-check "headers" no_header
+no_header() { ! "$LAGC" header "$TMP/beside.lag" -o "$TMP/h" 2>"$TMP/log" && grep -q 'contacts or dry friction, not both' "$TMP/log" || { cat "$TMP/log"; return 1; }; }
+check "headers with guides beside contacts" no_header
 
 tap_end

@@ -210,6 +210,24 @@ check "a relay" digits "$TMP/relay.lag" slides
 unset inputs
 near=200
 check "beside a constraint, with an input, to rounding" digits "$TMP/wire.lag" s
+model guided <<'END_OF'
+model guided
+coord a [rad], b [rad], x [m], y [m]
+state z
+param r = 0.1 [m] > 0, l = 0.3 [m] > 0, mu = 0.1 >= 0
+input F [N] = 3 [N]*sin(20 [rad/s]*t)
+kinetic = 0.05/2 [kg*m^2]*a'^2 + 0.01/2 [kg*m^2]*b'^2 + 0.75 [kg]*(x'^2 + y'^2)
+potential = 15 [N]*y
+flow z' = a'/3 - z/1 [s]
+friction brake on a: 0.2 [N*m]
+force x = F
+guide pin: (x, y) = (r*cos(a) + l*cos(b), r*sin(a) - l*sin(b)), friction = mu, slip = 15 [mm]*b'
+guide rail: y = 0, friction = mu, static = 1.5*mu
+scene coast { start a = 1, a' = 5 [rad/s], b = asin(r*sin(1)/l), x = r*cos(1) + l*cos(asin(r*sin(1)/l)); span 10 [s]; output a }
+END_OF
+inputs=', 0'
+check "journals and rails beside dry friction, a state and an input" digits "$TMP/guided.lag" coast
+unset inputs
 near=0
 check "a header without it says so" sh -c "$LAGC header $TMP/spring.lag | grep -q 'go to and fro where a body sticks; .lagc header --with moreau. adds a step'"
 model both <<'END_OF'

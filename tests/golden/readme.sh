@@ -24,7 +24,7 @@ shows() { # shows PAGE
       continue ;;
     esac
     case ${SLOW:-}${BLESS:-}$command in
-    build/lagc\ effects*--accuracy* | build/lagc\ modes*bicycle*) # 8 s and 6 s, in `make test-long`
+    build/lagc\ effects*--accuracy* | build/lagc\ modes*bicycle*) # 2 s and 6 s, in `make test-long`
       kept_block "$n" "$page" >"$TMP/blocks/$n"
       continue ;;
     esac

@@ -154,6 +154,7 @@ static const Claim is_false[] = {
   {FREE, "abs(x)*y = abs(x*y)", "y < 0"},
   {FREE, "abs(x + y) = abs(x) + abs(y)", "x < 0 < y"},
   {FREE, "asin(sin(x)) = x", "past a quarter of a turn"},
+  {FREE, "sin(acos(x)) = -sqrt(1 - x^2)", "x = 0"},
   {FREE, "acos(cos(x)) = abs(x)", "past half a turn"},
   {FREE, "atan(tan(x)) = x", "past a quarter of a turn"},
   {FREE, "atan2(sin(x), cos(x)) = x", "past half a turn"},

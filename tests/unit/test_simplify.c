@@ -375,6 +375,21 @@ static void other_sums_stay(void **state) {
   for (size_t i = 0; i < sizeof stays / sizeof *stays; i++) assert_stable(stays[i], stays[i]);
 }
 
+/* Simplification may divide, and lose digits near x = 0 that the text has. */
+static void quotients_keep_the_digits_of_their_text(void **state) {
+  (void)state;
+  static const char *const pairs[][2] = {{"sin(x)^2/(1 + cos(x))", "2*sin(x/2)^2"},
+                                         {"(1 - cos(x)^2)/(1 + cos(x))", "2*sin(x/2)^2"},
+                                         {"1 - cos(x)", "1 - cos(x)"}};
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+    Texts t = start();
+    Expr e = text_expr(&t, pairs[i][0]), s = simplify_stable_quotients(t.g, simplify(t.g, e), e);
+    assert_same_values(&t, e, s);
+    assert_form(&t, s, pairs[i][1]);
+    finish(&t);
+  }
+}
+
 static void definitions_keep_their_names(void **state) {
   (void)state;
   Texts t = start();
@@ -437,6 +452,7 @@ int main(void) {
       cmocka_unit_test(results_do_not_depend_on_what_was_done_before),
       cmocka_unit_test(half_angles_and_differences_of_squares),
       cmocka_unit_test(other_sums_stay),
+      cmocka_unit_test(quotients_keep_the_digits_of_their_text),
       cmocka_unit_test(definitions_keep_their_names),
       cmocka_unit_test(stable_forms_keep_digits),
   };

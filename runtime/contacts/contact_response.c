@@ -1,0 +1,124 @@
+/* Responses of velocities to impulses of contacts. Contract: contact_set.h. Where contacts alone constrain the
+ * motion, M is factored once for all of them, within its band; else each response is that of all constraints
+ * together. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contacts/contact_set.h"
+#include "core/rhs.h"
+#include "kernels/band_matrix.h"
+#include "numeric/complementarity.h"
+
+int lag_contacts_band(const lag_model *m) {
+  const lag_constraints *of = m->constraints;
+  int band = of->n == m->ncontacts ? 0 : -1;
+  for (int i = 0; i < m->ncontacts; i++) band = m->contacts[i].conditional ? -1 : band;
+  for (int e = 0; e < of->nmass && band >= 0; e++) band = (int)fmax(band, of->mass[e].row - of->mass[e].col);
+  return band;
+}
+
+void lag_contacts_list_entries(ContactSet *w) {
+  const lag_constraints *of = w->sim->scene->model->constraints;
+  w->entry = w->row + of->n + 2;
+  for (int e = 0; e < of->njacobian; e++) w->row[of->jacobian[e].row + 2]++;
+  for (int k = 2; k <= of->n + 1; k++) w->row[k] += w->row[k - 1];
+  for (int e = 0; e < of->njacobian; e++) w->entry[w->row[of->jacobian[e].row + 1]++] = e;
+}
+
+double lag_contacts_rate_change(const lag_model *m, const double *A, int i, const double *d) {
+  const lag_constraints *of = m->constraints;
+  double s = 0;
+  for (int e = 0; e < of->njacobian; e++)
+    s += of->jacobian[e].row == m->contacts[i].constraint ? A[e] * d[of->jacobian[e].col] : 0;
+  return s;
+}
+
+static double change_of_rate(const ContactSet *w, int i, const double *d) {
+  const lag_model *m = w->sim->scene->model;
+  const int *row = w->row + m->contacts[i].constraint;
+  double s = 0;
+  for (int k = row[0]; k < row[1]; k++) s += w->A[w->entry[k]] * d[m->constraints->jacobian[w->entry[k]].col];
+  return s;
+}
+
+void lag_contacts_factor_mass(ContactSet *w) {
+  const lag_model *m = w->sim->scene->model;
+  const lag_constraints *of = m->constraints;
+  lag_band_matrix M = {m->nq, w->band, w->lu, w->pivot};
+  for (int e = 0; e < of->nmass && w->band >= 0; e++) {
+    *lag_band_matrix_at(&M, of->mass[e].row, of->mass[e].col) = w->mass[e];
+    *lag_band_matrix_at(&M, of->mass[e].col, of->mass[e].row) = w->mass[e];
+  }
+  if (w->band >= 0 && lag_band_matrix_factor(&M, w->diagonal)) w->band = -1;
+}
+
+/* lag_contacts_response where the other contacts are open and nothing else constrains the motion. */
+static double free_response(ContactSet *w, int i) {
+  const lag_model *m = w->sim->scene->model;
+  const int *row = w->row + m->contacts[i].constraint;
+  const lag_band_matrix M = {m->nq, w->band, w->lu, w->pivot};
+  memset(w->d, 0, (size_t)m->nq * sizeof *w->d);
+  for (int k = row[0]; k < row[1]; k++) w->d[m->constraints->jacobian[w->entry[k]].col] += w->A[w->entry[k]];
+  lag_band_matrix_solve(&M, w->d);
+  double to = change_of_rate(w, i, w->d);
+  for (int j = 0; j < m->nq; j++) w->d[j] = to > 0 ? w->d[j] / to : 0;
+  return to > 0 || isnan(to) ? to : 0;
+}
+
+/* Whether a change d of velocities, d M d = square, keeps the constraints that always hold: it does not where they
+ * imply the row that d moves, and the solver has left out one of theirs. Rates are measured by those of free
+ * coordinates. */
+static int keeps_constraints(const ContactSet *w, const double *d, double square) {
+  const double alike = 1e-6;
+  const lag_model *m = w->sim->scene->model;
+  const lag_constraints *of = m->constraints;
+  double *rate = w->c, *free = w->r;
+  memset(rate, 0, (size_t)of->n * sizeof *rate);
+  memset(free, 0, (size_t)of->n * sizeof *free);
+  for (int e = 0; e < of->njacobian; e++) {
+    const lag_entry *at = &of->jacobian[e];
+    double mass = 0;
+    for (int k = 0; k < of->nmass; k++)
+      mass += of->mass[k].row == at->col && of->mass[k].col == at->col ? w->mass[k] : 0;
+    rate[at->row] += w->A[e] * d[at->col];
+    free[at->row] += mass > 0 ? w->A[e] * w->A[e] / mass : HUGE_VAL;
+  }
+  for (int i = 0; i < m->ncontacts; i++) rate[m->contacts[i].constraint] = 0;
+  for (int k = 0; k < of->n; k++)
+    if (rate[k] * rate[k] > alike * alike * square * free[k]) return 0;
+  return 1;
+}
+
+double lag_contacts_response(ContactSet *w, int i) {
+  lag_problem *pb = &w->sim->pb;
+  int nq = pb->nq, k = w->sim->scene->model->contacts[i].constraint;
+  double s = 0;
+  if (w->band >= 0) return free_response(w, i);
+  lag_contacts_close_only(w, 0, i);
+  memset(w->g, 0, (size_t)pb->model->constraints->n * sizeof *w->g);
+  w->g[k] = 1;
+  if (lag_least_change(pb, w->sim->run->t, w->y, 0, w->g, w->d, w->force)) return NAN;
+  for (int j = 0; j < nq; j++) s += w->d[j] * w->force[j];
+  return isnan(s) || (lag_row_moves(change_of_rate(w, i, w->d)) && keeps_constraints(w, w->d, s)) ? 1 / s : 0;
+}
+
+int lag_contacts_find_responses(ContactSet *w) {
+  size_t n = (size_t)w->rows;
+  double *x = w->response = calloc(2 * n * n + 3 * n + 1, sizeof *x);
+  if (!x) return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  w->lcp = x + n * n;
+  w->rhs = w->lcp + n * n;
+  w->impulse = w->rhs + n;
+  w->scale = w->impulse + n;
+  for (int a = 0; a < w->rows; a++) {
+    double to = lag_contacts_response(w, w->of[a]);
+    if (!isfinite(to)) return lag_contacts_no_values(w, w->of[a]);
+    for (int b = 0; b < w->rows; b++) w->response[b * w->rows + a] = to * change_of_rate(w, w->of[b], w->d);
+    w->response[a * w->rows + a] = to;
+  }
+  for (int k = 0; k < w->rows * w->rows; k++) /* what constraints imply, others do not move either */
+    if (!(w->response[k / w->rows * (w->rows + 1)] > 0 && w->response[k % w->rows * (w->rows + 1)] > 0))
+      w->response[k] = 0;
+  return LAG_OK;
+}
