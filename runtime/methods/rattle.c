@@ -128,7 +128,8 @@ static void add_impulse(const ConstraintBlock *b, int nq, int nc, double h) {
   for (int k = 0; k < nc; k++) b->sum[k] += b->g[k];
 }
 
-/* A block of substeps k to k + length - 1 in a step dt from t, y: it begins at the part `at`, lasts h and ends at t1. */
+/* A block of substeps k to k + length - 1 in a step dt from t, y: it begins at the part `at`, lasts h and ends at
+ * t1. */
 typedef struct Span {
   double t, t1, dt, at, h;
   const double *y;
