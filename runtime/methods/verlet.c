@@ -196,13 +196,8 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
                LAG_METHOD_NEWTON | LAG_METHOD_CONSTRAINTS | (properties),                                \
       .noptions = 1,                                                                                     \
       .options = options,                                                                                \
-      .work_size = work_size,                                                                            \
-      .init = init,                                                                                      \
-      .step = step,                                                                                      \
-      .dense = dense,                                                                                    \
-      .reset = reset,                                                                                    \
-      .tangent_size = tangent_size,                                                                      \
-      .tangent = tangent,                                                                                \
+      LAG_METHOD_FUNCTIONS,                                                                              \
+      LAG_METHOD_TANGENT,                                                                                \
       .variant = &member_##id,                                                                           \
   };
 LAG_SPLITTING_METHODS(DEFINE)
