@@ -330,6 +330,7 @@ help:
 	@echo 'make gallery      draws the pictures of models/README.md'
 	@echo 'make install      PREFIX=/usr/local LIBDIR=PREFIX/lib INCLUDEDIR=PREFIX/include DESTDIR='
 	@echo 'make uninstall    the same, backwards'
+	@echo 'make deb          what is installed as build/lagc_VERSION_ARCH.deb, with lagc.py for Python'
 	@echo 'make dist         the last commit as build/lagc-VERSION.tar.gz, the same bytes wherever it is made'
 	@echo 'make clean        removes build/'
 	@echo 'settings: CC CFLAGS CPPFLAGS LDFLAGS AR RANLIB WERROR=-Werror BUILD FLEX BISON CXX CLANG= (to do without clang)'
@@ -342,4 +343,4 @@ ifneq ($(BUILDS),)
 endif
 
 FORCE:
-.PHONY: FORCE all page demo run-demo precisions gallery test check-quick test-long test-all bless hard bench cost-report build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall dist clean help
+.PHONY: FORCE all page demo run-demo precisions gallery test check-quick test-long test-all bless hard bench cost-report build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall deb dist clean help

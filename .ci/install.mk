@@ -61,6 +61,22 @@ uninstall:
 	  rm -rf lag-long lag-quad cmake/lagc
 	cd '$(DESTDIR)$(INCLUDEDIR)' && rm -f $(HEADERS)
 
+# ---- a package for Debian ----
+# build/lagc_VERSION_ARCH.deb, of what is installed on this machine; lagc.py goes where Debian's Python looks.
+DEB_ROOT := $(BUILD)/deb
+deb:
+	@command -v dpkg-deb >/dev/null || { echo 'make deb needs dpkg-deb: Debian, or apt install dpkg'; exit 1; }
+	rm -rf $(DEB_ROOT)
+	$(MAKE) install PREFIX=/usr LIBDIR=/usr/lib INCLUDEDIR=/usr/include PYTHONDIR=/usr/lib/python3/dist-packages DESTDIR='$(abspath $(DEB_ROOT))' PRECISIONS='$(PRECISIONS)'
+	install -d $(DEB_ROOT)/DEBIAN
+	needs=$$(for so in $$(ldd $(BUILD)/lagc $(BUILD)/lag-run | sed -n 's/.* => \(\/[^ ]*\) .*/\1/p' | sort -u); do \
+	  dpkg -S "*$$so" | sed -n '1s/:.*//p'; done | sort -u | paste -sd , -); \
+	printf '%s\n' 'Package: lagc' 'Version: $(VERSION)' "Architecture: $$(dpkg --print-architecture)" 'Section: science' \
+	  'Maintainer: the lagc project <lagc@localhost>' "Depends: $$needs" \
+	  'Recommends: gcc, libc6-dev' 'Suggests: python3-numpy' 'Description: Lagrangians as text, compiled to C' \
+	  ' Derives equations of motion, checks them, simulates them.' >$(DEB_ROOT)/DEBIAN/control
+	dpkg-deb --build --root-owner-group $(DEB_ROOT) $(BUILD)
+
 # ---- a release ----
 # The files of the last commit as lagc-VERSION.tar.gz, the same bytes wherever it is made: names in order, no dates but the commit's, no owners.
 DIST := $(BUILD)/lagc-$(VERSION).tar.gz

@@ -4,7 +4,7 @@ WASM       := $(WASM_FOUND)
 WASM_SRC   := runtime/page/page_module.c $(filter runtime/core/% runtime/methods/% runtime/constraints/% runtime/contacts/% runtime/numeric/% \
                 runtime/evaluator/% runtime/analysis/automatic_method.c runtime/analysis/spectrum.c,$(RT_SRC))
 WASM_OBJ   := $(WASM_SRC:%.c=$(BUILD)/obj/wasm/%.o)
-WASM_FLAGS := -std=c11 -O2 -mbulk-memory -ftls-model=local-exec -ffp-contract=off $(CPPFLAGS_ALL) -Iruntime/include -Iruntime -I$(BUILD)/gen
+WASM_FLAGS := -std=c11 -Oz -mbulk-memory -ftls-model=local-exec -ffp-contract=off $(CPPFLAGS_ALL) -Iruntime/include -Iruntime -I$(BUILD)/gen
 # What a page's script calls (runtime/page/motion.js).
 WASM_CALLS := $(shell cat runtime/page/*.js | grep -oE "\\bf\.(lag|page)_[a-z_]+" | cut -c 3- | sort -u) malloc free page_output page_state
 
@@ -18,15 +18,21 @@ $(BUILD)/lag.wasm.gz: $(BUILD)/lag.wasm
 
 
 # The page of `lagc page`: a frame with the scripts in it.
-LIVE := $(addprefix runtime/page/,live.html motion.js live.js)
+LIVE := $(addprefix runtime/page/,live.html motion.js words.js typeset.js plots.js drag.js live.js)
 $(BUILD)/gen/page/live_page.txt: $(LIVE) runtime/io/page.html
 	@mkdir -p $(@D)
 	sed -n '/^\/\/ ---- drawing/,/^\/\/ ---- marks/p' runtime/io/page.html >$(@D)/drawing.js
-	sed -e '/@DRAWING@/{r $(@D)/drawing.js' -e 'd}' runtime/page/live.js >$(@D)/live.js
-	sed -e '/@MOTION@/{r runtime/page/motion.js' -e 'd}' -e '/@LIVE@/{r $(@D)/live.js' -e 'd}' runtime/page/live.html >$@
+	sed -n '/^\/\/ ---- numbers/,/^\/\/ ---- drawing/p' runtime/io/page.html >$(@D)/numbers.js
+	sed -e '/@DRAWING@/{r $(@D)/drawing.js' -e 'd}' $(@D)/numbers.js runtime/page/words.js runtime/page/typeset.js runtime/page/plots.js runtime/page/drag.js runtime/page/live.js >$(@D)/live.js
+	sed -e '/@MOTION@/{r runtime/page/motion.js' -e 'd}' -e '/@LIVE@/{r $(@D)/live.js' -e 'd}' runtime/page/live.html | sed 's/^  *//; /^\/\/ /d' >$@
 $(eval $(call as_text,commands/live_page.h,$(BUILD)/gen/page/live_page.txt))
 $(BUILD)/obj/src/commands/page.o: $(BUILD)/gen/commands/live_page.h
 
 page: all $(BUILD)/lag.wasm.gz
+
+# The gallery as live pages: build/site/index.html.
+site: page
+	.ci/site $(BUILD)/lagc $(BUILD)/site
+.PHONY: site
 
 -include $(WASM_OBJ:.o=.d)

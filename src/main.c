@@ -39,6 +39,7 @@ static int do_command(Compiler *c) {
     case CMD_PLOT:
     case CMD_ANIMATE:
     case CMD_MODES:
+    case CMD_LINEARIZE:
     case CMD_ORBIT:
     case CMD_CONTINUE:
     case CMD_LYAPUNOV:

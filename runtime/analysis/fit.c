@@ -141,12 +141,14 @@ static int run_rows(Fit *f, lag_sim *sim, const double *slope, double *r, double
 /* Springs to f->centre in the last n residuals, without which rounding would move the search far along directions that
  * data do not feel; -1: x is so far away that no motion is tried. */
 static int put_springs(const Fit *f, const double *x, double *r, double *J) {
-  const double farthest = 8; /* logarithms, or scales */
+  const double farthest = 8, stiff = 1e10; /* logarithms, or scales; of a spring that holds, beside weak ones */
   int at = f->nvalues;
   for (int k = 0; k < f->n; k++) {
+    int held = k + 1 == f->held;
+    double pull = held ? stiff * f->pull : f->pull, centre = held ? f->held_at : f->centre[k];
     if (!(fabs(x[k] - f->centre[k]) < farthest)) return -1;
-    if (r) r[at + k] = f->pull * (x[k] - f->centre[k]);
-    for (int j = 0; j < f->n && J; j++) J[(at + k) * f->n + j] = j == k ? f->pull : 0;
+    if (r) r[at + k] = pull * (x[k] - centre);
+    for (int j = 0; j < f->n && J; j++) J[(at + k) * f->n + j] = j == k ? pull : 0;
   }
   return 0;
 }
@@ -519,4 +521,26 @@ void lag_fit_free(Fit *f) {
   free(f->row);
   free(f->D);
   free(f->centre);
+}
+
+/* ---- For profiles */
+
+double lag_fit_coordinate(const FitTarget *t, double value) { return coordinate_of(t, value); }
+
+double lag_fit_value(const FitTarget *t, double x) {
+  double slope;
+  return value_at(t, x, &slope);
+}
+
+int lag_fit_search(Fit *f, double *x) { return search(f, f->nrows, f->most, x); }
+
+int lag_fit_squares(Fit *f, const double *x, double *chi_squared) {
+  int m = count_values(f, f->nrows);
+  double *r = calloc((size_t)(m + f->n), sizeof *r);
+  memcpy(f->centre, x, (size_t)f->n * sizeof *x);
+  int rc = r ? residuals(f, x, r, NULL) : fail(f, LAG_ENOMEM, "out of memory");
+  *chi_squared = 0;
+  for (int i = 0; i < m && rc == LAG_OK; i++) *chi_squared += r[i] * r[i];
+  free(r);
+  return rc;
 }

@@ -12,6 +12,7 @@ typedef struct FitTarget {
   double begin, scale;       /* first value; a typical change */
   double prior, prior_error; /* mean and deviation; error 0: none */
   double value, error;       /* result and standard error; NaN: not determined */
+  double low, high;          /* of its profile of likelihood, 95 %; infinite: open; NaN: not asked, not determined */
   int flat;                  /* 1: it moves in a direction that data do not feel */
 } FitTarget;
 
@@ -63,6 +64,8 @@ typedef struct Fit {
   int rows;                            /* rows that count */
   double steps_of_run, steps_of_first; /* a run may take 50 times as many steps as the first */
   double *centre, pull;                /* [n] coordinates to which weak springs of this stiffness hold the search */
+  int held;                            /* 1 + a target, held at a coordinate by a stiff spring; 0: none */
+  double held_at;
   double *y, *row, *D;                 /* scratch */
 } Fit;
 
@@ -70,3 +73,12 @@ typedef struct Fit {
  * target, column, t, data, errors and the members before them; allocates the rest. */
 int lag_fit(Fit *f);
 void lag_fit_free(Fit *f);
+/* fit_profile.c: after a fit, low and high of each determined target: where the sum of squares, least over all others,
+ * has grown by the 95 % quantile (D. M. Bates, D. G. Watts, Nonlinear Regression Analysis, 1988, ch. 6). LAG_OK, or
+ * LAG_ENOMEM. */
+int lag_fit_profile(Fit *f);
+/* For profiles: coordinate of a value; a search over all rows from x; the sum of squares there. */
+double lag_fit_coordinate(const FitTarget *t, double value);
+double lag_fit_value(const FitTarget *t, double x);
+int lag_fit_search(Fit *f, double *x);
+int lag_fit_squares(Fit *f, const double *x, double *chi_squared);

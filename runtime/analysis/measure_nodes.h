@@ -55,7 +55,7 @@ typedef struct Track {
   TrackKind kind;
   int node, arg;        /* its node, and the node of the expression that is followed */
   double first, last;   /* value at the start, and at the end of the last part */
-  double least, most;
+  double least, most, when_least, when_most; /* and their times */
   double sum, lost;     /* the integral, and its rounding error (Kahan) */
   double passage, latest; /* first and last upward passage of 0, */
   int passages;         /* and their number */
@@ -92,6 +92,9 @@ struct Measures {
 
 /* measure_text.c: reads measure k; m->root[k], m->unit[k] := its node and unit. 0, or -1 after a message in why. */
 int lag_measure_read(Measures *m, int k, const char *text, char *why, size_t size);
+
+/* measure_run.c: the expression of a node at the state y[n] and time t; m->y := y. */
+double lag_measure_at(Measures *m, int node, double t, const double *y);
 
 /* measure_lyapunov.c: the largest exponent, or MEGNO, of a run that has come to `until`; NaN with the reason in
  * m->no_exponent. */

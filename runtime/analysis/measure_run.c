@@ -70,18 +70,23 @@ const char *lag_measures_why(const Measures *m, int k) { return m->why[k]; }
 
 /* ---- Evaluation */
 
-/* y, out and charges at t, within the present part of the run. */
-static void take_row(Measures *m, double t) {
+/* out and charges at t and the state m->y, unless there is none. */
+static void take_state(Measures *m, double t, int rc) {
   lag_sim *s = m->sim;
-  double calls = s->pb.rhs_calls; /* of the run: dense output may take more */
-  int rc = lag_sim_eval(s, t, m->y);
-  s->pb.rhs_calls = calls;
   m->t = t;
   for (int i = 0; i < s->pb.n && rc; i++) m->y[i] = NAN;
   if (m->uses[QUANTITY_OUTPUT] && (rc || lag_observe(s, t, m->y, m->out)))
     for (int i = 0; i < m->scene->nout; i++) m->out[i] = NAN;
   if (m->uses[QUANTITY_CHARGE]) lag_charges_at(s, t, m->y);
   if (m->uses[QUANTITY_INPUT]) lag_inputs(&s->pb, t);
+}
+
+/* The same within the present part of the run. */
+static void take_row(Measures *m, double t) {
+  double calls = m->sim->pb.rhs_calls; /* of the run: dense output may take more */
+  int rc = lag_sim_eval(m->sim, t, m->y);
+  m->sim->pb.rhs_calls = calls;
+  take_state(m, t, rc);
 }
 
 /* A quantity in the row taken last. */
@@ -110,6 +115,12 @@ static double evaluate(Measures *m, int root) {
   return m->node[root].value;
 }
 
+double lag_measure_at(Measures *m, int node, double t, const double *y) {
+  memcpy(m->y, y, (size_t)m->sim->pb.n * sizeof *y);
+  take_state(m, t, 0);
+  return evaluate(m, node);
+}
+
 /* ---- Along a part of the run */
 
 typedef struct Followed {
@@ -126,18 +137,21 @@ static double value_at(void *context, double t) {
 
 static void note(Track *k, double t, double x) {
   if (!isfinite(x) && isnan(k->bad)) k->bad = t;
+  if (!(x >= k->least)) k->when_least = t;
+  if (!(x <= k->most)) k->when_most = t;
   k->least = fmin(k->least, x);
   k->most = fmax(k->most, x);
 }
 
-/* The largest value of f in [a, b], where it has one top. */
-static double top(Followed *f, double a, double b) {
+/* The largest value of f in [a, b], where it has one top, at *when. */
+static double top(Followed *f, double a, double b, double *when) {
   const double golden = 0.6180339887498948482045868343656381177203, last = 1e-8 * fabs(b - a);
   double c = b - golden * (b - a), d = a + golden * (b - a), fc = value_at(f, c), fd = value_at(f, d);
   for (int i = 0; i < 60 && fabs(b - a) > last; i++) {
     if (fc > fd) b = d, d = c, fd = fc, c = b - golden * (b - a), fc = value_at(f, c);
     else a = c, c = d, fc = fd, d = a + golden * (b - a), fd = value_at(f, d);
   }
+  *when = fc > fd ? c : d;
   return fmax(fc, fd);
 }
 
@@ -152,7 +166,8 @@ static void find_tops(Measures *m, Track *track, double sign, int n, const doubl
     if (!(bend < 0) || !(fabs(place) <= beyond) || (place < -0.5 && k > 1) || (place > 0.5 && k < n - 1)) continue;
     double gain = b - rise - here;
     if (here + 2 * fmax(gain, 0) - 0.125 * bend <= best || fabs(bend) <= 8 * DBL_EPSILON * fabs(here)) continue;
-    note(track, t[k], sign * top(&f, t[k - 1], t[k + 1]));
+    double when, most = top(&f, t[k - 1], t[k + 1], &when);
+    note(track, when, sign * most);
   }
 }
 

@@ -28,8 +28,9 @@ typedef struct Args {
   const char *period, *guess, *hold, *relative, *segments; /* for --orbit */
   const char *most; /* for --continue */
   int orbit, continues, branches;
-  int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs,
-      sweep, zip, go_on, yes, portrait, potential, distance, energy_error, no_monitors;
+  int json, sketch, quiet, help, trace, no_rods, modes, linearize, equilibrium, gradient, steady, tangent,
+      volume, lyapunov, cost, reference, all, runs, sweep, zip, go_on, yes, portrait, potential, distance, energy_error,
+      no_monitors, profile;
   char **sets; /* name=value, in order */
   int nsets;
   const char **scenes; /* all scenes named; scene is the first */
@@ -135,7 +136,7 @@ typedef struct App {
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
 enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, FIT = 128, ORBIT = 256,
-       CONTINUE = 512, ANY = 1023, MOTION_PERIODIC = ORBIT | CONTINUE,
+       CONTINUE = 512, LINEARIZE = 1024, ANY = 2047, MOTION_PERIODIC = ORBIT | CONTINUE,
        MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | FIT };
 
 /* A row of options.def. */
@@ -316,6 +317,10 @@ int lag_app_measures_end(App *app);
 void lag_app_measures_free(App *app);
 void lag_report_measures(const App *app, FILE *f);
 void lag_report_measures_json(const App *app, Json *j);
+/* gradient_report.c: --gradient. open: refuses what has none. */
+int lag_app_gradient_open(App *app);
+void lag_report_gradient(App *app, FILE *f);
+void lag_report_gradient_json(App *app, Json *j);
 
 /* error_report.c: the error of the run, by a second run. begin: before the run; 0, or EXIT_USAGE after a message.
  * end: after it. */
@@ -339,8 +344,13 @@ void lag_report_error_json(const App *app, Json *j);
 /* lyapunov_report.c: --lyapunov. Returns the exit status. */
 int lag_app_lyapunov(App *app);
 
-/* modes_report.c: --modes. Returns the exit status. */
+/* modes_report.c: --modes. Returns the exit status. rest: y[n] := the rest, or with --steady the steady motion, next to
+ * the start; 0, or the exit status after a message. */
 int lag_app_modes(App *app);
+int lag_app_rest(App *app, double *y);
+
+/* linear_report.c: --linearize. Returns the exit status. */
+int lag_app_linearize(App *app);
 
 /* orbit_report.c: --orbit. Returns the exit status. */
 int lag_app_orbit(App *app);

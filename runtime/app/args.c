@@ -172,7 +172,8 @@ static unsigned analyses_with(const Option *o) {
 
 /* Refuses options that a run, or the analysis that is asked for, does not use. */
 static int check_analysis(const Args *a) {
-  const unsigned what = a->sweep ? SWEEP : a->fit ? FIT : a->modes ? MODES : a->orbit ? ORBIT : a->continues ? CONTINUE
+  const unsigned what = a->sweep ? SWEEP : a->fit ? FIT : a->modes ? MODES : a->linearize ? LINEARIZE
+                        : a->orbit ? ORBIT : a->continues ? CONTINUE
                         : a->cost ? COST : a->reference ? REFERENCE
                         : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
   for (int i = 0; i < NOPTIONS; i++) {
@@ -186,6 +187,7 @@ static int check_analysis(const Args *a) {
                                  analyses & COST    ? "--cost"
                                  : analyses & SWEEP ? "--sweep"
                                  : analyses & MODES ? "--modes"
+                                 : analyses & LINEARIZE ? "--linearize"
                                  : analyses & FIT   ? "--fit"
                                  : analyses & ORBIT ? "--orbit"
                                  : analyses & CONTINUE ? "--continue"
@@ -197,6 +199,7 @@ static int check_analysis(const Args *a) {
         : what == SWEEP
             ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
         : what == MODES ? "--modes, which takes name=value, --steady and --json"
+        : what == LINEARIZE ? "--linearize, which takes name=value, --equilibrium, --steady, -o and --json"
         : what == FIT ? "--fit, which takes name=value, --data, --sigma, --prior, --loss, a method, --svg and --json"
         : what == CONTINUE
             ? "--continue, which takes NAME=A..B, name=value, the options of --orbit, --most, --branches, -o, "
@@ -269,7 +272,8 @@ static int check_overlay(const Args *a) {
   if (a->starts && (a->vs || a->distance))
     return lag_app_error(a, "--starts and --%s: the range says which runs are drawn; leave one of them out",
                          a->vs ? "vs" : "distance");
-  if (a->modes || lag_args_tangents(a) || a->cost || a->reference || a->effects || a->sweep || !a->svg) {
+  if (a->modes || a->linearize || a->cost || lag_args_tangents(a) || a->reference || a->effects || a->sweep ||
+      !a->svg) {
     return a->nscenes > 1 ? lag_app_error(a,
                                           "two scenes are named: %s and %s; `lagc plot` draws several in one picture; "
                                           "to set a value write name=value",

@@ -20,6 +20,7 @@ static void put_values(const Fit *f, FILE *out) {
     if (t->flat) fputs(" not determined", out);
     else fprintf(out, " +- %.2g", t->error);
     fprintf(out, "%s%s", t->unit[0] ? " " : "", t->unit);
+    if (!isnan(t->low) && !isnan(t->high)) fprintf(out, ", 95 %% from %.6g to %.6g", t->low, t->high);
     if (t->prior_error > 0) fprintf(out, " (prior: %.6g +- %.2g)", t->prior, t->prior_error);
     putc('\n', out);
   }
@@ -215,6 +216,12 @@ void lag_fit_report_json(const FitRun *r, FILE *out) {
     lag_json_begin(&j, what ? "errors" : "values", '{');
     for (int i = 0; i < f->n; i++)
       lag_json_number(&j, f->target[i].label, what ? f->target[i].error : f->target[i].value);
+    lag_json_end(&j, '}');
+  }
+  for (int what = 0; what < 2 && r->app->args.profile; what++) {
+    lag_json_begin(&j, what ? "high" : "low", '{');
+    for (int i = 0; i < f->n; i++)
+      lag_json_number(&j, f->target[i].label, what ? f->target[i].high : f->target[i].low);
     lag_json_end(&j, '}');
   }
   correlations_json(f, &j);

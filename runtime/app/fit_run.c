@@ -264,6 +264,7 @@ static int prepare(FitRun *r) {
 
 int lag_fit_run(FitRun *r) {
   int rc = prepare(r);
+  for (int j = 0; j < r->fit.n; j++) r->fit.target[j].low = r->fit.target[j].high = NAN;
   if (rc || (r->status = lag_fit(&r->fit)) == LAG_OK) return rc;
   lag_app_error(&r->app->args, "%s", r->fit.why);
   return r->status == LAG_EINVAL ? EXIT_USAGE : EXIT_RUN;
@@ -286,6 +287,7 @@ int lag_app_fit(App *app) {
   if (a->nscenes > 1 && a->svg) return lag_app_error(a, "--svg: a picture is of one fit; name one scene");
   if (a->nscenes > 1) return lag_fit_compare(app);
   int rc = lag_fit_run(&r);
+  if (rc == 0 && a->profile && lag_fit_profile(&r.fit)) rc = lag_app_error(a, "%s", r.fit.why);
   if (rc == 0 && a->svg && lag_fit_picture(&r, a->svg)) rc = lag_app_io_error(app, a->svg);
   if (rc == 0 && a->json) lag_fit_report_json(&r, stdout);
   if (rc == 0 && !a->json) lag_fit_report(&r, stdout);

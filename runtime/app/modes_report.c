@@ -487,12 +487,29 @@ static int analysis_failed(const App *app, int rc, const char *where) {
   return EXIT_RUN;
 }
 
-static int analyse(const App *app, Equilibrium *r, SteadyMotion *steady, Modes *s) {
-  int tangent = in_tangent_space(app), moving = app->args.steady;
-  int rc = tangent ? lag_steady_find(steady, r, app->sim, app->extras.algebra, moving)
-                   : lag_equilibrium_find(r, app->sim, app->extras.algebra);
+/* Finds the rest, or steady motion, next to the start, whose state is r->y. 0, or the exit status after a message. */
+static int find_rest(const App *app, Equilibrium *r, SteadyMotion *steady) {
+  int tangent = in_tangent_space(app), rc = refuse(app);
+  if (rc) return rc;
+  rc = tangent ? lag_steady_find(steady, r, app->sim, app->extras.algebra, app->args.steady)
+               : lag_equilibrium_find(r, app->sim, app->extras.algebra);
   if (rc == 0) return tangent ? none_near(app) : not_found(app, r);
-  if (rc < 0) return analysis_failed(app, rc, "at the start");
+  return rc < 0 ? analysis_failed(app, rc, "at the start") : 0;
+}
+
+int lag_app_rest(App *app, double *y) {
+  Equilibrium rest = {0};
+  SteadyMotion steady = {0};
+  int rc = find_rest(app, &rest, &steady);
+  if (rc == 0) memcpy(y, rest.y, (size_t)app->sim->pb.n * sizeof *y);
+  lag_steady_free(&steady);
+  lag_equilibrium_free(&rest);
+  return rc;
+}
+
+static int analyse(const App *app, Equilibrium *r, SteadyMotion *steady, Modes *s) {
+  int tangent = in_tangent_space(app), moving = app->args.steady, rc = find_rest(app, r, steady);
+  if (rc) return rc;
   rc = tangent ? lag_steady_modes(s, steady, r) : lag_modes_find(s, r, app->extras.algebra);
   if (rc) return analysis_failed(app, rc, moving ? "at the steady motion" : "at the equilibrium");
   if (app->args.json) json_modes(stdout, app, r, s);
@@ -507,7 +524,6 @@ int lag_app_modes(App *app) {
   int rc = lag_app_set_up_start(app);
   if (rc == 0 && lag_sim_advance(app->sim, app->scene->t0))
     rc = lag_app_error(&app->args, "%s", lag_sim_message(app->sim));
-  rc = rc ? rc : refuse(app);
   rc = rc ? rc : analyse(app, &rest, &steady, &modes);
   lag_modes_free(&modes);
   lag_steady_free(&steady);

@@ -174,7 +174,7 @@ int lag_app_run(App *app) {
     return lag_app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",
                      lag_sim_method(app->sim)->name);
   }
-  if ((rc = lag_app_measures_open(app)) != 0) return rc;
+  if ((rc = lag_app_measures_open(app)) != 0 || (rc = lag_app_gradient_open(app)) != 0) return rc;
   lag_app_catch_interrupt();
   if ((rc = open_output(app)) != 0) return rc;
   if (!app->args.quiet || app->args.json || app->args.save || app->args.energy_error) {

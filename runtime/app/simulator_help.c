@@ -47,7 +47,7 @@ static unsigned analysis_named(const char *name) {
   static const struct {
     const char *name;
     unsigned analyses;
-  } all[] = {{"--lyapunov", LYAPUNOV}, {"--modes", MODES}, {"--orbit", ORBIT},
+  } all[] = {{"--lyapunov", LYAPUNOV}, {"--modes", MODES}, {"--linearize", LINEARIZE}, {"--orbit", ORBIT},
              {"--continue", CONTINUE}, {"--cost", COST}, {"--sweep", SWEEP}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     if (strcmp(all[i].name, name) == 0) return all[i].analyses;

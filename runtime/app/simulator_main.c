@@ -131,6 +131,8 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     rc = lag_app_fit(&app);
   } else if (rc == 0 && app.args.modes) {
     rc = lag_app_modes(&app);
+  } else if (rc == 0 && app.args.linearize) {
+    rc = lag_app_linearize(&app);
   } else if (rc == 0 && app.args.orbit) {
     rc = lag_app_orbit(&app);
   } else if (rc == 0 && app.args.continues) {

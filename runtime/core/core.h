@@ -141,6 +141,7 @@ struct lag_sim {
   /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
   double *tangent, *tangent_jump, *tangent_scratch;
   struct lag_sensitivity *sensitivity;   /* parameter_columns.c; NULL: the tangent is one by starts alone */
+  struct lag_record *record;             /* gradient.c; NULL: steps are not kept */
   int tangent_columns, tangent_at_event; /* tangent_at_event: the event at this time is already applied to it */
   /* switches met at this time; whether that time depends on the state; whether the last one is only touched */
   int tangent_meets, tangent_moves, tangent_touches;
@@ -323,6 +324,9 @@ int lag_settle_constraints(lag_sim *sim, double *y, const char *who, int event, 
 /* linearisation.c: the scale of component i of the state at which a smooth model bends, for differences; of an angle
  * at most 1. */
 double lag_difference_scale(lag_problem *pb, const double *y, int i);
+/* J[(nq + nz) * nu]: exact derivatives by inputs of the rates below the first nq; work[lag_linear_work()]. LAG_EMETHOD:
+ * there are none. */
+int lag_input_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
 
 /* kicks.c: events at equal times (LAG_KICK). begin: checks their periods, values of the event functions. plan:
  * pb.kick := the time of the next. locate: root[] of those in the step, whose event functions at its start are
@@ -345,6 +349,11 @@ int lag_tangent_jump(lag_sim *sim, int k, int more);
 void lag_tangent_free(lag_sim *sim);
 /* As lag_sim_set_tangent, which first frees columns by parameters. */
 int lag_tangent_set(lag_sim *sim, int k, const double *Y);
+/* gradient.c: in place of advancing the tangent: keeps the last step up to t; the matrix by which a jump has multiplied
+ * the columns, which begin anew. */
+int lag_record_step(lag_sim *sim, double t);
+int lag_record_jump(lag_sim *sim);
+void lag_record_free(lag_sim *sim);
 /* tangent_space.c. dimension: of the tangent space of the constraints at the present state; of a run that has not
  * begun at its start, which is computed; n without constraints; or a status < 0 with its message. project: each
  * column of Y[n k] at y, t onto that space, in the mass metric; scratch[lag_tangent_projection_size]. */
@@ -371,6 +380,14 @@ static inline const double *lag_shifted_parameters(const lag_problem *pb, const 
  * again. event: change[columns] := derivatives of event function `event` by parameters, 0 in columns of starts;
  * action: change[n columns], of the state that its action sets; after[n] is scratch. They use g1. */
 void lag_parameter_columns_free(lag_sim *sim);
+/* Columns by each parameter, pb.by, in place of those of the run, `kept`, until _end. */
+int lag_all_parameters(lag_sim *sim);
+void lag_all_parameters_end(lag_sim *sim, struct lag_sensitivity *kept);
+/* A tangent with a column for each component of the start and for each parameter, in this order; its columns at the
+ * start [n (n + np)]; derivative of parameter i by parameter j, which it may follow. */
+int lag_all_columns(lag_sim *sim);
+const double *lag_columns_at_start(const lag_sim *sim);
+double lag_parameter_chain(const lag_sim *sim, int i, int j);
 void lag_use_parameters(lag_sim *sim, int j, int k);
 int lag_event_by_parameters(lag_sim *sim, int event, double *change);
 int lag_action_by_parameters(lag_sim *sim, int event, double *after, double *change);

@@ -20,6 +20,7 @@ static size_t block(const lag_sim *s) { return (size_t)s->pb.n * (size_t)s->tang
 
 void lag_tangent_free(lag_sim *s) {
   lag_parameter_columns_free(s);
+  lag_record_free(s);
   free(s->tangent);
   s->tangent = s->tangent_jump = s->tangent_scratch = NULL;
   s->tangent_at_event = 0;
@@ -146,6 +147,7 @@ int lag_tangent_set(lag_sim *s, int k, const double *Y) {
 /* Y := D Y, with D the derivative of the last step up to t. */
 static int advance_tangent(lag_sim *s, double t, double *Y) {
   lag_problem *pb = &s->pb;
+  if (s->record) return lag_record_step(s, t);
   double rhs_calls = pb->rhs_calls, systems = pb->systems, iterations = pb->iterations;
   pb->detail = NULL;
   pb->bad_index = -1;
@@ -276,7 +278,7 @@ int lag_tangent_corner(lag_sim *s) {
   }
   int joins = fabs(left) <= same * terms; /* a slide begins */
   s->tangent_log += joins ? -HUGE_VAL : log(fabs(left / rate));
-  return LAG_OK;
+  return s->record ? lag_record_jump(s) : LAG_OK;
 }
 
 /* Neighbouring motions fall onto the surface at once, from either side along the jump of the rates: S = 1 - (f+ -
@@ -303,6 +305,7 @@ int lag_tangent_begin(lag_sim *s) {
     for (int i = 0; i < n; i++) s->tangent[i * columns + c] -= (w.after[i] - w.before[i]) * along / across;
   }
   s->tangent_log = -HUGE_VAL;
+  if (rc == LAG_OK && s->record) return lag_record_jump(s);
   return rc ? lag_fail(s, LAG_EMETHOD,
                        "the start slides, and the rates beside its surface, which its tangent needs, have no values")
             : LAG_OK;
@@ -436,14 +439,16 @@ int lag_tangent_jump(lag_sim *s, int k, int more) {
   s->tangent_log += log_det(n, j.S, j.copy);
   int finite = apply_saltation(s, &j);
   for (size_t i = 0; i < block(s) && s->pb.by; i++) s->tangent[i] += j.R_by[i];
-  return finite && !touches ? LAG_OK : refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
+  if (!finite || touches) return refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
+  return s->record ? lag_record_jump(s) : LAG_OK;
 }
 
 int lag_sim_tangent(lag_sim *s, double *Y) {
   if (!s || !Y) return LAG_EINVAL;
   const Run *r = s->run;
 
-  if (!s->tangent) return lag_fail(s, LAG_EINVAL, "this run has no tangent: lag_sim_set_tangent");
+  if (!s->tangent || s->record)
+    return lag_fail(s, LAG_EINVAL, "this run has no tangent: lag_sim_set_tangent");
   memcpy(Y, s->tangent, block(s) * sizeof *Y);
   return r->have_step != 0.0 && r->t != r->step_t0 && !s->tangent_at_event ? advance_tangent(s, r->t, Y) : LAG_OK;
 }

@@ -53,27 +53,6 @@ const char *lag_item(const lag_scene *scene, int kind, int i, const char **unit,
   return vars[i].name;
 }
 
-int lag_sim_rhs(lag_sim *s, int count, const double *t, const double *y, double *dy) {
-  if (!s || count < 0 || !t || !y || !dy) return LAG_EINVAL;
-  const lag_model *m = s->scene->model;
-  size_t n = (size_t)s->pb.n;
-  double *held = s->contact_scratch;
-  int rc = lag_check_parameters(s);
-  if (rc) return rc;
-  lag_switch_set_free(s, 1);
-  for (int i = 0; i < m->ncontacts; i++) held[i] = s->hold[m->contacts[i].input];
-  for (int k = 0; k < count && rc == 0; k++) {
-    rc = lag_conditional_place(s, t[k], y + (size_t)k * n);
-    rc = rc ? rc : lag_rhs(&s->pb, t[k], y + (size_t)k * n, dy + (size_t)k * n);
-    int bad = rc ? 0 : lag_check_moving_sizes(s, t[k], y + (size_t)k * n);
-    if (rc) lag_fail(s, rc, "the equations have no value at t = %s s, state %d", LAG_TEXT(t[k]), k);
-    rc = rc ? rc : bad;
-  }
-  lag_switch_set_free(s, 0);
-  for (int i = 0; i < m->ncontacts; i++) s->hold[m->contacts[i].input] = held[i];
-  return rc;
-}
-
 int lag_time_is_up(void *until, const lag_sim *s) {
   enum { OFTEN = 4 }; /* steps between two looks at the clock */
   return (long long)s->run->steps % OFTEN == 0 && lag_clock_seconds() > *(const volatile double *)until;

@@ -44,6 +44,15 @@ size_t lag_linear_work(const lag_model *m) {
   return exact > differences ? exact : differences;
 }
 
+/* M[nq nq] := the matrix with these entries of its lower triangle. */
+static void dense_mass(const lag_linear *l, size_t nq, const double *mass, double *M) {
+  memset(M, 0, nq * nq * sizeof(double));
+  for (int k = 0; k < l->nmass; k++) {
+    size_t i = (size_t)l->mass[k].row, j = (size_t)l->mass[k].col;
+    M[i * nq + j] = M[j * nq + i] = mass[k];
+  }
+}
+
 /* lag_linearise with rows of dr `width` apart; columns past n are 0. */
 static int linearise(lag_problem *pb, double t, const double *y, const double *a, size_t width, double *dr, double *M,
                      double *work) {
@@ -60,12 +69,8 @@ static int linearise(lag_problem *pb, double t, const double *y, const double *a
   rc = rc ? rc : l->eval(l, t, y, y + nq, y + 2 * nq, pb->p, pb->u, a ? a : p.rate, p.dr, p.mass, pb->work);
   if (rc) return rc;
   memset(dr, 0, (nq + (size_t)m->nz) * width * sizeof(double));
-  memset(M, 0, nq * nq * sizeof(double));
   for (int k = 0; k < l->ndr; k++) dr[(size_t)l->dr[k].row * width + (size_t)l->dr[k].col] = p.dr[k];
-  for (int k = 0; k < l->nmass; k++) {
-    size_t i = (size_t)l->mass[k].row, j = (size_t)l->mass[k].col;
-    M[i * nq + j] = M[j * nq + i] = p.mass[k];
-  }
+  dense_mass(l, nq, p.mass, M);
   return LAG_OK;
 }
 
@@ -183,4 +188,19 @@ int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *
   int rc = lag_rhs(pb, t, y, p.rate);
   rc = rc ? rc : lag_linearise(pb, t, y, p.rate + m->nq, J, p.M, work);
   return rc ? rc : lag_solve_dense((size_t)m->nq, (size_t)pb->n, p.M, J) ? LAG_ESINGULAR : LAG_OK;
+}
+
+int lag_input_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work) {
+  const lag_model *m = pb->model;
+  const lag_linear *l = m->linear;
+  const lag_partials *in = l ? l->by_inputs : NULL;
+  size_t nq = (size_t)m->nq, nu = (size_t)m->nu;
+  if (!in || m->constraints || pb->nslide) return LAG_EMETHOD;
+  LinearLayout p = parts_of(m, work);
+  int rc = lag_rhs(pb, t, y, p.rate);
+  rc = rc ? rc : in->eval(in, t, y, y + nq, y + 2 * nq, pb->p, pb->u, p.rate + nq, p.part, p.mass, pb->work);
+  memset(J, 0, (nq + (size_t)m->nz) * nu * sizeof *J);
+  for (int k = 0; k < in->n; k++) J[(size_t)in->at[k].row * nu + (size_t)in->at[k].col] = p.part[k];
+  dense_mass(l, nq, p.mass, p.M);
+  return rc ? rc : lag_solve_dense(nq, nu, p.M, J) ? LAG_ESINGULAR : LAG_OK;
 }

@@ -107,6 +107,24 @@ static struct lag_sensitivity *sensitivity_new(const lag_sim *s, const Target *o
   return w;
 }
 
+int lag_all_parameters(lag_sim *s) {
+  int np = s->scene->model->np;
+  Target *of = malloc(((size_t)np + 1) * sizeof *of);
+  for (int i = 0; of && i < np; i++) of[i] = (Target){LAG_IS_P, i};
+  struct lag_sensitivity *all = of ? sensitivity_new(s, of, np, np) : NULL;
+  free(of);
+  if (!all) return lag_fail(s, LAG_ENOMEM, "out of memory");
+  s->sensitivity = all;
+  s->pb.by = &all->by;
+  return LAG_OK;
+}
+
+void lag_all_parameters_end(lag_sim *s, struct lag_sensitivity *kept) {
+  lag_parameter_columns_free(s);
+  s->sensitivity = kept;
+  s->pb.by = kept && kept->by.n ? &kept->by : NULL;
+}
+
 /* ---- The columns at the start */
 
 /* Column c of `to` := the change of the start by target c. The run has not begun. */
@@ -193,6 +211,19 @@ static int set_columns(lag_sim *s, int k, const Target *of) {
   s->pb.by = by ? &s->sensitivity->by : NULL;
   return lag_tangent_set(s, k, s->sensitivity->begin);
 }
+
+int lag_all_columns(lag_sim *s) {
+  int n = s->pb.n, np = s->scene->model->np;
+  Target *of = malloc((size_t)(n + np + 1) * sizeof *of);
+  for (int c = 0; of && c < n + np; c++) of[c] = c < n ? (Target){LAG_IS_Q, c} : (Target){LAG_IS_P, c - n};
+  int rc = of ? set_columns(s, n + np, of) : lag_fail(s, LAG_ENOMEM, "out of memory");
+  free(of);
+  return rc;
+}
+
+const double *lag_columns_at_start(const lag_sim *s) { return s->sensitivity->begin; }
+
+double lag_parameter_chain(const lag_sim *s, int i, int j) { return chain(s, &s->sensitivity->by, i, j); }
 
 int lag_sim_set_sensitivity(lag_sim *s, int k, const char *const *names) {
   if (!s) return LAG_EINVAL;

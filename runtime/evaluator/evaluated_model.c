@@ -76,9 +76,20 @@ static int linearise(STATE, const double *a, double *dr, double *M, double *w) {
   return lag_run_program(linear_of(self)->eval, in, (double *[]){dr, M}, w);
 }
 
+static int inverse(STATE, const double *a, double *force, double *w) {
+  const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a};
+  return lag_run_program(model_of(self)->inverse, in, (double *[]){force}, w);
+}
+
 static int partials(STATE, const double *a, double *dr, double *M, double *w) {
   const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a};
   return lag_run_program(partials_of(self)->eval, in, (double *[]){dr, M}, w);
+}
+
+static int adjoint(STATE, const double *a, const double *g, double *by_y, double *by_up, double *d, double *w) {
+  const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a, [PROGRAM_G] = g};
+  const EvaluatedAdjoint *of = self;
+  return lag_run_program(of->eval, in, (double *[]){by_y, by_up, d}, w);
 }
 
 /* --- functions without w --- */
@@ -177,6 +188,7 @@ void lag_set_model_functions(EvaluatedModel *m) {
   if (m->moving_sizes) f->moving_sizes = moving_sizes;
   if (m->variation) f->variation = variation;
   if (m->second) f->second = second;
+  if (m->inverse) f->inverse = inverse;
   if (m->switch_values) f->switch_values = switch_values;
   if (m->switch_rates) f->switch_rates = switch_rates;
   if (m->switch_grips) f->switch_grips = switch_grips;
@@ -209,6 +221,8 @@ void lag_set_linear_functions(EvaluatedLinear *l) {
 
 void lag_set_partial_functions(EvaluatedPartials *p) { p->partials.eval = partials; }
 
+void lag_set_adjoint_functions(EvaluatedAdjoint *a) { a->adjoint.eval = adjoint; }
+
 void lag_set_action_functions(EvaluatedAction *a) {
   a->curve.curve = curve;
   if (a->momenta) a->curve.momenta = momenta;
@@ -221,7 +235,7 @@ static void widen(size_t *room, const Program *p, size_t more) {
 size_t lag_model_room(const EvaluatedModel *m) {
   const Program *const all[] = {m->accel,        m->energy,       m->events,      m->sizes,
                                 m->moving_sizes, m->variation,    m->second,      m->switch_values,
-                                m->switch_rates, m->switch_grips, m->contact_laws};
+                                m->switch_rates, m->switch_grips, m->contact_laws, m->inverse};
   size_t room = 0;
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) widen(&room, all[i], 0);
   for (int k = 0; k < m->model.nev; k++) widen(&room, m->event[k].action, 0);
@@ -238,6 +252,8 @@ size_t lag_model_room(const EvaluatedModel *m) {
                           *by_inputs = (const void *)(l ? l->linear.by_inputs : NULL);
   if (by_params) widen(&room, by_params->eval, 0);
   if (by_inputs) widen(&room, by_inputs->eval, 0);
+  const EvaluatedAdjoint *of = (const void *)(l ? l->linear.adjoint : NULL);
+  if (of) widen(&room, of->eval, 0);
   return room;
 }
 

@@ -15,7 +15,7 @@ typedef struct {
 typedef struct {
   lag_model model;
   const Program *derive, *inputs, *accel, *energy, *events, *impact, *sizes, *moving_sizes, *variation, *second,
-      *switch_values, *switch_rates, *switch_grips, *contact_laws;
+      *inverse, *switch_values, *switch_rates, *switch_grips, *contact_laws;
   const EvaluatedEvent *event;
   int nconstraints;
 } EvaluatedModel;
@@ -34,6 +34,11 @@ typedef struct {
   lag_partials partials;
   const Program *eval;
 } EvaluatedPartials;
+
+typedef struct {
+  lag_adjoint adjoint;
+  const Program *eval;
+} EvaluatedAdjoint;
 
 typedef struct {
   lag_linear linear;
@@ -70,6 +75,7 @@ void lag_set_constraint_functions(EvaluatedConstraints *c);
 void lag_set_charge_functions(EvaluatedCharges *c);
 void lag_set_linear_functions(EvaluatedLinear *l);
 void lag_set_partial_functions(EvaluatedPartials *p);
+void lag_set_adjoint_functions(EvaluatedAdjoint *a);
 void lag_set_action_functions(EvaluatedAction *a);
 
 /* Doubles that functions of a model, of a scene and of a series need in w. */

@@ -241,6 +241,20 @@ static const lag_partials *read_partials(Reader *r, int columns, int nmass) {
   return &p->partials;
 }
 
+static const lag_adjoint *read_adjoint(Reader *r) {
+  Bytes *b = r->b;
+  const lag_model *m = &r->m->model;
+  EvaluatedAdjoint *x = flag(b) ? lag_bytes_room(b, 1, sizeof *x) : NULL;
+  if (!x) return NULL;
+  Reader with = *r;
+  with.state.in[PROGRAM_G] = m->nq + m->nz;
+  x->adjoint.at = entries(b, &x->adjoint.n, m->nu, m->np, 0);
+  x->eval = program(&with, r->ny, m->nu + m->np, x->adjoint.n);
+  lag_bytes_need(b, x->eval != NULL, "a function is missing");
+  lag_set_adjoint_functions(x);
+  return &x->adjoint;
+}
+
 static void read_linear(Reader *r) {
   Bytes *b = r->b;
   if (!flag(b)) return;
@@ -264,6 +278,7 @@ static void read_linear(Reader *r) {
   lag_bytes_need(b, !l->linear.njump || l->jumps, "derivatives of events are missing");
   l->linear.by_params = read_partials(&with, r->m->model.np, l->linear.nmass);
   l->linear.by_inputs = read_partials(&with, r->m->model.nu, l->linear.nmass);
+  l->linear.adjoint = read_adjoint(&with);
   lag_set_linear_functions(l);
   r->m->model.linear = &l->linear;
 }
@@ -280,6 +295,9 @@ static void read_variation(Reader *r) {
   }
   m->second_at = s;
   r->m->second = wanted(r, r->m->variation != NULL, m->nsecond, 0);
+  Reader with = *r;
+  with.state.in[PROGRAM_A] = m->nq;
+  r->m->inverse = program(&with, m->nq, 0, 0);
 }
 
 static void read_taylor(Reader *r) {

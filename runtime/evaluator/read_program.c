@@ -100,10 +100,11 @@ static void check_load(Bytes *b, const Program *p, const Lengths *of, const Nest
   if (i->op == TURN_OUTER) lag_bytes_need(b, i->number < n->nouter, "a turn reads out of range");
   if (i->op == TURN_SCALAR)
     lag_bytes_need(b, i->a < PROGRAM_CONSTANTS && of->in[i->a] > 0, "a turn reads out of range");
-  if (i->op != TURN_ELEMENT && i->op != TURN_CELL) return;
+  if (i->op != TURN_ELEMENT && i->op != TURN_CELL && i->op != TURN_INDEX) return;
+  if (i->op == TURN_INDEX) i->a = 0;
   if (!lag_bytes_need(b, i->number < n->nsubscripts && i->a <= PROGRAM_CONSTANTS, "a turn reads out of range")) return;
   int64_t length = i->op == TURN_CELL ? p->ncells : i->a < PROGRAM_CONSTANTS ? of->in[i->a] : 0;
-  lag_bytes_need(b, is_within(range_of(b, n, i->number), length), "a turn reads out of range");
+  lag_bytes_need(b, i->op == TURN_INDEX || is_within(range_of(b, n, i->number), length), "a turn reads out of range");
   if (b->why) return;
   int rows = n->at[i->number].by_row != 0 || i->op == TURN_CELL; /* rows may change sums */
   i->level = n->at[i->number].by_turn ? IN_TURN : rows ? IN_ROW : IN_NEST;

@@ -54,6 +54,13 @@ static void gather(const Block *b, double *to, const double *from, uint32_t k) {
   }
 }
 
+/* to[n] := the index itself. */
+static void count_up(const Block *b, double *to, uint32_t k) {
+  int64_t step = b->n->at[k].by_turn;
+  for (const Segment *g = b->segment; g < b->segment + b->nsegments; g++)
+    for (int j = 0; j < g->count; j++) to[g->at + j] = (double)(first_index(b->n, g, k) + j * step);
+}
+
 /* to[n] := an operation of x, y, z; k: number of a function. */
 typedef void turn_op(double *to, const double *x, const double *y, const double *z, int n, uint32_t k);
 
@@ -120,6 +127,7 @@ static void load(const Block *b, double *to, const TurnIns *i) {
   case TURN_ELEMENT: gather(b, to, b->in[i->a], k); return;
   case TURN_SCALAR: fill(to, b->in[i->a][0], b->count); return;
   case TURN_CELL: gather(b, to, b->r + b->p->cells, k); return;
+  case TURN_INDEX: count_up(b, to, k); return;
   case TURN_OUTER: fill(to, b->r[b->n->outer[k]], b->count); return;
   }
 }

@@ -335,6 +335,12 @@ typedef struct lag_method {
   size_t (*tangent_size)(const lag_problem *pb, int k);
   int (*tangent)(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
 
+  /* Reverse mode of a step from (t0, y0) of length dt: x[n] := (dy1/dy0)^T x, g[nu + np] += (dy1/du, dy1/dp)^T x,
+   * inputs counted where they are held. span: the dt of the last step up to t. scratch[adjoint_size]. NULL: none. */
+  double (*span)(const void *work, const lag_problem *pb, double t);
+  size_t (*adjoint_size)(const lag_problem *pb);
+  int (*adjoint)(lag_problem *pb, double t0, double dt, const double *y0, double *x, double *g, double *scratch);
+
   /* constants by which it differs from other methods with the same functions; these read lag_problem.variant */
   const void *variant;
   /* the smallest tolerance that the digits of its coefficients support; 0: coefficients have all digits of the
@@ -552,6 +558,15 @@ double lag_sim_sensitivity_value(const lag_sim *sim, int c);
  * present state. Outputs are differentiated by differences of order 6, correct to 11 digits or so. */
 int lag_sim_output_sensitivity(lag_sim *sim, const double *Y, double *D);
 
+/* Reverse mode, for the gradient of few numbers by many values: record keeps the steps of a run, before its first
+ * advance, after method and all values are set. Gradient: J depends on the states y at t[rows], in the order of the
+ * run and not beyond it, by weight[rows * n] = dJ/dy in SI; by_start[n] := dJ by the starts, by_p[np] := by the
+ * parameters, with all that follows from them as in sensitivities, both in SI. It is the derivative of the steps that
+ * were made, their sizes held, and takes some three times as long as the run, however many parameters there are. Needs
+ * `lagc build --with derivatives`; LAG_EMETHOD: a method without reverse mode, constraints, slides. */
+int lag_sim_record(lag_sim *sim);
+int lag_sim_gradient(lag_sim *sim, int rows, const double *t, const double *weight, double *by_start, double *by_p);
+
 void lag_sim_stats(lag_sim *sim, lag_stats *stats);
 /* The drift of monitor i so far, as judged against its limit: at ends of steps, and at the present time. */
 double lag_sim_monitor_drift(lag_sim *sim, int i);
@@ -616,8 +631,27 @@ const char *lag_item(const lag_scene *scene, int kind, int i, const char **unit,
 /* The method of this name, or NULL. */
 const lag_method *lag_find_method(const char *name);
 
-/* dy[count * n] := f(t[k], y[k]) for `count` states in SI, with the parameters and inputs as set; constraints with a
- * condition hold where that is true, contacts as in the run. Returns the first status that is not 0. */
+/* Quantities of a model at a state. Derivatives are by y, by the inputs u[nu], held at their values, or by the
+ * parameters p[np], which others and inputs follow as the scene says. Outputs are in SI here. */
+typedef enum lag_quantity {
+  LAG_RATES,                 /* dy/dt [n] */
+  LAG_RATES_BY_STATE,        /* [n n], A of control theory */
+  LAG_RATES_BY_INPUTS,       /* [n nu], B */
+  LAG_RATES_BY_PARAMETERS,   /* [n np] */
+  LAG_OUTPUTS,               /* [noutputs] */
+  LAG_OUTPUTS_BY_STATE,      /* [noutputs n], C */
+  LAG_OUTPUTS_BY_INPUTS,     /* [noutputs nu], D */
+  LAG_OUTPUTS_BY_PARAMETERS, /* [noutputs np] */
+  LAG_MASS_MATRIX,           /* M [nq nq] */
+  LAG_INVERSE_DYNAMICS       /* [nq] forces that accelerations a[nq] need besides the model's; 0 of multipliers */
+} lag_quantity;
+
+/* out[count * rows * columns] := the quantity at t[k], y[k], a[k] for `count` states in SI (a for inverse dynamics
+ * alone), with parameters and inputs as set; constraints with a condition hold where that is true, contacts as in the
+ * run. Returns the first status that is not 0; LAG_EMETHOD: build it --with derivatives. rhs: LAG_RATES. */
+int lag_sim_quantity(lag_sim *sim, lag_quantity of, int count, const double *t, const double *y, const double *a,
+                     double *out);
+void lag_sim_quantity_size(const lag_sim *sim, lag_quantity of, int *rows, int *columns);
 int lag_sim_rhs(lag_sim *sim, int count, const double *t, const double *y, double *dy);
 
 /* Advances to t[0] .. t[rows - 1]: y[rows * n] := the states [SI], out[rows * noutputs] := the outputs, in declared

@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 17
+#define LAG_ABI 18
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many
  * doubles, one state or one set of parameters a lane. The status < 0 of such a call has bit k of its negative set
@@ -131,6 +131,17 @@ typedef struct lag_partials {
               const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *d, LAG_REAL *M, LAG_REAL *w);
 } lag_partials;
 
+/* Reverse mode: for weights g[nq + nz] of the accelerations and of the rates of states, and accelerations a[nq], the
+ * sums of g_i times their derivatives: by_y[2 nq + nz], by_up[nu + np] by inputs and parameters, each as if it were
+ * free; and the derivatives d[n] of the inputs' formulas (row) by parameters (col). About three calls of accel. */
+typedef struct lag_adjoint {
+  int n;
+  const lag_entry *at; /* [n] */
+  int (*eval)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+              const LAG_REAL *u, const LAG_REAL *a, const LAG_REAL *g, LAG_REAL *by_y, LAG_REAL *by_up, LAG_REAL *d,
+              LAG_REAL *w);
+} lag_adjoint;
+
 /* The exact linearisation of a model, emitted where a method or command needs it (lagc --with linear).
  *
  * The residuals r[nq + nz] vanish along a motion: r_i = f_i - sum_j M_ij a_j for coordinates i, r_(nq + k) = flow_k
@@ -158,6 +169,7 @@ typedef struct lag_linear {
 
   /* For sensitivities; NULL: not emitted (lagc --with sensitivities), or there are none. */
   const lag_partials *by_params, *by_inputs;
+  const lag_adjoint *adjoint; /* NULL: not emitted (lagc --with derivatives) */
 } lag_linear;
 
 /* One scalar constraint. */
@@ -379,6 +391,11 @@ typedef struct lag_model {
                 const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *h, LAG_REAL *w);
   const lag_second *second_at;
   int nsecond;
+
+  /* Inverse dynamics: the generalised forces out[nq] = M a - f that the accelerations a[nq] need besides those of the
+   * model; multipliers count as 0. NULL: not emitted (lagc build --with derivatives). */
+  int (*inverse)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                 const LAG_REAL *p, const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *out, LAG_REAL *w);
 
   /* NULL also where a value of the model is not analytic (if, abs, sign, min, max). */
   const lag_taylor *taylor;

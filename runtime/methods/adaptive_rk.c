@@ -234,3 +234,20 @@ int lag_adaptive_rk_tangent(void *work, lag_problem *pb, double t, int k, double
   return lag_tangent_explicit(pair->tab, pb, w->t0, lag_tangent_span(w->t0, t, w->dt),
                               lag_adaptive_rk_array(w, pb, EMBEDDED_Y0), k, Y, scratch);
 }
+
+double lag_adaptive_rk_span(const void *work, const lag_problem *pb, double t) {
+  const Embedded *w = work;
+  (void)pb;
+  return lag_tangent_span(w->t0, t, w->dt);
+}
+
+size_t lag_adaptive_rk_adjoint_size(const lag_problem *pb) {
+  const EmbeddedPair *pair = pb->variant;
+  return lag_reverse_size(pb, pair->tab->stages);
+}
+
+int lag_adaptive_rk_adjoint(lag_problem *pb, double t0, double dt, const double *y0, double *x, double *g,
+                            double *scratch) {
+  const EmbeddedPair *pair = pb->variant;
+  return lag_reverse_explicit(pair->tab, pb, t0, dt, y0, x, g, scratch);
+}

@@ -61,6 +61,10 @@ void lag_adaptive_rk_reset(void *work, lag_problem *pb);
 int lag_adaptive_rk_step(void *work, lag_problem *pb, double *t, double *y, double t_stop);
 size_t lag_adaptive_rk_tangent_size(const lag_problem *pb, int k);
 int lag_adaptive_rk_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
+double lag_adaptive_rk_span(const void *work, const lag_problem *pb, double t);
+size_t lag_adaptive_rk_adjoint_size(const lag_problem *pb);
+int lag_adaptive_rk_adjoint(lag_problem *pb, double t0, double dt, const double *y0, double *x, double *g,
+                            double *scratch);
 
 /* Before a step at t, y: K1 := f(t, y), Y0 := y, w->h := the step to try. LAG_OK, or a failure. */
 int lag_adaptive_rk_prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y);
@@ -83,4 +87,5 @@ double lag_adaptive_rk_error_along(const lag_tableau *tab, int late, Embedded *w
 #define EMBEDDED_MEMBERS(pair)                                                            \
   .variant = &pair, .work_size = lag_adaptive_rk_work_size, .init = lag_adaptive_rk_init, \
   .step = lag_adaptive_rk_step, .dense = dense, .reset = lag_adaptive_rk_reset,           \
-  .tangent_size = lag_adaptive_rk_tangent_size, .tangent = lag_adaptive_rk_tangent
+  .tangent_size = lag_adaptive_rk_tangent_size, .tangent = lag_adaptive_rk_tangent,       \
+  .span = lag_adaptive_rk_span, .adjoint_size = lag_adaptive_rk_adjoint_size, .adjoint = lag_adaptive_rk_adjoint

@@ -66,3 +66,24 @@ static inline double lag_tangent_span(double t0, double t, double dt) {
 static inline void lag_tangent_add(int m, double c, const double *restrict x, double *restrict out) {
   for (int i = 0; i < m; i++) out[i] += c * x[i];
 }
+
+/* ---- Reverse mode */
+
+/* Scratch of a reverse sweep over so many stages: y and f of each, weights of each; products. */
+size_t lag_reverse_size(const lag_problem *pb, int stages);
+
+/* Where products by inputs and parameters are added up, g[nu + np]; a vector k[n]; a product out[n]; room[nu + np +
+ * formulas]. */
+typedef struct lag_reverse {
+  lag_problem *pb;
+  double *g, *k, *out, *room;
+} lag_reverse;
+/* The parts behind g in scratch. */
+lag_reverse lag_reverse_layout(lag_problem *pb, double *g, double *scratch);
+
+/* out[n] := (df/dy)^T x at (t, y), where f[n] = f(t, y) is known, and g += (df/du, df/dp)^T x. LAG_OK, or a failure. */
+int lag_reverse_at(const lag_reverse *w, double t, const double *y, const double *f, const double *x, double *out);
+
+/* lag_method.adjoint of an explicit method. */
+int lag_reverse_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, double *x,
+                         double *g, double *scratch);

@@ -185,6 +185,50 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
   return LAG_OK;
 }
 
+static double span(const void *work, const lag_problem *pb, double t) {
+  const Verlet *w = work;
+  return lag_tangent_span(w->step.t0, t, w->step.h * pb->dir);
+}
+
+/* Kicks and drifts, each with its state and rates. */
+static int places_of(const lag_problem *pb) { return 2 * table_of(pb)->stages + 1; }
+
+static size_t adjoint_size(const lag_problem *pb) { return is_explicit(pb) ? lag_reverse_size(pb, places_of(pb)) : 0; }
+
+/* x[n] := transposed kick (of the second half by `part` of the rates f at y) or drift (of the first half). */
+static int reverse_part(const lag_reverse *w, int is_kick, double t, double part, const double *y, const double *f,
+                        double *x) {
+  int n = w->pb->n, nq = half_of(w->pb), from = is_kick ? nq : 0;
+  memset(w->k, 0, (size_t)n * sizeof *w->k);
+  lag_tangent_add(nq, part, x + from, w->k + from);
+  if (!is_kick && w->pb->nq) return lag_tangent_add(nq, 1, w->k, x + nq), LAG_OK;
+  int rc = lag_reverse_at(w, t, y, f, w->k, w->out);
+  if (rc == LAG_OK) lag_tangent_add(n, 1, w->out, x);
+  return rc;
+}
+
+/* Repeats the kicks and drifts of a step, then goes back over their transposes. */
+static int adjoint(lag_problem *pb, double t0, double dt, const double *y0, double *x, double *g, double *scratch) {
+  const lag_composition *c = table_of(pb);
+  int n = pb->n, nq = half_of(pb), places = places_of(pb), rc = is_explicit(pb) ? LAG_OK : LAG_EMETHOD;
+  double *ys = scratch, *f = ys + places * n, at = 0, times[2 * LAG_MAX_DRIFTS + 1];
+  const lag_reverse w = lag_reverse_layout(pb, g, f + places * n);
+  memcpy(ys, y0, (size_t)n * sizeof *ys);
+  for (int i = 0; i < places && rc == LAG_OK; i++) {
+    double *y = ys + i * n, *rate = f + i * n;
+    times[i] = t0 + at * dt;
+    rc = i % 2 && pb->nq ? LAG_OK : lag_step_rhs(pb, times[i], y, rate);
+    if (i % 2) at += c->drift[i / 2];
+    if (i + 1 == places) break;
+    memcpy(y + n, y, (size_t)n * sizeof *y);
+    if (i % 2) lag_tangent_add(nq, c->drift[i / 2] * dt, pb->nq ? y + nq : rate, y + n);
+    else lag_tangent_add(nq, c->kick[i / 2] * dt, rate + nq, y + n + nq);
+  }
+  for (int i = places - 1; i >= 0 && rc == LAG_OK; i--)
+    rc = reverse_part(&w, i % 2 == 0, times[i], dt * (i % 2 ? c->drift : c->kick)[i / 2], ys + i * n, f + i * n, x);
+  return rc;
+}
+
 #define DEFINE(id, general, p, properties, line, words)                                                  \
   static const VerletMember member_##id = {&lag_compose_##id, &lag_compose_##general};                   \
   const lag_method lag_##id = {                                                                          \
@@ -198,6 +242,9 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
       .options = options,                                                                                \
       LAG_METHOD_FUNCTIONS,                                                                              \
       LAG_METHOD_TANGENT,                                                                                \
+      .span = span,                                                                                      \
+      .adjoint_size = adjoint_size,                                                                      \
+      .adjoint = adjoint,                                                                                \
       .variant = &member_##id,                                                                           \
   };
 LAG_SPLITTING_METHODS(DEFINE)

@@ -1,11 +1,13 @@
-// The live page: controls, clocks and plots around motion.js. Enters: model and packed of live.html; leaves: the page.
+// The live page: controls, clocks and plots around motion.js. Enters: model, parts and packed of live.html; leaves: the page.
 const $ = id => document.getElementById(id);
-const bytesOf = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
 const clamp = (x, lo, hi) => Math.min(hi, Math.max(lo, x));
 const short = x => Number.isFinite(x) ? String(+x.toPrecision(4)) : "?";
 const colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7f00", "#888888"];
 
-let lag, motion, twin, program, scene, items, playing = false, before = 0, track = [], spent = 0, passed = 0, wasm;
+// motion: what is shown; twin: from a start 1e-9 aside; finer: with more digits, for the estimate of the error. track: rows {t, x} of the columns.
+let lag, motion, twin, finer, program, scene, items, bytes, more = {}, wasm, playing = false, before = 0, track = [], columns = [];
+let spent = 0, passed = 0, slow = 0, piece = 1, horizon = null, doubtful = 0, scale = [];
+const section = {x: [], y: []};
 const settings = {method: "", fine: 1e-9, values: {}, start: {}};
 const span = {t0: 0, t1: 20};
 
@@ -13,115 +15,173 @@ const isOf = name => model.programs.filter(p => p.scene == name);
 const wanted = () => [...document.querySelectorAll("#effects input:checked")].map(e => e.value);
 const sameSet = (a, b) => a.length == b.length && a.every(x => b.includes(x));
 
-function say(text) { $("said").textContent = text; }
+function say(text, kind = "fault") { $("said").textContent = text; $("said").className = kind; }
+function tell(text) { $("status").textContent = text; }
+const wrong = e => e instanceof WebAssembly.RuntimeError ? "the program is damaged (" + e.message + ")" : e.message;
 
 // ---- motions
-const takesSteps = () => !!lag.word(settings.method, at => lag.f.page_takes_steps(at));
-function options(values, t) {
-  const steps = settings.method && takesSteps();
-  return {method: settings.method, tol: steps ? 0 : settings.fine, step: steps ? settings.fine : 0, until: span.t1, t,
-    values: {...settings.values, ...values}};
+const own_method = () => lag.text(lag.f.lag_scene_method(scene)) || "";
+const takesSteps = () => !!lag.word(settings.method || own_method(), at => lag.f.page_takes_steps(at));
+function options(values, t, finer = 1) {
+  const steps = takesSteps(), fine = settings.fine/finer;
+  return {method: settings.method, tol: steps ? 0 : Math.max(fine, 1e-15), step: steps ? fine : 0, until: span.t1, t, values: {...settings.values, ...values}};
+}
+function end_beside() {
+  for (const other of [twin, finer]) if (other) other.free();
+  twin = finer = null;
+}
+// The twin and the finer motion begin beside the motion.
+function begin_beside() {
+  end_beside();
+  const now = state(), first = Object.keys(now)[0];
+  if ($("twin").checked && first) twin = new Motion(lag, scene, options({...now, [first]: now[first] + 1e-9*(Math.abs(now[first]) || 1)}, motion.t));
+  if ($("estimate").checked) finer = new Motion(lag, scene, options(now, motion.t, takesSteps() ? 4 : 100));
+  for (const other of [twin, finer]) if (other) { other.advance(other.t); other.direction = motion.direction; }
 }
 // A new motion from `values`, at time t; the old one stays where that is refused.
 function begin(values, t = NaN) {
   try {
-    const next = new Motion(lag, scene, options(values, t)), names = next.names("page_state");
-    next.advance(next.t);
+    const next = new Motion(lag, scene, options(values, t));
+    try { next.advance(next.t); } catch (e) { next.free(); throw e; }
     if (motion) motion.free();
     motion = next;
-    if (twin) { twin.free(); twin = null; }
-    if ($("twin").checked) {
-      const aside = {...motion.state}, first = names[0].name;
-      aside[first] += 1e-9*(Math.abs(aside[first]) || 1);
-      twin = new Motion(lag, scene, options(aside, motion.t));
-    }
-    spent = passed = 0;
+    horizon = null;
+    doubtful = spent = passed = slow = 0;
     say("");
-  } catch (e) { say(e.message); return false; }
+    begin_beside();
+  } catch (e) { say(wrong(e)); return false; }
   return true;
 }
-const state = () => {
-  const known = new Set(names.state), now = {};
-  for (const [name, x] of Object.entries(motion.state)) if (known.has(name)) now[name] = x;
-  return now;
-};
+const state = () => Object.fromEntries(Object.entries(motion.state).filter(([name]) => names.state.includes(name)));
 // Goes on from the present state with what has changed.
-function go_on() { if (motion && begin(motion.state, motion.t)) draw(); }
+function go_on() { if (motion && begin(state(), motion.t)) { section.x = []; section.y = []; draw(); } }
 function restart() {
+  clear();
+  if (begin(settings.start)) { record(); draw(); starts(); }
+}
+function clear() {
   track = [];
-  if (begin(settings.start)) { record(); draw(); }
+  scale = [];
+  section.x = []; section.y = [];
 }
 
 const names = {outputs: [], state: []};
 function choose() {
   const all = isOf($("scene").value), found = all.find(p => sameSet(p.effects, wanted())) || all[0];
-  if (found != program) {
-    program = found;
-    lag = new Lag(wasm);
-    scene = lag.open(bytesOf(found.bytes))[0];
-    if (motion) motion = null;
-    twin = null;
-    items = lag.items(scene, "p").map((item, i) => ({...item, positive: lag.f.page_sign(scene, i) > 0}));
-    const s = lag.span(scene);
-    span.t0 = s.t0; span.t1 = s.t1 > s.t0 ? s.t1 : s.t0 + 20;
-    sliders();
-    methods();
-    look();
-  }
+  if (found == program) return;
+  end_beside();
+  program = found;
+  $("doc").textContent = found.doc;
+  lag = new Lag(wasm);
+  scene = lag.open(bytes.subarray(found.at, found.at + found.n))[0];
+  motion = null;
+  items = lag.items(scene, "p").map((item, i) => ({...item, positive: lag.f.page_sign(scene, i) > 0}));
+  const s = lag.span(scene);
+  span.t0 = s.t0; span.t1 = s.t1 != s.t0 ? s.t1 : s.t0 + 20;
+  piece = Math.abs(span.t1 - span.t0);
+  controls();
+  methods();
+  look();
 }
 
 // ---- controls
-function sliders() {
-  const box = $("values");
-  box.textContent = "";
+function row_of(name, unit, attributes) {
+  const row = document.createElement("div"), label = document.createElement("label"), input = document.createElement("input"), out = document.createElement("output");
+  row.className = "slider";
+  Object.assign(input, {type: "range", min: 0, max: 200, step: 1, ...attributes});
+  label.htmlFor = input.id; label.textContent = name;
+  input.setAttribute("aria-label", name + (unit ? " in " + unit : ""));
+  row.append(label, input, out);
+  return {row, input, show: v => { out.value = short(v) + (unit ? " " + unit : ""); input.setAttribute("aria-valuetext", out.value); }};
+}
+// The slider of parameter i, whose value in the scene is `value`: in proportion where it is declared > 0.
+function slider(item, i, value) {
+  const log = value > 0 && item.positive, [lo, hi] = log ? [value/10, value*10] : value ? [-2*Math.abs(value), 2*Math.abs(value)] : [-1, 1];
+  const to = x => log ? lo*(hi/lo)**(x/200) : lo + (hi - lo)*x/200, from = v => clamp(200*(log ? Math.log(v/lo)/Math.log(hi/lo) : (v - lo)/(hi - lo)), 0, 200);
+  const {row, input, show} = row_of(item.name, item.unit, {id: "value" + i}), now = () => settings.values[item.name] ?? value;
+  const set = v => { input.value = from(v); show(v); };
+  set(now());
+  input.oninput = () => {
+    const was = settings.values[item.name], v = to(+input.value);
+    settings.values[item.name] = v;
+    if (!motion || begin(state(), motion.t)) { show(v); light(item.name); draw(); }
+    else {
+      if (was === undefined) delete settings.values[item.name]; else settings.values[item.name] = was;
+      set(now());
+      say($("said").textContent + "; " + item.name + " = " + short(v) + ": " + word("range"));
+    }
+    share();
+  };
+  input.ondblclick = () => { delete settings.values[item.name]; set(value); go_on(); share(); };
+  return row;
+}
+// Columns that can be plotted: outputs, components of the state, charges, and the distance of the twin.
+function find_columns(probe) {
+  const outputs = probe.names("page_output").slice(0, probe.count - lag.f.page_drawn(scene));
+  names.outputs = outputs;
+  names.state = probe.components.map(n => n.name);
+  columns = outputs.map((o, i) => ({...o, of: m => m.row[i]}));
+  const known = new Set(outputs.map(o => o.name)), half = names.state.length >> 1;
+  probe.components.forEach((c, i) => { if (i % half < 60 && !known.has(c.name)) columns.push({...c, of: m => m.now[i]}); });
+  for (let k = 0, found; k < 12 && (found = probe.charge_name(k)); k++)
+    if (!known.has(found[0])) {
+      columns.push({name: found[0], unit: found[1], of: m => lag.f.page_charge(m.sim, k, 0)});
+      columns.push({name: word("drift") + " " + found[0], unit: "", of: m => lag.f.page_charge(m.sim, k, 1)});
+    }
+  columns.push({name: word("distance"), unit: "", of: () => twin ? Math.hypot(...motion.now.map((x, i) => x - twin.now[i])) : NaN});
+}
+function fill(id, list, at) {
+  const kept = $(id).selectedOptions[0]?.text;
+  $(id).textContent = "";
+  for (const [text, value] of list) $(id).add(new Option(text, value));
+  $(id).value = (list.find(([text]) => text == kept) || [0, at])[1];
+}
+function controls() {
   const probe = new Motion(lag, scene, {until: span.t1}), p = lag.parameters(probe.sim, items.length);
-  names.outputs = probe.names("page_output").slice(0, probe.count - lag.f.page_drawn(scene)); names.state = probe.names("page_state").map(n => n.name);
-  items.forEach((item, i) => {
-    const value = (p[i] - item.offset)/item.factor, log = value > 0 && item.positive,
-      [lo, hi] = log ? [value/10, value*10] : value ? [-2*Math.abs(value), 2*Math.abs(value)] : [-1, 1],
-      to = x => log ? lo*(hi/lo)**(x/200) : lo + (hi - lo)*x/200, from = v => 200*(log ? Math.log(v/lo)/Math.log(hi/lo) : (v - lo)/(hi - lo));
-    const row = document.createElement("div"), label = document.createElement("label"), input = document.createElement("input"), out = document.createElement("output");
-    row.className = "slider";
-    input.type = "range"; input.min = 0; input.max = 200; input.step = 1; input.id = "value" + i;
-    label.htmlFor = input.id; label.textContent = item.name;
-    input.setAttribute("aria-label", item.name + (item.unit ? " in " + item.unit : ""));
-    const show = v => { out.value = short(v) + (item.unit ? " " + item.unit : ""); input.setAttribute("aria-valuetext", out.value); };
-    const now = settings.values[item.name] ?? value;
-    input.value = clamp(from(now), 0, 200);
-    show(now);
-    input.oninput = () => {
-      const was = settings.values[item.name];
-      settings.values[item.name] = to(+input.value);
-      if (!motion || begin(motion.state, motion.t)) show(to(+input.value));
-      else { settings.values[item.name] = was; if (was === undefined) delete settings.values[item.name]; input.value = from(was ?? value); }
-      share();
-    };
-    input.ondblclick = () => { delete settings.values[item.name]; input.value = from(value); show(value); go_on(); share(); };
-    row.append(label, input, out);
-    box.append(row);
-  });
+  find_columns(probe);
   probe.free();
-  for (const [id, k] of [["over", 0], ["px", 0], ["py", 1]]) {
-    const kept = $(id).value;
-    $(id).textContent = "";
-    names.outputs.forEach((o, i) => $(id).add(new Option(o.name, i)));
-    $(id).value = kept !== "" && kept < names.outputs.length ? kept : Math.min(k, names.outputs.length - 1);
-  }
+  $("values").replaceChildren(...items.map((item, i) => slider(item, i, (p[i] - item.offset)/item.factor)));
+  const list = columns.map((c, i) => [c.name, i]), first = names.state[0], at = name => columns.findIndex(c => c.name == name);
+  const x = Math.max(0, at(first)), rate = at(first + "'");
+  fill("over", list, 0);
+  fill("px", list, x);
+  fill("py", list, rate >= 0 ? rate : Math.min(1, columns.length - 1));
+  fill("section", [[word("none"), -1], ...list.map(([text, i]) => [text + word("rises"), i])], -1);
+}
+// Numbers of the start, for keyboards: what dragging sets.
+function starts() {
+  if (!motion) return;
+  const now = {...state(), ...settings.start};
+  $("start").replaceChildren(...motion.components.slice(0, 24).map(({name, unit}) => {
+    const label = document.createElement("label"), input = document.createElement("input");
+    Object.assign(input, {type: "number", step: "any", value: +now[name].toPrecision(6)});
+    input.setAttribute("aria-label", word("start") + " " + name + (unit ? " in " + unit : ""));
+    input.onchange = () => {
+      const was = settings.start;
+      settings.start = {...state(), ...was, [name]: +input.value};
+      clear();
+      if (begin(settings.start)) { record(); draw(); share(); } else settings.start = was;
+    };
+    label.append(name + (unit ? " [" + unit + "]" : ""), input);
+    return label;
+  }));
 }
 function methods() {
   const kept = settings.method;
-  $("method").textContent = "";
-  $("method").add(new Option("automatic", ""));
-  for (const name of lag.methods(scene)) $("method").add(new Option(name, name));
+  fill("method", [[own_method() || word("automatic"), ""], ...lag.methods(scene).map(m => [m, m])], "");
   $("method").value = kept;
+  settings.method = $("method").value;
   fine();
 }
-// The slider of accuracy: a tolerance 1e-3 to 1e-14, or a step of 1/10 to 1e-5 of the span.
+// The slider of accuracy: a tolerance 1e-3 to 1e-14, or a step of 1/50 to 1/50000 of the span; at first the scene's own.
 function fine() {
-  const steps = settings.method && takesSteps(), x = +$("fine").value/100;
-  settings.fine = steps ? (span.t1 - span.t0)/50*10**(-3*x) : 10**(-3 - 11*x);
-  $("finename").textContent = steps ? "step" : "tolerance";
+  const steps = takesSteps(), most = Math.abs(span.t1 - span.t0)/50, x = +$("fine").value/100;
+  const own = settings.method || settings.moved ? 0 : steps ? lag.f.page_step(scene) : lag.f.page_tolerance(scene);
+  settings.fine = own > 0 ? own : steps ? most*10**(-3*x) : 10**(-3 - 11*x);
+  if (own > 0) $("fine").value = 100*(steps ? Math.log10(most/own)/3 : (-3 - Math.log10(own))/11);
+  $("finename").textContent = word(steps ? "stepsize" : "tolerance");
   $("finevalue").value = short(settings.fine) + (steps ? " s" : "");
+  $("fine").setAttribute("aria-valuetext", $("finevalue").value);
 }
 function effects() {
   const box = $("effects"), all = isOf($("scene").value), own = all[0].effects;
@@ -129,124 +189,184 @@ function effects() {
   for (const name of new Set(all.flatMap(p => p.effects))) {
     const label = document.createElement("label"), input = document.createElement("input");
     input.type = "checkbox"; input.value = name; input.checked = own.includes(name);
-    input.onchange = () => { const now = motion && motion.state, t = motion && motion.t; choose(); if (!now || !begin(keep(now), t)) restart(); share(); };
+    input.onchange = () => {
+      const now = motion && motion.state, t = motion && motion.t;
+      choose();
+      if (now && begin(Object.fromEntries(Object.entries(now).filter(([n]) => names.state.includes(n))), t)) { clear(); record(); draw(); } else restart();
+      share();
+    };
     label.append(input, name);
     box.append(label);
   }
 }
-const keep = now => Object.fromEntries(Object.entries(now).filter(([name]) => names.state.includes(name)));
+
+// ---- equations
+function light(name) {
+  if (!$("equations").open) return;
+  const want = typeset(more.letters[name] || "").join(""), probe = document.createElement("div");
+  probe.innerHTML = "<math>" + want + "</math>";
+  const same = probe.firstChild.innerHTML;
+  for (const e of document.querySelectorAll(".lit")) e.classList.remove("lit");
+  for (const e of $("listing").querySelectorAll("mi, msub, mover")) if (e.outerHTML == same) e.closest("math").classList.add("lit");
+}
+function equations() {
+  if ($("listing").firstChild) return;
+  $("listing").innerHTML = more.latex ? typeset_listing(more.latex, word("headings")) : "";
+  if (!more.latex) $("listing").textContent = word("long");
+}
 
 // ---- the motion over time
 function record() {
-  const row = {t: motion.t, x: motion.outputs};
+  for (const m of [motion, twin]) if (m) { m.now = m.values; m.row = m.outputs; }
+  const row = {t: motion.t, x: motion.row, y: columns.map(c => c.of(motion)), twin: twin && columns.map(c => c.of(twin))}, last = track.at(-1);
+  estimate();
   track.push(row);
   if (track.length > 4000) track.splice(0, 1000);
+  const k = +$("section").value;
+  if (k >= 0 && last && Math.abs(row.t - last.t) > 0) cross(k, last, row, (row.t - last.t)*(span.t1 - span.t0) < 0 ? -1 : 1);
 }
+// A point of the section where column k rises through 0 between two rows; an angle, through a multiple of a turn.
+function cross(k, a, b, dir) {
+  const turn = columns[k].unit == "rad" ? 2*Math.PI : columns[k].unit == "deg" ? 360 : 0, [from, to] = dir > 0 ? [a, b] : [b, a];
+  const f = turn ? turn*Math.ceil((from.y[k] + 1e-300)/turn) : 0, [p, q] = [from.y[k] - f, to.y[k] - f];
+  if (!(p < 0 && q >= 0)) return;
+  const s = p/(p - q), within = (x, c) => columns[c].unit == "rad" ? x - 2*Math.PI*Math.round(x/2/Math.PI) : x, at = c => within(from.y[c] + s*(to.y[c] - from.y[c]), c);
+  section.x.push(at(+$("px").value)); section.y.push(at(+$("py").value));
+  if (section.x.length > 20000) { section.x.splice(0, 5000); section.y.splice(0, 5000); }
+}
+// The error: the distance of the finer motion, by the largest value of each component so far. Past 0.1, ten rows long, no digit is left.
+let error = 0;
+function estimate() {
+  error = 0;
+  motion.now.forEach((x, i) => { scale[i] = Math.max(scale[i] || 0, Math.abs(x)); });
+  if (!finer) return;
+  const all = Math.max(...scale)*1e-3 || 1;
+  finer.values.forEach((x, i) => { error = Math.max(error, Math.abs(x - motion.now[i])/Math.max(scale[i], all)); });
+  doubtful = error > 0.1 ? doubtful + 1 : 0;
+  if (horizon === null && doubtful >= 10) horizon = track.at(-9)?.t ?? motion.t;
+}
+const beside = t => { for (const other of [twin, finer]) if (other) other.advance(t); };
+// Goes on by so many seconds of watching, in pieces that take a few milliseconds; past 25 ms the rest is left out.
 function pass(seconds) {
-  const dir = $("back").checked ? -1 : 1, t = motion.t + dir*seconds*+$("speed").value, began = performance.now();
+  const dir = $("back").checked ? -1 : 1, from = motion.t, asked = seconds*+$("speed").value, goal = from + dir*asked, began = performance.now();
+  const parts = clamp(Math.ceil(60*asked), 1, 8);
   try {
-    if (motion.direction && motion.direction != dir) begin(motion.state, motion.t);
+    if (motion.direction && motion.direction != dir) begin(state(), motion.t);
     motion.direction = dir;
-    const ended = motion.advance(t) > 0;
-    if (twin) twin.advance(t);
-    if (ended) { say("an event ends the motion at t = " + short(motion.t) + " s"); pause(); }
-  } catch (e) { say(e.message); pause(); }
+    for (let done = false; !done && (goal - motion.t)*dir > 0;) {
+      const a = performance.now(), step = Math.min(piece, asked/parts), rest = Math.abs(goal - motion.t), ended = motion.advance(rest <= 1.01*step ? goal : motion.t + dir*step) > 0;
+      beside(motion.t);
+      record();
+      const took = performance.now() - a;
+      if (took > 8) piece = Math.max(Math.min(piece, step)/2, 1e-7*Math.abs(span.t1 - span.t0));
+      else if (took < 3) piece = Math.min(2*piece, Math.abs(span.t1 - span.t0));
+      if (ended) { say(word("ended") + " " + short(motion.t) + " s. " + word("again"), "note"); pause(); }
+      done = ended || performance.now() - began > 25;
+    }
+  } catch (e) {
+    const why = wrong(e);
+    say((/^at t = /.test(why) ? "" : word("failed") + " " + short(motion.t) + " s: ") + why + ". " + word("again"));
+    record();
+    pause();
+  }
   spent += performance.now() - began;
-  passed += Math.abs(seconds*+$("speed").value);
-  record();
+  passed += Math.abs(motion.t - from);
+  slow = 0.9*slow + 0.1*(Math.abs(goal - motion.t) > 0.01*asked);
+  if (slow > 0.5 && finer) { $("estimate").checked = false; end_beside(); begin_beside(); horizon = null; say(word("dear"), "note"); }
 }
 function tick(now) {
   if (!playing) return;
   pass(clamp(now - before, 0, 100)/1000);
   before = now;
   draw();
-  requestAnimationFrame(tick);
+  if (playing) requestAnimationFrame(tick);
 }
 function play() {
-  if (playing) return;
+  if (playing || !motion) return;
   playing = true;
   before = performance.now();
-  $("play").textContent = "Pause";
+  named_play();
+  tell(word("playing"));
   requestAnimationFrame(tick);
 }
-function pause() { playing = false; $("play").textContent = "Play"; draw(); }
+function pause() {
+  playing = false;
+  named_play();
+  tell($("play").textContent + ", " + word("now") + " " + short(motion ? motion.t : 0) + " s: " + columns.slice(0, 3).map((c, i) => titled(i) + " = " + short(track.at(-1)?.y[i])).join(", "));
+  draw();
+}
+const named_play = () => { $("play").textContent = word(playing ? "pause" : "play"); };
 
 // ---- drawing
-function paper(id) {
-  const canvas = $(id), pen = canvas.getContext("2d"), ratio = devicePixelRatio || 1, w = canvas.clientWidth, h = canvas.clientHeight;
-  if (canvas.width != Math.round(w*ratio) || canvas.height != Math.round(h*ratio)) { canvas.width = Math.round(w*ratio); canvas.height = Math.round(h*ratio); }
-  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  pen.clearRect(0, 0, w, h);
-  return {pen, w, h};
-}
-const ink = name => getComputedStyle(document.documentElement).getPropertyValue(name);
-const nice = raw => { const p = 10**Math.floor(Math.log10(raw)), f = raw/p; return p*(f < 1.5 ? 1 : f < 3.5 ? 2 : f < 7.5 ? 5 : 10); };
-function frame(x, y, lo, hi, xname, yname, pen, w, h) {
-  const left = 52, foot = 26, X = v => left + (w - left - 8)*(v - lo[0])/(hi[0] - lo[0] || 1), Y = v => h - foot - (h - foot - 8)*(v - lo[1])/(hi[1] - lo[1] || 1);
-  pen.font = "12px system-ui, sans-serif";
-  pen.lineWidth = 1;
-  const stepx = nice((hi[0] - lo[0] || 1)/Math.max(2, w/110)), stepy = nice((hi[1] - lo[1] || 1)/4);
-  for (let k = Math.ceil(lo[0]/stepx); k*stepx <= hi[0]; k++) {
-    pen.strokeStyle = ink("--grid"); pen.beginPath(); pen.moveTo(X(k*stepx), 8); pen.lineTo(X(k*stepx), h - foot); pen.stroke();
-    pen.fillStyle = ink("--soft"); pen.textAlign = "center"; pen.fillText(short(k*stepx), X(k*stepx), h - foot + 12);
-  }
-  for (let k = Math.ceil(lo[1]/stepy); k*stepy <= hi[1]; k++) {
-    pen.strokeStyle = ink("--grid"); pen.beginPath(); pen.moveTo(left, Y(k*stepy)); pen.lineTo(w - 8, Y(k*stepy)); pen.stroke();
-    pen.fillStyle = ink("--soft"); pen.textAlign = "right"; pen.fillText(short(k*stepy), left - 4, Y(k*stepy) + 4);
-  }
-  pen.fillStyle = ink("--ink"); pen.textAlign = "right"; pen.fillText(xname, w - 10, h - 3);
-  pen.textAlign = "left"; pen.fillText(yname, left + 4, 18);
-  pen.save();
-  pen.beginPath(); pen.rect(left, 4, w - left - 4, h - foot - 2); pen.clip();
-  pen.strokeStyle = colours[0]; pen.lineWidth = 1.5; pen.beginPath();
-  for (let k = 0; k < x.length; k++) pen[k ? "lineTo" : "moveTo"](X(x[k]), Y(y[k]));
-  pen.stroke();
-  pen.fillStyle = colours[1]; pen.beginPath(); pen.arc(X(x.at(-1)), Y(y.at(-1)), 4, 0, 7); pen.fill();
-  pen.restore();
-}
-const range = list => { let lo = Math.min(...list), hi = Math.max(...list); if (!(hi > lo)) { lo -= 0.5; hi += 0.5; } const m = 0.05*(hi - lo); return [lo - m, hi + m]; };
-const titled = i => names.outputs[i] ? names.outputs[i].name + (names.outputs[i].unit ? " [" + names.outputs[i].unit + "]" : "") : "";
+const titled = i => columns[i] ? columns[i].name + (columns[i].unit ? " [" + columns[i].unit + "]" : "") : "";
 function plots() {
-  const recent = track.slice(-1500);
-  if (!recent.length || !names.outputs.length) return;
-  const of = i => recent.map(r => r.x[i]), t = recent.map(r => r.t), a = +$("over").value, px = +$("px").value, py = +$("py").value;
-  for (const [id, x, y, xn, yn] of [["series", t, of(a), "t [s]", titled(a)], ["phase", of(px), of(py), titled(px), titled(py)]]) {
-    const {pen, w, h} = paper(id), rx = range(x), ry = range(y);
-    frame(x, y, [rx[0], ry[0]], [rx[1], ry[1]], xn, yn, pen, w, h);
-  }
+  const recent = track.slice(-1500), of = i => recent.map(r => r.y[i]), a = +$("over").value, px = +$("px").value, py = +$("py").value;
+  if (!recent.length || !columns.length || document.body.classList.contains("plain")) return;
+  plot_series(recent.map(r => r.t), of(a), twin && recent.map(r => r.twin ? r.twin[a] : NaN), titled(a), horizon, motion.direction || 1);
+  plot_phase(of(px), of(py), titled(px), titled(py), +$("section").value >= 0 ? section : null);
 }
 function report() {
-  const e = motion.charge(0), cost = motion.cost, lines = [];
-  if (Number.isFinite(e.now)) lines.push("energy " + short(e.now) + " J, drift " + (Number.isFinite(e.drift) ? e.drift.toExponential(1) : "?"));
-  lines.push((settings.method ? "" : "chosen: ") + motion.method + ", " + cost.steps + " steps, " + cost.calls + " right-hand sides" +
-    (passed ? ", " + short(spent/passed) + " ms of computing a second" : ""));
-  if (twin) {
-    const a = Object.values(motion.state), b = Object.values(twin.state);
-    lines.push("the twin is " + Math.hypot(...a.map((x, i) => x - b[i])).toExponential(1) + " away");
-  }
+  const e = motion.charge(0), named = motion.charge_name(0), cost = motion.cost, lines = [];
+  if (Number.isFinite(e.now)) lines.push(word("energy") + " " + short(e.now) + (named && named[1] ? " " + named[1] : "") + ", " + word("drift") + " " + (Number.isFinite(e.drift) ? e.drift.toExponential(1) : "?"));
+  lines.push((settings.method || own_method() ? "" : word("chosen")) + motion.method + ", " + cost.steps + " " + word("steps") + ", " + cost.calls + " " + word("calls") +
+    (passed ? ", " + short(spent/passed) + " " + word("cost") : ""));
+  if (horizon !== null) lines.push(word("lost") + " " + short(horizon) + " s");
+  else if (finer) lines.push(word("error") + " " + (error < 1e-16 ? "1e-16" : error.toExponential(0)));
+  if (twin) lines.push(word("apart") + " " + Math.hypot(...motion.now.map((x, i) => x - twin.now[i])).toExponential(1));
+  if (slow > 0.5) lines.push(word("slower"));
   $("report").textContent = lines.join("\n");
-  $("time").value = "t = " + motion.t.toFixed(2) + " s";
 }
+function numbers() {
+  if (!$("now").open || !track.length) return;
+  $("numbers").replaceChildren(...columns.slice(0, 30).map((c, i) => {
+    const row = document.createElement("div"), name = document.createElement("dt"), value = document.createElement("dd");
+    name.textContent = c.name;
+    value.textContent = short(track.at(-1).y[i]) + (c.unit ? " " + c.unit : "");
+    row.append(name, value);
+    return row;
+  }));
+}
+let told = 0, plotted = 0;
+// The picture each frame; while it plays, plots ten times a second, words five times.
 function draw() {
+  const now = performance.now();
   if (!motion || !track.length) return;
+  if (machine) machine.horizon = horizon;
   if (picture) picture.draw(track);
+  if (playing && now - plotted < 95) return;
+  plotted = now;
   plots();
+  $("time").value = "t = " + motion.t.toFixed(Math.abs(span.t1 - span.t0) < 1 ? 4 : 2) + " s";
+  if (playing && now - told < 195) return;
+  told = now;
   report();
+  numbers();
 }
 
 // ---- sharing: the state of the controls is the address's fragment
 function share() {
-  const said = {scene: $("scene").value, effects: wanted(), method: settings.method, fine: +$("fine").value, values: settings.values, start: settings.start};
-  history.replaceState(null, "", "#" + encodeURIComponent(JSON.stringify(said)));
+  const said = {scene: $("scene").value, effects: wanted(), method: settings.method, fine: settings.moved ? +$("fine").value : undefined, values: settings.values, start: settings.start, lang: language};
+  try { history.replaceState(null, "", "#" + encodeURIComponent(JSON.stringify(said))); } catch { /* a frame without an address */ }
 }
 function shared() {
   try { return JSON.parse(decodeURIComponent(location.hash.slice(1))); } catch { return null; }
 }
 function save(name, type, text) {
   const a = document.createElement("a");
-  a.href = typeof text == "string" ? URL.createObjectURL(new Blob([text], {type})) : text;
+  a.href = typeof text == "string" && type ? URL.createObjectURL(new Blob([text], {type})) : text;
   a.download = name;
   a.click();
+}
+async function copy(text, said) {
+  try { await navigator.clipboard.writeText(text); say(word(said), "note"); } catch { say(text, "note"); }
+}
+// The picture on its background.
+function picture_url() {
+  const from = $("picture"), to = document.createElement("canvas"), pen = to.getContext("2d");
+  to.width = from.width; to.height = from.height;
+  pen.fillStyle = ink("--back"); pen.fillRect(0, 0, to.width, to.height);
+  pen.drawImage(from, 0, 0);
+  return to.toDataURL();
 }
 
 // ---- the machine, drawn as in `lagc animate` (io/page.html). run: {shapes, rows: [{t, x}] of a trial run, for its extent}
@@ -264,6 +384,12 @@ function machineOf(run) {
 @DRAWING@
   return {
     deep, eye, bodies, toCanvas, place,
+    // Of a place and where the pointer took it: how places project to lengths on the screen, and where the pointer's places lie there.
+    screen(p, from) {
+      const [c, s, r, u] = [Math.cos(eye.turn), Math.sin(eye.turn), Math.sin(eye.rise), Math.cos(eye.rise)], there = toCanvas(p);
+      const project = deep ? q => [q[1]*c - q[0]*s, q[2]*u - (q[0]*c + q[1]*s)*r] : q => [q[0], q[1]], at = project(p);
+      return [project, to => [at[0] + (to[0] - there[0])/scaleX, at[1] - (to[1] - there[1])/scaleY]];
+    },
     inPlane: (x, y) => [(x - left)/scaleX, (top_ - y)/scaleY],
     draw(of) {
       rows = of;
@@ -272,106 +398,53 @@ function machineOf(run) {
     },
   };
 }
-let picture = null;
+let picture = null, machine = null;
 // A trial run over the span, for at most a fifth of a second, gives the extent of the picture.
 function look() {
-  const rows = [], began = performance.now(), parts = 300;
+  const rows = [], began = performance.now(), parts = 300, step = (span.t1 - span.t0)/parts;
   try {
     const trial = new Motion(lag, scene, options(settings.start, NaN));
     for (let k = 0; k <= parts && performance.now() - began < 200; k++) {
-      if (trial.advance(span.t0 + k*(span.t1 - span.t0)/parts) > 0) k = parts;
+      if (trial.advance(span.t0 + k*step) > 0) k = parts;
       rows.push({t: trial.t, x: trial.outputs});
     }
     trial.free();
-  } catch (e) { if (!rows.length) { say(e.message); return; } }
-  picture = machineOf({shapes: lag.shapes(scene), rows, tick: 1, speed: 1, horizon: null, free: false, unit: ""});
-}
-
-// ---- dragging: the coordinates that bring the body nearest to the pointer with the least change, at rest
-function dragged(body, to) {
-  const names_ = names.state.filter(n => !n.includes("'") && names.state.includes(n + "'")), now = motion.state, t = motion.t;
-  for (const n of names_) now[n + "'"] = 0;
-  const at = values => {
-    const m = new Motion(lag, scene, options(values, t));
-    try { m.advance(t); const x = m.outputs; return {p: [x[body.a[0]], x[body.a[1]]], state: m.state}; } finally { m.free(); }
-  };
-  let here = at(now);
-  for (let turn = 0; turn < 4; turn++) {
-    const r = [to[0] - here.p[0], to[1] - here.p[1]], J = names_.map(n => {
-      const h = 1e-6*(Math.abs(here.state[n]) || 1), p = at({...here.state, [n]: here.state[n] + h}).p;
-      return [(p[0] - here.p[0])/h, (p[1] - here.p[1])/h];
-    });
-    let a = 0, b = 0, d = 0;
-    for (const [x, y] of J) { a += x*x; b += x*y; d += y*y; }
-    const soft = 1e-9*(a + d) + 1e-300;
-    a += soft; d += soft;
-    const det = a*d - b*b, u = (d*r[0] - b*r[1])/det, v = (a*r[1] - b*r[0])/det;
-    const next = {...here.state};
-    names_.forEach((n, k) => { next[n] += J[k][0]*u + J[k][1]*v; });
-    here = at(next);
-  }
-  return here.state;
-}
-function pointers() {
-  const canvas = $("picture"), spot = e => { const r = canvas.getBoundingClientRect(); return [e.clientX - r.left, e.clientY - r.top]; };
-  let held = null, from = null, resumes = false;
-  canvas.onpointerdown = e => {
-    if (e.isTrusted) canvas.setPointerCapture(e.pointerId);
-    from = spot(e);
-    if (!picture || picture.deep) return;
-    const far = b => { const [x, y] = picture.toCanvas(picture.place(b.a)); return Math.hypot(x - from[0], y - from[1]); };
-    held = picture.bodies.filter(b => b.a[0] >= 0 && b.a[1] >= 0).sort((a, b) => far(a) - far(b)).find(b => far(b) < 40) || null;
-    resumes = playing;
-    if (held) pause();
-  };
-  canvas.onpointermove = e => {
-    if (!from || !picture) return;
-    const now = spot(e);
-    if (held) {
-      try { if (begin(dragged(held, picture.inPlane(...now)), motion.t)) { track = []; record(); draw(); } } catch (x) { say(x.message); }
-      return;
-    }
-    if (picture.deep && !e.shiftKey) {
-      picture.eye.turn -= (now[0] - from[0])/150;
-      picture.eye.rise = clamp(picture.eye.rise + (now[1] - from[1])/150, -1.57, 1.57);
-    } else { picture.eye.x += now[0] - from[0]; picture.eye.y += now[1] - from[1]; }
-    from = now;
-    draw();
-  };
-  canvas.onpointerup = canvas.onpointercancel = () => {
-    if (held) { settings.start = motion.state; share(); if (resumes) play(); }
-    held = from = null;
-  };
-  canvas.onwheel = e => { picture.eye.zoom = clamp(picture.eye.zoom*Math.exp(-e.deltaY/500), 0.1, 50); e.preventDefault(); draw(); };
+  } catch (e) { if (!rows.length) { say(wrong(e)); return; } }
+  const eye = picture && picture.eye, shapes = lag.shapes(scene);
+  machine = {shapes, rows, tick: 1, speed: 1, horizon: null, free: false, unit: ""};
+  picture = machineOf(machine);
+  if (eye) Object.assign(picture.eye, eye);
 }
 
 // ---- the page
-
 async function unpack(text) {
-  const stream = new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WebAssembly.compile(await new Response(stream).arrayBuffer());
+  const bytes = bytes_of(text);
+  if (bytes[0] != 0x1f || bytes[1] != 0x8b) return bytes; // lagc without zlib
+  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer());
 }
 function wire() {
   $("play").onclick = () => playing ? pause() : play();
   $("step").onclick = () => { pause(); pass(1/60); draw(); };
   $("reset").onclick = restart;
-  $("scene").onchange = () => { settings.values = {}; effects(); choose(); restart(); share(); };
+  $("scene").onchange = () => { settings.moved = false; settings.values = {}; settings.start = {}; effects(); choose(); restart(); share(); };
   $("method").onchange = () => { settings.method = $("method").value; fine(); go_on(); share(); };
-  $("fine").oninput = () => { fine(); go_on(); share(); };
-  $("twin").onchange = go_on;
-  for (const id of ["over", "px", "py"]) $(id).onchange = draw;
-  $("link").onclick = async () => {
-    share();
-    try { await navigator.clipboard.writeText(location.href); say("the link is in the clipboard"); }
-    catch { say(location.href); }
-  };
-  $("png").onclick = () => save("motion.png", "", $("picture").toDataURL());
-  $("csv").onclick = () => save("motion.csv", "text/csv", ["t [s]", ...names.outputs.map((_, i) => titled(i))].join(",") + "\n" +
-    track.map(r => [r.t, ...r.x].join(",")).join("\n") + "\n");
+  $("fine").oninput = () => { settings.moved = true; fine(); go_on(); share(); };
+  $("twin").onchange = $("estimate").onchange = () => { slow = 0; horizon = null; if (motion) { begin_beside(); draw(); } };
+  for (const id of ["over", "px", "py", "section"]) $(id).onchange = () => { if (id != "over") section.x = [], section.y = []; draw(); };
+  $("link").onclick = () => { share(); copy(location.href, "copied"); };
+  $("embed").onclick = () => { share(); copy('<iframe width="480" height="360" src="' + location.href.replace(/(\?[^#]*)?(#|$)/, "?controls=0$2") + '"></iframe>', "framed"); };
+  $("png").onclick = () => save("motion.png", "", picture_url());
+  $("csv").onclick = () => save("motion.csv", "text/csv", ["t [s]", ...columns.map((_, i) => titled(i))].join(",") + "\n" + track.map(r => [r.t, ...r.y].join(",")).join("\n") + "\n");
   $("lag").onclick = () => save("model.lag", "text/plain", model.source);
+  $("print").onclick = () => print();
+  $("equations").ontoggle = equations;
+  $("now").ontoggle = numbers;
+  $("language").onchange = () => { speak($("language").value); named_play(); $("listing").textContent = ""; if ($("equations").open) equations(); if (lag) { controls(); methods(); draw(); starts(); share(); } };
+  addEventListener("beforeprint", () => { document.documentElement.classList.add("paper"); draw(); });
+  addEventListener("afterprint", () => { document.documentElement.classList.remove("paper"); draw(); });
   document.onkeydown = e => {
     const tag = e.target.tagName;
-    if (e.ctrlKey || e.altKey || e.metaKey || tag == "SELECT" || tag == "INPUT") return;
+    if (e.ctrlKey || e.altKey || e.metaKey || tag == "SELECT" || tag == "INPUT" || tag == "SUMMARY") return;
     if (e.key == " " && tag != "BUTTON") $("play").click();
     else if (e.key == "ArrowRight") $("step").click();
     else if (e.key == "Home" || e.key == "r") restart();
@@ -383,29 +456,62 @@ function wire() {
   new ResizeObserver(draw).observe($("picture"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
 }
+// Without WebAssembly: what `lagc animate` recorded.
+function show_recording(run) {
+  for (const e of document.querySelectorAll("aside, #effects, #now, #step, #scene")) e.hidden = true;
+  say(word(run ? "no_wasm" : "no_record"));
+  if (!run) return;
+  const held = [], moving = [], rows = [];
+  for (let c = 0; 2*c < run.cols.length; c++) held.push(run.cols[2*c + 1] ? moving.push(c) - 1 : -1);
+  for (let k = 0, t = run.t0; k < run.frames; t += run.tick*run.dt[k++])
+    rows.push({t, x: held.map((h, c) => h < 0 ? run.cols[2*c] : run.cols[2*c] + run.cols[2*c + 1]*run.v[moving.length*k + h])});
+  const shapes = run.shapes.map(([kind, role, text, count, a, b, size, turn]) => ({kind, role, text, count, a, b, size, turn}));
+  picture = machineOf({shapes, rows, tick: Math.sign(run.tick), speed: run.speed, horizon: run.horizon, free: false, unit: run.unit});
+  let at = 0, last = performance.now();
+  const show = () => { const n = rows.filter(r => (r.t - run.t0)*Math.sign(run.tick) <= at).length; picture.draw(rows.slice(0, Math.max(1, n))); $("time").value = "t = " + rows[Math.max(0, n - 1)].t.toFixed(2) + " s"; };
+  const step = now => {
+    if (!playing) return;
+    at = (at + (now - last)/1000*run.speed*+$("speed").value) % Math.abs(run.t1 - run.t0);
+    last = now;
+    show();
+    requestAnimationFrame(step);
+  };
+  $("play").onclick = () => { playing = !playing; named_play(); last = performance.now(); requestAnimationFrame(step); };
+  $("reset").onclick = () => { at = 0; show(); };
+  show();
+  $("play").click();
+}
 async function main() {
-  if (typeof WebAssembly == "undefined") return say("this browser has no WebAssembly, with which the page computes");
-  const said = shared();
-  wasm = await unpack(packed);
+  const said = shared(), query = new URLSearchParams(location.search);
+  speak(query.get("lang") || said?.lang || navigator.language.slice(0, 2));
+  $("language").value = language;
+  if (query.get("controls") == "0") document.body.classList.add("plain");
+  $("source").textContent = model.source;
+  named_play();
+  bytes = copied(await unpack(parts));
+  more = JSON.parse(new TextDecoder().decode(bytes.subarray(model.more[0], model.more[0] + model.more[1])));
+  if (typeof WebAssembly == "undefined") return show_recording(more.recording);
+  wasm = await WebAssembly.compile(await unpack(packed));
   for (const name of new Set(model.programs.map(p => p.scene))) $("scene").add(new Option(name, name));
   if (said && isOf(said.scene).length) $("scene").value = said.scene;
   effects();
+  $("fine").value = 55;
   if (said) {
     settings.values = said.values || {};
     settings.start = said.start || {};
     settings.method = said.method || "";
-    $("fine").value = said.fine ?? $("fine").value;
+    settings.moved = said.fine !== undefined;
+    $("fine").value = said.fine ?? 55;
     for (const box of document.querySelectorAll("#effects input")) box.checked = (said.effects || []).includes(box.value);
-  } else $("fine").value = 55;
-  $("source").textContent = model.source;
-  if (model.equations) $("equations").querySelector("pre").textContent = model.equations; else $("equations").remove();
+  }
   choose();
   wire();
   restart();
+  $("equations").open = innerWidth > 720 && more.latex && more.latex.length < 3000;
   if (said && Number.isFinite(said.t)) { // shows that time, paused
     try {
-      for (let k = 1, from = motion.t; k <= 200; k++) { motion.advance(from + (said.t - from)*k/200); record(); }
-    } catch (e) { say(e.message); }
+      for (let k = 1, from = motion.t; k <= 200; k++) { motion.advance(from + (said.t - from)*k/200); beside(motion.t); record(); }
+    } catch (e) { say(wrong(e)); }
     pause();
     document.body.dataset.state = JSON.stringify(motion.state);
   } else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play();
@@ -413,7 +519,8 @@ async function main() {
 }
 // The page for other scripts: window.lagc.motion.state, .set("g", 3.7), .play(), .pause(), .reset(), .pass(seconds).
 window.lagc = {
-  get motion() { return motion; }, get picture() { return picture; }, get playing() { return playing; }, play, pause, reset: restart,
+  get motion() { return motion; }, get picture() { return picture; }, get playing() { return playing; }, get horizon() { return horizon; }, get columns() { return columns; },
+  get track() { return track; }, get section() { return section; }, play, pause, reset: restart,
   pass(seconds) { pass(seconds); draw(); },
   set(name, value) { settings.values[name] = value; go_on(); },
 };

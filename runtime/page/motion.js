@@ -1,6 +1,35 @@
 "use strict";
 // Motions computed in the page: liblag as WebAssembly, and one program of `lagc`. Used by live.html, and by tests in node.
 
+// Bytes of a text of `lagc page`: two of 91 characters for 13 bits, the low ones first; one at the end for 6.
+function bytes_of(text) {
+  const value = new Uint8Array(128), bytes = new Uint8Array((text.length*13 >> 4) + 1);
+  for (let c = 33, k = 0; c < 127; c++) if (!'"<\\'.includes(String.fromCharCode(c))) value[c] = k++;
+  let bits = 0, have = 0, n = 0;
+  for (let i = 0; i < text.length; i += 2) {
+    const pair = i + 1 < text.length, first = value[text.charCodeAt(i)];
+    bits |= (pair ? first*91 + value[text.charCodeAt(i + 1)] : first) << have;
+    for (have += pair ? 13 : 6; have >= 8; have -= 8, bits >>>= 8) bytes[n++] = bits & 255;
+  }
+  return bytes.subarray(0, n);
+}
+// The bytes that records of literals and copies give (src/base/far_copies.h).
+function copied(records) {
+  const view = new DataView(records.buffer, records.byteOffset, records.length);
+  let total = 0;
+  for (let i = 0; i < records.length;) { const n = view.getUint32(i, true); i += n + 4; total += n + view.getUint32(i + 4, true); i += 8; }
+  const bytes = new Uint8Array(total);
+  for (let i = 0, at = 0; i < records.length;) {
+    const n = view.getUint32(i, true);
+    bytes.set(records.subarray(i + 4, i + 4 + n), at);
+    i += n + 4; at += n;
+    const from = view.getUint32(i, true), m = view.getUint32(i + 4, true);
+    for (let k = 0; k < m; k++) bytes[at + k] = bytes[from + k];
+    i += 8; at += m;
+  }
+  return bytes;
+}
+
 // An instance of the module with a program. Memory may grow with each call, so that views are made where they are used.
 class Lag {
   constructor(module) {
@@ -95,18 +124,23 @@ class Motion {
     this.lag.f.lag_sim_outputs(this.sim, this.room);
     return Array.from(new Float64Array(this.lag.f.memory.buffer, this.room, this.count));
   }
+  // Names and units of the state's components, and their present values.
+  get components() { return this.named ||= this.names("page_state"); }
+  get values() { return this.components.map((_, i) => this.lag.f.lag_sim_state_value(this.sim, i)); }
   // {name: value} of the present state, as a start of another motion takes it.
   get state() {
-    const now = {};
-    this.names("page_state").forEach(({name}, i) => { now[name] = this.lag.f.lag_sim_state_value(this.sim, i); });
+    const now = {}, values = this.values;
+    this.components.forEach(({name}, i) => { now[name] = values[i]; });
     return now;
   }
+  // Charge k: 0 is the energy. name: [name, unit], null past the last.
+  charge_name(k) { const of = this.lag.text(this.lag.f.page_charge_name(this.sim, k)); return of && of.split("\t"); }
   charge(k) { const f = what => this.lag.f.page_charge(this.sim, k, what); return {now: f(0), drift: f(1), absolute: f(2), work: f(3)}; }
-  get cost() { return {steps: this.lag.f.page_count(this.sim, 0), calls: this.lag.f.page_count(this.sim, 1)}; }
+  get cost() { return {steps: this.lag.f.page_count(this.sim, 0), calls: this.lag.f.page_count(this.sim, 1), constraint: this.lag.f.page_count(this.sim, 3)}; }
   free() {
     this.lag.f.page_end(this.sim);
     this.lag.f.free(this.room);
     this.sim = 0;
   }
 }
-if (typeof module != "undefined") module.exports = {Lag, Motion};
+if (typeof module != "undefined") module.exports = {Lag, Motion, bytes_of, copied};

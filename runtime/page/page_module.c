@@ -1,6 +1,7 @@
 /* The WebAssembly module of live pages: the functions of lag.h that take structs, for a page's script, which calls
  * the others (lag_item, lag_sim_set, lag_sim_advance, ..) as they are. Enters: numbers and names; leaves: numbers and
  * texts. Nothing here is called from elsewhere, and the module has no main. */
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -33,17 +34,30 @@ const char *page_shape(const lag_scene *scene, int i) {
 /* Outputs that only the drawing has, the last ones. */
 int page_drawn(const lag_scene *scene) { return scene->ndrawn; }
 
+/* The scene's tolerance, and its method's step [s]; 0: it says none. */
+double page_tolerance(const lag_scene *scene) { return scene->tolerance; }
+double page_step(const lag_scene *scene) {
+  for (int i = 0; i < scene->noptions; i++)
+    if (strcmp(scene->options[i].name, "step") == 0) return scene->options[i].value;
+  return 0;
+}
+
 /* Sets a method by name, with a step [s] where it has that option and step > 0, and a tolerance; an empty name: the
- * scene's, or the one of `lagc run` for a run until `until`. Returns LAG_OK or a status with a message
- * (lag_sim_message). */
+ * scene's, with its other options, or the one of `lagc run` for a run until `until`. Returns LAG_OK or a status with
+ * a message (lag_sim_message). */
 int page_set_method(lag_sim *sim, const char *name, double tol, double step, double until) {
-  const lag_option option = {.name = "step", .value = step};
+  enum { MOST = 8 };
+  const lag_scene *scene = lag_sim_scene(sim);
+  int own = scene->method && (!*name || strcmp(name, scene->method) == 0), n = 0;
+  lag_option option[MOST + 1];
+  for (int i = 0; own && i < scene->noptions && n < MOST; i++)
+    if (!(step > 0) || strcmp(scene->options[i].name, "step") != 0) option[n++] = scene->options[i];
+  if (step > 0) option[n++] = (lag_option){.name = "step", .value = step};
   int rc = tol > 0 ? lag_sim_set_tolerance(sim, tol) : LAG_OK;
   rc = rc ? rc : lag_sim_balance(sim);
   if (rc) return rc;
-  if (!*name && lag_sim_scene(sim)->method) return LAG_OK;
-  if (!*name) return lag_sim_choose_method(sim, until, 0, &option, step > 0, text, sizeof text);
-  return lag_sim_set_method(sim, lag_find_method(name), &option, step > 0);
+  if (!own && !*name) return lag_sim_choose_method(sim, until, 0, option, n, text, sizeof text);
+  return lag_sim_set_method(sim, lag_find_method(own ? scene->method : name), option, n);
 }
 
 const char *page_method(const lag_sim *sim) {
@@ -69,6 +83,15 @@ double page_charge(lag_sim *sim, int k, int what) {
   lag_sim_charge(sim, k, &c);
   const double of[] = {c.now, c.drift, c.absolute, c.work, c.trend};
   return what >= 0 && what < (int)(sizeof of / sizeof *of) ? of[what] : NAN;
+}
+
+/* Name and SI unit of charge k, a tab between them; NULL past the last. */
+const char *page_charge_name(lag_sim *sim, int k) {
+  lag_charge_stats c = {.name = "", .unit = ""};
+  if (k < 0 || k >= lag_sim_ncharges(sim)) return NULL;
+  lag_sim_charge(sim, k, &c);
+  snprintf(text, sizeof text, "%s\t%s", c.name ? c.name : "", c.unit ? c.unit : "");
+  return text;
 }
 
 /* 0: steps, 1: right-hand sides, 2: events, 3: the largest residual of a constraint [SI]. */
@@ -110,4 +133,28 @@ void page_end(lag_sim *sim) {
   const lag_scene *own = lag_sim_scene(sim);
   lag_sim_free(sim);
   free((void *)(uintptr_t)own);
+}
+
+/* hypot with the digits of glibc: nearly always the nearest double. wasi-libc's is off by one in the last place.
+ * Borges, An improved algorithm for hypot(a, b), arXiv:1904.09481. */
+double hypot(double x, double y) {
+  double a = fmax(fabs(x), fabs(y)), b = fmin(fabs(x), fabs(y)), scale = 1;
+  if (isinf(x) || isinf(y)) return INFINITY;
+  if (isnan(x) || isnan(y)) return NAN;
+  if (b <= a * (DBL_EPSILON / 2)) return a + b;
+  if (a > 0x1p+511) scale = 0x1p+600;
+  else if (b < 0x1p-459) scale = 0x1p-600;
+  a /= scale;
+  b /= scale;
+  double h = sqrt(a * a + b * b), d, t1, t2;
+  if (h <= 2 * b) {
+    d = h - b;
+    t1 = a * (2 * d - a);
+    t2 = (d - 2 * (a - b)) * d;
+  } else {
+    d = h - a;
+    t1 = 2 * d * (a - 2 * b);
+    t2 = (4 * d - b) * b + d * d;
+  }
+  return (h - (t1 + t2) / (2 * h)) * scale;
 }

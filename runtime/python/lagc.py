@@ -8,15 +8,17 @@
     b = m.batch("small", th=numpy.linspace(0, 3, 10000), times=[10])
     b.y                                       # (10000, 1, 2), in SI units
 
-This file needs Python 3.8, NumPy, and the program lagc: the one in $LAGC, that of the same source tree or installation, or that in $PATH. Libraries are
-built when a model is loaded, and kept in lagc's cache. While the library computes, other Python threads run.
+This file needs Python 3.8, NumPy, and the program lagc: the one in $LAGC, that of the same package, source tree or installation, or that in $PATH. Libraries
+are built when a model is loaded, and kept in lagc's cache; without a C compiler models are evaluated. While the library computes, other Python threads run.
 """
 import ctypes
 import difflib
+import json
 import os
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import warnings
 import weakref
@@ -24,10 +26,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-__all__ = ["load", "Model", "Result", "Batch", "Error", "CompileError", "RunError"]
+__all__ = ["load", "Model", "Result", "Batch", "Error", "CompileError", "RunError", "Linear", "Gradient"]
 
-_ABI = 17  # LAG_ABI of lag_model.h
+_ABI = 18  # LAG_ABI of lag_model.h
 _STOPPED, _INTERRUPTED = 2, 3
+_RATES, _OUTPUTS, _MASS, _INVERSE = 0, 4, 8, 9  # lag_quantity; behind _RATES and _OUTPUTS derivatives by state, inputs, parameters
 _CHUNK, _PATIENCE = 4096, 0.2  # rows and seconds of one call: between calls Ctrl-C is heard
 
 
@@ -51,11 +54,21 @@ class RunError(Error):
 
 def _compiler():
     here = os.path.dirname(os.path.abspath(__file__))
-    places = [os.environ.get("LAGC"), os.path.join(here, "../../build/lagc"), os.path.join(here, "../../../bin/lagc"), shutil.which("lagc")]
+    places = [os.environ.get("LAGC"), os.path.join(here, "files/bin/lagc"), os.path.join(here, "../../build/lagc"), os.path.join(here, "../../../bin/lagc"), shutil.which("lagc")]
     for place in places:
         if place and os.access(place, os.X_OK):
             return os.path.normpath(place)
     raise Error("lagc is not found: set LAGC to its path, or put its folder into PATH")
+
+
+def _main():
+    """The program lagc of this package, as a command."""
+    program = _compiler()
+    os.execv(program, [program, *sys.argv[1:]])
+
+
+def _has_c_compiler():
+    return shutil.which((os.environ.get("CC") or "cc").split()[0]) is not None
 
 
 def _lagc(*words):
@@ -116,16 +129,17 @@ def _open(path):
     lib = ctypes.CDLL(path)
     d, i, s, p = ctypes.c_double, ctypes.c_int, ctypes.c_char_p, _Pointer
     signatures = {
-        "lag_library": (p,), "lag_library_abi": (i,), "lag_library_scene": (p, p, i), "lag_scene_span": (s, p, p, p, p), "lag_scene_method": (s, p),
+        "lag_library_abi": (i,), "lag_program_read": (p, p, ctypes.c_size_t, p), "lag_program_free": (None, p), "lag_library_scene": (p, p, i), "lag_scene_span": (s, p, p, p, p), "lag_scene_method": (s, p),
         "lag_item": (s, p, i, i, p, p, p), "lag_find_method": (p, s), "lag_sim_new": (p, p), "lag_sim_free": (None, p), "lag_sim_set": (i, p, s, d),
         "lag_sim_set_input": (i, p, s, _InputHook, p), "lag_sim_set_tolerance": (i, p, d), "lag_sim_set_method": (i, p, p, p, i),
         "lag_sim_requested_start": (d, p, i), "lag_sim_actual_start": (d, p, i), "lag_sim_choose_method": (i, p, d, i, p, i, s, ctypes.c_size_t), "lag_sim_message": (s, p), "lag_sim_q": (ctypes.POINTER(d), p),
         "lag_sim_p": (ctypes.POINTER(d), p), "lag_sim_time": (d, p), "lag_sim_noutputs": (i, p), "lag_sim_outputs": (i, p, p),
         "lag_sim_output_info": (d, p, i, s, ctypes.c_size_t, s, ctypes.c_size_t), "lag_sim_state_info": (d, p, i, s, ctypes.c_size_t, s, ctypes.c_size_t),
-        "lag_sim_rhs": (i, p, i, p, p, p), "lag_sim_rows": (i, p, i, p, p, p, p), "lag_sim_batch": (i, p, i, p, p, i, p, p, p),
+        "lag_sim_quantity": (i, p, i, i, p, p, p, p), "lag_sim_quantity_size": (None, p, i, p, p), "lag_sim_rows": (i, p, i, p, p, p, p), "lag_sim_batch": (i, p, i, p, p, i, p, p, p),
         "lag_sim_stats": (None, p, p), "lag_sim_ncharges": (i, p), "lag_sim_charge": (None, p, i, p), "lag_sim_balance": (i, p),
         "lag_sim_set_tangent": (i, p, i, p), "lag_sim_tangent": (i, p, p), "lag_sim_set_sensitivity": (i, p, i, p), "lag_sim_output_sensitivity": (i, p, p, p),
         "lag_sim_sensitivity_info": (d, p, i, s, ctypes.c_size_t, s, ctypes.c_size_t), "lag_sim_on_event": (None, p, _EventHook, p),
+        "lag_sim_record": (i, p), "lag_sim_gradient": (i, p, i, p, p, p, p),
         "lag_sim_on_step": (None, p, p, p), "lag_time_is_up": (i, p, p), "lag_clock_seconds": (d,),
     }
     for name, (returns, *takes) in signatures.items():
@@ -134,6 +148,36 @@ def _open(path):
     if lib.lag_library_abi() != _ABI:
         raise Error(f"{path} has the interface {lib.lag_library_abi()}, lagc.py knows {_ABI}: use the lagc.py of that lagc")
     return lib
+
+
+class _Program:
+    """The scenes of a library that `lagc build --shared` wrote; or of the bytes of `lagc build --bytes`, which liblag evaluates."""
+
+    def __init__(self, compiled, *words):
+        if compiled:
+            self.lib = _open(_lagc("build", *words, "--shared").strip())
+            self.lib.lag_library.restype = _Pointer
+            self.handle = self.lib.lag_library()
+            return
+        folder = os.path.dirname(_compiler())
+        places = [os.path.join(folder, where, f"liblag.so.{_ABI}") for where in (".", "../lib")]
+        found = [x for x in places if os.path.exists(x)]
+        if not found:
+            raise Error(f"liblag.so.{_ABI}, which evaluates models where there is no C compiler, is not found beside {_compiler()}: `make install` brings it")
+        self.lib, why = _open(found[0]), ctypes.c_char_p()
+        with tempfile.TemporaryDirectory() as kept:
+            _lagc("build", *words, "--bytes", "-o", os.path.join(kept, "program"))
+            program = _read(os.path.join(kept, "program"))
+        self.handle = self.lib.lag_program_read(program, len(program), ctypes.byref(why))
+        if not self.handle:
+            raise Error((why.value or b"no memory").decode())
+        weakref.finalize(self, self.lib.lag_program_free, self.handle)
+
+    def scenes(self):
+        found = []
+        while self.lib.lag_library_scene(self.handle, len(found)):
+            found.append(_Scene(self, self.lib.lag_library_scene(self.handle, len(found))))
+        return {s.name: s for s in found}
 
 
 def _address(a):
@@ -258,8 +302,9 @@ class _Simulation:
 
 
 class _Scene:
-    def __init__(self, lib, handle):
-        self.lib, self.handle = lib, handle
+    def __init__(self, program, handle):
+        self.program, self.lib, self.handle = program, program.lib, handle
+        lib = self.lib
         t0, t1, every = (ctypes.c_double() for _ in range(3))
         self.name = lib.lag_scene_span(handle, *map(ctypes.byref, (t0, t1, every))).decode()
         self.t0, self.t1, self.every = t0.value, t1.value, every.value
@@ -283,22 +328,26 @@ class _Scene:
 
 # ---- models ----
 
-def load(path, defines=None):
-    """Compiles a model. defines: values of its constants, {"N": 50}. CompileError: the compiler's text."""
-    return Model(path, defines)
+def load(path, defines=None, compile="auto"):
+    """Compiles a model: the path of a file, or "@pendulum" of the gallery. defines: values of its constants, {"N": 50}. compile: "always", or "never": it is
+    evaluated, with the same digits, at a third of the speed; "auto": compiled where there is a C compiler. CompileError: the compiler's text."""
+    return Model(path, defines, compile)
 
 
 class Model:
     """A compiled model: its scenes, and what they have."""
 
-    def __init__(self, path, defines=None):
+    def __init__(self, path, defines=None, compile="auto"):
+        if compile not in ("auto", "always", "never"):
+            raise Error(f"compile = {compile!r}: give \"auto\", \"always\" or \"never\"")
+        self._compiled = compile == "always" or compile == "auto" and _has_c_compiler()
         self.path = os.fspath(path)
         self._texts, self._kept = _texts(self.path), None
         self._defines = [word for k, v in (defines or {}).items() for word in ("-D", f"{k}={v}")]
         self._opened, self._simulation = {}, None
         scenes = self._scenes()
         self.scenes = list(scenes)
-        self.name = os.path.splitext(os.path.basename(self.path))[0]
+        self.name = os.path.splitext(os.path.basename(self.path))[0].lstrip("@")
         first = next(iter(scenes.values()))
         self.coordinates, self.states = list(first.items("q")), list(first.items("z"))
         self.inputs, self.events, self.charges = list(first.items("u")), list(first.items("e")), list(first.items("c"))
@@ -321,11 +370,7 @@ class Model:
     def _scenes(self, *words):
         """The scenes in a library with these options of `lagc build`: derivatives that a method or a tangent needs."""
         if words not in self._opened:
-            lib = _open(_lagc("build", self._source(), "--shared", *self._defines, *words).strip())
-            scenes = []
-            while lib.lag_library_scene(lib.lag_library(), len(scenes)):
-                scenes.append(_Scene(lib, lib.lag_library_scene(lib.lag_library(), len(scenes))))
-            self._opened[words] = {s.name: s for s in scenes}
+            self._opened[words] = _Program(self._compiled, self._source(), *self._defines, *words).scenes()
         return self._opened[words]
 
     def _scene(self, name, *words):
@@ -424,22 +469,135 @@ class Model:
             sim.check(lib.lag_sim_tangent(sim.sim, _address(result.tangent)))
         return result
 
-    def rhs(self, t, y, scene=None, values=None, **more):
-        """dy/dt at one state y[n], or at many, y[k, n]; SI units. values, or keywords: parameters and inputs."""
-        key = (scene, tuple(sorted(_named(values, more).items())))
+    def _at(self, quantity, t, y, scene, values, more, a=None, derived=True):
+        """A quantity of lag.h at one state y[n], or at many, y[k, n], as an array, with its _Scene; derived: of a library with derivatives."""
+        words = ("--with", "derivatives") if derived else ()
+        key = (scene, words, tuple(sorted(_named(values, more).items())))
         if not self._simulation or self._simulation[0] != key:
-            s = self._scene(scene)
-            self._simulation = key, _Simulation(s.lib, s, dict(key[1]))
+            s = self._scene(scene, *words)
+            self._simulation = key, _Simulation(s.lib, s, dict(key[2]))
         sim = self._simulation[1]
+        s = sim.scene
         y = np.ascontiguousarray(y, dtype=np.float64)
-        states = _array(y if y.ndim == 2 else y[None], (-1, sim.scene.n), "y")
+        states = _array(y if y.ndim == 2 else y[None], (-1, s.n), "y")
+        if a is not None:
+            a = _array(np.broadcast_to(np.asarray(a, dtype=np.float64), (len(states), len(s.items("q")))), (-1, -1), "a")
         t = np.ascontiguousarray(np.broadcast_to(np.asarray(t, dtype=np.float64), (len(states),)))
-        dy = np.empty_like(states)
-        status = sim.lib.lag_sim_rhs(sim.sim, len(states), _address(t), _address(states), _address(dy))
+        rows, columns = ctypes.c_int(), ctypes.c_int()
+        s.lib.lag_sim_quantity_size(sim.sim, quantity, ctypes.byref(rows), ctypes.byref(columns))
+        flat = quantity in (_RATES, _OUTPUTS, _INVERSE)
+        out = np.empty((len(states), rows.value) if flat else (len(states), rows.value, columns.value))
+        status = s.lib.lag_sim_quantity(sim.sim, quantity, len(states), _address(t), _address(states), _address(a), _address(out))
         sim.raise_what_inputs_raised()
         if status:
             raise RunError(sim.message(), status)
-        return dy if y.ndim == 2 else dy[0]
+        return out if y.ndim == 2 else out[0]
+
+    def rhs(self, t, y, scene=None, values=None, **more):
+        """dy/dt at one state y[n], or at many, y[k, n]; SI units. values, or keywords: parameters and inputs."""
+        return self._at(_RATES, t, y, scene, values, more, derived=False)
+
+    def jac(self, t, y, scene=None, values=None, **more):
+        """A = d(dy/dt)/dy, [n, n], or [k, n, n] at many states; SI units."""
+        return self._at(_RATES + 1, t, y, scene, values, more)
+
+    def input_jacobian(self, t, y, scene=None, values=None, **more):
+        """B = d(dy/dt)/du by the inputs, in the order of `inputs`."""
+        return self._at(_RATES + 2, t, y, scene, values, more)
+
+    def parameter_jacobian(self, t, y, scene=None, values=None, **more):
+        """d(dy/dt)/dp by the parameters, in the order of parameters(); those that follow from others by formulas follow."""
+        return self._at(_RATES + 3, t, y, scene, values, more)
+
+    def jvp(self, t, y, x, scene=None, values=None, **more):
+        """J x with J = jac(t, y): of one state, or of each of many."""
+        return np.einsum("...ij,...j->...i", self.jac(t, y, scene, values, **more), np.asarray(x, dtype=np.float64))
+
+    def vjp(self, t, y, x, scene=None, values=None, **more):
+        """J^T x with J = jac(t, y)."""
+        return np.einsum("...ij,...i->...j", self.jac(t, y, scene, values, **more), np.asarray(x, dtype=np.float64))
+
+    def outputs(self, t, y, scene=None, values=None, **more):
+        """The scene's outputs at states, in SI units."""
+        return self._at(_OUTPUTS, t, y, scene, values, more, derived=False)
+
+    def output_jacobian(self, t, y, scene=None, values=None, **more):
+        """C and D: derivatives of the scene's outputs by the state and by the inputs, in SI units."""
+        return tuple(self._at(_OUTPUTS + k, t, y, scene, values, more) for k in (1, 2))
+
+    def mass(self, t, y, scene=None, values=None, **more):
+        """The mass matrix M, [nq, nq]."""
+        return self._at(_MASS, t, y, scene, values, more)
+
+    def inverse_dynamics(self, t, y, a, scene=None, values=None, **more):
+        """The generalised forces M a + bias that the accelerations a need besides those of the model."""
+        return self._at(_INVERSE, t, y, scene, values, more, a)
+
+    def bias(self, t, y, scene=None, values=None, **more):
+        """b of M q'' + b = 0: Coriolis and centrifugal terms, weight and the forces of the model, with their signs changed."""
+        return self._at(_INVERSE, t, y, scene, values, more, 0.0)
+
+    def linearize(self, scene=None, values=None, *, equilibrium=False, steady=False, **more):
+        """The system y' = A y + B u, out = C y + D u of small changes about the scene's start, the equilibrium or the steady motion next to it, in SI units:
+        arrays A, B, C, D, the names and units of states, inputs and outputs, and values, the state where it holds. values, or keywords: numbers, or texts with units."""
+        words = [f"{k}={v if isinstance(v, str) else repr(_number(k, v))}" for k, v in _named(values, more).items()]
+        words += ["--equilibrium"] * bool(equilibrium) + ["--steady"] * bool(steady) + ["--compile", "auto" if self._compiled else "never"]
+        return Linear(json.loads(_lagc("linearize", self._source(), *([scene] if scene else []), *words, *self._defines, "--json")))
+
+    def sensitivity(self, names, scene=None, values=None, **more):
+        """Derivatives of a run's outputs by parameters and starts: run(sensitivity=names).sensitivity."""
+        return self.run(scene, values, sensitivity=names, **more).sensitivity
+
+    def gradient(self, objective, scene=None, values=None, *, until=None, times=None, y0=None, p=None, method=None, tol=None, step=None, **more):
+        """The gradient of one number by all starts and parameters, by reverse mode: some four runs, however many there are. objective: an output or a
+        component of the state, at the end of the run; or a function f(t, y) that gives J and dJ/dy[rows, n] of the states y[rows, n] at `times`, in SI units.
+        y0[n], p[np]: starts and parameters as arrays, in SI units, as for batch."""
+        method, s = method or "dop853", self._scene(scene)
+        for what, array, table in (("y0", y0, s.y), ("p", p, s.p)):
+            if array is not None:
+                given = _array(array, (len(table),), what)
+                values = {**{k: (x - offset) / factor for (k, (_, factor, offset)), x in zip(table.items(), given)}, **(values or {})}
+        sim, _ = self._simulate(scene, values, more, method, tol, step, until, "derivatives")
+        s, lib = sim.scene, sim.lib
+        end = until if until is not None else times[-1] if times is not None and len(times) else s.t1
+        times = np.array([float(end)]) if times is None else _array(times, (-1,), "times")
+        y, done = np.empty((len(times), s.n)), ctypes.c_int()
+        sim.check(lib.lag_sim_record(sim.sim))
+        status = lib.lag_sim_rows(sim.sim, len(times), _address(times), _address(y), None, ctypes.byref(done))
+        sim.raise_what_inputs_raised()
+        if status:
+            raise RunError(sim.message() or "the run ends before the last time", status)
+        by_p = np.zeros(len(s.p))
+        if callable(objective):
+            value, weight = objective(times, y)
+            weight = _array(weight, y.shape, "dJ/dy")
+        else:
+            value, weight, by_p = self._output(sim, objective, times[-1], y)
+        start, parameters = np.empty(s.n), np.empty(len(s.p))
+        if lib.lag_sim_gradient(sim.sim, len(times), _address(times), _address(weight), _address(start), _address(parameters)):
+            raise Error(sim.message())
+        return Gradient(s, float(value), start, parameters + by_p)
+
+    @staticmethod
+    def _output(sim, name, t, y):
+        """Value of an output, or component of the state, in its declared unit; its derivatives by y[rows, n], of which only the last count, and by parameters."""
+        s, lib = sim.scene, sim.lib
+        names = list(sim.info(lib.lag_sim_output_info, lib.lag_sim_noutputs(sim.sim)))
+        if name not in names and name not in s.y:
+            raise Error(f"{name}: no such output" + _near(name, [*names, *s.y]))
+        weight, by_p = np.zeros_like(y), np.zeros(len(s.p))
+        if name not in names:
+            k, (_, factor, offset) = list(s.y).index(name), s.y[name]
+            weight[-1, k] = 1 / factor
+            return (y[-1, k] - offset) / factor, weight, by_p
+        i, when = names.index(name), np.array([t])
+        factor, values = lib.lag_sim_output_info(sim.sim, i, None, 0, None, 0), np.empty(len(names))
+        C, P = np.empty((len(names), s.n)), np.empty((len(names), len(s.p)))
+        sim.check(lib.lag_sim_outputs(sim.sim, _address(values)))
+        for of, to in ((_OUTPUTS + 1, C), (_OUTPUTS + 3, P)):
+            sim.check(lib.lag_sim_quantity(sim.sim, of, 1, _address(when), y[-1:].ctypes.data, None, _address(to)))
+        weight[-1] = C[i] / factor
+        return values[i], weight, P[i] / factor
 
     def batch(self, scene=None, values=None, *, times, y0=None, p=None, out=None, method=None, tol=None, step=None, threads=1, **more):
         """Many motions in one call. values, or keywords: a number, or an array with one number a motion, in declared units; or y0[count, n] and
@@ -618,6 +776,34 @@ class Result:
                          f'<text x="{wide + 8}" y="{16 * i + 16}" fill="{colour}">{label}: {low:.4g} to {top:.4g} {self.units[name]}</text>')
         return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-4 -4 {wide + 248} {max(high, 16 * len(self.names)) + 24}" font-size="13" font-family="sans-serif">'
                 f'{"".join(parts)}<text x="0" y="{high + 16}">t = {self.t[0]:g} to {self.t[-1]:g} s</text></svg>')
+
+
+class Linear:
+    """y' = A y + B u, out = C y + D u; states, inputs, outputs: their names; units: those declared, whose size in SI is in factors; values: the state where it holds, in declared units."""
+
+    def __init__(self, of):
+        self.states, self.inputs, self.outputs = ([x["name"] for x in of[k]] for k in ("states", "inputs", "outputs"))
+        variables = [x for k in ("states", "inputs", "outputs") for x in of[k]]
+        self.units, self.factors = ({x["name"]: x[k] for x in variables} for k in ("unit", "factor"))
+        n, nu, nout = len(self.states), len(self.inputs), len(self.outputs)
+        shapes = {"A": (n, n), "B": (n, nu), "C": (nout, n), "D": (nout, nu), "rate": (n,)}
+        for name, shape in shapes.items():
+            setattr(self, name, np.array(of[name], dtype=np.float64).reshape(shape))
+        self.about, self.values = of["about"], {x["name"]: x["value"] for x in of["states"]}
+
+    def __repr__(self):
+        return f"<linear system about the {self.about}: y = {', '.join(self.states)}; u = {', '.join(self.inputs)}; out = {', '.join(self.outputs)}>"
+
+
+class Gradient:
+    """A number and its derivatives: value; start and parameters by name, in declared units; by_start[n], by_p[np] in SI."""
+
+    def __init__(self, scene, value, by_start, by_p):
+        self.value, self.by_start, self.by_p = value, by_start, by_p
+        self.start, self.parameters = ({k: d * factor for (k, (_, factor, _)), d in zip(of.items(), by)} for of, by in ((scene.y, by_start), (scene.p, by_p)))
+
+    def __repr__(self):
+        return f"<gradient of {self.value:.9g}: {', '.join(f'{k} {d:.4g}' for k, d in [*self.start.items(), *self.parameters.items()])}>"
 
 
 class Batch:

@@ -113,6 +113,14 @@ static const CommandRow commands[] = {
      "unit; 0.5@-90 is an amplitude of 0.5, a quarter of a period behind. A zero mode is `free` if no force arises far "
      "along the mode. Needs GSL. Exit status 3: no equilibrium was found.\n\n"
      "  name=value            a parameter, another start (th=3), an input to hold"},
+    {CMD_LINEARIZE, "linearize", "linearise",
+     "MODEL [SCENE] [name=value ...] [--equilibrium | --steady] [--json | -o FILE]",
+     "state space: A, B, C, D of small changes",
+     "Prints the linear system of small changes about the scene's start, y' = A y + B u, out = C y + D u: y is the "
+     "coordinates, velocities and states, u the inputs, held at their values at the start; out the scene's outputs. "
+     "Numbers are in SI units. A and B are exact, with constraints and rotations they have 11 digits, as C and D "
+     "have.\n\n"
+     "  name=value            a parameter, another start, an input to hold"},
     {CMD_ORBIT, "orbit", "periodic",
      "MODEL [SCENE] [name=value ...] [--guess T | --period T] [--hold NAMES] [--relative NAMES] [--json]",
      "periodic motions: period, multipliers, stability",
@@ -320,8 +328,8 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 #define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS) | C(FIT))
 #define RUNS (STEPS | C(SWEEP) | C(ORBIT) | C(CONTINUE)) /* commands that run a scene, once or many times */
 #define MODELS                                                                                                        \
-  (RUNS | C(MODES) | C(COST) | C(CHECK) | C(VERIFY) | C(DERIVE) | C(NOETHER) | C(ACTION) | C(BUILD) | C(HEADER) |   \
-   C(EMIT) | C(FMU) | C(PAGE))
+  (RUNS | C(MODES) | C(LINEARIZE) | C(COST) | C(CHECK) | C(VERIFY) | C(DERIVE) | C(NOETHER) | C(ACTION) | C(BUILD) | \
+   C(HEADER) | C(EMIT) | C(FMU) | C(PAGE))
 
 static const OptionRow options[] = {
 #define LAGC(name, brief, value, takes, hint, commands, field, text) \
@@ -382,6 +390,6 @@ int option_listed(const OptionRow *o, Command c) {
 
 int option_expert(const OptionRow *o) { return has_word("--math --fix --dump --no-gsl --define --precision", o->name); }
 
-int command_simulates(Command c) { return ((RUNS | C(MODES) | C(COST)) & 1u << c) != 0; }
+int command_simulates(Command c) { return ((RUNS | C(MODES) | C(LINEARIZE) | C(COST)) & 1u << c) != 0; }
 int command_takes_values(Command c) { return command_simulates(c) || c == CMD_VERIFY || c == CMD_ACTION; }
 int command_reads_model(Command c) { return (MODELS & 1u << c) != 0; }

@@ -9,7 +9,8 @@
 
 typedef enum {
   CMD_NONE, CMD_CHECK, CMD_VERIFY, CMD_DERIVE, CMD_NOETHER, CMD_ACTION, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES,
-  CMD_LYAPUNOV, CMD_FIT, CMD_ORBIT, CMD_CONTINUE, CMD_COST, CMD_SWEEP, CMD_EFFECTS, CMD_METHODS, CMD_MODELS, CMD_NEW,
+  CMD_LINEARIZE, CMD_LYAPUNOV, CMD_FIT, CMD_ORBIT, CMD_CONTINUE, CMD_COST, CMD_SWEEP, CMD_EFFECTS,
+  CMD_METHODS, CMD_MODELS, CMD_NEW,
   CMD_CACHE, CMD_BUILD, CMD_HEADER, CMD_EMIT, CMD_FMU, CMD_PAGE, CMD_HELP, CMD_COMPLETION, CMD_VERSION, CMD_COMPLETE,
   CMD_MANPAGE,
   CMD_COUNT
@@ -62,6 +63,7 @@ typedef struct {
   OptionTexts scenes;      /* plot: all scenes named, each once */
   OptionTexts rest;        /* run, plot, animate: the simulator's arguments, the scene included; complete: the words */
   OptionTexts observe;     /* run --observe: expressions */
+  OptionTexts gradient;    /* run --gradient: EXPR, NAME=EXPR */
   OptionTexts measure;     /* run, plot, animate, sweep --measure: EXPR, NAME=EXPR */
   const char *section;     /* run, plot --section */
   OptionTexts y;           /* plot --y: expressions */

@@ -54,33 +54,41 @@ static unsigned required_by_all(const Eqns *e) {
   return wants;
 }
 
-/* Flags of the methods that the simulator may choose when none is named: taylor for small tolerances, radau where
- * friction or flows may be stiff. None for long models, whose series and Jacobians take long to compile. */
-static unsigned required_by_choice(const Eqns *e, const Options *o) {
+/* Whether series and Jacobians take long to compile. */
+static int is_long(const Eqns *e) {
   enum { LONG = 40 };
+  return e->n + e->m->states.n > LONG;
+}
+
+/* Flags of the methods that the simulator may choose when none is named: taylor for small tolerances, radau where
+ * friction or flows may be stiff. None for long models. */
+static unsigned required_by_choice(const Eqns *e, const Options *o) {
   const double below_taylor = 1e-9; /* as in runtime/analysis/automatic_method.c */
   /* --accuracy tries several tolerances */
   double tol = o->accurate ? 0.1 * below_taylor : o->tol ? strtod(o->tol, NULL) : e->m->scene.tolerance;
   int runs = command_simulates(o->command) || o->command == CMD_BUILD;
-  if (!runs || (e->m->scene.method && !o->accurate) || o->method || e->n + e->m->states.n > LONG) return 0;
+  if (!runs || (e->m->scene.method && !o->accurate) || o->method || is_long(e)) return 0;
   return (tol > 0 && tol < below_taylor ? WANT_TAYLOR : 0u) |
          (e->conserves_energy && !e->m->states.n ? 0u : WANT_LINEAR);
 }
 
-/* Whether a measure of the scene or of --measure contains the Lyapunov exponent or MEGNO, for which runs have
- * tangents. */
-static int measures_exponent(const Eqns *e) {
+/* Flags of measures of the scene or of --measure: the Lyapunov exponent and MEGNO, for which runs have tangents. */
+static unsigned required_by_measures(const Eqns *e) {
   int found = 0;
   const Measures *lists[] = {&e->m->scene.measures, &e->m->asked_measures};
   for (int k = 0; k < 2; k++)
     for (uint32_t i = 0; i < lists[k]->n; i++)
       found |= strstr(lists[k]->at[i].text, "lyapunov()") || strstr(lists[k]->at[i].text, "megno()");
-  return found;
+  return found ? WANT_LINEAR : 0u;
 }
 
-static int asks_sensitivity(const Options *o) {
-  return o->command == CMD_FIT || options_passed(o, "--sensitivity") ||
-         (o->with && strcmp(o->with, "sensitivities") == 0);
+/* Flags of --with, and of commands that differentiate. */
+static unsigned required_by_words(const Options *o) {
+  int all = o->command == CMD_LINEARIZE || (o->with && strcmp(o->with, "derivatives") == 0);
+  if (all) return WANT_SENSITIVITY | WANT_INVERSE | WANT_ADJOINT;
+  if (o->gradient.n) return WANT_SENSITIVITY | WANT_ADJOINT;
+  if (o->command == CMD_FIT || options_passed(o, "--sensitivity")) return WANT_SENSITIVITY;
+  return !o->with ? 0u : strcmp(o->with, "sensitivities") == 0 ? WANT_SENSITIVITY : WANT_LINEAR;
 }
 
 unsigned derivatives_in_time(unsigned wants, const ProgramSet *u, const Options *o) {
@@ -97,13 +105,11 @@ unsigned derivatives_required(const Eqns *e, const Options *o) {
     const char *methods = options_passed(o, "--methods");
     return methods ? required_by_method(e, methods) | WANT_TAYLOR : required_by_all(e); /* taylor: for the reference */
   }
-  if (o->command == CMD_PAGE) return required_by_all(e);
+  if (o->command == CMD_PAGE && !is_long(e)) return required_by_all(e);
   unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) |
                    required_by_choice(e, o) |
                    (o->command == CMD_FMU             ? fmu_wants()
                     : o->command == CMD_HEADER        ? WANT_HELD | header_wants(o->with) | header_wants(o->target)
-                    : asks_sensitivity(o)             ? WANT_SENSITIVITY
-                    : o->with || measures_exponent(e) ? WANT_LINEAR
-                                                      : 0u);
+                                                      : required_by_words(o) | required_by_measures(e));
   return o->resume ? wants | required_by_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

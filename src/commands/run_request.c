@@ -152,14 +152,14 @@ static const char *without_quotes(Arena *a, const char *text) {
   return s;
 }
 
-static int prepare_measures(RequestBuilder *k, const char **error) {
-  for (uint32_t i = 0; i < k->o->measure.n; i++) {
+static int prepare_measures(RequestBuilder *k, const OptionTexts *list, const char *option, const char **error) {
+  for (uint32_t i = 0; i < list->n; i++) {
     size_t n;
-    const char *given = k->o->measure.at[i], *text = without_quotes(k->arena, split_name(given, &n));
-    if (!*given) return fail_with(error, "--measure needs a value: --measure EXPR");
-    if (!n) return fail_with(error, arena_printf(k->arena, "--measure %s: a name is missing before `=`", given));
+    const char *given = list->at[i], *text = without_quotes(k->arena, split_name(given, &n));
+    if (!*given) return fail_with(error, arena_printf(k->arena, "%s needs a value: %s EXPR", option, option));
+    if (!n) return fail_with(error, arena_printf(k->arena, "%s %s: a name is missing before `=`", option, given));
     CommandOutput asked = {.name = intern_n(k->ast->names, given, n)};
-    const Source *source = source_add(k->ast->sources, "--measure", text, strlen(text));
+    const Source *source = source_add(k->ast->sources, option, text, strlen(text));
     if (!source || !(asked.expr = parse_expression(k->ast, source))) return 0;
     vec_push(k->arena, &k->p->measures, asked);
   }
@@ -431,10 +431,13 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   add_argument(&k, arena_printf(k.arena, "lagc %s", command_find(o->command)->name), NULL);
   if (o->command == CMD_EFFECTS) add_argument(&k, "--effects", "report");
   for (uint32_t i = 0; i < o->observe.n; i++) ok &= add_output(&k, "--observe", o->observe.at[i]) != NULL;
-  ok = ok && prepare_section(&k, error) && prepare_measures(&k, error);
+  ok = ok && prepare_section(&k, error) && prepare_measures(&k, &o->measure, "--measure", error) &&
+       prepare_measures(&k, &o->gradient, "--gradient", error);
+  if (o->gradient.n) add_argument(&k, "--gradient", NULL);
   if (o->command == CMD_PLOT) ok = ok && prepare_plot(&k, error);
   if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
   if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);
+  if (o->command == CMD_LINEARIZE) add_argument(&k, "--linearize", NULL);
   if (o->command == CMD_FIT) ok = ok && prepare_columns(&k, error);
   if (o->command == CMD_ORBIT) add_argument(&k, "--orbit", NULL);
   if (o->command == CMD_CONTINUE) add_argument(&k, "--continue", NULL);

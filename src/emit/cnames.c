@@ -128,9 +128,9 @@ const char *cnames_take(CNames *c, const char *name) {
   return full;
 }
 
-const char *cname_of_event(const ProgramSet *u, uint32_t i) {
+const char *const *cnames_of_events(const ProgramSet *u) {
   CNames ids = cnames_new(u->arena);
-  const char *id = "";
-  for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, u->events.at[k].name);
+  const char **id = ARENA_ARRAY(u->arena, const char *, u->events.n + 1);
+  for (uint32_t k = 0; k < u->events.n; k++) id[k] = cnames_take(&ids, u->events.at[k].name);
   return id;
 }

@@ -33,8 +33,8 @@ const char *cname(Arena *a, const char *name);
 /* User's name in the letters of an identifier, for use after a prefix: may begin with a digit, and be a keyword. */
 const char *cname_letters(Arena *a, const char *name);
 
-/* Identifier of event i of a unit: names that C spells alike get suffixes. */
-const char *cname_of_event(const ProgramSet *u, uint32_t i);
+/* Identifiers of the events of a unit: names that C spells alike get suffixes. */
+const char *const *cnames_of_events(const ProgramSet *u);
 
 /* Whether id is a function of the C library, whose name an object with external linkage must not have. */
 int cname_is_library(const char *id);

@@ -48,6 +48,11 @@ static void write_load(Nesting *x, const Writer *around, Slot s) {
     w->piece[s] = cwriter_operand(around, x->n->outer[i->index]);
   } else if (ir_is_scalar(i->array)) {
     w->piece[s] = (CExpr){w->style->in[i->array], C_ATOM, 0};
+  } else if (i->array == ARR_INDEX) {
+    const char *name = cnames_take(&w->names, i->name);
+    cwriter_line(w, arena_printf(w->a, "const %s_REAL %s = %s_C(1.0)*(double)(%s);", w->style->prefix, name,
+                                 w->style->prefix, place(x, i->index)));
+    w->piece[s] = (CExpr){name, C_ATOM, 0};
   } else {
     const char *name = cnames_take(&w->names, i->name ? i->name : "sum");
     cwriter_line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name,

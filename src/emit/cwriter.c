@@ -102,8 +102,10 @@ static int is_power_of_two(const Ins *i) {
 
 /* a op b, grouped as computed: the text rounds as the program does. */
 static CExpr infix(Writer *w, const Ins *i, const char *op, int prec) {
-  CExpr right = cwriter_operand(w, i->b);
-  int flat = i->op == IR_MUL && right.prec == C_MUL && right.text[0] != '-' && is_power_of_two(&w->p->ins.at[i->a]);
+  CExpr left = cwriter_operand(w, i->a), right = cwriter_operand(w, i->b);
+  int one = left.prec == C_ATOM; /* not a number that turns of a loop multiply */
+  int flat = i->op == IR_MUL && right.prec == C_MUL && right.text[0] != '-' && one &&
+             is_power_of_two(&w->p->ins.at[i->a]);
   const char *a = wrapped(w, i->a, prec), *b = flat ? right.text : wrapped(w, i->b, prec == C_MUL ? C_ATOM : prec + 1);
   return (CExpr){arena_printf(w->a, "%s%s%s", a, op, b), prec, 0};
 }
@@ -570,7 +572,7 @@ static unsigned arrays_by_index(const CStyle *style) {
 static int stores_apart(const Prog *p, const CStyle *style) {
   if (style->apart) return 1;
   for (int k = 0; k < ARR_COUNT; k++) {
-    if (k == ARR_CELL || k == ARR_OUTER || !prog_reads(p, (IrArray)k)) continue; /* local */
+    if (k == ARR_CELL || k == ARR_OUTER || k == ARR_INDEX || !prog_reads(p, (IrArray)k)) continue; /* local */
     for (uint32_t s = 0; s < p->stores.n; s++)
       if (strcmp(style->in[k], style->out[p->stores.at[s].array]) == 0) return 0;
   }

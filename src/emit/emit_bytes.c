@@ -150,6 +150,7 @@ static void linear(const Unit *w) {
   int sensitive = (u->wants & WANT_SENSITIVITY) == WANT_SENSITIVITY;
   partials(w, sensitive ? u->by_params : NULL, u->by_params_dr.at, u->by_params_dr.n);
   partials(w, sensitive ? u->by_inputs : NULL, u->by_inputs_dr.at, u->by_inputs_dr.n);
+  partials(w, u->adjoint, u->formulas_at.at, u->formulas_at.n);
 }
 
 static void variation(const Unit *w) {
@@ -159,6 +160,7 @@ static void variation(const Unit *w) {
   for (uint32_t i = 0; u->variation && i < u->second_at.n; i++)
     integer(w, u->second_at.at[i].part), word(w, u->second_at.at[i].row), word(w, u->second_at.at[i].col);
   program(w, u->variation ? u->second : NULL);
+  program(w, u->inverse);
 }
 
 static void taylor(const Unit *w) {

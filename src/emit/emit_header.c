@@ -104,6 +104,7 @@ static Header header_new(const ProgramSet *u, const char *name, HeaderParts part
   if (id[0] == '_' || (id[0] >= '0' && id[0] <= '9')) id = arena_printf(h.a, "x%s", id);
   h.upper = cased(h.a, id, 1);
   h.lower = cased(h.a, id, 0);
+  h.event_ids = cnames_of_events(u);
   h.taken = cnames_new(h.a);
   for (size_t i = 0; i < sizeof header_names / sizeof *header_names; i++)
     cnames_reserve(&h.taken, arena_printf(h.a, "%s_%s", h.upper, header_names[i]));

@@ -25,7 +25,7 @@ static const char *const abi_names[] = {
     "constraints",      "contact_table",    "charge_table",     "charges",
     "switch_table",     "taylor_far",       "taylor_add",       "by_params",
     "by_params_table",  "params_partials",  "by_inputs",        "by_inputs_table",
-    "inputs_partials",
+    "inputs_partials",  "formula_table",    "adjoint_of",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -58,7 +58,7 @@ const char *model_id(Arena *a, const char *name) {
                                       "curves", "exact", "exact_of", "residuals", "matrices", "charge_values",
                                       "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws",
                                       "size_values", "size_table", "correct_positions",
-                                      "correct_velocities"};
+                                      "correct_velocities", "inverse_dynamics", "adjoint"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -119,9 +119,10 @@ void state_function(const ModelFile *f, const Prog *p, const char *name, const c
             "static int %s(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    "
             "const LAG_REAL *p, const LAG_REAL *u",
             name);
-  if (in) sb_printf(&head, ", const LAG_REAL *%s", own[n++] = in);
+  for (; in && *in; in++) sb_printf(&head, ", const LAG_REAL *%s", own[n++] = arena_strndup(f->a, in, 1));
+  int wraps = n > 7 || outputs > 2;
   for (uint32_t k = 0; k < outputs; k++)
-    sb_printf(&head, "%s LAG_REAL *%s", !k && (in || outputs > 2) ? ",\n   " : ",", own[n++] = written[k]);
+    sb_printf(&head, "%s LAG_REAL *%s", !k && wraps ? ",\n   " : ",", own[n++] = written[k]);
   sb_puts(&head, ", LAG_REAL *w)");
   own[n] = "w";
   CStyle st = model_style(f, own, written);
@@ -152,6 +153,14 @@ static void emit_variation(const ModelFile *f) {
                  derivatives);
 }
 
+static void emit_inverse(const ModelFile *f) {
+  const Prog *p = f->u->inverse;
+  if (p)
+    state_function(f, p, "inverse_dynamics",
+                   arena_printf(f->a, "Forces that the accelerations a need: %s.", op_count_text(p, f->a)), "a",
+                   one_out);
+}
+
 /* Newton's law of impact for the contact whose constraint is `row`, which its input closes. */
 static void emit_strike(const ModelFile *f) {
   static const char *const written[] = {"v1", NULL};
@@ -172,12 +181,13 @@ static void emit_strike(const ModelFile *f) {
 static void emit_events(const ModelFile *f) {
   static const char *const written[] = {"q1", "v1", "z1", NULL};
   const ProgramSet *u = f->u;
-  if (!u->events.n) return;
+  const char *const *id = u->events.n ? cnames_of_events(u) : NULL;
+  if (!id) return;
   state_function(f, u->event_values, "events", "An event happens where its function changes sign.", NULL, one_out);
   emit_strike(f);
   for (uint32_t i = 0; i < u->events.n; i++)
     if (!program_set_striking_contact(u, i))
-      state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", cname_of_event(u, i)),
+      state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", id[i]),
                      arena_printf(f->a, "What the event %s does.", u->events.at[i].name), NULL, written);
   sb_puts(
       f->out,
@@ -191,7 +201,7 @@ static void emit_events(const ModelFile *f) {
                 c->input);
     else
       sb_printf(f->out, "    case %u:%s return act_%s(self, t, q, v, z, p, u, q1, v1, z1, w);\n", i,
-                u->events.at[i].stop ? " *stop = 1;" : "", cname_of_event(u, i));
+                u->events.at[i].stop ? " *stop = 1;" : "", id[i]);
   }
   sb_puts(f->out, "    default: (void)self; (void)stop; return LAG_OK;\n  }\n}\n");
 }
@@ -323,6 +333,18 @@ static void emit_partials(const ModelFile *f, const Prog *p, const IrEntry *at, 
             n ? table : "NULL", by);
 }
 
+static void emit_adjoint(const ModelFile *f) {
+  static const char *const written[] = {"by_y", "by_up", "d", NULL};
+  const ProgramSet *u = f->u;
+  state_function(f, u->adjoint, "adjoint",
+                 arena_printf(f->a, "Reverse mode: products g^T dF/dy and by inputs and parameters: %s.",
+                              op_count_text(u->adjoint, f->a)),
+                 "ag", written);
+  entries("formula_table", u->formulas_at.at, u->formulas_at.n, f->out);
+  sb_printf(f->out, "\nstatic const lag_adjoint adjoint_of = {%u, %s, adjoint};\n", u->formulas_at.n,
+            u->formulas_at.n ? "formula_table" : "NULL");
+}
+
 static void emit_linear(const ModelFile *f) {
   static const char *const written[] = {"dr", "M", NULL};
   const ProgramSet *u = f->u;
@@ -337,6 +359,7 @@ static void emit_linear(const ModelFile *f) {
   int sensitive = (u->wants & WANT_SENSITIVITY) == WANT_SENSITIVITY, params = sensitive && u->by_params,
       inputs = sensitive && u->by_inputs;
   if (params) emit_partials(f, u->by_params, u->by_params_dr.at, u->by_params_dr.n, "params");
+  if (u->adjoint) emit_adjoint(f);
   if (inputs) emit_partials(f, u->by_inputs, u->by_inputs_dr.at, u->by_inputs_dr.n, "inputs");
   sb_printf(f->out,
             "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval "
@@ -346,6 +369,7 @@ static void emit_linear(const ModelFile *f) {
   if (u->jumps) sb_printf(f->out, "  .njump = %u, .jump = jump_table, .jumps = jumps,\n", u->jump_at.n);
   if (params) sb_puts(f->out, "  .by_params = &params_partials,\n");
   if (inputs) sb_puts(f->out, "  .by_inputs = &inputs_partials,\n");
+  if (u->adjoint) sb_puts(f->out, "  .adjoint = &adjoint_of,\n");
   sb_puts(f->out, "};\n");
 }
 
@@ -527,6 +551,7 @@ static void emit_tables(const ProgramSet *u, const char *name, const char *diges
   if (u->variation)
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
+  if (u->inverse) sb_puts(out, "  .inverse = inverse_dynamics,\n");
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (model_has_linear(u)) sb_puts(out, "  .linear = &linear,\n");
   sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n");
@@ -580,6 +605,7 @@ void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
                 &(CStyle){.prefix = "LAG", .globals = f.globals, .solve = "lag_solve", .math = math_prefix(u, "lag")},
                 u->lanes, out);
   emit_variation(&f);
+  emit_inverse(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, name, i);
   if (!alone) return;

@@ -39,7 +39,8 @@ enum {
   PART_MASS = 1, PART_INVERSE = 2, PART_JAC = 4, PART_LINEAR = 8, PART_PARAMS = 16, PART_CONSTRAINTS = 32,
   PART_EVENTS = 64, PART_NAMES = 128, PART_RHS = 256, PART_GSL = 512, PART_CVODE = 1024, PART_ARKODE = 2048,
   PART_IDA = 4096, PART_CASADI = 8192, PART_OUTPUTS = 16384,
-  PART_PATH = 32768 /* internal, for FMUs: derivatives of outputs; events along steps */
+  PART_PATH = 32768, /* internal, for FMUs: derivatives of outputs; events along steps */
+  PART_OUTPUT_JACOBIAN = 65536, PART_ADJOINT = 131072
 };
 typedef struct {
   const char *prefix; /* identifier with which names begin; NULL: from the name */

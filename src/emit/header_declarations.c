@@ -148,6 +148,11 @@ static const char *const docs[FN_COUNT] = {
         "The linearisation: A[LAG_NY*LAG_NY] of the rates of y = (q, v, z) by y; B[LAG_NY*LAG_NU] by the inputs.",
     [FN_DPARAMS] = "P[LAG_NY*LAG_NP], row by row: derivatives of the rates of y = (q, v, z) by the parameters, each as "
                    "if it were free.",
+    [FN_OUTPUT_JACOBIAN] = "C[LAG_NOUT*LAG_NY], row by row: derivatives of the outputs of _observe by y = (q, v, z); "
+                           "D[LAG_NOUT*LAG_NU] by the inputs.",
+    [FN_ADJOINT_STEP] =
+        "The step of _rk4_step from *s, in reverse: for x[LAG_NY] = dJ/dy after the step x becomes dJ/dy before it,\n"
+        " * and g[LAG_NP] grows by dJ/dp, each parameter as if it were free. Keep the states of a run, and go back.",
     [FN_CONSTRAINTS] =
         "Residuals of the constraints: c of those on positions, r of all on velocities (rates of the former first).",
     [FN_CONSTRAINT_JACOBIAN] =

@@ -156,7 +156,7 @@ static void inputs(const Header *h) {
 /* --- events --- */
 
 static const char *header_action(const Header *h, uint32_t i) {
-  return arena_printf(h->a, "%s_act_%s", h->lower, cname_of_event(h->u, i));
+  return arena_printf(h->a, "%s_act_%s", h->lower, h->event_ids[i]);
 }
 
 static void action(const Header *h, uint32_t i) {
@@ -317,6 +317,8 @@ static void for_scalars(const Header *h) {
 static int solves_dense(const Header *h) {
   const ProgramSet *u = h->u;
   return prog_solves_dense(u->accel) || prog_solves_dense(h->scene->observe_plain) ||
+         (header_has(h, FN_ADJOINT_STEP) && prog_solves_dense(u->adjoint)) ||
+         (h->parts.parts & (PART_OUTPUTS | PART_OUTPUT_JACOBIAN) && prog_solves_dense(u->outputs)) ||
          (u->taylor && prog_solves_dense(u->taylor->first));
 }
 

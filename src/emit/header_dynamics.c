@@ -7,7 +7,10 @@
 
 /* --- words --- */
 
-enum { CONSTRAINED = WANT_CONSTRAINED | WANT_MULTIPLIERS, DERIVATIVES = PART_JAC | PART_LINEAR | PART_PARAMS };
+enum {
+  CONSTRAINED = WANT_CONSTRAINED | WANT_MULTIPLIERS,
+  DERIVATIVES = PART_JAC | PART_LINEAR | PART_PARAMS | PART_OUTPUT_JACOBIAN | PART_ADJOINT
+};
 static const struct {
   const char *name;
   unsigned part, wants;
@@ -21,6 +24,8 @@ static const struct {
   {"events", PART_EVENTS, 0},
   {"rhs", PART_RHS, 0},
   {"names", PART_NAMES, 0},
+  {"outputs", PART_OUTPUT_JACOBIAN, WANT_OUTPUTS | WANT_LINEAR | WANT_BY_INPUTS | CONSTRAINED},
+  {"adjoint", PART_ADJOINT, WANT_ADJOINT},
 };
 enum { WORDS = sizeof words / sizeof *words };
 
@@ -78,6 +83,9 @@ static const char *lack(const ProgramSet *u, unsigned part) {
     return "at most 300 coordinates, velocities and states: the matrices are dense";
   if (part & (PART_MASS | PART_INVERSE) && !u->q.n) return "coordinates: this model has states alone";
   if (part & PART_PARAMS && !u->p.n) return "parameters: this model has none that is free";
+  if (part & PART_OUTPUT_JACOBIAN && !u->outputs) return "outputs without multipliers, in a scene that has some";
+  if (part & PART_ADJOINT && !u->adjoint) return "no constraints: their steps have no reverse mode yet";
+  if (part & PART_ADJOINT && !u->p.n) return "parameters: this model has none that is free";
   if (part & PART_CONSTRAINTS && !u->constraints.of.n) return "constraints: this model has none";
   if (part & PART_EVENTS && !u->events.n) return "events: this model has none";
   return NULL;
@@ -108,6 +116,7 @@ int header_parts(const ProgramSet *u, const char *list, HeaderParts *parts, cons
     }
     s += n;
   }
+  if (parts->parts & PART_OUTPUT_JACOBIAN) parts->parts |= PART_LINEAR; /* which it calls */
   return 1;
 }
 
@@ -210,6 +219,59 @@ static void derivatives(const Header *h) {
   if (parts & PART_LINEAR) begin(h, FN_LINEARIZE), write_marked(h, linearize_body, NULL);
   if (parts & PART_PARAMS)
     begin(h, FN_DPARAMS), header_template(h, " | {\n |  return lag_by_params(ARGS, P);\n |}\n", NULL);
+}
+
+/* Derivatives of outputs and formulas, with their positions. */
+static void output_partials(const Header *h) {
+  static const char *const d[] = {"d", NULL};
+  const char *head = arena_printf(h->a, "static int %s_partials_outputs(%s, %s_REAL *d)", h->lower,
+                                  header_state_args(h, 1, ""), h->upper);
+  sb_printf(h->out, "\nstatic const unsigned short %s_by_outputs_at[][2] = {%s};\n", h->lower,
+            header_positions(h, LIST(h->u->outputs_at)));
+  header_state_function(h, h->u->outputs, NULL, header_wrapped(h, head), d, d, 1);
+}
+
+/* Lines marked a: outputs contain accelerations or rates of states; i: and there are inputs. */
+static void output_jacobian(const Header *h) {
+  const ProgramSet *u = h->u;
+  uint32_t first = 2 * u->q.n + u->z.n + u->u.n, last = first + u->q.n + u->z.n;
+  int some = 0;
+  for (uint32_t k = 0; k < u->outputs_at.n; k++)
+    some |= u->outputs_at.at[k].row < h->scene->plain.n && u->outputs_at.at[k].col >= first &&
+            u->outputs_at.at[k].col < last;
+  const LineChoice choices[] = {{'a', some}, {'i', some && u->u.n}, {0, 0}};
+  const HeaderWord w[] = {number_word(h, "NALL", u->outputs_at.n ? u->outputs_at.n : 1),
+                          number_word(h, "NENTRIES", u->outputs_at.n), number_word(h, "PARAMETERS", last),
+                          number_word(h, "RATES", first - u->q.n), {"MATRICES", u->u.n ? ", A, B" : ", A"},
+                          {NULL, NULL}};
+  begin(h, FN_OUTPUT_JACOBIAN), header_template(h, header_chosen(h, output_jacobian_body, choices), w);
+}
+
+/* The classical method: y1 = y0 + h/6 (k1 + 2 k2 + 2 k3 + k4); backwards X_s = (df/dy)^T h (b_s x + a X_(s+1)). */
+static void adjoint_step(const Header *h) {
+  static const char *const own[] = {"a", "g", "by_y", "by_up", "d", NULL}, *const out[] = {"by_y", "by_up", "d"};
+  const ProgramSet *u = h->u;
+  const char *R = h->upper;
+  uint32_t n = u->formulas_at.n;
+  header_internal_function(h, u->adjoint, "reverse",
+                           arena_printf(h->a,
+                                        "const %s_REAL *a, const %s_REAL *g, %s_REAL *by_y, %s_REAL *by_up, "
+                                        "%s_REAL *d",
+                                        R, R, R, R, R),
+                           own, out);
+  if (n)
+    sb_printf(h->out, "\nstatic const unsigned short %s_formulas_at[][2] = {%s};\n", h->lower,
+              header_positions(h, LIST(u->formulas_at)));
+  StrBuf at = strbuf(h->a);
+  sb_printf(&at, "t%s", u->q.n ? ", y[r], y[r] + LAG_NQ" : "");
+  if (u->z.n) sb_printf(&at, ", y[r] + %u", 2 * u->q.n);
+  sb_printf(&at, ", p%s", u->u.n ? ", held" : "");
+  const LineChoice choices[] = {{'f', n > 0}, {0, 0}};
+  const HeaderWord w[] = {{"AT", sb_text(&at)}, {"INPUTS", u->u.n ? ", u, 0, 0" : ""},
+                          number_word(h, "BOTH", u->u.n + u->p.n), number_word(h, "NALL", n ? n : 1),
+                          number_word(h, "NCOORDS", u->q.n), number_word(h, "NINPUTS", u->u.n),
+                          number_word(h, "NFORMULAS", n), {NULL, NULL}};
+  begin(h, FN_ADJOINT_STEP), header_template(h, header_chosen(h, adjoint_step_body, choices), w);
 }
 
 /* --- matrices, constraints --- */
@@ -332,14 +394,9 @@ void header_dynamics_define(const Header *h) {
   if (header_has(h, FN_MULTIPLIERS))
     header_state_function(h, u->multipliers, NULL, header_api(h, FN_MULTIPLIERS), lambda, lambda, 1);
   derivatives(h);
-  if (h->parts.parts & PART_OUTPUTS) {
-    static const char *const d[] = {"d", NULL};
-    const char *head = arena_printf(h->a, "static int %s_partials_outputs(%s, %s_REAL *d)", h->lower,
-                                    header_state_args(h, 1, ""), h->upper);
-    sb_printf(h->out, "\nstatic const unsigned short %s_by_outputs_at[][2] = {%s};\n", h->lower,
-              header_positions(h, LIST(u->outputs_at)));
-    header_state_function(h, u->outputs, NULL, header_wrapped(h, head), d, d, 1);
-  }
+  if (h->parts.parts & (PART_OUTPUTS | PART_OUTPUT_JACOBIAN)) output_partials(h);
+  if (header_has(h, FN_OUTPUT_JACOBIAN)) output_jacobian(h);
+  if (header_has(h, FN_ADJOINT_STEP)) adjoint_step(h);
   if (header_has(h, FN_CONSTRAINTS)) constraints(h);
   if (header_has(h, FN_UNTIL_EVENT) || h->parts.parts & PART_PATH) events(h);
   header_callbacks_define(h);

@@ -13,6 +13,7 @@ typedef struct {
   StrBuf *out;
   const char *file;            /* name of the file without .h */
   const char *upper, *lower;   /* prefix of all names, in upper and lower case */
+  const char *const *event_ids; /* cnames_of_events */
   CNames taken;                /* macros and enumerators of the header */
   const char **q, **z, **p, **in, **ev, **outputs, **contacts, **surfaces; /* enumerators by index */
   const char *const *fields;   /* members of the struct of parameters */
@@ -24,7 +25,8 @@ typedef struct {
 typedef enum {
   FN_DEFAULTS, FN_PARAM, FN_START, FN_INPUTS, FN_ACCEL, FN_ENERGY, FN_CHARGES, FN_POWERS, FN_OBSERVE, FN_EVENTS, FN_ACT,
   FN_HOLD, FN_RK4_STEP, FN_RK4_STEP_WITH, FN_UNTIL_EVENT, FN_RHS, FN_MASS, FN_BIAS, FN_INVERSE, FN_JAC, FN_JVP, FN_VJP,
-  FN_LINEARIZE, FN_DPARAMS, FN_CONSTRAINTS, FN_CONSTRAINT_JACOBIAN, FN_MULTIPLIERS,
+  FN_LINEARIZE, FN_DPARAMS, FN_CONSTRAINTS, FN_CONSTRAINT_JACOBIAN, FN_MULTIPLIERS, FN_OUTPUT_JACOBIAN,
+  FN_ADJOINT_STEP,
   FN_COUNT
 } HeaderFn;
 int header_has(const Header *h, HeaderFn f);

@@ -53,6 +53,8 @@ int header_has(const Header *h, HeaderFn f) {
     case FN_JAC: case FN_JVP: case FN_VJP: return (h->parts.parts & PART_JAC) != 0;
     case FN_LINEARIZE: return (h->parts.parts & PART_LINEAR) != 0;
     case FN_DPARAMS: return (h->parts.parts & PART_PARAMS) != 0;
+    case FN_OUTPUT_JACOBIAN: return (h->parts.parts & PART_OUTPUT_JACOBIAN) != 0;
+    case FN_ADJOINT_STEP: return (h->parts.parts & PART_ADJOINT) != 0;
     case FN_CONSTRAINTS: case FN_CONSTRAINT_JACOBIAN: return (h->parts.parts & PART_CONSTRAINTS) != 0;
     case FN_MULTIPLIERS:
       return u->constraints.of.n && (h->parts.parts & (PART_CONSTRAINTS | PART_JAC | PART_LINEAR | PART_PARAMS)) != 0;
@@ -164,7 +166,8 @@ void header_template(const Header *h, const char *text, const HeaderWord *more) 
   expand_template(h, text, more, h->out);
 }
 
-/* STATE: the typed arguments of header_state_args; INPUT, RATES, BY_INPUTS: where there are inputs, q, z. */
+/* STATE: the typed arguments of header_state_args; INPUT, RATES, BY_INPUTS, ALSO_BY_INPUTS: where there are inputs,
+ * q, z. */
 static const char *const prototypes[FN_COUNT] = {
     [FN_DEFAULTS] = " |void lag_defaults(lag_params *p)",
     [FN_PARAM] = " |LAG_REAL *lag_param(lag_params *p, int index)",
@@ -179,8 +182,8 @@ static const char *const prototypes[FN_COUNT] = {
     [FN_ACT] = " |int lag_act(int event, const lag_params *p, lag_state *sINPUT, int *stop)",
     [FN_HOLD] = " |int lag_hold(const lag_params *p, lag_state *sINPUT)",
     [FN_RK4_STEP] = " |int lag_rk4_step(const lag_params *p, lag_state *s, LAG_REAL hINPUT)",
-    [FN_RK4_STEP_WITH] = " |int lag_rk4_step_with(const lag_params *p, lag_state *s, LAG_REAL h, lag_input_fn *input, "
-                         "void *context)",
+    [FN_RK4_STEP_WITH] = (" |int lag_rk4_step_with(const lag_params *p, lag_state *s, LAG_REAL h, "
+                          "lag_input_fn *input, void *context)"),
     [FN_UNTIL_EVENT] = " |int lag_step_until_event(const lag_params *p, lag_state *s, LAG_REAL hINPUT, int *event)",
     [FN_RHS] = " |int lag_rhs(LAG_REAL t, const LAG_REAL *y, const lag_params *pINPUT, LAG_REAL *dydt)",
     [FN_MASS] = " |int lag_mass(STATE, LAG_REAL *M)",
@@ -194,6 +197,9 @@ static const char *const prototypes[FN_COUNT] = {
     [FN_CONSTRAINTS] = " |int lag_constraints(STATE, LAG_REAL *c, LAG_REAL *r)",
     [FN_CONSTRAINT_JACOBIAN] = " |int lag_constraint_jacobian(STATE, LAG_REAL *A)",
     [FN_MULTIPLIERS] = " |int lag_multipliers(STATE, LAG_REAL *lambda)",
+    [FN_OUTPUT_JACOBIAN] = " |int lag_output_jacobian(STATE, LAG_REAL *CALSO_BY_INPUTS)",
+    [FN_ADJOINT_STEP] = " |int lag_adjoint_step(const lag_params *p, const lag_state *s, LAG_REAL hINPUT, LAG_REAL *x, "
+                        "LAG_REAL *g)",
 };
 
 const char *header_prototype(const Header *h, HeaderFn f) {
@@ -201,6 +207,7 @@ const char *header_prototype(const Header *h, HeaderFn f) {
   const HeaderWord words[] = {{"STATE", header_state_args(h, 1, "")},
                               {"INPUT", h->u->u.n ? ", const LAG_REAL *u" : ""},
                               {"BY_INPUTS", h->u->u.n ? ", LAG_REAL *B" : ""},
+                              {"ALSO_BY_INPUTS", h->u->u.n ? ", LAG_REAL *D" : ""},
                               {"RATES", arena_printf(h->a, "%s%s", q, z)},
                               {NULL, NULL}};
   StrBuf b = strbuf(h->a);

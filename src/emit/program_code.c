@@ -495,6 +495,7 @@ static void put_turn(Coder *w, StrBuf *out, const Ins *i) {
   if (i->op == IR_LOAD) {
     op = i->array == ARR_CELL     ? TURN_CELL
          : i->array == ARR_OUTER  ? TURN_OUTER
+         : i->array == ARR_INDEX  ? TURN_INDEX
          : ir_is_scalar(i->array) ? TURN_SCALAR
                                   : TURN_ELEMENT;
     a = i->array;

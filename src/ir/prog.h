@@ -49,11 +49,11 @@ typedef enum {
  * right-hand side g of A d = g (state corrections only). Line 2, Taylor coefficients (series/series.h): flags of
  * inputs that follow their formulas (0: held constant), coefficients x[k], sums over lower coefficients, constants
  * of order 0; the scalars k, 1/k and T/(k + 1). Line 3, nests: accumulated sums, whose loads have the nest as
- * operand a; values that a body reads from the program around its nest. */
+ * operand a; values that a body reads from the program around its nest; the whole numbers, element k being k. */
 typedef enum {
   ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_A, ARR_G,
   ARR_FREE, ARR_COEF, ARR_SUMS, ARR_STEP, ARR_ORDER, ARR_PER_ORDER, ARR_UP,
-  ARR_CELL, ARR_OUTER, ARR_COUNT
+  ARR_CELL, ARR_OUTER, ARR_INDEX, ARR_COUNT
 } IrArray;
 
 /* Whether an array is a single number, without index. */

@@ -110,7 +110,8 @@ static int run_turn(Run *body, const Run *r, const Nest *n, int64_t i, int64_t j
     } else if (x->array == ARR_OUTER) {
       body->v[s] = r->v[n->outer[x->index]];
     } else {
-      body->v[s] = (x->array == ARR_CELL ? r->cells : r->in[x->array])[nest_index(n, x->index, i, j)];
+      int64_t at = nest_index(n, x->index, i, j);
+      body->v[s] = x->array == ARR_INDEX ? (Real)at : (x->array == ARR_CELL ? r->cells : r->in[x->array])[at];
     }
   }
   return 0;

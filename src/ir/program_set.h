@@ -129,6 +129,7 @@ enum {
   WANT_OUTPUTS = 256,
   WANT_CONSTRAINED = 512 /* derivatives also of models with constraints, which simulators take by differences */,
   WANT_HELD = 1024,
+  WANT_ADJOINT = 2048,
   WANT_SENSITIVITY = 4 | 32 | 64 /* what a tangent by parameters needs */
 };
 
@@ -241,6 +242,8 @@ typedef struct {
   VEC(IrEntry) by_inputs_dr, by_params_dr; /* as linear_dr */
   /* of the derivatives of outputs, formulas of parameters and inputs: columns q, v, z, inputs, q'', z', parameters */
   VEC(IrEntry) outputs_at;
+  const Prog *adjoint;          /* NULL: not requested, or constraints */
+  VEC(IrEntry) formulas_at;     /* positions of its output 2: input, parameter */
   const Prog *jumps;            /* NULL: not requested, or no event changes the state */
   VEC(IrJump) jump_at;          /* positions of its outputs */
   VEC(IrScene) scenes;

@@ -36,6 +36,10 @@ Prog *lower_inputs(const Eqns *e);  /* out 0: u[nu] */
  * multipliers */
 Prog *lower_linear(const Eqns *e, Partials dr, PartialsBy by);
 
+/* out 0: x^T dF/dy [2 nq + nz], out 1: by inputs, then parameters [nu + np], out 2: entries of `formulas`; F: the
+ * accelerations and rates of states, x: read as g [nq + nz]; reads q''. */
+Prog *lower_adjoint(const Eqns *e, const AdjointPartials *d);
+
 /* Derivatives d of the outputs without closed forms, of the formulas of free parameters, and of those of inputs, 0
  * for a table: rows in this order (eqns_output_partials). Accelerations are computed inside. */
 Prog *lower_output_partials(const Eqns *e, Partials *d);

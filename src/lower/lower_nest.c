@@ -71,7 +71,12 @@ static int load_reads(NestBuilder *b) {
         expr_map_set(&b->body.slots, expr_symbol(b->l->g, r->symbol)->node, outer_value(b, common) + 1);
         continue;
       }
-      if (!array_index(b, &r->at, &load, &at)) return 0;
+      if (r->stem && !*r->stem) {
+        load = (Ins){.array = ARR_INDEX, .name = expr_symbol(b->l->g, r->symbol)->name};
+        at = r->index[0];
+      } else if (!array_index(b, &r->at, &load, &at)) {
+        return 0;
+      }
       vec_push(b->l->p->arena, &b->at, at);
       Slot s = prog_ins(b->body.p,
                         (Ins){.op = IR_LOAD, .array = load.array, .index = b->at.n - 1, .name = load.name});
@@ -158,15 +163,15 @@ static Shares wanted_shares(const NestBuilder *b, const unsigned char *wanted, i
   return all;
 }
 
-/* Leaves out the first and the last rows, which have no turns. */
-static void trim(Nest *n) {
+/* Leaves out the first and the last rows, which have no turns. sampled: the self-check takes a sample of the turns. */
+static void trim(Nest *n, int sampled) {
   uint32_t first = 0, end = n->rows;
   while (first < end && nest_to(n, first) <= nest_from(n, first)) first++;
   while (end > first && nest_to(n, end - 1) <= nest_from(n, end - 1)) end--;
   IrSubscript *at = (IrSubscript *)n->at;
   for (uint32_t k = 0; k < n->n; k++) at[k].first += first * (at[k].by_row + at[k].by_turn * n->skew);
   n->turns += n->more * first;
-  n->text_rows = n->rows;
+  if (sampled) n->text_rows = n->rows;
   n->first_row = first;
   n->rows = end - first;
 }
@@ -185,7 +190,7 @@ static Slot append_nest(NestBuilder *b, const Shares *shares, int64_t least, uin
   const Prog *body = prog_product_cse(prog_factor(prog_tidy(b->body.p)));
   Nest n = {.rows = r->rows, .count = (uint32_t)expr_sum_turns(b->l->g, b->nest), .skew = r->skew, .turns = r->turns,
             .more = r->more, .body = body, .at = b->at.at, .outer = b->outer.at, .n = b->at.n, .nouter = b->outer.n};
-  trim(&n);
+  trim(&n, b->s->sampled);
   vec_push(p->arena, &p->nests, n);
   Slot before = 0;
   for (Slot s = p->ins.n; s-- > 1 && !before;)
@@ -197,7 +202,7 @@ static Slot append_nest(NestBuilder *b, const Shares *shares, int64_t least, uin
 static int lower_as_nest(NestBuilder *b, const Expr *cells, uint32_t n) {
   Lower *l = b->l;
   Arena *a = l->p->arena;
-  unsigned char *wanted = ARENA_ARRAY(a, unsigned char, b->s->nargs + 1);
+  unsigned char *wanted = ARENA_ARRAY(a, unsigned char, b->s->ncells);
   int64_t least = 0, most = -1;
   for (uint32_t k = 0; k < n; k++) wanted[expr_cell_number(l->g, cells[k])] = 1;
   Shares shares = wanted_shares(b, wanted, &least, &most);
@@ -230,7 +235,7 @@ void lower_nest(Lower *l, Expr nest, const ExprList *list) {
   if (!cells.n || (!l->direct && lower_as_nest(&b, cells.at, cells.n))) return;
   Expr *sums = ARENA_ARRAY(l->p->arena, Expr, cells.n + 1);
   expr_expand_sums(g, cells.at, cells.n, sums);
-  expr_note_sums_out(g);
+  if (b.s->sampled) expr_note_sums_out(g);
   lower_roots(l, sums, cells.n);
   for (uint32_t k = 0; k < cells.n; k++) expr_map_set(&l->slots, cells.at[k], lower_slot(l, sums[k]) + 1);
 }

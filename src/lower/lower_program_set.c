@@ -327,6 +327,13 @@ static void add_partials(ProgramSet *u, Eqns *e, PartialsBy by) {
   note_mass(u, e);
 }
 
+static void add_adjoint(ProgramSet *u, Eqns *e) {
+  AdjointPartials d = eqns_adjoint(e);
+  u->adjoint = lower_adjoint(e, &d);
+  for (uint32_t k = 0; k < d.formulas.n; k++)
+    vec_push(u->arena, &u->formulas_at, ((IrEntry){d.formulas.at[k].row, d.formulas.at[k].col}));
+}
+
 static void add_jumps(ProgramSet *u, const Eqns *e) {
   EventPartials jumps = eqns_event_derivatives(e);
   if (!jumps.n) return;
@@ -362,6 +369,7 @@ void unit_require(ProgramSet *u, Eqns *e, unsigned wants) {
   if (fresh & WANT_MULTIPLIERS && e->constraints.n) u->multipliers = lower_multipliers(e);
   if (fresh & WANT_LINEAR && derives) add_linear(u, e);
   if (fresh & WANT_LINEAR && !e->constraints.n) add_jumps(u, e);
+  if (fresh & WANT_ADJOINT && !e->constraints.n) add_adjoint(u, e);
   if (fresh & WANT_HELD) add_held(u, e);
 }
 

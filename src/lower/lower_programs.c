@@ -199,6 +199,75 @@ Prog *lower_linear(const Eqns *e, Partials dr, PartialsBy by) {
   return finished(&l, ROLL_FROM);
 }
 
+static Slot load_weight(Lower *l, uint32_t i) {
+  Name name = arena_printf(l->p->arena, "x%u", i + 1);
+  return prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = i, .name = name});
+}
+
+/* M w = x for the entries of M, which are lowered: by division where M is diagonal, by Cramer's rule for two
+ * coordinates, else by one elimination. */
+static void solve_weights(Lower *l, Slot *w) {
+  const Eqns *e = l->e;
+  size_t n = e->n;
+  Slot *M = ARENA_ARRAY(l->p->arena, Slot, n * n + 1), *x = ARENA_ARRAY(l->p->arena, Slot, n + 1);
+  int diagonal = 1;
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    size_t i = e->mass.at[k].row, j = e->mass.at[k].col;
+    M[i * n + j] = M[j * n + i] = lower_slot(l, e->mass.at[k].e);
+    diagonal &= i == j;
+  }
+  for (uint32_t i = 0; i < n; i++) x[i] = load_weight(l, i);
+  for (uint32_t i = 0; i < n && diagonal; i++) w[i] = op(l, IR_DIV, x[i], M[i * n + i]);
+  if (!diagonal && n == 2) {
+    Slot square = op(l, IR_MUL, M[0], M[3]), det = prog_sub_product(l->p, square, M[1], M[1]);
+    for (uint32_t i = 0; i < 2; i++) {
+      Slot top = op(l, IR_MUL, x[i], M[3 - 3 * i]), less = prog_sub_product(l->p, top, M[1], x[1 - i]);
+      w[i] = op(l, IR_DIV, less, det);
+    }
+  } else if (!diagonal) prog_solve(l->p, (Solve){.n = e->n, .matrix = M, .rhs = x}, w);
+}
+
+static void store_partials(Lower *l, PartialsBy by, uint32_t array, uint32_t first, ExprPartials d) {
+  for (uint32_t k = 0; k < d.n; k++)
+    prog_store(l->p, array, first + d.at[k].index, lower_slot(l, d.at[k].e), variable(l, by, d.at[k].index));
+}
+
+/* Stores of 0 to the elements of an array that have none. */
+static void store_zeros(Lower *l, uint32_t array, uint32_t n) {
+  unsigned char *known = ARENA_ARRAY(l->p->arena, unsigned char, n + 1);
+  for (uint32_t k = 0; k < l->p->stores.n; k++)
+    if (l->p->stores.at[k].array == array) known[l->p->stores.at[k].index] = 1;
+  for (uint32_t i = 0; i < n; i++)
+    if (!known[i]) prog_store(l->p, array, i, 0, "none");
+}
+
+Prog *lower_adjoint(const Eqns *e, const AdjointPartials *d) {
+  Lower l = lower_new(e);
+  const Model *m = e->m;
+  uint32_t nz = m->states.n, nu = m->inputs.n, np = 0;
+  const ExprPartials *const parts[] = {&d->by_state, &d->by_inputs, &d->by_params};
+  Slot *w = ARENA_ARRAY(m->arena, Slot, e->n + nz + 1);
+  VEC(Expr) roots = {0};
+  for (uint32_t i = 0; i < m->params.n; i++) np += !m->params.at[i].fixed;
+  load_accelerations(&l);
+  for (uint32_t k = 0; k < e->mass.n; k++) lower_roots(&l, &e->mass.at[k].e, 1);
+  if (e->n) solve_weights(&l, w);
+  for (uint32_t k = 0; k < nz; k++) w[e->n + k] = load_weight(&l, e->n + k);
+  for (uint32_t i = 0; i < e->n + nz; i++) expr_map_set(&l.slots, expr_symbol(e->g, d->w[i])->node, w[i] + 1);
+  for (int b = 0; b < 3; b++)
+    for (uint32_t k = 0; k < parts[b]->n; k++) vec_push(m->arena, &roots, parts[b]->at[k].e);
+  for (uint32_t k = 0; k < d->formulas.n; k++) vec_push(m->arena, &roots, d->formulas.at[k].e);
+  lower_roots(&l, roots.at, roots.n);
+  store_partials(&l, BY_STATE, 0, 0, d->by_state);
+  store_partials(&l, BY_INPUTS, 1, 0, d->by_inputs);
+  store_partials(&l, BY_PARAMS, 1, nu, d->by_params);
+  for (uint32_t k = 0; k < d->formulas.n; k++)
+    prog_store(l.p, 2, k, lower_slot(&l, d->formulas.at[k].e), m->inputs.at[d->formulas.at[k].row].name);
+  store_zeros(&l, 0, 2 * e->n + nz);
+  store_zeros(&l, 1, nu + np);
+  return finished(&l, ROLL_FROM);
+}
+
 Prog *lower_mass(const Eqns *e) {
   Lower l = lower_new(e);
   for (uint32_t k = 0; k < e->mass.n; k++) lower_roots(&l, &e->mass.at[k].e, 1);

@@ -16,6 +16,7 @@
 #include "mech/constraint_regularise.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
+#include "sym/sum_nest.h"
 
 typedef VEC(Expr) ExprVec;
 
@@ -205,7 +206,7 @@ static void classify(Eqns *e) {
   int inputs = (rest & bit(SYM_INPUT)) != 0 && m->inputs.n > model_contact_inputs(m); /* those of contacts do no work */
   e->smooth = 1;
   if (inputs) add_input_formulas(e, &roots);
-  ExprList l = expr_topo(e->g, roots.at, roots.n);
+  ExprList l = expr_topo_with_bodies(e->g, roots.at, roots.n);
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(e->g, l.at[i]);
     /* where the angle jumps by 2 pi */

@@ -2,6 +2,7 @@
 #include "mech/discontinuity.h"
 
 #include "mech/constrain.h"
+#include "sym/sum_nest.h"
 
 ExprJumps discontinuities_of(const Eqns *e, Expr x) {
   const Model *m = e->m;
@@ -11,7 +12,13 @@ ExprJumps discontinuities_of(const Eqns *e, Expr x) {
     for (uint32_t i = 0; i < m->inputs.n; i++) formula[m->inputs.at[i].sym] = m->inputs.at[i].value;
     x = expr_substitute(g, x, formula, expr_symbol_count(g) + 1, "");
   }
-  return expr_jumps(g, x);
+  ExprJumps all = expr_jumps(g, x);
+  ExprList l = expr_topo(g, &x, 1);
+  for (uint32_t k = 0; k < l.n && !all.n; k++) {
+    const SumNest *s = expr_op(g, l.at[k]) == EX_NEST ? expr_sum_nest(g, l.at[k]) : NULL;
+    for (uint32_t i = 0; s && i < s->nshares && !all.n; i++) all = expr_jumps(g, s->shares[i].value);
+  }
+  return all;
 }
 
 /* --- warnings --- */

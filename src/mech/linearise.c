@@ -3,7 +3,6 @@
 #include "mech/linearise.h"
 
 #include "mech/lagrange.h"
-#include "sym/diff.h"
 #include "sym/simplify.h"
 
 typedef VEC(Partial) PartialList;
@@ -157,6 +156,51 @@ Partials eqns_partials(Eqns *e, PartialsBy by) {
     try_form(e, &raw, NULL, &best, &ops);
   }
   return (Partials){best.at, best.n};
+}
+
+/* Operations of the derivatives of S, with those of M. */
+static uint64_t adjoint_ops(const Eqns *e, const AdjointPartials *x) {
+  const ExprPartials *const parts[] = {&x->by_state, &x->by_inputs, &x->by_params};
+  VEC(Expr) roots = {0};
+  for (int b = 0; b < 3; b++)
+    for (uint32_t k = 0; k < parts[b]->n; k++) vec_push(e->m->arena, &roots, parts[b]->at[k].e);
+  for (uint32_t k = 0; k < e->mass.n; k++) vec_push(e->m->arena, &roots, e->mass.at[k].e);
+  return expr_ops(e->g, roots.at, roots.n);
+}
+
+/* S with this M q''. */
+static Expr weighted_residuals(const Eqns *e, const SymId *w, const Expr *inertia) {
+  VEC(Expr) terms = {0};
+  for (uint32_t i = 0; i < e->n + e->m->states.n; i++) {
+    Expr r = i < e->n ? expr_sub(e->g, e->f[i], inertia[i]) : e->flow[i - e->n];
+    Expr term = expr_mul(e->g, expr_symbol(e->g, w[i])->node, r);
+    vec_push(e->m->arena, &terms, term);
+  }
+  return expr_add_n(e->g, terms.at, terms.n);
+}
+
+AdjointPartials eqns_adjoint(Eqns *e) {
+  Arena *a = e->m->arena;
+  uint32_t n = e->n + e->m->states.n;
+  SymId *w = ARENA_ARRAY(a, SymId, n + 1);
+  AdjointPartials best = {0};
+  PartialList formulas = {0};
+  uint64_t least = UINT64_MAX;
+  eqns_derive_mass(e);
+  for (uint32_t i = 0; i < n; i++)
+    w[i] = expr_declare(e->g, SYM_LOCAL, i, arena_printf(a, "weight_%u", i + 1), SIGN_UNKNOWN);
+  for (int by_momenta = 0; by_momenta <= 1; by_momenta++) {
+    Expr S = weighted_residuals(e, w, by_momenta ? inertia_of_momenta(e) : inertia_of_mass(e));
+    AdjointPartials x = {w, by_state(e, S), by_others(e, S, BY_INPUTS), by_others(e, S, BY_PARAMS), {0}};
+    uint64_t ops = adjoint_ops(e, &x);
+    if (ops < least) best = x, least = ops;
+  }
+  for (uint32_t i = 0; i < e->m->inputs.n; i++) {
+    ExprPartials d = e->m->inputs.at[i].value ? by_others(e, e->m->inputs.at[i].value, BY_PARAMS) : (ExprPartials){0};
+    for (uint32_t k = 0; k < d.n; k++) vec_push(a, &formulas, ((Partial){i, d.at[k].index, d.at[k].e}));
+  }
+  best.formulas = (Partials){formulas.at, formulas.n};
+  return best;
 }
 
 Partials eqns_output_partials(const Eqns *e, const Expr *x, uint32_t n) {

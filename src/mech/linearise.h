@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mech/eqns.h"
+#include "sym/diff.h"
 
 /* A partial derivative of residual `row` by component `col` of y = (q, q', z), or of what PartialsBy says. */
 typedef struct {
@@ -21,6 +22,17 @@ typedef struct {
  * multipliers, whose symbols are in entries of the first n rows:
  *   M dq'' - A^T dlambda = dr_i,   A dq'' = dr_(n + states + k). */
 Partials eqns_linearise(Eqns *e);
+
+/* Reverse mode for all at once: S = sum_i w_i r_i over the residuals above, with new symbols w[n + states]; the
+ * nonzero derivatives of S by y, by inputs, and by parameters as in PartialsBy; and those of the inputs' formulas (row:
+ * input) by parameters. Where M w = x for the first n, these are the products x^T dq''/dy and so on. Not for
+ * constraints. */
+typedef struct {
+  const SymId *w;
+  ExprPartials by_state, by_inputs, by_params;
+  Partials formulas;
+} AdjointPartials;
+AdjointPartials eqns_adjoint(Eqns *e);
 
 /* The same by inputs, or by the parameters that are not fixed (col: their place), each as if it were free. */
 typedef enum { BY_STATE, BY_INPUTS, BY_PARAMS } PartialsBy;

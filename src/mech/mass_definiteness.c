@@ -10,6 +10,7 @@
 #include "sym/diff.h"
 #include "sym/expr_eval.h"
 #include "sym/print.h"
+#include "sym/sum_nest.h"
 
 /* --- products of velocities --- */
 
@@ -39,6 +40,8 @@ static void add_square(SquareBounds *q, Expr factor, Expr u, Num c) {
   }
   q->left.at[at - 1] = num_add(q->left.at[at - 1], c);
 }
+
+static int squares_dominate(const Eqns *e, Expr l);
 
 /* Adds c*factor*term, at most quadratic in velocities. 0: the term may be negative, or has another form. */
 static int add_quadratic_term(SquareBounds *q, Expr factor, Num c, Expr term) {
@@ -72,6 +75,9 @@ static int add_quadratic_term(SquareBounds *q, Expr factor, Num c, Expr term) {
     return 1;
   }
   ExprOp op = expr_op(g, moving[0]);
+  const SumNest *sum = op == EX_CELL ? expr_sum_nest(g, expr_cell_nest(g, moving[0])) : NULL;
+  if (sum && sum->ncells == 1 && num_is_one(power[0]) && num_sign(c) > 0 && squares_dominate(q->e, sum->shares->value))
+    return 1; /* one turn stands for all */
   if (num_is_one(power[0]) && (op == EX_SUM || op == EX_DEF)) {
     vec_push(e->m->arena, &q->open, ((Part){c, factor, op == EX_DEF ? expr_arg(g, moving[0], 0) : moving[0]}));
     return 1;
@@ -193,13 +199,15 @@ void mass_warn_nonpositive(const Eqns *e) {
 static uint32_t without_inertia(const Eqns *e, const long double *at) {
   uint32_t n = e->n, most = 0;
   SparseElements M = {0};
-  long double *null = ARENA_ARRAY(e->m->arena, long double, n), x;
+  long double *null = ARENA_ARRAY(e->m->arena, long double, n), *x = ARENA_ARRAY(e->m->arena, long double, e->mass.n);
+  Expr *entries = ARENA_ARRAY(e->m->arena, Expr, e->mass.n + 1);
+  for (uint32_t i = 0; i < e->mass.n; i++) entries[i] = e->mass.at[i].e;
+  expr_eval(e->g, entries, e->mass.n, at, x);
   for (uint32_t i = 0; i < e->mass.n; i++) {
     MassEntry m = e->mass.at[i];
-    expr_eval(e->g, &m.e, 1, at, &x);
-    if (!isfinite(x)) return n; /* another message */
-    sparse_put(e->m->arena, &M, m.row, m.col, x);
-    if (m.row != m.col) sparse_put(e->m->arena, &M, m.col, m.row, x);
+    if (!isfinite(x[i])) return n; /* another message */
+    sparse_put(e->m->arena, &M, m.row, m.col, x[i]);
+    if (m.row != m.col) sparse_put(e->m->arena, &M, m.col, m.row, x[i]);
   }
   if (sparse_solve(e->m->arena, n, &M, NULL, 1e-15L, null) == n) return n;
   for (uint32_t i = 1; i < n; i++)

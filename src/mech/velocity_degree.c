@@ -2,6 +2,7 @@
 #include "mech/velocity_degree.h"
 
 #include "sym/diff.h"
+#include "sym/sum_nest.h"
 
 /* Degree of x from the map, which keeps degree + 1: 0 is no entry. */
 static uint8_t kept(const ExprMap *degrees, Expr x) { return (uint8_t)(expr_map_get(degrees, x) - 1); }
@@ -27,10 +28,12 @@ static uint8_t of_product(const ExprGraph *g, Expr x, const ExprMap *degrees) {
   return (uint8_t)sum;
 }
 
-static uint8_t of_node(const ExprGraph *g, Expr x, const ExprMap *degrees) {
+static uint8_t of_node(ExprGraph *g, Arena *arena, Expr x, const ExprMap *degrees) {
   ExprOp op = expr_op(g, x);
+  const SumNest *s = op == EX_CELL ? expr_sum_nest(g, expr_cell_nest(g, x)) : NULL;
   if (!has_velocities(g, x)) return 0;
   if (op == EX_SYM) return 1;
+  if (s && s->ncells == 1) return velocity_degree(g, arena, s->shares->value);
   if (op == EX_DEF) return kept(degrees, expr_arg(g, x, 0));
   return op == EX_SUM ? of_sum(g, x, degrees) : op == EX_PROD ? of_product(g, x, degrees) : NO_DEGREE;
 }
@@ -38,7 +41,7 @@ static uint8_t of_node(const ExprGraph *g, Expr x, const ExprMap *degrees) {
 uint8_t velocity_degree(ExprGraph *g, Arena *arena, Expr x) {
   ExprMap degrees = expr_map(arena);
   ExprList all = expr_topo(g, &x, 1);
-  for (uint32_t i = 0; i < all.n; i++) expr_map_set(&degrees, all.at[i], of_node(g, all.at[i], &degrees) + 1u);
+  for (uint32_t i = 0; i < all.n; i++) expr_map_set(&degrees, all.at[i], of_node(g, arena, all.at[i], &degrees) + 1u);
   return kept(&degrees, x);
 }
 

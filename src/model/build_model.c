@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "model/builder.h"
+#include "sym/sum_nest.h"
 
 /* --- energies, forces, flows, expectations --- */
 
@@ -434,12 +435,17 @@ static void find_units(Builder *b) {
   else b->energy = b->dim_of.at[m->energy_sym] = dim_unknown(b->dims, NULL);
 }
 
+static uint8_t degree_as_written(const Model *m, Expr e);
+
 /* Degree in velocities of a node, from the degrees of its arguments: 0, 1, or 2 for anything nonlinear. */
-static uint8_t degree_of(const ExprGraph *g, Expr x, const ExprMap *degrees) {
+static uint8_t degree_of(const Model *m, Expr x, const ExprMap *degrees) {
+  const ExprGraph *g = m->g;
   uint32_t degree = 0;
   ExprOp op = expr_op(g, x);
   if (op == EX_SYM) return expr_sym_of(g, x)->kind == SYM_VEL;
   if (op == EX_DEF) return (uint8_t)expr_map_get(degrees, expr_arg(g, x, 0));
+  if (op == EX_NEST) return 0;
+  if (op == EX_CELL) return degree_as_written(m, expr_sum_nest(g, expr_cell_nest(g, x))->shares->value);
   if (op != EX_SUM && op != EX_PROD) {
     for (uint32_t i = 0; i < expr_nargs(g, x); i++)
       if (expr_map_get(degrees, expr_arg(g, x, i))) return 2;
@@ -454,18 +460,21 @@ static uint8_t degree_of(const ExprGraph *g, Expr x, const ExprMap *degrees) {
   return degree > 2 ? 2 : (uint8_t)degree;
 }
 
-/* 1 if L contains velocities and is linear in them as written. Creates no node, as nodes are numbered in text order. */
-static int is_first_order(const Model *m) {
-  if (m->hamiltonian) return 1;
-  if (!m->coords.n || !m->lagrangian || !(expr_kinds(m->g, m->lagrangian) & 1u << SYM_VEL)) return 0;
+/* Degree of an expression in velocities. Creates no node, as nodes are numbered in text order. */
+static uint8_t degree_as_written(const Model *m, Expr e) {
   ExprMap degrees = expr_map(m->arena);
-  ExprList l = expr_topo(m->g, &m->lagrangian, 1);
+  ExprList l = expr_topo(m->g, &e, 1);
   for (uint32_t i = 0; i < l.n; i++) {
     if (!(expr_kinds(m->g, l.at[i]) & 1u << SYM_VEL)) continue;
-    uint8_t degree = degree_of(m->g, l.at[i], &degrees);
+    uint8_t degree = degree_of(m, l.at[i], &degrees);
     if (degree) expr_map_set(&degrees, l.at[i], degree);
   }
-  return expr_map_get(&degrees, m->lagrangian) == 1;
+  return (uint8_t)expr_map_get(&degrees, e);
+}
+
+/* 1 if L contains velocities and is linear in them as written. */
+static int is_first_order(const Model *m) {
+  return m->hamiltonian || (m->coords.n && m->lagrangian && degree_as_written(m, m->lagrangian) == 1);
 }
 
 /* Builds everything but the scene. first_order: coordinates become states. */

@@ -300,11 +300,12 @@ typedef struct {
   int guessed;     /* the text has no `draw` */
 } Scene;
 
-/* A sum over pairs; beside: its outer terms have more than the inner sum. */
+/* A sum that is not written out. beside: its outer terms have more than the inner sum; sampled: the self-check takes a
+ * sample of its turns. */
 typedef struct {
   AstId outer;
-  int beside;
-} PairSum;
+  int beside, sampled;
+} QuantifiedSum;
 
 typedef struct {
   const Ast *ast;
@@ -351,7 +352,7 @@ typedef struct {
   VEC(Output) observes;
   Scene scene;
   VEC(FoundUnit) found;    /* inferred units of names declared without one */
-  VEC(PairSum) sums; /* sums over pairs that are not written out */
+  VEC(QuantifiedSum) sums;
   ExprMap written; /* nodes that may jump (comparisons, sign, tan, atan2) -> AstId where the text writes them */
   Measures asked_measures; /* of the command line */
   int measured_outputs;    /* 1: they added outputs to the scene's */

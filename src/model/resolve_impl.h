@@ -152,6 +152,9 @@ int whole_number(Builder *b, const Value *v, AstId id, int64_t *out);
 int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi);
 int quantified_next(Eval *ev, Value *v);
 
+/* Whether the name of an index stands for its symbol there, as all turns have one body. */
+int quantified_counts(const Eval *ev, const AstExpr *name);
+
 /* `sum` and `product`: loop_begin evaluates the range and starts a loop (0: empty or wrong range, the value is set);
  * loop_next appends the body's value as a term (1: next index; 0: end, the value is set). */
 int loop_begin(Eval *ev, AstId id);

@@ -2,6 +2,7 @@
  * families, components. */
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
+#include "sym/sum_nest.h"
 
 const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const char *declare) {
   int ambiguous;
@@ -177,6 +178,7 @@ static const IndexVar *find_index(const Eval *ev, Name name) {
 Value name_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const IndexVar *index = find_index(ev, x->name);
+  if (index && quantified_counts(ev, x)) return a_value(expr_named_symbol(b->g, x->name), DIM_NONE, 1);
   if (index) return a_value(expr_int(b->g, index->at), DIM_NONE, 1);
   for (uint32_t i = 0; i < b->nbound && ev->in_statement; i++)
     if (b->bound[i].name == x->name)

@@ -149,7 +149,9 @@ static int choose_state(Check *c, int attempt, Real *free) {
   for (uint32_t i = 0; i < m->states.n; i++) c->zdd[i] = check_random(c, -1, 1);
   if (!check_run(c, u->inputs, (Real *const[]){c->signal})) return 0;
   for (uint32_t i = 0; i < m->inputs.n; i++) c->signal[i] += check_random(c, -0.5L, 0.5L);
-  for (uint32_t i = 0; i < u->contacts.n; i++) c->signal[u->contacts.at[i].input] = uniform(c) < 0.5L;
+  /* of many contacts, as of pairs, no more than a position can close */
+  Real share = u->contacts.n > c->n / 2 ? 0.25L * c->n / u->contacts.n : 0.5L;
+  for (uint32_t i = 0; i < u->contacts.n; i++) c->signal[u->contacts.at[i].input] = uniform(c) < share;
   project_rotations(c);
   if (!switch_sides(c, free)) return 0;
   Real before = largest(c->q, c->n);

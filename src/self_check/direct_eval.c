@@ -102,7 +102,7 @@ static int is_sampled(const DirectEval *t, const Frame *f, AstId id, int *beside
   const TextLoop *around = f->loops.n ? &f->loops.at[f->loops.n - 1] : NULL;
   *beside = *none = 0;
   for (uint32_t k = 0; t->samples && k < t->m->sums.n; k++) {
-    if (t->m->sums.at[k].outer != id) continue;
+    if (t->m->sums.at[k].outer != id || !t->m->sums.at[k].sampled) continue;
     *beside = t->m->sums.at[k].beside;
     return 1;
   }

@@ -166,7 +166,7 @@ static int64_t column_of(ModelSeries *w, const Ins *i) {
     case ARR_STEP:
     case ARR_ORDER:
     case ARR_PER_ORDER:
-    case ARR_UP: case ARR_CELL: case ARR_OUTER: case ARR_COUNT: break;
+    case ARR_UP: case ARR_CELL: case ARR_OUTER: case ARR_INDEX: case ARR_COUNT: break;
   }
   return -1;
 }

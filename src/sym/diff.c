@@ -6,6 +6,7 @@
 
 #include "base/strbuf.h"
 #include "sym/expr_impl.h"
+#include "sym/sum_diff.h"
 #include "sym/sum_nest.h"
 
 /* The partial derivative of node e with respect to its argument i (pairs: the i-th term or base). */
@@ -65,64 +66,37 @@ static Expr partial_atan2(ExprGraph *g, Expr y, Expr x, uint32_t i) {
 
 /* --- quantified sums --- */
 
-/* Whether the nest of the cell has one sum, whose derivatives are a nest again. */
-static int is_only_cell(const ExprGraph *g, Expr cell) {
-  const SumNest *s = expr_sum_nest(g, expr_cell_nest(g, cell));
-  return s->nshares == 1 && !s->shares->at.by_row && !s->shares->at.by_turn;
-}
-
-/* Makes the nest of the derivatives of the only sum of nest `number`, one cell for each argument. */
-static void make_gradient(ExprGraph *g, uint32_t number) {
+/* Derivatives of the shares of a nest by its reads: SumNest.slopes. */
+static void make_slopes(ExprGraph *g, Expr cell) {
+  uint32_t number = expr_nest_number(g, expr_cell_nest(g, cell));
   SumNest s = g->nests.at[number - 1];
-  if (s.gradient) return;
+  if (s.slopes) return;
   SymId *syms = ARENA_ARRAY(g->arena, SymId, s.nreads + 1);
-  Expr *d = ARENA_ARRAY(g->arena, Expr, s.nreads + 1);
-  NestShare *shares = ARENA_ARRAY(g->arena, NestShare, s.nreads + 1);
+  Expr *d = ARENA_ARRAY(g->arena, Expr, (size_t)s.nreads * s.nshares + 1);
   for (uint32_t k = 0; k < s.nreads; k++) syms[k] = s.reads[k].symbol;
-  expr_gradient(g, s.shares->value, syms, s.nreads, d);
-  s.shares = shares;
-  s.nshares = 0;
-  for (uint32_t k = 0; k < s.nreads; k++)
-    if (d[k] != g->zero) shares[s.nshares++] = (NestShare){d[k], s.reads[k].at};
-  vec_push(g->arena, &g->nests, s);
-  g->nests.at[number - 1].gradient = g->nests.n;
+  for (uint32_t n = 0; n < s.nshares; n++)
+    expr_gradient(g, s.shares[n].value, syms, s.nreads, d + (size_t)n * s.nreads);
+  g->nests.at[number - 1].slopes = d;
 }
 
-/* Makes the derivatives of sums below the roots; cells of nests with several sums are written out. */
-static void prepare_sums(ExprGraph *g, const Expr *roots, uint32_t n, Expr *out) {
+/* Makes the derivatives of sums below the roots; cells that would have too many are written out. */
+static void prepare_sums(ExprGraph *g, const Expr *roots, uint32_t n, int forward, Expr *out) {
   VEC(Expr) several = {0};
   ExprList l = g->nests.n ? expr_topo(g, roots, n) : (ExprList){0};
   for (uint32_t k = 0; k < l.n; k++) {
     if (expr_op(g, l.at[k]) != EX_CELL) continue;
-    if (is_only_cell(g, l.at[k])) make_gradient(g, expr_nest_number(g, expr_cell_nest(g, l.at[k])));
-    else vec_push(g->arena, &several, l.at[k]);
+    make_slopes(g, l.at[k]);
+    if (!expr_prepare_sum(g, l.at[k], forward)) vec_push(g->arena, &several, l.at[k]);
   }
-  g->writes_sums_out |= several.n > 0;
+  for (uint32_t k = 0; k < several.n; k++)
+    g->writes_sums_out |= expr_sum_nest(g, expr_cell_nest(g, several.at[k]))->sampled;
   expr_write_out(g, roots, n, several.at, several.n, out);
-}
-
-/* Whether a share may add to cell k: with steps, if they meet it. */
-static int may_add(const SumNest *s, int64_t k) {
-  for (uint32_t n = 0; n < s->nshares; n++) {
-    const Subscript *at = &s->shares[n].at;
-    int64_t gap = k - at->first, step = subscript_step(at);
-    if (step ? gap % step == 0 : gap == 0) return 1;
-  }
-  return 0;
-}
-
-/* Partial derivative of a cell, the only one of its nest, by argument i of the nest. */
-static Expr cell_partial(ExprGraph *g, Expr cell, uint32_t i) {
-  Expr nest = expr_cell_nest(g, cell);
-  uint32_t gradient = expr_sum_nest(g, nest)->gradient;
-  return may_add(&g->nests.at[gradient - 1], i) ? expr_twin_cell(g, nest, gradient, i) : g->zero;
 }
 
 static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
   Expr a = expr_arg(g, e, 0), b = expr_arg(g, e, 1);
   switch (expr_op(g, e)) {
     case EX_POW: return partial_pow(g, e, a, b, i);
-    case EX_CELL: return cell_partial(g, e, i);
     case EX_ATAN2: return partial_atan2(g, a, b, i);
     case EX_HYPOT: return expr_div(g, i == 0 ? a : b, e);
     case EX_NUM:
@@ -133,6 +107,7 @@ static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
     case EX_DEF:
     case EX_SUM:
     case EX_NEST:
+    case EX_CELL: /* expr_sum_partials */
     case EX_PROD: EX_FUNCTION_CASES
     case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_LT: case EX_LE:
     case EX_EQ: case EX_NOT: case EX_AND: case EX_OR: case EX_COUNT: break;
@@ -148,15 +123,13 @@ static int is_log_of_size(ExprGraph *g, Expr e) {
 /* Number of arguments of e that are nodes to differentiate; coefficients and exponents do not count. */
 static uint32_t inputs(ExprGraph *g, Expr e) {
   ExprOp op = expr_op(g, e);
-  if (op == EX_NEST) return 0; /* its cells differentiate by its arguments */
-  if (op == EX_CELL) return expr_sum_args(g, expr_cell_nest(g, e));
+  if (op == EX_NEST || op == EX_CELL) return 0; /* cells differentiate by the arguments of their nest */
   return op == EX_SUM || op == EX_PROD ? expr_pairs(g, e, op) : expr_nargs(g, e);
 }
 
 static Expr input(ExprGraph *g, Expr e, uint32_t i) {
   ExprOp op = expr_op(g, e);
   if (is_log_of_size(g, e)) return expr_arg(g, expr_arg(g, e, 0), 0);
-  if (op == EX_CELL) return expr_sum_arg(g, expr_cell_nest(g, e), i);
   return expr_arg(g, e, op == EX_SUM || op == EX_PROD ? 2 * i : i);
 }
 
@@ -246,13 +219,33 @@ typedef struct {
   const Expr *at;
 } Seeds;
 
+/* Terms of the tangent of a cell: of the only sum, its partial derivatives times rates; of several, a cell again.
+ * rates: NEST -> the nest of its tangents, or itself where these are 0. */
+static void cell_terms(ExprGraph *g, Expr cell, const ExprMap *dot, ExprMap *rates, Terms *terms) {
+  Expr nest = expr_cell_nest(g, cell), rate = expr_map_get(rates, nest);
+  if (expr_sum_nest(g, nest)->ncells > 1) {
+    if (!rate) rate = expr_sum_rates(g, nest, dot);
+    expr_map_set(rates, nest, rate ? rate : nest);
+    if (rate && rate != nest) vec_push(g->arena, terms, expr_cell_of(g, rate, expr_cell_number(g, cell)));
+    return;
+  }
+  SumPartials p = expr_sum_partials(g, cell, dot);
+  for (uint32_t i = 0; i < p.n; i++) {
+    Expr d = expr_map_get(dot, expr_sum_arg(g, nest, p.at[i].arg));
+    if (!d || d == g->zero) continue;
+    Expr term = times_chosen(g, p.at[i].value, d, NESTED_CHOICES);
+    push_term(g, terms, term);
+  }
+}
+
 static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, const char *suffix, ExprMap *known,
                           Expr *out) {
   Expr *roots = ARENA_ARRAY(g->arena, Expr, n + 1);
-  prepare_sums(g, of, n, roots);
+  prepare_sums(g, of, n, 1, roots);
   ExprList l = expr_topo_until(g, roots, n, known);
   ExprMap *dot = &g->work; /* node -> its tangent; absent: zero */
   expr_map_clear(dot);
+  ExprMap rates = expr_map(g->arena);
   Terms terms = {0};
   for (uint32_t k = 0; k < l.n; k++) {
     Expr e = l.at[k];
@@ -281,6 +274,7 @@ static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, 
       Expr term = times_chosen(g, p, d, NESTED_CHOICES);
       push_term(g, &terms, term);
     }
+    if (expr_op(g, e) == EX_CELL) cell_terms(g, e, dot, &rates, &terms);
     int definition = expr_op(g, e) == EX_DEF;
     if (!terms.n) {
       if (known && definition) expr_map_set(known, e, g->zero);
@@ -352,7 +346,7 @@ static int is_wanted(const Symbol *s, const void *data) {
 
 /* Reverse sweep: adjoints of all nodes of e that contain a wanted symbol; *l: the nodes of e. */
 static Adjoints sweep(ExprGraph *g, Expr e, const Wanted *w, ExprList *l) {
-  prepare_sums(g, &e, 1, &e);
+  prepare_sums(g, &e, 1, 0, &e);
   *l = expr_topo(g, &e, 1);
   ExprMap *live = &g->live;
   expr_mark_containing(g, *l, is_wanted, w, live);
@@ -367,6 +361,11 @@ static Adjoints sweep(ExprGraph *g, Expr e, const Wanted *w, ExprList *l) {
     Expr bar = adjoint_of(&a, x);
     if (bar == g->zero) continue;
     if (expr_op(g, x) == EX_DEF) bar = name_long_expr(g, expr_def_name(g, x), bar);
+    SumPartials d = expr_op(g, x) == EX_CELL ? expr_sum_partials(g, x, live) : (SumPartials){0};
+    for (uint32_t i = 0; i < d.n; i++) {
+      Expr arg = expr_sum_arg(g, expr_cell_nest(g, x), d.at[i].arg);
+      if (expr_map_get(live, arg)) contribute(&a, arg, times_chosen(g, d.at[i].value, bar, NESTED_CHOICES));
+    }
     for (uint32_t i = 0; i < inputs(g, x); i++) {
       if (!expr_map_get(live, input(g, x, i))) continue;
       Choice c;

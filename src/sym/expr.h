@@ -92,10 +92,12 @@ typedef struct {
   LoopRange range;
   const NestRead *reads;
   const NestShare *shares;
-  uint32_t nreads, nshares, nargs;
+  uint32_t nreads, nshares, nargs, ncells;
+  int sampled;       /* the self-check takes a sample of the turns: there are many more than arguments */
   Name i, j;         /* indices in the text: i is i0 in row 0, j is j0 in turn 0 */
   int64_t i0, j0;
   int64_t row, turn; /* the turn whose arguments are the body's symbols themselves */
+  const Expr *slopes; /* [share*nreads + read] derivatives of the shares; NULL: not made yet */
   uint32_t gradient; /* nest of the partial derivatives; 0: not made yet */
 } SumNest;
 
@@ -206,6 +208,9 @@ Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const c
 
 /* e with n symbols replaced: syms[i] becomes with[i]. */
 Expr expr_replace(ExprGraph *g, Expr e, const SymId *syms, const Expr *with, uint32_t n);
+
+/* The same for the nodes of a map, to which it adds rewritten ones. */
+Expr expr_replace_by(ExprGraph *g, Expr e, ExprMap *m);
 
 /* out[i] = roots[i] with each nodes[k] replaced by with[k], all roots in one pass. */
 void expr_replace_nodes(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *nodes, const Expr *with,

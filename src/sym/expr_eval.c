@@ -122,7 +122,7 @@ static NestStep *compile_nest(ExprGraph *g, Arena *a, Expr e) {
   n->body = eval_tape(g, values, s->nshares);
   n->symbols = ARENA_ARRAY(a, long double, expr_symbol_count(g) + 1);
   n->share = ARENA_ARRAY(a, long double, s->nshares + 1);
-  n->ncells = s->nargs + 1;
+  n->ncells = s->ncells;
   n->cell = ARENA_ARRAY(a, long double, n->ncells);
   for (uint32_t i = 0; i < n->body->n; i++) {
     if (n->body->step[i].op != EX_SYM) continue;

@@ -45,6 +45,8 @@ struct ExprGraph {
   VEC(SumNest) nests;        /* number k at [k - 1] */
   Expr twin_of, twin;        /* the last nest that expr_twin_cell was asked for, and its answer */
   uint32_t twin_number;
+  Expr *by_arg;              /* [nby_arg] 0 between calls of expr_sum_partials */
+  uint32_t nby_arg;
   VEC(SymId) index_names;    /* symbols with names such as r[i].x, for the printer */
   VEC(Expr) terms;           /* scratch of sums written out */
   int writes_sums_out;       /* one was */

@@ -24,7 +24,6 @@ static Expr drop_vanishing_sums(ExprGraph *g, Expr e, const NormalLimits *limits
 
 /* One of 16 states in the domain decides; few states may lie there, as of roots of several differences. */
 int prove_nonzero(ExprGraph *g, Expr e) {
-  if (!expr_open_sums(g, &e)) return 0;
   long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
   BoundTape *tape = bound_tape(g, &e, 1);
   uint32_t most = 2 * STATES + MOST_WORK / (e + 1);

@@ -235,7 +235,7 @@ static NestBounds *nest_bounds(ExprGraph *g, Expr nest) {
   NestBounds *n = ARENA_NEW(a, NestBounds);
   uint32_t symbols = expr_symbol_count(g) + 1;
   *n = (NestBounds){s, bound_tape(g, values, s->nshares), ARENA_ARRAY(a, Real, symbols), ARENA_ARRAY(a, Real, symbols),
-                    ARENA_ARRAY(a, Real, s->nargs + 1), ARENA_ARRAY(a, Real, s->nargs + 1)};
+                    ARENA_ARRAY(a, Real, s->ncells), ARENA_ARRAY(a, Real, s->ncells)};
   return n;
 }
 
@@ -255,7 +255,7 @@ static void run_nest_bounds(const BoundTape *t, NestBounds *n, Expr nest, const 
     n->symbols[k] = symbols[k];
     n->errors[k] = errors ? errors[k] : 0;
   }
-  for (uint32_t c = 0; c <= s->nargs; c++) n->value[c] = n->bound[c] = 0;
+  for (uint32_t c = 0; c < s->ncells; c++) n->value[c] = n->bound[c] = 0;
   for (int64_t i = 0; i < s->range.rows; i++)
     for (int64_t j = loop_from(&s->range, i); j < loop_to(&s->range, i); j++) {
       for (uint32_t k = 0; k < s->nreads; k++) {

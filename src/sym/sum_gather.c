@@ -49,7 +49,7 @@ static int stays(const Gather *x, Expr like, int turns) {
 /* Whether the factors of a share's cells are alike in all turns; each cell is visited once. */
 static int is_uniform(const Gather *x, const NestShare *share, Expr like) {
   const LoopRange *r = &x->s->range;
-  unsigned char *seen = ARENA_ARRAY(x->g->arena, unsigned char, x->s->nargs + 1);
+  unsigned char *seen = ARENA_ARRAY(x->g->arena, unsigned char, x->s->ncells);
   if ((!share->at.by_row && !stays(x, like, 0)) || (!share->at.by_turn && !stays(x, like, 1))) return 0;
   for (int64_t k = 0; k < r->rows; k++) {
     int64_t i = r->rows - 1 - k, end = share->at.by_turn ? loop_to(r, i) : loop_from(r, i) + (loop_turns(r, i) > 0);
@@ -69,8 +69,9 @@ static Expr whole_body(Gather *x) {
   Expr body = g->zero;
   for (uint32_t k = 0; k < s.nreads; k++) {
     x->syms[k] = s.reads[k].symbol;
-    if (expr_sum_arg(g, x->nest, (uint32_t)subscript_at(&s.reads[k].at, s.row, s.turn)) !=
-        expr_symbol(g, s.reads[k].symbol)->node)
+    if (expr_symbol(g, s.reads[k].symbol)->kind != SYM_LOCAL &&
+        expr_sum_arg(g, x->nest, (uint32_t)subscript_at(&s.reads[k].at, s.row, s.turn)) !=
+            expr_symbol(g, s.reads[k].symbol)->node)
       return 0;
   }
   for (uint32_t k = 0; k < s.nshares; k++) {
@@ -91,10 +92,11 @@ Expr expr_gather_sum(ExprGraph *g, Expr e, Expr *rest) {
   for (uint32_t i = 0; i < n; i++) {
     Expr term = expr_pair(g, e, EX_SUM, i, &c), cell = cell_of_term(g, term, &factor);
     if (cell && !x.nest) {
+      if (expr_sum_nest(g, expr_cell_nest(g, cell))->ncells > expr_sum_args(g, expr_cell_nest(g, cell)) + 1) return 0;
       x.nest = expr_cell_nest(g, cell);
       x.s = expr_sum_nest(g, x.nest);
-      x.w = ARENA_ARRAY(g->arena, Expr, x.s->nargs + 1);
-      for (uint32_t k = 0; k <= x.s->nargs; k++) x.w[k] = g->zero;
+      x.w = ARENA_ARRAY(g->arena, Expr, x.s->ncells);
+      for (uint32_t k = 0; k < x.s->ncells; k++) x.w[k] = g->zero;
     }
     if (cell && expr_cell_nest(g, cell) == x.nest) {
       Expr *w = &x.w[expr_cell_number(g, cell)], scaled = expr_scale(g, c, factor);

@@ -5,31 +5,88 @@
 
 /* --- construction and access --- */
 
-static Expr cell_of(ExprGraph *g, Expr nest, uint32_t cell) {
+Expr expr_cell_of(ExprGraph *g, Expr nest, uint32_t cell) {
   Expr both[2] = {nest, expr_int(g, cell)};
   return expr_make(g, EX_CELL, both, 2);
 }
 
+static int same_subscript(const Subscript *x, const Subscript *y) {
+  return x->first == y->first && x->by_row == y->by_row && x->by_turn == y->by_turn;
+}
+
+static int same_lists(const SumNest *x, const SumNest *y) {
+  int same = x->nreads == y->nreads && x->nshares == y->nshares;
+  for (uint32_t k = 0; same && k < x->nreads; k++)
+    same = x->reads[k].symbol == y->reads[k].symbol && same_subscript(&x->reads[k].at, &y->reads[k].at);
+  for (uint32_t k = 0; same && k < x->nshares; k++)
+    same = x->shares[k].value == y->shares[k].value && same_subscript(&x->shares[k].at, &y->shares[k].at);
+  return same;
+}
+
+static int is_same(const SumNest *x, const SumNest *y) {
+  const LoopRange *r = &x->range, *o = &y->range;
+  return r->rows == o->rows && r->skew == o->skew && r->turns == o->turns && r->more == o->more &&
+         x->nargs == y->nargs && x->ncells == y->ncells && x->i0 == y->i0 && x->j0 == y->j0 && x->i == y->i &&
+         x->j == y->j && x->row == y->row && x->turn == y->turn && same_lists(x, y);
+}
+
+/* Reads of symbols that no share contains are left out. */
+static void drop_reads(ExprGraph *g, SumNest *s) {
+  Expr *values = ARENA_ARRAY(g->arena, Expr, s->nshares + 1);
+  NestRead *kept = ARENA_ARRAY(g->arena, NestRead, s->nreads + 1);
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < s->nshares; k++) values[k] = s->shares[k].value;
+  ExprList l = expr_topo(g, values, s->nshares);
+  for (uint32_t r = 0; r < s->nreads; r++) {
+    Expr symbol = expr_symbol(g, s->reads[r].symbol)->node;
+    uint32_t k = 0;
+    while (k < l.n && l.at[k] != symbol) k++;
+    if (k < l.n) kept[n++] = s->reads[r];
+  }
+  s->reads = kept;
+  s->nreads = n;
+}
+
+uint32_t expr_sum_number(ExprGraph *g, SumNest *s) {
+  drop_reads(g, s);
+  for (uint32_t k = 0; k < g->nests.n; k++)
+    if (is_same(s, &g->nests.at[k])) return k + 1;
+  s->gradient = 0;
+  vec_push(g->arena, &g->nests, *s);
+  return g->nests.n;
+}
+
+/* The nest over the arguments that are read; others are 0. */
 static Expr nest_of(ExprGraph *g, uint32_t number, const Expr *args, uint32_t n) {
   Expr *all = ARENA_ARRAY(g->arena, Expr, n + 1);
+  const SumNest *s = &g->nests.at[number - 1];
   all[0] = expr_int(g, number);
-  if (n) memcpy(all + 1, args, n * sizeof *args);
+  for (uint32_t k = 0; k < n; k++) all[k + 1] = g->zero;
+  for (uint32_t r = 0; r < s->nreads; r++) {
+    int64_t lo, hi, step = subscript_step(&s->reads[r].at);
+    if (!loop_extent(&s->range, &s->reads[r].at, &lo, &hi)) continue;
+    for (int64_t k = lo; k <= hi; k += step ? step : 1) all[k + 1] = args[k];
+  }
   return expr_make(g, EX_NEST, all, n + 1);
 }
 
 Expr expr_sum_cell(ExprGraph *g, const SumNest *s, const Expr *args, uint32_t cell) {
-  vec_push(g->arena, &g->nests, *s);
-  Expr nest = nest_of(g, g->nests.n, args, s->nargs);
-  return cell_of(g, nest, cell);
+  SumNest own = *s;
+  uint32_t number = expr_sum_number(g, &own);
+  Expr nest = nest_of(g, number, args, own.nargs);
+  return expr_cell_of(g, nest, cell);
 }
 
 Expr expr_twin_cell(ExprGraph *g, Expr nest, uint32_t number, uint32_t cell) {
   if (g->twin_of != nest || g->twin_number != number) {
-    g->twin = nest_of(g, number, g->args.at + g->nodes.at[nest].payload + 1, expr_sum_args(g, nest));
+    uint32_t n = expr_sum_args(g, nest);
+    Expr *args = ARENA_ARRAY(g->arena, Expr, n + 1);
+    memcpy(args, g->args.at + g->nodes.at[nest].payload + 1, n * sizeof *args);
+    g->twin = nest_of(g, number, args, n);
     g->twin_of = nest;
     g->twin_number = number;
   }
-  return cell_of(g, g->twin, cell);
+  return expr_cell_of(g, g->twin, cell);
 }
 
 uint32_t expr_nest_number(const ExprGraph *g, Expr nest) {
@@ -47,6 +104,18 @@ uint64_t expr_sum_turns(const ExprGraph *g, Expr nest) {
   uint64_t n = 0;
   for (uint32_t i = 0; i < r->rows; i++) n += (uint64_t)loop_turns(r, i);
   return n;
+}
+
+ExprList expr_topo_with_bodies(ExprGraph *g, const Expr *roots, uint32_t n) {
+  VEC(Expr) all = {0};
+  ExprList l = expr_topo(g, roots, n);
+  if (!g->nests.n) return l;
+  for (uint32_t k = 0; k < n; k++) vec_push(g->arena, &all, roots[k]);
+  for (uint32_t k = 0; k < l.n; k++) {
+    const SumNest *s = expr_op(g, l.at[k]) == EX_NEST ? expr_sum_nest(g, l.at[k]) : NULL;
+    for (uint32_t i = 0; s && i < s->nshares; i++) vec_push(g->arena, &all, s->shares[i].value);
+  }
+  return expr_topo(g, all.at, all.n);
 }
 
 /* --- written out --- */
@@ -95,7 +164,7 @@ void expr_expand_sums(ExprGraph *g, const Expr *roots, uint32_t n, Expr *out) {
 }
 
 int expr_open_sums(ExprGraph *g, Expr *e) {
-  enum { MOST_TURNS = 50000 };
+  enum { MOST_TURNS = 8000 };
   uint64_t turns = 0;
   ExprList l = g->nests.n ? expr_topo_to_sums(g, e, 1) : (ExprList){0};
   for (uint32_t k = 0; k < l.n; k++)

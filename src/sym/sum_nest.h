@@ -11,7 +11,11 @@
 /* Sum number `cell` of the nest over the arguments args[s->nargs]. */
 Expr expr_sum_cell(ExprGraph *g, const SumNest *s, const Expr *args, uint32_t cell);
 
-/* Sum number `cell` of nest `number` over the arguments of `nest`. */
+/* Number of the nest of these sums; reads that no share needs are dropped. */
+uint32_t expr_sum_number(ExprGraph *g, SumNest *s);
+
+/* Sum number `cell` of a NEST; of nest `number` over the arguments of `nest`. */
+Expr expr_cell_of(ExprGraph *g, Expr nest, uint32_t cell);
 Expr expr_twin_cell(ExprGraph *g, Expr nest, uint32_t number, uint32_t cell);
 uint32_t expr_nest_number(const ExprGraph *g, Expr nest);
 
@@ -24,6 +28,9 @@ uint32_t expr_cell_number(const ExprGraph *g, Expr cell);
 
 /* Number of turns of all rows. */
 uint64_t expr_sum_turns(const ExprGraph *g, Expr nest);
+
+/* The nodes below the roots, and those of the bodies of their sums, which stand in the symbols of one turn. */
+ExprList expr_topo_with_bodies(ExprGraph *g, const Expr *roots, uint32_t n);
 
 /* out[i] = roots[i] with all cells written out as sums. */
 void expr_expand_sums(ExprGraph *g, const Expr *roots, uint32_t n, Expr *out);
@@ -51,3 +58,6 @@ typedef struct {
   uint32_t n;
 } SumTerms;
 SumTerms expr_sum_terms(ExprGraph *g, Expr cell);
+
+/* The symbol with that text as its name, which stands for a member with a running index. */
+Expr expr_named_symbol(ExprGraph *g, const char *text);

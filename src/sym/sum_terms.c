@@ -35,8 +35,7 @@ static const char *affine_text(const Reader *r, Subscript x, const Turn *at) {
   return sb_text(&b);
 }
 
-/* The symbol of that name, which stands for a member with a running index. */
-static Expr named_symbol(ExprGraph *g, const char *text) {
+Expr expr_named_symbol(ExprGraph *g, const char *text) {
   Name name = intern(g->names, text);
   for (uint32_t k = 0; k < g->index_names.n; k++)
     if (expr_symbol(g, g->index_names.at[k])->name == name) return expr_symbol(g, g->index_names.at[k])->node;
@@ -50,9 +49,11 @@ static Expr read_symbol(const Reader *r, const NestRead *read, const Turn *at) {
   int64_t arg = subscript_at(&read->at, at->fixed_row ? at->row : 0, at->fixed_turn ? at->turn : 0);
   if (!runs || !read->stem) return expr_sum_arg(r->g, r->nest, (uint32_t)arg);
   const char *first = affine_text(r, read->index[0], at);
+  if (!*read->stem) return expr_named_symbol(r->g, first);
   const char *second = read->nindices == 2 ? affine_text(r, read->index[1], at) : "";
-  return named_symbol(r->g, arena_printf(r->g->arena, "%s[%s%s%s]%s", read->stem, first, *second ? "," : "", second,
-                                         read->tail));
+  const char *comma = *second ? "," : "";
+  const char *text = arena_printf(r->g->arena, "%s[%s%s%s]%s", read->stem, first, comma, second, read->tail);
+  return expr_named_symbol(r->g, text);
 }
 
 static void add_term(Reader *r, const NestShare *x, const Turn *at, Subscript from, Subscript to, uint32_t rows[2]) {

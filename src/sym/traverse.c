@@ -212,6 +212,8 @@ Expr expr_replace(ExprGraph *g, Expr e, const SymId *syms, const Expr *with, uin
   return rewrite_one(g, e, &g->work, "");
 }
 
+Expr expr_replace_by(ExprGraph *g, Expr e, ExprMap *m) { return m->n ? rewrite_one(g, e, m, "") : e; }
+
 void expr_replace_nodes(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *nodes, const Expr *with,
                         uint32_t nnodes, Expr *out) {
   expr_map_clear(&g->work);

@@ -33,12 +33,21 @@ typedef struct {
   SymId *q;
 } LinearPower;
 
+/* Whether it has forces of pairs with velocities, whose power is not linear in them. */
+static int has_moving_sums(ExprGraph *g, Expr power) {
+  ExprList l = expr_topo_to_sums(g, &power, 1);
+  for (uint32_t k = 0; k < l.n; k++)
+    if (expr_op(g, l.at[k]) == EX_CELL && expr_kinds(g, l.at[k]) & 1u << SYM_VEL) return 1;
+  return 0;
+}
+
 /* Whether the power has that form: velocities enter it linearly, and nothing but q and t otherwise. */
 static int linear_power(const ProofWork *w, Expr power, LinearPower *to) {
   const unsigned other = 1u << SYM_INPUT | 1u << SYM_MULTIPLIER, moving = 1u << SYM_VEL | 1u << SYM_RATE;
   Arena *arena = w->m->arena;
   ExprGraph *g = w->g;
   if (expr_kinds(g, power) & other || expr_contains(g, power, is_no_coordinate, w->m->states.at)) return 0;
+  if (has_moving_sums(g, power)) return 0;
   *to = (LinearPower){ARENA_ARRAY(arena, Expr, w->n + 1), ARENA_ARRAY(arena, SymId, w->n + 1)};
   expr_gradient(g, power, w->v, w->n, to->a);
   to->a[w->n] = noether_at_rest(w, power);

@@ -106,7 +106,7 @@ check "a mistyped option" says 'no help on `--metod`: did you mean `--method`?' 
 check "a mistyped function" says 'no help on `sinn`: did you mean `sin`?' help sinn
 check "nothing near" says 'no help on `xyzzy`; `lagc help` lists the topics' help xyzzy
 m=models/pendulum.lag
-check "a command of other tools leads to what does exist" says 'unknown command `linearize`: `lagc modes MODEL` linearizes about the equilibrium' linearize $m
+check "a command of other tools leads to what does exist" says 'unknown command `eigenvalues`: `lagc modes MODEL` finds the equilibrium' eigenvalues $m
 check "a command for what lagc does not do" says 'unknown command `optimise`: controls are not optimised here; `lagc sweep` scans ranges' optimise $m
 check "a mistyped command" says 'unknown command `rum`: did you mean `run`?' rum $m
 check "no command" says "a command is missing before $m: \`lagc run $m\`" $m
@@ -138,7 +138,7 @@ finds() { # finds ANSWER WORDS...: the answer stands in the first 40 lines
 while IFS='|' read -r words answer; do
   check "help $words" finds "$answer" $words
 done <<'END'
-linearize|lagc modes
+linearize|lagc linearize
 linearisation of my model|--with linear
 eigenfrequencies|lagc modes
 normal modes|lagc modes
@@ -173,14 +173,14 @@ piecewise|if(x > 0, a, b)
 heaviside|if(t > 1, 1, 0)
 modulo|floor(x/n)
 ode45|dop853
-lqr|--with linear
+lqr|lagc linearize
 slope|m*g*s*sin(a)
 inclined plane|m*g*s*sin(a)
 boundary value problem|shooting
 dirac delta|kick
 limit cycle|--skip
 coriolis force|let X
-transfer function|--with linear
+transfer function|lagc linearize
 magnetic field|charged_particle
 degrees of freedom|lagc check
 natural frequency|lagc modes

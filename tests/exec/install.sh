@@ -160,6 +160,13 @@ if git rev-parse --verify -q HEAD >/dev/null 2>&1; then
   check "the same bytes" same
 fi
 
+deb() { # the package unpacked elsewhere runs a model of its gallery
+  "$MAKE" BUILD="$BUILD" PRECISIONS= deb >"$TMP/out" 2>&1 || { cat "$TMP/out"; return 1; }
+  dpkg-deb -f "$BUILD"/lagc_*.deb Depends | grep -q '^libc6' && dpkg-deb -x "$BUILD"/lagc_*.deb "$TMP/deb" &&
+    (unset LAGC LAG_HOME && cd "$TMP" && "$TMP/deb/usr/bin/lagc" run @pendulum --quiet -o deb.csv) && [ -s "$TMP/deb.csv" ] && [ -f "$TMP/deb/usr/lib/python3/dist-packages/lagc.py" ]
+}
+if command -v dpkg-deb >/dev/null 2>&1; then slow check "make deb" deb; fi
+
 shared() {
   "$CC" -shared -Wl,-z,text -Wl,--no-undefined -o "$TMP/liblag.so" -Wl,--whole-archive "$prefix/lib/liblag.a" -Wl,--no-whole-archive -lm
 }

@@ -28,7 +28,7 @@ empty "the README of a folder names each of its .c files" "$(find src runtime -m
     if (text[folder] !~ "[^a-z0-9_]" name "[^a-z0-9_]") print
   }')"
 
-# ---- a course of mechanics, from energy to chaos: each of its topics and systems has models, which the table of models/README.md names
+# ---- a course of mechanics, from energy to chaos: each of its topics and systems has models, which the table of models/README.md names; .ci/site, too
 sed -n '/^## By topic/,/^## Three/p' models/README.md >"$TMP/topics"
 without_model() {
   while IFS='|' read -r topic models; do
@@ -38,41 +38,7 @@ without_model() {
     done
   done
 }
-empty "each topic of the course has its models" "$(without_model <<'END'
-energy is conserved: a ramp with friction on and off|skate_park
-a skater draws in her arms|skater
-elastic and inelastic collisions, momentum|collisions newtons_cradle
-range and height of a throw, energy along the way|projectile projectile_world
-work, power, forces that vary, mass that changes|rocket
-oscillations and three regimes of damping|spring damped_oscillator
-resonance|driven_damped_pendulum motor_pendulum
-moments of inertia, torque, angular momentum|rolling_race rigid_body
-Kepler's laws, speeds and periods of orbits|kepler two_body satellite
-waves on a string|string
-Lagrange's equations: pendulums|pendulum double_pendulum spherical_pendulum
-beads on wires|bead_on_hoop bead_on_cycloid
-bodies on a surface, multipliers|sphere cartesian_pendulum
-Noether's theorem: time, space, rotation, gauge|two_body charged_particle
-phase space, Poisson brackets|sommerfeld standard_map
-canonical transformations, action and angle|delaunay pulled_pendulum
-Hamilton and Jacobi: Kepler's problem, two centres, free fall|delaunay two_centres free_fall
-chaos: neighbouring motions, sections|double_pendulum henon_heiles
-tori that break: gaps among asteroids|asteroid
-tori that break: rings of magnets|storage_ring
-tori that break: magnetic surfaces, a particle in a torus|field_lines guiding_centre
-a strange attractor|lorenz
-geometric phases|foucault hannay_hoop
-molecules|lennard_jones
-planets; stars; three bodies, one of them small|outer_planets pleiades figure_eight cr3bp
-charges in fields, plasma|charged_particle guiding_centre plasma
-methods side by side|pendulum kepler
-solitons, chains that do not forget, edges|toda fput edge_mode
-fast particles, black holes, Mercury|relativistic_particle schwarzschild mercury
-cranks, gears, pulleys|slider_crank gears pulleys
-a car on a road, a ride|quarter_car roller_coaster
-a pile of blocks|block tower
-END
-)"
+empty "each topic of the course has its models" "$(without_model <models/course.txt)"
 
 empty "no line of C above 120 columns" "$(find src runtime tests grammar -name '*.[chl]' -exec awk 'length($0) > 120 { print FILENAME ":" FNR }' {} +)"
 empty "each file of sources begins with a comment" "$(find src runtime -name '*.[ch]' -exec awk 'FNR == 1 && !/^\/\*/ { print FILENAME }' {} +)"

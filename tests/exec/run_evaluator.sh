@@ -15,6 +15,16 @@ functions() {
 }
 check "functions of models/lennard_jones.lag with nests of loops" functions models/lennard_jones.lag -D N=14 --method taylor
 check "nests whose rows are longer than a block" functions models/lennard_jones.lag -D N=80
+# A coefficient 4 i of a loop over i is no power of two, though that of its first turn, 8, is one.
+cat >"$TMP/index.lag" <<'END'
+model index
+const N = 200
+coord x[N]
+kinetic = sum(i in 1..N, x[i]'^2/2)
+potential = sum(i in 1..N, sum(j in 1..i-1, i*(x[i] - x[j])^2/(j + 1))) + sum(i in 1..N, i*x[i]^4)
+scene s { start x[i in 1..N] = 0.001*i; span 0.1 }
+END
+check "numbers that turns of a loop multiply" functions "$TMP/index.lag"
 for model in models/*.lag; do
   case $model in
     */double_pendulum.lag) one_of 2 && check "functions of $model" functions "$model" --method taylor --with linear ;;

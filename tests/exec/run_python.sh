@@ -18,6 +18,21 @@ found() { # lagc is found beside the file, and in $PATH
     printf '#!/bin/sh\nexec "%s" "$@"\n' "$LAGC" >"$TMP/away/bin/lagc" && chmod +x "$TMP/away/bin/lagc" &&
     (unset LAGC && cd "$TMP/away" && PYTHONPATH=$TMP/away/share/lagc/python "$python" -c "import lagc; print(lagc.load('$root/models/spring.lag').run(until=1))")
 }
+wheel() { # pip install runtime/python, without network, in an environment of its own; there without a C compiler, with the digits of a compiled model
+  "$python" -m venv --system-site-packages "$TMP/venv" && PIP_NO_INDEX=1 "$TMP/venv/bin/pip" install -q ./runtime/python && cat >"$TMP/fresh.py" <<'P' &&
+import sys
+import lagc
+assert lagc.__file__.startswith(sys.prefix), lagc.__file__
+evaluated = lagc.load("@double_pendulum")
+r = evaluated.run(until=1)
+compiled = lagc.load("@double_pendulum", compile="always") if len(sys.argv) > 1 else evaluated
+assert evaluated._compiled == (len(sys.argv) > 1) and len(r) == 101 and r.energy_drift < 1e-10, r
+y = [1, 2, 3, 4]
+print(*r.y[-1].tolist(), *evaluated.mass(0, y).ravel().tolist(), *evaluated.jac(0, y).ravel().tolist(), *evaluated.linearize(th1=0.1).A.ravel().tolist())
+P
+    (unset LAGC && cd "$TMP" && CC=/none/cc venv/bin/python fresh.py >evaluated && venv/bin/python fresh.py cc >compiled && cmp evaluated compiled && venv/bin/lagc --version)
+}
+[ -n "${COVERAGE:-}" ] || slow check "a wheel brings compiler, runtime and gallery, and needs no C compiler" wheel
 root=$(pwd)
 check "an installed lagc.py finds its lagc" found
 tap_end

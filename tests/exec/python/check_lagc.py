@@ -136,6 +136,92 @@ ok("values in declared units, [mH]", (b.y[1, 0] == motor.run("lift", L=8, times=
 b = spring.batch("free", x=[1, 2], times=[1], method="gauss(stages=3)", step=0.01)
 ok("a method with options", (b.y[0, 0] == spring.run("free", times=[1], method="gauss(stages=3)", step=0.01).y[0]).all())
 
+# ---- matrices, against the textbook's double pendulum, m = 1 kg, l = 1 m: M = [[2, c], [c, 1]], c = cos(th1 - th2) ----
+def pendulum(y, m1=1.0, m2=1.0, g=9.81):
+    """Mass matrix and bias, from dL/dq and the Christoffel terms."""
+    a, b, va, vb = y
+    c, s = np.cos(a - b), np.sin(a - b)
+    return np.array([[m1 + m2, m2 * c], [m2 * c, m2]]), np.array([m2 * s * vb * vb + (m1 + m2) * g * np.sin(a), -m2 * s * va * va + m2 * g * np.sin(b)])
+
+
+def pendulum_rates(y, **p):
+    M, h = pendulum(y, **p)
+    return np.concatenate([y[2:], -np.linalg.solve(M, h)])
+
+
+def complex_step(f, x):
+    """Derivatives of an analytic function without cancellation (Squire and Trapp 1998), to rounding."""
+    x = np.asarray(x, dtype=float)
+    return np.array([f(x + 1e-30j * e).imag / 1e-30 for e in np.eye(len(x))]).T
+
+
+ys = np.array([[0.3, -0.4, 0.5, 0.6], [2, 1, -3, 0.2]])
+near("mass matrices of two states", double.mass(0, ys), [pendulum(y)[0] for y in ys], 4e-15)
+near("the bias", double.bias(0, ys), [pendulum(y)[1] for y in ys], 4e-14)
+near("inverse dynamics", double.inverse_dynamics(0, ys, [[1, -2], [0.5, 3]]), [pendulum(y)[0] @ a + pendulum(y)[1] for y, a in zip(ys, [[1, -2], [0.5, 3]])], 4e-14)
+J = np.array([complex_step(pendulum_rates, y) for y in ys])
+near("Jacobians", double.jac(0, ys), J, 1e-13)  # some twenty roundings of numbers up to 50
+near("J x", double.jvp(0, ys[0], [1, 2, 3, 4]), J[0] @ [1, 2, 3, 4], 1e-12)
+near("J^T x", double.vjp(0, ys, np.ones((2, 4))), J.sum(axis=1), 1e-12)
+by_p = double.parameter_jacobian(0, ys[0])
+near("derivatives by parameters", by_p[:, [0, 1, 4]], complex_step(lambda p: pendulum_rates(ys[0], m1=p[0], m2=p[1], g=p[2]), [1, 1, 9.81]), 1e-12)
+C, D = double.output_jacobian(0, ys[0])
+c, s = np.cos(ys[0, :2]), np.sin(ys[0, :2])
+near("C of the outputs th1, th2, x2, y2", C[:4], [[1, 0, 0, 0], [0, 1, 0, 0], [c[0], c[1], 0, 0], [s[0], s[1], 0, 0]], 1e-11)  # differences of order 6
+ok("D has a column an input", D.shape == (5, 0))
+near("outputs", double.outputs(0, ys[0])[2:4], [s.sum(), -c.sum()], 1e-15)
+linear = double.linearize("swing", th1=0, th2=0)
+near("a linear system", linear.A, complex_step(pendulum_rates, np.zeros(4)), 1e-14)
+ok("... its names and units", linear.states == ["th1", "th2", "th1'", "th2'"] and linear.outputs[2] == "x2" and linear.units["th1'"] == "rad/s" and linear.values["th1"] == 0, linear)
+near("texts with units", double.linearize("swing", th1="180[deg]", th2=0).A[2, 0], complex_step(pendulum_rates, [np.pi, 0, 0, 0])[2, 0], 1e-13)
+near("sensitivities by a name of its own", spring.sensitivity("k", "free", times=[1.0])["k"]["x"], -np.sin(2) / 4, 1e-9)
+raises("a wrong shape of accelerations", lagc.Error, "not (any, 4)", lambda: double.inverse_dynamics(0, [1, 2], [0, 0]))
+
+# ---- gradients by reverse mode ----
+g = spring.gradient("x", "free", x=0.7, until=1.25, tol=1e-12)  # x = 0.7 cos wt + v0/w sin wt, w = sqrt(k/m)
+want = [np.cos(2.5), np.sin(2.5) / 2, 0.7 * 1.25 * np.sin(2.5), -0.7 * 1.25 * np.sin(2.5) / 4]  # by x, x', m, k
+near("a spring: its closed form", [g.start["x"], g.start["x'"], g.parameters["m"], g.parameters["k"]], want, 1e-10)
+near("... and the value", g.value, 0.7 * np.cos(2.5), 1e-11)
+weight = np.array([[1, -2, 0.5, 3], [0.3, 1, 2, -1], [2, 1, -1, 0.25]])
+times = np.array([0.31, 0.8, 1.3])
+for method in ("rk45", "rk4(step=0.01)", "dop853"):  # rows within steps count as ends of shorter ones, as for tangents
+    tangents = [double.run("swing", times=[t], tangent=True, method=method).tangent for t in times]
+    g = double.gradient(lambda t, y: ((weight * y).sum(), weight), "swing", times=times, method=method)
+    forward = sum(w @ Y for w, Y in zip(weight, tangents))
+    near(f"{method}: the dot product of forward and reverse mode", g.by_start, forward, 1e-12 * np.max(np.abs(forward)))
+for model, scene, out, method, until in (("bouncing_ball", "drop", "y", "dop853", 1.5), ("henon_heiles", None, "x", "verlet4(step=0.02)", 3.01), ("kepler", None, "x", "verlet8(step=0.02)", 1)):
+    m = lagc.load(f"models/{model}.lag")
+    g = m.gradient(out, scene, method=method, until=until)
+    names = [k + "(0)" for k in g.start] + list(g.parameters)
+    r = m.run(scene, times=[until], method=method, sensitivity=names)
+    forward = np.array([r.sensitivity[k][out][0] for k in names])  # outputs are differentiated by differences of order 6
+    near(f"{model}, {method}: starts, events and parameters", [*g.start.values(), *g.parameters.values()], forward, 1e-11 * np.max(np.abs(forward)))
+path = os.path.join(os.environ["TMP"], "drive.lag")
+with open(path, "w") as f:  # an input's formula, parameters that follow others, a start by a parameter: x'' = -4 x + F/2 sin wt, x(0) = 2 x0, F = 2 f
+    f.write("model drive\nparam f = 1.5, F = 2*f, w = 1.5, x0 = 0.2\ncoord x\ninput u = F*sin(w*t)\nlagrangian = x'^2 - 4*x^2\nforce x = u\n"
+            "scene a { start x = 2*x0; span 3 [s]; tolerance 1e-11; output x }\n")
+g = lagc.load(path).gradient("x", until=2)
+drive = lambda f, w, x0: 2 * x0 * np.cos(4) + f * (np.sin(2 * w) - w / 2 * np.sin(4)) / (4 - w * w)
+near("inputs, formulas and starts: closed form", [g.parameters[k] for k in ("f", "w", "x0")], complex_step(lambda p: np.array([drive(*p)]), [1.5, 1.5, 0.2])[0], 1e-9)
+y0, p = np.array([0.3, 0.5]), np.array([2.0, 8.0])  # of the spring, as arrays: J = x(1)^2
+g = spring.gradient(lambda t, y: ((y[-1, 0] ** 2), np.array([[2 * y[-1, 0], 0]])), "free", y0=y0, p=p, times=[1.0], tol=1e-11)
+square = lambda a: np.array([(a[0] * np.cos(np.sqrt(a[3] / a[2])) + a[1] / np.sqrt(a[3] / a[2]) * np.sin(np.sqrt(a[3] / a[2]))) ** 2])
+near("starts and parameters as arrays", [*g.by_start, *g.by_p], complex_step(square, [*y0, *p])[0], 1e-9)
+for library in ("jax", "torch"):  # where they are installed
+    try:
+        example = __import__(f"{library}_motion")
+    except ImportError:
+        continue
+    if library == "jax":
+        got = np.concatenate(example.jax.grad(lambda a, b: (example.of(spring, "free", [1.0])(a, b)[-1, 0]) ** 2, (0, 1))(y0, p))
+    else:
+        a, b = (example.torch.tensor(x, requires_grad=True) for x in (y0, p))
+        (example.Motion.apply(spring, "free", [1.0], a, b)[-1, 0] ** 2).backward()
+        got = np.concatenate([a.grad, b.grad])
+    near(f"through {library}", got, complex_step(square, [*y0, *p])[0], 1e-7)
+raises("a method without reverse mode", lagc.Error, "no reverse mode", lambda: double.gradient("x2", "swing", method="radau"))
+raises("an output that is none", lagc.Error, "did you mean x2?", lambda: double.gradient("x22", "swing"))
+
 # ---- other threads run meanwhile ----
 ticks, ended = [], threading.Event()
 

@@ -1,0 +1,152 @@
+/* Gradients of measures. Enters: a measure of a run that has ended; leaves: its derivatives by starts and parameters.
+ * Holds: a measure depends on the states at some times: the end, x(10), and where a largest or smallest value is,
+ * whose time is stationary. Weights of these states come from the nodes in reverse, and within the expression at one
+ * time from differences of order 6; lag_sim_gradient carries them to the start. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/measure_nodes.h"
+#include "core/core.h"
+
+enum { MOST_ROWS = 64 };
+
+/* The measure changes by `weight` times the change of the expression `node` at time t. */
+typedef struct Seed {
+  double t, weight;
+  int node;
+} Seed;
+
+typedef struct MeasureGradient {
+  Measures *m;
+  double *adjoint; /* [nodes] */
+  Seed seed[MOST_ROWS];
+  int n;
+  const char *refused;
+} MeasureGradient;
+
+static void put_seed(MeasureGradient *g, int node, double t, double weight) {
+  if (g->n == MOST_ROWS) g->refused = "it has too many values at times";
+  else if (weight != 0.0) g->seed[g->n++] = (Seed){t, weight, node};
+}
+
+/* ---- Nodes in reverse */
+
+/* Derivative of a function of the nodes a and b by one of them. */
+static double slope(const Measures *m, const MeasureNode *n, int by_b) {
+  double a = m->node[n->a].value, b = n->two ? m->node[n->b].value : 0, at = by_b ? b : a,
+         h = LAG_DIFFERENCE_PART * (at != 0.0 ? fabs(at) : 1), sum = 0;
+  LAG_EACH_DIFFERENCE(k) {
+    double x = by_b ? a : a + k * h, y = by_b ? b + k * h : b;
+    sum += lag_difference_weight(k) * (n->two ? n->two(x, y) : n->one(x)) / h;
+  }
+  return sum;
+}
+
+static void seed_track(MeasureGradient *g, const Track *k, double weight) {
+  int falls = k->kind == TRACK_MIN || (k->kind == TRACK_DRIFT && k->first - k->least > k->most - k->first);
+  if (k->kind != TRACK_MAX && k->kind != TRACK_MIN && k->kind != TRACK_DRIFT) {
+    g->refused = "means and periods have no gradient yet; values at times, max, min and drift have";
+    return;
+  }
+  put_seed(g, k->arg, falls ? k->when_least : k->when_most, k->kind == TRACK_DRIFT && falls ? -weight : weight);
+  if (k->kind == TRACK_DRIFT) put_seed(g, k->arg, g->m->t0, falls ? weight : -weight);
+}
+
+static void pass_back(MeasureGradient *g, int i) {
+  Measures *m = g->m;
+  const MeasureNode *n = &m->node[i];
+  double x = g->adjoint[i];
+  switch (n->kind) {
+    case MEASURE_NUMBER: case MEASURE_END: case MEASURE_FIRINGS: return;
+    case MEASURE_QUANTITY: put_seed(g, i, m->t, x); return;
+    case MEASURE_AT:
+      if (m->node[n->b].known != MEASURE_STATIC) g->refused = "the time of a value is itself a measure";
+      put_seed(g, n->a, m->node[n->b].value, x);
+      return;
+    case MEASURE_TRACK: seed_track(g, &m->track[n->index], x); return;
+    case MEASURE_TWO: g->adjoint[n->a] += x * slope(m, n, 0), g->adjoint[n->b] += x * slope(m, n, 1); return;
+    case MEASURE_ONE: g->adjoint[n->a] += x * slope(m, n, 0); return;
+    case MEASURE_HIT: g->refused = "times of events have no gradient yet"; return;
+    case MEASURE_LYAPUNOV: case MEASURE_MEGNO: g->refused = "exponents have no gradient"; return;
+  }
+}
+
+static int by_time(const void *a, const void *b) {
+  const Seed *x = a, *y = b;
+  return (x->t > y->t) - (x->t < y->t);
+}
+
+/* Seeds of measure k, in the order of the run. */
+static void collect_seeds(MeasureGradient *g, int k, double dir) {
+  Measures *m = g->m;
+  int root = m->root[k];
+  memset(g->adjoint, 0, (size_t)m->nnodes * sizeof *g->adjoint);
+  g->adjoint[root] = 1 / m->unit[k].factor;
+  for (int i = root; i >= m->node[root].begin && !g->refused; i--)
+    if (g->adjoint[i] != 0.0) pass_back(g, i);
+  qsort(g->seed, (size_t)g->n, sizeof *g->seed, by_time);
+  for (int i = 0; i < g->n / 2 && dir < 0; i++) {
+    Seed x = g->seed[i];
+    g->seed[i] = g->seed[g->n - 1 - i], g->seed[g->n - 1 - i] = x;
+  }
+}
+
+/* ---- Weights */
+
+/* weight[n] := derivatives by the state y[n]; by_p += those by parameters, at this state. there[n] is scratch. */
+static void weigh(Measures *m, const Seed *of, const double *y, double *there, double *weight, double *by_p) {
+  lag_sim *s = m->sim;
+  const lag_parameter_columns *by = s->pb.by;
+  int n = s->pb.n;
+  memset(weight, 0, (size_t)n * sizeof *weight);
+  memcpy(there, y, (size_t)n * sizeof *there);
+  for (int c = 0; c < n; c++) {
+    double h = LAG_DIFFERENCE_PART * lag_difference_scale(&s->pb, y, c);
+    LAG_EACH_DIFFERENCE(k) {
+      there[c] = y[c] + k * h;
+      weight[c] += of->weight * lag_difference_weight(k) * lag_measure_at(m, of->node, of->t, there) / h;
+    }
+    there[c] = y[c];
+  }
+  for (int j = 0; by && j < by->n; j++) {
+    LAG_EACH_DIFFERENCE(k) {
+      lag_use_parameters(s, j, k);
+      by_p[j] += of->weight * lag_difference_weight(k) * lag_measure_at(m, of->node, of->t, y) / by->h[j];
+    }
+    lag_use_parameters(s, 0, 0);
+  }
+}
+
+/* Runs to each seed and weighs the state there, then goes back. room[(2 n + 1) seeds + 2 n]. */
+static int run_back(MeasureGradient *g, lag_sim *sim, double *by_start, double *by_p, double *room) {
+  int n = sim->pb.n, np = sim->pb.model->np, rc = lag_sim_record(sim), count = g->n;
+  double *t = room, *weight = t + count, *y = weight + count * n, *there = y + n, *direct = there + n;
+  for (int k = 0; k < count && rc == LAG_OK; k++) {
+    t[k] = g->seed[k].t;
+    rc = lag_sim_advance(sim, t[k]);
+    if (rc == LAG_OK) rc = lag_sim_eval(sim, t[k], y);
+    if (rc == LAG_OK) weigh(g->m, &g->seed[k], y, there, weight + k * n, direct);
+  }
+  rc = rc ? rc : lag_sim_gradient(sim, count, t, weight, by_start, by_p);
+  for (int j = 0; j < np && rc == LAG_OK; j++) by_p[j] += direct[j];
+  return rc;
+}
+
+int lag_measures_gradient(Measures *m, int k, lag_sim *sim, double until, double *by_start, double *by_p, char *why,
+                          size_t size) {
+  size_t n = (size_t)sim->pb.n, np = (size_t)sim->pb.model->np;
+  lag_sim *own = m->sim;
+  MeasureGradient g = {.m = m, .adjoint = calloc((size_t)m->nnodes + 1, sizeof *g.adjoint)};
+  double *room = calloc((size_t)MOST_ROWS * (n + 1) + 2 * n + np + 1, sizeof *room);
+  int rc = g.adjoint && room ? LAG_OK : lag_fail(sim, LAG_ENOMEM, "out of memory");
+  if (rc == LAG_OK) collect_seeds(&g, k, until < m->t0 ? -1 : 1);
+  m->sim = sim;
+  if (rc == LAG_OK && !g.refused) rc = run_back(&g, sim, by_start, by_p, room);
+  m->sim = own;
+  free(g.adjoint);
+  free(room);
+  snprintf(why, size, "%s", g.refused ? g.refused : rc ? lag_sim_message(sim) : "");
+  return g.refused || rc ? -1 : 0;
+}

@@ -1,0 +1,63 @@
+/* Reverse mode of steps: products of vectors with their derivatives, transposed, from the emitted reverse sweep of the
+ * equations. A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed. (2008), 3.2; of a Runge-Kutta method: W.W. Hager,
+ * Numer. Math. 87 (2000) 247, DOI 10.1007/s002110000178. */
+#include <string.h>
+
+#include "methods/method_tangent.h"
+#include "methods/steps.h"
+
+static const lag_adjoint *adjoint_of(const lag_model *m) { return m->linear ? m->linear->adjoint : NULL; }
+
+size_t lag_reverse_size(const lag_problem *pb, int stages) {
+  const lag_model *m = pb->model;
+  const lag_adjoint *of = adjoint_of(m);
+  size_t n = (size_t)pb->n;
+  return (3 * (size_t)stages + 2) * n + (size_t)(m->nu + m->np + (of ? of->n : 0));
+}
+
+lag_reverse lag_reverse_layout(lag_problem *pb, double *g, double *scratch) {
+  return (lag_reverse){pb, g, scratch, scratch + pb->n, scratch + 2 * pb->n};
+}
+
+int lag_reverse_at(const lag_reverse *w, double t, const double *y, const double *f, const double *x, double *out) {
+  lag_problem *pb = w->pb;
+  const lag_model *m = pb->model;
+  const lag_adjoint *of = adjoint_of(m);
+  int n = pb->n, nq = pb->nq, nu = m->nu;
+  double *by_up = w->room, *d = by_up + nu + m->np, *g = w->g;
+  if (!of) return lag_step_failed(pb, LAG_EMETHOD, t);
+  int rc = lag_inputs_at(pb, t, y);
+  rc = rc ? rc : of->eval(of, t, y, y + nq, y + 2 * nq, pb->p, pb->u, f + nq, x + nq, out, by_up, d, pb->work);
+  if (rc) return lag_step_refused(pb, rc, t);
+  for (int i = 0; i < nq; i++) out[nq + i] += x[i];
+  for (int i = 0; i < nu + m->np; i++) g[i] += by_up[i];
+  for (int k = 0; k < of->n; k++)
+    if (isnan(pb->hold[of->at[k].row]) && !pb->signal[of->at[k].row].fn)
+      g[nu + of->at[k].col] += by_up[of->at[k].row] * d[k];
+  return lag_not_finite(n, out) >= 0 ? lag_step_failed(pb, LAG_ENAN, t) : LAG_OK;
+}
+
+/* With stages Y_s = y0 + dt sum_j a_sj k_j and y1 = y0 + dt sum_s b_s k_s, backwards: X_s = (df/dy)^T dt (b_s x + sum_r
+ * a_rs X_r), and x + sum_s X_s. */
+int lag_reverse_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, double *x,
+                         double *g, double *scratch) {
+  int n = pb->n, last = tab->stages - 1, rc = LAG_OK;
+  double *ys = scratch, *f = ys + last * n, *X = f + last * n;
+  const lag_reverse w = lag_reverse_layout(pb, g, X + last * n);
+  for (int s = 0; s < last && rc == LAG_OK; s++) {
+    double *y = ys + s * n;
+    memcpy(y, y0, (size_t)n * sizeof *y);
+    for (int j = 0; j < s; j++)
+      if (tab->a[s][j] != 0.0) lag_tangent_add(n, dt * tab->a[s][j], f + j * n, y);
+    rc = lag_step_rhs(pb, t0 + tab->c[s] * dt, y, f + s * n);
+  }
+  for (int s = last - 1; s >= 0 && rc == LAG_OK; s--) {
+    memset(w.k, 0, (size_t)n * sizeof *w.k);
+    lag_tangent_add(n, dt * tab->a[last][s], x, w.k);
+    for (int r = s + 1; r < last; r++)
+      if (tab->a[r][s] != 0.0) lag_tangent_add(n, dt * tab->a[r][s], X + r * n, w.k);
+    rc = lag_reverse_at(&w, t0 + tab->c[s] * dt, ys + s * n, f + s * n, w.k, X + s * n);
+  }
+  for (int s = 0; s < last && rc == LAG_OK; s++) lag_tangent_add(n, 1, X + s * n, x);
+  return rc;
+}

@@ -1,0 +1,47 @@
+/* A sum over an index, or over pairs of two, while it is read (quantified_text.c) and evaluated (quantified_sum.c). */
+#pragma once
+
+#include "model/resolve_impl.h"
+
+enum { REPRESENTATIVES = 2, COMPONENTS = 3 };
+
+/* Whole number that is affine in i and j. */
+typedef struct {
+  int64_t first, by_i, by_j;
+} Affine;
+
+/* Family e read at indices affine in i and j; rate: of its velocities. */
+typedef struct {
+  const Entity *e;
+  int rate;
+  Affine at[2];
+} Read;
+
+struct Quantified {
+  AstId outer, inner; /* inner 0: a sum over i alone, which has one turn a row */
+  Name i, j;
+  int64_t lo, hi;     /* of i */
+  Affine from, to;    /* of j, in i */
+  LoopRange range;    /* row 0 is i = lo; turn j of row 0 is j - from */
+  VEC(Read) reads;
+  AstId first;
+  /* [id - first] 1: an index stands for itself, as a symbol; else it is a number, inside of [] and ranges */
+  unsigned char *counts;
+  int has_lets;       /* definitions of families are opened */
+  uint64_t turns;
+  int sampled;        /* the self-check takes a sample of the turns */
+  const char *why;    /* reason why there is no such form, and where: for a note */
+  AstId where;
+  int64_t pair[REPRESENTATIVES][2]; /* i and j */
+  int pass;
+  Value body[REPRESENTATIVES], whole[REPRESENTATIVES];
+  int beside;         /* the outer terms have more than the inner sum: they are written out, with `pairs` at the end */
+  Expr pairs;
+  SymId inside[COMPONENTS]; /* stand for the inner sum in the whole */
+};
+
+/* quantified_text.c: finds the inner sum, and all that the terms read; 0: the text has no such form. */
+int quantified_text(Eval *ev, struct Quantified *q);
+
+/* In rows and turns: i = lo + row, j = from(lo) + turn. */
+Subscript quantified_turns(const struct Quantified *q, Affine x);

@@ -1,0 +1,248 @@
+/* What the text of a sum reads: each family at indices affine in i and j, through lets by index, too. */
+#include "model/quantified_sum.h"
+
+#include <string.h>
+
+enum { MOST_DEPTH = 24 };
+
+/* --- indices --- */
+
+/* Names of indices, of the sums or of a let, and what they are in i and j. */
+typedef struct {
+  Name name[2];
+  Affine is[2];
+} Indices;
+
+static int has(Name name, Name other) { return name && name == other; }
+
+/* Value of a plain whole number: an index around the sum, or a constant. */
+static int plain_whole(Eval *ev, Name name, int64_t *out) {
+  const Builder *b = ev->b;
+  int ambiguous;
+  for (uint32_t k = ev->index.n; k-- > 0;)
+    if (ev->index.at[k].name == name) {
+      *out = ev->index.at[k].at;
+      return 1;
+    }
+  for (uint32_t k = ev->in_statement ? b->index.n : 0; k-- > 0;)
+    if (b->index.at[k].name == name) {
+      *out = b->index.at[k].at;
+      return 1;
+    }
+  const Entity *e = scope_find(&b->scope, name, ev->effect, &ambiguous);
+  if (!e || e->kind != ENT_CONST || e->ndims || ambiguous) return 0;
+  Expr v = b->constant_values.at[e->index].e;
+  Num n = v && expr_is_num(b->g, v) ? expr_number(b->g, v) : num_ratio(1, 2);
+  *out = n.num;
+  return num_is_exact(n) && n.den == 1;
+}
+
+static int affine_product(AstKind kind, Affine x, Affine y, Affine *out) {
+  int plain_x = !x.by_i && !x.by_j, plain_y = !y.by_i && !y.by_j;
+  if (kind == AST_DIV) {
+    if (!plain_x || !plain_y || !y.first || x.first % y.first) return 0;
+    *out = (Affine){x.first / y.first, 0, 0};
+    return 1;
+  }
+  if (!plain_x && !plain_y) return 0;
+  Affine of = plain_x ? y : x;
+  int64_t by = plain_x ? x.first : y.first;
+  *out = (Affine){of.first * by, of.by_i * by, of.by_j * by};
+  return 1;
+}
+
+/* Whether the expression is affine in the indices. */
+static int is_affine(Eval *ev, AstId id, const Indices *of, int depth, Affine *out) {
+  const AstExpr *x = ast_expr(ev->b->ast, id);
+  Affine a, b;
+  *out = (Affine){0};
+  if (depth == 0) return 0;
+  switch (x->kind) {
+    case AST_NUM: out->first = x->number.num; return num_is_exact(x->number) && x->number.den == 1;
+    case AST_NAME:
+      for (int k = 0; k < 2; k++)
+        if (has(of->name[k], x->name)) {
+          *out = of->is[k];
+          return 1;
+        }
+      return plain_whole(ev, x->name, &out->first);
+    case AST_NEG:
+      if (!is_affine(ev, x->a, of, depth - 1, &a)) return 0;
+      *out = (Affine){-a.first, -a.by_i, -a.by_j};
+      return 1;
+    case AST_ADD: case AST_SUB: {
+      if (!is_affine(ev, x->a, of, depth - 1, &a) || !is_affine(ev, x->b, of, depth - 1, &b)) return 0;
+      int64_t s = x->kind == AST_ADD ? 1 : -1;
+      *out = (Affine){a.first + s * b.first, a.by_i + s * b.by_i, a.by_j + s * b.by_j};
+      return 1;
+    }
+    case AST_MUL: case AST_DIV:
+      return is_affine(ev, x->a, of, depth - 1, &a) && is_affine(ev, x->b, of, depth - 1, &b) &&
+             affine_product(x->kind, a, b, out);
+    default: return 0;
+  }
+}
+
+/* In rows and turns: i = lo + row, j = from(lo) + turn. */
+Subscript quantified_turns(const struct Quantified *q, Affine x) {
+  int64_t j0 = q->from.first + q->from.by_i * q->lo;
+  return (Subscript){x.first + x.by_i * q->lo + x.by_j * j0, x.by_i, x.by_j};
+}
+
+/* --- the text --- */
+
+/* Records why there is no such form; 0. */
+static int refused(struct Quantified *q, AstId where, const char *why) {
+  if (!q->why) q->why = why, q->where = where;
+  return 0;
+}
+
+/* The only statement that defines a family of lets; NULL: several do, or a `for` around it. */
+static const AstStmt *only_definition(const Builder *b, const Entity *e) {
+  const AstStmt *st = NULL;
+  for (uint32_t k = 0; k < b->lets.n; k++) {
+    const Definition *d = &b->lets.at[k];
+    if (d->stmt->name != b->lets.at[e->index].stmt->name || d->effect != b->lets.at[e->index].effect) continue;
+    if ((st && d->stmt != st) || d->naround) return NULL;
+    st = d->stmt;
+  }
+  return st;
+}
+
+static int note_reads(Eval *ev, struct Quantified *q, AstId first, AstId last, const Indices *of,
+                      const unsigned char *skip, int depth);
+
+/* Notes what the members of a family of lets read. */
+static int note_let(Eval *ev, struct Quantified *q, AstId id, const Read *r, int depth) {
+  const Ast *ast = ev->b->ast;
+  const AstStmt *st = only_definition(ev->b, r->e);
+  Indices of = {0};
+  uint32_t n = 0;
+  if (!st || depth == 0) return refused(q, id, "these lets depend on each other, or on several statements");
+  for (AstId k = st->dims; k; k = ast_expr(ast, k)->next, n++) {
+    if (ast_expr(ast, k)->kind != AST_BIND || n == 2) return refused(q, id, "these lets are defined one by one");
+    of.name[n] = ast_expr(ast, k)->name;
+    of.is[n] = r->at[n];
+  }
+  q->has_lets = 1;
+  return note_reads(ev, q, ast_expr(ast, st->rhs)->first, st->rhs, &of, NULL, depth - 1);
+}
+
+/* Notes what an index node reads. */
+static int note_read(Eval *ev, struct Quantified *q, AstId id, const Indices *of, int depth) {
+  const Ast *ast = ev->b->ast;
+  const AstExpr *x = ast_expr(ast, id), *name = ast_expr(ast, x->a);
+  int ambiguous;
+  Read r = {0};
+  uint32_t n = 0, moves = 0;
+  for (AstId k = x->args; k; k = ast_expr(ast, k)->next, n++) {
+    if (n == 2 || !is_affine(ev, k, of, MOST_DEPTH, &r.at[n]))
+      return refused(q, k, "this index is not a sum of multiples of the indices and a number");
+    moves |= r.at[n].by_i || r.at[n].by_j;
+  }
+  if (name->kind != AST_NAME) return refused(q, id, "this is a family of an effect");
+  r.e = scope_find(&ev->b->scope, name->name, ev->effect, &ambiguous);
+  if (!r.e || ambiguous || r.e->ndims != n) return refused(q, id, "this is no member of a family");
+  for (uint32_t k = 0; k < n; k++) {
+    Subscript at = quantified_turns(q, r.at[k]);
+    int64_t least, most;
+    if (!loop_extent(&q->range, &at, &least, &most) || least < r.e->lo[k] || most > r.e->hi[k])
+      return refused(q, id, "this index leaves the range of the family");
+  }
+  if (r.e->kind == ENT_LET) return moves ? note_let(ev, q, id, &r, depth) : 1;
+  if (r.e->kind != ENT_COORD && r.e->kind != ENT_STATE && r.e->kind != ENT_PARAM && r.e->kind != ENT_INPUT)
+    return moves ? refused(q, id, "this is no family of coordinates, states, parameters, inputs or lets") : 1;
+  for (r.rate = 0; r.rate < (r.e->kind == ENT_COORD || r.e->kind == ENT_STATE ? 2 : 1); r.rate++)
+    vec_push(ev->b->arena, &q->reads, r);
+  return 1;
+}
+
+/* Marks the nodes of an expression. */
+static void mark_nodes(const Eval *ev, AstId id, AstId first, unsigned char *inside) {
+  for (AstId k = ast_expr(ev->b->ast, id)->first; k <= id; k++) inside[k - first] = 1;
+}
+
+/* Whether an index stands in the exponent of a power, where dimensions need a number. */
+static int is_in_power(const Eval *ev, AstId at, AstId first, AstId last) {
+  const Ast *ast = ev->b->ast;
+  for (AstId k = first; k <= last; k++) {
+    const AstExpr *x = ast_expr(ast, k);
+    if (x->kind == AST_POW && at >= ast_expr(ast, x->b)->first && at <= x->b) return 1;
+  }
+  return 0;
+}
+
+/* Notes what nodes first .. last read, but for those to skip; where the sums' own indices are numbers of the terms,
+ * they are marked as such. */
+static int note_reads(Eval *ev, struct Quantified *q, AstId first, AstId last, const Indices *of,
+                      const unsigned char *skip, int depth) {
+  const Ast *ast = ev->b->ast;
+  unsigned char *inside = ARENA_ARRAY(ev->b->arena, unsigned char, last - first + 1);
+  int own = depth == MOST_DEPTH;
+  for (AstId k = last + 1; k-- > first;) {
+    const AstExpr *x = ast_expr(ast, k);
+    if (skip && skip[k - first]) continue;
+    for (AstId at = x->kind == AST_INDEX ? x->args : 0; at; at = ast_expr(ast, at)->next)
+      mark_nodes(ev, at, first, inside);
+    if (x->kind == AST_INDEX && !note_read(ev, q, k, of, depth)) return 0;
+    if (x->kind == AST_CALL && strcmp(x->name, "d") == 0) return refused(q, k, "it has partial derivatives");
+    if (!own && (x->kind == AST_SUM || x->kind == AST_PRODUCT))
+      return refused(q, k, "lets with an index have sums inside");
+    int index = x->kind == AST_NAME && (has(of->name[0], x->name) || has(of->name[1], x->name)) && !inside[k - first];
+    if (!index) continue;
+    if (!own) return refused(q, k, "a let has its index as a number");
+    if (is_in_power(ev, k, first, last)) return refused(q, k, "an index stands in an exponent");
+    q->counts[k - first] = 1;
+  }
+  return 1;
+}
+
+/* Marks the terms beside the one with the inner sum: they are written out, whatever they contain. */
+static void mark_beside(const Eval *ev, const struct Quantified *q, unsigned char *beside) {
+  const Ast *ast = ev->b->ast;
+  AstId at = ast_expr(ast, q->outer)->c, first = ast_expr(ast, at)->first;
+  while (ast_expr(ast, at)->kind == AST_ADD || ast_expr(ast, at)->kind == AST_SUB) {
+    AstId a = ast_expr(ast, at)->a, b = ast_expr(ast, at)->b;
+    int in_b = q->inner >= ast_expr(ast, b)->first && q->inner <= b;
+    mark_nodes(ev, in_b ? a : b, first, beside);
+    at = in_b ? b : a;
+  }
+}
+
+/* Finds the range of the inner sum. */
+static int read_inner(Eval *ev, struct Quantified *q, unsigned char *skip) {
+  const AstExpr *y = ast_expr(ev->b->ast, q->inner);
+  const Indices outer = {.name = {q->i}, .is = {{.by_i = 1}}};
+  q->j = y->name;
+  if (q->i == q->j || !is_affine(ev, y->a, &outer, MOST_DEPTH, &q->from) ||
+      !is_affine(ev, y->b, &outer, MOST_DEPTH, &q->to))
+    return refused(q, q->inner, "the range inside is not affine in the outer index");
+  mark_beside(ev, q, skip);
+  mark_nodes(ev, y->a, q->first, skip);
+  mark_nodes(ev, y->b, q->first, skip);
+  q->range.skew = q->from.by_i;
+  q->range.more = q->to.by_i - q->from.by_i;
+  q->range.turns = q->to.first - q->from.first + q->range.more * q->lo + 1;
+  return 1;
+}
+
+int quantified_text(Eval *ev, struct Quantified *q) {
+  const Ast *ast = ev->b->ast;
+  const AstExpr *x = ast_expr(ast, q->outer);
+  AstId last = x->c;
+  q->first = ast_expr(ast, last)->first;
+  q->i = x->name;
+  q->range = (LoopRange){.rows = (uint32_t)(q->hi - q->lo + 1), .turns = 1};
+  unsigned char *skip = ARENA_ARRAY(ev->b->arena, unsigned char, last - q->first + 1);
+  q->counts = ARENA_ARRAY(ev->b->arena, unsigned char, last - q->first + 1);
+  for (AstId k = q->first; k <= last; k++) {
+    AstKind kind = ast_expr(ast, k)->kind;
+    if (kind == AST_SUM && q->inner) return refused(q, k, "there are several sums inside");
+    if (kind == AST_SUM) q->inner = k;
+    if (kind == AST_PRODUCT) return refused(q, k, "there is a product over an index inside");
+    if (kind == AST_AT || kind == AST_LIST || kind == AST_BIND || kind == AST_STRING) return 0;
+  }
+  if (q->inner && !read_inner(ev, q, skip)) return 0;
+  const Indices own = {.name = {q->i, q->j}, .is = {{.by_i = 1}, {.by_j = 1}}};
+  return note_reads(ev, q, q->first, last, &own, skip, MOST_DEPTH);
+}

@@ -1,0 +1,99 @@
+// node page_events.js BROWSER FOLDER: pages of FOLDER under real mouse, touch and key events; results as TAP.
+const {Browser} = require("./browser.js");
+const [path, folder] = process.argv.slice(2), b = new Browser(path, folder + "/profile");
+let n = 0, bad = 0;
+const is = (name, yes, more = "") => { n++; if (!yes) bad++; console.log(`${yes ? "ok" : "not ok"} ${n} - ${name}` + (yes ? "" : "\n# " + JSON.stringify(more))); };
+const page = (name, more, options) => b.open(`file://${folder}/${name}.html${more || ""}`, options).then(() => b.until("window.lagc && lagc.motion && lagc.motion.t > 0"));
+const place = (i = -1) => b.value(`(() => { const r = document.getElementById("picture").getBoundingClientRect(), p = lagc.picture, q = p.toCanvas(p.place(p.bodies.at(${i}).a)); return [r.left + q[0], r.top + q[1]]; })()`);
+const said = () => b.value('document.getElementById("said").textContent'), apart = (p, q) => Math.hypot(p[0] - q[0], p[1] - q[1]);
+const moved = ([x, y], [dx, dy]) => [x + dx, y + dy], state = name => b.value(`lagc.motion.state[${JSON.stringify(name)}]`);
+
+async function pendulum() {
+  await page("pendulum");
+  const at = await place();
+  await b.drag(at, [160, -80]);
+  is("a dragged bob stays on its circle, and time stands", Math.abs(await state("th")) > 0.2 && !(await b.value("lagc.playing")), await state("th"));
+  await b.release(moved(at, [160, -80]));
+  await b.until("lagc.motion.t > 0.2");
+  is("let go, it swings", Math.abs(await state("th'")) > 0.05);
+  const g = 'document.querySelectorAll(".slider output")[2].value', before = await b.value(g);
+  await b.value('document.getElementById("equations").open = true');
+  await b.until('document.querySelectorAll("#listing math").length > 5');
+  await b.value('document.getElementById("value2").focus()');
+  await b.key("ArrowRight", 39);
+  is("a key moves the slider of g", await b.value(g) != before, await b.value(g));
+  is("terms with g are lit", await b.value('[...document.querySelectorAll("math.lit")].every(m => m.textContent.includes("g")) && document.querySelectorAll("math.lit").length > 1'));
+  const programs = await b.value("model.programs.length"), energy = () => b.value("lagc.motion.charge(0).now");
+  await b.click("#effects input");
+  const e = await energy(), t = await b.value("lagc.motion.t");
+  await b.until(`lagc.motion.t > ${t} + 0.5`);
+  is("friction is switched on: the energy falls", programs > 1 && await energy() < e - 1e-4, [e, await energy()]);
+  await b.click("#effects input");
+  const drift = async (method, fine) => {
+    await b.value(`(() => { const m = document.getElementById("method"), f = document.getElementById("fine"); m.value = "${method}"; m.onchange(); f.value = ${fine}; f.oninput(); lagc.reset(); lagc.play(); })()`);
+    await b.until("lagc.motion.t > 1.5");
+    return b.value("lagc.motion.charge(0).drift");
+  };
+  const rough = await drift("symplectic_euler", 30), sharp = await drift("taylor", 80);
+  is("from symplectic Euler to taylor the drift falls by more than 1e6", rough > 1e-4 && sharp < 1e-6*rough, [rough, sharp]);
+  await b.value("document.activeElement.blur()");
+  await b.key(" ", 32, " ");
+  const stopped = await b.value("lagc.motion.t");
+  await b.key("ArrowRight", 39);
+  is("space pauses, the right arrow steps", !(await b.value("lagc.playing")) && Math.abs(await b.value("lagc.motion.t") - stopped - 1/60) < 1e-9);
+  await b.key("Home", 36);
+  is("Home begins again", await b.value("lagc.motion.t") == 0);
+  await b.value('lagc.set("l", -1)');
+  is("a parameter out of range is refused with a reason, and the motion stays", (await said()).includes("l") && await b.value("lagc.motion.t") == 0, await said());
+  await b.value('(s => { s.value = "de"; s.onchange(); })(document.getElementById("language"))');
+  is("German", await b.value('document.body.innerText.includes("Genauigkeit und Aufwand") && document.documentElement.lang == "de"'));
+}
+async function others() {
+  await page("double_pendulum");
+  await b.value("lagc.pause(); lagc.reset()");
+  let at = await place();
+  await b.drag(at, [-150, 0]);
+  is("rods in one line bend under the pointer", apart(await place(), moved(at, [-150, 0])) < 3, [at, await place()]);
+  await b.release(moved(at, [-150, 0]));
+  await b.value('(() => { const s = document.getElementById("speed"); s.value = "20"; const c = document.getElementById("section"); c.value = lagc.columns.findIndex(c => c.name == "th2"); c.onchange(); lagc.reset(); lagc.play(); })()');
+  await b.until("lagc.section.x.length > 5");
+  is("a section grows", true);
+  await page("slider_crank");
+  await b.value("lagc.pause()");
+  at = await place();
+  await b.drag(at, [-30, 5]);
+  is("a dragged piston stays on its rail, and its rod keeps its length", Math.abs((await place())[0] - at[0] + 30) < 3 && await b.value("lagc.motion.cost.constraint") < 1e-9, [at, await place()]);
+  await page("kepler", "", {width: 360, height: 740, touch: true, dark: true});
+  await b.value("lagc.pause()");
+  at = await place();
+  await b.touch("touchStart", [at]);
+  for (let k = 1; k <= 5; k++) await b.touch("touchMove", [moved(at, [-8*k, 6*k])]);
+  await b.value("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))");
+  is("a finger drags the planet", apart(await place(), moved(at, [-40, 30])) < 4, [at, await place()]);
+  await b.touch("touchEnd", []);
+  is("nothing is wider than a phone", await b.value("document.documentElement.scrollWidth <= innerWidth"), await b.value("document.documentElement.scrollWidth"));
+  await page("pendulum", "?controls=0&lang=de");
+  is("controls=0 leaves the picture", await b.value('getComputedStyle(document.querySelector("aside")).display') == "none");
+  await b.open(`file://${folder}/pendulum.html`, {before: "delete window.WebAssembly;"});
+  await b.until('/^t = [0-9.]*[1-9]/.test(document.getElementById("time").value)');
+  is("without WebAssembly a message, and a recording that moves", (await said()).includes("WebAssembly"), await said());
+  await page("wall");
+  await b.until('document.getElementById("said").textContent != ""');
+  is("a motion that fails says when and why", /t = 1.*Reset/.test(await said()) && !(await b.value("lagc.playing")), await said());
+  await b.click("#reset");
+  is("reset begins again", await b.value("lagc.motion.t") == 0 && await said() == "", await said());
+}
+async function site(models) {
+  await b.open(`file://${folder}/site/index.html`);
+  await b.until('document.querySelectorAll("#topics li").length > 1 && document.querySelectorAll("#course li").length > 1');
+  for (const m of models) {
+    await b.open(`file://${folder}/site/index.html`);
+    await b.until(`document.querySelector('a[href="${m}.html"]')`);
+    await b.click(`a[href="${m}.html"]`);
+    await b.until("window.lagc && lagc.motion && lagc.motion.t > 0");
+    is("the site leads to " + m + ", which moves", true);
+  }
+}
+pendulum().then(others).then(() => site(process.argv.slice(4)))
+  .catch(e => is("all steps", false, e.message))
+  .finally(() => { is("no complaint in the console", !b.faults.length, b.faults); console.log("1.." + n); b.close(); });

@@ -1,0 +1,68 @@
+#!/bin/sh
+# lagc run --gradient: derivatives of measures by all parameters and starts, against closed forms; refusals. Python's are in python/check_lagc.py.
+. tests/tap.sh
+cat >"$TMP/spring.lag" <<'M'
+model spring
+coord x [m]
+param m = 2 [kg] > 0, k = 8 [N/m] > 0, v0 = 0.6 [m/s], F = 0 [N], unused = 1
+input u [N] = F*t/1 [s]
+lagrangian = m/2*x'^2 - k/2*x^2
+force x = u
+event kick: x - 5 [m] rising { x' = -x' }
+scene go { start x = 0.5, x' = v0; span 3 [s]; output x }
+scene slow { like go; start x = 0.1 }
+M
+run() { "$LAGC" run "$TMP/spring.lag" go --method dop853 --tol 1e-12 --until 1.3 "$@" --json >"$TMP/out.json" 2>"$TMP/err"; }
+# d MEASURE NAME: that derivative.
+d() { python3 -c 'import json, sys; print(repr(json.load(open(sys.argv[1]))["gradient"][sys.argv[2]][sys.argv[3]]))' "$TMP/out.json" "$1" "$2"; }
+# x = 0.5 cos wt + v0/w sin wt, w = sqrt(k/m) = 2. within: the tolerance of the run, times some ten; at a maximum its place is known to 1e-8 of a step
+check "a value at the end" run --gradient x --gradient 'late = x(1)' --gradient 'most = max(x)' --gradient 'p = 3*x(1)*max(x)'
+near "by a start" 1e-10 -0.8568887533689472 "$(d x 'x(0)')"
+near "... and by its velocity" 1e-10 0.2577506859107323 "$(d x "x'(0)")"
+near "by the stiffness: w t/(2 k) (-0.5 sin wt + v0/w cos wt) - v0/(2 w k) sin wt" 1e-10 "$(awk 'BEGIN { w = 2; k = 8; t = 1.3; v = 0.6; printf "%.15g", w*t/(2*k)*(-0.5*sin(w*t) + v/w*cos(w*t)) - v/(2*w*k)*sin(w*t) }')" "$(d x k)"
+near "by a parameter of the start, v0" 1e-10 0.2577506859107323 "$(d x v0)"
+near "by that of an input's formula: (t - sin(wt)/w)/k" 1e-10 "$(awk 'BEGIN { printf "%.15g", (1.3 - sin(2.6)/2)/8 }')" "$(d x F)"
+is "what it does not feel" 0 "$(d x unused | sed 's/\.0$//')"
+near "at a time" 1e-10 "$(awk 'BEGIN { printf "%.15g", sin(2)/2 }')" "$(d late v0)"
+near "of a maximum, sqrt(x0^2 + v0^2/w^2)" 1e-7 "$(awk 'BEGIN { printf "%.15g", 0.6/4/sqrt(0.25 + 0.09) }')" "$(d most v0)"
+near "of a product" 1e-7 "$(awk 'BEGIN { a = sqrt(0.34); x = 0.5*cos(2) + 0.3*sin(2); printf "%.15g", 3*(sin(2)/2*a + x*0.15/a) }')" "$(d p v0)"
+check "by the Verlet family" run --method verlet8 --step 0.01 --gradient x
+near "... of order 8" 1e-10 -0.8568887533689472 "$(d x 'x(0)')"
+check "after a method without reverse mode, by dop853" run --method taylor --gradient x
+near "... as well" 1e-8 -0.8568887533689472 "$(d x 'x(0)')"
+# Steps of a header in reverse: 130 of rk4 with h = 0.01, whose error is some 1e-9.
+cat >"$TMP/header.c" <<'C'
+#define SPRING_IMPLEMENTATION
+#include "spring.h"
+#include <stdio.h>
+int main(void) {
+  enum { STEPS = 130 };
+  static spring_state s[STEPS + 1];
+  spring_params p;
+  double x[SPRING_NY] = {1, 0}, g[SPRING_NP] = {0};
+  spring_defaults(&p);
+  if (spring_start(&p, &s[0])) return 1;
+  for (int i = 0; i < STEPS; i++) {
+    s[i + 1] = s[i];
+    if (spring_rk4_step(&p, &s[i + 1], 0.01, 0)) return 1;
+  }
+  for (int i = STEPS - 1; i >= 0; i--)
+    if (spring_adjoint_step(&p, &s[i], 0.01, 0, x, g)) return 1;
+  printf("{\"gradient\": {\"x\": {\"x(0)\": %.17g, \"v(0)\": %.17g, \"k\": %.17g, \"F\": %.17g}}}\n", x[0], x[1], g[SPRING_P_K], g[SPRING_P_F]);
+  return 0;
+}
+C
+header() { "$LAGC" header "$TMP/spring.lag" go --with adjoint -o "$TMP/spring.h" 2>/dev/null && "$CC" -O0 -Wall -Werror "$TMP/header.c" -o "$TMP/header" -lm && "$TMP/header" >"$TMP/out.json"; }
+check "a header with steps in reverse" header
+near "its gradient by a start" 1e-8 -0.8568887533689472 "$(d x 'x(0)')"
+near "by a velocity" 1e-8 0.2577506859107323 "$(d x 'v(0)')"
+near "by a parameter" 1e-8 "$(awk 'BEGIN { w = 2; k = 8; t = 1.3; v = 0.6; printf "%.15g", w*t/(2*k)*(-0.5*sin(w*t) + v/w*cos(w*t)) - v/(2*w*k)*sin(w*t) }')" "$(d x k)"
+near "by one of an input's formula" 1e-8 "$(awk 'BEGIN { printf "%.15g", (1.3 - sin(2.6)/2)/8 }')" "$(d x F)"
+text() { "$LAGC" run "$TMP/spring.lag" go --method dop853 --tol 1e-12 --until 1.3 --gradient x >"$TMP/text" && grep -q "^  d/dk  *-0.0[0-9]* m/(N/m)$" "$TMP/text"; }
+check "as text, with units" text
+says() { "$LAGC" run "$TMP/spring.lag" go --until 1 "$@" >"$TMP/text" 2>"$TMP/err"; }
+none() { says --gradient 'mean(x)' && grep -q 'no gradient of mean(x): means and periods have no gradient yet' "$TMP/text"; }
+check "what has none says why" none
+refused() { ! "$LAGC" run models/cartesian_pendulum.lag --gradient x >"$TMP/text" 2>"$TMP/err" && grep -q 'constraints have no reverse mode yet' "$TMP/err"; }
+check "constraints are refused" refused
+tap_end
