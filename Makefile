@@ -274,7 +274,7 @@ $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,langu
 $(BUILD)/obj/src/commands/verify.o: $(BUILD)/gen/commands/verify_driver.h
 $(BUILD)/obj/src/commands/man_page.o: $(BUILD)/gen/commands/man_frame.h
 $(BUILD)/obj/src/commands/completion.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
-$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(TABLES) $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(patsubst %,$(BUILD)/gen/numeric/%.h,edit_distance fnv1a)
+$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(TABLES) $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(patsubst %,$(BUILD)/gen/numeric/%.h,edit_distance fnv1a poison)
 $(patsubst %,$(BUILD)/obj/src/%.o,toolchain/files toolchain/simulator_cache commands/build commands/command_line commands/cost_reference) $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
 $(BUILD)/obj/gen/toolchain/outfile.o $(BUILD)/obj/gen/base/windows.o: | $(BUILD)/gen/base/posix.h
 # Generated code is not ours to warn about.

@@ -1,38 +1,9 @@
-/* The model as y' = f(t, y): the only way in which methods call it. Enters: t, y = [q|v|z]; leaves: y' = [v|a|z'].
- * Holds: an input is the model's formula or table unless a function or a constant replaces it. */
+/* The model as y' = f(t, y): the only way in which methods call it. Enters: t, y = [q|v|z]; leaves: y' = [v|a|z']. */
 #include <math.h>
 #include <string.h>
 
 #include "core/core.h"
 #include "core/rhs.h"
-
-int lag_inputs(lag_problem *pb, double t) {
-  const lag_model *m = pb->model;
-  for (int i = m->nu; i < m->nu + m->nmodes; i++) pb->u[i] = pb->hold[i];
-  if (m->nu == 0) return 0;
-  if (m->inputs) {
-    int rc = m->inputs(m, t, pb->p, pb->u);
-    if (rc) return rc;
-  }
-  for (int i = 0; i < m->nu; i++) {
-    if (pb->signal[i].fn) {
-      pb->u[i] = pb->signal[i].fn(pb->signal[i].context, t);
-      if (!isfinite(pb->u[i])) pb->detail = "the function of an input gave no finite value";
-    } else if (!isnan(pb->hold[i])) {
-      pb->u[i] = pb->hold[i];
-    } else if (!m->inputs) {
-      pb->u[i] = 0;
-    }
-  }
-  return 0;
-}
-
-unsigned lag_facts(const lag_problem *pb) {
-  unsigned flags = pb->model->flags;
-  for (int i = 0; i < pb->model->nu; i++)
-    if (pb->signal[i].fn) flags &= ~(unsigned)(LAG_AUTONOMOUS | LAG_SMOOTH);
-  return flags;
-}
 
 int lag_rhs_prepare(lag_problem *pb, double t, const double **y) {
   if (!pb->redundant) return lag_inputs_at(pb, t, *y);
@@ -80,14 +51,4 @@ int lag_variation(lag_problem *pb, double t, const double *q, const double *v, d
 int lag_second_derivatives(lag_problem *pb, double t, const double *q, const double *v, double *h) {
   int rc = lag_inputs(pb, t);
   return rc ? rc : pb->model->second(pb->model, t, q, v, NULL, pb->p, pb->u, h, pb->work);
-}
-
-int lag_not_finite(int n, const double *x) {
-  double zero = 0;
-  for (int i = 0; i < n; i++) {
-    zero += x[i] * 0; /* NaN where x[i] is not finite */
-  }
-  for (int i = 0; i < n && isnan(zero); i++)
-    if (!isfinite(x[i])) return i;
-  return -1;
 }

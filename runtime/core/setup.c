@@ -279,67 +279,65 @@ static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
 }
 
 /* Whether the method can integrate this model; if not, the message says why, and which method can. */
+/* A refusal of a method; its text has the method's name, `what`, the name again. */
+typedef struct Refusal {
+  int holds;
+  const char *text, *what;
+} Refusal;
+
+static int first_refusal(lag_sim *s, const lag_method *method, size_t n, const Refusal r[]) {
+  for (size_t i = 0; i < n; i++)
+    if (r[i].holds) return lag_fail(s, LAG_EMETHOD, r[i].text, method->name, r[i].what, method->name);
+  return LAG_OK;
+}
+
+/* Flags of the method for this model: of one without coordinates some ask less. */
+static unsigned needs_of(const lag_method *method, const lag_model *m, unsigned has) {
+  const unsigned of_momenta = LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION;
+  unsigned needs = method->flags;
+  if ((needs & LAG_METHOD_FLOWS) && m->nq == 0) needs = (needs & ~of_momenta) | LAG_METHOD_JACOBIAN;
+  if ((needs & LAG_METHOD_SPLITS) && m->nq == 0 && (has & LAG_SEPARABLE)) needs &= ~of_momenta;
+  return needs;
+}
+
 static int check_method(lag_sim *s, const lag_method *method) {
   const lag_model *m = s->scene->model;
-  unsigned needs = method->flags, has = lag_facts(&s->pb);
-  if (m->contact_laws && (!(needs & LAG_METHOD_CONSTRAINTS) || needs & (LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC |
-                                                                        LAG_METHOD_VARIATION | LAG_METHOD_SPLITS)))
-    return lag_fail(s, LAG_EMETHOD,
-                    "method %s cannot follow contacts with friction (%s); rk45, dop853, radau, rk4 and moreau can",
-                    method->name, m->ev[m->contacts[0].impact].name);
-  if (m->constraints && !(needs & LAG_METHOD_CONSTRAINTS)) {
-    return lag_fail(s, LAG_EMETHOD, "method %s cannot hold constraints (%s); rk45, dop853 and variational can",
-                    method->name, m->constraints->of[0].name);
-  }
-  if (m->constraints && (has & LAG_MASSLESS) && (needs & LAG_METHOD_VARIATION)) {
-    return lag_fail(s, LAG_EMETHOD,
-                    "method %s finds velocities from momenta, and not all coordinates have inertia in this program; "
-                    "`lagc build --method %s` "
-                    "builds a program where they have; rk45 and dop853 need none",
-                    method->name, method->name);
-  }
-  if ((needs & LAG_METHOD_FLOWS) && m->nq == 0)
-    needs = (needs & ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION)) | LAG_METHOD_JACOBIAN;
-  if ((needs & LAG_METHOD_SPLITS) && m->nq == 0 && (has & LAG_SEPARABLE))
-    needs &= ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION);
-  if ((needs & LAG_METHOD_NO_STATES) && (has & LAG_FIRST_ORDER)) {
-    if ((needs & LAG_METHOD_SPLITS) && (has & LAG_SUM_HAMILTONIAN)) {
-      return lag_fail(s, LAG_EMETHOD,
-                      "method %s takes forces of positions and t, and here forces depend on momenta or velocities; "
-                      "gauss, rk45 and dop853 can",
-                      method->name);
-    }
-    return lag_fail(s, LAG_EMETHOD,
-                    "method %s needs momenta beside coordinates, and L is linear in the velocities%s; gauss is "
-                    "symplectic there, rk45 and "
-                    "dop853 can, too",
-                    method->name, needs & LAG_METHOD_SPLITS ? ", or H is not a sum T(p) + V(q, t)" : "");
-  }
-  if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0)
-    return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can",
-                    method->name);
-  if ((needs & LAG_METHOD_STEPS_TO) && m->nev > 0) {
-    return lag_fail(
-        s, LAG_EMETHOD,
-        "method %s does not find events (%s), as its motion within a step is too rough; dop853 and radau do",
-        method->name, m->ev[0].name);
-  }
-  int rc = check_jumps(s, method, needs);
-  if (rc) return rc;
-  int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !m->constraints;
-  if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH))
-    return lag_fail(s, LAG_EMETHOD,
-                    "method %s needs a model without if, abs, sign, min, max, atan2 and tables; dop853 does not",
-                    method->name);
-  if (((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) ||
-      ((needs & LAG_METHOD_JACOBIAN) && !m->linear && !m->constraints) || ((needs & LAG_METHOD_TAYLOR) && !m->taylor)) {
-    return lag_fail(s, LAG_EMETHOD,
-                    "method %s needs derivatives of the model that this program was built without; `lagc run MODEL "
-                    "--method %s` and "
-                    "`lagc build MODEL --method %s` build them in; rk45 and dop853 do without",
-                    method->name, method->name, method->name);
-  }
-  return check_digits(s, method);
+  const unsigned own = method->flags, has = lag_facts(&s->pb), needs = needs_of(method, m, has);
+  const unsigned smooth = LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS;
+  const int held = m->constraints != NULL, linear = (needs & LAG_METHOD_NO_STATES) && (has & LAG_FIRST_ORDER);
+  const int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !held;
+  const Refusal first[] = {
+      {m->contact_laws && (!(own & LAG_METHOD_CONSTRAINTS) || own & smooth),
+       "method %s cannot follow contacts with friction (%s); rk45, dop853, radau, rk4 and moreau can",
+       m->contact_laws ? m->ev[m->contacts[0].impact].name : NULL},
+      {held && !(own & LAG_METHOD_CONSTRAINTS),
+       "method %s cannot hold constraints (%s); rk45, dop853 and variational can",
+       held ? m->constraints->of[0].name : NULL},
+      {held && (has & LAG_MASSLESS) && (own & LAG_METHOD_VARIATION),
+       "method %s finds velocities from momenta, and not all coordinates have inertia in this program; `lagc build "
+       "%s%s` builds a program where they have; rk45 and dop853 need none", "--method "},
+      {linear && (needs & LAG_METHOD_SPLITS) && (has & LAG_SUM_HAMILTONIAN),
+       "method %s takes forces of positions and t, and here forces depend on momenta or velocities; gauss, rk45 and "
+       "dop853 can", NULL},
+      {linear, "method %s needs momenta beside coordinates, and L is linear in the velocities%s; gauss is symplectic "
+               "there, rk45 and dop853 can, too",
+       needs & LAG_METHOD_SPLITS ? ", or H is not a sum T(p) + V(q, t)" : ""},
+      {(needs & LAG_METHOD_NO_STATES) && m->nz > 0,
+       "method %s cannot integrate a model with states; rk45 and dop853 can", NULL},
+      {(needs & LAG_METHOD_STEPS_TO) && m->nev > 0,
+       "method %s does not find events (%s), as its motion within a step is too rough; dop853 and radau do",
+       m->nev > 0 ? m->ev[0].name : NULL}};
+  const Refusal last[] = {
+      {(needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH),
+       "method %s needs a model without if, abs, sign, min, max, atan2 and tables; dop853 does not", NULL},
+      {((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) ||
+           ((needs & LAG_METHOD_JACOBIAN) && !m->linear && !held) || ((needs & LAG_METHOD_TAYLOR) && !m->taylor),
+       "method %s needs derivatives of the model that this program was built without; `lagc run MODEL --method %s` and "
+       "`lagc build MODEL --method %s` build them in; rk45 and dop853 do without", method->name}};
+  int rc = first_refusal(s, method, sizeof first / sizeof *first, first);
+  rc = rc ? rc : check_jumps(s, method, needs);
+  rc = rc ? rc : first_refusal(s, method, sizeof last / sizeof *last, last);
+  return rc ? rc : check_digits(s, method);
 }
 
 int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *opt, int nopt) {

@@ -225,9 +225,5 @@ const lag_method lag_moreau = {
     .noptions = 1,
     .options = options,
     .refuses = refuses,
-    .work_size = work_size,
-    .init = init,
-    .step = step,
-    .dense = dense,
-    .reset = reset,
+    LAG_METHOD_FUNCTIONS,
 };

@@ -492,11 +492,6 @@ const lag_method lag_radau = {
     .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_NEWTON | LAG_METHOD_JACOBIAN | LAG_METHOD_CONSTRAINTS,
     .noptions = LAG_NADAPTIVE_OPTIONS,
     .options = lag_adaptive_rk_options,
-    .work_size = work_size,
-    .init = init,
-    .step = step,
-    .dense = dense,
-    .reset = reset,
-    .tangent_size = tangent_size,
-    .tangent = tangent,
+    LAG_METHOD_FUNCTIONS,
+    LAG_METHOD_TANGENT,
 };

@@ -128,74 +128,97 @@ static void add_impulse(const ConstraintBlock *b, int nq, int nc, double h) {
   for (int k = 0; k < nc; k++) b->sum[k] += b->g[k];
 }
 
-/* Solves the block of substeps k to k + length - 1 for its impulse. The defects of constraints on positions must end
- * as rounding. Those on velocities need not: of two equivalent ones with different factors the chord meets one, and
- * misses the other by O(h^2); project() finds contradictions at the end of the block. */
-static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double t1,
-                        const double *y, double dt, int k, int length, double at) {
+/* A block of substeps k to k + length - 1 in a step dt from t, y: it begins at the part `at`, lasts h and ends at
+ * t1. */
+typedef struct Span {
+  double t, t1, dt, at, h;
+  const double *y;
+  int k, length;
+} Span;
+
+/* Begins with the impulse that earlier blocks lead to. */
+static void begin_impulse(const ImplicitArrays *a, lag_problem *pb, const Span *s, double *history) {
   const ConstraintBlock *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
-  int nq = pb->nq, m = nq * (int)w->rule[0].free, steered = 0, known = 0, rc, holonomic = of->nholonomic == of->n;
+  int nq = pb->nq;
   size_t bytes = (size_t)nq * sizeof(double);
-  double h = 0, before = HUGE_VAL, least = 0.1, *history = b->history + (size_t)k * (size_t)LAG_PREDICTOR_SIZE(of->n);
-
-  for (int j = 0; j < length; j++) h += w->part[k + j] * dt;
   memcpy(b->dq, a->dq, bytes);
   memcpy(b->dp, a->dp, bytes);
   memset(b->impulse, 0, bytes);
   memset(b->sum, 0, (size_t)of->n * sizeof(double));
   if (lag_predictor_guess(history, of->n, b->g) &&
-      lag_least_change(pb, t + at * dt, b->from, holonomic, b->g, b->d, b->force) == 0 &&
+      lag_least_change(pb, s->t + s->at * s->dt, b->from, of->nholonomic == of->n, b->g, b->d, b->force) == 0 &&
       /* no guess where a singular position magnifies its error */
-      relative_size(pb, b->d, b->from + nq, b->from + nq) <= fabs(h)) {
-    add_impulse(b, nq, of->n, h);
+      relative_size(pb, b->d, b->from + nq, b->from + nq) <= fabs(s->h))
+    add_impulse(b, nq, of->n, s->h);
+}
+
+/* The substeps with the present impulse. known: their velocities are about known. */
+static int make_substeps(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Span *s, int known) {
+  int nq = pb->nq, m = nq * (int)w->rule[0].free, rc = 0;
+  double from = s->at;
+  memcpy(a->dq, a->block.dq, (size_t)nq * sizeof(double));
+  for (int i = 0; i < nq; i++) a->dp[i] = a->block.dp[i] + a->block.impulse[i];
+  for (int j = 0; j < s->length && rc == 0; j++) {
+    rc = lag_substep(w, a, pb, &(Substep){s->k + j, s->t, s->dt, from, s->y}, a->u + j * m, known);
+    from += w->part[s->k + j];
   }
-  for (int turn = 0; turn < MOST_IMPULSES; turn++) {
-    double from = at;
-    memcpy(a->dq, b->dq, bytes);
-    for (int i = 0; i < nq; i++) a->dp[i] = b->dp[i] + b->impulse[i];
-    for (int j = 0; j < length; j++) {
-      if ((rc = lag_substep(w, a, pb, &(Substep){k + j, t, dt, from, y}, a->u + j * m, known)) != 0) return rc;
-      from += w->part[k + j];
-    }
+  return rc;
+}
+
+/* The impulse leads to the constraints. */
+static int accept_impulse(const ConstraintBlock *b, lag_problem *pb, double t1, double *history) {
+  lag_predictor_add(history, pb->model->constraints->n, b->sum);
+  int rc = lag_residuals(pb, t1, b->to, b->c, b->r);
+  return rc                                              ? lag_step_refused(pb, rc, t1)
+         : lag_constraint_is_met(pb, t1, b->to, 1, b->c) ? LAG_OK
+                                                         : contradiction(pb, t1, b->to, 1);
+}
+
+/* Solves a block for its impulse. The defects of constraints on positions must end as rounding. Those on velocities
+ * need not: of two equivalent ones with different factors the chord meets one, and misses the other by O(h^2);
+ * project() finds contradictions at the end of the block. */
+static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Span *s) {
+  const ConstraintBlock *b = &a->block;
+  const lag_constraints *of = pb->model->constraints;
+  int nq = pb->nq, steered = 0, rc;
+  double ta = s->t + s->at * s->dt, t1 = s->t1, before = HUGE_VAL, least = 0.1;
+  double *history = b->history + (size_t)s->k * (size_t)LAG_PREDICTOR_SIZE(of->n);
+
+  begin_impulse(a, pb, s, history);
+  for (int turn = 0, known = 0; turn < MOST_IMPULSES; turn++) {
+    if ((rc = make_substeps(w, a, pb, s, known)) != 0) return rc;
     known = 1;
-    rc = constraint_defect(a, pb, t + at * dt, t1, h, y);
+    rc = constraint_defect(a, pb, ta, t1, s->h, s->y);
     if (rc == 0 && steered) rc = end_to_start_change(a, pb, t1, least);
-    rc = rc ? rc : lag_least_change(pb, t + at * dt, b->from, holonomic, b->g, b->d, b->force);
-    if (rc) return lag_step_refused(pb, rc, t + at * dt);
+    rc = rc ? rc : lag_least_change(pb, ta, b->from, of->nholonomic == of->n, b->g, b->d, b->force);
+    if (rc) return lag_step_refused(pb, rc, ta);
     if (lag_not_finite(nq, b->d) >= 0) break;
-    double part = relative_size_of_block(pb, b, h);
+    double part = relative_size_of_block(pb, b, s->h);
     double rounding = DBL_EPSILON * (steered ? 0x1p12 : 4); /* rounding is magnified near a singular position */
     int settled = part <= DBL_EPSILON / 4 || (part <= rounding && part >= before / 2);
-    if (!settled && steered && part >= before / 2 && lag_residuals(pb, t1, b->to, b->c, b->r) == 0) {
+    if (!settled && steered && part >= before / 2 && lag_residuals(pb, t1, b->to, b->c, b->r) == 0)
       /* rounding of terms that no coordinate has the size of, as at 0 */
       settled = lag_constraint_is_met(pb, t1, b->to, 1, b->c);
-    }
+    if (settled && !(steered && least > LEAST)) return accept_impulse(b, pb, t1, history);
     if (settled) {
-      if (steered && least > LEAST) {
-        least = LEAST;
-        before = HUGE_VAL;
-        continue;
-      }
-      lag_predictor_add(history, of->n, b->sum);
-      rc = lag_residuals(pb, t1, b->to, b->c, b->r);
-      return rc                                              ? lag_step_refused(pb, rc, t1)
-             : lag_constraint_is_met(pb, t1, b->to, 1, b->c) ? LAG_OK
-                                                             : contradiction(pb, t1, b->to, 1);
+      least = LEAST;
+      before = HUGE_VAL;
+      continue;
     }
     if (!steered && turn > 0 && part > before / 16) { /* converges too slowly: use the changes at the end */
       steered = 1;
       known = 0;
-      memset(b->impulse, 0, bytes);
+      memset(b->impulse, 0, (size_t)nq * sizeof(double));
       memset(b->sum, 0, (size_t)of->n * sizeof(double));
-      if ((rc = find_changes(a, pb, t + at * dt)) != 0) return lag_step_refused(pb, rc, t + at * dt);
+      if ((rc = find_changes(a, pb, ta)) != 0) return lag_step_refused(pb, rc, ta);
     } else {
-      add_impulse(b, nq, of->n, h);
+      add_impulse(b, nq, of->n, s->h);
     }
     before = part;
   }
   pb->detail = "no impulse was found that leads to the constraints; take smaller steps, or dop853";
-  return lag_step_failed(pb, LAG_EMETHOD, t);
+  return lag_step_failed(pb, LAG_EMETHOD, s->t);
 }
 
 /* Projects the momentum at the end of a block, tb, to r = 0; a->v := its velocity. */
@@ -244,14 +267,17 @@ int lag_rattle(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, doub
   memcpy(b->from, y, (size_t)pb->n * sizeof(double));
   for (int k = 0; k < substeps && rc == 0; k += length) {
     int last = k + length == substeps;
-    double begin = at;
-    for (int j = 0; j < length; j++) at += w->part[k + j];
-    double t1 = last ? tb : t + at * dt;
-    if ((rc = find_impulse(w, a, pb, t, t1, y, dt, k, length, begin)) != 0) return rc;
+    Span s = {.t = t, .dt = dt, .at = at, .y = y, .k = k, .length = length};
+    for (int j = 0; j < length; j++) {
+      at += w->part[k + j];
+      s.h += w->part[k + j] * dt;
+    }
+    s.t1 = last ? tb : t + at * dt;
+    if ((rc = find_impulse(w, a, pb, &s)) != 0) return rc;
     for (int j = 0; j < length; j++) lag_substep_record(w, a, pb, k + j, a->u + j * m);
     if (!last) memcpy(a->v, b->to + nq, (size_t)nq * sizeof(double));
-    rc = project(w, a, pb, t1, y, last);
-    rc = rc ? rc : check_leap(a, pb, t1, (at - begin) * dt);
+    rc = project(w, a, pb, s.t1, y, last);
+    rc = rc ? rc : check_leap(a, pb, s.t1, (at - s.at) * dt);
     memcpy(b->from, b->to, (size_t)nq * sizeof(double));
     memcpy(b->from + nq, a->v, (size_t)nq * sizeof(double));
   }

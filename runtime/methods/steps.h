@@ -42,6 +42,10 @@ static inline void lag_fixed_step_end(lag_fixed_step *s, const lag_next_step *ne
   *t = next->tb;
 }
 
+/* Members of lag_method that are functions of the same names in its file. */
+#define LAG_METHOD_FUNCTIONS .work_size = work_size, .init = init, .step = step, .dense = dense, .reset = reset
+#define LAG_METHOD_TANGENT .tangent_size = tangent_size, .tangent = tangent
+
 /* The option `step` of fixed-step methods. */
 #define LAG_STEP_OPTION \
   { "step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, .choices = NULL }

@@ -206,11 +206,6 @@ const lag_method lag_taylor_method = {
     .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_TAYLOR,
     .noptions = NOPTIONS,
     .options = options,
-    .work_size = work_size,
-    .init = init,
-    .step = step,
-    .dense = dense,
-    .reset = reset,
-    .tangent_size = tangent_size,
-    .tangent = tangent,
+    LAG_METHOD_FUNCTIONS,
+    LAG_METHOD_TANGENT,
 };

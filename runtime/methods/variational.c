@@ -71,9 +71,6 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
 
 #define PROPERTIES \
   (LAG_METHOD_SYMPLECTIC | LAG_METHOD_SYMMETRIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_NEWTON)
-#define FUNCTIONS                                                                                                  \
-  .work_size = work_size, .init = init, .step = step, .dense = dense, .reset = reset,                              \
-  .tangent_size = tangent_size, .tangent = tangent
 
 const lag_method lag_variational = {
     .name = "variational",
@@ -87,7 +84,8 @@ const lag_method lag_variational = {
     .options = variational_options,
     .order_of = variational_order,
     .variant = &lag_variational,
-    FUNCTIONS,
+    LAG_METHOD_FUNCTIONS,
+    LAG_METHOD_TANGENT,
 };
 
 const lag_method lag_gauss = {
@@ -103,5 +101,6 @@ const lag_method lag_gauss = {
     .options = gauss_options,
     .order_of = gauss_order,
     .variant = &lag_gauss,
-    FUNCTIONS,
+    LAG_METHOD_FUNCTIONS,
+    LAG_METHOD_TANGENT,
 };

@@ -240,13 +240,8 @@ static int adjoint(lag_problem *pb, double t0, double dt, const double *y0, doub
                LAG_METHOD_NEWTON | LAG_METHOD_CONSTRAINTS | (properties),                                \
       .noptions = 1,                                                                                     \
       .options = options,                                                                                \
-      .work_size = work_size,                                                                            \
-      .init = init,                                                                                      \
-      .step = step,                                                                                      \
-      .dense = dense,                                                                                    \
-      .reset = reset,                                                                                    \
-      .tangent_size = tangent_size,                                                                      \
-      .tangent = tangent,                                                                                \
+      LAG_METHOD_FUNCTIONS,                                                                              \
+      LAG_METHOD_TANGENT,                                                                                \
       .span = span,                                                                                      \
       .adjoint_size = adjoint_size,                                                                      \
       .adjoint = adjoint,                                                                                \

@@ -3,19 +3,9 @@
 
 #include <stdlib.h>
 
-#ifdef __has_feature
-#if __has_feature(address_sanitizer)
-#define __SANITIZE_ADDRESS__ 1
-#endif
-#endif
-#ifdef __SANITIZE_ADDRESS__
-void __asan_poison_memory_region(void const volatile *p, size_t n);
-#define POISON __asan_poison_memory_region
-enum { GAP = 2 };
-#else
-#define POISON(p, n) ((void)(p), (void)(n))
-enum { GAP = 0 };
-#endif
+#include "numeric/poison.h"
+
+enum { GAP = POISON_GAP / sizeof(double) };
 
 double *lag_workspace(size_t n, const lag_part parts[]) {
   size_t total = 1;

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/poison.h"
+#include "numeric/poison.h"
 
 typedef struct Chunk Chunk;
 struct Chunk {

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/arena.h"
-#include "base/poison.h"
+#include "numeric/poison.h"
 
 #define VEC(T)       \
   struct {           \

@@ -182,8 +182,8 @@ static const char *const prototypes[FN_COUNT] = {
     [FN_ACT] = " |int lag_act(int event, const lag_params *p, lag_state *sINPUT, int *stop)",
     [FN_HOLD] = " |int lag_hold(const lag_params *p, lag_state *sINPUT)",
     [FN_RK4_STEP] = " |int lag_rk4_step(const lag_params *p, lag_state *s, LAG_REAL hINPUT)",
-    [FN_RK4_STEP_WITH] = " |int lag_rk4_step_with(const lag_params *p, lag_state *s, LAG_REAL h, lag_input_fn *input, "
-                         "void *context)",
+    [FN_RK4_STEP_WITH] = (" |int lag_rk4_step_with(const lag_params *p, lag_state *s, LAG_REAL h, "
+                          "lag_input_fn *input, void *context)"),
     [FN_UNTIL_EVENT] = " |int lag_step_until_event(const lag_params *p, lag_state *s, LAG_REAL hINPUT, int *event)",
     [FN_RHS] = " |int lag_rhs(LAG_REAL t, const LAG_REAL *y, const lag_params *pINPUT, LAG_REAL *dydt)",
     [FN_MASS] = " |int lag_mass(STATE, LAG_REAL *M)",

@@ -143,55 +143,61 @@ static const char *const lane_flags[] = {NULL};
 int toolchain_has_lanes(void) { return 0; }
 #endif
 
+typedef VEC(const char *) Words;
+#define PUSH(list) push(a, &words, list, sizeof(list) / sizeof *(list))
+static void push(Arena *a, Words *words, const char *const *list, size_t n) {
+  for (size_t i = 0; i < n; i++) vec_push(a, words, list[i]);
+}
+
+/* Macro LAG_BUILD: how the program was compiled. */
+static const char *build_macro(Arena *a, const Toolchain *t, const char *safe) {
+  char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc,
+                             t->optimise, *safe ? " " : "", safe);
+  for (char *c = build + strlen("-DLAG_BUILD=\""); c[1]; c++)
+    if (*c == '"' || *c == '\\') *c = ' ';
+  return build;
+}
+
 /* Compiles and links with the flags that the simulator reports as LAG_BUILD: no contraction (same bits with and
  * without fused multiply-add), no vector stores, and the flag of the probe. */
+static const char *const *compiler_words(Arena *a, const Toolchain *t, const char *dir, const CompilerTraits *is,
+                                         const SourceText *texts, size_t n) {
+  int alone = is_alone(t), single = alone && !t->models,
+      links_sines = !alone && !t->lanes && strcmp(t->library, "lag") == 0;
+  const char *archive = arena_printf(a, "%s/lib%s.a", t->lib, t->library);
+  const char *first[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, "-o", made_in(a, t, dir)};
+  const char *runtime[] = {build_macro(a, t, is->safe), links_sines ? "-DLAG_LINKED_SINES" : "", "-I", t->include};
+  const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : "")},
+             *hidden[] = {"-fvisibility=hidden", "-s", alone ? steady_flags(a, t) : ""};
+  const char *exports = is->exports ? arena_printf(a, "-Wl,--version-script=%s/exports.map", dir) : "";
+  const char *whole[] = {"-Wl,-Bsymbolic", exports, "-Wl,--whole-archive", archive, "-Wl,--no-whole-archive"};
+  const char *last[] = {t->gsl ? "-llag_gsl" : "", t->soname ? "" : archive,    t->gsl ? "-lgsl" : "",
+                        t->gsl ? "-lgslcblas" : "", t->needs ? t->needs : "", "-lm", NULL};
+  Words words = {0};
+  PUSH(first);
+  if (!single) PUSH(runtime);
+  if (t->soname) PUSH(library);
+  if (single) PUSH(hidden);
+  for (const char *const *f = t->flags; *f; f++) vec_push(a, &words, *f);
+  for (const char *const *f = lane_flags; t->lanes && *f; f++) vec_push(a, &words, *f);
+  vec_push(a, &words, is->safe);
+  if (!t->soname) vec_push(a, &words, is->linker);
+  for (size_t i = single ? n - 1 : 0; i < n; i++) vec_push(a, &words, arena_printf(a, "%s/%s", dir, texts[i].name));
+  if (t->soname && !alone) PUSH(whole);
+  vec_push(a, &words, alone ? "" : arena_printf(a, "-L%s", t->lib));
+  for (int i = 0; i < 3; i++)
+    for (char *w = t->parts[i] ? strtok(arena_strdup(a, t->parts[i]), " ") : NULL; w; w = strtok(NULL, " "))
+      vec_push(a, &words, w);
+  PUSH(last);
+  return words.at;
+}
+
 static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n,
                    const char **error) {
   CompilerTraits is;
-  if (!compiler_probe(a, t->cc, t->optimise, dir, &is, error)) return 0;
-  char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc,
-                             t->optimise, *is.safe ? " " : "", is.safe);
-  for (char *c = build + strlen("-DLAG_BUILD=\""); c[1]; c++)
-    if (*c == '"' || *c == '\\') *c = ' ';
-  int alone = is_alone(t), single = alone && !t->models,
-      links_sines = !alone && !t->lanes && strcmp(t->library, "lag") == 0;
-  const char *first[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, "-o", made_in(a, t, dir)};
-  const char *runtime[] = {build, links_sines ? "-DLAG_LINKED_SINES" : "", "-I", t->include};
-  const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : "")},
-             *hidden[] = {"-fvisibility=hidden", "-s", alone ? steady_flags(a, t) : ""};
-  const char *exports = is.exports ? arena_printf(a, "-Wl,--version-script=%s/exports.map", dir) : "";
-  const char *whole[] = {"-Wl,-Bsymbolic", exports,
-                         "-Wl,--whole-archive", arena_printf(a, "%s/lib%s.a", t->lib, t->library),
-                         "-Wl,--no-whole-archive"};
-  const char *last[] = {alone ? "" : arena_printf(a, "-L%s", t->lib),
-                        t->gsl ? "-llag_gsl" : "",
-                        t->soname ? "" : arena_printf(a, "%s/lib%s.a", t->lib, t->library),
-                        t->gsl ? "-lgsl" : "",
-                        t->gsl ? "-lgslcblas" : "",
-                        t->needs ? t->needs : "",
-                        "-lm",
-                        NULL};
-  VEC(const char *) words = {0}, parts = {0};
-  for (size_t i = 0; i < sizeof first / sizeof *first; i++) vec_push(a, &words, first[i]);
-  for (size_t i = 0; i < sizeof runtime / sizeof *runtime && !single; i++) vec_push(a, &words, runtime[i]);
-  for (size_t i = 0; i < sizeof library / sizeof *library && t->soname; i++) vec_push(a, &words, library[i]);
-  for (size_t i = 0; i < sizeof hidden / sizeof *hidden && single; i++) vec_push(a, &words, hidden[i]);
-  for (const char *const *f = t->flags; *f; f++) vec_push(a, &words, *f);
-  for (const char *const *f = lane_flags; t->lanes && *f; f++) vec_push(a, &words, *f);
-  vec_push(a, &words, is.safe);
-  if (!t->soname) vec_push(a, &words, is.linker);
-  for (size_t i = single ? n - 1 : 0; i < n; i++) vec_push(a, &words, arena_printf(a, "%s/%s", dir, texts[i].name));
-  for (size_t i = 0; i < sizeof whole / sizeof *whole && t->soname && !alone; i++) vec_push(a, &words, whole[i]);
-  for (int i = 0; i < 3; i++)
-    for (char *w = t->parts[i] ? strtok(arena_strdup(a, t->parts[i]), " ") : NULL; w; w = strtok(NULL, " "))
-      vec_push(a, &parts, w);
-  for (size_t i = 0; i < sizeof last / sizeof *last; i++) {
-    vec_push(a, &words, last[i]);
-    if (i == 0)
-      for (uint32_t k = 0; k < parts.n; k++) vec_push(a, &words, parts.at[k]);
-  }
   char *said = NULL;
-  int status = compiler_run(a, t->cc, words.at, &said);
+  if (!compiler_probe(a, t->cc, t->optimise, dir, &is, error)) return 0;
+  int status = compiler_run(a, t->cc, compiler_words(a, t, dir, &is, texts, n), &said);
   if (status == 0) return 1;
   if (status == 127)
     *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);

@@ -36,8 +36,8 @@ static void parts_of_a_work_space_have_gaps(void **state)
   (void)state;
   double *block = lag_workspace(3, parts);
   for (int i = 0; i < 3; i++) {
-    assert_true(__asan_address_is_poisoned(*parts[i] + sizes[i]));
-    assert_false(sizes[i] && __asan_address_is_poisoned(*parts[i] + sizes[i] - 1));
+    assert_true(__asan_address_is_poisoned(*parts[i].at + parts[i].n));
+    assert_false(parts[i].n && __asan_address_is_poisoned(*parts[i].at + parts[i].n - 1));
   }
   free(block);
 }

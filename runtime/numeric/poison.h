@@ -1,5 +1,5 @@
-/* Poisoned memory, whose use the address sanitizer reports: the gap after each block of an arena, the unused room of
- * a vector. Without the sanitizer these macros do nothing and there is no gap. */
+/* Poisoned memory, whose use the address sanitizer reports: the gap after each block of an arena or part of a work
+ * space, the unused room of a vector. Without the sanitizer these macros do nothing and there is no gap. */
 #pragma once
 
 #include <stddef.h>
