@@ -7,7 +7,7 @@ static const char *const type =
     "\n/* Memory of an adaptive method; _adaptive_begin fills it, and again after a jump of the state. LAG_ESTEP: no "
     "step is short enough. */\n"
     "typedef struct lag_adaptive {\n"
-    "  LAG_REAL tolerance, absolute; /* error of a step, component by component: absolute + tolerance*|y| */\n"
+    "  LAG_REAL tolerance, absolute; /* error of a step, component by component: absolute + tolerance*|y|, in SI */\n"
     "  LAG_REAL longest; /* step; 0: no limit */\n"
     "  LAG_REAL step;    /* to try next; 0: chosen by the method */\n"
     "  LAG_REAL memory;  /* of the controller */\n"
