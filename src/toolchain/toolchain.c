@@ -335,6 +335,21 @@ int toolchain_has_compiler(Arena *a, const Toolchain *t) {
   return 0;
 }
 
+/* Whether the file begins as the running program does: with the mark of ELF, Mach-O, PE. */
+static int is_program(const char *path) {
+  char own[PATH_MAX], mark[2][4] = {{0}};
+  long n = lag_own_path(own, sizeof own - 1);
+  own[n > 0 ? n : 0] = '\0';
+  const char *const paths[] = {own, path};
+  for (int k = 0; k < 2; k++) {
+    FILE *f = fopen(paths[k], "rb");
+    size_t got = f ? fread(mark[k], 1, sizeof mark[k], f) : 0;
+    if (f) fclose(f);
+    if (got < sizeof mark[k]) return k == 0; /* nothing to compare with */
+  }
+  return memcmp(mark[0], mark[1], sizeof mark[0]) == 0;
+}
+
 const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error) {
   const char *cache = cache_folder(a),
              *path = cache ? arena_printf(a, "%s/%s", cache, toolchain_entry(a, t, texts, n)) : NULL;
@@ -343,8 +358,10 @@ const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *
   int lock = path ? cache_take(a, path) : -1, there = lock >= 0 && cache_has(path), ok = there;
   if (!there && build(a, t, texts, n, &f, error)) {
     const char *made = made_in(a, t, f.path);
-    ok = cache_seal(made) && chmod(made, 0700) == 0 && rename(made, path) == 0;
-    if (!ok) *error = arena_printf(a, "cannot write %s: %s", path, strerror(errno));
+    int right = is_program(made);
+    ok = right && cache_seal(made) && chmod(made, 0700) == 0 && rename(made, path) == 0;
+    if (!right) *error = arena_printf(a, "the C compiler `%s` wrote no program of this machine", t->cc);
+    else if (!ok) *error = arena_printf(a, "cannot write %s: %s", path, strerror(errno));
     build_folder_remove(&f);
     if (ok) cache_limit(a, path);
   }
