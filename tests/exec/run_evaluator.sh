@@ -116,7 +116,7 @@ fake() { # NAME COMMANDS
   printf '#!/bin/sh\nstarted="%s/started"\n%s\n' "$TMP" "$2" >"$TMP/$1" && chmod +x "$TMP/$1"
 }
 fake fails 'echo $$ >>"$started"; exit 1'
-fake hangs '[ ! -e "$started.over" ] || exit 1; echo $$ >>"$started"; exec sleep 1000'
+fake hangs '[ ! -e "$started.over" ] || exit 1; echo $$ >>"$started"; exec sleep 30'
 fake full 'echo $$ >>"$started"; exec '"$CC"' "$@"'
 fake rubbish 'while [ $# -gt 0 ]; do [ "$1" != -o ] || echo rubbish >"$2"; case $2 in *library.so) echo $$ >"$started" ;; esac; shift; done'
 has_started="[ -s '$TMP/started' ]"
