@@ -109,6 +109,7 @@ int simulator_evaluate(Compiler *c, const Units *units, EvaluatedRun *e) {
     ModelLibrary m = library_of(c, units, &tools);
     e->simulator = toolchain_entry(c->arena, &tools, texts.at, texts.n);
     e->library = toolchain_entry(c->arena, &m.tools, m.texts.at, m.texts.n);
+    if (strchr(tools.cc, ' ')) e->simulator = NULL; /* with its options sines may be fused: other bits */
     if (in_cache(c, e->simulator)) return STATUS_OK;
   }
   if (sweeps && !never) {

@@ -157,7 +157,8 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
       links_sines = !alone && !t->lanes && strcmp(t->library, "lag") == 0;
   const char *first[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, "-o", made_in(a, t, dir)};
   const char *runtime[] = {build, links_sines ? "-DLAG_LINKED_SINES" : "", "-I", t->include};
-  const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : "")},
+  const char *same = t->models ? "-DLAG_NO_FMA" : ""; /* sines with the evaluator's bits, whatever the options of CC */
+  const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : ""), same},
              *hidden[] = {"-fvisibility=hidden", "-s", alone ? steady_flags(a, t) : ""};
   const char *exports = is.exports ? arena_printf(a, "-Wl,--version-script=%s/exports.map", dir) : "";
   const char *whole[] = {"-Wl,-Bsymbolic", exports,

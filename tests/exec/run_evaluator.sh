@@ -111,6 +111,12 @@ for model in double_pendulum lorenz slider_crank kepler stick_slip magnetic_pend
   one_of 6 && check "models/$model.lag changes over after row $row" changes_over "models/$model.lag" "$scene" "$row"
 done
 
+# Options of CC that let sines use fused multiply-adds change nothing, either.
+if "$CC" -march=native -dM -E -x c /dev/null 2>/dev/null | grep -q __FMA__; then
+  fused() { (CC="$CC -march=native" && changes_over models/double_pendulum.lag swing 50); }
+  one_of 3 && check "a change-over to C with fused multiply-adds" fused
+fi
+
 # Compilers that fail, hang, write rubbish, or have no room: the run goes on, and the next one begins.
 fake() { # NAME COMMANDS
   printf '#!/bin/sh\nstarted="%s/started"\n%s\n' "$TMP" "$2" >"$TMP/$1" && chmod +x "$TMP/$1"
