@@ -271,6 +271,21 @@ static void second_derivatives_are_right(void **state) {
   }
 }
 
+/* 21945 pairs have no Taylor series, and a note says so. */
+static void long_series_are_refused(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  StrBuf out = strbuf(a);
+  Eqns *e = family(a, "const N = %d\ncoord x[N]\nlagrangian = sum(i in 1..N, x[i]'^2/2) -\n"
+                      "  sum(i in 1..N, sum(j in 1..i-1, cos(x[i] - x[j])))", 210, 0);
+  ProgramSet *u = unit_head(e, "test.lag", 0);
+  unit_require(u, e, WANT_TAYLOR);
+  diags_print(e->m->diags, &out);
+  assert_null(u->taylor);
+  assert_non_null(strstr(sb_text(&out), "no Taylor series: it would write out the 21945 terms"));
+  arena_free(a);
+}
+
 /* The self-check compares them with the text, by a sample of their pairs; and notices a wrong body. */
 static void the_text_is_compared(void **state) {
   (void)state;
@@ -327,6 +342,7 @@ int main(void) {
       cmocka_unit_test(a_spring_is_right),
       cmocka_unit_test(other_texts_are_written_out),
       cmocka_unit_test(second_derivatives_are_right),
+      cmocka_unit_test(long_series_are_refused),
       cmocka_unit_test(the_text_is_compared),
       cmocka_unit_test(one_pair_proves_a_symmetry),
       cmocka_unit_test(a_wrong_symmetry_is_refused),
