@@ -180,7 +180,8 @@ static void add_move(const Mapping *p, SymId target, Expr to, Span span) {
   uint32_t first = expr_map_get(&y->moved, node);
   if (first) {
     diag_error(b->diags, p->target, "the symmetry `%s` maps `%s` twice", y->name, name);
-    diag_also(b->diags, y->moves.at[first - 1].span, "first here; all maps are one transformation, of the old coordinates");
+    diag_also(b->diags, y->moves.at[first - 1].span,
+              "first here; all maps are one transformation, of the old coordinates");
     if (b->index.n)
       diag_help(b->diags, "maps after a `for` belong to it, up to the next `for`: write other maps before it");
     return;
