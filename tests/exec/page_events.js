@@ -77,6 +77,9 @@ async function others() {
   await b.open(`file://${folder}/pendulum.html`, {before: "delete window.WebAssembly;"});
   await b.until('/^t = [0-9.]*[1-9]/.test(document.getElementById("time").value)');
   is("without WebAssembly a message, and a recording that moves", (await said()).includes("WebAssembly"), await said());
+  await b.open(`file://${folder}/pendulum.html`, {still: true});
+  await b.until("window.lagc && lagc.motion && lagc.track.length > 0");
+  is("with reduced motion a page waits", !(await b.value("lagc.playing")));
   await page("wall");
   await b.until('document.getElementById("said").textContent != ""');
   is("a motion that fails says when and why", /t = 1.*Reset/.test(await said()) && !(await b.value("lagc.playing")), await said());
