@@ -22,7 +22,7 @@ LIVE := $(addprefix runtime/page/,live.html motion.js words.js typeset.js plots.
 $(BUILD)/gen/page/live_page.txt: $(LIVE) runtime/io/page.html
 	@mkdir -p $(@D)
 	sed -n '/^\/\/ ---- drawing/,/^\/\/ ---- marks/p' runtime/io/page.html >$(@D)/drawing.js
-	sed -n '/^\/\/ ---- numbers/,/^\/\/ ---- drawing/p' runtime/io/page.html >$(@D)/numbers.js
+	sed -n '/^\/\/ ---- numbers/,/^\/\/ ---- the run/p' runtime/io/page.html >$(@D)/numbers.js
 	sed -e '/@DRAWING@/{r $(@D)/drawing.js' -e 'd}' $(@D)/numbers.js runtime/page/words.js runtime/page/typeset.js runtime/page/plots.js runtime/page/drag.js runtime/page/live.js >$(@D)/live.js
 	sed -e '/@MOTION@/{r runtime/page/motion.js' -e 'd}' -e '/@LIVE@/{r $(@D)/live.js' -e 'd}' runtime/page/live.html | sed 's/^  *//; /^\/\/ /d' >$@
 $(eval $(call as_text,commands/live_page.h,$(BUILD)/gen/page/live_page.txt))

@@ -115,14 +115,6 @@ class Motion {
   get t() { return this.lag.f.lag_sim_time(this.sim); }
   // Integrates to t. Returns 0, or 1 where an event ended the motion before; throws where it failed.
   advance(t) { return this.must(this.lag.f.lag_sim_advance(this.sim, t)); }
-  // The same, a step of the method after the other, for about so many milliseconds at most.
-  advance_for(t, time) {
-    for (const began = performance.now();;) {
-      this.must(this.lag.f.lag_sim_ensure_step(this.sim, t, this.room));
-      const [reach] = new Float64Array(this.lag.f.memory.buffer, this.room, 1), ended = this.advance(reach);
-      if (ended || reach == t || performance.now() - began > time) return ended;
-    }
-  }
   names(which) { // page_output or page_state
     const all = [];
     for (let i = 0, at; (at = this.lag.f[which](this.sim, i)); i++) all.push(this.lag.text(at).split("\t"));

@@ -32,26 +32,33 @@ static int record(void *data) {
   return process_run(a, self, argv, &said);
 }
 
-/* Appends a recording of so many rows. 0: it takes longer than a second, or is longer than a page should hold. */
-static int put_rows(Compiler *c, const Scene *scene, int rows, StrBuf *out) {
-  enum { LONGEST = 60000 };
+typedef enum { RECORDED, TOO_LONG, NOT_RECORDED } Recorded;
+
+/* Appends a recording of so many rows; none where the run takes longer than some seconds, or the rows are more than a
+ * page should hold. */
+static Recorded put_rows(Compiler *c, const Scene *scene, int rows, StrBuf *out) {
+  enum { LONGEST = 60000, SECONDS = 4 };
   static const char begin[] = "\nconst run =\n";
   const char *to = arena_printf(c->arena, "%s.recording.html", c->o.output), *why, *from = NULL, *end = NULL;
   Recording r = {c, scene, to, rows};
   StrBuf page = strbuf(c->arena);
   long process = process_begin(record, &r);
-  if (process > 0 && process_end(process, 1) == STATUS_OK && file_append(to, &page, &why))
+  if (process > 0 && process_end(process, SECONDS) == STATUS_OK && file_append(to, &page, &why))
     from = strstr(sb_text(&page), begin);
   remove(to);
   if (from) end = strstr(from += strlen(begin), "\n;\n");
-  if (!end || end - from > LONGEST) return 0;
+  if (!end) return NOT_RECORDED;
+  if (end - from > LONGEST) return TOO_LONG;
   sb_putn(out, from, (size_t)(end - from));
-  return 1;
+  return RECORDED;
 }
 
+/* The recording, or null: for a text that has no name, and where the command line gives values, too. */
 static void put_recording(Compiler *c, const Scene *scene, StrBuf *out) {
-  int can = scene->has_span && strcmp(c->o.file, "-") != 0;
-  if (!can || (!put_rows(c, scene, 150, out) && !put_rows(c, scene, 40, out))) sb_puts(out, "null");
+  int can = scene->has_span && strcmp(c->o.file, "-") != 0 && !c->given.n && !c->o.defines.n;
+  Recorded done = can ? put_rows(c, scene, 150, out) : NOT_RECORDED;
+  if (done == TOO_LONG) done = put_rows(c, scene, 40, out);
+  if (done != RECORDED) sb_puts(out, "null");
 }
 
 static const char *escaped(Arena *a, const char *text) {

@@ -5,6 +5,7 @@ const {Lag, Motion, bytes_of, copied} = require(require("path").resolve(script))
 const [, text, parts] = /let model = (\{[^]*?\});\n(?:const parts = "([^"]*))?/.exec(fs.readFileSync(page, "utf8")), model = JSON.parse(text), packed = bytes_of(parts || "");
 const all = model.raw !== undefined ? bytes_of(model.raw) // of a playground
   : copied(packed[0] == 0x1f ? new Uint8Array(require("zlib").gunzipSync(packed)) : packed); // lagc without zlib
+if (packed[0] == 0x1f && packed.at(-4) + 256*packed.at(-3) != require("zlib").gunzipSync(packed).length % 65536) throw new Error("the text has more bytes than were packed");
 const lag = new Lag(new WebAssembly.Module(fs.readFileSync(wasm)));
 const found = model.programs.find(p => p.scene == scene), bytes = Uint8Array.from(all.subarray(found.at, found.at + found.n));
 if (process.env.DAMAGE) bytes[+process.env.DAMAGE % bytes.length] ^= 1 << +process.env.DAMAGE % 8;
