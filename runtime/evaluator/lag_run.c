@@ -1,7 +1,7 @@
-/* lag-run: a simulator of any model. Enters: the command line of a simulator; the bytes that lagc wrote, at the path
- * $LAG_PROGRAM, which are evaluated, unless $LAG_LIBRARY is a library of the model; $LAG_NO_GSL leaves GSL out. While it
- * evaluates lagc may compile: then the path of the library comes from the descriptor $LAG_COMPILED, and the run changes
- * over between two steps. */
+/* lag-run: a simulator of any model. Enters: the command line of a simulator; a library of the model, $LAG_LIBRARY, or
+ * where there is none the bytes that lagc wrote, $LAG_PROGRAM, which are evaluated; $LAG_NO_GSL leaves GSL out. While
+ * it evaluates lagc may compile: then the path of the library comes from the descriptor $LAG_COMPILED, and the run
+ * changes over between two steps. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

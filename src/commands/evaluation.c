@@ -72,7 +72,8 @@ int simulator_hand_over(Compiler *c, const EvaluatedRun *e, const Units *units) 
   const char *error, *library = in_cache(c, e->library);
   if (c->o.no_gsl) process_set("LAG_NO_GSL", "1");
   if (library) process_set("LAG_LIBRARY", library);
-  if (!process_give("LAG_PROGRAM", &e->bytes) && !library) return usage_error("cannot write a temporary file: set TMPDIR");
+  int given = process_give("LAG_PROGRAM", &e->bytes);
+  if (!given && !library) return usage_error("cannot write a temporary file: set TMPDIR");
   if (library || !e->library) return STATUS_OK;
   if (!toolchain_find(c->arena, c->argv0, 0, &b.tools, &error)) return usage_error(error);
   if (units) b.units = *units;
