@@ -405,15 +405,14 @@ function machineOf(run) {
   };
 }
 let picture = null, machine = null;
-// A trial run over the span, for about a fifth of a second, gives the extent of the picture.
+// A trial run over the span, for at most a fifth of a second, gives the extent of the picture.
 function look() {
-  const rows = [], began = performance.now(), most = (span.t1 - span.t0)/300;
+  const rows = [], began = performance.now(), parts = 300, step = (span.t1 - span.t0)/parts;
   try {
     const trial = new Motion(lag, scene, options(settings.start, NaN));
-    for (let step = most/64, ended = false; !ended && (span.t1 - trial.t)*most > 0 && performance.now() - began < 200;) {
-      ended = trial.advance(Math.abs(span.t1 - trial.t) <= Math.abs(step) ? span.t1 : trial.t + step) > 0;
+    for (let k = 0; k <= parts && performance.now() - began < 200; k++) {
+      if (trial.advance(span.t0 + k*step) > 0) k = parts;
       rows.push({t: trial.t, x: trial.outputs});
-      if (performance.now() - began < 100) step = Math.abs(2*step) < Math.abs(most) ? 2*step : most;
     }
     trial.free();
   } catch (e) { if (!rows.length) { say(wrong(e)); return; } }
