@@ -33,6 +33,13 @@ sed 's/k\*x^2/k*xx^2/' "$TMP/oscillator.lag" >"$TMP/mistake.lag"
 printf 'model deep\ncoord x\nlagrangian = x'"'"'^2/2 - %s\n' "$(awk 'BEGIN { for (i = 0; i < 3000; i++) printf "sin("; printf "x"; for (i = 0; i < 3000; i++) printf ")" }')" >"$TMP/deep.lag"
 printf 'include "other.lag"\nmodel m\ncoord x\nlagrangian = x'"'"'^2/2\n' >"$TMP/parts.lag"
 printf 'model m\ninclude "bodies.lag"\ncoord th\nlagrangian = hoop(2, 3)*th'"'"'^2/2\n' >"$TMP/library.lag"
+cat >"$TMP/functions.lag" <<'END'
+model functions
+coord x
+potential = exp(x) + log(2 + x^2) + sinh(x) + cosh(x) + tanh(x) + (1 + x^2)^(1/3) + (1 + x^2)^1.5
+kinetic = x'^2/2
+scene s { start x = 1; span 10 }
+END
 node tests/exec/playground_answers.js "$here/lagc.wasm" >"$TMP/answers" <<END
 check $TMP/oscillator.lag
 check $TMP/mistake.lag
@@ -44,6 +51,7 @@ page models/double_pendulum.lag
 page models/bouncing_ball.lag
 page $TMP/oscillator.lag
 derive $TMP/library.lag
+check $TMP/functions.lag
 END
 # as the command: `digits` are of long double, which differs
 same() { # NUMBER FILE
@@ -54,6 +62,7 @@ same() { # NUMBER FILE
 }
 check "proofs and refutations are those of lagc check --json" same 1 oscillator.lag
 check "a mistake, too" same 2 mistake.lag
+check "functions in all digits of long double" same 11 functions.lag
 node tests/exec/playground_facts.js "$TMP/answers" >"$TMP/facts"
 fact() { sed -n "s/^$1: //p" "$TMP/facts"; }
 is "at its place, with a way out" '4:27 unknown name `xx`; did you mean `x`?' "$(fact place)"
