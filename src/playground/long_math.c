@@ -88,3 +88,45 @@ Real asinhl(Real x) {
 }
 Real acoshl(Real x) { return x > 1e30L ? logl(x) + ln2 : log1pl((x - 1) + sqrtl((x - 1) * (x + 1))); }
 Real atanhl(Real x) { return copysignl(log1pl(2 * fabsl(x) / (1 - fabsl(x))) / 2, x); }
+
+/* a/b, rounded to nearest: that of Clang 14's runtime doubles some quotients, as 1/(2 - 2^-112). Long division of the
+ * mantissas, bit by bit. */
+__extension__ typedef unsigned __int128 Bits;
+typedef union {
+  Real value;
+  Bits bits;
+} Parts;
+enum { DIGITS = 113, BIAS = 16383 };
+
+/* x = m * 2^(result - 112) with 2^112 <= m, for finite x > 0. */
+static int split(Real x, Bits *m) {
+  int shift = 0;
+  if (x < 0x1p-16382L) x *= 0x1p113L, shift = -DIGITS;
+  const Parts p = {.value = x};
+  *m = (p.bits & (((Bits)1 << 112) - 1)) | (Bits)1 << 112;
+  return (int)(p.bits >> 112) - BIAS + shift;
+}
+
+static Real quotient(Real a, Real b) {
+  Bits m, n, q = 0;
+  int e = split(a, &m) - split(b, &n);
+  if (m < n) m <<= 1, e--;
+  for (int i = 0; i < DIGITS; i++, m <<= 1) {
+    q <<= 1;
+    if (m >= n) m -= n, q |= 1;
+  }
+  if (m > n || (m == n && (q & 1))) q++;
+  if (q >> DIGITS) q >>= 1, e++;
+  const Parts p = {.bits = (q & (((Bits)1 << 112) - 1)) | (Bits)BIAS << 112};
+  return scalbnl(p.value, e);
+}
+
+Real __divtf3(Real a, Real b) {
+  const int negative = !signbit(a) != !signbit(b);
+  const Real size = isnan(a) || isnan(b) ? (Real)NAN
+                    : isinf(a)           ? isinf(b) ? (Real)NAN : (Real)INFINITY
+                    : isinf(b) || (a == 0 && b != 0) ? 0
+                    : b == 0                         ? a == 0 ? (Real)NAN : (Real)INFINITY
+                                                     : quotient(fabsl(a), fabsl(b));
+  return negative ? -size : size;
+}

@@ -40,6 +40,16 @@ potential = exp(x) + log(2 + x^2) + sinh(x) + cosh(x) + tanh(x) + (1 + x^2)^(1/3
 kinetic = x'^2/2
 scene s { start x = 1; span 10 }
 END
+cat >"$TMP/quotients.lag" <<'END'
+model quotients
+coord x
+param k = 2 > 0, h = 3 > 0
+let r = sqrt(x^2 + 1)
+kinetic = x'^2/2
+potential = -k/r - h/r^3
+expect x'' = -k*x/r^3 - 3*h*x/r^5
+scene s { start x = 1 }
+END
 node tests/exec/playground_answers.js "$here/lagc.wasm" >"$TMP/answers" <<END
 check $TMP/oscillator.lag
 check $TMP/mistake.lag
@@ -52,6 +62,7 @@ page models/bouncing_ball.lag
 page $TMP/oscillator.lag
 derive $TMP/library.lag
 check $TMP/functions.lag
+check $TMP/quotients.lag
 END
 # as the command: `digits` are of long double, which differs
 same() { # NUMBER FILE
@@ -63,6 +74,7 @@ same() { # NUMBER FILE
 check "proofs and refutations are those of lagc check --json" same 1 oscillator.lag
 check "a mistake, too" same 2 mistake.lag
 check "functions in all digits of long double" same 11 functions.lag
+check "quotients, too: 1/(2 - 2^-112) is no 1" same 12 quotients.lag
 node tests/exec/playground_facts.js "$TMP/answers" >"$TMP/facts"
 fact() { sed -n "s/^$1: //p" "$TMP/facts"; }
 is "at its place, with a way out" '4:27 unknown name `xx`; did you mean `x`?' "$(fact place)"
