@@ -7,8 +7,8 @@ const short = html => html.replace(/<msup>(.*?)<mn>(.)<\/mn><\/msup>/g, "$1^$2")
 console.log("place: " + place(mistake.check.messages[0]) + "; " + mistake.check.messages[0].help);
 console.log("equation: " + short(/equations of motion<\/h3><table>(.*?)<\/table>/.exec(typeset(pendulum.text))[1]));
 console.log("markup: " + formula("\\mathrm{a<b>&}"));
-console.log("symmetries: " + kepler.text.match(/^Q[0-9]+: [a-z]+( [a-z]+)?/mg).join(", "));
+console.log("symmetries: " + kepler.text.match(/spin = .*|^Q1: [a-z]+/mg).join(", "));
 console.log("deep: " + deep.check.messages[0].message);
 console.log("file: " + place(parts.check.messages[0]));
-console.log("library: " + short(formula(/p_.*/.exec(answers.at(-1).text)[0].replace("&=", "="))).replace(/<msub>(.)(.)<\/msub>/, "$1_$2").replace("=", " = "));
+console.log("library: " + short(formula(/p_.*/.exec(answers[9].text)[0].replace("&=", "="))).replace(/<msub>(.)(.)<\/msub>/, "$1_$2").replace("=", " = "));
 answers.forEach((a, i) => { if (a.text.startsWith("{")) console.log("page" + (i + 1) + ": let model = " + a.text.replaceAll("\n", "") + ";"); });
