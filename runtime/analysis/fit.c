@@ -197,6 +197,12 @@ static int stiffness(Fit *f, const double *x, double *largest) {
   return rc;
 }
 
+/* Values ">= 0" that a shorter record has driven to 0, where they hardly move any more, begin again just above. */
+static void leave_bounds(const Fit *f, double *x) {
+  for (int j = 0; j < f->n; j++)
+    if (abs(f->target[j].sign) == 2 && x[j] < 0) x[j] = 0;
+}
+
 /* A search with springs a millionth as stiff as the best determined direction, repeated from where it ends (the
  * proximal point method), so that they leave no trace in what data determine. */
 static int search(Fit *f, int rows, int most, double *x) {
@@ -204,6 +210,7 @@ static int search(Fit *f, int rows, int most, double *x) {
   enum { ROUNDS = 6 };
   double moved = HUGE_VAL, stiff;
   int rc = LAG_OK, m = count_values(f, rows);
+  leave_bounds(f, x);
   for (int k = 0; k < ROUNDS && moved > settled && rc == LAG_OK; k++) {
     int steps = 0;
     memcpy(f->centre, x, (size_t)f->n * sizeof *x);
