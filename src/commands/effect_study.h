@@ -56,6 +56,8 @@ EffectStudy *effect_study_plan(const Model *scene);
 uint32_t effect_count(EffectSet set);
 EffectList effect_names(const EffectStudy *s, EffectSet set);
 
+/* Whether the set contains the requirements of each of its effects. */
+int effect_set_complete(const EffectStudy *s, EffectSet set);
 /* Whether the set has what its effects require, and no two that exclude each other. */
 int effect_set_valid(const EffectStudy *s, EffectSet set);
 /* "wind, spin". */

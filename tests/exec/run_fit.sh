@@ -160,6 +160,15 @@ criteria() {
     awk '{ a = $1 - 102.983299678; b = $2 - $1 - 4; c = $3 - $1 - 2*log(100); exit !(NF == 3 && a*a < 1e-10 && b*b < 1e-20 && c*c < 1e-20) }'
 }
 check "criteria" criteria
+# --effects: each effect beside the scene; 2493.1548 and 2490.3673 by scipy.optimize.least_squares with friction and without.
+effects() { # SCENE
+  "$LAGC" fit "$TMP/rubbing.lag" $1 --data "$M/damped.csv" --fit "k,x,x',rub.c,bend.k3" --sigma 0.01 --effects >"$TMP/out" 2>&1 &&
+    grep -q '^rub  *2493\.1548  *2490\.3673  0  *called for$' "$TMP/out" && grep -q '^bend  *-.* not called for' "$TMP/out" && [ "$(wc -l <"$TMP/out")" -eq 4 ] || { cat "$TMP/out"; return 1; }
+}
+check "each effect that a scene uses or not" effects rubs
+check "and of the scene without it, the first one" effects ""
+only_one() { ! "$LAGC" fit "$TMP/rubbing.lag" bare rubs --data "$M/damped.csv" --fit k,x --effects >"$TMP/out" 2>&1 && grep -q 'name one scene, whose effects are judged' "$TMP/out"; }
+check "one scene is named" only_one
 # Slow: BIC keeps an effect of one parameter by chance where chi squared of 1 exceeds ln 120: 3 times of 100, +- 1.7.
 rejects() {
   for seed in $(seq 100); do
