@@ -1,5 +1,5 @@
 /* Sets of effects: closed under requirements, and those that are compared with a scene's own. */
-#include "commands/effect_study.h"
+#include "commands/effect_sets.h"
 
 #include <math.h>
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "commands/const_ranges.h"
-#include "commands/effect_study.h"
+#include "commands/effect_sets.h"
 #include "emit/cnames.h"
 #include "emit/emit_model.h"
 #include "ir/program_set.h"
