@@ -385,6 +385,7 @@ static int add_column(RequestBuilder *k, const char *label, int is_time) {
 const char *data_head(Arena *a, const char *path, const char **why) {
   enum { LONGEST = 1 << 16 };
   FILE *f = source_open(path, why);
+  if (!f && strchr(path, ',')) f = source_open(arena_strndup(a, path, strcspn(path, ",")), why); /* of several */
   if (!f) return NULL;
   char *line = arena_alloc(a, LONGEST), *at = fgets(line, LONGEST, f);
   fclose(f);

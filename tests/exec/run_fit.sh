@@ -55,6 +55,18 @@ near l "$(member values l)" 1.01987556 1e-7
 near th "$(member values 'th(0)')" 1.40002282 1e-7
 near "error of l" "$(member errors l)" 0.00049355 1e-3
 
+# ---- two records of one oscillator, with starts of their own: scipy.optimize.least_squares on both closed forms
+fit "$M/damped.lag" "$M/damped.csv,$M/second.csv" "k,c,x,x'" --sigma 0.01
+title="two files"
+near k "$(member values k)" 17.98889091 1e-6
+near "error of k" "$(member errors k)" 0.02757844 1e-4
+near "error of c" "$(member errors c)" 0.009713324 1e-4
+near "the first start" "$(member values 'x(0) in damped.csv')" 0.2972942114 1e-6
+near "the second start" "$(member values "x'(0) in second.csv")" 0.08948639303 1e-5
+near "chi squared" "$(sed 's/.*"chi_squared": \([^,]*\).*/\1/' "$TMP/json")" 113.7101789 1e-7
+other_columns() { sed 's/x \[m\]/y [m]/' "$M/second.csv" >"$TMP/other.csv"; ! "$LAGC" fit "$M/damped.lag" --data "$M/damped.csv,$TMP/other.csv" --fit k >"$TMP/out" 2>&1 && grep -q 'other.csv: the column "x \[m\]" of .*damped.csv is missing here' "$TMP/out"; }
+check "files have the same columns" other_columns
+
 # ---- measured records
 # The published period and amplitude, with their errors; chi squared by scipy.optimize.least_squares on Kepler's equation.
 fit "$M/hd20868.lag" "$M/hd20868.csv" "mu,gamma,x,y,x',y'"
