@@ -180,7 +180,7 @@ static int copy_column(FitRun *r, int c, int of) {
   while (k < d->ncols && strcmp(d->names[k], f->column[c].label) != 0) k++;
   if (k == d->ncols || (of > 0 && (errors > 0) != f->column[c].per_row))
     return lag_app_error(&r->app->args, "%s: the column \"%s%s\" of %s is missing here", r->file[of],
-                         k == d->ncols ? "" : "sigma of ", f->column[c].label, r->file[k == d->ncols || errors == 0 ? 0 : of]);
+                         k == d->ncols ? "" : "sigma of ", f->column[c].label, r->file[errors == 0 ? 0 : of]);
   f->column[c].per_row = errors > 0;
   for (int i = 0; i < (int)d->nrows; i++) {
     const double *row = d->x + (size_t)i * (size_t)d->ncols;
