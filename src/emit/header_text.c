@@ -174,6 +174,12 @@ const char *header_api(const Header *h, HeaderFn f) {
   return header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, header_prototype(h, f)));
 }
 
+HeaderWord header_number(const Header *h, const char *mark, uint32_t n) {
+  return (HeaderWord){mark, arena_printf(h->a, "%u", n)};
+}
+
+void header_begin(const Header *h, HeaderFn f) { sb_printf(h->out, "\n%s", header_api(h, f)); }
+
 const char *header_constant(const Header *h, double x) {
   const char *text = shortest_double(h->a, x);
   return arena_printf(h->a, "%s_C(%s%s)", h->upper, text, strpbrk(text, ".en") ? "" : ".0");
