@@ -59,16 +59,19 @@ static int count_step(void *fit, const lag_sim *sim) {
   return f->steps_of_first > 0 && f->steps_of_run > 50 * f->steps_of_first + 1000;
 }
 
-/* A simulation with the present values; sensitive: with a column for each. */
-static lag_sim *simulation(Fit *f, int sensitive) {
+/* A simulation of record k with the present values; sensitive: with a column for each of its targets. */
+static lag_sim *simulation(Fit *f, int k, int sensitive) {
   lag_sim *sim = f->fresh(f->context);
-  const char **names = malloc((size_t)f->n * sizeof *names);
+  const char **names = malloc(((size_t)f->n + 1) * sizeof *names);
   int rc = sim && names ? LAG_OK : LAG_ENOMEM;
+  f->nmine = 0;
   for (int j = 0; j < f->n && rc == LAG_OK; j++) {
-    names[j] = f->target[j].label;
+    if (f->target[j].record && f->target[j].record != k + 1) continue;
+    names[f->nmine] = f->target[j].name;
+    f->mine[f->nmine++] = j;
     rc = lag_sim_set(sim, f->target[j].name, f->target[j].value);
   }
-  if (rc == LAG_OK && sensitive) rc = lag_sim_set_sensitivity(sim, f->n, names);
+  if (rc == LAG_OK && sensitive && f->nmine) rc = lag_sim_set_sensitivity(sim, f->nmine, names);
   free(names);
   if (rc == LAG_OK) {
     f->steps_of_run = 0;
@@ -79,6 +82,9 @@ static lag_sim *simulation(Fit *f, int sensitive) {
   lag_sim_free(sim);
   return NULL;
 }
+
+/* Number of rows of record k that count. */
+static int rows_of(const Fit *f, int k) { return (f->first[k + 1] - f->first[k]) / f->part; }
 
 static double error_of(const Fit *f, int i, int c) {
   return f->column[c].per_row ? f->errors[i * f->ncolumns + c] : f->column[c].sigma;
@@ -102,8 +108,11 @@ static void put_row(Fit *f, int i, const double *slope, double *r, double *J, in
     if (isnan(want)) continue;
     double error = error_of(f, i, c), bent = loss(f, (got - want) / error, &by);
     if (r) r[*at] = bent;
-    for (int j = 0; j < f->n && J; j++)
-      J[*at * f->n + j] = by * f->D[f->column[c].output * f->n + j] * f->target[j].factor * slope[j] / error;
+    for (int j = 0; j < f->n && J; j++) J[*at * f->n + j] = 0;
+    for (int q = 0; q < f->nmine && J; q++) {
+      int j = f->mine[q];
+      J[*at * f->n + j] = by * f->D[f->column[c].output * f->nmine + q] * f->target[j].factor * slope[j] / error;
+    }
     ++*at;
   }
 }
@@ -119,23 +128,36 @@ static void put_priors(const Fit *f, const double *slope, double *r, double *J, 
   }
 }
 
-/* Runs the motion over the rows that count. */
-static int run_rows(Fit *f, lag_sim *sim, const double *slope, double *r, double *J) {
-  int at = 0, rc = LAG_OK;
-  for (int i = 0; i < f->rows && rc == LAG_OK; i++) {
-    rc = f->t[i] > lag_sim_time(sim) || i ? lag_sim_advance(sim, f->t[i]) : LAG_OK;
+/* Runs the motion of record k over its rows that count. */
+static int run_record(Fit *f, int k, lag_sim *sim, const double *slope, double *r, double *J, int *at) {
+  int rc = LAG_OK, first = f->first[k], derives = J && f->nmine;
+  for (int i = first; i < first + rows_of(f, k) && rc == LAG_OK; i++) {
+    rc = f->t[i] > lag_sim_time(sim) || i > first ? lag_sim_advance(sim, f->t[i]) : LAG_OK;
     if (rc > 0) {
       snprintf(f->why, sizeof f->why, "the motion ends at t = %g s, before the data do", lag_sim_time(sim));
       return LAG_EDOMAIN;
     }
     rc = rc ? rc : lag_sim_outputs(sim, f->row);
-    if (rc == LAG_OK && J) rc = lag_sim_tangent(sim, f->y);
-    if (rc == LAG_OK && J) rc = lag_sim_output_sensitivity(sim, f->y, f->D);
-    if (rc == LAG_OK) put_row(f, i, slope, r, J, &at);
+    if (rc == LAG_OK && derives) rc = lag_sim_tangent(sim, f->y);
+    if (rc == LAG_OK && derives) rc = lag_sim_output_sensitivity(sim, f->y, f->D);
+    if (rc == LAG_OK) put_row(f, i, slope, r, J, at);
   }
-  if (rc) return fail(f, rc, lag_sim_message(sim));
-  put_priors(f, slope, r, J, at);
-  return LAG_OK;
+  return rc ? fail(f, rc, lag_sim_message(sim)) : LAG_OK;
+}
+
+/* The same of all records, and priors. */
+static int run_rows(Fit *f, const double *slope, double *r, double *J) {
+  int at = 0, rc = LAG_OK;
+  double most = 0;
+  for (int k = 0; k < f->nrecords && rc == LAG_OK; k++) {
+    lag_sim *sim = simulation(f, k, J != NULL);
+    rc = sim ? run_record(f, k, sim, slope, r, J, &at) : LAG_EINVAL;
+    lag_sim_free(sim);
+    most = fmax(most, f->steps_of_run);
+  }
+  f->steps_of_run = most;
+  if (rc == LAG_OK) put_priors(f, slope, r, J, at);
+  return rc;
 }
 
 /* Springs to f->centre in the last n residuals, without which rounding would move the search far along directions that
@@ -160,23 +182,24 @@ static int residuals(void *fit, const double *x, double *r, double *J) {
   if (!slope) return fail(f, LAG_ENOMEM, "out of memory");
   if (put_springs(f, x, r, J)) return free(slope), LAG_EDOMAIN;
   take_values(f, x, slope);
-  lag_sim *sim = simulation(f, J != NULL);
-  int rc = sim ? run_rows(f, sim, slope, r, J) : LAG_EINVAL, m = f->nvalues;
+  int rc = run_rows(f, slope, r, J), m = f->nvalues;
   for (int i = 0; i < m && rc == LAG_OK && r; i++)
     if (!isfinite(r[i])) rc = fail(f, LAG_ENAN, "an output has no value on the way");
   f->evaluations++;
-  lag_sim_free(sim);
   free(slope);
   return rc;
 }
 
 /* ---- The search */
 
-/* Values in the first `rows` rows, and priors. */
-static int count_values(Fit *f, int rows) {
+/* Values in the first 1/part of each record, and priors. */
+static int count_values(Fit *f, int part) {
   int m = 0;
-  f->rows = rows;
-  for (int i = 0; i < rows * f->ncolumns; i++) m += !isnan(f->data[i]);
+  f->part = part;
+  for (int k = 0; k < f->nrecords; k++) {
+    int first = f->first[k] * f->ncolumns, n = rows_of(f, k) * f->ncolumns;
+    for (int i = first; i < first + n; i++) m += !isnan(f->data[i]);
+  }
   for (int j = 0; j < f->n; j++) m += f->target[j].prior_error > 0;
   return f->nvalues = m;
 }
@@ -197,13 +220,20 @@ static int stiffness(Fit *f, const double *x, double *largest) {
   return rc;
 }
 
+/* Values ">= 0" that a shorter record has driven to 0, where they hardly move any more, begin again just above. */
+static void leave_bounds(const Fit *f, double *x) {
+  for (int j = 0; j < f->n; j++)
+    if (abs(f->target[j].sign) == 2 && x[j] < 0) x[j] = 0;
+}
+
 /* A search with springs a millionth as stiff as the best determined direction, repeated from where it ends (the
  * proximal point method), so that they leave no trace in what data determine. */
-static int search(Fit *f, int rows, int most, double *x) {
+static int search(Fit *f, int part_of_rows, int most, double *x) {
   const double part = 1e-6, settled = 1e-7;
   enum { ROUNDS = 6 };
   double moved = HUGE_VAL, stiff;
-  int rc = LAG_OK, m = count_values(f, rows);
+  int rc = LAG_OK, m = count_values(f, part_of_rows);
+  leave_bounds(f, x);
   for (int k = 0; k < ROUNDS && moved > settled && rc == LAG_OK; k++) {
     int steps = 0;
     memcpy(f->centre, x, (size_t)f->n * sizeof *x);
@@ -223,8 +253,8 @@ static int search_from_short(Fit *f, double *x) {
   const int shorter_steps = 15;
   int rc = LAG_OK;
   for (int part = 8; part > 1 && rc == LAG_OK; part /= 2)
-    if (count_values(f, f->nrows / part) >= 3 * f->n + f->ncolumns) rc = search(f, f->nrows / part, shorter_steps, x);
-  return rc ? rc : search(f, f->nrows, f->most, x);
+    if (count_values(f, part) >= 3 * f->n + f->ncolumns) rc = search(f, part, shorter_steps, x);
+  return rc ? rc : search(f, 1, f->most, x);
 }
 
 /* ---- Errors of columns that were not given */
@@ -319,14 +349,12 @@ static int is_flat_far_away(Fit *f, const double *v, int product, const double *
     kept[j] = t->value;
     t->value = product ? t->value * exp(far * v[j]) : t->value + far * v[j] * t->scale;
   }
-  lag_sim *sim = simulation(f, 0);
-  int rc = sim ? run_rows(f, sim, kept, NULL, NULL) : LAG_EINVAL;
+  int rc = run_rows(f, kept, NULL, NULL);
   for (int i = 0; i < many && rc == LAG_OK; i++) {
     largest = fmax(largest, fabs(f->model[i] - model[i]));
     size = fmax(size, fabs(model[i]));
   }
   for (int j = 0; j < f->n; j++) f->target[j].value = kept[j];
-  lag_sim_free(sim);
   free(kept);
   return rc == LAG_OK && largest <= same * size;
 }
@@ -416,7 +444,7 @@ static void take_scales(Fit *f, double *J, const double *slope) {
 }
 
 static int take_statistics(Fit *f, const double *x) {
-  int m = count_values(f, f->nrows), n = f->n;
+  int m = count_values(f, 1), n = f->n;
   double *r = calloc((size_t)((m + n) * (n + 1) + 2 * n * n + 2 * n), sizeof *r);
   f->correlation = calloc((size_t)(n * n), sizeof *f->correlation);
   f->singular = calloc((size_t)n, sizeof *f->singular);
@@ -443,19 +471,18 @@ static int take_statistics(Fit *f, const double *x) {
 
 /* ---- The fit */
 
-/* The motion at the first values: it has to reach the last row. */
+/* The motions at the first values: they have to reach their last rows. */
 static int run_first(Fit *f) {
-  lag_sim *sim = simulation(f, 0);
-  f->rows = f->nrows;
-  int rc = sim ? run_rows(f, sim, NULL, NULL, NULL) : LAG_EINVAL;
+  f->part = 1;
+  int rc = run_rows(f, NULL, NULL, NULL);
   f->steps_of_first = f->steps_of_run + 1;
-  lag_sim_free(sim);
   return rc;
 }
 
 static int make_room(Fit *f) {
-  lag_sim *sim = simulation(f, 1);
-  if (!sim) return LAG_EINVAL;
+  f->mine = calloc((size_t)f->n + 1, sizeof *f->mine);
+  lag_sim *sim = f->mine ? simulation(f, 0, 1) : NULL;
+  if (!sim) return f->mine ? LAG_EINVAL : fail(f, LAG_ENOMEM, "out of memory");
   size_t state = (size_t)(2 * lag_sim_scene(sim)->model->nq + lag_sim_scene(sim)->model->nz),
          nout = (size_t)lag_sim_noutputs(sim), n = (size_t)f->n;
   f->y = calloc(state * n + 1, sizeof *f->y);
@@ -479,7 +506,7 @@ static int search_with_errors(Fit *f, double *x, const int *given) {
     if ((rc = residuals(f, x, NULL, NULL)) != 0) break; /* the motion at x */
     double change = adapt_errors(f, given);
     if (change < settled || (f->ncolumns == 1 && !f->huber)) break;
-    rc = search(f, f->nrows, f->most, x);
+    rc = search(f, 1, f->most, x);
   }
   return rc;
 }
@@ -497,7 +524,7 @@ int lag_fit(Fit *f) {
     f->target[j].value = f->target[j].begin;
     x[j] = coordinate_of(&f->target[j], f->target[j].begin);
   }
-  if (rc == LAG_OK && count_values(f, f->nrows) < n) {
+  if (rc == LAG_OK && count_values(f, 1) < n) {
     snprintf(f->why, sizeof f->why, "%d values cannot determine %d quantities; fit fewer, or give more data",
              f->nvalues, n);
     rc = LAG_EINVAL;
@@ -512,6 +539,7 @@ int lag_fit(Fit *f) {
 }
 
 void lag_fit_free(Fit *f) {
+  free(f->mine);
   free(f->directions);
   free(f->flat);
   free(f->correlation);
@@ -532,10 +560,10 @@ double lag_fit_value(const FitTarget *t, double x) {
   return value_at(t, x, &slope);
 }
 
-int lag_fit_search(Fit *f, double *x) { return search(f, f->nrows, f->most, x); }
+int lag_fit_search(Fit *f, double *x) { return search(f, 1, f->most, x); }
 
 int lag_fit_squares(Fit *f, const double *x, double *chi_squared) {
-  int m = count_values(f, f->nrows);
+  int m = count_values(f, 1);
   double *r = calloc((size_t)(m + f->n), sizeof *r);
   memcpy(f->centre, x, (size_t)f->n * sizeof *x);
   int rc = r ? residuals(f, x, r, NULL) : fail(f, LAG_ENOMEM, "out of memory");

@@ -6,7 +6,8 @@
 /* Targets of a fit. Values are in declared units. */
 typedef struct FitTarget {
   const char *name; /* as lag_sim_set takes it */
-  char label[96], unit[64];
+  char label[160], unit[64];
+  int record;                /* 1 + the record whose start it is; 0: of all records */
   double factor;             /* of the unit, in SI */
   int sign;                  /* as in lag_var; 0 of starts */
   double begin, scale;       /* first value; a typical change */
@@ -45,7 +46,9 @@ typedef struct Fit {
   int n, ncolumns, nrows;
   FitTarget *target;     /* [n] */
   FitColumn *column;     /* [ncolumns] */
-  const double *t;       /* [nrows], increasing [s] */
+  const double *t;       /* [nrows], increasing within a record [s] */
+  int nrecords;          /* motions of their own, at least 1, */
+  const int *first;      /* [nrecords + 1] and their rows */
   double *data, *errors; /* [nrows * ncolumns]; NaN: not measured */
   double *model;         /* [nrows * ncolumns] the fitted motion; NaN behind its end */
   int huber;             /* 1: residuals count linearly beyond 1.345 errors */
@@ -61,8 +64,9 @@ typedef struct Fit {
   FitDirection weakest;
   char why[400];
   /* within a search */
-  int rows;                            /* rows that count */
-  double steps_of_run, steps_of_first; /* a run may take 50 times as many steps as the first */
+  int part;                            /* the first 1/part of each record counts */
+  int *mine, nmine;                    /* [n] targets of the record that runs */
+  double steps_of_run, steps_of_first; /* a run may take 50 times as many steps as the longest of the first runs */
   double *centre, pull;                /* [n] coordinates to which weak springs of this stiffness hold the search */
   int held;                            /* 1 + a target, held at a coordinate by a stiff spring; 0: none */
   double held_at;

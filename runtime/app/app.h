@@ -30,7 +30,7 @@ typedef struct Args {
   int orbit, continues, branches;
   int json, sketch, quiet, help, trace, no_rods, modes, linearize, equilibrium, gradient, steady, tangent,
       volume, lyapunov, cost, reference, all, runs, sweep, zip, go_on, yes, portrait, potential, distance, energy_error,
-      no_monitors, profile;
+      no_monitors, profile, each_effect;
   char **sets; /* name=value, in order */
   int nsets;
   const char **scenes; /* all scenes named; scene is the first */

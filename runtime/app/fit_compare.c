@@ -42,6 +42,24 @@ static int by_bic(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+/* What the data say of one effect: the fit `j` beside that of the scene itself. */
+static void put_effect(const Judged *scene, const Judged *j) {
+  int without = strncmp(j->scene + strlen(scene->scene), " without ", 9) == 0;
+  const char *effect = j->scene + strlen(scene->scene) + (without ? 9 : 6);
+  double gain = without ? j->bic - scene->bic : scene->bic - j->bic; /* of the effect */
+  printf("%-20s %12.4f %12.4f  ", effect, without ? j->aic - scene->aic : scene->aic - j->aic, gain);
+  if (isnan(j->chance)) fputs("-", stdout);
+  else printf("%-8.2g", j->chance);
+  printf("  %s%s\n", gain > 0 ? "called for" : "not called for", fabs(gain) < 2 ? ", by little" : "");
+}
+
+static void put_effects(const Judged *all, int n) {
+  printf("scene %s: misfit %.4f, AIC %.4f, BIC %.4f, %d values\n", all[0].scene, all[0].misfit, all[0].aic, all[0].bic,
+         all[0].n);
+  printf("%-20s %12s %12s  %s\n", "effect", "AIC gained", "BIC gained", "chance of such a gain without it");
+  for (int i = 1; i < n; i++) put_effect(&all[0], &all[i]);
+}
+
 static void put_table(const Judged *all, int n, const char *simplest) {
   printf("%-20s %6s %12s %12s %12s  %s %s\n", "scene", "values", "misfit", "AIC", "BIC", "chance beside", simplest);
   for (int i = 0; i < n; i++) {
@@ -92,10 +110,15 @@ int lag_fit_compare(App *app) {
     lag_app_free(&one);
   }
   const char *name = all[simplest].scene;
-  for (int i = 0; i < n && rc == 0; i++) all[i].chance = chance_of(app->extras.fits, known, &all[simplest], &all[i]);
-  qsort(all, (size_t)n, sizeof *all, by_bic);
+  int each = app->args.each_effect;
+  for (int i = 0; i < n && rc == 0; i++) {
+    const Judged *beside = &all[each ? 0 : simplest], *few = all[i].n < beside->n ? &all[i] : beside;
+    all[i].chance = chance_of(app->extras.fits, known, few, few == beside ? &all[i] : beside);
+  }
+  if (!each) qsort(all, (size_t)n, sizeof *all, by_bic);
   if (rc == 0 && app->args.json) put_json(all, n);
-  if (rc == 0 && !app->args.json) put_table(all, n, name);
+  if (rc == 0 && !app->args.json && each) put_effects(all, n);
+  if (rc == 0 && !app->args.json && !each) put_table(all, n, name);
   free(all);
   return rc;
 }

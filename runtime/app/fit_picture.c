@@ -54,7 +54,7 @@ static void put_curve(FILE *out, FitRun *r, int c, const Panel *p) {
 
 static void put_panels(FILE *out, FitRun *r, int c, double y, int last) {
   const Fit *f = &r->fit;
-  Panel p = {.x = LEFT, .y = y, .w = WIDTH - LEFT - 20, .h = HIGH, .xlabel = r->data.file.names[0]}, q = p;
+  Panel p = {.x = LEFT, .y = y, .w = WIDTH - LEFT - 20, .h = HIGH, .xlabel = r->data[0].file.names[0]}, q = p;
   p.x0 = q.x0 = f->t[0] / r->time_unit;
   p.x1 = q.x1 = f->t[f->nrows - 1] / r->time_unit;
   lag_widen_range(&p.x0, &p.x1, 1e-9, 0);

@@ -138,13 +138,16 @@ static void put_chi_squared(const FitRun *r, FILE *out) {
                            : "");
 }
 
-/* The scene to paste. */
-static void put_scene(const FitRun *r, FILE *out) {
+/* The scenes to paste, one a record. */
+static void put_scene(const FitRun *r, int record, FILE *out) {
   const Fit *f = &r->fit;
-  fprintf(out, "scene fitted { like %s\n", r->app->scene->name);
+  fputs("scene fitted", out);
+  if (r->nfiles > 1) fprintf(out, "_%d", record + 1);
+  fprintf(out, " { like %s\n", r->app->scene->name);
   for (int j = 0; j < f->n; j++) {
     const FitTarget *t = &f->target[j];
     int is_start = strcmp(t->label, t->name) != 0 && strstr(t->label, "(0)");
+    if (t->record && t->record != record + 1) continue;
     fprintf(out, "  %s%s = ", is_start ? "start " : "", t->name);
     put_value(out, t, 8);
     if (t->unit[0]) fprintf(out, " [%s]", t->unit);
@@ -175,7 +178,7 @@ void lag_fit_report(const FitRun *r, FILE *out) {
   put_chi_squared(r, out);
   put_columns(r, out);
   if (r->app->args.svg) fprintf(out, "picture in %s\n", r->app->args.svg);
-  put_scene(r, out);
+  for (int k = 0; k < r->nfiles; k++) put_scene(r, k, out);
 }
 
 static void correlations_json(const Fit *f, Json *j) {

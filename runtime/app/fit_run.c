@@ -10,7 +10,7 @@
 
 #include "core/core.h"
 
-enum { MOST_STEPS = 200 };
+enum { MOST_STEPS = 200, MOST_FILES = 100 };
 
 /* A new simulation with the settings of the command line. */
 static lag_sim *fresh(void *run) {
@@ -32,13 +32,16 @@ static int starts_with(const char *list, const char *name, const char **rest) {
 /* name~normal(MEAN, DEVIATION) of --prior. */
 static int take_prior(FitRun *r, const char *text) {
   const char *rest;
+  int found = 0;
   for (int j = 0; j < r->fit.n; j++) {
     FitTarget *t = &r->fit.target[j];
     if (!starts_with(text, t->name, &rest) || *rest != '~') continue;
-    if (sscanf(rest, "~normal(%lf,%lf)", &t->prior, &t->prior_error) == 2 && t->prior_error > 0) return 0;
+    found = 1;
+    if (sscanf(rest, "~normal(%lf,%lf)", &t->prior, &t->prior_error) == 2 && t->prior_error > 0) continue;
     return lag_app_error(&r->app->args, "--prior '%s': write --prior '%s~normal(MEAN, DEVIATION)', in %s", text,
                          t->name, t->unit[0] ? t->unit : "its own unit");
   }
+  if (found) return 0;
   return lag_app_error(&r->app->args, "--prior '%s': write NAME~normal(MEAN, DEVIATION), with a NAME of --fit", text);
 }
 
@@ -75,6 +78,30 @@ static int is_of_other_effect(const App *app, const char *name) {
          !lag_app_has_word(app->scene->model->effects, name, n);
 }
 
+/* Of several records each start is a target of its own, "th(0) in b.csv". */
+static int separate_starts(FitRun *r) {
+  Fit *f = &r->fit;
+  FitTarget *all = calloc((size_t)(f->n * r->nfiles) + 1, sizeof *all);
+  int n = 0;
+  if (!all) return lag_app_error(&r->app->args, "out of memory");
+  for (int j = 0; j < f->n; j++) {
+    size_t length = strlen(f->target[j].label);
+    int is_start = length > 3 && strcmp(f->target[j].label + length - 3, "(0)") == 0;
+    for (int k = 0; k < (is_start ? r->nfiles : 1); k++) {
+      FitTarget *t = &all[n++];
+      *t = f->target[j];
+      if (!is_start) continue;
+      const char *slash = strrchr(r->file[k], '/');
+      t->record = k + 1;
+      snprintf(t->label + length, sizeof t->label - length, " in %.50s", slash ? slash + 1 : r->file[k]);
+    }
+  }
+  free(f->target);
+  f->target = all;
+  f->n = n;
+  return 0;
+}
+
 static int take_targets(FitRun *r) {
   const Args *a = &r->app->args;
   Fit *f = &r->fit;
@@ -104,6 +131,7 @@ static int take_targets(FitRun *r) {
   }
   lag_sim_free(sim);
   free(name);
+  if (rc == 0 && r->nfiles > 1) rc = separate_starts(r);
   for (int i = 0; i < a->npriors && rc == 0; i++) rc = take_prior(r, a->priors[i]);
   return rc;
 }
@@ -119,13 +147,13 @@ static int output_named(const FitRun *r, const char *label) {
 }
 
 /* The column with the errors of another one: "sigma(th) [deg]" for "th [deg]"; 0: none. */
-static int errors_of(const FitRun *r, const char *label) {
+static int errors_of(const DataFile *d, const char *label) {
   char want[160];
   const char *unit = strstr(label, " [");
   int n = (int)(unit ? (size_t)(unit - label) : strlen(label));
-  for (int k = 1; k < r->data.file.ncols; k++) {
+  for (int k = 1; k < d->file.ncols; k++) {
     snprintf(want, sizeof want, "sigma(%.*s)%s", n, label, unit ? unit : "");
-    if (strcmp(r->data.file.names[k], want) == 0) return k;
+    if (strcmp(d->file.names[k], want) == 0) return k;
   }
   return 0;
 }
@@ -144,18 +172,24 @@ static int take_sigma(FitRun *r, FitColumn *c) {
   return 0;
 }
 
-/* Copies column k of the file, and its errors. */
-static int copy_column(FitRun *r, int c, int k) {
+/* Copies column c of file `of`, and its errors. */
+static int copy_column(FitRun *r, int c, int of) {
   Fit *f = &r->fit;
-  int errors = errors_of(r, f->column[c].label);
+  const DataFile *d = &r->data[of];
+  int errors = errors_of(d, f->column[c].label), k = 1;
+  while (k < d->file.ncols && strcmp(d->file.names[k], f->column[c].label) != 0) k++;
+  if (k == d->file.ncols || (of > 0 && (errors > 0) != f->column[c].per_row))
+    return lag_app_error(&r->app->args, "%s: the column \"%s%s\" of %s is missing here", r->file[of],
+                         k == d->file.ncols ? "" : "sigma of ", f->column[c].label, r->file[errors == 0 ? 0 : of]);
   f->column[c].per_row = errors > 0;
-  for (int i = 0; i < f->nrows; i++) {
-    const double *row = r->data.x + (size_t)i * (size_t)r->data.file.ncols;
-    f->data[i * f->ncolumns + c] = row[k];
-    if (errors) f->errors[i * f->ncolumns + c] = row[errors];
+  for (int i = 0; i < (int)d->nrows; i++) {
+    const double *row = d->x + (size_t)i * (size_t)d->file.ncols;
+    int at = (r->first[of] + i) * f->ncolumns + c;
+    f->data[at] = row[k];
+    if (errors) f->errors[at] = row[errors];
     if (errors && !isnan(row[k]) && !(row[errors] > 0))
       return lag_app_error(&r->app->args, "%s:%lld: column %s: an error is positive, or its value is missing, too",
-                           r->app->args.data, r->data.line[i], r->data.file.names[errors]);
+                           r->file[of], d->line[i], d->file.names[errors]);
   }
   return take_sigma(r, &f->column[c]);
 }
@@ -175,69 +209,114 @@ static int is_asked(const Args *a, const char *label) {
 
 static int take_columns(FitRun *r) {
   const Args *a = &r->app->args;
+  const DataFile *d = &r->data[0];
   Fit *f = &r->fit;
-  f->nrows = (int)r->data.nrows;
-  f->column = calloc((size_t)r->data.file.ncols, sizeof *f->column);
-  for (int k = 1; k < r->data.file.ncols && f->column; k++) {
-    int output = is_asked(a, r->data.file.names[k]) ? output_named(r, r->data.file.names[k]) : -1;
-    if (output >= 0) f->column[f->ncolumns++] = (FitColumn){.label = r->data.file.names[k], .output = output};
+  f->nrows = r->first[r->nfiles];
+  f->column = calloc((size_t)d->file.ncols, sizeof *f->column);
+  for (int k = 1; k < d->file.ncols && f->column; k++) {
+    int output = is_asked(a, d->file.names[k]) ? output_named(r, d->file.names[k]) : -1;
+    if (output >= 0) f->column[f->ncolumns++] = (FitColumn){.label = d->file.names[k], .output = output};
   }
   if (f->ncolumns == 0)
-    return lag_app_error(a, "%s: no column besides the time is an output here; `lagc fit` makes them outputs", a->data);
+    return lag_app_error(a, "%s: no column besides the time is an output here; `lagc fit` makes them outputs",
+                         r->file[0]);
   size_t many = (size_t)(f->nrows * f->ncolumns);
   f->data = calloc(many, sizeof *f->data);
   f->errors = calloc(many, sizeof *f->errors);
   if (!f->data || !f->errors) return lag_app_error(a, "out of memory");
   int rc = 0;
-  for (int c = 0; c < f->ncolumns && rc == 0; c++) {
-    int k = 1;
-    while (strcmp(r->data.file.names[k], f->column[c].label) != 0) k++;
-    rc = copy_column(r, c, k);
-  }
+  for (int of = 0; of < r->nfiles; of++)
+    for (int c = 0; c < f->ncolumns && rc == 0; c++) rc = copy_column(r, c, of);
   return rc;
 }
 
 /* The unit of the file's times in seconds: the value of the output that lagc has named after the column. */
 static int take_time_unit(FitRun *r) {
   const Args *a = &r->app->args;
-  const char *label = r->data.file.names[0];
+  const char *label = r->data[0].file.names[0];
   r->time_unit = 1;
+  for (int of = 1; of < r->nfiles; of++)
+    if (strcmp(r->data[of].file.names[0], label) != 0)
+      return lag_app_error(a, "%s: the time is \"%.40s\", that of %s is \"%.40s\"; write one unit", r->file[of],
+                           r->data[of].file.names[0], r->file[0], label);
   if (strcmp(label, "t") == 0 || strcmp(label, "t [s]") == 0) return 0;
   if (strncmp(label, "t [", 3) != 0)
-    return lag_app_error(a, "%s: the first column is \"%.40s\"; it must be the time: t [s]", a->data, label);
+    return lag_app_error(a, "%s: the first column is \"%.40s\"; it must be the time: t [s]", r->file[0], label);
   int k = output_named(r, label), n = lag_sim_noutputs(r->app->sim);
   double *out = calloc((size_t)n + 1, sizeof *out);
   int rc = k < 0 || !out || lag_sim_outputs(r->app->sim, out)
-               ? lag_app_error(a, "%s: the unit of the time, %s, is not known here; write t [s]", a->data, label)
+               ? lag_app_error(a, "%s: the unit of the time, %s, is not known here; write t [s]", r->file[0], label)
                : 0;
   if (rc == 0) r->time_unit = 1 / out[k];
   free(out);
   return rc;
 }
 
-static int take_times(FitRun *r) {
+/* Times of file `of` to t[rows]. */
+static int take_times_of(FitRun *r, int of, double *t) {
   const Args *a = &r->app->args;
-  int rc = take_time_unit(r);
-  double *t = r->t = calloc(r->data.nrows, sizeof *t), t0 = r->app->scene->t0;
-  if (!t) return lag_app_error(a, "out of memory");
-  for (size_t i = 0; i < r->data.nrows && rc == 0; i++) {
-    t[i] = r->data.x[i * (size_t)r->data.file.ncols] * r->time_unit;
-    if (isnan(t[i])) rc = lag_app_error(a, "%s:%lld: the time is missing", a->data, r->data.line[i]);
+  const DataFile *d = &r->data[of];
+  const char *file = r->file[of];
+  double t0 = r->app->scene->t0;
+  int rc = 0;
+  for (size_t i = 0; i < d->nrows && rc == 0; i++) {
+    t[i] = d->x[i * (size_t)d->file.ncols] * r->time_unit;
+    if (isnan(t[i])) rc = lag_app_error(a, "%s:%lld: the time is missing", file, d->line[i]);
     else if (i && t[i] == t[i - 1])
-      rc = lag_app_error(a, "%s:%lld: t = %.9g s stands twice; join the rows, for example by their mean", a->data,
-                         r->data.line[i], t[i]);
+      rc = lag_app_error(a, "%s:%lld: t = %.9g s stands twice; join the rows, for example by their mean", file,
+                         d->line[i], t[i]);
     else if (i && t[i] < t[i - 1])
-      rc = lag_app_error(a, "%s:%lld: t = %.9g s comes after %.9g s; sort the rows by time", a->data, r->data.line[i],
-                         t[i], t[i - 1]);
+      rc = lag_app_error(a, "%s:%lld: t = %.9g s comes after %.9g s; sort the rows by time", file, d->line[i], t[i],
+                         t[i - 1]);
     else if (t[i] < t0)
       rc = lag_app_error(
           a,
           "%s:%lld: t = %.9g s lies before the scene, which begins at %.9g s; write `span %.9g..` into the "
           "scene",
-          a->data, r->data.line[i], t[i], t0, t[0]);
+          file, d->line[i], t[i], t0, t[0]);
   }
+  return rc;
+}
+
+static int take_times(FitRun *r) {
+  int rc = take_time_unit(r);
+  double *t = r->t = calloc((size_t)r->first[r->nfiles] + 1, sizeof *t);
+  if (!t) return lag_app_error(&r->app->args, "out of memory");
+  for (int of = 0; of < r->nfiles && rc == 0; of++) rc = take_times_of(r, of, t + r->first[of]);
   r->fit.t = t;
   return rc;
+}
+
+/* ---- Files */
+
+/* Splits FILE,FILE, unless a file of the whole name is there. */
+static void split_files(FitRun *r, char *text) {
+  FILE *whole = fopen(text, "rb");
+  r->file[0] = text;
+  r->nfiles = 1;
+  if (whole) fclose(whole);
+  for (char *c = text; !whole && *c && r->nfiles < MOST_FILES; c++)
+    if (*c == ',') *c = '\0', r->file[r->nfiles++] = c + 1;
+}
+
+static int read_files(FitRun *r) {
+  const Args *a = &r->app->args;
+  char why[400];
+  size_t rows = 0;
+  r->file = calloc(MOST_FILES, sizeof *r->file);
+  char *text = r->file ? malloc(strlen(a->data) + 1) : NULL;
+  if (!text) return lag_app_error(a, "out of memory");
+  split_files(r, strcpy(text, a->data));
+  r->data = calloc((size_t)r->nfiles, sizeof *r->data);
+  r->first = calloc((size_t)r->nfiles + 1, sizeof *r->first);
+  if (!r->data || !r->first) return lag_app_error(a, "out of memory");
+  for (int of = 0; of < r->nfiles; of++) {
+    if (lag_data_read(r->file[of], &r->data[of], why, sizeof why)) return lag_app_error(a, "--data %s", why);
+    r->first[of + 1] = (int)(rows += r->data[of].nrows);
+  }
+  r->fit.nrecords = r->nfiles;
+  r->fit.first = r->first;
+  return 0;
 }
 
 /* ---- The analysis */
@@ -245,14 +324,13 @@ static int take_times(FitRun *r) {
 static int prepare(FitRun *r) {
   App *app = r->app;
   const Args *a = &app->args;
-  char why[400];
   if (!app->extras.fits)
     return lag_app_error(a, "fits need GSL, which this simulator was built without: `apt-get install libgsl-dev`, make "
                             "lagc again, and leave out --no-gsl");
   if (!a->data) return lag_app_error(a, "--fit %s: the data are missing: --data motion.csv", a->fit);
-  int rc = lag_data_read(a->data, &r->data, why, sizeof why) ? lag_app_error(a, "--data %s", why) : 0;
+  int rc = read_files(r);
   if (rc || (rc = lag_app_set_up_start(app)) != 0 || (rc = take_times(r)) != 0) return rc;
-  app->until = r->t[r->data.nrows - 1];
+  app->until = r->t[r->first[1] - 1];
   if ((rc = lag_app_choose_method(app)) != 0 || (rc = take_columns(r)) != 0) return rc;
   r->fit.by = app->extras.fits;
   r->fit.fresh = fresh;
@@ -278,7 +356,11 @@ void lag_fit_run_free(FitRun *r) {
   free(r->fit.errors);
   free(r->t);
   free(r->names);
-  lag_data_free(&r->data);
+  for (int of = 0; of < r->nfiles && r->data; of++) lag_data_free(&r->data[of]);
+  free(r->data);
+  free(r->first);
+  if (r->file) free(r->file[0]);
+  free(r->file);
 }
 
 int lag_app_fit(App *app) {
@@ -287,6 +369,7 @@ int lag_app_fit(App *app) {
   if (a->nscenes > 1 && a->svg) return lag_app_error(a, "--svg: a picture is of one fit; name one scene");
   if (a->nscenes > 1) return lag_fit_compare(app);
   int rc = lag_fit_run(&r);
+  if (rc == 0 && a->svg && r.nfiles > 1) rc = lag_app_error(a, "--svg: a picture is of one record; name one file");
   if (rc == 0 && a->profile && lag_fit_profile(&r.fit)) rc = lag_app_error(a, "%s", r.fit.why);
   if (rc == 0 && a->svg && lag_fit_picture(&r, a->svg)) rc = lag_app_io_error(app, a->svg);
   if (rc == 0 && a->json) lag_fit_report_json(&r, stdout);

@@ -8,7 +8,10 @@
 typedef struct FitRun {
   App *app;
   Fit fit;
-  DataFile data;
+  int nfiles;       /* at most MOST_FILES, with */
+  DataFile *data;   /* their contents, */
+  char **file;      /* names, and */
+  int *first;       /* [nfiles + 1] first rows, in all */
   char *names;      /* of targets, as text */
   double *t;        /* [rows] times [s] */
   double time_unit; /* of the file, in seconds */

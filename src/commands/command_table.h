@@ -59,6 +59,7 @@ typedef struct {
   const char *accuracy;    /* effects --accuracy */
   const char *against, *map; /* verify --against, --map */
   int shared;              /* build --shared */
+  int by_effects;          /* fit --effects */
   int json;                /* effects --json; other commands pass it on */
   OptionTexts scenes;      /* plot: all scenes named, each once */
   OptionTexts rest;        /* run, plot, animate: the simulator's arguments, the scene included; complete: the words */

@@ -395,6 +395,7 @@ static int add_column(RequestBuilder *k, const char *label, int is_time) {
 const char *data_head(Arena *a, const char *path, const char **why) {
   enum { LONGEST = 1 << 16 };
   FILE *f = source_open(path, why);
+  if (!f && strchr(path, ',')) f = source_open(arena_strndup(a, path, strcspn(path, ",")), why); /* of several */
   if (!f) return NULL;
   char *line = arena_alloc(a, LONGEST), *at = fgets(line, LONGEST, f);
   fclose(f);
@@ -438,6 +439,8 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
   if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);
   if (o->command == CMD_LINEARIZE) add_argument(&k, "--linearize", NULL);
+  if (o->by_effects && o->scenes.n > 1) return fail_with(error, "--effects: name one scene, whose effects are judged");
+  if (o->by_effects) add_argument(&k, "--each-effect", NULL);
   if (o->command == CMD_FIT) ok = ok && prepare_columns(&k, error);
   if (o->command == CMD_ORBIT) add_argument(&k, "--orbit", NULL);
   if (o->command == CMD_CONTINUE) add_argument(&k, "--continue", NULL);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "commands/const_ranges.h"
+#include "commands/effect_sets.h"
 #include "emit/cnames.h"
 #include "emit/emit_model.h"
 #include "ir/program_set.h"
@@ -175,6 +176,36 @@ static void lower_scene(Compiler *c, Eqns *e, int runs, int apart, Units *units,
   vec_push(c->arena, all, ((Lowered){e, home, home->scenes.n - 1}));
 }
 
+/* One more argument of the simulator. */
+static void pass_argument(Compiler *c, const char *text) {
+  c->picture.argv.at[c->picture.argv.n - 1] = arena_strdup(c->arena, text);
+  vec_push(c->arena, &c->picture.argv, NULL);
+}
+
+/* fit --effects: scenes like that of `run` without each effect that it uses, and with each that it does not. */
+static int add_effect_scenes(Compiler *c, const Eqns *run, Units *units, Lowereds *all) {
+  const char *scene = run->m->scene.name;
+  EffectStudy *s = effect_study_plan(run->m);
+  if (!s) return 0;
+  if (!c->o.scene) pass_argument(c, scene);
+  for (uint32_t i = 0; i < s->rows.n; i++) {
+    const EffectRow *row = &s->rows.at[i];
+    if (row->excluded_by) continue;
+    EffectList only = effect_names(s, s->variants.at[row->apart]);
+    ModelChoice choice = choice_of(c, scene, 0);
+    choice.only = &only;
+    Eqns *e = compiler_derive_wanted(c, &choice);
+    if (!e) return 0;
+    const char *name = arena_printf(c->arena, "%s %s %s", scene, row->on ? "without" : "with",
+                                    s->graph.at[row->effect].stmt->name);
+    lower_scene(c, e, 0, 0, units, all);
+    const Lowered *last = &all->at[all->n - 1];
+    last->unit->scenes.at[last->scene].name = name;
+    pass_argument(c, name);
+  }
+  return 1;
+}
+
 int simulator_lower(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast), named = c->picture.scenes.n ? c->picture.scenes : (SceneList){scenes.at, 1};
   if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->picture.drawing || c->o.consts.n)
@@ -199,6 +230,7 @@ int simulator_lower(Compiler *c, Units *units) {
       if (options_more_digits(&c->o) && i + 1 == scenes.n && !simulator_is_later_rank(c))
         precision_warn(c->ast, all.at[all.n - 1].e->m->g, c->o.precision);
     }
+    if (run && c->o.by_effects && !add_effect_scenes(c, run, units, &all)) return 0;
   }
   pass_measures(c, &measured);
   return finish_units(c, units, &all);

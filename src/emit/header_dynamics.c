@@ -122,7 +122,6 @@ int header_parts(const ProgramSet *u, const char *list, HeaderParts *parts, cons
 
 /* --- derivatives --- */
 
-#define LIST(v) (v).at, (v).n
 
 /* Chooses lines marked b (coordinates and states), f (states alone), n (no inputs), c (constraints), o (coordinates
  * without), which become plain ones or go. */
@@ -142,10 +141,6 @@ static void write_marked(const Header *h, const char *text, const HeaderWord *w)
   header_template(h, sb_text(&b), w);
 }
 
-static HeaderWord number_word(const Header *h, const char *mark, uint32_t n) {
-  return (HeaderWord){mark, arena_printf(h->a, "%u", n)};
-}
-
 typedef struct {
   HeaderWord at[13];
 } Words;
@@ -158,12 +153,12 @@ static Words words_of(const Header *h, const char *name, const IrEntry *at, uint
   const char *out = u->constraints.of.n ? ", m, A" : u->q.n ? ", m" : "";
   return (Words){{{"NAME", name},
                   {"ENTRIES", header_positions(h, at, n)},
-                  number_word(h, "NENTRIES", n),
-                  number_word(h, "NALL", n ? n : 1),
-                  number_word(h, "NMASS", u->linear_mass.n ? u->linear_mass.n : 1),
+                  header_number(h, "NENTRIES", n),
+                  header_number(h, "NALL", n ? n : 1),
+                  header_number(h, "NMASS", u->linear_mass.n ? u->linear_mass.n : 1),
                   {"COLUMNS", columns},
                   {"STATE", header_state_args(h, 1, "")},
-                  number_word(h, "NJACOBIAN", u->constraints.jacobian.n ? u->constraints.jacobian.n : 1),
+                  header_number(h, "NJACOBIAN", u->constraints.jacobian.n ? u->constraints.jacobian.n : 1),
                   {"RATES", rates},
                   {"WITH", q},
                   {"OUT", out},
@@ -192,8 +187,6 @@ static void define_by(const Header *h, const Prog *p, const char *name, const Ir
   write_marked(h, by, w.at);
 }
 
-static void begin(const Header *h, HeaderFn f) { sb_printf(h->out, "\n%s", header_api(h, f)); }
-
 static void derivatives(const Header *h) {
   const ProgramSet *u = h->u;
   const char *ny = arena_printf(h->a, "%s_NY", h->upper), *nu = arena_printf(h->a, "%s_NU", h->upper),
@@ -201,9 +194,9 @@ static void derivatives(const Header *h) {
   unsigned parts = h->parts.parts;
   if (parts & (PART_JAC | PART_LINEAR | PART_PARAMS) && u->q.n) {
     const HeaderWord w[] = {{"ENTRIES", header_positions(h, LIST(u->linear_mass))},
-                            number_word(h, "NENTRIES", u->linear_mass.n),
+                            header_number(h, "NENTRIES", u->linear_mass.n),
                             {"JACOBIAN", header_positions(h, LIST(u->constraints.jacobian))},
-                            number_word(h, "NJACOBIAN", u->constraints.jacobian.n),
+                            header_number(h, "NJACOBIAN", u->constraints.jacobian.n),
                             {NULL, NULL}};
     header_template(h, u->constraints.of.n ? solve_constrained : solve_mass, w);
   }
@@ -212,66 +205,13 @@ static void derivatives(const Header *h) {
   if (parts & PART_PARAMS) define_by(h, u->by_params, "params", LIST(u->by_params_dr), np);
   if (parts & PART_JAC) {
     Words w = words_of(h, "state", LIST(u->linear_dr), ny);
-    begin(h, FN_JAC), write_marked(h, jac_body, NULL);
-    begin(h, FN_JVP), write_marked(h, products, w.at), write_marked(h, jvp_body, w.at);
-    begin(h, FN_VJP), write_marked(h, products, w.at), write_marked(h, vjp_body, w.at);
+    header_begin(h, FN_JAC), write_marked(h, jac_body, NULL);
+    header_begin(h, FN_JVP), write_marked(h, products, w.at), write_marked(h, jvp_body, w.at);
+    header_begin(h, FN_VJP), write_marked(h, products, w.at), write_marked(h, vjp_body, w.at);
   }
-  if (parts & PART_LINEAR) begin(h, FN_LINEARIZE), write_marked(h, linearize_body, NULL);
+  if (parts & PART_LINEAR) header_begin(h, FN_LINEARIZE), write_marked(h, linearize_body, NULL);
   if (parts & PART_PARAMS)
-    begin(h, FN_DPARAMS), header_template(h, " | {\n |  return lag_by_params(ARGS, P);\n |}\n", NULL);
-}
-
-/* Derivatives of outputs and formulas, with their positions. */
-static void output_partials(const Header *h) {
-  static const char *const d[] = {"d", NULL};
-  const char *head = arena_printf(h->a, "static int %s_partials_outputs(%s, %s_REAL *d)", h->lower,
-                                  header_state_args(h, 1, ""), h->upper);
-  sb_printf(h->out, "\nstatic const unsigned short %s_by_outputs_at[][2] = {%s};\n", h->lower,
-            header_positions(h, LIST(h->u->outputs_at)));
-  header_state_function(h, h->u->outputs, NULL, header_wrapped(h, head), d, d, 1);
-}
-
-/* Lines marked a: outputs contain accelerations or rates of states; i: and there are inputs. */
-static void output_jacobian(const Header *h) {
-  const ProgramSet *u = h->u;
-  uint32_t first = 2 * u->q.n + u->z.n + u->u.n, last = first + u->q.n + u->z.n;
-  int some = 0;
-  for (uint32_t k = 0; k < u->outputs_at.n; k++)
-    some |= u->outputs_at.at[k].row < h->scene->plain.n && u->outputs_at.at[k].col >= first &&
-            u->outputs_at.at[k].col < last;
-  const LineChoice choices[] = {{'a', some}, {'i', some && u->u.n}, {0, 0}};
-  const HeaderWord w[] = {number_word(h, "NALL", u->outputs_at.n ? u->outputs_at.n : 1),
-                          number_word(h, "NENTRIES", u->outputs_at.n), number_word(h, "PARAMETERS", last),
-                          number_word(h, "RATES", first - u->q.n), {"MATRICES", u->u.n ? ", A, B" : ", A"},
-                          {NULL, NULL}};
-  begin(h, FN_OUTPUT_JACOBIAN), header_template(h, header_chosen(h, output_jacobian_body, choices), w);
-}
-
-/* The classical method: y1 = y0 + h/6 (k1 + 2 k2 + 2 k3 + k4); backwards X_s = (df/dy)^T h (b_s x + a X_(s+1)). */
-static void adjoint_step(const Header *h) {
-  static const char *const own[] = {"a", "g", "by_y", "by_up", "d", NULL}, *const out[] = {"by_y", "by_up", "d"};
-  const ProgramSet *u = h->u;
-  const char *R = h->upper;
-  uint32_t n = u->formulas_at.n;
-  header_internal_function(h, u->adjoint, "reverse",
-                           arena_printf(h->a,
-                                        "const %s_REAL *a, const %s_REAL *g, %s_REAL *by_y, %s_REAL *by_up, "
-                                        "%s_REAL *d",
-                                        R, R, R, R, R),
-                           own, out);
-  if (n)
-    sb_printf(h->out, "\nstatic const unsigned short %s_formulas_at[][2] = {%s};\n", h->lower,
-              header_positions(h, LIST(u->formulas_at)));
-  StrBuf at = strbuf(h->a);
-  sb_printf(&at, "t%s", u->q.n ? ", y[r], y[r] + LAG_NQ" : "");
-  if (u->z.n) sb_printf(&at, ", y[r] + %u", 2 * u->q.n);
-  sb_printf(&at, ", p%s", u->u.n ? ", held" : "");
-  const LineChoice choices[] = {{'f', n > 0}, {0, 0}};
-  const HeaderWord w[] = {{"AT", sb_text(&at)}, {"INPUTS", u->u.n ? ", u, 0, 0" : ""},
-                          number_word(h, "BOTH", u->u.n + u->p.n), number_word(h, "NALL", n ? n : 1),
-                          number_word(h, "NCOORDS", u->q.n), number_word(h, "NINPUTS", u->u.n),
-                          number_word(h, "NFORMULAS", n), {NULL, NULL}};
-  begin(h, FN_ADJOINT_STEP), header_template(h, header_chosen(h, adjoint_step_body, choices), w);
+    header_begin(h, FN_DPARAMS), header_template(h, " | {\n |  return lag_by_params(ARGS, P);\n |}\n", NULL);
 }
 
 /* --- matrices, constraints --- */
@@ -282,7 +222,7 @@ static void filled(const Header *h, const Prog *p, HeaderFn f, const char *name,
   const char *head = arena_printf(h->a, "static int %s_fill_%s(%s, %s_REAL *%s)", h->lower, name,
                                   header_state_args(h, 1, ""), h->upper, out);
   header_state_function(h, p, NULL, header_wrapped(h, head), own, own, 1);
-  begin(h, f);
+  header_begin(h, f);
   const HeaderWord w[] = {{"SIZE", size}, {"NAME", name}, {"OUT", out}, {NULL, NULL}};
   header_template(
       h, " | {\n |  for (int i = 0; i < SIZE; i++) OUT[i] = LAG_C(0.0);\n |  return lag_fill_NAME(ARGS, OUT);\n |}\n",
@@ -291,16 +231,16 @@ static void filled(const Header *h, const Prog *p, HeaderFn f, const char *name,
 
 static void constraints(const Header *h) {
   const IrConstraints *k = &h->u->constraints;
-  begin(h, FN_CONSTRAINTS), header_template(h, " | {\n |  return lag_residuals(ARGS, c, r);\n |}\n", NULL);
+  header_begin(h, FN_CONSTRAINTS), header_template(h, " | {\n |  return lag_residuals(ARGS, c, r);\n |}\n", NULL);
   const char *head = arena_printf(h->a, "static int %s_matrices(%s, %s_REAL *d, %s_REAL *m)", h->lower,
                                   header_state_args(h, 1, ""), h->upper, h->upper);
   static const char *const out[] = {"d", "m", NULL};
   header_state_function(h, k->matrices, NULL, header_wrapped(h, head), out, out, 1);
   const HeaderWord w[] = {{"ENTRIES", header_positions(h, LIST(k->jacobian))},
-                          number_word(h, "NENTRIES", k->jacobian.n),
-                          number_word(h, "NMASS", k->mass.n ? k->mass.n : 1),
+                          header_number(h, "NENTRIES", k->jacobian.n),
+                          header_number(h, "NMASS", k->mass.n ? k->mass.n : 1),
                           {NULL, NULL}};
-  begin(h, FN_CONSTRAINT_JACOBIAN);
+  header_begin(h, FN_CONSTRAINT_JACOBIAN);
   header_template(h,
     " | {\n"
     " |  static const unsigned short at[][2] = {ENTRIES};\n"
@@ -346,7 +286,7 @@ static void events(const Header *h) {
   const HeaderWord w[] = {{"WITH", h->u->u.n ? ", u" : ""}, {"INPUTS", h->u->u.n ? ", u, 0, 0" : ""}, {NULL, NULL}};
   sb_printf(h->out, "\n#if !defined(%s_LANES) && !defined(%s_COMPLEX)\n", h->upper, h->upper);
   define_path(h);
-  if (header_has(h, FN_UNTIL_EVENT)) begin(h, FN_UNTIL_EVENT), header_template(h, until_event_body, w);
+  if (header_has(h, FN_UNTIL_EVENT)) header_begin(h, FN_UNTIL_EVENT), header_template(h, until_event_body, w);
   sb_puts(h->out, "#endif\n");
 }
 
@@ -390,14 +330,12 @@ void header_dynamics_define(const Header *h) {
     header_state_function(h, u->bias, NULL, header_api(h, FN_BIAS), b, b, 1);
   }
   if (header_has(h, FN_RHS))
-    begin(h, FN_RHS), header_template(h, " | {\n |  return lag_rates(p, t, yINPUTS, dydt);\n |}\n", inputs);
+    header_begin(h, FN_RHS), header_template(h, " | {\n |  return lag_rates(p, t, yINPUTS, dydt);\n |}\n", inputs);
   if (header_has(h, FN_INVERSE)) header_state_function(h, u->inverse, NULL, header_api(h, FN_INVERSE), force, out, 1);
   if (header_has(h, FN_MULTIPLIERS))
     header_state_function(h, u->multipliers, NULL, header_api(h, FN_MULTIPLIERS), lambda, lambda, 1);
   derivatives(h);
-  if (h->parts.parts & (PART_OUTPUTS | PART_OUTPUT_JACOBIAN)) output_partials(h);
-  if (header_has(h, FN_OUTPUT_JACOBIAN)) output_jacobian(h);
-  if (header_has(h, FN_ADJOINT_STEP)) adjoint_step(h);
+  header_outputs_define(h);
   if (header_has(h, FN_CONSTRAINTS)) constraints(h);
   if (header_has(h, FN_UNTIL_EVENT) || h->parts.parts & PART_PATH) events(h);
   header_callbacks_define(h);

@@ -97,6 +97,14 @@ void header_template(const Header *h, const char *text, const HeaderWord *more);
 /* header_definitions.c: functions of models with constraints. */
 void header_hold_define(const Header *h);
 
+/* A number as a word; the head of a function of the header. */
+#define LIST(v) (v).at, (v).n
+HeaderWord header_number(const Header *h, const char *mark, uint32_t n);
+void header_begin(const Header *h, HeaderFn f);
+
+/* header_outputs.c: derivatives of outputs, steps in reverse. */
+void header_outputs_define(const Header *h);
+
 /* header_dynamics.c: matrices and derivatives; the table of names. */
 void header_dynamics_define(const Header *h);
 void header_name_tables(const Header *h);

@@ -110,6 +110,12 @@ void header_internal_function(const Header *h, const Prog *p, const char *name, 
   header_state_function(h, p, NULL, header_wrapped(h, head), extra, out, 1);
 }
 
+HeaderWord header_number(const Header *h, const char *mark, uint32_t n) {
+  return (HeaderWord){mark, arena_printf(h->a, "%u", n)};
+}
+
+void header_begin(const Header *h, HeaderFn f) { sb_printf(h->out, "\n%s", header_api(h, f)); }
+
 const char *header_constant(const Header *h, double x) {
   const char *text = shortest_double(h->a, x);
   return arena_printf(h->a, "%s_C(%s%s)", h->upper, text, strpbrk(text, ".en") ? "" : ".0");

@@ -73,10 +73,24 @@ static void of_charges(const lag_charges *const *s) {
   CALL(powers, s[0]->n + s[0]->dry_friction, s[k]->powers(s[k], STATE, out[k], w[k]));
 }
 
-static void of_linear(const lag_linear *const *s) {
+static void of_partials(const lag_partials *const *s, int nmass) {
+  if (!both((const void *const *)s, "derivatives by parameters or inputs")) return;
+  CALL(eval, s[0]->n + nmass, s[k]->eval(s[k], STATE, a, out[k], out[k] + s[0]->n, w[k]));
+}
+
+static void of_adjoint(const lag_adjoint *const *s, const lag_model *m) {
+  int ny = 2 * m->nq + m->nz, up = m->nu + m->np;
+  if (!both((const void *const *)s, "reverse mode")) return;
+  CALL(eval, ny + up + s[0]->n, s[k]->eval(s[k], STATE, a, g, out[k], out[k] + ny, out[k] + ny + up, w[k]));
+}
+
+static void of_linear(const lag_linear *const *s, const lag_model *m) {
   if (!both((const void *const *)s, "linear")) return;
   CALL(eval, s[0]->ndr + s[0]->nmass, s[k]->eval(s[k], STATE, a, out[k], out[k] + s[0]->ndr, w[k]));
   CALL(jumps, s[0]->njump, s[k]->jumps(s[k], STATE, out[k], w[k]));
+  of_partials((const lag_partials *const[]){s[0]->by_params, s[1]->by_params}, s[0]->nmass);
+  of_partials((const lag_partials *const[]){s[0]->by_inputs, s[1]->by_inputs}, s[0]->nmass);
+  of_adjoint((const lag_adjoint *const[]){s[0]->adjoint, s[1]->adjoint}, m);
 }
 
 static void of_taylor(const lag_taylor *const *s, const lag_model *m) {
@@ -125,7 +139,8 @@ static void of_model(const lag_model *const *s) {
   CALL(contact_laws, 3 * m->ncontacts, s[k]->contact_laws(s[k], STATE, out[k], w[k]));
   of_constraints((const lag_constraints *const[]){s[0]->constraints, s[1]->constraints}, nq);
   of_charges((const lag_charges *const[]){s[0]->charges, s[1]->charges});
-  of_linear((const lag_linear *const[]){s[0]->linear, s[1]->linear});
+  CALL(inverse, nq, s[k]->inverse(s[k], STATE, a, out[k], w[k]));
+  of_linear((const lag_linear *const[]){s[0]->linear, s[1]->linear}, m);
   of_taylor((const lag_taylor *const[]){s[0]->taylor, s[1]->taylor}, m);
 }
 
@@ -156,7 +171,7 @@ static void of_scene(const lag_scene *const *s, int turn) {
   for (size_t i = 0; turn % 4 < 2 && i < nq; i++) q[i] += out[0][i], v[i] += out[0][nq + i];
   for (size_t i = 0; turn % 4 < 2 && i < nz; i++) z[i] += out[0][2 * nq + i];
   compare("start", (int)(2 * nq + nz));
-  u = random_numbers(nu, 1), a = random_numbers(nq, scale), g = random_numbers(n, scale);
+  u = random_numbers(nu, 1), a = random_numbers(nq, scale), g = random_numbers(n + nq + nz, scale);
   if (m->inputs)
     for (int k = 0; k < SIDES; k++) {
       memcpy(out[k], u, (size_t)m->nu * sizeof *u);

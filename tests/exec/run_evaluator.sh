@@ -27,8 +27,8 @@ END
 check "numbers that turns of a loop multiply" functions "$TMP/index.lag"
 for model in models/*.lag; do
   case $model in
-    */double_pendulum.lag) one_of 2 && check "functions of $model" functions "$model" --method taylor --with linear ;;
-    *) one_of 40 && light "$model" && check "functions of $model" functions "$model" --method taylor --with linear ;;
+    */double_pendulum.lag) one_of 2 && check "functions of $model" functions "$model" --method taylor --with derivatives ;;
+    *) one_of 40 && light "$model" && check "functions of $model" functions "$model" --method taylor --with derivatives ;;
   esac
   [ -z "${SLOW:-}" ] || { one_of 4 && check "functions of $model, with derivatives of L" functions "$model" --method variational; }
 done
