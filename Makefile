@@ -93,7 +93,7 @@ endif
 # Of runtime/numeric, the files that the compiler calls, too.
 SHARED   := action_integral consistent_state magnitudes option_range quadrature
 NOT_HERE := $(if $(WINDOWS),%/process.c %/clock.c %/threads.c,%windows.c)
-LAGC_SRC := $(filter-out src/main.c $(NOT_HERE),$(wildcard src/*.c src/*/*.c))
+LAGC_SRC := $(filter-out src/main.c src/playground/% $(NOT_HERE),$(wildcard src/*.c src/*/*.c))
 GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c toolchain/outfile.c $(if $(WINDOWS),base/windows.c) $(SHARED:%=numeric/%.c))
 RT_SRC   := $(filter-out runtime/gsl/% runtime/png/% runtime/hdf5/% runtime/mpi/% runtime/matlab/% runtime/page/% runtime/evaluator/lag_run.c $(NOT_HERE),$(wildcard runtime/*/*.c))
 GSL_SRC  := $(wildcard runtime/gsl/*.c)
@@ -302,7 +302,7 @@ run-demo: all
 gallery: all precisions
 	@sed -n 's|^Drawn by `build/lagc \(.*\)`:$$|$(BUILD)/lagc \1 --quiet|p' models/README.md | sh -e
 
-include tests/tests.mk .ci/install.mk .ci/page.mk
+include tests/tests.mk .ci/install.mk .ci/page.mk .ci/playground.mk
 
 # ---- the rest ---------------------------------------------------------------------------------------
 clean:
@@ -327,6 +327,7 @@ help:
 	@echo 'make fuzz-coverage  the share of lines of src/ir, src/mech and src/emit that its inputs reach'
 	@echo 'make coverage     the share of lines of each folder that the suites of make test reach, by gcov; T= as above'
 	@echo 'make mutants      plants one-token changes and prints those that no suite sees; N=100 SEED=1 JOBS=2 ONLY_IN=src/ir/ SUITES=unit,exec'
+	@echo 'make page         the WebAssembly modules of lagc page and lagc playground: needs Clang for wasm32-wasi'
 	@echo 'make gallery      draws the pictures of models/README.md'
 	@echo 'make install      PREFIX=/usr/local LIBDIR=PREFIX/lib INCLUDEDIR=PREFIX/include DESTDIR='
 	@echo 'make uninstall    the same, backwards'

@@ -22,13 +22,13 @@ LIVE := $(addprefix runtime/page/,live.html motion.js words.js typeset.js plots.
 $(BUILD)/gen/page/live_page.txt: $(LIVE) runtime/io/page.html
 	@mkdir -p $(@D)
 	sed -n '/^\/\/ ---- drawing/,/^\/\/ ---- marks/p' runtime/io/page.html >$(@D)/drawing.js
-	sed -n '/^\/\/ ---- numbers/,/^\/\/ ---- drawing/p' runtime/io/page.html >$(@D)/numbers.js
+	sed -n '/^\/\/ ---- numbers/,/^\/\/ ---- the run/p' runtime/io/page.html >$(@D)/numbers.js
 	sed -e '/@DRAWING@/{r $(@D)/drawing.js' -e 'd}' $(@D)/numbers.js runtime/page/words.js runtime/page/typeset.js runtime/page/plots.js runtime/page/drag.js runtime/page/live.js >$(@D)/live.js
 	sed -e '/@MOTION@/{r runtime/page/motion.js' -e 'd}' -e '/@LIVE@/{r $(@D)/live.js' -e 'd}' runtime/page/live.html | sed 's/^  *//; /^\/\/ /d' >$@
 $(eval $(call as_text,commands/live_page.h,$(BUILD)/gen/page/live_page.txt))
-$(BUILD)/obj/src/commands/page.o: $(BUILD)/gen/commands/live_page.h
+$(BUILD)/obj/src/commands/page.o $(BUILD)/obj/src/commands/playground.o: $(BUILD)/gen/commands/live_page.h
 
-page: all $(BUILD)/lag.wasm.gz
+page: all $(BUILD)/lag.wasm.gz $(BUILD)/lagc.wasm.gz
 
 # The gallery as live pages: build/site/index.html.
 site: page

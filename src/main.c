@@ -34,6 +34,7 @@ static int do_command(Compiler *c) {
     case CMD_HEADER: return command_header(c);
     case CMD_FMU: return command_fmu(c);
     case CMD_PAGE: return command_page(c);
+    case CMD_PLAYGROUND: return command_playground(c);
     case CMD_BUILD: return command_build(c);
     case CMD_RUN:
     case CMD_PLOT:
@@ -68,10 +69,8 @@ static int folds_digits(const Compiler *c) {
 }
 
 static int compile(Compiler *c) {
-  c->sources = sources_new(c->arena);
+  compiler_begin(c);
   c->sources->library = gallery_library(c->arena, c->argv0);
-  c->diags = diags_new(c->arena, c->sources);
-  c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
   int known = 0, status = compiler_open(c);
   if (status == STATUS_OK) status = known_run_start(c, &known);
   if (known) return status;

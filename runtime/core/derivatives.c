@@ -177,8 +177,8 @@ static int room_for(const lag_sim *s, Room *w) {
   const lag_constraints *c = m->constraints;
   size_t n = (size_t)s->pb.n, nout = (size_t)lag_sim_noutputs(s), most = nout > n ? nout : n,
          J = n * (n + (size_t)m->np) + 1, A = c ? (size_t)c->njacobian + (size_t)c->nmass : 0;
-  const lag_part parts[] = {{&w->J, J > A ? J : A}, {&w->work, lag_linear_work(m) + 1}, {&w->y, n},
-      {&w->out, most + 1}};
+  const lag_part parts[] = {
+      {&w->J, J > A ? J : A}, {&w->work, lag_linear_work(m) + 1}, {&w->y, n}, {&w->out, most + 1}};
   w->block = lag_workspace(sizeof parts / sizeof *parts, parts);
   return w->block != NULL;
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "kernels/locate.h"
 
 static double sign_of(double g) { return (g > 0) - (g < 0); }
 
@@ -43,30 +44,25 @@ int lag_events_inputs_jump(lag_sim *s) {
 /* Intervals below this part of a series, or of the run so far, count as 0. */
 static const double at_once = 1e-7;
 
-/* Time in which event k will fire for ever, dt after it fired last: the rest of the geometric
- * series of its intervals; HUGE_VAL: they do not become shorter. Others may fire between. */
-static double series_rest(lag_sim *s, int k, double dt) {
-  double *flight = &s->flight[k], *n = &s->shorter[k], before = s->interval[k],
-         rounding = 4 * DBL_EPSILON * fabs(s->run->t);
-  s->interval[k] = dt;
-  if (!(dt <= *flight)) { /* the next interval begins a series */
-    *flight = HUGE_VAL, *n = 0;
-    return HUGE_VAL;
-  }
-  if (*flight == HUGE_VAL) *flight = dt;
-  *n = dt < before + rounding ? *n + 1 : 0;
-  double ratio = *n > 0 ? pow(dt / *flight, 1 / *n) : 1;
-  if (dt / before > ratio && rounding < (1 - ratio) * dt) ratio = dt / before;
-  return ratio < 1 ? dt * ratio / (1 - ratio) : HUGE_VAL;
+static double time_rounding(const lag_sim *s) { return 4 * DBL_EPSILON * fabs(s->run->t); }
+
+static lag_series series_of(const lag_sim *s, int k) {
+  return (lag_series){s->interval[k], s->flight[k], s->shorter[k]};
 }
 
-/* Whether the event accumulates: some intervals in a row became shorter, and the rest of the series
- * is next to nothing, in units of its first interval, or time does not resolve it. A contact, which
- * goes on at rest, takes the tolerance; a block that rocks loses most of its speed at once. */
+/* The rest of the series of event k, dt after it fired last (kernels/locate.h). */
+static double series_rest(lag_sim *s, int k, double dt) {
+  lag_series of = series_of(s, k);
+  double rest = lag_series_rest(&of, dt, time_rounding(s));
+  s->interval[k] = of.interval, s->flight[k] = of.flight, s->shorter[k] = of.shorter;
+  return rest;
+}
+
+/* Whether the event accumulates. A contact, which goes on at rest, takes the tolerance; a block that rocks loses most
+ * of its speed at once. */
 static int is_zeno(const lag_sim *s, int k, double rest, int contact) {
-  const double part = contact ? fmin(s->tol, at_once) : at_once;
-  return s->shorter[k] >= (contact ? 3 : 10) &&
-         (rest <= part * s->flight[k] || s->interval[k] <= 64 * DBL_EPSILON * fabs(s->run->t));
+  lag_series of = series_of(s, k);
+  return lag_series_ends(&of, rest, contact ? fmin(s->tol, at_once) : at_once, contact ? 3 : 10, time_rounding(s));
 }
 
 static int fail_zeno(lag_sim *s, int k) {

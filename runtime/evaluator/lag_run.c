@@ -1,7 +1,7 @@
-/* lag-run: a simulator of any model. Enters: the command line of a simulator; the bytes that lagc wrote, at the path
- * $LAG_PROGRAM, which are evaluated, or a library of the model, $LAG_LIBRARY; $LAG_NO_GSL leaves GSL out. While it
- * evaluates lagc may compile: then the path of the library comes from the descriptor $LAG_COMPILED, and the run changes
- * over between two steps. */
+/* lag-run: a simulator of any model. Enters: the command line of a simulator; a library of the model, $LAG_LIBRARY, or
+ * where there is none the bytes that lagc wrote, $LAG_PROGRAM, which are evaluated; $LAG_NO_GSL leaves GSL out. While
+ * it evaluates lagc may compile: then the path of the library comes from the descriptor $LAG_COMPILED, and the run
+ * changes over between two steps. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,9 +52,9 @@ static int is_compiled_meanwhile(void) {
   return fd != NULL;
 }
 
-/* After a step: a look at the descriptor once in 2^10 steps; the path comes in one piece. */
+/* After a step: a look at the descriptor once in 2^8 steps; the path comes in one piece. */
 static void look_for_library(const lag_program *program) {
-  enum { ROOM = 4096, SELDOM = 1 << 10 };
+  enum { ROOM = 4096, SELDOM = 1 << 8 };
   static unsigned steps;
   char path[ROOM];
   if (compiled_fd < 0 || ++steps % SELDOM != 0) return;
@@ -68,20 +68,18 @@ static void look_for_library(const lag_program *program) {
 }
 #endif
 
-/* The program of $LAG_LIBRARY or $LAG_PROGRAM; NULL with the reason said. */
+/* The program of $LAG_LIBRARY, or else of $LAG_PROGRAM; NULL with the reason said. */
 static const lag_program *find_program(int *evaluated) {
-  const char *path = getenv("LAG_LIBRARY"), *why = "it is no library of this version";
+  const char *path = getenv("LAG_LIBRARY"), *why = NULL;
   const lag_program *program = path ? library(path) : NULL;
   size_t n = 0;
-  *evaluated = 0;
-  if (!path) {
-    path = getenv("LAG_PROGRAM");
-    why = path ? "it cannot be read" : "LAG_PROGRAM names no program; `lagc run --compile never` runs this";
-    void *bytes = path ? read_file(path, &n) : NULL;
-    program = bytes ? lag_program_read(bytes, n, &why) : NULL;
-    free(bytes);
-    *evaluated = program != NULL;
-  }
+  *evaluated = !program;
+  if (program) return program;
+  path = getenv("LAG_PROGRAM");
+  why = path ? "it cannot be read" : "LAG_PROGRAM names no program; `lagc run --compile never` runs this";
+  void *bytes = path ? read_file(path, &n) : NULL;
+  program = bytes ? lag_program_read(bytes, n, &why) : NULL;
+  free(bytes);
   if (!program) fprintf(stderr, "lag-run: %s%s%s\n", path ? path : "", path ? ": " : "", why);
   return program;
 }

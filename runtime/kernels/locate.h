@@ -289,5 +289,34 @@ static inline int lag_locate(const lag_locator *l, LAG_REAL a, LAG_REAL b, int *
   return status;
 }
 
+/* ---- series ---- */
+
+/* Times of one event: the last interval, the first of those that become shorter, and how many of them in turn. */
+typedef struct lag_series {
+  LAG_REAL interval, flight, shorter;
+} lag_series;
+
+/* Time in which the event will fire for ever, dt after it fired last: the rest of the geometric series of its
+ * intervals; HUGE_VAL: they do not become shorter. Others may fire between. rounding: of the time. */
+static inline LAG_REAL lag_series_rest(lag_series *s, LAG_REAL dt, LAG_REAL rounding) {
+  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), before = s->interval;
+  s->interval = dt;
+  if (!(dt <= s->flight)) { /* the next interval begins a series */
+    s->flight = (LAG_REAL)HUGE_VAL, s->shorter = zero;
+    return s->flight;
+  }
+  if (!(s->flight < (LAG_REAL)HUGE_VAL)) s->flight = dt;
+  s->shorter = dt < before + rounding ? s->shorter + one : zero;
+  LAG_REAL ratio = s->shorter > zero ? LAG_FN(pow)(dt/s->flight, one/s->shorter) : one;
+  if (dt/before > ratio && rounding < (one - ratio)*dt) ratio = dt/before;
+  return ratio < one ? dt*ratio/(one - ratio) : (LAG_REAL)HUGE_VAL;
+}
+
+/* Whether `few` intervals in turn became shorter, and the rest of the series is next to nothing, in units of its first
+ * interval, or time does not resolve it. */
+static inline int lag_series_ends(const lag_series *s, LAG_REAL rest, LAG_REAL part, int few, LAG_REAL rounding) {
+  return s->shorter >= (LAG_REAL)few && (rest <= part*s->flight || s->interval <= LAG_C(16.0)*rounding);
+}
+
 /* ---- end ---- */
 #endif

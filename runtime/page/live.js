@@ -1,7 +1,8 @@
 // The live page: controls, clocks and plots around motion.js. Enters: model, parts and packed of live.html; leaves: the page.
 const $ = id => document.getElementById(id);
 const clamp = (x, lo, hi) => Math.min(hi, Math.max(lo, x));
-const short = x => Number.isFinite(x) ? String(+x.toPrecision(4)) : "?";
+const short = x => !Number.isFinite(x) ? "?" : x && (Math.abs(x) >= 1e6 || Math.abs(x) < 1e-3) ? (+x.toPrecision(4)).toExponential().replace("e+", "e") : String(+x.toPrecision(4));
+const named_unit = unit => unit == "1" ? "" : unit;
 const colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7f00", "#888888"];
 
 // motion: what is shown; twin: from a start 1e-9 aside; finer: with more digits, for the estimate of the error. track: rows {t, x} of the columns.
@@ -10,6 +11,7 @@ let spent = 0, passed = 0, slow = 0, piece = 1, horizon = null, doubtful = 0, sc
 const section = {x: [], y: []};
 const settings = {method: "", fine: 1e-9, values: {}, start: {}};
 const span = {t0: 0, t1: 20};
+let pace = 1, unit = 1, unitName = "s"; // seconds of the motion in one of watching; the unit of time that is shown
 
 const isOf = name => model.programs.filter(p => p.scene == name);
 const wanted = () => [...document.querySelectorAll("#effects input:checked")].map(e => e.value);
@@ -35,7 +37,7 @@ function begin_beside() {
   end_beside();
   const now = state(), first = Object.keys(now)[0];
   if ($("twin").checked && first) twin = new Motion(lag, scene, options({...now, [first]: now[first] + 1e-9*(Math.abs(now[first]) || 1)}, motion.t));
-  if ($("estimate").checked) finer = new Motion(lag, scene, options(now, motion.t, takesSteps() ? 4 : 100));
+  if ($("estimate").checked) finer = new Motion(lag, scene, options(now, motion.t, takesSteps() ? 4 : 10));
   for (const other of [twin, finer]) if (other) { other.advance(other.t); other.direction = motion.direction; }
 }
 // A new motion from `values`, at time t; the old one stays where that is refused.
@@ -79,6 +81,8 @@ function choose() {
   const s = lag.span(scene);
   span.t0 = s.t0; span.t1 = s.t1 != s.t0 ? s.t1 : s.t0 + 20;
   piece = Math.abs(span.t1 - span.t0);
+  [unit, unitName] = unitFor(piece, 2, 0.02);
+  pace = piece >= 1 && piece <= 90 ? 1 : unit*nice(piece/unit/20);
   controls();
   methods();
   look();
@@ -98,7 +102,7 @@ function row_of(name, unit, attributes) {
 function slider(item, i, value) {
   const log = value > 0 && item.positive, [lo, hi] = log ? [value/10, value*10] : value ? [-2*Math.abs(value), 2*Math.abs(value)] : [-1, 1];
   const to = x => log ? lo*(hi/lo)**(x/200) : lo + (hi - lo)*x/200, from = v => clamp(200*(log ? Math.log(v/lo)/Math.log(hi/lo) : (v - lo)/(hi - lo)), 0, 200);
-  const {row, input, show} = row_of(item.name, item.unit, {id: "value" + i}), now = () => settings.values[item.name] ?? value;
+  const {row, input, show} = row_of(item.name, named_unit(item.unit), {id: "value" + i}), now = () => settings.values[item.name] ?? value;
   const set = v => { input.value = from(v); show(v); };
   set(now());
   input.oninput = () => {
@@ -120,9 +124,9 @@ function find_columns(probe) {
   const outputs = probe.names("page_output").slice(0, probe.count - lag.f.page_drawn(scene));
   names.outputs = outputs;
   names.state = probe.components.map(n => n.name);
-  columns = outputs.map((o, i) => ({...o, of: m => m.row[i]}));
+  columns = outputs.map((o, i) => ({...o, unit: named_unit(o.unit), of: m => m.row[i]}));
   const known = new Set(outputs.map(o => o.name)), half = names.state.length >> 1;
-  probe.components.forEach((c, i) => { if (i % half < 60 && !known.has(c.name)) columns.push({...c, of: m => m.now[i]}); });
+  probe.components.forEach((c, i) => { if (i % half < 60 && !known.has(c.name)) columns.push({...c, unit: named_unit(c.unit), of: m => m.now[i]}); });
   for (let k = 0, found; k < 12 && (found = probe.charge_name(k)); k++)
     if (!known.has(found[0])) {
       columns.push({name: found[0], unit: found[1], of: m => lag.f.page_charge(m.sim, k, 0)});
@@ -173,10 +177,11 @@ function methods() {
   settings.method = $("method").value;
   fine();
 }
-// The slider of accuracy: a tolerance 1e-3 to 1e-14, or a step of 1/50 to 1/50000 of the span; at first the scene's own.
+// The slider of accuracy: a tolerance 1e-3 to 1e-14, or a step of 1/50 to 1/50000 of the span; at first the scene's own, but
+// no tolerance below 1e-10: motions are watched.
 function fine() {
   const steps = takesSteps(), most = Math.abs(span.t1 - span.t0)/50, x = +$("fine").value/100;
-  const own = settings.method || settings.moved ? 0 : steps ? lag.f.page_step(scene) : lag.f.page_tolerance(scene);
+  const own = settings.method || settings.moved ? 0 : steps ? lag.f.page_step(scene) : lag.f.page_tolerance(scene) && Math.max(1e-10, lag.f.page_tolerance(scene));
   settings.fine = own > 0 ? own : steps ? most*10**(-3*x) : 10**(-3 - 11*x);
   if (own > 0) $("fine").value = 100*(steps ? Math.log10(most/own)/3 : (-3 - Math.log10(own))/11);
   $("finename").textContent = word(steps ? "stepsize" : "tolerance");
@@ -248,8 +253,8 @@ function estimate() {
 const beside = t => { for (const other of [twin, finer]) if (other) other.advance(t); };
 // Goes on by so many seconds of watching, in pieces that take a few milliseconds; past 25 ms the rest is left out.
 function pass(seconds) {
-  const dir = $("back").checked ? -1 : 1, from = motion.t, asked = seconds*+$("speed").value, goal = from + dir*asked, began = performance.now();
-  const parts = clamp(Math.ceil(60*asked), 1, 8);
+  const dir = $("back").checked ? -1 : 1, from = motion.t, asked = seconds*pace*+$("speed").value, goal = from + dir*asked, began = performance.now();
+  const parts = clamp(Math.ceil(60*asked/pace), 1, 8);
   try {
     if (motion.direction && motion.direction != dir) begin(state(), motion.t);
     motion.direction = dir;
@@ -270,7 +275,7 @@ function pass(seconds) {
     pause();
   }
   spent += performance.now() - began;
-  passed += Math.abs(motion.t - from);
+  passed += Math.abs(motion.t - from)/pace;
   slow = 0.9*slow + 0.1*(Math.abs(goal - motion.t) > 0.01*asked);
   if (slow > 0.5 && finer) { $("estimate").checked = false; end_beside(); begin_beside(); horizon = null; say(word("dear"), "note"); }
 }
@@ -302,7 +307,7 @@ const titled = i => columns[i] ? columns[i].name + (columns[i].unit ? " [" + col
 function plots() {
   const recent = track.slice(-1500), of = i => recent.map(r => r.y[i]), a = +$("over").value, px = +$("px").value, py = +$("py").value;
   if (!recent.length || !columns.length || document.body.classList.contains("plain")) return;
-  plot_series(recent.map(r => r.t), of(a), twin && recent.map(r => r.twin ? r.twin[a] : NaN), titled(a), horizon, motion.direction || 1);
+  plot_series(recent.map(r => r.t/unit), of(a), twin && recent.map(r => r.twin ? r.twin[a] : NaN), titled(a), unitName, horizon === null ? null : horizon/unit, motion.direction || 1);
   plot_phase(of(px), of(py), titled(px), titled(py), +$("section").value >= 0 ? section : null);
 }
 function report() {
@@ -336,7 +341,8 @@ function draw() {
   if (playing && now - plotted < 95) return;
   plotted = now;
   plots();
-  $("time").value = "t = " + motion.t.toFixed(Math.abs(span.t1 - span.t0) < 1 ? 4 : 2) + " s";
+  $("time").value = "t = " + (motion.t/unit).toFixed(Math.abs(span.t1 - span.t0)/unit < 2 ? 4 : 2) + " " + unitName +
+    (pace == 1 ? "" : " (1 s " + word("shows") + " " + short(pace*+$("speed").value/unit) + " " + unitName + ")");
   if (playing && now - told < 195) return;
   told = now;
   report();
@@ -411,7 +417,7 @@ function look() {
     trial.free();
   } catch (e) { if (!rows.length) { say(wrong(e)); return; } }
   const eye = picture && picture.eye, shapes = lag.shapes(scene);
-  machine = {shapes, rows, tick: 1, speed: 1, horizon: null, free: false, unit: ""};
+  machine = {shapes, rows, tick: 1, speed: pace, horizon: null, free: false, unit: ""};
   picture = machineOf(machine);
   if (eye) Object.assign(picture.eye, eye);
 }
@@ -481,20 +487,35 @@ function show_recording(run) {
   show();
   $("play").click();
 }
+// Takes a model: its scenes, with one chosen, its effects, equations and text.
+async function offer(chosen) {
+  bytes = model.raw !== undefined ? bytes_of(model.raw) : copied(await unpack(parts));
+  more = JSON.parse(new TextDecoder().decode(bytes.subarray(model.more[0], model.more[0] + model.more[1])));
+  $("source").textContent = model.source;
+  $("scene").textContent = "";
+  for (const name of new Set(model.programs.map(p => p.scene))) $("scene").add(new Option(name, name));
+  if (isOf(chosen).length) $("scene").value = chosen;
+  effects();
+}
+// Another model from its start, in the same scene where it has that.
+async function load(other) {
+  const chosen = $("scene").value;
+  model = other;
+  Object.assign(settings, {method: "", values: {}, start: {}, moved: false});
+  await offer(chosen);
+  if ($("equations").open) equations();
+  choose();
+  restart();
+}
 async function main() {
   const said = shared(), query = new URLSearchParams(location.search);
   speak(query.get("lang") || said?.lang || navigator.language.slice(0, 2));
   $("language").value = language;
   if (query.get("controls") == "0") document.body.classList.add("plain");
-  $("source").textContent = model.source;
   named_play();
-  bytes = copied(await unpack(parts));
-  more = JSON.parse(new TextDecoder().decode(bytes.subarray(model.more[0], model.more[0] + model.more[1])));
+  await offer(said?.scene);
   if (typeof WebAssembly == "undefined") return show_recording(more.recording);
   wasm = await WebAssembly.compile(await unpack(packed));
-  for (const name of new Set(model.programs.map(p => p.scene))) $("scene").add(new Option(name, name));
-  if (said && isOf(said.scene).length) $("scene").value = said.scene;
-  effects();
   $("fine").value = 55;
   if (said) {
     settings.values = said.values || {};
@@ -520,7 +541,7 @@ async function main() {
 // The page for other scripts: window.lagc.motion.state, .set("g", 3.7), .play(), .pause(), .reset(), .pass(seconds).
 window.lagc = {
   get motion() { return motion; }, get picture() { return picture; }, get playing() { return playing; }, get horizon() { return horizon; }, get columns() { return columns; },
-  get track() { return track; }, get section() { return section; }, play, pause, reset: restart,
+  get track() { return track; }, get section() { return section; }, play, pause, reset: restart, load,
   pass(seconds) { pass(seconds); draw(); },
   set(name, value) { settings.values[name] = value; go_on(); },
 };

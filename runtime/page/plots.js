@@ -55,8 +55,8 @@ function curve(pen, X, Y, x, y, colour, wide = 1.5) {
 }
 function spot(pen, x, y, colour) { pen.fillStyle = colour; pen.beginPath(); pen.arc(x, y, 4, 0, 7); pen.fill(); }
 // Rows of one column over time, the twin's beside it; grey past the horizon.
-function plot_series(t, y, other, name, horizon, dir) {
-  const p = paper("series"), rx = bounds(t), ry = bounds(y, other || []), a = axes(p, [Math.min(...[t[0], t.at(-1)]), Math.max(t[0], t.at(-1)) + 1e-12], ry, "t [s]", name), {pen} = p;
+function plot_series(t, y, other, name, unit, horizon, dir) {
+  const p = paper("series"), ry = bounds(y, other || []), a = axes(p, [Math.min(...[t[0], t.at(-1)]), Math.max(t[0], t.at(-1)) || 1e-12], ry, "t [" + unit + "]", name), {pen} = p;
   pen.save(); pen.clip();
   if (horizon !== null) {
     const x = clamp(a.X(horizon), a.left, a.right);

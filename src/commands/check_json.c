@@ -123,18 +123,22 @@ static void put_messages(StrBuf *out, const Diags *d) {
   }
 }
 
-int check_json_print(Compiler *c) {
+void check_json_put(Compiler *c, StrBuf *out) {
   static const char *const names[] = {"facts", "scenes", "symmetries", "expectations", "units", "report"},
                            brackets[][3] = {"{}", "[]", "[]", "[]", "{}", "[]"};
-  StrBuf out = strbuf(c->arena);
-  sb_puts(&out, "{\"schema\": \"lagc-check-1\"");
-  put_member(&out, "file", c->o.file);
-  sb_printf(&out, ", \"ok\": %s", c->diags->errors ? "false" : "true");
+  sb_puts(out, "{\"schema\": \"lagc-check-1\"");
+  put_member(out, "file", c->o.file);
+  sb_printf(out, ", \"ok\": %s", c->diags->errors ? "false" : "true");
   for (int k = 0; k < JSON_LISTS; k++)
-    sb_printf(&out, ",\n \"%s\": %c%s%c", names[k], brackets[k][0], c->json[k].n ? sb_text(&c->json[k]) : "",
+    sb_printf(out, ",\n \"%s\": %c%s%c", names[k], brackets[k][0], c->json[k].n ? sb_text(&c->json[k]) : "",
               brackets[k][1]);
-  sb_puts(&out, ",\n \"messages\": [");
-  put_messages(&out, c->diags);
-  sb_printf(&out, "],\n \"messages_not_shown\": %u}\n", c->diags->list.n > DIAG_MAX ? c->diags->unshown + 1 : 0);
+  sb_puts(out, ",\n \"messages\": [");
+  put_messages(out, c->diags);
+  sb_printf(out, "],\n \"messages_not_shown\": %u}\n", c->diags->list.n > DIAG_MAX ? c->diags->unshown + 1 : 0);
+}
+
+int check_json_print(Compiler *c) {
+  StrBuf out = strbuf(c->arena);
+  check_json_put(c, &out);
   return compiler_write(c, NULL, &out);
 }

@@ -15,5 +15,6 @@ void check_json_units(Compiler *c, const FoundUnit *at, uint32_t n);
 /* All that `lagc check` says, line by line. */
 void check_json_report(Compiler *c, const StrBuf *lines);
 
-/* Prints the object, with the messages recorded so far. */
+/* Appends the object, with the messages recorded so far; prints it. */
+void check_json_put(Compiler *c, StrBuf *out);
 int check_json_print(Compiler *c);

@@ -262,10 +262,10 @@ static int read_arguments(Arena *a, int argc, char **argv, Options *o, const cha
       return 1;
     }
   }
-  if (!o->file)
+  if (!o->file && o->command != CMD_PLAYGROUND)
     *error =
         arena_printf(a, "a %s is missing; usage: %s", o->command == CMD_NEW ? "name" : "model", usage(a, o->command));
-  return o->file && check_format(a, o, error);
+  return (o->file || o->command == CMD_PLAYGROUND) && check_format(a, o, error);
 }
 
 /* Commands that read no model take at most one word. */
@@ -325,6 +325,7 @@ int options_read(Arena *a, int argc, char **argv, Options *o, const char **error
   }
   if (o->command == CMD_MODES || o->command == CMD_ORBIT || o->command == CMD_CONTINUE || o->command == CMD_LYAPUNOV)
     o->with = "linear";
-  if (command_reads_model(o->command) || o->command == CMD_NEW) return read_arguments(a, argc, argv, o, error);
+  int named = command_reads_model(o->command) || o->command == CMD_NEW || o->command == CMD_PLAYGROUND;
+  if (named) return read_arguments(a, argc, argv, o, error);
   return read_one_word(a, argc, argv, o, error);
 }

@@ -288,6 +288,12 @@ static const CommandRow commands[] = {
      "switched on is computed. Methods and their tolerance or step can be changed while it runs, beside the drift of "
      "the energy and the time that a second of motion takes. The drawing is the model's (`lagc help draw`). The state "
      "of all controls is in the page's address."},
+    {CMD_PLAYGROUND, "playground", NULL, "[MODEL] -o FILE.html", "lagc itself as a page: type a model, see it move",
+     "Writes one HTML file that has lagc as WebAssembly: one types a model, and sees messages at their places, the "
+     "equations, what is proved, the symmetries that a search finds, and the motion. It needs no network and no "
+     "compiler; nothing is sent anywhere. It begins with MODEL, or offers some of the gallery. The text is in the "
+     "page's address, to be shared as a link; of files that a model names it has "
+     "those of models/lib."},
     {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
      "Lists the methods of integration: their order, the quantities that they keep, their demands on a model, and "
      "their options."},

@@ -42,3 +42,4 @@ int command_manpage(Compiler *c);
 int command_cache(Compiler *c);
 int command_models(Compiler *c);
 int command_new(Compiler *c);
+int command_playground(Compiler *c);

@@ -69,6 +69,12 @@ int compiler_report(Compiler *c, const char *path, const StrBuf *text) {
 
 /* --- the stages --- */
 
+void compiler_begin(Compiler *c) {
+  c->sources = sources_new(c->arena);
+  c->diags = diags_new(c->arena, c->sources);
+  c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
+}
+
 int compiler_open(Compiler *c) {
   const char *why = NULL, *path = gallery_path(c->arena, c->argv0, c->o.file, &why);
   if (!path) return usage_error(why);

@@ -50,6 +50,8 @@ int compiler_write(Compiler *c, const char *path, const StrBuf *text);
 /* The same of a report, unless an error was found while it was made. */
 int compiler_report(Compiler *c, const char *path, const StrBuf *text);
 
+/* An empty compilation, without sources. */
+void compiler_begin(Compiler *c);
 /* Reads the text of c->o.file, the first of c->sources. Returns a STATUS. */
 int compiler_open(Compiler *c);
 /* Parses it into c->ast. Returns a STATUS. */

@@ -243,7 +243,7 @@ static void complete(StrBuf *out, const char *argv0, const char *const *words, s
     for (size_t i = 0; word_at(l.arena, "bash zsh fish", i); i++) offer(&l, word_at(l.arena, "bash zsh fish", i), "");
   } else if (command_reads_model(l.command)) offer_word(&l);
   else if (l.command == CMD_NEW && l.open) offer_models(&l, "");
-  else if (l.command == CMD_CACHE || l.command == CMD_NEW) offer_options(&l);
+  else if (l.command == CMD_CACHE || l.command == CMD_NEW || l.command == CMD_PLAYGROUND) offer_options(&l);
 }
 
 /* `lagc completion SHELL`: prints a built-in script. */

@@ -71,9 +71,10 @@ int simulator_hand_over(Compiler *c, const EvaluatedRun *e, const Units *units) 
   Beside b = {.c = c};
   const char *error, *library = in_cache(c, e->library);
   if (c->o.no_gsl) process_set("LAG_NO_GSL", "1");
-  if (library) return process_set("LAG_LIBRARY", library), STATUS_OK;
-  if (!process_give("LAG_PROGRAM", &e->bytes)) return usage_error("cannot write a temporary file: set TMPDIR");
-  if (!e->library) return STATUS_OK;
+  if (library) process_set("LAG_LIBRARY", library);
+  int given = process_give("LAG_PROGRAM", &e->bytes);
+  if (!given && !library) return usage_error("cannot write a temporary file: set TMPDIR");
+  if (library || !e->library) return STATUS_OK;
   if (!toolchain_find(c->arena, c->argv0, 0, &b.tools, &error)) return usage_error(error);
   if (units) b.units = *units;
   if (toolchain_has_compiler(c->arena, &b.tools)) process_beside(compile_beside, &b, "LAG_COMPILED");
@@ -109,6 +110,7 @@ int simulator_evaluate(Compiler *c, const Units *units, EvaluatedRun *e) {
     ModelLibrary m = library_of(c, units, &tools);
     e->simulator = toolchain_entry(c->arena, &tools, texts.at, texts.n);
     e->library = toolchain_entry(c->arena, &m.tools, m.texts.at, m.texts.n);
+    if (strchr(tools.cc, ' ')) e->simulator = NULL; /* with its options sines may be fused: other bits */
     if (in_cache(c, e->simulator)) return STATUS_OK;
   }
   if (sweeps && !never) {

@@ -184,13 +184,19 @@ static void copy_parameters(Writer *w) {
   cwriter_line(w, sb_text(&text));
 }
 
+/* Many sums, as of second derivatives, have static memory of their own in each thread: a stack has a few MB. */
+static const char *storage(const Writer *w) {
+  enum { MANY = 100000 };
+  return w->p->cells > MANY && !w->style->params ? "static _Thread_local " : "";
+}
+
 void cnest_prepare(Writer *w) {
   if (!w->p->nests.n) return;
   if (w->style->params) copy_parameters(w);
   w->cells = cnames_take(&w->names, "sum");
   w->row = cnames_take(&w->names, "i");
   w->turn = cnames_take(&w->names, "j");
-  cwriter_line(w, arena_printf(w->a, "%s_REAL %s[%u];", w->style->prefix, w->cells, w->p->cells));
+  cwriter_line(w, arena_printf(w->a, "%s%s_REAL %s[%u];", storage(w), w->style->prefix, w->cells, w->p->cells));
   cwriter_line(w, arena_printf(w->a, "for (int %s = 0; %s < %u; %s++) %s[%s] = %s_C(0.0);", w->row, w->row, w->p->cells,
                                w->row, w->cells, w->row, w->style->prefix));
 }

@@ -337,6 +337,7 @@ static void define_path(const Header *h) {
                           {"LAST", dense_outputs[of].last}, {NULL, NULL}};
   for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
     header_section(h, kernels[i]);
+  if (h->parts.parts & PART_PATH) header_section(h, "series");
   const LineChoice choices[] = {{'s', header_has(h, FN_UNTIL_EVENT)}, {0, 0}};
   write_marked(h, header_chosen(h, step_path, choices), w);
 }

@@ -8,6 +8,7 @@
 #include "mech/lagrange.h"
 #include "mech/switches.h"
 #include "sym/print.h"
+#include "sym/sum_nest.h"
 #include "symmetry/charges.h"
 
 static IrVar ir_var(const Model *m, Name name, const Unit *u, int periodic, AstSign sign) {
@@ -154,12 +155,28 @@ static void add_variation(ProgramSet *u, const Eqns *e) {
   }
 }
 
+/* Whether the sums of the forces, which a series writes out, have so few turns that it ends; reported. */
+static int sums_fit_series(const Eqns *e) {
+  enum { MOST_TURNS = 20000 }; /* 200 bodies: some minutes of the C compiler */
+  uint64_t turns = 0;
+  ExprList l = expr_topo_to_sums(e->g, e->f, e->n);
+  for (uint32_t k = 0; k < l.n; k++)
+    if (expr_op(e->g, l.at[k]) == EX_NEST) turns += expr_sum_turns(e->g, l.at[k]);
+  if (turns <= MOST_TURNS) return 1;
+  diag_note(e->m->diags, e->m->lagrangian_span,
+            "no Taylor series: it would write out the %llu terms of the sums in the forces, and takes at most %d" HELP
+            "other methods keep sums: `dop853` has high order, `radau` and `gauss` are implicit",
+            (unsigned long long)turns, MOST_TURNS);
+  return 0;
+}
+
 /* Models with tables have no series, as tables are not analytic; models with constraints have none yet. */
 static void add_taylor(ProgramSet *u, const Eqns *e) {
   const char *why;
   if (e->constraints.n) return;
   for (uint32_t i = 0; i < e->m->inputs.n; i++)
     if (e->m->inputs.at[i].table) return;
+  if (!sums_fit_series(e)) return;
   IrSystem system = lower_system(e);
   u->taylor = series_new(&system, &why);
 }

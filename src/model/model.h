@@ -208,6 +208,7 @@ typedef struct {
   SymId parameter, charge; /* group parameter; placeholder for the charge in outputs, which mech replaces */
   Unit unit;               /* of the charge */
   VEC(Move) moves;         /* coordinates without an entry are left unchanged */
+  ExprMap moved;           /* target -> index into moves + 1 */
 } Symmetry;
 
 /* A size, of parameters alone unless it moves: at least 0, more than 0 where open, at most 1 where it is a part. */

@@ -125,11 +125,22 @@ Value whole_value(Eval *ev, const Entity *e, Span span) {
                 e->name, one);
 }
 
+/* Whether the name is of a Lagrangian that is wrong itself, which is told already. */
+static int of_wrong_lagrangian(const Builder *b, Name name) {
+  int quantity = strcmp(name, "energy") == 0 || strcmp(name, "lagrangian") == 0 || strcmp(name, "T") == 0 ||
+                 strcmp(name, "V") == 0 || strncmp(name, "p_", 2) == 0;
+  return quantity && !b->m->lagrangian && b->diags->errors;
+}
+
 /* lagrangian, energy, T, V in outputs and claims, unless the model declares the name; 0: not one of them. */
 static int builtin_quantity(Eval *ev, Name name, Value *out) {
   Builder *b = ev->b;
   Model *m = b->m;
   if (ev->where < IN_OBSERVE) return 0;
+  if (of_wrong_lagrangian(b, name)) {
+    *out = FAILED;
+    return 1;
+  }
   Expr e = 0;
   if (strcmp(name, "lagrangian") == 0) e = m->lagrangian;
   else if (strcmp(name, "energy") == 0 && m->lagrangian) e = expr_symbol(b->g, m->energy_sym)->node;

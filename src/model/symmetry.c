@@ -52,7 +52,8 @@ void declare_symmetry(Builder *b, const AstStmt *st, Name effect) {
   Entity e = {
       .kind = ENT_SYMMETRY, .index = m->symmetries.n, .name = st->name, .effect = effect, .span = st->name_span};
   if (!declare_entity(b, st, e)) return;
-  Symmetry y = {.name = full_name(b, st->name, effect), .effect = effect, .doc = st->doc, .span = st->span, .stmt = st};
+  Symmetry y = {.name = full_name(b, st->name, effect), .effect = effect, .doc = st->doc, .span = st->span, .stmt = st,
+                .moved = expr_map(b->arena)};
   Name s = ast_expr(b->ast, st->args)->name;
   Dim dim = b->unitless ? DIM_ANY : dim_unknown(b->dims, s),
       action = dim_mul(b->dims, b->energy, dim_base(b->dims, DIM_TIME));
@@ -175,10 +176,12 @@ static void add_move(const Mapping *p, SymId target, Expr to, Span span) {
   Builder *b = p->b;
   Symmetry *y = p->of;
   Name name = expr_symbol(b->g, target)->name;
-  for (uint32_t i = 0; i < y->moves.n; i++) {
-    if (y->moves.at[i].target != target) continue;
+  Expr node = expr_symbol(b->g, target)->node;
+  uint32_t first = expr_map_get(&y->moved, node);
+  if (first) {
     diag_error(b->diags, p->target, "the symmetry `%s` maps `%s` twice", y->name, name);
-    diag_also(b->diags, y->moves.at[i].span, "first here; all maps are one transformation, of the old coordinates");
+    diag_also(b->diags, y->moves.at[first - 1].span,
+              "first here; all maps are one transformation, of the old coordinates");
     if (b->index.n)
       diag_help(b->diags, "maps after a `for` belong to it, up to the next `for`: write other maps before it");
     return;
@@ -191,6 +194,7 @@ static void add_move(const Mapping *p, SymId target, Expr to, Span span) {
     if (has_corner(p, to)) report_no_rate(b, y, &move);
   }
   vec_push(b->arena, &y->moves, move);
+  expr_map_set(&y->moved, node, y->moves.n);
 }
 
 static const Unit *unit_of_target(Builder *b, uint32_t scalar, void *data) {

@@ -163,8 +163,7 @@ static Circular circular_of_inverse(Normal *n, ExprOp op, Frac u) {
   return op == EX_ASIN ? (Circular){.cos = other, .sin = u} : (Circular){.cos = u, .sin = other};
 }
 
-/* *cs := cos and sin of a multiple of an inverse function; 0: t/den is none. For proofs, as the inverse has a
- * domain. */
+/* *cs := cos and sin of a multiple of an inverse function; 0: t/den is none. For proofs, as inverses have domains. */
 static int inverse_angle(Normal *n, Term t, DenId den, Circular *cs) {
   enum { MOST = 12 };
   const Mono *mono = mono_at(n->ring, t.mono);

@@ -88,9 +88,13 @@ static DenseRows kernel_of_rows(RowSource *r, Arena *a, RowKind kind, const Dens
       project(&sparse, n, b1 + i * w, rounding_of(space), m + (size_t)rows * 2 * n + n);
     }
   }
+  arena_release(a, b0, most * w * sizeof *b0);
+  arena_release(a, b1, most * w * sizeof *b1);
   double used = columns_used(m, rows, 2 * n);
-  return search_goes_on(limit, 2 * used * used * rows) ? dense_kernel(a, rows, 2 * n, m, REST)
-                                                       : (DenseRows){.width = 2 * n};
+  DenseRows kernel = {.width = 2 * n};
+  if (search_goes_on(limit, 2 * used * used * rows)) kernel = dense_kernel(a, rows, 2 * n, m, REST);
+  arena_release(a, m, (most * 2 * n + 1) * sizeof *m);
+  return kernel;
 }
 
 /* Intersects the space with the solutions of rows of one kind. 0: such rows could not be had. */

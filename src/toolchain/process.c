@@ -95,8 +95,21 @@ int process_reader_ends(int fd, double seconds) {
   return poll(&of, 1, (int)(1000 * seconds)) != 0;
 }
 
+typedef struct {
+  void (*work)(void *data, int fd);
+  void *data;
+  int fd;
+} Beside;
+
+static int work_to_the_end(void *beside) {
+  const Beside *b = beside;
+  b->work(b->data, b->fd);
+  return 0;
+}
+
 /* The process of work has no streams but fd, so that nobody who reads from this program waits for it, and no parent. */
 static void work_beside(void (*work)(void *data, int fd), void *data, int fd) {
+  const double longest = 600; /* s; a compiler that hangs is ended */
   int null = open("/dev/null", O_RDWR);
   if (fork() != 0) _exit(0);
   signal(SIGPIPE, SIG_IGN);
@@ -104,7 +117,8 @@ static void work_beside(void (*work)(void *data, int fd), void *data, int fd) {
   for (int k = 3; k < (int)sysconf(_SC_OPEN_MAX) && k < 256; k++)
     if (k != fd) close(k);
   if (nice(5) == -1) errno = 0; /* the run goes first */
-  work(data, fd);
+  Beside b = {work, data, fd};
+  process_end(process_begin(work_to_the_end, &b), longest);
   _exit(0);
 }
 

@@ -167,7 +167,8 @@ static const char *const *compiler_words(Arena *a, const Toolchain *t, const cha
   const char *archive = arena_printf(a, "%s/lib%s.a", t->lib, t->library);
   const char *first[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, "-o", made_in(a, t, dir)};
   const char *runtime[] = {build_macro(a, t, is->safe), links_sines ? "-DLAG_LINKED_SINES" : "", "-I", t->include};
-  const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : "")},
+  const char *same = t->models ? "-DLAG_NO_FMA" : ""; /* sines with the evaluator's bits, whatever the options of CC */
+  const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : ""), same},
              *hidden[] = {"-fvisibility=hidden", "-s", alone ? steady_flags(a, t) : ""};
   const char *exports = is->exports ? arena_printf(a, "-Wl,--version-script=%s/exports.map", dir) : "";
   const char *whole[] = {"-Wl,-Bsymbolic", exports, "-Wl,--whole-archive", archive, "-Wl,--no-whole-archive"};
@@ -335,6 +336,21 @@ int toolchain_has_compiler(Arena *a, const Toolchain *t) {
   return 0;
 }
 
+/* Whether the file begins as the running program does: with the mark of ELF, Mach-O, PE. */
+static int is_program(const char *path) {
+  char own[PATH_MAX], mark[2][4] = {{0}};
+  long n = lag_own_path(own, sizeof own - 1);
+  own[n > 0 ? n : 0] = '\0';
+  const char *const paths[] = {own, path};
+  for (int k = 0; k < 2; k++) {
+    FILE *f = fopen(paths[k], "rb");
+    size_t got = f ? fread(mark[k], 1, sizeof mark[k], f) : 0;
+    if (f) fclose(f);
+    if (got < sizeof mark[k]) return k == 0; /* nothing to compare with */
+  }
+  return memcmp(mark[0], mark[1], sizeof mark[0]) == 0;
+}
+
 const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error) {
   const char *cache = cache_folder(a),
              *path = cache ? arena_printf(a, "%s/%s", cache, toolchain_entry(a, t, texts, n)) : NULL;
@@ -343,8 +359,10 @@ const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *
   int lock = path ? cache_take(a, path) : -1, there = lock >= 0 && cache_has(path), ok = there;
   if (!there && build(a, t, texts, n, &f, error)) {
     const char *made = made_in(a, t, f.path);
-    ok = cache_seal(made) && chmod(made, 0700) == 0 && rename(made, path) == 0;
-    if (!ok) *error = arena_printf(a, "cannot write %s: %s", path, strerror(errno));
+    int right = is_program(made);
+    ok = right && cache_seal(made) && chmod(made, 0700) == 0 && rename(made, path) == 0;
+    if (!right) *error = arena_printf(a, "the C compiler `%s` wrote no program of this machine", t->cc);
+    else if (!ok) *error = arena_printf(a, "cannot write %s: %s", path, strerror(errno));
     build_folder_remove(&f);
     if (ok) cache_limit(a, path);
   }

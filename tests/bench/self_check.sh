@@ -8,7 +8,7 @@ command -v valgrind >/dev/null || {
 }
 for model in double_pendulum chain free_body rattleback string fput outer_planets pleiades schwarzschild satellite; do
   valgrind --tool=callgrind --callgrind-out-file="$TMP/calls" "$LAGC" emit "models/$model.lag" -o "$TMP/model.c" >/dev/null 2>&1
-  callgrind_annotate --inclusive=yes "$TMP/calls" | awk -v model="$model" '
+  callgrind_annotate --inclusive=yes --threshold=100 "$TMP/calls" | awk -v model="$model" '
     /PROGRAM TOTALS/ { total = $1 }
     /:self_check( |$)/ && !own { own = $1 } # the file is ??? in a compiler without -g
     END { if (!own) { print "bench self_check: callgrind names no function self_check: is the compiler stripped?"; exit 1 }

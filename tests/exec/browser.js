@@ -24,13 +24,13 @@ class Browser {
     return new Promise((done, failed) => this.waiting.set(id, said => said.error ? failed(new Error(method + ": " + said.error.message)) : done(said.result)));
   }
   // A page of this size in pixels; `before` runs ahead of its scripts.
-  async open(url, {width = 1000, height = 900, touch = false, dark = false, before = ""} = {}) {
+  async open(url, {width = 1000, height = 900, touch = false, dark = false, still = false, before = ""} = {}) {
     const {targetId} = await this.send("Target.createTarget", {url: "about:blank"});
     this.session = (await this.send("Target.attachToTarget", {targetId, flatten: true})).sessionId;
     for (const domain of ["Page", "Runtime", "Log"]) await this.send(domain + ".enable");
     await this.send("Emulation.setDeviceMetricsOverride", {width, height, deviceScaleFactor: 1, mobile: touch});
     await this.send("Emulation.setTouchEmulationEnabled", {enabled: touch});
-    await this.send("Emulation.setEmulatedMedia", {features: [{name: "prefers-color-scheme", value: dark ? "dark" : "light"}]});
+    await this.send("Emulation.setEmulatedMedia", {features: [{name: "prefers-color-scheme", value: dark ? "dark" : "light"}, {name: "prefers-reduced-motion", value: still ? "reduce" : "no-preference"}]});
     if (before) await this.send("Page.addScriptToEvaluateOnNewDocument", {source: before});
     await this.send("Page.navigate", {url});
   }

@@ -90,6 +90,21 @@ walls() { moves 2 "$1" $here/fmu/walls.lag s "" "$2" 20 >"$TMP/said" && cat "$TM
 check "events of both directions, several at a time, co-simulation" walls cs 1e-8
 check "the same in model exchange" walls me 1e-6
 
+# Impacts by an event accumulate at t = 1.354 s: an error, as of a run, and no fall through the floor; a slow body beside it moves on until then.
+cat >"$TMP/ever_shorter.lag" <<'END'
+model ever_shorter
+coord y [m], z [m]
+kinetic = 1 [kg]/2*(y'^2 + z'^2)
+potential = 9.81 [N]*y
+event floor: y falling { y' = -y'/2 }
+scene s { start y = 1 [m], z' = 0.001 [m/s]; span 3 [s] }
+END
+accumulates() { # LAST TIME
+  make_fmu "$TMP/ever_shorter.lag" 2 && printf 't [s],z [m]\n0,0\n%s,%s\n' "$1" "$(awk "BEGIN { print $1/1000 }")" >"$TMP/slow.csv" && "$TMP/import2" "$fmu" "$(echo "$fmu"/binaries/*/*)" cs "$TMP/slow.csv" 1e-12 1
+}
+check "impacts by an event" accumulates 1.35
+check "that accumulate" eval '! accumulates 3 >"$TMP/said" 2>&1 && grep "DoStep" "$TMP/said"'
+
 # ---- contacts: steps by Moreau's method in co-simulation, as a run by moreau takes them; outputs with forces and accelerations, an event beside them
 cell=$here/fmu/cell.lag
 ends() { moves "$1" cs $cell s "" 1e-11 1 >"$TMP/said" && cat "$TMP/said" && grep -q '^stopped at 4.5505' "$TMP/said"; }

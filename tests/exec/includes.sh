@@ -22,6 +22,7 @@ src/emit      emit/ ir/ base/ numeric/functions.def numeric/program_code.def ker
 src/fmu       fmu/ emit/ ir/ base/
 src/toolchain toolchain/ base/
 src/commands  app/options.def kernels/steppers.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ phase_space/ mech/ model/ sym/ syntax/ base/
+src/playground playground/ commands/ fmu/fmu_archive.h toolchain/files.h toolchain/process.h report/equation_listing.h model/model.h base/
 src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
@@ -126,8 +127,8 @@ empty "lag_model.h includes only <stddef.h>" \
 # ISO C11 everywhere; POSIX where a program meets its system.
 c11='assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic
   stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype'
-posix='src/base/source\.c src/toolchain/.*\.c runtime/app/.*\.c runtime/io/.*\.[ch] runtime/sweep/.*\.c runtime/evaluator/lag_run\.c runtime/numeric/clock_windows\.c runtime/matlab/.*\.c'
-empty "system headers: ISO C11; POSIX in base/source, toolchain, runtime/app, io, sweep and matlab" "$(awk -v c11="$c11" -v posix="$posix" '
+posix='src/base/source_file\.c src/toolchain/.*\.c runtime/app/.*\.c runtime/io/.*\.[ch] runtime/sweep/.*\.c runtime/evaluator/lag_run\.c runtime/numeric/clock_windows\.c runtime/matlab/.*\.c'
+empty "system headers: ISO C11; POSIX in base/source_file, toolchain, runtime/app, io, sweep and matlab" "$(awk -v c11="$c11" -v posix="$posix" '
   BEGIN {
     n = split(c11, w); for (i = 1; i <= n; i++) standard["<" w[i] ".h>"] = 1
     m = split(posix, where)

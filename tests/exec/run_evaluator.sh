@@ -84,8 +84,8 @@ is "no command fails" "" "$(grep failed "$TMP/without/printed")"
 check "the same is printed without a compiler" diff "$TMP/with/printed" "$TMP/without/printed"
 for file in motion.csv plot.svg chaos.html motion.svg; do check "and written: $file" cmp "$TMP/with/$file" "$TMP/without/$file"; done
 # Lanes have sines of their own, which the motion of a libration over 10 periods makes no more than the tolerance, 1e-11, times a hundred.
-near() { paste -d , "$1" "$2" | awk -F , 'NR > 1 { for (i = 1; i < 4; i++) if (($i - $(i + 4))^2 > 1e-18) exit 1; n++ } END { exit n != 5 }'; }
-check "and a sweep, whose rows are those of runs in lanes up to roundings" near "$TMP/with/sweep.csv" "$TMP/without/sweep.csv"
+near_rows() { paste -d , "$1" "$2" | awk -F , 'NR > 1 { for (i = 1; i < 4; i++) if (($i - $(i + 4))^2 > 1e-18) exit 1; n++ } END { exit n != 5 }'; }
+check "and a sweep, whose rows are those of runs in lanes up to roundings" near_rows "$TMP/with/sweep.csv" "$TMP/without/sweep.csv"
 
 # Compilers that link no libgcc: tcc.
 empty "liblag asks for no symbols of gcc's own library" "$(nm -u "$BUILD/liblag.a" 2>/dev/null | grep __cpu_)"
@@ -99,12 +99,56 @@ else
   skip "tcc compiles simulators and libraries" "tcc is not installed"
 fi
 
-# A run of some seconds changes over to what was compiled beside it; nobody can see where.
-changes_over() {
-  "$LAGC" run models/double_pendulum.lag --until 20000 --every 1 --quiet -o "$TMP/auto.csv" && "$LAGC" run models/double_pendulum.lag --until 20000 --every 1 --compile never --quiet -o "$TMP/never.csv" &&
-    cmp "$TMP/auto.csv" "$TMP/never.csv" && [ -n "$(find "$XDG_CACHE_HOME" -type f)" ]
+# Runs whose reader waits after a row until a compiler has ended beside them, and so change over near that row: nobody can see where. A pipe holds
+# 64 kB; the library is looked for once in 256 steps.
+slow_run() { # CC ROW MODEL SCENE DONE: the rows in $TMP/slow.csv; DONE: a command that succeeds once the wait is over, 20 s at most
+  { # files of 32 kB at most, where the disk is full: less than a library
+    case $1 in *full) trap '' XFSZ && ulimit -f 64 ;; esac
+    CC=$1 exec "$LAGC" run "$3" "$4" --method rk4 --step 1e-3 --every 1e-3 --until 6 --quiet -o - 2>"$TMP/slow.err"
+  } | awk -v row="$2" -v wait="i=0; until $5 || [ \$i = 100 ]; do sleep 0.2; i=\$((i + 1)); done" '{ print } NR == row { system(wait) }' >"$TMP/slow.csv"
 }
-slow check "rows of a run that changes over" changes_over
+has_library="find '$XDG_CACHE_HOME' -type f -size +8k ! -name '*.bytes' ! -path '*lagc-build*' | grep -q ."
+same_rows() { "$LAGC" run "$1" "$2" --method rk4 --step 1e-3 --every 1e-3 --until 6 --quiet --compile never -o "$TMP/never.csv" && cmp "$TMP/slow.csv" "$TMP/never.csv"; }
+changes_over() { # MODEL SCENE ROW
+  rm -rf "$XDG_CACHE_HOME"
+  mkdir -m 700 "$XDG_CACHE_HOME"
+  slow_run "$CC" "$3" "$1" "$2" "$has_library" && sh -c "$has_library" && same_rows "$1" "$2"
+}
+day=${DAY:-0}
+for model in double_pendulum lorenz slider_crank kepler stick_slip magnetic_pendulum; do
+  scene=$(sed -n 's/^scene \([a-zA-Z0-9_]*\).*/\1/p' models/$model.lag | head -n 1)
+  row=$(((day * 977 + ${#model} * 131) % 1500 + 1))
+  one_of 6 && check "models/$model.lag changes over after row $row" changes_over "models/$model.lag" "$scene" "$row"
+done
+
+# Options of CC that let sines use fused multiply-adds change nothing, either.
+if "$CC" -march=native -dM -E -x c /dev/null 2>/dev/null | grep -q __FMA__; then
+  fused() { (CC="$CC -march=native" && changes_over models/double_pendulum.lag swing 50); }
+  one_of 3 && check "a change-over to C with fused multiply-adds" fused
+fi
+
+# Compilers that fail, hang, write rubbish, or have no room: the run goes on, and the next one begins.
+fake() { # NAME COMMANDS
+  printf '#!/bin/sh\nstarted="%s/started"\n%s\n' "$TMP" "$2" >"$TMP/$1" && chmod +x "$TMP/$1"
+}
+fake fails 'echo $$ >>"$started"; exit 1'
+fake hangs '[ ! -e "$started.over" ] || exit 1; echo $$ >>"$started"; exec sleep 30'
+fake full 'echo $$ >>"$started"; exec '"$CC"' "$@"'
+fake rubbish 'while [ $# -gt 0 ]; do [ "$1" != -o ] || echo rubbish >"$2"; case $2 in *library.so) echo $$ >"$started" ;; esac; shift; done'
+has_started="[ -s '$TMP/started' ]"
+goes_on() {
+  rm -f "$TMP/started" "$TMP/started.over"
+  for again in 1 2; do
+    slow_run "$TMP/$1" 300 models/double_pendulum.lag swing "$has_started"
+    [ -s "$TMP/started" ] && same_rows models/double_pendulum.lag swing || return 1
+    sleep 0.5 # what was written goes to the cache
+  done
+  : >"$TMP/started.over" # those that still hang end, and no others begin
+  [ "$1" != hangs ] || while read -r pid; do kill "$pid"; done <"$TMP/started"
+}
+for cc in fails hangs rubbish full; do
+  one_of 4 && check "the compiler beside the run: $cc" goes_on "$cc"
+done
 
 # Bytes cut short, or with changed bits, bytes and words.
 "$LAGC" build models/bouncing_ball.lag --bytes -o "$TMP/ball"

@@ -39,7 +39,7 @@ if command -v node >/dev/null 2>&1; then
     done
   }
   check "damaged bytes are told" damaged
-  for m in pendulum slider_crank kerr; do "$LAGC" derive "models/$m.lag" --format latex >"$TMP/$m.tex"; done
+  for m in pendulum slider_crank brachistochrone; do "$LAGC" derive "models/$m.lag" --format latex >"$TMP/$m.tex"; done
   empty "contrast AA, words in each language, equations as MathML" "$(node tests/exec/page_words.js runtime/page "$TMP"/*.tex)"
   # 350 KB, of which the module has 236
   empty "pages of the gallery's small models are at most 350 KB" "$(wc -c "$TMP/page.html" | awk '$1 > 350e3')"
