@@ -203,4 +203,9 @@ check "refused: --accuracy 1e-6 --step 1e-3" says 2 'chooses the tolerance or st
 check "refused: chaos --until 60 --accuracy 1e-6" says 2 'no digit is left' "$LAGC" run "$dp" chaos --until 60 --accuracy 1e-6
 check "refused: --accuracy 1e-17" says 2 'the smallest error found is' "$LAGC" run "$dp" --accuracy 1e-17
 check "refused: --accuracy 1e-14 --method verlet" says 2 'steps of verlet; leave out --method' "$LAGC" run "$dp" --accuracy 1e-14 --method verlet
+
+# ---- rounding of the time, which all runs share: half a unit in the last place from t = 128 on is 2^-46 s, and x' = 1 m/s at most
+printf '%s\n' 'model clock' 'coord x' "lagrangian = x'^2/2 - x^2/2" 'scene s { start x = 1; span 150 }' >"$TMP/clock.lag"
+"$LAGC" run "$TMP/clock.lag" --method taylor --tol 1e-15 --quiet --json >"$TMP/clock.json"
+check "no error below that of the time" sh -c 'awk -v e="$(sed -n "s/.*\"error\": \([0-9.e-]*\),.*/\1/p" "$1")" "BEGIN { print e; exit !(e > 0.9*2^-46 && e < 10*2^-46) }"' sh "$TMP/clock.json"
 tap_end
