@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "core/core.h"
 #include "numeric/line_fit.h"
 #include "sweep/sweep_grid.h"
 
@@ -310,6 +311,18 @@ static const char *unit_of(const Overlay *o, int k) {
   return o->runs[0].curve[k] < 0 ? NULL : first->table.cols[first->drawn.y[k]].unit;
 }
 
+/* The largest value of curve k, and where this is little, as that of an energy of 0 that drifts, that of the terms that
+ * cancel in it. */
+static double size_of(const OverlaidRun *first, int k) {
+  const double little = 1e-6;
+  const App *app = &first->app;
+  int out = app->drawn.y[first->curve[k]] - 1;
+  double most = 0, terms = 0;
+  for (size_t at = 0; at < app->table.nrows; at++) most = fmax(most, fabs(value_of(first, k, at)));
+  if (out < lag_sim_noutputs(app->sim)) terms = lag_output_change(app->sim, lag_sim_time(app->sim), app->sim->now, out);
+  return most > little * terms || !(terms < HUGE_VAL) ? most : terms;
+}
+
 /* scale[k] := what differences of curve k are divided by: 1 where all have one unit, which is returned; else the
  * largest value of this unit in the first run. */
 static const char *find_scales(Overlay *o, double *scale) {
@@ -323,8 +336,7 @@ static const char *find_scales(Overlay *o, double *scale) {
     units += !one || strcmp(unit, one) != 0;
     one = unit;
     for (int j = 0; j < n; j++)
-      for (size_t at = 0; unit_of(o, j) && strcmp(unit_of(o, j), unit) == 0 && at < first->app.table.nrows; at++)
-        scale[k] = fmax(scale[k], fabs(value_of(first, j, at)));
+      if (unit_of(o, j) && strcmp(unit_of(o, j), unit) == 0) scale[k] = fmax(scale[k], size_of(first, j));
   }
   for (int k = 0; k < n && units == 1; k++) scale[k] = 1;
   o->scaled = units > 1;

@@ -180,11 +180,16 @@ double lag_energy_terms(lag_sim *s, double t, const double *y) {
   return lag_above_rounding(fmax(e[1], fabs(e[0])), fmax(fabs(beside[0] - e[0]) / moved, rest));
 }
 
-double lag_output_terms(lag_sim *s, double t, const double *y, int k) {
+double lag_output_change(lag_sim *s, double t, const double *y, int k) {
   if (lag_observe(s, t, y, s->out)) return NAN;
   double at = s->out[k];
-  if (lag_observe(s, t, moved_state(s, y), s->out)) return fabs(at);
-  return lag_above_rounding(fabs(at), fabs(s->out[k] - at) / moved);
+  return lag_observe(s, t, moved_state(s, y), s->out) ? NAN : fabs(s->out[k] - at) / moved;
+}
+
+double lag_output_terms(lag_sim *s, double t, const double *y, int k) {
+  double change = lag_output_change(s, t, y, k);
+  if (lag_observe(s, t, y, s->out)) return NAN;
+  return isnan(change) ? fabs(s->out[k]) : lag_above_rounding(fabs(s->out[k]), change);
 }
 
 void lag_velocity_terms(lag_sim *s, double t, const double *y, double *v) {

@@ -67,6 +67,10 @@ int lag_rows_close(Rows *r, int keep);
 /* Makes [lo, hi] a drawable interval: with a margin relative to its length; half of the values on each side where it
  * is narrower than `least` times these; [0, 1] where it is empty. */
 void lag_widen_range(double *lo, double *hi, double least, double margin);
+/* Width of dots in a picture of so many: 8 pixels where they are few, 2 where they are thousands. */
+double lag_dot_width(double rows);
+/* Decimal logarithms: a factor of 2.2 at least, which contains a tick. */
+void lag_widen_log_range(double *lo, double *hi);
 /* Step of axis ticks: 1, 2 or 5 times a power of ten, about n of them from lo to hi. */
 double lag_tick_step(double lo, double hi, int n);
 

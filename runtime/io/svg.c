@@ -56,10 +56,9 @@ static void point(FILE *f, const Panel *p, double x, double y, int *pen) {
   *pen = 1;
 }
 
-/* Dots, as zero-length strokes with round ends in one element; from 8 pixels where they are few to 2 where they are
- * thousands. */
+/* Dots, as zero-length strokes with round ends in one element. */
 static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period, const char *stroke) {
-  double width = fmin(8, fmax(2, 40 / pow((double)t->nrows, 0.4)));
+  double width = lag_dot_width((double)t->nrows);
   fprintf(f, "<path fill=\"none\" %s stroke-width=\"%.1f\" stroke-linecap=\"round\" d=\"", stroke, width);
   for (size_t i = 0; i < t->nrows; i++) {
     double x = lag_table_cell(t, i, xcol), y = lag_table_cell(t, i, ycol);
@@ -314,6 +313,7 @@ static void against_time(FILE *f, const Table *t, const char *title, const Plott
     for (int i = 0; i < d->n; i++)
       if (strcmp(t->cols[d->y[i]].unit, units[k]) == 0) lag_table_range(t, d->y[i], &p.y0, &p.y1);
     lag_widen_range(&p.y0, &p.y1, 1e-12, 0.06);
+    if (p.ylog) lag_widen_log_range(&p.y0, &p.y1);
     if (d->yname) label_of(d->yname, units[k], h + 40, s, sizeof s);
     else label_of(names_of(t, d, units[k], names, sizeof names), units[k], h + 40, s, sizeof s);
     lag_svg_axes(f, &p, s, k == n - 1);
@@ -389,6 +389,7 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   else lag_widen_range(&p.x0, &p.x1, 1e-12, d->beneath.value ? 0.25 : x ? 0.05 : 0);
   if (d->beneath.profile) lag_svg_profile_range(&d->beneath, p.x0, p.x1, &p.y0, &p.y1);
   lag_widen_range(&p.y0, &p.y1, 1e-12, d->beneath.value && !d->beneath.profile ? 0.25 : 0.05);
+  if (p.ylog) lag_widen_log_range(&p.y0, &p.y1);
   if (x && !d->beneath.value && shares_scale(t, d, &p)) same_scale(&p);
   axis_label(t, d->n, d->x, d->xname, p.w, xlabel, sizeof xlabel);
   axis_label(t, d->n, d->y, d->yname, p.h + 40, ylabel, sizeof ylabel);

@@ -14,7 +14,7 @@ static int keeps(size_t i, double part) {
 }
 
 static void dots(FILE *f, const Panel *p, const Table *t, int x, int y, double part) {
-  double shown = part * (double)t->nrows, width = shown > 1000 ? 2.2 : shown > 200 ? 3 : 4.5;
+  double width = fmin(5, lag_dot_width(fmin(part, 1) * (double)t->nrows));
   fprintf(
       f, "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.6\" stroke-width=\"%.1f\" stroke-linecap=\"round\" d=\"",
       lag_colour[0], width);

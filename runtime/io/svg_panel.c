@@ -33,6 +33,13 @@ void lag_svg_text(FILE *f, double x, double y, const char *attributes, const cha
   fputs("</text>\n", f);
 }
 
+void lag_widen_log_range(double *lo, double *hi) {
+  const double least = 0.35;
+  double more = fmax(least - (*hi - *lo), 0) / 2;
+  *lo -= more;
+  *hi += more;
+}
+
 void lag_widen_range(double *lo, double *hi, double least, double margin) {
   if (!(*lo <= *hi)) {
     *lo = 0;
@@ -56,11 +63,11 @@ static void tick_label(char *s, size_t n, double value, double step) {
 }
 
 /* Number of x ticks per label, so that long labels (-3.086e+07) do not overlap. */
-static double label_stride(const Panel *p, double dx) {
+static double label_stride(const Panel *p, double dx, double base) {
   enum { WIDTH_OF_CHARACTER = 7, ROOM = 10 };
   size_t longest = 0;
   char s[32];
-  for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
+  for (double k = ceil((p->x0 - base) / dx - 1e-9); k * dx <= p->x1 - base + 1e-9 * dx; k++) {
     tick_label(s, sizeof s, k * dx, dx);
     if (strlen(s) > longest) longest = strlen(s);
   }
@@ -88,27 +95,39 @@ static void y_tick(FILE *f, const Panel *p, double at, const char *label) {
   if (*label) put_label(f, p->x - 7, y + 4, "text-anchor=\"end\"", label);
 }
 
+double lag_dot_width(double rows) { return fmin(8, fmax(2, 40 / pow(rows, 0.4))); }
+
+/* Left out of labels that would be equal otherwise. */
+static double label_base(double lo, double hi, double step) {
+  return fmax(fabs(lo), fabs(hi)) > 1e5 * step ? nearbyint((lo + hi) / 2 / step) * step : 0;
+}
+
+static void put_base(FILE *f, double x, double y, const char *anchor, double base) {
+  char s[32], attributes[64];
+  snprintf(s, sizeof s, "%.14g +", base);
+  snprintf(attributes, sizeof attributes, "font-size=\"11\" text-anchor=\"%s\"", anchor);
+  if (base != 0.0) lag_svg_text(f, x, y, attributes, s);
+}
+
 static void linear_x(FILE *f, const Panel *p, int labelled) {
-  double dx = lag_tick_step(p->x0, p->x1, p->w < 400 ? 4 : 8), stride = label_stride(p, dx);
-  for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
+  double dx = lag_tick_step(p->x0, p->x1, p->w < 400 ? 4 : 8), base = label_base(p->x0, p->x1, dx);
+  double stride = label_stride(p, dx, base);
+  for (double k = ceil((p->x0 - base) / dx - 1e-9); k * dx <= p->x1 - base + 1e-9 * dx; k++) {
     char s[32] = "";
     if (labelled && fmod(k, stride) == 0.0) tick_label(s, sizeof s, k * dx, dx);
-    x_tick(f, p, k * dx, s);
+    x_tick(f, p, base + k * dx, s);
   }
+  if (labelled) put_base(f, p->x + p->w, p->y + p->h + 38, "end", base);
 }
 
 static void linear_y(FILE *f, const Panel *p, int labelled) {
-  double dy = lag_tick_step(p->y0, p->y1, p->h > 220 ? 7 : 4), size = fmax(fabs(p->y0), fabs(p->y1));
-  /* left out of labels that would be equal otherwise */
-  double base = size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0;
+  double dy = lag_tick_step(p->y0, p->y1, p->h > 220 ? 7 : 4), base = label_base(p->y0, p->y1, dy);
   char s[32] = "";
   for (double k = ceil((p->y0 - base) / dy - 1e-9); k * dy <= p->y1 - base + 1e-9 * dy; k++) {
     if (labelled) tick_label(s, sizeof s, k * dy, dy);
     y_tick(f, p, base + k * dy, s);
   }
-  if (base == 0.0 || !labelled) return;
-  snprintf(s, sizeof s, "%.14g +", base);
-  lag_svg_text(f, p->x, p->y - 6, "font-size=\"11\"", s);
+  if (labelled) put_base(f, p->x, p->y - 6, "start", base);
 }
 
 /* Lines at powers of ten, and between where these are few; those from lo to hi, decimal logarithms. */

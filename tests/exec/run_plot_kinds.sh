@@ -245,4 +245,17 @@ check "a distance over another axis" no "is over time" models/pendulum.lag --dis
 check "both differences" no "are two pictures" models/pendulum.lag --distance --vs th=1 --energy-error
 check "other columns, by a simulator" says 2 "\`lagc plot\` chooses these" "$TMP/sim" wide --svg "$TMP/no.svg" --plot-x th --plot-y energy --portrait
 check "no picture" says 2 "need a picture" "$TMP/sim" wide --portrait
+
+# ---- sizes: an energy of 0 that drifts is no scale; axes of little range have numbers that differ
+double=models/double_pendulum.lag
+check "two starts 0.03 rad apart" "$LAGC" plot "$double" swing --distance --vs th1=1.6 -o "$TMP/apart.svg"
+"$LAGC" plot "$double" swing --distance --vs th1=1.6 -o "$TMP/apart.svg" >"$TMP/said" 2>&1
+first=$(sed -n 's/.*distance from the first: \([0-9.e+-]*\) at first.*/\1/p' "$TMP/said")
+check "th1 and y2 begin 0.03 and 0.015 of their size apart, the energy 0.03*g*2 of g*6" close_to "$first" 0.02 0.015
+check "powers of ten on the axis" grep -q '10<tspan' "$TMP/apart.svg"
+printf '%s\n' 'model still' 'coord x' 'param k = 1 > 0' "lagrangian = x'^2/2" 'scene s { start x = 1, '"x' = 0"'; span 1}' >"$TMP/still.lag"
+check "a histogram of a range of 1e-9" "$LAGC" sweep "$TMP/still.lag" 'k~uniform(0, 1)' --samples 40 --measure 'max(x + k*1e-9)' --histogram 5 --svg "$TMP/still.svg"
+labels() { sed -n 's/.*<text [^>]*text-anchor="middle"[^>]*>\([0-9.e+-]*\)<.*/\1/p' "$TMP/still.svg" | sort | uniq -d; }
+is "has no two labels alike" "" "$(labels)"
+check "and says what they begin with" grep -q '>1[0-9.]* +<' "$TMP/still.svg"
 tap_end
