@@ -26,9 +26,20 @@
 #include "numeric/complementarity.h"
 #include "numeric/workspace.h"
 
+static int is_of(const lag_contact *c, int event) { return c->impact == event || c->release == event; }
+
 const lag_contact *lag_contact_of(const lag_model *m, int event) {
+  const lag_contact *of = m->contacts;
+  int low = 0, high = m->ncontacts;
+  if (event / 2 < high && is_of(&of[event / 2], event)) return &of[event / 2]; /* two events each, as a rule */
+  while (high - low > 1) { /* events rise with contacts, as a rule */
+    int mid = (low + high) / 2;
+    if (of[mid].impact <= event) low = mid;
+    else high = mid;
+  }
+  if (high && is_of(&of[low], event)) return &of[low];
   for (int i = 0; i < m->ncontacts; i++)
-    if (m->contacts[i].impact == event || m->contacts[i].release == event) return &m->contacts[i];
+    if (is_of(&of[i], event)) return &of[i];
   return NULL;
 }
 
@@ -172,6 +183,20 @@ static double lag_contact_restitution(lag_problem *pb, double t, const double *y
   return lag_contacts_rate_change(m, A, i, before + nq) / speed - 1;
 }
 
+double lag_contacts_response(ContactSet *w, int i) {
+  lag_problem *pb = &w->sim->pb;
+  int nq = pb->nq, k = w->sim->scene->model->contacts[i].constraint;
+  double s = 0;
+  if (w->band >= 0) return lag_contacts_free_response(w, i);
+  lag_contacts_close_only(w, 0, i);
+  memset(w->g, 0, (size_t)pb->model->constraints->n * sizeof *w->g);
+  w->g[k] = 1;
+  if (lag_least_change(pb, w->sim->run->t, w->y, 0, w->g, w->d, w->force)) return NAN;
+  for (int j = 0; j < nq; j++) s += w->d[j] * w->force[j];
+  int moves = lag_row_moves(lag_contacts_change_of_rate(w, i, w->d));
+  return isnan(s) || (moves && lag_contacts_keep_constraints(w, w->d, s)) ? 1 / s : 0;
+}
+
 static double restitution_at(ContactSet *w, int i, double speed) {
   lag_sim *s = w->sim;
   return lag_contact_restitution(&s->pb, s->run->t, w->y, i, w->rate[i], speed, w->d, w->A, s->yc, w->test);
@@ -186,6 +211,28 @@ static double restitution(ContactSet *w, int i) {
   if (!(to > 0) || lag_inputs(&w->sim->pb, w->sim->run->t)) return NAN;
   double e = restitution_at(w, i, typical), now = w->rate[i] < 0 ? restitution_at(w, i, -w->rate[i]) : e;
   return fabs(now - e) > fmax(same, roundings * typical / -w->rate[i]) ? now : e;
+}
+
+/* Computes W for the contacts of[n]. */
+static int find_responses(ContactSet *w) {
+  size_t n = (size_t)w->rows;
+  double *x = w->response = calloc(2 * n * n + 3 * n + 1, sizeof *x);
+  if (!x) return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  w->lcp = x + n * n;
+  w->rhs = w->lcp + n * n;
+  w->impulse = w->rhs + n;
+  w->scale = w->impulse + n;
+  for (int a = 0; a < w->rows; a++) {
+    double to = lag_contacts_response(w, w->of[a]);
+    if (!isfinite(to)) return lag_contacts_no_values(w, w->of[a]);
+    for (int b = 0; b < w->rows; b++)
+      w->response[b * w->rows + a] = to * lag_contacts_change_of_rate(w, w->of[b], w->d);
+    w->response[a * w->rows + a] = to;
+  }
+  for (int k = 0; k < w->rows * w->rows; k++) /* what constraints imply, others do not move either */
+    if (!(w->response[k / w->rows * (w->rows + 1)] > 0 && w->response[k % w->rows * (w->rows + 1)] > 0))
+      w->response[k] = 0;
+  return LAG_OK;
 }
 
 /* ---- complementarity */
@@ -481,7 +528,7 @@ static int resolve_contacts(ContactSet *w, const char *who, int event, int last)
   size_t n = (size_t)w->n, others = (size_t)w->sim->pb.n + (size_t)w->sim->scene->model->ncontacts;
   double *room = calloc(3 * n + others, sizeof *room), *y = room + 3 * n;
   unsigned char *ends = calloc(3 * n + 1, 1);
-  rc = room && ends ? lag_contacts_find_responses(w) : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  rc = room && ends ? find_responses(w) : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
   for (size_t a = 0; a < n && rc == 0; a++) ends[a] = last && lag_contacts_at(w, (int)a)->impact == event;
   rc = rc ? rc : lag_guides_stop(w, event);
   rc = rc ? rc : strike_and_rest(w, event, ends, room, room + n, room + 2 * n, ends + n, y, y + w->sim->pb.n);

@@ -1,14 +1,10 @@
-/* Responses of velocities to impulses of contacts. Contract: contact_set.h. Where contacts alone constrain the
- * motion, M is factored once for all of them, within its band; else each response is that of all constraints
- * together. */
+/* Responses of velocities to impulses of contacts where these alone constrain the motion: M is factored once for all of
+ * them, within its band. Contract: contact_set.h. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "contacts/contact_set.h"
-#include "core/rhs.h"
 #include "kernels/band_matrix.h"
-#include "numeric/complementarity.h"
 
 int lag_contacts_band(const lag_model *m) {
   const lag_constraints *of = m->constraints;
@@ -34,7 +30,7 @@ double lag_contacts_rate_change(const lag_model *m, const double *A, int i, cons
   return s;
 }
 
-static double change_of_rate(const ContactSet *w, int i, const double *d) {
+double lag_contacts_change_of_rate(const ContactSet *w, int i, const double *d) {
   const lag_model *m = w->sim->scene->model;
   const int *row = w->row + m->contacts[i].constraint;
   double s = 0;
@@ -53,23 +49,19 @@ void lag_contacts_factor_mass(ContactSet *w) {
   if (w->band >= 0 && lag_band_matrix_factor(&M, w->diagonal)) w->band = -1;
 }
 
-/* lag_contacts_response where the other contacts are open and nothing else constrains the motion. */
-static double free_response(ContactSet *w, int i) {
+double lag_contacts_free_response(ContactSet *w, int i) {
   const lag_model *m = w->sim->scene->model;
   const int *row = w->row + m->contacts[i].constraint;
   const lag_band_matrix M = {m->nq, w->band, w->lu, w->pivot};
   memset(w->d, 0, (size_t)m->nq * sizeof *w->d);
   for (int k = row[0]; k < row[1]; k++) w->d[m->constraints->jacobian[w->entry[k]].col] += w->A[w->entry[k]];
   lag_band_matrix_solve(&M, w->d);
-  double to = change_of_rate(w, i, w->d);
+  double to = lag_contacts_change_of_rate(w, i, w->d);
   for (int j = 0; j < m->nq; j++) w->d[j] = to > 0 ? w->d[j] / to : 0;
   return to > 0 || isnan(to) ? to : 0;
 }
 
-/* Whether a change d of velocities, d M d = square, keeps the constraints that always hold: it does not where they
- * imply the row that d moves, and the solver has left out one of theirs. Rates are measured by those of free
- * coordinates. */
-static int keeps_constraints(const ContactSet *w, const double *d, double square) {
+int lag_contacts_keep_constraints(const ContactSet *w, const double *d, double square) {
   const double alike = 1e-6;
   const lag_model *m = w->sim->scene->model;
   const lag_constraints *of = m->constraints;
@@ -88,37 +80,4 @@ static int keeps_constraints(const ContactSet *w, const double *d, double square
   for (int k = 0; k < of->n; k++)
     if (rate[k] * rate[k] > alike * alike * square * free[k]) return 0;
   return 1;
-}
-
-double lag_contacts_response(ContactSet *w, int i) {
-  lag_problem *pb = &w->sim->pb;
-  int nq = pb->nq, k = w->sim->scene->model->contacts[i].constraint;
-  double s = 0;
-  if (w->band >= 0) return free_response(w, i);
-  lag_contacts_close_only(w, 0, i);
-  memset(w->g, 0, (size_t)pb->model->constraints->n * sizeof *w->g);
-  w->g[k] = 1;
-  if (lag_least_change(pb, w->sim->run->t, w->y, 0, w->g, w->d, w->force)) return NAN;
-  for (int j = 0; j < nq; j++) s += w->d[j] * w->force[j];
-  return isnan(s) || (lag_row_moves(change_of_rate(w, i, w->d)) && keeps_constraints(w, w->d, s)) ? 1 / s : 0;
-}
-
-int lag_contacts_find_responses(ContactSet *w) {
-  size_t n = (size_t)w->rows;
-  double *x = w->response = calloc(2 * n * n + 3 * n + 1, sizeof *x);
-  if (!x) return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
-  w->lcp = x + n * n;
-  w->rhs = w->lcp + n * n;
-  w->impulse = w->rhs + n;
-  w->scale = w->impulse + n;
-  for (int a = 0; a < w->rows; a++) {
-    double to = lag_contacts_response(w, w->of[a]);
-    if (!isfinite(to)) return lag_contacts_no_values(w, w->of[a]);
-    for (int b = 0; b < w->rows; b++) w->response[b * w->rows + a] = to * change_of_rate(w, w->of[b], w->d);
-    w->response[a * w->rows + a] = to;
-  }
-  for (int k = 0; k < w->rows * w->rows; k++) /* what constraints imply, others do not move either */
-    if (!(w->response[k / w->rows * (w->rows + 1)] > 0 && w->response[k % w->rows * (w->rows + 1)] > 0))
-      w->response[k] = 0;
-  return LAG_OK;
 }

@@ -70,14 +70,19 @@ int lag_contacts_rates(ContactSet *w, const double *y, double *rate);
 double lag_contacts_response(ContactSet *w, int i);
 int lag_contacts_no_values(ContactSet *w, int i);
 
-/* contact_response.c. rate_change: of contact i by a change d of velocities; A: entries of the Jacobian. band: half
- * bandwidth of M, -1: constraints hold besides the contacts. list_entries: sorts those of the Jacobian by rows.
- * factor_mass: for responses; w->band := -1 where M is singular. find_responses: W for the contacts of[n]. */
+/* contact_response.c. rate_change: of contact i by a change d of velocities; A: entries of the Jacobian;
+ * change_of_rate: of w. band: half bandwidth of M, -1: constraints hold besides the contacts. list_entries: sorts
+ * those of the Jacobian by rows. factor_mass: w->band := -1 where M is singular. free_response: lag_contacts_response
+ * where w->band >= 0. keep_constraints: whether a change d of velocities, d M d = square, keeps the constraints that
+ * always hold: it does not where they imply the row that d moves, and the solver has left out one of theirs. Rates
+ * are measured by those of free coordinates. */
 double lag_contacts_rate_change(const lag_model *m, const double *A, int i, const double *d);
+double lag_contacts_change_of_rate(const ContactSet *w, int i, const double *d);
 int lag_contacts_band(const lag_model *m);
 void lag_contacts_list_entries(ContactSet *w);
 void lag_contacts_factor_mass(ContactSet *w);
-int lag_contacts_find_responses(ContactSet *w);
+double lag_contacts_free_response(ContactSet *w, int i);
+int lag_contacts_keep_constraints(const ContactSet *w, const double *d, double square);
 
 /* guide_forces.c. stop: takes what is left of a slip that ends, at this event, out of the velocities. find_pressed:
  * forces of guides without friction and contacts, and by a unit force of each row, with `rhs` of all rows; pressed:

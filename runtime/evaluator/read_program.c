@@ -61,6 +61,8 @@ static const System *read_systems(Bytes *b, const Program *p, uint32_t n) {
     uint64_t size = (uint64_t)(s[k].n + s[k].m) * (uint64_t)(s[k].n + 1);
     for (uint32_t i = 0; !b->why && i < s[k].entries; i++)
       lag_bytes_need(b, s[k].entry[2 * i] < size && s[k].entry[2 * i + 1] < p->frame, "a system reads out of range");
+    for (uint32_t i = 1; !b->why && i < s[k].entries; i++)
+      lag_bytes_need(b, s[k].entry[2 * i] > s[k].entry[2 * i - 2], "the elements of a system are out of order");
   }
   return s;
 }

@@ -42,9 +42,11 @@ APART double value_of(const Curve *c, double t) {
 /* Whether the system is regular; its solution stands behind the matrix. */
 APART int solve(const Program *p, const System *s, double *r) {
   double *w = r + p->work;
-  int n = s->n, m = s->m, matrix = (n + m) * n;
-  memset(w, 0, (size_t)(matrix + n + m) * sizeof *w);
+  int n = s->n, m = s->m, matrix = (n + m) * n, listed = m > 0 && n + m >= LAG_BAND_LEAST;
+  if (listed) memset(w + matrix, 0, (size_t)(n + m) * sizeof *w);
+  else memset(w, 0, (size_t)(matrix + n + m) * sizeof *w);
   for (uint32_t k = 0; k < s->entries; k++) w[s->entry[2 * k]] = r[s->entry[2 * k + 1]];
+  if (listed) return lag_kkt_listed(n, m, s->coarse, s->entry, 2, (int)s->entries, w);
   return m ? lag_kkt(n, m, s->coarse, w) : lag_solve(n, w, w + matrix);
 }
 

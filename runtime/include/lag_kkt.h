@@ -27,6 +27,11 @@
 /* ---- kkt: front ---- */
 static inline LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w);
 
+/* ---- listed: front ---- */
+#ifndef LAG_NO_BAND
+static inline LAG_MASK lag_kkt_listed(int n, int m, int coarse, const unsigned *at, int step, int count, LAG_REAL *w);
+#endif
+
 /* ---- numbers ---- */
 #ifdef LAG_LANES
 #define LAG_LANE_FN(f) f
@@ -49,19 +54,38 @@ static inline LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w);
 typedef struct lag_band {
   int all, edges, half; /* half: half bandwidth, the largest difference of neighbours' places */
   LAG_LANE *edge, *first, *next, *order, *place, *scale, *rows, *pivot;
+  const LAG_LANE *row; /* of A, of each constraint; none: all rows */
 } lag_band;
+
+/* Positions at[step*k], k < count, outside of which [M | A] is zero; none: at = 0. number[row of A], of those that are
+ * not zero, and row[number]. */
+typedef struct lag_entries {
+  const unsigned *at;
+  int step, count;
+  LAG_LANE *number, *row;
+} lag_entries;
+
+/* Notes edge i, j, unless its element x is zero. Returns 0 where there are too many for a band. */
+static int lag_edge(lag_band *b, int i, int j, LAG_LANE x) {
+  if (!(x < 0 || x > 0)) return 1;
+  if (b->edges == LAG_BAND_EDGES*b->all) return 0;
+  b->edge[b->edges++] = (LAG_LANE)i*(LAG_LANE)b->all + (LAG_LANE)j;
+  return 1;
+}
 
 /* Lists the edges of the graph, i > j, as numbers i*all + j, and the neighbours of each unknown. Returns 0 where
  * there are too many for a band. */
-static int lag_edges(int n, int m, const LAG_LANE *M, const LAG_LANE *A, lag_band *b) {
+static int lag_edges(int n, int m, const LAG_LANE *M, const LAG_LANE *A, const lag_entries *of, lag_band *b) {
   b->edges = 0;
-  for (int i = 0; i < b->all; i++) {
+  for (int k = 0; k < of->count; k++) {
+    const int at = (int)of->at[of->step*k], inertia = at < n*n, from = inertia ? at : at - n*n, j = from%n;
+    const int i = inertia ? from/n : n + (int)of->number[from/n];
+    if (j < i && !lag_edge(b, i, j, inertia ? M[from] : A[from])) return 0;
+  }
+  for (int i = 0; i < b->all && !of->at; i++) {
     const LAG_LANE *const row = i < n ? M + i*n : A + (i - n)*n;
     for (int j = 0; j < (i < n ? i : n); j++)
-      if (row[j] < 0 || row[j] > 0) {
-        if (b->edges == LAG_BAND_EDGES*b->all) return 0;
-        b->edge[b->edges++] = (LAG_LANE)i*(LAG_LANE)b->all + (LAG_LANE)j;
-      }
+      if (!lag_edge(b, i, j, row[j])) return 0;
   }
   for (int i = 0; i <= b->all; i++) b->first[i] = 0;
   for (int e = 0; e < b->edges; e++) {
@@ -99,7 +123,7 @@ static void lag_places(lag_band *b) {
   for (int i = 0; i < b->all; i++) {
     if (b->place[i] >= 0) continue;
     int end = lag_walk(b, i, at);
-    for (int turn = 0; turn < 2; turn++) {
+    for (int turn = 0; turn < 2 && end - at > 2; turn++) { /* of two unknowns both ends are far */
       const int from = (int)b->order[end - 1];
       for (int k = at; k < end; k++) b->place[(int)b->order[k]] = -1;
       end = lag_walk(b, from, at);
@@ -117,7 +141,7 @@ static void lag_places(lag_band *b) {
 /* Matrix element of edge e; *i, *j: its unknowns. */
 static LAG_LANE lag_element(int n, const lag_band *b, int e, const LAG_LANE *M, const LAG_LANE *A, int *i, int *j) {
   *i = (int)(b->edge[e]/(LAG_LANE)b->all), *j = (int)(b->edge[e] - (LAG_LANE)*i*(LAG_LANE)b->all);
-  return *i < n ? M[*i*n + *j] : A[(*i - n)*n + *j];
+  return *i < n ? M[*i*n + *j] : A[(b->row ? (int)b->row[*i - n] : *i - n)*n + *j];
 }
 
 /* Fills and factors the band, L U with row exchanges: rows of 3 half + 1 elements, the last `half` for exchanges;
@@ -216,15 +240,15 @@ static void lag_band_rest(int n, const lag_band *b, const LAG_LANE *M, const LAG
 /* Solves the system of lag_kkt if its band fits into w[room] and its condition is at most 1e8 (each constraint has a
  * part of some 1e-4 of its own, so neither rank nor least norm is in question), with one step of refinement. x and l
  * hold f and g. Returns whether it has solved the system; M and A stay. */
-static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w,
-                      int room) {
+static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, const lag_entries *of, LAG_LANE *x,
+                      LAG_LANE *l, LAG_LANE *w, int room) {
   const int all = n + m;
-  lag_band b = {all, 0, 0, w, w + LAG_BAND_EDGES*all, 0, 0, 0, 0, 0, 0};
+  lag_band b = {all, 0, 0, w, w + LAG_BAND_EDGES*all, 0, 0, 0, 0, 0, 0, of->row};
   b.next = b.first + all + 1, b.order = b.next + 2 * LAG_BAND_EDGES * all, b.place = b.order + all,
   b.scale = b.place + all, b.pivot = b.scale + all;
   LAG_LANE *const side = b.pivot + all, *const y = side + all, *const z = y + all;
   b.rows = z + all;
-  if (b.rows - w > room || !lag_edges(n, m, M, A, &b)) return 0;
+  if (b.rows - w > room || !lag_edges(n, m, M, A, of, &b)) return 0;
   lag_places(&b);
   if (3 * b.half + 1 > (room - (int)(b.rows - w)) / all || !lag_band_factor(n, &b, M, A) ||
       !(lag_band_inverse(&b, y, z) <= (LAG_LANE)1e8))
@@ -548,7 +572,8 @@ static LAG_LANE lag_eliminate(int n, int r, LAG_LANE *M, LAG_LANE *x, LAG_LANE *
  * hundredth. */
 static int lag_kkt_rows(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
 #ifdef LAG_BAND_LEAST
-  if (n + m >= LAG_BAND_LEAST && lag_banded(n, m, M, A, x, l, w, n*n + m*n + m*m + 2*n + 9*m)) return 1;
+  const lag_entries whole = {0, 0, 0, 0, 0};
+  if (n + m >= LAG_BAND_LEAST && lag_banded(n, m, M, A, &whole, x, l, w, n*n + m*n + m*m + 2*n + 9*m)) return 1;
 #endif
   if (lag_schur(n, m, M, A, x, l, w)) return 1;
   LAG_LANE any = 0;
@@ -599,6 +624,15 @@ static int lag_kkt_rows(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_
   return 1;
 }
 
+/* l[m] := the first multipliers l[kept], each at its row; those of other rows are 0. */
+static void lag_spread(int m, int kept, const LAG_LANE *row, LAG_LANE *l) {
+  for (int j = m - 1, k = kept - 1; kept < m && j >= 0; j--) {
+    const int here = k >= 0 && (int)row[k] == j;
+    l[j] = here ? l[k] : 0;
+    k -= here;
+  }
+}
+
 /* The same without rows of A that are 0, as of contacts that are open: their multipliers are 0. */
 static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
   LAG_LANE *const row = w + n*n + m*n + m*m + 2*n + 8*m; /* [m]; fewer rows need less scratch */
@@ -612,11 +646,7 @@ static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_
     row[kept++] = (LAG_LANE)j;
   }
   const int regular = lag_kkt_rows(n, kept, coarse, M, A, x, l, w);
-  for (int j = m - 1, k = kept - 1; kept < m && j >= 0; j--) {
-    const int here = k >= 0 && (int)row[k] == j;
-    l[j] = here ? l[k] : 0;
-    k -= here;
-  }
+  lag_spread(m, kept, row, l);
   return regular;
 }
 
@@ -639,6 +669,49 @@ static inline LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w) {
   }
   return regular;
 }
+#endif
+
+/* ---- listed ---- */
+#ifndef LAG_NO_BAND
+/* lag_kkt for a large system: [M | A] in w holds its elements at rising positions at[step*k], k < count, alone; others
+ * are taken for 0. Positions behind A do not count. Within a band the work follows their number. */
+#ifndef LAG_LANES
+static inline LAG_MASK lag_kkt_listed(int n, int m, int coarse, const unsigned *at, int step, int count, LAG_REAL *w) {
+  LAG_REAL *const A = w + n*n, *const x = A + m*n, *const l = x + n, *const s = l + m;
+  LAG_REAL *const number = s + n*n + m*n + m*m + 2*n + 7*m, *const row = number + m;
+  int kept = 0;
+  while (count > 0 && at[step*(count - 1)] >= (unsigned)(n*n + m*n)) count--;
+  const lag_entries of = {at, step, count, number, row};
+  for (int j = 0; j < m; j++) number[j] = -1;
+  for (int k = 0; k < count; k++) {
+    const int here = (int)at[step*k];
+    if (here >= n*n && (w[here] < 0 || w[here] > 0)) number[(here - n*n)/n] = 1;
+  }
+  for (int j = 0; j < m; j++) {
+    if (number[j] < 0) continue;
+    l[kept] = l[j];
+    row[kept] = (LAG_REAL)j;
+    number[j] = (LAG_REAL)kept++;
+  }
+  const int solved =
+      n + kept >= LAG_BAND_LEAST && lag_banded(n, kept, w, A, &of, x, l, s, n*n + m*n + m*m + 2*n + 7*m);
+  lag_spread(m, kept, row, l);
+  if (solved) return 1;
+  for (int k = 0, i = 0; i < n*n + m*n; i++) {
+    if (k < count && at[step*k] == (unsigned)i) k++;
+    else w[i] = 0;
+  }
+  return lag_kkt(n, m, coarse, w);
+}
+#else
+static inline LAG_MASK lag_kkt_listed(int n, int m, int coarse, const unsigned *at, int step, int count, LAG_REAL *w) {
+  for (int k = 0, i = 0; i < n*n + m*n; i++) {
+    if (k < count && at[step*k] == (unsigned)i) k++;
+    else w[i] = LAG_C(0.0);
+  }
+  return lag_kkt(n, m, coarse, w);
+}
+#endif
 #endif
 /* ---- end ---- */
 #endif

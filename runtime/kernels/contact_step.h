@@ -50,12 +50,13 @@ typedef struct lag_moreau_contacts {
   LAG_REAL *c, *r0, *r1, *pace, *bend, *g;
   LAG_REAL *d, *effort, *x;        /* [nq] */
   LAG_REAL *jacobian, *mass, *lu, *pivot, *scale;
+  LAG_REAL *first, *entry;         /* entry[first[k]] to entry[first[k + 1]]: entries of constraint k */
 } lag_moreau_contacts;
 
 enum { LAG_PRESSING_SIZE = (int)(sizeof(lag_pressing)/sizeof(LAG_REAL)) };
 /* Scalars that a step with these sizes needs; entries of D: `responses`; of the factored mass matrix: `lu`. */
 #define LAG_CONTACT_ROOM(contacts, constraints, nq, entries, nmass, responses, lu) \
-  ((contacts)*(LAG_PRESSING_SIZE + 8) + 2 + 6*(constraints) + 5*(nq) + 3*(entries) + 2*(responses) + (nmass) + (lu))
+  ((contacts)*(LAG_PRESSING_SIZE + 8) + 4 + 7*(constraints) + 5*(nq) + 4*(entries) + 2*(responses) + (nmass) + (lu))
 
 /* Places arrays into room[LAG_CONTACT_ROOM]; sizes are set. */
 static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG_REAL *room) {
@@ -67,8 +68,22 @@ static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG
   w->c = room += p + 1, w->r0 = room += nc, w->r1 = room += nc, w->pace = room += nc, w->bend = room += nc;
   w->g = room += nc, w->d = room += nc, w->effort = room += nq, w->x = room += nq, w->pivot = room += nq;
   w->scale = room += nq, w->jacobian = room += nq, w->all.A.col = room += e, w->all.A.value = room += e;
-  w->all.D.col = room += e, w->all.D.value = room += responses, w->mass = room += responses, w->lu = room + w->nmass;
+  w->all.D.col = room += e, w->all.D.value = room += responses, w->mass = room += responses, w->lu = room += w->nmass;
+  w->first = room += lag_band_matrix_size(nq, w->band), w->entry = room + nc + 2;
   w->all.response = w->response, w->all.b = w->b;
+}
+
+/* Sorts entries of the Jacobian by constraints. */
+static inline void lag_contact_entries(lag_moreau_contacts *w) {
+  LAG_REAL *const first = w->first;
+  for (int k = 0; k < w->constraints + 2; k++) first[k] = LAG_C(0.0);
+  for (int e = 0; e < w->entries; e++) first[w->jacobian_at[e].row + 2] += LAG_C(1.0);
+  for (int k = 2; k < w->constraints + 2; k++) first[k] += first[k - 1];
+  for (int e = 0; e < w->entries; e++) {
+    LAG_REAL *const end = first + w->jacobian_at[e].row + 1;
+    w->entry[(int)*end] = (LAG_REAL)e;
+    *end += LAG_C(1.0);
+  }
 }
 
 /* --- responses --- */
@@ -116,20 +131,26 @@ static inline int lag_contact_row(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
   const int r = w->rows++, k = w->at[i].constraint;
   lag_sparse_rows *const A = &w->all.A, *const D = &w->all.D;
   int e = (int)A->first[r], f = (int)D->first[r], status = 0;
-  for (int j = 0; j < w->entries; j++) {
-    if (w->jacobian_at[j].row != k) continue;
-    A->col[e] = (LAG_REAL)w->jacobian_at[j].col;
-    A->value[e++] = w->jacobian[j];
+  for (int j = (int)w->first[k]; j < (int)w->first[k + 1]; j++) {
+    A->col[e] = (LAG_REAL)w->jacobian_at[(int)w->entry[j]].col;
+    A->value[e++] = w->jacobian[(int)w->entry[j]];
   }
   A->first[r + 1] = (LAG_REAL)e;
-  LAG_TRY(lag_contact_respond(LAG_THE_MODEL, w, t, y, i, r));
-  for (int j = 0; j < w->nq; j++) {
+  const int alone = w->constraints == w->contacts && w->band == 0; /* M is diagonal */
+  w->response[r] = LAG_C(0.0);
+  for (int j = (int)A->first[r]; j < e && alone; j++) {
+    D->col[f] = A->col[j];
+    D->value[f] = A->value[j]/w->lu[(int)A->col[j]];
+    w->response[r] += A->value[j]*D->value[f++];
+  }
+  if (!alone) LAG_TRY(lag_contact_respond(LAG_THE_MODEL, w, t, y, i, r));
+  for (int j = 0; j < w->nq && !alone; j++) {
     if (!(w->d[j] < LAG_C(0.0) || w->d[j] > LAG_C(0.0))) continue;
     D->col[f] = (LAG_REAL)j;
     D->value[f++] = w->d[j];
   }
   D->first[r + 1] = (LAG_REAL)f;
-  w->response[r] = lag_row_product(A, r, w->d);
+  if (!alone) w->response[r] = lag_row_product(A, r, w->d);
   w->before[r] = w->r0[k];
   w->b[r] = w->r0[k] - lag_row_product(A, r, y + w->nq);
   w->all.P[r] = w->guess[i];
@@ -147,9 +168,10 @@ static inline int lag_contact_bounce(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL
   LAG_TRY(LAG_CLOSE(t, i, w->u));
   for (int j = 0; j < nq; j++) w->x[j] = y[nq + j];
   LAG_TRY(LAG_STRIKE(t, y, w->u, i, w->x));
-  for (int j = 0; j < w->entries; j++)
-    if (w->jacobian_at[j].row == k)
-      change += w->jacobian[j]*(w->x[w->jacobian_at[j].col] - y[nq + w->jacobian_at[j].col]);
+  for (int j = (int)w->first[k]; j < (int)w->first[k + 1]; j++) {
+    const int at = (int)w->entry[j], col = w->jacobian_at[at].col;
+    change += w->jacobian[at]*(w->x[col] - y[nq + col]);
+  }
   *e = change/-w->r0[k] - LAG_C(1.0);
   return lag_is_number(*e) ? status : LAG_CONTACT_FAILS(t, i, "has no finite restitution");
 }
@@ -214,6 +236,7 @@ static inline int lag_contacts_find(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL 
   int status = 0;
   w->all.n = w->rows = w->impacts = w->sweeps = 0;
   w->all.A.first[0] = w->all.D.first[0] = LAG_C(0.0);
+  lag_contact_entries(w);
   LAG_TRY(lag_contacts_evaluate(LAG_THE_MODEL, w, t, h, y, end));
   for (int i = 0; i < w->contacts; i++) {
     const int k = w->at[i].constraint;

@@ -21,14 +21,18 @@ lag_complementarity lag_contact_complementarity(int n, double *M, double *q, dou
 
 /* Exchanges basic variable r with nonbasic variable s. */
 static void pivot(const lag_complementarity *p, int r, int s) {
-  int n = p->n;
+  int n = p->n, first = s, end = s + 1; /* the row is zero outside */
   double *const row = p->M + r * n, at = row[s];
-  for (int j = 0; j < n; j++) row[j] = j == s ? 1 / at : -row[j] / at; /* x_s = (basic_r - q_r - others)/at */
+  for (int j = 0; j < n; j++) {
+    first = row[j] != 0 && j < first ? j : first;
+    end = row[j] != 0 && j >= end ? j + 1 : end;
+    row[j] = j == s ? 1 / at : -row[j] / at; /* x_s = (basic_r - q_r - others)/at */
+  }
   p->q[r] = -p->q[r] / at;
   for (int i = 0; i < n; i++) {
     double *const other = p->M + i * n, factor = other[s];
-    if (i == r) continue;
-    for (int j = 0; j < n; j++) other[j] = j == s ? factor * row[j] : other[j] + factor * row[j];
+    if (i == r || factor == 0) continue; /* of another island */
+    for (int j = first; j < end; j++) other[j] = j == s ? factor * row[j] : other[j] + factor * row[j];
     p->q[i] += factor * p->q[r];
   }
 }

@@ -14,16 +14,32 @@ static void write_entries(Writer *w, uint32_t at, const Slot *values, uint32_t n
   }
 }
 
-/* A system with constraints; its matrix is cleared first, as large ones are mostly zeros. */
-static void write_constrained(Writer *w, const Solve *k) {
+/* Solves a system whose elements stand at their places, with a list of these. */
+static void write_listed(Writer *w, const Solve *k) {
   const CStyle *st = w->style;
-  uint32_t b = solve_elements(k);
-  sb_printf(w->out, "  for (int i = 0; i < %u; i++) w[i] = %s_C(0.0);\n", b + solve_unknowns(k), st->prefix);
+  uint32_t count = 0, column = 0;
+  sb_puts(w->out, "  {\n  static const unsigned at[] = {");
+  for (uint32_t j = 0; j < solve_elements(k); j++)
+    if (k->matrix[j]) sb_printf(w->out, "%s%u", count++ == 0 ? "" : column++ % 16 == 15 ? ",\n    " : ", ", j);
+  sb_puts(w->out, "};\n");
+  sb_printf(w->out, "  %s_PIVOT(%s_listed(%u, %u, %d, at, 1, %u, w));\n  }\n", st->prefix, st->kkt, k->n, k->m,
+            k->coarse, count);
+}
+
+/* A system with constraints; its matrix is cleared first, as most of it is zeros, unless these are so many that its
+ * elements are listed. */
+static void write_constrained(Writer *w, const Solve *k) {
+  enum { BAND_LEAST = 62 }; /* LAG_BAND_LEAST of lag_kkt.h */
+  const CStyle *st = w->style;
+  uint32_t b = solve_elements(k), listed = k->n + k->m >= BAND_LEAST;
+  sb_printf(w->out, "  for (int i = %u; i < %u; i++) w[i] = %s_C(0.0);\n", listed ? b : 0, b + solve_unknowns(k),
+            st->prefix);
   for (uint32_t j = 0; j < b + solve_unknowns(k); j++) {
     Slot x = j < b ? k->matrix[j] : k->rhs[j - b];
     if (x) sb_printf(w->out, "  w[%u] = %s;\n", j, cwriter_operand(w, x).text);
   }
-  sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, %d, w));\n", st->prefix, st->kkt, k->n, k->m, k->coarse);
+  if (listed) write_listed(w, k);
+  else sb_printf(w->out, "  %s_PIVOT(%s(%u, %u, %d, w));\n", st->prefix, st->kkt, k->n, k->m, k->coarse);
 }
 
 void csolve_write(Writer *w, const Ins *i) {

@@ -60,7 +60,7 @@ static void sections(const MathText *m, int front, StrBuf *out) {
     int needed;
   } rows[] = {{"lanes", !front}, {"own", own}, {"libm", 1}, {"sincos", own && calls_sincos(u)},
               {"exp", own && unit_calls(u, "exp")}, {"log", own && unit_calls(u, "log")}, {"solver", m->solver},
-              {"numbers", kkt}, {"band", kkt && has_band(u)}, {"kkt", kkt},
+              {"numbers", kkt}, {"band", kkt && has_band(u)}, {"kkt", kkt}, {"listed", kkt && has_band(u)},
               {"interval", curves != 0}, {"cubic", curves & 1}, {"quintic", curves & 2}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     const char *name = front ? arena_printf(out->arena, "%s: front", rows[i].name) : rows[i].name;

@@ -99,6 +99,24 @@ static const Spline *quintic(Builder *b, const Input *in) {
   return s;
 }
 
+static double slope(const Spline *s, uint32_t i) {
+  return fabs((s->row[i + 1][1] - s->row[i][1]) / (s->row[i + 1][0] - s->row[i][0]));
+}
+
+/* Warns of a table with a step: from one row to the next it changes at 20 times the rate on both sides, so that the
+ * curve between these rows follows no measured motion. */
+static void warn_of_steps(Builder *b, const Input *in) {
+  const Spline *s = in->table;
+  for (uint32_t i = 1; s && i + 2 < s->n; i++) {
+    if (!(slope(s, i) > 20 * fmax(slope(s, i - 1), slope(s, i + 1)))) continue;
+    diag_warning(b->diags, in->span,
+                 "the rate of `%s` is needed, and its table `%s` steps from %.6g to %.6g between t = %.6g and %.6g",
+                 in->name, in->file, s->row[i][1], s->row[i + 1][1], s->row[i][0], s->row[i + 1][0]);
+    diag_help(b->diags, "add rows between them that resolve the motion; in its place a curve overshoots there");
+    return;
+  }
+}
+
 /* Warns of a formula with corners or jumps, where the rate has none. */
 static void warn_of_corners(Builder *b, const Input *in) {
   ExprList l = expr_topo(b->g, &in->value, 1);
@@ -121,6 +139,7 @@ void fill_input_rates(Builder *b) {
     if (!in->rate) continue;
     Input *rate = &m->inputs.at[in->rate];
     if (in->table) in->table = quintic(b, in);
+    if (!in->order) warn_of_steps(b, in);
     if (in->value && in->text && !in->order) warn_of_corners(b, in);
     rate->table = in->table;
     rate->file = in->file;

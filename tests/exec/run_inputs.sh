@@ -200,6 +200,8 @@ check "the power of the drive" says 0 "dE/dt = u'*lambda(drive)" "$LAGC" derive 
 check "a rate is not held by itself" says 2 "u' is the rate of an input, and follows from it" "$LAGC" run "$dir/table.lag" "u'=1"
 head -n 5 "$dir/data/record.csv" >"$dir/data/few.csv"
 check "a record too short" says 1 "has 5 rows: a smooth curve needs 6" "$LAGC" run "$dir/table.lag" u="$dir/data/few.csv"
+awk 'BEGIN { print "t,u"; for (i = 0; i < 31; i++) print i/10 "," (i < 15 ? 0.001*i : 0.1) }' >"$dir/data/steps.csv"
+check "a record with a step between its rows" says 0 'steps from 0.014 to 0.1 between t = 1.4 and 1.5' "$LAGC" run "$dir/table.lag" u="$dir/data/steps.csv" --until 1
 check "a record that jumps" says 1 "its table \`$dir/data/jump.csv\` jumps at t = 1" "$LAGC" run "$dir/table.lag" u="$dir/data/jump.csv"
 # A function of the program for u asks for one of u', u''. In a header they are inputs of a step.
 cat >"$dir/rates.c" <<'END'

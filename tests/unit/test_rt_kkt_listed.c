@@ -1,0 +1,68 @@
+/* lag_kkt_listed: bodies in a row, each coupled to the next or not, in closed form: those coupled have the acceleration
+ * of their forces over their masses. What the list leaves out holds NaN. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#define LAG_REAL double
+#include "lag_kkt.h"
+
+enum { N = 40, MOST = N, SIZE = 2 * N * N + 2 * MOST * N + MOST * MOST + 3 * N + 10 * MOST };
+
+static double mass(int i) { return 1 + i % 7; }
+static double force(int i) { return sin(i * i); }
+
+/* Couplings 1..m, the last of them a copy of the first if `twice`; every `open`-th is open. */
+static void solves(int m, int twice, int open, int banded) {
+  unsigned at[4 * N];
+  double *w = malloc(SIZE * sizeof *w), *A = w + N * N, *x = A + m * N, *l = x + N;
+  int count = 0;
+  for (int i = 0; i < SIZE; i++) w[i] = NAN;
+  for (int i = 0; i < N; i++) {
+    w[i * N + i] = mass(i);
+    at[count++] = (unsigned)(i * N + i);
+    x[i] = force(i);
+  }
+  for (int k = 0; k < m; k++) {
+    int of = twice && k == m - 1 ? 0 : k, closed = !open || of % open != 1;
+    A[k * N + of] = closed ? -1 : 0;
+    A[k * N + of + 1] = closed ? 1 : 0;
+    at[count++] = (unsigned)(N * N + k * N + of);
+    at[count++] = (unsigned)(N * N + k * N + of + 1);
+    l[k] = 0;
+  }
+  at[count++] = (unsigned)(N * N + m * N); /* behind the matrix, as of the right-hand side */
+  assert_true(lag_kkt_listed(N, m, 0, at, 1, count, w));
+  assert_int_equal(isnan(w[1]) != 0, banded); /* solved within a band, what is not listed is not read */
+  for (int from = 0, end; from < N; from = end) {
+    double f = force(from), all = mass(from), pressed = 0;
+    for (end = from + 1; end < N && !(open && (end - 1) % open == 1); end++) f += force(end), all += mass(end);
+    for (int i = from; i < end; i++) {
+      assert_true(fabs(x[i] - f / all) < 1e-13); /* 40 forces of size 1 */
+      pressed += force(i) - mass(i) * f / all;
+      if (!twice && i + 1 < end) assert_true(fabs(l[i] - pressed) < 1e-12);
+    }
+  }
+  for (int k = 0; k < m && open; k++)
+    if (k % open == 1) assert_true(l[k] == 0);
+  if (twice) assert_true(fabs(l[0] - l[m - 1]) < 1e-12); /* of least norm */
+  free(w);
+}
+
+static void test_band(void **state) { (void)state, solves(N - 1, 0, 0, 1), solves(N - 1, 0, 5, 1); }
+static void test_few_closed(void **state) { (void)state, solves(N - 1, 0, 2, 0), solves(N - 1, 0, 3, 1); }
+static void test_dependent(void **state) { (void)state, solves(N, 1, 0, 0); }
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_band),
+      cmocka_unit_test(test_few_closed),
+      cmocka_unit_test(test_dependent),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
