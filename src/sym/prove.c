@@ -22,8 +22,18 @@ static Expr drop_vanishing_sums(ExprGraph *g, Expr e, const NormalLimits *limits
 
 /* --- by value --- */
 
+/* Whether e has a sum of so many turns that its values have no bounds. */
+static int has_long_sums(ExprGraph *g, Expr e) {
+  enum { MOST_TURNS = 50000 }; /* as in rounding_bounds.c */
+  ExprList l = expr_topo_to_sums(g, &e, 1);
+  for (uint32_t k = 0; k < l.n; k++)
+    if (expr_op(g, l.at[k]) == EX_NEST && expr_sum_turns(g, l.at[k]) > MOST_TURNS) return 1;
+  return 0;
+}
+
 /* One of 16 states in the domain decides; few states may lie there, as of roots of several differences. */
 int prove_nonzero(ExprGraph *g, Expr e) {
+  if (has_long_sums(g, e)) return 0;
   long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
   BoundTape *tape = bound_tape(g, &e, 1);
   uint32_t most = 2 * STATES + MOST_WORK / (e + 1);
