@@ -1,7 +1,7 @@
 # The WebAssembly module of playgrounds: the stages of lagc on one text in memory (src/playground), for where WASM is found (.ci/page.mk).
 # Without src/toolchain, fmu and the commands that need files or processes: the linker drops what no answer calls.
 LAGC_WASM_SRC := $(filter-out src/toolchain/% src/fmu/% src/commands/% src/base/source_file.c,$(LAGC_SRC)) $(wildcard src/playground/*.c) \
-  $(patsubst %,src/commands/%.c,check check_json compiler const_ranges effect_study noether page_model page_parts range required_derivatives run_request settings command_table)
+  $(patsubst %,src/commands/%.c,check check_json compiler const_ranges effect_sets noether page_model page_parts range required_derivatives run_request settings command_table)
 LAGC_WASM_GEN := $(filter-out toolchain/%,$(GEN_SRC:$(BUILD)/gen/%=%))
 LAGC_WASM_OBJ := $(LAGC_WASM_SRC:%.c=$(BUILD)/obj/wasm/%.o) $(LAGC_WASM_GEN:%.c=$(BUILD)/obj/wasm/gen/%.o)
 # -Os is an eighth smaller than -O2, and as fast. long double has 34 digits here; the stack is below the data, so that too deep a call is an error.
