@@ -15,6 +15,7 @@
 typedef struct ConstraintScratch {
   const lag_constraints *of;
   double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
+  double *wanted;                 /* [n] changes that a correction is to make; g is scratch of what judges them */
   /* [n] sizes of the terms of the rates, and of the holonomic constraints, where they were last met */
   double *terms[2];
   double *d, *force, *step;       /* [nq], [nq], [nq] */
@@ -24,15 +25,25 @@ typedef struct ConstraintScratch {
 
 size_t lag_constraint_scratch_size(const lag_model *m) {
   const lag_constraints *of = m->constraints;
-  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 3 * m->nq + 2 * (2 * m->nq + m->nz)) : 0;
+  return of ? (size_t)(7 * of->n + of->njacobian + of->nmass + 3 * m->nq + 2 * (2 * m->nq + m->nz)) : 0;
 }
 
 static ConstraintScratch layout(const lag_problem *pb) {
   ConstraintScratch w = {.of = pb->model->constraints};
   const size_t n = (size_t)w.of->n, nq = (size_t)pb->nq;
-  const lag_part parts[] = {{&w.c, n}, {&w.r, n}, {&w.before, n}, {&w.g, n}, {&w.terms[0], n}, {&w.terms[1], n},
-      {&w.A, (size_t)w.of->njacobian}, {&w.M, (size_t)w.of->nmass}, {&w.d, nq}, {&w.force, nq}, {&w.step, nq},
-      {&w.other, 0}};
+  const lag_part parts[] = {{&w.c, n},
+                            {&w.r, n},
+                            {&w.before, n},
+                            {&w.g, n},
+                            {&w.wanted, n},
+                            {&w.terms[0], n},
+                            {&w.terms[1], n},
+                            {&w.A, (size_t)w.of->njacobian},
+                            {&w.M, (size_t)w.of->nmass},
+                            {&w.d, nq},
+                            {&w.force, nq},
+                            {&w.step, nq},
+                            {&w.other, 0}};
   lag_workspace_slice(pb->held, sizeof parts / sizeof *parts, parts);
   return w;
 }
@@ -263,7 +274,7 @@ static int correct(lag_problem *pb, const Level *l, const double *g, double *d) 
 static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double *y, double *lost, int holonomic) {
   const Level l = {w, t, y, holonomic};
   int n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : pb->nq, unmet = 0;
-  const lag_held_level of = {n, pb->nq, y + at, lost ? lost + at : NULL, w->g, w->before, w->d};
+  const lag_held_level of = {n, pb->nq, y + at, lost ? lost + at : NULL, w->wanted, w->before, w->d};
   int rc = lag_hold_turns(pb, &l, &of, &unmet);
   return rc == 0 && unmet ? report_unmet(pb, w, t, y, holonomic) : rc;
 }

@@ -27,7 +27,7 @@ static inline void lag_into_ball(int n, const LAG_REAL *centre, LAG_REAL radius,
     x[0] = lag_smaller(lag_larger(x[0], centre[0] - radius), centre[0] + radius);
     return;
   }
-  const LAG_REAL far = LAG_FN(hypot)(x[0] - centre[0], x[1] - centre[1]);
+  const LAG_REAL far = (LAG_REAL)LAG_FN(hypot)(x[0] - centre[0], x[1] - centre[1]);
   for (int k = 0; k < n && far > radius; k++) x[k] = centre[k] + (x[k] - centre[k])*(radius/far);
 }
 
@@ -50,7 +50,7 @@ static inline void lag_friction_turn(const lag_coulomb *of, LAG_REAL *slip, LAG_
     x[k] += (to[k] - slip[k])/response;
     slip[k] = to[k];
   }
-  if (n > 1) size = LAG_FN(hypot)(x[0], x[1]);
+  if (n > 1) size = (LAG_REAL)LAG_FN(hypot)(x[0], x[1]);
   else size = LAG_FN(fabs)(x[0]);
   if (size > of->holds) lag_into_ball(n, origin, of->most, x);
 }
@@ -155,7 +155,7 @@ static inline void lag_contact_law(lag_pressing *c, LAG_REAL gap, LAG_REAL bend,
   if (strikes) c->least = lag_larger(-down, -lag_smaller(lag_larger(e, zero), one)*r0);
   for (int j = 0; j < (int)c->tangents; j++) {
     c->centre[j] = -part*c->slip[j];
-    size = LAG_FN(hypot)(size, c->slip[j]);
+    size = (LAG_REAL)LAG_FN(hypot)(size, c->slip[j]);
   }
   c->radius = LAG_SELECT(strikes, zero, (one - back)/two*size);
 }
@@ -257,7 +257,7 @@ static inline int lag_contact_soften(const lag_impulses *s, lag_pressing *c, LAG
   for (int k = 0; k < n; k++) {
     work += P[r + 1 + k]*(c->slip[k] + lag_rate_of(s, r + 1 + k));
     size += LAG_FN(fabs)(P[r + 1 + k]);
-    width = LAG_FN(hypot)(width, c->slip[k] + c->centre[k]);
+    width = (LAG_REAL)LAG_FN(hypot)(width, c->slip[k] + c->centre[k]);
   }
   if (!(work > enough*size && width > zero)) return 0;
   for (int k = 0; k < n; k++) c->centre[k] = (c->centre[k] - c->slip[k])/two;

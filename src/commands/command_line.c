@@ -162,7 +162,7 @@ static const char *unknown_option(Arena *a, const Options *o, const char *word) 
   Name names[64];
   size_t n = 0;
   for (size_t i = 0; option_row(i); i++)
-    if (option_row(i)->commands & 1u << o->command && n < 64) names[n++] = option_row(i)->name;
+    if (option_row(i)->commands & command_bit(o->command) && n < 64) names[n++] = option_row(i)->name;
   int letter = arg[0] == '-' && arg[1] == '-' && arg[2] && !arg[3]; /* one for another is no typing mistake */
   Name near = letter ? NULL : suggest(arg, names, n), meant = meant_option(arg);
   const char *says =

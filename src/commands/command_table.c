@@ -329,7 +329,7 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 /* ---- the options ---- */
 
-#define C(name) (1u << CMD_##name)
+#define C(name) ((CommandSet)1 << CMD_##name)
 #define SIMULATE (C(RUN) | C(PLOT) | C(ANIMATE))
 #define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS) | C(FIT))
 #define RUNS (STEPS | C(SWEEP) | C(ORBIT) | C(CONTINUE)) /* commands that run a scene, once or many times */
@@ -370,7 +370,7 @@ const OptionRow *option_find(Command c, const char *arg, const char **value) {
   *value = NULL;
   for (size_t i = 0; i < N_OPTIONS; i++) {
     const OptionRow *o = &options[i];
-    if (!(o->commands & 1u << c)) continue;
+    if (!(o->commands & command_bit(c))) continue;
     size_t n = strlen(o->name);
     if (strncmp(arg, o->name, n) == 0 && (arg[n] == '\0' || arg[n] == '=')) {
       if (arg[n]) *value = arg + n + 1;
@@ -391,11 +391,11 @@ int option_takes_next(Command c, const char *word) {
 }
 
 int option_listed(const OptionRow *o, Command c) {
-  return (o->commands & 1u << c) != 0 && (c == CMD_RUN || !o->passed || !(o->commands & 1u << CMD_RUN));
+  return (o->commands & command_bit(c)) != 0 && (c == CMD_RUN || !o->passed || !(o->commands & command_bit(CMD_RUN)));
 }
 
 int option_expert(const OptionRow *o) { return has_word("--math --fix --dump --no-gsl --define --precision", o->name); }
 
-int command_simulates(Command c) { return ((RUNS | C(MODES) | C(LINEARIZE) | C(COST)) & 1u << c) != 0; }
+int command_simulates(Command c) { return ((RUNS | C(MODES) | C(LINEARIZE) | C(COST)) & command_bit(c)) != 0; }
 int command_takes_values(Command c) { return command_simulates(c) || c == CMD_VERIFY || c == CMD_ACTION; }
-int command_reads_model(Command c) { return (MODELS & 1u << c) != 0; }
+int command_reads_model(Command c) { return (MODELS & command_bit(c)) != 0; }

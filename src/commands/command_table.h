@@ -2,6 +2,7 @@
  * and completion read the tables; a test compares the man page and the simulator's own options with them. */
 #pragma once
 
+#include <stdint.h>
 #include <stddef.h>
 
 #include "app/options.def" /* OptionTakes; a copy of runtime/app/options.def */
@@ -15,6 +16,10 @@ typedef enum {
   CMD_COMPLETE, CMD_MANPAGE,
   CMD_COUNT
 } Command;
+
+/* A set of commands, a bit each. */
+typedef uint64_t CommandSet;
+static inline CommandSet command_bit(Command c) { return (CommandSet)1 << c; }
 
 typedef VEC(const char *) OptionTexts;
 
@@ -90,7 +95,7 @@ typedef struct {
   const char *value; /* the value in help; NULL: takes none */
   OptionTakes takes;
   const char *hint;
-  unsigned commands; /* 1u << command for each command that has it */
+  CommandSet commands; /* that have it */
   int passed;        /* passed on to the simulator */
   size_t field;      /* otherwise: offset in Options of an int, const char * or list */
   const char *does;

@@ -173,7 +173,7 @@ static void offer_commands(CommandLine *l) {
 static void offer_options(CommandLine *l) {
   for (size_t i = 0; option_row(i); i++) {
     const OptionRow *o = option_row(i);
-    if (!(o->commands & 1u << l->command)) continue;
+    if (!(o->commands & command_bit(l->command))) continue;
     offer(l, o->name, o->does);
     if (o->brief) offer(l, o->brief, o->does);
   }

@@ -135,10 +135,10 @@ static int put_command(StrBuf *out, const char *topic) {
 }
 
 /* "run, plot, animate" */
-static const char *commands_text(Arena *a, unsigned commands) {
+static const char *commands_text(Arena *a, CommandSet commands) {
   StrBuf b = strbuf(a);
   for (size_t i = 0; command_row(i); i++)
-    if (commands & 1u << command_row(i)->command) sb_printf(&b, "%s%s", b.n ? ", " : "", command_row(i)->name);
+    if (commands & command_bit(command_row(i)->command)) sb_printf(&b, "%s%s", b.n ? ", " : "", command_row(i)->name);
   return sb_text(&b);
 }
 

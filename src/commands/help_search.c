@@ -70,7 +70,8 @@ static void add_commands(Arena *a, Passages *to) {
     }
     for (size_t k = 0; option_row(k); k++) {
       const OptionRow *o = option_row(k);
-      if (!(o->commands & 1u << row->command) || o->commands & ((1u << row->command) - 1)) continue; /* listed once */
+      /* listed once */
+      if (!(o->commands & command_bit(row->command)) || o->commands & (command_bit(row->command) - 1)) continue;
       Passage *p = add_passage(a, to, o->name, row->name, o->does);
       p->head = arena_printf(a, "lagc %s %s%s%s", row->name, o->name, o->value ? " " : "", o->value ? o->value : "");
     }
