@@ -1,10 +1,12 @@
 /* Independence of constraints by Gram-Schmidt orthogonalisation, in the solver's scaled coordinates (lag_scales of
  * lag_kkt.h), so that units of coordinates do not matter. Holds: rows are taken in the order of the constraints. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/core.h"
 #include "lag_kkt.h"
+#include "numeric/magnitudes.h"
 
 size_t lag_rank_scratch_size(const lag_model *m) {
   const lag_constraints *of = m->constraints;
@@ -86,10 +88,19 @@ double lag_independent_part(int n, int r, double least, const double *unit, doub
   return length > 0 ? left : -1;
 }
 
+/* Whether coordinate i has no scale: all of its unit begin at 0, as lengths of a track that starts at the origin. */
+static int is_unscaled(const lag_problem *pb, int i) {
+  const lag_var *q = &pb->model->q[i];
+  int is_angle = lag_component_scale(DBL_MIN, q->periodic, q->unit) >= 1;
+  return pb->begin && !is_angle && !(lag_unit_magnitude(pb, pb->begin, i) > 0);
+}
+
 /* Ratio of the first-order change of constraint k, when each coordinate moves by its typical magnitude, to the size
- * of its terms; at most 1. */
+ * of its terms; at most 1, which is also that of a coordinate without a scale. */
 static double slope(const lag_problem *pb, const double *y, const double *row, double size) {
   double s = 0;
+  for (int i = 0; i < pb->nq; i++)
+    if (row[i] != 0.0 && is_unscaled(pb, i)) return 1;
   for (int i = 0; i < pb->nq; i++) s += row[i] != 0.0 ? fabs(row[i]) * lag_typical_magnitude(pb, y, 1, i) : 0;
   return size > 0 ? fmin(s / size, 1) : 1;
 }

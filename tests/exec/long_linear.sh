@@ -37,7 +37,7 @@ not_asked() {
   done
 }
 check "a model that was not asked for it has none" not_asked
-is "a part that does not exist" "lagc: --with takes linear, sensitivities, not \`nothing\`" \
+is "a part that does not exist" "lagc: --with takes linear, sensitivities, derivatives, not \`nothing\`" \
   "$("$LAGC" emit models/spring.lag --with nothing 2>&1)"
 
 {

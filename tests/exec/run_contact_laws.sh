@@ -168,7 +168,7 @@ check "on a slope of tan a = 0.0201" run rolls s "x'=0" "th'=0" a=0.0201
 check "it rolls" near "$(final x)" "$(calc '-50*9.81*(sin(0.0201) - 0.02*cos(0.0201))/1.4')" 1e-9
 
 # ---- refusals
-check "static below sliding friction" refuses 2 'the contact plane has a static friction of 0.2, which must be at least its friction while it slips, 0.3' pull s hold=0.2
+check "static below sliding friction" refuses 2 'the static limit minus the friction of a sliding body has a value of -0.1, which must be at least 0: it is hold - mu' pull s hold=0.2
 check "moreau has no static friction" refuses 3 'a static friction above that of slipping is not followed by moreau; dop853 follows it' pull s --method 'moreau(step=0.01)'
 check "moreau has a law of its own" refuses 2 'moreau.* has a law of impact of its own' pendulum_newton s --method 'moreau(step=0.01)'
 check "another law" rejects 'a law of impact is .stronge., .poisson. or .newton.' "friction = mu, slip = x', law = moreau"

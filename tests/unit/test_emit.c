@@ -101,9 +101,36 @@ static void take_away_multipliers(const Eqns *e, const Real *value, Real *left) 
   for (uint32_t i = 0; i < n; i++) left[i] = x[i];
 }
 
-/* A q'' against what it must be. */
+/* Scales x[n] to length 1, and returns what that was. */
+static Real normalise(uint32_t n, Real *x) {
+  Real size = 0;
+  for (uint32_t i = 0; i < n; i++) size += x[i] * x[i];
+  for (uint32_t i = 0; i < n && size > 0; i++) x[i] /= sqrtl(size);
+  return sqrtl(size);
+}
+
+/* The least part of a constraint that is independent of those before it, by Gram and Schmidt. */
+static Real independence(const Eqns *e, const Real *value) {
+  const Entries *A = &e->constraints.A;
+  uint32_t n = e->n, m = e->constraints.n;
+  Real *Q = ARENA_ARRAY(arena, Real, (size_t)m * n + 1), least = 1;
+  for (uint32_t k = 0; k < A->n; k++) Q[A->at[k].row * n + A->at[k].col] = value_of(e, A->at[k].e, value);
+  for (Real *row = Q; row < Q + m * n; row += n) {
+    normalise(n, row);
+    for (const Real *before = Q; before < row; before += n) {
+      Real along = 0;
+      for (uint32_t i = 0; i < n; i++) along += row[i] * before[i];
+      for (uint32_t i = 0; i < n; i++) row[i] -= along * before[i];
+    }
+    least = fminl(least, normalise(n, row));
+  }
+  return least;
+}
+
+/* A q'' against what it must be, but for states next to dependent constraints, of which one is left out. */
 static void check_demand(const Eqns *e, const char *where, const Real *value, const Real *a) {
   const Constraints *k = &e->constraints;
+  if (independence(e, value) < 0.02L) return; /* their rank is judged coarsely: lag_kkt.h */
   for (uint32_t row = 0; row < k->n; row++) {
     Real want = value_of(e, k->demand[row], value), left = -want, size = 1 + fabsl(want);
     for (uint32_t j = 0; j < k->A.n; j++) {

@@ -98,7 +98,8 @@ static int ours(double *z)
   static double w[N * N + M * N + ALL + ROOM], x[N], l[M];
 
   memcpy(x, f, sizeof f), memcpy(l, g, sizeof g);
-  int banded = lag_banded(N, M, m, a, x, l, w, ROOM);
+  const lag_entries whole = {0, 0, 0, 0, 0};
+  int banded = lag_banded(N, M, m, a, &whole, x, l, w, ROOM);
   memcpy(w, m, sizeof m), memcpy(w + N * N, a, sizeof a), memcpy(w + N * N + M * N, f, sizeof f),
       memcpy(w + N * N + M * N + N, g, sizeof g);
   if (!lag_kkt(N, M, 0, w)) printf("refused\n");
