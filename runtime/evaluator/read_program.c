@@ -199,6 +199,16 @@ static int64_t bounded(Bytes *b) {
   return lag_bytes_need(b, x > -LARGEST && x < LARGEST, "a loop is too long") ? x : 0;
 }
 
+/* Refuses damaged sizes that would run for ever: no sum has more turns than its arrays have pairs of elements, but for
+ * short ones over indices alone. */
+static void check_turns(Bytes *b, const Program *p, const Lengths *of, const Nest *n) {
+  const double short_ones = 0x1p26;
+  double longest = p->ncells, rows = (double)n->rows, last = (double)n->turns + (double)n->more * (rows - 1);
+  for (int k = 0; k < PROGRAM_ARRAY_COUNT; k++) longest = fmax(longest, (double)of->in[k]);
+  double turns = rows * fmax(1, fmax((double)n->turns, last));
+  lag_bytes_need(b, turns <= fmax(longest * longest, short_ones), "a loop has more turns than elements");
+}
+
 static void read_nest(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   n->rows = lag_bytes_int(b, 1, LARGEST);
   int has_turns = lag_bytes_int(b, 0, 1);
@@ -214,6 +224,7 @@ static void read_nest(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   n->outer = lag_bytes_words(b, n->nouter);
   for (uint32_t k = 0; !b->why && k < n->nouter; k++)
     lag_bytes_need(b, n->outer[k] < p->frame, "a nest reads out of range");
+  if (!b->why) check_turns(b, p, of, n);
   if (!b->why) read_turn(b, p, of, n);
 }
 

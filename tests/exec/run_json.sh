@@ -18,7 +18,7 @@ is "modes --steady" "model scene status verdict reason note steps start{ x y ste
   "$(fields modes models/kepler.lag circle --steady)"
 is "cost" "model scene until reference uncertainty target interrupted precisions[ precision horizon seconds methods[ method order best_of_family left_out_from refused runs[ step error spread steps calls front cheapest growth" \
   "$(fields cost models/pendulum.lag --until 0.2 --seconds 0.5 --methods rk4)"
-is "effects" "model scene method span_s integration_error limit operations base shared time_s base_time_s effects[ name on verdict weight difference together_with[" \
+is "effects" "model scene method span_s integration_error limit operations base shared time_s base_time_s evaluated effects[ name on verdict weight difference together_with[" \
   "$(fields effects models/projectile_world.lag --until 0.5)"
 is "sweep" "model scene method chosen status runs failed until seconds threads lanes processes measures{ max(th){ unit mean deviation least q5 q50 q95 largest none none_why failures{" "$(fields sweep models/pendulum.lag th=1,2 --measure 'max(th)' -o "$TMP/rows.csv")"
 # json OBJECT: names as fields prints them, of a file
@@ -32,6 +32,6 @@ missing difference units{ report[ messages[ severity message help note messages_
 is "its messages have places" '"line": 13, "column": 19, "end_line": 13, "end_column": 24, "message": "expect q'"'"' is false: `1 [F]` should be `(1/2) [F]`"' \
   "$(grep -o '"line": 13, "column": 19.*(1/2) \[F\]`"' "$TMP/check.json")"
 "$LAGC" check --json tests/golden/err/syntax_foreign.lag >"$TMP/check.json" 2>"$TMP/err"
-is "check of a text that does not parse" "1 0 6" "$? $(wc -c <"$TMP/err") $(grep -c '{"severity": "error", "file": "tests/golden/err/syntax_foreign.lag", "line": ' "$TMP/check.json")"
+is "check of a text that does not parse" "1 0 7" "$? $(wc -c <"$TMP/err") $(grep -c '{"severity": "error", "file": "tests/golden/err/syntax_foreign.lag", "line": ' "$TMP/check.json")"
 is "check of a good model" '"ok": true' "$("$LAGC" check --json models/pendulum.lag | grep -o '"ok": true' | head -n 1)"
 tap_end
