@@ -21,13 +21,19 @@ static inline LAG_REAL lag_larger(LAG_REAL a, LAG_REAL b) { return LAG_SELECT(a 
 static inline LAG_REAL lag_smaller(LAG_REAL a, LAG_REAL b) { return LAG_SELECT(a <= b || !(b >= b), a, b); }
 static inline int lag_is_number(LAG_REAL x) { return x - x >= LAG_C(0.0); }
 
+/* Length of (a, b): C++ before 2011 has hypot of doubles only. */
+static inline LAG_REAL lag_length_of(LAG_REAL a, LAG_REAL b) {
+  const LAG_REAL x = LAG_FN(fabs)(a), y = LAG_FN(fabs)(b), most = lag_larger(x, y), part = lag_smaller(x, y)/most;
+  return LAG_SELECT(most > LAG_C(0.0), most*LAG_FN(sqrt)(LAG_C(1.0) + part*part), most);
+}
+
 /* x := the point nearest to x[n] of a ball, n = 2, or an interval, n = 1. */
 static inline void lag_into_ball(int n, const LAG_REAL *centre, LAG_REAL radius, LAG_REAL *x) {
   if (n == 1) {
     x[0] = lag_smaller(lag_larger(x[0], centre[0] - radius), centre[0] + radius);
     return;
   }
-  const LAG_REAL far = (LAG_REAL)LAG_FN(hypot)(x[0] - centre[0], x[1] - centre[1]);
+  const LAG_REAL far = lag_length_of(x[0] - centre[0], x[1] - centre[1]);
   for (int k = 0; k < n && far > radius; k++) x[k] = centre[k] + (x[k] - centre[k])*(radius/far);
 }
 
@@ -50,7 +56,7 @@ static inline void lag_friction_turn(const lag_coulomb *of, LAG_REAL *slip, LAG_
     x[k] += (to[k] - slip[k])/response;
     slip[k] = to[k];
   }
-  if (n > 1) size = (LAG_REAL)LAG_FN(hypot)(x[0], x[1]);
+  if (n > 1) size = lag_length_of(x[0], x[1]);
   else size = LAG_FN(fabs)(x[0]);
   if (size > of->holds) lag_into_ball(n, origin, of->most, x);
 }
@@ -155,7 +161,7 @@ static inline void lag_contact_law(lag_pressing *c, LAG_REAL gap, LAG_REAL bend,
   if (strikes) c->least = lag_larger(-down, -lag_smaller(lag_larger(e, zero), one)*r0);
   for (int j = 0; j < (int)c->tangents; j++) {
     c->centre[j] = -part*c->slip[j];
-    size = (LAG_REAL)LAG_FN(hypot)(size, c->slip[j]);
+    size = lag_length_of(size, c->slip[j]);
   }
   c->radius = LAG_SELECT(strikes, zero, (one - back)/two*size);
 }
@@ -257,7 +263,7 @@ static inline int lag_contact_soften(const lag_impulses *s, lag_pressing *c, LAG
   for (int k = 0; k < n; k++) {
     work += P[r + 1 + k]*(c->slip[k] + lag_rate_of(s, r + 1 + k));
     size += LAG_FN(fabs)(P[r + 1 + k]);
-    width = (LAG_REAL)LAG_FN(hypot)(width, c->slip[k] + c->centre[k]);
+    width = lag_length_of(width, c->slip[k] + c->centre[k]);
   }
   if (!(work > enough*size && width > zero)) return 0;
   for (int k = 0; k < n; k++) c->centre[k] = (c->centre[k] - c->slip[k])/two;

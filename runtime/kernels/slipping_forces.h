@@ -40,7 +40,7 @@ static inline int lag_slipping_parts(const lag_slipping *w, int k) {
 
 static inline LAG_REAL lag_slipping_norm(const LAG_REAL *x, int n) {
   LAG_REAL size = LAG_FN(fabs)(x[0]);
-  for (int i = 1; i < n; i++) size = (LAG_REAL)LAG_FN(hypot)(size, x[i]);
+  for (int i = 1; i < n; i++) size = lag_length_of(size, x[i]);
   return size;
 }
 

@@ -99,7 +99,7 @@ ir/prog.c|s/prog_op(p, IR_SUB, x, ab)/prog_op(p, IR_ADD, x, ab)/
 ir/reassociate.c|s/x.minus ? prog_op(b->to, IR_SUB, y.slot, x.slot)/0 ? prog_op(b->to, IR_SUB, y.slot, x.slot)/
 model/input_rates.c|s/seed\[m->time\] = expr_int(m->g, 1)/seed[m->time] = expr_int(m->g, 0)/
 mech/lagrange.c|s/expr_sub(g, dLdq\[i\], convective\[i\])/expr_add(g, dLdq[i], convective[i])/
-lower/gram_schmidt.c|s/Slot f = op(y, IR_DIV, product(y, weighted, u), d)/Slot f = op(y, IR_DIV, d, product(y, weighted, u))/
+lower/gram_schmidt.c|s/Slot f = op(y->l, IR_DIV, product(y, weighted, u), d)/Slot f = op(y->l, IR_DIV, d, product(y, weighted, u))/
 mech/lagrange.c|s/= expr_sub(g, Q\[d.at\[i\].index\]/= expr_add(g, Q[d.at[i].index]/
 mech/derive_equations.c|s/e->energy = expr_sub(g, moving, l0)/e->energy = expr_add(g, moving, l0)/
 mech/constrain.c|s/expr_neg(e->g, rate(e, r\[at\], "_drift"))/rate(e, r[at], "_drift")/
