@@ -52,7 +52,7 @@ int lag_flow_set(FlowMap *f, const char *name, double value) {
   return renew_probe(f);
 }
 
-/* What a drive changes, n + nev: the rates, and the event functions, as of a contact with a plate that moves. */
+/* Numbers that a drive changes, n + nev: rates, and event functions, as of a contact with a plate that moves. */
 static int driven_numbers(const FlowMap *f) { return f->n + f->like->scene->model->nev; }
 
 static int driven_at(FlowMap *f, double t, const double *y, double *out) {
@@ -62,6 +62,14 @@ static int driven_at(FlowMap *f, double t, const double *y, double *out) {
   if (rc == 0 && m->nev)
     rc = m->events(m, t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, out + f->n, s->work);
   return rc;
+}
+
+/* Weight of number i beside the rates, of those at[n + nev]: event functions count as much as all rates, whatever their
+ * size: that of a distant surface is large. */
+static double driven_weight(const FlowMap *f, const double *at, int i) {
+  double rates = 0;
+  for (int j = 0; j < f->n; j++) rates += at[j] * at[j];
+  return i < f->n || !(rates > 0) || at[i] == 0.0 ? 1 : sqrt(rates) / fabs(at[i]);
 }
 
 /* Whether they change with time at the start. */
@@ -89,8 +97,10 @@ int lag_flow_shifts(FlowMap *f, int k, const int *q) {
     if (driven_at(f, t, f->at, f->up)) continue;
     for (int i = 0; i < k; i++) f->at[q[i]] += 0.37 * lag_difference_scale(&f->probe->pb, f->probe->begin, q[0]);
     if (driven_at(f, t, f->at, f->down)) return 0;
-    for (int j = 0; j < driven_numbers(f); j++)
-      size = fmax(size, fabs(f->up[j])), off = fmax(off, fabs(f->up[j] - f->down[j]));
+    for (int j = 0; j < driven_numbers(f); j++) {
+      double weight = driven_weight(f, f->up, j);
+      size = fmax(size, weight * fabs(f->up[j])), off = fmax(off, weight * fabs(f->up[j] - f->down[j]));
+    }
     if (!(off <= rounding * size)) return 0;
     seen = 1;
   }
@@ -227,10 +237,11 @@ static double drive_difference(FlowMap *f, double T, double *step) {
     for (int i = 0; i < driven_numbers(f); i++) c[i] = (c[i] - b[i]) / (2 * h);
     if (sample_rates(f, k, t + T, b)) return HUGE_VAL;
     for (int i = 0; i < driven_numbers(f); i++) {
-      off += (b[i] - a[i]) * (b[i] - a[i]);
-      size += a[i] * a[i] + b[i] * b[i];
-      along += (b[i] - a[i]) * c[i];
-      slope += c[i] * c[i];
+      double weight = driven_weight(f, a, i), w = weight * weight;
+      off += w * (b[i] - a[i]) * (b[i] - a[i]);
+      size += w * (a[i] * a[i] + b[i] * b[i]);
+      along += w * (b[i] - a[i]) * c[i];
+      slope += w * c[i] * c[i];
     }
   }
   *step = slope > 0 ? -along / slope : 0;

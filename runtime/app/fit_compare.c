@@ -42,7 +42,7 @@ static int by_bic(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* What the data say of one effect: the fit `j` beside that of the scene itself. */
+/* The verdict of the data on one effect: the fit `j` beside that of the scene itself. */
 static void put_effect(const Judged *scene, const Judged *j) {
   int without = strncmp(j->scene + strlen(scene->scene), " without ", 9) == 0;
   const char *effect = j->scene + strlen(scene->scene) + (without ? 9 : 6);

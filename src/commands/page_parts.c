@@ -1,4 +1,4 @@
-/* What pages are put together from: modules, texts as JSON, a frame with marks. */
+/* Parts of pages: modules, texts as JSON, a frame with marks. */
 #include "commands/page_parts.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* What pages are put together from. */
+/* Parts of pages. */
 #pragma once
 
 #include "commands/compiler.h"

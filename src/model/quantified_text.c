@@ -1,4 +1,4 @@
-/* What the text of a sum reads: each family at indices affine in i and j, through lets by index, too. */
+/* Families that the text of a sum reads, at indices affine in i and j, through lets by index, too. */
 #include "model/quantified_sum.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
-/* What the stages call, but no answer of a playground needs: files, terminals, a command line; and what the runtime of
- * Debian's compiler for WebAssembly expects of a system. */
+/* Functions that the stages call, but no answer of a playground needs: files, terminals, a command line; and what
+ * the runtime of Debian's compiler for WebAssembly expects of a system. */
 #include <stdint.h>
 #include <stdlib.h>
 

@@ -30,7 +30,7 @@ static void put_model(Compiler *c, StrBuf *out) {
   sb_puts(out, "\"}");
 }
 
-/* What a command says of the model besides messages. */
+/* The words of a command on the model, besides messages. */
 static void put_answer(Compiler *c, StrBuf *out) {
   Eqns *e;
   switch (c->o.command) {

@@ -88,6 +88,11 @@ orbit models/kepler.lag rosette --relative spin --guess 9.7 --hold energy,spin
 close spin -0.187600204395967282 1e-11
 close period 9.67359660924916187 1e-10
 
+# The value of an event function, here 1e13, hides neither a drive, period 2 pi/1.3, nor a force by the place
+orbit $dir/far.lag
+close period 4.83321946706121992 1e-12
+check "$title: a place that matters" says 3 "depend on where it is" "$LAGC" orbit $dir/far.lag --relative x
+
 # Contacts: differences of runs. A ball bounces once a period T of a plate: with the plate's phase p, cos p = g T (1 - e)/(2 A w (1 + e)), its
 # multipliers have the product e^2 and the sum 1 + e^2 + (1 + e)^2 A w^2 sin p/g. 1e-8: the digits that the report states.
 orbit $dir/plate.lag
