@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "numeric/matrix_exponential.h"
 #include "numeric/singular_values.h"
 
 enum { MOST_STEPS = 60, SAMPLES = 64, MOST_SEGMENTS = 40 };
@@ -53,27 +54,6 @@ static int choose_units(PeriodicOrbit *o, const double *y0) {
 
 /* ---- The symmetries that close a motion */
 
-/* E[size * size] := exp(c G), by scaling and squaring of its series. scratch[2 * size * size]. */
-static void exponential(int size, const double *G, double c, double *E, double *scratch) {
-  double norm = 0, *term = scratch, *next = scratch + size * size;
-  int halvings = 0;
-  for (int e = 0; e < size * size; e++) norm += fabs(c * G[e]);
-  for (; norm > 0.5; norm /= 2) halvings++;
-  double part = ldexp(c, -halvings);
-  for (int e = 0; e < size * size; e++) E[e] = term[e] = e % (size + 1) == 0;
-  for (int k = 1; k <= 24 + halvings; k++) {
-    const double *left = k <= 24 ? term : E, *right = k <= 24 ? G : E;
-    for (int i = 0; i < size; i++)
-      for (int j = 0; j < size; j++) {
-        double sum = 0;
-        for (int l = 0; l < size; l++) sum += left[i * size + l] * right[l * size + j];
-        next[i * size + j] = k <= 24 ? sum * part / k : sum;
-      }
-    memcpy(k <= 24 ? term : E, next, (size_t)(size * size) * sizeof *E);
-    for (int e = 0; e < size * size && k <= 24; e++) E[e] += term[e];
-  }
-}
-
 /* y[n] := the affine map E of the coordinates, and its linear part of the velocities; linear: of the coordinates,
  * too. */
 static void act(const PeriodicOrbit *o, const double *E, int linear, double *y, double *scratch) {
@@ -92,7 +72,7 @@ static void close_motion(const PeriodicOrbit *o, double *y, int linear, int j, d
   double *E = o->w, *scratch = E + size * size;
   for (int k = o->ngroup - 1; k >= 0; k--) {
     const double *G = o->affine + k * size * size;
-    exponential(size, G, o->shift[k], E, scratch);
+    lag_matrix_exponential(size, G, o->shift[k], E, scratch);
     if (d && k < j) act(o, E, 1, d, scratch);
     act(o, E, linear, y, scratch);
     if (!d || k != j) continue;
@@ -559,128 +539,6 @@ void lag_orbit_free(PeriodicOrbit *o) {
 
 int lag_orbit_solve(PeriodicOrbit *o) { return newton(o); }
 
-/* ---- The period that is not known */
-
-/* A motion at several places within each step, so that close passages are seen. */
-typedef struct Track {
-  const lag_model *m;
-  int n, rows, room;
-  double *t, *y; /* [rows], [rows n] */
-  double *size;  /* [n] largest excursion from the first row */
-} Track;
-
-static int add_row(Track *k, double t, const double *y) {
-  if (k->rows == k->room) {
-    int room = k->room ? 2 * k->room : 1024;
-    double *times = realloc(k->t, (size_t)room * sizeof *times);
-    if (times) k->t = times;
-    double *states = times ? realloc(k->y, (size_t)room * (size_t)k->n * sizeof *states) : NULL;
-    if (!states) return LAG_ENOMEM;
-    k->y = states;
-    k->room = room;
-  }
-  k->t[k->rows] = t;
-  memcpy(k->y + (size_t)k->rows * (size_t)k->n, y, (size_t)k->n * sizeof *y);
-  for (int i = 0; i < k->n; i++) k->size[i] = fmax(k->size[i], fabs(y[i] - k->y[i]));
-  k->rows++;
-  return LAG_OK;
-}
-
-/* Follows the motion until a time, or the event that ends it. */
-static int follow_motion(Track *k, lag_sim *sim, double until, double *y) {
-  enum { PLACES = 4, MOST_NUMBERS = 40000000 };
-  int rc = lag_sim_advance(sim, lag_sim_time(sim));
-  rc = rc ? rc : add_row(k, lag_sim_time(sim), sim->now);
-  for (double reach; rc == LAG_OK && lag_sim_time(sim) < until && k->rows < MOST_NUMBERS / k->n;) {
-    double from = lag_sim_time(sim);
-    rc = lag_sim_ensure_step(sim, until, &reach);
-    for (int j = 1; j <= PLACES && rc == LAG_OK && reach > from; j++) {
-      rc = lag_sim_eval(sim, j == PLACES ? reach : from + (reach - from) * j / PLACES, y);
-      rc = rc ? rc : add_row(k, from + (reach - from) * j / PLACES, y);
-    }
-    rc = rc ? rc : lag_sim_advance(sim, reach);
-  }
-  return rc == LAG_STOPPED ? LAG_OK : rc;
-}
-
-/* y - y0 of component i, periodic angles modulo a turn. */
-static double change(const lag_model *m, int i, const double *y, const double *y0) {
-  double d = y[i] - y0[i], turn = 2 * acos(-1);
-  return i < m->nq && m->q[i].periodic ? d - turn * rint(d / turn) : d;
-}
-
-/* Distance of row r from the first one in parts of the excursions: the largest over components. */
-static double away(const Track *k, int r) {
-  double most = 0;
-  for (int i = 0; i < k->n; i++)
-    if (k->size[i] > 0) most = fmax(most, fabs(change(k->m, i, k->y + (size_t)r * (size_t)k->n, k->y)) / k->size[i]);
-  return most;
-}
-
-/* Row of the first close return; 0: none. */
-static int first_return(const Track *k) {
-  const double near = 0.15;
-  double before = 0, now = 0;
-  int left = 0;
-  for (int r = 1; r < k->rows; r++) {
-    double next = away(k, r);
-    left |= now > 2 * near;
-    if (left && now <= before && now < next && now < near) return r - 1;
-    before = now;
-    now = next;
-  }
-  return 0;
-}
-
-/* Row next to time t0 + about that is nearest to the first; 0: none is near. */
-static int nearest_return(const Track *k, double about) {
-  const double part = 0.2;
-  double least = 0.3;
-  int best = 0;
-  for (int r = 1; r < k->rows; r++) {
-    if (fabs(k->t[r] - k->t[0] - about) > part * about) continue;
-    double off = away(k, r);
-    if (off < least) best = r, least = off;
-  }
-  return best;
-}
-
-/* Time by which the motion at row r comes still nearer to the first: along its rates, in excursions. */
-static double nearer(FlowMap *f, const Track *k, int r) {
-  double along = 0, length = 0;
-  const double *y = k->y + (size_t)r * (size_t)k->n;
-  if (lag_flow_rates(f, f->t0, k->y, f->up)) return 0;
-  for (int i = 0; i < k->n; i++) {
-    double weight = k->size[i] > 0 ? 1 / (k->size[i] * k->size[i]) : 0;
-    along -= change(k->m, i, y, k->y) * f->up[i] * weight;
-    length += f->up[i] * f->up[i] * weight;
-  }
-  return length > 0 ? along / length : 0;
-}
-
-int lag_orbit_guess(lag_sim *like, double until, double about, double *T, char *message, size_t size) {
-  FlowMap f;
-  Pool pool = {0};
-  Track k = {.m = like->scene->model, .n = like->pb.n};
-  int rc = lag_flow_open(&f, like);
-  k.size = lag_pool_doubles(&pool, 2 * (size_t)k.n);
-  lag_sim *sim = rc ? NULL : lag_flow_sim(&f, f.t0, NULL);
-  *T = 0;
-  if (rc == LAG_OK && (!sim || pool.failed)) rc = LAG_ENOMEM;
-  rc = rc ? rc : follow_motion(&k, sim, until, k.size + k.n);
-  if (rc) snprintf(message, size, "%s", sim ? lag_sim_message(sim) : f.message);
-  if (rc == LAG_OK) {
-    int at = about > 0 ? nearest_return(&k, about) : first_return(&k);
-    *T = at ? k.t[at] - k.t[0] + nearer(&f, &k, at) : 0;
-  }
-  free(k.t);
-  free(k.y);
-  lag_sim_free(sim);
-  lag_flow_free(&f);
-  lag_pool_free(&pool);
-  return rc;
-}
-
 /* ---- Error of the period, and what kind of a motion it is */
 
 /* Whether the motion is back already after T / k. */
@@ -689,7 +547,7 @@ static int is_back(PeriodicOrbit *o, int k) {
   if (o->flow.forced && (lag_flow_drive(&o->flow, &T) > 1e-9 || fabs(T * k - o->T) > 1e-6 * o->T)) return 0;
   if (lag_flow_run(&o->flow, o->flow.t0, o->T / k, o->y, y, NULL)) return 0;
   for (int i = 0; i < o->n; i++)
-    if (fabs(change(o->flow.like->scene->model, i, y, o->y)) > 1e-6 * o->unit[i]) return 0;
+    if (fabs(lag_flow_change(o->flow.like->scene->model, i, y, o->y)) > 1e-6 * o->unit[i]) return 0;
   return 1;
 }
 
