@@ -438,9 +438,9 @@ static int keeps_digits(ExprGraph *g, Expr before, Expr after) {
   return n == 2 || !loses_beside_origin(t, g, symbols);
 }
 
-/* The new form s if it keeps the range and the digits of e, else e. */
+/* The new form s if it keeps the range and, with its half angles, the digits of e; else e. */
 static Expr if_good(ExprGraph *g, Expr e, Expr s) {
-  return s == e || (keeps_range(g, e, s) && keeps_digits(g, e, s)) ? s : e;
+  return s == e || (keeps_range(g, e, s) && keeps_digits(g, e, simplify_stable_quotients(g, s, e))) ? s : e;
 }
 
 Expr simplify(ExprGraph *g, Expr e) {
