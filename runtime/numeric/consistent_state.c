@@ -133,7 +133,7 @@ static void go_to_place(lag_level *w, int k) {
   for (int a = 0; a < w->nfree; a++) w->x[w->free[a]] += beside[k] * (typical > 0 ? typical : 1) * lag_uneven(a);
 }
 
-/* x := a state about as far from the request as the nearest one found, in some direction. */
+/* x := a state as far from the request as the nearest one found, or a half or a third as far, in some direction. */
 static void go_around(lag_level *w, int k) {
   double far = 0;
   w->scales(w, w->asked, w->reach);
@@ -141,7 +141,7 @@ static void go_around(lag_level *w, int k) {
     far = w->reach[i] > 0 ? fmax(far, fabs(w->nearest[i] - w->asked[i]) / w->reach[i]) : far;
   copy(w, w->x, w->asked);
   for (int a = 0; a < w->nfree; a++)
-    w->x[w->free[a]] += far * w->reach[w->free[a]] * (k >> a % 8 & 1 ? 1 : -1) * lag_uneven(a + k);
+    w->x[w->free[a]] += far / (1 + k % 3) * w->reach[w->free[a]] * (k >> a % 8 & 1 ? 1 : -1) * lag_uneven(a + k);
 }
 
 /* Goes from x to the constraints, and along them towards the request; keeps the state if it is nearer than *least. */
