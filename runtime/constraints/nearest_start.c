@@ -338,7 +338,8 @@ static int make_room(Start *s, double **block) {
   const lag_part parts[] = {{&s->y, n}, {&s->asked, n}, {&s->best, n}, {&s->other, m}, {&s->M, (size_t)s->of->nmass},
       {&s->full, nq * nq}, {&s->kkt, 2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m}, {&w->x, nq},
       {&w->asked, nq}, {&w->best, nq}, {&w->from, nq}, {&w->d, nq}, {&w->along, nq}, {&w->reach, nq},
-      {&w->nearest, nq}, {&w->other, nq}, {&w->residual, m}, {&w->size, m}, {&w->terms_here, m}, {&w->slope, m}, {&w->has_terms, m},
+      {&w->nearest, nq}, {&w->other, nq}, {&w->residual, m}, {&w->size, m}, {&w->terms_here, m}, {&w->slope, m},
+      {&w->has_terms, m},
       {&w->A, entries}};
   *block = lag_workspace(sizeof parts / sizeof *parts, parts);
   s->index = malloc((nq + 2 * entries + 1) * sizeof *s->index);

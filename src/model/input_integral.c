@@ -38,7 +38,8 @@ static double over(const Spline *s, uint32_t i) {
   rates_at(s, i, u);
   rates_at(s, i + 1, w);
   double sum = (s->row[i][1] + s->row[i + 1][1]) / 2;
-  return s->jet ? h * (sum + h * ((u[0] - w[0]) / 10 + h * (u[1] + w[1]) / 120)) : h * (sum - h * h * (u[1] + w[1]) / 24);
+  if (!s->jet) return h * (sum - h * h * (u[1] + w[1]) / 24);
+  return h * (sum + h * ((u[0] - w[0]) / 10 + h * (u[1] + w[1]) / 120));
 }
 
 static const Spline *integral(Builder *b, const Spline *of, int level) {

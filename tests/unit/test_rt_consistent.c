@@ -88,7 +88,8 @@ static lag_start_kind start(Curve *curve, int exactly, double *at)
                  .scales = scales, .direction = direction, .distance = distance, .stage = stage,
                  .is_contact = is_contact, .x = at, .asked = part, .best = part + 2, .from = part + 4, .d = part + 6,
                  .residual = part + 8, .size = part + 9, .terms_here = part + 10, .slope = part + 11,
-                 .has_terms = part + 12, .A = part + 13, .reach = part + 17, .nearest = part + 19, .along = part + 21, .other = part + 23,
+                 .has_terms = part + 12, .A = part + 13, .reach = part + 17, .nearest = part + 19, .along = part + 21,
+                 .other = part + 23,
                  .free = free};
   lag_start_kind kind = lag_consistent_state(&w, &which);
   assert_true(kind == LAG_START_FOUND || which == 0);
