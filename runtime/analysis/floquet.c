@@ -149,7 +149,7 @@ static int reduced(Pool *pool, const PeriodicOrbit *o, int s, const Basis *a, co
   if (pool->failed) return LAG_ENOMEM;
   memcpy(P, o->Phi + s * n * n, (size_t)(n * n) * sizeof *P);
   memcpy(G, o->G, (size_t)(n * n) * sizeof *G);
-  if (s == o->m - 1 && o->ngroup && lag_solve_dense((size_t)n, (size_t)n, G, P)) return LAG_ESINGULAR;
+  if (s == o->m - 1 && (o->ngroup || o->closing) && lag_solve_dense((size_t)n, (size_t)n, G, P)) return LAG_ESINGULAR;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < k; j++)
       for (int l = 0; l < n; l++) PB[i * k + j] += P[i * n + l] * o->unit[l] / o->unit[i] * a->B[l * k + j];

@@ -90,6 +90,10 @@ static void act(const PeriodicOrbit *o, const double *E, int linear, double *y, 
 static void close_motion(const PeriodicOrbit *o, double *y, int linear, int j, double *d) {
   int size = o->flow.nq + 1;
   double *E = o->w, *scratch = E + size * size;
+  if (o->closing) {
+    lag_map_apply(o->closing, y, scratch);
+    memcpy(y, scratch, (size_t)o->n * sizeof *y);
+  }
   for (int k = o->ngroup - 1; k >= 0; k--) {
     const double *G = o->affine + k * size * size;
     exponential(size, G, o->shift[k], E, scratch);
@@ -103,16 +107,28 @@ static void close_motion(const PeriodicOrbit *o, double *y, int linear, int j, d
   for (int i = 0; i < o->n && !linear; i++) y[i] += o->turns[i];
 }
 
+/* target := the image of the middle, on which nothing but the middle itself depends. */
+static void set_middle(PeriodicOrbit *o) {
+  int n = o->n;
+  lag_map_apply(o->reverse, o->end + (o->m - 1) * n, o->target);
+  for (int i = 0; i < n; i++) o->target[i] += o->offset[i] + o->turns[i];
+  memset(o->G, 0, (size_t)(n * n) * sizeof *o->G);
+}
+
 /* target and G at the present y and shifts. */
 static void set_target(PeriodicOrbit *o) {
   int n = o->n;
+  if (o->half) {
+    set_middle(o);
+    return;
+  }
   memcpy(o->target, o->y, (size_t)n * sizeof *o->y);
   close_motion(o, o->target, 0, -1, NULL);
   for (int c = 0; c < n; c++) {
     double *e = o->x;
     memset(e, 0, (size_t)n * sizeof *e);
     e[c] = 1;
-    if (o->ngroup) close_motion(o, e, 1, -1, NULL);
+    if (o->ngroup || o->closing) close_motion(o, e, 1, -1, NULL);
     for (int r = 0; r < n; r++) o->G[r * n + c] = e[r];
   }
 }
@@ -152,6 +168,22 @@ static double size_of(const PeriodicOrbit *o, const OrbitHold *h) {
   return size > 0 ? size : 1;
 }
 
+/* C[n c] := C - R C, with the map R of a motion that is the same backwards. */
+static void less_image(PeriodicOrbit *o, int c, double *C) {
+  double *column = o->x, *image = column + o->n;
+  for (int j = 0; j < c; j++) {
+    for (int i = 0; i < o->n; i++) column[i] = C[i * c + j];
+    lag_map_apply(o->reverse, column, image);
+    for (int i = 0; i < o->n; i++) C[i * c + j] -= image[i];
+  }
+}
+
+/* Residual of component i of the begin of a motion that is the same backwards, in units. */
+static double begin_gap(const PeriodicOrbit *o, int i) {
+  const StateMap *R = o->reverse;
+  return (o->y[i] - R->sign[i] * o->y[R->from[i]] - o->offset[i]) / o->unit[i];
+}
+
 /* Runs all segments; residual := what is left. */
 int lag_orbit_shoot(PeriodicOrbit *o, int tangents) {
   int n = o->n, rc = LAG_OK;
@@ -160,9 +192,11 @@ int lag_orbit_shoot(PeriodicOrbit *o, int tangents) {
     rc = lag_flow_run(&o->flow, begins(o, k), o->T / o->m, o->y + k * n, o->end + k * n,
                       tangents ? o->Phi + k * n * n : NULL);
   set_target(o);
+  if (o->half && tangents) less_image(o, n, o->Phi + (o->m - 1) * n * n);
   for (int k = 0; k < o->m; k++)
     for (int i = 0; i < n; i++) sum += gap(o, k, i) * gap(o, k, i);
   for (int k = 0; k < o->nheld; k++) sum += off_by(o, k) * off_by(o, k);
+  for (int i = 0; i < n && o->half; i++) sum += begin_gap(o, i) * begin_gap(o, i);
   o->residual = rc ? HUGE_VAL : sqrt(sum / (o->m * n));
   return rc;
 }
@@ -268,6 +302,7 @@ static int parameter_columns(PeriodicOrbit *o) {
   double *rates = o->w + 4 * (o->flow.nq + 1) * (o->flow.nq + 1), *y = rates + n;
   for (int k = 0; k < o->m && rc == LAG_OK && period_is_free(o); k++) {
     rc = lag_flow_rates(&o->flow, begins(o, k + 1), o->end + k * n, rates);
+    if (o->half && k == o->m - 1) less_image(o, 1, rates);
     for (int i = 0; i < n && rc == LAG_OK; i++)
       o->A[(k * n + i) * cols + column_of_period(o)] = rates[i] / o->m * o->time / o->unit[i];
   }
@@ -294,6 +329,17 @@ static int held_rows(PeriodicOrbit *o) {
     for (int i = 0; i < n && rc == LAG_OK; i++) row[i] = d[i] * o->unit[i] / size;
   }
   return rc;
+}
+
+/* Rows of the begin of a motion that is the same backwards, behind those of conditions. */
+static void begin_rows(PeriodicOrbit *o) {
+  const StateMap *R = o->reverse;
+  for (int i = 0; i < o->n; i++) {
+    int row = o->m * o->n + o->nheld + i, from = R->from[i];
+    o->A[row * o->cols + i] += 1;
+    o->A[row * o->cols + from] -= R->sign[i] * o->unit[from] / o->unit[i];
+    o->b[row] = -begin_gap(o, i);
+  }
 }
 
 /* Removes the part of the shooting rows along w[m n], of unit length. */
@@ -350,8 +396,9 @@ int lag_orbit_assemble(PeriodicOrbit *o) {
   shooting_rows(o);
   int rc = o->continues ? continuation_column(o) : LAG_OK;
   rc = rc ? rc : parameter_columns(o);
-  rc = rc ? rc : remove_charges(o);
+  rc = rc || o->half ? rc : remove_charges(o);
   rc = rc ? rc : held_rows(o);
+  if (rc == LAG_OK && o->half) begin_rows(o);
   return rc || !o->continues ? rc : phase_rows(o);
 }
 
@@ -420,11 +467,23 @@ static int newton(PeriodicOrbit *o) {
 
 /* ---- Preparation */
 
+/* Whether closing and reverse are symmetries of the equations; of a driven scene with a drive of period T. */
+static int check_maps(const PeriodicOrbit *o, FlowMap *f, double T) {
+  int forward = !o->closing || lag_flow_has_symmetry(f, o->closing, f->forced ? T : 0);
+  if (forward && (!o->reverse || lag_flow_has_symmetry(f, o->reverse, 0))) return LAG_OK;
+  snprintf(f->message, sizeof f->message,
+           forward ? "--reverse: motions of this scene are not the same backwards in time with this map, which turns "
+                     "round velocities and the coordinates that it names; friction spoils that, as does a drive that "
+                     "is not even about the start"
+                   : "--relative: this exchange of coordinates is not a symmetry of the equations of motion");
+  return LAG_EMETHOD;
+}
+
 void lag_orbit_count(PeriodicOrbit *o) {
   int phases = !o->flow.forced;
   for (int k = 0; k < o->ncharges; k++) phases += o->charge[k] != 0;
   for (int j = 0; j < o->ngroup; j++) phases += o->group[j].n > 0;
-  o->rows = o->m * o->n + o->nheld + (o->continues ? phases : 0);
+  o->rows = o->m * o->n + o->nheld + (o->half ? o->n : 0) + (o->continues ? phases : 0);
   o->cols = o->m * o->n + period_is_free(o) + o->ngroup + (o->continues != 0);
 }
 
@@ -432,9 +491,10 @@ static int allocate(PeriodicOrbit *o) {
   size_t n = (size_t)o->n, m = (size_t)o->m, size = (size_t)o->flow.nq + 1, group = (size_t)o->ngroup;
   size_t charges = (size_t)lag_flow_charges(&o->flow);
   lag_orbit_count(o);
-  size_t rows = m * n + (size_t)o->nheld + charges + group + 1, cols = m * n + 2 + group; /* with continuation */
+  size_t rows = (m + 1) * n + (size_t)o->nheld + charges + group + 1, cols = m * n + 2 + group; /* with continuation */
   const lag_part parts[] = {{&o->y, m * n}, {&o->end, m * n}, {&o->Phi, m * n * n}, {&o->unit, n}, {&o->turns, n},
-      {&o->affine, group * size * size + 1}, {&o->target, n}, {&o->G, n * n}, {&o->A, rows * cols}, {&o->b, rows},
+      {&o->offset, n}, {&o->affine, group * size * size + 1}, {&o->target, n}, {&o->G, n * n}, {&o->A, rows * cols},
+      {&o->b, rows},
       {&o->V, cols * cols}, {&o->sigma, cols}, {&o->x, cols + 2 * n}, {&o->saved, m * n * (charges + 2) + cols},
       {&o->w, 4 * size * size + 4 * n}, {&o->re, n}, {&o->im, n}};
   lag_pool_parts(&o->pool, sizeof parts / sizeof *parts, parts);
@@ -445,14 +505,26 @@ static int allocate(PeriodicOrbit *o) {
 /* Number of segments, so that small changes grow at most about a hundredfold in each. */
 static int count_segments(PeriodicOrbit *o, int m) {
   int n = o->n, most = 1 + 240 / n;
-  if (m > 0) return m;
+  if (m > 0) return o->reverse ? m + m % 2 : m;
   double *Phi = lag_pool_doubles(&o->pool, (size_t)(n * n)), *y = lag_pool_doubles(&o->pool, (size_t)n), size = 0;
   if (o->pool.failed || lag_flow_run(&o->flow, o->flow.t0, o->T, o->flow.probe->now, y, Phi)) return 1;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) size = fmax(size, fabs(Phi[i * n + j]) * o->unit[j] / o->unit[i]);
   most = most < MOST_SEGMENTS ? most : MOST_SEGMENTS;
   m = 1 + (int)(log(fmax(size, 1)) / log(100));
-  return m < most ? m : most;
+  m = m < most ? m : most;
+  return o->reverse ? m + m % 2 : m;
+}
+
+/* The begin on the states that `reverse` leaves. */
+static void place_begin(PeriodicOrbit *o) {
+  const lag_model *m = o->flow.like->scene->model;
+  const double turn = 2 * acos(-1);
+  double *image = o->x;
+  lag_map_apply(o->reverse, o->y, image);
+  for (int i = 0; i < m->nq; i++)
+    o->offset[i] = m->q[i].periodic ? turn * rint((o->y[i] - image[i]) / turn) : 0;
+  for (int i = 0; i < o->n; i++) o->y[i] = (o->y[i] + image[i] + o->offset[i]) / 2;
 }
 
 /* The states at the begin of segments, along the motion from the start; turns of periodic angles. */
@@ -460,20 +532,35 @@ static int place_nodes(PeriodicOrbit *o) {
   int n = o->n, rc = LAG_OK;
   const lag_model *m = o->flow.like->scene->model;
   memcpy(o->y, o->flow.probe->now, (size_t)n * sizeof *o->y);
+  if (o->reverse) place_begin(o);
   for (int k = 0; k < o->m && rc == LAG_OK; k++) {
     rc = lag_flow_run(&o->flow, begins(o, k), o->T / o->m, o->y + k * n, o->end + k * n, NULL);
     if (k < o->m - 1) memcpy(o->y + (k + 1) * n, o->end + k * n, (size_t)n * sizeof *o->y);
   }
   const double *last = o->end + (o->m - 1) * n, turn = 2 * acos(-1);
+  double *image = o->x;
+  if (o->closing) lag_map_apply(o->closing, o->y, image);
+  else memcpy(image, o->y, (size_t)n * sizeof *image);
   for (int i = 0; i < m->nq && rc == LAG_OK; i++)
-    o->turns[i] = m->q[i].periodic ? turn * rint((last[i] - o->y[i]) / turn) : 0;
+    o->turns[i] = m->q[i].periodic ? turn * rint((last[i] - image[i]) / turn) : 0;
   return rc;
+}
+
+/* Whether what closes the motion leaves charge k beside the start: a mirror turns an angular momentum round. */
+static int keeps_charge(PeriodicOrbit *o, int k) {
+  const double same = 1e-9;
+  double *y = o->x, *image = y + o->n;
+  if (!o->closing) return 1;
+  for (int i = 0; i < o->n; i++) y[i] = o->y[i] + 0.05 * (1 + i % 3) * o->unit[i];
+  lag_map_apply(o->closing, y, image);
+  double before = lag_flow_charge(&o->flow, k, o->flow.t0, y), size = o->flow.probe->charge_now[2 * k + 1];
+  return fabs(lag_flow_charge(&o->flow, k, o->flow.t0, image) - before) <= same * fmax(size, fabs(before));
 }
 
 static int list_charges(PeriodicOrbit *o) {
   int size = o->flow.nq + 1, rc = LAG_OK;
   for (int k = 0; k < lag_flow_charges(&o->flow); k++)
-    if (lag_flow_conserves(&o->flow, k)) o->charge[o->ncharges++] = k;
+    if (lag_flow_conserves(&o->flow, k) && keeps_charge(o, k)) o->charge[o->ncharges++] = k;
   for (int j = 0; j < o->ngroup && rc == LAG_OK; j++) {
     const OrbitClosing *c = &o->group[j];
     double *G = o->affine + j * size * size;
@@ -534,6 +621,7 @@ static void guess_shifts(PeriodicOrbit *o) {
 int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, double T, int m) {
   int rc = lag_flow_open(&o->flow, like);
   if (rc) return rc;
+  o->flow.closing = o->closing;
   o->n = o->flow.n;
   o->T = o->time = T;
   o->algebra = algebra;
@@ -546,7 +634,8 @@ int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, 
   o->m = count_segments(o, m);
   if ((rc = allocate(o)) != 0) return rc;
   memcpy(o->unit, unit, (size_t)o->n * sizeof *unit);
-  rc = place_nodes(o);
+  rc = check_maps(o, &o->flow, T);
+  rc = rc ? rc : place_nodes(o);
   rc = rc ? rc : list_charges(o);
   if (rc == LAG_OK) guess_shifts(o);
   return rc;
@@ -557,17 +646,58 @@ void lag_orbit_free(PeriodicOrbit *o) {
   lag_pool_free(&o->pool);
 }
 
-int lag_orbit_solve(PeriodicOrbit *o) { return newton(o); }
+/* half: T, segments and conditions become those of the first half; 0: of all again. */
+static void take_half(PeriodicOrbit *o, int half) {
+  double factor = half ? 0.5 : 2;
+  o->half = half;
+  o->m = half ? o->m / 2 : 2 * o->m;
+  o->T *= factor;
+  o->time *= factor;
+  for (int k = 0; k < o->nheld; k++)
+    if (o->held[k].kind == ORBIT_PERIOD) o->held[k].value *= factor;
+  lag_orbit_count(o);
+}
+
+/* Nodes of the second half: those of the first, backwards. */
+static void mirror_nodes(PeriodicOrbit *o) {
+  int n = o->n, middle = o->m / 2;
+  memcpy(o->y + middle * n, o->end + (middle - 1) * n, (size_t)n * sizeof *o->y);
+  for (int k = 1; k < middle; k++) {
+    double *y = o->y + (o->m - k) * n;
+    lag_map_apply(o->reverse, o->y + k * n, y);
+    for (int i = 0; i < n; i++) y[i] += o->offset[i] + o->turns[i];
+  }
+}
+
+int lag_orbit_solve(PeriodicOrbit *o) {
+  if (!o->reverse) return newton(o);
+  take_half(o, 1);
+  int found = newton(o);
+  take_half(o, 0);
+  if (found != 1) return found;
+  mirror_nodes(o);
+  o->nfree += period_is_free(o); /* the phase */
+  int rc = lag_orbit_shoot(o, 1);
+  return rc ? rc : o->residual <= accepted(o);
+}
 
 /* ---- The period that is not known */
 
 /* A motion at several places within each step, so that close passages are seen. */
 typedef struct Track {
   const lag_model *m;
+  const StateMap *closing, *reverse; /* what it shall come back to; NULL: its begin */
+  double *goal, *rates;              /* [n] */
   int n, rows, room;
   double *t, *y; /* [rows], [rows n] */
   double *size;  /* [n] largest excursion from the first row */
 } Track;
+
+/* y - y0 of component i, periodic angles modulo a turn. */
+static double change(const lag_model *m, int i, const double *y, const double *y0) {
+  double d = y[i] - y0[i], turn = 2 * acos(-1);
+  return i < m->nq && m->q[i].periodic ? d - turn * rint(d / turn) : d;
+}
 
 static int add_row(Track *k, double t, const double *y) {
   if (k->rows == k->room) {
@@ -581,7 +711,7 @@ static int add_row(Track *k, double t, const double *y) {
   }
   k->t[k->rows] = t;
   memcpy(k->y + (size_t)k->rows * (size_t)k->n, y, (size_t)k->n * sizeof *y);
-  for (int i = 0; i < k->n; i++) k->size[i] = fmax(k->size[i], fabs(y[i] - k->y[i]));
+  for (int i = 0; i < k->n; i++) k->size[i] = fmax(k->size[i], fabs(change(k->m, i, y, k->y)));
   k->rows++;
   return LAG_OK;
 }
@@ -603,17 +733,21 @@ static int follow_motion(Track *k, lag_sim *sim, double until, double *y) {
   return rc == LAG_STOPPED ? LAG_OK : rc;
 }
 
-/* y - y0 of component i, periodic angles modulo a turn. */
-static double change(const lag_model *m, int i, const double *y, const double *y0) {
-  double d = y[i] - y0[i], turn = 2 * acos(-1);
-  return i < m->nq && m->q[i].periodic ? d - turn * rint(d / turn) : d;
+static const double *row_of(const Track *k, int r) { return k->y + (size_t)r * (size_t)k->n; }
+
+/* k->goal := where the motion comes back to, seen from row r: its begin, the image of that, or its own image. */
+static void set_goal(const Track *k, int r) {
+  const StateMap *map = k->reverse ? k->reverse : k->closing;
+  if (map) lag_map_apply(map, row_of(k, k->reverse ? r : 0), k->goal);
+  else memcpy(k->goal, k->y, (size_t)k->n * sizeof *k->goal);
 }
 
-/* Distance of row r from the first one in parts of the excursions: the largest over components. */
+/* Distance of row r from its goal in parts of the excursions: the largest over components. */
 static double away(const Track *k, int r) {
   double most = 0;
+  set_goal(k, r);
   for (int i = 0; i < k->n; i++)
-    if (k->size[i] > 0) most = fmax(most, fabs(change(k->m, i, k->y + (size_t)r * (size_t)k->n, k->y)) / k->size[i]);
+    if (k->size[i] > 0) most = fmax(most, fabs(change(k->m, i, row_of(k, r), k->goal)) / k->size[i]);
   return most;
 }
 
@@ -645,33 +779,42 @@ static int nearest_return(const Track *k, double about) {
   return best;
 }
 
-/* Time by which the motion at row r comes still nearer to the first: along its rates, in excursions. */
+/* Time by which the motion at row r comes still nearer to its goal: along the rates there, in excursions. */
 static double nearer(FlowMap *f, const Track *k, int r) {
   double along = 0, length = 0;
-  const double *y = k->y + (size_t)r * (size_t)k->n;
-  if (lag_flow_rates(f, f->t0, k->y, f->up)) return 0;
+  const double *y = row_of(k, r);
+  set_goal(k, r);
+  if (lag_flow_rates(f, f->t0, k->reverse ? y : k->goal, k->rates)) return 0;
+  if (k->reverse) lag_map_apply(k->reverse, k->rates, f->up);
   for (int i = 0; i < k->n; i++) {
-    double weight = k->size[i] > 0 ? 1 / (k->size[i] * k->size[i]) : 0;
-    along -= change(k->m, i, y, k->y) * f->up[i] * weight;
-    length += f->up[i] * f->up[i] * weight;
+    double weight = k->size[i] > 0 ? 1 / (k->size[i] * k->size[i]) : 0,
+           rate = k->rates[i] - (k->reverse ? f->up[i] : 0);
+    along -= change(k->m, i, y, k->goal) * rate * weight;
+    length += rate * rate * weight;
   }
   return length > 0 ? along / length : 0;
 }
 
-int lag_orbit_guess(lag_sim *like, double until, double about, double *T, char *message, size_t size) {
+int lag_orbit_guess(const PeriodicOrbit *o, lag_sim *like, double until, double about, double *T, char *message,
+                    size_t size) {
   FlowMap f;
   Pool pool = {0};
-  Track k = {.m = like->scene->model, .n = like->pb.n};
+  Track k = {.m = like->scene->model, .n = like->pb.n, .closing = o->closing, .reverse = o->reverse};
+  size_t n = (size_t)k.n;
+  double parts = o->reverse ? 2 : 1;
   int rc = lag_flow_open(&f, like);
-  k.size = lag_pool_doubles(&pool, 2 * (size_t)k.n);
+  k.size = lag_pool_doubles(&pool, 2 * n);
+  k.goal = lag_pool_doubles(&pool, n);
+  k.rates = lag_pool_doubles(&pool, n);
+  rc = rc ? rc : check_maps(o, &f, 0);
   lag_sim *sim = rc ? NULL : lag_flow_sim(&f, f.t0, NULL);
   *T = 0;
   if (rc == LAG_OK && (!sim || pool.failed)) rc = LAG_ENOMEM;
   rc = rc ? rc : follow_motion(&k, sim, until, k.size + k.n);
   if (rc) snprintf(message, size, "%s", sim ? lag_sim_message(sim) : f.message);
   if (rc == LAG_OK) {
-    int at = about > 0 ? nearest_return(&k, about) : first_return(&k);
-    *T = at ? k.t[at] - k.t[0] + nearer(&f, &k, at) : 0;
+    int at = about > 0 ? nearest_return(&k, about / parts) : first_return(&k);
+    *T = at ? parts * (k.t[at] - k.t[0] + nearer(&f, &k, at)) : 0;
   }
   free(k.t);
   free(k.y);
@@ -693,6 +836,22 @@ static int is_back(PeriodicOrbit *o, int k) {
   return 1;
 }
 
+/* Whether the motion goes on as the image of what it was, over events, too. */
+static int goes_on(PeriodicOrbit *o) {
+  const double same = 1e-6; /* small changes grow a hundredfold in a segment */
+  int n = o->n;
+  double *begin = o->x, *end = begin + n, *image = o->w;
+  for (int k = 0; k < o->m && o->flow.like->scene->model->nev; k++) {
+    lag_map_apply(o->closing, o->y + k * n, begin);
+    lag_map_apply(o->closing, o->end + k * n, image);
+    double t = begins(o, k) + (o->flow.forced ? o->T : 0);
+    if (lag_flow_run(&o->flow, t, o->T / o->m, begin, end, NULL)) return 0;
+    for (int i = 0; i < n; i++)
+      if (fabs(change(o->flow.like->scene->model, i, end, image)) > same * o->unit[i]) return 0;
+  }
+  return 1;
+}
+
 static int is_at_rest(PeriodicOrbit *o) {
   double most = 0;
   if (lag_flow_rates(&o->flow, o->flow.t0, o->y, o->x)) return 0;
@@ -704,7 +863,8 @@ int lag_orbit_refine(PeriodicOrbit *o) {
   lag_sim *like = o->flow.like;
   double tol = like->tol, T = o->T, *step = o->x;
   o->at_rest = is_at_rest(o);
-  for (int k = 2; k <= 7 && !o->ngroup && !o->at_rest; k++)
+  o->asymmetric = o->closing && !goes_on(o);
+  for (int k = 2; k <= 7 && !o->ngroup && !o->closing && !o->at_rest; k++)
     if (is_back(o, k)) o->repeats = k;
   like->tol = like->pb.tol = fmax(tol / 100, 1e-15);
   if (like->tol == tol || lag_flow_differences(&o->flow)) like->tol = like->pb.tol = 100 * tol;

@@ -21,6 +21,7 @@ typedef struct Part {
 /* Motions of twice the period of another one. */
 typedef struct Doubled {
   lag_sim *like;
+  StateMap closing;
   PeriodicOrbit orbit;
   BranchProblem problem;
 } Doubled;
@@ -168,6 +169,8 @@ static int open_doubled(Doubled *two, PeriodicOrbit *o, const lag_scene *scene) 
                                .ngroup = o->ngroup};
   memcpy(two->orbit.held, o->held, sizeof o->held);
   memcpy(two->orbit.group, o->group, sizeof o->group);
+  if (o->closing && lag_map_square(&two->closing, &two->orbit.pool, o->closing)) return LAG_ENOMEM;
+  two->orbit.closing = o->closing ? &two->closing : NULL;
   int rc = lag_orbit_open(&two->orbit, two->like, o->algebra, 2 * o->T, 2 * o->m);
   for (int s = 0; s < two->orbit.m && rc == LAG_OK; s++)
     memcpy(two->orbit.y + s * o->n, o->y + s % o->m * o->n, (size_t)o->n * sizeof *o->y);
