@@ -448,3 +448,8 @@ int lag_flow_tangent_basis(FlowMap *f, Pool *pool, double t, const double *y, co
     for (int j = 0; j < *k; j++) B[r * *k + j] = Y[r * n + j] / sigma[j];
   return rc;
 }
+
+double lag_flow_change(const lag_model *m, int i, const double *y, const double *y0) {
+  double d = y[i] - y0[i], turn = 2 * acos(-1);
+  return i < m->nq && m->q[i].periodic ? d - turn * rint(d / turn) : d;
+}

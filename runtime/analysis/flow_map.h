@@ -67,3 +67,5 @@ int lag_flow_tangent_basis(FlowMap *f, Pool *pool, double t, const double *y, co
 /* G[nq + 1][nq + 1] := the affine map of coordinates by which the symmetry of charge k acts, per unit of its
  * parameter: q -> A q + b in the first nq rows. LAG_EMETHOD: it is not affine. */
 int lag_flow_affine(FlowMap *f, int k, double t, const double *y, double *G);
+/* y - y0 of component i, periodic angles modulo a turn. */
+double lag_flow_change(const lag_model *m, int i, const double *y, const double *y0);

@@ -51,88 +51,6 @@ static int choose_units(PeriodicOrbit *o, const double *y0) {
   return rc;
 }
 
-/* ---- The symmetries that close a motion */
-
-/* E[size * size] := exp(c G), by scaling and squaring of its series. scratch[2 * size * size]. */
-static void exponential(int size, const double *G, double c, double *E, double *scratch) {
-  double norm = 0, *term = scratch, *next = scratch + size * size;
-  int halvings = 0;
-  for (int e = 0; e < size * size; e++) norm += fabs(c * G[e]);
-  for (; norm > 0.5; norm /= 2) halvings++;
-  double part = ldexp(c, -halvings);
-  for (int e = 0; e < size * size; e++) E[e] = term[e] = e % (size + 1) == 0;
-  for (int k = 1; k <= 24 + halvings; k++) {
-    const double *left = k <= 24 ? term : E, *right = k <= 24 ? G : E;
-    for (int i = 0; i < size; i++)
-      for (int j = 0; j < size; j++) {
-        double sum = 0;
-        for (int l = 0; l < size; l++) sum += left[i * size + l] * right[l * size + j];
-        next[i * size + j] = k <= 24 ? sum * part / k : sum;
-      }
-    memcpy(k <= 24 ? term : E, next, (size_t)(size * size) * sizeof *E);
-    for (int e = 0; e < size * size && k <= 24; e++) E[e] += term[e];
-  }
-}
-
-/* y[n] := the affine map E of the coordinates, and its linear part of the velocities; linear: of the coordinates,
- * too. */
-static void act(const PeriodicOrbit *o, const double *E, int linear, double *y, double *scratch) {
-  int nq = o->flow.nq, size = nq + 1;
-  for (int i = 0; i < 2 * nq; i++) {
-    const double *row = E + i % nq * size, *x = y + i / nq * nq;
-    scratch[i] = i < nq && !linear ? row[nq] : 0;
-    for (int j = 0; j < nq; j++) scratch[i] += row[j] * x[j];
-  }
-  memcpy(y, scratch, 2 * (size_t)nq * sizeof *y);
-}
-
-/* y[n] := G y; d[n], unless NULL, := its derivative by shift j. */
-static void close_motion(const PeriodicOrbit *o, double *y, int linear, int j, double *d) {
-  int size = o->flow.nq + 1;
-  double *E = o->w, *scratch = E + size * size;
-  if (o->closing) {
-    lag_map_apply(o->closing, y, scratch);
-    memcpy(y, scratch, (size_t)o->n * sizeof *y);
-  }
-  for (int k = o->ngroup - 1; k >= 0; k--) {
-    const double *G = o->affine + k * size * size;
-    exponential(size, G, o->shift[k], E, scratch);
-    if (d && k < j) act(o, E, 1, d, scratch);
-    act(o, E, linear, y, scratch);
-    if (!d || k != j) continue;
-    memset(d, 0, (size_t)o->n * sizeof *d);
-    memcpy(d, y, 2 * (size_t)o->flow.nq * sizeof *d);
-    act(o, G, linear, d, scratch);
-  }
-  for (int i = 0; i < o->n && !linear; i++) y[i] += o->turns[i];
-}
-
-/* target := the image of the middle, on which nothing but the middle itself depends. */
-static void set_middle(PeriodicOrbit *o) {
-  int n = o->n;
-  lag_map_apply(o->reverse, o->end + (o->m - 1) * n, o->target);
-  for (int i = 0; i < n; i++) o->target[i] += o->offset[i] + o->turns[i];
-  memset(o->G, 0, (size_t)(n * n) * sizeof *o->G);
-}
-
-/* target and G at the present y and shifts. */
-static void set_target(PeriodicOrbit *o) {
-  int n = o->n;
-  if (o->half) {
-    set_middle(o);
-    return;
-  }
-  memcpy(o->target, o->y, (size_t)n * sizeof *o->y);
-  close_motion(o, o->target, 0, -1, NULL);
-  for (int c = 0; c < n; c++) {
-    double *e = o->x;
-    memset(e, 0, (size_t)n * sizeof *e);
-    e[c] = 1;
-    if (o->ngroup || o->closing) close_motion(o, e, 1, -1, NULL);
-    for (int r = 0; r < n; r++) o->G[r * n + c] = e[r];
-  }
-}
-
 /* ---- Shooting */
 
 /* Time at the begin of segment k. */
@@ -191,7 +109,7 @@ int lag_orbit_shoot(PeriodicOrbit *o, int tangents) {
   for (int k = 0; k < o->m && rc == LAG_OK; k++)
     rc = lag_flow_run(&o->flow, begins(o, k), o->T / o->m, o->y + k * n, o->end + k * n,
                       tangents ? o->Phi + k * n * n : NULL);
-  set_target(o);
+  lag_orbit_set_target(o);
   if (o->half && tangents) less_image(o, n, o->Phi + (o->m - 1) * n * n);
   for (int k = 0; k < o->m; k++)
     for (int i = 0; i < n; i++) sum += gap(o, k, i) * gap(o, k, i);
@@ -308,7 +226,7 @@ static int parameter_columns(PeriodicOrbit *o) {
   }
   for (int j = 0; j < o->ngroup && rc == LAG_OK; j++) {
     memcpy(y, o->y, (size_t)n * sizeof *y);
-    close_motion(o, y, 0, j, rates);
+    lag_orbit_close_motion(o, y, 0, j, rates);
     for (int i = 0; i < n; i++) o->A[((o->m - 1) * n + i) * cols + column_of_shift(o, j)] = -rates[i] / o->unit[i];
   }
   return rc;
@@ -467,18 +385,6 @@ static int newton(PeriodicOrbit *o) {
 
 /* ---- Preparation */
 
-/* Whether closing and reverse are symmetries of the equations; of a driven scene with a drive of period T. */
-static int check_maps(const PeriodicOrbit *o, FlowMap *f, double T) {
-  int forward = !o->closing || lag_flow_has_symmetry(f, o->closing, f->forced ? T : 0);
-  if (forward && (!o->reverse || lag_flow_has_symmetry(f, o->reverse, 0))) return LAG_OK;
-  snprintf(f->message, sizeof f->message,
-           forward ? "--reverse: motions of this scene are not the same backwards in time with this map, which turns "
-                     "round velocities and the coordinates that it names; friction spoils that, as does a drive that "
-                     "is not even about the start"
-                   : "--relative: this exchange of coordinates is not a symmetry of the equations of motion");
-  return LAG_EMETHOD;
-}
-
 void lag_orbit_count(PeriodicOrbit *o) {
   int phases = !o->flow.forced;
   for (int k = 0; k < o->ncharges; k++) phases += o->charge[k] != 0;
@@ -546,42 +452,6 @@ static int place_nodes(PeriodicOrbit *o) {
   return rc;
 }
 
-/* Whether what closes the motion leaves charge k beside the start: a mirror turns an angular momentum round. */
-static int keeps_charge(PeriodicOrbit *o, int k) {
-  const double same = 1e-9;
-  double *y = o->x, *image = y + o->n;
-  if (!o->closing) return 1;
-  for (int i = 0; i < o->n; i++) y[i] = o->y[i] + 0.05 * (1 + i % 3) * o->unit[i];
-  lag_map_apply(o->closing, y, image);
-  double before = lag_flow_charge(&o->flow, k, o->flow.t0, y), size = o->flow.probe->charge_now[2 * k + 1];
-  return fabs(lag_flow_charge(&o->flow, k, o->flow.t0, image) - before) <= same * fmax(size, fabs(before));
-}
-
-static int list_charges(PeriodicOrbit *o) {
-  int size = o->flow.nq + 1, rc = LAG_OK;
-  for (int k = 0; k < lag_flow_charges(&o->flow); k++)
-    if (lag_flow_conserves(&o->flow, k) && keeps_charge(o, k)) o->charge[o->ncharges++] = k;
-  for (int j = 0; j < o->ngroup && rc == LAG_OK; j++) {
-    const OrbitClosing *c = &o->group[j];
-    double *G = o->affine + j * size * size;
-    if (c->n) {
-      memset(G, 0, (size_t)(size * size) * sizeof *G);
-      for (int i = 0; i < c->n; i++) G[c->shifted[i] * size + size - 1] = 1;
-      if (!lag_flow_shifts(&o->flow, c->n, c->shifted)) rc = LAG_EMETHOD;
-    } else rc = lag_flow_affine(&o->flow, c->charge, o->flow.t0, o->y, G);
-    if (rc && c->n)
-      snprintf(o->flow.message, sizeof o->flow.message,
-               "--relative %s: the equations of motion or the events depend on where it is; coordinates that move "
-               "together are written with +: --relative x[1]+x[2]",
-               o->flow.like->scene->model->q[c->shifted[0]].name);
-    else if (rc)
-      snprintf(o->flow.message, sizeof o->flow.message,
-               "the symmetry of %s is not an affine map of the coordinates, such as a shift or a rotation",
-               o->flow.like->scene->model->charges->of[c->charge].name);
-  }
-  return rc;
-}
-
 /* drives := how many periods of the drive T is. */
 static void count_drives(PeriodicOrbit *o) {
   double shortest = lag_flow_find_drive(&o->flow, 1.01 * o->T);
@@ -591,7 +461,7 @@ static void count_drives(PeriodicOrbit *o) {
 /* Square of the distance of the end of the motion from G y(0), in units. */
 static double miss(PeriodicOrbit *o) {
   double sum = 0;
-  set_target(o);
+  lag_orbit_set_target(o);
   for (int i = 0; i < o->n; i++) sum += gap(o, o->m - 1, i) * gap(o, o->m - 1, i);
   return sum;
 }
@@ -615,7 +485,7 @@ static void guess_shifts(PeriodicOrbit *o) {
     }
     *shift = best;
   }
-  set_target(o);
+  lag_orbit_set_target(o);
 }
 
 int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, double T, int m) {
@@ -634,9 +504,9 @@ int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, 
   o->m = count_segments(o, m);
   if ((rc = allocate(o)) != 0) return rc;
   memcpy(o->unit, unit, (size_t)o->n * sizeof *unit);
-  rc = check_maps(o, &o->flow, T);
+  rc = lag_orbit_check_maps(o, &o->flow, T);
   rc = rc ? rc : place_nodes(o);
-  rc = rc ? rc : list_charges(o);
+  rc = rc ? rc : lag_orbit_list_charges(o);
   if (rc == LAG_OK) guess_shifts(o);
   return rc;
 }
@@ -681,149 +551,6 @@ int lag_orbit_solve(PeriodicOrbit *o) {
   return rc ? rc : o->residual <= accepted(o);
 }
 
-/* ---- The period that is not known */
-
-/* A motion at several places within each step, so that close passages are seen. */
-typedef struct Track {
-  const lag_model *m;
-  const StateMap *closing, *reverse; /* what it shall come back to; NULL: its begin */
-  double *goal, *rates;              /* [n] */
-  int n, rows, room;
-  double *t, *y; /* [rows], [rows n] */
-  double *size;  /* [n] largest excursion from the first row */
-} Track;
-
-/* y - y0 of component i, periodic angles modulo a turn. */
-static double change(const lag_model *m, int i, const double *y, const double *y0) {
-  double d = y[i] - y0[i], turn = 2 * acos(-1);
-  return i < m->nq && m->q[i].periodic ? d - turn * rint(d / turn) : d;
-}
-
-static int add_row(Track *k, double t, const double *y) {
-  if (k->rows == k->room) {
-    int room = k->room ? 2 * k->room : 1024;
-    double *times = realloc(k->t, (size_t)room * sizeof *times);
-    if (times) k->t = times;
-    double *states = times ? realloc(k->y, (size_t)room * (size_t)k->n * sizeof *states) : NULL;
-    if (!states) return LAG_ENOMEM;
-    k->y = states;
-    k->room = room;
-  }
-  k->t[k->rows] = t;
-  memcpy(k->y + (size_t)k->rows * (size_t)k->n, y, (size_t)k->n * sizeof *y);
-  for (int i = 0; i < k->n; i++) k->size[i] = fmax(k->size[i], fabs(change(k->m, i, y, k->y)));
-  k->rows++;
-  return LAG_OK;
-}
-
-/* Follows the motion until a time, or the event that ends it. */
-static int follow_motion(Track *k, lag_sim *sim, double until, double *y) {
-  enum { PLACES = 4, MOST_NUMBERS = 40000000 };
-  int rc = lag_sim_advance(sim, lag_sim_time(sim));
-  rc = rc ? rc : add_row(k, lag_sim_time(sim), sim->now);
-  for (double reach; rc == LAG_OK && lag_sim_time(sim) < until && k->rows < MOST_NUMBERS / k->n;) {
-    double from = lag_sim_time(sim);
-    rc = lag_sim_ensure_step(sim, until, &reach);
-    for (int j = 1; j <= PLACES && rc == LAG_OK && reach > from; j++) {
-      rc = lag_sim_eval(sim, j == PLACES ? reach : from + (reach - from) * j / PLACES, y);
-      rc = rc ? rc : add_row(k, from + (reach - from) * j / PLACES, y);
-    }
-    rc = rc ? rc : lag_sim_advance(sim, reach);
-  }
-  return rc == LAG_STOPPED ? LAG_OK : rc;
-}
-
-static const double *row_of(const Track *k, int r) { return k->y + (size_t)r * (size_t)k->n; }
-
-/* k->goal := where the motion comes back to, seen from row r: its begin, the image of that, or its own image. */
-static void set_goal(const Track *k, int r) {
-  const StateMap *map = k->reverse ? k->reverse : k->closing;
-  if (map) lag_map_apply(map, row_of(k, k->reverse ? r : 0), k->goal);
-  else memcpy(k->goal, k->y, (size_t)k->n * sizeof *k->goal);
-}
-
-/* Distance of row r from its goal in parts of the excursions: the largest over components. */
-static double away(const Track *k, int r) {
-  double most = 0;
-  set_goal(k, r);
-  for (int i = 0; i < k->n; i++)
-    if (k->size[i] > 0) most = fmax(most, fabs(change(k->m, i, row_of(k, r), k->goal)) / k->size[i]);
-  return most;
-}
-
-/* Row of the first close return; 0: none. */
-static int first_return(const Track *k) {
-  const double near = 0.15;
-  double before = 0, now = 0;
-  int left = 0;
-  for (int r = 1; r < k->rows; r++) {
-    double next = away(k, r);
-    left |= now > 2 * near;
-    if (left && now <= before && now < next && now < near) return r - 1;
-    before = now;
-    now = next;
-  }
-  return 0;
-}
-
-/* Row next to time t0 + about that is nearest to the first; 0: none is near. */
-static int nearest_return(const Track *k, double about) {
-  const double part = 0.2;
-  double least = 0.3;
-  int best = 0;
-  for (int r = 1; r < k->rows; r++) {
-    if (fabs(k->t[r] - k->t[0] - about) > part * about) continue;
-    double off = away(k, r);
-    if (off < least) best = r, least = off;
-  }
-  return best;
-}
-
-/* Time by which the motion at row r comes still nearer to its goal: along the rates there, in excursions. */
-static double nearer(FlowMap *f, const Track *k, int r) {
-  double along = 0, length = 0;
-  const double *y = row_of(k, r);
-  set_goal(k, r);
-  if (lag_flow_rates(f, f->t0, k->reverse ? y : k->goal, k->rates)) return 0;
-  if (k->reverse) lag_map_apply(k->reverse, k->rates, f->up);
-  for (int i = 0; i < k->n; i++) {
-    double weight = k->size[i] > 0 ? 1 / (k->size[i] * k->size[i]) : 0,
-           rate = k->rates[i] - (k->reverse ? f->up[i] : 0);
-    along -= change(k->m, i, y, k->goal) * rate * weight;
-    length += rate * rate * weight;
-  }
-  return length > 0 ? along / length : 0;
-}
-
-int lag_orbit_guess(const PeriodicOrbit *o, lag_sim *like, double until, double about, double *T, char *message,
-                    size_t size) {
-  FlowMap f;
-  Pool pool = {0};
-  Track k = {.m = like->scene->model, .n = like->pb.n, .closing = o->closing, .reverse = o->reverse};
-  size_t n = (size_t)k.n;
-  double parts = o->reverse ? 2 : 1;
-  int rc = lag_flow_open(&f, like);
-  k.size = lag_pool_doubles(&pool, 2 * n);
-  k.goal = lag_pool_doubles(&pool, n);
-  k.rates = lag_pool_doubles(&pool, n);
-  rc = rc ? rc : check_maps(o, &f, 0);
-  lag_sim *sim = rc ? NULL : lag_flow_sim(&f, f.t0, NULL);
-  *T = 0;
-  if (rc == LAG_OK && (!sim || pool.failed)) rc = LAG_ENOMEM;
-  rc = rc ? rc : follow_motion(&k, sim, until, k.size + k.n);
-  if (rc) snprintf(message, size, "%s", sim ? lag_sim_message(sim) : f.message);
-  if (rc == LAG_OK) {
-    int at = about > 0 ? nearest_return(&k, about / parts) : first_return(&k);
-    *T = at ? parts * (k.t[at] - k.t[0] + nearer(&f, &k, at)) : 0;
-  }
-  free(k.t);
-  free(k.y);
-  lag_sim_free(sim);
-  lag_flow_free(&f);
-  lag_pool_free(&pool);
-  return rc;
-}
-
 /* ---- Error of the period, and what kind of a motion it is */
 
 /* Whether the motion is back already after T / k. */
@@ -832,7 +559,7 @@ static int is_back(PeriodicOrbit *o, int k) {
   if (o->flow.forced && (lag_flow_drive(&o->flow, &T) > 1e-9 || fabs(T * k - o->T) > 1e-6 * o->T)) return 0;
   if (lag_flow_run(&o->flow, o->flow.t0, o->T / k, o->y, y, NULL)) return 0;
   for (int i = 0; i < o->n; i++)
-    if (fabs(change(o->flow.like->scene->model, i, y, o->y)) > 1e-6 * o->unit[i]) return 0;
+    if (fabs(lag_flow_change(o->flow.like->scene->model, i, y, o->y)) > 1e-6 * o->unit[i]) return 0;
   return 1;
 }
 
@@ -847,7 +574,7 @@ static int goes_on(PeriodicOrbit *o) {
     double t = begins(o, k) + (o->flow.forced ? o->T : 0);
     if (lag_flow_run(&o->flow, t, o->T / o->m, begin, end, NULL)) return 0;
     for (int i = 0; i < n; i++)
-      if (fabs(change(o->flow.like->scene->model, i, end, image)) > same * o->unit[i]) return 0;
+      if (fabs(lag_flow_change(o->flow.like->scene->model, i, end, image)) > same * o->unit[i]) return 0;
   }
   return 1;
 }

@@ -83,6 +83,17 @@ void lag_orbit_free(PeriodicOrbit *o);
 int lag_orbit_guess(const PeriodicOrbit *o, lag_sim *like, double until, double about, double *T, char *message,
                     size_t size);
 
+/* Whether closing and reverse are symmetries of the equations; of a driven scene with a drive of period T. LAG_OK, or
+ * LAG_EMETHOD with its message in f. */
+int lag_orbit_check_maps(const PeriodicOrbit *o, FlowMap *f, double T);
+
+/* orbit_closing.c. y[n] := G y; d[n], unless NULL, := its derivative by shift j; linear: of small changes. */
+void lag_orbit_close_motion(const PeriodicOrbit *o, double *y, int linear, int j, double *d);
+/* target and G at the present y, shifts and ends. */
+void lag_orbit_set_target(PeriodicOrbit *o);
+/* The charges that are conserved, and generators of the shifts. LAG_OK, or a status with its message. */
+int lag_orbit_list_charges(PeriodicOrbit *o);
+
 /* For continuation (branch_problems.c): runs all segments at the present unknowns; then A and b. */
 int lag_orbit_shoot(PeriodicOrbit *o, int tangents);
 int lag_orbit_assemble(PeriodicOrbit *o);
