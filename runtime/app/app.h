@@ -358,6 +358,7 @@ int lag_app_orbit(App *app);
  * command line; its solution, with multipliers. 0, or the exit status after a message. */
 struct PeriodicOrbit;
 int lag_app_orbit_set_up(App *app);
+int lag_app_orbit_holds(App *app, struct PeriodicOrbit *o); /* its conditions, those of --hold */
 int lag_app_orbit_open(App *app, struct PeriodicOrbit *o);
 int lag_app_orbit_solve(App *app, struct PeriodicOrbit *o);
 /* orbit_maps.c: the map takes the terms NAME=NAME of an option, `x=-x, r[i]=r[i+1]`; others are left out. 0, or the

@@ -85,6 +85,8 @@ static int read_names(App *app, PeriodicOrbit *o, const char *names,
   return rc;
 }
 
+int lag_app_orbit_holds(App *app, PeriodicOrbit *o) { return read_names(app, o, app->args.hold, add_held); }
+
 /* *T := the time that the option gives; 0: none is given. */
 static int given_period(const Args *a, double *T) {
   const char *option = a->period ? "--period" : "--guess", *text = a->period ? a->period : a->guess;
@@ -446,7 +448,7 @@ static int read_maps(App *app, PeriodicOrbit *o) {
 int lag_app_orbit_open(App *app, PeriodicOrbit *o) {
   const Args *a = &app->args;
   double T = 0, segments = 0;
-  int rc = read_names(app, o, a->hold, add_held);
+  int rc = lag_app_orbit_holds(app, o);
   rc = rc ? rc : read_names(app, o, a->relative, add_group);
   rc = rc ? rc : read_maps(app, o);
   if (rc == 0 && a->segments) {

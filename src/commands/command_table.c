@@ -140,10 +140,10 @@ static const CommandRow commands[] = {
      "the start replace the tangent. Needs GSL. Exit status 3: no periodic motion was found.\n\n"
      "  name=value            a parameter, another start (th=3), an input to hold"},
     {CMD_CONTINUE, "continue", "bifurcation",
-     "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T] [--hold NAMES] [--branches] [-o "
-     "FILE.csv] [--svg FILE.svg] [--json]",
-     "states of rest and periodic motions over a parameter: folds, bifurcations",
-     "Follows a state of rest, or a periodic motion, while a parameter runs over a range, round folds, too "
+     "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T | --steady] [--hold NAMES] [--branches] "
+     "[-o FILE.csv] [--svg FILE.svg] [--json]",
+     "rest, steady and periodic motions over a parameter: folds, bifurcations",
+     "Follows a state of rest, a steady motion (--steady), or a periodic motion, while a parameter runs over a range, round folds, too "
      "(pseudo-arclength continuation), and locates the points where it changes: folds, branch points, Hopf points, "
      "period doublings, Neimark-Sacker points, collisions of multipliers of Hamilton's equations. It begins at the "
      "scene's value of the parameter if that lies in the range, and goes both ways.\n\n"
