@@ -9,6 +9,8 @@
 /* A motion at several places within each step, so that close passages are seen. */
 typedef struct Track {
   const lag_model *m;
+  const StateMap *closing, *reverse; /* what it shall come back to; NULL: its begin */
+  double *goal, *rates;              /* [n] */
   int n, rows, room;
   double *t, *y; /* [rows], [rows n] */
   double *size;  /* [n] largest excursion from the first row */
@@ -26,7 +28,7 @@ static int add_row(Track *k, double t, const double *y) {
   }
   k->t[k->rows] = t;
   memcpy(k->y + (size_t)k->rows * (size_t)k->n, y, (size_t)k->n * sizeof *y);
-  for (int i = 0; i < k->n; i++) k->size[i] = fmax(k->size[i], fabs(y[i] - k->y[i]));
+  for (int i = 0; i < k->n; i++) k->size[i] = fmax(k->size[i], fabs(lag_flow_change(k->m, i, y, k->y)));
   k->rows++;
   return LAG_OK;
 }
@@ -48,12 +50,21 @@ static int follow_motion(Track *k, lag_sim *sim, double until, double *y) {
   return rc == LAG_STOPPED ? LAG_OK : rc;
 }
 
-/* Distance of row r from the first one in parts of the excursions: the largest over components. */
+static const double *row_of(const Track *k, int r) { return k->y + (size_t)r * (size_t)k->n; }
+
+/* k->goal := where the motion comes back to, seen from row r: its begin, the image of that, or its own image. */
+static void set_goal(const Track *k, int r) {
+  const StateMap *map = k->reverse ? k->reverse : k->closing;
+  if (map) lag_map_apply(map, row_of(k, k->reverse ? r : 0), k->goal);
+  else memcpy(k->goal, k->y, (size_t)k->n * sizeof *k->goal);
+}
+
+/* Distance of row r from its goal in parts of the excursions: the largest over components. */
 static double away(const Track *k, int r) {
-  const double *y = k->y + (size_t)r * (size_t)k->n;
   double most = 0;
+  set_goal(k, r);
   for (int i = 0; i < k->n; i++)
-    if (k->size[i] > 0) most = fmax(most, fabs(lag_flow_change(k->m, i, y, k->y)) / k->size[i]);
+    if (k->size[i] > 0) most = fmax(most, fabs(lag_flow_change(k->m, i, row_of(k, r), k->goal)) / k->size[i]);
   return most;
 }
 
@@ -85,33 +96,42 @@ static int nearest_return(const Track *k, double about) {
   return best;
 }
 
-/* Time by which the motion at row r comes still nearer to the first: along its rates, in excursions. */
+/* Time by which the motion at row r comes still nearer to its goal: along the rates there, in excursions. */
 static double nearer(FlowMap *f, const Track *k, int r) {
   double along = 0, length = 0;
-  const double *y = k->y + (size_t)r * (size_t)k->n;
-  if (lag_flow_rates(f, f->t0, k->y, f->up)) return 0;
+  const double *y = row_of(k, r);
+  set_goal(k, r);
+  if (lag_flow_rates(f, f->t0, k->reverse ? y : k->goal, k->rates)) return 0;
+  if (k->reverse) lag_map_apply(k->reverse, k->rates, f->up);
   for (int i = 0; i < k->n; i++) {
-    double weight = k->size[i] > 0 ? 1 / (k->size[i] * k->size[i]) : 0;
-    along -= lag_flow_change(k->m, i, y, k->y) * f->up[i] * weight;
-    length += f->up[i] * f->up[i] * weight;
+    double weight = k->size[i] > 0 ? 1 / (k->size[i] * k->size[i]) : 0,
+           rate = k->rates[i] - (k->reverse ? f->up[i] : 0);
+    along -= lag_flow_change(k->m, i, y, k->goal) * rate * weight;
+    length += rate * rate * weight;
   }
   return length > 0 ? along / length : 0;
 }
 
-int lag_orbit_guess(lag_sim *like, double until, double about, double *T, char *message, size_t size) {
+int lag_orbit_guess(const PeriodicOrbit *o, lag_sim *like, double until, double about, double *T, char *message,
+                    size_t size) {
   FlowMap f;
   Pool pool = {0};
-  Track k = {.m = like->scene->model, .n = like->pb.n};
+  Track k = {.m = like->scene->model, .n = like->pb.n, .closing = o->closing, .reverse = o->reverse};
+  size_t n = (size_t)k.n;
+  double parts = o->reverse ? 2 : 1;
   int rc = lag_flow_open(&f, like);
-  k.size = lag_pool_doubles(&pool, 2 * (size_t)k.n);
+  k.size = lag_pool_doubles(&pool, 2 * n);
+  k.goal = lag_pool_doubles(&pool, n);
+  k.rates = lag_pool_doubles(&pool, n);
+  rc = rc ? rc : lag_orbit_check_maps(o, &f, 0);
   lag_sim *sim = rc ? NULL : lag_flow_sim(&f, f.t0, NULL);
   *T = 0;
   if (rc == LAG_OK && (!sim || pool.failed)) rc = LAG_ENOMEM;
   rc = rc ? rc : follow_motion(&k, sim, until, k.size + k.n);
   if (rc) snprintf(message, size, "%s", sim ? lag_sim_message(sim) : f.message);
   if (rc == LAG_OK) {
-    int at = about > 0 ? nearest_return(&k, about) : first_return(&k);
-    *T = at ? k.t[at] - k.t[0] + nearer(&f, &k, at) : 0;
+    int at = about > 0 ? nearest_return(&k, about / parts) : first_return(&k);
+    *T = at ? parts * (k.t[at] - k.t[0] + nearer(&f, &k, at)) : 0;
   }
   free(k.t);
   free(k.y);

@@ -134,6 +134,8 @@ static int open_doubled(Doubled *two, PeriodicOrbit *o, const lag_scene *scene) 
                                .ngroup = o->ngroup};
   memcpy(two->orbit.held, o->held, sizeof o->held);
   memcpy(two->orbit.group, o->group, sizeof o->group);
+  if (o->closing && lag_map_square(&two->closing, &two->orbit.pool, o->closing)) return LAG_ENOMEM;
+  two->orbit.closing = o->closing ? &two->closing : NULL;
   int rc = lag_orbit_open(&two->orbit, two->like, o->algebra, 2 * o->T, 2 * o->m);
   for (int s = 0; s < two->orbit.m && rc == LAG_OK; s++)
     memcpy(two->orbit.y + s * o->n, o->y + s % o->m * o->n, (size_t)o->n * sizeof *o->y);
@@ -168,7 +170,7 @@ static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
 
 /* The periodic motions that leave a Hopf point. */
 static int follow_cycle(Job *job, const Part *of, const BranchPoint *at) {
-  if (job->ndoubled == MOST_DOUBLINGS) return LAG_OK;
+  if (job->ndoubled == MOST_DOUBLINGS || job->steady.cols) return LAG_OK;
   Doubled *cycle = &job->doubled[job->ndoubled++];
   double *d = NULL;
   int rc = lag_hopf_orbit(&job->rest, at, &cycle->orbit, &cycle->like, &cycle->problem, &d);
@@ -199,6 +201,15 @@ static int follow_branches(Job *job) {
 
 /* ---- Beginning */
 
+/* Whether the motion to begin with lies in the range. */
+static int check_begin(Job *job, const char *kind) {
+  if (job->begin >= fmin(job->low, job->high) && job->begin <= fmax(job->low, job->high)) return 0;
+  return lag_app_error(&job->app->args,
+                       "the %s motion near the start has %s = %.6g, outside of %g..%g: start within: "
+                       "name=VALUE, or widen the range",
+                       kind, job->name, job->begin, job->low, job->high);
+}
+
 static int begin_rest(Job *job) {
   int rc = lag_rest_branch_open(&job->rest, job->app->sim, job->app->extras.algebra, job->name, job->begin, job->size);
   if (rc) return failed(job, rc, job->rest.flow.message);
@@ -209,6 +220,48 @@ static int begin_rest(Job *job) {
   rc = follow_first(job, u, NULL);
   free(u);
   return rc ? failed(job, rc, NULL) : 0;
+}
+
+/* Of steady motions over a parameter charges other than the energy keep their values, unless --hold names others; over
+ * a charge the others. */
+static int hold_for_steady(Job *job) {
+  SteadyBranch *s = &job->steady;
+  App *app = job->app;
+  const lag_charges *of = app->scene->model->charges;
+  int rc = lag_app_orbit_holds(app, &job->orbit), all = !app->args.hold && job->led_kind != ORBIT_STATE;
+  s->nheld = job->orbit.nheld;
+  memcpy(s->held, job->orbit.held, sizeof s->held);
+  for (int k = 1; of && k < of->n && all && s->nheld < ORBIT_MOST_HELD - 1; k++) {
+    int leads = job->led_kind == ORBIT_CHARGE && (job->led_of == k || job->led_of == 0);
+    if (of->of[k].flags & LAG_CONSERVED && !leads) s->held[s->nheld++] = (OrbitHold){.kind = ORBIT_CHARGE, .of = k};
+  }
+  s->led = job->led_kind < 0 ? -1 : s->nheld;
+  if (s->led >= 0) s->held[s->nheld++] = (OrbitHold){.kind = (OrbitHoldKind)job->led_kind, .of = job->led_of};
+  return rc;
+}
+
+static int begin_steady(Job *job) {
+  SteadyBranch *s = &job->steady;
+  App *app = job->app;
+  if (job->led_kind == ORBIT_PERIOD)
+    return lag_app_error(&app->args, "period: a steady motion has none; write a parameter, a charge, a coordinate or a "
+                                     "velocity: th'=1..8");
+  int rc = hold_for_steady(job);
+  if (rc) return rc;
+  s->name = job->name;
+  s->parameter = job->begin;
+  s->parameter_unit = job->size * (job->led_kind < 0 ? 1 : fabs(job->factor));
+  rc = lag_steady_branch_open(s, app->sim, app->extras.algebra);
+  if (rc) return failed(job, rc, s->flow.message);
+  double *u = malloc((size_t)s->cols * sizeof *u);
+  if (!u) return failed(job, LAG_ENOMEM, NULL);
+  lag_steady_branch_unknowns(s, u);
+  job->problem = s->problem;
+  job->begin = job->led_kind < 0 ? job->begin : (s->parameter - job->offset) / job->factor;
+  rc = check_begin(job, "steady");
+  rc = rc ? rc : follow_first(job, u, NULL) ? failed(job, LAG_ESINGULAR, NULL) : 0;
+  free(u);
+  return rc;
 }
 
 /* Conserved charges keep their values unless --hold names others, or one is the parameter. */
@@ -242,11 +295,7 @@ static int begin_periodic(Job *job) {
     o->led = o->nheld;
     o->held[o->nheld++] = (OrbitHold){.kind = (OrbitHoldKind)job->led_kind, .of = job->led_of};
     job->begin = (led_value(job) - job->offset) / job->factor;
-    if (job->begin < fmin(job->low, job->high) || job->begin > fmax(job->low, job->high))
-      return lag_app_error(&app->args,
-                           "the periodic motion near the start has %s = %.6g, outside of %g..%g: start within: "
-                           "name=VALUE, or widen the range",
-                           job->name, job->begin, job->low, job->high);
+    if ((rc = check_begin(job, "periodic")) != 0) return rc;
   } else o->led = -1;
   o->name = job->led_kind < 0 ? job->name : NULL;
   o->parameter = job->led_kind < 0 ? job->begin : led_value(job);
@@ -290,6 +339,7 @@ static int is_periodic(Job *job) {
 }
 
 static int run(Job *job) {
+  if (job->app->args.steady) return begin_steady(job);
   job->periodic = is_periodic(job);
   return job->periodic ? begin_periodic(job) : begin_rest(job);
 }
@@ -297,6 +347,7 @@ static int run(Job *job) {
 static void close_job(Job *job) {
   for (int k = 0; k < job->nparts; k++) lag_branch_free(&job->part[k].branch);
   lag_rest_branch_free(&job->rest);
+  lag_steady_branch_free(&job->steady);
   for (int k = 0; k < job->ndoubled; k++) {
     lag_orbit_free(&job->doubled[k].orbit);
     lag_sim_free(job->doubled[k].like);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/branch_problems.h"
+#include "analysis/steady_branch.h"
 #include "app/app.h"
 
 enum { MOST_BRANCHES = 24, MOST_DOUBLINGS = 4, POINTS = 400, LOOKS = 128 };
@@ -10,13 +11,14 @@ enum { MOST_BRANCHES = 24, MOST_DOUBLINGS = 4, POINTS = 400, LOOKS = 128 };
 typedef struct Part {
   Branch branch;
   const BranchProblem *problem;
-  PeriodicOrbit *orbit; /* NULL: states of rest */
+  PeriodicOrbit *orbit; /* NULL: states of rest, or steady motions */
   int number, from;     /* of the branch that it is a half of; of the one that it leaves, 0: none */
 } Part;
 
 /* Motions of twice the period of another one. */
 typedef struct Doubled {
   lag_sim *like;
+  StateMap closing;
   PeriodicOrbit orbit;
   BranchProblem problem;
 } Doubled;
@@ -27,6 +29,7 @@ typedef struct Job {
   const lag_var *unit;                           /* of a parameter of the model; NULL: of another quantity */
   double low, high, begin, size, offset, factor; /* range; first value; SI = factor x + offset */
   RestBranch rest;
+  SteadyBranch steady;
   PeriodicOrbit orbit;
   BranchProblem problem;
   Doubled doubled[MOST_DOUBLINGS];
@@ -36,6 +39,9 @@ typedef struct Job {
   Part part[MOST_BRANCHES];
   int nparts, nbranches;
 } Job;
+
+/* The solutions in words: states of rest, steady or periodic motions. */
+const char *lag_continue_solutions(const Job *job);
 
 /* Text or JSON: the points where a branch changes. */
 void lag_continue_put_text(FILE *f, const Job *job);

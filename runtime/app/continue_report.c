@@ -14,11 +14,15 @@ static const char *kind_word(BranchKind kind, int periodic) {
   return kind == BRANCH_COLLISION ? periodic ? "multipliers collide" : "frequencies collide" : words[kind];
 }
 
+const char *lag_continue_solutions(const Job *job) {
+  return job->periodic ? "periodic motions" : job->steady.cols ? "steady motions" : "states of rest";
+}
+
 /* The parameter at a point, in its declared unit. */
 static double parameter_at(const Job *job, const Part *part, const BranchPoint *at) {
   double x = at->u[part->problem->cols - 1];
-  return part->orbit && job->led_kind >= 0 ? (x * part->orbit->parameter_unit - job->offset) / job->factor
-                                           : x * job->size;
+  double unit = part->orbit ? part->orbit->parameter_unit : job->steady.parameter_unit;
+  return job->led_kind >= 0 ? (x * unit - job->offset) / job->factor : x * job->size;
 }
 
 static double period_at(const Part *part, const BranchPoint *at) {
@@ -32,6 +36,7 @@ static double period_at(const Part *part, const BranchPoint *at) {
 static double state_at(const Job *job, const Part *part, const BranchPoint *at, int i) {
   int nq = job->app->sim->pb.nq;
   if (part->orbit) return at->u[i] * part->orbit->unit[i];
+  if (job->steady.cols) return at->u[i] * job->steady.steady.unit[i];
   if (i >= nq && i < 2 * nq) return 0;
   int k = i < nq ? i : i - nq;
   return at->u[k] * job->rest.unit[k];
@@ -70,7 +75,7 @@ static void put_point(FILE *f, const Job *job, const Part *part, const BranchPoi
   if (part->orbit && job->led_kind != ORBIT_PERIOD) fprintf(f, ", period %.12g s", period_at(part, at));
   for (int i = 0, shown = 0; i < job->app->sim->pb.n && shown < 4; i++) {
     Column c = lag_state_column(job->app->sim, i);
-    if (!part->orbit && i >= job->app->sim->pb.nq && i < 2 * job->app->sim->pb.nq) continue;
+    if (!part->orbit && !job->steady.cols && i >= job->app->sim->pb.nq && i < 2 * job->app->sim->pb.nq) continue;
     fprintf(f, ", %s %.8g", c.name, lag_sim_declared(job->app->sim, i, state_at(job, part, at, i)));
     shown++;
   }
@@ -89,7 +94,7 @@ static const char *const ends[] = {[BRANCH_AT_RANGE] = "end of the range",
 void lag_continue_put_text(FILE *f, const Job *job) {
   const App *app = job->app;
   fprintf(f, "%s: scene %s, %s over %s from %g to %g%s%s\n", app->scene->model->name, app->scene->name,
-          job->periodic ? "periodic motions" : "states of rest", job->name, job->low, job->high,
+          lag_continue_solutions(job), job->name, job->low, job->high,
           job->unit && job->unit->unit[0] ? " " : "", job->unit ? job->unit->unit : "");
   for (int k = 0; k < job->nparts; k++) {
     const Part *part = &job->part[k];
@@ -131,7 +136,7 @@ void lag_continue_put_json(FILE *f, const Job *job) {
   Json j = {.f = f};
   lag_json_begin(&j, NULL, '{');
   lag_report_json_head(job->app, &j);
-  lag_json_string(&j, "of", job->periodic ? "periodic motions" : "states of rest");
+  lag_json_string(&j, "of", lag_continue_solutions(job));
   lag_json_string(&j, "over", job->name);
   lag_json_begin(&j, "branches", '[');
   for (int k = 0; k < job->nparts; k++) {
@@ -260,7 +265,7 @@ int lag_continue_draw(Job *job) {
     memcpy(app->table.cols[k].unit, first.unit, sizeof first.unit);
   }
   snprintf(title, sizeof title, "%s: %s, %s over %s", app->scene->model->name, app->scene->name,
-           job->periodic ? "periodic motions" : "states of rest", job->name);
+           lag_continue_solutions(job), job->name);
   if (lag_app_choose_curves(app)) return EXIT_USAGE;
   snprintf(app->drawn_ys, sizeof app->drawn_ys, "%s", name);
   app->drawn.yname = app->drawn_ys;
