@@ -36,11 +36,23 @@ static size_t saved_arrays(lag_sim *s, const lag_method *method, double *x) {
   return length;
 }
 
+static void set_problem(lag_sim *s, const lag_method *method, const double *opt) {
+  lag_problem *pb = &s->pb;
+  pb->p = s->p;
+  pb->hold = s->hold;
+  pb->kept = s->kept;
+  pb->begin = s->begin;
+  for (int i = 0; i < pb->n + 2; i++) pb->size[i] = 1;
+  pb->kick = HUGE_VAL;
+  pb->opt = opt;
+  pb->variant = method->variant;
+}
+
 /* Allocates and lays out the blocks for this method, keeping only the settings of the caller (p, hold). opt: option
  * values, which must live on. */
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   const lag_model *m = s->scene->model;
-  size_t np = (size_t)(m->np + m->nderived), nu = (size_t)(m->nu + m->nmodes), n = (size_t)s->pb.n;
+  size_t np = (size_t)(m->np + m->nderived), nu = (size_t)(m->nu + m->nmodes);
   size_t pushes = method->flags & LAG_METHOD_IMPULSES && m->ncontacts ? lag_moreau_contacts_size(m) : 0;
   size_t fixed = RUN_DOUBLES + saved_arrays(s, method, NULL);
   double *contact_room = calloc(pushes + 1, sizeof *contact_room);
@@ -72,14 +84,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   s->nwork = work;
   free(s->pb.contact_room);
   s->pb.contact_room = contact_room;
-  s->pb.p = s->p;
-  s->pb.hold = s->hold;
-  s->pb.kept = s->kept;
-  s->pb.begin = s->begin;
-  for (size_t i = 0; i < n + 2; i++) s->pb.size[i] = 1;
-  s->pb.kick = HUGE_VAL;
-  s->pb.opt = opt;
-  s->pb.variant = method->variant;
+  set_problem(s, method, opt);
   s->charges = (Charge *)(void *)s->charge_block;
   s->method = method;
   lag_reset_rate_history(s);

@@ -199,44 +199,61 @@ void header_callbacks_declare(const Header *h) {
   }
 }
 
+/* Patterns of Jacobians as text: of rates by state, inputs, parameters and time, and of IDA's residual. */
+typedef struct {
+  const char *jac, *residual, *inputs, *params, *time;
+} Patterns;
+
+static Patterns patterns(const Header *h) {
+  const ProgramSet *u = h->u;
+  Pattern *time = pattern_new(h, 1);
+  if (!has(h, PART_JAC | PART_LINEAR)) return (Patterns){"", "", "", "", ""};
+  /* the model is small enough for dense matrices */
+  for (uint32_t i = u->q.n; i < ny(h) && !is_timeless(h); i++) time[i] = 1;
+  return (Patterns){
+      .jac = compressed(h, jac_pattern(h), ny(h)), .residual = compressed(h, residual_pattern(h), ny(h)),
+      .inputs = compressed(h, rates_pattern(h, u->by_inputs_dr.at, u->by_inputs_dr.n, u->u.n), u->u.n),
+      .params = compressed(h, rates_pattern(h, u->by_params_dr.at, u->by_params_dr.n, u->p.n), u->p.n),
+      .time = compressed(h, time, 1)};
+}
+
+static const char *directions_of(const ProgramSet *u) {
+  StrBuf to = strbuf(u->arena);
+  for (uint32_t i = 0; i < u->events.n; i++) sb_printf(&to, "%s%d", i ? ", " : "", u->events.at[i].direction);
+  return sb_text(&to);
+}
+
+static const char *by_time_of(const Header *h) {
+  return arena_printf(h->a, "status == LAG_OK ? lag_by_time(t, y, &d->p%s, dfdt) : status",
+                      h->u->u.n ? ", d->u" : "");
+}
+
 void header_callbacks_define(const Header *h) {
   const ProgramSet *u = h->u;
-  StrBuf to = strbuf(h->a);
-  for (uint32_t i = 0; i < u->events.n; i++) sb_printf(&to, "%s%d", i ? ", " : "", u->events.at[i].direction);
   const char *args = header_state_args(h, 0, ""), *ok = "if (status == LAG_OK) status =";
   const char *data_u = u->u.n ? ", ((lag_data *)data)->u" : "", *mass = arena_printf(h->a, "%u", u->linear_mass.n),
              *dr = arena_printf(h->a, "%u", u->linear_dr.n);
-  const char *jac_at = "", *residual_at = "", *inputs_at = "", *params_at = "", *time_at = "", *dfdt = "status";
   int timeless = is_timeless(h);
   if (!has(h, WITH_DATA | PART_CASADI)) return;
-  if (!timeless || u->u.n)
-    dfdt = arena_printf(h->a, "status == LAG_OK ? lag_by_time(t, y, &d->p%s, dfdt) : status", u->u.n ? ", d->u" : "");
-  if (has(h, PART_JAC | PART_LINEAR)) { /* the model is small enough for dense matrices */
-    Pattern *time = pattern_new(h, 1);
-    for (uint32_t i = u->q.n; i < ny(h) && !timeless; i++) time[i] = 1;
-    jac_at = compressed(h, jac_pattern(h), ny(h)), residual_at = compressed(h, residual_pattern(h), ny(h)),
-    time_at = compressed(h, time, 1);
-    inputs_at = compressed(h, rates_pattern(h, u->by_inputs_dr.at, u->by_inputs_dr.n, u->u.n), u->u.n);
-    params_at = compressed(h, rates_pattern(h, u->by_params_dr.at, u->by_params_dr.n, u->p.n), u->p.n);
-  }
+  const Patterns at = patterns(h);
   for (int i = 0; i < CALLBACKS; i++) {
     int jac = callbacks[i].needs & LINEAR;
     const HeaderWord w[] = {
         {"LIBRARY", callbacks[i].name},
         {"FUNCTION", callbacks[i].name},
-        {"DIRECTIONS", sb_text(&to)},
+        {"DIRECTIONS", directions_of(u)},
         {"DATA_U", data_u},
         {"TYPED_U", u->u.n ? ", const LAG_REAL *u" : ""},
         {"WITH_U", u->u.n ? ", u" : ""},
         {"W_U", u->u.n ? ", w + LAG_NY" : ""},
         {"STEP", header_constant(h, 0x1p-24 * fabs(h->scene->t1 - h->scene->t0))},
-        {"BY_TIME", dfdt},
+        {"BY_TIME", timeless && !u->u.n ? "status" : by_time_of(h)},
         {"JACOBIAN", has(h, PART_JAC) ? "lag_gsl_jac" : "0"},
-        {"JAC_AT", jac_at},
-        {"RESIDUAL_AT", residual_at},
-        {"TIME_AT", time_at},
-        {"INPUTS_AT", inputs_at},
-        {"PARAMS_AT", params_at},
+        {"JAC_AT", at.jac},
+        {"RESIDUAL_AT", at.residual},
+        {"TIME_AT", at.time},
+        {"INPUTS_AT", at.inputs},
+        {"PARAMS_AT", at.params},
         {"MASS_AT", header_positions(h, u->linear_mass.at, u->linear_mass.n)},
         {"NMASS", mass},
         {"NENTRIES", u->linear_dr.n ? dr : "1"},
