@@ -416,7 +416,7 @@ static void list_pressed(const ContactSet *w, Touches *to) {
     of->pressed = &to->pressed[k][0][0];
     for (int c = 0; c < of->parts; c++) {
       const double *from = lag_guide_pressed(w, of->guide - 1, c);
-      to->pressed[k][c][0] = from[0];
+      of->pressed[c * (1 + to->rows)] = from[0];
       for (int r = 0; r < to->rows; r++)
         of->pressed[c * (1 + to->rows) + 1 + r] = to->row[r] < 0 ? 0 : from[1 + to->row[r]];
     }
