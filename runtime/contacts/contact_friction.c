@@ -386,7 +386,7 @@ static int list_touches(const ContactSet *w, int event, Touches *to) {
   *to = (Touches){0};
   for (int a = 0; a < w->rows; a++) {
     if (a < w->n ? !w->active[a] : a < guides) continue;
-    if (to->n == LAG_MOST_TOUCHES) return 0;
+    if (to->n == (a < guides ? LAG_TRIED_TOUCHES : LAG_MOST_TOUCHES)) return 0;
     int guide = a < guides ? 0 : 1 + a - guides;
     to->of[to->n] = (lag_touch){.contact = a, .tangent = -1, .guide = guide};
     to->row[to->n++] = guide ? -1 : a;
@@ -432,7 +432,7 @@ int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration) {
     return lag_fail(s, LAG_EMODEL,
                     "at t = %.9g s more than %d contacts touch at once, some of them with friction, which only moreau "
                     "follows: take --method \"moreau(step=1e-3)\"",
-                    s->run->t, LAG_MOST_TOUCHES);
+                    s->run->t, w->n > LAG_TRIED_TOUCHES ? LAG_TRIED_TOUCHES : LAG_MOST_TOUCHES);
   int rc = find_free_accelerations(w);
   rc = rc ? rc : lag_guides_find_pressed(w);
   list_pressed(w, &to);
