@@ -212,4 +212,15 @@ check "a negative friction" refuses 2 'the model declares mu >= 0' rail go mu=-0
 no_header() { ! "$LAGC" header "$TMP/beside.lag" -o "$TMP/h" 2>"$TMP/log" && grep -q 'contacts or dry friction, not both' "$TMP/log" || { cat "$TMP/log"; return 1; }; }
 check "headers with guides beside contacts" no_header
 
+# ---- the same on a curve: held from t = 0 on, it slips at 2 mu g/F, and sticks again (SciPy: 0.4119069855300544); moreau meets the friction of slipping exactly while it holds
+for kind in 'guide path: x^2 + y^2 = R^2, friction = mu, static = 2*mu' 'constraint path: hypot(x, y) = R
+let s = R*atan2(x, -y)
+friction path on s: mu*abs(lambda(path)), static = 2*mu*abs(lambda(path))'; do
+  printf "model curve\ncoord x [m], y [m]\nparam m = 1 [kg] > 0, R = 1 [m] > 0, g = 9.81 [m/s^2], mu = 0.2 >= 0\nkinetic = m/2*(x'^2 + y'^2)\npotential = m*g*y\nforce x = 0.8 [N/s]*t\n%s\nscene go { start y = -R; span 8 [s]; output x every 8 [s] }\n" "$kind" | sed 's/friction path on/friction rub on/' >"$TMP/curve.lag"
+  one_of 2 || continue
+  check "${kind%% *} holds a body on a curve, then not" run curve go
+  check "and again" near "$(final x)" 0.4119069855300544 1e-9
+  check "by moreau" run curve go --method 'moreau(step=1e-3)'
+  check "to half a step" near "$(final x)" 0.4119069855300544 1e-5
+done
 tap_end
