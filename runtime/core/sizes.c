@@ -275,6 +275,8 @@ static double coordinate_sizes(lag_sim *s, const double *f, double time) {
       Kind k = kind_of(s, f, bend, i);
       double v =
           turn < 2 ? lag_above_rounding(fmax(k.v, k.a * time), k.bend * time) : fmax(k.v, of_v[i] * time / before);
+      const int rests = !(k.v > 0) && !(k.a > 0);
+      v = rests && v * time < 1e-12 * reach(k, time) ? 0 : v; /* rounding of forces that hold a displaced body, too */
       for (int j = nq - 1; j >= i; j--) {
         if (j > i && strcmp(m->q[j].unit, m->q[i].unit) != 0) continue;
         size[j] = reach(k, time);

@@ -103,7 +103,7 @@ static inline int lag_joint_turn(LAG_MODEL, lag_joint_friction *w, const lag_kic
   }
   if (!lag_is_number(to[0])) return LAG_FRICTION_FAILS(s->end, k, "has no finite values");
   const LAG_REAL part = LAG_FN(fabs)(to[0]);
-  const int at_limit = !(part < one || part > one);
+  const int at_limit = !(part < one || part > one || w->bound[k] > one);
   for (int i = w->nq; i < w->states; i++) s->y1[i] += s->h*(to[0] - was)*d[i];
   LAG_HOLD(w, k, to[0]);
   w->sticks[k] = LAG_SELECT(slip[0] < zero || slip[0] > zero || at_limit, zero, one);
