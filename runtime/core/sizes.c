@@ -358,20 +358,21 @@ static void raise_open(lag_sim *s, double *f) {
   free(noise);
 }
 
-/* Accelerations of a body that friction holds are rounding: raises f[n], rates at the start, to those without it. */
+/* Accelerations of a body that friction or a contact holds are rounding: raises f[n], rates at the start, to those
+ * without it. */
 static void raise_held(lag_sim *s, double *f) {
   const lag_model *m = s->scene->model;
   for (int k = 0; k < m->nmodes; k++)
     if (friction_rates(s, k, s->run->t, s->now)) raise_rates(s, s->ya, NULL, f);
-  int sticks = 0;
+  int holds = 0;
   for (int i = 0; i < m->ncontacts && !s->pb.contacts; i++) {
     double *held = &s->hold[m->contacts[i].input];
     s->contact_was[i] = *held;
-    if (!m->contacts[i].is_tangent || !(*held > 0.5)) continue;
+    if (!(*held > 0.5)) continue;
     *held = NAN;
-    sticks = 1;
+    holds = 1;
   }
-  if (sticks) raise_open(s, f);
+  if (holds) raise_open(s, f);
   for (int i = 0; i < m->ncontacts && !s->pb.contacts; i++) s->hold[m->contacts[i].input] = s->contact_was[i];
 }
 

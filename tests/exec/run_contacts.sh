@@ -182,4 +182,18 @@ check "leaves as in a run" near "$(state 1)" "$(cell 1 2)" 1e-3
 check "with its speed" near "$(state 2)" "$(cell 1 3)" 1e-2
 check "in a corner" example corner s
 check "it comes to rest, and time goes on" grep -q '^-*0.0000000.. -*0.000000000 -*0.0000000.. -*0.000000000 $' "$TMP/state"
+
+# A block that rests on one beside it, which a constraint holds: their accelerations are differences of forces, which are no size of the motion.
+model held <<'EOF'
+model held
+coord x [m], n [m]
+param m = 1 [kg] > 0
+kinetic = m/2*(x'^2 + n'^2)
+force x = if(t > 1 [s], 15 [N], 0) - 10 [N]
+constraint frame: n' = 0
+contact tooth: x >= n, restitution = 0
+scene lifted { start x = 4.2 [m], n = 4.2 [m]; span 4 [s]; output x every 1 [s] }
+EOF
+check "a block is lifted off one that a constraint holds" run held lifted
+check "it rises by 5 (t - 1)^2/2" near "$(cell 4 2)" 26.7 1e-8 # ten times the tolerance
 tap_end
