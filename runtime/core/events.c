@@ -162,7 +162,8 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
     snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
     rc = lag_settle_constraints(s, s->yb, of && !moved ? NULL : who, k, ends, moved + elsewhere, rounding_of_events(s));
   }
-  if (rc == 0 && contact && rest < HUGE_VAL && lag_contact_is_closed(s, contact))
+  /* a longer rest is that of strokes without restitution, after each of which the contact opens again */
+  if (rc == 0 && contact && rest < 1e-3 * fabs(r->t) && lag_contact_is_closed(s, contact))
     s->skipped[k] = fmax(s->skipped[k], rest);
   if (rc == 0 && !kick) rc = watch_restarts(s, k, rest);
   if (rc) return rc;

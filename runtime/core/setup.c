@@ -178,7 +178,7 @@ lag_sim *lag_sim_new(const lag_scene *scene) {
   return s;
 }
 
-/* The values of `from`: parameters, inputs, start. */
+/* The values of `from`: parameters, inputs, start. Its contacts are those of its present state: all are open here. */
 static void copy_values(const lag_sim *from, lag_sim *s) {
   const lag_model *m = s->scene->model;
   memcpy(s->p, from->p, (size_t)m->np * sizeof *s->p);
@@ -187,6 +187,10 @@ static void copy_values(const lag_sim *from, lag_sim *s) {
   memcpy(s->start, from->start, (size_t)s->pb.n * sizeof *s->start);
   memcpy(s->hold, from->hold, (size_t)m->nu * sizeof *s->hold);
   memcpy(s->signal, from->signal, (size_t)m->nu * sizeof *s->signal);
+  for (const lag_contact *c = m->contacts; c < m->contacts + m->ncontacts; c++) {
+    s->hold[c->input] = NAN;
+    if (c->is_tangent) s->hold[c->force] = NAN;
+  }
 }
 
 lag_sim *lag_sim_like(const lag_sim *from) {
