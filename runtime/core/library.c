@@ -89,13 +89,13 @@ int lag_sim_batch(const lag_sim *like, int count, const double *y0, const double
                   double *y, int *status) {
   if (!like || count < 0 || rows < 0 || !t || !y || !status) return LAG_EINVAL;
   size_t n = (size_t)like->pb.n, np = (size_t)like->scene->model->np, each = (size_t)rows * n;
+  lag_sim *s = NULL;
   for (size_t k = 0; k < (size_t)count; k++) {
-    lag_sim *s = lag_sim_like(like);
-    if (!s) return LAG_ENOMEM;
+    if (!(s = lag_sim_renew(s, like))) return LAG_ENOMEM;
     lag_sim_on_step(s, like->on_step, like->on_step_context);
     for (size_t i = 0; i < each; i++) y[k * each + i] = NAN;
     status[k] = motion(s, y0 ? y0 + k * n : NULL, p ? p + k * np : NULL, rows, t, y + k * each);
-    lag_sim_free(s);
   }
+  lag_sim_free(s);
   return LAG_OK;
 }

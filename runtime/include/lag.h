@@ -442,6 +442,9 @@ void lag_sim_free(lag_sim *sim);
 /* A new simulation of the same scene with the same settings: values, inputs, method, tolerance; `sim` may have
  * begun. NULL: no memory. */
 lag_sim *lag_sim_like(const lag_sim *sim);
+/* The same in the memory of `used`, a simulation that this function made like the same `sim`, which has not changed
+ * since; another one or NULL: it is freed, and a new one is made. NULL: no memory. */
+lag_sim *lag_sim_renew(lag_sim *used, const lag_sim *sim);
 
 /* The settings below are made before the first advance; later they return LAG_EINVAL. After an error the
  * simulation is unchanged and lag_sim_message() says what to write instead. */

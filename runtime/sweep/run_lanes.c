@@ -135,7 +135,6 @@ static void note_end(LaneWorker *w, Lane *l, int rc) {
 
 /* Makes the whole run again, alone. */
 static void run_alone(LaneWorker *w, Lane *l) {
-  lag_sim_free(l->run.sim);
   note_end(w, l, lag_sweep_run_whole(w->s, &l->run, l->i, w->value, NULL, 0));
 }
 
