@@ -228,7 +228,7 @@ static const CommandRow commands[] = {
      "--accuracy X searches for the smallest set of the scene's effects whose result differs from the scene's by at "
      "most X: with all other effects left out together, in "
      "scenes of up to ten effects. Prints the `use` line of the set that it finds."},
-    {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--shared] [--method NAME] [--with linear]",
+    {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--shared [--lanes]] [--method NAME] [--with linear]",
      "make a simulator, or a shared library",
      "Compiles the model to a simulator with all its scenes; it has the options of `lagc run`, which `SIMULATOR "
      "--help` "
@@ -236,8 +236,8 @@ static const CommandRow commands[] = {
      "With --bytes it writes what `lag-run`, which stands beside liblag.a, evaluates: LAG_PROGRAM=FILE lag-run. "
      "With --shared it compiles a shared library, which exports the functions of lag.h by the same names for every "
      "model: simulations, rows, events, charges, tangents, "
-     "batches. It links no GSL. Without -o it is kept in the cache, and its path is printed. lagc.py uses it from "
-     "Python."},
+     "batches, which with --lanes compute several motions at once. It links no GSL. Without -o it is kept in the "
+     "cache, and its path is printed. lagc.py uses it from Python."},
     {CMD_HEADER, "header", "embedding", "MODEL [SCENE] [--with PART,...] [--for LIBRARY,...] -o FILE.h",
      "write one C header to embed",
      "Writes one self-contained C99/C++ header to embed: parameters as a struct, accelerations, energy, an RK4 step. "

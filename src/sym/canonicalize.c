@@ -30,11 +30,21 @@ static Expr make_pairs(ExprGraph *g, ExprOp op, const Pairs *p) {
     args[2 * i + 1] = expr_num(g, p->at[i].number);
   }
   Expr e = expr_make(g, op, args, 2 * p->n);
-  if (args != room) arena_release(g->arena, args, 2 * p->n * sizeof *args);
+  if (args != room) arena_recycle(g->arena, args, 2 * p->n * sizeof *args);
   return e;
 }
 
 /* --- sums --- */
+
+/* Room for n more pairs. */
+static void reserve_pairs(ExprGraph *g, Pairs *p, uint32_t n) {
+  Pairs old = *p;
+  if (old.cap - old.n >= n) return;
+  while (p->cap - p->n < n) p->cap = p->cap ? 2 * p->cap : ROOM;
+  p->at = ARENA_ARRAY(g->arena, Pair, p->cap);
+  memcpy(p->at, old.at, old.n * sizeof *old.at);
+  if (old.cap > ROOM) arena_recycle(g->arena, old.at, old.cap * sizeof *old.at);
+}
 
 static void push_terms(ExprGraph *g, Pairs *p, Expr e, Num c) {
   if (expr_is_num(g, e)) {
@@ -43,6 +53,7 @@ static void push_terms(ExprGraph *g, Pairs *p, Expr e, Num c) {
     return;
   }
   uint32_t n = expr_pairs(g, e, EX_SUM);
+  reserve_pairs(g, p, n + 1);
   for (uint32_t i = 0; i < n; i++) {
     Num k;
     Expr t = expr_pair(g, e, EX_SUM, i, &k);
@@ -139,7 +150,7 @@ static Expr collected_sum(ExprGraph *g, Pairs *p) {
 /* The sum of the pairs, which are given up. */
 static Expr finish_sum(ExprGraph *g, Pairs *p) {
   Expr sum = collected_sum(g, p);
-  if (p->cap > ROOM) arena_release(g->arena, p->at, p->cap * sizeof *p->at);
+  if (p->cap > ROOM) arena_recycle(g->arena, p->at, p->cap * sizeof *p->at);
   return sum;
 }
 

@@ -287,10 +287,7 @@ static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, 
     }
     Expr sum = add_terms(g, &terms);
     if (definition) {
-      StrBuf b = strbuf(g->arena);
-      sb_printf(&b, "%s%s", expr_def_name(g, e), suffix);
-      Name name = intern(g->names, sb_text(&b));
-      sum = expr_def_unique(g, name, sum);
+      sum = expr_def_unique(g, expr_name_with_suffix(g, expr_def_name(g, e), suffix), sum);
       if (known) expr_map_set(known, e, sum);
     }
     expr_map_set(dot, e, sum);
@@ -299,6 +296,10 @@ static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, 
     Expr d = roots[i] ? expr_map_get(dot, roots[i]) : 0;
     out[i] = d ? d : g->zero;
   }
+  expr_list_free(g, l);
+  expr_map_free(&rates);
+  if (terms.cap) arena_recycle(g->arena, terms.at, terms.cap * sizeof *terms.at);
+  arena_recycle(g->arena, roots, (n + 1) * sizeof *roots);
 }
 
 void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
@@ -308,9 +309,8 @@ void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed,
 
 Expr expr_diff(ExprGraph *g, Expr e, SymId sym) {
   Expr out;
-  StrBuf b = strbuf(g->arena);
-  sb_printf(&b, "_%s", expr_symbol(g, sym)->name);
-  sweep_forward(g, &e, 1, (Seeds){sym, 1, &g->one}, sb_text(&b), NULL, &out);
+  Name suffix = expr_name_with_suffix(g, "_", expr_symbol(g, sym)->name);
+  sweep_forward(g, &e, 1, (Seeds){sym, 1, &g->one}, suffix, NULL, &out);
   return out;
 }
 
@@ -391,6 +391,8 @@ void expr_gradient(ExprGraph *g, Expr e, const SymId *syms, uint32_t n, Expr *ou
   ExprList l;
   Adjoints a = sweep(g, e, &w, &l);
   for (uint32_t i = 0; i < n; i++) out[i] = adjoint_of(&a, expr_symbol(g, syms[i])->node);
+  expr_list_free(g, l);
+  expr_map_free(&targets);
 }
 
 static int by_index(const void *a, const void *b) {
@@ -408,6 +410,7 @@ ExprPartials expr_gradient_sparse(ExprGraph *g, Expr e, SymKind kind, uint32_t b
     Expr d = adjoint_of(&a, l.at[i]);
     if (d != g->zero) vec_push(g->arena, &found, ((ExprPartial){expr_sym_of(g, l.at[i])->index, d}));
   }
+  expr_list_free(g, l);
   if (found.n) qsort(found.at, found.n, sizeof *found.at, by_index);
   return (ExprPartials){found.at, found.n};
 }
