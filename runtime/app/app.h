@@ -25,7 +25,7 @@ typedef struct Args {
   /* for --sweep */
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram;
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
-  const char *period, *guess, *hold, *relative, *segments; /* for --orbit */
+  const char *period, *guess, *hold, *relative, *segments; /* for --orbit; --fit, too */
   const char *most; /* for --continue */
   int orbit, continues, branches;
   int json, sketch, quiet, help, trace, no_rods, modes, linearize, equilibrium, gradient, steady, tangent,

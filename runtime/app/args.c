@@ -200,7 +200,8 @@ static int check_analysis(const Args *a) {
             ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
         : what == MODES ? "--modes, which takes name=value, --steady and --json"
         : what == LINEARIZE ? "--linearize, which takes name=value, --equilibrium, --steady, -o and --json"
-        : what == FIT ? "--fit, which takes name=value, --data, --sigma, --prior, --loss, a method, --svg and --json"
+        : what == FIT ? "--fit, which takes name=value, --data, --sigma, --prior, --loss, --segments, a method, --svg "
+                        "and --json"
         : what == CONTINUE
             ? "--continue, which takes NAME=A..B, name=value, the options of --orbit, --most, --branches, -o, "
               "--svg and --json"

@@ -10,7 +10,7 @@
 
 #include "core/core.h"
 
-enum { MOST_STEPS = 200, MOST_FILES = 100 };
+enum { MOST_STEPS = 200, MOST_FILES = 100, MOST_PARTS = 100000 };
 
 /* A new simulation with the settings of the command line. */
 static lag_sim *fresh(void *run) {
@@ -86,7 +86,7 @@ static int separate_starts(FitRun *r) {
   if (!all) return lag_app_error(&r->app->args, "out of memory");
   for (int j = 0; j < f->n; j++) {
     size_t length = strlen(f->target[j].label);
-    int is_start = length > 3 && strcmp(f->target[j].label + length - 3, "(0)") == 0;
+    int is_start = f->target[j].is_start;
     for (int k = 0; k < (is_start ? r->nfiles : 1); k++) {
       FitTarget *t = &all[n++];
       *t = f->target[j];
@@ -125,7 +125,8 @@ static int take_targets(FitRun *r) {
     const lag_var *var;
     int i;
     t->factor = lag_sim_sensitivity_info(sim, j, t->label, sizeof t->label, t->unit, sizeof t->unit);
-    t->sign = lag_find_name(sim->scene->model, t->name, &i, &var) == LAG_IS_P ? var->sign : 0;
+    t->is_start = lag_find_name(sim->scene->model, t->name, &i, &var) != LAG_IS_P;
+    t->sign = t->is_start ? 0 : var->sign;
     t->begin = lag_declared(var, lag_sim_sensitivity_value(sim, j));
     t->scale = t->begin != 0.0 ? fabs(t->begin) : 1;
   }
@@ -336,6 +337,9 @@ static int prepare(FitRun *r) {
   r->fit.fresh = fresh;
   r->fit.context = r;
   r->fit.most = MOST_STEPS;
+  long long parts = 0;
+  if (a->segments && (rc = lag_args_count(a, "--segments", a->segments, "--segments 20", &parts)) != 0) return rc;
+  r->fit.parts = (int)(parts > MOST_PARTS ? MOST_PARTS : parts);
   r->fit.huber = a->loss && strcmp(a->loss, "huber") == 0;
   return take_targets(r);
 }
