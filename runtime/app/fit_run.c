@@ -102,7 +102,7 @@ static int separate_starts(FitRun *r) {
   return 0;
 }
 
-static int take_targets(FitRun *r) {
+int lag_fit_take_targets(FitRun *r) {
   const Args *a = &r->app->args;
   Fit *f = &r->fit;
   r->names = malloc(strlen(a->fit) + 1);
@@ -160,7 +160,7 @@ static int errors_of(const DataFile *d, const char *label) {
 }
 
 /* Error of column c by --sigma X or --sigma NAME=X, in the column's unit; 0: not given. */
-static int take_sigma(FitRun *r, FitColumn *c) {
+int lag_fit_take_sigma(FitRun *r, FitColumn *c) {
   const Args *a = &r->app->args;
   size_t n = strcspn(c->label, " ");
   for (int i = 0; i < a->nsigmas; i++) {
@@ -192,11 +192,11 @@ static int copy_column(FitRun *r, int c, int of) {
       return lag_app_error(&r->app->args, "%s:%lld: column %s: an error is positive, or its value is missing, too",
                            r->file[of], d->line[i], d->file.names[errors]);
   }
-  return take_sigma(r, &f->column[c]);
+  return lag_fit_take_sigma(r, &f->column[c]);
 }
 
 /* Whether --columns names the column, or is not given. */
-static int is_asked(const Args *a, const char *label) {
+int lag_fit_is_asked(const Args *a, const char *label) {
   const char *list = a->columns, *unit = strstr(label, " [");
   size_t length = unit ? (size_t)(unit - label) : strlen(label);
   if (!list) return 1;
@@ -215,7 +215,7 @@ static int take_columns(FitRun *r) {
   f->nrows = r->first[r->nfiles];
   f->column = calloc((size_t)d->file.ncols, sizeof *f->column);
   for (int k = 1; k < d->file.ncols && f->column; k++) {
-    int output = is_asked(a, d->file.names[k]) ? output_named(r, d->file.names[k]) : -1;
+    int output = lag_fit_is_asked(a, d->file.names[k]) ? output_named(r, d->file.names[k]) : -1;
     if (output >= 0) f->column[f->ncolumns++] = (FitColumn){.label = d->file.names[k], .output = output};
   }
   if (f->ncolumns == 0)
@@ -341,7 +341,7 @@ static int prepare(FitRun *r) {
   if (a->segments && (rc = lag_args_count(a, "--segments", a->segments, "--segments 20", &parts)) != 0) return rc;
   r->fit.parts = (int)(parts > MOST_PARTS ? MOST_PARTS : parts);
   r->fit.huber = a->loss && strcmp(a->loss, "huber") == 0;
-  return take_targets(r);
+  return lag_fit_take_targets(r);
 }
 
 int lag_fit_run(FitRun *r) {
