@@ -160,7 +160,10 @@ int lag_sim_advance(lag_sim *s, double t) {
   int rc = begin_or_check(s, t);
 
   while (rc == 0) {
-    if (r->have_step != 0.0 && (r->limit - t) * r->dir >= 0) return move_to(s, t);
+    if (r->have_step != 0.0 && (r->limit - t) * r->dir >= 0) {
+      rc = move_to(s, t);
+      return rc || !s->record ? rc : lag_record_pause(s);
+    }
     if (r->have_step == 0.0 && r->t == t) return LAG_OK;
     rc = continue_run(s, t);
   }
