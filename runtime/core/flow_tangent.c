@@ -166,7 +166,8 @@ int lag_tangent_pass(lag_sim *s) {
     s->tangent_at_event = 0;
     return LAG_OK;
   }
-  return advance_tangent(s, s->run->t, s->tangent);
+  int rc = advance_tangent(s, s->run->t, s->tangent);
+  return rc || !s->record ? rc : lag_record_cut(s);
 }
 
 /* Whether event k only touches zero: its rate there is negligible relative to its values at the ends of the step. */

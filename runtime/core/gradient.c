@@ -1,5 +1,6 @@
 /* Reverse mode of a run: the steps and jumps of its tangent, recorded, and the sweep back over them. Enters: a run with
- * a record; leaves: gradients by starts and parameters. Holds: where a tangent would be multiplied by the derivative of
+ * a record; leaves: gradients by starts and parameters. Holds: memory is bounded, since earlier units of steps are
+ * forgotten and repeated from marks; where a tangent would be multiplied by the derivative of
  * a step the record has the step, where by a matrix that matrix (flow_tangent.c decides both), so the
  * gradient is the transpose of sensitivities, up to rounding. */
 #include <math.h>
@@ -17,18 +18,41 @@ typedef struct Matrix {
   double t, *S;
 } Matrix;
 
-/* Steps: each [t0, dt, y0[n], modes[nmodes]]. */
+/* The run at the begin of a unit. */
+typedef struct Mark {
+  int unit;
+  double *x;
+} Mark;
+
+/* A unit: as many steps as the record has room for. */
+typedef struct Unit {
+  double steps, t; /* of the run before it */
+} Unit;
+
+enum { MOST_MARKS = 64 };
+
+/* Steps of the last unit: each [t0, dt, y0[n], modes[nmodes]]. */
 struct lag_record {
   size_t nsteps, step_room, nmatrices, matrix_room;
   int stride;
   double *step;
   Matrix *matrix;
+  size_t room, used; /* bytes of a unit */
+  int silent, spent; /* 1: the run is repeated up to a unit; units have been repeated */
+  int nunits, unit_room, nmarks, marks_every;
+  Unit *unit;
+  Mark mark[MOST_MARKS];
 };
+
+static void clear(struct lag_record *r) {
+  for (size_t i = 0; i < r->nmatrices; i++) free(r->matrix[i].S);
+  r->nmatrices = r->nsteps = r->used = 0;
+}
 
 void lag_record_free(lag_sim *s) {
   struct lag_record *r = s->record;
-  for (size_t i = 0; r && i < r->nmatrices; i++) free(r->matrix[i].S);
-  if (r) free(r->matrix), free(r->step);
+  if (r) clear(r), free(r->matrix), free(r->step), free(r->unit);
+  for (int i = 0; r && i < r->nmarks; i++) free(r->mark[i].x);
   free(r);
   s->record = NULL;
 }
@@ -48,7 +72,53 @@ static int needs_matrix(const lag_sim *s) {
          s->method->adjoint_size(&s->pb) == 0;
 }
 
+/* A mark of the present unit. */
+static int put_mark(lag_sim *s) {
+  struct lag_record *r = s->record;
+  double *x = malloc((s->nsaved + 1) * sizeof *x);
+  if (!x) return lag_fail(s, LAG_ENOMEM, "out of memory");
+  lag_put_down(s, x);
+  r->mark[r->nmarks++] = (Mark){r->nunits - 1, x};
+  return LAG_OK;
+}
+
+/* Every other mark goes where there are as many as there may be. */
+static void thin_marks(struct lag_record *r) {
+  int kept = 0;
+  r->marks_every *= 2;
+  for (int i = 0; i < r->nmarks; i++) {
+    if (r->mark[i].unit % r->marks_every == 0) r->mark[kept++] = r->mark[i];
+    else free(r->mark[i].x);
+  }
+  r->nmarks = kept;
+}
+
+/* The steps from here on are another unit. */
+static int begin_unit(lag_sim *s) {
+  struct lag_record *r = s->record;
+  if (r->nunits == r->unit_room) {
+    Unit *more = realloc(r->unit, (size_t)(r->unit_room = 2 * r->unit_room + 16) * sizeof *more);
+    if (!more) return lag_fail(s, LAG_ENOMEM, "out of memory");
+    r->unit = more;
+  }
+  r->unit[r->nunits++] = (Unit){s->run->steps, s->run->t};
+  clear(r);
+  if (r->nmarks == MOST_MARKS / 2) thin_marks(r); /* the others are for the way back */
+  return (r->nunits - 1) % r->marks_every ? LAG_OK : put_mark(s);
+}
+
+int lag_record_cut(lag_sim *s) {
+  const struct lag_record *r = s->record;
+  int repeats = !(s->method->flags & (LAG_METHOD_NO_SAVE | LAG_METHOD_STEPS_TO));
+  return s->run->have_step == 0.0 && repeats && !r->silent && r->used > r->room ? begin_unit(s) : LAG_OK;
+}
+
 int lag_sim_record(lag_sim *s) {
+  const size_t room = (size_t)1 << 26;
+  return lag_sim_record_within(s, room);
+}
+
+int lag_sim_record_within(lag_sim *s, size_t bytes) {
   if (!s) return LAG_EINVAL;
   if (s->run->begun != 0.0) return lag_fail(s, LAG_EINVAL, "the run has begun: record it from its first step");
   lag_tangent_free(s);
@@ -58,7 +128,9 @@ int lag_sim_record(lag_sim *s) {
   s->record = calloc(1, sizeof *s->record);
   if (!s->record) return lag_tangent_free(s), lag_fail(s, LAG_ENOMEM, "out of memory");
   s->record->stride = 2 + s->pb.n + s->scene->model->nmodes;
-  return LAG_OK;
+  s->record->room = bytes;
+  s->record->marks_every = 1;
+  return begin_unit(s);
 }
 
 /* step[stride] := the last step up to t. */
@@ -72,6 +144,7 @@ static void put_step(const lag_sim *s, double t, double *step) {
 static int keep_matrix(lag_sim *s, MatrixKind kind, double t, const double *Y) {
   struct lag_record *r = s->record;
   size_t size = (size_t)s->pb.n * (size_t)s->tangent_columns;
+  if (r->silent) return LAG_OK;
   if (r->nmatrices == r->matrix_room) {
     Matrix *more = realloc(r->matrix, (r->matrix_room = 2 * r->matrix_room + 16) * sizeof *more);
     if (!more) return lag_fail(s, LAG_ENOMEM, "out of memory");
@@ -80,11 +153,13 @@ static int keep_matrix(lag_sim *s, MatrixKind kind, double t, const double *Y) {
   double *S = malloc(size * sizeof *S);
   if (!S) return lag_fail(s, LAG_ENOMEM, "no memory for the steps of a gradient: end the run before");
   r->matrix[r->nmatrices++] = (Matrix){kind, r->nsteps, t, memcpy(S, Y, size * sizeof *S)};
+  r->used += size * sizeof *S;
   return LAG_OK;
 }
 
 int lag_record_step(lag_sim *s, double t) {
   struct lag_record *r = s->record;
+  if (r->silent) return LAG_OK;
   if (needs_matrix(s)) {
     int rc = lag_tangent_over(s, t, s->tangent);
     rc = rc ? rc : keep_matrix(s, OF_STEP, t, s->tangent);
@@ -98,6 +173,7 @@ int lag_record_step(lag_sim *s, double t) {
     r->step = more, r->step_room = room;
   }
   put_step(s, t, r->step + r->nsteps++ * (size_t)r->stride);
+  r->used += (size_t)r->stride * sizeof *r->step;
   return LAG_OK;
 }
 
@@ -113,7 +189,7 @@ static int is_within(const lag_sim *s) {
 }
 
 int lag_record_pause(lag_sim *s) {
-  if (!is_within(s) || !needs_matrix(s)) return LAG_OK;
+  if (!is_within(s) || s->record->silent || !needs_matrix(s)) return LAG_OK;
   int rc = lag_tangent_over(s, s->run->t, s->tangent);
   rc = rc ? rc : keep_matrix(s, OF_PART, s->run->t, s->tangent);
   reset_columns(s);
@@ -127,6 +203,7 @@ int lag_record_pause(lag_sim *s) {
 typedef struct Sweep {
   lag_sim *s;
   int rows;
+  double end; /* time of the run */
   const double *t, *weight;
   double *x, *g, *p, *one, *step, *scratch;
 } Sweep;
@@ -188,19 +265,112 @@ static int back_over_step(Sweep *w, const double *step) {
   return rc;
 }
 
-static int sweep(Sweep *w) {
+/* The steps that are recorded. */
+static int back_over_record(Sweep *w) {
   lag_sim *s = w->s;
   const struct lag_record *r = s->record;
-  int n = s->pb.n, rc = LAG_OK;
-  if (is_within(s) && !needs_matrix(s)) {
-    put_step(s, s->run->t, w->step);
-    rc = back_over_step(w, w->step);
-  }
+  int rc = LAG_OK;
   for (size_t k = r->nsteps, j = r->nmatrices; rc == LAG_OK; k--) {
     for (; j > 0 && r->matrix[j - 1].steps == k; j--) back_over(w, &r->matrix[j - 1]);
     if (k == 0) break;
     rc = back_over_step(w, r->step + (k - 1) * (size_t)r->stride);
   }
+  return rc;
+}
+
+/* ---- Units that are recorded again */
+
+/* The run from a mark to the begin of a unit. */
+static int repeat_to(Sweep *w, const double *mark, int unit) {
+  lag_sim *s = w->s;
+  struct lag_record *r = s->record;
+  clear(r);
+  lag_take_up(s, mark);
+  reset_columns(s);
+  s->tangent_at_event = s->tangent_meets = s->tangent_moves = 0;
+  r->silent = 1;
+  int rc = unit == 0 ? LAG_OK : lag_run_to_step(s, r->unit[unit].steps, w->end);
+  r->silent = 0;
+  return rc;
+}
+
+/* Records the unit that begins here: with pauses where weights are. */
+static int repeat_unit(Sweep *w, int unit) {
+  lag_sim *s = w->s;
+  struct lag_record *r = s->record;
+  const Unit *next = &r->unit[unit + 1];
+  int rc = LAG_OK;
+  r->room = (size_t)-1;
+  for (int k = 0; k < w->rows && rc == LAG_OK; k++)
+    if ((w->t[k] - s->run->t) * s->pb.dir > 0 && (next->t - w->t[k]) * s->pb.dir > 0) rc = lag_sim_advance(s, w->t[k]);
+  return rc ? rc : lag_run_to_step(s, next->steps, w->end);
+}
+
+/* Units to advance before the next mark, of l, with c marks left. */
+static int split_of(int l, int c) {
+  double before = 1; /* (c + r - 1 over c) */
+  for (int r = 1;; r++) {
+    double all = before * (c + r) / r;
+    if (all >= l) return before < l - 1 ? (int)before : l - 1;
+    before = all;
+  }
+}
+
+/* Units first to last, from a mark at the first, with room for c more marks: the fewest repetitions for their number
+ * (A. Griewank, A. Walther, ACM Trans. Math. Softw. 26 (2000) 19, DOI 10.1145/347837.347846). */
+static int back_over_units(Sweep *w, const double *mark, int first, int last, int c) {
+  int rc = LAG_OK;
+  while (last >= first && rc == LAG_OK) {
+    if (last > first && c > 0) {
+      int at = first + split_of(last - first + 1, c);
+      double *x = malloc((w->s->nsaved + 1) * sizeof *x);
+      rc = x ? repeat_to(w, mark, at) : LAG_ENOMEM;
+      if (rc == LAG_OK) lag_put_down(w->s, x), rc = back_over_units(w, x, at, last, c - 1);
+      free(x);
+      last = at - 1;
+    } else {
+      rc = repeat_to(w, mark, last);
+      rc = rc ? rc : repeat_unit(w, last);
+      rc = rc ? rc : back_over_record(w);
+      last--;
+    }
+  }
+  return rc;
+}
+
+/* All units but the last, which is recorded. The run is as before afterwards, but for its record. */
+static int back_over_marks(Sweep *w) {
+  lag_sim *s = w->s;
+  struct lag_record *r = s->record;
+  int (*on_step)(void *, const lag_sim *) = s->on_step;
+  lag_event_fn *on_event = s->on_event;
+  double *x = malloc((s->nsaved + 1) * sizeof *x);
+  int rc = x ? LAG_OK : LAG_ENOMEM, last = r->nunits - 2;
+  if (x) lag_put_down(s, x);
+  s->on_step = NULL, s->on_event = NULL;
+  if (r->nmarks && r->mark[r->nmarks - 1].unit > last) free(r->mark[--r->nmarks].x);
+  for (; r->nmarks > 0 && rc == LAG_OK; free(r->mark[--r->nmarks].x)) {
+    const Mark *m = &r->mark[r->nmarks - 1];
+    rc = back_over_units(w, m->x, m->unit, last, MOST_MARKS - r->nmarks);
+    last = m->unit - 1;
+  }
+  s->on_step = on_step, s->on_event = on_event;
+  if (x) lag_take_up(s, x);
+  free(x);
+  r->spent = 1;
+  return rc;
+}
+
+static int sweep(Sweep *w) {
+  lag_sim *s = w->s;
+  int n = s->pb.n, rc = LAG_OK;
+  w->end = s->run->t;
+  if (is_within(s) && !needs_matrix(s)) {
+    put_step(s, s->run->t, w->step);
+    rc = back_over_step(w, w->step);
+  }
+  rc = rc ? rc : back_over_record(w);
+  if (rc == LAG_OK && s->record->nunits > 1) rc = back_over_marks(w);
   for (; rc == LAG_OK && w->rows > 0 && w->t[w->rows - 1] == s->scene->t0; w->rows--)
     add(n, w->weight + (size_t)(w->rows - 1) * (size_t)n, w->x);
   return rc;
@@ -235,6 +405,8 @@ int lag_sim_gradient(lag_sim *s, int rows, const double *t, const double *weight
   if (!s || rows < 0 || !t || !weight || !by_start || !by_p) return LAG_EINVAL;
   if (!s->record)
     return lag_fail(s, LAG_EINVAL, "this run keeps no steps: lag_sim_record before its first advance");
+  if (s->record->spent)
+    return lag_fail(s, LAG_EINVAL, "a gradient of so many steps can be taken once: record another run");
   int rc = check_rows(s, rows, t), n = s->pb.n, nu = s->pb.model->nu, nmodes = s->pb.model->nmodes;
   if (rc) return rc;
   size_t np = (size_t)s->pb.model->np, stride = (size_t)s->record->stride,
@@ -242,7 +414,7 @@ int lag_sim_gradient(lag_sim *s, int rows, const double *t, const double *weight
          size = 2 * (size_t)n + (size_t)nu + 2 * np + stride + (size_t)nmodes + (own > (size_t)n ? own : (size_t)n);
   double calls = s->pb.rhs_calls, *block = calloc(size + 1, sizeof *block);
   if (!block) return lag_fail(s, LAG_ENOMEM, "out of memory");
-  Sweep w = {s, rows, t, weight, .x = block, .one = block + n, .g = block + 2 * n};
+  Sweep w = {.s = s, .rows = rows, .t = t, .weight = weight, .x = block, .one = block + n, .g = block + 2 * n};
   w.p = w.g + nu + np;
   w.step = w.p + np;
   double *modes = w.step + stride;

@@ -170,6 +170,13 @@ int lag_sim_advance(lag_sim *s, double t) {
   return rc;
 }
 
+int lag_run_to_step(lag_sim *s, double steps, double t) {
+  const Run *r = s->run;
+  int rc = begin_or_check(s, t);
+  while (rc == 0 && (r->steps < steps || r->have_step != 0.0)) rc = continue_run(s, t);
+  return rc;
+}
+
 int lag_sim_ensure_step(lag_sim *s, double t, double *reach) {
   if (!s || !reach) return LAG_EINVAL;
   const Run *r = s->run;
