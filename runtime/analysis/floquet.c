@@ -7,55 +7,8 @@
 
 #include "analysis/orthonormalise.h"
 #include "analysis/periodic_orbit.h"
+#include "analysis/quotient_space.h"
 #include "numeric/dense.h"
-#include "numeric/singular_values.h"
-
-/* A basis of vectors, the columns of B[n * k], orthonormal. */
-typedef struct Basis {
-  int n, k;
-  double *B;
-} Basis;
-
-/* The columns of C[n * c] in the coordinates of the basis := X[k * c]. */
-static void coordinates(const Basis *b, int c, const double *C, double *X) {
-  for (int i = 0; i < b->k; i++)
-    for (int j = 0; j < c; j++) {
-      double sum = 0;
-      for (int r = 0; r < b->n; r++) sum += b->B[r * b->k + i] * C[r * c + j];
-      X[i * c + j] = sum;
-    }
-}
-
-/* The basis := its part orthogonal to the columns of C[n * c]. Singular values below `least` of the largest count as
- * 0. */
-static int take_out(Pool *pool, Basis *b, int c, const double *C) {
-  const double least = 1e-7;
-  int k = b->k, rank = 0;
-  double *X = lag_pool_doubles(pool, (size_t)(k * c) + 1), *R = lag_pool_doubles(pool, (size_t)(k * c) + 1);
-  double *V = lag_pool_doubles(pool, (size_t)(k * k) + 1), *sigma = lag_pool_doubles(pool, (size_t)k + 1),
-         *left = lag_pool_doubles(pool, (size_t)(b->n * k) + 1);
-  if (pool->failed) return LAG_ENOMEM;
-  coordinates(b, c, C, X);
-  for (int i = 0; i < k; i++)
-    for (int j = 0; j < c; j++) R[j * k + i] = X[i * c + j];
-  lag_singular_values(c, k, R, V, sigma);
-  while (rank < k && sigma[rank] > least) rank++;
-  for (int r = 0; r < b->n; r++)
-    for (int j = rank; j < k; j++)
-      for (int i = 0; i < k; i++) left[r * (k - rank) + j - rank] += b->B[r * k + i] * V[i * k + j];
-  b->B = left;
-  b->k = k - rank;
-  return LAG_OK;
-}
-
-/* Scales the columns of C[n * c] to unit length; those that vanish stay. */
-static void normalise(int n, int c, double *C) {
-  for (int j = 0; j < c; j++) {
-    double size = 0;
-    for (int r = 0; r < n; r++) size += C[r * c + j] * C[r * c + j];
-    for (int r = 0; r < n && size > 0; r++) C[r * c + j] /= sqrt(size);
-  }
-}
 
 /* Whether state i only counts, as which foot stands: without events it keeps its value at the nodes, and each segment
  * leaves a change of it as it is, but for its sign. */
@@ -99,30 +52,9 @@ static int invariants(PeriodicOrbit *o, double t, const double *y, double *L, do
   }
   for (int i = 0; i < n; i++) /* rows of *nr elements, one behind the other */
     for (int j = 0; j < *nr; j++) R[i * *nr + j] = R[i * most + j];
-  normalise(n, c, L);
-  normalise(n, *nr, R);
+  lag_normalise_columns(n, c, L);
+  lag_normalise_columns(n, *nr, R);
   return rc;
-}
-
-/* C[n *nr] := those combinations of its columns along which no charge of L[n c] changes. */
-static int within_levels(Pool *pool, int n, int c, const double *L, int *nr, double *C) {
-  int k = *nr, rank = 0;
-  double *X = lag_pool_doubles(pool, (size_t)(c * k) + 1), *V = lag_pool_doubles(pool, (size_t)(k * k) + 1),
-         *sigma = lag_pool_doubles(pool, (size_t)k + 1), *was = lag_pool_doubles(pool, (size_t)(n * k) + 1);
-  if (pool->failed) return LAG_ENOMEM;
-  for (int i = 0; i < c; i++)
-    for (int j = 0; j < k; j++)
-      for (int r = 0; r < n; r++) X[i * k + j] += L[r * c + i] * C[r * k + j];
-  lag_singular_values(c, k, X, V, sigma);
-  while (rank < k && sigma[rank] > 1e-7) rank++;
-  memcpy(was, C, (size_t)(n * k) * sizeof *C);
-  for (int r = 0; r < n; r++)
-    for (int j = rank; j < k; j++) {
-      C[r * (k - rank) + j - rank] = 0;
-      for (int i = 0; i < k; i++) C[r * (k - rank) + j - rank] += was[r * k + i] * V[i * k + j];
-    }
-  *nr = k - rank;
-  return LAG_OK;
 }
 
 /* The space of other changes at y, t: basis *b; *all: dimension of the tangent space there. */
@@ -135,9 +67,9 @@ static int quotient(Pool *pool, PeriodicOrbit *o, double t, const double *y, Bas
   rc = pool->failed ? LAG_ENOMEM : rc;
   *all = b->k;
   rc = rc ? rc : invariants(o, t, y, L, R, &nr);
-  rc = rc ? rc : within_levels(pool, n, o->ncharges, L, &nr, R);
-  rc = rc ? rc : take_out(pool, b, o->ncharges, L);
-  return rc ? rc : take_out(pool, b, nr, R);
+  rc = rc ? rc : lag_within_levels(pool, n, o->ncharges, L, &nr, R);
+  rc = rc ? rc : lag_basis_take_out(pool, b, o->ncharges, L);
+  return rc ? rc : lag_basis_take_out(pool, b, nr, R);
 }
 
 /* W[k k] := P, the derivative over segment s, from basis a to basis b. The last segment ends with the inverse of what
@@ -149,11 +81,11 @@ static int reduced(Pool *pool, const PeriodicOrbit *o, int s, const Basis *a, co
   if (pool->failed) return LAG_ENOMEM;
   memcpy(P, o->Phi + s * n * n, (size_t)(n * n) * sizeof *P);
   memcpy(G, o->G, (size_t)(n * n) * sizeof *G);
-  if (s == o->m - 1 && o->ngroup && lag_solve_dense((size_t)n, (size_t)n, G, P)) return LAG_ESINGULAR;
+  if (s == o->m - 1 && (o->ngroup || o->closing) && lag_solve_dense((size_t)n, (size_t)n, G, P)) return LAG_ESINGULAR;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < k; j++)
       for (int l = 0; l < n; l++) PB[i * k + j] += P[i * n + l] * o->unit[l] / o->unit[i] * a->B[l * k + j];
-  coordinates(b, k, PB, W);
+  lag_basis_coordinates(b, k, PB, W);
   return LAG_OK;
 }
 

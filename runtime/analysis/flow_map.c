@@ -107,6 +107,28 @@ int lag_flow_shifts(FlowMap *f, int k, const int *q) {
   return seen;
 }
 
+int lag_flow_has_symmetry(FlowMap *f, const StateMap *map, double later) {
+  const double rounding = 1e-8; /* of light masses */
+  int n = map->n, seen = 0;
+  double *y = f->at, *image = f->up, *rates = f->down, *other = f->square, *mapped = other + n;
+  for (int place = 0; place < 5; place++) {
+    double past = 0.7548776662 * place, size = 0, off = 0, t = f->t0 + past;
+    for (int i = 0; i < n; i++)
+      y[i] = f->probe->begin[i] + 0.1 * ((place + i) % 3) * lag_difference_scale(&f->probe->pb, f->probe->begin, i);
+    lag_map_apply(map, y, image);
+    if (lag_flow_rates(f, t, y, rates)) continue;
+    if (lag_flow_rates(f, map->reverses ? f->t0 - past : t + later, image, other)) return 0;
+    lag_map_apply(map, rates, mapped);
+    for (int i = 0; i < n; i++) {
+      size = fmax(size, fabs(mapped[i]));
+      off = fmax(off, fabs(other[i] - (map->reverses ? -mapped[i] : mapped[i])));
+    }
+    if (!(off <= rounding * size)) return 0;
+    seen = 1;
+  }
+  return seen;
+}
+
 int lag_flow_open(FlowMap *f, lag_sim *like) {
   size_t n = (size_t)like->pb.n, nq = (size_t)like->pb.nq, driven = n + (size_t)like->scene->model->nev;
   const lag_constraints *of = like->scene->model->constraints;
@@ -219,24 +241,37 @@ int lag_flow_rates(FlowMap *f, double t, const double *y, double *rates) { retur
 
 enum { DRIVE_SAMPLES = 12, DRIVE_LOOKS = 4000 };
 
-/* Rates of change at time t of a state that differs from sample to sample. */
-static int sample_rates(FlowMap *f, int k, double t, double *rates) {
+/* Rates of change at time t of a state that differs from sample to sample, or of its image by `map`. */
+static int sample_rates(FlowMap *f, int k, double t, const StateMap *map, double *rates) {
+  double *y = map ? f->square : f->at;
   for (int i = 0; i < f->n; i++)
-    f->at[i] = f->probe->begin[i] + 0.1 * (k % 3) * lag_difference_scale(&f->probe->pb, f->probe->begin, i);
+    y[i] = f->probe->begin[i] + 0.1 * (k % 3) * lag_difference_scale(&f->probe->pb, f->probe->begin, i);
+  if (map) lag_map_apply(map, y, f->at);
   return driven_at(f, t, f->at, rates);
+}
+
+/* The same at the begin of a period: the image of the rates. Which event functions are exchanged is not known. */
+static int first_rates(FlowMap *f, int k, double t, double *rates) {
+  int rc = sample_rates(f, k, t, NULL, rates);
+  if (!f->closing) return rc;
+  memcpy(f->square, rates, (size_t)f->n * sizeof *rates);
+  lag_map_apply(f->closing, f->square, rates);
+  return rc;
 }
 
 /* Difference of the rates a time T later, relative to them, and *step: the change of T that makes it least, to first
  * order. */
 static double drive_difference(FlowMap *f, double T, double *step) {
   double off = 0, size = 0, along = 0, slope = 0, h = 1e-6 * T, *a = f->up, *b = f->down, *c = f->room;
+  int numbers = f->closing ? f->n : driven_numbers(f);
   for (int k = 0; k < DRIVE_SAMPLES; k++) {
     double t = f->t0 + 0.7548776662 * (k + 0.3) * T / DRIVE_SAMPLES * 1.3;
-    if (sample_rates(f, k, t, a) || sample_rates(f, k, t + T - h, b) || sample_rates(f, k, t + T + h, c))
+    const StateMap *map = f->closing;
+    if (first_rates(f, k, t, a) || sample_rates(f, k, t + T - h, map, b) || sample_rates(f, k, t + T + h, map, c))
       return HUGE_VAL;
-    for (int i = 0; i < driven_numbers(f); i++) c[i] = (c[i] - b[i]) / (2 * h);
-    if (sample_rates(f, k, t + T, b)) return HUGE_VAL;
-    for (int i = 0; i < driven_numbers(f); i++) {
+    for (int i = 0; i < numbers; i++) c[i] = (c[i] - b[i]) / (2 * h);
+    if (sample_rates(f, k, t + T, map, b)) return HUGE_VAL;
+    for (int i = 0; i < numbers; i++) {
       double weight = driven_weight(f, a, i), w = weight * weight;
       off += w * (b[i] - a[i]) * (b[i] - a[i]);
       size += w * (a[i] * a[i] + b[i] * b[i]);
@@ -412,4 +447,9 @@ int lag_flow_tangent_basis(FlowMap *f, Pool *pool, double t, const double *y, co
   for (int r = 0; r < n; r++)
     for (int j = 0; j < *k; j++) B[r * *k + j] = Y[r * n + j] / sigma[j];
   return rc;
+}
+
+double lag_flow_change(const lag_model *m, int i, const double *y, const double *y0) {
+  double d = y[i] - y0[i], turn = 2 * acos(-1);
+  return i < m->nq && m->q[i].periodic ? d - turn * rint(d / turn) : d;
 }

@@ -2,7 +2,7 @@
  * symmetries. Each run is a simulation of its own, so that one map can be taken at many states and times. */
 #pragma once
 
-#include "analysis/memory_pool.h"
+#include "analysis/state_map.h"
 #include "core/core.h"
 
 typedef struct FlowMap {
@@ -12,6 +12,7 @@ typedef struct FlowMap {
   int n, nq;
   double t0;
   int forced;       /* 1: the rates depend on time */
+  const StateMap *closing;   /* what a drive's period is closed by: components that are exchanged; NULL: none */
   const char *name; /* parameter with another value, in its declared unit; NULL: none */
   double value;
   lag_scene scene;                                        /* of the runs: the scene's, with another start of the span */
@@ -57,9 +58,14 @@ int lag_flow_field(FlowMap *f, int k, double t, const double *y, double *X);
 /* Whether neither rates nor event functions change where coordinates q[k] are shifted by one amount, seen at some
  * states and times. */
 int lag_flow_shifts(FlowMap *f, int k, const int *q);
+/* Whether the map is a symmetry: the rates at y, t and those at the image, `later` after it (of a reversing one: as
+ * long before t0 as t is after it), are related by it, seen at some states and times. */
+int lag_flow_has_symmetry(FlowMap *f, const StateMap *map, double later);
 /* B[n *k] := an orthonormal basis of the tangent space of the constraints at y, t, components in unit[n]; without
  * constraints all of them. */
 int lag_flow_tangent_basis(FlowMap *f, Pool *pool, double t, const double *y, const double *unit, double *B, int *k);
 /* G[nq + 1][nq + 1] := the affine map of coordinates by which the symmetry of charge k acts, per unit of its
  * parameter: q -> A q + b in the first nq rows. LAG_EMETHOD: it is not affine. */
 int lag_flow_affine(FlowMap *f, int k, double t, const double *y, double *G);
+/* y - y0 of component i, periodic angles modulo a turn. */
+double lag_flow_change(const lag_model *m, int i, const double *y, const double *y0);

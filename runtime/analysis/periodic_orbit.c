@@ -51,72 +51,6 @@ static int choose_units(PeriodicOrbit *o, const double *y0) {
   return rc;
 }
 
-/* ---- The symmetries that close a motion */
-
-/* E[size * size] := exp(c G), by scaling and squaring of its series. scratch[2 * size * size]. */
-static void exponential(int size, const double *G, double c, double *E, double *scratch) {
-  double norm = 0, *term = scratch, *next = scratch + size * size;
-  int halvings = 0;
-  for (int e = 0; e < size * size; e++) norm += fabs(c * G[e]);
-  for (; norm > 0.5; norm /= 2) halvings++;
-  double part = ldexp(c, -halvings);
-  for (int e = 0; e < size * size; e++) E[e] = term[e] = e % (size + 1) == 0;
-  for (int k = 1; k <= 24 + halvings; k++) {
-    const double *left = k <= 24 ? term : E, *right = k <= 24 ? G : E;
-    for (int i = 0; i < size; i++)
-      for (int j = 0; j < size; j++) {
-        double sum = 0;
-        for (int l = 0; l < size; l++) sum += left[i * size + l] * right[l * size + j];
-        next[i * size + j] = k <= 24 ? sum * part / k : sum;
-      }
-    memcpy(k <= 24 ? term : E, next, (size_t)(size * size) * sizeof *E);
-    for (int e = 0; e < size * size && k <= 24; e++) E[e] += term[e];
-  }
-}
-
-/* y[n] := the affine map E of the coordinates, and its linear part of the velocities; linear: of the coordinates,
- * too. */
-static void act(const PeriodicOrbit *o, const double *E, int linear, double *y, double *scratch) {
-  int nq = o->flow.nq, size = nq + 1;
-  for (int i = 0; i < 2 * nq; i++) {
-    const double *row = E + i % nq * size, *x = y + i / nq * nq;
-    scratch[i] = i < nq && !linear ? row[nq] : 0;
-    for (int j = 0; j < nq; j++) scratch[i] += row[j] * x[j];
-  }
-  memcpy(y, scratch, 2 * (size_t)nq * sizeof *y);
-}
-
-/* y[n] := G y; d[n], unless NULL, := its derivative by shift j. */
-static void close_motion(const PeriodicOrbit *o, double *y, int linear, int j, double *d) {
-  int size = o->flow.nq + 1;
-  double *E = o->w, *scratch = E + size * size;
-  for (int k = o->ngroup - 1; k >= 0; k--) {
-    const double *G = o->affine + k * size * size;
-    exponential(size, G, o->shift[k], E, scratch);
-    if (d && k < j) act(o, E, 1, d, scratch);
-    act(o, E, linear, y, scratch);
-    if (!d || k != j) continue;
-    memset(d, 0, (size_t)o->n * sizeof *d);
-    memcpy(d, y, 2 * (size_t)o->flow.nq * sizeof *d);
-    act(o, G, linear, d, scratch);
-  }
-  for (int i = 0; i < o->n && !linear; i++) y[i] += o->turns[i];
-}
-
-/* target and G at the present y and shifts. */
-static void set_target(PeriodicOrbit *o) {
-  int n = o->n;
-  memcpy(o->target, o->y, (size_t)n * sizeof *o->y);
-  close_motion(o, o->target, 0, -1, NULL);
-  for (int c = 0; c < n; c++) {
-    double *e = o->x;
-    memset(e, 0, (size_t)n * sizeof *e);
-    e[c] = 1;
-    if (o->ngroup) close_motion(o, e, 1, -1, NULL);
-    for (int r = 0; r < n; r++) o->G[r * n + c] = e[r];
-  }
-}
-
 /* ---- Shooting */
 
 /* Time at the begin of segment k. */
@@ -152,6 +86,22 @@ static double size_of(const PeriodicOrbit *o, const OrbitHold *h) {
   return size > 0 ? size : 1;
 }
 
+/* C[n c] := C - R C, with the map R of a motion that is the same backwards. */
+static void less_image(PeriodicOrbit *o, int c, double *C) {
+  double *column = o->x, *image = column + o->n;
+  for (int j = 0; j < c; j++) {
+    for (int i = 0; i < o->n; i++) column[i] = C[i * c + j];
+    lag_map_apply(o->reverse, column, image);
+    for (int i = 0; i < o->n; i++) C[i * c + j] -= image[i];
+  }
+}
+
+/* Residual of component i of the begin of a motion that is the same backwards, in units. */
+static double begin_gap(const PeriodicOrbit *o, int i) {
+  const StateMap *R = o->reverse;
+  return (o->y[i] - R->sign[i] * o->y[R->from[i]] - o->offset[i]) / o->unit[i];
+}
+
 /* Runs all segments; residual := what is left. */
 int lag_orbit_shoot(PeriodicOrbit *o, int tangents) {
   int n = o->n, rc = LAG_OK;
@@ -159,10 +109,12 @@ int lag_orbit_shoot(PeriodicOrbit *o, int tangents) {
   for (int k = 0; k < o->m && rc == LAG_OK; k++)
     rc = lag_flow_run(&o->flow, begins(o, k), o->T / o->m, o->y + k * n, o->end + k * n,
                       tangents ? o->Phi + k * n * n : NULL);
-  set_target(o);
+  lag_orbit_set_target(o);
+  if (o->half && tangents) less_image(o, n, o->Phi + (o->m - 1) * n * n);
   for (int k = 0; k < o->m; k++)
     for (int i = 0; i < n; i++) sum += gap(o, k, i) * gap(o, k, i);
   for (int k = 0; k < o->nheld; k++) sum += off_by(o, k) * off_by(o, k);
+  for (int i = 0; i < n && o->half; i++) sum += begin_gap(o, i) * begin_gap(o, i);
   o->residual = rc ? HUGE_VAL : sqrt(sum / (o->m * n));
   return rc;
 }
@@ -268,12 +220,13 @@ static int parameter_columns(PeriodicOrbit *o) {
   double *rates = o->w + 4 * (o->flow.nq + 1) * (o->flow.nq + 1), *y = rates + n;
   for (int k = 0; k < o->m && rc == LAG_OK && period_is_free(o); k++) {
     rc = lag_flow_rates(&o->flow, begins(o, k + 1), o->end + k * n, rates);
+    if (o->half && k == o->m - 1) less_image(o, 1, rates);
     for (int i = 0; i < n && rc == LAG_OK; i++)
       o->A[(k * n + i) * cols + column_of_period(o)] = rates[i] / o->m * o->time / o->unit[i];
   }
   for (int j = 0; j < o->ngroup && rc == LAG_OK; j++) {
     memcpy(y, o->y, (size_t)n * sizeof *y);
-    close_motion(o, y, 0, j, rates);
+    lag_orbit_close_motion(o, y, 0, j, rates);
     for (int i = 0; i < n; i++) o->A[((o->m - 1) * n + i) * cols + column_of_shift(o, j)] = -rates[i] / o->unit[i];
   }
   return rc;
@@ -294,6 +247,17 @@ static int held_rows(PeriodicOrbit *o) {
     for (int i = 0; i < n && rc == LAG_OK; i++) row[i] = d[i] * o->unit[i] / size;
   }
   return rc;
+}
+
+/* Rows of the begin of a motion that is the same backwards, behind those of conditions. */
+static void begin_rows(PeriodicOrbit *o) {
+  const StateMap *R = o->reverse;
+  for (int i = 0; i < o->n; i++) {
+    int row = o->m * o->n + o->nheld + i, from = R->from[i];
+    o->A[row * o->cols + i] += 1;
+    o->A[row * o->cols + from] -= R->sign[i] * o->unit[from] / o->unit[i];
+    o->b[row] = -begin_gap(o, i);
+  }
 }
 
 /* Removes the part of the shooting rows along w[m n], of unit length. */
@@ -350,8 +314,9 @@ int lag_orbit_assemble(PeriodicOrbit *o) {
   shooting_rows(o);
   int rc = o->continues ? continuation_column(o) : LAG_OK;
   rc = rc ? rc : parameter_columns(o);
-  rc = rc ? rc : remove_charges(o);
+  rc = rc || o->half ? rc : remove_charges(o);
   rc = rc ? rc : held_rows(o);
+  if (rc == LAG_OK && o->half) begin_rows(o);
   return rc || !o->continues ? rc : phase_rows(o);
 }
 
@@ -424,7 +389,7 @@ void lag_orbit_count(PeriodicOrbit *o) {
   int phases = !o->flow.forced;
   for (int k = 0; k < o->ncharges; k++) phases += o->charge[k] != 0;
   for (int j = 0; j < o->ngroup; j++) phases += o->group[j].n > 0;
-  o->rows = o->m * o->n + o->nheld + (o->continues ? phases : 0);
+  o->rows = o->m * o->n + o->nheld + (o->half ? o->n : 0) + (o->continues ? phases : 0);
   o->cols = o->m * o->n + period_is_free(o) + o->ngroup + (o->continues != 0);
 }
 
@@ -432,9 +397,10 @@ static int allocate(PeriodicOrbit *o) {
   size_t n = (size_t)o->n, m = (size_t)o->m, size = (size_t)o->flow.nq + 1, group = (size_t)o->ngroup;
   size_t charges = (size_t)lag_flow_charges(&o->flow);
   lag_orbit_count(o);
-  size_t rows = m * n + (size_t)o->nheld + charges + group + 1, cols = m * n + 2 + group; /* with continuation */
+  size_t rows = (m + 1) * n + (size_t)o->nheld + charges + group + 1, cols = m * n + 2 + group; /* with continuation */
   const lag_part parts[] = {{&o->y, m * n}, {&o->end, m * n}, {&o->Phi, m * n * n}, {&o->unit, n}, {&o->turns, n},
-      {&o->affine, group * size * size + 1}, {&o->target, n}, {&o->G, n * n}, {&o->A, rows * cols}, {&o->b, rows},
+      {&o->offset, n}, {&o->affine, group * size * size + 1}, {&o->target, n}, {&o->G, n * n}, {&o->A, rows * cols},
+      {&o->b, rows},
       {&o->V, cols * cols}, {&o->sigma, cols}, {&o->x, cols + 2 * n}, {&o->saved, m * n * (charges + 2) + cols},
       {&o->w, 4 * size * size + 4 * n}, {&o->re, n}, {&o->im, n}};
   lag_pool_parts(&o->pool, sizeof parts / sizeof *parts, parts);
@@ -445,14 +411,26 @@ static int allocate(PeriodicOrbit *o) {
 /* Number of segments, so that small changes grow at most about a hundredfold in each. */
 static int count_segments(PeriodicOrbit *o, int m) {
   int n = o->n, most = 1 + 240 / n;
-  if (m > 0) return m;
+  if (m > 0) return o->reverse ? m + m % 2 : m;
   double *Phi = lag_pool_doubles(&o->pool, (size_t)(n * n)), *y = lag_pool_doubles(&o->pool, (size_t)n), size = 0;
   if (o->pool.failed || lag_flow_run(&o->flow, o->flow.t0, o->T, o->flow.probe->now, y, Phi)) return 1;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) size = fmax(size, fabs(Phi[i * n + j]) * o->unit[j] / o->unit[i]);
   most = most < MOST_SEGMENTS ? most : MOST_SEGMENTS;
   m = 1 + (int)(log(fmax(size, 1)) / log(100));
-  return m < most ? m : most;
+  m = m < most ? m : most;
+  return o->reverse ? m + m % 2 : m;
+}
+
+/* The begin on the states that `reverse` leaves. */
+static void place_begin(PeriodicOrbit *o) {
+  const lag_model *m = o->flow.like->scene->model;
+  const double turn = 2 * acos(-1);
+  double *image = o->x;
+  lag_map_apply(o->reverse, o->y, image);
+  for (int i = 0; i < m->nq; i++)
+    o->offset[i] = m->q[i].periodic ? turn * rint((o->y[i] - image[i]) / turn) : 0;
+  for (int i = 0; i < o->n; i++) o->y[i] = (o->y[i] + image[i] + o->offset[i]) / 2;
 }
 
 /* The states at the begin of segments, along the motion from the start; turns of periodic angles. */
@@ -460,38 +438,17 @@ static int place_nodes(PeriodicOrbit *o) {
   int n = o->n, rc = LAG_OK;
   const lag_model *m = o->flow.like->scene->model;
   memcpy(o->y, o->flow.probe->now, (size_t)n * sizeof *o->y);
+  if (o->reverse) place_begin(o);
   for (int k = 0; k < o->m && rc == LAG_OK; k++) {
     rc = lag_flow_run(&o->flow, begins(o, k), o->T / o->m, o->y + k * n, o->end + k * n, NULL);
     if (k < o->m - 1) memcpy(o->y + (k + 1) * n, o->end + k * n, (size_t)n * sizeof *o->y);
   }
   const double *last = o->end + (o->m - 1) * n, turn = 2 * acos(-1);
+  double *image = o->x;
+  if (o->closing) lag_map_apply(o->closing, o->y, image);
+  else memcpy(image, o->y, (size_t)n * sizeof *image);
   for (int i = 0; i < m->nq && rc == LAG_OK; i++)
-    o->turns[i] = m->q[i].periodic ? turn * rint((last[i] - o->y[i]) / turn) : 0;
-  return rc;
-}
-
-static int list_charges(PeriodicOrbit *o) {
-  int size = o->flow.nq + 1, rc = LAG_OK;
-  for (int k = 0; k < lag_flow_charges(&o->flow); k++)
-    if (lag_flow_conserves(&o->flow, k)) o->charge[o->ncharges++] = k;
-  for (int j = 0; j < o->ngroup && rc == LAG_OK; j++) {
-    const OrbitClosing *c = &o->group[j];
-    double *G = o->affine + j * size * size;
-    if (c->n) {
-      memset(G, 0, (size_t)(size * size) * sizeof *G);
-      for (int i = 0; i < c->n; i++) G[c->shifted[i] * size + size - 1] = 1;
-      if (!lag_flow_shifts(&o->flow, c->n, c->shifted)) rc = LAG_EMETHOD;
-    } else rc = lag_flow_affine(&o->flow, c->charge, o->flow.t0, o->y, G);
-    if (rc && c->n)
-      snprintf(o->flow.message, sizeof o->flow.message,
-               "--relative %s: the equations of motion or the events depend on where it is; coordinates that move "
-               "together are written with +: --relative x[1]+x[2]",
-               o->flow.like->scene->model->q[c->shifted[0]].name);
-    else if (rc)
-      snprintf(o->flow.message, sizeof o->flow.message,
-               "the symmetry of %s is not an affine map of the coordinates, such as a shift or a rotation",
-               o->flow.like->scene->model->charges->of[c->charge].name);
-  }
+    o->turns[i] = m->q[i].periodic ? turn * rint((last[i] - image[i]) / turn) : 0;
   return rc;
 }
 
@@ -504,7 +461,7 @@ static void count_drives(PeriodicOrbit *o) {
 /* Square of the distance of the end of the motion from G y(0), in units. */
 static double miss(PeriodicOrbit *o) {
   double sum = 0;
-  set_target(o);
+  lag_orbit_set_target(o);
   for (int i = 0; i < o->n; i++) sum += gap(o, o->m - 1, i) * gap(o, o->m - 1, i);
   return sum;
 }
@@ -528,12 +485,13 @@ static void guess_shifts(PeriodicOrbit *o) {
     }
     *shift = best;
   }
-  set_target(o);
+  lag_orbit_set_target(o);
 }
 
 int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, double T, int m) {
   int rc = lag_flow_open(&o->flow, like);
   if (rc) return rc;
+  o->flow.closing = o->closing;
   o->n = o->flow.n;
   o->T = o->time = T;
   o->algebra = algebra;
@@ -546,8 +504,9 @@ int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, 
   o->m = count_segments(o, m);
   if ((rc = allocate(o)) != 0) return rc;
   memcpy(o->unit, unit, (size_t)o->n * sizeof *unit);
-  rc = place_nodes(o);
-  rc = rc ? rc : list_charges(o);
+  rc = lag_orbit_check_maps(o, &o->flow, T);
+  rc = rc ? rc : place_nodes(o);
+  rc = rc ? rc : lag_orbit_list_charges(o);
   if (rc == LAG_OK) guess_shifts(o);
   return rc;
 }
@@ -557,128 +516,39 @@ void lag_orbit_free(PeriodicOrbit *o) {
   lag_pool_free(&o->pool);
 }
 
-int lag_orbit_solve(PeriodicOrbit *o) { return newton(o); }
+/* half: T, segments and conditions become those of the first half; 0: of all again. */
+static void take_half(PeriodicOrbit *o, int half) {
+  double factor = half ? 0.5 : 2;
+  o->half = half;
+  o->m = half ? o->m / 2 : 2 * o->m;
+  o->T *= factor;
+  o->time *= factor;
+  for (int k = 0; k < o->nheld; k++)
+    if (o->held[k].kind == ORBIT_PERIOD) o->held[k].value *= factor;
+  lag_orbit_count(o);
+}
 
-/* ---- The period that is not known */
-
-/* A motion at several places within each step, so that close passages are seen. */
-typedef struct Track {
-  const lag_model *m;
-  int n, rows, room;
-  double *t, *y; /* [rows], [rows n] */
-  double *size;  /* [n] largest excursion from the first row */
-} Track;
-
-static int add_row(Track *k, double t, const double *y) {
-  if (k->rows == k->room) {
-    int room = k->room ? 2 * k->room : 1024;
-    double *times = realloc(k->t, (size_t)room * sizeof *times);
-    if (times) k->t = times;
-    double *states = times ? realloc(k->y, (size_t)room * (size_t)k->n * sizeof *states) : NULL;
-    if (!states) return LAG_ENOMEM;
-    k->y = states;
-    k->room = room;
+/* Nodes of the second half: those of the first, backwards. */
+static void mirror_nodes(PeriodicOrbit *o) {
+  int n = o->n, middle = o->m / 2;
+  memcpy(o->y + middle * n, o->end + (middle - 1) * n, (size_t)n * sizeof *o->y);
+  for (int k = 1; k < middle; k++) {
+    double *y = o->y + (o->m - k) * n;
+    lag_map_apply(o->reverse, o->y + k * n, y);
+    for (int i = 0; i < n; i++) y[i] += o->offset[i] + o->turns[i];
   }
-  k->t[k->rows] = t;
-  memcpy(k->y + (size_t)k->rows * (size_t)k->n, y, (size_t)k->n * sizeof *y);
-  for (int i = 0; i < k->n; i++) k->size[i] = fmax(k->size[i], fabs(y[i] - k->y[i]));
-  k->rows++;
-  return LAG_OK;
 }
 
-/* Follows the motion until a time, or the event that ends it. */
-static int follow_motion(Track *k, lag_sim *sim, double until, double *y) {
-  enum { PLACES = 4, MOST_NUMBERS = 40000000 };
-  int rc = lag_sim_advance(sim, lag_sim_time(sim));
-  rc = rc ? rc : add_row(k, lag_sim_time(sim), sim->now);
-  for (double reach; rc == LAG_OK && lag_sim_time(sim) < until && k->rows < MOST_NUMBERS / k->n;) {
-    double from = lag_sim_time(sim);
-    rc = lag_sim_ensure_step(sim, until, &reach);
-    for (int j = 1; j <= PLACES && rc == LAG_OK && reach > from; j++) {
-      rc = lag_sim_eval(sim, j == PLACES ? reach : from + (reach - from) * j / PLACES, y);
-      rc = rc ? rc : add_row(k, from + (reach - from) * j / PLACES, y);
-    }
-    rc = rc ? rc : lag_sim_advance(sim, reach);
-  }
-  return rc == LAG_STOPPED ? LAG_OK : rc;
-}
-
-/* y - y0 of component i, periodic angles modulo a turn. */
-static double change(const lag_model *m, int i, const double *y, const double *y0) {
-  double d = y[i] - y0[i], turn = 2 * acos(-1);
-  return i < m->nq && m->q[i].periodic ? d - turn * rint(d / turn) : d;
-}
-
-/* Distance of row r from the first one in parts of the excursions: the largest over components. */
-static double away(const Track *k, int r) {
-  double most = 0;
-  for (int i = 0; i < k->n; i++)
-    if (k->size[i] > 0) most = fmax(most, fabs(change(k->m, i, k->y + (size_t)r * (size_t)k->n, k->y)) / k->size[i]);
-  return most;
-}
-
-/* Row of the first close return; 0: none. */
-static int first_return(const Track *k) {
-  const double near = 0.15;
-  double before = 0, now = 0;
-  int left = 0;
-  for (int r = 1; r < k->rows; r++) {
-    double next = away(k, r);
-    left |= now > 2 * near;
-    if (left && now <= before && now < next && now < near) return r - 1;
-    before = now;
-    now = next;
-  }
-  return 0;
-}
-
-/* Row next to time t0 + about that is nearest to the first; 0: none is near. */
-static int nearest_return(const Track *k, double about) {
-  const double part = 0.2;
-  double least = 0.3;
-  int best = 0;
-  for (int r = 1; r < k->rows; r++) {
-    if (fabs(k->t[r] - k->t[0] - about) > part * about) continue;
-    double off = away(k, r);
-    if (off < least) best = r, least = off;
-  }
-  return best;
-}
-
-/* Time by which the motion at row r comes still nearer to the first: along its rates, in excursions. */
-static double nearer(FlowMap *f, const Track *k, int r) {
-  double along = 0, length = 0;
-  const double *y = k->y + (size_t)r * (size_t)k->n;
-  if (lag_flow_rates(f, f->t0, k->y, f->up)) return 0;
-  for (int i = 0; i < k->n; i++) {
-    double weight = k->size[i] > 0 ? 1 / (k->size[i] * k->size[i]) : 0;
-    along -= change(k->m, i, y, k->y) * f->up[i] * weight;
-    length += f->up[i] * f->up[i] * weight;
-  }
-  return length > 0 ? along / length : 0;
-}
-
-int lag_orbit_guess(lag_sim *like, double until, double about, double *T, char *message, size_t size) {
-  FlowMap f;
-  Pool pool = {0};
-  Track k = {.m = like->scene->model, .n = like->pb.n};
-  int rc = lag_flow_open(&f, like);
-  k.size = lag_pool_doubles(&pool, 2 * (size_t)k.n);
-  lag_sim *sim = rc ? NULL : lag_flow_sim(&f, f.t0, NULL);
-  *T = 0;
-  if (rc == LAG_OK && (!sim || pool.failed)) rc = LAG_ENOMEM;
-  rc = rc ? rc : follow_motion(&k, sim, until, k.size + k.n);
-  if (rc) snprintf(message, size, "%s", sim ? lag_sim_message(sim) : f.message);
-  if (rc == LAG_OK) {
-    int at = about > 0 ? nearest_return(&k, about) : first_return(&k);
-    *T = at ? k.t[at] - k.t[0] + nearer(&f, &k, at) : 0;
-  }
-  free(k.t);
-  free(k.y);
-  lag_sim_free(sim);
-  lag_flow_free(&f);
-  lag_pool_free(&pool);
-  return rc;
+int lag_orbit_solve(PeriodicOrbit *o) {
+  if (!o->reverse) return newton(o);
+  take_half(o, 1);
+  int found = newton(o);
+  take_half(o, 0);
+  if (found != 1) return found;
+  mirror_nodes(o);
+  o->nfree += period_is_free(o); /* the phase */
+  int rc = lag_orbit_shoot(o, 1);
+  return rc ? rc : o->residual <= accepted(o);
 }
 
 /* ---- Error of the period, and what kind of a motion it is */
@@ -689,7 +559,23 @@ static int is_back(PeriodicOrbit *o, int k) {
   if (o->flow.forced && (lag_flow_drive(&o->flow, &T) > 1e-9 || fabs(T * k - o->T) > 1e-6 * o->T)) return 0;
   if (lag_flow_run(&o->flow, o->flow.t0, o->T / k, o->y, y, NULL)) return 0;
   for (int i = 0; i < o->n; i++)
-    if (fabs(change(o->flow.like->scene->model, i, y, o->y)) > 1e-6 * o->unit[i]) return 0;
+    if (fabs(lag_flow_change(o->flow.like->scene->model, i, y, o->y)) > 1e-6 * o->unit[i]) return 0;
+  return 1;
+}
+
+/* Whether the motion goes on as the image of what it was, over events, too. */
+static int goes_on(PeriodicOrbit *o) {
+  const double same = 1e-6; /* small changes grow a hundredfold in a segment */
+  int n = o->n;
+  double *begin = o->x, *end = begin + n, *image = o->w;
+  for (int k = 0; k < o->m && o->flow.like->scene->model->nev; k++) {
+    lag_map_apply(o->closing, o->y + k * n, begin);
+    lag_map_apply(o->closing, o->end + k * n, image);
+    double t = begins(o, k) + (o->flow.forced ? o->T : 0);
+    if (lag_flow_run(&o->flow, t, o->T / o->m, begin, end, NULL)) return 0;
+    for (int i = 0; i < n; i++)
+      if (fabs(lag_flow_change(o->flow.like->scene->model, i, end, image)) > same * o->unit[i]) return 0;
+  }
   return 1;
 }
 
@@ -704,7 +590,8 @@ int lag_orbit_refine(PeriodicOrbit *o) {
   lag_sim *like = o->flow.like;
   double tol = like->tol, T = o->T, *step = o->x;
   o->at_rest = is_at_rest(o);
-  for (int k = 2; k <= 7 && !o->ngroup && !o->at_rest; k++)
+  o->asymmetric = o->closing && !goes_on(o);
+  for (int k = 2; k <= 7 && !o->ngroup && !o->closing && !o->at_rest; k++)
     if (is_back(o, k)) o->repeats = k;
   like->tol = like->pb.tol = fmax(tol / 100, 1e-15);
   if (like->tol == tol || lag_flow_differences(&o->flow)) like->tol = like->pb.tol = 100 * tol;

@@ -43,6 +43,12 @@ typedef struct PeriodicOrbit {
   OrbitClosing group[ORBIT_MOST_GROUP];
   double shift[ORBIT_MOST_GROUP]; /* their parameters */
   double *affine;                      /* [ngroup (nq + 1)^2] their generators */
+  /* before them: components that are exchanged; NULL: none. Of a motion that is the same backwards in time, the map
+   * that leaves its begin and its middle: only half of it is solved */
+  const StateMap *closing, *reverse;
+  int half;        /* 1: T, m and the conditions are those of the first half */
+  double *offset;  /* [n] turns of periodic angles that `reverse` adds at the begin */
+  int asymmetric;  /* 1: events do not have the symmetry `closing` */
   /* 1: one more unknown, `parameter`: the value that condition `led` keeps, or, for -1, that of the model's parameter
    * `name`; and rows that fix the phase and the place along symmetries */
   int continues, led;
@@ -66,14 +72,27 @@ typedef struct PeriodicOrbit {
   double pairing; /* largest |a b - 1| over pairs a, b of reciprocals; NaN: they are none */
 } PeriodicOrbit;
 
-/* Prepares: period T > 0, m segments (0: by the growth over a period). like: as of lag_flow_open. The members held
- * and group are set before. LAG_OK, or a status with the message in o->flow. Free in any case. */
+/* Prepares: period T > 0, m segments (0: by the growth over a period). like: as of lag_flow_open. The members held,
+ * group, closing and reverse are set before. LAG_OK, or a status with the message in o->flow. Free in any case. */
 int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, double T, int m);
 void lag_orbit_free(PeriodicOrbit *o);
 
-/* *T := the time after which the motion from the start of `like` comes back next to it, until the time given; about >
- * 0: next to that time. 0: it does not. LAG_OK, or a status with the message in message[size]. */
-int lag_orbit_guess(lag_sim *like, double until, double about, double *T, char *message, size_t size);
+/* *T := the time after which the motion from the start of `like` comes back next to it, or to its image by
+ * o->closing, until the time given; of one that o->reverse leaves twice that until it next does so. about > 0: next to
+ * that time. 0: it does not. LAG_OK, or a status with the message in message[size]. */
+int lag_orbit_guess(const PeriodicOrbit *o, lag_sim *like, double until, double about, double *T, char *message,
+                    size_t size);
+
+/* Whether closing and reverse are symmetries of the equations; of a driven scene with a drive of period T. LAG_OK, or
+ * LAG_EMETHOD with its message in f. */
+int lag_orbit_check_maps(const PeriodicOrbit *o, FlowMap *f, double T);
+
+/* orbit_closing.c. y[n] := G y; d[n], unless NULL, := its derivative by shift j; linear: of small changes. */
+void lag_orbit_close_motion(const PeriodicOrbit *o, double *y, int linear, int j, double *d);
+/* target and G at the present y, shifts and ends. */
+void lag_orbit_set_target(PeriodicOrbit *o);
+/* The charges that are conserved, and generators of the shifts. LAG_OK, or a status with its message. */
+int lag_orbit_list_charges(PeriodicOrbit *o);
 
 /* For continuation (branch_problems.c): runs all segments at the present unknowns; then A and b. */
 int lag_orbit_shoot(PeriodicOrbit *o, int tangents);

@@ -25,7 +25,7 @@ typedef struct Args {
   /* for --sweep */
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram;
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
-  const char *period, *guess, *hold, *relative, *segments; /* for --orbit; --fit, too */
+  const char *period, *guess, *hold, *relative, *reverse, *segments; /* for --orbit; the last for --fit, too */
   const char *best; /* for --design */
   const char *most; /* for --continue */
   int orbit, continues, branches;
@@ -359,8 +359,13 @@ int lag_app_orbit(App *app);
  * command line; its solution, with multipliers. 0, or the exit status after a message. */
 struct PeriodicOrbit;
 int lag_app_orbit_set_up(App *app);
+int lag_app_orbit_holds(App *app, struct PeriodicOrbit *o); /* its conditions, those of --hold */
 int lag_app_orbit_open(App *app, struct PeriodicOrbit *o);
 int lag_app_orbit_solve(App *app, struct PeriodicOrbit *o);
+/* orbit_maps.c: the map takes the terms NAME=NAME of an option, `x=-x, r[i]=r[i+1]`; others are left out. 0, or the
+ * exit status after a message. */
+struct StateMap;
+int lag_app_map_terms(App *app, const char *option, const char *terms, struct StateMap *map);
 /* Index of the charge, or the component of the state, of this name[n]; -1: none. */
 int lag_charge_named(const App *app, const char *name, size_t n);
 int lag_state_named(const App *app, const char *name, size_t n);

@@ -207,10 +207,10 @@ static int check_analysis(const Args *a) {
         : what == DESIGN ? "--design, which takes name=value, --fit, --sigma, --prior, --columns, --best, --until, "
                            "--every, a method and --json"
         : what == CONTINUE
-            ? "--continue, which takes NAME=A..B, name=value, the options of --orbit, --most, --branches, -o, "
-              "--svg and --json"
+            ? "--continue, which takes NAME=A..B, name=value, the options of --orbit, --steady, --most, --branches, "
+              "-o, --svg and --json"
         : what == ORBIT
-            ? "--orbit, which takes name=value, --period, --guess, --hold, --relative, --segments, --until, "
+            ? "--orbit, which takes name=value, --period, --guess, --hold, --relative, --reverse, --segments, --until, "
               "a method and --json"
         : what == EFFECTS
             ? "--effects, which takes name=value, --until and a method"

@@ -1,6 +1,6 @@
 /* --design: where and when to measure so that values are determined best (analysis/design.h). Enters: names to be
- * found, outputs and rows of a run, and how exact a measured value is; leaves: the best measurements and the errors of a
- * fit of them. */
+ * found, outputs and rows of a run, errors of measured values; leaves: the best measurements and the errors of a fit of
+ * them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

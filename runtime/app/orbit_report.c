@@ -76,12 +76,16 @@ static int read_names(App *app, PeriodicOrbit *o, const char *names,
                       int (*add)(App *, PeriodicOrbit *, const char *, size_t)) {
   int rc = 0;
   for (const char *s = names; s && *s && rc == 0; s += strspn(s, ", ")) {
-    size_t n = strcspn(s, ", ");
-    rc = add(app, o, s, n);
+    size_t n = strcspn(s, ",");
+    int map = memchr(s, '=', n) != NULL; /* orbit_maps.c reads them */
+    if (!map) n = strcspn(s, ", ");
+    rc = map ? 0 : add(app, o, s, n);
     s += n;
   }
   return rc;
 }
+
+int lag_app_orbit_holds(App *app, PeriodicOrbit *o) { return read_names(app, o, app->args.hold, add_held); }
 
 /* *T := the time that the option gives; 0: none is given. */
 static int given_period(const Args *a, double *T) {
@@ -126,12 +130,13 @@ static int choose_period(App *app, PeriodicOrbit *o, double *T) {
   int rc = given_period(a, T);
   if (rc) return rc;
   rc = lag_flow_open(&f, app->sim) ? lag_app_error(a, "%s", f.message), EXIT_RUN : LAG_OK;
+  f.closing = o->closing;
   if (rc == 0 && f.forced) rc = driven_period(app, &f, T);
   else if (rc == 0 && a->period) o->held[o->nheld++] = (OrbitHold){.kind = ORBIT_PERIOD, .value = *T};
   lag_flow_free(&f);
   if (rc || f.forced || a->period) return rc;
   double about = *T, until = about > 0 ? app->scene->t0 + 1.25 * about : search_end(app);
-  rc = lag_orbit_guess(app->sim, until, about, T, message, sizeof message);
+  rc = lag_orbit_guess(o, app->sim, until, about, T, message, sizeof message);
   if (about > 0) *T = rc == 0 && *T > 0 && !o->ngroup ? *T : about;
   else if (rc) return lag_app_error(a, "%s", message), EXIT_RUN;
   if (*T > 0) return 0;
@@ -213,6 +218,9 @@ static void reason(const PeriodicOrbit *o, OrbitVerdict v, char *s, size_t n) {
                                : "a multiplier lies on the unit circle");
 }
 
+/* Periods of a motion that closes after an exchange until it closes by itself; 0: it never does. */
+static int closings(const PeriodicOrbit *o) { return !o->closing ? 1 : o->ngroup ? 0 : lag_map_order(o->closing); }
+
 static void put_scene(FILE *f, const App *app, const PeriodicOrbit *o) {
   char text[64];
   fprintf(f, "\nscene orbit \"periodic\" {\n  like %s\n", app->scene->name);
@@ -226,7 +234,7 @@ static void put_scene(FILE *f, const App *app, const PeriodicOrbit *o) {
             lag_number_text(lag_sim_declared(app->sim, i, o->y[i]), text));
     if (c.unit[0] && strcmp(c.unit, "1") != 0) fprintf(f, " [%s]", c.unit);
   }
-  fprintf(f, "\n  span %s", lag_number_text(o->T, text));
+  fprintf(f, "\n  span %s", lag_number_text(o->T * (closings(o) ? closings(o) : 1), text));
   fputs("\n}\n", f);
 }
 
@@ -280,6 +288,12 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
       fprintf(f, "relative: %s moves on by %s %s in each period\n", group_name(app, o, j),
               lag_number_text(lag_sim_declared(app->sim, i, o->shift[j]), text), app->scene->model->q[i].unit);
   }
+  if (closings(o) > 1)
+    fprintf(f, "relative: it closes after the exchange %s; after %d times that, %s s, all is as at its begin\n",
+            app->args.relative, closings(o), lag_number_text(closings(o) * o->T, text));
+  if (o->reverse)
+    fprintf(f, "reversible by %s: from t = %s s on the motion is its first half backwards\n", app->args.reverse,
+            lag_number_text(o->T / 2, text));
   if (lag_flow_differences(&o->flow))
     fputs("multipliers to about 8 digits: contacts have no tangent, and runs from beside the start replace it\n", f);
   put_free(f, o);
@@ -314,6 +328,7 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
                     !o->group[k].n ? o->shift[k] : lag_sim_declared(app->sim, i, o->shift[k]));
   }
   lag_json_end(&j, '}');
+  if (closings(o) > 1) lag_json_number(&j, "whole_period", closings(o) * o->T);
   lag_json_begin(&j, "start", '{');
   for (int i = 0; i < o->n; i++)
     lag_json_number(&j, lag_state_column(app->sim, i).name, lag_sim_declared(app->sim, i, o->y[i]));
@@ -381,6 +396,12 @@ int lag_app_orbit_solve(App *app, PeriodicOrbit *o) {
                   app->scene->name);
     return EXIT_RUN;
   }
+  if (rc == 0 && o->asymmetric) {
+    lag_app_error(a, "--relative %s: events of the scene do not have this symmetry: the motion that was found does not "
+                     "go on as its image",
+                  a->relative);
+    return EXIT_RUN;
+  }
   rc = rc ? rc : lag_orbit_multipliers(o);
   if (rc == LAG_OK) return 0;
   lag_app_error(a, "%s",
@@ -403,11 +424,33 @@ int lag_app_orbit_set_up(App *app) {
   return lag_app_choose_method(app);
 }
 
+/* *map := that of the option, in the orbit's pool; NULL: it names none. */
+static int read_map(App *app, PeriodicOrbit *o, const char *option, const char *terms, const StateMap **map) {
+  int reverses = map == &o->reverse;
+  if (!terms || (!reverses && !strchr(terms, '='))) return 0;
+  StateMap *m = (StateMap *)(void *)lag_pool_doubles(&o->pool, sizeof *m / sizeof(double) + 1);
+  if (!m || lag_map_open(m, &o->pool, app->sim->pb.n, app->sim->pb.nq, reverses))
+    return lag_app_error(&app->args, "out of memory");
+  *map = m;
+  if (reverses && strcmp(terms, "rest") == 0) return 0;
+  return lag_app_map_terms(app, option, terms, m);
+}
+
+static int read_maps(App *app, PeriodicOrbit *o) {
+  const Args *a = &app->args;
+  int rc = read_map(app, o, "--relative", a->relative, &o->closing);
+  rc = rc ? rc : read_map(app, o, "--reverse", a->reverse, &o->reverse);
+  if (rc || !o->reverse || (!o->closing && !o->ngroup)) return rc;
+  return lag_app_error(a, "--reverse and --relative: a motion is solved by half, or closes after a symmetry; leave one "
+                          "out");
+}
+
 int lag_app_orbit_open(App *app, PeriodicOrbit *o) {
   const Args *a = &app->args;
   double T = 0, segments = 0;
-  int rc = read_names(app, o, a->hold, add_held);
+  int rc = lag_app_orbit_holds(app, o);
   rc = rc ? rc : read_names(app, o, a->relative, add_group);
+  rc = rc ? rc : read_maps(app, o);
   if (rc == 0 && a->segments) {
     long long count = 0;
     rc = lag_args_count(a, "--segments", a->segments, "--segments 4", &count);

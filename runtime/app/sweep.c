@@ -3,7 +3,6 @@
  * shard, after any interruption. */
 #include "app/sweep.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +11,6 @@
 #include "core/core.h"
 #include "io/posix.h"
 #include "numeric/clock.h"
-#include "numeric/fnv1a.h"
 
 /* ---- The plan */
 
@@ -323,50 +321,6 @@ static int set_first_values(SweepApp *s) {
   return rc;
 }
 
-static uint64_t hash_numbers(uint64_t h, long long n, const double *x) {
-  for (long long i = 0; i < n; i++) h = lag_hash_number(h, x[i]);
-  return h;
-}
-
-static uint64_t hash_text(uint64_t h, const char *text) { return lag_fnv1a(h, text, strlen(text) + 1); }
-
-static uint64_t hash_variant(uint64_t h, const SweepApp *s, const SweepVariant *v) {
-  const lag_sim *sim = v->like;
-  unsigned long long model = lag_sim_signature(sim);
-  h = lag_fnv1a(h, (const char *)&model, sizeof model);
-  h = hash_numbers(h, sim->scene->model->np, sim->p);
-  h = hash_numbers(h, sim->pb.n, sim->start);
-  h = hash_numbers(h, sim->scene->model->nu, sim->hold);
-  h = hash_numbers(h, lag_sim_method(sim)->noptions, lag_sim_options(sim));
-  for (int k = 0; k < s->sweep.nmeasures; k++) h = hash_text(h, v->measure[k]);
-  return h;
-}
-
-/* Values, method, end and measures: what two processes of one sweep share. */
-uint64_t lag_sweep_signature(const SweepApp *s) {
-  const SweepPlan *p = &s->plan;
-  const double numbers[] = {lag_sim_tolerance(s->app->sim),
-                            s->sweep.until,
-                            isnan(s->sweep.skip) ? s->app->scene->t0 : s->sweep.skip,
-                            (double)p->runs,
-                            (double)p->samples,
-                            (double)p->seed,
-                            p->sampling,
-                            p->zip};
-  /* sines and sums have other last digits */
-  uint64_t h = hash_text(hash_text(LAG_FNV1A_START, LAG_PRECISION), s->app->extras.lanes_4 ? "lanes" : "");
-  for (int v = 0; v < s->sweep.nvariants; v++) h = hash_variant(h, s, &s->variants[v]);
-  h = s->times ? hash_numbers(h, s->sweep.nrows, s->times)
-               : hash_text(h, s->app->args.section ? s->app->args.section : "");
-  h = hash_numbers(h, sizeof numbers / sizeof *numbers, numbers);
-  for (const Factor *f = p->factor; f < p->factor + p->n; f++) {
-    const double range[] = {f->kind, f->a, f->b, (double)f->n};
-    h = hash_numbers(hash_text(h, f->name), sizeof range / sizeof *range, range);
-    if (f->list) h = hash_numbers(h, f->n, f->list);
-  }
-  return h;
-}
-
 /* Progress on a terminal, and signals. */
 static int note(void *context, long long runs) {
   SweepApp *s = context;
@@ -424,98 +378,6 @@ static int estimate(SweepApp *s) {
   return 0;
 }
 
-/* ---- Journals */
-
-static const char *result_file(const Args *a) { return a->out ? a->out : a->svg ? a->svg : a->motions; }
-
-/* Whether the rows go to a stream or a device. The journal has no name then, and ends with this process. */
-static int is_stream(const char *file) {
-  struct stat st;
-  return strcmp(file, "-") == 0 || lag_is_null_device(file) ||
-         (stat(file, &st) == 0 && !S_ISREG(st.st_mode) && !S_ISDIR(st.st_mode));
-}
-
-static int journal_path(const SweepApp *s, long long shard, char path[4200]) {
-  const Args *a = &s->app->args;
-  const char *folder = getenv(TEMPORARY_FOLDER);
-  const char *file = result_file(a);
-  if (is_stream(file))
-    return snprintf(path, 4200, "%s/lagc-sweep-%ld.journal", folder ? folder : "/tmp", (long)getpid());
-  if (s->sweep.shards == 1) return snprintf(path, 4200, "%s.journal", file);
-  return snprintf(path, 4200, "%s.%lld-of-%lld.journal", file, shard + 1, s->sweep.shards);
-}
-
-static int open_journal(SweepApp *s, int resume) {
-  const SweepPlan *p = &s->plan;
-  char path[4200], why[4400];
-  journal_path(s, s->sweep.shard, path);
-  s->journal = (Journal){.signature = lag_sweep_signature(s), .chunks = (p->runs - 1) / s->sweep.chunk + 1,
-                         .size = (size_t)s->sweep.chunk * lag_sweep_numbers(&s->sweep)};
-  int rc = lag_journal_open(&s->journal, path, resume, why, sizeof why);
-  if (rc == 0 && is_stream(result_file(&s->app->args))) unlink(path);
-  if (rc == 0 && why[0] && !s->app->args.quiet) fprintf(stderr, "%s: note: %s\n", s->app->args.self, why);
-  return rc ? lag_app_error(&s->app->args, "%s", why) : 0;
-}
-
-/* --shard i/n; --merge n. */
-static int read_shard(SweepApp *s) {
-  const Args *a = &s->app->args;
-  long long i = 1, n = 1;
-  char end;
-  s->sweep.shards = 1;
-  if (a->shard && (sscanf(a->shard, "%lld/%lld%c", &i, &n, &end) != 2 || i < 1 || n < i || n > 1000000))
-    return lag_app_error(a, "--shard %s: part i of n, for example --shard 1/4", a->shard);
-  s->sweep.shard = i - 1;
-  s->sweep.shards = n;
-  return 0;
-}
-
-/* Copies the chunks of shard number k of n into the journal. */
-static int merge_shard(SweepApp *s, long long k, long long n, double *row) {
-  SweepApp part = *s;
-  part.sweep.shard = k;
-  part.sweep.shards = n;
-  char path[4200];
-  struct stat st;
-  journal_path(&part, k, path);
-  if (stat(path, &st))
-    return lag_app_error(&s->app->args,
-                         "%s is missing: make it by --shard %lld/%lld in place of --merge, or bring it here", path,
-                         k + 1, n);
-  if (open_journal(&part, 1)) return EXIT_USAGE;
-  int rc = 0;
-  for (long long c = k; c < part.journal.chunks && rc == 0; c += n) {
-    size_t size = (size_t)lag_sweep_chunk_runs(&s->sweep, c) * lag_sweep_numbers(&s->sweep);
-    if (!part.journal.at[c])
-      rc = lag_app_error(&s->app->args, "%s: %lld of its runs are missing; go on with --shard %lld/%lld --resume",
-                         part.journal.path, lag_sweep_chunk_runs(&s->sweep, c), k + 1, n);
-    else if (lag_journal_get(&part.journal, c, row, size) || lag_journal_put(&s->journal, c, row, size))
-      rc = lag_app_io_error(s->app, s->journal.path);
-  }
-  lag_journal_close(&part.journal, 0);
-  return rc;
-}
-
-static int merge(SweepApp *s) {
-  const Args *a = &s->app->args;
-  long long n = 0;
-  double *row = malloc((size_t)s->sweep.chunk * lag_sweep_numbers(&s->sweep) * sizeof *row);
-  int rc = row ? lag_args_count(a, "--merge", a->merge, "--merge 4", &n) : lag_app_error(a, "out of memory");
-  if (rc == 0 && n == 1) rc = lag_app_error(a, "--merge 1: one part is the whole; leave --merge out");
-  rc = rc ? rc : open_journal(s, 0);
-  for (long long k = 0; k < n && rc == 0; k++) rc = merge_shard(s, k, n, row);
-  if (rc) lag_journal_close(&s->journal, 1);
-  for (long long k = 0; k < n && rc == 0; k++) { /* all are in the new one */
-    char path[4200];
-    SweepApp part = *s;
-    part.sweep.shards = n;
-    journal_path(&part, k, path);
-    unlink(path);
-  }
-  free(row);
-  return rc;
-}
-
 /* ---- The command */
 
 /* Lanes for the runs of all variants, or why there are none. */
@@ -563,9 +425,9 @@ static long long chunk_size(const SweepApp *s) {
 /* Refuses what needs a journal that outlives the process. */
 static int check_stream(const Args *a) {
   const char *option = a->go_on ? "--resume" : a->shard ? "--shard" : a->merge ? "--merge" : NULL;
-  return option && is_stream(result_file(a))
+  return option && lag_sweep_is_stream(lag_sweep_result_file(a))
              ? lag_app_error(a, "%s: %s is no file, and runs are kept beside a file only; write -o FILE", option,
-                             result_file(a))
+                             lag_sweep_result_file(a))
              : 0;
 }
 
@@ -580,7 +442,7 @@ static int set_up(SweepApp *s) {
   rc = rc ? rc : choose_lanes(s);
   rc = rc ? rc : lag_app_choose_skip(app);
   rc = rc ? rc : choose_threads(&app->args, &s->sweep);
-  rc = rc ? rc : read_shard(s);
+  rc = rc ? rc : lag_sweep_read_shard(s);
   rc = rc ? rc : choose_measures(s);
   rc = rc ? rc : name_columns(s);
   rc = rc ? rc : lag_sweep_motions_open(s);
@@ -589,7 +451,7 @@ static int set_up(SweepApp *s) {
     return lag_app_error(&app->args,
                          "nothing to compute: the runs begin and end at t = %g s; write --until with another time",
                          app->until);
-  if (!result_file(&app->args))
+  if (!lag_sweep_result_file(&app->args))
     return lag_app_error(&app->args,
                          "the rows need a file: write -o FILE.csv or -o FILE.npy, or --svg FILE for a picture");
   if (lag_sweep_picture_check(s)) return EXIT_USAGE;
@@ -605,7 +467,7 @@ static int set_up(SweepApp *s) {
   s->sweep.context = s;
   if (s->sweep.rank) return 0; /* rank 0 has the files */
   if (lag_app_check_outputs(app) || check_stream(&app->args)) return EXIT_USAGE;
-  return (!is_stream(result_file(&app->args)) && lag_app_try_file(app, app->args.out)) ||
+  return (!lag_sweep_is_stream(lag_sweep_result_file(&app->args)) && lag_app_try_file(app, app->args.out)) ||
                  lag_app_try_file(app, app->args.svg) || lag_app_try_file(app, app->args.motions)
              ? EXIT_USAGE
              : 0;
@@ -615,7 +477,7 @@ static int make_runs(SweepApp *s) {
   App *app = s->app;
   lag_app_catch_interrupt();
   int rc = estimate(s);
-  rc = rc ? rc : open_journal(s, app->args.go_on);
+  rc = rc ? rc : lag_sweep_open_journal(s, app->args.go_on);
   rc = rc ? rc : lag_sweep_agree(s);
   if (rc) return rc;
   lag_app_start_clock(app);
@@ -628,7 +490,7 @@ static int make_runs(SweepApp *s) {
   if (status == LAG_OK) return 0;
   if (status == LAG_EIO) lag_app_io_error(app, s->journal.path);
   char kept[sizeof s->journal.path + 60] = "";
-  if (!is_stream(result_file(&app->args)))
+  if (!lag_sweep_is_stream(lag_sweep_result_file(&app->args)))
     snprintf(kept, sizeof kept, "; %s keeps the runs made so far, --resume goes on", s->journal.path);
   lag_app_error(&app->args, "%s%s",
                 status == LAG_EIO      ? "the sweep is not complete"
@@ -646,7 +508,7 @@ int lag_app_sweep(App *app) {
   rc = rc                ? rc
        : app->args.mpi   ? lag_sweep_start(&s)
        : s.sweep.rank    ? lag_sweep_serve(&s)
-       : app->args.merge ? merge(&s)
+       : app->args.merge ? lag_sweep_merge(&s)
                          : make_runs(&s);
   if (rc == 0 && s.sweep.rank == 0) rc = s.sweep.shards > 1 ? lag_sweep_report_part(&s) : lag_sweep_report(&s);
   lag_journal_close(&s.journal, rc == 0 && s.sweep.shards == 1);

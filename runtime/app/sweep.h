@@ -21,8 +21,16 @@ typedef struct SweepApp {
   long long made;    /* runs of this process */
 } SweepApp;
 
-/* Hash of values, method, end and measures: equal for two processes of one sweep. */
+/* sweep_journal.c: hash of values, method, end and measures, equal for two processes of one sweep. */
 uint64_t lag_sweep_signature(const SweepApp *s);
+/* File of the rows, or else of the picture or the motions; NULL: none. is_stream: it is a stream or a device; the
+ * journal has no name then, and ends with this process. */
+const char *lag_sweep_result_file(const Args *a);
+int lag_sweep_is_stream(const char *file);
+/* Opens the journal; reads --shard i/n; --merge n: joins parts. The exit status. */
+int lag_sweep_open_journal(SweepApp *s, int resume);
+int lag_sweep_read_shard(SweepApp *s);
+int lag_sweep_merge(SweepApp *s);
 
 /* sweep_ranks.c. Refuses --mpi where it cannot be; becomes mpirun (a message where that fails). Return EXIT_USAGE
  * after a message. */

@@ -69,12 +69,6 @@ void lag_contacts_close_only(const ContactSet *w, int all, int which) {
     if (!m->contacts[i].conditional) lag_contact_set_closed(w->sim, i, all || i == which);
 }
 
-/* Closes the contacts of w with closed[n], and no others. */
-static void close_contacts(const ContactSet *w, const unsigned char *closed) {
-  lag_contacts_close_only(w, 0, -1);
-  for (int a = 0; a < w->n; a++) lag_contact_set_closed(w->sim, w->of[a], closed[a]);
-}
-
 int lag_contacts_no_values(ContactSet *w, int i) {
   const lag_model *m = w->sim->scene->model;
   return lag_fail(w->sim, LAG_EMODEL, "the contact %s has no finite values at t = %s s",
@@ -235,132 +229,6 @@ static int find_responses(ContactSet *w) {
   return LAG_OK;
 }
 
-/* ---- complementarity */
-
-/* Reports that no impulse, or force, keeps contact a from closing. */
-static int fail_incompatible(ContactSet *w, int a) {
-  int against = -1;
-  double most = 0;
-  for (int b = 0; b < w->n && a >= 0; b++)
-    if (w->active[b] && w->response[a * w->n + b] < most) {
-      most = w->response[a * w->n + b];
-      against = b;
-    }
-  if (against >= 0) {
-    return lag_fail(w->sim, LAG_EMODEL,
-                    "at t = %.9g s the contacts %s and %s contradict each other: no force keeps both gaps from closing",
-                    w->sim->run->t, lag_contacts_name(w, a), lag_contacts_name(w, against));
-  }
-  return lag_fail(w->sim, LAG_EMODEL, "at t = %.9g s nothing can keep the contact %s from closing further",
-                  w->sim->run->t, lag_contacts_name(w, a < 0 ? 0 : a));
-}
-
-/* Solves the complementarity problem of the contacts that take part: in[n]; push[n] := impulses where in[n]. */
-static int complement(ContactSet *w, const double *q) {
-  int m = 0, n = w->n;
-  for (int a = 0; a < n; a++)
-    if (w->active[a]) {
-      w->at[m] = a;
-      w->impulse[m++] = q[a];
-    }
-  for (int k = 0; k < m * m; k++) w->lcp[k] = w->response[w->at[k / m] * n + w->at[k % m]];
-  lag_complementarity p = lag_contact_complementarity(m, w->lcp, w->impulse, w->scale, w->closed);
-  int status = lag_solve_complementarity(&p);
-  for (int k = n - 1; k >= m; k--) w->closed[k] = w->follows[k] = 0;
-  for (int k = m - 1; k >= 0; k--) { /* back to their places, which are not lower */
-    double push = w->impulse[k];
-    unsigned char in = w->closed[k] == LAG_BETWEEN, follows = !in && w->lcp[k * m + k] <= p.zero;
-    w->impulse[k] = w->closed[k] = w->follows[k] = 0;
-    w->impulse[w->at[k]] = push;
-    w->closed[w->at[k]] = in;
-    w->follows[w->at[k]] = follows;
-  }
-  return status == LAG_SOLVED ? LAG_OK : fail_incompatible(w, status == LAG_NO_SOLUTION ? w->at[p.row] : -1);
-}
-
-/* Applies the impulses where gaps close: changes y and w->rate. e[n]: coefficients of restitution; struck[n]: gaps
- * that were closing. */
-static int impact(ContactSet *w, const double *e, const unsigned char *struck) {
-  lag_sim *s = w->sim;
-  int nq = s->pb.nq;
-  double dir = s->run->dir;
-  for (int a = 0; a < w->n; a++) {
-    w->active[a] = 1;
-    w->rhs[a] = dir * w->rate[w->of[a]] * (struck[a] ? 1 + e[a] : 1);
-  }
-  int rc = complement(w, w->rhs);
-  if (rc) return rc;
-  close_contacts(w, w->closed);
-  memset(w->g, 0, (size_t)s->pb.model->constraints->n * sizeof *w->g);
-  for (int a = 0; a < w->n; a++) w->g[lag_contacts_at(w, a)->constraint] = w->closed[a] ? -dir * w->rhs[a] : 0;
-  rc = lag_least_change(&s->pb, s->run->t, w->y, 0, w->g, w->d, w->force);
-  for (int i = 0; i < nq; i++) w->y[nq + i] += w->d[i];
-  return rc || lag_not_finite(nq, w->d) >= 0 || lag_contacts_rates(w, w->y, w->rate)
-             ? lag_contacts_no_values(w, w->of[0])
-             : LAG_OK;
-}
-
-/* ---- forces */
-
-/* Whether contact b and those of the group move each other by no more than rounding. */
-static int is_apart(const ContactSet *w, const unsigned char *group, int b) {
-  const double *W = w->response, own = W[b * w->n + b];
-  for (int a = 0; a < w->n; a++) {
-    double both = W[a * w->n + b] * W[b * w->n + a], square = DBL_EPSILON * DBL_EPSILON * own * W[a * w->n + a];
-    if (group[a] && !(own > 0 && W[a * w->n + a] > 0 && fabs(both) <= square)) return 0;
-  }
-  return 1;
-}
-
-/* pull[n] := acceleration of each open gap: -(force if this contact alone is closed) * (its response). Contacts that
- * do not move each other are closed together. */
-static int find_pulls(ContactSet *w) {
-  const int n = w->n;
-  unsigned char *done = w->follows, *group = w->closed;
-  memset(done, 0, (size_t)n);
-  for (int a = 0; a < n; a++) {
-    if (done[a]) continue;
-    memset(group, 0, (size_t)n);
-    for (int b = a; b < n; b++)
-      if (!done[b] && is_apart(w, group, b)) group[b] = done[b] = 1;
-    close_contacts(w, group);
-    int rc = lag_events_eval(w->sim, w->sim->run->t, w->y, w->events);
-    if (rc) return rc;
-    for (int b = a; b < n; b++)
-      if (group[b]) w->rhs[b] = -w->response[b * n + b] * w->events[lag_contacts_at(w, b)->release];
-  }
-  return LAG_OK;
-}
-
-/* Whether these closed contacts all press. */
-static int none_pulls(ContactSet *w, const unsigned char *closed) {
-  double least = 0, most = 0;
-  close_contacts(w, closed);
-  if (lag_events_eval(w->sim, w->sim->run->t, w->y, w->events)) return 0;
-  for (int a = 0; a < w->n; a++) {
-    double force = closed[a] ? w->events[lag_contacts_at(w, a)->release] : 0;
-    least = fmin(least, force);
-    most = fmax(most, force);
-  }
-  return most > 0 && least >= 0;
-}
-
-/* w->closed := contacts that stay closed under forces: those that press, and those that depend on them where they
- * share the load and none pulls. acceleration[n] := of each gap then. y does not change; contacts are left open. */
-static int contacts_at_rest(ContactSet *w, double *acceleration) {
-  int n = w->n, rc = find_pulls(w), more = 0;
-  rc = rc ? rc : complement(w, w->rhs);
-  for (int a = 0; a < n && rc == 0; a++) {
-    acceleration[a] = w->rhs[a];
-    for (int b = 0; b < n; b++) acceleration[a] += w->closed[b] ? w->response[a * n + b] * w->impulse[b] : 0;
-    more |= w->follows[a];
-    w->follows[a] |= w->closed[a];
-  }
-  if (more && none_pulls(w, w->follows)) memcpy(w->closed, w->follows, (size_t)n);
-  lag_contacts_close_only(w, 0, -1);
-  return rc;
-}
-
 /* ---- contacts of a state */
 
 static const lag_constraint *constraint_of(const lag_sim *s, int i) {
@@ -458,14 +326,14 @@ static int apply_impacts(ContactSet *w, const unsigned char *ends, double *befor
       if (struck[a]) lag_mark_due(s, m->contacts[i].impact);
     }
   }
-  return !any ? LAG_OK : w->rows > w->n ? lag_contacts_strike(w, e) : impact(w, e, struck);
+  return !any ? LAG_OK : w->rows > w->n ? lag_contacts_strike(w, e) : lag_contacts_impact(w, e, struck);
 }
 
 /* ---- resting contacts */
 
 /* w->closed, acceleration[n] of the contacts that take part. */
 static int find_closed(ContactSet *w, int event, double *acceleration) {
-  return w->rows > w->n ? lag_contacts_choose_modes(w, event, acceleration) : contacts_at_rest(w, acceleration);
+  return w->rows > w->n ? lag_contacts_choose_modes(w, event, acceleration) : lag_contacts_at_rest(w, acceleration);
 }
 
 /* Finds the contacts that rest, and among them those that are pressed and stay closed. ends[n]: those which rest
@@ -492,7 +360,7 @@ static int close_gaps(ContactSet *w) {
   lag_sim *s = w->sim;
   for (int a = 0; a < w->n; a++)
     if (w->was_closed[w->of[a]] && !w->closed[a]) lag_mark_due(s, s->scene->model->contacts[w->of[a]].release);
-  close_contacts(w, w->closed);
+  lag_contacts_close(w, w->closed);
   if (w->rows > w->n) lag_contacts_set_friction(w);
   if (lag_project(&s->pb, s->run->t, w->y, NULL) == LAG_OK) return LAG_OK;
   return lag_fail(s, LAG_EMODEL, "at t = %.9g s contacts cannot stay closed: %s", s->run->t,

@@ -70,6 +70,14 @@ int lag_contacts_rates(ContactSet *w, const double *y, double *rate);
 double lag_contacts_response(ContactSet *w, int i);
 int lag_contacts_no_values(ContactSet *w, int i);
 
+/* contact_complementarity.c. close: closes the contacts of w with closed[n], and no others. impact: applies the
+ * impulses where gaps close, changes y and w->rate; e[n]: coefficients of restitution; struck[n]: gaps that were
+ * closing. at_rest: w->closed := contacts that stay closed under forces: those that press, and those that depend on
+ * them where they share the load and none pulls; acceleration[n] := of each gap then; y stays, contacts are open. */
+void lag_contacts_close(const ContactSet *w, const unsigned char *closed);
+int lag_contacts_impact(ContactSet *w, const double *e, const unsigned char *struck);
+int lag_contacts_at_rest(ContactSet *w, double *acceleration);
+
 /* contact_response.c. rate_change: of contact i by a change d of velocities; A: entries of the Jacobian;
  * change_of_rate: of w. band: half bandwidth of M, -1: constraints hold besides the contacts. list_entries: sorts
  * those of the Jacobian by rows. factor_mass: w->band := -1 where M is singular. free_response: lag_contacts_response

@@ -109,6 +109,7 @@ struct lag_sim {
   double *p, *derived, *hold;
   double *begin;         /* [n] at the start of the run */
   double *asked;         /* [n] start as requested, before projection onto the constraints */
+  double *elsewhere;     /* [nq] another assembly, of coordinates that nobody set; NaN: none is known */
   double *redundant;     /* [constraints] 1: it follows from the others at the start */
   double *loose;         /* [nq] 1: at a singular start the velocity is free, but the constraints nearby determine it */
   double *kept;          /* [constraints] values at which constraints on positions are held */
@@ -221,6 +222,11 @@ int lag_massless_direction(int n, double *K, double *x, int *column, double *par
 /* pb.redundant := whether any constraint is marked redundant (just found, or loaded). */
 void lag_note_redundant(lag_sim *sim);
 
+/* method_checks.c: values[noptions] := options by name; whether a method can integrate the model, and has the digits
+ * for its tolerance. Fail with a message that says why, and which method can. */
+int lag_method_read_options(lag_sim *sim, const lag_method *method, const lag_option *opt, int nopt, double *values);
+int lag_method_check(lag_sim *sim, const lag_method *method);
+int lag_method_check_digits(lag_sim *sim, const lag_method *method);
 /* setup.c: sets the state at the start of a run. */
 int lag_setup_start(lag_sim *sim);
 /* The same without checks of parameters and inputs. */

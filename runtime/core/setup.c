@@ -9,7 +9,6 @@
 
 #include "core/core.h"
 #include "core/rhs.h"
-#include "numeric/option_range.h"
 #include "numeric/workspace.h"
 
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_DOUBLES = LINE / sizeof(double) };
@@ -22,8 +21,9 @@ static size_t saved_arrays(lag_sim *s, const lag_method *method, double *x) {
   size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0;
   double *contacts;
   const lag_part parts[] = {{&s->p, (size_t)m->np}, {&s->derived, (size_t)m->nderived}, {&s->hold, nu},
-      {&s->begin, n}, {&s->asked, n}, {&s->redundant, nc}, {&s->loose, (size_t)m->nq}, {&s->kept, nc}, {&s->y, n},
-      {&s->y0, n}, {&s->now, n}, {&s->sign, nev}, {&s->noise, nev}, {&s->root, nev}, {&s->sign_end, nev},
+      {&s->begin, n}, {&s->asked, n}, {&s->elsewhere, (size_t)m->nq}, {&s->redundant, nc},
+      {&s->loose, (size_t)m->nq}, {&s->kept, nc}, {&s->y, n}, {&s->y0, n}, {&s->now, n}, {&s->sign, nev},
+      {&s->noise, nev}, {&s->root, nev}, {&s->sign_end, nev},
       {&s->count, nev}, {&s->first, nev}, {&s->last, nev}, {&s->interval, nev}, {&s->shorter, nev},
       {&s->flight, nev}, {&s->skipped, nev}, {&s->crossed, nm}, {&s->slips, nm}, {&s->slid, nm},
       {&s->slid_since, nm}, {&s->mon_first, nmon}, {&s->mon_peak, nmon}, {&s->exact_peak, (size_t)s->scene->nexact},
@@ -212,134 +212,6 @@ static int begun(lag_sim *s) {
   return s->run->begun != 0.0 ? lag_fail(s, LAG_EINVAL, "the run has begun: set this before the first step") : 0;
 }
 
-/* *value := the value of one option; LAG_EINVAL when it is not allowed. */
-static int option_value(lag_sim *s, const lag_method *m, const lag_method_option *o, const lag_option *given,
-                        double *value) {
-  *value = given->value;
-  if (given->text) {
-    for (int i = 0; o->choices && o->choices[i]; i++)
-      if (strcmp(o->choices[i], given->text) == 0) {
-        *value = i;
-        return LAG_OK;
-      }
-  }
-  lag_option_range range = {o->min, o->max, o->every, o->most, o->choices};
-  char are[128];
-  const char *step = lag_is_step_option(o->name) && *value > 0 ? lag_step_error(s, *value) : NULL;
-  int bad = lag_option_refuses(&range, given->text ? NAN : *value, s->scene->model->constraints != NULL, are);
-  if (bad && given->text)
-    return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"; %s", m->name, o->name, given->text, are);
-  if (bad || step) return lag_fail(s, LAG_EINVAL, "method %s: %s = %g: %s", m->name, o->name, *value, bad ? are : step);
-  return LAG_OK;
-}
-
-static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, int nopt, double *values) {
-  for (int k = 0; k < nopt; k++) {
-    int i = 0;
-    while (i < m->noptions && opt[k].name && strcmp(m->options[i].name, opt[k].name) != 0) i++;
-    if (i == m->noptions || !opt[k].name)
-      return lag_fail(s, LAG_EINVAL, "method %s has no option \"%s\"", m->name, opt[k].name ? opt[k].name : "");
-    int rc = option_value(s, m, &m->options[i], &opt[k], &values[i]);
-    if (rc) return rc;
-  }
-  const char *wrong = m->refuses ? m->refuses(s->scene->model, values) : NULL;
-  return wrong ? lag_fail(s, LAG_EINVAL, "method %s: %s", m->name, wrong) : LAG_OK;
-}
-
-/* Refuses a tolerance finer than the digits of the method's coefficients. */
-static int check_digits(lag_sim *s, const lag_method *method) {
-  if (method->finest < DBL_EPSILON || s->tol >= method->finest) return LAG_OK;
-  return lag_fail(
-      s, LAG_EMETHOD,
-      "method %s: its published coefficients have digits for a tolerance of %.0e, not for %.3g; taylor computes "
-      "its own",
-      method->name, method->finest, s->tol);
-}
-
-/* Switches that jump, and friction in space. */
-static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
-  const lag_model *m = s->scene->model;
-  for (int k = 0; k < m->nmodes; k++) {
-    if (!m->switches[k].jumps || !(needs & (LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION |
-                                            LAG_METHOD_SPLITS | LAG_METHOD_IMPULSES)))
-      continue;
-    if ((needs & LAG_METHOD_IMPULSES) && !m->switches[k].nonnegative) continue;
-    return lag_fail(
-        s, LAG_EMETHOD,
-        "method %s cannot follow a motion that sticks or slides where `%s` jumps; rk45, dop853, radau and rk4 can",
-        method->name, m->switches[k].text);
-  }
-  for (int i = 1; i < m->ncontacts && !(needs & LAG_METHOD_IMPULSES); i++)
-    if (m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent && lag_guide_of(m, i) < 0)
-      return lag_fail(s, LAG_EMETHOD,
-                      "method %s follows friction in a plane, and the slip of a contact has two components here (%s); "
-                      "--method \"moreau(step=1e-3)\" follows it",
-                      method->name, m->constraints->of[m->contacts[i].constraint].name);
-  return LAG_OK;
-}
-
-/* Whether the method can integrate this model; if not, the message says why, and which method can. */
-/* A refusal of a method; its text has the method's name, `what`, the name again. */
-typedef struct Refusal {
-  int holds;
-  const char *text, *what;
-} Refusal;
-
-static int first_refusal(lag_sim *s, const lag_method *method, size_t n, const Refusal r[]) {
-  for (size_t i = 0; i < n; i++)
-    if (r[i].holds) return lag_fail(s, LAG_EMETHOD, r[i].text, method->name, r[i].what, method->name);
-  return LAG_OK;
-}
-
-/* Flags of the method for this model: of one without coordinates some ask less. */
-static unsigned needs_of(const lag_method *method, const lag_model *m, unsigned has) {
-  const unsigned of_momenta = LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION;
-  unsigned needs = method->flags;
-  if ((needs & LAG_METHOD_FLOWS) && m->nq == 0) needs = (needs & ~of_momenta) | LAG_METHOD_JACOBIAN;
-  if ((needs & LAG_METHOD_SPLITS) && m->nq == 0 && (has & LAG_SEPARABLE)) needs &= ~of_momenta;
-  return needs;
-}
-
-static int check_method(lag_sim *s, const lag_method *method) {
-  const lag_model *m = s->scene->model;
-  const unsigned own = method->flags, has = lag_facts(&s->pb), needs = needs_of(method, m, has);
-  const unsigned smooth = LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS;
-  const int held = m->constraints != NULL, linear = (needs & LAG_METHOD_NO_STATES) && (has & LAG_FIRST_ORDER);
-  const int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !held;
-  const Refusal first[] = {
-      {m->contact_laws && (!(own & LAG_METHOD_CONSTRAINTS) || own & smooth),
-       "method %s cannot follow contacts with friction (%s); rk45, dop853, radau, rk4 and moreau can",
-       m->contact_laws ? m->ev[m->contacts[0].impact].name : NULL},
-      {held && !(own & LAG_METHOD_CONSTRAINTS),
-       "method %s cannot hold constraints (%s); rk45, dop853 and variational can",
-       held ? m->constraints->of[0].name : NULL},
-      {held && (has & LAG_MASSLESS) && (own & LAG_METHOD_VARIATION),
-       "method %s finds velocities from momenta, and not all coordinates have inertia in this program; `lagc build "
-       "%s%s` builds a program where they have; rk45 and dop853 need none", "--method "},
-      {linear && (needs & LAG_METHOD_SPLITS) && (has & LAG_SUM_HAMILTONIAN),
-       "method %s takes forces of positions and t, and here forces depend on momenta or velocities; gauss, rk45 and "
-       "dop853 can", NULL},
-      {linear, "method %s needs momenta beside coordinates, and L is linear in the velocities%s; gauss is symplectic "
-               "there, rk45 and dop853 can, too",
-       needs & LAG_METHOD_SPLITS ? ", or H is not a sum T(p) + V(q, t)" : ""},
-      {(needs & LAG_METHOD_NO_STATES) && m->nz > 0,
-       "method %s cannot integrate a model with states; rk45 and dop853 can", NULL},
-      {(needs & LAG_METHOD_STEPS_TO) && m->nev > 0,
-       "method %s does not find events (%s), as its motion within a step is too rough; dop853 and radau do",
-       m->nev > 0 ? m->ev[0].name : NULL}};
-  const Refusal last[] = {
-      {(needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH),
-       "method %s needs a model without if, abs, sign, min, max, atan2 and tables; dop853 does not", NULL},
-      {((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) ||
-           ((needs & LAG_METHOD_JACOBIAN) && !m->linear && !held) || ((needs & LAG_METHOD_TAYLOR) && !m->taylor),
-       "method %s needs derivatives of the model that this program was built without; `lagc run MODEL --method %s` and "
-       "`lagc build MODEL --method %s` build them in; rk45 and dop853 do without", method->name}};
-  int rc = first_refusal(s, method, sizeof first / sizeof *first, first);
-  rc = rc ? rc : check_jumps(s, method, needs);
-  rc = rc ? rc : first_refusal(s, method, sizeof last / sizeof *last, last);
-  return rc ? rc : check_digits(s, method);
-}
-
 int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *opt, int nopt) {
   if (!s) return LAG_EINVAL;
   if (!method || nopt < 0 || (nopt > 0 && !opt)) return lag_fail(s, LAG_EINVAL, "no method, or no array of options");
@@ -347,9 +219,9 @@ int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *o
   double *values;
 
   if (rc) return rc;
-  if ((rc = check_method(s, method)) != 0) return rc;
+  if ((rc = lag_method_check(s, method)) != 0) return rc;
   values = default_options(method);
-  rc = values ? read_options(s, method, opt, nopt, values) : LAG_ENOMEM;
+  rc = values ? lag_method_read_options(s, method, opt, nopt, values) : LAG_ENOMEM;
   rc = rc ? rc : set_blocks(s, method, values);
   if (rc) {
     free(values);
@@ -523,7 +395,7 @@ int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *cont
   lag_signal before = s->signal[i];
   s->signal[i] = (lag_signal){fn, context};
   /* the method may need a fact that an input function takes away */
-  if (s->options && (rc = check_method(s, s->method)) != 0) {
+  if (s->options && (rc = lag_method_check(s, s->method)) != 0) {
     s->signal[i] = before;
     return rc;
   }
@@ -583,7 +455,7 @@ int lag_check_moving_sizes(lag_sim *s, double t, const double *y) {
 }
 
 int lag_setup_start(lag_sim *s) {
-  int rc = check_digits(s, s->method);
+  int rc = lag_method_check_digits(s, s->method);
   rc = rc ? rc : lag_check_parameters(s);
   rc = rc ? rc : check_rates(s);
   return rc ? rc : lag_start_state(s);

@@ -122,7 +122,8 @@ static const CommandRow commands[] = {
      "have.\n\n"
      "  name=value            a parameter, another start, an input to hold"},
     {CMD_ORBIT, "orbit", "periodic",
-     "MODEL [SCENE] [name=value ...] [--guess T | --period T] [--hold NAMES] [--relative NAMES] [--json]",
+     "MODEL [SCENE] [name=value ...] [--guess T | --period T] [--hold NAMES] [--relative NAMES | --reverse MAP] "
+     "[--json]",
      "periodic motions: period, multipliers, stability",
      "Finds the periodic motion next to the scene's start, by Newton's method on the exact tangent of the flow, and "
      "prints its period, the Floquet multipliers with their meaning, and a scene to paste that starts on it. The "
@@ -132,16 +133,18 @@ static const CommandRow commands[] = {
      "motions form families, as where energy is conserved, the nearest one is taken; --hold energy, or the name of "
      "any conserved charge, coordinate or velocity, keeps its value at the start: --hold y is the section y = y(0). "
      "--relative spin: the motion may close after a rotation, or another symmetry that the model declares and lagc "
-     "has proved.\n\n"
+     "has proved, or after an exchange of coordinates; --reverse solves half of a motion that is the same "
+     "backwards.\n\n"
      "Multipliers that are 1 by the phase, by conserved charges and by their symmetries are counted, not listed. "
      "Motions may go over events that set velocities, and over switches; where there are contacts runs from beside "
      "the start replace the tangent. Needs GSL. Exit status 3: no periodic motion was found.\n\n"
      "  name=value            a parameter, another start (th=3), an input to hold"},
     {CMD_CONTINUE, "continue", "bifurcation",
-     "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T] [--hold NAMES] [--branches] [-o "
-     "FILE.csv] [--svg FILE.svg] [--json]",
-     "states of rest and periodic motions over a parameter: folds, bifurcations",
-     "Follows a state of rest, or a periodic motion, while a parameter runs over a range, round folds, too "
+     "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T | --steady] [--hold NAMES] [--branches] "
+     "[-o FILE.csv] [--svg FILE.svg] [--json]",
+     "rest, steady and periodic motions over a parameter: folds, bifurcations",
+     "Follows a state of rest, a steady motion (--steady), or a periodic motion, while a parameter runs over a range, "
+     "round folds, too "
      "(pseudo-arclength continuation), and locates the points where it changes: folds, branch points, Hopf points, "
      "period doublings, Neimark-Sacker points, collisions of multipliers of Hamilton's equations. It begins at the "
      "scene's value of the parameter if that lies in the range, and goes both ways.\n\n"

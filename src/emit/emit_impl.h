@@ -22,6 +22,14 @@ void state_function(const ModelFile *f, const Prog *p, const char *name, const c
                     const char *const *written);
 extern const char *const one_out[]; /* the output array `out` alone */
 
+/* Names of the arrays of the inputs' tables. */
+const char *const *model_rows_names(const ProgramSet *u);
+/* Appends the names of the bits that are set, or 0. */
+void model_flags(unsigned flags, const char *const *names, uint32_t n, StrBuf *out);
+
+/* model_struct.c: appends the const lag_model called NAME, and the tables that it names. */
+void emit_model_struct(const ProgramSet *u, const char *name, const char *digest, StrBuf *out);
+
 /* emit_scene.c: appends the functions and tables of scene `index` of the model whose lag_model is called NAME. */
 void emit_scene(const ModelFile *f, const char *name, uint32_t index);
 

@@ -8,6 +8,7 @@
 #include "emit/emit_model.h"
 #include "fmu/core_text.h" /* static const char *const core_text[]: generated from core.in */
 #include "fmu/cosimulation_text.h"
+#include "fmu/exchange_text.h"
 #include "fmu/fmu_archive_impl.h"
 #include "fmu/fmi2_text.h"
 #include "fmu/fmi3_text.h"
@@ -115,6 +116,7 @@ static void write_wrapper(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   write_head(u, f, out);
   write_tables(u, out);
   APPEND(core_text, out);
+  APPEND(exchange_text, out);
   APPEND(cosimulation_text, out);
   if (f->version == 2) APPEND(fmi2_text, out);
   else APPEND(fmi3_text, out);

@@ -1,5 +1,5 @@
-/* A gradient whose record has little room, so that units of steps are repeated, is the same number by number as one of a
- * record of all steps. Compiled for one scene, SCENE, and a method, METHOD. TAP. */
+/* A gradient whose record has little room, so that units of steps are repeated, is the same number by number as one of
+ * a record of all steps. Compiled for one scene, SCENE, and a method, METHOD. TAP. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

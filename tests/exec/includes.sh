@@ -26,7 +26,7 @@ src/playground playground/ commands/ fmu/fmu_archive.h toolchain/files.h toolcha
 src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
-runtime/kernels   kernels/ lag_lanes.h lag_math.h
+runtime/kernels   kernels/ numeric/gauss_points.h lag_lanes.h lag_math.h
 runtime/core      core/ kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/constraints constraints/ core/core.h core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_kkt.h
 runtime/contacts  contacts/ core/core.h core/rhs.h kernels/ numeric/ lag.h lag_model.h
@@ -46,10 +46,12 @@ runtime/matlab    lag.h mex.h
 '
 # FILE: further headers that it may include.
 besides='
-runtime/include/lag.h  lag_libraries.h lag_model.h
+runtime/include/lag.h  lag_libraries.h lag_method.h lag_model.h
+runtime/include/lag_method.h  lag_model.h
 runtime/include/lag_math.h  lag_lanes.h lag_sincos.h
 runtime/include/lag_support.h  lag_lanes.h
-runtime/include/lag_kkt.h  lag_lanes.h
+runtime/include/lag_band.h  lag_lanes.h
+runtime/include/lag_kkt.h  lag_band.h lag_lanes.h
 '
 # The inside of a folder, shared by its own files only.
 private='evaluator/bytes.h evaluator/program.h evaluator/read_program.h evaluator/evaluated_model.h analysis/measure_nodes.h sweep/run_chunks_impl.h syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h

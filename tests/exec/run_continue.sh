@@ -51,6 +51,18 @@ close 1 period 3.14159265358979 1e-13
 follow models/pendulum.lag wide energy=9..18
 close 1 period 3.40802289484 1e-10
 
+# Steady motions. A conical pendulum turns at w with cos th = g/(l w^2); disturbed, it nods at w sqrt(1 + 3 cos^2 th)
+follow models/spherical_pendulum.lag cone --steady "ph'=3.3..8"
+kinds "end;end;"
+near "$title: angle" 1e-12 1.4169084130608005 "$(of_point 1 th)"
+near "$title: nods" 1e-10 8.27714124486830 "$(sed -n '1s/.*"rates": \[\[[^,]*, \([^]]*\)\].*/\1/p' "$TMP/points")"
+# Watt's governor opens at w^2 = (m + M) g/(m l), where its angular momentum is J w; then cos th = (m + M) g/(m l w^2), and spin = (2 m l^2 sin^2 th + J) w
+follow $dir/governor.lag spin --steady spin=4..20 --branches
+kinds "branch point;end;end;end;end;"
+close 1 parameter 7.67202711152665 1e-11
+near "$title: spin" 1e-10 20 "$(sed -n '4s/.*"th": \([^,]*\),.*"ph.": \([^}]*\)}.*/\1 \2/p' "$TMP/points" | awk '{ printf "%.15g", (2*sin($1)^2 + 2)*$2 }')"
+near "$title: balance" 1e-10 0 "$(sed -n '4s/.*"th": \([^,]*\),.*"ph.": \([^}]*\)}.*/\1 \2/p' "$TMP/points" | awk '{ printf "%.15g", cos($1) - 1.5*9.81/$2^2 }')"
+
 long() {
   # the bead by a constraint: w = sqrt(g/R); on the other branch at w = 8 the height -g/w^2
   follow $dir/hoop.lag w=1..8 --branches
@@ -102,4 +114,5 @@ refused "no such name" 2 "the model has no parameter of this name" "$LAGC" conti
 refused "a range without length" 2 "the ends of the range are equal" "$LAGC" continue models/pendulum.lag wide l=1..1
 refused "two ranges" 2 "one value runs over a range" "$LAGC" continue models/pendulum.lag wide l=1..2 m=1..2
 refused "outside" 2 "outside of 10..18: start within" "$LAGC" continue models/pendulum.lag wide energy=10..18
+refused "a period of steady motions" 2 "a steady motion has none" "$LAGC" continue $dir/governor.lag --steady period=1..2
 tap_end

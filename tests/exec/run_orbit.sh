@@ -67,6 +67,10 @@ long() {
   orbit models/cr3bp.lag departure mu=0.01215058560962404 x=0.823385182 "y'=0.1263" --guess 2.743 --hold x,y
   check "$title: pairs of a saddle" close_to "$(value pairing)" 0 1e-9 # of a multiplier of 2361
   near "$title: crosses the axis at a right angle" 1e-12 0 "$(sed -n "s/.*\"x'\": \([^,}]*\).*/\1/p" "$TMP/json")"
+  # the same by half, where it alone crosses the axis at right angles
+  period=$(value period)
+  orbit models/cr3bp.lag departure mu=0.01215058560962404 x=0.823385182 "y'=0.1263" --guess 2.743 --hold x --reverse y=-y
+  close period "$period" 1e-13
   # motions across the plane do not act on those within: their trace by SciPy's DOP853 at 1e-13, 1.9999512850751
   orbit $dir/cr3bp_space.lag "y'=0.12623" --guess 2.743 --hold x,y
   close period 2.7429120843285 1e-11
@@ -82,6 +86,24 @@ long() {
   closes 1 1 285.40371175 1e-6
 }
 slow long
+
+# Symmetries that exchange coordinates: the figure of eight after a third of its period, with a third of Simo's angles (cos 3a = 4 cos^3 a - 3 cos a);
+# a driven motion that is its own mirror image half a drive later, whose multipliers have the product exp(-d T) (Liouville)
+orbit models/figure_eight.lag eight --hold energy,spin,drift_x,drift_y --relative 'r[i]=r[i+1]'
+close whole_period 6.3259139829262116776 1e-11
+near "$title: a third of the angle" 1e-8 0.998599982 "$(multiplier 1 1 | awk '{ printf "%.15g", 4*$1^3 - 3*$1 }')"
+orbit $dir/oscillator.lag driven --relative x=-x
+close period 2.61799387799149437 1e-13
+near "$title: product of multipliers" 1e-12 0.877305769098345670 "$(multiplier 1 1 | awk -v im="$(multiplier 1 2)" '{ printf "%.15g", $1^2 + im^2 }')"
+check "$title: an event without the symmetry" says 3 "events of the scene do not have this symmetry" "$LAGC" orbit $dir/mirror.lag one_wall --relative x=-x
+check "$title: a pair of walls has it" "$LAGC" orbit $dir/mirror.lag two_walls --relative x=-x
+
+# Halves of reversible motions: M. Henon, C. Heiles: a brake orbit, period as below; a pendulum that turns over: 4/v K(4 g/v^2), mpmath
+orbit models/henon_heiles.lag regular x=0 y=0.3 "x'=0" "y'=0" --hold y --reverse rest
+close period 6.497297178873413 1e-12
+word repeats 1
+orbit models/pendulum.lag wide --reverse th=-th th=0 "th'=12" --hold energy
+close period 0.566048967463181999 1e-14
 
 # a relative motion: with b/r^2 more the ellipse turns by 2 pi (L/sqrt(L^2 + 2 b) - 1) in a period 2 pi/(-2 E)^1.5; here E = -0.375, L = 0.8, b = 0.02
 orbit models/kepler.lag rosette --relative spin --guess 9.7 --hold energy,spin
@@ -132,4 +154,9 @@ refused "rest" 3 "ends at rest" "$LAGC" orbit models/pendulum.lag fading
 refused "a place that matters" 3 "depend on where it is; coordinates that move together are written with +" "$LAGC" orbit models/compass_walker.lag --relative h.x --guess 3.88
 refused "another period than the drive's" 3 "has the period 5.2359877559829" "$LAGC" orbit $dir/oscillator.lag driven --period 5
 refused "no length" 2 "a period is a positive time" "$LAGC" orbit models/pendulum.lag wide --guess -1
+refused "an exchange that is no symmetry" 3 "not a symmetry of the equations" "$LAGC" orbit models/cr3bp.lag departure --relative y=-y
+refused "a coordinate taken twice" 2 "write x=y,y=x to exchange them" "$LAGC" orbit models/figure_eight.lag --relative 'r[1]=r[2]'
+refused "no map" 2 "write which coordinate takes the place" "$LAGC" orbit models/pendulum.lag wide --relative 'th=2*th'
+refused "friction, backwards" 3 "friction spoils that" "$LAGC" orbit models/pendulum.lag fading --reverse th=-th
+refused "no word for rest" 2 "or \`rest\`" "$LAGC" orbit models/pendulum.lag wide --reverse th
 tap_end

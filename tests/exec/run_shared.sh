@@ -6,7 +6,7 @@ mkdir -p "$TMP/lib"
 check "a shared library" "$LAGC" build models/spring.lag --shared --with linear -o "$so"
 if command -v nm >/dev/null && command -v readelf >/dev/null; then
   empty "shows lag_* only" "$(nm -D --defined-only "$so" | awk '$3 !~ /^lag_/')"
-  declared=$(sed -n '/#define LAG_VERSION/,$p' runtime/include/lag.h | grep -v '^typedef' | grep -oE '\blag_[a-z_0-9]+\(' | tr -d '(' | LC_ALL=C sort -u | grep -vxE 'lag_(png|hdf5)_write') # (in archives of their own)
+  declared=$(sed -n '/#define LAG_VERSION/,$p' runtime/include/lag.h runtime/include/lag_method.h | grep -v '^typedef' | grep -oE '\blag_[a-z_0-9]+\(' | tr -d '(' | LC_ALL=C sort -u | grep -vxE 'lag_(png|hdf5)_write') # (in archives of their own)
   nm -D --defined-only "$so" | awk '{ print $3 }' >"$TMP/shown"
   empty "shows each function of lag.h" "$(printf '%s\n' "$declared" | grep -vxFf "$TMP/shown")"
   is "its name" "$(readelf -d "$so" | sed -n 's/.*soname: \[\(.*\)\]/\1/p')" libspring.so

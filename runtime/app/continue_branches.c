@@ -1,0 +1,375 @@
+/* --continue: states of rest or periodic motions over a parameter. Enters: the command line; leaves: the points where
+ * a branch changes, as text or JSON; all points as rows and a picture. */
+#include "app/continue_branches.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- The parameter and its range */
+
+/* job->name, low and high: of the one value that is a range, which is taken out of the settings. */
+static int take_range(Job *job) {
+  Args *a = &job->app->args;
+  const char *found = NULL;
+  int kept = 0;
+  for (int i = 0; i < a->nsets; i++) {
+    const char *eq = strchr(a->sets[i], '=');
+    if (!eq || !strstr(eq, "..")) {
+      a->sets[kept++] = a->sets[i];
+      continue;
+    }
+    if (found) return lag_app_error(a, "%s and %s: one value runs over a range; leave one out", found, a->sets[i]);
+    found = a->sets[i];
+  }
+  a->nsets = kept;
+  if (!found) return lag_app_error(a, "a range is missing: NAME=A..B, for example mu=0.1..3");
+  size_t n = strcspn(found, "=");
+  char low[64];
+  const char *dots = strstr(found, "..");
+  snprintf(job->name, sizeof job->name, "%.*s", (int)n, found);
+  snprintf(low, sizeof low, "%.*s", (int)(dots - found - (long)n - 1), found + n + 1);
+  if (!lag_args_number(a, job->name, low, "mu=0.1..3", &job->low) ||
+      !lag_args_number(a, job->name, dots + 2, "mu=0.1..3", &job->high))
+    return EXIT_USAGE;
+  return job->low != job->high ? 0 : lag_app_error(a, "%s: the ends of the range are equal", found);
+}
+
+/* The quantity of this name, and its value at the start. */
+static int find_parameter(Job *job) {
+  App *app = job->app;
+  int index = 0, charge = lag_charge_named(app, job->name, strlen(job->name)),
+      state = lag_state_named(app, job->name, strlen(job->name));
+  job->factor = 1;
+  job->led_kind = -1;
+  if (strcmp(job->name, "period") == 0) job->led_kind = ORBIT_PERIOD;
+  else if (state >= 0) {
+    job->led_kind = ORBIT_STATE, job->led_of = state;
+    job->offset = 0 - lag_sim_declared(app->sim, state, 0);
+    job->factor = 1 / (lag_sim_declared(app->sim, state, 1) - lag_sim_declared(app->sim, state, 0));
+    job->offset *= job->factor;
+  } else if (charge >= 0) job->led_kind = ORBIT_CHARGE, job->led_of = charge;
+  else if (lag_find_name(app->scene->model, job->name, &index, &job->unit) != LAG_IS_P)
+    return lag_app_error(&app->args,
+                         "%s: the model has no parameter of this name; of periodic motions also `energy`, a conserved "
+                         "charge, `period`, a coordinate, velocity or state can run over a range",
+                         job->name);
+  else job->begin = lag_declared(job->unit, app->sim->p[index]);
+  return 0;
+}
+
+/* The value to begin with: the scene's, if it lies in the range, else the first end. */
+static int choose_begin(Job *job) {
+  double low = fmin(job->low, job->high), high = fmax(job->low, job->high);
+  job->size = high - low;
+  if (!(job->begin >= low && job->begin <= high)) job->begin = job->low;
+  return lag_sim_set(job->app->sim, job->name, job->begin)
+             ? lag_app_error(&job->app->args, "%s", lag_sim_message(job->app->sim))
+             : 0;
+}
+
+/* ---- Following */
+
+static const char *words_of(int rc, const char *message) {
+  return rc == LAG_ENOMEM ? "out of memory"
+         : rc == LAG_ESINGULAR
+             ? "at each value of the parameter there is a family of solutions: --hold energy, or another "
+               "charge, coordinate or `period`, chooses one"
+         : message && message[0] ? message
+                                 : "there is no solution to begin with";
+}
+
+static int failed(Job *job, int rc, const char *message) {
+  lag_app_error(&job->app->args, "%s", words_of(rc, message));
+  return EXIT_RUN;
+}
+
+/* Follows from u along d, or by sign, as the next part. LAG_OK, or a status. */
+static int follow(Job *job, const BranchProblem *p, PeriodicOrbit *o, const double *u, const double *d, int sign,
+                  int from) {
+  Part *part = &job->part[job->nparts];
+  *part = (Part){.problem = p, .orbit = o, .number = job->nbranches, .from = from};
+  int rc = lag_branch_follow(&part->branch, p, u, d, sign, &job->limits);
+  if (rc == LAG_OK) job->nparts++;
+  else lag_branch_free(&part->branch);
+  return rc;
+}
+
+/* Both halves of the first branch. */
+static int follow_first(Job *job, const double *u, PeriodicOrbit *o) {
+  job->nbranches = 1;
+  int rc = follow(job, &job->problem, o, u, NULL, 1, 0);
+  const Branch *b = &job->part[0].branch;
+  if (rc || b->end == BRANCH_CLOSED) return rc;
+  rc = follow(job, &job->problem, o, u, NULL, -1, 0);
+  return rc == LAG_ENOMEM ? rc : LAG_OK;
+}
+
+/* Both directions of the branch that crosses another one at a point. */
+static int follow_other(Job *job, const Part *of, const BranchPoint *at) {
+  int cols = of->problem->cols, number = of->number;
+  double *d = malloc(2 * (size_t)cols * sizeof *d), *back = d + cols;
+  if (!d) return LAG_ENOMEM;
+  int rc = lag_branch_other(of->problem, at, d);
+  for (int i = 0; i < cols; i++) back[i] = -d[i];
+  if (rc == LAG_OK) job->nbranches++;
+  for (int k = 0; k < 2 && rc == LAG_OK && job->nparts < MOST_BRANCHES; k++)
+    if (follow(job, of->problem, of->orbit, at->u, k ? back : d, 0, number) == LAG_ENOMEM) rc = LAG_ENOMEM;
+  free(d);
+  return rc;
+}
+
+/* The orbit over twice the period at a point where it doubles; its parts hold the same motion. */
+static int open_doubled(Doubled *two, PeriodicOrbit *o, const lag_scene *scene) {
+  two->like = lag_flow_sim(&o->flow, o->flow.t0, o->y);
+  if (!two->like) return LAG_ENOMEM;
+  two->like->scene = scene;
+  two->orbit = (PeriodicOrbit){.nheld = o->nheld,
+                               .continues = 1,
+                               .led = o->led,
+                               .name = o->name,
+                               .parameter = o->parameter,
+                               .parameter_unit = o->parameter_unit,
+                               .ngroup = o->ngroup};
+  memcpy(two->orbit.held, o->held, sizeof o->held);
+  memcpy(two->orbit.group, o->group, sizeof o->group);
+  if (o->closing && lag_map_square(&two->closing, &two->orbit.pool, o->closing)) return LAG_ENOMEM;
+  two->orbit.closing = o->closing ? &two->closing : NULL;
+  int rc = lag_orbit_open(&two->orbit, two->like, o->algebra, 2 * o->T, 2 * o->m);
+  for (int s = 0; s < two->orbit.m && rc == LAG_OK; s++)
+    memcpy(two->orbit.y + s * o->n, o->y + s % o->m * o->n, (size_t)o->n * sizeof *o->y);
+  two->orbit.pairing = o->pairing;
+  lag_orbit_branch(&two->problem, &two->orbit);
+  return rc;
+}
+
+/* tangent[cols] := that of the same branch for twice the period: each half moves as the whole does. */
+static void double_tangent(const PeriodicOrbit *o, const PeriodicOrbit *two, const double *of, double *tangent) {
+  int part = o->m * o->n, whole = two->m * two->n;
+  for (int i = 0; i < two->cols; i++) tangent[i] = of[i < whole ? i % part : part + i - whole];
+}
+
+/* Motions of twice the period, from a point where it doubles: in one direction, as the other one is the same motion
+ * a period later. */
+static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
+  if (job->ndoubled == MOST_DOUBLINGS || of->problem->place(of->orbit, at->u)) return LAG_OK;
+  Doubled *two = &job->doubled[job->ndoubled++];
+  int rc = open_doubled(two, of->orbit, job->app->sim->scene), cols = two->orbit.cols;
+  double *u = rc ? NULL : malloc(3 * (size_t)cols * sizeof *u);
+  if (rc || !u) return rc == LAG_ENOMEM || !u ? LAG_ENOMEM : LAG_OK;
+  BranchPoint start = {.u = u, .tangent = u + cols};
+  lag_orbit_branch_unknowns(&two->orbit, u);
+  double_tangent(of->orbit, &two->orbit, at->tangent, start.tangent);
+  rc = lag_branch_other(&two->problem, &start, u + 2 * cols);
+  if (rc == LAG_OK) job->nbranches++;
+  if (rc == LAG_OK) rc = follow(job, &two->problem, &two->orbit, u, u + 2 * cols, 0, of->number);
+  free(u);
+  return rc == LAG_ENOMEM ? rc : LAG_OK;
+}
+
+/* The periodic motions that leave a Hopf point. */
+static int follow_cycle(Job *job, const Part *of, const BranchPoint *at) {
+  if (job->ndoubled == MOST_DOUBLINGS || job->steady.cols) return LAG_OK;
+  Doubled *cycle = &job->doubled[job->ndoubled++];
+  double *d = NULL;
+  int rc = lag_hopf_orbit(&job->rest, at, &cycle->orbit, &cycle->like, &cycle->problem, &d);
+  if (rc != 1) return rc;
+  double *u = malloc((size_t)cycle->orbit.cols * sizeof *u), size = 0;
+  if (!u) return LAG_ENOMEM;
+  lag_orbit_branch_unknowns(&cycle->orbit, u);
+  for (int i = 0; i < cycle->orbit.cols; i++) size += d[i] * d[i];
+  for (int i = 0; i < cycle->orbit.cols; i++) d[i] /= sqrt(size);
+  job->nbranches++;
+  rc = follow(job, &cycle->problem, &cycle->orbit, u, d, 1, of->number);
+  free(u);
+  return rc == LAG_ENOMEM ? rc : LAG_OK;
+}
+
+/* Branches that leave the first one, and of those the motions whose period doubles again. */
+static int follow_branches(Job *job) {
+  int rc = LAG_OK, first = job->nparts;
+  for (int k = 0; k < job->nparts && rc == LAG_OK; k++)
+    for (const BranchPoint *at = job->part[k].branch.first; at && rc == LAG_OK; at = at->next) {
+      if (job->nparts >= MOST_BRANCHES - 1) return LAG_OK;
+      if (at->kind == BRANCH_POINT && k < first) rc = follow_other(job, &job->part[k], at);
+      if (at->kind == BRANCH_HOPF) rc = follow_cycle(job, &job->part[k], at);
+      if (at->kind == BRANCH_DOUBLING) rc = follow_doubled(job, &job->part[k], at);
+    }
+  return rc;
+}
+
+/* ---- Beginning */
+
+/* Whether the motion to begin with lies in the range. */
+static int check_begin(Job *job, const char *kind) {
+  if (job->begin >= fmin(job->low, job->high) && job->begin <= fmax(job->low, job->high)) return 0;
+  return lag_app_error(&job->app->args,
+                       "the %s motion near the start has %s = %.6g, outside of %g..%g: start within: "
+                       "name=VALUE, or widen the range",
+                       kind, job->name, job->begin, job->low, job->high);
+}
+
+static int begin_rest(Job *job) {
+  int rc = lag_rest_branch_open(&job->rest, job->app->sim, job->app->extras.algebra, job->name, job->begin, job->size);
+  if (rc) return failed(job, rc, job->rest.flow.message);
+  double *u = malloc((size_t)job->rest.cols * sizeof *u);
+  if (!u) return failed(job, LAG_ENOMEM, NULL);
+  lag_rest_branch_unknowns(&job->rest, u);
+  job->problem = job->rest.problem;
+  rc = follow_first(job, u, NULL);
+  free(u);
+  return rc ? failed(job, rc, NULL) : 0;
+}
+
+/* Of steady motions over a parameter charges other than the energy keep their values, unless --hold names others; over
+ * a charge the others. */
+static int hold_for_steady(Job *job) {
+  SteadyBranch *s = &job->steady;
+  App *app = job->app;
+  const lag_charges *of = app->scene->model->charges;
+  int rc = lag_app_orbit_holds(app, &job->orbit), all = !app->args.hold && job->led_kind != ORBIT_STATE;
+  s->nheld = job->orbit.nheld;
+  memcpy(s->held, job->orbit.held, sizeof s->held);
+  for (int k = 1; of && k < of->n && all && s->nheld < ORBIT_MOST_HELD - 1; k++) {
+    int leads = job->led_kind == ORBIT_CHARGE && (job->led_of == k || job->led_of == 0);
+    if (of->of[k].flags & LAG_CONSERVED && !leads) s->held[s->nheld++] = (OrbitHold){.kind = ORBIT_CHARGE, .of = k};
+  }
+  s->led = job->led_kind < 0 ? -1 : s->nheld;
+  if (s->led >= 0) s->held[s->nheld++] = (OrbitHold){.kind = (OrbitHoldKind)job->led_kind, .of = job->led_of};
+  return rc;
+}
+
+static int begin_steady(Job *job) {
+  SteadyBranch *s = &job->steady;
+  App *app = job->app;
+  if (job->led_kind == ORBIT_PERIOD)
+    return lag_app_error(&app->args, "period: a steady motion has none; write a parameter, a charge, a coordinate or a "
+                                     "velocity: th'=1..8");
+  int rc = hold_for_steady(job);
+  if (rc) return rc;
+  s->name = job->name;
+  s->parameter = job->begin;
+  s->parameter_unit = job->size * (job->led_kind < 0 ? 1 : fabs(job->factor));
+  rc = lag_steady_branch_open(s, app->sim, app->extras.algebra);
+  if (rc) return failed(job, rc, s->flow.message);
+  double *u = malloc((size_t)s->cols * sizeof *u);
+  if (!u) return failed(job, LAG_ENOMEM, NULL);
+  lag_steady_branch_unknowns(s, u);
+  job->problem = s->problem;
+  job->begin = job->led_kind < 0 ? job->begin : (s->parameter - job->offset) / job->factor;
+  rc = check_begin(job, "steady");
+  rc = rc ? rc : follow_first(job, u, NULL) ? failed(job, LAG_ESINGULAR, NULL) : 0;
+  free(u);
+  return rc;
+}
+
+/* Conserved charges keep their values unless --hold names others, or one is the parameter. */
+static void hold_charges(Job *job) {
+  PeriodicOrbit *o = &job->orbit;
+  const lag_charges *of = job->app->scene->model->charges;
+  int conserves = (lag_facts(&job->app->sim->pb) & LAG_CONSERVES_ENERGY) != 0;
+  if (job->led_kind < 0 && job->app->args.hold) return;
+  for (int k = 0; k < (of ? of->n : 1) && o->nheld < ORBIT_MOST_HELD - 2; k++) {
+    if (of ? !(of->of[k].flags & LAG_CONSERVED) : !conserves) continue;
+    if (job->led_kind >= 0 && (k == 0 || (job->led_kind == ORBIT_CHARGE && job->led_of == k))) continue;
+    o->held[o->nheld++] = (OrbitHold){.kind = ORBIT_CHARGE, .of = k};
+  }
+}
+
+static double led_value(Job *job) {
+  PeriodicOrbit *o = &job->orbit;
+  return job->led_kind == ORBIT_PERIOD  ? o->T
+         : job->led_kind == ORBIT_STATE ? o->y[job->led_of]
+                                        : lag_flow_charge(&o->flow, job->led_of, o->flow.t0, o->y);
+}
+
+static int begin_periodic(Job *job) {
+  PeriodicOrbit *o = &job->orbit;
+  App *app = job->app;
+  hold_charges(job);
+  int rc = lag_app_orbit_open(app, o);
+  rc = rc ? rc : lag_app_orbit_solve(app, o);
+  if (rc) return rc;
+  if (job->led_kind >= 0) {
+    o->led = o->nheld;
+    o->held[o->nheld++] = (OrbitHold){.kind = (OrbitHoldKind)job->led_kind, .of = job->led_of};
+    job->begin = (led_value(job) - job->offset) / job->factor;
+    if ((rc = check_begin(job, "periodic")) != 0) return rc;
+  } else o->led = -1;
+  o->name = job->led_kind < 0 ? job->name : NULL;
+  o->parameter = job->led_kind < 0 ? job->begin : led_value(job);
+  o->parameter_unit = job->size * (job->led_kind < 0 ? 1 : fabs(job->factor));
+  o->continues = 1;
+  if (job->led_kind < 0 && lag_flow_set(&o->flow, o->name, o->parameter))
+    return failed(job, LAG_EINVAL, o->flow.message);
+  lag_orbit_branch(&job->problem, o);
+  double *u = malloc((size_t)o->cols * sizeof *u);
+  if (!u) return failed(job, LAG_ENOMEM, NULL);
+  lag_orbit_branch_unknowns(o, u);
+  rc = follow_first(job, u, o);
+  free(u);
+  return rc ? failed(job, rc, NULL) : 0;
+}
+
+/* ---- The command */
+
+static int read_limits(Job *job) {
+  const Args *a = &job->app->args;
+  long long most = POINTS;
+  if (a->most && lag_args_count(a, "--most", a->most, "--most 400", &most)) return EXIT_USAGE;
+  double a0 = job->low * job->factor + job->offset, b0 = job->high * job->factor + job->offset;
+  double unit = job->size * fabs(job->factor);
+  job->limits = (BranchLimits){.low = fmin(a0, b0) / unit,
+                               .high = fmax(a0, b0) / unit,
+                               .step = 0.01,
+                               .longest = 0.1,
+                               .most = (int)(most < 100000 ? most : 100000)};
+  return 0;
+}
+
+/* Whether periodic motions are followed. */
+static int is_periodic(Job *job) {
+  const Args *a = &job->app->args;
+  FlowMap f;
+  if (job->led_kind >= 0 || a->guess || a->period || a->hold || a->relative) return 1;
+  int forced = lag_flow_open(&f, job->app->sim) == LAG_OK && f.forced;
+  lag_flow_free(&f);
+  return forced;
+}
+
+static int run(Job *job) {
+  if (job->app->args.steady) return begin_steady(job);
+  job->periodic = is_periodic(job);
+  return job->periodic ? begin_periodic(job) : begin_rest(job);
+}
+
+static void close_job(Job *job) {
+  for (int k = 0; k < job->nparts; k++) lag_branch_free(&job->part[k].branch);
+  lag_rest_branch_free(&job->rest);
+  lag_steady_branch_free(&job->steady);
+  for (int k = 0; k < job->ndoubled; k++) {
+    lag_orbit_free(&job->doubled[k].orbit);
+    lag_sim_free(job->doubled[k].like);
+  }
+  lag_orbit_free(&job->orbit);
+}
+
+int lag_app_continue(App *app) {
+  Job job = {.app = app};
+  const Args *a = &app->args;
+  int rc = take_range(&job);
+  rc = rc ? rc : lag_app_orbit_set_up(app);
+  rc = rc ? rc : find_parameter(&job);
+  if (rc == 0 && job.led_kind < 0) rc = choose_begin(&job);
+  job.size = fabs(job.high - job.low);
+  rc = rc ? rc : read_limits(&job);
+  rc = rc ? rc : run(&job);
+  if (rc == 0 && a->branches && follow_branches(&job)) rc = failed(&job, LAG_ENOMEM, NULL);
+  rc = rc ? rc : lag_continue_write_rows(&job);
+  rc = rc ? rc : lag_continue_draw(&job);
+  if (rc == 0 && a->json) lag_continue_put_json(stdout, &job);
+  else if (rc == 0) lag_continue_put_text(a->out && strcmp(a->out, "-") == 0 ? stderr : stdout, &job);
+  close_job(&job);
+  return rc;
+}

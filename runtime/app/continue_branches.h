@@ -1,0 +1,51 @@
+/* Branches of --continue: followed by continue_branches.c, reported by continue_report.c. */
+#pragma once
+
+#include "analysis/branch_problems.h"
+#include "analysis/steady_branch.h"
+#include "app/app.h"
+
+enum { MOST_BRANCHES = 24, MOST_DOUBLINGS = 4, POINTS = 400, LOOKS = 128 };
+
+/* A branch and the equations that it solves. */
+typedef struct Part {
+  Branch branch;
+  const BranchProblem *problem;
+  PeriodicOrbit *orbit; /* NULL: states of rest, or steady motions */
+  int number, from;     /* of the branch that it is a half of; of the one that it leaves, 0: none */
+} Part;
+
+/* Motions of twice the period of another one. */
+typedef struct Doubled {
+  lag_sim *like;
+  StateMap closing;
+  PeriodicOrbit orbit;
+  BranchProblem problem;
+} Doubled;
+
+typedef struct Job {
+  App *app;
+  char name[96];                                 /* of the parameter */
+  const lag_var *unit;                           /* of a parameter of the model; NULL: of another quantity */
+  double low, high, begin, size, offset, factor; /* range; first value; SI = factor x + offset */
+  RestBranch rest;
+  SteadyBranch steady;
+  PeriodicOrbit orbit;
+  BranchProblem problem;
+  Doubled doubled[MOST_DOUBLINGS];
+  int ndoubled;
+  int periodic, led_kind, led_of; /* led_kind: of OrbitHold; -1: a parameter */
+  BranchLimits limits;
+  Part part[MOST_BRANCHES];
+  int nparts, nbranches;
+} Job;
+
+/* The solutions in words: states of rest, steady or periodic motions. */
+const char *lag_continue_solutions(const Job *job);
+
+/* Text or JSON: the points where a branch changes. */
+void lag_continue_put_text(FILE *f, const Job *job);
+void lag_continue_put_json(FILE *f, const Job *job);
+/* All points as rows of --output, and the picture of --svg, if asked for. 0, or EXIT_USAGE after a message. */
+int lag_continue_write_rows(Job *job);
+int lag_continue_draw(Job *job);
