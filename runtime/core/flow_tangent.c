@@ -144,10 +144,8 @@ int lag_tangent_set(lag_sim *s, int k, const double *Y) {
   return stay_on_constraints(s, s->run->begun != 0.0 ? s->run->t : s->scene->t0, s->tangent);
 }
 
-/* Y := D Y, with D the derivative of the last step up to t. */
-static int advance_tangent(lag_sim *s, double t, double *Y) {
+int lag_tangent_over(lag_sim *s, double t, double *Y) {
   lag_problem *pb = &s->pb;
-  if (s->record) return lag_record_step(s, t);
   double rhs_calls = pb->rhs_calls, systems = pb->systems, iterations = pb->iterations;
   pb->detail = NULL;
   pb->bad_index = -1;
@@ -158,12 +156,18 @@ static int advance_tangent(lag_sim *s, double t, double *Y) {
   return rc ? lag_explain(s, rc) : stay_on_constraints(s, t, Y);
 }
 
+/* Y := D Y, or the record of it. */
+static int advance_tangent(lag_sim *s, double t, double *Y) {
+  return s->record ? lag_record_step(s, t) : lag_tangent_over(s, t, Y);
+}
+
 int lag_tangent_pass(lag_sim *s) {
   if (!s->tangent || s->run->have_step != 0.0 || s->tangent_at_event) {
     s->tangent_at_event = 0;
     return LAG_OK;
   }
-  return advance_tangent(s, s->run->t, s->tangent);
+  int rc = advance_tangent(s, s->run->t, s->tangent);
+  return rc || !s->record ? rc : lag_record_cut(s);
 }
 
 /* Whether event k only touches zero: its rate there is negligible relative to its values at the ends of the step. */
