@@ -25,7 +25,7 @@ typedef struct Args {
   /* for --sweep */
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram;
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
-  const char *period, *guess, *hold, *relative, *reverse, *segments; /* for --orbit */
+  const char *period, *guess, *hold, *relative, *reverse, *segments, *manifold, *follow; /* for --orbit */
   const char *most; /* for --continue */
   int orbit, continues, branches;
   int json, sketch, quiet, help, trace, no_rods, modes, linearize, equilibrium, gradient, steady, tangent,
@@ -361,6 +361,10 @@ int lag_app_orbit_set_up(App *app);
 int lag_app_orbit_holds(App *app, struct PeriodicOrbit *o); /* its conditions, those of --hold */
 int lag_app_orbit_open(App *app, struct PeriodicOrbit *o);
 int lag_app_orbit_solve(App *app, struct PeriodicOrbit *o);
+/* orbit_manifolds.c: --manifold, of the orbit, or with --equilibrium of the rest next to the start. 0, or the exit
+ * status. */
+int lag_app_manifolds(App *app, struct PeriodicOrbit *o);
+int lag_app_rest_manifolds(App *app);
 /* orbit_maps.c: the map takes the terms NAME=NAME of an option, `x=-x, r[i]=r[i+1]`; others are left out. 0, or the
  * exit status after a message. */
 struct StateMap;

@@ -123,7 +123,7 @@ static const CommandRow commands[] = {
      "  name=value            a parameter, another start, an input to hold"},
     {CMD_ORBIT, "orbit", "periodic",
      "MODEL [SCENE] [name=value ...] [--guess T | --period T] [--hold NAMES] [--relative NAMES | --reverse MAP] "
-     "[--json]",
+     "[--manifold KIND -o FILE.csv] [--json]",
      "periodic motions: period, multipliers, stability",
      "Finds the periodic motion next to the scene's start, by Newton's method on the exact tangent of the flow, and "
      "prints its period, the Floquet multipliers with their meaning, and a scene to paste that starts on it. The "
@@ -143,7 +143,8 @@ static const CommandRow commands[] = {
      "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T | --steady] [--hold NAMES] [--branches] "
      "[-o FILE.csv] [--svg FILE.svg] [--json]",
      "rest, steady and periodic motions over a parameter: folds, bifurcations",
-     "Follows a state of rest, a steady motion (--steady), or a periodic motion, while a parameter runs over a range, round folds, too "
+     "Follows a state of rest, a steady motion (--steady), or a periodic motion, while a parameter runs over a "
+     "range, round folds, too "
      "(pseudo-arclength continuation), and locates the points where it changes: folds, branch points, Hopf points, "
      "period doublings, Neimark-Sacker points, collisions of multipliers of Hamilton's equations. It begins at the "
      "scene's value of the parameter if that lies in the range, and goes both ways.\n\n"
