@@ -27,7 +27,7 @@ typedef struct Args {
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
   const char *period, *guess, *hold, *relative, *reverse, *segments, *manifold, *follow; /* for --orbit */
   const char *most; /* for --continue */
-  int orbit, continues, branches;
+  int orbit, continues, branches, amplitude;
   int json, sketch, quiet, help, trace, no_rods, modes, linearize, equilibrium, gradient, steady, tangent,
       volume, lyapunov, cost, reference, all, runs, sweep, zip, go_on, yes, portrait, potential, distance, energy_error,
       no_monitors, profile, each_effect;

@@ -35,8 +35,8 @@ static int read_settings(Manifolds *m) {
   if (choice == 3 ||
       (a->manifold[n] && lag_args_count(a, "--manifold", a->manifold + n + 1, "--manifold unstable:60", &phases)))
     return lag_app_error(a,
-                         "--manifold %s: write unstable, stable or both, with another number of starts than %d behind a "
-                         "colon: --manifold unstable:200",
+                         "--manifold %s: write unstable, stable or both, with another number of starts than %d behind "
+                         "a colon: --manifold unstable:200",
                          a->manifold, PHASES);
   m->wanted[0] = choice != 1;
   m->wanted[1] = choice != 0;
