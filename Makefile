@@ -224,7 +224,7 @@ endef
 $(eval $(call as_text,io/page.h,runtime/io/page.html))
 $(eval $(call as_text,commands/verify_driver.h,src/commands/verify_driver.in))
 $(eval $(call as_text,toolchain/probe_text.h,src/toolchain/compiler_probe.in))
-$(eval $(call as_text,emit/embedded_texts.h,$(patsubst %,runtime/include/lag_%.h,lanes math sincos support band kkt) $(sort $(wildcard runtime/kernels/*.h))))
+$(eval $(call as_text,emit/embedded_texts.h,$(patsubst %,runtime/include/lag_%.h,lanes math sincos support band kkt) runtime/numeric/gauss_points.h $(sort $(wildcard runtime/kernels/*.h))))
 $(eval $(call as_text,fmu/%_text.h,src/fmu/%.in))
 $(eval $(call as_text,commands/language.h,$(BUILD)/gen/commands/language.txt))
 $(eval $(call as_text,commands/tutorial.h,models/TUTORIAL.md))
@@ -248,7 +248,7 @@ $(BUILD)/gen/base/%: runtime/io/%
 # SHARED for the compiler: the same text for long double.
 $(BUILD)/gen/numeric/%: runtime/numeric/% runtime/precision.awk
 	@mkdir -p $(@D)
-	awk -v kind=long -v digits=21 -f runtime/precision.awk $< | sed 's/LAG_REAL/long double/g' >$@.part
+	awk -v kind=long -v digits=21 -f runtime/precision.awk $< | sed '/(as it stands)/!s/LAG_REAL/long double/g' >$@.part
 	@mv $@.part $@
 # Documents that help shows and searches; the reference without the list of commands, which help has itself.
 $(BUILD)/gen/commands/language.txt: grammar/LANGUAGE.md grammar/PHASE_SPACE.md
@@ -274,7 +274,7 @@ $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,langu
 $(BUILD)/obj/src/commands/verify_program.o: $(BUILD)/gen/commands/verify_driver.h
 $(BUILD)/obj/src/commands/man_page.o: $(BUILD)/gen/commands/man_frame.h
 $(BUILD)/obj/src/commands/completion.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
-$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(TABLES) $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(patsubst %,$(BUILD)/gen/numeric/%.h,edit_distance fnv1a poison)
+$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(TABLES) $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(patsubst %,$(BUILD)/gen/numeric/%.h,edit_distance fnv1a gauss_points poison)
 $(patsubst %,$(BUILD)/obj/src/%.o,toolchain/files toolchain/simulator_cache commands/build commands/command_line commands/cost_reference) $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
 $(BUILD)/obj/gen/toolchain/outfile.o $(BUILD)/obj/gen/base/windows.o: | $(BUILD)/gen/base/posix.h
 # Generated code is not ours to warn about.
@@ -340,7 +340,7 @@ help:
 	@echo '          for Windows: CC=x86_64-w64-mingw32-gcc AR=x86_64-w64-mingw32-ar BUILD=build/windows'
 
 ifneq ($(BUILDS),)
--include $(LAGC_OBJ:.o=.d) $(RT_OBJ:.o=.d) $(GSL_OBJ:.o=.d) $(BUILD)/obj/src/main.d $(TEST_BIN:=.d)
+-include $(LAGC_OBJ:.o=.d) $(RT_OBJ:.o=.d) $(WASM_OBJ:.o=.d) $(LAGC_WASM_OBJ:.o=.d) $(GSL_OBJ:.o=.d) $(BUILD)/obj/src/main.d $(TEST_BIN:=.d)
 endif
 
 FORCE:

@@ -1,6 +1,8 @@
 # The WebAssembly module of live pages: liblag without simulators, built where Clang has a target wasm32-wasi (Debian: clang lld wasi-libc
-# libclang-rt-14-dev-wasm32). Included by the Makefile.
+# libclang-rt-14-dev-wasm32); an eighth smaller where binaryen and zopfli are found. Included by the Makefile.
 WASM       := $(WASM_FOUND)
+SHRINK      = $(if $(shell command -v wasm-opt),wasm-opt -Oz --enable-bulk-memory $@ -o $@)
+DEFLATE    := $(if $(shell command -v zopfli),zopfli -c,gzip -9nc)
 WASM_SRC   := runtime/page/page_module.c $(filter runtime/core/% runtime/methods/% runtime/constraints/% runtime/contacts/% runtime/numeric/% \
                 runtime/evaluator/% runtime/analysis/automatic_method.c runtime/analysis/spectrum.c,$(RT_SRC))
 WASM_OBJ   := $(WASM_SRC:%.c=$(BUILD)/obj/wasm/%.o)
@@ -13,8 +15,9 @@ $(BUILD)/obj/wasm/%.o: %.c
 	$(CCACHE) $(WASM) $(WASM_FLAGS) -MMD -MP -c -o $@ $<
 $(BUILD)/lag.wasm: $(WASM_OBJ) runtime/page/motion.js
 	$(WASM) -mexec-model=reactor -Wl,--gc-sections,--strip-all $(WASM_CALLS:%=-Wl,--export=%) -o $@ $(WASM_OBJ) -lm
+	$(SHRINK)
 $(BUILD)/lag.wasm.gz: $(BUILD)/lag.wasm
-	gzip -9nc $< >$@
+	$(DEFLATE) $< >$@
 
 
 # The page of `lagc page`: a frame with the scripts in it.

@@ -25,8 +25,9 @@ $(BUILD)/obj/wasm/gen/%.o: $(BUILD)/gen/%.c
 $(BUILD)/lagc.wasm: $(LAGC_WASM_OBJ)
 	$(WASM) -mexec-model=reactor -Wl,--gc-sections,--strip-all,--stack-first,-z,stack-size=4194304 -Wl,--export=malloc,--export=playground_answer -o $@ $^ \
 	  -lc-printscan-long-double -lwasi-emulated-process-clocks -lm
+	$(SHRINK)
 $(BUILD)/lagc.wasm.gz: $(BUILD)/lagc.wasm
-	gzip -9nc $< >$@
+	$(DEFLATE) $< >$@
 
 # The files of models/lib as `library[]`, {name, text}.
 LIBRARY := $(sort $(wildcard models/lib/*.lag models/lib/*.csv))

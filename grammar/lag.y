@@ -376,6 +376,7 @@ declared: IDENT[n] { $$ = ast_declared(ast, $n); };
 
 value: expr[e]   { $$ = $e; }
      | STRING[s] { $$ = ast_string(ast, $s); }
+     | IDENT[n] "(" STRING[s] ")" { $$ = ast_call(ast, @$, $n, ast_list(ast_string(ast, $s))); }
      ;
 
 expr: comparison[e]                 { $$ = $e; }

@@ -96,6 +96,7 @@ int main(int argc, char **argv) {
   jmp_buf out_of_memory;
   int status;
   lag_prepare_streams();
+  lag_keep_memory(); /* of scratch arenas */
   if (!c.arena) return usage_error("out of memory");
   if (setjmp(out_of_memory)) {
     if (arena_hit_limit(c.arena))

@@ -105,8 +105,8 @@ typedef struct Family {
   int leads;
 } Family;
 
-/* *r := change of the frequency, as a part, of the motion with the amplitude *A, which becomes half its swing. 1: found,
- * 0: not, < 0: a status. */
+/* *r := change of the frequency, as a part, of the motion with the amplitude *A, which becomes half its swing. 1:
+ * found, 0: not, < 0: a status. */
 static int change_at(const Family *f, double *A, double *r) {
   double T = 2 * acos(-1) / f->m->im;
   lag_sim *start = lag_sim_like(f->like);

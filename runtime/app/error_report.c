@@ -85,10 +85,9 @@ static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim
 /* Near rounding, that of the second run is part of the error, and its law is not the run's. */
 static int is_rounding(const ErrorEstimate *e) { return e->largest < fmax(5e4 * DBL_EPSILON, e->floor); }
 
-/* Moves the start by four roundings, one of which the first sum may take away, up and down in turns. What cannot be
- * set stays. */
-static void nudge(lag_sim *sim) {
-  const double few = 4 * DBL_EPSILON;
+/* Moves the start by some roundings, up and down in turns. What cannot be set stays. */
+static void nudge(lag_sim *sim, double roundings) {
+  const double few = roundings * DBL_EPSILON;
   const lag_model *m = lag_sim_scene(sim)->model;
   char name[256];
   for (int i = 0; i < 2 * m->nq + m->nz; i++) {
@@ -108,7 +107,7 @@ static int limit_steps(lag_sim *sim, double longest) {
 
 /* How the second run differs from a more accurate setting alone; steps and work: that it took. */
 typedef struct Second {
-  int nudged;
+  double nudged;  /* roundings of the start; 0: none */
   double longest; /* step [s]; 0: any */
   double steps, work;
 } Second;
@@ -119,7 +118,7 @@ static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double m
   app->second_most = is_long_series(run) ? 3 * most : most; /* with as many more steps */
   if (rc == LAG_OK && second->longest > 0) rc = limit_steps(other, second->longest);
   if (rc == LAG_OK) {
-    if (second->nudged) nudge(other);
+    if (second->nudged > 0) nudge(other, second->nudged);
     lag_sim_on_step(other, enough, app);
     rc = lag_error_estimate_compare(e, other, lag_sim_time(run));
     second->steps = other->run->steps;
@@ -143,13 +142,13 @@ static double forced_step(const ErrorEstimate *e, const lag_sim *run, double ste
 /* Compares a second time with a start that is off by a rounding, where both runs may have errors of one size and
  * direction: rounding, in motions that part. */
 static int compare_again(App *app, ErrorEstimate *e, const lag_sim *run, double most, Second *second) {
-  const double little = 1e7, close = 1e-12; /* work of a second run; tolerance of the first */
+  const double little = 1e7, close = 1e-12, seen = 1e-14; /* work of a second run; tolerance of the first */
   int near = lag_equal_step(run) > 0 || run->tol < close;
   int parts = e->growth == LAG_ERROR_EXPONENTIAL || e->growth == LAG_ERROR_UNKNOWN;
-  if (!near || !parts || !isnan(e->horizon) || !(e->largest > close) || second->work > little) return LAG_OK;
+  if (!near || !parts || !isnan(e->horizon) || !(e->largest > seen) || second->work > little) return LAG_OK;
   double before = e->largest;
   lag_error_estimate_reset(e);
-  second->nudged = 1;
+  second->nudged = 2;
   int rc = compare_once(app, e, run, most, second);
   e->largest = isnan(e->largest) ? before : hypot(e->largest, before);
   return rc;
@@ -172,7 +171,7 @@ int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most
   int blind = lag_error_estimate_is_blind(e), exact = !blind && run->run->events > 0 && e->largest < tiny;
   if (!blind && !exact) return compare_again(app, e, run, most, &second);
   if (exact) lag_error_estimate_reset(e); /* states that only events change have the same roundings, too */
-  second = (Second){.nudged = 1};
+  second = (Second){.nudged = 4}; /* the first sum may take one away */
   return compare_once(app, e, run, most, &second);
 }
 

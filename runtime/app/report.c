@@ -216,6 +216,28 @@ static int independent(const App *app) {
   return rank < held ? rank : held;
 }
 
+/* Whether the other assembly has another value of coordinate i than the start. */
+static int is_elsewhere(const App *app, int i) {
+  double other = lag_sim_other_start(app->sim, i), begin = lag_sim_actual_start(app->sim, i);
+  return fabs(other - begin) > 1e-9 * (fabs(other) + fabs(begin));
+}
+
+/* The other assembly, and how it is chosen. */
+static void other_start(const App *app, FILE *f) {
+  int n = 0, first = -1;
+  for (int i = 0; i < app->scene->model->nq; i++) {
+    if (!is_elsewhere(app, i)) continue;
+    Column c = lag_state_column(app->sim, i);
+    first = n == 0 ? i : first;
+    if (n++ < MOST_LINES)
+      fprintf(f, "%s%s = %.6g%s%s", n == 1 ? "  other places obey them, too: " : ", ", c.name,
+              lag_sim_other_start(app->sim, i), c.unit[0] ? " " : "", c.unit);
+  }
+  if (n)
+    fprintf(f, "%s; `start guess %s = %.3g` takes that one\n", n > MOST_LINES ? ", ..." : "",
+            lag_state_column(app->sim, first).name, lag_sim_other_start(app->sim, first));
+}
+
 /* Constraints: changes of the start, rank, redundant ones, largest residuals. */
 static void constraints(const App *app, const lag_stats *st, FILE *f) {
   const lag_model *m = app->scene->model;
@@ -231,6 +253,7 @@ static void constraints(const App *app, const lag_stats *st, FILE *f) {
   }
   if (moved > MOST_LINES) fprintf(f, "  (and %d more)\n", moved - MOST_LINES);
   if (!of) return;
+  other_start(app, f);
   if (of->n > m->ncontacts)
     fprintf(f, "constraints: %d, %d independent at the start", of->n - m->ncontacts, independent(app));
   for (int k = 0; k < of->n; k++)
@@ -506,6 +529,10 @@ static void constraints_json(const App *app, Json *j) {
       lag_json_end(j, ']');
     }
   }
+  lag_json_end(j, '}');
+  lag_json_begin(j, "start_other", '{');
+  for (int i = 0; i < m->nq; i++)
+    if (is_elsewhere(app, i)) lag_json_number(j, lag_state_column(app->sim, i).name, lag_sim_other_start(app->sim, i));
   lag_json_end(j, '}');
 }
 

@@ -127,6 +127,58 @@ static int is_contact(const lag_level *w, int k) {
   return i < m->ncontacts;
 }
 
+static void set_gaps(lag_sim *s, int closed) {
+  const lag_model *m = s->scene->model;
+  for (int i = 0; i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    if (!c->is_tangent && !c->conditional) s->hold[c->input] = closed ? 1 : s->contact_was[i];
+  }
+}
+
+/* Gaps that touch, by the rounding of their terms; rates of all gaps at x and as asked in residual and slope, their
+ * sizes in terms_here. */
+static int measure_gaps(Start *s, unsigned char *touch) {
+  lag_level *w = &s->level;
+  const lag_model *m = s->pb->model;
+  const double t = s->sim->scene->t0, rounding = 0x1p12 * DBL_EPSILON;
+  double *velocities = s->y + s->nq;
+  memcpy(velocities, w->asked, (size_t)w->n * sizeof *velocities);
+  int rc = lag_residuals(s->pb, t, s->y, s->other, w->slope);
+  put(w);
+  rc = rc ? rc : lag_constraint_terms(s->pb, t, s->y, 1, w->terms_here);
+  for (int i = 0; i < m->ncontacts && rc == 0; i++) {
+    int k = m->contacts[i].constraint;
+    touch[i] = fabs(s->other[k]) <= rounding * w->terms_here[k];
+  }
+  rc = rc ? rc : lag_residuals(s->pb, t, s->y, s->other, w->residual);
+  return rc ? rc : lag_constraint_terms(s->pb, t, s->y, 0, w->terms_here);
+}
+
+static int close_gap(const lag_level *w) {
+  Start *s = w->context;
+  const lag_model *m = s->pb->model;
+  const double rounding = 0x1p12 * DBL_EPSILON;
+  unsigned char *touch = calloc((size_t)m->ncontacts + 1, 1);
+  double fastest = rounding;
+  int which = -1;
+  for (int i = 0; i < m->ncontacts; i++) s->sim->contact_was[i] = s->sim->hold[m->contacts[i].input];
+  set_gaps(s->sim, 1);
+  int rc = touch ? measure_gaps(s, touch) : LAG_ENOMEM;
+  set_gaps(s->sim, 0);
+  for (int i = 0; i < m->ncontacts && rc == 0; i++) {
+    const lag_contact *c = &m->contacts[i];
+    double size = w->terms_here[c->constraint], closing = -w->residual[c->constraint] / size;
+    if (c->is_tangent || c->conditional || !touch[i] || lag_contact_is_closed(s->sim, c) || !(closing > fastest))
+      continue;
+    if (w->slope[c->constraint] < -rounding * size) continue; /* an impact that was asked for */
+    fastest = closing;
+    which = i;
+  }
+  free(touch);
+  if (which >= 0) s->sim->hold[m->contacts[which].input] = 1;
+  return which >= 0;
+}
+
 /* ---- starts that are refused */
 
 static int refuse_start(Start *s, lag_start_kind kind, int k) {
@@ -183,6 +235,7 @@ static int project_level(Start *s, int positions) {
   begin_level(s, positions);
   lag_start_kind kind = lag_consistent_state(&s->level, &k);
   put(&s->level);
+  for (int i = 0; i < s->nq && positions; i++) s->sim->elsewhere[i] = s->level.ambiguous ? s->level.other[i] : NAN;
   return kind == LAG_START_FOUND ? LAG_OK : refuse_start(s, kind, k);
 }
 
@@ -285,7 +338,8 @@ static int make_room(Start *s, double **block) {
   const lag_part parts[] = {{&s->y, n}, {&s->asked, n}, {&s->best, n}, {&s->other, m}, {&s->M, (size_t)s->of->nmass},
       {&s->full, nq * nq}, {&s->kkt, 2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m}, {&w->x, nq},
       {&w->asked, nq}, {&w->best, nq}, {&w->from, nq}, {&w->d, nq}, {&w->along, nq}, {&w->reach, nq},
-      {&w->nearest, nq}, {&w->residual, m}, {&w->size, m}, {&w->terms_here, m}, {&w->slope, m}, {&w->has_terms, m},
+      {&w->nearest, nq}, {&w->other, nq}, {&w->residual, m}, {&w->size, m}, {&w->terms_here, m}, {&w->slope, m},
+      {&w->has_terms, m},
       {&w->A, entries}};
   *block = lag_workspace(sizeof parts / sizeof *parts, parts);
   s->index = malloc((nq + 2 * entries + 1) * sizeof *s->index);
@@ -312,13 +366,14 @@ int lag_consistent_start(lag_sim *s) {
                         .n = w.nq, .entries = w.of->njacobian, .exactly = s->scene->exactly != 0,
                         .rounding = DBL_EPSILON, .residuals = residuals, .jacobian = jacobian, .terms = terms,
                         .scales = scales, .direction = direction, .distance = distance, .stage = stage,
-                        .is_contact = is_contact};
+                        .is_contact = is_contact, .close_gap = w.pb->model->ncontacts ? close_gap : NULL};
   if (make_room(&w, &block)) {
     memcpy(w.y, s->now, bytes);
     memcpy(w.asked, s->now, bytes);
     lag_release_integrals(s);
     rc = project_level(&w, 1);
     rc = rc ? rc : project_level(&w, 0);
+    lag_contact_open(s);
     if (rc == 0) {
       keep_rounding_out(&w);
       memcpy(s->now, w.y, bytes);

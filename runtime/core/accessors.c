@@ -55,6 +55,11 @@ double lag_sim_requested_start(const lag_sim *s, int i) {
   return lag_sim_declared(s, i, s->asked[i]);
 }
 
+double lag_sim_other_start(const lag_sim *s, int i) {
+  if (!s || i < 0 || i >= s->pb.nq) return NAN;
+  return lag_sim_declared(s, i, s->elsewhere[i]);
+}
+
 double lag_sim_actual_start(const lag_sim *s, int i) {
   if (!s || i < 0 || i >= s->pb.n) return NAN;
   return lag_sim_declared(s, i, s->begin[i]);

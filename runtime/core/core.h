@@ -109,6 +109,7 @@ struct lag_sim {
   double *p, *derived, *hold;
   double *begin;         /* [n] at the start of the run */
   double *asked;         /* [n] start as requested, before projection onto the constraints */
+  double *elsewhere;     /* [nq] another assembly, of coordinates that nobody set; NaN: none is known */
   double *redundant;     /* [constraints] 1: it follows from the others at the start */
   double *loose;         /* [nq] 1: at a singular start the velocity is free, but the constraints nearby determine it */
   double *kept;          /* [constraints] values at which constraints on positions are held */

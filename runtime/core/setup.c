@@ -21,8 +21,9 @@ static size_t saved_arrays(lag_sim *s, const lag_method *method, double *x) {
   size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0;
   double *contacts;
   const lag_part parts[] = {{&s->p, (size_t)m->np}, {&s->derived, (size_t)m->nderived}, {&s->hold, nu},
-      {&s->begin, n}, {&s->asked, n}, {&s->redundant, nc}, {&s->loose, (size_t)m->nq}, {&s->kept, nc}, {&s->y, n},
-      {&s->y0, n}, {&s->now, n}, {&s->sign, nev}, {&s->noise, nev}, {&s->root, nev}, {&s->sign_end, nev},
+      {&s->begin, n}, {&s->asked, n}, {&s->elsewhere, (size_t)m->nq}, {&s->redundant, nc},
+      {&s->loose, (size_t)m->nq}, {&s->kept, nc}, {&s->y, n}, {&s->y0, n}, {&s->now, n}, {&s->sign, nev},
+      {&s->noise, nev}, {&s->root, nev}, {&s->sign_end, nev},
       {&s->count, nev}, {&s->first, nev}, {&s->last, nev}, {&s->interval, nev}, {&s->shorter, nev},
       {&s->flight, nev}, {&s->skipped, nev}, {&s->crossed, nm}, {&s->slips, nm}, {&s->slid, nm},
       {&s->slid_since, nm}, {&s->mon_first, nmon}, {&s->mon_peak, nmon}, {&s->exact_peak, (size_t)s->scene->nexact},

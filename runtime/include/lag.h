@@ -137,6 +137,9 @@ int lag_sim_set(lag_sim *sim, const char *name, double value);
  * scene says `exactly` and its start is another; the message names the worst constraint. */
 double lag_sim_requested_start(const lag_sim *sim, int i);
 double lag_sim_actual_start(const lag_sim *sim, int i);
+/* Coordinate i of another start that obeys the constraints, as of the other assembly of a linkage, where nobody set
+ * the coordinates that move; NaN: none was found. */
+double lag_sim_other_start(const lag_sim *sim, int i);
 /* Rank of the constraints at the start; whether constraint k follows from others there (not before the first
  * advance). */
 int lag_sim_rank(const lag_sim *sim);

@@ -1,5 +1,5 @@
 /* galerkin_rule.h: a discrete Lagrangian as data: quadrature points in a step of length 1, and the nodes of the
- * velocity polynomial. Includes scalar.h.
+ * velocity polynomial. Includes scalar.h, gauss_points.h.
  *
  *   L_d(q0, q1) = the extremum over u of  sum_i b_i L(c_i, Q_i, V_i),  where
  *   V_i = sum_k value[i][k] u_k,  Q_i = q0 + sum_k integral[i][k] u_k,  q1 = q0 + sum_k whole[k] u_k:
@@ -12,6 +12,7 @@
 #define LAG_GALERKIN_RULE_H
 
 #include "kernels/scalar.h"
+#include "numeric/gauss_points.h"
 
 #ifndef LAG_RULE_FREE
 #define LAG_RULE_FREE 4 /* most points and free velocities */
@@ -26,37 +27,6 @@ typedef struct lag_rule {
 } lag_rule;
 
 /* ---- rule: tables ---- */
-
-/* Legendre's P_n at x; *below: P_(n-1). */
-static inline LAG_REAL lag_rule_legendre(int n, LAG_REAL x, LAG_REAL *below) {
-  LAG_REAL a = LAG_C(1.0), b = LAG_C(0.0);
-  for (int k = 1; k <= n; k++) {
-    const LAG_REAL next = ((LAG_REAL)(2*k - 1)*x*a - (LAG_REAL)(k - 1)*b)/(LAG_REAL)k;
-    b = a;
-    a = next;
-  }
-  *below = b;
-  return a;
-}
-
-/* Gauss points and weights of a step of length 1, as those of numeric/quadrature.h. */
-static inline void lag_rule_points(int n, LAG_REAL *c, LAG_REAL *b) {
-  const LAG_REAL one = LAG_C(1.0), half = LAG_C(0.5), many = (LAG_REAL)n;
-  for (int i = 0; i < (n + 1)/2; i++) {
-    LAG_REAL below, slope = one, x = LAG_FN(cos)(LAG_C(3.141592653589793)*((LAG_REAL)i + LAG_C(0.75))/(many + half));
-    for (int turn = 0; turn < 10; turn++) {
-      const LAG_REAL f = lag_rule_legendre(n, x, &below);
-      slope = many*(below - x*f)/(one - x*x);
-      x -= f/slope;
-    }
-    if (2*i + 1 == n) x = LAG_C(0.0);
-    (void)lag_rule_legendre(n, x, &below);
-    slope = many*below/(one - x*x);
-    c[i] = half - x/LAG_C(2.0);
-    c[n - 1 - i] = half + x/LAG_C(2.0);
-    b[i] = b[n - 1 - i] = one/((one - x*x)*slope*slope);
-  }
-}
 
 /* Polynomial a[0] + a[1] x + ... below x^n, and its integral from 0. */
 static inline LAG_REAL lag_rule_polynomial(const LAG_REAL *a, int n, LAG_REAL x, LAG_REAL *integral) {
@@ -91,7 +61,7 @@ static inline void lag_rule_fill(lag_rule *r) {
 /* Gauss rule of order 2 n, n = 1 .. LAG_RULE_FREE, to the last digits. */
 static inline void lag_rule_gauss(lag_rule *r, int n) {
   r->points = r->free = (LAG_REAL)n;
-  lag_rule_points(n, r->c, r->b);
+  lag_gauss_rule(n, r->c, r->b);
   for (int i = 0; i < n; i++) r->node[i] = r->c[i];
   lag_rule_fill(r);
 }

@@ -10,7 +10,7 @@ typedef struct EmbeddedLanes {
   LaneProblem pb;
   const EmbeddedPair *pair;
   double per, h_max, h_fixed, longest; /* h_fixed > 0: all steps have this size */
-  LaneMask fresh, again; /* the last stage is the first of this step; the last step was rejected */
+  LaneMask fresh; /* the last stage is the first of this step */
   Lanes h, err_power, tc, dt;
   Lanes *comp, *comp1, *y0, *y1, *ys, *floor, *k; /* k[stages * n] */
 } EmbeddedLanes;
@@ -41,7 +41,7 @@ static int embedded_load(void *batch, int lane, lag_sim *s, int pause) {
   b->h_fixed = w->limits.fixed != 0.0 ? w->limits.h_option : 0;
   b->per = w->per;
   b->longest = s->pb.longest;
-  b->fresh[lane] = b->again[lane] = 0;
+  b->fresh[lane] = 0;
   b->h[lane] = w->h;
   b->err_power[lane] = w->err_power;
   b->tc[lane] = w->tc;
@@ -89,14 +89,6 @@ LAG_INLINE void embedded_lane_add(EmbeddedLanes *b, int i, Lanes d) {
 #define LAG_ADD(i, d) embedded_lane_add(b, i, d)
 #define LAG_ALLOWED(i, size) (lane_all(b->pb.tol) * b->floor[i] + lane_all(b->pb.tol) * (size))
 #include "kernels/runge_kutta.h"
-
-/* The sizes of the next steps of the lanes in `taken`, and of the next tries of others in `busy`. */
-static void embedded_lane_sizes(EmbeddedLanes *b, Lanes h, Lanes err2, LaneMask taken, LaneMask busy) {
-  const lag_controller *c = &b->pair->control;
-  Lanes memory = b->err_power, next = h * lag_growth(c, err2, b->again, &memory);
-  b->h = lane_select(taken, next, lane_select(busy, h * lag_shrinkage(c, err2), b->h));
-  b->err_power = lane_select(taken, memory, lane_select(busy, lane_all(0), b->err_power));
-}
 
 /* Methods by number: where it is a constant, compilers leave the others out. */
 enum {

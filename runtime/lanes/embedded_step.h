@@ -37,13 +37,13 @@ LAG_INLINE LaneMask embedded_lane_step(int id, int n, EmbeddedLanes *b, LaneMask
   *bad |= (err2 != err2) | (taken & (lane_not_finite(n, b->y1) | lane_not_finite(n, b->k + last * n)));
   *bad &= busy;
   taken &= ~*bad;
-  if (!(b->h_fixed > 0)) embedded_lane_sizes(b, h, err2, taken, busy);
+  const lag_aimed now = {.wanted = h, .h = h};
+  if (!(b->h_fixed > 0)) lag_next_size(&b->pair->control, &now, err2, taken, busy, &b->h, &b->err_power);
   for (int i = 0; i < n; i++) {
     pb->y[i] = lane_select(taken, b->y1[i], pb->y[i]);
     b->comp[i] = lane_select(taken, b->comp1[i], b->comp[i]);
   }
   b->fresh = lane_select_mask(busy, taken, b->fresh);
-  b->again = busy & ~taken;
   b->tc = lane_select(taken, tc, b->tc);
   b->dt = lane_select(taken, dt, b->dt);
   lane_moved(pb, taken, end);

@@ -75,14 +75,15 @@ int lag_adaptive_rk_prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *
 }
 
 /* Makes the step just computed the last accepted one. */
-static void accept(Embedded *w, lag_problem *pb, double *t, double *y, double dt, double tb, double tc) {
+static int accept(Embedded *w, lag_problem *pb, double *t, double *y, const lag_aimed *a) {
   lag_copy(pb->n, lag_adaptive_rk_array(w, pb, EMBEDDED_Y1), y);
   lag_copy(pb->n, lag_adaptive_rk_array(w, pb, EMBEDDED_COMP1), lag_adaptive_rk_array(w, pb, EMBEDDED_COMP));
   w->t0 = *t;
-  w->dt = dt;
-  w->tc = tc;
+  w->dt = pb->dir * a->h;
+  w->tc = a->lost;
   w->ready = 2;
-  *t = tb;
+  *t = a->t;
+  return LAG_OK;
 }
 
 /* Status of a step that would have to be shorter than rounding of t allows. */
@@ -180,43 +181,31 @@ int lag_adaptive_rk_step(void *work, lag_problem *pb, double *t, double *y, doub
   const EmbeddedPair *pair = pb->variant;
   Embedded *w = work;
   SizeSearch search = {.tries = 0};
-  int cause = LAG_ESTEP, retried = 0, rc = lag_adaptive_rk_prepare(pair, w, pb, *t, y);
+  int cause = LAG_ESTEP, rc = lag_adaptive_rk_prepare(pair, w, pb, *t, y);
   (void)t_stop;
   while (rc == 0) {
-    double wanted = lag_min(w->h, lag_longest_step(&w->limits, *t, pb->longest)), row;
+    double wanted = lag_min(w->h, lag_longest_step(&w->limits, *t, pb->longest)), row = *t;
     double gap = w->limits.fixed != 0.0 ? lag_next_kick(pb, *t, &row) : lag_next_row_inline(pb, *t, &row);
-    int clipped = wanted * (1 + 1e-4) >= gap; /* the rest after this step would be too short */
-    w->h = clipped ? gap : wanted;
-    double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
-    if (clipped) {
-      tb = row;
-      tc = 0;
-    }
+    lag_aimed a = lag_aim(*t, w->tc, pb->dir, wanted, gap, row);
+    w->h = a.h;
     if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) return too_small(pair, w, pb, *t, cause);
     w->across = 0;
-    double err = pair->trial(w, pb, *t, tb, dt, &rc); /* squared */
+    double err = pair->trial(w, pb, *t, a.t, pb->dir * a.h, &rc); /* squared */
     if (rc < 0) return rc;
-    if (w->limits.fixed == 0.0 && try_other_size(&search, w, pb, tb, &err)) {
+    const int fixed = w->limits.fixed != 0.0;
+    if (!fixed && try_other_size(&search, w, pb, a.t, &err)) {
       pb->rejected++;
       rc = 0;
       continue;
     }
-    if (err <= 1 || (w->limits.fixed != 0.0 && !isnan(err))) {
-      if (w->limits.fixed == 0.0) {
-        w->h *= lag_growth(&pair->control, err, retried, &w->err_power);
-        w->h = clipped ? lag_max(w->h, wanted) : w->h;
-      } else {
-        w->h = wanted;
-      }
-      accept(w, pb, t, y, dt, tb, tc);
-      return LAG_OK;
-    }
+    a.h = w->h; /* of the search's first try, if no size is good */
+    int taken = err <= 1 || (fixed && !isnan(err));
+    if (fixed) w->h = wanted;
+    else lag_next_size(&pair->control, &a, err, taken, 1, &w->h, &w->err_power);
+    if (taken) return accept(w, pb, t, y, &a);
     cause = !isnan(err) ? LAG_ESTEP : rc ? LAG_EDOMAIN : LAG_ENAN;
-    if (isnan(err)) pb->bad_t = tb;
-    w->h *= lag_shrinkage(&pair->control, err);
-    if (w->limits.fixed != 0.0) return too_small(pair, w, pb, *t, cause);
-    retried = 1;
-    w->err_power = 0;
+    if (isnan(err)) pb->bad_t = a.t;
+    if (fixed) return too_small(pair, w, pb, *t, cause);
     pb->rejected++;
     rc = 0;
   }

@@ -435,19 +435,15 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   w->h = w->limits.fixed != 0.0 ? w->limits.h_option : w->h;
   while (rc == 0) {
     double wanted = fmin(w->h, lag_longest_step(&w->limits, *t, pb->longest)), kick, gap = lag_next_kick(pb, *t, &kick);
-    int clipped = wanted * (1 + 1e-4) >= gap;
-    w->h = clipped ? gap : wanted;
-    double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
-    if (clipped) {
-      tb = kick;
-      tc = 0;
-    }
+    const lag_aimed next = lag_aim(*t, w->tc, pb->dir, wanted, gap, kick);
+    const double dt = pb->dir * next.h;
+    w->h = next.h;
     if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) return failure_status(w, pb, *t, why);
     pb->bad_index = -1;
-    why = attempt(w, &a, pb, *t, tb, y, dt);
+    why = attempt(w, &a, pb, *t, next.t, y, dt);
     if (why == 0) {
-      accept(w, &a, pb, t, y, dt, tb, tc);
-      w->h = clipped ? fmax(w->h, wanted) : w->h;
+      accept(w, &a, pb, t, y, dt, next.t, next.lost);
+      w->h = next.clipped ? fmax(w->h, wanted) : w->h;
       return LAG_OK;
     }
     if (why < 0) return why;

@@ -133,7 +133,7 @@ static void go_to_place(lag_level *w, int k) {
   for (int a = 0; a < w->nfree; a++) w->x[w->free[a]] += beside[k] * (typical > 0 ? typical : 1) * lag_uneven(a);
 }
 
-/* x := a state about as far from the request as the nearest one found, in some direction. */
+/* x := a state as far from the request as the nearest one found, or a half or a third as far, in some direction. */
 static void go_around(lag_level *w, int k) {
   double far = 0;
   w->scales(w, w->asked, w->reach);
@@ -141,15 +141,38 @@ static void go_around(lag_level *w, int k) {
     far = w->reach[i] > 0 ? fmax(far, fabs(w->nearest[i] - w->asked[i]) / w->reach[i]) : far;
   copy(w, w->x, w->asked);
   for (int a = 0; a < w->nfree; a++)
-    w->x[w->free[a]] += far * w->reach[w->free[a]] * (k >> a % 8 & 1 ? 1 : -1) * lag_uneven(a + k);
+    w->x[w->free[a]] += far / (1 + k % 3) * w->reach[w->free[a]] * (k >> a % 8 & 1 ? 1 : -1) * lag_uneven(a + k);
 }
 
-/* Goes from x to the constraints, and along them towards the request; keeps the state if it is nearer than *least. */
+/* Whether x is another place than `nearest`, and not by whole turns. */
+static int is_elsewhere(const lag_level *w) {
+  const double turn = 6.283185307179586477;
+  for (int a = 0; a < w->nfree; a++) {
+    double d = w->x[w->free[a]] - w->nearest[w->free[a]], left = d - turn * round(d / turn);
+    if (fabs(left) > 1e-3 * w->reach[w->free[a]]) return 1;
+  }
+  return 0;
+}
+
+/* Notes that x is a solution, too: the nearest one, or another one. */
+static void note_other(lag_level *w, int nearer, double far, double *next) {
+  int isolated = w->at == LAG_MOVES_FIRST && w->nfree <= w->rows;
+  w->scales(w, w->asked, w->reach);
+  if (!isolated || !is_elsewhere(w) || (!nearer && w->ambiguous && !(far < *next))) return;
+  copy(w, w->other, nearer ? w->nearest : w->x);
+  *next = nearer ? HUGE_VAL : far;
+  w->ambiguous = 1;
+}
+
+/* Goes from x to the constraints, and along them towards the request; keeps the state if it is nearer than least[0];
+ * least[1]: distance of the other solution. */
 static void try_from_here(lag_level *w, double *least) {
   if (!descend(w)) return;
   approach(w);
   double far = w->distance(w);
-  if (!(far < *least * (1 - 1e-9))) return;
+  int nearer = far < *least * (1 - 1e-9);
+  if (*least < HUGE_VAL) note_other(w, nearer, far, least + 1);
+  if (!nearer) return;
   *least = far;
   copy(w, w->nearest, w->x);
 }
@@ -158,23 +181,24 @@ static void try_from_here(lag_level *w, double *least) {
  * from the request, the nearest of solutions from all around. */
 static int reach_constraints(lag_level *w) {
   enum { AROUND = 24, FEW = 24 }; /* places; components that may move: a search of many takes long */
-  double least = HUGE_VAL;
+  double least[2] = {HUGE_VAL, HUGE_VAL};
+  w->ambiguous = 0;
   if (!w->positions) return w->nfree > 0 && (go_to_place(w, 0), descend(w));
-  for (int k = 0; k < TRIES && w->nfree > 0 && !(least < HUGE_VAL); k++) {
+  for (int k = 0; k < TRIES && w->nfree > 0 && !(*least < HUGE_VAL); k++) {
     go_to_place(w, k);
-    try_from_here(w, &least);
+    try_from_here(w, least);
   }
-  for (int k = 0; k < AROUND && w->at == LAG_MOVES_LAST && w->nfree <= FEW && !(least < HUGE_VAL); k++) {
+  for (int k = 0; k < AROUND && w->at == LAG_MOVES_LAST && w->nfree <= FEW && !(*least < HUGE_VAL); k++) {
     w->scales(w, w->asked, w->reach);
     for (int i = 0; i < w->n; i++) w->nearest[i] = w->asked[i] + 3 * w->reach[i]; /* an angle may have to turn round */
     go_around(w, k);
-    try_from_here(w, &least);
+    try_from_here(w, least);
   }
-  if (!(least < HUGE_VAL)) return 0;
+  if (!(*least < HUGE_VAL)) return 0;
   copy(w, w->x, w->nearest);
   for (int k = 0; k < AROUND && w->nfree <= FEW && !is_near(w); k++) {
     go_around(w, k);
-    try_from_here(w, &least);
+    try_from_here(w, least);
     copy(w, w->x, w->nearest);
   }
   return 1;
@@ -255,7 +279,7 @@ static void look_at_terms(lag_level *w) {
   }
 }
 
-lag_start_kind lag_consistent_state(lag_level *w, int *constraint) {
+static lag_start_kind find_state(lag_level *w, int *constraint) {
   double off;
   *constraint = -1;
   if (w->rows == 0) return LAG_START_FOUND;
@@ -278,6 +302,19 @@ lag_start_kind lag_consistent_state(lag_level *w, int *constraint) {
   descend(w); /* as near as possible, for the message */
   lag_start_kind kind = check_derivatives(w, 0, constraint);
   return kind != LAG_START_FOUND ? kind : refuse(w, LAG_START_NONE, constraint);
+}
+
+lag_start_kind lag_consistent_state(lag_level *w, int *constraint) {
+  w->ambiguous = 0;
+  lag_start_kind kind = find_state(w, constraint), with = kind;
+  while (!w->positions && w->close_gap && with == LAG_START_FOUND && w->close_gap(w)) {
+    int which;
+    copy(w, w->nearest, w->x);
+    copy(w, w->x, w->asked);
+    with = find_state(w, &which);
+    if (with != LAG_START_FOUND) copy(w, w->x, w->nearest);
+  }
+  return kind;
 }
 
 int lag_state_beside(lag_level *w) {

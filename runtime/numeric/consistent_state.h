@@ -38,9 +38,14 @@ struct lag_level {
   double (*distance)(const lag_level *w);         /* square of x - asked in the metric of M */
   int (*stage)(const lag_level *w, int i);        /* from which component i may move */
   int (*is_contact)(const lag_level *w, int k);   /* whether constraint k is a contact, which may have no derivatives */
+  /* Velocities: closes the contact without a gap that x closes fastest although `asked` does not; 0: there is none.
+   * NULL: the model has no contacts. */
+  int (*close_gap)(const lag_level *w);
 
   double *x, *asked;                        /* [n] the state; as requested */
   double *best, *from, *d, *along, *reach, *nearest; /* [n] */
+  double *other;                            /* [n] another solution of components that nobody set, if `ambiguous` */
+  int ambiguous;
   /* [rows] at x; sizes of terms at the request, by which residuals are divided */
   double *residual, *size, *terms_here, *slope;
   double *has_terms;                        /* [rows] 1: the constraint has terms of finite size */
@@ -56,7 +61,7 @@ double lag_level_weight(const lag_level *w, int i);
 /* Brings w->x, the requested state, onto the constraints: components that nobody set move first; then to the nearest
  * state in the mass metric, the nearest of those that are found from several places. Components that no constraint
  * contains stay. A state that obeys the constraints up to rounding stays. *constraint: the one at fault; w->x is
- * then the last state tried.
+ * then the last state tried. Velocities that constraints ask for close no gap, if others obey them, too.
  *
  * Gauss-Newton steps, no longer than half of what is typical of a component, and damped until the residual falls (P.
  * Deuflhard, Newton Methods for Nonlinear Problems (2004), 4.3, DOI 10.1007/978-3-642-23899-4), from the request or

@@ -6,6 +6,3 @@ void lag_gauss_points(int n, double *c, double *b);
 
 /* Radau nodes in (0, 1], the last of which is 1, and weights; order 2 n - 1. */
 void lag_radau_points(int n, double *c, double *b);
-
-/* Legendre's P_n at x; *below := P_(n-1). */
-double lag_legendre(int n, double x, double *below);

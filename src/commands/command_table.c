@@ -143,8 +143,8 @@ static const CommandRow commands[] = {
      "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T | --steady] [--hold NAMES] [--branches] "
      "[-o FILE.csv] [--svg FILE.svg] [--json]",
      "rest, steady and periodic motions over a parameter: folds, bifurcations",
-     "Follows a state of rest, a steady motion (--steady), or a periodic motion, while a parameter runs over a "
-     "range, round folds, too "
+     "Follows a state of rest, a steady motion (--steady), or a periodic motion, while a parameter runs over a range, "
+     "round folds, too "
      "(pseudo-arclength continuation), and locates the points where it changes: folds, branch points, Hopf points, "
      "period doublings, Neimark-Sacker points, collisions of multipliers of Hamilton's equations. It begins at the "
      "scene's value of the parameter if that lies in the range, and goes both ways.\n\n"

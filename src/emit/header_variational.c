@@ -58,6 +58,7 @@ void header_variational_define(const Header *h) {
                         header_wrapped(h, head), first, first, 1);
   head = arena_printf(h->a, "static int %s_second_derivatives(%s, %s_REAL *h)", h->lower, state, R);
   header_state_function(h, u->second, "Their nonzero derivatives.", header_wrapped(h, head), second, second, 1);
+  header_section(h, "gauss points");
   header_section(h, "rule: tables");
   write(h, begin);
   header_section(h, "predictor");

@@ -186,6 +186,67 @@ static int is_contact(const lag_level *w, int k) {
   return 0;
 }
 
+static const Contact *gap_of(const Eqns *e, int k) {
+  for (uint32_t i = 0; i < e->m->contacts.n; i++) {
+    const Contact *c = &e->m->contacts.at[i];
+    int is_gap = !c->is_tangent && c->gap;
+    if (is_gap && e->constraints.of[k] == &e->m->constraints.at[c->constraint]) return c;
+  }
+  return NULL;
+}
+
+/* size[rows] := sizes of terms of gaps at the symbols, w at the level of velocities. */
+static void gap_sizes(const lag_level *w, long double *size) {
+  Finder *f = w->context;
+  Arena *arena = f->e->m->arena;
+  lag_level at = *w;
+  long double *all = ARENA_ARRAY(arena, long double, (size_t)w->rows + 1);
+  at.positions = 1;
+  at.rows = (int)f->e->constraints.nholonomic;
+  at.x = ARENA_ARRAY(arena, long double, (size_t)w->n + 1);
+  for (int i = 0; i < w->n; i++) at.x[i] = f->symbols[component(f->e, (uint32_t)i, 1)];
+  terms(&at, all);
+  evaluate(&at, at.x);
+  for (int k = 0; k < at.rows; k++) size[k] = all[k];
+}
+
+/* As the runtime's: constraints/nearest_start.c. */
+static int close_gap(const lag_level *w) {
+  Finder *f = w->context;
+  const Eqns *e = f->e;
+  Arena *arena = e->m->arena;
+  const long double rounding = 0x1p12L * DBL_EPSILON;
+  size_t n = (size_t)w->rows + 1;
+  long double *gap = ARENA_ARRAY(arena, long double, n), *was = ARENA_ARRAY(arena, long double, n),
+              *asked = ARENA_ARRAY(arena, long double, n), *now = ARENA_ARRAY(arena, long double, n),
+              *size = ARENA_ARRAY(arena, long double, n), fastest = rounding;
+  const Contact *which = NULL;
+  for (int k = 0; k < w->rows; k++) {
+    const Contact *c = gap_of(e, k);
+    if (c) was[k] = f->symbols[c->closed], f->symbols[c->closed] = 1;
+  }
+  gap_sizes(w, gap);
+  StateValues at = evaluate(w, w->asked)->at;
+  for (int k = 0; k < w->rows; k++) {
+    asked[k] = at.r[k];
+    gap[k] = k < (int)e->constraints.nholonomic && fabsl(at.c[k]) <= rounding * gap[k];
+  }
+  at = evaluate(w, w->x)->at;
+  for (int k = 0; k < w->rows; k++) now[k] = at.r[k];
+  terms(w, size);
+  evaluate(w, w->x);
+  for (int k = 0; k < w->rows; k++) {
+    const Contact *c = gap_of(e, k);
+    if (!c) continue;
+    f->symbols[c->closed] = was[k];
+    if (gap[k] == 0 || was[k] > 0 || !(-now[k] > fastest * size[k]) || asked[k] < -rounding * size[k]) continue;
+    fastest = -now[k] / size[k];
+    which = c;
+  }
+  if (which) f->symbols[which->closed] = 1;
+  return which != NULL;
+}
+
 /* --- entry points --- */
 
 int start_of_scene(const Eqns *e, long double *found, unsigned char *moved) {
@@ -247,9 +308,11 @@ static lag_level level_new(Finder *f) {
                  .n = (int)n, .entries = (int)A->n, .row = row, .col = col, .exactly = f->e->m->scene.exactly.end != 0,
                  .rounding = DBL_EPSILON, .residuals = residuals, .jacobian = jacobian, .terms = terms,
                  .scales = scales, .direction = direction, .distance = distance, .stage = stage,
-                 .is_contact = is_contact, .A = ARENA_ARRAY(a, long double, A->n + 1),
+                 .is_contact = is_contact, .close_gap = f->e->m->contacts.n ? close_gap : NULL,
+                 .A = ARENA_ARRAY(a, long double, A->n + 1),
                  .free = ARENA_ARRAY(a, int, n + 1)};
-  long double **const by_component[] = {&w.x, &w.asked, &w.best, &w.from, &w.d, &w.along, &w.reach, &w.nearest},
+  long double **const by_component[] = {&w.x, &w.asked, &w.best, &w.from, &w.d, &w.along,
+                                            &w.reach, &w.nearest, &w.other},
                       **const by_row[] = {&w.residual, &w.size, &w.terms_here, &w.slope, &w.has_terms};
   for (size_t i = 0; i < sizeof by_component / sizeof *by_component; i++)
     *by_component[i] = ARENA_ARRAY(a, long double, n + 1);
@@ -282,6 +345,7 @@ StartResult start_find(const Eqns *e, StateSolver *solver, long double *symbols)
     begin_level(&w, positions);
     lag_start_kind kind = lag_consistent_state(&w, &k);
     evaluate(&w, w.x);
+    for (uint32_t i = 0; i < e->m->contacts.n; i++) symbols[e->m->contacts.at[i].closed] = 0;
     if (kind != LAG_START_FOUND) return (StartResult){kind, (uint32_t)k, !positions, w.residual[k]};
   }
   return (StartResult){.kind = LAG_START_FOUND};

@@ -2,6 +2,8 @@
  * work follows the nonzero entries. M q'' in two forms, entries in three; the fewest operations win. */
 #include "mech/linearise.h"
 
+#include <string.h>
+
 #include "mech/lagrange.h"
 #include "sym/simplify.h"
 
@@ -147,8 +149,10 @@ Partials eqns_partials(Eqns *e, PartialsBy by) {
   PartialList best = {0};
   uint64_t ops = UINT64_MAX;
   eqns_derive_mass(e);
-  for (int by_momenta = 0; by_momenta <= 1; by_momenta++) {
-    PartialList raw = differentiate(e, by_momenta ? inertia_of_momenta(e) : inertia_of_mass(e), by);
+  const Expr *const inertia[] = {inertia_of_mass(e), inertia_of_momenta(e)};
+  int forms = memcmp(inertia[0], inertia[1], e->n * sizeof **inertia) ? 2 : 1;
+  for (int k = 0; k < forms; k++) {
+    PartialList raw = differentiate(e, inertia[k], by);
     if (raw.n <= SIMPLIFY_MAX_ENTRIES) {
       try_form(e, &raw, simplify, &best, &ops);
       try_form(e, &raw, simplify_shallow, &best, &ops);

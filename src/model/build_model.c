@@ -535,6 +535,7 @@ static Builder *build_whole(Ast *ast, const ModelChoice *choice, InputRates *rat
   ask_bracket(b, choice->bracket);
   add_section(b, &choice->section);
   scene_build(b, choice);
+  fill_input_integrals(b);
   fill_input_rates(b);
   fill_inferred_units(b);
   if (!ast->diags->errors) fix_params(b, choice->fix);

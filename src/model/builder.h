@@ -316,6 +316,9 @@ void fill_input_rates(Builder *b);
 
 /* input_table.c: sets the formula or, where rhs is a file name, the table of input `index`; stem: its name without
  * the effect. */
+/* input_integral.c. is_input_integral: of another input. fill: their tables, once those of all inputs are known. */
+int is_input_integral(const Builder *b, AstId rhs);
+void fill_input_integrals(Builder *b);
 void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
 
 /* declare.c: enters the names that a statement declares into scope and model; a StatementFn. Likewise, of momenta

@@ -70,6 +70,13 @@ static const Spline *quintic(Builder *b, const Input *in) {
   const Spline *rows = in->table;
   const char *name = in->file;
   if (rows->jet) return rows;
+  if (in->holds) {
+    diag_error(b->diags, in->span,
+               "the rate of `%s` is needed, and its table `%s` holds each value until the next row" HELP
+               "a position that jumps has no velocity: leave `hold` out, for a smooth curve through the rows",
+               in->name, name);
+    return NULL;
+  }
   for (uint32_t i = 1; i < rows->n; i++)
     if (rows->row[i][0] == nextafter(rows->row[i - 1][0], HUGE_VAL)) {
       diag_error(b->diags, in->span,
@@ -112,7 +119,8 @@ static void warn_of_steps(Builder *b, const Input *in) {
     diag_warning(b->diags, in->span,
                  "the rate of `%s` is needed, and its table `%s` steps from %.6g to %.6g between t = %.6g and %.6g",
                  in->name, in->file, s->row[i][1], s->row[i + 1][1], s->row[i][0], s->row[i + 1][0]);
-    diag_help(b->diags, "add rows between them that resolve the motion; in its place a curve overshoots there");
+    diag_help(b->diags, "add rows between them that resolve the motion; in its place a curve overshoots there. "
+                               "A value that steps has no rate; one without rates may step: `hold(\"%s\")`", in->file);
     return;
   }
 }
@@ -139,7 +147,7 @@ void fill_input_rates(Builder *b) {
     if (!in->rate) continue;
     Input *rate = &m->inputs.at[in->rate];
     if (in->table) in->table = quintic(b, in);
-    if (!in->order) warn_of_steps(b, in);
+    if (!in->order && !in->integral) warn_of_steps(b, in);
     if (in->value && in->text && !in->order) warn_of_corners(b, in);
     rate->table = in->table;
     rate->file = in->file;

@@ -32,6 +32,7 @@ typedef struct {
   VEC(Piece) fields; /* of the current line, without blanks and quotes */
   uint32_t time, value; /* columns, from 0 */
   uint32_t columns;  /* of the head, or the first row */
+  int holds;         /* a value holds until the next row */
   int begun;         /* the head or the first row was read */
   int wrong_head;    /* error in the head: rows are not read */
   int mistakes;
@@ -256,6 +257,12 @@ static void read_row(Table *t, Piece line) {
   }
   t->before = time;
   t->jumped = jumps;
+  if (t->holds && t->numbers.n && !jumps) { /* a jump at each row */
+    double last = t->numbers.at[t->numbers.n - 1];
+    vec_push(t->b->arena, &t->numbers, time);
+    vec_push(t->b->arena, &t->numbers, last);
+    jumps = 1;
+  }
   if (jumps) time = nextafter(time, HUGE_VAL); /* no step of the runtime crosses such a gap */
   vec_push(t->b->arena, &t->numbers, time);
   vec_push(t->b->arena, &t->numbers, value * unit_factor(&t->in->unit) + num_value(t->in->unit.offset));
@@ -342,7 +349,7 @@ static void warn_of_overshoot(const Table *t, const Spline *s) {
                "between its rows the curve goes from %.3g to %.3g, and the rows from %.3g to %.3g", (low - zero) / unit,
                (high - zero) / unit, (lo - zero) / unit, (hi - zero) / unit);
   diag_help(t->b->diags, "a cubic swings where rows lie far apart beside a steep rise: add rows there, or make it a "
-                         "jump, two rows of one time");
+                         "jump, two rows of one time; `hold(\"file.csv\")` holds each value until the next row");
 }
 
 /* Fits a spline to each piece between two jumps. */
@@ -382,7 +389,7 @@ static const Spline *fit(Table *t) {
 }
 
 static const Spline *read_table(Builder *b, const Input *in, Name stem, AstId id) {
-  Table t = {.b = b, .id = id, .in = in, .stem = stem, .value = 1};
+  Table t = {.b = b, .id = id, .in = in, .stem = stem, .value = 1, .holds = in->holds};
   const AstExpr *x = ast_expr(b->ast, id);
   Place from = source_place(b->ast->sources, x->span.begin);
   if (!find_table_file(&t, source_locate(b->ast->sources, from.file ? from.file->path : "", x->name))) return NULL;
@@ -390,13 +397,32 @@ static const Spline *read_table(Builder *b, const Input *in, Name stem, AstId id
   return t.mistakes ? NULL : fit(&t);
 }
 
+/* The file name in `hold("file.csv")`; 0: rhs is another value. */
+static AstId held_file(Builder *b, AstId rhs) {
+  const AstExpr *x = ast_expr(b->ast, rhs);
+  if (x->kind != AST_CALL || !x->args || ast_expr(b->ast, x->args)->kind != AST_STRING) return 0;
+  if (strcmp(x->name, "hold") != 0)
+    diag_error(b->diags, x->span,
+               "a file is a table by itself, or held from row to row" HELP
+               "write `\"%s\"`, or `hold(\"%s\")`; an integral is that of an input, `integral(a)`",
+               ast_expr(b->ast, x->args)->name, ast_expr(b->ast, x->args)->name);
+  return x->args;
+}
+
 void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect) {
   Input *in = &b->m->inputs.at[index];
   in->value = 0;
   in->table = NULL;
   in->file = "";
-  in->text = 0;
+  in->text = in->integral = 0;
   in->effect = effect;
+  if (is_input_integral(b, rhs)) {
+    in->integral = rhs;
+    return;
+  }
+  AstId held = held_file(b, rhs);
+  in->holds = held != 0;
+  rhs = held ? held : rhs;
   if (ast_expr(b->ast, rhs)->kind != AST_STRING) {
     in->value = resolve_in(b, rhs, IN_INPUT, effect, &in->unit);
     in->text = rhs;

@@ -54,6 +54,8 @@ typedef struct {
   uint32_t rate;       /* index of the input that is its rate; 0: none is needed */
   const char *file;    /* path of the table as the text writes it */
   AstId text;          /* the formula; 0: a table */
+  int holds;           /* the table jumps at each row */
+  AstId integral;      /* the call `integral(a)`, whose table is that of another input, integrated; or 0 */
   Name effect;         /* scope of the formula's names */
 } Input;
 

@@ -210,8 +210,10 @@ static void bound_rounding(Check *c) {
   }
 }
 
+int check_solve(Check *c) { return solve(c, c->a, c->zd, c->lambda); }
+
 int check_solve_motion(Check *c) {
-  if (!solve(c, c->a, c->zd, c->lambda)) return 0;
+  if (!check_solve(c)) return 0;
   c->error = 4 * jet_unit * (largest(c->a, c->n) + largest(c->zd, c->m->states.n));
   bound_rounding(c);
   return 1;

@@ -107,6 +107,8 @@ static int check_states(Check *c, const void *data) {
     c->statistics->states += v == AGREES;
     c->statistics->far += v == AGREES && c->far;
   }
+  int plain = c->n && !c->m->first_order && !c->m->constraints.n && !c->m->declared->rotations.n && !c->u->nmodes;
+  if (plain && !c->dynamics->why && length <= SHORT_TAPE) check_zeros(c);
   return 1;
 }
 

@@ -61,9 +61,11 @@ int check_with(const Eqns *e, const ProgramSet *u, uint32_t scene, SelfCheck *st
 const char *check_state_text(const Check *c);
 
 /* check_state.c: allocates states; chooses one on the constraints (0: none found); computes accelerations, rates and
- * multipliers by the programs (0: they fail); runs a program at the state (0: it fails); uniform random number. */
+ * multipliers by the programs (0: they fail), and with check_solve_motion bounds on their rounding; runs a program at
+ * the state (0: it fails); uniform random number. */
 void check_prepare(Check *c);
 int check_choose_state(Check *c, int attempt);
+int check_solve(Check *c);
 int check_solve_motion(Check *c);
 int check_run(const Check *c, const Prog *p, Real *const *out);
 Real check_random(Check *c, Real lo, Real hi);
@@ -78,6 +80,9 @@ uint32_t check_components(const Check *c);
 BoundedSum check_residual(const Check *c); /* along c->c, from the last check_run_text */
 CheckVerdict check_equations(Check *c);
 CheckVerdict check_failure(Check *c);
+
+/* check_zeros.c: equations of motion near zeros of divisors; warns where they have lost digits. */
+void check_zeros(Check *c);
 
 /* check_values.c: flows, constraints, energy; events, outputs, inputs. */
 CheckVerdict check_dynamic_values(Check *c);

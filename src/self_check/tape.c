@@ -201,6 +201,11 @@ void tape_run(const Tape *t, TapeInput *input, void *data, Jet *at, int *unsure)
   }
 }
 
+void tape_run_to(const Tape *t, Ref last, TapeInput *input, void *data, Jet *at) {
+  int unsure = 0;
+  for (Ref r = 1; r <= last; r++) run_any(t, r, input, data, at, &unsure);
+}
+
 static int is_finite(const Jet *x, int derivatives) {
   int finite = fabsl(value(x)) <= DBL_MAX;
   for (int p = 0; p < JET_PLANES && derivatives; p++)

@@ -76,6 +76,9 @@ typedef void TapeInput(void *data, InputKind kind, uint32_t index, Jet *out);
  * range of doubles. */
 void tape_run(const Tape *t, TapeInput *input, void *data, Jet *at, int *unsure);
 
+/* Evaluates the instructions up to one, whose value is then in at[]. */
+void tape_run_to(const Tape *t, Ref last, TapeInput *input, void *data, Jet *at);
+
 /* First instruction with finite operands whose value exceeds the range of doubles (derivatives: or whose jet is not
  * finite); 0: none. Its value and its operands are in at[slots]. */
 Ref tape_first_nonfinite(const Tape *t, TapeInput *input, void *data, int derivatives, Jet *at);

@@ -346,64 +346,101 @@ static int has_definitions(ExprGraph *g, Expr e) {
 
 /* --- digits --- */
 
-/* Doubles between two random states. */
+/* Roots of a tape: the form before, the form after, and divisors of both. */
+enum { BEFORE, AFTER, ROOTS_MOST = 5 };
+
+/* Doubles between two random states, or between the origin and one. */
 typedef struct {
   const ExprGraph *g;
   uint32_t seed;
+  int from_origin;
   long double part;
 } Between;
 
 static long double symbol_between(SymId s, const void *data) {
   const Between *at = data;
-  long double from = sample_symbol(at->g, s, at->seed), to = sample_symbol(at->g, s, at->seed + 7);
-  return (double)(moves(at->g, s) ? from + at->part * (to - from) : from);
+  long double one = sample_symbol(at->g, s, at->seed), from = at->from_origin ? 0 : one;
+  return (double)(moves(at->g, s) ? from + at->part * (sample_symbol(at->g, s, at->seed + 7) - from) : one);
 }
 
-/* Value of the second root of the tape at a part of the way. */
-static long double value_between(EvalTape *t, Between at, long double part) {
-  long double out[2];
+/* Value of a root of the tape at a part of the way. */
+static long double value_between(EvalTape *t, Between at, int root, long double part) {
+  long double out[ROOTS_MOST];
   at.part = part;
   eval_run_double(t, symbol_between, &at, out);
-  return out[1];
+  return out[root];
 }
 
-/* Whether the second root is much less precise in doubles than the first at this place. */
+/* Whether the form after is much less precise in doubles than that before at this place. */
 static int loses_digits(EvalTape *t, const Between *at, long double *symbols) {
-  long double exact[2], is[2];
+  long double exact[ROOTS_MOST], is[ROOTS_MOST];
   for (SymId s = 1; s <= expr_symbol_count(at->g); s++) symbols[s] = symbol_between(s, at);
   eval_run(t, symbols, exact);
   eval_run_double(t, symbol_between, at, is);
-  long double before = fabsl(is[0] - exact[0]), after = fabsl(is[1] - exact[1]),
-              rounding = 64 * DBL_EPSILON * fabsl(exact[0]);
+  long double before = fabsl(is[BEFORE] - exact[BEFORE]), after = fabsl(is[AFTER] - exact[AFTER]),
+              rounding = 64 * DBL_EPSILON * fabsl(exact[BEFORE]);
   return after > rounding && after > 1000 * before;
 }
 
-/* Whether `after` has the digits of a product `before` beside zeros between random states: 2*cos(1 + u/2)*sin(u/2)
- * has more than sin(1 + u) - sin(1). */
-static int keeps_digits(ExprGraph *g, Expr before, Expr after) {
-  enum { LINES = 12, PARTS = 4, HALVINGS = 30, NODES_MOST = 120 };
+/* Whether digits are lost beside a zero of a root, between random states. */
+static int loses_beside_zeros(EvalTape *t, Between at, int root, long double *symbols) {
+  enum { PARTS = 4, HALVINGS = 30 };
   const long double beside = 1e-6L;
-  Expr both[2] = {before, after};
-  if (expr_pairs(g, before, EX_SUM) > 1 || expr_topo(g, both, 2).n > NODES_MOST) return 1;
-  EvalTape *t = eval_tape(g, both, 2);
-  long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
-  for (Between at = {.g = g, .seed = 1}; at.seed <= LINES; at.seed++)
-    for (int k = 0; k < PARTS; k++) {
-      long double lo = (long double)k / PARTS, hi = (long double)(k + 1) / PARTS, first = value_between(t, at, lo);
-      if (!(first * value_between(t, at, hi) < 0)) continue;
-      for (int i = 0; i < HALVINGS; i++) {
-        long double half = (lo + hi) / 2;
-        *(first * value_between(t, at, half) > 0 ? &lo : &hi) = half;
-      }
-      at.part = lo - beside;
-      if (loses_digits(t, &at, symbols)) return 0;
+  for (int k = 0; k < PARTS; k++) {
+    long double lo = (long double)k / PARTS, hi = (long double)(k + 1) / PARTS, first = value_between(t, at, root, lo);
+    if (!(first * value_between(t, at, root, hi) < 0)) continue;
+    for (int i = 0; i < HALVINGS; i++) {
+      long double half = (lo + hi) / 2;
+      *(first * value_between(t, at, root, half) > 0 ? &lo : &hi) = half;
     }
-  return 1;
+    at.part = lo - beside;
+    if (loses_digits(t, &at, symbols)) return 1;
+  }
+  return 0;
 }
 
-/* The new form s if it keeps the range and the digits of e, else e. */
+/* Whether digits are lost beside the origin, where distances are 0. */
+static int loses_beside_origin(EvalTape *t, ExprGraph *g, long double *symbols) {
+  enum { FEW = 4 };
+  Between at = {.g = g, .from_origin = 1};
+  for (at.part = 1e-3L; at.part > 1e-7L; at.part /= 1000)
+    for (at.seed = 1; at.seed <= FEW; at.seed++)
+      if (loses_digits(t, &at, symbols)) return 1;
+  return 0;
+}
+
+/* root[n..] := divisors among these nodes that vary. Returns the number of roots. */
+static int add_divisors(ExprGraph *g, ExprList nodes, Expr *root, int n) {
+  for (uint32_t i = 0; i < nodes.n; i++)
+    for (uint32_t k = 0; expr_op(g, nodes.at[i]) == EX_PROD && k < expr_pairs(g, nodes.at[i], EX_PROD); k++) {
+      Num power;
+      Expr base = expr_pair(g, nodes.at[i], EX_PROD, k, &power);
+      int known = num_sign(power) >= 0 || n == ROOTS_MOST;
+      for (int r = 2; r < n; r++) known |= root[r] == base;
+      if (!known) root[n++] = base;
+    }
+  return n;
+}
+
+/* Whether `after` has the digits of `before`: of a product beside its zeros, 2*cos(1 + u/2)*sin(u/2) has more than
+ * sin(1 + u) - sin(1); beside zeros of divisors, sin(u/2)^2/u more than (1 - cos(u))/(2*u). */
+static int keeps_digits(ExprGraph *g, Expr before, Expr after) {
+  enum { LINES = 12, LINES_DIVISOR = 4, NODES_MOST = 120 };
+  Expr root[ROOTS_MOST] = {before, after};
+  ExprList nodes = expr_topo(g, root, 2);
+  if (nodes.n > NODES_MOST) return 1;
+  int n = add_divisors(g, nodes, root, 2), product = expr_pairs(g, before, EX_SUM) <= 1;
+  EvalTape *t = product || n > 2 ? eval_tape(g, root, (uint32_t)n) : NULL;
+  long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
+  for (int r = product ? AFTER : AFTER + 1; r < n; r++)
+    for (Between at = {.g = g, .seed = 1}; at.seed <= (r == AFTER ? LINES : LINES_DIVISOR); at.seed++)
+      if (loses_beside_zeros(t, at, r, symbols)) return 0;
+  return n == 2 || !loses_beside_origin(t, g, symbols);
+}
+
+/* The new form s if it keeps the range and, with its half angles, the digits of e; else e. */
 static Expr if_good(ExprGraph *g, Expr e, Expr s) {
-  return s == e || (keeps_range(g, e, s) && keeps_digits(g, e, s)) ? s : e;
+  return s == e || (keeps_range(g, e, s) && keeps_digits(g, e, simplify_stable_quotients(g, s, e))) ? s : e;
 }
 
 Expr simplify(ExprGraph *g, Expr e) {

@@ -174,8 +174,8 @@ def judge(case):
         return "unknown", None, None, "no estimate"
     estimate, true = report["error_up_to_there"], max(e for t, e in errors if t <= to * (1 + 1e-12))
     q = (estimate + ROUNDING) / (true + ROUNDING)
-    if not 1 / 3 <= q <= 5 and case.rows < 40000:  # more times show close encounters: velocities are large, or wrong, for a moment
-        case.rows = 40000
+    if not 1 / 3 <= q <= 5 and case.rows < 400000:  # more times show close encounters: velocities are large, or wrong, for a moment
+        case.rows = 400000
         again = judge(case)
         case.rows = 800
         return again

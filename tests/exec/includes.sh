@@ -26,7 +26,7 @@ src/playground playground/ commands/ fmu/fmu_archive.h toolchain/files.h toolcha
 src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
-runtime/kernels   kernels/ lag_lanes.h lag_math.h
+runtime/kernels   kernels/ numeric/gauss_points.h lag_lanes.h lag_math.h
 runtime/core      core/ kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/constraints constraints/ core/core.h core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_kkt.h
 runtime/contacts  contacts/ core/core.h core/rhs.h kernels/ numeric/ lag.h lag_model.h

@@ -23,6 +23,7 @@ awk 'BEGIN { print "t [s],other,u [N],gust"; n = split("0 0.3 0.5 0.9 1.4 2 2.2 
     printf "%s,0,%.17g,%.17g\n", t[i], u, u }
   }' >"$dir/data/cubic.csv"
 awk 'BEGIN { for (i = 0; i <= 200; i++) print i/2, i == 100 }' >"$dir/data/pulse.dat"
+sed 's/u \[N\]/a/' "$dir/data/cubic.csv" >"$dir/data/ground.csv"
 cat >"$dir/cart.lag" <<'END'
 model cart "A mass that is pushed"
 coord x [m]
@@ -251,4 +252,28 @@ END
 near "a floor that lifts, in time steps" 1e-12 0.5 "$(last "$dir/lift.lag")"
 printf '0,0\n1,0\n1.000001,1\n2,1\n' >"$dir/data/steep.csv"
 check "lagc run shows the model's warnings" says 0 "warning: between its rows the curve goes from" "$LAGC" run "$m" push u="$dir/data/steep.csv" --quiet
+
+# ---- integrals of a record: a = 1 + t - 2t^2 + t^3/2 up to 3 s, so that u = t^2/2 + t^3/6 - t^4/6 + t^5/40; a sled above it keeps x + u
+cat >"$dir/sled.lag" <<'END'
+model sled "A sled on ice, and the ground as it was measured"
+coord x [m]
+param m = 2 [kg] > 0
+input a [m/s^2] = "data/ground.csv", v [m/s] = integral(a), u [m] = integral(v)
+lagrangian = m/2*(x' + u')^2
+scene s { span 2 [s]; output x, u'' every 1 [s] }
+scene still { like s; a = 0 }
+END
+near "the double integral of a record" 1e-13 "$(awk 'BEGIN { t = 2; printf "%.17g", -(t^2/2 + t^3/6 - t^4/6 + t^5/40) }')" "$(last "$dir/sled.lag")"
+near "its second rate is the record" 1e-12 -1 "$("$LAGC" run "$dir/sled.lag" -o - --quiet | awk -F, 'END { print $3 }')"
+near "a scene without it" 1e-15 0 "$(last "$dir/sled.lag" still)"
+# levelled: v(3) = 3 + 9/2 - 18 + 81/8 = -3/8 over 3 s; then u(3) = 63/40 + 9/16, over 3 s again
+sed -i 's/integral(\([av]\))/integral(\1, level)/g' "$dir/sled.lag"
+level() { "$LAGC" run "$dir/sled.lag" --until "$1" -o - --observe u --quiet | awk -F, 'END { print $NF }'; }
+near "without its drift it ends where it begins" 1e-13 0 "$(level 3)"
+near "beside the mean of its velocity" 1e-13 "$(awk 'BEGIN { t = 2; printf "%.17g", t^2/2 + t^3/6 - t^4/6 + t^5/40 + t^2/16 - (63/40 + 9/16)*t/3 }')" "$(level 2)"
+# ---- values that hold: 1, -2, 3 N for a second each move 1 kg by 1/2, 0 and 1/2 m
+printf 't,F\n0,1\n1,-2\n2,3\n' >"$dir/data/held.csv"
+printf 'model held\ncoord x [m]\ninput F [N] = hold("data/held.csv")\nlagrangian = 1 [kg]/2*x%s^2\nforce x = F\nscene s { span 3 [s] }\n' "'" >"$dir/held.lag"
+near "values that hold until the next row" 1e-12 1 "$(last "$dir/held.lag")"
+near "by steps that end there" 1e-12 1 "$(last "$dir/held.lag" --method 'rk4(step=0.125)')"
 tap_end

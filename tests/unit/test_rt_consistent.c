@@ -80,7 +80,7 @@ static int is_contact(const lag_level *w, int k) { return (void)w, (void)k, 0; }
 static lag_start_kind start(Curve *curve, int exactly, double *at)
 {
   static const int row[2] = {0, 0}, col[2] = {0, 1};
-  double part[23] = {0};
+  double part[25] = {0};
   int free[2], which = -2;
   lag_level w = {.context = curve,
                  .n = 2, .rows = 1, .entries = 2, .row = row, .col = col, .positions = 1, .exactly = exactly,
@@ -89,6 +89,7 @@ static lag_start_kind start(Curve *curve, int exactly, double *at)
                  .is_contact = is_contact, .x = at, .asked = part, .best = part + 2, .from = part + 4, .d = part + 6,
                  .residual = part + 8, .size = part + 9, .terms_here = part + 10, .slope = part + 11,
                  .has_terms = part + 12, .A = part + 13, .reach = part + 17, .nearest = part + 19, .along = part + 21,
+                 .other = part + 23,
                  .free = free};
   lag_start_kind kind = lag_consistent_state(&w, &which);
   assert_true(kind == LAG_START_FOUND || which == 0);
