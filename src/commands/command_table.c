@@ -102,7 +102,7 @@ static const CommandRow commands[] = {
      "simulate and show the motion, as one HTML file",
      "Runs the model and writes its motion as one HTML file, which needs no network and no other file: space plays and "
      "pauses, arrow keys step, the slider scrubs. All options of `lagc run` are allowed."},
-    {CMD_MODES, "modes", "equilibrium", "MODEL [SCENE] [name=value ...] [--steady] [--json]",
+    {CMD_MODES, "modes", "equilibrium", "MODEL [SCENE] [name=value ...] [--steady | --amplitude] [--json]",
      "equilibrium, stability, frequencies, shapes and damping",
      "Finds the equilibrium next to the scene's start, says whether it is stable and by which argument, and prints the "
      "modes of "
@@ -123,7 +123,7 @@ static const CommandRow commands[] = {
      "  name=value            a parameter, another start, an input to hold"},
     {CMD_ORBIT, "orbit", "periodic",
      "MODEL [SCENE] [name=value ...] [--guess T | --period T] [--hold NAMES] [--relative NAMES | --reverse MAP] "
-     "[--json]",
+     "[--manifold KIND -o FILE.csv] [--json]",
      "periodic motions: period, multipliers, stability",
      "Finds the periodic motion next to the scene's start, by Newton's method on the exact tangent of the flow, and "
      "prints its period, the Floquet multipliers with their meaning, and a scene to paste that starts on it. The "
