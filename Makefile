@@ -340,7 +340,7 @@ help:
 	@echo '          for Windows: CC=x86_64-w64-mingw32-gcc AR=x86_64-w64-mingw32-ar BUILD=build/windows'
 
 ifneq ($(BUILDS),)
--include $(LAGC_OBJ:.o=.d) $(RT_OBJ:.o=.d) $(GSL_OBJ:.o=.d) $(BUILD)/obj/src/main.d $(TEST_BIN:=.d)
+-include $(LAGC_OBJ:.o=.d) $(RT_OBJ:.o=.d) $(WASM_OBJ:.o=.d) $(LAGC_WASM_OBJ:.o=.d) $(GSL_OBJ:.o=.d) $(BUILD)/obj/src/main.d $(TEST_BIN:=.d)
 endif
 
 FORCE:

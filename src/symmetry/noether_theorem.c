@@ -294,6 +294,7 @@ static Expr term_magnitude(ExprGraph *g, ExprMap *size, Expr x) {
                         : op == EX_DEF ? expr_map_get(size, expr_arg(g, e, 0))
                         : expr_fn(g, EX_ABS, e));
   }
+  expr_list_free(g, l);
   return expr_map_get(size, x);
 }
 
