@@ -213,11 +213,11 @@ int lag_cost_scales(const Samples *reference, lag_sim *sim, double *scale) {
   }
   for (int i = n - 1; i >= 0; i--) { /* the last of a kind has the largest */
     int alike = reference->output > 0 ? -1 : lag_previous_alike(sim, i);
-    int velocity = reference->output == 0 && i < nq ? nq + i : i;
+    int velocity = reference->output == 0 && i < nq ? nq + i : i, of = reference->output == 0 ? i : -1;
     if (alike >= 0) scale[alike] = scale[i];
     if (alike >= 0) terms[alike] = terms[i];
     /* A coordinate rests if its velocity does, whose scale is its terms then. */
-    if (velocity == i || scale[velocity] == terms[velocity]) scale[i] = scale_above(sim, reference->output == 0 ? i : -1, scale[i], terms[i]);
+    if (velocity == i || scale[velocity] == terms[velocity]) scale[i] = scale_above(sim, of, scale[i], terms[i]);
     scale[i] = scale[i] > 0 ? scale[i] : 1;
   }
   free(terms);

@@ -154,8 +154,9 @@ check "of a nanogram" rests "$TMP/truss.lag" m=1e-12
 # Long steps of taylor let a part at rest grow from rounding to its tolerance; the spring beside it has nine digits: x = 0.875 cos(w t) - 0.1875/w sin(w t), w^2 = 15/7.
 cat >"$TMP/long_steps.lag" <<'END'
 model long_steps
-coord x, ph
-lagrangian = 0.4375*x'^2 - 0.9375*x^2 + ph'^2/8 - 4.9*cos(ph)
+coord x [m], ph
+param m = 0.875 [kg] > 0, k = 1.875 [N/m] > 0, I = 0.25 [kg*m^2] > 0, tq = 4.9 [N*m] > 0
+lagrangian = m/2*x'^2 - k/2*x^2 + I/2*ph'^2 - tq*cos(ph)
 scene s { start x = 0.875, x' = -0.1875, ph = 3.141592653589793; span 60; method taylor }
 END
 "$LAGC" run "$TMP/long_steps.lag" --json >"$TMP/out"
