@@ -83,8 +83,8 @@ static inline int lag_joints_respond(LAG_MODEL, lag_joint_friction *w, const lag
 }
 
 /* One turn of surface k; *size, *change: the largest slip, and change of one. A surface with a response < 0 is driven
- * to the nearest slip of an interval about centre[k]; one without slips, but where its friction pushes it on, as that of
- * a guide may which others hold, it keeps its mode while it rests. */
+ * to the nearest slip of an interval about centre[k]; one without slips. Where friction pushes it on, as that of a
+ * guide may which others hold, it keeps its mode while it rests. */
 static inline int lag_joint_turn(LAG_MODEL, lag_joint_friction *w, const lag_kick *s, int k, LAG_REAL *size,
                                  LAG_REAL *change) {
   const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), own = w->response[k], was = w->mode[k];
