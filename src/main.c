@@ -7,9 +7,6 @@
  * Exit status: 0 ok, 1 bad model, 2 usage or files, 3 the run failed (a simulator's status). */
 #include <stdio.h>
 #include <string.h>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 #include "base/diag.h"
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
@@ -48,6 +45,7 @@ static int do_command(Compiler *c) {
     case CMD_CONTINUE:
     case CMD_LYAPUNOV:
     case CMD_FIT:
+    case CMD_DESIGN:
     case CMD_COST:
     case CMD_SWEEP: return command_run(c);
     case CMD_EFFECTS: return command_effects(c);
@@ -93,21 +91,13 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   return command_reads_model(c->o.command) ? compile(c) : do_command(c);
 }
 
-/* Memory that scratch arenas give back stays with the process: they ask for it again at once. */
-static void keep_memory(void) {
-#ifdef __GLIBC__
-  mallopt(M_TRIM_THRESHOLD, 256 << 20);
-  mallopt(M_TOP_PAD, 4 << 20);
-#endif
-}
-
 int main(int argc, char **argv) {
   ArenaConfig config = {.max_bytes = (size_t)MEMORY_LIMIT_MIB << 20};
   Compiler c = {.arena = arena_new(&config)};
   jmp_buf out_of_memory;
   int status;
   lag_prepare_streams();
-  keep_memory();
+  lag_keep_memory(); /* of scratch arenas */
   if (!c.arena) return usage_error("out of memory");
   if (setjmp(out_of_memory)) {
     if (arena_hit_limit(c.arena))

@@ -22,8 +22,8 @@ static size_t saved_arrays(lag_sim *s, const lag_method *method, double *x) {
   double *contacts;
   const lag_part parts[] = {{&s->p, (size_t)m->np}, {&s->derived, (size_t)m->nderived}, {&s->hold, nu},
       {&s->begin, n}, {&s->asked, n}, {&s->elsewhere, (size_t)m->nq}, {&s->redundant, nc},
-      {&s->loose, (size_t)m->nq}, {&s->kept, nc}, {&s->y, n}, {&s->y0, n}, {&s->now, n}, {&s->sign, nev}, {&s->noise, nev},
-      {&s->root, nev}, {&s->sign_end, nev},
+      {&s->loose, (size_t)m->nq}, {&s->kept, nc}, {&s->y, n}, {&s->y0, n}, {&s->now, n}, {&s->sign, nev},
+      {&s->noise, nev}, {&s->root, nev}, {&s->sign_end, nev},
       {&s->count, nev}, {&s->first, nev}, {&s->last, nev}, {&s->interval, nev}, {&s->shorter, nev},
       {&s->flight, nev}, {&s->skipped, nev}, {&s->crossed, nm}, {&s->slips, nm}, {&s->slid, nm},
       {&s->slid_since, nm}, {&s->mon_first, nmon}, {&s->mon_peak, nmon}, {&s->exact_peak, (size_t)s->scene->nexact},
@@ -34,6 +34,17 @@ static size_t saved_arrays(lag_sim *s, const lag_method *method, double *x) {
   size_t length = lag_workspace_slice(x, sizeof parts / sizeof *parts, parts);
   if (x) s->pb.contacts = pushed ? (lag_contact_stats *)(void *)contacts : NULL;
   return length;
+}
+
+static void set_problem(lag_sim *s, const lag_method *method, const double *opt) {
+  lag_problem *pb = &s->pb;
+  pb->p = s->p;
+  pb->hold = s->hold;
+  pb->kept = s->kept;
+  pb->begin = s->begin;
+  pb->kick = HUGE_VAL;
+  pb->opt = opt;
+  pb->variant = method->variant;
 }
 
 /* First values of the saved arrays that do not begin as zeros. */
@@ -81,13 +92,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   s->nwork = work;
   free(s->pb.contact_room);
   s->pb.contact_room = contact_room;
-  s->pb.p = s->p;
-  s->pb.hold = s->hold;
-  s->pb.kept = s->kept;
-  s->pb.begin = s->begin;
-  s->pb.kick = HUGE_VAL;
-  s->pb.opt = opt;
-  s->pb.variant = method->variant;
+  set_problem(s, method, opt);
   s->charges = (Charge *)(void *)s->charge_block;
   s->method = method;
   begin_blocks(s);
@@ -196,7 +201,7 @@ lag_sim *lag_sim_new(const lag_scene *scene) {
   return s;
 }
 
-/* The values of `from`: parameters, inputs, start. */
+/* The values of `from`: parameters, inputs, start. Its contacts are those of its present state: all are open here. */
 static void copy_values(const lag_sim *from, lag_sim *s) {
   const lag_model *m = s->scene->model;
   memcpy(s->p, from->p, (size_t)m->np * sizeof *s->p);
@@ -205,6 +210,10 @@ static void copy_values(const lag_sim *from, lag_sim *s) {
   memcpy(s->start, from->start, (size_t)s->pb.n * sizeof *s->start);
   memcpy(s->hold, from->hold, (size_t)m->nu * sizeof *s->hold);
   memcpy(s->signal, from->signal, (size_t)m->nu * sizeof *s->signal);
+  for (const lag_contact *c = m->contacts; c < m->contacts + m->ncontacts; c++) {
+    s->hold[c->input] = NAN;
+    if (c->is_tangent) s->hold[c->force] = NAN;
+  }
 }
 
 lag_sim *lag_sim_like(const lag_sim *from) {

@@ -14,6 +14,17 @@
 /* Why a file cannot be read, after lag_open_to_read. */
 #define lag_read_error() (errno == ENXIO ? "nothing writes to this pipe" : strerror(errno))
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+/* Memory that is given back stays with the process: for programs that ask for it again at once. */
+static inline void lag_keep_memory(void) {
+#ifdef __GLIBC__
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  mallopt(M_TOP_PAD, 4 << 20);
+#endif
+}
+
 #ifdef _WIN32
 #include <direct.h>
 #include <io.h>

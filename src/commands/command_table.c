@@ -102,7 +102,7 @@ static const CommandRow commands[] = {
      "simulate and show the motion, as one HTML file",
      "Runs the model and writes its motion as one HTML file, which needs no network and no other file: space plays and "
      "pauses, arrow keys step, the slider scrubs. All options of `lagc run` are allowed."},
-    {CMD_MODES, "modes", "equilibrium", "MODEL [SCENE] [name=value ...] [--steady] [--json]",
+    {CMD_MODES, "modes", "equilibrium", "MODEL [SCENE] [name=value ...] [--steady | --amplitude] [--json]",
      "equilibrium, stability, frequencies, shapes and damping",
      "Finds the equilibrium next to the scene's start, says whether it is stable and by which argument, and prints the "
      "modes of "
@@ -123,7 +123,7 @@ static const CommandRow commands[] = {
      "  name=value            a parameter, another start, an input to hold"},
     {CMD_ORBIT, "orbit", "periodic",
      "MODEL [SCENE] [name=value ...] [--guess T | --period T] [--hold NAMES] [--relative NAMES | --reverse MAP] "
-     "[--json]",
+     "[--manifold KIND -o FILE.csv] [--json]",
      "periodic motions: period, multipliers, stability",
      "Finds the periodic motion next to the scene's start, by Newton's method on the exact tangent of the flow, and "
      "prints its period, the Floquet multipliers with their meaning, and a scene to paste that starts on it. The "
@@ -143,7 +143,8 @@ static const CommandRow commands[] = {
      "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T | --steady] [--hold NAMES] [--branches] "
      "[-o FILE.csv] [--svg FILE.svg] [--json]",
      "rest, steady and periodic motions over a parameter: folds, bifurcations",
-     "Follows a state of rest, a steady motion (--steady), or a periodic motion, while a parameter runs over a range, round folds, too "
+     "Follows a state of rest, a steady motion (--steady), or a periodic motion, while a parameter runs over a range, "
+     "round folds, too "
      "(pseudo-arclength continuation), and locates the points where it changes: folds, branch points, Hopf points, "
      "period doublings, Neimark-Sacker points, collisions of multipliers of Hamilton's equations. It begins at the "
      "scene's value of the parameter if that lies in the range, and goes both ways.\n\n"
@@ -179,6 +180,15 @@ static const CommandRow commands[] = {
      "GSL.\n\n"
      "  name=value            a parameter or start: where the search begins, or held\n\n"
      "Exit status 3: the motion failed at the first values, or the search did not converge."},
+    {CMD_DESIGN, "design", NULL,
+     "MODEL [SCENE] [name=value ...] --fit NAME,NAME --sigma X [--best N] [--every DT] [--json]",
+     "where and when to measure, so that values are determined best",
+     "Takes each output of the scene at the time of each row as a possible measurement, and finds the N whose "
+     "information on the values of --fit has the largest determinant (D-optimal), by exact derivatives and exchanges. "
+     "Prints them, with the standard errors that a fit of them would have, beside those of as many at equal "
+     "distances and of all. --observe adds an output; --prior is what is known already.\n\n"
+     "  name=value            a parameter or start: the best guess so far\n\n"
+     "Exit status 2: the measurements cannot determine the values; the message names what none of them feels."},
     {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [--seconds S] [-o FILE.svg]",
      "time against accuracy: all methods, side by side",
      "Names the fastest settings for errors of 1e-3, 1e-6, 1e-9 and 1e-12, or of --target X; then prints the time that "
@@ -333,7 +343,7 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 #define C(name) ((CommandSet)1 << CMD_##name)
 #define SIMULATE (C(RUN) | C(PLOT) | C(ANIMATE))
-#define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS) | C(FIT))
+#define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS) | C(FIT) | C(DESIGN))
 #define RUNS (STEPS | C(SWEEP) | C(ORBIT) | C(CONTINUE)) /* commands that run a scene, once or many times */
 #define MODELS                                                                                                        \
   (RUNS | C(MODES) | C(LINEARIZE) | C(COST) | C(CHECK) | C(VERIFY) | C(DERIVE) | C(NOETHER) | C(ACTION) | C(BUILD) | \

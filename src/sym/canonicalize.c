@@ -217,29 +217,32 @@ static void push_number_power(ExprGraph *g, Product *r, Num base, Num e) {
   else push_factor(g, r, expr_num(g, base), e);
 }
 
+/* Power of a product; for powers that are not whole, of its positive factors one by one. */
+static void push_product_power(ExprGraph *g, Product *r, Expr base, Num e) {
+  int whole = num_is_int(e);
+  Pair room[ROOM];
+  Product kept = {.c = num_int(1), .p = ROOM_FOR(room)};
+  for (uint32_t i = 0; i < expr_pairs(g, base, EX_PROD); i++) {
+    Num k;
+    Expr b = expr_pair(g, base, EX_PROD, i, &k);
+    if (whole || expr_sign(g, b) == SIGN_POSITIVE) push_factor(g, r, b, num_mul(k, e));
+    else push_factor(g, &kept, b, k);
+  }
+  if (kept.p.n == 0) return;
+  if (kept.p.n == 1 && num_is_one(kept.p.at[0].number)) push_factor(g, r, kept.p.at[0].node, e);
+  else if (kept.p.n == 1 && num_is_exact(kept.p.at[0].number) && kept.p.at[0].number.num % 2 == 0 &&
+           kept.p.at[0].number.den == 1) {
+    Expr size = expr_fn(g, EX_ABS, kept.p.at[0].node); /* (x^2)^(1/2) = |x| */
+    push_factor(g, r, size, num_mul(kept.p.at[0].number, e));
+  } else push_factor(g, r, make_pairs(g, EX_PROD, &kept.p), e);
+}
+
 /* (b^k)^e is b^(k e) where e is an integer or b is known to be positive. */
 void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e) {
   int whole = num_is_int(e);
   switch (expr_op(g, base)) {
     case EX_NUM: push_number_power(g, r, expr_number(g, base), e); return;
-    case EX_PROD: {
-      Pair room[ROOM];
-      Product kept = {.c = num_int(1), .p = ROOM_FOR(room)};
-      for (uint32_t i = 0; i < expr_pairs(g, base, EX_PROD); i++) {
-        Num k;
-        Expr b = expr_pair(g, base, EX_PROD, i, &k);
-        if (whole || expr_sign(g, b) == SIGN_POSITIVE) push_factor(g, r, b, num_mul(k, e));
-        else push_factor(g, &kept, b, k);
-      }
-      if (kept.p.n == 0) return;
-      if (kept.p.n == 1 && num_is_one(kept.p.at[0].number)) push_factor(g, r, kept.p.at[0].node, e);
-      else if (kept.p.n == 1 && num_is_exact(kept.p.at[0].number) && kept.p.at[0].number.num % 2 == 0 &&
-               kept.p.at[0].number.den == 1) {
-        Expr size = expr_fn(g, EX_ABS, kept.p.at[0].node); /* (x^2)^(1/2) = |x| */
-        push_factor(g, r, size, num_mul(kept.p.at[0].number, e));
-      } else push_factor(g, r, make_pairs(g, EX_PROD, &kept.p), e);
-      return;
-    }
+    case EX_PROD: push_product_power(g, r, base, e); return;
     case EX_SUM: {
       Expr cosh = whole && num_sign(e) > 0 ? 0 : expr_cosh_of_tanh(g, base);
       if (cosh) {

@@ -238,6 +238,23 @@ static void cell_terms(ExprGraph *g, Expr cell, const ExprMap *dot, ExprMap *rat
   }
 }
 
+/* Terms of the tangent of node e by the tangents of its inputs. */
+static void tangent_terms(ExprGraph *g, Expr e, ExprMap *dot, Terms *terms) {
+  Choice c;
+  if (is_choice(g, e, &c)) {
+    Expr yes = expr_map_get(dot, input(g, e, c.yes)), no = expr_map_get(dot, input(g, e, c.no));
+    if (yes || no) vec_push(g->arena, terms, expr_select(g, c.condition, yes ? yes : g->zero, no ? no : g->zero));
+    return;
+  }
+  for (uint32_t i = 0; i < inputs(g, e); i++) {
+    Expr d = expr_map_get(dot, input(g, e, i));
+    if (!d || d == g->zero) continue;
+    Expr p = partial(g, e, i);
+    Expr term = times_chosen(g, p, d, NESTED_CHOICES);
+    push_term(g, terms, term);
+  }
+}
+
 static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, const char *suffix, ExprMap *known,
                           Expr *out) {
   Expr *roots = ARENA_ARRAY(g->arena, Expr, n + 1);
@@ -260,20 +277,8 @@ static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, 
       expr_map_set(dot, e, before);
       continue;
     }
-    Choice c;
-    int chooses = is_choice(g, e, &c);
     terms.n = 0;
-    if (chooses) {
-      Expr yes = expr_map_get(dot, input(g, e, c.yes)), no = expr_map_get(dot, input(g, e, c.no));
-      if (yes || no) vec_push(g->arena, &terms, expr_select(g, c.condition, yes ? yes : g->zero, no ? no : g->zero));
-    }
-    for (uint32_t i = 0; i < inputs(g, e) && !chooses; i++) {
-      Expr d = expr_map_get(dot, input(g, e, i));
-      if (!d || d == g->zero) continue;
-      Expr p = partial(g, e, i);
-      Expr term = times_chosen(g, p, d, NESTED_CHOICES);
-      push_term(g, &terms, term);
-    }
+    tangent_terms(g, e, dot, &terms);
     if (expr_op(g, e) == EX_CELL) cell_terms(g, e, dot, &rates, &terms);
     int definition = expr_op(g, e) == EX_DEF;
     if (!terms.n) {

@@ -417,7 +417,7 @@ static void judge_drift(const ProofWork *w, Noether *to, Expr power) {
   if (to->drift != PROVED_ZERO && is_shift_of_time(w)) to->potential = noether_potential(w, power, &exists);
   if (to->potential) to->drift = PROVED_ZERO;
   if (exists) to->drift = NOT_DECIDED;
-  to->open_integral = exists == 2;
+  to->open_integral = exists;
   if (to->drift == PROVED_ZERO) to->power = to->by_constraints = expr_int(w->g, 0);
 }
 
