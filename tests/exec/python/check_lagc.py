@@ -220,7 +220,7 @@ for library in ("jax", "torch"):  # where they are installed
         got = np.concatenate([a.grad, b.grad])
     near(f"through {library}", got, complex_step(square, [*y0, *p])[0], 1e-7)
 by = lambda method: [*double.gradient("x2", "swing", until=0.5, method=method, tol=1e-11).parameters.values()]
-near("an implicit method, by matrices of its steps", by("radau"), by("dop853"), 1e-8)
+near("an implicit method", by("radau"), by("dop853"), 1e-8)
 raises("an output that is none", lagc.Error, "did you mean x2?", lambda: double.gradient("x22", "swing"))
 
 # ---- other threads run meanwhile ----
