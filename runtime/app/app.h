@@ -26,9 +26,10 @@ typedef struct Args {
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram;
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
   const char *period, *guess, *hold, *relative, *reverse, *segments; /* for --orbit; the last for --fit, too */
-  const char *best; /* for --design */
-  const char *most; /* for --continue */
-  int orbit, continues, branches;
+  const char *manifold, *follow;                                     /* for --orbit */
+  const char *best;                                                  /* for --design */
+  const char *most;                                                  /* for --continue */
+  int orbit, continues, branches, amplitude;
   int json, sketch, quiet, help, trace, no_rods, modes, linearize, design, equilibrium, gradient, steady, tangent,
       volume, lyapunov, cost, reference, all, runs, sweep, zip, go_on, yes, portrait, potential, distance, energy_error,
       no_monitors, profile, each_effect;
@@ -362,6 +363,10 @@ int lag_app_orbit_set_up(App *app);
 int lag_app_orbit_holds(App *app, struct PeriodicOrbit *o); /* its conditions, those of --hold */
 int lag_app_orbit_open(App *app, struct PeriodicOrbit *o);
 int lag_app_orbit_solve(App *app, struct PeriodicOrbit *o);
+/* orbit_manifolds.c: --manifold, of the orbit, or with --equilibrium of the rest next to the start. 0, or the exit
+ * status. */
+int lag_app_manifolds(App *app, struct PeriodicOrbit *o);
+int lag_app_rest_manifolds(App *app);
 /* orbit_maps.c: the map takes the terms NAME=NAME of an option, `x=-x, r[i]=r[i+1]`; others are left out. 0, or the
  * exit status after a message. */
 struct StateMap;

@@ -200,7 +200,7 @@ static int check_analysis(const Args *a) {
         what == COST ? "--cost, which runs all methods at many tolerances and steps; --methods NAME,NAME selects some"
         : what == SWEEP
             ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
-        : what == MODES ? "--modes, which takes name=value, --steady and --json"
+        : what == MODES ? "--modes, which takes name=value, --steady, --amplitude and --json"
         : what == LINEARIZE ? "--linearize, which takes name=value, --equilibrium, --steady, -o and --json"
         : what == FIT ? "--fit, which takes name=value, --data, --sigma, --prior, --loss, --segments, a method, --svg "
                         "and --json"

@@ -153,6 +153,10 @@ struct lag_sim {
   lag_event_fn *on_event;
   void *on_event_context;
   OutsideStep outside;
+  const lag_scene *lanes_4, *lanes_8; /* lanes/batch.c: the scene compiled for lanes; NULL: it is not */
+  /* lag_sim_renew: this struct before the run, NULL: not renewed; the simulation that it is like */
+  struct lag_sim *fresh;
+  const struct lag_sim *like;
   char message[512];
 };
 

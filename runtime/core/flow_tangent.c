@@ -400,19 +400,23 @@ static double log_det(int n, const double *S, double *a) {
   return log_of;
 }
 
+/* NULL, or why an event has no saltation matrix. more: another event happens at the same time. */
+static const char *jump_lacks(const lag_model *m, int more) {
+  return m->constraints ? "what constraints make of its effect has no derivative yet"
+         : !m->linear
+             ? "its effect on neighbouring motions needs derivatives, which `lagc build --with linear` builds in"
+         : more ? "another event does so at the same time, and neighbouring motions may meet the two in either order"
+                : NULL;
+}
+
 int lag_tangent_jump(lag_sim *s, int k, int more) {
   const lag_model *m = s->scene->model;
   lag_problem *pb = &s->pb;
   int n = pb->n, nq = pb->nq;
   double t = s->run->t, rhs_calls = pb->rhs_calls, rate = 0;
   if (!s->tangent) return LAG_OK;
-  if (m->constraints) return refuse(s, k, "what constraints make of its effect has no derivative yet");
-  if (!m->linear)
-    return refuse(s, k,
-                  "its effect on neighbouring motions needs derivatives, which `lagc build --with linear` builds in");
-  if (more)
-    return refuse(s, k,
-                  "another event does so at the same time, and neighbouring motions may meet the two in either order");
+  const char *lacks = jump_lacks(m, more);
+  if (lacks) return refuse(s, k, lacks);
   Jump j = jump_layout(s);
   if (njump(s) && (lag_inputs(pb, t) ||
                    m->linear->jumps(m->linear, t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, j.d, s->work)))

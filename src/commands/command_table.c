@@ -102,7 +102,7 @@ static const CommandRow commands[] = {
      "simulate and show the motion, as one HTML file",
      "Runs the model and writes its motion as one HTML file, which needs no network and no other file: space plays and "
      "pauses, arrow keys step, the slider scrubs. All options of `lagc run` are allowed."},
-    {CMD_MODES, "modes", "equilibrium", "MODEL [SCENE] [name=value ...] [--steady] [--json]",
+    {CMD_MODES, "modes", "equilibrium", "MODEL [SCENE] [name=value ...] [--steady | --amplitude] [--json]",
      "equilibrium, stability, frequencies, shapes and damping",
      "Finds the equilibrium next to the scene's start, says whether it is stable and by which argument, and prints the "
      "modes of "
@@ -123,7 +123,7 @@ static const CommandRow commands[] = {
      "  name=value            a parameter, another start, an input to hold"},
     {CMD_ORBIT, "orbit", "periodic",
      "MODEL [SCENE] [name=value ...] [--guess T | --period T] [--hold NAMES] [--relative NAMES | --reverse MAP] "
-     "[--json]",
+     "[--manifold KIND -o FILE.csv] [--json]",
      "periodic motions: period, multipliers, stability",
      "Finds the periodic motion next to the scene's start, by Newton's method on the exact tangent of the flow, and "
      "prints its period, the Floquet multipliers with their meaning, and a scene to paste that starts on it. The "
@@ -237,7 +237,7 @@ static const CommandRow commands[] = {
      "--accuracy X searches for the smallest set of the scene's effects whose result differs from the scene's by at "
      "most X: with all other effects left out together, in "
      "scenes of up to ten effects. Prints the `use` line of the set that it finds."},
-    {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--shared] [--method NAME] [--with linear]",
+    {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--shared [--lanes]] [--method NAME] [--with linear]",
      "make a simulator, or a shared library",
      "Compiles the model to a simulator with all its scenes; it has the options of `lagc run`, which `SIMULATOR "
      "--help` "
@@ -245,8 +245,8 @@ static const CommandRow commands[] = {
      "With --bytes it writes what `lag-run`, which stands beside liblag.a, evaluates: LAG_PROGRAM=FILE lag-run. "
      "With --shared it compiles a shared library, which exports the functions of lag.h by the same names for every "
      "model: simulations, rows, events, charges, tangents, "
-     "batches. It links no GSL. Without -o it is kept in the cache, and its path is printed. lagc.py uses it from "
-     "Python."},
+     "batches, which with --lanes compute several motions at once. It links no GSL. Without -o it is kept in the "
+     "cache, and its path is printed. lagc.py uses it from Python."},
     {CMD_HEADER, "header", "embedding", "MODEL [SCENE] [--with PART,...] [--for LIBRARY,...] -o FILE.h",
      "write one C header to embed",
      "Writes one self-contained C99/C++ header to embed: parameters as a struct, accelerations, energy, an RK4 step. "

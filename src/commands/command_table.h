@@ -63,7 +63,7 @@ typedef struct {
   const char *fix;         /* --fix g,l: parameters that become numbers */
   const char *accuracy;    /* effects --accuracy */
   const char *against, *map; /* verify --against, --map */
-  int shared;              /* build --shared */
+  int shared, lanes;       /* build --shared, --lanes */
   int by_effects;          /* fit --effects */
   int json;                /* effects --json; other commands pass it on */
   OptionTexts scenes;      /* plot: all scenes named, each once */

@@ -401,6 +401,22 @@ check "a simulator without linearisation says what to write" plain
 "$LAGC" build models/pendulum.lag --with linear -o "$TMP/full"
 check "a simulator with it takes --modes" sh -c "'$TMP/full' --modes th=3 | grep -q 'grows 0.3192754'"
 
+# ---- frequency over amplitude. Tolerances: what --json states as the error, and 3 times that of the cases here
+bends() { sed -n "2s/.*\"amplitude\": {.*\"$1\": \([^,}]*\).*/\1/p" "$TMP/modes"; }
+find_modes models/pendulum.lag small --amplitude # pi/(2 K(sin(A/2)))
+close "1 - A^2/16" "-1/16" "$(bends a2)" 1e-11
+close "+ A^4/3072" "1/3072" "$(bends a4)" 1e-9
+# by powers of k3 in mm^2: 3/8 k3, -21/256 k3^2 (A. Nayfeh, Introduction to Perturbation Techniques, 1981, chapter 4)
+find_modes $dir/duffing.lag --amplitude
+close "hardens" "3/8*0.7" "$(bends a2)" 1e-11
+close "then less" "-21/256*0.49" "$(bends a4)" 1e-8
+# the potential x^2/2 + x^3/3: mpmath, by quadrature of the period and A half the distance of turning points
+find_modes $dir/duffing.lag one_sided --amplitude
+close "softens" "-5/12" "$(bends a2)" 1e-10
+close "faster" "-455/1728" "$(bends a4)" 1e-7
+check "resonance: no family of its own" sh -c "'$LAGC' modes models/henon_heiles.lag x=0.01 y=0 --amplitude | grep -c 'resonance with another mode' | grep -q 2"
+check "frequency of a steady motion" refuses 2 "is for modes about rest" models/spherical_pendulum.lag cone --steady --amplitude
+
 # ---- printed report
 text() { "$LAGC" modes "$@" 2>&1; }
 is "velocities of the start do not matter" "equilibrium: 0" "$(text models/pendulum.lag th=0 "th'=1" | sed -n 's/: the start itself, at rest (with the velocities of the start: --steady)/: 0/p')"
