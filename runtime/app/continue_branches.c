@@ -219,7 +219,7 @@ static int begin_rest(Job *job) {
   job->problem = job->rest.problem;
   rc = follow_first(job, u, NULL);
   free(u);
-  return rc ? failed(job, rc, NULL) : 0;
+  return rc ? failed(job, rc, job->rest.flow.message) : 0;
 }
 
 /* Of steady motions over a parameter charges other than the energy keep their values, unless --hold names others; over
@@ -259,9 +259,9 @@ static int begin_steady(Job *job) {
   job->problem = s->problem;
   job->begin = job->led_kind < 0 ? job->begin : (s->parameter - job->offset) / job->factor;
   rc = check_begin(job, "steady");
-  rc = rc ? rc : follow_first(job, u, NULL) ? failed(job, LAG_ESINGULAR, NULL) : 0;
+  int status = rc ? LAG_OK : follow_first(job, u, NULL);
   free(u);
-  return rc;
+  return status ? failed(job, status, s->flow.message) : rc;
 }
 
 /* Conserved charges keep their values unless --hold names others, or one is the parameter. */
@@ -309,7 +309,7 @@ static int begin_periodic(Job *job) {
   lag_orbit_branch_unknowns(o, u);
   rc = follow_first(job, u, o);
   free(u);
-  return rc ? failed(job, rc, NULL) : 0;
+  return rc ? failed(job, rc, o->flow.message) : 0;
 }
 
 /* ---- The command */

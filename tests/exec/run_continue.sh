@@ -64,6 +64,9 @@ near "$title: spin" 1e-10 20 "$(sed -n '4s/.*"th": \([^,]*\),.*"ph.": \([^}]*\)}
 near "$title: balance" 1e-10 0 "$(sed -n '4s/.*"th": \([^,]*\),.*"ph.": \([^}]*\)}.*/\1 \2/p' "$TMP/points" | awk '{ printf "%.15g", cos($1) - 1.5*9.81/$2^2 }')"
 
 long() {
+  # van der Pol's period over mu: at 5 by SciPy's DOP853 at 1e-13; published 11.612 (C. Andersen, J. Geer, SIAM J. Appl. Math. 42 (1982) 678)
+  follow $dir/vanderpol.lag cycle mu=1..5 --guess 6.66
+  close 1 period 11.61223066771953 1e-9
   # the bead by a constraint: w = sqrt(g/R); on the other branch at w = 8 the height -g/w^2
   follow $dir/hoop.lag w=1..8 --branches
   kinds "branch point;end;end;end;end;"
