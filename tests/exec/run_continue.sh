@@ -112,6 +112,9 @@ refused() {
   shift
   check "refused: $case_words" says "$@"
 }
+ends() { check "$1" sh -c "'$LAGC' continue $2 | grep -q 'it ends there: $3'"; }
+ends "a family ends: at a value that the model refuses" "models/lorenz.lag x=0 y=0 z=0 rho=0.5..-3" "rho = .*: the model declares rho >= 0"
+slow ends "a family ends: next to the separatrix" "models/pendulum.lag wide energy=9..40" "the period grows without limit"
 refused "no range" 2 "a range is missing: NAME=A..B" "$LAGC" continue models/pendulum.lag wide
 refused "no such name" 2 "the model has no parameter of this name" "$LAGC" continue models/pendulum.lag wide gg=1..2
 refused "a range without length" 2 "the ends of the range are equal" "$LAGC" continue models/pendulum.lag wide l=1..1
