@@ -45,6 +45,7 @@ static int do_command(Compiler *c) {
     case CMD_CONTINUE:
     case CMD_LYAPUNOV:
     case CMD_FIT:
+    case CMD_DESIGN:
     case CMD_COST:
     case CMD_SWEEP: return command_run(c);
     case CMD_EFFECTS: return command_effects(c);

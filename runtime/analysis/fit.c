@@ -10,206 +10,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double huber_bound = 1.345; /* errors; 95 % efficient for normal ones */
-
-/* ---- Coordinates of the search: logarithms of values with a sign, others in units of their scale */
-
-static double softened(const FitTarget *t) { return 1e-3 * t->scale; }
-
-/* The value at coordinate x, and its derivative. A value "> 0" is exp(x); one ">= 0" is about scale x where that is
- * positive, and above 0 everywhere. */
-static double value_at(const FitTarget *t, double x, double *slope) {
-  double side = t->sign < 0 ? -1 : 1;
-  if (abs(t->sign) == 1) {
-    double value = side * exp(x);
-    *slope = value;
-    return value;
-  }
-  if (abs(t->sign) == 2) {
-    double u = t->scale * x, s = softened(t), root = sqrt(u * u + 4 * s * s);
-    *slope = side * t->scale * (1 + u / root) / 2;
-    return side * (u > 0 ? (u + root) / 2 : 2 * s * s / (root - u));
-  }
-  *slope = t->scale;
-  return t->scale * x;
-}
-
-static double coordinate_of(const FitTarget *t, double value) {
-  double s = softened(t), size = fmax(fabs(value), s);
-  if (abs(t->sign) == 1) return log(fabs(value));
-  return abs(t->sign) == 2 ? (size - s * s / size) / t->scale : value / t->scale;
-}
-
-static void take_values(Fit *f, const double *x, double *slope) {
-  for (int j = 0; j < f->n; j++) f->target[j].value = value_at(&f->target[j], x[j], &slope[j]);
-}
-
-/* ---- Residuals of one run */
-
-static int fail(Fit *f, int status, const char *why) {
-  snprintf(f->why, sizeof f->why, "%s", why);
-  return status;
-}
-
-/* Ends a run that takes far more steps than the first: values far from those at the begin. */
-static int count_step(void *fit, const lag_sim *sim) {
-  Fit *f = fit;
-  (void)sim;
-  f->steps_of_run++;
-  return f->steps_of_first > 0 && f->steps_of_run > 50 * f->steps_of_first + 1000;
-}
-
-/* A simulation of record k with the present values; sensitive: with a column for each of its targets. */
-static lag_sim *simulation(Fit *f, int k, int sensitive) {
-  lag_sim *sim = f->fresh(f->context);
-  const char **names = malloc(((size_t)f->n + 1) * sizeof *names);
-  int rc = sim && names ? LAG_OK : LAG_ENOMEM;
-  f->nmine = 0;
-  for (int j = 0; j < f->n && rc == LAG_OK; j++) {
-    if (f->target[j].record && f->target[j].record != k + 1) continue;
-    names[f->nmine] = f->target[j].name;
-    f->mine[f->nmine++] = j;
-    rc = lag_sim_set(sim, f->target[j].name, f->target[j].value);
-  }
-  if (rc == LAG_OK && sensitive && f->nmine) rc = lag_sim_set_sensitivity(sim, f->nmine, names);
-  free(names);
-  if (rc == LAG_OK) {
-    f->steps_of_run = 0;
-    lag_sim_on_step(sim, count_step, f);
-    return sim;
-  }
-  fail(f, rc, sim ? lag_sim_message(sim) : "out of memory");
-  lag_sim_free(sim);
-  return NULL;
-}
-
-/* Number of rows of record k that count. */
-static int rows_of(const Fit *f, int k) { return (f->first[k + 1] - f->first[k]) / f->part; }
-
-static double error_of(const Fit *f, int i, int c) {
-  return f->column[c].per_row ? f->errors[i * f->ncolumns + c] : f->column[c].sigma;
-}
-
-/* Weight of a residual r in units of its error: sqrt(2 rho(r))/r, and the derivative of sqrt(2 rho). */
-static double loss(const Fit *f, double r, double *slope) {
-  double size = fabs(r);
-  *slope = 1;
-  if (!f->huber || size <= huber_bound) return r;
-  double bent = sqrt(huber_bound * (2 * size - huber_bound));
-  *slope = huber_bound / bent;
-  return copysign(bent, r);
-}
-
-/* Residuals of row i from the outputs f->row, and their derivatives from f->D by the declared units of targets. */
-static void put_row(Fit *f, int i, const double *slope, double *r, double *J, int *at) {
-  for (int c = 0; c < f->ncolumns; c++) {
-    double got = f->row[f->column[c].output], want = f->data[i * f->ncolumns + c], by;
-    f->model[i * f->ncolumns + c] = got;
-    if (isnan(want)) continue;
-    double error = error_of(f, i, c), bent = loss(f, (got - want) / error, &by);
-    if (r) r[*at] = bent;
-    for (int j = 0; j < f->n && J; j++) J[*at * f->n + j] = 0;
-    for (int q = 0; q < f->nmine && J; q++) {
-      int j = f->mine[q];
-      J[*at * f->n + j] = by * f->D[f->column[c].output * f->nmine + q] * f->target[j].factor * slope[j] / error;
-    }
-    ++*at;
-  }
-}
-
-/* Residuals of priors behind the others. */
-static void put_priors(const Fit *f, const double *slope, double *r, double *J, int at) {
-  for (int k = 0; k < f->n; k++) {
-    const FitTarget *t = &f->target[k];
-    if (!(t->prior_error > 0)) continue;
-    if (r) r[at] = (t->value - t->prior) / t->prior_error;
-    for (int j = 0; j < f->n && J; j++) J[at * f->n + j] = j == k ? slope[j] / t->prior_error : 0;
-    at++;
-  }
-}
-
-/* Runs the motion of record k over its rows that count. */
-static int run_record(Fit *f, int k, lag_sim *sim, const double *slope, double *r, double *J, int *at) {
-  int rc = LAG_OK, first = f->first[k], derives = J && f->nmine;
-  for (int i = first; i < first + rows_of(f, k) && rc == LAG_OK; i++) {
-    rc = f->t[i] > lag_sim_time(sim) || i > first ? lag_sim_advance(sim, f->t[i]) : LAG_OK;
-    if (rc > 0) {
-      snprintf(f->why, sizeof f->why, "the motion ends at t = %g s, before the data do", lag_sim_time(sim));
-      return LAG_EDOMAIN;
-    }
-    rc = rc ? rc : lag_sim_outputs(sim, f->row);
-    if (rc == LAG_OK && derives) rc = lag_sim_tangent(sim, f->y);
-    if (rc == LAG_OK && derives) rc = lag_sim_output_sensitivity(sim, f->y, f->D);
-    if (rc == LAG_OK) put_row(f, i, slope, r, J, at);
-  }
-  return rc ? fail(f, rc, lag_sim_message(sim)) : LAG_OK;
-}
-
-/* The same of all records, and priors. */
-static int run_rows(Fit *f, const double *slope, double *r, double *J) {
-  int at = 0, rc = LAG_OK;
-  double most = 0;
-  for (int k = 0; k < f->nrecords && rc == LAG_OK; k++) {
-    lag_sim *sim = simulation(f, k, J != NULL);
-    rc = sim ? run_record(f, k, sim, slope, r, J, &at) : LAG_EINVAL;
-    lag_sim_free(sim);
-    most = fmax(most, f->steps_of_run);
-  }
-  f->steps_of_run = most;
-  if (rc == LAG_OK) put_priors(f, slope, r, J, at);
-  return rc;
-}
-
-/* Springs to f->centre in the last n residuals, without which rounding would move the search far along directions that
- * data do not feel; -1: x is so far away that no motion is tried. */
-static int put_springs(const Fit *f, const double *x, double *r, double *J) {
-  const double farthest = 8, stiff = 1e10; /* logarithms, or scales; of a spring that holds, beside weak ones */
-  int at = f->nvalues;
-  for (int k = 0; k < f->n; k++) {
-    int held = k + 1 == f->held;
-    double pull = held ? stiff * f->pull : f->pull, centre = held ? f->held_at : f->centre[k];
-    if (!(fabs(x[k] - f->centre[k]) < farthest)) return -1;
-    if (r) r[at + k] = pull * (x[k] - centre);
-    for (int j = 0; j < f->n && J; j++) J[(at + k) * f->n + j] = j == k ? pull : 0;
-  }
-  return 0;
-}
-
-/* lag_residuals_at. */
-static int residuals(void *fit, const double *x, double *r, double *J) {
-  Fit *f = fit;
-  double *slope = malloc((size_t)(f->n + 1) * sizeof *slope);
-  if (!slope) return fail(f, LAG_ENOMEM, "out of memory");
-  if (put_springs(f, x, r, J)) return free(slope), LAG_EDOMAIN;
-  take_values(f, x, slope);
-  int rc = run_rows(f, slope, r, J), m = f->nvalues;
-  for (int i = 0; i < m && rc == LAG_OK && r; i++)
-    if (!isfinite(r[i])) rc = fail(f, LAG_ENAN, "an output has no value on the way");
-  f->evaluations++;
-  free(slope);
-  return rc;
-}
+#include "analysis/fit_residuals.h"
 
 /* ---- The search */
-
-/* Values in the first 1/part of each record, and priors. */
-static int count_values(Fit *f, int part) {
-  int m = 0;
-  f->part = part;
-  for (int k = 0; k < f->nrecords; k++) {
-    int first = f->first[k] * f->ncolumns, n = rows_of(f, k) * f->ncolumns;
-    for (int i = first; i < first + n; i++) m += !isnan(f->data[i]);
-  }
-  for (int j = 0; j < f->n; j++) m += f->target[j].prior_error > 0;
-  return f->nvalues = m;
-}
 
 /* The largest column of J at x. */
 static int stiffness(Fit *f, const double *x, double *largest) {
   int m = f->nvalues, n = f->n;
   double *J = malloc((size_t)((m + n) * n) * sizeof *J);
   f->pull = 0;
-  int rc = J ? residuals(f, x, NULL, J) : fail(f, LAG_ENOMEM, "out of memory");
+  int rc = J ? lag_fit_residuals(f, x, NULL, J) : lag_fit_fail(f, LAG_ENOMEM, "out of memory");
   *largest = 0;
   for (int j = 0; j < n && rc == LAG_OK; j++) {
     double sum = 0;
@@ -232,14 +42,15 @@ static int search(Fit *f, int part_of_rows, int most, double *x) {
   const double part = 1e-6, settled = 1e-7;
   enum { ROUNDS = 6 };
   double moved = HUGE_VAL, stiff;
-  int rc = LAG_OK, m = count_values(f, part_of_rows);
+  int rc = LAG_OK, m = lag_fit_count_values(f, part_of_rows);
   leave_bounds(f, x);
+  if (f->nodes) return lag_fit_shoot(f, 0, x);
   for (int k = 0; k < ROUNDS && moved > settled && rc == LAG_OK; k++) {
     int steps = 0;
     memcpy(f->centre, x, (size_t)f->n * sizeof *x);
     if ((rc = stiffness(f, x, &stiff)) != 0) return rc;
     f->pull = part * stiff;
-    rc = f->by->minimise(m + f->n, f->n, x, residuals, f, most, &steps);
+    rc = f->by->minimise(m + f->n, f->n, x, lag_fit_residuals, f, most, &steps);
     f->steps += steps;
     f->converged = rc == LAG_OK;
     moved = 0;
@@ -253,7 +64,7 @@ static int search_from_short(Fit *f, double *x) {
   const int shorter_steps = 15;
   int rc = LAG_OK;
   for (int part = 8; part > 1 && rc == LAG_OK; part /= 2)
-    if (count_values(f, part) >= 3 * f->n + f->ncolumns) rc = search(f, part, shorter_steps, x);
+    if (lag_fit_count_values(f, part) >= 3 * f->n + f->ncolumns) rc = search(f, part, shorter_steps, x);
   return rc ? rc : search(f, 1, f->most, x);
 }
 
@@ -349,7 +160,7 @@ static int is_flat_far_away(Fit *f, const double *v, int product, const double *
     kept[j] = t->value;
     t->value = product ? t->value * exp(far * v[j]) : t->value + far * v[j] * t->scale;
   }
-  int rc = run_rows(f, kept, NULL, NULL);
+  int rc = lag_fit_run_rows(f, kept, NULL, NULL);
   for (int i = 0; i < many && rc == LAG_OK; i++) {
     largest = fmax(largest, fabs(f->model[i] - model[i]));
     size = fmax(size, fabs(model[i]));
@@ -390,7 +201,7 @@ static int note_flat(Fit *f, const double *V) {
   f->flat = calloc((size_t)n, sizeof *f->flat);
   f->directions = calloc((size_t)(n * n), sizeof *f->directions);
   double *model = malloc(many * sizeof *model);
-  if (!f->flat || !f->directions || !model) return free(model), fail(f, LAG_ENOMEM, "out of memory");
+  if (!f->flat || !f->directions || !model) return free(model), lag_fit_fail(f, LAG_ENOMEM, "out of memory");
   memcpy(model, f->model, many * sizeof *model);
   for (int k = 0; k < f->nflat; k++)
     for (int j = 0; j < n; j++) f->directions[k * n + j] = V[j * n + n - f->nflat + k];
@@ -434,32 +245,33 @@ static void take_errors(Fit *f, const double *V, const double *s, double *covari
 }
 
 /* Scales for the directions: values, so that directions are relative changes; of a value near 0 its first scale. */
-static void take_scales(Fit *f, double *J, const double *slope) {
+static void take_scales(Fit *f, int rows, double *J, const double *slope) {
   for (int j = 0; j < f->n; j++) {
     FitTarget *t = &f->target[j];
     double size = fabs(t->value);
     t->scale = size > 1e-6 * t->scale ? size : t->scale;
-    for (int i = 0; i < f->nvalues; i++) J[i * f->n + j] *= t->scale / slope[j];
+    for (int i = 0; i < rows; i++) J[i * f->n + j] *= t->scale / slope[j];
   }
 }
 
 static int take_statistics(Fit *f, const double *x) {
-  int m = count_values(f, 1), n = f->n;
-  double *r = calloc((size_t)((m + n) * (n + 1) + 2 * n * n + 2 * n), sizeof *r);
+  int m = lag_fit_count_values(f, 1), n = f->n, rows = f->nodes ? n : m, width = lag_fit_width(f);
+  double *r = calloc((size_t)((m + n) * (width + 1) + 2 * n * n + 2 * n), sizeof *r);
   f->correlation = calloc((size_t)(n * n), sizeof *f->correlation);
   f->singular = calloc((size_t)n, sizeof *f->singular);
-  if (!r || !f->correlation || !f->singular) return free(r), fail(f, LAG_ENOMEM, "out of memory");
-  double *J = r + m + n, *V = J + (m + n) * n, *covariance = V + n * n, *s = covariance + n * n, *slope = s + n;
+  if (!r || !f->correlation || !f->singular) return free(r), lag_fit_fail(f, LAG_ENOMEM, "out of memory");
+  double *J = r + m + n, *V = J + (m + n) * width, *covariance = V + n * n, *s = covariance + n * n, *slope = s + n;
   memcpy(f->centre, x, (size_t)n * sizeof *x);
   f->pull = 0;
-  int rc = residuals(f, x, r, J);
-  take_values(f, x, slope);
+  int rc = lag_fit_residuals(f, x, r, J);
+  lag_fit_take_values(f, x, slope);
   if (rc == LAG_OK) {
     f->chi_squared = 0;
     for (int i = 0; i < m; i++) f->chi_squared += r[i] * r[i];
     for (int c = 0; c < f->ncolumns; c++) test_runs(f, c);
-    take_scales(f, J, slope);
-    rc = f->by->singular_values(m, n, J, s, V);
+    if (f->nodes) rc = lag_fit_eliminate(f, r, J, V), memcpy(J, V, (size_t)(n * n) * sizeof *J);
+    take_scales(f, rows, J, slope);
+    rc = rc ? rc : f->by->singular_values(rows, n, J, s, V);
   }
   for (int k = 0; k < n && rc == LAG_OK; k++) f->singular[k] = s[0] > 0 ? s[k] / s[0] : 0;
   rc = rc ? rc : note_flat(f, V);
@@ -474,40 +286,68 @@ static int take_statistics(Fit *f, const double *x) {
 /* The motions at the first values: they have to reach their last rows. */
 static int run_first(Fit *f) {
   f->part = 1;
-  int rc = run_rows(f, NULL, NULL, NULL);
+  int rc = lag_fit_run_rows(f, NULL, NULL, NULL);
   f->steps_of_first = f->steps_of_run + 1;
   return rc;
 }
 
 static int make_room(Fit *f) {
   f->mine = calloc((size_t)f->n + 1, sizeof *f->mine);
-  lag_sim *sim = f->mine ? simulation(f, 0, 1) : NULL;
-  if (!sim) return f->mine ? LAG_EINVAL : fail(f, LAG_ENOMEM, "out of memory");
+  lag_sim *sim = f->mine ? lag_fit_simulation(f, 0, -1, 1) : NULL;
+  if (!sim) return f->mine ? LAG_EINVAL : lag_fit_fail(f, LAG_ENOMEM, "out of memory");
   size_t state = (size_t)(2 * lag_sim_scene(sim)->model->nq + lag_sim_scene(sim)->model->nz),
          nout = (size_t)lag_sim_noutputs(sim), n = (size_t)f->n;
-  f->y = calloc(state * n + 1, sizeof *f->y);
+  f->y = calloc(state * (n + state) + 1, sizeof *f->y);
   f->row = calloc(nout + 1, sizeof *f->row);
-  f->D = calloc(nout * n + 1, sizeof *f->D);
+  f->D = calloc(nout * (n + state) + 1, sizeof *f->D);
   f->centre = calloc(n + 1, sizeof *f->centre);
   f->model = calloc((size_t)(f->nrows * f->ncolumns) + 1, sizeof *f->model);
   lag_sim_free(sim);
-  return f->y && f->row && f->D && f->model && f->centre ? LAG_OK : fail(f, LAG_ENOMEM, "out of memory");
+  return f->y && f->row && f->D && f->model && f->centre ? LAG_OK : lag_fit_fail(f, LAG_ENOMEM, "out of memory");
 }
 
 /* Searches, and repeats with errors adapted to the residuals until these agree. */
 static int search_with_errors(Fit *f, double *x, const int *given) {
   const double settled = 0.01;
   enum { ROUNDS = 12 };
-  int rc = search_from_short(f, x), all = 1;
+  int rc = f->nodes ? lag_fit_shoot(f, 1, x) : search_from_short(f, x), all = 1;
   for (int c = 0; c < f->ncolumns; c++) all &= given[c];
   f->freedom = f->nvalues - f->n;
   int adapts = !all && (f->ncolumns > 1 || f->huber || f->nvalues > f->n);
   for (int k = 0; k < ROUNDS && adapts && rc == LAG_OK; k++) {
-    if ((rc = residuals(f, x, NULL, NULL)) != 0) break; /* the motion at x */
+    if ((rc = lag_fit_residuals(f, x, NULL, NULL)) != 0) break; /* the motion at x */
     double change = adapt_errors(f, given);
     if (change < settled || (f->ncolumns == 1 && !f->huber)) break;
     rc = search(f, 1, f->most, x);
   }
+  return rc;
+}
+
+/* Coordinates and errors of the begin. */
+static void begin_again(Fit *f, double *x, const int *given) {
+  for (int c = 0; c < f->ncolumns; c++)
+    if (!given[c]) f->column[c].sigma = spread_of(f, c);
+  for (int j = 0; j < f->n; j++) {
+    f->target[j].value = f->target[j].begin;
+    x[j] = lag_fit_coordinate(&f->target[j], f->target[j].begin);
+  }
+}
+
+/* From the begin with several parts, where a search in one part has failed; if that fails, too, the result of the first
+ * one stands. */
+static int search_in_parts(Fit *f, double *x, const int *given) {
+  double *kept = malloc((size_t)f->n * sizeof *kept);
+  if (!kept) return lag_fit_fail(f, LAG_ENOMEM, "out of memory");
+  memcpy(kept, x, (size_t)f->n * sizeof *x);
+  begin_again(f, x, given);
+  int rc = lag_fit_place_nodes(f, 1);
+  if (rc == LAG_OK && f->nodes) rc = search_with_errors(f, x, given);
+  if (rc || !f->converged) {
+    lag_fit_nodes_free(f);
+    memcpy(x, kept, (size_t)f->n * sizeof *x);
+    rc = search_with_errors(f, x, given);
+  }
+  free(kept);
   return rc;
 }
 
@@ -518,20 +358,18 @@ int lag_fit(Fit *f) {
   for (int c = 0; c < f->ncolumns && rc == LAG_OK; c++) {
     given[c] = f->column[c].per_row || f->column[c].sigma > 0;
     f->known_errors &= given[c];
-    if (!given[c]) f->column[c].sigma = spread_of(f, c);
   }
-  for (int j = 0; j < n && rc == LAG_OK; j++) {
-    f->target[j].value = f->target[j].begin;
-    x[j] = coordinate_of(&f->target[j], f->target[j].begin);
-  }
-  if (rc == LAG_OK && count_values(f, 1) < n) {
+  if (rc == LAG_OK) begin_again(f, x, given);
+  if (rc == LAG_OK && lag_fit_count_values(f, 1) < n) {
     snprintf(f->why, sizeof f->why, "%d values cannot determine %d quantities; fit fewer, or give more data",
              f->nvalues, n);
     rc = LAG_EINVAL;
   }
   rc = rc ? rc : make_room(f);
   rc = rc ? rc : run_first(f);
+  rc = rc ? rc : lag_fit_place_nodes(f, 0);
   rc = rc ? rc : search_with_errors(f, x, given);
+  if (rc == LAG_OK && !f->converged && !f->nodes) rc = search_in_parts(f, x, given);
   rc = rc ? rc : take_statistics(f, x);
   free(x);
   free(given);
@@ -539,6 +377,7 @@ int lag_fit(Fit *f) {
 }
 
 void lag_fit_free(Fit *f) {
+  lag_fit_nodes_free(f);
   free(f->mine);
   free(f->directions);
   free(f->flat);
@@ -553,20 +392,13 @@ void lag_fit_free(Fit *f) {
 
 /* ---- For profiles */
 
-double lag_fit_coordinate(const FitTarget *t, double value) { return coordinate_of(t, value); }
-
-double lag_fit_value(const FitTarget *t, double x) {
-  double slope;
-  return value_at(t, x, &slope);
-}
-
 int lag_fit_search(Fit *f, double *x) { return search(f, 1, f->most, x); }
 
 int lag_fit_squares(Fit *f, const double *x, double *chi_squared) {
-  int m = count_values(f, 1);
+  int m = lag_fit_count_values(f, 1);
   double *r = calloc((size_t)(m + f->n), sizeof *r);
   memcpy(f->centre, x, (size_t)f->n * sizeof *x);
-  int rc = r ? residuals(f, x, r, NULL) : fail(f, LAG_ENOMEM, "out of memory");
+  int rc = r ? lag_fit_residuals(f, x, r, NULL) : lag_fit_fail(f, LAG_ENOMEM, "out of memory");
   *chi_squared = 0;
   for (int i = 0; i < m && rc == LAG_OK; i++) *chi_squared += r[i] * r[i];
   free(r);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/fit.h"
+#include "analysis/fit_residuals.h"
 
 /* The quantile t with P(|T| > t) = 5 % of Student's distribution; of the normal one where errors are known. */
 static double quantile(const Fit *f) {
@@ -34,13 +35,13 @@ static double growth(Fit *f, int j, double at, double variance, double best, dou
 static double end_of(Fit *f, int j, double step, double q, double variance, const double *fitted, double *x) {
   const double farthest = 5, close = 1e-3;
   enum { TRIES = 12 };
-  double best, d = step, root = 0;
+  double best, d = step, root = 0, slope;
   memcpy(x, fitted, (size_t)f->n * sizeof *x);
   if (lag_fit_squares(f, fitted, &best)) return NAN;
   for (int i = 0; i < TRIES && fabs(d) < farthest; i++) {
     root = growth(f, j, fitted[j] + d, variance, best, x);
     if (isnan(root)) return NAN;
-    if (fabs(root / q - 1) < close) return lag_fit_value(&f->target[j], fitted[j] + d);
+    if (fabs(root / q - 1) < close) return lag_fit_value_at(&f->target[j], fitted[j] + d, &slope);
     d *= root > 0 ? fmin(fmax(q / root, 0.2), 3) : 3;
   }
   return root < q ? copysign(HUGE_VAL, step) : NAN;

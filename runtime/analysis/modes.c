@@ -199,8 +199,8 @@ static double energy_at(Equilibrium *r, int i, double a, int j, double b) {
   r->trial[j] += b;
   lag_equilibrium_state(r, r->trial);
   const double *y = r->y;
-  return pb->model->energy(pb->model, r->sim->run->t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, e, r->work) ? NAN
-                                                                                                               : e[0];
+  int rc = pb->model->energy(pb->model, r->sim->run->t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, e, pb->work);
+  return rc ? NAN : e[0];
 }
 
 /* H[n * n] := second differences of the energy with step h, divided by the roots of their diagonal. 1 or -1: the

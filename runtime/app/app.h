@@ -25,10 +25,12 @@ typedef struct Args {
   /* for --sweep */
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram;
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
-  const char *period, *guess, *hold, *relative, *reverse, *segments, *manifold, *follow; /* for --orbit */
-  const char *most; /* for --continue */
+  const char *period, *guess, *hold, *relative, *reverse, *segments; /* for --orbit; the last for --fit, too */
+  const char *manifold, *follow;                                     /* for --orbit */
+  const char *best;                                                  /* for --design */
+  const char *most;                                                  /* for --continue */
   int orbit, continues, branches, amplitude;
-  int json, sketch, quiet, help, trace, no_rods, modes, linearize, equilibrium, gradient, steady, tangent,
+  int json, sketch, quiet, help, trace, no_rods, modes, linearize, design, equilibrium, gradient, steady, tangent,
       volume, lyapunov, cost, reference, all, runs, sweep, zip, go_on, yes, portrait, potential, distance, energy_error,
       no_monitors, profile, each_effect;
   char **sets; /* name=value, in order */
@@ -136,8 +138,8 @@ typedef struct App {
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
 enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, FIT = 128, ORBIT = 256,
-       CONTINUE = 512, LINEARIZE = 1024, ANY = 2047, MOTION_PERIODIC = ORBIT | CONTINUE,
-       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | FIT };
+       CONTINUE = 512, LINEARIZE = 1024, DESIGN = 2048, ANY = 4095, MOTION_PERIODIC = ORBIT | CONTINUE,
+       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | FIT | DESIGN };
 
 /* A row of options.def. */
 typedef struct Option {
@@ -379,6 +381,8 @@ int lag_app_continue(App *app);
 /* effect_costs.c: --effects. Returns the exit status. */
 int lag_app_effects(App *app);
 
+/* design_report.c: --design. Returns the exit status. */
+int lag_app_design(App *app);
 /* fit.c: --fit. Returns the exit status. */
 int lag_app_fit(App *app);
 

@@ -172,7 +172,8 @@ static unsigned analyses_with(const Option *o) {
 
 /* Refuses options that a run, or the analysis that is asked for, does not use. */
 static int check_analysis(const Args *a) {
-  const unsigned what = a->sweep ? SWEEP : a->fit ? FIT : a->modes ? MODES : a->linearize ? LINEARIZE
+  const unsigned what = a->sweep ? SWEEP : a->design ? DESIGN : a->fit ? FIT : a->modes ? MODES
+                        : a->linearize ? LINEARIZE
                         : a->orbit ? ORBIT : a->continues ? CONTINUE
                         : a->cost ? COST : a->reference ? REFERENCE
                         : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
@@ -189,6 +190,7 @@ static int check_analysis(const Args *a) {
                                  : analyses & MODES ? "--modes"
                                  : analyses & LINEARIZE ? "--linearize"
                                  : analyses & FIT   ? "--fit"
+                                 : analyses & DESIGN ? "--design"
                                  : analyses & ORBIT ? "--orbit"
                                  : analyses & CONTINUE ? "--continue"
                                                     : "--lyapunov");
@@ -200,7 +202,10 @@ static int check_analysis(const Args *a) {
             ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
         : what == MODES ? "--modes, which takes name=value, --steady, --amplitude and --json"
         : what == LINEARIZE ? "--linearize, which takes name=value, --equilibrium, --steady, -o and --json"
-        : what == FIT ? "--fit, which takes name=value, --data, --sigma, --prior, --loss, a method, --svg and --json"
+        : what == FIT ? "--fit, which takes name=value, --data, --sigma, --prior, --loss, --segments, a method, --svg "
+                        "and --json"
+        : what == DESIGN ? "--design, which takes name=value, --fit, --sigma, --prior, --columns, --best, --until, "
+                           "--every, a method and --json"
         : what == CONTINUE
             ? "--continue, which takes NAME=A..B, name=value, the options of --orbit, --steady, --most, --branches, "
               "-o, --svg and --json"

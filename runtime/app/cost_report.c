@@ -125,7 +125,7 @@ static void put_answer(FILE *f, const App *app, const Cost *c) {
   for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) shown += put_cheapest(f, app, c, errors[i]);
   if (!shown && c->monitor[0]) fprintf(f, "no setting with an error of 0.001 or less is one that `lagc run` accepts\n");
   else if (!shown && lacks_time(c))
-    fprintf(f, "no setting has an error of 0.001 or less; allow more time: --seconds %g\n", 3 * c->seconds);
+    fprintf(f, "no setting has an error of 0.001 or less; allow more time: --seconds %.2g\n", 10 * c->seconds);
   else if (!shown)
     fprintf(f, "no setting has an error of 0.001 or less; the smallest found is %.1e: end the run earlier (--until)\n",
             smallest_error(c));

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/fit_residuals.h"
 #include "app/fit_run.h"
 
 /* A value with the digits that its error leaves, and two more; or so many where it is not determined. */
@@ -146,9 +147,8 @@ static void put_scene(const FitRun *r, int record, FILE *out) {
   fprintf(out, " { like %s\n", r->app->scene->name);
   for (int j = 0; j < f->n; j++) {
     const FitTarget *t = &f->target[j];
-    int is_start = strcmp(t->label, t->name) != 0 && strstr(t->label, "(0)");
     if (t->record && t->record != record + 1) continue;
-    fprintf(out, "  %s%s = ", is_start ? "start " : "", t->name);
+    fprintf(out, "  %s%s = ", t->is_start ? "start " : "", t->name);
     put_value(out, t, 8);
     if (t->unit[0]) fprintf(out, " [%s]", t->unit);
     putc('\n', out);
@@ -163,6 +163,11 @@ void lag_fit_report(const FitRun *r, FILE *out) {
   fprintf(out, "model %s, scene %s, method %s\n", r->app->scene->model->name, r->app->scene->name, method);
   fprintf(out, "%s after %d steps, %d runs of the motion\n", f->converged ? "converged" : "not converged", f->steps,
           f->evaluations);
+  if (f->nodes)
+    fprintf(out,
+            "multiple shooting: %d parts, which join within %.1e of the size of the state; a run of the scene departs "
+            "from the record\n",
+            f->nodes->n + f->nrecords, lag_fit_widest_gap(f));
   put_values(f, out);
   if (!f->converged && f->weakest.change) {
     fputs("flattest direction: ", out);
@@ -215,6 +220,8 @@ void lag_fit_report_json(const FitRun *r, FILE *out) {
   lag_json_truth(&j, "converged", f->converged);
   lag_json_count(&j, "steps", f->steps);
   lag_json_count(&j, "runs", f->evaluations);
+  lag_json_count(&j, "segments", f->nodes ? f->nodes->n + f->nrecords : f->nrecords);
+  if (f->nodes) lag_json_number(&j, "gap", lag_fit_widest_gap(f));
   for (int what = 0; what < 2; what++) {
     lag_json_begin(&j, what ? "errors" : "values", '{');
     for (int i = 0; i < f->n; i++)

@@ -10,7 +10,7 @@
 
 #include "core/core.h"
 
-enum { MOST_STEPS = 200, MOST_FILES = 100 };
+enum { MOST_STEPS = 200, MOST_FILES = 100, MOST_PARTS = 100000 };
 
 /* A new simulation with the settings of the command line. */
 static lag_sim *fresh(void *run) {
@@ -86,7 +86,7 @@ static int separate_starts(FitRun *r) {
   if (!all) return lag_app_error(&r->app->args, "out of memory");
   for (int j = 0; j < f->n; j++) {
     size_t length = strlen(f->target[j].label);
-    int is_start = length > 3 && strcmp(f->target[j].label + length - 3, "(0)") == 0;
+    int is_start = f->target[j].is_start;
     for (int k = 0; k < (is_start ? r->nfiles : 1); k++) {
       FitTarget *t = &all[n++];
       *t = f->target[j];
@@ -102,7 +102,7 @@ static int separate_starts(FitRun *r) {
   return 0;
 }
 
-static int take_targets(FitRun *r) {
+int lag_fit_take_targets(FitRun *r) {
   const Args *a = &r->app->args;
   Fit *f = &r->fit;
   r->names = malloc(strlen(a->fit) + 1);
@@ -125,7 +125,8 @@ static int take_targets(FitRun *r) {
     const lag_var *var;
     int i;
     t->factor = lag_sim_sensitivity_info(sim, j, t->label, sizeof t->label, t->unit, sizeof t->unit);
-    t->sign = lag_find_name(sim->scene->model, t->name, &i, &var) == LAG_IS_P ? var->sign : 0;
+    t->is_start = lag_find_name(sim->scene->model, t->name, &i, &var) != LAG_IS_P;
+    t->sign = t->is_start ? 0 : var->sign;
     t->begin = lag_declared(var, lag_sim_sensitivity_value(sim, j));
     t->scale = t->begin != 0.0 ? fabs(t->begin) : 1;
   }
@@ -159,7 +160,7 @@ static int errors_of(const DataFile *d, const char *label) {
 }
 
 /* Error of column c by --sigma X or --sigma NAME=X, in the column's unit; 0: not given. */
-static int take_sigma(FitRun *r, FitColumn *c) {
+int lag_fit_take_sigma(FitRun *r, FitColumn *c) {
   const Args *a = &r->app->args;
   size_t n = strcspn(c->label, " ");
   for (int i = 0; i < a->nsigmas; i++) {
@@ -191,11 +192,11 @@ static int copy_column(FitRun *r, int c, int of) {
       return lag_app_error(&r->app->args, "%s:%lld: column %s: an error is positive, or its value is missing, too",
                            r->file[of], d->line[i], d->file.names[errors]);
   }
-  return take_sigma(r, &f->column[c]);
+  return lag_fit_take_sigma(r, &f->column[c]);
 }
 
 /* Whether --columns names the column, or is not given. */
-static int is_asked(const Args *a, const char *label) {
+int lag_fit_is_asked(const Args *a, const char *label) {
   const char *list = a->columns, *unit = strstr(label, " [");
   size_t length = unit ? (size_t)(unit - label) : strlen(label);
   if (!list) return 1;
@@ -214,7 +215,7 @@ static int take_columns(FitRun *r) {
   f->nrows = r->first[r->nfiles];
   f->column = calloc((size_t)d->file.ncols, sizeof *f->column);
   for (int k = 1; k < d->file.ncols && f->column; k++) {
-    int output = is_asked(a, d->file.names[k]) ? output_named(r, d->file.names[k]) : -1;
+    int output = lag_fit_is_asked(a, d->file.names[k]) ? output_named(r, d->file.names[k]) : -1;
     if (output >= 0) f->column[f->ncolumns++] = (FitColumn){.label = d->file.names[k], .output = output};
   }
   if (f->ncolumns == 0)
@@ -336,8 +337,11 @@ static int prepare(FitRun *r) {
   r->fit.fresh = fresh;
   r->fit.context = r;
   r->fit.most = MOST_STEPS;
+  long long parts = 0;
+  if (a->segments && (rc = lag_args_count(a, "--segments", a->segments, "--segments 20", &parts)) != 0) return rc;
+  r->fit.parts = (int)(parts > MOST_PARTS ? MOST_PARTS : parts);
   r->fit.huber = a->loss && strcmp(a->loss, "huber") == 0;
-  return take_targets(r);
+  return lag_fit_take_targets(r);
 }
 
 int lag_fit_run(FitRun *r) {

@@ -22,6 +22,10 @@ typedef struct FitRun {
 /* fit_run.c: the fit; 0, or an exit status after a message. */
 int lag_fit_run(FitRun *r);
 void lag_fit_run_free(FitRun *r);
+/* For designs, too: targets of --fit and --prior; the error of a column by --sigma; whether --columns names it. */
+int lag_fit_take_targets(FitRun *r);
+int lag_fit_take_sigma(FitRun *r, FitColumn *c);
+int lag_fit_is_asked(const Args *a, const char *label);
 /* fit_compare.c: fits several scenes. Returns the exit status. */
 int lag_fit_compare(App *app);
 

@@ -10,20 +10,23 @@
 enum { NAME = 200 };
 
 int lag_app_gradient_open(App *app) {
-  const lag_model *m = app->scene->model;
   if (!app->args.gradient) return 0;
-  if (!app->measures) return lag_app_error(&app->args, "--gradient differentiates measures, and there are none");
-  if (m->constraints)
-    return lag_app_error(&app->args,
-                         "--gradient: motions with constraints have no reverse mode yet; --sensitivity has their "
-                         "derivatives");
-  return 0;
+  return app->measures ? 0 : lag_app_error(&app->args, "--gradient differentiates measures, and there are none");
 }
 
-/* A run like the last one, before its first step, by its method or, where that has no reverse mode, by dop853. */
+/* Whether steps of the run's own method have derivatives by parameters. */
+static int has_derivatives(App *app) {
+  lag_sim *sim = lag_app_fresh_sim(app);
+  int has = sim && lag_app_copy_method(app->sim, sim, 1) == LAG_OK && lag_sim_record(sim) == LAG_OK;
+  lag_sim_free(sim);
+  return has;
+}
+
+/* A run like the last one, before its first step, by its method or, where that has no derivative by parameters, by
+ * dop853. */
 static lag_sim *like_run(App *app) {
   lag_sim *sim = lag_app_fresh_sim(app);
-  int own = app->sim->method->adjoint && app->sim->method->adjoint_size(&app->sim->pb),
+  int own = has_derivatives(app),
       rc = !sim  ? LAG_ENOMEM
            : own ? lag_app_copy_method(app->sim, sim, 1)
                  : lag_sim_set_method(sim, &lag_dop853, NULL, 0);

@@ -33,6 +33,7 @@ typedef struct Overlay {
   const char **values;
   int nvalues;
   char *starts; /* texts of --starts */
+  int digits;   /* of their labels */
   int scaled;   /* of --distance: 1: the outputs have several units */
 } Overlay;
 
@@ -46,8 +47,14 @@ static const char *varied_value(const Args *a) {
   return NULL;
 }
 
-/* Label := scene, method and value, as far as the picture has several. */
-static void set_label(OverlaidRun *r, const Args *a, const char *value) {
+/* Label := scene, method and value, as far as the picture has several. digits: of the value; 0: its own text. */
+static void set_label(OverlaidRun *r, const Args *a, const char *value, int digits) {
+  char rounded[160];
+  if (value && digits > 0) {
+    int name = (int)strcspn(value, "=") + 1;
+    snprintf(rounded, sizeof rounded, "%.*s%.*g", name, value, digits, strtod(value + name, NULL));
+    value = rounded;
+  }
   const char *parts[] = {a->nscenes > 1 ? r->app.args.scene : NULL, r->method, value ? value : varied_value(a)};
   size_t n = 0;
   for (int i = 0; i < 3; i++)
@@ -75,9 +82,9 @@ static int add_run(Overlay *o, const char *scene, const char *method, size_t len
     r->sets[app->args.nsets++] = (char *)value;
     app->args.sets = r->sets;
   }
-  set_label(r, &whole->args, value);
+  set_label(r, &whole->args, value, o->digits);
   int rc = lag_app_run(app);
-  if (!r->label[0] && app->scene) set_label(r, &whole->args, app->scene->name);
+  if (!r->label[0] && app->scene) set_label(r, &whole->args, app->scene->name, 0);
   return rc;
 }
 
@@ -109,12 +116,19 @@ static int judge_run(Overlay *o, int rc) {
   return 0;
 }
 
+/* Digits of labels that tell neighbours x and y of a range apart. */
+static int digits_apart(double x, double y) {
+  double size = fmax(fabs(x), fabs(y));
+  return x == y ? 4 : (int)fmin(fmax(3 + ceil(log10(size / fabs(x - y))), 4), 17);
+}
+
 /* o->values := those of the range of --starts. 0, or EXIT_USAGE after a message. */
 static int read_starts(Overlay *o) {
   enum { MOST = 1000, ROOM = 160 };
   const Args *a = &o->app->args;
   SweepPlan plan = {0};
   char why[300];
+  double first = 0;
   int rc = 0;
   if (!lag_plan_is_range(a->starts))
     return lag_app_error(a, "--starts %s: write a range, for example --starts q=0..3:20", a->starts);
@@ -134,6 +148,8 @@ static int read_starts(Overlay *o) {
     lag_plan_values(&plan, i, &x);
     snprintf(o->starts + i * ROOM, ROOM, "%s=%s", plan.factor[0].name, lag_number_text(x, number));
     o->values[i] = o->starts + i * ROOM;
+    if (i == 1) o->digits = digits_apart(first, x);
+    if (i == 0) first = x;
   }
   lag_plan_free(&plan);
   return rc;
@@ -267,6 +283,7 @@ static int open_table(Overlay *o, int common) {
       *to = *y;
       if (common == 1 && d->yname) snprintf(to->name, sizeof to->name, "%s", label);
       else snprintf(to->name, sizeof to->name, "%.46s, %.46s", y->name, label);
+      to->plain = common == 1 && d->yname ? 0 : snprintf(NULL, 0, "%.46s", y->name);
     }
   }
   return 0;

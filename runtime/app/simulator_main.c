@@ -127,6 +127,8 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     lag_app_list_methods(&app, app.args.method + 5, stdout);
   } else if (rc == 0 && app.args.sweep) {
     rc = lag_app_sweep(&app);
+  } else if (rc == 0 && app.args.design) {
+    rc = lag_app_design(&app);
   } else if (rc == 0 && app.args.fit) {
     rc = lag_app_fit(&app);
   } else if (rc == 0 && app.args.modes) {

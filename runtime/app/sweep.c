@@ -383,17 +383,17 @@ static int estimate(SweepApp *s) {
 /* Lanes for the runs of all variants, or why there are none. */
 static int choose_lanes(SweepApp *s) {
   const App *app = s->app;
-  const lag_extras *extras = &app->extras;
+  const lag_program *program = app->program;
   long long wanted = 0;
   int i = 0;
   if (app->args.lanes && lag_args_count(&app->args, "--lanes", app->args.lanes, "--lanes 4", &wanted))
     return EXIT_USAGE;
   if (wanted && wanted != 1 && wanted != 4 && wanted != 8)
     return lag_app_error(&app->args, "--lanes %lld: 1, 4 or 8 runs at once", wanted);
-  while (app->program->scenes[i] != app->scene) i++;
+  while (program->scenes[i] != app->scene) i++;
   for (int v = 0; v < s->sweep.nvariants && !s->no_lanes; v++, i++)
-    s->no_lanes = lag_lanes_choose(s->variants[v].like, extras->lanes_4 ? extras->lanes_4[i] : NULL,
-                                   extras->lanes_8 ? extras->lanes_8[i] : NULL, (int)wanted, &s->variants[v].lanes);
+    s->no_lanes = lag_lanes_choose(s->variants[v].like, program->lanes_4 ? program->lanes_4[i] : NULL,
+                                   program->lanes_8 ? program->lanes_8[i] : NULL, (int)wanted, &s->variants[v].lanes);
   for (int v = 0; v < s->sweep.nvariants && s->no_lanes; v++) s->variants[v].lanes = (LaneChoice){.lanes = 1};
   return s->no_lanes && wanted > 1
              ? lag_app_error(&app->args, "--lanes %lld: there are none, %s; leave it out", wanted, s->no_lanes)

@@ -41,7 +41,7 @@ uint64_t lag_sweep_signature(const SweepApp *s) {
                             p->sampling,
                             p->zip};
   /* sines and sums have other last digits */
-  uint64_t h = hash_text(hash_text(LAG_FNV1A_START, LAG_PRECISION), s->app->extras.lanes_4 ? "lanes" : "");
+  uint64_t h = hash_text(hash_text(LAG_FNV1A_START, LAG_PRECISION), s->app->program->lanes_4 ? "lanes" : "");
   for (int v = 0; v < s->sweep.nvariants; v++) h = hash_variant(h, s, &s->variants[v]);
   h = s->times ? hash_numbers(h, s->sweep.nrows, s->times)
                : hash_text(h, s->app->args.section ? s->app->args.section : "");

@@ -158,25 +158,6 @@ static int evaluate_contacts(lag_sim *s, double *y, ContactSet *w) {
   return rc ? lag_contacts_no_values(w, 0) : LAG_OK;
 }
 
-/* The coefficient of restitution of contact i, from Newton's law in the model for a state y whose velocities are
- * changed by d[nq] times -(rate + speed), so that the gap closes with `speed`. rate: of its gap at y, t; d changes that
- * by 1; pb->u: this contact is closed, others are open; A: entries of the Jacobian; before[n], after[n] are scratch.
- * NaN: there is none. */
-static double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed,
-                               const double *d, const double *A, double *before, double *after) {
-  const lag_model *m = pb->model;
-  int nq = m->nq, stop = 0;
-  size_t bytes = (size_t)pb->n * sizeof *y;
-  memcpy(before, y, bytes);
-  for (int j = 0; j < nq; j++) before[nq + j] -= (speed + rate) * d[j];
-  memcpy(after, before, bytes);
-  if (m->act(m, m->contacts[i].impact, t, before, before + nq, before + 2 * nq, pb->p, pb->u, after, after + nq,
-             after + 2 * nq, &stop, pb->work))
-    return NAN;
-  for (int j = 0; j < nq; j++) before[nq + j] = after[nq + j] - before[nq + j];
-  return lag_contacts_rate_change(m, A, i, before + nq) / speed - 1;
-}
-
 double lag_contacts_response(ContactSet *w, int i) {
   lag_problem *pb = &w->sim->pb;
   int nq = pb->nq, k = w->sim->scene->model->contacts[i].constraint;
@@ -191,9 +172,22 @@ double lag_contacts_response(ContactSet *w, int i) {
   return isnan(s) || (moves && lag_contacts_keep_constraints(w, w->d, s)) ? 1 / s : 0;
 }
 
+/* The coefficient of restitution of contact i, from Newton's law in the model for the state whose velocities are
+ * changed by w->d, so that the gap closes with `speed`. pb.u: this contact is closed, others are open. NaN: none. */
 static double restitution_at(ContactSet *w, int i, double speed) {
-  lag_sim *s = w->sim;
-  return lag_contact_restitution(&s->pb, s->run->t, w->y, i, w->rate[i], speed, w->d, w->A, s->yc, w->test);
+  lag_problem *pb = &w->sim->pb;
+  const lag_model *m = pb->model;
+  int nq = m->nq, stop = 0;
+  size_t bytes = (size_t)pb->n * sizeof *w->y;
+  double *before = w->sim->yc, *after = w->test;
+  memcpy(before, w->y, bytes);
+  for (int j = 0; j < nq; j++) before[nq + j] -= (speed + w->rate[i]) * w->d[j];
+  memcpy(after, before, bytes);
+  if (m->act(m, m->contacts[i].impact, w->sim->run->t, before, before + nq, before + 2 * nq, pb->p, pb->u, after,
+             after + nq, after + 2 * nq, &stop, pb->work))
+    return NAN;
+  for (int j = 0; j < nq; j++) before[nq + j] = after[nq + j] - before[nq + j];
+  return lag_contacts_rate_change(m, w->A, i, before + nq) / speed - 1;
 }
 
 /* The coefficient of restitution of contact i, at a typical speed, where it has the most digits, unless it depends
@@ -307,8 +301,19 @@ static int check_friction(lag_sim *s, int i, const double *law) {
 /* Marks event k as due now, unless it has fired already. */
 void lag_mark_due(lag_sim *s, int k) { s->root[k] = s->root[k] == HUGE_VAL ? HUGE_VAL : s->run->limit; }
 
+/* Scratch of an event, [n] each: rates before, restitutions, accelerations of gaps; contacts that rest after the
+ * impact, that are struck, that rested before; the state and the rates before. */
+typedef struct Impacts {
+  double *before, *e, *acceleration;
+  unsigned char *ends, *struck, *rested;
+  double *y, *rate;
+} Impacts;
+
 /* Impacts of the gaps that close, without restitution for those in ends[n]; before[n] := their rates before it. */
-static int apply_impacts(ContactSet *w, const unsigned char *ends, double *before, double *e, unsigned char *struck) {
+static int apply_impacts(ContactSet *w, const Impacts *x) {
+  const unsigned char *ends = x->ends;
+  double *before = x->before, *e = x->e;
+  unsigned char *struck = x->struck;
   lag_sim *s = w->sim;
   const lag_model *m = s->scene->model;
   int any = 0;
@@ -370,21 +375,21 @@ static int close_gaps(ContactSet *w) {
 /* The impacts, and what rests after them. Friction at impacts that are left out would be missing, whose sum is that
  * of one without restitution: where the flight after an impact would stay within rounding, the impact is replaced by
  * that one. */
-static int strike_and_rest(ContactSet *w, int event, unsigned char *ends, double *before, double *e,
-                           double *acceleration, unsigned char *struck, double *y, double *rate) {
-  const size_t size = (size_t)w->sim->pb.n * sizeof *y, rates = (size_t)w->sim->scene->model->ncontacts * sizeof *rate;
-  memcpy(y, w->y, size);
-  memcpy(rate, w->rate, rates);
+static int strike_and_rest(ContactSet *w, int event, const Impacts *x) {
+  const size_t size = (size_t)w->sim->pb.n * sizeof *x->y,
+               rates = (size_t)w->sim->scene->model->ncontacts * sizeof *x->rate;
+  memcpy(x->y, w->y, size);
+  memcpy(x->rate, w->rate, rates);
   for (int again = 1; again;) {
-    int rc = apply_impacts(w, ends, before, e, struck);
-    memcpy(struck + w->n, ends, (size_t)w->n);
-    rc = rc ? rc : rest(w, event, ends, before, acceleration);
+    int rc = apply_impacts(w, x);
+    memcpy(x->rested, x->ends, (size_t)w->n);
+    rc = rc ? rc : rest(w, event, x->ends, x->before, x->acceleration);
     if (rc) return rc;
     again = 0;
-    for (int a = 0; a < w->n && w->rows > w->n; a++) again |= struck[a] && ends[a] && !struck[w->n + a];
+    for (int a = 0; a < w->n && w->rows > w->n; a++) again |= x->struck[a] && x->ends[a] && !x->rested[a];
     if (!again) break;
-    memcpy(w->y, y, size);
-    memcpy(w->rate, rate, rates);
+    memcpy(w->y, x->y, size);
+    memcpy(w->rate, x->rate, rates);
   }
   return LAG_OK;
 }
@@ -399,7 +404,8 @@ static int resolve_contacts(ContactSet *w, const char *who, int event, int last)
   rc = room && ends ? find_responses(w) : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
   for (size_t a = 0; a < n && rc == 0; a++) ends[a] = last && lag_contacts_at(w, (int)a)->impact == event;
   rc = rc ? rc : lag_guides_stop(w, event);
-  rc = rc ? rc : strike_and_rest(w, event, ends, room, room + n, room + 2 * n, ends + n, y, y + w->sim->pb.n);
+  rc = rc ? rc : strike_and_rest(w, event, &(Impacts){room, room + n, room + 2 * n, ends, ends + n, ends + 2 * n,
+                                                     y, y + w->sim->pb.n});
   rc = rc ? rc : close_gaps(w);
   free(room);
   free(ends);

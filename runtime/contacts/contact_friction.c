@@ -386,7 +386,7 @@ static int list_touches(const ContactSet *w, int event, Touches *to) {
   *to = (Touches){0};
   for (int a = 0; a < w->rows; a++) {
     if (a < w->n ? !w->active[a] : a < guides) continue;
-    if (to->n == LAG_MOST_TOUCHES) return 0;
+    if (to->n == (a < guides ? LAG_TRIED_TOUCHES : LAG_MOST_TOUCHES)) return 0;
     int guide = a < guides ? 0 : 1 + a - guides;
     to->of[to->n] = (lag_touch){.contact = a, .tangent = -1, .guide = guide};
     to->row[to->n++] = guide ? -1 : a;
@@ -416,7 +416,7 @@ static void list_pressed(const ContactSet *w, Touches *to) {
     of->pressed = &to->pressed[k][0][0];
     for (int c = 0; c < of->parts; c++) {
       const double *from = lag_guide_pressed(w, of->guide - 1, c);
-      to->pressed[k][c][0] = from[0];
+      of->pressed[c * (1 + to->rows)] = from[0];
       for (int r = 0; r < to->rows; r++)
         of->pressed[c * (1 + to->rows) + 1 + r] = to->row[r] < 0 ? 0 : from[1 + to->row[r]];
     }
@@ -432,7 +432,7 @@ int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration) {
     return lag_fail(s, LAG_EMODEL,
                     "at t = %.9g s more than %d contacts touch at once, some of them with friction, which only moreau "
                     "follows: take --method \"moreau(step=1e-3)\"",
-                    s->run->t, LAG_MOST_TOUCHES);
+                    s->run->t, w->n > LAG_TRIED_TOUCHES ? LAG_TRIED_TOUCHES : LAG_MOST_TOUCHES);
   int rc = find_free_accelerations(w);
   rc = rc ? rc : lag_guides_find_pressed(w);
   list_pressed(w, &to);

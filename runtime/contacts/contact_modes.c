@@ -1,4 +1,5 @@
-/* The modes of contacts with friction, by trying all combinations. Contract: contact_modes.h. */
+/* The modes of contacts with friction, by trying all combinations, or by changes of single ones. Contract:
+ * contact_modes.h. */
 #include "contacts/contact_modes.h"
 
 #include <math.h>
@@ -21,7 +22,7 @@ typedef struct Trial {
   int edge[LAG_MOST_TOUCHES];
   int may_wedge; /* forces that only their own size bounds, and prestress */
   /* [sets of closed contacts, as bits] some of them can press on each other without any load */
-  unsigned char prestress[1 << LAG_MOST_TOUCHES];
+  unsigned char prestress[1 << LAG_TRIED_TOUCHES];
   int breaks; /* contacts at rest that slip although static friction may hold them */
   /* [rows], [rows rows], accelerations, those of the first motion found, forces of it, sizes of the terms */
   double *x, *A, *a, *first, *force, *size;
@@ -350,6 +351,65 @@ static int try_breaks(Trial *t, lag_touch *found) {
   return motions;
 }
 
+/* ---- more contacts than combinations can be tried of */
+
+/* The mode with which the search begins: closed, sticking at rest. */
+static void choose_first(lag_touch *c) {
+  c->mode = LAG_CONTACT_STICKS;
+  c->mode = may_be(c) ? LAG_CONTACT_STICKS : LAG_CONTACT_SLIPS;
+  c->to = c->slip ? c->slip : 1;
+  c->presses = 1;
+}
+
+/* Changes the mode of contact i, which does not fit at the forces at hand. */
+static void change_mode(const Trial *t, int i) {
+  lag_touch *c = &t->of[i];
+  if (c->mode == LAG_CONTACT_OPEN) {
+    choose_first(c);
+  } else if (!c->guide && !(t->x[i] > rounding(t, i))) {
+    c->mode = LAG_CONTACT_OPEN;
+  } else if (c->mode == LAG_CONTACT_STICKS) {
+    c->mode = LAG_CONTACT_SLIPS;
+    c->to = t->x[c->tangent] > 0 ? -1 : 1;
+  } else if (c->cannot_stick || !(c->mu > 0)) {
+    c->to = -c->to;
+  } else {
+    c->mode = LAG_CONTACT_STICKS;
+  }
+}
+
+/* Guides that slip press to the sides that the last solution shows. Returns whether one has changed. */
+static int change_sides(const Trial *t) {
+  int changed = 0;
+  for (int i = 0; i < t->n; i++) {
+    lag_touch *c = &t->of[i];
+    int presses = c->toward[0] < 0 ? -1 : 1;
+    if (!c->guide || c->parts != 1 || c->mode != LAG_CONTACT_SLIPS || presses == c->presses) continue;
+    c->presses = presses;
+    changed = 1;
+  }
+  return changed;
+}
+
+static int pivot(Trial *t, lag_touch *found) {
+  enum { ROUNDS = 1000 };
+  for (int i = 0; i < t->n; i++) choose_first(&t->of[i]);
+  for (int round = 0; round < ROUNDS; round++) {
+    int i = 0;
+    if (!solve(t)) {
+      if (!change_sides(t)) return 0;
+      continue;
+    }
+    while (i < t->n && fits(t, i)) i++;
+    if (i == t->n || (is_shared(t) && !choose_forces(t) && all_fit(t))) {
+      keep(t, found, is_shared(t) ? LEAST : UNIQUE);
+      return 1;
+    }
+    change_mode(t, i);
+  }
+  return 0;
+}
+
 int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const double *pull, double *x, double *room) {
   Trial t = {n,
              rows,
@@ -369,10 +429,13 @@ int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const dou
              room + rows * (rows + 2),
              room + rows * (rows + 3)};
   lag_touch found[LAG_MOST_TOUCHES];
-  find_edges(&t);
-  find_prestress(&t);
-  int motions = try_breaks(&t, found);
-  if (!motions) {
+  int few = n <= LAG_TRIED_TOUCHES, motions;
+  if (few) {
+    find_edges(&t);
+    find_prestress(&t);
+  }
+  motions = few ? try_breaks(&t, found) : pivot(&t, found);
+  if (few && !motions) {
     t.may_wedge = 1;
     motions = try_breaks(&t, found);
   }

@@ -153,6 +153,10 @@ struct lag_sim {
   lag_event_fn *on_event;
   void *on_event_context;
   OutsideStep outside;
+  const lag_scene *lanes_4, *lanes_8; /* lanes/batch.c: the scene compiled for lanes; NULL: it is not */
+  /* lag_sim_renew: this struct before the run, NULL: not renewed; the simulation that it is like */
+  struct lag_sim *fresh;
+  const struct lag_sim *like;
   char message[512];
 };
 
@@ -355,9 +359,19 @@ int lag_tangent_jump(lag_sim *sim, int k, int more);
 void lag_tangent_free(lag_sim *sim);
 /* As lag_sim_set_tangent, which first frees columns by parameters. */
 int lag_tangent_set(lag_sim *sim, int k, const double *Y);
+/* Y := D Y, with D the derivative of the last step up to t, on the constraints. */
+int lag_tangent_over(lag_sim *sim, double t, double *Y);
 /* gradient.c: in place of advancing the tangent: keeps the last step up to t; the matrix by which a jump has multiplied
- * the columns, which begin anew. */
+ * the columns, which begin anew. pause: the caller is about to look at a state within a step. */
 int lag_record_step(lag_sim *sim, double t);
+int lag_record_pause(lag_sim *sim);
+/* Between steps: begins a new unit where the record is full. */
+int lag_record_cut(lag_sim *sim);
+/* saved_state.c: x[nsaved] := the run; the run := x, of the same simulation. */
+void lag_put_down(lag_sim *sim, double *x);
+void lag_take_up(lag_sim *sim, const double *x);
+/* sim.c: the run up to the end of this step, on its way to time t. */
+int lag_run_to_step(lag_sim *sim, double steps, double t);
 int lag_record_jump(lag_sim *sim);
 void lag_record_free(lag_sim *sim);
 /* tangent_space.c. dimension: of the tangent space of the constraints at the present state; of a run that has not

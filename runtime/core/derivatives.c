@@ -22,11 +22,11 @@ static int outputs_at(lag_sim *s, double t, const double *y, double *out) {
   return LAG_OK;
 }
 
-/* Adds weight times the outputs to column c of D[noutputs columns]. */
-static int add_outputs(lag_sim *s, double t, const double *y, double weight, double *out, int c, int columns,
-                       double *D) {
+/* Adds weight times the outputs to a column of D[noutputs columns]. */
+static int add_outputs(lag_sim *s, double t, const double *y, double weight, double *out, int columns,
+                       double *column) {
   int rc = outputs_at(s, t, y, out);
-  for (int i = 0; i < lag_sim_noutputs(s) && rc == 0; i++) D[i * columns + c] += weight * out[i];
+  for (int i = 0; i < lag_sim_noutputs(s) && rc == 0; i++) column[i * columns] += weight * out[i];
   return rc;
 }
 
@@ -38,7 +38,7 @@ static int outputs_by_state(lag_sim *s, double t, const double *y, const Room *w
     double h = LAG_DIFFERENCE_PART * lag_difference_scale(&s->pb, y, c);
     LAG_EACH_DIFFERENCE(k) {
       w->y[c] = y[c] + k * h;
-      rc = rc ? rc : add_outputs(s, t, w->y, lag_difference_weight(k) / h, w->out, c, n, D);
+      rc = rc ? rc : add_outputs(s, t, w->y, lag_difference_weight(k) / h, w->out, n, D + c);
     }
     w->y[c] = y[c];
   }
@@ -52,7 +52,7 @@ static int outputs_by_parameters(lag_sim *s, double t, const double *y, const Ro
   for (int j = 0; j < by->n; j++) {
     LAG_EACH_DIFFERENCE(k) {
       lag_use_parameters(s, j, k);
-      rc = rc ? rc : add_outputs(s, t, y, lag_difference_weight(k) / by->h[j], w->out, j, by->n, D);
+      rc = rc ? rc : add_outputs(s, t, y, lag_difference_weight(k) / by->h[j], w->out, by->n, D + j);
     }
     lag_use_parameters(s, 0, 0);
   }

@@ -124,6 +124,21 @@ static int replace_state(lag_sim *s, int k, int *changed) {
   return rc;
 }
 
+/* yb := the state after the action of event k; that of a contact's is found later. */
+static int state_after(lag_sim *s, int k, int of_contact, int *stop) {
+  const lag_model *m = s->scene->model;
+  const double t = s->run->t;
+  int nq = m->nq, rc = lag_inputs(&s->pb, t);
+  memcpy(s->yb, s->now, (size_t)s->pb.n * sizeof(double));
+  if (rc == 0 && m->act && !of_contact)
+    rc = m->act(m, k, t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, s->yb, s->yb + nq, s->yb + 2 * nq, stop,
+                s->work);
+  return rc == 0 && lag_not_finite(s->pb.n, s->yb) < 0
+             ? LAG_OK
+             : lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its action gives no finite state at t = %s s",
+                        m->ev[k].name, LAG_TEXT(t));
+}
+
 /* Applies the action of event k to `now`, by way of yb. *changed: the state has been replaced, BY_ what. */
 static int act(lag_sim *s, int k, int *stop, int *changed) {
   const lag_model *m = s->scene->model;
@@ -136,16 +151,8 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
   s->last[k] = r->t;
   s->count[k]++;
   const lag_contact *of = lag_contact_of(m, k), *contact = of && !of->conditional ? of : NULL;
-  int rc = lag_inputs(&s->pb, r->t);
-  memcpy(s->yb, s->now, bytes);
-  if (rc == 0 && m->act && !of) {
-    rc = m->act(m, k, r->t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, s->yb, s->yb + nq, s->yb + 2 * nq, stop,
-                s->work);
-  }
-  if (rc || lag_not_finite(n, s->yb) >= 0) {
-    return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its action gives no finite state at t = %s s", m->ev[k].name,
-                    LAG_TEXT(r->t));
-  }
+  int rc = state_after(s, k, of != NULL, stop);
+  if (rc) return rc;
   double rest = series_rest(s, k, since);
   int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact != NULL),
       moved = memcmp(s->yb, s->now, bytes) != 0;
@@ -155,7 +162,8 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
     snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
     rc = lag_settle_constraints(s, s->yb, of && !moved ? NULL : who, k, ends, moved + elsewhere, rounding_of_events(s));
   }
-  if (rc == 0 && contact && rest < HUGE_VAL && lag_contact_is_closed(s, contact))
+  /* a longer rest is that of strokes without restitution, after each of which the contact opens again */
+  if (rc == 0 && contact && rest < 1e-3 * fabs(r->t) && lag_contact_is_closed(s, contact))
     s->skipped[k] = fmax(s->skipped[k], rest);
   if (rc == 0 && !kick) rc = watch_restarts(s, k, rest);
   if (rc) return rc;

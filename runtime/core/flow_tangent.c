@@ -144,10 +144,8 @@ int lag_tangent_set(lag_sim *s, int k, const double *Y) {
   return stay_on_constraints(s, s->run->begun != 0.0 ? s->run->t : s->scene->t0, s->tangent);
 }
 
-/* Y := D Y, with D the derivative of the last step up to t. */
-static int advance_tangent(lag_sim *s, double t, double *Y) {
+int lag_tangent_over(lag_sim *s, double t, double *Y) {
   lag_problem *pb = &s->pb;
-  if (s->record) return lag_record_step(s, t);
   double rhs_calls = pb->rhs_calls, systems = pb->systems, iterations = pb->iterations;
   pb->detail = NULL;
   pb->bad_index = -1;
@@ -158,12 +156,18 @@ static int advance_tangent(lag_sim *s, double t, double *Y) {
   return rc ? lag_explain(s, rc) : stay_on_constraints(s, t, Y);
 }
 
+/* Y := D Y, or the record of it. */
+static int advance_tangent(lag_sim *s, double t, double *Y) {
+  return s->record ? lag_record_step(s, t) : lag_tangent_over(s, t, Y);
+}
+
 int lag_tangent_pass(lag_sim *s) {
   if (!s->tangent || s->run->have_step != 0.0 || s->tangent_at_event) {
     s->tangent_at_event = 0;
     return LAG_OK;
   }
-  return advance_tangent(s, s->run->t, s->tangent);
+  int rc = advance_tangent(s, s->run->t, s->tangent);
+  return rc || !s->record ? rc : lag_record_cut(s);
 }
 
 /* Whether event k only touches zero: its rate there is negligible relative to its values at the ends of the step. */
@@ -396,19 +400,23 @@ static double log_det(int n, const double *S, double *a) {
   return log_of;
 }
 
+/* NULL, or why an event has no saltation matrix. more: another event happens at the same time. */
+static const char *jump_lacks(const lag_model *m, int more) {
+  return m->constraints ? "what constraints make of its effect has no derivative yet"
+         : !m->linear
+             ? "its effect on neighbouring motions needs derivatives, which `lagc build --with linear` builds in"
+         : more ? "another event does so at the same time, and neighbouring motions may meet the two in either order"
+                : NULL;
+}
+
 int lag_tangent_jump(lag_sim *s, int k, int more) {
   const lag_model *m = s->scene->model;
   lag_problem *pb = &s->pb;
   int n = pb->n, nq = pb->nq;
   double t = s->run->t, rhs_calls = pb->rhs_calls, rate = 0;
   if (!s->tangent) return LAG_OK;
-  if (m->constraints) return refuse(s, k, "what constraints make of its effect has no derivative yet");
-  if (!m->linear)
-    return refuse(s, k,
-                  "its effect on neighbouring motions needs derivatives, which `lagc build --with linear` builds in");
-  if (more)
-    return refuse(s, k,
-                  "another event does so at the same time, and neighbouring motions may meet the two in either order");
+  const char *lacks = jump_lacks(m, more);
+  if (lacks) return refuse(s, k, lacks);
   Jump j = jump_layout(s);
   if (njump(s) && (lag_inputs(pb, t) ||
                    m->linear->jumps(m->linear, t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, j.d, s->work)))

@@ -1,6 +1,7 @@
 /* Reverse mode of a run: the steps and jumps of its tangent, recorded, and the sweep back over them. Enters: a run with
- * a record; leaves: gradients by starts and parameters. Holds: where a tangent would be multiplied by the derivative of
- * a step the record has the step, where by a saltation matrix that matrix (flow_tangent.c decides both), so the
+ * a record; leaves: gradients by starts and parameters. Holds: memory is bounded, since earlier units of steps are
+ * forgotten and repeated from marks; where a tangent would be multiplied by the derivative of
+ * a step the record has the step, where by a matrix that matrix (flow_tangent.c decides both), so the
  * gradient is the transpose of sensitivities, up to rounding. */
 #include <math.h>
 #include <stdlib.h>
@@ -8,24 +9,50 @@
 
 #include "core/core.h"
 
-/* A jump: the matrix [n (n + np)] of changes of the state and by parameters, behind so many steps. */
-typedef struct Jump {
-  size_t steps;
-  double *S;
-} Jump;
+/* Matrices [n (n + np)] of changes of the state and by parameters: of jumps; of steps up to time t whose equations or
+ * method have no reverse mode; of such a step up to a time within it, where the caller has looked at the state. */
+typedef enum MatrixKind { OF_JUMP, OF_STEP, OF_PART } MatrixKind;
+typedef struct Matrix {
+  MatrixKind kind;
+  size_t steps; /* behind so many of the other steps */
+  double t, *S;
+} Matrix;
 
-/* Steps: each [t0, dt, y0[n], modes[nmodes]]. */
+/* The run at the begin of a unit. */
+typedef struct Mark {
+  int unit;
+  double *x;
+} Mark;
+
+/* A unit: as many steps as the record has room for. */
+typedef struct Unit {
+  double steps, t; /* of the run before it */
+} Unit;
+
+enum { MOST_MARKS = 64 };
+
+/* Steps of the last unit: each [t0, dt, y0[n], modes[nmodes]]. */
 struct lag_record {
-  size_t nsteps, step_room, njumps, jump_room;
+  size_t nsteps, step_room, nmatrices, matrix_room;
   int stride;
   double *step;
-  Jump *jump;
+  Matrix *matrix;
+  size_t room, used; /* bytes of a unit */
+  int silent, spent; /* 1: the run is repeated up to a unit; units have been repeated */
+  int nunits, unit_room, nmarks, marks_every;
+  Unit *unit;
+  Mark mark[MOST_MARKS];
 };
+
+static void clear(struct lag_record *r) {
+  for (size_t i = 0; i < r->nmatrices; i++) free(r->matrix[i].S);
+  r->nmatrices = r->nsteps = r->used = 0;
+}
 
 void lag_record_free(lag_sim *s) {
   struct lag_record *r = s->record;
-  for (size_t i = 0; r && i < r->njumps; i++) free(r->jump[i].S);
-  if (r) free(r->jump), free(r->step);
+  if (r) clear(r), free(r->matrix), free(r->step), free(r->unit);
+  for (int i = 0; r && i < r->nmarks; i++) free(r->mark[i].x);
   free(r);
   s->record = NULL;
 }
@@ -37,36 +64,73 @@ static void reset_columns(lag_sim *s) {
   for (int i = 0; i < n; i++) s->tangent[i * k + i] = 1;
 }
 
-static int refuse(lag_sim *s) {
+/* Whether the steps that the method makes now have no reverse mode of their own: with constraints, within slides, of
+ * implicit methods and series. The derivative of each is then a matrix. */
+static int needs_matrix(const lag_sim *s) {
   const lag_model *m = s->scene->model;
-  if (m->constraints)
-    return lag_fail(s, LAG_EMETHOD,
-                    "motions with constraints have no reverse mode yet; sensitivities (lag_sim_set_sensitivity) have "
-                    "their derivatives");
-  if (!m->linear || !m->linear->adjoint)
-    return lag_fail(s, LAG_EMETHOD,
-                    "gradients need the reverse sweep of the equations, which this program was built without: lagc "
-                    "build --with derivatives");
-  if (!s->method->adjoint || s->method->adjoint_size(&s->pb) == 0)
-    return lag_fail(s, LAG_EMETHOD,
-                    "method %s has no reverse mode for this model; rk4, rk45, dop853 and other explicit Runge-Kutta "
-                    "methods have, and the Verlet family for separable models",
-                    s->method->name);
+  return m->constraints || s->pb.nslide || !m->linear || !m->linear->adjoint || !s->method->adjoint ||
+         s->method->adjoint_size(&s->pb) == 0;
+}
+
+/* A mark of the present unit. */
+static int put_mark(lag_sim *s) {
+  struct lag_record *r = s->record;
+  double *x = malloc((s->nsaved + 1) * sizeof *x);
+  if (!x) return lag_fail(s, LAG_ENOMEM, "out of memory");
+  lag_put_down(s, x);
+  r->mark[r->nmarks++] = (Mark){r->nunits - 1, x};
   return LAG_OK;
 }
 
+/* Every other mark goes where there are as many as there may be. */
+static void thin_marks(struct lag_record *r) {
+  int kept = 0;
+  r->marks_every *= 2;
+  for (int i = 0; i < r->nmarks; i++) {
+    if (r->mark[i].unit % r->marks_every == 0) r->mark[kept++] = r->mark[i];
+    else free(r->mark[i].x);
+  }
+  r->nmarks = kept;
+}
+
+/* The steps from here on are another unit. */
+static int begin_unit(lag_sim *s) {
+  struct lag_record *r = s->record;
+  if (r->nunits == r->unit_room) {
+    Unit *more = realloc(r->unit, (size_t)(r->unit_room = 2 * r->unit_room + 16) * sizeof *more);
+    if (!more) return lag_fail(s, LAG_ENOMEM, "out of memory");
+    r->unit = more;
+  }
+  r->unit[r->nunits++] = (Unit){s->run->steps, s->run->t};
+  clear(r);
+  if (r->nmarks == MOST_MARKS / 2) thin_marks(r); /* the others are for the way back */
+  return (r->nunits - 1) % r->marks_every ? LAG_OK : put_mark(s);
+}
+
+int lag_record_cut(lag_sim *s) {
+  const struct lag_record *r = s->record;
+  int repeats = !(s->method->flags & (LAG_METHOD_NO_SAVE | LAG_METHOD_STEPS_TO));
+  return s->run->have_step == 0.0 && repeats && !r->silent && r->used > r->room ? begin_unit(s) : LAG_OK;
+}
+
 int lag_sim_record(lag_sim *s) {
+  const size_t room = (size_t)1 << 26;
+  return lag_sim_record_within(s, room);
+}
+
+int lag_sim_record_within(lag_sim *s, size_t bytes) {
   if (!s) return LAG_EINVAL;
   if (s->run->begun != 0.0) return lag_fail(s, LAG_EINVAL, "the run has begun: record it from its first step");
   lag_tangent_free(s);
-  int rc = refuse(s);
-  rc = rc ? rc : lag_all_columns(s);
+  int rc = lag_all_columns(s);
   if (rc) return lag_tangent_free(s), rc;
   reset_columns(s);
   s->record = calloc(1, sizeof *s->record);
   if (!s->record) return lag_tangent_free(s), lag_fail(s, LAG_ENOMEM, "out of memory");
   s->record->stride = 2 + s->pb.n + s->scene->model->nmodes;
-  return LAG_OK;
+  s->record->room = bytes;
+  s->record->marks_every = 1;
+  return begin_unit(s);
 }
 
 /* step[stride] := the last step up to t. */
@@ -77,11 +141,31 @@ static void put_step(const lag_sim *s, double t, double *step) {
   memcpy(step + 2 + s->pb.n, s->hold + s->pb.model->nu, (size_t)s->pb.model->nmodes * sizeof *step);
 }
 
+static int keep_matrix(lag_sim *s, MatrixKind kind, double t, const double *Y) {
+  struct lag_record *r = s->record;
+  size_t size = (size_t)s->pb.n * (size_t)s->tangent_columns;
+  if (r->silent) return LAG_OK;
+  if (r->nmatrices == r->matrix_room) {
+    Matrix *more = realloc(r->matrix, (r->matrix_room = 2 * r->matrix_room + 16) * sizeof *more);
+    if (!more) return lag_fail(s, LAG_ENOMEM, "out of memory");
+    r->matrix = more;
+  }
+  double *S = malloc(size * sizeof *S);
+  if (!S) return lag_fail(s, LAG_ENOMEM, "no memory for the steps of a gradient: end the run before");
+  r->matrix[r->nmatrices++] = (Matrix){kind, r->nsteps, t, memcpy(S, Y, size * sizeof *S)};
+  r->used += size * sizeof *S;
+  return LAG_OK;
+}
+
 int lag_record_step(lag_sim *s, double t) {
   struct lag_record *r = s->record;
-  if (s->pb.nslide)
-    return lag_fail(s, LAG_EMETHOD, "at t = %s s the motion slides where a force jumps, which has no reverse mode yet",
-                    LAG_TEXT(t));
+  if (r->silent) return LAG_OK;
+  if (needs_matrix(s)) {
+    int rc = lag_tangent_over(s, t, s->tangent);
+    rc = rc ? rc : keep_matrix(s, OF_STEP, t, s->tangent);
+    reset_columns(s);
+    return rc;
+  }
   if (r->nsteps == r->step_room) {
     size_t room = r->step_room ? 2 * r->step_room : 256;
     double *more = realloc(r->step, room * (size_t)r->stride * sizeof *more);
@@ -89,48 +173,77 @@ int lag_record_step(lag_sim *s, double t) {
     r->step = more, r->step_room = room;
   }
   put_step(s, t, r->step + r->nsteps++ * (size_t)r->stride);
+  r->used += (size_t)r->stride * sizeof *r->step;
   return LAG_OK;
 }
 
 int lag_record_jump(lag_sim *s) {
-  struct lag_record *r = s->record;
-  size_t size = (size_t)s->pb.n * (size_t)s->tangent_columns;
-  if (r->njumps == r->jump_room) {
-    Jump *more = realloc(r->jump, (r->jump_room = 2 * r->jump_room + 16) * sizeof *more);
-    if (!more) return lag_fail(s, LAG_ENOMEM, "out of memory");
-    r->jump = more;
-  }
-  double *S = malloc(size * sizeof *S);
-  if (!S) return lag_fail(s, LAG_ENOMEM, "out of memory");
-  r->jump[r->njumps++] = (Jump){r->nsteps, memcpy(S, s->tangent, size * sizeof *S)};
+  int rc = keep_matrix(s, OF_JUMP, s->run->t, s->tangent);
   reset_columns(s);
-  return LAG_OK;
+  return rc;
+}
+
+/* Whether the run stands within a step. */
+static int is_within(const lag_sim *s) {
+  return s->run->have_step != 0.0 && s->run->t != s->run->step_t0 && !s->tangent_at_event;
+}
+
+int lag_record_pause(lag_sim *s) {
+  if (!is_within(s) || s->record->silent || !needs_matrix(s)) return LAG_OK;
+  int rc = lag_tangent_over(s, s->run->t, s->tangent);
+  rc = rc ? rc : keep_matrix(s, OF_PART, s->run->t, s->tangent);
+  reset_columns(s);
+  return rc;
 }
 
 /* ---- The sweep */
 
-/* x[n]: dJ by the state; g[nu + np] by inputs and parameters, each as if it were free. Weights that are not used yet:
- * the first `rows`. */
+/* x[n]: dJ by the state; g[nu + np] by inputs and parameters, each as if it were free; p[np] by parameters with those
+ * that follow from them. Weights that are not used yet: the first `rows`. */
 typedef struct Sweep {
   lag_sim *s;
   int rows;
+  double end; /* time of the run */
   const double *t, *weight;
-  double *x, *g, *one, *step, *scratch;
+  double *x, *g, *p, *one, *step, *scratch;
 } Sweep;
 
 /* x := S^T x. */
-static void back_over_jump(Sweep *w, const double *S) {
+static void back_over_matrix(Sweep *w, const double *S, double *x) {
   int n = w->s->pb.n, k = w->s->tangent_columns;
-  memset(w->one, 0, (size_t)n * sizeof *w->one);
+  double *sum = w->scratch;
+  memset(sum, 0, (size_t)n * sizeof *sum);
   for (int i = 0; i < n; i++) {
-    for (int c = 0; c < n; c++) w->one[c] += S[i * k + c] * w->x[i];
-    for (int c = n; c < k; c++) w->g[w->s->pb.model->nu + c - n] += S[i * k + c] * w->x[i];
+    for (int c = 0; c < n; c++) sum[c] += S[i * k + c] * x[i];
+    for (int c = n; c < k; c++) w->p[c - n] += S[i * k + c] * x[i];
   }
-  memcpy(w->x, w->one, (size_t)n * sizeof *w->x);
+  memcpy(x, sum, (size_t)n * sizeof *x);
 }
 
 static void add(int n, const double *from, double *to) {
   for (int i = 0; i < n; i++) to[i] += from[i];
+}
+
+/* Adds the weights at time t to x. */
+static void add_weights(Sweep *w, double t, double *x) {
+  int n = w->s->pb.n;
+  double rounding = 4 * DBL_EPSILON * fabs(t);
+  for (; w->rows > 0 && fabs(w->t[w->rows - 1] - t) <= rounding; w->rows--)
+    add(n, w->weight + (size_t)(w->rows - 1) * (size_t)n, x);
+}
+
+/* A jump, or a step, or a part of one: weights at its end belong to it. */
+static void back_over(Sweep *w, const Matrix *m) {
+  int n = w->s->pb.n;
+  if (m->kind == OF_STEP) add_weights(w, m->t, w->x);
+  if (m->kind != OF_PART) {
+    back_over_matrix(w, m->S, w->x);
+    return;
+  }
+  memset(w->one, 0, (size_t)n * sizeof *w->one);
+  add_weights(w, m->t, w->one);
+  back_over_matrix(w, m->S, w->one);
+  add(n, w->one, w->x);
 }
 
 /* The step (t0, dt), and a shorter one for each weight within it. */
@@ -152,19 +265,112 @@ static int back_over_step(Sweep *w, const double *step) {
   return rc;
 }
 
-static int sweep(Sweep *w) {
+/* The steps that are recorded. */
+static int back_over_record(Sweep *w) {
   lag_sim *s = w->s;
   const struct lag_record *r = s->record;
-  int n = s->pb.n, rc = LAG_OK;
-  if (s->run->have_step != 0.0 && s->run->t != s->run->step_t0 && !s->tangent_at_event) {
-    put_step(s, s->run->t, w->step);
-    rc = back_over_step(w, w->step);
-  }
-  for (size_t k = r->nsteps, j = r->njumps; rc == LAG_OK; k--) {
-    for (; j > 0 && r->jump[j - 1].steps == k; j--) back_over_jump(w, r->jump[j - 1].S);
+  int rc = LAG_OK;
+  for (size_t k = r->nsteps, j = r->nmatrices; rc == LAG_OK; k--) {
+    for (; j > 0 && r->matrix[j - 1].steps == k; j--) back_over(w, &r->matrix[j - 1]);
     if (k == 0) break;
     rc = back_over_step(w, r->step + (k - 1) * (size_t)r->stride);
   }
+  return rc;
+}
+
+/* ---- Units that are recorded again */
+
+/* The run from a mark to the begin of a unit. */
+static int repeat_to(Sweep *w, const double *mark, int unit) {
+  lag_sim *s = w->s;
+  struct lag_record *r = s->record;
+  clear(r);
+  lag_take_up(s, mark);
+  reset_columns(s);
+  s->tangent_at_event = s->tangent_meets = s->tangent_moves = 0;
+  r->silent = 1;
+  int rc = unit == 0 ? LAG_OK : lag_run_to_step(s, r->unit[unit].steps, w->end);
+  r->silent = 0;
+  return rc;
+}
+
+/* Records the unit that begins here: with pauses where weights are. */
+static int repeat_unit(Sweep *w, int unit) {
+  lag_sim *s = w->s;
+  struct lag_record *r = s->record;
+  const Unit *next = &r->unit[unit + 1];
+  int rc = LAG_OK;
+  r->room = (size_t)-1;
+  for (int k = 0; k < w->rows && rc == LAG_OK; k++)
+    if ((w->t[k] - s->run->t) * s->pb.dir > 0 && (next->t - w->t[k]) * s->pb.dir > 0) rc = lag_sim_advance(s, w->t[k]);
+  return rc ? rc : lag_run_to_step(s, next->steps, w->end);
+}
+
+/* Units to advance before the next mark, of l, with c marks left. */
+static int split_of(int l, int c) {
+  double before = 1; /* (c + r - 1 over c) */
+  for (int r = 1;; r++) {
+    double all = before * (c + r) / r;
+    if (all >= l) return before < l - 1 ? (int)before : l - 1;
+    before = all;
+  }
+}
+
+/* Units first to last, from a mark at the first, with room for c more marks: the fewest repetitions for their number
+ * (A. Griewank, A. Walther, ACM Trans. Math. Softw. 26 (2000) 19, DOI 10.1145/347837.347846). */
+static int back_over_units(Sweep *w, const double *mark, int first, int last, int c) {
+  int rc = LAG_OK;
+  while (last >= first && rc == LAG_OK) {
+    if (last > first && c > 0) {
+      int at = first + split_of(last - first + 1, c);
+      double *x = malloc((w->s->nsaved + 1) * sizeof *x);
+      rc = x ? repeat_to(w, mark, at) : LAG_ENOMEM;
+      if (rc == LAG_OK) lag_put_down(w->s, x), rc = back_over_units(w, x, at, last, c - 1);
+      free(x);
+      last = at - 1;
+    } else {
+      rc = repeat_to(w, mark, last);
+      rc = rc ? rc : repeat_unit(w, last);
+      rc = rc ? rc : back_over_record(w);
+      last--;
+    }
+  }
+  return rc;
+}
+
+/* All units but the last, which is recorded. The run is as before afterwards, but for its record. */
+static int back_over_marks(Sweep *w) {
+  lag_sim *s = w->s;
+  struct lag_record *r = s->record;
+  int (*on_step)(void *, const lag_sim *) = s->on_step;
+  lag_event_fn *on_event = s->on_event;
+  double *x = malloc((s->nsaved + 1) * sizeof *x);
+  int rc = x ? LAG_OK : LAG_ENOMEM, last = r->nunits - 2;
+  if (x) lag_put_down(s, x);
+  s->on_step = NULL, s->on_event = NULL;
+  if (r->nmarks && r->mark[r->nmarks - 1].unit > last) free(r->mark[--r->nmarks].x);
+  for (; r->nmarks > 0 && rc == LAG_OK; free(r->mark[--r->nmarks].x)) {
+    const Mark *m = &r->mark[r->nmarks - 1];
+    rc = back_over_units(w, m->x, m->unit, last, MOST_MARKS - r->nmarks);
+    last = m->unit - 1;
+  }
+  s->on_step = on_step, s->on_event = on_event;
+  if (x) lag_take_up(s, x);
+  free(x);
+  r->spent = 1;
+  return rc;
+}
+
+static int sweep(Sweep *w) {
+  lag_sim *s = w->s;
+  int n = s->pb.n, rc = LAG_OK;
+  w->end = s->run->t;
+  if (is_within(s) && !needs_matrix(s)) {
+    put_step(s, s->run->t, w->step);
+    rc = back_over_step(w, w->step);
+  }
+  rc = rc ? rc : back_over_record(w);
+  if (rc == LAG_OK && s->record->nunits > 1) rc = back_over_marks(w);
   for (; rc == LAG_OK && w->rows > 0 && w->t[w->rows - 1] == s->scene->t0; w->rows--)
     add(n, w->weight + (size_t)(w->rows - 1) * (size_t)n, w->x);
   return rc;
@@ -178,6 +384,7 @@ static void finish(const Sweep *w, double *by_start, double *by_p) {
   for (int c = 0; c < n + np; c++) {
     double sum = 0;
     for (int i = 0; i < n; i++) sum += begin[i * (n + np) + c] * w->x[i];
+    if (c >= n) sum += w->p[c - n];
     for (int a = 0; c >= n && a < np; a++)
       if (w->g[nu + a] != 0.0) sum += w->g[nu + a] * lag_parameter_chain(s, a, c - n);
     *(c < n ? &by_start[c] : &by_p[c - n]) = sum;
@@ -198,14 +405,18 @@ int lag_sim_gradient(lag_sim *s, int rows, const double *t, const double *weight
   if (!s || rows < 0 || !t || !weight || !by_start || !by_p) return LAG_EINVAL;
   if (!s->record)
     return lag_fail(s, LAG_EINVAL, "this run keeps no steps: lag_sim_record before its first advance");
+  if (s->record->spent)
+    return lag_fail(s, LAG_EINVAL, "a gradient of so many steps can be taken once: record another run");
   int rc = check_rows(s, rows, t), n = s->pb.n, nu = s->pb.model->nu, nmodes = s->pb.model->nmodes;
   if (rc) return rc;
-  size_t ups = (size_t)(nu + s->pb.model->np), stride = (size_t)s->record->stride,
-         size = 2 * (size_t)n + ups + stride + (size_t)nmodes + s->method->adjoint_size(&s->pb);
+  size_t np = (size_t)s->pb.model->np, stride = (size_t)s->record->stride,
+         own = s->method->adjoint ? s->method->adjoint_size(&s->pb) : 0,
+         size = 2 * (size_t)n + (size_t)nu + 2 * np + stride + (size_t)nmodes + (own > (size_t)n ? own : (size_t)n);
   double calls = s->pb.rhs_calls, *block = calloc(size + 1, sizeof *block);
   if (!block) return lag_fail(s, LAG_ENOMEM, "out of memory");
-  Sweep w = {s, rows, t, weight, .x = block, .one = block + n, .g = block + 2 * n};
-  w.step = w.g + ups;
+  Sweep w = {.s = s, .rows = rows, .t = t, .weight = weight, .x = block, .one = block + n, .g = block + 2 * n};
+  w.p = w.g + nu + np;
+  w.step = w.p + np;
   double *modes = w.step + stride;
   w.scratch = modes + nmodes;
   memcpy(modes, s->hold + nu, (size_t)nmodes * sizeof *modes);

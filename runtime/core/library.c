@@ -70,32 +70,3 @@ int lag_sim_rows(lag_sim *s, int rows, const double *t, double *y, double *out, 
   }
   return LAG_OK;
 }
-
-/* One motion; y[rows * n] is NaN already. */
-static int motion(lag_sim *s, const double *y0, const double *p, int rows, const double *t, double *y) {
-  const lag_model *m = s->scene->model;
-  int done;
-  for (int i = 0; p && i < m->np; i++) {
-    if (isnan(p[i])) continue; /* as in `like`, or by its formula of others */
-    s->p[i] = p[i];
-    s->fixed[i] = 1;
-  }
-  if (p && s->scene->params) s->scene->params(s->scene, s->p, s->fixed);
-  if (y0) memcpy(s->start, y0, (size_t)s->pb.n * sizeof *y0);
-  return lag_sim_rows(s, rows, t, y, NULL, &done);
-}
-
-int lag_sim_batch(const lag_sim *like, int count, const double *y0, const double *p, int rows, const double *t,
-                  double *y, int *status) {
-  if (!like || count < 0 || rows < 0 || !t || !y || !status) return LAG_EINVAL;
-  size_t n = (size_t)like->pb.n, np = (size_t)like->scene->model->np, each = (size_t)rows * n;
-  for (size_t k = 0; k < (size_t)count; k++) {
-    lag_sim *s = lag_sim_like(like);
-    if (!s) return LAG_ENOMEM;
-    lag_sim_on_step(s, like->on_step, like->on_step_context);
-    for (size_t i = 0; i < each; i++) y[k * each + i] = NAN;
-    status[k] = motion(s, y0 ? y0 + k * n : NULL, p ? p + k * np : NULL, rows, t, y + k * each);
-    lag_sim_free(s);
-  }
-  return LAG_OK;
-}

@@ -38,35 +38,46 @@ static void write_general(const char *digits, int n, int exponent, int precision
   *to = '\0';
 }
 
-/* The first n of WHOLE digits of x, rounded, if they may read as x: the next digits, in units of the last, are within
- * half a bit of x. -1: ties that the digits do not decide. */
-static int round_digits(const char *whole, int n, char *digits, int *exponent) {
+/* The decimal digits of a number; returns how many. */
+static int write_digits(uint64_t number, char *digits) {
+  char reversed[24];
+  int n = 0;
+  for (; number; number /= 10) reversed[n++] = (char)('0' + number % 10);
+  for (int i = 0; i < n; i++) digits[i] = reversed[n - 1 - i];
+  return n;
+}
+
+/* The first n digits of the WHOLE ones of x, `all`, rounded. They read as x where the next digits are within half a bit
+ * of x, `half` in units of the last: 2. 1: they may; 0: they do not; -1: ties that the digits do not decide. */
+static int round_digits(uint64_t all, double half, int n, char *digits, int *exponent) {
   const uint64_t unit = n == WHOLE - 1 ? 10 : 100;
-  uint64_t all = strtoull(whole, NULL, 10), rest = all % unit, head = all / unit + (2 * rest > unit);
+  uint64_t rest = all % unit, head = all / unit + (2 * rest > unit);
   double away = 2 * rest > unit ? (double)(unit - rest) : (double)rest;
   if (2 * rest == unit) return -1;
-  if (away > 0.5 * DBL_EPSILON * (double)all + 1) return 0;
-  sprintf(digits, "%llu", (unsigned long long)head);
-  *exponent += digits[n] != '\0'; /* 9.99... has become 10 */
-  return 1;
+  if (away > half + 1) return 0;
+  *exponent += write_digits(head, digits) > n; /* 9.99... has become 10 */
+  return away < half - 1 ? 2 : 1;
 }
 
 const char *lag_number_text(double x, char text[64]) {
-  char all[40], whole[WHOLE + 1], digits[WHOLE + 4], *to = text;
+  char all[40], digits[WHOLE + 4], *to = text;
   if (!(fabs(x) >= DBL_MIN && fabs(x) <= DBL_MAX)) return by_trials(x, text);
+  int bits, first;
+  uint64_t whole = 0;
+  double power = frexp(fabs(x), &bits);
   snprintf(all, sizeof all, "%.*e", WHOLE - 1, fabs(x)); /* d.dddde+xx */
-  whole[0] = all[0];
-  memcpy(whole + 1, all + 2, WHOLE - 1);
-  whole[WHOLE] = '\0';
-  const int first = (int)strtol(all + WHOLE + 2, NULL, 10);
+  all[1] = all[0];
+  for (int i = 1; i <= WHOLE; i++) whole = 10 * whole + (uint64_t)(all[i] - '0');
+  first = (int)strtol(all + WHOLE + 2, NULL, 10);
+  double half = (double)whole / power * (0.25 * DBL_EPSILON);
   if (x < 0) *to++ = '-';
   for (int n = DBL_DIG; n < WHOLE; n++) {
-    int exponent = first, may = round_digits(whole, n, digits, &exponent);
+    int exponent = first, may = round_digits(whole, half, n, digits, &exponent);
     if (may < 0) return by_trials(x, text);
     if (may) write_general(digits, n, exponent, n, to);
-    if (may && strtod(text, NULL) == x) return text;
+    if (may && ((may == 2 && power > 0.5) || strtod(text, NULL) == x)) return text;
   }
-  write_general(whole, WHOLE, first, WHOLE, to);
+  write_general(all + 1, WHOLE, first, WHOLE, to);
   return text;
 }
 #else

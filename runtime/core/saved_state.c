@@ -34,16 +34,20 @@ static double seal_of(const lag_sim *s, const double *x) {
 
 size_t lag_sim_save_size(const lag_sim *s) { return s ? s->nsaved : 0; }
 
-int lag_sim_save(lag_sim *s, double *x) {
-  if (!s || !x) return LAG_EINVAL;
-  if (s->method->flags & LAG_METHOD_NO_SAVE)
-    return lag_fail(s, LAG_EINVAL, "the state of method %s cannot be saved; those of liblag can", s->method->name);
+void lag_put_down(lag_sim *s, double *x) {
   s->run->rhs_calls = s->pb.rhs_calls;
   s->run->rejected = s->pb.rejected;
   s->run->systems = s->pb.systems;
   s->run->iterations = s->pb.iterations;
-  s->run->seal = seal_of(s, s->saved);
   memcpy(x, s->saved, s->nsaved * sizeof *x);
+}
+
+int lag_sim_save(lag_sim *s, double *x) {
+  if (!s || !x) return LAG_EINVAL;
+  if (s->method->flags & LAG_METHOD_NO_SAVE)
+    return lag_fail(s, LAG_EINVAL, "the state of method %s cannot be saved; those of liblag can", s->method->name);
+  lag_put_down(s, x);
+  x[offsetof(Run, seal) / sizeof *x] = s->run->seal = seal_of(s, s->saved);
   return LAG_OK;
 }
 
@@ -60,6 +64,11 @@ static void take_over(lag_sim *s) {
   lag_switch_count(s);
 }
 
+void lag_take_up(lag_sim *s, const double *x) {
+  memcpy(s->saved, x, s->nsaved * sizeof *x);
+  take_over(s);
+}
+
 int lag_sim_load(lag_sim *s, const double *x) {
   if (!s || !x) return LAG_EINVAL;
   if (s->method->flags & LAG_METHOD_NO_SAVE)
@@ -71,8 +80,7 @@ int lag_sim_load(lag_sim *s, const double *x) {
                     "options and inputs",
                     s->scene->name, s->method->name);
   }
-  memcpy(s->saved, x, s->nsaved * sizeof *x);
-  take_over(s);
+  lag_take_up(s, x);
   return LAG_OK;
 }
 

@@ -36,11 +36,29 @@ static size_t saved_arrays(lag_sim *s, const lag_method *method, double *x) {
   return length;
 }
 
+static void set_problem(lag_sim *s, const lag_method *method, const double *opt) {
+  lag_problem *pb = &s->pb;
+  pb->p = s->p;
+  pb->hold = s->hold;
+  pb->kept = s->kept;
+  pb->begin = s->begin;
+  pb->kick = HUGE_VAL;
+  pb->opt = opt;
+  pb->variant = method->variant;
+}
+
+/* First values of the saved arrays that do not begin as zeros. */
+static void begin_blocks(lag_sim *s) {
+  for (int i = 0; i < s->pb.n + 2; i++) s->pb.size[i] = 1;
+  lag_reset_rate_history(s);
+  lag_charges_method(s, s->method);
+}
+
 /* Allocates and lays out the blocks for this method, keeping only the settings of the caller (p, hold). opt: option
  * values, which must live on. */
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   const lag_model *m = s->scene->model;
-  size_t np = (size_t)(m->np + m->nderived), nu = (size_t)(m->nu + m->nmodes), n = (size_t)s->pb.n;
+  size_t np = (size_t)(m->np + m->nderived), nu = (size_t)(m->nu + m->nmodes);
   size_t pushes = method->flags & LAG_METHOD_IMPULSES && m->ncontacts ? lag_moreau_contacts_size(m) : 0;
   size_t fixed = RUN_DOUBLES + saved_arrays(s, method, NULL);
   double *contact_room = calloc(pushes + 1, sizeof *contact_room);
@@ -62,6 +80,8 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
     memcpy(x, s->p, np * sizeof *x);
     memcpy(x + np, s->hold, nu * sizeof *x);
   }
+  free(s->fresh);
+  s->fresh = NULL;
   free(s->room);
   s->room = room;
   s->saved = b;
@@ -72,22 +92,15 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   s->nwork = work;
   free(s->pb.contact_room);
   s->pb.contact_room = contact_room;
-  s->pb.p = s->p;
-  s->pb.hold = s->hold;
-  s->pb.kept = s->kept;
-  s->pb.begin = s->begin;
-  for (size_t i = 0; i < n + 2; i++) s->pb.size[i] = 1;
-  s->pb.kick = HUGE_VAL;
-  s->pb.opt = opt;
-  s->pb.variant = method->variant;
+  set_problem(s, method, opt);
   s->charges = (Charge *)(void *)s->charge_block;
   s->method = method;
-  lag_reset_rate_history(s);
-  lag_charges_method(s, method);
+  begin_blocks(s);
   return LAG_OK;
 }
 
-static int alloc_scratch(lag_sim *s) {
+/* Allocates the scratch arrays, or where they are there sets them to 0. LAG_ENOMEM: no memory. */
+static int clear_scratch(lag_sim *s) {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nm = (size_t)m->nmodes, nev = (size_t)m->nev + nm, nout = (size_t)s->scene->nout;
   size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw),
@@ -103,12 +116,21 @@ static int alloc_scratch(lag_sim *s) {
       {&s->meeting, nm * (9 + 2 * nm)}, {&s->pb.slide, nm * (3 + nm)},
       {&s->pb.rub, lag_contact_law_size(m)},
       {&s->sizes, (size_t)(m->nsizes + m->nmoving)}};
-  s->scratch = lag_workspace(sizeof parts / sizeof *parts, parts);
+  const size_t nparts = sizeof parts / sizeof *parts;
+  for (size_t i = 0; s->scratch && i < nparts; i++) memset(*parts[i].at, 0, parts[i].n * sizeof(double));
+  if (!s->scratch) s->scratch = lag_workspace(nparts, parts);
+  return s->scratch ? LAG_OK : LAG_ENOMEM;
+}
+
+static int alloc_scratch(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  size_t n = (size_t)s->pb.n, nm = (size_t)m->nmodes, nu = (size_t)m->nu;
+  int rc = clear_scratch(s);
   s->fixed = calloc((size_t)m->np + 1, 1);
   s->start = malloc((n + 1) * sizeof(double));
   s->signal = calloc(nu + 1, sizeof *s->signal);
   s->meeting_of = calloc(3 * nm + 1, sizeof *s->meeting_of);
-  if (!s->meeting_of || !s->scratch || !s->fixed || !s->start || !s->signal) return LAG_ENOMEM;
+  if (rc || !s->meeting_of || !s->fixed || !s->start || !s->signal) return LAG_ENOMEM;
   for (size_t i = 0; i < n; i++) s->start[i] = NAN;
   s->pb.sliding = s->meeting_of + nm;
   s->pb.u = s->u;
@@ -133,6 +155,12 @@ static void set_start_state(lag_sim *s) {
   s->run->t = s->scene->t0;
 }
 
+/* No input is held, no surface is slid on. */
+static void free_modes(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  for (int i = 0; i < m->nu + m->nmodes; i++) s->hold[i] = i < m->nu ? NAN : LAG_FREE;
+}
+
 /* A simulation with its memory, for a method with these options (NULL: its own); no values are set. */
 static lag_sim *allocate(const lag_scene *scene, double tol, const lag_method *method, const double *options) {
   const lag_model *m = scene->model;
@@ -154,7 +182,7 @@ static lag_sim *allocate(const lag_scene *scene, double tol, const lag_method *m
     lag_sim_free(s);
     return NULL;
   }
-  for (int i = 0; i < m->nu + m->nmodes; i++) s->hold[i] = i < m->nu ? NAN : LAG_FREE;
+  free_modes(s);
   return s;
 }
 
@@ -173,7 +201,7 @@ lag_sim *lag_sim_new(const lag_scene *scene) {
   return s;
 }
 
-/* The values of `from`: parameters, inputs, start. */
+/* The values of `from`: parameters, inputs, start. Its contacts are those of its present state: all are open here. */
 static void copy_values(const lag_sim *from, lag_sim *s) {
   const lag_model *m = s->scene->model;
   memcpy(s->p, from->p, (size_t)m->np * sizeof *s->p);
@@ -182,6 +210,10 @@ static void copy_values(const lag_sim *from, lag_sim *s) {
   memcpy(s->start, from->start, (size_t)s->pb.n * sizeof *s->start);
   memcpy(s->hold, from->hold, (size_t)m->nu * sizeof *s->hold);
   memcpy(s->signal, from->signal, (size_t)m->nu * sizeof *s->signal);
+  for (const lag_contact *c = m->contacts; c < m->contacts + m->ncontacts; c++) {
+    s->hold[c->input] = NAN;
+    if (c->is_tangent) s->hold[c->force] = NAN;
+  }
 }
 
 lag_sim *lag_sim_like(const lag_sim *from) {
@@ -193,10 +225,37 @@ lag_sim *lag_sim_like(const lag_sim *from) {
   return s;
 }
 
-void lag_sim_free(lag_sim *s) {
-  if (!s) return;
+/* Ends the run: what it allocated beside the blocks of the simulation. */
+static void end_run(lag_sim *s) {
   if (s->run && s->run->begun != 0.0 && s->method->fini) s->method->fini(s->method_work);
   lag_tangent_free(s);
+}
+
+lag_sim *lag_sim_renew(lag_sim *s, const lag_sim *from) {
+  if (!s || !s->fresh || s->like != from) {
+    lag_sim_free(s);
+    s = lag_sim_like(from);
+    if (!s || s->method->flags & LAG_METHOD_IMPULSES || !(s->fresh = malloc(sizeof *s))) return s;
+    s->like = from;
+    *s->fresh = *s;
+    return s;
+  }
+  end_run(s);
+  clear_scratch(s);
+  *s = *s->fresh;
+  memset(s->saved, 0, s->nsaved * sizeof *s->saved);
+  memset(s->meeting_of, 0, (3 * (size_t)s->scene->model->nmodes + 1) * sizeof *s->meeting_of);
+  begin_blocks(s);
+  free_modes(s);
+  copy_values(from, s);
+  set_start_state(s);
+  return s;
+}
+
+void lag_sim_free(lag_sim *s) {
+  if (!s) return;
+  end_run(s);
+  free(s->fresh);
   free(s->options);
   free(s->fixed);
   free(s->start);

@@ -160,10 +160,20 @@ int lag_sim_advance(lag_sim *s, double t) {
   int rc = begin_or_check(s, t);
 
   while (rc == 0) {
-    if (r->have_step != 0.0 && (r->limit - t) * r->dir >= 0) return move_to(s, t);
+    if (r->have_step != 0.0 && (r->limit - t) * r->dir >= 0) {
+      rc = move_to(s, t);
+      return rc || !s->record ? rc : lag_record_pause(s);
+    }
     if (r->have_step == 0.0 && r->t == t) return LAG_OK;
     rc = continue_run(s, t);
   }
+  return rc;
+}
+
+int lag_run_to_step(lag_sim *s, double steps, double t) {
+  const Run *r = s->run;
+  int rc = begin_or_check(s, t);
+  while (rc == 0 && (r->steps < steps || r->have_step != 0.0)) rc = continue_run(s, t);
   return rc;
 }
 

@@ -256,15 +256,40 @@ static void rates_beside(lag_sim *s, int at, int count, const double *by, const 
   for (int i = 0; i < n; i++) dy[i] = none ? 0 : dy[i] - (f ? f[i] : 0);
 }
 
+enum { ROUNDINGS = 1000 }; /* of a few hundred operations */
+
+/* noise[nq] := rounding of the accelerations at the start, in a block of 3 n; NULL: not known. */
+static double *acceleration_noise(lag_sim *s) {
+  const size_t n = (size_t)s->pb.n;
+  double *noise = malloc(3 * n * sizeof *noise), *up = noise + n;
+  if (!noise || !lag_formula_rounding(s, LAG_FORMULA_RATES, s->run->t, s->now, s->pb.nq, noise, up, up + n))
+    return noise;
+  free(noise);
+  return NULL;
+}
+
+/* f[n] := 0 for accelerations that are rounding, as of forces that constraints and contacts balance. */
+static void drop_rounding(const lag_sim *s, const double *noise, double *f) {
+  const int nq = s->pb.nq;
+  for (int i = 0; noise && i < nq; i++)
+    if (fabs(f[nq + i]) < ROUNDINGS * noise[i]) f[nq + i] = 0;
+}
+
+/* bend[n] := change of the rates f where y[at + i] is displaced by by[i], i < nq. */
+static void bends(lag_sim *s, int at, const double *by, const double *f, const double *noise, double *bend) {
+  rates_beside(s, at, s->pb.nq, by, f, bend);
+  drop_rounding(s, noise, bend);
+}
+
 /* The sizes of coordinates and velocities, f: rates at the start. Returns the time scale, which begins as `time`.
  * Turn 0: from the start alone; 1: with the forces of displaced coordinates; 2: of displaced velocities. */
-static double coordinate_sizes(lag_sim *s, const double *f, double time) {
+static double coordinate_sizes(lag_sim *s, const double *f, const double *noise, double time) {
   const lag_model *m = s->scene->model;
   const int nq = m->nq;
   double *bend = s->yc, *size = s->pb.size, *of_v = size + nq;
   for (int turn = 0; turn < 3; turn++) {
     double before = time;
-    if (turn) rates_beside(s, turn == 2 ? nq : 0, nq, turn == 2 ? of_v : size, f, bend);
+    if (turn) bends(s, turn == 2 ? nq : 0, turn == 2 ? of_v : size, f, noise, bend);
     for (int i = 0; i < nq; i++) {
       if (!is_first(m, i)) continue;
       Kind k = kind_of(s, f, bend, i);
@@ -275,6 +300,8 @@ static double coordinate_sizes(lag_sim *s, const double *f, double time) {
       Kind k = kind_of(s, f, bend, i);
       double v =
           turn < 2 ? lag_above_rounding(fmax(k.v, k.a * time), k.bend * time) : fmax(k.v, of_v[i] * time / before);
+      const int rests = !(k.v > 0) && !(k.a > 0);
+      v = rests && v * time < 1e-12 * reach(k, time) ? 0 : v; /* rounding of forces that hold a displaced body, too */
       for (int j = nq - 1; j >= i; j--) {
         if (j > i && strcmp(m->q[j].unit, m->q[i].unit) != 0) continue;
         size[j] = reach(k, time);
@@ -287,7 +314,7 @@ static double coordinate_sizes(lag_sim *s, const double *f, double time) {
 
 /* The time scale of a motion that begins where no coordinate has a size, by the forces where it leads: `time` tends
  * to it. */
-static double time_from_zero(lag_sim *s, const double *f, double time) {
+static double time_from_zero(lag_sim *s, const double *f, const double *noise, double time) {
   enum { TURNS = 8 };
   const lag_model *m = s->scene->model;
   double *bend = s->yc, *size = s->pb.size;
@@ -298,7 +325,7 @@ static double time_from_zero(lag_sim *s, const double *f, double time) {
       while (strcmp(m->q[first].unit, m->q[i].unit) != 0) first++;
       size[i] = first < i ? size[first] : reach(kind_of(s, f, bend, i), time);
     }
-    rates_beside(s, 0, s->pb.nq, size, f, bend);
+    bends(s, 0, size, f, noise, bend);
     for (int i = 0; i < s->pb.nq; i++) {
       if (!is_first(m, i)) continue;
       Kind k = kind_of(s, f, bend, i);
@@ -339,39 +366,36 @@ static void state_sizes(lag_sim *s, const double *f, double time) {
 /* f[n] := the larger of |f| and of change[n], beyond its rounding (NULL: it has none), of coordinates that are at
  * rest. */
 static void raise_rates(const lag_sim *s, const double *change, const double *noise, double *f) {
-  const double rounding = 1e3; /* of a few hundred operations */
   const int nq = s->pb.nq;
   for (int i = 0; i < nq; i++) {
     double by = fabs(change[nq + i]), v = largest_of_unit(nq, s->scene->model->q, s->now + nq, i);
-    if (!(v > 0) && by > rounding * (noise ? noise[i] : 0)) f[nq + i] = fmax(fabs(f[nq + i]), by);
+    if (!(v > 0) && by > ROUNDINGS * (noise ? noise[i] : 0)) f[nq + i] = fmax(fabs(f[nq + i]), by);
   }
 }
 
 /* The same by what contacts that are open now change. */
 static void raise_open(lag_sim *s, double *f) {
-  const size_t n = (size_t)s->pb.n;
-  double *noise = malloc(3 * n * sizeof *noise);
   rates_beside(s, 0, 0, NULL, f, s->yc);
-  if (noise &&
-      !lag_formula_rounding(s, LAG_FORMULA_RATES, s->run->t, s->now, s->pb.nq, noise, noise + n, noise + 2 * n))
-    raise_rates(s, s->yc, noise, f);
+  double *noise = acceleration_noise(s);
+  if (noise) raise_rates(s, s->yc, noise, f);
   free(noise);
 }
 
-/* Accelerations of a body that friction holds are rounding: raises f[n], rates at the start, to those without it. */
+/* Accelerations of a body that friction or a contact holds are rounding: raises f[n], rates at the start, to those
+ * without it. */
 static void raise_held(lag_sim *s, double *f) {
   const lag_model *m = s->scene->model;
   for (int k = 0; k < m->nmodes; k++)
     if (friction_rates(s, k, s->run->t, s->now)) raise_rates(s, s->ya, NULL, f);
-  int sticks = 0;
+  int holds = 0;
   for (int i = 0; i < m->ncontacts && !s->pb.contacts; i++) {
     double *held = &s->hold[m->contacts[i].input];
     s->contact_was[i] = *held;
-    if (!m->contacts[i].is_tangent || !(*held > 0.5)) continue;
+    if (!(*held > 0.5)) continue;
     *held = NAN;
-    sticks = 1;
+    holds = 1;
   }
-  if (sticks) raise_open(s, f);
+  if (holds) raise_open(s, f);
   for (int i = 0; i < m->ncontacts && !s->pb.contacts; i++) s->hold[m->contacts[i].input] = s->contact_was[i];
 }
 
@@ -380,12 +404,15 @@ void lag_start_sizes(lag_sim *s) {
   const int nq = m->nq, n = s->pb.n;
   double *f = s->yb, *bend = s->yc, *size = s->pb.size, time = HUGE_VAL, calls = s->pb.rhs_calls;
   rates_beside(s, 0, 0, NULL, NULL, f);
+  double *noise = m->constraints || m->ncontacts ? acceleration_noise(s) : NULL;
+  drop_rounding(s, noise, f);
   raise_held(s, f);
   memset(bend, 0, (size_t)n * sizeof *bend);
   for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, i), time) : time;
   const double span = s->pb.span;
-  time = time < HUGE_VAL ? time : time_from_zero(s, f, span > 0 ? span : 10);
-  time = coordinate_sizes(s, f, span > 0 ? fmin(time, span) : time);
+  time = time < HUGE_VAL ? time : time_from_zero(s, f, noise, span > 0 ? span : 10);
+  time = coordinate_sizes(s, f, noise, span > 0 ? fmin(time, span) : time);
+  free(noise);
   state_sizes(s, f, time);
   for (int i = 0; i < n; i++) size[i] = size_unit(size[i]);
   size[n + 1] = size_unit(time);

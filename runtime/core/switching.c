@@ -44,8 +44,9 @@ static int rates_at(lag_problem *pb, double t, const double *y, double *r) {
 
 /* B[n n] := derivatives of the rates of the sliding switches by their modes; r: rates now. *size := the largest
  * term. */
-static int rate_matrix(lag_problem *pb, double t, const double *y, const int *of, int n, const double *r, double *other,
-                       double *B, double *size) {
+static int rate_matrix(lag_problem *pb, double t, const double *y, const double *r, double *other, double *B,
+                       double *size) {
+  const int *of = pb->sliding, n = pb->nslide;
   double *u = pb->u + pb->model->nu;
   for (int j = 0; j < n; j++) {
     double before = u[of[j]];
@@ -71,7 +72,7 @@ int lag_sliding_values(lag_problem *pb, double t, const double *y) {
     left = 0;
     for (int i = 0; i < n; i++) left = fmax(left, fabs(r[pb->sliding[i]]));
     if (round && left <= enough * size) return 0;
-    if ((rc = rate_matrix(pb, t, y, pb->sliding, n, r, other, B, &size)) != 0) return rc;
+    if ((rc = rate_matrix(pb, t, y, r, other, B, &size)) != 0) return rc;
     for (int i = 0; i < n; i++) x[i] = -r[pb->sliding[i]];
     if (lag_solve_dense((size_t)n, 1, B, x)) return LAG_ERETRY;
     for (int i = 0; i < n; i++) u[pb->sliding[i]] += x[i];

@@ -115,6 +115,9 @@ void lag_sim_free(lag_sim *sim);
 /* A new simulation of the same scene with the same settings: values, inputs, method, tolerance; `sim` may have
  * begun. NULL: no memory. */
 lag_sim *lag_sim_like(const lag_sim *sim);
+/* The same in the memory of `used`, a simulation that this function made like the same `sim`, which has not changed
+ * since; another one or NULL: it is freed, and a new one is made. NULL: no memory. */
+lag_sim *lag_sim_renew(lag_sim *used, const lag_sim *sim);
 
 /* The settings below are made before the first advance; later they return LAG_EINVAL. After an error the
  * simulation is unchanged and lag_sim_message() says what to write instead. */
@@ -238,9 +241,13 @@ int lag_sim_output_sensitivity(lag_sim *sim, const double *Y, double *D);
  * advance, after method and all values are set. Gradient: J depends on the states y at t[rows], in the order of the
  * run and not beyond it, by weight[rows * n] = dJ/dy in SI; by_start[n] := dJ by the starts, by_p[np] := by the
  * parameters, with all that follows from them as in sensitivities, both in SI. It is the derivative of the steps that
- * were made, their sizes held, and takes some three times as long as the run, however many parameters there are. Needs
- * `lagc build --with derivatives`; LAG_EMETHOD: a method without reverse mode, constraints, slides. */
+ * were made, their sizes held. With `lagc build --with derivatives`, of explicit methods without constraints and
+ * outside of slides, it takes some three times as long as the run, however many parameters there are; elsewhere as long as
+ * sensitivities by all of them, and t[rows] have to be times of lag_sim_advance. LAG_EMETHOD: as a tangent. */
 int lag_sim_record(lag_sim *sim);
+/* The same where steps take more memory than this, 2^26 bytes by default: parts of the run are repeated from marks on
+ * the way back, as few times as their number allows (revolve). One gradient can then be taken. */
+int lag_sim_record_within(lag_sim *sim, size_t bytes);
 int lag_sim_gradient(lag_sim *sim, int rows, const double *t, const double *weight, double *by_start, double *by_p);
 
 void lag_sim_stats(lag_sim *sim, lag_stats *stats);
@@ -340,6 +347,10 @@ int lag_sim_rows(lag_sim *sim, int rows, const double *t, double *y, double *out
  * := that of each. `like` stays as it is; several threads may share it. Returns LAG_OK, LAG_ENOMEM or LAG_EINVAL. */
 int lag_sim_batch(const lag_sim *like, int count, const double *y0, const double *p, int rows, const double *t,
                   double *y, int *status);
+/* Batches of `like` compute several motions at once, in the lanes of vectors, from a library that has its scene and was
+ * built with --lanes. Returns how many, 1 where method, model or processor have none; program NULL: how many there
+ * would be. */
+int lag_sim_set_lanes(lag_sim *like, const lag_program *program);
 
 /* ---- Simulators ------------------------------------------------------------------------------ */
 
@@ -356,9 +367,6 @@ typedef struct lag_extras {
   int (*png)(const char *svg, void *file, char *why, size_t size);
   /* Writes the arrays to an HDF5 file. 0, or -1; or NULL */
   int (*hdf5)(const char *path, const lag_grid *grid);
-  /* [nscenes] the program's scenes with their models compiled for vectors of 4 and 8 doubles (LAG_LANES in
-   * lag_model.h); or NULL */
-  const lag_scene *const *lanes_4, *const *lanes_8;
   const lag_ranks *ranks; /* or NULL */
   void (*after_step)(const lag_program *program); /* called after each step of a run; or NULL */
   const lag_least_squares *fits; /* or NULL */

@@ -552,6 +552,8 @@ typedef struct lag_program {
   int nscenes;
   const lag_scene *const *scenes;
   const char *build;   /* compiler and flags of this program; NULL: not known */
+  /* [nscenes] the scenes with their models compiled for vectors of 4 and 8 doubles (LAG_LANES); or NULL */
+  const lag_scene *const *lanes_4, *const *lanes_8;
 } lag_program;
 
 #ifdef __cplusplus

@@ -11,6 +11,7 @@
 typedef struct Column {
   char name[96], unit[64];
   const char *const *words; /* text column of a CSV file: a value is the index of its word. NULL: a column of numbers */
+  int plain; /* bytes of the name before the label of its run; 0: all */
 } Column;
 
 /* A table of output; column 0 is the time. data[nrows * ncols], row-major. */

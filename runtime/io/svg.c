@@ -284,12 +284,15 @@ static int units_of(const Table *t, const PlottedCurves *d, const char *units[MO
   return n;
 }
 
-/* s[n] := "x, y" of the drawn columns of one unit, as far as there is room. */
+/* s[n] := "x, y" of the drawn columns of one unit, without the runs' labels, as far as there is room. */
 static const char *names_of(const Table *t, const PlottedCurves *d, const char *unit, char *s, size_t n) {
   size_t at = 0;
-  for (int i = 0; i < d->n && at + sizeof t->cols->name + 3 < n; i++)
-    if (strcmp(t->cols[d->y[i]].unit, unit) == 0)
-      at += (size_t)snprintf(s + at, n - at, "%s%s", at ? ", " : "", t->cols[d->y[i]].name);
+  for (int i = 0; i < d->n && at + sizeof t->cols->name + 3 < n; i += d->runs > 0 ? d->runs : 1) {
+    const Column *c = &t->cols[d->y[i]];
+    if (strcmp(c->unit, unit) != 0) continue;
+    int length = c->plain > 0 ? c->plain : (int)strlen(c->name);
+    at += (size_t)snprintf(s + at, n - at, "%s%.*s", at ? ", " : "", length, c->name);
+  }
   return s;
 }
 
@@ -389,6 +392,7 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   else lag_widen_range(&p.x0, &p.x1, 1e-12, d->beneath.value ? 0.25 : x ? 0.05 : 0);
   if (d->beneath.profile) lag_svg_profile_range(&d->beneath, p.x0, p.x1, &p.y0, &p.y1);
   lag_widen_range(&p.y0, &p.y1, 1e-12, d->beneath.value && !d->beneath.profile ? 0.25 : 0.05);
+  if (d->beneath.value && !d->beneath.profile && d->beneath.period > 0) lag_svg_levels_range(&d->beneath, &p);
   if (p.ylog) lag_widen_log_range(&p.y0, &p.y1);
   if (x && !d->beneath.value && shares_scale(t, d, &p)) same_scale(&p);
   axis_label(t, d->n, d->x, d->xname, p.w, xlabel, sizeof xlabel);

@@ -174,6 +174,39 @@ static void put_key(FILE *f, const Panel *p, int line, const char *stroke, const
   lag_svg_text(f, x + 27, y + 4, "fill=\"#666\"", name);
 }
 
+/* The least value at height y. */
+static double least_at(const Beneath *b, const Panel *p, double y) {
+  double least = HUGE_VAL;
+  for (int i = 0; i < ACROSS; i++) {
+    double e = b->value(b->of, grid_x(p, i), y);
+    if (isfinite(e)) least = fmin(least, e);
+  }
+  return least;
+}
+
+/* The lowest maximum of y = 0 over a period: the energy of a separatrix. */
+static double lowest_maximum(const Beneath *b, const Panel *p) {
+  double lowest = HUGE_VAL;
+  for (int i = 0; i + 1 < ACROSS; i++) {
+    double e[3];
+    for (int k = 0; k < 3; k++) e[k] = b->value(b->of, grid_x(p, (i + k + ACROSS - 2) % (ACROSS - 1)), 0);
+    if (e[1] > e[0] && e[1] >= e[2]) lowest = fmin(lowest, e[1]);
+  }
+  return lowest;
+}
+
+void lag_svg_levels_range(const Beneath *b, Panel *p) {
+  enum { ROUNDS = 30 };
+  const double wider = 1.25;
+  double level = lowest_maximum(b, p), middle = (p->y0 + p->y1) / 2, half = p->y1 - middle;
+  for (int k = 0; k < ROUNDS; k++, half *= wider) {
+    if (least_at(b, p, middle + half) <= level || least_at(b, p, middle - half) <= level) continue;
+    p->y0 = middle - half;
+    p->y1 = middle + half;
+    return;
+  }
+}
+
 void lag_svg_levels(FILE *f, const Panel *p, const Beneath *b) {
   Grid g = {p, b, b->period > 0, malloc(ACROSS * DOWN * sizeof *g.value)};
   if (!g.value) return;

@@ -27,6 +27,8 @@ void lag_svg_text(FILE *f, double x, double y, const char *attributes, const cha
 /* svg_levels.c: level curves of a value over the panel; its curve along y = 0; [y0, y1] widened to the latter's
  * lowest value, and by half upwards. */
 void lag_svg_levels(FILE *f, const Panel *p, const Beneath *b);
+/* Widens the panel's y, over a period of x, until a separatrix is inside. */
+void lag_svg_levels_range(const Beneath *b, Panel *p);
 void lag_svg_profile(FILE *f, const Panel *p, const Beneath *b);
 void lag_svg_profile_range(const Beneath *b, double x0, double x1, double *y0, double *y1);
 /* The panel's frame, grid and labels; last: with those of x; ylabel NULL: without those of y. */

@@ -103,7 +103,7 @@ static inline int lag_joint_turn(LAG_MODEL, lag_joint_friction *w, const lag_kic
   }
   if (!lag_is_number(to[0])) return LAG_FRICTION_FAILS(s->end, k, "has no finite values");
   const LAG_REAL part = LAG_FN(fabs)(to[0]);
-  const int at_limit = !(part < one || part > one);
+  const int at_limit = !(part < one || part > one || w->bound[k] > one);
   for (int i = w->nq; i < w->states; i++) s->y1[i] += s->h*(to[0] - was)*d[i];
   LAG_HOLD(w, k, to[0]);
   w->sticks[k] = LAG_SELECT(slip[0] < zero || slip[0] > zero || at_limit, zero, one);
@@ -121,7 +121,11 @@ static inline int lag_joints_solve(LAG_MODEL, lag_joint_friction *w, const lag_k
   for (int k = 0; k < LAG_JOINTS(w); k++) w->centre[k] = struck ? -w->before[k]/LAG_C(2.0) : zero;
   for (int sweep = 0; sweep < 10000; sweep++) {
     LAG_REAL change = zero;
-    for (int k = 0; k < LAG_JOINTS(w); k++) LAG_TRY(lag_joint_turn(LAG_THE_MODEL, w, s, k, size, &change));
+    for (int k = 0; k < LAG_JOINTS(w); k++) {
+      LAG_TRY(lag_joint_turn(LAG_THE_MODEL, w, s, k, size, &change));
+      /* with static friction surfaces that share a load may hold and slip in turns: one that slips has broken loose */
+      if (sweep >= 50) w->bound[k] = LAG_SELECT(w->sticks[k] > zero, w->bound[k], LAG_C(1.0));
+    }
     const LAG_REAL unit = s->epsilon*(*size);
     if (change <= LAG_C(64.0)*unit) return status;
     /* surfaces that hold one motion, to what positions leave of their slips: on curves they drift by equal steps */

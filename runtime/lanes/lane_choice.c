@@ -111,3 +111,10 @@ const char *lag_lanes_choose(const lag_sim *like, const lag_scene *four, const l
   }
   return why;
 }
+
+int lag_lanes_possible(const lag_sim *like) {
+  const LaneWidth *const widths[] = {&lag_lane_width_8, &lag_lane_width_4};
+  for (int i = 0; i < 2 && !needs_single_steps(like); i++)
+    if (processor_has(widths[i]->lanes) && kernel_of(widths[i], like->method)) return widths[i]->lanes;
+  return 1;
+}

@@ -15,3 +15,5 @@ typedef struct LaneChoice {
  * no kernel. */
 const char *lag_lanes_choose(const lag_sim *like, const lag_scene *four, const lag_scene *eight, int wanted,
                              LaneChoice *c);
+/* How many lanes runs like this one would have in a program compiled for lanes; 1: none. */
+int lag_lanes_possible(const lag_sim *like);

@@ -341,8 +341,7 @@ static void store_polynomial(const RadauArrays *a, int n) {
   }
 }
 
-static void accept(Radau *w, const RadauArrays *a, lag_problem *pb, double *t, double *y, double dt, double tb,
-                   double tc) {
+static void accept(Radau *w, const RadauArrays *a, lag_problem *pb, double *t, double *y, const lag_aimed *to) {
   size_t bytes = (size_t)pb->n * sizeof(double);
   store_polynomial(a, pb->n);
   memcpy(a->y0, y, bytes);
@@ -351,9 +350,9 @@ static void accept(Radau *w, const RadauArrays *a, lag_problem *pb, double *t, d
   memcpy(a->f0, a->fs, bytes);
   w->have_path = 1;
   w->t0 = *t;
-  w->dt = dt;
-  w->tc = tc;
-  *t = tb;
+  w->dt = pb->dir * to->h;
+  w->tc = to->lost;
+  *t = to->t;
 }
 
 /* y1 := end of the step, projected to the constraints; fs := f there. > 0: a smaller step may help. */
@@ -442,7 +441,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     pb->bad_index = -1;
     why = attempt(w, &a, pb, *t, next.t, y, dt);
     if (why == 0) {
-      accept(w, &a, pb, t, y, dt, next.t, next.lost);
+      accept(w, &a, pb, t, y, &next);
       w->h = next.clipped ? fmax(w->h, wanted) : w->h;
       return LAG_OK;
     }

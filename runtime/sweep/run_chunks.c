@@ -21,6 +21,7 @@ typedef struct Worker {
   char in_use[LANE_CHUNKS];
   Batch *batch;        /* of another rank than 0, instead of row */
   int64_t taken;       /* chunks of the batch */
+  SweepRun run;        /* the last one */
   LaneWorker *lanes;   /* NULL: one run after the other */
 } Worker;
 
@@ -35,10 +36,10 @@ static int make_chunk(Worker *w, long long c, double *row) {
   int rc = LAG_OK;
   for (long long k = 0, n = lag_sweep_chunk_runs(s, c); k < n && rc == LAG_OK; k++) {
     long long i = c * s->chunk + k;
-    SweepRun r = {.measures = w->measures[lag_plan_variant(s->plan, i)],
-                  .row = lag_sweep_row(s, row, k),
-                  .motion = lag_sweep_motion(s, row, c, k)};
-    rc = lag_sweep_run_whole(s, &r, i, w->value, NULL, 0);
+    w->run.measures = w->measures[lag_plan_variant(s->plan, i)];
+    w->run.row = lag_sweep_row(s, row, k);
+    w->run.motion = lag_sweep_motion(s, row, c, k);
+    rc = lag_sweep_run_whole(s, &w->run, i, w->value, NULL, 0);
   }
   return rc;
 }
@@ -150,6 +151,7 @@ static int open_worker(Worker *w, Pool *pool) {
 
 static void close_worker(Worker *w) {
   lag_lane_worker_free(w->lanes);
+  lag_sim_free(w->run.sim);
   close_measures(w->pool->s, w->measures);
   free(w->row);
   free(w->value);
@@ -188,6 +190,7 @@ int lag_sweep_run_one(Sweep *s, long long i, int k, double *row, char *why, size
   SweepRun r = {.measures = m, .row = row};
   int rc = m && value ? lag_sweep_run_whole(s, &r, i, value, why, size) : LAG_ENOMEM;
   if (rc == LAG_OK && row[s->nmeasures] >= 0) snprintf(why, size, "%s", lag_measures_why(m, k));
+  lag_sim_free(r.sim);
   lag_measures_free(m);
   free(value);
   return rc;

@@ -14,7 +14,7 @@ Measures *lag_sweep_measures(const Sweep *s, int variant);
 /* ---- One run (sweep_run.c) */
 
 typedef struct SweepRun {
-  lag_sim *sim;
+  lag_sim *sim;         /* of the last run, used again by the next; NULL: none. Freed by who has the SweepRun */
   Measures *measures;
   double *row;          /* [columns] */
   double *motion, *next; /* [nrows + 1][width] and the row to come; motion NULL: it is not kept */

@@ -42,7 +42,7 @@ static void note_event(void *run, int k, double t, const double *before, const d
 
 int lag_sweep_run_open(Sweep *s, SweepRun *r, long long i, double *value) {
   const SweepVariant *variant = &s->variant[lag_plan_variant(s->plan, i)];
-  lag_sim *sim = r->sim = lag_sim_like(variant->like);
+  lag_sim *sim = r->sim = lag_sim_renew(r->sim, variant->like);
   int rc = sim ? LAG_OK : LAG_ENOMEM;
   lag_plan_values(s->plan, i, value);
   for (int k = 0; k < s->plan->n && rc == LAG_OK; k++)
@@ -81,8 +81,6 @@ int lag_sweep_run_end(const Sweep *s, SweepRun *r, int status, char *why, size_t
   for (int k = 0; k < s->nmeasures && status < 0; k++) r->row[k] = NAN;
   r->row[s->nmeasures] = status;
   if (why) snprintf(why, size, "%s", status < 0 && r->sim ? lag_sim_message(r->sim) : "");
-  lag_sim_free(r->sim);
-  r->sim = NULL;
   return status == LAG_ENOMEM || status == LAG_INTERRUPTED ? status : LAG_OK;
 }
 

@@ -16,8 +16,15 @@ struct Chunk {
   max_align_t data[];
 };
 
+/* Blocks given up, by size: four classes between powers of two, from 16 bytes on. */
+typedef struct FreeBlock {
+  struct FreeBlock *next;
+} FreeBlock;
+enum { FREE_LEAST = 16, FREE_CLASSES = 52 };
+
 struct Arena {
   ArenaConfig config;
+  FreeBlock *given_up[FREE_CLASSES];
   Chunk *chunks;
   jmp_buf *handler;
   size_t used, serial;
@@ -73,12 +80,34 @@ void arena_free(Arena *a) {
   a->config.dealloc(a->config.user, a);
 }
 
+/* The class of blocks of at least n bytes, where n is not at its begin less one; FREE_CLASSES: none. */
+static uint32_t free_class(size_t n, size_t *begin) {
+  uint32_t k = 0;
+  size_t power = FREE_LEAST;
+  for (; power <= n / 2; power *= 2) k += 4;
+  k += (uint32_t)((n - power) / (power / 4));
+  *begin = power + k % 4 * (power / 4);
+  return k < FREE_CLASSES ? k : FREE_CLASSES;
+}
+
+/* A block of n bytes that was given up; NULL: there is none. */
+static void *take_given_up(Arena *a, size_t n) {
+  size_t begin;
+  n = whole_units(n);
+  uint32_t k = n ? free_class(n, &begin) : FREE_CLASSES;
+  if (k < FREE_CLASSES && begin < n) k++;
+  FreeBlock *b = k < FREE_CLASSES ? a->given_up[k] : NULL;
+  if (b) a->given_up[k] = b->next;
+  return b;
+}
+
 ArenaMark arena_mark(const Arena *a) {
   const Chunk *c = a->chunks;
   return c ? (ArenaMark){c->serial, c->used} : (ArenaMark){0};
 }
 
 void arena_forget(Arena *a, ArenaMark since) {
+  memset(a->given_up, 0, sizeof a->given_up);
   free_chunks(a, since.serial);
   Chunk *c = a->chunks;
   if (!c || c->serial != since.serial) return;
@@ -100,6 +129,21 @@ void arena_release(Arena *a, void *block, size_t n) {
     c->used -= whole;
     a->used -= whole;
   }
+}
+
+void arena_recycle(Arena *a, void *block, size_t n) {
+  const Chunk *c = a->chunks;
+  size_t begin;
+  int latest = (char *)block + whole_units(n) + POISON_GAP == (char *)c->data + c->used;
+  uint32_t k = n ? free_class(whole_units(n), &begin) : FREE_CLASSES;
+  /* under the address sanitizer their use is reported from now on */
+  if (latest || POISON_GAP || n > a->config.chunk || k == FREE_CLASSES) {
+    arena_release(a, block, n);
+    return;
+  }
+  FreeBlock *b = block;
+  b->next = a->given_up[k];
+  a->given_up[k] = b;
 }
 
 jmp_buf *arena_guard(Arena *a, jmp_buf *handler) {
@@ -148,6 +192,8 @@ static Chunk *chunk_new(Arena *a, size_t n) {
 
 void *arena_alloc(Arena *a, size_t n) {
   if (n > SIZE_MAX / 4) arena_fail(a);
+  void *again = take_given_up(a, n);
+  if (again) return memset(again, 0, n);
   size_t asked = n;
   n = whole_units(n) + POISON_GAP;
   if (a->config.max_bytes && a->used + n > a->config.max_bytes) {

@@ -38,6 +38,9 @@ void arena_forget(Arena *a, ArenaMark since);
  * is not of this arena is left alone. */
 void arena_release(Arena *a, void *block, size_t n);
 
+/* The same of a block that is of this arena; later blocks of its size may have its memory. */
+void arena_recycle(Arena *a, void *block, size_t n);
+
 /* n zeroed bytes aligned for any type; never NULL (see above). */
 void *arena_alloc(Arena *a, size_t n);
 

@@ -148,6 +148,32 @@ static const char *left_out(const Budget *b, const Setting *s) {
   return gone ? effect_names_joined(b->study, gone) : "none";
 }
 
+static void put_settings(const Budget *b, const Setting *best, StrBuf *out) {
+  const EffectStudy *s = b->study;
+  sb_printf(out, "  %-32s %10s %12s  %s\n", "effects left out", "error", "time [ms]", "setting");
+  for (uint32_t i = 0; i < b->all.n; i++) {
+    const Setting *x = &b->all.at[i];
+    if (isnan(x->error))
+      sb_printf(out, "  %-32s %10s %12s  its smallest error is %.1e\n", left_out(b, x), "-", "-", x->time);
+    else
+      sb_printf(out, "%c %-32s %10.1e %12.3g  %s, --%s %s\n", x == best ? '*' : ' ', left_out(b, x), x->error,
+                1e3 * x->time, x->method, x->knob, x->value);
+  }
+  sb_printf(out,
+            "error: the largest difference from the motion with all effects (%s, itself uncertain by %.1e) at 16 "
+            "times, relative to the\n"
+            "largest value of its kind and unit\n",
+            b->reference, b->uncertainty);
+  if (s->used)
+    sb_printf(out,
+              s->least == s->used ? "no effect can be left out: %u other sets differ by more than %.2g, the part of "
+                                    "the budget that is for effects\n"
+                                  : "no smaller set is enough: %u sets were run; alone it differs by %.1e\n",
+              s->tried, s->least == s->used ? s->accuracy : s->least_difference);
+  if (s->scene->scene.monitors.n)
+    sb_puts(out, "the scene's monitors are not part of this: they may refer to effects that are left out\n");
+}
+
 static void put_text(const Compiler *c, const Budget *b, StrBuf *out) {
   const Setting *best = fastest(b), *full = &b->all.at[0];
   const EffectStudy *s = b->study;
@@ -176,28 +202,7 @@ static void put_text(const Compiler *c, const Budget *b, StrBuf *out) {
   sb_printf(out, "\n  lagc run %s %s%s%s --method \"%s\" --%s %s%s%s\n\n", c->o.file, s->scene->scene.name,
             c->given_words, until, best->method, best->knob, best->value, b->precision ? " --precision " : "",
             b->precision ? b->precision : "");
-  sb_printf(out, "  %-32s %10s %12s  %s\n", "effects left out", "error", "time [ms]", "setting");
-  for (uint32_t i = 0; i < b->all.n; i++) {
-    const Setting *x = &b->all.at[i];
-    if (isnan(x->error))
-      sb_printf(out, "  %-32s %10s %12s  its smallest error is %.1e\n", left_out(b, x), "-", "-", x->time);
-    else
-      sb_printf(out, "%c %-32s %10.1e %12.3g  %s, --%s %s\n", x == best ? '*' : ' ', left_out(b, x), x->error,
-                1e3 * x->time, x->method, x->knob, x->value);
-  }
-  sb_printf(out,
-            "error: the largest difference from the motion with all effects (%s, itself uncertain by %.1e) at 16 "
-            "times, relative to the\n"
-            "largest value of its kind and unit\n",
-            b->reference, b->uncertainty);
-  if (s->used)
-    sb_printf(out,
-              s->least == s->used ? "no effect can be left out: %u other sets differ by more than %.2g, the part of "
-                                    "the budget that is for effects\n"
-                                  : "no smaller set is enough: %u sets were run; alone it differs by %.1e\n",
-              s->tried, s->least == s->used ? s->accuracy : s->least_difference);
-  if (s->scene->scene.monitors.n)
-    sb_puts(out, "the scene's monitors are not part of this: they may refer to effects that are left out\n");
+  put_settings(b, best, out);
 }
 
 static void put_json(const Budget *b, StrBuf *out) {

@@ -24,6 +24,8 @@ int command_build(Compiler *c) {
   if (is_so && !c->o.shared)
     return usage_error("build writes a program: write -o SIMULATOR, or --shared for a library");
   if (c->o.output && !is_so && c->o.shared) return usage_error("--shared writes a library: write -o libNAME.so");
+  if (c->o.lanes && !c->o.shared)
+    return usage_error("--lanes are for batches of a library: add --shared; `lagc sweep` has its own");
   if (c->o.shared && options_more_digits(&c->o))
     return usage_error("a shared library has doubles: leave --precision out");
   int status = simulator_lower(c, &units) ? simulator_of_units(c, &units, c->o.output, &path) : STATUS_MODEL;

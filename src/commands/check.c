@@ -57,6 +57,20 @@ static void list_units(const FoundUnits *all, StrBuf *out) {
 /* Whether the model declares inputs; those of contacts do not count. */
 static int has_inputs(const Model *m) { return m->inputs.n > model_contact_inputs(m); }
 
+static void check_unused_effects(Compiler *c, FoundUnits *found, StrBuf *out) {
+  EffectList unused = model_unused_effects(c->ast);
+  for (uint32_t i = 0; i < unused.n; i++) {
+    Eqns *e = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = unused.at[i], .drawing = DRAWING_CHECKED});
+    if (!e) continue;
+    switches_find(e);
+    switches_warn(e);
+    discontinuity_warn(e);
+    collect_units(e->m, found);
+    check_json_scene(c, "effect in no scene", unused.at[i], e->m, 1);
+    sb_printf(out, "effect %s (in no scene): ok\n", unused.at[i]);
+  }
+}
+
 int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) {
   const Ast *ast = c->ast;
   SceneList scenes = model_scenes(ast);
@@ -84,17 +98,7 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
     if (e->m->effects.n || has_inputs(e->m) || e->energy_jumps) charges_show_broken(e, out);
   }
   if (scene && !out->n) compiler_derive_compared(c, &(ModelChoice){.scene = scene}); /* reports the unknown scene */
-  EffectList unused = model_unused_effects(ast);
-  for (uint32_t i = 0; i < unused.n && !scene; i++) {
-    Eqns *e = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = unused.at[i], .drawing = DRAWING_CHECKED});
-    if (!e) continue;
-    switches_find(e);
-    switches_warn(e);
-    discontinuity_warn(e);
-    collect_units(e->m, &found);
-    check_json_scene(c, "effect in no scene", unused.at[i], e->m, 1);
-    sb_printf(out, "effect %s (in no scene): ok\n", unused.at[i]);
-  }
+  if (!scene) check_unused_effects(c, &found, out);
   list_units(&found, out);
   check_json_units(c, found.at, found.n);
   if (ast->diags->errors) return 0; /* expectations of a wrong model say nothing */

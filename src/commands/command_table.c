@@ -180,6 +180,15 @@ static const CommandRow commands[] = {
      "GSL.\n\n"
      "  name=value            a parameter or start: where the search begins, or held\n\n"
      "Exit status 3: the motion failed at the first values, or the search did not converge."},
+    {CMD_DESIGN, "design", NULL,
+     "MODEL [SCENE] [name=value ...] --fit NAME,NAME --sigma X [--best N] [--every DT] [--json]",
+     "where and when to measure, so that values are determined best",
+     "Takes each output of the scene at the time of each row as a possible measurement, and finds the N whose "
+     "information on the values of --fit has the largest determinant (D-optimal), by exact derivatives and exchanges. "
+     "Prints them, with the standard errors that a fit of them would have, beside those of as many at equal "
+     "distances and of all. --observe adds an output; --prior is what is known already.\n\n"
+     "  name=value            a parameter or start: the best guess so far\n\n"
+     "Exit status 2: the measurements cannot determine the values; the message names what none of them feels."},
     {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [--seconds S] [-o FILE.svg]",
      "time against accuracy: all methods, side by side",
      "Names the fastest settings for errors of 1e-3, 1e-6, 1e-9 and 1e-12, or of --target X; then prints the time that "
@@ -228,7 +237,7 @@ static const CommandRow commands[] = {
      "--accuracy X searches for the smallest set of the scene's effects whose result differs from the scene's by at "
      "most X: with all other effects left out together, in "
      "scenes of up to ten effects. Prints the `use` line of the set that it finds."},
-    {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--shared] [--method NAME] [--with linear]",
+    {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--shared [--lanes]] [--method NAME] [--with linear]",
      "make a simulator, or a shared library",
      "Compiles the model to a simulator with all its scenes; it has the options of `lagc run`, which `SIMULATOR "
      "--help` "
@@ -236,8 +245,8 @@ static const CommandRow commands[] = {
      "With --bytes it writes what `lag-run`, which stands beside liblag.a, evaluates: LAG_PROGRAM=FILE lag-run. "
      "With --shared it compiles a shared library, which exports the functions of lag.h by the same names for every "
      "model: simulations, rows, events, charges, tangents, "
-     "batches. It links no GSL. Without -o it is kept in the cache, and its path is printed. lagc.py uses it from "
-     "Python."},
+     "batches, which with --lanes compute several motions at once. It links no GSL. Without -o it is kept in the "
+     "cache, and its path is printed. lagc.py uses it from Python."},
     {CMD_HEADER, "header", "embedding", "MODEL [SCENE] [--with PART,...] [--for LIBRARY,...] -o FILE.h",
      "write one C header to embed",
      "Writes one self-contained C99/C++ header to embed: parameters as a struct, accelerations, energy, an RK4 step. "
@@ -334,7 +343,7 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 #define C(name) ((CommandSet)1 << CMD_##name)
 #define SIMULATE (C(RUN) | C(PLOT) | C(ANIMATE))
-#define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS) | C(FIT))
+#define STEPS (SIMULATE | C(LYAPUNOV) | C(EFFECTS) | C(FIT) | C(DESIGN))
 #define RUNS (STEPS | C(SWEEP) | C(ORBIT) | C(CONTINUE)) /* commands that run a scene, once or many times */
 #define MODELS                                                                                                        \
   (RUNS | C(MODES) | C(LINEARIZE) | C(COST) | C(CHECK) | C(VERIFY) | C(DERIVE) | C(NOETHER) | C(ACTION) | C(BUILD) | \

@@ -10,7 +10,7 @@
 
 typedef enum {
   CMD_NONE, CMD_CHECK, CMD_VERIFY, CMD_DERIVE, CMD_NOETHER, CMD_ACTION, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES,
-  CMD_LINEARIZE, CMD_LYAPUNOV, CMD_FIT, CMD_ORBIT, CMD_CONTINUE, CMD_COST, CMD_SWEEP, CMD_EFFECTS,
+  CMD_LINEARIZE, CMD_LYAPUNOV, CMD_FIT, CMD_DESIGN, CMD_ORBIT, CMD_CONTINUE, CMD_COST, CMD_SWEEP, CMD_EFFECTS,
   CMD_METHODS, CMD_MODELS, CMD_NEW,
   CMD_CACHE, CMD_BUILD, CMD_HEADER, CMD_EMIT, CMD_FMU, CMD_PAGE, CMD_PLAYGROUND, CMD_HELP, CMD_COMPLETION, CMD_VERSION,
   CMD_COMPLETE, CMD_MANPAGE,
@@ -63,7 +63,7 @@ typedef struct {
   const char *fix;         /* --fix g,l: parameters that become numbers */
   const char *accuracy;    /* effects --accuracy */
   const char *against, *map; /* verify --against, --map */
-  int shared;              /* build --shared */
+  int shared, lanes;       /* build --shared, --lanes */
   int by_effects;          /* fit --effects */
   int json;                /* effects --json; other commands pass it on */
   OptionTexts scenes;      /* plot: all scenes named, each once */

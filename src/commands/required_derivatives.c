@@ -87,7 +87,7 @@ static unsigned required_by_words(const Options *o) {
   int all = o->command == CMD_LINEARIZE || (o->with && strcmp(o->with, "derivatives") == 0);
   if (all) return WANT_SENSITIVITY | WANT_INVERSE | WANT_ADJOINT;
   if (o->gradient.n) return WANT_SENSITIVITY | WANT_ADJOINT;
-  if (o->command == CMD_FIT || options_passed(o, "--sensitivity")) return WANT_SENSITIVITY;
+  if (o->command == CMD_FIT || o->command == CMD_DESIGN || options_passed(o, "--sensitivity")) return WANT_SENSITIVITY;
   return !o->with ? 0u : strcmp(o->with, "sensitivities") == 0 ? WANT_SENSITIVITY : WANT_LINEAR;
 }
 

@@ -438,6 +438,7 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   if (o->command == CMD_PLOT) ok = ok && prepare_plot(&k, error);
   if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
   if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);
+  if (o->command == CMD_DESIGN) add_argument(&k, "--design", NULL);
   if (o->command == CMD_LINEARIZE) add_argument(&k, "--linearize", NULL);
   if (o->by_effects && o->scenes.n > 1) return fail_with(error, "--effects: name one scene, whose effects are judged");
   if (o->by_effects) add_argument(&k, "--each-effect", NULL);

@@ -130,9 +130,10 @@ typedef struct {
 
 typedef VEC(Lowered) Lowereds;
 
-/* Whether the runs of a sweep may go in lanes (runtime/lanes/lane_choice.c knows of methods and scenes). */
+/* Whether the runs of a sweep or of build --lanes may go in lanes (runtime/lanes/lane_choice.c knows of methods and
+ * scenes). */
 static int may_have_lanes(const Compiler *c, const Units *units) {
-  int may = c->o.command == CMD_SWEEP && !c->o.precision && toolchain_has_lanes();
+  int may = (c->o.command == CMD_SWEEP || c->o.lanes) && !c->o.precision && toolchain_has_lanes();
   for (uint32_t i = 0; i < units->n; i++) may &= !units->at[i]->constraints.of.n && !units->at[i]->libm;
   return may;
 }
@@ -360,9 +361,8 @@ int simulator_tools(Compiler *c, const Units *units, const char *output, Toolcha
   tools->lanes = units->at[0]->lanes;
   int parts = find_parts(c, tools, &error);
   if (parts < 0) return usage_error(error);
-  *kind = c->o.shared ? PROGRAM_LIBRARY
-                      : (ProgramKind)((tools->gsl ? PROGRAM_WITH_GSL : 0) | parts |
-                                      (tools->lanes ? PROGRAM_WITH_LANES : 0));
+  int lanes = tools->lanes ? PROGRAM_WITH_LANES : 0;
+  *kind = (ProgramKind)(lanes | (c->o.shared ? PROGRAM_LIBRARY : (tools->gsl ? PROGRAM_WITH_GSL : 0) | parts));
   return STATUS_OK;
 }
 

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "emit/emit_header_text.h"
 #include "emit/header_impl.h"
 #include "kernels/steppers.def"
 
@@ -142,61 +143,19 @@ static void comment_lines(const Header *h, const char *text) {
   if (left) sb_printf(h->out, " * ... and %u lines more: `lagc derive` shows them.\n", left);
 }
 
-/* Example loop for a model with contacts: a step that would penetrate is undone and the impact applied; a contact
- * that strikes again at once stays closed until its force vanishes. */
-static void write_contact_loop(const Header *h, const char *end, const char *step) {
-  const char *m = h->upper, *f = h->lower;
+/* Rows of the table of contacts: events by which they strike and open, input by which they are closed; beginnings of
+ * times of the last strike. */
+static HeaderWord contact_rows(const Header *h) {
   uint32_t n = h->u->contacts.n;
-  sb_printf(h->out,
-            " *   %s_REAL u[%s_NU], g[%s_NEV];\n *   const int contacts[%u][3] = { // strikes, opens, is closed\n", m,
-            m, m, n);
+  StrBuf b = strbuf(h->a);
   for (uint32_t k = 0; k < n; k++) {
     const IrContact *c = &h->u->contacts.at[k];
-    sb_printf(h->out, " *     {%s, %s, %s}%s\n", h->ev[c->impact], h->ev[c->release], h->in[c->input],
-              k + 1 < n ? "," : "};");
+    sb_printf(&b, "\n *     {%s, %s, %s}%s", h->ev[c->impact], h->ev[c->release],
+              h->in[c->input], k + 1 < n ? "," : "};");
   }
-  sb_printf(h->out, " *   double at[%u] = {", n);
-  for (uint32_t k = 0; k < n; k++) sb_puts(h->out, k ? ", -1" : "-1");
-  sb_printf(h->out,
-            "}; // when it struck last\n *   int closed[%u] = {0}, stop = 0;\n *   while (s.t < %s && !stop) {\n *     "
-            "const %s_state before = s;\n",
-            n, end, f);
-  sb_printf(h->out,
-            " *     int struck = -1;\n *     %s_inputs(s.t, &p, u);\n *     for (int k = 0; k < %u; k++) "
-            "u[contacts[k][2]] = closed[k];\n",
-            f, n);
-  sb_printf(h->out,
-            " *     if (%s_rk4_step(&p, &s, %s, u) != %s_OK || %s_events(s.t, s.q, s.v%s, &p, u, g) != %s_OK) break;\n",
-            f, step, m, f, h->u->z.n ? ", s.z" : "", m);
-  sb_printf(h->out, " *     for (int k = 0; k < %u && struck < 0; k++) {\n", n);
-  sb_puts(h->out, " *       if (closed[k] && g[contacts[k][1]] <= 0) closed[k] = 0; // nothing presses: it opens\n");
-  sb_puts(h->out, " *       else if (!closed[k] && g[contacts[k][0]] < 0) struck = k; // its gap would become "
-                  "negative\n *     }\n");
-  sb_puts(h->out, " *     if (struck >= 0) {\n *       s = before;\n *       closed[struck] = at[struck] == "
-                  "(double)s.t; // again at once: it stays closed\n *       at[struck] = (double)s.t;\n");
-  sb_puts(h->out, " *       u[contacts[struck][2]] = closed[struck];\n");
-  sb_printf(h->out,
-            " *       if (closed[struck]) %s_hold(&p, &s, u);\n *       else %s_act(contacts[struck][0], &p, &s, u, "
-            "&stop);\n *     }\n *   }\n",
-            f, f);
-}
-
-/* Example loop with Moreau's method, by the step that the scene gives. */
-static void write_moreau_loop(const Header *h, const char *end, const char *step) {
-  const IrScene *s = h->scene;
-  for (uint32_t i = 0; i < s->options.n && s->method && strcmp(s->method, "moreau") == 0; i++)
-    if (strcmp(s->options.at[i].name, "step") == 0) step = shortest_double(h->a, s->options.at[i].value);
-  if (!program_set_contacts(h->u)) {
-    sb_printf(h->out, " *   while (s.t < %s)\n *     if (%s_moreau_step(&p, &s, %s%s) != %s_OK) break;\n", end,
-              h->lower, step, h->u->u.n ? ", NULL" : "", h->upper);
-    return;
-  }
-  sb_printf(h->out, " *   while (s.t < %s) {\n *     if (%s_moreau_step(&p, &s, %s, NULL) != %s_OK) break;\n", end,
-            h->lower, step, h->upper);
-  sb_printf(
-      h->out,
-      " *     if (s.struck[%s] > 0) printf(\"%%g  %%g\\n\", (double)s.t, (double)s.struck[%s]); // a sound\n *   }\n",
-      h->contacts[0], h->contacts[0]);
+  sb_printf(&b, "\n *   double at[%u] = {", n);
+  for (uint32_t k = 0; k < n; k++) sb_puts(&b, k ? ", -1" : "-1");
+  return (HeaderWord){"CONTACTS", sb_text(&b)};
 }
 
 /* "s.t, s.q, s.v, &p, u", without arrays that the model lacks. */
@@ -205,77 +164,43 @@ static const char *arguments_of(const Header *h) {
                       h->u->u.n ? ", u" : "");
 }
 
-/* Example loop for a model with kicks: steps end at the times of the first, and its action is applied. */
-static void write_kick_loop(const Header *h, const char *end) {
-  const char *m = h->upper, *f = h->lower;
-  uint32_t k = 0;
-  while (h->u->events.at[k].direction != EVENT_KICK) k++;
-  if (h->u->u.n) sb_printf(h->out, " *   %s_REAL u[%s_NU];\n *   %s_inputs(s.t, &p, u);\n", m, m, f);
-  sb_printf(h->out, " *   %s_REAL g[%s_NEV];\n *   int stop = 0;\n", m, m);
-  sb_printf(h->out, " *   %s_events(%s, g); // g[%s]: the time between two kicks\n", f, arguments_of(h), h->ev[k]);
-  sb_printf(h->out, " *   for (int k = 1; s.t < %s && !stop; k++) {\n", end);
-  sb_printf(h->out, " *     const double from = s.t, h = (%sk*g[%s] - from)/100;\n",
-            h->scene->t0 == 0 ? "" : arena_printf(h->a, "%s + ", shortest_double(h->a, h->scene->t0)), h->ev[k]);
-  sb_printf(h->out,
-            " *     for (int i = 1; i <= 100; i++)\n *       if (%s_rk4_step(&p, &s, from + i*h - s.t%s) != %s_OK) "
-            "return 1;\n",
-            f, h->u->u.n ? ", NULL" : "", m);
-  sb_printf(h->out, " *     %s_act(%s, &p, &s%s, &stop);\n *   }\n", f, h->ev[k], h->u->u.n ? ", u" : "");
+/* Step of the example loop: with Moreau's method that of the scene. */
+static const char *step_of(const Header *h) {
+  const IrScene *s = h->scene;
+  double step = (s->t1 - s->t0) / 1e4;
+  for (uint32_t i = 0; i < s->options.n && s->method && strcmp(s->method, "moreau") == 0; i++)
+    if (header_has_method(h, "moreau") && strcmp(s->options.at[i].name, "step") == 0) step = s->options.at[i].value;
+  return shortest_double(h->a, step);
 }
 
-/* Example loop for a model with events: a step ends at the first of them, and its action is applied. */
-static void write_event_loop(const Header *h, const char *end, const char *step) {
-  const char *m = h->upper, *f = h->lower;
-  int inputs = h->u->u.n > 0;
-  if (inputs) sb_printf(h->out, " *   %s_REAL u[%s_NU];\n", m, m);
-  sb_printf(h->out, " *   int event, stop = 0;\n *   while (s.t < %s && !stop) {\n", end);
-  sb_printf(h->out, " *     if (%s_step_until_event(&p, &s, %s%s, &event) != %s_OK) break;\n", f, step,
-            inputs ? ", NULL" : "", m);
-  if (inputs) sb_printf(h->out, " *     %s_inputs(s.t, &p, u);\n", f);
-  sb_printf(h->out, " *     if (event >= 0) %s_act(event, &p, &s%s, &stop);\n *   }\n", f, inputs ? ", u" : "");
+static const char *loop_of(const Header *h) {
+  if (header_has_method(h, "moreau")) return program_set_contacts(h->u) ? moreau_loop : friction_loop;
+  if (h->u->contacts.n) return contact_loop;
+  if (program_set_kick(h->u)) return kick_loop;
+  return h->parts.parts & PART_EVENTS ? event_loop : plain_loop;
 }
 
 static void write_usage(const Header *h) {
-  const char *m = h->upper, *f = h->lower;
-  const char *in = h->u->u.n ? ", NULL" : "";
+  const IrScene *s = h->scene;
+  uint32_t kick = 0;
+  while (kick < h->u->events.n && h->u->events.at[kick].direction != EVENT_KICK) kick++;
+  const HeaderWord words[] = {
+      {"THE_END", shortest_double(h->a, s->t1)}, {"THE_STEP", step_of(h)},
+      {"NO_U", h->u->u.n ? ", NULL" : ""}, {"ALSO_Z", h->u->z.n ? ", s.z" : ""}, {"ALSO_U", h->u->u.n ? ", u" : ""},
+      {"NCONTACTS", arena_printf(h->a, "%u", h->u->contacts.n)}, contact_rows(h),
+      {"CONTACT", h->contacts && h->u->contacts.n ? h->contacts[0] : ""},
+      {"OF_STATE", arguments_of(h)}, {"KICK", kick < h->u->events.n ? h->ev[kick] : ""},
+      {"SINCE", s->t0 == 0 ? "" : arena_printf(h->a, "%s + ", shortest_double(h->a, s->t0))},
+      {"FIRST", h->u->q.n   ? arena_printf(h->a, "s.q[%s]", h->q[0])
+                : h->u->z.n ? arena_printf(h->a, "s.z[%s]", h->z[0])
+                            : "s.t"},
+      {NULL, NULL}};
   sb_puts(h->out, " *\n * In every file that uses it, and in one of them (C or C++) after #define as here:\n");
-  sb_printf(h->out, " *   #define %s_IMPLEMENTATION\n *   #include \"%s.h\"\n *\n", m, h->file);
-  sb_printf(h->out, " *   %s_params p;\n *   %s_state s;\n", f, f);
-  sb_printf(h->out, " *   %s_defaults(&p); // as in scene %s\n *   %s_start(&p, &s);\n", f, h->scene->name, f);
-  const char *end = shortest_double(h->a, h->scene->t1),
-             *step = shortest_double(h->a, (h->scene->t1 - h->scene->t0) / 1e4);
-  if (header_has_method(h, "moreau")) write_moreau_loop(h, end, step);
-  else if (h->u->contacts.n) write_contact_loop(h, end, step);
-  else if (program_set_kick(h->u)) write_kick_loop(h, end);
-  else if (h->parts.parts & PART_EVENTS) write_event_loop(h, end, step);
-  else
-    sb_printf(h->out, " *   while (s.t < %s)\n *     if (%s_rk4_step(&p, &s, %s%s) != %s_OK) break;\n", end, f, step,
-              in, m);
-  const char *first = h->u->q.n   ? arena_printf(h->a, "s.q[%s]", h->q[0])
-                      : h->u->z.n ? arena_printf(h->a, "s.z[%s]", h->z[0])
-                                  : "s.t";
-  sb_printf(h->out, " *   printf(\"%%g\\n\", (double)%s);\n *\n", first);
-  sb_printf(
-      h->out,
-      " * To define before the first include, the same in every file:\n"
-      " *   %s_REAL    float, double (the default) or long double; another type, such as one that differentiates, by "
-      "the name of its\n"
-      " *             typedef, with %s_LIBM, and with %s_COMPLEX if it has no order\n"
-      " *   %s_STATIC  functions are static inline, in every file that includes this\n"
-      " *   %s_FN(x)   the function x for such a type: x##q for __float128, with %s_C(x) x##Q; C++ and compilers that "
-      "know GNU's\n"
-      " *             C choose themselves, others in C99 between float and double\n"
-      " *   %s_LANES   4 or 8, with GCC or Clang: %s_REAL is a vector of so many doubles, each with a state and "
-      "parameters\n"
-      " *             of its own. A status is 0, or minus the sum of 2^k over the lanes k that failed; others are "
-      "right\n"
-      " *   %s_LIBM    the C library's functions in place of those below\n"
-      " * Not with -ffast-math. GCC 12.2 of Debian 12 stores wrong numbers at -O2 with AVX-512 (as -march=native may "
-      "mean): add\n"
-      " * -fno-tree-slp-vectorize. -ffp-contract=off makes the same digits with every compiler, and -D%s_NO_FMA on "
-      "every processor:\n"
-      " * sines use fused multiply-add where __FMA__ is defined. (The C library's functions have their own digits.)\n",
-      m, m, m, m, m, m, m, m, m, m);
+  sb_printf(h->out, " *   #define %s_IMPLEMENTATION\n *   #include \"%s.h\"\n *\n", h->upper, h->file);
+  sb_printf(h->out, " *   %s_params p;\n *   %s_state s;\n", h->lower, h->lower);
+  sb_printf(h->out, " *   %s_defaults(&p); // as in scene %s\n *   %s_start(&p, &s);\n", h->lower, s->name, h->lower);
+  header_template(h, loop_of(h), words);
+  header_template(h, settings, words);
 }
 
 static void write_head(const Header *h, const char *equations) {

@@ -64,7 +64,7 @@ enum { TAYLOR_INLINE_MAX = 300 }; /* most operations of taylor_next that are inl
 uint32_t emit_lane_factors(const Series *s);
 void emit_lane_sums(const Series *s, StrBuf *out);
 void emit_lane_orders(const Series *s, StrBuf *out);
-/* The scenes of lag_extras.lanes_4 or lanes_8, of n units with these names. */
+/* The scenes of lag_program.lanes_4 or lanes_8, of n units with these names. */
 void emit_lane_scenes(const ProgramSet *const *units, const char *const *names, uint32_t n, int lanes, StrBuf *out);
 
 /* The C identifier of scene k. */

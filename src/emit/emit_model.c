@@ -384,6 +384,26 @@ static void constraint_table(const ProgramSet *u, StrBuf *out) {
   sb_puts(out, "};\n");
 }
 
+static void emit_contacts(const ModelFile *f) {
+  if (!f->u->contacts.n) return;
+  sb_puts(f->out, "\nstatic const lag_contact contact_table[] = {\n");
+  for (uint32_t i = 0; i < f->u->contacts.n; i++) {
+    const IrContact *c = &f->u->contacts.at[i];
+    sb_printf(f->out, "  {%u, %u, %u, %u, %d, %u, %d, %d},\n", c->input, c->constraint, c->impact, c->release,
+              c->is_tangent, c->force, c->conditional, c->law);
+  }
+  sb_puts(f->out, "};\n");
+  if (program_set_guides(f->u)) sb_puts(f->out, "\nstatic const lag_guide guide_table[] = {\n");
+  for (uint32_t i = 0; i < f->u->contacts.n; i++)
+    if (f->u->contacts.at[i].parts)
+      sb_printf(f->out, "  {%u, %u, %d},\n", i, f->u->contacts.at[i].parts,
+                f->u->contacts.at[i].parts == 1 ? (int)f->u->contacts.at[i].turn : -1);
+  if (program_set_guides(f->u)) sb_puts(f->out, "};\n");
+  state_function(f, f->u->contact_laws, "contact_laws",
+                 "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", NULL,
+                 one_out);
+}
+
 static void emit_constraints(const ModelFile *f) {
   static const char *const residuals[] = {"c", "r", NULL}, *const matrices[] = {"A", "M", NULL},
                            *const change[] = {"d", "force", NULL};
@@ -417,23 +437,7 @@ static void emit_constraints(const ModelFile *f) {
             k->mass.n, k->mass.n ? "inertia_table" : "NULL");
   sb_printf(f->out, "  .residuals = residuals, .matrices = matrices,\n  .position = %s, .velocity = %s,\n};\n",
             k->nkept ? "correct_positions" : "NULL", both ? "correct_positions" : "correct_velocities");
-  if (!f->u->contacts.n) return;
-  sb_puts(f->out, "\nstatic const lag_contact contact_table[] = {\n");
-  for (uint32_t i = 0; i < f->u->contacts.n; i++) {
-    const IrContact *c = &f->u->contacts.at[i];
-    sb_printf(f->out, "  {%u, %u, %u, %u, %d, %u, %d, %d},\n", c->input, c->constraint, c->impact, c->release,
-              c->is_tangent, c->force, c->conditional, c->law);
-  }
-  sb_puts(f->out, "};\n");
-  if (program_set_guides(f->u)) sb_puts(f->out, "\nstatic const lag_guide guide_table[] = {\n");
-  for (uint32_t i = 0; i < f->u->contacts.n; i++)
-    if (f->u->contacts.at[i].parts)
-      sb_printf(f->out, "  {%u, %u, %d},\n", i, f->u->contacts.at[i].parts,
-                f->u->contacts.at[i].parts == 1 ? (int)f->u->contacts.at[i].turn : -1);
-  if (program_set_guides(f->u)) sb_puts(f->out, "};\n");
-  state_function(f, f->u->contact_laws, "contact_laws",
-                 "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", NULL,
-                 one_out);
+  emit_contacts(f);
 }
 
 /* --- tables --- */

@@ -3,18 +3,17 @@
 #include "emit/emit_model.h"
 
 static void emit_main(ProgramKind kind, StrBuf *out) {
-  if (kind == PROGRAM_LIBRARY) {
+  if (kind & PROGRAM_LIBRARY) {
     sb_puts(out, "const lag_program *lag_library(void) { return &program; }\n");
     return;
   }
   int gsl = (kind & PROGRAM_WITH_GSL) != 0,
-      more = (kind & (PROGRAM_WITH_PNG | PROGRAM_WITH_HDF5 | PROGRAM_WITH_MPI | PROGRAM_WITH_LANES)) != 0;
+      more = (kind & (PROGRAM_WITH_PNG | PROGRAM_WITH_HDF5 | PROGRAM_WITH_MPI)) != 0;
   sb_puts(out, "int main(int argc, char **argv) {\n");
   if (more) sb_printf(out, "  lag_extras extras = %s;\n", gsl ? "lag_gsl" : "{0}");
   if (kind & PROGRAM_WITH_PNG) sb_puts(out, "  extras.png = lag_png_write;\n");
   if (kind & PROGRAM_WITH_HDF5) sb_puts(out, "  extras.hdf5 = lag_hdf5_write;\n");
   if (kind & PROGRAM_WITH_MPI) sb_puts(out, "  extras.ranks = &lag_mpi;\n");
-  if (kind & PROGRAM_WITH_LANES) sb_puts(out, "  extras.lanes_4 = lanes_4;\n  extras.lanes_8 = lanes_8;\n");
   sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", more ? "&extras" : gsl ? "&lag_gsl" : "NULL");
 }
 
@@ -34,11 +33,12 @@ void emit_program(const ProgramSet *const *units, const char *const *names, uint
       sb_printf(out, "  &%s_%s,\n", names[i], scene_id(units[i], k));
   sb_puts(out, "};\n\n");
   const char *name = c_string(a, first->name), *doc = c_string(a, first->doc), *source = c_string(a, first->source);
+  for (int k = 4; k <= 8 && lanes; k *= 2) emit_lane_scenes(units, names, n, k, out);
   sb_printf(out,
             "static const lag_program program = {\n  .name = %s,\n  .doc = %s,\n  .source = %s,\n  .effects = %s,\n  "
-            ".build = LAG_BUILD,\n  .nscenes = %u, .scenes = scenes,\n};\n\n",
-            name, doc, source, c_string(a, first->all_effects), scenes);
-  for (int k = 4; k <= 8 && lanes; k *= 2) emit_lane_scenes(units, names, n, k, out);
+            ".build = LAG_BUILD,\n  .nscenes = %u, .scenes = scenes,\n%s};\n\n",
+            name, doc, source, c_string(a, first->all_effects), scenes,
+            lanes ? "  .lanes_4 = lanes_4, .lanes_8 = lanes_8,\n" : "");
   emit_main(kind, out);
   if (lanes) sb_puts(out, "#endif\n");
 }

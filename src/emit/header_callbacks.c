@@ -88,77 +88,6 @@ static const char *compressed(const Header *h, const Pattern *x, uint32_t column
   return sb_text(&b);
 }
 
-/* --- the functions; lines with LAG_API are declared, too --- */
-
-#define STATE_AND_DATA                                          \
-  "q|  const LAG_REAL *const q = y, *const v = y + LAG_NQ;\n"    \
-  "z|  const LAG_REAL *const z = y + 2*LAG_NQ;\n"                \
-  " |  const lag_params *const p = &d->p;\n"                     \
-  "u|  LAG_REAL now[LAG_NU];\n"                                  \
-  "u|  const LAG_REAL *const u = d->u ? d->u : now;\n"           \
-  "u|  if (!d->u) lag_inputs(t, p, now);\n"
-
-static const char *const jac_of_y =
-  " |\n"
-  " |static int lag_jac_of_y(LAG_REAL t, const LAG_REAL *y, const lag_data *d, LAG_REAL *J) {\n"
-  STATE_AND_DATA
-  " |  return lag_jac(ARGS, J);\n"
-  " |}\n";
-
-static const char *const events_of_y =
-  " |\n"
-  " |static int lag_events_of_y(LAG_REAL t, const LAG_REAL *y, const lag_data *d, LAG_REAL *g) {\n"
-  STATE_AND_DATA
-  " |  return lag_events(ARGS, g);\n"
-  " |}\n";
-
-static const char *const jac_pattern_table = " |\n |static const int lag_jac_at[] = {JAC_AT};\n";
-
-/* The residual from the forces M q'' + b that the rates need; rates of states by _accel. */
-static const char *const ida_implicit =
-    " |\n"
-    " |static int lag_residual(LAG_REAL t, const LAG_REAL *y, const LAG_REAL *rate, const lag_data *d, LAG_REAL *r) "
-    "{\n" STATE_AND_DATA "z|  LAG_REAL a[LAG_NQ];\n"
-    "z|  if (lag_accel(ARGS, a, r + 2*LAG_NQ) != LAG_OK) return LAG_ESINGULAR;\n"
-    "z|  for (int i = 2*LAG_NQ; i < LAG_NY; i++) r[i] = rate[i] - r[i];\n"
-    " |  for (int i = 0; i < LAG_NQ; i++) r[i] = rate[i] - v[i];\n"
-    " |  return lag_inverse_dynamics(ARGS, rate + LAG_NQ, r + LAG_NQ);\n"
-    " |}\n"
-    " |\n"
-    " |LAG_API int lag_ida_res(sunrealtype t, N_Vector y, N_Vector dydt, N_Vector r, void *data) {\n"
-    " |  return lag_residual(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt), (const lag_data *)data, "
-    "N_VGetArrayPointer(r)) != LAG_OK;\n"
-    " |}\n";
-
-static const char *const ida_jac =
-    " |\n"
-    " |static const int lag_residual_at[] = {RESIDUAL_AT};\n"
-    " |\n"
-    " |static void lag_residual_jac(LAG_REAL t, LAG_REAL c, const LAG_REAL *y, const LAG_REAL *rate, const lag_data "
-    "*d, LAG_REAL *J) {\n"
-    "q|  static const unsigned short at[][2] = {MASS_AT};\n"
-    "q|  LAG_REAL m[NMASS];\n"
-    " |  LAG_REAL e[NENTRIES];\n" STATE_AND_DATA " |  (void)rate;\n"
-    " |  for (int i = 0; i < LAG_NY*LAG_NY; i++) J[i] = LAG_C(0.0);\n"
-    "q|  for (int i = 0; i < LAG_NQ; i++) J[i*LAG_NY + LAG_NQ + i] = LAG_C(-1.0);\n"
-    " |  for (int i = 0; i < LAG_NY; i++)\n"
-    " |    if (i < LAG_NQ || i >= 2*LAG_NQ) J[i*LAG_NY + i] = c;\n"
-    " |  lag_partials_state(ARGSOF_RATES);\n"
-    "q|  for (int k = 0; k < NMASS; k++) J[(LAG_NQ + at[k][0])*LAG_NY + LAG_NQ + at[k][1]] = c*m[k];\n"
-    "q|  for (int k = 0; k < NMASS; k++) J[(LAG_NQ + at[k][1])*LAG_NY + LAG_NQ + at[k][0]] = c*m[k];\n"
-    " |  for (int k = 0; k < NDERIVATIVES; k++) J[(LAG_NQ + lag_by_state_at[k][0])*LAG_NY + lag_by_state_at[k][1]] -= "
-    "e[k];\n"
-    " |}\n"
-    " |\n"
-    " |LAG_API int lag_ida_jac(sunrealtype t, sunrealtype c, N_Vector y, N_Vector dydt, N_Vector r, SUNMatrix J, void "
-    "*data,\n"
-    " |   N_Vector w1, N_Vector w2, N_Vector w3) {\n"
-    " |  lag_data *const d = (lag_data *)data;\n"
-    " |  (void)r; (void)w1; (void)w2; (void)w3;\n"
-    " |  lag_residual_jac(t, c, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt), d, d->J);\n"
-    " |  return lag_store_matrix(lag_residual_at, d->J, J);\n"
-    " |}\n";
-
 /* --- which of them a header has --- */
 
 enum { JAC = 1, EVENTS = 2, TIME = 4, IMPLICIT = 8, PLAIN = 16, LINEAR = 32, ALONE = 64 /* IDA without the others */ };
@@ -270,44 +199,61 @@ void header_callbacks_declare(const Header *h) {
   }
 }
 
+/* Patterns of Jacobians as text: of rates by state, inputs, parameters and time, and of IDA's residual. */
+typedef struct {
+  const char *jac, *residual, *inputs, *params, *time;
+} Patterns;
+
+static Patterns patterns(const Header *h) {
+  const ProgramSet *u = h->u;
+  Pattern *time = pattern_new(h, 1);
+  if (!has(h, PART_JAC | PART_LINEAR)) return (Patterns){"", "", "", "", ""};
+  /* the model is small enough for dense matrices */
+  for (uint32_t i = u->q.n; i < ny(h) && !is_timeless(h); i++) time[i] = 1;
+  return (Patterns){
+      .jac = compressed(h, jac_pattern(h), ny(h)), .residual = compressed(h, residual_pattern(h), ny(h)),
+      .inputs = compressed(h, rates_pattern(h, u->by_inputs_dr.at, u->by_inputs_dr.n, u->u.n), u->u.n),
+      .params = compressed(h, rates_pattern(h, u->by_params_dr.at, u->by_params_dr.n, u->p.n), u->p.n),
+      .time = compressed(h, time, 1)};
+}
+
+static const char *directions_of(const ProgramSet *u) {
+  StrBuf to = strbuf(u->arena);
+  for (uint32_t i = 0; i < u->events.n; i++) sb_printf(&to, "%s%d", i ? ", " : "", u->events.at[i].direction);
+  return sb_text(&to);
+}
+
+static const char *by_time_of(const Header *h) {
+  return arena_printf(h->a, "status == LAG_OK ? lag_by_time(t, y, &d->p%s, dfdt) : status",
+                      h->u->u.n ? ", d->u" : "");
+}
+
 void header_callbacks_define(const Header *h) {
   const ProgramSet *u = h->u;
-  StrBuf to = strbuf(h->a);
-  for (uint32_t i = 0; i < u->events.n; i++) sb_printf(&to, "%s%d", i ? ", " : "", u->events.at[i].direction);
   const char *args = header_state_args(h, 0, ""), *ok = "if (status == LAG_OK) status =";
   const char *data_u = u->u.n ? ", ((lag_data *)data)->u" : "", *mass = arena_printf(h->a, "%u", u->linear_mass.n),
              *dr = arena_printf(h->a, "%u", u->linear_dr.n);
-  const char *jac_at = "", *residual_at = "", *inputs_at = "", *params_at = "", *time_at = "", *dfdt = "status";
   int timeless = is_timeless(h);
   if (!has(h, WITH_DATA | PART_CASADI)) return;
-  if (!timeless || u->u.n)
-    dfdt = arena_printf(h->a, "status == LAG_OK ? lag_by_time(t, y, &d->p%s, dfdt) : status", u->u.n ? ", d->u" : "");
-  if (has(h, PART_JAC | PART_LINEAR)) { /* the model is small enough for dense matrices */
-    Pattern *time = pattern_new(h, 1);
-    for (uint32_t i = u->q.n; i < ny(h) && !timeless; i++) time[i] = 1;
-    jac_at = compressed(h, jac_pattern(h), ny(h)), residual_at = compressed(h, residual_pattern(h), ny(h)),
-    time_at = compressed(h, time, 1);
-    inputs_at = compressed(h, rates_pattern(h, u->by_inputs_dr.at, u->by_inputs_dr.n, u->u.n), u->u.n);
-    params_at = compressed(h, rates_pattern(h, u->by_params_dr.at, u->by_params_dr.n, u->p.n), u->p.n);
-  }
+  const Patterns at = patterns(h);
   for (int i = 0; i < CALLBACKS; i++) {
     int jac = callbacks[i].needs & LINEAR;
     const HeaderWord w[] = {
         {"LIBRARY", callbacks[i].name},
         {"FUNCTION", callbacks[i].name},
-        {"DIRECTIONS", sb_text(&to)},
+        {"DIRECTIONS", directions_of(u)},
         {"DATA_U", data_u},
         {"TYPED_U", u->u.n ? ", const LAG_REAL *u" : ""},
         {"WITH_U", u->u.n ? ", u" : ""},
         {"W_U", u->u.n ? ", w + LAG_NY" : ""},
         {"STEP", header_constant(h, 0x1p-24 * fabs(h->scene->t1 - h->scene->t0))},
-        {"BY_TIME", dfdt},
+        {"BY_TIME", timeless && !u->u.n ? "status" : by_time_of(h)},
         {"JACOBIAN", has(h, PART_JAC) ? "lag_gsl_jac" : "0"},
-        {"JAC_AT", jac_at},
-        {"RESIDUAL_AT", residual_at},
-        {"TIME_AT", time_at},
-        {"INPUTS_AT", inputs_at},
-        {"PARAMS_AT", params_at},
+        {"JAC_AT", at.jac},
+        {"RESIDUAL_AT", at.residual},
+        {"TIME_AT", at.time},
+        {"INPUTS_AT", at.inputs},
+        {"PARAMS_AT", at.params},
         {"MASS_AT", header_positions(h, u->linear_mass.at, u->linear_mass.n)},
         {"NMASS", mass},
         {"NENTRIES", u->linear_dr.n ? dr : "1"},

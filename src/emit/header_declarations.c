@@ -170,6 +170,35 @@ static const char *charge_names(const Header *h) {
   return comment_text(h->a, sb_text(&b));
 }
 
+static void declare_function(const Header *h, HeaderFn f) {
+  const ProgramSet *u = h->u;
+  const char *doc = f != FN_ACCEL || (u->q.n && u->z.n) ? docs[f]
+                    : u->q.n                            ? "Accelerations a[LAG_NQ]: what an integrator needs."
+                                                        : "Rates zd[LAG_NZ] of the states: what an integrator needs.";
+  if (f == FN_START && u->constraints.of.n)
+    doc = "The state at the start of the scene, on the constraints, as `lagc run` finds it with the parameters of "
+          "_defaults; with others, _hold\n"
+          " * leads from there to the nearest one that obeys them.";
+  if (f == FN_START && u->constraints.of.n)
+    csupport_expand("\nenum { LAG_EUNMET = -7 }; /* status: the constraints cannot be met near this state */\n",
+                    h->upper, h->lower, h->out);
+  if (f == FN_UNTIL_EVENT) csupport_expand("\nenum { LAG_EZENO = -5 };\n", h->upper, h->lower, h->out);
+  sb_puts(h->out, "\n/* ");
+  csupport_expand(doc, h->upper, h->lower, h->out);
+  if (f == FN_CHARGES) sb_printf(h->out, "\n * Symmetries: %s.", charge_names(h));
+  if ((f == FN_RK4_STEP || f == FN_UNTIL_EVENT || f == FN_RHS) && u->u.n)
+    sb_puts(h->out,
+            "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
+  const char *text = arena_printf(h->a, "%s_API %s;", h->upper, header_prototype(h, f));
+  sb_puts(h->out, " */\n");
+  if (f == FN_UNTIL_EVENT) {
+    csupport_expand("#ifdef LAG_LANES\n", h->upper, h->lower, h->out);
+    header_one_state(h, "step_until_event", "make steps, look at the signs of _events, and go to an event of a lane");
+    sb_puts(h->out, "#else\n");
+  }
+  sb_printf(h->out, "%s\n%s", header_wrapped(h, text), f == FN_UNTIL_EVENT ? "#endif\n" : "");
+}
+
 void header_declarations(const Header *h) {
   const ProgramSet *u = h->u;
   header_callbacks_include(h);
@@ -191,34 +220,8 @@ void header_declarations(const Header *h) {
   state_struct(h);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
   input_type(h);
-  for (int f = 0; f < FN_COUNT; f++) {
-    if (!header_has(h, (HeaderFn)f)) continue;
-    const char *doc = f != FN_ACCEL || (u->q.n && u->z.n) ? docs[f]
-                      : u->q.n                            ? "Accelerations a[LAG_NQ]: what an integrator needs."
-                                                          : "Rates zd[LAG_NZ] of the states: what an integrator needs.";
-    if (f == FN_START && u->constraints.of.n)
-      doc = "The state at the start of the scene, on the constraints, as `lagc run` finds it with the parameters of "
-            "_defaults; with others, _hold\n"
-            " * leads from there to the nearest one that obeys them.";
-    if (f == FN_START && u->constraints.of.n)
-      csupport_expand("\nenum { LAG_EUNMET = -7 }; /* status: the constraints cannot be met near this state */\n",
-                      h->upper, h->lower, h->out);
-    if (f == FN_UNTIL_EVENT) csupport_expand("\nenum { LAG_EZENO = -5 };\n", h->upper, h->lower, h->out);
-    sb_puts(h->out, "\n/* ");
-    csupport_expand(doc, h->upper, h->lower, h->out);
-    if (f == FN_CHARGES) sb_printf(h->out, "\n * Symmetries: %s.", charge_names(h));
-    if ((f == FN_RK4_STEP || f == FN_UNTIL_EVENT || f == FN_RHS) && u->u.n)
-      sb_puts(h->out,
-              "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
-    const char *text = arena_printf(h->a, "%s_API %s;", h->upper, header_prototype(h, (HeaderFn)f));
-    sb_puts(h->out, " */\n");
-    if (f == FN_UNTIL_EVENT) {
-      csupport_expand("#ifdef LAG_LANES\n", h->upper, h->lower, h->out);
-      header_one_state(h, "step_until_event", "make steps, look at the signs of _events, and go to an event of a lane");
-      sb_puts(h->out, "#else\n");
-    }
-    sb_printf(h->out, "%s\n%s", header_wrapped(h, text), f == FN_UNTIL_EVENT ? "#endif\n" : "");
-  }
+  for (int f = 0; f < FN_COUNT; f++)
+    if (header_has(h, (HeaderFn)f)) declare_function(h, (HeaderFn)f);
   header_steps_declare(h);
   header_name_tables(h);
   header_callbacks_declare(h);

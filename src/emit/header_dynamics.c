@@ -241,15 +241,7 @@ static void constraints(const Header *h) {
                           header_number(h, "NMASS", k->mass.n ? k->mass.n : 1),
                           {NULL, NULL}};
   header_begin(h, FN_CONSTRAINT_JACOBIAN);
-  header_template(h,
-    " | {\n"
-    " |  static const unsigned short at[][2] = {ENTRIES};\n"
-    " |  LAG_REAL d[NENTRIES + 1], m[NMASS];\n"
-    " |  const int status = lag_matrices(ARGS, d, m);\n"
-    " |  for (int i = 0; i < LAG_NC*LAG_NQ; i++) A[i] = LAG_C(0.0);\n"
-    " |  for (int k = 0; k < NENTRIES; k++) A[at[k][0]*LAG_NQ + at[k][1]] = d[k];\n"
-    " |  return status;\n"
-    " |}\n", w);
+  header_template(h, constraint_jacobian, w);
 }
 
 /* --- events --- */

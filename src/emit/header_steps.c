@@ -133,6 +133,20 @@ static void declare_both(const Header *h, const HeaderMethod *m) {
   }
 }
 
+static void declare_single(const Header *h) {
+  line(h, guard);
+  if (header_has_method(h, "variational")) header_variational_declare(h);
+  if (header_has_method(h, "moreau")) header_moreau_declare(h);
+  line(h, "#elif defined(LAG_LANES)\n");
+  if (header_has_method(h, "variational")) {
+    line(h, "typedef struct lag_variational { int order; } lag_variational;\n");
+    header_one_state(h, "variational_begin", "make steps by another method, or variational ones");
+    header_one_state(h, "variational_step", "make steps by another method, or variational ones");
+  }
+  if (header_has_method(h, "moreau")) header_one_state(h, "moreau_step", "make such steps");
+  line(h, "#endif\n");
+}
+
 void header_steps_declare(const Header *h) {
   if (has_status(h))
     line(h, "\n/* Status codes of steps: no step is short enough, Newton's method does not converge, a tolerance is "
@@ -154,17 +168,7 @@ void header_steps_declare(const Header *h) {
     header_taylor_declare(h);
     line(h, "#endif\n");
   }
-  if (has_single(h)) line(h, guard);
-  if (header_has_method(h, "variational")) header_variational_declare(h);
-  if (header_has_method(h, "moreau")) header_moreau_declare(h);
-  if (has_single(h)) line(h, "#elif defined(LAG_LANES)\n");
-  if (header_has_method(h, "variational")) {
-    line(h, "typedef struct lag_variational { int order; } lag_variational;\n");
-    header_one_state(h, "variational_begin", "make steps by another method, or variational ones");
-    header_one_state(h, "variational_step", "make steps by another method, or variational ones");
-  }
-  if (header_has_method(h, "moreau")) header_one_state(h, "moreau_step", "make such steps");
-  if (has_single(h)) line(h, "#endif\n");
+  if (has_single(h)) declare_single(h);
   for (int i = 0; i < NMETHODS; i++) {
     if (i == ID_rk4 || !is_wanted(h, i) || methods[i].kind != FIXED) continue;
     line(h, arena_printf(h->a, "\n/* A step h by %s.%s */\n", methods[i].words, h->u->u.n ? header_held_inputs : ""));
@@ -229,28 +233,7 @@ static void define_splitting(const Header *h) {
 static void define_dense_steps(const Header *h) {
   header_section(h, "dop853_dense");
   header_section(h, "dense");
-  header_template(h,
-    " |\n"
-    " |#define LAG_HIGH(j) (high + j*LAG_NY)\n"
-    " |static int lag_dop853_keep(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL untilHELD,\n"
-    " |    LAG_REAL (*k)[LAG_NY]) {\n"
-    " |  const lag_controller c = {LAG_DOP853_CONTROL};\n"
-    " |  return lag_adapt(lag_dop853_trial, &c, p, s, w, untilPASS, k);\n"
-    " |}\n"
-    " |\n"
-    " |static int lag_dop853_extend(const lag_params *p, const lag_state *s, LAG_REAL h, const lag_state *endHELD,\n"
-    " |    LAG_REAL (*k)[LAG_NY], LAG_REAL *high) {\n"
-    " |  const int n = LAG_NY;\n"
-    " |  const LAG_REAL t = s->t;\n"
-    " |  LAG_REAL y[LAG_NY], x[LAG_NY];\n"
-    " |  int status = LAG_OK;\n"
-    " |  lag_gather(end, x);\n"
-    " |  lag_gather(s, y);\n"
-    " |  LAG_TRY(LAG_RATES(end->t, x, LAG_DOP853_LAST));\n"
-    " |  LAG_DOP853_EXTRA\n"
-    " |  LAG_DOP853_DENSE\n"
-    " |  return status;\n"
-    " |}\n", NULL);
+  header_template(h, dense_steps, NULL);
 }
 
 /* Steps of one size: rk4, which every header has, and others. */

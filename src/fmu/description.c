@@ -115,6 +115,22 @@ static int is_contact_event(const ProgramSet *u, uint32_t i) {
 }
 
 /* Variables in the order of their value references. */
+/* Outputs; those that are variables already mark these. */
+static void add_outputs(Description *d) {
+  uint32_t before = d->vars.n;
+  for (uint32_t i = 0; i < d->scene->plain.n; i++) {
+    FmuVar v = local_variable(d, &d->scene->plain.at[i]);
+    v.causality = "output";
+    for (uint32_t k = 0; k < before && v.name; k++) {
+      FmuVar *same = &d->vars.at[k];
+      if (!same->name || strcmp(same->name, v.name) != 0) continue;
+      if (strcmp(same->causality, "local") == 0) same->causality = "output";
+      v.name = NULL;
+    }
+    vec_push(d->a, &d->vars, v);
+  }
+}
+
 static void add_variables(Description *d) {
   const ProgramSet *u = d->u;
   Arena *a = d->a;
@@ -143,18 +159,7 @@ static void add_variables(Description *d) {
     if (is_contact_input(u, i)) v.name = NULL;
     vec_push(a, &d->vars, v);
   }
-  uint32_t before = d->vars.n;
-  for (uint32_t i = 0; i < d->scene->plain.n; i++) {
-    FmuVar v = local_variable(d, &d->scene->plain.at[i]);
-    v.causality = "output";
-    for (uint32_t k = 0; k < before && v.name; k++) {
-      FmuVar *same = &d->vars.at[k];
-      if (!same->name || strcmp(same->name, v.name) != 0) continue;
-      if (strcmp(same->causality, "local") == 0) same->causality = "output";
-      v.name = NULL;
-    }
-    vec_push(a, &d->vars, v);
-  }
+  add_outputs(d);
   for (uint32_t i = 0; i < u->events.n; i++) {
     FmuVar v = {.name = arena_printf(a, "event(%s)", u->events.at[i].name),
                 .unit = "", .display = "", .factor = 1, .causality = "local",

@@ -26,6 +26,22 @@ static double moreau_step(const IrScene *s) {
 }
 
 /* Sizes, and arguments of the header's functions, which leave out what the model lacks. */
+/* Macros that call functions of the header with the arguments that it has. */
+static void write_calls(const ProgramSet *u, const Fmu *f, StrBuf *out) {
+  sb_printf(out, "#define ARGUMENTS(s, p, u) (s)->t%s%s, p%s\n", u->q.n ? ", (s)->q, (s)->v" : "",
+            u->z.n ? ", (s)->z" : "", u->u.n ? ", u" : "");
+  sb_printf(out, "#define WITH_MODES(s, p, u) (s)->t%s%s, p, u\n", u->q.n ? ", (s)->q, (s)->v" : "",
+            u->z.n ? ", (s)->z" : "");
+  sb_printf(out, "#define GIVEN(m, u)%s\n", u->u.n ? " &(m)->p, (m)->s.t, u, NULL, NULL," : "");
+  sb_printf(out, "#define AND_INPUTS(u)%s\n#define BY_TIME(m)%s\n", u->u.n ? " , u" : "",
+            u->u.n ? " NULL, set_inputs, m," : "");
+  sb_printf(out, "#define BY_INPUTS(m)%s\n", u->u.n ? " , NULL, set_inputs, m" : "");
+  int keeps = u->events.n && !f->moreau, some = u->u.n > 0;
+  sb_printf(out, "#define STEP(m, until, path) model_dop853_%s(&(m)->p, &(m)->s, &(m)->w, until%s%s%s)\n",
+            keeps ? "keep" : some ? "step_with" : "step", keeps && some ? ", NULL" : "", some ? ", set_inputs, m" : "",
+            keeps ? ", (path)->k" : "");
+}
+
 static void write_head(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   const IrScene *s = &u->scenes.at[0];
   sb_printf(out, "/* fmu_archive.c: the model %s, scene %s, as an FMU of FMI %d.0. All that is to be compiled.\n",
@@ -62,18 +78,7 @@ static void write_head(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   sb_printf(out, "#define TOKEN \"%s\"\n", f->token);
   sb_printf(out, "#define START_TIME %.17g\n#define TOLERANCE %.17g\n", s->t0,
             s->tolerance > 0 ? s->tolerance : FMU_TOLERANCE);
-  sb_printf(out, "#define ARGUMENTS(s, p, u) (s)->t%s%s, p%s\n", u->q.n ? ", (s)->q, (s)->v" : "",
-            u->z.n ? ", (s)->z" : "", u->u.n ? ", u" : "");
-  sb_printf(out, "#define WITH_MODES(s, p, u) (s)->t%s%s, p, u\n", u->q.n ? ", (s)->q, (s)->v" : "",
-            u->z.n ? ", (s)->z" : "");
-  sb_printf(out, "#define GIVEN(m, u)%s\n", u->u.n ? " &(m)->p, (m)->s.t, u, NULL, NULL," : "");
-  sb_printf(out, "#define AND_INPUTS(u)%s\n#define BY_TIME(m)%s\n", u->u.n ? " , u" : "",
-            u->u.n ? " NULL, set_inputs, m," : "");
-  sb_printf(out, "#define BY_INPUTS(m)%s\n", u->u.n ? " , NULL, set_inputs, m" : "");
-  int keeps = u->events.n && !f->moreau, some = u->u.n > 0;
-  sb_printf(out, "#define STEP(m, until, path) model_dop853_%s(&(m)->p, &(m)->s, &(m)->w, until%s%s%s)\n",
-            keeps ? "keep" : some ? "step_with" : "step", keeps && some ? ", NULL" : "", some ? ", set_inputs, m" : "",
-            keeps ? ", (path)->k" : "");
+  write_calls(u, f, out);
 }
 
 static void write_tables(const ProgramSet *u, StrBuf *out) {

@@ -390,6 +390,30 @@ void unit_require(ProgramSet *u, Eqns *e, unsigned wants) {
   if (fresh & WANT_HELD) add_held(u, e);
 }
 
+static void add_scene_outputs(IrScene *s, const Eqns *e) {
+  const Model *m = e->m;
+  for (uint32_t i = 0; i < e->noutputs; i++) {
+    IrVar v = ir_var(m, e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
+    vec_push(m->arena, &s->outputs, v);
+    if (e->constraints.n)
+      vec_push(m->arena, &s->forces,
+               (expr_kinds(e->g, e->outputs[i].value) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0);
+    if (output_is_plain(e, i)) vec_push(m->arena, &s->plain, v);
+  }
+}
+
+static void add_shapes(IrScene *s, const Model *m) {
+  for (uint32_t i = 0; i < m->scene.shapes.n; i++) {
+    const Shape *of = &m->scene.shapes.at[i];
+    IrShape x = {.kind = shape_word(of->kind), .role = of->role, .text = of->text, .count = of->count};
+    memcpy(x.a, of->a, sizeof x.a);
+    memcpy(x.b, of->b, sizeof x.b);
+    memcpy(x.size, of->size, sizeof x.size);
+    memcpy(x.turn, of->turn, sizeof x.turn);
+    vec_push(m->arena, &s->shapes, x);
+  }
+}
+
 void unit_add_scene(ProgramSet *u, const Eqns *e) {
   const Model *m = e->m;
   const Scene *sc = &m->scene;
@@ -408,14 +432,7 @@ void unit_add_scene(ProgramSet *u, const Eqns *e) {
     IrOption o = {sc->options.at[i].name, sc->options.at[i].text, sc->options.at[i].value};
     vec_push(m->arena, &s.options, o);
   }
-  for (uint32_t i = 0; i < e->noutputs; i++) {
-    IrVar v = ir_var(m, e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
-    vec_push(m->arena, &s.outputs, v);
-    if (e->constraints.n)
-      vec_push(m->arena, &s.forces,
-               (expr_kinds(e->g, e->outputs[i].value) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0);
-    if (output_is_plain(e, i)) vec_push(m->arena, &s.plain, v);
-  }
+  add_scene_outputs(&s, e);
   add_exact(&s, e);
   add_actions(&s, e);
   add_held_outputs(&s, u, e);
@@ -428,15 +445,7 @@ void unit_add_scene(ProgramSet *u, const Eqns *e) {
     IrMeasure x = {sc->measures.at[i].name, measure_words(m->arena, &sc->measures.at[i])};
     vec_push(m->arena, &s.measures, x);
   }
-  for (uint32_t i = 0; i < sc->shapes.n; i++) {
-    const Shape *of = &sc->shapes.at[i];
-    IrShape x = {.kind = shape_word(of->kind), .role = of->role, .text = of->text, .count = of->count};
-    memcpy(x.a, of->a, sizeof x.a);
-    memcpy(x.b, of->b, sizeof x.b);
-    memcpy(x.size, of->size, sizeof x.size);
-    memcpy(x.turn, of->turn, sizeof x.turn);
-    vec_push(m->arena, &s.shapes, x);
-  }
+  add_shapes(&s, m);
   s.ndrawn = sc->ndrawn;
   vec_push(m->arena, &u->scenes, s);
 }

@@ -312,7 +312,7 @@ static lag_level level_new(Finder *f) {
                  .A = ARENA_ARRAY(a, long double, A->n + 1),
                  .free = ARENA_ARRAY(a, int, n + 1)};
   long double **const by_component[] = {&w.x, &w.asked, &w.best, &w.from, &w.d, &w.along,
-                                            &w.reach, &w.nearest, &w.other},
+                                        &w.reach, &w.nearest, &w.other},
                       **const by_row[] = {&w.residual, &w.size, &w.terms_here, &w.slope, &w.has_terms};
   for (size_t i = 0; i < sizeof by_component / sizeof *by_component; i++)
     *by_component[i] = ARENA_ARRAY(a, long double, n + 1);

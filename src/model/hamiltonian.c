@@ -16,11 +16,18 @@ void find_hamiltonian(Builder *b) {
   b->gives_lagrangian = L;
 }
 
+static int is_input_rate(const Builder *b, AstId prime) {
+  const AstExpr *of = ast_expr(b->ast, ast_expr(b->ast, prime)->a);
+  int ambiguous;
+  const Entity *e = of->kind == AST_NAME ? scope_find(&b->scope, of->name, NULL, &ambiguous) : NULL;
+  return e && e->kind == ENT_INPUT;
+}
+
 Span velocity_in(const Builder *b, AstId id, const Value *v) {
   int known = v && v->e, moves = known && expr_kinds(b->g, v->e) & (1u << SYM_VEL | 1u << SYM_RATE);
   if (known && !moves) return (Span){0}; /* rates of inputs are functions of time */
   for (AstId k = ast_expr(b->ast, id)->first; k <= id; k++)
-    if (ast_expr(b->ast, k)->kind == AST_PRIME) return ast_expr(b->ast, k)->span;
+    if (ast_expr(b->ast, k)->kind == AST_PRIME && !is_input_rate(b, k)) return ast_expr(b->ast, k)->span;
   return moves ? ast_expr(b->ast, id)->span : (Span){0};
 }
 

@@ -57,6 +57,35 @@ static void warn_of_degrees(Builder *b, const Coord *q, AstId value) {
   diag_help(b->diags, "write %g [deg] where degrees are meant, and %g [rad] where not", v, v);
 }
 
+/* Whether entity e, which x names, may have a start or a closed form; else a message. */
+static int may_be_given(Builder *b, const AstExpr *x, const AstExpr *name, const Target *p, const Entity *e,
+                        int exact) {
+  if (e->kind != ENT_COORD && e->kind != ENT_STATE) {
+    diag_error(b->diags, name->span, "`%s` is %s; only coordinates, velocities and states %s", name->name,
+               ent_kind_text(e->kind), exact ? "have a closed form" : "start somewhere");
+    if (e->kind == ENT_PARAM && !exact) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
+    return 0;
+  }
+  if (p->primes && e->kind == ENT_STATE) {
+    int is_coord = b->m->states.at[e->index].coordinate;
+    if (is_coord)
+      diag_error(b->diags, x->span, "`%s'` follows from the coordinates%s: %s, and the motion of first order",
+                 name->name, b->m->hamiltonian ? " and momenta" : "", no_inertia(b->m));
+    else diag_error(b->diags, x->span, "the rate of a state follows from its flow");
+    diag_help(b->diags,
+              exact ? "give the closed form of the %s itself: `exact %s = ...`"
+                    : "give the start of the %s itself: `start %s = ...`",
+              is_coord ? "coordinate" : "state", name->name);
+    return 0;
+  }
+  if (p->primes && e->parts == ROTATION && p->part < 0) {
+    diag_error(b->diags, x->span, "`%s` is a rotation, and its rate is an angular velocity", name->name);
+    diag_help(b->diags, "`start omega(%s) = (a, b, c)` gives it, in the rotation's own frame", name->name);
+    return 0;
+  }
+  return 1;
+}
+
 /* Reads `start q = ...` or `exact q = ...` for a coordinate, velocity or state. `start exactly`: constraints may not
  * move it. */
 void set_motion(Builder *b, const AstStmt *st) {
@@ -81,29 +110,7 @@ void set_motion(Builder *b, const AstStmt *st) {
   if (!e && owner) report_no_member(b, name->span, owner, name->name);
   if (!e) return;
   if (e->kind == ENT_NONE) return;
-  if (e->kind != ENT_COORD && e->kind != ENT_STATE) {
-    diag_error(b->diags, name->span, "`%s` is %s; only coordinates, velocities and states %s", name->name,
-               ent_kind_text(e->kind), exact ? "have a closed form" : "start somewhere");
-    if (e->kind == ENT_PARAM && !exact) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
-    return;
-  }
-  if (p.primes && e->kind == ENT_STATE) {
-    int is_coord = b->m->states.at[e->index].coordinate;
-    if (is_coord)
-      diag_error(b->diags, x->span, "`%s'` follows from the coordinates%s: %s, and the motion of first order",
-                 name->name, b->m->hamiltonian ? " and momenta" : "", no_inertia(b->m));
-    else diag_error(b->diags, x->span, "the rate of a state follows from its flow");
-    diag_help(b->diags,
-              exact ? "give the closed form of the %s itself: `exact %s = ...`"
-                    : "give the start of the %s itself: `start %s = ...`",
-              is_coord ? "coordinate" : "state", name->name);
-    return;
-  }
-  if (p.primes && e->parts == ROTATION && p.part < 0) {
-    diag_error(b->diags, x->span, "`%s` is a rotation, and its rate is an angular velocity", name->name);
-    diag_help(b->diags, "`start omega(%s) = (a, b, c)` gives it, in the rotation's own frame", name->name);
-    return;
-  }
+  if (!may_be_given(b, x, name, &p, e, exact)) return;
   if (e->kind == ENT_COORD && !p.primes && !exact && e->parts != ROTATION)
     warn_of_degrees(b, &b->m->coords.at[e->index], st->rhs);
   if (st->exactly == START_EXACTLY && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;

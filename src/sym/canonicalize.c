@@ -30,11 +30,21 @@ static Expr make_pairs(ExprGraph *g, ExprOp op, const Pairs *p) {
     args[2 * i + 1] = expr_num(g, p->at[i].number);
   }
   Expr e = expr_make(g, op, args, 2 * p->n);
-  if (args != room) arena_release(g->arena, args, 2 * p->n * sizeof *args);
+  if (args != room) arena_recycle(g->arena, args, 2 * p->n * sizeof *args);
   return e;
 }
 
 /* --- sums --- */
+
+/* Room for n more pairs. */
+static void reserve_pairs(ExprGraph *g, Pairs *p, uint32_t n) {
+  Pairs old = *p;
+  if (old.cap - old.n >= n) return;
+  while (p->cap - p->n < n) p->cap = p->cap ? 2 * p->cap : ROOM;
+  p->at = ARENA_ARRAY(g->arena, Pair, p->cap);
+  memcpy(p->at, old.at, old.n * sizeof *old.at);
+  if (old.cap > ROOM) arena_recycle(g->arena, old.at, old.cap * sizeof *old.at);
+}
 
 static void push_terms(ExprGraph *g, Pairs *p, Expr e, Num c) {
   if (expr_is_num(g, e)) {
@@ -43,6 +53,7 @@ static void push_terms(ExprGraph *g, Pairs *p, Expr e, Num c) {
     return;
   }
   uint32_t n = expr_pairs(g, e, EX_SUM);
+  reserve_pairs(g, p, n + 1);
   for (uint32_t i = 0; i < n; i++) {
     Num k;
     Expr t = expr_pair(g, e, EX_SUM, i, &k);
@@ -139,7 +150,7 @@ static Expr collected_sum(ExprGraph *g, Pairs *p) {
 /* The sum of the pairs, which are given up. */
 static Expr finish_sum(ExprGraph *g, Pairs *p) {
   Expr sum = collected_sum(g, p);
-  if (p->cap > ROOM) arena_release(g->arena, p->at, p->cap * sizeof *p->at);
+  if (p->cap > ROOM) arena_recycle(g->arena, p->at, p->cap * sizeof *p->at);
   return sum;
 }
 
@@ -206,29 +217,32 @@ static void push_number_power(ExprGraph *g, Product *r, Num base, Num e) {
   else push_factor(g, r, expr_num(g, base), e);
 }
 
+/* Power of a product; for powers that are not whole, of its positive factors one by one. */
+static void push_product_power(ExprGraph *g, Product *r, Expr base, Num e) {
+  int whole = num_is_int(e);
+  Pair room[ROOM];
+  Product kept = {.c = num_int(1), .p = ROOM_FOR(room)};
+  for (uint32_t i = 0; i < expr_pairs(g, base, EX_PROD); i++) {
+    Num k;
+    Expr b = expr_pair(g, base, EX_PROD, i, &k);
+    if (whole || expr_sign(g, b) == SIGN_POSITIVE) push_factor(g, r, b, num_mul(k, e));
+    else push_factor(g, &kept, b, k);
+  }
+  if (kept.p.n == 0) return;
+  if (kept.p.n == 1 && num_is_one(kept.p.at[0].number)) push_factor(g, r, kept.p.at[0].node, e);
+  else if (kept.p.n == 1 && num_is_exact(kept.p.at[0].number) && kept.p.at[0].number.num % 2 == 0 &&
+           kept.p.at[0].number.den == 1) {
+    Expr size = expr_fn(g, EX_ABS, kept.p.at[0].node); /* (x^2)^(1/2) = |x| */
+    push_factor(g, r, size, num_mul(kept.p.at[0].number, e));
+  } else push_factor(g, r, make_pairs(g, EX_PROD, &kept.p), e);
+}
+
 /* (b^k)^e is b^(k e) where e is an integer or b is known to be positive. */
 void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e) {
   int whole = num_is_int(e);
   switch (expr_op(g, base)) {
     case EX_NUM: push_number_power(g, r, expr_number(g, base), e); return;
-    case EX_PROD: {
-      Pair room[ROOM];
-      Product kept = {.c = num_int(1), .p = ROOM_FOR(room)};
-      for (uint32_t i = 0; i < expr_pairs(g, base, EX_PROD); i++) {
-        Num k;
-        Expr b = expr_pair(g, base, EX_PROD, i, &k);
-        if (whole || expr_sign(g, b) == SIGN_POSITIVE) push_factor(g, r, b, num_mul(k, e));
-        else push_factor(g, &kept, b, k);
-      }
-      if (kept.p.n == 0) return;
-      if (kept.p.n == 1 && num_is_one(kept.p.at[0].number)) push_factor(g, r, kept.p.at[0].node, e);
-      else if (kept.p.n == 1 && num_is_exact(kept.p.at[0].number) && kept.p.at[0].number.num % 2 == 0 &&
-               kept.p.at[0].number.den == 1) {
-        Expr size = expr_fn(g, EX_ABS, kept.p.at[0].node); /* (x^2)^(1/2) = |x| */
-        push_factor(g, r, size, num_mul(kept.p.at[0].number, e));
-      } else push_factor(g, r, make_pairs(g, EX_PROD, &kept.p), e);
-      return;
-    }
+    case EX_PROD: push_product_power(g, r, base, e); return;
     case EX_SUM: {
       Expr cosh = whole && num_sign(e) > 0 ? 0 : expr_cosh_of_tanh(g, base);
       if (cosh) {

@@ -238,6 +238,23 @@ static void cell_terms(ExprGraph *g, Expr cell, const ExprMap *dot, ExprMap *rat
   }
 }
 
+/* Terms of the tangent of node e by the tangents of its inputs. */
+static void tangent_terms(ExprGraph *g, Expr e, ExprMap *dot, Terms *terms) {
+  Choice c;
+  if (is_choice(g, e, &c)) {
+    Expr yes = expr_map_get(dot, input(g, e, c.yes)), no = expr_map_get(dot, input(g, e, c.no));
+    if (yes || no) vec_push(g->arena, terms, expr_select(g, c.condition, yes ? yes : g->zero, no ? no : g->zero));
+    return;
+  }
+  for (uint32_t i = 0; i < inputs(g, e); i++) {
+    Expr d = expr_map_get(dot, input(g, e, i));
+    if (!d || d == g->zero) continue;
+    Expr p = partial(g, e, i);
+    Expr term = times_chosen(g, p, d, NESTED_CHOICES);
+    push_term(g, terms, term);
+  }
+}
+
 static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, const char *suffix, ExprMap *known,
                           Expr *out) {
   Expr *roots = ARENA_ARRAY(g->arena, Expr, n + 1);
@@ -260,20 +277,8 @@ static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, 
       expr_map_set(dot, e, before);
       continue;
     }
-    Choice c;
-    int chooses = is_choice(g, e, &c);
     terms.n = 0;
-    if (chooses) {
-      Expr yes = expr_map_get(dot, input(g, e, c.yes)), no = expr_map_get(dot, input(g, e, c.no));
-      if (yes || no) vec_push(g->arena, &terms, expr_select(g, c.condition, yes ? yes : g->zero, no ? no : g->zero));
-    }
-    for (uint32_t i = 0; i < inputs(g, e) && !chooses; i++) {
-      Expr d = expr_map_get(dot, input(g, e, i));
-      if (!d || d == g->zero) continue;
-      Expr p = partial(g, e, i);
-      Expr term = times_chosen(g, p, d, NESTED_CHOICES);
-      push_term(g, &terms, term);
-    }
+    tangent_terms(g, e, dot, &terms);
     if (expr_op(g, e) == EX_CELL) cell_terms(g, e, dot, &rates, &terms);
     int definition = expr_op(g, e) == EX_DEF;
     if (!terms.n) {
@@ -282,10 +287,7 @@ static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, 
     }
     Expr sum = add_terms(g, &terms);
     if (definition) {
-      StrBuf b = strbuf(g->arena);
-      sb_printf(&b, "%s%s", expr_def_name(g, e), suffix);
-      Name name = intern(g->names, sb_text(&b));
-      sum = expr_def_unique(g, name, sum);
+      sum = expr_def_unique(g, expr_name_with_suffix(g, expr_def_name(g, e), suffix), sum);
       if (known) expr_map_set(known, e, sum);
     }
     expr_map_set(dot, e, sum);
@@ -294,6 +296,10 @@ static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, 
     Expr d = roots[i] ? expr_map_get(dot, roots[i]) : 0;
     out[i] = d ? d : g->zero;
   }
+  expr_list_free(g, l);
+  expr_map_free(&rates);
+  if (terms.cap) arena_recycle(g->arena, terms.at, terms.cap * sizeof *terms.at);
+  arena_recycle(g->arena, roots, (n + 1) * sizeof *roots);
 }
 
 void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
@@ -303,9 +309,8 @@ void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed,
 
 Expr expr_diff(ExprGraph *g, Expr e, SymId sym) {
   Expr out;
-  StrBuf b = strbuf(g->arena);
-  sb_printf(&b, "_%s", expr_symbol(g, sym)->name);
-  sweep_forward(g, &e, 1, (Seeds){sym, 1, &g->one}, sb_text(&b), NULL, &out);
+  Name suffix = expr_name_with_suffix(g, "_", expr_symbol(g, sym)->name);
+  sweep_forward(g, &e, 1, (Seeds){sym, 1, &g->one}, suffix, NULL, &out);
   return out;
 }
 
@@ -386,6 +391,8 @@ void expr_gradient(ExprGraph *g, Expr e, const SymId *syms, uint32_t n, Expr *ou
   ExprList l;
   Adjoints a = sweep(g, e, &w, &l);
   for (uint32_t i = 0; i < n; i++) out[i] = adjoint_of(&a, expr_symbol(g, syms[i])->node);
+  expr_list_free(g, l);
+  expr_map_free(&targets);
 }
 
 static int by_index(const void *a, const void *b) {
@@ -403,6 +410,7 @@ ExprPartials expr_gradient_sparse(ExprGraph *g, Expr e, SymKind kind, uint32_t b
     Expr d = adjoint_of(&a, l.at[i]);
     if (d != g->zero) vec_push(g->arena, &found, ((ExprPartial){expr_sym_of(g, l.at[i])->index, d}));
   }
+  expr_list_free(g, l);
   if (found.n) qsort(found.at, found.n, sizeof *found.at, by_index);
   return (ExprPartials){found.at, found.n};
 }

@@ -172,6 +172,9 @@ typedef struct {
 /* All nodes reachable from the roots, ascending: arguments before their nodes. Zero roots are skipped. */
 ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n);
 
+/* Gives up a list, whose memory the next one may have. */
+void expr_list_free(ExprGraph *g, ExprList l);
+
 /* expr_topo without the arguments of quantified sums. */
 ExprList expr_topo_to_sums(ExprGraph *g, const Expr *roots, uint32_t n);
 
@@ -196,6 +199,7 @@ typedef struct {
 } ExprMap;
 ExprMap expr_map(Arena *a);
 void expr_map_clear(ExprMap *m);
+void expr_map_free(ExprMap *m); /* gives up its memory; it is empty */
 void expr_map_set(ExprMap *m, Expr e, uint32_t value);
 uint32_t expr_map_get(const ExprMap *m, Expr e); /* 0 when not set */
 

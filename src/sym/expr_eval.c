@@ -174,7 +174,18 @@ EvalTape *eval_tape(ExprGraph *g, const Expr *roots, uint32_t n) {
     expr_map_set(&place, l.at[i], i + 1);
   }
   for (uint32_t i = 0; i < n; i++) t->root[i] = roots[i] ? expr_map_get(&place, roots[i]) - 1 : UINT32_MAX;
+  expr_list_free(g, l);
+  expr_map_free(&place);
   return t;
+}
+
+void eval_tape_free(ExprGraph *g, EvalTape *t) {
+  Arena *a = expr_arena(g);
+  arena_recycle(a, t->step, (t->n + 1) * sizeof *t->step);
+  arena_recycle(a, t->value, (t->n + 1) * sizeof *t->value);
+  arena_recycle(a, t->root, (t->nroots + 1) * sizeof *t->root);
+  arena_recycle(a, t->arg.at, t->arg.cap * sizeof *t->arg.at);
+  arena_recycle(a, t->number.at, t->number.cap * sizeof *t->number.at);
 }
 
 static void read_roots(const EvalTape *t, long double *out) {

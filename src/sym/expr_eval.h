@@ -10,6 +10,7 @@ void expr_eval(ExprGraph *g, const Expr *roots, uint32_t n, const long double *s
  * graph. */
 typedef struct EvalTape EvalTape;
 EvalTape *eval_tape(ExprGraph *g, const Expr *roots, uint32_t n);
+void eval_tape_free(ExprGraph *g, EvalTape *t); /* gives up its memory */
 void eval_run(EvalTape *t, const long double *symbols, long double *out);
 
 /* eval_run with every value rounded to double, so that an overflow of doubles gives infinity; symbol(s, data) gives

@@ -91,6 +91,7 @@ Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
 ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
 
 /* Node e with its arguments mapped through m; an argument that is not in m stays. */
+Name expr_name_with_suffix(ExprGraph *g, Name name, const char *suffix);
 Expr expr_with_mapped_args(ExprGraph *g, const ExprMap *m, Expr e);
 
 /* Sets m to 1 for those nodes of l (a result of expr_topo) that contain a symbol for which want() is true. */

@@ -274,6 +274,7 @@ PolyStatus normal_run(Normal *n, const Expr *roots, uint32_t count, Frac *out) {
     run_once(n, nodes);
   } while (n->restart && n->ring->status == POLY_OK);
   for (uint32_t i = 0; i < count; i++) out[i] = roots[i] ? value_of(n, roots[i]) : frac_poly(poly_zero());
+  expr_list_free(n->g, nodes);
   return n->ring->status;
 }
 

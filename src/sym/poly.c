@@ -228,6 +228,7 @@ static Poly finish(PolyRing *r) {
       if (mono_at(r, t.mono)->reducible == GEN_NONE) accumulate(r, t.mono, t.c);
       else reduce_term(r, t);
     }
+    if (before.n) arena_recycle(r->arena, (void *)(uintptr_t)before.at, before.n * sizeof *before.at);
   }
   Poly p = drain(r);
   if (p.n > 1) qsort((void *)(uintptr_t)p.at, p.n, sizeof *p.at, by_mono);

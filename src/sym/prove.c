@@ -26,9 +26,11 @@ static Expr drop_vanishing_sums(ExprGraph *g, Expr e, const NormalLimits *limits
 static int has_long_sums(ExprGraph *g, Expr e) {
   enum { MOST_TURNS = 50000 }; /* as in rounding_bounds.c */
   ExprList l = expr_topo_to_sums(g, &e, 1);
-  for (uint32_t k = 0; k < l.n; k++)
-    if (expr_op(g, l.at[k]) == EX_NEST && expr_sum_turns(g, l.at[k]) > MOST_TURNS) return 1;
-  return 0;
+  int yes = 0;
+  for (uint32_t k = 0; k < l.n && !yes; k++)
+    yes = expr_op(g, l.at[k]) == EX_NEST && expr_sum_turns(g, l.at[k]) > MOST_TURNS;
+  expr_list_free(g, l);
+  return yes;
 }
 
 /* One of 16 states in the domain decides; few states may lie there, as of roots of several differences. */
@@ -37,8 +39,9 @@ int prove_nonzero(ExprGraph *g, Expr e) {
   long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
   BoundTape *tape = bound_tape(g, &e, 1);
   uint32_t most = 2 * STATES + MOST_WORK / (e + 1);
+  int yes = 0;
   if (most > MOST_STATES) most = MOST_STATES;
-  for (uint32_t seed = 1, inside = 0; seed <= most && inside < 2 * STATES; seed++) {
+  for (uint32_t seed = 1, inside = 0; seed <= most && inside < 2 * STATES && !yes; seed++) {
     long double bound, value;
     if (seed % (2 * STATES) <= STATES) sample_state(g, seed, symbols);
     else sample_state_wide(g, seed, symbols);
@@ -46,9 +49,11 @@ int prove_nonzero(ExprGraph *g, Expr e) {
     value = bound_value(tape, e, &bound);
     if (!isfinite(value) || !isfinite(bound)) continue;
     inside++;
-    if (fabsl(value) > 1000 * bound + LDBL_MIN) return 1;
+    yes = fabsl(value) > 1000 * bound + LDBL_MIN;
   }
-  return 0;
+  bound_tape_free(tape);
+  arena_recycle(expr_arena(g), symbols, (expr_symbol_count(g) + 1) * sizeof *symbols);
+  return yes;
 }
 
 /* --- zero --- */

@@ -36,6 +36,7 @@ void sample_state_wide(const ExprGraph *g, uint32_t seed, long double *symbols);
  * after a run. errors[s]: error of symbol s, or NULL for exact symbols. */
 typedef struct BoundTape BoundTape;
 BoundTape *bound_tape(ExprGraph *g, const Expr *roots, uint32_t n);
+void bound_tape_free(BoundTape *t); /* gives up its memory */
 void bound_run(BoundTape *t, const long double *symbols, const long double *errors);
 long double bound_value(const BoundTape *t, Expr node, long double *bound);
 

@@ -290,6 +290,17 @@ BoundTape *bound_tape(ExprGraph *g, const Expr *roots, uint32_t n) {
   return t;
 }
 
+void bound_tape_free(BoundTape *t) {
+  Arena *a = expr_arena(t->g);
+  size_t n = t->nodes.n + 1;
+  eval_tape_free(t->g, t->tape);
+  arena_recycle(a, t->value, n * sizeof *t->value);
+  arena_recycle(a, t->bound, n * sizeof *t->bound);
+  arena_recycle(a, t->nests, n * sizeof *t->nests);
+  expr_map_free(&t->place);
+  expr_list_free(t->g, t->nodes);
+}
+
 void bound_run(BoundTape *t, const long double *symbols, const long double *errors) {
   eval_run(t->tape, symbols, t->value);
   Bounds b = {.g = t->g, .value = t->value, .bound = t->bound, .place = &t->place};

@@ -318,16 +318,18 @@ static int keeps_range(ExprGraph *g, Expr before, Expr after) {
   enum { SCALES = sizeof scales / sizeof *scales, SEEDS = 3 };
   Expr both[2] = {before, after};
   ExprList nodes = expr_topo(g, both, 2);
-  int risky = 0;
+  int risky = 0, keeps = 1;
   for (uint32_t i = 0; i < nodes.n; i++) risky |= can_overflow(expr_op(g, nodes.at[i]));
+  expr_list_free(g, nodes);
   EvalTape *t = risky ? eval_tape(g, both, 2) : NULL;
-  for (uint32_t k = 0; risky && k < SCALES * SEEDS; k++) {
+  for (uint32_t k = 0; risky && keeps && k < SCALES * SEEDS; k++) {
     FarState at = {.g = g, .seed = 1 + k, .scale = scales[k / SEEDS]};
     long double value[2];
     eval_run_double(t, far_symbol, &at, value);
-    if (isfinite(value[0]) && !isfinite(value[1])) return 0;
+    keeps = !isfinite(value[0]) || isfinite(value[1]);
   }
-  return 1;
+  if (t) eval_tape_free(g, t);
+  return keeps;
 }
 
 static Expr rewritten(ExprGraph *g, Expr e, int shallow) {
@@ -339,9 +341,10 @@ static Expr rewritten(ExprGraph *g, Expr e, int shallow) {
 
 static int has_definitions(ExprGraph *g, Expr e) {
   ExprList nodes = expr_topo(g, &e, 1);
-  for (uint32_t i = 0; i < nodes.n; i++)
-    if (expr_op(g, nodes.at[i]) == EX_DEF) return 1;
-  return 0;
+  uint32_t i = 0;
+  while (i < nodes.n && expr_op(g, nodes.at[i]) != EX_DEF) i++;
+  expr_list_free(g, nodes);
+  return i < nodes.n;
 }
 
 /* --- digits --- */

@@ -145,6 +145,8 @@ static Expr rewrite_sums(ExprGraph *g, Expr e, Expr (*rule)(ExprGraph *, Expr)) 
     if (y != nodes.at[i]) expr_map_set(&map, nodes.at[i], y);
   }
   Expr r = expr_map_get(&map, e);
+  expr_list_free(g, nodes);
+  expr_map_free(&map);
   return r ? r : e;
 }
 

@@ -1,5 +1,6 @@
 /* Traversals of the expression graph: maps over nodes, reachable nodes, substitution, operation counts. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/strbuf.h"
 #include "sym/expr.h"
@@ -29,7 +30,7 @@ static void map_grow(ExprMap *m) {
   m->at = ARENA_ARRAY(m->arena, ExprMapEntry, m->cap);
   for (uint32_t i = 0; i < old.cap; i++)
     if (old.at[i].stamp == m->epoch) m->at[map_slot(m, old.at[i].key)] = old.at[i];
-  if (old.cap) arena_release(m->arena, old.at, old.cap * sizeof *old.at);
+  if (old.cap) arena_recycle(m->arena, old.at, old.cap * sizeof *old.at);
 }
 
 void expr_map_set(ExprMap *m, Expr e, uint32_t value) {
@@ -43,6 +44,11 @@ uint32_t expr_map_get(const ExprMap *m, Expr e) {
   if (!m->n) return 0;
   const ExprMapEntry *x = &m->at[map_slot(m, e)];
   return x->stamp == m->epoch ? x->value : 0;
+}
+
+void expr_map_free(ExprMap *m) {
+  if (m->cap) arena_recycle(m->arena, m->at, m->cap * sizeof *m->at);
+  *m = expr_map(m->arena);
 }
 
 /* --- reachable nodes --- */
@@ -80,6 +86,13 @@ static void sort_ids(ExprGraph *g, Expr *at, uint32_t n) {
 /* Nodes below which a traversal does not go: the arguments of quantified sums; definitions, too. */
 typedef enum { TO_LEAVES, TO_SUMS, TO_DEFINITIONS } Depth;
 
+/* Room of a list of n nodes: a power of 2, so that the next list may have it. */
+static size_t list_room(uint32_t n) {
+  size_t room = 4;
+  while (room <= n) room *= 2;
+  return room;
+}
+
 /* Nodes reachable from the roots, ascending; not below nodes of `leaves` (or NULL). */
 static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, Depth depth) {
   VEC(Expr) found = {g->found, 0, g->found_cap};
@@ -105,10 +118,12 @@ static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap 
   sort_ids(g, found.at, found.n);
   g->found = found.at;
   g->found_cap = found.cap;
-  Expr *list = ARENA_ARRAY(g->arena, Expr, found.n + 1);
+  Expr *list = ARENA_ARRAY(g->arena, Expr, list_room(found.n));
   if (found.n) memcpy(list, found.at, found.n * sizeof *list);
   return (ExprList){list, found.n};
 }
+
+void expr_list_free(ExprGraph *g, ExprList l) { arena_recycle(g->arena, (void *)(uintptr_t)l.at, list_room(l.n) * sizeof *l.at); }
 
 ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, TO_LEAVES); }
 ExprList expr_topo_to_sums(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, TO_SUMS); }
@@ -121,9 +136,10 @@ ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const Expr
 
 int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data) {
   ExprList l = expr_topo(g, &e, 1);
-  for (uint32_t i = 0; i < l.n; i++)
-    if (expr_op(g, l.at[i]) == EX_SYM && want(expr_sym_of(g, l.at[i]), data)) return 1;
-  return 0;
+  uint32_t i = 0;
+  while (i < l.n && !(expr_op(g, l.at[i]) == EX_SYM && want(expr_sym_of(g, l.at[i]), data))) i++;
+  expr_list_free(g, l);
+  return i < l.n;
 }
 
 static int same_symbol(const Symbol *s, const void *data) { return s->node == *(const Expr *)data; }
@@ -158,29 +174,37 @@ static int mapped_args(const ExprGraph *g, const ExprMap *m, Expr e, Expr *args)
 }
 
 Expr expr_with_mapped_args(ExprGraph *g, const ExprMap *m, Expr e) {
-  Expr *args = ARENA_ARRAY(g->arena, Expr, expr_nargs(g, e) + 1);
-  return mapped_args(g, m, e, args) ? expr_rebuild(g, e, args) : e;
+  uint32_t n = expr_nargs(g, e) + 1;
+  Expr *args = ARENA_ARRAY(g->arena, Expr, n), x = mapped_args(g, m, e, args) ? expr_rebuild(g, e, args) : e;
+  arena_recycle(g->arena, args, n * sizeof *args);
+  return x;
+}
+
+Name expr_name_with_suffix(ExprGraph *g, Name name, const char *suffix) {
+  if (!*suffix) return name;
+  size_t n = strlen(name) + strlen(suffix) + 1;
+  char *text = arena_printf(g->arena, "%s%s", name, suffix);
+  Name interned = intern(g->names, text);
+  arena_recycle(g->arena, text, n);
+  return interned;
 }
 
 /* out[i] = roots[i] with the nodes in the map replaced; rewritten nodes are added to the map. */
 static void rewrite(ExprGraph *g, const Expr *roots, uint32_t n, ExprMap *m, const char *suffix, Expr *out) {
   ExprList l = expr_topo(g, roots, n);
+  uint32_t most = 1;
+  for (uint32_t i = 0; i < l.n; i++) most = expr_nargs(g, l.at[i]) > most ? expr_nargs(g, l.at[i]) : most;
+  Expr *args = ARENA_ARRAY(g->arena, Expr, most);
   for (uint32_t i = 0; i < l.n; i++) {
     Expr x = l.at[i];
-    if (expr_op(g, x) == EX_SYM || expr_map_get(m, x)) continue;
-    Expr *args = ARENA_ARRAY(g->arena, Expr, expr_nargs(g, x) + 1);
-    if (!mapped_args(g, m, x, args)) continue;
-    Expr y;
-    if (expr_op(g, x) == EX_DEF) {
-      StrBuf name = strbuf(g->arena);
-      sb_printf(&name, "%s%s", expr_def_name(g, x), suffix);
-      Name interned = intern(g->names, sb_text(&name));
-      y = expr_def(g, interned, args[0]);
-    } else {
-      y = expr_rebuild(g, x, args);
-    }
+    if (expr_op(g, x) == EX_SYM || expr_map_get(m, x) || !mapped_args(g, m, x, args)) continue;
+    Expr y = expr_op(g, x) == EX_DEF
+                 ? expr_def(g, expr_name_with_suffix(g, expr_def_name(g, x), suffix), args[0])
+                 : expr_rebuild(g, x, args);
     expr_map_set(m, x, y);
   }
+  arena_recycle(g->arena, args, most * sizeof *args);
+  expr_list_free(g, l);
   for (uint32_t i = 0; i < n; i++) {
     Expr r = expr_map_get(m, roots[i]);
     out[i] = r ? r : roots[i];
@@ -202,6 +226,7 @@ Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const c
     SymId s = expr_sym_id(g, l.at[i]);
     if (s < n && with[s]) expr_map_set(&g->work, l.at[i], with[s]);
   }
+  expr_list_free(g, l);
   return g->work.n ? rewrite_one(g, e, &g->work, suffix) : e;
 }
 
@@ -231,6 +256,8 @@ Expr expr_expand_defs(ExprGraph *g, Expr e) {
     if (y != x) expr_map_set(&m, x, y);
   }
   Expr r = expr_map_get(&m, e);
+  expr_list_free(g, l);
+  expr_map_free(&m);
   return r ? r : e;
 }
 
@@ -246,8 +273,11 @@ double expr_tree_size(ExprGraph *g, Expr e, uint32_t *distinct) {
     for (uint32_t i = 0; !whole && i < expr_nargs(g, l.at[k]); i++)
       size[k] += size[expr_map_get(&g->seen, expr_arg(g, l.at[k], i)) - 1];
   }
+  double all = size[l.n - 1];
   *distinct = l.n;
-  return size[l.n - 1];
+  arena_recycle(g->arena, size, l.n * sizeof *size);
+  expr_list_free(g, l);
+  return all;
 }
 
 /* Operations of b^e: repeated squaring for integers, one square root for halves, 20 for other powers. */
@@ -287,7 +317,8 @@ static uint32_t nest_ops(const ExprGraph *g, Expr e) {
   return s->nshares + s->nreads;
 }
 
-static uint32_t count_ops(const ExprGraph *g, ExprList l) {
+/* Operations of a list, which is given up. */
+static uint32_t count_ops(ExprGraph *g, ExprList l) {
   uint32_t ops = 0;
   for (uint32_t i = 0; i < l.n; i++) {
     Expr e = l.at[i];
@@ -302,6 +333,7 @@ static uint32_t count_ops(const ExprGraph *g, ExprList l) {
       case EX_NOT: case EX_AND: case EX_OR: case EX_SELECT: ops += 1; break;
     }
   }
+  expr_list_free(g, l);
   return ops;
 }
 

@@ -224,7 +224,7 @@ int charges_judge(const Eqns *e, Name effect) {
 /* "conserved", "changes" or "not decided whether it changes". */
 static const char *charge_verdict(const Noether *is) {
   static const char *const words[] = {
-    [PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided whether it changes"};
+      [PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided whether it changes"};
   return words[is->drift];
 }
 
@@ -278,11 +278,13 @@ const char *charges_energy_text(const Eqns *e) {
   const char *inputs = is->by_formulas ? " while inputs follow their formulas" : "";
   if (is->drift == PROVED_ZERO)
     return arena_printf(e->m->arena, "energy is conserved%s%s%s", events, inputs, reason_of(e));
-  const char *verdict = is->drift == PROVED_NONZERO ? "energy changes"
-                        : is->open_integral
-                            ? "not decided whether the energy is conserved; with a potential of the forces, "
-                              "an integral that is not found, it is"
-                            : "not decided whether the energy is conserved";
+  const char *verdict =
+      is->drift == PROVED_NONZERO ? "energy changes"
+      : is->open_integral == 2    ? "not decided whether the energy is conserved; with a potential of the forces, "
+                                    "an integral that is not found, it is"
+      : is->open_integral         ? "not decided whether the energy is conserved; it is if one potential of the forces "
+                                    "holds everywhere, as it does near each position"
+                                  : "not decided whether the energy is conserved";
   if (is->power_unknown) return arena_printf(e->m->arena, "%s: " NO_RATE, verdict);
   const char *power = text_of(e, is->power);
   return strlen(power) <= LINE ? arena_printf(e->m->arena, "%s: d%s/dt = %s", verdict, name, power)

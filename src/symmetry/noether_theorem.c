@@ -294,6 +294,7 @@ static Expr term_magnitude(ExprGraph *g, ExprMap *size, Expr x) {
                         : op == EX_DEF ? expr_map_get(size, expr_arg(g, e, 0))
                         : expr_fn(g, EX_ABS, e));
   }
+  expr_list_free(g, l);
   return expr_map_get(size, x);
 }
 
@@ -416,7 +417,7 @@ static void judge_drift(const ProofWork *w, Noether *to, Expr power) {
   if (to->drift != PROVED_ZERO && is_shift_of_time(w)) to->potential = noether_potential(w, power, &exists);
   if (to->potential) to->drift = PROVED_ZERO;
   if (exists) to->drift = NOT_DECIDED;
-  to->open_integral = exists == 2;
+  to->open_integral = exists;
   if (to->drift == PROVED_ZERO) to->power = to->by_constraints = expr_int(w->g, 0);
 }
 

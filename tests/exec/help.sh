@@ -31,7 +31,8 @@ is "a base unit" 'unit:
   [s] of the SI, a base unit; takes the SI prefixes' "$(chapter s)"
 is "a unit with a prefix" 'unit:
   [kN], with an SI prefix; `lagc help units` has the table' "$(chapter kN)"
-is "an option" 'option of run, plot, animate, orbit, continue, lyapunov, fit, sweep, effects:
+is "an option" 'option of run, plot, animate, orbit, continue, lyapunov, fit, design, sweep,
+effects:
   --tol X               tolerance, relative to values and to the size of the
                         motion' "$(chapter tol)"
 is "an option with its dashes" "$(chapter tol)" "$(chapter --tol)"

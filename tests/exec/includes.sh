@@ -35,7 +35,7 @@ runtime/lanes     lanes/ kernels/ methods/adaptive_rk.h methods/taylor.h methods
 runtime/analysis  analysis/ core/ kernels/ numeric/ lag.h lag_model.h
 runtime/evaluator evaluator/ numeric/ lag.h lag_model.h lag_math.h lag_support.h lag_kkt.h
 runtime/io        io/ numeric/ lag.h lag_model.h
-runtime/sweep     sweep/ lanes/lane_choice.h lanes/lane_kernel.h analysis/measure.h io/posix.h io/csv_file.h numeric/ lag.h lag_model.h
+runtime/sweep     sweep/ lanes/lane_choice.h lanes/lane_runs.h analysis/measure.h io/posix.h io/csv_file.h numeric/ lag.h lag_model.h
 runtime/app       app/ sweep/ core/ io/ analysis/ numeric/ lag.h lag_model.h
 runtime/gsl       gsl/ lag.h lag_model.h
 runtime/page      evaluator/evaluator.h lag.h

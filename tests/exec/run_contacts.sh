@@ -182,4 +182,31 @@ check "leaves as in a run" near "$(state 1)" "$(cell 1 2)" 1e-3
 check "with its speed" near "$(state 2)" "$(cell 1 3)" 1e-2
 check "in a corner" example corner s
 check "it comes to rest, and time goes on" grep -q '^-*0.0000000.. -*0.000000000 -*0.0000000.. -*0.000000000 $' "$TMP/state"
+
+# A block that rests on one beside it, which a constraint holds: their accelerations are differences of forces, which are no size of the motion.
+model held <<'EOF'
+model held
+coord x [m], n [m]
+param m = 1 [kg] > 0
+kinetic = m/2*(x'^2 + n'^2)
+force x = if(t > 1 [s], 15 [N], 0) - 10 [N]
+constraint frame: n' = 0
+contact tooth: x >= n, restitution = 0
+scene lifted { start x = 4.2 [m], n = 4.2 [m]; span 4 [s]; output x every 1 [s] }
+EOF
+check "a block is lifted off one that a constraint holds" run held lifted
+check "it rises by 5 (t - 1)^2/2" near "$(cell 4 2)" 26.7 1e-8 # ten times the tolerance
+# A hammer of no restitution, lifted each second: its blows come at equal times, which is no series that ends.
+model hammer <<'EOF'
+model hammer
+coord y [m]
+param m = 1 [kg] > 0
+kinetic = m/2*y'^2
+force y = if(sin(2*pi*t/1 [s]) > 0, 12 [N], 0) - 10 [N]
+contact anvil: y >= 0, restitution = 0
+scene blows { span 8.4 [s]; output y every 1 [s] }
+EOF
+# up by 2 for half a second, which is 0.25 m and 0.05 m more, and down by 10 from 0.6 s on: 0.6 + sqrt(0.06)
+blows() { "$LAGC" run "$TMP/hammer.lag" >"$TMP/blows" && grep -q '^event anvil: 8 times, first at t = 0.8449' "$TMP/blows" && ! grep 'left out' "$TMP/blows"; }
+check "blows at equal times are told as they are" blows
 tap_end

@@ -66,6 +66,7 @@ commands() {
   sed -n 's/^\$ build\/lagc \(header\|build\) .*//; s/^\$ build\/lagc //p' README.md
   echo plot models/pendulum.lag -o plot.svg
   echo modes models/double_pendulum.lag
+  echo modes models/guiding_centre.lag
   echo lyapunov models/double_pendulum.lag --until 5
   echo orbit models/pendulum.lag
   echo effects models/projectile_world.lag gusty --json

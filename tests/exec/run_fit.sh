@@ -20,6 +20,12 @@ member() { sed "s/.*\"$1\": {\([^}]*\)}.*/\1/" "$TMP/json" | tr ',' '\n' | sed -
 near() { # NAME GOT WANT TOLERANCE, relative
   check "$title: $1" awk -v got="$2" -v want="$3" -v tolerance="$4" 'BEGIN { d = (got - want)/want; if (got != "" && d*d <= tolerance*tolerance) exit 0; print got, "not", want; exit 1 }'
 }
+says() { # TEXT MODEL DATA NAMES ARGS...
+  text=$1 model=$2 data=$3 names=$4
+  shift 4
+  "$LAGC" fit "$model" --data "$data" --fit "$names" "$@" >"$TMP/out" 2>&1
+  grep -q -e "$text" "$TMP/out" || { cat "$TMP/out"; return 1; }
+}
 # Values to a hundredth of a standard error or better; errors to 1e-4: scipy takes derivatives by differences.
 fit "$M/damped.lag" "$M/damped.csv" "k,c,x,x'(0)" --sigma 0.01
 near k "$(member values k)" 17.98538768 1e-6
@@ -54,6 +60,29 @@ fit models/pendulum.lag "$M/pendulum.csv" "l,th" wide --sigma 0.5 # degrees in a
 near l "$(member values l)" 1.01987556 1e-7
 near th "$(member values 'th(0)')" 1.40002282 1e-7
 near "error of l" "$(member errors l)" 0.00049355 1e-3
+
+# ---- multiple shooting: a record of 22 Lyapunov times (0.906/s; lorenz.csv: sigma = 10, rho = 28, beta = 8/3, errors of 0.3). The truth is within three
+# errors and chi squared of 474 degrees within four deviations of 31; one search over the whole record ends far away.
+fit models/lorenz.lag "$M/lorenz.csv" sigma,rho,beta,x,y,z butterfly x=1.5 y=1.5 z=19 sigma=9 rho=30 beta=2.4 --tol 1e-10 --sigma 0.3
+title="a chaotic record"
+chi_squared() { sed 's/.*"chi_squared": \([^,]*\).*/\1/' "$TMP/json"; }
+within() { check "$title: $1" awk -v a="$(member values "$1")" -v e="$(member errors "$1")" -v b="$2" 'BEGIN { d = a - b; if (e > 0 && e < 0.01*b && d*d < 9*e*e) exit 0; print a, e; exit 1 }'; }
+within sigma 10
+within rho 28
+within beta 2.6666666667
+check "$title: chi squared" awk -v c="$(chi_squared)" 'BEGIN { exit !(c > 350 && c < 600) }'
+check "$title: it has parts of its own accord" grep -q '"converged": true.*"segments": [1-9][0-9]' "$TMP/json"
+fit models/lorenz.lag "$M/lorenz.csv" sigma,rho,beta,x,y,z butterfly x=1.5 y=1.5 z=19 sigma=9 rho=30 beta=2.4 --tol 1e-10 --sigma 0.3 --segments 1
+check "$title: in one part it is not found" awk -v c="$(chi_squared)" 'BEGIN { exit !(c > 1e4) }'
+# Parts of a regular record have the values and errors above; gaps of a millionth of the state, of 1e-4 of the data's errors, change neither.
+fit "$M/damped.lag" "$M/damped.csv" "k,c,x,x'" --sigma 0.01 --segments 8
+title="in parts"
+near k "$(member values k)" 17.98538768 1e-6
+near c "$(member values c)" 0.5048159859 1e-5
+near "error of k" "$(member errors k)" 0.031861071 1e-4
+near "error of x'" "$(member errors "x'(0)")" 0.01101132 1e-4
+near "chi squared" "$(chi_squared)" 83.67726798 1e-6
+check "parts that nothing separates" says "^cannot be told apart: only m/c, k/c: (m, k, c) along " "$M/damped.lag" "$M/damped.csv" "m,k,c,x,x'" --segments 8
 
 # ---- two records of one oscillator, with starts of their own: scipy.optimize.least_squares on both closed forms
 fit "$M/damped.lag" "$M/damped.csv,$M/second.csv" "k,c,x,x'" --sigma 0.01
@@ -112,12 +141,6 @@ near k "$(member values k)" 18 1e-6
 near c "$(member values c)" 0.5 1e-6
 
 # ---- what data cannot tell apart
-says() { # TEXT MODEL DATA NAMES ARGS...
-  text=$1 model=$2 data=$3 names=$4
-  shift 4
-  "$LAGC" fit "$model" --data "$data" --fit "$names" "$@" >"$TMP/out" 2>&1
-  grep -q -e "$text" "$TMP/out" || { cat "$TMP/out"; return 1; }
-}
 check "g and l of a pendulum" says "^cannot be told apart: only g/l: (g, l) along (9\.[0-9]*, 1\.[0-9]*) changes nothing$" models/pendulum.lag "$M/pendulum.csv" "g,l,th" wide
 check "m of a pendulum" says "^cannot be told apart: m: no value of the data feels it$" models/pendulum.lag "$M/pendulum.csv" "l,th,m" wide
 check "m, k and c" says "^cannot be told apart: only m/c, k/c: (m, k, c) along " "$M/damped.lag" "$M/damped.csv" "m,k,c,x,x'"

@@ -86,6 +86,31 @@ check "a pendulum on a rough journal" run journal go --tol 1e-12
 check "its angle" near "$(final th)" 0.06505133 1e-8 # the digits of the reference behind six turning points
 fi
 
+# ---- eight bars on rough pins, let go: the first pin slips back, two others on, five stick (the one of 3^8 choices that obeys the law: SciPy)
+if one_of 3; then
+model chain <<'END_OF'
+model chain
+const N = 8
+coord x[N] [m], y[N] [m], th[N] [rad]
+param m = 0.2 [kg] > 0, l = 0.3 [m] > 0, d = 10 [mm] > 0, g = 9.81 [m/s^2] > 0, mu = 0.2 >= 0
+let X[0] = 0 [m]
+let X[i in 1..N] = x[i] + l/2*sin(th[i])
+let Y[0] = 0 [m]
+let Y[i in 1..N] = y[i] - l/2*cos(th[i])
+let w[0] = 0 [rad/s]
+let w[i in 1..N] = th[i]'
+kinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2) + m*l^2/24*th[i]'^2)
+potential = sum(i in 1..N, m*g*y[i])
+for i in 1..N {
+  guide pin[i]: (x[i] - l/2*sin(th[i]), y[i] + l/2*cos(th[i])) = (X[i-1], Y[i-1]), friction = mu, slip = d*(w[i] - w[i-1])
+}
+scene go { start th[i in 1..N] = 0.4; span 0.05 [s]; output th[1] every 1 [s] }
+END_OF
+check "eight rough pins" run chain go --tol 1e-12
+check "the first bar" near "$(final 'th\[1\]')" 0.3869785172168667 1e-12
+check "the last" near "$(final 'th\[8\]')" 0.40001342550883445 1e-12
+fi
+
 # ---- a wire in space: of a helix, N = m hypot(v^2/rho, g cos(alpha))
 if one_of 3; then
 model helix <<'END_OF'
@@ -187,4 +212,15 @@ check "a negative friction" refuses 2 'the model declares mu >= 0' rail go mu=-0
 no_header() { ! "$LAGC" header "$TMP/beside.lag" -o "$TMP/h" 2>"$TMP/log" && grep -q 'contacts or dry friction, not both' "$TMP/log" || { cat "$TMP/log"; return 1; }; }
 check "headers with guides beside contacts" no_header
 
+# ---- the same on a curve: held from t = 0 on, it slips at 2 mu g/F, and sticks again (SciPy: 0.4119069855300544); moreau meets the friction of slipping exactly while it holds
+for kind in 'guide path: x^2 + y^2 = R^2, friction = mu, static = 2*mu' 'constraint path: hypot(x, y) = R
+let s = R*atan2(x, -y)
+friction path on s: mu*abs(lambda(path)), static = 2*mu*abs(lambda(path))'; do
+  printf "model curve\ncoord x [m], y [m]\nparam m = 1 [kg] > 0, R = 1 [m] > 0, g = 9.81 [m/s^2], mu = 0.2 >= 0\nkinetic = m/2*(x'^2 + y'^2)\npotential = m*g*y\nforce x = 0.8 [N/s]*t\n%s\nscene go { start y = -R; span 8 [s]; output x every 8 [s] }\n" "$kind" | sed 's/friction path on/friction rub on/' >"$TMP/curve.lag"
+  one_of 2 || continue
+  check "${kind%% *} holds a body on a curve, then not" run curve go
+  check "and again" near "$(final x)" 0.4119069855300544 1e-9
+  check "by moreau" run curve go --method 'moreau(step=1e-3)'
+  check "to half a step" near "$(final x)" 0.4119069855300544 1e-5
+done
 tap_end

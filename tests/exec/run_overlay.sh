@@ -145,4 +145,6 @@ check "a run takes one scene" says 2 'two scenes are named: swing and far' "$LAG
 check "and one method" says 2 'several methods are for a picture' "$LAGC" run "$osc" --method euler,rk4
 check "files of one run" says 2 '--events is for one run' "$LAGC" plot "$osc" swing far --events "$TMP/none.csv" -o "$TMP/none.svg"
 check "nothing is left of these" [ -z "$(ls "$TMP"/none* 2>/dev/null)" ]
+check "axes have the names of the quantities, the legend those of the runs" sh -c '"$0" plot models/pendulum.lag wide fading -o "$1" --quiet && grep -q ">pull \[N\]<" "$1" && grep -q ">pull, fading<" "$1"' "$LAGC" "$TMP/axes.svg"
+check "the legend of a range has the digits that tell its values apart" sh -c '"$0" plot models/pendulum.lag --starts "th=1..1.00007:8" --phase th --until 1 -o "$1" --quiet && grep -q ">th=1.00004<" "$1"' "$LAGC" "$TMP/range.svg"
 tap_end

@@ -36,6 +36,11 @@ separatrix() {
     { v = 2*sqrt(9.81)*cos($2/2); d = ($3 < 0 ? -$3 : $3) - v; if (d < 0) d = -d; if (d > most) most = d } END { print most; exit !(most < 0.05) }' "$TMP/points"
 }
 check "the separatrix is 2 sqrt(g/l) cos(th/2)" separatrix
+check "also around a small motion" sh -c '"$0" plot models/pendulum.lag small m=1 l=1 g=9.81 --portrait -o "$1" --quiet' "$LAGC" "$TMP/small.svg"
+inside() { # the highest point of the separatrix is in the picture
+  curves "$TMP/small.svg" 'class="level" fill="none" stroke="#666"' && awk '{ if ($3 > most) most = $3 } END { print most; exit !(most > 6.2 && most < 6.3) }' "$TMP/points" # 2 sqrt(9.81) = 6.264
+}
+check "the separatrix is inside" inside
 circle() { # of the run that turns over 20 times: within one turn, on its own level, 6.5^2/2 where th = 1.5708
   curves "$TMP/pendulum.svg" 'stroke="#009e73" stroke-width="1.6"' 100 && awk '
     { e = $3*$3/2 - 9.81*cos($2); if ($2 > 3.15 || $2 < -3.15 || e > 21.125 + 0.2 || e < 21.125 - 0.2) { print; bad = 1 } } END { exit bad }' "$TMP/points"

@@ -40,6 +40,11 @@ if sys.argv[1:] == ["write"]:
     put("damped.csv", "t [s],x [m]", t, x)
     put("outliers.csv", "t [s],x [m]", t, outliers)
     put("pendulum.csv", "t [s],th [deg]", ts, th)
+    tl = np.arange(1, 241) / 10
+    motion = solve_ivp(lambda t, y: [10 * (y[1] - y[0]), y[0] * (28 - y[2]) - y[1], y[0] * y[1] - 8 / 3 * y[2]], (0, 24.1),
+                       [1, 1, 20], method="DOP853", rtol=1e-12, atol=1e-12, t_eval=tl).y
+    noise = np.random.default_rng(1).normal(0, 0.3, (240, 2))
+    put("lorenz.csv", "t [s],x,z", tl, motion[0] + noise[:, 0], motion[2] + noise[:, 1])
 read = lambda name: np.loadtxt(name, delimiter=",", skiprows=1).T
 t, x = read("damped.csv")
 start = [20, 0.4, 0.25, 0]

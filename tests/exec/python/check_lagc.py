@@ -103,7 +103,7 @@ library = next(iter(double._scenes().values())).lib
 batch_function = library.lag_sim_batch
 library.lag_sim_batch = lambda *a: calls.append(a) or batch_function(*a)
 out = np.empty((10000, 2, 4))
-b = double.batch("swing", th1=angles, times=[0.5, 1], tol=1e-6, out=out)
+b = double.batch("swing", th1=angles, times=[0.5, 1], tol=1e-6, lanes=False, out=out)
 library.lag_sim_batch = batch_function
 ok("one call of the library", len(calls) == 1 and calls[0][1] == 10000)
 ok("the caller's array, without a copy", b.y is out and calls[0][6] == out.ctypes.data)
@@ -269,6 +269,17 @@ except lagc.RunError as e:
 ok("a tolerance brings its method", fall.run(until=0.5, tol=1e-11).method.startswith("taylor") and not fall.run(until=0.5, tol=1e-7).method.startswith("taylor"))
 b = fall.batch(x=[1.0, 100], times=[1, 3])
 ok("in a batch its status, and NaN from there on", b.status[0] < 0 and b.status[1] == 0 and np.isfinite(b.y[0, 0]).all() and np.isnan(b.y[0, 1]).all() and np.isfinite(b.y[1]).all(), b.status)
+# In lanes: 9 motions, which are more than the lanes; the fourth collides. Their sines and sums are rounded in another way.
+x = [100, 200, 300, 1.0, 500, 600, 700, 800, 900]
+one, lanes = (fall.batch(x=x, times=[0, 1, 3], lanes=k) for k in (False, True))
+ok("lanes: the status of each motion", (one.status == lanes.status).all() and (lanes.status < 0).sum() == 1, lanes.status)
+near("lanes: the same motions", np.nan_to_num(lanes.y, nan=-1), np.nan_to_num(one.y, nan=-1), 1e-9)
+ok("lanes: starts as an array", (fall.batch(y0=[[k, 0] for k in x], times=[0, 1, 3], lanes=True).y[:3] == lanes.y[:3]).all())
+if os.environ.get("SLOW"):
+    many = double.batch("swing", th1=angles, times=[0.5, 1], tol=1e-6)
+    near("10^4 motions: in lanes by themselves", many.y[::100], double.batch("swing", th1=angles[::100], times=[0.5, 1], tol=1e-6).y, 1e-9)
+    swept = double.sweep("swing", th1=list(angles[::100]), measure=["th1(1)"], until=1, tol=1e-6)
+    near("the numbers of lagc sweep", swept["th1(1)"], np.degrees(many.y[::100, 1, 0]), 1e-12)
 
 # A parameter by a formula follows the one that it is made of, in each motion: x'' = -2k x.
 path = os.path.join(os.environ["TMP"], "twice.lag")
