@@ -84,7 +84,7 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %type <id> clause
 %type <list> rubbing laws dims indices places_bound exprs args names variables
 %type <id> window
-%type <id> happening expr arith primary reach place moved bound value comparison every number literal declared gap law tuple condition
+%type <id> happening expr arith primary reach place moved bound value comparison every number literal declared gap sides law tuple condition
 %type <text> doc
 %type <unit> unit
 %type <ident> type method_name
@@ -129,6 +129,7 @@ stmt: single[x]                       { $$ = stmts_one($x); }
     | "exact" assigns[l]              { $$ = stmts_set_kind(ast, $l, STMT_EXACT, 0); }
     | "use" uses[l]                   { $$ = $l; }
     | "monitor" monitors[l]           { $$ = $l; }
+    | "guide" IDENT[n] dims[d] ":" sides[c] laws[r] { $$ = stmts_guide(ast, @$, $n, $d, $c, $r); }
     | "friction" IDENT[n] dims[d] "on" place[q] ":" arith[f] { $$ = stmts_friction(ast, @$, $n, $d, $q, $f, 0); }
     | "friction" IDENT[n] dims[d] "on" place[q] ":" arith[f] "," "static" "=" arith[s] { $$ = stmts_friction(ast, @$, $n, $d, $q, $f, $s); }
     ;
@@ -151,7 +152,6 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "event" IDENT[n] dims[d] ":" arith[g] direction[w] block[b] { $$ = stmt_event(ast, @$, $n, $d, $g, $w, $b); }
       | "kick" IDENT[n] dims[d] "every" arith[T] block[b] { $$ = stmt_event(ast, @$, $n, $d, $T, AT_EQUAL_TIMES, $b); }
       | "contact" IDENT[n] dims[d] ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
-      | "guide" IDENT[n] dims[d] ":" arith[a] "=" expr[b] laws[r] { $$ = stmt_guide(ast, @$, $n, $d, $a, $b, $r); }
       | "for" IDENT[i] "in" arith[lo] ".." arith[hi] block[b] { $$ = stmt_for(ast, @$, $i, $lo, $hi, $b); }
       | "effect" IDENT[n] doc[d] block[b]       { $$ = stmt_titled(ast, STMT_EFFECT, @$, $n, $d, $b); }
       | "scene" IDENT[n] doc[d] block[b]        { $$ = stmt_titled(ast, STMT_SCENE, @$, $n, $d, $b); }
@@ -342,6 +342,7 @@ law: "friction" "=" expr[e]   { $$ = ast_option(ast, @$, "friction", $e); }
    | "tangential" "=" expr[e] { $$ = ast_option(ast, @$, "tangential", $e); }
    | "law" "=" IDENT[n]       { $$ = ast_option(ast, @$, "law", ast_name(ast, $n)); }
    ;
+sides: arith[a] "=" expr[b] { $$ = ast_sides(ast, @$, @b, $a, $b); };
 gap: arith[a] ">="[op] arith[b] { $$ = ast_contact_gap(ast, @$, @op, $a, $b); };
 condition: %empty       { $$ = 0; }
          | "while" expr[e] { $$ = $e; }

@@ -9,47 +9,9 @@
 
 #include "numeric/singular_values.h"
 
-enum { MOST_STEPS = 60, SAMPLES = 64, MOST_SEGMENTS = 40 };
+enum { MOST_STEPS = 60, MOST_SEGMENTS = 40 };
 
 static const double rounding = 1e-11; /* a residual, in units, that is a solution's; of rough tolerances more */
-
-/* ---- Sizes */
-
-static int of_one_unit(const lag_model *m, int i, int j) {
-  const lag_var *a = i < m->nq ? &m->q[i] : i < 2 * m->nq ? &m->q[i - m->nq] : &m->z[i - 2 * m->nq];
-  const lag_var *b = j < m->nq ? &m->q[j] : j < 2 * m->nq ? &m->q[j - m->nq] : &m->z[j - 2 * m->nq];
-  return (i < m->nq) == (j < m->nq) && (i < 2 * m->nq) == (j < 2 * m->nq) && strcmp(a->unit, b->unit) == 0;
-}
-
-/* unit[n] := the largest excursion from y0 of components of that unit, over a period; of those that do not move the
- * largest value, or 1 declared unit. */
-static int choose_units(PeriodicOrbit *o, const double *y0) {
-  FlowMap *f = &o->flow;
-  const lag_model *m = f->like->scene->model;
-  lag_sim *sim = lag_flow_sim(f, f->t0, y0);
-  double *moved = o->x, *value = moved + o->n;
-  int rc = sim ? LAG_OK : LAG_ENOMEM;
-  for (int i = 0; i < o->n; i++) moved[i] = 0, value[i] = fabs(y0[i]);
-  for (int k = 1; k <= SAMPLES && rc == LAG_OK; k++) {
-    rc = lag_sim_advance(sim, f->t0 + o->T * k / SAMPLES);
-    for (int i = 0; i < o->n && rc == LAG_OK; i++) moved[i] = fmax(moved[i], fabs(sim->now[i] - y0[i]));
-  }
-  if (rc)
-    snprintf(f->message, sizeof f->message, "%s",
-             rc == LAG_STOPPED  ? "an event ends the motion within a period"
-             : rc == LAG_ENOMEM ? "out of memory"
-                                : lag_sim_message(sim));
-  lag_sim_free(sim);
-  for (int i = 0; i < o->n; i++) {
-    double most = 0, size = 0;
-    for (int j = 0; j < o->n; j++) {
-      most = of_one_unit(m, i, j) ? fmax(most, moved[j]) : most;
-      size = of_one_unit(m, i, j) ? fmax(size, value[j]) : size;
-    }
-    o->unit[i] = most > 1e-6 * size && most > 0 ? most : size > 0 ? size : 1;
-  }
-  return rc;
-}
 
 /* ---- Shooting */
 
@@ -499,7 +461,7 @@ int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, 
   o->unit = lag_pool_doubles(&o->pool, (size_t)o->n);
   o->x = lag_pool_doubles(&o->pool, 2 * (size_t)o->n);
   if (o->pool.failed) return LAG_ENOMEM;
-  if ((rc = choose_units(o, o->flow.probe->now)) != 0) return rc;
+  if ((rc = lag_orbit_choose_units(o, o->flow.probe->now)) != 0) return rc;
   const double *unit = o->unit;
   o->m = count_segments(o, m);
   if ((rc = allocate(o)) != 0) return rc;

@@ -96,6 +96,9 @@ int lag_orbit_list_charges(PeriodicOrbit *o);
 
 /* For continuation (branch_problems.c): runs all segments at the present unknowns; then A and b. */
 int lag_orbit_shoot(PeriodicOrbit *o, int tangents);
+/* orbit_units.c: unit[n] := the largest excursion from y0 of components of that unit, over a period; of those that do
+ * not move the largest value, or 1 declared unit. */
+int lag_orbit_choose_units(PeriodicOrbit *o, const double *y0);
 int lag_orbit_assemble(PeriodicOrbit *o);
 /* The parameter of the continuation := value. */
 int lag_orbit_set_parameter(PeriodicOrbit *o, double value);

@@ -192,6 +192,15 @@ double lag_size_in(const Samples *s, int i) {
   return size;
 }
 
+/* Scale of component i of the state, or of an output, -1, of this largest size: its terms where that is rounding, or
+ * began as rounding and stays below the tolerance of a run whose reference is sim: long steps let it grow so far. */
+static double scale_above(const lag_sim *sim, int i, double size, double terms) {
+  const double beside = 40; /* the run's tolerance in those of its reference */
+  int is_state = i >= 0 && i < sim->pb.n && terms < HUGE_VAL && sim->method->flags & LAG_METHOD_ADAPTIVE;
+  int grew = is_state && lag_above_rounding(fabs(sim->begin[i]), terms) == terms && size < beside * sim->tol * terms;
+  return grew ? terms : lag_above_rounding(size, terms);
+}
+
 int lag_cost_scales(const Samples *reference, lag_sim *sim, double *scale) {
   int n = reference->n, nq = sim->pb.nq;
   double *terms = calloc(2 * (size_t)n + 1, sizeof *terms);
@@ -204,11 +213,11 @@ int lag_cost_scales(const Samples *reference, lag_sim *sim, double *scale) {
   }
   for (int i = n - 1; i >= 0; i--) { /* the last of a kind has the largest */
     int alike = reference->output > 0 ? -1 : lag_previous_alike(sim, i);
-    int velocity = reference->output == 0 && i < nq ? nq + i : i;
+    int velocity = reference->output == 0 && i < nq ? nq + i : i, of = reference->output == 0 ? i : -1;
     if (alike >= 0) scale[alike] = scale[i];
     if (alike >= 0) terms[alike] = terms[i];
     /* A coordinate rests if its velocity does, whose scale is its terms then. */
-    if (velocity == i || scale[velocity] == terms[velocity]) scale[i] = lag_above_rounding(scale[i], terms[i]);
+    if (velocity == i || scale[velocity] == terms[velocity]) scale[i] = scale_above(sim, of, scale[i], terms[i]);
     scale[i] = scale[i] > 0 ? scale[i] : 1;
   }
   free(terms);

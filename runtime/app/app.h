@@ -421,6 +421,11 @@ void lag_report_events_json(const App *app, Json *j);
 
 /* report.c */
 void lag_report_text(App *app, FILE *f);
+/* friction_report.c: lines of both on switching surfaces and guides. */
+void lag_report_switches(const App *app, FILE *f);
+void lag_report_guides(const App *app, FILE *f);
+void lag_report_switches_json(const App *app, Json *j);
+void lag_report_guides_json(const App *app, Json *j);
 /* How a run that a monitor has ended goes on, behind its message; "" for others. */
 const char *lag_app_way_on(const App *app);
 void lag_report_json(App *app, FILE *f);

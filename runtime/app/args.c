@@ -170,6 +170,37 @@ static unsigned analyses_with(const Option *o) {
   return all;
 }
 
+/* Analyses and what they take; an option of several is said to be for the first. */
+static const struct {
+  unsigned is;
+  const char *option, *takes;
+} analyses[] = {
+    {COST, "--cost", ", which runs all methods at many tolerances and steps; --methods NAME,NAME selects some"},
+    {SWEEP, "--sweep",
+     ", which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"},
+    {MODES, "--modes", ", which takes name=value, --steady, --amplitude and --json"},
+    {LINEARIZE, "--linearize", ", which takes name=value, --equilibrium, --steady, -o and --json"},
+    {FIT, "--fit",
+     ", which takes name=value, --data, --sigma, --prior, --loss, --segments, a method, --svg and --json"},
+    {DESIGN, "--design",
+     ", which takes name=value, --fit, --sigma, --prior, --columns, --best, --until, --every, a method and --json"},
+    {ORBIT, "--orbit",
+     ", which takes name=value, --period, --guess, --hold, --relative, --reverse, --segments, --until, a method and "
+     "--json"},
+    {CONTINUE, "--continue",
+     ", which takes NAME=A..B, name=value, the options of --orbit, --steady, --most, --branches, -o, --svg and --json"},
+    {LYAPUNOV, "--lyapunov",
+     ", which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json"},
+    {EFFECTS, "--effects", ", which takes name=value, --until and a method"},
+};
+
+/* Index of the first of these analyses. */
+static int first_of(unsigned some) {
+  int i = 0, last = (int)(sizeof analyses / sizeof *analyses) - 1;
+  while (i < last && !(analyses[i].is & some)) i++;
+  return i;
+}
+
 /* Refuses options that a run, or the analysis that is asked for, does not use. */
 static int check_analysis(const Args *a) {
   const unsigned what = a->sweep ? SWEEP : a->design ? DESIGN : a->fit ? FIT : a->modes ? MODES
@@ -179,42 +210,14 @@ static int check_analysis(const Args *a) {
                         : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
   for (int i = 0; i < NOPTIONS; i++) {
     const Option *o = &options[i];
-    unsigned analyses = analyses_with(o);
-    if (!is_given(a, o) || analyses & what) continue;
-    if (what == RUN || what == REFERENCE) {
-      return analyses & RUN
-                 ? lag_app_error(a, "%s has no meaning for --reference, which takes name=value and --until", o->name)
-                 : lag_app_error(a, "%s is for %s", o->name,
-                                 analyses & COST    ? "--cost"
-                                 : analyses & SWEEP ? "--sweep"
-                                 : analyses & MODES ? "--modes"
-                                 : analyses & LINEARIZE ? "--linearize"
-                                 : analyses & FIT   ? "--fit"
-                                 : analyses & DESIGN ? "--design"
-                                 : analyses & ORBIT ? "--orbit"
-                                 : analyses & CONTINUE ? "--continue"
-                                                    : "--lyapunov");
-    }
-    return lag_app_error(
-        a, "%s has no meaning for %s", o->name,
-        what == COST ? "--cost, which runs all methods at many tolerances and steps; --methods NAME,NAME selects some"
-        : what == SWEEP
-            ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
-        : what == MODES ? "--modes, which takes name=value, --steady, --amplitude and --json"
-        : what == LINEARIZE ? "--linearize, which takes name=value, --equilibrium, --steady, -o and --json"
-        : what == FIT ? "--fit, which takes name=value, --data, --sigma, --prior, --loss, --segments, a method, --svg "
-                        "and --json"
-        : what == DESIGN ? "--design, which takes name=value, --fit, --sigma, --prior, --columns, --best, --until, "
-                           "--every, a method and --json"
-        : what == CONTINUE
-            ? "--continue, which takes NAME=A..B, name=value, the options of --orbit, --steady, --most, --branches, "
-              "-o, --svg and --json"
-        : what == ORBIT
-            ? "--orbit, which takes name=value, --period, --guess, --hold, --relative, --reverse, --segments, --until, "
-              "a method and --json"
-        : what == EFFECTS
-            ? "--effects, which takes name=value, --until and a method"
-            : "--lyapunov, which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
+    unsigned with = analyses_with(o);
+    if (!is_given(a, o) || with & what) continue;
+    if (what != RUN && what != REFERENCE)
+      return lag_app_error(a, "%s has no meaning for %s%s", o->name, analyses[first_of(what)].option,
+                           analyses[first_of(what)].takes);
+    return with & RUN
+               ? lag_app_error(a, "%s has no meaning for --reference, which takes name=value and --until", o->name)
+               : lag_app_error(a, "%s is for %s", o->name, analyses[first_of(with)].option);
   }
   return check_files(a, what);
 }

@@ -113,6 +113,25 @@ static int simulate(App *app) {
   return rc ? rc : finish(app);
 }
 
+typedef int Analysis(App *app);
+
+/* What the command line asks for. */
+static Analysis *analysis_of(const Args *a) {
+  return a->sweep                   ? lag_app_sweep
+         : a->design                ? lag_app_design
+         : a->fit                   ? lag_app_fit
+         : a->modes                 ? lag_app_modes
+         : a->linearize             ? lag_app_linearize
+         : a->orbit                 ? lag_app_orbit
+         : a->continues             ? lag_app_continue
+         : a->lyapunov              ? lag_app_lyapunov
+         : a->effects               ? lag_app_effects
+         : a->cost || a->reference  ? lag_app_cost
+         : a->cloud                 ? lag_app_cloud
+         : lag_app_overlays(a)      ? lag_app_overlay
+                                    : simulate;
+}
+
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras) {
   App app = {.program = program, .extras = extras ? *extras : (lag_extras){0}, .last_row = NAN};
   lag_prepare_streams();
@@ -125,28 +144,8 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
   } else if (rc == 0 && app.args.method && strncmp(app.args.method, "help ", 5) == 0 &&
              lag_app_find_method(&app, app.args.method + 5)) {
     lag_app_list_methods(&app, app.args.method + 5, stdout);
-  } else if (rc == 0 && app.args.sweep) {
-    rc = lag_app_sweep(&app);
-  } else if (rc == 0 && app.args.design) {
-    rc = lag_app_design(&app);
-  } else if (rc == 0 && app.args.fit) {
-    rc = lag_app_fit(&app);
-  } else if (rc == 0 && app.args.modes) {
-    rc = lag_app_modes(&app);
-  } else if (rc == 0 && app.args.linearize) {
-    rc = lag_app_linearize(&app);
-  } else if (rc == 0 && app.args.orbit) {
-    rc = lag_app_orbit(&app);
-  } else if (rc == 0 && app.args.continues) {
-    rc = lag_app_continue(&app);
-  } else if (rc == 0 && app.args.lyapunov) {
-    rc = lag_app_lyapunov(&app);
-  } else if (rc == 0 && app.args.effects) {
-    rc = lag_app_effects(&app);
-  } else if (rc == 0 && (app.args.cost || app.args.reference)) {
-    rc = lag_app_cost(&app);
   } else if (rc == 0) {
-    rc = app.args.cloud ? lag_app_cloud(&app) : lag_app_overlays(&app.args) ? lag_app_overlay(&app) : simulate(&app);
+    rc = analysis_of(&app.args)(&app);
   }
   if (rc != EXIT_USAGE && lag_app_flush(&app)) rc = EXIT_USAGE;
   lag_app_free(&app);

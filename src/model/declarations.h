@@ -67,5 +67,8 @@ uint32_t member_offset(const Entity *e, const int64_t *at);
 /* Name of a family member: "th[2]", "u[2,1]". */
 Name member_name(const Ast *ast, Name name, const int64_t *at, uint32_t ndims);
 
+/* The other side of a guide on a surface, or its slip (syntax/ast_build.h: stmts_guide); NULL: e is none. */
+const Entity *other_side(const Scope *constraints, Ast *ast, const Entity *e);
+
 /* Entity of member `at` of a family of lets or observables, or NULL. members: Declarations.members. */
 const Entity *find_member(const Ast *ast, const Scope *members, const Entity *e, const int64_t *at);

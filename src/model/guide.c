@@ -259,8 +259,7 @@ static Expr slip_of(Builder *b, const AstStmt *st, Name effect, const Entity *of
   diag_error(
       b->diags, ast_expr(b->ast, id)->span,
       "the slip of a guide is a number: the velocity along it" HELP
-      "on a surface in space it has two components: write two contacts, `z >= 0` and `-z >= 0`, with `slip = (x', "
-      "y')`, and take moreau");
+      "on a surface in space it has two components, which stand there: `slip = (x', y')`");
   return 0;
 }
 

@@ -45,6 +45,29 @@ static Value report_unknown(Builder *b, Span span, Name name) {
   return FAILED;
 }
 
+const Entity *other_side(const Scope *constraints, Ast *ast, const Entity *e) {
+  int is_slip = strcmp(e->name, "slip") == 0 && e->effect;
+  Name name = is_slip ? e->effect : e->name;
+  const char *index = strchr(name, '[');
+  int stem = (int)(index ? (size_t)(index - name) : strlen(name));
+  Name back = intern(ast->names, arena_printf(ast->arena, "%.*s.back%s", stem, name, index ? index : ""));
+  return scope_own(constraints, is_slip ? e->name : back, is_slip ? back : e->effect);
+}
+
+/* Multipliers of the constraint or contact e, of tangents with the friction while they slip. */
+static Value multipliers_of(const Builder *b, const Entity *e) {
+  Value v = {.n = e->parts, .dim = b->dim_of.at[b->m->constraints.at[e->index].multiplier]};
+  for (uint32_t k = 0; k < component_count(&v); k++)
+    v.at[k] = expr_symbol(b->g, b->m->constraints.at[e->index + k].multiplier)->node;
+  for (uint32_t i = 0; i < b->m->contacts.n; i++) {
+    const Contact *c = &b->m->contacts.at[i];
+    uint32_t k = c->constraint - e->index;
+    if (c->is_tangent && c->constraint >= e->index && k < component_count(&v))
+      v.at[k] = expr_add(b->g, v.at[k], expr_symbol(b->g, c->force)->node);
+  }
+  return v;
+}
+
 Value multiplier_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   if (!arity_is(ev, x, 1)) return FAILED;
@@ -71,15 +94,11 @@ Value multiplier_value(Eval *ev, const AstExpr *x) {
     return refuse(b, span, "more than one effect in use has a constraint `%s`" HELP "say which: `lambda(%s.%s)`", name,
                   e->effect, name);
   if (e->index >= b->m->constraints.n) return FAILED; /* refused */
-  Value v = {.n = e->parts};
+  Value v = multipliers_of(b, e);
+  const Entity *back = other_side(&b->constraints, b->ast, e);
+  if (!back || back->index >= b->m->constraints.n) return v;
+  Value w = multipliers_of(b, back);
   for (uint32_t k = 0; k < component_count(&v); k++)
-    v.at[k] = expr_symbol(b->g, b->m->constraints.at[e->index + k].multiplier)->node;
-  v.dim = b->dim_of.at[b->m->constraints.at[e->index].multiplier];
-  for (uint32_t i = 0; i < b->m->contacts.n; i++) {
-    const Contact *c = &b->m->contacts.at[i];
-    uint32_t k = c->constraint - e->index;
-    if (c->is_tangent && c->constraint >= e->index && k < component_count(&v))
-      v.at[k] = expr_add(b->g, v.at[k], expr_symbol(b->g, c->force)->node);
-  }
+    v.at[k] = v.n ? expr_add(b->g, v.at[k], w.at[k]) : expr_sub(b->g, v.at[k], w.at[k]);
   return v;
 }

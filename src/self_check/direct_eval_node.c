@@ -319,6 +319,19 @@ static Name constraint_name(DirectEval *t, const Frame *f, AstId id, Name *owner
   return member_name(ast, x->name, at, n);
 }
 
+/* Multipliers of the constraint or contact e, of tangents with the friction while they slip. */
+static TextValue multipliers_of(DirectEval *t, const Entity *e) {
+  TextValue r = {.n = e->parts};
+  for (uint32_t k = 0; k < text_components(&r); k++) r.at[k] = tape_input(t->tape, INPUT_MULTIPLIER, e->index + k);
+  for (uint32_t i = 0; i < t->m->contacts.n; i++) { /* friction of a contact that slips */
+    const Contact *c = &t->m->contacts.at[i];
+    uint32_t k = c->constraint - e->index;
+    if (c->is_tangent && c->constraint >= e->index && k < text_components(&r))
+      r.at[k] = plus(t, r.at[k], tape_input(t->tape, INPUT_SIGNAL, expr_symbol(t->m->g, c->force)->index));
+  }
+  return r;
+}
+
 /* Multiplier of a constraint: lambda(rod), lambda(rod[2]), lambda(drag.rod), or of the slip of a contact:
  * lambda(floor.slip), lambda(feet[2].slip). */
 static TextValue multiplier(DirectEval *t, const Frame *f, AstId id) {
@@ -329,14 +342,10 @@ static TextValue multiplier(DirectEval *t, const Frame *f, AstId id) {
   if (!name || (of_family && !owner)) return NOTHING;
   const Entity *e =
       owner ? scope_own(&t->b->constraints, name, owner) : scope_find(&t->b->constraints, name, f->effect, &ambiguous);
-  TextValue r = {.n = e ? e->parts : 0};
-  for (uint32_t k = 0; e && k < text_components(&r); k++) r.at[k] = tape_input(t->tape, INPUT_MULTIPLIER, e->index + k);
-  for (uint32_t i = 0; e && i < t->m->contacts.n; i++) { /* friction of a contact that slips */
-    const Contact *c = &t->m->contacts.at[i];
-    uint32_t k = c->constraint - e->index;
-    if (c->is_tangent && c->constraint >= e->index && k < text_components(&r))
-      r.at[k] = plus(t, r.at[k], tape_input(t->tape, INPUT_SIGNAL, expr_symbol(t->m->g, c->force)->index));
-  }
+  const Entity *back = e ? other_side(&t->b->constraints, t->b->ast, e) : NULL;
+  TextValue r = e ? multipliers_of(t, e) : (TextValue){0}, w = back ? multipliers_of(t, back) : r;
+  for (uint32_t k = 0; back && k < text_components(&r); k++)
+    r.at[k] = r.n ? plus(t, r.at[k], w.at[k]) : minus(t, r.at[k], w.at[k]);
   return r;
 }
 

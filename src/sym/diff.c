@@ -267,9 +267,8 @@ static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, 
   for (uint32_t k = 0; k < l.n; k++) {
     Expr e = l.at[k];
     if (expr_op(g, e) == EX_SYM) {
-      SymId s = expr_sym_id(g, e);
-      if (s >= seed.first && s - seed.first < seed.n && seed.at[s - seed.first])
-        expr_map_set(dot, e, seed.at[s - seed.first]);
+      uint32_t s = expr_sym_id(g, e) - seed.first; /* of a symbol before the first: large */
+      if (s < seed.n && seed.at[s]) expr_map_set(dot, e, seed.at[s]);
       continue;
     }
     Expr before = known ? expr_map_get(known, e) : 0;

@@ -123,7 +123,9 @@ static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap 
   return (ExprList){list, found.n};
 }
 
-void expr_list_free(ExprGraph *g, ExprList l) { arena_recycle(g->arena, (void *)(uintptr_t)l.at, list_room(l.n) * sizeof *l.at); }
+void expr_list_free(ExprGraph *g, ExprList l) {
+  arena_recycle(g->arena, (void *)(uintptr_t)l.at, list_room(l.n) * sizeof *l.at);
+}
 
 ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, TO_LEAVES); }
 ExprList expr_topo_to_sums(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, TO_SUMS); }

@@ -84,7 +84,9 @@ AstStmt *stmt_constraint(Ast *ast, Span span, Ident name, AstList dims, AstId lh
 AstStmt *stmt_equation(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstId lhs, AstId rhs);
 /* rubbing: options. */
 AstStmt *stmt_contact(Ast *ast, Span span, Ident name, AstList dims, AstId gap, AstId restitution, AstList rubbing);
-AstStmt *stmt_guide(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstList rubbing);
+/* A guide; where its slip has two components, along a surface, the contacts NAME and NAME.back of its two sides. */
+StmtList stmts_guide(Ast *ast, Span span, Ident name, AstList dims, AstId sides, AstList rubbing);
+AstId ast_sides(Ast *ast, Span span, Span op, AstId lhs, AstId rhs); /* -(lhs - rhs), and before both 0 */
 /* `friction NAME on q: f, static = most`: the force -f*sign(q') on q, and its value, the observable NAME. most: 0
  * where there is none. Where f contains `lambda(...)`, a guide whose slip is q'. */
 StmtList stmts_friction(Ast *ast, Span span, Ident name, AstList dims, AstId place, AstId f, AstId most);

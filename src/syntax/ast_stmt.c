@@ -187,10 +187,33 @@ AstStmt *stmt_contact(Ast *ast, Span span, Ident name, AstList dims, AstId gap, 
   return s;
 }
 
-AstStmt *stmt_guide(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstList rubbing) {
+static AstStmt *stmt_guide(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstList rubbing) {
   AstStmt *s = stmt_equation(ast, STMT_GUIDE, span, name, dims, lhs, rhs);
   s->args = rubbing.first;
   return s;
+}
+
+/* Whether the options are those of a guide on a surface: friction, and a slip of two components. */
+static int slips_on_surface(const Ast *ast, const AstStmt *s) {
+  AstId v = ast_option_value(ast, s, "slip");
+  AstId first = v && ast_expr(ast, v)->kind == AST_TUPLE ? ast_expr(ast, v)->args : 0;
+  AstId second = first ? ast_expr(ast, first)->next : 0;
+  return second && !ast_expr(ast, second)->next && ast_option_value(ast, s, "friction") &&
+         !ast_option_value(ast, s, "law") && !ast_option_value(ast, s, "tangential");
+}
+
+AstId ast_sides(Ast *ast, Span span, Span op, AstId lhs, AstId rhs) {
+  ast_number(ast, span, num_int(0));
+  return ast_unary(ast, AST_NEG, span, op, ast_binary(ast, AST_SUB, span, op, lhs, rhs));
+}
+
+StmtList stmts_guide(Ast *ast, Span span, Ident name, AstList dims, AstId sides, AstList rubbing) {
+  AstId gap = ast_expr(ast, sides)->a, none = gap - 1;
+  AstStmt *s = stmt_guide(ast, span, name, dims, ast_expr(ast, gap)->a, ast_expr(ast, gap)->b, rubbing);
+  if (!slips_on_surface(ast, s)) return stmts_one(s);
+  Ident back = {intern(ast->names, arena_printf(ast->arena, "%s.back", name.name)), name.span};
+  AstStmt *front = stmt_contact(ast, span, name, dims, gap, none, rubbing);
+  return stmts_add(stmts_one(front), stmt_contact(ast, span, back, dims, sides, none, rubbing));
 }
 
 AstStmt *stmt_constraint(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstId condition) {

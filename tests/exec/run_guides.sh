@@ -126,6 +126,38 @@ check "a bead on a helix" run helix go --tol 1e-12
 check "its depth" near "$(final r.z)" -4.704727772553328 1e-11
 fi
 
+# ---- on a surface in space friction has two components, and is followed by moreau: a puck between plates, N = 12 - m g; a bead in a sphere, in the plane of the hoop
+if one_of 3; then
+model plates <<'END_OF'
+model plates
+coord x [m], y [m], z [m]
+param m = 0.5 [kg] > 0, g = 9.81 [m/s^2], mu = 0.3 >= 0
+kinetic = m/2*(x'^2 + y'^2 + z'^2)
+potential = m*g*z
+force z = 12 [N]
+for i in 1..1 { guide plates[i]: z = 0, friction = mu, slip = (x', y') }
+scene go { start x' = 0.6 [m/s], y' = 0.8 [m/s]; span 0.1 [s]; output x, lambda(plates[1]), lambda(plates[1].slip) every 0.1 [s] }
+END_OF
+check "a puck between plates takes moreau" run plates go
+check "its friction" near "$(cell 0.1 4)" "$(calc '-0.6*0.3*(12 - 0.5*9.81)')" 1e-9
+check "by the force of the plates" near "$(cell 0.1 3)" "$(calc '0.5*9.81 - 12')" 1e-9
+check "its path" near "$(final x)" "$(calc '0.6*(0.1 - 0.3*(12 - 0.5*9.81)/0.5*0.1^2/2)')" 1e-9
+check "to rest" run plates go --until 1
+check "after v^2/(2 a)" near "$(final x)" "$(calc '0.6*0.5^2/(0.3*(12 - 0.5*9.81))')" 1e-7
+model sphere <<'END_OF'
+model sphere
+coord r: vec3 [m]
+param m = 0.1 [kg] > 0, R = 0.5 [m] > 0, g = 9.81 [m/s^2], mu = 0.2 >= 0
+kinetic = m/2*dot(r', r')
+potential = m*g*r.y
+guide ball: norm(r) = R, friction = mu, slip = ((r.x*r.y' - r.y*r.x')/R, r.z')
+scene go { start r = (0, -0.5, 0), r.x' = 6 [m/s]; span 2 [s]; output r.x every 2 [s] }
+END_OF
+check "a bead in a sphere" run sphere go --method 'moreau(step=1e-3)'
+check "as on the hoop" near "$(final r.x)" -0.0846718237081 5e-4 # half a step at two turns of 1 m/s
+check "no energy comes in" near "$(number drift)" 0 1e-11
+fi
+
 # ---- a crank with friction at pin and rail, over the turning points of both slips
 if one_of 3; then
 model press <<'END_OF'
