@@ -5,6 +5,7 @@
 
 # Messages that other suites show, by a part of their text.
 elsewhere='internal error
+near a zero of a divisor
 -D %s
 --fix
 --precision
