@@ -10,7 +10,7 @@ charge="is initial final work at_events drift drift_absolute unit slope slope_er
 is "run" "$head unresolved_period rows_without_value charges{ energy{ $charge monitors{ events{ floor{ count first last tangent{ y{ y y' y'{ math build \
 constraint_residual constraint_rate_residual final{ energy" "$(fields run models/bouncing_ball.lag --until 2 --tangent)"
 is "run with constraints" "$head unresolved_period rows_without_value charges{ energy{ $charge monitors{ events{ math build constraint_residual \
-constraint_rate_residual constraints rank redundant[ rank_beside start_moved{ final{ q x p q' x' p' push lambda(across)" "$(fields run models/slider_crank.lag --until 0.5)"
+constraint_rate_residual constraints rank redundant[ rank_beside start_moved{ start_other{ final{ q x p q' x' p' push lambda(across)" "$(fields run models/slider_crank.lag --until 0.5)"
 is "lyapunov" "model scene method chosen status from until steps blocks phase_space exponents[ spread[ errors[ at_half[ minus_infinity sum sum_spread divergence sum_error dimension \
 dimension_error entropy entropy_error chaotic" "$(fields lyapunov models/lorenz.lag --until 20)"
 is "modes" "model scene status verdict reason note steps start{ x y equilibrium{ pairs modes[ re im free repeats shape{ x[ y[" "$(fields modes models/spring_pendulum.lag)"
