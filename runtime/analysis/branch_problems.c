@@ -18,6 +18,7 @@ static int place_rest(void *of, const double *u) {
   RestBranch *r = of;
   for (int i = 0; i < r->n; i++) r->y[component(r, i)] = u[i] * r->unit[i];
   r->parameter = u[r->n] * r->parameter_unit;
+  r->flow.message[0] = '\0';
   int rc = lag_flow_set(&r->flow, r->name, r->parameter);
   rc = rc ? rc : lag_flow_rates(&r->flow, r->flow.t0, r->y, r->rates);
   return rc || lag_not_finite(2 * r->flow.nq + r->n - r->flow.nq, r->rates) >= 0 ? LAG_EDOMAIN : LAG_OK;
@@ -239,8 +240,16 @@ static int place_orbit(void *of, const double *u) {
   for (int i = 0; i < k; i++) o->y[i] = u[i] * o->unit[i % n];
   if (!o->flow.forced) o->T = u[k++] * o->time;
   for (int j = 0; j < o->ngroup; j++) o->shift[j] = u[k++];
-  if (!(o->T > 0 && o->T < longest * o->time)) return LAG_EDOMAIN;
-  if (lag_orbit_set_parameter(o, u[k] * o->parameter_unit) || shrinks(o)) return LAG_EDOMAIN;
+  o->flow.message[0] = '\0';
+  if (!(o->T > 0 && o->T < longest * o->time)) {
+    snprintf(o->flow.message, sizeof o->flow.message, "the period has become %.6g s", o->T);
+    return LAG_EDOMAIN;
+  }
+  if (lag_orbit_set_parameter(o, u[k] * o->parameter_unit)) return LAG_EDOMAIN;
+  if (shrinks(o)) {
+    snprintf(o->flow.message, sizeof o->flow.message, "the motion shrinks to a state of rest");
+    return LAG_EDOMAIN;
+  }
   return lag_orbit_shoot(o, 1) ? LAG_EDOMAIN : LAG_OK;
 }
 

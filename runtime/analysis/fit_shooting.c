@@ -420,10 +420,11 @@ static int descend(Fit *f, Shoot *s, double least, int most, double *x) {
   double *trial = calloc((size_t)(m + f->n), sizeof *trial);
   f->converged = 0;
   if (!trial) return lag_fit_fail(f, LAG_ENOMEM, "out of memory");
+  const int held = s->pull > 0;
   f->pull = s->pull;
-  if (!f->pull) memcpy(f->centre, x, (size_t)f->n * sizeof *x);
+  if (!held) memcpy(f->centre, x, (size_t)f->n * sizeof *x);
   for (int k = 0; k < most && !f->converged && (rc = linearise(f, s, x)) == LAG_OK; k++) {
-    if (!s->pull) {
+    if (!held) {
       f->pull = soft * s->stiff;
       memcpy(f->centre, x, (size_t)f->n * sizeof *x);
       if (k == 0 && (rc = linearise(f, s, x)) != LAG_OK) break;

@@ -42,6 +42,7 @@ static int place(void *of, const double *u) {
   for (int i = 0; i < s->n; i++) m->y[i] = u[i] * m->unit[i];
   for (int k = 0; k < m->m; k++) m->c[k] = u[s->n + k] * s->rate;
   s->parameter = u[s->cols - 1] * s->parameter_unit;
+  s->flow.message[0] = '\0';
   int rc = set_parameter(s, s->parameter);
   rc = rc ? rc : values(s, s->up);
   return rc || lag_not_finite(m->nrows + s->nheld, s->up) >= 0 ? LAG_EDOMAIN : LAG_OK;

@@ -85,12 +85,29 @@ static int failed(Job *job, int rc, const char *message) {
   return EXIT_RUN;
 }
 
+/* part->why := what kept the branch from going on: a value that the model refuses, a run that fails, a motion that
+ * becomes a rest, or one whose period grows without limit. */
+static void explain_end(const Job *job, Part *part) {
+  const FlowMap *f = part->orbit ? &part->orbit->flow : job->steady.cols ? &job->steady.flow : &job->rest.flow;
+  const BranchPoint *last = part->branch.last, *before = part->branch.first;
+  while (before && before->next != last) before = before->next;
+  if (part->branch.end != BRANCH_LOST) return;
+  snprintf(part->why, sizeof part->why, "%s", f->message);
+  if (!part->orbit || f->forced || !before) return;
+  const double steep = 10; /* change of the period, in periods, over that of the parameter, in ranges */
+  int cols = part->problem->cols, T = part->orbit->m * part->orbit->n;
+  double longer = (last->u[T] - before->u[T]) / last->u[T], further = fabs(last->u[cols - 1] - before->u[cols - 1]);
+  if (longer > steep * further)
+    snprintf(part->why, sizeof part->why, "the period grows without limit, as next to a motion that ends at rest");
+}
+
 /* Follows from u along d, or by sign, as the next part. LAG_OK, or a status. */
 static int follow(Job *job, const BranchProblem *p, PeriodicOrbit *o, const double *u, const double *d, int sign,
                   int from) {
   Part *part = &job->part[job->nparts];
   *part = (Part){.problem = p, .orbit = o, .number = job->nbranches, .from = from};
   int rc = lag_branch_follow(&part->branch, p, u, d, sign, &job->limits);
+  if (rc == LAG_OK) explain_end(job, part);
   if (rc == LAG_OK) job->nparts++;
   else lag_branch_free(&part->branch);
   return rc;
@@ -219,7 +236,7 @@ static int begin_rest(Job *job) {
   job->problem = job->rest.problem;
   rc = follow_first(job, u, NULL);
   free(u);
-  return rc ? failed(job, rc, NULL) : 0;
+  return rc ? failed(job, rc, job->rest.flow.message) : 0;
 }
 
 /* Of steady motions over a parameter charges other than the energy keep their values, unless --hold names others; over
@@ -259,9 +276,9 @@ static int begin_steady(Job *job) {
   job->problem = s->problem;
   job->begin = job->led_kind < 0 ? job->begin : (s->parameter - job->offset) / job->factor;
   rc = check_begin(job, "steady");
-  rc = rc ? rc : follow_first(job, u, NULL) ? failed(job, LAG_ESINGULAR, NULL) : 0;
+  int status = rc ? LAG_OK : follow_first(job, u, NULL);
   free(u);
-  return rc;
+  return status ? failed(job, status, s->flow.message) : rc;
 }
 
 /* Conserved charges keep their values unless --hold names others, or one is the parameter. */
@@ -309,7 +326,7 @@ static int begin_periodic(Job *job) {
   lag_orbit_branch_unknowns(o, u);
   rc = follow_first(job, u, o);
   free(u);
-  return rc ? failed(job, rc, NULL) : 0;
+  return rc ? failed(job, rc, o->flow.message) : 0;
 }
 
 /* ---- The command */

@@ -12,6 +12,7 @@ typedef struct Part {
   Branch branch;
   const BranchProblem *problem;
   PeriodicOrbit *orbit; /* NULL: states of rest, or steady motions */
+  char why[600];        /* why it was lost; "": not known */
   int number, from;     /* of the branch that it is a half of; of the one that it leaves, 0: none */
 } Part;
 

@@ -107,6 +107,7 @@ void lag_continue_put_text(FILE *f, const Job *job) {
       else if (at->kind != BRANCH_REGULAR) put_point(f, job, part, at, kind_word(at->kind, part->orbit != NULL));
       else if (!at->next) put_point(f, job, part, at, ends[part->branch.end]);
     }
+    if (part->why[0]) fprintf(f, "  it ends there: %s\n", part->why);
   }
 }
 
@@ -146,6 +147,7 @@ void lag_continue_put_json(FILE *f, const Job *job) {
     lag_json_count(&j, "from", part->from);
     lag_json_count(&j, "points", part->branch.npoints);
     lag_json_string(&j, "end", ends[part->branch.end]);
+    if (part->why[0]) lag_json_string(&j, "why", part->why);
     lag_json_begin(&j, "special", '[');
     for (const BranchPoint *at = part->branch.first; at; at = at->next)
       if (at->kind != BRANCH_REGULAR || !at->next) json_point(&j, job, part, at);

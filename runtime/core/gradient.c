@@ -31,7 +31,7 @@ typedef struct Unit {
 
 enum { MOST_MARKS = 64 };
 
-/* Steps of the last unit: each [t0, dt, y0[n], modes[nmodes]]. */
+/* Steps of the last unit: each [t0, dt, y0[n], kept by the method, modes[nmodes]]. */
 struct lag_record {
   size_t nsteps, step_room, nmatrices, matrix_room;
   int stride;
@@ -65,11 +65,16 @@ static void reset_columns(lag_sim *s) {
 }
 
 /* Whether the steps that the method makes now have no reverse mode of their own: with constraints, within slides, of
- * implicit methods and series. The derivative of each is then a matrix. */
+ * methods without one. The derivative of each is then a matrix. */
 static int needs_matrix(const lag_sim *s) {
   const lag_model *m = s->scene->model;
   return m->constraints || s->pb.nslide || !m->linear || !m->linear->adjoint || !s->method->adjoint ||
          s->method->adjoint_size(&s->pb) == 0;
+}
+
+/* Modes of a step, behind what its method keeps. */
+static int modes_at(const lag_sim *s) {
+  return 2 + s->pb.n + (s->method->kept ? (int)s->method->kept(&s->pb) : 0);
 }
 
 /* A mark of the present unit. */
@@ -127,7 +132,7 @@ int lag_sim_record_within(lag_sim *s, size_t bytes) {
   reset_columns(s);
   s->record = calloc(1, sizeof *s->record);
   if (!s->record) return lag_tangent_free(s), lag_fail(s, LAG_ENOMEM, "out of memory");
-  s->record->stride = 2 + s->pb.n + s->scene->model->nmodes;
+  s->record->stride = modes_at(s) + s->scene->model->nmodes;
   s->record->room = bytes;
   s->record->marks_every = 1;
   return begin_unit(s);
@@ -138,7 +143,8 @@ static void put_step(const lag_sim *s, double t, double *step) {
   step[0] = s->run->step_t0;
   step[1] = s->method->span(s->method_work, &s->pb, t);
   memcpy(step + 2, s->y0, (size_t)s->pb.n * sizeof *step);
-  memcpy(step + 2 + s->pb.n, s->hold + s->pb.model->nu, (size_t)s->pb.model->nmodes * sizeof *step);
+  if (s->method->keep) s->method->keep(s->method_work, &s->pb, step + 2 + s->pb.n);
+  memcpy(step + modes_at(s), s->hold + s->pb.model->nu, (size_t)s->pb.model->nmodes * sizeof *step);
 }
 
 static int keep_matrix(lag_sim *s, MatrixKind kind, double t, const double *Y) {
@@ -252,7 +258,7 @@ static int back_over_step(Sweep *w, const double *step) {
   const lag_method *method = w->s->method;
   int n = pb->n, nu = pb->model->nu, rc;
   double t0 = step[0], dt = step[1], rounding = 4 * DBL_EPSILON * (fabs(t0) + fabs(t0 + dt));
-  memcpy(w->s->hold + nu, step + 2 + n, (size_t)pb->model->nmodes * sizeof *step);
+  memcpy(w->s->hold + nu, step + modes_at(w->s), (size_t)pb->model->nmodes * sizeof *step);
   lag_switch_count(w->s);
   for (; w->rows > 0 && fabs(w->t[w->rows - 1] - t0 - dt) <= rounding; w->rows--)
     add(n, w->weight + (size_t)(w->rows - 1) * (size_t)n, w->x);

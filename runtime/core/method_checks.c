@@ -124,8 +124,12 @@ int lag_method_check(lag_sim *s, const lag_method *method) {
   const Refusal last[] = {
       {(needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH),
        "method %s needs a model without if, abs, sign, min, max, atan2 and tables; dop853 does not", NULL},
+      {(needs & LAG_METHOD_TAYLOR) && !m->taylor,
+       "method %s needs series of the forces, which this program was built without: `lagc run MODEL --method %s` and "
+       "`lagc build MODEL --method %s` build them in, but where sums over 20000 terms would be written out; dop853 "
+       "has high order without", method->name},
       {((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) ||
-           ((needs & LAG_METHOD_JACOBIAN) && !m->linear && !held) || ((needs & LAG_METHOD_TAYLOR) && !m->taylor),
+           ((needs & LAG_METHOD_JACOBIAN) && !m->linear && !held),
        "method %s needs derivatives of the model that this program was built without; `lagc run MODEL --method %s` and "
        "`lagc build MODEL --method %s` build them in; rk45 and dop853 do without", method->name}};
   int rc = first_refusal(s, method, sizeof first / sizeof *first, first);

@@ -76,6 +76,13 @@ typedef struct {
 /* Order in which turns are computed: any; row by row, as a turn reads sums of earlier rows; one by one. */
 typedef enum { ANY_ORDER, ROW_BY_ROW, TURN_BY_TURN } TurnOrder;
 
+/* Of a nest over neighbours: subscripts of the places i and j, by component; outer values of the cut and, + 1, of the
+ * sides of the box; the value of the turn that says whether it counts. n 0: of another nest. */
+typedef struct {
+  uint32_t n, at_i[3], at_j[3], side[3], cut, test;
+  int members; /* of the family of places */
+} Near;
+
 /* for i < rows, for j in skew i .. (skew + more) i + turns - 1. A loop without turns is one row of them. */
 typedef struct {
   int64_t rows, skew, turns, more;
@@ -88,6 +95,7 @@ typedef struct {
   const uint32_t *order; /* [nins] instructions by level, in each loads first */
   uint32_t end[LEVELS];  /* of each level in order */
   const TurnSum *sum;
+  Near near;
 } Nest;
 
 typedef struct {
@@ -105,6 +113,9 @@ typedef struct {
 
 /* in[PROGRAM_ARRAY_COUNT], of which the last is set here; r[frame]: memory. Returns LAG_OK or LAG_ESINGULAR. */
 int lag_run_program(const Program *p, const double *const *in, double *const *out, double *r);
+
+/* Numbers that the list of a nest over neighbours takes. */
+uint64_t lag_near_room(int members);
 
 /* Runs a nest of the program; see lag_run_program. */
 void lag_run_nest(const Program *p, const Nest *n, const double *const *in, double *r);

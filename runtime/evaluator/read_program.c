@@ -170,6 +170,28 @@ static void order_turn(Bytes *b, Nest *n) {
   n->order = order;
 }
 
+/* Rows of neighbours: turn j of row i is member j of the place of which row i is member `turns` + i, in q. */
+static void read_near(Bytes *b, const Lengths *of, Nest *n) {
+  Near *x = &n->near;
+  x->n = lag_bytes_below(b, 4);
+  for (uint32_t k = 0; k < x->n; k++) {
+    x->at_i[k] = lag_bytes_below(b, n->nsubscripts);
+    x->at_j[k] = lag_bytes_below(b, n->nsubscripts);
+    x->side[k] = lag_bytes_below(b, n->nouter + 1);
+    if (b->why) return;
+    const Subscript *i = &n->at[x->at_i[k]], *j = &n->at[x->at_j[k]];
+    lag_bytes_need(b, is_within(range_of(b, n, x->at_i[k]), of->in[PROGRAM_Q]) && j->first >= 0 && j->by_turn > 0 &&
+                          j->by_turn < LARGEST && !j->by_row && !i->by_turn && i->by_row == j->by_turn &&
+                          i->first == j->first + n->turns * j->by_turn,
+                   "neighbours are out of range");
+  }
+  if (!x->n) return;
+  x->cut = lag_bytes_below(b, n->nouter);
+  x->test = lag_bytes_below(b, n->nins + 1);
+  lag_bytes_need(b, n->skew == 0 && n->more == 1 && n->turns > 0, "neighbours are out of range");
+  x->members = (int)(n->rows + n->turns);
+}
+
 static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   n->nins = lag_bytes_count(b, 20);
   TurnIns *ins = lag_bytes_room(b, n->nins, sizeof *ins);
@@ -179,6 +201,7 @@ static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
     if (x) check_turn(b, p, of, n, s, ins);
   }
   n->ins = ins;
+  read_near(b, of, n);
   n->nsums = lag_bytes_count(b, 12);
   TurnSum *sum = lag_bytes_room(b, n->nsums, sizeof *sum);
   for (uint32_t k = 0; sum && k < n->nsums; k++) {
@@ -285,6 +308,7 @@ static void add_scratch(Bytes *b, Program *p) {
   uint64_t most = 0;
   for (uint32_t k = 0; !b->why && k < p->nnests; k++) {
     uint64_t need = ((uint64_t)p->nests[k].nins + 1) * NEST_BLOCK + p->nests[k].nsums + 1;
+    if (p->nests[k].near.n) need += lag_near_room(p->nests[k].near.members);
     if (need > most) most = need;
   }
   lag_bytes_need(b, most < FRAME_MOST, "a nest is too large");

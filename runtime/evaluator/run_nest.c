@@ -5,12 +5,16 @@
 
 #include "evaluator/program.h"
 #include "lag_math.h"
+#include "lag_support.h"
 
 /* Turns of one row that lie side by side in a block. */
 typedef struct {
   int64_t row, from; /* the first turn */
   int at, count, ends; /* place of the first in the block; ends: the row has no more turns */
+  const int *list;     /* the turns, of a nest over neighbours; else NULL: from, from + 1 ... */
 } Segment;
+
+static int64_t turn_of(const Segment *g, int j) { return g->list ? g->list[j] : g->from + j; }
 
 /* The values of a block: NEST_BLOCK of each instruction, from 1. */
 typedef struct {
@@ -49,7 +53,9 @@ static void gather(const Block *b, double *to, const double *from, uint32_t k) {
   int64_t step = b->n->at[k].by_turn;
   for (const Segment *g = b->segment; g < b->segment + b->nsegments; g++) {
     const double *first = from + first_index(b->n, g, k);
-    if (step) copy_apart(to + g->at, first, step, g->count);
+    if (g->list && step)
+      for (int j = 0; j < g->count; j++) to[g->at + j] = first[g->list[j] * step];
+    else if (step) copy_apart(to + g->at, first, step, g->count);
     else fill(to + g->at, *first, g->count);
   }
 }
@@ -58,7 +64,8 @@ static void gather(const Block *b, double *to, const double *from, uint32_t k) {
 static void count_up(const Block *b, double *to, uint32_t k) {
   int64_t step = b->n->at[k].by_turn;
   for (const Segment *g = b->segment; g < b->segment + b->nsegments; g++)
-    for (int j = 0; j < g->count; j++) to[g->at + j] = (double)(first_index(b->n, g, k) + j * step);
+    for (int j = 0; j < g->count; j++)
+      to[g->at + j] = (double)(first_index(b->n, g, k) + (turn_of(g, j) - g->from) * step);
 }
 
 /* to[n] := an operation of x, y, z; k: number of a function. */
@@ -185,9 +192,24 @@ static void end_row(const Block *b, const Segment *g) {
   }
 }
 
+/* The turns of a list that pass the test, one by one. */
+static void add_tested(const Block *b, const Segment *g) {
+  const double *test = value(b, b->n->near.test) + g->at;
+  for (int j = 0; j < g->count; j++)
+    for (uint32_t k = 0; test[j] != 0 && k < b->n->nsums; k++) {
+      const TurnSum *s = &b->n->sum[k];
+      int64_t at = first_index(b->n, g, s->subscript) + turn_of(g, j) * b->n->at[s->subscript].by_turn;
+      double *to = s->moves ? b->r + b->p->cells + at : &b->part[k];
+      *to += s->minus ? -value(b, s->value)[g->at + j] : value(b, s->value)[g->at + j];
+    }
+}
+
 static void add(const Block *b) {
   const Nest *n = b->n;
   for (const Segment *g = b->segment; g < b->segment + b->nsegments; g++) {
+    if (g->list) add_tested(b, g);
+    if (g->list && g->ends) end_row(b, g);
+    if (g->list) continue;
     for (uint32_t k = 0; n->apart && k < n->nsums; k++) add_to(b, g, k, 0, g->count);
     for (int j = 0; !n->apart && j < g->count; j++)
       for (uint32_t k = 0; k < n->nsums; k++) add_to(b, g, k, j, 1);
@@ -206,13 +228,46 @@ static void finish_block(Block *b) {
   b->count = b->nsegments = 0;
 }
 
-static void run_row(Block *b, int64_t row, int64_t from, int64_t end, int most) {
+/* list: of the turns from, from + 1 ...; or NULL. */
+static void run_row(Block *b, int64_t row, int64_t from, int64_t end, const int *list, int most) {
   while (from < end) {
     int room = most - b->count, count = end - from < room ? (int)(end - from) : room;
-    b->segment[b->nsegments++] = (Segment){row, from, b->count, count, from + count == end};
+    b->segment[b->nsegments++] =
+        (Segment){row, list ? 0 : from, b->count, count, from + count == end, list ? list + from : NULL};
     b->count += count, from += count;
     if (b->count == most) finish_block(b);
   }
+}
+
+uint64_t lag_near_room(int members) {
+  uint64_t n = (uint64_t)members;
+  return LAG_NEAR_NUMBERS(n) + LAG_NEAR_INTS(n) / 2 + 1;
+}
+
+/* Makes the list of neighbours, behind the sums of rows. */
+static void find_neighbours(const Block *b, lag_near *w) {
+  const Near *x = &b->n->near;
+  double *places = b->part + b->n->nsums + 1, side[3] = {0};
+  const Subscript *j = &b->n->at[x->at_j[0]];
+  int *ints = (int *)(void *)(places + LAG_NEAR_NUMBERS(x->members));
+  lag_near_open(w, x->members, (int)x->n, (int)j->by_turn, places, ints);
+  for (uint32_t c = 0; c < x->n; c++) {
+    w->first[c] = (int)b->n->at[x->at_j[c]].first;
+    side[c] = x->side[c] ? b->r[b->n->outer[x->side[c] - 1]] : 0;
+  }
+  lag_near_find(w, b->in[PROGRAM_Q], b->r[b->n->outer[x->cut]], side);
+}
+
+static void run_neighbours(Block *b, int most) {
+  lag_near near = {0};
+  find_neighbours(b, &near);
+  for (int64_t row = 0; row < b->n->rows; row++) {
+    const int *list;
+    int n = lag_near_of(&near, (int)(row + b->n->turns), &list);
+    run_row(b, row, 0, n, list, most);
+    if (list == near.row || b->n->turn_order != ANY_ORDER) finish_block(b); /* the next row may use its memory */
+  }
+  finish_block(b);
 }
 
 void lag_run_nest(const Program *p, const Nest *n, const double *const *in, double *r) {
@@ -226,8 +281,12 @@ void lag_run_nest(const Program *p, const Nest *n, const double *const *in, doub
   b.segment[b.nsegments++] = (Segment){.count = NEST_BLOCK};
   compute_all(&b, IN_NEST);
   b.count = b.nsegments = 0;
+  if (n->near.n) {
+    run_neighbours(&b, most);
+    return;
+  }
   for (int64_t row = 0; row < n->rows; row++) {
-    run_row(&b, row, n->skew * row, (n->skew + n->more) * row + n->turns, most);
+    run_row(&b, row, n->skew * row, (n->skew + n->more) * row + n->turns, NULL, most);
     if (n->turn_order != ANY_ORDER) finish_block(&b);
   }
   finish_block(&b);

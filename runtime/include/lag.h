@@ -240,10 +240,10 @@ int lag_sim_output_sensitivity(lag_sim *sim, const double *Y, double *D);
 /* Reverse mode, for the gradient of few numbers by many values: record keeps the steps of a run, before its first
  * advance, after method and all values are set. Gradient: J depends on the states y at t[rows], in the order of the
  * run and not beyond it, by weight[rows * n] = dJ/dy in SI; by_start[n] := dJ by the starts, by_p[np] := by the
- * parameters, with all that follows from them as in sensitivities, both in SI. It is the derivative of the steps
- * that were made, their sizes held. With `lagc build --with derivatives`, of explicit methods without constraints
- * and outside of slides, it takes some three times as long as the run, however many parameters there are; elsewhere
- * as long as sensitivities by all of them, and t[rows] have to be times of lag_sim_advance. LAG_EMETHOD: as a
+ * parameters, with all that follows from them as in sensitivities, both in SI. It is the derivative of the steps that
+ * were made, their sizes held. With `lagc build --with derivatives`, methods that have `adjoint`, without constraints
+ * and outside of slides, take some three times as long as the run, however many parameters there are; else it takes as
+ * long as sensitivities by all of them, and t[rows] have to be times of lag_sim_advance. LAG_EMETHOD: as of a
  * tangent. */
 int lag_sim_record(lag_sim *sim);
 /* The same where steps take more memory than this, 2^26 bytes by default: parts of the run are repeated from marks on

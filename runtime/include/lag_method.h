@@ -297,10 +297,13 @@ typedef struct lag_method {
   int (*tangent)(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
 
   /* Reverse mode of a step from (t0, y0) of length dt: x[n] := (dy1/dy0)^T x, g[nu + np] += (dy1/du, dy1/dp)^T x,
-   * inputs counted where they are held. span: the dt of the last step up to t. scratch[adjoint_size]. NULL: none. */
+   * inputs counted where they are held. span: the dt of the last step up to t. scratch[adjoint_size]. NULL: none.
+   * keep: x[kept] := what else adjoint needs of the last step; it finds it behind y0. NULL: nothing. */
   double (*span)(const void *work, const lag_problem *pb, double t);
   size_t (*adjoint_size)(const lag_problem *pb);
   int (*adjoint)(lag_problem *pb, double t0, double dt, const double *y0, double *x, double *g, double *scratch);
+  size_t (*kept)(const lag_problem *pb);
+  void (*keep)(void *work, const lag_problem *pb, double *x);
 
   /* constants by which it differs from other methods with the same functions; these read lag_problem.variant */
   const void *variant;

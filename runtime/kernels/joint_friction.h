@@ -83,7 +83,8 @@ static inline int lag_joints_respond(LAG_MODEL, lag_joint_friction *w, const lag
 }
 
 /* One turn of surface k; *size, *change: the largest slip, and change of one. A surface with a response < 0 is driven
- * to the nearest slip of an interval about centre[k]; one without slips. */
+ * to the nearest slip of an interval about centre[k]; one without slips. Where friction pushes it on, as that of a
+ * guide may which others hold, it keeps its mode while it rests. */
 static inline int lag_joint_turn(LAG_MODEL, lag_joint_friction *w, const lag_kick *s, int k, LAG_REAL *size,
                                  LAG_REAL *change) {
   const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), own = w->response[k], was = w->mode[k];
@@ -98,7 +99,9 @@ static inline int lag_joint_turn(LAG_MODEL, lag_joint_friction *w, const lag_kic
     const lag_coulomb law = {1, own, LAG_FN(fabs)(w->centre[k]), w->bound[k], one, w->centre + k};
     lag_friction_turn(&law, slip, to);
   } else {
-    to[0] = LAG_SELECT(slip[0] > zero, one, LAG_SELECT(slip[0] < zero, -one, zero));
+    const LAG_REAL rests = LAG_SELECT(own > zero, was, zero), little = LAG_C(1e-6)*lag_larger(response, *size);
+    const LAG_REAL least = LAG_SELECT(own > zero, little, zero);
+    to[0] = LAG_SELECT(slip[0] > least, one, LAG_SELECT(slip[0] < -least, -one, rests));
     slip[0] = zero;
   }
   if (!lag_is_number(to[0])) return LAG_FRICTION_FAILS(s->end, k, "has no finite values");

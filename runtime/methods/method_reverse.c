@@ -61,3 +61,49 @@ int lag_reverse_explicit(const lag_tableau *tab, lag_problem *pb, double t0, dou
   for (int s = 0; s < last && rc == LAG_OK; s++) lag_tangent_add(n, 1, X + s * n, x);
   return rc;
 }
+
+/* Behind the Jacobian: f and the weights of all stages, scales, pivots, the matrix; products. */
+size_t lag_reverse_implicit_size(const lag_problem *pb, int stages) {
+  size_t big = (size_t)(stages * pb->n);
+  return lag_tangent_size(pb, 0, 1) + big * (big + 4) + lag_reverse_size(pb, 0);
+}
+
+/* Columns of stage s of the transposed matrix 1 - dt A (x) df/dy. */
+static void put_transposed(const lag_tangent *at, const lag_band_matrix *m, int stages, int s, double dt,
+                           const double *a) {
+  int n = at->pb->n, nq = at->pb->nq;
+  for (int i = 0; i < n; i++)
+    for (int q = 0; q < stages; q++)
+      for (int j = 0; j < n; j++) {
+        double J = i < nq ? j == nq + i : at->jacobian[(i - nq) * n + j];
+        *lag_band_matrix_at(m, q * n + j, s * n + i) = (q == s && i == j) - dt * a[q] * J;
+      }
+}
+
+/* With K = J (Y + dt A K) and Y1 = Y + dt b K, b the last row of A: (1 - dt A J)^T X = dt b x, and x + J^T X. */
+int lag_reverse_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt,
+                         const double *ys, double *x, double *g, double *scratch) {
+  int n = pb->n, big = stages * n, rc = LAG_OK;
+  double *f;
+  lag_tangent at = lag_tangent_layout(pb, 1, scratch, &f);
+  double *X = f + big, *scale = X + big, *pivot = scale + big;
+  lag_band_matrix m = {big, big - 1, pivot + big, pivot};
+  const lag_reverse w = lag_reverse_layout(pb, g, m.a + big * big);
+  at.by = NULL;
+  for (int s = 0; s < stages && rc == LAG_OK; s++) {
+    rc = lag_tangent_at(&at, t0 + c[s] * dt, ys + s * n, f + s * n);
+    put_transposed(&at, &m, stages, s, dt, A + s * stages);
+    for (int i = 0; i < n; i++) X[s * n + i] = dt * A[(stages - 1) * stages + s] * x[i];
+  }
+  if (rc) return rc;
+  if (lag_band_matrix_factor(&m, scale)) {
+    pb->detail = "the equations of the reverse sweep are singular; take smaller steps";
+    return lag_step_failed(pb, LAG_EMETHOD, t0);
+  }
+  lag_band_matrix_solve(&m, X);
+  for (int s = 0; s < stages && rc == LAG_OK; s++) {
+    rc = lag_reverse_at(&w, t0 + c[s] * dt, ys + s * n, f + s * n, X + s * n, w.k);
+    lag_tangent_add(n, 1, w.k, x);
+  }
+  return rc;
+}

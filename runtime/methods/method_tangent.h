@@ -87,3 +87,8 @@ int lag_reverse_at(const lag_reverse *w, double t, const double *y, const double
 /* lag_method.adjoint of an explicit method. */
 int lag_reverse_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, double *x,
                          double *g, double *scratch);
+
+/* The same of an implicit one, by the transposed equations of lag_tangent_implicit. */
+size_t lag_reverse_implicit_size(const lag_problem *pb, int stages);
+int lag_reverse_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt,
+                         const double *ys, double *x, double *g, double *scratch);

@@ -454,13 +454,16 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return rc;
 }
 
+/* y[n] := the collocation polynomial that ends at y1, a part s of the step later. */
+static void path_at(int n, const double *y1, const double *path, double s, double *y) {
+  for (int i = 0; i < n; i++)
+    y[i] = y1[i] + s * (path[i] + (s - (node[1] - 1)) * (path[n + i] + (s - (node[0] - 1)) * path[2 * n + i]));
+}
+
 static void dense(void *work, lag_problem *pb, double t, double *y) {
   Radau *w = work;
   RadauArrays a = arrays(w, pb);
-  int n = pb->n;
-  double s = (t - (w->t0 + w->dt)) / w->dt;
-  for (int i = 0; i < n; i++)
-    y[i] = a.y1[i] + s * (a.path[i] + (s - (node[1] - 1)) * (a.path[n + i] + (s - (node[0] - 1)) * a.path[2 * n + i]));
+  path_at(pb->n, a.y1, a.path, (t - (w->t0 + w->dt)) / w->dt, y);
 }
 
 /* ---- Derivative of a step */
@@ -478,6 +481,35 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
   return lag_tangent_implicit(STAGES, butcher[0], node, pb, w->t0, dt, scratch, k, Y, scratch + STAGES * n);
 }
 
+static double span(const void *work, const lag_problem *pb, double t) {
+  const Radau *w = work;
+  (void)pb;
+  return lag_tangent_span(w->t0, t, w->dt);
+}
+
+/* The length of the whole step and its polynomial. */
+static size_t kept(const lag_problem *pb) { return 1 + (size_t)((STAGES + 1) * pb->n); }
+
+static void keep(void *work, const lag_problem *pb, double *x) {
+  Radau *w = work;
+  RadauArrays a = arrays(w, pb);
+  size_t n = (size_t)pb->n;
+  x[0] = w->dt;
+  memcpy(x + 1, a.y1, n * sizeof *x);
+  memcpy(x + 1 + n, a.path, STAGES * n * sizeof *x);
+}
+
+static size_t adjoint_size(const lag_problem *pb) {
+  return pb->model->constraints ? 0 : lag_reverse_implicit_size(pb, STAGES) + (size_t)(STAGES * pb->n);
+}
+
+static int adjoint(lag_problem *pb, double t0, double dt, const double *y0, double *x, double *g, double *scratch) {
+  int n = pb->n;
+  const double *whole = y0 + n, *y1 = whole + 1;
+  for (int s = 0; s < STAGES; s++) path_at(n, y1, y1 + n, node[s] * dt / *whole - 1, scratch + s * n);
+  return lag_reverse_implicit(STAGES, butcher[0], node, pb, t0, dt, scratch, x, g, scratch + STAGES * n);
+}
+
 const lag_method lag_radau = {
     .name = "radau",
     .order = 5,
@@ -489,4 +521,9 @@ const lag_method lag_radau = {
     .options = lag_adaptive_rk_options,
     LAG_METHOD_FUNCTIONS,
     LAG_METHOD_TANGENT,
+    .span = span,
+    .adjoint_size = adjoint_size,
+    .adjoint = adjoint,
+    .kept = kept,
+    .keep = keep,
 };

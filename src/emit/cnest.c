@@ -10,7 +10,9 @@ typedef struct {
   const Nest *n;
   Writer body;             /* writes the turn, with names of the function */
   const char *i, *j;       /* the counters */
-  unsigned char *each;     /* by slot of the body: 1 if its value changes from turn to turn */
+  /* by slot of the body: 1 if its value changes from turn to turn; 2: and it is part of the test of neighbours */
+  unsigned char *each;
+  const char *near;        /* the list of neighbours; NULL: there is none */
   const char **partial;    /* by store of the body: the variable that accumulates it; NULL: the element itself */
 } Nesting;
 
@@ -27,6 +29,12 @@ static const char *place(const Nesting *x, uint32_t k) { return index_text(x, x-
 static const char *turn_of_row(const Nesting *x, int behind) {
   const Nest *n = x->n;
   return index_text(x, (IrSubscript){.first = behind ? n->turns : 0, .by_row = n->skew + (behind ? n->more : 0)});
+}
+
+/* The store that says whether a turn counts; NULL: all do. */
+static const Store *test_of(const Prog *p) {
+  const Store *last = p->stores.n ? &p->stores.at[p->stores.n - 1] : NULL;
+  return last && last->array == NEST_TEST ? last : NULL;
 }
 
 /* --- the turn --- */
@@ -74,10 +82,57 @@ static void write_values(Nesting *x, const Writer *around, int each) {
 static void write_additions(Nesting *x) {
   Writer *w = &x->body;
   for (uint32_t k = 0; k < w->p->stores.n; k++) {
-    const Store *st = &w->p->stores.at[k];
+    const Store *st = &w->p->stores.at[k], *test = test_of(w->p);
+    if (st == test) continue;
     const char *sum = x->partial[k] ? x->partial[k] : arena_printf(w->a, "%s[%s]", w->cells, place(x, st->index));
-    cwriter_line(w, arena_printf(w->a, "%s %s %s;", sum, st->array ? "-=" : "+=", cwriter_operand(w, st->slot).text));
+    const char *value = cwriter_operand(w, st->slot).text, *prefix = w->style->prefix;
+    if (test)
+      value = arena_printf(w->a, "%s_SELECT(%s, %s, %s_C(0.0))", prefix, cwriter_operand(w, test->slot).text, value,
+                           prefix);
+    cwriter_line(w, arena_printf(w->a, "%s %s %s;", sum, st->array ? "-=" : "+=", value));
   }
+}
+
+/* --- neighbours --- */
+
+/* Values on which the test depends are computed before it. */
+static void find_test(Nesting *x) {
+  const Prog *p = x->n->body;
+  if (!x->near) return;
+  unsigned char *need = ARENA_ARRAY(x->body.a, unsigned char, p->ins.n);
+  need[test_of(p)->slot] = 1;
+  for (Slot s = p->ins.n; s-- > 1;) {
+    if (!need[s]) continue;
+    for (int k = 0; k < 3; k++) need[ins_operand(&p->ins.at[s], k)] = 1;
+    if (x->each[s]) x->each[s] = 2;
+  }
+}
+
+/* Declares the list, and brings it up to date. */
+static void find_neighbours(Nesting *x, const Writer *around) {
+  Writer *w = &x->body;
+  const Nest *n = x->n;
+  const IrNear *near = &n->near;
+  const char *list = x->near, *real = w->style->prefix;
+  int64_t members = n->at[near->at_i[0]].first - n->at[near->at_j[0]].first, step = n->at[near->at_j[0]].by_turn;
+  members = members / step + n->rows;
+  cwriter_line(w, arena_printf(w->a, "static _Thread_local double %s_x[LAG_NEAR_NUMBERS(%lld)];", list,
+                               (long long)members));
+  cwriter_line(w, arena_printf(w->a, "static _Thread_local int %s_of[LAG_NEAR_INTS(%lld)];", list, (long long)members));
+  cwriter_line(w, arena_printf(w->a, "static _Thread_local lag_near %s;", list));
+  StrBuf side = strbuf(w->a), first = strbuf(w->a);
+  for (uint32_t c = 0; c < near->n; c++) {
+    const char *open = arena_printf(w->a, "%s_C(0.0)", real);
+    sb_printf(&side, "%s%s", c ? ", " : "",
+              near->boxed ? cwriter_operand(around, n->outer[near->side[c]]).text : open);
+    sb_printf(&first, "%s%s.first[%u] = %lld", c ? ", " : "", list, c, (long long)n->at[near->at_j[c]].first);
+  }
+  cwriter_line(w, arena_printf(w->a, "lag_near_open(&%s, %lld, %u, %lld, %s_x, %s_of);", list, (long long)members,
+                               near->n, (long long)step, list, list));
+  cwriter_line(w, arena_printf(w->a, "%s;", sb_text(&first)));
+  cwriter_line(w, arena_printf(w->a, "lag_near_find(&%s, %s, %s, (const %s_REAL[]){%s});", list,
+                               cwriter_array(w, ARR_Q), cwriter_operand(around, n->outer[near->cut]).text, real,
+                               sb_text(&side)));
 }
 
 /* --- the loops --- */
@@ -85,6 +140,23 @@ static void write_additions(Nesting *x) {
 static void open_loop(Writer *w, const char *counter, const char *from, const char *end) {
   cwriter_line(w, arena_printf(w->a, "for (int %s = %s; %s < %s; %s++) {", counter, from, counter, end, counter));
   w->indent += 2;
+}
+
+static void open_neighbours(Nesting *x) {
+  Writer *w = &x->body;
+  const char *list = x->near;
+  cwriter_line(w, arena_printf(w->a, "const int *%s_j;", list));
+  cwriter_line(w, arena_printf(w->a, "const int %s_n = lag_near_of(&%s, %s, &%s_j);", list, list, turn_of_row(x, 1),
+                               list));
+  open_loop(w, arena_printf(w->a, "%s_k", list), "0", arena_printf(w->a, "%s_n", list));
+  cwriter_line(w, arena_printf(w->a, "const int %s = %s_j[%s_k];", x->j, list, list));
+}
+
+/* Values of the test, and the rest of the turn only where it holds. */
+static void write_test(Nesting *x, const Writer *around) {
+  Writer *w = &x->body;
+  write_values(x, around, 2);
+  cwriter_line(w, arena_printf(w->a, "if (!LAG_ANY(%s)) continue;", cwriter_operand(w, test_of(w->p)->slot).text));
 }
 
 static void close_loop(Writer *w) {
@@ -96,7 +168,8 @@ static void declare_partial(Nesting *x) {
   Writer *w = &x->body;
   StrBuf text = strbuf(w->a);
   for (uint32_t k = 0; k < w->p->stores.n; k++) {
-    if (nest_moves(x->n, w->p->stores.at[k].index)) continue;
+    const Store *st = &w->p->stores.at[k];
+    if (st->array == NEST_TEST || nest_moves(x->n, st->index)) continue;
     x->partial[k] = cnames_take(&w->names, "part");
     sb_printf(&text, "%s%s = %s_C(0.0)", text.n ? ", " : "", x->partial[k], w->style->prefix);
   }
@@ -113,11 +186,14 @@ static void add_partial(Nesting *x) {
 static void write_rows(Nesting *x, const Writer *around) {
   Writer *w = &x->body;
   const Nest *n = x->n;
+  if (x->near) find_neighbours(x, around);
   if (has_rows(n) && nest_has_turns(n)) open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
   write_values(x, around, 0);
   declare_partial(x);
-  if (nest_has_turns(n)) open_loop(w, x->j, turn_of_row(x, 0), turn_of_row(x, 1));
+  if (x->near) open_neighbours(x);
+  else if (nest_has_turns(n)) open_loop(w, x->j, turn_of_row(x, 0), turn_of_row(x, 1));
   else open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
+  if (x->near) write_test(x, around);
   write_values(x, around, 1);
   write_additions(x);
   close_loop(w);
@@ -148,6 +224,8 @@ void cnest_write(Writer *w, const Ins *i) {
   x.partial = ARENA_ARRAY(w->a, const char *, n->body->stores.n + 1);
   cwriter_find_sincos(&x.body);
   find_varying(&x);
+  if (n->near.n && !w->style->params) x.near = cnames_take(&x.body.names, "near");
+  find_test(&x);
   cwriter_flush_title(w);
   x.body.title = NULL;
   write_rows(&x, w);

@@ -43,6 +43,15 @@ static int calls_own(const ProgramSet *u) {
 /* Whether its linear systems are large enough for a band: LAG_BAND_LEAST of lag_kkt.h. */
 static int has_band(const ProgramSet *u) { return u->q.n + u->constraints.of.n >= 62; }
 
+/* Whether a sum runs over lists of neighbours; headers have none. */
+static int has_near(const MathText *m) {
+  ProgList all = program_set_programs(m->u);
+  int some = 0;
+  for (uint32_t i = 0; i < all.n; i++)
+    for (uint32_t k = 0; k < all.at[i]->nests.n; k++) some |= all.at[i]->nests.at[k].near.n > 0;
+  return some && strcmp(m->prefix, "LAG") == 0;
+}
+
 /* Bit 0: some input is a curve by cubics, bit 1: by quintics. */
 static unsigned curves_of(const ProgramSet *u) {
   unsigned some = 0;
@@ -61,7 +70,7 @@ static void sections(const MathText *m, int front, StrBuf *out) {
   } rows[] = {{"lanes", !front}, {"own", own}, {"libm", 1}, {"sincos", own && calls_sincos(u)},
               {"exp", own && unit_calls(u, "exp")}, {"log", own && unit_calls(u, "log")}, {"solver", m->solver},
               {"numbers", kkt}, {"band", kkt && has_band(u)}, {"kkt", kkt}, {"listed", kkt && has_band(u)},
-              {"interval", curves != 0}, {"cubic", curves & 1}, {"quintic", curves & 2}};
+              {"near", has_near(m)}, {"interval", curves != 0}, {"cubic", curves & 1}, {"quintic", curves & 2}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     const char *name = front ? arena_printf(out->arena, "%s: front", rows[i].name) : rows[i].name;
     if (rows[i].needed) embedded_section(name, m->prefix, m->lower, out);
@@ -99,10 +108,11 @@ void math_of_model(const MathText *m, int alone, StrBuf *out) {
     if (u->libm) sb_puts(out, "#define LAG_LIBM 1\n");
     if (kkt && !has_band(u)) sb_puts(out, "#define LAG_NO_BAND 1 /* so few unknowns have none */\n");
     sb_puts(out, calls_own(u) ? "#include \"lag_math.h\"\n" : "#include \"lag_lanes.h\"\n");
-    if (m->solver || curves_of(u)) sb_puts(out, "#include \"lag_support.h\"\n");
+    if (m->solver || curves_of(u) || has_near(m)) sb_puts(out, "#include \"lag_support.h\"\n");
     if (kkt) sb_puts(out, "#include \"lag_kkt.h\"\n");
   }
   exp_and_log_as_lanes(u, out);
+  if (has_near(m)) sb_puts(out, "#ifndef LAG_LANES\n#define floor lag_floor\n#endif\n");
 }
 
 void math_power(const char *prefix, const char *lower, StrBuf *out) { embedded_section("power", prefix, lower, out); }

@@ -524,8 +524,14 @@ static void put_nest(Coder *w, StrBuf *out, const Nest *n) {
   for (uint32_t k = 0; k < n->nouter; k++) put_word(out, w->place[n->outer[k]]);
   put_word(out, body->ins.n - 1);
   for (Slot s = 1; s < body->ins.n; s++) put_turn(w, out, &body->ins.at[s]);
-  put_word(out, body->stores.n);
-  for (uint32_t k = 0; k < body->stores.n; k++) {
+  const IrNear *near = &n->near;
+  uint32_t sums = body->stores.n - (near->n > 0); /* the last store is the test */
+  put_word(out, near->n);
+  for (uint32_t k = 0; k < near->n; k++)
+    put_word(out, near->at_i[k]), put_word(out, near->at_j[k]), put_word(out, near->boxed ? near->side[k] + 1 : 0);
+  if (near->n) put_word(out, near->cut), put_word(out, body->stores.at[sums].slot);
+  put_word(out, sums);
+  for (uint32_t k = 0; k < sums; k++) {
     const Store *st = &body->stores.at[k];
     put_word(out, st->array), put_word(out, st->index), put_word(out, st->slot);
   }

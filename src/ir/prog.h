@@ -98,6 +98,15 @@ static inline uint32_t solve_unknowns(const Solve *k) { return k->n + k->m; }
 /* Array index in row i, turn j of a nest. */
 typedef Subscript IrSubscript;
 
+/* Of a nest over neighbours: positions in its `at` of the elements of q that are the places i and j, by component; in
+ * `outer`, of the cut and the sides of the box, where it has any. Turn j of row i is taken only if the value of the
+ * body's store to array NEST_TEST holds. n 0: of another nest. */
+typedef struct {
+  uint32_t n, at_i[3], at_j[3], cut, side[3];
+  int boxed;
+} IrNear;
+enum { NEST_TEST = 2 };
+
 /* Two loops that accumulate sums: for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1. Sums
  * (ARR_CELL) are 0 before the first nest. A sum that stays the same in all turns of the inner (or only) loop gets
  * their total at once, added up from 0.
@@ -111,6 +120,7 @@ typedef struct {
   const IrSubscript *at;    /* [n] */
   const Slot *outer;    /* [nouter] values of the program that the nest is in */
   uint32_t n, nouter;
+  IrNear near;
   /* of a quantified sum, which is not written out anywhere: rows of its text, of which those without turns are left
    * out, and the number of the first; 0: of another nest */
   uint32_t text_rows, first_row;

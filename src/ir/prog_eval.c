@@ -119,7 +119,9 @@ static int run_turn(Run *body, const Run *r, const Nest *n, int64_t i, int64_t j
 
 /* Adds the stores of a turn to their sums or, where the sum stays the same in all turns, to the loop's partial sums. */
 static void add_stores(const Run *r, const Run *body, const Nest *n, Real *part, int64_t i, int64_t j) {
-  for (uint32_t k = 0; k < body->p->stores.n; k++) {
+  uint32_t n_stores = body->p->stores.n - (n->near.n > 0);
+  if (n->near.n && body->v[body->p->stores.at[n_stores].slot] == 0) return;
+  for (uint32_t k = 0; k < n_stores; k++) {
     const Store *st = &body->p->stores.at[k];
     Real *to = nest_moves(n, st->index) ? &r->cells[nest_index(n, st->index, i, j)] : &part[k];
     *to += st->array ? -body->v[st->slot] : body->v[st->slot];
@@ -129,6 +131,7 @@ static void add_stores(const Run *r, const Run *body, const Nest *n, Real *part,
 static void add_parts(const Run *r, const Nest *n, Real *part, int64_t i) {
   for (uint32_t k = 0; k < n->body->stores.n; k++) {
     const Store *st = &n->body->stores.at[k];
+    if (st->array == NEST_TEST) continue;
     if (!nest_moves(n, st->index)) r->cells[nest_index(n, st->index, i, nest_from(n, i))] += part[k];
     part[k] = 0;
   }

@@ -124,6 +124,60 @@ static void load_constants(NestBuilder *b, const Expr *values, uint32_t n) {
     if (!expr_map_get(&moving, values[k]) && !expr_is_num(g, values[k])) load_outer(b, values[k]);
 }
 
+/* --- neighbours --- */
+
+/* The body's values where the test of near(...) holds; 0: it decides on more than whether a turn counts. */
+static int split_test(const NestBuilder *b, const Expr *values, uint32_t n, Expr *inside) {
+  ExprGraph *g = b->l->g;
+  Expr test = b->s->near->test, yes = expr_int(g, 1), no = expr_int(g, 0);
+  Expr *outside = ARENA_ARRAY(b->l->p->arena, Expr, n + 1);
+  expr_replace_nodes(g, values, n, &test, &yes, 1, inside);
+  expr_replace_nodes(g, values, n, &test, &no, 1, outside);
+  for (uint32_t k = 0; k < n; k++)
+    if (!expr_is_zero(g, outside[k])) return 0;
+  return 1;
+}
+
+/* Index of a place in q: position in the nest's list; 0: it is no element of q at the nest's own step. */
+static int place_index(NestBuilder *b, Expr symbol, uint32_t *position, IrSubscript *index) {
+  for (uint32_t k = 0; k < b->s->nreads; k++) {
+    const NestRead *r = &b->s->reads[k];
+    Ins load;
+    if (expr_symbol(b->l->g, r->symbol)->node != symbol) continue;
+    if (!array_index(b, &r->at, &load, index) || load.array != ARR_Q) return 0;
+    *position = b->at.n;
+    vec_push(b->l->p->arena, &b->at, *index);
+    return 1;
+  }
+  return 0;
+}
+
+static uint32_t push_outer(NestBuilder *b, Expr e) {
+  lower_roots(b->l, &e, 1);
+  vec_push(b->l->p->arena, &b->outer, lower_slot(b->l, e));
+  return b->outer.n - 1;
+}
+
+/* The parts of a nest over neighbours. 0: places are not the members of families, all below the row's. */
+static int find_places(NestBuilder *b, IrNear *near) {
+  const NearTest *t = b->s->near;
+  const LoopRange *r = &b->s->range;
+  int64_t step = 0, shift = 0;
+  near->n = t->n;
+  near->boxed = t->side[0] != 0;
+  for (uint32_t c = 0; c < t->n; c++) {
+    IrSubscript i, j;
+    if (!place_index(b, t->at_i[c], &near->at_i[c], &i) || !place_index(b, t->at_j[c], &near->at_j[c], &j)) return 0;
+    if (!c) step = j.by_turn, shift = step ? (i.first - j.first) / step : 0;
+    if (step <= 0 || j.by_turn != step || i.by_row != step || i.by_turn || j.by_row ||
+        i.first - j.first != shift * step)
+      return 0;
+    near->side[c] = near->boxed ? push_outer(b, t->side[c]) : 0;
+  }
+  near->cut = push_outer(b, t->cut);
+  return r->skew == 0 && r->more == 1 && r->turns == shift;
+}
+
 /* -x for x; 0: e is no negative multiple. */
 static Expr negated(ExprGraph *g, Expr e) {
   Num c;
@@ -177,7 +231,7 @@ static void trim(Nest *n, int sampled) {
 }
 
 /* Appends the nest; cell `least` is number `base` of the program's sums. */
-static Slot append_nest(NestBuilder *b, const Shares *shares, int64_t least, uint32_t base) {
+static Slot append_nest(NestBuilder *b, const Shares *shares, const IrNear *near, int64_t least, uint32_t base) {
   Prog *p = b->l->p;
   const LoopRange *r = &b->s->range;
   for (uint32_t k = 0; k < shares->n; k++) {
@@ -187,9 +241,13 @@ static Slot append_nest(NestBuilder *b, const Shares *shares, int64_t least, uin
     vec_push(p->arena, &b->at, at);
     prog_store(b->body.p, (uint32_t)x->minus, b->at.n - 1, lower_slot(&b->body, x->value), "");
   }
+  if (near->n) prog_store(b->body.p, NEST_TEST, 0, lower_slot(&b->body, b->s->near->test), "");
   const Prog *body = prog_product_cse(prog_factor(prog_tidy(b->body.p)));
   Nest n = {.rows = r->rows, .count = (uint32_t)expr_sum_turns(b->l->g, b->nest), .skew = r->skew, .turns = r->turns,
-            .more = r->more, .body = body, .at = b->at.at, .outer = b->outer.at, .n = b->at.n, .nouter = b->outer.n};
+            .more = r->more, .body = body, .at = b->at.at, .outer = b->outer.at, .n = b->at.n, .nouter = b->outer.n,
+            .near = *near};
+  enum { NEIGHBOURS = 32 }; /* of a row, for counts of operations */
+  if (near->n) n.count = NEIGHBOURS * r->rows;
   trim(&n, b->s->sampled);
   vec_push(p->arena, &p->nests, n);
   Slot before = 0;
@@ -207,14 +265,22 @@ static int lower_as_nest(NestBuilder *b, const Expr *cells, uint32_t n) {
   for (uint32_t k = 0; k < n; k++) wanted[expr_cell_number(l->g, cells[k])] = 1;
   Shares shares = wanted_shares(b, wanted, &least, &most);
   b->body = lower_new(l->e);
-  Expr *values = ARENA_ARRAY(a, Expr, shares.n + 1);
+  Expr *values = ARENA_ARRAY(a, Expr, shares.n + 1), *inside = ARENA_ARRAY(a, Expr, shares.n + 1);
+  uint32_t nvalues = shares.n;
+  IrNear near = {0};
   for (uint32_t k = 0; k < shares.n; k++) values[k] = shares.at[k].value;
-  load_constants(b, values, shares.n);
+  if (b->s->near && shares.n && split_test(b, values, shares.n, inside) && find_places(b, &near)) {
+    for (uint32_t k = 0; k < shares.n; k++) shares.at[k].value = values[k] = inside[k];
+    values[nvalues++] = b->s->near->test;
+  } else {
+    near.n = 0;
+  }
+  load_constants(b, values, nvalues);
   if (!load_reads(b)) return 0;
-  lower_roots(&b->body, values, shares.n);
+  lower_roots(&b->body, values, nvalues);
   uint32_t base = l->p->cells;
   l->p->cells += (uint32_t)(most - least + 1);
-  Slot nest = shares.n ? append_nest(b, &shares, least, base) : 0;
+  Slot nest = shares.n ? append_nest(b, &shares, &near, least, base) : 0;
   for (uint32_t k = 0; k < n; k++) {
     int64_t c = expr_cell_number(l->g, cells[k]);
     Ins load = {.op = IR_LOAD, .array = ARR_CELL, .a = nest, .index = (uint32_t)(base + c - least), .name = "sum"};

@@ -1,8 +1,29 @@
 /* Jumps of L, of momenta and of constraints, each as a warning at its place in the text. */
 #include "mech/discontinuity.h"
 
+#include <math.h>
+
 #include "mech/constrain.h"
+#include "mech/near_cut.h"
 #include "sym/sum_nest.h"
+
+/* Jumps of the values of a sum; at the cut of near(...), which lines through random states seldom meet, by value. */
+static ExprJumps jumps_of_sum(const Eqns *e, const SumNest *s) {
+  ExprGraph *g = e->g;
+  ExprJumps all = {0};
+  Expr yes = expr_int(g, 1);
+  for (uint32_t i = 0; i < s->nshares && !all.n; i++) {
+    Expr value = s->shares[i].value;
+    if (s->near && near_cut(e, s, value).value != 0) {
+      ExprJump *cut = ARENA_NEW(e->m->arena, ExprJump);
+      *cut = (ExprJump){.node = s->near->test, .side = expr_sub(g, s->near->at_i[0], s->near->at_j[0])};
+      return (ExprJumps){cut, 1};
+    }
+    if (s->near) expr_replace_nodes(g, &value, 1, &s->near->test, &yes, 1, &value);
+    all = expr_jumps(g, value);
+  }
+  return all;
+}
 
 ExprJumps discontinuities_of(const Eqns *e, Expr x) {
   const Model *m = e->m;
@@ -16,7 +37,7 @@ ExprJumps discontinuities_of(const Eqns *e, Expr x) {
   ExprList l = expr_topo(g, &x, 1);
   for (uint32_t k = 0; k < l.n && !all.n; k++) {
     const SumNest *s = expr_op(g, l.at[k]) == EX_NEST ? expr_sum_nest(g, l.at[k]) : NULL;
-    for (uint32_t i = 0; s && i < s->nshares && !all.n; i++) all = expr_jumps(g, s->shares[i].value);
+    if (s) all = jumps_of_sum(e, s);
   }
   return all;
 }
@@ -57,6 +78,45 @@ static void warn_of_momentum(const Eqns *e, uint32_t i, const ExprJumps *said) {
   }
 }
 
+/* Sums over neighbours whose pairs have energy or force at the cut. 1: L has energy there, or a switch. */
+static int warn_of_cuts(const Eqns *e) {
+  const Model *m = e->m;
+  ExprList l = expr_topo(e->g, &m->lagrangian, 1);
+  int some = 0;
+  for (uint32_t k = 0; k < l.n; k++) {
+    const SumNest *s = expr_op(e->g, l.at[k]) == EX_NEST ? expr_sum_nest(e->g, l.at[k]) : NULL;
+    if (!s || !s->near || !s->nshares) continue;
+    NearCut cut = near_cut(e, s, s->shares[0].value);
+    Span where = place_in_text(m, s->near->test);
+    some |= cut.value != 0;
+    if (cut.value != 0) {
+      diag_warning(m->diags, where, "a pair has the energy %.3g at the cut, and loses it as it passes",
+                   (double)cut.value);
+      diag_help(m->diags, "subtract what it is there, `f(d) - f(r_cut)`, and (d - r_cut) times its slope, so that the "
+                          "force vanishes as well");
+    } else if (cut.force != 0) {
+      diag_warning(m->diags, where, "the force jumps at the cut, by %.3g", fabs((double)cut.force));
+      diag_help(m->diags, "the energy is kept to the first order of the step as pairs pass: add (d - r_cut) times the "
+                          "slope there, so that the force vanishes");
+    }
+  }
+  return some;
+}
+
+int near_cuts_fit(const Eqns *e) {
+  const Model *m = e->m;
+  ExprList l = m->lagrangian ? expr_topo(e->g, &m->lagrangian, 1) : (ExprList){0};
+  for (uint32_t k = 0; k < l.n; k++) {
+    const SumNest *s = expr_op(e->g, l.at[k]) == EX_NEST ? expr_sum_nest(e->g, l.at[k]) : NULL;
+    if (!s || !s->near || !s->nshares || !near_cut(e, s, s->shares[0].value).too_long) continue;
+    diag_error(m->diags, place_in_text(m, s->near->test), "the cut-off is above half the box: a pair would be near by "
+                                                          "several images, of which `near` takes one");
+    diag_help(m->diags, "take a larger box, with more bodies, or a shorter cut-off");
+    return 0;
+  }
+  return 1;
+}
+
 /* Constraints with a corner, as y = abs(x). A projection behind the corner gives the velocity after an impact
  * without rebound, or, if a step ends on the corner, an arbitrary one. */
 static void warn_of_corners(const Eqns *e) {
@@ -82,7 +142,7 @@ void discontinuity_warn(const Eqns *e) {
   uint32_t n = eqns_coordinates(e);
   VEC(ExprJump) said = {0};
   if (!m->lagrangian) return;
-  ExprJumps all = discontinuities_of(e, m->lagrangian);
+  ExprJumps all = warn_of_cuts(e) ? (ExprJumps){0} : discontinuities_of(e, m->lagrangian);
   for (uint32_t i = 0; i < all.n; i++) {
     if (!expr_contains(e->g, all.at[i].side, is_of_motion, m)) continue;
     diag_warning(m->diags, place_in_text(m, all.at[i].node),

@@ -225,7 +225,10 @@ static Expr sum_over(const Arguments *a, Expr body, int sampled) {
   const struct Quantified *q = a->q;
   NestShare *share = ARENA_NEW(a->arena, NestShare);
   share->value = body;
-  SumNest s = {.range = q->range, .reads = a->reads.at, .nreads = a->reads.n, .shares = share, .nshares = 1,
+  NearTest *near = q->near ? ARENA_NEW(a->arena, NearTest) : NULL;
+  if (near) *near = q->test;
+  SumNest s = {.range = q->range, .near = near, .reads = a->reads.at, .nreads = a->reads.n, .shares = share,
+               .nshares = 1,
                .nargs = a->args.n, .ncells = 1, .sampled = sampled, .i = q->i, .j = q->j, .i0 = q->lo,
                .j0 = q->from.first + q->from.by_i * q->lo, .row = q->pair[0][0] - q->lo,
                .turn = q->inner ? q->pair[0][1] - q->from.first - q->from.by_i * q->lo : 0};
@@ -270,11 +273,20 @@ int quantified_counts(const Eval *ev, const AstExpr *name) {
   return q && !q->pairs && id >= q->first && id <= ast_expr(ev->b->ast, q->outer)->c && q->counts[id - q->first];
 }
 
+/* Whether a read is of the family of an earlier one. */
+static int repeats(const struct Quantified *q, uint32_t k) {
+  const Read *r = &q->reads.at[k];
+  uint32_t first = 0;
+  while (q->reads.at[first].e != r->e || q->reads.at[first].rate != r->rate) first++;
+  return first < k;
+}
+
 /* Whether there are many more turns than members of what they read. */
 static int has_many_turns(const struct Quantified *q, uint64_t turns) {
   enum { MANY = 8 };
   uint64_t members = 0;
-  for (uint32_t k = 0; k < q->reads.n; k++) members += entity_size(q->reads.at[k].e);
+  for (uint32_t k = 0; k < q->reads.n; k++)
+    if (!repeats(q, k)) members += entity_size(q->reads.at[k].e);
   return turns > MANY * members;
 }
 
@@ -289,6 +301,23 @@ static void note_written_out(const Eval *ev, const struct Quantified *q, uint64_
             (unsigned long long)mb, mb > LIMIT_MB ? ", more than lagc takes" : "", why);
   diag_help(b->diags, "a sum whose terms read families at indices such as `i`, `j`, `i+1` stays a sum, whatever N is: "
                       "`lagc help families`");
+}
+
+static const AstNear *near_of(const Ast *ast, AstId sum) {
+  for (uint32_t k = 0; k < ast->nears.n; k++)
+    if (sum && ast->nears.at[k].sum == sum) return &ast->nears.at[k];
+  return NULL;
+}
+
+int quantified_fits(Eval *ev, AstId id) {
+  const AstNear *near = near_of(ev->b->ast, id);
+  for (uint32_t k = 0; near && k < ev->index.n; k++)
+    if (ev->index.at[k].name == near->i) return 1;
+  if (!near) return 1;
+  refuse(ev->b, near->span, "`near` takes each pair once, and there is no sum over `%s` around it" HELP
+         "a sum over pairs is `sum(%s in 1..N, sum(j in near(%s, r_cut), ...))`; in a potential it gives all forces",
+         near->i, near->i, near->i);
+  return 0;
 }
 
 int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
@@ -313,9 +342,10 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   uint64_t turns = 0;
   for (uint32_t row = 0; row < q->range.rows; row++) turns += (uint64_t)loop_turns(&q->range, row);
   uint64_t guessed = !read && q->inner ? (uint64_t)q->range.rows * q->range.rows / 2 : 0; /* unknown range inside */
-  if ((turns > guessed ? turns : guessed) < b->sums_from) return 0;
+  q->near = near_of(b->ast, q->inner);
+  if ((turns > guessed ? turns : guessed) < b->sums_from && !(q->near && b->sums_from < UINT32_MAX)) return 0;
   if (!read || !find_pairs(q, b->arena)) {
-    note_written_out(ev, q, turns);
+    if (turns >= b->sums_from) note_written_out(ev, q, turns);
     return 0;
   }
   q->turns = turns;
@@ -327,11 +357,29 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   return 1;
 }
 
+/* Keeps the condition of near(...) in the symbols of the first pair. 0, reported: its cut or its box moves. */
+static int keep_test(Eval *ev, struct Quantified *q) {
+  const AstNear *x = q->near;
+  ExprGraph *g = ev->b->g;
+  q->test = (NearTest){.test = value_of(ev, x->test)->e, .cut = value_of(ev, x->cut)->e, .n = x->n};
+  int still = q->test.cut && expr_is_constant(g, q->test.cut);
+  for (uint32_t k = 0; k < x->n; k++) {
+    q->test.at_i[k] = value_of(ev, x->at_i[k])->e;
+    q->test.at_j[k] = value_of(ev, x->at_j[k])->e;
+    q->test.side[k] = x->box[k] ? value_of(ev, x->box[k])->e : 0;
+    still &= !x->box[k] || (q->test.side[k] && expr_is_constant(g, q->test.side[k]));
+  }
+  if (!still)
+    refuse(ev->b, x->span, "the cut-off and the box of `near` move" HELP "they may contain numbers and parameters");
+  return still;
+}
+
 /* v, the value of the inner sum for one pair, is kept, and stood for by symbols. */
 static void keep_inner(Eval *ev, Value *v) {
   struct Quantified *q = ev->sums;
   q->body[q->pass] = *v;
   if (v->n == ROTATION) return;
+  if (q->near && v->e && q->pass == 0 && !keep_test(ev, q)) *v = q->body[0] = FAILED;
   for (uint32_t k = 0; v->e && k < component_count(v); k++) v->at[k] = expr_symbol(ev->b->g, q->inside[k])->node;
 }
 

@@ -28,6 +28,8 @@ struct Quantified {
   /* [id - first] 1: an index stands for itself, as a symbol; else it is a number, inside of [] and ranges */
   unsigned char *counts;
   int has_lets;       /* definitions of families are opened */
+  const AstNear *near; /* of the inner sum; NULL: over all j */
+  NearTest test;
   uint64_t turns;
   int sampled;        /* the self-check takes a sample of the turns */
   const char *why;    /* reason why there is no such form, and where: for a note */

@@ -322,7 +322,7 @@ int loop_begin(Eval *ev, AstId id) {
     *r = a_value(expr_int(b->g, x->kind == AST_PRODUCT), x->kind == AST_PRODUCT ? DIM_NONE : DIM_ANY, 1);
     return 0;
   }
-  if (!range_fits(b, lo, hi, x->span)) return 0;
+  if (!range_fits(b, lo, hi, x->span) || !quantified_fits(ev, id)) return 0;
   int quantified = quantified_begin(ev, id, lo, hi);
   if (quantified) return quantified > 0;
   vec_push(b->arena, &ev->loops, ((Loop){id, lo, hi, ev->terms.n}));

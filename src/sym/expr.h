@@ -88,8 +88,15 @@ typedef struct {
   Subscript at;
 } NestShare;
 
+/* A turn counts only where `test` holds: place i is nearer to place j than `cut`, in the symbols of the body. */
+typedef struct {
+  Expr test, cut, at_i[3], at_j[3], side[3]; /* by component; side 0: the space is open */
+  uint32_t n;
+} NearTest;
+
 typedef struct {
   LoopRange range;
+  const NearTest *near; /* NULL: all turns count; else values contain the test, too */
   const NestRead *reads;
   const NestShare *shares;
   uint32_t nreads, nshares, nargs, ncells;

@@ -154,12 +154,28 @@ struct AstStmt {
   AstStmt *next;
 };
 
+/* A family of coordinates with one index, by which neighbours may be found; components 0: numbers. */
+typedef struct {
+  Name name;
+  uint32_t components;
+} AstPlace;
+
+/* sum(j in near(i, cut, box), ...): the condition, and the members and sides of the box in it, by component. */
+typedef struct {
+  Name i;
+  AstId sum, test, cut, at_i[3], at_j[3], box[3];
+  uint32_t n;
+  Span span;
+} AstNear;
+
 typedef struct {
   Arena *arena;
   Interner *names;
   Sources *sources;
   Diags *diags;
   VEC(AstExpr) exprs;        /* exprs.at[0] is unused */
+  VEC(AstPlace) places;
+  VEC(AstNear) nears;
   AstStmt *first, *last;     /* the file's statements, includes already spliced in */
   AstStmt *composed;         /* functions that functions.def defines by a text; NULL: not yet parsed */
   struct FileIndex *index;   /* statements by name (model/file_index.c); NULL: not yet made */

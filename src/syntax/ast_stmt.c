@@ -93,6 +93,9 @@ AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList d
   s->type = type.name;
   s->unit = unit;
   s->periodic = periodic;
+  int rotates = type.name && strcmp(type.name, "rotation") == 0, one = dims.first && dims.first == dims.last;
+  AstPlace place = {name.name, !type.name ? 0 : strcmp(type.name, "vec2") == 0 ? 2 : 3};
+  if (kind == STMT_COORD && one && !rotates) vec_push(ast->arena, &ast->places, place);
   return s;
 }
 

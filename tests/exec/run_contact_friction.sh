@@ -343,7 +343,7 @@ least_prestress() { awk -F, 'NR > 1 && ($2 < -1e-9 || $3 < -1e-9 || ($2 > 1e-9 &
 soon() { # soon MODEL MU METHOD VALUES...
   name=$1 mu=$2 method=$3
   shift 3
-  timeout 3 "$LAGC" run "$TMP/$name.lag" s --quiet "mu=$mu" --method "$method" "$@" -o "$TMP/csv" --json >"$TMP/json" 2>&1 || { cat "$TMP/json"; return 1; }
+  timeout 15 "$LAGC" run "$TMP/$name.lag" s --quiet "mu=$mu" --method "$method" "$@" -o "$TMP/csv" --json >"$TMP/json" 2>&1 || { cat "$TMP/json"; return 1; }
 }
 for name in rails inclined; do # 100 times the tolerance 1e-9 of a, which is 13
   check "$name: as fast as without them" soon $name 0 dop853

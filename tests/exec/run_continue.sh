@@ -64,6 +64,9 @@ near "$title: spin" 1e-10 20 "$(sed -n '4s/.*"th": \([^,]*\),.*"ph.": \([^}]*\)}
 near "$title: balance" 1e-10 0 "$(sed -n '4s/.*"th": \([^,]*\),.*"ph.": \([^}]*\)}.*/\1 \2/p' "$TMP/points" | awk '{ printf "%.15g", cos($1) - 1.5*9.81/$2^2 }')"
 
 long() {
+  # van der Pol's period over mu: at 5 by SciPy's DOP853 at 1e-13; published 11.612 (C. Andersen, J. Geer, SIAM J. Appl. Math. 42 (1982) 678)
+  follow $dir/vanderpol.lag cycle mu=1..5 --guess 6.66
+  close 1 period 11.61223066771953 1e-9
   # the bead by a constraint: w = sqrt(g/R); on the other branch at w = 8 the height -g/w^2
   follow $dir/hoop.lag w=1..8 --branches
   kinds "branch point;end;end;end;end;"
@@ -109,6 +112,9 @@ refused() {
   shift
   check "refused: $case_words" says "$@"
 }
+ends() { check "$1" sh -c "'$LAGC' continue $2 | grep -q 'it ends there: $3'"; }
+ends "a family ends: at a value that the model refuses" "models/lorenz.lag x=0 y=0 z=0 rho=0.5..-3" "rho = .*: the model declares rho >= 0"
+slow ends "a family ends: next to the separatrix" "models/pendulum.lag wide energy=9..40" "the period grows without limit"
 refused "no range" 2 "a range is missing: NAME=A..B" "$LAGC" continue models/pendulum.lag wide
 refused "no such name" 2 "the model has no parameter of this name" "$LAGC" continue models/pendulum.lag wide gg=1..2
 refused "a range without length" 2 "the ends of the range are equal" "$LAGC" continue models/pendulum.lag wide l=1..1

@@ -71,6 +71,11 @@ long() {
   period=$(value period)
   orbit models/cr3bp.lag departure mu=0.01215058560962404 x=0.823385182 "y'=0.1263" --guess 2.743 --hold x --reverse y=-y
   close period "$period" 1e-13
+  # K. Howell, Celestial Mechanics 32 (1984) 53, halo orbits about L1, mu = 0.04: T/2 1.300177, x 0.723268, y' 0.198019, (a + 1/a)/2 1181.69
+  orbit $dir/cr3bp_space.lag mu=0.04 x=0.723 z=0.04 "y'=0.198" --guess 2.6 --reverse y=-y --hold z
+  near "$title: half a period" 5e-7 1.300177 "$(awk -v T="$(value period)" 'BEGIN { printf "%.9g", T/2 }')"
+  close x 0.723268 5e-7
+  near "$title: stability index" 5e-3 1181.69 "$(multiplier 1 1 | awk '{ printf "%.9g", ($1 + 1/$1)/2 }')"
   # motions across the plane do not act on those within: their trace by SciPy's DOP853 at 1e-13, 1.9999512850751
   orbit $dir/cr3bp_space.lag "y'=0.12623" --guess 2.743 --hold x,y
   close period 2.7429120843285 1e-11
@@ -141,6 +146,31 @@ slow_orbits() {
   closes 1 2 0.21199887 4e-5
 }
 slow slow_orbits
+
+# A verdict against runs of 30 periods: from a start that is 1e-4 off in one coordinate the motion stays within 100 times that, or, where it is unstable,
+# does not
+run_off() { "$LAGC" run "$TMP/beside.lag" orbit "$@" --until "$(awk -v T="$(value period)" 'BEGIN { printf "%.17g", 30*T }')" --every "$(value period)" --quiet -o -; }
+beside() { # VERDICT COORDINATE MODEL ARGS...
+  kind=$1 name=$2
+  shift 2
+  orbit "$@"
+  word verdict "$kind"
+  "$LAGC" orbit "$@" | sed -n '/^scene/,$p' | cat "$1" - >"$TMP/beside.lag"
+  start=$(sed -n "s/.*\"start\": {\([^}]*\)}.*/, \1/p" "$TMP/json" | sed -n "s/.*, \"$name\": \([^,]*\).*/\1/p")
+  run_off >"$TMP/on"
+  run_off "$name=$(awk -v x="$start" 'BEGIN { printf "%.17g", x + 1e-4 }')" >"$TMP/off"
+  bounded=$(paste -d, "$TMP/on" "$TMP/off" | awk -F, 'NR == 1 { n = NF/2 }
+    NR > 1 { d = $2 - $(n + 2); d = d < 0 ? -d : d; most = d > most ? d : most } END { print (NR < 15 || most > 1e-2 ? "unstable" : "bounded") }')
+  is "$title: runs from beside it" "$(if [ "$kind" = unstable ]; then echo unstable; else echo bounded; fi)" "$bounded"
+}
+runs_from_beside() {
+  beside attracts x $dir/vanderpol.lag cycle
+  beside attracts x $dir/oscillator.lag driven
+  beside "stable by the linearisation" x models/henon_heiles.lag regular x=0 y=0.3 "x'=0" "y'=0" --hold y
+  beside unstable x models/cr3bp.lag departure mu=0.01215058560962404 x=0.823385182 "y'=0.1263" --guess 2.743 --hold x,y
+  beside unstable x models/cr3bp.lag arenstorf --guess 17
+}
+slow runs_from_beside
 
 refused() {
   case_words=$1

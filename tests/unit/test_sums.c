@@ -60,6 +60,12 @@ static const char *const texts[] = {
     /* lets by index, of other lets, with a moved index; a let beside them */
     "const N = %d\ncoord x[N], y[N]\nparam k = 1\nlet a = k^2, c[i in 1..N] = cos(x[i])*a, e[i in 2..N] = c[i-1]*y[i]\n"
     "lagrangian = sum(i in 1..N, x[i]'^2 + y[i]'^2/2 + c[i]) - sum(i in 2..N, sum(j in 2..N, e[i]*c[j]*a))",
+    /* neighbours: of vectors, in a box of two sides, of numbers beside others */
+    BODIES "param cut = 1 > 0\npotential = sum(i in 1..N, sum(j in near(i, cut), e[i]*e[j]*(" APART " - cut^2)^2))",
+    BODIES "param cut = 0.3 > 0, L = 2 > 0, W = 3 > 0\npotential = sum(i in 1..N, \n"
+    "  -e[i]*sum(j in near(i, cut, (L, W), r), pair(image(r[i].x - r[j].x, L)^2 + image(r[i].y - r[j].y, W)^2)))",
+    "const N = %d\ncoord x[N], y[N]\nparam cut = 1 > 0\nkinetic = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2)\n"
+    "potential = 2*sum(i in 1..N, sum(j in near(i, cut, y), i*x[i]*(y[i] - y[j])^2))",
     /* a range that moves and grows; the first two rows are empty */
     "const N = %d\ncoord x[2*N]\nlagrangian = sum(i in 1..2*N, x[i]'^2/2) -\n"
     "  sum(i in 1..N, sum(j in i+1..2*i-2, cos(x[i] - 2*x[j])))",
@@ -123,6 +129,31 @@ static void sums_and_pairs_agree(void **state) {
       for (uint32_t i = 0; i < count; i++)
         if (!(fabsl(out[0][i] - out[1][i]) <= ROUNDING * (1 + fabsl(out[1][i])) * n))
           fail_msg("text %zu, N = %d, value %u: %.18Lg and %.18Lg", k, n, i, out[0][i], out[1][i]);
+      arena_free(a);
+    }
+}
+
+/* Sums over neighbours are full sums with a choice, written by hand. */
+static void neighbours_are_those_within_the_cut(void **state) {
+  (void)state;
+  static const char *const pairs[][2] = {
+      {BODIES "param cut = 1 > 0\npotential = sum(i in 1..N, sum(j in near(i, cut), m[i]*e[j]/" APART "))",
+       BODIES "param cut = 1 > 0\npotential = sum(i in 1..N, sum(j in 1..i-1,\n"
+              "  if(norm(r[i] - r[j]) < cut, m[i]*e[j]/" APART ", 0)))"},
+      {BODIES "param L = 3 > 0\npotential = sum(i in 1..N, sum(j in near(i, L/3, L), image(r[i].x - r[j].x, L)^3))",
+       BODIES "param L = 3 > 0\nfunction back(d) = d - L*floor(d/L + 1/2)\n"
+              "potential = sum(i in 1..N, sum(j in 1..i-1,\n"
+              "  if(hypot(back(r[i].x - r[j].x), back(r[i].y - r[j].y)) < L/3,\n"
+              "  back(r[i].x - r[j].x)^3, 0)))"}};
+  for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++)
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+      Arena *a = arena_new(NULL);
+      Real out[2][300];
+      uint32_t count = values(family(a, pairs[k][0], 8, 1), seed, out[0]);
+      assert_int_equal(values(family(a, pairs[k][1], 8, UINT32_MAX), seed, out[1]), count);
+      for (uint32_t i = 0; i < count; i++)
+        if (!(fabsl(out[0][i] - out[1][i]) <= 1000 * ROUNDING * (1 + fabsl(out[1][i])))) /* quotients by squares */
+          fail_msg("text %zu, value %u: %.18Lg and %.18Lg", k, i, out[0][i], out[1][i]);
       arena_free(a);
     }
 }
@@ -337,6 +368,7 @@ static void a_wrong_symmetry_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sums_and_pairs_agree),
+      cmocka_unit_test(neighbours_are_those_within_the_cut),
       cmocka_unit_test(random_families_agree),
       cmocka_unit_test(programs_do_not_know_the_pairs),
       cmocka_unit_test(a_spring_is_right),

@@ -1,0 +1,42 @@
+#!/bin/sh
+# Sums over neighbours: the same digits evaluated, compiled, in lanes and after a stop; their C stands alone, and its length does not know N.
+: "${LAGC:=build/lagc}" "${BUILD:=build}" "${INC:=runtime/include}" "${CC:=cc}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+. tests/tap.sh
+
+cat >"$TMP/gas.lag" <<'END'
+model gas
+const N = 36
+coord x[N], y[N]
+param L = 8 > 0, cut = 2.5 > 0
+kinetic = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2)
+function pair(s) = (cut^2 - s)^3/20
+potential = sum(i in 1..N, sum(j in near(i, cut, x, y, L),
+  pair(image(x[i] - x[j], L)^2 + image(y[i] - y[j], L)^2)))
+scene s { start x[i in 1..N] = 1.3*(i - 6*floor(i/6)), y[i in 1..N] = 1.3*floor(i/6), x[1]' = 3, y[2]' = -4
+  span 1
+  method verlet(step = 0.01)
+  output x[1], y[36], energy every 0.25 }
+END
+
+rows() { "$LAGC" run "$TMP/gas.lag" -o "$TMP/$1.csv" "$2" "$3" >"$TMP/$1.out" 2>&1 && cat "$TMP/$1.csv"; }
+rows evaluated --compile never >"$TMP/evaluated"
+rows compiled --compile always >"$TMP/compiled"
+check "five rows" test "$(grep -c '^[0-9]' "$TMP/evaluated")" = 5
+check "evaluated and compiled: the same digits" cmp "$TMP/evaluated" "$TMP/compiled"
+
+# Lists of other steps, and none: half a run, saved and gone on with.
+"$LAGC" run "$TMP/gas.lag" --until 0.5 --save-state "$TMP/half.state" --compile never >/dev/null 2>&1
+"$LAGC" run "$TMP/gas.lag" --resume "$TMP/half.state" --compile never -o "$TMP/rest.csv" >/dev/null 2>&1
+is "a run that is resumed has the same digits" "$(tail -1 "$TMP/evaluated")" "$(tail -1 "$TMP/rest.csv")"
+
+sweep() { "$LAGC" sweep "$TMP/gas.lag" 'L=8,8.1,8.2,8.3,8.4,8.5,8.6,8.7' --measure 'a=x[1](end)' "$@" >/dev/null 2>&1; }
+slow sweep -o "$TMP/lanes.csv"
+[ -z "${SLOW:-}" ] || is "a sweep in lanes has the digits of a run" "$(sed -n 's/^8,\(.*\),ok/\1/p' "$TMP/lanes.csv")" \
+  "$(sed -n 's/^1,\([^,]*\),.*/\1/p' "$TMP/compiled")"
+
+"$LAGC" emit "$TMP/gas.lag" --standalone -o "$TMP/gas.c"
+check "its C stands alone" "$CC" -std=c11 -Wall -Wextra -pedantic -Werror -I "$INC" -fsyntax-only "$TMP/gas.c"
+lines() { "$LAGC" emit "$TMP/gas.lag" -D "N=$1" | sed -n '/^static int accel/,/^}/p' | wc -l; }
+is "the length of the forces does not know N" "$(lines 36)" "$(lines 144)"
+tap_end
