@@ -157,6 +157,17 @@ void declare_composed(Builder *b) {
   }
 }
 
+/* Whether an argument of a function of the language is a vector: reported. */
+static int takes_vector(Eval *ev, const AstExpr *x, AstId arg) {
+  Builder *b = ev->b;
+  const Value *v = value_of(ev, arg);
+  if (!v->n) return 0;
+  diag_error(b->diags, ast_expr(b->ast, arg)->span, "`%s` takes numbers, but `%s` is %s", x->name, ast_short(b, arg),
+             shape_text(b, v->n));
+  diag_help(b->diags, "take its components one by one: `%s(v.x, ...)`", x->name);
+  return 1;
+}
+
 Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
   Builder *b = ev->b;
   const Definition *f = &b->functions.at[e->index];
@@ -165,7 +176,7 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
     return refuse(b, x->span, "`%s` is a function of the model's own, and may not be used here", x->name);
   if (!arity_is(ev, x, nargs)) return FAILED;
   for (AstId arg = x->args; arg; arg = ast_expr(b->ast, arg)->next) {
-    if (!value_of(ev, arg)->e) return FAILED;
+    if (!value_of(ev, arg)->e || (f->composed && takes_vector(ev, x, arg))) return FAILED;
     shapes[n++] = value_of(ev, arg)->n;
   }
   uint32_t place = find_instance(b, e->index, nargs, shapes, x->span);
