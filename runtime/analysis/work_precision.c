@@ -158,7 +158,7 @@ static void add_state_terms(lag_sim *sim, double t, const double *y, double span
   const double moved = 1. / 1024;
   lag_velocity_terms(sim, t, y, v);
   for (int i = 0; i < nq; i++) {
-    double of = v[i] < HUGE_VAL ? v[i] : 0;
+    double of = v[i] < HUGE_VAL ? v[i] : span > 0 ? fabs(y[i]) / span : 0; /* without mass: what shows in its place */
     terms[nq + i] = fmax(terms[nq + i], of);
     terms[i] = fmax(terms[i], of * span);
   }
