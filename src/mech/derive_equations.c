@@ -1,6 +1,5 @@
 /* Derives Eqns: calls lagrange, constrain and first_order, adds the energy, and reads facts for every state
  * (conserved, smooth, separable, ...) off the graph. */
-#include "mech/discontinuity.h"
 #include "mech/derive_equations.h"
 
 #include <math.h>
@@ -281,7 +280,7 @@ Eqns *eqns_derive(const Model *m) {
   if (!e->n) drop_idle_time(e);
   classify(e);
   sizes_find(e);
-  return near_cuts_fit(e) && check_method(e) ? e : NULL;
+  return check_method(e) ? e : NULL;
 }
 
 Eqns *eqns_derive_regularised(const Eqns *singular) {

@@ -103,20 +103,6 @@ static int warn_of_cuts(const Eqns *e) {
   return some;
 }
 
-int near_cuts_fit(const Eqns *e) {
-  const Model *m = e->m;
-  ExprList l = m->lagrangian ? expr_topo(e->g, &m->lagrangian, 1) : (ExprList){0};
-  for (uint32_t k = 0; k < l.n; k++) {
-    const SumNest *s = expr_op(e->g, l.at[k]) == EX_NEST ? expr_sum_nest(e->g, l.at[k]) : NULL;
-    if (!s || !s->near || !s->nshares || !near_cut(e, s, s->shares[0].value).too_long) continue;
-    diag_error(m->diags, place_in_text(m, s->near->test), "the cut-off is above half the box: a pair would be near by "
-                                                          "several images, of which `near` takes one");
-    diag_help(m->diags, "take a larger box, with more bodies, or a shorter cut-off");
-    return 0;
-  }
-  return 1;
-}
-
 /* Constraints with a corner, as y = abs(x). A projection behind the corner gives the velocity after an impact
  * without rebound, or, if a step ends on the corner, an arbitrary one. */
 static void warn_of_corners(const Eqns *e) {

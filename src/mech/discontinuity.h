@@ -16,6 +16,3 @@ ExprJumps discontinuities_of(const Eqns *e, Expr x);
 /* Warns of each place in the text where L, a momentum or a constraint's rate jumps and the equations do not tell
  * what follows. */
 void discontinuity_warn(const Eqns *e);
-
-/* Whether the cut-off of each sum over neighbours is at most half its box; 0, reported. */
-int near_cuts_fit(const Eqns *e);

@@ -50,11 +50,7 @@ NearCut near_cut(const Eqns *e, const SumNest *s, Expr value) {
   Real most = 0, strongest = 0;
   expr_replace_nodes(e->g, &value, 1, &t->test, &yes, 1, &p.inside);
   p.cut = value_of(e, t->cut, p.symbols);
-  for (uint32_t c = 0; c < t->n; c++) {
-    p.slope[c] = expr_diff(e->g, p.inside, expr_sym_id(e->g, t->at_i[c]));
-    Real side = t->side[c] ? value_of(e, t->side[c], p.symbols) : INFINITY;
-    r.too_long |= !(2 * p.cut <= side * (1 + 1e-12L));
-  }
+  for (uint32_t c = 0; c < t->n; c++) p.slope[c] = expr_diff(e->g, p.inside, expr_sym_id(e->g, t->at_i[c]));
   for (int line = 0; line < LINES; line++)
     for (int k = PARTS / 2; k <= PARTS; k++) {
       Real v, f;

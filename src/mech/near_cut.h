@@ -5,7 +5,6 @@
 
 typedef struct {
   long double value, force; /* of a pair at the cut, with the scene's parameters; 0: it vanishes there */
-  int too_long;             /* the cut is above half a side of the box */
 } NearCut;
 
 /* value: a share of s, which has a test. */

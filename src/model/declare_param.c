@@ -56,7 +56,28 @@ void add_size(Builder *b, Expr value, const char *what, Span span, int part) {
   int moves = !of && !part && !(expr_kinds(b->g, value) & beyond);
   of = moves ? value : of;
   if (!of || (!part && sign_is_nonnegative(expr_sign(b->g, of)))) return;
-  vec_push(b->arena, &b->m->sizes, ((ModelSize){of, what, span, 0, part, moves, 0}));
+  vec_push(b->arena, &b->m->sizes, ((ModelSize){of, what, span, 0, part, moves, NULL}));
+}
+
+/* A size of parameters alone that does not drive a motion; once. */
+static void add_other_size(Builder *b, Expr value, const char *what, const char *mistake, Span span) {
+  if (sign_is_nonnegative(expr_sign(b->g, value))) return;
+  for (uint32_t i = 0; i < b->m->sizes.n; i++)
+    if (b->m->sizes.at[i].value == value && b->m->sizes.at[i].mistake == mistake) return;
+  vec_push(b->arena, &b->m->sizes, ((ModelSize){.value = value, .what = what, .span = span, .mistake = mistake}));
+}
+
+void add_near_cut(Builder *b, Expr cut, Span span) {
+  static const char mistake[] =
+      "the cut-off of `near` is negative" HELP "a distance is at least 0: `param r_cut = 2.5 [m] > 0`";
+  add_other_size(b, cut, "the cut-off of `near` has a length", mistake, span);
+}
+
+void add_near_box(Builder *b, Expr side, Expr cut, Span span) {
+  static const char mistake[] = "the cut-off is above half the box: a pair would be near by several images, of which "
+                                "`near` takes one" HELP "take a larger box, with more bodies, or a shorter cut-off";
+  Expr twice = expr_mul(b->g, expr_int(b->g, 2), cut);
+  add_other_size(b, expr_sub(b->g, side, twice), "the box of `near` less twice its cut-off has a length", mistake, span);
 }
 
 /* The product of the factors with negative exponents, inverted. */
@@ -76,9 +97,10 @@ static Expr denominator_of(ExprGraph *g, Expr e) {
 void add_static_limit(Builder *b, Expr limit, Expr friction, Span span) {
   Expr ratio = expr_div(b->g, limit, friction), of = denominator_of(b->g, ratio);
   Expr excess = expr_sub(b->g, expr_mul(b->g, ratio, of), of);
-  if (!is_of_parameters(b->g, ratio) || sign_is_nonnegative(expr_sign(b->g, excess))) return;
-  const char *what = "the static limit minus the friction of a sliding body has a value";
-  vec_push(b->arena, &b->m->sizes, ((ModelSize){.value = excess, .what = what, .span = span, .excess = 1}));
+  static const char mistake[] = "the static limit is smaller than the friction of a sliding body" HELP
+                                "static friction is at least as large: `static = mu_s*N` with mu_s >= mu";
+  if (is_of_parameters(b->g, ratio))
+    add_other_size(b, excess, "the static limit minus the friction of a sliding body has a value", mistake, span);
 }
 
 void check_sizes(Builder *b) {
@@ -93,10 +115,8 @@ void check_sizes(Builder *b) {
     const char *size = arena_printf(b->arena, "%.6Lg", f);
     if (!(f < 0) && !(one->part && f > 1)) continue;
     if (one->part) diag_error(b->diags, one->span, "%s of %s, which must be between 0 and 1", one->what, size);
-    else if (one->excess)
-      diag_error(b->diags, one->span,
-                 "the static limit is smaller than the friction of a sliding body" HELP
-                 "static friction is at least as large: `static = mu_s*N` with mu_s >= mu");
+    else if (one->mistake)
+      diag_error(b->diags, one->span, "%s", one->mistake);
     else
       diag_error(b->diags, one->span,
                  "%s of %s, and would drive the motion" HELP

@@ -218,7 +218,8 @@ typedef struct {
   Expr value;
   const char *what; /* "this friction has a size" */
   Span span;
-  int open, part, moves, excess; /* excess: of one size over another; else it acts against the velocity by itself */
+  int open, part, moves;
+  const char *mistake; /* message where it is negative; NULL: it acts against the velocity by itself */
 } ModelSize;
 
 typedef struct {

@@ -357,21 +357,31 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   return 1;
 }
 
-/* Keeps the condition of near(...) in the symbols of the first pair. 0, reported: its cut or its box moves. */
-static int keep_test(Eval *ev, struct Quantified *q) {
+int quantified_judge(Eval *ev, AstId id) {
+  Builder *b = ev->b;
+  const AstNear *x = near_of(b->ast, id);
+  if (!x) return 1;
+  Expr cut = value_of(ev, x->cut)->e;
+  int still = cut && expr_is_constant(b->g, cut);
+  for (uint32_t k = 0; k < x->n && still; k++) {
+    Expr side = x->box[k] ? value_of(ev, x->box[k])->e : 0;
+    still = !x->box[k] || (side && expr_is_constant(b->g, side));
+    if (side && still) add_near_box(b, side, cut, x->span);
+  }
+  if (still) add_near_cut(b, cut, x->span);
+  else refuse(b, x->span, "the cut-off and the box of `near` move" HELP "they may contain numbers and parameters");
+  return still;
+}
+
+/* Keeps the condition of near(...) in the symbols of the first pair. */
+static void keep_test(const Eval *ev, struct Quantified *q) {
   const AstNear *x = q->near;
-  ExprGraph *g = ev->b->g;
   q->test = (NearTest){.test = value_of(ev, x->test)->e, .cut = value_of(ev, x->cut)->e, .n = x->n};
-  int still = q->test.cut && expr_is_constant(g, q->test.cut);
   for (uint32_t k = 0; k < x->n; k++) {
     q->test.at_i[k] = value_of(ev, x->at_i[k])->e;
     q->test.at_j[k] = value_of(ev, x->at_j[k])->e;
     q->test.side[k] = x->box[k] ? value_of(ev, x->box[k])->e : 0;
-    still &= !x->box[k] || (q->test.side[k] && expr_is_constant(g, q->test.side[k]));
   }
-  if (!still)
-    refuse(ev->b, x->span, "the cut-off and the box of `near` move" HELP "they may contain numbers and parameters");
-  return still;
 }
 
 /* v, the value of the inner sum for one pair, is kept, and stood for by symbols. */
@@ -379,7 +389,7 @@ static void keep_inner(Eval *ev, Value *v) {
   struct Quantified *q = ev->sums;
   q->body[q->pass] = *v;
   if (v->n == ROTATION) return;
-  if (q->near && v->e && q->pass == 0 && !keep_test(ev, q)) *v = q->body[0] = FAILED;
+  if (q->near && v->e && q->pass == 0) keep_test(ev, q);
   for (uint32_t k = 0; v->e && k < component_count(v); k++) v->at[k] = expr_symbol(ev->b->g, q->inside[k])->node;
 }
 

@@ -149,6 +149,9 @@ int whole_number(Builder *b, const Value *v, AstId id, int64_t *out);
 /* Whether a sum over neighbours stands in a sum over its first index; 0, reported. */
 int quantified_fits(Eval *ev, AstId id);
 
+/* After a turn of the sum `id`: whether the cut-off and the box of its neighbours rest; 0, reported. */
+int quantified_judge(Eval *ev, AstId id);
+
 /* quantified_sum.c: starts the sum `id` over i in lo .. hi, or the sum inside it, as one over representative pairs;
  * 0: it has no such form; -1: its value is set. quantified_next takes the value v of a body: 1: evaluate it again;
  * 0: *v is that of the sum. */

@@ -388,6 +388,7 @@ int loop_next(Eval *ev) {
     report_condition(b, x->c);
     v = FAILED;
   }
+  if (v.e && !quantified_judge(ev, l->construct)) v = FAILED;
   if (ev->sums && quantified_next(ev, &v)) return 1;
   if (v.e) vec_push(b->arena, &ev->terms, v);
   if (v.e && ++ev->rounds > RANGE_MAX) {

@@ -35,6 +35,11 @@ slow sweep -o "$TMP/lanes.csv"
 [ -z "${SLOW:-}" ] || is "a sweep in lanes has the digits of a run" "$(sed -n 's/^8,\(.*\),ok/\1/p' "$TMP/lanes.csv")" \
   "$(sed -n 's/^1,\([^,]*\),.*/\1/p' "$TMP/compiled")"
 
+refused() { check "$1 is refused" says 2 "$2" "$LAGC" run "$TMP/gas.lag" "$1"; }
+refused L=4.9 "the box of near less twice its cut-off has a length of -0.1, which must be at least 0: it is L - 2*cut"
+sed 's/, cut = 2.5 > 0/, cut = 2.5/' "$TMP/gas.lag" >"$TMP/any.lag"
+check "a negative cut-off is refused" says 2 "the cut-off of near has a length of -1" "$LAGC" run "$TMP/any.lag" cut=-1
+
 "$LAGC" emit "$TMP/gas.lag" --standalone -o "$TMP/gas.c"
 check "its C stands alone" "$CC" -std=c11 -Wall -Wextra -pedantic -Werror -I "$INC" -fsyntax-only "$TMP/gas.c"
 lines() { "$LAGC" emit "$TMP/gas.lag" -D "N=$1" | sed -n '/^static int accel/,/^}/p' | wc -l; }
