@@ -62,6 +62,15 @@ static LAG_LANE lag_reflector(int n, LAG_LANE *v, LAG_LANE *beta) {
   return alpha;
 }
 
+/* Leaves elements out of size[(m + n) n] that the scales found so far make far smaller than the others: they pass
+ * zero, as the sine of an angle does, and would turn the scales of all. */
+static void lag_leave_small(int n, int m, const LAG_LANE *scale, LAG_LANE *size) {
+  const LAG_LANE none = (LAG_LANE)1e9, far = (LAG_LANE)-12;
+  for (int k = 0; k < m + n; k++)
+    for (int j = 0; j < n; j++)
+      if (size[k*n + j] + scale[k] + scale[m + j] < far) size[k*n + j] = none;
+}
+
 /* scale[m + n], powers of two, of the constraints and then of the coordinates: [M A^T; A 0], scaled by them, has
  * elements as near to 1 as least squares of their exponents allow (A. R. Curtis, J. K. Reid, IMA J. Appl. Math. 10
  * (1972) 118, DOI 10.1093/imamat/10.1.118). So ranks depend on no unit: another unit of a constraint or coordinate
@@ -96,8 +105,8 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
   /* range of inertia, which goes with the square of a coordinate's unit; coordinates without inertia do not count */
   LAG_LANE light = none, heavy = -none;
   for (int j = 0; j < n; j++) {
-    const LAG_LANE here = size[(m + j)*n + j] < none ? size[(m + j)*n + j] : -none;
-    light = here < light ? here : light, heavy = here > heavy ? here : heavy;
+    const LAG_LANE here = size[(m + j)*n + j];
+    light = here < light ? here : light, heavy = here < none && here > heavy ? here : heavy;
   }
   if (most - least <= (LAG_LANE)12 && heavy - light <= (LAG_LANE)48) {
     for (int k = 0; k < all; k++) scale[k] = 1;
@@ -106,7 +115,8 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
   for (int k = 0; k < all; k++)
     for (int j = 0; j < n; j++)
       if (2*size[k*n + j] < top[k] + top[m + j] + (LAG_LANE)(2*bits + 6)) size[k*n + j] = none;
-  for (int turn = 0; turn < 40 && moved > (LAG_LANE)0.1; turn++) {
+  for (int turn = 0, left = 0; turn < 40 && (moved > (LAG_LANE)0.1 || !left); turn++) {
+    if (!(moved > (LAG_LANE)0.1)) lag_leave_small(n, m, scale, size), left = 1;
     moved = 0;
     for (int k = 0; k < all; k++) {
       LAG_LANE sum = 0, weight = 0;

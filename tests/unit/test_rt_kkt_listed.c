@@ -58,11 +58,31 @@ static void test_band(void **state) { (void)state, solves(N - 1, 0, 0, 1), solve
 static void test_few_closed(void **state) { (void)state, solves(N - 1, 0, 2, 0), solves(N - 1, 0, 3, 1); }
 static void test_dependent(void **state) { (void)state, solves(N, 1, 0, 0); }
 
+/* A telescope without mass on a door: its length and angle follow the door, x = f/I, whichever element of A passes 0. */
+static void test_without_mass(void **state) {
+  (void)state;
+  const double inertia = 2, f = 3, arm = 0.3, length = 0.28;
+  for (double unit = 1; unit < 1e7; unit *= 100) /* of the first constraint */
+    for (double small = 1; small > 1e-18; small /= 2)
+      for (int turned = 0; turned < 2; turned++) {
+        double s = turned ? small * 0.7 : 0.6, c = sqrt(1 - s * s), e = turned ? 0.4 : small, x = f / inertia;
+        double w[SIZE] = {inertia}, r0 = -e * x, r1 = arm * x, along = c * r0 + s * r1, across = c * r1 - s * r0;
+        w[9] = e * unit, w[10] = c * unit, w[11] = -s * length * unit;
+        w[12] = -arm, w[13] = s, w[14] = c * length;
+        w[15] = f;
+            assert_true(lag_kkt(3, 2, 1, w));
+        double worst = unit > 100 ? 1e-3 : 1e-9; /* units as far apart cost digits: of the scales, and of a small part */
+        assert_true(fabs(w[15] - x) < worst);
+        assert_true(fabs(w[16] - along) < worst && fabs(w[17] - across / length) < worst);
+      }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_band),
       cmocka_unit_test(test_few_closed),
       cmocka_unit_test(test_dependent),
+      cmocka_unit_test(test_without_mass),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
