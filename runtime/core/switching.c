@@ -143,12 +143,16 @@ int lag_switch_eval(lag_sim *s, double t, const double *y, double *g) {
 double lag_switch_noise(const lag_sim *s, int k) { return slides(s, k) ? 1e-12 : 2 * s->side_noise[k]; }
 
 /* side_noise[nmodes] := change of the switching functions g[nmodes] when the state at the present time changes in
- * its last digits. */
+ * its last digits, velocities in those at the begin of the step: an impact, and constraints, leave as much of them. */
 static int find_noise(lag_sim *s, const double *g) {
   const double last = 4 * DBL_EPSILON;
   const lag_model *m = s->scene->model;
   double *other = s->sides + m->nswitch;
-  for (int i = 0; i < s->pb.n; i++) s->yc[i] = s->now[i] * (i % 2 ? 1 - last : 1 + last);
+  for (int i = 0; i < s->pb.n; i++) {
+    int struck = i >= m->nq && i < 2 * m->nq && m->constraints && s->run->have_step != 0.0;
+    double size = struck ? fmax(fabs(s->now[i]), fabs(s->y0[i])) : fabs(s->now[i]);
+    s->yc[i] = s->now[i] + (i % 2 ? -last : last) * size;
+  }
   int rc = sides_at(s, s->run->t * (1 + last), s->yc, other);
   for (int k = 0; k < m->nmodes && rc == 0; k++)
     s->side_noise[k] = 2 * fabs(other[k] - g[k]) + 2 * last * (m->switches[k].is_floor ? 1 + fabs(g[k]) : 0);
