@@ -55,7 +55,7 @@ int lag_formula_noise(lag_sim *sim, const Samples *motion, FormulaNoise *worst) 
   }
   if (states) {
     double *v = size + n, span = fabs(motion->t[rows - 1] - sim->scene->t0);
-    lag_velocity_terms(sim, motion->t[rows / 2], motion->y + (size_t)(rows / 2) * (size_t)n, v);
+    lag_velocity_terms(sim, motion->t[rows / 2], motion->y + (size_t)(rows / 2) * (size_t)n, lag_step_so_far(sim), v);
     for (int i = 0; i < sim->pb.nq; i++) v[i] = span > 0 ? v[i] / span : HUGE_VAL;
     *worst = worst_rate(sim, noise, size, v, states);
   }

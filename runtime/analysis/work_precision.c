@@ -149,14 +149,14 @@ int lag_previous_alike(const lag_sim *sim, int i) {
   return -1;
 }
 
-/* terms[n] := the largest of itself and of each component's size at y, t of a run that lasts `span`, where its
+/* terms[n] := the largest of itself and of each component's size at y, t of a run of steps h to `span`, where its
  * values are rounding: of velocities by the energy, of coordinates with these over the run, of states by the terms
  * of their rates. */
-static void add_state_terms(lag_sim *sim, double t, const double *y, double span, double *terms, double *v) {
+static void add_state_terms(lag_sim *sim, double t, const double *y, double span, double h, double *terms, double *v) {
   int nq = sim->pb.nq, n = sim->pb.n;
   double calls = sim->pb.rhs_calls, *rate = sim->yb, *beside = sim->yc;
   const double moved = 1. / 1024;
-  lag_velocity_terms(sim, t, y, v);
+  lag_velocity_terms(sim, t, y, h, v);
   for (int i = 0; i < nq; i++) {
     double of = v[i] < HUGE_VAL ? v[i] : span > 0 ? fabs(y[i]) / span : 0; /* without mass: what shows in its place */
     terms[nq + i] = fmax(terms[nq + i], of);
@@ -177,12 +177,13 @@ static void add_state_terms(lag_sim *sim, double t, const double *y, double span
 static void take_terms(const Samples *s, lag_sim *sim, double *terms, double *v) {
   enum { ROWS = 5 };
   int n = s->n, last = s->rows - 1;
-  double span = last > 0 ? fabs(s->t[last] - sim->scene->t0) : 0;
+  double span = last > 0 ? fabs(s->t[last] - sim->scene->t0) : 0, h = lag_step_so_far(sim);
+  if (!(h > 0) && last > 0) h = span / last; /* a run that has not begun: rows are about a step apart */
   if (s->output > 0) terms[0] = lag_output_terms(sim, lag_sim_time(sim), sim->now, s->output - 1);
   if (s->output != 0 || n != sim->pb.n) return;
   for (int k = 0; k < ROWS && last >= 0; k++) {
     int row = k * last / (ROWS - 1);
-    add_state_terms(sim, s->t[row], s->y + (size_t)row * (size_t)n, span, terms, v);
+    add_state_terms(sim, s->t[row], s->y + (size_t)row * (size_t)n, span, h, terms, v);
   }
 }
 

@@ -208,8 +208,8 @@ static void add_to_trend(Charge *c, double t, double d, double size) {
 static void take_terms(lag_sim *s, double t, const double *y) {
   int n = lag_sim_ncharges(s), nq = s->pb.nq;
   double *beside = s->yb, *v = beside + nq;
-  double energy = n > 0 ? lag_energy_terms(s, t, y) : 0;
-  if (n > 1) lag_velocity_terms(s, t, y, v);
+  double energy = n > 0 ? lag_energy_terms(s, t, y, lag_step_so_far(s)) : 0;
+  if (n > 1) lag_velocity_terms(s, t, y, lag_step_so_far(s), v);
   memcpy(beside, y, (size_t)nq * sizeof *beside);
   memcpy(v + nq, y + 2 * nq, (size_t)s->pb.nz * sizeof *v);
   for (int i = 0; i < nq; i++) v[i] = v[i] < HUGE_VAL ? v[i] : y[nq + i];

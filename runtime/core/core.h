@@ -451,13 +451,14 @@ int lag_monitors_jump(lag_sim *sim, double t, const double *ya, const double *yb
 
 /* sizes.c: `size` where it is more than rounding of terms of the size `terms`, else `terms`. */
 double lag_above_rounding(double size, double terms);
-/* The size of the terms of the energy, and of output k, at y, t; v[nq] := of each velocity, that at which the
- * coordinates of its unit would have this energy; HUGE_VAL: there is none. NaN: not known. Scratch: ya, yb, yc. */
-double lag_energy_terms(lag_sim *sim, double t, const double *y);
+/* The size of the terms of the energy, forces in balance over a step h among them, and of output k, at y, t; v[nq] :=
+ * of each velocity, that at which the coordinates of its unit would have this energy; HUGE_VAL: there is none. NaN: not
+ * known. Scratch: ya, yb, yc. */
+double lag_energy_terms(lag_sim *sim, double t, const double *y, double h);
 double lag_output_terms(lag_sim *sim, double t, const double *y, int k);
 /* Change of output k with a relative change of the state, per unit of it; NaN: not known. */
 double lag_output_change(lag_sim *sim, double t, const double *y, int k);
-void lag_velocity_terms(lag_sim *sim, double t, const double *y, double *v);
+void lag_velocity_terms(lag_sim *sim, double t, const double *y, double h, double *v);
 /* pb.size := sizes of the components of a run that begins at `now`: of each unit the largest value and what forces
  * add to it in the time scale of the motion. Three right-hand sides, eleven from rest at 0, not counted. */
 void lag_start_sizes(lag_sim *s);

@@ -171,11 +171,11 @@ double lag_step_so_far(const lag_sim *s) {
   return s->run->have_step != 0.0 ? fabs(s->run->step_t1 - s->run->step_t0) : lag_equal_step(s);
 }
 
-double lag_energy_terms(lag_sim *s, double t, const double *y) {
+double lag_energy_terms(lag_sim *s, double t, const double *y, double h) {
   double e[2], beside[2], calls = s->pb.rhs_calls;
   energy_at(s, t, moved_state(s, y), beside);
   energy_at(s, t, y, e);
-  double rest = resting_terms(s, t, y, lag_step_so_far(s), e[0]);
+  double rest = resting_terms(s, t, y, h, e[0]);
   s->pb.rhs_calls = calls;
   return lag_above_rounding(fmax(e[1], fabs(e[0])), fmax(fabs(beside[0] - e[0]) / moved, rest));
 }
@@ -192,9 +192,9 @@ double lag_output_terms(lag_sim *s, double t, const double *y, int k) {
   return isnan(change) ? fabs(s->out[k]) : lag_above_rounding(fabs(s->out[k]), change);
 }
 
-void lag_velocity_terms(lag_sim *s, double t, const double *y, double *v) {
+void lag_velocity_terms(lag_sim *s, double t, const double *y, double h, double *v) {
   const lag_model *m = s->scene->model;
-  double energy = lag_energy_terms(s, t, y);
+  double energy = lag_energy_terms(s, t, y, h);
   int known = energy > 0 && energy < HUGE_VAL && !(m->flags & LAG_FIRST_ORDER);
   for (int i = 0; i < m->nq; i++) {
     if (!is_first(m, i)) continue;
