@@ -39,6 +39,20 @@ static int choose_end(App *app) {
   return 0;
 }
 
+/* Notes a position that stops at an end of its table: the equations lack the impulse of the stop. */
+static void note_stop(const App *app, const lag_table *c, double t) {
+  lag_sim *s = app->sim;
+  const lag_model *m = app->scene->model;
+  int rate = lag_input_rate(m, c->input);
+  double most = 0, span = c->row[c->width * (c->n - 1)] - c->row[0];
+  for (int i = 0; i < c->n; i++) most = fmax(most, fabs(c->row[c->width * i + 1]));
+  if (rate < 0 || m->inputs(m, t, s->p, s->u) || !(fabs(s->u[rate]) * span > 1e-9 * most)) return;
+  fprintf(stderr,
+          "%s: note: there %s stops at once, from %s = %.3g in SI units: an impulse that the motion lacks. End the run at "
+          "that row, or let the velocity end at 0: v = integral(a, level), u = integral(v)\n",
+          app->args.self, m->u[c->input].name, m->u[rate].name, s->u[rate]);
+}
+
 /* Notes input tables that do not cover the run: outside, their first and last values hold. */
 static void note_tables(const App *app) {
   const lag_model *m = app->scene->model;
@@ -49,6 +63,8 @@ static void note_tables(const App *app) {
     if (isnan(app->sim->hold[c->input]) && (from < first || to > last)) {
       fprintf(stderr, "%s: note: the table of %s reaches from %g to %g s; outside, its first and last values hold\n",
               app->args.self, m->u[c->input].name, first, last);
+      if (from < first) note_stop(app, c, first);
+      if (to > last) note_stop(app, c, last);
     }
   }
 }

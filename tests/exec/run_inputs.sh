@@ -266,6 +266,10 @@ END
 near "the double integral of a record" 1e-13 "$(awk 'BEGIN { t = 2; printf "%.17g", -(t^2/2 + t^3/6 - t^4/6 + t^5/40) }')" "$(last "$dir/sled.lag")"
 near "its second rate is the record" 1e-12 -1 "$("$LAGC" run "$dir/sled.lag" -o - --quiet | awk -F, 'END { print $3 }')"
 near "a scene without it" 1e-15 0 "$(last "$dir/sled.lag" still)"
+# Behind the record u rests, and v(3) = -3/8 stops at once; levelled, v ends at 0.
+check "a support that stops at once is said" says 0 "u stops at once, from u' = -0.375 in SI" "$LAGC" run "$dir/sled.lag" --until 4
+sed 's/integral(a)/integral(a, level)/' "$dir/sled.lag" >"$dir/rests.lag"
+check "one that rests is not" sh -c '! "$0" run "$1" --until 4 2>&1 | grep "at once"' "$LAGC" "$dir/rests.lag"
 # levelled: v(3) = 3 + 9/2 - 18 + 81/8 = -3/8 over 3 s; then u(3) = 63/40 + 9/16, over 3 s again
 sed -i 's/integral(\([av]\))/integral(\1, level)/g' "$dir/sled.lag"
 level() { "$LAGC" run "$dir/sled.lag" --until "$1" -o - --observe u --quiet | awk -F, 'END { print $NF }'; }
