@@ -48,8 +48,8 @@ static void note_stop(const App *app, const lag_table *c, double t) {
   for (int i = 0; i < c->n; i++) most = fmax(most, fabs(c->row[c->width * i + 1]));
   if (rate < 0 || m->inputs(m, t, s->p, s->u) || !(fabs(s->u[rate]) * span > 1e-9 * most)) return;
   fprintf(stderr,
-          "%s: note: there %s stops at once, from %s = %.3g in SI units: an impulse that the motion lacks. End the run at "
-          "that row, or let the velocity end at 0: v = integral(a, level), u = integral(v)\n",
+          "%s: note: there %s stops at once, from %s = %.3g in SI units: an impulse that the motion lacks. End the run "
+          "at that row, or let the velocity end at 0: v = integral(a, level), u = integral(v)\n",
           app->args.self, m->u[c->input].name, m->u[rate].name, s->u[rate]);
 }
 

@@ -174,7 +174,8 @@ void sizes_find(Eqns *e) {
     if (sign == SIGN_POSITIVE || (sign == SIGN_NONNEGATIVE && m->constraints.n)) continue;
     expr_eval(e->g, &x.e, 1, value, &inertia);
     const char *what = arena_printf(m->arena, "the coordinate `%s` has an inertia", m->coords.at[x.row].name);
-    if (inertia > 0) add_once(e, &known, (ModelSize){x.e, what, m->coords.at[x.row].span, !m->constraints.n, 0, 0, NULL});
+    Span span = m->coords.at[x.row].span;
+    if (inertia > 0) add_once(e, &known, (ModelSize){x.e, what, span, !m->constraints.n, 0, 0, NULL});
   }
 }
 

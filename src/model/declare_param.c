@@ -76,8 +76,8 @@ void add_near_cut(Builder *b, Expr cut, Span span) {
 void add_near_box(Builder *b, Expr side, Expr cut, Span span) {
   static const char mistake[] = "the cut-off is above half the box: a pair would be near by several images, of which "
                                 "`near` takes one" HELP "take a larger box, with more bodies, or a shorter cut-off";
-  Expr twice = expr_mul(b->g, expr_int(b->g, 2), cut);
-  add_other_size(b, expr_sub(b->g, side, twice), "the box of `near` less twice its cut-off has a length", mistake, span);
+  Expr twice = expr_mul(b->g, expr_int(b->g, 2), cut), rest = expr_sub(b->g, side, twice);
+  add_other_size(b, rest, "the box of `near` less twice its cut-off has a length", mistake, span);
 }
 
 /* The product of the factors with negative exponents, inverted. */

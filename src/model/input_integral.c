@@ -68,11 +68,13 @@ static const Input *integrand(Builder *b, const Input *in, int *level) {
   int ambiguous = 0;
   const Entity *e = of && of->kind == AST_NAME ? scope_find(&b->scope, of->name, in->effect, &ambiguous) : NULL;
   *level = how && how->kind == AST_NAME && strcmp(how->name, "level") == 0;
-  if (!e || e->kind != ENT_INPUT || (how && (!*level || how->next)) || &b->m->inputs.at[e->index] >= in) {
-    diag_error(b->diags, x->span,
-               "`integral` takes an input that is declared before" HELP
+  int odd = how && (!*level || how->next);
+  if (!e || e->kind != ENT_INPUT || odd || &b->m->inputs.at[e->index] >= in) {
+    diag_error(b->diags, odd ? how->span : x->span, "%s" HELP
                "`input a [m/s^2] = \"quake.csv\", v [m/s] = integral(a), u [m] = integral(v)`; `integral(a, level)` "
-               "takes the mean of the record away, so that it ends where it begins");
+               "takes the mean of the record away, so that it ends where it begins",
+               odd ? "`integral` takes an input, and `level` or nothing behind it"
+                   : "`integral` takes an input that is declared before");
     return NULL;
   }
   const Input *from = &b->m->inputs.at[e->index];

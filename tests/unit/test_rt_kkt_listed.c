@@ -58,7 +58,7 @@ static void test_band(void **state) { (void)state, solves(N - 1, 0, 0, 1), solve
 static void test_few_closed(void **state) { (void)state, solves(N - 1, 0, 2, 0), solves(N - 1, 0, 3, 1); }
 static void test_dependent(void **state) { (void)state, solves(N, 1, 0, 0); }
 
-/* A telescope without mass on a door: its length and angle follow the door, x = f/I, whichever element of A passes 0. */
+/* A telescope without mass on a door: its length and angle follow the door, x = f/I, whatever in A passes 0. */
 static void test_without_mass(void **state) {
   (void)state;
   const double inertia = 2, f = 3, arm = 0.3, length = 0.28;
@@ -71,7 +71,7 @@ static void test_without_mass(void **state) {
         w[12] = -arm, w[13] = s, w[14] = c * length;
         w[15] = f;
             assert_true(lag_kkt(3, 2, 1, w));
-        double worst = unit > 100 ? 1e-3 : 1e-9; /* units as far apart cost digits: of the scales, and of a small part */
+        double worst = unit > 100 ? 1e-3 : 1e-9; /* units far apart cost digits, by scales that a small part turns */
         assert_true(fabs(w[15] - x) < worst);
         assert_true(fabs(w[16] - along) < worst && fabs(w[17] - across / length) < worst);
       }
