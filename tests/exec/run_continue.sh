@@ -27,10 +27,21 @@ check "$title: rows" awk -F, 'NR == 1 { ok = $1 == "w [rad/s]" && $3 == "kind" &
   NR > 1 && $3 == "branch point" { found = $7 == 0 } END { exit !(ok && found && NR > 30) }' "$TMP/bead.csv"
 check "$title: picture" grep -q '<svg' "$TMP/bead.svg"
 # Lorenz (1963): rolls begin at rho = 1, and lose stability by Hopf at sigma (sigma + beta + 3)/(sigma - beta - 1) = 470/19
-follow models/lorenz.lag x=0 y=0 z=0 rho=0.5..26 --branches
+follow models/lorenz.lag x=0 y=0 z=0 rho=0..26 --branches
 kinds "branch point;end;end;Hopf;end;Hopf;end;end;end;"
 close 1 parameter 1 1e-10
 close 4 parameter 24.7368421052631579 1e-9
+# a parameter's bound is a place like any other: differences are one-sided there
+check "to a bound" sh -c "'$LAGC' continue models/lorenz.lag x=0 y=0 z=0 rho=3..0 | grep -q 'end of the range   rho = 0, '"
+# a driven mass: x(0) is the real part of 1/(k - w^2 + i c w); its period is the drive's at w, from 30 times the first one
+follow $dir/driven.lag c=0..0.5
+close 1 x 0.246153846153846154 1e-11
+close 2 parameter 0 0
+close 2 x 0.25 1e-11
+follow $dir/driven.lag c=1 w=0..4
+close 1 period 1.57079632679489662 1e-11
+close 1 x -0.080291970802919708 1e-11
+near "$title: where the period is 30 times the first" 1e-4 0.0333333333333 "$(of_point 2 parameter)"
 # transcritical points: the prey meets the predators at u = 1/3, p = p2 u (1 - u)/(1 - exp(-p3 u)), and vanishes at p = p2/p3
 follow $dir/prey.lag p=0.3..1 u=0.95 --branches --most 60
 near "$title: predators" 1e-11 0.8219043453739907 "$(sed -n 's/^{"kind": "branch point", "parameter": \([^,]*\),.*/\1/p' "$TMP/points" | sed -n 1p)"
