@@ -130,7 +130,8 @@ static double test_of(const BranchPoint *at, BranchKind kind) {
                                    : at->pair;
 }
 
-static int changes_sign(double a, double b) { return (a < 0 && b > 0) || (a > 0 && b < 0); }
+/* Whether a test function changes its sign from a to b, or leaves 0, as where a branch begins. */
+static int changes_sign(double a, double b) { return (a <= 0 && b > 0) || (a >= 0 && b < 0); }
 
 /* Kind of the point between two others; BRANCH_REGULAR: none, or no further one after `after`. */
 static BranchKind between(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b) {

@@ -42,6 +42,7 @@ typedef struct BranchPoint {
   int unstable;                   /* number of eigenvalues that grow */
   double fold, zero, minus, pair; /* test functions, and the growth of the complex pair nearest to the border */
   BranchKind kind;
+  const char *unfollowed; /* why no branch that leaves it is followed; NULL: one is, or none was asked for */
 } BranchPoint;
 
 /* Why a branch ends. */

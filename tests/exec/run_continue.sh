@@ -53,6 +53,9 @@ close 1 parameter 0 1e-12
 close 4 period 6.28318530717959 1e-11
 near "$title: radius" 1e-11 0.5 "$(sed -n '4s/.*"x": \([^,]*\), "y": \([^}]*\)}.*/\1 \2/p' "$TMP/points" | awk '{ printf "%.17g", sqrt($1*$1 + $2*$2) }')"
 near "$title: multiplier" 1e-10 0.0432139182637723 "$(sed -n '4s/.*"multipliers": \[\[\([^,]*\),.*/\1/p' "$TMP/points")"
+check "a range that begins at a Hopf point" sh -c "'$LAGC' continue $dir/hopf.lag lam=0..0.25 --branches | grep -q '^branch 2, .* from branch 1'"
+check "a steady Hopf point: what is not followed" sh -c "'$LAGC' continue $dir/turntable.lag --steady lam=-1..1 --branches | grep -A1 'Hopf' | grep -q 'not followed: .*--relative'"
+check "motions that are the same backwards" sh -c "'$LAGC' continue models/pendulum.lag wide l=1..1.1 --reverse rest | grep -q 'periodic motions over l'"
 # parametric resonance with friction: a multiplier of -1 at a = 0.2001..., by SciPy's DOP853 at 1e-13 and Brent's method; the motions of twice the period
 follow $dir/oscillator.lag parametric a=0.05..0.3
 kinds "period doubling;end;end;"
@@ -130,6 +133,7 @@ refused "no range" 2 "a range is missing: NAME=A..B" "$LAGC" continue models/pen
 refused "no such name" 2 "the model has no parameter of this name" "$LAGC" continue models/pendulum.lag wide gg=1..2
 refused "a range without length" 2 "the ends of the range are equal" "$LAGC" continue models/pendulum.lag wide l=1..1
 refused "two ranges" 2 "one value runs over a range" "$LAGC" continue models/pendulum.lag wide l=1..2 m=1..2
+refused "a branch point to begin with" 3 "let the range begin beside it" "$LAGC" continue models/lorenz.lag x=0 y=0 z=0 rho=1..2
 refused "outside" 2 "outside of 10..18: start within" "$LAGC" continue models/pendulum.lag wide energy=10..18
 refused "a period of steady motions" 2 "a steady motion has none" "$LAGC" continue $dir/governor.lag --steady period=1..2
 tap_end
