@@ -91,12 +91,12 @@ static int find_tangent(Walk *w, const double *d, double *tangent) {
 
 /* A point at the solution u that is placed. NULL: no memory, or no values. */
 static BranchPoint *make_point(Walk *w, const double *u, const double *d) {
-  size_t cols = (size_t)w->cols, room = sizeof(BranchPoint) / sizeof(double) + 1;
-  BranchPoint *at = (BranchPoint *)(void *)lag_pool_doubles(&w->b->pool, room + 4 * cols);
+  size_t cols = (size_t)w->cols, n = (size_t)w->p->eigenvalues, room = sizeof(BranchPoint) / sizeof(double) + 1;
+  BranchPoint *at = (BranchPoint *)(void *)lag_pool_doubles(&w->b->pool, room + 2 * cols + 2 * n);
   if (!at) return NULL;
   at->u = (double *)(void *)at + room;
   at->tangent = at->u + cols;
-  at->spectrum = (Spectrum){0, at->tangent + cols, at->tangent + 2 * cols};
+  at->spectrum = (Spectrum){0, at->tangent + cols, at->tangent + cols + n};
   memcpy(at->u, u, cols * sizeof *u);
   int rc = find_tangent(w, d, at->tangent);
   if (rc == LAG_EDOMAIN || w->p->spectrum(w->p->of, &at->spectrum)) return NULL;

@@ -231,8 +231,8 @@ int lag_steady_branch_open(SteadyBranch *s, lag_sim *like, const lag_algebra *al
   for (int k = 0; k < s->nheld; k++) s->held[k].value = held_value(s, &s->held[k], s->flow.probe->now);
   s->rows = s->steady.nrows + s->nheld + s->steady.m;
   s->cols = s->n + s->steady.m + 1;
-  s->problem = (BranchProblem){.of = s, .rows = s->rows, .cols = s->cols, .place = place, .system = system_of,
-                               .spectrum = spectrum,
+  s->problem = (BranchProblem){.of = s, .rows = s->rows, .cols = s->cols, .eigenvalues = s->n,
+                               .place = place, .system = system_of, .spectrum = spectrum,
                                .pairs = (lag_facts(&s->flow.probe->pb) & LAG_CONSERVES_ENERGY) != 0};
   return allocate(s);
 }

@@ -53,6 +53,12 @@ close 1 parameter 0 1e-12
 close 4 period 6.28318530717959 1e-11
 near "$title: radius" 1e-11 0.5 "$(sed -n '4s/.*"x": \([^,]*\), "y": \([^}]*\)}.*/\1 \2/p' "$TMP/points" | awk '{ printf "%.17g", sqrt($1*$1 + $2*$2) }')"
 near "$title: multiplier" 1e-10 0.0432139182637723 "$(sed -n '4s/.*"multipliers": \[\[\([^,]*\),.*/\1/p' "$TMP/points")"
+# a constant of the text is compiled as a parameter; rates +- i sqrt(k) {1, 2, 3}
+follow $dir/springs.lag k=1..4
+kinds "end;end;"
+near "$title: frequencies" 1e-9 24 "$(sed -n '1s/.*"rates": //p' "$TMP/points" | tr -d '[]{}' | awk -F', ' '{ for (i = 2; i <= 12; i += 2) s += $i < 0 ? -$i : $i; printf "%.15g", s }')"
+near "$title: no growth" 1e-9 0 "$(sed -n '1s/.*"rates": //p' "$TMP/points" | tr -d '[]{}' | awk -F', ' '{ for (i = 1; i <= 11; i += 2) s += $i < 0 ? -$i : $i; printf "%.15g", s }')"
+check "a constant: said" grep -q 'compiled as a parameter' "$TMP/err"
 check "a range that begins at a Hopf point" sh -c "'$LAGC' continue $dir/hopf.lag lam=0..0.25 --branches | grep -q '^branch 2, .* from branch 1'"
 check "a steady Hopf point: what is not followed" sh -c "'$LAGC' continue $dir/turntable.lag --steady lam=-1..1 --branches | grep -A1 'Hopf' | grep -q 'not followed: .*--relative'"
 check "motions that are the same backwards" sh -c "'$LAGC' continue models/pendulum.lag wide l=1..1.1 --reverse rest | grep -q 'periodic motions over l'"
