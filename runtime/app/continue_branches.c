@@ -317,6 +317,18 @@ static double led_value(Job *job) {
                                         : lag_flow_charge(&o->flow, job->led_of, o->flow.t0, o->y);
 }
 
+/* The quantity that runs over a range keeps its value for the first motion only: --period 2.5 period=2..3. */
+static void release_led(Job *job) {
+  PeriodicOrbit *o = &job->orbit;
+  int kept = 0;
+  for (int k = 0; k < o->nheld; k++) {
+    const OrbitHold *h = &o->held[k];
+    int same = (int)h->kind == job->led_kind && (h->kind == ORBIT_PERIOD || h->of == job->led_of);
+    if (!same) o->held[kept++] = *h;
+  }
+  o->nheld = kept;
+}
+
 static int begin_periodic(Job *job) {
   PeriodicOrbit *o = &job->orbit;
   App *app = job->app;
@@ -325,6 +337,7 @@ static int begin_periodic(Job *job) {
   rc = rc ? rc : lag_app_orbit_solve(app, o);
   if (rc) return rc;
   if (job->led_kind >= 0) {
+    release_led(job);
     o->led = o->nheld;
     o->held[o->nheld++] = (OrbitHold){.kind = (OrbitHoldKind)job->led_kind, .of = job->led_of};
     job->begin = (led_value(job) - job->offset) / job->factor;

@@ -70,6 +70,10 @@ close 1 period 3.14159265358979 1e-13
 # the pendulum's family by energy: 4 sqrt(l/g) K(k), k^2 = E/(2 m g l), at the end of the range
 follow models/pendulum.lag wide energy=9..18
 close 1 period 3.40802289484 1e-10
+# --period names the first motion, and holds no other: cos of the amplitude where 4 sqrt(l/g) K(sin(th/2)) = 3, mpmath
+follow models/pendulum.lag wide period=2.4..3 --period 2.5
+kinds "end;end;"
+near "$title: amplitude" 1e-10 -0.672828117724294 "$(sed -n "1s/.*\"th\": \([^,]*\), \"th'\": \([^}]*\)}.*/\1 \2/p" "$TMP/points" | awk '{ printf "%.15g", cos($1) - $2^2/(2*9.81) }')"
 
 # Steady motions. A conical pendulum turns at w with cos th = g/(l w^2); disturbed, it nods at w sqrt(1 + 3 cos^2 th)
 follow models/spherical_pendulum.lag cone --steady "ph'=3.3..8"
