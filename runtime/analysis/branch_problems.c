@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/finite_difference.h"
 #include "analysis/steady_motion.h"
 
 /* ---- States of rest */
@@ -33,20 +34,27 @@ static int balance(RestBranch *r, double *out) {
   return lag_residuals(&r->flow.probe->pb, r->flow.t0, r->y, out + r->n, out + r->rows);
 }
 
-/* Column k of J by central differences of order 4, of states and of the parameter alike. */
+/* Unknown k of the column that is made, the parameter behind the state; and its balance at another value. */
+typedef struct RestColumn {
+  RestBranch *r;
+  int k;
+} RestColumn;
+
+static int balance_at(void *of, double x, double *out) {
+  RestBranch *r = ((RestColumn *)of)->r;
+  int k = ((RestColumn *)of)->k, rc = LAG_OK;
+  if (k < r->n) r->y[component(r, k)] = x;
+  else rc = lag_flow_set(&r->flow, r->name, x);
+  return rc ? rc : balance(r, out);
+}
+
+/* Column k of J by differences of order 4, of states and of the parameter alike. */
 static int column(RestBranch *r, int k, double *J) {
-  static const double weight[] = {2.0 / 3, -1.0 / 12};
   const double part = 0x1p-10;
-  int rc = LAG_OK;
-  double was = k < r->n ? r->y[component(r, k)] : r->parameter;
-  for (int e = 0; e < 4 && rc == LAG_OK; e++) {
-    int j = e / 2 + 1, side = e % 2 ? 1 : -1;
-    double at = was + side * j * part * (k < r->n ? r->unit[k] : r->parameter_unit);
-    if (k < r->n) r->y[component(r, k)] = at;
-    else rc = lag_flow_set(&r->flow, r->name, at);
-    rc = rc ? rc : balance(r, r->up);
-    for (int i = 0; i < r->rows && rc == LAG_OK; i++) J[i * r->cols + k] += side * weight[j - 1] * r->up[i] / part;
-  }
+  RestColumn of = {r, k};
+  double was = k < r->n ? r->y[component(r, k)] : r->parameter, unit = k < r->n ? r->unit[k] : r->parameter_unit;
+  FiniteDifference d = {.order = 4, .n = r->rows, .stride = r->cols, .h = part * unit, .part = part, .out = r->up};
+  int rc = lag_finite_difference(&d, balance_at, &of, was, J + k);
   if (k < r->n) r->y[component(r, k)] = was;
   else rc = rc ? rc : lag_flow_set(&r->flow, r->name, was);
   return rc;
@@ -149,6 +157,7 @@ int lag_rest_branch_open(RestBranch *r, lag_sim *like, const lag_algebra *algebr
   r->problem = (BranchProblem){.of = r,
                                .rows = r->rows,
                                .cols = r->cols,
+                               .eigenvalues = r->flow.n,
                                .place = place_rest,
                                .system = rest_system,
                                .spectrum = rest_spectrum,
@@ -234,17 +243,13 @@ static int shrinks(PeriodicOrbit *o) {
 }
 
 static int place_orbit(void *of, const double *u) {
-  const double longest = 30; /* near a homoclinic motion the period grows without limit */
   PeriodicOrbit *o = of;
   int n = o->n, k = o->m * n;
   for (int i = 0; i < k; i++) o->y[i] = u[i] * o->unit[i % n];
   if (!o->flow.forced) o->T = u[k++] * o->time;
   for (int j = 0; j < o->ngroup; j++) o->shift[j] = u[k++];
   o->flow.message[0] = '\0';
-  if (!(o->T > 0 && o->T < longest * o->time)) {
-    snprintf(o->flow.message, sizeof o->flow.message, "the period has become %.6g s", o->T);
-    return LAG_EDOMAIN;
-  }
+  if (!o->flow.forced && !lag_orbit_period_is_usual(o)) return LAG_EDOMAIN;
   if (lag_orbit_set_parameter(o, u[k] * o->parameter_unit)) return LAG_EDOMAIN;
   if (shrinks(o)) {
     snprintf(o->flow.message, sizeof o->flow.message, "the motion shrinks to a state of rest");
@@ -275,6 +280,7 @@ void lag_orbit_branch(BranchProblem *p, PeriodicOrbit *o) {
   *p = (BranchProblem){.of = o,
                        .rows = o->rows,
                        .cols = o->cols,
+                       .eigenvalues = o->n,
                        .maps = 1,
                        .pairs = isfinite(o->pairing),
                        .place = place_orbit,

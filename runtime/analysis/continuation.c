@@ -19,6 +19,7 @@ typedef struct Walk {
   double *J, *rhs, *V, *sigma, *x;
   int newton;  /* steps of the last correction */
   double made; /* arclength of the last step */
+  int border;  /* 1: that step ends at the border of the range */
 } Walk;
 
 static double dot(int n, const double *a, const double *b) {
@@ -45,6 +46,7 @@ static int correct(Walk *w, double *u, const double *d) {
     w->rhs[w->p->rows] = along - dot(w->cols, u, d);
     lag_singular_values(w->rows, w->cols, w->J, w->V, w->sigma);
     lag_least_norm(w->rows, w->cols, w->J, w->V, w->sigma, least_rank, 0, w->rhs, w->x);
+    if (fabs(d[w->cols - 1]) == 1.0) w->x[w->cols - 1] = 0; /* the parameter stays to the bit, as at its bound */
     double size = sqrt(dot(w->cols, w->x, w->x));
     if (!(size < 1)) return 0;
     for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
@@ -89,12 +91,12 @@ static int find_tangent(Walk *w, const double *d, double *tangent) {
 
 /* A point at the solution u that is placed. NULL: no memory, or no values. */
 static BranchPoint *make_point(Walk *w, const double *u, const double *d) {
-  size_t cols = (size_t)w->cols, room = sizeof(BranchPoint) / sizeof(double) + 1;
-  BranchPoint *at = (BranchPoint *)(void *)lag_pool_doubles(&w->b->pool, room + 4 * cols);
+  size_t cols = (size_t)w->cols, n = (size_t)w->p->eigenvalues, room = sizeof(BranchPoint) / sizeof(double) + 1;
+  BranchPoint *at = (BranchPoint *)(void *)lag_pool_doubles(&w->b->pool, room + 2 * cols + 2 * n);
   if (!at) return NULL;
   at->u = (double *)(void *)at + room;
   at->tangent = at->u + cols;
-  at->spectrum = (Spectrum){0, at->tangent + cols, at->tangent + 2 * cols};
+  at->spectrum = (Spectrum){0, at->tangent + cols, at->tangent + cols + n};
   memcpy(at->u, u, cols * sizeof *u);
   int rc = find_tangent(w, d, at->tangent);
   if (rc == LAG_EDOMAIN || w->p->spectrum(w->p->of, &at->spectrum)) return NULL;
@@ -128,7 +130,8 @@ static double test_of(const BranchPoint *at, BranchKind kind) {
                                    : at->pair;
 }
 
-static int changes_sign(double a, double b) { return (a < 0 && b > 0) || (a > 0 && b < 0); }
+/* Whether a test function changes its sign from a to b, or leaves 0, as where a branch begins. */
+static int changes_sign(double a, double b) { return (a <= 0 && b > 0) || (a >= 0 && b < 0); }
 
 /* Kind of the point between two others; BRANCH_REGULAR: none, or no further one after `after`. */
 static BranchKind between(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b) {
@@ -282,36 +285,47 @@ static int is_closed(const Branch *b, const BranchPoint *at, double step, int co
   return b->npoints > 6 && sqrt(d) < 0.6 * step && dot(cols, at->tangent, b->first->tangent) > 0.9;
 }
 
-/* The point where the branch leaves the range, between `from` and the one at arclength `to`. */
-static BranchPoint *at_border(Walk *w, const BranchPoint *from, const BranchPoint *far, const BranchLimits *l) {
+/* The point where the branch leaves the range, between `from` and unknowns beyond. */
+static BranchPoint *at_border(Walk *w, const BranchPoint *from, const double *far, const BranchLimits *l) {
   int last = w->cols - 1;
-  double border = far->u[last] > l->high ? l->high : l->low;
-  double part = (border - from->u[last]) / (far->u[last] - from->u[last]);
+  double border = far[last] > l->high ? l->high : l->low;
+  double part = (border - from->u[last]) / (far[last] - from->u[last]);
   double *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols), *d = u + w->cols;
   if (!u) return NULL;
-  for (int i = 0; i < w->cols; i++) u[i] = from->u[i] + part * (far->u[i] - from->u[i]);
+  for (int i = 0; i < w->cols; i++) u[i] = from->u[i] + part * (far[i] - from->u[i]);
   u[last] = border;
   d[last] = 1;
-  return correct(w, u, d) ? make_point(w, u, far->tangent) : NULL;
+  return correct(w, u, d) ? make_point(w, u, from->tangent) : NULL;
 }
 
-static int outside(const BranchPoint *at, int last, const BranchLimits *l) {
-  return at->u[last] > l->high * (1 + 4 * DBL_EPSILON) || at->u[last] < l->low - 4 * DBL_EPSILON * fabs(l->low);
+static int outside(const double *u, int last, const BranchLimits *l) {
+  return u[last] > l->high * (1 + 4 * DBL_EPSILON) || u[last] < l->low - 4 * DBL_EPSILON * fabs(l->low);
+}
+
+/* The point at the border where a step goes beyond, and there is nothing beyond, as of a parameter declared >= 0. */
+static BranchPoint *last_point(Walk *w, const BranchPoint *from, double step, const BranchLimits *l) {
+  double *u = lag_pool_doubles(&w->b->pool, (size_t)w->cols);
+  if (!u) return NULL;
+  for (int i = 0; i < w->cols; i++) u[i] = from->u[i] + step * from->tangent[i];
+  if (!outside(u, w->cols - 1, l)) return NULL;
+  BranchPoint *at = at_border(w, from, u, l);
+  w->made = at ? dot(w->cols, at->u, from->tangent) - dot(w->cols, from->u, from->tangent) : 0;
+  return at;
 }
 
 /* Makes the next step; its length adapts to the number of Newton's steps and the turn of the tangent. NULL: none is
  * short enough. */
-static BranchPoint *next_point(Walk *w, double *step, double longest, double least) {
+static BranchPoint *next_point(Walk *w, double *step, double least, const BranchLimits *l) {
   const BranchPoint *from = w->b->last;
   for (; *step > 1e-7; *step /= 2) {
     BranchPoint *at = point_at(w, from, *step);
+    w->made = *step;
+    w->border = !at && (at = last_point(w, from, *step, l)) != NULL;
     if (!at) continue;
     double turn = dot(w->cols, at->tangent, from->tangent);
     if (turn < least) continue;
     int easy = w->newton <= 4 && turn > 0.98;
-    double made = *step;
-    *step = easy ? fmin(1.4 * made, longest) : made;
-    w->made = made;
+    *step = easy ? fmin(1.4 * *step, l->longest) : *step;
     return at;
   }
   return NULL;
@@ -341,21 +355,19 @@ int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const
   rc = rc ? rc : first_point(&w, u0, d, sign);
   for (double step = limits->step; rc == LAG_OK && b->npoints < limits->most;) {
     const BranchPoint *from = b->last;
-    BranchPoint *at = next_point(&w, &step, limits->longest, 0.9);
+    BranchPoint *at = next_point(&w, &step, 0.9, limits);
     if (!at && !sign && b->npoints == 1) { /* the direction was across the other branch, not yet along this one */
       step = limits->step;
-      at = next_point(&w, &step, limits->longest, 0.3);
+      at = next_point(&w, &step, 0.3, limits);
     }
     if (!at) return b->end = b->pool.failed ? BRANCH_NO_MEMORY : BRANCH_LOST, LAG_OK;
     /* from a branch point, where test functions are 0 but for rounding, nothing is looked for in the first step */
     BranchKind kind = !sign && b->npoints == 1 ? BRANCH_REGULAR : between(p, from, at);
     BranchPoint *found = kind == BRANCH_REGULAR ? NULL : locate(&w, from, at, w.made, kind);
-    if (found && !outside(found, last, limits)) append(b, found);
-    if (outside(at, last, limits)) {
-      if ((at = at_border(&w, from, at, limits)) != NULL) append(b, at);
-      return b->end = BRANCH_AT_RANGE, LAG_OK;
-    }
-    append(b, at);
+    if (found && !outside(found->u, last, limits)) append(b, found);
+    if (outside(at->u, last, limits)) at = at_border(&w, from, at->u, limits), w.border = 1;
+    if (at) append(b, at);
+    if (w.border) return b->end = BRANCH_AT_RANGE, LAG_OK;
     if (is_closed(b, at, step, p->cols)) return b->end = BRANCH_CLOSED, LAG_OK;
   }
   return rc;

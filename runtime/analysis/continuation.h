@@ -16,7 +16,7 @@ typedef struct Spectrum {
  * points. */
 typedef struct BranchProblem {
   void *of;
-  int rows, cols;
+  int rows, cols, eigenvalues; /* the most of them */
   int maps;  /* 1: eigenvalues are multipliers, with stability inside the unit circle; 0: rates */
   int pairs; /* 1: eigenvalues come in pairs, as of Hamilton's equations */
   int (*place)(void *of, const double *u); /* takes the unknowns. LAG_OK, or > 0: no values there */
@@ -42,6 +42,7 @@ typedef struct BranchPoint {
   int unstable;                   /* number of eigenvalues that grow */
   double fold, zero, minus, pair; /* test functions, and the growth of the complex pair nearest to the border */
   BranchKind kind;
+  const char *unfollowed; /* why no branch that leaves it is followed; NULL: one is, or none was asked for */
 } BranchPoint;
 
 /* Why a branch ends. */

@@ -81,6 +81,7 @@ static double spread_of(const Fit *f, int c) {
     sum += x;
     squares += x * x;
   }
+  if (!isfinite(squares)) return HUGE_VAL;
   double mean = n ? sum / n : 0, variance = n ? squares / n - mean * mean : 0;
   return variance > 1e-12 * mean * mean ? sqrt(variance) : mean != 0.0 ? fabs(mean) : 1;
 }
@@ -144,7 +145,7 @@ static void test_runs(Fit *f, int c) {
   k->rms = n > 0 ? sqrt(squares / n) : 0;
   k->exact = k->rms <= 1e-10 * spread_of(f, c);
   k->runs_expected = n > 0 ? product / n + 1 : 0;
-  k->runs_deviation = n > 1 ? sqrt(product * (product - n) / (n * n * (n - 1))) : 0;
+  k->runs_deviation = n > 1 && product > n ? sqrt(product * (product - n) / (n * n * (n - 1))) : 0;
   double far = k->runs_deviation > 0 ? (k->runs - k->runs_expected) / k->runs_deviation : 0;
   k->runs_chance = erfc(fabs(far) / sqrt(2));
 }
@@ -358,6 +359,10 @@ int lag_fit(Fit *f) {
   for (int c = 0; c < f->ncolumns && rc == LAG_OK; c++) {
     given[c] = f->column[c].per_row || f->column[c].sigma > 0;
     f->known_errors &= given[c];
+    if (isfinite(spread_of(f, c))) continue;
+    snprintf(f->why, sizeof f->why, "the values of %s are too large to be squared: check them, and their unit",
+             f->column[c].label);
+    rc = LAG_EINVAL;
   }
   if (rc == LAG_OK) begin_again(f, x, given);
   if (rc == LAG_OK && lag_fit_count_values(f, 1) < n) {

@@ -12,14 +12,15 @@
 
 enum { POINTS = 7, LOOKS = 64 };
 
-/* Whether the mode is undamped, and no other frequency is a multiple of its own, 0 included. */
+/* Whether the mode is undamped, and no other rate is a multiple of its own, 0 included: A. M. Lyapunov's theorem, by
+ * which rates that grow or decay are no obstacle. */
 static int has_family(const Modes *modes, int k) {
   const double near = 1e-3, undamped = 1e-9;
   const Mode *m = &modes->mode[k];
   if (!(m->im > 0) || fabs(m->re) > undamped * m->im || m->repeats > 1) return 0;
   for (int i = 0; i < modes->n; i++) {
-    double ratio = modes->mode[i].im / m->im;
-    if (i != k && fabs(ratio - rint(ratio)) < near) return 0;
+    double ratio = modes->mode[i].im / m->im, growth = modes->mode[i].re / m->im;
+    if (i != k && hypot(ratio - rint(ratio), growth) < near) return 0;
   }
   return 1;
 }

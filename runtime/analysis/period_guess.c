@@ -68,19 +68,24 @@ static double away(const Track *k, int r) {
   return most;
 }
 
-/* Row of the first close return; 0: none. */
+/* Row of the first close return; 0: none. One in the next one and a half of its times that is ten times nearer is
+ * taken before it: an angle that swings to both sides of a half turn is near its start after half a period. */
 static int first_return(const Track *k) {
-  const double near = 0.15;
-  double before = 0, now = 0;
-  int left = 0;
+  const double near = 0.15, nearer = 0.1, next_times = 2.5;
+  double before = 0, now = 0, least = near;
+  int left = 0, found = 0;
   for (int r = 1; r < k->rows; r++) {
+    if (found && k->t[r - 1] - k->t[0] > next_times * (k->t[found] - k->t[0])) return found;
     double next = away(k, r);
     left |= now > 2 * near;
-    if (left && now <= before && now < next && now < near) return r - 1;
+    if (left && now <= before && now < next && now < least) {
+      if (found) return r - 1;
+      found = r - 1, least = nearer * now;
+    }
     before = now;
     now = next;
   }
-  return 0;
+  return found;
 }
 
 /* Row next to time t0 + about that is nearest to the first; 0: none is near. */
@@ -109,7 +114,8 @@ static double nearer(FlowMap *f, const Track *k, int r) {
     along -= lag_flow_change(k->m, i, y, k->goal) * rate * weight;
     length += rate * rate * weight;
   }
-  return length > 0 ? along / length : 0;
+  double least = k->t[r > 0 ? r - 1 : r] - k->t[r], most = k->t[r < k->rows - 1 ? r + 1 : r] - k->t[r];
+  return length > 0 ? fmin(fmax(along / length, least), most) : 0; /* where it nearly rests rates say nothing */
 }
 
 int lag_orbit_guess(const PeriodicOrbit *o, lag_sim *like, double until, double about, double *T, char *message,

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/finite_difference.h"
 #include "numeric/singular_values.h"
 
 enum { MOST_STEPS = 60, MOST_SEGMENTS = 40 };
@@ -101,47 +102,29 @@ static void shooting_rows(PeriodicOrbit *o) {
     }
 }
 
-/* T := as many periods of the drive as before, which may have another one now. */
-static int follow_drive(PeriodicOrbit *o) {
-  const double same = 1e-9, near = 0.02;
-  double T = o->T / o->drives;
-  if (lag_flow_drive(&o->flow, &T) > same || fabs(T - o->T / o->drives) > near * T)
-    T = lag_flow_find_drive(&o->flow, 8 * o->time / o->drives);
-  if (T > 0) o->T = o->drives * T;
-  return T > 0 ? LAG_OK : LAG_EDOMAIN;
-}
-
-int lag_orbit_set_parameter(PeriodicOrbit *o, double value) {
-  const double stride = 0.02; /* of the range, in which the drive's period is followed from value to value */
-  double from = o->parameter;
-  int strides = o->flow.forced && o->led < 0 ? 1 + (int)(fabs(value - from) / (stride * o->parameter_unit)) : 1;
-  int rc = LAG_OK;
-  o->parameter = value;
-  for (int k = 1; k <= strides && o->led < 0 && rc == LAG_OK; k++) {
-    rc = lag_flow_set(&o->flow, o->name, k == strides ? value : from + (value - from) * k / strides);
-    rc = rc || !o->flow.forced ? rc : follow_drive(o);
-  }
+/* out[m n + nheld] := residuals and conditions with another value of the parameter. */
+static int residuals_at(void *of, double parameter, double *out) {
+  PeriodicOrbit *o = of;
+  int all = o->m * o->n, rc = lag_orbit_set_parameter(o, parameter);
+  rc = rc ? rc : lag_orbit_shoot(o, 0);
+  for (int r = 0; r < all && rc == LAG_OK; r++) out[r] = gap(o, r / o->n, r % o->n);
+  for (int k = 0; k < o->nheld && rc == LAG_OK; k++) out[all + k] = off_by(o, k);
   return rc;
 }
 
-/* Column of the parameter: of one of the model by central differences of order 2 of all rows, in any program: Newton's
+/* Column of the parameter: of one of the model by differences of order 2 of all rows, in any program: Newton's
  * steps and tangents need no more than some eight digits, and the period of a drive may change, too. */
 static int continuation_column(PeriodicOrbit *o) {
   const double part = 1e-5;
-  int all = o->m * o->n, col = o->cols - 1, rc = LAG_OK;
+  int all = o->m * o->n, col = o->cols - 1;
   if (o->led >= 0) {
     o->A[(all + o->led) * o->cols + col] = -o->parameter_unit / size_of(o, &o->held[o->led]);
     return LAG_OK;
   }
-  double was = o->parameter, h = part * o->parameter_unit;
-  for (int side = -1; side <= 1 && rc == LAG_OK; side += 2) {
-    rc = lag_orbit_set_parameter(o, was + side * h);
-    rc = rc ? rc : lag_orbit_shoot(o, 0);
-    for (int r = 0; r < all && rc == LAG_OK; r++)
-      o->A[r * o->cols + col] += side * gap(o, r / o->n, r % o->n) / (2 * part);
-    for (int k = 0; k < o->nheld && rc == LAG_OK; k++)
-      o->A[(all + k) * o->cols + col] += side * off_by(o, k) / (2 * part);
-  }
+  double was = o->parameter;
+  FiniteDifference d = {.order = 2, .n = all + o->nheld, .stride = o->cols, .h = part * o->parameter_unit,
+                        .part = part, .out = o->saved};
+  int rc = lag_finite_difference(&d, residuals_at, o, was, o->A + col);
   rc = rc ? rc : lag_orbit_set_parameter(o, was);
   return rc ? rc : lag_orbit_shoot(o, 0);
 }

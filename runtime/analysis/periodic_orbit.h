@@ -100,8 +100,11 @@ int lag_orbit_shoot(PeriodicOrbit *o, int tangents);
  * not move the largest value, or 1 declared unit. */
 int lag_orbit_choose_units(PeriodicOrbit *o, const double *y0);
 int lag_orbit_assemble(PeriodicOrbit *o);
-/* The parameter of the continuation := value. */
+/* orbit_drive.c. The parameter of the continuation := value. LAG_OK, or a status: both stay at the last value that was
+ * reached on the way, with the period of the drive there. */
 int lag_orbit_set_parameter(PeriodicOrbit *o, double value);
+/* 0: the period is 30 times the first one, or longer, with a message in o->flow. */
+int lag_orbit_period_is_usual(PeriodicOrbit *o);
 /* rows and cols for the present settings. */
 void lag_orbit_count(PeriodicOrbit *o);
 

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/finite_difference.h"
 #include "analysis/quotient_space.h"
 
 /* ---- Equations */
@@ -48,18 +49,22 @@ static int place(void *of, const double *u) {
   return rc || lag_not_finite(m->nrows + s->nheld, s->up) >= 0 ? LAG_EDOMAIN : LAG_OK;
 }
 
-/* The last column by central differences of order 4. */
+static int values_at(void *of, double parameter, double *out) {
+  int rc = set_parameter(of, parameter);
+  return rc ? rc : values(of, out);
+}
+
+/* The last column by differences of order 4. */
 static int parameter_column(SteadyBranch *s, double *J) {
-  static const double weight[] = {2.0 / 3, -1.0 / 12};
   const double part = 0x1p-10;
-  int all = s->steady.nrows + s->nheld, col = s->cols - 1, rc = LAG_OK;
-  if (s->led >= 0) J[(s->steady.nrows + s->led) * s->cols + col] = -s->parameter_unit;
-  for (int e = 0; e < 4 && rc == LAG_OK && s->led < 0; e++) {
-    int j = e / 2 + 1, side = e % 2 ? 1 : -1;
-    rc = set_parameter(s, s->parameter + side * j * part * s->parameter_unit);
-    rc = rc ? rc : values(s, s->up);
-    for (int r = 0; r < all && rc == LAG_OK; r++) J[r * s->cols + col] += side * weight[j - 1] * s->up[r] / part;
+  int all = s->steady.nrows + s->nheld, col = s->cols - 1;
+  if (s->led >= 0) {
+    J[(s->steady.nrows + s->led) * s->cols + col] = -s->parameter_unit;
+    return LAG_OK;
   }
+  FiniteDifference d = {
+      .order = 4, .n = all, .stride = s->cols, .h = part * s->parameter_unit, .part = part, .out = s->up};
+  int rc = lag_finite_difference(&d, values_at, s, s->parameter, J + col);
   return rc ? rc : set_parameter(s, s->parameter);
 }
 
@@ -226,8 +231,8 @@ int lag_steady_branch_open(SteadyBranch *s, lag_sim *like, const lag_algebra *al
   for (int k = 0; k < s->nheld; k++) s->held[k].value = held_value(s, &s->held[k], s->flow.probe->now);
   s->rows = s->steady.nrows + s->nheld + s->steady.m;
   s->cols = s->n + s->steady.m + 1;
-  s->problem = (BranchProblem){.of = s, .rows = s->rows, .cols = s->cols, .place = place, .system = system_of,
-                               .spectrum = spectrum,
+  s->problem = (BranchProblem){.of = s, .rows = s->rows, .cols = s->cols, .eigenvalues = s->n,
+                               .place = place, .system = system_of, .spectrum = spectrum,
                                .pairs = (lag_facts(&s->flow.probe->pb) & LAG_CONSERVES_ENERGY) != 0};
   return allocate(s);
 }

@@ -74,8 +74,8 @@ static int choose_begin(Job *job) {
 static const char *words_of(int rc, const char *message) {
   return rc == LAG_ENOMEM ? "out of memory"
          : rc == LAG_ESINGULAR
-             ? "at each value of the parameter there is a family of solutions: --hold energy, or another "
-               "charge, coordinate or `period`, chooses one"
+             ? "solutions form a family where the branch begins: --hold energy, or another charge, coordinate or "
+               "`period`, chooses one; if this is a branch point let the range begin beside it"
          : message && message[0] ? message
                                  : "there is no solution to begin with";
 }
@@ -203,15 +203,31 @@ static int follow_cycle(Job *job, const Part *of, const BranchPoint *at) {
   return rc == LAG_ENOMEM ? rc : LAG_OK;
 }
 
+/* Branches that leave a point. */
+static int follow_from(Job *job, const Part *of, BranchPoint *at, int first) {
+  int before = job->nparts, rc = LAG_OK, doubled = job->ndoubled;
+  if (at->kind == BRANCH_POINT && first) rc = follow_other(job, of, at);
+  else if (at->kind == BRANCH_HOPF) rc = follow_cycle(job, of, at);
+  else if (at->kind == BRANCH_DOUBLING) rc = follow_doubled(job, of, at);
+  else return LAG_OK;
+  if (rc == LAG_OK && job->nparts == before)
+    at->unfollowed = at->kind == BRANCH_HOPF && job->steady.cols
+                         ? "motions about steady ones that change are not followed: `lagc orbit --relative NAME` "
+                           "from a start beside it finds one"
+                     : at->kind != BRANCH_POINT && doubled == MOST_DOUBLINGS
+                         ? "branches of four such points are followed"
+                         : "no solution was found on it";
+  return rc;
+}
+
 /* Branches that leave the first one, and of those the motions whose period doubles again. */
 static int follow_branches(Job *job) {
   int rc = LAG_OK, first = job->nparts;
   for (int k = 0; k < job->nparts && rc == LAG_OK; k++)
-    for (const BranchPoint *at = job->part[k].branch.first; at && rc == LAG_OK; at = at->next) {
-      if (job->nparts >= MOST_BRANCHES - 1) return LAG_OK;
-      if (at->kind == BRANCH_POINT && k < first) rc = follow_other(job, &job->part[k], at);
-      if (at->kind == BRANCH_HOPF) rc = follow_cycle(job, &job->part[k], at);
-      if (at->kind == BRANCH_DOUBLING) rc = follow_doubled(job, &job->part[k], at);
+    for (BranchPoint *at = job->part[k].branch.first; at && rc == LAG_OK; at = at->next) {
+      if (job->nparts < MOST_BRANCHES - 1) rc = follow_from(job, &job->part[k], at, k < first);
+      else if (at->kind == BRANCH_POINT || at->kind == BRANCH_HOPF || at->kind == BRANCH_DOUBLING)
+        at->unfollowed = "there are too many branches";
     }
   return rc;
 }
@@ -301,6 +317,18 @@ static double led_value(Job *job) {
                                         : lag_flow_charge(&o->flow, job->led_of, o->flow.t0, o->y);
 }
 
+/* The quantity that runs over a range keeps its value for the first motion only: --period 2.5 period=2..3. */
+static void release_led(Job *job) {
+  PeriodicOrbit *o = &job->orbit;
+  int kept = 0;
+  for (int k = 0; k < o->nheld; k++) {
+    const OrbitHold *h = &o->held[k];
+    int same = (int)h->kind == job->led_kind && (h->kind == ORBIT_PERIOD || h->of == job->led_of);
+    if (!same) o->held[kept++] = *h;
+  }
+  o->nheld = kept;
+}
+
 static int begin_periodic(Job *job) {
   PeriodicOrbit *o = &job->orbit;
   App *app = job->app;
@@ -309,6 +337,7 @@ static int begin_periodic(Job *job) {
   rc = rc ? rc : lag_app_orbit_solve(app, o);
   if (rc) return rc;
   if (job->led_kind >= 0) {
+    release_led(job);
     o->led = o->nheld;
     o->held[o->nheld++] = (OrbitHold){.kind = (OrbitHoldKind)job->led_kind, .of = job->led_of};
     job->begin = (led_value(job) - job->offset) / job->factor;
@@ -349,7 +378,7 @@ static int read_limits(Job *job) {
 static int is_periodic(Job *job) {
   const Args *a = &job->app->args;
   FlowMap f;
-  if (job->led_kind >= 0 || a->guess || a->period || a->hold || a->relative) return 1;
+  if (job->led_kind >= 0 || a->guess || a->period || a->hold || a->relative || a->reverse) return 1;
   int forced = lag_flow_open(&f, job->app->sim) == LAG_OK && f.forced;
   lag_flow_free(&f);
   return forced;

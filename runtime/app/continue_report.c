@@ -83,6 +83,7 @@ static void put_point(FILE *f, const Job *job, const Part *part, const BranchPoi
   if (at->kind != BRANCH_REGULAR) fprintf(f, "; growing directions %d, then %d", before, after);
   else fprintf(f, "; growing directions %d", at->unstable);
   putc('\n', f);
+  if (at->unfollowed) fprintf(f, "    the branch from there is not followed: %s\n", at->unfollowed);
 }
 
 static const char *const ends[] = {[BRANCH_AT_RANGE] = "end of the range",
@@ -107,6 +108,7 @@ void lag_continue_put_text(FILE *f, const Job *job) {
       else if (at->kind != BRANCH_REGULAR) put_point(f, job, part, at, kind_word(at->kind, part->orbit != NULL));
       else if (!at->next) put_point(f, job, part, at, ends[part->branch.end]);
     }
+    if (part->branch.npoints == 1) fprintf(f, "  %s\n", ends[part->branch.end]);
     if (part->why[0]) fprintf(f, "  it ends there: %s\n", part->why);
   }
 }
@@ -122,6 +124,7 @@ static void json_point(Json *j, const Job *job, const Part *part, const BranchPo
                     lag_sim_declared(job->app->sim, i, state_at(job, part, at, i)));
   lag_json_end(j, '}');
   lag_json_count(j, "growing", at->unstable);
+  if (at->unfollowed) lag_json_string(j, "unfollowed", at->unfollowed);
   lag_json_begin(j, part->orbit ? "multipliers" : "rates", '[');
   for (int i = 0; i < at->spectrum.n; i++) {
     lag_json_begin(j, NULL, '[');

@@ -165,8 +165,8 @@ void lag_fit_report(const FitRun *r, FILE *out) {
           f->evaluations);
   if (f->nodes)
     fprintf(out,
-            "multiple shooting: %d parts, which join within %.1e of the size of the state; a run of the scene departs "
-            "from the record\n",
+            "multiple shooting: %d parts, which join within %.1e of the size of the state; where small changes grow a "
+            "run of the scene departs from the record\n",
             f->nodes->n + f->nrecords, lag_fit_widest_gap(f));
   put_values(f, out);
   if (!f->converged && f->weakest.change) {

@@ -37,7 +37,13 @@ static int take_prior(FitRun *r, const char *text) {
     FitTarget *t = &r->fit.target[j];
     if (!starts_with(text, t->name, &rest) || *rest != '~') continue;
     found = 1;
-    if (sscanf(rest, "~normal(%lf,%lf)", &t->prior, &t->prior_error) == 2 && t->prior_error > 0) continue;
+    int end = 0;
+    int read = sscanf(rest, "~normal(%lf ,%lf )%n", &t->prior, &t->prior_error, &end);
+    if (read == 2 && end && !rest[end] && isfinite(t->prior) && t->prior_error > 0 && isfinite(t->prior_error)) {
+      if (t->prior * t->sign >= 0) continue;
+      return lag_app_error(&r->app->args, "--prior '%s': the model declares %s %c 0, and the mean is %g", text, t->name,
+                           t->sign > 0 ? '>' : '<', t->prior);
+    }
     return lag_app_error(&r->app->args, "--prior '%s': write --prior '%s~normal(MEAN, DEVIATION)', in %s", text,
                          t->name, t->unit[0] ? t->unit : "its own unit");
   }

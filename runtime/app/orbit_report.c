@@ -122,6 +122,21 @@ static int driven_period(App *app, FlowMap *f, double *T) {
   return EXIT_RUN;
 }
 
+/* Refuses a start that is an equilibrium, but for rounding. */
+static int check_moves(App *app, FlowMap *f) {
+  const double rounding = 1e-12;
+  double most = 0, span = search_end(app) - f->t0, *rates = f->up;
+  if (f->forced || lag_flow_rates(f, f->t0, f->probe->now, rates)) return 0;
+  for (int i = 0; i < f->n; i++)
+    most = fmax(most, fabs(rates[i]) * span / lag_difference_scale(&f->probe->pb, f->probe->now, i));
+  if (most > rounding) return 0;
+  lag_app_error(&app->args,
+                "scene %s starts at rest, at an equilibrium, which has no period: `lagc modes` analyses it; start on a "
+                "motion that comes back: name=VALUE",
+                app->scene->name);
+  return EXIT_RUN;
+}
+
 /* *T := the period, or a guess of it: of the drive, as given, or the first close return of the motion. */
 static int choose_period(App *app, PeriodicOrbit *o, double *T) {
   const Args *a = &app->args;
@@ -131,6 +146,7 @@ static int choose_period(App *app, PeriodicOrbit *o, double *T) {
   if (rc) return rc;
   rc = lag_flow_open(&f, app->sim) ? lag_app_error(a, "%s", f.message), EXIT_RUN : LAG_OK;
   f.closing = o->closing;
+  rc = rc ? rc : check_moves(app, &f);
   if (rc == 0 && f.forced) rc = driven_period(app, &f, T);
   else if (rc == 0 && a->period) o->held[o->nheld++] = (OrbitHold){.kind = ORBIT_PERIOD, .value = *T};
   lag_flow_free(&f);

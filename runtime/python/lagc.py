@@ -187,7 +187,10 @@ def _address(a):
 
 def _array(a, shape, what):
     """`a` as doubles in C order, without a copy where it is so already; -1 in shape: any number."""
-    x = np.ascontiguousarray(a, dtype=np.float64)
+    try:
+        x = np.ascontiguousarray(a, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise Error(f"{what} = {a!r:.60}: not an array of real numbers") from None
     if len(x.shape) != len(shape) or any(want not in (-1, got) for want, got in zip(shape, x.shape)):
         raise Error(f"{what} has the shape {x.shape}, not ({', '.join('any' if k < 0 else str(k) for k in shape)})")
     return x
@@ -605,7 +608,7 @@ class Model:
         p[count, np], in SI units, in the order of parameters(). times: when states are kept. out: an array [count, len(times), n] to fill. Arrays of doubles are not copied. lanes: 4 or 8 motions
         at once in vectors, with the digits of `lagc sweep`, which differ from those of run() by rounding; None: from 2000 motions on. A library for it is compiled once, in seconds."""
         given = _named(values, more)
-        columns = {k: np.asarray(v, dtype=np.float64) for k, v in given.items() if not callable(v) and np.ndim(v)}
+        columns = {k: _array(v, (-1,), k) for k, v in given.items() if not callable(v) and np.ndim(v)}
         times = _array(times, (-1,), "times")
         for k, v in [*columns.items(), ("y0", y0), ("p", p), ("times", times)]:
             bad = [] if v is None else np.argwhere(~np.isfinite(np.asarray(v, dtype=np.float64)))

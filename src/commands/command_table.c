@@ -153,8 +153,9 @@ static const CommandRow commands[] = {
      "the scene depends on time, and where one of --guess, --period, --hold, --relative or such a NAME is given "
      "(the options of `lagc orbit`); else states of rest. Conserved charges keep their values unless one is NAME or "
      "--hold names others.\n\n"
-     "Derivatives by the parameter are central differences. A and B are in the declared unit, or the unit behind them: "
-     "th=5..170[deg]. Needs GSL. Exit status 3: no solution was found to begin with.\n\n"
+     "Derivatives by the parameter are differences, one-sided at its bounds; a constant is compiled as a parameter. "
+     "A and B are in the declared unit, or the unit behind them: th=5..170[deg]. Needs GSL. Exit status 3: no "
+     "solution was found to begin with.\n\n"
      "  name=value            a parameter, another start (th=3), an input to hold"},
     {CMD_LYAPUNOV, "lyapunov", "exponents", "MODEL [SCENE] [name=value ...] [--until T] [--exponents K] [--json]",
      "Lyapunov exponents: how fast neighbouring motions part",

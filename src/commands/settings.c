@@ -92,6 +92,13 @@ static const char *value_beside(Arena *a, const Options *o, uint32_t i, const ch
   return NULL;
 }
 
+/* Makes a constant that varies continuously a parameter, and says so. */
+static void as_param(Ast *ast, const char *name) {
+  AstStmt *st = (AstStmt *)find_declared(ast, STMT_CONST, name);
+  st->kind = STMT_PARAM;
+  diag_note(ast->diags, st->name_span, "`%s` is a constant: compiled as a parameter, which can vary", name);
+}
+
 /* Whether values may be ranges. */
 static int takes_ranges(const Options *o) { return o->command == CMD_SWEEP || o->command == CMD_CONTINUE; }
 
@@ -126,11 +133,7 @@ int settings_compiled(Ast *ast, Options *o, int all, GivenList *given, const cha
     if (constant && !ranges)
       return fail_with(
           error, arena_printf(ast->arena, "%s: `%s` is a constant, fixed when compiling: write -D %s", arg, name, arg));
-    if (constant && o->command == CMD_CONTINUE)
-      return fail_with(error, arena_printf(ast->arena,
-                                           "%s: `%s` is a constant, fixed when compiling, and cannot vary "
-                                           "continuously: declare it as a `param`",
-                                           arg, name));
+    if (constant && o->command == CMD_CONTINUE) constant = 0, as_param(ast, name);
     if (constant && !const_range_take(ast, o, i, name, error)) return 0;
     arg = o->rest.at[i];
     if (ranges && starts_rotation(ast, name))

@@ -27,10 +27,21 @@ check "$title: rows" awk -F, 'NR == 1 { ok = $1 == "w [rad/s]" && $3 == "kind" &
   NR > 1 && $3 == "branch point" { found = $7 == 0 } END { exit !(ok && found && NR > 30) }' "$TMP/bead.csv"
 check "$title: picture" grep -q '<svg' "$TMP/bead.svg"
 # Lorenz (1963): rolls begin at rho = 1, and lose stability by Hopf at sigma (sigma + beta + 3)/(sigma - beta - 1) = 470/19
-follow models/lorenz.lag x=0 y=0 z=0 rho=0.5..26 --branches
+follow models/lorenz.lag x=0 y=0 z=0 rho=0..26 --branches
 kinds "branch point;end;end;Hopf;end;Hopf;end;end;end;"
 close 1 parameter 1 1e-10
 close 4 parameter 24.7368421052631579 1e-9
+# a parameter's bound is a place like any other: differences are one-sided there
+check "to a bound" sh -c "'$LAGC' continue models/lorenz.lag x=0 y=0 z=0 rho=3..0 | grep -q 'end of the range   rho = 0, '"
+# a driven mass: x(0) is the real part of 1/(k - w^2 + i c w); its period is the drive's at w, from 30 times the first one
+follow $dir/driven.lag c=0..0.5
+close 1 x 0.246153846153846154 1e-11
+close 2 parameter 0 0
+close 2 x 0.25 1e-11
+follow $dir/driven.lag c=1 w=0..4
+close 1 period 1.57079632679489662 1e-11
+close 1 x -0.080291970802919708 1e-11
+near "$title: where the period is 30 times the first" 1e-4 0.0333333333333 "$(of_point 2 parameter)"
 # transcritical points: the prey meets the predators at u = 1/3, p = p2 u (1 - u)/(1 - exp(-p3 u)), and vanishes at p = p2/p3
 follow $dir/prey.lag p=0.3..1 u=0.95 --branches --most 60
 near "$title: predators" 1e-11 0.8219043453739907 "$(sed -n 's/^{"kind": "branch point", "parameter": \([^,]*\),.*/\1/p' "$TMP/points" | sed -n 1p)"
@@ -42,6 +53,15 @@ close 1 parameter 0 1e-12
 close 4 period 6.28318530717959 1e-11
 near "$title: radius" 1e-11 0.5 "$(sed -n '4s/.*"x": \([^,]*\), "y": \([^}]*\)}.*/\1 \2/p' "$TMP/points" | awk '{ printf "%.17g", sqrt($1*$1 + $2*$2) }')"
 near "$title: multiplier" 1e-10 0.0432139182637723 "$(sed -n '4s/.*"multipliers": \[\[\([^,]*\),.*/\1/p' "$TMP/points")"
+# a constant of the text is compiled as a parameter; rates +- i sqrt(k) {1, 2, 3}
+follow $dir/springs.lag k=1..4
+kinds "end;end;"
+near "$title: frequencies" 1e-9 24 "$(sed -n '1s/.*"rates": //p' "$TMP/points" | tr -d '[]{}' | awk -F', ' '{ for (i = 2; i <= 12; i += 2) s += $i < 0 ? -$i : $i; printf "%.15g", s }')"
+near "$title: no growth" 1e-9 0 "$(sed -n '1s/.*"rates": //p' "$TMP/points" | tr -d '[]{}' | awk -F', ' '{ for (i = 1; i <= 11; i += 2) s += $i < 0 ? -$i : $i; printf "%.15g", s }')"
+check "a constant: said" grep -q 'compiled as a parameter' "$TMP/err"
+check "a range that begins at a Hopf point" sh -c "'$LAGC' continue $dir/hopf.lag lam=0..0.25 --branches | grep -q '^branch 2, .* from branch 1'"
+check "a steady Hopf point: what is not followed" sh -c "'$LAGC' continue $dir/turntable.lag --steady lam=-1..1 --branches | grep -A1 'Hopf' | grep -q 'not followed: .*--relative'"
+check "motions that are the same backwards" sh -c "'$LAGC' continue models/pendulum.lag wide l=1..1.1 --reverse rest | grep -q 'periodic motions over l'"
 # parametric resonance with friction: a multiplier of -1 at a = 0.2001..., by SciPy's DOP853 at 1e-13 and Brent's method; the motions of twice the period
 follow $dir/oscillator.lag parametric a=0.05..0.3
 kinds "period doubling;end;end;"
@@ -50,6 +70,10 @@ close 1 period 3.14159265358979 1e-13
 # the pendulum's family by energy: 4 sqrt(l/g) K(k), k^2 = E/(2 m g l), at the end of the range
 follow models/pendulum.lag wide energy=9..18
 close 1 period 3.40802289484 1e-10
+# --period names the first motion, and holds no other: cos of the amplitude where 4 sqrt(l/g) K(sin(th/2)) = 3, mpmath
+follow models/pendulum.lag wide period=2.4..3 --period 2.5
+kinds "end;end;"
+near "$title: amplitude" 1e-10 -0.672828117724294 "$(sed -n "1s/.*\"th\": \([^,]*\), \"th'\": \([^}]*\)}.*/\1 \2/p" "$TMP/points" | awk '{ printf "%.15g", cos($1) - $2^2/(2*9.81) }')"
 
 # Steady motions. A conical pendulum turns at w with cos th = g/(l w^2); disturbed, it nods at w sqrt(1 + 3 cos^2 th)
 follow models/spherical_pendulum.lag cone --steady "ph'=3.3..8"
@@ -119,6 +143,7 @@ refused "no range" 2 "a range is missing: NAME=A..B" "$LAGC" continue models/pen
 refused "no such name" 2 "the model has no parameter of this name" "$LAGC" continue models/pendulum.lag wide gg=1..2
 refused "a range without length" 2 "the ends of the range are equal" "$LAGC" continue models/pendulum.lag wide l=1..1
 refused "two ranges" 2 "one value runs over a range" "$LAGC" continue models/pendulum.lag wide l=1..2 m=1..2
+refused "a branch point to begin with" 3 "let the range begin beside it" "$LAGC" continue models/lorenz.lag x=0 y=0 z=0 rho=1..2
 refused "outside" 2 "outside of 10..18: start within" "$LAGC" continue models/pendulum.lag wide energy=10..18
 refused "a period of steady motions" 2 "a steady motion has none" "$LAGC" continue $dir/governor.lag --steady period=1..2
 tap_end

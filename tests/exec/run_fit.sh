@@ -248,6 +248,7 @@ bad "no names" 'the first line has numbers; write the names' '0,1\n2,1\n'
 bad "too many fields" 'bad.csv:2: there are more fields than the 2 names' 't [s],x [m]\n0,1,2\n'
 bad "no time" 'the first column is "x \[m\]"; it must be the time: t \[s\]' 'x [m],t [s]\n0,1\n'
 bad "before the scene" 'bad.csv:2: t = -1 s lies before the scene' 't [s],x [m]\n-1,1\n0,1\n'
+bad "values beyond squares" 'values of x \[m\] are too large to be squared' 't [s],x [m]\n0,1e300\n1,1e300\n'
 unit() { printf 't [s],x [kg]\n0,1\n' >"$TMP/bad.csv"; refused 1 "units do not match" --data "$TMP/bad.csv" --fit k; }
 check "another unit" unit
 few() { printf 't [s],x [m]\n1,0.1\n' >"$TMP/bad.csv"; refused 2 "1 values cannot determine 2 quantities" --data "$TMP/bad.csv" --fit k,c; }
@@ -256,6 +257,8 @@ check "an unknown name" refused 2 "kk: no such parameter or coordinate in model 
 check "no data" refused 2 "needs the record and what to find" --fit k
 check "nothing to find" refused 2 "needs the record and what to find" --data "$M/damped.csv"
 check "a prior without numbers" refused 2 "write --prior 'k~normal(MEAN, DEVIATION)'" --data "$M/damped.csv" --fit k --prior 'k~normal'
+check "a prior and more" refused 2 "write --prior 'k~normal(MEAN, DEVIATION)'" --data "$M/damped.csv" --fit k --prior 'k~normal(1, 2)3'
+check "a prior that a sign excludes" refused 2 "the model declares k > 0, and the mean is -5" --data "$M/damped.csv" --fit k --prior 'k~normal(-5, 2)'
 cat >"$TMP/pole.lag" <<'X'
 model pole "runs into the pole of its force"
 coord x

@@ -414,6 +414,9 @@ close "then less" "-21/256*0.49" "$(bends a4)" 1e-8
 find_modes $dir/duffing.lag one_sided --amplitude
 close "softens" "-5/12" "$(bends a2)" 1e-10
 close "faster" "-455/1728" "$(bends a4)" 1e-7
+# beside growth: y = A^2/2 + A^2/10 cos 2 w t to the second order, so w^2 = 1 + 2 (1/2 + 1/20) A^2
+find_modes $dir/pass.lag --amplitude
+close "across growth" "11/20" "$(sed -n 's/.*"of": "x", "a2": \([^,]*\),.*/\1/p' "$TMP/modes")" 1e-10
 check "resonance: no family of its own" sh -c "'$LAGC' modes models/henon_heiles.lag x=0.01 y=0 --amplitude | grep -c 'resonance with another mode' | grep -q 2"
 check "frequency of a steady motion" refuses 2 "is for modes about rest" models/spherical_pendulum.lag cone --steady --amplitude
 

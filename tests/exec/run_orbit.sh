@@ -25,6 +25,9 @@ orbit models/pendulum.lag wide --hold energy
 close period 2.3678419475762374493 1e-12
 word verdict stable
 word trivial_multipliers 2
+# the same at 179 deg, which on the way is within 2 deg of its start by a turn; the rounding of the start grows by 1e4 on the way
+orbit models/pendulum.lag wide 'th=179[deg]' --hold th
+close period 7.8257968375376827 1e-9
 # Kepler's third law; the charges' symmetries leave nothing
 orbit models/kepler.lag orbit --hold energy,spin
 close period 6.2831853071795864769 1e-11 # of motions whose speed changes by a factor of 4
@@ -187,6 +190,7 @@ refused "no length" 2 "a period is a positive time" "$LAGC" orbit models/pendulu
 refused "an exchange that is no symmetry" 3 "not a symmetry of the equations" "$LAGC" orbit models/cr3bp.lag departure --relative y=-y
 refused "a coordinate taken twice" 2 "write x=y,y=x to exchange them" "$LAGC" orbit models/figure_eight.lag --relative 'r[1]=r[2]'
 refused "no map" 2 "write which coordinate takes the place" "$LAGC" orbit models/pendulum.lag wide --relative 'th=2*th'
+refused "a start at rest" 3 "starts at rest, at an equilibrium" "$LAGC" orbit models/pendulum.lag wide "th=180[deg]"
 refused "friction, backwards" 3 "friction spoils that" "$LAGC" orbit models/pendulum.lag fading --reverse th=-th
 refused "no word for rest" 2 "or \`rest\`" "$LAGC" orbit models/pendulum.lag wide --reverse th
 tap_end
