@@ -217,8 +217,28 @@ Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice) {
   Eqns *e = compiler_derive(c, choice);
   if (!e) return NULL;
   Comparison x = {.c = c, .e = e};
-  arena_with_scratch(c->arena, compare, &x);
+  arena_with_scratch(e->m->arena, compare, &x);
   return x.agrees ? e : NULL;
+}
+
+typedef struct {
+  Compiler *c;
+  void (*work)(Compiler *c, void *data);
+  void *data;
+} ScratchWork;
+
+static void work_in_scratch(Arena *scratch, void *data) {
+  const ScratchWork *x = data;
+  Ast *ast = x->c->ast, same = *ast;
+  same.arena = scratch;
+  x->c->ast = &same;
+  x->work(x->c, x->data);
+  x->c->ast = ast;
+}
+
+void compiler_with_scratch(Compiler *c, void (*work)(Compiler *c, void *data), void *data) {
+  model_prepare(c->ast);
+  arena_with_scratch(c->arena, work_in_scratch, &(ScratchWork){c, work, data});
 }
 
 int compiler_knows_method(Compiler *c) {
