@@ -119,6 +119,8 @@ void tape_finish(Tape *t, const Ref *roots, uint32_t n) {
       if (used[k] && !again && last[used[k]] == i) idle[nidle++] = t->ins.at[used[k]].slot;
     }
   }
+  arena_release(t->arena, idle, t->ins.n * sizeof *idle);
+  arena_release(t->arena, last, t->ins.n * sizeof *last);
 }
 
 /* --- running --- */
