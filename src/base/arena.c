@@ -168,11 +168,13 @@ static int run_guarded(Arena *outer, Arena *scratch, void (*work)(Arena *scratch
 }
 
 void arena_with_scratch(Arena *outer, void (*work)(Arena *scratch, void *data), void *data) {
-  Arena *scratch = arena_new(NULL);
+  size_t most = outer->config.max_bytes;
+  Arena *scratch = arena_new(&(ArenaConfig){.max_bytes = most > outer->used ? most - outer->used : most != 0});
   if (!scratch) arena_fail(outer);
   jmp_buf *before = outer->handler;
   int ok = run_guarded(outer, scratch, work, data);
   outer->handler = before;
+  outer->hit_limit |= scratch->hit_limit;
   arena_free(scratch);
   if (!ok) arena_fail(outer);
 }

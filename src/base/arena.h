@@ -53,7 +53,7 @@ char *arena_printf(Arena *a, const char *fmt, ...) __attribute__((format(printf,
 char *arena_vprintf(Arena *a, const char *fmt, va_list ap) __attribute__((format(printf, 2, 0)));
 
 /* Runs work with an arena of its own for values that are not kept, freed at the end; where either arena runs out of
- * memory, `outer` fails. */
+ * memory, or both reach the limit of `outer`, `outer` fails. */
 void arena_with_scratch(Arena *outer, void (*work)(Arena *scratch, void *data), void *data);
 
 /* Gives the reason of a failure; returns 0. */

@@ -39,12 +39,13 @@ static const char *with_effects(const Model *m) {
 typedef VEC(FoundUnit) FoundUnits;
 
 /* Adds the units that a scene's model inferred and that are not listed yet. */
-static void collect_units(const Model *m, FoundUnits *all) {
+static void collect_units(Compiler *c, const Model *m, FoundUnits *all) {
   for (uint32_t i = 0; i < m->found.n; i++) {
     FoundUnit u = m->found.at[i];
     uint32_t k = 0;
     while (k < all->n && (all->at[k].name != u.name || strcmp(all->at[k].unit, u.unit) != 0)) k++;
-    if (k == all->n) vec_push(m->arena, all, u);
+    u.unit = k < all->n ? NULL : arena_strdup(c->arena, u.unit);
+    if (u.unit) vec_push(c->arena, all, u);
   }
 }
 
@@ -57,17 +58,57 @@ static void list_units(const FoundUnits *all, StrBuf *out) {
 /* Whether the model declares inputs; those of contacts do not count. */
 static int has_inputs(const Model *m) { return m->inputs.n > model_contact_inputs(m); }
 
+/* What one scene, or one effect in no scene, adds to the report. */
+typedef struct {
+  ModelChoice choice;
+  int is_first;
+  FoundUnits *found;
+  StrBuf *out;
+} CheckedPart;
+
+static void check_scene(Compiler *c, void *data) {
+  const CheckedPart *x = data;
+  StrBuf *out = x->out;
+  const char *name = x->choice.scene;
+  Eqns *e = compiler_derive_compared(c, &x->choice);
+  if (!e) check_json_scene(c, "scene", name, NULL, 0);
+  if (!e) return;
+  if (!out->n) {
+    show_facts(e, out);
+    show_cyclic(e, "", out);
+    check_json_facts(c, e);
+  }
+  collect_units(c, e->m, x->found);
+  switches_find(e);
+  switches_warn(e);
+  discontinuity_warn(e);
+  int moves = mobility_show(e, out) && mass_regular_at_start(e);
+  check_json_scene(c, "scene", name, e->m, moves);
+  if (!moves) return;
+  sb_printf(out, "scene %s: ok%s\n", name, with_effects(e->m));
+  if (x->is_first || e->m->effects.n) switches_show(e, out);
+  if (e->m->effects.n || has_inputs(e->m) || e->energy_jumps) charges_show_broken(e, out);
+}
+
+static void check_unused_effect(Compiler *c, void *data) {
+  const CheckedPart *x = data;
+  const char *name = x->choice.also;
+  Eqns *e = compiler_derive_compared(c, &x->choice);
+  if (!e) return;
+  switches_find(e);
+  switches_warn(e);
+  discontinuity_warn(e);
+  collect_units(c, e->m, x->found);
+  check_json_scene(c, "effect in no scene", name, e->m, 1);
+  sb_printf(x->out, "effect %s (in no scene): ok\n", name);
+}
+
 static void check_unused_effects(Compiler *c, FoundUnits *found, StrBuf *out) {
   EffectList unused = model_unused_effects(c->ast);
   for (uint32_t i = 0; i < unused.n; i++) {
-    Eqns *e = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = unused.at[i], .drawing = DRAWING_CHECKED});
-    if (!e) continue;
-    switches_find(e);
-    switches_warn(e);
-    discontinuity_warn(e);
-    collect_units(e->m, found);
-    check_json_scene(c, "effect in no scene", unused.at[i], e->m, 1);
-    sb_printf(out, "effect %s (in no scene): ok\n", unused.at[i]);
+    CheckedPart part = {.choice = {.bare = 1, .also = unused.at[i], .drawing = DRAWING_CHECKED},
+                        .found = found, .out = out};
+    compiler_with_scratch(c, check_unused_effect, &part);
   }
 }
 
@@ -78,24 +119,9 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
   ExpectResults results = {0};
   for (uint32_t i = 0; i < scenes.n; i++) {
     if (scene && strcmp(scene, scenes.at[i]) != 0) continue;
-    Eqns *e = compiler_derive_compared(c, &(ModelChoice){.scene = scenes.at[i], .drawing = DRAWING_CHECKED});
-    if (!e) check_json_scene(c, "scene", scenes.at[i], NULL, 0);
-    if (!e) continue;
-    if (!out->n) {
-      show_facts(e, out);
-      show_cyclic(e, "", out);
-      check_json_facts(c, e);
-    }
-    collect_units(e->m, &found);
-    switches_find(e);
-    switches_warn(e);
-    discontinuity_warn(e);
-    int moves = mobility_show(e, out) && mass_regular_at_start(e);
-    check_json_scene(c, "scene", scenes.at[i], e->m, moves);
-    if (!moves) continue;
-    sb_printf(out, "scene %s: ok%s\n", scenes.at[i], with_effects(e->m));
-    if (i == 0 || scene || e->m->effects.n) switches_show(e, out);
-    if (e->m->effects.n || has_inputs(e->m) || e->energy_jumps) charges_show_broken(e, out);
+    CheckedPart part = {.choice = {.scene = scenes.at[i], .drawing = DRAWING_CHECKED},
+                        .is_first = i == 0 || scene, .found = &found, .out = out};
+    compiler_with_scratch(c, check_scene, &part);
   }
   if (scene && !out->n) compiler_derive_compared(c, &(ModelChoice){.scene = scene}); /* reports the unknown scene */
   if (!scene) check_unused_effects(c, &found, out);

@@ -193,15 +193,52 @@ ProgramSet *compiler_lower_embedded(Compiler *c, Eqns *e) {
   return u && bake_start(c, e, u) ? u : NULL;
 }
 
+typedef struct {
+  Compiler *c;
+  const Eqns *e;
+  int agrees;
+} Comparison;
+
+/* Compares the equations with the text; the programs, which nobody reads afterwards, are made in the scratch arena. */
+static void compare(Arena *scratch, void *data) {
+  Comparison *x = data;
+  Model m = *x->e->m;
+  Eqns e = *x->e;
+  m.arena = scratch;
+  e.m = &m;
+  ProgramSet *u = compiler_new_unit(x->c, &e);
+  unit_add_scene(u, &e);
+  SelfCheck told;
+  x->agrees = agrees(&e, u, 0, &told);
+  if (x->agrees && x->c->o.verbose) self_check_print(&e, &told, &x->c->told);
+}
+
 Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice) {
   Eqns *e = compiler_derive(c, choice);
   if (!e) return NULL;
-  ProgramSet *u = compiler_new_unit(c, e);
-  unit_add_scene(u, e);
-  SelfCheck told;
-  if (!agrees(e, u, 0, &told)) return NULL;
-  if (c->o.verbose) self_check_print(e, &told, &c->told);
-  return e;
+  Comparison x = {.c = c, .e = e};
+  arena_with_scratch(e->m->arena, compare, &x);
+  return x.agrees ? e : NULL;
+}
+
+typedef struct {
+  Compiler *c;
+  void (*work)(Compiler *c, void *data);
+  void *data;
+} ScratchWork;
+
+static void work_in_scratch(Arena *scratch, void *data) {
+  const ScratchWork *x = data;
+  Ast *ast = x->c->ast, same = *ast;
+  same.arena = scratch;
+  x->c->ast = &same;
+  x->work(x->c, x->data);
+  x->c->ast = ast;
+}
+
+void compiler_with_scratch(Compiler *c, void (*work)(Compiler *c, void *data), void *data) {
+  model_prepare(c->ast);
+  arena_with_scratch(c->arena, work_in_scratch, &(ScratchWork){c, work, data});
 }
 
 int compiler_knows_method(Compiler *c) {

@@ -75,6 +75,8 @@ Eqns *compiler_derive_scene(Compiler *c, const char *scene);
 Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice);
 /* The same, for a report: their programs agree with the text. */
 Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice);
+/* Runs work whose models and equations nobody needs afterwards: their memory is given back. */
+void compiler_with_scratch(Compiler *c, void (*work)(Compiler *c, void *data), void *data);
 
 ProgramSet *compiler_new_unit(Compiler *c, Eqns *e);
 ProgramSet *compiler_unit_head(Compiler *c, Eqns *e); /* see unit_head */

@@ -132,7 +132,9 @@ static Prog *split_program(Hoist *h, const Prog *p) {
 
 static void hoist_from(Hoist *h, const Prog **p) {
   Prog *left = *p ? split_program(h, *p) : NULL;
-  if (left) *p = prog_tidy(left);
+  if (!left) return;
+  *p = prog_tidy(left);
+  prog_release(left);
 }
 
 void unit_hoist(ProgramSet *u) {

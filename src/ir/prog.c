@@ -12,21 +12,21 @@ Prog *prog_new(Arena *a) {
   return p;
 }
 
-/* An empty program with room for `more` instructions than p has. */
-static Prog *with_room(const Prog *p, uint32_t more) {
+/* An empty program with room for n instructions and the stores of p. */
+static Prog *with_room(const Prog *p, uint32_t n) {
   Prog *r = ARENA_NEW(p->arena, Prog);
   r->arena = p->arena;
   r->folds_constants = p->folds_constants;
-  r->ins.cap = p->ins.n + more + 1;
+  r->ins.cap = n + 1;
   r->ins.at = ARENA_ARRAY(p->arena, Ins, r->ins.cap);
   r->stores.cap = p->stores.n + 1;
   r->stores.at = ARENA_ARRAY(p->arena, Store, r->stores.cap);
   vec_push(p->arena, &r->ins, ((Ins){0}));
-  r->table = idtable(p->arena, p->ins.n + 1);
+  r->table = idtable(p->arena, n + 1);
   return r;
 }
 
-Prog *prog_new_like(const Prog *p) { return with_room(p, 0); }
+Prog *prog_new_like(const Prog *p) { return with_room(p, p->ins.n); }
 
 void prog_release(Prog *p) {
   arena_release(p->arena, p->ins.at, p->ins.cap * sizeof *p->ins.at);
@@ -258,9 +258,9 @@ Prog *prog_tidy(const Prog *p) {
   mark_needed(p, need);
   for (Slot s = 1; s < p->ins.n; s++)
     if (need[s] && p->ins.at[s].op == IR_DIV && p->ins.at[p->ins.at[s].b].op != IR_CONST) divisions[p->ins.at[s].b]++;
-  uint32_t inverses = 1; /* and the number 1 */
-  for (Slot s = 1; s < p->ins.n; s++) inverses += divisions[s] > 1;
-  Prog *r = with_room(p, inverses);
+  uint32_t room = 1; /* for the number 1, what is needed, and inverses */
+  for (Slot s = 1; s < p->ins.n; s++) room += (uint32_t)(need[s] + (divisions[s] > 1));
+  Prog *r = with_room(p, room);
   Slot one = 0;
   for (Slot s = 1; s < p->ins.n; s++) {
     if (!need[s]) continue;

@@ -83,7 +83,7 @@ static Slot multiply(Lower *l, Factor *f, uint32_t n) {
 
 static Slot lower_prod(Lower *l, Expr e) {
   uint32_t n = expr_pairs(l->g, e, EX_PROD), above = 0, below = 0;
-  Factor *top = ARENA_ARRAY(l->p->arena, Factor, n), *bottom = ARENA_ARRAY(l->p->arena, Factor, n);
+  Factor *top = ARENA_ARRAY(l->p->arena, Factor, 2 * (size_t)n), *bottom = top + n;
   for (uint32_t i = 0; i < n; i++) {
     Num k;
     Expr base = expr_pair(l->g, e, EX_PROD, i, &k);
@@ -91,10 +91,9 @@ static Slot lower_prod(Lower *l, Expr e) {
     if (num_sign(k) > 0) top[above++] = f;
     else bottom[below++] = f;
   }
-  Slot num = above ? multiply(l, top, above) : number(l, num_int(1));
-  if (!below) return num;
-  Slot den = multiply(l, bottom, below);
-  return op(l, IR_DIV, num, den);
+  Slot num = above ? multiply(l, top, above) : number(l, num_int(1)), den = below ? multiply(l, bottom, below) : 0;
+  arena_recycle(l->p->arena, top, 2 * n * sizeof *top);
+  return den ? op(l, IR_DIV, num, den) : num;
 }
 
 /* --- sums --- */

@@ -392,6 +392,8 @@ void unit_require(ProgramSet *u, Eqns *e, unsigned wants) {
 
 static void add_scene_outputs(IrScene *s, const Eqns *e) {
   const Model *m = e->m;
+  s->outputs.cap = e->noutputs;
+  s->outputs.at = ARENA_ARRAY(m->arena, IrVar, e->noutputs + 1);
   for (uint32_t i = 0; i < e->noutputs; i++) {
     IrVar v = ir_var(m, e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
     vec_push(m->arena, &s->outputs, v);

@@ -231,6 +231,7 @@ int eqns_check_numbers(const Eqns *e) {
   for (uint32_t i = 0; i < e->noutputs; i++) vec_push(m->arena, &roots, e->outputs[i].value);
   vec_push(m->arena, &roots, e->energy_scale);
   ExprList l = expr_topo(e->g, roots.at, roots.n);
+  arena_release(m->arena, roots.at, roots.cap * sizeof *roots.at);
   Span span = m->lagrangian_span.end ? m->lagrangian_span : m->span;
   for (uint32_t i = 0; i < l.n; i++) {
     if (!expr_is_num(e->g, l.at[i])) continue;
@@ -247,6 +248,7 @@ int eqns_check_numbers(const Eqns *e) {
       return 0;
     }
   }
+  expr_list_free(e->g, l);
   return 1;
 }
 

@@ -148,9 +148,19 @@ static void reconsider(Elimination *e, uint32_t v) {
   for (uint32_t k = 0; k < e->C[v].n; k++) push(e, e->C[v].at[k].col);
 }
 
-void elimination_order(Arena *a, ExprGraph *g, LinearSystem *s, EliminationRule rule, uint64_t enough) {
-  Elimination e = elimination_new(a, g, s, rule);
-  uint32_t *order = ARENA_ARRAY(a, uint32_t, e.total + 1), n = 0;
+typedef struct {
+  ExprGraph *g;
+  LinearSystem *s;
+  EliminationRule rule;
+  uint64_t enough;
+  uint32_t *order; /* [n + ndefs] of s */
+} OrderTask;
+
+static void find_order(Arena *scratch, void *data) {
+  const OrderTask *t = data;
+  Elimination e = elimination_new(scratch, t->g, t->s, t->rule);
+  uint32_t *order = t->order, n = 0;
+  uint64_t enough = t->enough;
   for (uint32_t v = 0; v < e.total; v++) push(&e, v);
   while (e.heap.n && e.ops <= enough) {
     Candidate c = pop(&e);
@@ -161,8 +171,13 @@ void elimination_order(Arena *a, ExprGraph *g, LinearSystem *s, EliminationRule 
   }
   for (uint32_t v = 0; v < e.n && e.ops <= enough; v++) /* no pivot: singular; the run reports it */
     if (!e.gone[v]) order[n++] = v;
-  s->order = order;
-  s->ops = e.ops;
+  t->s->order = order;
+  t->s->ops = e.ops;
+}
+
+void elimination_order(Arena *a, ExprGraph *g, LinearSystem *s, EliminationRule rule, uint64_t enough) {
+  OrderTask t = {g, s, rule, enough, ARENA_ARRAY(a, uint32_t, s->n + s->ndefs + 1)};
+  arena_with_scratch(a, find_order, &t);
 }
 
 /* Takes the order of another rule if it has fewer operations, or as many and `equal` is set. */

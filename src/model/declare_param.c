@@ -31,6 +31,7 @@ void warn_signs(Builder *b) {
                  arena_printf(b->arena, "%.6Lg", x[p->sym]));
     diag_help(b->diags, "a run refuses this value: change it, or the parameters it depends on");
   }
+  arena_release(b->arena, x, (expr_symbol_count(b->g) + 1) * sizeof *x);
 }
 
 /* The value must have the declared sign: the simplifier relies on it. */

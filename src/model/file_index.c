@@ -1,5 +1,6 @@
 /* Index of a file's scenes and effects. Contract: builder.h. */
 #include "model/builder.h"
+#include "syntax/parse.h"
 
 static void add(Ast *ast, FileIndex *x, const AstStmt *s) {
   const AstStmt **first = s->kind == STMT_MODEL    ? &x->model
@@ -24,6 +25,11 @@ FileIndex *file_index(Ast *ast) {
   x->scenes.arena = x->effects.arena = ast->arena;
   for (const AstStmt *s = ast->first; s; s = s->next) add(ast, x, s);
   return x;
+}
+
+void model_prepare(Ast *ast) {
+  file_index(ast);
+  parse_composed(ast);
 }
 
 const AstStmt *find_named(Ast *ast, AstStmtKind kind, const char *name) {

@@ -378,6 +378,9 @@ typedef struct {
 } SceneList, EffectList, CoordList;
 SceneList model_scenes(const Ast *ast);
 
+/* Makes what all models of the file share; building the first makes it, too. */
+void model_prepare(Ast *ast);
+
 /* 1 if the file has this scene; 0, reported with the nearest name, if not. */
 int model_has_scene(Ast *ast, const char *scene);
 

@@ -441,8 +441,9 @@ Value resolve(Builder *b, AstId id, Context where, Name effect) { return resolve
 /* --- values assigned to names with units --- */
 
 long double constant_value(const Builder *b, Expr e) {
-  long double x = 0;
-  expr_eval(b->g, &e, 1, model_constants(b->m), &x);
+  long double x = 0, *constants = model_constants(b->m);
+  expr_eval(b->g, &e, 1, constants, &x);
+  arena_release(b->arena, constants, (expr_symbol_count(b->g) + 1) * sizeof *constants);
   return x;
 }
 

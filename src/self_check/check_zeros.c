@@ -88,7 +88,7 @@ static void choose_line(Check *c, Line *l, int line) {
 /* Divisor of instruction i that is not a number; 0: none. */
 static Ref divisor_of(const Tape *t, Ref i) {
   const TapeIns *x = &t->ins.at[i];
-  Ref of = x->op == TAPE_DIV ? x->b : x->op == TAPE_POWER && num_sign(x->number) < 0 ? x->a : 0;
+  Ref of = x->op == TAPE_DIV ? x->b : x->op == TAPE_POWER && num_sign(tape_ins_number(x)) < 0 ? x->a : 0;
   return of && t->ins.at[of].op != TAPE_NUMBER && t->ins.at[of].input != INPUT_PARAM ? of : 0;
 }
 

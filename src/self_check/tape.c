@@ -22,15 +22,27 @@ static Ref append(Tape *t, TapeIns i) {
   return t->ins.n - 1;
 }
 
-Ref tape_number(Tape *t, Num n) { return append(t, (TapeIns){.op = TAPE_NUMBER, .number = n}); }
+static Ref append_with_number(Tape *t, TapeIns i, Num n) {
+  i.fraction = !num_is_exact(n) || n.den != 1;
+  if (i.fraction) {
+    Num *kept = ARENA_NEW(t->arena, Num);
+    *kept = n;
+    i.number = kept;
+  } else {
+    i.integer = n.num;
+  }
+  return append(t, i);
+}
+
+Ref tape_number(Tape *t, Num n) { return append_with_number(t, (TapeIns){.op = TAPE_NUMBER}, n); }
 Ref tape_pi(Tape *t) { return append(t, (TapeIns){.op = TAPE_PI}); }
 Ref tape_input(Tape *t, InputKind kind, uint32_t index) {
-  return append(t, (TapeIns){.op = TAPE_INPUT, .input = kind, .index = index});
+  return append(t, (TapeIns){.op = TAPE_INPUT, .input = (uint8_t)kind, .index = index});
 }
 
 int tape_is_number(const Tape *t, Ref a, Num *n) {
   if (!a || t->ins.at[a].op != TAPE_NUMBER) return 0;
-  *n = t->ins.at[a].number;
+  *n = tape_ins_number(&t->ins.at[a]);
   return num_is_exact(*n);
 }
 
@@ -67,7 +79,7 @@ Ref tape_op(Tape *t, TapeOp op, Ref a, Ref b, Ref c) {
   if (!a || (!b && !is_unary(op)) || (op == TAPE_SELECT && !c)) return 0;
   if (tape_is_number(t, a, &x) && (is_unary(op) || tape_is_number(t, b, &y)) && fold_exact(op, x, y, &r))
     return tape_number(t, r);
-  return append(t, (TapeIns){.op = op, .a = a, .b = b, .c = c});
+  return append(t, (TapeIns){.op = (uint8_t)op, .a = a, .b = b, .c = c});
 }
 
 Ref tape_function(Tape *t, const char *name, Ref a) {
@@ -82,7 +94,7 @@ Ref tape_power(Tape *t, Ref a, Num exponent) {
     r = num_pow(x, exponent, &exact);
     if (exact && num_is_exact(r)) return tape_number(t, r);
   }
-  return append(t, (TapeIns){.op = TAPE_POWER, .a = a, .number = exponent});
+  return append_with_number(t, (TapeIns){.op = TAPE_POWER, .a = a}, exponent);
 }
 
 /* --- slots --- */
@@ -107,6 +119,8 @@ void tape_finish(Tape *t, const Ref *roots, uint32_t n) {
       if (used[k] && !again && last[used[k]] == i) idle[nidle++] = t->ins.at[used[k]].slot;
     }
   }
+  arena_release(t->arena, idle, t->ins.n * sizeof *idle);
+  arena_release(t->arena, last, t->ins.n * sizeof *last);
 }
 
 /* --- running --- */
@@ -138,7 +152,7 @@ static int is_near(const Jet *x, const Jet *y) {
 static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, Jet *out, int *unsure) {
   static const Jet zero = {.planes = 0};
   int near = 0;
-  switch (i->op) {
+  switch ((TapeOp)i->op) {
     case TAPE_ADD: jet_add(out, x, y); return;
     case TAPE_SUB: jet_sub(out, x, y); return;
     case TAPE_MUL: jet_mul(out, x, y); return;
@@ -146,7 +160,7 @@ static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, 
     case TAPE_NEG: jet_neg(out, x); return;
     case TAPE_RATE: jet_rate(out, x); return;
     case TAPE_POWER: {
-      Num n = i->number;
+      Num n = tape_ins_number(i);
       JetReal exponent = num_is_exact(n) ? (JetReal)n.num / (JetReal)n.den : (JetReal)num_value(n);
       jet_power(out, x, exponent, num_is_exact(n) && n.den == 3);
       return;
@@ -188,7 +202,7 @@ static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, 
 static void run_any(const Tape *t, Ref r, TapeInput *input, void *data, Jet *at, int *unsure) {
   const TapeIns *i = &t->ins.at[r];
   Jet *out = &at[i->slot];
-  if (i->op == TAPE_NUMBER) *out = number_jet(i->number);
+  if (i->op == TAPE_NUMBER) *out = number_jet(tape_ins_number(i));
   else if (i->op == TAPE_PI) *out = jet_rounded(3.14159265358979323846264338327950288L);
   else if (i->op == TAPE_INPUT) input(data, i->input, i->index, out);
   else run_one(i, tape_value(t, at, i->a), tape_value(t, at, i->b), tape_value(t, at, i->c), out, unsure);

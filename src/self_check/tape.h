@@ -25,15 +25,19 @@ typedef enum {
 
 typedef enum { INPUT_TIME, INPUT_COORD, INPUT_STATE, INPUT_PARAM, INPUT_SIGNAL, INPUT_MULTIPLIER } InputKind;
 
+/* Tapes are as long as what the text writes out: 32 bytes. */
 typedef struct {
-  TapeOp op;
+  uint8_t op, input; /* TapeOp, InputKind */
+  uint8_t fraction;  /* of a number: no integer */
   Ref a, b, c;
   uint32_t slot; /* place of the value in at[] until its last use: set by tape_finish */
-  Num number;
-  InputKind input;
-  uint32_t index;
-  const char *text;
   uint32_t at;   /* AstId of the node it was made for */
+  union {
+    int64_t integer;
+    const Num *number; /* a fraction */
+    uint32_t index;    /* of an input */
+    const char *text;
+  };
 } TapeIns;
 
 typedef struct {
@@ -62,6 +66,9 @@ Ref tape_partial(Tape *t, Ref of, Ref by);
 
 /* Energy p q' - L of a Lagrangian whose coordinates are the inputs of one kind. */
 Ref tape_energy(Tape *t, Ref lagrangian, InputKind kind);
+
+/* The number of TAPE_NUMBER, the exponent of TAPE_POWER. */
+static inline Num tape_ins_number(const TapeIns *i) { return i->fraction ? *i->number : num_int(i->integer); }
 
 /* 1 if a value is an exact number; *n is that number. */
 int tape_is_number(const Tape *t, Ref a, Num *n);

@@ -71,6 +71,7 @@ static Ref known(const Partial *p, Ref r, uint32_t level) { return r ? p->of.at[
 static Ref derivative(const Partial *p, Ref r, uint32_t level) {
   Tape *t = p->t;
   TapeIns i = t->ins.at[r]; /* a copy: the tape grows */
+  Num power;
   Ref da = known(p, i.a, level), db = known(p, i.b, level), dc = known(p, i.c, level);
   if (i.op == TAPE_INPUT && (level || i.input != p->kind)) return 0;
   if (i.op == TAPE_INPUT)
@@ -78,14 +79,15 @@ static Ref derivative(const Partial *p, Ref r, uint32_t level) {
   /* d(a')/dx' = (da/dx')' + da/dx, where a' is the rate along the motion. */
   if (i.op == TAPE_RATE) return sum(t, da ? tape_op(t, TAPE_RATE, da, 0, 0) : 0, level ? known(p, i.a, level - 1) : 0);
   if (!da && !db && !dc) return 0;
-  switch (i.op) {
+  switch ((TapeOp)i.op) {
     case TAPE_ADD: return sum(t, da, db);
     case TAPE_SUB: return sum(t, da, negative(t, db));
     case TAPE_NEG: return negative(t, da);
     case TAPE_MUL: return sum(t, product(t, da, i.b), product(t, i.a, db));
     case TAPE_DIV: return quotient(t, sum(t, da, negative(t, product(t, r, db))), i.b);
     case TAPE_POWER:
-      return product(t, product(t, tape_number(t, i.number), tape_power(t, i.a, num_sub(i.number, num_int(1)))), da);
+      power = tape_ins_number(&i);
+      return product(t, product(t, tape_number(t, power), tape_power(t, i.a, num_sub(power, num_int(1)))), da);
     case TAPE_POW: return through_pow(t, r, i.a, i.b, da, db);
     case TAPE_FUNCTION: return through_function(t, i.text, r, i.a, da);
     case TAPE_ATAN2: /* (x y' - y x')/(x^2 + y^2) of y = a, x = b */

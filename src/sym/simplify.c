@@ -431,14 +431,20 @@ static int keeps_digits(ExprGraph *g, Expr before, Expr after) {
   enum { LINES = 12, LINES_DIVISOR = 4, NODES_MOST = 120 };
   Expr root[ROOTS_MOST] = {before, after};
   ExprList nodes = expr_topo(g, root, 2);
-  if (nodes.n > NODES_MOST) return 1;
-  int n = add_divisors(g, nodes, root, 2), product = expr_pairs(g, before, EX_SUM) <= 1;
-  EvalTape *t = product || n > 2 ? eval_tape(g, root, (uint32_t)n) : NULL;
-  long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
-  for (int r = product ? AFTER : AFTER + 1; r < n; r++)
-    for (Between at = {.g = g, .seed = 1}; at.seed <= (r == AFTER ? LINES : LINES_DIVISOR); at.seed++)
-      if (loses_beside_zeros(t, at, r, symbols)) return 0;
-  return n == 2 || !loses_beside_origin(t, g, symbols);
+  int few = nodes.n <= NODES_MOST, n = few ? add_divisors(g, nodes, root, 2) : 2,
+      product = expr_pairs(g, before, EX_SUM) <= 1, loses = 0;
+  expr_list_free(g, nodes);
+  if (!few || (!product && n == 2)) return 1;
+  EvalTape *t = eval_tape(g, root, (uint32_t)n);
+  uint32_t nsymbols = expr_symbol_count(g) + 1;
+  long double *symbols = ARENA_ARRAY(expr_arena(g), long double, nsymbols);
+  for (int r = product ? AFTER : AFTER + 1; r < n && !loses; r++)
+    for (Between at = {.g = g, .seed = 1}; at.seed <= (r == AFTER ? LINES : LINES_DIVISOR) && !loses; at.seed++)
+      loses = loses_beside_zeros(t, at, r, symbols);
+  loses = loses || (n > 2 && loses_beside_origin(t, g, symbols));
+  arena_release(expr_arena(g), symbols, nsymbols * sizeof *symbols);
+  eval_tape_free(g, t);
+  return !loses;
 }
 
 /* The new form s if it keeps the range and, with its half angles, the digits of e; else e. */

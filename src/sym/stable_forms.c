@@ -174,16 +174,20 @@ static void add_divisors(ExprGraph *g, Expr e, ExprMap *divisors) {
       Expr base = expr_pair(g, nodes.at[i], EX_PROD, k, &power);
       if (num_sign(power) < 0) has_variable(g, expr_topo_to_sums(g, &base, 1), NULL, divisors);
     }
+  expr_list_free(g, nodes);
 }
 
 Expr simplify_stable_quotients(ExprGraph *g, Expr e, Expr text) {
   ExprList nodes = expr_topo_to_sums(g, &e, 1);
   ExprMap divisors = expr_map(expr_arena(g));
+  int divided = 0;
   add_divisors(g, e, &divisors);
   add_divisors(g, text, &divisors);
-  for (uint32_t i = 0; i < nodes.n && nodes.n <= MAX_TERMS; i++) {
+  for (uint32_t i = 0; i < nodes.n && nodes.n <= MAX_TERMS && !divided; i++) {
     Expr x = nodes.at[i], u = expr_op(g, x) == EX_COS || expr_op(g, x) == EX_COSH ? expr_arg(g, x, 0) : 0;
-    if (u && has_variable(g, expr_topo_to_sums(g, &u, 1), &divisors, NULL)) return rewrite_sums(g, e, with_half_angles);
+    divided = u && has_variable(g, expr_topo_to_sums(g, &u, 1), &divisors, NULL);
   }
-  return e;
+  expr_list_free(g, nodes);
+  expr_map_free(&divisors);
+  return divided ? rewrite_sums(g, e, with_half_angles) : e;
 }

@@ -85,6 +85,7 @@ static void add_value(Partials *p, int64_t arg, Expr value, int64_t i, int64_t j
     if (at != symbol) expr_map_set(&m, symbol, at);
   }
   Expr here = expr_replace_by(g, value, &m);
+  expr_map_free(&m);
   p->value[arg] = p->value[arg] ? expr_add(g, p->value[arg], here) : here;
 }
 

@@ -102,6 +102,7 @@ static int fill_outputs(Eqns *e) {
     if (e->energy) out[i].value = expr_substitute(g, out[i].value, with, nsymbols, "");
     out[i].value = switches_keep(e, out[i].value, simplify_stable);
   }
+  arena_release(m->arena, with, nsymbols * sizeof *with);
   e->outputs = out;
   e->noutputs = m->scene.outputs.n;
   return 1;
