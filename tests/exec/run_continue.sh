@@ -50,6 +50,22 @@ close 1 period 3.14159265358979 1e-13
 # the pendulum's family by energy: 4 sqrt(l/g) K(k), k^2 = E/(2 m g l), at the end of the range
 follow models/pendulum.lag wide energy=9..18
 close 1 period 3.40802289484 1e-10
+# --resume: the rows so far stay as they are, but for the word at the end of the branch; then the same end as above
+"$LAGC" continue models/pendulum.lag wide energy=9..12 -o "$TMP/family.csv" >"$TMP/log"
+cp "$TMP/family.csv" "$TMP/before.csv"
+follow models/pendulum.lag wide energy=9..18 --resume "$TMP/family.csv"
+close 1 period 3.40802289484 1e-10
+without_ends() { sed 's/,[a-z]*,$/,,/' "$1"; }
+without_ends "$TMP/before.csv" >"$TMP/before"
+without_ends "$TMP/family.csv" >"$TMP/after"
+is "$title: rows changed, added in the middle" "0 1" "$(diff "$TMP/before" "$TMP/after" | grep -c '^<') $(diff "$TMP/before" "$TMP/after" | grep -c '^[0-9]')"
+# driven: both folds lie behind the last of 12 points; SciPy as below
+"$LAGC" continue $dir/oscillator.lag driven w=1.2..2.5 --most 12 -o "$TMP/driven.csv" >"$TMP/log"
+follow $dir/oscillator.lag driven w=1.2..2.5 --resume "$TMP/driven.csv" -o "$TMP/more.csv" --svg "$TMP/more.svg"
+kinds "fold;fold;end;"
+close 1 parameter 2.39964925875596 1e-10
+close 2 parameter 1.32917435250243 1e-10
+check "$title: -o leaves the file" awk -F, 'END { exit !(NR < 16) }' "$TMP/driven.csv"
 
 # Steady motions. A conical pendulum turns at w with cos th = g/(l w^2); disturbed, it nods at w sqrt(1 + 3 cos^2 th)
 follow models/spherical_pendulum.lag cone --steady "ph'=3.3..8"
@@ -121,4 +137,12 @@ refused "a range without length" 2 "the ends of the range are equal" "$LAGC" con
 refused "two ranges" 2 "one value runs over a range" "$LAGC" continue models/pendulum.lag wide l=1..2 m=1..2
 refused "outside" 2 "outside of 10..18: start within" "$LAGC" continue models/pendulum.lag wide energy=10..18
 refused "a period of steady motions" 2 "a steady motion has none" "$LAGC" continue $dir/governor.lag --steady period=1..2
+family="$TMP/family.csv"
+refused "rows of another model" 2 "column 7 is \`th [rad]\`, and should be \`x\`" "$LAGC" continue models/lorenz.lag x=0 y=0 z=0 energy=1..2 --resume "$family"
+refused "rows of other values" 2 "the file was written by \`pendulum wide over energy" "$LAGC" continue models/pendulum.lag wide l=2 energy=9..18 --resume "$family"
+refused "rows of other options" 2 "1e-13, --hold th, values" "$LAGC" continue models/pendulum.lag wide energy=9..18 --hold th --resume "$family"
+refused "rows of another NAME" 2 "column 1 is \`energy\`" "$LAGC" continue models/pendulum.lag wide period=2..3 --resume "$family"
+refused "no branch to go on" 2 "no branch can go on within 9..18" "$LAGC" continue models/pendulum.lag wide energy=9..18 --resume "$family"
+sed '3s/^[^,]*/nine/' "$family" >"$TMP/bad.csv"
+refused "a row without number" 2 "bad.csv:3: energy: \`nine\` is no number" "$LAGC" continue models/pendulum.lag wide energy=9..20 --resume "$TMP/bad.csv"
 tap_end
