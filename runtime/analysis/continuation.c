@@ -59,8 +59,9 @@ static int correct(Walk *w, double *u, const double *d) {
  * of the complex pair that is nearest to the border. */
 static void judge(const BranchProblem *p, BranchPoint *at) {
   const Spectrum *s = &at->spectrum;
-  const double border = 1e-7;
+  const double border = 1e-7, rounding = 1e-6; /* multipliers by differences have some 8 digits */
   at->zero = at->minus = 1;
+  at->stays = 0;
   at->pair = HUGE_VAL;
   at->unstable = 0;
   for (int i = 0; i < s->n; i++) {
@@ -69,6 +70,7 @@ static void judge(const BranchProblem *p, BranchPoint *at) {
     if (s->im[i] > 0 && fabs(growth) < fabs(at->pair)) at->pair = growth;
     if (s->im[i] < 0) continue; /* with its conjugate */
     double re = s->re[i] - (p->maps ? 1 : 0);
+    at->stays |= p->maps && s->im[i] <= 0 && fabs(re) < rounding;
     at->zero *= s->im[i] > 0 ? re * re + s->im[i] * s->im[i] : re;
     at->minus *= s->im[i] > 0 ? (s->re[i] + 1) * (s->re[i] + 1) + s->im[i] * s->im[i] : s->re[i] + 1;
   }
@@ -132,7 +134,7 @@ static int changes_sign(double a, double b) { return (a < 0 && b > 0) || (a > 0 
 
 /* Kind of the point between two others; BRANCH_REGULAR: none, or no further one after `after`. */
 static BranchKind between(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b) {
-  int fold = changes_sign(a->fold, b->fold), zero = changes_sign(a->zero, b->zero),
+  int fold = changes_sign(a->fold, b->fold), zero = changes_sign(a->zero, b->zero) && !(a->stays && b->stays),
       minus = p->maps && changes_sign(a->minus, b->minus);
   if (fold) return BRANCH_FOLD;
   if (minus) return BRANCH_DOUBLING;
@@ -289,7 +291,7 @@ static BranchPoint *at_border(Walk *w, const BranchPoint *from, const BranchPoin
   double part = (border - from->u[last]) / (far->u[last] - from->u[last]);
   double *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols), *d = u + w->cols;
   if (!u) return NULL;
-  for (int i = 0; i < w->cols; i++) u[i] = from->u[i] + part * (far->u[i] - from->u[i]);
+  between_points(w->cols, from, far, w->made, part * w->made, u, NULL);
   u[last] = border;
   d[last] = 1;
   return correct(w, u, d) ? make_point(w, u, far->tangent) : NULL;

@@ -50,6 +50,19 @@ close 1 period 3.14159265358979 1e-13
 # the pendulum's family by energy: 4 sqrt(l/g) K(k), k^2 = E/(2 m g l), at the end of the range
 follow models/pendulum.lag wide energy=9..18
 close 1 period 3.40802289484 1e-10
+# Duffing's backbone by energy: 4 K(k)/sqrt(1 + A^2), k^2 = A^2/(2 (1 + A^2)), A^2 + A^4/2 = 2 E; at 24 by mpmath
+follow $dir/backbone.lag energy=0.7..24
+close 1 period 2.31119416692599250 1e-11
+close 1 x 2.97470297707117386 1e-12
+# the double pendulum's nonlinear modes: next to rest 2 pi/w, w^2 = (2 -+ sqrt 2) g/l, and as far apart as A^2/24 (lagc modes: 0.0424 A^2, 0.926 A^2 with A = 0.0143
+# of th2); at the other end SciPy's DOP853 at 1e-13: released at rest, both rods hang straight after a quarter of a period
+follow models/double_pendulum.lag together th1=0.02 th2=0.0282842712474619 energy=-29.428..-26.927900718198647
+close 1 period 2.6494630421318380 1e-11
+close 1 th2 0.5 1e-9 # the energy has a rounding of 1e-15 of 29
+near "$title: mode" 1e-6 0.0424332 "$(of_point 2 period | awk '{ w = 8*atan2(1, 1)/$1; printf "%.12g", (1 - w/sqrt((2 - sqrt(2))*9.81))/0.01427834712^2 }')"
+follow models/double_pendulum.lag apart th1=0.02 th2=-0.0282842712474619 energy=-29.428..-28.81651650833325
+close 1 period 1.1460683553031663 1e-11
+
 # --resume: the rows so far stay as they are, but for the word at the end of the branch; then the same end as above
 "$LAGC" continue models/pendulum.lag wide energy=9..12 -o "$TMP/family.csv" >"$TMP/log"
 cp "$TMP/family.csv" "$TMP/before.csv"
@@ -88,6 +101,11 @@ long() {
   kinds "branch point;end;end;end;end;"
   close 1 parameter 4.42944691807002 1e-9
   close 4 y -0.15328125 1e-10
+  # a block rocks on a shaken floor, and may stand anywhere on it: no branch point is found where a multiplier stays 1
+  { cat models/rocking_block.lag && echo 'param a = 1.5 [m/s^2], w = 6 [rad/s]' && echo 'force x = -m*a*sin(w*t)'; } >"$TMP/shaken.lag"
+  follow "$TMP/shaken.lag" a=1.49..1.505 x=0.0174588734157936 y=0.804163377048012 th=-0.0217660919714671 "x'=0.44204476705349" \
+    "y'=0.10034198550577" "th'=-0.549695223222156" --until 10 --hold x
+  kinds "end;end;"
   # AUTO's manual: folds at 0.105739 and 0.0889318, a Hopf point at 0.1309
   follow $dir/reaction.lag p1=0..0.15
   kinds "fold;fold;Hopf;end;end;"
