@@ -61,8 +61,9 @@ static int correct(Walk *w, double *u, const double *d) {
  * of the complex pair that is nearest to the border. */
 static void judge(const BranchProblem *p, BranchPoint *at) {
   const Spectrum *s = &at->spectrum;
-  const double border = 1e-7;
+  const double border = 1e-7, rounding = 1e-6; /* multipliers by differences have some 8 digits */
   at->zero = at->minus = 1;
+  at->stays = 0;
   at->pair = HUGE_VAL;
   at->unstable = 0;
   for (int i = 0; i < s->n; i++) {
@@ -71,6 +72,7 @@ static void judge(const BranchProblem *p, BranchPoint *at) {
     if (s->im[i] > 0 && fabs(growth) < fabs(at->pair)) at->pair = growth;
     if (s->im[i] < 0) continue; /* with its conjugate */
     double re = s->re[i] - (p->maps ? 1 : 0);
+    at->stays |= p->maps && s->im[i] <= 0 && fabs(re) < rounding;
     at->zero *= s->im[i] > 0 ? re * re + s->im[i] * s->im[i] : re;
     at->minus *= s->im[i] > 0 ? (s->re[i] + 1) * (s->re[i] + 1) + s->im[i] * s->im[i] : s->re[i] + 1;
   }
@@ -135,7 +137,7 @@ static int changes_sign(double a, double b) { return (a <= 0 && b > 0) || (a >= 
 
 /* Kind of the point between two others; BRANCH_REGULAR: none, or no further one after `after`. */
 static BranchKind between(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b) {
-  int fold = changes_sign(a->fold, b->fold), zero = changes_sign(a->zero, b->zero),
+  int fold = changes_sign(a->fold, b->fold), zero = changes_sign(a->zero, b->zero) && !(a->stays && b->stays),
       minus = p->maps && changes_sign(a->minus, b->minus);
   if (fold) return BRANCH_FOLD;
   if (minus) return BRANCH_DOUBLING;
@@ -285,14 +287,14 @@ static int is_closed(const Branch *b, const BranchPoint *at, double step, int co
   return b->npoints > 6 && sqrt(d) < 0.6 * step && dot(cols, at->tangent, b->first->tangent) > 0.9;
 }
 
-/* The point where the branch leaves the range, between `from` and unknowns beyond. */
-static BranchPoint *at_border(Walk *w, const BranchPoint *from, const double *far, const BranchLimits *l) {
+/* The point where the branch leaves the range, between `from` and one beyond, at arclength w->made. */
+static BranchPoint *at_border(Walk *w, const BranchPoint *from, const BranchPoint *far, const BranchLimits *l) {
   int last = w->cols - 1;
-  double border = far[last] > l->high ? l->high : l->low;
-  double part = (border - from->u[last]) / (far[last] - from->u[last]);
+  double border = far->u[last] > l->high ? l->high : l->low;
+  double part = (border - from->u[last]) / (far->u[last] - from->u[last]);
   double *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols), *d = u + w->cols;
   if (!u) return NULL;
-  for (int i = 0; i < w->cols; i++) u[i] = from->u[i] + part * (far[i] - from->u[i]);
+  between_points(w->cols, from, far, w->made, part * w->made, u, NULL);
   u[last] = border;
   d[last] = 1;
   return correct(w, u, d) ? make_point(w, u, from->tangent) : NULL;
@@ -308,7 +310,7 @@ static BranchPoint *last_point(Walk *w, const BranchPoint *from, double step, co
   if (!u) return NULL;
   for (int i = 0; i < w->cols; i++) u[i] = from->u[i] + step * from->tangent[i];
   if (!outside(u, w->cols - 1, l)) return NULL;
-  BranchPoint *at = at_border(w, from, u, l);
+  BranchPoint beyond = {.u = u, .tangent = from->tangent}, *at = at_border(w, from, &beyond, l);
   w->made = at ? dot(w->cols, at->u, from->tangent) - dot(w->cols, from->u, from->tangent) : 0;
   return at;
 }
@@ -365,7 +367,7 @@ int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const
     BranchKind kind = !sign && b->npoints == 1 ? BRANCH_REGULAR : between(p, from, at);
     BranchPoint *found = kind == BRANCH_REGULAR ? NULL : locate(&w, from, at, w.made, kind);
     if (found && !outside(found->u, last, limits)) append(b, found);
-    if (outside(at->u, last, limits)) at = at_border(&w, from, at->u, limits), w.border = 1;
+    if (outside(at->u, last, limits)) at = at_border(&w, from, at, limits), w.border = 1;
     if (at) append(b, at);
     if (w.border) return b->end = BRANCH_AT_RANGE, LAG_OK;
     if (is_closed(b, at, step, p->cols)) return b->end = BRANCH_CLOSED, LAG_OK;

@@ -40,6 +40,7 @@ typedef struct BranchPoint {
   double *u, *tangent; /* [cols] */
   Spectrum spectrum;
   int unstable;                   /* number of eigenvalues that grow */
+  int stays;                      /* 1: a multiplier is 1 to rounding, as along a family */
   double fold, zero, minus, pair; /* test functions, and the growth of the complex pair nearest to the border */
   BranchKind kind;
   const char *unfollowed; /* why no branch that leaves it is followed; NULL: one is, or none was asked for */

@@ -201,7 +201,8 @@ static int end_slope(FlowMap *f, double t, double dt, const double *y0, const do
   return rc;
 }
 
-/* Phi := derivatives of the end by the start, on the tangent space of the constraints: impacts have no tangent. */
+/* Phi := derivatives of the end by the start, on the tangent space of the constraints: closed contacts have no
+ * tangent. */
 static int end_derivatives(FlowMap *f, double t, double dt, const double *y0, double *Phi) {
   int n = f->n, k = 0;
   Pool pool = {0};

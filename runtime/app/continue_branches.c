@@ -113,8 +113,23 @@ static int follow(Job *job, const BranchProblem *p, PeriodicOrbit *o, const doub
   return rc;
 }
 
+/* The branch of an earlier run, from its last row on. */
+static int follow_on(Job *job, const double *u, PeriodicOrbit *o) {
+  const Table *t = &job->app->table;
+  int cols = job->problem.cols;
+  double *d = malloc((size_t)cols * sizeof *d);
+  if (!d) return LAG_ENOMEM;
+  lag_continue_direction(job, o, cols, d);
+  job->nbranches = (int)lag_continue_last(job)[1];
+  int rc = follow(job, &job->problem, o, u, d, 1, 0);
+  for (size_t k = 0; k < t->nrows; k++) job->nbranches = (int)fmax(job->nbranches, lag_table_cell(t, k, 1));
+  free(d);
+  return rc;
+}
+
 /* Both halves of the first branch. */
 static int follow_first(Job *job, const double *u, PeriodicOrbit *o) {
+  if (job->resumed) return follow_on(job, u, o);
   job->nbranches = 1;
   int rc = follow(job, &job->problem, o, u, NULL, 1, 0);
   const Branch *b = &job->part[0].branch;
@@ -407,6 +422,8 @@ int lag_app_continue(App *app) {
   int rc = take_range(&job);
   rc = rc ? rc : lag_app_orbit_set_up(app);
   rc = rc ? rc : find_parameter(&job);
+  rc = rc ? rc : lag_continue_make_table(&job);
+  rc = rc ? rc : lag_continue_resume(&job);
   if (rc == 0 && job.led_kind < 0) rc = choose_begin(&job);
   job.size = fabs(job.high - job.low);
   rc = rc ? rc : read_limits(&job);

@@ -1,4 +1,5 @@
-/* Branches of --continue: followed by continue_branches.c, reported by continue_report.c. */
+/* Branches of --continue: followed by continue_branches.c, reported by continue_report.c; with --resume they go on from
+ * rows that continue_resume.c reads. */
 #pragma once
 
 #include "analysis/branch_problems.h"
@@ -6,6 +7,7 @@
 #include "app/app.h"
 
 enum { MOST_BRANCHES = 24, MOST_DOUBLINGS = 4, POINTS = 400, LOOKS = 128 };
+enum { OF_PERIOD = 4, OF_STATE = 6 }; /* columns of rows; after the states end and what wrote the file */
 
 /* A branch and the equations that it solves. */
 typedef struct Part {
@@ -39,6 +41,8 @@ typedef struct Job {
   BranchLimits limits;
   Part part[MOST_BRANCHES];
   int nparts, nbranches;
+  char written_by[1000], guess[64]; /* model, NAME, options in words, for --resume; the period to begin with */
+  size_t resumed;                   /* number of the row that the first part goes on from; 0: none */
 } Job;
 
 /* The solutions in words: states of rest, steady or periodic motions. */
@@ -47,6 +51,15 @@ const char *lag_continue_solutions(const Job *job);
 /* Text or JSON: the points where a branch changes. */
 void lag_continue_put_text(FILE *f, const Job *job);
 void lag_continue_put_json(FILE *f, const Job *job);
+/* app->table := columns of rows. 0, or EXIT_USAGE after a message, as of the other ones. */
+int lag_continue_make_table(Job *job);
+/* written_by := the run in words: what a file to resume must share. */
+void lag_continue_describe(Job *job);
+/* Reads the rows of --resume, if given: the start, and the row that a branch goes on from. */
+int lag_continue_resume(Job *job);
+/* That row, and the unit vector d[cols] from the one before it. */
+const double *lag_continue_last(const Job *job);
+void lag_continue_direction(const Job *job, const PeriodicOrbit *o, int cols, double *d);
 /* All points as rows of --output, and the picture of --svg, if asked for. 0, or EXIT_USAGE after a message. */
 int lag_continue_write_rows(Job *job);
 int lag_continue_draw(Job *job);

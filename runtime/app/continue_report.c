@@ -100,7 +100,10 @@ void lag_continue_put_text(FILE *f, const Job *job) {
   for (int k = 0; k < job->nparts; k++) {
     const Part *part = &job->part[k];
     fprintf(f, "branch %d%s, %d points", part->number,
-            k && job->part[k - 1].number == part->number ? ", other direction" : "", part->branch.npoints);
+            k == 0 && job->resumed                           ? ", goes on"
+            : k && job->part[k - 1].number == part->number ? ", other direction"
+                                                             : "",
+            part->branch.npoints);
     if (part->from) fprintf(f, ", from branch %d", part->from);
     putc('\n', f);
     for (const BranchPoint *at = part->branch.first; at; at = at->next) {
@@ -164,86 +167,112 @@ void lag_continue_put_json(FILE *f, const Job *job) {
 
 /* ---- Rows and picture */
 
-enum { OF_BRANCH = 4 }; /* columns before those of the state: parameter, branch, kind, growing directions */
+static void add_column(Table *t, const char *name, const char *unit, const char *const *words) {
+  Column *c = &t->cols[t->ncols++];
+  snprintf(c->name, sizeof c->name, "%.95s", name);
+  snprintf(c->unit, sizeof c->unit, "%s", unit);
+  c->words = words;
+}
 
-static int make_table(Job *job) {
+int lag_continue_make_table(Job *job) {
   static const char *const kinds[] = {"",     "fold",           "branch point", "period doubling",
-                                      "Hopf", "Neimark-Sacker", "collision"};
+                                      "Hopf", "Neimark-Sacker", "collision",    NULL},
+                    *const last[] = {"", "range", "number", "closed", "lost", NULL};
+  static const char *by[] = {"", NULL, NULL};
   App *app = job->app;
   Table *t = &app->table;
-  int n = app->sim->pb.n, k = 0;
-  *t = (Table){
-      .ncols = OF_BRANCH + 2 + 2 * n, .keep = 0, .cols = calloc((size_t)(OF_BRANCH + 2 + 2 * n), sizeof *t->cols)};
-  app->row = calloc((size_t)t->ncols, sizeof *app->row);
+  int n = app->sim->pb.n;
+  size_t most = (size_t)(OF_STATE + 2 * n + 2);
+  *t = (Table){.keep = 1, .cols = calloc(most, sizeof *t->cols)};
+  app->row = calloc(most, sizeof *app->row);
   if (!t->cols || !app->row) return lag_app_error(&app->args, "out of memory");
-  snprintf(t->cols[k].name, sizeof t->cols[k].name, "%s", job->name);
-  if (job->unit) snprintf(t->cols[k].unit, sizeof t->cols[k].unit, "%s", job->unit->unit);
-  strcpy(t->cols[++k].name, "branch");
-  strcpy(t->cols[++k].name, "kind");
-  t->cols[k].words = kinds;
-  strcpy(t->cols[++k].name, "growing");
-  strcpy(t->cols[++k].name, "period");
-  strcpy(t->cols[k].unit, "s");
-  strcpy(t->cols[++k].name, "growth");
+  add_column(t, job->name, job->unit ? job->unit->unit : "", NULL);
+  add_column(t, "branch", "", NULL);
+  add_column(t, "kind", "", kinds);
+  add_column(t, "growing", "", NULL);
+  add_column(t, "period", "s", NULL);
+  add_column(t, "growth", "", NULL);
   for (int i = 0; i < 2 * n; i++) {
     Column c = lag_state_column(app->sim, i % n);
-    if (i >= n)
-      memmove(c.name + 4, c.name, sizeof c.name - 4), memcpy(c.name, "max ", 4), c.name[sizeof c.name - 1] = '\0';
-    t->cols[++k] = c;
+    char name[sizeof c.name + 4];
+    snprintf(name, sizeof name, "%s%s", i < n ? "" : "max ", c.name);
+    add_column(t, name, c.unit, NULL);
   }
+  lag_continue_describe(job);
+  by[1] = job->written_by;
+  add_column(t, "end", "", last);
+  add_column(t, "written by", "", by);
   return 0;
 }
 
-static int put_rows(Job *job) {
-  App *app = job->app;
-  int n = app->sim->pb.n, rc = 0;
-  double *most = calloc((size_t)n, sizeof *most);
-  for (int k = 0; k < job->nparts && rc == 0 && most; k++)
-    for (const BranchPoint *at = job->part[k].branch.first; at && rc == 0; at = at->next) {
-      const Part *part = &job->part[k];
-      double *row = app->row;
-      largest_values(job, part, at, most);
-      row[0] = parameter_at(job, part, at);
-      row[1] = part->number;
-      row[2] = at->kind;
-      row[3] = at->unstable;
-      row[4] = part->orbit ? period_at(part, at) : NAN;
-      row[5] = growth_at(part, at);
-      for (int i = 0; i < n; i++) {
-        row[6 + i] = lag_sim_declared(app->sim, i, state_at(job, part, at, i));
-        row[6 + n + i] = lag_sim_declared(app->sim, i, most[i]);
-      }
-      rc = lag_rows_write(&app->rows, row);
+/* Rows of a part; without its first point, which the file has, where it goes on from a row. */
+static int add_part(Job *job, const Part *part, int goes_on, double *most) {
+  Table *t = &job->app->table;
+  double *row = job->app->row;
+  int n = job->app->sim->pb.n, rc = 0;
+  for (const BranchPoint *at = goes_on ? part->branch.first->next : part->branch.first; at && rc == 0; at = at->next) {
+    largest_values(job, part, at, most);
+    row[0] = parameter_at(job, part, at);
+    row[1] = part->number;
+    row[2] = at->kind;
+    row[3] = at->unstable;
+    row[OF_PERIOD] = part->orbit ? period_at(part, at) : NAN;
+    row[5] = growth_at(part, at);
+    for (int i = 0; i < n; i++) {
+      row[OF_STATE + i] = lag_sim_declared(job->app->sim, i, state_at(job, part, at, i));
+      row[OF_STATE + n + i] = lag_sim_declared(job->app->sim, i, most[i]);
     }
+    row[t->ncols - 2] = at->next ? 0 : 1 + part->branch.end;
+    row[t->ncols - 1] = t->nrows == 0;
+    rc = lag_table_add(t, row);
+  }
+  return rc;
+}
+
+/* Adds the rows of all parts; those of a branch that goes on follow its last row. */
+static int add_rows(Job *job) {
+  Table *t = &job->app->table;
+  size_t kept = t->nrows, width = (size_t)t->ncols * sizeof *t->data, at = job->resumed;
+  double *most = calloc((size_t)job->app->sim->pb.n, sizeof *most), *rest = NULL;
+  int rc = most ? 0 : -1;
+  if (at) {
+    rest = malloc((kept - at + 1) * width);
+    if (!rest) rc = -1;
+    else memcpy(rest, t->data + at * (size_t)t->ncols, (kept - at) * width);
+    t->nrows = at;
+    if (job->part[0].branch.first->next) t->data[at * (size_t)t->ncols - 2] = 0;
+    rc = rc ? rc : add_part(job, &job->part[0], 1, most);
+    for (size_t k = 0; k < kept - at && rc == 0; k++) rc = lag_table_add(t, rest + k * (size_t)t->ncols);
+  }
+  for (int k = at != 0; k < job->nparts && rc == 0; k++) rc = add_part(job, &job->part[k], 0, most);
+  free(rest);
   free(most);
-  return rc || !most ? -1 : 0;
+  return rc;
 }
 
 int lag_continue_write_rows(Job *job) {
   App *app = job->app;
-  if (!app->args.out) return 0;
-  int rc = make_table(job);
-  if (rc) return rc;
-  if (lag_rows_open(&app->rows, app->args.out, &app->table)) return lag_app_io_error(app, app->args.out);
-  rc = put_rows(job);
-  return lag_rows_close(&app->rows, rc == 0) || rc ? lag_app_io_error(app, app->args.out) : 0;
+  const char *out = app->args.out ? app->args.out : app->args.resume;
+  if (!out && !app->args.svg) return 0;
+  if (add_rows(job)) return lag_app_error(&app->args, "out of memory");
+  if (!out) return 0;
+  if (lag_rows_open(&app->rows, out, &app->table)) return lag_app_io_error(app, out);
+  int rc = 0;
+  for (size_t k = 0; k < app->table.nrows && rc == 0; k++)
+    rc = lag_rows_write(&app->rows, app->table.data + k * (size_t)app->table.ncols);
+  return lag_rows_close(&app->rows, rc == 0) || rc ? lag_app_io_error(app, out) : 0;
 }
 
 /* Rows of the picture: the parameter and the value where it is stable, or where it is not; rows without values part
  * the branches. */
-static int drawn_rows(Job *job, Table *t, double *most) {
+static int drawn_rows(const Table *of, int value, Table *t) {
   int rc = 0;
-  for (int k = 0; k < job->nparts && rc == 0; k++) {
-    const Part *part = &job->part[k];
-    for (const BranchPoint *at = part->branch.first; at && rc == 0; at = at->next) {
-      largest_values(job, part, at, most);
-      double y = lag_sim_declared(job->app->sim, 0, most[0]), x = parameter_at(job, part, at);
-      int changes = at->kind != BRANCH_REGULAR; /* here both curves meet */
-      double row[] = {x, at->unstable && !changes ? NAN : y, at->unstable || changes ? y : NAN};
-      rc = lag_table_add(t, row);
-    }
-    double gap[] = {NAN, NAN, NAN};
-    rc = rc ? rc : lag_table_add(t, gap);
+  for (size_t k = 0; k < of->nrows && rc == 0; k++) {
+    const double *row = of->data + k * (size_t)of->ncols, x = row[0], y = row[value];
+    int changes = row[2] != 0.0, unstable = row[3] != 0.0; /* at a change both curves meet */
+    double drawn[] = {x, unstable && !changes ? NAN : y, unstable || changes ? y : NAN}, gap[] = {NAN, NAN, NAN};
+    rc = lag_table_add(t, drawn);
+    if (rc == 0 && row[of->ncols - 2] != 0.0) rc = lag_table_add(t, gap);
   }
   return rc;
 }
@@ -253,14 +282,11 @@ int lag_continue_draw(Job *job) {
   Column first = lag_state_column(app->sim, 0);
   char title[300], name[64];
   if (!app->args.svg) return 0;
-  lag_table_free(&app->table);
+  Table all = app->table;
   app->table = (Table){.ncols = 3, .keep = 1, .cols = calloc(3, sizeof *app->table.cols)};
-  double *most = calloc((size_t)app->sim->pb.n, sizeof *most);
-  if (!app->table.cols || !most || drawn_rows(job, &app->table, most)) {
-    free(most);
-    return lag_app_error(&app->args, "out of memory");
-  }
-  free(most);
+  int rc = app->table.cols ? drawn_rows(&all, OF_STATE + app->sim->pb.n, &app->table) : -1;
+  lag_table_free(&all);
+  if (rc) return lag_app_error(&app->args, "out of memory");
   snprintf(name, sizeof name, "%s%.40s", job->periodic ? "max " : "", first.name);
   snprintf(app->table.cols[0].name, sizeof app->table.cols[0].name, "%s", job->name);
   if (job->unit) snprintf(app->table.cols[0].unit, sizeof app->table.cols[0].unit, "%s", job->unit->unit);

@@ -311,7 +311,8 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
     fprintf(f, "reversible by %s: from t = %s s on the motion is its first half backwards\n", app->args.reverse,
             lag_number_text(o->T / 2, text));
   if (lag_flow_differences(&o->flow))
-    fputs("multipliers to about 8 digits: contacts have no tangent, and runs from beside the start replace it\n", f);
+    fputs("multipliers to about 8 digits: with contacts, which may close, runs from beside the start replace the "
+          "tangent\n", f);
   put_free(f, o);
   if (o->repeats > 1)
     fprintf(f, "note: the motion comes back already after 1/%d of this period: --guess %s\n", o->repeats,

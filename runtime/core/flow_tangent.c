@@ -8,7 +8,8 @@
  *   S = R_y + (f+ - R_y f - R_t) g_y / (g_y f + g_t):
  * R.I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004), ch. 7, DOI
  * 10.1007/978-3-540-44398-8. A switch that ends its branch has R_y = 1; where the motion begins to slide on its
- * surface, f+ lies in the surface and S has one rank less. */
+ * surface, f+ lies in the surface and S has one rank less. At an impact of a contact between two flights R_y and R_t
+ * are differences of the impact law; where a contact stays closed, the run with a tangent fails. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,14 +33,16 @@ static int check(lag_sim *s) {
   const lag_model *m = s->scene->model;
   int in_p = m->nq > 0 && (s->method->flags & LAG_METHOD_VARIATION) &&
              !((s->method->flags & LAG_METHOD_SPLITS) && (m->flags & LAG_SEPARABLE));
-  if (m->ncontacts) {
-    const lag_constraint *of = &m->constraints->of[m->contacts[0].constraint];
-    return lag_fail(s, LAG_EMETHOD,
-                    m->contacts[0].conditional ? "there is no tangent of a motion whose constraint %s begins and ends: "
-                                                 "the impulses there have no derivatives yet"
-                                               : "there is no tangent of a motion with contact %s: its impacts have no "
-                                                 "derivatives yet; write them as an event that sets velocities",
-                    of->name);
+  for (int i = 0; i < m->ncontacts; i++) {
+    const char *name = m->constraints->of[m->contacts[i].constraint].name;
+    if (m->contacts[i].conditional || lag_guide_of(m, i) >= 0)
+      return lag_fail(s, LAG_EMETHOD,
+                      "there is no tangent of a motion whose constraint %s begins and ends: the impulses there have no "
+                      "derivatives yet", name);
+    if (s->pb.by || s->record)
+      return lag_fail(s, LAG_EMETHOD,
+                      "there are no derivatives by parameters of a motion with contact %s: its impacts have none yet; "
+                      "write them as an event that sets velocities", name);
   }
   if (m->constraints && (!s->method->tangent || (s->method->flags & LAG_METHOD_VARIATION)))
     return lag_fail(s, LAG_EMETHOD,
@@ -95,11 +98,24 @@ static int make_room(lag_sim *s, int k) {
   return LAG_OK;
 }
 
+/* A contact that is closed; -1: none. */
+static int closed_contact(const lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  for (int i = 0; i < m->ncontacts; i++)
+    if (!m->contacts[i].is_tangent && lag_contact_is_closed(s, &m->contacts[i])) return i;
+  return -1;
+}
+
 /* Projects Y onto the tangent space of the constraints at the present state, t. Near a singular position, as of a
  * folded linkage, there is none. */
 static int stay_on_constraints(lag_sim *s, double t, double *Y) {
   const double least = 1e-3;
-  int weakest = -1;
+  int weakest = -1, closed = closed_contact(s);
+  if (closed >= 0)
+    return lag_fail(s, LAG_EMETHOD,
+                    "contact %s is closed at t = %s s, where neighbouring motions may fly: the tangent goes over "
+                    "impacts between flights only; end the run before",
+                    s->scene->model->constraints->of[s->scene->model->contacts[closed].constraint].name, LAG_TEXT(t));
   if (s->scene->model->constraints && lag_independence(&s->pb, t, s->now, &weakest) < least && weakest >= 0)
     return lag_fail(s, LAG_EMETHOD,
                     "at t = %s s constraint %s nearly depends on the others: neighbouring motions part there, and "
@@ -400,13 +416,104 @@ static double log_det(int n, const double *S, double *a) {
   return log_of;
 }
 
+static const char either_order[] =
+    "another event does so at the same time, and neighbouring motions may meet the two in either order";
+
 /* NULL, or why an event has no saltation matrix. more: another event happens at the same time. */
 static const char *jump_lacks(const lag_model *m, int more) {
   return m->constraints ? "what constraints make of its effect has no derivative yet"
          : !m->linear
              ? "its effect on neighbouring motions needs derivatives, which `lagc build --with linear` builds in"
-         : more ? "another event does so at the same time, and neighbouring motions may meet the two in either order"
+         : more ? either_order
                 : NULL;
+}
+
+/* ---- Impacts of contacts */
+
+/* What the search for impacts changes besides the state: signals of contacts, inputs, events that are due. */
+typedef struct Strike {
+  double *hold, *root, *u, *there, *slope; /* [nu], [nev + nmodes], [nu], [n]; gradient of the gap, and its rate */
+} Strike;
+
+/* column[n] := change of the state after impact k along component i of the state before, or of t for i = n, by central
+ * differences of order 4. */
+static int impact_slope(lag_sim *s, int k, int i, const Strike *w, double *column) {
+  const double part = 0x1p-9;
+  const lag_model *m = s->scene->model;
+  int n = s->pb.n, rc = LAG_OK;
+  double t = s->run->t, step = fabs(s->run->step_t1 - s->run->step_t0),
+         h = part * (i < n ? lag_difference_scale(&s->pb, s->now, i) : step);
+  memset(column, 0, (size_t)n * sizeof *column);
+  for (int j = -2; j <= 2 && rc == LAG_OK; j++) {
+    if (j == 0) continue;
+    memcpy(w->there, s->now, (size_t)n * sizeof *w->there);
+    if (i < n) w->there[i] += j * h;
+    s->run->t = i == n ? t + j * h : t;
+    rc = lag_contact_resolve(s, w->there, NULL, k, 0);
+    for (int c = 0; c < n; c++) column[c] += (j % 2 ? 8 : -1) * (j < 0 ? -1 : 1) / 12.0 * w->there[c] / h;
+    memcpy(s->hold, w->hold, (size_t)m->nu * sizeof *w->hold);
+    memcpy(s->root, w->root, (size_t)lag_watched(s) * sizeof *w->root);
+    memcpy(s->pb.u, w->u, (size_t)m->nu * sizeof *w->u);
+  }
+  s->run->t = t;
+  return rc;
+}
+
+/* S := saltation matrix of impact k, with room for the rates. *rate := the speed of the gap. */
+static int impact_saltation(lag_sim *s, int k, const Strike *w, const Jump *j, double *rate) {
+  int n = s->pb.n, rc = lag_rhs(&s->pb, s->run->t, s->now, j->before);
+  Corner corner = {.there = w->there, .gradient = j->g, .g = w->slope};
+  rc = rc ? rc : lag_rhs(&s->pb, s->run->t, s->yb, j->after);
+  *rate = 0;
+  for (int i = 0; i <= n && rc == LAG_OK; i++) {
+    rc = event_slope(s, &corner, k, i, &j->g[i]);
+    rc = rc ? rc : impact_slope(s, k, i, w, j->Rt);
+    for (int c = 0; c < n; c++) {
+      if (i < n) j->S[c * n + i] = j->Rt[c];
+      j->after[c] -= j->Rt[c] * (i < n ? j->before[i] : 1);
+    }
+    *rate += j->g[i] * (i < n ? j->before[i] : 1);
+  }
+  for (int i = 0; i < n; i++)
+    for (int c = 0; c < n; c++) j->S[i * n + c] += j->after[i] * j->g[c] / *rate;
+  return rc;
+}
+
+/* Y := that behind impact k, between flights. */
+static int strike(lag_sim *s, int k, int more) {
+  const lag_model *m = s->scene->model;
+  size_t n = (size_t)s->pb.n, nu = (size_t)m->nu, watched = (size_t)lag_watched(s),
+         columns = (size_t)s->tangent_columns;
+  double rate, calls = s->pb.rhs_calls, *room;
+  if (more || s->record) return refuse(s, k, more ? either_order : "gradients do not go over impacts yet");
+  if (closed_contact(s) >= 0) return refuse(s, k, "the contact stays closed, where neighbouring motions may fly");
+  int rc = s->run->have_step != 0.0 && s->run->t != s->run->step_t0 && !s->tangent_at_event
+               ? advance_tangent(s, s->run->t, s->tangent)
+               : LAG_OK;
+  if (rc) return rc;
+  if (!(room = calloc(2 * nu + 2 * watched + 5 * (n + 1) + n * columns + 2 * n * n, sizeof *room))) return LAG_ENOMEM;
+  Strike w = {.hold = room, .root = room + nu};
+  w.u = w.root + watched;
+  w.there = w.u + nu;
+  w.slope = w.there + n + 1;
+  Jump j = {.g = w.slope + watched};
+  j.Rt = j.g + n + 1;
+  j.before = j.Rt + n + 1;
+  j.after = j.before + n + 1;
+  j.Y = j.after + n + 1;
+  j.S = j.Y + n * columns;
+  j.copy = j.S + n * n;
+  memcpy(w.hold, s->hold, nu * sizeof *room);
+  memcpy(w.root, s->root, watched * sizeof *room);
+  memcpy(w.u, s->pb.u, nu * sizeof *room);
+  rc = impact_saltation(s, k, &w, &j, &rate);
+  s->pb.rhs_calls = calls;
+  s->tangent_at_event = 1;
+  if (rc == LAG_OK) s->tangent_log += log_det((int)n, j.S, j.copy);
+  if (rc == LAG_OK && (only_touches(s, k, rate) || !apply_saltation(s, &j)))
+    rc = refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
+  free(room);
+  return rc;
 }
 
 int lag_tangent_jump(lag_sim *s, int k, int more) {
@@ -415,6 +522,7 @@ int lag_tangent_jump(lag_sim *s, int k, int more) {
   int n = pb->n, nq = pb->nq;
   double t = s->run->t, rhs_calls = pb->rhs_calls, rate = 0;
   if (!s->tangent) return LAG_OK;
+  if (lag_contact_of(m, k)) return strike(s, k, more);
   const char *lacks = jump_lacks(m, more);
   if (lacks) return refuse(s, k, lacks);
   Jump j = jump_layout(s);

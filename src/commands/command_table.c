@@ -141,7 +141,7 @@ static const CommandRow commands[] = {
      "  name=value            a parameter, another start (th=3), an input to hold"},
     {CMD_CONTINUE, "continue", "bifurcation",
      "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T | --steady] [--hold NAMES] [--branches] "
-     "[-o FILE.csv] [--svg FILE.svg] [--json]",
+     "[-o FILE.csv] [--resume FILE.csv] [--svg FILE.svg] [--json]",
      "rest, steady and periodic motions over a parameter: folds, bifurcations",
      "Follows a state of rest, a steady motion (--steady), or a periodic motion, while a parameter runs over a range, "
      "round folds, too "

@@ -74,6 +74,35 @@ close 1 period 3.40802289484 1e-10
 follow models/pendulum.lag wide period=2.4..3 --period 2.5
 kinds "end;end;"
 near "$title: amplitude" 1e-10 -0.672828117724294 "$(sed -n "1s/.*\"th\": \([^,]*\), \"th'\": \([^}]*\)}.*/\1 \2/p" "$TMP/points" | awk '{ printf "%.15g", cos($1) - $2^2/(2*9.81) }')"
+# Duffing's backbone by energy: 4 K(k)/sqrt(1 + A^2), k^2 = A^2/(2 (1 + A^2)), A^2 + A^4/2 = 2 E; at 24 by mpmath
+follow $dir/backbone.lag energy=0.7..24
+close 1 period 2.31119416692599250 1e-11
+close 1 x 2.97470297707117386 1e-12
+# the double pendulum's nonlinear modes: next to rest 2 pi/w, w^2 = (2 -+ sqrt 2) g/l, and as far apart as A^2/24 (lagc modes: 0.0424 A^2, 0.926 A^2 with A = 0.0143
+# of th2); at the other end SciPy's DOP853 at 1e-13: released at rest, both rods hang straight after a quarter of a period
+follow models/double_pendulum.lag together th1=0.02 th2=0.0282842712474619 energy=-29.428..-26.927900718198647
+close 1 period 2.6494630421318380 1e-11
+close 1 th2 0.5 1e-9 # the energy has a rounding of 1e-15 of 29
+near "$title: mode" 1e-6 0.0424332 "$(of_point 2 period | awk '{ w = 8*atan2(1, 1)/$1; printf "%.12g", (1 - w/sqrt((2 - sqrt(2))*9.81))/0.01427834712^2 }')"
+follow models/double_pendulum.lag apart th1=0.02 th2=-0.0282842712474619 energy=-29.428..-28.81651650833325
+close 1 period 1.1460683553031663 1e-11
+
+# --resume: the rows so far stay as they are, but for the word at the end of the branch; then the same end as above
+"$LAGC" continue models/pendulum.lag wide energy=9..12 -o "$TMP/family.csv" >"$TMP/log"
+cp "$TMP/family.csv" "$TMP/before.csv"
+follow models/pendulum.lag wide energy=9..18 --resume "$TMP/family.csv"
+close 1 period 3.40802289484 1e-10
+without_ends() { sed 's/,[a-z]*,$/,,/' "$1"; }
+without_ends "$TMP/before.csv" >"$TMP/before"
+without_ends "$TMP/family.csv" >"$TMP/after"
+is "$title: rows changed, added in the middle" "0 1" "$(diff "$TMP/before" "$TMP/after" | grep -c '^<') $(diff "$TMP/before" "$TMP/after" | grep -c '^[0-9]')"
+# driven: both folds lie behind the last of 12 points; SciPy as below
+"$LAGC" continue $dir/oscillator.lag driven w=1.2..2.5 --most 12 -o "$TMP/driven.csv" >"$TMP/log"
+follow $dir/oscillator.lag driven w=1.2..2.5 --resume "$TMP/driven.csv" -o "$TMP/more.csv" --svg "$TMP/more.svg"
+kinds "fold;fold;end;"
+close 1 parameter 2.39964925875596 1e-10
+close 2 parameter 1.32917435250243 1e-10
+check "$title: -o leaves the file" awk -F, 'END { exit !(NR < 16) }' "$TMP/driven.csv"
 
 # Steady motions. A conical pendulum turns at w with cos th = g/(l w^2); disturbed, it nods at w sqrt(1 + 3 cos^2 th)
 follow models/spherical_pendulum.lag cone --steady "ph'=3.3..8"
@@ -96,6 +125,11 @@ long() {
   kinds "branch point;end;end;end;end;"
   close 1 parameter 4.42944691807002 1e-9
   close 4 y -0.15328125 1e-10
+  # a block rocks on a shaken floor, and may stand anywhere on it: no branch point is found where a multiplier stays 1
+  { cat models/rocking_block.lag && echo 'param a = 1.5 [m/s^2], w = 6 [rad/s]' && echo 'force x = -m*a*sin(w*t)'; } >"$TMP/shaken.lag"
+  follow "$TMP/shaken.lag" a=1.49..1.505 x=0.0174588734157936 y=0.804163377048012 th=-0.0217660919714671 "x'=0.44204476705349" \
+    "y'=0.10034198550577" "th'=-0.549695223222156" --until 10 --hold x
+  kinds "end;end;"
   # AUTO's manual: folds at 0.105739 and 0.0889318, a Hopf point at 0.1309
   follow $dir/reaction.lag p1=0..0.15
   kinds "fold;fold;Hopf;end;end;"
@@ -146,4 +180,12 @@ refused "two ranges" 2 "one value runs over a range" "$LAGC" continue models/pen
 refused "a branch point to begin with" 3 "let the range begin beside it" "$LAGC" continue models/lorenz.lag x=0 y=0 z=0 rho=1..2
 refused "outside" 2 "outside of 10..18: start within" "$LAGC" continue models/pendulum.lag wide energy=10..18
 refused "a period of steady motions" 2 "a steady motion has none" "$LAGC" continue $dir/governor.lag --steady period=1..2
+family="$TMP/family.csv"
+refused "rows of another model" 2 "column 7 is \`th [rad]\`, and should be \`x\`" "$LAGC" continue models/lorenz.lag x=0 y=0 z=0 energy=1..2 --resume "$family"
+refused "rows of other values" 2 "the file was written by \`pendulum wide over energy" "$LAGC" continue models/pendulum.lag wide l=2 energy=9..18 --resume "$family"
+refused "rows of other options" 2 "1e-13, --hold th, values" "$LAGC" continue models/pendulum.lag wide energy=9..18 --hold th --resume "$family"
+refused "rows of another NAME" 2 "column 1 is \`energy\`" "$LAGC" continue models/pendulum.lag wide period=2..3 --resume "$family"
+refused "no branch to go on" 2 "no branch can go on within 9..18" "$LAGC" continue models/pendulum.lag wide energy=9..18 --resume "$family"
+sed '3s/^[^,]*/nine/' "$family" >"$TMP/bad.csv"
+refused "a row without number" 2 "bad.csv:3: energy: \`nine\` is no number" "$LAGC" continue models/pendulum.lag wide energy=9..20 --resume "$TMP/bad.csv"
 tap_end

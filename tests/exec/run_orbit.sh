@@ -129,6 +129,14 @@ orbit $dir/plate.lag
 closes 1 1 4.00091570084199 1e-8
 closes 2 1 0.0624856954490163 1e-8
 check "$title: says where the digits come from" grep -q '"multipliers_by": "differences"' "$TMP/json"
+# A block rocks on a shaken floor, edge to edge: SciPy's DOP853 at 1e-13 of its angle alone about the edge that holds, with Housner's loss 1 - 3/2 sin(al)^2 at
+# each of two strokes, by fsolve. The product of its multipliers is the fourth power of that loss.
+{ cat models/rocking_block.lag && echo 'param a = 1.5 [m/s^2], w = 6 [rad/s]' && echo 'force x = -m*a*sin(w*t)'; } >"$TMP/shaken.lag"
+orbit "$TMP/shaken.lag" x=0.0174588734157936 y=0.804163377048012 th=-0.0217660919714671 "x'=0.44204476705349" "y'=0.10034198550577" "th'=-0.549695223222156" \
+  --until 10 --relative x
+near "$title: rate" 1e-10 -0.5496952179836674 "$(sed -n "s/.*\"th'\": \([-0-9.e]*\).*/\1/p" "$TMP/json")"
+closes 1 1 -0.823844620222081 1e-8
+closes 1 2 0.111195636710098 1e-8
 # The wheel without a rim: a step takes T = int dp/w(p), and multiplies disturbances by ((I + m l^2 cos 2a)/(I + m l^2))^2; here six steps.
 sed 's/th \[rad\]  /th [rad] periodic  /' models/rimless_wheel.lag >"$TMP/wheel.lag"
 orbit "$TMP/wheel.lag" th=0 "th'=1.3" "x'=1.3" --relative x,y --guess 4.425

@@ -37,6 +37,19 @@ close "dx/dx'" "exp(-0.2*5)*sin(sqrt(4 - 0.04)*5)/sqrt(4 - 0.04)" "$(entry "dx/d
 det2() { awk -F, -v a="$(column "dx/dx(0)")" 'END { printf "%.17g", $a*$(a + 3) - $(a + 1)*$(a + 2) }' "$TMP/last"; }
 close "determinant" "exp(-0.4*5)" "$(det2)" 1e-10
 
+# Impacts of contacts. A ball bounces once a period T of a plate: with the plate's phase p, cos p = g T (1 - e)/(2 A w (1 + e)), the matrix of a period has the
+# determinant e^2 and the trace 1 + e^2 + (1 + e)^2 A w^2 sin p/g, here 4.0634013962910063
+last tests/exec/orbits/plate.lag y=0.006821195225698461 "y'=0.556222705653584" --until 0.15707963267948966 --every 0.15707963267948966 --tol 1e-13
+close "determinant" 0.25 "$(awk -F, -v a="$(column "dy/dy(0)")" 'END { printf "%.17g", $a*$(a + 3) - $(a + 1)*$(a + 2) }' "$TMP/last")" 1e-11
+close "trace" 4.0634013962910063 "$(awk -F, -v a="$(column "dy/dy(0)")" 'END { printf "%.17g", $a + $(a + 3) }' "$TMP/last")" 1e-11
+# A superball grips: an impulse of -4/7 m (x' + r th') along the floor. The first bounce is at t1 = sqrt(2 h/g), and y' = 2 g t1 - g t behind it.
+sed 's/output x, y, th.*/output x, y, th, x'"'"', y'"'"', th'"'"' every 1/; s/span 2.5/span 1/' models/superball.lag >"$TMP/superball.lag"
+last "$TMP/superball.lag" thrown
+close "spin by spin" "-3/7" "$(entry "dth'/dth'(0)")" 1e-10
+close "speed by speed" "3/7" "$(entry "dx'/dx'(0)")" 1e-10
+close "spin by speed" "-400/7" "$(entry "dth'/dx'(0)" '(rad/s)/(m/s)')" 1e-10
+close "rise by height" "sqrt(2*9.81)" "$(entry "dy'/dy(0)" '(m/s)/m')" 1e-9 # the tolerance of the scene
+
 # Lorenz: volumes shrink by exp(-(sigma + 1 + beta) t) along every motion.
 last models/lorenz.lag --until 1
 det3() {
