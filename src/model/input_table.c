@@ -135,9 +135,9 @@ static uint32_t find_column(const Table *t, uint32_t from, const char *name, uin
 /* Parses a unit of the head; reported, with DIM_ANY, when it is none. */
 static Unit unit_written(const Table *t, const char *text) {
   Builder *b = t->b;
-  const char *whole = arena_printf(b->arena, "1 [%s]", text);
-  const Source *source =
-      source_add(b->ast->sources, arena_printf(b->arena, "unit in %s", t->file.path), whole, strlen(whole));
+  Arena *a = b->ast->sources->arena; /* messages quote the text when the model is gone */
+  const char *whole = arena_printf(a, "1 [%s]", text), *name = arena_printf(a, "unit in %s", t->file.path);
+  const Source *source = source_add(b->ast->sources, name, whole, strlen(whole));
   AstId id = source ? parse_expression(b->ast, source) : 0;
   AstUnit none = {0};
   int is_unit = id && ast_expr(b->ast, id)->kind == AST_UNIT;
