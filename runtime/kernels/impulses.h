@@ -45,7 +45,7 @@ typedef struct lag_coulomb {
   const LAG_REAL *centre;
 } lag_coulomb;
 
-/* slip[n]: now, under the friction x[n]. x := friction by the law; slip := the point that it aims at. */
+/* slip[n]: now, under the friction x[n]. x := friction by the law; slip := what that leaves of it. */
 static inline void lag_friction_turn(const lag_coulomb *of, LAG_REAL *slip, LAG_REAL *x) {
   const LAG_REAL origin[2] = {LAG_C(0.0), LAG_C(0.0)}, response = of->response;
   const int n = of->n;
@@ -58,7 +58,10 @@ static inline void lag_friction_turn(const lag_coulomb *of, LAG_REAL *slip, LAG_
   }
   if (n > 1) size = lag_length_of(x[0], x[1]);
   else size = LAG_FN(fabs)(x[0]);
-  if (size > of->holds) lag_into_ball(n, origin, of->most, x);
+  if (!(size > of->holds)) return;
+  for (int k = 0; k < n; k++) to[k] = x[k];
+  lag_into_ball(n, origin, of->most, x);
+  for (int k = 0; k < n; k++) slip[k] += response*(x[k] - to[k]);
 }
 
 /* ---- mean ---- */
