@@ -95,7 +95,11 @@ static void words_primary(Words *w)
     w->at = back;
   } else if (words_take(w, '(')) words_call(w, name);
   else if (strcmp(name, "deg") == 0) words_put(w, "pi() 180 /");
-  else words_put(w, strcmp(name, "pi") == 0 ? "pi()" : strcmp(name, "end") == 0 ? "end()" : name);
+  else {
+    int call = strcmp(name, "pi") == 0 || strcmp(name, "end") == 0 || strcmp(name, "lyapunov") == 0;
+    if (call) strcat(name, "()");
+    words_put(w, name);
+  }
 }
 
 static void words_power(Words *w)
