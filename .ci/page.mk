@@ -14,7 +14,7 @@ $(BUILD)/obj/wasm/%.o: %.c
 	@mkdir -p $(@D)
 	$(CCACHE) $(WASM) $(WASM_FLAGS) -MMD -MP -c -o $@ $<
 $(BUILD)/lag.wasm: $(WASM_OBJ) runtime/page/motion.js
-	$(WASM) -mexec-model=reactor -Wl,--gc-sections,--strip-all $(WASM_CALLS:%=-Wl,--export=%) -o $@ $(WASM_OBJ) -lm
+	$(WASM) -mexec-model=reactor -Wl,--gc-sections,--strip-all,--stack-first,-z,stack-size=1048576 $(WASM_CALLS:%=-Wl,--export=%) -o $@ $(WASM_OBJ) -lm
 	$(SHRINK)
 $(BUILD)/lag.wasm.gz: $(BUILD)/lag.wasm
 	$(DEFLATE) $< >$@
