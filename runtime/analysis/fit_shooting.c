@@ -66,7 +66,7 @@ static void mark_parts(Fit *f, int k, int parts) {
   }
 }
 
-/* What a part that begins within a record cannot know. */
+/* State that a part cannot know which begins within a record. */
 static const char *memory_of(const lag_sim *sim) {
   const lag_model *m = sim->scene->model;
   for (int k = 0; k < m->nev; k++)

@@ -1,4 +1,4 @@
-/* What closes a periodic motion (periodic_orbit.h): turns of angles, symmetries of charges, shifts, exchanges of
+/* Closing of a periodic motion (periodic_orbit.h): turns of angles, symmetries of charges, shifts, exchanges of
  * coordinates, or the middle of one that is the same backwards in time. */
 #include <math.h>
 #include <stdio.h>

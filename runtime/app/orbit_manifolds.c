@@ -180,7 +180,7 @@ static int draw(Manifolds *m) {
 
 /* ---- The command */
 
-/* What was computed failed: the exit status. */
+/* Exit status of a computation that failed. */
 static int failed(const App *app, const char *message) {
   lag_app_error(&app->args, "%s", message);
   return EXIT_RUN;

@@ -115,7 +115,7 @@ static int simulate(App *app) {
 
 typedef int Analysis(App *app);
 
-/* What the command line asks for. */
+/* Work that the command line asks for. */
 static Analysis *analysis_of(const Args *a) {
   return a->sweep                   ? lag_app_sweep
          : a->design                ? lag_app_design

@@ -58,7 +58,7 @@ static void list_units(const FoundUnits *all, StrBuf *out) {
 /* Whether the model declares inputs; those of contacts do not count. */
 static int has_inputs(const Model *m) { return m->inputs.n > model_contact_inputs(m); }
 
-/* What one scene, or one effect in no scene, adds to the report. */
+/* Additions of one scene, or one effect in no scene, to the report. */
 typedef struct {
   ModelChoice choice;
   int is_first;

@@ -29,7 +29,7 @@ static AstId error(Ast *ast, Span span, const char *what) {
   return ast_collect(ast, AST_ERROR, span, (AstList){0, 0});
 }
 
-/* What near(...) asks for. */
+/* Arguments of near(...). */
 typedef struct {
   Span span;
   Ident i, j;
