@@ -430,7 +430,7 @@ static const char *jump_lacks(const lag_model *m, int more) {
 
 /* ---- Impacts of contacts */
 
-/* Quantities that the search for impacts changes besides the state: signals of contacts, inputs, events that are due. */
+/* State, besides y, that the search for impacts changes: signals of contacts, inputs, events that are due. */
 typedef struct Strike {
   double *hold, *root, *u, *there, *slope; /* [nu], [nev + nmodes], [nu], [n]; gradient of the gap, and its rate */
 } Strike;
