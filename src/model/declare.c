@@ -250,7 +250,7 @@ void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_CANONICAL:
     case STMT_FOR:
     case STMT_MODEL:
-    case STMT_INCLUDE:
+    case STMT_INCLUDE: case STMT_NETWORK:
     case STMT_MOMENTUM:
     case STMT_HAMILTONIAN:
     case STMT_LAGRANGIAN:

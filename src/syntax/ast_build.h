@@ -77,6 +77,8 @@ AstStmt *stmt_valued(Ast *ast, AstStmtKind kind, Span span, Ident name, AstUnit 
 AstStmt *stmt_param(Ast *ast, Span span, Ident name, AstList dims, Ident type, AstUnit unit, AstId value, AstSign sign);
 AstStmt *stmt_define(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstUnit unit, AstId rhs);
 AstStmt *stmt_function(Ast *ast, Span span, Ident name, AstList args, AstId rhs);
+/* network.c; activation.name NULL: tanh. */
+AstStmt *stmt_network(Ast *ast, Span span, Ident name, AstList args, AstText path, AstList layers, Ident activation);
 AstStmt *stmt_value(Ast *ast, AstStmtKind kind, Span span, AstId rhs);
 /* `draw SHAPE[members] SUBJECT = VALUE OPTIONS`; 0 and empty: not written. */
 AstStmt *stmt_draw(Ast *ast, Span span, Ident shape, AstList members, AstId subject, AstId value, AstList options);
