@@ -1,5 +1,5 @@
 /* Networks in --fit: their names stand for all their weights, and the weights found go to a file that models read.
- * Weights are the parameters V_w1[1,1], ..., V_b1[1], ... that lagc makes of `network V(...)` (src/syntax/network.c). */
+ * Weights are the parameters V_w1[1,1], ..., V_b1[1], ... that lagc makes of `network V(...)`. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -57,7 +57,8 @@ static int differs(const char *key, const char *before) {
 }
 
 int lag_network_write(const FitRun *r, const char *path) {
-  static const char *const begins[] = {"", "[", "[["}, *const ends[] = {"", "]", "]]"}, *const between[] = {", ", "],\n  ["};
+  static const char *const begins[] = {"", "[", "[["}, *const ends[] = {"", "]", "]]"};
+  static const char *const between[] = {", ", "],\n  ["};
   const char *before = NULL;
   int depth = 0;
   Outfile file;

@@ -107,8 +107,8 @@ static int take_steps(gsl_multimin_fdfminimizer *w, gsl_multimin_function_fdf *f
   return LAG_EMETHOD;
 }
 
-static int descend_gradient(int n, double *x, lag_objective_at *objective, int (*goes_on)(void *, double), void *context,
-                   int most, int *steps) {
+static int minimise_function(int n, double *x, lag_objective_at *objective, int (*goes_on)(void *, double),
+                             void *context, int most, int *steps) {
   Objective o = {objective, context};
   double f;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
@@ -136,4 +136,5 @@ static int singular_values(int m, int n, double *A, double *values, double *V) {
 static double chance_of_more(double chi_squared, double freedom) { return gsl_cdf_chisq_Q(chi_squared, freedom); }
 static double chance_of_f(double f, double above, double below) { return gsl_cdf_fdist_Q(f, above, below); }
 
-const lag_least_squares lag_gsl_least_squares = {minimise, descend_gradient, singular_values, chance_of_more, chance_of_f};
+const lag_least_squares lag_gsl_least_squares = {minimise, singular_values, chance_of_more, chance_of_f,
+                                                 minimise_function};

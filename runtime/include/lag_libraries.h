@@ -47,15 +47,16 @@ typedef struct lag_least_squares {
   /* Moves x[n] to a minimum of |f|^2, m >= n, in at most `most` steps; *steps: made. LAG_OK; LAG_EMETHOD: not reached;
    * LAG_EDOMAIN: no values at the start; LAG_ENOMEM. J may be of lower rank than n. */
   int (*minimise)(int m, int n, double *x, lag_residuals_at *residuals, void *context, int most, int *steps);
-  /* Moves x[n] to lower values of a function by quasi-Newton steps (BFGS); each is followed by goes_on(context, f), which
-   * ends the search with 0. LAG_OK: ended so, or no step gains; LAG_EMETHOD: `most` steps; LAG_EDOMAIN, LAG_ENOMEM. */
-  int (*descend)(int n, double *x, lag_objective_at *objective, int (*goes_on)(void *, double), void *context, int most,
-                 int *steps);
   /* A[m * n] = U diag(values) V^T, m >= n, values descending; A := U, V[n * n]. LAG_OK or LAG_EMETHOD. */
   int (*singular_values)(int m, int n, double *A, double *values, double *V);
   /* Probability that chi squared, or Fisher's F, with so many degrees of freedom is larger. */
   double (*chance_of_more)(double chi_squared, double freedom);
   double (*chance_of_f)(double f, double above, double below);
+  /* Moves x[n] to lower values of a function by quasi-Newton steps (BFGS); each is followed by goes_on(context, f),
+   * which ends the search with 0. LAG_OK: ended so, or no step gains; LAG_EMETHOD: `most` steps; LAG_EDOMAIN: no value
+   * at the start; LAG_ENOMEM. */
+  int (*descend)(int n, double *x, lag_objective_at *objective, int (*goes_on)(void *, double), void *context, int most,
+                 int *steps);
 } lag_least_squares;
 
 /* Rows or motions of a sweep as arrays: the columns x[n of all axes, multiplied], the last axis fastest. */

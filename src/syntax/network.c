@@ -6,6 +6,7 @@
 #include "syntax/network.h"
 
 #include "base/num.h"
+#include "base/words.h"
 #include "syntax/ast_build.h"
 
 #include <ctype.h>
@@ -139,7 +140,8 @@ static int read_number(Reader *r, StrBuf *out) {
 static int read_list(Reader *r, const char *key, uint32_t n, uint32_t columns, StrBuf *out) {
   Arena *a = r->net->ast->arena;
   uint32_t begin = r->at, i = 0;
-  if (!take(r, '[')) return mistake(r, 1, arena_printf(a, "expected `[`: \"%s\" has a list of %u members here", key, n));
+  if (!take(r, '['))
+    return mistake(r, 1, arena_printf(a, "expected `[`: \"%s\" has a list of %u members here", key, n));
   sb_putc(out, '{');
   for (int more = *here(r) != ']'; more; more = take(r, ','), i++) {
     sb_puts(out, i ? ", " : "");
@@ -150,8 +152,8 @@ static int read_list(Reader *r, const char *key, uint32_t n, uint32_t columns, S
   if (i == n) return 1;
   r->at = begin;
   here(r);
-  return mistake(r, 1, arena_printf(a, "this list of \"%s\" has %u members, and the layers of the network ask for %u" HELP
-                                    "write the widths with which the file was made", key, i, n));
+  return mistake(r, 1, arena_printf(a, "this list of \"%s\" has %u members, and the layers of the network ask for %u"
+                                    HELP "write the widths with which the file was made", key, i, n));
 }
 
 /* "w1": [[...], ...] to value[i]. */
@@ -165,7 +167,8 @@ static int read_member(Reader *r, StrBuf *value) {
   while (i < 2 * net->n && strcmp(weights_of(net, i).key, key) != 0) i++;
   if (i == 2 * net->n || value[i].n)
     return mistake(r, n, arena_printf(net->ast->arena, i < 2 * net->n ? "\"%.40s\" stands twice" :
-                                      "\"%.40s\" is no weight of a network with %u hidden layers", key, net->n - 1));
+                                      "\"%.40s\" is no weight of a network with %u hidden layer%s", key, net->n - 1,
+                                      plural(net->n - 1)));
   r->at += n;
   if (!take(r, ':')) return mistake(r, 1, "expected `:`");
   Weights w = weights_of(net, i);
@@ -181,16 +184,17 @@ static int read_weights(const Network *net, const char *from, StrBuf *value) {
   const char *path = source_locate(net->ast->sources, from, name->name), *error;
   Reader r = {.net = net, .file = source_read(net->ast->sources, path, &error)};
   if (!r.file)
-    return diag_error(d, name->span, "cannot read `%s`: %s" HELP "leave `from \"%s\"` out: weights then begin at random "
-                      "values, and `lagc fit ... --fit %s -o %s` writes the file", path, error, name->name,
+    return diag_error(d, name->span, "cannot read `%s`: %s" HELP "leave `from \"%s\"` out: weights then begin at "
+                      "random values, and `lagc fit ... --fit %s -o %s` writes the file", path, error, name->name,
                       net->s->name, name->name);
   if (!take(&r, '{'))
     return diag_error(d, name->span, "`%s` is not a file of weights" HELP
-                      "it begins `{\"w1\": [[...], ...], \"b1\": [...], ...`, as `lagc fit ... --fit %s` writes it", path,
-                      net->s->name);
+                      "it begins `{\"w1\": [[...], ...], \"b1\": [...], ...`, as `lagc fit ... --fit %s` writes it",
+                      path, net->s->name);
   for (int more = *here(&r) != '}'; more; more = take(&r, ','))
     if (!read_member(&r, value)) return 0;
   if (!take(&r, '}')) return mistake(&r, 1, "expected `,` or `}`");
+  if (*here(&r)) return mistake(&r, 1, "the weights end with the `}` before this");
   for (uint32_t i = 0; i < 2 * net->n; i++)
     if (!value[i].n)
       return diag_error(d, name->span, "`%s` lacks \"%s\"", path, weights_of(net, i).key);
@@ -211,8 +215,9 @@ static void put_parameters(const Network *net, const StrBuf *value, StrBuf *out)
 
 /* The function: sums over units i2, i1 of layers 2, 1 within each other. */
 static void put_function(const Network *net, StrBuf *out) {
-  const char *V = net->s->name, *unit = strcmp(net->s->type, "tanh") == 0 ? "tanh" : arena_printf(net->ast->arena, "%s_unit", V);
-  if (strcmp(unit, "tanh") != 0) sb_printf(out, "function %s(%s_x) = %s_x/2 + log(2*cosh(%s_x/2))\n", unit, V, V, V);
+  const char *V = net->s->name, *unit = net->s->type;
+  if (strcmp(unit, "softplus") == 0) unit = arena_printf(net->ast->arena, "%s_unit", V);
+  if (unit != net->s->type) sb_printf(out, "function %s(%s_x) = %s_x/2 + log(2*cosh(%s_x/2))\n", unit, V, V, V);
   sb_printf(out, "function %s(", V);
   for (AstId id = net->s->args; id; id = ast_expr(net->ast, id)->next)
     sb_printf(out, "%s%s", id == net->s->args ? "" : ", ", ast_expr(net->ast, id)->name);
