@@ -1,7 +1,6 @@
 /* Residuals of a fit (fit_residuals.h): one run with sensitivities for each part of a record. */
 #include "analysis/fit_residuals.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,6 @@
 /* Command line of a simulator. Enters: argv; leaves: Args. Holds: nothing is guessed; a message quotes the wrong
  * word and says what to write instead. */
-#include <ctype.h>
 #include <errno.h>
-#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>

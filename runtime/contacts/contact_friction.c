@@ -11,7 +11,6 @@
 #include "contacts/contact_set.h"
 #include "core/rhs.h"
 #include "contacts/contact_modes.h"
-#include "numeric/dense.h"
 #include "contacts/planar_impact.h"
 
 /* ---- forces while contacts slip */

@@ -3,7 +3,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 Tape *tape_new(Arena *a) {
   Tape *t = ARENA_NEW(a, Tape);

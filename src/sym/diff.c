@@ -4,7 +4,6 @@
 
 #include <stdlib.h>
 
-#include "base/strbuf.h"
 #include "sym/expr_impl.h"
 #include "sym/sum_diff.h"
 #include "sym/sum_nest.h"
