@@ -62,7 +62,9 @@ int lag_args_count(const Args *a, const char *option, const char *text, const ch
 
 static const Option options[] = {
 #define TO(f) offsetof(Args, f), 0
-#define LIST(f) offsetof(Args, f), offsetof(Args, n##f)
+#define OWN_FLAG TO
+#define OWN_TEXT TO
+#define OWN_LIST(f) offsetof(Args, f), offsetof(Args, n##f)
 #define LAGC(...)
 #define BOTH(name, brief, value, takes, hint, commands, analyses, field, text) \
   {name, brief, value, takes, hint, analyses, field, text},
