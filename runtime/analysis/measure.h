@@ -3,7 +3,7 @@
  *   x  x'  t  energy  "l*sin(th)"   a quantity: an output, coordinate, velocity, state, parameter, input or charge
  *   0.5  pi()               a number
  *   + - * / ^ neg() abs() sin() ... greater()   operations on the numbers before them
- *   max() min() mean() rms() drift() period()   of the expression before, along the run; max(10..20) from 10 to 20 s
+ *   max() ... period()      TRACKS of functions.def: of the expression before, along the run; max(10..20): 10 to 20 s
  *   at()                    the quantity at the time [s] before; without these words, at the end of the run
  *   hit(EVENT) count(EVENT) the time of its firing number n, which stands before; the number of firings
  *   end() lyapunov() megno() the time at which the run ends; the largest Lyapunov exponent without the run's first

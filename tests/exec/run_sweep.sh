@@ -261,6 +261,8 @@ strobe_same() { strobe --motions "$TMP/strobe.1.csv" --crossings 3 --threads 1 -
 check "the same one by one" strobe_same
 check "a diagram over the values" strobe --svg "$TMP/strobe.svg" --y "x'" --measure 'max(x)'
 check "in classes of the measure" grep -q '>max(x) 0.12.*[.][.]' "$TMP/strobe.svg"
+check "of what --y says" grep -q ">x' \[m/s\]<" "$TMP/strobe.svg"
+check "--y without a section" says 2 "which --section draws over the values" "$LAGC" sweep "$osc" steady w=1,2 --y x -o "$TMP/no.csv"
 check "crossings without a section" says 2 "crossings is for sections: add --section" "$LAGC" sweep "$osc" steady w=1,2 --crossings 3 -o "$TMP/no.csv"
 check "and without a file" says 2 "the crossings need a file" "$LAGC" sweep "$osc" steady w=1,2 --section 'x rising' -o "$TMP/no.csv"
 check "a diagram over two names" says 2 "crossings are drawn over the range of one name" "$LAGC" sweep "$osc" steady w=1,2 k=1,2 --section 'x rising' --svg "$TMP/no.svg"
