@@ -67,8 +67,7 @@ int lag_measures_end(Measures *m, double *value);
  * (lag_sim_gradient) over a run of its own: `sim`, at its start, with the settings of the last one but perhaps another
  * method. Values at times and at the end, largest and smallest values, drifts, and expressions of them have a
  * gradient. 0, or -1 with the reason. */
-int lag_measures_gradient(Measures *m, int k, lag_sim *sim, double until, double *by_start, double *by_p, char *why,
-                          size_t size);
+int lag_measures_gradient(Measures *m, int k, lag_sim *sim, double *by_start, double *by_p, char *why, size_t size);
 
 /* Whether a measure is taken along the run, as max(x) is, and not at some times only: each step has to be looked at. */
 int lag_measures_follow(const Measures *m);

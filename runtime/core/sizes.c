@@ -40,13 +40,18 @@ static int formula_at(lag_sim *s, LagFormula of, double t, const double *y, doub
   return m->constraints->residuals(m->constraints, t, y, v, z, s->p, s->u, x, s->pb.held + m->constraints->n, s->work);
 }
 
-int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, int n, double *noise, double *up,
+/* Number of values of a formula. */
+static int formula_length(const lag_model *m, LagFormula of) {
+  return of == LAG_FORMULA_ENERGY ? 1 : of == LAG_FORMULA_RATES ? m->nq + m->nz : m->constraints->nholonomic;
+}
+
+int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, double *noise, double *up,
                          double *down) {
 #if defined FE_UPWARD && defined FE_DOWNWARD && defined FE_TONEAREST
   int before = fegetround(), rc = fesetround(FE_UPWARD) || formula_at(s, of, t, y, up);
   rc = rc || fesetround(FE_DOWNWARD) || formula_at(s, of, t, y, down);
   rc = fesetround(before) || rc || formula_at(s, of, t, y, noise);
-  for (int i = 0; i < n && !rc; i++) {
+  for (int i = 0, n = formula_length(s->scene->model, of); i < n && !rc; i++) {
     double over = fabs(up[i] - noise[i]), under = fabs(down[i] - noise[i]);
     /* One of the modes costs lag_math.h digits of a small angle, by its sign. */
     noise[i] = over > 0 && under > 0 ? fmin(over, under) : fmax(over, under);
@@ -64,7 +69,7 @@ static int constraint_lengths(lag_sim *s, double t, const double *y) {
   const lag_constraints *of = s->scene->model->constraints;
   if (!of || !of->nholonomic) return 1;
   double *c = s->pb.held, *up = c + 2 * of->n, *down = up + of->n;
-  if (lag_formula_rounding(s, LAG_FORMULA_RESIDUALS, t, y, of->nholonomic, c, up, down)) return 1;
+  if (lag_formula_rounding(s, LAG_FORMULA_RESIDUALS, t, y, c, up, down)) return 1;
   for (int k = 0; k < of->nholonomic; k++) c[k] /= DBL_EPSILON;
   return lag_least_change(&s->pb, t, y, 1, c, s->yb, s->yb + s->pb.nq);
 }
@@ -151,9 +156,9 @@ static int friction_rates(lag_sim *s, int k, double t, const double *y) {
 static double resting_terms(lag_sim *s, double t, const double *y, double h, double e) {
   const lag_model *m = s->scene->model;
   double of[2], up[2], down[2];
-  double terms = lag_formula_rounding(s, LAG_FORMULA_ENERGY, t, y, 1, of, up, down) ? 0 : of[0] / DBL_EPSILON;
+  double terms = lag_formula_rounding(s, LAG_FORMULA_ENERGY, t, y, of, up, down) ? 0 : of[0] / DBL_EPSILON;
   double least = 1e3 * DBL_EPSILON * fmax(fabs(e), terms), *a = s->ya;
-  if (h > 0 && lag_formula_rounding(s, LAG_FORMULA_RATES, t, y, m->nq, a, s->yb, s->yc) == 0) {
+  if (h > 0 && lag_formula_rounding(s, LAG_FORMULA_RATES, t, y, a, s->yb, s->yc) == 0) {
     for (int i = 0; i < m->nq; i++) a[i] *= h / DBL_EPSILON;
     terms += change_of_energy(s, t, y, m->nq, a, e);
   }
@@ -262,7 +267,7 @@ enum { ROUNDINGS = 1000 }; /* of a few hundred operations */
 static double *acceleration_noise(lag_sim *s) {
   const size_t n = (size_t)s->pb.n;
   double *noise = malloc(3 * n * sizeof *noise), *up = noise + n;
-  if (!noise || !lag_formula_rounding(s, LAG_FORMULA_RATES, s->run->t, s->now, s->pb.nq, noise, up, up + n))
+  if (!noise || !lag_formula_rounding(s, LAG_FORMULA_RATES, s->run->t, s->now, noise, up, up + n))
     return noise;
   free(noise);
   return NULL;
