@@ -40,22 +40,40 @@ static int formula_at(lag_sim *s, LagFormula of, double t, const double *y, doub
   return m->constraints->residuals(m->constraints, t, y, v, z, s->p, s->u, x, s->pb.held + m->constraints->n, s->work);
 }
 
+#if defined FE_UPWARD && defined FE_DOWNWARD && defined FE_TONEAREST
+/* x := the formula rounded upwards, or downwards. */
+static int formula_rounded(lag_sim *s, LagFormula of, double t, const double *y, int upwards, double *x) {
+  int before = fegetround(), rc = fesetround(upwards ? FE_UPWARD : FE_DOWNWARD) || formula_at(s, of, t, y, x);
+  return fesetround(before) || rc;
+}
+#else
+/* Without rounding modes, as in WebAssembly: x := the formula of a state and parameters whose last digits are
+ * larger, or smaller. */
+static int formula_rounded(lag_sim *s, LagFormula of, double t, const double *y, int upwards, double *x) {
+  const lag_model *m = s->scene->model;
+  const int n = s->pb.n, np = m->np + m->nderived;
+  double *beside = malloc((size_t)(n + np) * sizeof *beside), *p = beside + n, by = upwards ? 1 : -1;
+  if (!beside) return 1;
+  memcpy(p, s->p, (size_t)np * sizeof *p);
+  for (int i = 0; i < n; i++) beside[i] = y[i] * (1 + by * (1 + lag_uneven(i)) * DBL_EPSILON);
+  for (int i = 0; i < np; i++) s->p[i] *= 1 + by * (1 + lag_uneven(n + i)) * DBL_EPSILON;
+  int rc = formula_at(s, of, t, beside, x);
+  memcpy(s->p, p, (size_t)np * sizeof *p);
+  free(beside);
+  return rc;
+}
+#endif
+
 int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, int n, double *noise, double *up,
                          double *down) {
-#if defined FE_UPWARD && defined FE_DOWNWARD && defined FE_TONEAREST
-  int before = fegetround(), rc = fesetround(FE_UPWARD) || formula_at(s, of, t, y, up);
-  rc = rc || fesetround(FE_DOWNWARD) || formula_at(s, of, t, y, down);
-  rc = fesetround(before) || rc || formula_at(s, of, t, y, noise);
+  int rc = formula_rounded(s, of, t, y, 1, up) || formula_rounded(s, of, t, y, 0, down) ||
+           formula_at(s, of, t, y, noise);
   for (int i = 0; i < n && !rc; i++) {
     double over = fabs(up[i] - noise[i]), under = fabs(down[i] - noise[i]);
     /* One of the modes costs lag_math.h digits of a small angle, by its sign. */
     noise[i] = over > 0 && under > 0 ? fmin(over, under) : fmax(over, under);
   }
   return rc;
-#else
-  (void)s, (void)of, (void)t, (void)y, (void)n, (void)noise, (void)up, (void)down;
-  return 1;
-#endif
 }
 
 /* yb[nq] := how far residuals as large as the terms of the constraints move coordinates: lengths that the state
