@@ -351,6 +351,8 @@ static int prepare(FitRun *r) {
   if ((rc = lag_fit_take_targets(r)) != 0) return rc;
   if (r->fit.trains && !a->out)
     return lag_app_error(a, "--fit %s: where do the weights go? Write -o weights.json", a->fit);
+  if (r->fit.trains && r->compares)
+    return lag_app_error(a, "--fit %s: one file of weights is for one scene; name one, without --effects", a->fit);
   if (r->fit.trains && a->profile)
     return lag_app_error(a, "--profile: data do not determine the weights of a network one by one; leave it out");
   if (a->out && !r->fit.trains)

@@ -69,6 +69,7 @@ check "... are found: within the errors given" awk '/^chi squared/ && $3 < 18 { 
 check "no place for the weights" says 'where do the weights go? Write -o weights.json' "$TMP/swing.lag" s --data "$TMP/x.csv" --fit V
 check "a file, and no network" says 'weights of a network are written there, and --fit x names none' "$TMP/swing.lag" s --data "$TMP/x.csv" --fit x -o "$TMP/no.json"
 check "profiles of weights" says 'data do not determine the weights of a network one by one' "$TMP/swing.lag" s --data "$TMP/x.csv" --fit V --profile -o "$TMP/no.json"
+check "weights of several scenes" says 'one file of weights is for one scene' "$TMP/swing.lag" s later --data "$TMP/x.csv" --fit V -o "$TMP/no.json"
 check "a weight by itself is a value like others" sh -c '"$1" fit "$2" s --data "$3" --fit "V_w2[1]" | grep -q "V_w2\[1\] .* +- "' - "$LAGC" "$TMP/known.lag" "$TMP/x.csv"
 check "a network that the model lacks" says 'W: no such parameter or coordinate in model swing' "$TMP/swing.lag" s --data "$TMP/x.csv" --fit W -o "$TMP/no.json"
 empty "nothing is written then" "$(ls "$TMP/no.json" 2>/dev/null)"
