@@ -107,9 +107,23 @@ static int has_drift(lag_sim *sim) {
   return drifts;
 }
 
+/* Error by rounding of impacts that any run shares: the times of flights change with the energy, which drifts. */
+static double error_of_impacts(lag_sim *sim) {
+  const double half = 0.5;
+  const lag_model *m = sim->scene->model;
+  lag_charge_stats c;
+  int alone = m->ncontacts > 0 && lag_sim_ncharges(sim) > 0;
+  for (int k = 0; k < m->nev && alone; k++) alone = lag_contact_of(m, k) != NULL;
+  if (!alone) return 0;
+  lag_sim_charge(sim, 0, &c);
+  int drifts = c.flags & (LAG_CONSERVED | LAG_BALANCED) && c.trend == LAG_TREND_GROWS;
+  return drifts ? half * c.drift * sim->run->events : 0;
+}
+
 void lag_error_estimate_note_end(ErrorEstimate *e, lag_sim *sim) {
   Samples *s = &e->motion;
   e->drifts = has_drift(sim);
+  e->floor = fmax(e->floor, error_of_impacts(sim));
   if (sim->run->events != e->events || (s->rows && s->t[s->rows - 1] == lag_sim_time(sim))) return;
   if (s->rows == e->room) halve(e);
   s->t[s->rows] = lag_sim_time(sim);

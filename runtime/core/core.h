@@ -119,6 +119,7 @@ struct lag_sim {
   double *sign;          /* [nev] sign of g just after `from`: -1, 1; 0 not known yet */
   double *noise;         /* [nev] |g| up to this counts as 0 */
   double *root;          /* [nev] time of the next firing within the step, NaN none */
+  double late;           /* delay of events, relative to their times: see error_report.c */
   double *sign_end;      /* [nev] sign of g at the end of the step */
   double *count;         /* [nev] */
   double *first, *last;  /* [nev] times of firing, where count is not 0 */
