@@ -85,8 +85,7 @@ static void tell_of_compiler(void) {
   if (compiler_failed)
     fputs("lag-run: the C compiler failed, so the run was evaluated; `lagc build` prints its messages\n", stderr);
   else if (compiled_fd >= 0 && waited > LONG)
-    fprintf(stderr, "lag-run: the C compiler took more than %ld s, so the run was evaluated; it ends soon, or is ended\n",
-            waited);
+    fprintf(stderr, "lag-run: the C compiler had not ended after %ld s, so the run was evaluated\n", waited);
 }
 #endif
 
