@@ -214,6 +214,8 @@ int lag_observe(lag_sim *sim, double t, const double *y, double *out);
 int lag_constraint_jacobian(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass);
 /* The part of pb->ranks that lag_constraint_jacobian does not use: [n nq + nq + n]. */
 double *lag_independence_scratch(const lag_problem *pb);
+/* Whether coordinates have one typical magnitude, as the members of a family, of which there may be hundreds. */
+int lag_are_alike(const lag_var *a, const lag_var *b);
 /* The fraction of row[n] of A that is independent of the orthonormal rows Q[r n], 0 to 1. If more than `least`, its
  * direction becomes row r of Q. -1: the row is zero. Destroys row, which may be row r of Q, or a later one. */
 double lag_independent_part(int n, int r, double least, const double *unit, double *Q, double *row);
