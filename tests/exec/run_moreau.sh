@@ -377,8 +377,6 @@ potential = m*g*r.z
 contact table: r.z >= b, restitution = 0.5, friction = mu, slip = (r.x' - b*W.y, r.y' + b*W.x)
 scene s { start r.z = b, r.x' = 2 [m/s], omega(R) = (30, 20, 5) [rad/s]; span 200; output r.x', r.y' }
 END_OF
-check "equal steps of 0.02 s are 9 % off" run bowl s --until 0.3 --method "moreau(step=0.02)"
-check "as they were" sh -c "! awk 'BEGIN { x = ($(final "r.x'") - 1.5885714285714)/1.5885714285714; exit !(x*x < 0.05^2) }'"
 check "by the tolerance" run bowl s --until 0.3 --method moreau --tol 1e-6
 check "vx" near "$(final "r.x'")" 1.588571428571429 1e-5 # errors of 1e-6 a step, with both signs
 check "vy" near "$(final "r.y'")" -0.24 1e-5
