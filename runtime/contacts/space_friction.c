@@ -51,11 +51,21 @@ int lag_slip_velocities(lag_problem *pb, double t, const double *y, double *c, d
   return rc;
 }
 
+/* Slip below which friction acts along the held direction: its direction changes fast there. */
+static double small_slip(const lag_problem *pb, double size) { 
+  return fmin(fmax(1e3 * pb->tol, 1e-8), 1e-4) * size;
+}
+
+double lag_slip_noise(const lag_problem *pb, int i) {
+  double h[2];
+  return lag_slips_in_space(pb, i) ? 1e-3 * small_slip(pb, held(pb->hold, pb->model, i, h)) : 0;
+}
+
 void lag_slip_direction(const lag_problem *pb, const double *r, int i, double *e) {
   const lag_model *m = pb->model;
   double h[2], size = held(pb->hold, m, i, h), d[2] = {h[0] / size, h[1] / size};
   double s[2] = {r[m->contacts[i].constraint], r[m->contacts[i + 1].constraint]}, along = s[0] * d[0] + s[1] * d[1];
-  double more = fmax(along, pb->tol * size) - along, length;
+  double more = fmax(along, small_slip(pb, size)) - along, length;
   for (int k = 0; k < 2; k++) e[k] = s[k] + more * d[k];
   length = lag_norm(e, 2);
   for (int k = 0; k < 2; k++) e[k] /= length;
