@@ -517,7 +517,8 @@ int lag_contact_arm(lag_sim *s, const double *g) {
     const lag_contact *c = &m->contacts[i];
     s->hold[c->input] = s->contact_was[i];
     int k = lag_contact_is_closed(s, c) ? c->release : c->impact;
-    double noise = c->conditional ? 0 : k == c->release ? 1e-12 * most : fmax(no_flight * size[c->constraint], lag_slip_noise(&s->pb, i));
+    double least = fmax(no_flight * size[c->constraint], lag_slip_noise(&s->pb, i));
+    double noise = c->conditional ? 0 : k == c->release ? 1e-12 * most : least;
     if (g[k] <= noise) { /* no sign yet; below -noise the event fires */
       s->sign[k] = 0;
       s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* with a larger factor it would grow at each impact */

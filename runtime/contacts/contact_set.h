@@ -112,9 +112,9 @@ void lag_contacts_set_friction(ContactSet *w);
 /* space_friction.c: slips of two components. second_of: the other tangent of a contact in space, behind its first,
  * i; -1: i is none. gap_of: the contact of a tangent. slips_in_space: of the first tangent. slip_velocities: r :=
  * residuals, with the velocities of those that slip; pb->u are inputs. slip_direction: e[2] := unit vector against
- * which friction of tangent i acts, from r. slip_noise: slips back that are no end of one, as
- * where it begins by forces that have just grown enough; 0: it does not slip in space. slip_ends: whether s[2], beside slips of this size, is 0 to the tolerance.
- * space_events: event functions of all. */
+ * which friction of tangent i acts, from r. slip_noise: slips back that are no end of one, as where it begins by forces
+ * that have just grown enough; 0: it does not slip in space. slip_ends: whether s[2], beside slips of this size, is 0
+ * to the tolerance. space_events: event functions of all. */
 int lag_second_of(const lag_model *m, int i);
 int lag_gap_of(const lag_model *m, int tangent);
 int lag_slips_in_space(const lag_problem *pb, int i);

@@ -52,7 +52,7 @@ int lag_slip_velocities(lag_problem *pb, double t, const double *y, double *c, d
 }
 
 /* Slip below which friction acts along the held direction: its direction changes fast there. */
-static double small_slip(const lag_problem *pb, double size) { 
+static double small_slip(const lag_problem *pb, double size) {
   return fmin(fmax(1e3 * pb->tol, 1e-8), 1e-4) * size;
 }
 
@@ -89,7 +89,8 @@ static void pair_events(const lag_sim *s, int i, const double *law, double *g) {
 int lag_space_events(lag_sim *s, double t, const double *y, double *g) {
   const lag_model *m = s->scene->model;
   int rc = 0, sticks = 0;
-  for (int i = 0; i < m->ncontacts; i++) sticks |= lag_second_of(m, i) >= 0 && lag_contact_is_closed(s, &m->contacts[i]);
+  for (int i = 0; i < m->ncontacts; i++)
+    sticks |= lag_second_of(m, i) >= 0 && lag_contact_is_closed(s, &m->contacts[i]);
   if (sticks) rc = lag_contact_laws_at(&s->pb, t, y, s->pb.rub);
   for (int i = 0; i < m->ncontacts && rc == 0; i++)
     if (lag_second_of(m, i) >= 0) pair_events(s, i, s->pb.rub, g);

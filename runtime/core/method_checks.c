@@ -68,7 +68,8 @@ static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
         method->name, m->switches[k].text);
   }
   int in_space = 0;
-  for (int i = 1; i < m->ncontacts; i++) in_space += m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent && lag_guide_of(m, i) < 0;
+  for (int i = 1; i < m->ncontacts; i++)
+    in_space += m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent && lag_guide_of(m, i) < 0;
   if (in_space > LAG_MOST_IN_SPACE && !(needs & LAG_METHOD_IMPULSES))
     return lag_fail(s, LAG_EMETHOD,
                     "method %s follows friction in space at up to %d contacts, and there are %d here; "

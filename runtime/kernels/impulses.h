@@ -121,10 +121,11 @@ typedef struct lag_sparse_rows {
 /* A contact: rows row (the gap) and row + 1 .. row + tangents (slip velocities). least: the least rate of the
  * gap after the impulse. Friction drives the slip velocity to the nearest point of a ball (an interval in a
  * plane), about centre[tangents], of this radius. strikes: 1 in an impact; rate, slip[tangents]: at the begin, by
- * directions at the middle; turn[tangents], tail[tangents]: change of the slip by theirs until there, and on to the end.
+ * directions at the middle; turn, tail[tangents]: change of the slip by theirs until there, and on to the end.
  * opposite: the contact on the other side of the same rail, or -1; head, next: of chains by first column. */
 typedef struct lag_pressing {
-  LAG_REAL contact, row, tangents, mu, least, radius, centre[2], strikes, rate, slip[2], turn[2], tail[2], opposite, head, next;
+  LAG_REAL contact, row, tangents, mu, least, radius, centre[2], strikes, rate, slip[2], turn[2], tail[2];
+  LAG_REAL opposite, head, next;
 } lag_pressing;
 
 /* The product of row r with x. */
