@@ -9,8 +9,8 @@
  * the end of the step, not at the middle, and curvature belongs to the pace: a bead in a hoop does not strike it.
  * Friction opposes the mean of the slip velocities at both ends: it drives the slip s into the ball whose diameter
  * goes from -s0 to 0, so F (s0 + s) <= 0, both slips being those at the positions of their ends. In an impact it
- * opposes the slip at the end, driven to 0, or with tangential restitution to -e_t s0, as in the papers below; at a contact where this would add energy, as it may
- * where the impulse turns the slip round (T.R. Kane, D.A. Levinson, Dynamics (1985), 5.8), the mean of both, too, so
+ * opposes the slip at the end, driven to 0, or with tangential restitution to -e_t s0, as in the papers below; at a
+ * contact where this would add energy, as it may where the impulse turns the slip round (T.R. Kane, D.A. Levinson, Dynamics (1985), 5.8), the mean of both, too, so
  * P (u0 + u) + F (s0 + s) <= 0 always. J.J. Moreau, in: Nonsmooth Mechanics and Applications (1988), 1, DOI
  * 10.1007/978-3-7091-2624-0_1; D.E. Stewart, J.C. Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673, DOI
  * 10.1002/(SICI)1097-0207(19960815)39:15<2673::AID-NME972>3.0.CO;2-I.
@@ -67,7 +67,8 @@ static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG
   w->all.A.first = room += 2*p, w->all.D.first = room += p + 1;
   w->c = room += p + 1, w->r0 = room += nc, w->r1 = room += nc, w->pace = room += nc, w->bend = room += nc;
   w->tail = room += nc, w->g = room += nc, w->d = room += nc, w->effort = room += nq, w->x = room += nq;
-  w->pivot = room += nq, w->scale = room += nq, w->jacobian = room += nq, w->all.A.col = room += e, w->all.A.value = room += e;
+  w->pivot = room += nq, w->scale = room += nq;
+  w->jacobian = room += nq, w->all.A.col = room += e, w->all.A.value = room += e;
   w->all.D.col = room += e, w->all.D.value = room += responses, w->mass = room += responses, w->lu = room += w->nmass;
   w->first = room += lag_band_matrix_size(nq, w->band), w->entry = room + nc + 2;
   w->all.response = w->response, w->all.b = w->b;
