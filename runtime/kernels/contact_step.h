@@ -10,10 +10,10 @@
  * Friction opposes the mean of the slip velocities at both ends: it drives the slip s into the ball whose diameter
  * goes from -s0 to 0, so F (s0 + s) <= 0, both slips being those at the positions of their ends. In an impact it
  * opposes the slip at the end, driven to 0, or with tangential restitution to -e_t s0, as in the papers below; at a
- * contact where this would add energy, as it may where the impulse turns the slip round (T.R. Kane, D.A. Levinson, Dynamics (1985), 5.8), the mean of both, too, so
- * P (u0 + u) + F (s0 + s) <= 0 always. J.J. Moreau, in: Nonsmooth Mechanics and Applications (1988), 1, DOI
- * 10.1007/978-3-7091-2624-0_1; D.E. Stewart, J.C. Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673, DOI
- * 10.1002/(SICI)1097-0207(19960815)39:15<2673::AID-NME972>3.0.CO;2-I.
+ * contact where this would add energy, as it may where the impulse turns the slip round (T.R. Kane, D.A. Levinson,
+ * Dynamics (1985), 5.8), the mean of both, too, so P (u0 + u) + F (s0 + s) <= 0 always. J.J. Moreau, in: Nonsmooth
+ * Mechanics and Applications (1988), 1, DOI 10.1007/978-3-7091-2624-0_1; D.E. Stewart, J.C. Trinkle, Int. J. Numer.
+ * Methods Eng. 39 (1996) 2673, DOI 10.1002/(SICI)1097-0207(19960815)39:15<2673::AID-NME972>3.0.CO;2-I.
  *
  * An instance defines before it includes this text lag_contact and lag_entry (lag_model.h), and:
  *   LAG_MODEL, LAG_THE_MODEL             the first parameters of functions: the model; the same as arguments
