@@ -235,7 +235,9 @@ int lag_tangent_events(lag_sim *s, double t, const double *y, double *g) {
     const lag_guide *guide = &m->guides[i];
     if (guide->turn >= 0 && !(fabs(s->hold[m->contacts[guide->tangent].force]) > 0)) g[guide->turn] = 1;
   }
-  return lag_space_events(s, t, y, g);
+  int rc = lag_some_stick_in_space(s) ? lag_contact_laws_at(&s->pb, t, y, s->pb.rub) : 0;
+  if (rc == 0) lag_space_events(s, s->pb.rub, g);
+  return rc;
 }
 
 /* ---- impacts */

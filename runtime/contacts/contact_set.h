@@ -114,7 +114,7 @@ void lag_contacts_set_friction(ContactSet *w);
  * residuals, with the velocities of those that slip; pb->u are inputs. slip_direction: e[2] := unit vector against
  * which friction of tangent i acts, from r. slip_noise: slips back that are no end of one, as where it begins by forces
  * that have just grown enough; 0: it does not slip in space. slip_ends: whether s[2], beside slips of this size, is 0
- * to the tolerance. space_events: event functions of all. */
+ * to the tolerance. some_stick_in_space: law of space_events, event functions of all, is that of the state then. */
 int lag_second_of(const lag_model *m, int i);
 int lag_gap_of(const lag_model *m, int tangent);
 int lag_slips_in_space(const lag_problem *pb, int i);
@@ -122,4 +122,5 @@ int lag_slip_velocities(lag_problem *pb, double t, const double *y, double *c, d
 void lag_slip_direction(const lag_problem *pb, const double *r, int i, double *e);
 double lag_slip_noise(const lag_problem *pb, int i);
 int lag_slip_ends(const lag_problem *pb, const double *s, double size);
-int lag_space_events(lag_sim *s, double t, const double *y, double *g);
+int lag_some_stick_in_space(const lag_sim *s);
+void lag_space_events(const lag_sim *s, const double *law, double *g);

@@ -9,9 +9,9 @@
 #include "core/rhs.h"
 
 int lag_second_of(const lag_model *m, int i) {
-  int next = i + 1;
-  if (i < 1 || next >= m->ncontacts || m->contacts[i - 1].is_tangent || !m->contacts[i].is_tangent) return -1;
-  return m->contacts[next].is_tangent && lag_guide_of(m, i) < 0 && lag_guide_of(m, next) < 0 ? next : -1;
+  int next = i + 1, contacts = m->ncontacts - m->nguides; /* guides stand behind the contacts */
+  if (i < 1 || next >= contacts || m->contacts[i - 1].is_tangent || !m->contacts[i].is_tangent) return -1;
+  return m->contacts[next].is_tangent ? next : -1;
 }
 
 int lag_gap_of(const lag_model *m, int tangent) {
@@ -75,6 +75,17 @@ int lag_slip_ends(const lag_problem *pb, const double *s, double size) {
   return lag_norm(s, 2) <= fmax(10 * pb->tol, lag_no_gap) * size;
 }
 
+static int sticks(const lag_sim *s, int i) {
+  const lag_model *m = s->scene->model;
+  return lag_second_of(m, i) >= 0 && s->hold[m->contacts[i].input] > 0.5;
+}
+
+int lag_some_stick_in_space(const lag_sim *s) {
+  int i = 0;
+  while (i < s->scene->model->ncontacts && !sticks(s, i)) i++;
+  return i < s->scene->model->ncontacts;
+}
+
 /* Events of the pair whose first tangent is i; law: of the model's contact_laws, where it sticks. */
 static void pair_events(const lag_sim *s, int i, const double *law, double *g) {
   const lag_model *m = s->scene->model;
@@ -82,19 +93,14 @@ static void pair_events(const lag_sim *s, int i, const double *law, double *g) {
   int gap = lag_gap_of(m, i);
   double h[2], size = held(s->hold, m, i, h), force[2] = {law[3 * i + 2], law[3 * i + 5]};
   g[a->impact] = size > 0 ? (h[0] * g[a->impact] + h[1] * g[b->impact]) / size : 1;
-  g[a->release] = lag_contact_is_closed(s, a) ? law[3 * gap] * law[3 * gap + 2] - lag_norm(force, 2) : 1;
+  g[a->release] = sticks(s, i) ? law[3 * gap] * law[3 * gap + 2] - lag_norm(force, 2) : 1;
   g[b->impact] = g[b->release] = 1;
 }
 
-int lag_space_events(lag_sim *s, double t, const double *y, double *g) {
+void lag_space_events(const lag_sim *s, const double *law, double *g) {
   const lag_model *m = s->scene->model;
-  int rc = 0, sticks = 0;
   for (int i = 0; i < m->ncontacts; i++)
-    sticks |= lag_second_of(m, i) >= 0 && lag_contact_is_closed(s, &m->contacts[i]);
-  if (sticks) rc = lag_contact_laws_at(&s->pb, t, y, s->pb.rub);
-  for (int i = 0; i < m->ncontacts && rc == 0; i++)
-    if (lag_second_of(m, i) >= 0) pair_events(s, i, s->pb.rub, g);
-  return rc;
+    if (lag_second_of(m, i) >= 0) pair_events(s, i, law, g);
 }
 
 void lag_contacts_turn(lag_sim *s) {
