@@ -320,7 +320,8 @@ int lag_contact_arm(lag_sim *sim, const double *g);
 int lag_contact_laws(lag_sim *sim, const double *y, double *law);
 size_t lag_contact_law_size(const lag_model *m);
 /* Event functions g[nev] of tangents: 1 where they are none, 1 or -1 times the slip velocity. */
-void lag_tangent_events(const lag_sim *sim, double *g);
+int lag_tangent_events(lag_sim *sim, double t, const double *y, double *g);
+void lag_contacts_turn(lag_sim *sim); /* held directions of slips in space := those at the end of a step */
 /* Event functions g[nev] of contacts that are met by impulses: 1, as they do not happen. show: u of these contacts,
  * for outputs with multipliers: closed where the last step pressed them. */
 void lag_contact_mute(const lag_sim *sim, double *g);
