@@ -343,7 +343,8 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   for (uint32_t row = 0; row < q->range.rows; row++) turns += (uint64_t)loop_turns(&q->range, row);
   uint64_t guessed = !read && q->inner ? (uint64_t)q->range.rows * q->range.rows / 2 : 0; /* unknown range inside */
   q->near = near_of(b->ast, q->inner);
-  if ((turns > guessed ? turns : guessed) < b->sums_from && !(q->near && b->sums_from < UINT32_MAX)) return 0;
+  int beside_near = b->ast->nears.n && b->sums_from < UINT32_MAX; /* such a model is meant for any N */
+  if ((turns > guessed ? turns : guessed) < b->sums_from && !beside_near) return 0;
   if (!read || !find_pairs(q, b->arena)) {
     if (turns >= b->sums_from) note_written_out(ev, q, turns);
     return 0;
