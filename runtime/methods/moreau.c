@@ -14,7 +14,7 @@
 #include "kernels/dense_output.h"
 #include "kernels/impulses.h"
 #include "lag.h"
-#include "methods/moreau_contacts.h"
+#include "methods/moreau_families.h"
 #include "methods/moreau_joint_friction.h"
 #include "methods/steps.h"
 
@@ -53,6 +53,10 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   w->step.h = lag_step_size(pb, opt[0]);
   memset(law_of(w, pb) + 2 * m->ncontacts, 0, lag_joint_friction_size(pb) * sizeof(double));
   reset(work, pb);
+  if (m->families) {
+    lag_moreau_contacts_of(pb, NULL);
+    return lag_families_check_start(pb, 0, pb->begin);
+  }
   if (!m->contact_laws) return LAG_OK;
   rc = lag_inputs(pb, 0);
   rc = rc ? rc
@@ -138,6 +142,8 @@ static int respond(lag_problem *pb, const lag_kick *s, Laws *w) {
     rc = lag_joint_friction_round(&w->friction, pb, s, 0, &moved);
     lag_joint_friction_carry(&w->friction, 1, s->rate0);
   }
+  if (pb->model->families && rc == 0)
+    rc = lag_families_find(pb, &w->contacts, s->t, s->h, s->mid, s->y1 + s->nq);
   return rc ? rc : lag_contacts_find(pb, &w->contacts, s->t, s->h, s->mid, s->y1 + s->nq);
 }
 
@@ -201,7 +207,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     return rc;
   }
   w->struck = laws.contacts.impacts;
-  if (pb->model->ncontacts)
+  if (pb->model->ncontacts || pb->model->families)
     lag_moreau_contacts_note(&laws.contacts, pb, next.dt, w->struck > 0 ? s.t : next.tb, y0 + nq, s.y1 + nq);
   memcpy(s.y1, y, (size_t)n * sizeof *y);
   lag_fixed_step_end(&w->step, &next, t);

@@ -39,6 +39,8 @@ AstId ast_at(Ast *ast, Span span, AstId a, AstId time);
 AstId ast_reduce(Ast *ast, AstKind kind, Span span, Ident index, AstId lo, AstId hi, AstId body, Span op);
 /* near_sum.c: sum(index in near(...), body); range: the expression behind `in`. */
 AstId ast_near(Ast *ast, Span span, Ident index, AstId range, AstId body, Span op);
+/* The same as a range of members, AST_BIND. */
+AstId ast_near_bind(Ast *ast, Span span, Ident index, AstId range);
 AstId ast_collect(Ast *ast, AstKind kind, Span span, AstList items); /* AST_LIST */
 AstId ast_bind(Ast *ast, Span span, Ident index, AstId lo, AstId hi);
 
