@@ -17,10 +17,13 @@ static int band_of(const lag_entry *mass, int n) {
   return band;
 }
 
+/* Impulses of families agree to 64 times this, in rates: large piles would take thousands of sweeps to rounding. */
+static const double AGREE = 1e-10;
+
 /* Sizes of the kernel, for all contacts that a step may have; entries of responses: *responses. */
 static lag_moreau_contacts sizes_of(const lag_model *m, int *responses) {
   const lag_constraints *of = m->constraints;
-  lag_moreau_contacts w = {.nq = m->nq, .epsilon = DBL_EPSILON};
+  lag_moreau_contacts w = {.nq = m->nq, .epsilon = m->families ? AGREE : DBL_EPSILON};
   if (m->families) {
     w.contacts = w.constraints = lag_family_rows_of(m);
     w.entries = w.contacts * lag_family_parts_of(m);
