@@ -14,6 +14,7 @@
 #include "kernels/dense_output.h"
 #include "kernels/impulses.h"
 #include "lag.h"
+#include "methods/moreau_contacts.h"
 #include "methods/moreau_families.h"
 #include "methods/moreau_joint_friction.h"
 #include "methods/steps.h"
@@ -142,9 +143,7 @@ static int respond(lag_problem *pb, const lag_kick *s, Laws *w) {
     rc = lag_joint_friction_round(&w->friction, pb, s, 0, &moved);
     lag_joint_friction_carry(&w->friction, 1, s->rate0);
   }
-  if (pb->model->families && rc == 0)
-    rc = lag_families_find(pb, &w->contacts, s->t, s->h, s->mid, s->y1 + s->nq);
-  return rc ? rc : lag_contacts_find(pb, &w->contacts, s->t, s->h, s->mid, s->y1 + s->nq);
+  return rc ? rc : lag_moreau_find(pb, &w->contacts, s->t, s->h, s->mid, s->y1 + s->nq);
 }
 
 static int obey(lag_problem *pb, const lag_kick *s, Laws *w) {

@@ -17,13 +17,10 @@ static int band_of(const lag_entry *mass, int n) {
   return band;
 }
 
-/* Impulses of families agree to 64 times this, in rates: large piles would take thousands of sweeps to rounding. */
-static const double AGREE = 1e-10;
-
 /* Sizes of the kernel, for all contacts that a step may have; entries of responses: *responses. */
 static lag_moreau_contacts sizes_of(const lag_model *m, int *responses) {
   const lag_constraints *of = m->constraints;
-  lag_moreau_contacts w = {.nq = m->nq, .epsilon = m->families ? AGREE : DBL_EPSILON};
+  lag_moreau_contacts w = {.nq = m->nq, .epsilon = DBL_EPSILON};
   if (m->families) {
     w.contacts = w.constraints = lag_family_rows_of(m);
     w.entries = w.contacts * lag_family_parts_of(m);
@@ -65,6 +62,24 @@ lag_moreau_contacts lag_moreau_contacts_of(lag_problem *pb, double *law) {
   if (m->families) lag_families_begin(pb, pb->contact_room + pb->n + kernel_size(&w, w.contacts, responses));
   else w.law = law, w.guess = pb->contact_impulse;
   return w;
+}
+
+int lag_moreau_find(lag_problem *pb, lag_moreau_contacts *w, double t, double h, const double *mid, const double *end) {
+  /* impulses of more than so many contacts of families agree to 64 times AGREE, in rates: to rounding they would take
+   * thousands of sweeps */
+  enum { MANY = 200 };
+  const double AGREE = 1e-10;
+  lag_family_step s;
+  int rc = pb->model->families ? lag_families_find(pb, t, h, mid, end, &s) : 0;
+  if (pb->model->families && rc == 0) {
+    w->contacts = w->constraints = s.rows;
+    w->entries = s.entries;
+    w->at = s.at;
+    w->jacobian_at = s.jacobian;
+    w->guess = s.guess;
+    w->epsilon = s.contacts > MANY ? AGREE : DBL_EPSILON;
+  }
+  return rc ? rc : lag_contacts_find(pb, w, t, h, mid, end);
 }
 
 /* ---- the model */

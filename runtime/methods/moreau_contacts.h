@@ -27,6 +27,8 @@ int lag_moreau_singular(lag_problem *pb, double t);
 
 /* In pb->contact_room; law[2 contacts]: friction and tangential restitution. */
 lag_moreau_contacts lag_moreau_contacts_of(lag_problem *pb, double *law);
+/* Finds the contacts that take part, as lag_contacts_find; of families first those that are near. */
+int lag_moreau_find(lag_problem *pb, lag_moreau_contacts *w, double t, double h, const double *mid, const double *end);
 /* Notes forces, counts and work of the step in pb; v0, v1: velocities at both ends, from: time from which on dense
  * output contains the impulses. */
 void lag_moreau_contacts_note(const lag_moreau_contacts *w, lag_problem *pb, double h, double from, const double *v0,

@@ -5,10 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "kernels/impulses.h"
 #include "lag_support.h"
 #include "methods/steps.h"
 
-/* Neighbours are looked at this much beyond the distance at which gaps may be closed: what comes nearer within a step. */
+/* Neighbours are looked at this much beyond the distance of closed gaps: what comes nearer within a step. */
 static const double BEYOND = 1.25;
 
 /* A contact of the step: member (row, turn) of a family; its first row of A. */
@@ -230,8 +231,7 @@ static int find_neighbours(lag_problem *pb, int k, const double *q) {
   return rc;
 }
 
-int lag_families_find(lag_problem *pb, lag_moreau_contacts *to, double t, double h, const double *mid,
-                      const double *end) {
+int lag_families_find(lag_problem *pb, double t, double h, const double *mid, const double *end, lag_family_step *to) {
   const lag_contact_families *all = pb->model->families;
   lag_family_rows *w = pb->family;
   Search s = {t, h, mid, end, 1};
@@ -247,11 +247,7 @@ int lag_families_find(lag_problem *pb, lag_moreau_contacts *to, double t, double
     if (rc) return rc;
   }
   guess(pb, w);
-  to->contacts = to->constraints = w->rows;
-  to->entries = w->entries;
-  to->at = w->at;
-  to->jacobian_at = w->jacobian;
-  to->guess = w->guess;
+  *to = (lag_family_step){w->contacts, w->rows, w->entries, w->at, w->jacobian, w->guess};
   return 0;
 }
 

@@ -4,13 +4,21 @@
  * are. */
 #pragma once
 
-#include "methods/moreau_contacts.h"
+#include "core/rhs.h"
 
 /* Doubles of room; 0: the model has no families. */
 size_t lag_families_size(const lag_model *m);
 
-/* w := the contacts of this step, in room of lag_families_size, which lag_families_begin has laid out. */
-int lag_families_find(lag_problem *pb, lag_moreau_contacts *w, double t, double h, const double *mid, const double *end);
+/* The contacts of a step: rows of A, each a contact or its tangent; positions of their entries; impulses as a guess. */
+typedef struct lag_family_step {
+  int contacts, rows, entries;
+  const lag_contact *at;
+  const lag_entry *jacobian;
+  const double *guess;
+} lag_family_step;
+
+/* Finds them, in room of lag_families_size, which lag_families_begin has laid out. */
+int lag_families_find(lag_problem *pb, double t, double h, const double *mid, const double *end, lag_family_step *to);
 void lag_families_begin(lag_problem *pb, double *room);
 
 /* The kernel's questions about them, as in moreau_contacts.h. */

@@ -13,25 +13,26 @@ static void reads(const char *name, const IrRead *at, uint32_t n, StrBuf *out) {
 
 static void family_functions(const ModelFile *f, const IrContactFamily *c, uint32_t i) {
   const char *name = comment_text(f->a, c->name);
-  state_function(f, c->values, arena_printf(f->a, "family_%u", i),
-                 arena_printf(f->a, "A contact of the family %s: gap, rate, restitution, friction, slips, rows of A.", name),
-                 NULL, one_out);
-  state_function(f, c->reach, arena_printf(f->a, "family_%u_reach", i),
-                 arena_printf(f->a, "The distance at which %s looks for neighbours, and the box.", name), NULL, one_out);
+  const char *values = "A contact of the family %s: gap, rate, restitution, friction, slips, rows of A.",
+             *reach = "The distance at which %s looks for neighbours, and the box.";
+  state_function(f, c->values, arena_printf(f->a, "family_%u", i), arena_printf(f->a, values, name), NULL, one_out);
+  state_function(f, c->reach, arena_printf(f->a, "family_%u_reach", i), arena_printf(f->a, reach, name), NULL, one_out);
   reads(arena_printf(f->a, "family_%u_coords", i), c->coords.at, c->coords.n, f->out);
   reads(arena_printf(f->a, "family_%u_params", i), c->params.at, c->params.n, f->out);
 }
 
 static void family_row(const ModelFile *f, const IrContactFamily *c, uint32_t i) {
   const char *of = arena_printf(f->a, "family_%u", i);
-  sb_printf(f->out, "  {%s, %u, %lld, %lld, %lld, %lld, %lld, %lld, %u, %u, %s%s, %s%s, %u, %s, ", c_string(f->a, c->name),
-            c->indices, (long long)c->i0, (long long)c->j0, (long long)c->rows, (long long)c->skew, (long long)c->turns,
-            (long long)c->more, c->coords.n, c->params.n, of, "_coords", c->params.n ? of : "NULL",
+  sb_printf(f->out, "  {%s, %u, %lld, %lld, %lld, %lld, %lld, %lld, %u, %u, %s%s, %s%s, %u, %s, ",
+            c_string(f->a, c->name), c->indices, (long long)c->i0, (long long)c->j0, (long long)c->rows,
+            (long long)c->skew, (long long)c->turns, (long long)c->more, c->coords.n, c->params.n, of, "_coords", c->params.n ? of : "NULL",
             c->params.n ? "_params" : "", c->tangents, of);
   sb_printf(f->out, "%s%s, %u, {", c->reach ? of : "NULL", c->reach ? "_reach" : "", c->nplaces);
-  for (uint32_t k = 0; k < c->nplaces || k == 0; k++)
-    sb_printf(f->out, "%s{%lld, %lld, %lld}", k ? ", " : "", (long long)c->place[k].first, (long long)c->place[k].by_row,
-              (long long)c->place[k].by_turn);
+  for (uint32_t k = 0; k < c->nplaces || k == 0; k++) {
+    const IrRead *x = &c->place[k];
+    sb_printf(f->out, "%s{%lld, %lld, %lld}", k ? ", " : "", (long long)x->first, (long long)x->by_row,
+              (long long)x->by_turn);
+  }
   sb_puts(f->out, "}},\n");
 }
 

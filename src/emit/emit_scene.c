@@ -54,7 +54,8 @@ static uint32_t constants_from(const Prog *p, uint32_t k) {
   const Store *x = p->stores.at + k;
   uint32_t n = 0;
   Num value;
-  while (k + n < p->stores.n && x[n].array == x[0].array && x[n].index == x[0].index + n && is_constant(p, &x[n], &value))
+  while (k + n < p->stores.n && x[n].array == x[0].array && x[n].index == x[0].index + n &&
+         is_constant(p, &x[n], &value))
     n++;
   return n;
 }
@@ -67,7 +68,8 @@ static void constant_table(const ModelFile *f, const Prog *p, const Store *x, ui
     is_constant(p, &x[i], &value);
     sb_printf(f->out, "%s%s,", i % A_LINE ? " " : "\n    ", c_number_by(f->a, "LAG_NUMBER", value));
   }
-  sb_printf(f->out, "\n  };\n  /* %s ... %s */\n", comment_text(f->a, x->comment), comment_text(f->a, x[n - 1].comment));
+  const char *first = comment_text(f->a, x->comment), *last = comment_text(f->a, x[n - 1].comment);
+  sb_printf(f->out, "\n  };\n  /* %s ... %s */\n", first, last);
   const char *shift = x->index ? arena_printf(f->a, " + %u", x->index) : "";
   sb_printf(f->out, "  for (int i = 0; i < %u; i++) %s[i%s] = LAG_C(0.0) + %s_%u[i];\n", n, to, shift, to, x->index);
 }

@@ -1,13 +1,25 @@
-/* Families of contacts: the program of one member, whose q and v are the coordinates that its text reads, in their order,
- * and whose z the members of families of parameters. */
+/* Families of contacts: the program of one member, whose q and v are the coordinates that its text reads, in their
+ * order, and whose z the members of families of parameters. */
+#include <string.h>
+
 #include "lower/lower_impl.h"
 #include "sym/diff.h"
 
 /* Place of a symbol among reads. */
 static uint32_t place_of(const ExprGraph *g, const FamilyRead *reads, uint32_t n, SymKind kind, uint32_t index) {
-  uint32_t k = 0;
-  while (k < n && !(expr_symbol(g, reads[k].symbol)->kind == kind && expr_symbol(g, reads[k].symbol)->index == index)) k++;
-  return k;
+  for (uint32_t k = 0; k < n; k++) {
+    const Symbol *s = expr_symbol(g, reads[k].symbol);
+    if (s->kind == kind && s->index == index) return k;
+  }
+  return n;
+}
+
+/* r[10].x of member i as r[i].x. */
+static Name general_name(const Eqns *e, const ContactFamily *of, const FamilyRead *read, Name name) {
+  const char *open = strchr(name, '['), *close = strchr(name, ']');
+  if (!open || !close || (!read->at.by_row && !read->at.by_turn)) return name;
+  return arena_printf(e->m->arena, "%.*s[%s]%s", (int)(open - name), name, read->at.by_turn ? of->name_j : of->name_i,
+                      close + 1);
 }
 
 /* Loads of coordinates and of families' parameters become loads of the member's own arrays. */
@@ -15,13 +27,16 @@ static void gather(const Eqns *e, const ContactFamily *of, Prog *p) {
   for (Slot s = 1; s < p->ins.n; s++) {
     Ins *i = &p->ins.at[s];
     if (i->op != IR_LOAD) continue;
-    if (i->array == ARR_Q || i->array == ARR_V)
+    if (i->array == ARR_Q || i->array == ARR_V) {
       i->index = place_of(e->g, of->coords.at, of->coords.n, SYM_COORD, i->index);
+      i->name = general_name(e, of, &of->coords.at[i->index], i->name);
+    }
     for (uint32_t k = 0; i->array == ARR_P && k < of->params.n; k++) {
       const Symbol *x = expr_symbol(e->g, of->params.at[k].symbol);
       if (e->m->params.at[x->index].place != i->index) continue;
       i->array = ARR_Z;
       i->index = k;
+      i->name = general_name(e, of, &of->params.at[k], i->name);
     }
   }
 }
@@ -43,8 +58,10 @@ static const Prog *lower_member(const Eqns *e, const ContactFamily *of) {
   VEC(Expr) out = {0};
   VEC(const char *) what = {0};
   Arena *a = e->m->arena;
-  const Expr first[] = {of->gap, rate_of(e, of), of->restitution, of->friction, of->tangential, of->slip[0], of->slip[1]};
-  static const char *const names[] = {"gap", "gap'", "restitution", "friction", "tangential restitution", "slip", "slip"};
+  const Expr first[] = {of->gap,      rate_of(e, of), of->restitution, of->friction, of->tangential,
+                        of->slip[0], of->slip[1]};
+  static const char *const names[] = {"gap",  "gap'", "restitution", "friction", "tangential restitution",
+                                      "slip", "slip"};
   for (uint32_t k = 0; k < 5 + of->tangents; k++) {
     vec_push(a, &out, first[k]);
     vec_push(a, &what, names[k]);
@@ -78,8 +95,8 @@ static IrRead read_at(Subscript x) { return (IrRead){x.first, x.by_row, x.by_tur
 static IrContactFamily family(const Eqns *e, const ContactFamily *of) {
   Arena *a = e->m->arena;
   IrContactFamily to = {.name = of->name, .indices = of->name_j ? 2 : 1, .i0 = of->i0, .j0 = of->j0,
-                        .rows = of->range.rows, .skew = of->range.skew, .turns = of->range.turns, .more = of->range.more,
-                        .tangents = of->tangents, .nplaces = of->nplaces};
+                        .rows = of->range.rows, .skew = of->range.skew, .turns = of->range.turns,
+                        .more = of->range.more, .tangents = of->tangents, .nplaces = of->nplaces};
   for (uint32_t k = 0; k < of->coords.n; k++) vec_push(a, &to.coords, read_at(of->coords.at[k].at));
   for (uint32_t k = 0; k < of->params.n; k++) {
     Subscript x = of->params.at[k].at; /* parameters that are numbers here have no place */

@@ -1,6 +1,6 @@
-/* Families of contacts, `contact NAME[i in a..b, j in c..d]: gap >= 0, ...`: one text for all members, evaluated for one
- * of them. Each family of coordinates is read at indices affine in i and j, as by the sums of quantified_text.c; so a
- * symbol of the text stands for a member of any turn. moreau follows such contacts, and asks which of them are near. */
+/* Families of contacts, `contact NAME[i in a..b, j in c..d]: gap >= 0, ...`: one text for all members, evaluated for
+ * one of them. Each family of coordinates is read at indices affine in i and j, as by the sums of quantified_text.c;
+ * so a symbol of the text stands for a member of any turn. moreau follows such contacts, and asks which are near. */
 #include <math.h>
 #include <string.h>
 
@@ -65,7 +65,8 @@ static int note_all(Work *w) {
   int ok = note(w, w->st->lhs) && note(w, w->st->rhs);
   for (AstId i = w->st->args; i && ok; i = ast_expr(w->b->ast, i)->next)
     ok = strcmp(ast_expr(w->b->ast, i)->name, "law") == 0 || note(w, ast_expr(w->b->ast, i)->args);
-  for (uint32_t k = 0; w->near && k < w->near->n && ok; k++) ok = note(w, w->near->at_i[k]) && note(w, w->near->at_j[k]);
+  for (uint32_t k = 0; w->near && k < w->near->n && ok; k++)
+    ok = note(w, w->near->at_i[k]) && note(w, w->near->at_j[k]);
   return ok;
 }
 
@@ -141,7 +142,7 @@ static int add_read(Work *w, ContactFamily *to, const Symbol *s) {
   int is_coord = s->kind == SYM_COORD || s->kind == SYM_VEL;
   if (s->kind == SYM_TIME || s->kind == SYM_CONST || (s->kind == SYM_PARAM && !r && quantified_is_plain(s))) return 1;
   if (!is_coord && s->kind != SYM_PARAM)
-    return refuse_family(w, w->st->lhs, "contacts of a family are made of coordinates, velocities, parameters and time");
+    return refuse_family(w, w->st->lhs, "contacts of a family contain coordinates, velocities, parameters and time");
   if (!r && !(is_coord && quantified_is_plain(s)))
     return refuse_family(w, w->st->lhs, arena_printf(b->arena, "`%s` is no member at indices of this family", s->name));
   Affine at = {.first = s->index};
@@ -149,7 +150,8 @@ static int add_read(Work *w, ContactFamily *to, const Symbol *s) {
     at = quantified_element(r);
     at.first += r->e->index + part;
   }
-  FamilyRead one = {is_coord ? b->m->coords.at[s->index].q : b->m->params.at[s->index].sym, quantified_turns(&w->q, at)};
+  SymId symbol = is_coord ? b->m->coords.at[s->index].q : b->m->params.at[s->index].sym;
+  FamilyRead one = {symbol, quantified_turns(&w->q, at)};
   for (uint32_t k = 0; k < to->coords.n; k++)
     if (to->coords.at[k].symbol == one.symbol) return 1;
   if (is_coord) vec_push(b->arena, &to->coords, one);
@@ -220,8 +222,16 @@ void check_contact_families(Builder *b) {
   if (!m->families.n || b->diags->errors) return;
   Span span = m->families.at[0].span;
   if (m->constraints.n)
-    diag_error(b->diags, m->constraints.at[0].span, "not yet: constraints and single contacts beside a family of contacts"
-               HELP "write a single contact as a family, `contact floor[i in 1..1]: ...`");
+    diag_error(b->diags, m->constraints.at[0].span,
+               "not yet: constraints and single contacts beside a family of contacts" HELP
+               "write a single contact as a family, `contact floor[i in 1..1]: ...`");
+  for (uint32_t k = 0; k < m->families.n; k++)
+    for (uint32_t i = 0; i < m->families.at[k].params.n; i++) {
+      const Param *p = &m->params.at[expr_symbol(b->g, m->families.at[k].params.at[i].symbol)->index];
+      if (p->fixed)
+        diag_error(b->diags, m->families.at[k].span, "not yet: `%s` of a family of contacts as a number" HELP
+                   "leave it out of --fix", p->name);
+    }
   if (m->first_order)
     diag_error(b->diags, span, "contacts move bodies by impulses, and L is linear in the velocities");
   if (m->scene.method && strcmp(m->scene.method, "moreau") != 0)

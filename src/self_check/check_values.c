@@ -119,7 +119,8 @@ static int run_member(const Check *c, const TextMember *of, Real factor, Real *o
     v[k] = factor * c->v[read_index(&f->coords.at[k], of)];
   }
   for (uint32_t k = 0; k < f->params.n; k++) z[k] = c->p[read_index(&f->params.at[k], of)];
-  const Real *in[ARR_COUNT] = {[ARR_T] = &c->t, [ARR_Q] = q, [ARR_V] = v, [ARR_Z] = z, [ARR_P] = c->p, [ARR_U] = c->signal};
+  const Real *in[ARR_COUNT] = {[ARR_T] = &c->t, [ARR_Q] = q, [ARR_V] = v, [ARR_Z] = z, [ARR_P] = c->p,
+                               [ARR_U] = c->signal};
   return prog_eval(f->values, in, (Real *const[]){out}) == 0;
 }
 
