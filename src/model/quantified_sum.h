@@ -45,5 +45,16 @@ struct Quantified {
 /* quantified_text.c: finds the inner sum, and all that the terms read; 0: the text has no such form. */
 int quantified_text(Eval *ev, struct Quantified *q);
 
+/* The range of j, affine in i; what an expression reads, without indices as numbers. 0: q->why, at q->where. */
+int quantified_range(Eval *ev, struct Quantified *q, AstId from, AstId to);
+int quantified_reads(Eval *ev, struct Quantified *q, AstId id);
+
+/* quantified_sum.c: whether the members that are read differ for this pair; the read that gave the symbol for the
+ * first pair, and its component (NULL: none); its element, in i and j; whether a symbol has no index. */
+int quantified_tells_apart(const struct Quantified *q, const int64_t *pair);
+const Read *quantified_read_of(const struct Quantified *q, const Symbol *s, int64_t *part);
+Affine quantified_element(const Read *r);
+int quantified_is_plain(const Symbol *s);
+
 /* In rows and turns: i = lo + row, j = from(lo) + turn. */
 Subscript quantified_turns(const struct Quantified *q, Affine x);
