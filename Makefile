@@ -179,7 +179,7 @@ RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
 TABLES   := $(BUILD)/gen/app/options.def $(BUILD)/gen/numeric/functions.def $(BUILD)/gen/numeric/program_code.def $(BUILD)/gen/kernels/steppers.def
 API_HEAD := lag.h lag_libraries.h lag_method.h lag_model.h
 # Of every scalar; emitted C includes them.
-ANY_HEAD := lag_lanes.h lag_math.h lag_sincos.h lag_support.h lag_band.h lag_kkt.h
+ANY_HEAD := lag_lanes.h lag_math.h lag_sincos.h lag_support.h lag_band.h lag_kkt.h lag_tree.h
 
 # Bytes are evaluated in doubles.
 REAL_SRC := $(filter-out runtime/evaluator/%,$(RT_SRC))
@@ -224,7 +224,7 @@ endef
 $(eval $(call as_text,io/page.h,runtime/io/page.html))
 $(eval $(call as_text,commands/verify_driver.h,src/commands/verify_driver.in))
 $(eval $(call as_text,toolchain/probe_text.h,src/toolchain/compiler_probe.in))
-$(eval $(call as_text,emit/embedded_texts.h,$(patsubst %,runtime/include/lag_%.h,lanes math sincos support band kkt) runtime/numeric/gauss_points.h $(sort $(wildcard runtime/kernels/*.h))))
+$(eval $(call as_text,emit/embedded_texts.h,$(patsubst %,runtime/include/lag_%.h,lanes math sincos support tree band kkt) runtime/numeric/gauss_points.h $(sort $(wildcard runtime/kernels/*.h))))
 $(eval $(call as_text,fmu/%_text.h,src/fmu/%.in))
 $(eval $(call as_text,commands/language.h,$(BUILD)/gen/commands/language.txt))
 $(eval $(call as_text,commands/tutorial.h,models/TUTORIAL.md))

@@ -39,6 +39,13 @@ AstId ast_at(Ast *ast, Span span, AstId a, AstId time);
 AstId ast_reduce(Ast *ast, AstKind kind, Span span, Ident index, AstId lo, AstId hi, AstId body, Span op);
 /* near_sum.c: sum(index in near(...), body); range: the expression behind `in`. */
 AstId ast_near(Ast *ast, Span span, Ident index, AstId range, AstId body, Span op);
+/* far_sum.c: sum(index in lo..hi, body, by way(theta)). */
+typedef struct {
+  Ident index;
+  AstId lo, hi, body;
+  Span op;
+} Reduction;
+AstId ast_far(Ast *ast, Span span, Reduction r, Ident by, Ident way, AstId theta);
 AstId ast_collect(Ast *ast, AstKind kind, Span span, AstList items); /* AST_LIST */
 AstId ast_bind(Ast *ast, Span span, Ident index, AstId lo, AstId hi);
 
