@@ -250,6 +250,10 @@ $(BUILD)/gen/numeric/%: runtime/numeric/% runtime/precision.awk
 	@mkdir -p $(@D)
 	awk -v kind=long -v digits=21 -f runtime/precision.awk $< | sed '/(as it stands)/!s/LAG_REAL/long double/g' >$@.part
 	@mv $@.part $@
+# What a model calls, for the compiler.
+$(BUILD)/gen/numeric/lag_%.h: runtime/include/lag_%.h
+	@mkdir -p $(@D)
+	cp $< $@
 # Documents that help shows and searches; the reference without the list of commands, which help has itself.
 $(BUILD)/gen/commands/language.txt: grammar/LANGUAGE.md grammar/PHASE_SPACE.md
 	@mkdir -p $(@D)
@@ -274,7 +278,7 @@ $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,langu
 $(BUILD)/obj/src/commands/verify_program.o: $(BUILD)/gen/commands/verify_driver.h
 $(BUILD)/obj/src/commands/man_page.o: $(BUILD)/gen/commands/man_frame.h
 $(BUILD)/obj/src/commands/completion.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
-$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(TABLES) $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(patsubst %,$(BUILD)/gen/numeric/%.h,edit_distance fnv1a gauss_points poison)
+$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(TABLES) $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(patsubst %,$(BUILD)/gen/numeric/%.h,edit_distance fnv1a gauss_points poison lag_lanes lag_tree)
 $(patsubst %,$(BUILD)/obj/src/%.o,toolchain/files toolchain/simulator_cache commands/build commands/command_line commands/cost_reference) $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
 $(BUILD)/obj/gen/toolchain/outfile.o $(BUILD)/obj/gen/base/windows.o: | $(BUILD)/gen/base/posix.h
 # Generated code is not ours to warn about.

@@ -41,6 +41,9 @@ LAG_UNUSED static void lag_tree_open(lag_tree *w, int n, double *numbers, int *i
   w->far = w->child + cells, w->near = w->far + cells, w->stack = w->near + cells;
 }
 
+LAG_UNUSED static void lag_tree_sum(lag_tree *w, const LAG_REAL *q, const LAG_REAL *charge, const LAG_REAL *numbers,
+                                    LAG_REAL *sum);
+
 /* ---- tree ---- */
 /* The box of the bodies of a cell. */
 LAG_UNUSED static void lag_tree_box(lag_tree *w, int k) {

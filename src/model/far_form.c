@@ -145,7 +145,8 @@ static int find_members(Far *f) {
 }
 
 const FarForm *quantified_far(Eval *ev, const struct Quantified *q, Expr term) {
-  Far f = {.ev = ev, .q = q, .g = ev->b->g, .form = {.term = term, .theta = q->theta}};
+  Far f = {.ev = ev, .q = q, .g = ev->b->g, .form = {.term = term, .theta = q->theta, .begin = q->far->span.begin,
+                    .end = q->far->span.end}};
   if (split_term(&f, term) && find_places(&f) && find_members(&f)) {
     FarForm *form = ARENA_NEW(ev->b->arena, FarForm);
     *form = f.form;

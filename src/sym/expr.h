@@ -100,6 +100,7 @@ typedef struct {
   Expr term, factor, charge, soft, theta, at_i[3], at_j[3]; /* theta: opening angle of the tree */
   uint32_t n;                                               /* components of d */
   int64_t first, members;
+  uint32_t begin, end; /* place in the text */
 } FarForm;
 
 typedef struct {
