@@ -83,9 +83,9 @@ typedef struct {
   int members; /* of the family of places */
 } Near;
 
-/* Of a nest that a tree sums (lag_tree.h): component c of body k is q[first[c] + step*k], its charge the sum charge + k;
- * it adds to the sum `energy`, or to slope[c] + by*k, -1: it does not. numbers: outer values of the factor, the
- * softening, the opening angle. n 0: of another nest. */
+/* Of a nest that a tree sums (lag_tree.h): component c of body k is q[first[c] + step*k], its charge the sum
+ * charge + k. It adds to the sum `energy`, or to slope[c] + by*k; -1: it does not. numbers: outer values of the factor,
+ * the softening, the opening angle. n 0: of another nest. */
 typedef struct {
   int n, members, charge, step, by, energy, first[3], slope[3];
   uint32_t numbers[3];

@@ -175,7 +175,7 @@ LAG_UNUSED static void lag_tree_walk(lag_tree *w, const lag_tree_cell *group, in
   }
 }
 
-/* A group: places of its bodies, and the sums of potential and derivatives there; numbers behind the last are unused. */
+/* A group: places of its bodies, and sums of the potential and its derivatives there. */
 typedef struct {
   double x[LAG_TREE_GROUP], y[LAG_TREE_GROUP], z[LAG_TREE_GROUP];
   double v[LAG_TREE_GROUP], dx[LAG_TREE_GROUP], dy[LAG_TREE_GROUP], dz[LAG_TREE_GROUP];
@@ -186,9 +186,11 @@ typedef struct {
   double a[LAG_TREE_GROUP], b[LAG_TREE_GROUP], c[LAG_TREE_GROUP], u[LAG_TREE_GROUP];
 } lag_tree_gap;
 
-LAG_UNUSED static void lag_tree_gaps(const lag_tree_group *g, const double *at, double soft, int self, lag_tree_gap *d) {
+LAG_UNUSED static void lag_tree_gaps(const lag_tree_group *g, const double *at, double soft, int self,
+                                     lag_tree_gap *d) {
+  const double x = at[0], y = at[1], z = at[2];
   for (int k = 0; k < LAG_TREE_GROUP; k++) {
-    d->a[k] = g->x[k] - at[0], d->b[k] = g->y[k] - at[1], d->c[k] = g->z[k] - at[2];
+    d->a[k] = g->x[k] - x, d->b[k] = g->y[k] - y, d->c[k] = g->z[k] - z;
     d->u[k] = d->a[k]*d->a[k] + d->b[k]*d->b[k] + d->c[k]*d->c[k] + soft;
   }
   if (self >= 0) d->u[self] = INFINITY;
@@ -200,8 +202,9 @@ LAG_UNUSED static void lag_tree_gaps(const lag_tree_group *g, const double *at, 
 LAG_UNUSED static void lag_tree_add_body(lag_tree_group *g, const double *body, double soft, int self) {
   lag_tree_gap d;
   lag_tree_gaps(g, body, soft, self, &d);
+  const double charge = body[3];
   for (int k = 0; k < LAG_TREE_GROUP; k++) {
-    const double v = body[3]*d.u[k], slope = v*(d.u[k]*d.u[k]);
+    const double v = charge*d.u[k], slope = v*(d.u[k]*d.u[k]);
     g->v[k] += v;
     g->dx[k] -= slope*d.a[k], g->dy[k] -= slope*d.b[k], g->dz[k] -= slope*d.c[k];
   }

@@ -76,7 +76,8 @@ static void sections(const MathText *m, int front, StrBuf *out) {
   } rows[] = {{"lanes", !front}, {"own", own}, {"libm", 1}, {"sincos", own && calls_sincos(u)},
               {"exp", own && unit_calls(u, "exp")}, {"log", own && unit_calls(u, "log")}, {"solver", m->solver},
               {"numbers", kkt}, {"band", kkt && has_band(u)}, {"kkt", kkt}, {"listed", kkt && has_band(u)},
-              {"near", has_near(m)}, {"tree", has_tree(m)}, {"interval", curves != 0}, {"cubic", curves & 1}, {"quintic", curves & 2}};
+              {"near", has_near(m)}, {"tree", has_tree(m)},
+              {"interval", curves != 0}, {"cubic", curves & 1}, {"quintic", curves & 2}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     const char *name = front ? arena_printf(out->arena, "%s: front", rows[i].name) : rows[i].name;
     if (rows[i].needed) embedded_section(name, m->prefix, m->lower, out);

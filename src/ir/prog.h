@@ -107,9 +107,9 @@ typedef struct {
 } IrNear;
 enum { NEST_TEST = 2 };
 
-/* Of a nest that a tree may sum, factor*c_i*c_j/sqrt(d^2 + soft) over all pairs of bodies: component c of body k is
- * q[first[c] + step*k], its charge the sum number charge + k. The nest adds to the sum `energy`, or derivatives by places
- * to slope[c] + by*k; -1: it does not. numbers: positions in `outer` of the factor, soft, and the opening angle. */
+/* Of a nest that a tree sums, factor*c_i*c_j/sqrt(d^2 + soft) over all pairs of bodies: component c of body k is
+ * q[first[c] + step*k], its charge the sum charge + k. The nest adds to the sum `energy`, or derivatives by places to
+ * slope[c] + by*k; -1: it does not. numbers: positions in `outer` of factor, soft, opening angle. n 0: another nest. */
 typedef struct {
   uint32_t n, members, charge, numbers[3];
   int64_t first[3], step, slope[3], by, energy;

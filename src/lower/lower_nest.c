@@ -347,8 +347,8 @@ static int far_place(NestBuilder *b, const NestBuilder *rows, uint32_t c, IrFar 
   return far->step > 0 && far->by > 0;
 }
 
-/* The parts of a nest that a tree sums; cells numbered as in the sum, and their range widened to those of all bodies. 0:
- * it adds up something else. */
+/* The parts of a nest that a tree sums; cells numbered as in the sum, and their range widened to all bodies. 0: it adds
+ * up something else. */
 static int find_far(NestBuilder *b, const unsigned char *wanted, IrFar *far, int64_t *least, int64_t *most) {
   const FarForm *form = b->s->far;
   SumNest s = rows_of_bodies(b);

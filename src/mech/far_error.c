@@ -38,7 +38,8 @@ static int make_tree(const FarSum *x, lag_tree *w) {
   Arena *a = expr_arena(x->e->g);
   int n = (int)far->members;
   if (far->members > MOST) return 0;
-  lag_tree_open(w, n, ARENA_ARRAY(a, double, LAG_TREE_NUMBERS((size_t)n)), ARENA_ARRAY(a, int, LAG_TREE_INTS((size_t)n)));
+  double *numbers = ARENA_ARRAY(a, double, LAG_TREE_NUMBERS((size_t)n));
+  lag_tree_open(w, n, numbers, ARENA_ARRAY(a, int, LAG_TREE_INTS((size_t)n)));
   w->soft = value_of(x, far->soft);
   w->theta = value_of(x, far->theta);
   for (int k = 0; k < n; k++) {
@@ -88,11 +89,11 @@ static void note_sum(const FarSum *x) {
   }
   Diags *d = x->e->m->diags;
   Span where = {x->s->far->begin, x->s->far->end};
-  if (isfinite(gaps / sizes))
-    diag_note(d, where,
-              "a tree takes this sum of 1/r over %d bodies: at the start its forces differ from direct ones by %.1g of the "
-              "mean force, at most by %.1g (%d bodies)", w.n, sqrt(gaps / sizes), sqrt(most * taken / sizes), taken);
-  else diag_note(d, where, "a tree takes this sum of 1/r over %d bodies", w.n);
+  if (!isfinite(gaps / sizes)) return; /* no start */
+  diag_note(d, where,
+            "a tree takes this sum of 1/r over %d bodies: at the start its forces differ from direct ones by %.1g "
+            "of the mean force, at most by %.1g, at %d of them",
+            w.n, sqrt(gaps / sizes), sqrt(most * taken / sizes), taken);
   diag_help(d, "energy and momenta are kept to errors like these, not to rounding; a smaller opening angle has smaller "
                "ones, and 0 takes all pairs");
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "model/quantified_sum.h"
+#include "sym/diff.h"
 #include "sym/prove.h"
 #include "sym/sum_nest.h"
 
@@ -15,6 +16,8 @@ typedef struct {
   Expr charge_j, square; /* square: d^2 + soft */
   const char *why;
 } Far;
+
+#define OTHER_DISTANCE "the distance is not the root of the squares of differences of coordinates"
 
 enum { OF_I = 1, OF_J = 2, OF_MOTION = 4 };
 
@@ -107,6 +110,22 @@ static int split_term(Far *f, Expr term) {
   return swapped(f, f->form.charge) == f->charge_j || no(f, "the factors of both bodies differ");
 }
 
+/* The square is scale*distance + rest. */
+static int scale_distance(Far *f, Expr distance, Expr rest) {
+  ExprGraph *g = f->g;
+  SymId x = f->form.n ? expr_sym_id(g, f->form.at_i[0]) : 0;
+  Expr slope = f->form.n ? expr_diff(g, f->square, x) : 0, twice = slope ? expr_diff(g, slope, x) : 0;
+  Expr scale = twice ? expr_scale(g, num_ratio(1, 2), twice) : 0;
+  if (parts_of(f, rest)) return no(f, "the softening differs from pair to pair");
+  if (!scale || parts_of(f, scale)) return no(f, OTHER_DISTANCE);
+  Expr part = expr_mul(g, scale, distance), sum = expr_add(g, part, rest), gap = expr_sub(g, f->square, sum);
+  if (!expr_is_zero(g, gap) && prove_zero(g, gap, NULL) != PROVED_ZERO) return no(f, OTHER_DISTANCE);
+  f->form.soft = expr_div(g, rest, scale);
+  Expr root = expr_pow_num(g, scale, num_ratio(-1, 2));
+  f->form.factor = expr_mul(g, f->form.factor, root);
+  return 1;
+}
+
 /* Takes the coordinates below the root: those of i, less those of j, squared, are d^2. */
 static int find_places(Far *f) {
   ExprGraph *g = f->g;
@@ -126,11 +145,7 @@ static int find_places(Far *f) {
     Expr d2 = expr_pow_num(g, d, num_int(2));
     distance = expr_add(g, distance, d2);
   }
-  f->form.soft = rest;
-  if (parts_of(f, rest)) return no(f, "the softening differs from pair to pair");
-  Expr sum = expr_add(g, distance, rest), gap = expr_sub(g, f->square, sum);
-  return expr_is_zero(g, gap) || prove_zero(g, gap, NULL) == PROVED_ZERO ||
-         no(f, "the distance is not the root of the squares of differences of coordinates");
+  return scale_distance(f, distance, rest);
 }
 
 /* All pairs of consecutive bodies: j in a..i-1, or in i+1..b. */
@@ -153,7 +168,7 @@ const FarForm *quantified_far(Eval *ev, const struct Quantified *q, Expr term) {
     return form;
   }
   refuse(ev->b, q->far->span, "this is no sum that a tree takes: %s" HELP
-         "a tree takes potentials of 1/r: `sum(i in 1..N, sum(j in 1..i-1, -G*m[i]*m[j]/norm(r[i] - r[j]), by tree(0.5)))`, "
-         "softened by `sqrt(d^2 + eps^2)`; without `by` all pairs are taken one by one", f.why);
+         "a tree takes potentials of 1/r, `sum(i in 1..N, sum(j in 1..i-1, -G*m[i]*m[j]/norm(r[i] - r[j]), "
+         "by tree(0.5)))`, softened by `sqrt(d^2 + eps^2)`; without `by` all pairs are taken one by one", f.why);
   return NULL;
 }

@@ -364,6 +364,12 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   q->far = far_of(b->ast, q->inner);
   int is_listed = (q->near || q->far) && b->sums_from < UINT32_MAX;
   if ((turns > guessed ? turns : guessed) < b->sums_from && !is_listed) return 0;
+  if (q->far && !read) {
+    refuse(b, q->far->span, "a tree takes a sum over pairs that stays one, and this one does not: %s" HELP
+           "what a tree takes is in `lagc help tree`", q->why ? q->why : "its terms have no common form");
+    *value_of(ev, id) = FAILED;
+    return -1;
+  }
   if (!read || !find_pairs(q, b->arena)) {
     if (turns >= b->sums_from) note_written_out(ev, q, turns);
     return 0;

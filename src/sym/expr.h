@@ -94,8 +94,8 @@ typedef struct {
   uint32_t n;
 } NearTest;
 
-/* The sum of factor*c_i*c_j/sqrt(d^2 + soft) over all pairs of `members` bodies, of which the first is i in row `first`:
- * in the symbols of the body, c_i as `charge`. */
+/* The sum of factor*c_i*c_j/sqrt(d^2 + soft) over all pairs of `members` bodies; the first is body i of row `first`. In
+ * the symbols of the body, c_i as `charge`. */
 typedef struct {
   Expr term, factor, charge, soft, theta, at_i[3], at_j[3]; /* theta: opening angle of the tree */
   uint32_t n;                                               /* components of d */
