@@ -48,6 +48,7 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
   AstText text;
   AstId id;
   AstList list;
+  AstDeclared declared;
   AstStmt *one;
   StmtList stmts;
   AstSign sign;
@@ -81,6 +82,7 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %type <one> single coord momentum param const input_ state let observable item map map_item each required excluded
 %type <one> assign option use monitor
 %type <list> drawn clauses several
+%type <declared> declaration
 %type <id> clause
 %type <list> rubbing laws dims indices places_bound exprs args names variables
 %type <id> window
@@ -173,7 +175,8 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
 coords: coord[x]               { $$ = stmts_one($x); }
       | coords[l] "," coord[x] { $$ = stmts_add($l, $x); }
       ;
-coord: IDENT[n] dims[d] type[t] unit[u] periodic[p] { $$ = stmt_coord(ast, STMT_COORD, @$, $n, $d, $t, $u, $p); };
+coord: declaration[x] periodic[p] { $$ = stmt_coord(ast, STMT_COORD, @$, $x, $p); };
+declaration: IDENT[n] dims[d] type[t] unit[u] { $$ = (AstDeclared){$n, $t, $d, $u}; };
 
 momenta: momentum[x]                { $$ = stmts_one($x); }
        | momenta[l] "," momentum[x] { $$ = stmts_add($l, $x); }
@@ -183,7 +186,7 @@ momentum: IDENT[n] dims[d] type[t] "of" IDENT[q] unit[u] { $$ = stmt_momentum(as
 params: param[x]               { $$ = stmts_one($x); }
       | params[l] "," param[x] { $$ = stmts_add($l, $x); }
       ;
-param: IDENT[n] dims[d] type[t] unit[u] "=" arith[v] sign[s] { $$ = stmt_param(ast, @$, $n, $d, $t, $u, $v, $s); };
+param: declaration[x] "=" arith[v] sign[s] { $$ = stmt_param(ast, @$, $x, $v, $s); };
 
 consts: const[x]               { $$ = stmts_one($x); }
       | consts[l] "," const[x] { $$ = stmts_add($l, $x); }
@@ -198,7 +201,7 @@ input_: IDENT[n] unit[u] "=" value[v] { $$ = stmt_valued(ast, STMT_INPUT, @$, $n
 states: state[x]               { $$ = stmts_one($x); }
       | states[l] "," state[x] { $$ = stmts_add($l, $x); }
       ;
-state: IDENT[n] dims[d] type[t] unit[u] { $$ = stmt_coord(ast, STMT_STATE, @$, $n, $d, $t, $u, 0); };
+state: declaration[x] { $$ = stmt_coord(ast, STMT_STATE, @$, $x, 0); };
 
 lets: let[x]             { $$ = stmts_one($x); }
     | lets[l] "," let[x] { $$ = stmts_add($l, $x); }
@@ -408,11 +411,11 @@ arith: primary[e]                    { $$ = $e; }
 primary: NUMBER[n]                          { $$ = ast_number(ast, @n, $n); }
        | IDENT[n]                           { $$ = ast_name(ast, $n); }
        | IDENT[f] "(" args[l] ")"           { $$ = ast_call(ast, @$, $f, $l); }
-       | "sum"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] ")"     { $$ = ast_reduce(ast, AST_SUM, @$, $i, $lo, $hi, $e, @op); }
+       | "sum"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] ")"     { $$ = ast_reduce(ast, AST_SUM, @$, @op, (AstTurns){$i, $lo, $hi}, $e); }
        | "sum"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] "," IDENT[by] IDENT[way] "(" expr[theta] ")" ")"
-           { $$ = ast_far(ast, @$, (Reduction){$i, $lo, $hi, $e, @op}, $by, $way, $theta); }
+           { $$ = ast_far(ast, @$, @op, (AstTurns){$i, $lo, $hi}, $e, (FarWay){$by, $way, $theta}); }
        | "sum"[op] "(" IDENT[j] "in" arith[near] "," expr[e] ")"                  { $$ = ast_near(ast, @$, $j, $near, $e, @op); }
-       | "product"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] ")" { $$ = ast_reduce(ast, AST_PRODUCT, @$, $i, $lo, $hi, $e, @op); }
+       | "product"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] ")" { $$ = ast_reduce(ast, AST_PRODUCT, @$, @op, (AstTurns){$i, $lo, $hi}, $e); }
        | "(" expr[e] ")"                    { $$ = $e; }
        | tuple[e]                           { $$ = $e; }
        | "{" exprs[l] "}"                   { $$ = ast_collect(ast, AST_LIST, @$, $l); }

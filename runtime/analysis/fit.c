@@ -4,7 +4,6 @@
  * that the first guess of a frequency may be off by more than one turn over the whole record. */
 #include "analysis/fit.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -15,7 +15,7 @@ static int add_noise(lag_sim *sim, double t, const double *y, double *noise, dou
   double *off = scratch, *up = off + n, *beside = up + n, *state = beside + n, *f = state + n;
   for (int i = 0; i < n; i++) state[i] = y[i] * (1 + moved);
   if (lag_rhs(&sim->pb, t, state, beside) || lag_rhs(&sim->pb, t, y, f)) return 1;
-  if (lag_formula_rounding(sim, LAG_FORMULA_RATES, t, y, n - nq, off + nq, up, state)) return 1;
+  if (lag_formula_rounding(sim, LAG_FORMULA_RATES, t, y, off + nq, up, state)) return 1;
   for (int i = nq; i < n; i++) {
     noise[i] += usual * off[i];
     size[i] = fmax(size[i], lag_above_rounding(fabs(f[i]) + off[i], fabs(beside[i] - f[i]) / moved));

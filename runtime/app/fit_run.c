@@ -3,7 +3,6 @@
  * name and unit, times are taken as they are, and what does not fit is refused with its line. */
 #include "app/fit_run.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -42,7 +42,7 @@ static int gradient(App *app, int k, double *d, char *why, size_t size) {
   int n = app->sim->pb.n, rc = -1;
   lag_sim *sim = like_run(app);
   snprintf(why, size, "out of memory");
-  if (sim) rc = lag_measures_gradient(app->measures, k, sim, lag_sim_time(app->sim), d, d + n, why, size);
+  if (sim) rc = lag_measures_gradient(app->measures, k, sim, d, d + n, why, size);
   for (int i = 0; i < n + m->np && rc == 0; i++)
     d[i] *= i < n ? lag_sim_state_info(app->sim, i, NULL, 0, NULL, 0) : m->p[i - n].factor;
   lag_sim_free(sim);

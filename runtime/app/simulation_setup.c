@@ -2,7 +2,6 @@
  * the command line overrides the scene; scenes, methods and effects missing in this build are refused with the
  * command that builds them. */
 #include <errno.h>
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -11,7 +11,6 @@
 #include "contacts/contact_set.h"
 #include "core/rhs.h"
 #include "contacts/contact_modes.h"
-#include "numeric/dense.h"
 #include "contacts/planar_impact.h"
 
 /* ---- forces while contacts slip */
@@ -168,8 +167,8 @@ static int forces_at(lag_problem *pb, double t, const double *y, Closed *w, int 
  * that the least multipliers lack. */
 static int share_forces(lag_problem *pb, double t, const double *y) {
   const double none = 1e-9; /* rounding of a part of a force */
-  int row[LAG_MOST_TOUCHES], shared = 0, wedged, rc = lag_contact_laws_at(pb, t, y, pb->rub);
-  double x[2 * LAG_MOST_TOUCHES], D[2 * LAG_MOST_TOUCHES * LAG_MOST_TOUCHES], c[LAG_MOST_TOUCHES], size = 0;
+  int row[LAG_MOST_TOUCHES], shared = 0, rc = lag_contact_laws_at(pb, t, y, pb->rub);
+  double x[2 * LAG_MOST_TOUCHES], D[2 * LAG_MOST_TOUCHES * LAG_MOST_TOUCHES], c[LAG_MOST_TOUCHES + 1], size = 0;
   Closed w = list_closed(pb, pb->rub);
   rc = rc ? rc : forces_at(pb, t, y, &w, 1, x);
   for (int k = 0; k < w.rows && rc == 0; k++) size = fmax(size, fabs(x[k]));
@@ -188,7 +187,7 @@ static int share_forces(lag_problem *pb, double t, const double *y) {
     if (most > 0) row[shared++] = k;
   }
   if (rc) return rc;
-  lag_cone_forces(w.n, w.of, w.rows, x, shared, D, c, &wedged);
+  lag_cone_forces(w.n, w.of, w.rows, x, shared, D, c);
   for (int j = 0; j < shared; j++) pb->u[pb->model->contacts[w.at[row[j]]].force] = c[j];
   return find_friction(pb, t, y);
 }

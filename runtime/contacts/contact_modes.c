@@ -206,9 +206,8 @@ enum { NONE, UNIQUE, LEAST, CHOSEN };
 
 /* Chooses forces within Coulomb's cones, and returns whether the bodies are wedged: their size is arbitrary. */
 static int choose_forces(Trial *t) {
-  double D[4 * LAG_MOST_TOUCHES * LAG_MOST_TOUCHES], c[2 * LAG_MOST_TOUCHES];
-  int wedged, n = free_forces(t, D);
-  lag_cone_forces(t->n, t->of, t->rows, t->x, n, D, c, &wedged);
+  double D[4 * LAG_MOST_TOUCHES * LAG_MOST_TOUCHES], c[2 * LAG_MOST_TOUCHES + 1];
+  int n = free_forces(t, D), wedged = lag_cone_forces(t->n, t->of, t->rows, t->x, n, D, c);
   find_accelerations(t);
   return wedged;
 }

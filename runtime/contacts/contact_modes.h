@@ -37,8 +37,7 @@ int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const dou
 
 /* All forces x + sum c[j] D[j][rows] hold the same accelerations. x := those whose least margin,
  * of the largest friction less |F| where a contact sticks and of N where it does not, is
- * largest; c[n_directions] := their coefficients, at most 2 LAG_MOST_TOUCHES. Returns the
- * margin; it is bounded by the size of the forces given, *wedged := 1 where nothing else bounds
- * it. A linear programme; numeric/complementarity.h solves its conditions of optimality. */
-double lag_cone_forces(int n, const lag_touch *of, int rows, double *x, int n_directions, const double *D, double *c,
-                       int *wedged);
+ * largest; c[n_directions + 1] := their coefficients, at most 2 LAG_MOST_TOUCHES, and the
+ * margin. It is bounded by the size of the forces given; returns 1, wedged, where nothing else
+ * bounds it. A linear programme; numeric/complementarity.h solves its conditions of optimality. */
+int lag_cone_forces(int n, const lag_touch *of, int rows, double *x, int n_directions, const double *D, double *c);

@@ -464,11 +464,11 @@ void lag_velocity_terms(lag_sim *sim, double t, const double *y, double h, doubl
 void lag_start_sizes(lag_sim *s);
 /* The present step, before the first one the step that is set; 0: it is not known. */
 double lag_step_so_far(const lag_sim *sim);
-/* noise[n] := rounding of a formula at t, y, with the inputs as they are. up, down: as noise, which is the energy
+/* noise := rounding of a formula at t, y, with the inputs as they are. up, down: as noise, which is the energy
  * and its scale, rates of velocities and states, or residuals of nholonomic constraints. Not 0: there are no values.
  * */
 typedef enum LagFormula { LAG_FORMULA_ENERGY, LAG_FORMULA_RATES, LAG_FORMULA_RESIDUALS } LagFormula;
-int lag_formula_rounding(lag_sim *sim, LagFormula of, double t, const double *y, int n, double *noise, double *up,
+int lag_formula_rounding(lag_sim *sim, LagFormula of, double t, const double *y, double *noise, double *up,
                          double *down);
 
 /* Kinds of names in a scene. */

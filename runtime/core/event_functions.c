@@ -1,6 +1,5 @@
 /* Event functions at a state: the model's, those of contacts, and of switches behind them. */
 #include "core/core.h"
-#include "core/rhs.h"
 
 int lag_events_eval(lag_sim *s, double t, const double *y, double *g) {
   const lag_model *m = s->scene->model;

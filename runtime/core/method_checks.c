@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/core.h"
-#include "core/rhs.h"
 #include "numeric/option_range.h"
 
 /* *value := the value of one option; LAG_EINVAL when it is not allowed. */

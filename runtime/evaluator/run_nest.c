@@ -1,6 +1,5 @@
 /* Nests of loops: each operation is computed for a block of turns, of several rows; sums are added to in the order
  * of turns. */
-#include <math.h>
 #include <string.h>
 
 #include "evaluator/program.h"

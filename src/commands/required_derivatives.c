@@ -1,7 +1,6 @@
 /* Required derivatives: maps the methods of a scene and of the command line to flags WANT_... */
 #include "commands/compiler.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

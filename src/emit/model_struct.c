@@ -1,5 +1,4 @@
 /* The const lag_model of an emitted model file, and the tables that it names. */
-#include <string.h>
 
 #include "emit/emit_impl.h"
 

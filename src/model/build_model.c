@@ -3,7 +3,6 @@
  * Contract: model.h. */
 #include "model/model.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "model/builder.h"

@@ -4,7 +4,6 @@
  * positive where the condition is true. */
 #include <math.h>
 
-#include "base/words.h"
 #include "model/resolve_impl.h"
 
 /* 1 for a constraint without states; 0, reported, for others. Its second derivative needs rates of inputs. */

@@ -1,7 +1,6 @@
 /* Declarations: each name enters the scope, and coordinates, states, inputs, observables their arrays of the Model,
  * in file order. Lets and functions are only recorded: resolve.c evaluates them when needed. Parameters and
  * constants: declare_param.c. */
-#include <stdlib.h>
 
 #include "base/words.h"
 #include "model/builder.h"

@@ -147,7 +147,7 @@ AstId ast_near(Ast *ast, Span span, Ident j, AstId call, AstId body, Span op) {
   AstId term = ast_call(ast, ast_expr(ast, body)->span, (Ident){intern(ast->names, "if"), r.span}, list);
   clear(ast, ast_expr(ast, body)->first, body);
   AstId from = make_range(ast, call);
-  near.sum = ast_reduce(ast, AST_SUM, span, j, from, call, term, op);
+  near.sum = ast_reduce(ast, AST_SUM, span, op, (AstTurns){j, from, call}, term);
   vec_push(ast->arena, &ast->nears, near);
   return near.sum;
 }
