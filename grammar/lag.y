@@ -430,6 +430,8 @@ primary: NUMBER[n]                          { $$ = ast_number(ast, @n, $n); }
        | IDENT[n]                           { $$ = ast_name(ast, $n); }
        | IDENT[f] "(" args[l] ")"           { $$ = ast_call(ast, @$, $f, $l); }
        | "sum"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] ")"     { $$ = ast_reduce(ast, AST_SUM, @$, @op, (AstTurns){$i, $lo, $hi}, $e); }
+       | "sum"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] "," IDENT[by] IDENT[way] "(" expr[theta] ")" ")"
+           { $$ = ast_far(ast, @$, @op, (AstTurns){$i, $lo, $hi}, $e, (FarWay){$by, $way, $theta}); }
        | "sum"[op] "(" IDENT[j] "in" arith[near] "," expr[e] ")"                  { $$ = ast_near(ast, @$, $j, $near, $e, @op); }
        | "product"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] ")" { $$ = ast_reduce(ast, AST_PRODUCT, @$, @op, (AstTurns){$i, $lo, $hi}, $e); }
        | "(" expr[e] ")"                    { $$ = $e; }
