@@ -74,7 +74,7 @@ void lag_slip_direction(const lag_problem *pb, const double *r, int i, double *e
 }
 
 int lag_slip_ends(const lag_problem *pb, const double *s, double size) {
-  return lag_norm(s, 2) <= fmax(10 * pb->tol, lag_no_gap) * size;
+  return lag_norm(s, 2) <= fmax(fmin(1e3 * pb->tol, 1e-5), lag_no_gap) * size;
 }
 
 static int sticks(const lag_sim *s, int i) {
