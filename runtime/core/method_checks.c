@@ -104,6 +104,9 @@ int lag_method_check(lag_sim *s, const lag_method *method) {
   const int held = m->constraints != NULL, linear = (needs & LAG_METHOD_NO_STATES) && (has & LAG_FIRST_ORDER);
   const int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !held;
   const Refusal first[] = {
+      {m->families && !(own & LAG_METHOD_IMPULSES),
+       "method %s does not follow the family of contacts %s; --method \"moreau(step=1e-3)\" does",
+       m->families ? m->families->of[0].name : NULL},
       {m->contact_laws && (!(own & LAG_METHOD_CONSTRAINTS) || own & smooth),
        "method %s cannot follow contacts with friction (%s); rk45, dop853, radau, rk4 and moreau can",
        m->contact_laws ? m->ev[m->contacts[0].impact].name : NULL},

@@ -16,6 +16,7 @@
 #include "kernels/impulses.h"
 #include "lag.h"
 #include "methods/moreau_contacts.h"
+#include "methods/moreau_families.h"
 #include "methods/moreau_joint_friction.h"
 #include "methods/steps.h"
 
@@ -66,6 +67,10 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   w->calm = 0;
   memset(law_of(w, pb) + 2 * m->ncontacts, 0, lag_joint_friction_size(pb) * sizeof(double));
   reset(work, pb);
+  if (m->families) {
+    lag_moreau_contacts_of(pb, NULL);
+    return lag_families_check_start(pb, 0, pb->begin);
+  }
   if (!m->contact_laws) return LAG_OK;
   rc = lag_inputs(pb, 0);
   rc = rc ? rc
@@ -151,7 +156,7 @@ static int respond(lag_problem *pb, const lag_kick *s, Laws *w) {
     rc = lag_joint_friction_round(&w->friction, pb, s, 0, &moved);
     lag_joint_friction_carry(&w->friction, 1, s->rate0);
   }
-  return rc ? rc : lag_contacts_find(pb, &w->contacts, s->t, s->h, s->mid, s->y1 + s->nq);
+  return rc ? rc : lag_moreau_find(pb, &w->contacts, s->t, s->h, s->mid, s->y1 + s->nq);
 }
 
 static int obey(lag_problem *pb, const lag_kick *s, Laws *w) {
@@ -211,7 +216,7 @@ static int advance(Moreau *w, lag_problem *pb, double t, const lag_next_step *ne
     return rc;
   }
   w->struck = laws.contacts.impacts;
-  if (noted && pb->model->ncontacts)
+  if (noted && (pb->model->ncontacts || pb->model->families))
     lag_moreau_contacts_note(&laws.contacts, pb, next->dt, w->struck > 0 ? s.t : next->tb, y0 + nq, s.y1 + nq);
   memcpy(s.y1, y, (size_t)n * sizeof *y);
   return 0;
