@@ -56,7 +56,7 @@ typedef struct lag_moreau_contacts {
 enum { LAG_PRESSING_SIZE = (int)(sizeof(lag_pressing)/sizeof(LAG_REAL)) };
 /* Scalars that a step with these sizes needs; entries of D: `responses`; of the factored mass matrix: `lu`. */
 #define LAG_CONTACT_ROOM(contacts, constraints, nq, entries, nmass, responses, lu) \
-  ((contacts)*(LAG_PRESSING_SIZE + 8) + 4 + 7*(constraints) + 5*(nq) + 4*(entries) + 2*(responses) + (nmass) + (lu))
+  ((contacts)*(LAG_PRESSING_SIZE + 10) + 4 + 7*(constraints) + 5*(nq) + 4*(entries) + 2*(responses) + (nmass) + (lu))
 
 /* Places arrays into room[LAG_CONTACT_ROOM]; sizes are set. */
 static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG_REAL *room) {
@@ -64,7 +64,8 @@ static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG
   w->all.n = w->rows = w->impacts = w->sweeps = 0;
   w->all.of = (lag_pressing *)(void *)room, room += p*LAG_PRESSING_SIZE;
   w->response = room, w->b = room += p, w->before = room += p, w->all.P = room += p, w->law = room += p;
-  w->all.A.first = room += 2*p, w->all.D.first = room += p + 1;
+  w->all.was = room += 2*p, w->all.went = room += p;
+  w->all.A.first = room += p, w->all.D.first = room += p + 1;
   w->c = room += p + 1, w->r0 = room += nc, w->r1 = room += nc, w->pace = room += nc, w->bend = room += nc;
   w->g = room += nc, w->d = room += nc, w->effort = room += nq, w->x = room += nq, w->pivot = room += nq;
   w->scale = room += nq, w->jacobian = room += nq, w->all.A.col = room += e, w->all.A.value = room += e;
