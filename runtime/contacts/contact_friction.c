@@ -14,6 +14,8 @@
 #include "numeric/dense.h"
 #include "contacts/planar_impact.h"
 
+_Static_assert((int)LAG_MOST_GUIDES <= (int)LAG_MOST_TOUCHES, "guides alone are never too many");
+
 /* ---- forces while contacts slip */
 
 int lag_contact_laws_at(lag_problem *pb, double t, const double *y, double *law) {

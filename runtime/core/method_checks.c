@@ -51,7 +51,7 @@ int lag_method_check_digits(lag_sim *s, const lag_method *method) {
       method->name, method->finest, s->tol);
 }
 
-/* Switches that jump, and friction in space. */
+/* Switches that jump, friction in space, and many guides. */
 static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
   const lag_model *m = s->scene->model;
   for (int k = 0; k < m->nmodes; k++) {
@@ -70,6 +70,11 @@ static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
                       "method %s follows friction in a plane, and the slip of a contact has two components here (%s); "
                       "--method \"moreau(step=1e-3)\" follows it",
                       method->name, m->constraints->of[m->contacts[i].constraint].name);
+  if (m->nguides > LAG_MOST_GUIDES && !(needs & LAG_METHOD_IMPULSES))
+    return lag_fail(s, LAG_EMETHOD,
+                    "method %s follows at most %d guides with friction, and the model has %d; --method "
+                    "\"moreau(step=1e-3)\" follows any number",
+                    method->name, LAG_MOST_GUIDES, m->nguides);
   return LAG_OK;
 }
 

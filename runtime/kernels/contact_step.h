@@ -248,6 +248,21 @@ static inline int lag_contacts_find(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL 
   return status;
 }
 
+/* v[j] := 0 where contacts, by all that they could do, leave far less of it than its rounding: rests would go on as
+ * subnormal numbers. */
+static inline void lag_contacts_rest(const lag_moreau_contacts *w, LAG_REAL *v) {
+  const lag_sparse_rows *const D = &w->all.D;
+  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), little = w->epsilon*w->epsilon;
+  for (int j = 0; j < w->nq; j++) w->x[j] = zero;
+  for (int i = 0; i < w->all.n; i++) {
+    const lag_pressing *const c = &w->all.of[i];
+    const int row = (int)c->row, end = row + 1 + (int)c->tangents;
+    for (int e = (int)D->first[row]; e < (int)D->first[end]; e++)
+      w->x[(int)D->col[e]] += LAG_FN(fabs)(w->all.P[row]*D->value[e])*(e < (int)D->first[row + 1] ? one : c->mu);
+  }
+  for (int j = 0; j < w->nq; j++) v[j] = LAG_SELECT(LAG_FN(fabs)(v[j]) > little*w->x[j], v[j], zero);
+}
+
 /* v[nq], velocities without contacts, := those with them. Not 0: no impulses agree. */
 static inline int lag_contacts_solve(lag_moreau_contacts *w, LAG_REAL *v) {
   enum { MOST = 200000 };
@@ -260,6 +275,7 @@ static inline int lag_contacts_solve(lag_moreau_contacts *w, LAG_REAL *v) {
   const LAG_REAL enough = LAG_C(64.0)*w->epsilon*size;
   const int sweeps = lag_contact_impulses(&w->all, enough, MOST);
   w->sweeps += sweeps;
+  lag_contacts_rest(w, v);
   return sweeps > MOST;
 }
 
