@@ -6,14 +6,11 @@
  * These stages stand in commands/compiler.c; what a command does with them, in commands/NAME.c.
  * Exit status: 0 ok, 1 bad model, 2 usage or files, 3 the run failed (a simulator's status). */
 #include <stdio.h>
-#include <string.h>
 
-#include "base/diag.h"
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 #include "commands/check_json.h"
 #include "commands/commands.h"
 #include "commands/known_run.h"
-#include "syntax/parse.h"
 #include "toolchain/gallery.h"
 
 enum { MEMORY_LIMIT_MIB = 2048 };

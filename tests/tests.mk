@@ -95,19 +95,28 @@ build-more: build-san build-plain
 	$(QUIET) precisions
 	$(if $(CLANG),$(QUIET) BUILD=$(BUILD)/clang PRECISIONS= CC='$(CLANG)' all)
 
-# Test programs themselves: -O1 would take ten times as long to compile.
+# Test programs themselves: -O1 would take ten times as long to compile. Their objects stay when a library changes.
 TEST_OPT ?= -O0 -g1
-TEST_CC = $(CC) -std=c11 -Wall -Wextra $(CPPFLAGS_ALL) $(TEST_OPT) $(SAN_FLAGS) $(FAST_LINKER:%=-fuse-ld=gold) -MMD -MP -MF $@.d -o $@ $<
+TEST_C    = $(CC) -std=c11 -Wall -Wextra $(CPPFLAGS_ALL) $(TEST_OPT) $(SAN_FLAGS) -MMD -MP -MF $(basename $@).d -o $@ $<
+TEST_O    = $(CCACHE) $(TEST_C) -c
+TEST_LINK = $(CC) $(TEST_OPT) $(SAN_FLAGS) $(FAST_LINKER:%=-fuse-ld=gold) -o $@ $<
+.SECONDARY: $(TEST_BIN:=.o)
 # tests/unit/test_rt_*: of the runtime. The rest of tests/unit: of the compiler.
-$(BIN)/test_rt_%: tests/unit/test_rt_%.c $(SAN_RT)
+$(BIN)/test_rt_%.o: tests/unit/test_rt_%.c | $(SAN_RT)
 	@mkdir -p $(@D)
-	$(TEST_CC) -Iruntime/include -Iruntime -ffp-contract=off $(SAN_RT) $(GSL_LIBS) -lcmocka -lm
-$(BIN)/%: tests/unit/%.c $(SAN_LAGC)
+	$(TEST_O) -Iruntime/include -Iruntime -ffp-contract=off
+$(BIN)/test_rt_%: $(BIN)/test_rt_%.o $(SAN_RT)
+	$(TEST_LINK) $(SAN_RT) $(GSL_LIBS) -lcmocka -lm
+$(BIN)/%.o: tests/unit/%.c | $(SAN_LAGC)
 	@mkdir -p $(@D)
-	$(TEST_CC) -Isrc -I$(SAN_BUILD)/gen $(SAN_LAGC) $(ZIP_LIBS) -lcmocka -lm
-$(BIN)/fuzz_%: tests/fuzz/fuzz_%.c $(BIN)/driver.o $(SAN_LAGC)
+	$(TEST_O) -Isrc -I$(SAN_BUILD)/gen
+$(BIN)/%: $(BIN)/%.o $(SAN_LAGC)
+	$(TEST_LINK) $(SAN_LAGC) $(ZIP_LIBS) -lcmocka -lm
+$(BIN)/fuzz_%.o: tests/fuzz/fuzz_%.c | $(SAN_LAGC)
 	@mkdir -p $(@D)
-	$(TEST_CC) -Isrc -I$(SAN_BUILD)/gen $(BIN)/driver.o $(SAN_LAGC) $(ZIP_LIBS) -lm
+	$(TEST_O) -Isrc -I$(SAN_BUILD)/gen
+$(BIN)/fuzz_%: $(BIN)/fuzz_%.o $(BIN)/driver.o $(SAN_LAGC)
+	$(TEST_LINK) $(BIN)/driver.o $(SAN_LAGC) $(ZIP_LIBS) -lm
 # fuzz_load is of the runtime, with models as lagc emits them: the method behind the colon is what they are emitted for.
 LOAD_MODELS := spring:verlet pend:variational series:taylor flow:gauss rod:variational ball:verlet
 LOAD_SRC    := $(foreach m,$(LOAD_MODELS),$(BUILD)/test/load_$(firstword $(subst :, ,$m)).c)
@@ -116,10 +125,10 @@ $(BUILD)/test/load_%.c: tests/fuzz/load/load_%.lag $(BUILD)/lagc
 	$(BUILD)/lagc emit $< --with linear --method $(patsubst $*:%,%,$(filter $*:%,$(LOAD_MODELS))) -o $@
 $(BIN)/fuzz_load: tests/fuzz/fuzz_load.c $(BIN)/driver.o $(LOAD_SRC) $(SAN_RT)
 	@mkdir -p $(@D)
-	$(TEST_CC) -Iruntime/include -Iruntime -ffp-contract=off $(BIN)/driver.o $(LOAD_SRC) $(SAN_RT) $(GSL_LIBS) -lm
+	$(TEST_C) $(FAST_LINKER:%=-fuse-ld=gold) -Iruntime/include -Iruntime -ffp-contract=off $(BIN)/driver.o $(LOAD_SRC) $(SAN_RT) $(GSL_LIBS) -lm
 $(BIN)/driver.o: tests/fuzz/driver.c
 	@mkdir -p $(@D)
-	$(TEST_CC) -c
+	$(TEST_O)
 
 # Looks for new failures: make fuzz [T=fuzz_parse] [SECONDS=60]. With clang's libFuzzer where there is clang,
 # with the plain mutations of tests/fuzz/driver.c where there is not.

@@ -1,7 +1,6 @@
 /* Equations of states of rest and of periodic motions over a parameter (branch_problems.h). */
 #include "analysis/branch_problems.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -45,7 +45,7 @@ static int correct(Walk *w, double *u, const double *d) {
     memcpy(w->J + w->p->rows * w->cols, d, (size_t)w->cols * sizeof *d);
     w->rhs[w->p->rows] = along - dot(w->cols, u, d);
     lag_singular_values(w->rows, w->cols, w->J, w->V, w->sigma);
-    lag_least_norm(w->rows, w->cols, w->J, w->V, w->sigma, least_rank, 0, w->rhs, w->x);
+    lag_least_norm((lag_decomposed){w->rows, w->cols, w->J, w->V, w->sigma}, least_rank, 0, w->rhs, w->x);
     if (fabs(d[w->cols - 1]) == 1.0) w->x[w->cols - 1] = 0; /* the parameter stays to the bit, as at its bound */
     double size = sqrt(dot(w->cols, w->x, w->x));
     if (!(size < 1)) return 0;

@@ -1,7 +1,6 @@
 /* Residuals of a fit (fit_residuals.h): one run with sensitivities for each part of a record. */
 #include "analysis/fit_residuals.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -146,33 +145,46 @@ static void put_columns(const Fit *f, const double *d, int columns, const double
   for (int i = f->nmine; i < columns; i++) to[f->n + i - f->nmine] = times * d[i] * f->nodes->unit[i - f->nmine];
 }
 
+double lag_fit_residual(const Fit *f, int i, int c, double got, double *slope) {
+  double error = error_of(f, i, c), want = f->data[i * f->ncolumns + c], r = loss(f, (got - want) / error, slope);
+  f->model[i * f->ncolumns + c] = got;
+  *slope /= error;
+  return r;
+}
+
+/* Where residuals go: r and their derivatives J, NULL where they are not wanted; `at` of them are there. */
+typedef struct {
+  const double *slope; /* of values by coordinates */
+  double *r, *J;
+  int at;
+} Residuals;
+
 /* Residuals of row i from the outputs f->row, and their derivatives from f->D by the declared units of targets. */
-static void put_row(Fit *f, int i, int columns, const double *slope, double *r, double *J, int *at) {
+static void put_row(Fit *f, int i, int columns, Residuals *to) {
   for (int c = 0; c < f->ncolumns; c++) {
-    double got = f->row[f->column[c].output], want = f->data[i * f->ncolumns + c], by;
-    f->model[i * f->ncolumns + c] = got;
-    if (isnan(want)) continue;
-    double error = error_of(f, i, c), bent = loss(f, (got - want) / error, &by);
-    if (r) r[*at] = bent;
-    if (J) put_columns(f, f->D + f->column[c].output * columns, columns, slope, by / error, J + *at * lag_fit_width(f));
-    ++*at;
+    double by, bent = lag_fit_residual(f, i, c, f->row[f->column[c].output], &by);
+    if (isnan(f->data[i * f->ncolumns + c])) continue;
+    if (to->r) to->r[to->at] = bent;
+    if (to->J)
+      put_columns(f, f->D + f->column[c].output * columns, columns, to->slope, by, to->J + to->at * lag_fit_width(f));
+    to->at++;
   }
 }
 
 /* Residuals of priors behind the others. */
-static void put_priors(const Fit *f, const double *slope, double *r, double *J, int at) {
+static void put_priors(const Fit *f, Residuals *to) {
   int width = lag_fit_width(f);
   for (int k = 0; k < f->n; k++) {
     const FitTarget *t = &f->target[k];
     if (!(t->prior_error > 0)) continue;
-    if (r) r[at] = (t->value - t->prior) / t->prior_error;
-    for (int j = 0; j < width && J; j++) J[at * width + j] = j == k ? slope[j] / t->prior_error : 0;
-    at++;
+    if (to->r) to->r[to->at] = (t->value - t->prior) / t->prior_error;
+    for (int j = 0; j < width && to->J; j++)
+      to->J[to->at * width + j] = j == k ? to->slope[j] / t->prior_error : 0;
+    to->at++;
   }
 }
 
-/* The run at time t; -: the motion ends before. */
-static int advance_to(Fit *f, lag_sim *sim, double t) {
+int lag_fit_advance(Fit *f, lag_sim *sim, double t) {
   int rc = t > lag_sim_time(sim) ? lag_sim_advance(sim, t) : LAG_OK;
   if (rc <= 0) return rc ? lag_fit_fail(f, rc, lag_sim_message(sim)) : LAG_OK;
   snprintf(f->why, sizeof f->why, "the motion ends at t = %g s, before the data do", lag_sim_time(sim));
@@ -180,15 +192,15 @@ static int advance_to(Fit *f, lag_sim *sim, double t) {
 }
 
 /* Runs a part of record k over rows i to end. */
-static int run_part(Fit *f, lag_sim *sim, int i, int end, const double *slope, double *r, double *J, int *at) {
+static int run_part(Fit *f, lag_sim *sim, int i, int end, Residuals *to) {
   int columns = sim->tangent_columns, rc = LAG_OK;
   for (; i < end && rc == LAG_OK; i++) {
-    rc = advance_to(f, sim, f->t[i]);
+    rc = lag_fit_advance(f, sim, f->t[i]);
     if (rc) return rc;
     rc = lag_sim_outputs(sim, f->row);
     if (rc == LAG_OK && columns) rc = lag_sim_tangent(sim, f->y);
     if (rc == LAG_OK && columns) rc = lag_sim_output_sensitivity(sim, f->y, f->D);
-    if (rc == LAG_OK) put_row(f, i, columns, slope, r, J, at);
+    if (rc == LAG_OK) put_row(f, i, columns, to);
   }
   return rc ? lag_fit_fail(f, rc, lag_sim_message(sim)) : LAG_OK;
 }
@@ -196,7 +208,7 @@ static int run_part(Fit *f, lag_sim *sim, int i, int end, const double *slope, d
 /* The gap before a node, and its derivatives. A node that does not count yet is set to the end of the run. */
 static int meet_node(Fit *f, lag_sim *sim, int node, int counts, const double *slope, int derives) {
   FitNodes *w = f->nodes;
-  int ns = w->ns, columns = sim->tangent_columns, rc = advance_to(f, sim, f->t[w->row[node]]);
+  int ns = w->ns, columns = sim->tangent_columns, rc = lag_fit_advance(f, sim, f->t[w->row[node]]);
   double *y = w->y + node * ns, *gap = w->gap + node * ns;
   if (rc == LAG_OK && derives && columns && (rc = lag_sim_tangent(sim, f->y)) != 0)
     return lag_fit_fail(f, rc, lag_sim_message(sim));
@@ -211,14 +223,14 @@ static int meet_node(Fit *f, lag_sim *sim, int node, int counts, const double *s
 }
 
 /* The motion of record k over its rows that count, part by part. */
-static int run_record(Fit *f, int k, const double *slope, double *r, double *J, int *at, double *steps) {
+static int run_record(Fit *f, int k, Residuals *to, double *steps) {
   int rc = LAG_OK, end = lag_fit_end_row(f, k);
   for (int i = f->first[k], next = i; i < end && rc == LAG_OK; i = next) {
-    lag_sim *sim = lag_fit_simulation(f, k, f->nodes ? f->nodes->at[i] : -1, J != NULL);
+    lag_sim *sim = lag_fit_simulation(f, k, f->nodes ? f->nodes->at[i] : -1, to->J != NULL);
     next = lag_fit_part_end(f, i, end);
-    rc = sim ? run_part(f, sim, i, next, slope, r, J, at) : LAG_EINVAL;
+    rc = sim ? run_part(f, sim, i, next, to) : LAG_EINVAL;
     if (rc == LAG_OK && f->nodes && next < f->first[k + 1])
-      rc = meet_node(f, sim, f->nodes->at[next], next < end, slope, J != NULL);
+      rc = meet_node(f, sim, f->nodes->at[next], next < end, to->slope, to->J != NULL);
     lag_sim_free(sim);
     *steps = fmax(*steps, f->steps_of_run);
   }
@@ -226,11 +238,12 @@ static int run_record(Fit *f, int k, const double *slope, double *r, double *J, 
 }
 
 int lag_fit_run_rows(Fit *f, const double *slope, double *r, double *J) {
-  int at = 0, rc = LAG_OK;
+  Residuals to = {slope, r, J, 0};
+  int rc = LAG_OK;
   double most = 0;
-  for (int k = 0; k < f->nrecords && rc == LAG_OK; k++) rc = run_record(f, k, slope, r, J, &at, &most);
+  for (int k = 0; k < f->nrecords && rc == LAG_OK; k++) rc = run_record(f, k, &to, &most);
   f->steps_of_run = most;
-  if (rc == LAG_OK) put_priors(f, slope, r, J, at);
+  if (rc == LAG_OK) put_priors(f, &to);
   return rc;
 }
 

@@ -1,7 +1,6 @@
 /* The flow of a model as a map (flow_map.h). */
 #include "analysis/flow_map.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -3,7 +3,7 @@
  *   x  x'  t  energy  "l*sin(th)"   a quantity: an output, coordinate, velocity, state, parameter, input or charge
  *   0.5  pi()               a number
  *   + - * / ^ neg() abs() sin() ... greater()   operations on the numbers before them
- *   max() min() mean() rms() drift() period()   of the expression before, along the run; max(10..20) from 10 to 20 s
+ *   max() ... period()      TRACKS of functions.def: of the expression before, along the run; max(10..20): 10 to 20 s
  *   at()                    the quantity at the time [s] before; without these words, at the end of the run
  *   hit(EVENT) count(EVENT) the time of its firing number n, which stands before; the number of firings
  *   end() lyapunov() megno() the time at which the run ends; the largest Lyapunov exponent without the run's first
@@ -67,8 +67,7 @@ int lag_measures_end(Measures *m, double *value);
  * (lag_sim_gradient) over a run of its own: `sim`, at its start, with the settings of the last one but perhaps another
  * method. Values at times and at the end, largest and smallest values, drifts, and expressions of them have a
  * gradient. 0, or -1 with the reason. */
-int lag_measures_gradient(Measures *m, int k, lag_sim *sim, double until, double *by_start, double *by_p, char *why,
-                          size_t size);
+int lag_measures_gradient(Measures *m, int k, lag_sim *sim, double *by_start, double *by_p, char *why, size_t size);
 
 /* Whether a measure is taken along the run, as max(x) is, and not at some times only: each step has to be looked at. */
 int lag_measures_follow(const Measures *m);

@@ -134,14 +134,13 @@ static int run_back(MeasureGradient *g, lag_sim *sim, double *by_start, double *
   return rc;
 }
 
-int lag_measures_gradient(Measures *m, int k, lag_sim *sim, double until, double *by_start, double *by_p, char *why,
-                          size_t size) {
+int lag_measures_gradient(Measures *m, int k, lag_sim *sim, double *by_start, double *by_p, char *why, size_t size) {
   size_t n = (size_t)sim->pb.n, np = (size_t)sim->pb.model->np;
   lag_sim *own = m->sim;
   MeasureGradient g = {.m = m, .adjoint = calloc((size_t)m->nnodes + 1, sizeof *g.adjoint)};
   double *room = calloc((size_t)MOST_ROWS * (n + 1) + 2 * n + np + 1, sizeof *room);
   int rc = g.adjoint && room ? LAG_OK : lag_fail(sim, LAG_ENOMEM, "out of memory");
-  if (rc == LAG_OK) collect_seeds(&g, k, until < m->t0 ? -1 : 1);
+  if (rc == LAG_OK) collect_seeds(&g, k, m->t < m->t0 ? -1 : 1);
   m->sim = sim;
   if (rc == LAG_OK && !g.refused) rc = run_back(&g, sim, by_start, by_p, room);
   m->sim = own;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "analysis/measure.h"
+#include "numeric/functions.def"
 
 typedef enum MeasureKind {
   MEASURE_NUMBER,
@@ -23,7 +24,8 @@ typedef enum QuantityKind {
 } QuantityKind;
 
 typedef enum TrackKind {
-  TRACK_MAX, TRACK_MIN, TRACK_MEAN, TRACK_RMS, TRACK_DRIFT, TRACK_PERIOD,
+#define TRACK_KIND(KIND, ...) TRACK_##KIND,
+  TRACKS(TRACK_KIND)
   TRACK_KINDS
 } TrackKind;
 
@@ -53,6 +55,7 @@ typedef struct MeasureNode {
 /* A value that is followed along the run. */
 typedef struct Track {
   TrackKind kind;
+  int integral;         /* 1: summed over the steps; 0: sampled within them */
   int node, arg;        /* its node, and the node of the expression that is followed */
   double first, last;   /* value at the start, and at the end of the last part */
   double least, most, when_least, when_most; /* and their times */

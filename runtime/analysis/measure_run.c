@@ -191,8 +191,6 @@ static void follow(Measures *m, Track *track, int n, const double *t, const doub
   track->last = x[n];
 }
 
-static int is_integral(const Track *k) { return k->kind == TRACK_MEAN || k->kind == TRACK_RMS; }
-
 /* Parts of a step that are sampled, and for quadrature: methods of high order take long steps. */
 static int places(const lag_method *method) {
   return method->flags & LAG_METHOD_TAYLOR ? MEASURE_SAMPLES
@@ -231,7 +229,7 @@ static void take_samples(Measures *m, double a, double b, int n, int first, int 
     t[k] = k == n ? b : a + k * (b - a) / n;
     take_row(m, t[k]);
     for (int i = 0; i < m->ntracks; i++)
-      if (!is_integral(&m->track[i]) && m->track[i].active)
+      if (!m->track[i].integral && m->track[i].active)
         m->sampled[i * (MEASURE_SAMPLES + 1) + k] = evaluate(m, m->track[i].arg);
   }
 }
@@ -255,7 +253,7 @@ static void sample(Measures *m, double a, double b) {
   for (int i = 0; i < m->ntracks && stride > 1 && !more; i++) {
     if (!m->track[i].active) continue;
     for (int k = 0; k <= FEW; k++) few[k] = m->sampled[i * (MEASURE_SAMPLES + 1) + k * stride];
-    more = !is_integral(&m->track[i]) && !is_at_ends(m, &m->track[i]) && needs_more(&m->track[i], FEW, few);
+    more = !m->track[i].integral && !is_at_ends(m, &m->track[i]) && needs_more(&m->track[i], FEW, few);
   }
   for (int first = 1; more && first < stride; first++) take_samples(m, a, b, n, first, stride, t);
   if (more) stride = 1;
@@ -263,7 +261,7 @@ static void sample(Measures *m, double a, double b) {
   for (int i = 0; i < m->ntracks; i++) {
     double *x = m->sampled + i * (MEASURE_SAMPLES + 1);
     for (int k = 0; k * stride <= n; k++) x[k] = x[k * stride];
-    if (is_integral(&m->track[i]) || !m->track[i].active) continue;
+    if (m->track[i].integral || !m->track[i].active) continue;
     if (!is_at_ends(m, &m->track[i])) follow(m, &m->track[i], n / stride, t, x);
     else note_end(m, &m->track[i], a, x[0]), note_end(m, &m->track[i], b, x[n / stride]);
   }
@@ -278,7 +276,7 @@ static void integrate(Measures *m, double a, double b) {
     double h = (b - a) / n, t = a + (j / s->nodes + s->node[j % s->nodes]) * h, weight = s->weight[j % s->nodes] * h;
     take_row(m, t);
     for (Track *k = m->track; k < m->track + m->ntracks; k++) {
-      if (!is_integral(k) || !k->active) continue;
+      if (!k->integral || !k->active) continue;
       double x = evaluate(m, k->arg), term = weight * (k->kind == TRACK_RMS ? x * x : x) - k->lost, sum = k->sum + term;
       if (!isfinite(x) && isnan(k->bad)) k->bad = t;
       k->lost = (sum - k->sum) - term;

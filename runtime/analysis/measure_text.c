@@ -10,7 +10,6 @@
 
 #include "analysis/measure_nodes.h"
 #include "core/core.h"
-#include "numeric/functions.def"
 
 #ifndef LAG_OF_REAL
 #define LAG_OF_REAL(f) f /* f of the scalar: with the suffix of long double or __float128 */
@@ -27,7 +26,14 @@ typedef struct Reader {
   size_t size;
 } Reader;
 
-static const char *const track_words[TRACK_KINDS] = {"max", "min", "mean", "rms", "drift", "period"};
+enum { SAMPLED, INTEGRATED };
+static const struct {
+  const char *word;
+  int how;
+} tracks[TRACK_KINDS] = {
+#define TRACK_ROW(KIND, name, unit, how) {#name, how},
+  TRACKS(TRACK_ROW)
+};
 
 static double add(double a, double b) { return a + b; }
 static double subtract(double a, double b) { return a - b; }
@@ -188,9 +194,10 @@ static int put_track(Reader *r, TrackKind which, const char *window) {
   m->track = track;
   if (put(r, whole(MEASURE_TRACK, m->ntracks), 1)) return -1;
   int node = m->nnodes - 1;
-  track[m->ntracks++] = (Track){.kind = which, .node = node, .arg = m->node[node].a, .from = from, .to = to};
-  if (which == TRACK_MEAN || which == TRACK_RMS) m->integrates = 1;
-  else m->samples = 1;
+  int integral = tracks[which].how == INTEGRATED;
+  track[m->ntracks++] =
+      (Track){.kind = which, .integral = integral, .node = node, .arg = m->node[node].a, .from = from, .to = to};
+  *(integral ? &m->integrates : &m->samples) = 1;
   return 0;
 }
 
@@ -229,7 +236,7 @@ static int put_operation(Reader *r, const char *word, const char *name, const ch
   MeasureKind run = strcmp(name, "lyapunov") == 0 ? MEASURE_LYAPUNOV
                     : strcmp(name, "megno") == 0  ? MEASURE_MEGNO
                                                   : MEASURE_END;
-  while (track < TRACK_KINDS && strcmp(name, track_words[track]) != 0) track++;
+  while (track < TRACK_KINDS && strcmp(name, tracks[track].word) != 0) track++;
   if (r->waiting < (f ? f->two ? 2 : 1 : at ? 2 : hit || track < TRACK_KINDS)) return not_compiled(r, word);
   if (track < TRACK_KINDS) return put_track(r, (TrackKind)track, argument);
   if (hit || strcmp(name, "count") == 0) return put_event(r, hit, argument);

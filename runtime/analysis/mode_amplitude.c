@@ -3,7 +3,6 @@
  * motion is solved exactly, so that only the polynomial is cut off. */
 #include "analysis/mode_amplitude.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -319,7 +319,8 @@ static int newton(PeriodicOrbit *o) {
     if (k < ORBIT_TRACE) o->trace[k] = o->residual;
     if ((rc = lag_orbit_assemble(o)) != LAG_OK) break;
     lag_singular_values(o->rows, o->cols, o->A, o->V, o->sigma);
-    rank = lag_least_norm(o->rows, o->cols, o->A, o->V, o->sigma, 1e-8, o->residual * o->residual, o->b, o->x);
+    rank = lag_least_norm((lag_decomposed){o->rows, o->cols, o->A, o->V, o->sigma}, 1e-8, o->residual * o->residual,
+                          o->b, o->x);
     if (o->residual <= accepted(o) && size < 1e-11) break;
     moved = falling_step(o, &size);
     o->steps += moved == 1;
@@ -544,7 +545,7 @@ int lag_orbit_refine(PeriodicOrbit *o) {
   rc = rc ? rc : lag_orbit_assemble(o);
   if (rc == LAG_OK) {
     lag_singular_values(o->rows, o->cols, o->A, o->V, o->sigma);
-    lag_least_norm(o->rows, o->cols, o->A, o->V, o->sigma, 1e-8, 0, o->b, step);
+    lag_least_norm((lag_decomposed){o->rows, o->cols, o->A, o->V, o->sigma}, 1e-8, 0, o->b, step);
     o->period_error = period_is_free(o) ? fmax(fabs(step[column_of_period(o)]) * o->time, 4 * DBL_EPSILON * T) : 0;
     if (like->tol < tol) move(o, step, 1);
   }

@@ -2,7 +2,6 @@
  * constraints, conditions, and one row across each symmetry. J. E. Marsden, Lectures on Mechanics (1992), chapter 4. */
 #include "analysis/steady_branch.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

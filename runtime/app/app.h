@@ -12,39 +12,23 @@
 enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_SIGNAL = 128 };
 enum { MOST_OPTIONS = 16 };
 
-/* The command line as text; numbers are not parsed yet. */
+#include "app/options.def"
+
+/* The command line as text; numbers are not parsed yet. Lists are in order, with their number; NULL: none. */
 typedef struct Args {
-  const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *crossings, *out, *svg, *plot_x, *plot_y,
-      *html, *points, *from, *save, *resume, *events, *section, *cloud, *starts, *drawing;
-  const char *accuracy, *sensitivity;
-  const char *fit, *data, *columns, *loss; /* for --fit */
-  const char **sigmas, **priors; /* the values of --sigma and --prior, in order */
-  int nsigmas, npriors;
-  const char *transient, *exponents; /* for --lyapunov */
-  const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
-  /* for --sweep */
-  const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram;
-  const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
-  const char *period, *guess, *hold, *relative, *reverse, *segments; /* for --orbit; the last for --fit, too */
-  const char *manifold, *follow;                                     /* for --orbit */
-  const char *best;                                                  /* for --design */
-  const char *most;                                                  /* for --continue */
-  int orbit, continues, branches, amplitude;
-  int json, sketch, quiet, help, trace, no_rods, modes, linearize, design, equilibrium, gradient, steady, tangent,
-      volume, lyapunov, cost, reference, all, runs, sweep, zip, go_on, yes, portrait, potential, distance, energy_error,
-      no_monitors, profile, each_effect;
+#define OWN_FLAG(f) int f;
+#define OWN_TEXT(f) const char *f;
+#define OWN_LIST(f) const char **f; int n##f;
+#define TO(f)
+#define LAGC(...)
+#define BOTH(name, brief, value, takes, hint, commands, analyses, field, text) field
+#define SIMULATOR(name, value, takes, analyses, field, text) field
+#include "app/options.def"
+  const char *self, *scene, *plot_y; /* this program; the first of the scenes and of plot_ys */
   char **sets; /* name=value, in order */
-  int nsets;
-  const char **scenes; /* all scenes named; scene is the first */
-  int nscenes;
-  const char **measures; /* the values of --measure, in order; NULL: none */
-  int nmeasures;
-  int argc;         /* as main gets them */
-  char **argv;
-  const char **vs; /* the values of --vs, name=value, in order; NULL: none */
-  int nvs;
-  const char **plot_ys; /* the values of --plot-y; plot_y is the first */
-  int nplot_ys;
+  const char **scenes; /* all scenes named */
+  int nsets, nscenes, argc;
+  char **argv; /* as main gets them */
 } Args;
 
 /* A column that pictures draw: its range so far, the deviation allowed, and the slopes of the swinging door. */
@@ -133,8 +117,6 @@ typedef struct App {
   const char *bad_file; /* file that could not be written; NULL: none */
   int bad_errno;        /* and why */
 } App;
-
-#include "app/options.def"
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
 enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, FIT = 128, ORBIT = 256,

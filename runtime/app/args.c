@@ -1,8 +1,6 @@
 /* Command line of a simulator. Enters: argv; leaves: Args. Holds: nothing is guessed; a message quotes the wrong
  * word and says what to write instead. */
-#include <ctype.h>
 #include <errno.h>
-#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,7 +62,9 @@ int lag_args_count(const Args *a, const char *option, const char *text, const ch
 
 static const Option options[] = {
 #define TO(f) offsetof(Args, f), 0
-#define LIST(f) offsetof(Args, f), offsetof(Args, n##f)
+#define OWN_FLAG TO
+#define OWN_TEXT TO
+#define OWN_LIST(f) offsetof(Args, f), offsetof(Args, n##f)
 #define LAGC(...)
 #define BOTH(name, brief, value, takes, hint, commands, analyses, field, text) \
   {name, brief, value, takes, hint, analyses, field, text},

@@ -2,7 +2,6 @@
  * a branch changes, as text or JSON; all points as rows and a picture. */
 #include "app/continue_branches.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 /* --cost: error and time of every method at many settings, against a reference. --reference: writes that reference,
  * for a simulator of lower precision. Enters: the command line; leaves: the runs, for cost_report.c and
  * cost_picture.c; or samples as text. Holds: times are processor time of this process. */
-#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +8,6 @@
 
 #include "app/cost.h"
 #include "core/core.h"
-#include "core/rhs.h"
 #include "io/posix.h"
 #include "numeric/clock.h"
 

@@ -1,11 +1,9 @@
 /* The report of --cost. Enters: methods with their runs; leaves: the fastest settings, a table of times, the front,
  * notes; or all runs as JSON or CSV. */
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "app/cost.h"
-#include "core/core.h"
 
 enum { COLUMNS = 7 }; /* errors 1e-2, 1e-4, .. 1e-14 */
 

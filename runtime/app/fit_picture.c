@@ -1,7 +1,5 @@
 /* The picture of a fit: for each column the data over the fitted motion, and the residuals below, as SVG. */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "app/fit_run.h"
 #include "io/svg_panel.h"

@@ -1,6 +1,5 @@
 /* Measures of a run (analysis/measure.h): those of the scene, and of --measure, as lagc compiles them. Enters: words.
  * Leaves: a line each in the report, a member each in JSON. Holds: wrong words are refused before anything runs. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,7 +1,6 @@
 /* Discrete symmetries of --relative and --reverse. Enters: terms such as x=-x, r[i]=r[i+1]; leaves: a map of the
  * state (analysis/state_map.h). */
 #include <ctype.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,4 @@
 /* Pictures as SVG, and as PNG where the path ends so and the program was built with librsvg. */
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 

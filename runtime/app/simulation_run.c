@@ -2,7 +2,6 @@
  * steps, and at the end. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "app/app.h"
 #include "core/core.h"

@@ -9,7 +9,6 @@
 #endif
 
 #include "app/app.h"
-#include "core/core.h"
 #include "io/posix.h"
 
 /* After a value that is not finite: sends t, q, v, z and p of a state through the pipe $LAG_LAST_STATE (a

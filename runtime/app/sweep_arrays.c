@@ -1,5 +1,4 @@
 /* --sweep -o FILE.h5, --motions FILE.h5: rows and motions as arrays, an axis for each range. */
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 

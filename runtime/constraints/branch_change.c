@@ -8,7 +8,6 @@
 #include <math.h>
 
 #include "core/core.h"
-#include "core/rhs.h"
 
 /* |displacement/dt - mean of the velocities at the ends|, relative to these velocities; of order step^2 where the
  * motion is smooth. 0 at rest, where all of it is rounding. */

@@ -8,7 +8,6 @@
  * touch then follow their own law: the nearest velocities of both are found so, one after the other, since those of
  * contacts are sought among those that obey the constraints. */
 #include <math.h>
-#include <string.h>
 
 #include "core/core.h"
 

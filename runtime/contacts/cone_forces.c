@@ -16,15 +16,17 @@ enum {
 
 /* Limit k: slope[k] . c - margin + value[k] >= 0. */
 typedef struct Programme {
-  int n, limits;
+  int n, limits, rows;
+  double *x;       /* [rows] forces given */
+  const double *D; /* [n rows] directions */
   double slope[MOST_LIMITS][MOST_DIRECTIONS], value[MOST_LIMITS];
 } Programme;
 
 /* Adds the limit sum over rows i, k of (fi x_i + fk x_k) >= margin. */
-static void add_limit(Programme *p, const double *x, const double *D, int rows, int i, double fi, int k, double fk) {
+static void add_limit(Programme *p, int i, double fi, int k, double fk) {
   double *slope = p->slope[p->limits];
-  for (int j = 0; j < p->n; j++) slope[j] = fi * D[j * rows + i] + fk * D[j * rows + k];
-  p->value[p->limits++] = fi * x[i] + fk * x[k];
+  for (int j = 0; j < p->n; j++) slope[j] = fi * p->D[j * p->rows + i] + fk * p->D[j * p->rows + k];
+  p->value[p->limits++] = fi * p->x[i] + fk * p->x[k];
 }
 
 /* Divides column j by its largest element, and returns that. */
@@ -60,24 +62,24 @@ static int maximise(const Programme *p, double *z) {
   return found && at[n - 1] == LAG_BETWEEN;
 }
 
-double lag_cone_forces(int n, const lag_touch *of, int rows, double *x, int n_directions, const double *D, double *c,
-                       int *wedged) {
-  Programme p = {.n = n_directions};
+int lag_cone_forces(int n, const lag_touch *of, int rows, double *x, int n_directions, const double *D, double *c) {
+  Programme p = {.n = n_directions, .rows = rows, .x = x, .D = D};
   double size = 0, unit[MOST_DIRECTIONS], z[MOST_VARIABLES];
   for (int i = 0; i < n; i++) {
     if (of[i].mode == LAG_CONTACT_OPEN) continue;
     int sticks = of[i].mode == LAG_CONTACT_STICKS, other = sticks ? of[i].tangent : i;
     double part = sticks ? lag_touch_holds(&of[i]) : 1;
-    for (int side = -1; side <= sticks; side += 2) add_limit(&p, x, D, rows, i, part, other, sticks ? side : 0);
+    for (int side = -1; side <= sticks; side += 2) add_limit(&p, i, part, other, sticks ? side : 0);
   }
   for (int k = 0; k < p.limits; k++) size = fmax(size, fabs(p.value[k]));
   for (int k = 0; k < p.limits; k++) p.value[k] /= size > 0 ? size : 1;
   for (int j = 0; j < p.n; j++) unit[j] = scale_column(&p, j);
   memset(p.slope[p.limits], 0, sizeof p.slope[0]); /* the margin is at most as large as the forces */
   p.value[p.limits++] = size > 0 ? 1 : 0;
-  *wedged = maximise(&p, z);
+  int wedged = maximise(&p, z);
   for (int j = 0; j < p.n; j++) c[j] = z[j] * size / unit[j];
+  c[p.n] = z[p.n] * size;
   for (int i = 0; i < rows; i++)
     for (int j = 0; j < p.n; j++) x[i] += c[j] * D[j * rows + i];
-  return z[p.n] * size;
+  return wedged;
 }

@@ -9,7 +9,9 @@ typedef struct lag_touch {
   double mu, hold; /* friction while it slips; while it sticks, where that is larger */
   int contact;     /* the caller's number */
   int tangent;     /* its row; -1: there is no friction */
-  int slip;        /* sign of the slip velocity; 0: at rest */
+  int second;      /* row of the other direction in space; 0: there is none */
+  double way[2];   /* in space the direction of slipping, given where it slips already */
+  int slip;        /* sign of the slip velocity, in space 1; 0: at rest */
   int cannot_stick;
   int shared;            /* it sticks, and its force is not unique */
   lag_contact_mode mode; /* without friction a closed contact slips */
@@ -37,8 +39,7 @@ int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const dou
 
 /* All forces x + sum c[j] D[j][rows] hold the same accelerations. x := those whose least margin,
  * of the largest friction less |F| where a contact sticks and of N where it does not, is
- * largest; c[n_directions] := their coefficients, at most 2 LAG_MOST_TOUCHES. Returns the
- * margin; it is bounded by the size of the forces given, *wedged := 1 where nothing else bounds
- * it. A linear programme; numeric/complementarity.h solves its conditions of optimality. */
-double lag_cone_forces(int n, const lag_touch *of, int rows, double *x, int n_directions, const double *D, double *c,
-                       int *wedged);
+ * largest; c[n_directions + 1] := their coefficients, at most 2 LAG_MOST_TOUCHES, and the
+ * margin. It is bounded by the size of the forces given; returns 1, wedged, where nothing else
+ * bounds it. A linear programme; numeric/complementarity.h solves its conditions of optimality. */
+int lag_cone_forces(int n, const lag_touch *of, int rows, double *x, int n_directions, const double *D, double *c);

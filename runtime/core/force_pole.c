@@ -15,7 +15,6 @@
 #include <math.h>
 
 #include "core/core.h"
-#include "core/rhs.h"
 
 enum { TURNS = 24, LEAST_TURNS = 12, BACK = 4, FREE_CALLS = 12, CALLS_FIRST = 48 };
 

@@ -1,6 +1,5 @@
 /* The interface for other languages: names without structs, many states in one call. Enters: a scene, arrays of the
  * caller; leaves: names, rates, rows. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

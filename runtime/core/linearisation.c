@@ -54,28 +54,29 @@ static void dense_mass(const lag_linear *l, size_t nq, const double *mass, doubl
 }
 
 /* lag_linearise with rows of dr `width` apart; columns past n are 0. */
-static int linearise(lag_problem *pb, double t, const double *y, const double *a, size_t width, double *dr, double *M,
-                     double *work) {
+static int linearise(lag_problem *pb, double t, const double *y, const double *a, size_t width, double *dr,
+                     LinearLayout p) {
   const lag_model *m = pb->model;
   const lag_linear *l = m->linear;
   size_t nq = (size_t)m->nq, n = (size_t)pb->n;
-  if (!l) {
-    pb->detail = "the model was emitted without its linearisation: lagc emit --with linear";
-    return LAG_EMETHOD;
-  }
-  LinearLayout p = parts_of(m, work);
   int rc = lag_inputs_at(pb, t, y);
   if (!a) memset(p.rate, 0, n * sizeof(double));
   rc = rc ? rc : l->eval(l, t, y, y + nq, y + 2 * nq, pb->p, pb->u, a ? a : p.rate, p.dr, p.mass, pb->work);
   if (rc) return rc;
   memset(dr, 0, (nq + (size_t)m->nz) * width * sizeof(double));
   for (int k = 0; k < l->ndr; k++) dr[(size_t)l->dr[k].row * width + (size_t)l->dr[k].col] = p.dr[k];
-  dense_mass(l, nq, p.mass, M);
+  dense_mass(l, nq, p.mass, p.M);
   return LAG_OK;
 }
 
 int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, double *dr, double *M, double *work) {
-  return linearise(pb, t, y, a, (size_t)pb->n, dr, M, work);
+  if (!pb->model->linear) {
+    pb->detail = "the model was emitted without its linearisation: lagc emit --with linear";
+    return LAG_EMETHOD;
+  }
+  LinearLayout p = parts_of(pb->model, work);
+  p.M = M;
+  return linearise(pb, t, y, a, (size_t)pb->n, dr, p);
 }
 
 static double component_magnitude(lag_problem *pb, const double *y, int k) {
@@ -175,7 +176,7 @@ int lag_fine_jacobian(lag_problem *pb, const lag_parameter_columns *by, double t
   LinearLayout p = parts_of(m, work);
   size_t width = (size_t)(pb->n + by->n);
   int rc = lag_rhs(pb, t, y, p.rate);
-  rc = rc ? rc : linearise(pb, t, y, p.rate + m->nq, width, J, p.M, work);
+  rc = rc ? rc : linearise(pb, t, y, p.rate + m->nq, width, J, p);
   rc = rc ? rc : by_parameters(pb, by, t, y, J, &p);
   return rc ? rc : lag_solve_dense((size_t)m->nq, width, p.M, J) ? LAG_ESINGULAR : LAG_OK;
 }

@@ -40,22 +40,45 @@ static int formula_at(lag_sim *s, LagFormula of, double t, const double *y, doub
   return m->constraints->residuals(m->constraints, t, y, v, z, s->p, s->u, x, s->pb.held + m->constraints->n, s->work);
 }
 
-int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, int n, double *noise, double *up,
-                         double *down) {
+/* Number of values of a formula. */
+static int formula_length(const lag_model *m, LagFormula of) {
+  return of == LAG_FORMULA_ENERGY ? 1 : of == LAG_FORMULA_RATES ? m->nq + m->nz : m->constraints->nholonomic;
+}
+
 #if defined FE_UPWARD && defined FE_DOWNWARD && defined FE_TONEAREST
-  int before = fegetround(), rc = fesetround(FE_UPWARD) || formula_at(s, of, t, y, up);
-  rc = rc || fesetround(FE_DOWNWARD) || formula_at(s, of, t, y, down);
-  rc = fesetround(before) || rc || formula_at(s, of, t, y, noise);
-  for (int i = 0; i < n && !rc; i++) {
+/* x := the formula rounded upwards, or downwards. */
+static int formula_rounded(lag_sim *s, LagFormula of, double t, const double *y, int upwards, double *x) {
+  int before = fegetround(), rc = fesetround(upwards ? FE_UPWARD : FE_DOWNWARD) || formula_at(s, of, t, y, x);
+  return fesetround(before) || rc;
+}
+#else
+/* Without rounding modes, as in WebAssembly: x := the formula of a state and parameters whose last digits are
+ * larger, or smaller. */
+static int formula_rounded(lag_sim *s, LagFormula of, double t, const double *y, int upwards, double *x) {
+  const lag_model *m = s->scene->model;
+  const int n = s->pb.n, np = m->np + m->nderived;
+  double *beside = malloc((size_t)(n + np) * sizeof *beside), *p = beside + n, by = upwards ? 1 : -1;
+  if (!beside) return 1;
+  memcpy(p, s->p, (size_t)np * sizeof *p);
+  for (int i = 0; i < n; i++) beside[i] = y[i] * (1 + by * (1 + lag_uneven(i)) * DBL_EPSILON);
+  for (int i = 0; i < np; i++) s->p[i] *= 1 + by * (1 + lag_uneven(n + i)) * DBL_EPSILON;
+  int rc = formula_at(s, of, t, beside, x);
+  memcpy(s->p, p, (size_t)np * sizeof *p);
+  free(beside);
+  return rc;
+}
+#endif
+
+int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, double *noise, double *up,
+                         double *down) {
+  int rc = formula_rounded(s, of, t, y, 1, up) || formula_rounded(s, of, t, y, 0, down) ||
+           formula_at(s, of, t, y, noise);
+  for (int i = 0, n = formula_length(s->scene->model, of); i < n && !rc; i++) {
     double over = fabs(up[i] - noise[i]), under = fabs(down[i] - noise[i]);
     /* One of the modes costs lag_math.h digits of a small angle, by its sign. */
     noise[i] = over > 0 && under > 0 ? fmin(over, under) : fmax(over, under);
   }
   return rc;
-#else
-  (void)s, (void)of, (void)t, (void)y, (void)n, (void)noise, (void)up, (void)down;
-  return 1;
-#endif
 }
 
 /* yb[nq] := how far residuals as large as the terms of the constraints move coordinates: lengths that the state
@@ -64,7 +87,7 @@ static int constraint_lengths(lag_sim *s, double t, const double *y) {
   const lag_constraints *of = s->scene->model->constraints;
   if (!of || !of->nholonomic) return 1;
   double *c = s->pb.held, *up = c + 2 * of->n, *down = up + of->n;
-  if (lag_formula_rounding(s, LAG_FORMULA_RESIDUALS, t, y, of->nholonomic, c, up, down)) return 1;
+  if (lag_formula_rounding(s, LAG_FORMULA_RESIDUALS, t, y, c, up, down)) return 1;
   for (int k = 0; k < of->nholonomic; k++) c[k] /= DBL_EPSILON;
   return lag_least_change(&s->pb, t, y, 1, c, s->yb, s->yb + s->pb.nq);
 }
@@ -151,9 +174,9 @@ static int friction_rates(lag_sim *s, int k, double t, const double *y) {
 static double resting_terms(lag_sim *s, double t, const double *y, double h, double e) {
   const lag_model *m = s->scene->model;
   double of[2], up[2], down[2];
-  double terms = lag_formula_rounding(s, LAG_FORMULA_ENERGY, t, y, 1, of, up, down) ? 0 : of[0] / DBL_EPSILON;
+  double terms = lag_formula_rounding(s, LAG_FORMULA_ENERGY, t, y, of, up, down) ? 0 : of[0] / DBL_EPSILON;
   double least = 1e3 * DBL_EPSILON * fmax(fabs(e), terms), *a = s->ya;
-  if (h > 0 && lag_formula_rounding(s, LAG_FORMULA_RATES, t, y, m->nq, a, s->yb, s->yc) == 0) {
+  if (h > 0 && lag_formula_rounding(s, LAG_FORMULA_RATES, t, y, a, s->yb, s->yc) == 0) {
     for (int i = 0; i < m->nq; i++) a[i] *= h / DBL_EPSILON;
     terms += change_of_energy(s, t, y, m->nq, a, e);
   }
@@ -262,7 +285,7 @@ enum { ROUNDINGS = 1000 }; /* of a few hundred operations */
 static double *acceleration_noise(lag_sim *s) {
   const size_t n = (size_t)s->pb.n;
   double *noise = malloc(3 * n * sizeof *noise), *up = noise + n;
-  if (!noise || !lag_formula_rounding(s, LAG_FORMULA_RATES, s->run->t, s->now, s->pb.nq, noise, up, up + n))
+  if (!noise || !lag_formula_rounding(s, LAG_FORMULA_RATES, s->run->t, s->now, noise, up, up + n))
     return noise;
   free(noise);
   return NULL;
@@ -399,22 +422,54 @@ static void raise_held(lag_sim *s, double *f) {
   for (int i = 0; i < m->ncontacts && !s->pb.contacts; i++) s->hold[m->contacts[i].input] = s->contact_was[i];
 }
 
+/* The time of the fastest small oscillation about the start; `time`: none is seen. noise: with its block, which is
+ * scratch. */
+static double local_time(lag_sim *s, const double *f, double *noise, double time) {
+  const int nq = s->pb.nq;
+  double *by = noise + s->pb.n, *bend = s->yc, least = HUGE_VAL;
+  const lag_var *var = s->scene->model->q;
+  for (int i = 0; i < nq; i++) by[i] = sqrt(DBL_EPSILON) * largest_of_unit(nq, var, s->now, i);
+  bends(s, 0, by, f, noise, bend);
+  for (int i = 0; i < nq; i++) {
+    double change = largest_of_unit(nq, var, bend + nq, i);
+    if (by[i] > 0 && change > 0) least = fmin(least, sqrt(by[i] / change));
+  }
+  return least < HUGE_VAL ? least : time;
+}
+
+enum { STEPS = 16 }; /* of the longest kind, by high orders, in the time of an oscillation over 2 pi */
+
+/* Raises the sizes of coordinates and velocities to where the tolerance is what the rounding of accelerations gives in
+ * a step: smaller errors cannot be asked for, and steps would be refused without end. */
+static void raise_to_rounding(lag_sim *s, const double *noise, double step) {
+  const lag_model *m = s->scene->model;
+  const int nq = m->nq;
+  double *size = s->pb.size;
+  for (int i = 0; i < nq; i++) {
+    double v = largest_of_unit(nq, m->q, noise, i) * step / s->pb.tol;
+    if (!(v > 0 && v < HUGE_VAL)) continue;
+    size[i] = fmax(size[i], exp2(ceil(log2(v * step))));
+    size[nq + i] = fmax(size[nq + i], exp2(ceil(log2(v))));
+  }
+}
+
 void lag_start_sizes(lag_sim *s) {
   const lag_model *m = s->scene->model;
   const int nq = m->nq, n = s->pb.n;
   double *f = s->yb, *bend = s->yc, *size = s->pb.size, time = HUGE_VAL, calls = s->pb.rhs_calls;
   rates_beside(s, 0, 0, NULL, NULL, f);
-  double *noise = m->constraints || m->ncontacts ? acceleration_noise(s) : NULL;
-  drop_rounding(s, noise, f);
+  double *noise = acceleration_noise(s), *balanced = m->constraints || m->ncontacts ? noise : NULL;
+  drop_rounding(s, balanced, f);
   raise_held(s, f);
   memset(bend, 0, (size_t)n * sizeof *bend);
   for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, i), time) : time;
   const double span = s->pb.span;
-  time = time < HUGE_VAL ? time : time_from_zero(s, f, noise, span > 0 ? span : 10);
-  time = coordinate_sizes(s, f, noise, span > 0 ? fmin(time, span) : time);
-  free(noise);
+  time = time < HUGE_VAL ? time : time_from_zero(s, f, balanced, span > 0 ? span : 10);
+  time = coordinate_sizes(s, f, balanced, span > 0 ? fmin(time, span) : time);
   state_sizes(s, f, time);
   for (int i = 0; i < n; i++) size[i] = size_unit(size[i]);
+  if (noise) raise_to_rounding(s, noise, local_time(s, f, noise, time) / STEPS);
+  free(noise);
   size[n + 1] = size_unit(time);
   s->pb.rhs_calls = calls;
 }

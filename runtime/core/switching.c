@@ -62,7 +62,7 @@ static int rate_matrix(lag_problem *pb, double t, const double *y, const double 
   return 0;
 }
 
-/* Switches that hold one motion, as the frictions of two joints of one crank, share what holds it as springs do that give
+/* Switches that hold one motion, as frictions of two joints of one crank, share what holds it as springs do that give
  * way by this part. */
 static const double gives_way = 1e-6;
 

@@ -1,6 +1,5 @@
 /* Executes a program: the operations of its C text, in the same order or with the same operands, hence the same bits.
  */
-#include <math.h>
 #include <string.h>
 
 #include "evaluator/program.h"

@@ -2,7 +2,6 @@
 #include <gsl/gsl_qrng.h>
 #include <string.h>
 
-#include "lag.h"
 #include "gsl/quasi_random.h"
 
 int lag_gsl_points(const char *sequence, int dimensions, long long n, double *u) {

@@ -1,7 +1,6 @@
 /* Animation page. Enters: a table and shapes of its columns; leaves: one self-contained HTML file (template
  * page.html, turned into C by the Makefile). Holds: a row is a frame; values are integers in units of 1/100000 of
  * the extent, finer than any screen; those that never change stand there once, exactly. */
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

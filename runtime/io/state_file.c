@@ -7,7 +7,6 @@
  *   data N
  *   X            N times
  *   sum H        FNV-1a, 64 bits */
-#include <errno.h>
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdlib.h>

@@ -1,7 +1,6 @@
 /* SVG plots. Enters: a table; leaves: an SVG file with one panel for each unit over a common time axis, or one panel
  * with columns against others. Holds: a curve with more points than pixels is reduced to minimum and maximum of each
  * pixel column, so that no peak is lost; points of a path are at least a third of a pixel apart. */
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

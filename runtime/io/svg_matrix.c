@@ -1,7 +1,6 @@
 /* A matrix of scatter plots: each of the last columns of a table over each of the first, and over the ones before
  * it. Holds: panels of a row share their y axis, those of a column their x axis. */
 #include <math.h>
-#include <string.h>
 
 #include "io/svg_panel.h"
 

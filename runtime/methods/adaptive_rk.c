@@ -220,8 +220,9 @@ size_t lag_adaptive_rk_tangent_size(const lag_problem *pb, int k) {
 int lag_adaptive_rk_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   const EmbeddedPair *pair = pb->variant;
   Embedded *w = work;
-  return lag_tangent_explicit(pair->tab, pb, w->t0, lag_tangent_span(w->t0, t, w->dt),
-                              lag_adaptive_rk_array(w, pb, EMBEDDED_Y0), k, Y, scratch);
+  const double *y0 = lag_adaptive_rk_array(w, pb, EMBEDDED_Y0);
+  return lag_tangent_explicit(pair->tab, (lag_step_taken){pb, w->t0, lag_tangent_span(w->t0, t, w->dt), y0}, k, Y,
+                              scratch);
 }
 
 double lag_adaptive_rk_span(const void *work, const lag_problem *pb, double t) {
@@ -238,5 +239,5 @@ size_t lag_adaptive_rk_adjoint_size(const lag_problem *pb) {
 int lag_adaptive_rk_adjoint(lag_problem *pb, double t0, double dt, const double *y0, double *x, double *g,
                             double *scratch) {
   const EmbeddedPair *pair = pb->variant;
-  return lag_reverse_explicit(pair->tab, pb, t0, dt, y0, x, g, scratch);
+  return lag_reverse_explicit(pair->tab, (lag_step_taken){pb, t0, dt, y0}, x, g, scratch);
 }

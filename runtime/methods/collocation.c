@@ -275,5 +275,6 @@ int lag_collocation_tangent(void *work, lag_problem *pb, double t, int k, double
   memcpy(A + stages * all, w->rule.whole, (size_t)stages * sizeof *A);
   c[stages] = 1;
   lag_collocation_dense(w, pb, t, scratch + stages * n);
-  return lag_tangent_implicit(all, A, c, pb, w->step.t0, dt, scratch, k, Y, scratch + WITH_END * n);
+  return lag_tangent_implicit((lag_implicit_rk){all, A, c}, (lag_step_taken){pb, w->step.t0, dt, scratch}, k, Y,
+                              scratch + WITH_END * n);
 }

@@ -104,14 +104,12 @@ void lag_hessian_times(const lag_problem *pb, const double *h, int k, const doub
 /* Scratch: dP, dF, dQ, dV at one point [nq k] each, and one column of du [nq free]. */
 size_t lag_discrete_tangent_size(const lag_problem *pb, int free, int k) { return (size_t)(pb->nq * (4 * k + free)); }
 
-/* du := -dR/d(q, p) (dq, dp) at fixed u, the right-hand side of the derivative. */
-static int pushed(lag_problem *pb, const lag_discrete *d, const lag_discrete_room *w, int k, const double *dq,
-                  const double *dp, double *du, double *dP) {
+/* du += -dR/dq dq at fixed u. */
+static int push(lag_problem *pb, const lag_discrete *d, const lag_discrete_room *w, int k, const double *dq, double *du,
+                double *dP) {
   const lag_rule *r = d->rule;
   int m = w->n * k, free = (int)r->free;
   double *dF = dP + m;
-  memset(du, 0, (size_t)(free * m) * sizeof *du);
-  for (int j = 0; j < free; j++) lag_tangent_add(m, r->whole[j], dp, du + j * m);
   for (int i = 0; i < (int)r->points; i++) {
     int rc = lag_discrete_second(pb, lag_discrete_at(d, w, i), w);
     if (rc) return rc;
@@ -142,7 +140,9 @@ int lag_discrete_tangent(lag_problem *pb, const lag_discrete *d, int k, double *
   lag_discrete_room w = room_of(pb, d);
   int m = w.n * k, free = (int)r->free, rc = lag_discrete_matrix(pb, d, &w);
   double *dP = scratch, *dF = dP + m, *dQ = dF + m, *dV = dQ + m, *column = dV + m;
-  if (rc || (rc = pushed(pb, d, &w, k, dq, dp, du, dP)) != 0) return rc;
+  memset(du, 0, (size_t)(free * m) * sizeof *du);
+  for (int j = 0; j < free; j++) lag_tangent_add(m, r->whole[j], dp, du + j * m);
+  if (rc || (rc = push(pb, d, &w, k, dq, du, dP)) != 0) return rc;
   solve_columns(&w, free, k, du, column);
   for (int i = 0; i < (int)r->points && d->h != 0.0; i++) {
     if ((rc = lag_discrete_second(pb, lag_discrete_at(d, &w, i), &w)) != 0) return rc;

@@ -4,7 +4,6 @@
  * 10.1007/978-3-540-78862-1: II.5 (the 12 stages of order 8), II.10 (error from estimates of order 5 and 3) and II.6
  * (continuous extension of order 7 from three more stages). The numbers are those of their code dop853.f. */
 #include "kernels/dense_output.h"
-#include "lag.h"
 #include "kernels/runge_kutta_tables.h"
 #include "methods/adaptive_rk.h"
 

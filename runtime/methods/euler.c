@@ -1,7 +1,6 @@
 /* euler: Euler's method with a fixed step, y1 = y0 + dt f(t0, y0). Oscillations gain energy, which courses show
  * beside symplectic_euler. Steps: adaptive_rk.c, without an error estimate. Source: L. Euler, Institutiones calculi
  * integralis I (1768), paragraph 650. Dense output is the tangent. */
-#include "lag.h"
 #include "methods/adaptive_rk.h"
 #include "methods/steps.h"
 

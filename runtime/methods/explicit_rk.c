@@ -1,8 +1,6 @@
 /* Explicit Runge-Kutta methods that are rows of kernels/steppers.def, rk4 and others. Steps: adaptive_rk.c. f at the
  * end of a step is the first stage of the next, so dense output (lag_hermite) costs nothing. */
 #include "kernels/steppers.def"
-#include "lag.h"
-#include "kernels/runge_kutta_tables.h"
 #include "methods/adaptive_rk.h"
 #include "methods/steps.h"
 

@@ -39,24 +39,23 @@ int lag_reverse_at(const lag_reverse *w, double t, const double *y, const double
 
 /* With stages Y_s = y0 + dt sum_j a_sj k_j and y1 = y0 + dt sum_s b_s k_s, backwards: X_s = (df/dy)^T dt (b_s x + sum_r
  * a_rs X_r), and x + sum_s X_s. */
-int lag_reverse_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, double *x,
-                         double *g, double *scratch) {
-  int n = pb->n, last = tab->stages - 1, rc = LAG_OK;
-  double *ys = scratch, *f = ys + last * n, *X = f + last * n;
-  const lag_reverse w = lag_reverse_layout(pb, g, X + last * n);
+int lag_reverse_explicit(const lag_tableau *tab, lag_step_taken step, double *x, double *g, double *scratch) {
+  int n = step.pb->n, last = tab->stages - 1, rc = LAG_OK;
+  double dt = step.dt, *ys = scratch, *f = ys + last * n, *X = f + last * n;
+  const lag_reverse w = lag_reverse_layout(step.pb, g, X + last * n);
   for (int s = 0; s < last && rc == LAG_OK; s++) {
     double *y = ys + s * n;
-    memcpy(y, y0, (size_t)n * sizeof *y);
+    memcpy(y, step.y, (size_t)n * sizeof *y);
     for (int j = 0; j < s; j++)
       if (tab->a[s][j] != 0.0) lag_tangent_add(n, dt * tab->a[s][j], f + j * n, y);
-    rc = lag_step_rhs(pb, t0 + tab->c[s] * dt, y, f + s * n);
+    rc = lag_step_rhs(step.pb, step.t0 + tab->c[s] * dt, y, f + s * n);
   }
   for (int s = last - 1; s >= 0 && rc == LAG_OK; s--) {
     memset(w.k, 0, (size_t)n * sizeof *w.k);
     lag_tangent_add(n, dt * tab->a[last][s], x, w.k);
     for (int r = s + 1; r < last; r++)
       if (tab->a[r][s] != 0.0) lag_tangent_add(n, dt * tab->a[r][s], X + r * n, w.k);
-    rc = lag_reverse_at(&w, t0 + tab->c[s] * dt, ys + s * n, f + s * n, w.k, X + s * n);
+    rc = lag_reverse_at(&w, step.t0 + tab->c[s] * dt, ys + s * n, f + s * n, w.k, X + s * n);
   }
   for (int s = 0; s < last && rc == LAG_OK; s++) lag_tangent_add(n, 1, X + s * n, x);
   return rc;
@@ -81,28 +80,27 @@ static void put_transposed(const lag_tangent *at, const lag_band_matrix *m, int 
 }
 
 /* With K = J (Y + dt A K) and Y1 = Y + dt b K, b the last row of A: (1 - dt A J)^T X = dt b x, and x + J^T X. */
-int lag_reverse_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt,
-                         const double *ys, double *x, double *g, double *scratch) {
-  int n = pb->n, big = stages * n, rc = LAG_OK;
-  double *f;
-  lag_tangent at = lag_tangent_layout(pb, 1, scratch, &f);
+int lag_reverse_implicit(lag_implicit_rk of, lag_step_taken step, double *x, double *g, double *scratch) {
+  int n = step.pb->n, stages = of.stages, big = stages * n, rc = LAG_OK;
+  double dt = step.dt, *f;
+  lag_tangent at = lag_tangent_layout(step.pb, 1, scratch, &f);
   double *X = f + big, *scale = X + big, *pivot = scale + big;
   lag_band_matrix m = {big, big - 1, pivot + big, pivot};
-  const lag_reverse w = lag_reverse_layout(pb, g, m.a + big * big);
+  const lag_reverse w = lag_reverse_layout(step.pb, g, m.a + big * big);
   at.by = NULL;
   for (int s = 0; s < stages && rc == LAG_OK; s++) {
-    rc = lag_tangent_at(&at, t0 + c[s] * dt, ys + s * n, f + s * n);
-    put_transposed(&at, &m, stages, s, dt, A + s * stages);
-    for (int i = 0; i < n; i++) X[s * n + i] = dt * A[(stages - 1) * stages + s] * x[i];
+    rc = lag_tangent_at(&at, step.t0 + of.c[s] * dt, step.y + s * n, f + s * n);
+    put_transposed(&at, &m, stages, s, dt, of.A + s * stages);
+    for (int i = 0; i < n; i++) X[s * n + i] = dt * of.A[(stages - 1) * stages + s] * x[i];
   }
   if (rc) return rc;
   if (lag_band_matrix_factor(&m, scale)) {
-    pb->detail = "the equations of the reverse sweep are singular; take smaller steps";
-    return lag_step_failed(pb, LAG_EMETHOD, t0);
+    step.pb->detail = "the equations of the reverse sweep are singular; take smaller steps";
+    return lag_step_failed(step.pb, LAG_EMETHOD, step.t0);
   }
   lag_band_matrix_solve(&m, X);
   for (int s = 0; s < stages && rc == LAG_OK; s++) {
-    rc = lag_reverse_at(&w, t0 + c[s] * dt, ys + s * n, f + s * n, X + s * n, w.k);
+    rc = lag_reverse_at(&w, step.t0 + of.c[s] * dt, step.y + s * n, f + s * n, X + s * n, w.k);
     lag_tangent_add(n, 1, w.k, x);
   }
   return rc;

@@ -81,18 +81,17 @@ static void combine(int m, int count, const double *coef, double dt, const doubl
   add_rows(m, gather(count, 0, coef, dt, c, at), c, at, k, v);
 }
 
-int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, int k,
-                         double *Y, double *scratch) {
-  int n = pb->n, m = n * k, last = tab->stages - 1;
+int lag_tangent_explicit(const lag_tableau *tab, lag_step_taken step, int k, double *Y, double *scratch) {
+  int n = step.pb->n, m = n * k, last = tab->stages - 1;
   double *rest;
-  lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
+  lag_tangent w = lag_tangent_layout(step.pb, k, scratch, &rest);
   double *ys = rest, *Ys = ys + n, *f = Ys + m, *F = f + last * n; /* f[n], F[n k] of each stage */
 
   for (int s = 0; s <= last; s++) {
-    combine(n, s, tab->a[s], dt, y0, f, ys);
-    combine(m, s, tab->a[s], dt, Y, F, Ys);
+    combine(n, s, tab->a[s], step.dt, step.y, f, ys);
+    combine(m, s, tab->a[s], step.dt, Y, F, Ys);
     if (s == last) break;
-    int rc = lag_tangent_at(&w, t0 + tab->c[s] * dt, ys, f + s * n);
+    int rc = lag_tangent_at(&w, step.t0 + tab->c[s] * step.dt, ys, f + s * n);
     if (rc) return rc;
     lag_tangent_times(&w, Ys, F + s * m);
   }
@@ -120,27 +119,26 @@ void lag_tangent_put_stage(const lag_tangent *w, const lag_band_matrix *m, int s
 }
 
 /* The derivatives K_s of the stages solve K_s = J_s (Y + dt sum_q a_sq K_q). */
-int lag_tangent_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt,
-                         const double *ys, int k, double *Y, double *scratch) {
-  int n = pb->n, big = stages * n, rc;
-  double *rest;
-  lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
+int lag_tangent_implicit(lag_implicit_rk of, lag_step_taken step, int k, double *Y, double *scratch) {
+  int n = step.pb->n, stages = of.stages, big = stages * n, rc;
+  double dt = step.dt, *rest;
+  lag_tangent w = lag_tangent_layout(step.pb, k, scratch, &rest);
   double *K = rest, *column = K + big * k, *scale = column + big;
   lag_band_matrix m = {big, big - 1, scale + 2 * big, scale + big};
 
   for (int s = 0; s < stages; s++) {
-    if ((rc = lag_tangent_at(&w, t0 + c[s] * dt, ys + s * n, NULL)) != 0) return rc;
-    lag_tangent_put_stage(&w, &m, stages, s, dt, A + s * stages);
+    if ((rc = lag_tangent_at(&w, step.t0 + of.c[s] * dt, step.y + s * n, NULL)) != 0) return rc;
+    lag_tangent_put_stage(&w, &m, stages, s, dt, of.A + s * stages);
     lag_tangent_times(&w, Y, K + s * n * k);
   }
   if (lag_band_matrix_factor(&m, scale)) {
-    pb->detail = "the equations of the tangent are singular; take smaller steps";
-    return lag_step_failed(pb, LAG_EMETHOD, t0);
+    step.pb->detail = "the equations of the tangent are singular; take smaller steps";
+    return lag_step_failed(step.pb, LAG_EMETHOD, step.t0);
   }
   for (int j = 0; j < k; j++) {
     for (int i = 0; i < big; i++) column[i] = K[i * k + j];
     lag_band_matrix_solve(&m, column);
-    for (int i = 0; i < big; i++) Y[i % n * k + j] += dt * A[(stages - 1) * stages + i / n] * column[i];
+    for (int i = 0; i < big; i++) Y[i % n * k + j] += dt * of.A[(stages - 1) * stages + i / n] * column[i];
   }
   return LAG_OK;
 }
@@ -174,9 +172,9 @@ static double square(const lag_tangent *w, int stages, const double *e, const do
   return sum;
 }
 
-int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, double t0, double dt, int k, double *Y,
-                      double *scratch) {
+int lag_tangent_along(lag_tangent_path *path, void *work, lag_step_taken step, int k, double *Y, double *scratch) {
   const lag_tableau *tab = &lag_dop853_tableau;
+  lag_problem *pb = step.pb;
   const double tol = fmax(pb->tol, 1e-14), safety = 0.9, shrink_most = 0.2, grow_most = 6, least = 1e-6;
   int n = pb->n, m = n * k, stages = tab->stages - 1, rc;
   double *rest;
@@ -184,7 +182,7 @@ int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, doubl
   double *y = rest, *Ys = y + n, *error = Ys + m, *F = error + m;
   for (double done = 0, part = 1; done < 1;) {
     part = fmin(part, 1 - done);
-    double h = part * dt, t = t0 + done * dt;
+    double h = part * step.dt, t = step.t0 + done * step.dt;
     for (int s = 0; s < stages; s++) {
       combine(m, s, tab->a[s], h, Y, F, Ys);
       path(work, pb, t + tab->c[s] * h, y);
@@ -192,9 +190,9 @@ int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, doubl
       lag_tangent_times(&w, Ys, F + s * m);
     }
     combine(m, stages, tab->errors[0], 1, NULL, F, error);
-    double fine = square(&w, stages, error, Y, F, dt, tol);
+    double fine = square(&w, stages, error, Y, F, step.dt, tol);
     combine(m, stages, tab->errors[1], 1, NULL, F, error);
-    double both = fine + 0.01 * square(&w, stages, error, Y, F, dt, tol),
+    double both = fine + 0.01 * square(&w, stages, error, Y, F, step.dt, tol),
            err = both > 0 ? fabs(h) * fine / sqrt(m * both) / tol : 0;
     if (!isfinite(err)) return lag_step_failed(pb, LAG_ENAN, t);
     if (err <= 1 || part < least) {

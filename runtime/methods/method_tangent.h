@@ -13,23 +13,31 @@
  * matrices [n k]. */
 size_t lag_tangent_size(const lag_problem *pb, int stages, int k);
 
-/* Y := dy1/dy0 Y for the step of an explicit method from (t0, y0), of length dt: the method applied to y' = f, Y' =
- * Df Y. LAG_OK, or a failure with its time in pb; Y is then undefined. */
-int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, int k,
-                         double *Y, double *scratch);
+/* A step from t0 of length dt. y: the state y0[n] at its start; of an implicit method its solved stages [stages n]. */
+typedef struct lag_step_taken {
+  lag_problem *pb;
+  double t0, dt;
+  const double *y;
+} lag_step_taken;
 
-/* The same for an implicit Runge-Kutta method whose last stage is the result, by the implicit function theorem:
- * matrix A[stages * stages], nodes c, solved stages ys[stages * n]. */
+/* Y := dy1/dy0 Y for a step of an explicit method: the method applied to y' = f, Y' = Df Y. LAG_OK, or a failure with
+ * its time in pb; Y is then undefined. */
+int lag_tangent_explicit(const lag_tableau *tab, lag_step_taken step, int k, double *Y, double *scratch);
+
+/* An implicit Runge-Kutta method whose last stage is the result: matrix A[stages * stages], nodes c. */
+typedef struct lag_implicit_rk {
+  int stages;
+  const double *A, *c;
+} lag_implicit_rk;
+/* The same for its step, by the implicit function theorem. */
 size_t lag_tangent_implicit_size(const lag_problem *pb, int stages, int k);
-int lag_tangent_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt,
-                         const double *ys, int k, double *Y, double *scratch);
+int lag_tangent_implicit(lag_implicit_rk of, lag_step_taken step, int k, double *Y, double *scratch);
 
 /* The same along a given motion path(t), from any method: Y' = Df(t, path(t)) Y by dop853 with its own steps. The
  * error of each entry of Y, relative to the entry and its change over dt, is below max(pb->tol, 1e-14). */
 typedef void lag_tangent_path(void *work, lag_problem *pb, double t, double *y);
 size_t lag_tangent_along_size(const lag_problem *pb, int k);
-int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, double t0, double dt, int k, double *Y,
-                      double *scratch);
+int lag_tangent_along(lag_tangent_path *path, void *work, lag_step_taken step, int k, double *Y, double *scratch);
 
 /* The Jacobian at a stage. */
 typedef struct lag_tangent {
@@ -85,10 +93,8 @@ lag_reverse lag_reverse_layout(lag_problem *pb, double *g, double *scratch);
 int lag_reverse_at(const lag_reverse *w, double t, const double *y, const double *f, const double *x, double *out);
 
 /* lag_method.adjoint of an explicit method. */
-int lag_reverse_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, double *x,
-                         double *g, double *scratch);
+int lag_reverse_explicit(const lag_tableau *tab, lag_step_taken step, double *x, double *g, double *scratch);
 
 /* The same of an implicit one, by the transposed equations of lag_tangent_implicit. */
 size_t lag_reverse_implicit_size(const lag_problem *pb, int stages);
-int lag_reverse_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt,
-                         const double *ys, double *x, double *g, double *scratch);
+int lag_reverse_implicit(lag_implicit_rk of, lag_step_taken step, double *x, double *g, double *scratch);

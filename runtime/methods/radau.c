@@ -478,7 +478,8 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
   int n = pb->n;
   double dt = lag_tangent_span(w->t0, t, w->dt);
   for (int s = 0; s < STAGES; s++) dense(w, pb, w->t0 + node[s] * dt, scratch + s * n);
-  return lag_tangent_implicit(STAGES, butcher[0], node, pb, w->t0, dt, scratch, k, Y, scratch + STAGES * n);
+  return lag_tangent_implicit((lag_implicit_rk){STAGES, butcher[0], node}, (lag_step_taken){pb, w->t0, dt, scratch},
+                              k, Y, scratch + STAGES * n);
 }
 
 static double span(const void *work, const lag_problem *pb, double t) {
@@ -507,7 +508,8 @@ static int adjoint(lag_problem *pb, double t0, double dt, const double *y0, doub
   int n = pb->n;
   const double *whole = y0 + n, *y1 = whole + 1;
   for (int s = 0; s < STAGES; s++) path_at(n, y1, y1 + n, node[s] * dt / *whole - 1, scratch + s * n);
-  return lag_reverse_implicit(STAGES, butcher[0], node, pb, t0, dt, scratch, x, g, scratch + STAGES * n);
+  return lag_reverse_implicit((lag_implicit_rk){STAGES, butcher[0], node}, (lag_step_taken){pb, t0, dt, scratch}, x, g,
+                              scratch + STAGES * n);
 }
 
 const lag_method lag_radau = {

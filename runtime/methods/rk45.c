@@ -3,7 +3,6 @@
  * Sources: J.R. Dormand, P.J. Prince, J. Comput. Appl. Math. 6 (1980) 19, DOI 10.1016/0771-050X(80)90013-3
  * (coefficients). E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), II.6 with
  * code dopri5 (Shampine's dense output of order 4). */
-#include "lag.h"
 #include "kernels/runge_kutta_tables.h"
 #include "methods/adaptive_rk.h"
 

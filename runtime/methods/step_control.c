@@ -2,7 +2,6 @@
  * II.4). */
 #include "methods/step_control.h"
 
-#include <math.h>
 
 const char *const lag_on_off[] = {"on", "off", NULL};
 

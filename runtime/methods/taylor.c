@@ -192,7 +192,7 @@ static size_t tangent_size(const lag_problem *pb, int k) { return lag_tangent_al
 /* The series is the motion to the tolerance, so its derivative is that of the flow. */
 static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   const Taylor *w = work;
-  return lag_tangent_along(dense, work, pb, w->t0, t - w->t0, k, Y, scratch);
+  return lag_tangent_along(dense, work, (lag_step_taken){pb, w->t0, t - w->t0, NULL}, k, Y, scratch);
 }
 
 const lag_method lag_taylor_method = {

@@ -62,15 +62,15 @@ void lag_singular_values(int rows, int cols, double *A, double *V, double *sigma
   sort_columns(rows, cols, A, V, sigma);
 }
 
-int lag_least_norm(int rows, int cols, const double *AV, const double *V, const double *sigma, double least,
-                   double damping, const double *b, double *x) {
-  int rank = 0;
+int lag_least_norm(lag_decomposed of, double least, double damping, const double *b, double *x) {
+  int rank = 0, cols = of.cols;
+  const double *sigma = of.sigma;
   memset(x, 0, (size_t)cols * sizeof *x);
   for (; rank < cols && sigma[rank] > 0 && sigma[rank] > least * sigma[0]; rank++) {
     double part = 0;
-    for (int r = 0; r < rows; r++) part += AV[r * cols + rank] * b[r];
+    for (int r = 0; r < of.rows; r++) part += of.AV[r * cols + rank] * b[r];
     part /= sigma[rank] * sigma[rank] + damping;
-    for (int i = 0; i < cols; i++) x[i] += part * V[i * cols + rank];
+    for (int i = 0; i < cols; i++) x[i] += part * of.V[i * cols + rank];
   }
   return rank;
 }

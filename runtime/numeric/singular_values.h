@@ -9,7 +9,12 @@
  * orthogonal. */
 void lag_singular_values(int rows, int cols, double *A, double *V, double *sigma);
 
-/* x[cols] := the vector that makes |A x - b|^2 + damping |x|^2 least, the shortest one: A as lag_singular_values left
- * it; singular values up to `least` times the first count as 0. Returns their number that do not. */
-int lag_least_norm(int rows, int cols, const double *AV, const double *V, const double *sigma, double least,
-                   double damping, const double *b, double *x);
+/* A matrix as lag_singular_values left it. */
+typedef struct lag_decomposed {
+  int rows, cols;
+  const double *AV, *V, *sigma;
+} lag_decomposed;
+
+/* x[cols] := the vector that makes |A x - b|^2 + damping |x|^2 least, the shortest one; singular values up to `least`
+ * times the first count as 0. Returns their number that do not. */
+int lag_least_norm(lag_decomposed of, double least, double damping, const double *b, double *x);

@@ -4,7 +4,6 @@
 #include <string.h>
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 
-#include "base/strbuf.h"
 
 Sources *sources_new(Arena *a) {
   Sources *s = ARENA_NEW(a, Sources);

@@ -3,7 +3,6 @@
  * given must agree with it. */
 #include "claims/expect.h"
 
-#include "base/words.h"
 #include "phase_space/canonical_map.h"
 #include "sym/diff.h"
 #include "sym/jump.h"

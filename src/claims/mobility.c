@@ -3,13 +3,11 @@
 #include "claims/expect.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/sparse_solve.h"
 #include "base/words.h"
 #include "mech/frobenius.h"
 #include "mech/constrain.h"
-#include "symmetry/noether_theorem.h"
 #include "mech/consistent_start.h"
 #include "numeric/consistent_state.h"
 #include "sym/print.h"

@@ -4,7 +4,6 @@
  * section 2.4). */
 #include "claims/monomial_fit.h"
 
-#include <float.h>
 #include <math.h>
 
 #include "base/dense_matrix.h"

@@ -351,8 +351,12 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
    C(HEADER) | C(EMIT) | C(FMU) | C(PAGE))
 
 static const OptionRow options[] = {
+#define TO(f) offsetof(Options, f)
+#define OWN_FLAG TO
+#define OWN_TEXT TO
+#define OWN_LIST TO
 #define LAGC(name, brief, value, takes, hint, commands, field, text) \
-  {name, brief, value, takes, hint, commands, 0, offsetof(Options, field), text},
+  {name, brief, value, takes, hint, commands, 0, field, text},
 #define BOTH(name, brief, value, takes, hint, commands, analyses, field, text) \
   {name, brief, value, takes, hint, commands, 1, 0, text},
 #define SIMULATOR(...)

@@ -32,52 +32,21 @@ typedef struct {
 /* The command line as read: the command and the values of its options. */
 typedef struct {
   Command command;
+#define OWN_FLAG(f) int f;
+#define OWN_TEXT(f) const char *f;
+#define OWN_LIST(f) OptionTexts f;
+#define TO(f)
+#define LAGC(name, brief, value, takes, hint, commands, field, text) field
+#define BOTH(...)
+#define SIMULATOR(...)
+#include "app/options.def"
   const char *file, *scene;
-  const char *output;      /* -o */
-  const char *method;      /* --method; run, plot and animate pass it on as well */
-  const char *resume;      /* of run */
-  const char *accurate;    /* run, plot, animate --accuracy */
-  const char *tol;         /* run, plot, animate --tol */
-  const char *seconds, *error, *budget; /* cost --seconds, --error, --budget */
-  const char *format;      /* derive, noether --format */
-  const char *bracket;     /* derive --bracket */
-  const char *in;          /* derive --in */
-  const char *degree;      /* noether --degree */
-  const char *dump;        /* --dump=ast,eqns,passes,prog */
   const char *topic;       /* help TOPIC; completion SHELL */
-  const char *like;        /* new --like */
-  int clear;               /* of cache */
-  int help;                /* --help: then command is CMD_HELP */
-  int verbose;             /* check --verbose */
-  int allow_numeric;       /* check --allow-numeric */
-  int standalone, bytes, no_gsl, ops, hamiltonian, lagrangian;
-  int involution;          /* noether --involution */
-  const char *precision;   /* --precision: double, long, quad; NULL: double */
-  const char *math;        /* --math own|libm */
-  const char *compile;     /* --compile always|never|auto; NULL: auto */
-  const char *with;        /* --with: optional parts of an emitted model, or of a header */
-  const char *prefix, *target; /* header --prefix, --for */
-  const char *fmi, *also_cc; /* fmu --fmi, --also-cc */
+  const char *tol, *resume, *accurate; /* --tol, --resume, and --accuracy of a run: noted, and passed on */
   VEC(Define) defines;
   VEC(ConstRange) consts;  /* of sweep; `defines` ends with a value of each */
-  const char *fix;         /* --fix g,l: parameters that become numbers */
-  const char *accuracy;    /* effects --accuracy */
-  const char *against, *map; /* verify --against, --map */
-  int shared, lanes;       /* build --shared, --lanes */
-  int by_effects;          /* fit --effects */
-  int json;                /* effects --json; other commands pass it on */
   OptionTexts scenes;      /* plot: all scenes named, each once */
   OptionTexts rest;        /* run, plot, animate: the simulator's arguments, the scene included; complete: the words */
-  OptionTexts observe;     /* run --observe: expressions */
-  OptionTexts gradient;    /* run --gradient: EXPR, NAME=EXPR */
-  OptionTexts measure;     /* run, plot, animate, sweep --measure: EXPR, NAME=EXPR */
-  const char *section;     /* run, plot --section */
-  OptionTexts y;           /* plot --y: expressions */
-  const char *x, *phase;   /* plot */
-  const char *cloud;       /* plot --cloud: N or N:PART */
-  int portrait, potential, distance, energy_error;
-  const char *points, *from; /* animate */
-  int no_rods;
 } Options;
 
 typedef struct {

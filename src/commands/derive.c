@@ -7,7 +7,6 @@
 #include "claims/expect.h"
 #include "emit/emit_model.h"
 #include "emit/cwriter.h"
-#include "lower/lower.h"
 #include "report/equation_listing.h"
 #include "phase_space/expression_brackets.h"
 #include "syntax/parse.h"

@@ -1,7 +1,6 @@
 /* `lagc emit`: the model as C for the runtime. */
 #include "commands/commands.h"
 
-#include "emit/cnames.h"
 #include "emit/emit_model.h"
 #include "mech/switches.h"
 

@@ -5,7 +5,6 @@
 
 #include "fmu/fmu_archive.h"
 #include "report/equation_listing.h"
-#include "toolchain/files.h"
 #include "toolchain/toolchain.h"
 
 typedef VEC(FmuBinary) FmuBinaries;

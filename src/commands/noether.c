@@ -1,13 +1,11 @@
 /* `lagc noether`: symmetries with their charges. */
 #include "commands/commands.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "symmetry/charges.h"
 #include "symmetry/noether_report.h"
-#include "report/equation_listing.h"
 #include "toolchain/process.h"
 
 static PrintStyle style_of(const char *format) {

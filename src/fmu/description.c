@@ -2,7 +2,6 @@
  * as in core.in. */
 #include "fmu/fmu_archive_impl.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "emit/cfunction.h"

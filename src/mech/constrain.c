@@ -16,7 +16,7 @@ static Expr rate(const Eqns *e, Expr x, const char *suffix) {
   Expr out, *seed = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(e->g) + 1);
   model_seed_time(m, seed);
   for (uint32_t i = 0; i < e->n; i++) seed[m->coords.at[i].q] = expr_symbol(e->g, m->coords.at[i].v)->node;
-  expr_tangent(e->g, &x, 1, seed, expr_symbol_count(e->g) + 1, suffix, NULL, &out);
+  expr_tangent(e->g, &x, 1, (ExprSeeds){.at = seed, .n = expr_symbol_count(e->g) + 1}, suffix, NULL, &out);
   return out;
 }
 

@@ -38,7 +38,7 @@ static void differentiate(Forms *f, uint32_t i) {
     if (!x) continue;
     ExprPartials by_q = expr_gradient_sparse(f->g, x, SYM_COORD, e->n);
     for (uint32_t j = 0; j < by_q.n; j++) add_derivative(f, i, by_q.at[j].index, k, by_q.at[j].e);
-    expr_tangent(f->g, &x, 1, in_time, expr_symbol_count(f->g) + 1, "'", NULL, &rate);
+    expr_tangent(f->g, &x, 1, (ExprSeeds){.at = in_time, .n = expr_symbol_count(f->g) + 1}, "'", NULL, &rate);
     add_derivative(f, i, e->n, k, rate);
   }
   for (uint32_t p = 0; p < f->w * f->w; p++) {

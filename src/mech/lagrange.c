@@ -57,8 +57,8 @@ static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
     if (expr_op(g, all.at[i]) == EX_DEF && !(expr_kinds(g, all.at[i]) & (1u << SYM_VEL | 1u << SYM_STATE)))
       vec_push(e->m->arena, &still, all.at[i]);
   Expr *unused = ARENA_ARRAY(e->m->arena, Expr, still.n + 1);
-  expr_tangent(g, still.at, still.n, seed, nseed, "'", &rates, unused);
-  expr_tangent(g, p, e->n, seed, nseed, "_drift", &rates, out);
+  expr_tangent(g, still.at, still.n, (ExprSeeds){.at = seed, .n = nseed}, "'", &rates, unused);
+  expr_tangent(g, p, e->n, (ExprSeeds){.at = seed, .n = nseed}, "_drift", &rates, out);
 }
 
 /* L plus the regularising terms of Model.regularising, for rotations and constraints. */

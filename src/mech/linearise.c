@@ -37,7 +37,7 @@ static Expr *inertia_of_momenta(const Eqns *e) {
   Expr *seed = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(e->g) + 1),
        *inertia = ARENA_ARRAY(m->arena, Expr, e->n + 1);
   for (uint32_t i = 0; i < e->n; i++) seed[m->coords.at[i].v] = expr_symbol(e->g, m->coords.at[i].a)->node;
-  expr_tangent(e->g, e->p, e->n, seed, expr_symbol_count(e->g) + 1, "_inertia", NULL, inertia);
+  expr_tangent(e->g, e->p, e->n, (ExprSeeds){.at = seed, .n = expr_symbol_count(e->g) + 1}, "_inertia", NULL, inertia);
   return inertia;
 }
 

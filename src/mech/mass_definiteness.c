@@ -7,7 +7,6 @@
 #include "base/sparse_solve.h"
 #include "mech/consistent_start.h"
 #include "mech/velocity_degree.h"
-#include "sym/diff.h"
 #include "sym/expr_eval.h"
 #include "sym/print.h"
 #include "sym/sum_nest.h"

@@ -301,7 +301,7 @@ const Expr *switch_rates(const Eqns *e) {
   }
   for (uint32_t i = 0; i < m->states.n; i++) seed[m->states.at[i].z] = expr_symbol(e->g, m->states.at[i].rate)->node;
   for (uint32_t i = 0; i < n; i++) sides[i] = e->switches.at[i].side;
-  expr_tangent(e->g, sides, n, seed, nseed, "'", NULL, rates);
+  expr_tangent(e->g, sides, n, (ExprSeeds){.at = seed, .n = nseed}, "'", NULL, rates);
   return rates;
 }
 

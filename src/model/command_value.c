@@ -2,7 +2,6 @@
 #include <math.h>
 
 #include "model/builder.h"
-#include "sym/expr_eval.h"
 
 /* Unit of the symbol x, a coordinate, velocity, state, parameter or input; 0: x is something else. */
 static int setting_unit(Builder *b, Expr x, Unit *unit) {

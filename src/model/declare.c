@@ -1,7 +1,6 @@
 /* Declarations: each name enters the scope, and coordinates, states, inputs, observables their arrays of the Model,
  * in file order. Lets and functions are only recorded: resolve.c evaluates them when needed. Parameters and
  * constants: declare_param.c. */
-#include <stdlib.h>
 
 #include "base/words.h"
 #include "model/builder.h"
@@ -250,7 +249,7 @@ void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_CANONICAL:
     case STMT_FOR:
     case STMT_MODEL:
-    case STMT_INCLUDE:
+    case STMT_INCLUDE: case STMT_NETWORK:
     case STMT_MOMENTUM:
     case STMT_HAMILTONIAN:
     case STMT_LAGRANGIAN:

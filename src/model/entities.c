@@ -1,6 +1,5 @@
 /* Named things of a model: symbols and entities as they are declared, their ranges and units; lists of a model's
  * coordinates, constants and scenes; constraints with their multipliers. */
-#include <math.h>
 #include <string.h>
 
 #include "model/resolve_impl.h"

@@ -1,6 +1,5 @@
 /* Models that give their Hamiltonian: each momentum is a coordinate, and L = sum p q' - H is of first order
  * (mech/first_order.h). Beside an L, momenta are names of dL/dq', and H is a claim that `lagc check` judges. */
-#include <string.h>
 
 #include "model/builder.h"
 

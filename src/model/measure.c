@@ -39,7 +39,15 @@ typedef struct {
 
 typedef enum { CALL_TRACK, CALL_HIT, CALL_COUNT, CALL_FUNCTION, CALL_AT, CALL_TEXT, CALL_ELSE } CallKind;
 
-#define TRACK_WORDS "max min mean rms drift period"
+/* Units of measures along the run; their words. */
+enum { OF_VALUE, OF_DIFFERENCE, OF_TIME };
+#define TRACK_UNIT(KIND, name, unit, how) {#name, unit},
+static const struct {
+  const char *name;
+  int unit;
+} tracks[] = {TRACKS(TRACK_UNIT)};
+#define TRACK_WORD(KIND, name, unit, how) #name " "
+static const char track_words[] = TRACKS(TRACK_WORD);
 
 enum { UNCHECKED = 2 };
 
@@ -60,7 +68,7 @@ static CallKind call_kind(const MeasureReader *r, AstId id) {
   AstId second = x->args ? ast_expr(r->b->ast, x->args)->next : 0;
   if (e && e->kind == ENT_FUNCTION) return r->whole[id - r->first] ? CALL_TEXT : CALL_ELSE;
   int alone = x->args && (!second || ast_expr(r->b->ast, second)->kind == AST_BIND); /* max(x, y) is the larger */
-  if (alone && has_word(TRACK_WORDS, x->name)) return CALL_TRACK;
+  if (alone && has_word(track_words, x->name)) return CALL_TRACK;
   if (strcmp(x->name, "hit") == 0) return CALL_HIT;
   if (strcmp(x->name, "count") == 0) return CALL_COUNT;
   if ((e && e->kind != ENT_NONE) || has_word("energy lagrangian t", x->name)) return CALL_AT;
@@ -373,8 +381,11 @@ static Part track(MeasureReader *r, AstId id) {
                "`%s` takes quantities, as x or x^2 + y^2; a value of the whole run stands outside", name);
   else if (!of.varies) diag_error(b->diags, span, "`%s` does not change along the run", ast_short(b, args));
   if (of.measured || !of.varies) return (Part){0};
-  Unit unit = strcmp(name, "period") == 0 ? seconds(b, "s") : of.unit;
-  if (has_word("drift rms", name)) unit.offset = num_int(0); /* a difference */
+  int of_unit = OF_VALUE;
+  for (size_t i = 0; i < sizeof tracks / sizeof *tracks; i++)
+    if (strcmp(tracks[i].name, name) == 0) of_unit = tracks[i].unit;
+  Unit unit = of_unit == OF_TIME ? seconds(b, "s") : of.unit;
+  if (of_unit == OF_DIFFERENCE) unit.offset = num_int(0);
   return part_of(arena_printf(b->arena, "%s %s(%s)", of.text, name, within), unit, 1);
 }
 
@@ -457,7 +468,7 @@ static Part call(MeasureReader *r, AstId id) {
     case CALL_FUNCTION: return function(r, x);
     case CALL_TEXT: return text_call(r, id);
     case CALL_ELSE:
-      if (!has_word(TRACK_WORDS, x->name) || entity_named(b, x->name)) return operand(r, id);
+      if (!has_word(track_words, x->name) || entity_named(b, x->name)) return operand(r, id);
       return wrong_call(r, x, arena_printf(b->arena, "%s(x)` or `%s(x, 10..20)", x->name, x->name));
     case CALL_AT: break;
   }

@@ -1,6 +1,5 @@
 /* `action(x)` in outputs: a symbol for the action variable of a coordinate;
  * phase_space/action_outputs.c finds its curve, a run its value. */
-#include "base/words.h"
 #include "model/resolve_impl.h"
 
 /* Whether s is a coordinate, and no momentum or state. */

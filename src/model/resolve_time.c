@@ -91,7 +91,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
         "the energy changes by the power of forces: `force x = F` adds the power `F*x'`");
   Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};
   const Expr *seed = time_seeds(b);
-  expr_tangent(b->g, of.at, component_count(&of), seed, b->nseeds + 1, "'", &b->rates, r.at);
+  expr_tangent(b->g, of.at, component_count(&of), (ExprSeeds){.at = seed, .n = b->nseeds + 1}, "'", &b->rates, r.at);
   if (b->m->first_order) return r; /* rates are velocities; rates of true states were refused in the first build */
   if (where < IN_OBSERVE && kinds_in(b, &r) & second && !(kinds_in(b, &r) & 1u << SYM_ACC))
     return refuse(b, span, "the rate of a state may stand only in `expect`, `observe` and `output`" HELP

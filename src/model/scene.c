@@ -1,6 +1,5 @@
 /* Scenes: selection of the active statements, inheritance by `like`, and the settings of a run: values, start, span,
  * tolerance, outputs, monitors. Later statements override earlier ones, except monitors, which accumulate. */
-#include <math.h>
 
 #include "model/builder.h"
 #include "model/effect.h"

@@ -2,7 +2,6 @@
 #include "phase_space/canonical_map.h"
 #include "report/equation_listing.h"
 #include "report/listing_text.h"
-#include "sym/simplify.h"
 
 static Expr node(const Text *t, SymId s) { return expr_symbol(t->g, s)->node; }
 

@@ -3,7 +3,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 Tape *tape_new(Arena *a) {
   Tape *t = ARENA_NEW(a, Tape);
@@ -149,6 +148,11 @@ static int is_near(const Jet *x, const Jet *y) {
   return error > 0 && fabsl(value(x) - value(y)) <= 4096 * error;
 }
 
+static void run_power(Num n, const Jet *x, Jet *out) {
+  JetReal exponent = num_is_exact(n) ? (JetReal)n.num / (JetReal)n.den : (JetReal)num_value(n);
+  jet_power(out, x, exponent, num_is_exact(n) && n.den == 3);
+}
+
 static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, Jet *out, int *unsure) {
   static const Jet zero = {.planes = 0};
   int near = 0;
@@ -159,12 +163,7 @@ static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, 
     case TAPE_DIV: jet_div(out, x, y); return;
     case TAPE_NEG: jet_neg(out, x); return;
     case TAPE_RATE: jet_rate(out, x); return;
-    case TAPE_POWER: {
-      Num n = tape_ins_number(i);
-      JetReal exponent = num_is_exact(n) ? (JetReal)n.num / (JetReal)n.den : (JetReal)num_value(n);
-      jet_power(out, x, exponent, num_is_exact(n) && n.den == 3);
-      return;
-    }
+    case TAPE_POWER: run_power(tape_ins_number(i), x, out); return;
     case TAPE_POW: jet_pow(out, x, y); return;
     case TAPE_FUNCTION: if (!jet_function(out, i->text, x)) *out = jet_exact(NAN); return;
     case TAPE_ATAN2: /* on the cut the sign of a zero decides, which a rewrite need not keep */
@@ -174,13 +173,9 @@ static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, 
     case TAPE_HYPOT: jet_hypot(out, x, y); return;
     case TAPE_SELECT: near = isinf(x->c[0][0].e); *out = value(x) != 0 ? *y : *z; break;
     case TAPE_NOT: near = isinf(x->c[0][0].e); *out = jet_of_bool(value(x) == 0); break;
-    case TAPE_AND:
+    case TAPE_AND: case TAPE_OR:
       near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e);
-      *out = jet_of_bool(value(x) != 0 && value(y) != 0);
-      break;
-    case TAPE_OR:
-      near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e);
-      *out = jet_of_bool(value(x) != 0 || value(y) != 0);
+      *out = jet_of_bool((value(x) != 0) + (value(y) != 0) >= (i->op == TAPE_AND ? 2 : 1));
       break;
     case TAPE_SIGN: near = is_near(x, &zero); *out = jet_exact((value(x) > 0) - (value(x) < 0)); break;
     case TAPE_FLOOR: {

@@ -4,7 +4,6 @@
 
 #include <stdlib.h>
 
-#include "base/strbuf.h"
 #include "sym/expr_impl.h"
 #include "sym/sum_diff.h"
 #include "sym/sum_nest.h"
@@ -212,13 +211,6 @@ static void push_term(ExprGraph *g, Terms *t, Expr term) {
 
 static Expr add_terms(ExprGraph *g, const Terms *t) { return t->n ? expr_add_n(g, t->at, t->n) : g->zero; }
 
-/* Seeds of the symbols first .. first + n - 1; 0: zero. */
-typedef struct {
-  SymId first;
-  uint32_t n;
-  const Expr *at;
-} Seeds;
-
 /* Terms of the tangent of a cell: of the only sum, its partial derivatives times rates; of several, a cell again.
  * rates: NEST -> the nest of its tangents, or itself where these are 0. */
 static void cell_terms(ExprGraph *g, Expr cell, const ExprMap *dot, ExprMap *rates, Terms *terms) {
@@ -255,8 +247,8 @@ static void tangent_terms(ExprGraph *g, Expr e, ExprMap *dot, Terms *terms) {
   }
 }
 
-static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, const char *suffix, ExprMap *known,
-                          Expr *out) {
+void expr_tangent(ExprGraph *g, const Expr *of, uint32_t n, ExprSeeds seed, const char *suffix, ExprMap *known,
+                  Expr *out) {
   Expr *roots = ARENA_ARRAY(g->arena, Expr, n + 1);
   prepare_sums(g, of, n, 1, roots);
   ExprList l = expr_topo_until(g, roots, n, known);
@@ -301,15 +293,10 @@ static void sweep_forward(ExprGraph *g, const Expr *of, uint32_t n, Seeds seed, 
   arena_recycle(g->arena, roots, (n + 1) * sizeof *roots);
 }
 
-void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
-                  const char *suffix, ExprMap *known, Expr *out) {
-  sweep_forward(g, roots, n, (Seeds){0, nseed, seed}, suffix, known, out);
-}
-
 Expr expr_diff(ExprGraph *g, Expr e, SymId sym) {
   Expr out;
   Name suffix = expr_name_with_suffix(g, "_", expr_symbol(g, sym)->name);
-  sweep_forward(g, &e, 1, (Seeds){sym, 1, &g->one}, suffix, NULL, &out);
+  expr_tangent(g, &e, 1, (ExprSeeds){&g->one, 1, sym}, suffix, NULL, &out);
   return out;
 }
 

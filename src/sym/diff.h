@@ -25,8 +25,15 @@ typedef struct {
 
 ExprPartials expr_gradient_sparse(ExprGraph *g, Expr e, SymKind kind, uint32_t below);
 
-/* Directional derivatives out[i] = sum over s of d(roots[i])/ds * seed[s]. seed has nseed entries, 0 meaning zero.
+/* Seeds of the symbols first .. first + n - 1; 0: zero. */
+typedef struct {
+  const Expr *at;
+  uint32_t n;
+  SymId first;
+} ExprSeeds;
+
+/* Directional derivatives out[i] = sum over symbols s of d(roots[i])/ds times their seed.
  * The derivative of a definition `a` becomes the definition `a` + suffix ("'" for the total time derivative). known:
  * derivatives of definitions from earlier calls with the same seed, read and extended; or NULL. */
-void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
-                  const char *suffix, ExprMap *known, Expr *out);
+void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, ExprSeeds seed, const char *suffix, ExprMap *known,
+                  Expr *out);

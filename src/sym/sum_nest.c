@@ -27,7 +27,8 @@ static int is_same(const SumNest *x, const SumNest *y) {
   const LoopRange *r = &x->range, *o = &y->range;
   return r->rows == o->rows && r->skew == o->skew && r->turns == o->turns && r->more == o->more &&
          x->nargs == y->nargs && x->ncells == y->ncells && x->i0 == y->i0 && x->j0 == y->j0 && x->i == y->i &&
-         x->j == y->j && x->row == y->row && x->turn == y->turn && x->near == y->near && same_lists(x, y);
+         x->j == y->j && x->row == y->row && x->turn == y->turn && x->near == y->near &&
+         x->far == y->far && same_lists(x, y);
 }
 
 /* Reads of symbols that no share contains are left out. */
@@ -123,13 +124,19 @@ ExprList expr_topo_with_bodies(ExprGraph *g, const Expr *roots, uint32_t n) {
 /* Whether a turn adds to cell k: an equation affine in i and j. */
 static int adds_to(const NestShare *x, int64_t k, int64_t i, int64_t j) { return subscript_at(&x->at, i, j) == k; }
 
-static void add_turn(ExprGraph *g, const SumNest *s, const Expr *args, const NestShare *x, int64_t i, int64_t j,
-                     SymId *syms, Expr *with) {
-  for (uint32_t k = 0; k < s->nreads; k++) {
-    syms[k] = s->reads[k].symbol;
-    with[k] = args[subscript_at(&s->reads[k].at, i, j)];
+/* A nest whose turns are written out: its arguments, and room for what a turn replaces. */
+typedef struct {
+  SumNest nest;
+  SymId *syms;
+  Expr *with, *args;
+} WrittenNest;
+
+static void add_turn(ExprGraph *g, const WrittenNest *w, const NestShare *x, int64_t i, int64_t j) {
+  for (uint32_t k = 0; k < w->nest.nreads; k++) {
+    w->syms[k] = w->nest.reads[k].symbol;
+    w->with[k] = w->args[subscript_at(&w->nest.reads[k].at, i, j)];
   }
-  Expr term = expr_replace(g, x->value, syms, with, s->nreads);
+  Expr term = expr_replace(g, x->value, w->syms, w->with, w->nest.nreads);
   vec_push(g->arena, &g->terms, term);
 }
 
@@ -137,14 +144,14 @@ static Expr written_out(ExprGraph *g, Expr cell) {
   Expr nest = expr_cell_nest(g, cell);
   SumNest s = *expr_sum_nest(g, nest);
   int64_t k = expr_cell_number(g, cell);
-  SymId *syms = ARENA_ARRAY(g->arena, SymId, s.nreads + 1);
-  Expr *with = ARENA_ARRAY(g->arena, Expr, s.nreads + 1), *args = ARENA_ARRAY(g->arena, Expr, s.nargs + 1);
-  for (uint32_t n = 0; n < s.nargs; n++) args[n] = expr_sum_arg(g, nest, n);
+  WrittenNest w = {s, ARENA_ARRAY(g->arena, SymId, s.nreads + 1), ARENA_ARRAY(g->arena, Expr, s.nreads + 1),
+                   ARENA_ARRAY(g->arena, Expr, s.nargs + 1)};
+  for (uint32_t n = 0; n < s.nargs; n++) w.args[n] = expr_sum_arg(g, nest, n);
   g->terms.n = 0;
   for (int64_t i = 0; i < s.range.rows; i++)
     for (int64_t j = loop_from(&s.range, i); j < loop_to(&s.range, i); j++)
       for (uint32_t n = 0; n < s.nshares; n++)
-        if (adds_to(&s.shares[n], k, i, j)) add_turn(g, &s, args, &s.shares[n], i, j, syms, with);
+        if (adds_to(&s.shares[n], k, i, j)) add_turn(g, &w, &s.shares[n], i, j);
   return expr_add_n(g, g->terms.at, g->terms.n);
 }
 

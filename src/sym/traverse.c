@@ -2,7 +2,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/strbuf.h"
 #include "sym/expr.h"
 #include "sym/expr_impl.h"
 #include "sym/sum_nest.h"

@@ -14,7 +14,6 @@
 #include "sym/expr_eval.h"
 #include "sym/normal_form.h"
 #include "sym/prove.h"
-#include "sym/simplify.h"
 
 enum { KNOWN_MOST = 400, STATES = 4, TRIES = 200, ROTATIONS_MOST = 6, STEPS_MOST = 20000 };
 

@@ -1,6 +1,5 @@
 /* Rows of tables become generators: the numbers that an entry has at several choices of parameters become an
  * expression of these; then each generator is proved, named and listed. */
-#include <math.h>
 
 #include "symmetry/find_symmetries_impl.h"
 #include "symmetry/symmetry_names.h"

@@ -167,7 +167,7 @@ static void make_tape(MomentumAnsatz *a) {
   uint32_t k = a->functions;
   for (uint32_t i = 0; i < a->n; i++) seed[a->q[i]] = a->rate[i];
   memcpy(roots, a->factor + a->n, k * sizeof *roots);
-  expr_tangent(a->g, a->factor + a->n, k, seed, a->symbols, "'", NULL, roots + k);
+  expr_tangent(a->g, a->factor + a->n, k, (ExprSeeds){.at = seed, .n = a->symbols}, "'", NULL, roots + k);
   memcpy(roots + 2 * (size_t)k, a->momenta, a->n * sizeof *roots);
   memcpy(roots + 2 * (size_t)k + a->n, a->force, a->n * sizeof *roots);
   memcpy(roots + 2 * (size_t)(k + a->n), a->rate, a->n * sizeof *roots);

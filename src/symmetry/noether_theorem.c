@@ -27,7 +27,7 @@ static Expr dot(const ProofWork *w, const Expr *a, const Expr *b, uint32_t n) {
 
 static Expr tangent(const ProofWork *w, Expr x, const Expr *seed, const char *suffix) {
   Expr out;
-  expr_tangent(w->g, &x, 1, seed, w->symbols, suffix, NULL, &out);
+  expr_tangent(w->g, &x, 1, (ExprSeeds){.at = seed, .n = w->symbols}, suffix, NULL, &out);
   return out;
 }
 
@@ -37,7 +37,7 @@ static void fill_seeds(ProofWork *w) {
   w->along = no_seed(w);
   w->along[w->m->time] = expr_int(w->g, 1);
   for (uint32_t i = 0; i < w->n; i++) w->along[w->q[i]] = proof_node(w, w->v[i]);
-  expr_tangent(w->g, w->xi, w->n, w->along, w->symbols, "'", NULL, w->Dxi);
+  expr_tangent(w->g, w->xi, w->n, (ExprSeeds){.at = w->along, .n = w->symbols}, "'", NULL, w->Dxi);
   w->Dtau = noether_total(w, w->tau);
   w->moving = no_seed(w);
   w->moving[w->m->time] = w->tau;
@@ -448,7 +448,7 @@ Noether noether_prove(const Eqns *e, const Generator *by) {
   Expr whole = out.potential ? expr_sub(w.g, out.F, out.potential) : out.F;
   out.charge = charge_of(&w, whole);
   out.scale = scale_of(&w, whole);
-  out.jumps = discontinuities_of(e, out.charge).n > 0 || moves_jumps(&w);
+  out.jumps = e->m->families.n || discontinuities_of(e, out.charge).n > 0 || moves_jumps(&w);
   return out;
 }
 

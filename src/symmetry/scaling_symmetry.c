@@ -75,7 +75,7 @@ static int is_proved(ScalingSearch *w) {
   for (uint32_t k = 0; k < expr_pairs(g, L, EX_SUM); k++) {
     Num c;
     Expr term = expr_pair(g, L, EX_SUM, k, &c), less = expr_scale(g, num_sub(w->out->kappa, w->out->beta), term);
-    expr_tangent(g, &term, 1, seed, symbols, "_delta", NULL, &moved);
+    expr_tangent(g, &term, 1, (ExprSeeds){.at = seed, .n = symbols}, "_delta", NULL, &moved);
     if (!search_goes_on(w->limit, 0) || prove_zero(g, expr_sub(g, moved, less), NULL) != PROVED_ZERO) return 0;
   }
   return 1;

@@ -1,10 +1,7 @@
 /* Builds usual generators, proves each by noether_prove, and lists the proved ones. */
 #include "symmetry/find_symmetries_impl.h"
 
-#include "mech/lagrange.h"
 #include "symmetry/symmetry_names.h"
-#include "sym/diff.h"
-#include "sym/simplify.h"
 
 enum { SEARCH_MOST = 100, TRY_MOST = 1000, KINDS_MOST = 6 };
 

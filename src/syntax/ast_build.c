@@ -140,10 +140,10 @@ AstId ast_at(Ast *ast, Span span, AstId a, AstId time) {
   return append(ast, (AstExpr){.kind = AST_AT, .span = span, .op_span = span, .a = a, .b = time});
 }
 
-AstId ast_reduce(Ast *ast, AstKind kind, Span span, Ident index, AstId lo, AstId hi, AstId body, Span op) {
-  check_declared(ast, index);
-  return append(ast, (AstExpr){.kind = kind, .span = span, .op_span = op, .name = index.name, .a = lo, .b = hi,
-                               .c = body});
+AstId ast_reduce(Ast *ast, AstKind kind, Span span, Span op, AstTurns over, AstId body) {
+  check_declared(ast, over.index);
+  return append(ast, (AstExpr){.kind = kind, .span = span, .op_span = op, .name = over.index.name, .a = over.lo,
+                               .b = over.hi, .c = body});
 }
 
 AstId ast_collect(Ast *ast, AstKind kind, Span span, AstList items) {

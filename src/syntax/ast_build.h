@@ -36,9 +36,22 @@ AstId ast_unit(Ast *ast, Span span, AstId a, AstUnit unit);
 AstId ast_call(Ast *ast, Span span, Ident function, AstList args);
 AstId ast_option(Ast *ast, Span span, const char *word, AstId value); /* word = value, a call of that name */
 AstId ast_at(Ast *ast, Span span, AstId a, AstId time);
-AstId ast_reduce(Ast *ast, AstKind kind, Span span, Ident index, AstId lo, AstId hi, AstId body, Span op);
+/* `op(index in lo..hi, body)` */
+typedef struct AstTurns {
+  Ident index;
+  AstId lo, hi;
+} AstTurns;
+AstId ast_reduce(Ast *ast, AstKind kind, Span span, Span op, AstTurns over, AstId body);
 /* near_sum.c: sum(index in near(...), body); range: the expression behind `in`. */
 AstId ast_near(Ast *ast, Span span, Ident index, AstId range, AstId body, Span op);
+/* The same as a range of members, AST_BIND. */
+AstId ast_near_bind(Ast *ast, Span span, Ident index, AstId range);
+/* far_sum.c: sum(index in lo..hi, body, by way(theta)). */
+typedef struct {
+  Ident by, way;
+  AstId theta;
+} FarWay;
+AstId ast_far(Ast *ast, Span span, Span op, AstTurns turns, AstId body, FarWay how);
 AstId ast_collect(Ast *ast, AstKind kind, Span span, AstList items); /* AST_LIST */
 AstId ast_bind(Ast *ast, Span span, Ident index, AstId lo, AstId hi);
 
@@ -68,15 +81,22 @@ AstStmt *stmt_plain(Ast *ast, AstStmtKind kind, Span span);
 AstStmt *stmt_include(Ast *ast, Span span, AstText path);
 AstStmt *stmt_name(Ast *ast, AstStmtKind kind, Span span, Ident name);
 AstStmt *stmt_titled(Ast *ast, AstStmtKind kind, Span span, Ident name, AstText doc, StmtList body);
-AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, Ident type, AstUnit unit,
-                    int periodic);
+/* `NAME[places]: TYPE [UNIT]` of a declaration. */
+typedef struct AstDeclared {
+  Ident name, type;
+  AstList dims;
+  AstUnit unit;
+} AstDeclared;
+AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, AstDeclared of, int periodic);
 /* `momentum p of q`: a coordinate with the term p*q' of the action, or, where L is given, a name of dL/dq'. */
 AstStmt *stmt_momentum(Ast *ast, Span span, Ident name, AstList dims, Ident type, Ident coord, AstUnit unit);
 AstStmt *stmt_hamiltonian(Ast *ast, Span span, AstId rhs);
 AstStmt *stmt_valued(Ast *ast, AstStmtKind kind, Span span, Ident name, AstUnit unit, AstId value);
-AstStmt *stmt_param(Ast *ast, Span span, Ident name, AstList dims, Ident type, AstUnit unit, AstId value, AstSign sign);
+AstStmt *stmt_param(Ast *ast, Span span, AstDeclared of, AstId value, AstSign sign);
 AstStmt *stmt_define(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstUnit unit, AstId rhs);
 AstStmt *stmt_function(Ast *ast, Span span, Ident name, AstList args, AstId rhs);
+/* network.c; activation.name NULL: tanh. */
+AstStmt *stmt_network(Ast *ast, Span span, Ident name, AstList args, AstText path, AstList layers, Ident activation);
 AstStmt *stmt_value(Ast *ast, AstStmtKind kind, Span span, AstId rhs);
 /* `draw SHAPE[members] SUBJECT = VALUE OPTIONS`; 0 and empty: not written. */
 AstStmt *stmt_draw(Ast *ast, Span span, Ident shape, AstList members, AstId subject, AstId value, AstList options);

@@ -85,16 +85,16 @@ static void check_type(Ast *ast, Ident type) {
   else diag_help(ast->diags, "the types are `vec2`, `vec3` and, of coordinates, `rotation`; a number has none");
 }
 
-AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, Ident type, AstUnit unit,
-                    int periodic) {
-  AstStmt *s = declare(ast, kind, span, name);
-  if (type.name) check_type(ast, type);
-  s->dims = dims.first;
-  s->type = type.name;
-  s->unit = unit;
+AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, AstDeclared of, int periodic) {
+  AstStmt *s = declare(ast, kind, span, of.name);
+  Name type = of.type.name;
+  if (type) check_type(ast, of.type);
+  s->dims = of.dims.first;
+  s->type = type;
+  s->unit = of.unit;
   s->periodic = periodic;
-  int rotates = type.name && strcmp(type.name, "rotation") == 0, one = dims.first && dims.first == dims.last;
-  AstPlace place = {name.name, !type.name ? 0 : strcmp(type.name, "vec2") == 0 ? 2 : 3};
+  int rotates = type && strcmp(type, "rotation") == 0, one = of.dims.first && of.dims.first == of.dims.last;
+  AstPlace place = {of.name.name, !type ? 0 : strcmp(type, "vec2") == 0 ? 2 : 3};
   if (kind == STMT_COORD && one && !rotates) vec_push(ast->arena, &ast->places, place);
   return s;
 }
@@ -113,11 +113,11 @@ static AstId action_term(Ast *ast, Span span, Ident p, Ident q, AstId size, int 
         rate = ast_prime(ast, q.span, q.span, coord), term;
   if (is_vector) term = ast_call(ast, span, dot, ast_list_add(ast, ast_list(momentum), rate));
   else term = ast_binary(ast, AST_MUL, span, span, momentum, rate);
-  return size ? ast_reduce(ast, AST_SUM, span, i, lo, size, term, span) : term;
+  return size ? ast_reduce(ast, AST_SUM, span, span, (AstTurns){i, lo, size}, term) : term;
 }
 
 AstStmt *stmt_momentum(Ast *ast, Span span, Ident name, AstList dims, Ident type, Ident coord, AstUnit unit) {
-  AstStmt *s = stmt_coord(ast, STMT_MOMENTUM, span, name, dims, type, unit, 0);
+  AstStmt *s = stmt_coord(ast, STMT_MOMENTUM, span, (AstDeclared){name, type, dims, unit}, 0);
   /* first: an expression's nodes follow one another */
   s->args = action_term(ast, span, name, coord, dims.first, type.name != NULL);
   s->lhs = ast_name(ast, coord);
@@ -146,12 +146,11 @@ AstStmt *stmt_valued(Ast *ast, AstStmtKind kind, Span span, Ident name, AstUnit 
   return stmt_define(ast, kind, span, name, (AstList){0, 0}, unit, value);
 }
 
-AstStmt *stmt_param(Ast *ast, Span span, Ident name, AstList dims, Ident type, AstUnit unit, AstId value,
-                    AstSign sign) {
-  AstStmt *s = stmt_valued(ast, STMT_PARAM, span, name, unit, value);
-  if (type.name) check_type(ast, type);
-  s->dims = dims.first;
-  s->type = type.name;
+AstStmt *stmt_param(Ast *ast, Span span, AstDeclared of, AstId value, AstSign sign) {
+  AstStmt *s = stmt_valued(ast, STMT_PARAM, span, of.name, of.unit, value);
+  if (of.type.name) check_type(ast, of.type);
+  s->dims = of.dims.first;
+  s->type = of.type.name;
   s->sign = sign;
   return s;
 }

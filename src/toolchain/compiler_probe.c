@@ -1,7 +1,6 @@
 /* Probes of the C compiler: wrong stores, linkers. */
 #include "toolchain/compiler_probe.h"
 
-#include <limits.h>
 #include <stdint.h>
 #include <stdlib.h>
 

@@ -91,7 +91,7 @@ check "a string of any length has recurrences of the same length" short string 4
 constrained=$(grep -l '^  .constraints = &' "$TMP"/c/*.c | sed 's/.*\///; s/\.c$//')
 check "some of these models have constraints" [ "$(echo "$constrained" | wc -l)" -gt 1 ]
 # `if`, friction, min; the brachistochrone's sqrt(1/y) derived is 1/abs(y)
-not_analytic="motor room tables ${SLOW:+block brachistochrone coulomb_oscillator falling_cat quarter_car rocket shaken_frame stick_slip}"
+not_analytic="motor room tables ${SLOW:+block brachistochrone coulomb_oscillator coupled_clutches falling_cat quarter_car rocket shaken_frame stick_slip}"
 # shellcheck disable=SC2086 # lists
 is "models with constraints have none, nor those that are not analytic: if, and a table" "$(printf 'without: %s\n' $constrained $not_analytic | sort -u)" \
   "$(grep without "$TMP/defect.txt" | sort -u)"

@@ -20,6 +20,16 @@ static inline long double uniform(long double lo, long double hi) {
   return lo + (hi - lo) * (long double)(test_rng >> 11) / 9007199254740992.0L;
 }
 
+/* An arena that ends the test where memory runs out. */
+static inline Arena *test_arena(void) {
+  static jmp_buf failed;
+  Arena *a = arena_new(NULL);
+  assert_non_null(a);
+  if (setjmp(failed)) fail_msg("out of memory");
+  arena_guard(a, &failed);
+  return a;
+}
+
 /* NULL when there were errors; the messages are then on stderr. */
 static inline Eqns *equations(Arena *a, const char *lag, const char *scene) {
   Sources *sources = sources_new(a);

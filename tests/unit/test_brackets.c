@@ -21,11 +21,7 @@ typedef struct {
 } Charges;
 
 static Charges charges(const char *lag) {
-  Charges c = {.arena = arena_new(NULL)};
-  static jmp_buf failed;
-  assert_non_null(c.arena);
-  if (setjmp(failed)) fail_msg("out of memory");
-  arena_guard(c.arena, &failed);
+  Charges c = {.arena = test_arena()};
   c.e = equations(c.arena, lag, NULL);
   assert_non_null(c.e);
   SearchLimit limit = search_limit(INFINITY);

@@ -21,11 +21,7 @@ typedef struct {
 } Side;
 
 static Side side(const char *lag) {
-  Side s = {.arena = arena_new(NULL)};
-  static jmp_buf failed;
-  assert_non_null(s.arena);
-  if (setjmp(failed)) fail_msg("out of memory");
-  arena_guard(s.arena, &failed);
+  Side s = {.arena = test_arena()};
   s.e = equations(s.arena, lag, NULL);
   assert_non_null(s.e);
   s.h = hamilton_derive(s.e);

@@ -65,7 +65,7 @@ static void test_least_norm(void **state) {
     }
   }
   lag_singular_values(ROWS, N, A, V, sigma);
-  int rank = lag_least_norm(ROWS, N, A, V, sigma, 1e-10, 0, b, x);
+  int rank = lag_least_norm((lag_decomposed){ROWS, N, A, V, sigma}, 1e-10, 0, b, x);
   assert_true(rank == 3);
   for (int k = 0; k < N; k++) {
     double sum = 0, part = 0;
@@ -81,7 +81,7 @@ static void test_least_norm(void **state) {
   assert_true(off < 1e-13 && along < 1e-14);
   double length = 0, damped = 0;
   for (int i = 0; i < N; i++) length += x[i] * x[i];
-  lag_least_norm(ROWS, N, A, V, sigma, 1e-10, 1, b, x);
+  lag_least_norm((lag_decomposed){ROWS, N, A, V, sigma}, 1e-10, 1, b, x);
   for (int i = 0; i < N; i++) damped += x[i] * x[i];
   assert_true(damped < length);
 }

@@ -14,18 +14,15 @@ enum {
   ALL = SYMPLECTIC + OTHERS
 };
 
-static const lag_method *method_at(int i)
-{
+static const lag_method *method_at(int i) {
   return i < SYMPLECTIC ? symplectic[i] : others[i - SYMPLECTIC];
 }
 
-static void set_start(lag_sim *s, const double *y)
-{
+static void set_start(lag_sim *s, const double *y) {
   static const char *const names[2][4] = {{"x", "x'"}, {"x", "y", "x'", "y'"}};
   int nq = lag_sim_scene(s)->model->nq;
-  for (int i = 0; i < 2 * nq; i++) {
+  for (int i = 0; i < 2 * nq; i++)
     assert_int_equal(lag_sim_set(s, names[nq - 1][i], y[i]), 0);
-  }
 }
 
 /* J[n * n] := dy(t)/dy(0) of steps of size h from y0; y := the state there, unless NULL. */
@@ -37,15 +34,14 @@ static void tangent(const lag_scene *scene, const lag_method *m, double h, doubl
   assert_int_equal(lag_sim_set_tangent(s, n, NULL), 0);
   assert_int_equal(lag_sim_advance(s, t), LAG_OK);
   assert_int_equal(lag_sim_tangent(s, J), 0);
-  if (y) {
+  if (y)
     memcpy(y, lag_sim_q(s), (size_t)n * sizeof *y);
-  }
   lag_sim_free(s);
 }
 
 /* The same of a method that chooses its steps. */
-static void tangent_tol(const lag_scene *scene, const lag_method *m, double tol, double t, const double *y0, double *J)
-{
+static void tangent_tol(const lag_scene *scene, const lag_method *m, double tol, double t, const double *y0,
+                        double *J) {
   lag_sim *s = sim_with(scene, m, tol, 0, NULL);
   set_start(s, y0);
   assert_int_equal(lag_sim_set_tangent(s, 2 * scene->model->nq, NULL), 0);
@@ -56,8 +52,7 @@ static void tangent_tol(const lag_scene *scene, const lag_method *m, double tol,
 
 /* ---- Closed forms */
 
-static void oscillator_turns(void **state)
-{
+static void oscillator_turns(void **state) {
   const double y0[] = {0.3, -1}, t = 3.7, turn[] = {cos(t), sin(t), -sin(t), cos(t)};
   /* of rk45, dop853 at 1e-13, and radau at 1e-12, whose steps are for y */
   static const double within[] = {1e-10, 1e-12, 1e-9};
@@ -70,14 +65,12 @@ static void oscillator_turns(void **state)
   }
 }
 
-static void multiply(int n, const double *A, const double *B, double *C)
-{
+static void multiply(int n, const double *A, const double *B, double *C) {
   for (int i = 0; i < n; i++) {
     for (int j = 0; j < n; j++) {
       double s = 0;
-      for (int k = 0; k < n; k++) {
+      for (int k = 0; k < n; k++)
         s += A[i * n + k] * B[k * n + j];
-      }
       C[i * n + j] = s;
     }
   }
@@ -85,8 +78,7 @@ static void multiply(int n, const double *A, const double *B, double *C)
 
 /* Of a linear model the derivative of a step is its matrix: Verlet's, the midpoint rule's (I - hA/2)^-1 (I + hA/2),
  * Kutta's exp(hA) to fourth order. */
-static void matrices_of_linear_steps(void **state)
-{
+static void matrices_of_linear_steps(void **state) {
   const double h = 0.25, y0[] = {0.3, -1}, d = 1 + h * h / 4, even = 1 - h * h / 2 + h * h * h * h / 24,
                odd = h - h * h * h / 6;
   const struct {
@@ -112,30 +104,26 @@ static void matrices_of_linear_steps(void **state)
 }
 
 /* x'' = -x - x'/5 */
-static int damped_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
-{
+static int damped_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w) {
   a[0] = -q[0] - 0.2 * v[0];
   return 0;
 }
 
-LINEARISE(damped)
-{
+LINEARISE(damped) {
   dr[0] = -1;
   dr[1] = -0.2;
   M[0] = 1;
   return 0;
 }
 
-FIRST(damped)
-{
+FIRST(damped) {
   Lq[0] = -q[0];
   Lv[0] = v[0];
   Q[0] = -0.2 * v[0];
   return 0;
 }
 
-SECOND(damped)
-{
+SECOND(damped) {
   h[0] = -1;
   h[1] = 1;
   h[2] = -0.2;
@@ -148,8 +136,7 @@ LINEAR(damped);
 #define damped_start osc_start
 SYSTEM(damped, 1, LAG_CONSTANT_MASS | LAG_AUTONOMOUS, NULL, EXACT(damped));
 
-static void damped_oscillator(void **state)
-{
+static void damped_oscillator(void **state) {
   const double y0[] = {1, 0}, t = 4, c = 0.1, w = sqrt(1 - c * c), e = exp(-c * t), C = e * cos(w * t),
                S = e * sin(w * t) / w;
   const double want[] = {C + c * S, S, -S, C - c * S};
@@ -164,8 +151,7 @@ static void damped_oscillator(void **state)
 
 /* Y' = Df Y by Taylor series with 30 digits (mpmath's odefun): Kepler, e = 0.6, from the pericentre to t = 2; the
  * pendulum from 3 at rest to t = 5. */
-static void published_digits(void **state)
-{
+static void published_digits(void **state) {
   static const double orbit[] = {
       -4.529741573854750987436, 1.621301187593417431408,  0.5933650023569488197481, -1.869824251035214602912,
       18.97815706467760974298,  5.036188407217134288068,  1.67716720501291264456,   5.823298645505206873168,
@@ -204,8 +190,7 @@ static void published_digits(void **state)
 /* ---- The derivative of the map itself, by central differences of order 8: rounding 1e-15/0.02, truncation
  * 0.02^8/630 times a ninth derivative of the map. */
 
-static void differences(const lag_scene *scene, const lag_method *m, double h, double t, const double *y0, double *J)
-{
+static void differences(const lag_scene *scene, const lag_method *m, double h, double t, const double *y0, double *J) {
   static const double weight[4] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
   int n = 2 * scene->model->nq;
   double delta = 0.01;
@@ -216,9 +201,8 @@ static void differences(const lag_scene *scene, const lag_method *m, double h, d
       memcpy(at, y0, (size_t)n * sizeof *at);
       at[j] += sign * (k % 4 + 1) * delta;
       flow(scene, m, h, t, at, out);
-      for (int i = 0; i < n; i++) {
+      for (int i = 0; i < n; i++)
         J[i * n + j] += sign * weight[k % 4] * out[i] / delta;
-      }
     }
   }
 }
@@ -237,8 +221,7 @@ static const struct {
 };
 enum { MAPS = sizeof maps / sizeof *maps };
 
-static void derivative_of_the_map(void **state)
-{
+static void derivative_of_the_map(void **state) {
   (void)state;
   for (int m = 0; m < ALL; m++) {
     double worst = 0;
@@ -256,8 +239,7 @@ static void derivative_of_the_map(void **state)
 }
 
 /* And of the method's options. */
-static void derivative_of_higher_orders(void **state)
-{
+static void derivative_of_higher_orders(void **state) {
   const struct {
     const lag_method *method;
     lag_option opt[3];
@@ -276,9 +258,8 @@ static void derivative_of_higher_orders(void **state)
       assert_int_equal(lag_sim_set_tangent(s, 4, NULL), 0);
       assert_int_equal(lag_sim_advance(s, 0.25), LAG_OK);
       memcpy(side < 0 ? low : high, lag_sim_q(s), sizeof low);
-      if (side == 0) {
+      if (side == 0)
         assert_int_equal(lag_sim_tangent(s, J), 0);
-      }
       lag_sim_free(s);
     }
     for (int k = 0; k < 4; k++) {
@@ -291,16 +272,14 @@ static void derivative_of_higher_orders(void **state)
 /* ---- The symplectic form, in q and p = dL/dv */
 
 /* T[n * n] := d(q, p)/d(q, v) at y. */
-static void canonical(const lag_scene *scene, const double *y, double *T)
-{
+static void canonical(const lag_scene *scene, const double *y, double *T) {
   const lag_model *m = scene->model;
   int nq = m->nq, n = 2 * nq;
   double h[16];
   assert_int_equal(m->second(m, 0, y, y + nq, NULL, NULL, NULL, h, NULL), 0);
   memset(T, 0, (size_t)(n * n) * sizeof *T);
-  for (int i = 0; i < nq; i++) {
+  for (int i = 0; i < nq; i++)
     T[i * n + i] = 1;
-  }
   for (int e = 0; e < m->nsecond; e++) {
     int row = m->second_at[e].row, col = m->second_at[e].col;
     if (m->second_at[e].part == LAG_VQ) {
@@ -312,23 +291,20 @@ static void canonical(const lag_scene *scene, const double *y, double *T)
 }
 
 /* W := A^T Omega A */
-static void form(int nq, const double *A, double *W)
-{
+static void form(int nq, const double *A, double *W) {
   int n = 2 * nq;
   for (int a = 0; a < n; a++) {
     for (int b = 0; b < n; b++) {
       W[a * n + b] = 0;
-      for (int i = 0; i < nq; i++) {
+      for (int i = 0; i < nq; i++)
         W[a * n + b] += A[i * n + a] * A[(nq + i) * n + b] - A[(nq + i) * n + a] * A[i * n + b];
-      }
     }
   }
 }
 
 /* (T1 J)^T Omega (T1 J) = T0^T Omega T0 is J^T Omega J = Omega in canonical variables; relative to the largest entry
  * of either. */
-static double defect(const lag_scene *scene, const lag_method *m, double h, const double *y0)
-{
+static double defect(const lag_scene *scene, const lag_method *m, double h, const double *y0) {
   int nq = scene->model->nq, n = 2 * nq;
   double y1[4], J[MOST], T0[MOST], T1[MOST], moved[MOST], before[MOST], after[MOST], size = 1;
   tangent(scene, m, h, h, y0, y1, J);
@@ -337,9 +313,8 @@ static double defect(const lag_scene *scene, const lag_method *m, double h, cons
   multiply(n, T1, J, moved);
   form(nq, T0, before);
   form(nq, moved, after);
-  for (int i = 0; i < n * n; i++) {
+  for (int i = 0; i < n * n; i++)
     size = fmax(size, fabs(before[i]));
-  }
   return distance(n * n, before, after) / size;
 }
 
@@ -354,8 +329,7 @@ static const struct {
     {&double_pendulum, {0.01, 0.02, 0.1}, {1, -0.5, 0.3, 0.6}},
 };
 
-static void steps_are_symplectic(void **state)
-{
+static void steps_are_symplectic(void **state) {
   (void)state;
   for (int k = 0; k < 3; k++) {
     for (int i = 0; i < 3; i++) {
@@ -376,26 +350,22 @@ static void steps_are_symplectic(void **state)
 }
 
 /* Every method whose descriptor says so was tried. */
-static void all_that_claim_it(void **state)
-{
+static void all_that_claim_it(void **state) {
   (void)state;
   for (int i = 0; i < lag_nmethods; i++) {
     int tried = 0;
-    for (int m = 0; m < SYMPLECTIC; m++) {
+    for (int m = 0; m < SYMPLECTIC; m++)
       tried |= lag_methods[i] == symplectic[m];
-    }
     assert_int_equal(tried, (lag_methods[i]->flags & LAG_METHOD_SYMPLECTIC) != 0);
   }
 }
 
-static double determinant(int n, double *A)
-{
+static double determinant(int n, double *A) {
   double det = 1;
   for (int c = 0; c < n; c++) {
     int best = c;
-    for (int i = c + 1; i < n; i++) {
+    for (int i = c + 1; i < n; i++)
       best = fabs(A[i * n + c]) > fabs(A[best * n + c]) ? i : best;
-    }
     for (int j = 0; j < n && best != c; j++) {
       double x = A[c * n + j];
       A[c * n + j] = A[best * n + j];
@@ -404,17 +374,15 @@ static double determinant(int n, double *A)
     det *= best != c ? -A[c * n + c] : A[c * n + c];
     for (int i = c + 1; i < n; i++) {
       double f = A[i * n + c] / A[c * n + c];
-      for (int j = c; j < n; j++) {
+      for (int j = c; j < n; j++)
         A[i * n + j] -= f * A[c * n + j];
-      }
     }
   }
   return det;
 }
 
 /* Phase-space volume over a hundred steps, where M is constant. The determinant loses what J has grown by. */
-static void volume_is_kept(void **state)
-{
+static void volume_is_kept(void **state) {
   double J[MOST];
   (void)state;
   for (int m = 0; m < SYMPLECTIC; m++) {
@@ -429,31 +397,26 @@ static void volume_is_kept(void **state)
 
 /* A symmetric method: forth, velocities turned, forth, is the beginning with velocities turned; and so of
  * derivatives. */
-static double not_reversed(const lag_scene *scene, const lag_method *m, double h, const double *y0)
-{
+static double not_reversed(const lag_scene *scene, const lag_method *m, double h, const double *y0) {
   int nq = scene->model->nq, n = 2 * nq;
   double y[4], J[MOST], back[MOST], both[MOST], worst = 0;
   tangent(scene, m, h, h, y0, y, J);
-  for (int i = nq; i < n; i++) {
+  for (int i = nq; i < n; i++)
     y[i] = -y[i];
-  }
   tangent(scene, m, h, h, y, NULL, back);
   for (int i = 0; i < n; i++) {
-    for (int j = 0; j < n; j++) {
+    for (int j = 0; j < n; j++)
       J[i * n + j] *= i < nq ? 1 : -1;
-    }
   }
   multiply(n, back, J, both);
   for (int i = 0; i < n; i++) {
-    for (int j = 0; j < n; j++) {
+    for (int j = 0; j < n; j++)
       worst = fmax(worst, fabs(both[i * n + j] - (i != j ? 0 : i < nq ? 1 : -1)));
-    }
   }
   return worst;
 }
 
-static void symmetric_steps_are_reversed(void **state)
-{
+static void symmetric_steps_are_reversed(void **state) {
   (void)state;
   for (int m = 0; m < ALL; m++) {
     for (int k = 0; k < 3; k++) {
@@ -469,17 +432,15 @@ static void symmetric_steps_are_reversed(void **state)
 
 /* ---- The run, and what is refused */
 
-static void run_is_the_same(void **state)
-{
+static void run_is_the_same(void **state) {
   (void)state;
   for (int m = 0; m < ALL; m++) {
     double y[2][4], J[MOST];
     lag_stats st[2];
     for (int with = 0; with < 2; with++) {
       lag_sim *s = sim_with(&double_pendulum, method_at(m), 0, 0, NULL);
-      if (with) {
+      if (with)
         assert_int_equal(lag_sim_set_tangent(s, 4, NULL), 0);
-      }
       for (int i = 1; i <= 5; i++) {
         assert_int_equal(lag_sim_advance(s, 0.0123 * i), LAG_OK);
         assert_int_equal(with ? lag_sim_tangent(s, J) : 0, 0);
@@ -495,8 +456,7 @@ static void run_is_the_same(void **state)
 }
 
 /* Within a step: by a shorter one, as accurate as the method. */
-static void within_a_step(void **state)
-{
+static void within_a_step(void **state) {
   const double y0[] = {0.3, -1}, t = 1.03, turn[] = {cos(t), sin(t), -sin(t), cos(t)};
   double J[4];
   (void)state;
@@ -513,20 +473,17 @@ static void within_a_step(void **state)
 }
 
 /* Two columns, replaced by others on the way. */
-static int replace(void *context, const lag_sim *s)
-{
+static int replace(void *context, const lag_sim *s) {
   double Y[4];
   (void)context;
   assert_int_equal(lag_sim_tangent((lag_sim *)(uintptr_t)s, Y), 0);
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < 4; i++)
     Y[i] *= 0.5;
-  }
   assert_int_equal(lag_sim_set_tangent((lag_sim *)(uintptr_t)s, 2, Y), 0);
   return 0;
 }
 
-static void columns_may_be_replaced(void **state)
-{
+static void columns_may_be_replaced(void **state) {
   const double half[] = {1, 1, 0, 1}, h = 0.25;
   double Y[4], J[4];
   lag_sim *s = equal_steps(&osc, &lag_verlet, h);
@@ -543,8 +500,7 @@ static void columns_may_be_replaced(void **state)
   }
 }
 
-static void refusals(void **state)
-{
+static void refusals(void **state) {
   lag_method bare = lag_rk4;
   bare.tangent = NULL;
   lag_sim *s = sim_with(&kepler, &bare, 0, 0, NULL);
@@ -584,8 +540,7 @@ static void refusals(void **state)
   lag_sim_free(s);
 }
 
-int main(void)
-{
+int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(oscillator_turns),
       cmocka_unit_test(matrices_of_linear_steps),

@@ -181,7 +181,7 @@ static System derive(const char *const *q, uint32_t n, const char *const (*lets)
   for (uint32_t i = 0; i < nlets; i++) {
     text_let(&s.t, lets[i][0], lets[i][1]);
     Expr let = s.t.lets[s.t.nlets - 1], rate;
-    expr_tangent(g, &let, 1, seed, 64, "'", NULL, &rate);
+    expr_tangent(g, &let, 1, (ExprSeeds){.at = seed, .n = 64}, "'", NULL, &rate);
     snprintf(names[i], sizeof names[i], "%s'", lets[i][0]);
     s.t.let_names[s.t.nlets] = names[i];
     s.t.lets[s.t.nlets++] = rate;
@@ -189,7 +189,7 @@ static System derive(const char *const *q, uint32_t n, const char *const (*lets)
   Expr lagrangian = text_expr(&s.t, L), p[3], dLdq[3], dp[3];
   expr_gradient(g, lagrangian, vs, n, p);
   expr_gradient(g, lagrangian, qs, n, dLdq);
-  expr_tangent(g, p, n, seed, 64, "'", NULL, dp);
+  expr_tangent(g, p, n, (ExprSeeds){.at = seed, .n = 64}, "'", NULL, dp);
   for (uint32_t i = 0; i < n; i++) {
     s.f[i] = expr_sub(g, dLdq[i], dp[i]);
     for (uint32_t k = 0; k < n; k++) s.M[i * n + k] = expr_diff(g, p[i], vs[k]);

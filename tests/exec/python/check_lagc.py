@@ -280,7 +280,8 @@ if os.environ.get("SLOW"):
     many = double.batch("swing", th1=angles, times=[0.5, 1], tol=1e-6)
     near("10^4 motions: in lanes by themselves", many.y[::100], double.batch("swing", th1=angles[::100], times=[0.5, 1], tol=1e-6).y, 1e-9)
     swept = double.sweep("swing", th1=list(angles[::100]), measure=["th1(1)"], until=1, tol=1e-6)
-    near("the numbers of lagc sweep", swept["th1(1)"], np.degrees(many.y[::100, 1, 0]), 1e-12)
+    # to the tolerance, 1e-6 rad: where processors have other lanes for the two, rounding may cost one of them a step
+    near("the numbers of lagc sweep", swept["th1(1)"], np.degrees(many.y[::100, 1, 0]), 1e-4)
 
 # A parameter by a formula follows the one that it is made of, in each motion: x'' = -2k x.
 path = os.path.join(os.environ["TMP"], "twice.lag")
@@ -346,6 +347,12 @@ raises("a name that is a number", lagc.Error, "1 is not a name", lambda: twice.r
 raises("values that are no dictionary", lagc.Error, "give a dictionary", lambda: twice.batch(values=3, times=[1]))
 raises("a scene that is a number", lagc.Error, "has no scene 7", lambda: twice.run(7))
 raises("threads below 1", lagc.Error, "threads = -3", lambda: twice.batch(times=[1], threads=-3))
+raises("lanes that no vector has", lagc.Error, "lanes = 3", lambda: twice.batch(times=[1], lanes=3))
+raises("starts that are text", lagc.Error, "not an array of real numbers", lambda: twice.batch(times=[1], y0=[["a"] * 4]))
+raises("parameters in a dictionary", lagc.Error, "not an array of real numbers", lambda: double.batch("swing", times=[1], p={"m1": [1, 2]}))
+raises("out that is a list", lagc.Error, "writable array", lambda: twice.batch(times=[1], out=[1]))
+raises("a vector that is too short", lagc.Error, "x has the shape (1,)", lambda: double.jvp(0, [1, 1, 0, 0], [1], "swing"))
+raises("times that are too many", lagc.Error, "t has the shape (3,)", lambda: double.rhs([0, 1, 2], [[1, 1, 0, 0]] * 2, "swing"))
 raises("a motion with a wrong sign", lagc.Error, "motion 1: m1 = -2: the model declares m1 > 0", lambda: double.batch("swing", m1=[1, -2, 3], times=[1]))
 ends, block = double.batch("swing", th1=[1, 2, 3], times=[1], method="rk4", step=0.01).y, np.zeros(13)
 starts = block[:12].reshape(3, 4)
