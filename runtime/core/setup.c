@@ -116,7 +116,7 @@ static int clear_scratch(lag_sim *s) {
       {&s->pb.ranks, ranks}, {&s->contact_scratch, sized}, {&s->contact_was, (size_t)m->ncontacts},
       {&s->charge_now, 2 * nc}, {&s->charge_power, nc}, {&s->charge_gain, nc}, {&s->sides, 3 * (size_t)m->nswitch},
       {&s->grip, nm}, {&s->side_noise, nm}, {&s->slid_off, nm}, {&s->meets, nm}, {&s->left, nm},
-      {&s->meeting, nm * (9 + 2 * nm)}, {&s->pb.slide, nm * (3 + nm)},
+      {&s->meeting, nm * (9 + 2 * nm)}, {&s->pb.slide, nm * (3 + 2 * nm)},
       {&s->pb.rub, lag_contact_law_size(m)},
       {&s->sizes, (size_t)(m->nsizes + m->nmoving)}};
   const size_t nparts = sizeof parts / sizeof *parts;
