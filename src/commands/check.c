@@ -67,6 +67,15 @@ typedef struct {
   StrBuf *out;
 } CheckedPart;
 
+static void list_families(const Model *m, StrBuf *out) {
+  for (uint32_t i = 0; i < m->families.n; i++) {
+    const ContactFamily *f = &m->families.at[i];
+    sb_printf(out, "%s%s[%s%s%s]", i ? ", " : "contacts ", f->name, f->name_i, f->name_j ? ", " : "",
+              f->name_j ? f->name_j : "");
+  }
+  if (m->families.n) sb_printf(out, ": %s, which moreau follows\n", m->families.n > 1 ? "families" : "a family");
+}
+
 static void check_scene(Compiler *c, void *data) {
   const CheckedPart *x = data;
   StrBuf *out = x->out;
@@ -77,6 +86,7 @@ static void check_scene(Compiler *c, void *data) {
   if (!out->n) {
     show_facts(e, out);
     show_cyclic(e, "", out);
+    list_families(e->m, out);
     check_json_facts(c, e);
   }
   collect_units(c, e->m, x->found);

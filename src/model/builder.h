@@ -494,6 +494,10 @@ Value action_of_momentum(Builder *b, const AstStmt *st, Name effect);
 /* constraint.c: adds a constraint statement, or a contact statement, to the model. */
 void add_constraint(Builder *b, const AstStmt *st, Name effect);
 void add_contact(Builder *b, const AstStmt *st, Name effect);
+/* contact_family.c: a contact with ranges in its index; whether it is one; refusals where moreau does not follow. */
+int is_contact_family(const Builder *b, const AstStmt *st);
+void add_contact_family(Builder *b, const AstStmt *st, Name effect);
+void check_contact_families(Builder *b);
 /* guide.c: the constraint of a guide; its friction, once all constraints are known. */
 void add_guide(Builder *b, const AstStmt *st, Name effect);
 void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data);

@@ -25,7 +25,7 @@ enum { OF_I = 1, OF_J = 2, OF_MOTION = 4 };
 static unsigned part_of(const Far *f, const Symbol *s) {
   const unsigned motion = 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE;
   int64_t part;
-  const Read *r = quantified_read(f->q, s, &part);
+  const Read *r = quantified_read_of(f->q, s, &part);
   unsigned of = motion & 1u << s->kind ? OF_MOTION : 0;
   if (s->kind == SYM_LOCAL) return of | (s->name == f->q->i ? OF_I : OF_J);
   for (uint32_t k = 0; r && k < r->e->ndims; k++) of |= (r->at[k].by_i ? OF_I : 0) | (r->at[k].by_j ? OF_J : 0);
@@ -44,7 +44,7 @@ static unsigned parts_of(const Far *f, Expr e) {
 static Expr swapped_symbol(const Far *f, Expr e) {
   const Symbol *s = expr_sym_of(f->g, e);
   int64_t part;
-  const Read *r = quantified_read(f->q, s, &part);
+  const Read *r = quantified_read_of(f->q, s, &part);
   if (s->kind == SYM_LOCAL) return expr_named_symbol(f->g, s->name == f->q->i ? f->q->j : f->q->i);
   if (!r) return e;
   Read other = *r;

@@ -14,7 +14,7 @@
 static int64_t at_pair(Affine x, const int64_t *pair) { return x.first + x.by_i * pair[0] + x.by_j * pair[1]; }
 
 /* Whether families read at different indices are read at different members for this pair. */
-static int tells_apart(const struct Quantified *q, const int64_t *pair) {
+int quantified_tells_apart(const struct Quantified *q, const int64_t *pair) {
   for (uint32_t x = 0; x < q->reads.n; x++)
     for (uint32_t y = 0; y < x; y++) {
       const Read *r = &q->reads.at[x], *s = &q->reads.at[y];
@@ -37,7 +37,7 @@ static int find_pairs(struct Quantified *q, Arena *arena) {
     int64_t i = q->lo + row, from = q->from.first + q->from.by_i * i, n = loop_turns(&q->range, row);
     for (int64_t k = 0; k < n && k < TRIED; k++) {
       int64_t pair[2] = {i, from + k};
-      if (!tells_apart(q, pair)) continue;
+      if (!quantified_tells_apart(q, pair)) continue;
       vec_push(arena, &at, pair[0]);
       vec_push(arena, &at, pair[1]);
     }
@@ -91,7 +91,7 @@ static uint32_t block_of(Arguments *a, const Read *r) {
 }
 
 /* Element of the family's array as an affine function: (at[0] - lo[0])*size + at[1] - lo[1], times components. */
-static Affine element_of(const Read *r) {
+Affine quantified_element(const Read *r) {
   Affine x = {0};
   for (uint32_t k = 0; k < r->e->ndims; k++) {
     int64_t size = r->e->hi[k] - r->e->lo[k] + 1;
@@ -111,21 +111,21 @@ static SymKind kind_of(const Read *r) {
   }
 }
 
-const Read *quantified_read(const struct Quantified *q, const Symbol *s, int64_t *part) {
+const Read *quantified_read_of(const struct Quantified *q, const Symbol *s, int64_t *part) {
   for (uint32_t k = 0; k < q->reads.n; k++) {
     const Read *r = &q->reads.at[k];
-    *part = (int64_t)s->index - r->e->index - at_pair(element_of(r), q->pair[0]);
+    *part = (int64_t)s->index - r->e->index - at_pair(quantified_element(r), q->pair[0]);
     if (kind_of(r) == s->kind && *part >= 0 && *part < (r->e->parts ? r->e->parts : 1)) return r;
   }
   return NULL;
 }
 
 SymId quantified_symbol(const Model *m, const struct Quantified *q, const Read *r, int64_t part) {
-  return member_symbol(m, r->e->kind, r->rate, r->e->index + (uint32_t)(at_pair(element_of(r), q->pair[0]) + part));
+  return member_symbol(m, r->e->kind, r->rate, r->e->index + (uint32_t)(at_pair(quantified_element(r), q->pair[0]) + part));
 }
 
 /* Symbols that hold one number for all pairs: of names without an index. */
-static int is_plain(const Symbol *s) {
+int quantified_is_plain(const Symbol *s) {
   return (s->kind == SYM_COORD || s->kind == SYM_STATE || s->kind == SYM_PARAM || s->kind == SYM_INPUT ||
           s->kind == SYM_VEL || s->kind == SYM_RATE || s->kind == SYM_TIME) &&
          !strchr(s->name, '[');
@@ -166,14 +166,14 @@ static int add_symbol(Arguments *a, Expr node) {
   if (s->kind == SYM_CONST) return 1;
   if (s->kind == SYM_LOCAL && has_name(s, a->q->i)) return add_counter(a, node, (Affine){.by_i = 1});
   if (s->kind == SYM_LOCAL && has_name(s, a->q->j)) return add_counter(a, node, (Affine){.by_j = 1});
-  const Read *r = quantified_read(a->q, s, &part);
-  if (!r && !is_plain(s)) return 0;
+  const Read *r = quantified_read_of(a->q, s, &part);
+  if (!r && !quantified_is_plain(s)) return 0;
   Subscript at = {.first = a->args.n};
   if (r) {
-    Affine x = element_of(r);
+    Affine x = quantified_element(r);
     x.first += part + block_of(a, r);
     at = quantified_turns(a->q, x);
-    uint32_t there = r->e->index + (uint32_t)(at_pair(element_of(r), a->q->pair[1]) + part);
+    uint32_t there = r->e->index + (uint32_t)(at_pair(quantified_element(r), a->q->pair[1]) + part);
     vec_push(a->arena, &a->first, node);
     vec_push(a->arena, &a->second, expr_symbol(a->g, member_symbol(a->m, r->e->kind, r->rate, there))->node);
   } else {
@@ -362,7 +362,7 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   uint64_t guessed = !read && q->inner ? (uint64_t)q->range.rows * q->range.rows / 2 : 0; /* unknown range inside */
   q->near = near_of(b->ast, q->inner);
   q->far = far_of(b->ast, q->inner);
-  int is_listed = (q->near || q->far) && b->sums_from < UINT32_MAX;
+  int is_listed = (b->ast->nears.n || q->far) && b->sums_from < UINT32_MAX; /* such a model is meant for any N */
   if ((turns > guessed ? turns : guessed) < b->sums_from && !is_listed) return 0;
   if (q->far && !read) {
     refuse(b, q->far->span, "a tree takes a sum over pairs that stays one, and this one does not: %s" HELP

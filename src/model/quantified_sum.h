@@ -48,9 +48,18 @@ struct Quantified {
 /* quantified_text.c: finds the inner sum, and all that the terms read; 0: the text has no such form. */
 int quantified_text(Eval *ev, struct Quantified *q);
 
-/* The read that gave a symbol for the first pair, and its component, or NULL; the symbol of such a read. */
-const Read *quantified_read(const struct Quantified *q, const Symbol *s, int64_t *part);
+/* The range of j, affine in i; what an expression reads, without indices as numbers. 0: q->why, at q->where. */
+int quantified_range(Eval *ev, struct Quantified *q, AstId from, AstId to);
+int quantified_reads(Eval *ev, struct Quantified *q, AstId id);
+
+/* quantified_sum.c: whether the members that are read differ for this pair; the read that gave the symbol for the
+ * first pair, and its component (NULL: none); the symbol of such a read; its element, in i and j; whether a symbol has
+ * no index. */
+int quantified_tells_apart(const struct Quantified *q, const int64_t *pair);
+const Read *quantified_read_of(const struct Quantified *q, const Symbol *s, int64_t *part);
 SymId quantified_symbol(const Model *m, const struct Quantified *q, const Read *r, int64_t part);
+Affine quantified_element(const Read *r);
+int quantified_is_plain(const Symbol *s);
 
 /* far_form.c: the parts of a term, for the first pair, of a sum by a tree; NULL: it has no such form, which is
  * reported. */

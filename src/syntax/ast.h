@@ -92,6 +92,7 @@ typedef enum {
   STMT_STATE,       /* name, dims, type, unit */
   STMT_LET,         /* name, dims (numbers, or AST_BINDs), rhs */
   STMT_FUNCTION,    /* name, args (AST_NAMEs), rhs */
+  STMT_NETWORK,     /* name, args (AST_NAMEs), rhs = path of its weights or 0, dims = layers, type = activation */
   STMT_HAMILTONIAN, /* rhs; lhs: `energy`, which a model that also gives L claims to be rhs */
   STMT_LAGRANGIAN,  /* rhs; likewise the next three */
   STMT_KINETIC,
