@@ -128,7 +128,7 @@ SymId quantified_symbol(const Model *m, const struct Quantified *q, const Read *
 /* Symbols that hold one number for all pairs: of names without an index. */
 int quantified_is_plain(const Symbol *s) {
   return (s->kind == SYM_COORD || s->kind == SYM_STATE || s->kind == SYM_PARAM || s->kind == SYM_INPUT ||
-          s->kind == SYM_VEL || s->kind == SYM_RATE) &&
+          s->kind == SYM_VEL || s->kind == SYM_RATE || s->kind == SYM_TIME) &&
          !strchr(s->name, '[');
 }
 
@@ -164,7 +164,7 @@ static int add_symbol(Arguments *a, Expr node) {
   const Symbol *s = expr_sym_of(a->g, node);
   SymId id = expr_sym_id(a->g, node);
   int64_t part;
-  if (s->kind == SYM_TIME || s->kind == SYM_CONST) return 1;
+  if (s->kind == SYM_CONST) return 1;
   if (s->kind == SYM_LOCAL && has_name(s, a->q->i)) return add_counter(a, node, (Affine){.by_i = 1});
   if (s->kind == SYM_LOCAL && has_name(s, a->q->j)) return add_counter(a, node, (Affine){.by_j = 1});
   const Read *r = quantified_read_of(a->q, s, &part);

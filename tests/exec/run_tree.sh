@@ -40,6 +40,12 @@ check "and another sum" apart evaluated 1e-9 0
 check "check says the error at the start" says 0 "a tree takes this sum of 1/r over 90 bodies: at the start its forces differ" "$LAGC" check "$TMP/disc.lag"
 check "an angle above 1 is refused" says 2 "1 less the opening angle of the tree" "$LAGC" run "$TMP/disc.lag" theta=1.5
 
+# Time in a sum that stays one: work is done on the charges.
+for way in disc direct; do
+  sed 's|  k/N|  cos(t)*k/N|; s|, by|/(2 + sin(t)), by|' "$TMP/$way.lag" >"$TMP/driven.lag"
+  check "time is seen, $way" says 0 "work of forces and explicit time" "$LAGC" run "$TMP/driven.lag"
+done
+
 sweep() { "$LAGC" sweep "$TMP/disc.lag" 'k=2,2.1,2.2,2.3,2.4,2.5,2.6,2.7' --measure 'a=r[1].x(end)' "$@" >/dev/null 2>&1; }
 slow sweep -o "$TMP/lanes.csv"
 [ -z "${SLOW:-}" ] || is "a sweep in lanes has the digits of a run" "$(sed -n 's/^2,\(.*\),ok/\1/p' "$TMP/lanes.csv")" \

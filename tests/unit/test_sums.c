@@ -249,6 +249,19 @@ static void a_spring_is_right(void **state) {
   arena_free(a);
 }
 
+/* Time in a term of a sum is no symbol of a member, and yet seen: the energy changes. */
+static void time_is_seen(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  const char *text = BODIES "potential = sum(i in 1..N, sum(j in 1..i-1, G*cos(t)*e[i]*e[j]*pair(" APART ")))";
+  for (uint32_t from = 1; from; from = from == 1 ? UINT32_MAX : 0) {
+    Eqns *e = family(a, text, 8, from);
+    assert_int_equal(e->m->sums.n > 1, from == 1);
+    assert_false(e->autonomous);
+  }
+  arena_free(a);
+}
+
 /* Texts without the form: written out, and right as before. */
 static void other_texts_are_written_out(void **state) {
   (void)state;
@@ -375,6 +388,7 @@ int main(void) {
       cmocka_unit_test(random_families_agree),
       cmocka_unit_test(programs_do_not_know_the_pairs),
       cmocka_unit_test(a_spring_is_right),
+      cmocka_unit_test(time_is_seen),
       cmocka_unit_test(other_texts_are_written_out),
       cmocka_unit_test(second_derivatives_are_right),
       cmocka_unit_test(long_series_are_refused),
