@@ -70,7 +70,7 @@ static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG
   w->scale = room += nq, w->jacobian = room += nq, w->all.A.col = room += e, w->all.A.value = room += e;
   w->all.D.col = room += e, w->all.D.value = room += responses, w->mass = room += responses, w->lu = room += w->nmass;
   w->first = room += lag_band_matrix_size(nq, w->band), w->entry = room + nc + 2;
-  w->all.response = w->response, w->all.b = w->b;
+  w->all.response = w->response, w->all.b = w->b, w->all.last = (LAG_REAL *)0;
 }
 
 /* Sorts entries of the Jacobian by constraints. */

@@ -185,6 +185,7 @@ typedef struct lag_impulses {
   lag_sparse_rows A, D;
   const LAG_REAL *response, *b;
   LAG_REAL *P, *v;
+  LAG_REAL *last; /* [rows] room: sweeps are extrapolated; NULL: they are not */
 } lag_impulses;
 
 static inline LAG_REAL lag_rate_of(const lag_impulses *s, int r) { return lag_row_product(&s->A, r, s->v) + s->b[r]; }
@@ -274,6 +275,17 @@ static inline int lag_contact_soften(const lag_impulses *s, lag_pressing *c, LAG
   return 1;
 }
 
+/* Extrapolates two sweeps, forth and back, beyond their impulses: P += part (P - last), part -> 1 while changes fall (Y.
+ * Nesterov; restarts: B. O'Donoghue, E. Candes, Found. Comput. Math. 15 (2015) 715, DOI 10.1007/s10208-013-9150-3). */
+static inline void lag_extrapolate(const lag_impulses *s, LAG_REAL part) {
+  for (int i = 0; i < s->n; i++)
+    for (int k = (int)s->of[i].row; k <= (int)(s->of[i].row + s->of[i].tangents); k++) {
+      const LAG_REAL now = s->P[k], by = part*(now - s->last[k]);
+      s->last[k] = now;
+      if (by < LAG_C(0.0) || by > LAG_C(0.0)) lag_add_impulse(&s->D, k, by, s->P, s->v);
+    }
+}
+
 /* Finds impulses P >= 0 along gaps, and of friction within mu times them, so that velocities v + D P obey these
  * laws: the rate A v + b of a gap is at least `least`, and equal where P > 0; slip velocities are in the ball
  * where friction can hold them there, else friction is at its limit and acts towards its centre. P: a guess,
@@ -282,7 +294,7 @@ static inline int lag_contact_soften(const lag_impulses *s, lag_pressing *c, LAG
 static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, int most) {
   const LAG_REAL zero = LAG_C(0.0);
   /* change 1000 sweeps ago: rows that depend on others agree to their own rounding only */
-  LAG_REAL before = enough*LAG_C(1e8);
+  LAG_REAL before = enough*LAG_C(1e8), fell = LAG_C(0.0), turns = LAG_C(0.0);
   lag_find_opposites(s);
   for (int i = 0; i < s->n; i++)
     for (int k = (int)s->of[i].row; k <= (int)(s->of[i].row + s->of[i].tangents); k++) {
@@ -299,6 +311,12 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
     }
     for (int i = 0; i < s->n && !(change > enough); i++) softer += lag_contact_soften(s, &s->of[i], enough);
     if (!(change > enough) && softer == 0) return sweep;
+    if (s->last && sweep % 2 == 0) {
+      if (sweep == 2 || change > fell || softer > 0) turns = LAG_C(0.0);
+      lag_extrapolate(s, sweep == 2 ? LAG_C(0.0) : turns/(turns + LAG_C(3.0)));
+      turns += LAG_C(1.0);
+      fell = change;
+    }
     if (sweep % 1000 != 0) continue;
     if (change <= LAG_C(1e7)*enough && change >= LAG_C(0.9)*before) return sweep;
     before = change;

@@ -78,6 +78,7 @@ int lag_moreau_find(lag_problem *pb, lag_moreau_contacts *w, double t, double h,
     w->jacobian_at = s.jacobian;
     w->guess = s.guess;
     w->epsilon = s.contacts > MANY ? AGREE : DBL_EPSILON;
+    w->all.last = s.contacts > MANY ? s.last : NULL;
   }
   return rc ? rc : lag_contacts_find(pb, w, t, h, mid, end);
 }

@@ -23,7 +23,7 @@ typedef struct lag_family_rows {
   lag_contact *at;                          /* [most] */
   lag_entry *jacobian;                      /* [most*parts] */
   Member *of;                               /* [most] */
-  double *guess, *key;                      /* [most] */
+  double *guess, *key, *last;               /* [most] */
   double *q, *v, *z, *out;                  /* of a member */
   double *reach;                            /* [4 families] cut and sides */
   lag_near *near;                           /* [families] */
@@ -64,6 +64,7 @@ static size_t lay_out(const lag_contact_families *all, lag_family_rows *w, doubl
   size_t used = doubles_of(sizeof *w);
 #define PLACE(to, n) (w->to = first ? (void *)(first + used) : NULL, used += doubles_of((n) * sizeof *w->to))
   PLACE(at, most), PLACE(jacobian, most * parts), PLACE(of, most), PLACE(guess, most), PLACE(key, most);
+  PLACE(last, most);
   PLACE(q, parts), PLACE(v, parts), PLACE(z, parts), PLACE(out, 8 + 3 * parts);
   PLACE(reach, 4 * (size_t)all->n), PLACE(near, (size_t)all->n);
 #undef PLACE
@@ -247,7 +248,7 @@ int lag_families_find(lag_problem *pb, double t, double h, const double *mid, co
     if (rc) return rc;
   }
   guess(pb, w);
-  *to = (lag_family_step){w->contacts, w->rows, w->entries, w->at, w->jacobian, w->guess};
+  *to = (lag_family_step){w->contacts, w->rows, w->entries, w->at, w->jacobian, w->guess, w->last};
   return 0;
 }
 

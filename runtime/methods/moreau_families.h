@@ -15,6 +15,7 @@ typedef struct lag_family_step {
   const lag_contact *at;
   const lag_entry *jacobian;
   const double *guess;
+  double *last; /* [rows] room for the solver */
 } lag_family_step;
 
 /* Finds them, in room of lag_families_size, which lag_families_begin has laid out. */

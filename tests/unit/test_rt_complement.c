@@ -287,14 +287,16 @@ static void test_margins(void **state) {
 
 /* ---- the same problems by sweeps */
 
-/* Sweeps over rows whose response is M = A A^T, A[n][n] the triangular factor of a random one, from v = 0. */
+/* Sweeps over rows whose response is M = A A^T, A[n][n] the triangular factor of a random one, from v = 0; every other
+ * problem is extrapolated. */
 typedef struct Sweeps {
   int n;
-  double M[16], A[16], first[5], col[16], b[4], P[4], v[4], response[4];
+  double M[16], A[16], first[5], col[16], b[4], P[4], v[4], response[4], last[4];
+  int extrapolates;
 } Sweeps;
 
 static void begin_sweeps(Sweeps *s, int n, uint64_t *seed) {
-  *s = (Sweeps){.n = n};
+  *s = (Sweeps){.n = n, .extrapolates = *seed >> 33 & 1};
   for (int e = 0; e < n * n; e++) {
     s->A[e] = (e / n == e % n) + 0.5 * chance(seed);
     s->col[e] = e % n;
@@ -307,7 +309,8 @@ static void begin_sweeps(Sweeps *s, int n, uint64_t *seed) {
 
 static int sweep(Sweeps *s, int contacts, lag_pressing *of) {
   const lag_sparse_rows rows = {s->first, s->col, s->A};
-  const lag_impulses impulses = {contacts, of, rows, rows, s->response, s->b, s->P, s->v};
+  const lag_impulses impulses = {contacts, of, rows, rows, s->response, s->b, s->P, s->v,
+                                s->extrapolates ? s->last : NULL};
   return lag_contact_impulses(&impulses, 1e-14, 100000) <= 100000;
 }
 
