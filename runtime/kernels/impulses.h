@@ -275,8 +275,8 @@ static inline int lag_contact_soften(const lag_impulses *s, lag_pressing *c, LAG
   return 1;
 }
 
-/* Extrapolates two sweeps, forth and back, beyond their impulses: P += part (P - last), part -> 1 while changes fall (Y.
- * Nesterov; restarts: B. O'Donoghue, E. Candes, Found. Comput. Math. 15 (2015) 715, DOI 10.1007/s10208-013-9150-3). */
+/* Extrapolates two sweeps, forth and back, beyond their impulses: P += part (P - last), part -> 1 while changes fall.
+ * Restarts: B. O'Donoghue, E. Candes, Found. Comput. Math. 15 (2015) 715, DOI 10.1007/s10208-013-9150-3. */
 static inline void lag_extrapolate(const lag_impulses *s, LAG_REAL part) {
   for (int i = 0; i < s->n; i++)
     for (int k = (int)s->of[i].row; k <= (int)(s->of[i].row + s->of[i].tangents); k++) {
