@@ -163,6 +163,7 @@ void lag_moreau_contacts_note(const lag_moreau_contacts *w, lag_problem *pb, dou
       pb->contact_impulse[(int)of[i].contact + j] = P[r];
       for (int e = (int)w->all.D.first[r]; e < (int)w->all.D.first[r + 1]; e++)
         pb->contact_change[(int)w->all.D.col[e]] += P[r] * w->all.D.value[e];
+      if (j) mean += P[r] * (of[i].tail[j - 1] - of[i].turn[j - 1]) / 2; /* slips at the ends */
       work[j > 0] += mean;
       own += mean + P[r] * w->b[r];
       size += fabs(P[r]) * (fabs(w->before[r]) + fabs(lag_row_product(A, r, v1) + w->b[r]) +

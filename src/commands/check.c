@@ -6,6 +6,7 @@
 
 #include "symmetry/charges.h"
 #include "mech/discontinuity.h"
+#include "mech/far_error.h"
 #include "mech/mass_definiteness.h"
 #include "mech/switches.h"
 #include "claims/expect.h"
@@ -92,6 +93,7 @@ static void check_scene(Compiler *c, void *data) {
   switches_find(e);
   switches_warn(e);
   discontinuity_warn(e);
+  far_errors_note(e);
   int moves = mobility_show(e, out) && mass_regular_at_start(e);
   check_json_scene(c, "scene", name, e->m, moves);
   if (!moves) return;
@@ -108,6 +110,7 @@ static void check_unused_effect(Compiler *c, void *data) {
   switches_find(e);
   switches_warn(e);
   discontinuity_warn(e);
+  far_errors_note(e);
   collect_units(c, e->m, x->found);
   check_json_scene(c, "effect in no scene", name, e->m, 1);
   sb_printf(x->out, "effect %s (in no scene): ok\n", name);

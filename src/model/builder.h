@@ -391,6 +391,7 @@ void add_size(Builder *b, Expr value, const char *what, Span span, int part);
 void add_static_limit(Builder *b, Expr limit, Expr friction, Span span);
 /* The cut-off of a sum over neighbours, at least 0, and at most half of each side of the box. */
 void add_near_cut(Builder *b, Expr cut, Span span);
+void add_opening_angle(Builder *b, Expr theta, Span span);
 void add_near_box(Builder *b, Expr side, Expr cut, Span span);
 /* Errors where the values of the scene make sizes of friction and contacts negative, or too large. */
 void check_sizes(Builder *b);

@@ -111,7 +111,6 @@ static SymKind kind_of(const Read *r) {
   }
 }
 
-/* The read that gave the symbol for the first pair, and its component; NULL: none. */
 const Read *quantified_read_of(const struct Quantified *q, const Symbol *s, int64_t *part) {
   for (uint32_t k = 0; k < q->reads.n; k++) {
     const Read *r = &q->reads.at[k];
@@ -119,6 +118,10 @@ const Read *quantified_read_of(const struct Quantified *q, const Symbol *s, int6
     if (kind_of(r) == s->kind && *part >= 0 && *part < (r->e->parts ? r->e->parts : 1)) return r;
   }
   return NULL;
+}
+
+SymId quantified_symbol(const Model *m, const struct Quantified *q, const Read *r, int64_t part) {
+  return member_symbol(m, r->e->kind, r->rate, r->e->index + (uint32_t)(at_pair(quantified_element(r), q->pair[0]) + part));
 }
 
 /* Symbols that hold one number for all pairs: of names without an index. */
@@ -221,13 +224,13 @@ static int same_for_both(const Arguments *a, Expr first, Expr second) {
 /* --- the sum --- */
 
 /* Sum of `body` over all turns, one cell. Where turns are as many as members, the self-check takes all. */
-static Expr sum_over(const Arguments *a, Expr body, int sampled) {
+static Expr sum_over(const Arguments *a, Expr body, const FarForm *far, int sampled) {
   const struct Quantified *q = a->q;
   NestShare *share = ARENA_NEW(a->arena, NestShare);
   share->value = body;
   NearTest *near = q->near ? ARENA_NEW(a->arena, NearTest) : NULL;
   if (near) *near = q->test;
-  SumNest s = {.range = q->range, .near = near, .reads = a->reads.at, .nreads = a->reads.n, .shares = share,
+  SumNest s = {.range = q->range, .near = near, .far = far, .reads = a->reads.at, .nreads = a->reads.n, .shares = share,
                .nshares = 1,
                .nargs = a->args.n, .ncells = 1, .sampled = sampled, .i = q->i, .j = q->j, .i0 = q->lo,
                .j0 = q->from.first + q->from.by_i * q->lo, .row = q->pair[0][0] - q->lo,
@@ -262,7 +265,10 @@ static Expr component_sum(Eval *ev, struct Quantified *q, uint32_t c) {
     if (a.why) q->why = a.why;
     return 0;
   }
-  return expr_is_zero(g, turned[0]) ? turned[0] : sum_over(&a, turned[0], q->sampled);
+  if (expr_is_zero(g, turned[0])) return turned[0];
+  const FarForm *far = q->far ? quantified_far(ev, q, turned[0]) : NULL;
+  q->failed = q->far && !far;
+  return q->failed ? 0 : sum_over(&a, turned[0], far, q->sampled);
 }
 
 /* --- the loops --- */
@@ -309,7 +315,19 @@ static const AstNear *near_of(const Ast *ast, AstId sum) {
   return NULL;
 }
 
+static const AstFar *far_of(const Ast *ast, AstId sum) {
+  for (uint32_t k = 0; k < ast->fars.n; k++)
+    if (sum && ast->fars.at[k].sum == sum) return &ast->fars.at[k];
+  return NULL;
+}
+
 int quantified_fits(Eval *ev, AstId id) {
+  const AstFar *far = far_of(ev->b->ast, id);
+  if (far && !ev->index.n) {
+    refuse(ev->b, far->span, "a tree takes sums over pairs, and there is no sum around this one" HELP
+           "write `sum(i in 1..N, sum(j in 1..i-1, ..., by tree(0.5)))`; in a potential it gives all forces");
+    return 0;
+  }
   const AstNear *near = near_of(ev->b->ast, id);
   for (uint32_t k = 0; near && k < ev->index.n; k++)
     if (ev->index.at[k].name == near->i) return 1;
@@ -343,8 +361,15 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   for (uint32_t row = 0; row < q->range.rows; row++) turns += (uint64_t)loop_turns(&q->range, row);
   uint64_t guessed = !read && q->inner ? (uint64_t)q->range.rows * q->range.rows / 2 : 0; /* unknown range inside */
   q->near = near_of(b->ast, q->inner);
-  int beside_near = b->ast->nears.n && b->sums_from < UINT32_MAX; /* such a model is meant for any N */
-  if ((turns > guessed ? turns : guessed) < b->sums_from && !beside_near) return 0;
+  q->far = far_of(b->ast, q->inner);
+  int is_listed = (b->ast->nears.n || q->far) && b->sums_from < UINT32_MAX; /* such a model is meant for any N */
+  if ((turns > guessed ? turns : guessed) < b->sums_from && !is_listed) return 0;
+  if (q->far && !read) {
+    refuse(b, q->far->span, "a tree takes a sum over pairs that stays one, and this one does not: %s" HELP
+           "what a tree takes is in `lagc help tree`", q->why ? q->why : "its terms have no common form");
+    *value_of(ev, id) = FAILED;
+    return -1;
+  }
   if (!read || !find_pairs(q, b->arena)) {
     if (turns >= b->sums_from) note_written_out(ev, q, turns);
     return 0;
@@ -394,6 +419,20 @@ static void keep_inner(Eval *ev, Value *v) {
   for (uint32_t k = 0; v->e && k < component_count(v); k++) v->at[k] = expr_symbol(ev->b->g, q->inside[k])->node;
 }
 
+/* Takes the opening angle of the tree; 0 after a mistake. */
+static int far_angle(Eval *ev, struct Quantified *q) {
+  Builder *b = ev->b;
+  const Value *v = value_of(ev, q->far->theta);
+  q->theta = v->e;
+  if (!v->e || !need_pure(ev, q->far->theta, "the opening angle of a tree")) return 0;
+  if (v->n || !expr_is_constant(b->g, v->e)) {
+    refuse(b, q->far->span, "the opening angle of a tree moves" HELP "it may contain numbers and parameters");
+    return 0;
+  }
+  add_opening_angle(b, v->e, q->far->span);
+  return 1;
+}
+
 int quantified_next(Eval *ev, Value *v) {
   struct Quantified *q = ev->sums;
   Builder *b = ev->b;
@@ -416,8 +455,13 @@ int quantified_next(Eval *ev, Value *v) {
   ev->sums = NULL;
   if (failed) return 0;
   Value r = *v;
+  if (q->far && !far_angle(ev, q)) q->failed = 1, r.e = 0;
   for (uint32_t c = 0; c < component_count(v) && r.e; c++)
     if (!(r.at[c] = component_sum(ev, q, c))) r.e = 0;
+  if (q->failed) {
+    *v = FAILED;
+    return 0;
+  }
   if (r.e) vec_push(b->arena, &b->m->sums, ((QuantifiedSum){q->outer, q->beside, q->sampled}));
   if (r.e && !q->beside) {
     *v = r;
