@@ -101,12 +101,15 @@ static double change_of_energy(lag_sim *s, double t, const double *y, int at, co
   return fabs(there[0] - e) < HUGE_VAL ? fabs(there[0] - e) : 0;
 }
 
-/* Whether coordinate i is the first of its unit. */
-static int is_first(const lag_model *m, int i) {
-  for (int k = 0; k < i; k++)
-    if (strcmp(m->q[k].unit, m->q[i].unit) == 0) return 0;
-  return 1;
+/* The first variable with the unit of variable i. */
+static int first_of_unit(const lag_var *var, int i) {
+  int k = 0;
+  while (strcmp(var[k].unit, var[i].unit) != 0) k++;
+  return k;
 }
+
+/* Whether coordinate i is the first of its unit. */
+static int is_first(const lag_model *m, int i) { return first_of_unit(m->q, i) == i; }
 
 /* The velocity of all coordinates with the unit of coordinate i at which they have this kinetic energy; HUGE_VAL:
  * there is none. */
@@ -344,8 +347,7 @@ static double time_from_zero(lag_sim *s, const double *f, const double *noise, d
   for (int turn = 0; turn < TURNS; turn++) {
     double next = HUGE_VAL;
     for (int i = 0; i < s->pb.nq; i++) {
-      int first = 0;
-      while (strcmp(m->q[first].unit, m->q[i].unit) != 0) first++;
+      int first = first_of_unit(m->q, i);
       size[i] = first < i ? size[first] : reach(kind_of(s, f, bend, i), time);
     }
     bends(s, 0, size, f, noise, bend);
@@ -370,14 +372,20 @@ static void state_sizes(lag_sim *s, const double *f, double time) {
   double *bend = s->yc, *size = s->pb.size + at;
   int shrinks = 0;
   for (int i = 0; i < nz; i++) {
-    double z = largest_of_unit(nz, m->z, s->now + at, i);
-    size[i] = z > 0 ? z : largest_of_unit(nz, m->z, f + at, i) * time;
-    shrinks |= !(z > 0);
+    int first = first_of_unit(m->z, i);
+    double z = first < i ? 0 : largest_of_unit(nz, m->z, s->now + at, i);
+    size[i] = first < i ? size[first] : z > 0 ? z : largest_of_unit(nz, m->z, f + at, i) * time;
+    shrinks |= first == i && !(z > 0);
   }
   for (int turn = 0; turn < TURNS && shrinks; turn++) {
     shrinks = 0;
     rates_beside(s, at, nz, size, f, bend);
     for (int i = 0; i < nz; i++) {
+      int first = first_of_unit(m->z, i);
+      if (first < i) {
+        size[i] = size[first];
+        continue;
+      }
       double rate = largest_of_unit(nz, m->z, f + at, i), change = largest_of_unit(nz, m->z, bend + at, i);
       if (largest_of_unit(nz, m->z, s->now + at, i) > 0 || !(rate > 0 && change > 2 * rate)) continue;
       size[i] *= rate / change;
@@ -390,8 +398,11 @@ static void state_sizes(lag_sim *s, const double *f, double time) {
  * rest. */
 static void raise_rates(const lag_sim *s, const double *change, const double *noise, double *f) {
   const int nq = s->pb.nq;
+  const lag_var *var = s->scene->model->q;
+  double v = 0;
   for (int i = 0; i < nq; i++) {
-    double by = fabs(change[nq + i]), v = largest_of_unit(nq, s->scene->model->q, s->now + nq, i);
+    double by = fabs(change[nq + i]);
+    if (i == 0 || strcmp(var[i].unit, var[i - 1].unit) != 0) v = largest_of_unit(nq, var, s->now + nq, i);
     if (!(v > 0) && by > ROUNDINGS * (noise ? noise[i] : 0)) f[nq + i] = fmax(fabs(f[nq + i]), by);
   }
 }
@@ -428,9 +439,13 @@ static double local_time(lag_sim *s, const double *f, double *noise, double time
   const int nq = s->pb.nq;
   double *by = noise + s->pb.n, *bend = s->yc, least = HUGE_VAL;
   const lag_var *var = s->scene->model->q;
-  for (int i = 0; i < nq; i++) by[i] = sqrt(DBL_EPSILON) * largest_of_unit(nq, var, s->now, i);
+  for (int i = 0; i < nq; i++) {
+    int first = first_of_unit(var, i);
+    by[i] = first < i ? by[first] : sqrt(DBL_EPSILON) * largest_of_unit(nq, var, s->now, i);
+  }
   bends(s, 0, by, f, noise, bend);
   for (int i = 0; i < nq; i++) {
+    if (first_of_unit(var, i) < i) continue;
     double change = largest_of_unit(nq, var, bend + nq, i);
     if (by[i] > 0 && change > 0) least = fmin(least, sqrt(by[i] / change));
   }
@@ -444,9 +459,10 @@ enum { STEPS = 16 }; /* of the longest kind, by high orders, in the time of an o
 static void raise_to_rounding(lag_sim *s, const double *noise, double step) {
   const lag_model *m = s->scene->model;
   const int nq = m->nq;
-  double *size = s->pb.size;
+  double *size = s->pb.size, v = 0;
   for (int i = 0; i < nq; i++) {
-    double v = largest_of_unit(nq, m->q, noise, i) * step / s->pb.tol;
+    if (i == 0 || strcmp(m->q[i].unit, m->q[i - 1].unit) != 0)
+      v = largest_of_unit(nq, m->q, noise, i) * step / s->pb.tol;
     if (!(v > 0 && v < HUGE_VAL)) continue;
     size[i] = fmax(size[i], exp2(ceil(log2(v * step))));
     size[nq + i] = fmax(size[nq + i], exp2(ceil(log2(v))));
