@@ -16,7 +16,8 @@ static const double least_tolerance = 4.5 * DBL_EPSILON;
 int lag_app_error_begin(App *app) {
   const Args *a = &app->args;
   /* impacts are at other steps in a run with other steps */
-  int impulses = (lag_sim_method(app->sim)->flags & LAG_METHOD_IMPULSES) && app->scene->model->ncontacts;
+  int impulses = (lag_sim_method(app->sim)->flags & LAG_METHOD_IMPULSES) &&
+                 (app->scene->model->ncontacts || app->scene->model->families);
   app->watched = !impulses && (!a->quiet || a->json || a->svg || a->html) && !app->resumed && !app->overlaid;
   return app->watched && lag_error_estimate_init(&app->error, app->sim) ? lag_app_error(a, "out of memory") : 0;
 }

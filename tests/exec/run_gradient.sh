@@ -30,6 +30,9 @@ check "by the Verlet family" run --method verlet8 --step 0.01 --gradient x
 near "... of order 8" 1e-10 -0.8568887533689472 "$(d x 'x(0)')"
 check "after a method without reverse mode, by dop853" run --method taylor --gradient x
 near "... as well" 1e-8 -0.8568887533689472 "$(d x 'x(0)')"
+automatic() { "$LAGC" run "$TMP/spring.lag" go --tol 1e-12 --until 1.3 --gradient x --json >"$TMP/out.json" 2>"$TMP/err" && grep -q '"method": "taylor"' "$TMP/out.json"; }
+check "after Taylor series that were chosen automatically, by dop853, too" automatic
+near "... as well" 1e-10 -0.8568887533689472 "$(d x 'x(0)')"
 # Steps of a header in reverse: 130 of rk4 with h = 0.01, whose error is some 1e-9.
 cat >"$TMP/header.c" <<'C'
 #define SPRING_IMPLEMENTATION
@@ -83,6 +86,7 @@ check "a constraint" dot models/cartesian_pendulum.lag "" x "g,l,y,x'" --until 2
 check "a rod whose length is a parameter" dot $S/rod.lag "" x l,g,a,w
 check "... by an implicit method" dot $S/rod.lag "" x l,g,a,w --method radau --tol 1e-8
 check "dry friction that sticks and slips" dot $S/rub.lag "" x w,R,x0,v0
+check "weights of a network" dot models/learned_spring.lag record x "V_w1[3,1],V_b1[5],V_w2[8],V_b2,x,m" --until 5 --method dop853
 check "an implicit method" dot models/pendulum.lag wide th "g,l,th,th'" --until 2 --method radau
 check "Taylor series" dot models/pendulum.lag wide th "g,l,th,th'" --until 2 --method taylor
 cat >"$TMP/bounce.lag" <<'M'
