@@ -308,13 +308,13 @@ static void extrapolate(ErrorEstimate *e, double until, double level) {
  * differ for a moment. */
 typedef struct Parting {
   double t;           /* NaN: none */
-  double since, near; /* time compared from a twentieth later on [s]; the part of it with an error of few percents */
+  double since, near; /* time compared from a twentieth later on [s]; the part of it with an error of a percent */
   double last;        /* time of the last error [s] */
 } Parting;
 
 /* Whether the error at time t confirms the parting; p->t := NaN where it refutes it. */
 static int is_confirmed(const ErrorEstimate *e, Parting *p, double t, double error, int last) {
-  const double soon = 0.05, later = 0.25, apart = 0.03, most = 0.25;
+  const double soon = 0.05, later = 0.25, apart = 0.01, most = 0.25;
   if (isnan(p->t) && error >= no_digit) *p = (Parting){.t = t, .last = t};
   if (isnan(p->t)) return 0;
   double since = fabs(t - p->t) / fmax(fabs(p->t - e->t0), DBL_MIN), step = fabs(t - p->last);

@@ -492,7 +492,7 @@ int lag_modes_find(Modes *out, Equilibrium *rest, const lag_algebra *algebra) {
   ModeSearch w = {.out = out, .rest = rest, .algebra = algebra, .pb = pb, .nq = pb->nq, .n = rest->n, .ny = pb->n};
   w.conserves = pb->nz == 0 && lag_conserves_energy(rest->sim);
   w.loses = (pb->model->flags & LAG_LOSES_ENERGY) != 0 && pb->nz == 0;
-  *out = (Modes){.lowering = -1, .pairs = w.conserves};
+  *out = (Modes){.lowering = -1, .pairs = w.conserves, .conserves = w.conserves};
   out->mode = calloc((size_t)w.ny + 1, sizeof *out->mode);
   int rc = out->mode ? find_matrices(&w.m, &out->pool, rest, algebra) : LAG_ENOMEM;
   if (rc) return rc;

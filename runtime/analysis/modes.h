@@ -36,6 +36,7 @@ typedef struct Modes {
   int n;
   Verdict verdict;
   int pairs;     /* each mode stands for both +-(re + i im) */
+  int conserves; /* dE/dt = 0, or is 0 at these values of parameters */
   int drifts;    /* 1: a push along a zero mode drifts for ever */
   int together;  /* 1: free zero modes are free in any combination */
   int steady;    /* 1: about a steady motion, in the frame that moves with it */

@@ -115,7 +115,7 @@ static void put_reason(const Modes *s, unsigned facts, char *text, size_t n) {
   const Mode *last = &s->mode[s->n - 1], *top = s->mode; /* the one that grows fastest, or decays slowest */
   for (int i = 0; i < s->n; i++) top = s->mode[i].re > top->re ? &s->mode[i] : top;
   const char *where = facts & LAG_CONSERVES_ENERGY ? "" : " at these values of parameters";
-  if (s->verdict == LAG_CENTRE && (facts & LAG_CONSERVES_ENERGY || s->pairs)) {
+  if (s->verdict == LAG_CENTRE && (facts & LAG_CONSERVES_ENERGY || s->conserves)) {
     snprintf(text, n,
              "some modes neither grow nor decay, and the energy, which is conserved%s, is not known to have a minimum "
              "here",
