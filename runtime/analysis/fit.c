@@ -29,8 +29,7 @@ static int stiffness(Fit *f, const double *x, double *largest) {
   return rc;
 }
 
-/* Values ">= 0" that a shorter record has driven to 0, where they hardly move any more, begin again just above. */
-static void leave_bounds(const Fit *f, double *x) {
+void lag_fit_leave_bounds(const Fit *f, double *x) {
   for (int j = 0; j < f->n; j++)
     if (abs(f->target[j].sign) == 2 && x[j] < 0) x[j] = 0;
 }
@@ -42,7 +41,7 @@ static int search(Fit *f, int part_of_rows, int most, double *x) {
   enum { ROUNDS = 6 };
   double moved = HUGE_VAL, stiff;
   int rc = LAG_OK, m = lag_fit_count_values(f, part_of_rows);
-  leave_bounds(f, x);
+  lag_fit_leave_bounds(f, x);
   if (f->nodes) return lag_fit_shoot(f, 0, x);
   for (int k = 0; k < ROUNDS && moved > settled && rc == LAG_OK; k++) {
     int steps = 0;

@@ -166,14 +166,15 @@ static int open_training(Training *w) {
 }
 
 static int search(Training *w) {
-  enum { SHORT = 100, ENOUGH = 8 };
+  enum { SHORT = 100, WHOLE = 1000, ENOUGH = 8 };
   Fit *f = w->f;
   int rc = LAG_OK;
   for (int part = 64; part > 0 && rc == LAG_OK; part /= 2) {
     int steps = 0;
     if (lag_fit_count_values(f, part) < ENOUGH && part > 1) continue;
     w->nsteps = 0;
-    rc = f->by->descend(f->n, w->x, objective, goes_on, w, part > 1 ? SHORT : f->most, &steps);
+    lag_fit_leave_bounds(f, w->x);
+    rc = f->by->descend(f->n, w->x, objective, goes_on, w, part > 1 ? SHORT : WHOLE, &steps);
     f->steps += steps;
     f->converged = rc == LAG_OK;
     if (rc == LAG_EMETHOD) rc = LAG_OK;

@@ -170,7 +170,7 @@ static int compare_again(App *app, ErrorEstimate *e, const lag_sim *run, double 
   return rc;
 }
 
-/* Largest difference from the run's method with other equal steps; NaN: not compared to the end. e: left as it is. */
+/* Largest difference from the run's method with other equal steps; NaN: not compared to the end. *e stays. */
 static double compare_steps(App *app, const ErrorEstimate *e, const lag_sim *run, double part) {
   Second second = {.part = part};
   double largest = NAN;
@@ -186,13 +186,13 @@ static double compare_steps(App *app, const ErrorEstimate *e, const lag_sim *run
 /* The error of equal steps of a high order at rounding, which over many periods is less than the rounding of dop853,
  * whose coefficients are large: by the same method with shorter steps. Implicit methods share a part of their
  * rounding, some units of the time's: that of their coefficients. */
-static void compare_rounding(App *app, ErrorEstimate *e, const lag_sim *run, double most) {
+static void compare_rounding(App *app, ErrorEstimate *e, const lag_sim *run) {
   const double seen = 1e-14, small = 1e-8, shorter[] = {0.5, 0.77}, coefficients = 32, cheap = 5e7;
   const lag_method *m = run->method;
   int implicit = (m->flags & (LAG_METHOD_NEWTON | LAG_METHOD_SPLITS)) == LAG_METHOD_NEWTON;
   int high = lag_equal_step(run) > 0 && (m->order_of ? m->order_of(run->options) : m->order) >= 4;
   int regular = isnan(e->horizon) && !e->continued && run->run->events == 0;
-  if (!high || !regular || !(e->largest > seen && e->largest < small) || lag_app_work(run) > fmax(cheap, most / 4)) return;
+  if (!high || !regular || !(e->largest > seen && e->largest < small) || lag_app_work(run) > cheap) return;
   double a = compare_steps(app, e, run, shorter[0]), b = compare_steps(app, e, run, shorter[1]);
   double safety = e->growth == LAG_ERROR_EXPONENTIAL ? 3 : 2, error = safety * fmax(a, b);
   if (implicit) error = fmax(error, coefficients * e->floor);
@@ -224,7 +224,7 @@ static int compare_methods(App *app, ErrorEstimate *e, lag_sim *run, double most
 
 int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most) {
   int rc = compare_methods(app, e, run, most);
-  if (!rc) compare_rounding(app, e, run, most);
+  if (!rc) compare_rounding(app, e, run);
   return rc;
 }
 

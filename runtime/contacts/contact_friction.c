@@ -13,6 +13,8 @@
 #include "contacts/contact_modes.h"
 #include "contacts/planar_impact.h"
 
+_Static_assert((int)LAG_MOST_GUIDES <= (int)LAG_MOST_TOUCHES, "guides alone are never too many");
+
 /* ---- forces while contacts slip */
 
 int lag_contact_laws_at(lag_problem *pb, double t, const double *y, double *law) {

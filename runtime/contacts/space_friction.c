@@ -1,7 +1,7 @@
 /* Contacts in space, whose slip has two components along perpendicular directions. Enters: slip velocities at a state;
  * leaves: the direction of each slip, by which its friction acts. Holds: inputs `force` of its two tangents hold the
  * direction at the last step's end times the size of slips, NaN where it sticks or is open; within a step friction
- * acts against the slip itself, and on along the held direction once the slip has passed 0, so that no step sees a
+ * acts against the slip itself, and with it once it has passed 0 against the held direction, so that no step sees a
  * jump. A slip that turns away from the held direction without passing 0 is no end of it. */
 #include <math.h>
 
@@ -51,7 +51,7 @@ int lag_slip_velocities(lag_problem *pb, double t, const double *y, double *c, d
   return rc;
 }
 
-/* Slip below which friction acts along the held direction: its direction changes fast there. */
+/* Slip along the held direction that counts as so large where it is less: friction's direction changes fast there. */
 static double small_slip(const lag_problem *pb, double size) {
   return fmin(fmax(1e3 * pb->tol, 1e-8), 1e-4) * size;
 }
@@ -65,14 +65,16 @@ void lag_slip_direction(const lag_problem *pb, const double *r, int i, double *e
   const lag_model *m = pb->model;
   double h[2], size = held(pb->hold, m, i, h), d[2] = {h[0] / size, h[1] / size};
   double s[2] = {r[m->contacts[i].constraint], r[m->contacts[i + 1].constraint]}, along = s[0] * d[0] + s[1] * d[1];
-  double more = fmax(along, small_slip(pb, size)) - along, length;
-  for (int k = 0; k < 2; k++) e[k] = s[k] + more * d[k];
+  /* tangent of the angle to d by the part across; beyond 0 the smooth continuation of a path through 0 */
+  double small = small_slip(pb, size), length;
+  double slope = fabs(along) >= small ? 1 / along : (1 + 2 * fmin(along / small, 0)) / small;
+  for (int k = 0; k < 2; k++) e[k] = d[k] + slope * (s[k] - along * d[k]);
   length = lag_norm(e, 2);
   for (int k = 0; k < 2; k++) e[k] /= length;
 }
 
 int lag_slip_ends(const lag_problem *pb, const double *s, double size) {
-  return lag_norm(s, 2) <= fmax(10 * pb->tol, lag_no_gap) * size;
+  return lag_norm(s, 2) <= fmax(fmin(1e3 * pb->tol, 1e-5), lag_no_gap) * size;
 }
 
 static int sticks(const lag_sim *s, int i) {

@@ -53,7 +53,7 @@ int lag_method_check_digits(lag_sim *s, const lag_method *method) {
 /* Contacts whose friction in space is followed from event to event: forces of more are rarely unique. */
 enum { LAG_MOST_IN_SPACE = 3 };
 
-/* Switches that jump, and friction in space. */
+/* Switches that jump, friction in space, and many guides. */
 static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
   const lag_model *m = s->scene->model;
   for (int k = 0; k < m->nmodes; k++) {
@@ -73,6 +73,11 @@ static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
     return lag_fail(s, LAG_EMETHOD,
                     "method %s follows friction in space at up to %d contacts, and there are %d here; "
                     "--method moreau follows it", method->name, LAG_MOST_IN_SPACE, in_space);
+  if (m->nguides > LAG_MOST_GUIDES && !(needs & LAG_METHOD_IMPULSES))
+    return lag_fail(s, LAG_EMETHOD,
+                    "method %s follows at most %d guides with friction, and the model has %d; --method "
+                    "\"moreau(step=1e-3)\" follows any number",
+                    method->name, LAG_MOST_GUIDES, m->nguides);
   return LAG_OK;
 }
 

@@ -116,12 +116,12 @@ static int clear_scratch(lag_sim *s) {
       {&s->pb.ranks, ranks}, {&s->contact_scratch, sized}, {&s->contact_was, (size_t)m->ncontacts},
       {&s->charge_now, 2 * nc}, {&s->charge_power, nc}, {&s->charge_gain, nc}, {&s->sides, 3 * (size_t)m->nswitch},
       {&s->grip, nm}, {&s->side_noise, nm}, {&s->slid_off, nm}, {&s->meets, nm}, {&s->left, nm},
-      {&s->meeting, nm * (9 + 2 * nm)}, {&s->pb.slide, nm * (3 + nm)},
+      {&s->meeting, nm * (9 + 2 * nm)}, {&s->pb.slide, nm * (3 + 2 * nm)},
       {&s->pb.rub, lag_contact_law_size(m)},
       {&s->sizes, (size_t)(m->nsizes + m->nmoving)}};
   const size_t nparts = sizeof parts / sizeof *parts;
-  for (size_t i = 0; s->scratch && i < nparts; i++) memset(*parts[i].at, 0, parts[i].n * sizeof(double));
-  if (!s->scratch) s->scratch = lag_workspace(nparts, parts);
+  if (s->scratch) lag_workspace_clear(nparts, parts);
+  else s->scratch = lag_workspace(nparts, parts);
   return s->scratch ? LAG_OK : LAG_ENOMEM;
 }
 
@@ -246,7 +246,7 @@ lag_sim *lag_sim_renew(lag_sim *s, const lag_sim *from) {
   end_run(s);
   clear_scratch(s);
   *s = *s->fresh;
-  memset(s->saved, 0, s->nsaved * sizeof *s->saved);
+  memset(s->saved, 0, (s->nsaved - (s->method->head ? s->nwork - s->method->head : 0)) * sizeof *s->saved);
   memset(s->meeting_of, 0, (3 * (size_t)s->scene->model->nmodes + 1) * sizeof *s->meeting_of);
   begin_blocks(s);
   free_modes(s);

@@ -276,7 +276,9 @@ typedef struct lag_method {
   /* Doubles of work that init needs with the options pb->opt. */
   size_t (*work_size)(const lag_problem *pb);
 
-  /* Prepares work (zeroed). opt[noptions] are the values of the options. < 0: see pb->detail. */
+  size_t head; /* doubles at the beginning of work that init finds zeroed; 0: all of it */
+
+  /* Prepares work. opt[noptions] are the values of the options. < 0: see pb->detail. */
   int (*init)(void *work, lag_problem *pb, const double *opt);
 
   /* One accepted step from (*t, y[n]), of the method's own size in direction pb->dir, never past t_stop for a

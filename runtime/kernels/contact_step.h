@@ -56,7 +56,7 @@ typedef struct lag_moreau_contacts {
 enum { LAG_PRESSING_SIZE = (int)(sizeof(lag_pressing)/sizeof(LAG_REAL)) };
 /* Scalars that a step with these sizes needs; entries of D: `responses`; of the factored mass matrix: `lu`. */
 #define LAG_CONTACT_ROOM(contacts, constraints, nq, entries, nmass, responses, lu) \
-  ((contacts)*(LAG_PRESSING_SIZE + 8) + 4 + 8*(constraints) + 5*(nq) + 4*(entries) + 2*(responses) + (nmass) + (lu))
+  ((contacts)*(LAG_PRESSING_SIZE + 10) + 4 + 8*(constraints) + 5*(nq) + 4*(entries) + 2*(responses) + (nmass) + (lu))
 
 /* Places arrays into room[LAG_CONTACT_ROOM]; sizes are set. */
 static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG_REAL *room) {
@@ -64,7 +64,8 @@ static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG
   w->all.n = w->rows = w->impacts = w->sweeps = 0;
   w->all.of = (lag_pressing *)(void *)room, room += p*LAG_PRESSING_SIZE;
   w->response = room, w->b = room += p, w->before = room += p, w->all.P = room += p, w->law = room += p;
-  w->all.A.first = room += 2*p, w->all.D.first = room += p + 1;
+  w->all.was = room += 2*p, w->all.went = room += p;
+  w->all.A.first = room += p, w->all.D.first = room += p + 1;
   w->c = room += p + 1, w->r0 = room += nc, w->r1 = room += nc, w->pace = room += nc, w->bend = room += nc;
   w->tail = room += nc, w->g = room += nc, w->d = room += nc, w->effort = room += nq, w->x = room += nq;
   w->pivot = room += nq, w->scale = room += nq;
@@ -256,6 +257,21 @@ static inline int lag_contacts_find(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL 
   return status;
 }
 
+/* v[j] := 0 where contacts, by all that they could do, leave far less of it than its rounding: rests would go on as
+ * subnormal numbers. */
+static inline void lag_contacts_rest(const lag_moreau_contacts *w, LAG_REAL *v) {
+  const lag_sparse_rows *const D = &w->all.D;
+  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), little = w->epsilon*w->epsilon;
+  for (int j = 0; j < w->nq; j++) w->x[j] = zero;
+  for (int i = 0; i < w->all.n; i++) {
+    const lag_pressing *const c = &w->all.of[i];
+    const int row = (int)c->row, end = row + 1 + (int)c->tangents;
+    for (int e = (int)D->first[row]; e < (int)D->first[end]; e++)
+      w->x[(int)D->col[e]] += LAG_FN(fabs)(w->all.P[row]*D->value[e])*(e < (int)D->first[row + 1] ? one : c->mu);
+  }
+  for (int j = 0; j < w->nq; j++) v[j] = LAG_SELECT(LAG_FN(fabs)(v[j]) > little*w->x[j], v[j], zero);
+}
+
 /* v[nq], velocities without contacts, := those with them. Not 0: no impulses agree. */
 static inline int lag_contacts_solve(lag_moreau_contacts *w, LAG_REAL *v) {
   enum { MOST = 200000 };
@@ -268,6 +284,7 @@ static inline int lag_contacts_solve(lag_moreau_contacts *w, LAG_REAL *v) {
   const LAG_REAL enough = LAG_C(64.0)*w->epsilon*size;
   const int sweeps = lag_contact_impulses(&w->all, enough, MOST);
   w->sweeps += sweeps;
+  lag_contacts_rest(w, v);
   return sweeps > MOST;
 }
 

@@ -86,6 +86,7 @@ check "a constraint" dot models/cartesian_pendulum.lag "" x "g,l,y,x'" --until 2
 check "a rod whose length is a parameter" dot $S/rod.lag "" x l,g,a,w
 check "... by an implicit method" dot $S/rod.lag "" x l,g,a,w --method radau --tol 1e-8
 check "dry friction that sticks and slips" dot $S/rub.lag "" x w,R,x0,v0
+check "weights of a network" dot models/learned_spring.lag record x "V_w1[3,1],V_b1[5],V_w2[8],V_b2,x,m" --until 5 --method dop853
 check "an implicit method" dot models/pendulum.lag wide th "g,l,th,th'" --until 2 --method radau
 check "Taylor series" dot models/pendulum.lag wide th "g,l,th,th'" --until 2 --method taylor
 cat >"$TMP/bounce.lag" <<'M'

@@ -66,6 +66,12 @@ sed "s/ - E0\*V(x\/x0)//; s/x = 0.9/x = -0.9, x' = 1/" "$TMP/swing.lag" >"$TMP/s
 awk 'BEGIN { print "t [s],E0*V(x/x0) [J]"; for (i = 1; i <= 18; i++) { x = -0.9 + i/10; printf "%.1f,%.6f\n", i/10, 0.5*x*x } }' >"$TMP/values.csv"
 check "weights that outputs alone feel" train "$TMP/seen.lag" s --data "$TMP/values.csv" --fit V --sigma 0.01 -o "$TMP/seen.json"
 check "... are found: within the errors given" awk '/^chi squared/ && $3 < 18 { found = 1 } END { exit !found }' "$TMP/out"
+# Two records of x'' + c x' + 4 x = 0 with c = 0.1, nearly e^(-0.05 t) cos 2t: the friction, a start each, and the potential at once
+sed 's/^scene s/dissipation = c\/2*x'"'^2\\n&/; s/^param/param c = 0.3 [kg\/s] >= 0,/" "$TMP/swing.lag" >"$TMP/rubs.lag"
+for a in 1 -0.5; do awk -v a=$a 'BEGIN { print "t [s],x [m]"; for (i = 1; i <= 40; i++) printf "%.1f,%.6f\n", i/10, a*exp(-i/200)*cos(i/5) }' >"$TMP/a$a.csv"; done
+check "two records, with friction and starts" train "$TMP/rubs.lag" s --data "$TMP/a1.csv,$TMP/a-0.5.csv" --fit "V,c,x(0),x'(0)" --sigma 0.003 -o "$TMP/rubs.json"
+check "... its friction" near "$(sed -n 's/^  c  *\([^ ]*\) kg.s$/\1/p' "$TMP/out")" 0.1 0.005 # 80 values, 1 % of the motion, 4 s
+check "... the second start" near "$(sed -n 's/^  x(0) in a-0.5.csv *\([^ ]*\) m$/\1/p' "$TMP/out")" -0.5 0.003
 check "no place for the weights" says 'where do the weights go? Write -o weights.json' "$TMP/swing.lag" s --data "$TMP/x.csv" --fit V
 check "a file, and no network" says 'weights of a network are written there, and --fit x names none' "$TMP/swing.lag" s --data "$TMP/x.csv" --fit x -o "$TMP/no.json"
 check "profiles of weights" says 'data do not determine the weights of a network one by one' "$TMP/swing.lag" s --data "$TMP/x.csv" --fit V --profile -o "$TMP/no.json"

@@ -27,8 +27,8 @@ if command -v node >/dev/null 2>&1; then
   check "contacts with friction, whose choice of modes takes the most stack" digits capstan slips part
   slow check "a planet" digits kepler orbit 20
   slow check "a body that turns about all axes" digits free_body free 5
-  # The gallery, but for exp, log, atan2, .., whose last digit C libraries may differ in, and a tower, which only moreau moves.
-  for m in $(grep -LE '(exp|log|sinh|cosh|tanh|a(cos|sin|tan)[a-z0-9]*)[(]' models/*.lag); do
+  # The gallery, but for exp, log, atan2, networks, .., whose last digit C libraries may differ in, and a tower, which only moreau moves.
+  for m in $(grep -LE '(exp|log|sinh|cosh|tanh|a(cos|sin|tan)[a-z0-9]*)[(]|^network' models/*.lag); do
     m=$(basename "$m" .lag)
     one_of 30 && [ "$m" != tower ] || continue
     check "$m has the digits of lagc run" digits "$m" "$(sed -n 's/^scene \([a-zA-Z0-9_]*\).*/\1/p' "models/$m.lag" | head -1)" part
