@@ -13,6 +13,7 @@ functions() {
   shift
   "$LAGC" build "$model" "$@" --bytes -o "$TMP/bytes" && "$LAGC" build "$model" "$@" --shared -o "$TMP/model.so" && "$TMP/evaluator" "$TMP/bytes" "$TMP/model.so" 12
 }
+check "functions of a sum by a tree" functions tests/golden/ok/far.lag -D N=60
 check "functions of models/lennard_jones.lag with nests of loops" functions models/lennard_jones.lag -D N=14 --method taylor
 check "nests whose rows are longer than a block" functions models/lennard_jones.lag -D N=80
 # A coefficient 4 i of a loop over i is no power of two, though that of its first turn, 8, is one.
@@ -163,6 +164,8 @@ fi
 LAG_COMPILED=9 LAG_PROGRAM=$TMP/ball "$BUILD/lag-run" --method rk4 --step 1e-3 --quiet 9</dev/null 2>"$TMP/err"
 is "a compiler that ends without a library" "lag-run: the C compiler failed, so the run was evaluated; \`lagc build\` prints its messages" "$(cat "$TMP/err")"
 check "damaged bytes of a model with events" "$TMP/sanitized" "$TMP/ball" - "${SLOW:+20}200"
+"$LAGC" build tests/golden/ok/far.lag -D N=60 --bytes -o "$TMP/tree"
+check "damaged bytes of a model with a sum by a tree" "$TMP/sanitized" "$TMP/tree" - "${SLOW:+20}50"
 check "damaged bytes of a model with nests and series" "$TMP/sanitized" "$TMP/nests" - "${SLOW:+20}100"
 printf 'no program' >"$TMP/text"
 LAG_PROGRAM=$TMP/text "$BUILD/lag-run" >/dev/null 2>"$TMP/err"
