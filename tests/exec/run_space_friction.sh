@@ -47,6 +47,8 @@ for k in 1.5 2 6; do
   check "stops" near "$(event "plane sticks.x")" "$(calc "2*($k + cos(2))/(10*sin(0.5)*($k^2 - 1))")" 2e-10
   check "with its energy balanced" near "$(number drift)" 0 1e-10
 done
+check "thrown up the slope, it turns round" run slope s f0=3.1 --tol 1e-9
+check "and stops" near "$(event "plane sticks.x")" "$(calc "2*(1.5 + cos(3.1))/(10*sin(0.5)*1.25)")" 1e-9
 
 # ---- a puck under a force that turns and grows slips off; SciPy's DOP853 (rtol 1e-12) from the first slip on
 model pulled <<'END_OF'
