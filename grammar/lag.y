@@ -84,9 +84,9 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %type <list> drawn clauses several
 %type <declared> declaration
 %type <id> clause
-%type <list> rubbing laws dims indices places_bound exprs args names variables
+%type <list> rubbing laws dims indices places_bound ranges exprs args names variables
 %type <id> window
-%type <id> happening expr arith primary reach place moved bound value comparison every number literal declared gap sides law tuple condition
+%type <id> happening expr arith primary reach place moved bound range value comparison every number literal declared gap sides law tuple condition
 %type <text> doc weights
 %type <unit> unit
 %type <ident> type method_name activation
@@ -155,6 +155,7 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "event" IDENT[n] dims[d] ":" arith[g] direction[w] block[b] { $$ = stmt_event(ast, @$, $n, $d, $g, $w, $b); }
       | "kick" IDENT[n] dims[d] "every" arith[T] block[b] { $$ = stmt_event(ast, @$, $n, $d, $T, AT_EQUAL_TIMES, $b); }
       | "contact" IDENT[n] dims[d] ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
+      | "contact" IDENT[n] "[" ranges[d] "]" ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
       | "for" IDENT[i] "in" arith[lo] ".." arith[hi] block[b] { $$ = stmt_for(ast, @$, $i, $lo, $hi, $b); }
       | "effect" IDENT[n] doc[d] block[b]       { $$ = stmt_titled(ast, STMT_EFFECT, @$, $n, $d, $b); }
       | "scene" IDENT[n] doc[d] block[b]        { $$ = stmt_titled(ast, STMT_SCENE, @$, $n, $d, $b); }
@@ -380,6 +381,13 @@ places_bound: bound[x]                   { $$ = ast_list($x); }
 bound: arith[a]                                   { $$ = $a; }
      | IDENT[i] "in" arith[lo] ".." arith[hi]     { $$ = ast_bind(ast, @$, $i, $lo, $hi); }
      ;
+/* Members of a family of contacts. */
+ranges: range[x]                { $$ = ast_list($x); }
+      | ranges[l] "," range[x]  { $$ = ast_list_add(ast, $l, $x); }
+      ;
+range: IDENT[i] "in" arith[lo] ".." arith[hi] { $$ = ast_bind(ast, @$, $i, $lo, $hi); }
+     | IDENT[j] "in" arith[near]              { $$ = ast_near_bind(ast, @$, $j, $near); }
+     ;
 
 names: declared[n]              { $$ = ast_list($n); }
      | names[l] "," declared[n] { $$ = ast_list_add(ast, $l, $n); }
@@ -422,6 +430,8 @@ primary: NUMBER[n]                          { $$ = ast_number(ast, @n, $n); }
        | IDENT[n]                           { $$ = ast_name(ast, $n); }
        | IDENT[f] "(" args[l] ")"           { $$ = ast_call(ast, @$, $f, $l); }
        | "sum"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] ")"     { $$ = ast_reduce(ast, AST_SUM, @$, @op, (AstTurns){$i, $lo, $hi}, $e); }
+       | "sum"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] "," IDENT[by] IDENT[way] "(" expr[theta] ")" ")"
+           { $$ = ast_far(ast, @$, @op, (AstTurns){$i, $lo, $hi}, $e, (FarWay){$by, $way, $theta}); }
        | "sum"[op] "(" IDENT[j] "in" arith[near] "," expr[e] ")"                  { $$ = ast_near(ast, @$, $j, $near, $e, @op); }
        | "product"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] ")" { $$ = ast_reduce(ast, AST_PRODUCT, @$, @op, (AstTurns){$i, $lo, $hi}, $e); }
        | "(" expr[e] ")"                    { $$ = $e; }

@@ -76,10 +76,8 @@ static int press_gap(ContactSet *w, int a, double unit, const double *N0, double
 
 int lag_guides_find_pressed(ContactSet *w) {
   const lag_model *m = w->sim->scene->model;
-  enum { MOST = 32 };
-  double *law = w->sim->pb.rub, unit = 1, N0[3 * MOST], N[3 * MOST];
+  double *law = w->sim->pb.rub, unit = 1, N0[3 * LAG_MOST_GUIDES], N[3 * LAG_MOST_GUIDES];
   if (m->nguides == 0) return LAG_OK;
-  if (m->nguides > MOST) return lag_fail(w->sim, LAG_EMODEL, "a model has at most %d guides with friction", MOST);
   lag_contacts_close_only(w, 0, -1);
   int rc = lag_inputs(&w->sim->pb, w->sim->run->t);
   rc = rc ? rc : forces(w, N0, law);

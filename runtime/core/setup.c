@@ -18,7 +18,8 @@ static size_t saved_arrays(lag_sim *s, const lag_method *method, double *x) {
   const lag_model *m = s->scene->model;
   size_t nm = (size_t)m->nmodes, nu = (size_t)m->nu + nm, n = (size_t)s->pb.n, nev = (size_t)m->nev + nm;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0;
+  size_t keys = method->flags & LAG_METHOD_IMPULSES ? (size_t)lag_family_rows_of(m) : 0,
+         pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts + keys : 0;
   double *contacts;
   const lag_part parts[] = {{&s->p, (size_t)m->np}, {&s->derived, (size_t)m->nderived}, {&s->hold, nu},
       {&s->begin, n}, {&s->asked, n}, {&s->elsewhere, (size_t)m->nq}, {&s->redundant, nc},
@@ -28,6 +29,7 @@ static size_t saved_arrays(lag_sim *s, const lag_method *method, double *x) {
       {&s->flight, nev}, {&s->skipped, nev}, {&s->crossed, nm}, {&s->slips, nm}, {&s->slid, nm},
       {&s->slid_since, nm}, {&s->mon_first, nmon}, {&s->mon_peak, nmon}, {&s->exact_peak, (size_t)s->scene->nexact},
       {&contacts, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0}, {&s->pb.contact_impulse, pushed},
+      {&s->pb.contact_key, keys},
       {&s->pb.contact_change, pushed ? (size_t)m->nq : 0},
       {&s->charge_block, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double)}, {&s->rate_history, 3 * n},
       {&s->pb.size, n + 2}};
@@ -59,7 +61,7 @@ static void begin_blocks(lag_sim *s) {
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   const lag_model *m = s->scene->model;
   size_t np = (size_t)(m->np + m->nderived), nu = (size_t)(m->nu + m->nmodes);
-  size_t pushes = method->flags & LAG_METHOD_IMPULSES && m->ncontacts ? lag_moreau_contacts_size(m) : 0;
+  size_t pushes = method->flags & LAG_METHOD_IMPULSES ? lag_moreau_contacts_size(m) : 0;
   size_t fixed = RUN_DOUBLES + saved_arrays(s, method, NULL);
   double *contact_room = calloc(pushes + 1, sizeof *contact_room);
   lag_problem sized = s->pb;
@@ -92,6 +94,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   s->nwork = work;
   free(s->pb.contact_room);
   s->pb.contact_room = contact_room;
+  s->pb.family = NULL;
   set_problem(s, method, opt);
   s->charges = (Charge *)(void *)s->charge_block;
   s->method = method;
@@ -113,12 +116,12 @@ static int clear_scratch(lag_sim *s) {
       {&s->pb.ranks, ranks}, {&s->contact_scratch, sized}, {&s->contact_was, (size_t)m->ncontacts},
       {&s->charge_now, 2 * nc}, {&s->charge_power, nc}, {&s->charge_gain, nc}, {&s->sides, 3 * (size_t)m->nswitch},
       {&s->grip, nm}, {&s->side_noise, nm}, {&s->slid_off, nm}, {&s->meets, nm}, {&s->left, nm},
-      {&s->meeting, nm * (9 + 2 * nm)}, {&s->pb.slide, nm * (3 + nm)},
+      {&s->meeting, nm * (9 + 2 * nm)}, {&s->pb.slide, nm * (3 + 2 * nm)},
       {&s->pb.rub, lag_contact_law_size(m)},
       {&s->sizes, (size_t)(m->nsizes + m->nmoving)}};
   const size_t nparts = sizeof parts / sizeof *parts;
-  for (size_t i = 0; s->scratch && i < nparts; i++) memset(*parts[i].at, 0, parts[i].n * sizeof(double));
-  if (!s->scratch) s->scratch = lag_workspace(nparts, parts);
+  if (s->scratch) lag_workspace_clear(nparts, parts);
+  else s->scratch = lag_workspace(nparts, parts);
   return s->scratch ? LAG_OK : LAG_ENOMEM;
 }
 
@@ -243,7 +246,7 @@ lag_sim *lag_sim_renew(lag_sim *s, const lag_sim *from) {
   end_run(s);
   clear_scratch(s);
   *s = *s->fresh;
-  memset(s->saved, 0, s->nsaved * sizeof *s->saved);
+  memset(s->saved, 0, (s->nsaved - (s->method->head ? s->nwork - s->method->head : 0)) * sizeof *s->saved);
   memset(s->meeting_of, 0, (3 * (size_t)s->scene->model->nmodes + 1) * sizeof *s->meeting_of);
   begin_blocks(s);
   free_modes(s);

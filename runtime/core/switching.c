@@ -62,6 +62,22 @@ static int rate_matrix(lag_problem *pb, double t, const double *y, const double 
   return 0;
 }
 
+/* Switches that hold one motion, as frictions of two joints of one crank, share what holds it as springs do that give
+ * way by this part. */
+static const double gives_way = 1e-6;
+
+/* Whether sliding switches hold one motion: a row of B[n n] depends on others. C[n n]: scratch. */
+static int holds_twice(int n, const double *B, double *C) {
+  for (int k = 0; k < n * n; k++)
+    C[k] = B[k] / sqrt(fabs(B[k / n * (n + 1)] * B[k % n * (n + 1)])); /* diagonal -1 where it can slide */
+  for (int k = 0; k < n; k++) {
+    if (!(fabs(C[k * (n + 1)]) > lag_dependent_row)) return 1;
+    for (int i = k + 1; i < n; i++)
+      for (int j = n - 1; j >= k; j--) C[i * n + j] -= C[i * n + k] / C[k * (n + 1)] * C[k * n + j];
+  }
+  return 0;
+}
+
 int lag_sliding_values(lag_problem *pb, double t, const double *y) {
   enum { ROUNDS = 8 };
   const double enough = 64 * DBL_EPSILON, some = 1e-9; /* of the largest term */
@@ -74,6 +90,8 @@ int lag_sliding_values(lag_problem *pb, double t, const double *y) {
     if (round && left <= enough * size) return 0;
     if ((rc = rate_matrix(pb, t, y, r, other, B, &size)) != 0) return rc;
     for (int i = 0; i < n; i++) x[i] = -r[pb->sliding[i]];
+    int twice = holds_twice(n, B, B + n * n);
+    for (int i = 0; i < n && twice; i++) B[i * (n + 1)] *= 1 + gives_way;
     if (lag_solve_dense((size_t)n, 1, B, x)) return LAG_ERETRY;
     for (int i = 0; i < n; i++) u[pb->sliding[i]] += x[i];
   }
@@ -219,14 +237,15 @@ static double rate_of(const Meeting *w, int i) {
   return r;
 }
 
-/* Chooses m as a complementarity problem. p->at[n]: where the search begins, and ends. */
-static int solve_modes(const lag_sim *s, Meeting *w, lag_complementarity *p) {
+/* Chooses m as a complementarity problem. p->at[n]: where the search begins, and ends. soft: part by which each gives
+ * way. */
+static int solve_modes(const lag_sim *s, Meeting *w, lag_complementarity *p, double soft) {
   int n = w->n;
   for (int i = 0; i < n; i++) {
     double grip = s->grip[w->of[i]];
     w->box[i] = (lag_box){-1, 1, grip - 1, !can_slide(s, w, i)};
     w->x[i] = -w->r0[i];
-    for (int j = 0; j < n; j++) w->C[i * n + j] = -w->B[i * n + j];
+    for (int j = 0; j < n; j++) w->C[i * n + j] = -w->B[i * n + j] * (i == j ? 1 + soft : 1);
   }
   int status = lag_solve_complementarity(p);
   for (int i = 0; i < n && status == LAG_SOLVED; i++) w->m[i] = w->x[i];
@@ -288,7 +307,8 @@ static int choose(lag_sim *s, Meeting *w, const double *left) {
     if (s->grip[w->of[i]] < 1) return fail_at(s, LAG_EDOMAIN, w->of[i], weak_grip);
   if ((rc = begin_choice(s, w, left)) != 0) return rc;
   lag_complementarity p = {w->n, -1, w->C, w->x, w->scale, w->box, w->at, 1e-13, 5e-14};
-  int status = solve_modes(s, w, &p);
+  int status = solve_modes(s, w, &p, 0);
+  if (status != LAG_SOLVED && begin_choice(s, w, left) == LAG_OK) status = solve_modes(s, w, &p, gives_way);
   if (status == LAG_CYCLES) return fail_at(s, LAG_ESTALL, w->of[p.row], no_end);
   if (status != LAG_SOLVED) return fail_at(s, LAG_ESTALL, w->of[0], no_slide);
   for (int i = 0; i < w->n; i++) {

@@ -87,7 +87,9 @@ typedef struct lag_problem {
   lag_contact_stats *contacts;
   double *contact_impulse;     /* [ncontacts] impulse of each in the last step, */
   double *contact_change;      /* [nq] and the change of velocities by all of them */
+  double *contact_key;         /* [lag_family_rows_of] of families of contacts: whose impulses these are, ascending */
   double *contact_room;        /* scratch */
+  struct lag_family_rows *family; /* in it: families of contacts (methods/moreau_families.c); NULL: not laid out */
   /* [n + 2] size of each component in this run, and last of the time: powers of 1024; tolerances are parts of it */
   double *size;
   const lag_parameter_columns *by; /* of the run's tangent; NULL: none */
@@ -274,7 +276,9 @@ typedef struct lag_method {
   /* Doubles of work that init needs with the options pb->opt. */
   size_t (*work_size)(const lag_problem *pb);
 
-  /* Prepares work (zeroed). opt[noptions] are the values of the options. < 0: see pb->detail. */
+  size_t head; /* doubles at the beginning of work that init finds zeroed; 0: all of it */
+
+  /* Prepares work. opt[noptions] are the values of the options. < 0: see pb->detail. */
   int (*init)(void *work, lag_problem *pb, const double *opt);
 
   /* One accepted step from (*t, y[n]), of the method's own size in direction pb->dir, never past t_stop for a

@@ -120,10 +120,13 @@ typedef struct lag_sparse_rows {
 
 /* A contact: rows row (the gap) and row + 1 .. row + tangents (slip velocities). least: the least rate of the
  * gap after the impulse. Friction drives the slip velocity to the nearest point of a ball (an interval in a
- * plane), about centre[tangents], of this radius. strikes: 1 in an impact; rate, slip[tangents]: at the begin.
- * opposite: the contact on the other side of the same rail, or -1; head, next: of chains by first column. */
+ * plane), about centre[tangents], of this radius. strikes: 1 in an impact; rate, slip[tangents]: at the begin, by
+ * directions at the middle; turn, tail[tangents]: change of the slip by theirs until there, and on to the end.
+ * opposite: the contact on the other side of the same rail, or -1; head, next: of chains by first column;
+ * couple: response of the gap to friction. */
 typedef struct lag_pressing {
-  LAG_REAL contact, row, tangents, mu, least, radius, centre[2], strikes, rate, slip[2], opposite, head, next;
+  LAG_REAL contact, row, tangents, mu, least, radius, centre[2], strikes, rate, slip[2], turn[2], tail[2];
+  LAG_REAL opposite, head, next, couple[2];
 } lag_pressing;
 
 /* The product of row r with x. */
@@ -163,8 +166,9 @@ static inline void lag_contact_law(lag_pressing *c, LAG_REAL gap, LAG_REAL bend,
   if (r0 > zero || down < zero) c->least = lag_smaller(-r0, c->least);
   if (strikes) c->least = lag_larger(-down, -lag_smaller(lag_larger(e, zero), one)*r0);
   for (int j = 0; j < (int)c->tangents; j++) {
-    c->centre[j] = -part*c->slip[j];
-    size = lag_length_of(size, c->slip[j]);
+    const LAG_REAL slip = c->slip[j] - c->turn[j];
+    c->centre[j] = -part*slip - c->tail[j];
+    size = lag_length_of(size, slip);
   }
   c->radius = LAG_SELECT(strikes, zero, (one - back)/two*size);
 }
@@ -185,6 +189,7 @@ typedef struct lag_impulses {
   lag_sparse_rows A, D;
   const LAG_REAL *response, *b;
   LAG_REAL *P, *v;
+  LAG_REAL *was, *went; /* [rows] impulses some sweeps ago, and their changes until then */
 } lag_impulses;
 
 static inline LAG_REAL lag_rate_of(const lag_impulses *s, int r) { return lag_row_product(&s->A, r, s->v) + s->b[r]; }
@@ -220,6 +225,17 @@ static inline void lag_find_opposites(const lag_impulses *s) {
   }
 }
 
+/* c->couple := responses of its gap to its friction. */
+static inline void lag_find_coupling(const lag_impulses *s, lag_pressing *c) {
+  const int r = (int)c->row;
+  for (int k = 0; k < (int)c->tangents; k++) {
+    c->couple[k] = LAG_C(0.0);
+    for (int d = (int)s->D.first[r + 1 + k]; d < (int)s->D.first[r + 2 + k]; d++)
+      for (int e = (int)s->A.first[r]; e < (int)s->A.first[r + 1]; e++)
+        if ((int)s->A.col[e] == (int)s->D.col[d]) c->couple[k] += s->A.value[e]*s->D.value[d];
+  }
+}
+
 /* Changes the impulse of the gap of c by dP, and first that on the other side of its rail. */
 static inline void lag_press(const lag_impulses *s, const lag_pressing *c, LAG_REAL dP) {
   const int other = c->opposite < LAG_C(0.0) ? -1 : (int)s->of[(int)c->opposite].row;
@@ -229,31 +245,99 @@ static inline void lag_press(const lag_impulses *s, const lag_pressing *c, LAG_R
   lag_add_impulse(&s->D, (int)c->row, dP - less, s->P, s->v);
 }
 
-/* One turn of a contact; returns the largest change of a rate. */
-static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressing *c) {
-  const LAG_REAL zero = LAG_C(0.0);
-  const int r = (int)c->row, n = (int)c->tangents;
-  LAG_REAL change = zero, slip[2], x[2], w = zero;
-  if (s->response[r] > zero) {
-    const LAG_REAL to = lag_larger(zero, s->P[r] + (c->least - lag_rate_of(s, r))/s->response[r]);
-    change = LAG_FN(fabs)(to - s->P[r])*s->response[r];
-    lag_press(s, c, to - s->P[r]);
+/* A contact alone, while the others keep theirs: its impulse, friction x, rates under them. slow: response of a slip to
+ * friction, the trace, which is no less than the largest eigenvalue, and the same in all directions. */
+typedef struct lag_contact_alone {
+  const lag_pressing *of;
+  LAG_REAL response, slow, impulse, rate, slip[2], x[2];
+} lag_contact_alone;
+
+/* x := friction where the impulse of the gap is P. Returns the rate of the gap. */
+static inline LAG_REAL lag_contact_rate(const lag_contact_alone *a, LAG_REAL P, LAG_REAL *x) {
+  const lag_pressing *const c = a->of;
+  const lag_coulomb law = {(int)c->tangents, a->slow, c->radius, c->mu*P, c->mu*P, c->centre};
+  LAG_REAL slip[2], rate = a->rate + a->response*(P - a->impulse);
+  for (int k = 0; k < law.n; k++) {
+    slip[k] = a->slip[k] + c->couple[k]*(P - a->impulse);
+    x[k] = a->x[k];
   }
-  /* the trace: no less than the largest eigenvalue, and the same in all directions */
-  for (int k = 1; k <= n; k++) w += s->response[r + k];
-  if (!(w > zero)) return change;
-  for (int k = 0; k < n; k++) {
-    slip[k] = lag_rate_of(s, r + 1 + k);
-    x[k] = s->P[r + 1 + k];
+  if (a->slow > LAG_C(0.0)) lag_friction_turn(&law, slip, x);
+  for (int k = 0; k < law.n; k++) rate += c->couple[k]*(x[k] - a->x[k]);
+  return rate;
+}
+
+/* The impulse of the gap at which its rate is the least one, with friction by its law; of several, as of wedged bodies,
+ * the nearest to the present one. Strides that double, then regula falsi with the Illinois rule (M. Dowell, P. Jarratt,
+ * BIT 11 (1971) 168, DOI 10.1007/BF01934364). */
+static inline LAG_REAL lag_contact_balance(const lag_contact_alone *a) {
+  const LAG_REAL zero = LAG_C(0.0), two = LAG_C(2.0), least = a->of->least;
+  LAG_REAL x[2], last = a->impulse, P = last, at = lag_contact_rate(a, P, x) - least, at_last = at;
+  LAG_REAL stride = -at/a->response;
+  while ((at < zero) == (at_last < zero) && (at < zero || (at > zero && P > zero))) {
+    last = P, at_last = at;
+    P = lag_larger(zero, P + stride);
+    at = lag_contact_rate(a, P, x) - least;
+    stride *= two;
+    if (!lag_is_number(P)) return a->impulse;
   }
-  const lag_coulomb law = {n, w, c->radius, c->mu*s->P[r], c->mu*s->P[r], c->centre};
-  lag_friction_turn(&law, slip, x);
-  for (int k = 0; k < n; k++) {
-    const LAG_REAL by = x[k] - s->P[r + 1 + k];
+  if ((at < zero) == (at_last < zero) || !(at < zero || at > zero)) return P;
+  for (int turn = 0; turn < 100; turn++) {
+    const LAG_REAL to = P - at*((P - last)/(at - at_last)), at_to = lag_contact_rate(a, to, x) - least;
+    if (!(to < P || to > P) || !(at_to < zero || at_to > zero)) return to;
+    if ((at_to < zero) == (at < zero)) at_last /= two;
+    else last = P, at_last = at;
+    P = to, at = at_to;
+  }
+  return P;
+}
+
+/* Changes friction of contact c by this part towards x; returns the largest change of a rate without damping. */
+static inline LAG_REAL lag_contact_rub(const lag_impulses *s, const lag_pressing *c, const LAG_REAL *x, LAG_REAL w,
+                                        LAG_REAL part) {
+  const int r = (int)c->row + 1;
+  LAG_REAL change = LAG_C(0.0);
+  for (int k = 0; k < (int)c->tangents; k++) {
+    const LAG_REAL by = x[k] - s->P[r + k];
     change = lag_larger(change, LAG_FN(fabs)(by)*w);
-    lag_add_impulse(&s->D, r + 1 + k, by, s->P, s->v);
+    lag_add_impulse(&s->D, r + k, part*by, s->P, s->v);
   }
   return change;
+}
+
+/* Part of each change that a sweep makes: contacts whose friction loads each other swing for ever by whole ones. */
+static inline LAG_REAL lag_contact_damping(int sweep) {
+  return sweep < 500 ? LAG_C(1.0) : sweep < 3000 ? LAG_C(0.5) : sweep < 20000 ? LAG_C(0.2) : LAG_C(0.05);
+}
+
+/* One turn of a contact; returns the largest change of a rate. Along the gap and across in turn, or both at once where
+ * friction moves the gap by more than half of its own response, as in a brake that locks itself. */
+static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressing *c, LAG_REAL part) {
+  const LAG_REAL zero = LAG_C(0.0), two = LAG_C(2.0);
+  const int r = (int)c->row, n = (int)c->tangents;
+  lag_contact_alone a = {c, s->response[r], zero, s->P[r], zero, {zero, zero}, {zero, zero}};
+  LAG_REAL change = zero, x[2] = {zero, zero}, couple = zero, to = s->P[r];
+  for (int k = 0; k < n; k++) {
+    a.slow += s->response[r + 1 + k];
+    a.x[k] = s->P[r + 1 + k];
+    couple = lag_length_of(couple, c->couple[k]);
+  }
+  if (a.response > zero) {
+    const int at_once = two*c->mu*couple > a.response && a.slow > zero;
+    a.rate = lag_rate_of(s, r);
+    for (int k = 0; k < n && at_once; k++) a.slip[k] = lag_rate_of(s, r + 1 + k);
+    to = lag_larger(zero, s->P[r] + (c->least - a.rate)/a.response);
+    if (at_once) to = lag_contact_balance(&a);
+    change = LAG_FN(fabs)(to - s->P[r])*a.response;
+    lag_press(s, c, part*(to - s->P[r]));
+  }
+  if (!(a.slow > zero)) return change;
+  for (int k = 0; k < n; k++) {
+    a.slip[k] = lag_rate_of(s, r + 1 + k);
+    x[k] = a.x[k];
+  }
+  const lag_coulomb law = {n, a.slow, c->radius, c->mu*s->P[r], c->mu*s->P[r], c->centre};
+  lag_friction_turn(&law, a.slip, x);
+  return lag_larger(change, lag_contact_rub(s, c, x, a.slow, part));
 }
 
 /* Whether friction by the slip at the end brings in energy in an impact; then its ball becomes that of the
@@ -274,6 +358,31 @@ static inline int lag_contact_soften(const lag_impulses *s, lag_pressing *c, LAG
   return 1;
 }
 
+/* Impulses that go on in one direction, sweep by sweep, go there at once: by the geometric series of their changes, in
+ * strides that double. Returns the next stride; 0: they turn. A.C. Aitken, Proc. R. Soc. Edinb. 57 (1937) 269. */
+static inline LAG_REAL lag_contact_stride(const lag_impulses *s, LAG_REAL stride) {
+  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0);
+  LAG_REAL both = zero, now = zero, before = zero;
+  for (int i = 0; i < s->n; i++)
+    for (int r = (int)s->of[i].row; r <= (int)(s->of[i].row + s->of[i].tangents); r++) {
+      const LAG_REAL went = s->P[r] - s->was[r];
+      both += went*s->went[r];
+      now += went*went;
+      before += s->went[r]*s->went[r];
+      s->went[r] = went;
+    }
+  const int goes_on = both > zero && both*both > LAG_C(0.98)*now*before;
+  const LAG_REAL left = both < before ? both/(before - both) : stride;
+  const LAG_REAL by = goes_on ? lag_smaller(left, stride) : zero;
+  for (int i = 0; i < s->n; i++)
+    for (int r = (int)s->of[i].row; r <= (int)(s->of[i].row + s->of[i].tangents); r++) {
+      const LAG_REAL to = s->P[r] + by*s->went[r];
+      lag_add_impulse(&s->D, r, (r > (int)s->of[i].row ? to : lag_larger(to, zero)) - s->P[r], s->P, s->v);
+      s->was[r] = s->P[r];
+    }
+  return goes_on ? LAG_C(2.0)*stride : one;
+}
+
 /* Finds impulses P >= 0 along gaps, and of friction within mu times them, so that velocities v + D P obey these
  * laws: the rate A v + b of a gap is at least `least`, and equal where P > 0; slip velocities are in the ball
  * where friction can hold them there, else friction is at its limit and acts towards its centre. P: a guess,
@@ -282,26 +391,28 @@ static inline int lag_contact_soften(const lag_impulses *s, lag_pressing *c, LAG
 static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, int most) {
   const LAG_REAL zero = LAG_C(0.0);
   /* change 1000 sweeps ago: rows that depend on others agree to their own rounding only */
-  LAG_REAL before = enough*LAG_C(1e8);
+  LAG_REAL before = enough*LAG_C(1e8), stride = LAG_C(1.0);
   lag_find_opposites(s);
+  for (int i = 0; i < s->n; i++) lag_find_coupling(s, &s->of[i]);
   for (int i = 0; i < s->n; i++)
     for (int k = (int)s->of[i].row; k <= (int)(s->of[i].row + s->of[i].tangents); k++) {
       const LAG_REAL guess = LAG_SELECT(s->response[k] > zero, s->P[k], zero);
-      s->P[k] = zero;
+      s->P[k] = s->was[k] = s->went[k] = zero;
       lag_add_impulse(&s->D, k, guess, s->P, s->v);
     }
   for (int sweep = 1; sweep <= most; sweep++) {
     LAG_REAL change = zero;
+    const LAG_REAL part = lag_contact_damping(sweep);
     int softer = 0;
     for (int i = 0; i < s->n; i++) {
-      const LAG_REAL one = lag_contact_turn(s, &s->of[sweep % 2 ? i : s->n - 1 - i]);
+      const LAG_REAL one = lag_contact_turn(s, &s->of[sweep % 2 ? i : s->n - 1 - i], part);
       change = LAG_SELECT(one > change || !lag_is_number(one), one, change);
     }
     for (int i = 0; i < s->n && !(change > enough); i++) softer += lag_contact_soften(s, &s->of[i], enough);
     if (!(change > enough) && softer == 0) return sweep;
-    if (sweep % 1000 != 0) continue;
-    if (change <= LAG_C(1e7)*enough && change >= LAG_C(0.9)*before) return sweep;
-    before = change;
+    if (sweep % 1000 == 0 && change <= LAG_C(1e7)*enough && change >= LAG_C(0.9)*before) return sweep;
+    if (sweep % 1000 == 0) before = change;
+    if (sweep % 32 == 0 && sweep > 200) stride = lag_contact_stride(s, stride);
   }
   return most + 1;
 }

@@ -197,6 +197,7 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
 
 const lag_method lag_taylor_method = {
     .name = "taylor",
+    .head = sizeof(Taylor) / sizeof(double), /* coefficients are written before they are read */
     .order = 20,
     .dense_order = 20,
     .order_least = 1,

@@ -2,10 +2,20 @@
 #include "numeric/workspace.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "numeric/poison.h"
 
 enum { GAP = POISON_GAP / sizeof(double) };
+
+void lag_workspace_clear(size_t n, const lag_part parts[]) {
+  size_t total = 0;
+  for (size_t i = 0; i < n; i++) {
+    if (GAP) memset(*parts[i].at, 0, parts[i].n * sizeof(double));
+    total += parts[i].n;
+  }
+  if (!GAP) memset(*parts[0].at, 0, total * sizeof(double));
+}
 
 double *lag_workspace(size_t n, const lag_part parts[]) {
   size_t total = 1;

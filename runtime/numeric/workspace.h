@@ -22,3 +22,5 @@ static inline size_t lag_workspace_slice(double *block, size_t n, const lag_part
 /* A block of zeros with these n parts. Give it to free(). NULL: no memory. Under the address sanitizer a gap that must
  * not be touched follows each part. */
 double *lag_workspace(size_t n, const lag_part parts[]);
+/* Sets all of its parts to 0. */
+void lag_workspace_clear(size_t n, const lag_part parts[]);

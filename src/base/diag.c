@@ -11,12 +11,37 @@ Diags *diags_new(Arena *a, const Sources *sources) {
   return d;
 }
 
-/* The recorded message equal to this one, or NULL: a text compiled once a scene repeats its mistakes. */
-static Diag *find(const Diags *d, const Diag *one) {
+/* The text behind the numbers of an index that begins here, `[12]` or `[1,2]`; NULL: there is none. */
+static const char *behind_index(const char *s) {
+  size_t n = *s == '[' ? strspn(s + 1, "0123456789,") : 0;
+  return n && s[n + 1] == ']' ? s + n + 2 : NULL;
+}
+
+/* Whether two messages differ by indices only. *later: b is about a later member. */
+static int are_of_family(const char *a, const char *b, int *later) {
+  int order = 0;
+  while (*a && *b) {
+    const char *next_a = behind_index(a), *next_b = behind_index(b);
+    if (!(next_a && next_b) && *a != *b) return 0;
+    long longer = next_a && next_b ? (next_b - b) - (next_a - a) : 0; /* numbers with more digits are larger */
+    if (order == 0 && next_a && next_b) order = longer ? (int)longer : strncmp(b, a, (size_t)(next_a - a));
+    a = next_a && next_b ? next_a : a + 1;
+    b = next_a && next_b ? next_b : b + 1;
+  }
+  if (*a != *b) return 0;
+  *later = order > 0;
+  return 1;
+}
+
+/* The recorded message equal to this one, or NULL: a text compiled once a scene repeats its mistakes. Of errors and
+ * warnings also one about another member of the same family. *fresh: this member is later than all recorded ones. */
+static Diag *find(const Diags *d, const Diag *one, int *fresh) {
   for (uint32_t i = 0; i < d->list.n; i++) {
     Diag *other = &d->list.at[i];
-    if (other->span.begin == one->span.begin && other->span.end == one->span.end &&
-        other->severity == one->severity && strcmp(other->message, one->message) == 0)
+    if (other->span.begin != one->span.begin || other->span.end != one->span.end || other->severity != one->severity)
+      continue;
+    if (strcmp(other->message, one->message) == 0) return other;
+    if (one->severity != DIAG_NOTE && are_of_family(other->last ? other->last : other->message, one->message, fresh))
       return other;
   }
   return NULL;
@@ -27,9 +52,13 @@ static int add(Diags *d, Severity severity, Span span, const char *fmt, va_list 
   if (help) *help++ = '\0';
   Diag one = {.severity = severity, .span = span, .message = text, .help = help};
   if (severity == DIAG_ERROR) d->errors++;
-  Diag *known = span.end ? find(d, &one) : NULL;
+  int fresh = 0;
+  Diag *known = span.end ? find(d, &one, &fresh) : NULL;
   d->latest = known ? (uint32_t)(known - d->list.at) : d->list.n > DIAG_MAX ? DIAG_MAX : d->list.n;
-  if (known && help) known->help = help;
+  if (fresh) {
+    known->last = text;
+    known->more++;
+  } else if (known && help && !known->more) known->help = help;
   if (known) return 0;
   if (d->list.n > DIAG_MAX) { /* messages that are not shown share the last slot */
     d->unshown++;
@@ -55,7 +84,7 @@ int diag_verror(Diags *d, Span span, const char *fmt, va_list ap) { return add(d
 void diag_help(Diags *d, const char *fmt, ...) {
   va_list ap;
   va_start(ap, fmt);
-  d->list.at[d->latest].help = arena_vprintf(d->arena, fmt, ap);
+  if (!d->list.at[d->latest].more) d->list.at[d->latest].help = arena_vprintf(d->arena, fmt, ap);
   va_end(ap);
 }
 
@@ -127,12 +156,16 @@ static void sort_by_place(const Diags *d, uint32_t *order) {
   }
 }
 
+const char *diag_text(const Diags *d, const Diag *one) {
+  return one->more ? arena_printf(d->arena, "%s, and %u more of its family", one->message, one->more) : one->message;
+}
+
 void diags_print(const Diags *d, StrBuf *out) {
   uint32_t *order = ARENA_ARRAY(d->arena, uint32_t, d->list.n + 1);
   sort_by_place(d, order);
   for (uint32_t i = 0; i < d->list.n && i < DIAG_MAX; i++) {
     const Diag *one = &d->list.at[order[i]];
-    print_one(d, out, one->severity, one->span, one->message);
+    print_one(d, out, one->severity, one->span, diag_text(d, one));
     if (one->help) {
       sb_puts(out, "      = ");
       sb_visible(out, one->help, strlen(one->help), "\n\t");

@@ -17,6 +17,8 @@ struct Diag {
   Severity severity;
   Span span;
   const char *message;
+  const char *last;  /* the same about the last member of a family, or NULL */
+  uint32_t more;     /* members behind the first */
   const char *help;  /* a way out, or NULL */
   Span note_span;    /* a second place ("first declared here"), or zero */
   const char *note;
@@ -39,7 +41,7 @@ Diags *diags_new(Arena *a, const Sources *sources);
 #define HELP "\x1F"
 
 /* Records a message about a span, with its way out, if the text has one; a repetition of a recorded message is
- * dropped. Returns 0. */
+ * dropped, and of one about another member of a family, as `x[2]` after `x[1]`, counted. Returns 0. */
 int diag_error(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 int diag_warning(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 
@@ -51,6 +53,9 @@ int diag_verror(Diags *d, Span span, const char *fmt, va_list ap) __attribute__(
 /* Adds a way out, or a second place, to the message recorded last. */
 void diag_help(Diags *d, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 void diag_also(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+
+/* The message, with the number of members that share it. */
+const char *diag_text(const Diags *d, const Diag *one);
 
 /* Appends every message, in order of place, as shown above. */
 void diags_print(const Diags *d, StrBuf *out);

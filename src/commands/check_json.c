@@ -111,7 +111,7 @@ static void put_messages(StrBuf *out, const Diags *d) {
     const Diag *x = &d->list.at[i];
     sb_printf(out, "%s\n  {\"severity\": \"%s\"", i ? "," : "", words[x->severity]);
     put_span(out, d->sources, x->span);
-    put_member(out, "message", x->message);
+    put_member(out, "message", diag_text(d, x));
     put_member(out, "help", x->help);
     if (x->note) {
       sb_puts(out, ", \"note\": {\"severity\": \"note\"");

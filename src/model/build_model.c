@@ -540,6 +540,7 @@ static Builder *build_whole(Ast *ast, const ModelChoice *choice, InputRates *rat
   if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
   check_sizes(b);
+  check_contact_families(b);
   command_values(b, choice->values, choice->nvalues);
   return b;
 }

@@ -312,9 +312,10 @@ static int is_whole_power(const Task *t, Expr u, Num power) {
 static Expr integral_by_substitution(const Task *t, int whole_powers) {
   ExprList nodes = expr_topo(t->g, &t->e, 1);
   for (uint32_t i = 0; i < nodes.n; i++) {
+    ExprOp op = expr_op(t->g, nodes.at[i]);
+    if (op == EX_NEST) continue; /* no value */
     Expr whole = whole_powers ? 0 : integral_of_call(t, nodes.at[i]);
-    for (uint32_t k = 0; !whole && expr_op(t->g, nodes.at[i]) != EX_SUM && k < expr_pairs(t->g, nodes.at[i], EX_PROD);
-         k++) {
+    for (uint32_t k = 0; !whole && op != EX_SUM && k < expr_pairs(t->g, nodes.at[i], EX_PROD); k++) {
       Num power;
       Expr u = expr_pair(t->g, nodes.at[i], EX_PROD, k, &power);
       if (whole_powers && !is_whole_power(t, u, power)) continue;

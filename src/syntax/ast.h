@@ -169,6 +169,12 @@ typedef struct {
   Span span;
 } AstNear;
 
+/* sum(j in ..., ..., by tree(theta)). */
+typedef struct {
+  AstId sum, theta;
+  Span span;
+} AstFar;
+
 typedef struct {
   Arena *arena;
   Interner *names;
@@ -177,6 +183,7 @@ typedef struct {
   VEC(AstExpr) exprs;        /* exprs.at[0] is unused */
   VEC(AstPlace) places;
   VEC(AstNear) nears;
+  VEC(AstFar) fars;
   AstStmt *first, *last;     /* the file's statements, includes already spliced in */
   AstStmt *composed;         /* functions that functions.def defines by a text; NULL: not yet parsed */
   struct FileIndex *index;   /* statements by name (model/file_index.c); NULL: not yet made */

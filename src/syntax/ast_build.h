@@ -44,6 +44,14 @@ typedef struct AstTurns {
 AstId ast_reduce(Ast *ast, AstKind kind, Span span, Span op, AstTurns over, AstId body);
 /* near_sum.c: sum(index in near(...), body); range: the expression behind `in`. */
 AstId ast_near(Ast *ast, Span span, Ident index, AstId range, AstId body, Span op);
+/* The same as a range of members, AST_BIND. */
+AstId ast_near_bind(Ast *ast, Span span, Ident index, AstId range);
+/* far_sum.c: sum(index in lo..hi, body, by way(theta)). */
+typedef struct {
+  Ident by, way;
+  AstId theta;
+} FarWay;
+AstId ast_far(Ast *ast, Span span, Span op, AstTurns turns, AstId body, FarWay how);
 AstId ast_collect(Ast *ast, AstKind kind, Span span, AstList items); /* AST_LIST */
 AstId ast_bind(Ast *ast, Span span, Ident index, AstId lo, AstId hi);
 

@@ -448,4 +448,20 @@ stop=$(final a)
 check "it rests" near "$(final "a'")" 0 1e-14
 check "in three" run bars
 check "they stop at one place" near "$(final a)" "$stop" 1e-7
+
+# ---- two frictions hold one motion: 2 N in all on 1.25 kg, until 2.8125 m; from 5 s on a pull that grows by 1 N/s tears both loose
+model shared <<'END_OF'
+model shared
+coord a [m], c [m]
+param m = 1 [kg] > 0, F = 1 [N] > 0, G = 2 [N] > 0
+kinetic = m/2*(a'^2 + c'^2)
+constraint rod: a = 2*c
+force a = -F*sign(a') + 1 [N/s]*max(t - 3 [s], 0 [s])
+force c = -G*sign(c')
+scene go { start a' = 3 [m/s], c' = 1.5 [m/s]; span 8 [s]; output a }
+END_OF
+for method in dop853 radau; do
+  check "two frictions of one motion by $method" run shared --method $method
+  check "stop it, hold it, and let it go" near "$(final a)" "$(calc '2.8125 + 3^3/6/1.25')" 1e-9 # the tolerance
+done
 tap_end

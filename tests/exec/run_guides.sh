@@ -144,6 +144,7 @@ check "by the force of the plates" near "$(cell 0.1 3)" "$(calc '0.5*9.81 - 12')
 check "its path" near "$(final x)" "$(calc '0.6*(0.1 - 0.3*(12 - 0.5*9.81)/0.5*0.1^2/2)')" 1e-9
 check "to rest" run plates go --until 1
 check "after v^2/(2 a)" near "$(final x)" "$(calc '0.6*0.5^2/(0.3*(12 - 0.5*9.81))')" 1e-7
+check "where it has no speed at all" near "$(final "x'")" 0 0
 model sphere <<'END_OF'
 model sphere
 coord r: vec3 [m]
@@ -221,6 +222,10 @@ scene go { start x[i in 1..N]' = 1.1 [m/s]; span 1 [s]; output x[1], x[9] }
 END_OF
 check "nine guides by moreau" run many go --method 'moreau(step=1e-2)'
 check "of which the last stops, too" near "$(final 'x.9.')" "$(calc '1.21/(2*0.3*9.81)')" 1e-4 # h^2 mu g/8 and more in the step where it stops
+sed 's/N = 9/N = 17/; s/x\[9\]/x[17]/' "$TMP/many.lag" | model crowd
+check "seventeen, more than events decide, take moreau" run crowd go
+check "to the same rest" near "$(final 'x.17.')" "$(calc '1.21/(2*0.3*9.81)')" 1e-6 # h^2 mu g/8, 1000 steps
+check "dop853 refuses them by number" refuses 2 'at most 16 guides with friction, and the model has 17' crowd go --method dop853
 model beside <<'END_OF'
 model beside
 coord x [m], y [m], u [m], w [m]

@@ -290,7 +290,7 @@ static void test_margins(void **state) {
 /* Sweeps over rows whose response is M = A A^T, A[n][n] the triangular factor of a random one, from v = 0. */
 typedef struct Sweeps {
   int n;
-  double M[16], A[16], first[5], col[16], b[4], P[4], v[4], response[4];
+  double M[16], A[16], first[5], col[16], b[4], P[4], v[4], response[4], was[4], went[4];
 } Sweeps;
 
 static void begin_sweeps(Sweeps *s, int n, uint64_t *seed) {
@@ -307,7 +307,7 @@ static void begin_sweeps(Sweeps *s, int n, uint64_t *seed) {
 
 static int sweep(Sweeps *s, int contacts, lag_pressing *of) {
   const lag_sparse_rows rows = {s->first, s->col, s->A};
-  const lag_impulses impulses = {contacts, of, rows, rows, s->response, s->b, s->P, s->v};
+  const lag_impulses impulses = {contacts, of, rows, rows, s->response, s->b, s->P, s->v, s->was, s->went};
   return lag_contact_impulses(&impulses, 1e-14, 100000) <= 100000;
 }
 

@@ -66,6 +66,9 @@ static const char *const texts[] = {
     "  -e[i]*sum(j in near(i, cut, (L, W), r), pair(image(r[i].x - r[j].x, L)^2 + image(r[i].y - r[j].y, W)^2)))",
     "const N = %d\ncoord x[N], y[N]\nparam cut = 1 > 0\nkinetic = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2)\n"
     "potential = 2*sum(i in 1..N, sum(j in near(i, cut, y), i*x[i]*(y[i] - y[j])^2))",
+    /* by a tree: what it is compared with are the pairs */
+    BODIES "potential = sum(i in 1..N, e[i]/2*sum(j in 1..i-1, -e[j]/sqrt(2*" APART " + 2*soft^2), by tree(0.5)))",
+    BODIES "potential = sum(i in 1..N-1, sum(j in i+1..N, i*j*m[i]*m[j]/norm(r[i] - r[j]), by tree(soft)))",
     /* a range that moves and grows; the first two rows are empty */
     "const N = %d\ncoord x[2*N]\nlagrangian = sum(i in 1..2*N, x[i]'^2/2) -\n"
     "  sum(i in 1..N, sum(j in i+1..2*i-2, cos(x[i] - 2*x[j])))",
@@ -246,6 +249,19 @@ static void a_spring_is_right(void **state) {
   arena_free(a);
 }
 
+/* Time in a term of a sum is no symbol of a member, and yet seen: the energy changes. */
+static void time_is_seen(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  const char *text = BODIES "potential = sum(i in 1..N, sum(j in 1..i-1, G*cos(t)*e[i]*e[j]*pair(" APART ")))";
+  for (uint32_t from = 1; from; from = from == 1 ? UINT32_MAX : 0) {
+    Eqns *e = family(a, text, 8, from);
+    assert_int_equal(e->m->sums.n > 1, from == 1);
+    assert_false(e->autonomous);
+  }
+  arena_free(a);
+}
+
 /* Texts without the form: written out, and right as before. */
 static void other_texts_are_written_out(void **state) {
   (void)state;
@@ -372,6 +388,7 @@ int main(void) {
       cmocka_unit_test(random_families_agree),
       cmocka_unit_test(programs_do_not_know_the_pairs),
       cmocka_unit_test(a_spring_is_right),
+      cmocka_unit_test(time_is_seen),
       cmocka_unit_test(other_texts_are_written_out),
       cmocka_unit_test(second_derivatives_are_right),
       cmocka_unit_test(long_series_are_refused),
