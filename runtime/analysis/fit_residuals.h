@@ -40,7 +40,8 @@ int lag_fit_run_rows(Fit *f, const double *slope, double *r, double *J);
 /* lag_residuals_at: with springs to f->centre in the last n residuals. */
 int lag_fit_residuals(void *fit, const double *x, double *r, double *J);
 
-/* fit.c. Values ">= 0" that a shorter record has driven to 0, where they hardly move any more, begin again just above. */
+/* fit.c. Values ">= 0" that a shorter record has driven to 0, where they hardly move any more, begin again just above.
+ */
 void lag_fit_leave_bounds(const Fit *f, double *x);
 /* fit_training.c. From the coordinates x of all targets, weights of networks among them; no errors, no directions. */
 int lag_fit_train(Fit *f, double *x);
