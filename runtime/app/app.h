@@ -2,7 +2,6 @@
  * that return 0 or EXIT_USAGE have printed a message in the second case. */
 #pragma once
 
-#include <signal.h>
 
 #include "analysis/error_estimate.h"
 #include "analysis/measure.h"
