@@ -179,7 +179,7 @@ RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
 TABLES   := $(BUILD)/gen/app/options.def $(BUILD)/gen/numeric/functions.def $(BUILD)/gen/numeric/program_code.def $(BUILD)/gen/kernels/steppers.def
 API_HEAD := lag.h lag_libraries.h lag_method.h lag_model.h
 # Of every scalar; emitted C includes them.
-ANY_HEAD := lag_lanes.h lag_math.h lag_sincos.h lag_support.h lag_band.h lag_kkt.h
+ANY_HEAD := lag_lanes.h lag_math.h lag_sincos.h lag_support.h lag_band.h lag_kkt.h lag_tree.h
 
 # Bytes are evaluated in doubles.
 REAL_SRC := $(filter-out runtime/evaluator/%,$(RT_SRC))
@@ -224,7 +224,7 @@ endef
 $(eval $(call as_text,io/page.h,runtime/io/page.html))
 $(eval $(call as_text,commands/verify_driver.h,src/commands/verify_driver.in))
 $(eval $(call as_text,toolchain/probe_text.h,src/toolchain/compiler_probe.in))
-$(eval $(call as_text,emit/embedded_texts.h,$(patsubst %,runtime/include/lag_%.h,lanes math sincos support band kkt) runtime/numeric/gauss_points.h $(sort $(wildcard runtime/kernels/*.h))))
+$(eval $(call as_text,emit/embedded_texts.h,$(patsubst %,runtime/include/lag_%.h,lanes math sincos support tree band kkt) runtime/numeric/gauss_points.h $(sort $(wildcard runtime/kernels/*.h))))
 $(eval $(call as_text,fmu/%_text.h,src/fmu/%.in))
 $(eval $(call as_text,commands/language.h,$(BUILD)/gen/commands/language.txt))
 $(eval $(call as_text,commands/tutorial.h,models/TUTORIAL.md))
@@ -250,6 +250,10 @@ $(BUILD)/gen/numeric/%: runtime/numeric/% runtime/precision.awk
 	@mkdir -p $(@D)
 	awk -v kind=long -v digits=21 -f runtime/precision.awk $< | sed '/(as it stands)/!s/LAG_REAL/long double/g' >$@.part
 	@mv $@.part $@
+# What a model calls, for the compiler.
+$(BUILD)/gen/numeric/lag_%.h: runtime/include/lag_%.h
+	@mkdir -p $(@D)
+	cp $< $@
 # Documents that help shows and searches; the reference without the list of commands, which help has itself.
 $(BUILD)/gen/commands/language.txt: grammar/LANGUAGE.md grammar/PHASE_SPACE.md
 	@mkdir -p $(@D)
@@ -274,7 +278,7 @@ $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,langu
 $(BUILD)/obj/src/commands/verify_program.o: $(BUILD)/gen/commands/verify_driver.h
 $(BUILD)/obj/src/commands/man_page.o: $(BUILD)/gen/commands/man_frame.h
 $(BUILD)/obj/src/commands/completion.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
-$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(TABLES) $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(patsubst %,$(BUILD)/gen/numeric/%.h,edit_distance fnv1a gauss_points poison)
+$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(TABLES) $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(patsubst %,$(BUILD)/gen/numeric/%.h,edit_distance fnv1a gauss_points poison lag_lanes lag_tree)
 $(patsubst %,$(BUILD)/obj/src/%.o,toolchain/files toolchain/simulator_cache commands/build commands/command_line commands/cost_reference) $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
 $(BUILD)/obj/gen/toolchain/outfile.o $(BUILD)/obj/gen/base/windows.o: | $(BUILD)/gen/base/posix.h
 # Generated code is not ours to warn about.

@@ -41,7 +41,7 @@ ifneq ($(GSL),)
 	install -m 644 $(PC:.pc=_gsl.pc) '$(DESTDIR)$(LIBDIR)/pkgconfig'
 endif
 	install -m 644 $(MODELS) '$(DESTDIR)$(PREFIX)/share/lagc/models'
-	install -m 644 $(wildcard models/lib/*.lag models/lib/*.csv) '$(DESTDIR)$(PREFIX)/share/lagc/models/lib'
+	install -m 644 $(wildcard models/lib/*.lag models/lib/*.csv models/lib/*.json) '$(DESTDIR)$(PREFIX)/share/lagc/models/lib'
 	install -m 644 runtime/python/lagc.py '$(DESTDIR)$(PYTHONDIR)'
 	install -m 644 runtime/matlab/lagc_mex.c '$(DESTDIR)$(PREFIX)/share/lagc'
 	install -m 644 grammar/lag.tmLanguage.json '$(DESTDIR)$(PREFIX)/share/lagc'

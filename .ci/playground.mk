@@ -30,7 +30,7 @@ $(BUILD)/lagc.wasm.gz: $(BUILD)/lagc.wasm
 	$(DEFLATE) $< >$@
 
 # The files of models/lib as `library[]`, {name, text}.
-LIBRARY := $(sort $(wildcard models/lib/*.lag models/lib/*.csv))
+LIBRARY := $(sort $(wildcard models/lib/*.lag models/lib/*.csv models/lib/*.json))
 $(BUILD)/gen/playground/library.h: $(LIBRARY)
 	@mkdir -p $(@D)
 	@{ echo 'static const struct { const char *name, *text; } library[] = {'; for f in $^; do echo "{\"$${f##*/}\","; sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' $$f; echo '},'; done; echo '};'; } >$@

@@ -67,14 +67,14 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %token LT "<" LE "<=" GT ">" GE ">=" EQ "==" NE "!=" AND "and" OR "or" NOT "not" IN "in"
 %token <ident> SUM "sum" PRODUCT "product"
 %token MODEL "model" INCLUDE "include" COORD "coord" MOMENTUM "momentum" PARAM "param" CONST "const" INPUT "input" STATE "state"
-%token LET "let" FUNCTION "function" HAMILTONIAN "hamiltonian" LAGRANGIAN "lagrangian" KINETIC "kinetic" POTENTIAL "potential"
+%token LET "let" FUNCTION "function" NETWORK "network" HAMILTONIAN "hamiltonian" LAGRANGIAN "lagrangian" KINETIC "kinetic" POTENTIAL "potential"
 %token DISSIPATION "dissipation" FORCE "force" FRICTION "friction" FLOW "flow" CONSTRAINT "constraint" SYMMETRY "symmetry" CANONICAL "canonical"
 %token EXPECT "expect" EVENT "event" KICK "kick" CONTACT "contact" GUIDE "guide" OBSERVE "observe" DRAW "draw" FOR "for"
 %token EFFECT "effect"
 %token REQUIRES "requires" EXCLUDES "excludes" SCENE "scene" START "start" EXACT "exact" USE "use"
 %token SPAN "span" METHOD "method" TOLERANCE "tolerance" OUTPUT "output" MONITOR "monitor" MEASURE "measure" LIKE "like"
 %token STOP "stop" PERIODIC "periodic" RISING "rising" FALLING "falling" CROSSING "crossing"
-%token ON "on" OF "of" STATIC "static" RESTITUTION "restitution" SLIP "slip" TANGENTIAL "tangential" LAW "law" EXACTLY "exactly" GUESS "guess" EVERY "every" WHILE "while"
+%token ON "on" OF "of" STATIC "static" RESTITUTION "restitution" SLIP "slip" TANGENTIAL "tangential" LAW "law" EXACTLY "exactly" GUESS "guess" EVERY "every" WHILE "while" FROM "from" LAYERS "layers"
 %token <ident> SHAPE CLAUSE
 
 %type <stmts> stmts block stmt coords momenta params consts inputs states lets observed requires excludes assigns maps items
@@ -84,12 +84,12 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %type <list> drawn clauses several
 %type <declared> declaration
 %type <id> clause
-%type <list> rubbing laws dims indices places_bound exprs args names variables
+%type <list> rubbing laws dims indices places_bound ranges exprs args names variables
 %type <id> window
-%type <id> happening expr arith primary reach place moved bound value comparison every number literal declared gap sides law tuple condition
-%type <text> doc
+%type <id> happening expr arith primary reach place moved bound range value comparison every number literal declared gap sides law tuple condition
+%type <text> doc weights
 %type <unit> unit
-%type <ident> type method_name
+%type <ident> type method_name activation
 %type <sign> sign
 %type <way> direction
 %type <yes> periodic exactly
@@ -139,6 +139,7 @@ stmt: single[x]                       { $$ = stmts_one($x); }
 single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MODEL, @$, $n, $d, NONE_STMTS); }
       | "include" STRING[p]                     { $$ = stmt_include(ast, @$, $p); }
       | "function" IDENT[n] "(" names[a] ")" "=" expr[e] { $$ = stmt_function(ast, @$, $n, $a, $e); }
+      | "network" IDENT[n] "(" names[a] ")" weights[p] "layers" exprs[l] activation[f] { $$ = stmt_network(ast, @$, $n, $a, $p, $l, $f); }
       | "hamiltonian" "=" expr[e]               { $$ = stmt_hamiltonian(ast, @$, $e); }
       | "lagrangian" "=" expr[e]                { $$ = stmt_value(ast, STMT_LAGRANGIAN, @$, $e); }
       | "kinetic" "=" expr[e]                   { $$ = stmt_value(ast, STMT_KINETIC, @$, $e); }
@@ -154,6 +155,7 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "event" IDENT[n] dims[d] ":" arith[g] direction[w] block[b] { $$ = stmt_event(ast, @$, $n, $d, $g, $w, $b); }
       | "kick" IDENT[n] dims[d] "every" arith[T] block[b] { $$ = stmt_event(ast, @$, $n, $d, $T, AT_EQUAL_TIMES, $b); }
       | "contact" IDENT[n] dims[d] ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
+      | "contact" IDENT[n] "[" ranges[d] "]" ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
       | "for" IDENT[i] "in" arith[lo] ".." arith[hi] block[b] { $$ = stmt_for(ast, @$, $i, $lo, $hi, $b); }
       | "effect" IDENT[n] doc[d] block[b]       { $$ = stmt_titled(ast, STMT_EFFECT, @$, $n, $d, $b); }
       | "scene" IDENT[n] doc[d] block[b]        { $$ = stmt_titled(ast, STMT_SCENE, @$, $n, $d, $b); }
@@ -224,6 +226,15 @@ excludes: excluded[x]                 { $$ = stmts_one($x); }
         | excludes[l] "," excluded[x] { $$ = stmts_add($l, $x); }
         ;
 excluded: IDENT[n] { $$ = stmt_name(ast, STMT_EXCLUDES, @$, $n); };
+
+/* ---- networks ---- */
+
+weights: %empty           { $$ = (AstText){0}; }
+       | "from" STRING[p] { $$ = $p; }
+       ;
+activation: %empty   { $$ = NONE_IDENT; }
+          | IDENT[f] { $$ = $f; }
+          ;
 
 /* ---- drawings ---- */
 
@@ -370,6 +381,13 @@ places_bound: bound[x]                   { $$ = ast_list($x); }
 bound: arith[a]                                   { $$ = $a; }
      | IDENT[i] "in" arith[lo] ".." arith[hi]     { $$ = ast_bind(ast, @$, $i, $lo, $hi); }
      ;
+/* Members of a family of contacts. */
+ranges: range[x]                { $$ = ast_list($x); }
+      | ranges[l] "," range[x]  { $$ = ast_list_add(ast, $l, $x); }
+      ;
+range: IDENT[i] "in" arith[lo] ".." arith[hi] { $$ = ast_bind(ast, @$, $i, $lo, $hi); }
+     | IDENT[j] "in" arith[near]              { $$ = ast_near_bind(ast, @$, $j, $near); }
+     ;
 
 names: declared[n]              { $$ = ast_list($n); }
      | names[l] "," declared[n] { $$ = ast_list_add(ast, $l, $n); }
@@ -412,6 +430,8 @@ primary: NUMBER[n]                          { $$ = ast_number(ast, @n, $n); }
        | IDENT[n]                           { $$ = ast_name(ast, $n); }
        | IDENT[f] "(" args[l] ")"           { $$ = ast_call(ast, @$, $f, $l); }
        | "sum"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] ")"     { $$ = ast_reduce(ast, AST_SUM, @$, @op, (AstTurns){$i, $lo, $hi}, $e); }
+       | "sum"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] "," IDENT[by] IDENT[way] "(" expr[theta] ")" ")"
+           { $$ = ast_far(ast, @$, @op, (AstTurns){$i, $lo, $hi}, $e, (FarWay){$by, $way, $theta}); }
        | "sum"[op] "(" IDENT[j] "in" arith[near] "," expr[e] ")"                  { $$ = ast_near(ast, @$, $j, $near, $e, @op); }
        | "product"[op] "(" IDENT[i] "in" arith[lo] ".." arith[hi] "," expr[e] ")" { $$ = ast_reduce(ast, AST_PRODUCT, @$, @op, (AstTurns){$i, $lo, $hi}, $e); }
        | "(" expr[e] ")"                    { $$ = $e; }

@@ -107,9 +107,23 @@ static int has_drift(lag_sim *sim) {
   return drifts;
 }
 
+/* Error by rounding of impacts that any run shares: the times of flights change with the energy, which drifts. */
+static double error_of_impacts(lag_sim *sim) {
+  const double half = 0.5;
+  const lag_model *m = sim->scene->model;
+  lag_charge_stats c;
+  int alone = m->ncontacts > 0 && lag_sim_ncharges(sim) > 0;
+  for (int k = 0; k < m->nev && alone; k++) alone = lag_contact_of(m, k) != NULL;
+  if (!alone) return 0;
+  lag_sim_charge(sim, 0, &c);
+  int drifts = c.flags & (LAG_CONSERVED | LAG_BALANCED) && c.trend == LAG_TREND_GROWS;
+  return drifts ? half * c.drift * sim->run->events : 0;
+}
+
 void lag_error_estimate_note_end(ErrorEstimate *e, lag_sim *sim) {
   Samples *s = &e->motion;
   e->drifts = has_drift(sim);
+  e->floor = fmax(e->floor, error_of_impacts(sim));
   if (sim->run->events != e->events || (s->rows && s->t[s->rows - 1] == lag_sim_time(sim))) return;
   if (s->rows == e->room) halve(e);
   s->t[s->rows] = lag_sim_time(sim);
@@ -293,18 +307,21 @@ static void extrapolate(ErrorEstimate *e, double until, double level) {
 /* A time at which no digit is left. It is the horizon if the motions stay apart: in a close encounter velocities
  * differ for a moment. */
 typedef struct Parting {
-  double t, least; /* NaN: none; smallest error from a twentieth of the time so far later on */
+  double t;           /* NaN: none */
+  double since, near; /* time compared from a twentieth later on [s]; the part of it with an error of few percents */
+  double last;        /* time of the last error [s] */
 } Parting;
 
 /* Whether the error at time t confirms the parting; p->t := NaN where it refutes it. */
 static int is_confirmed(const ErrorEstimate *e, Parting *p, double t, double error, int last) {
-  const double soon = 0.05, later = 0.1, apart = 0.01;
-  if (isnan(p->t) && error >= no_digit) *p = (Parting){t, HUGE_VAL};
+  const double soon = 0.05, later = 0.25, apart = 0.03, most = 0.25;
+  if (isnan(p->t) && error >= no_digit) *p = (Parting){.t = t, .last = t};
   if (isnan(p->t)) return 0;
-  double since = fabs(t - p->t) / fmax(fabs(p->t - e->t0), DBL_MIN);
-  if (since > soon || last) p->least = fmin(p->least, error);
+  double since = fabs(t - p->t) / fmax(fabs(p->t - e->t0), DBL_MIN), step = fabs(t - p->last);
+  if (since > soon) p->since += step, p->near += error < apart ? step : 0;
+  p->last = t;
   if (since <= later && !last) return 0;
-  if (p->least >= apart) return 1;
+  if (p->near <= most * p->since) return 1;
   p->t = NAN;
   return 0;
 }
@@ -322,7 +339,7 @@ static double clock_error(lag_sim *sim, const double *scale, double *rates) {
  * their errors: rows between, where one has met it and the other has not, say nothing, unless they go on. */
 static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale, double *rates) {
   enum { LONG = 4 };
-  Parting parting = {NAN, HUGE_VAL};
+  Parting parting = {.t = NAN};
   double apart = 0, skipped = 0; /* of the counts of events; largest error of rows that differ */
   int n = 0;                     /* rows in turn that differ */
   for (e->compared = 0; e->compared < e->motion.rows && isnan(e->horizon); e->compared++) {

@@ -360,17 +360,22 @@ int lag_fit(Fit *f) {
     rc = LAG_EINVAL;
   }
   if (rc == LAG_OK) begin_again(f, x, given);
-  if (rc == LAG_OK && lag_fit_count_values(f, 1) < n) {
+  if (rc == LAG_OK && lag_fit_count_values(f, 1) < n && !f->trains) {
     snprintf(f->why, sizeof f->why, "%d values cannot determine %d quantities; fit fewer, or give more data",
              f->nvalues, n);
     rc = LAG_EINVAL;
   }
   rc = rc ? rc : make_room(f);
   rc = rc ? rc : run_first(f);
-  rc = rc ? rc : lag_fit_place_nodes(f, 0);
-  rc = rc ? rc : search_with_errors(f, x, given);
-  if (rc == LAG_OK && !f->converged && !f->nodes) rc = search_in_parts(f, x, given);
-  rc = rc ? rc : take_statistics(f, x);
+  if (rc == LAG_OK && f->trains) {
+    rc = lag_fit_train(f, x);
+    for (int c = 0; c < f->ncolumns && rc == LAG_OK; c++) test_runs(f, c);
+  } else {
+    rc = rc ? rc : lag_fit_place_nodes(f, 0);
+    rc = rc ? rc : search_with_errors(f, x, given);
+    if (rc == LAG_OK && !f->converged && !f->nodes) rc = search_in_parts(f, x, given);
+    rc = rc ? rc : take_statistics(f, x);
+  }
   free(x);
   free(given);
   return rc;

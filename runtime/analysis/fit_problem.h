@@ -8,6 +8,7 @@ typedef struct FitTarget {
   const char *name; /* as lag_sim_set takes it */
   char label[160], unit[64];
   int is_start;              /* 0: a parameter */
+  int weight;                /* 1: of a network */
   int record;                /* 1 + the record whose start it is; 0: of all records */
   double factor;             /* of the unit, in SI */
   int sign;                  /* as in lag_var; 0 of starts */
@@ -52,6 +53,7 @@ typedef struct Fit {
   const int *first;      /* [nrecords + 1] and their rows */
   double *data, *errors; /* [nrows * ncolumns]; NaN: not measured */
   double *model;         /* [nrows * ncolumns] the fitted motion; NaN behind its end */
+  int trains;            /* 1: targets are weights of networks, whose search is another one */
   int huber;             /* 1: residuals count linearly beyond 1.345 errors */
   int most;              /* steps of the search */
   int parts;             /* of each record, solved together; 0: chosen by the growth of small changes */

@@ -145,6 +145,13 @@ static void put_columns(const Fit *f, const double *d, int columns, const double
   for (int i = f->nmine; i < columns; i++) to[f->n + i - f->nmine] = times * d[i] * f->nodes->unit[i - f->nmine];
 }
 
+double lag_fit_residual(const Fit *f, int i, int c, double got, double *slope) {
+  double error = error_of(f, i, c), want = f->data[i * f->ncolumns + c], r = loss(f, (got - want) / error, slope);
+  f->model[i * f->ncolumns + c] = got;
+  *slope /= error;
+  return r;
+}
+
 /* Where residuals go: r and their derivatives J, NULL where they are not wanted; `at` of them are there. */
 typedef struct {
   const double *slope; /* of values by coordinates */
@@ -155,14 +162,11 @@ typedef struct {
 /* Residuals of row i from the outputs f->row, and their derivatives from f->D by the declared units of targets. */
 static void put_row(Fit *f, int i, int columns, Residuals *to) {
   for (int c = 0; c < f->ncolumns; c++) {
-    double got = f->row[f->column[c].output], want = f->data[i * f->ncolumns + c], by;
-    f->model[i * f->ncolumns + c] = got;
-    if (isnan(want)) continue;
-    double error = error_of(f, i, c), bent = loss(f, (got - want) / error, &by);
+    double by, bent = lag_fit_residual(f, i, c, f->row[f->column[c].output], &by);
+    if (isnan(f->data[i * f->ncolumns + c])) continue;
     if (to->r) to->r[to->at] = bent;
     if (to->J)
-      put_columns(f, f->D + f->column[c].output * columns, columns, to->slope, by / error,
-                  to->J + to->at * lag_fit_width(f));
+      put_columns(f, f->D + f->column[c].output * columns, columns, to->slope, by, to->J + to->at * lag_fit_width(f));
     to->at++;
   }
 }
@@ -180,8 +184,7 @@ static void put_priors(const Fit *f, Residuals *to) {
   }
 }
 
-/* The run at time t; -: the motion ends before. */
-static int advance_to(Fit *f, lag_sim *sim, double t) {
+int lag_fit_advance(Fit *f, lag_sim *sim, double t) {
   int rc = t > lag_sim_time(sim) ? lag_sim_advance(sim, t) : LAG_OK;
   if (rc <= 0) return rc ? lag_fit_fail(f, rc, lag_sim_message(sim)) : LAG_OK;
   snprintf(f->why, sizeof f->why, "the motion ends at t = %g s, before the data do", lag_sim_time(sim));
@@ -192,7 +195,7 @@ static int advance_to(Fit *f, lag_sim *sim, double t) {
 static int run_part(Fit *f, lag_sim *sim, int i, int end, Residuals *to) {
   int columns = sim->tangent_columns, rc = LAG_OK;
   for (; i < end && rc == LAG_OK; i++) {
-    rc = advance_to(f, sim, f->t[i]);
+    rc = lag_fit_advance(f, sim, f->t[i]);
     if (rc) return rc;
     rc = lag_sim_outputs(sim, f->row);
     if (rc == LAG_OK && columns) rc = lag_sim_tangent(sim, f->y);
@@ -205,7 +208,7 @@ static int run_part(Fit *f, lag_sim *sim, int i, int end, Residuals *to) {
 /* The gap before a node, and its derivatives. A node that does not count yet is set to the end of the run. */
 static int meet_node(Fit *f, lag_sim *sim, int node, int counts, const double *slope, int derives) {
   FitNodes *w = f->nodes;
-  int ns = w->ns, columns = sim->tangent_columns, rc = advance_to(f, sim, f->t[w->row[node]]);
+  int ns = w->ns, columns = sim->tangent_columns, rc = lag_fit_advance(f, sim, f->t[w->row[node]]);
   double *y = w->y + node * ns, *gap = w->gap + node * ns;
   if (rc == LAG_OK && derives && columns && (rc = lag_sim_tangent(sim, f->y)) != 0)
     return lag_fit_fail(f, rc, lag_sim_message(sim));

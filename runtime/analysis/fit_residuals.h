@@ -31,10 +31,17 @@ int lag_fit_width(const Fit *f);
 /* A simulation of record k, or of the part that begins at a node, with the present values; sensitive: with a column for
  * each of its targets and each component of its node. */
 lag_sim *lag_fit_simulation(Fit *f, int k, int node, int sensitive);
+/* The run at time t; -: the motion ends before. */
+int lag_fit_advance(Fit *f, lag_sim *sim, double t);
+/* The residual of a value, weighted, and its derivative by the output `got`, which it notes; NaN: not measured. */
+double lag_fit_residual(const Fit *f, int i, int c, double got, double *slope);
 /* r[nvalues] and J[nvalues width] of records and priors at the present values; NULL: not wanted. */
 int lag_fit_run_rows(Fit *f, const double *slope, double *r, double *J);
 /* lag_residuals_at: with springs to f->centre in the last n residuals. */
 int lag_fit_residuals(void *fit, const double *x, double *r, double *J);
+
+/* fit_training.c. From the coordinates x of all targets, weights of networks among them; no errors, no directions. */
+int lag_fit_train(Fit *f, double *x);
 
 /* fit_shooting.c. Nodes by the growth of small changes along the motions at the present values, or f->parts; without
  * force none where it stays small. LAG_OK, or a status with its reason. */

@@ -26,6 +26,7 @@ static int add_noise(lag_sim *sim, double t, const double *y, double *noise, dou
 /* The rate whose rounding is the largest part of the sizes of its kind. beside[nq]: size of accelerations that are
  * rounding: velocities of the energy's size, in the time of the run. */
 static FormulaNoise worst_rate(lag_sim *sim, const double *noise, double *size, const double *beside, int states) {
+  const double rest = 0.2; /* accelerations of rounding alone have a third, and those that are seen have no floor */
   FormulaNoise worst = {.of = -1};
   int nq = sim->pb.nq, n = sim->pb.n;
   for (int pass = 0; pass < 2; pass++)
@@ -34,7 +35,7 @@ static FormulaNoise worst_rate(lag_sim *sim, const double *noise, double *size, 
       if (alike >= 0) size[pass ? alike : i] = fmax(size[i], size[alike]);
     }
   for (int i = nq; i < n; i++) {
-    if (i < 2 * nq) size[i] = lag_above_rounding(size[i], beside[i - nq]);
+    if (i < 2 * nq && noise[i] / states > rest * size[i]) size[i] = lag_above_rounding(size[i], beside[i - nq]);
     double part = size[i] > 0 ? noise[i] / states / size[i] : 0;
     if (part > worst.part) worst = (FormulaNoise){.of = i, .part = part};
   }

@@ -484,7 +484,7 @@ void lag_modes_sort(Modes *s) { qsort(s->mode, (size_t)s->n, sizeof *s->mode, by
 int lag_modes_find(Modes *out, Equilibrium *rest, const lag_algebra *algebra) {
   lag_problem *pb = &rest->sim->pb;
   ModeSearch w = {.out = out, .rest = rest, .algebra = algebra, .pb = pb, .nq = pb->nq, .n = rest->n, .ny = pb->n};
-  w.conserves = (pb->model->flags & LAG_CONSERVES_ENERGY) != 0 && pb->nz == 0;
+  w.conserves = pb->nz == 0 && lag_conserves_energy(rest->sim);
   w.loses = (pb->model->flags & LAG_LOSES_ENERGY) != 0 && pb->nz == 0;
   *out = (Modes){.lowering = -1, .pairs = w.conserves};
   out->mode = calloc((size_t)w.ny + 1, sizeof *out->mode);

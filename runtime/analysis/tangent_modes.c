@@ -268,7 +268,7 @@ static int is_potential(const TangentModes *w) {
   for (int k = 0; m->constraints && k < m->constraints->n; k++)
     if (k >= m->constraints->nholonomic) return 0;
   for (int i = nq; i < 2 * nq; i++) velocity = fmax(velocity, fabs(s->y[i]));
-  if (!(m->flags & LAG_CONSERVES_ENERGY) || m->nz || velocity > 0) return 0;
+  if (m->nz || velocity > 0 || !lag_conserves_energy(s->sim)) return 0;
   for (int i = 0; i < nq; i++)
     for (int j = 0; j < nq; j++) most = fmax(most, fabs(s->G[(nq + i) * n + j]) * s->unit[j] / s->unit[i]);
   for (int i = nq; i < 2 * nq; i++)

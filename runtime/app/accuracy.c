@@ -79,7 +79,7 @@ int lag_app_choose_by_accuracy(App *app) {
   if (!(asked > 0 && asked < 1))
     return lag_app_error(a, "--accuracy %s: a relative error between 0 and 1, for example --accuracy 1e-8",
                          a->accuracy);
-  if (app->sim->pb.contacts)
+  if (app->sim->pb.contacts && lag_equal_step(app->sim) > 0)
     return lag_app_error(a,
                          "--accuracy: %s meets impacts at its steps, so no step gives a small error of velocities near "
                          "them; dop853 locates impacts",

@@ -19,6 +19,7 @@ typedef struct DesignRun {
   double *t, *G, *prior, *error; /* [ntimes]; [candidates n]; [n]; [3 n] chosen, at equal distances, all */
   int *chosen, *even;            /* [best] */
   char *labels;                  /* of columns */
+  double size;                   /* of all candidates, in their errors */
 } DesignRun;
 
 /* ---- Candidates */
@@ -91,12 +92,16 @@ static int take_number(DesignRun *d) {
 /* Row of the candidates at the present time. */
 static int put_candidates(DesignRun *d, lag_sim *sim, int row, double *Y, double *D) {
   const Fit *f = &d->of.fit;
+  double *out = D + lag_sim_noutputs(sim) * d->n;
   int rc = lag_sim_tangent(sim, Y);
   rc = rc ? rc : lag_sim_output_sensitivity(sim, Y, D);
-  for (int c = 0; c < f->ncolumns && rc == LAG_OK; c++)
+  rc = rc ? rc : lag_sim_outputs(sim, out);
+  for (int c = 0; c < f->ncolumns && rc == LAG_OK; c++) {
+    d->size = hypot(d->size, out[f->column[c].output] / f->column[c].sigma);
     for (int j = 0; j < d->n; j++)
       d->G[((size_t)row * (size_t)f->ncolumns + (size_t)c) * (size_t)d->n + (size_t)j] =
           D[f->column[c].output * d->n + j] * f->target[j].factor / f->column[c].sigma;
+  }
   return rc;
 }
 
@@ -104,7 +109,7 @@ static int run_motion(DesignRun *d) {
   App *app = d->of.app;
   lag_sim *sim = lag_app_fresh_bare_sim(app);
   size_t n = (size_t)d->n, nout = (size_t)lag_sim_noutputs(app->sim), state = (size_t)app->sim->pb.n;
-  double *Y = calloc((state + nout) * n + 1, sizeof *Y);
+  double *Y = calloc((state + nout) * n + nout + 1, sizeof *Y);
   const char **name = calloc(n + 1, sizeof *name);
   d->G = calloc((size_t)(d->ntimes * d->of.fit.ncolumns) * n + 1, sizeof *d->G);
   int rc = sim && Y && name && d->G ? LAG_OK : LAG_ENOMEM;
@@ -123,24 +128,28 @@ static int run_motion(DesignRun *d) {
   return rc ? EXIT_RUN : 0;
 }
 
-/* "m by 2, k by 8": the last column of V, in declared units. */
-static void put_direction(const DesignRun *d, const double *V, char *text) {
+/* "m by 2, k by 8": the last column of V, in declared units. The number of names. */
+static int put_direction(const DesignRun *d, const double *V, char *text) {
   const Fit *f = &d->of.fit;
   int n = d->n;
   double most = 0;
+  int names = 0;
   text[0] = '\0';
   for (int j = 0; j < n; j++) most = fmax(most, fabs(V[j * n + n - 1]));
   for (int j = 0; j < n; j++) {
     double v = V[j * n + n - 1] / most;
     size_t at = strlen(text);
-    if (fabs(v) > 1e-6)
-      snprintf(text + at, NAME - at, "%s%.60s by %.3g", at ? ", " : "", f->target[j].label, v * f->target[j].scale);
+    if (!(fabs(v) > 1e-6)) continue;
+    names++;
+    snprintf(text + at, NAME - at, "%s%.60s by %.3g", at ? ", " : "", f->target[j].label, v * f->target[j].scale);
   }
+  return names;
 }
 
-/* Refuses a direction that no candidate feels. 0: there is none. */
+/* Refuses a direction that no candidate feels: beside the others, or at all, since a change of a value by its own size
+ * that moves outputs by 1e-10 of theirs is rounding. 0: there is none. */
 static int refuse_flat(DesignRun *d) {
-  const double rounding = 1e-8;
+  const double rounding = 1e-8, least = 1e-10;
   const Fit *f = &d->of.fit;
   int n = d->n, rows = d->ntimes * f->ncolumns;
   double *A = calloc((size_t)(rows + n) * (size_t)n + (size_t)(n * n + n), sizeof *A);
@@ -150,12 +159,12 @@ static int refuse_flat(DesignRun *d) {
   for (int i = 0; i < rows * n; i++) A[i] = d->G[i] * f->target[i % n].scale;
   for (int j = 0; j < n; j++) A[(rows + j) * n + j] = sqrt(d->prior[j]) * f->target[j].scale;
   lag_singular_values(rows + n, n, A, V, s);
-  put_direction(d, V, text);
-  int flat = !(s[n - 1] > rounding * s[0]);
+  int names = put_direction(d, V, text), flat = !(s[n - 1] > fmax(rounding * s[0], least * d->size));
   free(A);
   if (!flat) return 0;
   return lag_app_error(&d->of.app->args,
-                       "no measurement feels a change of %s; leave one of these out of --fit, or add a --prior", text);
+                       "no measurement feels a change of %s; leave %s out of --fit, observe what feels it with "
+                       "--observe, or add a --prior", text, names > 1 ? "one of these" : "it");
 }
 
 /* ---- The report */

@@ -3,6 +3,7 @@
  * beside the run; then its law of growth tells the rest. */
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
@@ -15,7 +16,8 @@ static const double least_tolerance = 4.5 * DBL_EPSILON;
 int lag_app_error_begin(App *app) {
   const Args *a = &app->args;
   /* impacts are at other steps in a run with other steps */
-  int impulses = (lag_sim_method(app->sim)->flags & LAG_METHOD_IMPULSES) && app->scene->model->ncontacts;
+  int impulses = (lag_sim_method(app->sim)->flags & LAG_METHOD_IMPULSES) &&
+                 (app->scene->model->ncontacts || app->scene->model->families);
   app->watched = !impulses && (!a->quiet || a->json || a->svg || a->html) && !app->resumed && !app->overlaid;
   return app->watched && lag_error_estimate_init(&app->error, app->sim) ? lag_app_error(a, "out of memory") : 0;
 }
@@ -96,29 +98,43 @@ static void nudge(lag_sim *sim, double roundings) {
   }
 }
 
-/* Limits the steps of an adaptive method. */
-static int limit_steps(lag_sim *sim, double longest) {
+/* Sets an option of the method that has it. */
+static int set_option(lag_sim *sim, const char *name, double value) {
   lag_option opt[MOST_OPTIONS];
   lag_app_options(sim->method, sim->options, 1, opt);
   for (int i = 0; i < sim->method->noptions; i++)
-    if (strcmp(opt[i].name, "max_step") == 0) opt[i].value = longest;
+    if (strcmp(opt[i].name, name) == 0) opt[i].value = value;
   return lag_sim_set_method(sim, sim->method, opt, sim->method->noptions);
+}
+
+/* The run's method with equal steps, a part of the run's. */
+static int set_shorter_steps(const lag_sim *run, lag_sim *other, double part) {
+  int rc = lag_app_copy_method(run, other, 1);
+  return rc ? rc : set_option(other, "step", part * lag_equal_step(run));
 }
 
 /* How the second run differs from a more accurate setting alone; steps and work: that it took. */
 typedef struct Second {
   double nudged;  /* roundings of the start; 0: none */
   double longest; /* step [s]; 0: any */
+  double part;    /* of the run's equal steps, by its method; 0: another method or tolerance */
   double steps, work;
 } Second;
 
+/* Events are found just behind their times, by about a rounding of the time in any run: the second run
+ * finds them later. */
+static const double late = DBL_EPSILON;
+
 static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double most, Second *second) {
   lag_sim *other = lag_app_fresh_bare_sim(app);
-  int rc = other ? set_more_accurate(e, run, other) : LAG_ENOMEM;
+  int rc = !other             ? LAG_ENOMEM
+           : second->part > 0 ? set_shorter_steps(run, other, second->part)
+                              : set_more_accurate(e, run, other);
   app->second_most = is_long_series(run) ? 3 * most : most; /* with as many more steps */
-  if (rc == LAG_OK && second->longest > 0) rc = limit_steps(other, second->longest);
+  if (rc == LAG_OK && second->longest > 0) rc = set_option(other, "max_step", second->longest);
   if (rc == LAG_OK) {
     if (second->nudged > 0) nudge(other, second->nudged);
+    other->late = late;
     lag_sim_on_step(other, enough, app);
     rc = lag_error_estimate_compare(e, other, lag_sim_time(run));
     second->steps = other->run->steps;
@@ -154,7 +170,38 @@ static int compare_again(App *app, ErrorEstimate *e, const lag_sim *run, double 
   return rc;
 }
 
-int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most) {
+/* Largest difference from the run's method with other equal steps; NaN: not compared to the end. e: left as it is. */
+static double compare_steps(App *app, const ErrorEstimate *e, const lag_sim *run, double part) {
+  Second second = {.part = part};
+  double largest = NAN;
+  ErrorEstimate *other = malloc(sizeof *other);
+  if (!other) return NAN;
+  *other = *e;
+  lag_error_estimate_reset(other);
+  if (!compare_once(app, other, run, HUGE_VAL, &second) && !other->continued) largest = other->largest;
+  free(other);
+  return largest;
+}
+
+/* The error of equal steps of a high order at rounding, which over many periods is less than the rounding of dop853,
+ * whose coefficients are large: by the same method with shorter steps. Implicit methods share a part of their
+ * rounding, some units of the time's: that of their coefficients. */
+static void compare_rounding(App *app, ErrorEstimate *e, const lag_sim *run, double most) {
+  const double seen = 1e-14, small = 1e-8, shorter[] = {0.5, 0.77}, coefficients = 32, cheap = 5e7;
+  const lag_method *m = run->method;
+  int implicit = (m->flags & (LAG_METHOD_NEWTON | LAG_METHOD_SPLITS)) == LAG_METHOD_NEWTON;
+  int high = lag_equal_step(run) > 0 && (m->order_of ? m->order_of(run->options) : m->order) >= 4;
+  int regular = isnan(e->horizon) && !e->continued && run->run->events == 0;
+  if (!high || !regular || !(e->largest > seen && e->largest < small) || lag_app_work(run) > fmax(cheap, most / 4)) return;
+  double a = compare_steps(app, e, run, shorter[0]), b = compare_steps(app, e, run, shorter[1]);
+  double safety = e->growth == LAG_ERROR_EXPONENTIAL ? 3 : 2, error = safety * fmax(a, b);
+  if (implicit) error = fmax(error, coefficients * e->floor);
+  if (isnan(a) || isnan(b) || !(error < e->largest)) return;
+  e->largest = error;
+  e->growth = LAG_ERROR_UNKNOWN;
+}
+
+static int compare_methods(App *app, ErrorEstimate *e, lag_sim *run, double most) {
   Second second = {0};
   lag_error_estimate_note_end(e, run);
   int rc = compare_once(app, e, run, most, &second);
@@ -173,6 +220,12 @@ int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most
   if (exact) lag_error_estimate_reset(e); /* states that only events change have the same roundings, too */
   second = (Second){.nudged = 4}; /* the first sum may take one away */
   return compare_once(app, e, run, most, &second);
+}
+
+int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most) {
+  int rc = compare_methods(app, e, run, most);
+  if (!rc) compare_rounding(app, e, run, most);
+  return rc;
 }
 
 void lag_app_error_end(App *app) {

@@ -16,10 +16,11 @@ static void put_value(FILE *f, const FitTarget *t, int undetermined) {
 static void put_values(const Fit *f, FILE *out) {
   for (int j = 0; j < f->n; j++) {
     const FitTarget *t = &f->target[j];
+    if (t->weight) continue;
     fprintf(out, "  %-14s ", t->label);
-    put_value(out, t, 4);
+    put_value(out, t, f->trains ? 8 : 4);
     if (t->flat) fputs(" not determined", out);
-    else fprintf(out, " +- %.2g", t->error);
+    else if (!f->trains) fprintf(out, " +- %.2g", t->error);
     fprintf(out, "%s%s", t->unit[0] ? " " : "", t->unit);
     if (!isnan(t->low) && !isnan(t->high)) fprintf(out, ", 95 %% from %.6g to %.6g", t->low, t->high);
     if (t->prior_error > 0) fprintf(out, " (prior: %.6g +- %.2g)", t->prior, t->prior_error);
@@ -147,13 +148,22 @@ static void put_scene(const FitRun *r, int record, FILE *out) {
   fprintf(out, " { like %s\n", r->app->scene->name);
   for (int j = 0; j < f->n; j++) {
     const FitTarget *t = &f->target[j];
-    if (t->record && t->record != record + 1) continue;
+    if (t->weight || (t->record && t->record != record + 1)) continue;
     fprintf(out, "  %s%s = ", t->is_start ? "start " : "", t->name);
     put_value(out, t, 8);
     if (t->unit[0]) fprintf(out, " [%s]", t->unit);
     putc('\n', out);
   }
   fputs("}\n", out);
+}
+
+static void put_weights(const FitRun *r, FILE *out) {
+  const Fit *f = &r->fit;
+  int n = 0;
+  double largest = 0;
+  for (int j = 0; j < f->n; j++)
+    if (f->target[j].weight) n++, largest = fmax(largest, fabs(f->target[j].value));
+  fprintf(out, "%d weights in %s, the largest %.3g; gradients by reverse mode\n", n, r->app->args.out, largest);
 }
 
 void lag_fit_report(const FitRun *r, FILE *out) {
@@ -168,6 +178,7 @@ void lag_fit_report(const FitRun *r, FILE *out) {
             "multiple shooting: %d parts, which join within %.1e of the size of the state; where small changes grow a "
             "run of the scene departs from the record\n",
             f->nodes->n + f->nrecords, lag_fit_widest_gap(f));
+  if (f->trains) put_weights(r, out);
   put_values(f, out);
   if (!f->converged && f->weakest.change) {
     fputs("flattest direction: ", out);
@@ -179,7 +190,7 @@ void lag_fit_report(const FitRun *r, FILE *out) {
     put_flat(f, &f->flat[k], out);
     putc('\n', out);
   }
-  put_correlations(f, out);
+  if (!f->trains) put_correlations(f, out);
   put_chi_squared(r, out);
   put_columns(r, out);
   if (r->app->args.svg) fprintf(out, "picture in %s\n", r->app->args.svg);
@@ -234,7 +245,7 @@ void lag_fit_report_json(const FitRun *r, FILE *out) {
       lag_json_number(&j, f->target[i].label, what ? f->target[i].high : f->target[i].low);
     lag_json_end(&j, '}');
   }
-  correlations_json(f, &j);
+  if (!f->trains) correlations_json(f, &j);
   lag_json_begin(&j, "flat", '[');
   for (int k = 0; k < f->nflat; k++) {
     lag_json_begin(&j, NULL, '{');
@@ -245,7 +256,7 @@ void lag_fit_report_json(const FitRun *r, FILE *out) {
   }
   lag_json_end(&j, ']');
   lag_json_begin(&j, "singular_values", '[');
-  for (int k = 0; k < f->n; k++) lag_json_number(&j, NULL, f->singular[k]);
+  for (int k = 0; k < f->n && !f->trains; k++) lag_json_number(&j, NULL, f->singular[k]);
   lag_json_end(&j, ']');
   lag_json_number(&j, "chi_squared", f->chi_squared);
   lag_json_number(&j, "freedom", f->freedom);

@@ -110,8 +110,8 @@ static int separate_starts(FitRun *r) {
 int lag_fit_take_targets(FitRun *r) {
   const Args *a = &r->app->args;
   Fit *f = &r->fit;
-  r->names = malloc(strlen(a->fit) + 1);
-  char **name = r->names ? (strcpy(r->names, a->fit), calloc((size_t)split(r->names, NULL), sizeof *name)) : NULL;
+  r->names = lag_network_targets(r->app->scene->model, a->fit);
+  char **name = r->names ? calloc((size_t)split(r->names, NULL), sizeof *name) : NULL;
   f->n = name ? split(r->names, name) : 0;
   f->target = calloc((size_t)f->n + 1, sizeof *f->target);
   lag_sim *sim = lag_app_fresh_bare_sim(r->app);
@@ -133,7 +133,9 @@ int lag_fit_take_targets(FitRun *r) {
     t->is_start = lag_find_name(sim->scene->model, t->name, &i, &var) != LAG_IS_P;
     t->sign = t->is_start ? 0 : var->sign;
     t->begin = lag_declared(var, lag_sim_sensitivity_value(sim, j));
-    t->scale = t->begin != 0.0 ? fabs(t->begin) : 1;
+    t->weight = lag_network_key(a->fit, t->name) != NULL;
+    t->scale = t->begin != 0.0 && !t->weight ? fabs(t->begin) : 1;
+    f->trains |= t->weight;
   }
   lag_sim_free(sim);
   free(name);
@@ -346,7 +348,16 @@ static int prepare(FitRun *r) {
   if (a->segments && (rc = lag_args_count(a, "--segments", a->segments, "--segments 20", &parts)) != 0) return rc;
   r->fit.parts = (int)(parts > MOST_PARTS ? MOST_PARTS : parts);
   r->fit.huber = a->loss && strcmp(a->loss, "huber") == 0;
-  return lag_fit_take_targets(r);
+  if ((rc = lag_fit_take_targets(r)) != 0) return rc;
+  if (r->fit.trains && !a->out)
+    return lag_app_error(a, "--fit %s: where do the weights go? Write -o weights.json", a->fit);
+  if (r->fit.trains && r->compares)
+    return lag_app_error(a, "--fit %s: one file of weights is for one scene; name one, without --effects", a->fit);
+  if (r->fit.trains && a->profile)
+    return lag_app_error(a, "--profile: data do not determine the weights of a network one by one; leave it out");
+  if (a->out && !r->fit.trains)
+    return lag_app_error(a, "-o %s: weights of a network are written there, and --fit %s names none", a->out, a->fit);
+  return 0;
 }
 
 int lag_fit_run(FitRun *r) {
@@ -381,6 +392,7 @@ int lag_app_fit(App *app) {
   if (rc == 0 && a->svg && r.nfiles > 1) rc = lag_app_error(a, "--svg: a picture is of one record; name one file");
   if (rc == 0 && a->profile && lag_fit_profile(&r.fit)) rc = lag_app_error(a, "%s", r.fit.why);
   if (rc == 0 && a->svg && lag_fit_picture(&r, a->svg)) rc = lag_app_io_error(app, a->svg);
+  if (rc == 0 && a->out && lag_network_write(&r, a->out)) rc = lag_app_io_error(app, a->out);
   if (rc == 0 && a->json) lag_fit_report_json(&r, stdout);
   if (rc == 0 && !a->json) lag_fit_report(&r, stdout);
   if (rc == 0 && !r.fit.converged) rc = EXIT_RUN;

@@ -29,6 +29,12 @@ int lag_fit_is_asked(const Args *a, const char *label);
 /* fit_compare.c: fits several scenes. Returns the exit status. */
 int lag_fit_compare(App *app);
 
+/* network_weights.c: names of --fit, each network by its weights, malloc'ed; the part "w1[2,1]" of a weight of one of
+ * the networks among the names, or NULL; the file of weights: 0, or -1 with errno set. */
+char *lag_network_targets(const lag_model *m, const char *names);
+const char *lag_network_key(const char *names, const char *parameter);
+int lag_network_write(const FitRun *r, const char *path);
+
 /* fit_report.c, fit_picture.c; the latter: 0, or -1 with errno set. */
 void lag_fit_report(const FitRun *r, FILE *f);
 void lag_fit_report_json(const FitRun *r, FILE *f);

@@ -14,8 +14,12 @@ int lag_app_gradient_open(App *app) {
   return app->measures ? 0 : lag_app_error(&app->args, "--gradient differentiates measures, and there are none");
 }
 
-/* Whether steps of the run's own method have derivatives by parameters. */
+/* Whether the gradient is that of the run's own method: its steps have derivatives by parameters. One that was chosen
+ * automatically, and lacks the reverse mode that dop853 has, gives way: a matrix for each step takes longer. */
 static int has_derivatives(App *app) {
+  const lag_model *m = app->scene->model;
+  const lag_method *method = lag_sim_method(app->sim);
+  if (app->why[0] && !method->adjoint && !m->constraints && m->linear && m->linear->adjoint) return 0;
   lag_sim *sim = lag_app_fresh_sim(app);
   int has = sim && lag_app_copy_method(app->sim, sim, 1) == LAG_OK && lag_sim_record(sim) == LAG_OK;
   lag_sim_free(sim);

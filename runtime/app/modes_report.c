@@ -85,7 +85,7 @@ static const struct {
 } verdicts[] = {
     [LAG_UNSTABLE] = {"unstable", NULL},
     [LAG_DECAYS] = {"asymptotically stable", NULL},
-    [LAG_MINIMUM] = {"stable", "the energy, which is conserved, has a minimum here (Lagrange, Dirichlet)"},
+    [LAG_MINIMUM] = {"stable", NULL},
     [LAG_DISSIPATIVE_MINIMUM] = {"stable", "the energy, less the work of forces that are constant or have a potential, "
                                            "has a minimum here, and nothing raises it (Lagrange, Dirichlet, Kelvin)"},
     [LAG_NEUTRAL] = {"neutral", NULL},
@@ -114,12 +114,16 @@ static const struct {
 static void put_reason(const Modes *s, unsigned facts, char *text, size_t n) {
   const Mode *last = &s->mode[s->n - 1], *top = s->mode; /* the one that grows fastest, or decays slowest */
   for (int i = 0; i < s->n; i++) top = s->mode[i].re > top->re ? &s->mode[i] : top;
-  if (s->verdict == LAG_CENTRE && facts & LAG_CONSERVES_ENERGY) {
+  const char *where = facts & LAG_CONSERVES_ENERGY ? "" : " at these values of parameters";
+  if (s->verdict == LAG_CENTRE && (facts & LAG_CONSERVES_ENERGY || s->pairs)) {
     snprintf(text, n,
-             "some modes neither grow nor decay, and the energy, which is conserved, is not known to have a minimum "
-             "here");
-  } else if (s->verdict == LAG_MINIMUM && s->extremum < 0) {
-    snprintf(text, n, "the energy, which is conserved, has a maximum here, and all rates follow from it (Dirichlet)");
+             "some modes neither grow nor decay, and the energy, which is conserved%s, is not known to have a minimum "
+             "here",
+             where);
+  } else if (s->verdict == LAG_MINIMUM) {
+    snprintf(text, n, "the energy, which is conserved%s, has a %s (%sDirichlet)", where,
+             s->extremum < 0 ? "maximum here, and all rates follow from it" : "minimum here",
+             s->extremum < 0 ? "" : "Lagrange, ");
   } else if (verdicts[s->verdict].reason) {
     snprintf(text, n, "%s", verdicts[s->verdict].reason);
   } else if (s->verdict == LAG_UNSTABLE) {

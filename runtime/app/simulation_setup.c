@@ -177,7 +177,7 @@ static int choose_method(App *app) {
   if (!m) return lag_app_choose_automatically(app, c.opt, c.n);
   rc = lag_sim_set_method(app->sim, m, c.opt, c.n);
   app->refused = rc == LAG_EMETHOD;
-  if (rc == 0 && a->tol && !(m->flags & LAG_METHOD_ADAPTIVE) && !a->quiet)
+  if (rc == 0 && a->tol && lag_equal_step(app->sim) > 0 && !a->quiet)
     fprintf(stderr, "%s: note: %s has a fixed step; --tol does not change it\n", a->self, m->name);
   return rc ? lag_app_error(a, "%s", lag_sim_message(app->sim)) : 0;
 }

@@ -98,10 +98,16 @@ static int is_unscaled(const lag_problem *pb, int i) {
 /* Ratio of the first-order change of constraint k, when each coordinate moves by its typical magnitude, to the size
  * of its terms; at most 1, which is also that of a coordinate without a scale. */
 static double slope(const lag_problem *pb, const double *y, const double *row, double size) {
-  double s = 0;
-  for (int i = 0; i < pb->nq; i++)
-    if (row[i] != 0.0 && is_unscaled(pb, i)) return 1;
-  for (int i = 0; i < pb->nq; i++) s += row[i] != 0.0 ? fabs(row[i]) * lag_typical_magnitude(pb, y, 1, i) : 0;
+  const lag_var *q = pb->model->q;
+  double s = 0, reach = 0;
+  for (int i = 0, last = -1; i < pb->nq; i++) {
+    if (row[i] == 0.0) continue;
+    if (last < 0 || !lag_are_alike(&q[last], &q[i])) {
+      if (is_unscaled(pb, i)) return 1;
+      reach = lag_typical_magnitude(pb, y, 1, i);
+    }
+    s += fabs(row[last = i]) * reach;
+  }
   return size > 0 ? fmin(s / size, 1) : 1;
 }
 

@@ -59,7 +59,8 @@ static int terms(const lag_level *w, double *size) {
 static void scales(const lag_level *w, const double *x, double *reach) {
   const Start *s = w->context;
   for (int i = 0; i < w->n; i++) { /* of positions: lag_consistent_state asks at no other level */
-    reach[i] = lag_typical_magnitude(s->pb, x, 1, i);
+    const lag_var *q = &s->pb->model->q[i];
+    reach[i] = i > 0 && lag_are_alike(q, q - 1) ? reach[i - 1] : lag_typical_magnitude(s->pb, x, 1, i);
   }
 }
 
@@ -326,7 +327,8 @@ static int check_compatibility(lag_sim *s) {
 static void keep_rounding_out(const Start *w) {
   for (int i = 0; i < 2 * w->nq; i++) {
     const double *level = i < w->nq ? w->y : w->y + w->nq;
-    if (fabs(w->y[i] - w->asked[i]) <= DBL_EPSILON / 4 * lag_unit_magnitude(w->pb, level, i % w->nq))
+    if (w->y[i] != w->asked[i] &&
+        fabs(w->y[i] - w->asked[i]) <= DBL_EPSILON / 4 * lag_unit_magnitude(w->pb, level, i % w->nq))
       w->y[i] = w->asked[i];
   }
 }

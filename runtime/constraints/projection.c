@@ -14,7 +14,7 @@
 /* The layout of pb->held; behind it a state for lag_rhs_prepare. */
 typedef struct ConstraintScratch {
   const lag_constraints *of;
-  double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
+  double *c, *r, *before, *g, *size, *A; /* [n], [n], [n], [n], [n], [njacobian] */
   double *wanted;                 /* [n] changes that a correction is to make; g is scratch of what judges them */
   /* [n] sizes of the terms of the rates, and of the holonomic constraints, where they were last met */
   double *terms[2];
@@ -25,7 +25,7 @@ typedef struct ConstraintScratch {
 
 size_t lag_constraint_scratch_size(const lag_model *m) {
   const lag_constraints *of = m->constraints;
-  return of ? (size_t)(7 * of->n + of->njacobian + of->nmass + 3 * m->nq + 2 * (2 * m->nq + m->nz)) : 0;
+  return of ? (size_t)(8 * of->n + of->njacobian + of->nmass + 3 * m->nq + 2 * (2 * m->nq + m->nz)) : 0;
 }
 
 static ConstraintScratch layout(const lag_problem *pb) {
@@ -35,6 +35,7 @@ static ConstraintScratch layout(const lag_problem *pb) {
                             {&w.r, n},
                             {&w.before, n},
                             {&w.g, n},
+                            {&w.size, n},
                             {&w.wanted, n},
                             {&w.terms[0], n},
                             {&w.terms[1], n},
@@ -106,6 +107,10 @@ double lag_unit_magnitude(const lag_problem *pb, const double *x, int i) {
   return most;
 }
 
+int lag_are_alike(const lag_var *a, const lag_var *b) {
+  return a->periodic == b->periodic && strcmp(a->unit, b->unit) == 0;
+}
+
 double lag_typical_magnitude(const lag_problem *pb, const double *y, int holonomic, int i) {
   const lag_var *q = &pb->model->q[i];
   const double unknown = 1e-6; /* of the unit: a run from 0 has no length, and what rounding moved off 0 is none */
@@ -128,10 +133,8 @@ static int displaced_sizes(lag_problem *pb, const ConstraintScratch *w, double t
   double reach = 0;
   const lag_var *q = pb->model->q;
   memcpy(w->other, y, (size_t)pb->n * sizeof *y);
-  for (int i = 0; i < nq; i++) { /* members of a family share their magnitude, and there may be hundreds */
-    reach = i > 0 && strcmp(q[i].unit, q[i - 1].unit) == 0 && q[i].periodic == q[i - 1].periodic
-                ? reach
-                : lag_typical_magnitude(pb, y, holonomic, i);
+  for (int i = 0; i < nq; i++) {
+    reach = i > 0 && lag_are_alike(&q[i], &q[i - 1]) ? reach : lag_typical_magnitude(pb, y, holonomic, i);
     w->other[at + i] += reach * lag_uneven(i);
   }
   int rc = lag_residuals(pb, t, w->other, c, r);
@@ -250,10 +253,23 @@ typedef struct Level {
 
 static double *residuals_of(const Level *l) { return l->holonomic ? l->w->c : l->w->r; }
 
+/* Whether all residuals are roundings of their terms of first order: a function of the state, not of what came before,
+ * so that resumed runs have the same bits. */
+static int are_rounded(lag_problem *pb, const Level *l, int n, int turn) {
+  const double rounding = 2 * DBL_EPSILON;
+  double *size = l->w->size;
+  if (turn == 1 && sizes(pb, l->w, l->t, l->y, l->holonomic, size)) memset(size, 0, (size_t)n * sizeof *size);
+  int rounded = 1;
+  for (int k = 0; k < n && rounded; k++) rounded = fabs(residuals_of(l)[k]) <= rounding * size[k];
+  return rounded;
+}
+
+/* g := minus the residuals; 0 after a correction that leaves roundings, which are never 0 in all of many loops. */
 static int residuals(lag_problem *pb, const Level *l, int turn, double *g) {
   int n = l->holonomic ? l->w->of->nholonomic : l->w->of->n;
   int rc = turn ? lag_residuals(pb, l->t, l->y, l->w->c, l->w->r) : 0;
-  for (int k = 0; k < n; k++) g[k] = -residuals_of(l)[k];
+  int done = rc == 0 && turn && are_rounded(pb, l, n, turn);
+  for (int k = 0; k < n; k++) g[k] = done ? 0 : -residuals_of(l)[k];
   return rc;
 }
 
@@ -319,13 +335,15 @@ int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y
   const ConstraintScratch w = layout(pb);
   const lag_var *q = pb->model->q;
   const double small = 1e-6;
-  int found = -1; /* the coordinate for whose unit w.other is */
+  double reach = 0;
+  int found = -1, like = -1; /* the coordinates for whose unit w.other is, and for which reach is */
   for (int i = 0; i < pb->nq; i++) {
     double most = fabs(led[i]);
     if (!(fabs(moved[i]) > 2 * most + small * fabs(y[i]))) continue;
     if (found < 0 || strcmp(q[found].unit, q[i].unit) != 0) find_tied(&w, pb, led, found = i);
     most = fmax(most, w.other[i]);
-    if (fabs(moved[i]) > 2 * most + small * extent(pb, y0, y, i)) return i;
+    if (like < 0 || !lag_are_alike(&q[like], &q[i])) reach = extent(pb, y0, y, like = i);
+    if (fabs(moved[i]) > 2 * most + small * reach) return i;
   }
   return -1;
 }

@@ -85,7 +85,7 @@ static int make_room(ContactSet *w) {
   const lag_part parts[] = {{&w->gap, p}, {&w->rate, p}, {&w->gap_size, p}, {&w->rate_size, p}, {&w->g, n},
       {&w->c, n}, {&w->r, n}, {&w->d, nq}, {&w->force, nq}, {&w->test, (size_t)w->sim->pb.n},
       {&w->events, (size_t)(m->nev + m->nmodes)}, {&w->ahead, p}, {&w->A, (size_t)of->njacobian},
-      {&w->mass, (size_t)of->nmass}, {&w->law, 3 * p + 4 * (size_t)m->nguides}, {&w->side, p},
+      {&w->mass, (size_t)of->nmass}, {&w->law, 3 * p + 4 * (size_t)m->nguides}, {&w->side, p}, {&w->way, 2 * p},
       {&w->pressed, 3 * (size_t)m->nguides * (p + 1)}, {&w->pivot, apart}, {&w->diagonal, apart},
       {&w->lu, apart ? (size_t)lag_band_matrix_size(m->nq, w->band) : 0}};
   w->block = lag_workspace(sizeof parts / sizeof *parts, parts);
@@ -259,6 +259,7 @@ static int find_touching(ContactSet *w, const char *who, int event) {
     int tangent = lag_tangent_of(m, w->of[a]);
     w->at[a] = tangent < 0 ? -1 : w->rows;
     if (tangent >= 0) w->of[w->rows++] = tangent;
+    if (tangent >= 0 && lag_second_of(m, tangent) >= 0) w->of[w->rows++] = tangent + 1;
   }
   for (int i = 0; i < m->nguides; i++) w->of[w->rows++] = m->guides[i].tangent;
   return LAG_OK;
@@ -458,6 +459,7 @@ static int check_all(lag_sim *s) {
   int rc = evaluate_contacts(s, s->now, &w);
   for (int i = 0; i < s->scene->model->ncontacts && rc == 0; i++) {
     if (s->scene->model->contacts[i].is_tangent) {
+      if (lag_second_of(s->scene->model, i - 1) >= 0) continue;
       rc = check_friction(s, i, w.law);
       continue;
     }
@@ -515,7 +517,8 @@ int lag_contact_arm(lag_sim *s, const double *g) {
     const lag_contact *c = &m->contacts[i];
     s->hold[c->input] = s->contact_was[i];
     int k = lag_contact_is_closed(s, c) ? c->release : c->impact;
-    double noise = c->conditional ? 0 : k == c->release ? 1e-12 * most : no_flight * size[c->constraint];
+    double least = fmax(no_flight * size[c->constraint], lag_slip_noise(&s->pb, i));
+    double noise = c->conditional ? 0 : k == c->release ? 1e-12 * most : least;
     if (g[k] <= noise) { /* no sign yet; below -noise the event fires */
       s->sign[k] = 0;
       s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* with a larger factor it would grow at each impact */

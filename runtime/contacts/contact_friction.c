@@ -22,7 +22,7 @@ int lag_contact_laws_at(lag_problem *pb, double t, const double *y, double *law)
 }
 
 /* The side to which tangent i slips; 0: it sticks by a force that is not unique; NaN: it sticks or is open, or is no
- * tangent. */
+ * tangent. In space a part of the direction of slipping. */
 static double side_of(const lag_problem *pb, int i) {
   return pb->model->contacts[i].is_tangent ? pb->hold[pb->model->contacts[i].force] : NAN;
 }
@@ -44,7 +44,7 @@ static int fail_slipping(const Slipping *s, const lag_slipping *w, int k, double
 #define LAG_SLIPPING_FAILS(w, k, by) fail_slipping(s, w, k, by)
 #include "kernels/slipping_forces.h"
 
-/* mu, N: in the laws, of a contact the number before its tangent's. */
+/* mu, N: in the laws, of a contact beside its gap. */
 static int pressing(const Slipping *s, lag_slipping *w) {
   const lag_problem *pb = s->pb;
   const lag_model *m = pb->model;
@@ -54,7 +54,9 @@ static int pressing(const Slipping *s, lag_slipping *w) {
     int i = (int)w->of[k], guide = lag_guide_of(m, i);
     w->mu[k] = pb->rub[3 * i];
     for (int c = 0; c < 3; c++)
-      w->N[3 * k + c] = guide >= 0 ? lag_guide_law(m, pb->rub, guide)[1 + c] : c == 0 ? pb->rub[3 * i - 1] : 0;
+      w->N[3 * k + c] = guide >= 0 ? lag_guide_law(m, pb->rub, guide)[1 + c]
+                        : c == 0   ? pb->rub[3 * lag_gap_of(m, i) + 2]
+                                   : 0;
   }
   return rc;
 }
@@ -85,7 +87,7 @@ static int most_slipping(const lag_model *m) { return m->nguides + LAG_MOST_TOUC
 static int law_size(const lag_model *m) { return 3 * m->ncontacts + 4 * m->nguides; }
 
 size_t lag_contact_law_size(const lag_model *m) {
-  return m->contact_laws ? (size_t)(law_size(m) + 1 + LAG_SLIPPING_ROOM(most_slipping(m))) : 0;
+  return m->contact_laws ? (size_t)(law_size(m) + 1 + LAG_SLIPPING_ROOM(most_slipping(m)) + 2 * m->constraints->n) : 0;
 }
 
 /* Finds the forces of contacts and guides that slip; the largest of the run stands behind the laws in pb->rub. */
@@ -93,17 +95,22 @@ static int find_friction(lag_problem *pb, double t, const double *y) {
   const lag_model *m = pb->model;
   const Slipping s = {pb, t, y};
   double *size = pb->rub + law_size(m);
-  int contacts = 0;
+  double *residuals = size + 1 + LAG_SLIPPING_ROOM(most_slipping(m)), *rates = residuals + m->constraints->n;
+  int contacts = 0, rc = lag_slip_velocities(pb, t, y, residuals, rates);
   lag_slipping w = {.guides = m->nguides, .alone = !some_sticks(pb), .epsilon = DBL_EPSILON, .size = *size};
   lag_slipping_place(&w, most_slipping(m), size + 1);
   for (int i = 0; i < m->ncontacts; i++) {
-    int guide = lag_guide_of(m, i);
-    if (!(fabs(side_of(pb, i)) > 0) || (guide < 0 && contacts++ >= LAG_MOST_TOUCHES)) continue;
-    w.of[w.n] = i;
-    w.parts[w.n] = guide < 0 ? 0 : m->guides[guide].parts;
-    w.mode[w.n++] = side_of(pb, i);
+    int guide = lag_guide_of(m, i), in_space = lag_slips_in_space(pb, i);
+    if (!in_space && (!(fabs(side_of(pb, i)) > 0) || lag_slips_in_space(pb, i - 1))) continue;
+    if (guide < 0 && (contacts += 1 + in_space) > LAG_MOST_TOUCHES) continue;
+    if (in_space) lag_slip_direction(pb, rates, i, w.mode + w.n);
+    else w.mode[w.n] = side_of(pb, i);
+    for (int k = 0; k <= in_space; k++) {
+      w.of[w.n] = i + k;
+      w.parts[w.n++] = guide < 0 ? 0 : m->guides[guide].parts;
+    }
   }
-  int rc = w.n ? lag_slipping_solve(&s, &w) : 0;
+  rc = rc || w.n == 0 ? rc : lag_slipping_solve(&s, &w);
   *size = w.size;
   return rc;
 }
@@ -216,11 +223,11 @@ double lag_sim_guide_part(lag_sim *s, int k) {
   return held > 0 ? held / most : 0;
 }
 
-void lag_tangent_events(const lag_sim *s, double *g) {
+int lag_tangent_events(lag_sim *s, double t, const double *y, double *g) {
   const lag_model *m = s->scene->model;
   for (int i = 0; i < m->ncontacts; i++) {
     const lag_contact *c = &m->contacts[i];
-    if (!c->is_tangent) continue;
+    if (!c->is_tangent || lag_second_of(m, i) >= 0 || lag_second_of(m, i - 1) >= 0) continue;
     g[c->impact] = fabs(s->hold[c->force]) > 0 ? s->hold[c->force] * g[c->impact] : 1;
     g[c->release] = lag_contact_is_closed(s, c) ? g[c->release] : 1;
   }
@@ -228,6 +235,9 @@ void lag_tangent_events(const lag_sim *s, double *g) {
     const lag_guide *guide = &m->guides[i];
     if (guide->turn >= 0 && !(fabs(s->hold[m->contacts[guide->tangent].force]) > 0)) g[guide->turn] = 1;
   }
+  int rc = lag_some_stick_in_space(s) ? lag_contact_laws_at(&s->pb, t, y, s->pb.rub) : 0;
+  if (rc == 0) lag_space_events(s, s->pb.rub, g);
+  return rc;
 }
 
 /* ---- impacts */
@@ -257,17 +267,16 @@ static int fail_impact(ContactSet *w, int a, int t, double gain) {
 /* The impact of contact a, with friction. */
 static int strike(ContactSet *w, int a, double e) {
   lag_sim *s = w->sim;
-  int rows = w->rows, t = w->at[a], nq = s->pb.nq;
-  double mu = t < 0 ? 0 : w->law[3 * w->of[t]], back = t < 0 ? 0 : w->law[3 * w->of[t] + 1], P[2];
-  double W[4] = {w->response[a * rows + a], 0, 0, 1}, v[2] = {w->rate[w->of[a]], t < 0 ? 0 : w->rate[w->of[t]]};
-  if (t >= 0) {
-    W[1] = W[2] = w->response[a * rows + t];
-    W[3] = w->response[t * rows + t];
-  }
-  double gain = lag_planar_impact(W, v, t < 0 ? LAG_IMPACT_STRONGE : lag_contacts_at(w, t)->law, mu, e, back, P);
+  int rows = w->rows, t = w->at[a], nq = s->pb.nq, n = t < 0 ? 1 : lag_second_of(s->scene->model, w->of[t]) < 0 ? 2 : 3;
+  double mu = t < 0 ? 0 : w->law[3 * w->of[t]], back = t < 0 ? 0 : w->law[3 * w->of[t] + 1], P[3];
+  int row[3] = {a, t, t + 1}, law = t < 0 ? LAG_IMPACT_STRONGE : lag_contacts_at(w, t)->law;
+  double W[9] = {w->response[a * rows + a], 0, 0, 1}, v[3] = {w->rate[w->of[a]]};
+  for (int k = 0; k < n * n && n > 1; k++) W[k] = w->response[row[k / n] * rows + row[k % n]];
+  for (int k = 1; k < n; k++) v[k] = w->rate[w->of[row[k]]];
+  double gain = n < 3 ? lag_planar_impact(W, v, law, mu, e, back, P) : lag_space_impact(W, v, law, mu, e, back, P);
   if (!(gain == 0)) return fail_impact(w, a, t, gain);
-  for (int k = 0; k < (t < 0 ? 1 : 2); k++) {
-    double to = lag_contacts_response(w, w->of[k ? t : a]);
+  for (int k = 0; k < n; k++) {
+    double to = lag_contacts_response(w, w->of[row[k]]);
     for (int i = 0; i < nq; i++) w->y[nq + i] += P[k] * to * w->d[i];
   }
   for (int k = w->n; k < rows; k++) w->was_closed[w->of[k]] = 0; /* what stuck may slip */
@@ -363,6 +372,17 @@ static int fail_paradox(ContactSet *w, const lag_touch *of, int n, int motions) 
                   least);
 }
 
+/* Whether the contact whose first tangent is at row t slips in space; way: there. */
+static int slip_way(const ContactSet *w, int t, int event, double *way) {
+  int i = w->of[t];
+  double slip[2] = {w->rate[i], w->rate[i + 1]}, size = lag_norm(slip, 2);
+  double most = fmax(w->rate_size[i], w->rate_size[i + 1]);
+  int ends = lag_contacts_at(w, t)->impact == event && lag_slip_ends(&w->sim->pb, slip, most);
+  if (size <= lag_no_gap * most || ends || w->was_closed[i]) return 0;
+  for (int k = 0; k < 2; k++) way[k] = slip[k] / size;
+  return 1;
+}
+
 static int slip_side(const ContactSet *w, int t, int event) {
   int i = w->of[t];
   double slip = w->rate[i];
@@ -397,12 +417,17 @@ static int list_touches(const ContactSet *w, int event, Touches *to) {
     if (t < 0) continue;
     of->mu = w->law[3 * w->of[t]];
     of->hold = of->guide ? lag_guide_law(m, w->law, of->guide - 1)[0] : w->law[3 * w->of[a]];
-    of->slip = slip_side(w, t, event);
+    int second = lag_second_of(m, w->of[t]) >= 0;
+    of->slip = second ? slip_way(w, t, event, of->way) : slip_side(w, t, event);
     of->cannot_stick = lag_contacts_at(w, t)->release == event;
     of->tangent = to->rows;
     to->row[to->rows++] = t;
+    if (second) {
+      of->second = to->rows;
+      to->row[to->rows++] = t + 1;
+    }
   }
-  return 1;
+  return to->rows <= 2 * LAG_MOST_TOUCHES;
 }
 
 /* Forces of guides as maps from those of the rows. */
@@ -452,6 +477,7 @@ int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration) {
     int a = to.of[k].contact;
     w->closed[a] = to.of[k].mode != LAG_CONTACT_OPEN;
     w->side[a] = to.of[k].mode == LAG_CONTACT_SLIPS ? to.of[k].to : to.of[k].shared ? 0 : (double)NAN;
+    for (int c = 0; c < 2; c++) w->way[2 * a + c] = to.of[k].way[c];
   }
   lag_contacts_close_only(w, 0, -1);
   return LAG_OK;
@@ -467,5 +493,10 @@ void lag_contacts_set_friction(ContactSet *w) {
     if (w->was_closed[i] && slips) lag_mark_due(s, s->scene->model->contacts[i].release);
     lag_contact_set_closed(s, i, !slips);
     s->hold[s->scene->model->contacts[i].force] = w->side[a];
+    if (lag_second_of(s->scene->model, i) < 0) continue;
+    double size = fmax(w->rate_size[i], w->rate_size[i + 1]);
+    lag_contact_set_closed(s, i + 1, !slips);
+    for (int k = 0; k < 2; k++) /* least forces where they are not unique */
+      s->hold[s->scene->model->contacts[i + k].force] = slips ? w->way[2 * a + k] * (size > 0 ? size : 1) : (double)NAN;
   }
 }

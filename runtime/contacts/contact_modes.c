@@ -42,7 +42,7 @@ static int choose(lag_touch *c, int k) {
 /* Whether a contact may have its present mode. */
 static int may_be(const lag_touch *c) {
   if (c->mode == LAG_CONTACT_STICKS) return c->tangent >= 0 && c->mu > 0 && c->slip == 0 && !c->cannot_stick;
-  if (c->mode == LAG_CONTACT_SLIPS) return c->tangent < 0 ? c->to > 0 : c->slip == 0 || c->slip == c->to;
+  if (c->mode == LAG_CONTACT_SLIPS) return c->tangent < 0 || c->second ? c->to > 0 : c->slip == 0 || c->slip == c->to;
   return 1;
 }
 
@@ -76,8 +76,9 @@ static void set_rows(Trial *t) {
     const lag_touch *c = &t->of[i];
     if (c->guide) set_guide_row(t, i);
     else set_row(t, i, c->mode != LAG_CONTACT_OPEN, -1, 0);
-    if (c->tangent >= 0)
-      set_row(t, c->tangent, c->mode == LAG_CONTACT_STICKS, c->mode == LAG_CONTACT_SLIPS ? i : -1, c->to * c->mu);
+    for (int k = 0; k <= (c->second > 0) && c->tangent >= 0; k++)
+      set_row(t, k ? c->second : c->tangent, c->mode == LAG_CONTACT_STICKS, c->mode == LAG_CONTACT_SLIPS ? i : -1,
+              (c->second ? c->way[k] : c->to) * c->mu);
   }
 }
 
@@ -108,14 +109,56 @@ static int turn_guide(const Trial *t, lag_touch *c) {
   return turned > nothing;
 }
 
+static double friction_of(const Trial *t, const lag_touch *c) {
+  return c->second ? hypot(t->x[c->tangent], t->x[c->second]) : fabs(t->x[c->tangent]);
+}
+
+/* Whether c begins to slip in space, in a direction that is sought. */
+static int seeks_way(const lag_touch *c) { return c->second && c->mode == LAG_CONTACT_SLIPS && !c->slip; }
+
+/* Turns the way of slipping of c to that of the acceleration, where friction has the same size: by a step of a
+ * projected gradient. Returns whether it has turned. */
+static int turn_way(const Trial *t, lag_touch *c) {
+  const double *W = t->W, a[2] = {t->a[c->tangent], t->a[c->second]};
+  double by = c->mu * t->x[(int)(c - t->of)] *
+              (W[c->tangent * t->rows + c->tangent] + W[c->second * t->rows + c->second]);
+  double next[2] = {c->way[0] * by + a[0], c->way[1] * by + a[1]}, size = hypot(next[0], next[1]), turned = 0;
+  for (int k = 0; k < 2 && size > 0; k++) {
+    turned = fmax(turned, fabs(next[k] / size - c->way[k]));
+    c->way[k] = next[k] / size;
+  }
+  return turned > nothing;
+}
+
+/* First ways of slipping in space: against the forces that would hold the contacts. Returns whether some are sought. */
+static int choose_ways(Trial *t) {
+  int seeks[LAG_MOST_TOUCHES], some = 0;
+  for (int i = 0; i < t->n; i++) {
+    some |= seeks[i] = seeks_way(&t->of[i]);
+    if (seeks[i]) t->of[i].mode = LAG_CONTACT_STICKS;
+  }
+  if (!some) return 0;
+  set_rows(t);
+  int rc = lag_solve_dense((size_t)t->rows, 1, t->A, t->x);
+  for (int i = 0; i < t->n; i++) {
+    lag_touch *c = &t->of[i];
+    if (!seeks[i]) continue;
+    double size = rc ? 0 : friction_of(t, c);
+    c->mode = LAG_CONTACT_SLIPS;
+    c->way[0] = size > 0 ? -t->x[c->tangent] / size : 1;
+    c->way[1] = size > 0 ? -t->x[c->second] / size : 0;
+  }
+  return 1;
+}
+
 /* Forces of the modes: of guides with several components by Newton's method, of the others at once. 0: none, or a
  * guide slips that presses to its other side. */
 static int solve(Trial *t) {
-  enum { ROUNDS = 50 };
-  int turned = 1;
+  enum { ROUNDS = 50, OF_WAYS = 2000 };
+  int turned = 1, rounds = choose_ways(t) ? OF_WAYS : ROUNDS;
   for (int i = 0; i < t->n; i++)
     for (int k = 0; k < t->of[i].parts; k++) t->of[i].toward[k] = k ? 0 : t->of[i].presses;
-  for (int round = 0; turned && round < ROUNDS; round++) {
+  for (int round = 0; turned && round < rounds; round++) {
     set_rows(t);
     if (lag_solve_dense((size_t)t->rows, 1, t->A, t->x)) return 0;
     turned = 0;
@@ -125,6 +168,8 @@ static int solve(Trial *t) {
       if (other && c->parts == 1 && c->mode == LAG_CONTACT_SLIPS) return 0;
       turned |= other;
     }
+    find_accelerations(t);
+    for (int i = 0; i < t->n; i++) turned |= seeks_way(&t->of[i]) && turn_way(t, &t->of[i]);
   }
   find_accelerations(t);
   return !turned;
@@ -191,7 +236,11 @@ static int fits(const Trial *t, int i) {
     return 0;
   if (c->mode == LAG_CONTACT_STICKS)
     return fabs(t->a[c->tangent]) <= alike * t->size[c->tangent] &&
-           fabs(t->x[c->tangent]) <= lag_touch_holds(c) * t->x[i] * (1 + nothing) + rounding(t, c->tangent);
+           (!c->second || fabs(t->a[c->second]) <= alike * t->size[c->second]) &&
+           friction_of(t, c) <= lag_touch_holds(c) * t->x[i] * (1 + nothing) + rounding(t, c->tangent);
+  if (c->second && !c->slip)
+    return c->way[0] * t->a[c->tangent] + c->way[1] * t->a[c->second] >=
+           -nothing * (t->size[c->tangent] + t->size[c->second]);
   return c->tangent < 0 || c->slip || c->to * t->a[c->tangent] >= -nothing * t->size[c->tangent];
 }
 
@@ -302,7 +351,7 @@ static void find_edges(Trial *t) {
   choose_forces(t);
   for (int i = 0; i < t->n; i++) {
     const lag_touch *c = &t->of[i];
-    double most = lag_touch_holds(c) * t->x[i], force = c->tangent >= 0 ? fabs(t->x[c->tangent]) : 0;
+    double most = lag_touch_holds(c) * t->x[i], force = c->tangent >= 0 ? friction_of(t, c) : 0;
     t->edge[i] = c->mode == LAG_CONTACT_STICKS && most - force <= alike * (fabs(most) + force);
   }
 }

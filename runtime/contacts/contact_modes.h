@@ -9,7 +9,9 @@ typedef struct lag_touch {
   double mu, hold; /* friction while it slips; while it sticks, where that is larger */
   int contact;     /* the caller's number */
   int tangent;     /* its row; -1: there is no friction */
-  int slip;        /* sign of the slip velocity; 0: at rest */
+  int second;      /* row of the other direction in space; 0: there is none */
+  double way[2];   /* in space the direction of slipping, given where it slips already */
+  int slip;        /* sign of the slip velocity, in space 1; 0: at rest */
   int cannot_stick;
   int shared;            /* it sticks, and its force is not unique */
   lag_contact_mode mode; /* without friction a closed contact slips */

@@ -28,7 +28,7 @@ typedef struct ContactSet {
   double *g, *c, *r, *d, *force, *test, *events, *ahead;
   /* of the model's contact_laws; [n] side to which a contact slips, NaN: it sticks, 0: by a force that
    * is not unique */
-  double *law, *side;
+  double *law, *side, *way; /* way[2 n]: direction in which it slips in space */
   double *pressed;              /* [guides][3][rows + 1] force of each guide: without other forces, and by each */
   double *A, *mass;             /* sparse entries of the constraints' Jacobian, with all contacts closed, and of M */
   int *row, *entry;             /* entry[row[k]] to entry[row[k + 1]]: entries of the Jacobian of constraint k */
@@ -108,3 +108,19 @@ int lag_contact_laws_at(lag_problem *pb, double t, const double *y, double *law)
 int lag_contacts_strike(ContactSet *w, const double *e);
 int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration);
 void lag_contacts_set_friction(ContactSet *w);
+
+/* space_friction.c: slips of two components. second_of: the other tangent of a contact in space, behind its first,
+ * i; -1: i is none. gap_of: the contact of a tangent. slips_in_space: of the first tangent. slip_velocities: r :=
+ * residuals, with the velocities of those that slip; pb->u are inputs. slip_direction: e[2] := unit vector against
+ * which friction of tangent i acts, from r. slip_noise: slips back that are no end of one, as where it begins by forces
+ * that have just grown enough; 0: it does not slip in space. slip_ends: whether s[2], beside slips of this size, is 0
+ * to the tolerance. some_stick_in_space: law of space_events, event functions of all, is that of the state then. */
+int lag_second_of(const lag_model *m, int i);
+int lag_gap_of(const lag_model *m, int tangent);
+int lag_slips_in_space(const lag_problem *pb, int i);
+int lag_slip_velocities(lag_problem *pb, double t, const double *y, double *c, double *r);
+void lag_slip_direction(const lag_problem *pb, const double *r, int i, double *e);
+double lag_slip_noise(const lag_problem *pb, int i);
+int lag_slip_ends(const lag_problem *pb, const double *s, double size);
+int lag_some_stick_in_space(const lag_sim *s);
+void lag_space_events(const lag_sim *s, const double *law, double *g);

@@ -1,4 +1,4 @@
-/* The impact of one contact with friction in a plane. */
+/* The impact of one contact with friction, in a plane and in space. */
 #pragma once
 
 /* Where restitution ends: its normal impulse does e^2 of the work of compression (Stronge), is e times that of
@@ -20,3 +20,8 @@ enum { LAG_IMPACT_STRONGE, LAG_IMPACT_POISSON, LAG_IMPACT_NEWTON };
  * edge (Ch. Glocker, Set-Valued Force Laws (2001), ch. 9, DOI 10.1007/978-3-540-44479-4). Garwin's superball has mu
  * large, e = back = 1. */
 double lag_planar_impact(const double *W, const double *v, int law, double mu, double e, double back, double *P);
+
+/* The same in space: W[9], v[3], P[3] for the normal and two perpendicular tangents. The slip turns as the impulse
+ * grows, where a response couples directions: an ordinary differential equation (J.B. Keller, J. Appl. Mech. 53 (1986)
+ * 1, DOI 10.1115/1.3171712), to about 10 digits; back > 0 is for slips that stay in their direction. */
+double lag_space_impact(const double *W, const double *v, int law, double mu, double e, double back, double *P);

@@ -17,6 +17,7 @@
  * rounding are not judged: D. Brouwer, Astron. J. 46 (1937) 149, DOI 10.1086/105423. */
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/core.h"
@@ -40,6 +41,28 @@ unsigned lag_charge_flags(const lag_sim *s, int k) {
   for (int i = 0; i < m->nu && (flags & LAG_BY_FORMULAS); i++)
     if (!isnan(s->hold[i]) || s->signal[i].fn) flags = 0;
   return flags;
+}
+
+int lag_conserves_energy(lag_sim *s) {
+  enum { STATES = 3 };
+  const double golden = 0.6180339887498949;
+  const lag_model *m = s->scene->model;
+  const lag_charges *c = m->charges;
+  int n = 2 * m->nq + m->nz, still = (m->flags & LAG_CONSERVES_ENERGY) != 0;
+  int known = c && c->powers && c->of[0].flags & LAG_BALANCED;
+  if (still || !known || m->nu) return still;
+  double *y = s->yb, *power = calloc((size_t)c->n + 1, sizeof *power);
+  still = power != NULL;
+  for (int k = 1; k <= STATES && still; k++) {
+    for (int i = 0; i < n; i++) {
+      double part = fmod(golden * k * (i + 1), 1) - 0.5;
+      y[i] = s->now[i] * (1 + 0.1 * part) + (i < m->nq ? 0.01 : 1) * part;
+    }
+    int rc = c->powers(c, s->run->t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, power, s->work);
+    still = rc == 0 && power[0] == 0 && !(c->dry_friction && power[c->n] != 0);
+  }
+  free(power);
+  return still;
 }
 
 static void no_values(lag_sim *s, int from) {

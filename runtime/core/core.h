@@ -119,6 +119,7 @@ struct lag_sim {
   double *sign;          /* [nev] sign of g just after `from`: -1, 1; 0 not known yet */
   double *noise;         /* [nev] |g| up to this counts as 0 */
   double *root;          /* [nev] time of the next firing within the step, NaN none */
+  double late;           /* delay of events, relative to their times: see error_report.c */
   double *sign_end;      /* [nev] sign of g at the end of the step */
   double *count;         /* [nev] */
   double *first, *last;  /* [nev] times of firing, where count is not 0 */
@@ -213,6 +214,8 @@ int lag_observe(lag_sim *sim, double t, const double *y, double *out);
 int lag_constraint_jacobian(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass);
 /* The part of pb->ranks that lag_constraint_jacobian does not use: [n nq + nq + n]. */
 double *lag_independence_scratch(const lag_problem *pb);
+/* Whether coordinates have one typical magnitude, as the members of a family, of which there may be hundreds. */
+int lag_are_alike(const lag_var *a, const lag_var *b);
 /* The fraction of row[n] of A that is independent of the orthonormal rows Q[r n], 0 to 1. If more than `least`, its
  * direction becomes row r of Q. -1: the row is zero. Destroys row, which may be row r of Q, or a later one. */
 double lag_independent_part(int n, int r, double least, const double *unit, double *Q, double *row);
@@ -317,7 +320,8 @@ int lag_contact_arm(lag_sim *sim, const double *g);
 int lag_contact_laws(lag_sim *sim, const double *y, double *law);
 size_t lag_contact_law_size(const lag_model *m);
 /* Event functions g[nev] of tangents: 1 where they are none, 1 or -1 times the slip velocity. */
-void lag_tangent_events(const lag_sim *sim, double *g);
+int lag_tangent_events(lag_sim *sim, double t, const double *y, double *g);
+void lag_contacts_turn(lag_sim *sim); /* held directions of slips in space := those at the end of a step */
 /* Event functions g[nev] of contacts that are met by impulses: 1, as they do not happen. show: u of these contacts,
  * for outputs with multipliers: closed where the last step pressed them. */
 void lag_contact_mute(const lag_sim *sim, double *g);
@@ -436,6 +440,8 @@ void lag_charges_jump(lag_sim *sim, double t, const double *ya, const double *yb
 void lag_charges_add_work(lag_sim *sim, double at_events, double rubbed);
 double lag_charge_drift(const lag_sim *sim, int k);
 unsigned lag_charge_flags(const lag_sim *sim, int k);
+/* Whether dE/dt = 0: proved, or 0 to the last bit at these values of parameters, as the power of a drag that is 0. */
+int lag_conserves_energy(lag_sim *sim);
 
 /* charge_monitor.c: LAG_EDRIFT with a message where half of an energy that is known to be conserved or balanced is
  * lost; else LAG_OK. */

@@ -11,7 +11,7 @@ int lag_events_eval(lag_sim *s, double t, const double *y, double *g) {
     return lag_fail(s, LAG_ENAN, "a switching function is not a number at t = %s s", LAG_TEXT(t));
   if (rc == 0 && m->nev) rc = m->events(m, t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, g, s->work);
   if (rc == 0 && s->pb.contacts) lag_contact_mute(s, g);
-  else if (rc == 0 && m->contact_laws) lag_tangent_events(s, g);
+  else if (rc == 0 && m->contact_laws) rc = lag_tangent_events(s, t, y, g);
   int bad = rc ? -1 : lag_not_finite(m->nev, g);
   if (rc || bad >= 0) {
     return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its function is not a number at t = %s s",

@@ -50,6 +50,9 @@ int lag_method_check_digits(lag_sim *s, const lag_method *method) {
       method->name, method->finest, s->tol);
 }
 
+/* Contacts whose friction in space is followed from event to event: forces of more are rarely unique. */
+enum { LAG_MOST_IN_SPACE = 3 };
+
 /* Switches that jump, and friction in space. */
 static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
   const lag_model *m = s->scene->model;
@@ -63,12 +66,13 @@ static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
         "method %s cannot follow a motion that sticks or slides where `%s` jumps; rk45, dop853, radau and rk4 can",
         method->name, m->switches[k].text);
   }
-  for (int i = 1; i < m->ncontacts && !(needs & LAG_METHOD_IMPULSES); i++)
-    if (m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent && lag_guide_of(m, i) < 0)
-      return lag_fail(s, LAG_EMETHOD,
-                      "method %s follows friction in a plane, and the slip of a contact has two components here (%s); "
-                      "--method \"moreau(step=1e-3)\" follows it",
-                      method->name, m->constraints->of[m->contacts[i].constraint].name);
+  int in_space = 0;
+  for (int i = 1; i < m->ncontacts; i++)
+    in_space += m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent && lag_guide_of(m, i) < 0;
+  if (in_space > LAG_MOST_IN_SPACE && !(needs & LAG_METHOD_IMPULSES))
+    return lag_fail(s, LAG_EMETHOD,
+                    "method %s follows friction in space at up to %d contacts, and there are %d here; "
+                    "--method moreau follows it", method->name, LAG_MOST_IN_SPACE, in_space);
   return LAG_OK;
 }
 
@@ -100,6 +104,9 @@ int lag_method_check(lag_sim *s, const lag_method *method) {
   const int held = m->constraints != NULL, linear = (needs & LAG_METHOD_NO_STATES) && (has & LAG_FIRST_ORDER);
   const int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !held;
   const Refusal first[] = {
+      {m->families && !(own & LAG_METHOD_IMPULSES),
+       "method %s does not follow the family of contacts %s; --method \"moreau(step=1e-3)\" does",
+       m->families ? m->families->of[0].name : NULL},
       {m->contact_laws && (!(own & LAG_METHOD_CONSTRAINTS) || own & smooth),
        "method %s cannot follow contacts with friction (%s); rk45, dop853, radau, rk4 and moreau can",
        m->contact_laws ? m->ev[m->contacts[0].impact].name : NULL},

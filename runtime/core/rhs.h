@@ -36,6 +36,9 @@ int lag_contact_friction_forces(lag_problem *pb, double t, const double *y);
 
 /* moreau_contacts.c: size of pb->contact_room in doubles. */
 size_t lag_moreau_contacts_size(const lag_model *m);
+/* moreau_families.c: rows of families of contacts that may act at once, and the most numbers that each reads. */
+int lag_family_rows_of(const lag_model *m);
+int lag_family_parts_of(const lag_model *m);
 
 /* Inline lag_inputs; the distance to the next row of a table or kick, as lag_next_row. */
 LAG_ALWAYS_INLINE int lag_inputs_inline(lag_problem *pb, double t) {

@@ -18,7 +18,8 @@ static size_t saved_arrays(lag_sim *s, const lag_method *method, double *x) {
   const lag_model *m = s->scene->model;
   size_t nm = (size_t)m->nmodes, nu = (size_t)m->nu + nm, n = (size_t)s->pb.n, nev = (size_t)m->nev + nm;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0;
+  size_t keys = method->flags & LAG_METHOD_IMPULSES ? (size_t)lag_family_rows_of(m) : 0,
+         pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts + keys : 0;
   double *contacts;
   const lag_part parts[] = {{&s->p, (size_t)m->np}, {&s->derived, (size_t)m->nderived}, {&s->hold, nu},
       {&s->begin, n}, {&s->asked, n}, {&s->elsewhere, (size_t)m->nq}, {&s->redundant, nc},
@@ -28,6 +29,7 @@ static size_t saved_arrays(lag_sim *s, const lag_method *method, double *x) {
       {&s->flight, nev}, {&s->skipped, nev}, {&s->crossed, nm}, {&s->slips, nm}, {&s->slid, nm},
       {&s->slid_since, nm}, {&s->mon_first, nmon}, {&s->mon_peak, nmon}, {&s->exact_peak, (size_t)s->scene->nexact},
       {&contacts, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0}, {&s->pb.contact_impulse, pushed},
+      {&s->pb.contact_key, keys},
       {&s->pb.contact_change, pushed ? (size_t)m->nq : 0},
       {&s->charge_block, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double)}, {&s->rate_history, 3 * n},
       {&s->pb.size, n + 2}};
@@ -59,7 +61,7 @@ static void begin_blocks(lag_sim *s) {
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   const lag_model *m = s->scene->model;
   size_t np = (size_t)(m->np + m->nderived), nu = (size_t)(m->nu + m->nmodes);
-  size_t pushes = method->flags & LAG_METHOD_IMPULSES && m->ncontacts ? lag_moreau_contacts_size(m) : 0;
+  size_t pushes = method->flags & LAG_METHOD_IMPULSES ? lag_moreau_contacts_size(m) : 0;
   size_t fixed = RUN_DOUBLES + saved_arrays(s, method, NULL);
   double *contact_room = calloc(pushes + 1, sizeof *contact_room);
   lag_problem sized = s->pb;
@@ -92,6 +94,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   s->nwork = work;
   free(s->pb.contact_room);
   s->pb.contact_room = contact_room;
+  s->pb.family = NULL;
   set_problem(s, method, opt);
   s->charges = (Charge *)(void *)s->charge_block;
   s->method = method;

@@ -128,6 +128,7 @@ static int pass_limit(lag_sim *s) {
   }
   r->have_step = 0;
   lag_copy(lag_watched(s), s->sign_end, s->sign);
+  if (s->scene->model->contact_laws && !s->pb.contacts) lag_contacts_turn(s);
   return LAG_OK;
 }
 

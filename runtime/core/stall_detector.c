@@ -147,6 +147,7 @@ static int check_pace(lag_sim *s, double t) {
   int k = -1;
   char line[32];
   if (!crawls(s, &r->stall_since, t, MOST, r->steps, &led) || lag_equal_step(s) > 0) return 0;
+  if (s->method->flags & LAG_METHOD_IMPULSES) return 0; /* its steps have a least size */
   double apart = pb->model->constraints ? lag_independence(pb, t, s->y, &k) : 1;
   if ((k < 0 || apart > dependent) && lag_facts(pb) & LAG_SMOOTH) return 0;
   int at = hangs_at(s, t, led);

@@ -24,5 +24,6 @@ double lag_equal_step(const lag_sim *s) {
     step = strcmp(m->options[i].name, "step") == 0 ? s->options[i] : step;
     adaptive = strcmp(m->options[i].name, "adapt") == 0 ? s->options[i] == 0.0 : adaptive;
   }
+  adaptive |= (m->flags & LAG_METHOD_IMPULSES) && !(step > 0);
   return adaptive ? 0 : lag_step_size(&s->pb, step);
 }

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #ifndef _WIN32
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -35,6 +36,7 @@ static void *read_file(const char *path, size_t *n) {
 static const lag_program *library(const char *path) { return path ? NULL : NULL; }
 static void look_for_library(const lag_program *program) { (void)program; }
 static int is_compiled_meanwhile(void) { return 0; }
+static void tell_of_compiler(void) {}
 #else
 /* The program in a library; NULL: there is none, or it is of another version. */
 static const lag_program *library(const char *path) {
@@ -45,26 +47,45 @@ static const lag_program *library(const char *path) {
 }
 
 static int compiled_fd = -1; /* where the library's path will be read; -1: nothing is compiled, or all is done */
+static int compiler_failed;
+static time_t begun;
 
 static int is_compiled_meanwhile(void) {
   const char *fd = getenv("LAG_COMPILED");
   if (fd) compiled_fd = atoi(fd), fcntl(compiled_fd, F_SETFL, O_NONBLOCK);
+  begun = time(NULL);
   return fd != NULL;
 }
 
-/* After a step: a look at the descriptor once in 2^8 steps; the path comes in one piece. */
-static void look_for_library(const lag_program *program) {
-  enum { ROOM = 4096, SELDOM = 1 << 8 };
-  static unsigned steps;
+/* The path comes in one piece. */
+static void look(const lag_program *program) {
+  enum { ROOM = 4096 };
   char path[ROOM];
-  if (compiled_fd < 0 || ++steps % SELDOM != 0) return;
   ssize_t n = read(compiled_fd, path, sizeof path - 1);
   if (n < 0) return; /* not yet */
   close(compiled_fd), compiled_fd = -1;
   path[n] = '\0';
   path[strcspn(path, "\n")] = '\0';
   const lag_program *compiled = n > 0 ? library(path) : NULL;
+  compiler_failed = !compiled;
   if (compiled) lag_program_change_over(program, compiled);
+}
+
+/* After a step: a look at the descriptor once in 2^8 steps. */
+static void look_for_library(const lag_program *program) {
+  enum { SELDOM = 1 << 8 };
+  static unsigned steps;
+  if (compiled_fd >= 0 && ++steps % SELDOM == 0) look(program);
+}
+
+/* Behind a run: why the compiler did not speed it up. */
+static void tell_of_compiler(void) {
+  enum { LONG = 20 };
+  const long waited = (long)(time(NULL) - begun);
+  if (compiler_failed)
+    fputs("lag-run: the C compiler failed, so the run was evaluated; `lagc build` prints its messages\n", stderr);
+  else if (compiled_fd >= 0 && waited > LONG)
+    fprintf(stderr, "lag-run: the C compiler had not ended after %ld s, so the run was evaluated\n", waited);
 }
 #endif
 
@@ -95,6 +116,6 @@ int main(int argc, char **argv) {
   if (!program) return FAILED;
   if (evaluated && is_compiled_meanwhile()) extras.after_step = look_for_library;
   int status = lag_app_main(argc, argv, program, &extras);
-  if (evaluated) lag_program_free(program);
+  if (evaluated) tell_of_compiler(), lag_program_free(program);
   return status;
 }

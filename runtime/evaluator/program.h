@@ -82,6 +82,14 @@ typedef struct {
   int members; /* of the family of places */
 } Near;
 
+/* Of a nest that a tree sums (lag_tree.h): component c of body k is q[first[c] + step*k], its charge the sum
+ * charge + k. It adds to the sum `energy`, or to slope[c] + by*k; -1: it does not. numbers: outer values of the factor,
+ * the softening, the opening angle. n 0: of another nest. */
+typedef struct {
+  int n, members, charge, step, by, energy, first[3], slope[3];
+  uint32_t numbers[3];
+} Far;
+
 /* for i < rows, for j in skew i .. (skew + more) i + turns - 1. A loop without turns is one row of them. */
 typedef struct {
   int64_t rows, skew, turns, more;
@@ -95,6 +103,7 @@ typedef struct {
   uint32_t end[LEVELS];  /* of each level in order */
   const TurnSum *sum;
   Near near;
+  Far far;
 } Nest;
 
 typedef struct {
@@ -113,8 +122,9 @@ typedef struct {
 /* in[PROGRAM_ARRAY_COUNT], of which the last is set here; r[frame]: memory. Returns LAG_OK or LAG_ESINGULAR. */
 int lag_run_program(const Program *p, const double *const *in, double *const *out, double *r);
 
-/* Numbers that the list of a nest over neighbours takes. */
+/* Numbers that the list of a nest over neighbours takes, and the tree of a nest. */
 uint64_t lag_near_room(int members);
+uint64_t lag_tree_room(int members);
 
 /* Runs a nest of the program; see lag_run_program. */
 void lag_run_nest(const Program *p, const Nest *n, const double *const *in, double *r);

@@ -192,6 +192,32 @@ static void read_near(Bytes *b, const Lengths *of, Nest *n) {
   x->members = (int)(n->rows + n->turns);
 }
 
+static int64_t bounded(Bytes *b) {
+  int64_t x = lag_bytes_signed(b);
+  return lag_bytes_need(b, x > -LARGEST && x < LARGEST, "a loop is too long") ? x : 0;
+}
+
+/* Elements first, first + by ... of n are of an array with so many. */
+static int reaches_within(int first, int by, int n, int64_t length) {
+  return first >= 0 && by > 0 && first + (int64_t)by * (n - 1) < length;
+}
+
+static void read_far(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
+  Far *x = &n->far;
+  x->n = (int)lag_bytes_below(b, 4);
+  if (!x->n || b->why) return;
+  x->members = lag_bytes_int(b, 1, LARGEST), x->charge = lag_bytes_int(b, 0, LARGEST);
+  x->step = (int)bounded(b), x->by = (int)bounded(b), x->energy = (int)bounded(b);
+  int fits = reaches_within(x->charge, 1, x->members, p->ncells) && x->energy >= -1 && x->energy < (int64_t)p->ncells;
+  for (int k = 0; k < 3; k++) x->numbers[k] = lag_bytes_below(b, n->nouter);
+  for (int k = 0; k < x->n; k++) {
+    x->first[k] = (int)bounded(b), x->slope[k] = (int)bounded(b);
+    fits &= reaches_within(x->first[k], x->step, x->members, of->in[PROGRAM_Q]);
+    fits &= x->slope[k] == -1 || reaches_within(x->slope[k], x->by, x->members, p->ncells);
+  }
+  lag_bytes_need(b, fits, "a tree is out of range");
+}
+
 static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   n->nins = lag_bytes_count(b, 20);
   TurnIns *ins = lag_bytes_room(b, n->nins, sizeof *ins);
@@ -202,6 +228,7 @@ static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   }
   n->ins = ins;
   read_near(b, of, n);
+  read_far(b, p, of, n);
   n->nsums = lag_bytes_count(b, 12);
   TurnSum *sum = lag_bytes_room(b, n->nsums, sizeof *sum);
   for (uint32_t k = 0; sum && k < n->nsums; k++) {
@@ -215,11 +242,6 @@ static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   n->sum = sum;
   if (!b->why) order_turn(b, n);
   if (!b->why) n->turn_order = order_of_turns(b, n), n->apart = sums_are_apart(b, n);
-}
-
-static int64_t bounded(Bytes *b) {
-  int64_t x = lag_bytes_signed(b);
-  return lag_bytes_need(b, x > -LARGEST && x < LARGEST, "a loop is too long") ? x : 0;
 }
 
 /* Refuses damaged sizes that would run for ever: no sum has more turns than its arrays have pairs of elements, but for
@@ -309,6 +331,7 @@ static void add_scratch(Bytes *b, Program *p) {
   for (uint32_t k = 0; !b->why && k < p->nnests; k++) {
     uint64_t need = ((uint64_t)p->nests[k].nins + 1) * NEST_BLOCK + p->nests[k].nsums + 1;
     if (p->nests[k].near.n) need += lag_near_room(p->nests[k].near.members);
+    if (p->nests[k].far.n) need += lag_tree_room(p->nests[k].far.members);
     if (need > most) most = need;
   }
   lag_bytes_need(b, most < FRAME_MOST, "a nest is too large");

@@ -5,6 +5,7 @@
 #include "evaluator/program.h"
 #include "lag_math.h"
 #include "lag_support.h"
+#include "lag_tree.h"
 
 /* Turns of one row that lie side by side in a block. */
 typedef struct {
@@ -269,7 +270,27 @@ static void run_neighbours(Block *b, int most) {
   finish_block(b);
 }
 
+uint64_t lag_tree_room(int members) {
+  uint64_t n = (uint64_t)members;
+  return LAG_TREE_NUMBERS(n) + LAG_TREE_INTS(n) / 2 + 1;
+}
+
+static void run_tree(const Program *p, const Far *x, const uint32_t *outer, const double *const *in, double *r) {
+  double numbers[3], *room = r + p->scratch;
+  lag_tree w = {.parts = x->n, .step = x->step, .energy = x->energy, .by = x->by};
+  for (int k = 0; k < 3; k++) {
+    w.first[k] = x->first[k], w.slope[k] = x->slope[k];
+    numbers[k] = r[outer[x->numbers[k]]];
+  }
+  lag_tree_open(&w, x->members, room, (int *)(void *)(room + LAG_TREE_NUMBERS((uint64_t)x->members)));
+  lag_tree_sum(&w, in[PROGRAM_Q], r + p->cells + x->charge, numbers, r + p->cells);
+}
+
 void lag_run_nest(const Program *p, const Nest *n, const double *const *in, double *r) {
+  if (n->far.n) {
+    run_tree(p, &n->far, n->outer, in, r);
+    return;
+  }
   Segment segment[NEST_BLOCK];
   Block b = {p, n, in, r, .values = r + p->scratch, .last_row = -1, .count = NEST_BLOCK, .segment = segment};
   int most = n->turn_order == TURN_BY_TURN ? 1 : NEST_BLOCK;

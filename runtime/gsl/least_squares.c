@@ -6,6 +6,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_multifit_nlinear.h>
+#include <gsl/gsl_multimin.h>
 #include <math.h>
 
 #include "lag.h"
@@ -65,6 +66,63 @@ static int minimise(int m, int n, double *x, lag_residuals_at *residuals, void *
   return rc;
 }
 
+/* ---- Functions of many values */
+
+typedef struct Objective {
+  lag_objective_at *at;
+  void *context;
+} Objective;
+
+/* Values 1e100 where a run fails, so that a search along a line comes back. */
+static double value_of(const gsl_vector *x, void *objective) {
+  const Objective *o = objective;
+  double f;
+  return o->at(o->context, x->data, &f, NULL) ? 1e100 : f;
+}
+
+static void value_and_gradient(const gsl_vector *x, void *objective, double *f, gsl_vector *g) {
+  const Objective *o = objective;
+  if (o->at(o->context, x->data, f, g->data)) *f = 1e100, gsl_vector_set_zero(g);
+}
+
+static void gradient_of(const gsl_vector *x, void *objective, gsl_vector *g) {
+  double f;
+  value_and_gradient(x, objective, &f, g);
+}
+
+/* BFGS steps; where one gains nothing they begin again along the gradient, once in a row. */
+static int take_steps(gsl_multimin_fdfminimizer *w, gsl_multimin_function_fdf *fdf, gsl_vector *x,
+                      int (*goes_on)(void *, double), void *context, int most, int *steps) {
+  const double first_step = 0.01, line_tolerance = 0.1;
+  for (int begins = 1; *steps < most;) {
+    if (begins && gsl_multimin_fdfminimizer_set(w, fdf, x, first_step, line_tolerance)) return LAG_EDOMAIN;
+    int stuck = gsl_multimin_fdfminimizer_iterate(w);
+    gsl_vector_memcpy(x, gsl_multimin_fdfminimizer_x(w));
+    if (stuck && begins) return LAG_OK;
+    begins = stuck;
+    if (stuck) continue;
+    ++*steps;
+    if (!goes_on(context, gsl_multimin_fdfminimizer_minimum(w))) return LAG_OK;
+  }
+  return LAG_EMETHOD;
+}
+
+static int minimise_function(int n, double *x, lag_objective_at *objective, int (*goes_on)(void *, double),
+                             void *context, int most, int *steps) {
+  Objective o = {objective, context};
+  double f;
+  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  gsl_multimin_function_fdf fdf = {value_of, gradient_of, value_and_gradient, (size_t)n, &o};
+  gsl_multimin_fdfminimizer *w = gsl_multimin_fdfminimizer_alloc(gsl_multimin_fdfminimizer_vector_bfgs2, (size_t)n);
+  gsl_vector_view at = gsl_vector_view_array(x, (size_t)n);
+  int rc = !w ? LAG_ENOMEM : objective(context, x, &f, NULL) ? LAG_EDOMAIN : LAG_OK;
+  *steps = 0;
+  if (rc == LAG_OK) rc = take_steps(w, &fdf, &at.vector, goes_on, context, most, steps);
+  gsl_multimin_fdfminimizer_free(w);
+  gsl_set_error_handler(handler);
+  return rc;
+}
+
 static int singular_values(int m, int n, double *A, double *values, double *V) {
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
   gsl_matrix_view a = gsl_matrix_view_array(A, (size_t)m, (size_t)n),
@@ -78,4 +136,5 @@ static int singular_values(int m, int n, double *A, double *values, double *V) {
 static double chance_of_more(double chi_squared, double freedom) { return gsl_cdf_chisq_Q(chi_squared, freedom); }
 static double chance_of_f(double f, double above, double below) { return gsl_cdf_fdist_Q(f, above, below); }
 
-const lag_least_squares lag_gsl_least_squares = {minimise, singular_values, chance_of_more, chance_of_f};
+const lag_least_squares lag_gsl_least_squares = {minimise, singular_values, chance_of_more, chance_of_f,
+                                                 minimise_function};

@@ -26,6 +26,7 @@
 typedef struct lag_band {
   int all, edges, half; /* half: half bandwidth, the largest difference of neighbours' places */
   LAG_LANE *edge, *first, *next, *order, *place, *scale, *rows, *pivot;
+  LAG_LANE *end, *deep; /* last column of each row that is not zero, last row of each column */
   const LAG_LANE *row; /* of A, of each constraint; none: all rows */
 } lag_band;
 
@@ -130,19 +131,25 @@ static int lag_band_factor(int n, const lag_band *b, const LAG_LANE *M, const LA
   for (int k = n; k < b->all; k++) b->scale[k] = b->scale[k] > 0 ? 1/b->scale[k] : 1;
   for (int k = 0; k < b->all*width; k++) b->rows[k] = 0;
   for (int k = 0; k < n; k++) b->rows[(int)b->place[k]*width + h] = M[k*n + k]*b->scale[k]*b->scale[k];
+  for (int k = 0; k < b->all; k++) b->end[k] = (LAG_LANE)k;
   for (int e = 0; e < b->edges; e++) {
     const LAG_LANE x = lag_element(n, b, e, M, A, &i, &j)*b->scale[i]*b->scale[j];
     const int r = (int)b->place[i], c = (int)b->place[j];
     b->rows[r*width + c - r + h] = b->rows[c*width + r - c + h] = x;
+    const int low = r < c ? r : c, high = r < c ? c : r;
+    if (b->end[low] < high) b->end[low] = (LAG_LANE)high;
   }
+  for (int k = 0; k < b->all; k++) b->deep[k] = k > 0 && b->deep[k - 1] > b->end[k] ? b->deep[k - 1] : b->end[k];
   for (int k = 0; k < b->all; k++) {
-    const int last = k + h < b->all ? k + h : b->all - 1;
+    const int last = (int)b->deep[k];
     int top = k;
     LAG_LANE *const row = b->rows + k*width + h; /* row[c]: column k + c */
     for (int r = k + 1; r <= last; r++)
       if (LAG_LANE_FN(fabs)(b->rows[r * width + k - r + h]) > LAG_LANE_FN(fabs)(b->rows[top * width + k - top + h]))
         top = r;
     b->pivot[k] = (LAG_LANE)top;
+    const LAG_LANE ends = b->end[k];
+    b->end[k] = b->end[top], b->end[top] = ends;
     for (int c = 0; c <= 2*h && top != k; c++) {
       LAG_LANE *const other = b->rows + top*width + k + c - top + h;
       const LAG_LANE was = row[c];
@@ -153,7 +160,9 @@ static int lag_band_factor(int n, const lag_band *b, const LAG_LANE *M, const LA
     for (int r = k + 1; r <= last; r++) {
       LAG_LANE *const below = b->rows + r*width + k - r + h;
       const LAG_LANE factor = below[0] /= row[0];
-      for (int c = 1; c <= 2*h && (factor < 0 || factor > 0); c++) below[c] -= factor*row[c];
+      if (!(factor < 0 || factor > 0)) continue;
+      for (int c = 1; c <= (int)b->end[k] - k; c++) below[c] -= factor*row[c];
+      if (b->end[r] < b->end[k]) b->end[r] = b->end[k];
     }
   }
   return 1;
@@ -167,10 +176,10 @@ static void lag_band_solve(const lag_band *b, LAG_LANE *y) {
     const LAG_LANE x = y[top];
     y[top] = y[k];
     y[k] = x;
-    for (int r = k + 1; r <= k + h && r < b->all; r++) y[r] -= b->rows[r*width + k - r + h]*x;
+    for (int r = k + 1; r <= (int)b->deep[k]; r++) y[r] -= b->rows[r*width + k - r + h]*x;
   }
   for (int k = b->all - 1; k >= 0; k--) {
-    for (int c = 1; c <= 2*h && k + c < b->all; c++) y[k] -= b->rows[k*width + h + c]*y[k + c];
+    for (int c = 1; c <= (int)b->end[k] - k; c++) y[k] -= b->rows[k*width + h + c]*y[k + c];
     y[k] /= b->rows[k*width + h];
   }
 }
@@ -215,11 +224,12 @@ static void lag_band_rest(int n, const lag_band *b, const LAG_LANE *M, const LAG
 static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, const lag_entries *of, LAG_LANE *x,
                       LAG_LANE *l, LAG_LANE *w, int room) {
   const int all = n + m;
-  lag_band b = {all, 0, 0, w, w + LAG_BAND_EDGES*all, 0, 0, 0, 0, 0, 0, of->row};
+  lag_band b = {all, 0, 0, w, w + LAG_BAND_EDGES*all, 0, 0, 0, 0, 0, 0, 0, 0, of->row};
   b.next = b.first + all + 1, b.order = b.next + 2 * LAG_BAND_EDGES * all, b.place = b.order + all,
   b.scale = b.place + all, b.pivot = b.scale + all;
   LAG_LANE *const side = b.pivot + all, *const y = side + all, *const z = y + all;
-  b.rows = z + all;
+  b.end = z + all, b.deep = b.end + all;
+  b.rows = b.deep + all;
   if (b.rows - w > room || !lag_edges(n, m, M, A, of, &b)) return 0;
   lag_places(&b);
   if (3 * b.half + 1 > (room - (int)(b.rows - w)) / all || !lag_band_factor(n, &b, M, A) ||

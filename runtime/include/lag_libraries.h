@@ -39,6 +39,9 @@ typedef struct lag_algebra {
 /* f[m] at x[n]; J[m * n], row-major, their derivatives; either may be NULL. Not 0: no values at x. */
 typedef int lag_residuals_at(void *context, const double *x, double *f, double *J);
 
+/* A function *f of x[n], and its gradient g[n] unless that is NULL. Not 0: no value at x. */
+typedef int lag_objective_at(void *context, const double *x, double *f, double *g);
+
 /* Nonlinear least squares, and the statistics that go with them. */
 typedef struct lag_least_squares {
   /* Moves x[n] to a minimum of |f|^2, m >= n, in at most `most` steps; *steps: made. LAG_OK; LAG_EMETHOD: not reached;
@@ -49,6 +52,11 @@ typedef struct lag_least_squares {
   /* Probability that chi squared, or Fisher's F, with so many degrees of freedom is larger. */
   double (*chance_of_more)(double chi_squared, double freedom);
   double (*chance_of_f)(double f, double above, double below);
+  /* Moves x[n] to lower values of a function by quasi-Newton steps (BFGS); each is followed by goes_on(context, f),
+   * which ends the search with 0. LAG_OK: ended so, or no step gains; LAG_EMETHOD: `most` steps; LAG_EDOMAIN: no value
+   * at the start; LAG_ENOMEM. */
+  int (*descend)(int n, double *x, lag_objective_at *objective, int (*goes_on)(void *, double), void *context, int most,
+                 int *steps);
 } lag_least_squares;
 
 /* Rows or motions of a sweep as arrays: the columns x[n of all axes, multiplied], the last axis fastest. */

@@ -87,7 +87,9 @@ typedef struct lag_problem {
   lag_contact_stats *contacts;
   double *contact_impulse;     /* [ncontacts] impulse of each in the last step, */
   double *contact_change;      /* [nq] and the change of velocities by all of them */
+  double *contact_key;         /* [lag_family_rows_of] of families of contacts: whose impulses these are, ascending */
   double *contact_room;        /* scratch */
+  struct lag_family_rows *family; /* in it: families of contacts (methods/moreau_families.c); NULL: not laid out */
   /* [n + 2] size of each component in this run, and last of the time: powers of 1024; tolerances are parts of it */
   double *size;
   const lag_parameter_columns *by; /* of the run's tangent; NULL: none */

@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 18
+#define LAG_ABI 19
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many
  * doubles, one state or one set of parameters a lane. The status < 0 of such a call has bit k of its negative set
@@ -279,6 +279,42 @@ typedef struct lag_contact {
   int law;
 } lag_contact;
 
+/* What the text of a family reads: by row and turn, an index among coordinates or parameters. */
+typedef struct lag_read {
+  int first, by_row, by_turn;
+} lag_read;
+
+/* Contacts with one text for all members, rows 0 .. rows - 1 and, of each, turns skew*row .. skew*row + turns +
+ * more*row - 1; indices: 1 or 2, i = i0 + row, j = j0 + turn.
+ *
+ * values: out = gap, its rate, restitution, friction, tangential restitution; slips; derivatives of the rate, then of
+ * the slips, by the member's velocities. Its q, v are those at `coords`, its z parameters at `params`. reach: the
+ * distance beyond which no gap is closed, and sides of the box (0: open), of parameters alone; NULL: all members
+ * are looked at. place: coordinates of the member of a turn; that of a row is turn i0 + row - j0. */
+typedef struct lag_contact_family {
+  const char *name;
+  int indices, i0, j0, rows, skew, turns, more;
+  int ncoords, nparams;
+  const lag_read *coords, *params; /* [ncoords], [nparams] */
+  int tangents;
+  int (*values)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*reach)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+               const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int nplaces;
+  lag_read place[3];
+} lag_contact_family;
+
+/* The families of a model, which moreau follows; inertia: M[nmass] at the entries `mass` of its lower triangle. */
+typedef struct lag_contact_families {
+  int n;
+  const lag_contact_family *of; /* [n] */
+  int nmass;
+  const lag_entry *mass;        /* [nmass] */
+  int (*inertia)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                 const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *M, LAG_REAL *w);
+} lag_contact_families;
+
 /* A guide: its tangent, with friction by the force of constraints that always hold. */
 typedef struct lag_guide {
   int tangent, parts; /* index in the contacts; components of its force */
@@ -377,6 +413,7 @@ typedef struct lag_model {
   const lag_constraints *constraints; /* NULL: none */
   int ncontacts;
   const lag_contact *contacts;        /* [ncontacts] */
+  const lag_contact_families *families; /* NULL: none */
   const lag_charges *charges;         /* NULL: only the energy, without a known balance if it is not conserved */
 
   /* The members below are NULL in a program that was not emitted for a method that needs them (lagc build --method

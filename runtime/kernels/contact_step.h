@@ -8,12 +8,12 @@
  * where slower, and by u >= -u0 where it was opening; so P (u0 + u) <= 0. Where the gap is curved, its rate is 0 at
  * the end of the step, not at the middle, and curvature belongs to the pace: a bead in a hoop does not strike it.
  * Friction opposes the mean of the slip velocities at both ends: it drives the slip s into the ball whose diameter
- * goes from -s0 to 0, so F (s0 + s) <= 0. In an impact it opposes the slip at the end, driven to 0, or with
- * tangential restitution to -e_t s0, as in the papers below; at a contact where this would add energy, as it may
- * where the impulse turns the slip round (T.R. Kane, D.A. Levinson, Dynamics (1985), 5.8), the mean of both, too, so
- * P (u0 + u) + F (s0 + s) <= 0 always. J.J. Moreau, in: Nonsmooth Mechanics and Applications (1988), 1, DOI
- * 10.1007/978-3-7091-2624-0_1; D.E. Stewart, J.C. Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673, DOI
- * 10.1002/(SICI)1097-0207(19960815)39:15<2673::AID-NME972>3.0.CO;2-I.
+ * goes from -s0 to 0, so F (s0 + s) <= 0, both slips being those at the positions of their ends. In an impact it
+ * opposes the slip at the end, driven to 0, or with tangential restitution to -e_t s0, as in the papers below; at a
+ * contact where this would add energy, as it may where the impulse turns the slip round (T.R. Kane, D.A. Levinson,
+ * Dynamics (1985), 5.8), the mean of both, too, so P (u0 + u) + F (s0 + s) <= 0 always. J.J. Moreau, in: Nonsmooth
+ * Mechanics and Applications (1988), 1, DOI 10.1007/978-3-7091-2624-0_1; D.E. Stewart, J.C. Trinkle, Int. J. Numer.
+ * Methods Eng. 39 (1996) 2673, DOI 10.1002/(SICI)1097-0207(19960815)39:15<2673::AID-NME972>3.0.CO;2-I.
  *
  * An instance defines before it includes this text lag_contact and lag_entry (lag_model.h), and:
  *   LAG_MODEL, LAG_THE_MODEL             the first parameters of functions: the model; the same as arguments
@@ -46,8 +46,8 @@ typedef struct lag_moreau_contacts {
   LAG_REAL *response, *b, *before; /* [rows]; before: rates at the begin of the step */
   LAG_REAL *law;                   /* [2 contacts] friction, tangential restitution */
   /* [constraints] gaps, rates at the begin, rates without contacts, their changes by forces and curvature in a step, by
-   * curvature in its first half, a unit */
-  LAG_REAL *c, *r0, *r1, *pace, *bend, *g;
+   * curvature in its first half, and in its second, a unit */
+  LAG_REAL *c, *r0, *r1, *pace, *bend, *tail, *g;
   LAG_REAL *d, *effort, *x;        /* [nq] */
   LAG_REAL *jacobian, *mass, *lu, *pivot, *scale;
   LAG_REAL *first, *entry;         /* entry[first[k]] to entry[first[k + 1]]: entries of constraint k */
@@ -56,7 +56,7 @@ typedef struct lag_moreau_contacts {
 enum { LAG_PRESSING_SIZE = (int)(sizeof(lag_pressing)/sizeof(LAG_REAL)) };
 /* Scalars that a step with these sizes needs; entries of D: `responses`; of the factored mass matrix: `lu`. */
 #define LAG_CONTACT_ROOM(contacts, constraints, nq, entries, nmass, responses, lu) \
-  ((contacts)*(LAG_PRESSING_SIZE + 8) + 4 + 7*(constraints) + 5*(nq) + 4*(entries) + 2*(responses) + (nmass) + (lu))
+  ((contacts)*(LAG_PRESSING_SIZE + 8) + 4 + 8*(constraints) + 5*(nq) + 4*(entries) + 2*(responses) + (nmass) + (lu))
 
 /* Places arrays into room[LAG_CONTACT_ROOM]; sizes are set. */
 static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG_REAL *room) {
@@ -66,8 +66,9 @@ static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG
   w->response = room, w->b = room += p, w->before = room += p, w->all.P = room += p, w->law = room += p;
   w->all.A.first = room += 2*p, w->all.D.first = room += p + 1;
   w->c = room += p + 1, w->r0 = room += nc, w->r1 = room += nc, w->pace = room += nc, w->bend = room += nc;
-  w->g = room += nc, w->d = room += nc, w->effort = room += nq, w->x = room += nq, w->pivot = room += nq;
-  w->scale = room += nq, w->jacobian = room += nq, w->all.A.col = room += e, w->all.A.value = room += e;
+  w->tail = room += nc, w->g = room += nc, w->d = room += nc, w->effort = room += nq, w->x = room += nq;
+  w->pivot = room += nq, w->scale = room += nq;
+  w->jacobian = room += nq, w->all.A.col = room += e, w->all.A.value = room += e;
   w->all.D.col = room += e, w->all.D.value = room += responses, w->mass = room += responses, w->lu = room += w->nmass;
   w->first = room += lag_band_matrix_size(nq, w->band), w->entry = room + nc + 2;
   w->all.response = w->response, w->all.b = w->b;
@@ -194,7 +195,11 @@ static inline int lag_contact_add(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
   c->mu = tangents > 0 ? w->law[2*(i + 1)] : zero;
   c->strikes = strikes ? LAG_C(1.0) : zero;
   c->rate = w->r0[k];
-  for (int j = 0; j < tangents; j++) c->slip[j] = w->before[row + 1 + j];
+  for (int j = 0; j < tangents; j++) {
+    c->slip[j] = w->before[row + 1 + j];
+    c->turn[j] = w->bend[w->at[i + 1 + j].constraint];
+    c->tail[j] = w->tail[w->at[i + 1 + j].constraint];
+  }
   lag_contact_law(c, w->c[k], w->bend[k], h, e, strikes && tangents > 0 ? w->law[2*(i + 1) + 1] : zero);
   return moves || w->r1[k] >= zero ? 0 : LAG_CONTACT_FAILS(t, i, "closes, and nothing can keep it from closing");
 }
@@ -208,6 +213,9 @@ static inline int lag_contacts_evaluate(LAG_MODEL, lag_moreau_contacts *w, LAG_R
   LAG_TRY(LAG_CLOSE(t - half, -1, w->u));
   for (int i = 0; i < w->nq; i++) w->x[i] = y[i] - half*v[i];
   LAG_TRY(LAG_GAPS(t - half, w->x, v, z, w->u, w->c, w->bend));
+  LAG_TRY(LAG_CLOSE(t + half, -1, w->u));
+  for (int i = 0; i < w->nq; i++) w->x[i] = y[i] + half*end[i];
+  LAG_TRY(LAG_GAPS(t + half, w->x, end, z, w->u, w->c, w->tail));
   LAG_TRY(LAG_CLOSE(t, -1, w->u));
   LAG_TRY(LAG_GAPS(t, y, end, z, w->u, w->c, w->r1));
   LAG_TRY(LAG_GAPS(t, y, v, z, w->u, w->c, w->r0));
@@ -215,6 +223,7 @@ static inline int lag_contacts_evaluate(LAG_MODEL, lag_moreau_contacts *w, LAG_R
   LAG_TRY(LAG_FRICTIONS(t, y, w->u, w->law));
   for (int k = 0; k < w->constraints; k++) {
     w->bend[k] = w->r0[k] - w->bend[k];
+    w->tail[k] -= w->r1[k];
     w->pace[k] = LAG_C(2.0)*LAG_FN(fabs)(w->bend[k]);
   }
   for (int e = 0; e < w->entries; e++) {

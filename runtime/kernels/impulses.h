@@ -120,10 +120,12 @@ typedef struct lag_sparse_rows {
 
 /* A contact: rows row (the gap) and row + 1 .. row + tangents (slip velocities). least: the least rate of the
  * gap after the impulse. Friction drives the slip velocity to the nearest point of a ball (an interval in a
- * plane), about centre[tangents], of this radius. strikes: 1 in an impact; rate, slip[tangents]: at the begin.
+ * plane), about centre[tangents], of this radius. strikes: 1 in an impact; rate, slip[tangents]: at the begin, by
+ * directions at the middle; turn, tail[tangents]: change of the slip by theirs until there, and on to the end.
  * opposite: the contact on the other side of the same rail, or -1; head, next: of chains by first column. */
 typedef struct lag_pressing {
-  LAG_REAL contact, row, tangents, mu, least, radius, centre[2], strikes, rate, slip[2], opposite, head, next;
+  LAG_REAL contact, row, tangents, mu, least, radius, centre[2], strikes, rate, slip[2], turn[2], tail[2];
+  LAG_REAL opposite, head, next;
 } lag_pressing;
 
 /* The product of row r with x. */
@@ -163,8 +165,9 @@ static inline void lag_contact_law(lag_pressing *c, LAG_REAL gap, LAG_REAL bend,
   if (r0 > zero || down < zero) c->least = lag_smaller(-r0, c->least);
   if (strikes) c->least = lag_larger(-down, -lag_smaller(lag_larger(e, zero), one)*r0);
   for (int j = 0; j < (int)c->tangents; j++) {
-    c->centre[j] = -part*c->slip[j];
-    size = lag_length_of(size, c->slip[j]);
+    const LAG_REAL slip = c->slip[j] - c->turn[j];
+    c->centre[j] = -part*slip - c->tail[j];
+    size = lag_length_of(size, slip);
   }
   c->radius = LAG_SELECT(strikes, zero, (one - back)/two*size);
 }

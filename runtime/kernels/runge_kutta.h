@@ -61,11 +61,11 @@
     errors \
   }
 
-/* The squared error of a step h: |e|^2, or of two estimates |e|^4/(|e|^2 + 0.01 |e3|^2), |x|^2 =
- * 1/n sum (x_i/s_i)^2 with allowed errors s_i; not a number where one is not finite. per: 1/n. HNW
- * II.4, II.10. */
-static inline LAG_REAL lag_squared_error(const LAG_REAL *square, int two, LAG_REAL h, LAG_LANE per) {
-  const LAG_REAL zero = LAG_C(0.0), fine = square[0]*(h*h*per), coarse = two ? square[1]*(LAG_C(0.01)*h*h*per) : zero;
+/* The squared error of a step h, from sums of squares: |e|^2, or of two estimates
+ * |e|^4/(|e|^2 + 0.01 |e3|^2), |x|^2 = 1/n sum (x_i/s_i)^2 with allowed errors s_i; not a number
+ * where one is not finite. per: 1/n. HNW II.4, II.10. */
+static inline LAG_REAL lag_squared_error(LAG_REAL first, LAG_REAL second, int two, LAG_REAL h, LAG_LANE per) {
+  const LAG_REAL zero = LAG_C(0.0), fine = first*(h*h*per), coarse = two ? second*(LAG_C(0.01)*h*h*per) : zero;
   const LAG_REAL both = fine + coarse;
   if (!two) return fine + both*zero;
   return LAG_SELECT(both > zero, fine*(fine/both), zero) + both*zero;

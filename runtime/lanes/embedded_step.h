@@ -15,7 +15,7 @@ LAG_INLINE Lanes embedded_lane_errors(int id, int n, const EmbeddedLanes *b, Lan
   const Lanes *const y = b->y0, *const x = b->y1, (*const k)[n] = (const Lanes (*)[n])(const void *)b->k;
   Lanes square[2] = {{0}, {0}}, even[2] = {{0}, {0}};
   LAG_SQUARES(EMBEDDED_ERRORS)
-  return lag_squared_error(square, b->pair->late, h, b->per);
+  return lag_squared_error(square[0], square[1], b->pair->late, h, b->per);
 }
 
 LAG_INLINE LaneMask embedded_lane_step(int id, int n, EmbeddedLanes *b, LaneMask busy, LaneMask *bad) {

@@ -65,7 +65,7 @@ static int does_not_adapt(const lag_sim *s) {
 /* Why runs of this simulation need each step made alone; NULL: they do not. */
 static const char *needs_single_steps(const lag_sim *s) {
   const lag_model *m = s->pb.model;
-  if (m->ncontacts) return "since the model has contacts";
+  if (m->ncontacts || m->families) return "since the model has contacts";
   if (m->constraints) return "since the model has constraints";
   if (m->nmodes || m->nswitch) return "since a force jumps or has a kink";
   for (int k = 0; k < m->nev; k++)

@@ -8,13 +8,14 @@
 #include "core/rhs.h"
 #include "methods/adaptive_rk.h"
 
-/* Dimensions of a problem; row: length of an array in Embedded.x. */
+/* Dimensions of a problem; row: length of an array in Embedded.x; alike: rates of coordinates are the velocities at
+ * their stage, bit by bit. */
 typedef struct EmbeddedShape {
-  int nq, n, row;
+  int nq, n, row, alike;
 } EmbeddedShape;
 
 LAG_ALWAYS_INLINE EmbeddedShape embedded_shape(const lag_problem *pb) {
-  EmbeddedShape as = {pb->nq, pb->n, lag_adaptive_rk_row(pb)};
+  EmbeddedShape as = {pb->nq, pb->n, lag_adaptive_rk_row(pb), 0};
   return as;
 }
 
@@ -34,13 +35,19 @@ LAG_ALWAYS_INLINE embedded_part embedded_at(const double *x) { return *(const em
 
 LAG_ALWAYS_INLINE void embedded_set(double *x, embedded_part s) { *(embedded_part *)(void *)x = s; }
 
-/* Loads two numbers that the model has just stored one by one. They are loaded one by one, too: processors forward a
- * store only to a load of the same size. */
-LAG_ALWAYS_INLINE embedded_part embedded_newest(const volatile double *k) {
+/* Loads the newest rates k of component i, of the state x. The model has just stored them one by one, so they are
+ * loaded one by one, too: processors forward a store only to a load of the same size. Velocities come from x, which
+ * saves the way by k: a stage waits for the one before. */
+LAG_ALWAYS_INLINE double embedded_rate(EmbeddedShape as, const volatile double *k, const double *x, int i) {
+  return as.alike && i < as.nq ? x[as.nq + i] : k[i];
+}
+
+LAG_ALWAYS_INLINE embedded_part embedded_newest(EmbeddedShape as, const double *k, const double *x, int i) {
 #if EMBEDDED_VECTORS
-  return (embedded_part){k[0], k[1]};
+  if (as.alike && as.nq % EMBEDDED_WIDTH == 0 && i < as.nq) return embedded_at(x + as.nq + i);
+  return (embedded_part){embedded_rate(as, k, x, i), embedded_rate(as, k, x, i + 1)};
 #else
-  return k[0];
+  return embedded_rate(as, k, x, i);
 #endif
 }
 
@@ -88,7 +95,7 @@ LAG_ALWAYS_INLINE embedded_part embedded_weight(const Embedded *w, const lag_pro
 #define LAG_EACH(i) for (int i = 0; i < as.n; i += EMBEDDED_WIDTH)
 #define LAG_RATE(s) (k + (s) * as.row)
 #define LAG_AT(x, i) embedded_at((x) + (i))
-#define LAG_NEWEST(x, i) embedded_newest((x) + (i))
+#define LAG_NEWEST(rate, i) embedded_newest((rate) == k ? (EmbeddedShape){0} : as, rate, x, i) /* k: of y, not of x */
 #define LAG_SET(x, i, value) embedded_set((x) + (i), value)
 #define LAG_RATES(t, x, s) embedded_call(pb, as.nq, t, x, LAG_RATE(s))
 #define LAG_ADD(i, d) embedded_add(w, as, i, d)
@@ -115,7 +122,7 @@ LAG_ALWAYS_INLINE double embedded_error(const EmbeddedPair *of, int id, Embedded
   double square[2] = {0, 0};
   (void)id, (void)k;
   LAG_SQUARES(EMBEDDED_ERRORS)
-  return lag_squared_error(square, of->late, h, w->per);
+  return lag_squared_error(square[0], square[1], of->late, h, w->per);
 }
 
 /* The last stage: projects the end of the step to the constraints, then k := f there. > 0: a smaller step may help. */
@@ -128,6 +135,13 @@ LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape a
   return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
 }
 
+/* Whether a component of x is not finite. */
+LAG_ALWAYS_INLINE int embedded_not_finite(EmbeddedShape as, const double *x) {
+  double zero = 0;
+  for (int i = 0; i < as.n; i++) zero += x[i] * 0;
+  return isnan(zero);
+}
+
 /* A trial step from t to tb = t + dt. */
 typedef struct EmbeddedStep {
   double t, tb, dt;
@@ -138,7 +152,7 @@ LAG_ALWAYS_INLINE double embedded_trial(const EmbeddedPair *of, int id, Embedded
   int row = as.row, last = of->tab->stages - 1, adapts = of->control.order > 0;
   double *end = w->x + EMBEDDED_K1 * row + last * row, err = 0;
   if ((*rc = embedded_stages(id, w, pb, as, s.t, s.dt)) != 0) return NAN;
-  if (!adapts && lag_not_finite(pb->n, w->x + EMBEDDED_Y1 * row) >= 0) return NAN;
+  if (!adapts && embedded_not_finite(as, w->x + EMBEDDED_Y1 * row)) return NAN;
   if (adapts) {
     if (!of->late && (*rc = embedded_end(pb, w, as, s.tb, end)) != 0) return NAN;
     err = embedded_error(of, id, w, pb, as, s.dt);
@@ -147,16 +161,16 @@ LAG_ALWAYS_INLINE double embedded_trial(const EmbeddedPair *of, int id, Embedded
     if (!of->late || !(err <= 1 || (w->limits.fixed != 0.0 && !isnan(err)))) return err;
   }
   *rc = embedded_end(pb, w, as, s.tb, end);
-  return *rc || lag_not_finite(pb->n, end) >= 0 ? NAN : err;
+  return *rc || embedded_not_finite(as, end) ? NAN : err;
 }
 
 /* EmbeddedPair.trial, specialised for one, two and three coordinates. */
 LAG_ALWAYS_INLINE double embedded_try(const EmbeddedPair *of, int id, Embedded *w, lag_problem *pb, EmbeddedStep s,
                                       int *rc) {
-  switch (pb->nz == 0 ? pb->nq : 0) {
-  case 1: return embedded_trial(of, id, w, pb, (EmbeddedShape){1, 2, EMBEDDED_SMALL}, s, rc);
-  case 2: return embedded_trial(of, id, w, pb, (EmbeddedShape){2, 4, EMBEDDED_SMALL}, s, rc);
-  case 3: return embedded_trial(of, id, w, pb, (EmbeddedShape){3, 6, EMBEDDED_SMALL}, s, rc);
+  switch (pb->nz == 0 && !pb->redundant ? pb->nq : 0) {
+  case 1: return embedded_trial(of, id, w, pb, (EmbeddedShape){1, 2, EMBEDDED_SMALL, 1}, s, rc);
+  case 2: return embedded_trial(of, id, w, pb, (EmbeddedShape){2, 4, EMBEDDED_SMALL, 1}, s, rc);
+  case 3: return embedded_trial(of, id, w, pb, (EmbeddedShape){3, 6, EMBEDDED_SMALL, 1}, s, rc);
   default: return embedded_trial(of, id, w, pb, embedded_shape(pb), s, rc);
   }
 }

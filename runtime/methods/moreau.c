@@ -9,30 +9,42 @@
  * Methods Appl. Mech. Eng. 177 (1999) 235, DOI 10.1016/S0045-7825(98)00383-1. Dense output is the parabola of a
  * step, or two about an impact. */
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 #include "kernels/dense_output.h"
 #include "kernels/impulses.h"
 #include "lag.h"
 #include "methods/moreau_contacts.h"
+#include "methods/moreau_families.h"
 #include "methods/moreau_joint_friction.h"
 #include "methods/steps.h"
 
-static const lag_method_option options[] = {LAG_STEP_OPTION};
+static const lag_method_option options[] = {
+    {"step", "size of the step [s]; 0: by the tolerance, at most a 10000th of the scene's span", 0, 0, HUGE_VAL,
+     .choices = NULL}};
 
 /* Head of the saved state; behind it arrays of n, 2 doubles a contact of the model, friction and tangential
- * restitution, and the room of dry friction. */
+ * restitution, and the room of dry friction; then a copy of all that and of pb->hold, and two ends of trials. */
 typedef struct Moreau {
   lag_fixed_step step;
   double struck; /* the last step had an impact */
+  double most;   /* longest step; 0: steps are of equal size */
+  double half;   /* 1: the next step is the second half of a pair */
+  double calm;   /* the step before an impact shortened it; 0: none did */
   double x[];
 } Moreau;
 enum { Y0, Y1, RATE, RATE0, MID, COMP, FREE, SIZE, ARRAYS };
 
-static size_t work_size(const lag_problem *pb) {
+/* Doubles that a trial must not change. */
+static size_t kept_size(const lag_problem *pb) {
   return sizeof(Moreau) / sizeof(double) + ARRAYS * (size_t)pb->n + 2 * (size_t)pb->model->ncontacts +
          lag_joint_friction_size(pb);
 }
+
+static size_t held_size(const lag_problem *pb) { return (size_t)(pb->model->nu + pb->model->nmodes); }
+
+static size_t work_size(const lag_problem *pb) { return 2 * kept_size(pb) + held_size(pb) + 2 * (size_t)pb->n; }
 
 static double *law_of(Moreau *w, const lag_problem *pb) { return w->x + ARRAYS * pb->n; }
 static JointFriction friction_of(Moreau *w, const lag_problem *pb) {
@@ -41,7 +53,7 @@ static JointFriction friction_of(Moreau *w, const lag_problem *pb) {
 
 static void reset(void *work, lag_problem *pb) {
   Moreau *w = work;
-  w->step.tc = w->struck = 0;
+  w->step.tc = w->struck = w->half = 0;
   memset(w->x + COMP * pb->n, 0, (size_t)pb->n * sizeof(double));
   if (pb->contacts) pb->contacts->due = 0;
 }
@@ -51,8 +63,14 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   const lag_model *m = pb->model;
   int rc = 0;
   w->step.h = lag_step_size(pb, opt[0]);
+  w->most = opt[0] > 0 ? 0 : w->step.h;
+  w->calm = 0;
   memset(law_of(w, pb) + 2 * m->ncontacts, 0, lag_joint_friction_size(pb) * sizeof(double));
   reset(work, pb);
+  if (m->families) {
+    lag_moreau_contacts_of(pb, NULL);
+    return lag_families_check_start(pb, 0, pb->begin);
+  }
   if (!m->contact_laws) return LAG_OK;
   rc = lag_inputs(pb, 0);
   rc = rc ? rc
@@ -138,7 +156,7 @@ static int respond(lag_problem *pb, const lag_kick *s, Laws *w) {
     rc = lag_joint_friction_round(&w->friction, pb, s, 0, &moved);
     lag_joint_friction_carry(&w->friction, 1, s->rate0);
   }
-  return rc ? rc : lag_contacts_find(pb, &w->contacts, s->t, s->h, s->mid, s->y1 + s->nq);
+  return rc ? rc : lag_moreau_find(pb, &w->contacts, s->t, s->h, s->mid, s->y1 + s->nq);
 }
 
 static int obey(lag_problem *pb, const lag_kick *s, Laws *w) {
@@ -178,22 +196,19 @@ static int drift(lag_problem *pb, const lag_kick *s, double *lost, double tb, co
   return rc ? lag_step_not_projected(pb, rc, tb) : 0;
 }
 
-static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
-  Moreau *w = work;
-  int n = pb->n, nq = pb->nq, rc;
+/* One step from y to next->tb; `noted`: statistics of contacts, which a trial leaves out. A failure changes nothing. */
+static int advance(Moreau *w, lag_problem *pb, double t, const lag_next_step *next, int noted, double *y) {
+  int n = pb->n, nq = pb->nq;
   double *x = w->x, *y0 = x + Y0 * n, *lost = x + COMP * n;
-  lag_next_step next;
-  (void)t_stop;
-  if ((rc = lag_fixed_step_begin(&w->step, pb, *t, &next)) != 0) return rc;
   Laws laws = {lag_moreau_contacts_of(pb, law_of(w, pb)), friction_of(w, pb), x + FREE * n};
-  const lag_kick s = {nq, pb->nz, is_explicit(pb) && !laws.friction.of.n, *t + next.dt / 2, *t + next.dt, next.dt,
+  const lag_kick s = {nq, pb->nz, is_explicit(pb) && !laws.friction.of.n, t + next->dt / 2, t + next->dt, next->dt,
                       DBL_EPSILON, y, x + MID * n, x + Y1 * n, x + RATE * n, x + RATE0 * n, x + SIZE * n};
   lag_kick_begin(&s, lost);
   lag_joint_friction_enter(&laws.friction, pb);
-  rc = kick(pb, &s, &laws, *t);
+  int rc = kick(pb, &s, &laws, t);
   if (rc == 0) {
     memcpy(y0, y, (size_t)n * sizeof *y);
-    rc = drift(pb, &s, lost, next.tb, y0, y);
+    rc = drift(pb, &s, lost, next->tb, y0, y);
     if (rc) memcpy(y, y0, (size_t)n * sizeof *y);
   }
   if (rc) {
@@ -201,9 +216,72 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     return rc;
   }
   w->struck = laws.contacts.impacts;
-  if (pb->model->ncontacts)
-    lag_moreau_contacts_note(&laws.contacts, pb, next.dt, w->struck > 0 ? s.t : next.tb, y0 + nq, s.y1 + nq);
+  if (noted && (pb->model->ncontacts || pb->model->families))
+    lag_moreau_contacts_note(&laws.contacts, pb, next->dt, w->struck > 0 ? s.t : next->tb, y0 + nq, s.y1 + nq);
   memcpy(s.y1, y, (size_t)n * sizeof *y);
+  return 0;
+}
+
+/* ---- steps by the tolerance */
+
+/* end[n] := the state after `steps` steps h from y, with no other effect; *struck counts those with an impact. */
+static int try_steps(Moreau *w, lag_problem *pb, double t, const double *y, double h, int steps, double *end,
+                     int *struck) {
+  size_t kept = kept_size(pb) * sizeof(double), held = held_size(pb) * sizeof(double);
+  double *copy = (double *)(void *)w + kept_size(pb), *hold = copy + kept_size(pb);
+  int rc = 0;
+  memcpy(copy, w, kept);
+  memcpy(hold, pb->hold, held);
+  memcpy(end, y, (size_t)pb->n * sizeof *y);
+  for (int k = 0; k < steps && rc == 0; k++) {
+    double from = t + k * h * pb->dir;
+    const lag_next_step next = {h * pb->dir, from + h * pb->dir, 0};
+    rc = advance(w, pb, from, &next, 0, end);
+    *struck += w->struck > 0;
+  }
+  memcpy(w, copy, kept);
+  memcpy(pb->hold, hold, held);
+  return rc;
+}
+
+/* Difference of one step of 2h and two of h, in parts of the tolerance; NaN where one fails. */
+static double pair_error(Moreau *w, lag_problem *pb, double t, const double *y, double h, int *struck, int *rc) {
+  const double rounding = 1e-13; /* of the impulses' sweeps */
+  double *one = (double *)(void *)w + 2 * kept_size(pb) + held_size(pb), *two = one + pb->n, most = 0;
+  *rc = try_steps(w, pb, t, y, 2 * h, 1, one, struck);
+  *rc = *rc ? *rc : try_steps(w, pb, t, y, h, 2, two, struck);
+  for (int i = 0; i < pb->n && *rc == 0; i++)
+    most = fmax(most, fabs(two[i] - one[i]) / ((pb->tol + rounding) * (pb->size[i] + fabs(y[i]))));
+  return *rc ? NAN : most;
+}
+
+/* Sets the step for the next two, which are not the same to the tolerance as one of twice the length if that would
+ * take steps far shorter than the longest, above all in impacts, whose error falls as the step alone. */
+static int find_step(Moreau *w, lag_problem *pb, double t, const double *y) {
+  const double least = 1e-6, least_struck = 0x1p-8; /* of the longest step */
+  if (w->calm > 0) w->step.h = w->calm;
+  w->calm = 0;
+  for (double before = w->step.h;; w->step.h /= 2) {
+    int struck = 0, rc;
+    double h = w->step.h, error = pair_error(w, pb, t, y, h, &struck, &rc);
+    if (error <= 1 || h <= least * w->most || (struck && rc == 0 && h <= least_struck * w->most)) {
+      if (rc) return rc;
+      w->calm = struck ? before : error < 0.1 ? fmin(2 * h, w->most) : 0;
+      return 0;
+    }
+    pb->rejected++;
+  }
+}
+
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
+  Moreau *w = work;
+  lag_next_step next;
+  int rc = w->most > 0 && w->half == 0.0 ? find_step(w, pb, *t, y) : 0;
+  (void)t_stop;
+  rc = rc ? rc : lag_fixed_step_begin(&w->step, pb, *t, &next);
+  rc = rc ? rc : advance(w, pb, *t, &next, 1, y);
+  if (rc) return rc;
+  w->half = w->most > 0 && w->half == 0.0;
   lag_fixed_step_end(&w->step, &next, t);
   return LAG_OK;
 }

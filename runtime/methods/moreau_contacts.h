@@ -9,6 +9,7 @@ int lag_moreau_gaps(lag_problem *pb, double t, const double *q, const double *v,
 int lag_moreau_matrices(lag_problem *pb, double t, const double *y, double *A, double *M);
 int lag_moreau_unit_change(lag_problem *pb, double t, const double *y, const double *g, double *d, double *effort);
 int lag_moreau_strike(lag_problem *pb, double t, const double *y, int i, double *v);
+int lag_moreau_frictions(lag_problem *pb, double t, const double *y, double *law);
 int lag_moreau_contact_fails(lag_problem *pb, double t, int i, const char *words);
 int lag_moreau_singular(lag_problem *pb, double t);
 
@@ -19,13 +20,15 @@ int lag_moreau_singular(lag_problem *pb, double t);
 #define LAG_GAP_MATRICES(t, y, u, A, M) lag_moreau_matrices(pb, t, y, A, M)
 #define LAG_UNIT_CHANGE(t, y, u, g, d, effort) lag_moreau_unit_change(pb, t, y, g, d, effort)
 #define LAG_STRIKE(t, y, u, i, v) lag_moreau_strike(pb, t, y, i, v)
-#define LAG_FRICTIONS(t, y, u, law) 0 /* those at the start of the run */
+#define LAG_FRICTIONS(t, y, u, law) lag_moreau_frictions(pb, t, y, law)
 #define LAG_CONTACT_FAILS(t, i, words) lag_moreau_contact_fails(pb, t, i, words)
 #define LAG_SINGULAR(t) lag_moreau_singular(pb, t)
 #include "kernels/contact_step.h"
 
 /* In pb->contact_room; law[2 contacts]: friction and tangential restitution. */
-lag_moreau_contacts lag_moreau_contacts_of(const lag_problem *pb, double *law);
+lag_moreau_contacts lag_moreau_contacts_of(lag_problem *pb, double *law);
+/* Finds the contacts that take part, as lag_contacts_find; of families first those that are near. */
+int lag_moreau_find(lag_problem *pb, lag_moreau_contacts *w, double t, double h, const double *mid, const double *end);
 /* Notes forces, counts and work of the step in pb; v0, v1: velocities at both ends, from: time from which on dense
  * output contains the impulses. */
 void lag_moreau_contacts_note(const lag_moreau_contacts *w, lag_problem *pb, double h, double from, const double *v0,

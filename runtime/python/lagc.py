@@ -185,12 +185,34 @@ def _address(a):
     return None if a is None else a.ctypes.data
 
 
-def _array(a, shape, what):
-    """`a` as doubles in C order, without a copy where it is so already; -1 in shape: any number."""
+def _numbers(a, what):
+    """`a` as doubles in C order, without a copy where it is so already."""
     try:
-        x = np.ascontiguousarray(a, dtype=np.float64)
+        return np.asarray(a, dtype=np.float64, order="C")
     except (TypeError, ValueError):
-        raise Error(f"{what} = {a!r:.60}: not an array of real numbers") from None
+        raise Error(f"{what} = {str(a):.60}: not an array of real numbers") from None
+
+
+def _spread(a, shape, what):
+    """The same, repeated to this shape."""
+    x = _numbers(a, what)
+    try:
+        return np.broadcast_to(x, shape)
+    except ValueError:
+        raise Error(f"{what} has the shape {x.shape}, not {shape}") from None
+
+
+def _vector(x, n):
+    """x[n], or one for each state, x[k, n]."""
+    x = _numbers(x, "x")
+    if not x.ndim or x.shape[-1] != n:
+        raise Error(f"x has the shape {x.shape}, not (any, {n})")
+    return x
+
+
+def _array(a, shape, what):
+    """The same, of this shape; -1: any number."""
+    x = np.ascontiguousarray(_numbers(a, what))
     if len(x.shape) != len(shape) or any(want not in (-1, got) for want, got in zip(shape, x.shape)):
         raise Error(f"{what} has the shape {x.shape}, not ({', '.join('any' if k < 0 else str(k) for k in shape)})")
     return x
@@ -482,11 +504,11 @@ class Model:
             self._simulation = key, _Simulation(s.lib, s, dict(key[2]))
         sim = self._simulation[1]
         s = sim.scene
-        y = np.ascontiguousarray(y, dtype=np.float64)
+        y = np.ascontiguousarray(_numbers(y, "y"))
         states = _array(y if y.ndim == 2 else y[None], (-1, s.n), "y")
         if a is not None:
-            a = _array(np.broadcast_to(np.asarray(a, dtype=np.float64), (len(states), len(s.items("q")))), (-1, -1), "a")
-        t = np.ascontiguousarray(np.broadcast_to(np.asarray(t, dtype=np.float64), (len(states),)))
+            a = _array(_spread(a, (len(states), len(s.items("q"))), "a"), (-1, -1), "a")
+        t = np.ascontiguousarray(_spread(t, (len(states),), "t"))
         rows, columns = ctypes.c_int(), ctypes.c_int()
         s.lib.lag_sim_quantity_size(sim.sim, quantity, ctypes.byref(rows), ctypes.byref(columns))
         flat = quantity in (_RATES, _OUTPUTS, _INVERSE)
@@ -515,11 +537,13 @@ class Model:
 
     def jvp(self, t, y, x, scene=None, values=None, **more):
         """J x with J = jac(t, y): of one state, or of each of many."""
-        return np.einsum("...ij,...j->...i", self.jac(t, y, scene, values, **more), np.asarray(x, dtype=np.float64))
+        jac = self.jac(t, y, scene, values, **more)
+        return np.einsum("...ij,...j->...i", jac, _vector(x, jac.shape[-1]))
 
     def vjp(self, t, y, x, scene=None, values=None, **more):
         """J^T x with J = jac(t, y)."""
-        return np.einsum("...ij,...i->...j", self.jac(t, y, scene, values, **more), np.asarray(x, dtype=np.float64))
+        jac = self.jac(t, y, scene, values, **more)
+        return np.einsum("...ij,...i->...j", jac, _vector(x, jac.shape[-2]))
 
     def outputs(self, t, y, scene=None, values=None, **more):
         """The scene's outputs at states, in SI units."""
@@ -611,24 +635,26 @@ class Model:
         columns = {k: _array(v, (-1,), k) for k, v in given.items() if not callable(v) and np.ndim(v)}
         times = _array(times, (-1,), "times")
         for k, v in [*columns.items(), ("y0", y0), ("p", p), ("times", times)]:
-            bad = [] if v is None else np.argwhere(~np.isfinite(np.asarray(v, dtype=np.float64)))
+            bad = [] if v is None else np.argwhere(~np.isfinite(_numbers(v, k)))
             if len(bad):
                 raise Error(f"{k}: {'row' if v is times else 'motion'} {bad[0][0]} has a value that is not finite")
         if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or threads < 1:
             raise Error(f"threads = {threads!r}: a number of threads, at least 1")
+        if not any(lanes is v for v in (None, True, False)) and lanes not in (0, 1, 4, 8):
+            raise Error(f"lanes = {lanes!r}: 4 or 8 motions at once, 0 or 1 for one at a time")
         until = times[-1] if len(times) else None
         simulate = scene, {k: v for k, v in given.items() if k not in columns}, {}, method, tol, step, until, False
         sim, chosen = self._simulate(*simulate)
         y0, p = self._starts(sim, columns, y0, p)
         count = len(y0) if y0 is not None else len(p) if p is not None else 1
-        if self._compiled and (count >= _LANES_FROM if lanes is None else lanes) and sim.lib.lag_sim_set_lanes(sim.sim, None) > 1:
+        if self._compiled and (count >= _LANES_FROM if lanes is None else int(lanes) > 1 or lanes is True) and sim.lib.lag_sim_set_lanes(sim.sim, None) > 1:
             sim, chosen = self._simulate(*simulate, "--lanes")
             sim.lib.lag_sim_set_lanes(sim.sim, sim.scene.program.handle)
         s = sim.scene
         shape = (count, len(times), s.n)
         if out is None:
             out = np.empty(shape)
-        elif out.shape != shape or out.dtype != np.float64 or not out.flags.c_contiguous or not out.flags.writeable:
+        elif not isinstance(out, np.ndarray) or out.shape != shape or out.dtype != np.float64 or not out.flags.c_contiguous or not out.flags.writeable:
             raise Error(f"out must be a writable array of doubles in C order of the shape {shape}")
         y0, p = (x if x is None or not np.may_share_memory(x, out) else x.copy() for x in (y0, p))
         times = times.copy() if np.may_share_memory(times, out) else times

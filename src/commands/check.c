@@ -6,6 +6,7 @@
 
 #include "symmetry/charges.h"
 #include "mech/discontinuity.h"
+#include "mech/far_error.h"
 #include "mech/mass_definiteness.h"
 #include "mech/switches.h"
 #include "claims/expect.h"
@@ -66,6 +67,15 @@ typedef struct {
   StrBuf *out;
 } CheckedPart;
 
+static void list_families(const Model *m, StrBuf *out) {
+  for (uint32_t i = 0; i < m->families.n; i++) {
+    const ContactFamily *f = &m->families.at[i];
+    sb_printf(out, "%s%s[%s%s%s]", i ? ", " : "contacts ", f->name, f->name_i, f->name_j ? ", " : "",
+              f->name_j ? f->name_j : "");
+  }
+  if (m->families.n) sb_printf(out, ": %s, which moreau follows\n", m->families.n > 1 ? "families" : "a family");
+}
+
 static void check_scene(Compiler *c, void *data) {
   const CheckedPart *x = data;
   StrBuf *out = x->out;
@@ -76,12 +86,14 @@ static void check_scene(Compiler *c, void *data) {
   if (!out->n) {
     show_facts(e, out);
     show_cyclic(e, "", out);
+    list_families(e->m, out);
     check_json_facts(c, e);
   }
   collect_units(c, e->m, x->found);
   switches_find(e);
   switches_warn(e);
   discontinuity_warn(e);
+  far_errors_note(e);
   int moves = mobility_show(e, out) && mass_regular_at_start(e);
   check_json_scene(c, "scene", name, e->m, moves);
   if (!moves) return;
@@ -98,6 +110,7 @@ static void check_unused_effect(Compiler *c, void *data) {
   switches_find(e);
   switches_warn(e);
   discontinuity_warn(e);
+  far_errors_note(e);
   collect_units(c, e->m, x->found);
   check_json_scene(c, "effect in no scene", name, e->m, 1);
   sb_printf(x->out, "effect %s (in no scene): ok\n", name);

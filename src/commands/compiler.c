@@ -108,9 +108,21 @@ Model *compiler_model(Compiler *c, const ModelChoice *choice) {
   return model_build(c->ast, &with_defines);
 }
 
+/* Whether the command knows families of contacts; reported. */
+static int takes_families(const Compiler *c, const Model *m) {
+  static const unsigned char knows[CMD_COUNT] = {
+      [CMD_CHECK] = 1, [CMD_VERIFY] = 1, [CMD_DERIVE] = 1, [CMD_NOETHER] = 1, [CMD_RUN] = 1, [CMD_PLOT] = 1,
+      [CMD_ANIMATE] = 1, [CMD_SWEEP] = 1, [CMD_BUILD] = 1, [CMD_EMIT] = 1};
+  if (!m->families.n || (knows[c->o.command] && !c->o.bytes)) return 1;
+  return diag_error(m->diags, m->families.at[0].span, "not yet: families of contacts in `lagc %s`%s" HELP
+                    "`lagc run`, `lagc build` and `lagc emit` have them; single contacts, `for i in 1..N { contact "
+                    "hit[i]: ... }`, stand in all programs", command_find(c->o.command)->name,
+                    c->o.bytes ? " --bytes" : "");
+}
+
 Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {
   Model *m = compiler_model(c, choice);
-  if (!m) return NULL;
+  if (!m || !takes_families(c, m)) return NULL;
   StrBuf listing = strbuf(c->arena);
   Eqns *e = equations_of(m);
   if (e && !choice->bare) mass_warn_nonpositive(e); /* claims hold for all values of parameters */
@@ -186,8 +198,18 @@ static void warn_of_actions(const Eqns *e) {
       }
 }
 
+/* Notes that sums over neighbours test all pairs in headers and FMUs, which keep no lists. */
+static void note_pairs(const Eqns *e) {
+  const Model *m = e->m;
+  for (uint32_t i = 0; i < m->ast->nears.n && m->sums.n; i++)
+    if (ast_expr(m->ast, m->ast->nears.at[i].sum)->kind == AST_SUM)
+      diag_note(m->diags, m->ast->nears.at[i].span, "all pairs are tested here, in a time that grows as N^2" HELP
+                "programs of `lagc run`, `lagc build` and `lagc emit` keep lists of neighbours");
+}
+
 ProgramSet *compiler_lower_embedded(Compiler *c, Eqns *e) {
   constraints_keep_none(e);
+  note_pairs(e);
   warn_of_actions(e);
   ProgramSet *u = compiler_lower_scene(c, e, 0);
   return u && bake_start(c, e, u) ? u : NULL;

@@ -81,11 +81,23 @@ static unsigned required_by_measures(const Eqns *e) {
   return found ? WANT_LINEAR : 0u;
 }
 
+/* Whether --fit names a network of the model: parameters V_w1[1,1], ... */
+static int trains_network(const Eqns *e, const Options *o) {
+  const char *names = o->command == CMD_FIT ? options_passed(o, "--fit") : NULL;
+  int found = 0;
+  for (size_t n; names && *names && !found; names += n + (names[n] == ',')) {
+    n = strcspn(names, ",");
+    const char *weight = arena_printf(e->m->arena, "%.*s_w1[1,1]", (int)n, names);
+    for (uint32_t i = 0; i < e->m->params.n; i++) found |= strcmp(e->m->params.at[i].name, weight) == 0;
+  }
+  return found;
+}
+
 /* Flags of --with, and of commands that differentiate. */
-static unsigned required_by_words(const Options *o) {
+static unsigned required_by_words(const Eqns *e, const Options *o) {
   int all = o->command == CMD_LINEARIZE || (o->with && strcmp(o->with, "derivatives") == 0);
   if (all) return WANT_SENSITIVITY | WANT_INVERSE | WANT_ADJOINT;
-  if (o->gradient.n) return WANT_SENSITIVITY | WANT_ADJOINT;
+  if (o->gradient.n || trains_network(e, o)) return WANT_SENSITIVITY | WANT_ADJOINT;
   if (o->command == CMD_FIT || o->command == CMD_DESIGN || options_passed(o, "--sensitivity")) return WANT_SENSITIVITY;
   return !o->with ? 0u : strcmp(o->with, "sensitivities") == 0 ? WANT_SENSITIVITY : WANT_LINEAR;
 }
@@ -109,6 +121,6 @@ unsigned derivatives_required(const Eqns *e, const Options *o) {
                    required_by_choice(e, o) |
                    (o->command == CMD_FMU             ? fmu_wants()
                     : o->command == CMD_HEADER        ? WANT_HELD | header_wants(o->with) | header_wants(o->target)
-                                                      : required_by_words(o) | required_by_measures(e));
+                                                      : required_by_words(e, o) | required_by_measures(e));
   return o->resume ? wants | required_by_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

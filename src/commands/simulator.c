@@ -13,6 +13,7 @@
 #include "ir/program_set.h"
 #include "lower/lower.h"
 #include "mech/discontinuity.h"
+#include "mech/far_error.h"
 #include "mech/switches.h"
 #include "model/model.h"
 #include "toolchain/simulator_cache.h"
@@ -158,7 +159,7 @@ static int tell_variant(Compiler *c) {
 /* Adds a scene to a unit that accepts it, or to one of its own (apart: always). */
 static void lower_scene(Compiler *c, Eqns *e, int runs, int apart, Units *units, Lowereds *all) {
   switches_find(e);
-  if (runs) switches_warn(e), discontinuity_warn(e);
+  if (runs) switches_warn(e), discontinuity_warn(e), far_errors_note(e);
   ProgramSet *fresh = compiler_unit_head(c, e), *home = NULL;
   for (uint32_t k = 0; k < units->n && !home && !apart; k++)
     if (unit_accepts_scenes(units->at[k], fresh)) home = units->at[k];

@@ -44,13 +44,17 @@ static const char *float_text(Arena *a, double x) {
   return arena_strdup(a, text);
 }
 
-const char *c_number(Arena *a, const char *prefix, Num n) {
+const char *c_number_by(Arena *a, const char *macro, Num n) {
   const char *minus = num_sign(n) < 0 ? "-" : "";
   n = num_abs(n);
-  if (!num_is_exact(n)) return arena_printf(a, "%s%s_C(%s)", minus, prefix, float_text(a, n.approx));
+  if (!num_is_exact(n)) return arena_printf(a, "%s%s(%s)", minus, macro, float_text(a, n.approx));
   const char *decimal = finite_decimal(a, n);
-  if (decimal) return arena_printf(a, "%s%s_C(%s)", minus, prefix, without_zeros(a, decimal));
-  return arena_printf(a, "%s%s_C(%lld.0)/%s_C(%lld.0)", minus, prefix, (long long)n.num, prefix, (long long)n.den);
+  if (decimal) return arena_printf(a, "%s%s(%s)", minus, macro, without_zeros(a, decimal));
+  return arena_printf(a, "%s%s(%lld.0)/%s(%lld.0)", minus, macro, (long long)n.num, macro, (long long)n.den);
+}
+
+const char *c_number(Arena *a, const char *prefix, Num n) {
+  return c_number_by(a, arena_printf(a, "%s_C", prefix), n);
 }
 
 const char *c_string(Arena *a, const char *s) {

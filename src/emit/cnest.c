@@ -135,6 +135,35 @@ static void find_neighbours(Nesting *x, const Writer *around) {
                                sb_text(&side)));
 }
 
+/* --- trees --- */
+
+static const char *numbers_text(Arena *a, const int64_t *x, uint32_t n) {
+  StrBuf out = strbuf(a);
+  for (uint32_t k = 0; k < n; k++) sb_printf(&out, "%s%lld", k ? ", " : "", (long long)x[k]);
+  return sb_text(&out);
+}
+
+/* The sums by a tree. */
+static void write_tree(Writer *w, const Nest *n) {
+  const IrFar *far = &n->far;
+  const char *tree = cnames_take(&w->names, "tree"), *value[3];
+  for (int k = 0; k < 3; k++) value[k] = cwriter_operand(w, n->outer[far->numbers[k]]).text;
+  cwriter_line(w, "{");
+  w->indent += 2;
+  cwriter_line(w, arena_printf(w->a, "static _Thread_local double %s_x[LAG_TREE_NUMBERS(%u)];", tree, far->members));
+  cwriter_line(w, arena_printf(w->a, "static _Thread_local int %s_of[LAG_TREE_INTS(%u)];", tree, far->members));
+  cwriter_line(w, arena_printf(w->a, "lag_tree %s = {.parts = %u, .step = %lld, .first = {%s}, .energy = %lld, "
+                                     ".slope = {%s}, .by = %lld};",
+                               tree, far->n, (long long)far->step, numbers_text(w->a, far->first, far->n),
+                               (long long)far->energy, numbers_text(w->a, far->slope, far->n), (long long)far->by));
+  cwriter_line(w, arena_printf(w->a, "lag_tree_open(&%s, %u, %s_x, %s_of);", tree, far->members, tree, tree));
+  cwriter_line(w, arena_printf(w->a, "lag_tree_sum(&%s, %s, %s + %u, (const %s_REAL[]){%s, %s, %s}, %s);", tree,
+                               cwriter_array(w, ARR_Q), w->cells, far->charge, w->style->prefix, value[0], value[1],
+                               value[2], w->cells));
+  w->indent -= 2;
+  cwriter_line(w, "}");
+}
+
 /* --- the loops --- */
 
 static void open_loop(Writer *w, const char *counter, const char *from, const char *end) {
@@ -214,6 +243,11 @@ static const Prog *named_by_stems(const Writer *w, const Prog *p) {
 
 void cnest_write(Writer *w, const Ins *i) {
   const Nest *n = &w->p->nests.at[i->index];
+  if (n->far.n && !w->style->params) {
+    cwriter_flush_title(w);
+    write_tree(w, n);
+    return;
+  }
   Nesting x = {.n = n, .body = *w, .i = w->row, .j = w->turn};
   x.body.p = named_by_stems(w, n->body);
   x.body.uses = prog_uses(n->body);

@@ -49,3 +49,4 @@ const char *comment_text(Arena *a, const char *s);
 
 /* A number as a C constant of type PREFIX_REAL; exact rationals are exact in every precision. */
 const char *c_number(Arena *a, const char *prefix, Num n);
+const char *c_number_by(Arena *a, const char *macro, Num n); /* as an argument of this macro */

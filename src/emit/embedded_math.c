@@ -43,14 +43,20 @@ static int calls_own(const ProgramSet *u) {
 /* Whether its linear systems are large enough for a band: LAG_BAND_LEAST of lag_kkt.h. */
 static int has_band(const ProgramSet *u) { return u->q.n + u->constraints.of.n >= 62; }
 
-/* Whether a sum runs over lists of neighbours; headers have none. */
-static int has_near(const MathText *m) {
+/* Whether a sum runs over lists of neighbours (1), or is taken by a tree (2); headers have none. */
+static int listed_sums(const MathText *m) {
   ProgList all = program_set_programs(m->u);
   int some = 0;
   for (uint32_t i = 0; i < all.n; i++)
-    for (uint32_t k = 0; k < all.at[i]->nests.n; k++) some |= all.at[i]->nests.at[k].near.n > 0;
-  return some && strcmp(m->prefix, "LAG") == 0;
+    for (uint32_t k = 0; k < all.at[i]->nests.n; k++) {
+      const Nest *n = &all.at[i]->nests.at[k];
+      some |= (n->near.n ? 1 : 0) | (n->far.n ? 2 : 0);
+    }
+  return strcmp(m->prefix, "LAG") == 0 ? some : 0;
 }
+
+static int has_near(const MathText *m) { return (listed_sums(m) & 1) != 0; }
+static int has_tree(const MathText *m) { return (listed_sums(m) & 2) != 0; }
 
 /* Bit 0: some input is a curve by cubics, bit 1: by quintics. */
 static unsigned curves_of(const ProgramSet *u) {
@@ -70,7 +76,8 @@ static void sections(const MathText *m, int front, StrBuf *out) {
   } rows[] = {{"lanes", !front}, {"own", own}, {"libm", 1}, {"sincos", own && calls_sincos(u)},
               {"exp", own && unit_calls(u, "exp")}, {"log", own && unit_calls(u, "log")}, {"solver", m->solver},
               {"numbers", kkt}, {"band", kkt && has_band(u)}, {"kkt", kkt}, {"listed", kkt && has_band(u)},
-              {"near", has_near(m)}, {"interval", curves != 0}, {"cubic", curves & 1}, {"quintic", curves & 2}};
+              {"near", has_near(m)}, {"tree", has_tree(m)},
+              {"interval", curves != 0}, {"cubic", curves & 1}, {"quintic", curves & 2}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     const char *name = front ? arena_printf(out->arena, "%s: front", rows[i].name) : rows[i].name;
     if (rows[i].needed) embedded_section(name, m->prefix, m->lower, out);
@@ -109,6 +116,7 @@ void math_of_model(const MathText *m, int alone, StrBuf *out) {
     if (kkt && !has_band(u)) sb_puts(out, "#define LAG_NO_BAND 1 /* so few unknowns have none */\n");
     sb_puts(out, calls_own(u) ? "#include \"lag_math.h\"\n" : "#include \"lag_lanes.h\"\n");
     if (m->solver || curves_of(u) || has_near(m)) sb_puts(out, "#include \"lag_support.h\"\n");
+    if (has_tree(m)) sb_puts(out, "#include \"lag_tree.h\"\n");
     if (kkt) sb_puts(out, "#include \"lag_kkt.h\"\n");
   }
   exp_and_log_as_lanes(u, out);

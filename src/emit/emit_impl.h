@@ -27,6 +27,10 @@ const char *const *model_rows_names(const ProgramSet *u);
 /* Appends the names of the bits that are set, or 0. */
 void model_flags(unsigned flags, const char *const *names, uint32_t n, StrBuf *out);
 
+/* emit_model.c: a table of positions. emit_families.c: families of contacts. */
+void emit_entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out);
+void emit_families(const ModelFile *f);
+
 /* model_struct.c: appends the const lag_model called NAME, and the tables that it names. */
 void emit_model_struct(const ProgramSet *u, const char *name, const char *digest, StrBuf *out);
 

@@ -57,7 +57,7 @@ const char *model_id(Arena *a, const char *name) {
                                       "curves", "exact", "exact_of", "residuals", "matrices", "charge_values",
                                       "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws",
                                       "size_values", "size_table", "correct_positions",
-                                      "correct_velocities", "inverse_dynamics", "adjoint"};
+                                      "correct_velocities", "inverse_dynamics", "adjoint", "families"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -294,7 +294,7 @@ static void emit_inputs(const ModelFile *f) {
   cfunction(p, &st, &c, f->out);
 }
 
-static void entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out) {
+void emit_entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out) {
   enum { A_LINE = 10 };
   if (!n) return;
   sb_printf(out, "\nstatic const lag_entry %s[] = {", name);
@@ -327,7 +327,7 @@ static void emit_partials(const ModelFile *f, const Prog *p, const IrEntry *at, 
   state_function(f, p, arena_printf(f->a, "by_%s", by),
                  arena_printf(f->a, "The same, dr: each equation by the %s; M: %s.", by, op_count_text(p, f->a)), "a",
                  written);
-  entries(table, at, n, f->out);
+  emit_entries(table, at, n, f->out);
   sb_printf(f->out, "\nstatic const lag_partials %s = {%u, %s, by_%s};\n", arena_printf(f->a, "%s_partials", by), n,
             n ? table : "NULL", by);
 }
@@ -339,7 +339,7 @@ static void emit_adjoint(const ModelFile *f) {
                  arena_printf(f->a, "Reverse mode: products g^T dF/dy and by inputs and parameters: %s.",
                               op_count_text(u->adjoint, f->a)),
                  "ag", written);
-  entries("formula_table", u->formulas_at.at, u->formulas_at.n, f->out);
+  emit_entries("formula_table", u->formulas_at.at, u->formulas_at.n, f->out);
   sb_printf(f->out, "\nstatic const lag_adjoint adjoint_of = {%u, %s, adjoint};\n", u->formulas_at.n,
             u->formulas_at.n ? "formula_table" : "NULL");
 }
@@ -352,8 +352,8 @@ static void emit_linear(const ModelFile *f) {
       arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.",
                    op_count_text(u->linear, f->a));
   state_function(f, u->linear, "linearise", comment, "a", written);
-  entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
-  entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
+  emit_entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
+  emit_entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
   emit_jumps(f);
   int sensitive = (u->wants & WANT_SENSITIVITY) == WANT_SENSITIVITY, params = sensitive && u->by_params,
       inputs = sensitive && u->by_inputs;
@@ -428,8 +428,8 @@ static void emit_constraints(const ModelFile *f) {
     state_function(f, k->velocity, "correct_velocities", "The least change d of velocities with A d = g; force: M d.",
                    "g", change);
   constraint_table(f->u, f->out);
-  entries("jacobian_table", k->jacobian.at, k->jacobian.n, f->out);
-  entries("inertia_table", k->mass.at, k->mass.n, f->out);
+  emit_entries("jacobian_table", k->jacobian.at, k->jacobian.n, f->out);
+  emit_entries("inertia_table", k->mass.at, k->mass.n, f->out);
   sb_printf(f->out,
             "\nstatic const lag_constraints constraints = {\n  .n = %u, .nholonomic = %u, .of = constraint_table,\n",
             k->of.n, k->nkept);
@@ -485,6 +485,7 @@ static const char *emit_equations(const ModelFile *f) {
   emit_events(f);
   emit_inputs(f);
   emit_constraints(f);
+  emit_families(f);
   return digest_text(f->a, sb_text(f->out) + begin);
 }
 

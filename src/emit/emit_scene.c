@@ -42,6 +42,53 @@ static void emit_params(const ModelFile *f, const IrScene *s, const char *id) {
   sb_puts(f->out, f->u->nderived ? "  derive(NULL, p);\n}\n" : "}\n");
 }
 
+/* Whether a store is of a constant; *n: which. */
+static int is_constant(const Prog *p, const Store *x, Num *n) {
+  const Ins *i = &p->ins.at[x->slot];
+  *n = x->slot ? i->number : num_int(0);
+  return !x->slot || i->op == IR_CONST;
+}
+
+/* Number of stores from k on that are constants of neighbouring elements. */
+static uint32_t constants_from(const Prog *p, uint32_t k) {
+  const Store *x = p->stores.at + k;
+  uint32_t n = 0;
+  Num value;
+  while (k + n < p->stores.n && x[n].array == x[0].array && x[n].index == x[0].index + n &&
+         is_constant(p, &x[n], &value))
+    n++;
+  return n;
+}
+
+static void constant_table(const ModelFile *f, const Prog *p, const Store *x, uint32_t n, const char *to) {
+  enum { A_LINE = 6 };
+  sb_printf(f->out, "  static const LAG_LANE %s_%u[] = {", to, x->index);
+  for (uint32_t i = 0; i < n; i++) {
+    Num value;
+    is_constant(p, &x[i], &value);
+    sb_printf(f->out, "%s%s,", i % A_LINE ? " " : "\n    ", c_number_by(f->a, "LAG_NUMBER", value));
+  }
+  const char *first = comment_text(f->a, x->comment), *last = comment_text(f->a, x[n - 1].comment);
+  sb_printf(f->out, "\n  };\n  /* %s ... %s */\n", first, last);
+  const char *shift = x->index ? arena_printf(f->a, " + %u", x->index) : "";
+  sb_printf(f->out, "  for (int i = 0; i < %u; i++) %s[i%s] = LAG_C(0.0) + %s_%u[i];\n", n, to, shift, to, x->index);
+}
+
+/* Writes long runs of constants as tables, which C compilers read in linear time; returns the other stores. */
+static Prog start_tables(const ModelFile *f, const Prog *p, const char *const *written) {
+  enum { LONG = 1000 };
+  Prog rest = *p;
+  memset(&rest.stores, 0, sizeof rest.stores);
+  for (uint32_t k = 0; k < p->stores.n;) {
+    const Store *x = &p->stores.at[k];
+    uint32_t n = constants_from(p, k);
+    if (n >= LONG) constant_table(f, p, x, n, written[x->array]);
+    for (uint32_t i = 0; n < LONG && i < (n ? n : 1); i++) vec_push(f->a, &rest.stores, x[i]);
+    k += n ? n : 1;
+  }
+  return rest;
+}
+
 static void emit_start(const ModelFile *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"self", "p", "q", "v", "z", NULL}, *const written[] = {"q", "v", "z"};
   CStyle st = model_style(f, own, written);
@@ -52,7 +99,8 @@ static void emit_start(const ModelFile *f, const IrScene *s, const char *id) {
   if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
   if (f->u->z.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) z[i] = LAG_C(0.0);\n", f->u->z.n);
   st.prefer_short_code = 1;
-  cwrite_body(s->start, &st, f->a, f->out);
+  Prog rest = start_tables(f, s->start, written);
+  cwrite_body(&rest, &st, f->a, f->out);
   sb_puts(f->out, "}\n");
 }
 

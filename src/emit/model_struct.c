@@ -79,6 +79,7 @@ static void further_members(const ProgramSet *u, StrBuf *out) {
   if (u->inputs->tables.n) sb_puts(out, "  .ntables = sizeof curves / sizeof *curves, .tables = curves,\n");
   if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
+  if (u->families.n) sb_puts(out, "  .families = &families,\n");
   if (u->contact_laws) sb_puts(out, "  .contact_laws = contact_laws,\n");
   if (program_set_guides(u)) sb_printf(out, "  .nguides = %u, .guides = guide_table,\n", program_set_guides(u));
   if (u->sizes.n)

@@ -508,6 +508,15 @@ static void put_turn(Coder *w, StrBuf *out, const Ins *i) {
   put_word(out, op), put_word(out, a), put_word(out, i->b), put_word(out, i->c), put_word(out, number);
 }
 
+static void put_far(StrBuf *out, const IrFar *far) {
+  put_word(out, far->n);
+  if (!far->n) return;
+  put_word(out, far->members), put_word(out, far->charge);
+  put_signed(out, far->step), put_signed(out, far->by), put_signed(out, far->energy);
+  for (uint32_t k = 0; k < 3; k++) put_word(out, far->numbers[k]);
+  for (uint32_t k = 0; k < far->n; k++) put_signed(out, far->first[k]), put_signed(out, far->slope[k]);
+}
+
 static void put_nest(Coder *w, StrBuf *out, const Nest *n) {
   const Prog *body = n->body;
   int turns = nest_has_turns(n), rows = n->rows > 1;
@@ -530,6 +539,7 @@ static void put_nest(Coder *w, StrBuf *out, const Nest *n) {
   for (uint32_t k = 0; k < near->n; k++)
     put_word(out, near->at_i[k]), put_word(out, near->at_j[k]), put_word(out, near->boxed ? near->side[k] + 1 : 0);
   if (near->n) put_word(out, near->cut), put_word(out, body->stores.at[sums].slot);
+  put_far(out, &n->far);
   put_word(out, sums);
   for (uint32_t k = 0; k < sums; k++) {
     const Store *st = &body->stores.at[k];

@@ -108,6 +108,14 @@ typedef struct {
 } IrNear;
 enum { NEST_TEST = 2 };
 
+/* Of a nest that a tree sums, factor*c_i*c_j/sqrt(d^2 + soft) over all pairs of bodies: component c of body k is
+ * q[first[c] + step*k], its charge the sum charge + k. The nest adds to the sum `energy`, or derivatives by places to
+ * slope[c] + by*k; -1: it does not. numbers: positions in `outer` of factor, soft, opening angle. n 0: another nest. */
+typedef struct {
+  uint32_t n, members, charge, numbers[3];
+  int64_t first[3], step, slope[3], by, energy;
+} IrFar;
+
 /* Two loops that accumulate sums: for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1. Sums
  * (ARR_CELL) are 0 before the first nest. A sum that stays the same in all turns of the inner (or only) loop gets
  * their total at once, added up from 0.
@@ -122,6 +130,7 @@ typedef struct {
   const Slot *outer;    /* [nouter] values of the program that the nest is in */
   uint32_t n, nouter;
   IrNear near;
+  IrFar far;
   /* of a quantified sum, which is not written out anywhere: rows of its text, of which those without turns are left
    * out, and the number of the first; 0: of another nest */
   uint32_t text_rows, first_row;

@@ -15,6 +15,11 @@ ProgList program_set_programs(const ProgramSet *u) {
                                  u->by_params, u->adjoint, u->jumps, u->taylor ? u->taylor->first : NULL,
                                  u->taylor ? u->taylor->next : NULL};
   for (size_t i = 0; i < sizeof of_unit / sizeof *of_unit; i++) vec_push(u->arena, &all, of_unit[i]);
+  vec_push(u->arena, &all, u->family_inertia);
+  for (uint32_t i = 0; i < u->families.n; i++) {
+    vec_push(u->arena, &all, u->families.at[i].values);
+    vec_push(u->arena, &all, u->families.at[i].reach);
+  }
   for (uint32_t i = 0; i < u->events.n; i++) vec_push(u->arena, &all, u->events.at[i].action);
   for (uint32_t i = 0; i < u->scenes.n; i++) {
     const IrScene *s = &u->scenes.at[i];

@@ -202,6 +202,24 @@ typedef struct {
   int uses_time;
 } Series;
 
+/* A number that the text of a family reads; by row and turn, its index among coordinates or parameters. */
+typedef struct {
+  int64_t first, by_row, by_turn;
+} IrRead;
+
+/* Contacts with one text for all members: lag_contact_family of lag_model.h. */
+typedef struct {
+  const char *name;
+  uint32_t indices;
+  int64_t i0, j0, rows, skew, turns, more;
+  VEC(IrRead) coords, params;
+  uint32_t tangents;
+  const Prog *values; /* reads q, v by coords, z by params */
+  const Prog *reach;  /* cut and sides, of parameters; NULL: all members are looked at */
+  IrRead place[3];
+  uint32_t nplaces;
+} IrContactFamily;
+
 typedef struct {
   Arena *arena;
   const char *name, *doc, *source, *effects, *all_effects;
@@ -229,6 +247,9 @@ typedef struct {
   const Prog *contact_coefficients;
   IrConstraints constraints;
   VEC(IrContact) contacts;
+  VEC(IrContactFamily) families;
+  VEC(IrEntry) family_mass;
+  const Prog *family_inertia;   /* out 0: entries of M at family_mass; NULL: there are no families */
   const Prog *impact;           /* Newton's law of impact of one contact, see lower_impact; NULL: no contact strikes */
   unsigned wants;
   const Prog *variation, *second; /* NULL unless WANT_VARIATION */

@@ -172,6 +172,7 @@ static Loop best_rotation(const Search *f, Loop l) {
 static Loop longest_at(const Search *f, uint32_t begin) {
   Loop best = {.begin = begin, .period = 1};
   for (uint32_t period = 1; period <= LONGEST_PERIOD && begin + period < f->r->n; period++) {
+    if (equal_classes(f, begin, period) <= best.count * best.period) continue; /* too short a code to win */
     uint32_t turns = turns_at(f, begin, period);
     if (turns >= FEWEST_TURNS && turns * period > best.count * best.period + period)
       best = (Loop){.begin = begin, .period = period, .count = turns};

@@ -217,6 +217,12 @@ static Shares wanted_shares(const NestBuilder *b, const unsigned char *wanted, i
   return all;
 }
 
+/* How turns are found otherwise than in order. */
+typedef struct {
+  IrNear near;
+  IrFar far;
+} Listed;
+
 /* Leaves out the first and the last rows, which have no turns. sampled: the self-check takes a sample of the turns. */
 static void trim(Nest *n, int sampled) {
   uint32_t first = 0, end = n->rows;
@@ -230,30 +236,155 @@ static void trim(Nest *n, int sampled) {
   n->rows = end - first;
 }
 
+static uint64_t turns_of(const LoopRange *r) {
+  uint64_t n = 0;
+  for (uint32_t row = 0; row < r->rows; row++) n += (uint64_t)loop_turns(r, row);
+  return n;
+}
+
 /* Appends the nest; cell `least` is number `base` of the program's sums. */
-static Slot append_nest(NestBuilder *b, const Shares *shares, const IrNear *near, int64_t least, uint32_t base) {
+static Slot append_nest(NestBuilder *b, const Shares *shares, const Listed *x, int64_t least, uint32_t base) {
+  const IrNear *near = &x->near;
   Prog *p = b->l->p;
   const LoopRange *r = &b->s->range;
   for (uint32_t k = 0; k < shares->n; k++) {
-    const Share *x = &shares->at[k];
-    IrSubscript at = x->at;
+    const Share *share = &shares->at[k];
+    IrSubscript at = share->at;
     at.first += (int64_t)base - least;
     vec_push(p->arena, &b->at, at);
-    prog_store(b->body.p, (uint32_t)x->minus, b->at.n - 1, lower_slot(&b->body, x->value), "");
+    prog_store(b->body.p, (uint32_t)share->minus, b->at.n - 1, lower_slot(&b->body, share->value), "");
   }
   if (near->n) prog_store(b->body.p, NEST_TEST, 0, lower_slot(&b->body, b->s->near->test), "");
   const Prog *body = prog_product_cse(prog_factor(prog_tidy(b->body.p)));
-  Nest n = {.rows = r->rows, .count = (uint32_t)expr_sum_turns(b->l->g, b->nest), .skew = r->skew, .turns = r->turns,
+  Nest n = {.rows = r->rows, .count = (uint32_t)turns_of(r), .skew = r->skew, .turns = r->turns,
             .more = r->more, .body = body, .at = b->at.at, .outer = b->outer.at, .n = b->at.n, .nouter = b->outer.n,
-            .near = *near};
-  enum { NEIGHBOURS = 32 }; /* of a row, for counts of operations */
+            .near = *near, .far = x->far};
+  enum { NEIGHBOURS = 32, CELLS = 300 }; /* of a row, for counts of operations */
   if (near->n) n.count = NEIGHBOURS * r->rows;
+  if (x->far.n && n.count / CELLS > r->rows) n.count = CELLS * r->rows;
   trim(&n, b->s->sampled);
   vec_push(p->arena, &p->nests, n);
   Slot before = 0;
   for (Slot s = p->ins.n; s-- > 1 && !before;)
     if (p->ins.at[s].op == IR_NEST) before = s;
   return prog_ins(p, (Ins){.op = IR_NEST, .a = before, .index = p->nests.n - 1});
+}
+
+/* --- trees --- */
+
+static const NestRead *read_symbol(const NestBuilder *b, Expr symbol) {
+  for (uint32_t k = 0; k < b->s->nreads; k++)
+    if (expr_symbol(b->l->g, b->s->reads[k].symbol)->node == symbol) return &b->s->reads[k];
+  return NULL;
+}
+
+static int same_subscript(const Subscript *x, const Subscript *y) {
+  return x->first == y->first && x->by_row == y->by_row && x->by_turn == y->by_turn;
+}
+
+/* Component of the place by which a share is the derivative of the sum; -1: it is none. */
+static int place_of_share(const NestBuilder *b, const NestShare *x) {
+  const FarForm *far = b->s->far;
+  for (uint32_t k = 0; k < 2 * far->n; k++) {
+    Expr place = k < far->n ? far->at_i[k] : far->at_j[k - far->n];
+    const NestRead *r = read_symbol(b, place);
+    if (r && same_subscript(&r->at, &x->at) && expr_diff(b->l->g, far->term, r->symbol) == x->value)
+      return (int)(k % far->n);
+  }
+  return -1;
+}
+
+/* The bodies as rows, one turn each, and what their charge reads. */
+static SumNest rows_of_bodies(const NestBuilder *b) {
+  const FarForm *far = b->s->far;
+  SumNest s = *b->s;
+  NestRead *reads = ARENA_ARRAY(b->l->p->arena, NestRead, s.nreads + 1);
+  s.reads = reads;
+  s.nreads = 0;
+  for (uint32_t k = 0; k < b->s->nreads; k++) {
+    NestRead r = b->s->reads[k];
+    if (!expr_contains_sym(b->l->g, far->charge, r.symbol)) continue;
+    r.at.first += far->first * r.at.by_row;
+    for (uint32_t n = 0; n < r.nindices; n++) r.index[n].first += far->first * r.index[n].by_row;
+    reads[s.nreads++] = r;
+  }
+  s.range = (LoopRange){.rows = (uint32_t)far->members, .turns = 1};
+  s.near = NULL;
+  s.far = NULL;
+  s.sampled = 0;
+  return s;
+}
+
+/* The charges as sums of their own; 0: they are no arrays. */
+static int lower_far_charges(NestBuilder *rows, Expr charge, uint32_t *first) {
+  Lower *l = rows->l;
+  Shares shares = {0};
+  vec_push(l->p->arena, &shares, ((Share){charge, {.by_row = 1}, 0}));
+  rows->body = lower_new(l->e);
+  load_constants(rows, &charge, 1);
+  if (!load_reads(rows)) return 0;
+  lower_roots(&rows->body, &charge, 1);
+  *first = l->p->cells;
+  l->p->cells += rows->s->range.rows;
+  append_nest(rows, &shares, &(const Listed){0}, 0, *first);
+  return 1;
+}
+
+/* Elements of q that are component c of the bodies, and the sums that take derivatives by it. */
+static int far_place(NestBuilder *b, const NestBuilder *rows, uint32_t c, IrFar *far) {
+  const NestRead *r = read_symbol(b, b->s->far->at_i[c]);
+  Ins load;
+  IrSubscript index;
+  if (!r) return 0;
+  Subscript at = r->at;
+  at.first += b->s->far->first * at.by_row;
+  if (at.by_turn || !array_index(rows, &at, &load, &index) || load.array != ARR_Q) return 0;
+  if (c && (index.by_row != far->step || at.by_row != far->by)) return 0;
+  far->step = index.by_row;
+  far->by = at.by_row;
+  far->first[c] = index.first;
+  far->slope[c] = at.first;
+  return far->step > 0 && far->by > 0;
+}
+
+/* The parts of a nest that a tree sums; cells numbered as in the sum, and their range widened to all bodies. 0: it adds
+ * up something else. */
+static int find_far(NestBuilder *b, const unsigned char *wanted, IrFar *far, int64_t *least, int64_t *most) {
+  const FarForm *form = b->s->far;
+  SumNest s = rows_of_bodies(b);
+  NestBuilder rows = {.l = b->l, .s = &s, .nest = b->nest};
+  int some[3] = {0};
+  far->energy = b->s->ncells == 1 ? 0 : -1;
+  for (uint32_t k = 0; k < b->s->nshares; k++) {
+    const NestShare *x = &b->s->shares[k];
+    int64_t lo, hi, any = 0, step = subscript_step(&x->at);
+    if (!loop_extent(&b->s->range, &x->at, &lo, &hi)) continue;
+    for (int64_t c = lo; c <= hi && !any; c += step ? step : 1) any = wanted[c];
+    int place = !any ? -1 : far->energy == 0 ? 0 : place_of_share(b, x);
+    if (any && (place < 0 || (far->energy == 0 && x->value != form->term))) return 0;
+    if (any) some[place] = 1;
+  }
+  for (uint32_t c = 0; c < form->n; c++) {
+    if (!far_place(b, &rows, c, far)) return 0;
+    if (far->energy == 0 || !some[c]) far->slope[c] = -1;
+    if (far->slope[c] < 0) continue;
+    int64_t last = far->slope[c] + far->by * (form->members - 1);
+    *least = far->slope[c] < *least ? far->slope[c] : *least;
+    *most = last > *most ? last : *most;
+  }
+  if (!lower_far_charges(&rows, form->charge, &far->charge)) return 0;
+  far->numbers[0] = push_outer(b, form->factor);
+  far->numbers[1] = push_outer(b, form->soft);
+  far->numbers[2] = push_outer(b, form->theta);
+  far->members = (uint32_t)form->members;
+  far->n = form->n;
+  return 1;
+}
+
+/* Cells of the sum as cells of the program. */
+static void number_cells(IrFar *far, int64_t by) {
+  for (uint32_t c = 0; c < far->n; c++) far->slope[c] += far->slope[c] < 0 ? 0 : by;
+  far->energy += far->energy < 0 ? 0 : by;
 }
 
 /* The cells as sums in a nest of loops; 0: their arguments are no arrays. */
@@ -267,20 +398,22 @@ static int lower_as_nest(NestBuilder *b, const Expr *cells, uint32_t n) {
   b->body = lower_new(l->e);
   Expr *values = ARENA_ARRAY(a, Expr, shares.n + 1), *inside = ARENA_ARRAY(a, Expr, shares.n + 1);
   uint32_t nvalues = shares.n;
-  IrNear near = {0};
+  Listed listed = {0};
   for (uint32_t k = 0; k < shares.n; k++) values[k] = shares.at[k].value;
-  if (b->s->near && shares.n && split_test(b, values, shares.n, inside) && find_places(b, &near)) {
+  if (b->s->near && shares.n && split_test(b, values, shares.n, inside) && find_places(b, &listed.near)) {
     for (uint32_t k = 0; k < shares.n; k++) shares.at[k].value = values[k] = inside[k];
     values[nvalues++] = b->s->near->test;
   } else {
-    near.n = 0;
+    listed.near.n = 0;
   }
+  if (b->s->far && shares.n && !find_far(b, wanted, &listed.far, &least, &most)) listed.far.n = 0;
   load_constants(b, values, nvalues);
   if (!load_reads(b)) return 0;
   lower_roots(&b->body, values, nvalues);
   uint32_t base = l->p->cells;
   l->p->cells += (uint32_t)(most - least + 1);
-  Slot nest = shares.n ? append_nest(b, &shares, &near, least, base) : 0;
+  number_cells(&listed.far, (int64_t)base - least);
+  Slot nest = shares.n ? append_nest(b, &shares, &listed, least, base) : 0;
   for (uint32_t k = 0; k < n; k++) {
     int64_t c = expr_cell_number(l->g, cells[k]);
     Ins load = {.op = IR_LOAD, .array = ARR_CELL, .a = nest, .index = (uint32_t)(base + c - least), .name = "sum"};

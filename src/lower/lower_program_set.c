@@ -226,6 +226,7 @@ void unit_add_programs(ProgramSet *u, const Eqns *e) {
   add_events(u, e);
   add_constraints(u, e);
   add_contacts(u, e);
+  lower_families(u, e);
   add_charges(u, e);
   add_switches(u, e);
 }

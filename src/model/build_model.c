@@ -295,7 +295,7 @@ static void apply_statement(Builder *b, const AstStmt *st, Name effect, void *da
     case STMT_LET: case STMT_FUNCTION: case STMT_EXPECT: case STMT_OBSERVE: /* once L is known: build() */
     case STMT_DRAW: /* scene_build() */
     case STMT_COORD: case STMT_STATE: case STMT_PARAM: case STMT_CONST:
-    case STMT_SYMMETRY: case STMT_CANONICAL: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE:
+    case STMT_SYMMETRY: case STMT_CANONICAL: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE: case STMT_NETWORK:
     case STMT_MAP: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
     case STMT_START: case STMT_EXACT: case STMT_SET: case STMT_USE: case STMT_SPAN: case STMT_METHOD:
     case STMT_TOLERANCE: case STMT_OUTPUT: case STMT_MONITOR: case STMT_MEASURE: case STMT_LIKE: case STMT_STOP: return;
@@ -537,6 +537,7 @@ static Builder *build_whole(Ast *ast, const ModelChoice *choice, InputRates *rat
   if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
   check_sizes(b);
+  check_contact_families(b);
   command_values(b, choice->values, choice->nvalues);
   return b;
 }

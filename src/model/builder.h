@@ -393,6 +393,7 @@ void add_size(Builder *b, Expr value, const char *what, Span span, int part);
 void add_static_limit(Builder *b, Expr limit, Expr friction, Span span);
 /* The cut-off of a sum over neighbours, at least 0, and at most half of each side of the box. */
 void add_near_cut(Builder *b, Expr cut, Span span);
+void add_opening_angle(Builder *b, Expr theta, Span span);
 void add_near_box(Builder *b, Expr side, Expr cut, Span span);
 /* Errors where the values of the scene make sizes of friction and contacts negative, or too large. */
 void check_sizes(Builder *b);
@@ -495,6 +496,10 @@ Value action_of_momentum(Builder *b, const AstStmt *st, Name effect);
 /* constraint.c: adds a constraint statement, or a contact statement, to the model. */
 void add_constraint(Builder *b, const AstStmt *st, Name effect);
 void add_contact(Builder *b, const AstStmt *st, Name effect);
+/* contact_family.c: a contact with ranges in its index; whether it is one; refusals where moreau does not follow. */
+int is_contact_family(const Builder *b, const AstStmt *st);
+void add_contact_family(Builder *b, const AstStmt *st, Name effect);
+void check_contact_families(Builder *b);
 /* guide.c: the constraint of a guide; its friction, once all constraints are known. */
 void add_guide(Builder *b, const AstStmt *st, Name effect);
 void add_guide_friction(Builder *b, const AstStmt *st, Name effect, void *data);

@@ -67,7 +67,7 @@ static uint32_t add_named_event(Builder *b, Name name, const char *suffix, Expr 
   return b->m->events.n - 1;
 }
 
-static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *gap, const Value *e) {
+int check_contact(Builder *b, const AstStmt *st, Name name, const Value *gap, const Value *e) {
   Span span = ast_expr(b->ast, st->lhs)->span, bounce = ast_expr(b->ast, st->rhs)->span;
   if (!need_number(b, span, gap->n) || !need_number(b, bounce, e->n)) return 0;
   unsigned kinds = expr_kinds(b->g, gap->e);
@@ -94,7 +94,7 @@ static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *
 static const char *kind_of(const AstStmt *st) { return st->kind == STMT_GUIDE ? "guide" : "contact"; }
 
 /* A pure number made of parameters, at least 0 and at most `most`; what: its name. */
-static int check_coefficient(Builder *b, const AstStmt *st, AstId id, const Value *x, double most, const char *what) {
+int check_pure_number(Builder *b, const AstStmt *st, AstId id, const Value *x, double most, const char *what) {
   Span span = ast_expr(b->ast, id)->span;
   if (!x->e) return 0;
   if (!need_number(b, span, x->n)) return 0;
@@ -157,7 +157,7 @@ void push_tangent(Builder *b, const AstStmt *st, Name owner, Contact t, Expr pre
   "e_t` or `law = poisson`"
 
 /* Reports options that stand twice, or do not go together. */
-static int check_options(Builder *b, const AstStmt *st) {
+int check_contact_options(Builder *b, const AstStmt *st) {
   for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next) {
     const AstExpr *x = ast_expr(b->ast, i);
     if (ast_option_value(b->ast, st, x->name) != x->args)
@@ -195,7 +195,7 @@ Expr coefficient(Builder *b, const AstStmt *st, Name effect, const char *word, d
   AstId id = ast_option_value(b->ast, st, word);
   if (!id) return other;
   Value x = resolve(b, id, IN_DYNAMICS, effect);
-  return check_coefficient(b, st, id, &x, most, what) ? x.e : 0;
+  return check_pure_number(b, st, id, &x, most, what) ? x.e : 0;
 }
 
 Expr static_coefficient(Builder *b, const AstStmt *st, Name effect, Expr friction) {
@@ -209,7 +209,7 @@ Expr static_coefficient(Builder *b, const AstStmt *st, Name effect, Expr frictio
 static void add_tangents(Builder *b, const AstStmt *st, Name effect, const Contact *c) {
   static const char *const components[] = {".x", ".y"};
   Model *m = b->m;
-  if (!check_options(b, st)) return;
+  if (!check_contact_options(b, st)) return;
   AstId v = ast_option_value(b->ast, st, "slip");
   Contact t = {.is_tangent = 1, .law = impact_law(b, st)};
   t.friction = coefficient(b, st, effect, "friction", HUGE_VAL, "a coefficient of friction", 0);
@@ -254,6 +254,10 @@ static void add_refused(Builder *b, const AstStmt *st, Name name, Name effect) {
 
 void add_contact(Builder *b, const AstStmt *st, Name effect) {
   IndexRange r = {0};
+  if (is_contact_family(b, st)) {
+    add_contact_family(b, st, effect);
+    return;
+  }
   if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
   Name name = member_name(b->ast, st->name, r.lo, r.n);
   check_name_is_new(b, "constraint", name, effect, st->name_span);

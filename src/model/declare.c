@@ -249,7 +249,7 @@ void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_CANONICAL:
     case STMT_FOR:
     case STMT_MODEL:
-    case STMT_INCLUDE:
+    case STMT_INCLUDE: case STMT_NETWORK:
     case STMT_MOMENTUM:
     case STMT_HAMILTONIAN:
     case STMT_LAGRANGIAN:

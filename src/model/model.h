@@ -304,6 +304,29 @@ typedef struct {
   int guessed;     /* the text has no `draw` */
 } Scene;
 
+/* What the text of a family reads: a coordinate (and its rate), or a parameter; its index, by row and turn. */
+typedef struct {
+  SymId symbol;
+  Subscript at;
+} FamilyRead;
+
+/* Contacts with one text for all members, in the symbols of one of them, in rows i = i0 + row and turns j = j0 + turn;
+ * name_j NULL: one index. cut 0: all are looked at, else those whose places, by component, may be as near. */
+typedef struct {
+  Name name, name_i, name_j;
+  Span span;
+  const struct AstStmt *stmt;
+  Name effect;
+  LoopRange range;
+  int64_t i0, j0;
+  VEC(FamilyRead) coords, params;
+  Expr gap, restitution, friction, tangential, slip[2];
+  uint32_t tangents;
+  Expr cut, side[3];
+  Subscript place[3]; /* coordinates of the member of a turn */
+  uint32_t nplaces;
+} ContactFamily;
+
 /* A sum that is not written out. beside: its outer terms have more than the inner sum; sampled: the self-check takes a
  * sample of its turns. */
 typedef struct {
@@ -345,6 +368,7 @@ typedef struct {
   VEC(Grip) grips;
   VEC(Constraint) constraints;
   VEC(Contact) contacts;
+  VEC(ContactFamily) families;
   VEC(ModelSize) sizes; /* of friction and contacts */
   VEC(Symmetry) symmetries;
   VEC(Expect) expects;

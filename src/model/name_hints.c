@@ -258,6 +258,8 @@ void report_no_member(Builder *b, Span span, Name effect, Name name) {
     if (near) diag_help(b->diags, "did you mean `%s.%s`?", near, name);
     else if (has_word("csv txt dat tsv npy", name))
       diag_help(b->diags, "the name of a file stands in quotes: `\"%s.%s\"`", effect, name);
+    else if (strcmp(effect, "lambda") == 0)
+      diag_help(b->diags, "the force of a constraint or contact is `lambda(%s)`", name);
     else if (!advise_momentum(b, effect)) diag_help(b->diags, "the model has no effect `%s`", effect);
     return;
   }

@@ -49,6 +49,13 @@ void add_near_box(Builder *b, Expr side, Expr cut, Span span) {
   add_other_size(b, rest, "the box of `near` less twice its cut-off has a length", mistake, span);
 }
 
+void add_opening_angle(Builder *b, Expr theta, Span span) {
+  static const char mistake[] = "the opening angle of a tree is from 0, the direct sum, to 1" HELP
+                                "0.5 is usual; smaller ones are more accurate, and take longer";
+  add_other_size(b, theta, "the opening angle of the tree", mistake, span);
+  add_other_size(b, expr_sub(b->g, expr_int(b->g, 1), theta), "1 less the opening angle of the tree", mistake, span);
+}
+
 /* The product of the factors with negative exponents, inverted. */
 static Expr denominator_of(ExprGraph *g, Expr e) {
   Expr of = expr_int(g, 1);

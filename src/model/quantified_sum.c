@@ -14,7 +14,7 @@
 static int64_t at_pair(Affine x, const int64_t *pair) { return x.first + x.by_i * pair[0] + x.by_j * pair[1]; }
 
 /* Whether families read at different indices are read at different members for this pair. */
-static int tells_apart(const struct Quantified *q, const int64_t *pair) {
+int quantified_tells_apart(const struct Quantified *q, const int64_t *pair) {
   for (uint32_t x = 0; x < q->reads.n; x++)
     for (uint32_t y = 0; y < x; y++) {
       const Read *r = &q->reads.at[x], *s = &q->reads.at[y];
@@ -37,7 +37,7 @@ static int find_pairs(struct Quantified *q, Arena *arena) {
     int64_t i = q->lo + row, from = q->from.first + q->from.by_i * i, n = loop_turns(&q->range, row);
     for (int64_t k = 0; k < n && k < TRIED; k++) {
       int64_t pair[2] = {i, from + k};
-      if (!tells_apart(q, pair)) continue;
+      if (!quantified_tells_apart(q, pair)) continue;
       vec_push(arena, &at, pair[0]);
       vec_push(arena, &at, pair[1]);
     }
@@ -91,7 +91,7 @@ static uint32_t block_of(Arguments *a, const Read *r) {
 }
 
 /* Element of the family's array as an affine function: (at[0] - lo[0])*size + at[1] - lo[1], times components. */
-static Affine element_of(const Read *r) {
+Affine quantified_element(const Read *r) {
   Affine x = {0};
   for (uint32_t k = 0; k < r->e->ndims; k++) {
     int64_t size = r->e->hi[k] - r->e->lo[k] + 1;
@@ -111,18 +111,21 @@ static SymKind kind_of(const Read *r) {
   }
 }
 
-/* The read that gave the symbol for the first pair, and its component; NULL: none. */
-static const Read *read_of(const struct Quantified *q, const Symbol *s, int64_t *part) {
+const Read *quantified_read_of(const struct Quantified *q, const Symbol *s, int64_t *part) {
   for (uint32_t k = 0; k < q->reads.n; k++) {
     const Read *r = &q->reads.at[k];
-    *part = (int64_t)s->index - r->e->index - at_pair(element_of(r), q->pair[0]);
+    *part = (int64_t)s->index - r->e->index - at_pair(quantified_element(r), q->pair[0]);
     if (kind_of(r) == s->kind && *part >= 0 && *part < (r->e->parts ? r->e->parts : 1)) return r;
   }
   return NULL;
 }
 
+SymId quantified_symbol(const Model *m, const struct Quantified *q, const Read *r, int64_t part) {
+  return member_symbol(m, r->e->kind, r->rate, r->e->index + (uint32_t)(at_pair(quantified_element(r), q->pair[0]) + part));
+}
+
 /* Symbols that hold one number for all pairs: of names without an index. */
-static int is_plain(const Symbol *s) {
+int quantified_is_plain(const Symbol *s) {
   return (s->kind == SYM_COORD || s->kind == SYM_STATE || s->kind == SYM_PARAM || s->kind == SYM_INPUT ||
           s->kind == SYM_VEL || s->kind == SYM_RATE) &&
          !strchr(s->name, '[');
@@ -163,14 +166,14 @@ static int add_symbol(Arguments *a, Expr node) {
   if (s->kind == SYM_TIME || s->kind == SYM_CONST) return 1;
   if (s->kind == SYM_LOCAL && has_name(s, a->q->i)) return add_counter(a, node, (Affine){.by_i = 1});
   if (s->kind == SYM_LOCAL && has_name(s, a->q->j)) return add_counter(a, node, (Affine){.by_j = 1});
-  const Read *r = read_of(a->q, s, &part);
-  if (!r && !is_plain(s)) return 0;
+  const Read *r = quantified_read_of(a->q, s, &part);
+  if (!r && !quantified_is_plain(s)) return 0;
   Subscript at = {.first = a->args.n};
   if (r) {
-    Affine x = element_of(r);
+    Affine x = quantified_element(r);
     x.first += part + block_of(a, r);
     at = quantified_turns(a->q, x);
-    uint32_t there = r->e->index + (uint32_t)(at_pair(element_of(r), a->q->pair[1]) + part);
+    uint32_t there = r->e->index + (uint32_t)(at_pair(quantified_element(r), a->q->pair[1]) + part);
     vec_push(a->arena, &a->first, node);
     vec_push(a->arena, &a->second, expr_symbol(a->g, member_symbol(a->m, r->e->kind, r->rate, there))->node);
   } else {
@@ -221,13 +224,13 @@ static int same_for_both(const Arguments *a, Expr first, Expr second) {
 /* --- the sum --- */
 
 /* Sum of `body` over all turns, one cell. Where turns are as many as members, the self-check takes all. */
-static Expr sum_over(const Arguments *a, Expr body, int sampled) {
+static Expr sum_over(const Arguments *a, Expr body, const FarForm *far, int sampled) {
   const struct Quantified *q = a->q;
   NestShare *share = ARENA_NEW(a->arena, NestShare);
   share->value = body;
   NearTest *near = q->near ? ARENA_NEW(a->arena, NearTest) : NULL;
   if (near) *near = q->test;
-  SumNest s = {.range = q->range, .near = near, .reads = a->reads.at, .nreads = a->reads.n, .shares = share,
+  SumNest s = {.range = q->range, .near = near, .far = far, .reads = a->reads.at, .nreads = a->reads.n, .shares = share,
                .nshares = 1,
                .nargs = a->args.n, .ncells = 1, .sampled = sampled, .i = q->i, .j = q->j, .i0 = q->lo,
                .j0 = q->from.first + q->from.by_i * q->lo, .row = q->pair[0][0] - q->lo,
@@ -262,7 +265,10 @@ static Expr component_sum(Eval *ev, struct Quantified *q, uint32_t c) {
     if (a.why) q->why = a.why;
     return 0;
   }
-  return expr_is_zero(g, turned[0]) ? turned[0] : sum_over(&a, turned[0], q->sampled);
+  if (expr_is_zero(g, turned[0])) return turned[0];
+  const FarForm *far = q->far ? quantified_far(ev, q, turned[0]) : NULL;
+  q->failed = q->far && !far;
+  return q->failed ? 0 : sum_over(&a, turned[0], far, q->sampled);
 }
 
 /* --- the loops --- */
@@ -309,7 +315,19 @@ static const AstNear *near_of(const Ast *ast, AstId sum) {
   return NULL;
 }
 
+static const AstFar *far_of(const Ast *ast, AstId sum) {
+  for (uint32_t k = 0; k < ast->fars.n; k++)
+    if (sum && ast->fars.at[k].sum == sum) return &ast->fars.at[k];
+  return NULL;
+}
+
 int quantified_fits(Eval *ev, AstId id) {
+  const AstFar *far = far_of(ev->b->ast, id);
+  if (far && !ev->index.n) {
+    refuse(ev->b, far->span, "a tree takes sums over pairs, and there is no sum around this one" HELP
+           "write `sum(i in 1..N, sum(j in 1..i-1, ..., by tree(0.5)))`; in a potential it gives all forces");
+    return 0;
+  }
   const AstNear *near = near_of(ev->b->ast, id);
   for (uint32_t k = 0; near && k < ev->index.n; k++)
     if (ev->index.at[k].name == near->i) return 1;
@@ -343,7 +361,15 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   for (uint32_t row = 0; row < q->range.rows; row++) turns += (uint64_t)loop_turns(&q->range, row);
   uint64_t guessed = !read && q->inner ? (uint64_t)q->range.rows * q->range.rows / 2 : 0; /* unknown range inside */
   q->near = near_of(b->ast, q->inner);
-  if ((turns > guessed ? turns : guessed) < b->sums_from && !(q->near && b->sums_from < UINT32_MAX)) return 0;
+  q->far = far_of(b->ast, q->inner);
+  int is_listed = (b->ast->nears.n || q->far) && b->sums_from < UINT32_MAX; /* such a model is meant for any N */
+  if ((turns > guessed ? turns : guessed) < b->sums_from && !is_listed) return 0;
+  if (q->far && !read) {
+    refuse(b, q->far->span, "a tree takes a sum over pairs that stays one, and this one does not: %s" HELP
+           "what a tree takes is in `lagc help tree`", q->why ? q->why : "its terms have no common form");
+    *value_of(ev, id) = FAILED;
+    return -1;
+  }
   if (!read || !find_pairs(q, b->arena)) {
     if (turns >= b->sums_from) note_written_out(ev, q, turns);
     return 0;
@@ -393,6 +419,20 @@ static void keep_inner(Eval *ev, Value *v) {
   for (uint32_t k = 0; v->e && k < component_count(v); k++) v->at[k] = expr_symbol(ev->b->g, q->inside[k])->node;
 }
 
+/* Takes the opening angle of the tree; 0 after a mistake. */
+static int far_angle(Eval *ev, struct Quantified *q) {
+  Builder *b = ev->b;
+  const Value *v = value_of(ev, q->far->theta);
+  q->theta = v->e;
+  if (!v->e || !need_pure(ev, q->far->theta, "the opening angle of a tree")) return 0;
+  if (v->n || !expr_is_constant(b->g, v->e)) {
+    refuse(b, q->far->span, "the opening angle of a tree moves" HELP "it may contain numbers and parameters");
+    return 0;
+  }
+  add_opening_angle(b, v->e, q->far->span);
+  return 1;
+}
+
 int quantified_next(Eval *ev, Value *v) {
   struct Quantified *q = ev->sums;
   Builder *b = ev->b;
@@ -415,8 +455,13 @@ int quantified_next(Eval *ev, Value *v) {
   ev->sums = NULL;
   if (failed) return 0;
   Value r = *v;
+  if (q->far && !far_angle(ev, q)) q->failed = 1, r.e = 0;
   for (uint32_t c = 0; c < component_count(v) && r.e; c++)
     if (!(r.at[c] = component_sum(ev, q, c))) r.e = 0;
+  if (q->failed) {
+    *v = FAILED;
+    return 0;
+  }
   if (r.e) vec_push(b->arena, &b->m->sums, ((QuantifiedSum){q->outer, q->beside, q->sampled}));
   if (r.e && !q->beside) {
     *v = r;

@@ -30,6 +30,9 @@ struct Quantified {
   int has_lets;       /* definitions of families are opened */
   const AstNear *near; /* of the inner sum; NULL: over all j */
   NearTest test;
+  const AstFar *far;   /* of the inner sum; NULL: every term counts by itself */
+  Expr theta;
+  int failed;          /* a mistake is reported */
   uint64_t turns;
   int sampled;        /* the self-check takes a sample of the turns */
   const char *why;    /* reason why there is no such form, and where: for a note */
@@ -44,6 +47,23 @@ struct Quantified {
 
 /* quantified_text.c: finds the inner sum, and all that the terms read; 0: the text has no such form. */
 int quantified_text(Eval *ev, struct Quantified *q);
+
+/* The range of j, affine in i; what an expression reads, without indices as numbers. 0: q->why, at q->where. */
+int quantified_range(Eval *ev, struct Quantified *q, AstId from, AstId to);
+int quantified_reads(Eval *ev, struct Quantified *q, AstId id);
+
+/* quantified_sum.c: whether the members that are read differ for this pair; the read that gave the symbol for the
+ * first pair, and its component (NULL: none); the symbol of such a read; its element, in i and j; whether a symbol has
+ * no index. */
+int quantified_tells_apart(const struct Quantified *q, const int64_t *pair);
+const Read *quantified_read_of(const struct Quantified *q, const Symbol *s, int64_t *part);
+SymId quantified_symbol(const Model *m, const struct Quantified *q, const Read *r, int64_t part);
+Affine quantified_element(const Read *r);
+int quantified_is_plain(const Symbol *s);
+
+/* far_form.c: the parts of a term, for the first pair, of a sum by a tree; NULL: it has no such form, which is
+ * reported. */
+const FarForm *quantified_far(Eval *ev, const struct Quantified *q, Expr term);
 
 /* In rows and turns: i = lo + row, j = from(lo) + turn. */
 Subscript quantified_turns(const struct Quantified *q, Affine x);

@@ -209,20 +209,38 @@ static void mark_beside(const Eval *ev, const struct Quantified *q, unsigned cha
   }
 }
 
-/* Finds the range of the inner sum. */
-static int read_inner(Eval *ev, struct Quantified *q, unsigned char *skip) {
-  const AstExpr *y = ast_expr(ev->b->ast, q->inner);
+int quantified_range(Eval *ev, struct Quantified *q, AstId from, AstId to) {
   const Indices outer = {.name = {q->i}, .is = {{.by_i = 1}}};
-  q->j = y->name;
-  if (q->i == q->j || !is_affine(ev, y->a, &outer, MOST_DEPTH, &q->from) ||
-      !is_affine(ev, y->b, &outer, MOST_DEPTH, &q->to))
-    return refused(q, q->inner, "the range inside is not affine in the outer index");
-  mark_beside(ev, q, skip);
-  mark_nodes(ev, y->a, q->first, skip);
-  mark_nodes(ev, y->b, q->first, skip);
+  if (q->i == q->j || !is_affine(ev, from, &outer, MOST_DEPTH, &q->from) ||
+      !is_affine(ev, to, &outer, MOST_DEPTH, &q->to))
+    return refused(q, to, "the range inside is not affine in the outer index");
   q->range.skew = q->from.by_i;
   q->range.more = q->to.by_i - q->from.by_i;
   q->range.turns = q->to.first - q->from.first + q->range.more * q->lo + 1;
+  return 1;
+}
+
+/* Finds the range of the inner sum. */
+static int read_inner(Eval *ev, struct Quantified *q, unsigned char *skip) {
+  const AstExpr *y = ast_expr(ev->b->ast, q->inner);
+  q->j = y->name;
+  if (!quantified_range(ev, q, y->a, y->b)) {
+    q->where = q->inner;
+    return 0;
+  }
+  mark_beside(ev, q, skip);
+  mark_nodes(ev, y->a, q->first, skip);
+  mark_nodes(ev, y->b, q->first, skip);
+  return 1;
+}
+
+int quantified_reads(Eval *ev, struct Quantified *q, AstId id) {
+  const Indices own = {.name = {q->i, q->j}, .is = {{.by_i = 1}, {.by_j = 1}}};
+  q->first = ast_expr(ev->b->ast, id)->first;
+  q->counts = ARENA_ARRAY(ev->b->arena, unsigned char, id - q->first + 1);
+  if (!note_reads(ev, q, q->first, id, &own, NULL, MOST_DEPTH)) return 0;
+  for (AstId k = q->first; k <= id; k++)
+    if (q->counts[k - q->first]) return refused(q, k, "an index is a number here, and not an index");
   return 1;
 }
 

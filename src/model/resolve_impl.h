@@ -134,6 +134,10 @@ void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span);
  * number up to `most` called `what`, or `other` where it is not given; each 0, reported. push_tangent: the tangent
  * NAME.slip of `owner`, along t.gap; `pressed` is the force that friction follows. */
 int check_slip(Builder *b, const AstStmt *st, AstId id, const Value *slip, const Constraint *gap);
+/* The gap and the restitution e of a contact; its options; a coefficient of it up to `most`. 0: reported. */
+int check_contact(Builder *b, const AstStmt *st, Name name, const Value *gap, const Value *e);
+int check_contact_options(Builder *b, const AstStmt *st);
+int check_pure_number(Builder *b, const AstStmt *st, AstId id, const Value *x, double most, const char *what);
 /* The coefficient of static friction of st, at least `friction`; 0: reported. */
 Expr static_coefficient(Builder *b, const AstStmt *st, Name effect, Expr friction);
 Expr coefficient(Builder *b, const AstStmt *st, Name effect, const char *word, double most, const char *what,

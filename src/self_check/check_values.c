@@ -1,4 +1,5 @@
 /* Values of the text against those of the programs: flows, constraints, energy; events, outputs, inputs. */
+#include <float.h>
 #include <math.h>
 
 #include "self_check/self_check_impl.h"
@@ -102,6 +103,69 @@ static CheckVerdict check_outputs(Check *c) {
   return v;
 }
 
+/* --- families of contacts --- */
+
+static int64_t read_index(const IrRead *x, const TextMember *of) {
+  return x->first + x->by_row * of->row + x->by_turn * of->turn;
+}
+
+/* The program of a member at the state, its velocities times `factor`. */
+static int run_member(const Check *c, const TextMember *of, Real factor, Real *out) {
+  const IrContactFamily *f = &c->u->families.at[of->family];
+  Real *q = ARENA_ARRAY(c->arena, Real, f->coords.n + 1), *v = ARENA_ARRAY(c->arena, Real, f->coords.n + 1),
+       *z = ARENA_ARRAY(c->arena, Real, f->params.n + 1);
+  for (uint32_t k = 0; k < f->coords.n; k++) {
+    q[k] = c->q[read_index(&f->coords.at[k], of)];
+    v[k] = factor * c->v[read_index(&f->coords.at[k], of)];
+  }
+  for (uint32_t k = 0; k < f->params.n; k++) z[k] = c->p[read_index(&f->params.at[k], of)];
+  const Real *in[ARR_COUNT] = {[ARR_T] = &c->t, [ARR_Q] = q, [ARR_V] = v, [ARR_Z] = z, [ARR_P] = c->p,
+                               [ARR_U] = c->signal};
+  return prog_eval(f->values, in, (Real *const[]){out}) == 0;
+}
+
+/* A rate less its value at rest is its row of A times the velocities. */
+static CheckVerdict check_row(Check *c, const TextMember *of, const Real *row, Real rate, Real rest) {
+  const IrContactFamily *f = &c->u->families.at[of->family];
+  const ContactFamily *text = &c->m->families.at[of->family];
+  BoundedSum t = {0};
+  for (uint32_t k = 0; k < f->coords.n; k++) {
+    Real v = c->v[read_index(&f->coords.at[k], of)];
+    bounded_sum_add(&t, 1, (Bounded){row[k] * v, LDBL_EPSILON * fabsl(row[k] * v)});
+  }
+  t.size += fabsl(rate) + fabsl(rest);
+  return check_compare(c, &t, rate - rest, text->span, "the row of the contacts", text->name);
+}
+
+static CheckVerdict check_member(Check *c, const TextMember *of) {
+  const IrContactFamily *f = &c->u->families.at[of->family];
+  const ContactFamily *text = &c->m->families.at[of->family];
+  const Tape *tape = c->outputs->tape;
+  static const uint32_t place[] = {0, 2, 3, 4, 5, 6};
+  uint32_t rates = 5 + f->tangents;
+  Real *out = ARENA_ARRAY(c->arena, Real, rates + (1 + f->tangents) * f->coords.n + 1),
+       *rest = ARENA_ARRAY(c->arena, Real, rates + (1 + f->tangents) * f->coords.n + 1);
+  CheckVerdict v = AGREES;
+  if (!run_member(c, of, 1, out) || !run_member(c, of, 0, rest)) return DISMISSED;
+  for (uint32_t k = 0; k < 4 + f->tangents; k++)
+    v = worse(v, check_output_value(c, of->value[k], out[place[k]], text->span, "the contacts", text->name));
+  if (of->value[0])
+    v = worse(v, check_value(c, check_coefficient(tape, c->at_outputs, of->value[0], 0, 1), out[1], text->span,
+                             "the rate of the contacts", text->name));
+  for (uint32_t j = 0; j <= f->tangents; j++) {
+    uint32_t at = j ? 4 + j : 1;
+    v = worse(v, check_row(c, of, out + rates + j * f->coords.n, out[at], rest[at]));
+  }
+  return v;
+}
+
+static CheckVerdict check_families(Check *c) {
+  CheckVerdict v = AGREES;
+  for (uint32_t i = 0; i < c->outputs->members.n && c->u->families.n; i++)
+    v = worse(v, check_member(c, &c->outputs->members.at[i]));
+  return v;
+}
+
 static CheckVerdict check_signals(Check *c) {
   const TextOutputs *o = c->outputs;
   Real *value = ARENA_ARRAY(c->arena, Real, c->m->inputs.n + 1);
@@ -124,5 +188,5 @@ CheckVerdict check_other_values(Check *c) {
   for (uint32_t i = 0; i < check_components(c); i++) c->c[i] = 0; /* no displacement */
   tape_run(c->outputs->tape, check_input, c, c->at_outputs, &unsure);
   /* unsure values have infinite error bounds, and are dismissed */
-  return worse(worse(check_events(c), check_outputs(c)), check_signals(c));
+  return worse(worse(check_events(c), check_outputs(c)), worse(check_signals(c), check_families(c)));
 }

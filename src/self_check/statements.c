@@ -141,7 +141,16 @@ static TextValue slip_value(Walk *w, const AstStmt *st, Name effect) {
   return value(w, ast_option_value(w->text->b->ast, st, "slip"), effect);
 }
 
+/* The family of contacts that the statement gives; NULL: it gives another contact. */
+static const ContactFamily *family_of(const Walk *w, const AstStmt *st) {
+  const Model *m = w->text->m;
+  for (uint32_t k = 0; k < m->families.n; k++)
+    if (m->families.at[k].stmt == st) return &m->families.at[k];
+  return NULL;
+}
+
 static void read_contact(Walk *w, const AstStmt *st, Name effect) {
+  if (family_of(w, st)) return; /* its forces are impulses of a step */
   const Contact *c = push_switched(w, value(w, st->lhs, effect).at[0]);
   TextValue slip = c && st->args ? slip_value(w, st, effect) : (TextValue){0};
   for (uint32_t k = 0; c && st->args && k < text_components(&slip); k++) read_tangent(w, c + 1 + k, slip.at[k]);
@@ -283,8 +292,36 @@ static void read_event(Walk *w, const AstStmt *st, Name effect) {
   w->event++;
 }
 
+static void read_member(Walk *w, const ContactFamily *f, int64_t row, int64_t turn) {
+  const AstStmt *st = f->stmt;
+  TextMember x = {.family = (uint32_t)(f - w->text->m->families.at), .row = row, .turn = turn};
+  static const char *const options[] = {"friction", "tangential", "slip"};
+  vec_push(w->text->arena, &w->around, ((IndexVar){f->name_i, f->i0 + row}));
+  if (f->name_j) vec_push(w->text->arena, &w->around, ((IndexVar){f->name_j, f->j0 + turn}));
+  x.value[0] = value(w, st->lhs, f->effect).at[0];
+  x.value[1] = value(w, st->rhs, f->effect).at[0];
+  for (uint32_t k = 0; k < 3; k++) {
+    AstId id = ast_option_value(w->text->b->ast, st, options[k]);
+    TextValue v = id ? value(w, id, f->effect) : (TextValue){0};
+    for (uint32_t part = 0; id && part < text_components(&v) && part < 2; part++) x.value[2 + k + part] = v.at[part];
+  }
+  w->around.n -= f->name_j ? 2 : 1;
+  vec_push(w->text->arena, &w->outputs->members, x);
+}
+
+/* The first and the last member of a family. */
+static void read_family(Walk *w, const ContactFamily *f) {
+  int64_t first = 0, last = (int64_t)f->range.rows - 1;
+  while (first < last && !loop_turns(&f->range, first)) first++;
+  while (last > first && !loop_turns(&f->range, last)) last--;
+  read_member(w, f, first, loop_from(&f->range, first));
+  read_member(w, f, last, loop_to(&f->range, last) - 1);
+}
+
 static void read_output_statement(Walk *w, const AstStmt *st, Name effect) {
+  const ContactFamily *family = family_of(w, st);
   if (st->kind == STMT_EVENT) read_event(w, st, effect);
+  else if (family) read_family(w, family);
   else if (st->kind == STMT_CONTACT) { /* events added by model/constraint.c */
     TextValue slip = st->args ? slip_value(w, st, effect) : (TextValue){0};
     w->event += 2 + (st->args ? 2 * text_components(&slip) : 0);
@@ -360,6 +397,8 @@ TextOutputs *text_outputs(const Model *m, int samples, const Output *outputs, ui
   VEC(Ref) roots = {0};
   for (uint32_t i = 0; i < m->events.n; i++) vec_push(a, &roots, o->events[i]);
   for (uint32_t i = 0; i < o->actions.n; i++) vec_push(a, &roots, o->actions.at[i].value);
+  for (uint32_t i = 0; i < o->members.n; i++)
+    for (uint32_t k = 0; k < 6; k++) vec_push(a, &roots, o->members.at[i].value[k]);
   for (uint32_t i = 0; i < noutputs; i++) vec_push(a, &roots, o->outputs[i]);
   for (uint32_t i = 0; i < m->inputs.n; i++) vec_push(a, &roots, o->signals[i]);
   tape_finish(o->tape, roots.at, roots.n);

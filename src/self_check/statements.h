@@ -16,6 +16,13 @@ typedef struct {
   Ref value;
 } TextAction;
 
+/* A member of a family of contacts: gap, restitution, friction, tangential restitution, slips. */
+typedef struct {
+  uint32_t family;
+  int64_t row, turn;
+  Ref value[6];
+} TextMember;
+
 /* Ref 0: the text has no such statement, or it contains a construct that tapes cannot evaluate (`why`). Memory is
  * the arena's. */
 typedef struct {
@@ -31,6 +38,7 @@ typedef struct {
   Tape *tape;
   Ref *events;  /* [events of the model] */
   VEC(TextAction) actions;
+  VEC(TextMember) members; /* of each family of contacts the first and the last one */
   Ref *outputs; /* [outputs of the scene] */
   /* [outputs of the scene] 1: the name `energy` alone, compared with the energy instead of a formula */
   unsigned char *is_energy;

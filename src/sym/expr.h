@@ -94,8 +94,18 @@ typedef struct {
   uint32_t n;
 } NearTest;
 
+/* The sum of factor*c_i*c_j/sqrt(d^2 + soft) over all pairs of `members` bodies; the first is body i of row `first`. In
+ * the symbols of the body, c_i as `charge`. */
+typedef struct {
+  Expr term, factor, charge, soft, theta, at_i[3], at_j[3]; /* theta: opening angle of the tree */
+  uint32_t n;                                               /* components of d */
+  int64_t first, members;
+  uint32_t begin, end; /* place in the text */
+} FarForm;
+
 typedef struct {
   LoopRange range;
+  const FarForm *far;   /* NULL: of other sums; else this one, or its derivatives by all places */
   const NearTest *near; /* NULL: all turns count; else values contain the test, too */
   const NestRead *reads;
   const NestShare *shares;

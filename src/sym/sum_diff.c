@@ -31,6 +31,7 @@ int expr_prepare_sum(ExprGraph *g, Expr cell, int forward) {
   to.shares = shares;
   to.nshares = 0;
   to.slopes = NULL;
+  to.far = s.ncells == 1 ? s.far : NULL;
   to.ncells = (uint32_t)(cells > MOST_CELLS ? MOST_CELLS : cells);
   for (uint32_t k = 0; k < s.nreads * s.nshares; k++)
     if (d[k] != g->zero)
@@ -269,6 +270,7 @@ Expr expr_sum_rates(ExprGraph *g, Expr nest, const ExprMap *rate) {
   s.shares = shares;
   s.nargs = 2 * n;
   s.slopes = NULL;
+  s.far = NULL;
   Expr cell = expr_sum_cell(g, &s, args, 0);
   return expr_cell_nest(g, cell);
 }

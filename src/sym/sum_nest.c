@@ -27,7 +27,8 @@ static int is_same(const SumNest *x, const SumNest *y) {
   const LoopRange *r = &x->range, *o = &y->range;
   return r->rows == o->rows && r->skew == o->skew && r->turns == o->turns && r->more == o->more &&
          x->nargs == y->nargs && x->ncells == y->ncells && x->i0 == y->i0 && x->j0 == y->j0 && x->i == y->i &&
-         x->j == y->j && x->row == y->row && x->turn == y->turn && x->near == y->near && same_lists(x, y);
+         x->j == y->j && x->row == y->row && x->turn == y->turn && x->near == y->near &&
+         x->far == y->far && same_lists(x, y);
 }
 
 /* Reads of symbols that no share contains are left out. */

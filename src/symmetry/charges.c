@@ -271,6 +271,21 @@ const char *charges_energy_word(const Eqns *e) {
   return charges_drift_word(e->charges[0].proof.jumps ? PROVED_NONZERO : e->charges[0].proof.drift);
 }
 
+/* ", which is 0 in this scene, where c = 0" where a power is 0 with the parameters that are 0 in the scene; else "". */
+static const char *zero_here(const Eqns *e, Expr power) {
+  const Model *m = e->m;
+  StrBuf names = {.arena = m->arena};
+  Expr zero = expr_int(e->g, 0), at = power;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
+    if (!expr_is_zero(e->g, p->value) || !expr_contains_sym(e->g, power, p->sym)) continue;
+    at = expr_replace(e->g, at, &p->sym, &zero, 1);
+    sb_printf(&names, "%s%s = 0", names.n ? ", " : "", p->name);
+  }
+  int is = names.n && expr_is_zero(e->g, simplify(e->g, at));
+  return is ? arena_printf(m->arena, ", which is 0 in this scene, where %s", names.at) : "";
+}
+
 const char *charges_energy_text(const Eqns *e) {
   enum { LINE = 100 };
   const Noether *is = &e->charges[0].proof;
@@ -288,8 +303,10 @@ const char *charges_energy_text(const Eqns *e) {
                                   : "not decided whether the energy is conserved";
   if (is->power_unknown) return arena_printf(e->m->arena, "%s: " NO_RATE, verdict);
   const char *power = text_of(e, is->power);
-  return strlen(power) <= LINE ? arena_printf(e->m->arena, "%s: d%s/dt = %s", verdict, name, power)
-                               : arena_printf(e->m->arena, "%s; `lagc derive` prints d%s/dt", verdict, name);
+  const char *here = zero_here(e, is->power);
+  return strlen(power) <= LINE
+             ? arena_printf(e->m->arena, "%s: d%s/dt = %s%s", verdict, name, power, here)
+             : arena_printf(e->m->arena, "%s; `lagc derive` prints d%s/dt%s", verdict, name, here);
 }
 
 /* F, with the integral that the printed charge omits. */

@@ -39,6 +39,7 @@ static Verdict drift_of_momentum(const Eqns *e, uint32_t i) {
 }
 
 void show_cyclic(const Eqns *e, const char *before, StrBuf *out) {
+  if (e->m->families.n) return; /* contacts change any momentum */
   static const char *const words[] = {
     [PROVED_ZERO] = "is conserved", [PROVED_NONZERO] = "is changed by forces and constraints alone",
     [NOT_DECIDED] = "can be changed by forces and constraints alone"};

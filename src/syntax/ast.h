@@ -92,6 +92,7 @@ typedef enum {
   STMT_STATE,       /* name, dims, type, unit */
   STMT_LET,         /* name, dims (numbers, or AST_BINDs), rhs */
   STMT_FUNCTION,    /* name, args (AST_NAMEs), rhs */
+  STMT_NETWORK,     /* name, args (AST_NAMEs), rhs = path of its weights or 0, dims = layers, type = activation */
   STMT_HAMILTONIAN, /* rhs; lhs: `energy`, which a model that also gives L claims to be rhs */
   STMT_LAGRANGIAN,  /* rhs; likewise the next three */
   STMT_KINETIC,
@@ -168,6 +169,12 @@ typedef struct {
   Span span;
 } AstNear;
 
+/* sum(j in ..., ..., by tree(theta)). */
+typedef struct {
+  AstId sum, theta;
+  Span span;
+} AstFar;
+
 typedef struct {
   Arena *arena;
   Interner *names;
@@ -176,6 +183,7 @@ typedef struct {
   VEC(AstExpr) exprs;        /* exprs.at[0] is unused */
   VEC(AstPlace) places;
   VEC(AstNear) nears;
+  VEC(AstFar) fars;
   AstStmt *first, *last;     /* the file's statements, includes already spliced in */
   AstStmt *composed;         /* functions that functions.def defines by a text; NULL: not yet parsed */
   struct FileIndex *index;   /* statements by name (model/file_index.c); NULL: not yet made */

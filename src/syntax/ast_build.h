@@ -44,6 +44,14 @@ typedef struct AstTurns {
 AstId ast_reduce(Ast *ast, AstKind kind, Span span, Span op, AstTurns over, AstId body);
 /* near_sum.c: sum(index in near(...), body); range: the expression behind `in`. */
 AstId ast_near(Ast *ast, Span span, Ident index, AstId range, AstId body, Span op);
+/* The same as a range of members, AST_BIND. */
+AstId ast_near_bind(Ast *ast, Span span, Ident index, AstId range);
+/* far_sum.c: sum(index in lo..hi, body, by way(theta)). */
+typedef struct {
+  Ident by, way;
+  AstId theta;
+} FarWay;
+AstId ast_far(Ast *ast, Span span, Span op, AstTurns turns, AstId body, FarWay how);
 AstId ast_collect(Ast *ast, AstKind kind, Span span, AstList items); /* AST_LIST */
 AstId ast_bind(Ast *ast, Span span, Ident index, AstId lo, AstId hi);
 
@@ -87,6 +95,8 @@ AstStmt *stmt_valued(Ast *ast, AstStmtKind kind, Span span, Ident name, AstUnit 
 AstStmt *stmt_param(Ast *ast, Span span, AstDeclared of, AstId value, AstSign sign);
 AstStmt *stmt_define(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstUnit unit, AstId rhs);
 AstStmt *stmt_function(Ast *ast, Span span, Ident name, AstList args, AstId rhs);
+/* network.c; activation.name NULL: tanh. */
+AstStmt *stmt_network(Ast *ast, Span span, Ident name, AstList args, AstText path, AstList layers, Ident activation);
 AstStmt *stmt_value(Ast *ast, AstStmtKind kind, Span span, AstId rhs);
 /* `draw SHAPE[members] SUBJECT = VALUE OPTIONS`; 0 and empty: not written. */
 AstStmt *stmt_draw(Ast *ast, Span span, Ident shape, AstList members, AstId subject, AstId value, AstList options);

@@ -27,7 +27,8 @@ static const char *const kind_texts[] = {AST_EXPR_KINDS(KIND_TEXT_)};
 
 static const char *const stmt_names[] = {
     "model",     "include",     "coord",      "momentum", "param",     "const",       "input",   "state", "let",
-    "function",  "hamiltonian", "lagrangian", "kinetic",  "potential", "dissipation", "force",   "flow",  "constraint",
+    "function",  "network",
+    "hamiltonian", "lagrangian", "kinetic",  "potential", "dissipation", "force",   "flow",  "constraint",
     "symmetry",  "canonical",   "map",        "expect",   "event",     "contact",     "guide",   "observe", "draw",
     "for",       "effect",      "requires",   "excludes", "scene",     "start",       "exact",   "set",     "use",
     "span",      "method",      "tolerance",  "output",   "monitor",   "measure",     "like",    "stop"};

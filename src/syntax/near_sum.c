@@ -2,6 +2,7 @@
  *
  * In: the nodes of near(...) and of f. Out: the sum over j in 1..i-1 of if(d2 < r_cut^2, f, 0), where d2 is the squared
  * distance, by the nearest image in a periodic box; a note of its parts, by which `lower` makes lists of neighbours.
+ * Of a family of contacts, `j in near(i, r_cut)` becomes `j in 1..i-1`, and the note.
  * Must hold: whoever reads the sum needs no more than these nodes. */
 #include "syntax/ast_build.h"
 
@@ -148,6 +149,19 @@ AstId ast_near(Ast *ast, Span span, Ident j, AstId call, AstId body, Span op) {
   clear(ast, ast_expr(ast, body)->first, body);
   AstId from = make_range(ast, call);
   near.sum = ast_reduce(ast, AST_SUM, span, op, (AstTurns){j, from, call}, term);
+  vec_push(ast->arena, &ast->nears, near);
+  return near.sum;
+}
+
+AstId ast_near_bind(Ast *ast, Span span, Ident j, AstId call) {
+  Request r = {.span = ast_expr(ast, call)->span, .j = j};
+  const char *wrong = read_request(ast, call, &r);
+  if (wrong) return error(ast, r.span, wrong);
+  AstNear near = {.span = r.span, .i = r.i.name};
+  distance(ast, &r, &near);
+  near.cut = copy(ast, r.cut);
+  AstId from = make_range(ast, call);
+  near.sum = ast_bind(ast, span, j, from, call);
   vec_push(ast->arena, &ast->nears, near);
   return near.sum;
 }

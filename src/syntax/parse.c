@@ -4,6 +4,7 @@
  * Must hold: the parser's stack, the only memory outside the arena, is freed on every exit. */
 #include "base/visible.h"
 #include "numeric/functions.def"
+#include "syntax/network.h"
 #include "syntax/parse.h"
 #include "syntax/parse_state.h"
 
@@ -147,17 +148,30 @@ static StmtList included(Includes *in, AstStmt *s) {
   return cx.stmts;
 }
 
-/* Puts the statements of included files where the include statements stand. */
+/* The declarations that a network stands for, at its place. */
+static StmtList declared_network(Includes *in, AstStmt *s) {
+  Ast *ast = in->ast;
+  const char *text = network_text(ast, s, in->files.at[file_of(in, s->span.begin)].path);
+  const Source *source = text ? source_add(ast->sources, arena_printf(ast->arena, "network %s", s->name), text,
+                                           strlen(text)) : NULL;
+  if (!source) return (StmtList){NULL, NULL};
+  Parse cx;
+  run(&cx, ast, source, TOK_BEGIN_FILE);
+  for (AstStmt *each = cx.stmts.first; each; each = each->next) each->name_span = s->name_span;
+  return cx.stmts;
+}
+
+/* Puts the statements of included files where the include statements stand, and those of networks likewise. */
 static StmtList follow_includes(Includes *in, StmtList list) {
   StmtList done = {NULL, NULL};
   for (AstStmt *s = list.first, *next; s; s = next) {
     next = s->next;
     s->next = NULL;
-    if (s->kind != STMT_INCLUDE) {
+    if (s->kind != STMT_INCLUDE && s->kind != STMT_NETWORK) {
       done = stmts_add(done, s);
       continue;
     }
-    StmtList more = included(in, s);
+    StmtList more = s->kind == STMT_NETWORK ? declared_network(in, s) : included(in, s);
     if (!more.first) continue;
     more.last->next = next;
     next = more.first;

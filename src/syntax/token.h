@@ -80,6 +80,7 @@ enum {
   X(STATE, "state", W_DECL)                        \
   X(LET, "let", W_DECL)                            \
   X(FUNCTION, "function", W_DECL)                  \
+  X(NETWORK, "network", W_FILE)                    \
   X(HAMILTONIAN, "hamiltonian", W_DECL)            \
   X(LAGRANGIAN, "lagrangian", W_DECL)              \
   X(KINETIC, "kinetic", W_DECL)                    \
@@ -130,6 +131,8 @@ enum {
   X(GUESS, "guess", 0)                             \
   X(EVERY, "every", 0)                             \
   X(WHILE, "while", 0)                             \
+  X(FROM, "from", 0)                               \
+  X(LAYERS, "layers", 0)                           \
   X(SHAPE, "a shape such as `ball`", 0)            \
   X(CLAUSE, "an option", T_OPENS)
 

@@ -163,7 +163,8 @@ static TokKind slot_word(Filter *f, const Token *t) {
     TokKind statement, word;
   } slots[] = {{TOK_COORD, TOK_PERIODIC}, {TOK_EVENT, TOK_RISING}, {TOK_EVENT, TOK_FALLING},
                {TOK_EVENT, TOK_CROSSING}, {TOK_OUTPUT, TOK_EVERY}, {TOK_KICK, TOK_EVERY},
-               {TOK_FRICTION, TOK_ON},    {TOK_MOMENTUM, TOK_OF},  {TOK_CONSTRAINT, TOK_WHILE}};
+               {TOK_FRICTION, TOK_ON},    {TOK_MOMENTUM, TOK_OF},  {TOK_CONSTRAINT, TOK_WHILE},
+               {TOK_NETWORK, TOK_FROM},   {TOK_NETWORK, TOK_LAYERS}};
   if (f->prev == TOK_START && peek(f)->kind == TOK_IDENT)
     return strcmp(t->name, "exactly") == 0 ? TOK_EXACTLY : strcmp(t->name, "guess") == 0 ? TOK_GUESS : TOK_IDENT;
   if ((f->word == TOK_CONTACT || f->word == TOK_GUIDE) && f->prev == TOK_COMMA && !f->brackets.n)

@@ -107,9 +107,27 @@ static int work_to_the_end(void *beside) {
   return 0;
 }
 
+/* Whether the process ends within so many seconds; it is not reaped. */
+static int ends_within(long process, double seconds) {
+  const struct timespec pause = {0, 10000000};
+  siginfo_t end = {0};
+  for (double waited = 0;; waited += 0.01) {
+    if (waitid(P_PID, (id_t)process, &end, WEXITED | WNOHANG | WNOWAIT) != 0 || end.si_pid) return 1;
+    if (!(waited < seconds)) return 0;
+    nanosleep(&pause, NULL);
+  }
+}
+
+/* Ends a compiler that hangs: after 600 s, or a minute after the run. */
+static void wait_for_compiler(long process, int run) {
+  const int longest = 600, behind = 60;
+  for (int s = 0, end = longest; s < end && !ends_within(process, 1); s++)
+    if (end == longest && process_reader_ends(run, 0) && s + behind < end) end = s + behind;
+  process_end(process, 0);
+}
+
 /* The process of work has no streams but fd, so that nobody who reads from this program waits for it, and no parent. */
 static void work_beside(void (*work)(void *data, int fd), void *data, int fd) {
-  const double longest = 600; /* s; a compiler that hangs is ended */
   int null = open("/dev/null", O_RDWR);
   if (fork() != 0) _exit(0);
   signal(SIGPIPE, SIG_IGN);
@@ -118,7 +136,7 @@ static void work_beside(void (*work)(void *data, int fd), void *data, int fd) {
     if (k != fd) close(k);
   if (nice(5) == -1) errno = 0; /* the run goes first */
   Beside b = {work, data, fd};
-  process_end(process_begin(work_to_the_end, &b), longest);
+  wait_for_compiler(process_begin(work_to_the_end, &b), fd);
   _exit(0);
 }
 
@@ -136,16 +154,7 @@ void process_beside(void (*work)(void *data, int fd), void *data, const char *na
 }
 
 int process_end(long process, double seconds) {
-  const struct timespec pause = {0, 10000000};
-  siginfo_t end = {0};
-  double waited = 0;
-  int over = 0;
-  while ((over = waitid(P_PID, (id_t)process, &end, WEXITED | WNOHANG | WNOWAIT) != 0 || end.si_pid) == 0 &&
-         waited < seconds) {
-    nanosleep(&pause, NULL);
-    waited += 0.01;
-  }
-  if (!over) kill(-(pid_t)process, SIGKILL);
+  if (!ends_within(process, seconds)) kill(-(pid_t)process, SIGKILL);
   return wait_for((pid_t)process);
 }
 

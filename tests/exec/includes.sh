@@ -30,10 +30,10 @@ runtime/kernels   kernels/ numeric/gauss_points.h lag_lanes.h lag_math.h
 runtime/core      core/ kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/constraints constraints/ core/core.h core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_kkt.h
 runtime/contacts  contacts/ core/core.h core/rhs.h kernels/ numeric/ lag.h lag_model.h
-runtime/methods   methods/ core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_math.h
+runtime/methods   methods/ core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_math.h lag_support.h
 runtime/lanes     lanes/ kernels/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
 runtime/analysis  analysis/ core/ kernels/ numeric/ lag.h lag_model.h
-runtime/evaluator evaluator/ numeric/ lag.h lag_model.h lag_math.h lag_support.h lag_kkt.h
+runtime/evaluator evaluator/ numeric/ lag.h lag_model.h lag_math.h lag_support.h lag_tree.h lag_kkt.h
 runtime/io        io/ numeric/ lag.h lag_model.h
 runtime/sweep     sweep/ lanes/lane_choice.h lanes/lane_runs.h analysis/measure.h io/posix.h io/csv_file.h numeric/ lag.h lag_model.h
 runtime/app       app/ sweep/ core/ io/ analysis/ numeric/ lag.h lag_model.h
@@ -50,6 +50,7 @@ runtime/include/lag.h  lag_libraries.h lag_method.h lag_model.h
 runtime/include/lag_method.h  lag_model.h
 runtime/include/lag_math.h  lag_lanes.h lag_sincos.h
 runtime/include/lag_support.h  lag_lanes.h
+runtime/include/lag_tree.h  lag_lanes.h
 runtime/include/lag_band.h  lag_lanes.h
 runtime/include/lag_kkt.h  lag_band.h lag_lanes.h
 '

@@ -18,14 +18,14 @@ for p in png hdf5 mpi; do
 done
 for p in $PRECISIONS; do
   more_files="$more_files lib/liblag_$p.a"
-  for h in lag lag_band lag_kkt lag_lanes lag_libraries lag_math lag_method lag_model lag_sincos lag_support; do more_files="$more_files lib/lag-$p/$h.h"; done
+  for h in lag lag_band lag_kkt lag_lanes lag_libraries lag_math lag_method lag_model lag_sincos lag_support lag_tree; do more_files="$more_files lib/lag-$p/$h.h"; done
 done
 so=liblag.so.$(sed -n 's/^.define LAG_ABI //p' runtime/include/lag_model.h)
 [ ! -f "$BUILD/lag.wasm.gz" ] || more_files="$more_files lib/lag.wasm.gz"
 [ ! -f "$BUILD/lagc.wasm.gz" ] || more_files="$more_files lib/lagc.wasm.gz"
 case $("$CC" -dumpmachine) in *linux* | *bsd*) more_files="$more_files lib/liblag.so lib/$so" ;; *) so= ;; esac
 models=$(cd models && ls -d -- *.lag *.csv lib/*.lag lib/*.csv 2>/dev/null)
-want=$(for f in bin/lagc include/lag.h include/lag_band.h include/lag_kkt.h include/lag_lanes.h include/lag_libraries.h include/lag_math.h include/lag_method.h include/lag_model.h include/lag_sincos.h include/lag_support.h lib/lag-run lib/liblag.a lib/pkgconfig/liblag.pc $more_files \
+want=$(for f in bin/lagc include/lag.h include/lag_band.h include/lag_kkt.h include/lag_lanes.h include/lag_libraries.h include/lag_math.h include/lag_method.h include/lag_model.h include/lag_sincos.h include/lag_support.h include/lag_tree.h lib/lag-run lib/liblag.a lib/pkgconfig/liblag.pc $more_files \
   share/doc/lagc/LICENSE share/doc/lagc/README.md share/man/man1/lagc.1 share/bash-completion/completions/lagc \
   lib/cmake/lagc/lagcConfig.cmake lib/cmake/lagc/lagcConfigVersion.cmake \
   share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish share/lagc/lag.tmLanguage.json share/lagc/lagc_mex.c share/lagc/python/lagc.py; do

@@ -24,7 +24,7 @@ takes() {
   "$LAGC" run "$@" >"$TMP/out" 2>"$TMP/err" && grep -q "method $method(" "$TMP/out" && grep -q "^chosen: $method, since" "$TMP/out" || { cat "$TMP/out" "$TMP/err"; return 1; }
 }
 vdp=$TMP/van_der_pol.lag
-# x^(3/2) has no series at 0; friction of a contact in space is followed by moreau alone.
+# x^(3/2) has no series at 0; friction in space is followed by events at up to three contacts, by moreau at more.
 printf "model pull\ncoord x\nkinetic = x'^2/2\npotential = -2/3*x^(3/2)\nscene s { start x = 0, x' = 1; span 1 }\n" >"$TMP/pull.lag"
 starts() { takes dop853 "$TMP/pull.lag" --tol 1e-12 && grep -q '^chosen: dop853, since taylor cannot start here (at t = 0 s: the model gives no finite value' "$TMP/out"; }
 check "a series that does not exist at the start: dop853" starts
@@ -37,8 +37,18 @@ potential = m*g*r.z
 contact ice: r.z >= 0, restitution = 0, friction = mu, slip = (r.x', r.y')
 scene s { start r.x' = 1.2 [m/s], r.y' = 1.6 [m/s]; span 3 [s]; output r.x, r.y }
 EOF
-puck() { "$LAGC" run "$TMP/puck.lag" >"$TMP/out" 2>&1 && cat "$TMP/out" && grep -q '^chosen: moreau, since dop853 cannot start here (method dop853 follows friction in a plane' "$TMP/out"; }
-check "friction in space: moreau" puck
+cat >"$TMP/stool.lag" <<'EOF'
+model stool "on four feet, which slide alike"
+coord r: vec3 [m]
+param m = 1 [kg] > 0, g = 10 [m/s^2] > 0, mu = 0.1 >= 0
+kinetic = m/2*dot(r', r')
+potential = m*g*r.z
+for i in 1..4 { contact foot[i]: r.z >= 0, restitution = 0, friction = mu, slip = (r.x', r.y') }
+scene s { start r.x' = 1.2 [m/s], r.y' = 1.6 [m/s]; span 3 [s]; output r.x, r.y }
+EOF
+check "friction in space: dop853" takes dop853 "$TMP/puck.lag"
+stool() { "$LAGC" run "$TMP/stool.lag" >"$TMP/out" 2>&1; cat "$TMP/out"; grep -q '^chosen: moreau, since dop853 cannot start here (method dop853 follows friction in space at up to 3 contacts, and there are 4 here' "$TMP/out"; }
+check "at four contacts: moreau" stool
 near "and follows it: mu g t^2/2 = 2 m" 1e-3 1.2 "$(sed -n 's/^ *r\.x  *\([-0-9.e]*\) m$/\1/p' "$TMP/out")"
 check "stiff: radau" takes radau "$vdp" --tol 1e-9
 # x(2000) = 1.706167732170469, y(2000) = -0.8928097010248e-3 for mu = 1000: problem vdpol of F. Mazzia, C. Magherini, Test Set

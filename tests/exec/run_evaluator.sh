@@ -160,6 +160,8 @@ if [ -n "$san" ]; then
 else
   cp "$TMP/evaluator" "$TMP/sanitized"
 fi
+LAG_COMPILED=9 LAG_PROGRAM=$TMP/ball "$BUILD/lag-run" --method rk4 --step 1e-3 --quiet 9</dev/null 2>"$TMP/err"
+is "a compiler that ends without a library" "lag-run: the C compiler failed, so the run was evaluated; \`lagc build\` prints its messages" "$(cat "$TMP/err")"
 check "damaged bytes of a model with events" "$TMP/sanitized" "$TMP/ball" - "${SLOW:+20}200"
 check "damaged bytes of a model with nests and series" "$TMP/sanitized" "$TMP/nests" - "${SLOW:+20}100"
 printf 'no program' >"$TMP/text"

@@ -113,6 +113,16 @@ near "c" "$(member values c)" 0.01562971087 1e-2
 near "error of c" "$(member errors c)" 0.0158851 1e-3
 near "the detector's zero" "$(member values zero)" -0.01874679922 1e-3
 
+# The decay with its published error, and 57 periods; scipy.optimize.least_squares on scipy's DOP853.
+fit "$M/thread.lag" "$M/thread.csv" "g,c,zero,th,th'"
+title="a pendulum on film"
+near g "$(member values g)" 9.983869363 1e-8
+near c "$(member values c)" 0.01245268089 1e-5
+near "error of c" "$(member errors c)" 8.290238e-05 1e-4
+near "the time of its decay, 2/c" "$(awk -v c="$(member values c)" 'BEGIN { print 2/c }')" 163 0.0245
+periods() { "$LAGC" run "$M/thread.lag" "g=$(member values g)" "c=$(member values c)" "th=$(member values 'th(0)')" "th'=$(member values "th'(0)")" --quiet --json --measure 'P=period(th)' | sed 's/.*"P": \([^,}]*\).*/\1/'; }
+near "its period" "$(periods)" "$(awk 'BEGIN { print (139.1 - 1.2)/57 }')" 2.5e-4 # a frame in 57 periods
+
 # ---- columns, units, errors in the file, missing values
 other_units() {
   awk -F, 'NR == 1 { print "t [ms],x [cm],sigma(x) [cm],note [m]"; next } { print 1000*$1 "," 100*$2 ",1," }

@@ -30,6 +30,9 @@ check "by the Verlet family" run --method verlet8 --step 0.01 --gradient x
 near "... of order 8" 1e-10 -0.8568887533689472 "$(d x 'x(0)')"
 check "after a method without reverse mode, by dop853" run --method taylor --gradient x
 near "... as well" 1e-8 -0.8568887533689472 "$(d x 'x(0)')"
+automatic() { "$LAGC" run "$TMP/spring.lag" go --tol 1e-12 --until 1.3 --gradient x --json >"$TMP/out.json" 2>"$TMP/err" && grep -q '"method": "taylor"' "$TMP/out.json"; }
+check "after Taylor series that were chosen automatically, by dop853, too" automatic
+near "... as well" 1e-10 -0.8568887533689472 "$(d x 'x(0)')"
 # Steps of a header in reverse: 130 of rk4 with h = 0.01, whose error is some 1e-9.
 cat >"$TMP/header.c" <<'C'
 #define SPRING_IMPLEMENTATION

@@ -90,7 +90,10 @@ full() {
   *:null) ;;
   *) echo "a drift of an energy that is $is" ;;
   esac
-  case $said:$(tr '\n' ' ' <"$o/modes") in
+  here=$(grep -o 'which is 0 in this scene' "$o/check")
+  case $said:$here:$(tr '\n' ' ' <"$o/modes") in
+  changes:which*"conserved at these values"*) ;;
+  changes:which*"no energy is known"* | *::*"conserved at these values"*) echo "check says ${here:-nothing of values}, modes: $(grep -m1 energy "$o/modes")" ;;
   changes:*"which is conserved"* | undecided:*"which is conserved"* | conserved:*"no energy is known"*)
     echo "check says $said, modes: $(grep -m1 energy "$o/modes")"
     ;;
@@ -187,6 +190,12 @@ printf '%s\n' "model chain" "const N = 100" "coord x[N]" "lagrangian = sum(i in 
 "$LAGC" check "$TMP/chain.lag" >"$TMP/said" 2>/dev/null
 is "a long chain of forces" conserved "$(word "$TMP/said")"
 is_said curl changes "a force with a curl"
+is_said drag_of_zero changes "a drag whose coefficient is 0 in the scene"
+of_values=$("$LAGC" check $models/drag_of_zero.lag free | grep -o 'which is 0.*')
+is "and what is 0 with the scene's values" "which is 0 in this scene, where c = 0, F = 0" "$of_values"
+is "with one of two that is not 0" "" "$("$LAGC" check $models/drag_of_zero.lag pushed | grep -o 'which is 0.*')"
+empty "modes agree" "$(for s in free pushed damped; do full $models/drag_of_zero.lag $s; done)"
+check "a minimum of an energy that these values conserve" grep -q '^stable: the energy, which is conserved at these values' "$(full $models/drag_of_zero.lag free; echo "$TMP/words/modes")"
 is_said torque changes "a torque on an angle has no potential with one value"
 is_said two_branches undecided "zero on one branch of a constraint alone"
 is "the symmetries of the turntable are those of its expanded form" "8 8" "$(for f in turntable turntable_expanded; do "$LAGC" noether $models/$f.lag | sed -n 's/^found: \([0-9]*\).*/\1/p'; done | paste -sd ' ' -)"

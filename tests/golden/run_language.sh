@@ -1,12 +1,12 @@
 #!/bin/sh
 # The examples of grammar/LANGUAGE.md and PHASE_SPACE.md: a block that begins with `model` passes `lagc check`, every other one parses. A block of
-# data, ```csv NAME, is a file beside them. The list of commands and options in LANGUAGE.md is `lagc manpage markdown`; BLESS=1 writes it.
+# data, ```csv NAME or ```json NAME, is a file beside them. The list of commands and options in LANGUAGE.md is `lagc manpage markdown`; BLESS=1 writes it.
 . tests/tap.sh
 pages="grammar/LANGUAGE.md grammar/PHASE_SPACE.md"
 # shellcheck disable=SC2086 # two pages
 awk -v dir="$TMP" '
   /^```lag$/ { file = sprintf("%s/%02d.lag", dir, ++n); next }
-  /^```csv / { file = dir "/" $2; next }
+  /^```(csv|json) / { file = dir "/" $2; next }
   /^```$/ { file = ""; next }
   file { print > file }' $pages
 for f in "$TMP"/*.lag; do

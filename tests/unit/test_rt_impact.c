@@ -93,6 +93,44 @@ static void test_superball(void **state) {
   assert_true(fabs(P[0] - 4) < 1e-15 && fabs(P[1] + 2 * 1.3 / 3.5) < 1e-15 && fabs(energy_gain(W, v, P)) < 1e-15);
 }
 
+/* Stronge's law in space by steps h of the normal impulse, where no friction can hold the slip. */
+static void by_steps_in_space(const double *W, const double *v, double mu, double e, double h, double *P) {
+  double u[3] = {v[0], v[1], v[2]}, work = 0, least = 0;
+  P[0] = P[1] = P[2] = 0;
+  while (u[0] < 0 || work < (1 - e * e) * least) {
+    double slip = hypot(u[1], u[2]), f[3] = {1, -mu * u[1] / slip, -mu * u[2] / slip};
+    work += h * u[0];
+    least = fmin(least, work);
+    for (int i = 0; i < 9; i++) u[i / 3] += h * W[i] * f[i % 3];
+    for (int i = 0; i < 3; i++) P[i] += h * f[i];
+  }
+}
+
+/* A slip that turns, by another algorithm; and one that stays in a plane, next to that of the plane, where it stops,
+ * sticks and turns back. */
+static void test_impact_in_space(void **state) {
+  (void)state;
+  uint64_t seed = 3;
+  for (int i = 0; i < 6; i++) {
+    double W[9] = {1.2, 0.3, -0.2, 0.3, 1.5, 0.1, -0.2, 0.1, 0.8}, v[3] = {-1, 2, 1 - 0.4 * i}, P[3], S[3];
+    double mu = 0.1 + 0.2 * chance(&seed), e = chance(&seed);
+    assert_true(lag_space_impact(W, v, LAG_IMPACT_STRONGE, mu, e, 0, P) == 0);
+    by_steps_in_space(W, v, mu, e, 1e-5, S);
+    for (int k = 0; k < 3; k++) assert_true(fabs(P[k] - S[k]) < 5e-5); /* first order in h */
+  }
+  for (int i = 0; i < 60; i++) {
+    double U[4], u[2], Q[2], P[3], a = 2 * chance(&seed), c = cos(a), d = sin(a);
+    double mu = 2 * chance(&seed), e = chance(&seed);
+    random_impact(&seed, U, u);
+    /* out of the plane little turns the slip: 1e-9 */
+    double W[9] = {U[0], c * U[1], d * U[1] + 1e-9, c * U[1], c * c * U[3] + d * d, c * d * (U[3] - 1),
+                   d * U[1] + 1e-9, c * d * (U[3] - 1), d * d * U[3] + c * c};
+    lag_planar_impact(U, u, LAG_IMPACT_STRONGE, mu, e, 0, Q);
+    assert_true(lag_space_impact(W, (double[]){u[0], c * u[1], d * u[1]}, LAG_IMPACT_STRONGE, mu, e, 0, P) == 0);
+    assert_true(fabs(P[0] - Q[0]) < 1e-6 && fabs(P[1] - c * Q[1]) < 1e-6 && fabs(P[2] - d * Q[1]) < 1e-6);
+  }
+}
+
 /* A block on a plane: m = 1, W diagonal; pull = (-g, F). */
 static void test_block(void **state) {
   (void)state;
@@ -155,7 +193,8 @@ static void test_cone_forces(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_laws),       cmocka_unit_test(test_energy_never_grows),
-                                     cmocka_unit_test(test_superball),  cmocka_unit_test(test_block),
+                                     cmocka_unit_test(test_superball), cmocka_unit_test(test_impact_in_space),
+                                     cmocka_unit_test(test_block),
                                      cmocka_unit_test(test_static),     cmocka_unit_test(test_painleve),
                                      cmocka_unit_test(test_cone_forces)};
   return cmocka_run_group_tests(tests, NULL, NULL);

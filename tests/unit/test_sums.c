@@ -66,6 +66,9 @@ static const char *const texts[] = {
     "  -e[i]*sum(j in near(i, cut, (L, W), r), pair(image(r[i].x - r[j].x, L)^2 + image(r[i].y - r[j].y, W)^2)))",
     "const N = %d\ncoord x[N], y[N]\nparam cut = 1 > 0\nkinetic = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2)\n"
     "potential = 2*sum(i in 1..N, sum(j in near(i, cut, y), i*x[i]*(y[i] - y[j])^2))",
+    /* by a tree: what it is compared with are the pairs */
+    BODIES "potential = sum(i in 1..N, e[i]/2*sum(j in 1..i-1, -e[j]/sqrt(2*" APART " + 2*soft^2), by tree(0.5)))",
+    BODIES "potential = sum(i in 1..N-1, sum(j in i+1..N, i*j*m[i]*m[j]/norm(r[i] - r[j]), by tree(soft)))",
     /* a range that moves and grows; the first two rows are empty */
     "const N = %d\ncoord x[2*N]\nlagrangian = sum(i in 1..2*N, x[i]'^2/2) -\n"
     "  sum(i in 1..N, sum(j in i+1..2*i-2, cos(x[i] - 2*x[j])))",

@@ -1,0 +1,103 @@
+#!/bin/sh
+# Families of contacts (one text for all members, followed by moreau): closed forms of impacts and rolling, the motion of
+# single contacts, lists of neighbours against all pairs, a text that does not grow with N, saved states, refusals.
+. tests/exec/lib_motion.sh
+
+says() { # says WORDS COMMAND MODEL ARGS...: a refusal with these words
+  words=$1 command=$2 name=$3
+  shift 3
+  "$LAGC" "$command" "$TMP/$name.lag" "$@" >"$TMP/log" 2>&1 && { cat "$TMP/log"; return 1; }
+  grep -q -e "$words" "$TMP/log" || { cat "$TMP/log"; return 1; }
+}
+
+# ---- balls on a line: of masses m and 3 m, with restitution e, velocities after one impact (Newton's law)
+model line <<'END_OF'
+model line
+const N = 3
+coord r[N]: vec2
+param m[N] = 1 > 0, e = 0.6
+lagrangian = sum(i in 1..N, m[i]/2*dot(r[i]', r[i]'))
+contact hit[i in 1..N, j in near(i, 1)]: norm(r[i] - r[j]) >= 1, restitution = e
+scene s { m[2] = 3; start r[i in 1..N] = (1.5*i, 0), r[3].y = 9, r[1].x' = 1; span 1; method moreau(step = 0.01); output r[1].x', r[2].x', r[3].x' }
+END_OF
+check "two balls meet" run line
+check "the first goes on with (1 - 3 e)/4" near "$(final "r\[1\].x'")" -0.2 1e-14 # a few roundings
+check "the second with (1 + e)/4" near "$(final "r\[2\].x'")" 0.4 1e-14
+check "the third is not met" near "$(final "r\[3\].x'")" 0 0
+
+# ---- discs that slide on a floor until they roll: x' = 2 v/3 for a disc, whatever the friction
+model roll <<'END_OF'
+model roll
+const N = 3
+coord x[N], y[N], th[N] [rad]
+param R = 0.1 > 0, g = 9.81, mu[N] = {0.1, 0.3, 0.5} >= 0
+lagrangian = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2 + R^2/4*th[i]'^2 - g*y[i])
+contact floor[i in 1..N]: y[i] >= R, restitution = 0, friction = mu[i], slip = x[i]' + R*th[i]'
+scene s { start y = R, x[i in 1..N]' = 1; span 1; method moreau(step = 0.01); output x', th' }
+END_OF
+check "discs slide and roll" run roll
+for i in 1 2 3; do
+  check "disc $i rolls with two thirds of its speed" near "$(final "x\[$i\]'")" 0.66666666666666667 1e-12 # 64 roundings of the step
+done
+
+# ---- a pile: its families against single contacts, which constraints make
+pile() { # NAME RANGE: discs of different sizes with friction
+  model "$1" <<END_OF
+model pile
+const N = 6
+coord r[N]: vec2, th[N] [rad]
+param mu = 0.3, R[N] = {0.05, 0.06, 0.07, 0.05, 0.06, 0.07} > 0
+let s[i in 1..N] = r[i] - (0, 0.1)
+lagrangian = sum(i in 1..N, dot(r[i]', r[i]')/2 + R[i]^2/4*th[i]'^2 - 9.81*r[i].y)
+$2 hypot(s[i].x - s[j].x, s[i].y - s[j].y) >= R[i] + R[j], restitution = 0.3, friction = mu,
+  slip = ((r[i].x - r[j].x)*(r[i].y' - r[j].y') - (r[i].y - r[j].y)*(r[i].x' - r[j].x'))
+         /hypot(r[i].x - r[j].x, r[i].y - r[j].y) - R[i]*th[i]' - R[j]*th[j]' $3
+$4 r[i].y >= R[i], restitution = 0.3, friction = mu, slip = r[i].x' + R[i]*th[i]' $5
+$6 r[i].x >= R[i], restitution = 0.3 $5
+scene s { start r[i in 1..N] = (0.1 + 0.16*(i - 2*floor(i/2)) + 0.01*i, 0.1 + 0.15*floor(i/2)); span 0.5; method moreau(step = 0.002); output r, th }
+END_OF
+}
+pile near 'contact hit[i in 1..N, j in near(i, 0.14)]:' '' 'contact floor[i in 1..N]:' '' 'contact wall[i in 1..N]:'
+pile pairs 'contact hit[i in 1..N, j in 1..i-1]:' '' 'contact floor[i in 1..N]:' '' 'contact wall[i in 1..N]:'
+pile single 'for i in 1..N { for j in 1..i-1 { contact hit[i,j]:' '} }' 'for i in 1..N { contact floor[i]:' '}' 'for i in 1..N { contact wall[i]:'
+rows() { run "$1" && cp "$TMP/csv" "$TMP/$1.csv"; }
+for name in near pairs single; do check "a pile, $name" rows "$name"; done
+check "it has impacts" test "$(number impacts)" -gt 10
+check "lists of neighbours change no bit" cmp "$TMP/near.csv" "$TMP/pairs.csv"
+# rounding, 1e-16, times the growth of differences: 40 impacts, each by a few
+same() { paste -d, "$TMP/near.csv" "$TMP/single.csv" | awk -F, 'NR > 1 { for (k = 1; k <= NF/2; k++) if (($k - $(k + NF/2))^2 > 1e-16) exit 1 }'; }
+check "single contacts move alike" same
+check "a run" run near
+whole=$(final 'r\[3\].x')
+check "a run that is cut" run near --until 0.25 --save-state "$TMP/state"
+check "goes on" run near --resume "$TMP/state"
+check "with the same digits" test "$(final 'r\[3\].x')" = "$whole"
+
+# ---- the text does not grow
+member() { sed -n '/^static int family_0(/,/^}/p' "$1"; }
+sed 's/{0.05, 0.06, 0.07, 0.05, 0.06, 0.07}/0.05/' "$TMP/near.lag" >"$TMP/many.lag"
+for n in 6 1000; do check "$n discs" "$LAGC" emit "$TMP/many.lag" -D N=$n -o "$TMP/$n.c"; done
+check "contacts of 1000 discs have the text of six" test "$(member "$TMP/6.c")" = "$(member "$TMP/1000.c")"
+check "and it is some" test "$(member "$TMP/6.c" | wc -l)" -gt 20
+
+# ---- refusals
+edit() { sed "$2" "$TMP/near.lag" >"$TMP/$1.lag"; }
+edit over 's/0.1 + 0.15\*floor/0.1 + 0.05*floor/'
+check "bodies that overlap at the start" says 'hit\[[0-9], [0-9]\] is closed by .* at the start' run over
+edit beyond 's/^contact wall.*/contact wall[i in 1..N]: r[i+1].x >= 0, restitution = 0/'
+check "an index out of range" says 'leaves the range of the family' check beyond
+edit number 's/^contact wall.*/contact wall[i in 1..N]: r[i].x + i >= 0, restitution = 0/'
+check "an index as a number" says 'an index is a number here' check number
+edit first 's/near(i, 0.14)/near(k, 0.14)/'
+check "near of another index" says '`near` takes the first index' check first
+edit moves 's/near(i, 0.14)/near(i, r[1].x)/'
+check "a cut-off that moves" says 'the cut-off and the box of `near` move' check moves
+edit beside 's/^contact wall.*/contact wall: r[1].x >= 0, restitution = 0/'
+check "a single contact beside" says 'single contacts beside a family' check beside
+edit static 's/friction = mu, slip = r/friction = mu, static = 0.5, slip = r/'
+check "static friction" says 'not yet: `static` of a family' check static
+edit dop853 's/moreau(step = 0.002)/dop853/'
+check "another method" says 'does not follow the family of contacts `hit`' check dop853
+check "another method of the command line" says 'does not follow the family of contacts hit' run near --method dop853
+check "a header" says 'not yet: families of contacts in `lagc header`' header near
+tap_end
