@@ -192,7 +192,8 @@ static void compare_rounding(App *app, ErrorEstimate *e, const lag_sim *run, dou
   int implicit = (m->flags & (LAG_METHOD_NEWTON | LAG_METHOD_SPLITS)) == LAG_METHOD_NEWTON;
   int high = lag_equal_step(run) > 0 && (m->order_of ? m->order_of(run->options) : m->order) >= 4;
   int regular = isnan(e->horizon) && !e->continued && run->run->events == 0;
-  if (!high || !regular || !(e->largest > seen && e->largest < small) || lag_app_work(run) > fmax(cheap, most / 4)) return;
+  if (!high || !regular || !(e->largest > seen && e->largest < small) || lag_app_work(run) > fmax(cheap, most / 4))
+    return;
   double a = compare_steps(app, e, run, shorter[0]), b = compare_steps(app, e, run, shorter[1]);
   double safety = e->growth == LAG_ERROR_EXPONENTIAL ? 3 : 2, error = safety * fmax(a, b);
   if (implicit) error = fmax(error, coefficients * e->floor);

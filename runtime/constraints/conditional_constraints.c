@@ -32,7 +32,8 @@ static int place(lag_sim *s, double t, const double *y, int event, const double 
   for (int i = 0; i < m->ncontacts && rc == 0; i++) {
     const lag_contact *c = &m->contacts[i];
     if (!c->conditional) continue;
-    int now = lag_contact_is_closed(s, c), then = then_holds(s, c, event, now ? s->g1[c->release] : -s->g1[c->impact], zero);
+    int now = lag_contact_is_closed(s, c);
+    int then = then_holds(s, c, event, now ? s->g1[c->release] : -s->g1[c->impact], zero);
     s->contact_was[i] = now;
     s->hold[c->input] = then ? 1 : NAN;
     *changed |= then != now;
@@ -112,7 +113,8 @@ static int fail_undecided(lag_sim *s) {
   return lag_fail(
       s, LAG_EMODEL,
       "at t = %.9g s the constraint %s can neither hold nor not hold: its own impulse makes its condition %s",
-      s->run->t, m->constraints->of[m->contacts[i].constraint].name, lag_contact_is_closed(s, &m->contacts[i]) ? "true" : "false");
+      s->run->t, m->constraints->of[m->contacts[i].constraint].name,
+      lag_contact_is_closed(s, &m->contacts[i]) ? "true" : "false");
 }
 
 int lag_settle_constraints(lag_sim *s, double *y, const char *who, int event, int ends, int moved, const double *zero) {

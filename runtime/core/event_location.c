@@ -98,7 +98,8 @@ static void first_root(lag_sim *s) {
   for (int k = 0; k < lag_watched(s); k++) {
     if (isnan(s->root[k])) continue;
     double later = s->root[k] + r->dir * s->late * fabs(s->root[k]);
-    if (s->late > 0 && !lag_is_kick(s->scene->model, k)) s->root[k] = (later - r->step_t1) * r->dir < 0 ? later : r->step_t1;
+    if (s->late > 0 && !lag_is_kick(s->scene->model, k))
+      s->root[k] = (later - r->step_t1) * r->dir < 0 ? later : r->step_t1;
     r->pending = 1;
     if ((s->root[k] - r->limit) * r->dir < 0) r->limit = s->root[k];
   }

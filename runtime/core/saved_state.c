@@ -95,7 +95,8 @@ unsigned long long lag_sim_signature(const lag_sim *s) {
   char sizes[128];
 
   for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
-    for (int i = 0; i < tables[k].n; i++) h = lag_hash_text(lag_hash_text(h, tables[k].vars[i].name), tables[k].vars[i].unit);
+    for (int i = 0; i < tables[k].n; i++)
+      h = lag_hash_text(lag_hash_text(h, tables[k].vars[i].name), tables[k].vars[i].unit);
     h = lag_hash_text(h, ";");
   }
   for (int i = 0; i < m->nev; i++) h = lag_hash_text(h, m->ev[i].name);

@@ -109,7 +109,8 @@ int lag_moreau_matrices(lag_problem *pb, double t, const double *y, double *A, d
 
 int lag_moreau_unit_change(lag_problem *pb, double t, const double *y, const double *g, double *d, double *effort) {
   const lag_constraints *of = pb->model->constraints;
-  return lag_step_checked(pb, of->velocity(of, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, g, d, effort, pb->work), t);
+  return lag_step_checked(
+      pb, of->velocity(of, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, g, d, effort, pb->work), t);
 }
 
 int lag_moreau_frictions(lag_problem *pb, double t, const double *y, double *law) {

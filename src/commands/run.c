@@ -67,7 +67,8 @@ static int has_drawing(Compiler *c) {
   if (!sc->shapes.n)
     return usage_error("nothing to draw: the model has no `draw`, no x,y, no x1,y1 x2,y2 ... and no vector among its "
                        "coordinates; write `draw ball at (X, Y)` in it, or --points 'X,Y X,Y'"), 0;
-  if (sc->guessed && !c->picture.note && !options_pass_flag(&c->o, "--quiet")) c->picture.note = drawing_words(c->arena, sc);
+  if (sc->guessed && !c->picture.note && !options_pass_flag(&c->o, "--quiet"))
+    c->picture.note = drawing_words(c->arena, sc);
   return 1;
 }
 

@@ -43,7 +43,8 @@ static CheckVerdict compare_forces(Check *c, const Real *M, const Real *bias, co
 
 static CheckVerdict check_forces(Check *c) {
   const ProgramSet *u = c->u;
-  Real *M = check_reals(c, c->n * c->n), *bias = check_reals(c, c->n), *inverse = check_reals(c, c->n), *a = check_reals(c, c->n),
+  Real *M = check_reals(c, c->n * c->n), *bias = check_reals(c, c->n), *inverse = check_reals(c, c->n),
+       *a = check_reals(c, c->n),
        *lambda = check_reals(c, c->m->constraints.n);
   CheckVerdict v = AGREES;
   for (uint32_t i = 0; i < c->n; i++) a[i] = c->a[i];
