@@ -25,7 +25,8 @@ static void family_row(const ModelFile *f, const IrContactFamily *c, uint32_t i)
   const char *of = arena_printf(f->a, "family_%u", i);
   sb_printf(f->out, "  {%s, %u, %lld, %lld, %lld, %lld, %lld, %lld, %u, %u, %s%s, %s%s, %u, %s, ",
             c_string(f->a, c->name), c->indices, (long long)c->i0, (long long)c->j0, (long long)c->rows,
-            (long long)c->skew, (long long)c->turns, (long long)c->more, c->coords.n, c->params.n, of, "_coords", c->params.n ? of : "NULL",
+            (long long)c->skew, (long long)c->turns, (long long)c->more, c->coords.n, c->params.n, of, "_coords",
+            c->params.n ? of : "NULL",
             c->params.n ? "_params" : "", c->tangents, of);
   sb_printf(f->out, "%s%s, %u, {", c->reach ? of : "NULL", c->reach ? "_reach" : "", c->nplaces);
   for (uint32_t k = 0; k < c->nplaces || k == 0; k++) {

@@ -121,7 +121,8 @@ const Read *quantified_read_of(const struct Quantified *q, const Symbol *s, int6
 }
 
 SymId quantified_symbol(const Model *m, const struct Quantified *q, const Read *r, int64_t part) {
-  return member_symbol(m, r->e->kind, r->rate, r->e->index + (uint32_t)(at_pair(quantified_element(r), q->pair[0]) + part));
+  return member_symbol(m, r->e->kind, r->rate,
+                       r->e->index + (uint32_t)(at_pair(quantified_element(r), q->pair[0]) + part));
 }
 
 /* Symbols that hold one number for all pairs: of names without an index. */
