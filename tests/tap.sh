@@ -3,6 +3,7 @@
 # A suite that is run without tests/run.sh finds the build of `make` here, and a folder of its own.
 : "${LAGC:=build/lagc}" "${CC:=cc}" "${BUILD:=build}" "${INC:=runtime/include}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+export TMP
 tap_n=0
 tap_bad=0
 
@@ -137,6 +138,9 @@ skip_all() {
   echo "1..0 # SKIP $1"
   exit 0
 }
+
+# needs_gsl: skips the suite where lagc was built without GSL.
+needs_gsl() { [ -n "${GSL:-}" ] || [ -e "$BUILD/liblag_gsl.a" ] || skip_all "GSL is not installed"; }
 
 tap_end() {
   echo "1..$tap_n"

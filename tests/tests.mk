@@ -76,20 +76,23 @@ SAN_MAKE = $(QUIET) BUILD=$(SAN_BUILD) PRECISIONS= CFLAGS='$(SAN_OPT)' SAN='$(SA
 SAN_LAGC := $(SAN_BUILD)/liblagc.a
 SAN_RT   := $(if $(GSL),$(SAN_BUILD)/liblag_gsl.a) $(SAN_BUILD)/liblag.a
 
-# The largest build starts first.
+# The largest build starts first; modules of pages, which are shrunk one step behind the other, while test programs are made.
 ifneq ($(ONLY),)
 build-tests: build-san
 	$(QUIET) $(ONLY:tests/unit/%.c=$(BIN)/%)
 else
-build-tests: build-san build-plain
-	$(QUIET) $(TEST_BIN)
+build-tests: build-programs build-page
 endif
+build-programs: build-san build-plain
+	$(QUIET) $(TEST_BIN)
+build-page: build-plain
+	$(if $(WASM),$(QUIET) page)
 build-san:
 	@echo 'building $(SAN_BUILD) with sanitizers'
 	$(SAN_MAKE) $(if $(ONLY),,$(SAN_BUILD)/lagc) $(SAN_LAGC) $(SAN_RT)
 build-plain:
 	@echo 'building $(BUILD)/lagc'
-	$(QUIET) all $(if $(WASM),page)
+	$(QUIET) all
 build-more: build-san build-plain
 	@echo 'building other precisions$(if $(CLANG), and $(BUILD)/clang by clang)'
 	$(QUIET) precisions

@@ -9,6 +9,7 @@
 
 #include "core/core.h"
 #include "numeric/workspace.h"
+#include "numeric/dense.h"
 
 /* Between these tolerances dop853 is the cheapest method, as measured with `lagc cost`. */
 static const double below_taylor = 1e-9, above_rk45 = 1e-6;
@@ -42,12 +43,6 @@ typedef struct Look {
   double *J, *x, *y, *z, *work;
 } Look;
 
-static double dot(int n, const double *a, const double *b) {
-  double sum = 0;
-  for (int i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 /* y := (df/dy) x; returns |y|. */
 static double apply_jacobian(const lag_problem *pb, const double *J, const double *x, double *y) {
   size_t n = (size_t)pb->n, nq = (size_t)pb->nq;
@@ -56,7 +51,7 @@ static double apply_jacobian(const lag_problem *pb, const double *J, const doubl
     for (size_t k = 0; i >= nq && k < n; k++) value += J[(i - nq) * n + k] * x[k];
     y[i] = value;
   }
-  return sqrt(dot(pb->n, y, y));
+  return sqrt(lag_dot(pb->n, y, y));
 }
 
 /* The dominant eigenvalue, or pair: returns its modulus, 0 where there is none, and its real part. Power method,
@@ -71,9 +66,9 @@ static double dominant(Look *l, const lag_problem *pb, double *real) {
     if (!(growth > 0 && isfinite(growth))) return 0;
     for (int k = 0; k < n; k++) l->x[k] = l->y[k] / growth;
   }
-  double yy = apply_jacobian(pb, l->J, l->x, l->y), xy = dot(n, l->x, l->y); /* |x| = 1 */
+  double yy = apply_jacobian(pb, l->J, l->x, l->y), xy = lag_dot(n, l->x, l->y); /* |x| = 1 */
   apply_jacobian(pb, l->J, l->y, l->z);
-  double xz = dot(n, l->x, l->z), yz = dot(n, l->y, l->z), det = (yy - xy) * (yy + xy);
+  double xz = lag_dot(n, l->x, l->z), yz = lag_dot(n, l->y, l->z), det = (yy - xy) * (yy + xy);
   if (!(det > alike * yy * yy)) {
     *real = xy;
     return fabs(xy);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "analysis/continuation.h"
-#include "analysis/equilibrium.h"
 #include "analysis/periodic_orbit.h"
 
 /* States of rest over a parameter of the model: velocities are 0, accelerations and rates of states vanish. */

@@ -7,6 +7,7 @@
 
 #include "lag.h"
 #include "numeric/singular_values.h"
+#include "numeric/dense.h"
 
 enum { MOST_NEWTON = 12, MOST_LOCATE = 60 };
 
@@ -22,12 +23,6 @@ typedef struct Walk {
   int border;  /* 1: that step ends at the border of the range */
 } Walk;
 
-static double dot(int n, const double *a, const double *b) {
-  double sum = 0;
-  for (int i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 static int open_walk(Walk *w, Branch *b, const BranchProblem *p) {
   size_t rows = (size_t)p->rows + 1, cols = (size_t)p->cols;
   *w = (Walk){.b = b, .p = p, .rows = p->rows + 1, .cols = p->cols};
@@ -39,15 +34,15 @@ static int open_walk(Walk *w, Branch *b, const BranchProblem *p) {
 
 /* Newton's steps from u, each across the direction d: u := a solution. 0: none. */
 static int correct(Walk *w, double *u, const double *d) {
-  double last = HUGE_VAL, along = dot(w->cols, u, d);
+  double last = HUGE_VAL, along = lag_dot(w->cols, u, d);
   for (w->newton = 0; w->newton < MOST_NEWTON; w->newton++) {
     if (w->p->place(w->p->of, u) || w->p->system(w->p->of, w->J, w->rhs)) return 0;
     memcpy(w->J + w->p->rows * w->cols, d, (size_t)w->cols * sizeof *d);
-    w->rhs[w->p->rows] = along - dot(w->cols, u, d);
+    w->rhs[w->p->rows] = along - lag_dot(w->cols, u, d);
     lag_singular_values(w->rows, w->cols, w->J, w->V, w->sigma);
     lag_least_norm((lag_decomposed){w->rows, w->cols, w->J, w->V, w->sigma}, least_rank, 0, w->rhs, w->x);
     if (fabs(d[w->cols - 1]) == 1.0) w->x[w->cols - 1] = 0; /* the parameter stays to the bit, as at its bound */
-    double size = sqrt(dot(w->cols, w->x, w->x));
+    double size = sqrt(lag_dot(w->cols, w->x, w->x));
     if (!(size < 1)) return 0;
     for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
     if (size < 1e-12 || (size < 1e-9 && size > 0.3 * last)) return w->p->place(w->p->of, u) == LAG_OK;
@@ -284,7 +279,7 @@ static BranchPoint *locate(Walk *w, const BranchPoint *from, const BranchPoint *
 static int is_closed(const Branch *b, const BranchPoint *at, double step, int cols) {
   double d = 0;
   for (int i = 0; i < cols; i++) d += (at->u[i] - b->first->u[i]) * (at->u[i] - b->first->u[i]);
-  return b->npoints > 6 && sqrt(d) < 0.6 * step && dot(cols, at->tangent, b->first->tangent) > 0.9;
+  return b->npoints > 6 && sqrt(d) < 0.6 * step && lag_dot(cols, at->tangent, b->first->tangent) > 0.9;
 }
 
 /* The point where the branch leaves the range, between `from` and one beyond, at arclength w->made. */
@@ -311,7 +306,7 @@ static BranchPoint *last_point(Walk *w, const BranchPoint *from, double step, co
   for (int i = 0; i < w->cols; i++) u[i] = from->u[i] + step * from->tangent[i];
   if (!outside(u, w->cols - 1, l)) return NULL;
   BranchPoint beyond = {.u = u, .tangent = from->tangent}, *at = at_border(w, from, &beyond, l);
-  w->made = at ? dot(w->cols, at->u, from->tangent) - dot(w->cols, from->u, from->tangent) : 0;
+  w->made = at ? lag_dot(w->cols, at->u, from->tangent) - lag_dot(w->cols, from->u, from->tangent) : 0;
   return at;
 }
 
@@ -324,7 +319,7 @@ static BranchPoint *next_point(Walk *w, double *step, double least, const Branch
     w->made = *step;
     w->border = !at && (at = last_point(w, from, *step, l)) != NULL;
     if (!at) continue;
-    double turn = dot(w->cols, at->tangent, from->tangent);
+    double turn = lag_dot(w->cols, at->tangent, from->tangent);
     if (turn < least) continue;
     int easy = w->newton <= 4 && turn > 0.98;
     *step = easy ? fmin(1.4 * *step, l->longest) : *step;

@@ -1,5 +1,6 @@
 /* Spectral radius from the size of a power (fastest_rate.h). */
 #include "analysis/fastest_rate.h"
+#include "numeric/dense.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,8 +8,7 @@
 double lag_fastest_rate(int n, double *A, double *B) {
   double rate = 1, root = 1;
   for (int turn = 0; turn < 5; turn++, root /= 2) {
-    double size = 0;
-    for (int i = 0; i < n * n; i++) size += A[i] * A[i];
+    double size = lag_dot(n * n, A, A);
     size = sqrt(size);
     rate *= pow(size, root);
     if (!(size > 0)) return 0;

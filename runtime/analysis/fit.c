@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "analysis/fit_residuals.h"
+#include "numeric/magnitudes.h"
 
 /* ---- The search */
 
@@ -84,11 +85,6 @@ static double spread_of(const Fit *f, int c) {
   return variance > 1e-12 * mean * mean ? sqrt(variance) : mean != 0.0 ? fabs(mean) : 1;
 }
 
-static int by_size(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Size of the residuals of column c: root of the mean square; with Huber's loss 1.48 times the median size. */
 static double residual_size(const Fit *f, int c) {
   double *size = malloc((size_t)(f->nrows + 1) * sizeof *size), sum = 0;
@@ -101,7 +97,7 @@ static double residual_size(const Fit *f, int c) {
   }
   double share = f->freedom > 0 ? f->freedom / f->nvalues : 1, result = n ? sqrt(sum / (n * share)) : 1;
   if (f->huber && n) {
-    qsort(size, (size_t)n, sizeof *size, by_size);
+    qsort(size, (size_t)n, sizeof *size, lag_ascending);
     result = 1.4826 * size[n / 2];
   }
   free(size);

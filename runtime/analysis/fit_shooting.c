@@ -11,6 +11,7 @@
 
 #include "analysis/fit_residuals.h"
 #include "core/core.h"
+#include "numeric/dense.h"
 
 /* Weight of gaps in the end: over a chaotic record errors of steps grow to more than this. Stated errors include it. */
 static const double tightest = 1e6;
@@ -143,8 +144,7 @@ void lag_fit_nodes_free(Fit *f) {
 }
 
 double lag_fit_widest_gap(const Fit *f) {
-  double widest = 0;
-  for (int i = 0; i < f->nodes->n * f->nodes->ns; i++) widest = fmax(widest, fabs(f->nodes->gap[i]));
+  double widest = lag_largest(f->nodes->n * f->nodes->ns, f->nodes->gap);
   return widest;
 }
 
@@ -363,8 +363,7 @@ static void shoot_free(Shoot *s) {
 /* Squares of the residuals r and of the gaps of nodes that count. */
 static double squares_of(const Fit *f, const double *r) {
   const FitNodes *w = f->nodes;
-  double sum = 0;
-  for (int i = 0; i < f->nvalues + f->n; i++) sum += r[i] * r[i];
+  double sum = lag_dot(f->nvalues + f->n, r, r);
   for (int k = 0; k < f->nrecords; k++)
     for (int node = 0, end = lag_fit_end_row(f, k); node < w->n; node++)
       for (int i = node * w->ns; i < (node + 1) * w->ns && w->row[node] >= f->first[k] && w->row[node] < end; i++) {

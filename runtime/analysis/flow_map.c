@@ -66,8 +66,7 @@ static int driven_at(FlowMap *f, double t, const double *y, double *out) {
 /* Weight of number i beside the rates, of those at[n + nev]: event functions count as much as all rates, whatever their
  * size: that of a distant surface is large. */
 static double driven_weight(const FlowMap *f, const double *at, int i) {
-  double rates = 0;
-  for (int j = 0; j < f->n; j++) rates += at[j] * at[j];
+  double rates = lag_dot(f->n, at, at);
   return i < f->n || !(rates > 0) || at[i] == 0.0 ? 1 : sqrt(rates) / fabs(at[i]);
 }
 

@@ -10,6 +10,7 @@
 
 #include "analysis/measure_nodes.h"
 #include "core/core.h"
+#include "numeric/dense.h"
 
 #ifndef LAG_OF_REAL
 #define LAG_OF_REAL(f) f /* f of the scalar: with the suffix of long double or __float128 */
@@ -43,12 +44,10 @@ static double negative(double a) { return -a; }
 static double least(double a, double b) { return a < b ? a : b; }
 static double most(double a, double b) { return a > b ? a : b; }
 
-static double sign(double a) { return (a > 0) - (a < 0); }
-
 static const MeasureFunction functions[] = {
 #define ROW(OP, name, ...) {#name, LAG_OF_REAL(name), NULL},
   FUNCTIONS(ROW)
-  {"sqrt", sqrt, NULL}, {"abs", fabs, NULL}, {"floor", floor, NULL}, {"neg", negative, NULL}, {"sign", sign, NULL},
+  {"sqrt", sqrt, NULL}, {"abs", fabs, NULL}, {"floor", floor, NULL}, {"neg", negative, NULL}, {"sign", lag_sign, NULL},
   {"atan2", NULL, atan2}, {"hypot", NULL, hypot}, {"lesser", NULL, least}, {"greater", NULL, most},
   {"+", NULL, add}, {"-", NULL, subtract}, {"*", NULL, multiply}, {"/", NULL, divide}, {"^", NULL, pow},
 };

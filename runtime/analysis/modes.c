@@ -80,12 +80,6 @@ static int state_matrix(Pool *pool, Equilibrium *rest, double **A, double **nois
   return with_noise(pool, rest, jacobian, n * n, A, noise);
 }
 
-static double row_size(const double *row, int n) {
-  double most = 0;
-  for (int i = 0; i < n; i++) most = fmax(most, fabs(row[i]));
-  return most;
-}
-
 /* K, C, M := entries divided by the weights of row and column. */
 static void divide_by_weights(Matrices *m, int ny, const double *dr, double *K, double *C, double *M) {
   int nq = m->nq;
@@ -106,7 +100,7 @@ static void classify(Matrices *m) {
   for (int i = 0; i < nq; i++)
     for (int j = 0; j < nq; j++) {
       int a = i * nq + j, b = j * nq + i;
-      double size = fmin(row_size(m->K + i * nq, nq), row_size(m->K + j * nq, nq));
+      double size = fmin(lag_largest(nq, m->K + i * nq), lag_largest(nq, m->K + j * nq));
       m->symmetric &= fabs(m->K[a] - m->K[b]) <= 8 * (fabs(m->noise_K[a]) + fabs(m->noise_K[b])) + 1e-13 * size;
       m->undamped &= fabs(m->C[a]) <= 8 * fabs(m->noise_C[a]) + 4 * DBL_EPSILON * sqrt(size);
     }
@@ -123,7 +117,7 @@ static int entries(Matrices *m, Pool *pool, Equilibrium *r) {
   const double *M = values + rows;
   m->definite = 1;
   for (int i = 0; i < nq; i++) {
-    double own = M[i * nq + i], size = row_size(M + i * nq, nq);
+    double own = M[i * nq + i], size = lag_largest(nq, M + i * nq);
     m->definite &= own > 0;
     m->weight[i] = own > 0 ? sqrt(own) : size > 0 ? sqrt(size) : 1;
   }

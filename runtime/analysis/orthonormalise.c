@@ -4,12 +4,7 @@
 #include <math.h>
 
 #include "lag.h"
-
-static double dot(int n, int k, const double *Y, int a, int b) {
-  double s = 0;
-  for (int i = 0; i < n; i++) s += Y[i * k + a] * Y[i * k + b];
-  return s;
-}
+#include "numeric/dense.h"
 
 static void scale(int n, int k, double *Y, int a, double by) {
   for (int i = 0; i < n; i++) Y[i * k + a] *= by;
@@ -18,12 +13,12 @@ static void scale(int n, int k, double *Y, int a, double by) {
 int lag_orthonormalise(int n, int k, double *Y, double *sum, int counts, int joins) {
   const double rounding = 1e-9;
   for (int a = 0; a < k; a++) {
-    double before = sqrt(dot(n, k, Y, a, a));
+    double before = sqrt(lag_columns_dot(n, k, Y, a, a));
     for (int b = 0; b < a; b++) {
-      double c = dot(n, k, Y, a, b);
+      double c = lag_columns_dot(n, k, Y, a, b);
       for (int i = 0; i < n; i++) Y[i * k + a] -= c * Y[i * k + b];
     }
-    double length = sqrt(dot(n, k, Y, a, a));
+    double length = sqrt(lag_columns_dot(n, k, Y, a, a));
     if (joins && length <= rounding * fmax(before, 1)) sum[a] = -HUGE_VAL;
     int gone = sum[a] == -HUGE_VAL;
     if (!gone && (!(length > 0) || !isfinite(length))) return LAG_EDOMAIN;

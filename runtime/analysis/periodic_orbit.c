@@ -9,6 +9,7 @@
 
 #include "analysis/finite_difference.h"
 #include "numeric/singular_values.h"
+#include "numeric/dense.h"
 
 enum { MOST_STEPS = 60, MOST_SEGMENTS = 40 };
 
@@ -208,8 +209,7 @@ static void begin_rows(PeriodicOrbit *o) {
 /* Removes the part of the shooting rows along w[m n], of unit length. */
 static void remove_part(PeriodicOrbit *o, const double *w) {
   int all = o->m * o->n;
-  double part = 0;
-  for (int r = 0; r < all; r++) part += w[r] * o->b[r];
+  double part = lag_dot(all, w, o->b);
   for (int r = 0; r < all; r++) o->b[r] -= part * w[r];
   for (int c = 0; c < o->cols; c++) {
     part = 0;
@@ -276,15 +276,9 @@ static void move(PeriodicOrbit *o, const double *x, double part) {
   if (o->continues) lag_orbit_set_parameter(o, o->parameter + part * x[o->cols - 1] * o->parameter_unit);
 }
 
-static double largest(int n, const double *x) {
-  double most = 0;
-  for (int i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
-  return most;
-}
-
 /* A step, halved until the residual falls; *size: of the step made. 0: none does, and the unknowns stay. */
 static int falling_step(PeriodicOrbit *o, double *size) {
-  double before = o->residual, step = largest(o->cols, o->x), T = o->T, parameter = o->parameter,
+  double before = o->residual, step = lag_largest(o->cols, o->x), T = o->T, parameter = o->parameter,
          shift[ORBIT_MOST_GROUP];
   double part = step > 0.25 ? 0.25 / step : 1, *x = o->saved + o->m * o->n, *y = o->saved;
   memcpy(y, o->y, (size_t)(o->m * o->n) * sizeof *y);

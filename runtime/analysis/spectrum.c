@@ -3,6 +3,7 @@
  * other's uncertainty are replaced by their mean, which is well determined where they are not; those within their
  * uncertainty of 0 are 0. */
 #include "analysis/spectrum.h"
+#include "numeric/dense.h"
 
 #include <float.h>
 #include <math.h>
@@ -12,8 +13,7 @@
 static const double defective = 1e5;
 
 static double frobenius(int n, const double *A) {
-  double sum = 0;
-  for (int i = 0; i < n * n; i++) sum += A[i] * A[i];
+  double sum = lag_dot(n * n, A, A);
   return sqrt(sum);
 }
 

@@ -16,12 +16,6 @@ enum { LEVELS = 10, MOST_STEPS = 60, MOST_PLANES = 24, SAMPLES = 4, DESCENT = 20
 
 /* ---- Rows and their derivatives */
 
-static double largest(int n, const double *x) {
-  double most = 0;
-  for (int i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
-  return most;
-}
-
 /* out[nrows] at y. */
 static int rows_at(const SteadyMotion *s, const double *y, double *out) {
   lag_problem *pb = &s->sim->pb;
@@ -305,7 +299,7 @@ static int least_squares(SteadyMotion *s, int rows, int cols, const double *A, c
          *B = lag_pool_doubles(&pool, (size_t)rows * (size_t)size);
   double *N = lag_pool_doubles(&pool, (size_t)size * (size_t)size), *z = lag_pool_doubles(&pool, (size_t)size);
   int rank = pool.failed ? LAG_ENOMEM : lag_padded_kernel(&pool, s->algebra, size, (Rectangle){rows, cols, A},
-                                                          1e-7 * largest(rows * cols, A), Q);
+                                                          1e-7 * lag_largest(rows * cols, A), Q);
   for (int i = 0; i < rows && rank > 0; i++)
     for (int k = 0; k < rank; k++)
       for (int j = 0; j < cols; j++) B[i * rank + k] += A[i * cols + j] * Q[j * size + k];
@@ -348,7 +342,7 @@ static int equations(SteadyMotion *s, int m, double *J, double *b, double *X, do
 /* Whether what is left of every equation is rounding: of its own terms; where no unknown changes it, of the fastest
  * ones. */
 static int is_root(const SteadyMotion *s, int cols, const double *J, const double *b) {
-  double fastest = largest(s->n * cols, J), noise;
+  double fastest = lag_largest(s->n * cols, J), noise;
   for (int r = 0; r < s->nrows; r++) {
     double top = row_top(s, r, &noise), rounding = r >= s->n      ? 1e-12
                                                    : top <= noise ? 4 * DBL_EPSILON * fastest
@@ -401,7 +395,7 @@ static int newton(SteadyMotion *s, int *steps) {
     found = is_root(s, cols, J, b);
     weigh_rows(s, cols, J, b);
     if ((rc = least_squares(s, s->nrows, cols, J, b, x)) != LAG_OK) break;
-    step = largest(n, x);
+    step = lag_largest(n, x);
     found &= step < 1e-9;
     if (found && (k == 0 || step < 1e-14 || step > 0.5 * last)) break; /* a start that is steady to rounding stays */
     double part = step > 0.3 ? 0.3 / step : 1;
@@ -540,7 +534,7 @@ int lag_steady_continues(SteadyMotion *s, const double *dx, double far) {
   if (!y) return 0;
   memcpy(y, s->y, (size_t)n * sizeof *y);
   memcpy(c, s->c, (size_t)s->m * sizeof *c);
-  double size = largest(n, dx);
+  double size = lag_largest(n, dx);
   for (int i = 0; i < n; i++) s->y[i] += far * dx[i] / size * s->unit[i];
   memcpy(from, s->y, (size_t)n * sizeof *y);
   s->moving = 1;

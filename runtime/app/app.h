@@ -2,7 +2,6 @@
  * that return 0 or EXIT_USAGE have printed a message in the second case. */
 #pragma once
 
-#include <signal.h>
 
 #include "analysis/error_estimate.h"
 #include "analysis/measure.h"
@@ -153,6 +152,10 @@ int lag_args_count(const Args *a, const char *option, const char *text, const ch
 __attribute__((format(printf, 2, 3)))
 #endif
 int lag_app_error(const Args *a, const char *format, ...);
+/* The same where an analysis has no result: EXIT_RUN. */
+#define lag_app_no_result(...) (lag_app_error(__VA_ARGS__), EXIT_RUN)
+/* Refuses a span without length; returns EXIT_USAGE. */
+int lag_app_no_span(const App *app);
 
 /* simulation_setup.c: app->scene and app->sim with values and method; lag_app_set_up_start: without the method. 0,
  * or EXIT_USAGE after a message. */

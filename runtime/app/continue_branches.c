@@ -80,8 +80,7 @@ static const char *words_of(int rc, const char *message) {
 }
 
 static int failed(Job *job, int rc, const char *message) {
-  lag_app_error(&job->app->args, "%s", words_of(rc, message));
-  return EXIT_RUN;
+  return lag_app_no_result(&job->app->args, "%s", words_of(rc, message));
 }
 
 /* part->why := what kept the branch from going on: a value that the model refuses, a run that fails, a motion that

@@ -39,7 +39,7 @@ void lag_continue_describe(Job *job) {
                         lag_number_text(lag_sim_tolerance(app->sim), text));
   for (size_t k = 0; k < sizeof options / sizeof *options; k++) {
     if (!options[k][1]) continue;
-    h = lag_fnv1a(h, options[k][1], strlen(options[k][1]) + 1);
+    h = lag_hash_text(h, options[k][1]);
     n += (size_t)snprintf(s + n, size - n, ", %s%s%.60s", options[k][0], *options[k][1] ? " " : "", options[k][1]);
   }
   snprintf(s + n, size - n, ", values %016llx", h);

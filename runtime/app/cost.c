@@ -465,11 +465,7 @@ int lag_app_cost(App *app) {
                          "them, `final` or `residual`",
                          a->error);
   int failed = lag_cost_begin(&cost, rows, output > 0 ? 1 : app->sim->pb.n, t0, span);
-  rc = failed ? lag_app_error(a, "out of memory")
-       : span == 0.0
-           ? lag_app_error(
-                 a, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", t0)
-           : 0;
+  rc = failed ? lag_app_error(a, "out of memory") : span == 0.0 ? lag_app_no_span(app) : 0;
   if (rc == 0 && a->seconds &&
       (!lag_args_number(a, "--seconds", a->seconds, "--seconds 60", &cost.seconds) || cost.seconds <= 0))
     rc = lag_app_error(a, "--seconds %s: the time to spend, for example --seconds 60", a->seconds);

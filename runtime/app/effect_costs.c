@@ -101,9 +101,7 @@ static int prepare_first(Trial *k) {
   k->t0 = app->scene->t0;
   k->t1 = app->until;
   adopt_simulation(k, &k->v[0]);
-  if (k->t1 == k->t0)
-    return lag_app_error(
-        &app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", k->t0);
+  if (k->t1 == k->t0) return lag_app_no_span(app);
   printf("span %.17g\n", k->t1 - k->t0);
   return 0;
 }
@@ -171,8 +169,7 @@ static int measure(Trial *k) {
   const Args *a = &k->app->args;
   int all = strcmp(a->effects, "runs") != 0, n = k->nscenes, rc;
   if (lag_variant_run(&k->v[0], k->t0, k->t1) < 0) {
-    lag_app_error(a, "%s", k->v[0].why);
-    return EXIT_RUN;
+    return lag_app_no_result(a, "%s", k->v[0].why);
   }
   if (all && (rc = measure_error(k)) != 0) return rc;
   for (int i = 1, bad = 0; i < n; i++) {

@@ -192,7 +192,7 @@ static int linearize(App *app, LinearSystem *s) {
   const Args *a = &app->args;
   int rc = a->equilibrium || a->steady ? lag_app_rest(app, s->y) : 0;
   if (rc) return rc;
-  if (fill(s)) return lag_app_error(a, "%s", lag_sim_message(s->sim)), EXIT_RUN;
+  if (fill(s)) return lag_app_no_result(a, "%s", lag_sim_message(s->sim));
   if (a->out) return put_file(app, s);
   if (a->json) put_json(stdout, app, s);
   else put_text(stdout, app, s);

@@ -471,11 +471,11 @@ static int not_found(const App *app, const Equilibrium *r) {
   const lag_model *m = app->scene->model;
   if (runs_steadily(app)) {
     json_none(app);
-    lag_app_error(&app->args,
-                  "no equilibrium found from the start of scene %s, but a motion that runs steadily, along which only "
-                  "cyclic coordinates change: write --steady",
-                  app->scene->name);
-    return EXIT_RUN;
+    return lag_app_no_result(
+        &app->args,
+        "no equilibrium found from the start of scene %s, but a motion that runs steadily, along which only "
+        "cyclic coordinates change: write --steady",
+        app->scene->name);
   }
   int i = r->worst, nq = m->nq, at = nq + i;
   const lag_var *v = variable(m, i);

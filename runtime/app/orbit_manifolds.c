@@ -181,18 +181,14 @@ static int draw(Manifolds *m) {
 /* ---- The command */
 
 /* Exit status of a computation that failed. */
-static int failed(const App *app, const char *message) {
-  lag_app_error(&app->args, "%s", message);
-  return EXIT_RUN;
-}
+static int failed(const App *app, const char *message) { return lag_app_no_result(&app->args, "%s", message); }
 
 static int finish(Manifolds *m, FlowMap *f, double period, double part, const char *of) {
   App *app = m->app;
   const Manifold *found = &m->found;
   if (!found->first) {
-    lag_app_error(&app->args, "--manifold %s: %s has no such direction%s", app->args.manifold, of,
-                  found->rest_of ? ": its growing and decaying ones are spirals, in complex pairs" : "");
-    return EXIT_RUN;
+    return lag_app_no_result(&app->args, "--manifold %s: %s has no such direction%s", app->args.manifold, of,
+                             found->rest_of ? ": its growing and decaying ones are spirals, in complex pairs" : "");
   }
   int rc = make_columns(m);
   rc = rc ? rc : follow_all(m, f, period, part);

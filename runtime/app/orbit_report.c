@@ -130,11 +130,11 @@ static int check_moves(App *app, FlowMap *f) {
   for (int i = 0; i < f->n; i++)
     most = fmax(most, fabs(rates[i]) * span / lag_difference_scale(&f->probe->pb, f->probe->now, i));
   if (most > rounding) return 0;
-  lag_app_error(&app->args,
-                "scene %s starts at rest, at an equilibrium, which has no period: `lagc modes` analyses it; start on a "
-                "motion that comes back: name=VALUE",
-                app->scene->name);
-  return EXIT_RUN;
+  return lag_app_no_result(
+      &app->args,
+      "scene %s starts at rest, at an equilibrium, which has no period: `lagc modes` analyses it; start on a "
+      "motion that comes back: name=VALUE",
+      app->scene->name);
 }
 
 /* *T := the period, or a guess of it: of the drive, as given, or the first close return of the motion. */
@@ -144,7 +144,7 @@ static int choose_period(App *app, PeriodicOrbit *o, double *T) {
   FlowMap f;
   int rc = given_period(a, T);
   if (rc) return rc;
-  rc = lag_flow_open(&f, app->sim) ? lag_app_error(a, "%s", f.message), EXIT_RUN : LAG_OK;
+  rc = lag_flow_open(&f, app->sim) ? lag_app_no_result(a, "%s", f.message) : LAG_OK;
   f.closing = o->closing;
   rc = rc ? rc : check_moves(app, &f);
   if (rc == 0 && f.forced) rc = driven_period(app, &f, T);
@@ -154,14 +154,14 @@ static int choose_period(App *app, PeriodicOrbit *o, double *T) {
   double about = *T, until = about > 0 ? app->scene->t0 + 1.25 * about : search_end(app);
   rc = lag_orbit_guess(o, app->sim, until, about, T, message, sizeof message);
   if (about > 0) *T = rc == 0 && *T > 0 && !o->ngroup ? *T : about;
-  else if (rc) return lag_app_error(a, "%s", message), EXIT_RUN;
+  else if (rc) return lag_app_no_result(a, "%s", message);
   if (*T > 0) return 0;
-  lag_app_error(a,
-                "no periodic motion found near scene %s: until t = %g s the motion does not come back next to its "
-                "start; run longer: --until, start nearer to one: name=VALUE, or write about how long it takes: "
-                "--guess T",
-                app->scene->name, app->until);
-  return EXIT_RUN;
+  return lag_app_no_result(
+      a,
+      "no periodic motion found near scene %s: until t = %g s the motion does not come back next to its "
+      "start; run longer: --until, start nearer to one: name=VALUE, or write about how long it takes: "
+      "--guess T",
+      app->scene->name, app->until);
 }
 
 static void take_values(PeriodicOrbit *o) {
@@ -391,14 +391,13 @@ static int not_found(App *app, const PeriodicOrbit *o) {
   if (app->args.json) json_not_found(app, o);
   for (int k = 0; k < ORBIT_TRACE && o->trace[k] > 0 && n < sizeof course - 20; k++)
     n += (size_t)snprintf(course + n, sizeof course - n, "%s%.2g", k ? ", " : "", o->trace[k]);
-  lag_app_error(
+  return lag_app_no_result(
       &app->args,
       "no periodic motion found near the start of scene %s: after %d steps the motion of %s s still misses its "
       "start by %.2g of its size (before: %s). Start nearer to one: name=VALUE; another period: --guess T; "
       "%sor more segments: --segments %d",
       app->scene->name, o->steps, lag_number_text(o->T, text), o->residual, course,
       o->nheld > (o->flow.forced != 0) ? "without --hold; " : "", 2 * o->m);
-  return EXIT_RUN;
 }
 
 int lag_app_orbit_solve(App *app, PeriodicOrbit *o) {
@@ -407,25 +406,24 @@ int lag_app_orbit_solve(App *app, PeriodicOrbit *o) {
   if (rc == 0) return not_found(app, o);
   if (rc > 0) rc = lag_orbit_refine(o);
   if (rc == 0 && o->at_rest) {
-    lag_app_error(a,
-                  "the search from scene %s ends at rest, which has no period: `lagc modes` analyses it; start on a "
-                  "motion that comes back: name=VALUE, or hold one: --hold NAME",
-                  app->scene->name);
-    return EXIT_RUN;
+    return lag_app_no_result(
+        a,
+        "the search from scene %s ends at rest, which has no period: `lagc modes` analyses it; start on a "
+        "motion that comes back: name=VALUE, or hold one: --hold NAME",
+        app->scene->name);
   }
   if (rc == 0 && o->asymmetric) {
-    lag_app_error(a, "--relative %s: events of the scene do not have this symmetry: the motion that was found does not "
-                     "go on as its image",
-                  a->relative);
-    return EXIT_RUN;
+    return lag_app_no_result(a,
+                             "--relative %s: events of the scene do not have this symmetry: the motion that was found "
+                             "does not go on as its image",
+                             a->relative);
   }
   rc = rc ? rc : lag_orbit_multipliers(o);
   if (rc == LAG_OK) return 0;
-  lag_app_error(a, "%s",
-                rc == LAG_ENOMEM                           ? "out of memory"
-                : rc == LAG_EMETHOD && !o->flow.message[0] ? "the multipliers do not converge"
-                                                           : o->flow.message);
-  return EXIT_RUN;
+  return lag_app_no_result(a, "%s",
+                           rc == LAG_ENOMEM                           ? "out of memory"
+                           : rc == LAG_EMETHOD && !o->flow.message[0] ? "the multipliers do not converge"
+                                                                      : o->flow.message);
 }
 
 /* app->sim with the values, method and tolerance of the search. */

@@ -50,6 +50,12 @@ static int choose_scene(App *app) {
   return name ? no_scene(app, name) : lag_app_error(&app->args, "this program has no scenes");
 }
 
+int lag_app_no_span(const App *app) {
+  return lag_app_error(&app->args,
+                       "nothing to compute: the run begins and ends at t = %g s; write --until with another time",
+                       app->scene->t0);
+}
+
 int lag_app_read_until(App *app) {
   enum { SPANS = 20 }; /* Lyapunov exponents are means over a long time, forwards */
   const Args *a = &app->args;

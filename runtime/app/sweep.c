@@ -447,10 +447,7 @@ static int set_up(SweepApp *s) {
   rc = rc ? rc : name_columns(s);
   rc = rc ? rc : lag_sweep_motions_open(s);
   if (rc) return rc;
-  if (app->until == app->scene->t0)
-    return lag_app_error(&app->args,
-                         "nothing to compute: the runs begin and end at t = %g s; write --until with another time",
-                         app->until);
+  if (app->until == app->scene->t0) return lag_app_no_span(app);
   if (!lag_sweep_result_file(&app->args))
     return lag_app_error(&app->args,
                          "the rows need a file: write -o FILE.csv or -o FILE.npy, or --svg FILE for a picture");

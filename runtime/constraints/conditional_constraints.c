@@ -15,13 +15,11 @@
  * dense output, to less. */
 static const double no_distance = 1e-9;
 
-static int holds(const lag_sim *s, const lag_contact *c) { return s->hold[c->input] > 0.5; }
-
 /* Whether constraint c holds after the event at y, beside whose condition `margin` lies. Where the margin is
  * rounding, `zero`, a condition that had clearly been true, or false, until now ends at the same time as that of the
  * event: feet that follow each other. */
 static int then_holds(lag_sim *s, const lag_contact *c, int event, double margin, const double *zero) {
-  int now = holds(s, c), came = now ? c->impact : c->release, goes = now ? c->release : c->impact;
+  int now = lag_contact_is_closed(s, c), came = now ? c->impact : c->release, goes = now ? c->release : c->impact;
   if (event == came || event == goes) return event == c->impact;
   if (fabs(margin) > (zero ? fmax(zero[came], zero[goes]) : 0)) return margin > 0;
   return now != (event >= 0 && isnan(s->root[came]) && s->sign[goes] > 0);
@@ -34,7 +32,8 @@ static int place(lag_sim *s, double t, const double *y, int event, const double 
   for (int i = 0; i < m->ncontacts && rc == 0; i++) {
     const lag_contact *c = &m->contacts[i];
     if (!c->conditional) continue;
-    int now = holds(s, c), then = then_holds(s, c, event, now ? s->g1[c->release] : -s->g1[c->impact], zero);
+    int now = lag_contact_is_closed(s, c);
+    int then = then_holds(s, c, event, now ? s->g1[c->release] : -s->g1[c->impact], zero);
     s->contact_was[i] = now;
     s->hold[c->input] = then ? 1 : NAN;
     *changed |= then != now;
@@ -73,7 +72,7 @@ static int check_positions(lag_sim *s, const double *y) {
     return rc;
   for (int i = 0; i < m->ncontacts; i++) {
     const lag_contact *of = &m->contacts[i];
-    int k = of->constraint, begins = of->conditional && holds(s, of) && !(s->contact_was[i] > 0.5);
+    int k = of->constraint, begins = of->conditional && lag_contact_is_closed(s, of) && !(s->contact_was[i] > 0.5);
     if (begins && m->constraints->of[k].holonomic && !(fabs(c[k]) <= no_distance * terms[k]))
       return fail_apart(s, k, c[k]);
   }
@@ -110,11 +109,12 @@ static int fail_backwards(lag_sim *s) {
 static int fail_undecided(lag_sim *s) {
   const lag_model *m = s->scene->model;
   int i = 0; /* the first that was switched in the last turn */
-  while (!m->contacts[i].conditional || holds(s, &m->contacts[i]) == (s->contact_was[i] > 0.5)) i++;
+  while (!m->contacts[i].conditional || lag_contact_is_closed(s, &m->contacts[i]) == (s->contact_was[i] > 0.5)) i++;
   return lag_fail(
       s, LAG_EMODEL,
       "at t = %.9g s the constraint %s can neither hold nor not hold: its own impulse makes its condition %s",
-      s->run->t, m->constraints->of[m->contacts[i].constraint].name, holds(s, &m->contacts[i]) ? "true" : "false");
+      s->run->t, m->constraints->of[m->contacts[i].constraint].name,
+      lag_contact_is_closed(s, &m->contacts[i]) ? "true" : "false");
 }
 
 int lag_settle_constraints(lag_sim *s, double *y, const char *who, int event, int ends, int moved, const double *zero) {

@@ -1,16 +1,16 @@
 /* The impact of one contact with friction in a plane, along the growing normal impulse. Contract: planar_impact.h. */
 #include "contacts/planar_impact.h"
+#include "numeric/dense.h"
 
 #include <float.h>
 #include <math.h>
 
-static double sign_of(double x) { return (x > 0) - (x < 0); }
 
 /* Friction per normal impulse at the slip velocity vt: on the edge of the cone, or what holds it. */
 static double friction(const double *W, double vt, double mu) {
   double hold = -W[2] / W[3];
-  if (vt != 0) return -mu * sign_of(vt);
-  return fabs(hold) <= mu ? hold : mu * sign_of(hold);
+  if (vt != 0) return -mu * lag_sign(vt);
+  return fabs(hold) <= mu ? hold : mu * lag_sign(hold);
 }
 
 /* The normal impulse after which a velocity v that changes by `slope` per impulse is 0; infinite: never. */
@@ -73,7 +73,7 @@ static void by_velocities(const double *W, const double *v, double mu, double e,
   double n = -(1 + e) * v[0], t = -(1 + back) * v[1], det = W[0] * W[3] - W[1] * W[2];
   P[0] = (W[3] * n - W[1] * t) / det;
   P[1] = (W[0] * t - W[2] * n) / det;
-  if (!(P[0] > 0 && fabs(P[1]) <= mu * P[0])) on_the_edge(W, v, mu, e, v[1] != 0 ? sign_of(v[1]) : sign_of(W[2]), P);
+  if (!(P[0] > 0 && fabs(P[1]) <= mu * P[0])) on_the_edge(W, v, mu, e, v[1] != 0 ? lag_sign(v[1]) : lag_sign(W[2]), P);
 }
 
 /* Kinetic energy that P brings in; 0 where it is rounding. */

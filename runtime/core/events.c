@@ -8,8 +8,8 @@
 
 #include "core/core.h"
 #include "kernels/locate.h"
+#include "numeric/dense.h"
 
-static double sign_of(double g) { return (g > 0) - (g < 0); }
 
 /* Signs of the event functions of switches, g: 1 where the branch fits, 0 at the surface. */
 static void arm_switches(lag_sim *s, const double *g) {
@@ -25,7 +25,7 @@ int lag_events_arm(lag_sim *s) {
   if (lag_watched(s) == 0) return LAG_OK;
   int rc = lag_events_eval(s, s->run->t, s->now, s->g1);
   for (int k = 0; k < nev && rc == 0; k++) {
-    s->sign[k] = sign_of(s->g1[k]);
+    s->sign[k] = lag_sign(s->g1[k]);
     s->noise[k] = 0;
   }
   if (rc == 0) arm_switches(s, s->g1);
@@ -204,7 +204,7 @@ static int rearm(lag_sim *s, const double *before, const double *spread, const d
     } else if (!fired && g == 0 && before[k] == 0) {
       s->sign[k] = s->sign_end[k]; /* still at zero: the next step finds the crossing at its start */
     } else if (fired || s->sign_end[k] != 0.0 || fabs(g) > s->noise[k]) { /* else: sign not known yet since it fired */
-      s->sign[k] = sign_of(g);
+      s->sign[k] = lag_sign(g);
       s->noise[k] = 0;
     }
   }

@@ -84,13 +84,10 @@ int lag_sim_load(lag_sim *s, const double *x) {
   return LAG_OK;
 }
 
-/* FNV-1a hash of text with its final 0, so that "ab","c" and "a","bc" differ. */
-static unsigned long long hash(unsigned long long h, const char *text) { return lag_fnv1a(h, text, strlen(text) + 1); }
-
 unsigned long long lag_sim_signature(const lag_sim *s) {
   if (!s) return 0;
   const lag_model *m = s->scene->model;
-  unsigned long long h = hash(LAG_FNV1A_START, m->name);
+  unsigned long long h = lag_hash_text(LAG_FNV1A_START, m->name);
   const struct {
     int n;
     const lag_var *vars;
@@ -98,12 +95,13 @@ unsigned long long lag_sim_signature(const lag_sim *s) {
   char sizes[128];
 
   for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
-    for (int i = 0; i < tables[k].n; i++) h = hash(hash(h, tables[k].vars[i].name), tables[k].vars[i].unit);
-    h = hash(h, ";");
+    for (int i = 0; i < tables[k].n; i++)
+      h = lag_hash_text(lag_hash_text(h, tables[k].vars[i].name), tables[k].vars[i].unit);
+    h = lag_hash_text(h, ";");
   }
-  for (int i = 0; i < m->nev; i++) h = hash(h, m->ev[i].name);
+  for (int i = 0; i < m->nev; i++) h = lag_hash_text(h, m->ev[i].name);
   snprintf(sizes, sizeof sizes, "%zu %zu %d %s", sizeof(double), s->nsaved, s->scene->nmonitors, LAG_VERSION);
-  h = hash(hash(h, m->effects ? m->effects : ""), m->digest ? m->digest : "");
-  h = hash(hash(h, s->scene->name), s->method->name);
-  return hash(h, sizes);
+  h = lag_hash_text(lag_hash_text(h, m->effects ? m->effects : ""), m->digest ? m->digest : "");
+  h = lag_hash_text(lag_hash_text(h, s->scene->name), s->method->name);
+  return lag_hash_text(h, sizes);
 }

@@ -71,19 +71,18 @@ static int second(STATE, double *h, double *w) {
   return lag_run_program(model_of(self)->second, in, (double *[]){h}, w);
 }
 
-static int linearise(STATE, const double *a, double *dr, double *M, double *w) {
-  const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a};
-  return lag_run_program(linear_of(self)->eval, in, (double *[]){dr, M}, w);
-}
+/* The same with accelerations between. */
+#define FUNCTION_A(name, of, member)                                                    \
+  static int name(STATE, const double *a, double *x, double *y, double *w) {            \
+    const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a}; \
+    return lag_run_program(of(self)->member, in, (double *[]){x, y}, w);                \
+  }
+FUNCTION_A(linearise, linear_of, eval)
+FUNCTION_A(partials, partials_of, eval)
 
 static int inverse(STATE, const double *a, double *force, double *w) {
   const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a};
   return lag_run_program(model_of(self)->inverse, in, (double *[]){force}, w);
-}
-
-static int partials(STATE, const double *a, double *dr, double *M, double *w) {
-  const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a};
-  return lag_run_program(partials_of(self)->eval, in, (double *[]){dr, M}, w);
 }
 
 static int adjoint(STATE, const double *a, const double *g, double *by_y, double *by_up, double *d, double *w) {

@@ -2,7 +2,6 @@
 #ifndef EVALUATOR_PROGRAM_H
 #define EVALUATOR_PROGRAM_H
 
-#include <stddef.h>
 #include <stdint.h>
 
 #include "numeric/program_code.def"

@@ -3,7 +3,6 @@
  * of equal size. */
 #pragma once
 
-#include "lag.h"
 #include "methods/step_control.h"
 #include "methods/tableau.h"
 

@@ -35,14 +35,12 @@ static lag_discrete_room room_of(const lag_problem *pb, const lag_discrete *d) {
 
 /* ---- the model */
 
-static int refused(lag_problem *pb, int rc, double t) { return rc ? lag_step_refused(pb, rc, t) : 0; }
-
 int lag_discrete_variation(lag_problem *pb, double t, const lag_discrete_room *w) {
-  return refused(pb, lag_variation(pb, t, w->Q, w->V, w->Lq, w->Lv, w->F), t);
+  return lag_step_checked(pb, lag_variation(pb, t, w->Q, w->V, w->Lq, w->Lv, w->F), t);
 }
 
 int lag_discrete_second(lag_problem *pb, double t, const lag_discrete_room *w) {
-  return refused(pb, lag_second_derivatives(pb, t, w->Q, w->V, w->second), t);
+  return lag_step_checked(pb, lag_second_derivatives(pb, t, w->Q, w->V, w->second), t);
 }
 
 /* ---- failures */

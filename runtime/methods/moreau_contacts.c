@@ -84,8 +84,6 @@ int lag_moreau_find(lag_problem *pb, lag_moreau_contacts *w, double t, double h,
 
 /* ---- the model */
 
-static int refused(lag_problem *pb, int rc, double t) { return rc ? lag_step_refused(pb, rc, t) : 0; }
-
 int lag_moreau_close(lag_problem *pb, double t, int only) {
   const lag_model *m = pb->model;
   int rc = lag_inputs(pb, t);
@@ -93,25 +91,26 @@ int lag_moreau_close(lag_problem *pb, double t, int only) {
     pb->u[m->contacts[i].input] = only < 0 || i == only;
     if (m->contacts[i].is_tangent) pb->u[m->contacts[i].force] = 0;
   }
-  return refused(pb, rc, t);
+  return lag_step_checked(pb, rc, t);
 }
 
 int lag_moreau_gaps(lag_problem *pb, double t, const double *q, const double *v, const double *z, double *c,
                     double *r) {
   const lag_constraints *of = pb->model->constraints;
   if (pb->model->families) return lag_families_gaps(pb, t, q, v, z, c, r);
-  return refused(pb, of->residuals(of, t, q, v, z, pb->p, pb->u, c, r, pb->work), t);
+  return lag_step_checked(pb, of->residuals(of, t, q, v, z, pb->p, pb->u, c, r, pb->work), t);
 }
 
 int lag_moreau_matrices(lag_problem *pb, double t, const double *y, double *A, double *M) {
   const lag_constraints *of = pb->model->constraints;
   if (pb->model->families) return lag_families_matrices(pb, t, y, A, M);
-  return refused(pb, of->matrices(of, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, A, M, pb->work), t);
+  return lag_step_checked(pb, of->matrices(of, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, A, M, pb->work), t);
 }
 
 int lag_moreau_unit_change(lag_problem *pb, double t, const double *y, const double *g, double *d, double *effort) {
   const lag_constraints *of = pb->model->constraints;
-  return refused(pb, of->velocity(of, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, g, d, effort, pb->work), t);
+  return lag_step_checked(
+      pb, of->velocity(of, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, g, d, effort, pb->work), t);
 }
 
 int lag_moreau_frictions(lag_problem *pb, double t, const double *y, double *law) {

@@ -82,7 +82,7 @@ int lag_joint_friction_slips(lag_problem *pb, double t, const double *y, const d
     rc = m->switch_values(m, t, y, x + m->nq, x + 2 * m->nq, pb->p, pb->u, all, pb->work);
   for (int j = 0; j < w->n - m->nguides; j++) g[j] = all[switch_of(w, j)];
   if (rc == 0 && m->nguides) rc = guide_slips(pb, t, y, x, w, g);
-  return rc ? lag_step_refused(pb, rc, t) : 0;
+  return lag_step_checked(pb, rc, t);
 }
 
 int lag_joint_friction_grips(lag_problem *pb, double t, const double *y, const lag_joint_friction *w, double *g) {
@@ -96,7 +96,7 @@ int lag_joint_friction_grips(lag_problem *pb, double t, const double *y, const l
     double mu = pb->rub[3 * m->guides[k].tangent], hold = pb->rub[3 * m->ncontacts + 4 * k];
     g[w->n - m->nguides + k] = mu > 0 ? hold / mu : 1;
   }
-  return rc ? lag_step_refused(pb, rc, t) : 0;
+  return lag_step_checked(pb, rc, t);
 }
 
 int lag_joint_friction_fails(lag_problem *pb, double t, const lag_joint_friction *w, int j, const char *words) {

@@ -2,7 +2,6 @@
  * and its turns beside contacts. */
 #pragma once
 
-#include "core/rhs.h"
 #include "methods/steps.h"
 
 /* Calls of the model with modes as held; each returns 0 or the status of the step. */

@@ -60,6 +60,7 @@ static inline int lag_step_failed(lag_problem *pb, int status, double t) {
 static inline int lag_step_refused(lag_problem *pb, int rc, double t) {
   return lag_step_failed(pb, rc > 0 ? LAG_EDOMAIN : rc == LAG_ESINGULAR ? LAG_ESINGULAR : LAG_EMODEL, t);
 }
+static inline int lag_step_checked(lag_problem *pb, int rc, double t) { return rc ? lag_step_refused(pb, rc, t) : 0; }
 
 /* Status of a step whose projection (lag_project) returned rc != 0. */
 static inline int lag_step_not_projected(lag_problem *pb, int rc, double t) {

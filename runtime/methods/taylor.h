@@ -1,10 +1,8 @@
 /* Saved state of taylor, for taylor.c and for its steps over lanes (lanes/taylor_lanes.h). */
 #pragma once
 
-#include "lag.h"
 #include "methods/step_control.h" /* lag_rough_power */
 
-#include "kernels/taylor_size.h"
 
 /* Saved state of the method, doubles only; x holds the arrays named below. */
 typedef struct Taylor {

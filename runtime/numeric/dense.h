@@ -1,7 +1,28 @@
-/* Gaussian elimination of small dense matrices, row-major. */
+/* Small dense vectors; Gaussian elimination of small dense matrices, row-major. */
 #pragma once
 
+#include <math.h>
 #include <stddef.h>
+
+/* Products of vectors [n]; the largest |x[i]|, 0 for none. */
+static inline double lag_dot(int n, const double *x, const double *y) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += x[i] * y[i];
+  return sum;
+}
+static inline double lag_largest(int n, const double *x) {
+  double most = 0;
+  for (int i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
+  return most;
+}
+/* Product of columns i and j of A[rows * cols]. */
+static inline double lag_columns_dot(int rows, int cols, const double *A, int i, int j) {
+  double sum = 0;
+  for (int r = 0; r < rows; r++) sum += A[r * cols + i] * A[r * cols + j];
+  return sum;
+}
+/* -1, 0 or 1 */
+static inline double lag_sign(double x) { return (x > 0) - (x < 0); }
 
 static inline void lag_swap(double *a, double *b) {
   double x = *a;

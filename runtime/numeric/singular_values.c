@@ -9,12 +9,6 @@
 
 enum { MOST_SWEEPS = 60 };
 
-static double columns_dot(int rows, int cols, const double *A, int i, int j) {
-  double sum = 0;
-  for (int r = 0; r < rows; r++) sum += A[r * cols + i] * A[r * cols + j];
-  return sum;
-}
-
 /* Columns i and j of A := their rotation by the angle with cosine c and sine s. */
 static void rotate(int rows, int cols, double *A, int i, int j, double c, double s) {
   for (int r = 0; r < rows; r++) {
@@ -26,8 +20,8 @@ static void rotate(int rows, int cols, double *A, int i, int j, double c, double
 
 /* Makes columns i and j of A orthogonal; whether they were not. `floor`: squared length that counts as 0. */
 static int orthogonalise(int rows, int cols, double *A, double *V, int i, int j, double floor) {
-  double a = columns_dot(rows, cols, A, i, i), b = columns_dot(rows, cols, A, j, j);
-  double d = columns_dot(rows, cols, A, i, j);
+  double a = lag_columns_dot(rows, cols, A, i, i), b = lag_columns_dot(rows, cols, A, j, j);
+  double d = lag_columns_dot(rows, cols, A, i, j);
   if (fabs(d) <= 4 * DBL_EPSILON * sqrt(a) * sqrt(b) || (a <= floor && b <= floor)) return 0;
   double z = (b - a) / (2 * d), t = (z < 0 ? -1 : 1) / (fabs(z) + hypot(1, z)), c = 1 / hypot(1, t);
   rotate(rows, cols, A, i, j, c, c * t);
@@ -37,7 +31,7 @@ static int orthogonalise(int rows, int cols, double *A, double *V, int i, int j,
 
 /* Sorts columns by length, longest first. */
 static void sort_columns(int rows, int cols, double *A, double *V, double *sigma) {
-  for (int k = 0; k < cols; k++) sigma[k] = sqrt(columns_dot(rows, cols, A, k, k));
+  for (int k = 0; k < cols; k++) sigma[k] = sqrt(lag_columns_dot(rows, cols, A, k, k));
   for (int k = 0; k < cols; k++) {
     int top = k;
     for (int i = k; i < cols; i++) top = sigma[i] > sigma[top] ? i : top;

@@ -3,7 +3,6 @@
  * 10.1137/0613074). */
 #pragma once
 
-#include <stddef.h>
 
 /* A[rows * cols] := A V, whose columns are orthogonal and sigma[cols] long, longest first; V[cols * cols] is
  * orthogonal. */

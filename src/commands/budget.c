@@ -233,8 +233,7 @@ static void put_json(const Budget *b, StrBuf *out) {
 static EffectStudy *find_sets(Compiler *c, double budget, int *status) {
   const double part = 0.7, finer = 1e-3; /* for effects; of the tolerance of runs that compare them */
   const char *words[] = {"--tol", arena_printf(c->arena, "%.3g", fmax(finer*budget, 2e-15)), "--quiet", NULL};
-  Model *m =
-      model_build(c->ast, &(ModelChoice){.scene = c->o.scene, .defines = c->o.defines.at, .ndefines = c->o.defines.n});
+  Model *m = compiler_model(c, &(ModelChoice){.scene = c->o.scene, .unfixed = 1});
   *status = STATUS_MODEL;
   if (!m) return NULL;
   EffectStudy *s = m->effects.n ? effect_study_plan(m) : ARENA_NEW(c->arena, EffectStudy);

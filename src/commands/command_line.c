@@ -306,6 +306,12 @@ const char *options_passed(const Options *o, const char *name) {
   return NULL;
 }
 
+int options_pass_flag(const Options *o, const char *name) {
+  for (uint32_t i = 0; i < o->rest.n; i++)
+    if (strcmp(o->rest.at[i], name) == 0) return 1;
+  return 0;
+}
+
 int options_more_digits(const Options *o) { return o->precision && strcmp(o->precision, "double") != 0; }
 
 int options_read(Arena *a, int argc, char **argv, Options *o, const char **error) {

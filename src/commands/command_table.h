@@ -75,6 +75,8 @@ int options_read(Arena *a, int argc, char **argv, Options *o, const char **error
 
 /* The value of an option that the simulator reads: --NAME VALUE or --NAME=VALUE; NULL if it is not given. */
 const char *options_passed(const Options *o, const char *name);
+/* Whether an option without a value is passed on. */
+int options_pass_flag(const Options *o, const char *name);
 
 /* Whether simulators compute with more digits than a double has. */
 int options_more_digits(const Options *o);

@@ -62,19 +62,13 @@ int const_range_take(Ast *ast, Options *o, uint32_t i, const char *name, const c
   return settings_defines(ast, o->defines.at, o->defines.n);
 }
 
-static int walks_together(const Options *o) {
-  for (uint32_t i = 0; i < o->rest.n; i++)
-    if (strcmp(o->rest.at[i], "--zip") == 0) return 1;
-  return 0;
-}
-
 uint32_t const_range_variants(Arena *a, const Options *o, const char **error) {
   uint32_t n = 1;
   for (uint32_t k = 0; k < o->consts.n; k++) {
     uint32_t values = o->consts.at[k].values.n;
-    if (walks_together(o) && k && values != n)
+    if (options_pass_flag(o, "--zip") && k && values != n)
       return (uint32_t)fail_with(error, "--zip: ranges that are walked together have the same number of values");
-    n = walks_together(o) ? values : n * values;
+    n = options_pass_flag(o, "--zip") ? values : n * values;
     if (n > MOST_VALUES)
       return (uint32_t)fail_with(
           error, arena_printf(a, "%s: a program is compiled for up to %d values of constants; make several sweeps",
@@ -84,7 +78,7 @@ uint32_t const_range_variants(Arena *a, const Options *o, const char **error) {
 }
 
 int const_range_define(Ast *ast, Options *o, uint32_t v) {
-  int together = walks_together(o);
+  int together = options_pass_flag(o, "--zip");
   for (uint32_t k = o->consts.n; k-- > 0;) {
     const ConstRange *c = &o->consts.at[k];
     Define *d = &o->defines.at[o->defines.n - o->consts.n + k];

@@ -11,10 +11,6 @@
 #include "phase_space/expression_brackets.h"
 #include "syntax/parse.h"
 
-static PrintStyle style_of(const char *format) {
-  return format && strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT;
-}
-
 static int refuse_form(const Eqns *e, const char *message, const char *help) {
   diag_error(e->m->diags, e->m->span, "%s", message);
   if (help) diag_help(e->m->diags, "%s", help);
@@ -60,7 +56,7 @@ static int form_is_wrong(Compiler *c) {
 
 static int print_form(Compiler *c, Eqns *e) {
   StrBuf out = strbuf(c->arena);
-  int ok = (c->o.hamiltonian ? hamiltonian_print : lagrangian_print)(e, style_of(c->o.format), &out);
+  int ok = (c->o.hamiltonian ? hamiltonian_print : lagrangian_print)(e, print_style(c->o.format), &out);
   return ok ? compiler_report(c, c->o.output, &out) : STATUS_MODEL;
 }
 
@@ -70,7 +66,7 @@ static int print_bracket(Compiler *c, AstId bracket) {
   StrBuf out = strbuf(c->arena);
   if (!e) return STATUS_MODEL;
   show_bracket(e, arena_printf(c->arena, "{%s}", c->o.bracket),
-               expression_brackets_substitute(e, e->m->asked_bracket, 1), style_of(c->o.format), &out);
+               expression_brackets_substitute(e, e->m->asked_bracket, 1), print_style(c->o.format), &out);
   return compiler_report(c, c->o.output, &out);
 }
 
@@ -97,10 +93,10 @@ static int print_in(Compiler *c) {
   const CaseSymbols symbols = cases_symbols(e->m);
   if (!canonical_holds(e, to, &symbols, &how)) return STATUS_MODEL;
   if (!to->is_point)
-    return show_canonical(e, to, style_of(c->o.format), &out) ? compiler_report(c, c->o.output, &out) : STATUS_MODEL;
+    return show_canonical(e, to, print_style(c->o.format), &out) ? compiler_report(c, c->o.output, &out) : STATUS_MODEL;
   e = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .coordinates = to->name});
   if (!e) return STATUS_MODEL;
-  show_equations(e, NULL, style_of(c->o.format), &out);
+  show_equations(e, NULL, print_style(c->o.format), &out);
   return compiler_report(c, c->o.output, &out);
 }
 
@@ -130,6 +126,6 @@ int command_derive(Compiler *c) {
   const char *cost = op_count_text(u->accel, c->arena);
   if (c->o.ops) sb_printf(&out, "%s\n%s", cost, c->o.fix ? unfixed_cost(c) : "");
   else if (strcmp(format, "c") == 0) emit_accel(u, &out);
-  else show_equations(e, cost, style_of(format), &out);
+  else show_equations(e, cost, print_style(format), &out);
   return compiler_report(c, c->o.output, &out);
 }

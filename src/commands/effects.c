@@ -208,11 +208,7 @@ static int find_smallest(Compiler *c, EffectStudy *s) {
 
 int command_effects(Compiler *c) {
   int status = simulator_prepare(c);
-  Model *m =
-      status == STATUS_OK
-          ? model_build(c->ast,
-                        &(ModelChoice){.scene = c->o.scene, .defines = c->o.defines.at, .ndefines = c->o.defines.n})
-          : NULL;
+  Model *m = status == STATUS_OK ? compiler_model(c, &(ModelChoice){.scene = c->o.scene, .unfixed = 1}) : NULL;
   EffectStudy *s = m ? effect_study_plan(m) : NULL;
   if (!s) return status == STATUS_OK ? STATUS_MODEL : status;
   if (c->o.accuracy && effect_count(s->used) > EFFECTS_SEARCHED)

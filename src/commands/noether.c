@@ -8,10 +8,6 @@
 #include "symmetry/noether_report.h"
 #include "toolchain/process.h"
 
-static PrintStyle style_of(const char *format) {
-  return format && strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT;
-}
-
 /* Each stage that begins or goes on after a second. */
 static void show_progress(SearchLimit *l, double spent) {
   if (spent < 1 || l->shown == l->doing) return;
@@ -36,7 +32,7 @@ int noether_print(Compiler *c, const char *scene, double seconds, const char *fo
     if (with) noether_report_effect(r, effect, with);
   }
   if (format && strcmp(format, "json") == 0) show_noether_json(r, out);
-  else show_noether(r, style_of(format), out);
+  else show_noether(r, print_style(format), out);
   return 1;
 }
 

@@ -46,12 +46,6 @@ static int make_cost_simulator(Compiler *c, const Units *units, double begin, co
   return status;
 }
 
-static int is_quiet(const Options *o) {
-  for (uint32_t i = 0; i < o->rest.n; i++)
-    if (strcmp(o->rest.at[i], "--quiet") == 0) return 1;
-  return 0;
-}
-
 /* "drawn by guess: 2 rods, ball at x1, y1, ball at x2, y2; ..." */
 static const char *drawing_words(Arena *a, const Scene *sc) {
   enum { MOST = 4 };
@@ -73,7 +67,8 @@ static int has_drawing(Compiler *c) {
   if (!sc->shapes.n)
     return usage_error("nothing to draw: the model has no `draw`, no x,y, no x1,y1 x2,y2 ... and no vector among its "
                        "coordinates; write `draw ball at (X, Y)` in it, or --points 'X,Y X,Y'"), 0;
-  if (sc->guessed && !c->picture.note && !is_quiet(&c->o)) c->picture.note = drawing_words(c->arena, sc);
+  if (sc->guessed && !c->picture.note && !options_pass_flag(&c->o, "--quiet"))
+    c->picture.note = drawing_words(c->arena, sc);
   return 1;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "claims/sample_points.h"
-#include "commands/commands.h"
 #include "commands/simulator.h"
 
 typedef long double Real;

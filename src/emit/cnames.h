@@ -2,8 +2,6 @@
 #pragma once
 
 #include "base/id_table.h"
-#include "base/intern.h"
-#include "base/strbuf.h"
 #include "base/vec.h"
 #include "ir/program_set.h"
 

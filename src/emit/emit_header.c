@@ -58,14 +58,10 @@ static const char **event_enumerators(Header *h, CNames *taken) {
   return enumerators(h, taken, "EV_", v, n);
 }
 
-static const char *contact_name(const Header *h, uint32_t i) {
-  return h->u->constraints.of.at[h->u->contacts.at[i].constraint].name;
-}
-
 static const char **contact_enumerators(Header *h, CNames *taken) {
   uint32_t n = header_guides(h->u) ? 0 : h->u->contacts.n;
   IrVar *v = ARENA_ARRAY(h->a, IrVar, n + 1);
-  for (uint32_t i = 0; i < n; i++) v[i].name = contact_name(h, i);
+  for (uint32_t i = 0; i < n; i++) v[i].name = header_contact_name(h, i);
   return enumerators(h, taken, "CONTACT_", v, n);
 }
 
@@ -74,7 +70,7 @@ static const char **surface_enumerators(Header *h, CNames *taken) {
   uint32_t n = h->u->switches.n, guides = header_guides(h->u);
   const char **names = ARENA_ARRAY(h->a, const char *, n + guides + 1);
   for (uint32_t i = 0; i < guides; i++) {
-    IrVar v = {.name = contact_name(h, i)};
+    IrVar v = {.name = header_contact_name(h, i)};
     names[n + i] = enumerators(h, taken, "SURFACE_", &v, 1)[0];
   }
   for (uint32_t i = 0; i < n; i++) {

@@ -21,6 +21,10 @@ typedef struct {
   HeaderParts parts;
 } Header;
 
+static inline const char *header_contact_name(const Header *h, uint32_t i) {
+  return h->u->constraints.of.at[h->u->contacts.at[i].constraint].name;
+}
+
 /* Functions of a header; whether this model has function f; its prototype without `;`. */
 typedef enum {
   FN_DEFAULTS, FN_PARAM, FN_START, FN_INPUTS, FN_ACCEL, FN_ENERGY, FN_CHARGES, FN_POWERS, FN_OBSERVE, FN_EVENTS, FN_ACT,

@@ -6,16 +6,12 @@
 
 /* --- declarations --- */
 
-static const char *name_of(const Header *h, uint32_t i) {
-  return h->u->constraints.of.at[h->u->contacts.at[i].constraint].name;
-}
-
 static void contact_indices(const Header *h) {
   uint32_t n = h->u->contacts.n;
   sb_puts(h->out, "\n/* Contacts, for touch, struck and impulse of the state; behind each with friction the velocities "
                   "of slipping along its surface. */\nenum {\n");
   for (uint32_t i = 0; i < n; i++)
-    sb_printf(h->out, "  %s = %u, /* %s */\n", h->contacts[i], i, comment_text(h->a, name_of(h, i)));
+    sb_printf(h->out, "  %s = %u, /* %s */\n", h->contacts[i], i, comment_text(h->a, header_contact_name(h, i)));
   sb_printf(h->out, "  %s_NCONTACTS = %u\n};\n", h->upper, n);
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "base/strbuf.h"
-#include "base/vec.h"
 
 typedef struct {
   const char *name; /* with `/` between folders, ASCII */

@@ -67,7 +67,7 @@ static Slot value(BodyBuilder *m, uint32_t id) {
   const Node *n = &m->t->nodes.at[id];
   const Ins *i = &m->c->p->ins.at[n->slot];
   if (n->kind != NODE_OP) return leaf(m, n);
-  if (nest_is_sum(i->op)) return sum_of(m, n);
+  if (ir_is_sum(i->op)) return sum_of(m, n);
   Slot x[3] = {0};
   if (i->op == IR_MUL) {
     uint32_t *ids = ARENA_ARRAY(m->c->a, uint32_t, n->n);
@@ -113,7 +113,7 @@ const Prog *nest_body(const Partition *c, const CanonicalForm *t, const Fit *f, 
   for (uint32_t id = 0; id < n; id++) {
     const Ins *was = &c->p->ins.at[t->nodes.at[id].slot];
     m.slot[id] = value(&m, id);
-    if (t->nodes.at[id].kind == NODE_OP && !nest_is_sum(was->op)) prog_name(m.body, m.slot[id], was->name);
+    if (t->nodes.at[id].kind == NODE_OP && !ir_is_sum(was->op)) prog_name(m.body, m.slot[id], was->name);
   }
   store_gives(&m);
   *outer = m.outer.at;

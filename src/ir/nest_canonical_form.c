@@ -35,7 +35,7 @@ static void take_factors(const Partition *c, Slot s, Children *to) {
 static void nest_children(const Partition *c, Slot s, Children *to) {
   const Ins *i = &c->p->ins.at[s];
   to->n = 0;
-  if (nest_is_sum(i->op)) {
+  if (ir_is_sum(i->op)) {
     c->terms->n = 0;
     nest_terms(c, s, c->terms);
     for (uint32_t k = 0; k < c->terms->n; k++)
@@ -88,8 +88,8 @@ static Node node_of(FormWriter *w, Slot s) {
   } else {
     n.kind = NODE_OP;
     n.n = w->t->children.n;
-    word(w, nest_is_sum(i->op) ? IR_ADD : i->op);
-    if (!nest_is_sum(i->op) && i->op != IR_MUL) word(w, i->index);
+    word(w, ir_is_sum(i->op) ? IR_ADD : i->op);
+    if (!ir_is_sum(i->op) && i->op != IR_MUL) word(w, i->index);
     uint64_t text = 0;
     for (const char *t = i->text; t && *t; t++) text = text * 31 + (unsigned char)*t;
     word(w, text);

@@ -58,7 +58,6 @@ typedef struct {
   HubTerms *open, *terms;  /* scratch */
 } Partition;
 
-int nest_is_sum(IrOp op);
 
 /* Additional hubs: sums that share terms, stored values. */
 enum { CUT_COMMON_TERMS = 1, CUT_STORES = 2 };

@@ -8,8 +8,6 @@
 /* A sum of FEWEST_TERMS is long; a value with more than FEW users is shared. */
 enum { FEWEST_TERMS = 8, FEW = 8 };
 
-int nest_is_sum(IrOp op) { return op == IR_ADD || op == IR_SUB || op == IR_NEG; }
-
 static IrOp op_of(const Partition *c, Slot s) { return c->p->ins.at[s].op; }
 
 /* --- long sums --- */
@@ -19,7 +17,7 @@ static void find_joined(Partition *c) {
     const Ins *i = &c->p->ins.at[s];
     for (int k = 0; k < 2; k++) {
       Slot x = ins_operand(i, k);
-      int alike = nest_is_sum(i->op) ? nest_is_sum(op_of(c, x)) : i->op == IR_MUL && op_of(c, x) == IR_MUL;
+      int alike = ir_is_sum(i->op) ? ir_is_sum(op_of(c, x)) : i->op == IR_MUL && op_of(c, x) == IR_MUL;
       if (x && alike && c->uses[x] == 1) c->joined[x] = 1;
     }
   }
@@ -30,7 +28,7 @@ static void find_long_sums(Partition *c) {
   uint32_t *terms = ARENA_ARRAY(c->a, uint32_t, p->ins.n);
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
-    if (!nest_is_sum(i->op)) continue;
+    if (!ir_is_sum(i->op)) continue;
     for (int k = 0; k < 2; k++)
       if (ins_operand(i, k)) terms[s] += c->joined[ins_operand(i, k)] ? terms[ins_operand(i, k)] : 1;
     if (!c->joined[s] && terms[s] >= FEWEST_TERMS) c->hub[s] = HUB_SUM;
@@ -43,10 +41,10 @@ static void find_sums_in_common(Partition *c) {
   /* number of sums with the term; of a partial sum, number of sums that contain it */
   uint32_t *uses = ARENA_ARRAY(c->a, uint32_t, p->ins.n);
   for (Slot s = p->ins.n; s-- > 1;)
-    for (int k = 0; k < 2 && nest_is_sum(op_of(c, s)); k++)
+    for (int k = 0; k < 2 && ir_is_sum(op_of(c, s)); k++)
       uses[ins_operand(&p->ins.at[s], k)] += c->joined[s] ? uses[s] : 1;
   for (Slot s = 1; s < p->ins.n; s++) {
-    if (!nest_is_sum(op_of(c, s)) || c->joined[s]) continue;
+    if (!ir_is_sum(op_of(c, s)) || c->joined[s]) continue;
     c->terms->n = 0;
     nest_terms(c, s, c->terms);
     for (uint32_t k = 0; k < c->terms->n && c->terms->n > 1; k++)
@@ -72,7 +70,7 @@ void nest_terms(const Partition *c, Slot sum, HubTerms *terms) {
   while (open->n) {
     HubTerm t = open->at[--open->n];
     const Ins *i = &c->p->ins.at[t.value];
-    if (t.value != sum && !(c->joined[t.value] && nest_is_sum(i->op))) {
+    if (t.value != sum && !(c->joined[t.value] && ir_is_sum(i->op))) {
       vec_push(c->a, terms, t);
       continue;
     }
@@ -105,7 +103,7 @@ static uint64_t leaf_signature(const Ins *i) {
 /* Signature of operand x as a term of a sum, or (minus) of its negative. */
 static uint64_t part_of_sum(const Partition *c, Slot x, int minus) {
   if (!x) return 0;
-  if (c->joined[x] && nest_is_sum(op_of(c, x))) return minus ? c->flip[x] : c->sig[x];
+  if (c->joined[x] && ir_is_sum(op_of(c, x))) return minus ? c->flip[x] : c->sig[x];
   return with(minus ? 2 : 3, c->sig[x]);
 }
 
@@ -123,7 +121,7 @@ static void sign_sum(Partition *c, Slot s, const Ins *i) {
 
 static void sign(Partition *c, Slot s) {
   const Ins *i = &c->p->ins.at[s];
-  if (nest_is_sum(i->op)) {
+  if (ir_is_sum(i->op)) {
     sign_sum(c, s, i);
   } else if (i->op == IR_MUL) {
     uint64_t all = part_of_product(c, i->a) + part_of_product(c, i->b);

@@ -44,6 +44,7 @@ typedef enum {
   IR_TABLE,  /* value at a of the spline of prog->tables[index] */
   IR_TITLE   /* text: a comment line above the instructions that follow */
 } IrOp;
+static inline int ir_is_sum(IrOp op) { return op == IR_ADD || op == IR_SUB || op == IR_NEG; }
 
 /* Arrays that a function reads. Line 1: time, state, parameters, inputs; accelerations (linearisation only);
  * right-hand side g of A d = g (state corrections only). Line 2, Taylor coefficients (series/series.h): flags of

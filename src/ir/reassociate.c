@@ -23,7 +23,6 @@ typedef struct {
   VEC(Term) terms, sums, open;
 } Reassociation;
 
-static int is_sum(IrOp op) { return op == IR_ADD || op == IR_SUB || op == IR_NEG; }
 
 static uint32_t ready(const Reassociation *b, Slot s) { return s < b->ready.n ? b->ready.at[s] : 0; }
 
@@ -47,11 +46,11 @@ static void mark_inside(Reassociation *b) {
   const Prog *p = b->from;
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
-    if (!is_sum(i->op)) continue;
+    if (!ir_is_sum(i->op)) continue;
     const Slot parts[] = {i->a, i->b};
     for (int k = 0; k < 2; k++) {
       const Ins *part = &p->ins.at[parts[k]];
-      if (b->uses[parts[k]] == 1 && is_sum(part->op) && !(b->fused && part->name)) b->inside[parts[k]] = 1;
+      if (b->uses[parts[k]] == 1 && ir_is_sum(part->op) && !(b->fused && part->name)) b->inside[parts[k]] = 1;
     }
   }
 }
@@ -167,7 +166,7 @@ static Prog *reassociate(const Prog *p, const uint32_t *loads, int fused) {
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     if (b.inside[s]) continue;
-    if (is_sum(i->op)) {
+    if (ir_is_sum(i->op)) {
       gather(&b, s);
       b.map[s] = fused ? add_in_a_row(&b) : add_up(&b);
     } else if (fused && i->op == IR_MUL) {

@@ -79,9 +79,7 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   if (!effect && st->kind == STMT_KINETIC) b->m->kinetic_span = st->span;
   if (st->kind == STMT_DISSIPATION) b->m->dissipation_span = st->span;
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
-  if (v.e && v.n)
-    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, but a number is needed here",
-               shape_text(b, v.n));
+  if (v.e) need_number(b, ast_expr(b->ast, st->rhs)->span, v.n);
   en->failed |= st->kind != STMT_DISSIPATION && (!v.e || v.n);
   if (!v.e || v.n) return;
   b->m->domain = domain_and(b, b->m->domain, v.domain);
@@ -258,8 +256,7 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
     return;
   }
   if (!dims_agree(b, &l, &r, st->span)) {
-    diag_error(b->diags, st->span, "units do not match: the left side is %s, the right side %s", in_dim(b, l.dim),
-               in_dim(b, r.dim));
+    report_units(b, st->span, l.dim, r.dim);
     explain_dims(b, l.dim, r.dim);
   }
   if (st->name && !b->index.n) check_name_is_new(b, "expectation", st->name, effect, st->name_span);

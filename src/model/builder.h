@@ -209,6 +209,8 @@ Expr domain_and(const Builder *b, Expr p, Expr q);
 
 /* Shape for messages: "a number", "a vector of 3 components", "a rotation". */
 const char *shape_text(const Builder *b, uint32_t n);
+/* 1 for the shape of a number; else 0, reported. */
+int need_number(Builder *b, Span span, uint32_t n);
 
 /* Calls fn for a statement, or, where st is a `for`, for its body once per index value, with b->index set. */
 typedef void StatementFn(Builder *b, const AstStmt *st, Name effect, void *data);
@@ -521,6 +523,7 @@ void add_event(Builder *b, const AstStmt *st, Name effect);
 void add_section(Builder *b, const Section *s);
 Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit);
 void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right);
+void report_units(Builder *b, Span span, Dim left, Dim right);
 
 /* start_values.c: reads `start q = ...`, `exact q = ...`; completes the starts of rotations after all statements of
  * the scene (default: the identity); rad/s. */

@@ -20,16 +20,13 @@ static int can_be_held(Builder *b, Expr c, const char *what, Name name, Span spa
 
 /* Shapes and dimensions of both sides; 0, reported, if they differ. The hint gives a bare number its unit. */
 static int sides_agree(Builder *b, const AstStmt *st, const Value *l, const Value *r) {
-  if (l->n != r->n)
-    return diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s",
-                      shape_text(b, l->n), shape_text(b, r->n));
+  if (l->n != r->n) return report_shapes(b, st->span, l->n, r->n), 0;
   if (l->n == ROTATION) {
     refuse_rotation(b, st->span, ast_text(b, st->lhs), TURN_EQUATION);
     return 0;
   }
   if (dims_agree(b, l, r, st->span)) return 1;
-  diag_error(b->diags, st->span, "units do not match: the left side is %s, the right side %s", in_dim(b, l->dim),
-             in_dim(b, r->dim));
+  report_units(b, st->span, l->dim, r->dim);
   const Value *bare = r->bare ? r : l;
   if (bare->bare)
     diag_help(b->diags, "give the number its unit: `%s [%s]`", ast_text(b, bare == r ? st->rhs : st->lhs),
@@ -72,9 +69,7 @@ static uint32_t add_named_event(Builder *b, Name name, const char *suffix, Expr 
 
 int check_contact(Builder *b, const AstStmt *st, Name name, const Value *gap, const Value *e) {
   Span span = ast_expr(b->ast, st->lhs)->span, bounce = ast_expr(b->ast, st->rhs)->span;
-  if (gap->n || e->n)
-    return diag_error(b->diags, gap->n ? span : bounce, "this is %s, but a number is needed here",
-                      shape_text(b, gap->n ? gap->n : e->n));
+  if (!need_number(b, span, gap->n) || !need_number(b, bounce, e->n)) return 0;
   unsigned kinds = expr_kinds(b->g, gap->e);
   if (!can_be_held(b, gap->e, "contact", name, span)) return 0;
   if (kinds & 1u << SYM_VEL || !(kinds & 1u << SYM_COORD))
@@ -102,7 +97,7 @@ static const char *kind_of(const AstStmt *st) { return st->kind == STMT_GUIDE ? 
 int check_pure_number(Builder *b, const AstStmt *st, AstId id, const Value *x, double most, const char *what) {
   Span span = ast_expr(b->ast, id)->span;
   if (!x->e) return 0;
-  if (x->n) return diag_error(b->diags, span, "this is %s, but a number is needed here", shape_text(b, x->n));
+  if (!need_number(b, span, x->n)) return 0;
   double value = expr_is_num(b->g, x->e) ? num_value(expr_number(b->g, x->e)) : 0;
   if (!expr_is_constant(b->g, x->e)) return diag_error(b->diags, span, "%s is a number, or made of parameters", what);
   if (value < 0 || value > most)

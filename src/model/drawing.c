@@ -184,11 +184,7 @@ static int read_range(DrawReader *r, AstId bind, Value ends[2]) {
   }
   for (int k = 0; k < 2; k++) {
     ends[k] = option_value(r, ids[k]);
-    if (ends[k].e && ends[k].n) {
-      diag_error(b->diags, ast_expr(b->ast, ids[k])->span, "this is %s, but a number is needed here",
-                 shape_text(b, ends[k].n));
-      return 0;
-    }
+    if (ends[k].e && !need_number(b, ast_expr(b->ast, ids[k])->span, ends[k].n)) return 0;
     if (!ends[k].e || (r->st->rhs && !is_length(r, &ends[k], ids[k]))) return 0;
   }
   int plain = r->st->rhs && (ends[0].bare || ends[1].bare); /* a number is a length */

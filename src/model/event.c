@@ -13,6 +13,11 @@ void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right) {
              shape_text(b, right));
 }
 
+void report_units(Builder *b, Span span, Dim left, Dim right) {
+  diag_error(b->diags, span, "units do not match: the left side is %s, the right side %s", in_dim(b, left),
+             in_dim(b, right));
+}
+
 static void push_action(Builder *b, Event *ev, SymId target, Expr value) {
   vec_push(b->arena, &ev->actions, ((Action){target, value}));
 }
@@ -109,8 +114,7 @@ static Expr period_of(Builder *b, const AstStmt *st, Name effect) {
   Unit s = unit_si(dim_base(b->dims, DIM_TIME), "s");
   Value T = values_in(b, resolve(b, st->lhs, IN_DYNAMICS, effect), span, &s);
   unsigned fixed = 1u << SYM_PARAM | 1u << SYM_CONST;
-  if (T.n) diag_error(b->diags, span, "this is %s, but a number is needed here", shape_text(b, T.n));
-  if (!T.e || T.n) return 0;
+  if (!need_number(b, span, T.n) || !T.e) return 0;
   if (!(expr_kinds(b->g, T.e) & ~fixed)) return T.e;
   diag_error(b->diags, span, "the period of a kick is a time of parameters and numbers alone");
   diag_help(b->diags, "what happens at times that depend on the motion is an event: `event NAME: g rising { ... }`");
@@ -126,9 +130,7 @@ void add_event(Builder *b, const AstStmt *st, Name effect) {
   check_set_once(b, st);
   int kick = st->direction == AT_EQUAL_TIMES;
   Value g = kick ? (Value){.e = period_of(b, st, effect)} : resolve(b, st->lhs, IN_DYNAMICS, effect);
-  if (g.n)
-    diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "this is %s, but a number is needed here",
-               shape_text(b, g.n));
+  need_number(b, ast_expr(b->ast, st->lhs)->span, g.n);
   ev.g = g.e;
   add_actions(b, st, effect, &ev);
   if (g.e) vec_push(b->arena, &b->m->events, ev);
@@ -155,8 +157,7 @@ void add_section(Builder *b, const Section *s) {
   Span span = ast_expr(b->ast, s->expr)->span;
   Value g = resolve(b, s->expr, IN_OBSERVE, NULL);
   if (!g.e) return;
-  if (g.n) {
-    diag_error(b->diags, span, "this is %s, but a number is needed here", shape_text(b, g.n));
+  if (!need_number(b, span, g.n)) {
     diag_help(b->diags, "a section is where one number is zero: name a component");
     return;
   }

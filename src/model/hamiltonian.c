@@ -55,9 +55,7 @@ int gives_hamiltonian(Builder *b, const AstStmt *st, Name effect, Span *first) {
 
 Value value_of_hamiltonian(Builder *b, const AstStmt *st, Name effect) {
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
-  if (v.e && v.n)
-    diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, but a number is needed here",
-               shape_text(b, v.n));
+  if (v.e) need_number(b, ast_expr(b->ast, st->rhs)->span, v.n);
   if (!v.e || v.n || !is_free_of_velocities(b, st, &v)) return (Value){0};
   b->m->domain = domain_and(b, b->m->domain, v.domain);
   return v;

@@ -8,6 +8,10 @@ const char *shape_text(const Builder *b, uint32_t n) {
   return n ? arena_printf(b->arena, "a vector of %u components", n) : "a number";
 }
 
+int need_number(Builder *b, Span span, uint32_t n) {
+  return !n || diag_error(b->diags, span, "this is %s, but a number is needed here", shape_text(b, n));
+}
+
 int arity_is(Eval *ev, const AstExpr *x, uint32_t want) {
   uint32_t n = ast_list_length(ev->b->ast, x->args);
   if (n == want) return 1;

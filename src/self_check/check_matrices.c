@@ -6,8 +6,6 @@
 #include "self_check/self_check_impl.h"
 #include "lower/lower.h"
 
-static Real *reals(const Check *c, uint32_t n) { return ARENA_ARRAY(c->arena, Real, n + 1); }
-
 static void random_displacement(Check *c) {
   for (uint32_t i = 0; i < c->n; i++) c->c[i] = check_random(c, -1, 1);
   check_keep_rotations(c);
@@ -45,8 +43,9 @@ static CheckVerdict compare_forces(Check *c, const Real *M, const Real *bias, co
 
 static CheckVerdict check_forces(Check *c) {
   const ProgramSet *u = c->u;
-  Real *M = reals(c, c->n * c->n), *bias = reals(c, c->n), *inverse = reals(c, c->n), *a = reals(c, c->n),
-       *lambda = reals(c, c->m->constraints.n);
+  Real *M = check_reals(c, c->n * c->n), *bias = check_reals(c, c->n), *inverse = check_reals(c, c->n),
+       *a = check_reals(c, c->n),
+       *lambda = check_reals(c, c->m->constraints.n);
   CheckVerdict v = AGREES;
   for (uint32_t i = 0; i < c->n; i++) a[i] = c->a[i];
   for (uint32_t i = 0; i < c->m->constraints.n; i++) lambda[i] = c->lambda[i], c->lambda[i] = 0;
@@ -88,7 +87,7 @@ static Real *variable(const Check *c, PartialsBy by, uint32_t i) {
 static Real *weights(Check *c) {
   const Constraints *k = &c->e->constraints;
   uint32_t nz = c->m->states.n;
-  Real *w = reals(c, c->n + nz + k->n);
+  Real *w = check_reals(c, c->n + nz + k->n);
   random_displacement(c);
   for (uint32_t i = 0; i < c->n; i++) w[i] = c->c[i];
   for (uint32_t i = 0; i < nz; i++) w[c->n + i] = c->dynamics->flows[i] ? check_random(c, -1, 1) : 0;
@@ -126,7 +125,7 @@ static int residual_beside(Check *c, const Real *w, Real *out, Real *size, Real 
 /* The program's derivative of the weighted residuals along d, and the size of its terms; 0: the program fails. */
 static int derivative_said(Check *c, const Derivatives *x, const Real *w, const Real *d, Real *said, Real *size) {
   const Constraints *k = &c->e->constraints;
-  Real *entry = reals(c, x->n), *M = reals(c, c->u->linear_mass.n), *A = reals(c, k->A.n);
+  Real *entry = check_reals(c, x->n), *M = check_reals(c, c->u->linear_mass.n), *A = check_reals(c, k->A.n);
   for (uint32_t i = 0; i < k->n; i++) c->gap[i] = c->lambda[k->of[i] - c->m->constraints.at];
   if (!check_run(c, x->p, (Real *const[]){entry, M, A})) return 0;
   for (uint32_t i = 0; i < x->n; i++) {
@@ -139,7 +138,7 @@ static int derivative_said(Check *c, const Derivatives *x, const Real *w, const 
 
 /* Sum w_i dr_i/dx_j d_j for random w and d, against finite differences of the text's residuals along d. */
 static CheckVerdict check_derivatives(Check *c, const Derivatives *x) {
-  Real *d = reals(c, x->columns), *base = reals(c, x->columns), *zd = reals(c, c->m->states.n);
+  Real *d = check_reals(c, x->columns), *base = check_reals(c, x->columns), *zd = check_reals(c, c->m->states.n);
   Real at[4], h = 1e-5L, said = 0, size = 0, inner_magnitude = 0, rounding = 0;
   Real *w = weights(c);
   for (uint32_t i = 0; i < x->columns; i++) {

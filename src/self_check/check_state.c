@@ -221,23 +221,21 @@ int check_solve_motion(Check *c) {
 
 /* --- allocation --- */
 
-static Real *alloc_reals(const Check *c, uint32_t n) { return ARENA_ARRAY(c->arena, Real, n + 1); }
-
 void check_prepare(Check *c) {
   const Model *m = c->m;
   uint32_t n = m->coords.n, nz = m->states.n;
   Real **const all[] = {&c->q, &c->v, &c->a, &c->q0, &c->v0, &c->c},
                **const of_states[] = {&c->z, &c->zd, &c->zdd, &c->z0};
-  for (size_t k = 0; k < sizeof all / sizeof *all; k++) *all[k] = alloc_reals(c, n + nz);
-  for (size_t k = 0; k < sizeof of_states / sizeof *of_states; k++) *of_states[k] = alloc_reals(c, nz);
-  c->p = alloc_reals(c, m->params.n + c->u->nderived);
-  c->given = alloc_reals(c, m->params.n);
-  c->signal = alloc_reals(c, m->inputs.n + c->u->nmodes + m->scene.exacts.n + c->e->nactions);
-  c->lambda = alloc_reals(c, m->constraints.n);
-  c->lambda_error = alloc_reals(c, m->constraints.n);
-  c->a_error = alloc_reals(c, n + nz);
-  c->zd_error = alloc_reals(c, nz);
-  c->gap = alloc_reals(c, m->constraints.n);
+  for (size_t k = 0; k < sizeof all / sizeof *all; k++) *all[k] = check_reals(c, n + nz);
+  for (size_t k = 0; k < sizeof of_states / sizeof *of_states; k++) *of_states[k] = check_reals(c, nz);
+  c->p = check_reals(c, m->params.n + c->u->nderived);
+  c->given = check_reals(c, m->params.n);
+  c->signal = check_reals(c, m->inputs.n + c->u->nmodes + m->scene.exacts.n + c->e->nactions);
+  c->lambda = check_reals(c, m->constraints.n);
+  c->lambda_error = check_reals(c, m->constraints.n);
+  c->a_error = check_reals(c, n + nz);
+  c->zd_error = check_reals(c, nz);
+  c->gap = check_reals(c, m->constraints.n);
   c->n = n;
   c->dynamics = text_dynamics(m, c->samples, c->arena);
   c->outputs = text_outputs(m, c->samples, c->e->outputs, c->e->noutputs, c->arena);

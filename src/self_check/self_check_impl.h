@@ -42,6 +42,8 @@ typedef struct {
   SelfCheck *statistics;  /* counts of what was compared */
 } Check;
 
+static inline Real *check_reals(const Check *c, uint32_t n) { return ARENA_ARRAY(c->arena, Real, n + 1); }
+
 typedef enum { AGREES, DISMISSED, DISAGREES } CheckVerdict;
 
 static inline CheckVerdict worse(CheckVerdict a, CheckVerdict b) { return a > b ? a : b; }

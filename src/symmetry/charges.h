@@ -2,7 +2,6 @@
 #pragma once
 
 #include "symmetry/noether_theorem.h"
-#include "sym/print.h"
 
 struct Charge {
   const Symmetry *of; /* NULL: the energy, the charge of translations of time */

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "base/intern.h"
-#include "base/strbuf.h"
 #include "base/vec.h"
 
 typedef struct {

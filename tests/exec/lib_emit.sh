@@ -1,9 +1,6 @@
 # shellcheck shell=sh
 # What run_emit.sh and long_emit.sh share: models emitted, to $TMP/c, $TMP/h and $TMP/more, and ways to compile and to evaluate it.
 # plain=no: only headers and $TMP/more, whose files hold the functions of those of $TMP/c and others.
-: "${LAGC:=build/lagc}" "${BUILD:=build}" "${INC:=runtime/include}" "${CC:=cc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
 
 # Two that programs of these suites use by name, and one model in `part`.

@@ -1,8 +1,6 @@
 #!/bin/sh
 # Derived parameters: values that depend on parameters alone, also the factors of a constant mass matrix, are computed when parameters change. Prints TAP.
 cd "$(dirname "$0")/../.." || exit 2
-: "${LAGC:=build/lagc}" "${CC:=cc}" "${INC:=runtime/include}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 model=tests/exec/models/windings.lag elements=tests/exec/models/elements.lag
 

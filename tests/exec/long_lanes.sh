@@ -2,8 +2,6 @@
 # Emitted C over lanes: every function of every model, compiled for vectors of 4 and of 8 doubles, gives in each lane the
 # value for a double, to a few units in the last place; also where lanes part in an `if`, or are singular.
 # By gcc and clang.
-: "${LAGC:=build/lagc}" "${INC:=runtime/include}" "${CC:=cc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 
 echo 'typedef double v __attribute__((vector_size(64))); v f(v a, v b); v f(v a, v b) { return (v)((a < b) & 1); }' >"$TMP/probe.c"

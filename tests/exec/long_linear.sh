@@ -1,9 +1,6 @@
 #!/bin/sh
 # The exact linearisation that `--with linear` adds to a model: C without warnings, correct derivatives for every model, and no
 # trace of it without the option.
-: "${LAGC:=build/lagc}" "${INC:=runtime/include}" "${CC:=cc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
 
 strict='-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror'

@@ -1,8 +1,6 @@
 #!/bin/sh
 # A string of 27,000 masses with cubic springs and 256 bodies that attract each other: graphs of a million nodes each. They compile
 # within 2 GB and a stack of 256 KB (nothing recurses on the user's text), and agree with loops written by hand.
-: "${LAGC:=build/lagc}" "${INC:=runtime/include}" "${CC:=cc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 bench=tests/bench
 

@@ -1,8 +1,5 @@
 #!/bin/sh
 # Emitted accelerations far from the origin: finite values of the text are finite in C. tests/exec/range/forms.txt has the models and closed forms.
-: "${LAGC:=build/lagc}" "${INC:=runtime/include}" "${CC:=cc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
 
 # compare NUMBER: the rows of that form, against its model.

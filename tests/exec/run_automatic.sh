@@ -1,8 +1,5 @@
 #!/bin/sh
 # The method of a run that names none, and its report of the choice.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
 
 cat >"$TMP/van_der_pol.lag" <<'EOF'

@@ -1,10 +1,7 @@
 #!/bin/sh
 # lagc continue: folds and bifurcations against closed forms, published energies and SciPy; families of periodic motions; rows, picture; refusals.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
-[ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ] || skip_all "GSL is not installed"
+needs_gsl
 LAGC_OPTIMISE=-O0
 export LAGC_OPTIMISE
 dir=tests/exec/orbits

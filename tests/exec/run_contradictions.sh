@@ -1,7 +1,5 @@
 #!/bin/sh
 # Constraints that contradict each other: at the start, soon after it, at some time later. No state may be written that does not obey them.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 
 # model NAME SECOND: a mass with x = 0 and the constraint SECOND.

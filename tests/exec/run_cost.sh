@@ -1,9 +1,6 @@
 #!/bin/sh
 # lagc cost: errors against errors worked out by hand, measured orders, the Pareto front and the target recomputed from the JSON
 # object, omitted methods with reasons, bad input. Nothing here depends on how long anything takes.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
 . tests/exec/lib_precision.sh
 sweep=0.5 # seconds of a sweep of one method

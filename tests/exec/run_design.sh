@@ -1,6 +1,5 @@
 #!/bin/sh
 # lagc design: the measurements with the most information, against closed forms and a search over all subsets (design/reference.py); what it refuses.
-: "${LAGC:=build/lagc}"
 . tests/tap.sh
 cat >"$TMP/spring.lag" <<'M'
 model spring

@@ -2,7 +2,6 @@
 # Files that cannot be written, missing compilers and libraries, as TAP: a message on stderr with the file and the reason,
 # exit status 2, and no file left, whole or in part. A device or a pipe is never replaced by a file.
 cd "$(dirname "$0")/../.." || exit 2
-: "${LAGC:=build/lagc}" "${TMP:=${TMPDIR:-/tmp}}"
 . tests/tap.sh
 case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
 model=$(pwd)/models/spring.lag

@@ -2,9 +2,6 @@
 # lagc fit: values, standard errors and chi squared against scipy.optimize.least_squares on closed forms (fit/reference.py
 # makes data and digits); combinations that data cannot tell apart, in models made for them; bad input. slow: coverage
 # of the errors.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
 [ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ] || { skip "fits" "GSL is not installed"; tap_end; exit; }
 M=tests/exec/fit

@@ -2,8 +2,6 @@
 # --fix turns parameters into numbers, and unrequested functions are not in emitted C. Operations are counted by the compiler and, for a few
 # small models, by hand; trajectories are compared with those of programs without --fix.
 cd "$(dirname "$0")/../.." || exit 2
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 dir=$TMP/fix
 mkdir -p "$dir"

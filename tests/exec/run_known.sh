@@ -1,7 +1,6 @@
 #!/bin/sh
 # Runs that lagc has made before start without deriving: the same numbers and messages, and nothing old where a text, a table, a word or a file changed.
 cd "$(dirname "$0")/../.." || exit 2
-: "${LAGC:=build/lagc}" "${TMP:=${TMPDIR:-/tmp}}"
 . tests/tap.sh
 case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
 dir=$TMP/run_known.$$

@@ -1,8 +1,6 @@
 #!/bin/sh
 # Steps that end at, or next to, a singular position, where constraints are dependent and motions meet: rk45 and dop853 pass on the same motion;
 # steps of equal size, and radau, pass or end the run with the reason. No run continues on another motion.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 
 # Bars in a loop, all of which lie in one line after exactly 1 s, and every pi s from then on. The coupler stays as it is, b = 0, and no force does

@@ -2,7 +2,6 @@
 # Models that could take for ever, as TAP: each ends in an answer, or in a message that names a limit, within seconds.
 # (The time limit is far above the usual time; without the guards these models would not finish in a day.)
 cd "$(dirname "$0")/../.." || exit 2
-: "${LAGC:=build/lagc}" "${TMP:=${TMPDIR:-/tmp}}"
 . tests/tap.sh
 dir=$TMP/run_limits.$$
 mkdir -p "$dir" || exit 2

@@ -1,7 +1,5 @@
 #!/bin/sh
 # Long models: their C has loops, is short, compiles fast, and agrees with straight-line code to the last bit.
-: "${LAGC:=build/lagc}" "${BUILD:=build}" "${INC:=runtime/include}" "${CC:=cc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 mkdir -p "$TMP/m" "$TMP/c"
 

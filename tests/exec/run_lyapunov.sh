@@ -1,9 +1,6 @@
 #!/bin/sh
 # lagc lyapunov: exponents of linear models against closed forms, of Lorenz's against the published 0.9056, 0, -14.5723 (J.C. Sprott,
 # Chaos and Time-Series Analysis (2003), table 4.3), pairs of Hamiltonian ones, the sum against the divergence; rows, JSON, refusals.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
 
 # find MODEL ARGS...: the JSON object; list KEY K; number KEY

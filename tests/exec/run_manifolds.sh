@@ -1,11 +1,8 @@
 #!/bin/sh
 # lagc orbit --manifold: the separatrix of a pendulum against its closed form; heteroclinic connections of
 # the restricted problem, published; refusals.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
-[ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ] || skip_all "GSL is not installed"
+needs_gsl
 LAGC_OPTIMISE=-O0
 export LAGC_OPTIMISE
 

@@ -1,11 +1,8 @@
 #!/bin/sh
 # lagc modes: equilibria, frequencies, shapes and verdicts against closed forms, each from a textbook or two lines of algebra
 # beside it; refusals; the printed report.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
-[ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ] || skip_all "GSL is not installed"
+needs_gsl
 dir=tests/exec/modes
 
 # find_modes MODEL ARGS...: the JSON object, a line a mode after the first

@@ -1,7 +1,5 @@
 #!/bin/sh
 # Sums over neighbours: the same digits evaluated, compiled, in lanes and after a stop; their C stands alone, and its length does not know N.
-: "${LAGC:=build/lagc}" "${BUILD:=build}" "${INC:=runtime/include}" "${CC:=cc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 
 cat >"$TMP/gas.lag" <<'END'

@@ -1,11 +1,8 @@
 #!/bin/sh
 # lagc orbit: periods against elliptic integrals, Kepler's law and published digits; multipliers against published ones and their own pairs; conditions;
 # the scene to paste; refusals. numeric/singular_values has a unit test of its own.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
-[ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ] || skip_all "GSL is not installed"
+needs_gsl
 LAGC_OPTIMISE=-O0
 export LAGC_OPTIMISE
 dir=tests/exec/orbits

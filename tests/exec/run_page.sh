@@ -2,7 +2,6 @@
 # lagc page: its module computes the digits of lagc run, in node; the page opens and moves in a browser; hostile titles and bytes.
 . tests/tap.sh
 . tests/exec/lib_motion.sh
-: "${LAGC:=build/lagc}"
 wasm=$(dirname "$LAGC")/lag.wasm
 if [ ! -f "$wasm.gz" ]; then
   skip "pages" "no Clang for WebAssembly: .ci/setup ci, then make page"

@@ -2,7 +2,6 @@
 # lagc playground: lagc as WebAssembly gives the answers of lagc, in node: messages, proofs, formulas, programs whose motions have the digits of
 # lagc run; texts that are too deep or too large; the page in a browser, typed in.
 . tests/tap.sh
-: "${LAGC:=build/lagc}"
 here=$(dirname "$LAGC")
 lagc=$(cd "$here" && pwd)/lagc
 if [ ! -f "$here/lagc.wasm.gz" ]; then

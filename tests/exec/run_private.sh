@@ -2,7 +2,6 @@
 # Safety of files: outputs are made exclusively, simulators run only from folders that are the user's own, interrupted commands leave nothing,
 # includes and tables are regular files, and invisible characters are shown.
 cd "$(dirname "$0")/../.." || exit 2
-: "${LAGC:=build/lagc}" "${TMP:=${TMPDIR:-/tmp}}"
 . tests/tap.sh
 case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
 model=$(pwd)/models/spring.lag

@@ -1,8 +1,6 @@
 #!/bin/sh
 # Reports that claim no more than is known: lost energy in a blow-up, poles that are stepped over, friction that holds, rounding larger than
 # the motion, floors that a coarse method would miss, Lyapunov exponents with their errors.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 
 run() { "$LAGC" run "$@" --no-gsl --json >"$TMP/json" 2>"$TMP/err"; }

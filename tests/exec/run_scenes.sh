@@ -2,8 +2,6 @@
 # Scenes and effects; the command line, which says the same and takes precedence; closed forms; monitors. Expected values:
 # closed forms, and equivalent scenes written in another way.
 cd "$(dirname "$0")/../.." || exit 2
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 dir=$TMP/scenes
 mkdir -p "$dir/parts"

@@ -2,8 +2,6 @@
 # Poincare sections: crossings of an oscillator at the times and values of its closed form; of Henon and Heiles' star on the
 # surface and of the right energy, as many as the motion has; the same points in pictures, in two halves of a run, and by an
 # event's name in a simulator; refusals.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 
 # section FILE ARGS...: rows without their head

@@ -1,9 +1,6 @@
 #!/bin/sh
 # lagc run --sensitivity: derivatives of outputs by parameters and starts. Expected digits are closed forms of the motions,
 # differentiated by mpmath with 40 digits (sensitivity/reference.py prints them); slow: differences of runs in 34 digits.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
 M=tests/exec/sensitivity
 

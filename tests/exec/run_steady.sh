@@ -1,10 +1,7 @@
 #!/bin/sh
 # lagc modes of models with constraints, and --steady: motions that run steadily, against closed forms and published digits
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
-[ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ] || skip_all "GSL is not installed"
+needs_gsl
 dir=tests/exec/modes
 
 # find_modes MODEL ARGS...: the JSON object, a line a mode that is not zero after the first. of_simulator: of one that is built

@@ -1,9 +1,6 @@
 #!/bin/sh
 # lagc run --tangent: dx/dy(0) of emitted models against closed forms; methods that use different derivatives of the model
 # against each other; columns, units, JSON; refusals. tests/unit/test_rt_tangent.c has the properties of methods.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
-export TMP
 . tests/tap.sh
 
 # last MODEL ARGS...: the last row, by `entry K`; columns: by `column NAME`

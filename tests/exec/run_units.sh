@@ -1,7 +1,6 @@
 #!/bin/sh
 # Units in use, as TAP: inferred units, degrees Celsius, values with units on the command line. Expected numbers are closed forms, by awk.
 cd "$(dirname "$0")/../.." || exit 2
-: "${LAGC:=build/lagc}" "${TMP:=${TMPDIR:-/tmp}}"
 . tests/tap.sh
 case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
 cd "$TMP" || exit 2

@@ -5,7 +5,6 @@
 #   KEEP=FOLDER sh tests/golden/run_emitted.sh      keeps the files, to compare two versions (diff -r)
 #   BLESS=1 sh tests/golden/run_emitted.sh          writes emitted.txt anew, on purpose
 . tests/tap.sh
-: "${LAGC:=build/lagc}" "${CC:=cc}"
 KEEP=${KEEP:-$TMP/kept}
 mkdir -p "$KEEP"
 

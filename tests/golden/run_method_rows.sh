@@ -2,7 +2,6 @@
 # The compiler's table of methods, src/base/method_rows.def, is the runtime's: names, options and needs.
 #   BLESS=1 sh tests/golden/run_method_rows.sh      writes it anew, from a build with GSL
 . tests/tap.sh
-: "${CC:=cc}"
 rows=src/base/method_rows.def
 # shellcheck disable=SC2086 # lists of flags and libraries
 "$CC" -std=c11 -I$INC -Iruntime ${GSL:+-DWITH_GSL} -o "$TMP/list_methods" tests/golden/list_methods.c $LIBLAG $LIBLAG $LIBS >"$TMP/log" 2>&1 || cat "$TMP/log"

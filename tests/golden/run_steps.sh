@@ -4,7 +4,6 @@
 # Counts, which are the same on every machine, not times. To accept other counts, on purpose:
 #   BLESS=1 sh tests/golden/run_steps.sh      writes steps.txt anew
 . tests/tap.sh
-: "${LAGC:=build/lagc}"
 counts() { # MODEL METHOD
   "$LAGC" run "$1" --method "$2" $3 --json 2>/dev/null >"$TMP/json"
   case $? in 0 | 3) ;; *) echo "- - - - -"; return ;; esac

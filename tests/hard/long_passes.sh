@@ -3,8 +3,6 @@
 # from 1e-14 to 1e-11, each of which puts the ends of its steps elsewhere. Near that position digits are lost by chance, so counts are
 # judged: with the search for sizes that pass it (adaptive_rk.c, land_elsewhere) 76 runs are within the 3e-9 of tests/hard at t = 10 and 3
 # beyond 1e-8; without it 54 and 16. A run that creeps must say so. Expected: c_B0vx of expected.txt.
-: "${LAGC:=build/lagc}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 
 expected=$(awk '$1 == "mbs-a02-fourbar-N2" && $3 == 10 && $4 == "c_B0vx" { print $5 }' tests/hard/expected.txt)

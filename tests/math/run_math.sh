@@ -1,11 +1,9 @@
 #!/bin/sh
 # runtime/include/lag_math.h: errors of its functions against libquadmath, special values, the same bits from both compilers and in
 # lanes, for 15,000 arguments a function, 100,000 in `make test-long`, a million in `make test-all`; and where the coefficients come from.
-: "${INC:=runtime/include}" "${CC:=cc}"
 points=15000
 [ -z "${SLOW:-}" ] || points=100000
 [ "${SLOW:-}${ROWS:-all}" != 1all ] || points=1000000
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 
 gcc=
