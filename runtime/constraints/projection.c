@@ -264,11 +264,13 @@ static int are_rounded(lag_problem *pb, const Level *l, int n, int turn) {
   return rounded;
 }
 
-/* g := minus the residuals; 0 after a correction that leaves roundings, which are never 0 in all of many loops. */
+/* g := minus the residuals; 0 after a correction that leaves roundings, which are never 0 in all of many loops. Headers
+ * have no such end, and to rounding the digits of models with so many. */
 static int residuals(lag_problem *pb, const Level *l, int turn, double *g) {
+  enum { MANY = 16 };
   int n = l->holonomic ? l->w->of->nholonomic : l->w->of->n;
   int rc = turn ? lag_residuals(pb, l->t, l->y, l->w->c, l->w->r) : 0;
-  int done = rc == 0 && turn && are_rounded(pb, l, n, turn);
+  int done = rc == 0 && turn && n > MANY && are_rounded(pb, l, n, turn);
   for (int k = 0; k < n; k++) g[k] = done ? 0 : -residuals_of(l)[k];
   return rc;
 }
