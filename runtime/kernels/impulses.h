@@ -5,7 +5,8 @@
  * friction that depend on the forces which press, for any number of contacts.
  *
  * Turn by turn each law is obeyed, until a sweep changes nothing noticeably: M. Jean, Comput. Methods
- * Appl. Mech. Eng. 177 (1999) 235, DOI 10.1016/S0045-7825(98)00383-1.
+ * Appl. Mech. Eng. 177 (1999) 235, DOI 10.1016/S0045-7825(98)00383-1. Gap and friction of a contact are found at
+ * once where each moves the other by much; impulses that drift go in strides, and those that swing are damped.
  *
  * lagc copies the sections below into headers, with their prefix for LAG_ and lag_. LAG_REAL is a
  * scalar. The caller's memory alone; nothing is kept between calls. */

@@ -220,7 +220,6 @@ void add_contact_family(Builder *b, const AstStmt *st, Name effect) {
 void check_contact_families(Builder *b) {
   const Model *m = b->m;
   if (!m->families.n || b->diags->errors) return;
-  Span span = m->families.at[0].span;
   if (m->constraints.n)
     diag_error(b->diags, m->constraints.at[0].span,
                "not yet: constraints and single contacts beside a family of contacts" HELP
@@ -232,8 +231,6 @@ void check_contact_families(Builder *b) {
         diag_error(b->diags, m->families.at[k].span, "not yet: `%s` of a family of contacts as a number" HELP
                    "leave it out of --fix", p->name);
     }
-  if (m->first_order)
-    diag_error(b->diags, span, "contacts move bodies by impulses, and L is linear in the velocities");
   if (m->scene.method && strcmp(m->scene.method, "moreau") != 0)
     diag_error(b->diags, m->scene.method_span, "`%s` does not follow the family of contacts `%s`" HELP
                "`method moreau(step = 1e-3 [s])` does; single contacts, `for i in 1..N { contact ... }`, have other "
