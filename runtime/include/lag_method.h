@@ -213,6 +213,8 @@ void lag_report_residual(lag_problem *pb, int k, int holonomic, double residual,
 
 /* The step [s] of a method with equal steps: the option, or where that is 0 a 10000th of the scene's span. */
 double lag_step_size(const lag_problem *pb, double option);
+/* Whether impulses by a tolerance are worth their steps: in a pile impacts follow each other, and motions part. */
+int lag_few_contacts(const lag_model *m);
 
 /* Index of the first element of x[n] that is not finite, -1 when all are. */
 int lag_not_finite(int n, const double *x);

@@ -21,8 +21,8 @@
 #include "methods/steps.h"
 
 static const lag_method_option options[] = {
-    {"step", "size of the step [s]; 0: by the tolerance, at most a 10000th of the scene's span", 0, 0, HUGE_VAL,
-     .choices = NULL}};
+    {"step", "size of the step [s]; 0: a 10000th of the scene's span, and with up to 8 contacts less by the tolerance",
+     0, 0, HUGE_VAL, .choices = NULL}};
 
 /* Head of the saved state; behind it arrays of n, 2 doubles a contact of the model, friction and tangential
  * restitution, and the room of dry friction; then a copy of all that and of pb->hold, and two ends of trials. */
@@ -63,7 +63,7 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   const lag_model *m = pb->model;
   int rc = 0;
   w->step.h = lag_step_size(pb, opt[0]);
-  w->most = opt[0] > 0 ? 0 : w->step.h;
+  w->most = opt[0] > 0 || !lag_few_contacts(m) ? 0 : w->step.h;
   w->calm = 0;
   memset(law_of(w, pb) + 2 * m->ncontacts, 0, lag_joint_friction_size(pb) * sizeof(double));
   reset(work, pb);
