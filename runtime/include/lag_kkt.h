@@ -103,15 +103,17 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
     least = column > -none && column < least ? column : least;
   }
   /* range of inertia, which goes with the square of a coordinate's unit; that of a coordinate without inertia is
-   * another where a constraint has elements beside it that would lose half of their digits */
+   * another where all elements beside its own would lose half of their digits */
   LAG_LANE light = none, heavy = -none;
   for (int j = 0; j < n; j++) {
     const LAG_LANE here = size[(m + j)*n + j];
+    LAG_LANE beside = -none;
     light = here < light ? here : light, heavy = here < none && here > heavy ? here : heavy;
     for (int k = 0; k < m*n && !(here < none); k++) {
-      const LAG_LANE below = top[k/n] - size[k];
-      if (size[k/n*n + j] < none && below > (LAG_LANE)(-bits/2) && below < (LAG_LANE)(-bits)) light = -none;
+      const LAG_LANE own = size[k/n*n + j], by = size[k] - own;
+      if (k%n != j && own < none && size[k] < none && by > beside) beside = by;
     }
+    if (beside < (LAG_LANE)(bits/2) && beside > (LAG_LANE)bits) light = -none;
   }
   if (most - least <= (LAG_LANE)12 && heavy - light <= (LAG_LANE)48) {
     for (int k = 0; k < all; k++) scale[k] = 1;
