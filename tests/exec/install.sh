@@ -24,7 +24,7 @@ so=liblag.so.$(sed -n 's/^.define LAG_ABI //p' runtime/include/lag_model.h)
 [ ! -f "$BUILD/lag.wasm.gz" ] || more_files="$more_files lib/lag.wasm.gz"
 [ ! -f "$BUILD/lagc.wasm.gz" ] || more_files="$more_files lib/lagc.wasm.gz"
 case $("$CC" -dumpmachine) in *linux* | *bsd*) more_files="$more_files lib/liblag.so lib/$so" ;; *) so= ;; esac
-models=$(cd models && ls -d -- *.lag *.csv lib/*.lag lib/*.csv 2>/dev/null)
+models=$(cd models && ls -d -- *.lag *.csv lib/*.lag lib/*.csv lib/*.json 2>/dev/null)
 want=$(for f in bin/lagc include/lag.h include/lag_band.h include/lag_kkt.h include/lag_lanes.h include/lag_libraries.h include/lag_math.h include/lag_method.h include/lag_model.h include/lag_sincos.h include/lag_support.h include/lag_tree.h lib/lag-run lib/liblag.a lib/pkgconfig/liblag.pc $more_files \
   share/doc/lagc/LICENSE share/doc/lagc/README.md share/man/man1/lagc.1 share/bash-completion/completions/lagc \
   lib/cmake/lagc/lagcConfig.cmake lib/cmake/lagc/lagcConfigVersion.cmake \
