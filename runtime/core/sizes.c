@@ -45,16 +45,9 @@ static int formula_length(const lag_model *m, LagFormula of) {
   return of == LAG_FORMULA_ENERGY ? 1 : of == LAG_FORMULA_RATES ? m->nq + m->nz : m->constraints->nholonomic;
 }
 
-#if defined FE_UPWARD && defined FE_DOWNWARD && defined FE_TONEAREST
-/* x := the formula rounded upwards, or downwards. */
-static int formula_rounded(lag_sim *s, LagFormula of, double t, const double *y, int upwards, double *x) {
-  int before = fegetround(), rc = fesetround(upwards ? FE_UPWARD : FE_DOWNWARD) || formula_at(s, of, t, y, x);
-  return fesetround(before) || rc;
-}
-#else
-/* Without rounding modes, as in WebAssembly: x := the formula of a state and parameters whose last digits are
- * larger, or smaller. */
-static int formula_rounded(lag_sim *s, LagFormula of, double t, const double *y, int upwards, double *x) {
+/* x := the formula of a state and parameters whose last digits are larger, or smaller: the same bits wherever the
+ * formula has them. */
+static int formula_beside(lag_sim *s, LagFormula of, double t, const double *y, int upwards, double *x) {
   const lag_model *m = s->scene->model;
   const int n = s->pb.n, np = m->np + m->nderived;
   double *beside = malloc((size_t)(n + np) * sizeof *beside), *p = beside + n, by = upwards ? 1 : -1;
@@ -67,17 +60,31 @@ static int formula_rounded(lag_sim *s, LagFormula of, double t, const double *y,
   free(beside);
   return rc;
 }
+
+/* x := the formula rounded upwards, or downwards; without rounding modes, as in WebAssembly, the one beside. */
+static int formula_rounded(lag_sim *s, LagFormula of, double t, const double *y, int upwards, double *x) {
+#if defined FE_UPWARD && defined FE_DOWNWARD && defined FE_TONEAREST
+  int before = fegetround(), rc = fesetround(upwards ? FE_UPWARD : FE_DOWNWARD) || formula_at(s, of, t, y, x);
+  return fesetround(before) || rc;
+#else
+  return formula_beside(s, of, t, y, upwards, x);
 #endif
+}
+
+/* noise := the smaller change to up and down, where neither is 0: one of the modes costs lag_math.h digits of a small
+ * angle, by its sign. Enters: noise is the formula. */
+static void noise_between(int n, double *noise, const double *up, const double *down) {
+  for (int i = 0; i < n; i++) {
+    double over = fabs(up[i] - noise[i]), under = fabs(down[i] - noise[i]);
+    noise[i] = over > 0 && under > 0 ? fmin(over, under) : fmax(over, under);
+  }
+}
 
 int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, double *noise, double *up,
                          double *down) {
   int rc = formula_rounded(s, of, t, y, 1, up) || formula_rounded(s, of, t, y, 0, down) ||
            formula_at(s, of, t, y, noise);
-  for (int i = 0, n = formula_length(s->scene->model, of); i < n && !rc; i++) {
-    double over = fabs(up[i] - noise[i]), under = fabs(down[i] - noise[i]);
-    /* One of the modes costs lag_math.h digits of a small angle, by its sign. */
-    noise[i] = over > 0 && under > 0 ? fmin(over, under) : fmax(over, under);
-  }
+  if (!rc) noise_between(formula_length(s->scene->model, of), noise, up, down);
   return rc;
 }
 
@@ -284,12 +291,17 @@ static void rates_beside(lag_sim *s, int at, int count, const double *by, const 
 
 enum { ROUNDINGS = 1000 }; /* of a few hundred operations */
 
-/* noise[nq] := rounding of the accelerations at the start, in a block of 3 n; NULL: not known. */
+/* noise[nq] := rounding of the accelerations at the start, in a block of 3 n; NULL: not known. Steps depend on it, and
+ * what rounding modes show depends on the compiler: it is what last digits of the state and of parameters change. */
 static double *acceleration_noise(lag_sim *s) {
   const size_t n = (size_t)s->pb.n;
-  double *noise = malloc(3 * n * sizeof *noise), *up = noise + n;
-  if (!noise || !lag_formula_rounding(s, LAG_FORMULA_RATES, s->run->t, s->now, noise, up, up + n))
+  const double t = s->run->t, *y = s->now;
+  double *noise = malloc(3 * n * sizeof *noise), *up = noise + n, *down = up + n;
+  if (noise && !formula_beside(s, LAG_FORMULA_RATES, t, y, 1, up) &&
+      !formula_beside(s, LAG_FORMULA_RATES, t, y, 0, down) && !formula_at(s, LAG_FORMULA_RATES, t, y, noise)) {
+    noise_between(s->pb.nq, noise, up, down);
     return noise;
+  }
   free(noise);
   return NULL;
 }

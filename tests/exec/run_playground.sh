@@ -82,7 +82,7 @@ is "names are no markup" '<mi mathvariant="normal">a&lt;b&gt;&amp;</mi>' "$(fact
 # The search has two seconds: on a busy machine it finds the declared symmetry and the energy.
 is "symmetries: angular momentum and energy" "spin = x*y' - y*x', Q1: energy" "$(fact symmetries)"
 is "a text too deep" "functions are nested 3000 deep here, and at most 2000 in one expression" "$(fact deep)"
-is "no files" '1:9 cannot read `other.lag`: a page has no files but bodies.lag, quake.csv, road.csv' "$(fact file)"
+is "no files" '1:9 cannot read `other.lag`: a page has no files but bodies.lag, learned_spring.json, quake.csv, road.csv, spring_record.csv' "$(fact file)"
 
 is "but those of the library: a hoop of mass 2 and radius 3 has m*r^2 = 18" "p_θ = 18 θ˙" "$(fact library)"
 
