@@ -299,7 +299,7 @@ static void poles_are_looked_for_in_bounded_time(void **state)
   assert_int_equal(lag_sim_advance(s, 20), LAG_OK);
   lag_sim_stats(s, &st);
   assert_int_equal(st.steps, 200);
-  assert_in_range(evaluations - st.rhs_calls, 0, 24); /* estimates of periods are not counted: 16 here; sizes at the start: 7 */
+  assert_in_range(evaluations - st.rhs_calls, 0, 24); /* periods, not counted: 16 here; sizes: 7 */
   assert_true(s->run->pole_calls > 20);
   assert_in_range(st.rhs_calls, 201, 201 + 48 + 200 / 4 + 27); /* the last search takes up to 3 + 24 */
   lag_sim_free(s);
