@@ -101,6 +101,7 @@ struct lag_sim {
   double *side_noise, *slid_off, *meets, *left, *meeting;
   int *meeting_of;       /* [3 nmodes] scratch, pb.sliding, and bytes of scratch */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
+  double *beside, *beside_noise, *beside_open; /* [n + np + nderived], [3 n], [3 n] scratch of sizes.c */
   double *saved;         /* one block: Run and the arrays below; it lies in `room`, which is freed */
   char *room;
   size_t nsaved;

@@ -50,14 +50,12 @@ static int formula_length(const lag_model *m, LagFormula of) {
 static int formula_beside(lag_sim *s, LagFormula of, double t, const double *y, int upwards, double *x) {
   const lag_model *m = s->scene->model;
   const int n = s->pb.n, np = m->np + m->nderived;
-  double *beside = malloc((size_t)(n + np) * sizeof *beside), *p = beside + n, by = upwards ? 1 : -1;
-  if (!beside) return 1;
+  double *beside = s->beside, *p = beside + n, by = upwards ? 1 : -1;
   memcpy(p, s->p, (size_t)np * sizeof *p);
   for (int i = 0; i < n; i++) beside[i] = y[i] * (1 + by * (1 + lag_uneven(i)) * DBL_EPSILON);
   for (int i = 0; i < np; i++) s->p[i] *= 1 + by * (1 + lag_uneven(n + i)) * DBL_EPSILON;
   int rc = formula_at(s, of, t, beside, x);
   memcpy(s->p, p, (size_t)np * sizeof *p);
-  free(beside);
   return rc;
 }
 
@@ -293,17 +291,14 @@ enum { ROUNDINGS = 1000 }; /* of a few hundred operations */
 
 /* noise[nq] := rounding of the accelerations at the start, in a block of 3 n; NULL: not known. Steps depend on it, and
  * what rounding modes show depends on the compiler: it is what last digits of the state and of parameters change. */
-static double *acceleration_noise(lag_sim *s) {
-  const size_t n = (size_t)s->pb.n;
+static double *acceleration_noise(lag_sim *s, double *noise) {
   const double t = s->run->t, *y = s->now;
-  double *noise = malloc(3 * n * sizeof *noise), *up = noise + n, *down = up + n;
-  if (noise && !formula_beside(s, LAG_FORMULA_RATES, t, y, 1, up) &&
-      !formula_beside(s, LAG_FORMULA_RATES, t, y, 0, down) && !formula_at(s, LAG_FORMULA_RATES, t, y, noise)) {
-    noise_between(s->pb.nq, noise, up, down);
-    return noise;
-  }
-  free(noise);
-  return NULL;
+  double *up = noise + s->pb.n, *down = up + s->pb.n;
+  if (formula_beside(s, LAG_FORMULA_RATES, t, y, 1, up) || formula_beside(s, LAG_FORMULA_RATES, t, y, 0, down) ||
+      formula_at(s, LAG_FORMULA_RATES, t, y, noise))
+    return NULL;
+  noise_between(s->pb.nq, noise, up, down);
+  return noise;
 }
 
 /* f[n] := 0 for accelerations that are rounding, as of forces that constraints and contacts balance. */
@@ -422,9 +417,8 @@ static void raise_rates(const lag_sim *s, const double *change, const double *no
 /* The same by what contacts that are open now change. */
 static void raise_open(lag_sim *s, double *f) {
   rates_beside(s, 0, 0, NULL, f, s->yc);
-  double *noise = acceleration_noise(s);
+  double *noise = acceleration_noise(s, s->beside_open);
   if (noise) raise_rates(s, s->yc, noise, f);
-  free(noise);
 }
 
 /* Accelerations of a body that friction or a contact holds are rounding: raises f[n], rates at the start, to those
@@ -486,7 +480,7 @@ void lag_start_sizes(lag_sim *s) {
   const int nq = m->nq, n = s->pb.n;
   double *f = s->yb, *bend = s->yc, *size = s->pb.size, time = HUGE_VAL, calls = s->pb.rhs_calls;
   rates_beside(s, 0, 0, NULL, NULL, f);
-  double *noise = acceleration_noise(s), *balanced = m->constraints || m->ncontacts ? noise : NULL;
+  double *noise = acceleration_noise(s, s->beside_noise), *balanced = m->constraints || m->ncontacts ? noise : NULL;
   drop_rounding(s, balanced, f);
   raise_held(s, f);
   memset(bend, 0, (size_t)n * sizeof *bend);
@@ -497,7 +491,6 @@ void lag_start_sizes(lag_sim *s) {
   state_sizes(s, f, time);
   for (int i = 0; i < n; i++) size[i] = size_unit(size[i]);
   if (noise) raise_to_rounding(s, noise, local_time(s, f, noise, time) / STEPS);
-  free(noise);
   size[n + 1] = size_unit(time);
   s->pb.rhs_calls = calls;
 }
