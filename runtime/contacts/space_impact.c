@@ -55,7 +55,7 @@ static void find_still(Flow *w) {
   for (int k = 0; k < 2; k++) w->still[k] = -w->mu * way[k];
 }
 
-/* What is left until the phase ends: > 0 before. owed: work, impulse or velocity of restitution; p: impulse of it. */
+/* Rest of the phase, > 0 until it ends. owed: work, impulse or velocity of restitution; p: impulse of it. */
 static double left(int returns, int law, double owed, const double *x, double p) {
   if (!returns) return -x[VN];
   return law == LAG_IMPACT_STRONGE ? owed - x[WORK] : law == LAG_IMPACT_POISSON ? owed - p : owed - x[VN];

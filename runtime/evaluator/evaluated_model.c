@@ -46,17 +46,18 @@ FUNCTION(momenta, action_of, momenta)
     IN;                                                                  \
     return lag_run_program(of(self)->member, in, (double *[]){x, y}, w); \
   }
-#define FUNCTION_G(name, of, member)                                                    \
-  static int name(STATE, const double *g, double *x, double *y, double *w) {            \
-    const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_G] = g}; \
-    return lag_run_program(of(self)->member, in, (double *[]){x, y}, w);                \
+/* With one more array, g or accelerations. */
+#define FUNCTION_WITH(name, of, member, array)                                       \
+  static int name(STATE, const double *more, double *x, double *y, double *w) {      \
+    const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [array] = more}; \
+    return lag_run_program(of(self)->member, in, (double *[]){x, y}, w);             \
   }
 
 FUNCTION_2(accel, model_of, accel)
 FUNCTION_2(residuals, constraints_of, residuals)
 FUNCTION_2(matrices, constraints_of, matrices)
-FUNCTION_G(position, constraints_of, position)
-FUNCTION_G(velocity, constraints_of, velocity)
+FUNCTION_WITH(position, constraints_of, position, PROGRAM_G)
+FUNCTION_WITH(velocity, constraints_of, velocity, PROGRAM_G)
 
 /* Methods that call these two refuse models with states, and give no z. */
 static int variation(STATE, double *Lq, double *Lv, double *Q, double *w) {
@@ -71,14 +72,8 @@ static int second(STATE, double *h, double *w) {
   return lag_run_program(model_of(self)->second, in, (double *[]){h}, w);
 }
 
-/* The same with accelerations between. */
-#define FUNCTION_A(name, of, member)                                                    \
-  static int name(STATE, const double *a, double *x, double *y, double *w) {            \
-    const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a}; \
-    return lag_run_program(of(self)->member, in, (double *[]){x, y}, w);                \
-  }
-FUNCTION_A(linearise, linear_of, eval)
-FUNCTION_A(partials, partials_of, eval)
+FUNCTION_WITH(linearise, linear_of, eval, PROGRAM_A)
+FUNCTION_WITH(partials, partials_of, eval, PROGRAM_A)
 
 static int inverse(STATE, const double *a, double *force, double *w) {
   const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a};

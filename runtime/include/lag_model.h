@@ -279,7 +279,7 @@ typedef struct lag_contact {
   int law;
 } lag_contact;
 
-/* What the text of a family reads: by row and turn, an index among coordinates or parameters. */
+/* A read of a family's text: by row and turn, an index among coordinates or parameters. */
 typedef struct lag_read {
   int first, by_row, by_turn;
 } lag_read;

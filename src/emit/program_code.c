@@ -520,15 +520,11 @@ static void put_far(StrBuf *out, const IrFar *far) {
 static void put_nest(Coder *w, StrBuf *out, const Nest *n) {
   const Prog *body = n->body;
   int turns = nest_has_turns(n), rows = n->rows > 1;
-  put_word(out, n->rows);
-  put_word(out, (uint32_t)turns);
-  put_signed(out, n->skew), put_signed(out, n->turns), put_signed(out, n->more);
-  put_word(out, n->n);
-  for (uint32_t k = 0; k < n->n; k++) {
-    put_signed(out, n->at[k].first);
-    put_signed(out, rows ? n->at[k].by_row : 0);
-    put_signed(out, turns ? n->at[k].by_turn : 0);
-  }
+  put_word(out, n->rows), put_word(out, (uint32_t)turns);
+  put_signed(out, n->skew), put_signed(out, n->turns), put_signed(out, n->more), put_word(out, n->n);
+  for (uint32_t k = 0; k < n->n; k++)
+    put_signed(out, n->at[k].first), put_signed(out, rows ? n->at[k].by_row : 0),
+        put_signed(out, turns ? n->at[k].by_turn : 0);
   put_word(out, n->nouter);
   for (uint32_t k = 0; k < n->nouter; k++) put_word(out, w->place[n->outer[k]]);
   put_word(out, body->ins.n - 1);
@@ -572,9 +568,8 @@ static void put_code(Coder *w, StrBuf *out) {
   StrBuf nests = strbuf(w->a);
   for (uint32_t k = 0; k < p->nests.n; k++) put_nest(w, &nests, &p->nests.at[k]);
   put_word(out, 1);
-  put_word(out, w->frame), put_word(out, (uint32_t)w->style.regular);
-  put_word(out, w->cells), put_word(out, p->cells), put_word(out, w->work), put_word(out, prog_work_size(p));
-  put_word(out, w->constants.n);
+  put_word(out, w->frame), put_word(out, (uint32_t)w->style.regular), put_word(out, w->cells);
+  put_word(out, p->cells), put_word(out, w->work), put_word(out, prog_work_size(p)), put_word(out, w->constants.n);
   for (uint32_t k = 0; k < w->constants.n; k++) put_number(out, w->constants.at[k]);
   put_word(out, p->tables.n);
   for (uint32_t k = 0; k < p->tables.n; k++) put_table(out, &p->tables.at[k]);

@@ -304,7 +304,7 @@ typedef struct {
   int guessed;     /* the text has no `draw` */
 } Scene;
 
-/* What the text of a family reads: a coordinate (and its rate), or a parameter; its index, by row and turn. */
+/* A read of a family's text: a coordinate (and its rate), or a parameter; its index, by row and turn. */
 typedef struct {
   SymId symbol;
   Subscript at;

@@ -39,6 +39,9 @@ check "discs slide and roll" run roll
 for i in 1 2 3; do
   check "disc $i rolls with two thirds of its speed" near "$(final "x\[$i\]'")" 0.66666666666666667 1e-12 # 64 roundings of the step
 done
+sed 's/moreau(step = 0.01)/moreau/' "$TMP/roll.lag" >"$TMP/stepless.lag"
+equal() { "$LAGC" run "$TMP/stepless.lag" >"$TMP/log" 2>&1; cat "$TMP/log"; grep -q '^steps 10000, rejected 0,' "$TMP/log"; }
+check "without a step they are equal ones, 10000 of the span" equal
 
 # ---- a pile: its families against single contacts, which constraints make
 pile() { # NAME RANGE: discs of different sizes with friction

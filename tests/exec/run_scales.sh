@@ -124,4 +124,8 @@ observe outy = y
 scene run { start y = 1
   $run outx, outy
 }"
+
+# Next to a rest whose forces cancel: a tolerance of 1e-14 of 1e-8 is below their rounding, and was refused without end. 12,000: four times as many steps as it takes.
+balance() { [ "$(timeout 100 "$LAGC" run models/magnetic_pendulum.lag middle --tol 1e-14 --json | sed 's/.*"steps": \([0-9]*\).*/\1/')" -lt 12000 ]; }
+check "forces in balance have a size" balance
 tap_end
