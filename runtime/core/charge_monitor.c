@@ -230,15 +230,15 @@ static void add_to_trend(Charge *c, double t, double d, double size) {
  * size. */
 static void take_terms(lag_sim *s, double t, const double *y) {
   int n = lag_sim_ncharges(s), nq = s->pb.nq;
-  double *beside = s->yb, *v = beside + nq;
-  double energy = n > 0 ? lag_energy_terms(s, t, y, lag_step_so_far(s)) : 0;
-  if (n > 1) lag_velocity_terms(s, t, y, lag_step_so_far(s), v);
+  double *beside = s->yb, *v = beside + nq, h = lag_step_so_far(s);
+  double energy = n > 0 ? lag_energy_terms(s, t, y, h) : 0;
+  if (n > 1) lag_velocity_terms(s, t, y, h, v);
   memcpy(beside, y, (size_t)nq * sizeof *beside);
   memcpy(v + nq, y + 2 * nq, (size_t)s->pb.nz * sizeof *v);
   for (int i = 0; i < nq; i++) v[i] = v[i] < HUGE_VAL ? v[i] : y[nq + i];
   if (n > 1) lag_charges_at(s, t, beside);
   for (int k = 0; k < n; k++) s->charges[k].terms = fmax(s->charges[k].terms, k ? s->charge_now[2 * k + 1] : energy);
-  if (n > 0) s->charges[0].step = lag_step_so_far(s);
+  if (n > 0) s->charges[0].step = h;
 }
 
 void lag_charges_begin(lag_sim *s, double t, const double *y) {

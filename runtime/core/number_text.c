@@ -17,8 +17,44 @@ static const char *by_trials(double x, char text[64]) {
   return text;
 }
 
-#if DBL_DIG == 15
+#if DBL_DIG == 15 && defined __SIZEOF_INT128__
 enum { WHOLE = 17 }; /* digits that tell all doubles apart */
+__extension__ typedef unsigned __int128 Wide;
+
+/* x = product/(2^shift 10^(WHOLE - 1 - first)) exactly, first: the exponent of its first digit. A unit of the last bit
+ * of x is `unit` of product. */
+typedef struct Exact {
+  Wide product;
+  uint64_t unit;
+  int shift, first;
+} Exact;
+
+/* 0: the product has more bits than Wide: x < 1e-11 or x >= 1e16. */
+static int exact_product(double x, Exact *e) {
+  const double log10_of_2 = 0.30102999566398120;
+  const uint64_t most = 100000000000000000; /* 10^WHOLE */
+  int bits;
+  const uint64_t mantissa = (uint64_t)ldexp(frexp(x, &bits), DBL_MANT_DIG);
+  for (e->first = (int)floor((bits - 1) * log10_of_2);; e->first++) { /* or the next one */
+    const int power = WHOLE - 1 - e->first, most_of_5 = 27;
+    e->shift = DBL_MANT_DIG - bits - power;
+    if (power < 0 || power > most_of_5 || e->shift < 0) return 0;
+    e->unit = 1;
+    for (int k = 0; k < power; k++) e->unit *= 5;
+    e->product = (Wide)mantissa * e->unit;
+    if (e->product >> e->shift < most) return 1;
+  }
+}
+
+/* The first digits of x, without those below ten^k, rounded; *away: their distance from x, of product. */
+static uint64_t rounded(const Exact *e, int k, Wide *away) {
+  const uint64_t last = k == 0 ? 1 : k == 1 ? 10 : 100;
+  uint64_t digits = (uint64_t)(e->product >> e->shift) / last;
+  const Wide step = (Wide)last << e->shift, rest = e->product - digits * step;
+  const int up = 2 * rest > step || (2 * rest == step && digits % 2);
+  *away = up ? step - rest : rest;
+  return digits + (uint64_t)up;
+}
 
 /* digits[n] with the exponent of the first, as by %.*g. */
 static void write_general(const char *digits, int n, int exponent, int precision, char *to) {
@@ -47,37 +83,23 @@ static int write_digits(uint64_t number, char *digits) {
   return n;
 }
 
-/* The first n digits of the WHOLE ones of x, `all`, rounded. They read as x where the next digits are within half a bit
- * of x, `half` in units of the last: 2. 1: they may; 0: they do not; -1: ties that the digits do not decide. */
-static int round_digits(uint64_t all, double half, int n, char *digits, int *exponent) {
-  const uint64_t unit = n == WHOLE - 1 ? 10 : 100;
-  uint64_t rest = all % unit, head = all / unit + (2 * rest > unit);
-  double away = 2 * rest > unit ? (double)(unit - rest) : (double)rest;
-  if (2 * rest == unit) return -1;
-  if (away > half + 1) return 0;
-  *exponent += write_digits(head, digits) > n; /* 9.99... has become 10 */
-  return away < half - 1 ? 2 : 1;
-}
-
+/* Digits read as x where they are nearer to it than half a unit of its last bit; at half a unit, and at powers of two,
+ * which have a nearer number below, reading decides. */
 const char *lag_number_text(double x, char text[64]) {
-  char all[40], digits[WHOLE + 4], *to = text;
-  if (!(fabs(x) >= DBL_MIN && fabs(x) <= DBL_MAX)) return by_trials(x, text);
-  int bits, first;
-  uint64_t whole = 0;
-  double power = frexp(fabs(x), &bits);
-  snprintf(all, sizeof all, "%.*e", WHOLE - 1, fabs(x)); /* d.dddde+xx */
-  all[1] = all[0];
-  for (int i = 1; i <= WHOLE; i++) whole = 10 * whole + (uint64_t)(all[i] - '0');
-  first = (int)strtol(all + WHOLE + 2, NULL, 10);
-  double half = (double)whole / power * (0.25 * DBL_EPSILON);
+  char digits[24], *to = text;
+  Exact e;
+  int bits;
+  if (!(fabs(x) >= DBL_MIN && fabs(x) <= DBL_MAX) || !exact_product(fabs(x), &e)) return by_trials(x, text);
+  const int even = frexp(fabs(x), &bits) > 0.5;
   if (x < 0) *to++ = '-';
-  for (int n = DBL_DIG; n < WHOLE; n++) {
-    int exponent = first, may = round_digits(whole, half, n, digits, &exponent);
-    if (may < 0) return by_trials(x, text);
-    if (may) write_general(digits, n, exponent, n, to);
-    if (may && ((may == 2 && power > 0.5) || strtod(text, NULL) == x)) return text;
+  for (int n = DBL_DIG; n <= WHOLE; n++) {
+    Wide away;
+    const uint64_t number = rounded(&e, WHOLE - n, &away);
+    if (n < WHOLE && 2 * away > e.unit) continue;
+    int exponent = e.first + (write_digits(number, digits) > n); /* 9.99... has become 10 */
+    write_general(digits, n, exponent, n, to);
+    if (n == WHOLE || (2 * away < e.unit && even) || strtod(text, NULL) == x) break;
   }
-  write_general(all + 1, WHOLE, first, WHOLE, to);
   return text;
 }
 #else

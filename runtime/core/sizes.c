@@ -106,10 +106,15 @@ static double change_of_energy(lag_sim *s, double t, const double *y, int at, co
   return fabs(there[0] - e) < HUGE_VAL ? fabs(there[0] - e) : 0;
 }
 
+/* Whether variables i and k have one unit; compilers merge equal texts. */
+static int same_unit(const lag_var *var, int i, int k) {
+  return var[i].unit == var[k].unit || strcmp(var[i].unit, var[k].unit) == 0;
+}
+
 /* The first variable with the unit of variable i. */
 static int first_of_unit(const lag_var *var, int i) {
   int k = 0;
-  while (strcmp(var[k].unit, var[i].unit) != 0) k++;
+  while (!same_unit(var, k, i)) k++;
   return k;
 }
 
@@ -128,7 +133,7 @@ static double velocity_of(lag_sim *s, double t, const double *y, int i, double e
   energy_at(s, t, s->ya, rest);
   for (int k = 0; k < MOST; k++) {
     for (int j = 0; j < nq; j++)
-      if (strcmp(m->q[j].unit, m->q[i].unit) == 0) s->ya[nq + j] = h;
+      if (same_unit(m->q, j, i)) s->ya[nq + j] = h;
     energy_at(s, t, s->ya, e);
     double ratio = fabs(e[0] - rest[0]) / energy;
     if (ratio > 0.25 && ratio < 4) return h;
@@ -151,7 +156,7 @@ static double energy_of_force(lag_sim *s, double t, const double *y, int i, doub
   for (int turn = 0; turn < MOST; turn++) {
     double v = velocity_of(s, t, y, i, energy);
     if (!(v < HUGE_VAL)) return 0;
-    for (int j = 0; j < nq; j++) d[j] = strcmp(m->q[j].unit, m->q[i].unit) == 0 ? h * v : 0;
+    for (int j = 0; j < nq; j++) d[j] = same_unit(m->q, j, i) ? h * v : 0;
     double whole = change_of_energy(s, t, y, 0, d, e);
     for (int j = 0; j < nq; j++) d[j] /= 2;
     double half = change_of_energy(s, t, y, 0, d, e), ratio = whole / energy;
@@ -230,7 +235,7 @@ void lag_velocity_terms(lag_sim *s, double t, const double *y, double h, double 
   for (int i = 0; i < m->nq; i++) {
     if (!is_first(m, i)) continue;
     double of = known ? velocity_of(s, t, y, i, energy) : HUGE_VAL;
-    for (int k = i; k < m->nq; k++) v[k] = k == i || strcmp(m->q[k].unit, m->q[i].unit) == 0 ? of : v[k];
+    for (int k = i; k < m->nq; k++) v[k] = same_unit(m->q, k, i) ? of : v[k];
   }
 }
 
@@ -246,7 +251,7 @@ typedef struct Kind {
 static double largest_of_unit(int n, const lag_var *var, const double *x, int i) {
   double most = 0;
   for (int k = 0; k < n; k++)
-    if (k == i || strcmp(var[k].unit, var[i].unit) == 0) most = fmax(most, fabs(x[k]));
+    if (same_unit(var, k, i)) most = fmax(most, fabs(x[k]));
   return most;
 }
 
@@ -336,7 +341,7 @@ static double coordinate_sizes(lag_sim *s, const double *f, const double *noise,
       const int rests = !(k.v > 0) && !(k.a > 0);
       v = rests && v * time < 1e-12 * reach(k, time) ? 0 : v; /* rounding of forces that hold a displaced body, too */
       for (int j = nq - 1; j >= i; j--) {
-        if (j > i && strcmp(m->q[j].unit, m->q[i].unit) != 0) continue;
+        if (!same_unit(m->q, j, i)) continue;
         size[j] = reach(k, time);
         of_v[j] = v;
       }
@@ -409,7 +414,7 @@ static void raise_rates(const lag_sim *s, const double *change, const double *no
   double v = 0;
   for (int i = 0; i < nq; i++) {
     double by = fabs(change[nq + i]);
-    if (i == 0 || strcmp(var[i].unit, var[i - 1].unit) != 0) v = largest_of_unit(nq, var, s->now + nq, i);
+    if (i == 0 || !same_unit(var, i, i - 1)) v = largest_of_unit(nq, var, s->now + nq, i);
     if (!(v > 0) && by > ROUNDINGS * (noise ? noise[i] : 0)) f[nq + i] = fmax(fabs(f[nq + i]), by);
   }
 }
@@ -467,7 +472,7 @@ static void raise_to_rounding(lag_sim *s, const double *noise, double step) {
   const int nq = m->nq;
   double *size = s->pb.size, v = 0;
   for (int i = 0; i < nq; i++) {
-    if (i == 0 || strcmp(m->q[i].unit, m->q[i - 1].unit) != 0)
+    if (i == 0 || !same_unit(m->q, i, i - 1))
       v = largest_of_unit(nq, m->q, noise, i) * step / s->pb.tol;
     if (!(v > 0 && v < HUGE_VAL)) continue;
     size[i] = fmax(size[i], exp2(ceil(log2(v * step))));

@@ -56,7 +56,7 @@ typedef struct Rows {
   const Column *cols;
   struct {
     double x;
-    char text[48];
+    char text[64];
   } known[128]; /* numbers that were written, by their bits: the values of a grid come again and again */
 } Rows;
 

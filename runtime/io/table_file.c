@@ -156,11 +156,9 @@ int lag_rows_open(Rows *r, const char *path, const Table *t) {
 static const char *text_of(Rows *r, double x) {
   uint64_t h = lag_fnv1a(LAG_FNV1A_START, (const char *)&x, sizeof x);
   size_t k = (size_t)(h ^ h >> 32) % (sizeof r->known / sizeof *r->known);
-  char text[64];
   if (r->known[k].text[0] && memcmp(&r->known[k].x, &x, sizeof x) == 0) return r->known[k].text;
-  snprintf(r->known[k].text, sizeof r->known[k].text, "%s", lag_number_text(x, text));
   r->known[k].x = x;
-  return r->known[k].text;
+  return lag_number_text(x, r->known[k].text);
 }
 
 int lag_rows_write(Rows *r, const double *row) {
