@@ -142,7 +142,7 @@ static void test_journal(void **state) {
 }
 
 /* The shortest of 15 and more digits that reads as the same number, by trying them; in all ranges of exponents, whole
- * numbers, hundredths, ends of decades. */
+ * numbers, hundredths, ends of decades, powers of two and their neighbours. */
 static void test_number_text(void **state) {
   (void)state;
   static const double ends[] = {0,
@@ -164,6 +164,8 @@ static void test_number_text(void **state) {
     double x = (double)(int64_t)r * 0x1p-60;
     if (i % 4 == 0) memcpy(&x, &r, sizeof x);
     if (i % 4 == 1) x = (double)(r % 100000) / 100;
+    if (i % 4 == 2) x = ldexp(1 + (double)(i % 3 - 1) * 0x1p-52, (int)(r % 120) - 60); /* nearer numbers below */
+    if (i % 8 == 3) x *= pow(10, (double)(i % 38) - 19); /* within 128 bits and beyond */
     if (i < (int)(sizeof ends / sizeof *ends)) x = ends[i];
     char text[64], expected[64] = "";
     for (int digits = 15; digits < 18 && !(digits > 15 && strtod(expected, NULL) == x); digits++)
