@@ -223,13 +223,16 @@ static int compile_with_tmpdir(Arena *a, const Toolchain *t, const char *dir, co
   return ok;
 }
 
+static const char *cannot_write(Arena *a, const char *folder, const char *why) {
+  return arena_printf(a, "cannot write in %s: %s; make room, or set XDG_CACHE_HOME to another folder", folder, why);
+}
+
 /* Compiles in a new build folder, which stays only on success, with made_in of f->path. */
 static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
   const char *base = cache_folder(a);
   if (!base)
     return fail_with(error, "there is no folder to build in that only you can write: set XDG_CACHE_HOME to one");
-  if (!build_folder_make(a, base, f))
-    return fail_with(error, arena_printf(a, "cannot write in %s: %s", base, strerror(errno)));
+  if (!build_folder_make(a, base, f)) return fail_with(error, cannot_write(a, base, strerror(errno)));
   /* a shared library shows the functions of lag.h only */
   static const char exports[] = "{ global: lag_*; local: *; };\n";
   const char *why;
@@ -238,7 +241,7 @@ static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n
   for (size_t i = 0; i < n && ok; i++) {
     ok = file_write(arena_printf(a, "%s/%s", f->path, texts[i].name), texts[i].text, strlen(texts[i].text), &why);
   }
-  if (!ok) *error = arena_printf(a, "cannot write in %s: %s", f->path, why);
+  if (!ok) *error = cannot_write(a, f->path, why);
   ok = ok && compile_with_tmpdir(a, t, f->path, texts, n, error);
   if (ok && !file_exists(made_in(a, t, f->path))) {
     *error = arena_printf(a, "cannot write %s: the C compiler `%s` wrote no file", made_in(a, t, f->path), t->cc);

@@ -152,6 +152,14 @@ for cc in fails hangs rubbish full; do
   one_of 4 && check "the compiler beside the run: $cc" goes_on "$cc"
 done
 
+# No room to compile: the message has a way out.
+mkdir -m 700 "$TMP/no_room"
+way_out() {
+  (trap '' XFSZ && ulimit -f 0 && XDG_CACHE_HOME=$TMP/no_room "$LAGC" run models/pendulum.lag th=0.4321 --compile always 2>&1 | cat) |
+    grep -q '^lagc: cannot write in .*; make room, or set XDG_CACHE_HOME to another folder$'
+}
+check "a full disk: where else to compile" way_out
+
 # Bytes cut short, or with changed bits, bytes and words.
 "$LAGC" build models/bouncing_ball.lag --bytes -o "$TMP/ball"
 "$LAGC" build models/lennard_jones.lag -D N=14 --method taylor --bytes -o "$TMP/nests"
