@@ -61,6 +61,14 @@ case $kind in
 esac
 [ "$kind" = one ] || export DAY="${DAY:-$(($(date +%s) / 86400))}"
 [ -z "${LINKER:-}" ] || { mkdir -p "$BUILD/test/linker" && ln -sfn "$LINKER" "$BUILD/test/linker/ld"; }
+# python3 may be a script that looks for a Python, at forty times the processor time of lagc: suites call what it finds.
+python=$(command -v python3)
+case $kind$python in one* | */test/python/python3) python= ;; esac
+if [ -n "$python" ] && [ "$(head -c 2 "$python")" = '#!' ] && python=$(python3 -c 'import sys; print(sys.executable)' 2>/dev/null); then
+  mkdir -p "$BUILD/test/python"
+  printf '#!/bin/sh\nexec "%s" "$@"\n' "$python" >"$BUILD/test/python/python3" && chmod +x "$BUILD/test/python/python3"
+  PATH=$(pwd)/$BUILD/test/python:$PATH
+fi
 # deep FILE: a suite with rows or checks that `make test` leaves out
 deep() { grep -q 'SLOW\|^ *slow \|\<one_of ' "$1"; }
 

@@ -7,12 +7,10 @@
 #include "numeric/program_code.def"
 
 typedef enum {
-#define SPECIAL(name, kinds) CODE_##name,
-#define PLAIN(name, kinds, formula) CODE_##name,
-#define BOTH(name, kinds, formula) CODE_##name, CODE_##name##_TO,
-  PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
-#undef SPECIAL
-#undef PLAIN
+#define ONE(name, kinds, ...) CODE_##name,
+#define BOTH(name, kinds, ...) CODE_##name, CODE_##name##_TO,
+  PROGRAM_CODES(ONE, ONE, BOTH)
+#undef ONE
 #undef BOTH
       CODES
 } Code;

@@ -9,12 +9,10 @@ enum { FRAME_MOST = 1 << 27, LARGEST = INT32_MAX };
 static const struct {
   const char *kinds;
 } codes[] = {
-#define SPECIAL(name, kinds) {kinds},
-#define PLAIN(name, kinds, formula) {kinds},
-#define BOTH(name, kinds, formula) {kinds}, {kinds "d"},
-    PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
-#undef SPECIAL
-#undef PLAIN
+#define ONE(name, kinds, ...) {kinds},
+#define BOTH(name, kinds, ...) {kinds}, {kinds "d"},
+    PROGRAM_CODES(ONE, ONE, BOTH)
+#undef ONE
 #undef BOTH
 };
 

@@ -67,6 +67,11 @@ static void copy(double *to, const double *from, uint32_t n) {
     for (uint32_t i = 0; i < n; i++) to[i] = from[i];
 }
 
+static void copy_2(double *to, const double *from) {
+  to[0] = from[0];
+  to[1] = from[1];
+}
+
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpedantic" /* labels as values */
 #define NEXT goto *label[*at]
@@ -79,22 +84,18 @@ static void copy(double *to, const double *from, uint32_t n) {
 #define B r[at[2]]
 #define C r[at[3]]
 #define D r[at[4]]
-#define WORDS(kinds) ((int)sizeof(kinds)) /* with the code */
+#define WORDS(kinds) ((int)sizeof(kinds) + (*(kinds) == 'i' || *(kinds) == 'o')) /* with the code */
 
 int lag_run_program(const Program *p, const double *const *in, double *const *out, double *r) {
   const uint32_t *at = p->words;
-  const double *from;
-  double x = 0, *to;
+  double x = 0;
   r[0] = 0;
   if (p->ncells) memset(r + p->cells, 0, p->ncells * sizeof *r);
 #if defined(__GNUC__)
   static const void *const label[] = {
-#define SPECIAL(name, kinds) &&of_##name,
-#define PLAIN(name, kinds, formula) &&of_##name,
-#define BOTH(name, kinds, formula) &&of_##name, &&of_##name##_TO,
-      PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
-#undef SPECIAL
-#undef PLAIN
+#define ONE(name, ...) &&of_##name,
+#define BOTH(name, ...) &&of_##name, &&of_##name##_TO,
+      PROGRAM_CODES(ONE, ONE, BOTH)
 #undef BOTH
   };
   NEXT;
@@ -103,6 +104,10 @@ again:
   switch (*at) {
 #endif
 
+#define SPECIAL(name, kinds, statement) \
+  TARGET(name) : statement;             \
+  at += WORDS(kinds);                   \
+  NEXT;
 #define PLAIN(name, kinds, formula)                 \
   TARGET(name) : x = (formula), at += WORDS(kinds); \
   NEXT;
@@ -110,60 +115,9 @@ again:
   PLAIN(name, kinds, formula)                                                         \
   TARGET(name##_TO) : x = (formula), r[at[WORDS(kinds)]] = x, at += WORDS(kinds) + 1; \
   NEXT;
-#define SPECIAL(name, kinds) /* below */
   PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
-
-  TARGET(END) : return LAG_OK;
-  TARGET(READ) : copy(r + at[3], array(p, in, at), at[4]);
-  at += 5;
-  NEXT;
-  TARGET(READ_1) : C = *array(p, in, at);
-  at += 4;
-  NEXT;
-  TARGET(READ_2) : from = array(p, in, at), to = r + at[3], to[0] = from[0], to[1] = from[1];
-  at += 4;
-  NEXT;
-  TARGET(WRITE) : copy(out[at[1]] + at[2], r + at[3], at[4]);
-  at += 5;
-  NEXT;
-  TARGET(WRITE_1) : out[at[1]][at[2]] = C;
-  at += 4;
-  NEXT;
-  TARGET(WRITE_2) : from = r + at[3], to = out[at[1]] + at[2], to[0] = from[0], to[1] = from[1];
-  at += 4;
-  NEXT;
-  TARGET(STORE) : A = x;
-  at += 2;
-  NEXT;
-  TARGET(FUNCTION) : x = lag_functions_1[at[1]](x);
-  at += 2;
-  NEXT;
-  TARGET(FUNCTION_2) : x = lag_functions_2[at[1]](B, C);
-  at += 4;
-  NEXT;
-  TARGET(SINCOS) : one_sine(at, r);
-  at += 4;
-  NEXT;
-  TARGET(SINCOS_2) : two_sines(at, r);
-  at += 7;
-  NEXT;
-  TARGET(NONZERO) : if (!(A != 0)) return LAG_ESINGULAR;
-  at += 2;
-  NEXT;
-  TARGET(POSITIVE) : if (A <= 0) return LAG_ESINGULAR; /* NaN passes: the caller finds its cause */
-  at += 2;
-  NEXT;
-  TARGET(TABLE) : x = value_of(&p->curves[at[1]], x);
-  at += 2;
-  NEXT;
-  TARGET(SOLVE) : if (!solve(p, &p->systems[at[1]], r) && !p->regular) return LAG_ESINGULAR;
-  at += 2;
-  NEXT;
-  TARGET(NEST) : lag_run_nest(p, &p->nests[at[1]], in, r);
-  at += 2;
-  NEXT;
 #if !defined(__GNUC__)
-}
-return LAG_ESINGULAR;
+  }
+  return LAG_ESINGULAR;
 #endif
 }

@@ -13,12 +13,10 @@
 /* --- tables of codes --- */
 
 typedef enum {
-#define SPECIAL(name, kinds) CODE_##name,
-#define PLAIN(name, kinds, formula) CODE_##name,
-#define BOTH(name, kinds, formula) CODE_##name, CODE_##name##_TO,
-  PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
-#undef SPECIAL
-#undef PLAIN
+#define ONE(name, kinds, ...) CODE_##name,
+#define BOTH(name, kinds, ...) CODE_##name, CODE_##name##_TO,
+  PROGRAM_CODES(ONE, ONE, BOTH)
+#undef ONE
 #undef BOTH
 } Code;
 
@@ -26,12 +24,10 @@ static const struct {
   const char *kinds;
   int has_to; /* the next code is the same with a place for x */
 } codes[] = {
-#define SPECIAL(name, kinds) {kinds, 0},
-#define PLAIN(name, kinds, formula) {kinds, 0},
-#define BOTH(name, kinds, formula) {kinds, 1}, {kinds "d", 0},
-    PROGRAM_CODES(SPECIAL, PLAIN, BOTH)
-#undef SPECIAL
-#undef PLAIN
+#define ONE(name, kinds, ...) {kinds, 0},
+#define BOTH(name, kinds, ...) {kinds, 1}, {kinds "d", 0},
+    PROGRAM_CODES(ONE, ONE, BOTH)
+#undef ONE
 #undef BOTH
 };
 

@@ -52,32 +52,43 @@ void expr_map_free(ExprMap *m) {
 
 /* --- reachable nodes --- */
 
-static int ascending(const void *a, const void *b) {
-  Expr x = *(const Expr *)a, y = *(const Expr *)b;
-  return (x > y) - (x < y);
+/* Sorts a few ids, which are descending for the most part. */
+static void sort_few(Expr *at, uint32_t n) {
+  for (uint32_t i = 0, k = n; i + 1 < k; i++) {
+    Expr e = at[i];
+    at[i] = at[--k];
+    at[k] = e;
+  }
+  for (uint32_t i = 1, k; i < n; i++) {
+    Expr e = at[i];
+    for (k = i; k && at[k - 1] > e; k--) at[k] = at[k - 1];
+    at[k] = e;
+  }
 }
 
-/* Sorts n node ids: by comparison below 512, otherwise a radix sort with digits of eleven bits. */
+/* Sorts n node ids: a few by insertion, otherwise a radix sort with digits of eight or eleven bits. */
 static void sort_ids(ExprGraph *g, Expr *at, uint32_t n) {
-  enum { FEW = 512, BITS = 11, DIGITS = 1 << BITS };
-  if (n < 2) return;
+  enum { FEW = 48, MANY = 512, BITS = 11 };
+  uint32_t place[1 << BITS], bits = n < MANY ? 8 : BITS, last = (1u << bits) - 1;
   if (n < FEW) {
-    qsort(at, n, sizeof *at, ascending);
+    sort_few(at, n);
     return;
   }
+  Expr most = 0;
+  for (uint32_t i = 0; i < n; i++) most = at[i] > most ? at[i] : most;
   if (g->spare_n < n) {
     g->spare_n = 2 * n;
     g->spare = ARENA_ARRAY(g->arena, Expr, g->spare_n);
   }
-  for (uint32_t shift = 0; shift < 32; shift += BITS) {
-    uint32_t place[DIGITS] = {0}, sum = 0;
-    for (uint32_t i = 0; i < n; i++) place[(at[i] >> shift) & (DIGITS - 1)]++;
-    for (uint32_t d = 0; d < DIGITS; d++) {
+  for (uint32_t shift = 0; shift < 32 && most >> shift; shift += bits) {
+    memset(place, 0, (last + 1) * sizeof *place);
+    for (uint32_t i = 0; i < n; i++) place[(at[i] >> shift) & last]++;
+    for (uint32_t d = 0, sum = 0; d <= last; d++) {
       uint32_t count = place[d];
       place[d] = sum;
       sum += count;
     }
-    for (uint32_t i = 0; i < n; i++) g->spare[place[(at[i] >> shift) & (DIGITS - 1)]++] = at[i];
+    for (uint32_t i = 0; i < n; i++) g->spare[place[(at[i] >> shift) & last]++] = at[i];
     memcpy(at, g->spare, n * sizeof *at);
   }
 }

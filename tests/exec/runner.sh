@@ -111,6 +111,15 @@ check "never in CI" not blessed_in_ci
 check "a prefix without a suite is a mistake" fails nothing
 check "TIMES=1 shows processor time" env TIMES=1 BUILD=out BIN=bin sh -c "sh '$tree/tests/run.sh' a/good | grep -q 'processor [0-9.]* s$'"
 check "and its sum" env TIMES=1 BUILD=out BIN=bin sh -c "sh '$tree/tests/run.sh' a/good | grep -q '^processor time of all suites: [0-9]* s$'"
+suite a/asks_python <<'END'
+python3 -c 'print("ok 1 - a python3 that is a script is asked once where Python is")'
+python3 -c 'print("1..1")'
+END
+mkdir "$TMP/shim"
+printf '#!/bin/sh\necho >>"%s"\nexec "%s" "$@"\n' "$TMP/shim/calls" "$(command -v python3)" >"$TMP/shim/python3" && chmod +x "$TMP/shim/python3"
+is "suites call Python, not a script that looks for it" "1 passed, 0 failed; calls of the script: 1" \
+  "$(PATH=$TMP/shim:$PATH last a/asks_python); calls of the script: $(wc -l <"$TMP/shim/calls" | tr -d ' ')"
+rm "$tree/tests/a/asks_python.sh"
 suite a/slowest <<'END'
 i=0; while [ $i -lt 300000 ]; do i=$((i + 1)); done
 date +%s.%N
