@@ -363,7 +363,8 @@ int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const
     BranchPoint *found = kind == BRANCH_REGULAR ? NULL : locate(&w, from, at, w.made, kind);
     if (found && !outside(found->u, last, limits)) append(b, found);
     if (outside(at->u, last, limits)) at = at_border(&w, from, at, limits), w.border = 1;
-    if (at) append(b, at);
+    if (!at) return b->end = b->pool.failed ? BRANCH_NO_MEMORY : BRANCH_LOST, LAG_OK; /* none at the border itself */
+    append(b, at);
     if (w.border) return b->end = BRANCH_AT_RANGE, LAG_OK;
     if (is_closed(b, at, step, p->cols)) return b->end = BRANCH_CLOSED, LAG_OK;
   }

@@ -26,14 +26,21 @@ static double gap(const PeriodicOrbit *o, int k, int i) {
   return (o->end[k * o->n + i] - next[i]) / o->unit[i];
 }
 
+/* Size of what a condition is about; of a charge at the present start, whatever the probe saw last. */
+static double size_of(PeriodicOrbit *o, const OrbitHold *h) {
+  if (h->kind == ORBIT_CHARGE) lag_flow_charge(&o->flow, h->of, o->flow.t0, o->y);
+  double size = h->kind == ORBIT_STATE    ? o->unit[h->of]
+                : h->kind == ORBIT_PERIOD ? o->time
+                                          : o->flow.probe->charge_now[2 * h->of + 1];
+  return size > 0 ? size : 1;
+}
+
 /* Value of a condition less what it shall be, relative to its size. */
 static double off(PeriodicOrbit *o, const OrbitHold *h) {
-  double size = h->kind == ORBIT_STATE ? o->unit[h->of] : h->kind == ORBIT_PERIOD ? o->time : 0;
-  double now = h->kind == ORBIT_STATE    ? o->y[h->of]
-               : h->kind == ORBIT_PERIOD ? o->T
-                                         : lag_flow_charge(&o->flow, h->of, o->flow.t0, o->y);
-  if (h->kind == ORBIT_CHARGE) size = o->flow.probe->charge_now[2 * h->of + 1];
-  return (now - h->value) / (size > 0 ? size : 1);
+  double size = size_of(o, h), now = h->kind == ORBIT_STATE    ? o->y[h->of]
+                                     : h->kind == ORBIT_PERIOD ? o->T
+                                                               : o->flow.probe->charge_now[2 * h->of];
+  return (now - h->value) / size;
 }
 
 /* Value of condition k, of which the present parameter may be the one that it keeps. */
@@ -41,13 +48,6 @@ static double off_by(PeriodicOrbit *o, int k) {
   OrbitHold h = o->held[k];
   if (o->continues && k == o->led) h.value = o->parameter;
   return off(o, &h);
-}
-
-static double size_of(const PeriodicOrbit *o, const OrbitHold *h) {
-  double size = h->kind == ORBIT_STATE    ? o->unit[h->of]
-                : h->kind == ORBIT_PERIOD ? o->time
-                                          : o->flow.probe->charge_now[2 * h->of + 1];
-  return size > 0 ? size : 1;
 }
 
 /* C[n c] := C - R C, with the map R of a motion that is the same backwards. */
@@ -140,8 +140,23 @@ static int holds_phase(const PeriodicOrbit *o, const double *rates) {
   return 0;
 }
 
+/* X[n], the rates, := a direction across which the phase is chosen while component i is led: of a velocity its
+ * coordinate, of others the rates without that component, or where nothing else moves its velocity. */
+static void leave_led(const PeriodicOrbit *o, int i, double *X) {
+  const double least = 1e-6;
+  int nq = o->flow.nq, velocity = i >= nq && i < 2 * nq,
+      partner = velocity ? i - nq : i < nq ? i + nq : i > 0 ? i - 1 : 1;
+  double other = 0, led = X[i] * o->time / o->unit[i];
+  X[i] = 0;
+  for (int j = 0; j < o->n; j++) other = fmax(other, fabs(X[j]) * o->time / o->unit[j]);
+  if (!velocity && other >= least * fabs(led)) return;
+  memset(X, 0, (size_t)o->n * sizeof *X);
+  X[partner] = o->unit[partner];
+}
+
 /* Rows across the motion, and across the symmetries of conserved charges. */
 static int phase_rows(PeriodicOrbit *o) {
+  const OrbitHold *lead = o->led >= 0 ? &o->held[o->led] : NULL;
   int n = o->n, row = o->m * n + o->nheld, rc = LAG_OK;
   double *X = o->x;
   for (int k = -1; k < o->ncharges && rc == LAG_OK; k++) {
@@ -149,6 +164,7 @@ static int phase_rows(PeriodicOrbit *o) {
     if (lag_flow_field(&o->flow, k < 0 ? 0 : o->charge[k], o->flow.t0, o->y, X)) continue;
     double size = 0;
     if (k < 0 && holds_phase(o, X)) continue;
+    if (k < 0 && lead && lead->kind == ORBIT_STATE) leave_led(o, lead->of, X);
     for (int i = 0; i < n; i++) size += X[i] * X[i] / (o->unit[i] * o->unit[i]);
     for (int i = 0; i < n && size > 0; i++) o->A[row * o->cols + i] = X[i] / o->unit[i] / sqrt(size);
     row++;
