@@ -412,6 +412,7 @@ static int place_nodes(PeriodicOrbit *o) {
 static void count_drives(PeriodicOrbit *o) {
   double shortest = lag_flow_find_drive(&o->flow, 1.01 * o->T);
   o->drives = shortest > 0 ? (int)fmax(1, rint(o->T / shortest)) : 1;
+  o->flow.drive = o->T / o->drives;
 }
 
 /* Square of the distance of the end of the motion from G y(0), in units. */

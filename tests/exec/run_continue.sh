@@ -67,6 +67,31 @@ close 1 period 3.14159265358979 1e-13
 # the pendulum's family by energy: 4 sqrt(l/g) K(k), k^2 = E/(2 m g l), at the end of the range
 follow models/pendulum.lag wide energy=9..18
 close 1 period 3.40802289484 1e-10
+# Kepler's third law, 2 pi/(-2 E)^1.5, with the spin kept and two segments, whose ends differ in the size of the energy's terms
+follow models/kepler.lag orbit energy=-0.7..-0.3
+kinds "end;end;"
+close 1 period 13.5192622532453730 1e-9
+close 2 period 3.79304342544175 1e-9
+# a velocity led from a turning point keeps its coordinate: 4 sqrt(l/g) K, k^2 = (v^2/2 + g)/(2 g), v = 3, mpmath; ranges of energy and period have units
+follow models/pendulum.lag wide "th'=0..3"
+kinds "end;end;"
+close 1 period 2.70882647918168306 1e-11
+follow models/double_pendulum.lag apart th1=0.2 th2=-0.28 "th1'=0..0.5"
+kinds "end;end;" # no folds
+follow models/pendulum.lag wide 'energy=9000..18000[mJ]'
+close 1 period 3.40802289484 1e-10
+follow models/pendulum.lag wide 'period=40..42[1/min]'
+is "refused: a frequency for a period" "" "$(cat "$TMP/json")"
+# a value beside its range is where it begins
+check "begins at a value" sh -c "'$LAGC' continue models/pendulum.lag wide l=0.8 l=0.5..1 | grep -q 'begins  *l = 0.8'"
+# edges of the tongues of x'' + (a - 2 q cos 2t) x = 0 at q = 0.2: eigenvalues of Hill's matrices, mpmath. The second tongue, 0.02 wide, lies within a step
+follow $dir/mathieu.lag a=-0.5..5
+kinds "period doubling;period doubling;branch point;branch point;end;branch point;end;"
+close 1 parameter 0.795123868083863287 1e-12
+close 2 parameter 1.19487405920446156 1e-12
+close 3 parameter 3.99666724513820446 1e-12
+close 4 parameter 4.01657915296946699 1e-12
+close 6 parameter -0.0199132963584375184 1e-12
 # --period names the first motion, and holds no other: cos of the amplitude where 4 sqrt(l/g) K(sin(th/2)) = 3, mpmath
 follow models/pendulum.lag wide period=2.4..3 --period 2.5
 kinds "end;end;"
@@ -169,6 +194,7 @@ refused() {
 }
 ends() { check "$1" sh -c "'$LAGC' continue $2 | grep -q 'it ends there: $3'"; }
 ends "a family ends: at a value that the model refuses" "models/lorenz.lag x=0 y=0 z=0 rho=0.5..-3" "rho = .*: the model declares rho >= 0"
+ends "a family ends: in a rest" "models/pendulum.lag wide th=0..1.6" "the motion shrinks to a state of rest"
 slow ends "a family ends: next to the separatrix" "models/pendulum.lag wide energy=9..40" "the period grows without limit"
 refused "no range" 2 "a range is missing: NAME=A..B" "$LAGC" continue models/pendulum.lag wide
 refused "no such name" 2 "the model has no parameter of this name" "$LAGC" continue models/pendulum.lag wide gg=1..2

@@ -103,6 +103,10 @@ near "$title: product of multipliers" 1e-12 0.877305769098345670 "$(multiplier 1
 check "$title: an event without the symmetry" says 3 "events of the scene do not have this symmetry" "$LAGC" orbit $dir/mirror.lag one_wall --relative x=-x
 check "$title: a pair of walls has it" "$LAGC" orbit $dir/mirror.lag two_walls --relative x=-x
 
+# a pendulum that is driven about its upper rest: nothing moves, and its velocity has the unit of its angle over the period; a trace by SciPy's DOP853 below
+orbit $dir/mathieu.lag a=-0.01998 --period 6.283185307179586
+near "$title: product of multipliers" 1e-12 1 "$(multiplier 1 1 | awk -v b="$(multiplier 2 1)" '{ printf "%.15g", $1*b }')"
+
 # Halves of reversible motions: M. Henon, C. Heiles: a brake orbit, period as below; a pendulum that turns over: 4/v K(4 g/v^2), mpmath
 orbit models/henon_heiles.lag regular x=0 y=0.3 "x'=0" "y'=0" --hold y --reverse rest
 close period 6.497297178873413 1e-12
