@@ -32,8 +32,10 @@ static int open_walk(Walk *w, Branch *b, const BranchProblem *p) {
   return b->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
 
-/* Newton's steps from u, each across the direction d: u := a solution. 0: none. */
+/* Newton's steps from u, each across the direction d: u := a solution. 0: none, as where conditions contradict each
+ * other, so that steps end beside one. */
 static int correct(Walk *w, double *u, const double *d) {
+  const double solved = 1e-6; /* of the system's rows, in units; differences of runs have some 8 digits */
   double last = HUGE_VAL, along = lag_dot(w->cols, u, d);
   for (w->newton = 0; w->newton < MOST_NEWTON; w->newton++) {
     if (w->p->place(w->p->of, u) || w->p->system(w->p->of, w->J, w->rhs)) return 0;
@@ -45,7 +47,8 @@ static int correct(Walk *w, double *u, const double *d) {
     double size = sqrt(lag_dot(w->cols, w->x, w->x));
     if (!(size < 1)) return 0;
     for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
-    if (size < 1e-12 || (size < 1e-9 && size > 0.3 * last)) return w->p->place(w->p->of, u) == LAG_OK;
+    if (size < 1e-12 || (size < 1e-9 && size > 0.3 * last))
+      return lag_largest(w->rows, w->rhs) < solved && w->p->place(w->p->of, u) == LAG_OK;
     if (w->newton > 3 && size > 0.9 * last) return 0;
     last = size;
   }

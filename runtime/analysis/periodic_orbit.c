@@ -130,12 +130,14 @@ static int continuation_column(PeriodicOrbit *o) {
   return rc ? rc : lag_orbit_shoot(o, 0);
 }
 
-/* Whether a component that keeps its value chooses the phase: the motion crosses that value. */
+/* Whether a component that keeps its value chooses the phase: the motion crosses that value, or, of a family over one of
+ * its own quantities, has no other freedom left. */
 static int holds_phase(const PeriodicOrbit *o, const double *rates) {
   const double least = 0.1;
   for (int k = 0; k < o->nheld; k++) {
     int i = o->held[k].of;
-    if (o->held[k].kind == ORBIT_STATE && k != o->led && fabs(rates[i]) * o->time > least * o->unit[i]) return 1;
+    if (o->held[k].kind != ORBIT_STATE || k == o->led) continue;
+    if (o->led >= 0 || fabs(rates[i]) * o->time > least * o->unit[i]) return 1;
   }
   return 0;
 }

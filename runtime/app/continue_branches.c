@@ -32,7 +32,9 @@ static int take_range(Job *job) {
   if (!lag_args_number(a, job->name, low, "mu=0.1..3", &job->low) ||
       !lag_args_number(a, job->name, dots + 2, "mu=0.1..3", &job->high))
     return EXIT_USAGE;
-  return job->low != job->high ? 0 : lag_app_error(a, "%s: the ends of the range are equal", found);
+  const double rounding = 1e-12;
+  double size = fmax(fabs(job->low), fabs(job->high));
+  return fabs(job->high - job->low) > rounding * size ? 0 : lag_app_error(a, "%s: the ends of the range are equal", found);
 }
 
 /* The quantity of this name, and its value at the start. */

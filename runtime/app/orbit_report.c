@@ -461,6 +461,7 @@ static int read_maps(App *app, PeriodicOrbit *o) {
 }
 
 int lag_app_orbit_open(App *app, PeriodicOrbit *o) {
+  enum { MOST_SEGMENTS = 200 };
   const Args *a = &app->args;
   double T = 0, segments = 0;
   int rc = lag_app_orbit_holds(app, o);
@@ -469,10 +470,12 @@ int lag_app_orbit_open(App *app, PeriodicOrbit *o) {
   if (rc == 0 && a->segments) {
     long long count = 0;
     rc = lag_args_count(a, "--segments", a->segments, "--segments 4", &count);
+    if (rc == 0 && count > MOST_SEGMENTS)
+      rc = lag_app_error(a, "--segments %s: up to %d, whose equations are solved together", a->segments, MOST_SEGMENTS);
     segments = (double)count;
   }
   rc = rc ? rc : choose_period(app, o, &T);
-  if (rc == 0 && lag_orbit_open(o, app->sim, app->extras.algebra, T, (int)fmin(segments, 1000))) {
+  if (rc == 0 && lag_orbit_open(o, app->sim, app->extras.algebra, T, (int)segments)) {
     lag_app_error(a, "%s", o->flow.message[0] ? o->flow.message : "out of memory");
     rc = EXIT_RUN;
   }

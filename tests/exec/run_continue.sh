@@ -71,7 +71,7 @@ close 1 period 3.40802289484 1e-10
 follow models/kepler.lag orbit energy=-0.7..-0.3
 kinds "end;end;"
 close 1 period 13.5192622532453730 1e-9
-close 2 period 3.79304342544175 1e-9
+close 2 period 3.79304342543609208 1e-9
 # a velocity led from a turning point keeps its coordinate: 4 sqrt(l/g) K, k^2 = (v^2/2 + g)/(2 g), v = 3, mpmath; ranges of energy and period have units
 follow models/pendulum.lag wide "th'=0..3"
 kinds "end;end;"
@@ -80,8 +80,11 @@ follow models/double_pendulum.lag apart th1=0.2 th2=-0.28 "th1'=0..0.5"
 kinds "end;end;" # no folds
 follow models/pendulum.lag wide 'energy=9000..18000[mJ]'
 close 1 period 3.40802289484 1e-10
-follow models/pendulum.lag wide 'period=40..42[1/min]'
-is "refused: a frequency for a period" "" "$(cat "$TMP/json")"
+follow models/pendulum.lag wide 'period=2300..2500[ms]'
+close 1 parameter 2.5 1e-14
+# the energy over a place that keeps its value, a turning point first: k^2 = E/(2 m g l)
+follow models/pendulum.lag wide energy=9..18 --hold th
+near "$title: period" 1e-10 3.40802289484 "$(sed -n '/"kind": "end"/{s/.*"period": \([^,]*\).*/\1/p;q;}' "$TMP/points")"
 # a value beside its range is where it begins
 check "begins at a value" sh -c "'$LAGC' continue models/pendulum.lag wide l=0.8 l=0.5..1 | grep -q 'begins  *l = 0.8'"
 # edges of the tongues of x'' + (a - 2 q cos 2t) x = 0 at q = 0.2: eigenvalues of Hill's matrices, mpmath. The second tongue, 0.02 wide, lies within a step
@@ -198,6 +201,7 @@ ends "a family ends: in a rest" "models/pendulum.lag wide th=0..1.6" "the motion
 slow ends "a family ends: next to the separatrix" "models/pendulum.lag wide energy=9..40" "the period grows without limit"
 refused "no range" 2 "a range is missing: NAME=A..B" "$LAGC" continue models/pendulum.lag wide
 refused "no such name" 2 "the model has no parameter of this name" "$LAGC" continue models/pendulum.lag wide gg=1..2
+refused "a range of another dimension" 2 "but [J] is needed here" "$LAGC" continue models/pendulum.lag wide 'energy=9..12[kg]'
 refused "a range without length" 2 "the ends of the range are equal" "$LAGC" continue models/pendulum.lag wide l=1..1
 refused "two ranges" 2 "one value runs over a range" "$LAGC" continue models/pendulum.lag wide l=1..2 m=1..2
 refused "a branch point to begin with" 3 "let the range begin beside it" "$LAGC" continue models/lorenz.lag x=0 y=0 z=0 rho=1..2
