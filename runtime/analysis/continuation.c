@@ -439,6 +439,7 @@ int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const
     /* from a branch point, where test functions are 0 but for rounding, nothing is looked for in the first step */
     BranchKind kind = !sign && b->npoints == 1 ? BRANCH_REGULAR : between(p, from, at);
     BranchPoint *found = kind == BRANCH_REGULAR ? NULL : locate(&w, from, at, w.made, kind);
+    if (found && kind == BRANCH_FOLD && p->stands && p->stands(p->of, found->u, found->tangent)) found = NULL;
     if (found && !outside(found->u, last, limits)) append(b, found);
     if (outside(at->u, last, limits)) at = at_border(&w, from, at, limits), w.border = 1;
     if (!at) return b->end = b->pool.failed ? BRANCH_NO_MEMORY : BRANCH_LOST, LAG_OK; /* none at the border itself */

@@ -84,6 +84,7 @@ follow models/pendulum.lag wide 'period=2300..2500[ms]'
 close 1 parameter 2.5 1e-14
 # the energy over a place that keeps its value, a turning point first: k^2 = E/(2 m g l)
 follow models/pendulum.lag wide energy=9..18 --hold th
+kinds "end;end;" # no fold at the turning point
 near "$title: period" 1e-10 3.40802289484 "$(sed -n '/"kind": "end"/{s/.*"period": \([^,]*\).*/\1/p;q;}' "$TMP/points")"
 # a value beside its range is where it begins
 check "begins at a value" sh -c "'$LAGC' continue models/pendulum.lag wide l=0.8 l=0.5..1 | grep -q 'begins  *l = 0.8'"
