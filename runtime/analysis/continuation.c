@@ -389,8 +389,9 @@ static BranchPoint *last_point(Walk *w, const BranchPoint *from, double step, co
 /* Makes the next step; its length adapts to the number of Newton's steps and the turn of the tangent. NULL: none is
  * short enough. */
 static BranchPoint *next_point(Walk *w, double *step, double least, const BranchLimits *l) {
+  const double shortest = 1e-7;
   const BranchPoint *from = w->b->last;
-  for (; *step > 1e-7; *step /= 2) {
+  for (*step = fmax(*step, shortest); *step >= shortest; *step /= 2) { /* at least one, which says what keeps it */
     BranchPoint *at = point_at(w, from, *step);
     w->made = *step;
     w->border = !at && (at = last_point(w, from, *step, l)) != NULL;

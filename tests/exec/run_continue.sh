@@ -198,6 +198,7 @@ refused() {
 }
 ends() { check "$1" sh -c "'$LAGC' continue $2 | grep -q 'it ends there: $3'"; }
 ends "a family ends: at a value that the model refuses" "models/lorenz.lag x=0 y=0 z=0 rho=0.5..-3" "rho = .*: the model declares rho >= 0"
+ends "a family ends: at a bound that is no value" "models/pendulum.lag wide l=0..1" "l = .*: the model declares l > 0"
 ends "a family ends: in a rest" "models/pendulum.lag wide th=0..1.6" "the motion shrinks to a state of rest"
 slow ends "a family ends: next to the separatrix" "models/pendulum.lag wide energy=9..40" "the period grows without limit"
 refused "no range" 2 "a range is missing: NAME=A..B" "$LAGC" continue models/pendulum.lag wide

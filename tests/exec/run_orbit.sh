@@ -48,6 +48,7 @@ closes 1 2 0.557598777 1e-8
 closes 3 1 0 1e-12
 word verdict attracts
 
+check "the scene to paste has a name of its own" sh -c "'$LAGC' orbit models/kepler.lag orbit --hold energy,spin | sed -n '/^scene/,\$p' | cat models/kepler.lag - >'$TMP/named.lag'; '$LAGC' check '$TMP/named.lag' | grep -q 'scene orbit_2: ok'"
 # the scene starts on the motion: a run of it comes back
 "$LAGC" orbit $dir/vanderpol.lag | sed -n '/^scene/,$p' >"$TMP/scene"
 cat $dir/vanderpol.lag "$TMP/scene" >"$TMP/pasted.lag"
