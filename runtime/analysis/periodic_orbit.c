@@ -271,6 +271,33 @@ static int remove_charges(PeriodicOrbit *o) {
   return rc;
 }
 
+/* A := its part in the tangent space of the constraints at each node, to which a step's end returns; o->normal := the
+ * number of other directions. */
+static int within_constraints(PeriodicOrbit *o) {
+  int n = o->n, rc = LAG_OK;
+  lag_problem *pb = &o->flow.probe->pb;
+  Pool pool = {0};
+  double *P = lag_pool_doubles(&pool, (size_t)(n * n + n)), *row = P + n * n,
+         *scratch = lag_pool_doubles(&pool, lag_tangent_projection_size(pb) + 1), trace = 0;
+  if (pool.failed) rc = LAG_ENOMEM;
+  for (int k = 0; k < o->m && rc == LAG_OK; k++) {
+    for (int e = 0; e < n * n; e++) P[e] = e % (n + 1) == 0;
+    rc = lag_tangent_project(pb, begins(o, k), o->y + k * n, n, P, scratch);
+    for (int i = 0; i < n; i++) trace += P[i * n + i];
+    for (int r = 0; r < o->rows && rc == LAG_OK; r++) {
+      double *a = o->A + r * o->cols + k * n;
+      for (int j = 0; j < n; j++) {
+        row[j] = 0;
+        for (int i = 0; i < n; i++) row[j] += a[i] * P[i * n + j] * o->unit[j] / o->unit[i];
+      }
+      memcpy(a, row, (size_t)n * sizeof *a);
+    }
+  }
+  o->normal = o->m * n - (int)rint(trace);
+  lag_pool_free(&pool);
+  return rc;
+}
+
 int lag_orbit_assemble(PeriodicOrbit *o) {
   memset(o->A, 0, (size_t)o->rows * (size_t)o->cols * sizeof *o->A);
   memset(o->b, 0, (size_t)o->rows * sizeof *o->b);
@@ -280,10 +307,21 @@ int lag_orbit_assemble(PeriodicOrbit *o) {
   rc = rc || o->half ? rc : remove_charges(o);
   rc = rc ? rc : held_rows(o);
   if (rc == LAG_OK && o->half) begin_rows(o);
+  if (rc == LAG_OK && !o->continues && o->flow.like->scene->model->constraints) rc = within_constraints(o);
   return rc || !o->continues ? rc : phase_rows(o);
 }
 
 /* ---- Newton's steps */
+
+/* Nodes that a step has led off the constraints return to them: what is left there would hide the residual. */
+static void onto_constraints(PeriodicOrbit *o) {
+  for (int k = 0; k < o->m && o->flow.like->scene->model->constraints; k++) {
+    lag_sim *sim = lag_flow_sim(&o->flow, begins(o, k), o->y + k * o->n);
+    if (sim && lag_sim_advance(sim, begins(o, k)) == LAG_OK)
+      memcpy(o->y + k * o->n, sim->now, (size_t)o->n * sizeof *o->y);
+    lag_sim_free(sim);
+  }
+}
 
 /* Adds `part` of the step x to the unknowns. */
 static void move(PeriodicOrbit *o, const double *x, double part) {
@@ -292,6 +330,7 @@ static void move(PeriodicOrbit *o, const double *x, double part) {
   if (period_is_free(o)) o->T += part * x[column_of_period(o)] * o->time;
   for (int j = 0; j < o->ngroup; j++) o->shift[j] += part * x[column_of_shift(o, j)];
   if (o->continues) lag_orbit_set_parameter(o, o->parameter + part * x[o->cols - 1] * o->parameter_unit);
+  onto_constraints(o);
 }
 
 /* A step, halved until the residual falls; *size: of the step made. 0: none does, and the unknowns stay. */
@@ -337,7 +376,7 @@ static int newton(PeriodicOrbit *o) {
     moved = falling_step(o, &size);
     o->steps += moved == 1;
   }
-  o->nfree = o->cols - rank;
+  o->nfree = o->cols - rank - o->normal;
   return rc < 0 ? rc : moved < 0 ? moved : rc == LAG_OK && o->residual <= accepted(o);
 }
 

@@ -109,6 +109,10 @@ orbit $dir/mathieu.lag a=-0.01998 --period 6.283185307179586
 near "$title: product of multipliers" 1e-13 1 "$(multiplier 1 1 | awk -v b="$(multiplier 2 1)" '{ printf "%.17g", $1*b }')"
 orbit models/kapitza.lag "th=180[deg]"
 near "$title: product of multipliers" 1e-10 1 "$(multiplier 1 1 | awk -v im="$(multiplier 1 2)" '{ printf "%.15g", $1^2 + im^2 }')"
+# steps on a sphere stay on it: 4/sqrt(2 g (c - a)) K((b - a)/(c - a)) with the roots a, b, c of 2 (E - g z)(1 - z^2) = L^2, mpmath
+orbit $dir/sphere.lag --relative spin --guess 1 --hold energy,spin
+close period 1.04000924639386669 1e-12
+
 # Halves of reversible motions: M. Henon, C. Heiles: a brake orbit, period as below; a pendulum that turns over: 4/v K(4 g/v^2), mpmath
 orbit models/henon_heiles.lag regular x=0 y=0.3 "x'=0" "y'=0" --hold y --reverse rest
 close period 6.497297178873413 1e-12
