@@ -271,6 +271,11 @@ static int remove_charges(PeriodicOrbit *o) {
   return rc;
 }
 
+/* Whether nodes lie on constraints that always hold; those of contacts come and go. */
+static int is_constrained(const PeriodicOrbit *o) {
+  return o->flow.like->scene->model->constraints && !lag_flow_differences(&o->flow);
+}
+
 /* A := its part in the tangent space of the constraints at each node, to which a step's end returns; o->normal := the
  * number of other directions. */
 static int within_constraints(PeriodicOrbit *o) {
@@ -307,7 +312,7 @@ int lag_orbit_assemble(PeriodicOrbit *o) {
   rc = rc || o->half ? rc : remove_charges(o);
   rc = rc ? rc : held_rows(o);
   if (rc == LAG_OK && o->half) begin_rows(o);
-  if (rc == LAG_OK && !o->continues && o->flow.like->scene->model->constraints) rc = within_constraints(o);
+  if (rc == LAG_OK && !o->continues && is_constrained(o)) rc = within_constraints(o);
   return rc || !o->continues ? rc : phase_rows(o);
 }
 
@@ -315,7 +320,7 @@ int lag_orbit_assemble(PeriodicOrbit *o) {
 
 /* Nodes that a step has led off the constraints return to them: what is left there would hide the residual. */
 static void onto_constraints(PeriodicOrbit *o) {
-  for (int k = 0; k < o->m && o->flow.like->scene->model->constraints; k++) {
+  for (int k = 0; k < o->m && is_constrained(o); k++) {
     lag_sim *sim = lag_flow_sim(&o->flow, begins(o, k), o->y + k * o->n);
     if (sim && lag_sim_advance(sim, begins(o, k)) == LAG_OK)
       memcpy(o->y + k * o->n, sim->now, (size_t)o->n * sizeof *o->y);
