@@ -130,8 +130,8 @@ static int continuation_column(PeriodicOrbit *o) {
   return rc ? rc : lag_orbit_shoot(o, 0);
 }
 
-/* Whether a component that keeps its value chooses the phase: the motion crosses that value, or, of a family over one of
- * its own quantities, has no other freedom left. */
+/* Whether a component that keeps its value chooses the phase: the motion crosses that value, or, of a family over one
+ * of its own quantities, has no other freedom left. */
 static int holds_phase(const PeriodicOrbit *o, const double *rates) {
   const double least = 0.1;
   for (int k = 0; k < o->nheld; k++) {

@@ -34,7 +34,8 @@ static int take_range(Job *job) {
     return EXIT_USAGE;
   const double rounding = 1e-12;
   double size = fmax(fabs(job->low), fabs(job->high));
-  return fabs(job->high - job->low) > rounding * size ? 0 : lag_app_error(a, "%s: the ends of the range are equal", found);
+  if (fabs(job->high - job->low) > rounding * size) return 0;
+  return lag_app_error(a, "%s: the ends of the range are equal", found);
 }
 
 /* The quantity of this name, and its value at the start. */
@@ -249,7 +250,8 @@ static int follow_branches(Job *job) {
 
 /* ---- Beginning */
 
-/* Whether the motion to begin with lies in the range; one beside an end by no more than it was solved to begins there. */
+/* Whether the motion to begin with lies in the range; one beside an end by no more than its own error begins
+ * there. */
 static int check_begin(Job *job, const char *kind) {
   const double solved = 1e-8;
   double low = fmin(job->low, job->high), high = fmax(job->low, job->high), inside = fmin(fmax(job->begin, low), high);
