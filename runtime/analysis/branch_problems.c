@@ -274,6 +274,23 @@ static int orbit_spectrum(void *of, Spectrum *s) {
   return rc;
 }
 
+/* Whether direction d only leads along the motion, as where a held place is a turning point: the energy over it turns
+ * back there, and the family does not. */
+static int orbit_stands(void *of, const double *u, const double *d) {
+  const double most = 1e-3; /* the square of what is left across the motion */
+  PeriodicOrbit *o = of;
+  double along = 0, size = 0, all = 0;
+  if (o->flow.forced || o->led < 0 || place_orbit(o, u)) return 0;
+  for (int i = 0; i < o->m * o->n; i++) {
+    if (i % o->n == 0 && lag_flow_rates(&o->flow, o->flow.t0, o->y + i, o->x)) return 0;
+    double rate = o->x[i % o->n] / o->unit[i % o->n];
+    along += rate * d[i];
+    size += rate * rate;
+  }
+  for (int i = 0; i < o->cols; i++) all += d[i] * d[i];
+  return all - along * along / size < most * all;
+}
+
 void lag_orbit_branch(BranchProblem *p, PeriodicOrbit *o) {
   lag_orbit_count(o);
   *p = (BranchProblem){.of = o,
@@ -284,5 +301,6 @@ void lag_orbit_branch(BranchProblem *p, PeriodicOrbit *o) {
                        .pairs = isfinite(o->pairing),
                        .place = place_orbit,
                        .system = orbit_system,
-                       .spectrum = orbit_spectrum};
+                       .spectrum = orbit_spectrum,
+                       .stands = orbit_stands};
 }

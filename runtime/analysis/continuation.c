@@ -32,8 +32,10 @@ static int open_walk(Walk *w, Branch *b, const BranchProblem *p) {
   return b->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
 
-/* Newton's steps from u, each across the direction d: u := a solution. 0: none. */
+/* Newton's steps from u, each across the direction d: u := a solution. 0: none, as where conditions contradict each
+ * other, so that steps end beside one. */
 static int correct(Walk *w, double *u, const double *d) {
+  const double solved = 1e-6; /* of the system's rows, in units; differences of runs have some 8 digits */
   double last = HUGE_VAL, along = lag_dot(w->cols, u, d);
   for (w->newton = 0; w->newton < MOST_NEWTON; w->newton++) {
     if (w->p->place(w->p->of, u) || w->p->system(w->p->of, w->J, w->rhs)) return 0;
@@ -45,7 +47,8 @@ static int correct(Walk *w, double *u, const double *d) {
     double size = sqrt(lag_dot(w->cols, w->x, w->x));
     if (!(size < 1)) return 0;
     for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
-    if (size < 1e-12 || (size < 1e-9 && size > 0.3 * last)) return w->p->place(w->p->of, u) == LAG_OK;
+    if (size < 1e-12 || (size < 1e-9 && size > 0.3 * last))
+      return lag_largest(w->rows, w->rhs) < solved && w->p->place(w->p->of, u) == LAG_OK;
     if (w->newton > 3 && size > 0.9 * last) return 0;
     last = size;
   }
@@ -195,10 +198,15 @@ static double zero_at(const Nodes *k, double x) {
   return sum;
 }
 
-/* Root of the polynomial of the test function between -1 and 1, by bisection; NAN: its signs agree there. */
+/* Root of the polynomial of the test function that is nearest to the middle of -1 to 1, by bisection; NAN: none. */
 static double root_of(const Nodes *k) {
-  double a = -1, b = 1, fa = zero_at(k, a);
-  if (!changes_sign(fa, zero_at(k, b))) return NAN;
+  enum { PARTS = 20 };
+  double a = NAN, b = NAN;
+  for (int i = -PARTS; i < PARTS; i++) {
+    double x = (double)i / PARTS, y = (i + 1.0) / PARTS;
+    if (changes_sign(zero_at(k, x), zero_at(k, y)) && !(fabs(a + b) <= fabs(x + y))) a = x, b = y;
+  }
+  double fa = zero_at(k, a);
   for (int i = 0; i < 60; i++) {
     double x = (a + b) / 2, f = zero_at(k, x);
     if (changes_sign(fa, f)) b = x;
@@ -273,6 +281,74 @@ static BranchPoint *locate(Walk *w, const BranchPoint *from, const BranchPoint *
   return best;
 }
 
+/* ---- Two bifurcations within one step */
+
+/* Three points in order of their arclength s, with values of a test function that are less in the middle. */
+typedef struct Dip {
+  BranchPoint *at[3];
+  double s[3];
+} Dip;
+
+static Dip dip_of(const Dip *d, int first, BranchPoint *new, double s) {
+  BranchPoint *other = d->at[first + 1];
+  return (Dip){{d->at[first], new, other}, {d->s[first], s, d->s[first + 1]}};
+}
+
+/* Arclength where the parabola through the test function has its vertex; *least: how near it comes to 0 there, as a
+ * part of the lesser value at the ends; < 0: beyond. */
+static double vertex(const Dip *d, BranchKind kind, double *least) {
+  double a = d->s[0] - d->s[1], b = d->s[2] - d->s[1], f = test_of(d->at[1], kind),
+         fa = (test_of(d->at[0], kind) - f) / a, fb = (test_of(d->at[2], kind) - f) / b;
+  double bend = (fb - fa) / (b - a), slope = fa - bend * a, x = -slope / (2 * bend), off = 0.1 * fmin(-a, b);
+  *least = (f - slope * slope / (4 * bend)) / copysign(fmin(fabs(f + fa * a), fabs(f + fb * b)), f);
+  if (fabs(x) < off) x = -a > b ? -off : off; /* beside the middle */
+  return d->s[1] + fmin(fmax(x, 0.9 * a), 0.9 * b);
+}
+
+/* Narrows the dip until its middle has another sign than its ends. 0: it has not. */
+static int crosses(Walk *w, Dip *d, BranchKind kind) {
+  const double near = 0.1;
+  for (int k = 0; k < 12; k++) {
+    double least = HUGE_VAL, s = vertex(d, kind, &least), f = test_of(d->at[1], kind);
+    if (!(least < near)) return 0;
+    int before = s < d->s[1], from = before ? 0 : 1;
+    BranchPoint *at = point_at(w, d->at[from], s - d->s[from]);
+    if (!at) return 0;
+    double now = test_of(at, kind);
+    int lower = fabs(now) < fabs(f), other = (now < 0) != (f < 0);
+    if (other || lower) *d = dip_of(d, from, at, s);
+    else *d = (Dip){{before ? at : d->at[0], d->at[1], before ? d->at[2] : at},
+                    {before ? s : d->s[0], d->s[1], before ? d->s[2] : s}};
+    if (other) return 1;
+  }
+  return 0;
+}
+
+static BranchPoint *insert(Branch *b, BranchPoint *after, BranchPoint *at) {
+  at->next = after->next;
+  after->next = at;
+  if (b->last == after) b->last = at;
+  b->npoints++;
+  return at;
+}
+
+/* Test functions that dip between a, b and c, at steps of this arclength, and have no other sign there: both
+ * bifurcations of one that crosses 0 and comes back are put between these points. */
+static void look_within(Walk *w, BranchPoint *a, BranchPoint *b, BranchPoint *c, double to_b, double to_c) {
+  static const BranchKind kinds[] = {BRANCH_FOLD, BRANCH_POINT, BRANCH_DOUBLING};
+  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+    Dip d = {{a, b, c}, {0, to_b, to_b + to_c}};
+    double f = fabs(test_of(b, kinds[k]));
+    int of_maps = kinds[k] == BRANCH_DOUBLING, stays = kinds[k] == BRANCH_POINT && b->stays;
+    if ((of_maps && !w->p->maps) || stays || f == 0.0) continue;
+    if (f > fabs(test_of(a, kinds[k])) || f > fabs(test_of(c, kinds[k])) || !crosses(w, &d, kinds[k])) continue;
+    BranchPoint *one = locate(w, d.at[0], d.at[1], d.s[1] - d.s[0], kinds[k]),
+                *two = locate(w, d.at[1], d.at[2], d.s[2] - d.s[1], kinds[k]), *after = d.s[1] < to_b ? a : b;
+    if (one && two) insert(w->b, insert(w->b, insert(w->b, after, one), d.at[1]), two);
+    return;
+  }
+}
+
 /* ---- The walk */
 
 /* Whether the branch has come back to its first point. */
@@ -313,8 +389,9 @@ static BranchPoint *last_point(Walk *w, const BranchPoint *from, double step, co
 /* Makes the next step; its length adapts to the number of Newton's steps and the turn of the tangent. NULL: none is
  * short enough. */
 static BranchPoint *next_point(Walk *w, double *step, double least, const BranchLimits *l) {
+  const double shortest = 1e-7;
   const BranchPoint *from = w->b->last;
-  for (; *step > 1e-7; *step /= 2) {
+  for (*step = fmax(*step, shortest); *step >= shortest; *step /= 2) { /* at least one, which says what keeps it */
     BranchPoint *at = point_at(w, from, *step);
     w->made = *step;
     w->border = !at && (at = last_point(w, from, *step, l)) != NULL;
@@ -350,8 +427,10 @@ int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const
   *b = (Branch){.end = BRANCH_AT_NUMBER};
   int rc = open_walk(&w, b, p), last = p->cols - 1;
   rc = rc ? rc : first_point(&w, u0, d, sign);
+  BranchPoint *before = NULL; /* the point before the last one, with nothing found between them */
+  double made = 0;
   for (double step = limits->step; rc == LAG_OK && b->npoints < limits->most;) {
-    const BranchPoint *from = b->last;
+    BranchPoint *from = b->last;
     BranchPoint *at = next_point(&w, &step, 0.9, limits);
     if (!at && !sign && b->npoints == 1) { /* the direction was across the other branch, not yet along this one */
       step = limits->step;
@@ -361,9 +440,14 @@ int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const
     /* from a branch point, where test functions are 0 but for rounding, nothing is looked for in the first step */
     BranchKind kind = !sign && b->npoints == 1 ? BRANCH_REGULAR : between(p, from, at);
     BranchPoint *found = kind == BRANCH_REGULAR ? NULL : locate(&w, from, at, w.made, kind);
+    if (found && kind == BRANCH_FOLD && p->stands && p->stands(p->of, found->u, found->tangent)) found = NULL;
     if (found && !outside(found->u, last, limits)) append(b, found);
     if (outside(at->u, last, limits)) at = at_border(&w, from, at, limits), w.border = 1;
-    if (at) append(b, at);
+    if (!at) return b->end = b->pool.failed ? BRANCH_NO_MEMORY : BRANCH_LOST, LAG_OK; /* none at the border itself */
+    append(b, at);
+    if (before && kind == BRANCH_REGULAR && !w.border) look_within(&w, before, from, at, made, w.made);
+    before = kind == BRANCH_REGULAR ? from : NULL;
+    made = w.made;
     if (w.border) return b->end = BRANCH_AT_RANGE, LAG_OK;
     if (is_closed(b, at, step, p->cols)) return b->end = BRANCH_CLOSED, LAG_OK;
   }

@@ -23,6 +23,7 @@ typedef struct BranchProblem {
   /* J[rows cols] and b[rows], the negative residual, at the unknowns that are placed */
   int (*system)(void *of, double *J, double *b);
   int (*spectrum)(void *of, Spectrum *s);
+  int (*stands)(void *of, const double *u, const double *d); /* whether d leads to the same solution, or NULL */
 } BranchProblem;
 
 typedef enum BranchKind {

@@ -151,31 +151,42 @@ void lag_flow_free(FlowMap *f) {
 typedef struct StepLimit {
   FlowMap *f;
   double resolution; /* longest step times the fastest rate */
+  double fastest;    /* of the steps before, each counting less */
 } StepLimit;
 
-/* Limits the next step to the fastest rate of neighbouring motions at the present state. */
-static int limit_step(void *limit, const lag_sim *run) {
-  StepLimit *l = limit;
-  FlowMap *f = l->f;
-  lag_problem *pb = &((lag_sim *)run)->pb;
+/* The fastest rate of neighbouring motions at y, t; 0: it is not known. */
+static double rate_at(FlowMap *f, lag_problem *pb, double t, const double *y) {
   int n = f->n, nq = f->nq;
   double *J = f->room, *A = f->square, *B = A + n * n;
   if (!pb->model->linear && !pb->model->constraints) return 0;
-  if (lag_jacobian(pb, run->run->t, run->now, J, f->linear) || lag_not_finite((n - nq) * n, J) >= 0) return 0;
+  if (lag_jacobian(pb, t, y, J, f->linear) || lag_not_finite((n - nq) * n, J) >= 0) return 0;
   memset(A, 0, (size_t)(nq * n) * sizeof *A);
   for (int i = 0; i < nq; i++) A[i * n + nq + i] = 1;
   memcpy(A + nq * n, J, (size_t)((n - nq) * n) * sizeof *A);
-  double rate = lag_fastest_rate(n, A, B);
-  pb->longest = rate > 0 ? l->resolution / rate : 0;
+  return lag_fastest_rate(n, A, B);
+}
+
+/* Limits the next step to the fastest rate of neighbouring motions, now and shortly before: where the rate passes 0,
+ * as of a spring whose stiffness is driven, a motion at rest has no error that keeps steps short. */
+static int limit_step(void *limit, const lag_sim *run) {
+  const double kept = 0.7;
+  StepLimit *l = limit;
+  lag_problem *pb = &((lag_sim *)run)->pb;
+  double driven = l->f->drive > 0 ? 2 * acos(-1) / l->f->drive : 0;
+  l->fastest = fmax(fmax(rate_at(l->f, pb, run->run->t, run->now), driven), kept * l->fastest);
+  pb->longest = l->fastest > 0 ? l->resolution / l->fastest : 0;
   return 0;
 }
 
 /* A run with a tangent: one step of order p has an error of about (step rate)^(p + 1) / (p + 1)! of each column. */
 static int advance_with_tangent(FlowMap *f, lag_sim *sim, double t) {
-  double order = sim->method->order;
-  StepLimit limit = {f, fmin(0.5, pow(sim->tol * tgamma(order + 2), 1 / (order + 1)))};
+  enum { LOOKS = 8 };
+  double order = sim->method->order, t0 = sim->scene->t0;
+  StepLimit limit = {f, fmin(0.5, pow(sim->tol * tgamma(order + 2), 1 / (order + 1))), 0};
   int rc = lag_sim_set_tangent(sim, f->n, NULL);
   if (rc) return rc;
+  for (int k = 1; k < LOOKS && f->forced; k++)
+    limit.fastest = fmax(limit.fastest, rate_at(f, &sim->pb, t0 + (t - t0) * k / LOOKS, sim->start));
   limit_step(&limit, sim);
   lag_sim_on_step(sim, limit_step, &limit);
   return lag_sim_advance(sim, t);

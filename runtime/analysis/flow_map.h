@@ -12,6 +12,7 @@ typedef struct FlowMap {
   int n, nq;
   double t0;
   int forced;       /* 1: the rates depend on time */
+  double drive;     /* the period of what drives it; 0: not known */
   const StateMap *closing;   /* what a drive's period is closed by: components that are exchanged; NULL: none */
   const char *name; /* parameter with another value, in its declared unit; NULL: none */
   double value;

@@ -10,6 +10,7 @@ static int renew_drive(PeriodicOrbit *o, double near) {
   double T = o->T / o->drives;
   if (lag_flow_drive(&o->flow, &T) > same || fabs(T - o->T / o->drives) > near * T) return 0;
   o->T = o->drives * T;
+  o->flow.drive = T;
   return 1;
 }
 
@@ -42,6 +43,7 @@ static int follow_drive(PeriodicOrbit *o, double value) {
       double T = lag_flow_find_drive(&o->flow, 8 * o->time / o->drives);
       if (!(T > 0)) return LAG_EDOMAIN;
       o->T = o->drives * T;
+      o->flow.drive = T;
     }
     part = fmin(2 * part, 1);
     o->parameter = next;

@@ -20,6 +20,7 @@ int lag_orbit_choose_units(PeriodicOrbit *o, const double *y0) {
   double *moved = o->x, *value = moved + o->n;
   int rc = sim ? LAG_OK : LAG_ENOMEM;
   for (int i = 0; i < o->n; i++) moved[i] = 0, value[i] = fabs(y0[i]);
+  for (int i = 0; i < m->nq; i++) value[m->nq + i] = fmax(value[m->nq + i], value[i] / o->T);
   for (int k = 1; k <= SAMPLES && rc == LAG_OK; k++) {
     rc = lag_sim_advance(sim, f->t0 + o->T * k / SAMPLES);
     for (int i = 0; i < o->n && rc == LAG_OK; i++) moved[i] = fmax(moved[i], fabs(sim->now[i] - y0[i]));

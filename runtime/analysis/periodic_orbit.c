@@ -26,14 +26,21 @@ static double gap(const PeriodicOrbit *o, int k, int i) {
   return (o->end[k * o->n + i] - next[i]) / o->unit[i];
 }
 
+/* Size of what a condition is about; of a charge at the present start, whatever the probe saw last. */
+static double size_of(PeriodicOrbit *o, const OrbitHold *h) {
+  if (h->kind == ORBIT_CHARGE) lag_flow_charge(&o->flow, h->of, o->flow.t0, o->y);
+  double size = h->kind == ORBIT_STATE    ? o->unit[h->of]
+                : h->kind == ORBIT_PERIOD ? o->time
+                                          : o->flow.probe->charge_now[2 * h->of + 1];
+  return size > 0 ? size : 1;
+}
+
 /* Value of a condition less what it shall be, relative to its size. */
 static double off(PeriodicOrbit *o, const OrbitHold *h) {
-  double size = h->kind == ORBIT_STATE ? o->unit[h->of] : h->kind == ORBIT_PERIOD ? o->time : 0;
-  double now = h->kind == ORBIT_STATE    ? o->y[h->of]
-               : h->kind == ORBIT_PERIOD ? o->T
-                                         : lag_flow_charge(&o->flow, h->of, o->flow.t0, o->y);
-  if (h->kind == ORBIT_CHARGE) size = o->flow.probe->charge_now[2 * h->of + 1];
-  return (now - h->value) / (size > 0 ? size : 1);
+  double size = size_of(o, h), now = h->kind == ORBIT_STATE    ? o->y[h->of]
+                                     : h->kind == ORBIT_PERIOD ? o->T
+                                                               : o->flow.probe->charge_now[2 * h->of];
+  return (now - h->value) / size;
 }
 
 /* Value of condition k, of which the present parameter may be the one that it keeps. */
@@ -41,13 +48,6 @@ static double off_by(PeriodicOrbit *o, int k) {
   OrbitHold h = o->held[k];
   if (o->continues && k == o->led) h.value = o->parameter;
   return off(o, &h);
-}
-
-static double size_of(const PeriodicOrbit *o, const OrbitHold *h) {
-  double size = h->kind == ORBIT_STATE    ? o->unit[h->of]
-                : h->kind == ORBIT_PERIOD ? o->time
-                                          : o->flow.probe->charge_now[2 * h->of + 1];
-  return size > 0 ? size : 1;
 }
 
 /* C[n c] := C - R C, with the map R of a motion that is the same backwards. */
@@ -130,18 +130,35 @@ static int continuation_column(PeriodicOrbit *o) {
   return rc ? rc : lag_orbit_shoot(o, 0);
 }
 
-/* Whether a component that keeps its value chooses the phase: the motion crosses that value. */
+/* Whether a component that keeps its value chooses the phase: the motion crosses that value, or, of a family over one
+ * of its own quantities, has no other freedom left. */
 static int holds_phase(const PeriodicOrbit *o, const double *rates) {
   const double least = 0.1;
   for (int k = 0; k < o->nheld; k++) {
     int i = o->held[k].of;
-    if (o->held[k].kind == ORBIT_STATE && k != o->led && fabs(rates[i]) * o->time > least * o->unit[i]) return 1;
+    if (o->held[k].kind != ORBIT_STATE || k == o->led) continue;
+    if (o->led >= 0 || fabs(rates[i]) * o->time > least * o->unit[i]) return 1;
   }
   return 0;
 }
 
+/* X[n], the rates, := a direction across which the phase is chosen while component i is led: of a velocity its
+ * coordinate, of others the rates without that component, or where nothing else moves its velocity. */
+static void leave_led(const PeriodicOrbit *o, int i, double *X) {
+  const double least = 1e-6;
+  int nq = o->flow.nq, velocity = i >= nq && i < 2 * nq,
+      partner = velocity ? i - nq : i < nq ? i + nq : i > 0 ? i - 1 : 1;
+  double other = 0, led = X[i] * o->time / o->unit[i];
+  X[i] = 0;
+  for (int j = 0; j < o->n; j++) other = fmax(other, fabs(X[j]) * o->time / o->unit[j]);
+  if (!velocity && other >= least * fabs(led)) return;
+  memset(X, 0, (size_t)o->n * sizeof *X);
+  X[partner] = o->unit[partner];
+}
+
 /* Rows across the motion, and across the symmetries of conserved charges. */
 static int phase_rows(PeriodicOrbit *o) {
+  const OrbitHold *lead = o->led >= 0 ? &o->held[o->led] : NULL;
   int n = o->n, row = o->m * n + o->nheld, rc = LAG_OK;
   double *X = o->x;
   for (int k = -1; k < o->ncharges && rc == LAG_OK; k++) {
@@ -149,6 +166,7 @@ static int phase_rows(PeriodicOrbit *o) {
     if (lag_flow_field(&o->flow, k < 0 ? 0 : o->charge[k], o->flow.t0, o->y, X)) continue;
     double size = 0;
     if (k < 0 && holds_phase(o, X)) continue;
+    if (k < 0 && lead && lead->kind == ORBIT_STATE) leave_led(o, lead->of, X);
     for (int i = 0; i < n; i++) size += X[i] * X[i] / (o->unit[i] * o->unit[i]);
     for (int i = 0; i < n && size > 0; i++) o->A[row * o->cols + i] = X[i] / o->unit[i] / sqrt(size);
     row++;
@@ -253,6 +271,38 @@ static int remove_charges(PeriodicOrbit *o) {
   return rc;
 }
 
+/* Whether nodes lie on constraints that always hold; those of contacts come and go. */
+static int is_constrained(const PeriodicOrbit *o) {
+  return o->flow.like->scene->model->constraints && !lag_flow_differences(&o->flow);
+}
+
+/* A := its part in the tangent space of the constraints at each node, to which a step's end returns; o->normal := the
+ * number of other directions. */
+static int within_constraints(PeriodicOrbit *o) {
+  int n = o->n, rc = LAG_OK;
+  lag_problem *pb = &o->flow.probe->pb;
+  Pool pool = {0};
+  double *P = lag_pool_doubles(&pool, (size_t)(n * n + n)), *row = P + n * n,
+         *scratch = lag_pool_doubles(&pool, lag_tangent_projection_size(pb) + 1), trace = 0;
+  if (pool.failed) rc = LAG_ENOMEM;
+  for (int k = 0; k < o->m && rc == LAG_OK; k++) {
+    for (int e = 0; e < n * n; e++) P[e] = e % (n + 1) == 0;
+    rc = lag_tangent_project(pb, begins(o, k), o->y + k * n, n, P, scratch);
+    for (int i = 0; i < n; i++) trace += P[i * n + i];
+    for (int r = 0; r < o->rows && rc == LAG_OK; r++) {
+      double *a = o->A + r * o->cols + k * n;
+      for (int j = 0; j < n; j++) {
+        row[j] = 0;
+        for (int i = 0; i < n; i++) row[j] += a[i] * P[i * n + j] * o->unit[j] / o->unit[i];
+      }
+      memcpy(a, row, (size_t)n * sizeof *a);
+    }
+  }
+  o->normal = o->m * n - (int)rint(trace);
+  lag_pool_free(&pool);
+  return rc;
+}
+
 int lag_orbit_assemble(PeriodicOrbit *o) {
   memset(o->A, 0, (size_t)o->rows * (size_t)o->cols * sizeof *o->A);
   memset(o->b, 0, (size_t)o->rows * sizeof *o->b);
@@ -262,10 +312,21 @@ int lag_orbit_assemble(PeriodicOrbit *o) {
   rc = rc || o->half ? rc : remove_charges(o);
   rc = rc ? rc : held_rows(o);
   if (rc == LAG_OK && o->half) begin_rows(o);
+  if (rc == LAG_OK && !o->continues && is_constrained(o)) rc = within_constraints(o);
   return rc || !o->continues ? rc : phase_rows(o);
 }
 
 /* ---- Newton's steps */
+
+/* Nodes that a step has led off the constraints return to them: what is left there would hide the residual. */
+static void onto_constraints(PeriodicOrbit *o) {
+  for (int k = 0; k < o->m && is_constrained(o); k++) {
+    lag_sim *sim = lag_flow_sim(&o->flow, begins(o, k), o->y + k * o->n);
+    if (sim && lag_sim_advance(sim, begins(o, k)) == LAG_OK)
+      memcpy(o->y + k * o->n, sim->now, (size_t)o->n * sizeof *o->y);
+    lag_sim_free(sim);
+  }
+}
 
 /* Adds `part` of the step x to the unknowns. */
 static void move(PeriodicOrbit *o, const double *x, double part) {
@@ -274,6 +335,7 @@ static void move(PeriodicOrbit *o, const double *x, double part) {
   if (period_is_free(o)) o->T += part * x[column_of_period(o)] * o->time;
   for (int j = 0; j < o->ngroup; j++) o->shift[j] += part * x[column_of_shift(o, j)];
   if (o->continues) lag_orbit_set_parameter(o, o->parameter + part * x[o->cols - 1] * o->parameter_unit);
+  onto_constraints(o);
 }
 
 /* A step, halved until the residual falls; *size: of the step made. 0: none does, and the unknowns stay. */
@@ -319,7 +381,7 @@ static int newton(PeriodicOrbit *o) {
     moved = falling_step(o, &size);
     o->steps += moved == 1;
   }
-  o->nfree = o->cols - rank;
+  o->nfree = o->cols - rank - o->normal;
   return rc < 0 ? rc : moved < 0 ? moved : rc == LAG_OK && o->residual <= accepted(o);
 }
 
@@ -396,6 +458,7 @@ static int place_nodes(PeriodicOrbit *o) {
 static void count_drives(PeriodicOrbit *o) {
   double shortest = lag_flow_find_drive(&o->flow, 1.01 * o->T);
   o->drives = shortest > 0 ? (int)fmax(1, rint(o->T / shortest)) : 1;
+  o->flow.drive = o->T / o->drives;
 }
 
 /* Square of the distance of the end of the motion from G y(0), in units. */

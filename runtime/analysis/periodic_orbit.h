@@ -61,6 +61,7 @@ typedef struct PeriodicOrbit {
   double *A, *b, *V, *sigma, *x, *saved, *w;
   double residual;           /* of y(T) = G y(0), in units: root of the mean square */
   int nfree;                 /* directions in which there are other solutions */
+  int normal;                /* directions of nodes across the constraints */
   int steps;                 /* Newton's steps made */
   double trace[ORBIT_TRACE]; /* the first residuals */
   double period_error;       /* change of the period by a run that is a hundred times as precise, or more */

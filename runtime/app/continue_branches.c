@@ -32,7 +32,10 @@ static int take_range(Job *job) {
   if (!lag_args_number(a, job->name, low, "mu=0.1..3", &job->low) ||
       !lag_args_number(a, job->name, dots + 2, "mu=0.1..3", &job->high))
     return EXIT_USAGE;
-  return job->low != job->high ? 0 : lag_app_error(a, "%s: the ends of the range are equal", found);
+  const double rounding = 1e-12;
+  double size = fmax(fabs(job->low), fabs(job->high));
+  if (fabs(job->high - job->low) > rounding * size) return 0;
+  return lag_app_error(a, "%s: the ends of the range are equal", found);
 }
 
 /* The quantity of this name, and its value at the start. */
@@ -247,9 +250,15 @@ static int follow_branches(Job *job) {
 
 /* ---- Beginning */
 
-/* Whether the motion to begin with lies in the range. */
+/* Whether the motion to begin with lies in the range; one beside an end by no more than its own error begins
+ * there. */
 static int check_begin(Job *job, const char *kind) {
-  if (job->begin >= fmin(job->low, job->high) && job->begin <= fmax(job->low, job->high)) return 0;
+  const double solved = 1e-8;
+  double low = fmin(job->low, job->high), high = fmax(job->low, job->high), inside = fmin(fmax(job->begin, low), high);
+  if (fabs(job->begin - inside) <= solved * job->size) {
+    job->begin = inside;
+    return 0;
+  }
   return lag_app_error(&job->app->args,
                        "the %s motion near the start has %s = %.6g, outside of %g..%g: start within: "
                        "name=VALUE, or widen the range",
@@ -357,7 +366,7 @@ static int begin_periodic(Job *job) {
     if ((rc = check_begin(job, "periodic")) != 0) return rc;
   } else o->led = -1;
   o->name = job->led_kind < 0 ? job->name : NULL;
-  o->parameter = job->led_kind < 0 ? job->begin : led_value(job);
+  o->parameter = job->led_kind < 0 ? job->begin : job->factor * job->begin + job->offset;
   o->parameter_unit = job->size * (job->led_kind < 0 ? 1 : fabs(job->factor));
   o->continues = 1;
   if (job->led_kind < 0 && lag_flow_set(&o->flow, o->name, o->parameter))

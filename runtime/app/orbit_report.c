@@ -237,9 +237,21 @@ static void reason(const PeriodicOrbit *o, OrbitVerdict v, char *s, size_t n) {
 /* Periods of a motion that closes after an exchange until it closes by itself; 0: it never does. */
 static int closings(const PeriodicOrbit *o) { return !o->closing ? 1 : o->ngroup ? 0 : lag_map_order(o->closing); }
 
+/* A name that no scene of the file has: orbit, orbit_2, ... */
+static void free_name(const App *app, char name[32]) {
+  const lag_program *p = app->program;
+  int taken = 1;
+  for (int k = 1; taken; k++) {
+    snprintf(name, 32, k > 1 ? "orbit_%d" : "orbit", k);
+    taken = 0;
+    for (int i = 0; i < p->nscenes; i++) taken |= strcmp(p->scenes[i]->name, name) == 0;
+  }
+}
+
 static void put_scene(FILE *f, const App *app, const PeriodicOrbit *o) {
-  char text[64];
-  fprintf(f, "\nscene orbit \"periodic\" {\n  like %s\n", app->scene->name);
+  char text[64], name[32];
+  free_name(app, name);
+  fprintf(f, "\nscene %s \"periodic\" {\n  like %s\n", name, app->scene->name);
   for (int k = 0; k < app->args.nsets; k++) {
     const char *set = app->args.sets[k], *eq = strchr(set, '=');
     if (lag_state_named(app, set, (size_t)(eq - set)) < 0) fprintf(f, "  %.*s = %s\n", (int)(eq - set), set, eq + 1);
@@ -461,6 +473,7 @@ static int read_maps(App *app, PeriodicOrbit *o) {
 }
 
 int lag_app_orbit_open(App *app, PeriodicOrbit *o) {
+  enum { MOST_SEGMENTS = 200 };
   const Args *a = &app->args;
   double T = 0, segments = 0;
   int rc = lag_app_orbit_holds(app, o);
@@ -469,10 +482,12 @@ int lag_app_orbit_open(App *app, PeriodicOrbit *o) {
   if (rc == 0 && a->segments) {
     long long count = 0;
     rc = lag_args_count(a, "--segments", a->segments, "--segments 4", &count);
+    if (rc == 0 && count > MOST_SEGMENTS)
+      rc = lag_app_error(a, "--segments %s: up to %d, whose equations are solved together", a->segments, MOST_SEGMENTS);
     segments = (double)count;
   }
   rc = rc ? rc : choose_period(app, o, &T);
-  if (rc == 0 && lag_orbit_open(o, app->sim, app->extras.algebra, T, (int)fmin(segments, 1000))) {
+  if (rc == 0 && lag_orbit_open(o, app->sim, app->extras.algebra, T, (int)segments)) {
     lag_app_error(a, "%s", o->flow.message[0] ? o->flow.message : "out of memory");
     rc = EXIT_RUN;
   }

@@ -104,7 +104,7 @@ static int takes_ranges(const Options *o) { return o->command == CMD_SWEEP || o-
 
 /* Refuses names with a range and a value. */
 static int check_ranges(Ast *ast, const Options *o, const char **error) {
-  for (uint32_t i = 0; i < o->rest.n && takes_ranges(o); i++) {
+  for (uint32_t i = 0; i < o->rest.n && o->command == CMD_SWEEP; i++) {
     const char *word = o->rest.at[i];
     if (word[0] == '-' && option_takes_next(o->command, word)) i++;
     if (word[0] == '-' || !range_split(ast->arena, word)) continue;
@@ -162,6 +162,7 @@ typedef struct {
   Arena *arena;
   VEC(ValuePlace) places;
   VEC(CommandValue) values; /* of the places */
+  int follows;              /* as of CommandValue */
 } Converter;
 
 /* Whether the value has a unit or is a formula of numbers; all else goes to the simulator as it stands. */
@@ -174,7 +175,7 @@ static int needs_conversion(const char *value) {
 /* Notes that `value`, of `name` (NULL: a time), is to become a number in the word. Returns 0 where it cannot be
  * read. */
 static int convert_later(Converter *c, const char *name, const char *value, const char **word, const char *before) {
-  CommandValue v = {.target = name ? parse_setting(c->ast, "command line", name) : 0};
+  CommandValue v = {.target = name ? parse_setting(c->ast, "command line", name) : 0, .follows = c->follows};
   v.value = parse_setting(c->ast, "command line", value);
   vec_push(c->arena, &c->places, ((ValuePlace){word, before}));
   vec_push(c->arena, &c->values, v);
@@ -251,8 +252,10 @@ typedef VEC(Range *) Ranges;
 static void note_range(Converter *c, Ranges *ranges, Range *range, uint32_t at, int *ok) {
   range->word = at;
   vec_push(c->arena, ranges, range);
+  c->follows = c->o->command == CMD_CONTINUE;
   for (uint32_t k = 0; k < range->numbers.n; k++) *ok &= convert_setting(c, &range->numbers.at[k]);
   if (range->zero) *ok &= convert_setting(c, &range->zero);
+  c->follows = 0;
 }
 
 int settings_units(Ast *ast, const Options *o) {

@@ -1,5 +1,6 @@
 /* Values from the command line, `th=90[deg]`, converted to the unit that the simulator takes: the declared one. */
 #include <math.h>
+#include <string.h>
 
 #include "model/builder.h"
 
@@ -31,12 +32,31 @@ static double in_declared(Builder *b, Expr x, const Unit *u, const char **digits
   return (double)constant_value(b, e);
 }
 
+/* Whether the target is the `period` of a family of motions, a name that the model does not declare. */
+static int is_period(Builder *b, const CommandValue *of) {
+  const AstExpr *x = of->target ? ast_expr(b->ast, of->target) : NULL;
+  int ambiguous;
+  return of->follows && x && x->kind == AST_NAME && strcmp(x->name, "period") == 0 &&
+         !scope_find(&b->scope, x->name, NULL, &ambiguous);
+}
+
+/* Unit of the energy or of the charge that x is: of SI; 0: it is something else. */
+static int charge_unit(Builder *b, const Value *x, Unit *unit) {
+  const Model *m = b->m;
+  const Symbol *s = expr_op(b->g, x->e) == EX_SYM ? expr_sym_of(b->g, x->e) : NULL;
+  int is_charge = s && x->e == expr_symbol(b->g, m->energy_sym)->node;
+  for (uint32_t i = 0; s && i < m->symmetries.n; i++)
+    is_charge |= x->e == expr_symbol(b->g, m->symmetries.at[i].charge)->node;
+  if (is_charge) *unit = unit_si(x->dim, "");
+  return is_charge;
+}
+
 static void command_value(Builder *b, CommandValue *of) {
   Unit unit = unit_si(dim_base(b->dims, DIM_TIME), "s");
-  if (of->target) {
+  if (of->target && !is_period(b, of)) {
     Value target = resolve(b, of->target, IN_OBSERVE, NULL);
     if (!target.e) return;
-    if (target.n || !setting_unit(b, target.e, &unit)) {
+    if (target.n || (!setting_unit(b, target.e, &unit) && !(of->follows && charge_unit(b, &target, &unit)))) {
       diag_error(b->diags, ast_expr(b->ast, of->target)->span, "a run cannot set `%s`", ast_short(b, of->target));
       if (target.n)
         diag_help(b->diags, "it is %s: set its components, `%s.x=...`", shape_text(b, target.n),

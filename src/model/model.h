@@ -440,6 +440,7 @@ typedef struct {
 /* A value `name=value` of the command line for a simulator, and what it is in the declared unit of its name. */
 typedef struct {
   AstId target, value; /* target 0: a time */
+  int follows;         /* 1: of a family of motions: the target may be `energy`, a charge or `period`, too */
   double number;
   const char *digits;  /* as in base/num.h, or NULL */
 } CommandValue;

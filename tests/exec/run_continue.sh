@@ -67,6 +67,43 @@ close 1 period 3.14159265358979 1e-13
 # the pendulum's family by energy: 4 sqrt(l/g) K(k), k^2 = E/(2 m g l), at the end of the range
 follow models/pendulum.lag wide energy=9..18
 close 1 period 3.40802289484 1e-10
+# Kepler's third law, 2 pi/(-2 E)^1.5, with the spin kept and two segments, whose ends differ in the size of the energy's terms
+follow models/kepler.lag orbit energy=-0.7..-0.3
+kinds "end;end;"
+close 1 period 13.5192622532453730 1e-9
+close 2 period 3.79304342543609208 1e-9
+# a velocity led from a turning point keeps its coordinate: 4 sqrt(l/g) K, k^2 = (v^2/2 + g)/(2 g), v = 3, mpmath; ranges of energy and period have units
+follow models/pendulum.lag wide "th'=0..3"
+kinds "end;end;"
+close 1 period 2.70882647918168306 1e-11
+follow models/double_pendulum.lag apart th1=0.2 th2=-0.28 "th1'=0..0.5"
+kinds "end;end;" # no folds
+follow models/pendulum.lag wide 'energy=9000..18000[mJ]'
+close 1 period 3.40802289484 1e-10
+follow models/pendulum.lag wide 'period=2300..2500[ms]'
+close 1 parameter 2.5 1e-14
+# the energy over a place that keeps its value, a turning point first: k^2 = E/(2 m g l)
+follow models/pendulum.lag wide energy=9..18 --hold th
+kinds "end;end;" # no fold at the turning point
+near "$title: period" 1e-10 3.40802289484 "$(sed -n '/"kind": "end"/{s/.*"period": \([^,]*\).*/\1/p;q;}' "$TMP/points")"
+# a value beside its range is where it begins
+check "begins at a value" sh -c "'$LAGC' continue models/pendulum.lag wide l=0.8 l=0.5..1 | grep -q 'begins  *l = 0.8'"
+# edges of the tongues of x'' + (a - 2 q cos 2t) x = 0 at q = 0.2: eigenvalues of Hill's matrices, mpmath. The second tongue, 0.02 wide, lies within a step
+follow $dir/mathieu.lag a=-0.5..5
+kinds "period doubling;period doubling;branch point;branch point;end;branch point;end;"
+close 1 parameter 0.795123868083863287 1e-12
+close 2 parameter 1.19487405920446156 1e-12
+close 3 parameter 3.99666724513820446 1e-12
+close 4 parameter 4.01657915296946699 1e-12
+close 6 parameter -0.0199132963584375184 1e-12
+# a ball bounces once a period T of a plate (run_orbit.sh): A w^2 cos p = g T w (1 - e)/(2 (1 + e)) has two motions that meet at cos p = 1; where
+# (1 + e)^2 A w^2 sin p/g is -2 (1 + e^2) the period doubles. Differences of runs: 8 digits of multipliers. (Behind the plate's zero by
+# 1: no bounce at the start of the period.)
+sed 's/sin(w\*t)/sin(w*t + 1)/' $dir/plate.lag >"$TMP/plate.lag"
+follow "$TMP/plate.lag" A=0.005..0.011
+kinds "end;fold;period doubling;end;"
+close 2 parameter 0.00642062998577413993 1e-12
+close 3 parameter 0.00936133781380749192 1e-10
 # --period names the first motion, and holds no other: cos of the amplitude where 4 sqrt(l/g) K(sin(th/2)) = 3, mpmath
 follow models/pendulum.lag wide period=2.4..3 --period 2.5
 kinds "end;end;"
@@ -169,9 +206,12 @@ refused() {
 }
 ends() { check "$1" sh -c "'$LAGC' continue $2 | grep -q 'it ends there: $3'"; }
 ends "a family ends: at a value that the model refuses" "models/lorenz.lag x=0 y=0 z=0 rho=0.5..-3" "rho = .*: the model declares rho >= 0"
+ends "a family ends: at a bound that is no value" "models/pendulum.lag wide l=0..1" "l = .*: the model declares l > 0"
+ends "a family ends: in a rest" "models/pendulum.lag wide th=0..1.6" "the motion shrinks to a state of rest"
 slow ends "a family ends: next to the separatrix" "models/pendulum.lag wide energy=9..40" "the period grows without limit"
 refused "no range" 2 "a range is missing: NAME=A..B" "$LAGC" continue models/pendulum.lag wide
 refused "no such name" 2 "the model has no parameter of this name" "$LAGC" continue models/pendulum.lag wide gg=1..2
+refused "a range of another dimension" 2 "but [J] is needed here" "$LAGC" continue models/pendulum.lag wide 'energy=9..12[kg]'
 refused "a range without length" 2 "the ends of the range are equal" "$LAGC" continue models/pendulum.lag wide l=1..1
 refused "two ranges" 2 "one value runs over a range" "$LAGC" continue models/pendulum.lag wide l=1..2 m=1..2
 refused "a branch point to begin with" 3 "let the range begin beside it" "$LAGC" continue models/lorenz.lag x=0 y=0 z=0 rho=1..2

@@ -48,6 +48,7 @@ closes 1 2 0.557598777 1e-8
 closes 3 1 0 1e-12
 word verdict attracts
 
+check "the scene to paste has a name of its own" sh -c "'$LAGC' orbit models/kepler.lag orbit --hold energy,spin | sed -n '/^scene/,\$p' | cat models/kepler.lag - >'$TMP/named.lag'; '$LAGC' check '$TMP/named.lag' | grep -q 'scene orbit_2: ok'"
 # the scene starts on the motion: a run of it comes back
 "$LAGC" orbit $dir/vanderpol.lag | sed -n '/^scene/,$p' >"$TMP/scene"
 cat $dir/vanderpol.lag "$TMP/scene" >"$TMP/pasted.lag"
@@ -102,6 +103,15 @@ close period 2.61799387799149437 1e-13
 near "$title: product of multipliers" 1e-12 0.877305769098345670 "$(multiplier 1 1 | awk -v im="$(multiplier 1 2)" '{ printf "%.15g", $1^2 + im^2 }')"
 check "$title: an event without the symmetry" says 3 "events of the scene do not have this symmetry" "$LAGC" orbit $dir/mirror.lag one_wall --relative x=-x
 check "$title: a pair of walls has it" "$LAGC" orbit $dir/mirror.lag two_walls --relative x=-x
+
+# rest in a driven scene, where no error keeps steps short: multipliers have the product 1; a pendulum at its upper rest, whose velocity is rounding
+orbit $dir/mathieu.lag a=-0.01998 --period 6.283185307179586
+near "$title: product of multipliers" 1e-13 1 "$(multiplier 1 1 | awk -v b="$(multiplier 2 1)" '{ printf "%.17g", $1*b }')"
+orbit models/kapitza.lag "th=180[deg]"
+near "$title: product of multipliers" 1e-10 1 "$(multiplier 1 1 | awk -v im="$(multiplier 1 2)" '{ printf "%.15g", $1^2 + im^2 }')"
+# steps on a sphere stay on it: 4/sqrt(2 g (c - a)) K((b - a)/(c - a)) with the roots a, b, c of 2 (E - g z)(1 - z^2) = L^2, mpmath
+orbit $dir/sphere.lag --relative spin --guess 1 --hold energy,spin
+close period 1.04000924639386669 1e-12
 
 # Halves of reversible motions: M. Henon, C. Heiles: a brake orbit, period as below; a pendulum that turns over: 4/v K(4 g/v^2), mpmath
 orbit models/henon_heiles.lag regular x=0 y=0.3 "x'=0" "y'=0" --hold y --reverse rest
@@ -195,6 +205,7 @@ refused "no length" 2 "a period is a positive time" "$LAGC" orbit models/pendulu
 refused "an exchange that is no symmetry" 3 "not a symmetry of the equations" "$LAGC" orbit models/cr3bp.lag departure --relative y=-y
 refused "a coordinate taken twice" 2 "write x=y,y=x to exchange them" "$LAGC" orbit models/figure_eight.lag --relative 'r[1]=r[2]'
 refused "no map" 2 "write which coordinate takes the place" "$LAGC" orbit models/pendulum.lag wide --relative 'th=2*th'
+refused "too many segments" 2 "up to 200" "$LAGC" orbit models/pendulum.lag wide --segments 201
 refused "a start at rest" 3 "starts at rest, at an equilibrium" "$LAGC" orbit models/pendulum.lag wide "th=180[deg]"
 refused "friction, backwards" 3 "friction spoils that" "$LAGC" orbit models/pendulum.lag fading --reverse th=-th
 refused "no word for rest" 2 "or \`rest\`" "$LAGC" orbit models/pendulum.lag wide --reverse th
