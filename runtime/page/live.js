@@ -13,7 +13,7 @@ const settings = {method: "", fine: 1e-9, values: {}, start: {}};
 const span = {t0: 0, t1: 20};
 let pace = 1, unit = 1, unitName = "s"; // seconds of the motion in one of watching; the unit of time that is shown
 
-const isOf = name => model.programs.filter(p => p.scene == name);
+const isOf = name => more.programs.filter(p => p.scene == name);
 const wanted = () => [...document.querySelectorAll("#effects input:checked")].map(e => e.value);
 const sameSet = (a, b) => a.length == b.length && a.every(x => b.includes(x));
 
@@ -425,7 +425,6 @@ function look() {
 // ---- the page
 async function unpack(text) {
   const bytes = bytes_of(text);
-  if (bytes[0] != 0x1f || bytes[1] != 0x8b) return bytes; // lagc without zlib
   return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer());
 }
 function wire() {
@@ -489,21 +488,27 @@ function show_recording(run) {
 }
 // Takes a model: its scenes, with one chosen, its effects, equations and text.
 async function offer(chosen) {
-  bytes = model.raw !== undefined ? bytes_of(model.raw) : copied(await unpack(parts));
+  bytes = model.raw !== undefined ? bytes_of(model.raw) : unpacked(bytes_of(parts));
   more = JSON.parse(new TextDecoder().decode(bytes.subarray(model.more[0], model.more[0] + model.more[1])));
   $("source").textContent = model.source;
   $("scene").textContent = "";
-  for (const name of new Set(model.programs.map(p => p.scene))) $("scene").add(new Option(name, name));
+  for (const name of new Set(more.programs.map(p => p.scene))) $("scene").add(new Option(name, name));
   if (isOf(chosen).length) $("scene").value = chosen;
   effects();
 }
 // Another model from its start, in the same scene where it has that.
 async function load(other) {
-  const chosen = $("scene").value;
+  const chosen = $("scene").value, before = program && bytes.subarray(program.at, program.at + program.n);
   model = other;
-  Object.assign(settings, {method: "", values: {}, start: {}, moved: false});
   await offer(chosen);
   if ($("equations").open) equations();
+  const same = motion && isOf($("scene").value).find(p => p.n == before.length && before.every((x, i) => x == bytes[p.at + i]));
+  if (same) { // a playground's first scene comes before the others
+    for (const box of document.querySelectorAll("#effects input")) box.checked = same.effects.includes(box.value);
+    program = same;
+    return;
+  }
+  Object.assign(settings, {method: "", values: {}, start: {}, moved: false});
   choose();
   restart();
 }

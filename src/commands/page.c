@@ -4,11 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/far_copies.h"
+#include "base/lzma.h"
 #include "commands/live_page.h" /* generated from runtime/page */
 #include "commands/page_model.h"
 #include "commands/page_parts.h"
-#include "fmu/zip.h"
 #include "toolchain/files.h"
 #include "toolchain/process.h"
 #include "toolchain/toolchain.h"
@@ -73,7 +72,7 @@ static const char *escaped(Arena *a, const char *text) {
 
 int command_page(Compiler *c) {
   Arena *a = c->arena;
-  StrBuf module = strbuf(a), page = strbuf(a), copies = strbuf(a), packed = strbuf(a), bytes = strbuf(a),
+  StrBuf module = strbuf(a), page = strbuf(a), packed = strbuf(a), bytes = strbuf(a),
          recording = strbuf(a);
   PageModel d = page_model_begin(a);
   if (!c->o.output) return usage_error("`lagc page` needs -o FILE.html");
@@ -83,8 +82,7 @@ int command_page(Compiler *c) {
   put_recording(c, &d.shown->m->scene, &recording);
   page_model_end(c, &d, sb_text(&recording));
   sb_putc(&d.json, '}');
-  far_copies_append(&d.bytes, &copies);
-  gzip_append(&copies, &packed);
+  lzma_append(&d.bytes, &packed);
   page_bytes(&bytes, packed.at, packed.n);
   const Model *m = d.shown->m;
   const PageMark marks[] = {{"@TITLE@", escaped(a, m->doc ? m->doc : m->name)},

@@ -6,6 +6,7 @@
 
 typedef struct {
   StrBuf json, bytes;
+  StrBuf programs;   /* their places in bytes, with scenes and effects, as members of a list */
   StrBuf letters;    /* members "NAME": "LATEX" of parameters */
   const Eqns *shown; /* of the first scene */
 } PageModel;
