@@ -423,10 +423,6 @@ function look() {
 }
 
 // ---- the page
-async function unpack(text) {
-  const bytes = bytes_of(text);
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer());
-}
 function wire() {
   $("play").onclick = () => playing ? pause() : play();
   $("step").onclick = () => { pause(); pass(1/60); draw(); };
@@ -520,7 +516,7 @@ async function main() {
   named_play();
   await offer(said?.scene);
   if (typeof WebAssembly == "undefined") return show_recording(more.recording);
-  wasm = await WebAssembly.compile(await unpack(packed));
+  wasm = await WebAssembly.compile(unpacked(bytes_of(packed)));
   $("fine").value = 55;
   if (said) {
     settings.values = said.values || {};

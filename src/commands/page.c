@@ -72,11 +72,10 @@ static const char *escaped(Arena *a, const char *text) {
 
 int command_page(Compiler *c) {
   Arena *a = c->arena;
-  StrBuf module = strbuf(a), page = strbuf(a), packed = strbuf(a), bytes = strbuf(a),
-         recording = strbuf(a);
+  StrBuf module = strbuf(a), page = strbuf(a), packed = strbuf(a), bytes = strbuf(a), recording = strbuf(a);
   PageModel d = page_model_begin(a);
   if (!c->o.output) return usage_error("`lagc page` needs -o FILE.html");
-  if (!page_module(c, "lag.wasm.gz", &module)) return STATUS_USAGE;
+  if (!page_module(c, "lag.wasm", &module)) return STATUS_USAGE;
   if (compiler_is_source(c, c->o.output)) return STATUS_USAGE;
   if (!page_model_programs(c, &d)) return STATUS_MODEL;
   put_recording(c, &d.shown->m->scene, &recording);
@@ -88,7 +87,8 @@ int command_page(Compiler *c) {
   const PageMark marks[] = {{"@TITLE@", escaped(a, m->doc ? m->doc : m->name)},
                             {"@MODEL@", sb_text(&d.json)},
                             {"@BYTES@", sb_text(&bytes)},
-                            {"@MODULE@", sb_text(&module)}};
+                            {"@MODULE@", sb_text(&module)},
+                            {"@LIVE@", page_script(a)}};
   page_fill(&page, live_page, sizeof live_page / sizeof *live_page, marks, sizeof marks / sizeof *marks);
   return compiler_write(c, c->o.output, &page);
 }

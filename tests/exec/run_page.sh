@@ -3,7 +3,7 @@
 . tests/tap.sh
 . tests/exec/lib_motion.sh
 wasm=$(dirname "$LAGC")/lag.wasm
-if [ ! -f "$wasm.gz" ]; then
+if [ ! -f "$wasm" ]; then
   skip "pages" "no Clang for WebAssembly: .ci/setup ci, then make page"
   tap_end
   exit
