@@ -337,7 +337,7 @@ function draw() {
   const now = performance.now();
   if (!motion || !track.length) return;
   if (machine) machine.horizon = horizon;
-  if (picture) picture.draw(track);
+  if (picture) { picture.draw(track); follow(now); }
   if (playing && now - plotted < 95) return;
   plotted = now;
   plots();
@@ -405,12 +405,12 @@ function machineOf(run) {
   };
 }
 let picture = null, machine = null;
-// A trial run over the span, for at most a fifth of a second, gives the extent of the picture.
+// A trial run over the span, for at most a fifth of a second, 20 rows at least for slow machines, gives the extent of the picture.
 function look() {
   const rows = [], began = performance.now(), parts = 300, step = (span.t1 - span.t0)/parts;
   try {
     const trial = new Motion(lag, scene, options(settings.start, NaN));
-    for (let k = 0; k <= parts && performance.now() - began < 200; k++) {
+    for (let k = 0; k <= parts && (k < 20 || performance.now() - began < 200); k++) {
       if (trial.advance(span.t0 + k*step) > 0) k = parts;
       rows.push({t: trial.t, x: trial.outputs});
     }
@@ -420,6 +420,17 @@ function look() {
   machine = {shapes, rows, tick: 1, speed: pace, horizon: null, free: false, unit: ""};
   picture = machineOf(machine);
   if (eye) Object.assign(picture.eye, eye);
+}
+// Another extent, once a second, where a body has left the picture that nobody has moved or zoomed.
+let looked = 0;
+function follow(now) {
+  const eye = picture.eye, outside = b => { const [x, y] = picture.toCanvas(picture.place(b.a)), c = $("picture"); return x < 0 || y < 0 || x > c.clientWidth || y > c.clientHeight; };
+  if (!playing || now - looked < 1000 || eye.zoom != 1 || eye.x || eye.y || !picture.bodies.some(outside)) return;
+  looked = now;
+  machine.rows = [...machine.rows, ...track];
+  picture = machineOf(machine);
+  Object.assign(picture.eye, eye);
+  machine.rows = [...machine.rows.filter((_, k) => k % 2 == 0).slice(-2000), track.at(-1)];
 }
 
 // ---- the page

@@ -77,7 +77,7 @@ int command_page(Compiler *c) {
   if (!c->o.output) return usage_error("`lagc page` needs -o FILE.html");
   if (!page_module(c, "lag.wasm", &module)) return STATUS_USAGE;
   if (compiler_is_source(c, c->o.output)) return STATUS_USAGE;
-  if (!page_model_programs(c, &d)) return STATUS_MODEL;
+  if (!page_model_programs(c, &d, 0)) return STATUS_MODEL;
   put_recording(c, &d.shown->m->scene, &recording);
   page_model_end(c, &d, sb_text(&recording));
   sb_putc(&d.json, '}');

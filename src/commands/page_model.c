@@ -62,8 +62,11 @@ PageModel page_model_begin(Arena *a) {
   return (PageModel){.json = strbuf(a), .programs = strbuf(a), .bytes = strbuf(a), .letters = strbuf(a)};
 }
 
-int page_model_programs(Compiler *c, PageModel *d) {
+int page_model_programs(Compiler *c, PageModel *d, int first) {
   SceneList all = model_scenes(c->ast);
+  Eqns *e;
+  d->whole = !first || (all.n < 2 && !effect_graph(c->ast).n);
+  if (first) return put_program(c, all.at[0], NULL, d, &e);
   uint32_t n = c->o.scenes.n ? c->o.scenes.n : all.n;
   for (uint32_t i = 0; i < n; i++)
     if (!put_scene(c, c->o.scenes.n ? c->o.scenes.at[i] : all.at[i], d)) return 0;
