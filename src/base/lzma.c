@@ -195,7 +195,8 @@ static uint32_t relax_all(Finder *f, Way *w, size_t at, uint32_t most) {
   for (uint32_t k = 0; k < REPS; k++) {
     uint32_t length = w->rep[k] < at ? common(f, at - w->rep[k] - 1, at, most) : 0;
     if (length >= LONG && length > longest) relax(w, longest = length, 40 + 16 * k, w->rep[k]);
-    for (uint32_t m = LEAST; m <= length && length < LONG; m++) relax(w, m, 30 + 12 * k + price_of_length(m), w->rep[k]);
+    for (uint32_t m = LEAST; m <= length && length < LONG; m++)
+      relax(w, m, 30 + 12 * k + price_of_length(m), w->rep[k]);
   }
   if (longest || at + 4 > f->n) return longest;
   know(f, at);
