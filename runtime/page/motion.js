@@ -13,8 +13,9 @@ function bytes_of(text) {
   }
   return bytes.subarray(0, n);
 }
-// The bytes of a text of src/base/lzma.h: their number, then a stream of LZMA1 with lc = 0, lp = 0, pb = 2.
+// The bytes that src/commands/pack.h packed: their number, then a stream of LZMA1 with lc = 0, lp = 0, pb = 2.
 function unpacked(s) {
+  if (s[4]) return s.subarray(5); // lagc without liblzma
   const view = new DataView(s.buffer, s.byteOffset), out = new Uint8Array(view.getUint32(0, true)), rep = [0, 0, 0, 0];
   const [REP, LONG, LITERAL, SLOT, LOW, ALIGN, COPIED, REPEATED, END] = [48, 96, 144, 912, 1168, 1296, 1312, 1634, 1956], p = new Uint16Array(END).fill(1024);
   let at = 9, range = 2**32 - 1, code = view.getUint32(5), state = 0, position;

@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/lzma.h"
 #include "commands/live_page.h" /* generated from runtime/page */
+#include "commands/pack.h"
 #include "commands/page_model.h"
 #include "commands/page_parts.h"
 #include "toolchain/files.h"
@@ -81,7 +81,7 @@ int command_page(Compiler *c) {
   put_recording(c, &d.shown->m->scene, &recording);
   page_model_end(c, &d, sb_text(&recording));
   sb_putc(&d.json, '}');
-  lzma_append(&d.bytes, &packed);
+  pack_append(&d.bytes, &packed);
   page_bytes(&bytes, packed.at, packed.n);
   const Model *m = d.shown->m;
   const PageMark marks[] = {{"@TITLE@", escaped(a, m->doc ? m->doc : m->name)},

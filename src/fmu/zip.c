@@ -1,4 +1,4 @@
-/* ZIP archives and gzip streams, by minizip and zlib. */
+/* ZIP archives, by minizip. */
 #include "fmu/zip.h"
 
 #include <stdio.h>
