@@ -32,7 +32,7 @@ VERSION       = $(shell sed -n 's/^.define LAG_VERSION "\(.*\)"/\1/p' runtime/in
 CONFIG    := $(BUILD)/config.mk
 CC_FILE   := $(firstword $(wildcard $(firstword $(CC)) $(addsuffix /$(firstword $(CC)),$(subst :, ,$(PATH)))))
 CONFIG_OF := $(strip $(CC_FILE) $(CC) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS) $(LIB_FROM_BIN) $(INCLUDE_FROM_BIN) \
-               $(wildcard $(foreach d,/usr /usr/local,$d/include/gsl/gsl_odeiv2.h $d/include/minizip/zip.h $d/include/librsvg-2.0/librsvg/rsvg.h $d/include/hdf5/serial/hdf5.h)) $(wildcard /usr/lib/*/openmpi/include/mpi.h))
+               $(wildcard $(foreach d,/usr /usr/local,$d/include/gsl/gsl_odeiv2.h $d/include/minizip/zip.h $d/include/lzma.h $d/include/librsvg-2.0/librsvg/rsvg.h $d/include/hdf5/serial/hdf5.h)) $(wildcard /usr/lib/*/openmpi/include/mpi.h))
 BUILDS    := $(filter-out help clean uninstall,$(or $(MAKECMDGOALS),all))
 ifneq ($(BUILDS),)
 -include $(CONFIG)
@@ -59,7 +59,9 @@ PARTS := $(if $(PNG),png) $(if $(HDF5),hdf5) $(if $(MPI),mpi)
 
 # minizip of zlib writes the archives of FMUs: without it `lagc fmu` is refused.
 ZIP := $(ZIP_FOUND)
-ZIP_LIBS := $(if $(ZIP),-lminizip -lz)
+# liblzma packs pages; without it they are longer.
+XZ := $(XZ_FOUND)
+LAGC_LIBS := $(if $(ZIP),-lminizip -lz) $(if $(XZ),-llzma)
 
 # The runtime for other numbers than doubles: `lagc run --precision`. Quad needs libquadmath.
 PRECISIONS ?= long $(QUAD_FOUND)
@@ -116,7 +118,7 @@ install: $(LIBLAG_SO)
 
 # ---- the compiler and the runtime -------------------------------------------------------------------
 $(BUILD)/lagc$(EXE): $(BUILD)/obj/src/main.o $(BUILD)/liblagc.a
-	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) $(if $(WINDOWS),-static) -o $@ $^ $(ZIP_LIBS) -lm
+	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) $(if $(WINDOWS),-static) -o $@ $^ $(LAGC_LIBS) -lm
 
 # `ar s` writes the index; RANLIB is for an ar that does not.
 ARCHIVE = rm -f $@ && $(AR) rcs $@ $(1)$(if $(RANLIB), && $(RANLIB) $@)
@@ -268,8 +270,9 @@ $(BUILD)/obj/src/main.o: SRC_FLAGS += -DLAGC_VERSION='"$(VERSION)"'
 $(BUILD)/obj/src/main.o: runtime/include/lag.h
 $(BUILD)/obj/src/base/method_table.o: SRC_FLAGS += $(if $(GSL),-DLAGC_WITH_GSL)
 $(BUILD)/obj/src/fmu/zip.o: SRC_FLAGS += $(if $(ZIP),-DLAGC_WITH_ZIP)
+$(BUILD)/obj/src/commands/pack.o: SRC_FLAGS += $(if $(XZ),-DLAGC_WITH_XZ)
 $(BUILD)/obj/src/toolchain/toolchain.o: SRC_FLAGS += '-DLAGC_LIBDIR="$(LIB_FROM_BIN)"' '-DLAGC_INCLUDEDIR="$(INCLUDE_FROM_BIN)"'
-$(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/fmu/zip.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)
+$(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/fmu/zip.o $(BUILD)/obj/src/commands/pack.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
 $(BUILD)/obj/src/emit/embedded_math.o: $(BUILD)/gen/emit/embedded_texts.h
 $(BUILD)/obj/src/toolchain/compiler_probe.o: $(BUILD)/gen/toolchain/probe_text.h
@@ -339,7 +342,7 @@ help:
 	@echo 'make dist         the last commit as build/lagc-VERSION.tar.gz, the same bytes wherever it is made'
 	@echo 'make clean        removes build/'
 	@echo 'settings: CC CFLAGS CPPFLAGS LDFLAGS AR RANLIB WERROR=-Werror BUILD FLEX BISON CXX CLANG= (to do without clang)'
-	@echo '          GSL= PRECISIONS= DYNAMIC= ZIP= PNG= HDF5= MPI= (to do without gsl-* methods; long double and quad; a shared liblag; lagc fmu; pictures as PNG; HDF5; sweeps by MPI)'
+	@echo '          GSL= PRECISIONS= DYNAMIC= ZIP= XZ= PNG= HDF5= MPI= (to do without gsl-* methods; long double and quad; a shared liblag; lagc fmu; short pages; pictures as PNG; HDF5; sweeps by MPI)'
 	@echo '          for another machine: CC=aarch64-linux-gnu-gcc AR=aarch64-linux-gnu-ar BUILD=build/aarch64'
 	@echo '          for Windows: CC=x86_64-w64-mingw32-gcc AR=x86_64-w64-mingw32-ar BUILD=build/windows'
 

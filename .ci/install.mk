@@ -22,7 +22,7 @@ install: all precisions
 	  $(COMPLETIONS:%='$(DESTDIR)$(PREFIX)/share/%')
 	install -m 755 $(BUILD)/lagc$(EXE) '$(DESTDIR)$(PREFIX)/bin'
 	install -m 755 $(BUILD)/lag-run$(EXE) '$(DESTDIR)$(LIBDIR)'
-	for m in $(wildcard $(BUILD)/lag.wasm.gz $(BUILD)/lagc.wasm.gz); do install -m 644 $$m '$(DESTDIR)$(LIBDIR)'; done
+	for m in $(wildcard $(BUILD)/lag.wasm $(BUILD)/lagc.wasm.gz); do install -m 644 $$m '$(DESTDIR)$(LIBDIR)'; done
 	install -m 644 $(LIBLAG) $(LIBLAG_MORE) $(PARTS:%=$(BUILD)/liblag_%.libs) '$(DESTDIR)$(LIBDIR)'
 ifneq ($(DYNAMIC),)
 	install -m 755 $(LIBLAG_SO) '$(DESTDIR)$(LIBDIR)'
@@ -57,7 +57,7 @@ uninstall:
 	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc bin/lagc.exe share/man/man1/lagc.1 share/bash-completion/completions/lagc \
 	  share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish && rm -rf share/lagc share/doc/lagc
 	rm -f '$(DESTDIR)$(PYTHONDIR)/lagc.py'
-	cd '$(DESTDIR)$(LIBDIR)' && rm -f lag-run lag-run.exe lag.wasm.gz lagc.wasm.gz liblag.so liblag.so.[0-9]* liblag.a liblag_gsl.a liblag_png.a liblag_png.libs liblag_hdf5.a liblag_hdf5.libs liblag_mpi.a liblag_mpi.libs liblag_long.a liblag_quad.a pkgconfig/liblag.pc pkgconfig/liblag_gsl.pc && \
+	cd '$(DESTDIR)$(LIBDIR)' && rm -f lag-run lag-run.exe lag.wasm lagc.wasm.gz liblag.so liblag.so.[0-9]* liblag.a liblag_gsl.a liblag_png.a liblag_png.libs liblag_hdf5.a liblag_hdf5.libs liblag_mpi.a liblag_mpi.libs liblag_long.a liblag_quad.a pkgconfig/liblag.pc pkgconfig/liblag_gsl.pc && \
 	  rm -rf lag-long lag-quad cmake/lagc
 	cd '$(DESTDIR)$(INCLUDEDIR)' && rm -f $(HEADERS)
 

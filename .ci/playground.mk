@@ -27,7 +27,7 @@ $(BUILD)/lagc.wasm: $(LAGC_WASM_OBJ)
 	  -lc-printscan-long-double -lwasi-emulated-process-clocks -lm
 	$(SHRINK)
 $(BUILD)/lagc.wasm.gz: $(BUILD)/lagc.wasm
-	$(DEFLATE) $< >$@
+	$(if $(shell command -v zopfli),zopfli -c,gzip -9nc) $< >$@
 
 # The files of models/lib as `library[]`, {name, text}.
 LIBRARY := $(sort $(wildcard models/lib/*.lag models/lib/*.csv models/lib/*.json))

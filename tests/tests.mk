@@ -114,12 +114,12 @@ $(BIN)/%.o: tests/unit/%.c | $(SAN_LAGC)
 	@mkdir -p $(@D)
 	$(TEST_O) -Isrc -I$(SAN_BUILD)/gen
 $(BIN)/%: $(BIN)/%.o $(SAN_LAGC)
-	$(TEST_LINK) $(SAN_LAGC) $(ZIP_LIBS) -lcmocka -lm
+	$(TEST_LINK) $(SAN_LAGC) $(LAGC_LIBS) -lcmocka -lm
 $(BIN)/fuzz_%.o: tests/fuzz/fuzz_%.c | $(SAN_LAGC)
 	@mkdir -p $(@D)
 	$(TEST_O) -Isrc -I$(SAN_BUILD)/gen
 $(BIN)/fuzz_%: $(BIN)/fuzz_%.o $(BIN)/driver.o $(SAN_LAGC)
-	$(TEST_LINK) $(BIN)/driver.o $(SAN_LAGC) $(ZIP_LIBS) -lm
+	$(TEST_LINK) $(BIN)/driver.o $(SAN_LAGC) $(LAGC_LIBS) -lm
 # fuzz_load is of the runtime, with models as lagc emits them: the method behind the colon is what they are emitted for.
 LOAD_MODELS := spring:verlet pend:variational series:taylor flow:gauss rod:variational ball:verlet
 LOAD_SRC    := $(foreach m,$(LOAD_MODELS),$(BUILD)/test/load_$(firstword $(subst :, ,$m)).c)
@@ -146,7 +146,7 @@ ifneq ($(CLANG),)
 	$(QUIET) $(if $(filter fuzz_load,$(FUZZ)),$(LOAD_SRC))
 	@set -e; for f in $(FUZZ); do \
 	  corpus=tests/fuzz/corpus/$${f#fuzz_}; found=$(BUILD)/fuzz/found/$$f; mkdir -p $$found; \
-	  with="-Isrc -I$(BUILD)/fuzz/gen $(BUILD)/fuzz/liblagc.a $(ZIP_LIBS)"; \
+	  with="-Isrc -I$(BUILD)/fuzz/gen $(BUILD)/fuzz/liblagc.a $(LAGC_LIBS)"; \
 	  [ $$f != fuzz_load ] || with="-DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION -Iruntime/include -Iruntime $(LOAD_SRC) $(BUILD)/fuzz/liblag.a"; \
 	  $(CLANG) -std=c11 $(CPPFLAGS_ALL) -O1 -g $(SAN_ALL) -fsanitize=fuzzer -o $(BUILD)/fuzz/$$f tests/fuzz/$$f.c $$with -lm; \
 	  $(BUILD)/fuzz/$$f -max_total_time=$(SECONDS) -max_len=4096 -print_final_stats=1 -artifact_prefix=$(BUILD)/fuzz/ $$found $$corpus; \
@@ -164,7 +164,7 @@ fuzz-coverage:
 	$(QUIET) BUILD=$(COV) PRECISIONS= CFLAGS=-O0 SAN=--coverage $(COV)/liblagc.a
 	@find $(COV) -name '*.gcda' -delete
 	@set -e; for f in $(FUZZ); do \
-	  $(CC) -std=c11 $(CPPFLAGS_ALL) -O0 --coverage -Isrc -I$(COV)/gen -o $(COV)/$$f tests/fuzz/$$f.c tests/fuzz/driver.c $(COV)/liblagc.a $(ZIP_LIBS) -lm; \
+	  $(CC) -std=c11 $(CPPFLAGS_ALL) -O0 --coverage -Isrc -I$(COV)/gen -o $(COV)/$$f tests/fuzz/$$f.c tests/fuzz/driver.c $(COV)/liblagc.a $(LAGC_LIBS) -lm; \
 	  for d in tests/fuzz/corpus/$${f#fuzz_} $(BUILD)/fuzz/found/$$f; do if [ "$$(ls $$d 2>/dev/null)" ]; then $(COV)/$$f $$d >$(COV)/log; fi; done; \
 	done
 	@for f in $(patsubst src/%.c,%,$(wildcard src/emit/*.c src/ir/*.c src/mech/*.c)); do gcov -n $(COV)/obj/src/$$f.gcda 2>/dev/null; done | \

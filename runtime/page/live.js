@@ -13,7 +13,7 @@ const settings = {method: "", fine: 1e-9, values: {}, start: {}};
 const span = {t0: 0, t1: 20};
 let pace = 1, unit = 1, unitName = "s"; // seconds of the motion in one of watching; the unit of time that is shown
 
-const isOf = name => model.programs.filter(p => p.scene == name);
+const isOf = name => more.programs.filter(p => p.scene == name);
 const wanted = () => [...document.querySelectorAll("#effects input:checked")].map(e => e.value);
 const sameSet = (a, b) => a.length == b.length && a.every(x => b.includes(x));
 
@@ -337,7 +337,7 @@ function draw() {
   const now = performance.now();
   if (!motion || !track.length) return;
   if (machine) machine.horizon = horizon;
-  if (picture) picture.draw(track);
+  if (picture) { picture.draw(track); follow(now); }
   if (playing && now - plotted < 95) return;
   plotted = now;
   plots();
@@ -405,12 +405,12 @@ function machineOf(run) {
   };
 }
 let picture = null, machine = null;
-// A trial run over the span, for at most a fifth of a second, gives the extent of the picture.
+// A trial run over the span, for at most a fifth of a second, 20 rows at least for slow machines, gives the extent of the picture.
 function look() {
   const rows = [], began = performance.now(), parts = 300, step = (span.t1 - span.t0)/parts;
   try {
     const trial = new Motion(lag, scene, options(settings.start, NaN));
-    for (let k = 0; k <= parts && performance.now() - began < 200; k++) {
+    for (let k = 0; k <= parts && (k < 20 || performance.now() - began < 200); k++) {
       if (trial.advance(span.t0 + k*step) > 0) k = parts;
       rows.push({t: trial.t, x: trial.outputs});
     }
@@ -421,13 +421,19 @@ function look() {
   picture = machineOf(machine);
   if (eye) Object.assign(picture.eye, eye);
 }
+// Another extent, once a second, where a body has left the picture that nobody has moved or zoomed.
+let looked = 0;
+function follow(now) {
+  const eye = picture.eye, outside = b => { const [x, y] = picture.toCanvas(picture.place(b.a)), c = $("picture"); return x < 0 || y < 0 || x > c.clientWidth || y > c.clientHeight; };
+  if (!playing || now - looked < 1000 || eye.zoom != 1 || eye.x || eye.y || !picture.bodies.some(outside)) return;
+  looked = now;
+  machine.rows = [...machine.rows, ...track];
+  picture = machineOf(machine);
+  Object.assign(picture.eye, eye);
+  machine.rows = [...machine.rows.filter((_, k) => k % 2 == 0).slice(-2000), track.at(-1)];
+}
 
 // ---- the page
-async function unpack(text) {
-  const bytes = bytes_of(text);
-  if (bytes[0] != 0x1f || bytes[1] != 0x8b) return bytes; // lagc without zlib
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer());
-}
 function wire() {
   $("play").onclick = () => playing ? pause() : play();
   $("step").onclick = () => { pause(); pass(1/60); draw(); };
@@ -489,21 +495,27 @@ function show_recording(run) {
 }
 // Takes a model: its scenes, with one chosen, its effects, equations and text.
 async function offer(chosen) {
-  bytes = model.raw !== undefined ? bytes_of(model.raw) : copied(await unpack(parts));
+  bytes = model.raw !== undefined ? bytes_of(model.raw) : unpacked(bytes_of(parts));
   more = JSON.parse(new TextDecoder().decode(bytes.subarray(model.more[0], model.more[0] + model.more[1])));
   $("source").textContent = model.source;
   $("scene").textContent = "";
-  for (const name of new Set(model.programs.map(p => p.scene))) $("scene").add(new Option(name, name));
+  for (const name of new Set(more.programs.map(p => p.scene))) $("scene").add(new Option(name, name));
   if (isOf(chosen).length) $("scene").value = chosen;
   effects();
 }
 // Another model from its start, in the same scene where it has that.
 async function load(other) {
-  const chosen = $("scene").value;
+  const chosen = $("scene").value, before = program && bytes.subarray(program.at, program.at + program.n);
   model = other;
-  Object.assign(settings, {method: "", values: {}, start: {}, moved: false});
   await offer(chosen);
   if ($("equations").open) equations();
+  const same = motion && isOf($("scene").value).find(p => p.n == before.length && before.every((x, i) => x == bytes[p.at + i]));
+  if (same) { // a playground's first scene comes before the others
+    for (const box of document.querySelectorAll("#effects input")) box.checked = same.effects.includes(box.value);
+    program = same;
+    return;
+  }
+  Object.assign(settings, {method: "", values: {}, start: {}, moved: false});
   choose();
   restart();
 }
@@ -515,7 +527,7 @@ async function main() {
   named_play();
   await offer(said?.scene);
   if (typeof WebAssembly == "undefined") return show_recording(more.recording);
-  wasm = await WebAssembly.compile(await unpack(packed));
+  wasm = await WebAssembly.compile(unpacked(bytes_of(packed)));
   $("fine").value = 55;
   if (said) {
     settings.values = said.values || {};

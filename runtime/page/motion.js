@@ -13,21 +13,62 @@ function bytes_of(text) {
   }
   return bytes.subarray(0, n);
 }
-// The bytes that records of literals and copies give (src/base/far_copies.h).
-function copied(records) {
-  const view = new DataView(records.buffer, records.byteOffset, records.length);
-  let total = 0;
-  for (let i = 0; i < records.length;) { const n = view.getUint32(i, true); i += n + 4; total += n + view.getUint32(i + 4, true); i += 8; }
-  const bytes = new Uint8Array(total);
-  for (let i = 0, at = 0; i < records.length;) {
-    const n = view.getUint32(i, true);
-    bytes.set(records.subarray(i + 4, i + 4 + n), at);
-    i += n + 4; at += n;
-    const from = view.getUint32(i, true), m = view.getUint32(i + 4, true);
-    for (let k = 0; k < m; k++) bytes[at + k] = bytes[from + k];
-    i += 8; at += m;
+// The bytes that src/commands/pack.h packed: their number, then a stream of LZMA1 with lc = 0, lp = 0, pb = 2.
+function unpacked(s) {
+  if (s[4]) return s.subarray(5); // lagc without liblzma
+  const view = new DataView(s.buffer, s.byteOffset), out = new Uint8Array(view.getUint32(0, true)), rep = [0, 0, 0, 0];
+  const [REP, LONG, LITERAL, SLOT, LOW, ALIGN, COPIED, REPEATED, END] = [48, 96, 144, 912, 1168, 1296, 1312, 1634, 1956], p = new Uint16Array(END).fill(1024);
+  let at = 9, range = 2**32 - 1, code = view.getUint32(5), state = 0, position;
+  const fill = () => { while (range < 2**24) { range *= 256; code = code*256 + (s[at++] | 0); } };
+  const bit = k => {
+    const bound = (range >>> 11)*p[k], b = code < bound ? 0 : 1;
+    if (b) { code -= bound; range -= bound; p[k] -= p[k] >> 5; } else { range = bound; p[k] += 2048 - p[k] >> 5; }
+    fill();
+    return b;
+  };
+  const tree = (k, bits) => { let x = 1; for (let i = 0; i < bits; i++) x = 2*x + bit(k + x); return x - (1 << bits); };
+  const reverse = (k, bits) => { let x = 0; for (let i = 0, m = 1; i < bits; i++) { const b = bit(k + m); m = 2*m + b; x |= b << i; } return x; };
+  const length = k => 2 + (!bit(k) ? tree(k + 2 + 8*position, 3) : !bit(k + 1) ? 8 + tree(k + 34 + 8*position, 3) : 16 + tree(k + 66, 8));
+  const distance = n => {
+    const slot = tree(SLOT + 64*Math.min(n - 2, 3), 6), bits = (slot >> 1) - 1;
+    if (slot < 4) return slot;
+    let x = (2 | slot & 1) << bits;
+    if (slot < 14) return x + reverse(LOW + x - slot, bits);
+    for (let i = bits - 1; i >= 4; i--) {
+      range = Math.floor(range/2);
+      if (code >= range) { code -= range; x += 1 << i; }
+      fill();
+    }
+    return x + reverse(ALIGN, 4);
+  };
+  for (let i = 0; i < out.length;) {
+    position = i & 3;
+    if (!bit(4*state + position)) {
+      let x = 1, same = state >= 7;
+      const there = same ? out[i - rep[0] - 1] : 0;
+      for (let k = 7; k >= 0; k--) {
+        const t = there >> k & 1, b = bit(LITERAL + x + (same ? 256 + 256*t : 0));
+        x = 2*x + b;
+        same &&= b == t;
+      }
+      out[i++] = x;
+      state = state < 4 ? 0 : state < 10 ? state - 3 : state - 6;
+      continue;
+    }
+    const again = bit(REP + state), far = state < 7;
+    let n = 0;
+    if (!again) { n = length(COPIED); rep.unshift(distance(n)); rep.pop(); state = far ? 7 : 10; }
+    else {
+      let k = 0;
+      if (bit(REP + 12 + state)) k = !bit(REP + 24 + state) ? 1 : !bit(REP + 36 + state) ? 2 : 3;
+      else if (!bit(LONG + 4*state + position)) n = 1;
+      rep.unshift(...rep.splice(k, 1));
+      state = n ? (far ? 9 : 11) : far ? 8 : 11;
+      n ||= length(REPEATED);
+    }
+    for (const from = rep[0] + 1; n--; i++) out[i] = out[i - from];
   }
-  return bytes;
+  return out;
 }
 
 // An instance of the module with a program. Memory may grow with each call, so that views are made where they are used.
@@ -143,4 +184,4 @@ class Motion {
     this.sim = 0;
   }
 }
-if (typeof module != "undefined") module.exports = {Lag, Motion, bytes_of, copied};
+if (typeof module != "undefined") module.exports = {Lag, Motion, bytes_of, unpacked};

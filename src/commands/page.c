@@ -4,11 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/far_copies.h"
 #include "commands/live_page.h" /* generated from runtime/page */
+#include "commands/pack.h"
 #include "commands/page_model.h"
 #include "commands/page_parts.h"
-#include "fmu/zip.h"
 #include "toolchain/files.h"
 #include "toolchain/process.h"
 #include "toolchain/toolchain.h"
@@ -73,24 +72,23 @@ static const char *escaped(Arena *a, const char *text) {
 
 int command_page(Compiler *c) {
   Arena *a = c->arena;
-  StrBuf module = strbuf(a), page = strbuf(a), copies = strbuf(a), packed = strbuf(a), bytes = strbuf(a),
-         recording = strbuf(a);
+  StrBuf module = strbuf(a), page = strbuf(a), packed = strbuf(a), bytes = strbuf(a), recording = strbuf(a);
   PageModel d = page_model_begin(a);
   if (!c->o.output) return usage_error("`lagc page` needs -o FILE.html");
-  if (!page_module(c, "lag.wasm.gz", &module)) return STATUS_USAGE;
+  if (!page_module(c, "lag.wasm", &module)) return STATUS_USAGE;
   if (compiler_is_source(c, c->o.output)) return STATUS_USAGE;
-  if (!page_model_programs(c, &d)) return STATUS_MODEL;
+  if (!page_model_programs(c, &d, 0)) return STATUS_MODEL;
   put_recording(c, &d.shown->m->scene, &recording);
   page_model_end(c, &d, sb_text(&recording));
   sb_putc(&d.json, '}');
-  far_copies_append(&d.bytes, &copies);
-  gzip_append(&copies, &packed);
+  pack_append(&d.bytes, &packed);
   page_bytes(&bytes, packed.at, packed.n);
   const Model *m = d.shown->m;
   const PageMark marks[] = {{"@TITLE@", escaped(a, m->doc ? m->doc : m->name)},
                             {"@MODEL@", sb_text(&d.json)},
                             {"@BYTES@", sb_text(&bytes)},
-                            {"@MODULE@", sb_text(&module)}};
+                            {"@MODULE@", sb_text(&module)},
+                            {"@LIVE@", page_script(a)}};
   page_fill(&page, live_page, sizeof live_page / sizeof *live_page, marks, sizeof marks / sizeof *marks);
   return compiler_write(c, c->o.output, &page);
 }

@@ -29,16 +29,16 @@ static int put_program(Compiler *c, const char *scene, const EffectList *only, P
   const char *name = "page";
   size_t at = d->bytes.n;
   emit_bytes((const ProgramSet *const *)&u, &name, 1, &d->bytes);
-  sb_puts(&d->json, d->shown ? ",\n{\"scene\": " : "\n{\"scene\": ");
-  page_text(&d->json, c->arena, e->m->scene.name);
-  sb_puts(&d->json, ", \"doc\": ");
-  page_text(&d->json, c->arena, e->m->scene.doc ? e->m->scene.doc : "");
-  sb_puts(&d->json, ", \"effects\": [");
+  sb_puts(&d->programs, d->programs.n ? ", {\"scene\": " : "{\"scene\": ");
+  page_text(&d->programs, c->arena, e->m->scene.name);
+  sb_puts(&d->programs, ", \"doc\": ");
+  page_text(&d->programs, c->arena, e->m->scene.doc ? e->m->scene.doc : "");
+  sb_puts(&d->programs, ", \"effects\": [");
   for (uint32_t i = 0; i < e->m->effects.n; i++) {
-    if (i) sb_puts(&d->json, ", ");
-    page_text(&d->json, c->arena, e->m->effects.at[i]);
+    if (i) sb_puts(&d->programs, ", ");
+    page_text(&d->programs, c->arena, e->m->effects.at[i]);
   }
-  sb_printf(&d->json, "], \"at\": %zu, \"n\": %zu}", at, d->bytes.n - at);
+  sb_printf(&d->programs, "], \"at\": %zu, \"n\": %zu}", at, d->bytes.n - at);
   put_letters(c, d, e->m);
   if (!d->shown) d->shown = e;
   return 1;
@@ -59,13 +59,15 @@ static int put_scene(Compiler *c, const char *scene, PageModel *d) {
 }
 
 PageModel page_model_begin(Arena *a) {
-  return (PageModel){.json = strbuf(a), .bytes = strbuf(a), .letters = strbuf(a)};
+  return (PageModel){.json = strbuf(a), .programs = strbuf(a), .bytes = strbuf(a), .letters = strbuf(a)};
 }
 
-int page_model_programs(Compiler *c, PageModel *d) {
+int page_model_programs(Compiler *c, PageModel *d, int first) {
   SceneList all = model_scenes(c->ast);
+  Eqns *e;
+  d->whole = !first || (all.n < 2 && !effect_graph(c->ast).n);
+  if (first) return put_program(c, all.at[0], NULL, d, &e);
   uint32_t n = c->o.scenes.n ? c->o.scenes.n : all.n;
-  sb_puts(&d->json, "{\"programs\": [");
   for (uint32_t i = 0; i < n; i++)
     if (!put_scene(c, c->o.scenes.n ? c->o.scenes.at[i] : all.at[i], d)) return 0;
   return 1;
@@ -75,10 +77,10 @@ void page_model_end(Compiler *c, PageModel *d, const char *recording) {
   enum { LONGEST = 40000 };
   StrBuf latex = strbuf(c->arena), more = strbuf(c->arena);
   show_equations(d->shown, NULL, PRINT_LATEX, &latex);
-  sb_puts(&more, "{\"latex\": ");
+  sb_printf(&more, "{\"programs\": [%s], \"latex\": ", sb_text(&d->programs));
   page_text(&more, c->arena, latex.n < LONGEST ? sb_text(&latex) : "");
   sb_printf(&more, ", \"letters\": {%s}, \"recording\": %s}", sb_text(&d->letters), recording);
-  sb_printf(&d->json, "],\n\"more\": [%zu, %zu],\n\"source\": ", d->bytes.n, more.n);
+  sb_printf(&d->json, "{\"more\": [%zu, %zu],\n\"source\": ", d->bytes.n, more.n);
   sb_putn(&d->bytes, more.at, more.n);
   page_text(&d->json, c->arena, c->sources->files.at[0].text);
 }

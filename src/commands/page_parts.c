@@ -1,8 +1,11 @@
 /* Parts of pages: modules, texts as JSON, a frame with marks. */
 #include "commands/page_parts.h"
 
+#include <stdio.h>
 #include <string.h>
 
+#include "commands/live_script.h" /* generated from runtime/page */
+#include "commands/pack.h"
 #include "toolchain/files.h"
 #include "toolchain/toolchain.h"
 
@@ -45,7 +48,11 @@ int page_module(Compiler *c, const char *name, StrBuf *out) {
   const char *path = arena_printf(c->arena, "%s/%s", tools.lib, name);
   if (!file_append(path, &bytes, &error))
     return usage_error(arena_printf(c->arena, need, command_find(c->o.command)->name, path)), 0;
-  page_bytes(out, bytes.at, bytes.n);
+  StrBuf packed = strbuf(c->arena);
+  if (!strstr(name, ".gz") && !pack_append(&bytes, &packed))
+    fprintf(stderr, "lagc: note: the page is longer than it need be, since this lagc was built without liblzma: apt-get "
+                    "install liblzma-dev, and make lagc anew\n");
+  page_bytes(out, packed.n ? packed.at : bytes.at, packed.n ? packed.n : bytes.n);
   return 1;
 }
 
@@ -62,4 +69,12 @@ void page_fill(StrBuf *out, const char *const *lines, size_t nlines, const PageM
     sb_puts(out, marks[k].text);
     sb_puts(out, at + strlen(marks[k].mark));
   }
+}
+
+const char *page_script(Arena *a) {
+  StrBuf script = strbuf(a), packed = strbuf(a), text = strbuf(a);
+  for (size_t i = 0; i < sizeof live_script / sizeof *live_script; i++) sb_puts(&script, live_script[i]);
+  pack_append(&script, &packed);
+  page_bytes(&text, packed.at, packed.n);
+  return sb_text(&text);
 }

@@ -8,8 +8,12 @@
 void page_bytes(StrBuf *out, const char *bytes, size_t n);
 /* Appends a text as JSON that may stand in a script: without `<`, nothing in it is markup. */
 void page_text(StrBuf *out, Arena *a, const char *text);
-/* Appends a module that stands beside liblag, as page_bytes. 0, with what to install, where it was not built. */
+/* Appends a module that stands beside liblag, as page_bytes; packed, unless it is NAME.gz. 0, with what to install,
+ * where it was not built. */
 int page_module(Compiler *c, const char *name, StrBuf *out);
+
+/* The script of live pages, packed, as page_bytes: @LIVE@ of their frame. */
+const char *page_script(Arena *a);
 
 /* A mark of a frame, and what takes its place, once a line. */
 typedef struct {

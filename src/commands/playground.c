@@ -45,9 +45,10 @@ int command_playground(Compiler *c) {
   StrBuf lag = strbuf(c->arena), lagc = strbuf(c->arena), live = strbuf(c->arena), text = strbuf(c->arena),
          examples = strbuf(c->arena), page = strbuf(c->arena);
   if (!c->o.output) return usage_error("`lagc playground` needs -o FILE.html");
-  if (!page_module(c, "lag.wasm.gz", &lag) || !page_module(c, "lagc.wasm.gz", &lagc)) return STATUS_USAGE;
+  if (!page_module(c, "lag.wasm", &lag) || !page_module(c, "lagc.wasm.gz", &lagc)) return STATUS_USAGE;
   if (!put_examples(c, &examples)) return STATUS_USAGE;
-  page_fill(&text, live_page, sizeof live_page / sizeof *live_page, NULL, 0);
+  const PageMark script = {"@LIVE@", page_script(c->arena)};
+  page_fill(&text, live_page, sizeof live_page / sizeof *live_page, &script, 1);
   page_text(&live, c->arena, sb_text(&text));
   const PageMark marks[] = {{"@LAG@", sb_text(&lag)},
                             {"@LAGC@", sb_text(&lagc)},

@@ -102,13 +102,15 @@ static unsigned required_by_words(const Eqns *e, const Options *o) {
   return !o->with ? 0u : strcmp(o->with, "sensitivities") == 0 ? WANT_SENSITIVITY : WANT_LINEAR;
 }
 
-unsigned derivatives_in_time(unsigned wants, const ProgramSet *u, const Options *o) {
+unsigned derivatives_in_time(unsigned wants, const Eqns *e, const ProgramSet *u, const Options *o) {
   /* instructions of accelerations with second derivatives of L: gcc 12 -O2, 400 to 880 (bicycle) */
   const double a_second = 400;
-  double seconds = o->seconds ? strtod(o->seconds, NULL) : 10;
-  int takes_long =
-      o->command == CMD_COST && !options_passed(o, "--methods") && u->accel && u->accel->ins.n > seconds / 2 * a_second;
-  return takes_long ? wants & ~(unsigned)WANT_VARIATION : wants;
+  enum { PAGE = 2000 }; /* a third of a page's programs from there on */
+  double seconds = o->seconds ? strtod(o->seconds, NULL) : 10, most = seconds / 2 * a_second;
+  int cost = o->command == CMD_COST && !options_passed(o, "--methods");
+  int page = o->command == CMD_PAGE && !(required_by_method(e, e->m->scene.method) & WANT_VARIATION);
+  int is_large = u->accel && u->accel->ins.n > (page ? PAGE : most);
+  return (cost || page) && is_large ? wants & ~(unsigned)WANT_VARIATION : wants;
 }
 
 unsigned derivatives_required(const Eqns *e, const Options *o) {

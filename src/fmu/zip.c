@@ -1,11 +1,10 @@
-/* ZIP archives and gzip streams, by minizip and zlib. */
+/* ZIP archives, by minizip. */
 #include "fmu/zip.h"
 
 #include <stdio.h>
 
 #ifdef LAGC_WITH_ZIP
 #include <minizip/zip.h>
-#include <zlib.h>
 
 static void *opened(void *file, const void *name, int mode) {
   (void)name;
@@ -48,24 +47,7 @@ int zip_write(const ZipFile *files, size_t n, StrBuf *out, const char **error) {
   return ok ? 1 : fail_with(error, "the archive cannot be written to a temporary file");
 }
 
-void gzip_append(const StrBuf *bytes, StrBuf *out) {
-  enum { GZIP = 16, WINDOW = 15, MEMORY = 9 };
-  z_stream z = {0};
-  if (deflateInit2(&z, Z_BEST_COMPRESSION, Z_DEFLATED, WINDOW + GZIP, MEMORY, Z_DEFAULT_STRATEGY) != Z_OK) return;
-  uLong n = deflateBound(&z, (uLong)bytes->n);
-  unsigned char *to = arena_alloc(out->arena, n);
-  z.next_in = (unsigned char *)bytes->at;
-  z.avail_in = (uInt)bytes->n;
-  z.next_out = to;
-  z.avail_out = (uInt)n;
-  deflate(&z, Z_FINISH);
-  sb_putn(out, (char *)to, z.total_out);
-  deflateEnd(&z);
-}
-
 #else
-
-void gzip_append(const StrBuf *bytes, StrBuf *out) { sb_putn(out, bytes->at, bytes->n); }
 
 int zip_write(const ZipFile *files, size_t n, StrBuf *out, const char **error) {
   (void)files;

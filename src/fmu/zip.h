@@ -13,6 +13,3 @@ typedef struct {
 /* Appends the archive, files in the order given. Each file, and the archive, is shorter than 4 GiB. Returns 0, with
  * *error, where it cannot be written, or lagc was built without minizip. */
 int zip_write(const ZipFile *files, size_t n, StrBuf *out, const char **error);
-
-/* Appends the bytes as a gzip stream (RFC 1952); as they are, where lagc was built without zlib. */
-void gzip_append(const StrBuf *bytes, StrBuf *out);

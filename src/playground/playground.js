@@ -1,8 +1,8 @@
 // The playground: an editor whose text lagc compiles in a worker, and a live page (live.html) in a frame. Enters: packed
 // modules, the live page and examples of playground.html; leaves: the page.
 const $ = id => document.getElementById(id);
-const PAUSE = 150, LIMITS = {derive: 20000, page: 20000, check: 20000, noether: 6000}; // [ms]
-const COMMANDS = ["derive", "page", "check", "noether"];
+const PAUSE = 150, LIMITS = {derive: 20000, picture: 20000, check: 20000, page: 20000, noether: 6000}; // [ms]
+const COMMANDS = ["derive", "picture", "check", "page", "noether"]; // the first scene is seen before all
 
 async function through(stream, bytes) {
   return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
@@ -49,7 +49,7 @@ function heard({id, command, begins, ends, answer, time}) {
 }
 
 // ---- what is shown
-const words = {derive: "equations", page: "motion", check: "checks", noether: "symmetries"};
+const words = {derive: "equations", picture: "motion", page: "other scenes", check: "checks", noether: "symmetries"};
 let messages = [], failures = [], began = 0;
 function show(command, result, time) {
   const ok = !result.failed && result.check.ok, put = (id, text) => { $(id).textContent = text; $(id).parentElement.hidden = !text; };
@@ -61,7 +61,7 @@ function show(command, result, time) {
     document.body.classList.toggle("stale", !ok);
     $("took").value = ok ? "equations in " + Math.round(performance.now() - began) + " ms" : "";
     if (ok) equations(result.text);
-  } else if (command == "page" && ok) move(JSON.parse(result.text));
+  } else if ((command == "picture" || command == "page") && ok) move(JSON.parse(result.text));
   else if (command == "check") put("proofs", result.failed ? "" : result.check.report.join("\n").replaceAll("model.lag:", "line "));
   else if (command == "noether") put("symmetries", ok ? result.text.trim() : "");
 }

@@ -264,10 +264,12 @@ check "no file named" refused 2 'needs -o FILE.fmu' models/pendulum.lag
 check "a folder that is not there" refused 2 'cannot write' models/pendulum.lag -o "$TMP/nowhere/none.fmu"
 check "a compiler that is not there" env CC=no-such-cc sh -c '"$0" fmu models/pendulum.lag -o "$1" 2>&1 | grep -q "no-such-cc. cannot be run" && [ ! -e "$1" ]' "$LAGC" "$TMP/none.fmu"
 without() {
-  "${CC%% *}" -std=c11 -w -D_XOPEN_SOURCE=700 -Isrc -I"$BUILD/gen" -c -o "$TMP/zip.o" src/fmu/zip.c && "${CC%% *}" -o "$TMP/lagc" "$BUILD/obj/src/main.o" "$TMP/zip.o" "$BUILD/liblagc.a" -lm &&
-    rm -f "$TMP/none.fmu" && says 2 'apt-get install libminizip-dev' "$TMP/lagc" fmu models/pendulum.lag -o "$TMP/none.fmu" && [ ! -e "$TMP/none.fmu" ]
+  for f in fmu/zip commands/pack; do
+    "${CC%% *}" -std=c11 -w -D_XOPEN_SOURCE=700 -Isrc -I"$BUILD/gen" -c -o "$TMP/${f#*/}.o" "src/$f.c" || return 1
+  done
+  "${CC%% *}" -o "$TMP/lagc" "$BUILD/obj/src/main.o" "$TMP/zip.o" "$TMP/pack.o" "$BUILD/liblagc.a" -lm && rm -f "$TMP/none.fmu" && says 2 'apt-get install libminizip-dev' "$TMP/lagc" fmu models/pendulum.lag -o "$TMP/none.fmu" && [ ! -e "$TMP/none.fmu" ]
 }
-[ -n "${COVERAGE:-}" ] || check "a lagc that was built without minizip" without
+[ -n "${COVERAGE:-}" ] || check "a lagc that was built without minizip and liblzma" without
 own() { cp models/pendulum.lag "$TMP/own.lag" && says 2 'would be overwritten' "$LAGC" fmu "$TMP/own.lag" -o "$TMP/own.lag" && cmp models/pendulum.lag "$TMP/own.lag"; }
 check "the model is not overwritten" own
 tap_end

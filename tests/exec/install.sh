@@ -21,7 +21,7 @@ for p in $PRECISIONS; do
   for h in lag lag_band lag_kkt lag_lanes lag_libraries lag_math lag_method lag_model lag_sincos lag_support lag_tree; do more_files="$more_files lib/lag-$p/$h.h"; done
 done
 so=liblag.so.$(sed -n 's/^.define LAG_ABI //p' runtime/include/lag_model.h)
-[ ! -f "$BUILD/lag.wasm.gz" ] || more_files="$more_files lib/lag.wasm.gz"
+[ ! -f "$BUILD/lag.wasm" ] || more_files="$more_files lib/lag.wasm"
 [ ! -f "$BUILD/lagc.wasm.gz" ] || more_files="$more_files lib/lagc.wasm.gz"
 case $("$CC" -dumpmachine) in *linux* | *bsd*) more_files="$more_files lib/liblag.so lib/$so" ;; *) so= ;; esac
 models=$(cd models && ls -d -- *.lag *.csv lib/*.lag lib/*.csv lib/*.json 2>/dev/null)

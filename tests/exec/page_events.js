@@ -22,7 +22,7 @@ async function pendulum() {
   await b.key("ArrowRight", 39);
   is("a key moves the slider of g", await b.value(g) != before, await b.value(g));
   is("terms with g are lit", await b.value('[...document.querySelectorAll("math.lit")].every(m => m.textContent.includes("g")) && document.querySelectorAll("math.lit").length > 1'));
-  const programs = await b.value("model.programs.length"), energy = () => b.value("lagc.motion.charge(0).now");
+  const programs = await b.value("more.programs.length"), energy = () => b.value("lagc.motion.charge(0).now");
   await b.click("#effects input");
   const e = await energy(), t = await b.value("lagc.motion.t");
   await b.until(`lagc.motion.t > ${t} + 0.5`);

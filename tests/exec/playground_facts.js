@@ -12,3 +12,5 @@ console.log("deep: " + deep.check.messages[0].message);
 console.log("file: " + place(parts.check.messages[0]));
 console.log("library: " + short(formula(/p_.*/.exec(answers[9].text)[0].replace("&=", "="))).replace(/<msub>(.)(.)<\/msub>/, "$1_$2").replace("=", " = "));
 answers.forEach((a, i) => { if (a.text.startsWith("{")) console.log("page" + (i + 1) + ": let model = " + a.text.replaceAll("\n", "") + ";"); });
+const {bytes_of} = require("../../runtime/page/motion.js"), first = answers.slice(12).map(a => JSON.parse(a.text));
+console.log("picture: " + first.map(m => JSON.parse(Buffer.from(bytes_of(m.raw)).subarray(m.more[0], m.more[0] + m.more[1])).programs.length + " " + m.whole).join(", "));

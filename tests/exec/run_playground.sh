@@ -62,6 +62,8 @@ page $TMP/oscillator.lag
 derive $TMP/library.lag
 check $TMP/functions.lag
 check $TMP/quotients.lag
+picture models/pendulum.lag
+picture $TMP/oscillator.lag
 END
 # as the command: `digits` are of long double, which differs
 same() { # NUMBER FILE
@@ -81,6 +83,7 @@ is "equations as MathML" "<tr><td><math>m l^2 θ¨</math></td><td><math>=−m l 
 is "names are no markup" '<mi mathvariant="normal">a&lt;b&gt;&amp;</mi>' "$(fact markup)"
 # The search has two seconds: on a busy machine it finds the declared symmetry and the energy.
 is "symmetries: angular momentum and energy" "spin = x*y' - y*x', Q1: energy" "$(fact symmetries)"
+is "the first scene alone, before all; one scene is all" "1 false, 1 true" "$(fact picture)"
 is "a text too deep" "functions are nested 3000 deep here, and at most 2000 in one expression" "$(fact deep)"
 is "no files" '1:9 cannot read `other.lag`: a page has no files but bodies.lag, learned_spring.json, quake.csv, road.csv, spring_record.csv' "$(fact file)"
 

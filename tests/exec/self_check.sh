@@ -2,8 +2,9 @@
 # Every compilation compares its programs with the text. Here wrong rewrites are planted in sym/, and wrong steps after it, one at a time:
 # the compiler that results must refuse one of tests/exec/self_check/*.lag with an internal error, and write nothing.
 . tests/tap.sh
-zip= # what lagc is linked with
-grep -q "^ZIP_FOUND := yes" "$BUILD/config.mk" && zip="-lminizip -lz"
+libs= # what lagc is linked with
+grep -q "^ZIP_FOUND := yes" "$BUILD/config.mk" && libs="-lminizip -lz"
+grep -q "^XZ_FOUND := yes" "$BUILD/config.mk" && libs="$libs -llzma"
 
 models=$(echo tests/exec/self_check/*.lag models/chain.lag models/turntable.lag models/rattleback.lag models/guiding_centre.lag tests/exec/models/euler_pole.lag)
 
@@ -17,7 +18,7 @@ build_with() {
     return 1
   fi
   "${CC%% *}" -std=c11 -w -O1 -D_XOPEN_SOURCE=700 -Isrc -I"$BUILD/gen" -c -o "$TMP/wrong.o" "$TMP/$1" &&
-    "${CC%% *}" -o "$TMP/lagc" "$BUILD/obj/src/main.o" "$TMP/wrong.o" "$BUILD/liblagc.a" $zip -lm
+    "${CC%% *}" -o "$TMP/lagc" "$BUILD/obj/src/main.o" "$TMP/wrong.o" "$BUILD/liblagc.a" $libs -lm
 }
 
 # caught FILE PATTERN: a compiler with this mistake refuses one of the models.
