@@ -27,6 +27,7 @@ typedef struct ErrorEstimate {
   int rough;             /* 1: errors at a few times only, where laws are a guess */
   int drifts;            /* 1: a charge of the run drifts with a trend */
   double largest;        /* largest error up to known_to; NaN: no estimate */
+  int at_most;           /* 1: the rounding of the second run may be the larger part of it */
   double floor;          /* error by the rounding of the time, which all runs share */
   double known_to;       /* the end of the run or of the second one, or beyond it where growth is exponential */
   double horizon;        /* NaN: not before known_to */

@@ -12,6 +12,7 @@
 
 static const double tighter = 0.03; /* than the tolerance of the run: its error is then small beside the run's */
 static const double least_tolerance = 4.5 * DBL_EPSILON;
+static const double cheap = 5e7; /* work: a twentieth of a second, and a whole second run */
 
 int lag_app_error_begin(App *app) {
   const Args *a = &app->args;
@@ -184,15 +185,17 @@ static double compare_steps(App *app, const ErrorEstimate *e, const lag_sim *run
 }
 
 /* The error of equal steps of a high order at rounding, which over many periods is less than the rounding of dop853,
- * whose coefficients are large: by the same method with shorter steps. Implicit methods share a part of their
- * rounding, some units of the time's: that of their coefficients. */
+ * whose coefficients are large: by the same method with shorter steps; of a long run a bound. Implicit methods share
+ * a part of their rounding, some units of the time's: that of their coefficients. */
 static void compare_rounding(App *app, ErrorEstimate *e, const lag_sim *run) {
-  const double seen = 1e-14, small = 1e-8, shorter[] = {0.5, 0.77}, coefficients = 32, cheap = 5e7;
+  const double seen = 1e-14, small = 1e-8, shorter[] = {0.5, 0.77}, coefficients = 32;
   const lag_method *m = run->method;
   int implicit = (m->flags & (LAG_METHOD_NEWTON | LAG_METHOD_SPLITS)) == LAG_METHOD_NEWTON;
   int high = lag_equal_step(run) > 0 && (m->order_of ? m->order_of(run->options) : m->order) >= 4;
-  int regular = isnan(e->horizon) && !e->continued && run->run->events == 0;
-  if (!high || !regular || !(e->largest > seen && e->largest < small) || lag_app_work(run) > cheap) return;
+  int regular = isnan(e->horizon) && run->run->events == 0, is_long = e->continued || lag_app_work(run) > cheap;
+  if (!high || !regular || !(e->largest > seen && e->largest < small)) return;
+  e->at_most = is_long && is_rounding(e);
+  if (is_long) return;
   double a = compare_steps(app, e, run, shorter[0]), b = compare_steps(app, e, run, shorter[1]);
   double safety = e->growth == LAG_ERROR_EXPONENTIAL ? 3 : 2, error = safety * fmax(a, b);
   if (implicit) error = fmax(error, coefficients * e->floor);
@@ -229,7 +232,7 @@ int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most
 }
 
 void lag_app_error_end(App *app) {
-  const double part = 1. / 15, cheap = 5e7; /* a twentieth of a second: a whole second run */
+  const double part = 1. / 15;
   const lag_sim *run = app->sim;
   if (!app->watched || app->status < 0 || app->status == LAG_INTERRUPTED) return;
   double most = app->asked > 0 ? HUGE_VAL : fmax(part * lag_app_work(run), cheap);
@@ -279,7 +282,8 @@ void lag_report_error(const App *app, FILE *f) {
   }
   if (is_beyond(app)) fprintf(f, "the error is not known after t = %.3g s; up to there ", e->known_to);
   double size = lag_error_size(e);
-  fprintf(f, "%s%s %.1g", is_beyond(app) ? "" : "error ", size > DBL_EPSILON ? "about" : "below", size);
+  const char *sort = e->at_most ? "at most" : size > DBL_EPSILON ? "about" : "below";
+  fprintf(f, "%s%s %.1g", is_beyond(app) ? "" : "error ", sort, size);
   if (app->asked > 0) fprintf(f, " (asked %g)", app->asked);
   fprintf(f, "%s%s\n", is_rounding(e) ? "" : growth_text[growth_of(e)], from);
 }
@@ -293,6 +297,7 @@ void lag_report_error_json(const App *app, Json *j) {
   double to = lag_formula_is_lossy(e) ? app->scene->t0 : isnan(e->horizon) ? e->known_to : e->horizon;
   lag_json_number(j, "error_known_to", known ? to : NAN);
   lag_json_number(j, "error_up_to_there", known ? lag_error_size(e) : NAN);
+  lag_json_truth(j, "error_at_most", e->at_most);
   lag_json_number(j, "formula_noise", known && e->formula.of >= 0 ? e->formula.part : NAN);
   lag_json_number(j, "horizon", app->watched ? e->horizon : NAN);
 }

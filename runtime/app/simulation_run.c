@@ -60,8 +60,13 @@ static void note_tables(const App *app) {
     const lag_table *c = &m->tables[i];
     double first = c->row[0], last = c->row[c->width * (c->n - 1)];
     if (isnan(app->sim->hold[c->input]) && (from < first || to > last)) {
-      fprintf(stderr, "%s: note: the table of %s reaches from %g to %g s; outside, its first and last values hold\n",
-              app->args.self, m->u[c->input].name, first, last);
+      const char *self = app->args.self, *name = m->u[c->input].name;
+      if (last <= nextafter(first, HUGE_VAL))
+        fprintf(stderr, "%s: note: the table of %s is a jump at %g s; its values hold before and after it\n", self, name,
+                first);
+      else
+        fprintf(stderr, "%s: note: the table of %s reaches from %g to %g s; outside, its first and last values hold\n",
+                self, name, first, last);
       if (from < first) note_stop(app, c, first);
       if (to > last) note_stop(app, c, last);
     }

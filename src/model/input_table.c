@@ -257,7 +257,8 @@ static void read_row(Table *t, Piece line) {
   }
   t->before = time;
   t->jumped = jumps;
-  if (t->holds && t->numbers.n && !jumps) { /* a jump at each row */
+  if (t->holds && jumps && t->numbers.n > 2) t->numbers.n -= 2; /* holds for no time */
+  else if (t->holds && t->numbers.n && !jumps) { /* a jump at each row */
     double last = t->numbers.at[t->numbers.n - 1];
     vec_push(t->b->arena, &t->numbers, time);
     vec_push(t->b->arena, &t->numbers, last);

@@ -142,6 +142,15 @@ void check_keep_rotations(Check *c) {
   }
 }
 
+Real check_rounding_part(Check *c) {
+  for (uint32_t k = 0; k < check_components(c); k++) c->c[k] = 1;
+  if (!c->m->first_order) check_keep_rotations(c);
+  if (!check_run_text(c)) return 0;
+  BoundedSum r = check_residual(c);
+  Real part = r.size > 0 ? (r.sum.e + jet_unit * r.inner_magnitude) / r.size : 0;
+  return isfinite(part) ? part : 0;
+}
+
 uint32_t check_components(const Check *c) { return c->m->first_order ? c->m->states.n : c->n; }
 
 static CheckVerdict check_coordinate(Check *c, uint32_t i, const Real *const *variation) {

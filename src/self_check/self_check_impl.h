@@ -79,6 +79,7 @@ int check_run_text(Check *c);
 Bounded check_coefficient(const Tape *tape, const Jet *at, Ref r, int plane, int k);
 void check_input(void *data, InputKind kind, uint32_t i, Jet *out);
 uint32_t check_components(const Check *c);
+Real check_rounding_part(Check *c); /* of the sizes of all equations' terms, by their error bounds; overwrites c->c */
 BoundedSum check_residual(const Check *c); /* along c->c, from the last check_run_text */
 CheckVerdict check_equations(Check *c);
 CheckVerdict check_failure(Check *c);

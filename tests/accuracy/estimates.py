@@ -196,7 +196,7 @@ def judge(case):
         again = judge(case)
         case.rows = 800
         return again
-    verdict = "under" if q < 1 / 3 else "over" if q > 5 else "ok"
+    verdict = "under" if q < 1 / 3 else "over" if q > 5 and not report["error_at_most"] else "ok"
     right = grows_as(case, law, errors) if law and (true_end is None) else None
     return verdict, law, right, f"estimate {estimate:.2g} true {true:.2g}{'' if to >= case.until else f' to {to:.3g}'}"
 

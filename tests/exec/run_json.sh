@@ -5,7 +5,7 @@
 fields() { # COMMAND MODEL ARGS...: names, with [ or { where a list or an object begins
   "$LAGC" "$@" --json 2>"$TMP/err" | grep -o '"[^"]*": [[{]\{0,1\}' | sed 's/^"//; s/": *//' | awk '!seen[$0]++' | tr '\n' ' ' | sed 's/ $//'
 }
-head="model scene method chosen status message t_end steps rejected rhs_calls form newton_systems newton_iterations wall_s energy_drift error error_growth error_seen_to error_known_to error_up_to_there formula_noise horizon energy_drift_absolute"
+head="model scene method chosen status message t_end steps rejected rhs_calls form newton_systems newton_iterations wall_s energy_drift error error_growth error_seen_to error_known_to error_up_to_there error_at_most formula_noise horizon energy_drift_absolute"
 charge="is initial final work at_events drift drift_absolute unit slope slope_error trend"
 is "run" "$head unresolved_period rows_without_value charges{ energy{ $charge monitors{ events{ floor{ count first last tangent{ y{ y y' y'{ math build \
 constraint_residual constraint_rate_residual final{ energy" "$(fields run models/bouncing_ball.lag --until 2 --tangent)"
