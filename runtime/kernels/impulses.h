@@ -13,6 +13,7 @@
 #ifndef LAG_IMPULSES_H
 #define LAG_IMPULSES_H
 
+#include "kernels/band_matrix.h"
 #include "kernels/compensated_sum.h"
 
 /* ---- friction ---- */
@@ -384,6 +385,102 @@ static inline LAG_REAL lag_contact_stride(const lag_impulses *s, LAG_REAL stride
   return goes_on ? LAG_C(2.0)*stride : one;
 }
 
+/* Few planar contacts: responses W of all rates to all impulses, impulses P and rates under them, and the equations of
+ * the laws as they stand at P: how each row does. */
+enum { LAG_FEW_ROWS = 16 };
+typedef struct lag_contact_equations {
+  int rows, stand[LAG_FEW_ROWS];
+  LAG_REAL W[LAG_FEW_ROWS*LAG_FEW_ROWS], a[LAG_FEW_ROWS*LAG_FEW_ROWS];
+  LAG_REAL P[LAG_FEW_ROWS], rate[LAG_FEW_ROWS], change[LAG_FEW_ROWS], pivot[LAG_FEW_ROWS], scale[LAG_FEW_ROWS];
+} lag_contact_equations;
+
+/* Not 0: the contacts are too many, in space, or on two sides of a rail. */
+static inline int lag_few_begin(const lag_impulses *s, lag_contact_equations *w) {
+  w->rows = 0;
+  for (int i = 0; i < s->n; i++) {
+    const lag_pressing *const c = &s->of[i];
+    w->rows += 1 + (int)c->tangents;
+    if (w->rows > LAG_FEW_ROWS || c->tangents > LAG_C(1.0) || c->opposite >= LAG_C(0.0)) return 1;
+  }
+  for (int r = 0; r < w->rows; r++) {
+    w->stand[r] = -1;
+    w->P[r] = s->P[r];
+    w->rate[r] = lag_rate_of(s, r);
+    for (int k = 0; k < w->rows; k++) {
+      LAG_REAL sum = LAG_C(0.0);
+      for (int d = (int)s->D.first[k]; d < (int)s->D.first[k + 1]; d++)
+        for (int e = (int)s->A.first[r]; e < (int)s->A.first[r + 1]; e++)
+          if ((int)s->A.col[e] == (int)s->D.col[d]) sum += s->A.value[e]*s->D.value[d];
+      w->W[r*w->rows + k] = sum;
+    }
+  }
+  return 0;
+}
+
+/* Row r: its rate goes to `to` where it is held, else its impulse to `by` times that of the row before, or to 0. */
+static inline void lag_few_row(lag_contact_equations *w, int r, int held, LAG_REAL to, LAG_REAL by) {
+  LAG_REAL *const a = w->a + r*w->rows;
+  for (int k = 0; k < w->rows; k++) a[k] = held ? w->W[r*w->rows + k] : LAG_C(0.0);
+  w->change[r] = held ? to - w->rate[r] : -w->P[r];
+  if (held) return;
+  a[r] = LAG_C(1.0);
+  if (!(by > LAG_C(0.0) || by < LAG_C(0.0))) return;
+  a[r - 1] = -by;
+  w->change[r] += by*w->P[r - 1];
+}
+
+/* Equations of the laws; returns whether a row stands otherwise than before. */
+static inline int lag_few_laws(const lag_impulses *s, lag_contact_equations *w) {
+  const LAG_REAL zero = LAG_C(0.0);
+  int other = 0;
+  for (int i = 0; i < s->n; i++) {
+    const lag_pressing *const c = &s->of[i];
+    const int r = (int)c->row, n = (int)c->tangents;
+    const LAG_REAL press = lag_larger(zero, w->P[r]), slow = n > 0 ? s->response[r + 1] : zero, most = c->mu*press;
+    const int pressed = s->response[r] > zero && w->P[r] + (c->least - w->rate[r])/s->response[r] > zero;
+    other += w->stand[r] != pressed;
+    lag_few_row(w, r, w->stand[r] = pressed, c->least, zero);
+    if (n == 0) continue;
+    LAG_REAL slip = w->rate[r + 1], x = w->P[r + 1];
+    const lag_coulomb law = {1, slow, c->radius, (LAG_REAL)HUGE_VAL, most, c->centre};
+    const LAG_REAL free = slip - slow*x;
+    if (slow > zero) lag_friction_turn(&law, &slip, &x);
+    const int holds = slow > zero && (slip < free || slip > free), slips = holds && LAG_FN(fabs)(x) > most;
+    const int stand = !holds ? 0 : slips ? (x > zero ? 1 : 2) : slip < free ? 3 : 4;
+    other += w->stand[r + 1] != stand;
+    w->stand[r + 1] = stand;
+    lag_few_row(w, r + 1, stand > 2, slip, stand == 1 ? c->mu : stand == 2 ? -c->mu : zero);
+  }
+  return other;
+}
+
+static inline int lag_few_step(lag_contact_equations *w) {
+  const LAG_REAL rounding = LAG_C(1e-13);
+  const int n = w->rows;
+  lag_band_matrix m = {n, n - 1, w->a, w->pivot};
+  if (lag_band_matrix_factor(&m, w->scale)) return 1;
+  for (int r = 0; r < n; r++)
+    if (!(LAG_FN(fabs)(*lag_band_matrix_at(&m, r, r)) > rounding*w->scale[r])) return 1;
+  lag_band_matrix_solve(&m, w->change);
+  for (int k = 0; k < n; k++) w->P[k] += w->change[k];
+  for (int r = 0; r < n; r++)
+    for (int k = 0; k < n; k++) w->rate[r] += w->W[r*n + k]*w->change[k];
+  return 0;
+}
+
+/* Goes to the impulses that obey all laws by Newton's method on these, where it finds them: sweeps creep where slips of
+ * a rigid body at two contacts are almost the same row. P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92
+ * (1991) 353, DOI 10.1016/0045-7825(91)90022-X. */
+static inline void lag_contact_newton(const lag_impulses *s) {
+  enum { TURNS = 30 };
+  lag_contact_equations w;
+  int turn = 0;
+  if (lag_few_begin(s, &w)) return;
+  while (lag_few_laws(s, &w))
+    if (turn++ == TURNS || lag_few_step(&w)) return;
+  for (int r = 0; r < w.rows; r++) lag_add_impulse(&s->D, r, w.P[r] - s->P[r], s->P, s->v);
+}
+
 /* Finds impulses P >= 0 along gaps, and of friction within mu times them, so that velocities v + D P obey these
  * laws: the rate A v + b of a gap is at least `least`, and equal where P > 0; slip velocities are in the ball
  * where friction can hold them there, else friction is at its limit and acts towards its centre. P: a guess,
@@ -413,6 +510,7 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
     if (!(change > enough) && softer == 0) return sweep;
     if (sweep % 1000 == 0 && change <= LAG_C(1e7)*enough && change >= LAG_C(0.9)*before) return sweep;
     if (sweep % 1000 == 0) before = change;
+    if (sweep == 200 || sweep % 5000 == 0) lag_contact_newton(s);
     if (sweep % 32 == 0 && sweep > 200) stride = lag_contact_stride(s, stride);
   }
   return most + 1;
