@@ -385,12 +385,13 @@ static inline LAG_REAL lag_contact_stride(const lag_impulses *s, LAG_REAL stride
   return goes_on ? LAG_C(2.0)*stride : one;
 }
 
-/* Few planar contacts: responses W of all rates to all impulses, impulses P and rates under them, and the equations of
- * the laws as they stand at P: how each row does. */
+/* Few planar contacts: responses W of all rates to all impulses; impulses and rates, and those of the sweeps; how each
+ * row stands; the equations of all rows that stand so. */
 enum { LAG_FEW_ROWS = 16 };
+enum { LAG_RUB_NONE, LAG_RUB_MOST, LAG_RUB_LEAST, LAG_RUB_ABOVE, LAG_RUB_BELOW, LAG_RUBS }; /* friction; a gap: 0, 1 */
 typedef struct lag_contact_equations {
   int rows, stand[LAG_FEW_ROWS];
-  LAG_REAL W[LAG_FEW_ROWS*LAG_FEW_ROWS], a[LAG_FEW_ROWS*LAG_FEW_ROWS];
+  LAG_REAL W[LAG_FEW_ROWS*LAG_FEW_ROWS], a[LAG_FEW_ROWS*LAG_FEW_ROWS], was[LAG_FEW_ROWS], at[LAG_FEW_ROWS];
   LAG_REAL P[LAG_FEW_ROWS], rate[LAG_FEW_ROWS], change[LAG_FEW_ROWS], pivot[LAG_FEW_ROWS], scale[LAG_FEW_ROWS];
 } lag_contact_equations;
 
@@ -403,9 +404,8 @@ static inline int lag_few_begin(const lag_impulses *s, lag_contact_equations *w)
     if (w->rows > LAG_FEW_ROWS || c->tangents > LAG_C(1.0) || c->opposite >= LAG_C(0.0)) return 1;
   }
   for (int r = 0; r < w->rows; r++) {
-    w->stand[r] = -1;
-    w->P[r] = s->P[r];
-    w->rate[r] = lag_rate_of(s, r);
+    w->P[r] = w->was[r] = s->P[r];
+    w->rate[r] = w->at[r] = lag_rate_of(s, r);
     for (int k = 0; k < w->rows; k++) {
       LAG_REAL sum = LAG_C(0.0);
       for (int d = (int)s->D.first[k]; d < (int)s->D.first[k + 1]; d++)
@@ -417,50 +417,33 @@ static inline int lag_few_begin(const lag_impulses *s, lag_contact_equations *w)
   return 0;
 }
 
-/* Row r: its rate goes to `to` where it is held, else its impulse to `by` times that of the row before, or to 0. */
+/* Row r: its rate goes to `to` where it is held, else its impulse to `by` times that of the row before. A held row gives
+ * way a little, so that rows which depend on others go to their limits. */
 static inline void lag_few_row(lag_contact_equations *w, int r, int held, LAG_REAL to, LAG_REAL by) {
   LAG_REAL *const a = w->a + r*w->rows;
   for (int k = 0; k < w->rows; k++) a[k] = held ? w->W[r*w->rows + k] : LAG_C(0.0);
   w->change[r] = held ? to - w->rate[r] : -w->P[r];
-  if (held) return;
-  a[r] = LAG_C(1.0);
-  if (!(by > LAG_C(0.0) || by < LAG_C(0.0))) return;
+  a[r] = held ? a[r] + LAG_C(1e-10)*a[r] : LAG_C(1.0);
+  if (held || !(by > LAG_C(0.0) || by < LAG_C(0.0))) return;
   a[r - 1] = -by;
   w->change[r] += by*w->P[r - 1];
 }
 
-/* Equations of the laws; returns whether a row stands otherwise than before. */
-static inline int lag_few_laws(const lag_impulses *s, lag_contact_equations *w) {
+/* Goes to where all rows obey as they stand. Not 0: nowhere. */
+static inline int lag_few_step(const lag_impulses *s, lag_contact_equations *w) {
   const LAG_REAL zero = LAG_C(0.0);
-  int other = 0;
-  for (int i = 0; i < s->n; i++) {
-    const lag_pressing *const c = &s->of[i];
-    const int r = (int)c->row, n = (int)c->tangents;
-    const LAG_REAL press = lag_larger(zero, w->P[r]), slow = n > 0 ? s->response[r + 1] : zero, most = c->mu*press;
-    const int pressed = s->response[r] > zero && w->P[r] + (c->least - w->rate[r])/s->response[r] > zero;
-    other += w->stand[r] != pressed;
-    lag_few_row(w, r, w->stand[r] = pressed, c->least, zero);
-    if (n == 0) continue;
-    LAG_REAL slip = w->rate[r + 1], x = w->P[r + 1];
-    const lag_coulomb law = {1, slow, c->radius, (LAG_REAL)HUGE_VAL, most, c->centre};
-    const LAG_REAL free = slip - slow*x;
-    if (slow > zero) lag_friction_turn(&law, &slip, &x);
-    const int holds = slow > zero && (slip < free || slip > free), slips = holds && LAG_FN(fabs)(x) > most;
-    const int stand = !holds ? 0 : slips ? (x > zero ? 1 : 2) : slip < free ? 3 : 4;
-    other += w->stand[r + 1] != stand;
-    w->stand[r + 1] = stand;
-    lag_few_row(w, r + 1, stand > 2, slip, stand == 1 ? c->mu : stand == 2 ? -c->mu : zero);
-  }
-  return other;
-}
-
-static inline int lag_few_step(lag_contact_equations *w) {
-  const LAG_REAL rounding = LAG_C(1e-13);
   const int n = w->rows;
   lag_band_matrix m = {n, n - 1, w->a, w->pivot};
+  for (int i = 0; i < s->n; i++) {
+    const lag_pressing *const c = &s->of[i];
+    const int r = (int)c->row, stand = w->stand[r + 1];
+    lag_few_row(w, r, w->stand[r], c->least, zero);
+    if (!(c->tangents > zero)) continue;
+    const LAG_REAL to = c->centre[0] + (stand == LAG_RUB_BELOW ? -c->radius : c->radius);
+    lag_few_row(w, r + 1, stand >= LAG_RUB_ABOVE, to,
+                stand == LAG_RUB_MOST ? c->mu : stand == LAG_RUB_LEAST ? -c->mu : zero);
+  }
   if (lag_band_matrix_factor(&m, w->scale)) return 1;
-  for (int r = 0; r < n; r++)
-    if (!(LAG_FN(fabs)(*lag_band_matrix_at(&m, r, r)) > rounding*w->scale[r])) return 1;
   lag_band_matrix_solve(&m, w->change);
   for (int k = 0; k < n; k++) w->P[k] += w->change[k];
   for (int r = 0; r < n; r++)
@@ -468,17 +451,75 @@ static inline int lag_few_step(lag_contact_equations *w) {
   return 0;
 }
 
-/* Goes to the impulses that obey all laws by Newton's method on these, where it finds them: sweeps creep where slips of
- * a rigid body at two contacts are almost the same row. P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92
- * (1991) 353, DOI 10.1016/0045-7825(91)90022-X. */
-static inline void lag_contact_newton(const lag_impulses *s) {
-  enum { TURNS = 30 };
+/* Lets rows stand as the laws have it; returns how many stood otherwise. */
+static inline int lag_few_stand(const lag_impulses *s, lag_contact_equations *w) {
+  const LAG_REAL zero = LAG_C(0.0);
+  int others = 0;
+  for (int i = 0; i < s->n; i++) {
+    const lag_pressing *const c = &s->of[i];
+    const int r = (int)c->row, n = (int)c->tangents;
+    const LAG_REAL slow = n > 0 ? s->response[r + 1] : zero, most = c->mu*lag_larger(zero, w->P[r]);
+    const int presses = s->response[r] > zero && w->P[r] + (c->least - w->rate[r])/s->response[r] > zero;
+    others += w->stand[r] != presses;
+    w->stand[r] = presses;
+    if (n == 0) continue;
+    LAG_REAL slip = w->rate[r + 1], x = w->P[r + 1];
+    const lag_coulomb law = {1, slow, c->radius, (LAG_REAL)HUGE_VAL, most, c->centre};
+    const LAG_REAL free = slip - slow*x;
+    int stand = LAG_RUB_NONE;
+    if (slow > zero) lag_friction_turn(&law, &slip, &x);
+    if (slow > zero && (slip < free || slip > free)) stand = slip < free ? LAG_RUB_ABOVE : LAG_RUB_BELOW;
+    if (stand != LAG_RUB_NONE && LAG_FN(fabs)(x) > most) stand = x > zero ? LAG_RUB_MOST : LAG_RUB_LEAST;
+    others += w->stand[r + 1] != stand;
+    w->stand[r + 1] = stand;
+  }
+  return others;
+}
+
+/* Whether rows that stand so obey the laws; Newton's method on these if not: P. Alart, A. Curnier, Comput. Methods Appl.
+ * Mech. Eng. 92 (1991) 353, DOI 10.1016/0045-7825(91)90022-X. */
+static inline int lag_few_agree(const lag_impulses *s, lag_contact_equations *w, int turns) {
+  for (int same = 0; same < 2;) {
+    if (turns-- == 0 || lag_few_step(s, w)) return 0;
+    same = lag_few_stand(s, w) ? 0 : same + 1;
+  }
+  return 1;
+}
+
+/* Row by row the next of all ways to stand; 0: there are no more. */
+static inline int lag_few_next(const lag_impulses *s, int *stand) {
+  for (int i = 0; i < s->n; i++)
+    for (int r = (int)s->of[i].row, k = 0; k <= (int)s->of[i].tangents; k++) {
+      if (++stand[r + k] < (k ? (int)LAG_RUBS : 2)) return 1;
+      stand[r + k] = 0;
+    }
+  return 0;
+}
+
+/* Impulses that obey all laws where sweeps creep, as where slips of a rigid body at two contacts are almost one row: by
+ * Newton's method, else from all ways to stand of up to three contacts those nearest to the impulses of the sweeps. Not
+ * 0: it found them. */
+static inline int lag_contact_newton(const lag_impulses *s) {
+  enum { TURNS = 30, MOST = 6 };
   lag_contact_equations w;
-  int turn = 0;
-  if (lag_few_begin(s, &w)) return;
-  while (lag_few_laws(s, &w))
-    if (turn++ == TURNS || lag_few_step(&w)) return;
-  for (int r = 0; r < w.rows; r++) lag_add_impulse(&s->D, r, w.P[r] - s->P[r], s->P, s->v);
+  LAG_REAL best[LAG_FEW_ROWS], least = (LAG_REAL)HUGE_VAL;
+  int stand[LAG_FEW_ROWS] = {0}, found;
+  if (lag_few_begin(s, &w)) return 0;
+  for (int r = 0; r < w.rows; r++) w.stand[r] = 0;
+  lag_few_stand(s, &w);
+  found = lag_few_agree(s, &w, TURNS);
+  for (int r = 0; r < w.rows; r++) best[r] = w.P[r];
+  for (int more = !found && w.rows <= MOST; more; more = lag_few_next(s, stand)) {
+    LAG_REAL far = LAG_C(0.0);
+    for (int r = 0; r < w.rows; r++) w.P[r] = w.was[r], w.rate[r] = w.at[r], w.stand[r] = stand[r];
+    if (!lag_few_agree(s, &w, 2)) continue;
+    for (int r = 0; r < w.rows; r++) far += (w.P[r] - w.was[r])*(w.P[r] - w.was[r]);
+    for (int r = 0; r < w.rows && far < least; r++) best[r] = w.P[r];
+    least = lag_smaller(least, far);
+    found = 1;
+  }
+  for (int r = 0; r < w.rows && found; r++) lag_add_impulse(&s->D, r, best[r] - s->P[r], s->P, s->v);
+  return found;
 }
 
 /* Finds impulses P >= 0 along gaps, and of friction within mu times them, so that velocities v + D P obey these
@@ -506,11 +547,11 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
       const LAG_REAL one = lag_contact_turn(s, &s->of[sweep % 2 ? i : s->n - 1 - i], part);
       change = LAG_SELECT(one > change || !lag_is_number(one), one, change);
     }
+    if (change > enough && (sweep == 200 || sweep % 5000 == 0) && lag_contact_newton(s)) change = zero;
     for (int i = 0; i < s->n && !(change > enough); i++) softer += lag_contact_soften(s, &s->of[i], enough);
     if (!(change > enough) && softer == 0) return sweep;
     if (sweep % 1000 == 0 && change <= LAG_C(1e7)*enough && change >= LAG_C(0.9)*before) return sweep;
     if (sweep % 1000 == 0) before = change;
-    if (sweep == 200 || sweep % 5000 == 0) lag_contact_newton(s);
     if (sweep % 32 == 0 && sweep > 200) stride = lag_contact_stride(s, stride);
   }
   return most + 1;
