@@ -453,13 +453,14 @@ int lag_switch_settle(lag_sim *s, int *changed) {
 int lag_switch_relieve(lag_sim *s, int event) {
   const lag_model *m = s->scene->model;
   int relieved = 0;
-  if (lag_watched(s) == m->nev || sides_at(s, s->run->t, s->now, s->sides) || find_grips(s, s->run->t, s->now)) return 0;
+  double t = s->run->t;
+  if (lag_watched(s) == m->nev || sides_at(s, t, s->now, s->sides) || find_grips(s, t, s->now)) return 0;
   for (int k = 0; k < m->nmodes && !relieved; k++) {
     double was = *mode(s, k), little = s->side_noise[k] + lag_switch_noise(s, k);
     if (!(fabs(s->sides[k]) <= little) || !is_implied(s, k)) continue;
     for (int up = 0; up < 2 && !relieved; up++) {
       lag_switch_hold(s, k, (up ? 1 : -1) * s->grip[k]);
-      relieved = *mode(s, k) != was && lag_events_eval(s, s->run->t, s->now, s->g1) == 0 && s->g1[event] > 0;
+      relieved = *mode(s, k) != was && lag_events_eval(s, t, s->now, s->g1) == 0 && s->g1[event] > 0;
       for (int i = 0; i < m->ncontacts && relieved; i++)
         relieved = !(m->contacts[i].is_tangent && s->g1[m->contacts[i].release] < 0);
     }

@@ -417,8 +417,8 @@ static inline int lag_few_begin(const lag_impulses *s, lag_contact_equations *w)
   return 0;
 }
 
-/* Row r: its rate goes to `to` where it is held, else its impulse to `by` times that of the row before. A held row gives
- * way a little, so that rows which depend on others go to their limits. */
+/* Row r: its rate goes to `to` where it is held, else its impulse to `by` times that of the row before. A held
+ * row gives way a little, so that rows which depend on others go to their limits. */
 static inline void lag_few_row(lag_contact_equations *w, int r, int held, LAG_REAL to, LAG_REAL by) {
   LAG_REAL *const a = w->a + r*w->rows;
   for (int k = 0; k < w->rows; k++) a[k] = held ? w->W[r*w->rows + k] : LAG_C(0.0);
@@ -476,8 +476,8 @@ static inline int lag_few_stand(const lag_impulses *s, lag_contact_equations *w)
   return others;
 }
 
-/* Whether rows that stand so obey the laws; Newton's method on these if not: P. Alart, A. Curnier, Comput. Methods Appl.
- * Mech. Eng. 92 (1991) 353, DOI 10.1016/0045-7825(91)90022-X. */
+/* Whether rows that stand so obey the laws; Newton's method on these if not: P. Alart, A. Curnier, Comput. Methods
+ * Appl. Mech. Eng. 92 (1991) 353, DOI 10.1016/0045-7825(91)90022-X. */
 static inline int lag_few_agree(const lag_impulses *s, lag_contact_equations *w, int turns) {
   for (int same = 0; same < 2;) {
     if (turns-- == 0 || lag_few_step(s, w)) return 0;
