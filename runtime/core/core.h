@@ -270,6 +270,8 @@ int lag_switch_settle(lag_sim *sim, int *changed);
 int lag_switch_eval(lag_sim *sim, double t, const double *y, double *g);
 double lag_switch_noise(const lag_sim *sim, int k);
 int lag_switch_fail_zeno(lag_sim *sim, int k);
+/* Event of a contact that sticks no longer: whether dry friction of a joint, whose slip it holds, takes over enough. */
+int lag_switch_relieve(lag_sim *sim, int event);
 void lag_switch_count(lag_sim *sim);
 /* step: counts for the step from `now` to y at t, where the method finds modes. sticks: whether the motion does on
  * surface k. */

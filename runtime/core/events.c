@@ -154,6 +154,10 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
   int rc = state_after(s, k, of != NULL, stop);
   if (rc) return rc;
   double rest = series_rest(s, k, since);
+  if (contact && contact->is_tangent && k == contact->release && lag_switch_relieve(s, k)) {
+    *changed |= BY_EVENT;
+    return watch_restarts(s, k, rest);
+  }
   int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact != NULL),
       moved = memcmp(s->yb, s->now, bytes) != 0;
   int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;

@@ -319,6 +319,44 @@ static int choose(lag_sim *s, Meeting *w, const double *left) {
   return LAG_OK;
 }
 
+/* ---- Surfaces that contacts imply */
+
+/* Response of the rate of switch k to its mode; NaN: there is none. */
+static double own_response(lag_sim *s, int k) {
+  double was = *mode(s, k), r[2] = {NAN, NAN};
+  for (int up = 0; up < 2; up++) {
+    *mode(s, k) = up ? 1 : -1;
+    if (lag_inputs(&s->pb, s->run->t) == 0 && rates_at(&s->pb, s->run->t, s->now, s->pb.slide) == 0)
+      r[up] = s->pb.slide[k];
+  }
+  *mode(s, k) = was;
+  return (r[1] - r[0]) / 2;
+}
+
+/* Opens contacts along their surface that stick, or closes those again; returns how many. */
+static int open_tangents(lag_sim *s, int open) {
+  const lag_model *m = s->scene->model;
+  int some = 0;
+  for (int i = 0; i < m->ncontacts; i++) {
+    double *closed = &s->hold[m->contacts[i].input];
+    if (!m->contacts[i].is_tangent || !(open ? *closed > 0.5 : *closed == 0.0)) continue;
+    *closed = !open;
+    some++;
+  }
+  return some;
+}
+
+/* Whether friction of contacts and guides that stick holds the slip of switch k, which changes no rate then. */
+static int is_implied(lag_sim *s, int k) {
+  if (!s->scene->model->switches[k].jumps || is_stepped(s, k) || !open_tangents(s, 1)) return 0;
+  double alone = own_response(s, k);
+  open_tangents(s, 0);
+  return fabs(alone) > 0 && fabs(own_response(s, k)) <= 1e-9 * fabs(alone);
+}
+
+/* Friction of a switch that contacts imply is any within its size: it stays as it is, from none on. */
+static double implied_mode(double was) { return was != 0.0 ? was : DBL_MIN; }
+
 /* ---- The run */
 
 /* The mode of switch k becomes m; counts the time of sliding. */
@@ -341,7 +379,9 @@ static int settle(lag_sim *s, int *changed) {
   Meeting w = {0, s->meeting_of, r0, B, ends, x, C, scale, (lag_box *)(void *)box, at};
   for (int k = 0; k < nm; k++) {
     was[k] = *mode(s, k);
-    if (s->meets[k] != 0.0) w.of[w.n++] = k;
+    if (s->meets[k] == 0.0) continue;
+    if (!is_implied(s, k)) w.of[w.n++] = k;
+    else change_mode(s, k, was[k] = implied_mode(was[k]));
   }
   int rc = w.n ? choose(s, &w, s->left) : LAG_OK;
   for (int k = 0; k < nm; k++) *mode(s, k) = was[k];
@@ -408,6 +448,25 @@ int lag_switch_settle(lag_sim *s, int *changed) {
   if (rc) return lag_fail(s, LAG_ENAN, "the switching functions have no value at t = %s s", LAG_TEXT(s->run->t));
   for (int i = 0; i < s->pb.nslide; i++) s->meets[s->pb.sliding[i]] = 1;
   return settle(s, changed);
+}
+
+int lag_switch_relieve(lag_sim *s, int event) {
+  const lag_model *m = s->scene->model;
+  int relieved = 0;
+  double t = s->run->t;
+  if (lag_watched(s) == m->nev || sides_at(s, t, s->now, s->sides) || find_grips(s, t, s->now)) return 0;
+  for (int k = 0; k < m->nmodes && !relieved; k++) {
+    double was = *mode(s, k), little = s->side_noise[k] + lag_switch_noise(s, k);
+    if (!(fabs(s->sides[k]) <= little) || !is_implied(s, k)) continue;
+    for (int up = 0; up < 2 && !relieved; up++) {
+      lag_switch_hold(s, k, (up ? 1 : -1) * s->grip[k]);
+      relieved = *mode(s, k) != was && lag_events_eval(s, t, s->now, s->g1) == 0 && s->g1[event] > 0;
+      for (int i = 0; i < m->ncontacts && relieved; i++)
+        relieved = !(m->contacts[i].is_tangent && s->g1[m->contacts[i].release] < 0);
+    }
+    if (!relieved) lag_switch_hold(s, k, was);
+  }
+  return relieved;
 }
 
 int lag_switch_fail_zeno(lag_sim *s, int k) {

@@ -13,6 +13,7 @@
 #ifndef LAG_IMPULSES_H
 #define LAG_IMPULSES_H
 
+#include "kernels/band_matrix.h"
 #include "kernels/compensated_sum.h"
 
 /* ---- friction ---- */
@@ -384,6 +385,143 @@ static inline LAG_REAL lag_contact_stride(const lag_impulses *s, LAG_REAL stride
   return goes_on ? LAG_C(2.0)*stride : one;
 }
 
+/* Few planar contacts: responses W of all rates to all impulses; impulses and rates, and those of the sweeps; how each
+ * row stands; the equations of all rows that stand so. */
+enum { LAG_FEW_ROWS = 16 };
+enum { LAG_RUB_NONE, LAG_RUB_MOST, LAG_RUB_LEAST, LAG_RUB_ABOVE, LAG_RUB_BELOW, LAG_RUBS }; /* friction; a gap: 0, 1 */
+typedef struct lag_contact_equations {
+  int rows, stand[LAG_FEW_ROWS];
+  LAG_REAL W[LAG_FEW_ROWS*LAG_FEW_ROWS], a[LAG_FEW_ROWS*LAG_FEW_ROWS], was[LAG_FEW_ROWS], at[LAG_FEW_ROWS];
+  LAG_REAL P[LAG_FEW_ROWS], rate[LAG_FEW_ROWS], change[LAG_FEW_ROWS], pivot[LAG_FEW_ROWS], scale[LAG_FEW_ROWS];
+} lag_contact_equations;
+
+/* Not 0: the contacts are too many, in space, or on two sides of a rail. */
+static inline int lag_few_begin(const lag_impulses *s, lag_contact_equations *w) {
+  w->rows = 0;
+  for (int i = 0; i < s->n; i++) {
+    const lag_pressing *const c = &s->of[i];
+    w->rows += 1 + (int)c->tangents;
+    if (w->rows > LAG_FEW_ROWS || c->tangents > LAG_C(1.0) || c->opposite >= LAG_C(0.0)) return 1;
+  }
+  for (int r = 0; r < w->rows; r++) {
+    w->P[r] = w->was[r] = s->P[r];
+    w->rate[r] = w->at[r] = lag_rate_of(s, r);
+    for (int k = 0; k < w->rows; k++) {
+      LAG_REAL sum = LAG_C(0.0);
+      for (int d = (int)s->D.first[k]; d < (int)s->D.first[k + 1]; d++)
+        for (int e = (int)s->A.first[r]; e < (int)s->A.first[r + 1]; e++)
+          if ((int)s->A.col[e] == (int)s->D.col[d]) sum += s->A.value[e]*s->D.value[d];
+      w->W[r*w->rows + k] = sum;
+    }
+  }
+  return 0;
+}
+
+/* Row r: its rate goes to `to` where it is held, else its impulse to `by` times that of the row before. A held
+ * row gives way a little, so that rows which depend on others go to their limits. */
+static inline void lag_few_row(lag_contact_equations *w, int r, int held, LAG_REAL to, LAG_REAL by) {
+  LAG_REAL *const a = w->a + r*w->rows;
+  for (int k = 0; k < w->rows; k++) a[k] = held ? w->W[r*w->rows + k] : LAG_C(0.0);
+  w->change[r] = held ? to - w->rate[r] : -w->P[r];
+  a[r] = held ? a[r] + LAG_C(1e-10)*a[r] : LAG_C(1.0);
+  if (held || !(by > LAG_C(0.0) || by < LAG_C(0.0))) return;
+  a[r - 1] = -by;
+  w->change[r] += by*w->P[r - 1];
+}
+
+/* Goes to where all rows obey as they stand. Not 0: nowhere. */
+static inline int lag_few_step(const lag_impulses *s, lag_contact_equations *w) {
+  const LAG_REAL zero = LAG_C(0.0);
+  const int n = w->rows;
+  lag_band_matrix m = {n, n - 1, w->a, w->pivot};
+  for (int i = 0; i < s->n; i++) {
+    const lag_pressing *const c = &s->of[i];
+    const int r = (int)c->row, stand = w->stand[r + 1];
+    lag_few_row(w, r, w->stand[r], c->least, zero);
+    if (!(c->tangents > zero)) continue;
+    const LAG_REAL to = c->centre[0] + (stand == LAG_RUB_BELOW ? -c->radius : c->radius);
+    lag_few_row(w, r + 1, stand >= LAG_RUB_ABOVE, to,
+                stand == LAG_RUB_MOST ? c->mu : stand == LAG_RUB_LEAST ? -c->mu : zero);
+  }
+  if (lag_band_matrix_factor(&m, w->scale)) return 1;
+  lag_band_matrix_solve(&m, w->change);
+  for (int k = 0; k < n; k++) w->P[k] += w->change[k];
+  for (int r = 0; r < n; r++)
+    for (int k = 0; k < n; k++) w->rate[r] += w->W[r*n + k]*w->change[k];
+  return 0;
+}
+
+/* Lets rows stand as the laws have it; returns how many stood otherwise. */
+static inline int lag_few_stand(const lag_impulses *s, lag_contact_equations *w) {
+  const LAG_REAL zero = LAG_C(0.0);
+  int others = 0;
+  for (int i = 0; i < s->n; i++) {
+    const lag_pressing *const c = &s->of[i];
+    const int r = (int)c->row, n = (int)c->tangents;
+    const LAG_REAL slow = n > 0 ? s->response[r + 1] : zero, most = c->mu*lag_larger(zero, w->P[r]);
+    const int presses = s->response[r] > zero && w->P[r] + (c->least - w->rate[r])/s->response[r] > zero;
+    others += w->stand[r] != presses;
+    w->stand[r] = presses;
+    if (n == 0) continue;
+    LAG_REAL slip = w->rate[r + 1], x = w->P[r + 1];
+    const lag_coulomb law = {1, slow, c->radius, (LAG_REAL)HUGE_VAL, most, c->centre};
+    const LAG_REAL free = slip - slow*x;
+    int stand = LAG_RUB_NONE;
+    if (slow > zero) lag_friction_turn(&law, &slip, &x);
+    if (slow > zero && (slip < free || slip > free)) stand = slip < free ? LAG_RUB_ABOVE : LAG_RUB_BELOW;
+    if (stand != LAG_RUB_NONE && LAG_FN(fabs)(x) > most) stand = x > zero ? LAG_RUB_MOST : LAG_RUB_LEAST;
+    others += w->stand[r + 1] != stand;
+    w->stand[r + 1] = stand;
+  }
+  return others;
+}
+
+/* Whether rows that stand so obey the laws; Newton's method on these if not: P. Alart, A. Curnier, Comput. Methods
+ * Appl. Mech. Eng. 92 (1991) 353, DOI 10.1016/0045-7825(91)90022-X. */
+static inline int lag_few_agree(const lag_impulses *s, lag_contact_equations *w, int turns) {
+  for (int same = 0; same < 2;) {
+    if (turns-- == 0 || lag_few_step(s, w)) return 0;
+    same = lag_few_stand(s, w) ? 0 : same + 1;
+  }
+  return 1;
+}
+
+/* Row by row the next of all ways to stand; 0: there are no more. */
+static inline int lag_few_next(const lag_impulses *s, int *stand) {
+  for (int i = 0; i < s->n; i++)
+    for (int r = (int)s->of[i].row, k = 0; k <= (int)s->of[i].tangents; k++) {
+      if (++stand[r + k] < (k ? (int)LAG_RUBS : 2)) return 1;
+      stand[r + k] = 0;
+    }
+  return 0;
+}
+
+/* Impulses that obey all laws where sweeps creep, as where slips of a rigid body at two contacts are almost one row: by
+ * Newton's method, else from all ways to stand of up to three contacts those nearest to the impulses of the sweeps. Not
+ * 0: it found them. */
+static inline int lag_contact_newton(const lag_impulses *s) {
+  enum { TURNS = 30, MOST = 6 };
+  lag_contact_equations w;
+  LAG_REAL best[LAG_FEW_ROWS], least = (LAG_REAL)HUGE_VAL;
+  int stand[LAG_FEW_ROWS] = {0}, found;
+  if (lag_few_begin(s, &w)) return 0;
+  for (int r = 0; r < w.rows; r++) w.stand[r] = 0;
+  lag_few_stand(s, &w);
+  found = lag_few_agree(s, &w, TURNS);
+  for (int r = 0; r < w.rows; r++) best[r] = w.P[r];
+  for (int more = !found && w.rows <= MOST; more; more = lag_few_next(s, stand)) {
+    LAG_REAL far = LAG_C(0.0);
+    for (int r = 0; r < w.rows; r++) w.P[r] = w.was[r], w.rate[r] = w.at[r], w.stand[r] = stand[r];
+    if (!lag_few_agree(s, &w, 2)) continue;
+    for (int r = 0; r < w.rows; r++) far += (w.P[r] - w.was[r])*(w.P[r] - w.was[r]);
+    for (int r = 0; r < w.rows && far < least; r++) best[r] = w.P[r];
+    least = lag_smaller(least, far);
+    found = 1;
+  }
+  for (int r = 0; r < w.rows && found; r++) lag_add_impulse(&s->D, r, best[r] - s->P[r], s->P, s->v);
+  return found;
+}
+
 /* Finds impulses P >= 0 along gaps, and of friction within mu times them, so that velocities v + D P obey these
  * laws: the rate A v + b of a gap is at least `least`, and equal where P > 0; slip velocities are in the ball
  * where friction can hold them there, else friction is at its limit and acts towards its centre. P: a guess,
@@ -409,6 +547,7 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
       const LAG_REAL one = lag_contact_turn(s, &s->of[sweep % 2 ? i : s->n - 1 - i], part);
       change = LAG_SELECT(one > change || !lag_is_number(one), one, change);
     }
+    if (change > enough && (sweep == 200 || sweep % 5000 == 0) && lag_contact_newton(s)) change = zero;
     for (int i = 0; i < s->n && !(change > enough); i++) softer += lag_contact_soften(s, &s->of[i], enough);
     if (!(change > enough) && softer == 0) return sweep;
     if (sweep % 1000 == 0 && change <= LAG_C(1e7)*enough && change >= LAG_C(0.9)*before) return sweep;

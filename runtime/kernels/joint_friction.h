@@ -60,19 +60,22 @@ static inline int lag_joints_begin(LAG_MODEL, lag_joint_friction *w, LAG_REAL t,
   return status;
 }
 
-/* d, response: changes by a mode of 1 in a step, from the states at its middle and its end without contacts. */
+/* d, response: changes by a mode of 1 in a step, from the states at its middle and its end without contacts. A model
+ * writes abs(slip) as mode*slip, so the mode of a body that slips has the sign of its slip. */
 static inline int lag_joints_respond(LAG_MODEL, lag_joint_friction *w, const lag_kick *s) {
+  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0);
   int status = 0;
   for (int j = 0; j < LAG_JOINTS(w); j++) {
-    const LAG_REAL mode = w->mode[j], half = LAG_C(0.5);
+    const LAG_REAL mode = w->mode[j], slip = w->before[j];
+    const LAG_REAL low = LAG_SELECT(slip > zero, zero, -one), high = LAG_SELECT(slip < zero, zero, one);
     LAG_REAL *const d = w->d + j*w->states;
-    LAG_HOLD(w, j, -LAG_C(1.0));
+    LAG_HOLD(w, j, low);
     LAG_TRY(LAG_MODE_RATES(s->t, s->mid, w, w->x));
-    LAG_HOLD(w, j, LAG_C(1.0));
+    LAG_HOLD(w, j, high);
     LAG_TRY(LAG_MODE_RATES(s->t, s->mid, w, d));
     LAG_HOLD(w, j, mode);
     for (int i = 0; i < w->states; i++) {
-      d[i] = half*(d[i] - w->x[i]);
+      d[i] = (d[i] - w->x[i])/(high - low);
       w->x[i] = s->y1[i] + s->h*d[i];
     }
     LAG_TRY(LAG_SLIPS(s->end, s->mid, s->y1, w, w->slip));

@@ -15,6 +15,9 @@ uint32_t header_guides(const ProgramSet *u) { return program_set_contacts(u) ? 0
 
 const char *header_friction_lacks(const ProgramSet *u) {
   uint32_t n = header_surfaces(u) + program_set_guides(u);
+  if (program_set_contacts(u) && n && !header_surfaces(u))
+    return "contacts or dry friction, not both: write a guide beside contacts as two of them, `y >= 0` and `-y >= 0`, "
+           "with `restitution = 0`, `friction` and `slip`";
   if (program_set_contacts(u) && n)
     return "contacts or dry friction, not both: rk4, rk45 and dop853 decide at each state whether a body slips";
   for (uint32_t k = 0; k < u->switches.n; k++) {

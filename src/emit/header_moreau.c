@@ -70,8 +70,8 @@ static void define_contacts(const Header *h) {
   static const char *const matrices[] = {"A", "M", NULL}, *const law[] = {"law", NULL};
   header_section(h, "friction");
   header_section(h, "mean");
-  header_section(h, "impulses");
   header_section(h, "band_matrix");
+  header_section(h, "impulses");
   header_internal_function(h, u->constraints.matrices, "contact_matrices",
                            arena_printf(h->a, "%s_REAL *A, %s_REAL *M", h->upper, h->upper), matrices, matrices);
   if (u->contact_coefficients)

@@ -346,14 +346,29 @@ Prog *lower_second_derivatives(const Eqns *e, const Variation *x) {
   return finished(&l, ROLL_FROM);
 }
 
+/* Whether event i ends the touch or the rest of a contact, by its forces. */
+static int is_release(const Model *m, uint32_t i) {
+  for (uint32_t k = 0; k < m->contacts.n; k++)
+    if (m->contacts.at[k].release == i) return 1;
+  return 0;
+}
+
 Prog *lower_events(const Eqns *e) {
-  Lower l = lower_by_text(e);
+  Lower l = lower_by_text(e), forces = l;
   const Model *m = e->m;
-  Expr *roots = ARENA_ARRAY(m->arena, Expr, m->events.n + 1);
-  for (uint32_t i = 0; i < m->events.n; i++) roots[i] = m->events.at[i].g;
+  Expr *roots = ARENA_ARRAY(m->arena, Expr, 2 * m->events.n + 1), *of_forces = roots + m->events.n;
+  forces.by_text = 0; /* forces of contacts are those of the run, with frictions of joints as they are held */
+  forces.slots = expr_map(m->arena);
+  forces.circular = expr_map(m->arena);
+  for (uint32_t i = 0; i < m->events.n; i++) {
+    int held = e->switches.nmodes && is_release(m, i);
+    roots[i] = held ? 0 : m->events.at[i].g;
+    of_forces[i] = held ? m->events.at[i].g : 0;
+  }
   lower_with_accelerations(&l, roots, m->events.n);
+  lower_with_accelerations(&forces, of_forces, m->events.n);
   for (uint32_t i = 0; i < m->events.n; i++)
-    prog_store(l.p, 0, i, lower_slot(&l, m->events.at[i].g), m->events.at[i].name);
+    prog_store(l.p, 0, i, lower_slot(roots[i] ? &l : &forces, m->events.at[i].g), m->events.at[i].name);
   return finished(&l, ROLL_FROM);
 }
 

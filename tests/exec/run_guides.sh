@@ -264,7 +264,7 @@ check "the slider, too" near "$(final x)" "$slider" 5e-6
 
 # ---- refusals
 check "a negative friction" refuses 2 'the model declares mu >= 0' rail go mu=-0.1
-no_header() { ! "$LAGC" header "$TMP/beside.lag" -o "$TMP/h" 2>"$TMP/log" && grep -q 'contacts or dry friction, not both' "$TMP/log" || { cat "$TMP/log"; return 1; }; }
+no_header() { ! "$LAGC" header "$TMP/beside.lag" -o "$TMP/h" 2>"$TMP/log" && grep -q 'contacts or dry friction, not both: write a guide beside contacts as two of them' "$TMP/log" || { cat "$TMP/log"; return 1; }; }
 check "headers with guides beside contacts" no_header
 
 # ---- the same on a curve: held from t = 0 on, it slips at 2 mu g/F, and sticks again (SciPy: 0.4119069855300544); moreau meets the friction of slipping exactly while it holds
@@ -277,5 +277,38 @@ friction path on s: mu*abs(lambda(path)), static = 2*mu*abs(lambda(path))'; do
   check "and again" near "$(final x)" 0.4119069855300544 1e-9
   check "by moreau" run curve go --method 'moreau(step=1e-3)'
   check "to half a step" near "$(final x)" 0.4119069855300544 1e-5
+done
+
+# ---- a guide or a contact that sticks holds the slip of a joint with friction of its own: both carry the pull, until k t = F + mu m g
+held() { # held NAME, on stdin: what presses the body, and its share of the inertia
+  { printf "model %s\ncoord x [m], y [m], th [rad]\nparam m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0, F = 2 [N] >= 0, mu = 0.3, k = 1 [N/s], r = 0.2 [m] > 0\n" "$1"
+    printf "kinetic = m/2*(x'^2 + y'^2) + m*r^2/4*th'^2\npotential = m*g*y\nforce x = k*t\nconstraint gear: x = r*th\n"
+    cat
+    printf "scene pull { span 8 [s]; output x }\nscene go { like pull; start x' = 3 [m/s], th' = 15 [rad/s] }\n"
+  } >"$TMP/$1.lag"
+}
+held on_guide <<'END_OF'
+guide rail: y = 0, friction = mu, slip = x'
+friction rub on x: F
+END_OF
+held on_contact <<'END_OF'
+contact rail: y >= 0, restitution = 0, friction = mu, slip = x'
+friction rub on x: F
+END_OF
+held geared <<'END_OF'
+guide rail: y = 0, friction = mu, slip = x'
+friction rub on th: F*r
+END_OF
+# 3/2 m x'' = k t - F - mu m g from t1 = (F + mu m g)/k on; before that v0 t - (F + mu m g) t^2/3 + k t^3/9 to its first stop, at v = 0
+t1=$(calc '2 + 0.3*9.81')
+for name in on_guide on_contact geared; do
+  check "friction of a joint beside one that sticks, $name" run $name pull
+  check "it breaks loose where both are at their limits" near "$(final x)" "$(calc "(8 - $t1)^3/9")" 1e-8
+  check "after a stop" run $name go
+  stop=$(calc "$t1 - sqrt($t1^2 - 9)") # 3 = ((F + mu m g) t - k t^2/2)/1.5
+  check "the same" near "$(final x)" "$(calc "3*$stop - $t1*$stop^2/3 + $stop^3/9 + (8 - $t1)^3/9")" 1e-8
+  one_of 3 || continue
+  check "by moreau" run $name pull --method 'moreau(step=1e-3)'
+  check "to h v/2 of the step in which it breaks loose" near "$(final x)" "$(calc "(8 - $t1)^3/9")" 1e-5
 done
 tap_end

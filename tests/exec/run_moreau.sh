@@ -400,4 +400,24 @@ constraint clutch: a' = b' while t > 1 [s]
 scene s { span 2 [s] }
 END_OF
 check "constraints with a condition" refuses 2 'constraints that hold while a condition is true are not followed; dop853' run clutch s --method $m3
+
+# ---- friction that falls with speed: a e^(c v) + b = (a e^(c v0) + b) e^(-a c t/m) for F = a + b e^(-c |v|); a fast body is not stopped at once
+model stribeck <<'END_OF'
+model stribeck
+coord x [m]
+kinetic = 0.5 [kg]*x'^2
+friction rub on x: 3 [N] + 5 [N]*exp(-2 [s/m]*abs(x'))
+scene s { start x' = -5 [m/s]; span 0.5 [s]; output x }
+END_OF
+check "Stribeck's friction" run stribeck s --method $m3
+check "brakes" near "$(final "x'")" "$(calc '-log(((3*exp(10) + 5)*exp(-3) - 5)/3)/2')" 1e-7 # h^2 F'/m
+
+# ---- a block that rocks until it lies: slips of both edges are almost one, and friction locks them
+for h in 0.4 0.46 0.4657 0.47 0.5; do
+  one_of 2 || continue
+  "$LAGC" run models/rocking_block.lag h=$h --method 'moreau(step=5e-4)' --json --quiet >"$TMP/json" 2>"$TMP/log"
+  check "a rocking block, h = $h, lies" near "$(final y)" $h 1e-5 # half a step of the last fall
+  al=$(calc "atan2(0.2, $h)") start=$(calc '6*atan2(0,-1)/180')
+  check "its energy is lost in strokes" near "$(number at_events)" "$(calc "-100*9.81*(sqrt(0.04 + $h^2)*cos($al - $start) - $h)")" 5e-3 # the fall of a step, m g h v
+done
 tap_end
