@@ -246,3 +246,5 @@ char *arena_printf(Arena *a, const char *fmt, ...) {
 
 size_t arena_used(const Arena *a) { return a->used; }
 int arena_hit_limit(const Arena *a) { return a->hit_limit; }
+size_t arena_limit(const Arena *a) { return a->config.max_bytes; }
+void arena_raise_limit(Arena *a, size_t by) { a->config.max_bytes += a->config.max_bytes ? by : 0; }
