@@ -80,6 +80,16 @@ static int compile(Compiler *c) {
   return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
 }
 
+/* The messages of a compilation that memory does not suffice for: notes of sums that are written out say why. */
+static void print_last_messages(Compiler *c) {
+  enum { ROOM = 16 << 20 };
+  jmp_buf again;
+  if (!c->diags) return;
+  arena_raise_limit(c->arena, ROOM);
+  arena_guard(c->arena, &again);
+  if (!setjmp(again)) compiler_print_messages(c);
+}
+
 static int run_lagc(Compiler *c, int argc, char **argv) {
   const char *error;
   c->argv0 = argv[0];
@@ -97,6 +107,7 @@ int main(int argc, char **argv) {
   lag_keep_memory(); /* of scratch arenas */
   if (!c.arena) return usage_error("out of memory");
   if (setjmp(out_of_memory)) {
+    print_last_messages(&c);
     if (arena_hit_limit(c.arena))
       fprintf(stderr, "lagc: the model needs more than the limit of %d MiB of memory\n", MEMORY_LIMIT_MIB);
     else fprintf(stderr, "lagc: out of memory\n");

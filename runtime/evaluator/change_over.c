@@ -10,6 +10,7 @@ static int is_same_model(const lag_model *x, const lag_model *y) {
   int same = y->abi == LAG_ABI && y->real_size == x->real_size && strcmp(x->digest, y->digest) == 0 && y->nw <= x->nw &&
              x->nq == y->nq && x->nz == y->nz && x->np == y->np && x->nu == y->nu && x->nderived == y->nderived;
   int parts = !x->constraints == !y->constraints && !x->charges == !y->charges && !x->linear == !y->linear &&
+              (x->families ? x->families->n : 0) == (y->families ? y->families->n : 0) &&
               !x->taylor == !y->taylor && !x->variation == !y->variation;
   return same && parts &&
          (!x->taylor || (y->taylor->nw <= x->taylor->nw && x->taylor->columns == y->taylor->columns &&
@@ -27,6 +28,11 @@ static void change_model(const lag_model *evaluated, const lag_model *y) {
     k->residuals = y->constraints->residuals, k->matrices = y->constraints->matrices;
     k->position = y->constraints->position, k->velocity = y->constraints->velocity;
   }
+  for (int i = 0; x->families && i < x->families->n; i++) {
+    lag_contact_family *f = MUTABLE(lag_contact_family, &x->families->of[i]);
+    f->values = y->families->of[i].values, f->reach = y->families->of[i].reach;
+  }
+  if (x->families) MUTABLE(lag_contact_families, x->families)->inertia = y->families->inertia;
   if (x->charges) {
     lag_charges *k = MUTABLE(lag_charges, x->charges);
     k->values = y->charges->values, k->powers = y->charges->powers;

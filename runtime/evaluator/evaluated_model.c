@@ -14,6 +14,8 @@
 static const EvaluatedModel *model_of(const void *self) { return ((const lag_model *)self)->programs; }
 static const EvaluatedScene *scene_of(const void *self) { return ((const lag_scene *)self)->programs; }
 static const EvaluatedConstraints *constraints_of(const void *self) { return self; }
+static const EvaluatedFamily *family_of(const void *self) { return ((const lag_contact_family *)self)->programs; }
+static const EvaluatedFamilies *families_of(const void *self) { return self; }
 static const EvaluatedCharges *charges_of(const void *self) { return self; }
 static const EvaluatedLinear *linear_of(const void *self) { return self; }
 static const EvaluatedPartials *partials_of(const void *self) { return self; }
@@ -34,6 +36,9 @@ FUNCTION(switch_values, model_of, switch_values)
 FUNCTION(switch_rates, model_of, switch_rates)
 FUNCTION(switch_grips, model_of, switch_grips)
 FUNCTION(contact_laws, model_of, contact_laws)
+FUNCTION(member_values, family_of, values)
+FUNCTION(reach, family_of, reach)
+FUNCTION(family_inertia, families_of, inertia)
 FUNCTION(charge_values, charges_of, values)
 FUNCTION(charge_powers, charges_of, powers)
 FUNCTION(jumps, linear_of, jumps)
@@ -203,6 +208,16 @@ void lag_set_constraint_functions(EvaluatedConstraints *c) {
   if (c->position) f->position = position;
 }
 
+void lag_set_family_functions(EvaluatedFamilies *f, lag_contact_family *of) {
+  for (int i = 0; i < f->families.n; i++) {
+    of[i].programs = &f->of[i];
+    of[i].values = member_values;
+    if (f->of[i].reach) of[i].reach = reach;
+  }
+  f->families.of = of;
+  f->families.inertia = family_inertia;
+}
+
 void lag_set_charge_functions(EvaluatedCharges *c) {
   if (c->values) c->charges.values = charge_values;
   if (c->powers) c->charges.powers = charge_powers;
@@ -240,6 +255,9 @@ size_t lag_model_room(const EvaluatedModel *m) {
   if (c)
     widen(&room, c->residuals, 0), widen(&room, c->matrices, 0), widen(&room, c->position, 0),
         widen(&room, c->velocity, 0);
+  const EvaluatedFamilies *f = (const void *)m->model.families;
+  for (int i = 0; f && i < f->families.n; i++) widen(&room, f->of[i].values, 0), widen(&room, f->of[i].reach, 0);
+  if (f) widen(&room, f->inertia, 0);
   if (q) widen(&room, q->values, 0), widen(&room, q->powers, 0);
   if (l) widen(&room, l->eval, 0), widen(&room, l->jumps, 0);
   const EvaluatedPartials *by_params = (const void *)(l ? l->linear.by_params : NULL),

@@ -26,6 +26,16 @@ typedef struct {
 } EvaluatedConstraints;
 
 typedef struct {
+  const Program *values, *reach;
+} EvaluatedFamily;
+
+typedef struct {
+  lag_contact_families families;
+  const EvaluatedFamily *of;
+  const Program *inertia;
+} EvaluatedFamilies;
+
+typedef struct {
   lag_charges charges;
   const Program *values, *powers;
 } EvaluatedCharges;
@@ -72,6 +82,7 @@ void lag_set_model_functions(EvaluatedModel *m);
 void lag_set_scene_functions(EvaluatedScene *s);
 void lag_set_taylor_functions(EvaluatedTaylor *t);
 void lag_set_constraint_functions(EvaluatedConstraints *c);
+void lag_set_family_functions(EvaluatedFamilies *f, lag_contact_family *of);
 void lag_set_charge_functions(EvaluatedCharges *c);
 void lag_set_linear_functions(EvaluatedLinear *l);
 void lag_set_partial_functions(EvaluatedPartials *p);

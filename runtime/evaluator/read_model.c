@@ -185,6 +185,73 @@ static void read_contacts(Reader *r) {
   r->m->contact_laws = program(r, 3 * (int64_t)n + 4 * (int64_t)m->nguides, 0, 0);
 }
 
+static int64_t turns_of(const lag_contact_family *f, int row) { return f->turns + (int64_t)f->more * row; }
+
+/* n reads, whose indices are below `end` for all members. */
+static const lag_read *read_reads(Bytes *b, const lag_contact_family *f, int n, int end) {
+  enum { MOST = 1 << 28 };
+  int row[2] = {0, f->rows - 1}; /* the first and the last with turns */
+  while (row[0] <= row[1] && turns_of(f, row[0]) <= 0) row[0]++;
+  while (row[0] <= row[1] && turns_of(f, row[1]) <= 0) row[1]--;
+  lag_read *x = lag_bytes_room(b, (size_t)n, sizeof *x);
+  for (int i = 0; x && i < n; i++) {
+    x[i].first = lag_bytes_int(b, -MOST, MOST);
+    x[i].by_row = lag_bytes_int(b, -MOST, MOST), x[i].by_turn = lag_bytes_int(b, -MOST, MOST);
+    for (int k = 0; row[0] <= row[1] && k < 4; k++) { /* corners */
+      int64_t of = row[k / 2], turn = f->skew * of + (k % 2 ? turns_of(f, row[k / 2]) - 1 : 0);
+      int64_t at = x[i].first + x[i].by_row * of + x[i].by_turn * turn;
+      lag_bytes_need(b, at >= 0 && at < end, "a contact reads out of range");
+    }
+  }
+  return x;
+}
+
+static void read_family(Reader *r, lag_contact_family *f, EvaluatedFamily *of) {
+  enum { MOST = 1 << 20, STEEP = 4 };
+  Bytes *b = r->b;
+  const int nq = r->m->model.nq, np = r->m->model.np;
+  f->name = name_of(b), f->indices = lag_bytes_int(b, 1, 2);
+  f->i0 = lag_bytes_int(b, -MOST, MOST), f->j0 = lag_bytes_int(b, -MOST, MOST), f->rows = lag_bytes_int(b, 0, MOST);
+  f->skew = lag_bytes_int(b, -STEEP, STEEP), f->turns = lag_bytes_int(b, -MOST, MOST);
+  f->more = lag_bytes_int(b, -STEEP, STEEP), f->tangents = lag_bytes_int(b, 0, 2), f->nplaces = lag_bytes_int(b, 0, 3);
+  f->ncoords = (int)lag_bytes_count(b, 12), f->coords = read_reads(b, f, f->ncoords, nq);
+  f->nparams = (int)lag_bytes_count(b, 12), f->params = read_reads(b, f, f->nparams, np);
+  for (int c = 0, members = f->i0 + f->rows - f->j0; c < f->nplaces; c++) {
+    lag_read *x = &f->place[c];
+    x->first = (int)lag_bytes_below(b, (uint32_t)nq), x->by_row = lag_bytes_int(b, 0, 0);
+    x->by_turn = lag_bytes_int(b, 0, nq);
+    int64_t last = x->first + (int64_t)(members - 1) * x->by_turn;
+    lag_bytes_need(b, f->i0 >= f->j0 && members > 0 && last < nq && x->by_turn == f->place[0].by_turn,
+                   "places of contacts are out of range");
+  }
+  Reader with = *r, alone = without_state(r, 0);
+  with.state.in[PROGRAM_Q] = with.state.in[PROGRAM_V] = f->ncoords, with.state.in[PROGRAM_Z] = f->nparams;
+  of->values = wanted(&with, 1, 5 + f->tangents + (1 + f->tangents) * (int64_t)f->ncoords, 0);
+  of->reach = wanted(&alone, f->nplaces > 0, 4, 0);
+}
+
+/* Families of contacts; their rows at once, as moreau finds room for them, are some millions at most. */
+static void read_families(Reader *r) {
+  Bytes *b = r->b;
+  const int n = (int)lag_bytes_count(b, 52), nq = r->m->model.nq;
+  if (!n) return;
+  EvaluatedFamilies *all = lag_bytes_room(b, 1, sizeof *all);
+  lag_contact_family *f = lag_bytes_room(b, (size_t)n, sizeof *f);
+  EvaluatedFamily *of = lag_bytes_room(b, (size_t)n, sizeof *of);
+  lag_bytes_need(b, !r->m->model.ncontacts && !r->m->nconstraints, "families of contacts stand beside others");
+  int64_t most = 0;
+  for (int i = 0; f && of && !b->why && i < n; i++) {
+    read_family(r, &f[i], &of[i]);
+    most += 24 * ((int64_t)f[i].rows + 1) * (f[i].ncoords + f[i].nparams + 1);
+  }
+  if (!all || !f || !of || !lag_bytes_need(b, most < INT32_MAX, "contacts are too many")) return;
+  all->families.n = n, all->of = of;
+  all->families.mass = entries(b, &all->families.nmass, nq, nq, 1);
+  all->inertia = wanted(r, 1, all->families.nmass, 0);
+  lag_set_family_functions(all, f);
+  r->m->model.families = &all->families;
+}
+
 static void read_sizes(Reader *r) {
   Bytes *b = r->b;
   lag_model *m = &r->m->model;
@@ -368,6 +435,7 @@ static Reader read_model(Bytes *b) {
   read_tables(&r);
   read_constraints(&r);
   read_contacts(&r);
+  read_families(&r);
   read_sizes(&r);
   read_charges(&r);
   read_switches(&r);

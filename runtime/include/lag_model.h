@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 19
+#define LAG_ABI 20
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many
  * doubles, one state or one set of parameters a lane. The status < 0 of such a call has bit k of its negative set
@@ -303,6 +303,7 @@ typedef struct lag_contact_family {
                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
   int nplaces;
   lag_read place[3];
+  const void *programs; /* of an evaluated model; else NULL */
 } lag_contact_family;
 
 /* The families of a model, which moreau follows; inertia: M[nmass] at the entries `mass` of its lower triangle. */

@@ -240,9 +240,9 @@ LAG_UNUSED static void lag_near_append(lag_near *w, int j) {
   const double *y = w->place + 3*w->at[j], square = w->reach*w->reach;
   const int n = lag_near_around(w, y, around);
   for (int a = 0; a < n; a++)
-    for (int s = w->cell[around[a]]; s < w->cell[around[a] + 1]; s++) {
+    for (int s = w->cell[around[a] + 1] - 1; s >= w->cell[around[a]] && w->order[s] > j; s--) {
       const int k = w->order[s];
-      if (!((k > j) & (lag_near_square(w, w->place + 3*s, y) < square))) continue;
+      if (!(lag_near_square(w, w->place + 3*s, y) < square)) continue;
       if (w->count[k] < LAG_NEAR_WIDTH) w->list[LAG_NEAR_WIDTH*k + w->count[k]] = j;
       w->count[k]++;
     }

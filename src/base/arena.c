@@ -13,6 +13,7 @@ struct Chunk {
   Chunk *next;
   size_t serial; /* from 1, in order of allocation */
   size_t size, used;
+  size_t touched; /* bytes that may differ from 0 */
   max_align_t data[];
 };
 
@@ -31,9 +32,10 @@ struct Arena {
   int hit_limit;
 };
 
+/* Zeroed, since the system hands out new pages so: large tables cost memory only where they are written. */
 static void *system_alloc(void *user, size_t n) {
   (void)user;
-  return malloc(n);
+  return calloc(1, n);
 }
 
 static void system_dealloc(void *user, void *p) {
@@ -185,6 +187,7 @@ static Chunk *chunk_new(Arena *a, size_t n) {
   if (!c) arena_fail(a);
   c->size = size;
   c->used = 0;
+  c->touched = a->config.alloc == system_alloc ? 0 : size;
   c->serial = ++a->serial;
   c->next = a->chunks;
   a->chunks = c;
@@ -204,11 +207,14 @@ void *arena_alloc(Arena *a, size_t n) {
   }
   Chunk *c = a->chunks;
   if (!c || c->size - c->used < n) c = chunk_new(a, n);
-  void *p = (char *)c->data + c->used;
+  char *p = (char *)c->data + c->used;
+  size_t dirty = c->touched > c->used ? c->touched - c->used : 0;
   c->used += n;
   a->used += n;
+  if (c->touched < c->used) c->touched = c->used;
   UNPOISON(p, asked);
-  return memset(p, 0, asked);
+  if (dirty) memset(p, 0, dirty < asked ? dirty : asked);
+  return p;
 }
 
 char *arena_strndup(Arena *a, const char *s, size_t n) {
@@ -240,3 +246,5 @@ char *arena_printf(Arena *a, const char *fmt, ...) {
 
 size_t arena_used(const Arena *a) { return a->used; }
 int arena_hit_limit(const Arena *a) { return a->hit_limit; }
+size_t arena_limit(const Arena *a) { return a->config.max_bytes; }
+void arena_raise_limit(Arena *a, size_t by) { a->config.max_bytes += a->config.max_bytes ? by : 0; }

@@ -72,5 +72,9 @@ _Noreturn void arena_fail(Arena *a);
 size_t arena_used(const Arena *a);
 int arena_hit_limit(const Arena *a);
 
+/* The limit, 0: none; raises it, for a last message. */
+size_t arena_limit(const Arena *a);
+void arena_raise_limit(Arena *a, size_t by);
+
 #define ARENA_NEW(a, T) ((T *)arena_alloc((a), sizeof(T)))
 #define ARENA_ARRAY(a, T, n) ((T *)arena_alloc((a), sizeof(T) * (size_t)(n)))

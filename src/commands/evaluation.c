@@ -10,8 +10,6 @@
 
 /* The reason why the run must be compiled; NULL: liblag can evaluate it. */
 static const char *reason_to_compile(Compiler *c, const Units *units, const Toolchain *tools, ProgramKind kind) {
-  for (uint32_t i = 0; i < units->n; i++)
-    if (units->at[i]->families.n) return "evaluates no families of contacts";
   if (kind & PROGRAM_WITH_PNG) return "has no pictures as PNG: give a name with .svg";
   if (kind & PROGRAM_WITH_HDF5) return "writes no HDF5: give a name with .csv or .npy";
   if (kind & PROGRAM_WITH_MPI) return "runs in one process: leave out --mpi and mpirun";

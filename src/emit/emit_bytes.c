@@ -89,6 +89,31 @@ static void contacts(const Unit *w) {
   program(w, w->u->contact_laws);
 }
 
+static void reads(const Unit *w, const IrRead *at, uint32_t n) {
+  for (uint32_t i = 0; i < n; i++)
+    integer(w, (int)at[i].first), integer(w, (int)at[i].by_row), integer(w, (int)at[i].by_turn);
+}
+
+static void families(const Unit *w) {
+  const ProgramSet *u = w->u;
+  word(w, u->families.n);
+  if (!u->families.n) return;
+  for (uint32_t i = 0; i < u->families.n; i++) {
+    const IrContactFamily *c = &u->families.at[i];
+    text(w, c->name);
+    integer(w, (int)c->indices), integer(w, (int)c->i0), integer(w, (int)c->j0), integer(w, (int)c->rows);
+    integer(w, (int)c->skew), integer(w, (int)c->turns), integer(w, (int)c->more);
+    word(w, c->tangents), word(w, c->reach ? c->nplaces : 0);
+    word(w, c->coords.n), reads(w, c->coords.at, c->coords.n);
+    word(w, c->params.n), reads(w, c->params.at, c->params.n);
+    if (c->reach) reads(w, c->place, c->nplaces);
+    program(w, c->values);
+    program(w, c->reach);
+  }
+  entries(w, u->family_mass.at, u->family_mass.n);
+  program(w, u->family_inertia);
+}
+
 static void sizes(const Unit *w) {
   const ProgramSet *u = w->u;
   word(w, u->sizes.n - u->nmoving), word(w, u->nmoving);
@@ -208,7 +233,7 @@ static void model(const Unit *w, const char *name) {
   actions(w);
   program(w, u->u.n ? u->inputs : NULL);
   tables(w);
-  constraints(w), contacts(w), sizes(w), charges(w), switches(w), linear(w), variation(w), taylor(w);
+  constraints(w), contacts(w), families(w), sizes(w), charges(w), switches(w), linear(w), variation(w), taylor(w);
 }
 
 static void scene_lists(const Unit *w, const IrScene *s) {

@@ -33,7 +33,7 @@ static void family_row(const ModelFile *f, const IrContactFamily *c, uint32_t i)
     sb_printf(f->out, "%s{%lld, %lld, %lld}", k ? ", " : "", (long long)x->first, (long long)x->by_row,
               (long long)x->by_turn);
   }
-  sb_puts(f->out, "}},\n");
+  sb_puts(f->out, "}, NULL},\n");
 }
 
 void emit_families(const ModelFile *f) {

@@ -45,21 +45,33 @@ static const Expr *plain_momenta(const Eqns *e) {
   return p;
 }
 
-/* p q' - x for a part x of L, by Euler's theorem from the velocity degrees of its terms; 0 if a term is not
+/* p q' - less*x for a part x of L, by Euler's theorem from the velocity degrees of its terms; 0 if a term is not
  * homogeneous. */
-static Expr moving_energy(const Eqns *e, Expr x) {
+static Expr moving_energy(const Eqns *e, Expr x, int less) {
   ExprGraph *g = e->g;
+  uint32_t n = expr_pairs(g, x, EX_SUM);
+  uint8_t *degree = ARENA_ARRAY(e->m->arena, uint8_t, n);
   VEC(Expr) terms = {0};
-  for (uint32_t i = 0; i < expr_pairs(g, x, EX_SUM); i++) {
+  velocity_degrees(g, e->m->arena, x, degree);
+  for (uint32_t i = 0; i < n; i++) {
     Num c;
     Expr t = expr_pair(g, x, EX_SUM, i, &c);
-    uint8_t degree = velocity_degree(g, e->m->arena, t);
-    if (degree == NO_DEGREE) return 0;
-    Num times = num_mul(c, num_int(degree - 1));
+    if (degree[i] == NO_DEGREE) return 0;
+    Num times = num_mul(c, num_int(degree[i] - less));
     Expr part = expr_scale(g, times, t);
     vec_push(e->m->arena, &terms, part);
   }
   return expr_add_n(g, terms.at, terms.n);
+}
+
+/* Sum of p q' over all coordinates. */
+static Expr momenta_times_velocities(const Eqns *e, const Expr *p) {
+  ExprGraph *g = e->g;
+  Expr *terms = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) terms[i] = expr_mul(g, p[i], expr_symbol(g, e->m->coords.at[i].v)->node);
+  Expr sum = expr_add_n(g, terms, e->n);
+  arena_recycle(e->m->arena, terms, (e->n + 1) * sizeof *terms);
+  return sum;
 }
 
 /* Momenta to show, E = p q' - L, and |p q'| + |L|. The part of L without velocities enters E as written: k/2*(r -
@@ -67,14 +79,11 @@ static Expr moving_energy(const Eqns *e, Expr x) {
 static void derive_energy(Eqns *e) {
   ExprGraph *g = e->g;
   Arena *arena = e->m->arena;
-  Expr *terms = ARENA_ARRAY(arena, Expr, e->n + 1), *momenta = ARENA_ARRAY(arena, Expr, e->n + 1);
+  Expr *momenta = ARENA_ARRAY(arena, Expr, e->n + 1);
   const Expr *p = plain_momenta(e);
-  for (uint32_t i = 0; i < e->n; i++) {
-    momenta[i] = shorten(e, p[i]);
-    terms[i] = expr_mul(g, p[i], expr_symbol(g, e->m->coords.at[i].v)->node);
-  }
+  for (uint32_t i = 0; i < e->n; i++) momenta[i] = shorten(e, p[i]);
   e->momenta = momenta;
-  Expr pv = expr_add_n(g, terms, e->n), l = e->lagrangian;
+  Expr l = e->lagrangian;
   VEC(Expr) still = {0};
   for (uint32_t i = 0; i < expr_pairs(g, l, EX_SUM); i++) {
     Num c;
@@ -86,7 +95,9 @@ static void derive_energy(Eqns *e) {
   Expr l0 = expr_add_n(g, still.at, still.n);
   Expr l_moving = expr_sub(g, l, l0);
   /* With rotations p q' is long in the quaternions; degrees keep omega. */
-  Expr moving = e->m->regularising ? moving_energy(e, l_moving) : 0;
+  int has_sums = e->n > SHORTEN_MAX_COORDS && e->m->sums.n;
+  Expr moving = e->m->regularising || has_sums ? moving_energy(e, l_moving, 1) : 0;
+  Expr pv = moving && has_sums ? moving_energy(e, l_moving, 0) : momenta_times_velocities(e, p);
   if (!moving) {
     Expr whole = expr_sub(g, pv, l_moving);
     moving = shorten(e, whole);

@@ -38,11 +38,26 @@ static uint8_t of_node(ExprGraph *g, Arena *arena, Expr x, const ExprMap *degree
   return op == EX_SUM ? of_sum(g, x, degrees) : op == EX_PROD ? of_product(g, x, degrees) : NO_DEGREE;
 }
 
-uint8_t velocity_degree(ExprGraph *g, Arena *arena, Expr x) {
+static ExprMap degrees_below(ExprGraph *g, Arena *arena, Expr x) {
   ExprMap degrees = expr_map(arena);
-  ExprList all = expr_topo(g, &x, 1);
+  ExprList all = expr_topo_to_sums(g, &x, 1);
   for (uint32_t i = 0; i < all.n; i++) expr_map_set(&degrees, all.at[i], of_node(g, arena, all.at[i], &degrees) + 1u);
-  return kept(&degrees, x);
+  expr_list_free(g, all);
+  return degrees;
+}
+
+uint8_t velocity_degree(ExprGraph *g, Arena *arena, Expr x) {
+  ExprMap degrees = degrees_below(g, arena, x);
+  uint8_t of = kept(&degrees, x);
+  expr_map_free(&degrees);
+  return of;
+}
+
+void velocity_degrees(ExprGraph *g, Arena *arena, Expr x, uint8_t *degrees) {
+  ExprMap all = degrees_below(g, arena, x);
+  Num k;
+  for (uint32_t i = 0; i < expr_pairs(g, x, EX_SUM); i++) degrees[i] = kept(&all, expr_pair(g, x, EX_SUM, i, &k));
+  expr_map_free(&all);
 }
 
 int is_linear_in_velocities(ExprGraph *g, Expr x, uint32_t n) {

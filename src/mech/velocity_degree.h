@@ -11,6 +11,9 @@ enum { NO_DEGREE = 255 };
  * node. */
 uint8_t velocity_degree(ExprGraph *g, Arena *arena, Expr x);
 
+/* degrees[i] := that of term i of the sum x, all in one pass. */
+void velocity_degrees(ExprGraph *g, Arena *arena, Expr x, uint8_t *degrees);
+
 static inline int has_velocities(const ExprGraph *g, Expr x) { return (expr_kinds(g, x) & 1u << SYM_VEL) != 0; }
 
 /* Whether x is linear in the n velocities, as Coriolis and magnetic terms are: no part of the mass matrix. */

@@ -39,6 +39,19 @@ int check_brackets(Builder *b, const AstStmt *st, Name effect) {
   return 0;
 }
 
+/* Refuses members for which memory does not suffice, before they are made. */
+static int fits_memory(Builder *b, const AstStmt *st, const Entity *e) {
+  enum { MEMBER_BYTES = 3000 }; /* least of `lagc check`, of sums that stay sums; 3.9 kB of three-dimensional atoms */
+  const double MB = 1e6;
+  uint64_t all = (uint64_t)b->m->coords.n + b->m->states.n + entity_size(e);
+  size_t limit = arena_limit(b->arena);
+  if (!limit || (e->kind != ENT_COORD && e->kind != ENT_STATE) || all * MEMBER_BYTES <= limit) return 1;
+  return diag_error(b->diags, st->name_span,
+                    "%llu coordinates and states take some %.0f MB, and lagc has %.0f MB" HELP
+                    "choose fewer members, as by `-D N=1000` where `N` is their number",
+                    (unsigned long long)all, (double)all * MEMBER_BYTES / MB, (double)limit / MB);
+}
+
 /* Reads the sizes of a family into e, as index ranges 1..N. */
 static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
   uint64_t all = e->parts ? e->parts : 1;
@@ -56,7 +69,7 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
     e->lo[e->ndims] = 1;
     e->hi[e->ndims++] = n;
   }
-  return 1;
+  return fits_memory(b, st, e);
 }
 
 int read_family(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index, uint8_t parts, Entity *e) {

@@ -303,6 +303,7 @@ static void note_written_out(const Eval *ev, const struct Quantified *q, uint64_
   Builder *b = ev->b;
   const char *sum = ast_short(b, q->outer), *why = q->why ? q->why : "its terms have no common form";
   uint64_t mb = turns * TERM_KB / 1024;
+  if (b->diags->errors) return;
   diag_note(b->diags, ast_expr(b->ast, q->where ? q->where : q->outer)->span,
             "`%s` is written out, %llu terms, some %llu MB%s: %s", sum, (unsigned long long)turns,
             (unsigned long long)mb, mb > LIMIT_MB ? ", more than lagc takes" : "", why);

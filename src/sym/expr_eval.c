@@ -27,6 +27,7 @@ typedef struct {
   const SymId *outside; /* [noutside] symbols of the body that are no arguments: t, pi */
   uint32_t noutside, ncells;
   long double *symbols, *share, *cell;
+  uint32_t nsymbols;
 } NestStep;
 
 /* TapeStep of a tape, for one node: its arguments are t->arg[first ..], indices of earlier steps; coefficients or
@@ -120,7 +121,8 @@ static NestStep *compile_nest(ExprGraph *g, Arena *a, Expr e) {
   VEC(SymId) outside = {0};
   for (uint32_t k = 0; k < s->nshares; k++) values[k] = s->shares[k].value;
   n->body = eval_tape(g, values, s->nshares);
-  n->symbols = ARENA_ARRAY(a, long double, expr_symbol_count(g) + 1);
+  n->nsymbols = expr_symbol_count(g) + 1;
+  n->symbols = ARENA_ARRAY(a, long double, n->nsymbols);
   n->share = ARENA_ARRAY(a, long double, s->nshares + 1);
   n->ncells = s->ncells;
   n->cell = ARENA_ARRAY(a, long double, n->ncells);
@@ -181,6 +183,12 @@ EvalTape *eval_tape(ExprGraph *g, const Expr *roots, uint32_t n) {
 
 void eval_tape_free(ExprGraph *g, EvalTape *t) {
   Arena *a = expr_arena(g);
+  for (uint32_t i = 0; i < t->n; i++) {
+    NestStep *n = t->step[i].op == EX_NEST ? t->step[i].nest : NULL;
+    if (!n) continue;
+    eval_tape_free(g, n->body);
+    arena_recycle(a, n->symbols, n->nsymbols * sizeof *n->symbols);
+  }
   arena_recycle(a, t->step, (t->n + 1) * sizeof *t->step);
   arena_recycle(a, t->value, (t->n + 1) * sizeof *t->value);
   arena_recycle(a, t->root, (t->nroots + 1) * sizeof *t->root);
@@ -217,5 +225,7 @@ void eval_run_double(EvalTape *t, long double (*symbol)(SymId s, const void *dat
 }
 
 void expr_eval(ExprGraph *g, const Expr *roots, uint32_t n, const long double *symbols, long double *out) {
-  eval_run(eval_tape(g, roots, n), symbols, out);
+  EvalTape *t = eval_tape(g, roots, n);
+  eval_run(t, symbols, out);
+  eval_tape_free(g, t);
 }

@@ -67,6 +67,27 @@ static void of_constraints(const lag_constraints *const *s, int nq) {
   CALL(velocity, 2 * nq, s[k]->velocity(s[k], STATE, g, out[k], out[k] + nq, w[k]));
 }
 
+static double *random_numbers(size_t n, double scale) {
+  double *r = room(n);
+  for (size_t i = 0; i < n; i++) r[i] = scale * (2 * uniform() - 1);
+  return r;
+}
+
+/* Members of families of contacts have coordinates and parameters of their own. */
+static void of_families(const lag_contact_families *const *s) {
+  if (!both((const void *const *)s, "families of contacts")) return;
+  CALL(inertia, s[0]->nmass, s[k]->inertia(s[k], STATE, out[k], w[k]));
+  for (int i = 0; i < s[0]->n; i++) {
+    const lag_contact_family *const f[] = {&s[0]->of[i], &s[1]->of[i]};
+    const int n = f[0]->ncoords, rows = 1 + f[0]->tangents;
+    double *x = random_numbers((size_t)n, 1), *y = random_numbers((size_t)n, 1),
+           *own = random_numbers((size_t)f[0]->nparams, 1);
+    CALL(of[i].values, 5 + f[0]->tangents + rows * n, f[k]->values(f[k], t, x, y, own, p, u, out[k], w[k]));
+    if (f[0]->reach) CALL(of[i].reach, 4, f[k]->reach(f[k], t, x, y, own, p, u, out[k], w[k]));
+    free(x), free(y), free(own);
+  }
+}
+
 static void of_charges(const lag_charges *const *s) {
   if (!both((const void *const *)s, "charges")) return;
   CALL(values, 2 * (s[0]->n - 1), s[k]->values(s[k], STATE, out[k], w[k]));
@@ -138,16 +159,11 @@ static void of_model(const lag_model *const *s) {
   CALL(switch_grips, m->nmodes, s[k]->switch_grips(s[k], STATE, out[k], w[k]));
   CALL(contact_laws, 3 * m->ncontacts, s[k]->contact_laws(s[k], STATE, out[k], w[k]));
   of_constraints((const lag_constraints *const[]){s[0]->constraints, s[1]->constraints}, nq);
+  of_families((const lag_contact_families *const[]){s[0]->families, s[1]->families});
   of_charges((const lag_charges *const[]){s[0]->charges, s[1]->charges});
   CALL(inverse, nq, s[k]->inverse(s[k], STATE, a, out[k], w[k]));
   of_linear((const lag_linear *const[]){s[0]->linear, s[1]->linear}, m);
   of_taylor((const lag_taylor *const[]){s[0]->taylor, s[1]->taylor}, m);
-}
-
-static double *random_numbers(size_t n, double scale) {
-  double *r = room(n);
-  for (size_t i = 0; i < n; i++) r[i] = scale * (2 * uniform() - 1);
-  return r;
 }
 
 /* A state near the scene's start, or anywhere; parameters that are the scene's, or changed by up to a half. */

@@ -70,6 +70,10 @@ check "lists of neighbours change no bit" cmp "$TMP/near.csv" "$TMP/pairs.csv"
 # rounding, 1e-16, times the growth of differences: 40 impacts, each by a few
 same() { paste -d, "$TMP/near.csv" "$TMP/single.csv" | awk -F, 'NR > 1 { for (k = 1; k <= NF/2; k++) if (($k - $(k + NF/2))^2 > 1e-16) exit 1 }'; }
 check "single contacts move alike" same
+evaluated() { "$LAGC" run "$TMP/near.lag" --compile "$1" -o "$TMP/$1.csv" >"$TMP/log" 2>&1; }
+for how in never always; do check "a run, compiled: $how" evaluated "$how"; done
+check "evaluated and compiled have the same digits" cmp "$TMP/never.csv" "$TMP/always.csv"
+check "a program as bytes" "$LAGC" build "$TMP/near.lag" --bytes -o "$TMP/near.bytes"
 check "a run" run near
 whole=$(final 'r\[3\].x')
 check "a run that is cut" run near --until 0.25 --save-state "$TMP/state"

@@ -174,6 +174,19 @@ is "a compiler that ends without a library" "lag-run: the C compiler failed, so 
 check "damaged bytes of a model with events" "$TMP/sanitized" "$TMP/ball" - "${SLOW:+20}200"
 "$LAGC" build tests/golden/ok/far.lag -D N=60 --bytes -o "$TMP/tree"
 check "damaged bytes of a model with a sum by a tree" "$TMP/sanitized" "$TMP/tree" - "${SLOW:+20}50"
+cat >"$TMP/pile.lag" <<'END'
+model pile
+const N = 6
+coord r[N]: vec2
+param R[N] = {0.05, 0.06, 0.07, 0.05, 0.06, 0.07} > 0
+lagrangian = sum(i in 1..N, dot(r[i]', r[i]')/2 - 9.81*r[i].y)
+contact hit[i in 1..N, j in near(i, 0.14)]: norm(r[i] - r[j]) >= R[i] + R[j], restitution = 0.3
+contact floor[i in 1..N]: r[i].y >= R[i], restitution = 0.3, friction = 0.2, slip = r[i].x'
+scene s { start r[i in 1..N] = (0.2*i, 0.2*i); span 0.5; method moreau(step = 0.002); output r }
+END
+check "functions of families of contacts" functions "$TMP/pile.lag"
+"$LAGC" build "$TMP/pile.lag" --bytes -o "$TMP/pile"
+check "damaged bytes of a model with families of contacts" "$TMP/sanitized" "$TMP/pile" - "${SLOW:+20}50"
 check "damaged bytes of a model with nests and series" "$TMP/sanitized" "$TMP/nests" - "${SLOW:+20}100"
 printf 'no program' >"$TMP/text"
 LAG_PROGRAM=$TMP/text "$BUILD/lag-run" >/dev/null 2>"$TMP/err"

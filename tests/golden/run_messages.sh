@@ -6,7 +6,7 @@
 # Messages that other suites show, by a part of their text.
 elsewhere='internal error
 not yet: families of contacts in
-`lagc run`, `lagc build` and `lagc emit` have them
+`lagc run`, `lagc build`, `lagc emit` and `lagc page` have them
  --bytes
 of a family of contacts as a number
 leave it out of --fix
