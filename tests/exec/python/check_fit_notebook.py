@@ -13,8 +13,9 @@ def printed(word):
     return cell.outputs[-1].text
 
 
-assert "the model or the errors are wrong" in printed("residuals.svg\"))") and "a trend is left" in printed("residuals.svg\"))")
-verdict = dict(re.findall(r"^(oil|air) .* (called for|not called for)$", printed("scene both"), re.M))
+bare = printed('"l,th", "--svg"')
+assert "the model or the errors are wrong" in bare and "a trend is left" in bare, bare
+verdict = dict(re.findall(r"^(oil|air) .*  (called for|not called for)$", printed("scene both"), re.M))
 assert verdict == {"oil": "not called for", "air": "called for"}, verdict
 found = printed("scene found")
 for name, truth in ("l", 1.05), ("air.k", 0.08):
