@@ -42,8 +42,8 @@ static int by_bic(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* The verdict of the data on one effect: the fit `j` beside that of the scene itself. Of few values BIC alone keeps more
- * than one wrong effect of twenty. */
+/* The verdict of the data on one effect: the fit `j` beside that of the scene itself. Of few values BIC alone keeps
+ * more than one wrong effect of twenty. */
 static void put_effect(const Judged *scene, const Judged *j) {
   const double unlikely = 0.05;
   int without = strncmp(j->scene + strlen(scene->scene), " without ", 9) == 0;

@@ -512,7 +512,8 @@ static int strike(lag_sim *s, int k, int more) {
                ? advance_tangent(s, s->run->t, s->tangent)
                : LAG_OK;
   if (rc) return rc;
-  if (!(room = calloc(2 * nu + 2 * watched + 5 * (n + 1) + (n + 1) * columns + 2 * n * n, sizeof *room))) return LAG_ENOMEM;
+  room = calloc(2 * nu + 2 * watched + 5 * (n + 1) + (n + 1) * columns + 2 * n * n, sizeof *room);
+  if (!room) return LAG_ENOMEM;
   Strike w = {.hold = room, .root = room + nu};
   w.u = w.root + watched;
   w.there = w.u + nu;
