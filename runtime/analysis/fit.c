@@ -239,12 +239,13 @@ static void take_errors(Fit *f, const double *V, const double *s, double *covari
   }
 }
 
-/* Scales for the directions: values, so that directions are relative changes; of a value near 0 its first scale. */
+/* Scales for the directions: values, so that directions are relative changes; of a value near 0, or on its bound 0, its
+ * first scale. */
 static void take_scales(Fit *f, int rows, double *J, const double *slope) {
   for (int j = 0; j < f->n; j++) {
     FitTarget *t = &f->target[j];
-    double size = fabs(t->value);
-    t->scale = size > 1e-6 * t->scale ? size : t->scale;
+    double size = fabs(t->value), near = abs(t->sign) == 2 ? lag_fit_softened(t) : 1e-6 * t->scale;
+    t->scale = size > near ? size : t->scale;
     for (int i = 0; i < rows; i++) J[i * f->n + j] *= t->scale / slope[j];
   }
 }

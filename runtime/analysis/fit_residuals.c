@@ -12,7 +12,7 @@ static const double huber_bound = 1.345; /* errors; 95 % efficient for normal on
 
 /* ---- Coordinates of the search: logarithms of values with a sign, others in units of their scale */
 
-static double softened(const FitTarget *t) { return 1e-3 * t->scale; }
+double lag_fit_softened(const FitTarget *t) { return 1e-3 * t->scale; }
 
 /* A value "> 0" is exp(x); one ">= 0" is about scale x where that is
  * positive, and above 0 everywhere. */
@@ -24,7 +24,7 @@ double lag_fit_value_at(const FitTarget *t, double x, double *slope) {
     return value;
   }
   if (abs(t->sign) == 2) {
-    double u = t->scale * x, s = softened(t), root = sqrt(u * u + 4 * s * s);
+    double u = t->scale * x, s = lag_fit_softened(t), root = sqrt(u * u + 4 * s * s);
     *slope = side * t->scale * (1 + u / root) / 2;
     return side * (u > 0 ? (u + root) / 2 : 2 * s * s / (root - u));
   }
@@ -33,7 +33,7 @@ double lag_fit_value_at(const FitTarget *t, double x, double *slope) {
 }
 
 double lag_fit_coordinate(const FitTarget *t, double value) {
-  double s = softened(t), size = fmax(fabs(value), s);
+  double s = lag_fit_softened(t), size = fmax(fabs(value), s);
   if (abs(t->sign) == 1) return log(fabs(value));
   return abs(t->sign) == 2 ? (size - s * s / size) / t->scale : value / t->scale;
 }

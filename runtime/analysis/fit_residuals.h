@@ -16,6 +16,8 @@ typedef struct FitNodes {
 
 /* Coordinates: logarithms of values with a sign, others in units of their scale. The value at x, and its slope. */
 double lag_fit_coordinate(const FitTarget *t, double value);
+/* Below it a value ">= 0" is on its bound. */
+double lag_fit_softened(const FitTarget *t);
 double lag_fit_value_at(const FitTarget *t, double x, double *slope);
 void lag_fit_take_values(Fit *f, const double *x, double *slope);
 int lag_fit_fail(Fit *f, int status, const char *why);

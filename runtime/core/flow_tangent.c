@@ -8,8 +8,9 @@
  *   S = R_y + (f+ - R_y f - R_t) g_y / (g_y f + g_t):
  * R.I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004), ch. 7, DOI
  * 10.1007/978-3-540-44398-8. A switch that ends its branch has R_y = 1; where the motion begins to slide on its
- * surface, f+ lies in the surface and S has one rank less. At an impact of a contact between two flights R_y and R_t
- * are differences of the impact law; where a contact stays closed, the run with a tangent fails. */
+ * surface, f+ lies in the surface and S has one rank less. At an impact of a contact between two flights R_y, R_t and
+ * derivatives by parameters are differences of the impact law; where a contact stays closed, the run with a tangent
+ * fails. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,10 +40,6 @@ static int check(lag_sim *s) {
       return lag_fail(s, LAG_EMETHOD,
                       "there is no tangent of a motion whose constraint %s begins and ends: the impulses there have no "
                       "derivatives yet", name);
-    if (s->pb.by || s->record)
-      return lag_fail(s, LAG_EMETHOD,
-                      "there are no derivatives by parameters of a motion with contact %s: its impacts have none yet; "
-                      "write them as an event that sets velocities", name);
   }
   if (m->constraints && (!s->method->tangent || (s->method->flags & LAG_METHOD_VARIATION)))
     return lag_fail(s, LAG_EMETHOD,
@@ -435,11 +432,20 @@ typedef struct Strike {
   double *hold, *root, *u, *there, *slope; /* [nu], [nev + nmodes], [nu], [n]; gradient of the gap, and its rate */
 } Strike;
 
+/* there := the state after impact k. The search leaves no trace. */
+static int impact_at(lag_sim *s, int k, const Strike *w) {
+  const lag_model *m = s->scene->model;
+  int rc = lag_contact_resolve(s, w->there, NULL, k, 0);
+  memcpy(s->hold, w->hold, (size_t)m->nu * sizeof *w->hold);
+  memcpy(s->root, w->root, (size_t)lag_watched(s) * sizeof *w->root);
+  memcpy(s->pb.u, w->u, (size_t)m->nu * sizeof *w->u);
+  return rc;
+}
+
 /* column[n] := change of the state after impact k along component i of the state before, or of t for i = n, by central
  * differences of order 4. */
 static int impact_slope(lag_sim *s, int k, int i, const Strike *w, double *column) {
   const double part = 0x1p-9;
-  const lag_model *m = s->scene->model;
   int n = s->pb.n, rc = LAG_OK;
   double t = s->run->t, step = fabs(s->run->step_t1 - s->run->step_t0),
          h = part * (i < n ? lag_difference_scale(&s->pb, s->now, i) : step);
@@ -449,13 +455,28 @@ static int impact_slope(lag_sim *s, int k, int i, const Strike *w, double *colum
     memcpy(w->there, s->now, (size_t)n * sizeof *w->there);
     if (i < n) w->there[i] += j * h;
     s->run->t = i == n ? t + j * h : t;
-    rc = lag_contact_resolve(s, w->there, NULL, k, 0);
+    rc = impact_at(s, k, w);
     for (int c = 0; c < n; c++) column[c] += (j % 2 ? 8 : -1) * (j < 0 ? -1 : 1) / 12.0 * w->there[c] / h;
-    memcpy(s->hold, w->hold, (size_t)m->nu * sizeof *w->hold);
-    memcpy(s->root, w->root, (size_t)lag_watched(s) * sizeof *w->root);
-    memcpy(s->pb.u, w->u, (size_t)m->nu * sizeof *w->u);
   }
   s->run->t = t;
+  return rc;
+}
+
+/* Adds to the tangent behind impact k what parameters change there: the impact itself, and by gain/rate its time. */
+static int impact_by_parameters(lag_sim *s, int k, const Strike *w, const double *gain, double rate, double *g_by) {
+  const lag_parameter_columns *by = s->pb.by;
+  int n = s->pb.n, columns = s->tangent_columns, rc = lag_event_by_parameters(s, k, g_by);
+  for (int j = 0; by && j < by->n && rc == LAG_OK; j++) {
+    double *to = s->tangent + by->column[j];
+    for (int c = 0; c < n; c++) to[c * columns] += gain[c] * g_by[by->column[j]] / rate;
+    LAG_EACH_DIFFERENCE(step) {
+      memcpy(w->there, s->now, (size_t)n * sizeof *w->there);
+      lag_use_parameters(s, j, step);
+      rc = rc ? rc : impact_at(s, k, w);
+      lag_use_parameters(s, 0, 0);
+      for (int c = 0; c < n; c++) to[c * columns] += lag_difference_weight(step) * w->there[c] / by->h[j];
+    }
+  }
   return rc;
 }
 
@@ -485,13 +506,14 @@ static int strike(lag_sim *s, int k, int more) {
   size_t n = (size_t)s->pb.n, nu = (size_t)m->nu, watched = (size_t)lag_watched(s),
          columns = (size_t)s->tangent_columns;
   double rate, calls = s->pb.rhs_calls, *room;
-  if (more || s->record) return refuse(s, k, more ? either_order : "gradients do not go over impacts yet");
+  if (more) return refuse(s, k, either_order);
   if (closed_contact(s) >= 0) return refuse(s, k, "the contact stays closed, where neighbouring motions may fly");
   int rc = s->run->have_step != 0.0 && s->run->t != s->run->step_t0 && !s->tangent_at_event
                ? advance_tangent(s, s->run->t, s->tangent)
                : LAG_OK;
   if (rc) return rc;
-  if (!(room = calloc(2 * nu + 2 * watched + 5 * (n + 1) + n * columns + 2 * n * n, sizeof *room))) return LAG_ENOMEM;
+  room = calloc(2 * nu + 2 * watched + 5 * (n + 1) + (n + 1) * columns + 2 * n * n, sizeof *room);
+  if (!room) return LAG_ENOMEM;
   Strike w = {.hold = room, .root = room + nu};
   w.u = w.root + watched;
   w.there = w.u + nu;
@@ -503,6 +525,7 @@ static int strike(lag_sim *s, int k, int more) {
   j.Y = j.after + n + 1;
   j.S = j.Y + n * columns;
   j.copy = j.S + n * n;
+  j.g_by = j.copy + n * n;
   memcpy(w.hold, s->hold, nu * sizeof *room);
   memcpy(w.root, s->root, watched * sizeof *room);
   memcpy(w.u, s->pb.u, nu * sizeof *room);
@@ -512,8 +535,9 @@ static int strike(lag_sim *s, int k, int more) {
   if (rc == LAG_OK) s->tangent_log += log_det((int)n, j.S, j.copy);
   if (rc == LAG_OK && (only_touches(s, k, rate) || !apply_saltation(s, &j)))
     rc = refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
+  rc = rc ? rc : impact_by_parameters(s, k, &w, j.after, rate, j.g_by);
   free(room);
-  return rc;
+  return rc || !s->record ? rc : lag_record_jump(s);
 }
 
 int lag_tangent_jump(lag_sim *s, int k, int more) {

@@ -1,5 +1,5 @@
 #!/bin/sh
-# runtime/python/double_pendulum.ipynb, executed: python/check_notebook.py has the checks.
+# The notebooks of runtime/python, executed: python/check_notebook.py and check_fit_notebook.py have the checks.
 . tests/tap.sh
 python=
 for p in python3 /usr/bin/python3; do "$p" -c 'import numpy, nbclient, ipykernel' 2>/dev/null && { python=$p; break; }; done
@@ -10,4 +10,5 @@ export LAGC PYTHONDONTWRITEBYTECODE=1 IPYTHONDIR="$TMP/ipython" JUPYTER_RUNTIME_
 "$python" -m ipykernel install --prefix "$TMP/share" >/dev/null 2>&1
 mv "$TMP/share/share/jupyter/kernels" "$TMP/share/kernels"
 check "the notebook" "$python" -W ignore tests/exec/python/check_notebook.py runtime/python/double_pendulum.ipynb
+[ ! -e "${BUILD:-build}/liblag_gsl.a" ] || check "the notebook of a fit" "$python" -W ignore tests/exec/python/check_fit_notebook.py runtime/python/fit.ipynb
 tap_end

@@ -98,6 +98,8 @@ event floor: y falling { y' = -e*y' }
 scene go { start y = 1; span 1.3 [s]; output y }
 M
 check "a restitution that follows from a parameter" dot "$TMP/bounce.lag" "" y "g,a,e,y" --method dop853
+sed 's/^event floor:.*/contact floor: y >= 0, restitution = e/' "$TMP/bounce.lag" >"$TMP/contact.lag"
+check "... of a contact" dot "$TMP/contact.lag" "" y "g,a,e,y" --method dop853
 within() { # the rod's x at 1.9, within a step
   "$LAGC" run $S/rod.lag --gradient 'late = x(1.9)' --json >"$TMP/out.json" && late=$(d late w) && "$LAGC" run $S/rod.lag --gradient x --until 1.9 --json >"$TMP/out.json" && close_to "$(d x w)" "$late" 1e-12
 }

@@ -50,6 +50,14 @@ close dy/da -0.448957760630311
 close "dy'/de" 6.10557122634729
 close "dy'/da" -2.89211268616451
 check "what outputs feel" grep -q '^outputs feel g, e, h, a; not m$' "$TMP/out"
+# The same as a contact: the impact law and the gap depend on parameters.
+sed "s/^event hit:.*/contact hit: y >= a, restitution = e/" "$M/ball.lag" >"$TMP/contact.lag"
+last "$TMP/contact.lag" "m,g,e,h,a"
+close dy/dg -0.195798191111357
+close dy/de 4.74779971688621
+close dy/da -0.448957760630311
+close "dy'/de" 6.10557122634729
+close "dy'/da" -2.89211268616451
 
 # Kicks: the fourth comes 4 dT later.
 last "$M/kick.lag" "m,T,J"
