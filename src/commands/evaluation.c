@@ -9,7 +9,7 @@
 #include "toolchain/simulator_cache.h"
 
 /* The reason why the run must be compiled; NULL: liblag can evaluate it. */
-static const char *reason_to_compile(Compiler *c, const Units *units, const Toolchain *tools, ProgramKind kind) {
+static const char *reason_to_compile(Compiler *c, const Toolchain *tools, ProgramKind kind) {
   if (kind & PROGRAM_WITH_PNG) return "has no pictures as PNG: give a name with .svg";
   if (kind & PROGRAM_WITH_HDF5) return "writes no HDF5: give a name with .csv or .npy";
   if (kind & PROGRAM_WITH_MPI) return "runs in one process: leave out --mpi and mpirun";
@@ -101,7 +101,7 @@ int simulator_evaluate(Compiler *c, const Units *units, EvaluatedRun *e) {
   if (compiles(c, "always") || c->o.command == CMD_COST) return STATUS_OK;
   if (digits) return never ? usage_error("--compile never evaluates doubles only: leave --precision out") : STATUS_OK;
   int status = simulator_tools(c, units, NULL, &tools, &kind);
-  const char *reason = status == STATUS_OK ? reason_to_compile(c, units, &tools, kind) : NULL;
+  const char *reason = status == STATUS_OK ? reason_to_compile(c, &tools, kind) : NULL;
   if (reason && never) return usage_error(arena_printf(c->arena, "--compile never %s", reason));
   if (reason || status != STATUS_OK) return status;
   if (sweeps && !never && toolchain_has_compiler(c->arena, &tools)) return STATUS_OK;
