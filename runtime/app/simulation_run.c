@@ -62,8 +62,8 @@ static void note_tables(const App *app) {
     if (isnan(app->sim->hold[c->input]) && (from < first || to > last)) {
       const char *self = app->args.self, *name = m->u[c->input].name;
       if (last <= nextafter(first, HUGE_VAL))
-        fprintf(stderr, "%s: note: the table of %s is a jump at %g s; its values hold before and after it\n", self, name,
-                first);
+        fprintf(stderr, "%s: note: the table of %s is a jump at %g s; its values hold before and after it\n", self,
+                name, first);
       else
         fprintf(stderr, "%s: note: the table of %s reaches from %g to %g s; outside, its first and last values hold\n",
                 self, name, first, last);

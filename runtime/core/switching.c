@@ -354,8 +354,11 @@ static int is_implied(lag_sim *s, int k) {
   return fabs(alone) > 0 && fabs(own_response(s, k)) <= 1e-9 * fabs(alone);
 }
 
-/* Friction of a switch that contacts imply is any within its size: it stays as it is, from none on. */
-static double implied_mode(double was) { return was != 0.0 ? was : DBL_MIN; }
+/* Friction of a switch that contacts imply is any within its size: it stays as it is, from none on; 1 and -1 would be
+ * branches of a body that slips. */
+static double implied_mode(double was) {
+  return fabs(was) == 1.0 ? nextafter(was, 0) : was != 0.0 ? was : DBL_MIN;
+}
 
 /* ---- The run */
 
@@ -459,7 +462,7 @@ int lag_switch_relieve(lag_sim *s, int event) {
     double was = *mode(s, k), little = s->side_noise[k] + lag_switch_noise(s, k);
     if (!(fabs(s->sides[k]) <= little) || !is_implied(s, k)) continue;
     for (int up = 0; up < 2 && !relieved; up++) {
-      lag_switch_hold(s, k, (up ? 1 : -1) * s->grip[k]);
+      lag_switch_hold(s, k, implied_mode((up ? 1 : -1) * s->grip[k]));
       relieved = *mode(s, k) != was && lag_events_eval(s, t, s->now, s->g1) == 0 && s->g1[event] > 0;
       for (int i = 0; i < m->ncontacts && relieved; i++)
         relieved = !(m->contacts[i].is_tangent && s->g1[m->contacts[i].release] < 0);

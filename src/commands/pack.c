@@ -1,3 +1,4 @@
+/* Bytes for pages, packed by liblzma. */
 #include "commands/pack.h"
 
 #include <stdint.h>

@@ -50,8 +50,8 @@ int page_module(Compiler *c, const char *name, StrBuf *out) {
     return usage_error(arena_printf(c->arena, need, command_find(c->o.command)->name, path)), 0;
   StrBuf packed = strbuf(c->arena);
   if (!strstr(name, ".gz") && !pack_append(&bytes, &packed))
-    fprintf(stderr, "lagc: note: the page is longer than it need be, since this lagc was built without liblzma: apt-get "
-                    "install liblzma-dev, and make lagc anew\n");
+    fprintf(stderr, "lagc: note: the page is longer than it need be, since this lagc was built without liblzma: "
+                    "apt-get install liblzma-dev, and make lagc anew\n");
   page_bytes(out, packed.n ? packed.at : bytes.at, packed.n ? packed.n : bytes.n);
   return 1;
 }

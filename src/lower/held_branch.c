@@ -18,22 +18,32 @@ static Slot load_mode(Lower *l, const Switch *s) {
                               .name = arena_printf(l->p->arena, "side_%u", k + 1)});
 }
 
-/* The mode where one is held, else `otherwise`. */
+/* The mode where one is held, else `otherwise`. by_slips: where a motion slides; its mode is no branch, which is 1. */
 static Slot held_or(Lower *l, Slot mode, int sign, Slot otherwise) {
   Slot most = prog_num(l->p, num_double(HELD_MOST)), held = op(l, IR_LT, mode, most),
        value = sign < 0 ? op(l, IR_NEG, mode, 0) : mode;
+  if (l->by_slips) {
+    Slot one = prog_num(l->p, num_int(1)), square = op(l, IR_MUL, mode, mode);
+    held = op(l, IR_AND, held, op(l, IR_OR, op(l, IR_LT, square, one), op(l, IR_LT, one, square)));
+  }
   return select(l, held, value, otherwise);
 }
 
 static Slot arg(const Lower *l, Expr e, uint32_t i) { return lower_slot(l, expr_arg(l->g, e, i)); }
 
 /* The switch of a comparison, or of a function of one switching function; NULL: none. */
-static const Switch *switch_at(const Lower *l, Expr e, int *sign) {
+static const Switch *any_switch_at(const Lower *l, Expr e, int *sign) {
   ExprOp o = expr_op(l->g, e);
-  if (!l->e->switches.nmodes || l->by_text || expr_map_get(l->e->switches.by_text, e)) return NULL;
   if (o == EX_SIGN || o == EX_ABS || o == EX_FLOOR) return switch_of(l->e, expr_arg(l->g, e, 0), o == EX_FLOOR, sign);
   if (o != EX_LT && o != EX_LE && o != EX_MIN && o != EX_MAX) return NULL;
   return switch_of(l->e, expr_sub(l->g, expr_arg(l->g, e, 1), expr_arg(l->g, e, 0)), 0, sign);
+}
+
+/* The same, of those whose mode is held. */
+static const Switch *switch_at(const Lower *l, Expr e, int *sign) {
+  if (!l->e->switches.nmodes || l->by_text || expr_map_get(l->e->switches.by_text, e)) return NULL;
+  const Switch *s = any_switch_at(l, e, sign);
+  return s && l->by_slips && !s->jumps ? NULL : s;
 }
 
 /* A choice on a surface where the motion slides: the mean of both branches, weighted by the mode. */

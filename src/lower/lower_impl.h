@@ -13,6 +13,7 @@ typedef struct {
   ExprMap slots;   /* node -> slot + 1 */
   ExprMap circular; /* u -> 1 where sin u or cos u occurs among the roots */
   int by_text;      /* switches follow the state, as the text says, never a held mode: events, actions, closed forms */
+  int by_slips;     /* so do those on whose surface no motion slides: the releases of contacts */
   int direct;       /* no addition theorem for sin(a - b): a series of its own is cheaper */
   /* receives the factors of the linear system, and x its solution [n + ndefs]; NULL: not recorded */
   FactorRecord *factored;

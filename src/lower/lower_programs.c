@@ -357,7 +357,7 @@ Prog *lower_events(const Eqns *e) {
   Lower l = lower_by_text(e), forces = l;
   const Model *m = e->m;
   Expr *roots = ARENA_ARRAY(m->arena, Expr, 2 * m->events.n + 1), *of_forces = roots + m->events.n;
-  forces.by_text = 0; /* forces of contacts are those of the run, with frictions of joints as they are held */
+  forces.by_text = 0, forces.by_slips = 1; /* frictions of joints are those that the run holds */
   forces.slots = expr_map(m->arena);
   forces.circular = expr_map(m->arena);
   for (uint32_t i = 0; i < m->events.n; i++) {

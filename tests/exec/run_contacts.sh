@@ -196,6 +196,19 @@ scene lifted { start x = 4.2 [m], n = 4.2 [m]; span 4 [s]; output x every 1 [s] 
 EOF
 check "a block is lifted off one that a constraint holds" run held lifted
 check "it rises by 5 (t - 1)^2/2" near "$(cell 4 2)" 26.7 1e-8 # ten times the tolerance
+# The same, as its slip turns: the force is one of a surface where a motion may slide.
+model turns <<'EOF'
+model turns
+coord x [m], y [m]
+param m = 1 [kg] > 0
+kinetic = m/2*(x'^2 + y'^2)
+force x = -1 [N]
+force y = if(x' < 0, 15 [N], 0) - 10 [N]
+contact floor: y >= 0, restitution = 0
+scene s { start x' = 1; span 4 [s]; output y every 1 [s] }
+EOF
+check "a block is lifted off as it turns" run turns s
+check "and rises by 5 (t - 1)^2/2" near "$(cell 4 2)" 22.5 1e-8
 # A hammer of no restitution, lifted each second: its blows come at equal times, which is no series that ends.
 model hammer <<'EOF'
 model hammer
