@@ -112,3 +112,35 @@ int lag_orbit_list_charges(PeriodicOrbit *o) {
   }
   return rc;
 }
+
+/* Square of the distance of the end of the motion from G y(0), in units. */
+static double miss(PeriodicOrbit *o) {
+  double sum = 0;
+  lag_orbit_set_target(o);
+  for (int i = 0; i < o->n; i++) {
+    double gap = (o->end[(o->m - 1) * o->n + i] - o->target[i]) / o->unit[i];
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+void lag_orbit_guess_shifts(PeriodicOrbit *o) {
+  enum { TRIES = 32, ROUNDS = 3 };
+  const double half = acos(-1);
+  for (int j = 0; j < o->ngroup; j++) {
+    int i = o->group[j].shifted[0];
+    if (o->group[j].n) o->shift[j] = o->end[(o->m - 1) * o->n + i] - o->y[i];
+  }
+  for (int j = 0; j < o->ngroup * ROUNDS; j++) {
+    double *shift = &o->shift[j % o->ngroup], width = half / pow(TRIES / 2, j / o->ngroup), middle = *shift,
+           best = middle;
+    double least = miss(o);
+    for (int k = -TRIES; k <= TRIES && !o->group[j % o->ngroup].n; k++) {
+      *shift = middle + width * k / TRIES;
+      double off = miss(o);
+      if (off < least) best = *shift, least = off;
+    }
+    *shift = best;
+  }
+  lag_orbit_set_target(o);
+}

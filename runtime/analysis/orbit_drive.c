@@ -4,13 +4,24 @@
 
 #include "analysis/periodic_orbit.h"
 
+/* The drive has period T. */
+static void take_drive(PeriodicOrbit *o, double T) {
+  o->T = o->drives * T;
+  o->flow.drive = T;
+}
+
+void lag_orbit_count_drives(PeriodicOrbit *o) {
+  double shortest = lag_flow_find_drive(&o->flow, 1.01 * o->T);
+  o->drives = shortest > 0 ? (int)fmax(1, rint(o->T / shortest)) : 1;
+  o->flow.drive = o->T / o->drives;
+}
+
 /* T := as many periods of the drive as before, if its period is another one, yet near. 0: it is not. */
 static int renew_drive(PeriodicOrbit *o, double near) {
   const double same = 1e-9;
   double T = o->T / o->drives;
   if (lag_flow_drive(&o->flow, &T) > same || fabs(T - o->T / o->drives) > near * T) return 0;
-  o->T = o->drives * T;
-  o->flow.drive = T;
+  take_drive(o, T);
   return 1;
 }
 
@@ -42,8 +53,7 @@ static int follow_drive(PeriodicOrbit *o, double value) {
       if ((part /= 2) >= shortest) continue;
       double T = lag_flow_find_drive(&o->flow, 8 * o->time / o->drives);
       if (!(T > 0)) return LAG_EDOMAIN;
-      o->T = o->drives * T;
-      o->flow.drive = T;
+      take_drive(o, T);
     }
     part = fmin(2 * part, 1);
     o->parameter = next;

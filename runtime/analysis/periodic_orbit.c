@@ -454,43 +454,6 @@ static int place_nodes(PeriodicOrbit *o) {
   return rc;
 }
 
-/* drives := how many periods of the drive T is. */
-static void count_drives(PeriodicOrbit *o) {
-  double shortest = lag_flow_find_drive(&o->flow, 1.01 * o->T);
-  o->drives = shortest > 0 ? (int)fmax(1, rint(o->T / shortest)) : 1;
-  o->flow.drive = o->T / o->drives;
-}
-
-/* Square of the distance of the end of the motion from G y(0), in units. */
-static double miss(PeriodicOrbit *o) {
-  double sum = 0;
-  lag_orbit_set_target(o);
-  for (int i = 0; i < o->n; i++) sum += gap(o, o->m - 1, i) * gap(o, o->m - 1, i);
-  return sum;
-}
-
-/* Shifts with which the first motion closes best: one by one the best of many, narrowed; of angles all values. */
-static void guess_shifts(PeriodicOrbit *o) {
-  enum { TRIES = 32, ROUNDS = 3 };
-  const double half = acos(-1);
-  for (int j = 0; j < o->ngroup; j++) {
-    int i = o->group[j].shifted[0];
-    if (o->group[j].n) o->shift[j] = o->end[(o->m - 1) * o->n + i] - o->y[i];
-  }
-  for (int j = 0; j < o->ngroup * ROUNDS; j++) {
-    double *shift = &o->shift[j % o->ngroup], width = half / pow(TRIES / 2, j / o->ngroup), middle = *shift,
-           best = middle;
-    double least = miss(o);
-    for (int k = -TRIES; k <= TRIES && !o->group[j % o->ngroup].n; k++) {
-      *shift = middle + width * k / TRIES;
-      double off = miss(o);
-      if (off < least) best = *shift, least = off;
-    }
-    *shift = best;
-  }
-  lag_orbit_set_target(o);
-}
-
 int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, double T, int m) {
   int rc = lag_flow_open(&o->flow, like);
   if (rc) return rc;
@@ -498,7 +461,7 @@ int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, 
   o->n = o->flow.n;
   o->T = o->time = T;
   o->algebra = algebra;
-  if (o->flow.forced) count_drives(o);
+  if (o->flow.forced) lag_orbit_count_drives(o);
   o->unit = lag_pool_doubles(&o->pool, (size_t)o->n);
   o->x = lag_pool_doubles(&o->pool, 2 * (size_t)o->n);
   if (o->pool.failed) return LAG_ENOMEM;
@@ -510,7 +473,7 @@ int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, 
   rc = lag_orbit_check_maps(o, &o->flow, T);
   rc = rc ? rc : place_nodes(o);
   rc = rc ? rc : lag_orbit_list_charges(o);
-  if (rc == LAG_OK) guess_shifts(o);
+  if (rc == LAG_OK) lag_orbit_guess_shifts(o);
   return rc;
 }
 

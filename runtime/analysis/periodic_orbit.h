@@ -92,6 +92,8 @@ int lag_orbit_check_maps(const PeriodicOrbit *o, FlowMap *f, double T);
 void lag_orbit_close_motion(const PeriodicOrbit *o, double *y, int linear, int j, double *d);
 /* target and G at the present y, shifts and ends. */
 void lag_orbit_set_target(PeriodicOrbit *o);
+/* Shifts with which the first motion closes best: one by one the best of many, narrowed; of angles all values. */
+void lag_orbit_guess_shifts(PeriodicOrbit *o);
 /* The charges that are conserved, and generators of the shifts. LAG_OK, or a status with its message. */
 int lag_orbit_list_charges(PeriodicOrbit *o);
 
@@ -101,7 +103,9 @@ int lag_orbit_shoot(PeriodicOrbit *o, int tangents);
  * not move the largest value, or 1 declared unit. */
 int lag_orbit_choose_units(PeriodicOrbit *o, const double *y0);
 int lag_orbit_assemble(PeriodicOrbit *o);
-/* orbit_drive.c. The parameter of the continuation := value. LAG_OK, or a status: both stay at the last value that was
+/* orbit_drive.c. drives := how many periods of the drive T is. */
+void lag_orbit_count_drives(PeriodicOrbit *o);
+/* The parameter of the continuation := value. LAG_OK, or a status: both stay at the last value that was
  * reached on the way, with the period of the drive there. */
 int lag_orbit_set_parameter(PeriodicOrbit *o, double value);
 /* 0: the period is 30 times the first one, or longer, with a message in o->flow. */

@@ -162,7 +162,7 @@ int compiler_agrees(const Eqns *e, const ProgramSet *u, uint32_t scene) {
 
 ProgramSet *compiler_lower_scene(Compiler *c, Eqns *e, int hoists) {
   ProgramSet *u = compiler_new_unit(c, e);
-  unit_require(u, e, derivatives_in_time(derivatives_required(e, &c->o), e, u, &c->o));
+  unit_require(u, e, derivatives_afforded(derivatives_required(e, &c->o), e, u, &c->o));
   unit_add_scene(u, e);
   if (hoists) unit_hoist(u);
   if (!compiler_agrees(e, u, 0)) return NULL;

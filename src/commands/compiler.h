@@ -61,8 +61,8 @@ int compiler_parse(Compiler *c);
  * state of --resume need, and --with. */
 const char *method_of_state(Arena *a, const char *path);
 unsigned derivatives_required(const Eqns *e, const Options *o);
-/* Those of them that `lagc cost` has compiled in a part of --seconds, and that fit into `lagc page`. */
-unsigned derivatives_in_time(unsigned wants, const Eqns *e, const ProgramSet *u, const Options *o);
+/* Derivatives, of those wanted, that `lagc cost` compiles in a part of --seconds, and that fit into `lagc page`. */
+unsigned derivatives_afforded(unsigned wants, const Eqns *e, const ProgramSet *u, const Options *o);
 
 /* Model of a choice of scene and effects, with the definitions of the command line; NULL with the reasons in c->diags.
  */

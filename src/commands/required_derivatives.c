@@ -102,7 +102,7 @@ static unsigned required_by_words(const Eqns *e, const Options *o) {
   return !o->with ? 0u : strcmp(o->with, "sensitivities") == 0 ? WANT_SENSITIVITY : WANT_LINEAR;
 }
 
-unsigned derivatives_in_time(unsigned wants, const Eqns *e, const ProgramSet *u, const Options *o) {
+unsigned derivatives_afforded(unsigned wants, const Eqns *e, const ProgramSet *u, const Options *o) {
   /* instructions of accelerations with second derivatives of L: gcc 12 -O2, 400 to 880 (bicycle) */
   const double a_second = 400;
   enum { PAGE = 2000 }; /* a third of a page's programs from there on */

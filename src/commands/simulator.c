@@ -169,11 +169,11 @@ static void lower_scene(Compiler *c, Eqns *e, int runs, int apart, Units *units,
   }
   home->lines = 1;
   if (runs) c->run = e, c->run_by = home;
-  unsigned wants = derivatives_required(e, &c->o), in_time = derivatives_in_time(wants, e, home, &c->o);
-  if (in_time != wants)
+  unsigned wants = derivatives_required(e, &c->o), afforded = derivatives_afforded(wants, e, home, &c->o);
+  if (afforded != wants)
     c->picture.note = "methods that need second derivatives of L are left out: their C takes long to compile; "
                       "--seconds 60 or --methods NAME has them";
-  unit_require(home, e, in_time);
+  unit_require(home, e, afforded);
   unit_add_scene(home, e);
   vec_push(c->arena, all, ((Lowered){e, home, home->scenes.n - 1}));
 }
