@@ -80,14 +80,18 @@ static int compile(Compiler *c) {
   return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
 }
 
-/* The messages of a compilation that memory does not suffice for: notes of sums that are written out say why. */
+/* The messages of a compilation that memory does not suffice for: notes of sums that are written out say why. The model's
+ * text may lie in an arena that is freed by now, so names that nothing uses are not looked for. */
 static void print_last_messages(Compiler *c) {
   enum { ROOM = 16 << 20 };
   jmp_buf again;
-  if (!c->diags) return;
+  if (!c->diags || (c->o.command == CMD_CHECK && c->o.json)) return;
   arena_raise_limit(c->arena, ROOM);
   arena_guard(c->arena, &again);
-  if (!setjmp(again)) compiler_print_messages(c);
+  if (setjmp(again)) return;
+  StrBuf messages = strbuf(c->arena);
+  diags_print(c->diags, &messages);
+  fputs(sb_text(&messages), stderr);
 }
 
 static int run_lagc(Compiler *c, int argc, char **argv) {

@@ -45,7 +45,7 @@ export XDG_CACHE_HOME LAG_TREE
 kind='test'
 limit=600
 case ${1:-} in
-  --long) kind=long limit=3600 logs=$BUILD/test/long ;;
+  --long) kind=long limit=2400 logs=$BUILD/test/long ;;
   --all) kind=long limit=7200 logs=$BUILD/test/all ;;
   --bless) kind=bless JOBS=1 ;;
   --bench) kind=bench limit=3600 JOBS=1 ;;
