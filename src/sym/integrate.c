@@ -417,12 +417,13 @@ static Expr in_powers(ExprGraph *g, Expr e) {
 }
 
 /* Antiderivative of e by the forms above, by substitution, and on the sides of switches; *rest: the terms without
- * one. */
+ * one. Of long expressions only the forms are tried, of very long ones none: derivatives of what is found take minutes. */
 static Expr antiderivative(ExprGraph *g, Expr e, Task with, int depth, Expr *rest) {
-  enum { MOST = 64, LONGEST = 2000 };
+  enum { MOST = 64, LONGEST = 2000, NONE = 20000 };
   uint32_t distinct;
   Expr sum = expr_int(g, 0);
   *rest = in_powers(g, e);
+  if (expr_tree_size(g, e, &distinct) > NONE) return sum;
   for (uint32_t k = 0; k < MOST && !expr_is_zero(g, *rest); k++) {
     with.e = *rest;
     int last = expr_tree_size(g, e, &distinct) > LONGEST;

@@ -68,6 +68,13 @@ names() { (ulimit -t 3; "$LAGC" check "$dir/outputs.lag" >/dev/null); } # 0.2 s;
 check '40,000 outputs on a line' names
 { echo 'function f0(a) = a*a + 1'; lines 40 'printf "function f%d(a) = f%d(f%d(a))\n", i, i - 1, i - 1'; echo "lagrangian = x'^2/2 + f40(x)"; } | model power_tower
 slow check 'a function applied 2^40 times' starved power_tower
+model integral <<'END'
+coord y
+let a = 2*atan(tanh(y/2))
+let b = cos(2*atan2(-(2*a + t), sqrt(1 + (tanh(sin(y)) - atan(tanh(1/4)))^2)))^3
+lagrangian = (x'^2 + y'^2)/2 - b/(1 - b^2)*x' - y/2 - b
+END
+check 'a potential of 300,000 terms, which is not looked for' timeout 20 "$LAGC" check "$dir/integral.lag" # 1 s, and 50 s where it is
 model infinite <<'END'
 lagrangian = x'^2/2 + 1e999*x
 END
