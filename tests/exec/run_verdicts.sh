@@ -215,7 +215,8 @@ is "rows of the equations of motion, and combinations, are proved; a false one i
 for m in row_sums row_sums_dense; do "$LAGC" check $models/$m.lag 2>/dev/null; done >"$TMP/rows"
 is "sums of all rows of long chains are proved; false ones are not" "5 3" "$(grep -c ': proved$' "$TMP/rows") $(grep -c ': refuted$' "$TMP/rows")"
 
-# ---- the gallery, and random models: a few of them quickly, all in `make test-long`, with runs and modes of the gallery and of a tenth
+# ---- the gallery, and random models: a few of them quickly; in `make test-long` a third of the random ones, in `make test-all` all, with runs and
+# modes of the gallery and of a tenth
 scenes() { sed -n 's/^scene \([A-Za-z_0-9]*\).*/\1/p' "$1"; }
 how=quick
 [ -z "${SLOW:-}" ] || how=full
@@ -227,6 +228,7 @@ for m in models/*.lag; do
 done
 "${CC%% *}" -O1 -w -o "$TMP/generate" tests/random/generate.c tests/random/model.c && "$TMP/generate" 36 1 $count "$TMP"
 for m in "$TMP"/r*.lag; do
+  [ -z "${SLOW:-}" ] || one_of 12 || continue
   how=quick
   case $m in *0.lag) [ -z "${SLOW:-}" ] || how=full ;; esac
   empty "random model $(basename "$m" .lag) of seed 36" "$($how "$m" one 0.05)"
