@@ -1,7 +1,8 @@
 #!/bin/sh
 # Runs suites of tests; `make test` calls it with what it built (RUN_TESTS in tests/tests.mk).
 #   sh tests/run.sh [--long | --all | --bless | --bench] [PREFIX...]     only suites whose names, with or without their folder, begin with a PREFIX
-# JOBS: suites at a time (a job a processor); TIMES=1: each suite's processor time beside its wall time, and their sum.
+# JOBS: suites at a time (a job a processor); TIMES=1: each suite's processor time beside its wall time, the second of the run in which it ended,
+# and the sum of processor times.
 #
 # A suite is a file, found by its name; there is no list.
 #   tests/unit/test_NAME.c         built into $BIN/test_NAME (cmocka)            suite unit/test_NAME
@@ -183,6 +184,7 @@ for s in $suites; do rm -f "$logs/$s.done"; done
 # shellcheck disable=SC2086 # a list of words
 printf '%s\n' $order | xargs -P "$JOBS" -I SUITE sh tests/run.sh --run-one SUITE "$limit" "$logs" &
 runner=$!
+start=$(date +%s)
 trap 'kill "$runner" 2>/dev/null; exit 130' INT TERM
 
 # A suite's log and exit status -> one line `passed failed skipped`, then the lines to show.
@@ -256,7 +258,7 @@ for s in $suites; do
   line="$dots $1 passed"
   [ "$2" = 0 ] || line="$line, $2 FAILED"
   [ "$3" = 0 ] || line="$line, $3 skipped"
-  printf '%s  %s s%s\n' "$line" "$took" "${TIMES:+, processor $used s}"
+  printf '%s  %s s%s\n' "$line" "$took" "${TIMES:+, processor $used s, at $((${end%.*} - start)) s}"
   printf '%s\n' "$verdict" | tail -n +2
 done
 wait "$runner" 2>/dev/null

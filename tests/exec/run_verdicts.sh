@@ -3,6 +3,13 @@
 # is a fault, and so is a conserved energy that drifts in a run. verdicts/ has models whose verdicts are known by hand.
 . tests/tap.sh
 models=tests/exec/verdicts
+# Each command takes a second or two: what takes a hundred is a fault, too, and is named at the end.
+lagc() {
+  timeout 100 "$LAGC" "$@"
+  set -- "$?" "$@"
+  [ "$1" != 124 ] || echo "$2 $3" >>"$TMP/late"
+  return "$1"
+}
 export XDG_CACHE_HOME="${XDG_CACHE_HOME:-$TMP}"
 
 # word FILE: conserved, changes or undecided, of the sentence about the energy; nothing where there is none.
@@ -20,8 +27,8 @@ same() { [ "$2" = "$3" ] || echo "$1: $2 | $3"; }
 
 # symmetries: those that noether lists, against check
 symmetries() {
-  "$LAGC" noether "$m" "$s" >"$o/noether" 2>/dev/null
-  "$LAGC" noether "$m" "$s" --format json >"$o/json" 2>/dev/null
+  lagc noether "$m" "$s" >"$o/noether" 2>/dev/null
+  lagc noether "$m" "$s" --format json >"$o/json" 2>/dev/null
   same "check and noether" "$(sentence "$o/check")" "$(sentence "$o/noether")"
   same "check and noether's JSON" "$said" "$(sed -n '1s/.*"energy": "\([a-z ]*\)".*/\1/p' "$o/json" | sed 's/not decided/undecided/')"
   same "cyclic in check and noether" "$(grep '^cyclic' "$o/check")" "$(grep '^cyclic' "$o/noether")"
@@ -35,11 +42,11 @@ symmetries() {
 quick() {
   m=$1 s=$2 o=$TMP/words
   mkdir -p "$o"
-  "$LAGC" check --allow-numeric "$m" "$s" >"$o/check" 2>/dev/null
+  lagc check --allow-numeric "$m" "$s" >"$o/check" 2>/dev/null
   said=$(word "$o/check")
   [ -n "$said" ] || return 0
-  "$LAGC" derive "$m" "$s" >"$o/derive" 2>/dev/null
-  "$LAGC" emit "$m" "$s" >"$o/c" 2>/dev/null
+  lagc derive "$m" "$s" >"$o/derive" 2>/dev/null
+  lagc emit "$m" "$s" >"$o/c" 2>/dev/null
   same "check and derive" "$(sentence "$o/check")" "$(sentence "$o/derive")"
   [ "$(sed -n '1s/^\([0-9]*\) coordinate.*/\1/p' "$o/check")0" -gt "${SLOW:+9}30" ] || symmetries # the search takes a second with more than 3 coordinates
   rate=$(grep -c '^  d[EH]/dt = ' "$o/derive")
@@ -74,7 +81,7 @@ full() {
   [ -n "$said" ] || return 0
   timeout 20 "$LAGC" run "$m" "$s" --method dop853 --tol 1e-9 --until "${3:-0.5}" --json >"$o/run" 2>/dev/null ||
     return 0 # events or constraints may end it, or the scene is of nanoseconds
-  "$LAGC" modes "$m" "$s" >"$o/modes" 2>&1
+  lagc modes "$m" "$s" >"$o/modes" 2>&1
   is=$(sed -n 's/.*"charges": {"energy": {"is": "\([a-z ]*\)".*/\1/p' "$o/run")
   drift=$(value energy_drift "$o/run")
   case $said:$is in
@@ -124,7 +131,7 @@ is_said shaken changes "a constraint that does work"
 verdicts() {
   while read -r wanted lines; do
     printf 'model m\ncoord x, y\nparam k = 2 > 0, w = 0.5 > 0\n%s\nscene s { start x = 0.4, y = -0.3; span 1 }\n' "$(echo "$lines" | sed 's/; /\n/g')" >"$TMP/m.lag"
-    "$LAGC" check "$TMP/m.lag" s >"$TMP/said" 2>/dev/null
+    lagc check "$TMP/m.lag" s >"$TMP/said" 2>/dev/null
     [ "$(word "$TMP/said")" = "$wanted" ] || echo "$lines: $(head -n 1 "$TMP/said")"
   done
 }
@@ -187,32 +194,32 @@ END
 empty "potentials of forces, and total time derivatives" "$(verdicts <"$TMP/table")"
 printf '%s\n' "model chain" "const N = 100" "coord x[N]" "lagrangian = sum(i in 1..N, x[i]'^2/2)" "force x[1] = tanh(x[2] - x[1])" \
   "for i in 2..N-1 { force x[i] = tanh(x[i+1] - x[i]) - tanh(x[i] - x[i-1]) }" "force x[N] = -tanh(x[N] - x[N-1])" "scene s { start x[1] = 1; span 1 }" >"$TMP/chain.lag"
-"$LAGC" check "$TMP/chain.lag" >"$TMP/said" 2>/dev/null
+lagc check "$TMP/chain.lag" >"$TMP/said" 2>/dev/null
 is "a long chain of forces" conserved "$(word "$TMP/said")"
 is_said curl changes "a force with a curl"
 is_said drag_of_zero changes "a drag whose coefficient is 0 in the scene"
-of_values=$("$LAGC" check $models/drag_of_zero.lag free | grep -o 'which is 0.*')
+of_values=$(lagc check $models/drag_of_zero.lag free | grep -o 'which is 0.*')
 is "and what is 0 with the scene's values" "which is 0 in this scene, where c = 0, F = 0" "$of_values"
-is "with one of two that is not 0" "" "$("$LAGC" check $models/drag_of_zero.lag pushed | grep -o 'which is 0.*')"
+is "with one of two that is not 0" "" "$(lagc check $models/drag_of_zero.lag pushed | grep -o 'which is 0.*')"
 empty "modes agree" "$(for s in free pushed damped; do full $models/drag_of_zero.lag $s; done)"
 check "a minimum of an energy that these values conserve" grep -q '^stable: the energy, which is conserved at these values' "$(full $models/drag_of_zero.lag free; echo "$TMP/words/modes")"
 is_said torque changes "a torque on an angle has no potential with one value"
 is_said two_branches undecided "zero on one branch of a constraint alone"
-is "the symmetries of the turntable are those of its expanded form" "8 8" "$(for f in turntable turntable_expanded; do "$LAGC" noether $models/$f.lag | sed -n 's/^found: \([0-9]*\).*/\1/p'; done | paste -sd ' ' -)"
+is "the symmetries of the turntable are those of its expanded form" "8 8" "$(for f in turntable turntable_expanded; do lagc noether $models/$f.lag | sed -n 's/^found: \([0-9]*\).*/\1/p'; done | paste -sd ' ' -)"
 empty "run and modes, a constant force" "$(full $models/constant_force.lag hang 1)"
 check "it is stable" grep -q '^stable: the energy, which is conserved, has a minimum here' "$TMP/words/modes"
 empty "run and modes, a rotating wire" "$(full $models/bead_on_parabola.lag slow 1)"
 check "it is stable" grep -q '^stable: the energy, which is conserved, has a minimum here' "$TMP/words/modes"
 h() { # h H LINE: the verdict of modes on a model with this Hamiltonian
   printf '%s\n' "model h" "coord x, y" "momentum p of x, q of y" "hamiltonian = $1" "$2" "scene s { start x = 0.1; span 1 }" >"$TMP/h.lag"
-  "$LAGC" modes "$TMP/h.lag" 2>/dev/null | sed -n 's/^\([a-z]*stable\|undecided\)[: ].*\(minimum\|maximum\) .*/\1 \2/p; t; s/^\([a-z]*stable\|undecided\).*/\1/p'
+  lagc modes "$TMP/h.lag" 2>/dev/null | sed -n 's/^\([a-z]*stable\|undecided\)[: ].*\(minimum\|maximum\) .*/\1 \2/p; t; s/^\([a-z]*stable\|undecided\).*/\1/p'
 }
 is "modes of H: a minimum, with a force, a maximum, neither" "stable minimum|stable minimum|stable maximum|undecided" \
   "$(h "(p^2 + q^2 + x^2)/2 + y^2 + x*y/2" "")|$(h "(p^2 + q^2)/2 + y^2" "force x = -x*hypot(1, x)")|$(h "-(p^2 + q^2 + x^2)/2 - y^2 - x^4" "")|$(h "(p^2 + x^2)/2 - (q^2 + 2*y^2)/2" "")"
-"$LAGC" check $models/rows_of_motion.lag >"$TMP/rows" 2>/dev/null
+lagc check $models/rows_of_motion.lag >"$TMP/rows" 2>/dev/null
 is "rows of the equations of motion, and combinations, are proved; a false one is not" "9 1" \
   "$(grep -c ': proved$' "$TMP/rows") $(grep -c ' (wrong): refuted$' "$TMP/rows")"
-for m in row_sums row_sums_dense; do "$LAGC" check $models/$m.lag 2>/dev/null; done >"$TMP/rows"
+for m in row_sums row_sums_dense; do lagc check $models/$m.lag 2>/dev/null; done >"$TMP/rows"
 is "sums of all rows of long chains are proved; false ones are not" "5 3" "$(grep -c ': proved$' "$TMP/rows") $(grep -c ': refuted$' "$TMP/rows")"
 
 # ---- the gallery, and random models: a few of them quickly; in `make test-long` a third of the random ones, in `make test-all` all, with runs and
@@ -233,4 +240,5 @@ for m in "$TMP"/r*.lag; do
   case $m in *0.lag) [ -z "${SLOW:-}" ] || how=full ;; esac
   empty "random model $(basename "$m" .lag) of seed 36" "$($how "$m" one 0.05)"
 done
+empty "no command takes 100 s" "$(cat "$TMP/late" 2>/dev/null)"
 tap_end

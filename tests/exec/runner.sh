@@ -109,7 +109,7 @@ blessed_in_ci() { (export CI=1 && BUILD=out BIN=bin sh "$tree/tests/run.sh" --bl
 not() { ! "$@"; }
 check "never in CI" not blessed_in_ci
 check "a prefix without a suite is a mistake" fails nothing
-check "TIMES=1 shows processor time" env TIMES=1 BUILD=out BIN=bin sh -c "sh '$tree/tests/run.sh' a/good | grep -q 'processor [0-9.]* s$'"
+check "TIMES=1 shows processor time, and when a suite ended" env TIMES=1 BUILD=out BIN=bin sh -c "sh '$tree/tests/run.sh' a/good | grep -q 'processor [0-9.]* s, at [0-9]* s$'"
 check "and its sum" env TIMES=1 BUILD=out BIN=bin sh -c "sh '$tree/tests/run.sh' a/good | grep -q '^processor time of all suites: [0-9]* s$'"
 suite a/asks_python <<'END'
 python3 -c 'print("ok 1 - a python3 that is a script is asked once where Python is")'
