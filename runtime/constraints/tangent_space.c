@@ -49,7 +49,7 @@ static double steepness(lag_problem *pb, const double *y, const double *e, doubl
 static int differences(lag_problem *pb, double t, const double *y, const double *e, double h, double *there, double *c,
                        double *rate, double *error) {
   int m = pb->model->constraints->n, rc = LAG_OK;
-  double *r = c + m, *bend = r + m, terms = lag_largest(2 * pb->nq, y), most = DBL_MIN, bent = 0;
+  double *r = c + m, *bend = r + m, terms = lag_largest(2 * pb->nq, y), most = lag_largest(2 * pb->nq, e), bent = 0;
   memset(rate, 0, (size_t)m * sizeof *rate);
   memset(bend, 0, (size_t)m * sizeof *bend);
   for (int j = -2; j <= 2 && rc == LAG_OK; j++) {
@@ -58,7 +58,7 @@ static int differences(lag_problem *pb, double t, const double *y, const double 
     rc = j ? lag_residuals(pb, t, there, c, r) : LAG_OK;
     for (int k = 0; k < m && j; k++) rate[k] += weight * r[k] / h, bend[k] += (j % 2 ? 2 : -1) * sign * r[k] / (4 * h);
   }
-  for (int k = 0; k < m; k++) most = fmax(most, fabs(rate[k])), bent = fmax(bent, fabs(bend[k]));
+  for (int k = 0; k < m; k++) bent = fmax(bent, fabs(bend[k]));
   *error = bent * bent / most + DBL_EPSILON * terms / h;
   return rc;
 }
