@@ -26,7 +26,7 @@ typedef struct Series {
   int k, n, leads;    /* the mode; its leading unknown in the state */
   double *scale, *x, *held; /* [n] units; rows of coefficients; inputs that follow a formula: none */
   double *B;                /* [n * n] */
-  double *y, *r;            /* [HARMONICS][HARMONICS][2 n], [HARMONICS][2 n] harmonics of y_k and of the rates: re, im */
+  double *y, *r;            /* [HARMONICS][HARMONICS][2 n], [HARMONICS][2 n]: harmonics of y_k, of rates: re, im */
   double *curve, *rates;    /* [HARMONICS * n], [n] */
   double *M, *rhs;          /* a linear system of up to 2 n + 2 unknowns */
   double *perm;

@@ -13,11 +13,13 @@ int lag_app_find_amplitudes(const App *app, Equilibrium *rest, const Modes *mode
   int rc = LAG_OK;
   *bends = NULL;
   if (!m->taylor || !m->taylor->along)
-    return lag_app_error(&app->args, m->flags & LAG_SMOOTH
-        ? "--amplitude needs series of the forces, which this program was built without: `lagc modes MODEL --amplitude` "
-          "and `lagc build MODEL --with linear --method taylor` build them in"
-        : "--amplitude needs a model without if, abs, sign, min, max, atan2 and tables, whose forces have no series; "
-          "`lagc continue` follows its periodic motions over an amplitude");
+    return lag_app_error(
+        &app->args,
+        m->flags & LAG_SMOOTH
+            ? "--amplitude needs series of the forces, which this program was built without: `lagc modes MODEL "
+              "--amplitude` and `lagc build MODEL --with linear --method taylor` build them in"
+            : "--amplitude needs a model without if, abs, sign, min, max, atan2 and tables, whose forces have no "
+              "series; `lagc continue` follows its periodic motions over an amplitude");
   ModeAmplitude *a = calloc((size_t)modes->n + 1, sizeof *a);
   for (int k = 0; a && k < modes->n && rc == LAG_OK; k++) rc = lag_mode_amplitude(&a[k], modes, k, rest);
   if (a && rc == LAG_OK) {
@@ -35,7 +37,8 @@ static void put_resonance(FILE *f, const ModeAmplitude *a, int mode) {
     fprintf(f, "it drifts along mode %d", a->with + 1);
     return;
   }
-  fprintf(f, "%s %d w%d = w%d", blocked ? "resonance" : "; for small A only, near the resonance", a->times, mode, a->with + 1);
+  fputs(blocked ? "resonance" : "; for small A only, near the resonance", f);
+  fprintf(f, " %d w%d = w%d", a->times, mode, a->with + 1);
   if (a->divisor > 1e-9) fprintf(f, ", but for %.2g w%d", a->divisor, mode);
 }
 

@@ -330,8 +330,12 @@ static void along(const TaylorWriter *w) {
                   "      for (int j = 1; j < k; j++)\n"
                   "        w->s[i] += w->a[j][i]*(i < TAYLOR_SQUARES ? w->b[k - j][i] : w->a[k - j][i]);\n"
                   "    }\n");
-  sb_printf(w->out, "    taylor_next((LAG_REAL)k, LAG_C(1.0)/(LAG_REAL)k, LAG_C(1.0)/(LAG_REAL)(k + 1), w->s, w->c, row, row, x + n*TAYLOR_COLUMNS,\n"
-                    "                w->a[k], w->b[k]%s);\n  }\n}\n", s->room ? ", w->m" : "");
+  sb_printf(w->out,
+            "    taylor_next((LAG_REAL)k, LAG_C(1.0)/(LAG_REAL)k, LAG_C(1.0)/(LAG_REAL)(k + 1), w->s, w->c, row, row,\n"
+            "                x + n*TAYLOR_COLUMNS, w->a[k], w->b[k]%s);\n"
+            "  }\n"
+            "}\n",
+            s->room ? ", w->m" : "");
 }
 
 /* Writes the row operations: sums, squares, all orders, evaluation of the series. */
