@@ -1,176 +1,337 @@
-/* Frequency over amplitude (mode_amplitude.h): periods of motions with some small amplitudes, and the polynomial
- * through them. For a normal form the same coefficients follow from derivatives of H up to the sixth; here each
- * motion is solved exactly, so that only the polynomial is cut off. */
+/* Frequency over amplitude (mode_amplitude.h): the family of periodic motions as a power series in its amplitude e,
+ *
+ *     y(phi) = y0 + e y_1(phi) + e^2 y_2(phi) + ...,   phi' = w (1 + c_1 e + c_2 e^2 + ...),
+ *
+ * by A. Lindstedt's and H. Poincare's method. Coefficients of y' along such a curve are those of the model's Taylor
+ * recurrences, exact but for rounding, at some phases; their harmonics h give linear equations
+ * (i h - B) Y = R for those of y_k, with B the linearised model, and for h = 1 one more unknown, c_(k-1). y_k has
+ * harmonics of the parity of k, up to k. In units of 1/w and of each unknown. */
 #include "analysis/mode_amplitude.h"
 
+#include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "core/rhs.h"
 #include "numeric/dense.h"
 
-enum { POINTS = 7, LOOKS = 64 };
+enum { ORDER = 5, HARMONICS = ORDER + 1 };
 
-/* Whether the mode is undamped, and no other rate is a multiple of its own, 0 included: A. M. Lyapunov's theorem, by
- * which rates that grow or decay are no obstacle. */
-static int has_family(const Modes *modes, int k) {
-  const double near = 1e-3, undamped = 1e-9;
-  const Mode *m = &modes->mode[k];
-  if (!(m->im > 0) || fabs(m->re) > undamped * m->im || m->repeats > 1) return 0;
-  for (int i = 0; i < modes->n; i++) {
-    double ratio = modes->mode[i].im / m->im, growth = modes->mode[i].re / m->im;
-    if (i != k && hypot(ratio - rint(ratio), growth) < near) return 0;
+typedef struct Series {
+  Pool pool;
+  const Modes *modes;
+  lag_problem *pb;
+  const double *rest; /* [n] */
+  double t, w;
+  int k, n, leads;    /* the mode; its leading unknown in the state */
+  double *scale, *x, *held; /* [n] units; rows of coefficients; inputs that follow a formula: none */
+  double *B;                /* [n * n] */
+  double *y, *r;            /* [HARMONICS][HARMONICS][2 n], [HARMONICS][2 n]: harmonics of y_k, of rates: re, im */
+  double *curve, *rates;    /* [HARMONICS * n], [n] */
+  double *M, *rhs;          /* a linear system of up to 2 n + 2 unknowns */
+  double *perm;
+  double c[HARMONICS], c_im[HARMONICS];
+  ModeAmplitude *out;
+} Series;
+
+static double *harmonic(const Series *s, int order, int h) {
+  return s->y + (size_t)(order * HARMONICS + h) * 2 * (size_t)s->n;
+}
+
+/* rates[n] := coefficient `order` of the rates along the curve y0 + sum of e^j curve[j * n]. 0 or a status. */
+static int rates_along(Series *s, int order) {
+  lag_problem *pb = s->pb;
+  const lag_taylor *ty = pb->model->taylor;
+  const int nq = pb->nq, n = s->n, columns = ty->columns;
+  const double *y = s->rest;
+  memset(s->x, 0, (size_t)(ORDER + 2) * (size_t)columns * sizeof *s->x);
+  int rc = lag_inputs_inline(pb, s->t);
+  if (rc) return rc;
+  rc = ty->first(ty, s->t, y, y + nq, y + 2 * nq, pb->p, pb->u, s->held, s->x, pb->work);
+  if (rc) return rc;
+  for (int j = 1; j <= order; j++)
+    for (int i = 0; i < n; i++) s->x[j * columns + i] = s->scale[i] * s->curve[j * n + i];
+  ty->along(ty, order + 1, s->x, pb->work);
+  for (int i = 0; i < n; i++) {
+    int column = i < nq ? nq + i : pb->nq + pb->nz + i;
+    s->rates[i] = s->x[order * columns + column] / (s->scale[i] * s->w);
+  }
+  return LAG_OK;
+}
+
+static int linearise(Series *s) {
+  for (int j = 0; j < s->n; j++) {
+    memset(s->curve, 0, (size_t)(HARMONICS * s->n) * sizeof *s->curve);
+    s->curve[s->n + j] = 1;
+    int rc = rates_along(s, 1);
+    if (rc) return rc;
+    for (int i = 0; i < s->n; i++) s->B[i * s->n + j] = s->rates[i];
+  }
+  return LAG_OK;
+}
+
+/* Harmonics r[h] of the rates of order k that y_1 .. y_(k-1) cause, from `points` phases. */
+static int force(Series *s, int k, int points) {
+  const double turn = 2 * acos(-1) / points;
+  const int n = s->n;
+  memset(s->r, 0, sizeof(double) * HARMONICS * 2 * (size_t)n);
+  memset(s->curve, 0, sizeof(double) * HARMONICS * (size_t)n);
+  for (int p = 0; p < points; p++) {
+    for (int j = 1; j < k; j++)
+      for (int i = 0; i < n; i++) {
+        double sum = 0;
+        for (int h = j % 2; h <= j; h += 2) {
+          const double *y = harmonic(s, j, h);
+          sum += (h ? 2 : 1) * (y[i] * cos(h * p * turn) - y[n + i] * sin(h * p * turn));
+        }
+        s->curve[j * n + i] = sum;
+      }
+    int rc = rates_along(s, k);
+    if (rc) return rc;
+    for (int h = k % 2; h <= k; h += 2)
+      for (int i = 0; i < n; i++) {
+        s->r[h * 2 * n + i] += s->rates[i] * cos(h * p * turn) / points;
+        s->r[h * 2 * n + n + i] -= s->rates[i] * sin(h * p * turn) / points;
+      }
+  }
+  return LAG_OK;
+}
+
+/* Number of other modes with the frequency h w but for the part `near` of w; *with := the nearest one, *divisor its
+ * distance over w. */
+static int resonant(const Series *s, int h, double near, int *with, double *divisor) {
+  int count = 0;
+  *divisor = near;
+  for (int j = 0; j < s->modes->n; j++) {
+    const Mode *m = &s->modes->mode[j];
+    double off = hypot(m->re, m->im - h * s->w) / s->w;
+    if (j == s->k || !(off < near)) continue;
+    if (!count++ || off < *divisor) *with = j, *divisor = off;
+  }
+  return count;
+}
+
+/* M X = rhs for harmonic h; returns the number of unknowns. For h = 1 with those of c, and with the amplitude of the
+ * leading unknown held. Harmonic 0 is real. */
+static int equations(Series *s, int h) {
+  const int n = s->n, N = h == 0 ? n : h == 1 ? 2 * n + 2 : 2 * n;
+  const double *u = harmonic(s, 1, 1);
+  memset(s->M, 0, sizeof(double) * (size_t)N * (size_t)N);
+  for (int i = 0; i < n; i++) {
+    for (int j = 0; j < n; j++) s->M[i * N + j] = -s->B[i * n + j];
+    if (!h) continue;
+    for (int j = 0; j < n; j++) s->M[(n + i) * N + n + j] = -s->B[i * n + j];
+    s->M[i * N + n + i] -= h, s->M[(n + i) * N + i] += h;
+    if (h > 1) continue;
+    s->M[i * N + 2 * n] = -u[n + i], s->M[i * N + 2 * n + 1] = -u[i];
+    s->M[(n + i) * N + 2 * n] = u[i], s->M[(n + i) * N + 2 * n + 1] = -u[n + i];
+  }
+  if (h == 1) s->M[2 * n * N + s->leads] = s->M[(2 * n + 1) * N + n + s->leads] = 1;
+  return N;
+}
+
+/* rhs := M^-1 rhs, where the last `free` pivots may vanish: 1 if the equations contradict each other by more than
+ * `rounding`, which is a resonance; unknowns that nothing determines become 0. */
+static int solve(Series *s, int N, int free, double rounding) {
+  const double vanishes = 1e-9;
+  double *M = s->M, *b = s->rhs, *x = s->perm + N;
+  int rank = N;
+  for (int i = 0; i < N; i++) s->perm[i] = i;
+  for (int k = 0; k < rank; k++) {
+    if (k == N - free)
+      for (int i = k; i < N; i++)
+        if (fabs(b[i]) > rounding) return 1;
+    int row, col;
+    double pivot = lag_complete_pivot(N, k, M, &row, &col);
+    lag_swap(&b[k], &b[row]);
+    lag_swap(&s->perm[k], &s->perm[col]);
+    if (k >= N - free && pivot < vanishes) rank = k;
+    else if (!(pivot > 0)) return 1;
+    for (int i = k + 1; i < N && k < rank; i++) b[i] -= lag_eliminate_row(N, M, k, i) * b[k];
+  }
+  for (int i = N - 1; i >= 0; i--) {
+    double sum = i < rank ? b[i] : 0;
+    for (int j = i + 1; j < rank && i < rank; j++) sum -= M[i * N + j] * x[(int)s->perm[j]];
+    x[(int)s->perm[i]] = i < rank ? sum / M[i * N + i] : 0;
+  }
+  memcpy(b, x, (size_t)N * sizeof *b);
+  return 0;
+}
+
+/* Harmonic h of y_k from its right-hand side; with h = 1 also c_(k-1). 0: resonance. */
+static int solve_harmonic(Series *s, int k, int h, double rounding) {
+  const double near = 0.1, equal = 1e-3;
+  ModeAmplitude *a = s->out;
+  double *y = harmonic(s, k, h), divisor;
+  int with = 0, n = s->n, N = equations(s, h), count = resonant(s, h, equal, &with, &divisor),
+      forced = lag_largest(N, s->rhs) > rounding;
+  if (solve(s, N, h ? 2 * count : count, rounding)) {
+    a->limit = AMPLITUDE_RESONANCE, a->with = with, a->times = h, a->divisor = divisor;
+    return 0;
+  }
+  if (!count && forced && resonant(s, h, near, &with, &divisor) && !(a->divisor <= divisor))
+    a->with = with, a->times = h, a->divisor = divisor;
+  for (int i = 0; i < (h ? 2 : 1) * n; i++) y[i] += s->rhs[i];
+  if (h == 1) s->c[k - 1] = s->rhs[2 * n], s->c_im[k - 1] = s->rhs[2 * n + 1];
+  return 1;
+}
+
+/* rhs := r[h] - sum of c_j i h Y_(k-j), j = 1 .. k - 2. */
+static void right_side(Series *s, int k, int h) {
+  const int n = s->n;
+  for (int i = 0; i < n; i++) {
+    double re = s->r[h * 2 * n + i], im = s->r[h * 2 * n + n + i];
+    for (int j = 1; j <= k - 2; j++) {
+      const double *y = harmonic(s, k - j, h);
+      re += h * (s->c[j] * y[n + i] + s->c_im[j] * y[i]);
+      im -= h * (s->c[j] * y[i] - s->c_im[j] * y[n + i]);
+    }
+    s->rhs[i] = re, s->rhs[n + i] = im;
+  }
+  if (h == 1) s->rhs[2 * n] = s->rhs[2 * n + 1] = 0;
+}
+
+/* y_k, of the last order only c. 1: found, 0: resonance, < 0: a status. */
+static int solve_order(Series *s, int k, int points) {
+  const double part = 1e-9, rounding = 64 * DBL_EPSILON;
+  int rc = force(s, k, points), n = s->n;
+  if (rc) return rc;
+  double size = rounding * (1 + lag_largest(n * n, s->B)) + part * lag_largest(HARMONICS * 2 * n, s->r);
+  for (int h = k % 2; h <= (k == ORDER ? 1 : k); h += 2) {
+    right_side(s, k, h);
+    if (!solve_harmonic(s, k, h, size)) return 0;
   }
   return 1;
 }
 
-/* Turning value of coordinate i near y at t: y moves there. */
-static double turning_value(FlowMap *f, int i, double t, double *y) {
-  for (int step = 0; step < 3; step++) {
-    if (lag_flow_rates(f, t, y, f->up) || f->up[f->nq + i] == 0.0) return NAN;
-    double dt = -y[f->nq + i] / f->up[f->nq + i];
-    if (fabs(dt) < 1e-14 * (1 + fabs(t))) break;
-    if (lag_flow_run(f, t, dt, y, f->square, NULL)) return NAN;
-    memcpy(y, f->square, (size_t)f->n * sizeof *y);
-    t += dt;
+/* y_1 := the mode with amplitude 1 of the leading unknown, refined by Newton's method. 0: no shape of its own. */
+static int place_mode(Series *s) {
+  const Mode *m = &s->modes->mode[s->k];
+  const int n = s->n, nq = s->pb->nq, nz = s->pb->nz, lead = s->leads < nq ? s->leads : s->leads - nq;
+  double *u = harmonic(s, 1, 1), unit = s->scale[s->leads];
+  double re = m->shape_re[lead], im = m->shape_im[lead], size = 2 * (re * re + im * im);
+  for (int i = 0; i < nq + nz; i++) {
+    int to = i < nq ? i : nq + i;
+    double part = unit / s->scale[to] / size;
+    u[to] = (m->shape_re[i] * re + m->shape_im[i] * im) * part;
+    u[n + to] = (m->shape_im[i] * re - m->shape_re[i] * im) * part;
+    if (i < nq) u[nq + i] = -u[n + i], u[n + nq + i] = u[i];
   }
-  return y[i];
-}
-
-/* Half the swing of coordinate i. */
-static double swing(PeriodicOrbit *o, int i) {
-  double *high = o->x, *low = high + o->n;
-  lag_sim *sim = lag_flow_sim(&o->flow, o->flow.t0, o->y);
-  memcpy(high, o->y, (size_t)o->n * sizeof *high);
-  memcpy(low, o->y, (size_t)o->n * sizeof *low);
-  for (int k = 1; k <= LOOKS && sim && lag_sim_advance(sim, o->flow.t0 + o->T * k / LOOKS) == LAG_OK; k++) {
-    if (sim->now[i] > high[i]) memcpy(high, sim->now, (size_t)o->n * sizeof *high);
-    if (sim->now[i] < low[i]) memcpy(low, sim->now, (size_t)o->n * sizeof *low);
+  for (int step = 0; step < 2; step++) {
+    for (int i = 0; i < n; i++) {
+      s->rhs[i] = u[n + i] + lag_dot(n, s->B + i * n, u);
+      s->rhs[n + i] = -u[i] + lag_dot(n, s->B + i * n, u + n);
+    }
+    s->rhs[2 * n] = s->rhs[2 * n + 1] = 0;
+    if (!solve_harmonic(s, 1, 1, HUGE_VAL)) return 0;
   }
-  lag_sim_free(sim);
-  return (turning_value(&o->flow, i, o->flow.t0, high) - turning_value(&o->flow, i, o->flow.t0, low)) / 2;
-}
-
-/* *T, *A := period and half the swing of the motion with coordinate `leads` at `value`, near the start. 0: none. */
-static int solve(lag_sim *start, const lag_algebra *algebra, int leads, double value, double *T, double *A) {
-  PeriodicOrbit o = {.nheld = 1, .held = {{.kind = ORBIT_STATE, .of = leads, .value = value}}};
-  double about = *T;
-  int rc = lag_orbit_open(&o, start, algebra, *T, 0);
-  int found = rc == LAG_OK && lag_orbit_solve(&o) == 1 && lag_orbit_refine(&o) == LAG_OK && !o.at_rest;
-  *T = o.T;
-  *A = found ? swing(&o, leads) : NAN;
-  lag_orbit_free(&o);
-  return found && isfinite(*A) && fabs(*T - about) < 0.2 * about;
-}
-
-/* c[count] := coefficients of the powers of A^2 from the first on, through (A[k], r[k]). */
-static int fit(int count, const double *A, const double *r, double *c) {
-  double M[POINTS * POINTS], unit = A[count - 1] * A[count - 1];
-  for (int i = 0; i < count; i++) {
-    double x = A[i] * A[i] / unit;
-    for (int j = 0; j < count; j++) M[i * count + j] = pow(x, j + 1);
-    c[i] = r[i];
-  }
-  if (lag_solve_dense((size_t)count, 1, M, c)) return 0;
-  for (int j = 0; j < count; j++) c[j] /= pow(unit, j + 1);
   return 1;
 }
 
-static int leading(const Mode *m, lag_problem *pb, const double *y) {
-  int leads = 0;
+/* (re, im)[ORDER] := the series exp(i h d(e)) of a series d with d[0] = 0. */
+static void turned(int h, const double *d, double *re, double *im) {
+  re[0] = 1, im[0] = 0;
+  for (int k = 1; k < ORDER; k++) { /* f' = i h d' f */
+    re[k] = im[k] = 0;
+    for (int j = 1; j <= k; j++) re[k] -= h * j * d[j] * im[k - j] / k, im[k] += h * j * d[j] * re[k - j] / k;
+  }
+}
+
+/* q[ORDER] := sum of e^(k - less) times the leading unknown of y_k at the phase d(e), or its slope by the phase. */
+static void leading_value(const Series *s, const double *d, int slope, double *q) {
+  double re[ORDER], im[ORDER];
+  memset(q, 0, ORDER * sizeof *q);
+  for (int h = 0; h < ORDER; h++) {
+    turned(h, d, re, im);
+    for (int k = 1; k < ORDER; k++) {
+      const double *y = harmonic(s, k, h);
+      double a = (h ? 2 : 1) * y[s->leads], b = (h ? 2 : 1) * y[s->n + s->leads];
+      for (int j = 0; j + k < ORDER + slope && j < ORDER; j++)
+        q[j + k - slope] += slope ? -h * (a * im[j] + b * re[j]) : a * re[j] - b * im[j];
+    }
+  }
+}
+
+/* Half the swing is e (1 + s2 e^2 + ...): returns s2. The lower turning value is the upper one for -e. */
+static double swing(const Series *s) {
+  double d[ORDER] = {0}, q[ORDER];
+  for (int step = 1; step < ORDER; step++) { /* the slope is -d and higher orders */
+    leading_value(s, d, 1, q);
+    for (int k = 1; k < ORDER; k++) d[k] += q[k];
+  }
+  leading_value(s, d, 0, q);
+  return q[3];
+}
+
+/* Orders 2 to 5. LAG_OK or a status. */
+static int expand(Series *s, int points) {
+  const double part = 1e-9, rounding = 64 * DBL_EPSILON;
+  ModeAmplitude *a = s->out;
+  const double unit = s->scale[s->leads] * s->scale[s->leads];
+  int rc = 1;
+  a->a2 = a->a4 = NAN;
+  for (int k = 2; k <= ORDER && rc == 1; k++) {
+    rc = solve_order(s, k, points);
+    if (k != 3 || rc != 1) continue;
+    if (fabs(s->c_im[2]) > part * fabs(s->c[2]) + rounding * (1 + lag_largest(s->n * s->n, s->B))) {
+      a->limit = AMPLITUDE_GROWTH, a->growth = -s->c_im[2] * s->w / unit;
+      return LAG_OK;
+    }
+    s->c_im[2] = 0;
+    a->a2 = s->c[2] / unit;
+  }
+  if (rc == 1) a->a4 = (s->c[4] - 2 * swing(s) * s->c[2]) / (unit * unit);
+  return rc < 0 ? rc : LAG_OK;
+}
+
+/* The unknown that moves most, in its unit; of equal ones the first. */
+static int leading(const Series *s, const Mode *m) {
+  int nq = s->pb->nq, leads = 0;
   double most = 0;
-  for (int i = 0; i < pb->nq; i++) {
-    double size = hypot(m->shape_re[i], m->shape_im[i]) / lag_difference_scale(pb, y, i);
-    if (size > most * (1 + 1e-6)) leads = i, most = size;
+  for (int i = 0; i < nq + s->pb->nz; i++) {
+    int at = i < nq ? i : nq + i;
+    double size = hypot(m->shape_re[i], m->shape_im[i]) / s->scale[at];
+    if (size > most * (1 + 1e-6)) leads = at, most = size;
   }
   return leads;
 }
 
-/* The motion of the linear mode, with the amplitude A of coordinate `leads`, which is at its end. */
-static void place(const Mode *m, const double *y, int nq, int leads, double A, double *start) {
-  double re = m->shape_re[leads], im = m->shape_im[leads], size = re * re + im * im;
-  for (int i = 0; i < nq; i++) { /* shape times A / shape[leads] */
-    double part = (m->shape_re[i] * re + m->shape_im[i] * im) / size,
-           turned = (m->shape_im[i] * re - m->shape_re[i] * im) / size;
-    start[i] = y[i] + A * part;
-    start[nq + i] = -A * m->im * turned;
+static int open_series(Series *s, Equilibrium *rest) {
+  const size_t n = (size_t)s->n, N = 2 * n + 2;
+  const lag_part parts[] = {
+      {&s->scale, n}, {&s->x, (size_t)(ORDER + 2) * (size_t)s->pb->model->taylor->columns + 8},
+      {&s->held, (size_t)s->pb->model->nu + 1}, {&s->B, n * n}, {&s->y, HARMONICS * HARMONICS * 2 * n},
+      {&s->r, HARMONICS * 2 * n}, {&s->curve, HARMONICS * n}, {&s->rates, n}, {&s->M, N * N}, {&s->rhs, N},
+      {&s->perm, 2 * N}};
+  lag_pool_parts(&s->pool, sizeof parts / sizeof *parts, parts);
+  if (s->pool.failed) return LAG_ENOMEM;
+  for (int i = 0; i < s->n; i++) {
+    int of = i >= s->pb->nq && i < 2 * s->pb->nq ? i - s->pb->nq : i;
+    s->scale[i] = lag_difference_scale(s->pb, rest->y, of) * (of < i ? s->w : 1);
   }
+  s->leads = leading(s, &s->modes->mode[s->k]);
+  return linearise(s);
 }
 
-typedef struct Family {
-  const Mode *m;
-  lag_sim *like;
-  const lag_algebra *algebra;
-  const double *y;
-  int leads;
-} Family;
-
-/* *r := change of the frequency, as a part, of the motion with the amplitude *A, which becomes half its swing. 1:
- * found, 0: not, < 0: a status. */
-static int change_at(const Family *f, double *A, double *r) {
-  double T = 2 * acos(-1) / f->m->im;
-  lag_sim *start = lag_sim_like(f->like);
-  if (!start) return LAG_ENOMEM;
-  place(f->m, f->y, f->like->pb.nq, f->leads, *A, start->start);
-  int found = solve(start, f->algebra, f->leads, f->y[f->leads] + *A, &T, A);
-  lag_sim_free(start);
-  *r = 2 * acos(-1) / (T * f->m->im) - 1;
-  return found;
-}
-
-/* *far, halved until the acceleration at the end of the linear motion is that of the mode but for a tenth. LAG_OK, or
- * LAG_ENOMEM. */
-static int limit_amplitude(const Family *f, double *far) {
-  const double part = 0.1;
-  int n = f->like->pb.n, nq = f->like->pb.nq, i = f->leads;
-  double *y = calloc(2 * (size_t)n, sizeof *y);
-  lag_sim *probe = y ? lag_sim_like(f->like) : NULL;
-  int rc = probe ? lag_sim_advance(probe, probe->scene->t0) : LAG_ENOMEM;
-  for (int k = 0; k < 60 && rc == LAG_OK; k++) {
-    memcpy(y, f->y, (size_t)n * sizeof *y);
-    place(f->m, f->y, nq, i, *far, y);
-    double *rates = y + n, linear = -*far * f->m->im * f->m->im;
-    if (lag_rhs(&probe->pb, probe->scene->t0, y, rates) == 0 && fabs(rates[nq + i] / linear - 1) < part) break;
-    *far /= 2;
-  }
-  lag_sim_free(probe);
-  free(y);
-  return rc == LAG_ENOMEM ? rc : LAG_OK;
-}
-
-/* An amplitude at which the frequency changes by 0.1 to 2 per cent, so that few powers are left and rounding is
- * small; 0: none is found, < 0: a status. */
-static double choose_amplitude(const Family *f, double scale) {
-  const double least = 1e-3, most = 0.02;
-  double far = scale;
-  if (limit_amplitude(f, &far)) return LAG_ENOMEM;
-  for (int halved = 0, doubled = 0; halved < 20;) {
-    double A = far, r = 0;
-    int found = change_at(f, &A, &r);
-    if (found < 0) return found;
-    if (!found || fabs(r) > most) far /= 2, halved++;
-    else if (fabs(r) < least && !halved && doubled < 3) far *= 2, doubled++;
-    else return far;
-  }
-  return 0;
-}
-
-int lag_mode_amplitude(ModeAmplitude *a, const Modes *modes, int k, lag_sim *like, const lag_algebra *algebra,
-                       const double *y) {
+int lag_mode_amplitude(ModeAmplitude *a, const Modes *modes, int k, Equilibrium *rest) {
+  const double undamped = 1e-9;
   const Mode *m = &modes->mode[k];
-  double A[POINTS], r[POINTS], c[POINTS], fewer[POINTS];
-  *a = (ModeAmplitude){.leads = -1};
-  if (!has_family(modes, k) || !like->pb.nq || like->pb.nz) return LAG_OK;
-  Family f = {m, like, algebra, y, leading(m, &like->pb, y)};
-  double far = choose_amplitude(&f, 0.2 * lag_difference_scale(&like->pb, y, f.leads));
-  if (!(far > 0)) return far < 0 ? LAG_ENOMEM : LAG_OK;
-  for (int i = 0; i < POINTS; i++) {
-    A[i] = far * sqrt((i + 1.0) / POINTS);
-    int found = change_at(&f, &A[i], &r[i]);
-    if (found != 1) return found < 0 ? found : LAG_OK;
+  *a = (ModeAmplitude){.a2 = NAN, .a4 = NAN, .divisor = NAN, .limit = AMPLITUDE_NO_OSCILLATION};
+  if (!(m->im > 0) || fabs(m->re) > undamped * m->im || m->repeats > 1) return LAG_OK;
+  Series s = {.modes = modes, .k = k, .pb = &rest->sim->pb, .rest = rest->y, .n = rest->sim->pb.n, .w = m->im,
+              .t = rest->sim->scene->t0, .out = a};
+  int rc = open_series(&s, rest);
+  if (rc == LAG_OK && place_mode(&s)) {
+    ModeAmplitude other;
+    a->limit = AMPLITUDE_WHOLE;
+    a->leads = s.leads < s.pb->nq ? s.leads : s.leads - s.pb->nq;
+    rc = expand(&s, 2 * ORDER + 2);
+    other = *a;
+    for (int order = 2; order <= ORDER; order++)
+      memset(harmonic(&s, order, 0), 0, sizeof(double) * HARMONICS * 2 * (size_t)s.n);
+    if (rc == LAG_OK) rc = expand(&s, 2 * ORDER + 5);
+    a->error2 = fabs(a->a2 - other.a2), a->error4 = fabs(a->a4 - other.a4);
   }
-  if (!fit(POINTS, A, r, c) || !fit(POINTS - 1, A, r, fewer)) return LAG_OK;
-  *a = (ModeAmplitude){.leads = f.leads, .a2 = c[0], .a4 = c[1], .error2 = fabs(c[0] - fewer[0]),
-                       .error4 = fabs(c[1] - fewer[1])};
-  return LAG_OK;
+  lag_pool_free(&s.pool);
+  return rc;
 }

@@ -545,17 +545,36 @@ static int goes_on(PeriodicOrbit *o) {
   return 1;
 }
 
-static int is_at_rest(PeriodicOrbit *o) {
-  double most = 0;
-  if (lag_flow_rates(&o->flow, o->flow.t0, o->y, o->x)) return 0;
-  for (int i = 0; i < o->n; i++) most = fmax(most, fabs(o->x[i]) * o->T / o->unit[i]);
-  return !o->flow.forced && most < 1e-6;
+/* d[n] := the direction of a symmetry by which the motion may close, at its begin, in units. */
+static int group_field(PeriodicOrbit *o, const OrbitClosing *g, double *d) {
+  memset(d, 0, (size_t)o->n * sizeof *d);
+  if (!g->n && lag_flow_field(&o->flow, g->charge, o->flow.t0, o->y, d)) return 0;
+  for (int i = 0; i < g->n; i++) d[g->shifted[i]] = 1;
+  for (int i = 0; i < o->n; i++) d[i] /= o->unit[i];
+  return 1;
+}
+
+/* What is left of the rates over a period, in units, without the parts along directions of symmetries. */
+static double own_motion(PeriodicOrbit *o, int symmetries) {
+  int n = o->n;
+  double *rates = o->x, *W = o->saved;
+  if (lag_flow_rates(&o->flow, o->flow.t0, o->y, rates)) return HUGE_VAL;
+  for (int i = 0; i < n; i++) rates[i] *= o->T / o->unit[i];
+  for (int j = 0, found = 0; j < symmetries; j++) {
+    double *w = W + found * n;
+    if (!group_field(o, &o->group[j], w) || !orthogonal_unit(n, found, W, w)) continue;
+    double part = lag_dot(n, w, rates);
+    for (int i = 0; i < n; i++) rates[i] -= part * w[i];
+    found++;
+  }
+  return lag_largest(n, rates);
 }
 
 int lag_orbit_refine(PeriodicOrbit *o) {
   lag_sim *like = o->flow.like;
   double tol = like->tol, T = o->T, *step = o->x;
-  o->at_rest = is_at_rest(o);
+  o->at_rest = !o->flow.forced && own_motion(o, 0) < 1e-6;
+  o->steady = !o->flow.forced && !o->at_rest && o->ngroup && own_motion(o, o->ngroup) < 1e-6;
   o->asymmetric = o->closing && !goes_on(o);
   for (int k = 2; k <= 7 && !o->ngroup && !o->closing && !o->at_rest; k++)
     if (is_back(o, k)) o->repeats = k;

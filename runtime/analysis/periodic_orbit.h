@@ -67,6 +67,7 @@ typedef struct PeriodicOrbit {
   double period_error;       /* change of the period by a run that is a hundred times as precise, or more */
   int repeats;               /* > 1: the period is that many times the shortest one */
   int at_rest;               /* 1: it is an equilibrium */
+  int steady;                /* 1: the symmetries by which it may close carry it along: it closes after any period */
   /* multipliers: of the directions that no charge, no symmetry and no phase fixes */
   int nmultipliers, ntrivial;
   double *re, *im;

@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "analysis/steady_motion.h"
-#include "analysis/mode_amplitude.h"
-#include "app/app.h"
+#include "app/amplitude_report.h"
 
 /* Description of coordinate or state i of x[nq + nz]. */
 static const lag_var *variable(const lag_model *m, int i) { return i < m->nq ? &m->q[i] : &m->z[i - m->nq]; }
@@ -332,28 +331,13 @@ static void put_modes(FILE *f, const App *app, const Modes *s) {
   if (has_phases(app->scene->model, s)) fputs("a@p: amplitude a, p degrees ahead\n", f);
 }
 
-static void put_amplitudes(FILE *f, const lag_model *m, const Modes *s, const ModeAmplitude *bends) {
-  for (int i = 0; i < s->n && i < MOST_MODES; i++) {
-    const ModeAmplitude *a = &bends[i];
-    if (a->leads < 0) {
-      fprintf(f, "mode %d: no family of periodic motions of its own, or one in resonance with another mode\n", i + 1);
-      continue;
-    }
-    const lag_var *v = &m->q[a->leads];
-    double unit = v->factor * v->factor;
-    fprintf(f, "mode %d: frequency times 1 %c %.8g A^2 %c %.6g A^4; A: half the swing of %s%s%s\n", i + 1,
-            a->a2 < 0 ? '-' : '+', fabs(a->a2) * unit, a->a4 < 0 ? '-' : '+', fabs(a->a4) * unit * unit, v->name,
-            v->unit[0] ? ", in " : "", v->unit);
-  }
-}
-
 /* Prints the table of modes, text of 118 columns. */
 static void put_text(FILE *f, const App *app, const Equilibrium *r, const Modes *s, const ModeAmplitude *bends) {
   const char *note = caution_of(app, r);
   put_equilibrium(f, app, r, s);
   if (note) fprintf(f, "note: %s\n", note);
   put_modes(f, app, s);
-  if (bends) put_amplitudes(f, app->scene->model, s, bends);
+  if (bends) lag_app_put_amplitudes(f, app->scene->model, s->n < MOST_MODES ? s->n : MOST_MODES, bends);
 }
 
 /* ---- JSON */
@@ -380,17 +364,6 @@ static void json_head(Json *j, const App *app, const char *status) {
   lag_json_string(j, "model", app->scene->model->name);
   lag_json_string(j, "scene", app->scene->name);
   lag_json_string(j, "status", status);
-}
-
-static void json_amplitude(Json *j, const lag_model *m, const ModeAmplitude *a) {
-  double unit = a->leads < 0 ? NAN : pow(m->q[a->leads].factor, 2);
-  lag_json_begin(j, "amplitude", '{');
-  lag_json_string(j, "of", a->leads < 0 ? NULL : m->q[a->leads].name);
-  lag_json_number(j, "a2", a->a2 * unit);
-  lag_json_number(j, "a4", a->a4 * unit * unit);
-  lag_json_number(j, "a2_error", a->error2 * unit);
-  lag_json_number(j, "a4_error", a->error4 * unit * unit);
-  lag_json_end(j, '}');
 }
 
 static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Modes *s, const ModeAmplitude *bends) {
@@ -421,7 +394,7 @@ static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Mode
     lag_json_truth(&j, "free", k->free != 0);
     lag_json_count(&j, "repeats", k->repeats);
     json_vector(&j, "shape", m, k->shape_re, k->shape_im);
-    if (bends) json_amplitude(&j, m, &bends[i]);
+    if (bends) lag_app_json_amplitude(&j, m, &bends[i]);
     lag_json_end(&j, '}');
   }
   lag_json_end(&j, ']');
@@ -540,24 +513,10 @@ int lag_app_rest(App *app, double *y) {
   return rc;
 }
 
-/* bends[modes->n] := how frequencies depend on amplitudes, by motions as precise as rounding allows. */
-static int find_amplitudes(const App *app, const Equilibrium *r, const Modes *modes, ModeAmplitude *bends) {
-  lag_sim *like = lag_sim_like(app->sim);
-  int rc = like ? LAG_OK : LAG_ENOMEM;
-  if (like) lag_sim_set_tolerance(like, 1e-14);
-  for (int k = 0; k < modes->n && rc == LAG_OK; k++)
-    rc = lag_mode_amplitude(&bends[k], modes, k, like, app->extras.algebra, r->y);
-  lag_sim_free(like);
-  return rc;
-}
-
-static int report(const App *app, const Equilibrium *r, const Modes *s) {
-  const int wanted = app->args.amplitude;
-  ModeAmplitude *bends = wanted ? calloc((size_t)s->n + 1, sizeof *bends) : NULL;
-  if (wanted && (!bends || find_amplitudes(app, r, s, bends))) {
-    free(bends);
-    return lag_app_error(&app->args, "out of memory");
-  }
+static int report(const App *app, Equilibrium *r, const Modes *s) {
+  ModeAmplitude *bends = NULL;
+  int rc = app->args.amplitude ? lag_app_find_amplitudes(app, r, s, &bends) : 0;
+  if (rc) return rc;
   if (app->args.json) json_modes(stdout, app, r, s, bends);
   else put_text(stdout, app, r, s, bends);
   free(bends);

@@ -283,7 +283,10 @@ static void put_multipliers(FILE *f, const PeriodicOrbit *o) {
 
 static void put_free(FILE *f, const PeriodicOrbit *o) {
   int phase = !o->flow.forced;
-  if (o->nfree == 0) fputs("isolated: there is no other periodic motion of this period beside it\n", f);
+  if (o->steady)
+    fputs("a steady motion: its symmetry alone carries it along, so it closes after any period; `lagc modes --steady` "
+          "gives its modes; for another motion hold more: --hold NAME,NAME\n", f);
+  else if (o->nfree == 0) fputs("isolated: there is no other periodic motion of this period beside it\n", f);
   else if (o->nfree == 1 && phase) fputs("isolated: beside it there are only its other phases\n", f);
   else
     fprintf(f,
@@ -349,6 +352,7 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
   lag_json_string(&j, "multipliers_by", lag_flow_differences(&o->flow) ? "differences" : "tangent");
   lag_json_count(&j, "segments", o->m);
   lag_json_count(&j, "free_directions", o->nfree);
+  lag_json_truth(&j, "steady", o->steady);
   lag_json_count(&j, "repeats", o->repeats > 1 ? o->repeats : 1);
   lag_json_begin(&j, "shifts", '{');
   for (int k = 0, i; k < o->ngroup; k++) {

@@ -2,10 +2,12 @@
  * the constraints; leaves: the dimension of that space, or changes projected onto it, as a start beside the
  * constraints is. Holds: of a constraint on velocities that is the rate of a function of positions, that function
  * may be another in a neighbouring motion. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/dense.h"
 
 /* Rank of the constraints; holonomic: of those stated on positions alone. A[n nq] and unit[nq] at the state; A is
  * destroyed. */
@@ -30,29 +32,55 @@ int lag_tangent_dimension(lag_sim *s) {
   return rc ? rc : d;
 }
 
-/* rate[n] := change of the residuals of velocities along e[n], by central differences of order 4,
- * exact for constraints of degree 4 in q and v. c[2 n] is scratch. */
+/* 1 over the largest step along e[n] by which differences see no curvature; each unit counts at least `least` of its
+ * declared size. */
+static double steepness(lag_problem *pb, const double *y, const double *e, double least) {
+  double far = 0;
+  for (int i = 0; i < 2 * pb->nq; i++) {
+    double unit = least * pb->model->q[i % pb->nq].factor;
+    far = fmax(far, fabs(e[i]) / fmax(lag_difference_scale(pb, y, i), unit));
+  }
+  return far;
+}
+
+/* rate[constraints] := change of the residuals of velocities along e[n], by central differences of order 4 with the
+ * steps h and 2 h, exact for constraints of degree 4 in q and v. *error := about what they omit, and rounding.
+ * c[3 constraints] is scratch. */
+static int differences(lag_problem *pb, double t, const double *y, const double *e, double h, double *there, double *c,
+                       double *rate, double *error) {
+  int m = pb->model->constraints->n, rc = LAG_OK;
+  double *r = c + m, *bend = r + m, terms = lag_largest(2 * pb->nq, y), most = lag_largest(2 * pb->nq, e), bent = 0;
+  memset(rate, 0, (size_t)m * sizeof *rate);
+  memset(bend, 0, (size_t)m * sizeof *bend);
+  for (int j = -2; j <= 2 && rc == LAG_OK; j++) {
+    double sign = j < 0 ? -1 : 1, weight = (j % 2 ? 8 : -1) * sign / 12.0;
+    for (int i = 0; i < pb->n; i++) there[i] = y[i] + j * h * e[i];
+    rc = j ? lag_residuals(pb, t, there, c, r) : LAG_OK;
+    for (int k = 0; k < m && j; k++) rate[k] += weight * r[k] / h, bend[k] += (j % 2 ? 2 : -1) * sign * r[k] / (4 * h);
+  }
+  for (int k = 0; k < m; k++) bent = fmax(bent, fabs(bend[k]));
+  *error = bent * bent / most + DBL_EPSILON * terms / h;
+  return rc;
+}
+
+/* The same where no step is known: of coordinates that pass 0 together the state shows no size, which their declared
+ * units may do. c[4 constraints] is scratch. */
 static int residual_change(lag_problem *pb, double t, const double *y, const double *e, double *there, double *c,
                            double *rate) {
   const double part = 0x1p-9;
-  double *r = c + pb->model->constraints->n;
-  int m = pb->model->constraints->n, rc = LAG_OK;
-  double far = 0;
-  for (int i = 0; i < 2 * pb->nq; i++) far = fmax(far, fabs(e[i]) / lag_difference_scale(pb, y, i));
+  int m = pb->model->constraints->n;
+  double far = steepness(pb, y, e, 0), wide = steepness(pb, y, e, 1), error, other, *second = c + 3 * m;
   memset(rate, 0, (size_t)m * sizeof *rate);
   if (!(far > 0)) return LAG_OK;
-  for (int j = -2; j <= 2 && rc == LAG_OK; j++) {
-    double h = j * part / far, weight = (j % 2 ? 8 : -1) * (j < 0 ? -1 : 1) / 12.0;
-    for (int i = 0; i < pb->n; i++) there[i] = y[i] + h * e[i];
-    rc = j ? lag_residuals(pb, t, there, c, r) : LAG_OK;
-    for (int k = 0; k < m && j; k++) rate[k] += weight * r[k] * far / part;
-  }
-  return rc;
+  int rc = differences(pb, t, y, e, part / far, there, c, rate, &error);
+  if (rc || wide > far / 2 || differences(pb, t, y, e, part / wide, there, c, second, &other)) return rc;
+  if (other < error) memcpy(rate, second, (size_t)m * sizeof *rate);
+  return LAG_OK;
 }
 
 size_t lag_tangent_projection_size(const lag_problem *pb) {
   const lag_constraints *of = pb->model->constraints;
-  return of ? (size_t)(2 * pb->n + 2 * pb->nq + 5 * of->n + of->njacobian + of->nmass) : 0;
+  return of ? (size_t)(2 * pb->n + 2 * pb->nq + 7 * of->n + of->njacobian + of->nmass) : 0;
 }
 
 /* c_by, r_by[constraints] := change of the residuals by parameter j; c[2 constraints] is scratch. */
@@ -87,8 +115,8 @@ static int parameter_of(const lag_problem *pb, int c) {
 static int project(lag_problem *pb, double t, const double *y, const double *A, int j, double *e, double *scratch) {
   const lag_constraints *of = pb->model->constraints;
   int n = pb->n, nq = pb->nq, rc;
-  double *there = scratch, *d = there + n, *force = d + nq, *c = force + nq, *r = c + of->n, *g = r + of->n,
-         *c_by = g + of->n, *r_by = c_by + of->n;
+  double *there = scratch, *d = there + n, *force = d + nq, *c = force + nq, *g = c + 4 * of->n, *c_by = g + of->n,
+         *r_by = c_by + of->n;
   memset(g, 0, (size_t)of->n * sizeof *g);
   memset(c_by, 0, (size_t)(2 * of->n) * sizeof *c_by);
   if (j >= 0 && (rc = residuals_by_parameter(pb, t, y, j, c, c_by, r_by)) != 0) return rc;

@@ -43,7 +43,7 @@ static void change_model(const lag_model *evaluated, const lag_model *y) {
   }
   if (x->taylor) {
     lag_taylor *k = MUTABLE(lag_taylor, x->taylor);
-    k->first = y->taylor->first, k->rest = y->taylor->rest, k->at = y->taylor->at;
+    k->first = y->taylor->first, k->rest = y->taylor->rest, k->at = y->taylor->at, k->along = y->taylor->along;
   }
 }
 

@@ -110,25 +110,34 @@ static void sums(const EvaluatedTaylor *t, int k, const Work *w) {
   }
 }
 
+/* Rates of order k from the coefficients of y in row k; y of the next order, those of a motion, into `next`. */
+static void order(const EvaluatedTaylor *s, int k, double T, double *row, double *next, const Work *w) {
+  const double per_k = 1.0 / k, number = k, up = T * (1.0 / (k + 1));
+  sums(s, k, w);
+  const double *const in[PROGRAM_ARRAY_COUNT] = {
+      [PROGRAM_COEF] = row,      [PROGRAM_SUMS] = w->s,        [PROGRAM_STEP] = w->c,
+      [PROGRAM_ORDER] = &number, [PROGRAM_PER_ORDER] = &per_k, [PROGRAM_UP] = &up};
+  double *const out[] = {row, next, w->a + (size_t)k * w->na, w->b + (size_t)k * w->nb};
+  lag_run_program(s->next, in, out, w->frame);
+}
+
 static void rest(const void *self, int n, double T, double *x, double *work) {
   const EvaluatedTaylor *s = self;
   const Work w = work_of(s, work);
   const int columns = s->taylor.columns, nq = s->nq, nz = s->nz, t = 3 * nq + 2 * nz;
-  double per_k = 1;
   if (s->uses_time) x[columns + t] = T;
   for (int i = 0; i < 2 * nq + nz; i++) x[columns + i] = T * x[i < nq ? nq + i : nq + nz + i];
   for (int k = 1; k < n; k++) {
-    double *row = x + k * columns;
-    const double per_next = 1.0 / (k + 1), order = k, up = T * per_next;
-    sums(s, k, &w);
-    const double *const in[PROGRAM_ARRAY_COUNT] = {
-        [PROGRAM_COEF] = row,     [PROGRAM_SUMS] = w.s,         [PROGRAM_STEP] = w.c,
-        [PROGRAM_ORDER] = &order, [PROGRAM_PER_ORDER] = &per_k, [PROGRAM_UP] = &up};
-    double *const out[] = {row, row + columns, w.a + (size_t)k * w.na, w.b + (size_t)k * w.nb};
-    lag_run_program(s->next, in, out, w.frame);
-    if (s->uses_time) row[columns + t] = 0;
-    per_k = per_next;
+    order(s, k, T, x + k * columns, x + (k + 1) * columns, &w);
+    if (s->uses_time) x[k * columns + t] = 0;
   }
+}
+
+static void along(const void *self, int n, double *x, double *work) {
+  const EvaluatedTaylor *s = self;
+  const Work w = work_of(s, work);
+  const int columns = s->taylor.columns;
+  for (int k = 1; k < n; k++) order(s, k, 1, x + k * columns, x + n * columns, &w);
 }
 
 /* Even and odd powers by Horner's rule: s o(u) + u e(u), u = s^2. */
@@ -152,4 +161,6 @@ static void at(const void *self, int n, double s, const double *x, double *y, do
   }
 }
 
-void lag_set_taylor_functions(EvaluatedTaylor *t) { t->taylor.first = first, t->taylor.rest = rest, t->taylor.at = at; }
+void lag_set_taylor_functions(EvaluatedTaylor *t) {
+  t->taylor.first = first, t->taylor.rest = rest, t->taylor.at = at, t->taylor.along = along;
+}

@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 20
+#define LAG_ABI 21
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many
  * doubles, one state or one set of parameters a lane. The status < 0 of such a call has bit k of its negative set
@@ -348,6 +348,10 @@ typedef struct lag_taylor {
   /* y[width] := the sum of orders 1 to n at t + s T, of which only the first 2 nq + nz elements are meant; dy := its
    * derivative by s. */
   void (*at)(const void *self, int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy);
+
+  /* The rates, orders 1 to n - 1, along a curve of states: x holds order 0 as of `first`, then coefficients of y that
+   * need not be those of a motion, and 0 elsewhere. Row n of x is overwritten. NULL: compiled for lanes. */
+  void (*along)(const void *self, int n, LAG_REAL *x, LAG_REAL *w);
 } lag_taylor;
 
 /* A size: at least 0, more than 0 where open, at most 1 where it is a part. */

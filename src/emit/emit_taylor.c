@@ -316,6 +316,28 @@ static void rest(const TaylorWriter *w, const char *suffix, const char *attribut
   sb_puts(w->out, w->lanes ? "}\n" : "    per_k = per_next;\n  }\n}\n");
 }
 
+/* Rates along a curve of states, for small motion: seldom called, so its sums are plain. */
+static void along(const TaylorWriter *w) {
+  const Series *s = w->s;
+  sb_puts(w->out, "\n/* Rates along a curve of states, whose coefficients are given. */\n"
+                  "static void taylor_along(const void *self, int n, LAG_REAL *x, LAG_REAL *work) {\n"
+                  "  taylor_work *const w = (taylor_work *)(void *)work;\n"
+                  "  (void)self;\n"
+                  "  for (int k = 1; k < n; k++) {\n"
+                  "    LAG_REAL *const row = x + k*TAYLOR_COLUMNS;\n"
+                  "    for (int i = 0; i < TAYLOR_SUMS; i++) {\n"
+                  "      w->s[i] = LAG_C(0.0);\n"
+                  "      for (int j = 1; j < k; j++)\n"
+                  "        w->s[i] += w->a[j][i]*(i < TAYLOR_SQUARES ? w->b[k - j][i] : w->a[k - j][i]);\n"
+                  "    }\n");
+  sb_printf(w->out,
+            "    taylor_next((LAG_REAL)k, LAG_C(1.0)/(LAG_REAL)k, LAG_C(1.0)/(LAG_REAL)(k + 1), w->s, w->c, row, row,\n"
+            "                x + n*TAYLOR_COLUMNS, w->a[k], w->b[k]%s);\n"
+            "  }\n"
+            "}\n",
+            s->room ? ", w->m" : "");
+}
+
 /* Writes the row operations: sums, squares, all orders, evaluation of the series. */
 static void row_operations(const TaylorWriter *w, const char *suffix, const char *type, const char *attribute) {
   int near = sums_fit_registers(w);
@@ -359,8 +381,8 @@ static void table(const TaylorWriter *w, int wide) {
   TaylorCosts c = taylor_costs(s);
   if (w->lanes) sb_puts(w->out, "  .lanes = 1,\n");
   sb_printf(w->out, "  .cost_first = %u, .cost_next = %u, .sums = %u,\n", c.first, c.next, c.sums);
-  sb_printf(w->out, "  .first = taylor_first, .rest = taylor_rest%s, .at = taylor_at%s,\n};\n", wide ? "_any" : "",
-            wide ? "_any" : "");
+  sb_printf(w->out, "  .first = taylor_first, .rest = taylor_rest%s, .at = taylor_at%s,%s\n};\n", wide ? "_any" : "",
+            wide ? "_any" : "", w->lanes ? "" : " .along = taylor_along,");
 }
 
 TaylorCosts taylor_costs(const Series *s) {
@@ -384,6 +406,7 @@ static void emit_functions(TaylorWriter w) {
   next(&w);
   if (!w.lanes) sb_puts(w.out, w.lower ? along_rows_of_header : along_rows_comment);
   row_operations(&w, "", "taylor_pair", "");
+  if (!w.lower && !w.lanes) along(&w);
   flush(&w);
 }
 

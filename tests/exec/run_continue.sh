@@ -217,6 +217,10 @@ refused "two ranges" 2 "one value runs over a range" "$LAGC" continue models/pen
 refused "a branch point to begin with" 3 "let the range begin beside it" "$LAGC" continue models/lorenz.lag x=0 y=0 z=0 rho=1..2
 refused "outside" 2 "outside of 10..18: start within" "$LAGC" continue models/pendulum.lag wide energy=10..18
 refused "a period of steady motions" 2 "a steady motion has none" "$LAGC" continue $dir/governor.lag --steady period=1..2
+# impacts once a period T of the table: its velocity at the impact is g T/2 (1 - e)/(1 + e), at most A w
+follow $dir/table.lag A=0.01..0.016
+close 2 parameter 0.01141445330804292 1e-12 # pi g/2700
+check "where an impact passes the begin of the period" sh -c "'$LAGC' continue $dir/table.lag phase=-2.4..3 | grep -q 'it ends there: plate passes the begin of the period'"
 family="$TMP/family.csv"
 refused "rows of another model" 2 "column 7 is \`th [rad]\`, and should be \`x\`" "$LAGC" continue models/lorenz.lag x=0 y=0 z=0 energy=1..2 --resume "$family"
 refused "rows of other values" 2 "the file was written by \`pendulum wide over energy" "$LAGC" continue models/pendulum.lag wide l=2 energy=9..18 --resume "$family"
