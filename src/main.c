@@ -80,8 +80,8 @@ static int compile(Compiler *c) {
   return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
 }
 
-/* The messages of a compilation that memory does not suffice for: notes of sums that are written out say why. The model's
- * text may lie in an arena that is freed by now, so names that nothing uses are not looked for. */
+/* The messages of a compilation that memory does not suffice for: notes of sums that are written out say why. The
+ * model's text may lie in an arena that is freed by now, so names that nothing uses are not looked for. */
 static void print_last_messages(Compiler *c) {
   enum { ROOM = 16 << 20 };
   jmp_buf again;
