@@ -48,7 +48,7 @@ int lag_conserves_energy(lag_sim *s) {
   const double golden = 0.6180339887498949;
   const lag_model *m = s->scene->model;
   const lag_charges *c = m->charges;
-  int n = 2 * m->nq + m->nz, still = (m->flags & LAG_CONSERVES_ENERGY) != 0;
+  int n = 2 * m->nq + m->nz, still = (lag_charge_flags(s, 0) & LAG_CONSERVED) != 0;
   int known = c && c->powers && c->of[0].flags & LAG_BALANCED;
   if (still || !known || m->nu) return still;
   double *y = s->yb, *power = calloc((size_t)c->n + 1, sizeof *power);
