@@ -88,14 +88,16 @@ static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim
 /* Near rounding, that of the second run is part of the error, and its law is not the run's. */
 static int is_rounding(const ErrorEstimate *e) { return e->largest < fmax(5e4 * DBL_EPSILON, e->floor); }
 
-/* Moves the start by some roundings, up and down in turns. What cannot be set stays. */
+/* Moves the start by some roundings, up and down in turns. What cannot be set stays, and so does 0: what is set is no
+ * longer open to the assembly of constraints. */
 static void nudge(lag_sim *sim, double roundings) {
   const double few = roundings * DBL_EPSILON;
   const lag_model *m = lag_sim_scene(sim)->model;
   char name[256];
   for (int i = 0; i < 2 * m->nq + m->nz; i++) {
     (void)lag_sim_state_info(sim, i, name, sizeof name, NULL, 0);
-    (void)lag_sim_set(sim, name, lag_sim_state_value(sim, i) * (i % 2 ? 1 - few : 1 + few));
+    double value = lag_sim_state_value(sim, i);
+    if (value != 0) (void)lag_sim_set(sim, name, value * (i % 2 ? 1 - few : 1 + few));
   }
 }
 

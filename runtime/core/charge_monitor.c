@@ -48,7 +48,7 @@ int lag_conserves_energy(lag_sim *s) {
   const double golden = 0.6180339887498949;
   const lag_model *m = s->scene->model;
   const lag_charges *c = m->charges;
-  int n = 2 * m->nq + m->nz, still = (m->flags & LAG_CONSERVES_ENERGY) != 0;
+  int n = 2 * m->nq + m->nz, still = (lag_charge_flags(s, 0) & LAG_CONSERVED) != 0;
   int known = c && c->powers && c->of[0].flags & LAG_BALANCED;
   if (still || !known || m->nu) return still;
   double *y = s->yb, *power = calloc((size_t)c->n + 1, sizeof *power);
@@ -355,18 +355,16 @@ int lag_charges_record(lag_sim *s, double t, const double *y) {
   return lost ? LAG_EDRIFT : LAG_OK;
 }
 
-void lag_charges_jump(lag_sim *s, double t, const double *ya, const double *yb) {
-  for (int pass = 0; pass < 2; pass++) {
-    lag_charges_at(s, t, pass ? yb : ya);
-    for (int k = 0; k < lag_sim_ncharges(s); k++) {
-      Charge *c = &s->charges[k];
-      double Q = s->charge_now[2 * k];
-      c->first += pass ? Q : -Q;
-      if (pass) c->jumped += fabs(Q - c->left);
-      c->left = Q;
-    }
-    if (lag_sim_ncharges(s)) s->run->at_events += pass ? s->charge_now[0] : -s->charge_now[0];
+void lag_charges_side(lag_sim *s, double t, const double *y, int after) {
+  lag_charges_at(s, t, y);
+  for (int k = 0; k < lag_sim_ncharges(s); k++) {
+    Charge *c = &s->charges[k];
+    double Q = s->charge_now[2 * k];
+    c->first += after ? Q : -Q;
+    if (after) c->jumped += fabs(Q - c->left);
+    c->left = Q;
   }
+  if (lag_sim_ncharges(s)) s->run->at_events += after ? s->charge_now[0] : -s->charge_now[0];
 }
 
 void lag_charges_add_work(lag_sim *s, double at_events, double rubbed) {

@@ -438,7 +438,7 @@ void lag_charges_begin(lag_sim *sim, double t, const double *y);
 int lag_charges_record(lag_sim *sim, double t, const double *y);
 /* Whether the energy, finite at the start, is not finite at t. _see then adds nothing and returns LAG_ENAN. */
 int lag_energy_undefined(lag_sim *sim, double t, const double *y);
-void lag_charges_jump(lag_sim *sim, double t, const double *ya, const double *yb);
+void lag_charges_side(lag_sim *sim, double t, const double *y, int after);
 /* Work at an instant, of impulses, whose effect on the energy is known better than from states before and after;
  * rubbed: of friction. */
 void lag_charges_add_work(lag_sim *sim, double at_events, double rubbed);
@@ -452,12 +452,13 @@ int lag_conserves_energy(lag_sim *sim);
 int lag_energy_retained(lag_sim *sim);
 
 /* monitors.c: charges and monitors. begin: first values. see: records the state `y` at t of the run. jump: an event
- * changed the state from ya to yb. */
+ * changed the state from ya to yb; side: one half of this, where branches of switches change with it. */
 int lag_monitors_begin(lag_sim *sim);
 int lag_monitors_record(lag_sim *sim, double t, const double *y);
 /* impulses: the same for impulses of contacts within a step, at the present time, once dense output contains them. */
 int lag_monitors_impulses(lag_sim *sim);
 int lag_monitors_jump(lag_sim *sim, double t, const double *ya, const double *yb);
+int lag_monitors_side(lag_sim *sim, double t, const double *y, int after);
 
 /* sizes.c: `size` where it is more than rounding of terms of the size `terms`, else `terms`. */
 double lag_above_rounding(double size, double terms);

@@ -239,9 +239,17 @@ static int meet_switch(lag_sim *s, int k) {
   return lag_tangent_meet(s, k);
 }
 
+/* Branches of switches at the state that events have set; the energy of the new ones is a change by these events. */
+static int place_switches(lag_sim *s) {
+  if (s->scene->model->nmodes == 0) return LAG_OK;
+  int rc = lag_monitors_side(s, s->run->t, s->now, 0);
+  rc = rc ? rc : lag_switch_place(s);
+  return rc ? rc : lag_monitors_side(s, s->run->t, s->now, 1);
+}
+
 /* Modes after the events at this time. */
 static int settle_switches(lag_sim *s, int met, int *changed) {
-  int rc = *changed ? lag_switch_place(s) : LAG_OK;
+  int rc = *changed ? place_switches(s) : LAG_OK;
   if (*changed && rc == LAG_OK && s->tangent && (met || s->pb.nslide))
     rc = lag_fail(s, LAG_EMETHOD,
                   "at t = %s s an event changes the state where the motion meets a surface or slides: there is no "

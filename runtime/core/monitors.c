@@ -127,22 +127,25 @@ int lag_monitors_record(lag_sim *s, double t, const double *y) {
   return rc;
 }
 
-int lag_monitors_jump(lag_sim *s, double t, const double *ya, const double *yb) {
+int lag_monitors_side(lag_sim *s, double t, const double *y, int after) {
   const lag_scene *c = s->scene;
-  see_constraints(s, t, yb);
-  lag_charges_jump(s, t, ya, yb);
-  if (watches_outputs(c))
-    for (int pass = 0; pass < 2; pass++) {
-      if (outputs_at(s, t, pass ? ya : yb))
-        return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
-      for (int i = 0; i < c->nmonitors; i++) {
-        int k = c->monitors[i].output;
-        double *first = &s->mon_first[i], out = k >= 0 && !c->monitors[i].absolute ? s->out[k] : 0;
-        *first += pass ? -out : out;
-        if (pass && lag_above_rounding(fabs(*first), fabs(out)) > fabs(*first)) *first = 0;
-      }
-    }
+  lag_charges_side(s, t, y, after);
+  if (!watches_outputs(c)) return LAG_OK;
+  if (outputs_at(s, t, y))
+    return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
+  for (int i = 0; i < c->nmonitors; i++) {
+    int k = c->monitors[i].output;
+    double *first = &s->mon_first[i], out = k >= 0 && !c->monitors[i].absolute ? s->out[k] : 0;
+    *first += after ? -out : out;
+    if (after && lag_above_rounding(fabs(*first), fabs(out)) > fabs(*first)) *first = 0;
+  }
   return LAG_OK;
+}
+
+int lag_monitors_jump(lag_sim *s, double t, const double *ya, const double *yb) {
+  see_constraints(s, t, yb);
+  int rc = lag_monitors_side(s, t, ya, 0);
+  return rc ? rc : lag_monitors_side(s, t, yb, 1);
 }
 
 int lag_monitors_impulses(lag_sim *s) {

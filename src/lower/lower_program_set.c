@@ -113,10 +113,11 @@ static void add_constraints(ProgramSet *u, const Eqns *e) {
   to->velocity = k->nkept == k->n ? to->position : lower_projection(e, k->n);
 }
 
-/* Adds nothing if the energy is the only charge, is conserved and has no unit. */
+/* Adds nothing if the energy is the only charge, is conserved whatever the inputs are, and has no unit. */
 static void add_charges(ProgramSet *u, const Eqns *e) {
   const Prog *powers = e->ncharges ? lower_charge_rates(e) : NULL;
-  if (e->ncharges < 2 && !powers && !e->energy_jumps && !(e->ncharges && e->charges[0].unit.text[0])) return;
+  int says_more = e->ncharges && (e->charges[0].unit.text[0] || e->charges[0].proof.by_formulas);
+  if (e->ncharges < 2 && !powers && !e->energy_jumps && !says_more) return;
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
     int conserved = c->proof.drift == PROVED_ZERO;

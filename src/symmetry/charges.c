@@ -279,6 +279,8 @@ static const char *zero_here(const Eqns *e, Expr power) {
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Param *p = &m->params.at[i];
     if (!expr_is_zero(e->g, p->value) || !expr_contains_sym(e->g, power, p->sym)) continue;
+    int alone = expr_is_zero(e->g, expr_replace(e->g, power, &p->sym, &zero, 1));
+    if (alone) return arena_printf(m->arena, ", which is 0 in this scene, where %s = 0", p->name);
     at = expr_replace(e->g, at, &p->sym, &zero, 1);
     sb_printf(&names, "%s%s = 0", names.n ? ", " : "", p->name);
   }

@@ -20,12 +20,15 @@ static const Generator *shift(const Eqns *e, uint32_t i) {
   return by;
 }
 
+/* Values come first: normal forms of what is not 0 may take minutes. */
+static int proved_zero(ExprGraph *g, Expr e) { return !prove_nonzero(g, e) && prove_zero(g, e, NULL) == PROVED_ZERO; }
+
 /* Coordinates that L does not contain. */
 static Indices noether_cyclic(const Eqns *e) {
   Indices all = {0};
   for (uint32_t i = 0; i < e->n; i++) {
     int absent = expr_is_zero(e->g, e->dLdq[i]);
-    if (!absent && e->n <= PROVE_MOST) absent = prove_zero(e->g, e->dLdq[i], NULL) == PROVED_ZERO;
+    if (!absent && e->n <= PROVE_MOST) absent = proved_zero(e->g, e->dLdq[i]);
     if (absent && !noether_moves_jumps(e, shift(e, i))) vec_push(e->m->arena, &all, i);
   }
   return all;

@@ -51,6 +51,16 @@ for scene in swing ${SLOW:+thrice}; do
 done
 check "what was not set moves, and the report says so" says 'start moved to the constraints: y from 0 to 0.8 m' $models/rod.lag below
 check "velocities, too" says "  and y' from 0 to -0.6 m/s" $models/rod.lag below
+cat >"$TMP/loop.lag" <<'END'
+model loop
+coord a, b, c
+kinetic = a'^2/2 + b'^2 + c'^2/2 + a'*b'*cos(a - b)
+potential = -2*cos(a) - cos(b) - cos(c)
+constraint l: sin(a) + sin(b) - sin(c) = 0
+scene s { start a' = -0.93; span 3 }
+END
+# rk4 differs from a run with a tolerance of 1e-14 by 6.5e-8, at hundredths of a second; the second run of an estimate, whose start is off by roundings, is assembled alike
+check "what was not set is open in the second run of an error estimate, too" says 'error about [12]e-07' "$TMP/loop.lag" s --method rk4 --step 0.0197
 check "what was set stays" says '"start_moved": {"y": \[0, 0.80*[0-9]*\], "y.": \[0, -0.[56][0-9]*\]}' $models/rod.lag below --json
 check "what follows from others is named" says 'constraints: 3, 2 independent at the start; redundant: sum' $models/two_rods.lag thrice
 check "and in the JSON report" says '"rank": 2, "redundant": \["sum"\]' $models/two_rods.lag thrice --json

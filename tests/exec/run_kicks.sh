@@ -69,6 +69,11 @@ printf "model push\ncoord x\nlagrangian = x'^2/2\nkick step every 0.5 { x' = x' 
 near "the energy that ten kicks give" 1e-14 0.5 "$("$LAGC" run "$TMP/push.lag" --json | sed 's/.*"at_events": \([^,]*\),.*/\1/')"
 check "is a line of the report" sh -c '"$0" run "$1" | grep -x "kicks and events: 0.5 of energy"' "$LAGC" "$TMP/push.lag"
 check "and no drift" sh -c '"$0" run "$1" | grep "energy drift: 0 "' "$LAGC" "$TMP/push.lag"
+# kicks and events that carry the state over a surface, where the energy of the other side begins; between them energy is conserved, to 1e-10
+for what in 'kick e every 0.3' 'event e: y + 0.02 rising'; do
+  printf "model over\ncoord y\nlagrangian = y'^2/2 - if(y > 0, y^2, 0)\n%s { y = y + 0.1 }\nscene s { start y = -0.06, y' = 0.15; span 1 }\n" "$what" >"$TMP/over.lag"
+  near "$what over a surface: no drift" 1e-10 0 "$("$LAGC" run "$TMP/over.lag" --json | sed 's/.*"energy_drift_absolute": \([^,]*\).*/\1/')"
+done
 
 # Events beside kicks: x' = 0.1 n behind kick n, x = n (n - 1)/40 + ...; it meets 0.3 at t = 2.1 (x(2) = 0.25 + 0.05 ... by hand)
 cat >"$TMP/gate.lag" <<'X'

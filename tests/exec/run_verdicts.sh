@@ -208,6 +208,8 @@ is_said two_branches undecided "zero on one branch of a constraint alone"
 is "the symmetries of the turntable are those of its expanded form" "8 8" "$(for f in turntable turntable_expanded; do lagc noether $models/$f.lag | sed -n 's/^found: \([0-9]*\).*/\1/p'; done | paste -sd ' ' -)"
 empty "run and modes, a constant force" "$(full $models/constant_force.lag hang 1)"
 check "it is stable" grep -q '^stable: the energy, which is conserved, has a minimum here' "$TMP/words/modes"
+printf "model m\ncoord x, y\ninput u = 0\nlagrangian = x'^2/4 + (1 + x^2)*y'^2/2 - 2*x^2*y^2 + u\nscene s { start x = 0.6, y = -0.3, x' = 0.4; span 1 }\n" >"$TMP/follows.lag"
+empty "run and modes, an input that follows its formula" "$(full "$TMP/follows.lag" s 1)"
 empty "run and modes, a rotating wire" "$(full $models/bead_on_parabola.lag slow 1)"
 check "it is stable" grep -q '^stable: the energy, which is conserved, has a minimum here' "$TMP/words/modes"
 h() { # h H LINE: the verdict of modes on a model with this Hamiltonian
