@@ -4,8 +4,7 @@
 #include "emit/header_impl.h"
 #include "emit/header_moreau_text.h"
 
-/* Friction of joints, too. */
-static int rubs(const ProgramSet *u) { return header_surfaces(u) + header_guides(u) > 0; }
+int header_rubs(const ProgramSet *u) { return header_surfaces(u) + header_guides(u) > 0; }
 
 /* --- declarations --- */
 
@@ -64,7 +63,7 @@ static void write_contacts(const Header *h, const char *text) {
                               {"MID", arena_printf(h->a, "t, y, (y) + LAG_NQ%s, p, now", z)},
                               {"STATES", u->z.n ? ", z" : ""},
                               {"NALL", arena_printf(h->a, "%u", u->contacts.n)},
-                              {"NOTED", rubs(u) ? "contact_note" : "moreau_note"},
+                              {"NOTED", header_rubs(u) ? "contact_note" : "moreau_note"},
                               {"VELOCITY", k->position == k->velocity ? "correct" : "correct_velocities"},
                               {NULL, NULL}};
   header_template(h, header_chosen(h, text, choices), words);
@@ -85,7 +84,7 @@ static void define_contacts(const Header *h) {
   write_contacts(h, tables);
   header_section(h, "contacts");
   write_contacts(h, note);
-  if (rubs(u)) {
+  if (header_rubs(u)) {
     csupport_expand("\n#undef LAG_MODEL\n#undef LAG_THE_MODEL\n", h->upper, h->lower, h->out);
     header_friction_define(h);
     write_contacts(h, coupling);
@@ -98,7 +97,7 @@ static void define_contacts(const Header *h) {
 /* --- contacts, or dry friction --- */
 
 const char *header_moreau_lacks(const ProgramSet *u) {
-  const char *lacks = program_set_contacts(u) && !rubs(u) ? NULL : header_friction_lacks(u);
+  const char *lacks = program_set_contacts(u) && !header_rubs(u) ? NULL : header_friction_lacks(u);
   if (lacks || !program_set_contacts(u)) return lacks;
   for (uint32_t i = 0; i < program_set_contacts(u); i++)
     if (u->contacts.at[i].law || u->contacts.at[i].holds)
@@ -109,7 +108,7 @@ const char *header_moreau_lacks(const ProgramSet *u) {
 
 void header_moreau_indices(const Header *h) {
   if (program_set_contacts(h->u)) contact_indices(h);
-  if (rubs(h->u)) header_friction_indices(h);
+  if (header_rubs(h->u)) header_friction_indices(h);
   csupport_expand("\n/* A contact, or a surface of friction, in the last step by Moreau's method: nothing presses; it "
                   "slips, or has no friction; friction holds it. */\nenum { LAG_OPEN, LAG_SLIPS, LAG_STICKS };\n",
                   h->upper, h->lower, h->out);
@@ -117,7 +116,7 @@ void header_moreau_indices(const Header *h) {
 
 void header_moreau_members(const Header *h) {
   if (program_set_contacts(h->u)) contact_members(h);
-  if (rubs(h->u)) header_friction_members(h);
+  if (header_rubs(h->u)) header_friction_members(h);
 }
 
 void header_moreau_start(const Header *h) {
@@ -128,7 +127,7 @@ void header_moreau_start(const Header *h) {
     csupport_expand(
         "  for (int i = 0; i < LAG_NCONTACTS; i++) s->touch[i] = s->struck[i] = s->impulse[i] = LAG_C(0.0);\n",
         h->upper, h->lower, h->out);
-  if (rubs(h->u)) csupport_expand(start, h->upper, h->lower, h->out);
+  if (header_rubs(h->u)) csupport_expand(start, h->upper, h->lower, h->out);
   if (header_guides(h->u)) csupport_expand("  s->rubs = LAG_C(0.0);\n", h->upper, h->lower, h->out);
 }
 
@@ -143,7 +142,7 @@ static void write_step(const Header *h, const char *text) {
   const ProgramSet *u = h->u;
   const IrConstraints *c = &u->constraints;
   int meets = program_set_contacts(u) > 0, holds = c->of.n > u->contacts.n, guides = header_guides(u) > 0,
-      joints = rubs(u);
+      joints = header_rubs(u);
   uint32_t band = bandwidth(u), nq = u->q.n, width = 3 * band + 1 < nq ? 3 * band + 1 : nq;
   const char *at_end = meets || guides ? ", now" : u->u.n ? ", lag_held(p, end.t, u, input, context, now)" : "";
   const HeaderWord words[] = {

@@ -234,11 +234,16 @@ model both <<'END_OF'
 model both
 coord x [m], y [m]
 kinetic = 1 [kg]/2*(x'^2 + y'^2)
+potential = 9.81 [N]*y
 force x = -sign(x')*1 [N]
-contact floor: y >= 0, restitution = 0
-scene s { span 2 [s] }
+contact floor: y >= 0, restitution = 0.6
+scene s { start x' = 0.5 [m/s], y = 0.3 [m]; span 100 [s] }
 END_OF
-check "contacts and dry friction together" says 2 'only of models with contacts or dry friction, not both' "$LAGC" header "$TMP/both.lag" --with moreau -o "$TMP/none.h"
+check "dry friction beside a contact" digits "$TMP/both.lag" s
+near=200
+sed 's/span 0.6/span 20/' $here/fmu/stopped.lag >"$TMP/stopped.lag" # 300 steps to the rest behind the impact
+check "guides and dry friction beside a contact with friction" digits "$TMP/stopped.lag" coast
+near=0
 model puck2 <<'END_OF'
 model puck2
 coord x [m], y [m]
