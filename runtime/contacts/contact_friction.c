@@ -92,32 +92,22 @@ static int law_size(const lag_model *m) { return 3 * m->ncontacts + 4 * m->nguid
 static int place_size(const lag_model *m) { return m->nguides ? 1 + 2 * m->nq + m->nz + m->np + m->nderived + m->nu : 0; }
 
 size_t lag_contact_law_size(const lag_model *m) {
-  int guides = m->nguides, slopes = guides * (3 * guides + 1) + 2 * place_size(m);
+  int slopes = place_size(m) + LAG_SLOPES_ROOM(m->nguides, place_size(m));
   return m->contact_laws
              ? (size_t)(law_size(m) + 1 + LAG_SLIPPING_ROOM(most_slipping(m)) + 2 * m->constraints->n + slopes)
              : 0;
 }
 
-/* w->C and w->known := slopes of the forces of all guides at this state, which a step of moreau asks for with many
- * modes; keep: to be known there from now on. room[2 place_size + guides (3 guides + 1)]. */
-static void exchange_slopes(const lag_problem *pb, double t, const double *y, int keep, lag_slipping *w, double *room) {
+/* place[place_size], on which slopes of the forces of guides depend. */
+static void find_place(const lag_problem *pb, double t, const double *y, double *place) {
   const lag_model *m = pb->model;
-  size_t n = (size_t)m->nguides, size = (size_t)place_size(m) * sizeof *y, np = (size_t)(m->np + m->nderived);
-  double *now = room + place_size(m), *p = now + 1 + pb->n, *u = p + np, *known = u + m->nu, *C = known + n;
-  if (keep) {
-    memcpy(known, w->known, n * sizeof *y);
-    memcpy(C, w->C, 3 * n * n * sizeof *y);
-    return;
-  }
-  now[0] = t;
-  memcpy(now + 1, y, (size_t)pb->n * sizeof *y);
+  size_t np = (size_t)(m->np + m->nderived);
+  double *p = place + 1 + pb->n, *u = p + np;
+  place[0] = t;
+  memcpy(place + 1, y, (size_t)pb->n * sizeof *y);
   memcpy(p, pb->p, np * sizeof *y);
   memcpy(u, pb->u, (size_t)m->nu * sizeof *y);
-  for (size_t g = 0; g < n; g++) u[m->contacts[m->guides[g].tangent].force] = 0;
-  if (memcmp(now, room, size) != 0) memset(known, 0, n * sizeof *y);
-  memcpy(room, now, size);
-  memcpy(w->known, known, n * sizeof *y);
-  memcpy(w->C, C, 3 * n * n * sizeof *y);
+  for (int g = 0; g < m->nguides; g++) u[m->contacts[m->guides[g].tangent].force] = 0;
 }
 
 /* Finds the forces of contacts and guides that slip; the largest of the run stands behind the laws in pb->rub. */
@@ -126,7 +116,7 @@ static int find_friction(lag_problem *pb, double t, const double *y) {
   const Slipping s = {pb, t, y};
   double *size = pb->rub + law_size(m);
   double *residuals = size + 1 + LAG_SLIPPING_ROOM(most_slipping(m)), *rates = residuals + m->constraints->n;
-  double *slopes = rates + m->constraints->n;
+  double *place = rates + m->constraints->n, *kept = place + place_size(m);
   int contacts = 0, rc = lag_slip_velocities(pb, t, y, residuals, rates);
   lag_slipping w = {.guides = m->nguides, .alone = !some_sticks(pb), .epsilon = DBL_EPSILON, .size = *size};
   lag_slipping_place(&w, most_slipping(m), size + 1);
@@ -142,10 +132,11 @@ static int find_friction(lag_problem *pb, double t, const double *y) {
       w.parts[w.n++] = guide < 0 ? 0 : m->guides[guide].parts;
     }
   }
-  int all = w.n > 0 && w.n == m->nguides && contacts == 0;
-  if (all) exchange_slopes(pb, t, y, 0, &w, slopes);
+  int all = w.n > 0 && w.n == m->nguides && contacts == 0; /* in a step of moreau: of one state for many modes */
+  if (all) find_place(pb, t, y, place);
+  if (all) lag_slipping_recall(&w, place, place_size(m), kept);
   rc = rc || w.n == 0 ? rc : lag_slipping_solve(&s, &w);
-  if (all) exchange_slopes(pb, t, y, 1, &w, slopes);
+  if (all) lag_slipping_keep(&w, place_size(m), kept);
   *size = w.size;
   return rc;
 }

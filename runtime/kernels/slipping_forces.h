@@ -86,6 +86,25 @@ static inline int lag_slipping_slopes(LAG_MODEL, lag_slipping *w, LAG_REAL large
   return status;
 }
 
+/* Numbers that keep C of n frictions between calls at one place[size]: a state, and what else C depends on. */
+#define LAG_SLOPES_ROOM(n, size) ((size) + (n)*(3*(n) + 1))
+
+/* C := columns known at the same place. */
+static inline void lag_slipping_recall(lag_slipping *w, const LAG_REAL *place, int size, LAG_REAL *kept) {
+  int same = 1;
+  for (int i = 0; i < size; i++) {
+    same = same && !(kept[i] < place[i] || kept[i] > place[i]);
+    kept[i] = place[i];
+  }
+  for (int k = 0; k < w->n; k++) w->known[k] = same ? kept[size + k] : LAG_C(0.0);
+  for (int i = 0; i < 3*w->n*w->n; i++) w->C[i] = kept[size + w->n + i];
+}
+
+static inline void lag_slipping_keep(const lag_slipping *w, int size, LAG_REAL *kept) {
+  for (int k = 0; k < w->n; k++) kept[size + k] = w->known[k];
+  for (int i = 0; i < 3*w->n*w->n; i++) kept[size + w->n + i] = w->C[i];
+}
+
 /* Part of friction k by which it presses its own guide: from 1 on it feeds itself. */
 static inline LAG_REAL lag_slipping_gain(const lag_slipping *w, int k) {
   return w->mu[k]*lag_slipping_norm(w->C + 3*(w->n*k + k), lag_slipping_parts(w, k));
