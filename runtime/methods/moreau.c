@@ -87,7 +87,7 @@ static int init(void *work, lag_problem *pb, const double *opt) {
 
 static const char *refuses(const lag_model *m, const double *opt) {
   (void)opt;
-  if (m->flags & LAG_MASSLESS)
+  if (m->flags & LAG_MASSLESS && (m->families || !m->constraints || m->constraints->n == m->ncontacts))
     return "some coordinates have no inertia, and impulses would move them by any amount; dop853 takes such a model";
   for (int i = 0; i < m->ncontacts; i++)
     if (m->contacts[i].law)

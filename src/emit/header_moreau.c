@@ -102,7 +102,8 @@ const char *header_moreau_lacks(const ProgramSet *u) {
   for (uint32_t i = 0; i < program_set_contacts(u); i++)
     if (u->contacts.at[i].law || u->contacts.at[i].holds)
       return "contacts of one friction, at rest and slipping, and of one law of impact, `stronge`";
-  return u->flags & 1u << UNIT_MASSLESS ? "inertia in all coordinates: impulses would move the others by any amount"
+  int undetermined = u->flags & 1u << UNIT_MASSLESS && u->constraints.of.n == u->contacts.n;
+  return undetermined ? "inertia in all coordinates: impulses would move the others by any amount"
                                         : NULL;
 }
 
