@@ -241,7 +241,7 @@ scene s { start x' = 0.5 [m/s], y = 0.3 [m]; span 100 [s] }
 END_OF
 check "dry friction beside a contact" digits "$TMP/both.lag" s
 near=200
-sed 's/span 0.6/span 20/' $here/fmu/stopped.lag >"$TMP/stopped.lag" # 300 steps to the rest behind the impact
+sed 's/span 0.6/span 10/' $here/fmu/stopped.lag >"$TMP/stopped.lag" # an impact in 300 steps
 check "guides and dry friction beside a contact with friction" digits "$TMP/stopped.lag" coast
 near=0
 model puck2 <<'END_OF'
