@@ -89,7 +89,9 @@ static int most_slipping(const lag_model *m) { return m->nguides + LAG_MOST_TOUC
 static int law_size(const lag_model *m) { return 3 * m->ncontacts + 4 * m->nguides; }
 
 /* Time, state, parameters and inputs. */
-static int place_size(const lag_model *m) { return m->nguides ? 1 + 2 * m->nq + m->nz + m->np + m->nderived + m->nu : 0; }
+static int place_size(const lag_model *m) {
+  return m->nguides ? 1 + 2 * m->nq + m->nz + m->np + m->nderived + m->nu : 0;
+}
 
 size_t lag_contact_law_size(const lag_model *m) {
   int slopes = place_size(m) + LAG_SLOPES_ROOM(m->nguides, place_size(m));

@@ -22,7 +22,7 @@ typedef struct lag_slipping {
   LAG_REAL *of, *parts;   /* [n] the instance's number; components of N of a guide, 0: of a contact */
   LAG_REAL *mode, *mu, *x, *left, *change; /* [n] left: x + mode mu |N| */
   LAG_REAL *N, *N0, *toward, *C;           /* [3 n], direction of N; [3 n n] change of N by a friction of 1 */
-  LAG_REAL *known;                         /* [n] whether column of C is known: of the same state, from an instance that keeps it */
+  LAG_REAL *known;                         /* [n] whether that column of C is known, from the same state */
   LAG_REAL *a, *pivot, *scale;             /* the Jacobian of `left` */
 } lag_slipping;
 
