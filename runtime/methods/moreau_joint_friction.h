@@ -1,4 +1,4 @@
-/* Dry friction of joints and sliders in one step of moreau: the instance of kernels/joint_friction.h for a lag_problem. */
+/* Dry friction of joints in one step of moreau: the instance of kernels/joint_friction.h for a lag_problem. */
 #pragma once
 
 #include "methods/steps.h"
