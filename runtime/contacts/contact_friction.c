@@ -88,8 +88,28 @@ static int most_slipping(const lag_model *m) { return m->nguides + LAG_MOST_TOUC
 
 static int law_size(const lag_model *m) { return 3 * m->ncontacts + 4 * m->nguides; }
 
+/* Time, state, parameters and inputs. */
+static int place_size(const lag_model *m) {
+  return m->nguides ? 1 + 2 * m->nq + m->nz + m->np + m->nderived + m->nu : 0;
+}
+
 size_t lag_contact_law_size(const lag_model *m) {
-  return m->contact_laws ? (size_t)(law_size(m) + 1 + LAG_SLIPPING_ROOM(most_slipping(m)) + 2 * m->constraints->n) : 0;
+  int slopes = place_size(m) + LAG_SLOPES_ROOM(m->nguides, place_size(m));
+  return m->contact_laws
+             ? (size_t)(law_size(m) + 1 + LAG_SLIPPING_ROOM(most_slipping(m)) + 2 * m->constraints->n + slopes)
+             : 0;
+}
+
+/* place[place_size], on which slopes of the forces of guides depend. */
+static void find_place(const lag_problem *pb, double t, const double *y, double *place) {
+  const lag_model *m = pb->model;
+  size_t np = (size_t)(m->np + m->nderived);
+  double *p = place + 1 + pb->n, *u = p + np;
+  place[0] = t;
+  memcpy(place + 1, y, (size_t)pb->n * sizeof *y);
+  memcpy(p, pb->p, np * sizeof *y);
+  memcpy(u, pb->u, (size_t)m->nu * sizeof *y);
+  for (int g = 0; g < m->nguides; g++) u[m->contacts[m->guides[g].tangent].force] = 0;
 }
 
 /* Finds the forces of contacts and guides that slip; the largest of the run stands behind the laws in pb->rub. */
@@ -98,12 +118,14 @@ static int find_friction(lag_problem *pb, double t, const double *y) {
   const Slipping s = {pb, t, y};
   double *size = pb->rub + law_size(m);
   double *residuals = size + 1 + LAG_SLIPPING_ROOM(most_slipping(m)), *rates = residuals + m->constraints->n;
+  double *place = rates + m->constraints->n, *kept = place + place_size(m);
   int contacts = 0, rc = lag_slip_velocities(pb, t, y, residuals, rates);
   lag_slipping w = {.guides = m->nguides, .alone = !some_sticks(pb), .epsilon = DBL_EPSILON, .size = *size};
   lag_slipping_place(&w, most_slipping(m), size + 1);
   for (int i = 0; i < m->ncontacts; i++) {
     int guide = lag_guide_of(m, i), in_space = lag_slips_in_space(pb, i);
-    if (!in_space && (!(fabs(side_of(pb, i)) > 0) || lag_slips_in_space(pb, i - 1))) continue;
+    int acts = guide < 0 ? fabs(side_of(pb, i)) > 0 : !isnan(side_of(pb, i));
+    if (!in_space && (!acts || lag_slips_in_space(pb, i - 1))) continue;
     if (guide < 0 && (contacts += 1 + in_space) > LAG_MOST_TOUCHES) continue;
     if (in_space) lag_slip_direction(pb, rates, i, w.mode + w.n);
     else w.mode[w.n] = side_of(pb, i);
@@ -112,7 +134,11 @@ static int find_friction(lag_problem *pb, double t, const double *y) {
       w.parts[w.n++] = guide < 0 ? 0 : m->guides[guide].parts;
     }
   }
+  int all = w.n > 0 && w.n == m->nguides && contacts == 0; /* in a step of moreau: of one state for many modes */
+  if (all) find_place(pb, t, y, place);
+  if (all) lag_slipping_recall(&w, place, place_size(m), kept);
   rc = rc || w.n == 0 ? rc : lag_slipping_solve(&s, &w);
+  if (all) lag_slipping_keep(&w, place_size(m), kept);
   *size = w.size;
   return rc;
 }

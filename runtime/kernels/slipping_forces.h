@@ -22,20 +22,26 @@ typedef struct lag_slipping {
   LAG_REAL *of, *parts;   /* [n] the instance's number; components of N of a guide, 0: of a contact */
   LAG_REAL *mode, *mu, *x, *left, *change; /* [n] left: x + mode mu |N| */
   LAG_REAL *N, *N0, *toward, *C;           /* [3 n], direction of N; [3 n n] change of N by a friction of 1 */
+  LAG_REAL *known;                         /* [n] whether that column of C is known, from the same state */
   LAG_REAL *a, *pivot, *scale;             /* the Jacobian of `left` */
 } lag_slipping;
 
-#define LAG_SLIPPING_ROOM(n) ((n)*(18 + 4*(n)))
+#define LAG_SLIPPING_ROOM(n) ((n)*(19 + 4*(n)))
 
 static inline void lag_slipping_place(lag_slipping *w, int most, LAG_REAL *room) {
   w->of = room, w->parts = room += most, w->mode = room += most, w->mu = room += most, w->x = room += most;
   w->left = room += most, w->change = room += most, w->N = room += most, w->N0 = room += 3*most;
   w->toward = room += 3*most, w->pivot = room += 3*most, w->scale = room += most, w->C = room += most;
-  w->a = room + 3*most*most;
+  w->a = room += 3*most*most, w->known = room + most*most;
+  for (int k = 0; k < most; k++) w->known[k] = LAG_C(0.0);
 }
 
 static inline int lag_slipping_parts(const lag_slipping *w, int k) {
   return w->parts[k] > LAG_C(0.0) ? (int)w->parts[k] : 1;
+}
+
+static inline int lag_slipping_acts(const lag_slipping *w, int k) {
+  return w->mode[k] > LAG_C(0.0) || w->mode[k] < LAG_C(0.0);
 }
 
 static inline LAG_REAL lag_slipping_norm(const LAG_REAL *x, int n) {
@@ -62,19 +68,41 @@ static inline int lag_slipping_left(LAG_MODEL, lag_slipping *w, LAG_REAL *larges
   return status;
 }
 
-/* C, from N without frictions: exact in a unit that is not small. */
+/* C, from N without frictions: exact in a unit that is not small. A friction of mode 0 stays 0. */
 static inline int lag_slipping_slopes(LAG_MODEL, lag_slipping *w, LAG_REAL largest) {
-  const LAG_REAL unit = lag_larger(LAG_C(1.0), largest);
+  const LAG_REAL unit = lag_larger(LAG_C(1.0), largest), zero = LAG_C(0.0);
   int status = 0;
   for (int i = 0; i < 3*w->n; i++) w->N0[i] = w->N[i];
   for (int j = 0; j < w->n; j++) {
+    const int acts = lag_slipping_acts(w, j);
+    if (w->known[j] > zero) continue;
     w->x[j] = unit;
-    LAG_TRY(LAG_PRESSING(w));
-    w->x[j] = LAG_C(0.0);
-    for (int i = 0; i < 3*w->n; i++) w->C[3*w->n*j + i] = (w->N[i] - w->N0[i])/unit;
+    if (acts) LAG_TRY(LAG_PRESSING(w));
+    w->x[j] = zero;
+    for (int i = 0; i < 3*w->n; i++) w->C[3*w->n*j + i] = acts ? (w->N[i] - w->N0[i])/unit : zero;
+    w->known[j] = acts ? LAG_C(1.0) : zero;
   }
   for (int i = 0; i < 3*w->n; i++) w->N[i] = w->N0[i];
   return status;
+}
+
+/* Numbers that keep C of n frictions between calls at one place[size]: a state, and what else C depends on. */
+#define LAG_SLOPES_ROOM(n, size) ((size) + (n)*(3*(n) + 1))
+
+/* C := columns known at the same place. */
+static inline void lag_slipping_recall(lag_slipping *w, const LAG_REAL *place, int size, LAG_REAL *kept) {
+  int same = 1;
+  for (int i = 0; i < size; i++) {
+    same = same && !(kept[i] < place[i] || kept[i] > place[i]);
+    kept[i] = place[i];
+  }
+  for (int k = 0; k < w->n; k++) w->known[k] = same ? kept[size + k] : LAG_C(0.0);
+  for (int i = 0; i < 3*w->n*w->n; i++) w->C[i] = kept[size + w->n + i];
+}
+
+static inline void lag_slipping_keep(const lag_slipping *w, int size, LAG_REAL *kept) {
+  for (int k = 0; k < w->n; k++) kept[size + k] = w->known[k];
+  for (int i = 0; i < 3*w->n*w->n; i++) kept[size + w->n + i] = w->C[i];
 }
 
 /* Part of friction k by which it presses its own guide: from 1 on it feeds itself. */
@@ -104,12 +132,14 @@ static inline int lag_slipping_step(lag_slipping *w) {
 static inline int lag_slipping_solve(LAG_MODEL, lag_slipping *w) {
   const int rounds = w->guides ? 30 : 4;
   LAG_REAL largest, most = LAG_C(0.0);
-  int status = 0, far = 1;
+  int status = 0, far = 1, acting = 0;
   for (int k = 0; k < w->n; k++) w->x[k] = LAG_C(0.0);
+  for (int k = 0; k < w->n; k++) acting += lag_slipping_acts(w, k);
+  if (acting == 0) return status;
   LAG_TRY(lag_slipping_left(LAG_THE_MODEL, w, &largest));
   LAG_TRY(lag_slipping_slopes(LAG_THE_MODEL, w, largest));
   for (int k = 0; k < w->n && w->alone; k++)
-    if (w->parts[k] > LAG_C(0.0) && lag_slipping_gain(w, k) >= LAG_C(1.0))
+    if (lag_slipping_acts(w, k) && w->parts[k] > LAG_C(0.0) && lag_slipping_gain(w, k) >= LAG_C(1.0))
       return LAG_SLIPPING_FAILS(w, k, lag_slipping_gain(w, k));
   for (int round = 0; round < rounds && far; round++) {
     if (lag_slipping_step(w)) return LAG_SLIPPING_FAILS(w, -1, LAG_C(0.0));
@@ -120,7 +150,7 @@ static inline int lag_slipping_solve(LAG_MODEL, lag_slipping *w) {
   }
   w->size = lag_larger(w->size, largest);
   /* rounding of a single force that nothing but rounding presses */
-  const int alone = w->n == 1 && w->alone && lag_is_number(most);
+  const int alone = acting == 1 && w->alone && lag_is_number(most);
   return alone || !w->guides || most <= LAG_C(5e4)*w->epsilon*w->size
              ? 0
              : LAG_SLIPPING_FAILS(w, 0, lag_slipping_gain(w, 0));

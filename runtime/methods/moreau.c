@@ -87,7 +87,7 @@ static int init(void *work, lag_problem *pb, const double *opt) {
 
 static const char *refuses(const lag_model *m, const double *opt) {
   (void)opt;
-  if (m->flags & LAG_MASSLESS)
+  if (m->flags & LAG_MASSLESS && (m->families || !m->constraints || m->constraints->n == m->ncontacts))
     return "some coordinates have no inertia, and impulses would move them by any amount; dop853 takes such a model";
   for (int i = 0; i < m->ncontacts; i++)
     if (m->contacts[i].law)
@@ -104,75 +104,30 @@ static int is_explicit(const lag_problem *pb) {
   return (m->flags & LAG_SEPARABLE) && (!m->constraints || m->constraints->n == m->ncontacts);
 }
 
-/* Contacts and dry friction of a step; end[n]: its end without contacts. */
-typedef struct Laws {
-  lag_moreau_contacts contacts;
-  JointFriction friction;
-  double *end;
-} Laws;
-
 static int changes_too_much(lag_problem *pb, double t, const char *what) {
   pb->detail = what;
   return lag_step_failed(pb, LAG_EMETHOD, t);
 }
 
-static int meet(lag_problem *pb, const lag_kick *s, Laws *w) {
+static int meet(lag_problem *pb, const lag_kick *s, lag_moreau_contacts *w) {
   static const char others[] =
       "and others find no impulses that agree: take smaller steps, or look for bodies that are wedged";
-  return lag_contacts_solve(&w->contacts, s->y1 + s->nq)
-             ? lag_moreau_contact_fails(pb, s->t, (int)w->contacts.all.of[0].contact, others)
-             : 0;
+  return lag_contacts_solve(w, s->y1 + s->nq) ? lag_moreau_contact_fails(pb, s->t, (int)w->all.of[0].contact, others)
+                                              : 0;
 }
 
-/* s->y1 := w->end with impulses of contacts and dry friction, which agree: in turns, until friction changes nothing
- * more. */
-static int agree(lag_problem *pb, const lag_kick *s, Laws *w) {
-  enum { ROUNDS = 500 };
-  /* of the largest slip, or of what friction changes: friction that follows it to its limit by many small steps */
-  const double little = 1e-5;
-  JointFriction *f = &w->friction;
-  double moved = 0, before = 0;
-  for (int round = 0; round < ROUNDS; round++) {
-    memcpy(s->y1 + s->nq, w->end + s->nq, (size_t)(pb->n - s->nq) * sizeof *s->y1);
-    int rc = meet(pb, s, w);
-    rc = rc ? rc : lag_joint_friction_round(f, pb, s, w->contacts.impacts > 0, &moved);
-    if (rc || moved <= 64 * DBL_EPSILON || (round > 0 && moved <= 1e7 * DBL_EPSILON && moved >= before / 2)) return rc;
-    lag_joint_friction_lengthen(f, pb);
-    lag_joint_friction_carry(f, s->h, w->end);
-    lag_joint_friction_carry(f, 1, s->rate0);
-    before = moved;
-  }
-  if (moved <= little) return 0;
-  return changes_too_much(pb, s->t, "impulses of contacts and dry friction do not agree: take smaller steps");
-}
+#define LAG_FIND_CONTACTS(s, w) lag_moreau_find(pb, &(w)->contacts, (s)->t, (s)->h, (s)->mid, (s)->y1 + (s)->nq)
+#define LAG_MEET(s, w) meet(pb, s, &(w)->contacts)
+#define LAG_COUPLING_FAILS(t) \
+  changes_too_much(pb, t, "impulses of contacts and dry friction do not agree: take smaller steps")
+#include "kernels/coupled_friction.h"
 
-/* Responses at the first middle; beside contacts friction acts once before they are chosen. */
-static int respond(lag_problem *pb, const lag_kick *s, Laws *w) {
-  int meets = w->contacts.contacts > 0, rc = 0;
-  double moved;
-  if (w->friction.of.n) rc = lag_joints_respond(pb, &w->friction.of, s);
-  if (!meets) return rc;
-  if (w->friction.of.n && rc == 0) {
-    rc = lag_joint_friction_round(&w->friction, pb, s, 0, &moved);
-    lag_joint_friction_carry(&w->friction, 1, s->rate0);
-  }
-  return rc ? rc : lag_moreau_find(pb, &w->contacts, s->t, s->h, s->mid, s->y1 + s->nq);
-}
-
-static int obey(lag_problem *pb, const lag_kick *s, Laws *w) {
-  double size;
-  if (!w->contacts.contacts) return w->friction.of.n ? lag_joints_solve(pb, &w->friction.of, s, 0, &size) : 0;
-  if (!w->friction.of.n) return meet(pb, s, w);
-  memcpy(w->end, s->y1, (size_t)pb->n * sizeof *s->y1);
-  return agree(pb, s, w);
-}
-
-#define LAG_LAWS Laws
+#define LAG_LAWS lag_coupled_friction
 #define LAG_KICK_RATES(t, y, w, k) lag_step_rhs(pb, t, y, k)
-#define LAG_RESPONSES(s, w) respond(pb, s, w)
-#define LAG_OBEY(s, w) obey(pb, s, w)
+#define LAG_RESPONSES(s, w) lag_coupled_respond(pb, w, s)
+#define LAG_OBEY(s, w) lag_coupled_obey(pb, w, s)
 #define LAG_STRUCK(w) ((w)->contacts.impacts > 0)
-#define LAG_TERM_SIZE(w, i, rate) lag_joints_size(&(w)->friction.of, i, rate)
+#define LAG_TERM_SIZE(w, i, rate) lag_joints_size((w)->joints, i, rate)
 #define LAG_KICK_FAILS(t)                                                                                         \
   changes_too_much(pb, t,                                                                                         \
                    "forces that depend on velocities or states change too much within a step: take smaller steps, " \
@@ -180,10 +135,12 @@ static int obey(lag_problem *pb, const lag_kick *s, Laws *w) {
 #include "kernels/moreau_step.h"
 
 /* From y, with no effect outside s and w after a failure but in pb->hold. */
-static int kick(lag_problem *pb, const lag_kick *s, Laws *w, double t) {
-  int rc = w->friction.of.n ? lag_joints_begin(pb, &w->friction.of, t, s->y) : 0;
+static int kick(lag_problem *pb, const lag_kick *s, lag_coupled_friction *w, JointFriction *f, double t) {
+  int rc = f->of.n ? lag_joints_begin(pb, &f->of, t, s->y) : 0;
   rc = rc ? rc : lag_moreau_kick(pb, s, w);
-  if (rc == 0 && w->friction.of.n && w->contacts.contacts) rc = lag_joint_friction_note(&w->friction, pb, s);
+  if (rc || !f->of.n || !w->contacts.contacts) return rc;
+  rc = lag_coupled_note(pb, &f->of, s);
+  if (rc == 0) lag_joint_friction_stick(f, pb);
   return rc;
 }
 
@@ -200,19 +157,22 @@ static int drift(lag_problem *pb, const lag_kick *s, double *lost, double tb, co
 static int advance(Moreau *w, lag_problem *pb, double t, const lag_next_step *next, int noted, double *y) {
   int n = pb->n, nq = pb->nq;
   double *x = w->x, *y0 = x + Y0 * n, *lost = x + COMP * n;
-  Laws laws = {lag_moreau_contacts_of(pb, law_of(w, pb)), friction_of(w, pb), x + FREE * n};
-  const lag_kick s = {nq, pb->nz, is_explicit(pb) && !laws.friction.of.n, t + next->dt / 2, t + next->dt, next->dt,
+  JointFriction friction = friction_of(w, pb);
+  lag_coupled_friction laws = {
+      .contacts = lag_moreau_contacts_of(pb, law_of(w, pb)), .joints = &friction.of, .end = x + FREE * n};
+  const lag_kick s = {nq, pb->nz, is_explicit(pb) && !friction.of.n, t + next->dt / 2, t + next->dt, next->dt,
                       DBL_EPSILON, y, x + MID * n, x + Y1 * n, x + RATE * n, x + RATE0 * n, x + SIZE * n};
   lag_kick_begin(&s, lost);
-  lag_joint_friction_enter(&laws.friction, pb);
-  int rc = kick(pb, &s, &laws, t);
+  lag_joint_friction_enter(&friction, pb);
+  lag_coupled_place(&laws, friction.coupled);
+  int rc = kick(pb, &s, &laws, &friction, t);
   if (rc == 0) {
     memcpy(y0, y, (size_t)n * sizeof *y);
     rc = drift(pb, &s, lost, next->tb, y0, y);
     if (rc) memcpy(y, y0, (size_t)n * sizeof *y);
   }
   if (rc) {
-    lag_joint_friction_back(&laws.friction, pb);
+    lag_joint_friction_back(&friction, pb);
     return rc;
   }
   w->struck = laws.contacts.impacts;

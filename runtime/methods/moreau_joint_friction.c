@@ -1,4 +1,4 @@
-/* The model of dry friction in one step of moreau, memory, and turns beside contacts: moreau_joint_friction.h. */
+/* The model of dry friction in one step of moreau, and memory: moreau_joint_friction.h. */
 #include "methods/moreau_joint_friction.h"
 
 #include <float.h>
@@ -32,10 +32,8 @@ JointFriction lag_joint_friction_of(const lag_problem *pb, double *room) {
   lag_joints_place(&w.of, room);
   w.at = room + LAG_JOINT_ROOM(n, pb->n);
   w.entry = w.at + n;
-  w.was = w.entry + n;
-  w.change = w.was + n;
-  w.stride = w.change + n;
-  w.all = w.stride + n;
+  w.coupled = w.entry + n;
+  w.all = w.coupled + 3 * n;
   for (int k = 0, j = 0; j < n; k++) /* guides behind the switches */
     if (k >= m->nmodes || is_surface(m, k)) w.at[j++] = k;
   return w;
@@ -107,57 +105,17 @@ int lag_joint_friction_fails(lag_problem *pb, double t, const lag_joint_friction
   return lag_step_failed(pb, LAG_EMETHOD, t);
 }
 
-/* ---- turns beside contacts */
+/* ---- modes in pb->hold */
 
 void lag_joint_friction_enter(JointFriction *w, lag_problem *pb) {
-  for (int j = 0; j < w->of.n; j++) {
-    w->entry[j] = *held(&w->of, pb, j);
-    w->change[j] = w->stride[j] = 0;
-  }
+  for (int j = 0; j < w->of.n; j++) w->entry[j] = *held(&w->of, pb, j);
 }
 
 void lag_joint_friction_back(const JointFriction *w, lag_problem *pb) {
   for (int j = 0; j < w->of.n; j++) *held(&w->of, pb, j) = w->entry[j];
 }
 
-int lag_joint_friction_round(JointFriction *w, lag_problem *pb, const lag_kick *s, int struck, double *moved) {
-  const lag_joint_friction *of = &w->of;
-  double size;
-  memcpy(w->was, of->mode, (size_t)of->n * sizeof *w->was);
-  int rc = lag_joints_solve(pb, &w->of, s, struck, &size);
-  *moved = 0;
-  for (int k = 0; k < of->n && rc == 0; k++)
-    *moved = fmax(*moved, fabs((of->mode[k] - w->was[k]) * of->response[k]));
-  *moved = size > 0 ? *moved / size : 0;
-  return rc;
-}
-
-int lag_joint_friction_note(JointFriction *w, lag_problem *pb, const lag_kick *s) {
-  lag_joint_friction *of = &w->of;
-  int rc = lag_joint_friction_slips(pb, s->end, s->mid, s->y1, of, of->slip);
-  for (int j = 0; j < of->n && rc == 0; j++) {
-    of->sticks[j] = fabs(of->slip[j]) <= 1e-9 * fabs(of->response[j]);
-    /* 1 is the mode of a body that slips */
-    if (of->sticks[j] != 0.0 && fabs(of->mode[j]) == 1.0) *held(of, pb, j) *= 1 - DBL_EPSILON;
-  }
-  return rc;
-}
-
-void lag_joint_friction_lengthen(JointFriction *w, lag_problem *pb) {
-  lag_joint_friction *of = &w->of;
-  for (int j = 0; j < of->n; j++) {
-    double change = of->mode[j] - w->was[j];
-    int goes_on = change * w->change[j] > 0 && fabs(change) >= fabs(w->change[j]) / 2;
-    w->stride[j] = goes_on ? fmin(2 * w->stride[j] + 1, 1e6) : 0;
-    w->change[j] = change;
-    if (!goes_on) continue;
-    double to = of->mode[j] + w->stride[j] * change;
-    lag_joint_friction_hold(pb, of, j, fabs(to) > of->bound[j] ? copysign(1, to) : to);
-  }
-}
-
-void lag_joint_friction_carry(const JointFriction *w, double part, double *x) {
-  const lag_joint_friction *of = &w->of;
-  for (int j = 0; j < of->n; j++)
-    for (int i = of->nq; i < of->states; i++) x[i] += part * (of->mode[j] - w->was[j]) * of->d[j * of->states + i];
+void lag_joint_friction_stick(JointFriction *w, lag_problem *pb) {
+  for (int j = 0; j < w->of.n; j++) /* 1 is the mode of a body that slips */
+    if (w->of.sticks[j] != 0.0 && fabs(w->of.mode[j]) == 1.0) *held(&w->of, pb, j) *= 1 - DBL_EPSILON;
 }

@@ -1,5 +1,4 @@
-/* Dry friction of joints and sliders in one step of moreau: the instance of kernels/joint_friction.h for a lag_problem,
- * and its turns beside contacts. */
+/* Dry friction of joints in one step of moreau: the instance of kernels/joint_friction.h for a lag_problem. */
 #pragma once
 
 #include "methods/steps.h"
@@ -24,10 +23,10 @@ int lag_joint_friction_fails(lag_problem *pb, double t, const struct lag_joint_f
 
 /* The kernel's part lasts from step to step; the rest is scratch. */
 typedef struct JointFriction {
-  lag_joint_friction of;    /* first */
-  double *at, *all;         /* [n] the model's switch; [nswitch] its values */
-  double *entry, *was;      /* [n] modes in pb->hold before the step; before a round */
-  double *change, *stride;  /* [n] change by the last round, and strides in parts of it */
+  lag_joint_friction of; /* first */
+  double *at, *all;      /* [n] the model's switch; [nswitch] its values */
+  double *entry;         /* [n] modes in pb->hold before the step */
+  double *coupled;       /* [3 n] room of kernels/coupled_friction.h */
 } JointFriction;
 
 size_t lag_joint_friction_size(const lag_problem *pb);
@@ -36,13 +35,5 @@ JointFriction lag_joint_friction_of(const lag_problem *pb, double *room);
 /* Modes before the step: noted, and brought back after a failure. */
 void lag_joint_friction_enter(JointFriction *w, lag_problem *pb);
 void lag_joint_friction_back(const JointFriction *w, lag_problem *pb);
-/* A round of lag_joints_solve. *moved: the largest change of a slip, in units of the largest slip. */
-int lag_joint_friction_round(JointFriction *w, lag_problem *pb, const lag_kick *s, int struck, double *moved);
-/* Beside contacts, once all agree: notes the surfaces whose slip is 0 at the end; friction may be at its limit where
- * contacts hold the body, too. */
-int lag_joint_friction_note(JointFriction *w, lag_problem *pb, const lag_kick *s);
-/* Goes on by longer strides on surfaces whose mode changes in the same direction round by round, as where contacts
- * leave a slip that is small beside what friction changes: then friction comes to its limit by small equal steps. */
-void lag_joint_friction_lengthen(JointFriction *w, lag_problem *pb);
-/* x[n] := x + part times what the last calls of round and lengthen changed. */
-void lag_joint_friction_carry(const JointFriction *w, double part, double *x);
+/* Beside contacts: modes in pb->hold of surfaces that stick at their limit differ from those of slipping bodies. */
+void lag_joint_friction_stick(JointFriction *w, lag_problem *pb);

@@ -30,7 +30,7 @@ static const char *const header_names[] = {"REAL",
                                            "ESIZE", "IS_FINITE", "ECONTACT", "DEGREE", "LOCATE_ROWS", "LOCATE_UNSEEN",
                                            "LOCATE_ROUGH", "LOCATE_FINEST", "PRESSING_SIZE", "THE_MODEL", "LAWS",
                                            "MODEL", "MAX_DRIFTS", LAG_RUNGE_KUTTA_METHODS(LAST_STAGE) "NCONTACTS",
-                                           "NSURFACES", "OPEN", "SLIPS", "STICKS", "RULE_FREE", "NNEWTON",
+                                           "NSURFACES", "NSLOPES", "OPEN", "SLIPS", "STICKS", "RULE_FREE", "NNEWTON",
                                            "NBAND", "QQ", "VQ", "VV", "FQ", "FV",
                                            "MOST_CORRECTIONS", "PREDICTOR_DEGREE",
                                            "VARIATIONAL_ORDER", "TAYLOR_ORDER", "TAYLOR_COLUMNS", "TAYLOR_WIDTH",
@@ -59,7 +59,7 @@ static const char **event_enumerators(Header *h, CNames *taken) {
 }
 
 static const char **contact_enumerators(Header *h, CNames *taken) {
-  uint32_t n = header_guides(h->u) ? 0 : h->u->contacts.n;
+  uint32_t n = program_set_contacts(h->u);
   IrVar *v = ARENA_ARRAY(h->a, IrVar, n + 1);
   for (uint32_t i = 0; i < n; i++) v[i].name = header_contact_name(h, i);
   return enumerators(h, taken, "CONTACT_", v, n);
@@ -70,7 +70,7 @@ static const char **surface_enumerators(Header *h, CNames *taken) {
   uint32_t n = h->u->switches.n, guides = header_guides(h->u);
   const char **names = ARENA_ARRAY(h->a, const char *, n + guides + 1);
   for (uint32_t i = 0; i < guides; i++) {
-    IrVar v = {.name = header_contact_name(h, i)};
+    IrVar v = {.name = header_contact_name(h, program_set_contacts(h->u) + i)};
     names[n + i] = enumerators(h, taken, "SURFACE_", &v, 1)[0];
   }
   for (uint32_t i = 0; i < n; i++) {
@@ -223,9 +223,9 @@ static void write_head(const Header *h, const char *equations) {
                           "header --with moreau` adds a step that sticks.\n");
   if (header_guides(u))
     sb_printf(h->out, " * Guides: %s_moreau_step has their friction; other steps slide without.\n", h->lower);
-  else if (header_has_method(h, "moreau") && u->contacts.n)
+  if (header_has_method(h, "moreau") && program_set_contacts(u))
     sb_printf(h->out, " * Contacts: %s_moreau_step follows them; other steps ignore them.\n", h->lower);
-  else if (u->contacts.n)
+  else if (program_set_contacts(u))
     sb_printf(h->out,
               " * Contacts: a step ignores them. The loop below calls %s_events, %s_act and %s_hold; one without these "
               "falls through.\n",

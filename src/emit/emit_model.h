@@ -53,6 +53,9 @@ typedef struct {
 /* Programs WANT_... that the parts of a list `mass,rk45`, or `gsl,cvode`, need; list may be NULL. */
 unsigned header_wants(const char *list);
 
+/* Whether _moreau_step follows friction of joints, beside contacts or without. */
+int header_rubs(const ProgramSet *u);
+
 /* Adds the words of a known list; `all` stands for all that the model has, a library for what its callbacks call and
  * the model has. 0: *error says what the model lacks for one of them. */
 int header_parts(const ProgramSet *u, const char *list, HeaderParts *parts, const char **error);

@@ -11,15 +11,10 @@ uint32_t header_surfaces(const ProgramSet *u) {
   return n;
 }
 
-uint32_t header_guides(const ProgramSet *u) { return program_set_contacts(u) ? 0 : u->contacts.n; }
+uint32_t header_guides(const ProgramSet *u) { return program_set_guides(u); }
 
 const char *header_friction_lacks(const ProgramSet *u) {
   uint32_t n = header_surfaces(u) + program_set_guides(u);
-  if (program_set_contacts(u) && n && !header_surfaces(u))
-    return "contacts or dry friction, not both: write a guide beside contacts as two of them, `y >= 0` and `-y >= 0`, "
-           "with `restitution = 0`, `friction` and `slip`";
-  if (program_set_contacts(u) && n)
-    return "contacts or dry friction, not both: rk4, rk45 and dop853 decide at each state whether a body slips";
   for (uint32_t k = 0; k < u->switches.n; k++) {
     const IrSwitch *s = &u->switches.at[k];
     if (s->jumps && (k >= u->nmodes || s->nonnegative))
@@ -28,11 +23,16 @@ const char *header_friction_lacks(const ProgramSet *u) {
   return n ? NULL : "contacts or dry friction; rk4, rk45 and dop853 step every model without them";
 }
 
+/* Guides stand behind contacts. */
+static const IrContact *guide_at(const Header *h, uint32_t i) {
+  return &h->u->contacts.at[program_set_contacts(h->u) + i];
+}
+
 /* Position of each guide among constraints and inputs, components of its force. */
 static const char *guide_table(const Header *h) {
   StrBuf b = strbuf(h->a);
-  for (uint32_t i = 0; i < h->u->contacts.n; i++) {
-    const IrContact *c = &h->u->contacts.at[i];
+  for (uint32_t i = 0; i < header_guides(h->u); i++) {
+    const IrContact *c = guide_at(h, i);
     sb_printf(&b, "%s{%u, %u, %u, %u}", i ? ", " : "", c->input, c->force, c->constraint, c->parts);
   }
   return sb_text(&b);
@@ -54,13 +54,16 @@ void header_friction_indices(const Header *h) {
       sb_printf(h->out, "  %s = %u, /* %s */\n", h->surfaces[k], n++, comment_text(h->a, h->u->switches.at[k].surface));
   for (uint32_t i = 0; i < header_guides(h->u); i++)
     sb_printf(h->out, "  %s = %u, /* %s */\n", h->surfaces[switches + i], n++,
-              comment_text(h->a, h->u->constraints.of.at[h->u->contacts.at[i].constraint].name));
+              comment_text(h->a, h->u->constraints.of.at[guide_at(h, i)->constraint].name));
   sb_printf(h->out, "  %s_NSURFACES = %u\n};\n", h->upper, n);
 }
 
 void header_friction_members(const Header *h) {
-  csupport_expand("  LAG_REAL touch[LAG_NSURFACES]; /* in the last _moreau_step: LAG_SLIPS, LAG_STICKS; LAG_OPEN "
-                  "before the first */\n"
+  const char *surfaces = program_set_contacts(h->u) ? "holds" : "touch";
+  csupport_expand(arena_printf(h->a, "  LAG_REAL %s[LAG_NSURFACES]; /* in the last _moreau_step: LAG_SLIPS, LAG_STICKS; "
+                                     "LAG_OPEN before the first */\n", surfaces),
+                  h->upper, h->lower, h->out);
+  csupport_expand(
                   "  LAG_REAL mode[LAG_NSURFACES];  /* mean of the sign of the quantity in that step: friction in "
                   "parts of its size */\n",
                   h->upper, h->lower, h->out);
@@ -80,8 +83,9 @@ static void held_function(const Header *h, const Prog *p, const char *name, cons
 static void write_part(const Header *h, const char *text, const HeaderWord *words) {
   int switches = header_surfaces(h->u) > 0, guides = header_guides(h->u) > 0, held = h->u->switch_grips != NULL,
       grips = guides || held;
+  int meets = program_set_contacts(h->u) > 0;
   const LineChoice choices[] = {{'n', !h->u->q.n}, {'m', switches}, {'j', guides}, {'k', !guides}, {'x', !switches},
-                                {'g', grips},      {'s', held},     {'o', !grips}, {0, 0}};
+                                {'g', grips},      {'s', held},     {'o', !grips}, {'c', meets},   {0, 0}};
   header_template(h, header_chosen(h, text, choices), words);
 }
 
@@ -114,31 +118,35 @@ static void define_held(const Header *h) {
 /* Rates and slips; of models with guides rates with their friction. */
 static void define_rates(const Header *h, const HeaderWord *words) {
   static const char *const law[] = {"law", NULL};
-  int some = header_guides(h->u) > 0;
+  int some = header_guides(h->u) > 0, meets = program_set_contacts(h->u) > 0;
   if (some) {
     header_internal_function(h, h->u->contact_laws, "contact_laws", arena_printf(h->a, "%s_REAL *law", h->upper), law,
                              law);
-    header_section(h, "friction");
+    if (!meets) header_section(h, "friction");
     write_part(h, slips, words);
     write_part(h, pressing, words);
-    header_section(h, "band_matrix");
+    if (!meets) header_section(h, "band_matrix");
     header_section(h, "slipping");
     write_part(h, guided, words);
   }
   write_part(h, rates, words);
   if (some) return;
   write_part(h, slips, words);
-  header_section(h, "friction");
+  if (!meets) header_section(h, "friction");
 }
 
 void header_friction_define(const Header *h) {
   const ProgramSet *u = h->u;
   const char *z = u->z.n ? ", y + 2*LAG_NQ" : "", *x = u->z.n ? ", x + 2*LAG_NQ" : "";
-  int switches = header_surfaces(u) > 0, guides = header_guides(u) > 0;
+  int switches = header_surfaces(u) > 0, guides = header_guides(u) > 0, meets = program_set_contacts(u) > 0;
   const HeaderWord words[] = {
       {"AT_SURFACES", surface_table(h)},
       {"AT_GUIDES", guide_table(h)},
       {"NGUIDES", arena_printf(h->a, "%u", header_guides(u))},
+      {"NALL", arena_printf(h->a, "%u", u->contacts.n)},
+      {"NBEFORE", arena_printf(h->a, "%u", program_set_contacts(u))},
+      {"NOTED", meets ? "friction_note" : "moreau_note"},
+      {"HOLDS", meets ? "holds" : "touch"},
       {"NSWITCHED", guides ? arena_printf(h->a, "%u", header_surfaces(u)) : "LAG_NSURFACES"},
       {"NMODES", arena_printf(h->a, "%u", switches ? u->nmodes : 0)},
       {"NSWITCHES", arena_printf(h->a, "%u", u->switches.n)},
@@ -161,10 +169,11 @@ void header_friction_define(const Header *h) {
   if (switches) define_held(h);
   write_part(h, values, words);
   define_rates(h, words);
-  header_section(h, "mean");
+  if (!meets) header_section(h, "mean");
   write_part(h, instance, words);
   header_section(h, "surfaces");
+  write_part(h, note, words);
+  if (meets) return;
   write_part(h, step, words);
   header_section(h, "kick");
-  write_part(h, note, words);
 }

@@ -4,10 +4,12 @@
 #include "emit/header_impl.h"
 #include "emit/header_moreau_text.h"
 
+int header_rubs(const ProgramSet *u) { return header_surfaces(u) + header_guides(u) > 0; }
+
 /* --- declarations --- */
 
 static void contact_indices(const Header *h) {
-  uint32_t n = h->u->contacts.n;
+  uint32_t n = program_set_contacts(h->u);
   sb_puts(h->out, "\n/* Contacts, for touch, struck and impulse of the state; behind each with friction the velocities "
                   "of slipping along its surface. */\nenum {\n");
   for (uint32_t i = 0; i < n; i++)
@@ -60,6 +62,8 @@ static void write_contacts(const Header *h, const char *text) {
                               {"ENTRIES", header_positions(h, k->mass.at, k->mass.n)},
                               {"MID", arena_printf(h->a, "t, y, (y) + LAG_NQ%s, p, now", z)},
                               {"STATES", u->z.n ? ", z" : ""},
+                              {"NALL", arena_printf(h->a, "%u", u->contacts.n)},
+                              {"NOTED", header_rubs(u) ? "contact_note" : "moreau_note"},
                               {"VELOCITY", k->position == k->velocity ? "correct" : "correct_velocities"},
                               {NULL, NULL}};
   header_template(h, header_chosen(h, text, choices), words);
@@ -79,25 +83,33 @@ static void define_contacts(const Header *h) {
                              arena_printf(h->a, "%s_REAL *law", h->upper), law, law);
   write_contacts(h, tables);
   header_section(h, "contacts");
-  write_contacts(h, kick);
-  header_section(h, "kick");
   write_contacts(h, note);
+  if (header_rubs(u)) {
+    csupport_expand("\n#undef LAG_MODEL\n#undef LAG_THE_MODEL\n", h->upper, h->lower, h->out);
+    header_friction_define(h);
+    write_contacts(h, coupling);
+    header_section(h, "coupled");
+    write_contacts(h, coupled_kick);
+  } else write_contacts(h, kick);
+  header_section(h, "kick");
 }
 
 /* --- contacts, or dry friction --- */
 
 const char *header_moreau_lacks(const ProgramSet *u) {
-  if (!program_set_contacts(u) || header_surfaces(u) + program_set_guides(u)) return header_friction_lacks(u);
-  for (uint32_t i = 0; i < u->contacts.n; i++)
+  const char *lacks = program_set_contacts(u) && !header_rubs(u) ? NULL : header_friction_lacks(u);
+  if (lacks || !program_set_contacts(u)) return lacks;
+  for (uint32_t i = 0; i < program_set_contacts(u); i++)
     if (u->contacts.at[i].law || u->contacts.at[i].holds)
       return "contacts of one friction, at rest and slipping, and of one law of impact, `stronge`";
-  return u->flags & 1u << UNIT_MASSLESS ? "inertia in all coordinates: impulses would move the others by any amount"
+  int undetermined = u->flags & 1u << UNIT_MASSLESS && u->constraints.of.n == u->contacts.n;
+  return undetermined ? "inertia in all coordinates: impulses would move the others by any amount"
                                         : NULL;
 }
 
 void header_moreau_indices(const Header *h) {
   if (program_set_contacts(h->u)) contact_indices(h);
-  else header_friction_indices(h);
+  if (header_rubs(h->u)) header_friction_indices(h);
   csupport_expand("\n/* A contact, or a surface of friction, in the last step by Moreau's method: nothing presses; it "
                   "slips, or has no friction; friction holds it. */\nenum { LAG_OPEN, LAG_SLIPS, LAG_STICKS };\n",
                   h->upper, h->lower, h->out);
@@ -105,15 +117,18 @@ void header_moreau_indices(const Header *h) {
 
 void header_moreau_members(const Header *h) {
   if (program_set_contacts(h->u)) contact_members(h);
-  else header_friction_members(h);
+  if (header_rubs(h->u)) header_friction_members(h);
 }
 
 void header_moreau_start(const Header *h) {
-  const char *text =
-      program_set_contacts(h->u)
-          ? "  for (int i = 0; i < LAG_NCONTACTS; i++) s->touch[i] = s->struck[i] = s->impulse[i] = LAG_C(0.0);\n"
-          : "  for (int i = 0; i < LAG_NSURFACES; i++) s->touch[i] = s->mode[i] = LAG_C(0.0);\n";
-  csupport_expand(text, h->upper, h->lower, h->out);
+  int meets = program_set_contacts(h->u) > 0;
+  const char *holds = meets ? "holds" : "touch", *start = arena_printf(h->a,
+      "  for (int i = 0; i < LAG_NSURFACES; i++) s->%s[i] = s->mode[i] = LAG_C(0.0);\n", holds);
+  if (meets)
+    csupport_expand(
+        "  for (int i = 0; i < LAG_NCONTACTS; i++) s->touch[i] = s->struck[i] = s->impulse[i] = LAG_C(0.0);\n",
+        h->upper, h->lower, h->out);
+  if (header_rubs(h->u)) csupport_expand(start, h->upper, h->lower, h->out);
   if (header_guides(h->u)) csupport_expand("  s->rubs = LAG_C(0.0);\n", h->upper, h->lower, h->out);
 }
 
@@ -127,7 +142,8 @@ static const char *const of_inputs = "\n * u: the inputs, constant during the st
 static void write_step(const Header *h, const char *text) {
   const ProgramSet *u = h->u;
   const IrConstraints *c = &u->constraints;
-  int meets = program_set_contacts(u) > 0, holds = c->of.n > u->contacts.n, guides = header_guides(u) > 0;
+  int meets = program_set_contacts(u) > 0, holds = c->of.n > u->contacts.n, guides = header_guides(u) > 0,
+      joints = header_rubs(u);
   uint32_t band = bandwidth(u), nq = u->q.n, width = 3 * band + 1 < nq ? 3 * band + 1 : nq;
   const char *at_end = meets || guides ? ", now" : u->u.n ? ", lag_held(p, end.t, u, input, context, now)" : "";
   const HeaderWord words[] = {
@@ -135,17 +151,28 @@ static void write_step(const Header *h, const char *text) {
       {"NOW", u->u.n ? ", u, 0, 0" : ""},
       {"AT_END", at_end},
       {"OF_INPUTS", !u->u.n ? "" : guides ? of_guides : of_inputs},
-      {"EXPLICIT", meets && u->flags & 1u << UNIT_SEPARABLE && !holds ? "1" : "0"},
+      {"EXPLICIT", meets && u->flags & 1u << UNIT_SEPARABLE && !holds && !joints ? "1" : "0"},
       {"NJACOBIAN", arena_printf(h->a, "%u", c->jacobian.n)},
       {"NMASS", arena_printf(h->a, "%u", c->mass.n)},
       {"NBAND", arena_printf(h->a, "%u", nq * width)},
-      {"NRESPONSES", arena_printf(h->a, "%u", band || holds ? u->contacts.n * nq : c->jacobian.n)},
+      {"NRESPONSES", arena_printf(h->a, "%u", band || holds ? program_set_contacts(u) * nq : c->jacobian.n)},
       {"BANDWIDTH", arena_printf(h->a, "%u", band)},
       {"NMODES", arena_printf(h->a, "%u", meets ? 0 : u->nmodes)},
+      {"FRICTION_NOTED", meets ? "friction_note" : "moreau_note"},
+      {"NOTED", joints ? "contact_note" : "moreau_note"},
+      {"HOLDS", meets ? "holds" : "touch"},
       {NULL, NULL}};
-  const LineChoice choices[] = {{'c', meets}, {'d', !meets},          {'k', meets && holds},
-                                {'h', holds}, {'g', guides},
-                                {'w', !meets && holds && u->u.n}, {0, 0}};
+  const LineChoice choices[] = {{'c', meets},
+                                {'d', joints},
+                                {'a', meets && !joints},
+                                {'b', meets && joints},
+                                {'e', !meets},
+                                {'k', meets && holds},
+                                {'h', holds},
+                                {'g', guides},
+                                {'r', guides && !meets},
+                                {'w', !meets && holds && u->u.n},
+                                {0, 0}};
   header_template(h, header_chosen(h, text, choices), words);
 }
 

@@ -61,16 +61,20 @@ static void write_head(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   define(out, "NEV", u->events.n);
   define(out, "NOUT", s->plain.n);
   define(out, "HOLDS", u->constraints.of.n > 0);
-  define(out, "CONTACTS", program_set_contacts(u) ? u->contacts.n : 0);
-  define(out, "GUIDES", f->moreau && !program_set_contacts(u) ? u->contacts.n : 0);
+  define(out, "CONTACTS", program_set_contacts(u));
+  define(out, "GUIDES", program_set_guides(u));
   if (u->constraints.of.n)
     sb_printf(out, "#define CORRECT model_correct%s\n",
               u->constraints.position == u->constraints.velocity ? "" : "_velocities");
-  define(out, "FRICTION", (uint32_t)(f->moreau && !program_set_contacts(u)));
+  define(out, "FRICTION", (uint32_t)(f->moreau && header_rubs(u)));
   const char *with = u->u.n ? "_with(&(m)->p, &(m)->s, h, set_inputs, m)" : "(&(m)->p, &(m)->s, h)";
   if (f->moreau)
     sb_printf(out, "#define MOREAU_STEP %.17g\n#define MOREAU(m, h) model_moreau_step%s\n", moreau_step(s), with);
   define(out, "HELD", u->held_accel != NULL);
+  if (f->moreau)
+    sb_printf(out, "#define SURFACE(m) (m)->s.%s\n#define ACCELERATIONS model_%saccel\n#define DERIVED(f) %s\n",
+              program_set_contacts(u) ? "holds" : "touch", u->held_accel ? "held_" : "",
+              u->q.n && u->z.n ? "f + NQ, f + 2*NQ" : "f + NQ");
   define(out, "NMODES", u->nmodes);
   define(out, "KICKS", program_set_kick(u) != NULL);
   define(out, "DERIVATIVES", (uint32_t)f->has_derivatives);
@@ -92,7 +96,7 @@ static void write_tables(const ProgramSet *u, StrBuf *out) {
   if (!u->contacts.n) return;
   if (program_set_contacts(u)) {
     sb_puts(out, "static const int contact_input[][2] = {");
-    for (uint32_t i = 0; i < u->contacts.n; i++) {
+    for (uint32_t i = 0; i < program_set_contacts(u); i++) {
       const IrContact *c = &u->contacts.at[i];
       sb_printf(out, "%s{%u, %d}", i ? ", " : "", c->input, c->is_tangent ? (int)c->force : -1);
     }

@@ -382,12 +382,13 @@ Prog *lower_switches(const Eqns *e) {
   return lower_finish_seldom(&l);
 }
 
-/* each: numbers of a contact, 2 or 3, behind which those of guides stand. */
+/* each: numbers of a contact, 2 of one that is no guide; or 3, behind which those of guides stand. */
 static Prog *lower_contacts(const Eqns *e, uint32_t each) {
   Lower l = lower_new(e);
   const Model *m = e->m;
-  uint32_t n = m->contacts.n, some = 0, all = each * n,
-           *of = ARENA_ARRAY(m->arena, uint32_t, (each + 4) * (size_t)n + 1);
+  uint32_t n = m->contacts.n, some = 0;
+  while (each == 2 && n && m->contacts.at[n - 1].parts) n--; /* guides are the last */
+  uint32_t all = each * n, *of = ARENA_ARRAY(m->arena, uint32_t, (each + 4) * (size_t)n + 1);
   Expr *law = ARENA_ARRAY(m->arena, Expr, (each + 4) * (size_t)n + 1);
   for (uint32_t i = 0; i < n; i++) {
     const Contact *c = &m->contacts.at[i];

@@ -133,6 +133,7 @@ for v in 2 3; do
   check "saved and serialized, too, FMI $v" moves $v saved $belt s "mu=0.2" 2e-4 1 mu=0.2
 done
 check "a crank on guides, and the force of one" moves 2 cs $here/fmu/guides.lag coast "--tol 1e-11" 2e-6 1 # the tolerance of steps is 1e-6
+check "beside a contact, with friction of a coordinate" moves 2 cs $here/fmu/stopped.lag coast "--method moreau(step=1e-3)" 1e-9 1
 check "a body that is held by friction stays where it is" moves 2 cs $here/fmu/brake.lag s "" 1e-4 1
 
 # ---- kicks: time events

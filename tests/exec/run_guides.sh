@@ -264,8 +264,6 @@ check "the slider, too" near "$(final x)" "$slider" 5e-6
 
 # ---- refusals
 check "a negative friction" refuses 2 'the model declares mu >= 0' rail go mu=-0.1
-no_header() { ! "$LAGC" header "$TMP/beside.lag" -o "$TMP/h" 2>"$TMP/log" && grep -q 'contacts or dry friction, not both: write a guide beside contacts as two of them' "$TMP/log" || { cat "$TMP/log"; return 1; }; }
-check "headers with guides beside contacts" no_header
 
 # ---- the same on a curve: held from t = 0 on, it slips at 2 mu g/F, and sticks again (SciPy: 0.4119069855300544); moreau meets the friction of slipping exactly while it holds
 for kind in 'guide path: x^2 + y^2 = R^2, friction = mu, static = 2*mu' 'constraint path: hypot(x, y) = R

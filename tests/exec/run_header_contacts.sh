@@ -234,11 +234,34 @@ model both <<'END_OF'
 model both
 coord x [m], y [m]
 kinetic = 1 [kg]/2*(x'^2 + y'^2)
+potential = 9.81 [N]*y
 force x = -sign(x')*1 [N]
-contact floor: y >= 0, restitution = 0
-scene s { span 2 [s] }
+contact floor: y >= 0, restitution = 0.6
+scene s { start x' = 0.5 [m/s], y = 0.3 [m]; span 100 [s] }
 END_OF
-check "contacts and dry friction together" says 2 'only of models with contacts or dry friction, not both' "$LAGC" header "$TMP/both.lag" --with moreau -o "$TMP/none.h"
+check "dry friction beside a contact" digits "$TMP/both.lag" s
+near=200
+sed 's/span 0.6/span 10/' $here/fmu/stopped.lag >"$TMP/stopped.lag" # an impact in 300 steps
+check "guides and dry friction beside a contact with friction" digits "$TMP/stopped.lag" coast
+model tele <<'END_OF'
+model tele
+coord x[3] [m], y [m]
+input F [N] = 12 [N]*sin(5 [rad/s]*t)
+param mu = 0.3, g = 9.81 [m/s^2]
+kinetic = 1 [kg]/2*(x[1]'^2 + x[2]'^2 + x[3]'^2 + y'^2)
+potential = 1 [kg]*g*y
+force x[1] = F
+let d = x[2] - x[1], e = x[3] - x[2]
+friction one on d: 1 [N]
+friction two on e: 0.5 [N], static = 0.8 [N]
+guide rail: y + 0.1*x[3] = 0, friction = mu
+for i in 1..2 { contact out[i]: x[i+1] - x[i] >= 0, restitution = 0.4
+ contact back[i]: 0.2 [m] - (x[i+1] - x[i]) >= 0, restitution = 0.4 }
+contact wall: 0.5 [m] - x[3] >= 0, restitution = 0.3, friction = 0.2, slip = y'
+scene s { start x[2] = 0.1, x[3] = 0.2 , y = -0.02; span 100 [s] }
+END_OF
+check "a telescope on a slope: slides that rub between stops" digits "$TMP/tele.lag" s
+near=0
 model puck2 <<'END_OF'
 model puck2
 coord x [m], y [m]
