@@ -38,7 +38,7 @@ typedef struct lag_moreau_contacts {
   int contacts, constraints, nq, entries, nmass, band; /* sizes; entries: of the Jacobian; band: half bandwidth of M */
   const lag_contact *at;                               /* [contacts] */
   const lag_entry *jacobian_at, *mass_at;              /* rows and columns of entries */
-  LAG_REAL epsilon;                                    /* rounding of LAG_REAL */
+  LAG_REAL epsilon, loose;                             /* rounding of LAG_REAL; part of the fastest rate, or 0 */
   const LAG_REAL *guess;                               /* [contacts] impulses of the step before */
   LAG_REAL *u;                                         /* inputs */
   lag_impulses all;
@@ -281,6 +281,7 @@ static inline int lag_contacts_solve(lag_moreau_contacts *w, LAG_REAL *v) {
   for (int e = 0; e < (int)A->first[w->rows]; e++)
     size = lag_larger(size, LAG_FN(fabs)(A->value[e]*v[(int)A->col[e]]));
   w->all.v = v;
+  w->all.loose = w->loose*size;
   const LAG_REAL enough = LAG_C(64.0)*w->epsilon*size;
   const int sweeps = lag_contact_impulses(&w->all, enough, MOST);
   w->sweeps += sweeps;
