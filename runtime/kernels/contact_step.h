@@ -134,8 +134,10 @@ static inline int lag_contact_row(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
   lag_sparse_rows *const A = &w->all.A, *const D = &w->all.D;
   int e = (int)A->first[r], f = (int)D->first[r], status = 0;
   for (int j = (int)w->first[k]; j < (int)w->first[k + 1]; j++) {
+    const LAG_REAL value = w->jacobian[(int)w->entry[j]];
+    if (!(value < LAG_C(0.0) || value > LAG_C(0.0))) continue;
     A->col[e] = (LAG_REAL)w->jacobian_at[(int)w->entry[j]].col;
-    A->value[e++] = w->jacobian[(int)w->entry[j]];
+    A->value[e++] = value;
   }
   A->first[r + 1] = (LAG_REAL)e;
   const int alone = w->constraints == w->contacts && w->band == 0; /* M is diagonal */

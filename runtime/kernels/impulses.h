@@ -312,11 +312,34 @@ static inline LAG_REAL lag_contact_damping(int sweep) {
   return sweep < 500 ? LAG_C(1.0) : sweep < 3000 ? LAG_C(0.5) : sweep < 20000 ? LAG_C(0.2) : LAG_C(0.05);
 }
 
+/* The same in a plane where friction moves the gap by little: most contacts of a pile. */
+static inline LAG_REAL lag_contact_turn_flat(const lag_impulses *s, const lag_pressing *c, LAG_REAL part) {
+  const LAG_REAL zero = LAG_C(0.0);
+  const int r = (int)c->row;
+  const LAG_REAL response = s->response[r], slow = s->response[r + 1];
+  LAG_REAL change = zero;
+  if (response > zero) {
+    const LAG_REAL by = lag_larger(zero, s->P[r] + (c->least - lag_rate_of(s, r))/response) - s->P[r];
+    change = LAG_FN(fabs)(by)*response;
+    if (!(change <= zero)) lag_press(s, c, part*by);
+  }
+  if (!(slow > zero)) return change;
+  const LAG_REAL slip = lag_rate_of(s, r + 1), most = c->mu*s->P[r], was = s->P[r + 1];
+  LAG_REAL to = slip - slow*was;
+  lag_into_ball(1, c->centre, c->radius, &to);
+  LAG_REAL x = was + (to - slip)/slow;
+  if (LAG_FN(fabs)(x) > most) x = lag_smaller(lag_larger(x, -most), most);
+  lag_add_impulse(&s->D, r + 1, part*(x - was), s->P, s->v);
+  return lag_larger(change, LAG_FN(fabs)(x - was)*slow);
+}
+
 /* One turn of a contact; returns the largest change of a rate. Along the gap and across in turn, or both at once where
  * friction moves the gap by more than half of its own response, as in a brake that locks itself. */
 static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressing *c, LAG_REAL part) {
   const LAG_REAL zero = LAG_C(0.0), two = LAG_C(2.0);
   const int r = (int)c->row, n = (int)c->tangents;
+  if (n == 1 && !(two*c->mu*LAG_FN(fabs)(c->couple[0]) > s->response[r]))
+    return lag_contact_turn_flat(s, c, part);
   lag_contact_alone a = {c, s->response[r], zero, s->P[r], zero, {zero, zero}, {zero, zero}};
   LAG_REAL change = zero, x[2] = {zero, zero}, couple = zero, to = s->P[r];
   for (int k = 0; k < n; k++) {
