@@ -312,7 +312,7 @@ static inline LAG_REAL lag_contact_damping(int sweep) {
   return sweep < 500 ? LAG_C(1.0) : sweep < 3000 ? LAG_C(0.5) : sweep < 20000 ? LAG_C(0.2) : LAG_C(0.05);
 }
 
-/* The same in a plane where friction moves the gap by little: most contacts of a pile. */
+/* One turn of a contact in a plane whose friction moves the gap by little; returns the largest change of a rate. */
 static inline LAG_REAL lag_contact_turn_flat(const lag_impulses *s, const lag_pressing *c, LAG_REAL part) {
   const LAG_REAL zero = LAG_C(0.0);
   const int r = (int)c->row;
@@ -333,7 +333,7 @@ static inline LAG_REAL lag_contact_turn_flat(const lag_impulses *s, const lag_pr
   return lag_larger(change, LAG_FN(fabs)(x - was)*slow);
 }
 
-/* One turn of a contact; returns the largest change of a rate. Along the gap and across in turn, or both at once where
+/* One turn of any contact. Along the gap and across in turn, or both at once where
  * friction moves the gap by more than half of its own response, as in a brake that locks itself. */
 static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressing *c, LAG_REAL part) {
   const LAG_REAL zero = LAG_C(0.0), two = LAG_C(2.0);
@@ -409,15 +409,15 @@ static inline LAG_REAL lag_contact_stride(const lag_impulses *s, LAG_REAL stride
   return goes_on ? LAG_C(2.0)*stride : one;
 }
 
-/* Many contacts: P goes on by the last direction, in the part that the change of two sweeps is of the one before, *before;
- * where changes grow, directions begin anew. M. Silcowitz, S. Niebe, K. Erleben, Vis. Comput. 26 (2010) 893, DOI
+/* Impulses of many contacts after two sweeps: conjugate directions, which begin anew where changes grow. *before: square
+ * of the last change. M. Silcowitz-Hansen, S. Niebe, K. Erleben, Vis. Comput. 26 (2010) 893, DOI
  * 10.1007/s00371-010-0502-6. */
 static inline void lag_contact_conjugate(const lag_impulses *s, LAG_REAL *before) {
   const LAG_REAL zero = LAG_C(0.0);
   const int rows = (int)(s->of[s->n - 1].row + s->of[s->n - 1].tangents) + 1;
   LAG_REAL now = zero;
   for (int r = 0; r < rows; r++) now += (s->P[r] - s->was[r])*(s->P[r] - s->was[r]);
-  const LAG_REAL part = now < *before ? now/ *before : zero;
+  const LAG_REAL part = LAG_SELECT(now < *before, now/(*before), zero);
   for (int r = 0; r < rows; r++) {
     const LAG_REAL by = part*s->went[r];
     s->went[r] = by + (s->P[r] - s->was[r]);
@@ -600,7 +600,7 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
     if (sweep % 1000 == 0 && change <= LAG_C(1e7)*enough && change >= LAG_C(0.9)*before) return sweep;
     if (sweep % 1000 == 0) before = change;
     if (conjugate && sweep % 2 == 0) lag_contact_conjugate(s, &square);
-    else if (!conjugate && sweep % 32 == 0 && sweep > 200) stride = lag_contact_stride(s, stride);
+    if (!conjugate && sweep % 32 == 0 && sweep > 200) stride = lag_contact_stride(s, stride);
   }
   return most + 1;
 }
