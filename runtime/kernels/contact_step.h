@@ -73,6 +73,7 @@ static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG
   w->all.D.col = room += e, w->all.D.value = room += responses, w->mass = room += responses, w->lu = room += w->nmass;
   w->first = room += lag_band_matrix_size(nq, w->band), w->entry = room + nc + 2;
   w->all.response = w->response, w->all.b = w->b;
+  w->loose = LAG_C(0.0);
 }
 
 /* Sorts entries of the Jacobian by constraints. */

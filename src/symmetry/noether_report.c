@@ -23,10 +23,11 @@ static const Generator *shift(const Eqns *e, uint32_t i) {
 /* Coordinates that L does not contain. */
 static Indices noether_cyclic(const Eqns *e) {
   Indices all = {0};
+  const int jumps = discontinuities_of(e, e->lagrangian).n > 0;
   for (uint32_t i = 0; i < e->n; i++) {
     int absent = expr_is_zero(e->g, e->dLdq[i]);
     if (!absent && e->n <= PROVE_MOST) absent = prove_zero(e->g, e->dLdq[i], NULL) == PROVED_ZERO;
-    if (absent && !noether_moves_jumps(e, shift(e, i))) vec_push(e->m->arena, &all, i);
+    if (absent && !(jumps && noether_moves_jumps(e, shift(e, i)))) vec_push(e->m->arena, &all, i);
   }
   return all;
 }
