@@ -409,8 +409,8 @@ static inline LAG_REAL lag_contact_stride(const lag_impulses *s, LAG_REAL stride
   return goes_on ? LAG_C(2.0)*stride : one;
 }
 
-/* Impulses of many contacts after two sweeps: conjugate directions, which begin anew where changes grow. *before: square
- * of the last change. M. Silcowitz-Hansen, S. Niebe, K. Erleben, Vis. Comput. 26 (2010) 893, DOI
+/* Impulses of many contacts after two sweeps: conjugate directions, which begin anew where changes grow.
+ * *before: square of the last change. M. Silcowitz-Hansen, S. Niebe, K. Erleben, Vis. Comput. 26 (2010) 893, DOI
  * 10.1007/s00371-010-0502-6. */
 static inline void lag_contact_conjugate(const lag_impulses *s, LAG_REAL *before) {
   const LAG_REAL zero = LAG_C(0.0);
@@ -568,8 +568,8 @@ static inline int lag_contact_newton(const lag_impulses *s) {
  * laws: the rate A v + b of a gap is at least `least`, and equal where P > 0; slip velocities are in the ball
  * where friction can hold them there, else friction is at its limit and acts towards its centre. P: a guess,
  * then the impulses; v: without impulses, then with them. Ends where a sweep changes no rate by more than
- * `enough`, or after 20 by s->loose. Returns the number of sweeps, forth and back in turn; `most` + 1 where these do not
- * suffice. */
+ * `enough`, or after 20 by s->loose. Returns the number of sweeps, forth and back in turn; `most` + 1 where
+ * these do not suffice. */
 static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, int most) {
   enum { MANY = 32, SOME = 20, QUICK = 3000 };
   const LAG_REAL zero = LAG_C(0.0);

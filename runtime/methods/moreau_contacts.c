@@ -65,8 +65,8 @@ lag_moreau_contacts lag_moreau_contacts_of(lag_problem *pb, double *law) {
 }
 
 int lag_moreau_find(lag_problem *pb, lag_moreau_contacts *w, double t, double h, const double *mid, const double *end) {
-  /* impulses of more than so many contacts of families agree to 64 times AGREE, in rates, or after some sweeps to LOOSE:
-   * to rounding they would take thousands, and the next step goes on with what they lack */
+  /* impulses of more than so many contacts of families agree to 64 times AGREE, in rates, or after
+   * some sweeps to LOOSE: to rounding they would take thousands, and the next step goes on with what they lack */
   enum { MANY = 200 };
   const double AGREE = 1e-10, LOOSE = 3e-3;
   lag_family_step s;
