@@ -38,7 +38,7 @@ typedef struct lag_moreau_contacts {
   int contacts, constraints, nq, entries, nmass, band; /* sizes; entries: of the Jacobian; band: half bandwidth of M */
   const lag_contact *at;                               /* [contacts] */
   const lag_entry *jacobian_at, *mass_at;              /* rows and columns of entries */
-  LAG_REAL epsilon;                                    /* rounding of LAG_REAL */
+  LAG_REAL epsilon, loose;                             /* rounding of LAG_REAL; part of the fastest rate, or 0 */
   const LAG_REAL *guess;                               /* [contacts] impulses of the step before */
   LAG_REAL *u;                                         /* inputs */
   lag_impulses all;
@@ -73,6 +73,7 @@ static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG
   w->all.D.col = room += e, w->all.D.value = room += responses, w->mass = room += responses, w->lu = room += w->nmass;
   w->first = room += lag_band_matrix_size(nq, w->band), w->entry = room + nc + 2;
   w->all.response = w->response, w->all.b = w->b;
+  w->loose = LAG_C(0.0);
 }
 
 /* Sorts entries of the Jacobian by constraints. */
@@ -134,8 +135,10 @@ static inline int lag_contact_row(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
   lag_sparse_rows *const A = &w->all.A, *const D = &w->all.D;
   int e = (int)A->first[r], f = (int)D->first[r], status = 0;
   for (int j = (int)w->first[k]; j < (int)w->first[k + 1]; j++) {
+    const LAG_REAL value = w->jacobian[(int)w->entry[j]];
+    if (!(value < LAG_C(0.0) || value > LAG_C(0.0))) continue;
     A->col[e] = (LAG_REAL)w->jacobian_at[(int)w->entry[j]].col;
-    A->value[e++] = w->jacobian[(int)w->entry[j]];
+    A->value[e++] = value;
   }
   A->first[r + 1] = (LAG_REAL)e;
   const int alone = w->constraints == w->contacts && w->band == 0; /* M is diagonal */
@@ -281,6 +284,7 @@ static inline int lag_contacts_solve(lag_moreau_contacts *w, LAG_REAL *v) {
   for (int e = 0; e < (int)A->first[w->rows]; e++)
     size = lag_larger(size, LAG_FN(fabs)(A->value[e]*v[(int)A->col[e]]));
   w->all.v = v;
+  w->all.loose = w->loose*size;
   const LAG_REAL enough = LAG_C(64.0)*w->epsilon*size;
   const int sweeps = lag_contact_impulses(&w->all, enough, MOST);
   w->sweeps += sweeps;

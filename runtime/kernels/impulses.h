@@ -192,6 +192,7 @@ typedef struct lag_impulses {
   const LAG_REAL *response, *b;
   LAG_REAL *P, *v;
   LAG_REAL *was, *went; /* [rows] impulses some sweeps ago, and their changes until then */
+  LAG_REAL loose;       /* change of a rate in a sweep that is enough after many sweeps; 0: none */
 } lag_impulses;
 
 static inline LAG_REAL lag_rate_of(const lag_impulses *s, int r) { return lag_row_product(&s->A, r, s->v) + s->b[r]; }
@@ -311,11 +312,34 @@ static inline LAG_REAL lag_contact_damping(int sweep) {
   return sweep < 500 ? LAG_C(1.0) : sweep < 3000 ? LAG_C(0.5) : sweep < 20000 ? LAG_C(0.2) : LAG_C(0.05);
 }
 
-/* One turn of a contact; returns the largest change of a rate. Along the gap and across in turn, or both at once where
+/* One turn of a contact in a plane whose friction moves the gap by little; returns the largest change of a rate. */
+static inline LAG_REAL lag_contact_turn_flat(const lag_impulses *s, const lag_pressing *c, LAG_REAL part) {
+  const LAG_REAL zero = LAG_C(0.0);
+  const int r = (int)c->row;
+  const LAG_REAL response = s->response[r], slow = s->response[r + 1];
+  LAG_REAL change = zero;
+  if (response > zero) {
+    const LAG_REAL by = lag_larger(zero, s->P[r] + (c->least - lag_rate_of(s, r))/response) - s->P[r];
+    change = LAG_FN(fabs)(by)*response;
+    if (!(change <= zero)) lag_press(s, c, part*by);
+  }
+  if (!(slow > zero)) return change;
+  const LAG_REAL slip = lag_rate_of(s, r + 1), most = c->mu*s->P[r], was = s->P[r + 1];
+  LAG_REAL to = slip - slow*was;
+  lag_into_ball(1, c->centre, c->radius, &to);
+  LAG_REAL x = was + (to - slip)/slow;
+  if (LAG_FN(fabs)(x) > most) x = lag_smaller(lag_larger(x, -most), most);
+  lag_add_impulse(&s->D, r + 1, part*(x - was), s->P, s->v);
+  return lag_larger(change, LAG_FN(fabs)(x - was)*slow);
+}
+
+/* One turn of any contact. Along the gap and across in turn, or both at once where
  * friction moves the gap by more than half of its own response, as in a brake that locks itself. */
 static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressing *c, LAG_REAL part) {
   const LAG_REAL zero = LAG_C(0.0), two = LAG_C(2.0);
   const int r = (int)c->row, n = (int)c->tangents;
+  if (n == 1 && !(two*c->mu*LAG_FN(fabs)(c->couple[0]) > s->response[r]))
+    return lag_contact_turn_flat(s, c, part);
   lag_contact_alone a = {c, s->response[r], zero, s->P[r], zero, {zero, zero}, {zero, zero}};
   LAG_REAL change = zero, x[2] = {zero, zero}, couple = zero, to = s->P[r];
   for (int k = 0; k < n; k++) {
@@ -383,6 +407,24 @@ static inline LAG_REAL lag_contact_stride(const lag_impulses *s, LAG_REAL stride
       s->was[r] = s->P[r];
     }
   return goes_on ? LAG_C(2.0)*stride : one;
+}
+
+/* Impulses of many contacts after two sweeps: conjugate directions, which begin anew where changes grow.
+ * *before: square of the last change. M. Silcowitz-Hansen, S. Niebe, K. Erleben, Vis. Comput. 26 (2010) 893, DOI
+ * 10.1007/s00371-010-0502-6. */
+static inline void lag_contact_conjugate(const lag_impulses *s, LAG_REAL *before) {
+  const LAG_REAL zero = LAG_C(0.0);
+  const int rows = (int)(s->of[s->n - 1].row + s->of[s->n - 1].tangents) + 1;
+  LAG_REAL now = zero;
+  for (int r = 0; r < rows; r++) now += (s->P[r] - s->was[r])*(s->P[r] - s->was[r]);
+  const LAG_REAL part = LAG_SELECT(now < *before, now/(*before), zero);
+  for (int r = 0; r < rows; r++) {
+    const LAG_REAL by = part*s->went[r];
+    s->went[r] = by + (s->P[r] - s->was[r]);
+    lag_add_impulse(&s->D, r, by, s->P, s->v);
+    s->was[r] = s->P[r];
+  }
+  *before = now;
 }
 
 /* Few planar contacts: responses W of all rates to all impulses; impulses and rates, and those of the sweeps; how each
@@ -526,11 +568,13 @@ static inline int lag_contact_newton(const lag_impulses *s) {
  * laws: the rate A v + b of a gap is at least `least`, and equal where P > 0; slip velocities are in the ball
  * where friction can hold them there, else friction is at its limit and acts towards its centre. P: a guess,
  * then the impulses; v: without impulses, then with them. Ends where a sweep changes no rate by more than
- * `enough`. Returns the number of sweeps, forth and back in turn; `most` + 1 where these do not suffice. */
+ * `enough`, or after 20 by s->loose. Returns the number of sweeps, forth and back in turn; `most` + 1 where
+ * these do not suffice. */
 static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, int most) {
+  enum { MANY = 32, SOME = 20, QUICK = 3000 };
   const LAG_REAL zero = LAG_C(0.0);
   /* change 1000 sweeps ago: rows that depend on others agree to their own rounding only */
-  LAG_REAL before = enough*LAG_C(1e8), stride = LAG_C(1.0);
+  LAG_REAL before = enough*LAG_C(1e8), stride = LAG_C(1.0), square = zero;
   lag_find_opposites(s);
   for (int i = 0; i < s->n; i++) lag_find_coupling(s, &s->of[i]);
   for (int i = 0; i < s->n; i++)
@@ -538,21 +582,25 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
       const LAG_REAL guess = LAG_SELECT(s->response[k] > zero, s->P[k], zero);
       s->P[k] = s->was[k] = s->went[k] = zero;
       lag_add_impulse(&s->D, k, guess, s->P, s->v);
+      if (s->n > MANY) s->was[k] = guess;
     }
   for (int sweep = 1; sweep <= most; sweep++) {
     LAG_REAL change = zero;
-    const LAG_REAL part = lag_contact_damping(sweep);
+    const int conjugate = s->n > MANY && sweep <= QUICK;
+    const LAG_REAL part = conjugate ? LAG_C(1.0) : lag_contact_damping(sweep);
     int softer = 0;
     for (int i = 0; i < s->n; i++) {
       const LAG_REAL one = lag_contact_turn(s, &s->of[sweep % 2 ? i : s->n - 1 - i], part);
       change = LAG_SELECT(one > change || !lag_is_number(one), one, change);
     }
+    if (sweep >= SOME && change <= s->loose) change = zero;
     if (change > enough && (sweep == 200 || sweep % 5000 == 0) && lag_contact_newton(s)) change = zero;
     for (int i = 0; i < s->n && !(change > enough); i++) softer += lag_contact_soften(s, &s->of[i], enough);
     if (!(change > enough) && softer == 0) return sweep;
     if (sweep % 1000 == 0 && change <= LAG_C(1e7)*enough && change >= LAG_C(0.9)*before) return sweep;
     if (sweep % 1000 == 0) before = change;
-    if (sweep % 32 == 0 && sweep > 200) stride = lag_contact_stride(s, stride);
+    if (conjugate && sweep % 2 == 0) lag_contact_conjugate(s, &square);
+    if (!conjugate && sweep % 32 == 0 && sweep > 200) stride = lag_contact_stride(s, stride);
   }
   return most + 1;
 }

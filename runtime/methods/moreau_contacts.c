@@ -65,10 +65,10 @@ lag_moreau_contacts lag_moreau_contacts_of(lag_problem *pb, double *law) {
 }
 
 int lag_moreau_find(lag_problem *pb, lag_moreau_contacts *w, double t, double h, const double *mid, const double *end) {
-  /* impulses of more than so many contacts of families agree to 64 times AGREE, in rates: to rounding they would take
-   * thousands of sweeps */
+  /* impulses of more than so many contacts of families agree to 64 times AGREE, in rates, or after
+   * some sweeps to LOOSE: to rounding they would take thousands, and the next step goes on with what they lack */
   enum { MANY = 200 };
-  const double AGREE = 1e-10;
+  const double AGREE = 1e-10, LOOSE = 3e-3;
   lag_family_step s;
   int rc = pb->model->families ? lag_families_find(pb, t, h, mid, end, &s) : 0;
   if (pb->model->families && rc == 0) {
@@ -78,6 +78,7 @@ int lag_moreau_find(lag_problem *pb, lag_moreau_contacts *w, double t, double h,
     w->jacobian_at = s.jacobian;
     w->guess = s.guess;
     w->epsilon = s.contacts > MANY ? AGREE : DBL_EPSILON;
+    w->loose = s.contacts > MANY ? LOOSE : 0;
   }
   return rc ? rc : lag_contacts_find(pb, w, t, h, mid, end);
 }

@@ -39,6 +39,7 @@ ExprJumps discontinuities_of(const Eqns *e, Expr x) {
     const SumNest *s = expr_op(g, l.at[k]) == EX_NEST ? expr_sum_nest(g, l.at[k]) : NULL;
     if (s) all = jumps_of_sum(e, s);
   }
+  expr_list_free(g, l);
   return all;
 }
 

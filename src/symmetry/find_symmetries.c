@@ -297,7 +297,7 @@ static uint32_t complex_rates(SymmetrySearch *s, uint32_t choice) {
 
 static void use_attempt(SymmetrySearch *s, uint32_t attempt) {
   s->out->attempt = attempt;
-  s->choices = choices_new(s->scratch, s->e, attempt);
+  s->choices = choices_new(s->scratch, s->e, attempt, 1);
   s->spaces = ARENA_ARRAY(s->scratch, SolutionSpace, noether_choices(s));
 }
 

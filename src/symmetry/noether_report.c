@@ -26,10 +26,11 @@ static int proved_zero(ExprGraph *g, Expr e) { return !prove_nonzero(g, e) && pr
 /* Coordinates that L does not contain. */
 static Indices noether_cyclic(const Eqns *e) {
   Indices all = {0};
+  const int jumps = discontinuities_of(e, e->lagrangian).n > 0;
   for (uint32_t i = 0; i < e->n; i++) {
     int absent = expr_is_zero(e->g, e->dLdq[i]);
     if (!absent && e->n <= PROVE_MOST) absent = proved_zero(e->g, e->dLdq[i]);
-    if (absent && !noether_moves_jumps(e, shift(e, i))) vec_push(e->m->arena, &all, i);
+    if (absent && !(jumps && noether_moves_jumps(e, shift(e, i)))) vec_push(e->m->arena, &all, i);
   }
   return all;
 }

@@ -15,7 +15,7 @@ static void draw(const ExprGraph *g, uint32_t attempt, uint32_t choice, long dou
     to[s] *= 1 + 0.03L * sample_symbol(g, s, 2 + 2 * attempt);
 }
 
-Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt) {
+Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt, int moved) {
   ExprGraph *g = e->g;
   VEC(SymId) params = {0};
   VEC(Expr) roots = {0};
@@ -26,8 +26,9 @@ Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt) {
   for (uint32_t i = 0; i < all.n; i++)
     if (expr_op(g, all.at[i]) == EX_SYM && expr_sym_of(g, all.at[i])->kind == SYM_PARAM)
       vec_push(a, &params, expr_sym_id(g, all.at[i]));
-  long double **at = ARENA_ARRAY(a, long double *, 2 + params.n);
-  for (uint32_t k = 0; k < 2 + params.n; k++) {
+  const uint32_t n = CHOICE_MOVED + (moved ? params.n : 0);
+  long double **at = ARENA_ARRAY(a, long double *, n);
+  for (uint32_t k = 0; k < n; k++) {
     at[k] = ARENA_ARRAY(a, long double, count);
     draw(g, attempt, k, at[k]);
     /* A parameter of unknown sign is taken positive: most are, and identities do not depend on it. */

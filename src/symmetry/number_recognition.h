@@ -16,8 +16,8 @@ typedef struct {
 enum { CHOICE_FIRST, CHOICE_SECOND, CHOICE_MOVED };
 
 /* attempt 0; or other random values, the second choice near the first, for motions that oscillate for some values of
- * the parameters only. */
-Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt);
+ * the parameters only. moved 0: the first two choices alone. */
+Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt, int moved);
 
 /* x as a rational p/q that is short against the digits of x; 0: it is none. */
 int recognise_rational(long double x, Num *out);

@@ -286,7 +286,7 @@ static int is_null(const BracketFit *w, const Bracket *k) {
 static void compute_brackets(Arena *scratch, void *data) {
   BracketFit *w = data;
   w->scratch = scratch;
-  w->choices = choices_new(scratch, w->e, w->of->attempt);
+  w->choices = choices_new(scratch, w->e, w->of->attempt, 1);
   make_tape(w);
   w->slopes = ARENA_ARRAY(scratch, Expr, 2 * (size_t)w->n * w->r + 1);
   for (uint32_t a = 0; a < w->r; a++) put_slopes(w, a);

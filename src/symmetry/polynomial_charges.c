@@ -383,7 +383,7 @@ static void search_all(Arena *scratch, void *data) {
   SearchTask *task = data;
   ChargeSearch *s = &task->search;
   s->scratch = scratch;
-  s->choices = choices_new(scratch, s->e, task->known->attempt);
+  s->choices = choices_new(scratch, s->e, task->known->attempt, 1);
   s->a = momentum_ansatz_new(scratch, s->e);
   uint32_t of_energy = s->a->quadratic ? 2 : 1; /* y*sqrt(1 + y'^2): the square of the energy is of degree 2 */
   for (uint32_t k = 0; k < task->known->all.n; k++) {

@@ -92,7 +92,7 @@ static void make_whole(Num *x, uint32_t n) {
 static void scaling_work(Arena *scratch, void *data) {
   ScalingSearch *w = data;
   w->scratch = scratch;
-  Choices choices = choices_new(scratch, w->e, 0);
+  Choices choices = choices_new(scratch, w->e, 0, 0);
   const long double *x = exponents(w, choices.at[CHOICE_FIRST], 1),
                     *y = x ? exponents(w, choices.at[CHOICE_SECOND], 2) : NULL;
   Num *whole = ARENA_ARRAY(w->e->m->arena, Num, w->n + 2), other;
