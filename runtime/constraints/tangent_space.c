@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 
 /* Rank of the constraints; holonomic: of those stated on positions alone. A[n nq] and unit[nq] at the state; A is
  * destroyed. */
@@ -117,4 +118,20 @@ int lag_tangent_project(lag_problem *pb, double t, const double *y, int k, doubl
     for (int i = 0; i < n; i++) Y[i * k + j] = e[i];
   }
   return rc;
+}
+
+size_t lag_project_back_size(const lag_problem *pb) {
+  const lag_adjoint *of = pb->model->constraints ? pb->model->constraints->adjoint : NULL;
+  return of ? (size_t)(pb->n + pb->model->nu + pb->model->np + of->n) : 0;
+}
+
+int lag_project_back(lag_problem *pb, double t, const double *y, double *x, double *g, double *scratch) {
+  const lag_adjoint *of = pb->model->constraints->adjoint;
+  double *out = scratch, *by_up = out + pb->n, *d = by_up + pb->model->nu + pb->model->np;
+  int nq = pb->nq, rc = lag_inputs_at(pb, t, y);
+  rc = rc ? rc : of->project(of, t, y, y + nq, y + 2 * nq, pb->p, pb->u, x, out, by_up, d, pb->work);
+  if (rc || lag_not_finite(pb->n, out) >= 0) return rc ? rc : LAG_ENAN;
+  memcpy(x, out, (size_t)pb->n * sizeof *x);
+  lag_add_by_parameters(pb, by_up, d, g);
+  return LAG_OK;
 }

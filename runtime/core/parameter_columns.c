@@ -60,16 +60,17 @@ static double chain(const lag_sim *s, const lag_parameter_columns *by, int i, in
   return sum;
 }
 
-/* The terms of each derivative of residuals by a parameter; term NULL: they are counted. */
+/* The terms of each derivative of residuals by a parameter, or with constraints of each parameter by those of columns;
+ * term NULL: they are counted. */
 static int put_terms(const lag_sim *s, const lag_parameter_columns *by, lag_parameter_term *term) {
-  const lag_linear *l = s->scene->model->linear;
-  const lag_partials *of = l ? l->by_params : NULL;
-  int n = 0, width = s->pb.n + by->n;
-  for (int k = 0; of && k < of->n; k++)
+  const lag_model *m = s->scene->model;
+  const lag_partials *of = m->linear ? m->linear->by_params : NULL;
+  int n = 0, width = s->pb.n + by->n, from = m->constraints && m->constraints->adjoint ? m->np : of ? of->n : 0;
+  for (int k = 0; k < from; k++)
     for (int j = 0; j < by->n; j++) {
-      double factor = chain(s, by, of->at[k].col, j);
+      double factor = chain(s, by, of ? of->at[k].col : k, j);
       if (factor == 0.0) continue;
-      if (term) term[n] = (lag_parameter_term){k, of->at[k].row * width + s->pb.n + j, factor};
+      if (term) term[n] = (lag_parameter_term){k, of ? of->at[k].row * width + s->pb.n + j : j, factor};
       n++;
     }
   return n;
