@@ -244,10 +244,10 @@ static void add(int n, const double *from, double *to) {
   for (int i = 0; i < n; i++) to[i] += from[i];
 }
 
-/* Adds the weights at time t to x. */
-static void add_weights(Sweep *w, double t, double *x) {
+/* Adds the weights at time t to x: up to rounding at the end of a step, exactly at a place within one. */
+static void add_weights(Sweep *w, double t, int within, double *x) {
   int n = w->s->pb.n;
-  double rounding = 4 * DBL_EPSILON * fabs(t);
+  double rounding = within ? 0 : 4 * DBL_EPSILON * fabs(t);
   for (; w->rows > 0 && fabs(w->t[w->rows - 1] - t) <= rounding; w->rows--)
     add(n, w->weight + (size_t)(w->rows - 1) * (size_t)n, x);
 }
@@ -262,7 +262,7 @@ static int back_from(Sweep *w, const double *step, double dt, const double *y1, 
 /* The weights at a state within a step. */
 static int back_from_place(Sweep *w, const Matrix *m, const double *step) {
   memset(w->one, 0, (size_t)w->s->pb.n * sizeof *w->one);
-  add_weights(w, m->t, w->one);
+  add_weights(w, m->t, 1, w->one);
   put_modes(w->s, step);
   int rc = back_from(w, step, m->t - step[0], m->S, w->one);
   add(w->s->pb.n, w->one, w->x);
@@ -272,24 +272,24 @@ static int back_from_place(Sweep *w, const Matrix *m, const double *step) {
 /* A jump, or a step, or a part of one: weights at its end belong to it. */
 static void back_over(Sweep *w, const Matrix *m) {
   int n = w->s->pb.n;
-  if (m->kind == OF_STEP) add_weights(w, m->t, w->x);
+  if (m->kind == OF_STEP) add_weights(w, m->t, 0, w->x);
   if (m->kind != OF_PART) {
     back_over_matrix(w, m->S, w->x);
     return;
   }
   memset(w->one, 0, (size_t)n * sizeof *w->one);
-  add_weights(w, m->t, w->one);
+  add_weights(w, m->t, 1, w->one);
   back_over_matrix(w, m->S, w->one);
   add(n, w->one, w->x);
 }
 
-/* The step (t0, dt), and a shorter one for each weight within it. */
+/* The step (t0, dt), and a shorter one for each weight within it: however short, not for one at t0. */
 static int back_over_step(Sweep *w, const double *step) {
   lag_problem *pb = &w->s->pb;
   int n = pb->n, rc;
   double t0 = step[0], dt = step[1], rounding = 4 * DBL_EPSILON * (fabs(t0) + fabs(t0 + dt));
   put_modes(w->s, step);
-  for (; w->rows > 0 && fabs(w->t[w->rows - 1] - t0 - dt) <= rounding; w->rows--)
+  for (; w->rows > 0 && fabs(w->t[w->rows - 1] - t0 - dt) <= rounding && fabs(w->t[w->rows - 1] - t0) > 0; w->rows--)
     add(n, w->weight + (size_t)(w->rows - 1) * (size_t)n, w->x);
   rc = back_from(w, step, dt, step + modes_at(w->s) + pb->model->nmodes, w->x);
   for (; rc == LAG_OK && !is_held(w->s) && w->rows > 0 && (w->t[w->rows - 1] - t0) * pb->dir > rounding; w->rows--) {
@@ -451,7 +451,8 @@ int lag_sim_gradient(lag_sim *s, int rows, const double *t, const double *weight
   if (rc) return rc;
   size_t np = (size_t)s->pb.model->np, stride = (size_t)s->record->stride,
          held = lag_project_back_size(&s->pb), step = s->method->adjoint ? s->method->adjoint_size(&s->pb) : 0,
-         own = step > held ? step : held, size = 2 * (size_t)n + (size_t)nu + 2 * np + stride + (size_t)nmodes + (own > (size_t)n ? own : (size_t)n);
+         scratch = (size_t)n > step ? (size_t)n : step,
+         size = 2 * (size_t)n + (size_t)nu + 2 * np + stride + (size_t)nmodes + (scratch > held ? scratch : held);
   double calls = s->pb.rhs_calls, *block = calloc(size + 1, sizeof *block);
   if (!block) return lag_fail(s, LAG_ENOMEM, "out of memory");
   Sweep w = {.s = s, .rows = rows, .t = t, .weight = weight, .x = block, .one = block + n, .g = block + 2 * n};
