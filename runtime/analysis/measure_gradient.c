@@ -82,7 +82,7 @@ static void seed_track(MeasureGradient *g, const Track *k, double weight) {
     return;
   }
   if (k->kind != TRACK_MAX && k->kind != TRACK_MIN && k->kind != TRACK_DRIFT) {
-    g->refused = "means have no gradient yet: make the value a state, state S with S' = x, and take S/t at the end";
+    g->refused = "means have no gradient yet: make the value a state, state S with flow S' = x, and take S/t at the end";
     return;
   }
   put_seed(g, k->arg, falls ? k->when_least : k->when_most, k->kind == TRACK_DRIFT && falls ? -weight : weight);
@@ -210,6 +210,7 @@ static int run_back(MeasureGradient *g, lag_sim *sim, double *by_start, double *
 int lag_measures_gradient(Measures *m, int k, lag_sim *sim, double *by_start, double *by_p, char *why, size_t size) {
   size_t n = (size_t)sim->pb.n, np = (size_t)sim->pb.model->np;
   lag_sim *own = m->sim;
+  double end = m->t; /* evaluations at other times set it */
   MeasureGradient g = {.m = m, .adjoint = calloc((size_t)m->nnodes + 1, sizeof *g.adjoint)};
   double *room = calloc((size_t)MOST_ROWS * (n + 1) + 2 * n + np + 1 + (size_t)sim->pb.model->nev, sizeof *room);
   int rc = g.adjoint && room ? LAG_OK : lag_fail(sim, LAG_ENOMEM, "out of memory");
@@ -217,6 +218,7 @@ int lag_measures_gradient(Measures *m, int k, lag_sim *sim, double *by_start, do
   m->sim = sim;
   if (rc == LAG_OK && !g.refused) rc = run_back(&g, sim, by_start, by_p, room);
   m->sim = own;
+  m->t = end;
   free(g.adjoint);
   free(room);
   snprintf(why, size, "%s", g.refused ? g.refused : rc ? lag_sim_message(sim) : "");

@@ -31,22 +31,20 @@ int lag_tangent_dimension(lag_sim *s) {
   return rc ? rc : d;
 }
 
-/* rate[n] := change of the residuals of velocities along e[n], by central differences of order 4,
- * exact for constraints of degree 4 in q and v. c[2 n] is scratch. */
+/* rate[n] := change of the residuals of velocities along e[n], by differences of order 6. c[2 n] is scratch. */
 static int residual_change(lag_problem *pb, double t, const double *y, const double *e, double *there, double *c,
                            double *rate) {
-  const double part = 0x1p-9;
   double *r = c + pb->model->constraints->n;
   int m = pb->model->constraints->n, rc = LAG_OK;
   double far = 0;
   for (int i = 0; i < 2 * pb->nq; i++) far = fmax(far, fabs(e[i]) / lag_difference_scale(pb, y, i));
   memset(rate, 0, (size_t)m * sizeof *rate);
   if (!(far > 0)) return LAG_OK;
-  for (int j = -2; j <= 2 && rc == LAG_OK; j++) {
-    double h = j * part / far, weight = (j % 2 ? 8 : -1) * (j < 0 ? -1 : 1) / 12.0;
-    for (int i = 0; i < pb->n; i++) there[i] = y[i] + h * e[i];
-    rc = j ? lag_residuals(pb, t, there, c, r) : LAG_OK;
-    for (int k = 0; k < m && j; k++) rate[k] += weight * r[k] * far / part;
+  double h = LAG_DIFFERENCE_PART / far;
+  LAG_EACH_DIFFERENCE(j) {
+    for (int i = 0; i < pb->n; i++) there[i] = y[i] + j * h * e[i];
+    rc = rc ? rc : lag_residuals(pb, t, there, c, r);
+    for (int k = 0; k < m; k++) rate[k] += lag_difference_weight(j) * r[k] / h;
   }
   return rc;
 }
