@@ -368,17 +368,19 @@ static int begin_start(Start *w, double **block) {
 }
 
 /* change[rows] of the level := that of its residuals along e[n] over h, with the parameters of column j (-1: none). */
-static int residual_change(Start *w, int positions, int j, double h, const double *e, double *change) {
+static int residual_change(Start *w, const lag_parameter_columns *by, int positions, int j, double h, const double *e,
+                           double *change) {
   lag_sim *s = w->sim;
+  const double *p = w->pb->p;
   int rc = LAG_OK, rows = positions ? count_stated(w->of) : w->of->n;
   double *c = w->kkt, *r = c + w->of->n;
   memset(change, 0, (size_t)rows * sizeof *change);
   LAG_EACH_DIFFERENCE(k) {
-    if (j >= 0) lag_use_parameters(s, j, k);
+    if (j >= 0) w->pb->p = lag_shifted_parameters(w->pb, by, j, k);
     for (int i = 0; i < w->pb->n; i++) w->y[i] = s->now[i] + k * h * e[i];
     rc = rc ? rc : lag_residuals(w->pb, s->scene->t0, w->y, c, r);
     for (int i = 0; i < rows; i++) change[i] += lag_difference_weight(k) * (positions ? c : r)[i] / h;
-    if (j >= 0) lag_use_parameters(s, 0, 0);
+    w->pb->p = p;
   }
   memcpy(w->y, s->now, (size_t)w->pb->n * sizeof *w->y);
   return rc;
@@ -393,7 +395,7 @@ static void ask_again(Start *w, int positions) {
     l->asked[i] = fabs(l->x[i] - asked[i]) <= rounding * lag_unit_magnitude(w->pb, l->x, i) ? l->x[i] : asked[i];
 }
 
-int lag_start_change(lag_sim *s, int j, double h, double *e) {
+int lag_start_change(lag_sim *s, const lag_parameter_columns *by, int j, double h, double *e) {
   Start w = {.sim = s, .pb = &s->pb, .of = s->scene->model->constraints, .nq = s->pb.nq};
   double *block, *change;
   if (w.pb->model->ncontacts || s->run->rank < w.of->n) return 0;
@@ -401,7 +403,7 @@ int lag_start_change(lag_sim *s, int j, double h, double *e) {
   int known = begin_start(&w, &block) && change;
   for (int positions = 1; positions >= 0 && known; positions--) {
     double *d = change + w.of->n, *part = e + (positions ? 0 : w.nq);
-    known = residual_change(&w, positions, j, h, e, change) == LAG_OK;
+    known = residual_change(&w, by, positions, j, h, e, change) == LAG_OK;
     begin_level(&w, positions);
     ask_again(&w, positions);
     known = known && lag_state_change(&w.level, change, d);

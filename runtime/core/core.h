@@ -413,7 +413,7 @@ static inline const double *lag_shifted_parameters(const lag_problem *pb, const 
 /* setup.c: now[n] := the start as asked for. nearest_start.c: e[n], a change of that by a step h of parameter column j,
  * or (-1) of a start, := that of the nearest start, now; 0: it is not known, and differences have to tell. */
 void lag_asked_start(lag_sim *sim);
-int lag_start_change(lag_sim *sim, int j, double h, double *e);
+int lag_start_change(lag_sim *sim, const lag_parameter_columns *by, int j, double h, double *e);
 /* parameter_columns.c. use: the run computes with parameters k steps along parameter column j; k = 0: with its own
  * again. event: change[columns] := derivatives of event function `event` by parameters, 0 in columns of starts;
  * action: change[n columns], of the state that its action sets; after[n] is scratch. They use g1. */
