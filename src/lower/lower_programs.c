@@ -144,10 +144,10 @@ static void load_accelerations(Lower *l) {
 static void load_multipliers(Lower *l, uint32_t first) {
   const Constraints *k = &l->e->constraints;
   for (uint32_t i = 0; i < k->n; i++) {
-    Slot lambda = prog_ins(
-        l->p,
-        (Ins){.op = IR_LOAD, .array = ARR_G, .index = first + i, .name = expr_symbol(l->g, k->of[i]->multiplier)->name});
-    expr_map_set(&l->slots, expr_symbol(l->g, k->of[i]->multiplier)->node, lambda + 1);
+    const Symbol *of = expr_symbol(l->g, k->of[i]->multiplier);
+    Slot lambda =
+        prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = first + i, .name = of->name});
+    expr_map_set(&l->slots, of->node, lambda + 1);
   }
 }
 
