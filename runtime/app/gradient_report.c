@@ -6,6 +6,7 @@
 
 #include "app/app.h"
 #include "core/core.h"
+#include "core/rhs.h"
 
 enum { NAME = 200 };
 
@@ -19,7 +20,7 @@ int lag_app_gradient_open(App *app) {
 static int has_derivatives(App *app) {
   const lag_model *m = app->scene->model;
   const lag_method *method = lag_sim_method(app->sim);
-  if (app->why[0] && !method->adjoint && !m->constraints && m->linear && m->linear->adjoint) return 0;
+  if (app->why[0] && !method->adjoint && lag_adjoint_of(m)) return 0;
   lag_sim *sim = lag_app_fresh_sim(app);
   int has = sim && lag_app_copy_method(app->sim, sim, 1) == LAG_OK && lag_sim_record(sim) == LAG_OK;
   lag_sim_free(sim);

@@ -357,6 +357,64 @@ static int make_room(Start *s, double **block) {
   return 1;
 }
 
+static int begin_start(Start *w, double **block) {
+  lag_sim *s = w->sim;
+  w->level = (lag_level){.context = w,
+                         .n = w->nq, .entries = w->of->njacobian, .exactly = s->scene->exactly != 0,
+                         .rounding = DBL_EPSILON, .residuals = residuals, .jacobian = jacobian, .terms = terms,
+                         .scales = scales, .direction = direction, .distance = distance, .stage = stage,
+                         .is_contact = is_contact, .close_gap = w->pb->model->ncontacts ? close_gap : NULL};
+  return make_room(w, block);
+}
+
+/* change[rows] of the level := that of its residuals along e[n] over h, with the parameters of column j (-1: none). */
+static int residual_change(Start *w, const lag_parameter_columns *by, int positions, int j, double h, const double *e,
+                           double *change) {
+  lag_sim *s = w->sim;
+  const double *p = w->pb->p;
+  int rc = LAG_OK, rows = positions ? count_stated(w->of) : w->of->n;
+  double *c = w->kkt, *r = c + w->of->n;
+  memset(change, 0, (size_t)rows * sizeof *change);
+  LAG_EACH_DIFFERENCE(k) {
+    if (j >= 0) w->pb->p = lag_shifted_parameters(w->pb, by, j, k);
+    for (int i = 0; i < w->pb->n; i++) w->y[i] = s->now[i] + k * h * e[i];
+    rc = rc ? rc : lag_residuals(w->pb, s->scene->t0, w->y, c, r);
+    for (int i = 0; i < rows; i++) change[i] += lag_difference_weight(k) * (positions ? c : r)[i] / h;
+    w->pb->p = p;
+  }
+  memcpy(w->y, s->now, (size_t)w->pb->n * sizeof *w->y);
+  return rc;
+}
+
+/* asked := the request, where the nearest state differs from it by rounding only that state. */
+static void ask_again(Start *w, int positions) {
+  const double rounding = 1e-12; /* the part of the change that the curvature of constraints then adds */
+  lag_level *l = &w->level;
+  const double *asked = w->sim->asked + (positions ? 0 : w->nq);
+  for (int i = 0; i < w->nq; i++)
+    l->asked[i] = fabs(l->x[i] - asked[i]) <= rounding * lag_unit_magnitude(w->pb, l->x, i) ? l->x[i] : asked[i];
+}
+
+int lag_start_change(lag_sim *s, const lag_parameter_columns *by, int j, double h, double *e) {
+  Start w = {.sim = s, .pb = &s->pb, .of = s->scene->model->constraints, .nq = s->pb.nq};
+  double *block, *change;
+  if (w.pb->model->ncontacts || s->run->rank < w.of->n) return 0;
+  change = calloc((size_t)(w.of->n + w.nq) + 1, sizeof *change);
+  int known = begin_start(&w, &block) && change;
+  for (int positions = 1; positions >= 0 && known; positions--) {
+    double *d = change + w.of->n, *part = e + (positions ? 0 : w.nq);
+    known = residual_change(&w, by, positions, j, h, e, change) == LAG_OK;
+    begin_level(&w, positions);
+    ask_again(&w, positions);
+    known = known && lag_state_change(&w.level, change, d);
+    for (int i = 0; i < w.nq && known; i++) part[i] += d[i];
+  }
+  free(change);
+  free(block);
+  free(w.index);
+  return known;
+}
+
 int lag_consistent_start(lag_sim *s) {
   Start w = {.sim = s, .pb = &s->pb, .of = s->scene->model->constraints, .nq = s->pb.nq};
   size_t bytes = (size_t)s->pb.n * sizeof(double);
@@ -364,12 +422,7 @@ int lag_consistent_start(lag_sim *s) {
   int rc = LAG_ENOMEM;
   memcpy(s->asked, s->now, bytes);
   if (!w.of) return LAG_OK;
-  w.level = (lag_level){.context = &w,
-                        .n = w.nq, .entries = w.of->njacobian, .exactly = s->scene->exactly != 0,
-                        .rounding = DBL_EPSILON, .residuals = residuals, .jacobian = jacobian, .terms = terms,
-                        .scales = scales, .direction = direction, .distance = distance, .stage = stage,
-                        .is_contact = is_contact, .close_gap = w.pb->model->ncontacts ? close_gap : NULL};
-  if (make_room(&w, &block)) {
+  if (begin_start(&w, &block)) {
     memcpy(w.y, s->now, bytes);
     memcpy(w.asked, s->now, bytes);
     lag_release_integrals(s);

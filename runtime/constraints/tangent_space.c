@@ -4,9 +4,11 @@
  * may be another in a neighbouring motion. */
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 #include "numeric/dense.h"
 
 /* Rank of the constraints; holonomic: of those stated on positions alone. A[n nq] and unit[nq] at the state; A is
@@ -43,20 +45,19 @@ static double steepness(lag_problem *pb, const double *y, const double *e, doubl
   return far;
 }
 
-/* rate[constraints] := change of the residuals of velocities along e[n], by central differences of order 4 with the
- * steps h and 2 h, exact for constraints of degree 4 in q and v. *error := about what they omit, and rounding.
- * c[3 constraints] is scratch. */
+/* rate[constraints] := change of the residuals of velocities along e[n], by differences of order 6 with the step h.
+ * *error := about what those of order 4 omit, and rounding. c[3 constraints] is scratch. */
 static int differences(lag_problem *pb, double t, const double *y, const double *e, double h, double *there, double *c,
                        double *rate, double *error) {
   int m = pb->model->constraints->n, rc = LAG_OK;
   double *r = c + m, *bend = r + m, terms = lag_largest(2 * pb->nq, y), most = lag_largest(2 * pb->nq, e), bent = 0;
   memset(rate, 0, (size_t)m * sizeof *rate);
   memset(bend, 0, (size_t)m * sizeof *bend);
-  for (int j = -2; j <= 2 && rc == LAG_OK; j++) {
-    double sign = j < 0 ? -1 : 1, weight = (j % 2 ? 8 : -1) * sign / 12.0;
+  LAG_EACH_DIFFERENCE(j) {
+    double third = (abs(j) == 1 ? 2 : abs(j) == 2 ? -1 : 0) * (j < 0 ? -1 : 1) / (4 * h);
     for (int i = 0; i < pb->n; i++) there[i] = y[i] + j * h * e[i];
-    rc = j ? lag_residuals(pb, t, there, c, r) : LAG_OK;
-    for (int k = 0; k < m && j; k++) rate[k] += weight * r[k] / h, bend[k] += (j % 2 ? 2 : -1) * sign * r[k] / (4 * h);
+    rc = rc ? rc : lag_residuals(pb, t, there, c, r);
+    for (int k = 0; k < m; k++) rate[k] += lag_difference_weight(j) * r[k] / h, bend[k] += third * r[k];
   }
   for (int k = 0; k < m; k++) bent = fmax(bent, fabs(bend[k]));
   *error = bent * bent / most + DBL_EPSILON * terms / h;
@@ -67,13 +68,12 @@ static int differences(lag_problem *pb, double t, const double *y, const double 
  * units may do. c[4 constraints] is scratch. */
 static int residual_change(lag_problem *pb, double t, const double *y, const double *e, double *there, double *c,
                            double *rate) {
-  const double part = 0x1p-9;
   int m = pb->model->constraints->n;
   double far = steepness(pb, y, e, 0), wide = steepness(pb, y, e, 1), error, other, *second = c + 3 * m;
   memset(rate, 0, (size_t)m * sizeof *rate);
   if (!(far > 0)) return LAG_OK;
-  int rc = differences(pb, t, y, e, part / far, there, c, rate, &error);
-  if (rc || wide > far / 2 || differences(pb, t, y, e, part / wide, there, c, second, &other)) return rc;
+  int rc = differences(pb, t, y, e, LAG_DIFFERENCE_PART / far, there, c, rate, &error);
+  if (rc || wide > far / 2 || differences(pb, t, y, e, LAG_DIFFERENCE_PART / wide, there, c, second, &other)) return rc;
   if (other < error) memcpy(rate, second, (size_t)m * sizeof *rate);
   return LAG_OK;
 }
@@ -145,4 +145,20 @@ int lag_tangent_project(lag_problem *pb, double t, const double *y, int k, doubl
     for (int i = 0; i < n; i++) Y[i * k + j] = e[i];
   }
   return rc;
+}
+
+size_t lag_project_back_size(const lag_problem *pb) {
+  const lag_adjoint *of = pb->model->constraints ? pb->model->constraints->adjoint : NULL;
+  return of ? (size_t)(pb->n + pb->model->nu + pb->model->np + of->n) : 0;
+}
+
+int lag_project_back(lag_problem *pb, double t, const double *y, double *x, double *g, double *scratch) {
+  const lag_adjoint *of = pb->model->constraints->adjoint;
+  double *out = scratch, *by_up = out + pb->n, *d = by_up + pb->model->nu + pb->model->np;
+  int nq = pb->nq, rc = lag_inputs_at(pb, t, y);
+  rc = rc ? rc : of->project(of, t, y, y + nq, y + 2 * nq, pb->p, pb->u, x, out, by_up, d, pb->work);
+  if (rc || lag_not_finite(pb->n, out) >= 0) return rc ? rc : LAG_ENAN;
+  memcpy(x, out, (size_t)pb->n * sizeof *x);
+  lag_add_by_parameters(pb, by_up, d, g);
+  return LAG_OK;
 }

@@ -369,6 +369,8 @@ void lag_tangent_free(lag_sim *sim);
 int lag_tangent_set(lag_sim *sim, int k, const double *Y);
 /* Y := D Y, with D the derivative of the last step up to t, on the constraints. */
 int lag_tangent_over(lag_sim *sim, double t, double *Y);
+/* Whether the present state at t has a tangent space. */
+int lag_tangent_exists(lag_sim *sim, double t);
 /* gradient.c: in place of advancing the tangent: keeps the last step up to t; the matrix by which a jump has multiplied
  * the columns, which begin anew. pause: the caller is about to look at a state within a step. */
 int lag_record_step(lag_sim *sim, double t);
@@ -388,6 +390,10 @@ void lag_record_free(lag_sim *sim);
 int lag_tangent_dimension(lag_sim *sim);
 size_t lag_tangent_projection_size(const lag_problem *pb);
 int lag_tangent_project(lag_problem *pb, double t, const double *y, int k, double *Y, double *scratch);
+/* The transpose, by the emitted reverse mode: x[n] := of x, g[nu + np] += products by inputs and parameters;
+ * scratch[lag_project_back_size]. */
+size_t lag_project_back_size(const lag_problem *pb);
+int lag_project_back(lag_problem *pb, double t, const double *y, double *x, double *g, double *scratch);
 
 /* Differences of order 6: the weight of a value k steps away, k = -3 ... 3, times the step; a step as a part of the
  * scale. Wrong by rounding over 2^-9, and by 2^-54/140 of a seventh derivative, for a scale of 1. */
@@ -404,6 +410,10 @@ static inline const double *lag_shifted_parameters(const lag_problem *pb, const 
   return by->shifted + (size_t)(7 * j + k + 3) * (size_t)(pb->model->np + pb->model->nderived);
 }
 
+/* setup.c: now[n] := the start as asked for. nearest_start.c: e[n], a change of that by a step h of parameter column j,
+ * or (-1) of a start, := that of the nearest start, now; 0: it is not known, and differences have to tell. */
+void lag_asked_start(lag_sim *sim);
+int lag_start_change(lag_sim *sim, const lag_parameter_columns *by, int j, double h, double *e);
 /* parameter_columns.c. use: the run computes with parameters k steps along parameter column j; k = 0: with its own
  * again. event: change[columns] := derivatives of event function `event` by parameters, 0 in columns of starts;
  * action: change[n columns], of the state that its action sets; after[n] is scratch. They use g1. */

@@ -103,9 +103,8 @@ static int closed_contact(const lag_sim *s) {
   return -1;
 }
 
-/* Projects Y onto the tangent space of the constraints at the present state, t. Near a singular position, as of a
- * folded linkage, there is none. */
-static int stay_on_constraints(lag_sim *s, double t, double *Y) {
+/* Near a singular position, as of a folded linkage, there is no tangent space. */
+int lag_tangent_exists(lag_sim *s, double t) {
   const double least = 1e-3;
   int weakest = -1, closed = closed_contact(s);
   if (closed >= 0)
@@ -118,7 +117,14 @@ static int stay_on_constraints(lag_sim *s, double t, double *Y) {
                     "at t = %s s constraint %s nearly depends on the others: neighbouring motions part there, and "
                     "there is no tangent; end the run before",
                     LAG_TEXT(t), s->scene->model->constraints->of[weakest].name);
-  int rc = lag_tangent_project(&s->pb, t, s->now, s->tangent_columns, Y, s->tangent_scratch);
+  return LAG_OK;
+}
+
+/* Projects Y onto the tangent space of the constraints at the present state, t. */
+static int stay_on_constraints(lag_sim *s, double t, double *Y) {
+  int rc = lag_tangent_exists(s, t);
+  if (rc) return rc;
+  rc = lag_tangent_project(&s->pb, t, s->now, s->tangent_columns, Y, s->tangent_scratch);
   return rc ? lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN,
                        "at t = %s s changes of the state cannot be projected onto the constraints", LAG_TEXT(t))
             : LAG_OK;

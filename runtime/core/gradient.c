@@ -8,10 +8,12 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 
 /* Matrices [n (n + np)] of changes of the state and by parameters: of jumps; of steps up to time t whose equations or
- * method have no reverse mode; of such a step up to a time within it, where the caller has looked at the state. */
-typedef enum MatrixKind { OF_JUMP, OF_STEP, OF_PART } MatrixKind;
+ * method have no reverse mode; of such a step up to a time within it, where the caller has looked at the state. AT: the
+ * state [n] there of a step with reverse mode and constraints. */
+typedef enum MatrixKind { OF_JUMP, OF_STEP, OF_PART, AT } MatrixKind;
 typedef struct Matrix {
   MatrixKind kind;
   size_t steps; /* behind so many of the other steps */
@@ -31,7 +33,7 @@ typedef struct Unit {
 
 enum { MOST_MARKS = 64 };
 
-/* Steps of the last unit: each [t0, dt, y0[n], kept by the method, modes[nmodes]]. */
+/* Steps of the last unit: each [t0, dt, y0[n], kept by the method, modes[nmodes]], with constraints then y1[n]. */
 struct lag_record {
   size_t nsteps, step_room, nmatrices, matrix_room;
   int stride;
@@ -64,13 +66,14 @@ static void reset_columns(lag_sim *s) {
   for (int i = 0; i < n; i++) s->tangent[i * k + i] = 1;
 }
 
-/* Whether the steps that the method makes now have no reverse mode of their own: with constraints, within slides, of
- * methods without one. The derivative of each is then a matrix. */
+/* Whether the steps that the method makes now have no reverse mode of their own: within slides, with redundant
+ * constraints, of methods without one. The derivative of each is then a matrix. */
 static int needs_matrix(const lag_sim *s) {
-  const lag_model *m = s->scene->model;
-  return m->constraints || s->pb.nslide || !m->linear || !m->linear->adjoint || !s->method->adjoint ||
+  return s->pb.nslide || s->pb.redundant || !lag_adjoint_of(s->scene->model) || !s->method->adjoint ||
          s->method->adjoint_size(&s->pb) == 0;
 }
+
+static int is_held(const lag_sim *s) { return s->scene->model->constraints != NULL; }
 
 /* Modes of a step, behind what its method keeps. */
 static int modes_at(const lag_sim *s) {
@@ -132,7 +135,7 @@ int lag_sim_record_within(lag_sim *s, size_t bytes) {
   reset_columns(s);
   s->record = calloc(1, sizeof *s->record);
   if (!s->record) return lag_tangent_free(s), lag_fail(s, LAG_ENOMEM, "out of memory");
-  s->record->stride = modes_at(s) + s->scene->model->nmodes;
+  s->record->stride = modes_at(s) + s->scene->model->nmodes + (is_held(s) ? s->pb.n : 0);
   s->record->room = bytes;
   s->record->marks_every = 1;
   return begin_unit(s);
@@ -145,11 +148,13 @@ static void put_step(const lag_sim *s, double t, double *step) {
   memcpy(step + 2, s->y0, (size_t)s->pb.n * sizeof *step);
   if (s->method->keep) s->method->keep(s->method_work, &s->pb, step + 2 + s->pb.n);
   memcpy(step + modes_at(s), s->hold + s->pb.model->nu, (size_t)s->pb.model->nmodes * sizeof *step);
+  if (is_held(s))
+    memcpy(step + modes_at(s) + s->pb.model->nmodes, s->now, (size_t)s->pb.n * sizeof *step);
 }
 
 static int keep_matrix(lag_sim *s, MatrixKind kind, double t, const double *Y) {
   struct lag_record *r = s->record;
-  size_t size = (size_t)s->pb.n * (size_t)s->tangent_columns;
+  size_t size = (size_t)s->pb.n * (size_t)(kind == AT ? 1 : s->tangent_columns);
   if (r->silent) return LAG_OK;
   if (r->nmatrices == r->matrix_room) {
     Matrix *more = realloc(r->matrix, (r->matrix_room = 2 * r->matrix_room + 16) * sizeof *more);
@@ -172,6 +177,8 @@ int lag_record_step(lag_sim *s, double t) {
     reset_columns(s);
     return rc;
   }
+  int none = lag_tangent_exists(s, t);
+  if (none) return none;
   if (r->nsteps == r->step_room) {
     size_t room = r->step_room ? 2 * r->step_room : 256;
     double *more = realloc(r->step, room * (size_t)r->stride * sizeof *more);
@@ -195,7 +202,8 @@ static int is_within(const lag_sim *s) {
 }
 
 int lag_record_pause(lag_sim *s) {
-  if (!is_within(s) || s->record->silent || !needs_matrix(s)) return LAG_OK;
+  if (!is_within(s) || s->record->silent) return LAG_OK;
+  if (!needs_matrix(s)) return is_held(s) ? keep_matrix(s, AT, s->run->t, s->now) : LAG_OK;
   int rc = lag_tangent_over(s, s->run->t, s->tangent);
   rc = rc ? rc : keep_matrix(s, OF_PART, s->run->t, s->tangent);
   reset_columns(s);
@@ -226,46 +234,67 @@ static void back_over_matrix(Sweep *w, const double *S, double *x) {
   memcpy(x, sum, (size_t)n * sizeof *x);
 }
 
+/* Modes of a step. */
+static void put_modes(lag_sim *s, const double *step) {
+  memcpy(s->hold + s->pb.model->nu, step + modes_at(s), (size_t)s->pb.model->nmodes * sizeof *step);
+  lag_switch_count(s);
+}
+
 static void add(int n, const double *from, double *to) {
   for (int i = 0; i < n; i++) to[i] += from[i];
 }
 
-/* Adds the weights at time t to x. */
-static void add_weights(Sweep *w, double t, double *x) {
+/* Adds the weights at time t to x: up to rounding at the end of a step, exactly at a place within one. */
+static void add_weights(Sweep *w, double t, int within, double *x) {
   int n = w->s->pb.n;
-  double rounding = 4 * DBL_EPSILON * fabs(t);
+  double rounding = within ? 0 : 4 * DBL_EPSILON * fabs(t);
   for (; w->rows > 0 && fabs(w->t[w->rows - 1] - t) <= rounding; w->rows--)
     add(n, w->weight + (size_t)(w->rows - 1) * (size_t)n, x);
+}
+
+/* The projection onto constraints at the end of a step, and the step (t0, dt). */
+static int back_from(Sweep *w, const double *step, double dt, const double *y1, double *x) {
+  lag_problem *pb = &w->s->pb;
+  int rc = is_held(w->s) ? lag_project_back(pb, step[0] + dt, y1, x, w->g, w->scratch) : LAG_OK;
+  return rc ? rc : w->s->method->adjoint(pb, step[0], dt, step + 2, x, w->g, w->scratch);
+}
+
+/* The weights at a state within a step. */
+static int back_from_place(Sweep *w, const Matrix *m, const double *step) {
+  memset(w->one, 0, (size_t)w->s->pb.n * sizeof *w->one);
+  add_weights(w, m->t, 1, w->one);
+  put_modes(w->s, step);
+  int rc = back_from(w, step, m->t - step[0], m->S, w->one);
+  add(w->s->pb.n, w->one, w->x);
+  return rc;
 }
 
 /* A jump, or a step, or a part of one: weights at its end belong to it. */
 static void back_over(Sweep *w, const Matrix *m) {
   int n = w->s->pb.n;
-  if (m->kind == OF_STEP) add_weights(w, m->t, w->x);
+  if (m->kind == OF_STEP) add_weights(w, m->t, 0, w->x);
   if (m->kind != OF_PART) {
     back_over_matrix(w, m->S, w->x);
     return;
   }
   memset(w->one, 0, (size_t)n * sizeof *w->one);
-  add_weights(w, m->t, w->one);
+  add_weights(w, m->t, 1, w->one);
   back_over_matrix(w, m->S, w->one);
   add(n, w->one, w->x);
 }
 
-/* The step (t0, dt), and a shorter one for each weight within it. */
+/* The step (t0, dt), and a shorter one for each weight within it: however short, not for one at t0. */
 static int back_over_step(Sweep *w, const double *step) {
   lag_problem *pb = &w->s->pb;
-  const lag_method *method = w->s->method;
-  int n = pb->n, nu = pb->model->nu, rc;
+  int n = pb->n, rc;
   double t0 = step[0], dt = step[1], rounding = 4 * DBL_EPSILON * (fabs(t0) + fabs(t0 + dt));
-  memcpy(w->s->hold + nu, step + modes_at(w->s), (size_t)pb->model->nmodes * sizeof *step);
-  lag_switch_count(w->s);
-  for (; w->rows > 0 && fabs(w->t[w->rows - 1] - t0 - dt) <= rounding; w->rows--)
+  put_modes(w->s, step);
+  for (; w->rows > 0 && fabs(w->t[w->rows - 1] - t0 - dt) <= rounding && fabs(w->t[w->rows - 1] - t0) > 0; w->rows--)
     add(n, w->weight + (size_t)(w->rows - 1) * (size_t)n, w->x);
-  rc = method->adjoint(pb, t0, dt, step + 2, w->x, w->g, w->scratch);
-  for (; rc == LAG_OK && w->rows > 0 && (w->t[w->rows - 1] - t0) * pb->dir > rounding; w->rows--) {
+  rc = back_from(w, step, dt, step + modes_at(w->s) + pb->model->nmodes, w->x);
+  for (; rc == LAG_OK && !is_held(w->s) && w->rows > 0 && (w->t[w->rows - 1] - t0) * pb->dir > rounding; w->rows--) {
     memcpy(w->one, w->weight + (size_t)(w->rows - 1) * (size_t)n, (size_t)n * sizeof *w->one);
-    rc = method->adjoint(pb, t0, w->t[w->rows - 1] - t0, step + 2, w->one, w->g, w->scratch);
+    rc = back_from(w, step, w->t[w->rows - 1] - t0, NULL, w->one);
     add(n, w->one, w->x);
   }
   return rc;
@@ -277,7 +306,12 @@ static int back_over_record(Sweep *w) {
   const struct lag_record *r = s->record;
   int rc = LAG_OK;
   for (size_t k = r->nsteps, j = r->nmatrices; rc == LAG_OK; k--) {
-    for (; j > 0 && r->matrix[j - 1].steps == k; j--) back_over(w, &r->matrix[j - 1]);
+    for (; j > 0 && r->matrix[j - 1].steps == k && rc == LAG_OK; j--) {
+      const Matrix *m = &r->matrix[j - 1];
+      if (m->kind != AT) back_over(w, m);
+      else rc = back_from_place(w, m, k < r->nsteps ? r->step + k * (size_t)r->stride : w->step);
+    }
+    if (rc) break;
     if (k == 0) break;
     rc = back_over_step(w, r->step + (k - 1) * (size_t)r->stride);
   }
@@ -373,7 +407,7 @@ static int sweep(Sweep *w) {
   w->end = s->run->t;
   if (is_within(s) && !needs_matrix(s)) {
     put_step(s, s->run->t, w->step);
-    rc = back_over_step(w, w->step);
+    if (!is_held(s)) rc = back_over_step(w, w->step); /* else its places are in the record */
   }
   rc = rc ? rc : back_over_record(w);
   if (rc == LAG_OK && s->record->nunits > 1) rc = back_over_marks(w);
@@ -416,8 +450,9 @@ int lag_sim_gradient(lag_sim *s, int rows, const double *t, const double *weight
   int rc = check_rows(s, rows, t), n = s->pb.n, nu = s->pb.model->nu, nmodes = s->pb.model->nmodes;
   if (rc) return rc;
   size_t np = (size_t)s->pb.model->np, stride = (size_t)s->record->stride,
-         own = s->method->adjoint ? s->method->adjoint_size(&s->pb) : 0,
-         size = 2 * (size_t)n + (size_t)nu + 2 * np + stride + (size_t)nmodes + (own > (size_t)n ? own : (size_t)n);
+         held = lag_project_back_size(&s->pb), step = s->method->adjoint ? s->method->adjoint_size(&s->pb) : 0,
+         scratch = (size_t)n > step ? (size_t)n : step,
+         size = 2 * (size_t)n + (size_t)nu + 2 * np + stride + (size_t)nmodes + (scratch > held ? scratch : held);
   double calls = s->pb.rhs_calls, *block = calloc(size + 1, sizeof *block);
   if (!block) return lag_fail(s, LAG_ENOMEM, "out of memory");
   Sweep w = {.s = s, .rows = rows, .t = t, .weight = weight, .x = block, .one = block + n, .g = block + 2 * n};

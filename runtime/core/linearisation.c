@@ -1,12 +1,13 @@
 /* The linearisation of a model as dense matrices. Enters: a state; leaves: derivatives of its residuals, or of its
- * right-hand side. Holds: without constraints both are exact, from emitted derivatives; with constraints, and while
- * the motion slides, those of the right-hand side are finite differences: to half of the digits for a simplified
- * Newton's method, of order 6 for a tangent. */
+ * right-hand side. Holds: without constraints both are exact, from emitted derivatives; with constraints those of a
+ * tangent are rows of the emitted reverse mode; without it, and while the motion slides, finite differences: to half of
+ * the digits for a simplified Newton's method, of order 6 for a tangent. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 #include "numeric/dense.h"
 
 /* Layout of `work`. */
@@ -35,13 +36,21 @@ static LinearLayout parts_of(const lag_model *m, double *work) {
   return p;
 }
 
+/* Scratch of the rows of a Jacobian by reverse mode with constraints. */
+static size_t reverse_rows_size(const lag_model *m) {
+  const lag_adjoint *of = m->constraints ? m->constraints->adjoint : NULL;
+  size_t rows = (size_t)(m->nq + m->nz), n = rows + (size_t)m->nq;
+  return of ? 2 * n + 2 * (size_t)m->constraints->n + rows + 2 * (size_t)(m->nu + m->np) + (size_t)of->n : 0;
+}
+
 size_t lag_linear_work(const lag_model *m) {
   size_t nq = (size_t)m->nq, n = 2 * nq + (size_t)m->nz;
   size_t exact = m->linear ? n + (size_t)m->linear->ndr + (size_t)m->linear->nmass + nq * nq +
                                  partials_size(m->linear) + 2 * (size_t)m->nu
                            : 0,
-         differences = m->constraints || m->nmodes ? 3 * n : 0;
-  return exact > differences ? exact : differences;
+         differences = m->constraints || m->nmodes ? 3 * n : 0, reverse = reverse_rows_size(m),
+         most = exact > differences ? exact : differences;
+  return most > reverse ? most : reverse;
 }
 
 /* M[nq nq] := the matrix with these entries of its lower triangle. */
@@ -168,9 +177,49 @@ static int by_parameters(lag_problem *pb, const lag_parameter_columns *by, doubl
   return rc;
 }
 
+void lag_add_by_parameters(const lag_problem *pb, const double *by_up, const double *d, double *g) {
+  const lag_adjoint *of = lag_adjoint_of(pb->model);
+  int nu = pb->model->nu;
+  for (int i = 0; i < nu + pb->model->np; i++) g[i] += by_up[i];
+  for (int k = 0; k < of->n; k++)
+    if (isnan(pb->hold[of->at[k].row]) && !pb->signal[of->at[k].row].fn)
+      g[nu + of->at[k].col] += by_up[of->at[k].row] * d[k];
+}
+
+/* J with constraints, a row for each rate by reverse mode. */
+static int reverse_rows(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, double *J,
+                        double *work) {
+  const lag_model *m = pb->model;
+  const lag_adjoint *of = m->constraints->adjoint;
+  int n = pb->n, nq = pb->nq, rows = n - nq, width = n + (by ? by->n : 0), nup = m->nu + m->np,
+      rc = lag_inputs_at(pb, t, y);
+  const double *v = y + nq, *z = v + nq;
+  double *f = work, *held = f + n, *weight = held + m->constraints->n, *out = weight + rows + m->constraints->n,
+         *by_up = out + n, *g = by_up + nup, *d = g + nup;
+  memcpy(f, v, (size_t)nq * sizeof *f);
+  pb->rhs_calls++;
+  rc = rc ? rc : of->rates(of, t, y, v, z, pb->p, pb->u, f + nq, f + 2 * nq, held, pb->work);
+  memcpy(weight + rows, held, (size_t)m->constraints->n * sizeof *held);
+  memset(J, 0, (size_t)(rows * width) * sizeof *J);
+  for (int i = 0; i < rows && rc == LAG_OK; i++) {
+    memset(weight, 0, (size_t)rows * sizeof *weight);
+    memset(g, 0, (size_t)nup * sizeof *g);
+    weight[i] = 1;
+    rc = of->eval(of, t, y, v, z, pb->p, pb->u, f + nq, weight, out, by_up, d, pb->work);
+    memcpy(J + i * width, out, (size_t)n * sizeof *out);
+    if (!by || rc) continue;
+    lag_add_by_parameters(pb, by_up, d, g);
+    for (const lag_parameter_term *k = by->term; k < by->term + by->nterms; k++)
+      J[i * width + n + k->to] += k->factor * g[m->nu + k->from];
+  }
+  return rc;
+}
+
 int lag_fine_jacobian(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, double *J,
                       double *work) {
   const lag_model *m = pb->model;
+  if (m->constraints && m->constraints->adjoint && !pb->nslide && !pb->redundant)
+    return reverse_rows(pb, by, t, y, J, work);
   if (m->constraints || pb->nslide) return central_jacobian(pb, by, t, y, J, work);
   if (!by || !m->linear) return lag_jacobian(pb, t, y, J, work);
   LinearLayout p = parts_of(m, work);

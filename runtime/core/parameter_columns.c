@@ -60,16 +60,17 @@ static double chain(const lag_sim *s, const lag_parameter_columns *by, int i, in
   return sum;
 }
 
-/* The terms of each derivative of residuals by a parameter; term NULL: they are counted. */
+/* The terms of each derivative of residuals by a parameter, or with constraints of each parameter by those of columns;
+ * term NULL: they are counted. */
 static int put_terms(const lag_sim *s, const lag_parameter_columns *by, lag_parameter_term *term) {
-  const lag_linear *l = s->scene->model->linear;
-  const lag_partials *of = l ? l->by_params : NULL;
-  int n = 0, width = s->pb.n + by->n;
-  for (int k = 0; of && k < of->n; k++)
+  const lag_model *m = s->scene->model;
+  const lag_partials *of = m->linear ? m->linear->by_params : NULL;
+  int n = 0, width = s->pb.n + by->n, from = m->constraints && m->constraints->adjoint ? m->np : of ? of->n : 0;
+  for (int k = 0; k < from; k++)
     for (int j = 0; j < by->n; j++) {
-      double factor = chain(s, by, of->at[k].col, j);
+      double factor = chain(s, by, of ? of->at[k].col : k, j);
       if (factor == 0.0) continue;
-      if (term) term[n] = (lag_parameter_term){k, of->at[k].row * width + s->pb.n + j, factor};
+      if (term) term[n] = (lag_parameter_term){k, of ? of->at[k].row * width + s->pb.n + j : j, factor};
       n++;
     }
   return n;
@@ -127,6 +128,36 @@ void lag_all_parameters_end(lag_sim *s, struct lag_sensitivity *kept) {
 
 /* ---- The columns at the start */
 
+/* e[n] := change of the start as asked for by parameter j, or by component `at` for j < 0. */
+static int asked_change(lag_sim *s, int j, int at, double *e) {
+  size_t n = (size_t)s->pb.n;
+  double *kept = malloc(2 * n * sizeof *kept);
+  memset(e, 0, n * sizeof *e);
+  if (j < 0) e[at] = 1;
+  if (!kept || j < 0) return free(kept), kept != NULL;
+  memcpy(kept, s->now, n * sizeof *kept), memcpy(kept + n, s->begin, n * sizeof *kept);
+  LAG_EACH_DIFFERENCE(k) {
+    lag_use_parameters(s, j, k);
+    lag_asked_start(s);
+    for (size_t i = 0; i < n; i++) e[i] += lag_difference_weight(k) * s->now[i] / s->sensitivity->by.h[j];
+    lag_use_parameters(s, 0, 0);
+  }
+  memcpy(s->now, kept, n * sizeof *kept), memcpy(s->begin, kept + n, n * sizeof *kept);
+  return free(kept), 1;
+}
+
+/* Column c of `to` by linear equations at a start on constraints, where they tell; whether they do. */
+static int linear_column(lag_sim *s, Target of, int j, int c, int k, double *to) {
+  int n = s->pb.n, is_p = of.kind == LAG_IS_P;
+  double *e = malloc((size_t)n * sizeof *e), asked = is_p ? 0 : s->asked[of.index],
+         h = is_p ? s->sensitivity->by.h[j] : LAG_DIFFERENCE_PART * lag_difference_scale(&s->pb, s->begin, of.index);
+  if (!is_p) s->asked[of.index] = s->begin[of.index];
+  int known = e && asked_change(s, is_p ? j : -1, of.index, e) && lag_start_change(s, &s->sensitivity->by, is_p ? j : -1, h, e);
+  if (!is_p) s->asked[of.index] = asked;
+  for (int i = 0; i < n && known; i++) to[i * k + c] = e[i];
+  return free(e), known;
+}
+
 /* Column c of `to` := the change of the start by target c. The run has not begun. */
 static int start_column(lag_sim *s, Target of, int j, int c, int k, double *to) {
   int n = s->pb.n, rc = LAG_OK, is_p = of.kind == LAG_IS_P;
@@ -136,6 +167,10 @@ static int start_column(lag_sim *s, Target of, int j, int c, int k, double *to) 
     if (!is_p) to[of.index * k + c] = 1;
     return LAG_OK;
   }
+  if (!is_p) s->start[of.index] = at;
+  int known = s->scene->model->constraints && linear_column(s, of, j, c, k, to);
+  if (!is_p) s->start[of.index] = given;
+  if (known) return LAG_OK;
   LAG_EACH_DIFFERENCE(step) {
     if (is_p) lag_use_parameters(s, j, step);
     else s->start[of.index] = at + step * h;
@@ -144,7 +179,7 @@ static int start_column(lag_sim *s, Target of, int j, int c, int k, double *to) 
   }
   if (is_p) lag_use_parameters(s, 0, 0);
   else s->start[of.index] = given;
-  return rc;
+  return rc ? rc : lag_start_state(s); /* `begin` of the run again */
 }
 
 static int start_columns(lag_sim *s, const Target *of, int k, double *to) {
@@ -152,7 +187,6 @@ static int start_columns(lag_sim *s, const Target *of, int k, double *to) {
   for (int c = 0, j = 0; c < k && rc == LAG_OK; c++) {
     rc = start_column(s, of[c], j, c, k, to);
     j += of[c].kind == LAG_IS_P;
-    if (rc == LAG_OK) rc = lag_start_state(s); /* `begin` of the run again */
   }
   return rc;
 }

@@ -24,6 +24,15 @@ LAG_ALWAYS_INLINE void lag_copy(int n, const double *from, double *to) {
   if (i < n) to[i] = from[i];
 }
 
+/* The reverse mode of a model; NULL: not emitted. */
+static inline const lag_adjoint *lag_adjoint_of(const lag_model *m) {
+  return m->constraints ? m->constraints->adjoint : m->linear ? m->linear->adjoint : NULL;
+}
+
+/* linearisation.c: g[nu + np] += by_up, and by parameters of the inputs that follow their formulas; by_up and d as
+ * lag_adjoint gives them. */
+void lag_add_by_parameters(const lag_problem *pb, const double *by_up, const double *d, double *g);
+
 /* The parts that few models have: pb->u := inputs and modes of switches; where constraints are redundant, *y := its
  * projection onto them. */
 int lag_rhs_prepare(lag_problem *pb, double t, const double **y);

@@ -152,7 +152,7 @@ static double *default_options(const lag_method *method) {
 }
 
 /* Sets the state to the start as it is set now, so that a simulation can be inspected before it runs. */
-static void set_start_state(lag_sim *s) {
+void lag_asked_start(lag_sim *s) {
   int nq = s->pb.nq, n = s->pb.n;
   if (s->scene->start) s->scene->start(s->scene, s->p, s->now, s->now + nq, s->now + 2 * nq);
   for (int i = 0; i < n; i++) s->now[i] = isnan(s->start[i]) ? s->now[i] : s->start[i];
@@ -202,7 +202,7 @@ lag_sim *lag_sim_new(const lag_scene *scene) {
     return NULL;
   }
   if (scene->params) scene->params(scene, s->p, s->fixed);
-  set_start_state(s);
+  lag_asked_start(s);
   return s;
 }
 
@@ -226,7 +226,7 @@ lag_sim *lag_sim_like(const lag_sim *from) {
   if (!s) return NULL;
   copy_values(from, s);
   s->steps_equal = s->options && lag_equal_step(s) > 0;
-  set_start_state(s);
+  lag_asked_start(s);
   return s;
 }
 
@@ -253,7 +253,7 @@ lag_sim *lag_sim_renew(lag_sim *s, const lag_sim *from) {
   begin_blocks(s);
   free_modes(s);
   copy_values(from, s);
-  set_start_state(s);
+  lag_asked_start(s);
   return s;
 }
 
@@ -295,7 +295,7 @@ int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *o
   free(s->options);
   s->options = values;
   s->steps_equal = lag_equal_step(s) > 0;
-  set_start_state(s);
+  lag_asked_start(s);
   return LAG_OK;
 }
 
@@ -442,7 +442,7 @@ int lag_sim_set(lag_sim *s, const char *name, double value) {
   if (s->scene->params) {
     s->scene->params(s->scene, s->p, s->fixed); /* parameters may depend on this one */
   }
-  set_start_state(s);
+  lag_asked_start(s);
   return LAG_OK;
 }
 
@@ -528,7 +528,7 @@ int lag_setup_start(lag_sim *s) {
 int lag_start_state(lag_sim *s) {
   const lag_scene *c = s->scene;
   int n = s->pb.n, rc;
-  set_start_state(s);
+  lag_asked_start(s);
   if (lag_not_finite(n, s->now) >= 0) return lag_fail(s, LAG_ENAN, "the start is not finite");
   memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */
   if ((rc = lag_conditional_place(s, c->t0, s->now)) != 0 || (rc = lag_consistent_start(s)) != 0) return rc;

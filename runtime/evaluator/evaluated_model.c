@@ -91,6 +91,18 @@ static int adjoint(STATE, const double *a, const double *g, double *by_y, double
   return lag_run_program(of->eval, in, (double *[]){by_y, by_up, d}, w);
 }
 
+static int adjoint_rates(STATE, double *a, double *zd, double *l, double *w) {
+  const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u};
+  const EvaluatedAdjoint *of = self;
+  return lag_run_program(of->rates, in, (double *[]){a, zd, l}, w);
+}
+
+static int adjoint_project(STATE, const double *x, double *by_y, double *by_up, double *d, double *w) {
+  const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_G] = x};
+  const EvaluatedAdjoint *of = self;
+  return lag_run_program(of->project, in, (double *[]){by_y, by_up, d}, w);
+}
+
 /* --- functions without w --- */
 
 /* Executes a program in memory of its own; without memory as if a value left its domain. */
@@ -230,7 +242,10 @@ void lag_set_linear_functions(EvaluatedLinear *l) {
 
 void lag_set_partial_functions(EvaluatedPartials *p) { p->partials.eval = partials; }
 
-void lag_set_adjoint_functions(EvaluatedAdjoint *a) { a->adjoint.eval = adjoint; }
+void lag_set_adjoint_functions(EvaluatedAdjoint *a) {
+  a->adjoint.eval = adjoint;
+  if (a->rates) a->adjoint.rates = adjoint_rates, a->adjoint.project = adjoint_project;
+}
 
 void lag_set_action_functions(EvaluatedAction *a) {
   a->curve.curve = curve;
@@ -264,8 +279,8 @@ size_t lag_model_room(const EvaluatedModel *m) {
                           *by_inputs = (const void *)(l ? l->linear.by_inputs : NULL);
   if (by_params) widen(&room, by_params->eval, 0);
   if (by_inputs) widen(&room, by_inputs->eval, 0);
-  const EvaluatedAdjoint *of = (const void *)(l ? l->linear.adjoint : NULL);
-  if (of) widen(&room, of->eval, 0);
+  const EvaluatedAdjoint *of = (const void *)(l ? l->linear.adjoint : c ? c->constraints.adjoint : NULL);
+  if (of) widen(&room, of->eval, 0), widen(&room, of->rates, 0), widen(&room, of->project, 0);
   return room;
 }
 

@@ -47,7 +47,7 @@ typedef struct {
 
 typedef struct {
   lag_adjoint adjoint;
-  const Program *eval;
+  const Program *eval, *rates, *project;
 } EvaluatedAdjoint;
 
 typedef struct {

@@ -122,6 +122,25 @@ static void read_tables(Reader *r) {
   m->tables = t;
 }
 
+static const lag_adjoint *read_adjoint(Reader *r) {
+  Bytes *b = r->b;
+  const lag_model *m = &r->m->model;
+  EvaluatedAdjoint *x = flag(b) ? lag_bytes_room(b, 1, sizeof *x) : NULL;
+  if (!x) return NULL;
+  Reader with = *r;
+  with.state.in[PROGRAM_A] = m->nq, with.state.in[PROGRAM_G] = m->nq + m->nz + r->m->nconstraints;
+  x->adjoint.at = entries(b, &x->adjoint.n, m->nu, m->np, 0);
+  x->eval = program(&with, r->ny, m->nu + m->np, x->adjoint.n);
+  if (r->m->nconstraints) {
+    x->rates = program(r, m->nq, m->nz, r->m->nconstraints);
+    with.state.in[PROGRAM_G] = r->ny;
+    x->project = program(&with, r->ny, m->nu + m->np, x->adjoint.n);
+  }
+  lag_bytes_need(b, x->eval && !r->m->nconstraints == !x->rates && !x->rates == !x->project, "a function is missing");
+  lag_set_adjoint_functions(x);
+  return &x->adjoint;
+}
+
 static void read_constraints(Reader *r) {
   Bytes *b = r->b;
   int n = (int)lag_bytes_below(b, INT32_MAX), kept = (int)lag_bytes_below(b, (uint32_t)n + 1), nq = r->m->model.nq;
@@ -145,6 +164,7 @@ static void read_constraints(Reader *r) {
   c->position = wanted(&with, kept > 0, nq, nq);
   with.state.in[PROGRAM_G] = n;
   c->velocity = wanted(&with, 1, nq, nq);
+  k->adjoint = read_adjoint(r);
   lag_set_constraint_functions(c);
   r->m->model.constraints = k;
 }
@@ -306,20 +326,6 @@ static const lag_partials *read_partials(Reader *r, int columns, int nmass) {
   p->eval = wanted(r, 1, p->partials.n, nmass);
   lag_set_partial_functions(p);
   return &p->partials;
-}
-
-static const lag_adjoint *read_adjoint(Reader *r) {
-  Bytes *b = r->b;
-  const lag_model *m = &r->m->model;
-  EvaluatedAdjoint *x = flag(b) ? lag_bytes_room(b, 1, sizeof *x) : NULL;
-  if (!x) return NULL;
-  Reader with = *r;
-  with.state.in[PROGRAM_G] = m->nq + m->nz;
-  x->adjoint.at = entries(b, &x->adjoint.n, m->nu, m->np, 0);
-  x->eval = program(&with, r->ny, m->nu + m->np, x->adjoint.n);
-  lag_bytes_need(b, x->eval != NULL, "a function is missing");
-  lag_set_adjoint_functions(x);
-  return &x->adjoint;
 }
 
 static void read_linear(Reader *r) {

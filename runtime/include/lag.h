@@ -218,8 +218,9 @@ int lag_sim_outputs_at(lag_sim *sim, double t, double *y, double *out);
  * time, or the motion only touches it. A saved state cannot be loaded into a run with a tangent. At a branch of if,
  * abs, min, max the derivative is that of the branch taken; over a jump of a force, as of dry friction, columns are
  * multiplied by the saltation matrix, which loses a rank where the motion begins to slide. With constraints the
- * columns are projected onto their tangent space, in the mass metric, and derivatives are differences, to some 11
- * digits. Impacts of contacts between flights have saltation matrices, too; a run whose contact stays closed fails. */
+ * columns are projected onto their tangent space, in the mass metric; derivatives are differences, to some 11 digits,
+ * without the emitted reverse mode. Impacts of contacts between flights have saltation matrices, too; a run whose
+ * contact stays closed fails. */
 int lag_sim_set_tangent(lag_sim *sim, int k, const double *Y);
 /* Y[n * k] at the present time; between the ends of steps, by one shorter step of the method. */
 int lag_sim_tangent(lag_sim *sim, double *Y);
@@ -241,10 +242,10 @@ int lag_sim_output_sensitivity(lag_sim *sim, const double *Y, double *D);
  * advance, after method and all values are set. Gradient: J depends on the states y at t[rows], in the order of the
  * run and not beyond it, by weight[rows * n] = dJ/dy in SI; by_start[n] := dJ by the starts, by_p[np] := by the
  * parameters, with all that follows from them as in sensitivities, both in SI. It is the derivative of the steps that
- * were made, their sizes held. With `lagc build --with derivatives`, methods that have `adjoint`, without constraints
- * and outside of slides, take some three times as long as the run, however many parameters there are; else it takes as
- * long as sensitivities by all of them, and t[rows] have to be times of lag_sim_advance. LAG_EMETHOD: as of a
- * tangent. */
+ * were made, their sizes held. With `lagc build --with derivatives`, methods that have `adjoint`, outside of
+ * slides and without redundant constraints or contacts, take some three times as long as the run, however many
+ * parameters there are; else it takes as long as sensitivities by all of them. With constraints, and there, t[rows]
+ * have to be times of lag_sim_advance. LAG_EMETHOD: as of a tangent. */
 int lag_sim_record(lag_sim *sim);
 /* The same where steps take more memory than this, 2^26 bytes by default: parts of the run are repeated from marks on
  * the way back, as few times as their number allows (revolve). One gradient can then be taken. */

@@ -133,13 +133,22 @@ typedef struct lag_partials {
 
 /* Reverse mode: for weights g[nq + nz] of the accelerations and of the rates of states, and accelerations a[nq], the
  * sums of g_i times their derivatives: by_y[2 nq + nz], by_up[nu + np] by inputs and parameters, each as if it were
- * free; and the derivatives d[n] of the inputs' formulas (row) by parameters (col). About three calls of accel. */
+ * free; and the derivatives d[n] of the inputs' formulas (row) by parameters (col). About three calls of accel. With
+ * constraints the multipliers follow the weights in g. */
 typedef struct lag_adjoint {
   int n;
   const lag_entry *at; /* [n] */
   int (*eval)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
               const LAG_REAL *u, const LAG_REAL *a, const LAG_REAL *g, LAG_REAL *by_y, LAG_REAL *by_up, LAG_REAL *d,
               LAG_REAL *w);
+
+  /* With constraints only. rates: as accel, and the multipliers l. project: the transpose of the projection of small
+   * changes onto the constraints, in the metric M: by_y[2 nq + nz] for x[2 nq + nz], by_up and d as above. */
+  int (*rates)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+               const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *l, LAG_REAL *w);
+  int (*project)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
+                 const LAG_REAL *p, const LAG_REAL *u, const LAG_REAL *x, LAG_REAL *by_y, LAG_REAL *by_up,
+                 LAG_REAL *d, LAG_REAL *w);
 } lag_adjoint;
 
 /* The exact linearisation of a model, emitted where a method or command needs it (lagc --with linear).
@@ -210,6 +219,8 @@ typedef struct lag_constraints {
                   const LAG_REAL *p, const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
   int (*velocity)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
                   const LAG_REAL *p, const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
+
+  const lag_adjoint *adjoint; /* NULL: not emitted, as in lag_linear, which models with constraints do not have */
 } lag_constraints;
 
 /* Knowledge of the rate dQ/dt of a charge Q. */

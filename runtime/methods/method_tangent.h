@@ -80,8 +80,13 @@ static inline void lag_tangent_add(int m, double c, const double *restrict x, do
 /* Scratch of a reverse sweep over so many stages: y and f of each, weights of each; products. */
 size_t lag_reverse_size(const lag_problem *pb, int stages);
 
+/* Length of f below: the rates, and the multipliers of constraints. */
+int lag_reverse_width(const lag_problem *pb);
+/* f := f(t, y) with the multipliers. */
+int lag_reverse_rates(lag_problem *pb, double t, const double *y, double *f);
+
 /* Where products by inputs and parameters are added up, g[nu + np]; a vector k[n]; a product out[n]; room[nu + np +
- * formulas]. */
+ * formulas + width]. */
 typedef struct lag_reverse {
   lag_problem *pb;
   double *g, *k, *out, *room;
@@ -89,7 +94,7 @@ typedef struct lag_reverse {
 /* The parts behind g in scratch. */
 lag_reverse lag_reverse_layout(lag_problem *pb, double *g, double *scratch);
 
-/* out[n] := (df/dy)^T x at (t, y), where f[n] = f(t, y) is known, and g += (df/du, df/dp)^T x. LAG_OK, or a failure. */
+/* out[n] := (df/dy)^T x at (t, y), where f = f(t, y) is known, and g += (df/du, df/dp)^T x. LAG_OK, or a failure. */
 int lag_reverse_at(const lag_reverse *w, double t, const double *y, const double *f, const double *x, double *out);
 
 /* lag_method.adjoint of an explicit method. */

@@ -317,6 +317,45 @@ lag_start_kind lag_consistent_state(lag_level *w, int *constraint) {
   return kind;
 }
 
+/* Number of components, free or not, that differ from the request. */
+static int count_moved(const lag_level *w, int free) {
+  int moved = 0;
+  for (int i = 0; i < w->n; i++) {
+    int a = 0;
+    while (a < w->nfree && w->free[a] != i) a++;
+    moved += (a < w->nfree) == free && (w->x[i] > w->asked[i] || w->x[i] < w->asked[i]);
+  }
+  return moved;
+}
+
+/* Whether A d = -change. */
+static int meets_change(lag_level *w, const double *change) {
+  const double rounding = 1e-9, of_others = 1e-13; /* lag_kkt solves to about 1e-12 of the terms; zeros to rounding */
+  double most = 0;
+  int meets = 1;
+  for (int k = 0; k < w->rows; k++) w->slope[k] = change[k], w->terms_here[k] = fabs(change[k]);
+  for (int a = 0; a < w->nfree; a++)
+    for (int e = 0; e < w->entries; e++)
+      if (w->row[e] < w->rows && w->col[e] == w->free[a])
+        w->slope[w->row[e]] += w->A[e] * w->d[a], w->terms_here[w->row[e]] += fabs(w->A[e] * w->d[a]);
+  for (int k = 0; k < w->rows; k++) most = fmax(most, w->terms_here[k]);
+  for (int k = 0; k < w->rows; k++) meets &= fabs(w->slope[k]) <= rounding * w->terms_here[k] + of_others * most;
+  return meets;
+}
+
+int lag_state_change(lag_level *w, const double *change, double *d) {
+  memset(d, 0, (size_t)w->n * sizeof *d);
+  w->alike = 0;
+  for (int stage = LAG_MOVES_FIRST; stage <= LAG_MOVES_LAST && w->rows; stage++) {
+    choose_free(w, stage);
+    memcpy(w->residual, change, (size_t)w->rows * sizeof *change);
+    if (!w->nfree || count_moved(w, 0) || w->direction(w, 0, w->d) || !meets_change(w, change)) continue;
+    for (int a = 0; a < w->nfree; a++) d[w->free[a]] = w->d[a];
+    return w->nfree <= w->rows || !count_moved(w, 1);
+  }
+  return w->rows == 0;
+}
+
 int lag_state_beside(lag_level *w) {
   look_at_terms(w);
   return go_beside(w, 1);

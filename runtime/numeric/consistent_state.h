@@ -69,6 +69,11 @@ double lag_level_weight(const lag_level *w, int i);
  * repeated for its rounding. */
 lag_start_kind lag_consistent_state(lag_level *w, int *constraint);
 
+/* d[n] := the move of the state w->x, found for w->asked before, as its residuals change by change[rows]: where the
+ * request obeys the constraints, or the free components are as many as constraints; elsewhere the curvature of
+ * constraints counts, and 0 is returned. */
+int lag_state_change(lag_level *w, const double *change, double *d);
+
 /* Moves w->x, positions on the constraints, to a state on them about a hundredth away; returns whether there is one. */
 int lag_state_beside(lag_level *w);
 

@@ -58,6 +58,14 @@ static void actions(const Unit *w) {
     program(w, program_set_striking_contact(u, i) ? NULL : u->events.at[i].action);
 }
 
+/* Derivatives by parameters or inputs; p NULL: none. */
+static void partials(const Unit *w, const Prog *p, const IrEntry *at, uint32_t n) {
+  integer(w, p != NULL);
+  if (!p) return;
+  entries(w, at, n);
+  program(w, p);
+}
+
 static void constraints(const Unit *w) {
   const IrConstraints *k = &w->u->constraints;
   word(w, k->of.n), word(w, k->nkept);
@@ -72,6 +80,8 @@ static void constraints(const Unit *w) {
   program(w, k->matrices);
   program(w, k->nkept ? k->position : NULL);
   program(w, k->velocity);
+  partials(w, w->u->adjoint, w->u->formulas_at.at, w->u->formulas_at.n);
+  if (w->u->adjoint) program(w, w->u->adjoint_rates), program(w, w->u->adjoint_projection);
 }
 
 static void contacts(const Unit *w) {
@@ -149,14 +159,6 @@ static void switches(const Unit *w) {
   program(w, u->switch_values);
   program(w, u->nmodes ? u->switch_rates : NULL);
   program(w, u->switch_grips);
-}
-
-/* Derivatives by parameters or inputs; p NULL: none. */
-static void partials(const Unit *w, const Prog *p, const IrEntry *at, uint32_t n) {
-  integer(w, p != NULL);
-  if (!p) return;
-  entries(w, at, n);
-  program(w, p);
 }
 
 static void linear(const Unit *w) {

@@ -26,7 +26,8 @@ static const char *const abi_names[] = {
     "constraints",      "contact_table",    "charge_table",     "charges",
     "switch_table",     "taylor_far",       "taylor_add",       "by_params",
     "by_params_table",  "params_partials",  "by_inputs",        "by_inputs_table",
-    "inputs_partials",  "formula_table",    "adjoint_of",
+    "inputs_partials",  "formula_table",    "adjoint_of",       "adjoint_rates",
+    "adjoint_project",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
@@ -58,7 +59,8 @@ const char *model_id(Arena *a, const char *name) {
                                       "curves", "exact", "exact_of", "residuals", "matrices", "charge_values",
                                       "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws",
                                       "size_values", "size_table", "correct_positions",
-                                      "correct_velocities", "inverse_dynamics", "adjoint", "families"};
+                                      "correct_velocities", "inverse_dynamics", "adjoint", "adjoint_rates",
+                                      "adjoint_project", "families"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -334,15 +336,18 @@ static void emit_partials(const ModelFile *f, const Prog *p, const IrEntry *at, 
 }
 
 static void emit_adjoint(const ModelFile *f) {
-  static const char *const written[] = {"by_y", "by_up", "d", NULL};
+  static const char *const written[] = {"by_y", "by_up", "d", NULL}, *const rates[] = {"a", "zd", "l", NULL};
   const ProgramSet *u = f->u;
   state_function(f, u->adjoint, "adjoint",
                  arena_printf(f->a, "Reverse mode: products g^T dF/dy and by inputs and parameters: %s.",
                               op_count_text(u->adjoint, f->a)),
                  "ag", written);
+  state_function(f, u->adjoint_rates, "adjoint_rates", "Accelerations, rates and multipliers.", NULL, rates);
+  state_function(f, u->adjoint_projection, "adjoint_project",
+                 "Transpose of the projection of small changes g onto the constraints.", "g", written);
   emit_entries("formula_table", u->formulas_at.at, u->formulas_at.n, f->out);
-  sb_printf(f->out, "\nstatic const lag_adjoint adjoint_of = {%u, %s, adjoint};\n", u->formulas_at.n,
-            u->formulas_at.n ? "formula_table" : "NULL");
+  sb_printf(f->out, "\nstatic const lag_adjoint adjoint_of = {%u, %s, adjoint%s};\n", u->formulas_at.n,
+            u->formulas_at.n ? "formula_table" : "NULL", u->adjoint_rates ? ", adjoint_rates, adjoint_project" : "");
 }
 
 static void emit_linear(const ModelFile *f) {
@@ -431,13 +436,15 @@ static void emit_constraints(const ModelFile *f) {
   constraint_table(f->u, f->out);
   emit_entries("jacobian_table", k->jacobian.at, k->jacobian.n, f->out);
   emit_entries("inertia_table", k->mass.at, k->mass.n, f->out);
+  if (f->u->adjoint) emit_adjoint(f);
   sb_printf(f->out,
             "\nstatic const lag_constraints constraints = {\n  .n = %u, .nholonomic = %u, .of = constraint_table,\n",
             k->of.n, k->nkept);
   sb_printf(f->out, "  .njacobian = %u, .jacobian = jacobian_table, .nmass = %u, .mass = %s,\n", k->jacobian.n,
             k->mass.n, k->mass.n ? "inertia_table" : "NULL");
-  sb_printf(f->out, "  .residuals = residuals, .matrices = matrices,\n  .position = %s, .velocity = %s,\n};\n",
-            k->nkept ? "correct_positions" : "NULL", both ? "correct_positions" : "correct_velocities");
+  sb_printf(f->out, "  .residuals = residuals, .matrices = matrices,\n  .position = %s, .velocity = %s,\n%s};\n",
+            k->nkept ? "correct_positions" : "NULL", both ? "correct_positions" : "correct_velocities",
+            f->u->adjoint ? "  .adjoint = &adjoint_of,\n" : "");
   emit_contacts(f);
 }
 

@@ -84,7 +84,7 @@ static const char *lack(const ProgramSet *u, unsigned part) {
   if (part & (PART_MASS | PART_INVERSE) && !u->q.n) return "coordinates: this model has states alone";
   if (part & PART_PARAMS && !u->p.n) return "parameters: this model has none that is free";
   if (part & PART_OUTPUT_JACOBIAN && !u->outputs) return "outputs without multipliers, in a scene that has some";
-  if (part & PART_ADJOINT && !u->adjoint) return "no constraints: their steps have no reverse mode yet";
+  if (part & PART_ADJOINT && u->constraints.of.n) return "no constraints: their steps have no reverse mode yet";
   if (part & PART_ADJOINT && !u->p.n) return "parameters: this model has none that is free";
   if (part & PART_CONSTRAINTS && !u->constraints.of.n) return "constraints: this model has none";
   if (part & PART_EVENTS && !u->events.n) return "events: this model has none";

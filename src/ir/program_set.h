@@ -263,7 +263,8 @@ typedef struct {
   VEC(IrEntry) by_inputs_dr, by_params_dr; /* as linear_dr */
   /* of the derivatives of outputs, formulas of parameters and inputs: columns q, v, z, inputs, q'', z', parameters */
   VEC(IrEntry) outputs_at;
-  const Prog *adjoint;          /* NULL: not requested, or constraints */
+  const Prog *adjoint;          /* NULL: not requested */
+  const Prog *adjoint_rates, *adjoint_projection; /* beside it where there are constraints */
   VEC(IrEntry) formulas_at;     /* positions of its output 2: input, parameter */
   const Prog *jumps;            /* NULL: not requested, or no event changes the state */
   VEC(IrJump) jump_at;          /* positions of its outputs */

@@ -264,14 +264,24 @@ void lower_solution(Lower *l, Slot *acc) {
   for (uint32_t i = 0; i < e->n; i++) prog_name(l->p, acc[i], expr_symbol(e->g, e->m->coords.at[i].a)->name);
 }
 
+static void lower_matrices_of_solution(Lower *l) {
+  ExprVec roots = {0};
+  push_entries(l, &roots, &l->e->system.H);
+  push_entries(l, &roots, &l->e->constraints.A);
+  lower_roots(l, roots.at, roots.n);
+}
+
+void lower_held_weights(Lower *l, uint32_t nrows, int coarse, const Slot *x, Slot *w, Slot *multipliers) {
+  lower_matrices_of_solution(l);
+  RightHandSides sides = {x, ARENA_ARRAY(l->p->arena, Slot, nrows + 1), NULL, nrows, coarse};
+  solve_blocks(l, &sides, w, multipliers);
+}
+
 void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, const Slot *factor, Slot *d, Slot *force) {
   const Eqns *e = l->e;
   const Entries *A = &e->constraints.A;
   Arena *a = l->p->arena;
-  ExprVec roots = {0};
-  push_entries(l, &roots, &e->system.H);
-  push_entries(l, &roots, A);
-  lower_roots(l, roots.at, roots.n);
+  lower_matrices_of_solution(l);
   Slot *multipliers = ARENA_ARRAY(a, Slot, nrows + 1);
   RightHandSides sides = {ARENA_ARRAY(a, Slot, e->n + 1), g, factor, nrows, coarse};
   solve_blocks(l, &sides, d, multipliers);

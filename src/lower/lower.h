@@ -39,6 +39,11 @@ Prog *lower_linear(const Eqns *e, Partials dr, PartialsBy by);
 /* out 0: x^T dF/dy [2 nq + nz], out 1: by inputs, then parameters [nu + np], out 2: entries of `formulas`; F: the
  * accelerations and rates of states, x: read as g [nq + nz]; reads q''. */
 Prog *lower_adjoint(const Eqns *e, const AdjointPartials *d);
+/* With constraints, whose multipliers lower_adjoint reads behind g: out 0, 1: as lower_accel, out 2: the multipliers;
+ * and the transpose of the projection onto the constraints, for x read as g [2 nq + nz], with the outputs of
+ * lower_adjoint. */
+Prog *lower_rates_and_multipliers(const Eqns *e);
+Prog *lower_adjoint_projection(const Eqns *e, const AdjointPartials *d);
 
 /* Derivatives d of the outputs without closed forms, of the formulas of free parameters, and of those of inputs, 0
  * for a table: rows in this order (eqns_output_partials). Accelerations are computed inside. */

@@ -55,6 +55,9 @@ void lower_solution(Lower *l, Slot *acc);
  * d, or NULL. coarse: as in Solve; factor[nrows]: of rows of A, 0: 1; or NULL. */
 void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, const Slot *factor, Slot *d, Slot *force);
 
+/* The solution w[n] of M w - A^T l = x, A w = 0 for the first nrows constraints, and l[nrows]; coarse: as in Solve. */
+void lower_held_weights(Lower *l, uint32_t nrows, int coarse, const Slot *x, Slot *w, Slot *multipliers);
+
 /* eliminate.c: q'' by elimination without pivoting; entries of H and C and forces must be lowered. */
 void lower_elimination(Lower *l, Slot *acc);
 

@@ -349,6 +349,8 @@ static void add_partials(ProgramSet *u, Eqns *e, PartialsBy by) {
 static void add_adjoint(ProgramSet *u, Eqns *e) {
   AdjointPartials d = eqns_adjoint(e);
   u->adjoint = lower_adjoint(e, &d);
+  if (e->constraints.n) u->adjoint_rates = lower_rates_and_multipliers(e);
+  if (e->constraints.n) u->adjoint_projection = lower_adjoint_projection(e, &d);
   for (uint32_t k = 0; k < d.formulas.n; k++)
     vec_push(u->arena, &u->formulas_at, ((IrEntry){d.formulas.at[k].row, d.formulas.at[k].col}));
 }
@@ -374,6 +376,9 @@ static void add_held(ProgramSet *u, const Eqns *e) {
   if (some && program_set_guides(u)) u->contact_laws = lower_contact_laws(&held);
 }
 
+/* Not with contacts, whose friction follows their multipliers. */
+static int has_reverse_mode(const Eqns *e) { return !e->constraints.n || !e->m->contacts.n; }
+
 void unit_require(ProgramSet *u, Eqns *e, unsigned wants) {
   unsigned fresh = wants & ~u->wants;
   u->wants |= wants;
@@ -388,7 +393,8 @@ void unit_require(ProgramSet *u, Eqns *e, unsigned wants) {
   if (fresh & WANT_MULTIPLIERS && e->constraints.n) u->multipliers = lower_multipliers(e);
   if (fresh & WANT_LINEAR && derives) add_linear(u, e);
   if (fresh & WANT_LINEAR && !e->constraints.n) add_jumps(u, e);
-  if (fresh & WANT_ADJOINT && !e->constraints.n) add_adjoint(u, e);
+  unsigned reverse = e->constraints.n ? WANT_ADJOINT | WANT_BY_PARAMS : WANT_ADJOINT;
+  if (fresh & reverse && !u->adjoint && has_reverse_mode(e)) add_adjoint(u, e);
   if (fresh & WANT_HELD) add_held(u, e);
 }
 

@@ -140,13 +140,14 @@ static void load_accelerations(Lower *l) {
   }
 }
 
-/* Multipliers as inputs of the program: ARR_G, in the order of the equations. */
-static void load_multipliers(Lower *l) {
+/* Multipliers as inputs of the program: ARR_G from `first` on, in the order of the equations. */
+static void load_multipliers(Lower *l, uint32_t first) {
   const Constraints *k = &l->e->constraints;
   for (uint32_t i = 0; i < k->n; i++) {
-    Slot lambda = prog_ins(
-        l->p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = i, .name = expr_symbol(l->g, k->of[i]->multiplier)->name});
-    expr_map_set(&l->slots, expr_symbol(l->g, k->of[i]->multiplier)->node, lambda + 1);
+    const Symbol *of = expr_symbol(l->g, k->of[i]->multiplier);
+    Slot lambda =
+        prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = first + i, .name = of->name});
+    expr_map_set(&l->slots, of->node, lambda + 1);
   }
 }
 
@@ -179,7 +180,7 @@ Prog *lower_linear(const Eqns *e, Partials dr, PartialsBy by) {
   for (uint32_t k = 0; k < e->mass.n; k++) roots[n++] = e->mass.at[k].e;
   for (uint32_t k = 0; k < A->n; k++) roots[n++] = A->at[k].e;
   load_accelerations(&l);
-  load_multipliers(&l);
+  load_multipliers(&l, 0);
   lower_roots(&l, roots, n);
   for (uint32_t k = 0; k < dr.n; k++) {
     uint32_t row = dr.at[k].row;
@@ -206,17 +207,16 @@ static Slot load_weight(Lower *l, uint32_t i) {
 
 /* M w = x for the entries of M, which are lowered: by division where M is diagonal, by Cramer's rule for two
  * coordinates, else by one elimination. */
-static void solve_weights(Lower *l, Slot *w) {
+static void solve_weights(Lower *l, const Slot *x, Slot *w) {
   const Eqns *e = l->e;
   size_t n = e->n;
-  Slot *M = ARENA_ARRAY(l->p->arena, Slot, n * n + 1), *x = ARENA_ARRAY(l->p->arena, Slot, n + 1);
+  Slot *M = ARENA_ARRAY(l->p->arena, Slot, n * n + 1);
   int diagonal = 1;
   for (uint32_t k = 0; k < e->mass.n; k++) {
     size_t i = e->mass.at[k].row, j = e->mass.at[k].col;
     M[i * n + j] = M[j * n + i] = lower_slot(l, e->mass.at[k].e);
     diagonal &= i == j;
   }
-  for (uint32_t i = 0; i < n; i++) x[i] = load_weight(l, i);
   for (uint32_t i = 0; i < n && diagonal; i++) w[i] = op(l, IR_DIV, x[i], M[i * n + i]);
   if (!diagonal && n == 2) {
     Slot square = op(l, IR_MUL, M[0], M[3]), det = prog_sub_product(l->p, square, M[1], M[1]);
@@ -227,44 +227,105 @@ static void solve_weights(Lower *l, Slot *w) {
   } else if (!diagonal) prog_solve(l->p, (Solve){.n = e->n, .matrix = M, .rhs = x}, w);
 }
 
-static void store_partials(Lower *l, PartialsBy by, uint32_t array, uint32_t first, ExprPartials d) {
-  for (uint32_t k = 0; k < d.n; k++)
-    prog_store(l->p, array, first + d.at[k].index, lower_slot(l, d.at[k].e), variable(l, by, d.at[k].index));
+/* Sums of derivatives by (q, q', z), by inputs and parameters; 0: none. */
+typedef struct {
+  Slot *by_y, *by_up;
+} Products;
+
+static uint32_t free_params(const Model *m) {
+  uint32_t np = 0;
+  for (uint32_t i = 0; i < m->params.n; i++) np += !m->params.at[i].fixed;
+  return np;
 }
 
-/* Stores of 0 to the elements of an array that have none. */
-static void store_zeros(Lower *l, uint32_t array, uint32_t n) {
-  unsigned char *known = ARENA_ARRAY(l->p->arena, unsigned char, n + 1);
-  for (uint32_t k = 0; k < l->p->stores.n; k++)
-    if (l->p->stores.at[k].array == array) known[l->p->stores.at[k].index] = 1;
-  for (uint32_t i = 0; i < n; i++)
-    if (!known[i]) prog_store(l->p, array, i, 0, "none");
+static void add_product(Lower *l, Slot *to, Expr e) {
+  Slot x = lower_slot(l, e);
+  *to = *to ? op(l, IR_ADD, *to, x) : x;
+}
+
+/* Adds the derivatives of a sum whose weights have slots. */
+static void add_products(Lower *l, const SumPartials *d, Products *to) {
+  const ExprPartials *const parts[] = {&d->by_state, &d->by_inputs, &d->by_params};
+  VEC(Expr) roots = {0};
+  for (int b = 0; b < 3; b++)
+    for (uint32_t k = 0; k < parts[b]->n; k++) vec_push(l->p->arena, &roots, parts[b]->at[k].e);
+  lower_roots(l, roots.at, roots.n);
+  for (int b = 0; b < 3; b++) {
+    Slot *first = b == 0 ? to->by_y : b == 1 ? to->by_up : to->by_up + l->e->m->inputs.n;
+    for (uint32_t k = 0; k < parts[b]->n; k++) add_product(l, &first[parts[b]->at[k].index], parts[b]->at[k].e);
+  }
+}
+
+static void set_weights(Lower *l, const SymId *of, const Slot *w, uint32_t n) {
+  for (uint32_t i = 0; i < n; i++) expr_map_set(&l->slots, expr_symbol(l->g, of[i])->node, w[i] + 1);
+}
+
+static Products no_products(const Eqns *e) {
+  Arena *a = e->m->arena;
+  return (Products){ARENA_ARRAY(a, Slot, 2 * e->n + e->m->states.n + 1),
+                    ARENA_ARRAY(a, Slot, e->m->inputs.n + e->m->params.n + 1)};
+}
+
+/* Stores them, and the derivatives of inputs' formulas. */
+static Prog *store_products(Lower *l, const Products *x, const Partials *formulas) {
+  const Model *m = l->e->m;
+  uint32_t nu = m->inputs.n, np = free_params(m);
+  for (uint32_t k = 0; k < formulas->n; k++) lower_roots(l, &formulas->at[k].e, 1);
+  for (uint32_t i = 0; i < 2 * l->e->n + m->states.n; i++)
+    prog_store(l->p, 0, i, x->by_y[i], x->by_y[i] ? variable(l, BY_STATE, i) : "none");
+  for (uint32_t i = 0; i < nu + np; i++)
+    prog_store(l->p, 1, i, x->by_up[i],
+               !x->by_up[i] ? "none" : i < nu ? variable(l, BY_INPUTS, i) : variable(l, BY_PARAMS, i - nu));
+  for (uint32_t k = 0; k < formulas->n; k++)
+    prog_store(l->p, 2, k, lower_slot(l, formulas->at[k].e), m->inputs.at[formulas->at[k].row].name);
+  return finished(l, ROLL_FROM);
 }
 
 Prog *lower_adjoint(const Eqns *e, const AdjointPartials *d) {
   Lower l = lower_new(e);
-  const Model *m = e->m;
-  uint32_t nz = m->states.n, nu = m->inputs.n, np = 0;
-  const ExprPartials *const parts[] = {&d->by_state, &d->by_inputs, &d->by_params};
-  Slot *w = ARENA_ARRAY(m->arena, Slot, e->n + nz + 1);
-  VEC(Expr) roots = {0};
-  for (uint32_t i = 0; i < m->params.n; i++) np += !m->params.at[i].fixed;
+  uint32_t nz = e->m->states.n, nc = e->constraints.n;
+  Products sums = no_products(e);
+  Slot *x = ARENA_ARRAY(l.p->arena, Slot, e->n + nz + 1), *w = ARENA_ARRAY(l.p->arena, Slot, e->n + nz + 1),
+       *held = ARENA_ARRAY(l.p->arena, Slot, nc + 1);
   load_accelerations(&l);
+  load_multipliers(&l, e->n + nz);
   for (uint32_t k = 0; k < e->mass.n; k++) lower_roots(&l, &e->mass.at[k].e, 1);
-  if (e->n) solve_weights(&l, w);
-  for (uint32_t k = 0; k < nz; k++) w[e->n + k] = load_weight(&l, e->n + k);
-  for (uint32_t i = 0; i < e->n + nz; i++) expr_map_set(&l.slots, expr_symbol(e->g, d->w[i])->node, w[i] + 1);
-  for (int b = 0; b < 3; b++)
-    for (uint32_t k = 0; k < parts[b]->n; k++) vec_push(m->arena, &roots, parts[b]->at[k].e);
-  for (uint32_t k = 0; k < d->formulas.n; k++) vec_push(m->arena, &roots, d->formulas.at[k].e);
-  lower_roots(&l, roots.at, roots.n);
-  store_partials(&l, BY_STATE, 0, 0, d->by_state);
-  store_partials(&l, BY_INPUTS, 1, 0, d->by_inputs);
-  store_partials(&l, BY_PARAMS, 1, nu, d->by_params);
-  for (uint32_t k = 0; k < d->formulas.n; k++)
-    prog_store(l.p, 2, k, lower_slot(&l, d->formulas.at[k].e), m->inputs.at[d->formulas.at[k].row].name);
-  store_zeros(&l, 0, 2 * e->n + nz);
-  store_zeros(&l, 1, nu + np);
+  for (uint32_t i = 0; i < e->n + nz; i++) w[i] = x[i] = load_weight(&l, i);
+  if (nc) lower_held_weights(&l, nc, 0, x, w, held);
+  else if (e->n) solve_weights(&l, x, w);
+  set_weights(&l, d->w, w, e->n + nz);
+  set_weights(&l, d->l, held, nc);
+  add_products(&l, &d->S, &sums);
+  return store_products(&l, &sums, &d->formulas);
+}
+
+Prog *lower_adjoint_projection(const Eqns *e, const AdjointPartials *d) {
+  Lower l = lower_new(e);
+  const Constraints *of = &e->constraints;
+  Products sums = no_products(e);
+  Slot *w = ARENA_ARRAY(l.p->arena, Slot, e->n + 1), *held = ARENA_ARRAY(l.p->arena, Slot, of->n + 1);
+  for (uint32_t i = 0; i < 2 * e->n + e->m->states.n; i++) sums.by_y[i] = load_weight(&l, i);
+  lower_held_weights(&l, of->n, 1, sums.by_y + e->n, w, held);
+  set_weights(&l, d->l, held, of->n);
+  add_products(&l, &d->r, &sums);
+  if (of->nholonomic) {
+    lower_held_weights(&l, of->nkept, 1, sums.by_y, w, held);
+    set_weights(&l, d->k, held, of->nholonomic);
+    add_products(&l, &d->c, &sums);
+  }
+  return store_products(&l, &sums, &d->formulas);
+}
+
+Prog *lower_rates_and_multipliers(const Eqns *e) {
+  Lower l = lower_new(e);
+  const Model *m = e->m;
+  Slot *acc = ARENA_ARRAY(m->arena, Slot, e->n + 1);
+  lower_solution(&l, acc);
+  lower_roots(&l, e->flow, m->states.n);
+  for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
+  for (uint32_t i = 0; i < m->states.n; i++)
+    prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
+  for (uint32_t k = 0; k < e->constraints.n; k++) prog_store(l.p, 2, k, l.multipliers[k], e->constraints.of[k]->name);
   return finished(&l, ROLL_FROM);
 }
 

@@ -163,7 +163,7 @@ Partials eqns_partials(Eqns *e, PartialsBy by) {
 }
 
 /* Operations of the derivatives of S, with those of M. */
-static uint64_t adjoint_ops(const Eqns *e, const AdjointPartials *x) {
+static uint64_t adjoint_ops(const Eqns *e, const SumPartials *x) {
   const ExprPartials *const parts[] = {&x->by_state, &x->by_inputs, &x->by_params};
   VEC(Expr) roots = {0};
   for (int b = 0; b < 3; b++)
@@ -172,32 +172,58 @@ static uint64_t adjoint_ops(const Eqns *e, const AdjointPartials *x) {
   return expr_ops(e->g, roots.at, roots.n);
 }
 
-/* S with this M q''. */
-static Expr weighted_residuals(const Eqns *e, const SymId *w, const Expr *inertia) {
+/* sum w_i x_i */
+static Expr weighted_sum(const Eqns *e, const SymId *w, const Expr *x, uint32_t n) {
   VEC(Expr) terms = {0};
-  for (uint32_t i = 0; i < e->n + e->m->states.n; i++) {
-    Expr r = i < e->n ? expr_sub(e->g, e->f[i], inertia[i]) : e->flow[i - e->n];
-    Expr term = expr_mul(e->g, expr_symbol(e->g, w[i])->node, r);
+  for (uint32_t i = 0; i < n; i++) {
+    Expr term = expr_mul(e->g, expr_symbol(e->g, w[i])->node, x[i]);
     vec_push(e->m->arena, &terms, term);
   }
   return expr_add_n(e->g, terms.at, terms.n);
 }
 
+/* S with this M q''. */
+static Expr weighted_residuals(const Eqns *e, const AdjointPartials *of, const Expr *inertia) {
+  uint32_t n = e->n + e->m->states.n;
+  Expr *r = ARENA_ARRAY(e->m->arena, Expr, n + 1);
+  for (uint32_t i = 0; i < n; i++) r[i] = i < e->n ? expr_sub(e->g, e->f[i], inertia[i]) : e->flow[i - e->n];
+  Expr motion = weighted_sum(e, of->w, r, n),
+       held = weighted_sum(e, of->l, constraint_residuals(e), e->constraints.n);
+  return expr_sub(e->g, motion, held);
+}
+
+static SumPartials sum_partials(const Eqns *e, Expr S) {
+  SumPartials x = {.by_state = by_state(e, S)};
+  x.by_inputs = by_others(e, S, BY_INPUTS);
+  x.by_params = by_others(e, S, BY_PARAMS);
+  return x;
+}
+
+static const SymId *weights(const Eqns *e, const char *stem, uint32_t n) {
+  SymId *w = ARENA_ARRAY(e->m->arena, SymId, n + 1);
+  for (uint32_t i = 0; i < n; i++)
+    w[i] = expr_declare(e->g, SYM_LOCAL, i, arena_printf(e->m->arena, "%s_%u", stem, i + 1), SIGN_UNKNOWN);
+  return w;
+}
+
 AdjointPartials eqns_adjoint(Eqns *e) {
   Arena *a = e->m->arena;
-  uint32_t n = e->n + e->m->states.n;
-  SymId *w = ARENA_ARRAY(a, SymId, n + 1);
-  AdjointPartials best = {0};
+  const Constraints *of = &e->constraints;
+  AdjointPartials best = {.w = weights(e, "weight", e->n + e->m->states.n),
+                          .l = weights(e, "held", of->n),
+                          .k = weights(e, "kept", of->nholonomic)};
   PartialList formulas = {0};
   uint64_t least = UINT64_MAX;
   eqns_derive_mass(e);
-  for (uint32_t i = 0; i < n; i++)
-    w[i] = expr_declare(e->g, SYM_LOCAL, i, arena_printf(a, "weight_%u", i + 1), SIGN_UNKNOWN);
   for (int by_momenta = 0; by_momenta <= 1; by_momenta++) {
-    Expr S = weighted_residuals(e, w, by_momenta ? inertia_of_momenta(e) : inertia_of_mass(e));
-    AdjointPartials x = {w, by_state(e, S), by_others(e, S, BY_INPUTS), by_others(e, S, BY_PARAMS), {0}};
+    Expr S = weighted_residuals(e, &best, by_momenta ? inertia_of_momenta(e) : inertia_of_mass(e));
+    SumPartials x = sum_partials(e, S);
     uint64_t ops = adjoint_ops(e, &x);
-    if (ops < least) best = x, least = ops;
+    if (ops < least) best.S = x, least = ops;
+  }
+  if (of->n) {
+    best.r = sum_partials(e, weighted_sum(e, best.l, of->r, of->n));
+    best.c = sum_partials(e, weighted_sum(e, best.k, of->c, of->nholonomic));
   }
   for (uint32_t i = 0; i < e->m->inputs.n; i++) {
     ExprPartials d = e->m->inputs.at[i].value ? by_others(e, e->m->inputs.at[i].value, BY_PARAMS) : (ExprPartials){0};

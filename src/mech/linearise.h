@@ -25,11 +25,17 @@ Partials eqns_linearise(Eqns *e);
 
 /* Reverse mode for all at once: S = sum_i w_i r_i over the residuals above, with new symbols w[n + states]; the
  * nonzero derivatives of S by y, by inputs, and by parameters as in PartialsBy; and those of the inputs' formulas (row:
- * input) by parameters. Where M w = x for the first n, these are the products x^T dq''/dy and so on. Not for
- * constraints. */
+ * input) by parameters. Where M w = x for the first n, these are the products x^T dq''/dy and so on. With constraints
+ * S has the terms -l_k (demand_k - A_k q''), with new symbols l[constraints], and M w - A^T l = x, A w = 0.
+ *
+ * r: the same derivatives of sum l_k r_k over the rates of constraints, and c: of sum k_j c_j over the functions of
+ * positions, with new symbols k[nholonomic], for the transpose of the projection onto them. */
 typedef struct {
-  const SymId *w;
   ExprPartials by_state, by_inputs, by_params;
+} SumPartials;
+typedef struct {
+  const SymId *w, *l, *k;
+  SumPartials S, r, c;
   Partials formulas;
 } AdjointPartials;
 AdjointPartials eqns_adjoint(Eqns *e);
