@@ -82,7 +82,8 @@ static void seed_track(MeasureGradient *g, const Track *k, double weight) {
     return;
   }
   if (k->kind != TRACK_MAX && k->kind != TRACK_MIN && k->kind != TRACK_DRIFT) {
-    g->refused = "means have no gradient yet: make the value a state, state S with flow S' = x, and take S/t at the end";
+    g->refused =
+      "means have no gradient yet: make the value a state, state S with flow S' = x, and take S/t at the end";
     return;
   }
   put_seed(g, k->arg, falls ? k->when_least : k->when_most, k->kind == TRACK_DRIFT && falls ? -weight : weight);

@@ -152,7 +152,8 @@ static int linear_column(lag_sim *s, Target of, int j, int c, int k, double *to)
   double *e = malloc((size_t)n * sizeof *e), asked = is_p ? 0 : s->asked[of.index],
          h = is_p ? s->sensitivity->by.h[j] : LAG_DIFFERENCE_PART * lag_difference_scale(&s->pb, s->begin, of.index);
   if (!is_p) s->asked[of.index] = s->begin[of.index];
-  int known = e && asked_change(s, is_p ? j : -1, of.index, e) && lag_start_change(s, &s->sensitivity->by, is_p ? j : -1, h, e);
+  int by = is_p ? j : -1;
+  int known = e && asked_change(s, by, of.index, e) && lag_start_change(s, &s->sensitivity->by, by, h, e);
   if (!is_p) s->asked[of.index] = asked;
   for (int i = 0; i < n && known; i++) to[i * k + c] = e[i];
   return free(e), known;

@@ -133,8 +133,8 @@ size_t lag_linear_work(const lag_model *model);
  * and leaves f(t, y) in the first n of work. */
 int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
 /* The same as a tangent needs: with constraints exact by the emitted reverse mode; without it, and within slides, by
- * central differences of order 6, correct to 11 digits or so, in six calls of lag_rhs a column. With `by`, NULL: none, J[(nq + nz) * (n + by->n)] has columns by these parameters, too, behind the others
- * in each row. */
+ * central differences of order 6, correct to 11 digits or so, in six calls of lag_rhs a column. With `by`, NULL: none,
+ * J[(nq + nz) * (n + by->n)] has columns by these parameters, too, behind the others in each row. */
 int lag_fine_jacobian(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, double *J,
                       double *work);
 

@@ -60,11 +60,10 @@ void header_friction_indices(const Header *h) {
 
 void header_friction_members(const Header *h) {
   const char *surfaces = program_set_contacts(h->u) ? "holds" : "touch";
-  csupport_expand(arena_printf(h->a, "  LAG_REAL %s[LAG_NSURFACES]; /* in the last _moreau_step: LAG_SLIPS, LAG_STICKS; "
-                                     "LAG_OPEN before the first */\n", surfaces),
-                  h->upper, h->lower, h->out);
-  csupport_expand(
-                  "  LAG_REAL mode[LAG_NSURFACES];  /* mean of the sign of the quantity in that step: friction in "
+  const char *member = arena_printf(h->a, "  LAG_REAL %s[LAG_NSURFACES]; /* in the last _moreau_step: LAG_SLIPS, "
+                                          "LAG_STICKS; LAG_OPEN before the first */\n", surfaces);
+  csupport_expand(member, h->upper, h->lower, h->out);
+  csupport_expand("  LAG_REAL mode[LAG_NSURFACES];  /* mean of the sign of the quantity in that step: friction in "
                   "parts of its size */\n",
                   h->upper, h->lower, h->out);
   if (header_guides(h->u))
