@@ -331,8 +331,9 @@ static void along(const TaylorWriter *w) {
                   "        w->s[i] += w->a[j][i]*(i < TAYLOR_SQUARES ? w->b[k - j][i] : w->a[k - j][i]);\n"
                   "    }\n");
   sb_printf(w->out,
-            "    taylor_next((LAG_REAL)k, LAG_C(1.0)/(LAG_REAL)k, LAG_C(1.0)/(LAG_REAL)(k + 1), w->s, w->c, row, row,\n"
-            "                x + n*TAYLOR_COLUMNS, w->a[k], w->b[k]%s);\n"
+            "    const LAG_REAL order = LAG_C(0.0) + (LAG_LANE)k, per_k = LAG_C(1.0)/order,\n"
+            "                   per_next = LAG_C(1.0)/(order + LAG_C(1.0));\n"
+            "    taylor_next(order, per_k, per_next, w->s, w->c, row, row, x + n*TAYLOR_COLUMNS, w->a[k], w->b[k]%s);\n"
             "  }\n"
             "}\n",
             s->room ? ", w->m" : "");

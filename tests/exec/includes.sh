@@ -147,7 +147,7 @@ empty "no folder above: \"../\" in no #include" "$(awk '$2 ~ /\.\./ { print $1 "
 
 # ---- headers compile alone ----
 alone() {
-  for h in $(find "$1" -name "*.h" ! -name embedded_step.h ! -name embedded_trial.h ! -name contact_step.h ! -name galerkin_step.h ! -name joint_friction.h \
+  for h in $(find "$1" -name "*.h" ! -name embedded_step.h ! -name embedded_trial.h ! -name contact_step.h ! -name coupled_friction.h ! -name galerkin_step.h ! -name joint_friction.h \
     ! -name moreau_step.h ! -name slipping_forces.h | LC_ALL=C sort); do # these stand behind an instance's definitions
     shift_flags=$2
     # shellcheck disable=SC2086 # flags
