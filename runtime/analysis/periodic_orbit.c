@@ -554,7 +554,7 @@ static int group_field(PeriodicOrbit *o, const OrbitClosing *g, double *d) {
   return 1;
 }
 
-/* What is left of the rates over a period, in units, without the parts along directions of symmetries. */
+/* Rates that are left over a period, in units, without the parts along directions of symmetries. */
 static double own_motion(PeriodicOrbit *o, int symmetries) {
   int n = o->n;
   double *rates = o->x, *W = o->saved;
