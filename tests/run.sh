@@ -11,7 +11,7 @@
 #   tests/FOLDER/long_NAME.sh      the same, in `make test-long` and `make test-all` only
 #   tests/bench/NAME.sh            run by `make bench`; its output is shown, and written to tests/bench/RESULTS.md
 #   tests/FOLDER/lib_NAME.sh       no suite: functions that scripts share
-# How deep: `make test` takes some rows of long tables (`one_of` of tests/tap.sh, slow() of tests/unit/slow.h); `make test-long` has SLOW=1, four times
+# How deep: `make test` takes some rows of long tables (`one_of` of tests/tap.sh, slow() of tests/unit/slow.h); `make test-long` has SLOW=1, twice
 # as many rows and all `slow` checks; `make test-all` has all rows. DAY, the number of today, chooses the rows; the first line of a run names it.
 # --bless runs the scripts that know BLESS with BLESS=1: they rewrite their expectations.
 #

@@ -96,7 +96,7 @@ build-plain:
 build-more: build-san build-plain
 	@echo 'building other precisions$(if $(CLANG), and $(BUILD)/clang by clang)'
 	$(QUIET) precisions
-	$(if $(CLANG),$(QUIET) BUILD=$(BUILD)/clang PRECISIONS= CC='$(CLANG)' all)
+	$(if $(CLANG),$(QUIET) BUILD=$(BUILD)/clang PRECISIONS= CC='$(CLANG)' CFLAGS=-O1 $(BUILD)/clang/lagc $(BUILD)/clang/liblag.a$(if $(GSL), $(BUILD)/clang/liblag_gsl.a))
 
 # Test programs themselves: -O1 would take ten times as long to compile. Their objects stay when a library changes.
 TEST_OPT ?= -O0 -g1

@@ -417,25 +417,28 @@ static Expr in_powers(ExprGraph *g, Expr e) {
 }
 
 /* Antiderivative of e by the forms above, by substitution, and on the sides of switches; *rest: the terms without
- * one. Of long expressions only the forms are tried, of very long ones none: derivatives of what is found take
- * minutes. */
+ * one. Of long expressions only the forms are tried, very long ones are given up, also those that grow so: derivatives of
+ * what is found take minutes. */
 static Expr antiderivative(ExprGraph *g, Expr e, Task with, int depth, Expr *rest) {
   enum { MOST = 64, LONGEST = 2000, NONE = 20000 };
   uint32_t distinct;
-  Expr sum = expr_int(g, 0);
-  *rest = in_powers(g, e);
-  if (expr_tree_size(g, e, &distinct) > NONE) return sum;
-  for (uint32_t k = 0; k < MOST && !expr_is_zero(g, *rest); k++) {
+  const Expr whole = in_powers(g, e), none = expr_int(g, 0);
+  double size = expr_tree_size(g, whole, &distinct);
+  Expr sum = none;
+  *rest = whole;
+  for (uint32_t k = 0; k < MOST && size <= NONE && !expr_is_zero(g, *rest); k++) {
     with.e = *rest;
-    int last = expr_tree_size(g, e, &distinct) > LONGEST;
-    Expr part = last ? 0 : integral_by_substitution(&with, 1);
+    Expr part = size > LONGEST ? 0 : integral_by_substitution(&with, 1);
     if (!part) part = expr_integrate(g, *rest, with.x, 0);
-    if (expr_is_zero(g, part) && !last) part = integral_by_substitution(&with, 0);
+    if (expr_is_zero(g, part) && size <= LONGEST) part = integral_by_substitution(&with, 0);
     if (!part || expr_is_zero(g, part)) break;
     sum = expr_add(g, sum, part);
-    *rest = simplify(g, expr_sub(g, *rest, expr_diff(g, part, with.x)));
-    if (!last && prove_zero(g, *rest, NULL) == PROVED_ZERO) *rest = expr_int(g, 0);
+    *rest = expr_sub(g, *rest, expr_diff(g, part, with.x));
+    size = expr_tree_size(g, *rest, &distinct) + expr_tree_size(g, sum, &distinct);
+    if (size <= NONE) *rest = simplify(g, *rest);
+    if (size <= LONGEST && prove_zero(g, *rest, NULL) == PROVED_ZERO) *rest = none;
   }
+  if (size > NONE) return *rest = whole, none;
   Expr sides = expr_is_zero(g, *rest) ? *rest : integral_of_terms(g, with, depth, rest);
   return expr_add(g, sum, sides);
 }

@@ -67,6 +67,7 @@ empty "80 columns of a simulator's help" "$(sed '1,/name=value   /d' "$TMP/own" 
 # The compiler under sanitizers prints the same.
 differs() {
   { words statement; words command | grep -v methods; [ -z "${SLOW:-}" ] || words function; echo; echo units; } | while read -r t; do
+    one_of 4 || continue
     "$LAGC_SAN" help ${t:+"$t"} >"$TMP/san" 2>&1 && "$LAGC" help ${t:+"$t"} | cmp -s - "$TMP/san" || echo "$t: $(head -n 3 "$TMP/san")"
   done
 }
@@ -194,8 +195,8 @@ END
 is "options for experts stand in one place" "0 1" "$("$LAGC" help run | grep -c -e '--math\|--dump\|--fix\|--no-gsl\|--define\|--precision') $(chapter expert | grep -c -e '--math own')"
 check "the tutorial" finds "A first quarter of an hour" tutorial
 sed -n 's/^BROUGHT //p' "$TMP/words" >"$TMP/brought" # words | meanings
-every_word() { sed 's/ *|.*//' "$TMP/brought" | tr ' ' '\n' | while read -r w; do explains "$w" || echo "$w"; done; }
-[ -z "${SLOW:-}" ] || empty "every word of the table of synonyms has an answer" "$(every_word)"
+every_word() { sed 's/ *|.*//' "$TMP/brought" | tr ' ' '\n' | while read -r w; do ! one_of 16 || explains "$w" || echo "$w"; done; }
+empty "the words of the table of synonyms have an answer" "$(every_word)"
 shown() { sed -n 's/^WAY //p' "$TMP/words" | grep -o '`lagc [a-z]*' | sort -u; }
 empty "the table names commands that exist" "$(shown | while read -r _ c; do words command | grep -q -x "$c" || echo "$c"; done)"
 meant() { sed 's/.*| *//' "$TMP/brought" | tr ' ' '\n' | sort -u; }

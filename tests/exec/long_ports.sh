@@ -8,7 +8,7 @@ MODELS=${MODELS:-pendulum double_pendulum kepler rolling_cylinder bouncing_ball}
 
 # built NAME CC AR: the whole of `make`, in $BUILD/port-NAME. FLEX and BISON run on this machine.
 built() {
-  env -u CC -u CFLAGS -u PRECISIONS "$MAKE" -s -j2 CC="$2" AR="$3" CFLAGS=-O1 BUILD="$BUILD/port-$1" all "$BUILD/port-$1/liblag_long.a"
+  env -u CC -u CFLAGS -u PRECISIONS "$MAKE" -s -j2 CC="$2" AR="$3" CFLAGS=-O0 BUILD="$BUILD/port-$1" all "$BUILD/port-$1/liblag_long.a"
 }
 
 # texts NAME RUNNER...: the compiler's texts have the checksums of emitted.txt.
@@ -61,20 +61,20 @@ port() {
 installed() {
   usr=$TMP/usr
   set -- "$@" "$usr/lib/port/pkgconfig/liblag.pc"
-  env -u CC -u CFLAGS "$MAKE" -s CC="$2" AR="$3" CFLAGS=-O1 BUILD="$BUILD/port-$1" PREFIX="$usr" LIBDIR="$usr/lib/port" \
+  env -u CC -u CFLAGS "$MAKE" -s CC="$2" AR="$3" CFLAGS=-O0 BUILD="$BUILD/port-$1" PRECISIONS=long PREFIX="$usr" LIBDIR="$usr/lib/port" \
     INCLUDEDIR="$usr/include/lag" install &&
     [ -f "$usr/lib/port/liblag.a" ] && [ -f "$usr/include/lag/lag.h" ] && [ ! -e "$usr/lib/liblag.a" ] &&
     grep -x 'libdir=${prefix}/lib/port' "$4" && grep -x 'includedir=${prefix}/include/lag' "$4" &&
     (cd "$TMP" && unset LAG_HOME && CC=$2 "$usr/bin/lagc" run osc.lag)
 }
 
-if ! one_of 8; then :; elif command -v aarch64-linux-gnu-gcc >/dev/null && command -v qemu-aarch64 >/dev/null; then
+if ! one_of 4; then :; elif command -v aarch64-linux-gnu-gcc >/dev/null && command -v qemu-aarch64 >/dev/null; then
   export QEMU_LD_PREFIX=/usr/aarch64-linux-gnu
   port aarch64 aarch64-linux-gnu-gcc aarch64-linux-gnu-ar 31 1e-32 qemu-aarch64
 else
   skip aarch64 "apt-get install gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
 fi
-if ! one_of 8; then :; elif command -v musl-gcc >/dev/null; then
+if ! one_of 4; then :; elif command -v musl-gcc >/dev/null; then
   port musl musl-gcc ar 17 1e-18 env
   check "musl: installed in other folders" installed musl musl-gcc ar
 else

@@ -171,9 +171,9 @@ else
 fi
 LAG_COMPILED=9 LAG_PROGRAM=$TMP/ball "$BUILD/lag-run" --method rk4 --step 1e-3 --quiet 9</dev/null 2>"$TMP/err"
 is "a compiler that ends without a library" "lag-run: the C compiler failed, so the run was evaluated; \`lagc build\` prints its messages" "$(cat "$TMP/err")"
-check "damaged bytes of a model with events" "$TMP/sanitized" "$TMP/ball" - "${SLOW:+20}200"
+check "damaged bytes of a model with events" "$TMP/sanitized" "$TMP/ball" - "$(depth 200 2000 20000)"
 "$LAGC" build tests/golden/ok/far.lag -D N=60 --bytes -o "$TMP/tree"
-check "damaged bytes of a model with a sum by a tree" "$TMP/sanitized" "$TMP/tree" - "${SLOW:+20}50"
+check "damaged bytes of a model with a sum by a tree" "$TMP/sanitized" "$TMP/tree" - "$(depth 50 500 2000)"
 cat >"$TMP/pile.lag" <<'END'
 model pile
 const N = 6
@@ -186,8 +186,8 @@ scene s { start r[i in 1..N] = (0.2*i, 0.2*i); span 0.5; method moreau(step = 0.
 END
 check "functions of families of contacts" functions "$TMP/pile.lag"
 "$LAGC" build "$TMP/pile.lag" --bytes -o "$TMP/pile"
-check "damaged bytes of a model with families of contacts" "$TMP/sanitized" "$TMP/pile" - "${SLOW:+20}50"
-check "damaged bytes of a model with nests and series" "$TMP/sanitized" "$TMP/nests" - "${SLOW:+20}100"
+check "damaged bytes of a model with families of contacts" "$TMP/sanitized" "$TMP/pile" - "$(depth 50 500 2000)"
+check "damaged bytes of a model with nests and series" "$TMP/sanitized" "$TMP/nests" - "$(depth 100 1000 20000)"
 printf 'no program' >"$TMP/text"
 LAG_PROGRAM=$TMP/text "$BUILD/lag-run" >/dev/null 2>"$TMP/err"
 is "a text is no program" "lag-run: $TMP/text: these bytes are no program" "$(cat "$TMP/err")"

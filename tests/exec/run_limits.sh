@@ -59,6 +59,9 @@ check 'a ring of 1,000 lets' limit ring 1 'is circular'
 slow check '40 sums inside each other' limit sums 1 'sums inside sums run through more than'
 { lines 20000 'printf "let a%d = q%d\n", i, i'; echo "lagrangian = x'^2/2"; } | model unknown
 slow check '20,000 unknown names' limit unknown 1 'unknown name'
+{ echo 'let w = sin(tanh(sinh(tanh(1/cosh(t)))))'; echo "lagrangian = 3/2*x'^2 + w'*x'/8 + atan(tan(tanh(w)))"; } | model grows
+within() { (ulimit -t "$1" && "$LAGC" check "$2"); }
+slow check 'a rate whose antiderivatives grow' within 25 "$dir/grows.lag" # 4 s of processor, and 50 s where what grows is followed
 echo "lagrangian = x'^2/2 - sum(i in 1..1000000, i)*x" | model longest
 check 'the longest range there may be' timeout 60 "$LAGC" check "$dir/longest.lag"
 table() { # ROWS: a model with an input of so many

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Models with an event and a constraint, by every command, with a compiler and a runtime under sanitizers. long_sanitized.sh has all of the gallery.
 . tests/exec/lib_sanitized.sh
+[ "${ROWS:-}" = all ] || turn=${DAY:-0}
 for model in models/bouncing_ball.lag ${SLOW:+models/slider_crank.lag tests/exec/models/rod.lag}; do
   empty "$model" "$(every_command "$model")"
 done

@@ -170,7 +170,7 @@ check "what grows from rounding is no lost digit" awk -F'[:,}]' '{ for (i = 1; i
 # Other units, 1e-9 to 1e9 times, and parts at rest beside: no verdict changes.
 [ -n "${SLOW:-}" ] && few= || few=--few
 if command -v python3 >/dev/null; then
-  check "no verdict changes with units or with what rests" python3 tests/accuracy/units.py ${few}
+  check "no verdict changes with units or with what rests" python3 tests/accuracy/units.py ${few} --of "$(depth 1 3 1)"
   . tests/exec/lib_precision.sh
   if has_precision long; then slow check "estimates of 60 random runs" python3 tests/accuracy/estimates.py --n 60 --seed 5; fi
 fi

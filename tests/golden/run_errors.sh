@@ -4,7 +4,7 @@
 #   tests/golden/err/warn_NAME.lag + .expected   a good one that draws warnings: exit status 0, the messages exactly
 #   tests/golden/ok/NAME.lag                     a good one, the near miss of an error: exit status 0, no messages
 # rows.txt lists refused constructs, each with its file and its near miss.
-# Every bad model is also given to the commands that write files: none may be left, whole or in part.
+# Bad models are also given to the commands that write files, in `make test` a quarter of them: none may be left, whole or in part.
 # LAGC names the compiler; BLESS=1 rewrites the expectations, on purpose.
 . tests/tap.sh
 tmp=$TMP
@@ -50,6 +50,7 @@ done
 # ---- nothing is written ----
 mkdir "$tmp/cache"
 for lag in tests/golden/err/sem_*.lag; do
+  one_of 4 || continue
   problem=
   for command in emit build derive header; do
     XDG_CACHE_HOME=$tmp/cache "$LAGC" $command "$lag" -o "$tmp/out/file" >"$tmp/stdout" 2>"$tmp/stderr"

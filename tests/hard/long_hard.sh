@@ -1,7 +1,8 @@
 #!/bin/sh
-# The published problems by every method that integrates them, to the limits in runs.txt.
+# The published problems by every method that integrates them, to the limits in runs.txt: half of them by day, in `make test-all` all.
 . tests/tap.sh
 . tests/hard/lib_cases.sh
+a_part_of_the_cases
 
 check "the cases are emitted, with what every method needs" emit_cases all
 check "and compile" compile_cases "$TMP/hard"

@@ -2,10 +2,12 @@
 # The published problems in quadruple precision: taylor reaches the last published digit, or the digits that the problem's condition leaves of
 # 34: 1e-18 of the tolerance stated for 16. In double precision no problem does, except tops in steady precession, whose expected
 # numbers a double holds. Times beyond the reach of doubles are reached here.
+# Half of them by day, in `make test-all` all.
 . tests/tap.sh
 . tests/hard/lib_cases.sh
 . tests/exec/lib_precision.sh
 
+a_part_of_the_cases
 has_precision quad || skip_all "there is no gcc with libquadmath"
 check "the cases are emitted" emit_cases taylor
 precise quad $hard/hard.c >"$TMP/hard_quad.c"

@@ -12,6 +12,9 @@ static inline int all_rows(void) {
   return getenv("SLOW") && (!rows || rows[0] == 'a');
 }
 
+/* A count, or the step through a table, in `make test`, `make test-long`, `make test-all`. */
+static inline int depth(int few, int some, int all) { return all_rows() ? all : slow(some, few); }
+
 /* The first of the rows that are taken in steps, another one each DAY (tests/run.sh). */
 static inline size_t first_row(size_t step) {
   const char *day = getenv("DAY");

@@ -107,7 +107,7 @@ static int with_budget(const char *lag, int errors, long n, size_t chunk, size_t
 
 static void test_each_allocation(void **state) {
   (void)state;
-  const long step = slow(1, 8);
+  const long step = depth(8, 2, 1);
   long n = (long)first_row((size_t)step);
   while (!with_budget(good, 0, n, 2048, 0)) n += step;
   assert_true(n > 200); /* or the chunks are too large to say anything */
@@ -115,7 +115,7 @@ static void test_each_allocation(void **state) {
 
 static void test_each_allocation_of_errors(void **state) {
   (void)state;
-  const long step = slow(1, 8);
+  const long step = depth(8, 2, 1);
   long n = (long)first_row((size_t)step);
   while (!with_budget(bad, 1, n, 256, 0)) n += step;
   assert_true(n > 100);

@@ -233,7 +233,7 @@ static const char *cart(Arena *a, int n) {
 static void test_chains(void **state) {
   (void)state;
   const Writer writers[] = {family, renamed, by_hand, relative, spatial, tree, squares, driven, cart};
-  for (size_t step = (size_t)slow(1, 4), i = first_row(step); i < sizeof writers / sizeof *writers; i += step)
+  for (size_t step = (size_t)depth(4, 2, 1), i = first_row(step); i < sizeof writers / sizeof *writers; i += step)
     check_linear(writers[i]);
 }
 

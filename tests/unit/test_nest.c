@@ -93,7 +93,7 @@ static const char *const pairs[] = {
 static void test_pairs(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
-  for (size_t step = (size_t)slow(1, 3), k = first_row(step); k < sizeof pairs / sizeof *pairs; k += step) {
+  for (size_t step = (size_t)depth(3, 2, 1), k = first_row(step); k < sizeof pairs / sizeof *pairs; k += step) {
     uint32_t n = 12, more = (uint32_t)slow(4, 1), few = check_model(arena_printf(a, BODIES "%s", n, pairs[k]), 2*n);
     uint32_t many = check_model(arena_printf(a, BODIES "%s", n + more, pairs[k]), 2*(n + more));
     if (!few || !many || many > few + 12 * more)
@@ -159,7 +159,7 @@ static void test_nets(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
   const uint32_t small = (uint32_t)slow(20, 16), large = (uint32_t)slow(40, 24);
-  for (size_t step = (size_t)slow(1, 3), k = first_row(step); k < sizeof nets / sizeof *nets; k += step) {
+  for (size_t step = (size_t)depth(3, 2, 1), k = first_row(step); k < sizeof nets / sizeof *nets; k += step) {
     static const char text[] = "model m\nconst N = %d\ncoord u[N,N]\nparam m = 1.2 > 0, k = 1, b = 0.3\n"
                                "kinetic = sum(i in 1..N, sum(j in 1..N, m/2*u[i,j]'^2))\n%s";
     uint32_t few = check_model(arena_printf(a, text, small, nets[k]), 8),
