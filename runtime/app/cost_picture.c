@@ -170,8 +170,8 @@ static void put_slope(FILE *f, const Panel *r, const Curve *c) {
           styles[c->family].colour, lag_panel_x(r, x), lag_panel_y(r, y),
           lag_panel_x(r, x - wide), lag_panel_y(r, y + wide / c->m->order), lag_panel_y(r, y));
   snprintf(order, sizeof order, "%.1f", c->m->order);
-  lag_svg_text(f, lag_panel_x(r, x - wide) + 4, lag_panel_y(r, y + wide / c->m->order / 2) + 5, "font-size=\"15\"",
-               order);
+  lag_svg_text(f, lag_panel_x(r, x - wide) + 4, lag_panel_y(r, y + wide / c->m->order / 2) + 5,
+               "font-size=\"15\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"", order);
 }
 
 static int by_height(const void *a, const void *b) {

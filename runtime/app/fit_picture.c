@@ -1,5 +1,6 @@
 /* The picture of a fit: for each column the data over the fitted motion, and the residuals below, as SVG. */
 #include <math.h>
+#include <string.h>
 
 #include "app/fit_run.h"
 #include "io/svg_panel.h"
@@ -72,12 +73,17 @@ static void put_panels(FILE *out, FitRun *r, int c, double y, int last) {
 int lag_fit_picture(FitRun *r, const char *path) {
   char title[300];
   Outfile file;
+  const char *slash = strrchr(r->app->args.data, '/');
   int n = r->fit.ncolumns, each = HIGH + LOW + 2 * GAP;
   snprintf(title, sizeof title, "%s: %s, fitted to %s", r->app->scene->model->name, r->app->scene->name,
-           r->app->args.data);
+           slash ? slash + 1 : r->app->args.data);
   if (lag_outfile_open(&file, path)) return -1;
   lag_svg_head(file.f, WIDTH, TOP + n * each + BOTTOM, title);
   for (int c = 0; c < n; c++) put_panels(file.f, r, c, TOP + c * each, c + 1 == n);
+  fprintf(file.f, "<circle cx=\"%d\" cy=\"22\" r=\"2.5\" fill=\"%s\"/>\n", WIDTH - 120, lag_colour[0]);
+  fprintf(file.f, "<path d=\"M%d 22h20\" stroke=\"%s\" stroke-width=\"2\"/>\n", WIDTH - 66, lag_colour[1]);
+  lag_svg_text(file.f, WIDTH - 112, 26, "", "data");
+  lag_svg_text(file.f, WIDTH - 40, 26, "", "fit");
   fputs("</svg>\n", file.f);
   return lag_outfile_close(&file, 1);
 }

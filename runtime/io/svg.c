@@ -168,7 +168,7 @@ static void envelope(FILE *f, const Panel *p, const Table *t, int ycol, double t
 
 static void one_curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period, const char *stroke) {
   double turns = xcol == 0 ? turns_of(p, t, ycol) : 0;
-  if (turns > p->w / 2) { /* one cannot follow such a curve */
+  if (turns > 0.7 * p->w) { /* one cannot follow such a curve */
     envelope(f, p, t, ycol, turns, stroke);
     return;
   }
