@@ -29,7 +29,7 @@ typedef struct FixedStep {
   int cut; /* 1: longer steps were not tried, for want of time */
 } FixedStep;
 
-/* Processor time of each step. */
+/* Processor time of each step, or only the time that a run may take. */
 typedef struct StepClock {
   double last, latest;        /* end of the last step; when the run is left [s] */
   double *least;              /* [WATCHED] or NULL: of each step, the least time so far */
@@ -38,9 +38,11 @@ typedef struct StepClock {
 } StepClock;
 
 static int note_step(void *clock, const lag_sim *sim) {
+  enum { SOME = 64 };
   StepClock *c = clock;
-  double now = lag_processor_seconds();
   (void)sim;
+  if (!c->least && ++c->steps % SOME) return 0; /* reading the clock takes as long as many steps */
+  double now = lag_processor_seconds();
   if (c->least && c->steps < WATCHED) c->least[c->steps] = fmin(c->least[c->steps], now - c->last);
   c->steps++;
   c->last = lag_processor_seconds();
@@ -87,16 +89,15 @@ static void measure(App *app, const Cost *c, FixedStep *x, double step, double o
   x->error = NAN;
   for (int i = 0; i < WATCHED; i++) least[i] = HUGE_VAL;
   for (int i = 0; i < RUNS; i++) {
-    double now = lag_processor_seconds(); /* a second run, so that `worst` is none of the scheduler's, in others' time */
+    double now = lag_processor_seconds();
     if (i > 0 && now > (i == 1 ? c->seconds : x->latest)) break;
     if (isnan(error = run_with(app, c, x, step, 1, own, &clock))) break;
     x->error = error;
-    x->mean = clock.whole / (double)clock.steps;
   }
   if (isnan(x->error)) return;
   for (int i = 0; i < WATCHED && least[i] < HUGE_VAL; i++) x->worst = fmax(x->worst, least[i] - overhead);
   clock.least = NULL;
-  if (lag_processor_seconds() < x->latest && !isnan(run_with(app, c, x, step, 0, own, &clock))) x->mean = clock.whole / (double)clock.steps;
+  if (!isnan(run_with(app, c, x, step, 0, own, &clock))) x->mean = clock.whole / (double)clock.steps;
   x->why[0] = '\0';
 }
 

@@ -249,7 +249,7 @@ static void mark(FILE *f, double x, double y, const char *fill) {
   if (isfinite(x) && isfinite(y)) fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"%s\"/>\n", x, y, fill);
 }
 
-/* The series of the panel of a column against time, or all against their columns where it is NULL, with their legend. */
+/* The series of a column's panel against time, or all against their columns where it is NULL, with their legend. */
 static void draw_series(FILE *f, const Panel *p, const Table *t, const PlottedCurves *d, const Column *panel) {
   enum { LISTED = 12, SOME = 8 };
   int shown = 0, total = 0, line = 0;
