@@ -65,7 +65,11 @@ static void put_panels(FILE *out, FitRun *r, int c, double y, int last) {
   lag_svg_axes(out, &p, f->column[c].label, 0);
   put_curve(out, r, c, &p);
   put_points(out, r, c, &p, 0);
-  lag_svg_axes(out, &q, "data - fit", last);
+  char label[80];
+  const char *unit = strrchr(f->column[c].label, '[');
+  int has_unit = unit && unit[strlen(unit) - 1] == ']' && unit > f->column[c].label && unit[-1] == ' ';
+  snprintf(label, sizeof label, "data - fit %.60s", has_unit ? unit : "");
+  lag_svg_axes(out, &q, label, last);
   fprintf(out, "<path d=\"M%.1f %.1fH%.1f\" stroke=\"%s\"/>\n", q.x, lag_panel_y(&q, 0), q.x + q.w, lag_colour[1]);
   put_points(out, r, c, &q, 1);
 }
