@@ -104,14 +104,14 @@ static void put_axes(FILE *f, const Panel *r) {
           (HEAD + bottom) / 2);
 }
 
-/* A vertical line at an error below which no curve means anything, with its name. */
-static void put_floor(FILE *f, const Panel *r, double error, const char *name, int at_top) {
+/* A vertical line at an error below which no curve means anything, with its name above it, on the side of `anchor`. */
+static void put_floor(FILE *f, const Panel *r, double error, const char *name, const char *anchor) {
   double x = log10(error);
   if (!(x > r->x1 && x < r->x0)) return;
   fprintf(f, "<path d=\"M%.1f %dV%d\" stroke=\"#777\" stroke-width=\"2\" stroke-dasharray=\"3 5\"/>\n",
-          lag_panel_x(r, x), HEAD, PICTURE_HEIGHT - FOOT);
-  fprintf(f, "<text transform=\"translate(%.1f %d) rotate(-90)\" font-size=\"16\" fill=\"#555\">%s</text>\n",
-          lag_panel_x(r, x) - 6, at_top ? HEAD + 90 : PICTURE_HEIGHT - FOOT - 8, name);
+          lag_panel_x(r, x), HEAD - 16, PICTURE_HEIGHT - FOOT);
+  fprintf(f, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"%s\" font-size=\"15\" fill=\"#555\">%s</text>\n",
+          lag_panel_x(r, x) + (anchor[0] == 'e' ? -5 : 5), HEAD - 6, anchor, name);
 }
 
 static int by_error(const void *a, const void *b) {
@@ -170,8 +170,8 @@ static void put_slope(FILE *f, const Panel *r, const Curve *c) {
           styles[c->family].colour, lag_panel_x(r, x), lag_panel_y(r, y),
           lag_panel_x(r, x - wide), lag_panel_y(r, y + wide / c->m->order), lag_panel_y(r, y));
   snprintf(order, sizeof order, "%.1f", c->m->order);
-  lag_svg_text(f, lag_panel_x(r, x - wide) + 4, lag_panel_y(r, y + wide / c->m->order / 2) + 5, "font-size=\"15\"",
-               order);
+  lag_svg_text(f, lag_panel_x(r, x - wide) + 4, lag_panel_y(r, y + wide / c->m->order / 2) + 5,
+               "font-size=\"15\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"", order);
 }
 
 static int by_height(const void *a, const void *b) {
@@ -215,8 +215,8 @@ int lag_cost_put_picture(const char *path, const App *app, const Cost *c) {
   snprintf(title, sizeof title, "%s, %s: what accuracy costs", app->scene->model->name, app->scene->name);
   lag_svg_large_head(o.f, PICTURE_WIDTH, PICTURE_HEIGHT, SIZE, title);
   put_axes(o.f, &r);
-  put_floor(o.f, &r, DBL_EPSILON, "rounding", 0);
-  put_floor(o.f, &r, c->reference.uncertainty, "reference", 1);
+  put_floor(o.f, &r, DBL_EPSILON, "rounding", c->reference.uncertainty < DBL_EPSILON ? "end" : "start");
+  put_floor(o.f, &r, c->reference.uncertainty, "reference", c->reference.uncertainty < DBL_EPSILON ? "start" : "end");
   put_front(o.f, &r, c);
   for (int i = 0; i < n; i++) put_curve(o.f, &r, &all[i]);
   for (int i = 0; i < n; i++) {

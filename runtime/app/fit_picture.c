@@ -1,5 +1,6 @@
 /* The picture of a fit: for each column the data over the fitted motion, and the residuals below, as SVG. */
 #include <math.h>
+#include <string.h>
 
 #include "app/fit_run.h"
 #include "io/svg_panel.h"
@@ -64,7 +65,11 @@ static void put_panels(FILE *out, FitRun *r, int c, double y, int last) {
   lag_svg_axes(out, &p, f->column[c].label, 0);
   put_curve(out, r, c, &p);
   put_points(out, r, c, &p, 0);
-  lag_svg_axes(out, &q, "data - fit", last);
+  char label[80];
+  const char *unit = strrchr(f->column[c].label, '[');
+  int has_unit = unit && unit[strlen(unit) - 1] == ']' && unit > f->column[c].label && unit[-1] == ' ';
+  snprintf(label, sizeof label, "data - fit %.60s", has_unit ? unit : "");
+  lag_svg_axes(out, &q, label, last);
   fprintf(out, "<path d=\"M%.1f %.1fH%.1f\" stroke=\"%s\"/>\n", q.x, lag_panel_y(&q, 0), q.x + q.w, lag_colour[1]);
   put_points(out, r, c, &q, 1);
 }
@@ -72,12 +77,17 @@ static void put_panels(FILE *out, FitRun *r, int c, double y, int last) {
 int lag_fit_picture(FitRun *r, const char *path) {
   char title[300];
   Outfile file;
+  const char *slash = strrchr(r->app->args.data, '/');
   int n = r->fit.ncolumns, each = HIGH + LOW + 2 * GAP;
   snprintf(title, sizeof title, "%s: %s, fitted to %s", r->app->scene->model->name, r->app->scene->name,
-           r->app->args.data);
+           slash ? slash + 1 : r->app->args.data);
   if (lag_outfile_open(&file, path)) return -1;
   lag_svg_head(file.f, WIDTH, TOP + n * each + BOTTOM, title);
   for (int c = 0; c < n; c++) put_panels(file.f, r, c, TOP + c * each, c + 1 == n);
+  fprintf(file.f, "<circle cx=\"%d\" cy=\"22\" r=\"2.5\" fill=\"%s\"/>\n", WIDTH - 120, lag_colour[0]);
+  fprintf(file.f, "<path d=\"M%d 22h20\" stroke=\"%s\" stroke-width=\"2\"/>\n", WIDTH - 66, lag_colour[1]);
+  lag_svg_text(file.f, WIDTH - 112, 26, "", "data");
+  lag_svg_text(file.f, WIDTH - 40, 26, "", "fit");
   fputs("</svg>\n", file.f);
   return lag_outfile_close(&file, 1);
 }

@@ -523,9 +523,25 @@ static int report(const App *app, Equilibrium *r, const Modes *s) {
   return EXIT_FINE;
 }
 
+/* Whether --steady found the equilibrium of `lagc modes` without it, of coordinates alone; *r := that, so that its
+ * stability is judged once. */
+static int is_equilibrium(const App *app, Equilibrium *r) {
+  const lag_problem *pb = &app->sim->pb;
+  Equilibrium rest = {0};
+  int same = pb->nq > 0 && pb->n == 2 * pb->nq && !pb->model->constraints;
+  for (int i = pb->nq; i < pb->n && same; i++) same = r->y[i] == 0;
+  same = same && lag_equilibrium_find(&rest, app->sim, app->extras.algebra) > 0;
+  for (int i = 0; i < pb->nq && same; i++) same = fabs(rest.y[i] - r->y[i]) < 1e-6 * r->scale[i];
+  Equilibrium other = same ? *r : rest;
+  if (same) *r = rest;
+  lag_equilibrium_free(&other);
+  return same;
+}
+
 static int analyse(const App *app, Equilibrium *r, SteadyMotion *steady, Modes *s) {
   int tangent = in_tangent_space(app), moving = app->args.steady, rc = find_rest(app, r, steady);
   if (rc) return rc;
+  if (moving && is_equilibrium(app, r)) tangent = 0;
   rc = tangent ? lag_steady_modes(s, steady, r) : lag_modes_find(s, r, app->extras.algebra);
   if (rc) return analysis_failed(app, rc, moving ? "at the steady motion" : "at the equilibrium");
   if (app->args.amplitude && (tangent || moving))

@@ -22,12 +22,14 @@ typedef struct FixedStep {
   double error;         /* with the step that was asked; NaN: no result (why) */
   double largest;       /* step [s]; 0: none was found */
   double mean, worst;   /* processor time of a step [s] */
+  double latest;        /* end of its part of --seconds: processor time */
   char why[160];
   /* 1: `lagc run` would refuse this run (why): a monitor of the scene, or an energy that is lost */
   int refused;
+  int cut; /* 1: longer steps were not tried, for want of time */
 } FixedStep;
 
-/* Processor time of each step. */
+/* Processor time of each step, or only the time that a run may take. */
 typedef struct StepClock {
   double last, latest;        /* end of the last step; when the run is left [s] */
   double *least;              /* [WATCHED] or NULL: of each step, the least time so far */
@@ -36,9 +38,11 @@ typedef struct StepClock {
 } StepClock;
 
 static int note_step(void *clock, const lag_sim *sim) {
+  enum { SOME = 64 };
   StepClock *c = clock;
-  double now = lag_processor_seconds();
   (void)sim;
+  if (!c->least && ++c->steps % SOME) return 0; /* reading the clock takes as long as many steps */
+  double now = lag_processor_seconds();
   if (c->least && c->steps < WATCHED) c->least[c->steps] = fmin(c->least[c->steps], now - c->last);
   c->steps++;
   c->last = lag_processor_seconds();
@@ -84,9 +88,13 @@ static void measure(App *app, const Cost *c, FixedStep *x, double step, double o
   double error = NAN;
   x->error = NAN;
   for (int i = 0; i < WATCHED; i++) least[i] = HUGE_VAL;
-  for (int i = 0; i < RUNS; i++)
-    if (isnan(error = run_with(app, c, x, step, 1, own, &clock))) return;
-  x->error = error;
+  for (int i = 0; i < RUNS; i++) {
+    double now = lag_processor_seconds();
+    if (i > 0 && now > (i == 1 ? c->seconds : x->latest)) break;
+    if (isnan(error = run_with(app, c, x, step, 1, own, &clock))) break;
+    x->error = error;
+  }
+  if (isnan(x->error)) return;
   for (int i = 0; i < WATCHED && least[i] < HUGE_VAL; i++) x->worst = fmax(x->worst, least[i] - overhead);
   clock.least = NULL;
   if (!isnan(run_with(app, c, x, step, 0, own, &clock))) x->mean = clock.whole / (double)clock.steps;
@@ -116,6 +124,7 @@ static void find_largest(App *app, const Cost *c, FixedStep *x, double step, Sam
   int stays = x->error < lost;
   x->largest = stays ? h : 0;
   for (int i = 0; i < 40 && h < span && lag_app_interrupted() == EXIT_SIGNAL; i++) {
+    if ((x->cut = lag_processor_seconds() > x->latest)) return;
     h *= stays ? factor : 1 / factor;
     int good = run_with(app, c, x, h, 1, own, &clock) < lost;
     if (good) x->largest = h;
@@ -195,10 +204,12 @@ static void put_text(const App *app, const Cost *c, const FixedStep *all, int n,
   printf("  %-24s %10s %14s %14s %18s\n", "", "error", "a step [us]", "at worst [us]", "largest step [s]");
   for (int i = 0; i < n; i++) {
     const FixedStep *x = &all[i];
-    if (isnan(x->error)) printf("  %-24s %10s %14s %14s %18.2g  %s\n", x->name, "-", "-", "-", x->largest, x->why);
+    char largest[32];
+    snprintf(largest, sizeof largest, x->cut && x->largest > 0 ? "at least %.2g" : x->cut ? "-" : "%.2g", x->largest);
+    if (isnan(x->error)) printf("  %-24s %10s %14s %14s %18s  %s\n", x->name, "-", "-", "-", largest, x->why);
     else
-      printf("%c %-24s %10.1e %14.3g %14.3g %18.2g%s%s\n", x == best ? '*' : ' ', x->name, x->error, 1e6 * x->mean,
-             1e6 * x->worst, x->largest, x->why[0] ? "  " : "", x->why);
+      printf("%c %-24s %10.1e %14.3g %14.3g %18s%s%s\n", x == best ? '*' : ' ', x->name, x->error, 1e6 * x->mean,
+             1e6 * x->worst, largest, x->why[0] ? "  " : "", x->why);
   }
   printf("error: the largest difference from the reference at 16 times, relative to the largest value of its kind and "
          "unit. largest step: with an error\n"
@@ -222,7 +233,7 @@ static void put_json(const App *app, const Cost *c, const FixedStep *all, int n,
     lag_json_number(&j, "error", x->error);
     lag_json_number(&j, "step_s", isnan(x->error) ? NAN : x->mean);
     lag_json_number(&j, "worst_s", isnan(x->error) ? NAN : x->worst);
-    lag_json_number(&j, "largest_step", x->largest > 0 ? x->largest : NAN);
+    lag_json_number(&j, "largest_step", x->largest > 0 && !x->cut ? x->largest : NAN);
     lag_json_string(&j, "refused", x->why[0] ? x->why : NULL);
     lag_json_end(&j, '}');
   }
@@ -253,6 +264,8 @@ int lag_app_realtime(App *app, const Cost *c) {
   own.output = c->reference.output;
   if (rc == 0) memcpy(own.t, c->reference.t, (size_t)c->reference.rows * sizeof *own.t);
   for (int i = 0; i < n && rc == 0; i++) {
+    double now = lag_processor_seconds();
+    all[i].latest = now + fmax(c->seconds - now, 0.2 * c->seconds) / (n - i);
     measure(app, c, &all[i], step, overhead, least, &own);
     if (!isnan(all[i].error)) judge(app, c, &all[i], step);
     if (!isnan(all[i].error) || strstr(all[i].why, "finite")) find_largest(app, c, &all[i], step, &own);

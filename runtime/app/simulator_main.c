@@ -89,10 +89,13 @@ static int finish(App *app) {
   app->show.note = note;
   snprintf(title, sizeof title, "%s: %s%s%s", app->scene->model->name, app->scene->name, app->section < 0 ? "" : ", ",
            app->section < 0 ? "" : app->scene->model->ev[app->section].name);
-  if (a->html && lag_html_write(a->html, &app->table, title, &app->show)) bad = lag_app_io_error(app, a->html);
+  if (a->html && lag_html_write(a->html, &app->table, title, &app->show)) {
+    bad = lag_app_io_error(app, a->html);
+    app->args.html = NULL; /* the report names files that are there */
+  }
   lag_table_scale_time(&app->table);
   if (a->energy_error) lag_energy_errors(app, app->sim);
-  if (lag_app_draw_table(app, title)) bad = EXIT_USAGE;
+  if (lag_app_draw_table(app, title)) bad = EXIT_USAGE, app->args.svg = NULL;
   if (a->save && app->status >= 0 && save_state(app)) bad = EXIT_USAGE;
   if (a->sketch) {
     FILE *to = a->json ? stderr : f;

@@ -50,7 +50,7 @@ int lag_conserves_energy(lag_sim *s) {
   const lag_charges *c = m->charges;
   int n = 2 * m->nq + m->nz, still = (lag_charge_flags(s, 0) & LAG_CONSERVED) != 0;
   int known = c && c->powers && c->of[0].flags & LAG_BALANCED;
-  if (still || !known || m->nu) return still;
+  if (still || !known || lag_inputs_at(&s->pb, s->run->t, s->now)) return still;
   double *y = s->yb, *power = calloc((size_t)c->n + 1, sizeof *power);
   still = power != NULL;
   for (int k = 1; k <= STATES && still; k++) {

@@ -30,18 +30,26 @@ static int same_family(const char *a, const char *b) {
   return a[n] == '[' && strncmp(a, b, n + 1) == 0;
 }
 
-/* The colour of series i, the k-th of its panel's `total`, which has the columns of a unit (NULL: all): by its index in
- * a range of runs, or among three or more members of a family x[1], x[2], ...; else by its run, or its place. */
-static int series_stroke(const Table *t, const PlottedCurves *d, const char *unit, int i, int k, int total) {
+/* Whether a column is in the panel of another (NULL: the only panel): of its unit; without units members of families
+ * lie apart, since sums over them may be larger by orders. */
+static int in_panel(const Column *c, const Column *of) {
+  if (!of) return 1;
+  return strcmp(c->unit, of->unit) == 0 && (of->unit[0] || !strchr(c->name, '[') == !strchr(of->name, '['));
+}
+
+/* The colour of series i, the k-th of its panel's `total`: by its index in a range of runs, or among three or more
+ * members of a family x[1], x[2], ...; else by its run, or its place. */
+static int series_stroke(const Table *t, const PlottedCurves *d, const Column *panel, int i, int k, int total) {
   const char *name = t->cols[d->y[i]].name;
   int n = 0, index = 0;
   if (d->ordered && total > 2 && total < MEMBER) return MEMBER * total + k;
   for (int j = 0; j < d->n && !d->runs; j++)
-    if ((!unit || strcmp(t->cols[d->y[j]].unit, unit) == 0) && same_family(name, t->cols[d->y[j]].name)) {
+    if (in_panel(&t->cols[d->y[j]], panel) && same_family(name, t->cols[d->y[j]].name)) {
       index += j < i;
       n++;
     }
   if (n > 2 && n < MEMBER) return MEMBER * n + index;
+  if (panel && !panel->unit[0] && !d->runs) return k;
   return d->runs ? i % d->runs + 8 * (k / d->runs) : i;
 }
 
@@ -160,7 +168,7 @@ static void envelope(FILE *f, const Panel *p, const Table *t, int ycol, double t
 
 static void one_curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period, const char *stroke) {
   double turns = xcol == 0 ? turns_of(p, t, ycol) : 0;
-  if (turns > p->w) { /* one cannot follow such a curve */
+  if (turns > 0.7 * p->w) { /* one cannot follow such a curve */
     envelope(f, p, t, ycol, turns, stroke);
     return;
   }
@@ -241,19 +249,19 @@ static void mark(FILE *f, double x, double y, const char *fill) {
   if (isfinite(x) && isfinite(y)) fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"%s\"/>\n", x, y, fill);
 }
 
-/* The series of one unit against time, or all against their columns where it is NULL, with their legend. */
-static void draw_series(FILE *f, const Panel *p, const Table *t, const PlottedCurves *d, const char *unit) {
+/* The series of a column's panel against time, or all against their columns where it is NULL, with their legend. */
+static void draw_series(FILE *f, const Panel *p, const Table *t, const PlottedCurves *d, const Column *panel) {
   enum { LISTED = 12, SOME = 8 };
   int shown = 0, total = 0, line = 0;
-  for (int i = 0; i < d->n; i++) total += !unit || strcmp(t->cols[d->y[i]].unit, unit) == 0;
+  for (int i = 0; i < d->n; i++) total += in_panel(&t->cols[d->y[i]], panel);
   for (int i = 0; i < d->n; i++) {
-    int x = unit ? 0 : d->x[i], y = d->y[i];
-    if (unit && strcmp(t->cols[y].unit, unit) != 0) continue;
-    int stroke = series_stroke(t, d, unit, i, shown, total);
+    int x = panel ? 0 : d->x[i], y = d->y[i];
+    if (!in_panel(&t->cols[y], panel)) continue;
+    int stroke = series_stroke(t, d, panel, i, shown, total);
     curve(f, p, t, x, y, d->beneath.period, stroke);
     int some = d->ordered && total > LISTED,
         told = !some || shown * SOME % (total - 1) < SOME; /* of many runs about SOME, the first and the last */
-    if (told && (unit || total > 1)) legend(f, p, line++, some ? SOME + 1 : total, stroke, t->cols[y].name);
+    if (told && (panel || total > 1)) legend(f, p, line++, some ? SOME + 1 : total, stroke, t->cols[y].name);
     shown++;
   }
 }
@@ -271,24 +279,24 @@ static int legend_width(const Table *t, const PlottedCurves *d) {
   return KEY + CHARACTER * most;
 }
 
-/* units := distinct units of the drawn columns, in order of first use, at most MOST_PANELS. Returns their number. */
-static int units_of(const Table *t, const PlottedCurves *d, const char *units[MOST_PANELS]) {
+/* first := the first drawn column of each panel, at most MOST_PANELS. Returns their number. */
+static int panels_of(const Table *t, const PlottedCurves *d, const Column *first[MOST_PANELS]) {
   int n = 0;
   for (int i = 0; i < d->n; i++) {
-    const char *unit = t->cols[d->y[i]].unit;
+    const Column *c = &t->cols[d->y[i]];
     int k = 0;
-    while (k < n && strcmp(units[k], unit) != 0) k++;
-    if (k == n && n < MOST_PANELS) units[n++] = unit;
+    while (k < n && !in_panel(c, first[k])) k++;
+    if (k == n && n < MOST_PANELS) first[n++] = c;
   }
   return n;
 }
 
-/* s[n] := "x, y" of the drawn columns of one unit, without the runs' labels, as far as there is room. */
-static const char *names_of(const Table *t, const PlottedCurves *d, const char *unit, char *s, size_t n) {
+/* s[n] := "x, y" of the drawn columns of a panel, without the runs' labels, as far as there is room. */
+static const char *names_of(const Table *t, const PlottedCurves *d, const Column *panel, char *s, size_t n) {
   size_t at = 0;
   for (int i = 0; i < d->n && at + sizeof t->cols->name + 3 < n; i += d->runs > 0 ? d->runs : 1) {
     const Column *c = &t->cols[d->y[i]];
-    if (strcmp(c->unit, unit) != 0) continue;
+    if (!in_panel(c, panel)) continue;
     int length = c->plain > 0 ? c->plain : (int)strlen(c->name);
     at += (size_t)snprintf(s + at, n - at, "%s%.*s", at ? ", " : "", length, c->name);
   }
@@ -296,9 +304,9 @@ static const char *names_of(const Table *t, const PlottedCurves *d, const char *
 }
 
 static void against_time(FILE *f, const Table *t, const char *title, const PlottedCurves *d) {
-  const char *units[MOST_PANELS];
+  const Column *first[MOST_PANELS];
   char xlabel[176], names[300];
-  int n = units_of(t, d, units);
+  int n = panels_of(t, d, first);
   double h = n == 1 ? 380 : n == 2 ? 230 : 170;
   Panel p = {.x = LEFT,
              .y = TOP, .w = WIDTH - LEFT - RIGHT, .h = h, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .xlog = d->xlog,
@@ -313,13 +321,13 @@ static void against_time(FILE *f, const Table *t, const char *title, const Plott
     p.y0 = HUGE_VAL;
     p.y1 = -HUGE_VAL;
     for (int i = 0; i < d->n; i++)
-      if (strcmp(t->cols[d->y[i]].unit, units[k]) == 0) lag_table_range(t, d->y[i], &p.y0, &p.y1);
+      if (in_panel(&t->cols[d->y[i]], first[k])) lag_table_range(t, d->y[i], &p.y0, &p.y1);
     lag_widen_range(&p.y0, &p.y1, 1e-12, 0.06);
     if (p.ylog) lag_widen_log_range(&p.y0, &p.y1);
-    if (d->yname) label_of(d->yname, units[k], h + 40, s, sizeof s);
-    else label_of(names_of(t, d, units[k], names, sizeof names), units[k], h + 40, s, sizeof s);
+    if (d->yname) label_of(d->yname, first[k]->unit, h + 40, s, sizeof s);
+    else label_of(names_of(t, d, first[k], names, sizeof names), first[k]->unit, h + 40, s, sizeof s);
     lag_svg_axes(f, &p, s, k == n - 1);
-    draw_series(f, &p, t, d, units[k]);
+    draw_series(f, &p, t, d, first[k]);
     put_horizon(f, &p, t, k == 0);
     p.y += h + GAP;
   }

@@ -271,18 +271,28 @@ const char *charges_energy_word(const Eqns *e) {
   return charges_drift_word(e->charges[0].proof.jumps ? PROVED_NONZERO : e->charges[0].proof.drift);
 }
 
-/* ", which is 0 in this scene, where c = 0" where a power is 0 with the parameters that are 0 in the scene; else "". */
+/* ", which is 0 in this scene, where c = 0" where a power is 0 with the parameters and inputs that are 0 in the scene;
+ * else "". */
 static const char *zero_here(const Eqns *e, Expr power) {
   const Model *m = e->m;
   StrBuf names = {.arena = m->arena};
   Expr zero = expr_int(e->g, 0), at = power;
-  for (uint32_t i = 0; i < m->params.n; i++) {
-    const Param *p = &m->params.at[i];
-    if (!expr_is_zero(e->g, p->value) || !expr_contains_sym(e->g, power, p->sym)) continue;
-    int alone = expr_is_zero(e->g, expr_replace(e->g, power, &p->sym, &zero, 1));
-    if (alone) return arena_printf(m->arena, ", which is 0 in this scene, where %s = 0", p->name);
-    at = expr_replace(e->g, at, &p->sym, &zero, 1);
-    sb_printf(&names, "%s%s = 0", names.n ? ", " : "", p->name);
+  uint32_t all = m->params.n + m->inputs.n, n = 0;
+  SymId *sym = ARENA_ARRAY(m->arena, SymId, all + 1);
+  Expr *zeros = ARENA_ARRAY(m->arena, Expr, all + 1);
+  for (uint32_t i = 0; i < all; i++) {
+    const Param *p = i < m->params.n ? &m->params.at[i] : NULL;
+    const Input *u = p ? NULL : &m->inputs.at[i - m->params.n];
+    Expr value = p ? p->value : u->text || u->order ? u->value : 0; /* that of a table is not known */
+    if (!value || !expr_is_zero(e->g, expr_replace(e->g, value, sym, zeros, n))) continue;
+    sym[n] = p ? p->sym : u->sym;
+    zeros[n++] = zero;
+    if (!expr_contains_sym(e->g, power, sym[n - 1])) continue;
+    Name name = p ? p->name : u->name;
+    int alone = expr_is_zero(e->g, expr_replace(e->g, power, &sym[n - 1], &zero, 1));
+    if (alone) return arena_printf(m->arena, ", which is 0 in this scene, where %s = 0", name);
+    at = expr_replace(e->g, at, &sym[n - 1], &zero, 1);
+    sb_printf(&names, "%s%s = 0", names.n ? ", " : "", name);
   }
   int is = names.n && expr_is_zero(e->g, simplify(e->g, at));
   return is ? arena_printf(m->arena, ", which is 0 in this scene, where %s", names.at) : "";

@@ -105,6 +105,7 @@ check "has a curve for each that is named" [ "$(grep -c '<path fill="none".*stro
 check "the band of twice the least time ends at the frame" awk '/stroke="none" d=/ { n++; gsub(/.* d="|".*/, ""); gsub(/[MLZ]/, " "); m = split($0, c, " ")
   for (i = 1; i < m; i += 2) bad += c[i] < 91.9 || c[i] > 560.1 || c[i + 1] < 51.9 || c[i + 1] > 490.1 } END { exit !(n == 1 && !bad) }' "$TMP/cost.svg"
 check "with its name" grep -q '>rk4' "$TMP/cost.svg"
+is "names of limits stand above the frame, where no curve is" 0 "$(grep -c 'rotate(-90).*>\(rounding\|reference\)<' "$TMP/cost.svg")"
 check "and no other output" [ ! -s "$TMP/text" ]
 check "all runs as rows" text models/pendulum.lag --until 1 --seconds $sweep --methods rk4 -o "$TMP/cost.csv" --sketch
 check "their head" grep -qx 'method,knob,setting,error,seconds,spread,steps,calls,front' "$TMP/cost.csv"

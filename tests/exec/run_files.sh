@@ -65,6 +65,8 @@ for type in csv npy; do
   check "run: no room for rows of .$type" refused 2 "cannot write $dir/out/rows.$type: File too large" \
     full_disk "$entry" --until 100 --every 0.01 -o "$dir/out/rows.$type"
 done
+full_disk "$entry" --until 100 --svg "$dir/out/picture.svg" >"$dir/said" 2>&1
+is 'no room for a picture: the report names none' 0 "$(grep -c 'picture in' "$dir/said")"
 
 mkfifo "$dir/fifo"
 mkdir "$dir/own"

@@ -176,8 +176,8 @@ pasted() {
     "$LAGC" run "$TMP/pasted.lag" fitted --until 1 >/dev/null
 }
 check "the scene can be pasted" pasted
-picture() { "$LAGC" fit models/pendulum.lag wide --data "$M/pendulum.csv" --fit l,th --svg "$TMP/fit.svg" | grep -q "^picture in" && [ "$(grep -c '<circle' "$TMP/fit.svg")" = 200 ] && tail -1 "$TMP/fit.svg" | grep -q '</svg>'; }
-check "a picture" picture
+picture() { "$LAGC" fit models/pendulum.lag wide --data "$M/pendulum.csv" --fit l,th --svg "$TMP/fit.svg" | grep -q "^picture in" && [ "$(grep -c '<circle' "$TMP/fit.svg")" = 201 ] && tail -1 "$TMP/fit.svg" | grep -q '</svg>'; }
+check "a picture, each row a dot in both panels, and one in the legend" picture
 
 # ---- which effects the data call for: chi squared of `wide` as above; the record of damped.csv has friction
 cat >"$TMP/rubbing.lag" <<'X'

@@ -232,12 +232,15 @@ verdict unstable
 close "growth" 0.2 "$(of_mode 1 re)"
 
 # ---- a minimum of an energy that nothing can raise is stable, though some mode does not decay (Thomson & Tait, par. 345; Chetaev)
-for scene in one none; do # c >= 0, as declared
-  find_modes $dir/braked.lag $scene
+while read -r scene why; do # c >= 0, as declared; 0 in the second scene
+  find_modes $dir/braked.lag "$scene"
   verdict stable
-  because "nothing raises it"
+  because "$why"
   close "what is not braked" 2 "$(of_mode 2 im)"
-done
+done <<'EOF'
+one nothing raises it
+none conserved at these values
+EOF
 close "nor this, without a brake" 1 "$(of_mode 1 im)"
 find_modes $dir/braked.lag pulled F=4 # an input that is held: 4 k y = F
 verdict stable

@@ -263,4 +263,6 @@ check "a histogram of a range of 1e-9" "$LAGC" sweep "$TMP/still.lag" 'k~uniform
 labels() { sed -n 's/.*<text [^>]*text-anchor="middle"[^>]*>\([0-9.e+-]*\)<.*/\1/p' "$TMP/still.svg" | sort | uniq -d; }
 is "has no two labels alike" "" "$(labels)"
 check "and says what they begin with" grep -q '>1[0-9.]* +<' "$TMP/still.svg"
+"$LAGC" plot models/toda.lag --until 1 -o "$TMP/toda.svg" >"$TMP/said" 2>&1
+check "without units a family has a panel of its own, without sums that are larger by orders" grep -q '>I1, I2, I3, I4, energy<' "$TMP/toda.svg"
 tap_end

@@ -210,6 +210,12 @@ empty "run and modes, a constant force" "$(full $models/constant_force.lag hang 
 check "it is stable" grep -q '^stable: the energy, which is conserved, has a minimum here' "$TMP/words/modes"
 printf "model m\ncoord x, y\ninput u = 0\nlagrangian = x'^2/4 + (1 + x^2)*y'^2/2 - 2*x^2*y^2 + u\nscene s { start x = 0.6, y = -0.3, x' = 0.4; span 1 }\n" >"$TMP/follows.lag"
 empty "run and modes, an input that follows its formula" "$(full "$TMP/follows.lag" s 1)"
+printf "model m\ncoord x\nparam F = 0\ninput u = 0, f = F*t\nlagrangian = x'^2/2 - x^2/2\nforce x = (u + f)*(1 + x')\nscene s { start x = 1; span 1 }\n" >"$TMP/idle.lag"
+empty "run and modes, inputs that are 0 in a force" "$(full "$TMP/idle.lag" s 1)"
+is "check names what is 0" "which is 0 in this scene, where u = 0, f = 0" "$(lagc check "$TMP/idle.lag" | grep -o 'which is 0.*')"
+# A gyroscope's force leaves the minimum of the energy: modes of the rest, found either way.
+printf "model m\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 + 2*(x*y' - y*x') - x^2/2 - y^2\nscene s { start x = 1; span 1 }\n" >"$TMP/gyro.lag"
+is "modes and modes --steady, a rest" "stable stable" "$(for o in "" --steady; do lagc modes "$TMP/gyro.lag" $o | sed -n 's/^\(stable\|undecided\).*/\1/p'; done | paste -sd ' ' -)"
 empty "run and modes, a rotating wire" "$(full $models/bead_on_parabola.lag slow 1)"
 check "it is stable" grep -q '^stable: the energy, which is conserved, has a minimum here' "$TMP/words/modes"
 h() { # h H LINE: the verdict of modes on a model with this Hamiltonian
