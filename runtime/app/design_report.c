@@ -210,8 +210,7 @@ static void put_json(const DesignRun *d) {
   const Fit *f = &d->of.fit;
   Json j = {stdout, 0};
   lag_json_begin(&j, NULL, '{');
-  lag_json_string(&j, "model", d->of.app->scene->model->name);
-  lag_json_string(&j, "scene", d->of.app->scene->name);
+  lag_json_strings(&j, {"model", d->of.app->scene->model->name}, {"scene", d->of.app->scene->name});
   lag_json_count(&j, "candidates", d->ntimes * f->ncolumns);
   lag_json_begin(&j, "measurements", '[');
   for (int k = 0; k < d->best; k++) {
@@ -226,8 +225,7 @@ static void put_json(const DesignRun *d) {
     for (int i = 0; i < d->n; i++) lag_json_number(&j, f->target[i].label, d->error[kind * d->n + i]);
     lag_json_end(&j, '}');
   }
-  lag_json_end(&j, '}');
-  putchar('\n');
+  lag_json_close(&j);
 }
 
 /* ---- The analysis */
