@@ -5,6 +5,7 @@
 
 #include "app/sweep.h"
 #include "numeric/magnitudes.h"
+#include "numeric/release.h"
 
 /* One measure over the runs that have it. */
 typedef struct Statistics {
@@ -34,8 +35,7 @@ int lag_sweep_each_row(SweepApp *s, int (*take)(void *context, long long run, co
       rc = take(context, c * w->chunk + k, row);
     }
   }
-  free(chunk);
-  free(row);
+  lag_free_all(chunk, row);
   return rc;
 }
 
@@ -244,8 +244,7 @@ int lag_sweep_report(SweepApp *s) {
     else if (a->json) print_json(s, t, &bad, failed);
     else if (!a->quiet) print_text(s, a->out && strcmp(a->out, "-") == 0 ? stderr : stdout, t, &bad, failed);
   }
-  free(bad.none);
-  free(t);
+  lag_free_all(bad.none, t);
   return rc;
 }
 
