@@ -1,15 +1,13 @@
 /* impulses.h: laws of contacts and dry friction by projected Gauss-Seidel. Includes scalar.h.
  *
- * Enters: velocities without contacts and friction, response of the motion to each; their laws. Leaves:
- * impulses and velocities that obey all laws: the problem of numeric/complementarity.h with boxes of
- * friction that depend on the forces which press, for any number of contacts.
+ * Enters: velocities without contacts and friction, response of the motion to each; their laws. Leaves: impulses and
+ * velocities that obey all laws, for any number of contacts: the problem of numeric/complementarity.h with boxes of
+ * friction that depend on the forces which press. Each law in turn, until a sweep changes nothing noticeably: M. Jean,
+ * Comput. Methods Appl. Mech. Eng. 177 (1999) 235, DOI 10.1016/S0045-7825(98)00383-1. Gap and friction of a contact
+ * are found at once where each moves the other by much; impulses that drift go in strides; those that swing are damped.
  *
- * Turn by turn each law is obeyed, until a sweep changes nothing noticeably: M. Jean, Comput. Methods
- * Appl. Mech. Eng. 177 (1999) 235, DOI 10.1016/S0045-7825(98)00383-1. Gap and friction of a contact are found at
- * once where each moves the other by much; impulses that drift go in strides, and those that swing are damped.
- *
- * lagc copies the sections below into headers, with their prefix for LAG_ and lag_. LAG_REAL is a
- * scalar. The caller's memory alone; nothing is kept between calls. */
+ * lagc copies the sections below into headers, with their prefix for LAG_ and lag_. LAG_REAL is a scalar. Memory is
+ * the caller's; nothing is kept between calls. */
 #ifndef LAG_IMPULSES_H
 #define LAG_IMPULSES_H
 
