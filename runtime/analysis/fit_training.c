@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/fit.h"
 #include "analysis/fit_residuals.h"
 #include "core/core.h"
 #include "numeric/release.h"

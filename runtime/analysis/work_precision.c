@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "core/core.h"
-#include "core/rhs.h"
 #include "numeric/clock.h"
 #include "numeric/magnitudes.h"
 #include "numeric/release.h"
