@@ -18,13 +18,11 @@ static Expr body_of(const ExprGraph *g, Expr e) {
 static Expr angle_of(const ExprGraph *g, Expr term, Expr *length) {
   Expr angle = 0;
   *length = 0;
-  for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++) {
-    Num power;
-    Expr f = expr_pair(g, term, EX_PROD, i, &power);
-    ExprOp op = expr_op(g, f);
-    int turns = (op == EX_SIN || op == EX_COS) && num_is_one(power) && changes(g, f);
-    if (turns && !angle) angle = expr_arg(g, f, 0);
-    else if (!turns && changes(g, f)) *length = f;
+  for (ExprPair f = {0}; expr_next_pair(g, term, EX_PROD, &f);) {
+    ExprOp op = expr_op(g, f.of);
+    int turns = (op == EX_SIN || op == EX_COS) && num_is_one(f.num) && changes(g, f.of);
+    if (turns && !angle) angle = expr_arg(g, f.of, 0);
+    else if (!turns && changes(g, f.of)) *length = f.of;
   }
   return angle;
 }
@@ -63,11 +61,8 @@ static int is_stretched(Guess *k, Expr length) {
   const ExprGraph *g = k->d->b->g;
   Expr e = body_of(g, length);
   int found = expr_map_get(&k->stretched, length) != 0;
-  for (uint32_t i = 0; i < expr_pairs(g, e, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(g, e, EX_SUM, i, &c);
-    found |= changes(g, term) && expr_map_get(&k->stretched, term);
-  }
+  for (ExprPair term = {0}; expr_next_pair(g, e, EX_SUM, &term);)
+    found |= changes(g, term.of) && expr_map_get(&k->stretched, term.of);
   return found;
 }
 
@@ -213,15 +208,13 @@ static void link_line(Guess *k, Expr base) {
   ExprGraph *g = k->d->b->g;
   const DrawnPoint *end[2] = {NULL, NULL};
   uint32_t n = 0, moving = 0;
-  for (uint32_t i = 0; i < expr_pairs(g, base, EX_SUM); i++) {
-    Num times;
-    Expr term = expr_pair(g, base, EX_SUM, i, &times);
-    if (!changes(g, term)) continue;
+  for (ExprPair term = {0}; expr_next_pair(g, base, EX_SUM, &term);) {
+    if (!changes(g, term.of)) continue;
     moving++;
     for (uint32_t j = 0; j < k->points.n && n < 2; j++) {
       const DrawnPoint *p = &k->points.at[j];
       uint32_t c = p->n == 2 && expr_is_zero(g, p->at[0]) ? 1 : 0;
-      if (p->n == 2 && expr_is_zero(g, p->at[1 - c]) && p->at[c] == term) end[n++] = p;
+      if (p->n == 2 && expr_is_zero(g, p->at[1 - c]) && p->at[c] == term.of) end[n++] = p;
     }
   }
   if (!n || n != moving) return;
@@ -239,11 +232,8 @@ static void each_square(Guess *k, void (*fn)(Guess *k, Expr base)) {
   for (uint32_t i = 0; i < all.n; i++) {
     Expr e = all.at[i];
     if (expr_op(g, e) != EX_PROD || (expr_kinds(g, e) & (1u << SYM_VEL | 1u << SYM_RATE))) continue;
-    for (uint32_t j = 0; j < expr_pairs(g, e, EX_PROD); j++) {
-      Num power;
-      Expr base = expr_pair(g, e, EX_PROD, j, &power);
-      if (num_equal(power, num_int(2)) && changes(g, base)) fn(k, body_of(g, base));
-    }
+    for (ExprPair base = {0}; expr_next_pair(g, e, EX_PROD, &base);)
+      if (num_equal(base.num, num_int(2)) && changes(g, base.of)) fn(k, body_of(g, base.of));
   }
 }
 
@@ -274,16 +264,14 @@ static Expr constant_part(Guess *k, Expr gap, Expr *radius, double *times) {
   ExprGraph *g = k->d->b->g;
   Expr rest = expr_int(g, 0);
   *radius = 0;
-  for (uint32_t i = 0; i < expr_pairs(g, gap, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(g, gap, EX_SUM, i, &c);
-    if (changes(g, term)) continue;
-    int is_radius = expr_op(g, term) == EX_SYM && has_word("r R a radius rad", expr_sym_of(g, term)->name);
-    if (is_radius && num_value(c) < 0) {
-      *radius = term;
-      *times = -num_value(c);
+  for (ExprPair term = {0}; expr_next_pair(g, gap, EX_SUM, &term);) {
+    if (changes(g, term.of)) continue;
+    int is_radius = expr_op(g, term.of) == EX_SYM && has_word("r R a radius rad", expr_sym_of(g, term.of)->name);
+    if (is_radius && num_value(term.num) < 0) {
+      *radius = term.of;
+      *times = -num_value(term.num);
     } else {
-      rest = expr_add(g, rest, expr_scale(g, c, term));
+      rest = expr_add(g, rest, expr_scale(g, term.num, term.of));
     }
   }
   return rest;
@@ -294,11 +282,10 @@ static int normal_of(ExprGraph *g, Expr gap, const DrawnPoint *p, Expr n[3]) {
   int found = 0;
   for (uint32_t c = 0; c < p->n; c++) {
     n[c] = expr_int(g, 0);
-    for (uint32_t i = 0; i < expr_pairs(g, gap, EX_SUM); i++) {
-      Num times;
-      Expr term = expr_pair(g, gap, EX_SUM, i, &times), over = expr_div(g, term, p->at[c]);
-      if (!changes(g, p->at[c]) || !changes(g, term) || changes(g, over)) continue;
-      n[c] = expr_add(g, n[c], expr_scale(g, times, over));
+    for (ExprPair term = {0}; expr_next_pair(g, gap, EX_SUM, &term);) {
+      Expr over = expr_div(g, term.of, p->at[c]);
+      if (!changes(g, p->at[c]) || !changes(g, term.of) || changes(g, over)) continue;
+      n[c] = expr_add(g, n[c], expr_scale(g, term.num, over));
       found = 1;
     }
   }

@@ -10,9 +10,8 @@ static int is_of_parameters(const ExprGraph *g, Expr e) {
 static Expr parameter_factor(ExprGraph *g, Expr size) {
   Expr of = expr_int(g, 1), rest = of;
   if (is_of_parameters(g, size)) return size;
-  for (uint32_t i = 0; i < expr_pairs(g, size, EX_PROD); i++) {
-    Num exponent;
-    Expr base = expr_pair(g, size, EX_PROD, i, &exponent), factor = expr_pow_num(g, base, exponent);
+  for (ExprPair base = {0}; expr_next_pair(g, size, EX_PROD, &base);) {
+    Expr factor = expr_pow_num(g, base.of, base.num);
     if (is_of_parameters(g, factor)) of = expr_mul(g, of, factor);
     else rest = expr_mul(g, rest, factor);
   }

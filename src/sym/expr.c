@@ -186,6 +186,12 @@ Expr expr_pair(const ExprGraph *g, Expr e, ExprOp op, uint32_t i, Num *number) {
   return e;
 }
 
+int expr_next_pair(const ExprGraph *g, Expr e, ExprOp op, ExprPair *x) {
+  if (x->next == expr_pairs(g, e, op)) return 0;
+  x->of = expr_pair(g, e, op, x->next++, &x->num);
+  return 1;
+}
+
 /* --- signs --- */
 
 static ExprSign flip(ExprSign s) {

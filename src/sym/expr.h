@@ -180,6 +180,14 @@ const char *expr_op_text(ExprOp op);
 uint32_t expr_pairs(const ExprGraph *g, Expr e, ExprOp op);
 Expr expr_pair(const ExprGraph *g, Expr e, ExprOp op, uint32_t i, Num *number);
 
+/* A walk over them: for (ExprPair x = {0}; expr_next_pair(g, e, op, &x);) */
+typedef struct {
+  Expr of;
+  Num num;
+  uint32_t next;
+} ExprPair;
+int expr_next_pair(const ExprGraph *g, Expr e, ExprOp op, ExprPair *x);
+
 /* --- sets of nodes --- */
 typedef struct {
   const Expr *at;
