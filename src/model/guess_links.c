@@ -39,9 +39,8 @@ typedef struct {
 static void split_terms(ExprGraph *g, Expr value, uint32_t c, Arms *a) {
   Expr e = body_of(g, value);
   a->rest[c] = expr_int(g, 0);
-  for (uint32_t i = 0; i < expr_pairs(g, e, EX_SUM); i++) {
-    Num k;
-    Expr length, term = expr_pair(g, e, EX_SUM, i, &k), angle = angle_of(g, term, &length), *into = &a->rest[c];
+  for (ExprPair term = {0}; expr_next_pair(g, e, EX_SUM, &term);) {
+    Expr length, angle = angle_of(g, term.of, &length), *into = &a->rest[c];
     uint32_t j = 0;
     while (j < a->n && a->angle[j] != angle) j++;
     if (angle && j < MOST_ARMS) {
@@ -49,7 +48,7 @@ static void split_terms(ExprGraph *g, Expr value, uint32_t c, Arms *a) {
       if (length) a->length[j] = length;
       into = &a->arm[j][c];
     }
-    Expr scaled = expr_scale(g, k, term);
+    Expr scaled = expr_scale(g, term.num, term.of);
     *into = *into ? expr_add(g, *into, scaled) : scaled;
   }
 }
@@ -150,10 +149,8 @@ static uint32_t distance_parts(const ExprGraph *g, Expr e, Expr out[3]) {
 
 /* Coefficient of x in the sum d; 0: not in it. */
 static int sign_in(const ExprGraph *g, Expr d, Expr x) {
-  for (uint32_t i = 0; i < expr_pairs(g, d, EX_SUM); i++) {
-    Num k;
-    if (expr_pair(g, d, EX_SUM, i, &k) == x) return num_is_one(k) ? 1 : num_is_one(num_neg(k)) ? -1 : 0;
-  }
+  for (ExprPair term = {0}; expr_next_pair(g, d, EX_SUM, &term);)
+    if (term.of == x) return num_is_one(term.num) ? 1 : num_is_one(num_neg(term.num)) ? -1 : 0;
   return 0;
 }
 
@@ -193,10 +190,8 @@ void guess_rods(Guess *k) {
     if (c->inside) continue;
     int done = link_distance(k, SHAPE_ROD, "link", c->c);
     Expr e = body_of(b->g, c->c);
-    for (uint32_t j = 0; j < expr_pairs(b->g, e, EX_SUM) && !done; j++) {
-      Num times;
-      done = link_distance(k, SHAPE_ROD, "link", expr_pair(b->g, e, EX_SUM, j, &times));
-    }
+    for (uint32_t j = 0; j < expr_pairs(b->g, e, EX_SUM) && !done; j++)
+      done = link_distance(k, SHAPE_ROD, "link", expr_pair(b->g, e, EX_SUM, j, NULL));
   }
 }
 
@@ -238,19 +233,15 @@ static void each_square(Guess *k, void (*fn)(Guess *k, Expr base)) {
 }
 
 static void note_square(Guess *k, Expr base) {
-  for (uint32_t i = 0; i < expr_pairs(k->d->b->g, base, EX_SUM); i++) {
-    Num c;
-    expr_map_set(&k->stretched, expr_pair(k->d->b->g, base, EX_SUM, i, &c), 1);
-  }
+  for (ExprPair term = {0}; expr_next_pair(k->d->b->g, base, EX_SUM, &term);) expr_map_set(&k->stretched, term.of, 1);
 }
 
 static void link_square(Guess *k, Expr base) {
   ExprGraph *g = k->d->b->g;
   uint32_t n = expr_pairs(g, base, EX_SUM);
-  Num c;
   int done = 0;
   for (uint32_t i = 0; i < n && !done && n <= 3; i++)
-    done = link_distance(k, SHAPE_SPRING, "spring", expr_pair(g, base, EX_SUM, i, &c));
+    done = link_distance(k, SHAPE_SPRING, "spring", expr_pair(g, base, EX_SUM, i, NULL));
   if (!done) link_line(k, base);
 }
 
@@ -311,9 +302,8 @@ static void add_wall(Guess *k, const Expr *n, Expr rest, uint32_t dims) {
 static void note_radii(Guess *k, Expr gap, Expr radius, double times) {
   ExprGraph *g = k->d->b->g;
   Expr part[3], to[3];
-  for (uint32_t j = 0; j < expr_pairs(g, gap, EX_SUM) && radius && times == 2; j++) {
-    Num c;
-    uint32_t n = distance_parts(g, expr_pair(g, gap, EX_SUM, j, &c), part);
+  for (ExprPair term = {0}; radius && times == 2 && expr_next_pair(g, gap, EX_SUM, &term);) {
+    uint32_t n = distance_parts(g, term.of, part);
     for (uint32_t i = 0; i < k->points.n && n >= 2; i++)
       if (other_end(g, &k->points.at[i], part, n, to)) k->points.at[i].radius = radius;
   }

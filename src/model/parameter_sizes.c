@@ -58,12 +58,9 @@ void add_opening_angle(Builder *b, Expr theta, Span span) {
 /* The product of the factors with negative exponents, inverted. */
 static Expr denominator_of(ExprGraph *g, Expr e) {
   Expr of = expr_int(g, 1);
-  Num number;
-  if (expr_pairs(g, e, EX_SUM) == 1) e = expr_pair(g, e, EX_SUM, 0, &number);
-  for (uint32_t i = 0; i < expr_pairs(g, e, EX_PROD); i++) {
-    Expr base = expr_pair(g, e, EX_PROD, i, &number);
-    if (num_sign(number) < 0) of = expr_mul(g, of, expr_pow_num(g, base, num_neg(number)));
-  }
+  if (expr_pairs(g, e, EX_SUM) == 1) e = expr_pair(g, e, EX_SUM, 0, NULL);
+  for (ExprPair base = {0}; expr_next_pair(g, e, EX_PROD, &base);)
+    if (num_sign(base.num) < 0) of = expr_mul(g, of, expr_pow_num(g, base.of, num_neg(base.num)));
   return of;
 }
 

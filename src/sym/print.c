@@ -175,7 +175,8 @@ static void sum(Printer *p, Expr e) {
 /* Whether an argument is a sum of plain names, which needs no \left( \right). */
 static int is_flat(const ExprGraph *g, Expr e) {
   for (ExprPair t = {0}; expr_next_pair(g, e, EX_SUM, &t);)
-    if (!num_is_int(t.num) || (expr_op(g, t.of) != EX_SYM && expr_op(g, t.of) != EX_DEF && expr_op(g, t.of) != EX_NUM)) return 0;
+    if (!num_is_int(t.num) || (expr_op(g, t.of) != EX_SYM && expr_op(g, t.of) != EX_DEF && expr_op(g, t.of) != EX_NUM))
+      return 0;
   return 1;
 }
 

@@ -44,9 +44,8 @@ static int is_power(Num k) { return num_is_int(k) && num_sign(k) > 0; }
 static void put_roles(FunctionSearch *s, Expr x) {
   ExprGraph *g = s->a->g;
   ExprOp op = expr_op(g, x);
-  Num k;
   if (op == EX_SUM || op == EX_PROD)
-    for (uint32_t i = 0; i < expr_pairs(g, x, op); i++) s->has[x] |= s->has[expr_pair(g, x, op, i, &k)];
+    for (uint32_t i = 0; i < expr_pairs(g, x, op); i++) s->has[x] |= s->has[expr_pair(g, x, op, i, NULL)];
   else
     for (uint32_t i = 0; i < expr_nargs(g, x); i++) s->has[x] |= s->has[expr_arg(g, x, i)];
 }
