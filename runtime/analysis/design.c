@@ -10,6 +10,7 @@
 
 #include "lag.h"
 #include "numeric/dense.h"
+#include "numeric/release.h"
 
 typedef struct Design {
   int rows, p, n;
@@ -168,9 +169,7 @@ static int open_design(Design *d) {
 }
 
 static void close_design(Design *d) {
-  free(d->scale);
-  free(d->chosen);
-  free(d->taken);
+  lag_free_all(d->scale, d->chosen, d->taken);
 }
 
 static int by_number(const void *a, const void *b) {

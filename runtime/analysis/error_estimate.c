@@ -11,7 +11,6 @@
 #include <string.h>
 
 #include "core/core.h"
-#include "core/rhs.h"
 #include "numeric/line_fit.h"
 
 enum { PLACES_A_STEP = 4 };

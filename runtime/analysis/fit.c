@@ -11,6 +11,7 @@
 
 #include "analysis/fit_residuals.h"
 #include "numeric/magnitudes.h"
+#include "numeric/release.h"
 
 /* ---- The search */
 
@@ -376,23 +377,13 @@ int lag_fit(Fit *f) {
     if (rc == LAG_OK && !f->converged && !f->nodes) rc = search_in_parts(f, x, given);
     rc = rc ? rc : take_statistics(f, x);
   }
-  free(x);
-  free(given);
+  lag_free_all(x, given);
   return rc;
 }
 
 void lag_fit_free(Fit *f) {
   lag_fit_nodes_free(f);
-  free(f->mine);
-  free(f->directions);
-  free(f->flat);
-  free(f->correlation);
-  free(f->singular);
-  free(f->model);
-  free(f->y);
-  free(f->row);
-  free(f->D);
-  free(f->centre);
+  lag_free_all(f->mine, f->directions, f->flat, f->correlation, f->singular, f->model, f->y, f->row, f->D, f->centre);
 }
 
 /* ---- For profiles */

@@ -12,6 +12,7 @@
 #include "analysis/fit_residuals.h"
 #include "core/core.h"
 #include "numeric/dense.h"
+#include "numeric/release.h"
 
 /* Weight of gaps in the end: over a chaotic record errors of steps grow to more than this. Stated errors include it. */
 static const double tightest = 1e6;
@@ -134,13 +135,7 @@ void lag_fit_nodes_free(Fit *f) {
   FitNodes *w = f->nodes;
   f->nodes = NULL;
   if (!w) return;
-  free(w->at);
-  free(w->row);
-  free(w->unit);
-  free(w->y);
-  free(w->gap);
-  free(w->by);
-  free(w);
+  lag_free_all(w->at, w->row, w->unit, w->y, w->gap, w->by, w);
 }
 
 double lag_fit_widest_gap(const Fit *f) {
@@ -356,8 +351,7 @@ static int shoot_open(Shoot *s, Fit *f) {
 }
 
 static void shoot_free(Shoot *s) {
-  free(s->r);
-  free(s->step.room);
+  lag_free_all(s->r, s->step.room);
 }
 
 /* Squares of the residuals r and of the gaps of nodes that count. */

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/fit.h"
 #include "analysis/fit_residuals.h"
 #include "core/core.h"
+#include "numeric/release.h"
 
 enum { WINDOW = 20 }; /* steps */
 
@@ -192,8 +192,6 @@ int lag_fit_train(Fit *f, double *x) {
   f->chi_squared = 2 * half;
   f->freedom = f->nvalues;
   for (int j = 0; j < f->n; j++) f->target[j].error = NAN;
-  free(w.at);
-  free(w.feels);
-  free(w.slope);
+  lag_free_all(w.at, w.feels, w.slope);
   return rc;
 }

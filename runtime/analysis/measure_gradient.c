@@ -36,13 +36,7 @@ typedef struct MeasureGradient {
   const char *refused;
 } MeasureGradient;
 
-static void put_seed(MeasureGradient *g, int node, double t, double weight) {
-  if (g->n == MOST_ROWS) g->refused = "it has too many values at times";
-  else if (weight != 0.0) g->seed[g->n++] = (Seed){t, weight, node, 0, -1, 0};
-}
-
-static void put_time(MeasureGradient *g, Seed of) {
-  of.is_time = 1;
+static void put_seed(MeasureGradient *g, Seed of) {
   if (g->n == MOST_ROWS) g->refused = "it has too many values at times";
   else if (of.weight != 0.0) g->seed[g->n++] = of;
 }
@@ -51,15 +45,14 @@ static void seed_hit(MeasureGradient *g, const MeasureNode *n, double weight) {
   const Measures *m = g->m;
   if (m->scene->model->ev[n->index].direction == LAG_KICK)
     g->refused = "times of kicks have no gradient: they are multiples of a period, which a parameter may be";
-  else put_time(g, (Seed){n->result, weight, -1, 1, n->index, (int)m->node[n->a].value});
+  else put_seed(g, (Seed){n->result, weight, -1, 1, n->index, (int)m->node[n->a].value});
 }
 
 /* The mean time between the first upward passage of 0 and the last. */
 static void seed_period(MeasureGradient *g, const Track *k, double weight) {
   double part = weight / (k->passages - 1) * (k->latest < k->passage ? -1 : 1);
-  if (k->passages < 2) return;
-  put_time(g, (Seed){k->passage, -part, k->arg, 1, -1, 0});
-  put_time(g, (Seed){k->latest, part, k->arg, 1, -1, 0});
+  for (int i = 0; i < 2 && k->passages > 1; i++)
+    put_seed(g, (Seed){i ? k->latest : k->passage, i ? part : -part, k->arg, 1, -1, 0});
 }
 
 /* ---- Nodes in reverse */
@@ -86,8 +79,9 @@ static void seed_track(MeasureGradient *g, const Track *k, double weight) {
       "means have no gradient yet: make the value a state, state S with flow S' = x, and take S/t at the end";
     return;
   }
-  put_seed(g, k->arg, falls ? k->when_least : k->when_most, k->kind == TRACK_DRIFT && falls ? -weight : weight);
-  if (k->kind == TRACK_DRIFT) put_seed(g, k->arg, g->m->t0, falls ? weight : -weight);
+  double part = k->kind == TRACK_DRIFT && falls ? -weight : weight;
+  put_seed(g, (Seed){falls ? k->when_least : k->when_most, part, k->arg, .event = -1});
+  if (k->kind == TRACK_DRIFT) put_seed(g, (Seed){g->m->t0, -part, k->arg, .event = -1});
 }
 
 static void pass_back(MeasureGradient *g, int i) {
@@ -96,10 +90,10 @@ static void pass_back(MeasureGradient *g, int i) {
   double x = g->adjoint[i];
   switch (n->kind) {
     case MEASURE_NUMBER: case MEASURE_END: case MEASURE_FIRINGS: return;
-    case MEASURE_QUANTITY: put_seed(g, i, m->t, x); return;
+    case MEASURE_QUANTITY: put_seed(g, (Seed){m->t, x, i, .event = -1}); return;
     case MEASURE_AT:
       if (m->node[n->b].known != MEASURE_STATIC) g->refused = "the time of a value is itself a measure";
-      put_seed(g, n->a, m->node[n->b].value, x);
+      put_seed(g, (Seed){m->node[n->b].value, x, n->a, .event = -1});
       return;
     case MEASURE_TRACK: seed_track(g, &m->track[n->index], x); return;
     case MEASURE_TWO: g->adjoint[n->a] += x * slope(m, n, 0), g->adjoint[n->b] += x * slope(m, n, 1); return;

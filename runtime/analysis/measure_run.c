@@ -20,6 +20,7 @@
 #include "analysis/measure_nodes.h"
 #include "core/core.h"
 #include "kernels/locate.h"
+#include "numeric/release.h"
 
 /* ---- Memory */
 
@@ -53,13 +54,7 @@ Measures *lag_measures_new(const lag_scene *scene, int n, const char *const *tex
 
 void lag_measures_free(Measures *m) {
   if (!m) return;
-  free(m->root);
-  free(m->unit);
-  free(m->why);
-  free(m->node);
-  free(m->track);
-  free(m->y);
-  free(m);
+  lag_free_all(m->root, m->unit, m->why, m->node, m->track, m->y, m);
 }
 
 int lag_measures_count(const Measures *m) { return m->n; }

@@ -5,7 +5,28 @@
 #include <string.h>
 
 #include "analysis/periodic_orbit.h"
-#include "numeric/matrix_exponential.h"
+
+/* E[size * size] := exp(c G), by scaling and squaring of its series: G. H. Golub, C. F. Van Loan, Matrix Computations,
+ * 4th ed. (2013), 9.3. scratch[2 * size * size]. */
+static void matrix_exponential(int size, const double *G, double c, double *E, double *scratch) {
+  double norm = 0, *term = scratch, *next = scratch + size * size;
+  int halvings = 0;
+  for (int e = 0; e < size * size; e++) norm += fabs(c * G[e]);
+  for (; norm > 0.5; norm /= 2) halvings++;
+  double part = ldexp(c, -halvings);
+  for (int e = 0; e < size * size; e++) E[e] = term[e] = e % (size + 1) == 0;
+  for (int k = 1; k <= 24 + halvings; k++) {
+    const double *left = k <= 24 ? term : E, *right = k <= 24 ? G : E;
+    for (int i = 0; i < size; i++)
+      for (int j = 0; j < size; j++) {
+        double sum = 0;
+        for (int l = 0; l < size; l++) sum += left[i * size + l] * right[l * size + j];
+        next[i * size + j] = k <= 24 ? sum * part / k : sum;
+      }
+    memcpy(k <= 24 ? term : E, next, (size_t)(size * size) * sizeof *E);
+    for (int e = 0; e < size * size && k <= 24; e++) E[e] += term[e];
+  }
+}
 
 /* y[n] := the affine map E of the coordinates, and its linear part of the velocities; linear: of the coordinates,
  * too. */
@@ -29,7 +50,7 @@ void lag_orbit_close_motion(const PeriodicOrbit *o, double *y, int linear, int j
   }
   for (int k = o->ngroup - 1; k >= 0; k--) {
     const double *G = o->affine + k * size * size;
-    lag_matrix_exponential(size, G, o->shift[k], E, scratch);
+    matrix_exponential(size, G, o->shift[k], E, scratch);
     if (d && k < j) act(o, E, 1, d, scratch);
     act(o, E, linear, y, scratch);
     if (!d || k != j) continue;

@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "core/core.h"
-#include "core/rhs.h"
 #include "numeric/clock.h"
 #include "numeric/magnitudes.h"
+#include "numeric/release.h"
 
 int lag_samples_init(Samples *s, int rows, int n) {
   *s = (Samples){.rows = rows, .n = n};
@@ -21,9 +21,7 @@ int lag_samples_init(Samples *s, int rows, int n) {
 }
 
 void lag_samples_free(Samples *s) {
-  free(s->t);
-  free(s->y);
-  free(s->largest);
+  lag_free_all(s->t, s->y, s->largest);
   s->t = s->y = s->largest = NULL;
 }
 

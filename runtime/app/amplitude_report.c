@@ -71,16 +71,12 @@ void lag_app_json_amplitude(Json *j, const lag_model *m, const ModeAmplitude *a)
   double unit = found ? pow(leading(m, a)->factor, 2) : NAN;
   lag_json_begin(j, "amplitude", '{');
   lag_json_string(j, "of", found ? leading(m, a)->name : NULL);
-  lag_json_number(j, "a2", a->a2 * unit);
-  lag_json_number(j, "a4", a->a4 * unit * unit);
-  lag_json_number(j, "a2_error", a->error2 * unit);
-  lag_json_number(j, "a4_error", a->error4 * unit * unit);
+  lag_json_numbers(j, {"a2", a->a2 * unit}, {"a4", a->a4 * unit * unit}, {"a2_error", a->error2 * unit},
+                      {"a4_error", a->error4 * unit * unit});
   if (a->limit == AMPLITUDE_GROWTH) lag_json_number(j, "growth", a->growth * unit);
   if (found && !isnan(a->divisor)) {
     lag_json_begin(j, "smallest_divisor", '{');
-    lag_json_number(j, "mode", a->with + 1);
-    lag_json_number(j, "times", a->times);
-    lag_json_number(j, "divisor", a->divisor);
+    lag_json_numbers(j, {"mode", a->with + 1}, {"times", a->times}, {"divisor", a->divisor});
     lag_json_end(j, '}');
   }
   lag_json_end(j, '}');

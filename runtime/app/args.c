@@ -1,6 +1,5 @@
 /* Command line of a simulator. Enters: argv; leaves: Args. Holds: nothing is guessed; a message quotes the wrong
  * word and says what to write instead. */
-#include <errno.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>

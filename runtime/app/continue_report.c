@@ -130,10 +130,7 @@ static void json_point(Json *j, const Job *job, const Part *part, const BranchPo
   if (at->unfollowed) lag_json_string(j, "unfollowed", at->unfollowed);
   lag_json_begin(j, part->orbit ? "multipliers" : "rates", '[');
   for (int i = 0; i < at->spectrum.n; i++) {
-    lag_json_begin(j, NULL, '[');
-    lag_json_number(j, NULL, at->spectrum.re[i]);
-    lag_json_number(j, NULL, at->spectrum.im[i]);
-    lag_json_end(j, ']');
+    lag_json_row(j, NULL, 2, (const double[]){at->spectrum.re[i], at->spectrum.im[i]});
   }
   lag_json_end(j, ']');
   lag_json_end(j, '}');
@@ -143,15 +140,12 @@ void lag_continue_put_json(FILE *f, const Job *job) {
   Json j = {.f = f};
   lag_json_begin(&j, NULL, '{');
   lag_report_json_head(job->app, &j);
-  lag_json_string(&j, "of", lag_continue_solutions(job));
-  lag_json_string(&j, "over", job->name);
+  lag_json_strings(&j, {"of", lag_continue_solutions(job)}, {"over", job->name});
   lag_json_begin(&j, "branches", '[');
   for (int k = 0; k < job->nparts; k++) {
     const Part *part = &job->part[k];
     lag_json_begin(&j, NULL, '{');
-    lag_json_count(&j, "branch", part->number);
-    lag_json_count(&j, "from", part->from);
-    lag_json_count(&j, "points", part->branch.npoints);
+    lag_json_counts(&j, {"branch", part->number}, {"from", part->from}, {"points", part->branch.npoints});
     lag_json_string(&j, "end", ends[part->branch.end]);
     if (part->why[0]) lag_json_string(&j, "why", part->why);
     lag_json_begin(&j, "special", '[');
@@ -161,8 +155,7 @@ void lag_continue_put_json(FILE *f, const Job *job) {
     lag_json_end(&j, '}');
   }
   lag_json_end(&j, ']');
-  lag_json_end(&j, '}');
-  putc('\n', f);
+  lag_json_close(&j);
 }
 
 /* ---- Rows and picture */

@@ -281,12 +281,10 @@ void lag_cost_put_json(FILE *f, const App *app, const Cost *c) {
   if (c->target > 0) lag_cost_answer(c->method, c->nmethods, c->target, &cheapest);
   Json j = {.f = f};
   lag_json_begin(&j, NULL, '{');
-  lag_json_string(&j, "model", app->scene->model->name);
-  lag_json_string(&j, "scene", app->scene->name);
+  lag_json_strings(&j, {"model", app->scene->model->name}, {"scene", app->scene->name});
   lag_json_number(&j, "until", s->t[s->rows - 1]);
   lag_json_string(&j, "reference", c->reference_name);
-  lag_json_number(&j, "uncertainty", s->uncertainty);
-  lag_json_number(&j, "target", c->target > 0 ? c->target : NAN);
+  lag_json_numbers(&j, {"uncertainty", s->uncertainty}, {"target", c->target > 0 ? c->target : NAN});
   lag_json_truth(&j, "interrupted", c->stopped);
   lag_cost_put_precisions_json(&j, c);
   lag_json_begin(&j, "methods", '[');
@@ -303,11 +301,8 @@ void lag_cost_put_json(FILE *f, const App *app, const Cost *c) {
       const CostRun *r = &m->run[k];
       lag_json_begin(&j, NULL, '{');
       lag_json_number(&j, m->method->flags & LAG_METHOD_ADAPTIVE ? "tolerance" : "step", r->knob);
-      lag_json_number(&j, "error", r->error);
-      lag_json_number(&j, "seconds", r->time);
-      lag_json_number(&j, "spread", r->spread);
-      lag_json_count(&j, "steps", r->steps);
-      lag_json_count(&j, "calls", r->calls);
+      lag_json_numbers(&j, {"error", r->error}, {"seconds", r->time}, {"spread", r->spread});
+      lag_json_counts(&j, {"steps", r->steps}, {"calls", r->calls});
       lag_json_truth(&j, "front", r->best);
       lag_json_truth(&j, "cheapest", r == cheapest);
       lag_json_string(&j, "growth", growth_of(c, r)[0] ? growth_of(c, r) : NULL);
@@ -317,8 +312,7 @@ void lag_cost_put_json(FILE *f, const App *app, const Cost *c) {
     lag_json_end(&j, '}');
   }
   lag_json_end(&j, ']');
-  lag_json_end(&j, '}');
-  putc('\n', f);
+  lag_json_close(&j);
 }
 
 /* ---- Rows */

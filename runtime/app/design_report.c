@@ -8,6 +8,7 @@
 #include "analysis/design.h"
 #include "app/fit_run.h"
 #include "core/core.h"
+#include "numeric/release.h"
 #include "numeric/singular_values.h"
 
 enum { NAME = 200, MOST_CANDIDATES = 1000000 };
@@ -123,8 +124,7 @@ static int run_motion(DesignRun *d) {
   }
   if (rc) lag_app_error(&app->args, "%s", rc == LAG_ENOMEM ? "out of memory" : lag_sim_message(sim));
   lag_sim_free(sim);
-  free(Y);
-  free(name);
+  lag_free_all(Y, name);
   return rc ? EXIT_RUN : 0;
 }
 
@@ -210,8 +210,7 @@ static void put_json(const DesignRun *d) {
   const Fit *f = &d->of.fit;
   Json j = {stdout, 0};
   lag_json_begin(&j, NULL, '{');
-  lag_json_string(&j, "model", d->of.app->scene->model->name);
-  lag_json_string(&j, "scene", d->of.app->scene->name);
+  lag_json_strings(&j, {"model", d->of.app->scene->model->name}, {"scene", d->of.app->scene->name});
   lag_json_count(&j, "candidates", d->ntimes * f->ncolumns);
   lag_json_begin(&j, "measurements", '[');
   for (int k = 0; k < d->best; k++) {
@@ -226,8 +225,7 @@ static void put_json(const DesignRun *d) {
     for (int i = 0; i < d->n; i++) lag_json_number(&j, f->target[i].label, d->error[kind * d->n + i]);
     lag_json_end(&j, '}');
   }
-  lag_json_end(&j, '}');
-  putchar('\n');
+  lag_json_close(&j);
 }
 
 /* ---- The analysis */
@@ -280,12 +278,7 @@ int lag_app_design(App *app) {
   rc = rc ? rc : choose(&d);
   if (rc == 0 && app->args.json) put_json(&d);
   if (rc == 0 && !app->args.json) put_report(&d);
-  free(d.t);
-  free(d.G);
-  free(d.prior);
-  free(d.error);
-  free(d.chosen);
-  free(d.labels);
+  lag_free_all(d.t, d.G, d.prior, d.error, d.chosen, d.labels);
   lag_fit_run_free(&d.of);
   return rc;
 }

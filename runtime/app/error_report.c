@@ -297,8 +297,7 @@ void lag_report_error_json(const App *app, Json *j) {
   lag_json_string(j, "error_growth", known && growth_of(e) ? lag_growth_name(growth_of(e)) : NULL);
   lag_json_number(j, "error_seen_to", app->watched && e->compared ? e->motion.t[e->compared - 1] : NAN);
   double to = lag_formula_is_lossy(e) ? app->scene->t0 : isnan(e->horizon) ? e->known_to : e->horizon;
-  lag_json_number(j, "error_known_to", known ? to : NAN);
-  lag_json_number(j, "error_up_to_there", known ? lag_error_size(e) : NAN);
+  lag_json_numbers(j, {"error_known_to", known ? to : NAN}, {"error_up_to_there", known ? lag_error_size(e) : NAN});
   lag_json_truth(j, "error_at_most", e->at_most);
   lag_json_number(j, "formula_noise", known && e->formula.of >= 0 ? e->formula.part : NAN);
   lag_json_number(j, "horizon", app->watched ? e->horizon : NAN);

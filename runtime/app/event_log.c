@@ -123,8 +123,7 @@ void lag_report_events_json(const App *app, Json *j) {
     if (!lag_event_is_located(app->sim, k)) continue;
     lag_json_begin(j, m->ev[k].name, '{');
     lag_json_count(j, "count", lag_sim_event_times(app->sim, k, &first, &last));
-    lag_json_number(j, "first", first);
-    lag_json_number(j, "last", last);
+    lag_json_numbers(j, {"first", first}, {"last", last});
     if (app->sim->skipped[k] > 0) lag_json_number(j, "left_out", app->sim->skipped[k]);
     lag_json_end(j, '}');
   }

@@ -86,15 +86,12 @@ static void put_json(const Judged *all, int n) {
     lag_json_string(&j, "scene", all[i].scene);
     lag_json_count(&j, "values", all[i].n);
     lag_json_truth(&j, "converged", all[i].converged);
-    lag_json_number(&j, "misfit", all[i].misfit);
-    lag_json_number(&j, "aic", all[i].aic);
-    lag_json_number(&j, "bic", all[i].bic);
-    lag_json_number(&j, "chance", all[i].chance);
+    lag_json_numbers(&j, {"misfit", all[i].misfit}, {"aic", all[i].aic}, {"bic", all[i].bic},
+                         {"chance", all[i].chance});
     lag_json_end(&j, '}');
   }
   lag_json_end(&j, ']');
-  lag_json_end(&j, '}');
-  putchar('\n');
+  lag_json_close(&j);
 }
 
 int lag_fit_compare(App *app) {

@@ -197,16 +197,6 @@ void lag_fit_report(const FitRun *r, FILE *out) {
   for (int k = 0; k < r->nfiles; k++) put_scene(r, k, out);
 }
 
-static void correlations_json(const Fit *f, Json *j) {
-  lag_json_begin(j, "correlations", '[');
-  for (int i = 0; i < f->n; i++) {
-    lag_json_begin(j, NULL, '[');
-    for (int k = 0; k < f->n; k++) lag_json_number(j, NULL, f->correlation[i * f->n + k]);
-    lag_json_end(j, ']');
-  }
-  lag_json_end(j, ']');
-}
-
 static void columns_json(const Fit *f, Json *j) {
   lag_json_begin(j, "columns", '{');
   for (int c = 0; c < f->ncolumns; c++) {
@@ -214,8 +204,7 @@ static void columns_json(const Fit *f, Json *j) {
     lag_json_count(j, "values", f->column[c].n);
     lag_json_number(j, "rms", f->column[c].rms);
     lag_json_count(j, "runs", f->column[c].runs);
-    lag_json_number(j, "runs_expected", f->column[c].runs_expected);
-    lag_json_number(j, "runs_chance", f->column[c].runs_chance);
+    lag_json_numbers(j, {"runs_expected", f->column[c].runs_expected}, {"runs_chance", f->column[c].runs_chance});
     lag_json_end(j, '}');
   }
   lag_json_end(j, '}');
@@ -225,13 +214,11 @@ void lag_fit_report_json(const FitRun *r, FILE *out) {
   const Fit *f = &r->fit;
   Json j = {out, 0};
   lag_json_begin(&j, NULL, '{');
-  lag_json_string(&j, "model", r->app->scene->model->name);
-  lag_json_string(&j, "scene", r->app->scene->name);
-  lag_json_string(&j, "method", lag_sim_method(r->app->sim)->name);
+  lag_json_strings(&j, {"model", r->app->scene->model->name}, {"scene", r->app->scene->name},
+                       {"method", lag_sim_method(r->app->sim)->name});
   lag_json_truth(&j, "converged", f->converged);
-  lag_json_count(&j, "steps", f->steps);
-  lag_json_count(&j, "runs", f->evaluations);
-  lag_json_count(&j, "segments", f->nodes ? f->nodes->n + f->nrecords : f->nrecords);
+  lag_json_counts(&j, {"steps", f->steps}, {"runs", f->evaluations},
+                      {"segments", f->nodes ? f->nodes->n + f->nrecords : f->nrecords});
   if (f->nodes) lag_json_number(&j, "gap", lag_fit_widest_gap(f));
   for (int what = 0; what < 2; what++) {
     lag_json_begin(&j, what ? "errors" : "values", '{');
@@ -245,7 +232,7 @@ void lag_fit_report_json(const FitRun *r, FILE *out) {
       lag_json_number(&j, f->target[i].label, what ? f->target[i].high : f->target[i].low);
     lag_json_end(&j, '}');
   }
-  if (!f->trains) correlations_json(f, &j);
+  if (!f->trains) lag_json_matrix(&j, "correlations", f->n, f->n, f->correlation);
   lag_json_begin(&j, "flat", '[');
   for (int k = 0; k < f->nflat; k++) {
     lag_json_begin(&j, NULL, '{');
@@ -255,12 +242,8 @@ void lag_fit_report_json(const FitRun *r, FILE *out) {
     lag_json_end(&j, '}');
   }
   lag_json_end(&j, ']');
-  lag_json_begin(&j, "singular_values", '[');
-  for (int k = 0; k < f->n && !f->trains; k++) lag_json_number(&j, NULL, f->singular[k]);
-  lag_json_end(&j, ']');
-  lag_json_number(&j, "chi_squared", f->chi_squared);
-  lag_json_number(&j, "freedom", f->freedom);
+  lag_json_row(&j, "singular_values", f->trains ? 0 : f->n, f->singular);
+  lag_json_numbers(&j, {"chi_squared", f->chi_squared}, {"freedom", f->freedom});
   columns_json(f, &j);
-  lag_json_end(&j, '}');
-  putc('\n', out);
+  lag_json_close(&j);
 }

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/release.h"
 
 enum { MOST_STEPS = 200, MOST_FILES = 100, MOST_PARTS = 100000 };
 
@@ -370,15 +371,9 @@ int lag_fit_run(FitRun *r) {
 
 void lag_fit_run_free(FitRun *r) {
   lag_fit_free(&r->fit);
-  free(r->fit.target);
-  free(r->fit.column);
-  free(r->fit.data);
-  free(r->fit.errors);
-  free(r->t);
-  free(r->names);
+  lag_free_all(r->fit.target, r->fit.column, r->fit.data, r->fit.errors, r->t, r->names);
   for (int of = 0; of < r->nfiles && r->data; of++) lag_data_free(&r->data[of]);
-  free(r->data);
-  free(r->first);
+  lag_free_all(r->data, r->first);
   if (r->file) free(r->file[0]);
   free(r->file);
 }

@@ -54,8 +54,7 @@ void lag_report_switches_json(const App *app, Json *j) {
     long long crossings, slides;
     double time = lag_sim_switch_times(app->sim, k, &crossings, &slides);
     lag_json_begin(j, m->switches[k].surface, '{');
-    lag_json_count(j, "crossings", crossings);
-    lag_json_count(j, "slides", slides);
+    lag_json_counts(j, {"crossings", crossings}, {"slides", slides});
     lag_json_number(j, "sliding_s", time);
     lag_json_end(j, '}');
   }

@@ -97,23 +97,10 @@ static void put_text(FILE *f, const App *app, const LinearSystem *s) {
 
 /* ---- JSON and files */
 
-static void json_row(Json *j, const char *name, const double *x, int n) {
-  lag_json_begin(j, name, '[');
-  for (int k = 0; k < n; k++) lag_json_number(j, NULL, x[k]);
-  lag_json_end(j, ']');
-}
-
-static void json_matrix(Json *j, const char *name, const double *x, int rows, int columns) {
-  lag_json_begin(j, name, '[');
-  for (int i = 0; i < rows; i++) json_row(j, NULL, x + i * columns, columns);
-  lag_json_end(j, ']');
-}
-
 /* A name with its declared unit, whose size in SI is `factor`; value: in that unit, where there is one. */
 static void json_variable(Json *j, const char *name, const char *unit, double factor, const double *value) {
   lag_json_begin(j, NULL, '{');
-  lag_json_string(j, "name", name);
-  lag_json_string(j, "unit", unit);
+  lag_json_strings(j, {"name", name}, {"unit", unit});
   lag_json_number(j, "factor", factor);
   if (value) lag_json_number(j, "value", *value);
   lag_json_end(j, '}');
@@ -124,10 +111,8 @@ static void put_json(FILE *f, const App *app, const LinearSystem *s) {
   char name[NAME + 4], unit[64];
   const lag_model *m = app->scene->model;
   lag_json_begin(&j, NULL, '{');
-  lag_json_string(&j, "model", m->name);
-  lag_json_string(&j, "scene", app->scene->name);
-  lag_json_string(&j, "status", "ok");
-  lag_json_string(&j, "about", about(&app->args));
+  lag_json_strings(&j, {"model", m->name}, {"scene", app->scene->name}, {"status", "ok"},
+                       {"about", about(&app->args)});
   lag_json_number(&j, "t", s->sim->run->t);
   lag_json_begin(&j, "states", '[');
   for (int i = 0; i < s->n; i++) {
@@ -145,11 +130,10 @@ static void put_json(FILE *f, const App *app, const LinearSystem *s) {
     json_variable(&j, name, unit, factor, NULL);
   }
   lag_json_end(&j, ']');
-  json_row(&j, "rate", s->rate, s->n);
-  json_matrix(&j, "A", s->A, s->n, s->n), json_matrix(&j, "B", s->B, s->n, s->nu);
-  json_matrix(&j, "C", s->C, s->nout, s->n), json_matrix(&j, "D", s->D, s->nout, s->nu);
-  lag_json_end(&j, '}');
-  putc('\n', f);
+  lag_json_row(&j, "rate", s->n, s->rate);
+  lag_json_matrix(&j, "A", s->n, s->n, s->A), lag_json_matrix(&j, "B", s->n, s->nu, s->B);
+  lag_json_matrix(&j, "C", s->nout, s->n, s->C), lag_json_matrix(&j, "D", s->nout, s->nu, s->D);
+  lag_json_close(&j);
 }
 
 /* The rows of [A B; C D], with a column for each state and input. */

@@ -189,27 +189,21 @@ static void put_json(FILE *f, const App *app, const Lyapunov *l) {
   Json j = {.f = f};
   lag_json_begin(&j, NULL, '{');
   lag_report_json_head(app, &j);
-  lag_json_number(&j, "from", l->begun);
-  lag_json_number(&j, "until", l->t);
-  lag_json_count(&j, "steps", l->steps);
-  lag_json_count(&j, "blocks", l->nblocks);
-  lag_json_count(&j, "phase_space", l->d);
+  lag_json_numbers(&j, {"from", l->begun}, {"until", l->t});
+  lag_json_counts(&j, {"steps", l->steps}, {"blocks", l->nblocks}, {"phase_space", l->d});
   json_list(&j, "exponents", l, lag_lyapunov_exponent);
   json_list(&j, "spread", l, lag_lyapunov_spread);
   json_list(&j, "errors", l, lag_lyapunov_error);
   json_list(&j, "at_half", l, lag_lyapunov_at_half);
   lag_json_count(&j, "minus_infinity", infinite(l));
-  lag_json_number(&j, "sum", all ? lag_lyapunov_exponent(l, l->k) : NAN);
-  lag_json_number(&j, "sum_spread", all ? lag_lyapunov_spread(l, l->k) : NAN);
-  lag_json_number(&j, "divergence", lag_lyapunov_divergence(l));
-  lag_json_number(&j, "sum_error", all ? lag_lyapunov_error(l, l->k) : NAN);
-  lag_json_number(&j, "dimension", dimension);
-  lag_json_number(&j, "dimension_error", error);
-  lag_json_number(&j, "entropy", all && sign > 0 ? entropy : NAN);
-  lag_json_number(&j, "entropy_error", all && sign > 0 ? entropy_error : NAN);
+  lag_json_numbers(&j, {"sum", all ? lag_lyapunov_exponent(l, l->k) : NAN},
+                       {"sum_spread", all ? lag_lyapunov_spread(l, l->k) : NAN},
+                       {"divergence", lag_lyapunov_divergence(l)},
+                       {"sum_error", all ? lag_lyapunov_error(l, l->k) : NAN}, {"dimension", dimension},
+                       {"dimension_error", error}, {"entropy", all && sign > 0 ? entropy : NAN},
+                       {"entropy_error", all && sign > 0 ? entropy_error : NAN});
   lag_json_truth(&j, "chaotic", l->nblocks < 2 || sign == 0 ? -1 : sign > 0);
-  lag_json_end(&j, '}');
-  putc('\n', f);
+  lag_json_close(&j);
 }
 
 /* ---- The command */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "numeric/release.h"
 
 /* The words of NAME=WORDS, or, as lagc writes them, NAME;WORDS;WORDS for the variants of the model; alone they are
  * the name. */
@@ -65,9 +66,7 @@ int lag_app_measures_open(App *app) {
 
 void lag_app_measures_free(App *app) {
   for (int k = 0; app->measure_names && app->measure_names[k]; k++) free(app->measure_names[k]);
-  free(app->measure_names);
-  free(app->measure_texts);
-  free(app->measured);
+  lag_free_all(app->measure_names, app->measure_texts, app->measured);
   lag_measures_free(app->measures);
 }
 

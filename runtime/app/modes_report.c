@@ -348,10 +348,7 @@ static void json_vector(Json *j, const char *name, const lag_model *m, const dou
   for (int i = 0; i < m->nq + m->nz; i++) {
     const lag_var *v = variable(m, i);
     if (im) {
-      lag_json_begin(j, v->name, '[');
-      lag_json_number(j, NULL, re[i] / v->factor);
-      lag_json_number(j, NULL, im[i] / v->factor);
-      lag_json_end(j, ']');
+      lag_json_row(j, v->name, 2, (const double[]){re[i] / v->factor, im[i] / v->factor});
     } else {
       lag_json_number(j, v->name, (re[i] - v->offset) / v->factor);
     }
@@ -361,9 +358,7 @@ static void json_vector(Json *j, const char *name, const lag_model *m, const dou
 
 static void json_head(Json *j, const App *app, const char *status) {
   lag_json_begin(j, NULL, '{');
-  lag_json_string(j, "model", app->scene->model->name);
-  lag_json_string(j, "scene", app->scene->name);
-  lag_json_string(j, "status", status);
+  lag_json_strings(j, {"model", app->scene->model->name}, {"scene", app->scene->name}, {"status", status});
 }
 
 static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Modes *s, const ModeAmplitude *bends) {
@@ -372,9 +367,7 @@ static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Mode
   Json j = {.f = f};
   put_reason(s, app->scene->model->flags, text, sizeof text);
   json_head(&j, app, "ok");
-  lag_json_string(&j, "verdict", verdicts[s->verdict].name);
-  lag_json_string(&j, "reason", text);
-  lag_json_string(&j, "note", caution_of(app, r));
+  lag_json_strings(&j, {"verdict", verdicts[s->verdict].name}, {"reason", text}, {"note", caution_of(app, r)});
   lag_json_count(&j, "steps", r->steps);
   json_vector(&j, "start", m, r->start, NULL);
   json_vector(&j, s->steady ? "steady_motion" : "equilibrium", m, r->found, NULL);
@@ -389,8 +382,7 @@ static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Mode
   for (int i = 0; i < s->n; i++) {
     const Mode *k = &s->mode[i];
     lag_json_begin(&j, NULL, '{');
-    lag_json_number(&j, "re", k->re);
-    lag_json_number(&j, "im", k->im);
+    lag_json_numbers(&j, {"re", k->re}, {"im", k->im});
     lag_json_truth(&j, "free", k->free != 0);
     lag_json_count(&j, "repeats", k->repeats);
     json_vector(&j, "shape", m, k->shape_re, k->shape_im);
@@ -398,8 +390,7 @@ static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Mode
     lag_json_end(&j, '}');
   }
   lag_json_end(&j, ']');
-  lag_json_end(&j, '}');
-  putc('\n', f);
+  lag_json_close(&j);
 }
 
 /* ---- The command */
@@ -408,8 +399,7 @@ static void json_none(const App *app) {
   if (!app->args.json) return;
   Json j = {.f = stdout};
   json_head(&j, app, app->args.steady ? "no steady motion" : "no equilibrium");
-  lag_json_end(&j, '}');
-  putchar('\n');
+  lag_json_close(&j);
 }
 
 /* Message of a search that found none near the start. */

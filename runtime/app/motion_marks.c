@@ -7,6 +7,7 @@
 
 #include "app/app.h"
 #include "core/core.h"
+#include "numeric/release.h"
 
 /* Tracks: contacts, surfaces, events. */
 static int ntracks(const lag_model *m) { return m->ncontacts + m->nmodes + m->nev; }
@@ -26,9 +27,7 @@ int lag_marks_open(App *app) {
 }
 
 void lag_marks_free(App *app) {
-  free(app->show.marks.names);
-  free(app->show.marks.at);
-  free(app->marked);
+  lag_free_all(app->show.marks.names, app->show.marks.at, app->marked);
 }
 
 /* -1: no memory. */

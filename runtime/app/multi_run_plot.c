@@ -11,6 +11,7 @@
 #include "app/app.h"
 #include "core/core.h"
 #include "numeric/line_fit.h"
+#include "numeric/release.h"
 #include "sweep/sweep_grid.h"
 
 /* A run of the picture; curve[k]: its curve that belongs to curve k of the first run, -1: it has none. */
@@ -90,9 +91,7 @@ static int add_run(Overlay *o, const char *scene, const char *method, size_t len
 
 static void free_run(OverlaidRun *r) {
   lag_app_free(&r->app);
-  free(r->method);
-  free(r->sets);
-  free(r->curve);
+  lag_free_all(r->method, r->sets, r->curve);
 }
 
 /* Judges the last run, which returned rc: one that was refused is left out, one that failed stays, with a warning.
@@ -530,8 +529,6 @@ int lag_app_overlay(App *app) {
     failed += o.runs[i].app.status < 0;
     free_run(&o.runs[i]);
   }
-  free(o.runs);
-  free(o.values);
-  free(o.starts);
+  lag_free_all(o.runs, o.values, o.starts);
   return rc ? rc : interrupted ? lag_app_interrupted() : failed == o.n ? EXIT_RUN : EXIT_FINE;
 }

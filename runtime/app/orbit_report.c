@@ -345,13 +345,11 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
   reason(o, v, why, sizeof why);
   lag_json_begin(&j, NULL, '{');
   lag_report_json_head(app, &j);
-  lag_json_number(&j, "period", o->T);
-  lag_json_number(&j, "period_error", o->flow.forced ? NAN : o->period_error);
-  lag_json_number(&j, "residual", o->residual);
+  lag_json_numbers(&j, {"period", o->T}, {"period_error", o->flow.forced ? NAN : o->period_error},
+                       {"residual", o->residual});
   lag_json_count(&j, "newton_steps", o->steps);
   lag_json_string(&j, "multipliers_by", lag_flow_differences(&o->flow) ? "differences" : "tangent");
-  lag_json_count(&j, "segments", o->m);
-  lag_json_count(&j, "free_directions", o->nfree);
+  lag_json_counts(&j, {"segments", o->m}, {"free_directions", o->nfree});
   lag_json_truth(&j, "steady", o->steady);
   lag_json_count(&j, "repeats", o->repeats > 1 ? o->repeats : 1);
   lag_json_begin(&j, "shifts", '{');
@@ -369,17 +367,12 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
   lag_json_count(&j, "trivial_multipliers", o->ntrivial);
   lag_json_begin(&j, "multipliers", '[');
   for (int i = 0; i < o->nmultipliers; i++) {
-    lag_json_begin(&j, NULL, '[');
-    lag_json_number(&j, NULL, o->re[i]);
-    lag_json_number(&j, NULL, o->im[i]);
-    lag_json_end(&j, ']');
+    lag_json_row(&j, NULL, 2, (const double[]){o->re[i], o->im[i]});
   }
   lag_json_end(&j, ']');
   lag_json_number(&j, "pairing", o->pairing);
-  lag_json_string(&j, "verdict", verdict_names[v]);
-  lag_json_string(&j, "reason", why);
-  lag_json_end(&j, '}');
-  putc('\n', f);
+  lag_json_strings(&j, {"verdict", verdict_names[v]}, {"reason", why});
+  lag_json_close(&j);
 }
 
 /* ---- The command */
@@ -388,17 +381,14 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
 static void json_not_found(App *app, const PeriodicOrbit *o) {
   Json j = {.f = stdout};
   lag_json_begin(&j, NULL, '{');
-  lag_json_string(&j, "model", app->scene->model->name);
-  lag_json_string(&j, "scene", app->scene->name);
-  lag_json_string(&j, "status", "no periodic motion");
-  lag_json_number(&j, "period", o->T);
-  lag_json_number(&j, "residual", o->residual);
+  lag_json_strings(&j, {"model", app->scene->model->name}, {"scene", app->scene->name},
+                       {"status", "no periodic motion"});
+  lag_json_numbers(&j, {"period", o->T}, {"residual", o->residual});
   lag_json_count(&j, "newton_steps", o->steps);
   lag_json_begin(&j, "residuals", '[');
   for (int k = 0; k < ORBIT_TRACE && o->trace[k] > 0; k++) lag_json_number(&j, NULL, o->trace[k]);
   lag_json_end(&j, ']');
-  lag_json_end(&j, '}');
-  putchar('\n');
+  lag_json_close(&j);
 }
 
 static int not_found(App *app, const PeriodicOrbit *o) {

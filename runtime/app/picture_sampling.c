@@ -13,6 +13,7 @@
 
 #include "app/app.h"
 #include "core/core.h"
+#include "numeric/release.h"
 
 enum { MOST_PLACES = 64 };          /* samples of a step */
 enum { MOST_VALUES = 1 << 24 };     /* numbers in memory */
@@ -177,10 +178,7 @@ int lag_sampling_open(App *app) {
 }
 
 void lag_sampling_free(App *app) {
-  free(app->sampling.from);
-  free(app->sampling.drawn);
-  free(app->sampling.y);
-  free(app->sampling.seen);
+  lag_free_all(app->sampling.from, app->sampling.drawn, app->sampling.y, app->sampling.seen);
 }
 
 /* Sample k := the row at time t within the present step; NaN where outputs have no value, a gap in the curve. */

@@ -221,8 +221,7 @@ static void put_json(const App *app, const Cost *c, const FixedStep *all, int n,
   const FixedStep *best = choose(all, n, step, c->target);
   Json j = {.f = stdout};
   lag_json_begin(&j, NULL, '{');
-  lag_json_string(&j, "model", app->scene->model->name);
-  lag_json_string(&j, "scene", app->scene->name);
+  lag_json_strings(&j, {"model", app->scene->model->name}, {"scene", app->scene->name});
   lag_json_number(&j, "step", step);
   lag_json_string(&j, "best", best ? best->name : NULL);
   lag_json_begin(&j, "methods", '[');
@@ -230,16 +229,14 @@ static void put_json(const App *app, const Cost *c, const FixedStep *all, int n,
     const FixedStep *x = &all[i];
     lag_json_begin(&j, NULL, '{');
     lag_json_string(&j, "method", x->name);
-    lag_json_number(&j, "error", x->error);
-    lag_json_number(&j, "step_s", isnan(x->error) ? NAN : x->mean);
-    lag_json_number(&j, "worst_s", isnan(x->error) ? NAN : x->worst);
-    lag_json_number(&j, "largest_step", x->largest > 0 && !x->cut ? x->largest : NAN);
+    lag_json_numbers(&j, {"error", x->error}, {"step_s", isnan(x->error) ? NAN : x->mean},
+                         {"worst_s", isnan(x->error) ? NAN : x->worst},
+                         {"largest_step", x->largest > 0 && !x->cut ? x->largest : NAN});
     lag_json_string(&j, "refused", x->why[0] ? x->why : NULL);
     lag_json_end(&j, '}');
   }
   lag_json_end(&j, ']');
-  lag_json_end(&j, '}');
-  putchar('\n');
+  lag_json_close(&j);
 }
 
 int lag_app_realtime(App *app, const Cost *c) {

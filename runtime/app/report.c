@@ -161,16 +161,12 @@ static void charges_json(const App *app, Json *j) {
     lag_sim_charge(app->sim, k, &c);
     lag_json_begin(j, c.name, '{');
     lag_json_string(j, "is", c.flags & LAG_CONSERVED ? "conserved" : c.flags & LAG_BALANCED ? "balanced" : "not known");
-    lag_json_number(j, "initial", c.begin);
-    lag_json_number(j, "final", c.now);
-    lag_json_number(j, "work", c.work);
+    lag_json_numbers(j, {"initial", c.begin}, {"final", c.now}, {"work", c.work});
     if (isfinite(c.dry_friction)) lag_json_number(j, "dry_friction", c.dry_friction);
     if (k == 0) lag_json_number(j, "at_events", c.at_events);
-    lag_json_number(j, "drift", c.drift);
-    lag_json_number(j, "drift_absolute", c.absolute);
+    lag_json_numbers(j, {"drift", c.drift}, {"drift_absolute", c.absolute});
     lag_json_string(j, "unit", c.unit);
-    lag_json_number(j, "slope", c.slope);
-    lag_json_number(j, "slope_error", c.slope_error);
+    lag_json_numbers(j, {"slope", c.slope}, {"slope_error", c.slope_error});
     lag_json_string(j, "trend", trends[c.trend]);
     lag_json_end(j, '}');
   }
@@ -326,12 +322,8 @@ static void impulses_json(const App *app, Json *j) {
   lag_contact_stats c;
   if (!lag_sim_contacts(app->sim, &c)) return;
   lag_json_begin(j, "contacts", '{');
-  lag_json_number(j, "at_once", c.touching);
-  lag_json_number(j, "impacts", c.impacts);
-  lag_json_number(j, "iterations", c.sweeps);
-  lag_json_number(j, "steps", c.steps);
-  lag_json_number(j, "deepest", c.depth);
-  lag_json_number(j, "energy_gained", c.gained);
+  lag_json_numbers(j, {"at_once", c.touching}, {"impacts", c.impacts}, {"iterations", c.sweeps}, {"steps", c.steps},
+                      {"deepest", c.depth}, {"energy_gained", c.gained});
   lag_json_end(j, '}');
 }
 
@@ -397,8 +389,7 @@ static void exact_json(const App *app, Json *j) {
     double largest, now;
     lag_sim_exact(app->sim, k, &largest, &now);
     lag_json_begin(j, v.name, '{');
-    lag_json_number(j, "largest", largest);
-    lag_json_number(j, "final", now);
+    lag_json_numbers(j, {"largest", largest}, {"final", now});
     lag_json_end(j, '}');
   }
   lag_json_end(j, '}');
@@ -456,8 +447,7 @@ static void constraints_json(const App *app, Json *j) {
   const lag_model *m = app->scene->model;
   const lag_constraints *of = m->constraints;
   if (!of) return;
-  lag_json_count(j, "constraints", of->n - m->ncontacts);
-  lag_json_count(j, "rank", lag_sim_rank(app->sim));
+  lag_json_counts(j, {"constraints", of->n - m->ncontacts}, {"rank", lag_sim_rank(app->sim)});
   lag_json_begin(j, "redundant", '[');
   for (int k = 0; k < of->n; k++)
     if (is_redundant(app, k)) lag_json_string(j, NULL, of->of[k].name);
@@ -467,10 +457,7 @@ static void constraints_json(const App *app, Json *j) {
   for (int i = 0; i < 2 * m->nq; i++) {
     double asked = lag_sim_requested_start(app->sim, i), begin = lag_sim_actual_start(app->sim, i);
     if (asked != begin) {
-      lag_json_begin(j, lag_state_column(app->sim, i).name, '[');
-      lag_json_number(j, NULL, asked);
-      lag_json_number(j, NULL, begin);
-      lag_json_end(j, ']');
+      lag_json_row(j, lag_state_column(app->sim, i).name, 2, (const double[]){asked, begin});
     }
   }
   lag_json_end(j, '}');
@@ -481,11 +468,9 @@ static void constraints_json(const App *app, Json *j) {
 }
 
 void lag_report_json_head(const App *app, Json *j) {
-  lag_json_string(j, "model", app->scene->model->name);
-  lag_json_string(j, "scene", app->scene->name);
-  lag_json_string(j, "method", lag_sim_method(app->sim)->name);
-  lag_json_string(j, "chosen", app->why[0] ? app->why : NULL);
-  lag_json_string(j, "status", app->status < 0 ? "failed" : lag_status_name(app->status));
+  lag_json_strings(j, {"model", app->scene->model->name}, {"scene", app->scene->name},
+                      {"method", lag_sim_method(app->sim)->name}, {"chosen", app->why[0] ? app->why : NULL},
+                      {"status", app->status < 0 ? "failed" : lag_status_name(app->status)});
 }
 
 /* The energy, the error of the motion, and digits that were lost. */
@@ -500,8 +485,7 @@ static void energy_json(App *app, const lag_stats *st, Json *j) {
   lag_json_count(j, "rows_without_value", app->empty_rows);
   if (!lost_digits(app, &energy)) return;
   lag_json_begin(j, "digits_lost", '{');
-  lag_json_number(j, "t", energy.energy_jump_t);
-  lag_json_number(j, "energy_step", energy.energy_jump);
+  lag_json_numbers(j, {"t", energy.energy_jump_t}, {"energy_step", energy.energy_jump});
   lag_json_string(j, "coordinate", energy.mass_condition_of);
   lag_json_number(j, "condition", energy.mass_condition);
   lag_json_end(j, '}');
@@ -518,12 +502,9 @@ void lag_report_json(App *app, FILE *f) {
   lag_report_json_head(app, &j);
   lag_json_string(&j, "message", app->status < 0 ? lag_sim_message(app->sim) : NULL);
   lag_json_number(&j, "t_end", st.t);
-  lag_json_count(&j, "steps", st.steps);
-  lag_json_count(&j, "rejected", st.rejected);
-  lag_json_count(&j, "rhs_calls", st.rhs_calls);
+  lag_json_counts(&j, {"steps", st.steps}, {"rejected", st.rejected}, {"rhs_calls", st.rhs_calls});
   lag_json_string(&j, "form", form(app, &why));
-  lag_json_count(&j, "newton_systems", st.systems);
-  lag_json_count(&j, "newton_iterations", st.iterations);
+  lag_json_counts(&j, {"newton_systems", st.systems}, {"newton_iterations", st.iterations});
   lag_json_name(&j, "wall_s");
   fprintf(f, "%.6g", app->wall); /* 6 digits in any precision */
   energy_json(app, &st, &j);
@@ -537,8 +518,7 @@ void lag_report_json(App *app, FILE *f) {
   lag_report_sensitivity_json(app, &j);
   lag_report_gradient_json(app, &j);
   lag_report_volume_json(app, &j);
-  lag_json_string(&j, "math", m->math);
-  lag_json_string(&j, "build", app->program->build);
+  lag_json_strings(&j, {"math", m->math}, {"build", app->program->build});
   lag_json_number(&j, "constraint_residual", st.constraint); /* null without constraints */
   lag_json_number(&j, "constraint_rate_residual", st.constraint_rate);
   constraints_json(app, &j);
@@ -547,6 +527,5 @@ void lag_report_json(App *app, FILE *f) {
   for (int i = 0; i < n; i++) lag_json_number(&j, lag_state_column(app->sim, i).name, lag_sim_state_value(app->sim, i));
   final_outputs(app, &j);
   lag_json_end(&j, '}');
-  lag_json_end(&j, '}');
-  putc('\n', f);
+  lag_json_close(&j);
 }

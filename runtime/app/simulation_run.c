@@ -6,6 +6,7 @@
 #include "app/app.h"
 #include "core/core.h"
 #include "numeric/clock.h"
+#include "numeric/release.h"
 
 /* After each step: tests for signals, updates the progress line (on a terminal, after 1 s, at most 5 times a
  * second). */
@@ -221,12 +222,7 @@ void lag_app_free(App *app) {
   lag_phase_volume_free(&app->volume);
   free(app->show.shapes);
   lag_sensitivity_free(app);
-  free(app->show.words);
-  free(app->portrait);
-  free(app->drawn.x);
-  free(app->drawn.note);
-  free(app->row);
-  free(app->empty_state);
-  free(app->state.data);
+  lag_free_all(app->show.words, app->portrait, app->drawn.x, app->drawn.note, app->row, app->empty_state,
+               app->state.data);
 }
 

@@ -10,6 +10,7 @@
 
 #include "app/app.h"
 #include "io/posix.h"
+#include "numeric/release.h"
 
 /* After a value that is not finite: sends t, q, v, z and p of a state through the pipe $LAG_LAST_STATE (a
  * descriptor) to the waiting lagc process, if there is one, which names the expression that has none; and whether
@@ -151,12 +152,7 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
   }
   if (rc != EXIT_USAGE && lag_app_flush(&app)) rc = EXIT_USAGE;
   lag_app_free(&app);
-  free(app.args.sets);
-  free(app.args.scenes);
-  free(app.args.measures);
-  free(app.args.plot_ys);
-  free(app.args.vs);
-  free(app.args.sigmas);
-  free(app.args.priors);
+  lag_free_all(app.args.sets, app.args.scenes, app.args.measures, app.args.plot_ys, app.args.vs, app.args.sigmas,
+               app.args.priors);
   return rc;
 }

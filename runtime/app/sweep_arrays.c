@@ -4,6 +4,7 @@
 
 #include "app/sweep.h"
 #include "io/posix.h"
+#include "numeric/release.h"
 
 typedef struct Arrays {
   SweepApp *s;
@@ -41,10 +42,7 @@ static int open_arrays(Arrays *g, SweepApp *s, int columns, int over_runs, long 
 }
 
 static void close_arrays(Arrays *g) {
-  free(g->column);
-  free(g->from);
-  free(g->renamed);
-  free(g->memory);
+  lag_free_all(g->column, g->from, g->renamed, g->memory);
 }
 
 static void add_axis(Arrays *g, const char *name, const char *unit, long long n) {

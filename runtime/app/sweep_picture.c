@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/sweep.h"
+#include "numeric/release.h"
 
 enum { MOST_CELLS = 512 * 512, MOST_COLUMNS = 8, MOST_BARS = 500, CLASSES = 6 };
 
@@ -97,8 +98,7 @@ static int draw_curves(const char *path, void *drawing) {
   int rc = columns ? read_table(d) : -1;
   for (int k = 0; k < n && columns; k++) curves.y[k] = k + 1;
   if (rc == 0) rc = lag_svg_write(path, &d->table, d->title, &curves);
-  free(d->table.data);
-  free(columns);
+  lag_free_all(d->table.data, columns);
   return rc;
 }
 
@@ -188,9 +188,7 @@ static int draw_crossings(const char *path, void *drawing) {
                                 .xname = d->s->table.cols[0].name,
                                 .yname = d->s->motions.cols[drawn_column(d->s)].name};
   if (rc == 0) rc = lag_svg_write(path, &d->table, d->title, &curves);
-  free(d->table.cols);
-  free(d->table.data);
-  free(c.value);
+  lag_free_all(d->table.cols, d->table.data, c.value);
   return rc;
 }
 
@@ -231,8 +229,7 @@ static int draw_map(const char *path, void *drawing) {
                         .value = d->value, .xlabel = label[0], .ylabel = label[1],
                         .label = label[2]};
   if (rc == 0) rc = lag_map_write(path, &map, d->title);
-  free(axis);
-  free(d->value);
+  lag_free_all(axis, d->value);
   return rc;
 }
 

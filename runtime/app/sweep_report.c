@@ -5,6 +5,7 @@
 
 #include "app/sweep.h"
 #include "numeric/magnitudes.h"
+#include "numeric/release.h"
 
 /* One measure over the runs that have it. */
 typedef struct Statistics {
@@ -34,8 +35,7 @@ int lag_sweep_each_row(SweepApp *s, int (*take)(void *context, long long run, co
       rc = take(context, c * w->chunk + k, row);
     }
   }
-  free(chunk);
-  free(row);
+  lag_free_all(chunk, row);
   return rc;
 }
 
@@ -201,25 +201,18 @@ static void print_json(SweepApp *s, const Statistics *t, const Failures *bad, lo
   char why[600];
   lag_json_begin(&j, NULL, '{');
   lag_report_json_head(s->app, &j);
-  lag_json_count(&j, "runs", s->plan.runs);
-  lag_json_count(&j, "failed", failed);
-  lag_json_number(&j, "until", s->sweep.until);
-  lag_json_number(&j, "seconds", s->seconds);
-  lag_json_count(&j, "threads", s->sweep.threads);
-  lag_json_count(&j, "lanes", s->variants[0].lanes.lanes);
-  lag_json_count(&j, "processes", s->sweep.nranks);
+  lag_json_counts(&j, {"runs", s->plan.runs}, {"failed", failed});
+  lag_json_numbers(&j, {"until", s->sweep.until}, {"seconds", s->seconds});
+  lag_json_counts(&j, {"threads", s->sweep.threads}, {"lanes", s->variants[0].lanes.lanes},
+                      {"processes", s->sweep.nranks});
   lag_json_begin(&j, "measures", '{');
   for (int k = 0; k < s->sweep.nmeasures; k++) {
     lag_json_begin(&j, s->app->measure_names[k], '{');
     lag_json_string(&j, "unit", s->table.cols[s->plan.n + k].unit);
     lag_json_count(&j, "runs", t[k].n);
-    lag_json_number(&j, "mean", t[k].mean);
-    lag_json_number(&j, "deviation", t[k].deviation);
-    lag_json_number(&j, "least", t[k].least);
-    lag_json_number(&j, "q5", t[k].quantile[0]);
-    lag_json_number(&j, "q50", t[k].quantile[1]);
-    lag_json_number(&j, "q95", t[k].quantile[2]);
-    lag_json_number(&j, "largest", t[k].most);
+    lag_json_numbers(&j, {"mean", t[k].mean}, {"deviation", t[k].deviation}, {"least", t[k].least},
+                         {"q5", t[k].quantile[0]}, {"q50", t[k].quantile[1]}, {"q95", t[k].quantile[2]},
+                         {"largest", t[k].most});
     lag_json_count(&j, "none", bad->none[k].n);
     lag_json_string(&j, "none_why", bad->none[k].n ? reason_of(s, bad->none[k].first, k, why, sizeof why) : NULL);
     lag_json_end(&j, '}');
@@ -229,8 +222,7 @@ static void print_json(SweepApp *s, const Statistics *t, const Failures *bad, lo
   for (int k = 0; k < MOST_KINDS; k++)
     if (bad->failed[k].n) lag_json_count(&j, s->table.cols[s->table.ncols - 1].words[k], bad->failed[k].n);
   lag_json_end(&j, '}');
-  lag_json_end(&j, '}');
-  putchar('\n');
+  lag_json_close(&j);
 }
 
 int lag_sweep_report(SweepApp *s) {
@@ -252,8 +244,7 @@ int lag_sweep_report(SweepApp *s) {
     else if (a->json) print_json(s, t, &bad, failed);
     else if (!a->quiet) print_text(s, a->out && strcmp(a->out, "-") == 0 ? stderr : stdout, t, &bad, failed);
   }
-  free(bad.none);
-  free(t);
+  lag_free_all(bad.none, t);
   return rc;
 }
 
@@ -264,13 +255,11 @@ int lag_sweep_report_part(SweepApp *s) {
     lag_json_begin(&j, NULL, '{');
     lag_report_json_head(s->app, &j);
     lag_json_count(&j, "runs", s->plan.runs);
-    lag_json_string(&j, "part", a->shard);
-    lag_json_string(&j, "journal", s->journal.path);
+    lag_json_strings(&j, {"part", a->shard}, {"journal", s->journal.path});
     lag_json_count(&j, "made", s->made);
     lag_json_number(&j, "seconds", s->seconds);
     lag_json_count(&j, "threads", s->sweep.threads);
-    lag_json_end(&j, '}');
-    putchar('\n');
+    lag_json_close(&j);
   } else if (!a->quiet) {
     printf("%s has the runs of part %s; when all are there, --merge %lld in place of --shard writes the rows\n",
            s->journal.path, a->shard, s->sweep.shards);

@@ -43,7 +43,6 @@ void lag_report_volume_json(App *app, Json *j) {
   double log_det = lag_phase_volume_now(v, app->sim);
   lag_json_begin(j, "volume", '{');
   lag_json_string(j, "space", space_of(app));
-  lag_json_number(j, "log", log_det);
-  lag_json_number(j, "largest", fmax(v->largest, fabs(log_det)));
+  lag_json_numbers(j, {"log", log_det}, {"largest", fmax(v->largest, fabs(log_det))});
   lag_json_end(j, '}');
 }

@@ -10,6 +10,7 @@
 #include "core/core.h"
 #include "core/rhs.h"
 #include "numeric/consistent_state.h"
+#include "numeric/release.h"
 #include "numeric/workspace.h"
 #include "lag_kkt.h"
 
@@ -409,9 +410,7 @@ int lag_start_change(lag_sim *s, const lag_parameter_columns *by, int j, double 
     known = known && lag_state_change(&w.level, change, d);
     for (int i = 0; i < w.nq && known; i++) part[i] += d[i];
   }
-  free(change);
-  free(block);
-  free(w.index);
+  lag_free_all(change, block, w.index);
   return known;
 }
 
@@ -439,7 +438,6 @@ int lag_consistent_start(lag_sim *s) {
       rc = rc ? rc : check_compatibility(s);
     }
   }
-  free(block);
-  free(w.index);
+  lag_free_all(block, w.index);
   return rc == LAG_ENOMEM ? lag_fail(s, rc, "out of memory") : rc;
 }

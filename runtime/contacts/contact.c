@@ -24,6 +24,7 @@
 #include "core/rhs.h"
 #include "kernels/band_matrix.h"
 #include "numeric/complementarity.h"
+#include "numeric/release.h"
 #include "numeric/workspace.h"
 
 static int is_of(const lag_contact *c, int event) { return c->impact == event || c->release == event; }
@@ -102,12 +103,7 @@ static int make_room(ContactSet *w) {
 }
 
 static void free_contacts(ContactSet *w) {
-  free(w->block);
-  free(w->row);
-  free(w->of);
-  free(w->at);
-  free(w->active);
-  free(w->response);
+  lag_free_all(w->block, w->row, w->of, w->at, w->active, w->response);
 }
 
 int lag_contacts_rates(ContactSet *w, const double *y, double *rate) {
@@ -408,8 +404,7 @@ static int resolve_contacts(ContactSet *w, const char *who, int event, int last)
   rc = rc ? rc : strike_and_rest(w, event, &(Impacts){room, room + n, room + 2 * n, ends, ends + n, ends + 2 * n,
                                                      y, y + w->sim->pb.n});
   rc = rc ? rc : close_gaps(w);
-  free(room);
-  free(ends);
+  lag_free_all(room, ends);
   return rc;
 }
 

@@ -1,5 +1,4 @@
 /* The impact of one contact with friction in space, along the growing normal impulse. Contract: planar_impact.h. */
-#include <float.h>
 #include <math.h>
 
 #include "contacts/planar_impact.h"

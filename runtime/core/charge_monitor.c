@@ -22,7 +22,6 @@
 
 #include "core/core.h"
 #include "numeric/line_fit.h"
-#include "core/rhs.h"
 #include "numeric/quadrature.h"
 
 int lag_sim_ncharges(const lag_sim *s) {

@@ -176,11 +176,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
   *changed |= of != NULL || lag_guide_turns(m, k);
   /* slips back at once: no event */
   int turns = contact && contact->is_tangent && k == contact->impact && !lag_contact_is_closed(s, contact);
-  if (turns) {
-    r->events--;
-    s->count[k]--;
-    s->last[k] = last;
-  }
+  if (turns) r->events--, s->count[k]--, s->last[k] = last;
   if (s->on_event && !turns && !kick) s->on_event(s->on_event_context, k, r->t, s->now, s->yb);
   rc = replace_state(s, k, &before);
   *changed |= before;

@@ -102,17 +102,19 @@ static unsigned needs_of(const lag_method *method, const lag_model *m, unsigned 
   return needs;
 }
 
+/* Methods whose steps take forces to be smooth. */
+enum { SMOOTH = LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS };
+
 int lag_method_check(lag_sim *s, const lag_method *method) {
   const lag_model *m = s->scene->model;
   const unsigned own = method->flags, has = lag_facts(&s->pb), needs = needs_of(method, m, has);
-  const unsigned smooth = LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS;
   const int held = m->constraints != NULL, linear = (needs & LAG_METHOD_NO_STATES) && (has & LAG_FIRST_ORDER);
   const int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !held;
   const Refusal first[] = {
       {m->families && !(own & LAG_METHOD_IMPULSES),
        "method %s does not follow the family of contacts %s; --method \"moreau(step=1e-3)\" does",
        m->families ? m->families->of[0].name : NULL},
-      {m->contact_laws && (!(own & LAG_METHOD_CONSTRAINTS) || own & smooth),
+      {m->contact_laws && (!(own & LAG_METHOD_CONSTRAINTS) || own & SMOOTH),
        "method %s cannot follow contacts with friction (%s); rk45, dop853, radau, rk4 and moreau can",
        m->contact_laws ? m->ev[m->contacts[0].impact].name : NULL},
       {held && !(own & LAG_METHOD_CONSTRAINTS),

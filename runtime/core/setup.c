@@ -9,6 +9,7 @@
 
 #include "core/core.h"
 #include "core/rhs.h"
+#include "numeric/release.h"
 #include "numeric/workspace.h"
 
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_DOUBLES = LINE / sizeof(double) };
@@ -73,8 +74,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   char *room = calloc(total * sizeof(double) + LINE - 1, 1);
 
   if (!room || !contact_room) {
-    free(room);
-    free(contact_room);
+    lag_free_all(room, contact_room);
     return LAG_ENOMEM;
   }
   double *b = (double *)(void *)(room + (LINE - (uintptr_t)room % LINE) % LINE), *x = b + RUN_DOUBLES;
@@ -260,16 +260,8 @@ lag_sim *lag_sim_renew(lag_sim *s, const lag_sim *from) {
 void lag_sim_free(lag_sim *s) {
   if (!s) return;
   end_run(s);
-  free(s->fresh);
-  free(s->options);
-  free(s->fixed);
-  free(s->start);
-  free(s->signal);
-  free(s->meeting_of);
-  free(s->pb.contact_room);
-  free(s->scratch);
-  free(s->room);
-  free(s);
+  lag_free_all(s->fresh, s->options, s->fixed, s->start, s->signal, s->meeting_of, s->pb.contact_room, s->scratch,
+               s->room, s);
 }
 
 static int begun(lag_sim *s) {

@@ -9,7 +9,6 @@
 #ifdef __SSE2__ /* elsewhere lag_sincos2 is a macro of lag_math.h */
 #define lag_sincos2 inline_sincos2
 #endif
-#include "lag_model.h"
 #include "lag_math.h"
 #undef lag_sincos
 #undef lag_sin

@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STATE \
-  const void *self, double t, const double *q, const double *v, const double *z, const double *p, const double *u
 #define IN const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u}
 
 /* The programs behind self. Users copy models and scenes; their parts stay where they are. */
@@ -23,7 +21,7 @@ static const EvaluatedAction *action_of(const void *self) { return self; }
 
 /* FUNCTION(name, the structure, its member): a function with one array out. */
 #define FUNCTION(name, of, member)                                    \
-  static int name(STATE, double *x, double *w) {                      \
+  static int name(LAG_STATE, double *x, double *w) {                  \
     IN;                                                               \
     return lag_run_program(of(self)->member, in, (double *[]){x}, w); \
   }
@@ -47,13 +45,13 @@ FUNCTION(momenta, action_of, momenta)
 
 /* The same with two arrays out, and with g between. */
 #define FUNCTION_2(name, of, member)                                     \
-  static int name(STATE, double *x, double *y, double *w) {              \
+  static int name(LAG_STATE, double *x, double *y, double *w) {          \
     IN;                                                                  \
     return lag_run_program(of(self)->member, in, (double *[]){x, y}, w); \
   }
 /* With one more array, g or accelerations. */
 #define FUNCTION_WITH(name, of, member, array)                                       \
-  static int name(STATE, const double *more, double *x, double *y, double *w) {      \
+  static int name(LAG_STATE, const double *more, double *x, double *y, double *w) {    \
     const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [array] = more}; \
     return lag_run_program(of(self)->member, in, (double *[]){x, y}, w);             \
   }
@@ -65,13 +63,13 @@ FUNCTION_WITH(position, constraints_of, position, PROGRAM_G)
 FUNCTION_WITH(velocity, constraints_of, velocity, PROGRAM_G)
 
 /* Methods that call these two refuse models with states, and give no z. */
-static int variation(STATE, double *Lq, double *Lv, double *Q, double *w) {
+static int variation(LAG_STATE, double *Lq, double *Lv, double *Q, double *w) {
   IN;
   if (!z && model_of(self)->model.nz) return LAG_ERETRY;
   return lag_run_program(model_of(self)->variation, in, (double *[]){Lq, Lv, Q}, w);
 }
 
-static int second(STATE, double *h, double *w) {
+static int second(LAG_STATE, double *h, double *w) {
   IN;
   if (!z && model_of(self)->model.nz) return LAG_ERETRY;
   return lag_run_program(model_of(self)->second, in, (double *[]){h}, w);
@@ -80,24 +78,24 @@ static int second(STATE, double *h, double *w) {
 FUNCTION_WITH(linearise, linear_of, eval, PROGRAM_A)
 FUNCTION_WITH(partials, partials_of, eval, PROGRAM_A)
 
-static int inverse(STATE, const double *a, double *force, double *w) {
+static int inverse(LAG_STATE, const double *a, double *force, double *w) {
   const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a};
   return lag_run_program(model_of(self)->inverse, in, (double *[]){force}, w);
 }
 
-static int adjoint(STATE, const double *a, const double *g, double *by_y, double *by_up, double *d, double *w) {
+static int adjoint(LAG_STATE, const double *a, const double *g, double *by_y, double *by_up, double *d, double *w) {
   const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a, [PROGRAM_G] = g};
   const EvaluatedAdjoint *of = self;
   return lag_run_program(of->eval, in, (double *[]){by_y, by_up, d}, w);
 }
 
-static int adjoint_rates(STATE, double *a, double *zd, double *l, double *w) {
+static int adjoint_rates(LAG_STATE, double *a, double *zd, double *l, double *w) {
   const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u};
   const EvaluatedAdjoint *of = self;
   return lag_run_program(of->rates, in, (double *[]){a, zd, l}, w);
 }
 
-static int adjoint_project(STATE, const double *x, double *by_y, double *by_up, double *d, double *w) {
+static int adjoint_project(LAG_STATE, const double *x, double *by_y, double *by_up, double *d, double *w) {
   const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_G] = x};
   const EvaluatedAdjoint *of = self;
   return lag_run_program(of->project, in, (double *[]){by_y, by_up, d}, w);
@@ -142,7 +140,7 @@ static void start(const void *self, const double *p, double *q, double *v, doubl
   if (s->start) run_alone(s->start, in, (double *[]){q, v, z});
 }
 
-static int exact(STATE, double *out) {
+static int exact(LAG_STATE, double *out) {
   IN;
   return run_alone(scene_of(self)->exact, in, (double *[]){out});
 }
@@ -172,7 +170,7 @@ static int act(const void *self, int k, double t, const double *q, const double 
   return e->action ? lag_run_program(e->action, in, (double *[]){q1, v1, z1}, w) : LAG_OK;
 }
 
-static int observe(STATE, double *out, double *w) {
+static int observe(LAG_STATE, double *out, double *w) {
   const EvaluatedScene *s = scene_of(self);
   int n = s->nrow, ny = 2 * s->of->model.nq + s->of->model.nz;
   if (s->nactions) { /* w: inputs and action variables, a state, the frame */

@@ -26,8 +26,7 @@ size_t lag_taylor_room(const EvaluatedTaylor *t) {
   return LAG_TAYLOR_ORDER * (a + b) + a + (size_t)t->constants + frame;
 }
 
-static int first(const void *self, double t, const double *q, const double *v, const double *z, const double *p,
-                 const double *u, const double *follows, double *x, double *w) {
+static int first(LAG_STATE, const double *follows, double *x, double *w) {
   const EvaluatedTaylor *s = self;
   Work k = work_of(s, w);
   const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_FREE] = follows};

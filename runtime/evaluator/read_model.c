@@ -21,16 +21,25 @@ typedef struct {
   int ny;
 } Reader;
 
-static int *ints_of(Bytes *b, int n, int end) {
-  int *x = lag_bytes_room(b, (size_t)n, sizeof *x);
-  for (int i = 0; x && i < n; i++) x[i] = (int)lag_bytes_below(b, (uint32_t)end);
-  return x;
-}
-
 static const char *name_of(Bytes *b) {
   const char *text = lag_bytes_text(b);
   lag_bytes_need(b, text != NULL, "a name is missing");
   return text;
+}
+
+/* A list whose elements take at least `least` bytes: zeroed room for *n elements of `size`. */
+static void *list(Bytes *b, int *n, size_t least, size_t size) {
+  *n = (int)lag_bytes_count(b, least);
+  return lag_bytes_room(b, (size_t)*n, size);
+}
+
+/* An index below `end`. */
+static int below(Bytes *b, int end) { return (int)lag_bytes_below(b, (uint32_t)end); }
+
+static int *ints_of(Bytes *b, int n, int end) {
+  int *x = lag_bytes_room(b, (size_t)n, sizeof *x);
+  for (int i = 0; x && i < n; i++) x[i] = below(b, end);
+  return x;
 }
 
 static int flag(Bytes *b) { return lag_bytes_int(b, 0, 1); }
@@ -49,6 +58,13 @@ static const Program *wanted(const Reader *r, int is_wanted, int64_t x, int64_t 
   return p;
 }
 
+/* A reader for functions that read `n` elements of one more array. */
+static Reader with_array(const Reader *r, int array, int64_t n) {
+  Reader with = *r;
+  with.state.in[array] = n;
+  return with;
+}
+
 /* A reader for functions that are called with parameters alone, or with time, too. */
 static Reader without_state(const Reader *r, int timed) {
   Reader alone = *r;
@@ -58,8 +74,7 @@ static Reader without_state(const Reader *r, int timed) {
 }
 
 static const lag_var *variables(Bytes *b, int *n) {
-  *n = (int)lag_bytes_count(b, 32);
-  lag_var *v = lag_bytes_room(b, (size_t)*n, sizeof *v);
+  lag_var *v = list(b, n, 32, sizeof *v);
   for (int i = 0; v && i < *n; i++) {
     v[i].name = name_of(b), v[i].unit = name_of(b);
     v[i].factor = lag_bytes_number(b), v[i].offset = lag_bytes_number(b);
@@ -70,10 +85,9 @@ static const lag_var *variables(Bytes *b, int *n) {
 
 /* Entries of a sparse matrix, row by row, columns ascending. lower: of the lower triangle. */
 static const lag_entry *entries(Bytes *b, int *n, int rows, int columns, int lower) {
-  *n = (int)lag_bytes_count(b, 8);
-  lag_entry *e = lag_bytes_room(b, (size_t)*n, sizeof *e);
+  lag_entry *e = list(b, n, 8, sizeof *e);
   for (int i = 0; e && i < *n; i++) {
-    e[i].row = (int)lag_bytes_below(b, (uint32_t)rows), e[i].col = (int)lag_bytes_below(b, (uint32_t)columns);
+    e[i].row = below(b, rows), e[i].col = below(b, columns);
     int follows = !i || e[i].row > e[i - 1].row || (e[i].row == e[i - 1].row && e[i].col > e[i - 1].col);
     lag_bytes_need(b, follows && (!lower || e[i].col <= e[i].row), "entries of a matrix are out of order");
   }
@@ -98,8 +112,8 @@ static void read_events(Reader *r) {
   r->m->model.ev = ev;
   r->m->event = of;
   r->m->events = wanted(r, n > 0, n, 0);
-  Reader alone = *r; /* the law of impact has inputs of its own, without modes */
-  alone.state.in[PROGRAM_U] = r->m->model.nu, alone.state.in[PROGRAM_G] = r->m->nconstraints;
+  Reader alone = with_array(r, PROGRAM_G, r->m->nconstraints);
+  alone.state.in[PROGRAM_U] = r->m->model.nu; /* the law of impact has inputs of its own, without modes */
   r->m->impact = program(&alone, r->m->model.nq, 0, 0);
   for (int i = 0; of && i < n; i++) {
     of[i].action = program(r, r->m->model.nq, r->m->model.nq, r->m->model.nz);
@@ -110,14 +124,12 @@ static void read_events(Reader *r) {
 static void read_tables(Reader *r) {
   Bytes *b = r->b;
   lag_model *m = &r->m->model;
-  m->ntables = (int)lag_bytes_count(b, 8);
-  lag_table *t = lag_bytes_room(b, (size_t)m->ntables, sizeof *t);
+  lag_table *t = list(b, &m->ntables, 8, sizeof *t);
   for (int i = 0; t && i < m->ntables; i++) {
-    uint32_t input = lag_bytes_below(b, (uint32_t)m->nu),
-             k = lag_bytes_below(b, r->m->inputs ? r->m->inputs->ncurves : 0);
+    int input = below(b, m->nu), k = below(b, r->m->inputs ? (int)r->m->inputs->ncurves : 0);
     if (b->why) return;
     const Curve *c = &r->m->inputs->curves[k];
-    t[i] = (lag_table){(int)input, c->n, c->columns, c->row};
+    t[i] = (lag_table){input, c->n, c->columns, c->row};
   }
   m->tables = t;
 }
@@ -127,8 +139,8 @@ static const lag_adjoint *read_adjoint(Reader *r) {
   const lag_model *m = &r->m->model;
   EvaluatedAdjoint *x = flag(b) ? lag_bytes_room(b, 1, sizeof *x) : NULL;
   if (!x) return NULL;
-  Reader with = *r;
-  with.state.in[PROGRAM_A] = m->nq, with.state.in[PROGRAM_G] = m->nq + m->nz + r->m->nconstraints;
+  Reader with = with_array(r, PROGRAM_G, m->nq + m->nz + r->m->nconstraints);
+  with.state.in[PROGRAM_A] = m->nq;
   x->adjoint.at = entries(b, &x->adjoint.n, m->nu, m->np, 0);
   x->eval = program(&with, r->ny, m->nu + m->np, x->adjoint.n);
   if (r->m->nconstraints) {
@@ -143,14 +155,14 @@ static const lag_adjoint *read_adjoint(Reader *r) {
 
 static void read_constraints(Reader *r) {
   Bytes *b = r->b;
-  int n = (int)lag_bytes_below(b, INT32_MAX), kept = (int)lag_bytes_below(b, (uint32_t)n + 1), nq = r->m->model.nq;
+  int n = below(b, INT32_MAX), kept = below(b, n + 1), nq = r->m->model.nq;
   lag_bytes_need(b, n == r->m->nconstraints, "constraints are missing");
   if (!n || b->why) return;
   EvaluatedConstraints *c = lag_bytes_room(b, 1, sizeof *c);
   lag_constraint *of = lag_bytes_room(b, (size_t)n, sizeof *of);
   for (int i = 0; of && i < n; i++) {
     of[i].name = name_of(b), of[i].unit = name_of(b);
-    of[i].holonomic = flag(b), of[i].line = (int)lag_bytes_below(b, INT32_MAX);
+    of[i].holonomic = flag(b), of[i].line = below(b, INT32_MAX);
   }
   if (!c) return;
   lag_constraints *k = &c->constraints;
@@ -159,11 +171,9 @@ static void read_constraints(Reader *r) {
   k->mass = entries(b, &k->nmass, nq, nq, 1);
   c->residuals = wanted(r, 1, kept, n);
   c->matrices = wanted(r, 1, k->njacobian, k->nmass);
-  Reader with = *r;
-  with.state.in[PROGRAM_G] = kept;
-  c->position = wanted(&with, kept > 0, nq, nq);
-  with.state.in[PROGRAM_G] = n;
-  c->velocity = wanted(&with, 1, nq, nq);
+  Reader places = with_array(r, PROGRAM_G, kept), rates = with_array(r, PROGRAM_G, n);
+  c->position = wanted(&places, kept > 0, nq, nq);
+  c->velocity = wanted(&rates, 1, nq, nq);
   k->adjoint = read_adjoint(r);
   lag_set_constraint_functions(c);
   r->m->model.constraints = k;
@@ -176,7 +186,7 @@ static void read_guides(Reader *r, const lag_contact *c, int n) {
   int of = 0, have = m->nguides = (int)lag_bytes_count(b, 12);
   lag_guide *g = lag_bytes_room(b, (size_t)have, sizeof *g);
   for (int i = 0; g && i < have; i++) {
-    g[i].tangent = (int)lag_bytes_below(b, (uint32_t)n), g[i].parts = lag_bytes_int(b, 1, 3);
+    g[i].tangent = below(b, n), g[i].parts = lag_bytes_int(b, 1, 3);
     g[i].turn = lag_bytes_int(b, -1, m->nev - 1);
     lag_bytes_need(b, c && n > 0 && c[g[i].tangent].is_tangent, "a guide has no tangent");
   }
@@ -194,10 +204,9 @@ static void read_contacts(Reader *r) {
   int n = m->ncontacts = (int)lag_bytes_count(b, 32);
   lag_contact *c = lag_bytes_room(b, (size_t)n, sizeof *c);
   for (int i = 0; c && i < n; i++) {
-    c[i].input = (int)lag_bytes_below(b, (uint32_t)m->nu);
-    c[i].constraint = (int)lag_bytes_below(b, (uint32_t)r->m->nconstraints);
-    c[i].impact = (int)lag_bytes_below(b, (uint32_t)m->nev), c[i].release = (int)lag_bytes_below(b, (uint32_t)m->nev);
-    c[i].is_tangent = flag(b), c[i].force = (int)lag_bytes_below(b, (uint32_t)m->nu);
+    c[i].input = below(b, m->nu), c[i].constraint = below(b, r->m->nconstraints);
+    c[i].impact = below(b, m->nev), c[i].release = below(b, m->nev);
+    c[i].is_tangent = flag(b), c[i].force = below(b, m->nu);
     c[i].conditional = flag(b), c[i].law = lag_bytes_int(b, 0, 2);
   }
   m->contacts = c;
@@ -238,7 +247,7 @@ static void read_family(Reader *r, lag_contact_family *f, EvaluatedFamily *of) {
   f->nparams = (int)lag_bytes_count(b, 12), f->params = read_reads(b, f, f->nparams, np);
   for (int c = 0, members = f->i0 + f->rows - f->j0; c < f->nplaces; c++) {
     lag_read *x = &f->place[c];
-    x->first = (int)lag_bytes_below(b, (uint32_t)nq), x->by_row = lag_bytes_int(b, 0, 0);
+    x->first = below(b, nq), x->by_row = lag_bytes_int(b, 0, 0);
     x->by_turn = lag_bytes_int(b, 0, nq);
     int64_t last = x->first + (int64_t)(members - 1) * x->by_turn;
     lag_bytes_need(b, f->i0 >= f->j0 && members > 0 && last < nq && x->by_turn == f->place[0].by_turn,
@@ -260,10 +269,8 @@ static void read_families(Reader *r) {
   EvaluatedFamily *of = lag_bytes_room(b, (size_t)n, sizeof *of);
   lag_bytes_need(b, !r->m->model.ncontacts && !r->m->nconstraints, "families of contacts stand beside others");
   int64_t most = 0;
-  for (int i = 0; f && of && !b->why && i < n; i++) {
-    read_family(r, &f[i], &of[i]);
-    most += 24 * ((int64_t)f[i].rows + 1) * (f[i].ncoords + f[i].nparams + 1);
-  }
+  for (int i = 0; f && of && !b->why && i < n; i++)
+    read_family(r, &f[i], &of[i]), most += 24 * ((int64_t)f[i].rows + 1) * (f[i].ncoords + f[i].nparams + 1);
   if (!all || !f || !of || !lag_bytes_need(b, most < INT32_MAX, "contacts are too many")) return;
   all->families.n = n, all->of = of;
   all->families.mass = entries(b, &all->families.nmass, nq, nq, 1);
@@ -304,11 +311,11 @@ static void read_charges(Reader *r) {
 static void read_switches(Reader *r) {
   Bytes *b = r->b;
   lag_model *m = &r->m->model;
-  int n = m->nswitch = (int)lag_bytes_count(b, 28), modes = (int)lag_bytes_below(b, (uint32_t)n + 1);
+  int n = m->nswitch = (int)lag_bytes_count(b, 28), modes = below(b, n + 1);
   lag_switch *s = lag_bytes_room(b, (size_t)n, sizeof *s);
   lag_bytes_need(b, modes == m->nmodes, "switches are missing");
   for (int i = 0; s && i < n; i++) {
-    s[i].surface = name_of(b), s[i].text = name_of(b), s[i].line = (int)lag_bytes_below(b, INT32_MAX);
+    s[i].surface = name_of(b), s[i].text = name_of(b), s[i].line = below(b, INT32_MAX);
     s[i].jumps = flag(b), s[i].is_floor = flag(b), s[i].is_timed = flag(b), s[i].nonnegative = flag(b);
   }
   m->switches = s;
@@ -336,15 +343,13 @@ static void read_linear(Reader *r) {
   if (!l) return;
   l->linear.dr = entries(b, &l->linear.ndr, nq + r->m->model.nz, ny, 0);
   l->linear.mass = entries(b, &l->linear.nmass, nq, nq, 1);
-  l->linear.ops = (int)lag_bytes_below(b, INT32_MAX);
-  Reader with = *r;
-  with.state.in[PROGRAM_A] = nq;
+  l->linear.ops = below(b, INT32_MAX);
+  Reader with = with_array(r, PROGRAM_A, nq);
   l->eval = wanted(&with, 1, l->linear.ndr, l->linear.nmass);
-  l->linear.njump = (int)lag_bytes_count(b, 12);
-  lag_jump *j = lag_bytes_room(b, (size_t)l->linear.njump, sizeof *j);
+  lag_jump *j = list(b, &l->linear.njump, 12, sizeof *j);
   for (int i = 0; j && i < l->linear.njump; i++) {
-    j[i].event = (int)lag_bytes_below(b, (uint32_t)r->m->model.nev);
-    j[i].row = lag_bytes_int(b, INT32_MIN + 1, ny - 1), j[i].col = (int)lag_bytes_below(b, (uint32_t)ny + 1);
+    j[i].event = below(b, r->m->model.nev);
+    j[i].row = lag_bytes_int(b, INT32_MIN + 1, ny - 1), j[i].col = below(b, ny + 1);
   }
   l->linear.jump = j;
   l->jumps = program(r, l->linear.njump, 0, 0);
@@ -360,16 +365,14 @@ static void read_variation(Reader *r) {
   Bytes *b = r->b;
   lag_model *m = &r->m->model;
   r->m->variation = program(r, m->nq, m->nq, m->nq);
-  m->nsecond = (int)lag_bytes_count(b, 12);
-  lag_second *s = lag_bytes_room(b, (size_t)m->nsecond, sizeof *s);
+  lag_second *s = list(b, &m->nsecond, 12, sizeof *s);
   for (int i = 0; s && i < m->nsecond; i++) {
     s[i].part = lag_bytes_int(b, LAG_QQ, LAG_FV);
-    s[i].row = (int)lag_bytes_below(b, (uint32_t)m->nq), s[i].col = (int)lag_bytes_below(b, (uint32_t)m->nq);
+    s[i].row = below(b, m->nq), s[i].col = below(b, m->nq);
   }
   m->second_at = s;
   r->m->second = wanted(r, r->m->variation != NULL, m->nsecond, 0);
-  Reader with = *r;
-  with.state.in[PROGRAM_A] = m->nq;
+  Reader with = with_array(r, PROGRAM_A, m->nq);
   r->m->inverse = program(&with, m->nq, 0, 0);
 }
 
@@ -385,14 +388,13 @@ static void read_taylor(Reader *r) {
   t->sums = lag_bytes_int(b, 0, MOST), t->squares = lag_bytes_int(b, 0, MOST);
   t->first_square = lag_bytes_int(b, 0, MOST), t->row = lag_bytes_int(b, 0, MOST);
   t->constants = lag_bytes_int(b, 0, MOST), t->uses_time = flag(b), t->near = flag(b);
-  t->taylor.cost_first = (int)lag_bytes_below(b, INT32_MAX), t->taylor.cost_next = (int)lag_bytes_below(b, INT32_MAX);
-  t->taylor.sums = (int)lag_bytes_below(b, INT32_MAX);
+  t->taylor.cost_first = below(b, INT32_MAX), t->taylor.cost_next = below(b, INT32_MAX),
+  t->taylor.sums = below(b, INT32_MAX);
   int fits = t->sums <= t->first_square && t->first_square + t->squares <= t->row &&
              t->taylor.width <= t->taylor.columns &&
              (int64_t)3 * t->nq + 2 * (int64_t)t->nz + t->uses_time <= t->taylor.columns;
   lag_bytes_need(b, fits, "columns of a series are missing");
-  Reader with = *r;
-  with.state.in[PROGRAM_FREE] = r->m->model.nu;
+  Reader with = with_array(r, PROGRAM_FREE, r->m->model.nu);
   t->first = wanted(&with, 1, t->taylor.columns, t->constants);
   Lengths of = {{0}, {t->taylor.columns, t->taylor.columns, t->row, t->first_square}};
   of.in[PROGRAM_COEF] = t->taylor.columns, of.in[PROGRAM_SUMS] = t->row, of.in[PROGRAM_STEP] = t->constants;
@@ -415,7 +417,7 @@ static void read_head(Reader *r) {
   m->name = name_of(b), m->doc = name_of(b), m->effects = name_of(b), m->digest = name_of(b),
   m->fixed = lag_bytes_text(b);
   m->math = flag(b) ? "sin and cos: lag_math.h" : "sin and cos: the C library's";
-  m->flags = lag_bytes_word(b), m->ops = (int)lag_bytes_below(b, INT32_MAX);
+  m->flags = lag_bytes_word(b), m->ops = below(b, INT32_MAX);
   m->q = variables(b, &m->nq), m->z = variables(b, &m->nz), m->p = variables(b, &m->np), m->u = variables(b, &m->nu);
   m->nderived = lag_bytes_int(b, 0, 1 << 24), m->nmodes = lag_bytes_int(b, 0, 1 << 24);
   r->m->nconstraints = lag_bytes_int(b, 0, 1 << 24);
@@ -453,51 +455,40 @@ static Reader read_model(Bytes *b) {
 }
 
 static void read_lists(Bytes *b, const Reader *r, lag_scene *s) {
-  s->noptions = (int)lag_bytes_count(b, 16);
-  lag_option *o = lag_bytes_room(b, (size_t)s->noptions, sizeof *o);
+  lag_option *o = list(b, &s->noptions, 16, sizeof *o);
   for (int i = 0; o && i < s->noptions; i++)
     o[i].name = name_of(b), o[i].value = lag_bytes_number(b), o[i].text = lag_bytes_text(b);
   s->options = o;
-  s->nmonitors = (int)lag_bytes_count(b, 20);
-  lag_monitor *m = lag_bytes_room(b, (size_t)s->nmonitors, sizeof *m);
+  lag_monitor *m = list(b, &s->nmonitors, 20, sizeof *m);
   int charges = r->m->model.charges ? r->m->model.charges->n : 1;
   for (int i = 0; m && i < s->nmonitors; i++) {
     m[i].name = name_of(b), m[i].output = lag_bytes_int(b, -charges, s->nout - 1);
     m[i].limit = lag_bytes_number(b), m[i].absolute = flag(b);
   }
   s->monitors = m;
-  s->nmeasures = (int)lag_bytes_count(b, 8);
-  lag_measure *k = lag_bytes_room(b, (size_t)s->nmeasures, sizeof *k);
+  lag_measure *k = list(b, &s->nmeasures, 8, sizeof *k);
   for (int i = 0; k && i < s->nmeasures; i++) k[i].name = name_of(b), k[i].text = name_of(b);
   s->measures = k;
 }
 
-static void read_indices(Bytes *b, int nout, int *at, int n) {
-  for (int i = 0; i < n; i++) at[i] = lag_bytes_int(b, -1, nout - 1);
-}
-
 static void read_shapes(Bytes *b, lag_scene *s) {
   s->ndrawn = lag_bytes_int(b, 0, s->nout);
-  s->nshapes = (int)lag_bytes_count(b, 68);
-  lag_shape *x = lag_bytes_room(b, (size_t)s->nshapes, sizeof *x);
+  lag_shape *x = list(b, &s->nshapes, 68, sizeof *x);
   for (int i = 0; x && i < s->nshapes; i++) {
     x[i].kind = name_of(b), x[i].role = name_of(b), x[i].text = lag_bytes_text(b);
     x[i].count = lag_bytes_int(b, 0, 1000);
-    read_indices(b, s->nout, x[i].a, 3);
-    read_indices(b, s->nout, x[i].b, 3);
-    read_indices(b, s->nout, x[i].size, 3);
-    read_indices(b, s->nout, x[i].turn, 4);
+    int *const of[4] = {x[i].a, x[i].b, x[i].size, x[i].turn}; /* columns of outputs, or -1 */
+    for (int k = 0; k < 13; k++) of[k < 12 ? k / 3 : 3][k < 12 ? k % 3 : 3] = lag_bytes_int(b, -1, s->nout - 1);
   }
   s->shapes = x;
 }
 
 static void read_actions(Bytes *b, const Reader *r, EvaluatedScene *s) {
-  s->nactions = (int)lag_bytes_count(b, 16);
-  EvaluatedAction *a = lag_bytes_room(b, (size_t)s->nactions, sizeof *a);
+  EvaluatedAction *a = list(b, &s->nactions, 16, sizeof *a);
   for (int i = 0; a && i < s->nactions; i++) {
     lag_action_curve *c = &a[i].curve;
     c->nq = r->m->model.nq, c->nz = r->m->model.nz;
-    c->q = (int)lag_bytes_below(b, (uint32_t)r->ny), c->p = (int)lag_bytes_below(b, (uint32_t)r->ny);
+    c->q = below(b, r->ny), c->p = below(b, r->ny);
     c->periodic = flag(b);
     a[i].of = wanted(r, 1, 4, 0);
   }
@@ -519,8 +510,7 @@ static void read_outputs(Bytes *b, const Reader *r, EvaluatedScene *s) {
   s->exact = wanted(r, c->nexact > 0, c->nexact, 0);
   read_actions(b, r, s);
   s->nrow = r->m->model.nu + r->m->model.nmodes + c->nexact;
-  Reader with = *r;
-  with.state.in[PROGRAM_U] = (int64_t)s->nrow + s->nactions;
+  Reader with = with_array(r, PROGRAM_U, (int64_t)s->nrow + s->nactions);
   s->observe = wanted(&with, 1, c->nout, 0);
 }
 

@@ -8,12 +8,12 @@
 #include <float.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
+#include <gsl/gsl_qrng.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "gsl/quasi_random.h"
 #include "lag.h"
 
 typedef struct Gsl {
@@ -25,6 +25,17 @@ typedef struct Gsl {
   int fatal;       /* the model's own failure inside GSL, 0 none */
   int have_f;      /* F0 = f(t0, Y0) and F1 = f(t1, Y1) are known */
 } Gsl;
+
+/* Quasi-random sequences, for samples of sweeps: `points` of lag_extras (lag.h). */
+static int points(const char *sequence, int dimensions, long long n, double *u) {
+  const gsl_qrng_type *type = strcmp(sequence, "sobol") == 0 ? gsl_qrng_sobol : gsl_qrng_halton;
+  if (dimensions > (int)type->max_dimension) return (int)type->max_dimension;
+  gsl_qrng *q = gsl_qrng_alloc(type, (unsigned)dimensions);
+  if (!q) return (int)type->max_dimension;
+  for (long long i = 0; i < n; i++) gsl_qrng_get(q, u + i * dimensions);
+  gsl_qrng_free(q);
+  return 0;
+}
 
 enum { Y0, F0, Y1, F1, J0, J1, NARRAYS };
 enum { HEAD = (sizeof(Gsl) + sizeof(double) - 1) / sizeof(double) };
@@ -188,5 +199,5 @@ enum { NMETHODS = sizeof lag_gsl_methods / sizeof *lag_gsl_methods };
 const int lag_gsl_nmethods = NMETHODS;
 
 const lag_extras lag_gsl = {
-    .methods = lag_gsl_methods, .nmethods = NMETHODS, .algebra = &lag_gsl_algebra, .points = lag_gsl_points,
+    .methods = lag_gsl_methods, .nmethods = NMETHODS, .algebra = &lag_gsl_algebra, .points = points,
     .fits = &lag_gsl_least_squares};

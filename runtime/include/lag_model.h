@@ -52,6 +52,11 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 #define LAG_TAYLOR_ORDER 40
 #endif
 
+/* The first arguments of functions of a state. */
+#define LAG_STATE \
+  const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p, \
+    const LAG_REAL *u
+
 enum {
   LAG_OK = 0,
   LAG_ERETRY = 1,     /* outside the domain here: a smaller step may help */
@@ -87,8 +92,7 @@ enum {
 /* A named quantity. unit is as declared ("deg"), or as inferred from the equations, "" when none; x units are
  * x*factor + offset in SI. */
 typedef struct lag_var {
-  const char *name;
-  const char *unit;
+  const char *name, *unit;
   double factor;
   int periodic; /* 1: an angle, of period 2 pi */
   int sign;     /* of a parameter: 1 "> 0", 2 ">= 0", -1 "< 0", -2 "<= 0", 0 any */
@@ -127,8 +131,7 @@ typedef struct lag_jump {
 typedef struct lag_partials {
   int n;
   const lag_entry *at; /* [n] */
-  int (*eval)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-              const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *d, LAG_REAL *M, LAG_REAL *w);
+  int (*eval)(LAG_STATE, const LAG_REAL *a, LAG_REAL *d, LAG_REAL *M, LAG_REAL *w);
 } lag_partials;
 
 /* Reverse mode: for weights g[nq + nz] of the accelerations and of the rates of states, and accelerations a[nq], the
@@ -138,17 +141,13 @@ typedef struct lag_partials {
 typedef struct lag_adjoint {
   int n;
   const lag_entry *at; /* [n] */
-  int (*eval)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-              const LAG_REAL *u, const LAG_REAL *a, const LAG_REAL *g, LAG_REAL *by_y, LAG_REAL *by_up, LAG_REAL *d,
+  int (*eval)(LAG_STATE, const LAG_REAL *a, const LAG_REAL *g, LAG_REAL *by_y, LAG_REAL *by_up, LAG_REAL *d,
               LAG_REAL *w);
 
   /* With constraints only. rates: as accel, and the multipliers l. project: the transpose of the projection of small
    * changes onto the constraints, in the metric M: by_y[2 nq + nz] for x[2 nq + nz], by_up and d as above. */
-  int (*rates)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-               const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *l, LAG_REAL *w);
-  int (*project)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                 const LAG_REAL *p, const LAG_REAL *u, const LAG_REAL *x, LAG_REAL *by_y, LAG_REAL *by_up,
-                 LAG_REAL *d, LAG_REAL *w);
+  int (*rates)(LAG_STATE, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *l, LAG_REAL *w);
+  int (*project)(LAG_STATE, const LAG_REAL *x, LAG_REAL *by_y, LAG_REAL *by_up, LAG_REAL *d, LAG_REAL *w);
 } lag_adjoint;
 
 /* The exact linearisation of a model, emitted where a method or command needs it (lagc --with linear).
@@ -165,16 +164,14 @@ typedef struct lag_linear {
   int ops;               /* operations of one call */
 
   /* dr[ndr] and M[nmass] at a state, for the accelerations a[nq] there (or for others: a = 0 gives df/dy). */
-  int (*eval)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-              const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w);
+  int (*eval)(LAG_STATE, const LAG_REAL *a, LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w);
 
   /* Derivatives for the saltation matrices of events: d[njump], as listed in jump. Derivatives of g that are not
    * listed are zero, and so are those of a value that is set; each value that is set has the entry of its own
    * component. Events that depend on inputs are not listed. */
   int njump;
   const lag_jump *jump;
-  int (*jumps)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-               const LAG_REAL *u, LAG_REAL *d, LAG_REAL *w);
+  int (*jumps)(LAG_STATE, LAG_REAL *d, LAG_REAL *w);
 
   /* For sensitivities; NULL: not emitted (lagc --with sensitivities), or there are none. */
   const lag_partials *by_params, *by_inputs;
@@ -206,19 +203,15 @@ typedef struct lag_constraints {
   const lag_entry *mass;     /* [nmass] entries of M's lower triangle, col <= row */
 
   /* c[nholonomic] and r[n]. */
-  int (*residuals)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                   const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *c, LAG_REAL *r, LAG_REAL *w);
+  int (*residuals)(LAG_STATE, LAG_REAL *c, LAG_REAL *r, LAG_REAL *w);
 
   /* A[njacobian] and M[nmass]. */
-  int (*matrices)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                  const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *A, LAG_REAL *M, LAG_REAL *w);
+  int (*matrices)(LAG_STATE, LAG_REAL *A, LAG_REAL *M, LAG_REAL *w);
 
   /* d[nq] and force[nq] = A^T mu. position: for g[nholonomic] and the holonomic constraints alone; velocity: for
    * g[n] and all constraints. A and M are taken at the state given. */
-  int (*position)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                  const LAG_REAL *p, const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
-  int (*velocity)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                  const LAG_REAL *p, const LAG_REAL *u, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
+  int (*position)(LAG_STATE, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
+  int (*velocity)(LAG_STATE, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *w);
 
   const lag_adjoint *adjoint; /* NULL: not emitted, as in lag_linear, which models with constraints do not have */
 } lag_constraints;
@@ -244,13 +237,11 @@ typedef struct lag_charges {
 
   /* out[2 (n - 1)]: for each charge but the energy, its value and the sum of its |terms|, the scale of its drift.
    * NULL where n is 1. */
-  int (*values)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*values)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
 
   /* out[n]: dQ/dt of each charge, 0 where it is not known; with dry_friction out[n + 1], the last the power of dry
    * friction. NULL: all are conserved. */
-  int (*powers)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*powers)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
   int dry_friction;
 } lag_charges;
 
@@ -307,10 +298,8 @@ typedef struct lag_contact_family {
   int ncoords, nparams;
   const lag_read *coords, *params; /* [ncoords], [nparams] */
   int tangents;
-  int (*values)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
-  int (*reach)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-               const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*values)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
+  int (*reach)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
   int nplaces;
   lag_read place[3];
   const void *programs; /* of an evaluated model; else NULL */
@@ -322,8 +311,7 @@ typedef struct lag_contact_families {
   const lag_contact_family *of; /* [n] */
   int nmass;
   const lag_entry *mass;        /* [nmass] */
-  int (*inertia)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                 const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *M, LAG_REAL *w);
+  int (*inertia)(LAG_STATE, LAG_REAL *M, LAG_REAL *w);
 } lag_contact_families;
 
 /* A guide: its tangent, with friction by the force of constraints that always hold. */
@@ -352,8 +340,7 @@ typedef struct lag_taylor {
   int cost_first, cost_next, sums;
 
   /* follows[nu]: 1 where the input follows its formula, 0 where it is constant, as in u. Returns as accel does. */
-  int (*first)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-               const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *x, LAG_REAL *w);
+  int (*first)(LAG_STATE, const LAG_REAL *follows, LAG_REAL *x, LAG_REAL *w);
   void (*rest)(const void *self, int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *w);
 
   /* y[width] := the sum of orders 1 to n at t + s T, of which only the first 2 nq + nz elements are meant; dy := its
@@ -396,16 +383,13 @@ typedef struct lag_model {
   int (*inputs)(const void *self, LAG_REAL t, const LAG_REAL *p, LAG_REAL *u);
 
   /* Accelerations a[nq] from M(q) a = f(t, q, v), and rates zd[nz]. */
-  int (*accel)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-               const LAG_REAL *u, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w);
+  int (*accel)(LAG_STATE, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w);
 
   /* e[0] = energy p.v - L, e[1] = |p.v| + |L|, the scale against which its drift is judged. */
-  int (*energy)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *e, LAG_REAL *w);
+  int (*energy)(LAG_STATE, LAG_REAL *e, LAG_REAL *w);
 
   /* g[nev]: the event functions. */
-  int (*events)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *g, LAG_REAL *w);
+  int (*events)(LAG_STATE, LAG_REAL *g, LAG_REAL *w);
 
   /* Applies the actions of event k: q1, v1, z1 hold the state after it (on entry: a copy of the
    * state before it). *stop is set to 1 when the event ends the run. */
@@ -415,12 +399,10 @@ typedef struct lag_model {
   /* out[nsizes]: the sizes, of parameters alone, that a run checks when it begins. NULL where nsizes is 0. */
   int nsizes;
   const lag_size *sizes; /* [nsizes + nmoving] */
-  int (*size_values)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                     const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*size_values)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
   /* out[nmoving]: the sizes of states, inputs and time, that a run checks at each step. NULL where nmoving is 0. */
   int nmoving;
-  int (*moving_sizes)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                      const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*moving_sizes)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
 
   int ntables;
   const lag_table *tables; /* [ntables] */
@@ -435,19 +417,16 @@ typedef struct lag_model {
    * NAME). */
 
   /* Lq[nq] = dL/dq, the momenta Lv[nq] = dL/dv, and Q[nq], the generalised forces outside L. */
-  int (*variation)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                   const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q, LAG_REAL *w);
+  int (*variation)(LAG_STATE, LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q, LAG_REAL *w);
 
   /* h[nsecond]: second derivatives of L and derivatives of Q, the entries listed in second_at; the others are zero. */
-  int (*second)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *h, LAG_REAL *w);
+  int (*second)(LAG_STATE, LAG_REAL *h, LAG_REAL *w);
   const lag_second *second_at;
   int nsecond;
 
   /* Inverse dynamics: the generalised forces out[nq] = M a - f that the accelerations a[nq] need besides those of the
    * model; multipliers count as 0. NULL: not emitted (lagc build --with derivatives). */
-  int (*inverse)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                 const LAG_REAL *p, const LAG_REAL *u, const LAG_REAL *a, LAG_REAL *out, LAG_REAL *w);
+  int (*inverse)(LAG_STATE, const LAG_REAL *a, LAG_REAL *out, LAG_REAL *w);
 
   /* NULL also where a value of the model is not analytic (if, abs, sign, min, max). */
   const lag_taylor *taylor;
@@ -457,22 +436,18 @@ typedef struct lag_model {
   int nswitch;
   const lag_switch *switches; /* [nswitch] */
   /* out[nswitch]: the switching functions. */
-  int (*switch_values)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                       const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*switch_values)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
   int nmodes;
   /* out[nmodes]: rates dg/dt of the first nmodes, along the motion. NULL where nmodes is 0. */
-  int (*switch_rates)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                      const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*switch_rates)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
   /* out[nmodes]: the largest mode of a sliding motion, for static friction above that of motion; less than 1 counts
    * as 1. NULL: 1. */
-  int (*switch_grips)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                      const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*switch_grips)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
 
   /* out[3 ncontacts]: of a tangent its coefficient of friction and its tangential restitution, of a contact with
    * friction that of static friction and 0, of others 0; and the multiplier of its constraint. NULL: no contact has
    * friction. */
-  int (*contact_laws)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                      const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*contact_laws)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
 
   int nguides;
   const lag_guide *guides; /* [nguides]; behind out[3 ncontacts] of contact_laws, for each, its static friction and 3
@@ -489,10 +464,8 @@ typedef struct lag_model {
  * dH/dp, d2H/dp2, dH/dq at such a state; momenta: out[nq]; NULL: momenta are states. */
 typedef struct lag_action_curve {
   int nq, nz, q, p, periodic;
-  int (*curve)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
-               const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
-  int (*momenta)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                 const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*curve)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
+  int (*momenta)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
 } lag_action_curve;
 
 /* J of the curve through a state; NaN: it has none there. y[2 nq + nz] is work space. Of liblag; emitted `observe`
@@ -574,8 +547,7 @@ typedef struct lag_scene {
   const lag_var *outputs;
   const unsigned char *forces; /* [nout] 1: the output contains multipliers or accelerations; NULL: none does */
   double every;       /* 0: the runtime's choice */
-  int (*observe)(const void *self, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
-                 const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*observe)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
   int nmonitors;
   const lag_monitor *monitors;
 

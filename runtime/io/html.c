@@ -177,11 +177,8 @@ static void put_data(FILE *f, const Table *t, const Animation *a, const PageColu
   Json j = {.f = f};
 
   lag_json_begin(&j, NULL, '{');
-  lag_json_number(&j, "t0", t0);
-  lag_json_number(&j, "tick", tick);
-  lag_json_number(&j, "t1", t1);
-  lag_json_number(&j, "horizon", t->certain ? t->horizon : NAN);
-  lag_json_number(&j, "speed", choose_speed(t, fabs(t1 - t0)));
+  lag_json_numbers(&j, {"t0", t0}, {"tick", tick}, {"t1", t1}, {"horizon", t->certain ? t->horizon : NAN},
+                       {"speed", choose_speed(t, fabs(t1 - t0))});
   lag_json_count(&j, "frames", (long long)n);
   lag_json_truth(&j, "trace", a->trace);
   lag_json_string(&j, "unit", a->unit);

@@ -186,6 +186,31 @@ void lag_json_string(Json *j, const char *name, const char *s);
 void lag_json_number(Json *j, const char *name, double x);
 void lag_json_count(Json *j, const char *name, long long n);
 void lag_json_truth(Json *j, const char *name, int yes);
+/* x[n] as an array; x[rows][columns] as one of arrays. */
+void lag_json_row(Json *j, const char *name, int n, const double *x);
+void lag_json_matrix(Json *j, const char *name, int rows, int columns, const double *x);
+/* Ends the outermost object, and its line. */
+void lag_json_close(Json *j);
+
+/* Several members: lag_json_numbers(j, {"t", t}, {"x", x}). */
+#define JSON_LIST(Each, ...) (const Each[]){__VA_ARGS__, {NULL, 0}}
+#define lag_json_numbers(j, ...) lag_json_number_list(j, JSON_LIST(JsonNumber, __VA_ARGS__))
+#define lag_json_counts(j, ...) lag_json_count_list(j, JSON_LIST(JsonCount, __VA_ARGS__))
+#define lag_json_strings(j, ...) lag_json_string_list(j, JSON_LIST(JsonString, __VA_ARGS__))
+typedef struct JsonNumber {
+  const char *name;
+  double x;
+} JsonNumber;
+typedef struct JsonCount {
+  const char *name;
+  long long n;
+} JsonCount;
+typedef struct JsonString {
+  const char *name, *s;
+} JsonString;
+void lag_json_number_list(Json *j, const JsonNumber *of);
+void lag_json_count_list(Json *j, const JsonCount *of);
+void lag_json_string_list(Json *j, const JsonString *of);
 
 /* A saved state: its head and the n doubles of lag_sim_save. lag_state_parse and lag_state_read allocate data; the
  * caller frees it. */

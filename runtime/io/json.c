@@ -63,3 +63,32 @@ void lag_json_truth(Json *j, const char *name, int yes) {
   lag_json_name(j, name);
   fputs(yes < 0 ? "null" : yes ? "true" : "false", j->f);
 }
+
+void lag_json_row(Json *j, const char *name, int n, const double *x) {
+  lag_json_begin(j, name, '[');
+  for (int i = 0; i < n; i++) lag_json_number(j, NULL, x[i]);
+  lag_json_end(j, ']');
+}
+
+void lag_json_matrix(Json *j, const char *name, int rows, int columns, const double *x) {
+  lag_json_begin(j, name, '[');
+  for (int i = 0; i < rows; i++) lag_json_row(j, NULL, columns, x + i * columns);
+  lag_json_end(j, ']');
+}
+
+void lag_json_close(Json *j) {
+  lag_json_end(j, '}');
+  putc('\n', j->f);
+}
+
+void lag_json_number_list(Json *j, const JsonNumber *of) {
+  for (; of->name; of++) lag_json_number(j, of->name, of->x);
+}
+
+void lag_json_count_list(Json *j, const JsonCount *of) {
+  for (; of->name; of++) lag_json_count(j, of->name, of->n);
+}
+
+void lag_json_string_list(Json *j, const JsonString *of) {
+  for (; of->name; of++) lag_json_string(j, of->name, of->s);
+}

@@ -19,7 +19,7 @@
 #ifndef LAG_JOINT_FRICTION_H
 #define LAG_JOINT_FRICTION_H
 
-#include "kernels/impulses.h"
+#include "kernels/coulomb.h"
 
 /* ---- surfaces ---- */
 

@@ -11,7 +11,7 @@
 #define LAG_SLIPPING_FORCES_H
 
 #include "kernels/band_matrix.h"
-#include "kernels/impulses.h"
+#include "kernels/coulomb.h"
 
 /* ---- slipping ---- */
 

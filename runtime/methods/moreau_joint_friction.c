@@ -3,7 +3,6 @@
 
 #include <float.h>
 #include <stdio.h>
-#include <string.h>
 
 /* ---- memory */
 

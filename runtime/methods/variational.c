@@ -5,7 +5,6 @@
  * Gauss points a step both methods are the same; variational also takes constraints, and gauss models with states
  * only (nq = 0), such as Lagrangians linear in all velocities, which have no p: it collocates their flow
  * (collocation.c, which says why variational refuses them). */
-#include "lag.h"
 #include "methods/collocation.h"
 #include "methods/implicit_symplectic.h"
 #include "methods/steps.h"

@@ -6,7 +6,6 @@
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
-#include <stdint.h>
 
 #include "numeric/quadrature.h"
 

@@ -9,6 +9,7 @@
 #include "analysis/measure.h"
 #include "io/posix.h"
 #include "numeric/clock.h"
+#include "numeric/release.h"
 #include "sweep/run_chunks_impl.h"
 
 /* State of one thread. */
@@ -152,9 +153,7 @@ static void close_worker(Worker *w) {
   lag_lane_worker_free(w->lanes);
   lag_sim_free(w->run.sim);
   close_measures(w->pool->s, w->measures);
-  free(w->row);
-  free(w->value);
-  free(w->batch);
+  lag_free_all(w->row, w->value, w->batch);
 }
 
 int lag_sweep_run(Sweep *s) {
@@ -177,9 +176,7 @@ int lag_sweep_run(Sweep *s) {
     if (!s->rank && lag_journal_flush(s->journal) && rc == LAG_OK) rc = LAG_EIO;
   }
   for (int i = 0; w && i < n && w[i].pool; i++) close_worker(&w[i]);
-  free(pool.taken);
-  free(w);
-  free(all);
+  lag_free_all(pool.taken, w, all);
   return rc;
 }
 

@@ -6,6 +6,7 @@
 
 #include "lanes/lane_runs.h"
 #include "numeric/clock.h"
+#include "numeric/release.h"
 #include "sweep/run_chunks_impl.h"
 
 /* A chunk whose runs are under way. */
@@ -172,11 +173,7 @@ void lag_lane_worker_free(LaneWorker *w) {
   for (int k = 0; k < LAG_MOST_LANES; k++) lag_sim_free(w->lane[k].run.sim);
   for (int k = 0; w->measures && k < w->s->nvariants * LAG_MOST_LANES; k++) lag_measures_free(w->measures[k]);
   for (int v = 0; w->batch && v < w->s->nvariants; v++) w->s->variant[v].lanes.kernel->free_batch(w->batch[v]);
-  free(w->batch);
-  free(w->measures);
-  free(w->begun);
-  free(w->value);
-  free(w);
+  lag_free_all(w->batch, w->measures, w->begun, w->value, w);
 }
 
 int lag_lane_worker_run(LaneWorker *w, ChunkSource source) {

@@ -288,8 +288,7 @@ static int use_sides(Prover *p, const Claim *c, Expr u) {
 
 /* u without its number, where it is one term: x*y of -2*x*y. */
 static Expr without_number(ExprGraph *g, Expr u) {
-  Num k;
-  return expr_pairs(g, u, EX_SUM) == 1 ? expr_pair(g, u, EX_SUM, 0, &k) : u;
+  return expr_pairs(g, u, EX_SUM) == 1 ? expr_pair(g, u, EX_SUM, 0, NULL) : u;
 }
 
 /* Cases of the first switch for which a symbol can be replaced; -1: there is none. */

@@ -56,11 +56,8 @@ static int holds(const CounterexampleSearch *s, Expr condition) {
 /* Sum of the magnitudes of a side's terms. */
 static Real size_of(const CounterexampleSearch *s, Expr side) {
   Real size = 0, bound;
-  for (uint32_t i = 0; i < expr_pairs(s->g, side, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(s->g, side, EX_SUM, i, &c);
-    size += fabsl((Real)num_value(c) * bound_value(s->tape, term, &bound));
-  }
+  for (ExprPair term = {0}; expr_next_pair(s->g, side, EX_SUM, &term);)
+    size += fabsl((Real)num_value(term.num) * bound_value(s->tape, term.of, &bound));
   return size;
 }
 

@@ -121,11 +121,10 @@ typedef VEC(Expr) Exprs;
 
 /* The product without its factor at `at`, a sum, times each term of the sum. */
 static void distribute(CauseSearch *s, Expr product, uint32_t at, Exprs *out) {
-  Num one, c;
-  Expr sum = expr_pair(s->g, product, EX_PROD, at, &one), rest = expr_div(s->g, product, sum);
-  for (uint32_t i = 0; i < expr_pairs(s->g, sum, EX_SUM); i++) {
-    Expr term = expr_pair(s->g, sum, EX_SUM, i, &c), whole = expr_mul(s->g, term, rest);
-    vec_push(s->arena, out, expr_scale(s->g, c, whole));
+  Expr sum = expr_pair(s->g, product, EX_PROD, at, NULL), rest = expr_div(s->g, product, sum);
+  for (ExprPair term = {0}; expr_next_pair(s->g, sum, EX_SUM, &term);) {
+    Expr whole = expr_mul(s->g, term.of, rest);
+    vec_push(s->arena, out, expr_scale(s->g, term.num, whole));
   }
 }
 
@@ -135,10 +134,8 @@ static void add_terms(CauseSearch *s, Expr e, Exprs *out) {
   Expr x = expr_expand_defs(s->g, simplify(s->g, e));
   Num c;
   uint32_t first = out->n;
-  for (uint32_t i = 0; i < expr_pairs(s->g, x, EX_SUM); i++) {
-    Expr term = expr_pair(s->g, x, EX_SUM, i, &c);
-    vec_push(s->arena, out, expr_scale(s->g, c, term));
-  }
+  for (ExprPair term = {0}; expr_next_pair(s->g, x, EX_SUM, &term);)
+    vec_push(s->arena, out, expr_scale(s->g, term.num, term.of));
   for (uint32_t k = first; k < out->n && out->n < MOST; k++) {
     Expr term = expr_pair(s->g, out->at[k], EX_SUM, 0, &c);
     for (uint32_t i = 0; i < expr_pairs(s->g, term, EX_PROD); i++) {

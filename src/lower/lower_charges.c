@@ -4,21 +4,13 @@
 #include "symmetry/charges.h"
 
 Prog *lower_charges(const Eqns *e) {
-  uint32_t n = e->ncharges - 1;
   Lower l = lower_new(e);
-  Arena *a = l.p->arena;
-  Expr *roots = ARENA_ARRAY(a, Expr, 2 * n + 1);
-  for (uint32_t i = 0; i < n; i++) {
-    roots[2 * i] = e->charges[i + 1].value;
-    roots[2 * i + 1] = e->charges[i + 1].scale;
+  for (uint32_t i = 1; i < e->ncharges; i++) {
+    const Charge *c = &e->charges[i];
+    lower_output(&l, c->value, c->name);
+    lower_output(&l, c->scale, arena_printf(l.p->arena, "the scale of %s", c->name));
   }
-  lower_with_accelerations(&l, roots, 2 * n);
-  for (uint32_t i = 0; i < n; i++) {
-    Name name = e->charges[i + 1].name;
-    prog_store(l.p, 0, 2 * i, lower_slot(&l, roots[2 * i]), name);
-    prog_store(l.p, 0, 2 * i + 1, lower_slot(&l, roots[2 * i + 1]), arena_printf(a, "the scale of %s", name));
-  }
-  return lower_finish_seldom(&l);
+  return lower_outputs_seldom(&l);
 }
 
 /* dQ/dt of charge i; 0 where it is not known. */
@@ -29,18 +21,14 @@ static Expr power_of(const Eqns *e, uint32_t i) {
 
 Prog *lower_charge_rates(const Eqns *e) {
   Lower l = lower_new(e);
-  Arena *a = l.p->arena;
-  Expr *roots = ARENA_ARRAY(a, Expr, e->ncharges + 2);
   int some = 0;
   for (uint32_t i = 0; i < e->ncharges; i++) {
-    roots[i] = power_of(e, i);
-    some |= !expr_is_zero(e->g, roots[i]);
+    Expr power = power_of(e, i);
+    some |= !expr_is_zero(e->g, power);
+    lower_output(&l, power, arena_printf(l.p->arena, "d(%s)/dt", e->charges[i].name));
   }
   if (!some) return NULL;
-  Expr dry = roots[e->ncharges] = switch_power(e);
-  lower_with_accelerations(&l, roots, e->ncharges + 1);
-  for (uint32_t i = 0; i < e->ncharges; i++)
-    prog_store(l.p, 0, i, lower_slot(&l, roots[i]), arena_printf(a, "d(%s)/dt", e->charges[i].name));
-  if (!expr_is_zero(e->g, dry)) prog_store(l.p, 0, e->ncharges, lower_slot(&l, dry), "power of dry friction");
-  return lower_finish_seldom(&l);
+  Expr dry = switch_power(e);
+  if (!expr_is_zero(e->g, dry)) lower_output(&l, dry, "power of dry friction");
+  return lower_outputs_seldom(&l);
 }

@@ -1,4 +1,5 @@
-/* Programs of models with constraints: residuals, matrices A and M, projections, impacts, multipliers. */
+/* Programs of models with constraints: residuals, matrices A and M, projections, impacts, multipliers, laws of
+ * contacts. */
 #include "lower/lower_impl.h"
 #include "mech/constrain.h"
 
@@ -118,3 +119,30 @@ Prog *lower_multipliers(const Eqns *e) {
   for (uint32_t k = 0; k < e->constraints.n; k++) prog_store(l.p, 0, k, l.multipliers[k], e->constraints.of[k]->name);
   return lower_finish(&l, &(PassPlan){0}, NULL);
 }
+
+/* each: numbers of a contact, 2 of one that is no guide; or 3, behind which those of guides stand. */
+static Prog *lower_contacts(const Eqns *e, uint32_t each) {
+  Lower l = lower_new(e);
+  const Model *m = e->m;
+  const Expr none = expr_int(e->g, 0);
+  uint32_t n = m->contacts.n, some = 0;
+  while (each == 2 && n && m->contacts.at[n - 1].parts) n--; /* guides are the last */
+  for (uint32_t i = 0; i < n; i++) {
+    const Contact *c = &m->contacts.at[i];
+    some += (uint32_t)c->is_tangent;
+    lower_output(&l, c->is_tangent ? c->friction : i + 1 < n && c[1].is_tangent ? c[1].hold : none, c->name);
+    lower_output(&l, c->is_tangent ? c->restitution : none, c->name);
+    if (each > 2)
+      lower_output(&l, expr_symbol(e->g, m->constraints.at[c->constraint].multiplier)->node, c->name);
+  }
+  for (uint32_t i = 0; i < n && each > 2; i++) {
+    const Contact *c = &m->contacts.at[i];
+    for (uint32_t k = 0; k < 4 && c->parts; k++)
+      lower_output(&l, k == 0 ? c->hold : k <= c->parts ? c->normal[k - 1] : none, c->name);
+  }
+  return some ? lower_outputs_seldom(&l) : NULL;
+}
+
+Prog *lower_contact_laws(const Eqns *e) { return lower_contacts(e, 3); }
+
+Prog *lower_contact_coefficients(const Eqns *e) { return lower_contacts(e, 2); }

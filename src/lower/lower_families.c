@@ -55,26 +55,19 @@ static Expr rate_of(const Eqns *e, const ContactFamily *of) {
 /* Gap, rate, restitution, friction, tangential restitution; slips; rows of the rate and of the slips by velocities. */
 static const Prog *lower_member(const Eqns *e, const ContactFamily *of) {
   Lower l = lower_new(e);
-  VEC(Expr) out = {0};
-  VEC(const char *) what = {0};
-  Arena *a = e->m->arena;
   const Expr first[] = {of->gap,      rate_of(e, of), of->restitution, of->friction, of->tangential,
                         of->slip[0], of->slip[1]};
   static const char *const names[] = {"gap",  "gap'", "restitution", "friction", "tangential restitution",
                                       "slip", "slip"};
-  for (uint32_t k = 0; k < 5 + of->tangents; k++) {
-    vec_push(a, &out, first[k]);
-    vec_push(a, &what, names[k]);
-  }
+  for (uint32_t k = 0; k < 5 + of->tangents; k++) lower_output(&l, first[k], names[k]);
   for (uint32_t row = 0; row <= of->tangents; row++)
     for (uint32_t k = 0; k < of->coords.n; k++) {
       const Coord *q = &e->m->coords.at[expr_symbol(e->g, of->coords.at[k].symbol)->index];
       Expr slope = row ? expr_diff(e->g, of->slip[row - 1], q->v) : expr_diff(e->g, of->gap, q->q);
-      vec_push(a, &out, slope);
-      vec_push(a, &what, row ? "slip by a velocity" : "gap by a coordinate");
+      lower_output(&l, slope, row ? "slip by a velocity" : "gap by a coordinate");
     }
-  lower_roots(&l, out.at, out.n);
-  for (uint32_t k = 0; k < out.n; k++) prog_store(l.p, 0, k, lower_slot(&l, out.at[k]), what.at[k]);
+  lower_roots(&l, l.values.at, l.values.n);
+  lower_store_outputs(&l, 0);
   Prog *p = lower_finish(&l, &(PassPlan){0}, NULL);
   gather(e, of, p);
   return p;

@@ -20,6 +20,8 @@ typedef struct {
   Slot *x;
   int coarse;         /* as in Solve: for outputs, which shall stay finite where constraints become dependent */
   Slot *multipliers; /* [number of constraints], set by lower_solution */
+  VEC(Expr) values;  /* outputs that lower_output has named */
+  VEC(Name) names;
 } Lower;
 
 static inline Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
@@ -41,6 +43,16 @@ Slot lower_held_branch(Lower *l, Expr e);
 
 /* lower_roots for expressions that may contain q'', z' and multipliers, which are computed first. */
 void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n);
+
+/* The next output of a program, and its name in comments. */
+void lower_output(Lower *l, Expr value, Name name);
+
+/* Stores these outputs, which are lowered. */
+void lower_store_outputs(Lower *l, uint32_t array);
+
+/* Lowers these outputs, which may contain q'', z' and multipliers, and stores them as output 0; the program is called
+ * as in lower_finish_seldom. */
+Prog *lower_outputs_seldom(Lower *l);
 
 /* The program after its passes; the memory of the lowering is given up. */
 Prog *lower_finish(const Lower *l, const PassPlan *plan, StrBuf *trace);

@@ -37,6 +37,14 @@ static int is_diagonal(const Eqns *e) {
   return off == 0;
 }
 
+/* Output 0: the accelerations; 1: the rates of states, which are lowered. */
+static void store_rates(Lower *l, const Slot *acc) {
+  const Model *m = l->e->m;
+  for (uint32_t i = 0; i < l->e->n; i++) prog_store(l->p, 0, i, acc[i], text_of_symbol(l, m->coords.at[i].a));
+  for (uint32_t i = 0; i < m->states.n; i++)
+    prog_store(l->p, 1, i, lower_slot(l, l->e->flow[i]), text_of_symbol(l, m->states.at[i].rate));
+}
+
 Prog *lower_accel_traced(const Eqns *e, int libm, StrBuf *trace) {
   Lower l = lower_new(e);
   const Model *m = e->m;
@@ -45,9 +53,7 @@ Prog *lower_accel_traced(const Eqns *e, int libm, StrBuf *trace) {
   if (m->states.n) lower_roots(&l, e->flow, m->states.n);
   if (e->first.ndivisors) lower_roots(&l, e->first.divisors, e->first.ndivisors);
   for (uint32_t i = 0; i < e->first.ndivisors; i++) lower_pivot(&l, lower_slot(&l, e->first.divisors[i]), 0);
-  for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
-  for (uint32_t i = 0; i < m->states.n; i++)
-    prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
+  store_rates(&l, acc);
   return lower_finish(
       &l, &(PassPlan){.nests_from = ROLL_FROM, .every_step = 1, .uncoupled = is_diagonal(e), .libm = libm}, trace);
 }
@@ -129,6 +135,35 @@ void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
 }
 
 Prog *lower_finish_seldom(const Lower *l) { return finished(l, ROLL_SELDOM_FROM); }
+
+void lower_output(Lower *l, Expr value, Name name) {
+  vec_push(l->p->arena, &l->values, value);
+  vec_push(l->p->arena, &l->names, name);
+}
+
+void lower_store_outputs(Lower *l, uint32_t array) {
+  for (uint32_t k = 0; k < l->values.n; k++)
+    prog_store(l->p, array, k, lower_slot(l, l->values.at[k]), l->names.at[k]);
+}
+
+Prog *lower_outputs_seldom(Lower *l) {
+  lower_with_accelerations(l, l->values.at, l->values.n);
+  lower_store_outputs(l, 0);
+  return lower_finish_seldom(l);
+}
+
+static Prog *outputs_each_step(Lower *l) {
+  lower_roots(l, l->values.at, l->values.n);
+  lower_store_outputs(l, 0);
+  return finished(l, ROLL_FROM);
+}
+
+/* One by one, with few passes: called once a run, or at events. */
+static Prog *outputs_once(Lower *l) {
+  for (uint32_t k = 0; k < l->values.n; k++) lower_roots(l, &l->values.at[k], 1);
+  lower_store_outputs(l, 0);
+  return prog_tidy(l->p);
+}
 
 /* q'' is an argument of the function: its symbols become loads. */
 static void load_accelerations(Lower *l) {
@@ -318,13 +353,10 @@ Prog *lower_adjoint_projection(const Eqns *e, const AdjointPartials *d) {
 
 Prog *lower_rates_and_multipliers(const Eqns *e) {
   Lower l = lower_new(e);
-  const Model *m = e->m;
-  Slot *acc = ARENA_ARRAY(m->arena, Slot, e->n + 1);
+  Slot *acc = ARENA_ARRAY(e->m->arena, Slot, e->n + 1);
   lower_solution(&l, acc);
-  lower_roots(&l, e->flow, m->states.n);
-  for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
-  for (uint32_t i = 0; i < m->states.n; i++)
-    prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
+  lower_roots(&l, e->flow, e->m->states.n);
+  store_rates(&l, acc);
   for (uint32_t k = 0; k < e->constraints.n; k++) prog_store(l.p, 2, k, l.multipliers[k], e->constraints.of[k]->name);
   return finished(&l, ROLL_FROM);
 }
@@ -344,36 +376,32 @@ Prog *lower_mass(const Eqns *e) {
 Prog *lower_forces(const Eqns *e, const Expr *x) {
   Lower l = lower_new(e);
   load_accelerations(&l);
-  lower_roots(&l, x, e->n);
-  for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, lower_slot(&l, x[i]), component(&l, i));
-  return finished(&l, ROLL_FROM);
+  for (uint32_t i = 0; i < e->n; i++) lower_output(&l, x[i], component(&l, i));
+  return outputs_each_step(&l);
 }
 
 Prog *lower_event_derivatives(const Eqns *e, EventPartials jumps) {
   Lower l = lower_by_text(e);
   Arena *a = e->m->arena;
-  for (uint32_t k = 0; k < jumps.n; k++) lower_roots(&l, &jumps.at[k].e, 1);
   for (uint32_t k = 0; k < jumps.n; k++) {
     const EventPartial *j = &jumps.at[k];
     const char *event = e->m->events.at[j->event].name,
                *of = j->row < 0 ? "its function" : component(&l, (uint32_t)j->row);
     const char *by = j->col < 2 * e->n + e->m->states.n ? component(&l, j->col) : "t";
-    prog_store(l.p, 0, k, lower_slot(&l, j->e), arena_printf(a, "event %s: %s by %s", event, of, by));
+    lower_output(&l, j->e, arena_printf(a, "event %s: %s by %s", event, of, by));
   }
-  return prog_tidy(l.p);
+  return outputs_once(&l);
 }
 
 Prog *lower_energy(const Eqns *e) {
   Lower l = lower_new(e);
   if (!e->energy) return l.p;
-  Expr roots[2] = {e->energy_stable, e->energy_scale};
-  lower_with_accelerations(&l, roots, 2); /* in first-order models velocities are rates */
   const char *what = !e->potential        ? "energy p q' - L"
                      : eqns_has_forces(e) ? "energy p q' - L and the potential of the forces"
                                           : "energy p q' - L of L less a total time derivative";
-  prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), what);
-  prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
-  return lower_finish_seldom(&l);
+  lower_output(&l, e->energy_stable, what);
+  lower_output(&l, e->energy_scale, "its scale |p q'| + |L|");
+  return lower_outputs_seldom(&l); /* in first-order models velocities are rates */
 }
 
 Prog *lower_variation(const Eqns *e, const Variation *x) {
@@ -399,12 +427,9 @@ static const char *second_text(const Lower *l, const SecondEntry *s) {
 
 Prog *lower_second_derivatives(const Eqns *e, const Variation *x) {
   Lower l = lower_new(e);
-  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, x->second.n + 1);
-  for (uint32_t k = 0; k < x->second.n; k++) roots[k] = x->second.at[k].e;
-  lower_roots(&l, roots, x->second.n);
   for (uint32_t k = 0; k < x->second.n; k++)
-    prog_store(l.p, 0, k, lower_slot(&l, roots[k]), second_text(&l, &x->second.at[k]));
-  return finished(&l, ROLL_FROM);
+    lower_output(&l, x->second.at[k].e, second_text(&l, &x->second.at[k]));
+  return outputs_each_step(&l);
 }
 
 /* Whether event i ends the touch or the rest of a contact, by its forces. */
@@ -436,83 +461,34 @@ Prog *lower_events(const Eqns *e) {
 Prog *lower_switches(const Eqns *e) {
   Lower l = lower_new(e);
   const Switches *all = &e->switches;
-  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, all->n + 1);
-  for (uint32_t i = 0; i < all->n; i++) roots[i] = all->at[i].side;
-  lower_with_accelerations(&l, roots, all->n);
-  for (uint32_t i = 0; i < all->n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), all->at[i].text);
-  return lower_finish_seldom(&l);
+  for (uint32_t i = 0; i < all->n; i++) lower_output(&l, all->at[i].side, all->at[i].text);
+  return lower_outputs_seldom(&l);
 }
-
-/* each: numbers of a contact, 2 of one that is no guide; or 3, behind which those of guides stand. */
-static Prog *lower_contacts(const Eqns *e, uint32_t each) {
-  Lower l = lower_new(e);
-  const Model *m = e->m;
-  uint32_t n = m->contacts.n, some = 0;
-  while (each == 2 && n && m->contacts.at[n - 1].parts) n--; /* guides are the last */
-  uint32_t all = each * n, *of = ARENA_ARRAY(m->arena, uint32_t, (each + 4) * (size_t)n + 1);
-  Expr *law = ARENA_ARRAY(m->arena, Expr, (each + 4) * (size_t)n + 1);
-  for (uint32_t i = 0; i < n; i++) {
-    const Contact *c = &m->contacts.at[i];
-    some += (uint32_t)c->is_tangent;
-    law[each * i] = c->is_tangent ? c->friction : i + 1 < n && c[1].is_tangent ? c[1].hold : expr_int(e->g, 0);
-    law[each * i + 1] = c->is_tangent ? c->restitution : expr_int(e->g, 0);
-    if (each > 2) law[each * i + 2] = expr_symbol(e->g, m->constraints.at[c->constraint].multiplier)->node;
-  }
-  for (uint32_t i = 0; i < all; i++) of[i] = i / each;
-  for (uint32_t i = 0; i < n && each > 2; i++) {
-    const Contact *c = &m->contacts.at[i];
-    for (uint32_t k = 0; k < 4 && c->parts; k++) {
-      of[all] = i;
-      law[all++] = k == 0 ? c->hold : k <= c->parts ? c->normal[k - 1] : expr_int(e->g, 0);
-    }
-  }
-  if (!some) return NULL;
-  lower_with_accelerations(&l, law, all);
-  for (uint32_t i = 0; i < all; i++) prog_store(l.p, 0, i, lower_slot(&l, law[i]), m->contacts.at[of[i]].name);
-  return lower_finish_seldom(&l);
-}
-
-Prog *lower_contact_laws(const Eqns *e) { return lower_contacts(e, 3); }
-
-Prog *lower_contact_coefficients(const Eqns *e) { return lower_contacts(e, 2); }
 
 Prog *lower_sizes(const Eqns *e, int moving) {
   Lower l = lower_new(e);
-  Expr *values = ARENA_ARRAY(e->m->arena, Expr, e->sizes.n + 1);
-  Name *what = ARENA_ARRAY(e->m->arena, Name, e->sizes.n + 1);
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < e->sizes.n; i++) {
-    if (e->sizes.at[i].moves != moving) continue;
-    what[n] = e->sizes.at[i].what;
-    values[n++] = e->sizes.at[i].value;
-  }
-  if (!n) return NULL;
-  lower_roots(&l, values, n);
-  for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, values[i]), what[i]);
-  return lower_finish_seldom(&l);
+  for (uint32_t i = 0; i < e->sizes.n; i++)
+    if (e->sizes.at[i].moves == moving) lower_output(&l, e->sizes.at[i].value, e->sizes.at[i].what);
+  return l.values.n ? lower_outputs_seldom(&l) : NULL;
 }
 
 Prog *lower_switch_grips(const Eqns *e) {
   Lower l = lower_new(e);
-  uint32_t n = e->switches.nmodes, some = 0;
-  Expr *grips = ARENA_ARRAY(e->m->arena, Expr, n + 1);
-  for (uint32_t i = 0; i < n; i++) {
-    some += e->switches.at[i].grip != 0;
-    grips[i] = e->switches.at[i].grip ? e->switches.at[i].grip : expr_int(e->g, 1);
+  int some = 0;
+  for (uint32_t i = 0; i < e->switches.nmodes; i++) {
+    Expr grip = e->switches.at[i].grip;
+    some |= grip != 0;
+    lower_output(&l, grip ? grip : expr_int(e->g, 1), e->switches.at[i].surface);
   }
-  if (!some) return NULL;
-  lower_roots(&l, grips, n);
-  for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, grips[i]), e->switches.at[i].surface);
-  return lower_finish_seldom(&l);
+  return some ? lower_outputs_seldom(&l) : NULL;
 }
 
 Prog *lower_switch_rates(const Eqns *e) {
   Lower l = lower_new(e);
   const Expr *rates = switch_rates(e);
-  lower_with_accelerations(&l, rates, e->switches.nmodes);
   for (uint32_t i = 0; i < e->switches.nmodes; i++)
-    prog_store(l.p, 0, i, lower_slot(&l, rates[i]), arena_printf(e->m->arena, "rate of %s", e->switches.at[i].surface));
-  return lower_finish_seldom(&l);
+    lower_output(&l, rates[i], arena_printf(e->m->arena, "rate of %s", e->switches.at[i].surface));
+  return lower_outputs_seldom(&l);
 }
 
 static uint32_t array_of_target(SymKind k) { return k == SYM_COORD ? 0 : k == SYM_VEL ? 1 : 2; }
@@ -559,50 +535,28 @@ int output_is_plain(const Eqns *e, uint32_t i) {
          !expr_contains(e->g, e->outputs[i].value, is_of_runs, &e->m->inputs.n);
 }
 
-/* Values of the outputs, and the outputs in *of. */
-static Expr *values_of_outputs(const Eqns *e, int plain_only, const Output ***of, uint32_t *n) {
-  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, e->noutputs + 1);
-  *of = ARENA_ARRAY(e->m->arena, const Output *, e->noutputs + 1);
-  *n = 0;
-  for (uint32_t i = 0; i < e->noutputs; i++) {
-    if (plain_only && !output_is_plain(e, i)) continue;
-    (*of)[*n] = &e->outputs[i];
-    roots[(*n)++] = e->outputs[i].value;
-  }
-  return roots;
+static void name_outputs(Lower *l, int plain_only) {
+  for (uint32_t i = 0; i < l->e->noutputs; i++)
+    if (!plain_only || output_is_plain(l->e, i)) lower_output(l, l->e->outputs[i].value, l->e->outputs[i].name);
 }
 
 Prog *lower_output_partials(const Eqns *e, Partials *d) {
-  Lower l = lower_new(e);
+  Lower l = lower_new(e), of = l;
   const Model *m = e->m;
-  const Output **of;
-  VEC(Expr) x = {0};
-  VEC(const char *) names = {0};
-  uint32_t n;
-  const Expr *outputs = values_of_outputs(e, 1, &of, &n);
-  for (uint32_t i = 0; i < n; i++) vec_push(m->arena, &x, outputs[i]), vec_push(m->arena, &names, of[i]->name);
+  name_outputs(&of, 1);
   for (uint32_t i = 0; i < m->params.n; i++)
-    if (!m->params.at[i].fixed)
-      vec_push(m->arena, &x, m->params.at[i].value), vec_push(m->arena, &names, m->params.at[i].name);
+    if (!m->params.at[i].fixed) lower_output(&of, m->params.at[i].value, m->params.at[i].name);
   for (uint32_t i = 0; i < m->inputs.n; i++)
-    vec_push(m->arena, &x, m->inputs.at[i].value ? m->inputs.at[i].value : expr_int(e->g, 0)),
-        vec_push(m->arena, &names, m->inputs.at[i].name);
-  *d = eqns_output_partials(e, x.at, x.n);
-  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, d->n + 1);
-  for (uint32_t k = 0; k < d->n; k++) roots[k] = d->at[k].e;
-  lower_with_accelerations(&l, roots, d->n);
-  for (uint32_t k = 0; k < d->n; k++) prog_store(l.p, 0, k, lower_slot(&l, roots[k]), names.at[d->at[k].row]);
-  return lower_finish_seldom(&l);
+    lower_output(&of, m->inputs.at[i].value ? m->inputs.at[i].value : expr_int(e->g, 0), m->inputs.at[i].name);
+  *d = eqns_output_partials(e, of.values.at, of.values.n);
+  for (uint32_t k = 0; k < d->n; k++) lower_output(&l, d->at[k].e, of.names.at[d->at[k].row]);
+  return lower_outputs_seldom(&l);
 }
 
 static Prog *outputs(const Eqns *e, int plain_only) {
   Lower l = lower_new(e);
-  const Output **of;
-  uint32_t n;
-  Expr *roots = values_of_outputs(e, plain_only, &of, &n);
-  lower_with_accelerations(&l, roots, n);
-  for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), of[i]->name);
-  return lower_finish_seldom(&l);
+  name_outputs(&l, plain_only);
+  return lower_outputs_seldom(&l);
 }
 
 Prog *lower_outputs(const Eqns *e) { return outputs(e, 0); }
@@ -611,25 +565,21 @@ Prog *lower_plain_outputs(const Eqns *e) { return outputs(e, 1); }
 Prog *lower_action_curve(const Eqns *e, uint32_t i) {
   static const char *const names[4] = {"H", "dH/dp", "d2H/dp2", "dH/dq"};
   Lower l = lower_by_text(e);
-  lower_roots(&l, e->actions[i].roots, 4);
-  for (uint32_t k = 0; k < 4; k++) prog_store(l.p, 0, k, lower_slot(&l, e->actions[i].roots[k]), names[k]);
-  return lower_finish_seldom(&l);
+  for (uint32_t k = 0; k < 4; k++) lower_output(&l, e->actions[i].roots[k], names[k]);
+  return lower_outputs_seldom(&l);
 }
 
 Prog *lower_momenta(const Eqns *e) {
   Lower l = lower_by_text(e);
-  lower_roots(&l, e->p, e->n);
-  for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, lower_slot(&l, e->p[i]), e->m->coords.at[i].name);
-  return lower_finish_seldom(&l);
+  for (uint32_t i = 0; i < e->n; i++) lower_output(&l, e->p[i], e->m->coords.at[i].name);
+  return lower_outputs_seldom(&l);
 }
 
 Prog *lower_closed_forms(const Eqns *e) {
   Lower l = lower_by_text(e);
   const Scene *sc = &e->m->scene;
-  for (uint32_t i = 0; i < sc->exacts.n; i++) lower_roots(&l, &sc->exacts.at[i].value, 1);
-  for (uint32_t i = 0; i < sc->exacts.n; i++)
-    prog_store(l.p, 0, i, lower_slot(&l, sc->exacts.at[i].value), sc->exacts.at[i].name);
-  return prog_tidy(l.p);
+  for (uint32_t i = 0; i < sc->exacts.n; i++) lower_output(&l, sc->exacts.at[i].value, sc->exacts.at[i].name);
+  return outputs_once(&l);
 }
 
 Prog *lower_param(const Eqns *e, uint32_t i) {

@@ -85,11 +85,9 @@ static void derive_energy(Eqns *e) {
   e->momenta = momenta;
   Expr l = e->lagrangian;
   VEC(Expr) still = {0};
-  for (uint32_t i = 0; i < expr_pairs(g, l, EX_SUM); i++) {
-    Num c;
-    Expr t = expr_pair(g, l, EX_SUM, i, &c);
-    if (contains_kind(e, t, SYM_VEL)) continue;
-    Expr part = expr_scale(g, c, t);
+  for (ExprPair t = {0}; expr_next_pair(g, l, EX_SUM, &t);) {
+    if (contains_kind(e, t.of, SYM_VEL)) continue;
+    Expr part = expr_scale(g, t.num, t.of);
     vec_push(arena, &still, part);
   }
   Expr l0 = expr_add_n(g, still.at, still.n);

@@ -90,10 +90,9 @@ static Expr at_rest(const LegendreTransform *w, Expr x) {
 static Expr potential(const LegendreTransform *w) {
   ExprGraph *g = w->g;
   Expr L = w->e->m->lagrangian, V = expr_int(g, 0);
-  for (uint32_t i = 0; i < expr_pairs(g, L, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(g, L, EX_SUM, i, &c), rest = at_rest(w, term);
-    V = expr_sub(g, V, expr_scale(g, c, rest == term ? term : simplify(g, rest)));
+  for (ExprPair term = {0}; expr_next_pair(g, L, EX_SUM, &term);) {
+    Expr rest = at_rest(w, term.of);
+    V = expr_sub(g, V, expr_scale(g, term.num, rest == term.of ? term.of : simplify(g, rest)));
   }
   return V;
 }

@@ -49,16 +49,14 @@ static int add_quadratic_term(SquareBounds *q, Expr factor, Num c, Expr term) {
   Expr moving[2] = {0};
   Num power[2];
   uint32_t n = 0;
-  for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++) {
-    Num p;
-    Expr base = expr_pair(g, term, EX_PROD, i, &p);
-    if (!has_velocities(e->g, base)) {
-      Expr still = expr_pow_num(g, base, p);
+  for (ExprPair base = {0}; expr_next_pair(g, term, EX_PROD, &base);) {
+    if (!has_velocities(e->g, base.of)) {
+      Expr still = expr_pow_num(g, base.of, base.num);
       factor = expr_mul(g, factor, still);
     } else {
       if (n == 2) return 0;
-      moving[n] = base;
-      power[n++] = p;
+      moving[n] = base.of;
+      power[n++] = base.num;
     }
   }
   if (!sign_is_nonnegative(expr_sign(g, factor))) return 0;

@@ -280,11 +280,8 @@ static int is_small(const Eqns *e, Expr x, const long double *symbols, long doub
   bound_run(tape, symbols, NULL);
   long double bound, value = bound_value(tape, x, &bound), size = 0;
   if (!isfinite(value)) return -1;
-  for (uint32_t i = 0; i < expr_pairs(e->g, x, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(e->g, x, EX_SUM, i, &c);
-    size += fabsl((long double)num_value(c) * bound_value(tape, term, &bound));
-  }
+  for (ExprPair term = {0}; expr_next_pair(e->g, x, EX_SUM, &term);)
+    size += fabsl((long double)num_value(term.num) * bound_value(tape, term.of, &bound));
   return fabsl(value) <= tiny * fmaxl(size, 1);
 }
 

@@ -447,11 +447,10 @@ static uint8_t degree_of(const Model *m, Expr x, const ExprMap *degrees) {
       if (expr_map_get(degrees, expr_arg(g, x, i))) return 2;
     return 0;
   }
-  for (uint32_t i = 0; i < expr_pairs(g, x, op); i++) {
-    Num k;
-    uint32_t one = expr_map_get(degrees, expr_pair(g, x, op, i, &k));
+  for (ExprPair part = {0}; expr_next_pair(g, x, op, &part);) {
+    uint32_t one = expr_map_get(degrees, part.of);
     if (op == EX_SUM) degree = one > degree ? one : degree;
-    else degree += one && !num_is_one(k) ? 2 : one;
+    else degree += one && !num_is_one(part.num) ? 2 : one;
   }
   return degree > 2 ? 2 : (uint8_t)degree;
 }

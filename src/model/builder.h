@@ -21,7 +21,7 @@ FileIndex *file_index(Ast *ast);
 /* The statement of a scene or effect by name (NULL: the first); the model statement; or NULL. */
 const AstStmt *find_named(Ast *ast, AstStmtKind kind, const char *name);
 
-typedef enum { TODO, DOING, DONE } Progress;
+typedef enum { WAITING, DOING, DONE } Progress;
 
 /* Position of an expression in the text; each allows all names of those before it, and more. */
 typedef enum {

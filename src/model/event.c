@@ -139,11 +139,9 @@ void add_event(Builder *b, const AstStmt *st, Name effect) {
 /* Whether e is an angle on a circle: a periodic coordinate, alone or with other terms. */
 static int turns(Builder *b, Expr e) {
   e = expr_expand_defs(b->g, e);
-  for (uint32_t i = 0; i < expr_pairs(b->g, e, EX_SUM); i++) {
-    Num n;
-    Expr term = expr_pair(b->g, e, EX_SUM, i, &n);
-    const Symbol *s = expr_op(b->g, term) == EX_SYM ? expr_sym_of(b->g, term) : NULL;
-    if (!s || !num_is_one(num_abs(n))) continue;
+  for (ExprPair term = {0}; expr_next_pair(b->g, e, EX_SUM, &term);) {
+    const Symbol *s = expr_op(b->g, term.of) == EX_SYM ? expr_sym_of(b->g, term.of) : NULL;
+    if (!s || !num_is_one(num_abs(term.num))) continue;
     if ((s->kind == SYM_COORD && b->m->coords.at[s->index].periodic) ||
         (s->kind == SYM_STATE && b->m->states.at[s->index].periodic))
       return 1;

@@ -101,11 +101,8 @@ static int split_term(Far *f, Expr term) {
   Expr product = expr_op(g, term) == EX_SUM ? expr_pair(g, term, EX_SUM, 0, &c) : term;
   f->form.charge = f->charge_j = expr_int(g, 1);
   f->form.factor = expr_num(g, c);
-  for (uint32_t k = 0; k < expr_pairs(g, product, EX_PROD); k++) {
-    Num exponent;
-    Expr base = expr_pair(g, product, EX_PROD, k, &exponent);
-    if (!take_factor(f, base, exponent)) return 0;
-  }
+  for (ExprPair base = {0}; expr_next_pair(g, product, EX_PROD, &base);)
+    if (!take_factor(f, base.of, base.num)) return 0;
   if (!f->square) return no(f, "its terms do not contain the places of two bodies");
   return swapped(f, f->form.charge) == f->charge_j || no(f, "the factors of both bodies differ");
 }

@@ -18,13 +18,11 @@ static Expr body_of(const ExprGraph *g, Expr e) {
 static Expr angle_of(const ExprGraph *g, Expr term, Expr *length) {
   Expr angle = 0;
   *length = 0;
-  for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++) {
-    Num power;
-    Expr f = expr_pair(g, term, EX_PROD, i, &power);
-    ExprOp op = expr_op(g, f);
-    int turns = (op == EX_SIN || op == EX_COS) && num_is_one(power) && changes(g, f);
-    if (turns && !angle) angle = expr_arg(g, f, 0);
-    else if (!turns && changes(g, f)) *length = f;
+  for (ExprPair f = {0}; expr_next_pair(g, term, EX_PROD, &f);) {
+    ExprOp op = expr_op(g, f.of);
+    int turns = (op == EX_SIN || op == EX_COS) && num_is_one(f.num) && changes(g, f.of);
+    if (turns && !angle) angle = expr_arg(g, f.of, 0);
+    else if (!turns && changes(g, f.of)) *length = f.of;
   }
   return angle;
 }
@@ -41,9 +39,8 @@ typedef struct {
 static void split_terms(ExprGraph *g, Expr value, uint32_t c, Arms *a) {
   Expr e = body_of(g, value);
   a->rest[c] = expr_int(g, 0);
-  for (uint32_t i = 0; i < expr_pairs(g, e, EX_SUM); i++) {
-    Num k;
-    Expr length, term = expr_pair(g, e, EX_SUM, i, &k), angle = angle_of(g, term, &length), *into = &a->rest[c];
+  for (ExprPair term = {0}; expr_next_pair(g, e, EX_SUM, &term);) {
+    Expr length, angle = angle_of(g, term.of, &length), *into = &a->rest[c];
     uint32_t j = 0;
     while (j < a->n && a->angle[j] != angle) j++;
     if (angle && j < MOST_ARMS) {
@@ -51,7 +48,7 @@ static void split_terms(ExprGraph *g, Expr value, uint32_t c, Arms *a) {
       if (length) a->length[j] = length;
       into = &a->arm[j][c];
     }
-    Expr scaled = expr_scale(g, k, term);
+    Expr scaled = expr_scale(g, term.num, term.of);
     *into = *into ? expr_add(g, *into, scaled) : scaled;
   }
 }
@@ -63,11 +60,8 @@ static int is_stretched(Guess *k, Expr length) {
   const ExprGraph *g = k->d->b->g;
   Expr e = body_of(g, length);
   int found = expr_map_get(&k->stretched, length) != 0;
-  for (uint32_t i = 0; i < expr_pairs(g, e, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(g, e, EX_SUM, i, &c);
-    found |= changes(g, term) && expr_map_get(&k->stretched, term);
-  }
+  for (ExprPair term = {0}; expr_next_pair(g, e, EX_SUM, &term);)
+    found |= changes(g, term.of) && expr_map_get(&k->stretched, term.of);
   return found;
 }
 
@@ -155,10 +149,8 @@ static uint32_t distance_parts(const ExprGraph *g, Expr e, Expr out[3]) {
 
 /* Coefficient of x in the sum d; 0: not in it. */
 static int sign_in(const ExprGraph *g, Expr d, Expr x) {
-  for (uint32_t i = 0; i < expr_pairs(g, d, EX_SUM); i++) {
-    Num k;
-    if (expr_pair(g, d, EX_SUM, i, &k) == x) return num_is_one(k) ? 1 : num_is_one(num_neg(k)) ? -1 : 0;
-  }
+  for (ExprPair term = {0}; expr_next_pair(g, d, EX_SUM, &term);)
+    if (term.of == x) return num_is_one(term.num) ? 1 : num_is_one(num_neg(term.num)) ? -1 : 0;
   return 0;
 }
 
@@ -198,10 +190,8 @@ void guess_rods(Guess *k) {
     if (c->inside) continue;
     int done = link_distance(k, SHAPE_ROD, "link", c->c);
     Expr e = body_of(b->g, c->c);
-    for (uint32_t j = 0; j < expr_pairs(b->g, e, EX_SUM) && !done; j++) {
-      Num times;
-      done = link_distance(k, SHAPE_ROD, "link", expr_pair(b->g, e, EX_SUM, j, &times));
-    }
+    for (uint32_t j = 0; j < expr_pairs(b->g, e, EX_SUM) && !done; j++)
+      done = link_distance(k, SHAPE_ROD, "link", expr_pair(b->g, e, EX_SUM, j, NULL));
   }
 }
 
@@ -213,15 +203,13 @@ static void link_line(Guess *k, Expr base) {
   ExprGraph *g = k->d->b->g;
   const DrawnPoint *end[2] = {NULL, NULL};
   uint32_t n = 0, moving = 0;
-  for (uint32_t i = 0; i < expr_pairs(g, base, EX_SUM); i++) {
-    Num times;
-    Expr term = expr_pair(g, base, EX_SUM, i, &times);
-    if (!changes(g, term)) continue;
+  for (ExprPair term = {0}; expr_next_pair(g, base, EX_SUM, &term);) {
+    if (!changes(g, term.of)) continue;
     moving++;
     for (uint32_t j = 0; j < k->points.n && n < 2; j++) {
       const DrawnPoint *p = &k->points.at[j];
       uint32_t c = p->n == 2 && expr_is_zero(g, p->at[0]) ? 1 : 0;
-      if (p->n == 2 && expr_is_zero(g, p->at[1 - c]) && p->at[c] == term) end[n++] = p;
+      if (p->n == 2 && expr_is_zero(g, p->at[1 - c]) && p->at[c] == term.of) end[n++] = p;
     }
   }
   if (!n || n != moving) return;
@@ -239,28 +227,21 @@ static void each_square(Guess *k, void (*fn)(Guess *k, Expr base)) {
   for (uint32_t i = 0; i < all.n; i++) {
     Expr e = all.at[i];
     if (expr_op(g, e) != EX_PROD || (expr_kinds(g, e) & (1u << SYM_VEL | 1u << SYM_RATE))) continue;
-    for (uint32_t j = 0; j < expr_pairs(g, e, EX_PROD); j++) {
-      Num power;
-      Expr base = expr_pair(g, e, EX_PROD, j, &power);
-      if (num_equal(power, num_int(2)) && changes(g, base)) fn(k, body_of(g, base));
-    }
+    for (ExprPair base = {0}; expr_next_pair(g, e, EX_PROD, &base);)
+      if (num_equal(base.num, num_int(2)) && changes(g, base.of)) fn(k, body_of(g, base.of));
   }
 }
 
 static void note_square(Guess *k, Expr base) {
-  for (uint32_t i = 0; i < expr_pairs(k->d->b->g, base, EX_SUM); i++) {
-    Num c;
-    expr_map_set(&k->stretched, expr_pair(k->d->b->g, base, EX_SUM, i, &c), 1);
-  }
+  for (ExprPair term = {0}; expr_next_pair(k->d->b->g, base, EX_SUM, &term);) expr_map_set(&k->stretched, term.of, 1);
 }
 
 static void link_square(Guess *k, Expr base) {
   ExprGraph *g = k->d->b->g;
   uint32_t n = expr_pairs(g, base, EX_SUM);
-  Num c;
   int done = 0;
   for (uint32_t i = 0; i < n && !done && n <= 3; i++)
-    done = link_distance(k, SHAPE_SPRING, "spring", expr_pair(g, base, EX_SUM, i, &c));
+    done = link_distance(k, SHAPE_SPRING, "spring", expr_pair(g, base, EX_SUM, i, NULL));
   if (!done) link_line(k, base);
 }
 
@@ -274,16 +255,14 @@ static Expr constant_part(Guess *k, Expr gap, Expr *radius, double *times) {
   ExprGraph *g = k->d->b->g;
   Expr rest = expr_int(g, 0);
   *radius = 0;
-  for (uint32_t i = 0; i < expr_pairs(g, gap, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(g, gap, EX_SUM, i, &c);
-    if (changes(g, term)) continue;
-    int is_radius = expr_op(g, term) == EX_SYM && has_word("r R a radius rad", expr_sym_of(g, term)->name);
-    if (is_radius && num_value(c) < 0) {
-      *radius = term;
-      *times = -num_value(c);
+  for (ExprPair term = {0}; expr_next_pair(g, gap, EX_SUM, &term);) {
+    if (changes(g, term.of)) continue;
+    int is_radius = expr_op(g, term.of) == EX_SYM && has_word("r R a radius rad", expr_sym_of(g, term.of)->name);
+    if (is_radius && num_value(term.num) < 0) {
+      *radius = term.of;
+      *times = -num_value(term.num);
     } else {
-      rest = expr_add(g, rest, expr_scale(g, c, term));
+      rest = expr_add(g, rest, expr_scale(g, term.num, term.of));
     }
   }
   return rest;
@@ -294,11 +273,10 @@ static int normal_of(ExprGraph *g, Expr gap, const DrawnPoint *p, Expr n[3]) {
   int found = 0;
   for (uint32_t c = 0; c < p->n; c++) {
     n[c] = expr_int(g, 0);
-    for (uint32_t i = 0; i < expr_pairs(g, gap, EX_SUM); i++) {
-      Num times;
-      Expr term = expr_pair(g, gap, EX_SUM, i, &times), over = expr_div(g, term, p->at[c]);
-      if (!changes(g, p->at[c]) || !changes(g, term) || changes(g, over)) continue;
-      n[c] = expr_add(g, n[c], expr_scale(g, times, over));
+    for (ExprPair term = {0}; expr_next_pair(g, gap, EX_SUM, &term);) {
+      Expr over = expr_div(g, term.of, p->at[c]);
+      if (!changes(g, p->at[c]) || !changes(g, term.of) || changes(g, over)) continue;
+      n[c] = expr_add(g, n[c], expr_scale(g, term.num, over));
       found = 1;
     }
   }
@@ -324,9 +302,8 @@ static void add_wall(Guess *k, const Expr *n, Expr rest, uint32_t dims) {
 static void note_radii(Guess *k, Expr gap, Expr radius, double times) {
   ExprGraph *g = k->d->b->g;
   Expr part[3], to[3];
-  for (uint32_t j = 0; j < expr_pairs(g, gap, EX_SUM) && radius && times == 2; j++) {
-    Num c;
-    uint32_t n = distance_parts(g, expr_pair(g, gap, EX_SUM, j, &c), part);
+  for (ExprPair term = {0}; radius && times == 2 && expr_next_pair(g, gap, EX_SUM, &term);) {
+    uint32_t n = distance_parts(g, term.of, part);
     for (uint32_t i = 0; i < k->points.n && n >= 2; i++)
       if (other_end(g, &k->points.at[i], part, n, to)) k->points.at[i].radius = radius;
   }

@@ -51,14 +51,12 @@ static int read_squares(Builder *b, Expr sum, Contact *t) {
 static Expr split_product(Builder *b, Expr product, Expr of, Expr *base, Num *power) {
   ExprGraph *g = b->g;
   *base = 0;
-  for (uint32_t i = 0; i < expr_pairs(g, product, EX_PROD); i++) {
-    Num k;
-    Expr x = expr_pair(g, product, EX_PROD, i, &k);
-    if (!has_multiplier(b, x)) {
-      Expr factor = expr_pow_num(g, x, k);
+  for (ExprPair x = {0}; expr_next_pair(g, product, EX_PROD, &x);) {
+    if (!has_multiplier(b, x.of)) {
+      Expr factor = expr_pow_num(g, x.of, x.num);
       of = expr_mul(g, of, factor);
     } else if (*base) return 0;
-    else *base = x, *power = k;
+    else *base = x.of, *power = x.num;
   }
   return of;
 }

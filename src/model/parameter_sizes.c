@@ -10,9 +10,8 @@ static int is_of_parameters(const ExprGraph *g, Expr e) {
 static Expr parameter_factor(ExprGraph *g, Expr size) {
   Expr of = expr_int(g, 1), rest = of;
   if (is_of_parameters(g, size)) return size;
-  for (uint32_t i = 0; i < expr_pairs(g, size, EX_PROD); i++) {
-    Num exponent;
-    Expr base = expr_pair(g, size, EX_PROD, i, &exponent), factor = expr_pow_num(g, base, exponent);
+  for (ExprPair base = {0}; expr_next_pair(g, size, EX_PROD, &base);) {
+    Expr factor = expr_pow_num(g, base.of, base.num);
     if (is_of_parameters(g, factor)) of = expr_mul(g, of, factor);
     else rest = expr_mul(g, rest, factor);
   }
@@ -59,12 +58,9 @@ void add_opening_angle(Builder *b, Expr theta, Span span) {
 /* The product of the factors with negative exponents, inverted. */
 static Expr denominator_of(ExprGraph *g, Expr e) {
   Expr of = expr_int(g, 1);
-  Num number;
-  if (expr_pairs(g, e, EX_SUM) == 1) e = expr_pair(g, e, EX_SUM, 0, &number);
-  for (uint32_t i = 0; i < expr_pairs(g, e, EX_PROD); i++) {
-    Expr base = expr_pair(g, e, EX_PROD, i, &number);
-    if (num_sign(number) < 0) of = expr_mul(g, of, expr_pow_num(g, base, num_neg(number)));
-  }
+  if (expr_pairs(g, e, EX_SUM) == 1) e = expr_pair(g, e, EX_SUM, 0, NULL);
+  for (ExprPair base = {0}; expr_next_pair(g, e, EX_PROD, &base);)
+    if (num_sign(base.num) < 0) of = expr_mul(g, of, expr_pow_num(g, base.of, num_neg(base.num)));
   return of;
 }
 

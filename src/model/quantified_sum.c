@@ -460,10 +460,7 @@ int quantified_next(Eval *ev, Value *v) {
   if (q->far && !far_angle(ev, q)) q->failed = 1, r.e = 0;
   for (uint32_t c = 0; c < component_count(v) && r.e; c++)
     if (!(r.at[c] = component_sum(ev, q, c))) r.e = 0;
-  if (q->failed) {
-    *v = FAILED;
-    return 0;
-  }
+  if (q->failed) return *v = FAILED, 0;
   if (r.e) vec_push(b->arena, &b->m->sums, ((QuantifiedSum){q->outer, q->beside, q->sampled}));
   if (r.e && !q->beside) {
     *v = r;

@@ -385,11 +385,11 @@ static void resolve_definition(Builder *b, EntKind kind, uint32_t index) {
 }
 
 void resolve_let(Builder *b, uint32_t index) {
-  if (b->state[ENT_LET].at[index].progress == TODO) resolve_definition(b, ENT_LET, index);
+  if (b->state[ENT_LET].at[index].progress == WAITING) resolve_definition(b, ENT_LET, index);
 }
 
 void resolve_observe(Builder *b, uint32_t index) {
-  if (b->state[ENT_OBSERVE].at[index].progress == TODO) resolve_definition(b, ENT_OBSERVE, index);
+  if (b->state[ENT_OBSERVE].at[index].progress == WAITING) resolve_definition(b, ENT_OBSERVE, index);
 }
 
 /* As resolve_nodes; the value may be a condition. */

@@ -222,11 +222,9 @@ static void push_product_power(ExprGraph *g, Product *r, Expr base, Num e) {
   int whole = num_is_int(e);
   Pair room[ROOM];
   Product kept = {.c = num_int(1), .p = ROOM_FOR(room)};
-  for (uint32_t i = 0; i < expr_pairs(g, base, EX_PROD); i++) {
-    Num k;
-    Expr b = expr_pair(g, base, EX_PROD, i, &k);
-    if (whole || expr_sign(g, b) == SIGN_POSITIVE) push_factor(g, r, b, num_mul(k, e));
-    else push_factor(g, &kept, b, k);
+  for (ExprPair b = {0}; expr_next_pair(g, base, EX_PROD, &b);) {
+    if (whole || expr_sign(g, b.of) == SIGN_POSITIVE) push_factor(g, r, b.of, num_mul(b.num, e));
+    else push_factor(g, &kept, b.of, b.num);
   }
   if (kept.p.n == 0) return;
   if (kept.p.n == 1 && num_is_one(kept.p.at[0].number)) push_factor(g, r, kept.p.at[0].node, e);
@@ -336,11 +334,8 @@ Expr expr_mul_n(ExprGraph *g, const Expr *factors, uint32_t n) {
     if (factors[i] == g->zero) return g->zero;
     Expr f = factors[i];
     if (expr_op(g, f) == EX_PROD) {
-      for (uint32_t k = 0; k < expr_pairs(g, f, EX_PROD); k++) {
-        Num e;
-        Expr b = expr_pair(g, f, EX_PROD, k, &e);
-        push_factor(g, &r, b, e);
-      }
+      for (ExprPair b = {0}; expr_next_pair(g, f, EX_PROD, &b);)
+        push_factor(g, &r, b.of, b.num);
     } else expr_push_power(g, &r, f, num_int(1));
   }
   return finish_product(g, &r);

@@ -178,12 +178,15 @@ uint32_t expr_pairs(const ExprGraph *g, Expr e, ExprOp op) { return expr_op(g, e
 
 Expr expr_pair(const ExprGraph *g, Expr e, ExprOp op, uint32_t i, Num *number) {
   MUST_BE_BELOW(i, expr_pairs(g, e, op));
-  if (expr_op(g, e) == op) {
-    *number = expr_number(g, expr_arg(g, e, 2 * i + 1));
-    return expr_arg(g, e, 2 * i);
-  }
-  *number = num_int(1);
-  return e;
+  int has = expr_op(g, e) == op;
+  if (number) *number = has ? expr_number(g, expr_arg(g, e, 2 * i + 1)) : num_int(1);
+  return has ? expr_arg(g, e, 2 * i) : e;
+}
+
+int expr_next_pair(const ExprGraph *g, Expr e, ExprOp op, ExprPair *x) {
+  if (x->next == expr_pairs(g, e, op)) return 0;
+  x->of = expr_pair(g, e, op, x->next++, &x->num);
+  return 1;
 }
 
 /* --- signs --- */

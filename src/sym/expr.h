@@ -178,7 +178,15 @@ const char *expr_op_text(ExprOp op);
 /* Pairs (term, coefficient) of a SUM, or (base, exponent) of a PROD; any other node counts as the single pair (node,
  * 1). */
 uint32_t expr_pairs(const ExprGraph *g, Expr e, ExprOp op);
-Expr expr_pair(const ExprGraph *g, Expr e, ExprOp op, uint32_t i, Num *number);
+Expr expr_pair(const ExprGraph *g, Expr e, ExprOp op, uint32_t i, Num *number); /* number NULL: not wanted */
+
+/* A walk over them: for (ExprPair x = {0}; expr_next_pair(g, e, op, &x);) */
+typedef struct {
+  Expr of;
+  Num num;
+  uint32_t next;
+} ExprPair;
+int expr_next_pair(const ExprGraph *g, Expr e, ExprOp op, ExprPair *x);
 
 /* --- sets of nodes --- */
 typedef struct {

@@ -388,10 +388,8 @@ static Expr integral_by_division(const Task *t) {
 /* Integral of the terms of e that have switches or denominators, taken from e. */
 static Expr integral_of_terms(ExprGraph *g, Task with, int depth, Expr *e) {
   Expr sum = expr_int(g, 0), all = *e;
-  for (uint32_t i = 0; i < expr_pairs(g, all, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(g, all, EX_SUM, i, &c);
-    with.e = expr_scale(g, c, term);
+  for (ExprPair term = {0}; expr_next_pair(g, all, EX_SUM, &term);) {
+    with.e = expr_scale(g, term.num, term.of);
     Expr part = switch_in(g, with.e, with.x) ? integral_by_sides(&with, depth) : integral_by_division(&with);
     if (!part) continue;
     sum = expr_add(g, sum, part);

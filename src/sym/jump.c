@@ -53,13 +53,11 @@ static int bounds_poles(ExprOp op) {
 
 static void add_divisors(const Search *s, Sources *to, Expr product) {
   ExprGraph *g = s->g;
-  for (uint32_t i = 0; i < expr_pairs(g, product, EX_PROD); i++) {
-    Num power;
-    Expr base = expr_pair(g, product, EX_PROD, i, &power);
-    if (num_sign(power) >= 0) continue;
-    if (expr_op(g, base) == EX_ABS) base = expr_arg(g, base, 0);
-    ExprSign sign = expr_sign(g, base);
-    if (sign == SIGN_UNKNOWN) add(s, to, base, base);
+  for (ExprPair base = {0}; expr_next_pair(g, product, EX_PROD, &base);) {
+    if (num_sign(base.num) >= 0) continue;
+    if (expr_op(g, base.of) == EX_ABS) base.of = expr_arg(g, base.of, 0);
+    ExprSign sign = expr_sign(g, base.of);
+    if (sign == SIGN_UNKNOWN) add(s, to, base.of, base.of);
   }
 }
 
@@ -102,13 +100,11 @@ static void select_terms(Search *s, const Sources *all, Expr x) {
   ExprMap nodes = expr_map(s->arena);
   VEC(Expr) roots = {0};
   for (uint32_t i = 0; i < all->n; i++) expr_map_set(&nodes, all->at[i].node, 1);
-  for (uint32_t i = 0; i < expr_pairs(g, x, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(g, x, EX_SUM, i, &c);
-    ExprList l = expr_topo(g, &term, 1);
+  for (ExprPair term = {0}; expr_next_pair(g, x, EX_SUM, &term);) {
+    ExprList l = expr_topo(g, &term.of, 1);
     uint32_t k = 0;
     while (k < l.n && !expr_map_get(&nodes, l.at[k])) k++;
-    if (k < l.n) vec_push(s->arena, &roots, expr_scale(g, c, term));
+    if (k < l.n) vec_push(s->arena, &roots, expr_scale(g, term.num, term.of));
   }
   s->nterms = roots.n;
   s->tape = eval_tape(g, roots.at, roots.n);

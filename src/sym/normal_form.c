@@ -137,10 +137,8 @@ static Frac pow_frac(Normal *n, Frac base, Num e) {
 
 static Frac prod_frac(Normal *n, Expr e) {
   Frac p = frac_num(n->field, num_int(1));
-  for (uint32_t i = 0; i < expr_pairs(n->g, e, EX_PROD); i++) {
-    Num k;
-    Expr b = expr_pair(n->g, e, EX_PROD, i, &k);
-    Frac power = pow_frac(n, value_of(n, b), k);
+  for (ExprPair b = {0}; expr_next_pair(n->g, e, EX_PROD, &b);) {
+    Frac power = pow_frac(n, value_of(n, b.of), b.num);
     p = frac_mul(n->field, p, power);
   }
   return p;

@@ -174,11 +174,9 @@ static void sum(Printer *p, Expr e) {
 
 /* Whether an argument is a sum of plain names, which needs no \left( \right). */
 static int is_flat(const ExprGraph *g, Expr e) {
-  for (uint32_t i = 0; i < expr_pairs(g, e, EX_SUM); i++) {
-    Num c;
-    Expr t = expr_pair(g, e, EX_SUM, i, &c);
-    if (!num_is_int(c) || (expr_op(g, t) != EX_SYM && expr_op(g, t) != EX_DEF && expr_op(g, t) != EX_NUM)) return 0;
-  }
+  for (ExprPair t = {0}; expr_next_pair(g, e, EX_SUM, &t);)
+    if (!num_is_int(t.num) || (expr_op(g, t.of) != EX_SYM && expr_op(g, t.of) != EX_DEF && expr_op(g, t.of) != EX_NUM))
+      return 0;
   return 1;
 }
 

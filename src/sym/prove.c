@@ -173,11 +173,8 @@ static int is_polynomial(const System *s) {
     ExprOp op = expr_op(g, e);
     if (!has_unknown(g, e) || op == EX_SYM || op == EX_SUM || op == EX_DEF) continue;
     if (op != EX_PROD) return 0;
-    for (uint32_t k = 0; k < expr_pairs(g, e, EX_PROD); k++) {
-      Num exponent;
-      Expr base = expr_pair(g, e, EX_PROD, k, &exponent);
-      if (has_unknown(g, base) && !(num_is_int(exponent) && num_sign(exponent) > 0)) return 0;
-    }
+    for (ExprPair base = {0}; expr_next_pair(g, e, EX_PROD, &base);)
+      if (has_unknown(g, base.of) && !(num_is_int(base.num) && num_sign(base.num) > 0)) return 0;
   }
   return 1;
 }

@@ -85,15 +85,13 @@ static Real sum_bound(const Bounds *b, Expr e) {
 static int is_exact_product(const Bounds *b, Expr e, Real value) {
   Real above = 1, below = 1;
   int64_t factors = 0;
-  for (uint32_t i = 0; i < expr_pairs(b->g, e, EX_PROD); i++) {
-    Num k;
-    Expr x = expr_pair(b->g, e, EX_PROD, i, &k);
-    Real v = value_of(b, x);
-    if (!num_is_int(k) || bound_of(b, x) != 0 || !(fabsl(v) <= 4096) || 4 * v != floorl(4 * v)) return 0;
-    factors += k.num < 0 ? -k.num : k.num;
+  for (ExprPair x = {0}; expr_next_pair(b->g, e, EX_PROD, &x);) {
+    Real v = value_of(b, x.of);
+    if (!num_is_int(x.num) || bound_of(b, x.of) != 0 || !(fabsl(v) <= 4096) || 4 * v != floorl(4 * v)) return 0;
+    factors += x.num.num < 0 ? -x.num.num : x.num.num;
     if (factors > 4) return 0;
-    for (int64_t j = 0; j < k.num; j++) above *= v;
-    for (int64_t j = 0; j < -k.num; j++) below *= v;
+    for (int64_t j = 0; j < x.num.num; j++) above *= v;
+    for (int64_t j = 0; j < -x.num.num; j++) below *= v;
   }
   return below != 0 && value * below == above && is_short_binary(value);
 }
@@ -103,14 +101,12 @@ static int is_exact_product(const Bounds *b, Expr e, Real value) {
 static Real prod_bound(const Bounds *b, Expr e, Real value) {
   Real relative = 0, most = 1;
   int vanishes = 0;
-  for (uint32_t i = 0; i < expr_pairs(b->g, e, EX_PROD); i++) {
-    Num k;
-    Expr x = expr_pair(b->g, e, EX_PROD, i, &k);
-    Real power = (Real)num_value(k), size = fabsl(power), v = fabsl(value_of(b, x)), off = bound_of(b, x);
+  for (ExprPair x = {0}; expr_next_pair(b->g, e, EX_PROD, &x);) {
+    Real power = (Real)num_value(x.num), size = fabsl(power), v = fabsl(value_of(b, x.of)), off = bound_of(b, x.of);
     vanishes |= power > 0 && !(v > off);
     most *= power > 0 ? powl(v + off, power) : v > off ? powl(v - off, power) : INFINITY;
     relative += size * off / v + (size + 4) * LDBL_EPSILON;
-    if (num_error(k) > 0) relative += (Real)num_error(k) * fabsl(logl(v));
+    if (num_error(x.num) > 0) relative += (Real)num_error(x.num) * fabsl(logl(v));
   }
   if (is_exact_product(b, e, value)) return 0;
   if (vanishes) return isnan(most) ? INFINITY : 2 * most;

@@ -44,9 +44,8 @@ static int is_power(Num k) { return num_is_int(k) && num_sign(k) > 0; }
 static void put_roles(FunctionSearch *s, Expr x) {
   ExprGraph *g = s->a->g;
   ExprOp op = expr_op(g, x);
-  Num k;
   if (op == EX_SUM || op == EX_PROD)
-    for (uint32_t i = 0; i < expr_pairs(g, x, op); i++) s->has[x] |= s->has[expr_pair(g, x, op, i, &k)];
+    for (uint32_t i = 0; i < expr_pairs(g, x, op); i++) s->has[x] |= s->has[expr_pair(g, x, op, i, NULL)];
   else
     for (uint32_t i = 0; i < expr_nargs(g, x); i++) s->has[x] |= s->has[expr_arg(g, x, i)];
 }
@@ -64,13 +63,11 @@ static void classify(FunctionSearch *s, Expr x) {
     s->is_other[x] = s->is_other[expr_arg(g, x, 0)];
   } else if (op != EX_SUM && op != EX_PROD) s->is_other[x] = 1;
   else
-    for (uint32_t i = 0; i < expr_pairs(g, x, op); i++) {
-      Num k;
-      Expr part = expr_pair(g, x, op, i, &k);
-      int whole = op == EX_SUM || is_power(k);
-      uint32_t degree = !whole ? 0 : op == EX_SUM ? s->degree[part] : s->degree[part] * (uint32_t)k.num;
+    for (ExprPair part = {0}; expr_next_pair(g, x, op, &part);) {
+      int whole = op == EX_SUM || is_power(part.num);
+      uint32_t degree = !whole ? 0 : op == EX_SUM ? s->degree[part.of] : s->degree[part.of] * (uint32_t)part.num.num;
       s->degree[x] = op == EX_PROD ? s->degree[x] + degree : degree > s->degree[x] ? degree : s->degree[x];
-      s->is_other[x] |= s->is_other[part] || (!whole && has_coordinates(s, part));
+      s->is_other[x] |= s->is_other[part.of] || (!whole && has_coordinates(s, part.of));
     }
 }
 
@@ -93,11 +90,9 @@ static void look_into(FunctionSearch *s, Expr x) {
   else if (op != EX_SUM && op != EX_PROD) {
     if (!(s->has[x] & HAS_V)) add_function(s, x);
   } else
-    for (uint32_t i = 0; i < expr_pairs(g, x, op); i++) {
-      Num k;
-      Expr part = expr_pair(g, x, op, i, &k);
-      if (op == EX_SUM || is_power(k)) s->is_wanted[part] = 1;
-      else if (s->has[part] == HAS_Q) add_function(s, expr_pow_num(g, part, k));
+    for (ExprPair part = {0}; expr_next_pair(g, x, op, &part);) {
+      if (op == EX_SUM || is_power(part.num)) s->is_wanted[part.of] = 1;
+      else if (s->has[part.of] == HAS_Q) add_function(s, expr_pow_num(g, part.of, part.num));
     }
 }
 

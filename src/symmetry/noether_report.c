@@ -96,11 +96,10 @@ static Expr node_in(const Eqns *to, const ExprGraph *g, Expr x, const ExprMap *m
   if (op == EX_SYM) return symbol_in(to, expr_sym_of(g, x));
   if (op == EX_SUM || op == EX_PROD) {
     Expr all = expr_int(other, op == EX_PROD);
-    for (uint32_t i = 0; i < expr_pairs(g, x, op); i++) {
-      Num c;
-      Expr part = expr_map_get(map, expr_pair(g, x, op, i, &c));
+    for (ExprPair pair = {0}; expr_next_pair(g, x, op, &pair);) {
+      Expr part = expr_map_get(map, pair.of);
       if (!part) return 0;
-      part = op == EX_SUM ? expr_scale(other, c, part) : expr_pow_num(other, part, c);
+      part = op == EX_SUM ? expr_scale(other, pair.num, part) : expr_pow_num(other, part, pair.num);
       all = op == EX_SUM ? expr_add(other, all, part) : expr_mul(other, all, part);
     }
     return all;

@@ -98,11 +98,10 @@ Expr noether_at_rest(const ProofWork *w, Expr x) {
 static Expr delta_lagrangian(const ProofWork *w) {
   ExprGraph *g = w->g;
   VEC(Expr) left = {0};
-  for (uint32_t i = 0; i < expr_pairs(g, w->L, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(g, w->L, EX_SUM, i, &c), change = delta(w, term);
+  for (ExprPair term = {0}; expr_next_pair(g, w->L, EX_SUM, &term);) {
+    Expr change = delta(w, term.of);
     if (is_zero(w, change) == PROVED_ZERO) continue;
-    change = expr_scale(g, c, noether_shorten(w, change));
+    change = expr_scale(g, term.num, noether_shorten(w, change));
     vec_push(w->m->arena, &left, change);
   }
   return expr_add_n(g, left.at, left.n);

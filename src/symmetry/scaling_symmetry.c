@@ -72,10 +72,9 @@ static int is_proved(ScalingSearch *w) {
     seed[v_of(w, i)] = expr_scale(g, num_sub(w->out->alpha[i], w->out->beta), node(w, v_of(w, i)));
   }
   seed[w->e->m->time] = expr_scale(g, w->out->beta, node(w, w->e->m->time));
-  for (uint32_t k = 0; k < expr_pairs(g, L, EX_SUM); k++) {
-    Num c;
-    Expr term = expr_pair(g, L, EX_SUM, k, &c), less = expr_scale(g, num_sub(w->out->kappa, w->out->beta), term);
-    expr_tangent(g, &term, 1, (ExprSeeds){.at = seed, .n = symbols}, "_delta", NULL, &moved);
+  for (ExprPair term = {0}; expr_next_pair(g, L, EX_SUM, &term);) {
+    Expr less = expr_scale(g, num_sub(w->out->kappa, w->out->beta), term.of);
+    expr_tangent(g, &term.of, 1, (ExprSeeds){.at = seed, .n = symbols}, "_delta", NULL, &moved);
     if (!search_goes_on(w->limit, 0) || prove_zero(g, expr_sub(g, moved, less), NULL) != PROVED_ZERO) return 0;
   }
   return 1;
