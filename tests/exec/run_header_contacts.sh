@@ -223,7 +223,7 @@ friction brake on a: 0.2 [N*m]
 force x = F
 guide pin: (x, y) = (r*cos(a) + l*cos(b), r*sin(a) - l*sin(b)), friction = mu, slip = 15 [mm]*b'
 guide rail: y = 0, friction = mu, static = 1.5*mu
-scene coast { start a = 1, a' = 5 [rad/s], b = asin(r*sin(1)/l), x = r*cos(1) + l*cos(asin(r*sin(1)/l)); span 10 [s]; output a }
+scene coast { start a = 1, a' = 5 [rad/s], b = asin(r*sin(1)/l), x = r*cos(1) + l*cos(asin(r*sin(1)/l)); span 20 [s]; output a }
 END_OF
 inputs=', 0'
 check "journals and rails beside dry friction, a state and an input" digits "$TMP/guided.lag" coast
