@@ -338,7 +338,7 @@ static int next(Trial *t, int *k) {
 }
 
 /* Where a contact begins to slip: edge[n] := whether no forces hold the contacts at rest but with this one at the
- * edge of its cone. */
+ * edge of its cone; the side to which it would slip. */
 static void find_edges(Trial *t) {
   int leaves = 0;
   for (int i = 0; i < t->n; i++) {
@@ -353,7 +353,8 @@ static void find_edges(Trial *t) {
   for (int i = 0; i < t->n; i++) {
     const lag_touch *c = &t->of[i];
     double most = lag_touch_holds(c) * t->x[i], force = c->tangent >= 0 ? friction_of(t, c) : 0;
-    t->edge[i] = c->mode == LAG_CONTACT_STICKS && most - force <= alike * (fabs(most) + force);
+    if (c->mode == LAG_CONTACT_STICKS && most - force <= alike * (fabs(most) + force))
+      t->edge[i] = t->x[c->tangent] > 0 ? -1 : 1;
   }
 }
 
@@ -431,11 +432,12 @@ static int try_breaks(Trial *t, lag_touch *found) {
 
 /* ---- more contacts than combinations can be tried of */
 
-/* The mode with which the search begins: closed, sticking at rest. */
-static void choose_first(lag_touch *c) {
+/* The mode with which the search begins: closed, sticking at rest, but for contacts that begin to slip together. */
+static void choose_first(const Trial *t, int i) {
+  lag_touch *c = &t->of[i];
   c->mode = LAG_CONTACT_STICKS;
-  c->mode = may_be(c) ? LAG_CONTACT_STICKS : LAG_CONTACT_SLIPS;
-  c->to = c->slip ? c->slip : 1;
+  c->mode = may_be(c) && !t->edge[i] ? LAG_CONTACT_STICKS : LAG_CONTACT_SLIPS;
+  c->to = c->slip ? c->slip : t->edge[i] < 0 ? -1 : 1;
   c->presses = 1;
 }
 
@@ -443,7 +445,7 @@ static void choose_first(lag_touch *c) {
 static void change_mode(const Trial *t, int i) {
   lag_touch *c = &t->of[i];
   if (c->mode == LAG_CONTACT_OPEN) {
-    choose_first(c);
+    choose_first(t, i);
   } else if (!c->guide && !(t->x[i] > rounding(t, i))) {
     c->mode = LAG_CONTACT_OPEN;
   } else if (c->mode == LAG_CONTACT_STICKS) {
@@ -471,7 +473,7 @@ static int change_sides(const Trial *t) {
 
 static int pivot(Trial *t, lag_touch *found) {
   enum { ROUNDS = 1000 };
-  for (int i = 0; i < t->n; i++) choose_first(&t->of[i]);
+  for (int i = 0; i < t->n; i++) choose_first(t, i);
   for (int round = 0; round < ROUNDS; round++) {
     int i = 0;
     if (!solve(t)) {
@@ -483,6 +485,7 @@ static int pivot(Trial *t, lag_touch *found) {
       keep(t, found, is_shared(t) ? LEAST : UNIQUE);
       return 1;
     }
+    solve(t); /* the least forces again */
     change_mode(t, i);
   }
   return 0;
@@ -508,10 +511,8 @@ int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const dou
              room + rows * (rows + 3)};
   lag_touch found[LAG_MOST_TOUCHES];
   int few = n <= LAG_TRIED_TOUCHES, motions;
-  if (few) {
-    find_edges(&t);
-    find_prestress(&t);
-  }
+  find_edges(&t);
+  if (few) find_prestress(&t);
   motions = few ? try_breaks(&t, found) : pivot(&t, found);
   if (few && !motions) {
     t.may_wedge = 1;
