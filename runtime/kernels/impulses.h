@@ -493,6 +493,16 @@ static inline int lag_few_step(const lag_impulses *s, lag_contact_equations *w) 
   return 0;
 }
 
+/* Whether friction that stands at 0 or at a limit obeys its law but for what held rows give way. free: the slip without
+ * it. */
+static inline int lag_few_stays(const lag_contact_equations *w, const lag_pressing *c, LAG_REAL slow, LAG_REAL free) {
+  const int r = (int)c->row, stand = w->stand[r + 1];
+  const LAG_REAL give = LAG_C(1e-9)*slow*LAG_FN(fabs)(w->P[r]), slip = w->rate[r + 1];
+  const LAG_REAL low = c->centre[0] - c->radius, high = c->centre[0] + c->radius;
+  if (stand == LAG_RUB_NONE) return free >= low - give && free <= high + give;
+  return (stand == LAG_RUB_MOST && slip <= low + give) || (stand == LAG_RUB_LEAST && slip >= high - give);
+}
+
 /* Lets rows stand as the laws have it; returns how many stood otherwise. */
 static inline int lag_few_stand(const lag_impulses *s, lag_contact_equations *w) {
   const LAG_REAL zero = LAG_C(0.0);
@@ -512,6 +522,7 @@ static inline int lag_few_stand(const lag_impulses *s, lag_contact_equations *w)
     if (slow > zero) lag_friction_turn(&law, &slip, &x);
     if (slow > zero && (slip < free || slip > free)) stand = slip < free ? LAG_RUB_ABOVE : LAG_RUB_BELOW;
     if (stand != LAG_RUB_NONE && LAG_FN(fabs)(x) > most) stand = x > zero ? LAG_RUB_MOST : LAG_RUB_LEAST;
+    if (slow > zero && lag_few_stays(w, c, slow, free)) stand = w->stand[r + 1];
     others += w->stand[r + 1] != stand;
     w->stand[r + 1] = stand;
   }
