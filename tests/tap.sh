@@ -54,8 +54,8 @@ light() { [ -n "${SLOW:-}" ] || case $1 in *bicycle*) false ;; esac; }
 # self_contained MODEL: its C needs nothing of liblag, as an output action(x) does.
 self_contained() { ! grep -q '^ *observe .*= action(' "$1"; }
 
-# has_header MODEL: constraints that begin and end by a condition have no header, and no one function for all states; nor have guides.
-has_header() { ! grep -q -e '^ *constraint .* while [^l]' -e '^ *guide ' -e '^ *friction .*lambda(' "$1"; }
+# has_header MODEL: constraints that begin and end by a condition have no header, and no one function for all states.
+has_header() { ! grep -q -e '^ *constraint .* while [^l]' "$1"; }
 
 # is NAME EXPECTED GOT
 is() {

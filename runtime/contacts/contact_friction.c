@@ -377,7 +377,7 @@ static int find_free_accelerations(ContactSet *w) {
   return LAG_OK;
 }
 
-/* Reports that Coulomb's law has no motion, or several. */
+/* Reports that Coulomb's law has no motion, or several; by friction that presses its own contact, or by the search. */
 static int fail_paradox(ContactSet *w, const lag_touch *of, int n, int motions) {
   int worst = 0;
   double least = HUGE_VAL;
@@ -390,6 +390,12 @@ static int fail_paradox(ContactSet *w, const lag_touch *of, int n, int motions) 
     least = limit;
     worst = k;
   }
+  if (least > 1e9)
+    return lag_fail(w->sim, LAG_ESTALL,
+                    "at t = %.9g s %s of the %d contacts and guides that touch, the first of them %s: take moreau, "
+                    "which finds their impulses step by step",
+                    w->sim->run->t, motions ? "several motions follow" : "no motion is found", n,
+                    lag_contacts_name(w, of[0].contact));
   return lag_fail(w->sim, LAG_ESTALL,
                   "at t = %.9g s %s at the %s %s, of friction %.6g: %s (Painleve's paradox, from a friction of "
                   "%.6g on in this position)",

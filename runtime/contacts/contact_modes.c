@@ -228,15 +228,16 @@ static int is_shared(Trial *t) {
 
 static double rounding(const Trial *t, int k) { return response(t, k) > 0 ? nothing * t->size[k] / response(t, k) : 0; }
 
+/* Whether row k has no acceleration. */
+static int rests(const Trial *t, int k) { return fabs(t->a[k]) <= alike * t->size[k]; }
+
 /* Whether forces and accelerations are allowed in the contact's mode. */
 static int fits(const Trial *t, int i) {
   const lag_touch *c = &t->of[i];
   if (c->mode == LAG_CONTACT_OPEN) return t->a[i] >= -nothing * t->size[i];
-  if (!c->guide && (!(t->x[i] > rounding(t, i)) || !(response(t, i) > 0) || fabs(t->a[i]) > alike * t->size[i]))
-    return 0;
+  if (!c->guide && (!(t->x[i] > rounding(t, i)) || !(response(t, i) > 0) || !rests(t, i))) return 0;
   if (c->mode == LAG_CONTACT_STICKS)
-    return fabs(t->a[c->tangent]) <= alike * t->size[c->tangent] &&
-           (!c->second || fabs(t->a[c->second]) <= alike * t->size[c->second]) &&
+    return rests(t, c->tangent) && (!c->second || rests(t, c->second)) &&
            friction_of(t, c) <= lag_touch_holds(c) * t->x[i] * (1 + nothing) + rounding(t, c->tangent);
   if (c->second && !c->slip)
     return c->way[0] * t->a[c->tangent] + c->way[1] * t->a[c->second] >=
@@ -337,7 +338,7 @@ static int next(Trial *t, int *k) {
 }
 
 /* Where a contact begins to slip: edge[n] := whether no forces hold the contacts at rest but with this one at the
- * edge of its cone. */
+ * edge of its cone; the side to which it would slip. */
 static void find_edges(Trial *t) {
   int leaves = 0;
   for (int i = 0; i < t->n; i++) {
@@ -352,7 +353,8 @@ static void find_edges(Trial *t) {
   for (int i = 0; i < t->n; i++) {
     const lag_touch *c = &t->of[i];
     double most = lag_touch_holds(c) * t->x[i], force = c->tangent >= 0 ? friction_of(t, c) : 0;
-    t->edge[i] = c->mode == LAG_CONTACT_STICKS && most - force <= alike * (fabs(most) + force);
+    if (c->mode == LAG_CONTACT_STICKS && most - force <= alike * (fabs(most) + force))
+      t->edge[i] = t->x[c->tangent] > 0 ? -1 : 1;
   }
 }
 
@@ -372,19 +374,48 @@ static void keep(const Trial *t, lag_touch *found, int kind) {
   for (int i = 0; i < t->n; i++) found[i].shared = kind != UNIQUE && found[i].mode == LAG_CONTACT_STICKS;
 }
 
+/* Prestress of a motion: contacts at their limits that begin no slip, or do not open; and the size of the forces. */
+typedef struct Prestress {
+  int idle;
+  double size;
+} Prestress;
+
+static Prestress prestress_of(const Trial *t) {
+  Prestress p = {0, 0};
+  for (int i = 0; i < t->n; i++) {
+    const lag_touch *c = &t->of[i];
+    const int slips = c->mode == LAG_CONTACT_SLIPS && c->tangent >= 0 && !c->slip;
+    p.size += response(t, c->guide ? c->tangent : i) * t->x[i] * t->x[i];
+    if (slips) p.idle += rests(t, c->tangent) && (!c->second || rests(t, c->second));
+    else p.idle += c->mode == LAG_CONTACT_OPEN && rests(t, i);
+  }
+  return p;
+}
+
+/* Of two motions by different prestress the one with less counts: -1, a; 1, b; 0: neither, as without prestress. */
+static int with_less(const Prestress *a, const Prestress *b) {
+  if (a->idle != b->idle) return a->idle < b->idle ? -1 : 1;
+  if (a->idle == 0 || fabs(a->size - b->size) <= alike * (a->size + b->size)) return 0;
+  return a->size < b->size ? -1 : 1;
+}
+
 /* Tries all combinations; found := the motion, if there is one. */
 static int try_all(Trial *t, lag_touch *found) {
   int k[LAG_MOST_TOUCHES] = {0}, motions = 0, rank = 0, kind;
+  Prestress least = {0, 0};
   for (int i = 0; i < t->n; i++) choose(&t->of[i], 0);
   do {
     if ((kind = find_motion(t)) == NONE) continue;
-    if (motions && !same_motion(t)) return 2;
-    if (motions && rank_of(t, kind) >= rank) continue;
-    if (!motions) {
+    const Prestress now = prestress_of(t);
+    const int differs = motions && !same_motion(t), order = differs ? with_less(&now, &least) : 0;
+    if (differs && order == 0) motions = 2;
+    if (differs ? order >= 0 : motions && rank_of(t, kind) >= rank) continue;
+    if (!motions || differs) {
       memcpy(t->first, t->a, (size_t)t->rows * sizeof *t->a);
       memcpy(t->first_size, t->size, (size_t)t->rows * sizeof *t->a);
+      least = now;
+      motions = 1;
     }
-    motions = 1;
     rank = rank_of(t, kind);
     keep(t, found, kind);
   } while (next(t, k));
@@ -401,11 +432,12 @@ static int try_breaks(Trial *t, lag_touch *found) {
 
 /* ---- more contacts than combinations can be tried of */
 
-/* The mode with which the search begins: closed, sticking at rest. */
-static void choose_first(lag_touch *c) {
+/* The mode with which the search begins: closed, sticking at rest, but for contacts that begin to slip together. */
+static void choose_first(const Trial *t, int i) {
+  lag_touch *c = &t->of[i];
   c->mode = LAG_CONTACT_STICKS;
-  c->mode = may_be(c) ? LAG_CONTACT_STICKS : LAG_CONTACT_SLIPS;
-  c->to = c->slip ? c->slip : 1;
+  c->mode = may_be(c) && !t->edge[i] ? LAG_CONTACT_STICKS : LAG_CONTACT_SLIPS;
+  c->to = c->slip ? c->slip : t->edge[i] < 0 ? -1 : 1;
   c->presses = 1;
 }
 
@@ -413,7 +445,7 @@ static void choose_first(lag_touch *c) {
 static void change_mode(const Trial *t, int i) {
   lag_touch *c = &t->of[i];
   if (c->mode == LAG_CONTACT_OPEN) {
-    choose_first(c);
+    choose_first(t, i);
   } else if (!c->guide && !(t->x[i] > rounding(t, i))) {
     c->mode = LAG_CONTACT_OPEN;
   } else if (c->mode == LAG_CONTACT_STICKS) {
@@ -441,7 +473,7 @@ static int change_sides(const Trial *t) {
 
 static int pivot(Trial *t, lag_touch *found) {
   enum { ROUNDS = 1000 };
-  for (int i = 0; i < t->n; i++) choose_first(&t->of[i]);
+  for (int i = 0; i < t->n; i++) choose_first(t, i);
   for (int round = 0; round < ROUNDS; round++) {
     int i = 0;
     if (!solve(t)) {
@@ -453,6 +485,7 @@ static int pivot(Trial *t, lag_touch *found) {
       keep(t, found, is_shared(t) ? LEAST : UNIQUE);
       return 1;
     }
+    solve(t); /* the least forces again */
     change_mode(t, i);
   }
   return 0;
@@ -478,10 +511,8 @@ int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const dou
              room + rows * (rows + 3)};
   lag_touch found[LAG_MOST_TOUCHES];
   int few = n <= LAG_TRIED_TOUCHES, motions;
-  if (few) {
-    find_edges(&t);
-    find_prestress(&t);
-  }
+  find_edges(&t);
+  if (few) find_prestress(&t);
   motions = few ? try_breaks(&t, found) : pivot(&t, found);
   if (few && !motions) {
     t.may_wedge = 1;

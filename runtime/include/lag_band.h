@@ -157,11 +157,12 @@ static int lag_band_factor(int n, const lag_band *b, const LAG_LANE *M, const LA
       *other = was;
     }
     if (!(LAG_LANE_FN(fabs)(row[0]) > 0)) return 0;
+    const int right = (int)b->end[k] - k;
     for (int r = k + 1; r <= last; r++) {
       LAG_LANE *const below = b->rows + r*width + k - r + h;
       const LAG_LANE factor = below[0] /= row[0];
       if (!(factor < 0 || factor > 0)) continue;
-      for (int c = 1; c <= (int)b->end[k] - k; c++) below[c] -= factor*row[c];
+      for (int c = 1; c <= right; c++) below[c] -= factor*row[c];
       if (b->end[r] < b->end[k]) b->end[r] = b->end[k];
     }
   }
@@ -176,11 +177,16 @@ static void lag_band_solve(const lag_band *b, LAG_LANE *y) {
     const LAG_LANE x = y[top];
     y[top] = y[k];
     y[k] = x;
-    for (int r = k + 1; r <= (int)b->deep[k]; r++) y[r] -= b->rows[r*width + k - r + h]*x;
+    const int last = (int)b->deep[k];
+    const LAG_LANE *below = b->rows + (k + 1)*width + h - 1;
+    for (int r = k + 1; r <= last; r++, below += width - 1) y[r] -= *below*x;
   }
   for (int k = b->all - 1; k >= 0; k--) {
-    for (int c = 1; c <= (int)b->end[k] - k; c++) y[k] -= b->rows[k*width + h + c]*y[k + c];
-    y[k] /= b->rows[k*width + h];
+    const int right = (int)b->end[k] - k;
+    const LAG_LANE *const row = b->rows + k*width + h;
+    LAG_LANE x = y[k];
+    for (int c = 1; c <= right; c++) x -= row[c]*y[k + c];
+    y[k] = x/row[0];
   }
 }
 

@@ -330,18 +330,18 @@ static inline void lag_contact_conjugate(const lag_impulses *s, LAG_REAL *before
 }
 
 /* Few planar contacts: responses W of all rates to all impulses; impulses and rates, and those of the sweeps; how each
- * row stands; the equations of all rows that stand so. */
+ * row stands, and whether that may be off by what held rows give way; the equations of all rows that stand so. */
 enum { LAG_FEW_ROWS = 16 };
 enum { LAG_RUB_NONE, LAG_RUB_MOST, LAG_RUB_LEAST, LAG_RUB_ABOVE, LAG_RUB_BELOW, LAG_RUBS }; /* friction; a gap: 0, 1 */
 typedef struct lag_contact_equations {
-  int rows, stand[LAG_FEW_ROWS];
+  int rows, stand[LAG_FEW_ROWS], gives;
   LAG_REAL W[LAG_FEW_ROWS*LAG_FEW_ROWS], a[LAG_FEW_ROWS*LAG_FEW_ROWS], was[LAG_FEW_ROWS], at[LAG_FEW_ROWS];
   LAG_REAL P[LAG_FEW_ROWS], rate[LAG_FEW_ROWS], change[LAG_FEW_ROWS], pivot[LAG_FEW_ROWS], scale[LAG_FEW_ROWS];
 } lag_contact_equations;
 
 /* Not 0: the contacts are too many, in space, or on two sides of a rail. */
 static inline int lag_few_begin(const lag_impulses *s, lag_contact_equations *w) {
-  w->rows = 0;
+  w->rows = w->gives = 0;
   for (int i = 0; i < s->n; i++) {
     const lag_pressing *const c = &s->of[i];
     w->rows += 1 + (int)c->tangents;
@@ -395,6 +395,16 @@ static inline int lag_few_step(const lag_impulses *s, lag_contact_equations *w) 
   return 0;
 }
 
+/* Whether friction that stands at 0 or at a limit obeys its law but for what held rows give way. free: the slip without
+ * it. */
+static inline int lag_few_stays(const lag_contact_equations *w, const lag_pressing *c, LAG_REAL slow, LAG_REAL free) {
+  const int r = (int)c->row, stand = w->stand[r + 1];
+  const LAG_REAL give = LAG_C(1e-9)*slow*LAG_FN(fabs)(w->P[r]), slip = w->rate[r + 1];
+  const LAG_REAL low = c->centre[0] - c->radius, high = c->centre[0] + c->radius;
+  if (stand == LAG_RUB_NONE) return free >= low - give && free <= high + give;
+  return (stand == LAG_RUB_MOST && slip <= low + give) || (stand == LAG_RUB_LEAST && slip >= high - give);
+}
+
 /* Lets rows stand as the laws have it; returns how many stood otherwise. */
 static inline int lag_few_stand(const lag_impulses *s, lag_contact_equations *w) {
   const LAG_REAL zero = LAG_C(0.0);
@@ -414,6 +424,7 @@ static inline int lag_few_stand(const lag_impulses *s, lag_contact_equations *w)
     if (slow > zero) lag_friction_turn(&law, &slip, &x);
     if (slow > zero && (slip < free || slip > free)) stand = slip < free ? LAG_RUB_ABOVE : LAG_RUB_BELOW;
     if (stand != LAG_RUB_NONE && LAG_FN(fabs)(x) > most) stand = x > zero ? LAG_RUB_MOST : LAG_RUB_LEAST;
+    if (w->gives && slow > zero && lag_few_stays(w, c, slow, free)) stand = w->stand[r + 1];
     others += w->stand[r + 1] != stand;
     w->stand[r + 1] = stand;
   }
@@ -453,6 +464,7 @@ static inline int lag_contact_newton(const lag_impulses *s) {
   lag_few_stand(s, &w);
   found = lag_few_agree(s, &w, TURNS);
   for (int r = 0; r < w.rows; r++) best[r] = w.P[r];
+  w.gives = 1; /* only beside the sweeps' impulses: other solutions may be far */
   for (int more = !found && w.rows <= MOST; more; more = lag_few_next(s, stand)) {
     LAG_REAL far = LAG_C(0.0);
     for (int r = 0; r < w.rows; r++) w.P[r] = w.was[r], w.rate[r] = w.at[r], w.stand[r] = stand[r];

@@ -206,6 +206,28 @@ for kind in 'contact floor: y >= 0, restitution = 0,' 'guide floor: y = 0,'; do
   check "from 0.4 m g on" near "$(sed -n 's/.*"floor slips": {"count": 1, "first": \([-0-9.e]*\).*/\1/p' "$TMP/json")" 0.7696 1e-12
 done
 
+# ---- rough jaws on rough rails: nothing determines the prestress of a block at rest between them, so it holds as long as some holds it, by 2 mu F/(1 - mu mu_r); from then on the
+# least, where rails relieve it: N = F/(1 + mu mu_r)
+model jaws <<'END_OF'
+model jaws
+coord x[2] [m], y[2] [m], bx [m], by [m]
+param F = 20 [N], mu = 0.4, mu_r = 0.1, g = 9.81 [m/s^2], pull = 0 [N/s]
+kinetic = 0.2 [kg]/2*(x[1]'^2 + y[1]'^2 + x[2]'^2 + y[2]'^2) + 0.5 [kg]/2*(bx'^2 + by'^2)
+potential = 0.5 [kg]*g*by
+force (x[1], x[2]) = (F, -F)
+force by = pull*t
+for i in 1..2 { guide rail[i]: y[i] = 0, friction = mu_r, slip = x[i]' }
+contact left: bx - 0.02 [m] - x[1] >= 0, restitution = 0, friction = mu, slip = by' - y[1]'
+contact right: x[2] - bx - 0.02 [m] >= 0, restitution = 0, friction = mu, slip = by' - y[2]'
+scene close { start x = {-0.05, 0.06}; span 2 [s] }
+scene pull { start x = {-0.02, 0.02}; pull = 10 [N/s]; span 3 [s] }
+END_OF
+check "jaws close on a block" run jaws close
+check "which they hold" near "$(final "by'")" 0 0
+check "a block is pulled out of jaws" run jaws pull
+loose=$(calc '(0.5*9.81 + 2*0.4*20/(1 - 0.04))/10')
+check "against the least friction" near "$(final "by'")" "$(calc "(5*(9 - $loose^2) - (0.5*9.81 + 2*0.4*20/(1 + 0.04))*(3 - $loose))/0.5")" 1e-8
+
 # ---- by moreau: the same laws, where it stops to the order of a step
 check "a block by moreau" run rail go --method 'moreau(step=1e-3)'
 check "slides to rest" near "$(final x)" "$(calc '1/(2*0.2*(30 - 19.62)/2)')" 1e-6
@@ -225,6 +247,10 @@ check "of which the last stops, too" near "$(final 'x.9.')" "$(calc '1.21/(2*0.3
 sed 's/N = 9/N = 17/; s/x\[9\]/x[17]/' "$TMP/many.lag" | model crowd
 check "seventeen, more than events decide, take moreau" run crowd go
 check "to the same rest" near "$(final 'x.17.')" "$(calc '1.21/(2*0.3*9.81)')" 1e-6 # h^2 mu g/8, 1000 steps
+# slopes of forces once a step, and each mode tried twice: about 12 rates a guide and step, 10 where none sticks
+rates() { "$LAGC" run "$TMP/crowd.lag" --method 'moreau(step=1e-2)' --json --quiet >"$TMP/json"; }
+check "by 100 steps without rows" rates
+check "of 12 rates a guide and step" near "$(calc "$(number rhs_calls)/1700")" 12 1
 check "dop853 refuses them by number" refuses 2 'at most 16 guides with friction, and the model has 17' crowd go --method dop853
 model beside <<'END_OF'
 model beside

@@ -223,7 +223,7 @@ friction brake on a: 0.2 [N*m]
 force x = F
 guide pin: (x, y) = (r*cos(a) + l*cos(b), r*sin(a) - l*sin(b)), friction = mu, slip = 15 [mm]*b'
 guide rail: y = 0, friction = mu, static = 1.5*mu
-scene coast { start a = 1, a' = 5 [rad/s], b = asin(r*sin(1)/l), x = r*cos(1) + l*cos(asin(r*sin(1)/l)); span 10 [s]; output a }
+scene coast { start a = 1, a' = 5 [rad/s], b = asin(r*sin(1)/l), x = r*cos(1) + l*cos(asin(r*sin(1)/l)); span 20 [s]; output a }
 END_OF
 inputs=', 0'
 check "journals and rails beside dry friction, a state and an input" digits "$TMP/guided.lag" coast
@@ -240,6 +240,17 @@ contact floor: y >= 0, restitution = 0.6
 scene s { start x' = 0.5 [m/s], y = 0.3 [m]; span 100 [s] }
 END_OF
 check "dry friction beside a contact" digits "$TMP/both.lag" s
+model stuck <<'END_OF'
+model stuck
+coord x [m], y [m]
+kinetic = 1 [kg]/2*(x'^2 + y'^2) + 0.3 [kg]*x'*y'
+potential = 50 [N/m]/2*y^2
+force x = -3 [N] + 4.5 [N]*sin(3 [rad/s]*t)
+friction rub on x: 1 [N], static = 2 [N]
+contact wall: x >= 0, restitution = 0
+scene s { start x = 0.01, y = 0.02, y' = 0.1 [m/s]; span 100 [s] }
+END_OF
+check "static friction of a body that a wall has held" digits "$TMP/stuck.lag" s
 near=200
 sed 's/span 0.6/span 10/' $here/fmu/stopped.lag >"$TMP/stopped.lag" # an impact in 300 steps
 check "guides and dry friction beside a contact with friction" digits "$TMP/stopped.lag" coast

@@ -425,4 +425,36 @@ for h in 0.4 0.46 0.4657 0.47 0.5; do
   al=$(calc "atan2(0.2, $h)") start=$(calc '6*atan2(0,-1)/180')
   check "its energy is lost in strokes" near "$(number at_events)" "$(calc "-100*9.81*(sqrt(0.04 + $h^2)*cos($al - $start) - $h)")" 5e-3 # the fall of a step, m g h v
 done
+# ---- a wheel is turned between a floor and a wall: it holds up to mu m g r (1 + mu)/(1 + mu^2) = 8.829 N m; the rows of both contacts depend on each other
+model corner <<'END_OF'
+model corner
+coord x [m], y [m], th [rad]
+param m = 5 [kg] > 0, r = 0.3 [m] > 0, mu = 0.5, g = 9.81 [m/s^2] > 0
+kinetic = m/2*(x'^2 + y'^2) + m*r^2/4*th'^2
+potential = m*g*y
+force th = -4 [N*m/s]*t
+contact floor: y >= r, restitution = 0, friction = mu, slip = x' + r*th'
+contact wall: 1 [m] - x >= r, restitution = 0.2, friction = mu, slip = y' + r*th'
+scene drive { start x = 0.5, y = r; span 4 [s] }
+END_OF
+for by in dop853 $m3; do
+  check "a wheel in a corner, $by" run corner drive --method "$by"
+  check "turns where friction gives way" near "$(final "th'")" "$(calc '-(2*(16 - 2.20725^2) - 8.829*(4 - 2.20725))/0.225')" 1e-5 # the step in which it breaks loose: h^2/2*4/I
+done
+
+# ---- a toggle is thrown over its dead centre against a stop: within a step of 0.03 rad the slider moves by the square of that alone
+model toggle <<'END_OF'
+model toggle
+coord a [rad], b [rad], x [m], y [m]
+param l = 0.2 [m] > 0
+kinetic = 0.004 [kg*m^2]/2*(a'^2 + b'^2) + 0.5 [kg]/2*(x'^2 + y'^2)
+potential = 2e4 [N/m]/2*max(x - 0.395 [m], 0)^2
+force a = -8 [N*m]
+guide pin: (x, y) = l*(cos(a) + cos(b), sin(a) - sin(b)), friction = 0.25, slip = 6 [mm]*(a' + b')
+guide rail: y = 0, friction = 0.25, slip = x'
+contact stop: a >= -0.06, restitution = 0.1
+scene clamp { start a = 0.6; start guess b = 0.6, x = 0.33; span 1 [s] }
+END_OF
+check "a toggle passes its dead centre" run toggle clamp --method $m3
+check "and clamps" near "$(final x)" "$(calc '0.4*cos(0.06)')" 1e-5 # of the order of the step in which it strikes: h l sin(0.06)
 tap_end
