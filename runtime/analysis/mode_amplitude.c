@@ -6,40 +6,21 @@
  * recurrences, exact but for rounding, at some phases; their harmonics h give linear equations
  * (i h - B) Y = R for those of y_k, with B the linearised model, and for h = 1 one more unknown, c_(k-1). y_k has
  * harmonics of the parity of k, up to k. In units of 1/w and of each unknown. */
-#include "analysis/mode_amplitude.h"
+#include "analysis/mode_series.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-#include "core/rhs.h"
 #include "numeric/dense.h"
 
-enum { ORDER = 5, HARMONICS = ORDER + 1 };
-
-typedef struct Series {
-  Pool pool;
-  const Modes *modes;
-  lag_problem *pb;
-  const double *rest; /* [n] */
-  double t, w;
-  int k, n, leads;    /* the mode; its leading unknown in the state */
-  double *scale, *x, *held; /* [n] units; rows of coefficients; inputs that follow a formula: none */
-  double *B;                /* [n * n] */
-  double *y, *r;            /* [HARMONICS][HARMONICS][2 n], [HARMONICS][2 n]: harmonics of y_k, of rates: re, im */
-  double *curve, *rates;    /* [HARMONICS * n], [n] */
-  double *M, *rhs;          /* a linear system of up to 2 n + 2 unknowns */
-  double *perm;
-  double c[HARMONICS], c_im[HARMONICS];
-  ModeAmplitude *out;
-} Series;
+enum { ORDER = SERIES_ORDER, HARMONICS = SERIES_HARMONICS };
 
 static double *harmonic(const Series *s, int order, int h) {
   return s->y + (size_t)(order * HARMONICS + h) * 2 * (size_t)s->n;
 }
 
-/* rates[n] := coefficient `order` of the rates along the curve y0 + sum of e^j curve[j * n]. 0 or a status. */
-static int rates_along(Series *s, int order) {
+int lag_series_rates(Series *s, int order) {
   lag_problem *pb = s->pb;
   const lag_taylor *ty = pb->model->taylor;
   const int nq = pb->nq, n = s->n, columns = ty->columns;
@@ -63,7 +44,7 @@ static int linearise(Series *s) {
   for (int j = 0; j < s->n; j++) {
     memset(s->curve, 0, (size_t)(HARMONICS * s->n) * sizeof *s->curve);
     s->curve[s->n + j] = 1;
-    int rc = rates_along(s, 1);
+    int rc = lag_series_rates(s, 1);
     if (rc) return rc;
     for (int i = 0; i < s->n; i++) s->B[i * s->n + j] = s->rates[i];
   }
@@ -86,7 +67,7 @@ static int force(Series *s, int k, int points) {
         }
         s->curve[j * n + i] = sum;
       }
-    int rc = rates_along(s, k);
+    int rc = lag_series_rates(s, k);
     if (rc) return rc;
     for (int h = k % 2; h <= k; h += 2)
       for (int i = 0; i < n; i++) {
@@ -97,42 +78,35 @@ static int force(Series *s, int k, int points) {
   return LAG_OK;
 }
 
-/* Number of other modes with the frequency h w but for the part `near` of w; *with := the nearest one, *divisor its
- * distance over w. */
-static int resonant(const Series *s, int h, double near, int *with, double *divisor) {
+int lag_series_resonant(const Series *s, int own, double h, double near, int *with, double *divisor) {
   int count = 0;
   *divisor = near;
   for (int j = 0; j < s->modes->n; j++) {
     const Mode *m = &s->modes->mode[j];
-    double off = hypot(m->re, m->im - h * s->w) / s->w;
-    if (j == s->k || !(off < near)) continue;
+    double off = hypot(m->re, m->im - fabs(h) * s->w) / s->w;
+    if (j == own || !(off < near)) continue;
     if (!count++ || off < *divisor) *with = j, *divisor = off;
   }
   return count;
 }
 
-/* M X = rhs for harmonic h; returns the number of unknowns. For h = 1 with those of c, and with the amplitude of the
- * leading unknown held. Harmonic 0 is real. */
-static int equations(Series *s, int h) {
-  const int n = s->n, N = h == 0 ? n : h == 1 ? 2 * n + 2 : 2 * n;
-  const double *u = harmonic(s, 1, 1);
+int lag_series_equations(Series *s, double h, int real, const double *u, int leads) {
+  const int n = s->n, N = real ? n : u ? 2 * n + 2 : 2 * n;
   memset(s->M, 0, sizeof(double) * (size_t)N * (size_t)N);
   for (int i = 0; i < n; i++) {
     for (int j = 0; j < n; j++) s->M[i * N + j] = -s->B[i * n + j];
-    if (!h) continue;
+    if (real) continue;
     for (int j = 0; j < n; j++) s->M[(n + i) * N + n + j] = -s->B[i * n + j];
     s->M[i * N + n + i] -= h, s->M[(n + i) * N + i] += h;
-    if (h > 1) continue;
+    if (!u) continue;
     s->M[i * N + 2 * n] = -u[n + i], s->M[i * N + 2 * n + 1] = -u[i];
     s->M[(n + i) * N + 2 * n] = u[i], s->M[(n + i) * N + 2 * n + 1] = -u[n + i];
   }
-  if (h == 1) s->M[2 * n * N + s->leads] = s->M[(2 * n + 1) * N + n + s->leads] = 1;
+  if (u) s->M[2 * n * N + leads] = s->M[(2 * n + 1) * N + n + leads] = 1;
   return N;
 }
 
-/* rhs := M^-1 rhs, where the last `free` pivots may vanish: 1 if the equations contradict each other by more than
- * `rounding`, which is a resonance; unknowns that nothing determines become 0. */
-static int solve(Series *s, int N, int free, double rounding) {
+int lag_series_solve(Series *s, int N, int free, double rounding) {
   const double vanishes = 1e-9;
   double *M = s->M, *b = s->rhs, *x = s->perm + N;
   int rank = N;
@@ -163,13 +137,14 @@ static int solve_harmonic(Series *s, int k, int h, double rounding) {
   const double near = 0.1, equal = 1e-3;
   ModeAmplitude *a = s->out;
   double *y = harmonic(s, k, h), divisor;
-  int with = 0, n = s->n, N = equations(s, h), count = resonant(s, h, equal, &with, &divisor),
+  int with = 0, n = s->n, N = lag_series_equations(s, h, !h, h == 1 ? harmonic(s, 1, 1) : NULL, s->leads),
+      count = lag_series_resonant(s, s->k, h, equal, &with, &divisor),
       forced = lag_largest(N, s->rhs) > rounding;
-  if (solve(s, N, h ? 2 * count : count, rounding)) {
+  if (lag_series_solve(s, N, h ? 2 * count : count, rounding)) {
     a->limit = AMPLITUDE_RESONANCE, a->with = with, a->times = h, a->divisor = divisor;
     return 0;
   }
-  if (!count && forced && resonant(s, h, near, &with, &divisor) && !(a->divisor <= divisor))
+  if (!count && forced && lag_series_resonant(s, s->k, h, near, &with, &divisor) && !(a->divisor <= divisor))
     a->with = with, a->times = h, a->divisor = divisor;
   for (int i = 0; i < (h ? 2 : 1) * n; i++) y[i] += s->rhs[i];
   if (h == 1) s->c[k - 1] = s->rhs[2 * n], s->c_im[k - 1] = s->rhs[2 * n + 1];
@@ -263,9 +238,11 @@ static double swing(const Series *s) {
   return q[3];
 }
 
+static double beyond(double rounding, double x) { return fabs(x) > rounding ? x : 0; }
+
 /* Orders 2 to 5. LAG_OK or a status. */
 static int expand(Series *s, int points) {
-  const double part = 1e-9, rounding = 64 * DBL_EPSILON;
+  const double part = 1e-9, rounding = 64 * DBL_EPSILON * (1 + lag_largest(s->n * s->n, s->B));
   ModeAmplitude *a = s->out;
   const double unit = s->scale[s->leads] * s->scale[s->leads];
   int rc = 1;
@@ -273,14 +250,14 @@ static int expand(Series *s, int points) {
   for (int k = 2; k <= ORDER && rc == 1; k++) {
     rc = solve_order(s, k, points);
     if (k != 3 || rc != 1) continue;
-    if (fabs(s->c_im[2]) > part * fabs(s->c[2]) + rounding * (1 + lag_largest(s->n * s->n, s->B))) {
+    if (fabs(s->c_im[2]) > part * fabs(s->c[2]) + rounding) {
       a->limit = AMPLITUDE_GROWTH, a->growth = -s->c_im[2] * s->w / unit;
       return LAG_OK;
     }
     s->c_im[2] = 0;
-    a->a2 = s->c[2] / unit;
+    a->a2 = beyond(rounding, s->c[2]) / unit;
   }
-  if (rc == 1) a->a4 = (s->c[4] - 2 * swing(s) * s->c[2]) / (unit * unit);
+  if (rc == 1) a->a4 = beyond(rounding, s->c[4] - 2 * swing(s) * s->c[2]) / (unit * unit);
   return rc < 0 ? rc : LAG_OK;
 }
 
@@ -296,7 +273,10 @@ static int leading(const Series *s, const Mode *m) {
   return leads;
 }
 
-static int open_series(Series *s, Equilibrium *rest) {
+int lag_series_open(Series *s, const Modes *modes, int k, Equilibrium *rest, double **u) {
+  lag_problem *pb = &rest->sim->pb;
+  *s = (Series){.modes = modes, .k = k, .pb = pb, .rest = rest->y, .n = pb->n, .w = modes->mode[k].im,
+                .t = rest->sim->scene->t0, .out = s->out};
   const size_t n = (size_t)s->n, N = 2 * n + 2;
   const lag_part parts[] = {
       {&s->scale, n}, {&s->x, (size_t)(ORDER + 2) * (size_t)s->pb->model->taylor->columns + 8},
@@ -310,18 +290,23 @@ static int open_series(Series *s, Equilibrium *rest) {
     s->scale[i] = lag_difference_scale(s->pb, rest->y, of) * (of < i ? s->w : 1);
   }
   s->leads = leading(s, &s->modes->mode[s->k]);
-  return linearise(s);
+  int rc = linearise(s);
+  *u = harmonic(s, 1, 1);
+  return rc ? rc : !place_mode(s);
+}
+
+int lag_mode_oscillates(const Mode *m) {
+  const double undamped = 1e-9;
+  return m->im > 0 && fabs(m->re) <= undamped * m->im && m->repeats <= 1;
 }
 
 int lag_mode_amplitude(ModeAmplitude *a, const Modes *modes, int k, Equilibrium *rest) {
-  const double undamped = 1e-9;
-  const Mode *m = &modes->mode[k];
   *a = (ModeAmplitude){.a2 = NAN, .a4 = NAN, .divisor = NAN, .limit = AMPLITUDE_NO_OSCILLATION};
-  if (!(m->im > 0) || fabs(m->re) > undamped * m->im || m->repeats > 1) return LAG_OK;
-  Series s = {.modes = modes, .k = k, .pb = &rest->sim->pb, .rest = rest->y, .n = rest->sim->pb.n, .w = m->im,
-              .t = rest->sim->scene->t0, .out = a};
-  int rc = open_series(&s, rest);
-  if (rc == LAG_OK && place_mode(&s)) {
+  if (!lag_mode_oscillates(&modes->mode[k])) return LAG_OK;
+  Series s = {.out = a};
+  double *u;
+  int rc = lag_series_open(&s, modes, k, rest, &u);
+  if (rc == LAG_OK) {
     ModeAmplitude other;
     a->limit = AMPLITUDE_WHOLE;
     a->leads = s.leads < s.pb->nq ? s.leads : s.leads - s.pb->nq;
@@ -333,5 +318,5 @@ int lag_mode_amplitude(ModeAmplitude *a, const Modes *modes, int k, Equilibrium 
     a->error2 = fabs(a->a2 - other.a2), a->error4 = fabs(a->a4 - other.a4);
   }
   lag_pool_free(&s.pool);
-  return rc;
+  return rc == 1 ? LAG_OK : rc;
 }
