@@ -503,13 +503,17 @@ int lag_app_orbit(App *app) {
   PeriodicOrbit o = {0};
   const Args *a = &app->args;
   int rc = lag_app_orbit_set_up(app);
-  if (!a->manifold && (a->out || a->svg || a->section || a->follow || a->equilibrium))
+  if (!a->manifold && !a->to && (a->out || a->svg || a->section || a->follow || a->equilibrium))
     return lag_app_error(a, "-o, --svg, --section, --follow and --equilibrium are for --manifold unstable|stable|both");
+  if (a->to && (a->equilibrium || !a->section))
+    return lag_app_error(a, "--to %s: motions from one periodic motion to another are found where they cross a "
+                            "section: --section 'x rising'%s", a->to, a->equilibrium ? "; leave --equilibrium out" : "");
   if (rc == 0 && a->equilibrium) return lag_app_rest_manifolds(app);
   rc = rc ? rc : lag_app_orbit_open(app, &o);
   rc = rc ? rc : lag_app_orbit_solve(app, &o);
-  if (rc == 0 && a->manifold) rc = lag_app_manifolds(app, &o);
-  if (rc == 0 && a->json) put_json(stdout, app, &o);
+  if (rc == 0 && a->manifold && !a->to) rc = lag_app_manifolds(app, &o);
+  if (rc == 0 && a->to) rc = lag_app_connections(app, &o);
+  else if (rc == 0 && a->json) put_json(stdout, app, &o);
   else if (rc == 0) put_text(stdout, app, &o);
   lag_orbit_free(&o);
   return rc;
