@@ -35,6 +35,7 @@ static double period_at(const Part *part, const BranchPoint *at) {
 /* Component i of the state [SI]; of periodic motions at the start. */
 static double state_at(const Job *job, const Part *part, const BranchPoint *at, int i) {
   int nq = job->app->sim->pb.nq;
+  if (at->shown) return at->shown[i];
   if (part->orbit) return at->u[i] * part->orbit->unit[i];
   if (job->steady.cols) return at->u[i] * job->steady.steady.unit[i];
   if (i >= nq && i < 2 * nq) return 0;
@@ -100,9 +101,8 @@ void lag_continue_put_text(FILE *f, const Job *job) {
   for (int k = 0; k < job->nparts; k++) {
     const Part *part = &job->part[k];
     fprintf(f, "branch %d%s, %d points", part->number,
-            k == 0 && job->resumed                           ? ", goes on"
-            : k && job->part[k - 1].number == part->number ? ", other direction"
-                                                             : "",
+            k == 0 && job->resumed ? ", goes on"
+            : part->second ? ", other direction" : "",
             part->branch.npoints);
     if (part->from) fprintf(f, ", from branch %d", part->from);
     putc('\n', f);
