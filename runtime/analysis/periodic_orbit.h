@@ -71,6 +71,7 @@ typedef struct PeriodicOrbit {
   /* multipliers: of the directions that no charge, no symmetry and no phase fixes */
   int nmultipliers, ntrivial;
   double *re, *im;
+  const char *closed, *opens; /* a contact that is closed at the begin; one that a small push leaves open after a period */
   double pairing; /* largest |a b - 1| over pairs a, b of reciprocals; NaN: they are none */
 } PeriodicOrbit;
 
@@ -120,3 +121,5 @@ int lag_orbit_solve(PeriodicOrbit *o);
 int lag_orbit_refine(PeriodicOrbit *o);
 /* Multipliers of the solution. LAG_OK, or a status. */
 int lag_orbit_multipliers(PeriodicOrbit *o);
+/* orbit_contacts.c: closed and opens of the solution. LAG_OK, or LAG_ENOMEM. */
+int lag_orbit_contacts(PeriodicOrbit *o);

@@ -207,8 +207,9 @@ static int collides(const PeriodicOrbit *o) {
 }
 
 static OrbitVerdict verdict_of(const PeriodicOrbit *o) {
+  if (o->nmultipliers > 0 && size_of(o, 0) > 1 + same) return ORBIT_UNSTABLE;
+  if (o->opens) return ORBIT_BORDER;
   if (o->nmultipliers == 0) return ORBIT_NO_OTHERS;
-  if (size_of(o, 0) > 1 + same) return ORBIT_UNSTABLE;
   if (size_of(o, 0) < 1 - same) return ORBIT_ATTRACTS;
   return isfinite(o->pairing) && !near_one(o, 1) && !near_one(o, -1) && !collides(o) ? ORBIT_ELLIPTIC : ORBIT_BORDER;
 }
@@ -225,6 +226,8 @@ static void reason(const PeriodicOrbit *o, OrbitVerdict v, char *s, size_t n) {
     snprintf(s, n,
              "all multipliers lie on the unit circle, apart from each other: small disturbances turn around the "
              "motion");
+  else if (o->opens)
+    snprintf(s, n, "a small push opens %s, which is closed at the begin, and it is still open a period later", o->opens);
   else
     snprintf(s, n, "%s",
              near_one(o, 1)    ? "a further multiplier is 1: a family, a fold or a branch point, or a charge that "
@@ -328,6 +331,9 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
   if (lag_flow_differences(&o->flow))
     fputs("multipliers to about 8 digits: with contacts, which may close, runs from beside the start replace the "
           "tangent\n", f);
+  if (o->closed)
+    fprintf(f, "%s is closed at the begin: multipliers are of disturbances that keep it so%s\n", o->closed,
+            o->opens ? "" : "; after a small push that opens it, it is closed again within a period");
   put_free(f, o);
   if (o->repeats > 1)
     fprintf(f, "note: the motion comes back already after 1/%d of this period: --guess %s\n", o->repeats,
@@ -375,6 +381,7 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
     lag_json_end(&j, ']');
   }
   lag_json_end(&j, ']');
+  lag_json_string(&j, "closed", o->closed);
   lag_json_number(&j, "pairing", o->pairing);
   lag_json_string(&j, "verdict", verdict_names[v]);
   lag_json_string(&j, "reason", why);
@@ -435,6 +442,7 @@ int lag_app_orbit_solve(App *app, PeriodicOrbit *o) {
                              a->relative);
   }
   rc = rc ? rc : lag_orbit_multipliers(o);
+  rc = rc ? rc : lag_orbit_contacts(o);
   if (rc == LAG_OK) return 0;
   return lag_app_no_result(a, "%s",
                            rc == LAG_ENOMEM                           ? "out of memory"

@@ -164,12 +164,12 @@ long() {
   follow "$TMP/shaken.lag" a=1.49..1.505 x=0.0174588734157936 y=0.804163377048012 th=-0.0217660919714671 "x'=0.44204476705349" \
     "y'=0.10034198550577" "th'=-0.549695223222156" --until 10 --hold x
   kinds "end;end;"
-  # AUTO's manual: folds at 0.105739 and 0.0889318, a Hopf point at 0.1309
+  # AUTO's manual: folds at 0.105739 and 0.0889318, a Hopf point at 0.1309; here p1 = u exp(-14 u/3)/(1 - u) where u (1 - u) = 3/14, (14 u - 4)(1 - u) = u
   follow $dir/reaction.lag p1=0..0.15
   kinds "fold;fold;Hopf;end;end;"
-  close 1 parameter 0.105739 5e-7
-  close 2 parameter 0.0889318 5e-8
-  close 3 parameter 0.1309 5e-7
+  close 1 parameter 0.105738978271651651 1e-11
+  close 2 parameter 0.0889318461857728026 1e-11
+  close 3 parameter 0.130900044820043325 1e-11
   # folds of Duffing's oscillator, by SciPy: P(u) = u, det(P' - 1) = 0 by fsolve, period map by DOP853 at 1e-13
   follow $dir/oscillator.lag driven w=0.5..2.5
   kinds "fold;fold;end;end;"
