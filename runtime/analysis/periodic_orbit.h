@@ -82,7 +82,8 @@ void lag_orbit_free(PeriodicOrbit *o);
 
 /* *T := the time after which the motion from the start of `like` comes back next to it, or to its image by
  * o->closing, until the time given; of one that o->reverse leaves twice that until it next does so. about > 0: next to
- * that time. 0: it does not. LAG_OK, or a status with the message in message[size]. */
+ * that time. 0: it does not, and message[size] ends a sentence with its
+ * nearest approach. LAG_OK, or a status with its message. */
 int lag_orbit_guess(const PeriodicOrbit *o, lag_sim *like, double until, double about, double *T, char *message,
                     size_t size);
 

@@ -51,15 +51,27 @@ static double growth_at(const Part *part, const BranchPoint *at) {
   return at->spectrum.n ? most : NAN;
 }
 
+/* Height of the parabola through three values above the one in the middle, where that is the largest. */
+static double crest(double before, double y, double after) {
+  double up = y - before, down = y - after;
+  return up >= 0 && down >= 0 && up + down > 0 ? (up - down) * (up - down) / (8 * (up + down)) : 0;
+}
+
 /* most[n] := the largest value of each component over the motion. */
 static void largest_values(const Job *job, const Part *part, const BranchPoint *at, double *most) {
   PeriodicOrbit *o = part->orbit;
   int n = job->app->sim->pb.n;
   for (int i = 0; i < n; i++) most[i] = state_at(job, part, at, i);
   if (!o || part->problem->place(o, at->u)) return;
+  double *last = o->x, *before = o->x + n;
   lag_sim *sim = lag_flow_sim(&o->flow, o->flow.t0, o->y);
+  for (int i = 0; i < n; i++) last[i] = before[i] = o->y[i];
   for (int k = 1; sim && k <= LOOKS && lag_sim_advance(sim, o->flow.t0 + o->T * k / LOOKS) == LAG_OK; k++)
-    for (int i = 0; i < n; i++) most[i] = fmax(most[i], sim->now[i]);
+    for (int i = 0; i < n; i++) {
+      double now = sim->now[i], top = k > 1 ? crest(before[i], last[i], now) : 0;
+      most[i] = fmax(most[i], fmax(now, last[i] + top));
+      before[i] = last[i], last[i] = now;
+    }
   lag_sim_free(sim);
 }
 

@@ -143,6 +143,10 @@ static int choose_period(App *app, PeriodicOrbit *o, double *T) {
   char message[600];
   FlowMap f;
   int rc = given_period(a, T);
+  const double longest = 1e4 * (search_end(app) - app->scene->t0);
+  if (rc == 0 && longest > 0 && *T > longest)
+    rc = lag_app_error(a, "%s %g: more than %g s, ten thousand times the span of scene %s; a longer one: --until T",
+                       a->period ? "--period" : "--guess", *T, longest, app->scene->name);
   if (rc) return rc;
   rc = lag_flow_open(&f, app->sim) ? lag_app_no_result(a, "%s", f.message) : LAG_OK;
   f.closing = o->closing;
@@ -159,9 +163,9 @@ static int choose_period(App *app, PeriodicOrbit *o, double *T) {
   return lag_app_no_result(
       a,
       "no periodic motion found near scene %s: until t = %g s the motion does not come back next to its "
-      "start; run longer: --until, start nearer to one: name=VALUE, or write about how long it takes: "
+      "start%s; run longer: --until, start nearer to one: name=VALUE, or write about how long it takes: "
       "--guess T",
-      app->scene->name, app->until);
+      app->scene->name, app->until, message);
 }
 
 static void take_values(PeriodicOrbit *o) {

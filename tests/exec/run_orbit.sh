@@ -217,6 +217,8 @@ refused() {
 refused "no name" 2 "--hold enrgy: write \`energy\`" "$LAGC" orbit models/pendulum.lag wide --hold enrgy
 refused "a symmetry that moves nothing" 2 "--relative energy: write the charge of a symmetry" "$LAGC" orbit models/pendulum.lag wide --relative energy
 refused "no return" 3 "does not come back next to its start" "$LAGC" orbit models/free_fall.lag
+refused "how near, and when" 3 "it comes nearest after" "$LAGC" orbit models/lorenz.lag --until 3
+refused "a period without end" 2 "ten thousand times the span" "$LAGC" orbit models/pendulum.lag wide --guess 1e300
 refused "rest" 3 "ends at rest" "$LAGC" orbit models/pendulum.lag fading
 refused "a place that matters" 3 "depend on where it is; coordinates that move together are written with +" "$LAGC" orbit models/compass_walker.lag --relative h.x --guess 3.88
 refused "another period than the drive's" 3 "has the period 5.2359877559829" "$LAGC" orbit $dir/oscillator.lag driven --period 5
