@@ -9,7 +9,8 @@ enum { COUPLING_MOST = 12 }; /* modes whose pairs are computed: the first that o
 
 typedef struct ModeCoupling {
   double shift, error;  /* per square of SI units; NAN: none. Rounding: its change by other points of evaluation */
-  AmplitudeLimit limit; /* resonance: times[0] w_a + times[1] w_b = w_with of the pair a < b; growth: A_i' ~ A_i A_j^2 */
+  /* resonance: times[0] w_a + times[1] w_b = w_with of the pair a < b; growth: A_i' ~ A_i A_j^2 */
+  AmplitudeLimit limit;
   int with, times[2];
   double divisor; /* how far the resonance is missed, over w_a */
 } ModeCoupling;

@@ -128,7 +128,8 @@ static void put_nearest(const Track *k, double parts, char *text, size_t size) {
     before = now, now = next;
   }
   if (best)
-    snprintf(text, size, "; it comes nearest after %.4g s, to %.2g of its excursions", parts * (k->t[best] - k->t[0]), least);
+    snprintf(text, size, "; it comes nearest after %.4g s, to %.2g of its excursions",
+             parts * (k->t[best] - k->t[0]), least);
   else snprintf(text, size, "; it only goes away from it");
 }
 

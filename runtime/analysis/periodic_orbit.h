@@ -71,7 +71,7 @@ typedef struct PeriodicOrbit {
   /* multipliers: of the directions that no charge, no symmetry and no phase fixes */
   int nmultipliers, ntrivial;
   double *re, *im;
-  const char *closed, *opens; /* a contact that is closed at the begin; one that a small push leaves open after a period */
+  const char *closed, *opens; /* a contact that is closed at the begin; one that a push leaves open for a period */
   double pairing; /* largest |a b - 1| over pairs a, b of reciprocals; NaN: they are none */
 } PeriodicOrbit;
 

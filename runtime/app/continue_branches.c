@@ -249,11 +249,13 @@ static int follow_moved(Job *job, Part *of) {
   if (rc || !u) return rc == LAG_ENOMEM || !u ? LAG_ENOMEM : LAG_OK;
   lag_orbit_branch_unknowns(&moved->orbit, u);
   job->number = ++job->nbranches;
-  rc = follow(job, &moved->problem, &moved->orbit, u, NULL, last->tangent[moved->orbit.cols - 1] < 0 ? -1 : 1, of->number);
+  int sign = last->tangent[moved->orbit.cols - 1] < 0 ? -1 : 1;
+  rc = follow(job, &moved->problem, &moved->orbit, u, NULL, sign, of->number);
   free(u);
   if (job->nparts == at) job->nbranches--;
   else {
-    snprintf(of->why, sizeof of->why, "an impact passes the begin of the period; branch %d goes on", job->part[at].number);
+    snprintf(of->why, sizeof of->why, "an impact passes the begin of the period; branch %d goes on",
+             job->part[at].number);
     rc = rc ? rc : show_begins(&job->part[at].branch, &moved->problem, &moved->orbit, scene->t0);
   }
   job->number = of->number;

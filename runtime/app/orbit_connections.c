@@ -33,7 +33,8 @@ static int check_same(App *app, App *other, PeriodicOrbit *o, PeriodicOrbit *p) 
   const lag_model *m = app->scene->model;
   const Args *a = &app->args;
   char text[2][64];
-  if (other->scene->model != m) return lag_app_error(a, "--to %s: its effects differ from those of %s", a->to, app->scene->name);
+  if (other->scene->model != m)
+    return lag_app_error(a, "--to %s: its effects differ from those of %s", a->to, app->scene->name);
   for (int k = 0; k < m->np; k++)
     if (app->sim->p[k] != other->sim->p[k]) /* to the bit: given, or the same text */
       return lag_app_error(a, "--to %s: %s differs from that of scene %s; write one for both: %s=VALUE", a->to,
@@ -82,7 +83,8 @@ static void put_scene(FILE *f, const App *app, const Connection *c, int number, 
 
 static void put_text(FILE *f, const App *app, const Connections *all, int n) {
   int k = 0;
-  fprintf(f, "%s: %d motion%s from the periodic motion of scene %s to that of %s\n", app->scene->model->name, all->count,
+  fprintf(f, "%s: %d motion%s from the periodic motion of scene %s to that of %s\n", app->scene->model->name,
+          all->count,
           all->count == 1 ? "" : "s", app->scene->name, app->args.to);
   for (const Connection *c = all->first; c; c = c->next)
     fprintf(f, "%4d: %.6g s before and %.6g s after crossing %d of the one and %d of the other end; the halves meet to "
@@ -158,8 +160,8 @@ static int report(Manifolds *m, const Connections *all, PeriodicOrbit *o, Period
   App *app = m->app;
   const Args *a = &app->args;
   if (!all->first && all->tried)
-    return lag_app_no_result(a, "--to %s: %d pairs of crossings come close in the section, and none is a motion from one "
-                             "to the other (nearest: %.2g of its size); more starts: --manifold unstable:%d", a->to,
+    return lag_app_no_result(a, "--to %s: %d pairs of crossings come close in the section, and none is a motion from "
+                             "one to the other (nearest: %.2g of its size); more starts: --manifold unstable:%d", a->to,
                              all->tried, all->nearest, 2 * m->phases);
   if (!all->first)
     return lag_app_no_result(a, "--to %s: the manifolds do not meet in the section; a longer time: --follow T; more "
@@ -189,8 +191,8 @@ static int connect(Manifolds *m, PeriodicOrbit *o, PeriodicOrbit *p, Manifold fo
   ConnectionEnd from = {.orbit = o, .manifold = &found[0]}, to = {.orbit = p, .manifold = &found[1]};
   status = lag_connections_find(all, &from, &to, app->section, time, apart);
   if (status == LAG_EMETHOD)
-    return lag_app_no_result(a, "--to %s: motions with several unstable, or several stable, directions are not supported "
-                             "yet: their manifolds cross in families", a->to);
+    return lag_app_no_result(a, "--to %s: motions with several unstable, or several stable, directions are not "
+                             "supported yet: their manifolds cross in families", a->to);
   return status ? lag_app_no_result(a, "%s", status == LAG_ENOMEM ? "out of memory" : o->flow.message) : 0;
 }
 

@@ -231,7 +231,8 @@ static void reason(const PeriodicOrbit *o, OrbitVerdict v, char *s, size_t n) {
              "all multipliers lie on the unit circle, apart from each other: small disturbances turn around the "
              "motion");
   else if (o->opens)
-    snprintf(s, n, "a small push opens %s, which is closed at the begin, and it is still open a period later", o->opens);
+    snprintf(s, n, "a small push opens %s, which is closed at the begin, and it is still open a period later",
+             o->opens);
   else
     snprintf(s, n, "%s",
              near_one(o, 1)    ? "a further multiplier is 1: a family, a fold or a branch point, or a charge that "
@@ -519,7 +520,8 @@ int lag_app_orbit(App *app) {
     return lag_app_error(a, "-o, --svg, --section, --follow and --equilibrium are for --manifold unstable|stable|both");
   if (a->to && (a->equilibrium || !a->section))
     return lag_app_error(a, "--to %s: motions from one periodic motion to another are found where they cross a "
-                            "section: --section 'x rising'%s", a->to, a->equilibrium ? "; leave --equilibrium out" : "");
+                            "section: --section 'x rising'%s", a->to,
+                         a->equilibrium ? "; leave --equilibrium out" : "");
   if (rc == 0 && a->equilibrium) return lag_app_rest_manifolds(app);
   rc = rc ? rc : lag_app_orbit_open(app, &o);
   rc = rc ? rc : lag_app_orbit_solve(app, &o);

@@ -59,7 +59,8 @@ int lag_sweep_branches_draw(const SweepApp *s, Table *t, int first, double perio
       for (int k = 0; k < t->ncols; k++) row[k] = NAN;
       row[0] = isnan(now[Y]) ? low : now[X];
       for (int unstable = 0; unstable < 2 && !gap; unstable++) /* both where one kind becomes the other */
-        if ((now[GROWING] > 0) == unstable || (joins && (last[GROWING] > 0) == unstable)) row[first + unstable] = now[Y];
+        if ((now[GROWING] > 0) == unstable || (joins && (last[GROWING] > 0) == unstable))
+          row[first + unstable] = now[Y];
       if (lag_table_add(t, row)) return -1;
     }
     memcpy(last, now, sizeof last);
