@@ -22,8 +22,5 @@ typedef struct ModeAmplitude {
   double growth;
 } ModeAmplitude;
 
-/* Whether a mode is an undamped oscillation with a shape of its own. */
-int lag_mode_oscillates(const Mode *m);
-
 /* Of mode k about the rest, whose model has series. LAG_OK, LAG_ENOMEM or a status of the model. */
 int lag_mode_amplitude(ModeAmplitude *a, const Modes *modes, int k, Equilibrium *rest);

@@ -2,7 +2,7 @@
  * equations of harmonics, for mode_amplitude.c and mode_coupling.c. Units: 1/w of one mode, and one of each unknown. */
 #pragma once
 
-#include "analysis/mode_amplitude.h"
+#include "analysis/modes.h"
 #include "core/rhs.h"
 
 enum { SERIES_ORDER = 5, SERIES_HARMONICS = SERIES_ORDER + 1 };
@@ -21,9 +21,13 @@ typedef struct Series {
   double *M, *rhs;          /* a linear system of up to 2 n + 2 unknowns */
   double *perm;
   double c[SERIES_HARMONICS], c_im[SERIES_HARMONICS];
-  ModeAmplitude *out;
+  struct ModeAmplitude *out;
 } Series;
 
+/* Whether a mode is an undamped oscillation with a shape of its own. */
+int lag_mode_oscillates(const Mode *m);
+/* Harmonic h of y_order, [2 n]. */
+double *lag_series_harmonic(const Series *s, int order, int h);
 /* Of mode k; *u: its shape [2 n], re and im, with amplitude 1 of the leading unknown. LAG_OK, a status, or
  * 1: it shares its rate without a shape of its own. Free the pool in any case. */
 int lag_series_open(Series *s, const Modes *modes, int k, Equilibrium *rest, double **u);

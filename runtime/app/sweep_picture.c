@@ -194,8 +194,8 @@ static int draw_crossings(const char *path, void *drawing) {
   static const int x[CLASSES + 2] = {0}, y[CLASSES + 2] = {1, 2, 3, 4, 5, 6, 7, 8};
   RunClasses c;
   int rc = choose_classes(d->s, &c) ? -1 : name_classes(d, &c) ? -1 : add_crossings(d, &c);
-  const PlottedCurves curves = {.n = c.n + d->table.joined, .x = (int *)x, .y = (int *)y, .xlog = is_log(&d->s->plan, 0),
-                                .ordered = 1, .xname = d->s->table.cols[0].name,
+  const PlottedCurves curves = {.n = c.n + d->table.joined, .x = (int *)x, .y = (int *)y,
+                                .xlog = is_log(&d->s->plan, 0), .ordered = 1, .xname = d->s->table.cols[0].name,
                                 .yname = d->s->motions.cols[drawn_column(d->s)].name};
   if (rc == 0) rc = lag_svg_write(path, &d->table, d->title, &curves);
   free(d->table.cols);

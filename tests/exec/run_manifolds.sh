@@ -64,7 +64,7 @@ refused "no manifold" 2 "are for --manifold" "$LAGC" orbit models/pendulum.lag w
 refused "nothing unstable" 3 "has no such direction" "$LAGC" orbit models/pendulum.lag wide --manifold both -o "$TMP/a.csv"
 refused "a section that is not met" 3 "no run along the manifold crosses it" "$LAGC" orbit models/pendulum.lag wide th=3.1 --equilibrium --manifold both --section "th' - 50 [rad/s] rising" -o "$TMP/a.csv"
 refused "no section" 2 "where they cross a section" "$LAGC" orbit "$TMP/two.lag" departure --to at_L2
-refused "no such scene" 2 "unknown scene" "$LAGC" orbit "$TMP/two.lag" departure --to at_L3 --section 'x rising'
+refused "no such scene" 1 "unknown scene" "$LAGC" orbit "$TMP/two.lag" departure --to at_L3 --section 'x rising'
 refused "no scene to begin with" 2 "name the scene to begin with" "$LAGC" orbit "$TMP/two.lag" --to at_L2 --section 'x rising'
 refused "other values" 2 "write one for both: mu=VALUE" "$LAGC" orbit "$TMP/two.lag" departure x=0.82 "y'=0.15" --reverse y=-y --to at_L2 --section 'x rising'
 refused "another energy" 3 "is conserved" "$LAGC" orbit "$TMP/two.lag" departure mu=0.0009537 x=0.92 "y'=0.09" --reverse y=-y --hold x --guess 3 --to at_L2 --section 'x rising'
