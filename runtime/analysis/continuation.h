@@ -44,6 +44,7 @@ typedef struct BranchPoint {
   int stays;                      /* 1: a multiplier is 1 to rounding, as along a family */
   double fold, zero, minus, pair; /* test functions, and the growth of the complex pair nearest to the border */
   BranchKind kind;
+  double *shown;          /* [n] state of a motion that begins later, at the scene's begin; NULL: that of u */
   const char *unfollowed; /* why no branch that leaves it is followed; NULL: one is, or none was asked for */
 } BranchPoint;
 

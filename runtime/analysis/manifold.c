@@ -11,10 +11,13 @@ static const double same = 1e-6; /* multipliers nearer to 1 belong to no manifol
 
 /* One start, from y along v, both in SI; units: of the length of v. */
 static int add_start(Manifold *m, ManifoldStart like, int n, const double *y, const double *v, double part) {
-  ManifoldStart *s = (ManifoldStart *)(void *)lag_pool_doubles(&m->pool, sizeof *s / sizeof(double) + 1 + (size_t)n);
+  size_t size = (size_t)n, room = sizeof(ManifoldStart) / sizeof(double) + 1;
+  ManifoldStart *s = (ManifoldStart *)(void *)lag_pool_doubles(&m->pool, room + 3 * size);
   if (!s) return LAG_ENOMEM;
   *s = like;
-  s->y = (double *)(void *)s + sizeof *s / sizeof(double) + 1;
+  s->y = (double *)(void *)s + room;
+  s->at = memcpy(s->y + size, y, size * sizeof *y);
+  s->v = memcpy(s->at + size, v, size * sizeof *v);
   for (int i = 0; i < n; i++) s->y[i] = y[i] + like.side * part * v[i];
   if (m->last) m->last->next = s;
   else m->first = s;

@@ -11,6 +11,7 @@ typedef struct ManifoldStart {
   int side;    /* 1 or -1 */
   double rate; /* of growth [1/s], > 0 */
   double t, *y; /* time and state [n] */
+  double *at, *v; /* [n] state of the motion there, and the direction, of length 1 in units of the motion */
 } ManifoldStart;
 
 typedef struct Manifold {

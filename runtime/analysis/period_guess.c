@@ -118,6 +118,21 @@ static double nearer(FlowMap *f, const Track *k, int r) {
   return length > 0 ? fmin(fmax(along / length, least), most) : 0; /* where it nearly rests rates say nothing */
 }
 
+/* text := the nearest approach after the motion has left its start. */
+static void put_nearest(const Track *k, double parts, char *text, size_t size) {
+  double least = HUGE_VAL, before = 0, now = 0;
+  int best = 0;
+  for (int r = 1; r < k->rows; r++) {
+    double next = away(k, r);
+    if (r > 1 && now <= before && now < next && now < least) best = r - 1, least = now;
+    before = now, now = next;
+  }
+  if (best)
+    snprintf(text, size, "; it comes nearest after %.4g s, to %.2g of its excursions",
+             parts * (k->t[best] - k->t[0]), least);
+  else snprintf(text, size, "; it only goes away from it");
+}
+
 int lag_orbit_guess(const PeriodicOrbit *o, lag_sim *like, double until, double about, double *T, char *message,
                     size_t size) {
   FlowMap f;
@@ -138,6 +153,8 @@ int lag_orbit_guess(const PeriodicOrbit *o, lag_sim *like, double until, double 
   if (rc == LAG_OK) {
     int at = about > 0 ? nearest_return(&k, about / parts) : first_return(&k);
     *T = at ? parts * (k.t[at] - k.t[0] + nearer(&f, &k, at)) : 0;
+    message[0] = '\0';
+    if (!at) put_nearest(&k, parts, message, size);
   }
   free(k.t);
   free(k.y);

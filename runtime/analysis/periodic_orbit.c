@@ -506,6 +506,7 @@ static void mirror_nodes(PeriodicOrbit *o) {
 }
 
 int lag_orbit_solve(PeriodicOrbit *o) {
+  const double whole = 100; /* residual over that of the half, whose rounding has grown */
   if (!o->reverse) return newton(o);
   take_half(o, 1);
   int found = newton(o);
@@ -514,7 +515,7 @@ int lag_orbit_solve(PeriodicOrbit *o) {
   mirror_nodes(o);
   o->nfree += period_is_free(o); /* the phase */
   int rc = lag_orbit_shoot(o, 1);
-  return rc ? rc : o->residual <= accepted(o);
+  return rc ? rc : o->residual <= whole * accepted(o);
 }
 
 /* ---- Error of the period, and what kind of a motion it is */

@@ -71,6 +71,7 @@ typedef struct PeriodicOrbit {
   /* multipliers: of the directions that no charge, no symmetry and no phase fixes */
   int nmultipliers, ntrivial;
   double *re, *im;
+  const char *closed, *opens; /* a contact that is closed at the begin; one that a push leaves open for a period */
   double pairing; /* largest |a b - 1| over pairs a, b of reciprocals; NaN: they are none */
 } PeriodicOrbit;
 
@@ -81,7 +82,8 @@ void lag_orbit_free(PeriodicOrbit *o);
 
 /* *T := the time after which the motion from the start of `like` comes back next to it, or to its image by
  * o->closing, until the time given; of one that o->reverse leaves twice that until it next does so. about > 0: next to
- * that time. 0: it does not. LAG_OK, or a status with the message in message[size]. */
+ * that time. 0: it does not, and message[size] ends a sentence with its
+ * nearest approach. LAG_OK, or a status with its message. */
 int lag_orbit_guess(const PeriodicOrbit *o, lag_sim *like, double until, double about, double *T, char *message,
                     size_t size);
 
@@ -120,3 +122,5 @@ int lag_orbit_solve(PeriodicOrbit *o);
 int lag_orbit_refine(PeriodicOrbit *o);
 /* Multipliers of the solution. LAG_OK, or a status. */
 int lag_orbit_multipliers(PeriodicOrbit *o);
+/* orbit_contacts.c: closed and opens of the solution. LAG_OK, or LAG_ENOMEM. */
+int lag_orbit_contacts(PeriodicOrbit *o);

@@ -352,6 +352,8 @@ int lag_app_orbit_solve(App *app, struct PeriodicOrbit *o);
  * status. */
 int lag_app_manifolds(App *app, struct PeriodicOrbit *o);
 int lag_app_rest_manifolds(App *app);
+/* orbit_connections.c: --to, of the orbit. 0, or the exit status. */
+int lag_app_connections(App *app, struct PeriodicOrbit *o);
 /* orbit_maps.c: the map takes the terms NAME=NAME of an option, `x=-x, r[i]=r[i+1]`; others are left out. 0, or the
  * exit status after a message. */
 struct StateMap;

@@ -117,6 +117,7 @@ static void explain_end(const Job *job, Part *part) {
       snprintf(part->why, sizeof part->why,
                "%s passes the begin of the period, where the state jumps then: begin elsewhere, by the phase of the "
                "drive or at another point of the motion", event);
+    part->moves = event != NULL;
     if (event) return;
   }
   if (!part->orbit || f->forced || !before) return;
@@ -127,16 +128,138 @@ static void explain_end(const Job *job, Part *part) {
     snprintf(part->why, sizeof part->why, "the period grows without limit, as next to a motion that ends at rest");
 }
 
-/* Follows from u along d, or by sign, as the next part. LAG_OK, or a status. */
+static int follow_moved(Job *job, Part *of);
+
+/* Follows from u along d, or by sign, as the next part, and on from another begin where an impact passes the begin.
+ * LAG_OK, or a status. */
 static int follow(Job *job, const BranchProblem *p, PeriodicOrbit *o, const double *u, const double *d, int sign,
                   int from) {
   Part *part = &job->part[job->nparts];
-  *part = (Part){.problem = p, .orbit = o, .number = job->nbranches, .from = from};
+  *part = (Part){.problem = p, .orbit = o, .number = job->number, .from = from};
+  for (int k = 0; k < job->nparts; k++) part->second |= job->part[k].number == part->number;
   int rc = lag_branch_follow(&part->branch, p, u, d, sign, &job->limits);
   if (rc == LAG_OK) explain_end(job, part);
   if (rc == LAG_OK) job->nparts++;
   else lag_branch_free(&part->branch);
-  return rc;
+  return rc == LAG_OK && part->moves ? follow_moved(job, part) : rc;
+}
+
+/* ---- Another begin */
+
+/* Times of events within segments, from their begins. */
+typedef struct EventTimes {
+  int count;
+  double t0, at[256];
+} EventTimes;
+
+static void note_event(void *context, int k, double t, const double *before, const double *after) {
+  EventTimes *e = context;
+  (void)k, (void)before, (void)after;
+  if (e->count < (int)(sizeof e->at / sizeof *e->at)) e->at[e->count++] = t - e->t0;
+}
+
+/* The time after the begins of segments that is farthest from all events. */
+static double quiet_time(PeriodicOrbit *o) {
+  enum { PLACES = 64 };
+  EventTimes e = {.count = 0};
+  double length = o->T / o->m, best = 0, most = -1;
+  for (int k = 0; k < o->m; k++) {
+    e.t0 = o->flow.t0 + length * k;
+    lag_sim *sim = lag_flow_sim(&o->flow, e.t0, o->y + k * o->n);
+    if (sim) lag_sim_on_event(sim, note_event, &e);
+    if (sim) lag_sim_advance(sim, e.t0 + length);
+    lag_sim_free(sim);
+  }
+  for (int p = 1; p < PLACES; p++) {
+    double t = length * p / PLACES, least = length;
+    for (int k = 0; k < e.count; k++) least = fmin(least, fabs(remainder(e.at[k] - t, length)));
+    if (least > most) best = t, most = least;
+  }
+  return best;
+}
+
+/* The same motion, `later` after its begin. */
+static int open_moved(Doubled *moved, PeriodicOrbit *o, const lag_scene *scene, double later) {
+  int n = o->n, rc = LAG_OK;
+  double *y = malloc((size_t)(o->m * n) * sizeof *y);
+  if (!y) return LAG_ENOMEM;
+  for (int k = 0; k < o->m && rc == LAG_OK; k++)
+    rc = lag_flow_run(&o->flow, o->flow.t0 + o->T * k / o->m, later, o->y + k * n, y + k * n, NULL);
+  moved->scene = *scene;
+  moved->scene.t0 = o->flow.t0 + later;
+  moved->scene.t1 = scene->t1 + (moved->scene.t0 - scene->t0);
+  moved->like = rc ? NULL : lag_flow_sim(&o->flow, moved->scene.t0, y);
+  if (moved->like) {
+    moved->like->scene = &moved->scene;
+    moved->orbit = (PeriodicOrbit){.nheld = o->nheld, .continues = 1, .led = o->led, .name = o->name,
+                                   .parameter = o->parameter, .parameter_unit = o->parameter_unit,
+                                   .ngroup = o->ngroup, .closing = o->closing};
+    memcpy(moved->orbit.held, o->held, sizeof o->held);
+    memcpy(moved->orbit.group, o->group, sizeof o->group);
+    rc = lag_orbit_open(&moved->orbit, moved->like, o->algebra, o->T, o->m);
+    if (rc == LAG_OK) memcpy(moved->orbit.y, y, (size_t)(o->m * n) * sizeof *y);
+    if (rc == LAG_OK) memcpy(moved->orbit.shift, o->shift, sizeof o->shift);
+    moved->orbit.pairing = o->pairing;
+    lag_orbit_branch(&moved->problem, &moved->orbit);
+  }
+  free(y);
+  return rc || moved->like ? rc : LAG_ENOMEM;
+}
+
+/* Whether the motion may begin anywhere: no condition holds a component there, and its state a period later is that at
+ * its begin, but for turns and shifts. */
+static int may_move(const PeriodicOrbit *o) {
+  for (int k = 0; k < o->nheld; k++)
+    if (o->held[k].kind == ORBIT_STATE) return 0;
+  for (int j = 0; j < o->ngroup; j++)
+    if (!o->group[j].n) return 0;
+  return !o->reverse && !o->closing;
+}
+
+/* at->shown := the state at the scene's begin, of each point. LAG_OK, or a status. */
+static int show_begins(Branch *b, const BranchProblem *p, PeriodicOrbit *o, double t0) {
+  int n = o->n, rc = LAG_OK;
+  for (BranchPoint *at = b->first; at && rc == LAG_OK; at = at->next) {
+    double *y = lag_pool_doubles(&b->pool, (size_t)n), after;
+    if (!y) return LAG_ENOMEM;
+    if (p->place(p->of, at->u)) continue;
+    double length = o->T / o->m, whole = o->T - fmod(o->flow.t0 - t0, o->T);
+    int k = (int)fmin(whole / length, o->m - 1);
+    after = whole - k * length;
+    rc = lag_flow_run(&o->flow, o->flow.t0 + k * length, after, o->y + k * n, y, NULL);
+    for (int i = 0; i < n; i++) y[i] -= o->turns[i];
+    for (int j = 0; j < o->ngroup; j++)
+      for (int i = 0; i < o->group[j].n; i++) y[o->group[j].shifted[i]] -= o->shift[j];
+    if (rc == LAG_OK) at->shown = y;
+  }
+  return rc == LAG_ENOMEM ? rc : LAG_OK;
+}
+
+/* The rest of a branch along which an impact passes the begin of the period: it is solved from another begin, and
+ * shown from the same one. Where none goes on the part ends, and says why. */
+static int follow_moved(Job *job, Part *of) {
+  PeriodicOrbit *o = of->orbit;
+  const BranchPoint *last = of->branch.last;
+  const lag_scene *scene = job->app->sim->scene;
+  if (!may_move(o) || job->ndoubled == MOST_DOUBLINGS || job->nparts == MOST_BRANCHES) return LAG_OK;
+  if (of->problem->place(of->problem->of, last->u)) return LAG_OK;
+  Doubled *moved = &job->doubled[job->ndoubled++];
+  int rc = open_moved(moved, o, scene, quiet_time(o)), at = job->nparts;
+  double *u = rc ? NULL : malloc((size_t)moved->orbit.cols * sizeof *u);
+  if (rc || !u) return rc == LAG_ENOMEM || !u ? LAG_ENOMEM : LAG_OK;
+  lag_orbit_branch_unknowns(&moved->orbit, u);
+  job->number = ++job->nbranches;
+  int sign = last->tangent[moved->orbit.cols - 1] < 0 ? -1 : 1;
+  rc = follow(job, &moved->problem, &moved->orbit, u, NULL, sign, of->number);
+  free(u);
+  if (job->nparts == at) job->nbranches--;
+  else {
+    snprintf(of->why, sizeof of->why, "an impact passes the begin of the period; branch %d goes on",
+             job->part[at].number);
+    rc = rc ? rc : show_begins(&job->part[at].branch, &moved->problem, &moved->orbit, scene->t0);
+  }
+  job->number = of->number;
+  return rc == LAG_ENOMEM ? rc : LAG_OK;
 }
 
 /* The branch of an earlier run, from its last row on. */
@@ -146,9 +269,9 @@ static int follow_on(Job *job, const double *u, PeriodicOrbit *o) {
   double *d = malloc((size_t)cols * sizeof *d);
   if (!d) return LAG_ENOMEM;
   lag_continue_direction(job, o, cols, d);
-  job->nbranches = (int)lag_continue_last(job)[1];
-  int rc = follow(job, &job->problem, o, u, d, 1, 0);
+  job->number = (int)lag_continue_last(job)[1];
   for (size_t k = 0; k < t->nrows; k++) job->nbranches = (int)fmax(job->nbranches, lag_table_cell(t, k, 1));
+  int rc = follow(job, &job->problem, o, u, d, 1, 0);
   free(d);
   return rc;
 }
@@ -156,7 +279,7 @@ static int follow_on(Job *job, const double *u, PeriodicOrbit *o) {
 /* Both halves of the first branch. */
 static int follow_first(Job *job, const double *u, PeriodicOrbit *o) {
   if (job->resumed) return follow_on(job, u, o);
-  job->nbranches = 1;
+  job->number = job->nbranches = 1;
   int rc = follow(job, &job->problem, o, u, NULL, 1, 0);
   const Branch *b = &job->part[0].branch;
   if (rc || b->end == BRANCH_CLOSED) return rc;
@@ -171,7 +294,7 @@ static int follow_other(Job *job, const Part *of, const BranchPoint *at) {
   if (!d) return LAG_ENOMEM;
   int rc = lag_branch_other(of->problem, at, d);
   for (int i = 0; i < cols; i++) back[i] = -d[i];
-  if (rc == LAG_OK) job->nbranches++;
+  if (rc == LAG_OK) job->number = ++job->nbranches;
   for (int k = 0; k < 2 && rc == LAG_OK && job->nparts < MOST_BRANCHES; k++)
     if (follow(job, of->problem, of->orbit, at->u, k ? back : d, 0, number) == LAG_ENOMEM) rc = LAG_ENOMEM;
   free(d);
@@ -220,7 +343,7 @@ static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
   lag_orbit_branch_unknowns(&two->orbit, u);
   double_tangent(of->orbit, &two->orbit, at->tangent, start.tangent);
   rc = lag_branch_other(&two->problem, &start, u + 2 * cols);
-  if (rc == LAG_OK) job->nbranches++;
+  if (rc == LAG_OK) job->number = ++job->nbranches;
   if (rc == LAG_OK) rc = follow(job, &two->problem, &two->orbit, u, u + 2 * cols, 0, of->number);
   free(u);
   return rc == LAG_ENOMEM ? rc : LAG_OK;
@@ -238,7 +361,7 @@ static int follow_cycle(Job *job, const Part *of, const BranchPoint *at) {
   lag_orbit_branch_unknowns(&cycle->orbit, u);
   for (int i = 0; i < cycle->orbit.cols; i++) size += d[i] * d[i];
   for (int i = 0; i < cycle->orbit.cols; i++) d[i] /= sqrt(size);
-  job->nbranches++;
+  job->number = ++job->nbranches;
   rc = follow(job, &cycle->problem, &cycle->orbit, u, d, 1, of->number);
   free(u);
   return rc == LAG_ENOMEM ? rc : LAG_OK;

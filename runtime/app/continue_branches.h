@@ -16,10 +16,13 @@ typedef struct Part {
   PeriodicOrbit *orbit; /* NULL: states of rest, or steady motions */
   char why[600];        /* why it was lost; "": not known */
   int number, from;     /* of the branch that it is a half of; of the one that it leaves, 0: none */
+  int second; /* 1: the other direction of a branch */
+  int moves; /* 1: an impact passes the begin of the period where it ends */
 } Part;
 
-/* Motions of twice the period of another one. */
+/* Motions of twice the period of another one, or that begin elsewhere on it. */
 typedef struct Doubled {
+  lag_scene scene; /* with the time at which they begin */
   lag_sim *like;
   StateMap closing;
   PeriodicOrbit orbit;
@@ -40,7 +43,7 @@ typedef struct Job {
   int periodic, led_kind, led_of; /* led_kind: of OrbitHold; -1: a parameter */
   BranchLimits limits;
   Part part[MOST_BRANCHES];
-  int nparts, nbranches;
+  int nparts, nbranches, number; /* of branches; that of the next part */
   char written_by[1000], guess[64]; /* model, NAME, options in words, for --resume; the period to begin with */
   size_t resumed;                   /* number of the row that the first part goes on from; 0: none */
 } Job;

@@ -35,6 +35,7 @@ static double period_at(const Part *part, const BranchPoint *at) {
 /* Component i of the state [SI]; of periodic motions at the start. */
 static double state_at(const Job *job, const Part *part, const BranchPoint *at, int i) {
   int nq = job->app->sim->pb.nq;
+  if (at->shown) return at->shown[i];
   if (part->orbit) return at->u[i] * part->orbit->unit[i];
   if (job->steady.cols) return at->u[i] * job->steady.steady.unit[i];
   if (i >= nq && i < 2 * nq) return 0;
@@ -50,15 +51,27 @@ static double growth_at(const Part *part, const BranchPoint *at) {
   return at->spectrum.n ? most : NAN;
 }
 
+/* Height of the parabola through three values above the one in the middle, where that is the largest. */
+static double crest(double before, double y, double after) {
+  double up = y - before, down = y - after;
+  return up >= 0 && down >= 0 && up + down > 0 ? (up - down) * (up - down) / (8 * (up + down)) : 0;
+}
+
 /* most[n] := the largest value of each component over the motion. */
 static void largest_values(const Job *job, const Part *part, const BranchPoint *at, double *most) {
   PeriodicOrbit *o = part->orbit;
   int n = job->app->sim->pb.n;
   for (int i = 0; i < n; i++) most[i] = state_at(job, part, at, i);
   if (!o || part->problem->place(o, at->u)) return;
+  double *last = o->x, *before = o->x + n;
   lag_sim *sim = lag_flow_sim(&o->flow, o->flow.t0, o->y);
+  for (int i = 0; i < n; i++) last[i] = before[i] = o->y[i];
   for (int k = 1; sim && k <= LOOKS && lag_sim_advance(sim, o->flow.t0 + o->T * k / LOOKS) == LAG_OK; k++)
-    for (int i = 0; i < n; i++) most[i] = fmax(most[i], sim->now[i]);
+    for (int i = 0; i < n; i++) {
+      double now = sim->now[i], top = k > 1 ? crest(before[i], last[i], now) : 0;
+      most[i] = fmax(most[i], fmax(now, last[i] + top));
+      before[i] = last[i], last[i] = now;
+    }
   lag_sim_free(sim);
 }
 
@@ -100,9 +113,8 @@ void lag_continue_put_text(FILE *f, const Job *job) {
   for (int k = 0; k < job->nparts; k++) {
     const Part *part = &job->part[k];
     fprintf(f, "branch %d%s, %d points", part->number,
-            k == 0 && job->resumed                           ? ", goes on"
-            : k && job->part[k - 1].number == part->number ? ", other direction"
-                                                             : "",
+            k == 0 && job->resumed ? ", goes on"
+            : part->second ? ", other direction" : "",
             part->branch.npoints);
     if (part->from) fprintf(f, ", from branch %d", part->from);
     putc('\n', f);

@@ -332,12 +332,12 @@ static void put_modes(FILE *f, const App *app, const Modes *s) {
 }
 
 /* Prints the table of modes, text of 118 columns. */
-static void put_text(FILE *f, const App *app, const Equilibrium *r, const Modes *s, const ModeAmplitude *bends) {
+static void put_text(FILE *f, const App *app, const Equilibrium *r, const Modes *s, const Amplitudes *bends) {
   const char *note = caution_of(app, r);
   put_equilibrium(f, app, r, s);
   if (note) fprintf(f, "note: %s\n", note);
   put_modes(f, app, s);
-  if (bends) lag_app_put_amplitudes(f, app->scene->model, s->n < MOST_MODES ? s->n : MOST_MODES, bends);
+  if (bends->bend) lag_app_put_amplitudes(f, app->scene->model, s, s->n < MOST_MODES ? s->n : MOST_MODES, bends);
 }
 
 /* ---- JSON */
@@ -361,7 +361,7 @@ static void json_head(Json *j, const App *app, const char *status) {
   lag_json_strings(j, {"model", app->scene->model->name}, {"scene", app->scene->name}, {"status", status});
 }
 
-static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Modes *s, const ModeAmplitude *bends) {
+static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Modes *s, const Amplitudes *bends) {
   const lag_model *m = app->scene->model;
   char text[300];
   Json j = {.f = f};
@@ -386,10 +386,11 @@ static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Mode
     lag_json_truth(&j, "free", k->free != 0);
     lag_json_count(&j, "repeats", k->repeats);
     json_vector(&j, "shape", m, k->shape_re, k->shape_im);
-    if (bends) lag_app_json_amplitude(&j, m, &bends[i]);
+    if (bends->bend) lag_app_json_amplitude(&j, m, &bends->bend[i]);
     lag_json_end(&j, '}');
   }
   lag_json_end(&j, ']');
+  if (bends->bend) lag_app_json_couplings(&j, m, s, bends);
   lag_json_close(&j);
 }
 
@@ -504,13 +505,12 @@ int lag_app_rest(App *app, double *y) {
 }
 
 static int report(const App *app, Equilibrium *r, const Modes *s) {
-  ModeAmplitude *bends = NULL;
+  Amplitudes bends = {0};
   int rc = app->args.amplitude ? lag_app_find_amplitudes(app, r, s, &bends) : 0;
-  if (rc) return rc;
-  if (app->args.json) json_modes(stdout, app, r, s, bends);
-  else put_text(stdout, app, r, s, bends);
-  free(bends);
-  return EXIT_FINE;
+  if (rc == 0 && app->args.json) json_modes(stdout, app, r, s, &bends);
+  else if (rc == 0) put_text(stdout, app, r, s, &bends);
+  free(bends.bend);
+  return rc;
 }
 
 /* Whether --steady found the equilibrium of `lagc modes` without it, of coordinates alone; *r := that, so that its

@@ -5,52 +5,40 @@
 #include <string.h>
 
 #include "analysis/equilibrium.h"
-#include "analysis/manifold.h"
-#include "app/app.h"
+#include "app/orbit_manifolds.h"
 
 enum { PHASES = 60, ROWS = 200, BEFORE = 4 }; /* columns before the state: manifold, phase, side, t */
 
 static const char *const words[] = {"unstable", "stable"};
 
-typedef struct Manifolds {
-  App *app;
-  int wanted[2]; /* unstable, stable */
-  int phases;
-  double follow; /* time of each run; 0: by the growth */
-  Manifold found;
-  Table drawn; /* rows of both manifolds: kind, state */
-  const ManifoldStart *now;
-  size_t rows;
-  int rc;
-} Manifolds;
-
 /* ---- Settings */
 
-static int read_settings(Manifolds *m) {
+int lag_manifolds_settings(Manifolds *m) {
   static const char *const choices[] = {"unstable", "stable", "both"};
   const Args *a = &m->app->args;
-  size_t n = strcspn(a->manifold, ":"), choice = 0;
-  while (choice < 3 && (strlen(choices[choice]) != n || memcmp(a->manifold, choices[choice], n) != 0)) choice++;
+  const char *kind = a->manifold ? a->manifold : "both";
+  size_t n = strcspn(kind, ":"), choice = 0;
+  while (choice < 3 && (strlen(choices[choice]) != n || memcmp(kind, choices[choice], n) != 0)) choice++;
   long long phases = PHASES;
   if (choice == 3 ||
-      (a->manifold[n] && lag_args_count(a, "--manifold", a->manifold + n + 1, "--manifold unstable:60", &phases)))
+      (kind[n] && lag_args_count(a, "--manifold", kind + n + 1, "--manifold unstable:60", &phases)))
     return lag_app_error(a,
                          "--manifold %s: write unstable, stable or both, with another number of starts than %d behind "
                          "a colon: --manifold unstable:200",
-                         a->manifold, PHASES);
+                         kind, PHASES);
   m->wanted[0] = choice != 1;
   m->wanted[1] = choice != 0;
   m->phases = (int)fmin((double)phases, 100000);
   if (a->follow && !lag_args_number(a, "--follow", a->follow, "--follow 20", &m->follow)) return EXIT_USAGE;
   if (a->follow && !(m->follow > 0)) return lag_app_error(a, "--follow %s: a time above 0", a->follow);
-  if (!a->out && !a->svg)
+  if (a->manifold && !a->out && !a->svg && !a->to)
     return lag_app_error(a, "--manifold: the runs need a file: -o FILE.csv, or --svg FILE.svg for a picture");
   return lag_section_choose(m->app);
 }
 
 /* ---- Runs */
 
-static void put_row(Manifolds *m, double t, const double *y) {
+void lag_manifolds_row(Manifolds *m, double t, const double *y) {
   App *app = m->app;
   double *row = app->row;
   row[0] = m->now->stable;
@@ -66,7 +54,7 @@ static void put_row(Manifolds *m, double t, const double *y) {
 static void at_event(void *context, int k, double t, const double *before, const double *after) {
   Manifolds *m = context;
   (void)before;
-  if (k == m->app->section) put_row(m, t, after);
+  if (k == m->app->section) lag_manifolds_row(m, t, after);
 }
 
 /* One run, as far as it goes: into a collision, or to an event that ends it. */
@@ -80,10 +68,13 @@ static void follow(Manifolds *m, FlowMap *f, const ManifoldStart *s, double time
   lag_sim *sim = lag_flow_sim(f, s->t, s->y);
   f->like->scene = own;
   if (!sim) m->rc = lag_app_error(&m->app->args, "out of memory");
-  if (sim && m->app->section >= 0) lag_sim_on_event(sim, at_event, m);
+  if (sim && m->app->section >= 0) {
+    sim->forwards = m->app->section + 1;
+    lag_sim_on_event(sim, at_event, m);
+  }
   for (int k = 0; k <= ROWS && sim && m->rc == 0; k++) {
     if (lag_sim_advance(sim, s->t + along * k / ROWS)) break;
-    if (m->app->section < 0) put_row(m, sim->run->t, sim->now);
+    if (m->app->section < 0) lag_manifolds_row(m, sim->run->t, sim->now);
   }
   lag_sim_free(sim);
 }
@@ -98,8 +89,8 @@ static int follow_all(Manifolds *m, FlowMap *f, double period, double part) {
 
 /* ---- Rows and picture */
 
-static int make_columns(Manifolds *m) {
-  static const char *const heads[] = {"manifold", "phase", "side", "t"};
+int lag_manifolds_columns(Manifolds *m, const char *number) {
+  const char *const heads[] = {"manifold", number, "side", "t"};
   App *app = m->app;
   int n = app->sim->pb.n;
   Table *t = &app->table;
@@ -151,7 +142,7 @@ static int draw_rows(Manifolds *m, Table *t, int x, int y) {
   return rc;
 }
 
-static int draw(Manifolds *m) {
+int lag_manifolds_draw(Manifolds *m, const char *words_of) {
   App *app = m->app;
   char title[300];
   int x = 0, y = 0;
@@ -167,7 +158,7 @@ static int draw(Manifolds *m) {
     memcpy(c->unit, of.unit, sizeof of.unit);
   }
   snprintf(title, sizeof title, "%s: %s, %s", app->scene->model->name, app->scene->name,
-           app->section >= 0 ? app->args.section : "manifolds");
+           words_of);
   if (lag_app_choose_curves(app)) return EXIT_USAGE;
   PlottedCurves *d = &app->drawn;
   snprintf(app->drawn_ys, sizeof app->drawn_ys, "%.60s", lag_state_column(app->sim, y).name);
@@ -190,11 +181,11 @@ static int finish(Manifolds *m, FlowMap *f, double period, double part, const ch
     return lag_app_no_result(&app->args, "--manifold %s: %s has no such direction%s", app->args.manifold, of,
                              found->rest_of ? ": its growing and decaying ones are spirals, in complex pairs" : "");
   }
-  int rc = make_columns(m);
+  int rc = lag_manifolds_columns(m, "phase");
   rc = rc ? rc : follow_all(m, f, period, part);
   if (app->args.out && app->rows.open && lag_rows_close(&app->rows, rc == 0) && rc == 0)
     rc = lag_app_io_error(app, app->args.out);
-  rc = rc ? rc : draw(m);
+  rc = rc ? rc : lag_manifolds_draw(m, app->section >= 0 ? app->args.section : "manifolds");
   if (rc == 0 && !app->args.json && !(app->args.out && strcmp(app->args.out, "-") == 0))
     printf("%s: scene %s, manifolds of %s: %zu rows\n", app->scene->model->name, app->scene->name, of, m->rows);
   return rc || m->rows ? rc : failed(app, "--section: no run along the manifold crosses it; a longer time: --follow T");
@@ -204,7 +195,7 @@ static const double beside = 1e-6; /* distance of the starts, in sizes of the mo
 
 int lag_app_manifolds(App *app, PeriodicOrbit *o) {
   Manifolds m = {.app = app};
-  int rc = read_settings(&m), status = LAG_OK;
+  int rc = lag_manifolds_settings(&m), status = LAG_OK;
   for (int stable = 0; stable < 2 && rc == 0 && status == LAG_OK; stable++)
     if (m.wanted[stable]) status = lag_manifold_of_orbit(&m.found, o, stable, m.phases, beside);
   if (status) rc = failed(app, status == LAG_ENOMEM ? "out of memory" : o->flow.message);
@@ -228,7 +219,7 @@ static int find_rest(App *app, FlowMap *f, double *y) {
 int lag_app_rest_manifolds(App *app) {
   Manifolds m = {.app = app};
   FlowMap f;
-  int rc = read_settings(&m), status = LAG_OK;
+  int rc = lag_manifolds_settings(&m), status = LAG_OK;
   double *y = calloc((size_t)app->sim->pb.n, sizeof *y);
   if (!y) return lag_app_error(&app->args, "out of memory");
   if (lag_flow_open(&f, app->sim) && rc == 0) rc = failed(app, f.message);

@@ -143,6 +143,10 @@ static int choose_period(App *app, PeriodicOrbit *o, double *T) {
   char message[600];
   FlowMap f;
   int rc = given_period(a, T);
+  const double longest = 1e4 * (search_end(app) - app->scene->t0);
+  if (rc == 0 && longest > 0 && *T > longest)
+    rc = lag_app_error(a, "%s %g: more than %g s, ten thousand times the span of scene %s; a longer one: --until T",
+                       a->period ? "--period" : "--guess", *T, longest, app->scene->name);
   if (rc) return rc;
   rc = lag_flow_open(&f, app->sim) ? lag_app_no_result(a, "%s", f.message) : LAG_OK;
   f.closing = o->closing;
@@ -159,9 +163,9 @@ static int choose_period(App *app, PeriodicOrbit *o, double *T) {
   return lag_app_no_result(
       a,
       "no periodic motion found near scene %s: until t = %g s the motion does not come back next to its "
-      "start; run longer: --until, start nearer to one: name=VALUE, or write about how long it takes: "
+      "start%s; run longer: --until, start nearer to one: name=VALUE, or write about how long it takes: "
       "--guess T",
-      app->scene->name, app->until);
+      app->scene->name, app->until, message);
 }
 
 static void take_values(PeriodicOrbit *o) {
@@ -207,8 +211,9 @@ static int collides(const PeriodicOrbit *o) {
 }
 
 static OrbitVerdict verdict_of(const PeriodicOrbit *o) {
+  if (o->nmultipliers > 0 && size_of(o, 0) > 1 + same) return ORBIT_UNSTABLE;
+  if (o->opens) return ORBIT_BORDER;
   if (o->nmultipliers == 0) return ORBIT_NO_OTHERS;
-  if (size_of(o, 0) > 1 + same) return ORBIT_UNSTABLE;
   if (size_of(o, 0) < 1 - same) return ORBIT_ATTRACTS;
   return isfinite(o->pairing) && !near_one(o, 1) && !near_one(o, -1) && !collides(o) ? ORBIT_ELLIPTIC : ORBIT_BORDER;
 }
@@ -225,6 +230,9 @@ static void reason(const PeriodicOrbit *o, OrbitVerdict v, char *s, size_t n) {
     snprintf(s, n,
              "all multipliers lie on the unit circle, apart from each other: small disturbances turn around the "
              "motion");
+  else if (o->opens)
+    snprintf(s, n, "a small push opens %s, which is closed at the begin, and it is still open a period later",
+             o->opens);
   else
     snprintf(s, n, "%s",
              near_one(o, 1)    ? "a further multiplier is 1: a family, a fold or a branch point, or a charge that "
@@ -328,6 +336,9 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
   if (lag_flow_differences(&o->flow))
     fputs("multipliers to about 8 digits: with contacts, which may close, runs from beside the start replace the "
           "tangent\n", f);
+  if (o->closed)
+    fprintf(f, "%s is closed at the begin: multipliers are of disturbances that keep it so%s\n", o->closed,
+            o->opens ? "" : "; after a small push that opens it, it is closed again within a period");
   put_free(f, o);
   if (o->repeats > 1)
     fprintf(f, "note: the motion comes back already after 1/%d of this period: --guess %s\n", o->repeats,
@@ -370,6 +381,7 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
     lag_json_row(&j, NULL, 2, (const double[]){o->re[i], o->im[i]});
   }
   lag_json_end(&j, ']');
+  lag_json_string(&j, "closed", o->closed);
   lag_json_number(&j, "pairing", o->pairing);
   lag_json_strings(&j, {"verdict", verdict_names[v]}, {"reason", why});
   lag_json_close(&j);
@@ -425,6 +437,7 @@ int lag_app_orbit_solve(App *app, PeriodicOrbit *o) {
                              a->relative);
   }
   rc = rc ? rc : lag_orbit_multipliers(o);
+  rc = rc ? rc : lag_orbit_contacts(o);
   if (rc == LAG_OK) return 0;
   return lag_app_no_result(a, "%s",
                            rc == LAG_ENOMEM                           ? "out of memory"
@@ -493,13 +506,18 @@ int lag_app_orbit(App *app) {
   PeriodicOrbit o = {0};
   const Args *a = &app->args;
   int rc = lag_app_orbit_set_up(app);
-  if (!a->manifold && (a->out || a->svg || a->section || a->follow || a->equilibrium))
+  if (!a->manifold && !a->to && (a->out || a->svg || a->section || a->follow || a->equilibrium))
     return lag_app_error(a, "-o, --svg, --section, --follow and --equilibrium are for --manifold unstable|stable|both");
+  if (a->to && (a->equilibrium || !a->section))
+    return lag_app_error(a, "--to %s: motions from one periodic motion to another are found where they cross a "
+                            "section: --section 'x rising'%s", a->to,
+                         a->equilibrium ? "; leave --equilibrium out" : "");
   if (rc == 0 && a->equilibrium) return lag_app_rest_manifolds(app);
   rc = rc ? rc : lag_app_orbit_open(app, &o);
   rc = rc ? rc : lag_app_orbit_solve(app, &o);
-  if (rc == 0 && a->manifold) rc = lag_app_manifolds(app, &o);
-  if (rc == 0 && a->json) put_json(stdout, app, &o);
+  if (rc == 0 && a->manifold && !a->to) rc = lag_app_manifolds(app, &o);
+  if (rc == 0 && a->to) rc = lag_app_connections(app, &o);
+  else if (rc == 0 && a->json) put_json(stdout, app, &o);
   else if (rc == 0) put_text(stdout, app, &o);
   lag_orbit_free(&o);
   return rc;

@@ -511,6 +511,7 @@ int lag_app_sweep(App *app) {
   lag_journal_close(&s.journal, rc == 0 && s.sweep.shards == 1);
   lag_table_free(&s.table);
   lag_table_free(&s.motions);
+  lag_table_free(&s.branches);
   free(s.times);
   lag_plan_free(&s.plan);
   free_variants(&s);

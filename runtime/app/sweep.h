@@ -12,6 +12,7 @@ typedef struct SweepApp {
   Table table;       /* columns: names that vary, measures, status */
   SweepVariant *variants; /* one, or one for each combination of values of constants */
   Table motions;     /* columns of --motions: run, t, outputs */
+  Table branches;    /* rows of --branches: value, output, branch, growing directions */
   double *times;     /* of their rows; NULL: they are crossings of --section */
   long long full;    /* runs that crossed it more often than is kept, of those read last */
   char *names;       /* of the measures where nobody gave one */
@@ -31,6 +32,11 @@ int lag_sweep_is_stream(const char *file);
 int lag_sweep_open_journal(SweepApp *s, int resume);
 int lag_sweep_read_shard(SweepApp *s);
 int lag_sweep_merge(SweepApp *s);
+
+/* sweep_branches.c. read: s->branches, with the output y; 0, or EXIT_USAGE after a message. draw: lines in the columns
+ * `first` (stable) and first + 1 of the picture's table; -1: no memory. */
+int lag_sweep_branches_read(SweepApp *s, const Column *y);
+int lag_sweep_branches_draw(const SweepApp *s, Table *t, int first, double period, int logarithmic);
 
 /* sweep_ranks.c. Refuses --mpi where it cannot be; becomes mpirun (a message where that fails). Return EXIT_USAGE
  * after a message. */
@@ -52,7 +58,7 @@ int lag_sweep_report_part(SweepApp *s);
 int lag_sweep_each_row(SweepApp *s, int (*take)(void *context, long long run, const double *row), void *context);
 
 /* sweep_picture.c: refuses --svg for what it does not draw; draws. 0, or EXIT_USAGE after a message. */
-int lag_sweep_picture_check(const SweepApp *s);
+int lag_sweep_picture_check(SweepApp *s);
 int lag_sweep_picture(SweepApp *s);
 /* sweep_arrays.c: writes the rows to --output, FILE.h5, and motions to --motions, FILE.h5. The same. */
 int lag_sweep_write_arrays(SweepApp *s);

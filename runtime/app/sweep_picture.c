@@ -36,7 +36,9 @@ static long long bars_of(const Args *a) {
   return n > MOST_BARS ? lag_app_error(a, "--histogram %lld: up to %d bars can be told apart", n, MOST_BARS), 0 : n;
 }
 
-int lag_sweep_picture_check(const SweepApp *s) {
+static int drawn_column(const SweepApp *s);
+
+int lag_sweep_picture_check(SweepApp *s) {
   const Args *a = &s->app->args;
   const SweepPlan *p = &s->plan;
   int columns = p->n + s->sweep.nmeasures;
@@ -44,6 +46,10 @@ int lag_sweep_picture_check(const SweepApp *s) {
   if (a->svg && a->section && !a->histogram && !is_curves(p))
     return lag_app_error(a, "--section --svg: crossings are drawn over the range of one name; let one vary, or leave "
                             "--svg out and write --motions FILE.csv");
+  if (a->continued && (!a->svg || !a->section || a->histogram))
+    return lag_app_error(a, "--branches %s: branches are drawn over the points of a section: --section 'EXPR rising' "
+                            "--svg FILE.svg", a->continued);
+  if (a->continued) return lag_sweep_branches_read(s, &s->motions.cols[drawn_column(s)]);
   if (!a->svg || is_curves(p) || a->histogram) return 0;
   if (is_map(p))
     return p->runs > MOST_CELLS
@@ -143,14 +149,16 @@ static int drawn_column(const SweepApp *s) {
 /* Columns: the value, and the drawn output for each class. */
 static int name_classes(Drawing *d, const RunClasses *c) {
   const Column *of = &d->s->table.cols[1];
-  d->table =
-      (Table){.ncols = c->n + 1, .cols = calloc((size_t)c->n + 1, sizeof *d->table.cols), .keep = 1, .points = 1};
+  const int joined = d->s->branches.cols ? 2 : 0;
+  d->table = (Table){.ncols = c->n + 1 + joined, .cols = calloc((size_t)c->n + 3, sizeof *d->table.cols), .keep = 1,
+                     .points = 1, .joined = joined};
   if (!d->table.cols) return -1;
   d->table.cols[0] = d->s->table.cols[0];
-  for (int k = 0; k < c->n; k++) {
+  for (int k = 0; k < c->n + joined; k++) {
     Column *y = &d->table.cols[k + 1];
     *y = d->s->motions.cols[drawn_column(d->s)];
-    if (c->n > 1)
+    if (k >= c->n) snprintf(y->name, sizeof y->name, "continued, %s", k == c->n ? "stable" : "unstable");
+    else if (c->n > 1)
       snprintf(y->name, sizeof y->name, "%.40s %.3g..%.3g", of->name, c->lo + (c->hi - c->lo) * k / c->n,
                c->lo + (c->hi - c->lo) * (k + 1) / c->n);
   }
@@ -161,12 +169,12 @@ static int add_crossings(Drawing *d, const RunClasses *c) {
   const Sweep *w = &d->s->sweep;
   MotionReader r;
   int drawn = drawn_column(d->s);
-  double row[CLASSES + 1], value, period = lag_app_period(d->s->app, d->s->motions.cols[drawn].name);
+  double row[CLASSES + 3], value, period = lag_app_period(d->s->app, d->s->motions.cols[drawn].name);
   int rc = lag_sweep_motion_reader(&r, d->s);
   for (long long i = 0; i < d->s->plan.runs && rc == 0; i++) {
     const double *motion = lag_sweep_next_motion(&r);
     lag_plan_values(&d->s->plan, i, &value);
-    for (int k = 0; k <= CLASSES; k++) row[k] = NAN;
+    for (int k = 0; k <= CLASSES + 2; k++) row[k] = NAN;
     row[0] = drawn_value(&d->s->plan, 0, value);
     rc = motion ? 0 : -1;
     for (int k = 0; rc == 0 && !isnan(motion[k * w->width]); k++) {
@@ -176,16 +184,18 @@ static int add_crossings(Drawing *d, const RunClasses *c) {
     }
   }
   free(r.chunk);
-  return rc;
+  return rc || !d->s->branches.cols
+             ? rc
+             : lag_sweep_branches_draw(d->s, &d->table, 1 + c->n, period, is_log(&d->s->plan, 0));
 }
 
 static int draw_crossings(const char *path, void *drawing) {
   Drawing *d = drawing;
-  static const int x[CLASSES] = {0}, y[CLASSES] = {1, 2, 3, 4, 5, 6};
+  static const int x[CLASSES + 2] = {0}, y[CLASSES + 2] = {1, 2, 3, 4, 5, 6, 7, 8};
   RunClasses c;
   int rc = choose_classes(d->s, &c) ? -1 : name_classes(d, &c) ? -1 : add_crossings(d, &c);
-  const PlottedCurves curves = {.n = c.n, .x = (int *)x, .y = (int *)y, .xlog = is_log(&d->s->plan, 0), .ordered = 1,
-                                .xname = d->s->table.cols[0].name,
+  const PlottedCurves curves = {.n = c.n + d->table.joined, .x = (int *)x, .y = (int *)y,
+                                .xlog = is_log(&d->s->plan, 0), .ordered = 1, .xname = d->s->table.cols[0].name,
                                 .yname = d->s->motions.cols[drawn_column(d->s)].name};
   if (rc == 0) rc = lag_svg_write(path, &d->table, d->title, &curves);
   lag_free_all(d->table.cols, d->table.data, c.value);

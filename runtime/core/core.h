@@ -86,6 +86,7 @@ struct lag_sim {
   double *options;       /* [method->noptions] */
   double tol;
   int steps_equal;       /* lag_equal_step(s) > 0, cached for checks made at each step */
+  int forwards;          /* 1 + event that rises and falls as in a run forwards, whichever way the run goes; 0: none */
   unsigned char *fixed;  /* [np] 1: set by the caller */
   lag_signal *signal;    /* [nu] set by the caller; not saved */
   double *start;         /* [n] start values set by the caller; NaN: the scene's */

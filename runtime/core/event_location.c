@@ -27,8 +27,11 @@ static int sample(void *sim, int shaken, double t, double *g) {
 }
 
 static int direction(void *sim, int k) {
-  const lag_model *m = ((const lag_sim *)sim)->scene->model;
-  return k >= m->nev || lag_contact_of(m, k) ? LAG_LOCATE_UNSEEN : m->ev[k].direction;
+  const lag_sim *s = sim;
+  const lag_model *m = s->scene->model;
+  if (k >= m->nev || lag_contact_of(m, k)) return LAG_LOCATE_UNSEEN;
+  return k + 1 == s->forwards && s->pb.dir < 0 && m->ev[k].direction != LAG_KICK ? -m->ev[k].direction
+                                                                              : m->ev[k].direction;
 }
 
 static lag_locator locator(lag_sim *s) {

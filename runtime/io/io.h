@@ -19,7 +19,8 @@ typedef struct Table {
   int ncols;
   Column *cols;
   int keep;   /* 0: rows are not stored, data stays NULL */
-  int points; /* 1: rows are separate points, not joined to a curve */
+  int points; /* 1: rows are separate points, not joined to a curve, */
+  int joined; /* but for the last columns, black lines: of two the second is dashed */
   /* rows up to the horizon of the run, as far as their digits mean something; 0: all. The rest is drawn grey */
   size_t certain;
   double horizon; /* where certain > 0: its time, in the unit of column 0 */

@@ -13,6 +13,10 @@ enum { GAP = 26, MOST_PANELS = 6, MOST_LEGEND = 24, MOST_NAME = 48, LINE = 18, M
 /* text[n] := stroke attributes of series k: the second eight series are dashed, the third dotted; of a family's n
  * members, k = MEMBER*n + i, colours run from blue over violet to orange. */
 static void stroke_of(int k, char *text, size_t n) {
+  if (k < 0) { /* joined */
+    snprintf(text, n, "stroke=\"#000\"%s", k < -1 ? " stroke-dasharray=\"5 3\"" : "");
+    return;
+  }
   static const char *const dashes[] = {"", " stroke-dasharray=\"5 3\"", " stroke-dasharray=\"1.5 2.5\""};
   static const int by_index[3][3] = {{0, 60, 160}, {170, 50, 150}, {235, 150, 20}};
   if (k < MEMBER) {
@@ -41,7 +45,9 @@ static int in_panel(const Column *c, const Column *of) {
  * members of a family x[1], x[2], ...; else by its run, or its place. */
 static int series_stroke(const Table *t, const PlottedCurves *d, const Column *panel, int i, int k, int total) {
   const char *name = t->cols[d->y[i]].name;
-  int n = 0, index = 0;
+  int n = 0, index = 0, joined = t->ncols - t->joined;
+  if (d->y[i] >= joined) return -1 - (d->y[i] - joined);
+  total -= t->joined;
   if (d->ordered && total > 2 && total < MEMBER) return MEMBER * total + k;
   for (int j = 0; j < d->n && !d->runs; j++)
     if (in_panel(&t->cols[d->y[j]], panel) && same_family(name, t->cols[d->y[j]].name)) {
@@ -181,8 +187,8 @@ static void one_curve(FILE *f, const Panel *p, const Table *t, int xcol, int yco
 /* In grey past the horizon; points of a section stay, since the whole of them may still hold. */
 static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period, int k) {
   char stroke[64];
-  stroke_of(t->points && k < MEMBER ? k % 8 : k, stroke, sizeof stroke);
-  if (t->points) {
+  stroke_of(t->points && k < MEMBER && k >= 0 ? k % 8 : k, stroke, sizeof stroke);
+  if (t->points && k >= 0) {
     dots(f, p, t, xcol, ycol, period, stroke);
     return;
   }

@@ -209,6 +209,7 @@ static int read_option(Arena *a, Arguments *words, Options *o, const OptionRow *
   if (strcmp(row->name, "--method") == 0) o->method = value;
   if (strcmp(row->name, "--resume") == 0) o->resume = value;
   if (strcmp(row->name, "--tol") == 0) o->tol = value;
+  if (strcmp(row->name, "--to") == 0) o->to = value;
   if (strcmp(row->name, "--accuracy") == 0 && command_simulates(o->command)) o->accurate = value;
   if (strcmp(row->name, "--tangent") == 0 || strcmp(row->name, "--volume") == 0) o->with = "linear";
   return row->passed || set_value(a, o, row, value, error);
@@ -262,6 +263,10 @@ static int read_arguments(Arena *a, int argc, char **argv, Options *o, const cha
       return 1;
     }
   }
+  if (o->to && o->file && !o->scene)
+    return fail_with(error, arena_printf(a, "--to %s: name the scene to begin with, too: lagc orbit %s SCENE --to %s",
+                                         o->to, o->file, o->to));
+  if (o->to) add_scene(a, o, o->to);
   if (!o->file && o->command != CMD_PLAYGROUND)
     *error =
         arena_printf(a, "a %s is missing; usage: %s", o->command == CMD_NEW ? "name" : "model", usage(a, o->command));

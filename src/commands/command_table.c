@@ -123,7 +123,7 @@ static const CommandRow commands[] = {
      "  name=value            a parameter, another start, an input to hold"},
     {CMD_ORBIT, "orbit", "periodic",
      "MODEL [SCENE] [name=value ...] [--guess T | --period T] [--hold NAMES] [--relative NAMES | --reverse MAP] "
-     "[--manifold KIND -o FILE.csv] [--json]",
+     "[--manifold KIND -o FILE.csv] [--to SCENE --section 'x rising'] [--json]",
      "periodic motions: period, multipliers, stability",
      "Finds the periodic motion next to the scene's start, by Newton's method on the exact tangent of the flow, and "
      "prints its period, the Floquet multipliers with their meaning, and a scene to paste that starts on it. The "

@@ -42,7 +42,8 @@ typedef struct {
 #include "app/options.def"
   const char *file, *scene;
   const char *topic;       /* help TOPIC; completion SHELL */
-  const char *tol, *resume, *accurate; /* --tol, --resume, and --accuracy of a run: noted, and passed on */
+  /* --tol, --resume, --to, and --accuracy of a run: noted, and passed on */
+  const char *tol, *resume, *to, *accurate;
   VEC(Define) defines;
   VEC(ConstRange) consts;  /* of sweep; `defines` ends with a value of each */
   OptionTexts scenes;      /* plot: all scenes named, each once */

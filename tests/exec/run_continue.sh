@@ -164,12 +164,12 @@ long() {
   follow "$TMP/shaken.lag" a=1.49..1.505 x=0.0174588734157936 y=0.804163377048012 th=-0.0217660919714671 "x'=0.44204476705349" \
     "y'=0.10034198550577" "th'=-0.549695223222156" --until 10 --hold x
   kinds "end;end;"
-  # AUTO's manual: folds at 0.105739 and 0.0889318, a Hopf point at 0.1309
+  # AUTO's manual: folds at 0.105739 and 0.0889318, a Hopf point at 0.1309; here p1 = u exp(-14 u/3)/(1 - u) where u (1 - u) = 3/14, (14 u - 4)(1 - u) = u
   follow $dir/reaction.lag p1=0..0.15
   kinds "fold;fold;Hopf;end;end;"
-  close 1 parameter 0.105739 5e-7
-  close 2 parameter 0.0889318 5e-8
-  close 3 parameter 0.1309 5e-7
+  close 1 parameter 0.105738978271651651 1e-11
+  close 2 parameter 0.0889318461857728026 1e-11
+  close 3 parameter 0.130900044820043325 1e-11
   # folds of Duffing's oscillator, by SciPy: P(u) = u, det(P' - 1) = 0 by fsolve, period map by DOP853 at 1e-13
   follow $dir/oscillator.lag driven w=0.5..2.5
   kinds "fold;fold;end;end;"
@@ -199,6 +199,15 @@ long() {
 }
 slow long
 
+# branches over the points of a section: x(0) is the real part of 1/(k - w^2 + i c w), as above; the picture's line and its points have one height
+"$LAGC" continue $dir/driven.lag c=1 w=1..2 -o "$TMP/response.csv" >"$TMP/log"
+over() { "$LAGC" sweep $dir/driven.lag c=1 w=1..2:5 --skip 150 --until 180 --quiet "$@"; }
+over --y x --section 'sin(w*t) rising' --branches "$TMP/response.csv" --svg "$TMP/over.svg"
+check "branches over a section: a line" grep -q 'stroke="#000".* d="M' "$TMP/over.svg"
+check "branches over a section: a legend" grep -q 'continued, unstable' "$TMP/over.svg"
+check "branches without a section" says 2 "over the points of a section" over --branches "$TMP/response.csv" --svg "$TMP/over.svg"
+check "branches of another model" says 2 "there is no column" over --y x --section 'sin(w*t) rising' --branches "$TMP/bead.csv" --svg "$TMP/over.svg"
+
 refused() {
   case_words=$1
   shift
@@ -220,7 +229,15 @@ refused "a period of steady motions" 2 "a steady motion has none" "$LAGC" contin
 # impacts once a period T of the table: its velocity at the impact is g T/2 (1 - e)/(1 + e), at most A w
 follow $dir/table.lag A=0.01..0.016
 close 2 parameter 0.01141445330804292 1e-12 # pi g/2700
-check "where an impact passes the begin of the period" sh -c "'$LAGC' continue $dir/table.lag phase=-2.4..3 | grep -q 'it ends there: plate passes the begin of the period'"
+# an impact passes the begin of the period: the rest of the branch begins later on the motion, and its rows at the scene's time: impacts at the table's phase p,
+# cos p = g T (1 - e)/(2 A w (1 + e)), (phase - p)/w before
+follow $dir/table.lag phase=-2.4..3 -o "$TMP/over.csv"
+kinds "end;end;end;"
+close 2 z 0.0596059168229455 1e-9
+near "$title: product of multipliers" 1e-8 0.25 "$(sed -n '2s/.*"multipliers": \[\[\([^,]*\), \([^]]*\)\].*/\1 \2/p' "$TMP/points" | awk '{ printf "%.12g", $1^2 + $2^2 }')" # e^2
+"$LAGC" continue $dir/table.lag phase=-2.4..1 -o "$TMP/before.csv" >"$TMP/log"
+follow $dir/table.lag phase=-2.4..3 --resume "$TMP/before.csv"
+close 1 z 0.0596059168229455 1e-9
 family="$TMP/family.csv"
 refused "rows of another model" 2 "column 7 is \`th [rad]\`, and should be \`x\`" "$LAGC" continue models/lorenz.lag x=0 y=0 z=0 energy=1..2 --resume "$family"
 refused "rows of other values" 2 "the file was written by \`pendulum wide over energy" "$LAGC" continue models/pendulum.lag wide l=2 energy=9..18 --resume "$family"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# lagc orbit --manifold: the separatrix of a pendulum against its closed form; heteroclinic connections of
-# the restricted problem, published; refusals.
+# lagc orbit --manifold, --to: the separatrix of a pendulum against its closed form; heteroclinic connections of
+# the restricted problem, published and by SciPy; refusals.
 . tests/tap.sh
 needs_gsl
 LAGC_OPTIMISE=-O0
@@ -29,27 +29,29 @@ check "a periodic motion: directions" awk -F, '
   function length_of(x, y, k) { return sqrt((x[k, 1] - x[k, -1])^2 + (y[k, 1] - y[k, -1])^2) }
   END { for (k in both) { n++; r = length_of(ex, ey, k)/length_of(x, y, k)/2360.866 - 1; if (r > 0.01 || r < -0.01) bad++ } exit !(n == 16 && !bad) }' "$TMP/rows.csv"
 
-connections() {
-  # W. S. Koon, M. W. Lo, J. E. Marsden, S. D. Ross, Chaos 10 (2000) 427: Sun and Jupiter, C = 3.037: at x = 1 - mu the second cuts of the unstable
-  # manifold of the Lyapunov orbit about L1 and of the stable one of that about L2 cross in two points
-  tube() {
-    orbit models/cr3bp.lag departure mu=0.0009537 "$@" --reverse y=-y --hold energy --tol 1e-12 --section 'x - 1 + mu crossing' --follow 7
-  }
-  tube x=0.925566255520263 "y'=0.05603763826396633" --guess 2.9323 --manifold unstable:40 -o "$TMP/from.csv"
-  tube x=1.0609578327695723 "y'=0.044639197338073554" --guess 3.19656 --manifold stable:40 -o "$TMP/to.csv"
-  is "heteroclinic connections from L1 to L2" 2 "$(awk -F, '
-    function side(a, b, c) { return (y[b] - y[a])*(v[c] - v[a]) - (v[b] - v[a])*(y[c] - y[a]) }
-    FNR == 1 { file++ }
-    FNR > 1 && $3 == (file == 1 ? 1 : -1) && ++cut[file, $2] == 2 { k = file " " n[file]++; y[k] = $6; v[k] = $8 }
-    END {
-      for (i = 0; i < n[1]; i++) for (j = 0; j < n[2]; j++) {
-        a = "1 " i; b = "1 " (i + 1)%n[1]; c = "2 " j; d = "2 " (j + 1)%n[2]
-        found += side(a, b, c)*side(a, b, d) < 0 && side(c, d, a)*side(c, d, b) < 0
-      }
-      print found + 0
-    }' "$TMP/from.csv" "$TMP/to.csv")"
-}
-slow connections
+# A section is met in one direction of time by both manifolds: both cross the lowest place upwards
+orbit models/pendulum.lag wide th=3.1 --equilibrium --manifold both --section 'th rising' -o "$TMP/rows.csv"
+is "a pendulum: rises through the lowest place" "stable 1;unstable 1;" "$(awk -F, 'NR > 1 && $6 > 0 { n[$1]++ } NR > 1 && $6 < 0 { n["falls"]++ } END { for (k in n) print k, n[k] ";" }' "$TMP/rows.csv" | sort | tr -d '\n')"
+
+# W. S. Koon, M. W. Lo, J. E. Marsden, S. D. Ross, Chaos 10 (2000) 427: Sun and Jupiter, C = 3.037: at x = 1 - mu the second cuts of the unstable
+# manifold of the Lyapunov orbit about L1 and of the stable one of that about L2 cross in two points; places by SciPy's DOP853 at 3e-14 and fsolve,
+# from 1e-6 beside the orbits. Allowed: 1e-9, as the rounding of starts grows
+{ cat models/cr3bp.lag && printf "\nscene at_L2 {\n like departure\n mu = 0.0009537\n start x = 1.0609578327695723, y' = 0.044639197338073554\n span 3.2\n}\n"; } >"$TMP/two.lag"
+connect() { "$LAGC" orbit "$TMP/two.lag" departure mu=0.0009537 x=0.925566255520263 "y'=0.05603763826396633" --reverse y=-y --hold energy --to at_L2 --section "$@"; }
+connect 'x - 1 + mu falling' --follow 6.2 --json >"$TMP/json"
+state() { sed 's/{"before"/\n&/g' "$TMP/json" | grep '^{"before"' | sed -n "$1s/.*\"$2\": \([^,}]*\).*/\1/p"; }
+is "heteroclinic connections from L1 to L2" 2 "$(grep -o '"before"' "$TMP/json" | wc -l | tr -d ' ')"
+near "first: y" 1e-9 0.0411411066519575 "$(state 1 y)"
+near "first: x'" 1e-9 -0.0527609804022428 "$(state 1 "x'")"
+near "first: y'" 1e-9 -0.0610026718818242 "$(state 1 "y'")"
+near "second: y" 1e-9 0.0422374228044829 "$(state 2 y)"
+near "second: y'" 1e-9 -0.0134478298654067 "$(state 2 "y'")"
+# the scene to paste arrives: a run from the section comes as near to the orbit about L2, whose start it passes, as growth from 1e-9 allows
+connect 'x - 1 + mu falling' --follow 6.2 -o "$TMP/path.csv" --svg "$TMP/path.svg" | sed -n '/^scene connection_1/,/^}/p' | cat "$TMP/two.lag" - >"$TMP/arrives.lag"
+"$LAGC" run "$TMP/arrives.lag" connection_1 --tol 1e-13 --every 0.001 -o "$TMP/arrives.csv" --quiet
+near "it arrives" 1e-4 0 "$(awk -F, -v OFS=, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i } NR > 1 { d = sqrt(($at["x"] - 1.0609578327695723)^2 + $at["y"]^2); if (NR == 2 || d < least) least = d } END { print least }' "$TMP/arrives.csv")"
+is "both halves meet" 2 "$(awk -F, 'NR > 1 && $4 == 0 { k = $2 OFS $5 OFS substr($6, 1, 9); n[k]++ } END { for (k in n) if (n[k] == 2) c++; print c }' "$TMP/path.csv")"
+check "picture of paths" grep -q '<svg' "$TMP/path.svg"
 
 refused() {
   case_words=$1
@@ -61,5 +63,11 @@ refused "no file" 2 "the runs need a file" "$LAGC" orbit models/pendulum.lag wid
 refused "no manifold" 2 "are for --manifold" "$LAGC" orbit models/pendulum.lag wide -o "$TMP/a.csv"
 refused "nothing unstable" 3 "has no such direction" "$LAGC" orbit models/pendulum.lag wide --manifold both -o "$TMP/a.csv"
 refused "a section that is not met" 3 "no run along the manifold crosses it" "$LAGC" orbit models/pendulum.lag wide th=3.1 --equilibrium --manifold both --section "th' - 50 [rad/s] rising" -o "$TMP/a.csv"
+refused "no section" 2 "where they cross a section" "$LAGC" orbit "$TMP/two.lag" departure --to at_L2
+refused "no such scene" 1 "unknown scene" "$LAGC" orbit "$TMP/two.lag" departure --to at_L3 --section 'x rising'
+refused "no scene to begin with" 2 "name the scene to begin with" "$LAGC" orbit "$TMP/two.lag" --to at_L2 --section 'x rising'
+refused "other values" 2 "write one for both: mu=VALUE" "$LAGC" orbit "$TMP/two.lag" departure x=0.82 "y'=0.15" --reverse y=-y --to at_L2 --section 'x rising'
+refused "another energy" 3 "is conserved" "$LAGC" orbit "$TMP/two.lag" departure mu=0.0009537 x=0.92 "y'=0.09" --reverse y=-y --hold x --guess 3 --to at_L2 --section 'x rising'
+refused "no crossing" 3 "do not meet in the section" connect 'x - 1 + mu falling' --follow 3
 refused "a time of no length" 2 "a time above 0" "$LAGC" orbit models/pendulum.lag wide th=3.1 --equilibrium --manifold both --follow -3 -o "$TMP/a.csv"
 tap_end

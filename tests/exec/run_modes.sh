@@ -429,6 +429,19 @@ close "along its valley" "-5/12" "$(bend_of y 1)" 1e-12
 find_modes $dir/cr3bp.lag L4 --amplitude
 close "a libration of long period" "-0.119016462697392" "$(bends a2)" 1e-12
 close "one of short period" "0.0300862102547055" "$(sed -n 3p "$TMP/modes" | sed 's/.*"a2": \([^,]*\),.*/\1/')" 1e-12
+by_action() { sed -n 's/.*"by_action": \[\[\(.*\)\]\].*/\1/p' "$TMP/modes" | tr -d '[] ' | cut -d, -f"$1"; }
+close "of the long one by that of short period" "1.7126241458983780" "$(by_action 2)" 1e-11 # -B of theirs: the long one's action is < 0
+close "and back" "1.7126241458983780" "$(by_action 3)" 1e-11
+close "their C" "0.67717405509006792" "$(by_action 1)" 1e-11
+close "their A" "0.23135546980127810" "$(by_action 4)" 1e-11
+# Henon and Heiles with y at 3/2 of x: -1/2 sum of k d/dJ |h_k|^2/(k w), h_k the harmonics of x^2 y - y^3/3, is 1/(w1 w2^3) - 2/(w1 w2 (4 w1^2 - w2^2)) for J1 J2
+sed 's|(x^2 + y^2)/2 + x^2|(x^2 + 9/4*y^2)/2 + x^2|; /^expect/d' models/henon_heiles.lag >"$TMP/detuned.lag"
+find_modes "$TMP/detuned.lag" regular x=0.01 y=0 --amplitude
+close "x by the action of y" "8/27 - 4/3/1.75" "$(by_action 2)" 1e-12
+close "y by the action of x" "8/27 - 4/3/1.75" "$(by_action 3)" 1e-12
+check "equal frequencies exchange amplitudes" sh -c "'$LAGC' modes models/henon_heiles.lag x=0.01 y=0 --amplitude | grep -q '^modes 1, 2: no shifts by amplitudes alone: resonance w1 = w2$'"
+printf "model sum\ncoord x, y, z\nkinetic = (x'^2 + y'^2 + z'^2)/2\npotential = (x^2 + 9/4*y^2 + 25/4*z^2)/2 + x*y*z\n" >"$TMP/sum.lag"
+check "a sum that resonates" sh -c "'$LAGC' modes '$TMP/sum.lag' --amplitude | grep -q '^modes 1, 2: no shifts by amplitudes alone: resonance w1 + w2 = w3$'"
 check "a resonance is not divided by" sh -c "'$LAGC' modes $dir/cr3bp.lag L4 mu=0.024293897142052 --amplitude | grep -q '^mode 1: no series of its own: resonance 2 w1 = w2$'"
 check "a near one is printed" sh -c "'$LAGC' modes $dir/cr3bp.lag L4 mu=0.0242 --amplitude | grep -q '^mode 1: .*for small A only, near the resonance 2 w1 = w2, but for 0.0063 w1$'"
 check "three bodies in a triangle: two equal modes" sh -c "'$LAGC' modes $dir/triangle.lag --amplitude | grep -q '^mode 4: frequency times 1 - 0.4.* A^2, no A^4: resonance 1 w4 = w5;'"

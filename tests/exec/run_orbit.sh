@@ -161,6 +161,14 @@ orbit "$TMP/wheel.lag" th=0 "th'=1.3" "x'=1.3" --relative x,y --guess 4.425
 close period 4.42518591398412280 1e-11
 closes 1 1 0.00770734662925894 1e-8
 word trivial_multipliers 3
+# A floor that stays closed: multipliers of the slide alone, exp((-0.1 +- i sqrt(0.99)) T), mpmath; a push that opens it decays with e = 1/2, and never with 1
+orbit $dir/floor.lag
+closes 1 1 0.0594858770842055 1e-8
+closes 1 2 0.613855723191055 1e-8
+word closed floor
+word verdict attracts
+orbit $dir/floor.lag e=1
+word verdict undecided
 slow_orbits() {
   # stick, slip and impacts; by the 33rd peck of a run, whose disturbance has decayed by 0.6^33
   orbit models/woodpecker.lag M=0.0433 S=0.0337 "y'=-0.037" "M'=-3.956" "S'=-4.037" --relative y --guess 0.17
@@ -209,6 +217,8 @@ refused() {
 refused "no name" 2 "--hold enrgy: write \`energy\`" "$LAGC" orbit models/pendulum.lag wide --hold enrgy
 refused "a symmetry that moves nothing" 2 "--relative energy: write the charge of a symmetry" "$LAGC" orbit models/pendulum.lag wide --relative energy
 refused "no return" 3 "does not come back next to its start" "$LAGC" orbit models/free_fall.lag
+refused "how near, and when" 3 "it comes nearest after" "$LAGC" orbit models/lorenz.lag --until 3
+refused "a period without end" 2 "ten thousand times the span" "$LAGC" orbit models/pendulum.lag wide --guess 1e300
 refused "rest" 3 "ends at rest" "$LAGC" orbit models/pendulum.lag fading
 refused "a place that matters" 3 "depend on where it is; coordinates that move together are written with +" "$LAGC" orbit models/compass_walker.lag --relative h.x --guess 3.88
 refused "another period than the drive's" 3 "has the period 5.2359877559829" "$LAGC" orbit $dir/oscillator.lag driven --period 5
