@@ -14,7 +14,8 @@ precise quad $hard/hard.c >"$TMP/hard_quad.c"
 mkdir "$TMP/quad" && mv "$TMP/hard_quad.c" "$TMP/quad"
 check "the cases compile for doubles" compile_cases "$TMP/hard"
 check "and in quadruple precision" compile_precise quad "$TMP/hard_quad" "$TMP"/*.c "$TMP/quad/hard_quad.c"
-quad() { "$TMP/hard_quad" $hard/cases.json $hard/expected.txt $hard/runs.txt quad; }
+# shellcheck disable=SC2086 # a list of words
+quad() { "$TMP/hard_quad" $hard/cases.json $hard/expected.txt $hard/runs.txt quad $cases; }
 relay quad
 far() { ! hard_runs quad >"$TMP/out" && ! grep '^ok' "$TMP/out" | grep -v 'refused\|lagrange-top-steady'; }
 check "doubles reach none but steady motion" far
