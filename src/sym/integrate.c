@@ -415,8 +415,8 @@ static Expr in_powers(ExprGraph *g, Expr e) {
 }
 
 /* Antiderivative of e by the forms above, by substitution, and on the sides of switches; *rest: the terms without
- * one. Of long expressions only the forms are tried, very long ones are given up, also those that grow so: derivatives of
- * what is found take minutes. */
+ * one. Of long expressions only the forms are tried, very long ones are given up, also those that grow so:
+ * derivatives of what is found take minutes. */
 static Expr antiderivative(ExprGraph *g, Expr e, Task with, int depth, Expr *rest) {
   enum { MOST = 64, LONGEST = 2000, NONE = 20000 };
   uint32_t distinct;
