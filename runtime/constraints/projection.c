@@ -332,10 +332,14 @@ static void find_tied(const ConstraintScratch *w, const lag_problem *pb, const d
     if (a->row < w->of->nholonomic) tied[a->col] = fmax(tied[a->col], row[a->row]);
 }
 
-/* Largest part of its extent by which a step leads a coordinate. */
-static double led_part(const lag_problem *pb, const double *y0, const double *y, const double *led) {
+/* Largest part of its extent by which a step leads a coordinate that a constraint on positions ties to i. */
+static double led_part(const ConstraintScratch *w, const lag_problem *pb, const double *y0, const double *y,
+                       const double *led, int i) {
+  const lag_entry *e = w->of->jacobian, *end = e + w->of->njacobian;
   double most = 0;
-  for (int i = 0; i < pb->nq; i++) most = fmax(most, fabs(led[i]) / extent(pb, y0, y, i));
+  for (const lag_entry *a = e; a < end; a++)
+    for (const lag_entry *b = e; a->col == i && a->row < w->of->nholonomic && b < end; b++)
+      if (b->row == a->row) most = fmax(most, fabs(led[b->col]) / extent(pb, y0, y, b->col));
   return most;
 }
 
@@ -344,7 +348,7 @@ int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y
   const ConstraintScratch w = layout(pb);
   const lag_var *q = pb->model->q;
   const double small = 1e-6;
-  double reach = 0, part = -1;
+  double reach = 0;
   int found = -1, like = -1; /* the coordinates for whose unit w.other is, and for which reach is */
   for (int i = 0; i < pb->nq; i++) {
     double most = fabs(led[i]);
@@ -352,7 +356,8 @@ int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y
     if (found < 0 || strcmp(q[found].unit, q[i].unit) != 0) find_tied(&w, pb, led, found = i);
     most = fmax(most, w.other[i]);
     if (like < 0 || !lag_are_alike(&q[like], &q[i])) reach = extent(pb, y0, y, like = i);
-    if (part < 0) part = led_part(pb, y0, y, led);
+    if (!(fabs(moved[i]) > 2 * most + small * reach)) continue;
+    const double part = led_part(&w, pb, y0, y, led, i);
     /* where a crank passes a dead centre its slider moves by the square of the turn */
     if (fabs(moved[i]) > 2 * most + (small + fmin(part * part, 1e-2)) * reach) return i;
   }
