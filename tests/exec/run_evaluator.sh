@@ -31,7 +31,7 @@ for model in models/*.lag; do
     */double_pendulum.lag) one_of 2 && check "functions of $model" functions "$model" --method taylor --with derivatives ;;
     *) one_of 40 && light "$model" && check "functions of $model" functions "$model" --method taylor --with derivatives ;;
   esac
-  [ -z "${SLOW:-}" ] || { one_of 4 && check "functions of $model, with derivatives of L" functions "$model" --method variational; }
+  [ -z "${SLOW:-}" ] || { one_of 4 && light "$model" && check "functions of $model, with derivatives of L" functions "$model" --method variational; }
 done
 
 # rows MODEL SCENE: the same rows, compiled and evaluated

@@ -22,19 +22,21 @@ write() { # MODEL KIND COMMAND...: a line of emitted.txt
   echo "$code $(sum <"$text") $model $*"
 }
 # `make test` has one model of three, and of these one of three with Taylor coefficients.
-all=${SLOW:-}${BLESS:-}
+# `make test-long` has half of them, with all texts.
+all=${BLESS:-}$(depth "" "" yes)
+more=${BLESS:-}$(depth "" yes yes)
 models=
 for m in models/*.lag; do
   { [ -n "$all" ] || one_of 3; } && models="$models $m"
 done
 for m in $models; do
-  taylor=$all
-  [ -n "$all" ] || { one_of 3 && taylor=yes; }
-  for words in ${taylor:+"emit --method taylor"} header ${all:+emit "emit --method variational --with linear" "emit --method radau" "emit --fix all" "derive --format c"}; do
+  taylor=$more
+  [ -n "$more" ] || { one_of 3 && taylor=yes; }
+  for words in ${taylor:+"emit --method taylor"} header ${more:+emit "emit --method variational --with linear" "emit --method radau" "emit --fix all" "derive --format c"}; do
     # shellcheck disable=SC2086 # some words
     write "$m" c $words
   done
-  for words in derive ${all:+"derive --format latex" "derive --hamiltonian"}; do
+  for words in derive ${more:+"derive --format latex" "derive --hamiltonian"}; do
     # shellcheck disable=SC2086
     write "$m" text $words
   done
