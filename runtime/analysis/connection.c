@@ -152,12 +152,13 @@ static int refine(Search *s, Gap *g, double *D, double *gap) {
 
 /* ---- Pairs of cuts that cross */
 
-/* Whether lines y_0 + a (z_0 - y_0) and y_1 + b (z_1 - y_1) meet within both, but for a third of their lengths. */
-static int lines_meet(const Search *s, double *const y[2], double *const z[2], double ab[2]) {
+/* Whether lines y_0 + a (z_0 - y_0) and y_1 + b (z_1 - y_1) meet within both, but for a third of their lengths.
+ * D[2][n]: their directions, in units. */
+static int lines_meet(const Search *s, double *const y[2], double *const z[2], double ab[2], double *D) {
   const double beyond = 0.1, apart = 0.3;
   Gap g = {.y = {y[0], y[1]}};
-  double D[2 * 64], left = 0, size = 0;
-  int n = s->n < 64 ? s->n : 64;
+  double left = 0, size = 0;
+  int n = s->n;
   for (int e = 0; e < 2; e++)
     for (int i = 0; i < n; i++) D[e * s->n + i] = (z[e][i] - y[e][i]) / s->unit[i];
   if (!newton_step(s, &g, D, ab)) return 0;
@@ -211,7 +212,7 @@ static int try_cells(Search *s, const Tube *a, const Tube *b, int i, int j, Gap 
     for (int l = 0; l < cuts[1][0]->count && l < cuts[1][1]->count && rc == LAG_OK; l++) {
       double ab[2], gap, *y[2] = {cuts[0][0]->y + k * n, cuts[1][0]->y + l * n},
                          *z[2] = {cuts[0][1]->y + k * n, cuts[1][1]->y + l * n};
-      if (s->out->tried >= MOST_TRIED || !lines_meet(s, y, z, ab)) continue;
+      if (s->out->tried >= MOST_TRIED || !lines_meet(s, y, z, ab, D)) continue;
       s->out->tried++;
       g->tube[0] = a, g->tube[1] = b, g->cut[0] = k, g->cut[1] = l;
       g->phase[0] = i + ab[0], g->phase[1] = j + ab[1];

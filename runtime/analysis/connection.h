@@ -24,14 +24,14 @@ typedef struct Connection {
 
 typedef struct Connections {
   Pool pool;
-  Connection *first, *last;
+  Connection *first;
   int count, tried; /* pairs of cuts that cross, and were refined */
   double nearest;   /* the smallest gap of those that failed; HUGE_VAL: none */
 } Connections;
 
-/* Those that cross the event `section` within `time` after departure, and before arrival. part: as of the manifolds.
- * LAG_OK, LAG_ENOMEM, or LAG_EMETHOD: a manifold has more than one direction, or its direction changes its side in
- * each period. Free in any case. */
+/* Connections that cross the event `section` within `time` after departure, and before arrival. part: as of the
+ * manifolds. LAG_OK, LAG_ENOMEM, or LAG_EMETHOD: a manifold has more than one direction, or its direction changes its
+ * side in each period. Free in any case. */
 int lag_connections_find(Connections *c, const ConnectionEnd *from, const ConnectionEnd *to, int section, double time,
                          double part);
 void lag_connections_free(Connections *c);

@@ -9,7 +9,7 @@ typedef struct Amplitudes {
   Couplings couplings;
 } Amplitudes;
 
-/* Those of all modes about the rest. 0, or an exit status, with its message. Free bend in any case. */
+/* Amplitudes of all modes about the rest. 0, or an exit status, with its message. Free bend in any case. */
 int lag_app_find_amplitudes(const App *app, Equilibrium *rest, const Modes *modes, Amplitudes *a);
 void lag_app_put_amplitudes(FILE *f, const lag_model *m, const Modes *modes, int n, const Amplitudes *a);
 void lag_app_json_amplitude(Json *j, const lag_model *m, const ModeAmplitude *a);

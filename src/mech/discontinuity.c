@@ -49,7 +49,7 @@ static Real value_of(const Eqns *e, Expr x, const Real *symbols) {
   return v;
 }
 
-/* What pairs at the cut of a sum over neighbours have; value: a share of s, which has a test. */
+/* Value of a pair at the cut of a sum over neighbours: a share of s, which has a test. */
 static NearCut near_cut(const Eqns *e, const SumNest *s, Expr value) {
   enum { LINES = 2, PARTS = 8 };
   const NearTest *t = s->near;
