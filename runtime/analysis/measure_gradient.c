@@ -1,6 +1,8 @@
 /* Gradients of measures. Enters: a measure of a run that has ended; leaves: its derivatives by starts and parameters.
- * Holds: a measure depends on the states at some times: the end, x(10), where a largest or smallest value is, whose
- * time is stationary, and where an event happens or a value passes 0, whose time T changes by dT = -dg/(dg/dt). Weights
+ * Holds: a measure depends on the states at some times: fixed ones, as the end and x(10); where a largest or smallest
+ * value is, whose time is stationary; the places of a mean's quadrature; and where an event happens or a value passes
+ * 0, whose time T changes by dT = -dg/(dg/dt). A value at an event, as the largest one before a bounce or any at the
+ * end where an event ends the run, changes by its rate times dT, too; a mean by what its value jumps times dT. Weights
  * of these states come from the nodes in reverse, and within the expression at one time from differences of order 6;
  * lag_sim_gradient carries them to the start. */
 #include <math.h>
@@ -10,49 +12,98 @@
 
 #include "analysis/measure_nodes.h"
 #include "core/core.h"
+#include "numeric/release.h"
 
-enum { MOST_ROWS = 64 };
+enum { MOST_SEEDS = 64 };
 
-/* The measure changes by `weight` times the change of the expression `node` at time t, or, IS_TIME, of the time near t
- * at which it passes 0; event >= 0: at which this event happens for the firing-th time. */
+typedef enum SeedKind { VALUE, PASSAGE, EVENT_VALUE, EVENT_TIME } SeedKind;
+
+/* The measure changes by `weight` times the change of: the expression `node` at time t; the time near t at which it
+ * passes 0; its value at an event; the time of an event. done: 1 once it is among the rows. top: the value is the largest
+ * or smallest one of this track. */
 typedef struct Seed {
+  SeedKind kind;
   double t, weight;
-  int node, is_time, event, firing;
+  int node;
+  Happening at;
+  int done;
+  const Track *top;
+  double value; /* the largest or smallest */
 } Seed;
 
-/* The event that is waited for: its time, NaN before, and the state y[n] there before its action; firings[nev]
- * so far. */
-typedef struct Wait {
-  int event, firing, n;
-  double t, *y, *firings;
-} Wait;
+/* ... and by factor times the integral of the track's value, or of half its square. */
+typedef struct Sum {
+  const Track *track;
+  double factor;
+  double last, most; /* at the end of the last step: the value, NaN where an event follows; the largest size so far */
+} Sum;
+
+/* An event that has happened: the states y[n] before it and y[n] after it. */
+typedef struct Seen {
+  Happening at;
+  double t, *y;
+} Seen;
+
+/* What is differentiated: an expression, or, event >= 0, the function of an event. */
+typedef struct Function {
+  int node, event;
+} Function;
 
 typedef struct MeasureGradient {
   Measures *m;
-  Wait wait;
+  lag_sim *sim; /* the run under way */
   double *adjoint; /* [nodes] */
-  Seed seed[MOST_ROWS];
-  int n;
+  Seed seed[MOST_SEEDS];
+  Sum sum[MOST_SEEDS];
+  int n, sums;
   const char *refused;
+  double end;      /* of the measured run, */
+  Happening ended; /* and the event that has ended it */
+
+  double *firings, *hold; /* [nev]; [nu + nmodes] before the last event */
+  Seen *seen;             /* events that are not among the rows yet */
+  int nseen, seen_room, no_memory;
+  int rows, row_room;
+  double *t, *weight, *direct; /* [rows], [rows * n], [np]: for lag_sim_gradient, and what is added to it */
+  double *by_y, *by_p, *there; /* [n], [np]: slopes of a function; [n] scratch */
 } MeasureGradient;
 
 static void put_seed(MeasureGradient *g, Seed of) {
-  if (g->n == MOST_ROWS) g->refused = "it has too many values at times";
+  if (g->n == MOST_SEEDS) g->refused = "it has too many values at times";
   else if (of.weight != 0.0) g->seed[g->n++] = of;
 }
 
-static void seed_hit(MeasureGradient *g, const MeasureNode *n, double weight) {
-  const Measures *m = g->m;
-  if (m->scene->model->ev[n->index].direction == LAG_KICK)
-    g->refused = "times of kicks have no gradient: they are multiples of a period, which a parameter may be";
-  else put_seed(g, (Seed){n->result, weight, -1, 1, n->index, (int)m->node[n->a].value});
+/* A value at time t, or at the event that happens there. */
+static void seed_value(MeasureGradient *g, int node, double t, Happening at, double weight) {
+  put_seed(g, (Seed){at.event < 0 ? VALUE : EVENT_VALUE, t, weight, node, at, .top = NULL});
+}
+
+static void seed_top(MeasureGradient *g, const Track *k, int least, double weight) {
+  seed_value(g, k->arg, least ? k->when_least : k->when_most, least ? k->least_at : k->most_at, weight);
+  if (k->kind != TRACK_DRIFT && g->n) g->seed[g->n - 1].top = k, g->seed[g->n - 1].value = least ? k->least : k->most;
+}
+
+static void seed_event(MeasureGradient *g, Happening at, double weight) {
+  put_seed(g, (Seed){EVENT_TIME, NAN, weight, -1, at, .top = NULL});
 }
 
 /* The mean time between the first upward passage of 0 and the last. */
 static void seed_period(MeasureGradient *g, const Track *k, double weight) {
   double part = weight / (k->passages - 1) * (k->latest < k->passage ? -1 : 1);
-  for (int i = 0; i < 2 && k->passages > 1; i++)
-    put_seed(g, (Seed){i ? k->latest : k->passage, i ? part : -part, k->arg, 1, -1, 0});
+  for (int i = 0; i < 2 && k->passages > 1; i++) {
+    Happening at = i ? k->latest_at : k->passage_at;
+    if (at.event < 0) put_seed(g, (Seed){PASSAGE, i ? k->latest : k->passage, i ? part : -part, k->arg, at, .top = NULL});
+    else seed_event(g, at, i ? part : -part);
+  }
+}
+
+/* A mean, or a root of a mean square. */
+static void seed_sum(MeasureGradient *g, const Track *k, double weight) {
+  double value = g->m->node[k->node].result, dir = g->m->t < g->m->t0 ? -1 : 1;
+  if (g->sums == MOST_SEEDS) g->refused = "it has too many means";
+  else if (k->covered == 0.0) g->refused = "its window of time has no length";
+  else if (k->kind == TRACK_RMS && value == 0.0) g->refused = "a root of 0 has no derivative";
+  else g->sum[g->sums++] = (Sum){k, weight * dir / k->covered / (k->kind == TRACK_RMS ? value : 1), NAN, 0};
 }
 
 /* ---- Nodes in reverse */
@@ -69,19 +120,20 @@ static double slope(const Measures *m, const MeasureNode *n, int by_b) {
 }
 
 static void seed_track(MeasureGradient *g, const Track *k, double weight) {
-  int falls = k->kind == TRACK_MIN || (k->kind == TRACK_DRIFT && k->first - k->least > k->most - k->first);
+  const Happening none = {.event = -1};
+  int drifts = k->kind == TRACK_DRIFT,
+      falls = k->kind == TRACK_MIN || (drifts && k->first - k->least > k->most - k->first);
   if (k->kind == TRACK_PERIOD) {
     seed_period(g, k, weight);
     return;
   }
-  if (k->kind != TRACK_MAX && k->kind != TRACK_MIN && k->kind != TRACK_DRIFT) {
-    g->refused =
-      "means have no gradient yet: make the value a state, state S with flow S' = x, and take S/t at the end";
+  if (k->integral) {
+    seed_sum(g, k, weight);
     return;
   }
-  double part = k->kind == TRACK_DRIFT && falls ? -weight : weight;
-  put_seed(g, (Seed){falls ? k->when_least : k->when_most, part, k->arg, .event = -1});
-  if (k->kind == TRACK_DRIFT) put_seed(g, (Seed){g->m->t0, -part, k->arg, .event = -1});
+  double part = drifts && falls ? -weight : weight;
+  seed_top(g, k, falls, part);
+  if (drifts) seed_value(g, k->arg, k->when_first, none, -part);
 }
 
 static void pass_back(MeasureGradient *g, int i) {
@@ -89,23 +141,28 @@ static void pass_back(MeasureGradient *g, int i) {
   const MeasureNode *n = &m->node[i];
   double x = g->adjoint[i];
   switch (n->kind) {
-    case MEASURE_NUMBER: case MEASURE_END: case MEASURE_FIRINGS: return;
-    case MEASURE_QUANTITY: put_seed(g, (Seed){m->t, x, i, .event = -1}); return;
+    case MEASURE_NUMBER: case MEASURE_FIRINGS: return;
+    case MEASURE_END:
+      if (g->ended.event >= 0) seed_event(g, g->ended, x);
+      return;
+    case MEASURE_QUANTITY: seed_value(g, i, m->t, g->ended, x); return;
     case MEASURE_AT:
       if (m->node[n->b].known != MEASURE_STATIC) g->refused = "the time of a value is itself a measure";
-      put_seed(g, (Seed){m->node[n->b].value, x, n->a, .event = -1});
+      seed_value(g, n->a, m->node[n->b].value, (Happening){.event = -1}, x);
       return;
     case MEASURE_TRACK: seed_track(g, &m->track[n->index], x); return;
     case MEASURE_TWO: g->adjoint[n->a] += x * slope(m, n, 0), g->adjoint[n->b] += x * slope(m, n, 1); return;
     case MEASURE_ONE: g->adjoint[n->a] += x * slope(m, n, 0); return;
-    case MEASURE_HIT: seed_hit(g, n, x); return;
+    case MEASURE_HIT: seed_event(g, (Happening){n->index, (int)m->node[n->a].value, 0}, x); return;
     case MEASURE_LYAPUNOV: case MEASURE_MEGNO: g->refused = "exponents have no gradient"; return;
   }
 }
 
+/* Seeds at events have no time of their own, and stand anywhere. */
 static int by_time(const void *a, const void *b) {
   const Seed *x = a, *y = b;
-  return (x->t > y->t) - (x->t < y->t);
+  double s = x->kind < EVENT_VALUE ? x->t : -HUGE_VAL, t = y->kind < EVENT_VALUE ? y->t : -HUGE_VAL;
+  return (s > t) - (s < t);
 }
 
 /* Seeds of measure k, in the order of the run. */
@@ -123,99 +180,300 @@ static void collect_seeds(MeasureGradient *g, int k, double dir) {
   }
 }
 
-/* ---- Weights */
+/* ---- Slopes of functions */
 
-/* The expression of a seed, or its event function. */
-static double value_of(Measures *m, const Seed *of, double t, const double *y) {
-  lag_sim *s = m->sim;
-  if (of->event < 0) return lag_measure_at(m, of->node, t, y);
-  return lag_events_eval(s, t, y, s->g1) == LAG_OK ? s->g1[of->event] : NAN;
+static double value_of(MeasureGradient *g, Function of, double t, const double *y) {
+  lag_sim *s = g->sim;
+  if (of.event < 0) return lag_measure_at(g->m, of.node, t, y);
+  return lag_events_eval(s, t, y, s->g1) == LAG_OK ? s->g1[of.event] : NAN;
 }
 
-/* -1 over the rate of the expression along the motion, with its slopes by y[n]; f[n] is scratch. */
-static double time_factor(Measures *m, const Seed *of, const double *y, const double *slopes, double *f) {
-  lag_sim *s = m->sim;
-  double h = LAG_DIFFERENCE_PART * (s->pb.span > 0 ? s->pb.span : 1) / 64, rate = 0;
-  if (lag_rhs(&s->pb, of->t, y, f)) return NAN;
-  for (int i = 0; i < s->pb.n; i++) rate += slopes[i] * f[i];
-  LAG_EACH_DIFFERENCE(k) rate += lag_difference_weight(k) * value_of(m, of, of->t + k * h, y) / h;
-  return -1 / rate;
+/* Whether a function contains parameters: an expression of states and t does not. */
+static int feels_parameters(const Measures *m, Function of) {
+  return of.event >= 0 || m->uses[QUANTITY_OUTPUT] || m->uses[QUANTITY_CHARGE] || m->uses[QUANTITY_PARAMETER] ||
+         m->uses[QUANTITY_INPUT];
 }
 
-/* weight[n] := derivatives by the state y[n]; by_p += those by parameters, at this state. there[n] is scratch. */
-static void weigh(Measures *m, const Seed *of, const double *y, double *there, double *weight, double *by_p) {
-  lag_sim *s = m->sim;
+/* by_y[n], by_p[np] := derivatives at the state y[n]. */
+static void find_slopes(MeasureGradient *g, Function of, double t, const double *y) {
+  lag_sim *s = g->sim;
   const lag_parameter_columns *by = s->pb.by;
   int n = s->pb.n;
-  memset(weight, 0, (size_t)n * sizeof *weight);
-  memcpy(there, y, (size_t)n * sizeof *there);
+  memset(g->by_y, 0, (size_t)n * sizeof *g->by_y);
+  memset(g->by_p, 0, (size_t)s->pb.model->np * sizeof *g->by_p);
+  memcpy(g->there, y, (size_t)n * sizeof *y);
   for (int c = 0; c < n; c++) {
     double h = LAG_DIFFERENCE_PART * lag_difference_scale(&s->pb, y, c);
     LAG_EACH_DIFFERENCE(k) {
-      there[c] = y[c] + k * h;
-      weight[c] += lag_difference_weight(k) * value_of(m, of, of->t, there) / h;
+      g->there[c] = y[c] + k * h;
+      g->by_y[c] += lag_difference_weight(k) * value_of(g, of, t, g->there) / h;
     }
-    there[c] = y[c];
+    g->there[c] = y[c];
   }
-  double factor = of->weight * (of->is_time ? time_factor(m, of, y, weight, there) : 1);
-  for (int c = 0; c < n; c++) weight[c] *= factor;
-  for (int j = 0; by && j < by->n; j++) {
+  for (int j = 0; by && feels_parameters(g->m, of) && j < by->n; j++) {
     LAG_EACH_DIFFERENCE(k) {
       lag_use_parameters(s, j, k);
-      by_p[j] += factor * lag_difference_weight(k) * value_of(m, of, of->t, y) / by->h[j];
+      g->by_p[j] += lag_difference_weight(k) * value_of(g, of, t, y) / by->h[j];
     }
     lag_use_parameters(s, 0, 0);
   }
 }
 
-static void note_event(void *context, int k, double t, const double *before, const double *after) {
-  Wait *w = context;
-  (void)after;
-  w->firings[k]++;
-  if (k != w->event || w->firings[k] < w->firing || !isnan(w->t)) return;
-  w->t = t;
-  memcpy(w->y, before, (size_t)w->n * sizeof *before);
+/* The rate along the motion of a function whose slopes are known. */
+static double rate_of(MeasureGradient *g, Function of, double t, const double *y) {
+  lag_problem *pb = &g->sim->pb;
+  double h = LAG_DIFFERENCE_PART * (pb->span > 0 ? pb->span : 1) / 64, rate = 0;
+  if (lag_rhs(pb, t, y, g->there)) return NAN;
+  for (int i = 0; i < pb->n; i++) rate += g->by_y[i] * g->there[i];
+  LAG_EACH_DIFFERENCE(k) rate += lag_difference_weight(k) * value_of(g, of, t + k * h, y) / h;
+  return rate;
 }
 
-/* The state y[n] of a seed, whose time becomes that of its event in this run. */
-static int go_to(MeasureGradient *g, lag_sim *sim, Seed *of, double *y) {
-  g->wait = (Wait){of->event, of->firing, sim->pb.n, NAN, y, g->wait.firings};
-  int rc = lag_sim_advance(sim, of->t), before = isnan(g->wait.t);
-  if (!before) of->t = g->wait.t;
-  return rc || !before ? rc : lag_sim_eval(sim, of->t, y);
-}
-
-/* Runs to each seed and weighs the state there, then goes back. room[(n + 1) seeds + 2 n + np + nev]. */
-static int run_back(MeasureGradient *g, lag_sim *sim, double *by_start, double *by_p, double *room) {
-  int n = sim->pb.n, np = sim->pb.model->np, rc = lag_sim_record(sim), count = g->n;
-  double *t = room, *weight = t + count, *y = weight + count * n, *there = y + n, *direct = there + n;
-  g->wait.firings = direct + np;
-  lag_sim_on_event(sim, note_event, &g->wait);
-  for (int k = 0; k < count && rc == LAG_OK; k++) {
-    rc = go_to(g, sim, &g->seed[k], y);
-    t[k] = g->seed[k].t;
-    if (rc == LAG_OK) weigh(g->m, &g->seed[k], y, there, weight + k * n, direct);
+/* Modes and inputs as before the last event, and back. */
+static void swap_hold(MeasureGradient *g) {
+  lag_sim *s = g->sim;
+  for (int i = 0; i < s->pb.model->nu + s->pb.model->nmodes; i++) {
+    double x = s->hold[i];
+    s->hold[i] = g->hold[i], g->hold[i] = x;
   }
-  lag_sim_on_event(sim, NULL, NULL);
-  rc = rc ? rc : lag_sim_gradient(sim, count, t, weight, by_start, by_p);
-  for (int j = 0; j < np && rc == LAG_OK; j++) by_p[j] += direct[j];
+  lag_switch_count(s);
+}
+
+/* ---- Rows of weights */
+
+/* The measure changes by factor times the function at t whose slopes are known: a row, behind those up to t. */
+static void put_row(MeasureGradient *g, double t, double factor) {
+  enum { MOST = 1 << 26 }; /* numbers: 512 MiB */
+  size_t n = (size_t)g->sim->pb.n;
+  if (g->rows == g->row_room) {
+    size_t room = 2 * (size_t)g->row_room + 64;
+    double *at = room * (n + 1) < MOST ? realloc(g->t, room * sizeof *at) : NULL;
+    g->t = at ? at : g->t;
+    double *x = at ? realloc(g->weight, room * n * sizeof *x) : NULL;
+    g->weight = x ? x : g->weight;
+    g->no_memory |= !x;
+    if (!x) return;
+    g->row_room = (int)room;
+  }
+  int k = g->rows++;
+  for (; k > 0 && (g->t[k - 1] - t) * g->sim->pb.dir > 0; k--) {
+    g->t[k] = g->t[k - 1];
+    memcpy(g->weight + (size_t)k * n, g->weight + (size_t)(k - 1) * n, n * sizeof *g->weight);
+  }
+  g->t[k] = t;
+  for (size_t c = 0; c < n; c++) g->weight[(size_t)k * n + c] = factor * g->by_y[c];
+  for (int j = 0; j < g->sim->pb.model->np; j++) g->direct[j] += factor * g->by_p[j];
+}
+
+/* The measure changes by factor times the time at which a function passes 0. */
+static void put_time(MeasureGradient *g, Function of, double t, const double *y, double factor) {
+  find_slopes(g, of, t, y);
+  double rate = rate_of(g, of, t, y);
+  if (factor != 0.0) put_row(g, t, -factor / rate);
+}
+
+/* ... or of an event; firing number k of a kick has the time t0 + k T. */
+static void put_event_time(MeasureGradient *g, const Seen *e, double factor) {
+  Function of = {-1, e->at.event};
+  swap_hold(g);
+  if (g->sim->pb.model->ev[of.event].direction != LAG_KICK) {
+    put_time(g, of, e->t, e->y, factor);
+  } else {
+    find_slopes(g, of, e->t, e->y);
+    put_row(g, e->t, factor * e->at.firing);
+  }
+  swap_hold(g);
+}
+
+/* The value at an event: a row behind it is the next number behind its time. */
+static void put_event_value(MeasureGradient *g, const Seen *e, const Seed *x) {
+  int n = g->sim->pb.n;
+  const double *y = x->at.after ? e->y + n : e->y;
+  Function of = {x->node, -1};
+  if (!x->at.after) swap_hold(g);
+  find_slopes(g, of, e->t, y);
+  put_row(g, x->at.after ? nextafter(e->t, g->sim->pb.dir * HUGE_VAL) : e->t, x->weight);
+  double rate = rate_of(g, of, e->t, y);
+  if (!x->at.after) swap_hold(g);
+  put_event_time(g, e, x->weight * rate);
+}
+
+static int is_same(Happening a, Happening b) { return a.event == b.event && a.firing == b.firing; }
+
+/* What a sum loses as an event comes later: the value before it counts longer, that after it shorter. Where the event
+ * ends the run a mean loses its value. */
+static void put_jump(MeasureGradient *g, const Seen *e, const Sum *sum) {
+  const Track *k = sum->track;
+  int squares = k->kind == TRACK_RMS;
+  double before = lag_measure_at(g->m, k->arg, e->t, e->y),
+         after = is_same(e->at, g->ended) ? g->m->node[k->node].result :
+                                            lag_measure_at(g->m, k->arg, e->t, e->y + g->sim->pb.n),
+         jump = squares ? (before * before - after * after) / 2 : before - after;
+  if (lag_track_counts(k, e->t) && jump != 0.0) put_event_time(g, e, sum->factor * jump);
+}
+
+/* Rows of the events that have happened. */
+static void put_events(MeasureGradient *g) {
+  for (int i = 0; i < g->nseen; i++) {
+    Seen *e = &g->seen[i];
+    for (Seed *x = g->seed; x < g->seed + g->n; x++) {
+      if (x->kind < EVENT_VALUE || x->done || !is_same(e->at, x->at)) continue;
+      x->done = 1;
+      if (x->kind == EVENT_VALUE) put_event_value(g, e, x);
+      else put_event_time(g, e, x->weight);
+    }
+    for (int k = 0; k < g->sums; k++) put_jump(g, e, &g->sum[k]), g->sum[k].last = NAN;
+    free(e->y);
+  }
+  g->nseen = 0;
+}
+
+static void note_event(void *context, int k, double t, const double *before, const double *after) {
+  MeasureGradient *g = context;
+  size_t n = (size_t)g->sim->pb.n;
+  double *y = malloc(2 * n * sizeof *y);
+  if (y && g->nseen == g->seen_room) {
+    Seen *more = realloc(g->seen, (size_t)(g->seen_room = 2 * g->seen_room + 8) * sizeof *more);
+    if (more) g->seen = more;
+    else free(y), y = NULL;
+  }
+  g->no_memory |= !y;
+  if (!y) return;
+  memcpy(y, before, n * sizeof *y), memcpy(y + n, after, n * sizeof *y);
+  g->seen[g->nseen++] = (Seen){{k, (int)++g->firings[k], 0}, t, y};
+}
+
+/* ---- The run */
+
+/* Rows of the means over [a, b], a part of a step. */
+static int put_places(MeasureGradient *g, double a, double b, double *y) {
+  int rc = LAG_OK;
+  for (int j = 0; j < lag_measure_places(g->m) && rc == LAG_OK; j++) {
+    double weight, t = lag_measure_place(g->m, j, a, b, &weight);
+    rc = lag_sim_advance(g->sim, t); /* the record knows the states at which it stops */
+    rc = rc ? rc : lag_sim_eval(g->sim, t, y);
+    for (const Sum *k = g->sum; k < g->sum + g->sums && rc == LAG_OK; k++) {
+      if (!lag_track_counts(k->track, (a + b) / 2)) continue;
+      double x = k->track->kind == TRACK_RMS ? lag_measure_at(g->m, k->track->arg, t, y) : 1;
+      find_slopes(g, (Function){k->track->arg, -1}, t, y);
+      put_row(g, t, k->factor * weight * x);
+    }
+  }
   return rc;
 }
 
+/* Whether the sums' values go on as the last step left them, at a switch, too, whose time no function here gives; notes
+ * them at t. */
+static void check_jumps(MeasureGradient *g, double t, int begins, double *y) {
+  if (lag_sim_eval(g->sim, t, y)) return;
+  for (Sum *k = g->sum; k < g->sum + g->sums; k++) {
+    double x = lag_measure_at(g->m, k->track->arg, t, y);
+    k->most = fmax(k->most, fabs(x));
+    if (begins && fabs(x - k->last) > 1e-6 * k->most && lag_track_counts(k->track, t))
+      g->refused = "a value jumps at a switch within the mean: make the value a state, S with flow S' = x, and take S/t";
+    k->last = x;
+  }
+}
+
+/* Runs to t, which an event may prevent. y[n]: scratch. */
+static int walk(MeasureGradient *g, double t, double *y) {
+  lag_sim *s = g->sim;
+  int rc = LAG_OK;
+  while (rc == LAG_OK && lag_sim_time(s) != t && !g->no_memory && !g->refused) {
+    double reach;
+    memcpy(g->hold, s->hold, (size_t)(s->pb.model->nu + s->pb.model->nmodes) * sizeof *g->hold);
+    rc = lag_sim_ensure_step(s, t, &reach);
+    put_events(g);
+    if (rc == LAG_OK && g->sums) check_jumps(g, lag_sim_time(s), 1, y);
+    for (double a = lag_sim_time(s), b; rc == LAG_OK && g->sums && a != reach; a = b)
+      b = lag_measure_part(g->m, a, reach), rc = put_places(g, a, b, y);
+    if (rc == LAG_OK) rc = lag_sim_advance(s, reach);
+    if (rc == LAG_OK && g->sums) check_jumps(g, reach, 0, y);
+  }
+  return rc == LAG_STOPPED ? LAG_OK : rc;
+}
+
+/* A row of a value at a fixed or stationary time, not at a switch, where a largest value may jump or have a corner. */
+static void put_value(MeasureGradient *g, const Seed *x, const double *y) {
+  const Function of = {x->node, -1};
+  const Track *k = x->top;
+  const Run *r = g->sim->run;
+  find_slopes(g, of, x->t, y);
+  put_row(g, x->t, x->weight);
+  if (!k || x->t == k->when_first || x->t == g->end || x->t == k->from || x->t == k->to) return;
+  double size = k->most - k->least + 1e-6 * fabs(x->value), off = lag_measure_at(g->m, x->node, x->t, y) - x->value,
+         way = rate_of(g, of, x->t, y) * (r->step_t1 - r->step_t0);
+  if (fabs(off) > 1e-6 * size || fabs(way) > 1e-4 * size)
+    g->refused = "its largest or smallest value is at a switch, where it jumps or has a corner";
+}
+
+static int is_done(const MeasureGradient *g) {
+  int done = g->sums == 0;
+  for (const Seed *x = g->seed; x < g->seed + g->n; x++) done &= x->done;
+  return done;
+}
+
+/* Runs by way of the seeds at times, in their order, to the end, and a little further for an event there. */
+static int run_through(MeasureGradient *g, double *y) {
+  double end = g->end, beyond = end + (end - g->m->t0) / 1024;
+  int rc = LAG_OK;
+  for (Seed *x = g->seed; x < g->seed + g->n && rc == LAG_OK && !g->no_memory; x++) {
+    if (x->kind >= EVENT_VALUE) continue;
+    rc = walk(g, x->t, y);
+    rc = rc ? rc : lag_sim_eval(g->sim, x->t, y);
+    if (rc) break;
+    x->done = 1;
+    if (x->kind == PASSAGE) put_time(g, (Function){x->node, -1}, x->t, y, x->weight);
+    else put_value(g, x, y);
+  }
+  if (rc == LAG_OK && !is_done(g)) rc = walk(g, end, y);
+  g->sums = g->ended.event < 0 ? 0 : g->sums;
+  if (rc == LAG_OK && !is_done(g)) rc = walk(g, beyond, y);
+  g->sums = 0;
+  if (rc == LAG_OK && !is_done(g)) g->refused = "an event of it does not happen in the run of the gradient";
+  return rc;
+}
+
+static int run_back(MeasureGradient *g, double *by_start, double *by_p, double *y) {
+  lag_sim *s = g->sim;
+  int rc = lag_sim_record(s);
+  lag_sim_on_event(s, note_event, g);
+  rc = rc ? rc : run_through(g, y);
+  lag_sim_on_event(s, NULL, NULL);
+  if (rc || g->refused) return rc;
+  if (g->no_memory) return lag_fail(s, LAG_ENOMEM, "no memory for the rows of its means: end the run before");
+  rc = lag_sim_gradient(s, g->rows, g->t, g->weight, by_start, by_p);
+  for (int j = 0; j < s->pb.model->np && rc == LAG_OK; j++) by_p[j] += g->direct[j];
+  return rc;
+}
+
+/* Room, and the seeds of measure k. */
+static int begin(MeasureGradient *g, int k, double **room) {
+  const lag_model *model = g->sim->pb.model;
+  size_t n = (size_t)g->sim->pb.n, np = (size_t)model->np, nev = (size_t)model->nev;
+  double *x = *room = calloc(3 * n + 2 * np + nev + (size_t)(model->nu + model->nmodes) + 1, sizeof *x);
+  g->adjoint = calloc((size_t)g->m->nnodes + 1, sizeof *g->adjoint);
+  if (isnan(g->m->node[g->m->root[k]].value)) g->refused = g->m->why[k];
+  if (!x || !g->adjoint) return lag_fail(g->sim, LAG_ENOMEM, "out of memory");
+  g->by_y = x + n, g->there = g->by_y + n, g->by_p = g->there + n, g->direct = g->by_p + np;
+  g->firings = g->direct + np, g->hold = g->firings + nev;
+  g->ended = g->m->status == LAG_STOPPED ? g->m->last : (Happening){.event = -1};
+  g->t = malloc(sizeof *g->t), g->weight = malloc(n * sizeof *g->weight);
+  if (!g->refused) collect_seeds(g, k, g->m->t < g->m->t0 ? -1 : 1);
+  return LAG_OK;
+}
+
 int lag_measures_gradient(Measures *m, int k, lag_sim *sim, double *by_start, double *by_p, char *why, size_t size) {
-  size_t n = (size_t)sim->pb.n, np = (size_t)sim->pb.model->np;
   lag_sim *own = m->sim;
-  double end = m->t; /* evaluations at other times set it */
-  MeasureGradient g = {.m = m, .adjoint = calloc((size_t)m->nnodes + 1, sizeof *g.adjoint)};
-  double *room = calloc((size_t)MOST_ROWS * (n + 1) + 2 * n + np + 1 + (size_t)sim->pb.model->nev, sizeof *room);
-  int rc = g.adjoint && room ? LAG_OK : lag_fail(sim, LAG_ENOMEM, "out of memory");
-  if (rc == LAG_OK) collect_seeds(&g, k, m->t < m->t0 ? -1 : 1);
+  double end = m->t, *y; /* evaluations at other times set it */
+  MeasureGradient g = {.m = m, .sim = sim, .end = end};
+  int rc = begin(&g, k, &y);
   m->sim = sim;
-  if (rc == LAG_OK && !g.refused) rc = run_back(&g, sim, by_start, by_p, room);
+  if (rc == LAG_OK && !g.refused) rc = run_back(&g, by_start, by_p, y);
   m->sim = own;
   m->t = end;
-  free(g.adjoint);
-  free(room);
+  for (int i = 0; i < g.nseen; i++) free(g.seen[i].y);
+  lag_free_all(g.adjoint, y, g.seen, g.t, g.weight);
   snprintf(why, size, "%s", g.refused ? g.refused : rc ? lag_sim_message(sim) : "");
   return g.refused || rc ? -1 : 0;
 }

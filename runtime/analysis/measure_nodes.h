@@ -52,15 +52,22 @@ typedef struct MeasureNode {
   double result;        /* of a number, and of a run so far; NaN: not known */
 } MeasureNode;
 
+/* Firing number `firing` of an event, and the side of its action; event -1: none. */
+typedef struct Happening {
+  int event, firing, after;
+} Happening;
+
 /* A value that is followed along the run. */
 typedef struct Track {
   TrackKind kind;
   int integral;         /* 1: summed over the steps; 0: sampled within them */
   int node, arg;        /* its node, and the node of the expression that is followed */
   double first, last;   /* value at the start, and at the end of the last part */
-  double least, most, when_least, when_most; /* and their times */
+  double least, most, when_first, when_least, when_most; /* and their times, */
+  Happening least_at, most_at; /* which are those of events */
   double sum, lost;     /* the integral, and its rounding error (Kahan) */
   double passage, latest; /* first and last upward passage of 0, */
+  Happening passage_at, latest_at; /* over which an event may lead, */
   int passages;         /* and their number */
   double bad;           /* the first time at which the value is not finite; NaN: none */
   double from, to;      /* the window of time that counts; NaN: the begin, the end of the run */
@@ -89,6 +96,8 @@ struct Measures {
   int status;           /* of the run under way, as lag_measures_advance returned it last */
   lag_sim *sim;         /* the run under way */
   double t0, t;         /* its start; time of the present evaluation */
+  Happening last;       /* its last event, with its time */
+  double last_time;
   lag_event_fn *on_event; /* the caller's hook */
   void *on_event_context;
 };
@@ -98,6 +107,16 @@ int lag_measure_read(Measures *m, int k, const char *text, char *why, size_t siz
 
 /* measure_run.c: the expression of a node at the state y[n] and time t; m->y := y. */
 double lag_measure_at(Measures *m, int node, double t, const double *y);
+
+/* measure_run.c: the end of the part of [a, reach] in which each track is in its window, or out of it. */
+double lag_measure_part(const Measures *m, double a, double reach);
+
+/* measure_run.c: the places of a quadrature over [a, b], a part of a step: their number; place j with its weight. */
+int lag_measure_places(const Measures *m);
+double lag_measure_place(const Measures *m, int j, double a, double b, double *weight);
+
+/* Whether a track counts at time t, which is not an edge of its window. */
+static inline int lag_track_counts(const Track *k, double t) { return !(t < k->from) && !(t > k->to); }
 
 /* measure_lyapunov.c: the largest exponent, or MEGNO, of a run that has come to `until`; NaN with the reason in
  * m->no_exponent. */

@@ -130,10 +130,15 @@ static double value_at(void *context, double t) {
   return f->sign * evaluate(f->m, f->node);
 }
 
-static void note(Track *k, double t, double x) {
+/* The event after which time t begins. */
+static Happening event_before(const Measures *m, double t) {
+  return t == m->last_time ? m->last : (Happening){.event = -1};
+}
+
+static void note(const Measures *m, Track *k, double t, double x) {
   if (!isfinite(x) && isnan(k->bad)) k->bad = t;
-  if (!(x >= k->least)) k->when_least = t;
-  if (!(x <= k->most)) k->when_most = t;
+  if (!(x >= k->least)) k->when_least = t, k->least_at = event_before(m, t);
+  if (!(x <= k->most)) k->when_most = t, k->most_at = event_before(m, t);
   k->least = fmin(k->least, x);
   k->most = fmax(k->most, x);
 }
@@ -162,7 +167,7 @@ static void find_tops(Measures *m, Track *track, double sign, int n, const doubl
     double gain = b - rise - here;
     if (here + 2 * fmax(gain, 0) - 0.125 * bend <= best || fabs(bend) <= 8 * DBL_EPSILON * fabs(here)) continue;
     double when, most = top(&f, t[k - 1], t[k + 1], &when);
-    note(track, when, sign * most);
+    note(m, track, when, sign * most);
   }
 }
 
@@ -173,13 +178,14 @@ static void find_passages(Measures *m, Track *track, int n, const double *t, con
     if (!(before < 0 && x[k + 1] >= 0)) continue;
     track->latest = k < 0 || x[k + 1] == 0.0 ? t[k + 1] :
                     lag_root(value_at, &f, t[k], before, t[k + 1], x[k + 1], DBL_EPSILON);
-    track->passage = track->passages++ ? track->passage : track->latest;
+    track->latest_at = k < 0 ? event_before(m, t[0]) : (Happening){.event = -1};
+    if (!track->passages++) track->passage = track->latest, track->passage_at = track->latest_at;
   }
 }
 
 /* Follows a track through samples x[n + 1] at t[n + 1]; n = 0: the two sides of a jump. */
 static void follow(Measures *m, Track *track, int n, const double *t, const double *x) {
-  for (int k = 0; k <= n; k++) note(track, t[k], x[k]);
+  for (int k = 0; k <= n; k++) note(m, track, t[k], x[k]);
   if (track->kind == TRACK_MAX || track->kind == TRACK_DRIFT) find_tops(m, track, 1, n, t, x);
   if (track->kind == TRACK_MIN || track->kind == TRACK_DRIFT) find_tops(m, track, -1, n, t, x);
   if (track->kind == TRACK_PERIOD) find_passages(m, track, n, t, x);
@@ -236,7 +242,7 @@ static int is_at_ends(const Measures *m, const Track *k) { return k->kind == TRA
 /* Notes a value at t if a step begins or ends there. */
 static void note_end(const Measures *m, Track *k, double t, double x) {
   const Run *r = m->sim->run;
-  if (r->have_step == 0.0 || t == r->step_t0 || t == r->step_t1) note(k, t, x);
+  if (r->have_step == 0.0 || t == r->step_t0 || t == r->step_t1) note(m, k, t, x);
 }
 
 /* Follows the tracks over [a, b]: by a few samples, and by all where these leave anything open. */
@@ -262,13 +268,24 @@ static void sample(Measures *m, double a, double b) {
   }
 }
 
+static int equal_parts(const lag_sim *s) { return s->method->flags & LAG_METHOD_TAYLOR ? 4 : 1; }
+
+int lag_measure_places(const Measures *m) {
+  lag_charges_nodes(m->sim);
+  return equal_parts(m->sim) * m->sim->nodes;
+}
+
+double lag_measure_place(const Measures *m, int j, double a, double b, double *weight) {
+  const lag_sim *s = m->sim;
+  double h = (b - a) / equal_parts(s);
+  *weight = s->weight[j % s->nodes] * h;
+  return a + (j / s->nodes + s->node[j % s->nodes]) * h;
+}
+
 /* Adds the integrals over [a, b]: compensated sums, W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723. */
 static void integrate(Measures *m, double a, double b) {
-  lag_sim *s = m->sim;
-  lag_charges_nodes(s);
-  int n = s->method->flags & LAG_METHOD_TAYLOR ? 4 : 1;
-  for (int j = 0; j < n * s->nodes; j++) {
-    double h = (b - a) / n, t = a + (j / s->nodes + s->node[j % s->nodes]) * h, weight = s->weight[j % s->nodes] * h;
+  for (int j = 0, n = lag_measure_places(m); j < n; j++) {
+    double weight, t = lag_measure_place(m, j, a, b, &weight);
     take_row(m, t);
     for (Track *k = m->track; k < m->track + m->ntracks; k++) {
       if (!k->integral || !k->active) continue;
@@ -285,6 +302,13 @@ static void integrate(Measures *m, double a, double b) {
 static void note_event(void *context, int k, double t, const double *before, const double *after) {
   Measures *m = context;
   m->firings[k]++;
+  for (Track *x = m->track; x < m->track + m->ntracks; x++) {
+    Happening here = {k, (int)m->firings[k], 0};
+    if (x->when_least == t && x->least_at.event < 0) x->least_at = here;
+    if (x->when_most == t && x->most_at.event < 0) x->most_at = here;
+  }
+  m->last = (Happening){k, (int)m->firings[k], 1};
+  m->last_time = t;
   for (MeasureNode *n = m->node; n < m->node + m->nnodes; n++)
     if (n->kind == MEASURE_HIT && n->index == k && m->node[n->a].value == m->firings[k]) n->result = t;
   if (m->on_event) m->on_event(m->on_event_context, k, t, before, after);
@@ -292,8 +316,7 @@ static void note_event(void *context, int k, double t, const double *before, con
 
 int lag_measures_follow(const Measures *m) { return m->ntracks > 0; }
 
-/* The end of the part of [a, reach] in which each track is in its window, or out of it. */
-static double same_windows(const Measures *m, double a, double reach) {
+double lag_measure_part(const Measures *m, double a, double reach) {
   double dir = reach < a ? -1 : 1;
   for (const Track *k = m->track; k < m->track + m->ntracks; k++)
     for (int end = 0; end < 2; end++) {
@@ -306,6 +329,8 @@ static double same_windows(const Measures *m, double a, double reach) {
 /* Begins a track with its value in the row taken last, at t. */
 static void begin_track(Measures *m, Track *k, double t) {
   k->first = k->last = k->least = k->most = evaluate(m, k->arg);
+  k->when_first = k->when_least = k->when_most = t;
+  k->least_at = k->most_at = event_before(m, t);
   k->bad = isfinite(k->first) ? NAN : t;
   k->begun = 1;
 }
@@ -314,8 +339,7 @@ static void begin_track(Measures *m, Track *k, double t) {
 static void enter_windows(Measures *m, double a, double b) {
   int fresh = 0;
   for (Track *k = m->track; k < m->track + m->ntracks; k++) {
-    double middle = (a + b) / 2;
-    k->active = !(middle < k->from) && !(middle > k->to);
+    k->active = lag_track_counts(k, (a + b) / 2);
     k->covered += k->active ? fabs(b - a) : 0;
     fresh |= k->active && !k->begun;
   }
@@ -332,7 +356,7 @@ static int follow_to(Measures *m, double t) {
     rc = lag_sim_ensure_step(s, t, &reach);
     double from = lag_sim_time(s); /* behind the jump of a table, where there is one */
     for (double a = from, b; rc == 0 && a != reach; a = b) {
-      b = same_windows(m, a, reach);
+      b = lag_measure_part(m, a, reach);
       enter_windows(m, a, b);
       if (m->samples) sample(m, a, b);
       if (m->integrates) integrate(m, a, b);
@@ -382,6 +406,7 @@ int lag_measures_begin(Measures *m, lag_sim *sim) {
   lag_sim_on_event(sim, note_event, m);
   m->t0 = lag_sim_time(sim);
   m->status = rc;
+  m->last_time = NAN;
   memset(m->firings, 0, (size_t)m->scene->model->nev * sizeof *m->firings);
   for (MeasureNode *n = m->node; n < m->node + m->nnodes; n++)
     if (n->kind != MEASURE_NUMBER) n->result = NAN, n->taken = 0;

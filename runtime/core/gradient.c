@@ -269,9 +269,11 @@ static int back_from_place(Sweep *w, const Matrix *m, const double *step) {
   return rc;
 }
 
-/* A jump, or a step, or a part of one: weights at its end belong to it. */
+/* A jump, or a step, or a part of one: weights at its end belong to it; behind a jump those behind its time. */
 static void back_over(Sweep *w, const Matrix *m) {
   int n = w->s->pb.n;
+  for (; m->kind == OF_JUMP && w->rows > 0 && (w->t[w->rows - 1] - m->t) * w->s->pb.dir > 0; w->rows--)
+    add(n, w->weight + (size_t)(w->rows - 1) * (size_t)n, w->x);
   if (m->kind == OF_STEP) add_weights(w, m->t, 0, w->x);
   if (m->kind != OF_PART) {
     back_over_matrix(w, m->S, w->x);
@@ -433,8 +435,9 @@ static void finish(const Sweep *w, double *by_start, double *by_p) {
 
 static int check_rows(lag_sim *s, int rows, const double *t) {
   const Run *r = s->run;
+  double last = nextafter(r->t, s->pb.dir * HUGE_VAL); /* behind an event at the end */
   for (int k = 0; k < rows; k++)
-    if (!((t[k] - (k ? t[k - 1] : s->scene->t0)) * s->pb.dir >= 0 && (r->t - t[k]) * s->pb.dir >= 0))
+    if (!((t[k] - (k ? t[k - 1] : s->scene->t0)) * s->pb.dir >= 0 && (last - t[k]) * s->pb.dir >= 0))
       return lag_fail(s, LAG_EINVAL,
                       "time %d of a gradient, %s s, is not in order within the run, which is at t = %s s", k,
                       LAG_TEXT(t[k]), LAG_TEXT(r->t));

@@ -245,7 +245,8 @@ int lag_sim_output_sensitivity(lag_sim *sim, const double *Y, double *D);
  * were made, their sizes held. With `lagc build --with derivatives`, methods that have `adjoint`, outside of
  * slides and without redundant constraints or contacts, take some three times as long as the run, however many
  * parameters there are; else it takes as long as sensitivities by all of them. With constraints, and there, t[rows]
- * have to be times of lag_sim_advance. LAG_EMETHOD: as of a tangent. */
+ * have to be times of lag_sim_advance. At the time of an event y is the state before it; the state behind it has the
+ * next number, by nextafter. LAG_EMETHOD: as of a tangent. */
 int lag_sim_record(lag_sim *sim);
 /* The same where steps take more memory than this, 2^26 bytes by default: parts of the run are repeated from marks on
  * the way back, as few times as their number allows (revolve). One gradient can then be taken. */

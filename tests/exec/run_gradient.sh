@@ -65,7 +65,14 @@ text() { "$LAGC" run "$TMP/spring.lag" go --method dop853 --tol 1e-12 --until 1.
 check "as text, with units" text
 says() { "$LAGC" run "$TMP/spring.lag" go --until 1 "$@" >"$TMP/text" 2>"$TMP/err"; }
 none() { says --gradient "$1" && grep -qF "no gradient of $1: $2" "$TMP/text"; }
-check "what has none says why" none 'mean(x)' "means have no gradient yet: make the value a state, state S with flow S' = x, and take S/t at the end"
+check "what has none says why" none megno "exponents have no gradient"
+check "... as a measure without a value" none 'period(x)' "no period: it passes 0 upwards never"
+check "means" run --gradient 'mean(x)' --gradient 'rms(x)'
+near "... by a start: sin(wt)/(wt)" 1e-10 "$(awk 'BEGIN { printf "%.15g", sin(2.6)/2.6 }')" "$(d 'mean(x)' 'x(0)')"
+near "... by a parameter of the start, (1 - cos(wt))/(w^2 t)" 1e-10 "$(awk 'BEGIN { printf "%.15g", (1 - cos(2.6))/4/1.3 }')" "$(d 'mean(x)' v0)"
+# With C, S the integrals of cos^2 wt, cos wt sin wt: rms^2 t = x0^2 C + 2 x0 v0/w S + ..., whose half derivative is x0 C + v0/w S.
+near "of a root of a mean square by a start" 1e-10 "$(awk 'BEGIN { t = 1.3; w = 2; C = t/2 + sin(2*w*t)/4/w; S = sin(w*t)^2/2/w; Q = t/2 - sin(2*w*t)/4/w; a = 0.5; b = 0.3
+  printf "%.15g", (a*C + b*S)/t/sqrt((a*a*C + 2*a*b*S + b*b*Q)/t) }')" "$(d 'rms(x)' 'x(0)')"
 # A ball that bounces: the first time T = sqrt(2 h/g), the second (1 + 2 e) T; an oscillator's period 2 pi sqrt(m/k). By Taylor series the gradient is
 # that of dop853, whose event is beside that of the run by rounding. The mean by the way out of its message: of x = cos wt over 1.3 s, sin wt/(w t).
 cat >"$TMP/drop.lag" <<'M'
@@ -91,8 +98,28 @@ check "the period, then the mean at the end, as a state" drop swing --gradient '
 near "... by the mass, P/(2 m)" 1e-11 1.5707963267948966 "$(d 'period(x)' m)"
 near "... of the mean, by w/(2 k): (w t cos(w t) - sin(w t))/(w^2 t)/(2 k/w)" 1e-11 "$(awk 'BEGIN { w = 2; t = 7; printf "%.15g", (w*t*cos(w*t) - sin(w*t))/(w*w*t)*w/8 }')" "$(d average k)"
 sed 's/^event floor.*/kick beat every h\/1 [m\/s] { x'"'"' = -x'"'"' }/' "$TMP/drop.lag" >"$TMP/beat.lag"
-beat() { "$LAGC" run "$TMP/beat.lag" go --gradient 'hit(beat)' >"$TMP/text" 2>"$TMP/err"; grep -q 'no gradient of hit(beat): times of kicks have no gradient: they are multiples of a period' "$TMP/text"; }
-check "the time of a kick says why not" beat
+beats() { "$LAGC" run "$TMP/beat.lag" go --gradient 'hit(beat)' --json >"$TMP/out.json" 2>"$TMP/err"; }
+check "the time of a kick, h" beats
+near "... by its period" 1e-11 1 "$(d 'hit(beat)' h)"
+# What an event moves: with V = sqrt(2 g h) the largest speed before the first bounce is V, behind it e V; the mean over [0, T] of the fall that the
+# event ends is 2/3 h, that of the velocity -h/T, and the last velocity -V. A mean over bounces: the velocity's is (y(2) - h)/2, y(2) by its own gradient.
+check "values at a bounce" drop go --method dop853 --gradient "max(-y')" --gradient "max(y')" --gradient "mean(y')" --gradient y
+near "... before it, sqrt(g/(2 h))" 1e-11 1.942440970294058 "$(d "max(-y')" h)"
+near "... behind it, e times that" 1e-11 1.553952776235247 "$(d "max(y')" h)"
+near "... by the restitution, V" 1e-10 5.050346522764552 "$(d "max(y')" e)"
+near "a mean over jumps" 1e-9 "$(awk -v y="$(d y e)" 'BEGIN { printf "%.15g", y/2 }')" "$(d "mean(y')" e)"
+sed 's/{ y. = .*/{ stop }/' "$TMP/drop.lag" >"$TMP/stop.lag"
+stops() { "$LAGC" run "$TMP/stop.lag" go --tol 1e-12 --method dop853 --json "$@" >"$TMP/out.json" 2>"$TMP/err"; }
+check "a run that an event ends" stops --gradient end --gradient "y'" --gradient 'mean(y)' --gradient "rms(y')" --gradient 'min(y)'
+near "... its end, 1/sqrt(2 g h)" 1e-11 0.19800621511662161 "$(d end h)"
+near "... the velocity there" 1e-11 -1.942440970294058 "$(d "y'" h)"
+near "... a mean" 1e-11 0.6666666666666667 "$(d 'mean(y)' h)"
+near "... a root of a mean square, V/sqrt(3)" 1e-11 1.121468817084233 "$(d "rms(y')" h)"
+near "... a smallest value, 0" 1e-11 0 "$(d 'min(y)' h)"
+rubs() { "$LAGC" run "$TMP/rub.lag" --method dop853 --gradient "$1" 2>"$TMP/err" | grep -qF "no gradient of $1: $2"; }
+sed "s/^scene/observe F = sign(x')\nscene/; s/output x,x'/output x, F/" tests/exec/sensitivity/rub.lag >"$TMP/rub.lag"
+check "a mean over a switch, where its value jumps, says so" rubs 'mean(F)' "a value jumps at a switch within the mean"
+check "... and a largest value there" rubs 'max(F)' "its largest or smallest value is at a switch"
 # Forward against adjoint: the same derivatives by --sensitivity, to 1e-12 of the largest: both round alike, but in another order. Of constraints, slides,
 # implicit methods, series; at an event whose restitution follows from a parameter; at a time within a step.
 dot() { # MODEL SCENE VALUE NAMES ARGS...
