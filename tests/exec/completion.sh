@@ -30,9 +30,9 @@ is "commands" "$(sed -n 's/^command //p' "$TMP/words")" "$("$LAGC" complete '' |
 is "a command" 'run' "$(offers ru)"
 is "with what it does" "run	simulate" "$("$LAGC" complete ru)"
 missing_options() {
-  sed -n 's/^[a-z]* \([a-z]* -.*\)/\1/p' "$TMP/words" | grep -v '^[a-z]* -h$' | while read -r c o; do
-    case $c in completion | help | version) continue ;; esac
-    offered "$o" "$c" double_pendulum.lag - || echo "$c $o"
+  sed -n 's/^command //p' "$TMP/words" | grep -v -x -e completion -e help -e version | while read -r c; do
+    "$LAGC" complete "$c" double_pendulum.lag - | cut -f 1 >"$TMP/offered"
+    sed -n "s/^[a-z]* $c \\(-.*\\)/$c \\1/p" "$TMP/words" | grep -v ' -h$' | awk 'NR == FNR { has[$1]; next } !($2 in has)' "$TMP/offered" -
   done
 }
 empty "options" "$(missing_options)"

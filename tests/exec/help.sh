@@ -49,10 +49,10 @@ not_listed() {
   chapter sum >>"$TMP/functions"
   words function | while read -r f; do grep -q "\`$f(" "$TMP/functions" || echo "the reference has no function $f"; done
   sed -n '/^The units: /,/^$/p' grammar/LANGUAGE.md | tr ' ;,()' '\n\n\n\n\n' >"$TMP/units"
-  { words unit; words prefixed; } | while read -r u; do
-    grep -q -x -F -e "$u" -e "$u." "$TMP/units" || echo "the reference has no unit $u"
-    chapter units | sed -n '/^The table/,$p' | tr ' *' '\n\n' | grep -q -x -F "$u" || echo "the table has no unit $u"
-  done
+  chapter units | sed -n '/^The table/,$p' | tr ' *' '\n\n' >"$TMP/table"
+  { words unit; words prefixed; } | sort >"$TMP/all_units"
+  sed 's/\.$//' "$TMP/units" | sort -u | comm -13 - "$TMP/all_units" | sed 's/^/the reference has no unit /'
+  sort -u "$TMP/table" | comm -13 - "$TMP/all_units" | sed 's/^/the table has no unit /'
 }
 empty "functions and units of the reference" "$(not_listed)"
 
@@ -91,8 +91,8 @@ empty "lagc COMMAND --help is lagc help COMMAND" "$(differing | grep -v -x -e he
 # All fits into 80 columns: characters, not bytes.
 wide() {
   { words command; sed -n 's/^  \([a-z-]*\)  *.*/\1/p' "$TMP/overview"; } | while read -r t; do
-    chapter "$t" | sed 's/[^ -~][^ -~]*/?/g' | awk -v t="$t" 'length > 80 { print t ": " $0 }'
-  done
+    echo "[$t]" && chapter "$t"
+  done | sed 's/[^ -~][^ -~]*/?/g' | awk '/^\[/ { t = $0 } length > 80 { print t ": " $0 }'
 }
 empty "80 columns" "$(wide)"
 
@@ -200,7 +200,8 @@ empty "the words of the table of synonyms have an answer" "$(every_word)"
 shown() { sed -n 's/^WAY //p' "$TMP/words" | grep -o '`lagc [a-z]*' | sort -u; }
 empty "the table names commands that exist" "$(shown | while read -r _ c; do words command | grep -q -x "$c" || echo "$c"; done)"
 meant() { sed 's/.*| *//' "$TMP/brought" | tr ' ' '\n' | sort -u; }
-unsaid() { meant | while read -r w; do cat grammar/*.md README.md models/TUTORIAL.md runtime/python/README.md src/commands/command_table.c runtime/app/options.def | grep -qiwF -e "$w" || echo "$w"; done; }
+cat grammar/*.md README.md models/TUTORIAL.md runtime/python/README.md src/commands/command_table.c runtime/app/options.def >"$TMP/documents"
+unsaid() { meant | while read -r w; do grep -qiwF -e "$w" "$TMP/documents" || echo "$w"; done; }
 empty "synonyms are words that the documents have" "$(unsaid)"
 
 # ---- commands that help shows ----
