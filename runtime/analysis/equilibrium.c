@@ -450,17 +450,13 @@ static int allocate(Equilibrium *r) {
   return r->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
 
-/* Whether a force jumps with a velocity, and that is 0 at rest: dry friction, which holds what rests. */
-static int is_held(Equilibrium *r) {
-  lag_sim *s = r->sim;
+const lag_switch *lag_jump_at(lag_sim *s, const double *y) {
   const lag_model *m = s->scene->model;
-  const double *y = r->y;
-  int held = 0;
-  lag_equilibrium_state(r, r->x);
   if (!m->nmodes || m->switch_values(m, s->run->t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, s->sides, s->work))
-    return 0;
-  for (int k = 0; k < m->nmodes; k++) held |= m->switches[k].jumps && s->sides[k] == 0;
-  return held;
+    return NULL;
+  for (int k = 0; k < m->nmodes; k++)
+    if (m->switches[k].jumps && s->sides[k] == 0) return &m->switches[k];
+  return NULL;
 }
 
 /* spread := uncertainty of the root: Newton steps for noise of the forces with two patterns of signs, and for the
@@ -477,7 +473,8 @@ static int estimate_uncertainty(Equilibrium *r) {
   for (int i = 0; i < n; i++) r->found[i] = r->x[i] * r->scale[i];
   r->pole = is_coordinate_pole(r);
   r->rough = rc == 0 && is_nonsmooth(r);
-  r->held = rc == 0 && is_held(r);
+  lag_equilibrium_state(r, r->x);
+  r->held = rc == 0 && lag_jump_at(r->sim, r->y);
   rc = rc ? rc : equations(r, r->x, r->f, r->J);
   return rc ? (rc < 0 ? rc : LAG_EDOMAIN) : 1;
 }

@@ -43,6 +43,10 @@ void lag_equilibrium_free(Equilibrium *rest);
  * first one: then they form a curve. */
 int lag_equilibrium_continues(Equilibrium *rest, const double *dx, double c);
 
+/* A switch at which a force jumps at the state y[2 nq + nz]: at rest dry friction, which holds what rests. NULL:
+ * none. */
+const lag_switch *lag_jump_at(lag_sim *sim, const double *y);
+
 int lag_is_angle(const lag_var *v);
 
 /* y := the state at rest for the unknowns x[n]. */

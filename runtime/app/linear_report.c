@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/equilibrium.h"
 #include "app/app.h"
 #include "core/core.h"
 #include "io/io.h"
@@ -93,6 +94,10 @@ static void put_text(FILE *f, const App *app, const LinearSystem *s) {
   for (int i = s->n; i < s->n + s->nout; i++) put_row(f, s, i, wide);
   if (moving && strcmp(about(&app->args), "start") == 0)
     fputs("the start is no equilibrium: changes are from the motion that begins there; --equilibrium finds one\n", f);
+  const lag_switch *jump = lag_jump_at(s->sim, s->y);
+  if (jump)
+    fprintf(f, "%s jumps here, at %s = 0: small motions there are not linear, and these are the equations without it\n",
+            jump->text, jump->surface);
 }
 
 /* ---- JSON and files */
@@ -130,6 +135,8 @@ static void put_json(FILE *f, const App *app, const LinearSystem *s) {
     json_variable(&j, name, unit, factor, NULL);
   }
   lag_json_end(&j, ']');
+  const lag_switch *jump = lag_jump_at(s->sim, s->y);
+  if (jump) lag_json_string(&j, "jumps", jump->text);
   lag_json_row(&j, "rate", s->n, s->rate);
   lag_json_matrix(&j, "A", s->n, s->n, s->A), lag_json_matrix(&j, "B", s->n, s->nu, s->B);
   lag_json_matrix(&j, "C", s->nout, s->n, s->C), lag_json_matrix(&j, "D", s->nout, s->nu, s->D);

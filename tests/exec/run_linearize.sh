@@ -107,6 +107,10 @@ assert o["about"] == "equilibrium" and abs(o["states"][1]["value"]) < 1e-12 and 
 near([A[3]], [[0, 3.5*9.81/2.1, 0.2/2.1, 0]], 1e-11)
 P
 fi
+jumps() { # as lagc modes says of it; not while it slips
+  "$LAGC" linearize tests/exec/sensitivity/rub.lag "x'=0" 2>/dev/null | grep -q "^.* jumps here, at x' = 0: small motions there are not linear" && ! "$LAGC" linearize tests/exec/sensitivity/rub.lag 2>/dev/null | grep -q 'jumps here'
+}
+check "where dry friction holds what rests, it says so" jumps
 check "contacts are refused" says 2 models/billiards.lag "" "contacts open and close"
 check "options of runs are refused" says 2 "$TMP/pole.lag" "--until 3" is an option of
 tap_end
