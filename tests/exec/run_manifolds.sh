@@ -51,6 +51,13 @@ connect 'x - 1 + mu falling' --follow 6.2 -o "$TMP/path.csv" --svg "$TMP/path.sv
 "$LAGC" run "$TMP/arrives.lag" connection_1 --tol 1e-13 --every 0.001 -o "$TMP/arrives.csv" --quiet
 near "it arrives" 1e-4 0 "$(awk -F, -v OFS=, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i } NR > 1 { d = sqrt(($at["x"] - 1.0609578327695723)^2 + $at["y"]^2); if (NR == 2 || d < least) least = d } END { print least }' "$TMP/arrives.csv")"
 is "both halves meet" 2 "$(awk -F, 'NR > 1 && $4 == 0 { k = $2 OFS $5 OFS substr($6, 1, 9); n[k]++ } END { for (k in n) if (n[k] == 2) c++; print c }' "$TMP/path.csv")"
+# the same beside 31 oscillators at rest: states of 66 numbers
+mv "$TMP/two.lag" "$TMP/alone.lag"
+sed "s/^lagrangian = .*/coord r[31]\n& + sum(i in 1..31, r[i]'^2\/2 - (3 + 0.037*i)^2*r[i]^2\/2)/" "$TMP/alone.lag" >"$TMP/two.lag"
+connect 'x - 1 + mu falling' --follow 6.2 --json >"$TMP/json"
+near "beside 31 oscillators: y" 1e-9 0.0422374228044829 "$(state 2 y)"
+near "... y'" 1e-9 -0.0134478298654067 "$(state 2 "y'")"
+mv "$TMP/alone.lag" "$TMP/two.lag"
 check "picture of paths" grep -q '<svg' "$TMP/path.svg"
 
 refused() {
