@@ -19,8 +19,8 @@ enum { MOST_SEEDS = 64 };
 typedef enum SeedKind { VALUE, PASSAGE, EVENT_VALUE, EVENT_TIME } SeedKind;
 
 /* The measure changes by `weight` times the change of: the expression `node` at time t; the time near t at which it
- * passes 0; its value at an event; the time of an event. done: 1 once it is among the rows. top: the value is the largest
- * or smallest one of this track. */
+ * passes 0; its value at an event; the time of an event. done: 1 once it is among the rows. top: the value is the
+ * largest or smallest one of this track. */
 typedef struct Seed {
   SeedKind kind;
   double t, weight;
@@ -92,8 +92,9 @@ static void seed_period(MeasureGradient *g, const Track *k, double weight) {
   double part = weight / (k->passages - 1) * (k->latest < k->passage ? -1 : 1);
   for (int i = 0; i < 2 && k->passages > 1; i++) {
     Happening at = i ? k->latest_at : k->passage_at;
-    if (at.event < 0) put_seed(g, (Seed){PASSAGE, i ? k->latest : k->passage, i ? part : -part, k->arg, at, .top = NULL});
-    else seed_event(g, at, i ? part : -part);
+    double t = i ? k->latest : k->passage, factor = i ? part : -part;
+    if (at.event < 0) put_seed(g, (Seed){PASSAGE, t, factor, k->arg, at, .top = NULL});
+    else seed_event(g, at, factor);
   }
 }
 
@@ -370,7 +371,8 @@ static void check_jumps(MeasureGradient *g, double t, int begins, double *y) {
     double x = lag_measure_at(g->m, k->track->arg, t, y);
     k->most = fmax(k->most, fabs(x));
     if (begins && fabs(x - k->last) > 1e-6 * k->most && lag_track_counts(k->track, t))
-      g->refused = "a value jumps at a switch within the mean: make the value a state, S with flow S' = x, and take S/t";
+      g->refused = "a value jumps at a switch within the mean: make the value a state, S with flow S' = x, and take "
+                   "S/t";
     k->last = x;
   }
 }

@@ -177,7 +177,8 @@ void lag_report_sensitivity(App *app, FILE *f) {
   for (int i = 0; i < s->nout; i++)
     s->size[i] = fmax(s->size[i], lag_sim_outputs(app->sim, app->row + 1) ? 0 : fabs(app->row[1 + i]));
   fprintf(f, "sensitivity: derivative of the outputs at the end");
-  if (app->status == LAG_STOPPED) fprintf(f, ", at t = %s s whenever the event happens", LAG_TEXT(lag_sim_time(app->sim)));
+  if (app->status == LAG_STOPPED)
+    fprintf(f, ", at t = %s s whenever the event happens", LAG_TEXT(lag_sim_time(app->sim)));
   fputc('\n', f);
   for (int k = 0; k < s->n * s->nout; k++) {
     Column c = describe(app, k / s->n, k % s->n);

@@ -144,6 +144,7 @@ struct lag_sim {
   size_t nwork;
   /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
   double *tangent, *tangent_jump, *tangent_scratch;
+  double *hold_before; /* [nu] of a run with a tangent: hold before the event */
   struct lag_sensitivity *sensitivity;   /* parameter_columns.c; NULL: the tangent is one by starts alone */
   struct lag_record *record;             /* gradient.c; NULL: steps are not kept */
   int tangent_columns, tangent_at_event; /* tangent_at_event: the event at this time is already applied to it */
@@ -358,13 +359,15 @@ double lag_kicks_locate(lag_sim *sim, const double *period);
 int lag_kicks_at_once(lag_sim *sim);
 /* flow_tangent.c. meet: carries the tangent to the present time, where switch event k ends its branch; corner: over
  * the change of rates there, after modes are settled; begin: projects the tangent of a motion that begins by
- * sliding. pass: carries the tangent over a step that is used up. jump: carries it over event k, which changes the
- * state from `now` to yb; more: another event has changed the state at this time. */
+ * sliding. pass: carries the tangent over a step that is used up; carry: to the present time, where an event changes
+ * the set of closed contacts or the state. saltation.c. jump: carries it over event k, which changes the state from
+ * `now` to yb; more: another event has changed the state at this time. */
 int lag_tangent_pass(lag_sim *sim);
 int lag_tangent_meet(lag_sim *sim, int k);
 int lag_tangent_corner(lag_sim *sim);
 int lag_tangent_begin(lag_sim *sim);
 int lag_tangent_jump(lag_sim *sim, int k, int more);
+int lag_tangent_carry(lag_sim *sim);
 void lag_tangent_free(lag_sim *sim);
 /* As lag_sim_set_tangent, which first frees columns by parameters. */
 int lag_tangent_set(lag_sim *sim, int k, const double *Y);

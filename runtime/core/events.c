@@ -113,7 +113,7 @@ static int replace_state(lag_sim *s, int k, int *changed) {
   int kick = lag_is_kick(s->scene->model, k), more = kick ? *changed & BY_EVENT : *changed;
   double t = s->run->t;
   size_t bytes = (size_t)s->pb.n * sizeof(double);
-  if (!kick && memcmp(s->yb, s->now, bytes) == 0) return LAG_OK;
+  if (!kick && memcmp(s->yb, s->now, bytes) == 0) return lag_contact_of(s->scene->model, k) ? lag_tangent_carry(s) : 0;
   int rc = lag_tangent_jump(s, k, more);
   if (rc) return rc;
   *changed |= kick ? BY_KICK : BY_EVENT;
@@ -161,6 +161,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
   int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact != NULL),
       moved = memcmp(s->yb, s->now, bytes) != 0;
   int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;
+  if (s->tangent) memcpy(s->hold_before, s->hold, (size_t)m->nu * sizeof *s->hold);
   if (of || moved) {
     char who[128];
     snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);

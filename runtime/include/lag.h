@@ -219,8 +219,8 @@ int lag_sim_outputs_at(lag_sim *sim, double t, double *y, double *out);
  * abs, min, max the derivative is that of the branch taken; over a jump of a force, as of dry friction, columns are
  * multiplied by the saltation matrix, which loses a rank where the motion begins to slide. With constraints the
  * columns are projected onto their tangent space, in the mass metric; derivatives are differences, to some 11 digits,
- * without the emitted reverse mode. Impacts of contacts between flights have saltation matrices, too; a run whose
- * contact stays closed fails. */
+ * without the emitted reverse mode. Impacts of contacts have saltation matrices, too; a run fails where a contact
+ * with friction stays closed, or one that closes after ever faster impacts. */
 int lag_sim_set_tangent(lag_sim *sim, int k, const double *Y);
 /* Y[n * k] at the present time; between the ends of steps, by one shorter step of the method. */
 int lag_sim_tangent(lag_sim *sim, double *Y);

@@ -260,7 +260,7 @@ Partials eqns_output_partials(const Eqns *e, const Expr *x, uint32_t n) {
   return (Partials){found.at, found.n};
 }
 
-/* --- events and their actions, for saltation matrices (runtime/core/flow_tangent.c) --- */
+/* --- events and their actions, for saltation matrices (runtime/core/saltation.c) --- */
 
 typedef VEC(EventPartial) EventPartialList;
 

@@ -116,6 +116,35 @@ near "... the velocity there" 1e-11 -1.942440970294058 "$(d "y'" h)"
 near "... a mean" 1e-11 0.6666666666666667 "$(d 'mean(y)' h)"
 near "... a root of a mean square, V/sqrt(3)" 1e-11 1.121468817084233 "$(d "rms(y')" h)"
 near "... a smallest value, 0" 1e-11 0 "$(d 'min(y)' h)"
+# Contacts that close, without restitution, and open. Down a slope y = -b x: T = (b v + sqrt(b^2 v^2 + 2 g h))/g, then x' = (v + b g T)/(1 + b^2), x'' =
+# g b/(1 + b^2); by b from differences of that form, of order 4. Off a cylinder: beside differences of runs, to 1e-8 or so.
+cat >"$TMP/slope.lag" <<'M'
+model slope
+coord x [m], y [m]
+param g = 9.81 [m/s^2] > 0, h = 1 [m], v = 1.2 [m/s], b = 0.3
+lagrangian = (x'^2 + y'^2)/2 - g*y
+contact floor: y + b*x >= 0, restitution = 0
+scene go { start x = 0, y = h, x' = v; span 1.2 [s]; tolerance 1e-12; output x }
+M
+cat >"$TMP/cylinder.lag" <<'M'
+model cylinder
+coord x [m], y [m]
+param g = 9.81 [m/s^2] > 0, R = 1 [m] > 0, v = 0.6 [m/s], c = 0.05 [1/s]
+lagrangian = (x'^2 + y'^2)/2 - g*y
+dissipation = c/2*(x'^2 + y'^2)
+contact floor: sqrt(x^2 + y^2) - R >= 0, restitution = 0
+scene go { start x = 0.02, y = 1.05, x' = v; span 1 [s]; tolerance 1e-13; output x }
+M
+slides() { "$LAGC" run "$TMP/$1.lag" --method dop853 --gradient x --json >"$TMP/out.json" 2>"$TMP/err"; }
+check "a contact that closes" slides slope
+near "... by the slope" 1e-9 "$(awk 'function x(b) { T = (b*v + sqrt(b^2*v^2 + 2*g))/g; s = 1.2 - T; return v*T + (v + b*g*T)/(1 + b^2)*s + g*b/(1 + b^2)*s^2/2 }
+  BEGIN { g = 9.81; v = 1.2; e = 1e-3; printf "%.12g", (8*(x(0.3 + e) - x(0.3 - e)) - x(0.3 + 2*e) + x(0.3 - 2*e))/12/e }')" "$(d x b)"
+ends() { "$LAGC" run "$TMP/cylinder.lag" --method dop853 "$@" --quiet -o - 2>"$TMP/err" | tail -n 1 | cut -d , -f 2; }
+slope_of() { awk -v a="$(ends "$1=$(awk "BEGIN { print $2 + $3 }")")" -v b="$(ends "$1=$(awk "BEGIN { print $2 - $3 }")")" -v h="$3" 'BEGIN { printf "%.12g", (a - b)/2/h }'; }
+check "one that closes and opens" slides cylinder
+near "... by the radius" 1e-6 "$(slope_of R 1 1e-5)" "$(d x R)"
+near "... by a start" 1e-6 "$(slope_of y 1.05 1e-5)" "$(d x 'y(0)')"
+near "... by the damping" 1e-6 "$(slope_of c 0.05 1e-5)" "$(d x c)"
 rubs() { "$LAGC" run "$TMP/rub.lag" --method dop853 --gradient "$1" 2>"$TMP/err" | grep -qF "no gradient of $1: $2"; }
 sed "s/^scene/observe F = sign(x')\nscene/; s/output x,x'/output x, F/" tests/exec/sensitivity/rub.lag >"$TMP/rub.lag"
 check "a mean over a switch, where its value jumps, says so" rubs 'mean(F)' "a value jumps at a switch within the mean"
@@ -151,6 +180,7 @@ scene turn {
   output a
 }
 M
+check "contacts that close and open" dot "$TMP/cylinder.lag" "" x "g,R,c,x,y,x'" --method dop853
 check "a constraint" dot models/cartesian_pendulum.lag "" x "g,l,y,x'" --until 2 --method dop853
 check "a rod whose length is a parameter" dot $S/rod.lag "" x l,g,a,w
 check "a four-bar, whose start the constraints give" dot "$TMP/four_bar.lag" "" a "r1,r2,r3,d,M,a,a'" --method dop853

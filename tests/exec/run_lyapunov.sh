@@ -294,7 +294,14 @@ if [ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ]; then
 else
   skip "a method without" "GSL is not installed"
 fi
-check "a contact that stays closed" refused 3 "contact ball is closed at t = .*: the tangent goes over impacts between flights only" models/sliding_off.lag
+cat >"$TMP/rubs.lag" <<'X'
+model rubs
+coord x, y
+lagrangian = (x'^2 + y'^2)/2 - y
+contact floor: y >= 0, restitution = 0, friction = 0.3, slip = x'
+scene s { start y = 1, x' = 9; span 5 }
+X
+check "a contact that rubs" refused 3 "floor, which has friction, is closed at t = .*: such contacts have a tangent between flights only" "$TMP/rubs.lag"
 check "methods that vary the action, with constraints" refused 2 "method verlet has no derivative of its steps with constraints; dop853, rk45, rk4 and radau have" "$TMP/damped.lag" --method verlet
 check "too many with constraints" refused 2 "from 1 to 2, the coordinates, velocities and states of the model that constraints leave free" "$TMP/damped.lag" --exponents 3
 check "an event that accumulates" refused 3 "event floor repeats in ever shorter intervals" models/bouncing_ball.lag drop
