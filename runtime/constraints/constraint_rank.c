@@ -54,22 +54,33 @@ static int support_of(int n, const double *x, int *at) {
   return count;
 }
 
-/* Removes from x its projection on the rows of Q, twice, for the rounding of the first pass; returns |x|. Most rows
- * have nothing in common with a constraint of few coordinates. */
-static double remainder_of(int n, int r, const double *Q, double *x) {
+static double length_of(int n, const double *x) {
   double s = 0;
-  int at[MOST_SPARSE], count = support_of(n, x, at);
-  for (int k = 0; k < 2 * r; k++) {
-    const double *q = Q + k % r * n;
-    double along = 0;
-    for (int i = 0; i < count; i++) along += q[at[i]] * x[at[i]];
-    for (int i = 0; i < n && count < 0; i++) along += q[i] * x[i];
-    if (along == 0.0) continue;
-    for (int i = 0; i < n; i++) x[i] -= along * q[i];
-    if (count >= 0) count = support_of(n, x, at);
-  }
   for (int i = 0; i < n; i++) s += x[i] * x[i];
   return sqrt(s);
+}
+
+/* Removes from x, of length 1, its projection on the rows of Q; returns what is left of the length. Where that is
+ * little, a second pass removes the rounding of the first: J.W. Daniel, W.B. Gragg, L. Kaufman, G.W. Stewart, Math.
+ * Comp. 30 (1976) 772, DOI 10.1090/S0025-5718-1976-0431641-8. Most rows have nothing in common with a constraint of few
+ * coordinates; after one pass all rows have, by rounding. */
+static double remainder_of(int n, int r, const double *Q, double *x) {
+  const double little = 0.1;
+  double left = 1;
+  int at[MOST_SPARSE], count = support_of(n, x, at);
+  for (int pass = 0; pass == 0 || (pass == 1 && left < little); pass++) {
+    for (int k = 0; k < r; k++) {
+      const double *q = Q + k * n;
+      double along = 0;
+      for (int i = 0; i < count; i++) along += q[at[i]] * x[at[i]];
+      for (int i = 0; i < n && count < 0; i++) along += q[i] * x[i];
+      if (along == 0.0) continue;
+      for (int i = 0; i < n; i++) x[i] -= along * q[i];
+      if (count >= 0) count = support_of(n, x, at);
+    }
+    left = length_of(n, x);
+  }
+  return left;
 }
 
 double lag_independent_part(int n, int r, double least, const double *unit, double *Q, double *row) {
@@ -81,7 +92,7 @@ double lag_independent_part(int n, int r, double least, const double *unit, doub
   for (int i = 0; i < n && most > 0; i++) { /* squares must not overflow or underflow */
     row[i] /= most;
   }
-  double length = remainder_of(n, 0, Q, row);
+  double length = length_of(n, row);
   for (int i = 0; i < n && length > 0; i++) row[i] /= length;
   double left = length > 0 ? remainder_of(n, r, Q, row) : 0;
   for (int i = 0; i < n && left > least; i++) Q[r * n + i] = row[i] / left;

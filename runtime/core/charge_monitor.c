@@ -21,6 +21,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 #include "numeric/line_fit.h"
 #include "numeric/quadrature.h"
 
@@ -64,7 +65,7 @@ int lag_conserves_energy(lag_sim *s) {
   return still;
 }
 
-static void no_values(lag_sim *s, int from) {
+LAG_RARE void no_values(lag_sim *s, int from) {
   for (int i = 2 * from; i < 2 * lag_sim_ncharges(s); i++) s->charge_now[i] = NAN;
 }
 
@@ -173,7 +174,7 @@ static void add_work(lag_sim *s, double t) {
 }
 
 /* Merges neighbouring bins in pairs. */
-static void merge_bins(Charge *c) {
+LAG_RARE void merge_bins(Charge *c) {
   for (int i = 0; i < LAG_BINS / 2; i++) {
     c->t[i] = (c->t[2 * i] + c->t[2 * i + 1]) / 2;
     c->d[i] = (c->d[2 * i] + c->d[2 * i + 1]) / 2;
@@ -185,7 +186,7 @@ static void merge_bins(Charge *c) {
 
 /* Median of the bins' sizes, weighted by time, as there are many steps in front of a pole; without zeros, as at
  * rest; of few bins the largest. */
-static double median_size(const Charge *c) {
+LAG_RARE double median_size(const Charge *c) {
   enum { FEW = 8 };
   double size[LAG_BINS], time[LAG_BINS], whole = 0, half = 0;
   int n = 0, bins = (int)c->bins, i = 0;
@@ -227,7 +228,7 @@ static void add_to_trend(Charge *c, double t, double d, double size) {
 
 /* Sizes that charges have if the values so far are rounding: of momenta, those with the velocities of the energy's
  * size. */
-static void take_terms(lag_sim *s, double t, const double *y) {
+LAG_RARE void take_terms(lag_sim *s, double t, const double *y) {
   int n = lag_sim_ncharges(s), nq = s->pb.nq;
   double *beside = s->yb, *v = beside + nq, h = lag_step_so_far(s);
   double energy = n > 0 ? lag_energy_terms(s, t, y, h) : 0;
@@ -265,11 +266,11 @@ int lag_energy_undefined(lag_sim *s, double t, const double *y) {
  * energy). The second condition spares rough tolerances, which lose as much as there is without a pole. Not judged:
  * few bins, since a motion from rest has no size yet; errors below 1e-12 of the terms; constraints that move with
  * time, whose peaks may lie between steps. */
-static int is_lost(const lag_model *m, const Charge *c, double d, double size) {
+LAG_ALWAYS_INLINE int is_lost(const lag_model *m, const Charge *c, double d, double size) {
   const double part = 0.25, times = 4, least = 1e-12, few = 8, off = fabs(d);
   int driven = m->constraints && !(m->flags & LAG_AUTONOMOUS);
 
-  return c->balanced != 0.0 && !driven && c->bins >= few && off > fmax(times * fabs(c->begin), least * c->terms) &&
+  return c->balanced != 0.0 && !driven && c->bins >= few && off > times * fabs(c->begin) && off > least * c->terms &&
          off > part * fmax(size, c->through) && off > times * size_of(c);
 }
 
@@ -299,7 +300,7 @@ int lag_energy_retained(lag_sim *s) {
                   s->steps_equal ? "smaller steps" : "a smaller tolerance");
 }
 
-static int say_lost(lag_sim *s, double t, double before, double d) {
+LAG_RARE int say_lost(lag_sim *s, double t, double before, double d) {
   const lag_model *m = s->scene->model;
   const Charge *c = &s->charges[0];
   const char *unit = m->charges ? m->charges->of[0].unit : "", *space = unit[0] ? " " : "";

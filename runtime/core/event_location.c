@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 #include "kernels/locate.h"
 
 /* y[n] := the state at time t of the step, exact at its ends. */
@@ -108,13 +109,9 @@ static void first_root(lag_sim *s) {
   }
 }
 
-int lag_events_locate(lag_sim *s) {
-  Run *r = s->run;
-  int nev = lag_watched(s), found, unknown = 0;
-  r->limit = r->step_t1;
-  r->pending = 0;
-  /* contacts that are met by impulses have no other events */
-  if (nev == 0 || (s->pb.contacts && nev == 2 * s->scene->model->ncontacts)) return LAG_OK;
+LAG_RARE int locate_first(lag_sim *s, int nev) {
+  const Run *r = s->run;
+  int found, unknown = 0;
   for (int k = 0; k < nev; k++) {
     s->root[k] = NAN;
     s->sign_end[k] = s->sign[k];
@@ -127,4 +124,13 @@ int lag_events_locate(lag_sim *s) {
   memcpy(s->g0, l.value, (size_t)nev * sizeof(double));
   if (rc == 0) first_root(s);
   return rc;
+}
+
+int lag_events_locate(lag_sim *s) {
+  Run *r = s->run;
+  int nev = lag_watched(s);
+  r->limit = r->step_t1;
+  r->pending = 0;
+  /* contacts that are met by impulses have no other events */
+  return nev == 0 || (s->pb.contacts && nev == 2 * s->scene->model->ncontacts) ? LAG_OK : locate_first(s, nev);
 }

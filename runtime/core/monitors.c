@@ -148,11 +148,10 @@ int lag_monitors_jump(lag_sim *s, double t, const double *ya, const double *yb) 
   return rc ? rc : lag_monitors_side(s, t, yb, 1);
 }
 
-int lag_monitors_impulses(lag_sim *s) {
+LAG_RARE int record_impulses(lag_sim *s) {
   lag_contact_stats *c = s->pb.contacts;
-  Run *r = s->run;
+  const Run *r = s->run;
   int nq = s->pb.nq;
-  if (!c || c->due == 0.0 || r->t < c->from) return LAG_OK;
   double before = r->at_events;
   memcpy(s->yb, s->now, (size_t)s->pb.n * sizeof *s->yb);
   for (int i = 0; i < nq; i++) s->yb[nq + i] -= s->pb.contact_change[i];
@@ -160,6 +159,11 @@ int lag_monitors_impulses(lag_sim *s) {
   c->due = 0;
   lag_charges_add_work(s, c->work - (r->at_events - before), c->rubbed);
   return rc;
+}
+
+int lag_monitors_impulses(lag_sim *s) {
+  const lag_contact_stats *c = s->pb.contacts;
+  return !c || c->due == 0.0 || s->run->t < c->from ? LAG_OK : record_impulses(s);
 }
 
 int lag_sim_contacts(const lag_sim *s, lag_contact_stats *c) {

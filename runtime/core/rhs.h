@@ -9,8 +9,10 @@
 
 #ifdef __GNUC__
 #define LAG_ALWAYS_INLINE static inline __attribute__((always_inline))
+#define LAG_RARE static __attribute__((noinline)) /* work of few steps: others do not save registers for it */
 #else
 #define LAG_ALWAYS_INLINE static inline
+#define LAG_RARE static
 #endif
 
 /* to[n] := from[n]. */

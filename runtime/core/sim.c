@@ -8,7 +8,7 @@
 #include "core/rhs.h"
 
 /* Refuses negative frictions at state y, by the branches of that state. */
-static int judge_moving_sizes(lag_sim *s, double t, const double *y) {
+LAG_RARE int judge_moving_sizes(lag_sim *s, double t, const double *y) {
   lag_switch_set_free(s, 1);
   int rc = lag_check_moving_sizes(s, t, y);
   lag_switch_set_free(s, 0);
@@ -63,7 +63,7 @@ static int make_step(lag_sim *s, double *t, double t_stop) {
 }
 
 /* Fails where the step, of which no event comes first, ends at a negative friction. */
-static int judge_end(lag_sim *s) {
+LAG_ALWAYS_INLINE int judge_end(lag_sim *s) {
   Run *r = s->run;
   if (!s->scene->model->nmoving || r->have_step == 0.0 || r->pending != 0.0) return LAG_OK;
   int rc = judge_moving_sizes(s, r->step_t1, s->y);

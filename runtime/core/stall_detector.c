@@ -104,7 +104,7 @@ static int say_switch(lag_sim *s, int k, double t) {
 }
 
 /* Criterion 1: a sliding motion. */
-static int check_sliding(lag_sim *s, double t) {
+LAG_RARE int check_sliding(lag_sim *s, double t) {
   const lag_model *m = s->scene->model;
   if (sides_at(s, s->run->t, s->now, s->sides) || sides_at(s, t, s->y, s->sides + m->nswitch)) return LAG_OK;
   for (int k = m->nmodes; k < m->nswitch; k++)
@@ -139,7 +139,7 @@ int lag_restarts_stall(lag_sim *s, double *led) {
 }
 
 /* Criterion 2: shrinking steps. */
-static int check_pace(lag_sim *s, double t) {
+LAG_RARE int check_pace(lag_sim *s, double t) {
   const double dependent = 1e-2;
   Run *r = s->run;
   lag_problem *pb = &s->pb;
@@ -169,7 +169,7 @@ static int check_pace(lag_sim *s, double t) {
 }
 
 /* Criterion 3: counts equal steps longer than half a period. */
-static void look_for_period(lag_sim *s, double t) {
+LAG_RARE void look_for_period(lag_sim *s, double t) {
   const double half_turn = 3.141592653589793;
   lag_problem *pb = &s->pb;
   double h = lag_equal_step(s), calls = pb->rhs_calls, square = 0, product = 0;

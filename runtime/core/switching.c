@@ -98,10 +98,15 @@ int lag_sliding_values(lag_problem *pb, double t, const double *y) {
   return rc ? rc : left <= some * size ? 0 : LAG_ERETRY;
 }
 
-int lag_inputs_at(lag_problem *pb, double t, const double *y) {
+LAG_RARE int inputs_and_modes(lag_problem *pb, double t, const double *y) {
   int rc = lag_inputs_inline(pb, t);
   if (rc || pb->nslide) return rc ? rc : lag_sliding_values(pb, t, y);
   return pb->model->contact_laws ? lag_contact_friction_forces(pb, t, y) : 0;
+}
+
+int lag_inputs_at(lag_problem *pb, double t, const double *y) {
+  const lag_model *m = pb->model;
+  return m->nu | m->nmodes || m->contact_laws ? inputs_and_modes(pb, t, y) : 0;
 }
 
 void lag_switch_count(lag_sim *s) {
@@ -482,13 +487,12 @@ int lag_switch_sticks(const lag_sim *s, int k) {
   return is_stepped(s, k) ? s->slid_since[k] == s->run->step_t1 : slides(s, k);
 }
 
-int lag_switch_step(lag_sim *s, double t) {
+LAG_RARE int follow_modes(lag_sim *s, double t) {
   const lag_model *m = s->scene->model;
   const lag_contact_stats *c = s->pb.contacts;
-  int struck = c && c->from > s->run->t && c->from < t, rc = 0;
+  int struck = c && c->from > s->run->t && c->from < t;
   double *before = s->sides, *after = s->sides + m->nswitch;
-  if (!(s->method->flags & LAG_METHOD_IMPULSES) || m->nmodes == 0) return LAG_OK;
-  rc = lag_inputs(&s->pb, s->run->t);
+  int rc = lag_inputs(&s->pb, s->run->t);
   rc = rc ? rc : sides_at(s, s->run->t, s->now, before);
   rc = rc ? rc : lag_inputs(&s->pb, t);
   rc = rc ? rc : sides_at(s, t, s->y, after);
@@ -501,6 +505,10 @@ int lag_switch_step(lag_sim *s, double t) {
     s->crossed[k] += !sticks && !stuck && before[k] * after[k] < 0;
   }
   return rc;
+}
+
+int lag_switch_step(lag_sim *s, double t) {
+  return s->method->flags & LAG_METHOD_IMPULSES && s->scene->model->nmodes ? follow_modes(s, t) : LAG_OK;
 }
 
 double lag_sim_switch_times(const lag_sim *s, int k, long long *crossings, long long *slides_begun) {

@@ -52,10 +52,18 @@ int lag_adaptive_rk_init(void *work, lag_problem *pb, const double *opt) {
   return LAG_OK;
 }
 
-int lag_adaptive_rk_prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y) {
-  int row = lag_adaptive_rk_row(pb);
+LAG_RARE double first_size(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y) {
+  lag_tolerance tol = {pb->tol, &w->limits};
   double *k1 = lag_adaptive_rk_array(w, pb, EMBEDDED_K1);
-  lag_copy(pb->n, y, lag_adaptive_rk_array(w, pb, EMBEDDED_Y0));
+  return lag_first_step(pb, &tol, (lag_first_try){.order = pair->tab->order, .t = t, .y = y, .f = k1,
+                                                  .y1 = lag_adaptive_rk_array(w, pb, EMBEDDED_Y1),
+                                                  .f1 = k1 + lag_adaptive_rk_row(pb)});
+}
+
+LAG_ALWAYS_INLINE int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y) {
+  int row = lag_adaptive_rk_row(pb);
+  double *k1 = w->x + EMBEDDED_K1 * row;
+  lag_copy(pb->n, y, w->x + EMBEDDED_Y0 * row);
   if (w->ready == 2.0) {
     lag_copy(pb->n, k1 + (pair->tab->stages - 1) * row, k1);
   } else if (w->ready == 0.0) {
@@ -66,18 +74,19 @@ int lag_adaptive_rk_prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *
   w->have_extra = 0;
   w->h = w->limits.fixed != 0.0 ? w->limits.h_option : w->h;
   lag_step_limits_begin(&w->limits, t);
-  if (w->h == 0.0) {
-    lag_tolerance tol = {pb->tol, &w->limits};
-    w->h = lag_first_step(pb, &tol, (lag_first_try){.order = pair->tab->order, .t = t, .y = y, .f = k1,
-                                                .y1 = lag_adaptive_rk_array(w, pb, EMBEDDED_Y1), .f1 = k1 + row});
-  }
+  if (w->h == 0.0) w->h = first_size(pair, w, pb, t, y);
   return LAG_OK;
+}
+
+int lag_adaptive_rk_prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y) {
+  return prepare(pair, w, pb, t, y);
 }
 
 /* Makes the step just computed the last accepted one. */
 static int accept(Embedded *w, lag_problem *pb, double *t, double *y, const lag_aimed *a) {
-  lag_copy(pb->n, lag_adaptive_rk_array(w, pb, EMBEDDED_Y1), y);
-  lag_copy(pb->n, lag_adaptive_rk_array(w, pb, EMBEDDED_COMP1), lag_adaptive_rk_array(w, pb, EMBEDDED_COMP));
+  int row = lag_adaptive_rk_row(pb);
+  lag_copy(pb->n, w->x + EMBEDDED_Y1 * row, y);
+  lag_copy(pb->n, w->x + EMBEDDED_COMP1 * row, w->x + EMBEDDED_COMP * row);
   w->t0 = *t;
   w->dt = pb->dir * a->h;
   w->tc = a->lost;
@@ -87,7 +96,7 @@ static int accept(Embedded *w, lag_problem *pb, double *t, double *y, const lag_
 }
 
 /* Status of a step that would have to be shorter than rounding of t allows. */
-static int too_small(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, int cause) {
+LAG_RARE int too_small(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, int cause) {
   pb->bad_index = -1;
   for (int s = 0; s < pair->tab->stages && cause == LAG_ENAN && pb->bad_index < 0; s++)
     pb->bad_index = lag_not_finite(pb->n, lag_adaptive_rk_array(w, pb, EMBEDDED_K1 + s));
@@ -159,7 +168,7 @@ static double singularity_penalty(const Embedded *w, lag_problem *pb, double tb)
 
 /* 1: try again with the step w->h; *err is the squared error of the step to tb, or NaN. 0: keep the step. After the
  * last try without success w->h and *err are those of the first. */
-static int try_other_size(SizeSearch *l, Embedded *w, lag_problem *pb, double tb, double *err) {
+LAG_RARE int try_other_size(SizeSearch *l, Embedded *w, lag_problem *pb, double tb, double *err) {
   double bad = l->tries <= SEARCH_TRIES ? singularity_penalty(w, pb, tb) : 0;
   if (!(bad > 1) && (l->tries == 0 || l->tries > SEARCH_TRIES || *err <= 1)) return 0;
   if (l->tries == 0) *l = (SizeSearch){.base = w->h, .base_err = *err, .least = HUGE_VAL};
@@ -181,7 +190,7 @@ int lag_adaptive_rk_step(void *work, lag_problem *pb, double *t, double *y, doub
   const EmbeddedPair *pair = pb->variant;
   Embedded *w = work;
   SizeSearch search = {.tries = 0};
-  int cause = LAG_ESTEP, rc = lag_adaptive_rk_prepare(pair, w, pb, *t, y);
+  int cause = LAG_ESTEP, rc = prepare(pair, w, pb, *t, y);
   (void)t_stop;
   while (rc == 0) {
     double wanted = lag_min(w->h, lag_longest_step(&w->limits, *t, pb->longest)), row = *t;
@@ -193,7 +202,7 @@ int lag_adaptive_rk_step(void *work, lag_problem *pb, double *t, double *y, doub
     double err = pair->trial(w, pb, *t, a.t, pb->dir * a.h, &rc); /* squared */
     if (rc < 0) return rc;
     const int fixed = w->limits.fixed != 0.0;
-    if (!fixed && try_other_size(&search, w, pb, a.t, &err)) {
+    if (!fixed && (w->across != 0.0 || search.tries) && try_other_size(&search, w, pb, a.t, &err)) {
       pb->rejected++;
       rc = 0;
       continue;
