@@ -21,7 +21,7 @@ static double seconds_now(void) {
   return (double)now.tv_sec + 1e-9*(double)now.tv_nsec;
 }
 
-/* simulator_of_units for `lagc cost`. Says before it compiles where that leaves less than a third of the seconds asked. */
+/* simulator_of_units for `lagc cost`. Says so before it compiles if that leaves under a third of the time asked. */
 static int build_cost_simulator(Compiler *c, const Units *units, double asked, double used, const char **path) {
   const double bytes_a_second = 80e3; /* of C by gcc 12 -O2 at 3 GHz */
   Toolchain tools;
