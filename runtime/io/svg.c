@@ -229,7 +229,7 @@ static void truncate_text(const char *from, int most, char *s, size_t n) {
 
 /* s[n] := "name [unit]" for `room` pixels; a long name is shortened, the unit is not. */
 static void label_of(const char *name, const char *unit, double room, char *s, size_t n) {
-  const double width_of_character = 8;
+  const double width_of_character = 9;
   char short_name[96];
   truncate_text(name, (int)(room / width_of_character) - (int)strlen(unit) - 3, short_name, sizeof short_name);
   snprintf(s, n, unit[0] ? "%s [%s]" : "%s", short_name, unit);
