@@ -208,7 +208,7 @@ static void put_horizon(FILE *f, const Panel *p, const Table *t, int named) {
   if (!t->certain || t->points) return;
   double x = lag_panel_x(p, t->horizon);
   fprintf(f, "<path d=\"M%.1f %.1fv%.1f\" stroke=\"#888\" stroke-dasharray=\"2 4\"/>\n", x, p->y, p->h);
-  if (named) lag_svg_text(f, x, p->y - 6, "font-size=\"11\" text-anchor=\"middle\" fill=\"#666\"", "no digit is left");
+  if (named) lag_svg_text(f, x, p->y - 6, "font-size=\"13\" text-anchor=\"middle\" fill=\"#666\"", "no digit is left");
 }
 
 /* s[n] := `from`, shortened to at most `most` characters with "..." at the end. */
@@ -229,7 +229,7 @@ static void truncate_text(const char *from, int most, char *s, size_t n) {
 
 /* s[n] := "name [unit]" for `room` pixels; a long name is shortened, the unit is not. */
 static void label_of(const char *name, const char *unit, double room, char *s, size_t n) {
-  const double width_of_character = 8;
+  const double width_of_character = 9;
   char short_name[96];
   truncate_text(name, (int)(room / width_of_character) - (int)strlen(unit) - 3, short_name, sizeof short_name);
   snprintf(s, n, unit[0] ? "%s [%s]" : "%s", short_name, unit);
@@ -274,7 +274,7 @@ static void draw_series(FILE *f, const Panel *p, const Table *t, const PlottedCu
 
 /* Width of the legend right of the panels, in pixels. */
 static int legend_width(const Table *t, const PlottedCurves *d) {
-  enum { KEY = 41, CHARACTER = 8 };
+  enum { KEY = 41, CHARACTER = 9 };
   int most = (RIGHT - KEY) / CHARACTER;
   char s[sizeof t->cols->name];
 
@@ -419,7 +419,7 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   draw_series(f, &p, t, d, NULL);
   for (const PictureNote *note = d->note; note && note < d->note + d->nnotes; note++)
     lag_svg_text(f, lag_panel_x(&p, note->x), lag_panel_y(&p, note->y) + 4,
-                 "font-size=\"11\" text-anchor=\"middle\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"",
+                 "font-size=\"13\" text-anchor=\"middle\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"",
                  note->text);
   if (!x) put_horizon(f, &p, t, 1);
   if (x && t->certain && !t->points) {

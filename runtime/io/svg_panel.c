@@ -64,7 +64,7 @@ static void tick_label(char *s, size_t n, double value, double step) {
 
 /* Number of x ticks per label, so that long labels (-3.086e+07) do not overlap. */
 static double label_stride(const Panel *p, double dx, double base) {
-  enum { WIDTH_OF_CHARACTER = 7, ROOM = 10 };
+  enum { WIDTH_OF_CHARACTER = 9, ROOM = 10 };
   size_t longest = 0;
   char s[32];
   for (double k = ceil((p->x0 - base) / dx - 1e-9); k * dx <= p->x1 - base + 1e-9 * dx; k++) {
@@ -79,20 +79,20 @@ static void put_label(FILE *f, double x, double y, const char *attributes, const
   const char *power = strstr(s, "10^");
   if (!power) lag_svg_text(f, x, y, attributes, s);
   else
-    fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>%.*s%s10<tspan dy=\"-5\" font-size=\"9\">%s</tspan></text>\n", x, y,
+    fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>%.*s%s10<tspan dy=\"-6\" font-size=\"11\">%s</tspan></text>\n", x, y,
             attributes, (int)strcspn(s, "*1"), s, power > s ? "\302\267" : "", power + 3);
 }
 
 /* A line of the grid at x, and its label, if it has one. */
 static void x_tick(FILE *f, const Panel *p, double x, const char *label) {
   fprintf(f, "<path d=\"M%.2f %.1fv%.1f\" class=\"g\"/>\n", lag_panel_x(p, x), p->y, p->h);
-  if (*label) put_label(f, lag_panel_x(p, x), p->y + p->h + 17, "text-anchor=\"middle\"", label);
+  if (*label) put_label(f, lag_panel_x(p, x), p->y + p->h + 18, "text-anchor=\"middle\"", label);
 }
 
 static void y_tick(FILE *f, const Panel *p, double at, const char *label) {
   double y = lag_panel_y(p, at);
   fprintf(f, "<path d=\"M%.1f %.2fh%.1f\" class=\"g\"/>\n", p->x, y, p->w);
-  if (*label) put_label(f, p->x - 7, y + 4, "text-anchor=\"end\"", label);
+  if (*label) put_label(f, p->x - 6, y + 5, "text-anchor=\"end\"", label);
 }
 
 double lag_dot_width(double rows) { return fmin(8, fmax(2, 40 / pow(rows, 0.4))); }
@@ -105,7 +105,7 @@ static double label_base(double lo, double hi, double step) {
 static void put_base(FILE *f, double x, double y, const char *anchor, double base) {
   char s[32], attributes[64];
   snprintf(s, sizeof s, "%.14g +", base);
-  snprintf(attributes, sizeof attributes, "font-size=\"11\" text-anchor=\"%s\"", anchor);
+  snprintf(attributes, sizeof attributes, "font-size=\"13\" text-anchor=\"%s\"", anchor);
   if (base != 0.0) lag_svg_text(f, x, y, attributes, s);
 }
 
@@ -171,13 +171,13 @@ void lag_svg_large_head(FILE *f, int width, int height, int size, const char *ti
           width, height, width, height, size);
   lag_write_markup(f, title);
   fprintf(f,
-          "</title>\n<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:13px}</style>\n"
+          "</title>\n<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:15px}</style>\n"
           "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
           width, height);
-  snprintf(attributes, sizeof attributes, "font-size=\"%d\" font-weight=\"bold\"", size < 15 ? 15 : size);
+  snprintf(attributes, sizeof attributes, "font-size=\"%d\" font-weight=\"bold\"", size < 17 ? 17 : size);
   lag_svg_text(f, LEFT, 26, attributes, title);
 }
 
 void lag_svg_head(FILE *f, int width, int height, const char *title) {
-  lag_svg_large_head(f, width, height, 12, title);
+  lag_svg_large_head(f, width, height, 14, title);
 }

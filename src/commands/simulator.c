@@ -210,7 +210,9 @@ static int add_effect_scenes(Compiler *c, const Eqns *run, Units *units, Lowered
 
 int simulator_lower(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast), named = c->picture.scenes.n ? c->picture.scenes : (SceneList){scenes.at, 1};
-  if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->picture.drawing || c->o.consts.n)
+  int measured_once = c->o.command == CMD_COST || c->o.command == CMD_BUILD; /* the latter: the reference of cost */
+  if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->picture.drawing || c->o.consts.n ||
+      (c->picture.argv.n && measured_once))
     scenes = named;
   else if (c->picture.argv.n && !scenes_of_run(c, scenes, named, &scenes)) return 0;
   Lowereds all = {0};

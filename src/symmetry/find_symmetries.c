@@ -248,15 +248,20 @@ static const char *functions_text(SymmetrySearch *s, const TimeList *times, uint
   return sb_text(&b);
 }
 
+/* Of inputs and states only values are known, no rates: time is not shifted where L contains one. */
+static const char *tau_text(const Ansatz *a) {
+  return a->has_tau ? ", tau" : ", no tau since L contains an input or a state";
+}
+
 static void search_listed(SymmetrySearch *s) {
   Family f = {.kind = TIME_LISTED, .times = time_list(s)};
   s->out->searched = noether_add_family(s, &f);
   s->out->ansatz =
       arena_printf(s->e->m->arena,
-                   "xi affine in the coordinates%s, tau, with coefficients in t: %s; F a polynomial of degree %u in "
+                   "xi affine in the coordinates%s%s, with coefficients in t: %s; F a polynomial of degree %u in "
                    "the coordinates, "
                    "with those%s%s, and any function of t alone",
-                   !s->ansatz->whole ? " (turns and stretches of one vector only)" : "",
+                   !s->ansatz->whole ? " (turns and stretches of one vector only)" : "", tau_text(s->ansatz),
                    functions_text(s, &f.times, 0, f.times.n), s->ansatz->degree,
                    f.times.n < f.times.ngauge ? " and " : "", functions_text(s, &f.times, f.times.n, f.times.ngauge));
 }
@@ -266,9 +271,10 @@ static void search_listed(SymmetrySearch *s) {
 static const char *ansatz_text(const SymmetrySearch *s) {
   const Ansatz *a = s->ansatz;
   return arena_printf(s->e->m->arena,
-                      "xi affine in the coordinates%s, tau, both with any dependence on time; F a polynomial of degree "
+                      "xi affine in the coordinates%s%s%s with any dependence on time; F a polynomial of degree "
                       "%u in the coordinates",
-                      !a->whole ? " (turns and stretches of one vector only)" : "", a->degree);
+                      !a->whole ? " (turns and stretches of one vector only)" : "", tau_text(a),
+                      a->has_tau ? ", both" : ",", a->degree);
 }
 
 /* least ratio of pivots to rounding that is trusted; models have 1e13 and more */

@@ -52,8 +52,8 @@ int main(int argc, char **argv) {
     return 0;
   }
   for (int m = 0; m < 6; m++) {
-    const double times[] = {0.01, NAN, 0.01, m < 2 || m > 4 ? INFINITY : NAN}, at[] = {0, 1, NAN, 1};
-    for (int k = 0; k < 4; k++) {
+    const double times[] = {0.01, NAN, 0.01, m < 2 || m > 4 ? INFINITY : NAN, 0.01}, at[] = {0, 1, NAN, 1, INFINITY};
+    for (int k = 0; k < 5; k++) {
       s = start;
       s.q[0] = at[k];
       const pole_state before = s;
@@ -68,6 +68,14 @@ int main(int argc, char **argv) {
       snprintf(what, sizeof what, "%s, a tolerance that is none", names[m]);
       expect(what, step(m, &p, &s, 0.1, k == 0 ? -1e-9 : k == 1 ? 0 : NAN) == POLE_ETOLERANCE && same(&s, &start));
     }
+  }
+  for (int m = 2; m < 5; m++) {
+    s = start;
+    s.q[0] = 1.7e308, s.v[0] = 1e307;
+    int status = 0;
+    for (int k = 0; k < 1000 && !status; k++) status = step(m, &p, &s, 10, 1e-9);
+    snprintf(what, sizeof what, "%s, where x outgrows its numbers: a status, and a state that is finite", names[m]);
+    expect(what, status < 0 && isfinite(s.q[0]) && isfinite(s.t));
   }
   s = start;
   s.q[0] = 0;

@@ -88,6 +88,9 @@ without_quad() { LAG_HOME=$TMP/home "$LAGC" cost models/pendulum.lag --until 1 -
 mkdir -p "$TMP/home/lib" && cp "$BUILD"/liblag.a "$BUILD"/liblag_gsl.a "$TMP/home/lib" 2>"$TMP/err"
 cp -r "$INC" "$TMP/home/include"
 check "without more digits it is one of doubles" without_quad
+compiles() { XDG_CACHE_HOME=$TMP/fresh "$LAGC" cost models/spring.lag --methods rk4 --seconds 0.02 2>&1 >/dev/null | grep -c 'compiled first'; }
+is "--seconds that compiling exceeds, before it compiles" 1 "$(compiles)"
+is "but not of a model that is compiled" 0 "$(compiles)"
 unreached() { text models/pendulum.lag --until 2 --methods symplectic_euler --seconds 0.3 --target 1e-12; [ $? = 3 ]; }
 check "a target out of reach is exit status 3" unreached
 says '^no setting has an error of 1e-12 or less; the smallest found is'

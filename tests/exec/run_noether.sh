@@ -43,6 +43,8 @@ check "what stretches the last coordinate turns no parts of the motion" says "^Q
 check "to a file" sh -c '"$0" noether models/kepler.lag -o "$1" && cmp "$1" "$2"' "$LAGC" "$TMP/file" "$TMP/kepler"
 
 # ---- nothing is found ----
+printf '%s\n' 'model pulled' 'coord x' 'input U = 0' "lagrangian = x'^2/2 - x^2/2 - U*x" >"$TMP/pulled.lag"
+check "an input: what is not looked for" says '^looked for: .*no tau since L contains an input' noether "$TMP/pulled.lag"
 check "where there is none" says '^found: none$' noether models/kapitza.lag
 check "no symmetry is called proved" is_silent 'proved' noether models/kapitza.lag
 

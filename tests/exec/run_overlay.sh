@@ -20,7 +20,7 @@ end_of() {
     function number(s, key) { match(s, key "=\"[-0-9.]*\""); return substr(s, RSTART + length(key) + 2, RLENGTH - length(key) - 3) + 0 }
     /^<rect x=/ { nx = ny = 0 }
     /^<text .*text-anchor="middle">/ { v = $0; gsub(/<[^>]*>/, "", v); nx++; px[nx] = number($0, "x"); vx[nx] = v + 0 }
-    /^<text .*text-anchor="end">/ { v = $0; gsub(/<[^>]*>/, "", v); ny++; py[ny] = number($0, "y") - 4; vy[ny] = v + 0 }
+    /^<text .*text-anchor="end">/ { v = $0; gsub(/<[^>]*>/, "", v); ny++; py[ny] = number($0, "y") - 5; vy[ny] = v + 0 }
     /^<path fill="none"/ && ++n == k {
       sub(/.* d="/, ""); sub(/".*/, ""); gsub(/[ML]/, " "); m = split($0, c, " ")
       print vx[1] + (c[m - 1] - px[1])*(vx[nx] - vx[1])/(px[nx] - px[1]), vy[1] + (c[m] - py[1])*(vy[ny] - vy[1])/(py[ny] - py[1])

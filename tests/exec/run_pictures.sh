@@ -33,7 +33,7 @@ cat >measure.awk <<'END'
 function number(s, key) { match(s, key "=\"[-0-9.]*\""); return substr(s, RSTART + length(key) + 2, RLENGTH - length(key) - 3) + 0 }
 /^<rect x=/ { fx = number($0, "x"); fy = number($0, "y"); fw = number($0, "width"); fh = number($0, "height"); nx = ny = 0 }
 /^<text .*text-anchor="middle">/ { v = $0; gsub(/<[^>]*>/, "", v); nx++; px[nx] = number($0, "x"); vx[nx] = v + 0 }
-/^<text .*text-anchor="end">/ { v = $0; gsub(/<[^>]*>/, "", v); ny++; py[ny] = number($0, "y") - 4; vy[ny] = v + 0 }
+/^<text .*text-anchor="end">/ { v = $0; gsub(/<[^>]*>/, "", v); ny++; py[ny] = number($0, "y") - 5; vy[ny] = v + 0 }
 /^<path fill="none"/ {
   d = $0; sub(/.* d="/, "", d); sub(/".*/, "", d); gsub(/[ML]/, " ", d)
   n = split(d, c, " ")
@@ -200,10 +200,10 @@ check "leave room for the rest" leaves
 # A panel is 230 pixels high, a line of its legend 18: eleven curves are named, and nine are counted.
 is "a legend names those that fit beside its panel, and counts the others" "22, 9 9" \
   "$(grep -c '^<path d=.*h20' panels.svg), $(sed -n 's/.*>and \([0-9]*\) more<.*/\1/p' panels.svg | tr '\n' ' ' | sed 's/ $//')"
-# legend_fits FILE: no text of it ends right of the picture, at 7.5 pixels a character
+# legend_fits FILE: no text of it ends right of the picture, at 8.6 pixels a character
 legend_fits() {
-  awk '/^<svg/ { match($0, "width=\"[0-9]*"); w = substr($0, RSTART + 7, RLENGTH - 7) }
-    /^<text x="[0-9.]*" y="[0-9.]*" >/ { x = $0; sub(/<text x="/, "", x); v = $0; gsub(/<[^>]*>/, "", v); if (x + 7.5*length(v) > w) { print v; exit 1 } n++ }
+  awk '/^<svg/ { match($0, "width=\"[0-9]*"); w = substr($0, RSTART + 7, RLENGTH - 7) + 0 }
+    /^<text x="[0-9.]*" y="[0-9.]*" >/ { x = $0; sub(/<text x="/, "", x); v = $0; gsub(/<[^>]*>/, "", v); if (x + 8.6*length(v) > w) { print v; exit 1 } n++ }
     END { exit n < 1 }' "$1"
 }
 check "long names" runs plot names.lag --until 9 -D N=2 -o names.svg

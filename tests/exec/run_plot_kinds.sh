@@ -11,7 +11,7 @@ function value(a, b, part) { return logarithmic ? a*exp(part*log(b/a)) : a + par
 /^<rect x=/ { nx = ny = 0 }
 /^<text .*text-anchor="(middle|end)">.*10<tspan/ { if (match($0, />[0-9]·10</)) sub(/·10<tspan[^>]*>/, "e"); else sub(/10<tspan[^>]*>/, "1e") } # powers of ten
 /^<text .*text-anchor="middle">/ { v = $0; gsub(/<[^>]*>/, "", v); nx++; px[nx] = number($0, "x"); vx[nx] = v + 0 }
-/^<text .*text-anchor="end">/ { v = $0; gsub(/<[^>]*>/, "", v); ny++; py[ny] = number($0, "y") - 4; vy[ny] = v + 0 }
+/^<text .*text-anchor="end">/ { v = $0; gsub(/<[^>]*>/, "", v); ny++; py[ny] = number($0, "y") - 5; vy[ny] = v + 0 }
 /^<path/ && $0 ~ wanted {
   d = $0; sub(/.* d="/, "", d); sub(/".*/, "", d); gsub(/[ML]/, " ", d)
   n = split(d, c, " ")
