@@ -294,8 +294,9 @@ static void rates_beside(lag_sim *s, int at, int count, const double *by, const 
 
 enum { ROUNDINGS = 1000 }; /* of a few hundred operations */
 
-/* noise[nq] := rounding of the accelerations at the start, the largest of each unit, in a block of 3 n; NULL: not known. Steps depend on it, and
- * what rounding modes show depends on the compiler: it is what last digits of the state and of parameters change. */
+/* noise[nq] := rounding of the accelerations at the start, the largest of each unit, in a block of 3 n; NULL: not
+ * known. Steps depend on it, and what rounding modes show depends on the compiler: it is what last digits of the state
+ * and of parameters change. */
 static double *acceleration_noise(lag_sim *s, double *noise) {
   const double t = s->run->t, *y = s->now;
   double *up = noise + s->pb.n, *down = up + s->pb.n;
