@@ -495,15 +495,27 @@ static int tangent_sizes(lag_sim *s, double *size) {
   return rc;
 }
 
-int lag_contact_arm(lag_sim *s, const double *g) {
+/* The largest force of contacts that are closed; law: of the model's contact_laws, NULL without friction. Where
+ * friction holds at its limit g is rounding, the force is not. */
+static double largest_force(const lag_sim *s, const double *g, const double *law) {
   const lag_model *m = s->scene->model;
-  double most = 0, *size = s->contact_scratch;
-  if (m->ncontacts == 0 || s->pb.contacts) return LAG_OK;
+  double most = 0;
   for (int i = 0; i < m->ncontacts; i++) {
     const lag_contact *c = &m->contacts[i];
-    s->contact_was[i] = s->hold[c->input];
-    most = lag_contact_is_closed(s, c) && !c->conditional ? fmax(most, fabs(g[c->release])) : most;
+    if (!lag_contact_is_closed(s, c) || c->conditional) continue;
+    most = fmax(most, fabs(g[c->release]));
+    if (law && c->is_tangent) most = fmax(most, fabs(law[3 * i + 2] + s->pb.u[c->force]));
   }
+  return most;
+}
+
+int lag_contact_arm(lag_sim *s, const double *g) {
+  const lag_model *m = s->scene->model;
+  double *size = s->contact_scratch;
+  if (m->ncontacts == 0 || s->pb.contacts) return LAG_OK;
+  const double *law = m->contact_laws && lag_contact_laws(s, s->now, s->pb.rub) == LAG_OK ? s->pb.rub : NULL;
+  const double most = largest_force(s, g, law);
+  for (int i = 0; i < m->ncontacts; i++) s->contact_was[i] = s->hold[m->contacts[i].input];
   for (int i = 0; i < m->ncontacts; i++)
     if (!m->contacts[i].conditional) s->hold[m->contacts[i].input] = 1;
   int rc = term_sizes(s, s->now, 1, size, size + m->constraints->n);

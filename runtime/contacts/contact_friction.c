@@ -75,11 +75,13 @@ static int fail_slipping(const Slipping *s, const lag_slipping *w, int k, double
   return LAG_ERETRY;
 }
 
+static int is_closed(const lag_problem *pb, int i) { return pb->hold[pb->model->contacts[i].input] > 0.5; }
+
 /* Whether friction holds a motion, in which others that slip may have none. */
 static int some_sticks(const lag_problem *pb) {
   const lag_model *m = pb->model;
   for (int i = 0; i < m->ncontacts; i++)
-    if (m->contacts[i].is_tangent && pb->hold[m->contacts[i].input] > 0.5) return 1;
+    if (m->contacts[i].is_tangent && is_closed(pb, i)) return 1;
   return 0;
 }
 
@@ -124,7 +126,7 @@ static int find_friction(lag_problem *pb, double t, const double *y) {
   lag_slipping_place(&w, most_slipping(m), size + 1);
   for (int i = 0; i < m->ncontacts; i++) {
     int guide = lag_guide_of(m, i), in_space = lag_slips_in_space(pb, i);
-    int acts = guide < 0 ? fabs(side_of(pb, i)) > 0 : !isnan(side_of(pb, i));
+    int acts = guide < 0 || is_closed(pb, i) ? fabs(side_of(pb, i)) > 0 : !isnan(side_of(pb, i));
     if (!in_space && (!acts || lag_slips_in_space(pb, i - 1))) continue;
     if (guide < 0 && (contacts += 1 + in_space) > LAG_MOST_TOUCHES) continue;
     if (in_space) lag_slip_direction(pb, rates, i, w.mode + w.n);
@@ -142,8 +144,6 @@ static int find_friction(lag_problem *pb, double t, const double *y) {
   *size = w.size;
   return rc;
 }
-
-static int is_closed(const lag_problem *pb, int i) { return pb->hold[pb->model->contacts[i].input] > 0.5; }
 
 /* Closed contacts and guides that stick: touches of[n] and rows as in lag_contact_modes; at[rows]: their numbers in
  * the model, for the row of a guide that of its tangent. */

@@ -181,17 +181,19 @@ static double response(const Trial *t, int k) { return t->W[k * t->rows + k]; }
 /* Scale of row k. */
 static double scale(const Trial *t, int k) { return response(t, k) > 0 ? 1 / sqrt(response(t, k)) : 1; }
 
-/* Whether forces D change no acceleration. */
+/* Whether forces D change no acceleration, beside the largest of their terms: those of a row may be rounding all. */
 static int changes_nothing(const Trial *t, const double *D) {
+  double most = 0, size = 0;
   for (int k = 0; k < t->rows; k++) {
-    double a = 0, size = 0;
+    double a = 0, terms = 0;
     for (int j = 0; j < t->rows; j++) {
       a += t->W[k * t->rows + j] * D[j];
-      size += fabs(t->W[k * t->rows + j] * D[j]);
+      terms += fabs(t->W[k * t->rows + j] * D[j]);
     }
-    if (fabs(a) > alike * size) return 0;
+    most = fmax(most, scale(t, k) * fabs(a));
+    size = fmax(size, scale(t, k) * terms);
   }
-  return 1;
+  return most <= alike * size;
 }
 
 /* D[directions][rows] := changes of the forces that change no acceleration. Returns their number. */
@@ -337,6 +339,19 @@ static int next(Trial *t, int *k) {
   return 0;
 }
 
+/* Guides that slip press to the sides that the last solution shows. Returns whether one has changed. */
+static int change_sides(const Trial *t) {
+  int changed = 0;
+  for (int i = 0; i < t->n; i++) {
+    lag_touch *c = &t->of[i];
+    int presses = c->toward[0] < 0 ? -1 : 1;
+    if (!c->guide || c->parts != 1 || c->mode != LAG_CONTACT_SLIPS || presses == c->presses) continue;
+    c->presses = presses;
+    changed = 1;
+  }
+  return changed;
+}
+
 /* Where a contact begins to slip: edge[n] := whether no forces hold the contacts at rest but with this one at the
  * edge of its cone; the side to which it would slip. */
 static void find_edges(Trial *t) {
@@ -348,7 +363,9 @@ static void find_edges(Trial *t) {
     c->to = c->slip ? c->slip : 1;
     c->presses = 1;
   }
-  if (!leaves || !solve(t)) return;
+  for (int turn = 0; leaves && !solve(t); turn++)
+    if (turn == t->n || !change_sides(t)) return;
+  if (!leaves) return;
   choose_forces(t);
   for (int i = 0; i < t->n; i++) {
     const lag_touch *c = &t->of[i];
@@ -458,35 +475,48 @@ static void change_mode(const Trial *t, int i) {
   }
 }
 
-/* Guides that slip press to the sides that the last solution shows. Returns whether one has changed. */
-static int change_sides(const Trial *t) {
-  int changed = 0;
-  for (int i = 0; i < t->n; i++) {
-    lag_touch *c = &t->of[i];
-    int presses = c->toward[0] < 0 ? -1 : 1;
-    if (!c->guide || c->parts != 1 || c->mode != LAG_CONTACT_SLIPS || presses == c->presses) continue;
-    c->presses = presses;
-    changed = 1;
-  }
-  return changed;
+/* The next contact of the order that does not fit; t->n: all fit. */
+static int first_misfit(const Trial *t, const int *order) {
+  int i = 0;
+  while (i < t->n && fits(t, order[i])) i++;
+  return i < t->n ? order[i] : t->n;
 }
 
-static int pivot(Trial *t, lag_touch *found) {
-  enum { ROUNDS = 1000 };
+/* Changes modes, of contacts that do not fit the first in order[n], until all fit. */
+static int pivot_in_order(Trial *t, const int *order, lag_touch *found) {
+  enum { ROUNDS = 300 };
   for (int i = 0; i < t->n; i++) choose_first(t, i);
   for (int round = 0; round < ROUNDS; round++) {
-    int i = 0;
     if (!solve(t)) {
       if (!change_sides(t)) return 0;
       continue;
     }
-    while (i < t->n && fits(t, i)) i++;
+    int i = first_misfit(t, order);
     if (i == t->n || (is_shared(t) && !choose_forces(t) && all_fit(t))) {
       keep(t, found, is_shared(t) ? LEAST : UNIQUE);
       return 1;
     }
     solve(t); /* the least forces again */
     change_mode(t, i);
+  }
+  return 0;
+}
+
+/* The search may cycle, as responses of guides are no P-matrix: it begins again without edges, and in other orders. */
+static int pivot(Trial *t, lag_touch *found) {
+  enum { ORDERS = 16 };
+  int order[LAG_MOST_TOUCHES];
+  unsigned dice = 1;
+  for (int i = 0; i < t->n; i++) order[i] = i;
+  for (int turn = 0; turn < ORDERS; turn++) {
+    if (pivot_in_order(t, order, found)) return 1;
+    if (turn == 0) memset(t->edge, 0, sizeof t->edge);
+    for (int i = t->n - 1; i > 0 && turn > 0; i--) {
+      dice = dice * 1664525u + 1013904223u;
+      int k = (int)((dice >> 16) % (unsigned)(i + 1)), was = order[i];
+      order[i] = order[k];
+      order[k] = was;
+    }
   }
   return 0;
 }

@@ -294,8 +294,9 @@ static void rates_beside(lag_sim *s, int at, int count, const double *by, const 
 
 enum { ROUNDINGS = 1000 }; /* of a few hundred operations */
 
-/* noise[nq] := rounding of the accelerations at the start, in a block of 3 n; NULL: not known. Steps depend on it, and
- * what rounding modes show depends on the compiler: it is what last digits of the state and of parameters change. */
+/* noise[nq] := rounding of the accelerations at the start, the largest of each unit, in a block of 3 n; NULL: not
+ * known. Steps depend on it, and what rounding modes show depends on the compiler: it is what last digits of the state
+ * and of parameters change. */
 static double *acceleration_noise(lag_sim *s, double *noise) {
   const double t = s->run->t, *y = s->now;
   double *up = noise + s->pb.n, *down = up + s->pb.n;
@@ -303,6 +304,10 @@ static double *acceleration_noise(lag_sim *s, double *noise) {
       formula_at(s, LAG_FORMULA_RATES, t, y, noise))
     return NULL;
   noise_between(s->pb.nq, noise, up, down);
+  for (int i = 0; i < s->pb.nq; i++) { /* that of one coordinate alone may be 0 */
+    int first = first_of_unit(s->scene->model->q, i);
+    noise[i] = first < i ? noise[first] : largest_of_unit(s->pb.nq, s->scene->model->q, noise, i);
+  }
   return noise;
 }
 
@@ -473,7 +478,7 @@ static void raise_to_rounding(lag_sim *s, const double *noise, double step) {
   double *size = s->pb.size, v = 0;
   for (int i = 0; i < nq; i++) {
     if (i == 0 || !same_unit(m->q, i, i - 1))
-      v = largest_of_unit(nq, m->q, noise, i) * step / s->pb.tol;
+      v = noise[i] * step / s->pb.tol;
     if (!(v > 0 && v < HUGE_VAL)) continue;
     size[i] = fmax(size[i], exp2(ceil(log2(v * step))));
     size[nq + i] = fmax(size[nq + i], exp2(ceil(log2(v))));

@@ -230,6 +230,36 @@ static int refuse_options(Builder *b, const AstStmt *st) {
   return 1;
 }
 
+/* Whether the velocity `slip` is the rate of constraint c times a factor, which is 0 whatever the motion: their
+ * gradients are parallel. */
+static int is_rate_of(const Builder *b, Expr slip, Expr c) {
+  const Model *m = b->m;
+  ExprGraph *g = b->g;
+  int of_rates = (expr_kinds(g, c) & 1u << SYM_VEL) != 0;
+  Expr s0 = 0, c0 = 0;
+  for (uint32_t i = 0; i < m->coords.n; i++) {
+    Expr s = expr_diff(g, slip, m->coords.at[i].v);
+    Expr d = expr_diff(g, c, of_rates ? m->coords.at[i].v : m->coords.at[i].q);
+    if (expr_is_zero(g, s) && expr_is_zero(g, d)) continue;
+    if (expr_is_zero(g, s) || expr_is_zero(g, d)) return 0;
+    if (s0 && !expr_is_zero(g, expr_sub(g, expr_mul(g, s, c0), expr_mul(g, s0, d)))) return 0;
+    if (!s0) s0 = s, c0 = d;
+  }
+  return s0 != 0;
+}
+
+/* Reports a slip along the normal of the guide st. */
+static int check_along(Builder *b, const AstStmt *st, AstId id, Expr slip, const Entity *of, uint32_t parts) {
+  for (uint32_t k = 0; of && k < parts; k++)
+    if (is_rate_of(b, slip, b->m->constraints.at[of->index + k].c))
+      return diag_error(b->diags, ast_expr(b->ast, id)->span,
+                        "the slip of the guide `%s` is the rate of its own constraint, which is 0 at all times" HELP
+                        "it is the velocity along the guide, which the constraint leaves free: of y = 0 it is `slip = "
+                        "x'`",
+                        st->name);
+  return 1;
+}
+
 /* The slip of the guide st, whose constraints are `of`, and its force; *dim := its dimension. 0, reported. */
 static Expr slip_of(Builder *b, const AstStmt *st, Name effect, const Entity *of, Contact *t, Dim *dim) {
   AstId id = ast_option_value(b->ast, st, "slip");
@@ -253,7 +283,7 @@ static Expr slip_of(Builder *b, const AstStmt *st, Name effect, const Entity *of
   b->in_friction = 0;
   if (!v.e || !check_slip(b, st, id, &v, of ? &b->m->constraints.at[of->index] : NULL)) return 0;
   if (!of) *dim = v.dim;
-  if (!v.n) return v.e;
+  if (!v.n) return check_along(b, st, id, v.e, of, parts) ? v.e : 0;
   diag_error(
       b->diags, ast_expr(b->ast, id)->span,
       "the slip of a guide is a number: the velocity along it" HELP
