@@ -33,8 +33,8 @@ static inline double lag_touch_holds(const lag_touch *c) { return c->hold > c->m
  * the number of motions, 0, 1 or 2: none (Painleve's paradox, where friction is large), one, or more than one.
  * room[rows (rows + 5)] is scratch. Up to LAG_TRIED_TOUCHES all combinations are tried, at most 5^n. P. Loetstedt,
  * SIAM J. Appl. Math. 42 (1982) 281, DOI 10.1137/0142022. Of more, n <= LAG_MOST_TOUCHES, a motion is sought by
- * changes of one mode at a time, the least index first (K. G. Murty, Numer. Math. 24 (1974) 265), then in other orders, none beside
- * it: 1 or 0. */
+ * changes of one mode at a time, the least index first (K. G. Murty, Numer. Math. 24 (1974) 265), then in other orders,
+ * none beside it: 1 or 0. */
 int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const double *pull, double *x, double *room);
 
 /* All forces x + sum c[j] D[j][rows] hold the same accelerations. x := those whose least margin,
