@@ -431,6 +431,8 @@ int lag_all_columns(lag_sim *sim);
 const double *lag_columns_at_start(const lag_sim *sim);
 double lag_parameter_chain(const lag_sim *sim, int i, int j);
 void lag_use_parameters(lag_sim *sim, int j, int k);
+/* Whether the parameters are those of a difference, beside the run's own. */
+int lag_parameters_shifted(const lag_sim *sim);
 int lag_event_by_parameters(lag_sim *sim, int event, double *change);
 int lag_action_by_parameters(lag_sim *sim, int event, double *after, double *change);
 

@@ -36,6 +36,8 @@ void lag_use_parameters(lag_sim *s, int j, int k) {
   s->pb.p = s->p;
 }
 
+int lag_parameters_shifted(const lag_sim *s) { return s->sensitivity && s->p != s->sensitivity->own; }
+
 /* P := the parameters with p[i] = x, and those that follow from it. */
 static void put_parameters(const lag_sim *s, int i, double x, unsigned char *fixed, double *P) {
   const lag_model *m = s->scene->model;

@@ -200,6 +200,10 @@ M
 check "a restitution that follows from a parameter" dot "$TMP/bounce.lag" "" y "g,a,e,y" --method dop853
 sed 's/^event floor:.*/contact floor: y >= 0, restitution = e/' "$TMP/bounce.lag" >"$TMP/contact.lag"
 check "... of a contact" dot "$TMP/contact.lag" "" y "g,a,e,y" --method dop853
+# carts that meet at 2/3 s: v1 = -2 e then, so that the mean of x1 over 2 s changes by -(4/3)^2/2
+elastic() { "$LAGC" run models/collisions.lag --until 2 --method dop853 --gradient 'mean(x1)' --json >"$TMP/out.json" 2>"$TMP/err"; }
+check "a restitution of 1, about which differences go" elastic
+near "... a mean" 1e-9 -0.888888888888889 "$(d 'mean(x1)' e)"
 within() { # the rod's x at 1.9, within a step
   "$LAGC" run $S/rod.lag --gradient 'late = x(1.9)' --json >"$TMP/out.json" && late=$(d late w) && "$LAGC" run $S/rod.lag --gradient x --until 1.9 --json >"$TMP/out.json" && close_to "$(d x w)" "$late" 1e-12
 }
