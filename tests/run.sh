@@ -91,7 +91,7 @@ if [ "$kind" = one ]; then
     *)
       set -- sh "tests/$suite.sh"
       case $suite in
-        */long_*) ;; # cross compilers, users' flags
+        */long_* | bench/*) ;; # cross compilers, users' flags
         *)
           if [ -z "${SLOW:-}" ] || ! deep "tests/$suite.sh"; then
             export LAGC_OPTIMISE="${LAGC_OPTIMISE:--O0}"
