@@ -63,6 +63,7 @@ echo "1..1"
 END
 suite bench/speed <<'END'
 echo "1 parsec"
+echo "optimised by ${LAGC_OPTIMISE:-default}"
 END
 # A program as cmocka makes them: two groups are two plans; skipped tests are called `not ok`.
 : >"$tree/tests/unit/test_groups.c"
@@ -103,6 +104,7 @@ is "all of them" "11 passed, 7 failed, 3 skipped" "$(last)"
 is "with long suites" "12 passed, 7 failed, 3 skipped" "$(last --long)"
 check "the day that chooses rows is printed" says a/good "^rows of DAY=[0-9]"
 check "benches are shown" says --bench "1 parsec"
+check "they measure programs as users get them" says --bench "optimised by default"
 is "only scripts that know BLESS are blessed" "1 passed, 0 failed" "$(last --bless)"
 check "with BLESS set" grep -q blessed "$tree/out/test/log/a/knows_bless.log"
 blessed_in_ci() { (export CI=1 && BUILD=out BIN=bin sh "$tree/tests/run.sh" --bless); }
