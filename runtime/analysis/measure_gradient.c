@@ -44,7 +44,7 @@ typedef struct Seen {
   double t, *y;
 } Seen;
 
-/* What is differentiated: an expression, or, event >= 0, the function of an event. */
+/* A function to differentiate: an expression, or, event >= 0, that of an event. */
 typedef struct Function {
   int node, event;
 } Function;
@@ -230,16 +230,6 @@ static double rate_of(MeasureGradient *g, Function of, double t, const double *y
   return rate;
 }
 
-/* Modes and inputs as before the last event, and back. */
-static void swap_hold(MeasureGradient *g) {
-  lag_sim *s = g->sim;
-  for (int i = 0; i < s->pb.model->nu + s->pb.model->nmodes; i++) {
-    double x = s->hold[i];
-    s->hold[i] = g->hold[i], g->hold[i] = x;
-  }
-  lag_switch_count(s);
-}
-
 /* ---- Rows of weights */
 
 /* The measure changes by factor times the function at t whose slopes are known: a row, behind those up to t. */
@@ -276,14 +266,14 @@ static void put_time(MeasureGradient *g, Function of, double t, const double *y,
 /* ... or of an event; firing number k of a kick has the time t0 + k T. */
 static void put_event_time(MeasureGradient *g, const Seen *e, double factor) {
   Function of = {-1, e->at.event};
-  swap_hold(g);
+  lag_hold_swap(g->sim, g->hold);
   if (g->sim->pb.model->ev[of.event].direction != LAG_KICK) {
     put_time(g, of, e->t, e->y, factor);
   } else {
     find_slopes(g, of, e->t, e->y);
     put_row(g, e->t, factor * e->at.firing);
   }
-  swap_hold(g);
+  lag_hold_swap(g->sim, g->hold);
 }
 
 /* The value at an event: a row behind it is the next number behind its time. */
@@ -291,18 +281,18 @@ static void put_event_value(MeasureGradient *g, const Seen *e, const Seed *x) {
   int n = g->sim->pb.n;
   const double *y = x->at.after ? e->y + n : e->y;
   Function of = {x->node, -1};
-  if (!x->at.after) swap_hold(g);
+  if (!x->at.after) lag_hold_swap(g->sim, g->hold);
   find_slopes(g, of, e->t, y);
   put_row(g, x->at.after ? nextafter(e->t, g->sim->pb.dir * HUGE_VAL) : e->t, x->weight);
   double rate = rate_of(g, of, e->t, y);
-  if (!x->at.after) swap_hold(g);
+  if (!x->at.after) lag_hold_swap(g->sim, g->hold);
   put_event_time(g, e, x->weight * rate);
 }
 
 static int is_same(Happening a, Happening b) { return a.event == b.event && a.firing == b.firing; }
 
-/* What a sum loses as an event comes later: the value before it counts longer, that after it shorter. Where the event
- * ends the run a mean loses its value. */
+/* Rows of a sum, which an event that comes later changes: the value before it counts longer, that after it shorter.
+ * Where the event ends the run a mean loses its value. */
 static void put_jump(MeasureGradient *g, const Seen *e, const Sum *sum) {
   const Track *k = sum->track;
   int squares = k->kind == TRACK_RMS;

@@ -144,7 +144,7 @@ struct lag_sim {
   size_t nwork;
   /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
   double *tangent, *tangent_jump, *tangent_scratch;
-  double *hold_before; /* [nu] of a run with a tangent: hold before the event */
+  double *hold_before; /* [nu + nmodes] of a run with a tangent: hold before the event */
   struct lag_sensitivity *sensitivity;   /* parameter_columns.c; NULL: the tangent is one by starts alone */
   struct lag_record *record;             /* gradient.c; NULL: steps are not kept */
   int tangent_columns, tangent_at_event; /* tangent_at_event: the event at this time is already applied to it */
@@ -275,6 +275,8 @@ int lag_switch_fail_zeno(lag_sim *sim, int k);
 /* Event of a contact that sticks no longer: whether dry friction of a joint, whose slip it holds, takes over enough. */
 int lag_switch_relieve(lag_sim *sim, int event);
 void lag_switch_count(lag_sim *sim);
+/* Exchanges inputs and modes that are held with other[nu + nmodes]. */
+void lag_hold_swap(lag_sim *sim, double *other);
 /* step: counts for the step from `now` to y at t, where the method finds modes. sticks: whether the motion does on
  * surface k. */
 int lag_switch_step(lag_sim *sim, double t);

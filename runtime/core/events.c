@@ -161,7 +161,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
   int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact != NULL),
       moved = memcmp(s->yb, s->now, bytes) != 0;
   int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;
-  if (s->tangent) memcpy(s->hold_before, s->hold, (size_t)m->nu * sizeof *s->hold);
+  if (s->tangent) memcpy(s->hold_before, s->hold, (size_t)(m->nu + m->nmodes) * sizeof *s->hold);
   if (of || moved) {
     char who[128];
     snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);

@@ -71,8 +71,9 @@ static int make_room(lag_sim *s, int k) {
   if (s->tangent && s->tangent_columns == k) return LAG_OK;
   if (s->tangent) lag_tangent_free(s);
   size_t step = s->method->tangent_size(&s->pb, k), projection = lag_tangent_projection_size(&s->pb);
-  size_t scratch = step > projection ? step : projection, nu = (size_t)s->scene->model->nu;
-  s->tangent = calloc(size + jump_size(s, k) + scratch + nu + 1, sizeof *s->tangent);
+  const lag_model *m = s->scene->model;
+  size_t scratch = step > projection ? step : projection, held = (size_t)(m->nu + m->nmodes);
+  s->tangent = calloc(size + jump_size(s, k) + scratch + held + 1, sizeof *s->tangent);
   if (!s->tangent) return lag_fail(s, LAG_ENOMEM, "out of memory");
   s->tangent_jump = s->tangent + size;
   s->tangent_scratch = s->tangent_jump + jump_size(s, k);
@@ -176,20 +177,13 @@ int lag_tangent_pass(lag_sim *s) {
   return rc || !s->record ? rc : lag_record_cut(s);
 }
 
-static void swap_hold(lag_sim *s) {
-  for (int i = 0; i < s->pb.model->nu; i++) {
-    double x = s->hold[i];
-    s->hold[i] = s->hold_before[i], s->hold_before[i] = x;
-  }
-}
-
 /* With the contacts that were closed during the step. */
 int lag_tangent_carry(lag_sim *s) {
   if (!s->tangent) return LAG_OK;
   int within = s->run->have_step != 0.0 && s->run->t != s->run->step_t0 && !s->tangent_at_event;
-  swap_hold(s);
+  lag_hold_swap(s, s->hold_before);
   int rc = within ? advance_tangent(s, s->run->t, s->tangent) : LAG_OK;
-  swap_hold(s);
+  lag_hold_swap(s, s->hold_before);
   s->tangent_at_event = 1;
   return rc;
 }

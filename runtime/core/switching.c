@@ -115,6 +115,14 @@ void lag_switch_count(lag_sim *s) {
     if (slides(s, k)) s->pb.sliding[s->pb.nslide++] = k;
 }
 
+void lag_hold_swap(lag_sim *s, double *other) {
+  for (int i = 0; i < s->pb.model->nu + s->pb.model->nmodes; i++) {
+    double x = s->hold[i];
+    s->hold[i] = other[i], other[i] = x;
+  }
+  lag_switch_count(s);
+}
+
 void lag_switch_hold(lag_sim *s, int k, double m) {
   *mode(s, k) = m;
   lag_switch_count(s);

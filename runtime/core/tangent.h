@@ -1,9 +1,9 @@
-/* What flow_tangent.c and saltation.c share: the tangent of a run at events. */
+/* The tangent of a run at events: for flow_tangent.c and saltation.c. */
 #pragma once
 
 #include "core/core.h"
 
-/* What is known where an event is met: f and f+, a state, the gradient of the event function and its rate along f,
+/* Values where an event is met: f and f+, a state, the gradient of the event function and its rate along f,
  * event functions, the function's change by the parameter of each column. */
 typedef struct Corner {
   double *before, *after, *there, *gradient, *g, *by;
