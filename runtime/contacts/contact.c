@@ -263,7 +263,7 @@ static int find_touching(ContactSet *w, const char *who, int event) {
 
 /* Differences by a parameter may lead a little beyond 0 or 1. */
 static int check_restitution(lag_sim *s, int i, double e) {
-  if (lag_parameters_shifted(s)) return LAG_OK;
+  if (s->parameters_shifted) return LAG_OK;
   if (!isnan(e) && !(e >= -no_speed && e <= 1 + no_speed))
     return lag_fail(s, LAG_EINVAL, "the contact %s has a restitution of %.3g, which must be between 0 and 1",
                     constraint_of(s, i)->name, e);

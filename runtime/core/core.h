@@ -147,6 +147,7 @@ struct lag_sim {
   double *hold_before; /* [nu + nmodes] of a run with a tangent: hold before the event */
   struct lag_sensitivity *sensitivity;   /* parameter_columns.c; NULL: the tangent is one by starts alone */
   struct lag_record *record;             /* gradient.c; NULL: steps are not kept */
+  int parameters_shifted; /* the parameters are those of a difference, beside the run's own */
   int tangent_columns, tangent_at_event; /* tangent_at_event: the event at this time is already applied to it */
   /* switches met at this time; whether that time depends on the state; whether the last one is only touched */
   int tangent_meets, tangent_moves, tangent_touches;
@@ -433,8 +434,6 @@ int lag_all_columns(lag_sim *sim);
 const double *lag_columns_at_start(const lag_sim *sim);
 double lag_parameter_chain(const lag_sim *sim, int i, int j);
 void lag_use_parameters(lag_sim *sim, int j, int k);
-/* Whether the parameters are those of a difference, beside the run's own. */
-int lag_parameters_shifted(const lag_sim *sim);
 int lag_event_by_parameters(lag_sim *sim, int event, double *change);
 int lag_action_by_parameters(lag_sim *sim, int event, double *after, double *change);
 

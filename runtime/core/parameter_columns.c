@@ -34,9 +34,8 @@ void lag_use_parameters(lag_sim *s, int j, int k) {
   const struct lag_sensitivity *w = s->sensitivity;
   s->p = k ? w->shifted + (lag_shifted_parameters(&s->pb, &w->by, j, k) - w->shifted) : w->own;
   s->pb.p = s->p;
+  s->parameters_shifted = k != 0;
 }
-
-int lag_parameters_shifted(const lag_sim *s) { return s->sensitivity && s->p != s->sensitivity->own; }
 
 /* P := the parameters with p[i] = x, and those that follow from it. */
 static void put_parameters(const lag_sim *s, int i, double x, unsigned char *fixed, double *P) {
