@@ -149,7 +149,8 @@ ifneq ($(CLANG),)
 	  with="-Isrc -I$(BUILD)/fuzz/gen $(BUILD)/fuzz/liblagc.a $(LAGC_LIBS)"; \
 	  [ $$f != fuzz_load ] || with="-DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION -Iruntime/include -Iruntime $(LOAD_SRC) $(BUILD)/fuzz/liblag.a"; \
 	  $(CLANG) -std=c11 $(CPPFLAGS_ALL) -O1 -g $(SAN_ALL) -fsanitize=fuzzer -o $(BUILD)/fuzz/$$f tests/fuzz/$$f.c $$with -lm; \
-	  $(BUILD)/fuzz/$$f -max_total_time=$(SECONDS) -max_len=4096 -print_final_stats=1 -artifact_prefix=$(BUILD)/fuzz/ $$found $$corpus; \
+	  case $$f in fuzz_parse|fuzz_compile) words=-dict=tests/fuzz/lag.dict ;; *) words= ;; esac; \
+	  $(BUILD)/fuzz/$$f -max_total_time=$(SECONDS) -max_len=4096 -print_final_stats=1 -artifact_prefix=$(BUILD)/fuzz/ $$words $$found $$corpus; \
 	done
 else
 	$(SAN_MAKE) $(SAN_LAGC)

@@ -2,22 +2,21 @@
  * is to end, and why.
  *
  * 1. Sliding: where a force jumps with the velocities, as dry friction does, and both sides lead back to the place,
- *   the motion stays there
- * (Filippov's sliding mode); steps of any size would go back and forth for ever. Across a sign change of a switching
- * function the derivative is taken on both sides of the surface; of a function that is nowhere negative, as |v|, at
- * both ends of a step that leads past its zero. Equal steps may stay on one side with stages on both: by rk4 a body
- * that sticks would creep for ever.
+ *   the motion stays there (Filippov's sliding mode); steps of any size would go back and forth for ever. Across a
+ *   sign change of a switching function the derivative is taken on both sides of the surface; of a function that is
+ *   nowhere negative, as |v|, at both ends of a step that leads past its zero. Equal steps may stay on one side with
+ *   stages on both: by rk4 a body that sticks would creep for ever.
  * 2. Shrinking steps: near a position where constraints become dependent, with independence s, accelerations have an
- *   error of eps/s^2; a
- * tolerance below that makes steps shrink in front of it, accepted one by one, for ever. So do places where a
- * constraint or a force jumps with the position. Criterion: MOST steps advanced the time by less than 1e-5 of the
- * run so far, at less than 1e-2 of its mean pace (a fast event, as a stiff spring that is struck, takes some hundred
- * steps); and there is a cause, nearly dependent constraints or a model that jumps. The same of 1000 restarts, by
- * events, contacts, impacts and switches, whatever the cause: these would go on for ever.
+ *   error of eps/s^2, and where the mass matrix is almost singular, of eps times its condition; a tolerance below that
+ *   makes steps shrink in front of it, accepted one by one, for ever. So do places where a constraint or a force jumps
+ *   with the position. Criterion: MOST steps advanced the time by less than 1e-5 of the run so far, at less than 1e-2
+ *   of its mean pace (a fast event, as a stiff spring that is struck, takes some hundred steps); and there is one of
+ *   these causes. The same of 1000 restarts, by events, contacts, impacts and switches, whatever the cause: these
+ *   would go on for ever.
  * 3. Equal steps longer than half a period: an implicit method keeps the energy of such an oscillation, and nothing
- *   else of it. The square of
- * the frequency is estimated along a step as -(change of acceleration).(change of position)/|change of position|^2.
- * It does not end the run; the report mentions it. */
+ *   else of it. The square of the frequency is estimated along a step as -(change of acceleration).(change of
+ *   position)/|change of position|^2. It does not end the run; the report mentions it. */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -144,11 +143,17 @@ LAG_RARE int check_pace(lag_sim *s, double t) {
   Run *r = s->run;
   lag_problem *pb = &s->pb;
   double led;
-  int k = -1;
+  int k = -1, which;
   char line[32];
   if (!crawls(s, &r->stall_since, t, MOST, r->steps, &led) || lag_equal_step(s) > 0) return 0;
   if (s->method->flags & LAG_METHOD_IMPULSES) return 0; /* its steps have a least size */
   double apart = pb->model->constraints ? lag_independence(pb, t, s->y, &k) : 1;
+  if (!(pb->model->flags & LAG_FIRST_ORDER) &&
+      lag_mass_condition(pb, t, s->y, &which) > lag_sim_tolerance(s) / DBL_EPSILON)
+    return lag_note(pb, LAG_ESTEP, t,
+                    "the last %d steps advanced the time by only %.3g s: accelerations have fewer digits here than the "
+                    "tolerance asks for; take other coordinates, or a larger tolerance",
+                    MOST, led);
   if ((k < 0 || apart > dependent) && lag_facts(pb) & LAG_SMOOTH) return 0;
   int at = hangs_at(s, t, led);
   if (at >= 0) return say_switch(s, at, t);

@@ -297,14 +297,30 @@ static int panels_of(const Table *t, const PlottedCurves *d, const Column *first
   return n;
 }
 
-/* s[n] := "x, y" of the drawn columns of a panel, without the runs' labels, as far as there is room. */
+/* s[n] := the name of a column without its run's label, and without the index of a member. Returns whether it had an
+ * index. */
+static int family_of(const Column *c, char *s, size_t n) {
+  int length = c->plain > 0 ? c->plain : (int)strlen(c->name), open = (int)strcspn(c->name, "["),
+      shut = open + (int)strcspn(c->name + open, "]"), indexed = shut < length;
+  if (indexed) snprintf(s, n, "%.*s%.*s", open, c->name, length - shut - 1, c->name + shut + 1);
+  else snprintf(s, n, "%.*s", length, c->name);
+  return indexed;
+}
+
+/* s[n] := "x, y" of the drawn columns of a panel, without the runs' labels, as far as there is room; members of one
+ * family, as u[1], u[2], are "u". */
 static const char *names_of(const Table *t, const PlottedCurves *d, const Column *panel, char *s, size_t n) {
-  size_t at = 0;
-  for (int i = 0; i < d->n && at + sizeof t->cols->name + 3 < n; i += d->runs > 0 ? d->runs : 1) {
+  char family[sizeof t->cols->name], last[sizeof t->cols->name] = "";
+  size_t at = 0, before = 0;
+  for (int i = 0; i < d->n && at + sizeof family + 3 < n; i += d->runs > 0 ? d->runs : 1) {
     const Column *c = &t->cols[d->y[i]];
     if (!in_panel(c, panel)) continue;
-    int length = c->plain > 0 ? c->plain : (int)strlen(c->name);
-    at += (size_t)snprintf(s + at, n - at, "%s%.*s", at ? ", " : "", length, c->name);
+    int indexed = family_of(c, family, sizeof family), again = indexed && strcmp(family, last) == 0;
+    if (again) at = before;
+    before = at;
+    at += (size_t)snprintf(s + at, n - at, "%s%.*s", at ? ", " : "", c->plain > 0 ? c->plain : (int)strlen(c->name),
+                           again ? family : c->name);
+    snprintf(last, sizeof last, "%s", indexed ? family : "");
   }
   return s;
 }

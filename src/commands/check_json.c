@@ -83,7 +83,8 @@ void check_json_symmetries(Compiler *c, const Eqns *e, Name effect) {
 
 void check_json_expects(Compiler *c, const ExpectResults *all) {
   static const char *const verdicts[] = {"proved", "refuted", "agrees in numbers", "not decided"};
-  for (const ExpectResult *x = all->at; x < all->at + all->n; x++) {
+  for (uint32_t i = 0; i < all->n; i++) {
+    const ExpectResult *x = &all->at[i];
     StrBuf *out = begin(c, JSON_EXPECTS);
     sb_puts(out, "{\"name\": ");
     sb_json(out, x->label);

@@ -265,4 +265,6 @@ is "has no two labels alike" "" "$(labels)"
 check "and says what they begin with" grep -q '>1[0-9.]* +<' "$TMP/still.svg"
 "$LAGC" plot models/toda.lag --until 1 -o "$TMP/toda.svg" >"$TMP/said" 2>&1
 check "without units a family has a panel of its own, without sums that are larger by orders" grep -q '>I1, I2, I3, I4, energy<' "$TMP/toda.svg"
+"$LAGC" plot models/fput.lag recurrence --until 10 -o "$TMP/fput.svg" --quiet >"$TMP/out" 2>&1
+check "an axis of several members has the name of their family" grep -q 'class="l">mode</text>' "$TMP/fput.svg"
 tap_end

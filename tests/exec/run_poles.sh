@@ -46,4 +46,20 @@ for quiet in "$model --until 0.5" "models/lagrange_top.lag" "models/double_pendu
   check "says nothing of it: $quiet" sh -c "'$LAGC' run $quiet 2>&1 | grep -q '^energy drift' && ! '$LAGC' run $quiet 2>&1 | grep -q '^accuracy:'"
 done
 check "nor by steps of equal size, of which no tolerance is asked" sh -c "! '$LAGC' run $model --method rk4 --step 0.01 2>&1 | grep -q '^accuracy:'"
+
+# Light-cone coordinates of a free particle: x = u cosh(v), y = u sinh(v) has no v on |y| = |x|. u^2 = x^2 - y^2 is
+# (1 - t)^2 - (t/10)^2 along the straight line, 0 at t = 10/11.
+cat >"$TMP/cone.lag" <<'END'
+model cone
+coord u, v
+let x = u*cosh(v)
+let y = u*sinh(v)
+kinetic = (x'^2 + y'^2)/2
+scene s { start u = 1, v = 0.3, u' = -1, v' = 0.1; span 2 }
+END
+for method in dop853 rk45 taylor radau; do
+  "$LAGC" run "$TMP/cone.lag" --method $method >"$TMP/out" 2>&1
+  check "$method does not creep for ever towards the edge of coordinates" sh -c "grep -q '^FAILED: at t = 0.9090[89].*accelerations have fewer digits here than the tolerance asks for.*by the inertia of v' '$TMP/out' &&
+    [ \"\$(sed -n 's/^steps \([0-9]*\),.*/\1/p' '$TMP/out')\" -lt 30000 ]"
+done
 tap_end

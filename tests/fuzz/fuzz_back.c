@@ -90,8 +90,8 @@ static void put_lagrangian(Choices *c) {
   }
   if (c->vector) put(c, "k/2*dot(r', r') + ");
   if (c->family) {
-    put(c, choose(c, 4) ? "sum(i in 1..N, m[i]/2*u[i]'^2) - sum(i in 1..N, "
-                        : "sum(i in 1..N, sum(j in 1..i, u[j]')^2/2) - sum(i in 1..N, ");
+    put(c, choose(c, 4) || c->family >= LARGE ? "sum(i in 1..N, m[i]/2*u[i]'^2) - sum(i in 1..N, "
+                                              : "sum(i in 1..N, sum(j in 1..i, u[j]')^2/2) - sum(i in 1..N, ");
     const char *pair = pairs[choose(c, 3)];
     if (*pair) sb_printf(&c->out, "sum(%s, %s*", pair, choose(c, 2) ? "m[j]" : "(u[i] - u[j])^2");
     put_expr(c, *pair && choose(c, 2) ? "j" : "i", 2);
@@ -130,8 +130,8 @@ static const char *model_text(Arena *a, const uint8_t *data, size_t size) {
   c.n = choose(&c, MOST_COORDS + 1);
   c.state = (kinds & 6) == 6;
   c.vector = (kinds & 8) == 8;
-  if (kinds & 1) c.family = choose(&c, 3) ? 2 + choose(&c, 9) : LARGE + choose(&c, 9);
-  if (c.family >= LARGE) c.n = c.vector = 0; /* M is diagonal: pairs become loops */
+  if (kinds & 1) c.family = choose(&c, 15) ? 2 + choose(&c, 9) : LARGE + choose(&c, 9); /* LARGE takes seconds */
+  if (c.family >= LARGE) c.n = c.vector = 0; /* with a diagonal M, where pairs become loops */
   if (!c.n && !c.family && !c.vector) c.n = 1;
   put(&c, "model fuzzed\nparam k = 1.5 > 0, l = 0.7\n");
   for (unsigned i = 0; i < c.n; i++) sb_printf(&c.out, "coord %s%s\n", coords[i], choose(&c, 4) ? "" : " periodic");
