@@ -41,7 +41,8 @@ static const CommandRow commands[] = {
      "print the equations of motion",
      "Prints the equations of motion: momenta, M q'' = f, energy, and the operation count; with --hamiltonian, "
      "momenta, H(q, p) and "
-     "Hamilton's equations. The mass matrix is inverted in closed form if it has blocks of up to three coordinates "
+     "Hamilton's equations. Equations of five or more members of a family that differ by their index become one, "
+     "`for i in 1..9`. The mass matrix is inverted in closed form if it has blocks of up to three coordinates "
      "with short results. "
      "--lagrangian goes back from a model that gives its Hamiltonian, and says where the velocities determine the "
      "momenta. "

@@ -2,6 +2,7 @@
 #include "report/listing_text.h"
 
 #include "model/printed_text.h"
+#include "report/family_rows.h"
 #include "symmetry/charges.h"
 
 int text_latex(const Text *t) { return t->style == PRINT_LATEX; }
@@ -12,9 +13,15 @@ static void text_put(Text *t, const char *text, const char *in_latex) {
 void text_heading(Text *t, const char *title) {
   if (text_latex(t)) sb_printf(t->out, "\n%% %s\n\\begin{align*}\n", title);
   else sb_printf(t->out, "\n%s\n", title);
+  t->block = t->out->n;
 }
 
-void text_end(Text *t) { text_put(t, "", "\\end{align*}\n"); }
+void text_end(Text *t) {
+  const char *rows = family_rows(t->e->m->arena, sb_text(t->out) + t->block, t->style);
+  t->out->n = t->block;
+  sb_puts(t->out, rows);
+  text_put(t, "", "\\end{align*}\n");
+}
 
 void text_expr(Text *t, Expr e) {
   const double longest = 1e5, most_repeated = 8;

@@ -9,6 +9,7 @@ typedef struct {
   ExprGraph *g;
   PrintStyle style;
   StrBuf *out;
+  size_t block; /* where the lines of the last heading begin */
 } Text;
 
 int text_latex(const Text *t);
@@ -25,7 +26,7 @@ void text_constraints(Text *t);
 /* For each declared symmetry: F if there is one, the charge, and its balance if it is not conserved. */
 void text_charges(Text *t);
 
-/* A block of equations, from its heading to its end. */
+/* A block of equations, from its heading to its end, where equations of a family's members become one. */
 void text_heading(Text *t, const char *title);
 void text_end(Text *t);
 

@@ -153,6 +153,24 @@ static void term(Printer *p, Expr e, Num c) {
   if (latex(p)) text(p, "}");
 }
 
+/* Terms of a quantified sum, of the opposite signs if `minus`, behind others unless `leads`. */
+static void cell_terms(Printer *p, Expr e, int minus, int leads) {
+  SumTerms terms = expr_sum_terms(p->g, e);
+  for (uint32_t k = 0; k < terms.n; k++) {
+    const SumTerm *t = &terms.at[k];
+    int first = leads && !k, negative = t->minus != minus;
+    text(p, negative ? (first ? "-" : " - ") : first ? "" : " + ");
+    for (int n = 0; n < 2; n++)
+      if (t->index[n])
+        text(p, arena_printf(p->g->arena, by_style(p, "sum(%s in %s..%s, ", "\\sum_{%s=%s}^{%s} "), t->index[n],
+                             t->from[n], t->to[n]));
+    node(p, t->body, latex(p) || !t->index[0] ? PREC_PROD : PREC_OR);
+    for (int n = 0; n < 2; n++)
+      if (t->index[n]) text(p, by_style(p, ")", ""));
+  }
+  if (!terms.n && leads) text(p, "0");
+}
+
 static void sum(Printer *p, Expr e) {
   ExprGraph *g = p->g;
   uint32_t n = expr_pairs(g, e, EX_SUM), lead = 0;
@@ -162,6 +180,10 @@ static void sum(Printer *p, Expr e) {
   if (lead == n) lead = 0;
   for (uint32_t i = 0; i < n; i++) {
     Expr t = expr_pair(g, e, EX_SUM, i == 0 ? lead : i <= lead ? i - 1 : i, &c);
+    if (expr_op(g, t) == EX_CELL && num_is_one(num_abs(c))) {
+      cell_terms(p, t, num_sign(c) < 0, !i);
+      continue;
+    }
     if (i) text(p, num_sign(c) < 0 ? " - " : " + ");
     else if (num_sign(c) < 0) text(p, "-");
     if (expr_op(g, t) == EX_NUM) text(p, num_text(p, num_abs(num_mul(c, expr_number(g, t)))));
@@ -216,22 +238,6 @@ static const char *named(Printer *p, Name name) {
   return sb_text(&b);
 }
 
-static void print_cell(Printer *p, Expr e) {
-  SumTerms terms = expr_sum_terms(p->g, e);
-  for (uint32_t k = 0; k < terms.n; k++) {
-    const SumTerm *t = &terms.at[k];
-    text(p, t->minus ? (k ? " - " : "-") : k ? " + " : "");
-    for (int n = 0; n < 2; n++)
-      if (t->index[n])
-        text(p, arena_printf(p->g->arena, by_style(p, "sum(%s in %s..%s, ", "\\sum_{%s=%s}^{%s} "), t->index[n],
-                             t->from[n], t->to[n]));
-    node(p, t->body, latex(p) || !t->index[0] ? PREC_PROD : PREC_OR);
-    for (int n = 0; n < 2; n++)
-      if (t->index[n]) text(p, by_style(p, ")", ""));
-  }
-  if (!terms.n) text(p, "0");
-}
-
 static Prec prec_of_cell(const Printer *p, Expr e) {
   SumTerms terms = expr_sum_terms(p->g, e);
   return terms.n > 1 || (terms.n && terms.at[0].minus) ? PREC_SUM : latex(p) ? PREC_PROD : PREC_ATOM;
@@ -270,7 +276,7 @@ static void expand(Printer *p, Expr e) {
     case EX_SUM: sum(p, e); return;
     case EX_PROD: term(p, e, num_int(1)); return;
     case EX_NEST: return;
-    case EX_CELL: print_cell(p, e); return;
+    case EX_CELL: cell_terms(p, e, 0, 1); return;
     case EX_POW:
       node(p, expr_arg(g, e, 0), PREC_ATOM);
       text(p, by_style(p, "^", "^{"));
@@ -356,11 +362,13 @@ static void latex_plain(Name name, StrBuf *out) {
   if (primes) sb_putc(out, '}');
   size_t sub = stem;
   if (sub < end && (s[sub] == '_' || s[sub] == '[')) sub++;
-  size_t sub_end = end > sub && s[end - 1] == ']' ? end - 1 : end;
+  size_t sub_end = end > sub && s[end - 1] == ']' ? end - 1 : end, index = sub; /* of d_stretch[3]: a subscript's own */
+  while (index < sub_end && s[index] != '[') index++;
   if (sub_end > sub || dot) {
     sb_puts(out, "_{");
     if (sub_end > sub && s[sub] >= '0' && s[sub] <= '9') sb_putn(out, s + sub, sub_end - sub);
-    else if (sub_end > sub) latex_stem(out, s + sub, sub_end - sub);
+    else if (sub_end > sub) latex_stem(out, s + sub, index - sub);
+    if (index + 1 < sub_end) sb_printf(out, "_{%.*s}", (int)(sub_end - index - 1), s + index + 1);
     if (dot) sb_printf(out, "%s\\mathrm{%.*s}", sub_end > sub ? "," : "", (int)(dot - name), name);
     sb_putc(out, '}');
   }

@@ -1,0 +1,53 @@
+#!/bin/sh
+# lagc derive of families: equations of members as one with an index, sums with their signs, indices of LaTeX; judged by the potential as Python has it.
+. tests/tap.sh
+
+model() { # NAME N POTENTIAL [COORD]
+  printf 'model %s\nconst N = %s\ncoord u[N%s]\nparam k = 2, c = 3\nobserve used = k + c\n%s\n' "$1" "$2" "${4:+,N}" "$3" >"$TMP/$1.lag"
+}
+kinetic="kinetic = sum(i in 1..N, u[i]'^2/2)"
+both='sum(i in 1..N, sum(j in 1..i-1,'
+model springs 200 "$kinetic
+potential = $both k*(u[i] - u[j])^2/2)) - sum(i in 1..N, c*u[i]^4/4)"
+model sines 400 "$kinetic
+potential = $both k*sin(u[i] - u[j])))"
+model skew 300 "$kinetic
+potential = $both k*(u[i]^2*u[j] - 2*u[j]^3*u[i])))"
+model string 12 "let r[i in 0..N] = if(i < N, u[i+1], 0) - if(i > 0, u[i], 0)
+$kinetic
+potential = sum(i in 0..N, k/2*r[i]^2 + c/4*r[i]^4)"
+model tied 10 "param w[N] = 1
+$kinetic
+potential = sum(i in 1..5, k/2*(u[i] - w[i])^2) + sum(i in 6..N, k/2*(u[i] - w[5])^2)"
+model net 9 "kinetic = sum(i in 1..N, sum(j in 1..N, u[i,j]'^2/2))
+potential = sum(i in 1..N-1, sum(j in 1..N, k/2*(u[i+1,j] - u[i,j])^2 + c/3*(u[j,i+1] - u[j,i])^3))" pairs
+if command -v python3 >/dev/null; then
+  # NAME MEMBERS LINES: rounding of sums of up to 400 terms
+  while read -r name n lines; do
+    "$LAGC" derive "$TMP/$name.lag" >"$TMP/$name.txt"
+    size=$(sed -n 's/^const N = //p' "$TMP/$name.lag")
+    python3 tests/exec/listing.py "$name" "$size" <"$TMP/$name.txt" >"$TMP/judged" 2>&1
+    read -r members difference <"$TMP/judged"
+    check "each member's force in $name" sh -c "cat '$TMP/judged'; [ '$members' = $n ] && awk 'BEGIN { exit !($difference < 1e-12) }'"
+    [ "$lines" = - ] || is "lines of it" "$lines" "$(sed -n "/^equations of motion/,/^\$/p" "$TMP/$name.txt" | grep -c "'' = ")"
+  done <<'END'
+springs 200 3
+sines 400 3
+skew 300 3
+string 12 2
+tied 10 2
+net 81 -
+END
+else
+  skip "forces of members" "no python3"
+fi
+"$LAGC" derive models/string.lag --format latex >"$TMP/string.tex"
+check "in LaTeX" grep -q -F 'm \ddot{u}_{i} &= d_{\mathrm{stretch}_{i - 1}} - d_{\mathrm{stretch}_{i}} \quad (i = 2, \dots, 10)' "$TMP/string.tex"
+"$LAGC" derive models/string.lag >"$TMP/wall.txt"
+check "downwards, too" grep -q -F '  d_stretch[i] = -b*stretch[i]^3 - k*stretch[i]  for i in 1..10' "$TMP/wall.txt"
+check "the letter is no name of the line" sh -c "sed 's/, c = 3/, n = 3/; s/k + c/k + n/; s/c\*u/n*u/' '$TMP/springs.lag' >'$TMP/named.lag'; '$LAGC' derive '$TMP/named.lag' | grep -q \"^  u\[m\]'' = n\*u\[m\]^3 - sum(i in m + 1\.\.200, .* for m in 2\.\.199$\""
+"$LAGC" derive models/chain.lag -D N=4 >"$TMP/four.txt" 2>&1
+check "four members keep their rows" grep -q '^  p_th\[3\] = ' "$TMP/four.txt"
+printf "model third\ncoord x\nkinetic = x'^2/2\npotential = x/3\n" >"$TMP/third.lag"
+check "the sign of a fraction in LaTeX" sh -c "'$LAGC' derive '$TMP/third.lag' --format latex | grep -q -F '  \\ddot{x} &= -\\frac{1}{3}'"
+tap_end
