@@ -1,5 +1,6 @@
-/* Equations of a family's members, written as one with an index: lines that differ in numbers only, each of which is
- * the same, or one more or less, in the next line. Enters: lines as printed; leaves: fewer. */
+/* Equations of a family's members, written as one with an index, and terms of a sum likewise: texts that differ in
+ * numbers only, each of which is the same, or one more or less, in the next. Enters: lines as printed; leaves: fewer.
+ */
 #include "report/family_rows.h"
 
 #include <ctype.h>
@@ -96,25 +97,39 @@ static char letter_for(const char *line) {
   return *letters ? *letters : '_';
 }
 
-/* The rows at 0, period, ... as one, over the first number that moves, upwards. */
-static void put_rows(StrBuf *out, const Row *r, uint32_t count, uint32_t period, char letter, long *step,
-                     PrintStyle style) {
-  const Row *end = r + (count - 1) * period;
+/* Rows that become one with an index: `from` with step of each number. */
+typedef struct {
+  const Row *from, *last; /* where the index is the least; the last row as printed */
+  const long *step;
+  uint32_t first; /* the number that is the index */
+  long begin, end;
+  char letter;
+  PrintStyle style;
+} Family;
+
+static Family family_of(const Row *r, uint32_t count, uint32_t period, char letter, long *step, PrintStyle style) {
+  const Row *last = r + (count - 1) * period;
   uint32_t first = 0;
   follows(r, r + period, step);
   while (step[first] == 0) first++;
-  const Row *from = step[first] > 0 ? r : end;
+  const Row *from = step[first] > 0 ? r : last;
   long begin = from->number[first];
+  return (Family){from, last, step, first, begin, begin + (long)count - 1, letter, style};
+}
+
+static const char *family_text(Arena *a, const Family *f) {
+  const Row *r = f->from;
+  StrBuf out = strbuf(a);
   for (uint32_t k = 0; k < r->n; k++) {
-    long here = from->number[k], more = here - begin;
-    sb_puts(out, r->text[k]);
-    if (step[k] == 0) sb_printf(out, "%ld", here);
-    else if (step[k] != step[first]) sb_printf(out, "%ld - %c", here + begin, letter);
-    else if (more == 0) sb_putc(out, letter);
-    else sb_printf(out, "%c %c %ld", letter, more < 0 ? '-' : '+', labs(more));
+    long here = r->number[k], more = here - f->begin;
+    sb_puts(&out, r->text[k]);
+    if (f->step[k] == 0) sb_printf(&out, "%ld", here);
+    else if (f->step[k] != f->step[f->first]) sb_printf(&out, "%ld - %c", here + f->begin, f->letter);
+    else if (more == 0) sb_putc(&out, f->letter);
+    else sb_printf(&out, "%c %c %ld", f->letter, more < 0 ? '-' : '+', labs(more));
   }
-  sb_printf(out, style == PRINT_LATEX ? "%s \\quad (%c = %ld, \\dots, %ld)%s\n" : "%s  for %c in %ld..%ld%s\n",
-            r->text[r->n], letter, begin, begin + (long)count - 1, end->line_break);
+  sb_puts(&out, r->text[r->n]);
+  return sb_text(&out);
 }
 
 /* The period whose rows become the fewest; *count := its repeats; 0: none. */
@@ -129,28 +144,159 @@ static uint32_t period_at(const Row *row, uint32_t n, long *step, uint32_t *coun
   return best;
 }
 
-const char *family_rows(Arena *a, const char *lines, PrintStyle style) {
-  StrBuf out = strbuf(a);
-  VEC(const char *) line = {0};
-  for (const char *s = lines, *end; *s; s = *end ? end + 1 : end) {
-    end = s + strcspn(s, "\n");
-    vec_push(a, &line, arena_strndup(a, s, (size_t)(end - s)));
-  }
-  Row *row = ARENA_ARRAY(a, Row, line.n + 1);
+typedef VEC(const char *) Texts;
+
+/* The texts of `from`, with those of a family as one, which `put` writes. */
+static Texts fold(Arena *a, Texts from, PrintStyle style, void (*put)(StrBuf *, const Family *)) {
+  Texts to = {0};
+  Row *row = ARENA_ARRAY(a, Row, from.n + 1);
   uint32_t longest = 0;
-  for (uint32_t k = 0; k < line.n; k++) {
-    row[k] = row_of(a, line.at[k], style);
+  for (uint32_t k = 0; k < from.n; k++) {
+    row[k] = row_of(a, from.at[k], style);
     longest = row[k].n > longest ? row[k].n : longest;
   }
   long *step = ARENA_ARRAY(a, long, 2 * (size_t)longest + 1);
-  for (uint32_t k = 0; k < line.n;) {
-    uint32_t count = 0, period = period_at(row + k, line.n - k, step, &count);
+  for (uint32_t k = 0; k < from.n;) {
+    uint32_t count = 0, period = period_at(row + k, from.n - k, step, &count);
     for (uint32_t q = 0; q < period; q++) {
-      char letter = letter_for(line.at[k + q]);
-      put_rows(&out, row + k + q, count, period, letter, step, style);
+      StrBuf out = strbuf(a);
+      Family f = family_of(row + k + q, count, period, letter_for(from.at[k + q]), step, style);
+      put(&out, &f);
+      vec_push(a, &to, sb_text(&out));
     }
-    if (!period) sb_printf(&out, "%s\n", line.at[k]);
+    if (!period) vec_push(a, &to, from.at[k]);
     k += period ? period * count : 1;
   }
+  return to;
+}
+
+/* ---- Terms of one line */
+
+/* The end of the term at s: before " + " or " - " outside of brackets, or the line's. */
+static const char *end_of_term(const char *s, PrintStyle style) {
+  int depth = 0;
+  for (; *s; s++) {
+    if (strchr("([{", *s)) depth++;
+    if (strchr(")]}", *s)) depth--;
+    if (depth == 0 && s[0] == ' ' && (s[1] == '+' || s[1] == '-') && s[2] == ' ') return s;
+    if (style == PRINT_LATEX && strncmp(s, " \\\\", 3) == 0) return s;
+  }
+  return s;
+}
+
+/* A sum over the index, with its sign. */
+static void put_sum(StrBuf *out, const Family *f) {
+  const char *body = family_text(out->arena, f);
+  sb_printf(out, f->style == PRINT_LATEX ? "%.2s\\sum_{%c=%ld}^{%ld} %s" : "%.2ssum(%c in %ld..%ld, %s)", body,
+            f->letter, f->begin, f->end, body + 2);
+}
+
+/* "b - a" is printed for "-a + b": a first term goes before the family that it belongs to. */
+static void put_first_term_back(Arena *a, Texts *terms, PrintStyle style) {
+  if (terms->n < FEWEST) return;
+  Row first = row_of(a, terms->at[0], style), here = row_of(a, terms->at[1], style);
+  long *step = ARENA_ARRAY(a, long, 2 * (size_t)first.n + 1), *next = step + first.n;
+  if (follows(&first, &here, step)) return;
+  for (uint32_t k = 2; k < terms->n; k++) {
+    const char *text = terms->at[0];
+    Row before = here;
+    here = row_of(a, terms->at[k], style);
+    if (before.n != first.n || !follows(&before, &here, next) || !follows(&first, &before, step) ||
+        memcmp(step, next, first.n * sizeof *step) != 0)
+      continue;
+    memmove(terms->at, terms->at + 1, (k - 2) * sizeof text);
+    terms->at[k - 2] = text;
+    return;
+  }
+}
+
+static const char *family_sum(Arena *a, const char *text, PrintStyle style);
+
+/* Whether the text is sum(...) and nothing else, which needs no brackets. */
+static int is_one_sum(const char *text) {
+  int depth = 0;
+  if (strncmp(text, "sum(", 4) != 0) return 0;
+  for (text += 3; *text; text++) {
+    depth += *text == '(' ? 1 : *text == ')' ? -1 : 0;
+    if (depth == 0) return text[1] == '\0';
+  }
+  return 0;
+}
+
+/* The term with sums in its brackets likewise. */
+static const char *family_brackets(Arena *a, const char *term, PrintStyle style) {
+  StrBuf out = strbuf(a);
+  for (const char *s = term; *s;) {
+    sb_putc(&out, *s);
+    if (*s++ != '(' && (style != PRINT_LATEX || s[-1] != '{')) continue;
+    const char *end = s;
+    for (int depth = 1; *end; end++) {
+      depth += strchr("([{", *end) ? 1 : strchr(")]}", *end) ? -1 : 0;
+      if (depth == 0) break;
+    }
+    if (style == PRINT_LATEX && end - s >= 6 && strncmp(end - 6, "\\right", 6) == 0) end -= 6;
+    const char *inner = family_sum(a, arena_strndup(a, s, (size_t)(end - s)), style);
+    int bare = is_one_sum(inner) && *end == ')' && (s - term < 2 || !isalnum((unsigned char)s[-2]));
+    if (bare) out.n--;
+    sb_puts(&out, inner);
+    s = end + bare;
+  }
+  return sb_text(&out);
+}
+
+/* The sum a + b + ... with terms of families as sums over their index. */
+static const char *family_sum(Arena *a, const char *text, PrintStyle style) {
+  enum { NESTS = 3 };
+  Texts terms = {0};
+  const char *s = text;
+  for (int first = 1; first || *s == ' '; first = 0) {
+    int minus = first ? *s == '-' : s[1] == '-';
+    s += first ? minus : 3;
+    const char *end = end_of_term(s, style), *term = family_brackets(a, arena_strndup(a, s, (size_t)(end - s)), style);
+    vec_push(a, &terms, arena_printf(a, "%c %s", minus ? '-' : '+', term));
+    s = end;
+    if (style == PRINT_LATEX && strncmp(s, " \\\\", 3) == 0) break;
+  }
+  put_first_term_back(a, &terms, style);
+  uint32_t before = terms.n + 1;
+  for (int pass = 0; pass < NESTS && terms.n < before; pass++) {
+    before = terms.n;
+    terms = fold(a, terms, style, put_sum);
+  }
+  StrBuf out = strbuf(a);
+  for (uint32_t k = 0; k < terms.n; k++) {
+    const char *term = terms.at[k];
+    sb_printf(&out, "%s%s", k ? (*term == '-' ? " - " : " + ") : *term == '-' ? "-" : "", term + 2);
+  }
+  sb_puts(&out, s);
+  return sb_text(&out);
+}
+
+/* The line "  left = right" with both sides so. */
+static const char *family_sides(Arena *a, const char *line, PrintStyle style) {
+  const char *sign = style == PRINT_LATEX ? " &= " : " = ", *right = strstr(line, sign);
+  if (!right) return line;
+  size_t lead = strspn(line, " ");
+  const char *left = arena_strndup(a, line + lead, (size_t)(right - line) - lead);
+  return arena_printf(a, "%.*s%s%s%s", (int)lead, line, family_sum(a, left, style), sign,
+                      family_sum(a, right + strlen(sign), style));
+}
+
+/* ---- Lines of a block */
+
+static void put_line(StrBuf *out, const Family *f) {
+  sb_printf(out, f->style == PRINT_LATEX ? "%s \\quad (%c = %ld, \\dots, %ld)%s" : "%s  for %c in %ld..%ld%s",
+            family_text(out->arena, f), f->letter, f->begin, f->end, f->last->line_break);
+}
+
+const char *family_rows(Arena *a, const char *lines, PrintStyle style) {
+  Texts line = {0};
+  StrBuf out = strbuf(a);
+  for (const char *s = lines, *end; *s; s = *end ? end + 1 : end) {
+    end = s + strcspn(s, "\n");
+    vec_push(a, &line, family_sides(a, arena_strndup(a, s, (size_t)(end - s)), style));
+  }
+  line = fold(a, line, style, put_line);
+  for (uint32_t k = 0; k < line.n; k++) sb_printf(&out, "%s\n", line.at[k]);
   return sb_text(&out);
 }

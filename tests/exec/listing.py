@@ -3,7 +3,7 @@
 
   lagc derive FILE.lag | python3 tests/exec/listing.py KIND N
 
-Prints the number of members and the largest difference for twelve of them, in units of the largest force. A member without an equation, or with two, is an error.
+Prints the number of members and the largest difference for twelve of them, in units of the largest force. A member without an equation, or with two, is an error, and so is an energy that is not the kinetic and the potential one.
 """
 import cmath
 import random
@@ -38,7 +38,7 @@ def python(text):
             at += 1
         low, high = text[parts[0]:parts[1]].split("..")
         text = f"{text[:begin.start()]}total(({text[parts[1] + 1:at - 1]}) for {begin[1]} in range({low}, {high} + 1)){text[at:]}"
-    return text.replace("^", "**")
+    return re.sub(r"u\[([^]]*)\]'", r"v[\1]", text).replace("^", "**")
 
 
 def main():
@@ -47,8 +47,12 @@ def main():
     members = [(i, j) for i in range(1, n + 1) for j in range(1, n + 1)] if kind == "net" else range(1, n + 1)
     u = {i: place.uniform(-1, 1) for i in members}
     names = {"u": u, "k": k, "c": c, "w": w, "total": sum, "sin": lambda x: cmath.sin(x).real, "cos": lambda x: cmath.cos(x).real}
-    found, definitions = {}, []
+    v = {i: place.uniform(-1, 1) for i in members}
+    names["v"] = v
+    found, definitions, energy = {}, [], None
     for line in sys.stdin:
+        if line.startswith("  E = "):
+            energy = python(line[6:])
         row = re.match(r"  (\w+)\[([^]]*)\]('*) = (.*?)(?:  for (\w+) in (\d+)\.\.(\d+))?$", line)
         if not row or row[1].startswith("p_"):
             continue
@@ -78,6 +82,8 @@ def main():
         there = {j: complex(x, 1e-30*(i == j)) for j, x in u.items()}
         forces[i] = -POTENTIAL[kind](there, n).imag*1e30
     size = max(map(abs, forces.values()))
+    total = sum(x*x/2 for x in v.values()) + POTENTIAL[kind]({i: complex(x) for i, x in u.items()}, n).real
+    assert abs(eval(energy, names) - total) < 1e-12*(1 + abs(total)), (eval(energy, names), total)
     print(len(found), max(abs(eval(text, {**here, **{x: v for x, v in names.items() if x not in here}}) - forces[i]) for i, (text, here) in ((i, found[i]) for i in forces))/size)
 
 
