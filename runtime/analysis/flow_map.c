@@ -192,7 +192,7 @@ static int advance_with_tangent(FlowMap *f, lag_sim *sim, double t) {
   return lag_sim_advance(sim, t);
 }
 
-int lag_flow_differences(const FlowMap *f) { return f->like->scene->model->ncontacts > 0; }
+int lag_flow_contacts(const FlowMap *f) { return f->like->scene->model->ncontacts > 0; }
 
 /* d[n] := derivative of the end by the start in direction b[n], column j of B[n k] in units: differences of order 4. */
 static int end_slope(FlowMap *f, double t, double dt, const double *y0, const double *b, int k, double *d) {
@@ -210,8 +210,7 @@ static int end_slope(FlowMap *f, double t, double dt, const double *y0, const do
   return rc;
 }
 
-/* Phi := derivatives of the end by the start, on the tangent space of the constraints: closed contacts have no
- * tangent. */
+/* Phi := derivatives of the end by the start, on the tangent space of the constraints, by differences of runs. */
 static int end_derivatives(FlowMap *f, double t, double dt, const double *y0, double *Phi) {
   int n = f->n, k = 0;
   Pool pool = {0};
@@ -228,11 +227,16 @@ static int end_derivatives(FlowMap *f, double t, double dt, const double *y0, do
 }
 
 int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, double *Phi) {
-  int differences = Phi && lag_flow_differences(f), rc = differences ? end_derivatives(f, t, dt, y0, Phi) : LAG_OK;
+  int differences = Phi && f->differences, rc = differences ? end_derivatives(f, t, dt, y0, Phi) : LAG_OK;
   if (rc) return rc;
   lag_sim *sim = lag_flow_sim(f, t, y0);
   if (!sim) return keep_message(f, NULL, LAG_ENOMEM);
   rc = Phi && !differences ? advance_with_tangent(f, sim, t + dt) : lag_sim_advance(sim, t + dt);
+  if (rc == LAG_EMETHOD && Phi && !differences && lag_flow_contacts(f)) { /* from here on: one map has one precision */
+    lag_sim_free(sim);
+    f->differences = 1;
+    return lag_flow_run(f, t, dt, y0, y1, Phi);
+  }
   rc = rc || !Phi || differences ? rc : lag_sim_tangent(sim, Phi);
   for (int k = 0; k < lag_sim_ncharges(sim); k++)
     if (sim->charges[k].jumped > 1e-12 * sim->charges[k].size) f->jumps[k] = 1;

@@ -18,6 +18,7 @@ typedef struct FlowMap {
   double value;
   lag_scene scene;                                        /* of the runs: the scene's, with another start of the span */
   int stopped;                                            /* 1: the last run was ended by an event */
+  int differences; /* 1: Phi is by differences of runs, to some eight digits: a run over contacts had no tangent */
   double *jumps;                                          /* of each charge: 1: events changed it in a run */
   double *at, *up, *down, *mass, *linear, *room, *square; /* scratch */
   char message[600];                                      /* of the last failure */
@@ -35,8 +36,8 @@ lag_sim *lag_flow_sim(FlowMap *f, double t, const double *y0);
 /* y1[n] := the state a time dt after y0[n] at t; Phi[n n], row-major, unless NULL := its derivative by y0. LAG_OK, or
  * a status with its message; LAG_STOPPED: an event ended the run before. */
 int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, double *Phi);
-/* Whether these derivatives are differences of runs, to some eight digits: of models with contacts. */
-int lag_flow_differences(const FlowMap *f);
+/* Whether the model has contacts, which may close. */
+int lag_flow_contacts(const FlowMap *f);
 /* f[n] := y' at y, t. */
 int lag_flow_rates(FlowMap *f, double t, const double *y, double *rates);
 

@@ -273,7 +273,7 @@ static int remove_charges(PeriodicOrbit *o) {
 
 /* Whether nodes lie on constraints that always hold; those of contacts come and go. */
 static int is_constrained(const PeriodicOrbit *o) {
-  return o->flow.like->scene->model->constraints && !lag_flow_differences(&o->flow);
+  return o->flow.like->scene->model->constraints && !lag_flow_contacts(&o->flow);
 }
 
 /* A := its part in the tangent space of the constraints at each node, to which a step's end returns; o->normal := the
@@ -365,7 +365,7 @@ static int falling_step(PeriodicOrbit *o, double *size) {
 
 /* The residual that is a solution's; at impacts, where runs differ by more than rounding, a hundred times it. */
 static double accepted(const PeriodicOrbit *o) {
-  return fmax((lag_flow_differences(&o->flow) ? 100 : 1) * rounding, 1e3 * o->flow.like->tol);
+  return fmax((lag_flow_contacts(&o->flow) ? 100 : 1) * rounding, 1e3 * o->flow.like->tol);
 }
 
 static int newton(PeriodicOrbit *o) {
@@ -580,7 +580,7 @@ int lag_orbit_refine(PeriodicOrbit *o) {
   for (int k = 2; k <= 7 && !o->ngroup && !o->closing && !o->at_rest; k++)
     if (is_back(o, k)) o->repeats = k;
   like->tol = like->pb.tol = fmax(tol / 100, 1e-15);
-  if (like->tol == tol || lag_flow_differences(&o->flow)) like->tol = like->pb.tol = 100 * tol;
+  if (like->tol == tol || lag_flow_contacts(&o->flow)) like->tol = like->pb.tol = 100 * tol;
   int rc = lag_orbit_shoot(o, 1);
   rc = rc ? rc : lag_orbit_assemble(o);
   if (rc == LAG_OK) {

@@ -333,7 +333,7 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
   if (o->reverse)
     fprintf(f, "reversible by %s: from t = %s s on the motion is its first half backwards\n", app->args.reverse,
             lag_number_text(o->T / 2, text));
-  if (lag_flow_differences(&o->flow))
+  if (o->flow.differences)
     fputs("multipliers to about 8 digits: with contacts, which may close, runs from beside the start replace the "
           "tangent\n", f);
   if (o->closed)
@@ -359,7 +359,7 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
   lag_json_numbers(&j, {"period", o->T}, {"period_error", o->flow.forced ? NAN : o->period_error},
                        {"residual", o->residual});
   lag_json_count(&j, "newton_steps", o->steps);
-  lag_json_string(&j, "multipliers_by", lag_flow_differences(&o->flow) ? "differences" : "tangent");
+  lag_json_string(&j, "multipliers_by", o->flow.differences ? "differences" : "tangent");
   lag_json_counts(&j, {"segments", o->m}, {"free_directions", o->nfree});
   lag_json_truth(&j, "steady", o->steady);
   lag_json_count(&j, "repeats", o->repeats > 1 ? o->repeats : 1);
