@@ -122,12 +122,15 @@ static int continuation_column(PeriodicOrbit *o) {
     o->A[(all + o->led) * o->cols + col] = -o->parameter_unit / size_of(o, &o->held[o->led]);
     return LAG_OK;
   }
-  double was = o->parameter;
+  double was = o->parameter, *ends = o->ends;
+  memcpy(ends, o->end, (size_t)all * sizeof *ends);
   FiniteDifference d = {.order = 2, .n = all + o->nheld, .stride = o->cols, .h = part * o->parameter_unit,
                         .part = part, .out = o->saved};
   int rc = lag_finite_difference(&d, residuals_at, o, was, o->A + col);
   rc = rc ? rc : lag_orbit_set_parameter(o, was);
-  return rc ? rc : lag_orbit_shoot(o, 0);
+  memcpy(o->end, ends, (size_t)all * sizeof *ends);
+  lag_orbit_set_target(o);
+  return rc;
 }
 
 /* Whether a component that keeps its value chooses the phase: the motion crosses that value, or, of a family over one
@@ -316,6 +319,14 @@ int lag_orbit_assemble(PeriodicOrbit *o) {
   return rc || !o->continues ? rc : phase_rows(o);
 }
 
+int lag_orbit_residual(PeriodicOrbit *o) {
+  shooting_rows(o);
+  int rc = o->half ? LAG_OK : remove_charges(o);
+  rc = rc ? rc : held_rows(o);
+  if (rc == LAG_OK && o->half) begin_rows(o);
+  return rc;
+}
+
 /* ---- Newton's steps */
 
 /* Nodes that a step has led off the constraints return to them: what is left there would hide the residual. */
@@ -400,7 +411,7 @@ static int allocate(PeriodicOrbit *o) {
   size_t charges = (size_t)lag_flow_charges(&o->flow);
   lag_orbit_count(o);
   size_t rows = (m + 1) * n + (size_t)o->nheld + charges + group + 1, cols = m * n + 2 + group; /* with continuation */
-  const lag_part parts[] = {{&o->y, m * n}, {&o->end, m * n}, {&o->Phi, m * n * n}, {&o->unit, n}, {&o->turns, n},
+  const lag_part parts[] = {{&o->y, m * n}, {&o->end, m * n}, {&o->ends, m * n}, {&o->Phi, m * n * n}, {&o->unit, n}, {&o->turns, n},
       {&o->offset, n}, {&o->affine, group * size * size + 1}, {&o->target, n}, {&o->G, n * n}, {&o->A, rows * cols},
       {&o->b, rows},
       {&o->V, cols * cols}, {&o->sigma, cols}, {&o->x, cols + 2 * n}, {&o->saved, m * n * (charges + 2) + cols},
