@@ -301,19 +301,21 @@ static int follow_other(Job *job, const Part *of, const BranchPoint *at) {
   return rc;
 }
 
+/* By how much the parameter of a branch grows for motions of twice the period. */
+static double doubling_factor(const PeriodicOrbit *o) {
+  return o->led >= 0 && o->held[o->led].kind == ORBIT_PERIOD ? 2 : 1;
+}
+
 /* The orbit over twice the period at a point where it doubles; its parts hold the same motion. */
 static int open_doubled(Doubled *two, PeriodicOrbit *o, const lag_scene *scene) {
   two->like = lag_flow_sim(&o->flow, o->flow.t0, o->y);
   if (!two->like) return LAG_ENOMEM;
   two->like->scene = scene;
-  two->orbit = (PeriodicOrbit){.nheld = o->nheld,
-                               .continues = 1,
-                               .led = o->led,
-                               .name = o->name,
-                               .parameter = o->parameter,
-                               .parameter_unit = o->parameter_unit,
+  two->orbit = (PeriodicOrbit){.nheld = o->nheld, .continues = 1, .led = o->led, .name = o->name,
+                               .parameter = o->parameter * doubling_factor(o), .parameter_unit = o->parameter_unit,
                                .ngroup = o->ngroup};
   memcpy(two->orbit.held, o->held, sizeof o->held);
+  for (int k = 0; k < o->nheld; k++) two->orbit.held[k].value *= o->held[k].kind == ORBIT_PERIOD ? 2 : 1;
   memcpy(two->orbit.group, o->group, sizeof o->group);
   if (o->closing && lag_map_square(&two->closing, &two->orbit.pool, o->closing)) return LAG_ENOMEM;
   two->orbit.closing = o->closing ? &two->closing : NULL;
@@ -329,11 +331,12 @@ static int open_doubled(Doubled *two, PeriodicOrbit *o, const lag_scene *scene) 
 static void double_tangent(const PeriodicOrbit *o, const PeriodicOrbit *two, const double *of, double *tangent) {
   int part = o->m * o->n, whole = two->m * two->n;
   for (int i = 0; i < two->cols; i++) tangent[i] = of[i < whole ? i % part : part + i - whole];
+  tangent[two->cols - 1] *= doubling_factor(o);
 }
 
 /* Motions of twice the period, from a point where it doubles: in one direction, as the other one is the same motion
  * a period later. */
-static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
+static int follow_doubled(Job *job, const Part *of, BranchPoint *at) {
   if (job->ndoubled == MOST_DOUBLINGS || of->problem->place(of->orbit, at->u)) return LAG_OK;
   Doubled *two = &job->doubled[job->ndoubled++];
   int rc = open_doubled(two, of->orbit, job->app->sim->scene), cols = two->orbit.cols;
@@ -342,6 +345,10 @@ static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
   BranchPoint start = {.u = u, .tangent = u + cols};
   lag_orbit_branch_unknowns(&two->orbit, u);
   double_tangent(of->orbit, &two->orbit, at->tangent, start.tangent);
+  if (u[cols - 1] > job->limits.high || u[cols - 1] < job->limits.low) {
+    free(u);
+    return at->unfollowed = "its motions have twice this period, outside of the range", LAG_OK;
+  }
   rc = lag_branch_other(&two->problem, &start, u + 2 * cols);
   if (rc == LAG_OK) job->number = ++job->nbranches;
   if (rc == LAG_OK) rc = follow(job, &two->problem, &two->orbit, u, u + 2 * cols, 0, of->number);
@@ -374,7 +381,7 @@ static int follow_from(Job *job, const Part *of, BranchPoint *at, int first) {
   else if (at->kind == BRANCH_HOPF) rc = follow_cycle(job, of, at);
   else if (at->kind == BRANCH_DOUBLING) rc = follow_doubled(job, of, at);
   else return LAG_OK;
-  if (rc == LAG_OK && job->nparts == before)
+  if (rc == LAG_OK && job->nparts == before && !at->unfollowed)
     at->unfollowed = at->kind == BRANCH_HOPF && job->steady.cols
                          ? "motions about steady ones that change are not followed: `lagc orbit --relative NAME` "
                            "from a start beside it finds one"

@@ -181,6 +181,12 @@ long() {
   close 1 parameter 0.1352859193003538 1e-11 # SciPy: trace of the equation across is -2
   close 3 parameter 0.1615515151108141 1e-11 # SciPy: it is 2
   near "$title: 6 E" 5e-7 0.986709 "$(of_point 4 parameter | awk '{ printf "%.12g", 6*$1 }')"
+  # the first over the period: motions of twice it, whose branch point is that of the family over the energy
+  follow models/henon_heiles.lag regular x=0 y=0.3 "x'=0" "y'=0" energy=0.13..0.16 y=0.71 --guess 7.8 --branches --most 40
+  doubled=$(sed -n '/"kind": "branch point"/{s/.*"period": \([^,]*\),.*/\1/p;q;}' "$TMP/points")
+  follow models/henon_heiles.lag regular x=0 y=0.71 "x'=0" "y'=0" period=7.7..16 --guess 7.8 --branches --most 40
+  near "$title: twice the period" 1e-9 "$doubled" "$(sed -n '/"kind": "branch point", "parameter": 15/{s/.*"parameter": \([^,]*\),.*/\1/p;q;}' "$TMP/points")"
+  check "$title: twice a period outside" sh -c "'$LAGC' continue models/henon_heiles.lag regular x=0 y=0.71 \"x'=0\" \"y'=0\" period=7.7..8 --guess 7.8 --branches | grep -q 'not followed: .* outside of the range'"
   # halo orbits leave the planar ones about L1 where motions across the plane have a trace of 2: SciPy's DOP853 at 1e-13 and Brent's method
   follow $dir/cr3bp_space.lag period=2.71..2.75 --guess 2.743 --hold y --branches
   kinds "end;branch point;end;end;end;"
