@@ -353,16 +353,19 @@ static double slope_within(FlowMap *f, int k, double t, double *y, int i, double
   return sum / h;
 }
 
-/* The same by those two widths that agree best: near a singularity, as where bodies meet, narrow ones. */
+/* The same on the branch of each switch at y, by those two widths that agree best: near a singularity, as where bodies
+ * meet, narrow ones. */
 static double slope(FlowMap *f, int k, double t, double *y, int i) {
   enum { LEVELS = 9 };
   double h = 0x1p-4 * lag_difference_scale(&f->probe->pb, y, i), best = NAN, least = HUGE_VAL, before = NAN;
+  if (lag_switch_hold_sides(f->probe, t, y)) return NAN;
   for (int level = 0; level < LEVELS; level++, h /= 3) {
     double now = slope_within(f, k, t, y, i, h), off = fabs(now - before);
     if (off < least || (isnan(best) && isfinite(now))) best = now;
     if (off < least) least = off;
     before = now;
   }
+  for (int j = 0; j < f->probe->scene->model->nmodes; j++) lag_switch_hold(f->probe, j, LAG_FREE);
   return best;
 }
 

@@ -185,8 +185,7 @@ static int open_moved(Doubled *moved, PeriodicOrbit *o, const lag_scene *scene, 
   if (!y) return LAG_ENOMEM;
   for (int k = 0; k < o->m && rc == LAG_OK; k++)
     rc = lag_flow_run(&o->flow, o->flow.t0 + o->T * k / o->m, later, o->y + k * n, y + k * n, NULL);
-  moved->scene = *scene;
-  moved->scene.t0 = o->flow.t0 + later;
+  moved->scene = *scene, moved->scene.t0 = o->flow.t0 + later;
   moved->scene.t1 = scene->t1 + (moved->scene.t0 - scene->t0);
   moved->like = rc ? NULL : lag_flow_sim(&o->flow, moved->scene.t0, y);
   if (moved->like) {
@@ -474,7 +473,8 @@ static int begin_steady(Job *job) {
   return status ? failed(job, status, s->flow.message) : rc;
 }
 
-/* Conserved charges keep their values unless --hold names others, or one is the parameter. */
+/* Conserved charges keep their values unless --hold names others, or one is the parameter; --period is in place of the
+ * energy. */
 static void hold_charges(Job *job) {
   PeriodicOrbit *o = &job->orbit;
   const lag_charges *of = job->app->scene->model->charges;
@@ -482,16 +482,16 @@ static void hold_charges(Job *job) {
   if (job->led_kind < 0 && job->app->args.hold) return;
   for (int k = 0; k < (of ? of->n : 1) && o->nheld < ORBIT_MOST_HELD - 2; k++) {
     if (of ? !(of->of[k].flags & LAG_CONSERVED) : !conserves) continue;
-    if (job->led_kind >= 0 && (k == 0 || (job->led_kind == ORBIT_CHARGE && job->led_of == k))) continue;
+    if (k == 0 && (job->led_kind >= 0 || job->app->args.period)) continue;
+    if (job->led_kind == ORBIT_CHARGE && job->led_of == k) continue;
     o->held[o->nheld++] = (OrbitHold){.kind = ORBIT_CHARGE, .of = k};
   }
 }
 
 static double led_value(Job *job) {
   PeriodicOrbit *o = &job->orbit;
-  return job->led_kind == ORBIT_PERIOD  ? o->T
-         : job->led_kind == ORBIT_STATE ? o->y[job->led_of]
-                                        : lag_flow_charge(&o->flow, job->led_of, o->flow.t0, o->y);
+  if (job->led_kind == ORBIT_PERIOD) return o->T;
+  return job->led_kind == ORBIT_STATE ? o->y[job->led_of] : lag_flow_charge(&o->flow, job->led_of, o->flow.t0, o->y);
 }
 
 /* The quantity that runs over a range keeps its value for the first motion only: --period 2.5 period=2..3. */

@@ -334,8 +334,8 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
     fprintf(f, "reversible by %s: from t = %s s on the motion is its first half backwards\n", app->args.reverse,
             lag_number_text(o->T / 2, text));
   if (o->flow.differences)
-    fputs("multipliers to about 8 digits: with contacts, which may close, runs from beside the start replace the "
-          "tangent\n", f);
+    fputs("multipliers to about 8 digits: a contact with friction, or one that comes and goes, has no tangent, which runs "
+          "from beside the start replace\n", f);
   if (o->closed)
     fprintf(f, "%s is closed at the begin: multipliers are of disturbances that keep it so%s\n", o->closed,
             o->opens ? "" : "; after a small push that opens it, it is closed again within a period");

@@ -286,6 +286,8 @@ int lag_switch_sticks(const lag_sim *sim, int k);
 void lag_switch_set_free(lag_sim *sim, int free);
 /* Holds switch k at mode m, 0: sliding, for right-hand sides beside the surface. */
 void lag_switch_hold(lag_sim *sim, int k, double m);
+/* Holds each switch at its side of y, for differences beside its surface. A status. */
+int lag_switch_hold_sides(lag_sim *sim, double t, const double *y);
 /* Event functions that are watched: events, then switches that have a mode; none of these for methods that find no
  * events. */
 static inline int lag_watched(const lag_sim *s) {

@@ -97,17 +97,21 @@ close 3 parameter 3.99666724513820446 1e-12
 close 4 parameter 4.01657915296946699 1e-12
 close 6 parameter -0.0199132963584375184 1e-12
 # a ball bounces once a period T of a plate (run_orbit.sh): A w^2 cos p = g T w (1 - e)/(2 (1 + e)) has two motions that meet at cos p = 1; where
-# (1 + e)^2 A w^2 sin p/g is -2 (1 + e^2) the period doubles. Differences of runs: 8 digits of multipliers. (Behind the plate's zero by
+# (1 + e)^2 A w^2 sin p/g is -2 (1 + e^2) the period doubles. (Behind the plate's zero by
 # 1: no bounce at the start of the period.)
 sed 's/sin(w\*t)/sin(w*t + 1)/' $dir/plate.lag >"$TMP/plate.lag"
 follow "$TMP/plate.lag" A=0.005..0.011
 kinds "end;fold;period doubling;end;"
 close 2 parameter 0.00642062998577413993 1e-12
-close 3 parameter 0.00936133781380749192 1e-10
+close 3 parameter 0.00936133781380749192 1e-12
 # --period names the first motion, and holds no other: cos of the amplitude where 4 sqrt(l/g) K(sin(th/2)) = 3, mpmath
 follow models/pendulum.lag wide period=2.4..3 --period 2.5
 kinds "end;end;"
 near "$title: amplitude" 1e-10 -0.672828117724294 "$(sed -n "1s/.*\"th\": \([^,]*\), \"th'\": \([^}]*\)}.*/\1 \2/p" "$TMP/points" | awk '{ printf "%.15g", cos($1) - $2^2/(2*9.81) }')"
+# --period is kept in place of the energy while a parameter moves. The fold of Bratu's problem: 8 x^2/cosh(x)^2 where x tanh(x) = 1, mpmath
+follow $dir/bratu.lag p=2..4 --period 2 u=0.01 "u'=1.24"
+kinds "fold;end;end;"
+close 1 parameter 3.51383071912516121 1e-12
 # Duffing's backbone by energy: 4 K(k)/sqrt(1 + A^2), k^2 = A^2/(2 (1 + A^2)), A^2 + A^4/2 = 2 E; at 24 by mpmath
 follow $dir/backbone.lag energy=0.7..24
 close 1 period 2.31119416692599250 1e-11
