@@ -274,6 +274,9 @@ static int orbit_system(void *of, double *J, double *b) {
   return rc;
 }
 
+/* Tangents over several segments between which small changes grow have singular values as small as their inverse. */
+static double orbit_noise(void *of) { return ((PeriodicOrbit *)of)->flow.differences ? 1e-8 : 1e-11; }
+
 static int orbit_spectrum(void *of, Spectrum *s) {
   PeriodicOrbit *o = of;
   int rc = lag_orbit_multipliers(o);
@@ -311,6 +314,7 @@ void lag_orbit_branch(BranchProblem *p, PeriodicOrbit *o) {
                        .place = place_orbit,
                        .system = orbit_system,
                        .residual = orbit_residual,
+                       .noise = orbit_noise,
                        .spectrum = orbit_spectrum,
                        .stands = orbit_stands};
 }

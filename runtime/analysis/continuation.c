@@ -34,8 +34,9 @@ static int open_walk(Walk *w, Branch *b, const BranchProblem *p) {
 
 /* x := the step for the residual rhs, across the direction d, where the system was decomposed. Returns its size. */
 static double newton_step(Walk *w, const double *u, const double *d, double along) {
+  const double least = w->p->noise ? w->p->noise(w->p->of) : least_rank;
   w->rhs[w->p->rows] = along - lag_dot(w->cols, u, d);
-  lag_least_norm((lag_decomposed){w->rows, w->cols, w->J, w->V, w->sigma}, least_rank, 0, w->rhs, w->x);
+  lag_least_norm((lag_decomposed){w->rows, w->cols, w->J, w->V, w->sigma}, least, 0, w->rhs, w->x);
   if (fabs(d[w->cols - 1]) == 1.0) w->x[w->cols - 1] = 0; /* the parameter stays to the bit, as at its bound */
   return sqrt(lag_dot(w->cols, w->x, w->x));
 }
