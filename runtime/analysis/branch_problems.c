@@ -243,7 +243,7 @@ static int shrinks(PeriodicOrbit *o) {
 
 static int place_with(PeriodicOrbit *o, const double *u, int tangents) {
   int n = o->n, k = o->m * n;
-  for (int i = 0; i < k; i++) o->y[i] = u[i] * o->unit[i % n];
+  for (int i = 0; i < k; i++) o->y[i] = fabs(u[i]) < 1e-100 ? 0 : u[i] * o->unit[i % n]; /* steps halve zeros */
   if (!o->flow.forced) o->T = u[k++] * o->time;
   for (int j = 0; j < o->ngroup; j++) o->shift[j] = u[k++];
   o->flow.message[0] = '\0';

@@ -12,6 +12,7 @@ typedef struct FlowMap {
   int n, nq;
   double t0;
   int forced;       /* 1: the rates depend on time */
+  int kicks;        /* 1: there are kicks, at the scene's begin and a number of their periods */
   double drive;     /* the period of what drives it; 0: not known */
   const StateMap *closing;   /* what a drive's period is closed by: components that are exchanged; NULL: none */
   const char *name; /* parameter with another value, in its declared unit; NULL: none */
@@ -69,5 +70,6 @@ int lag_flow_tangent_basis(FlowMap *f, Pool *pool, double t, const double *y, co
 /* G[nq + 1][nq + 1] := the affine map of coordinates by which the symmetry of charge k acts, per unit of its
  * parameter: q -> A q + b in the first nq rows. LAG_EMETHOD: it is not affine. */
 int lag_flow_affine(FlowMap *f, int k, double t, const double *y, double *G);
-/* y - y0 of component i, periodic angles modulo a turn. */
+/* Whether component i is a periodic angle; y - y0 of it, of such angles modulo a turn. */
+int lag_flow_is_angle(const lag_model *m, int i);
 double lag_flow_change(const lag_model *m, int i, const double *y, const double *y0);

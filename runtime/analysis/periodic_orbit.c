@@ -411,9 +411,9 @@ static int allocate(PeriodicOrbit *o) {
   size_t charges = (size_t)lag_flow_charges(&o->flow);
   lag_orbit_count(o);
   size_t rows = (m + 1) * n + (size_t)o->nheld + charges + group + 1, cols = m * n + 2 + group; /* with continuation */
-  const lag_part parts[] = {{&o->y, m * n}, {&o->end, m * n}, {&o->ends, m * n}, {&o->Phi, m * n * n}, {&o->unit, n}, {&o->turns, n},
-      {&o->offset, n}, {&o->affine, group * size * size + 1}, {&o->target, n}, {&o->G, n * n}, {&o->A, rows * cols},
-      {&o->b, rows},
+  const lag_part parts[] = {{&o->y, m * n}, {&o->end, m * n}, {&o->ends, m * n}, {&o->Phi, m * n * n}, {&o->unit, n},
+      {&o->turns, n}, {&o->offset, n}, {&o->affine, group * size * size + 1}, {&o->target, n}, {&o->G, n * n},
+      {&o->A, rows * cols}, {&o->b, rows},
       {&o->V, cols * cols}, {&o->sigma, cols}, {&o->x, cols + 2 * n}, {&o->saved, m * n * (charges + 2) + cols},
       {&o->w, 4 * size * size + 4 * n}, {&o->re, n}, {&o->im, n}};
   lag_pool_parts(&o->pool, sizeof parts / sizeof *parts, parts);
@@ -441,8 +441,8 @@ static void place_begin(PeriodicOrbit *o) {
   const double turn = 2 * acos(-1);
   double *image = o->x;
   lag_map_apply(o->reverse, o->y, image);
-  for (int i = 0; i < m->nq; i++)
-    o->offset[i] = m->q[i].periodic ? turn * rint((o->y[i] - image[i]) / turn) : 0;
+  for (int i = 0; i < o->n; i++)
+    o->offset[i] = lag_flow_is_angle(m, i) ? turn * rint((o->y[i] - image[i]) / turn) : 0;
   for (int i = 0; i < o->n; i++) o->y[i] = (o->y[i] + image[i] + o->offset[i]) / 2;
 }
 
@@ -460,8 +460,8 @@ static int place_nodes(PeriodicOrbit *o) {
   double *image = o->x;
   if (o->closing) lag_map_apply(o->closing, o->y, image);
   else memcpy(image, o->y, (size_t)n * sizeof *image);
-  for (int i = 0; i < m->nq && rc == LAG_OK; i++)
-    o->turns[i] = m->q[i].periodic ? turn * rint((last[i] - image[i]) / turn) : 0;
+  for (int i = 0; i < n && rc == LAG_OK; i++)
+    o->turns[i] = lag_flow_is_angle(m, i) ? turn * rint((last[i] - image[i]) / turn) : 0;
   return rc;
 }
 

@@ -95,9 +95,10 @@ static const char *event_at_node(PeriodicOrbit *o) {
   for (int k = 0; k < o->m && !name; k++) {
     double begin = o->flow.t0 + o->T * k / o->m, end = begin + o->T / o->m;
     lag_sim *sim = lag_flow_sim(&o->flow, begin, o->y + k * o->n);
-    for (int j = 0; sim && j < m->nev && lag_sim_advance(sim, end) == LAG_OK; j++)
-      if (lag_sim_event_times(sim, j, &first, &last) > 0 && (first < begin + near || last > end - near))
-        name = m->ev[j].name;
+    for (int j = 0; sim && j < m->nev && lag_sim_advance(sim, end) == LAG_OK; j++) {
+      if (lag_is_kick(m, j) || lag_sim_event_times(sim, j, &first, &last) <= 0) continue;
+      if (first < begin + near || last > end - near) name = m->ev[j].name;
+    }
     lag_sim_free(sim);
   }
   return name;
@@ -480,6 +481,8 @@ static void hold_charges(Job *job) {
   const lag_charges *of = job->app->scene->model->charges;
   int conserves = (lag_facts(&job->app->sim->pb) & LAG_CONSERVES_ENERGY) != 0;
   if (job->led_kind < 0 && job->app->args.hold) return;
+  for (int k = 0; k < job->app->scene->model->nev; k++)
+    if (lag_is_kick(job->app->scene->model, k)) return; /* kicks change them */
   for (int k = 0; k < (of ? of->n : 1) && o->nheld < ORBIT_MOST_HELD - 2; k++) {
     if (of ? !(of->of[k].flags & LAG_CONSERVED) : !conserves) continue;
     if (k == 0 && (job->led_kind >= 0 || job->app->args.period)) continue;

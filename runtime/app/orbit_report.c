@@ -91,6 +91,8 @@ int lag_app_orbit_holds(App *app, PeriodicOrbit *o) { return read_names(app, o, 
 static int given_period(const Args *a, double *T) {
   const char *option = a->period ? "--period" : "--guess", *text = a->period ? a->period : a->guess;
   *T = 0;
+  if (a->period && a->guess)
+    return lag_app_error(a, "--period and --guess: the period is given, or about that; leave one out");
   if (text && !lag_args_number(a, option, text, a->period ? "--period 6.28" : "--guess 6.28", T)) return EXIT_USAGE;
   return text && *T <= 0 ? lag_app_error(a, "%s %s: a period is a positive time", option, text) : 0;
 }
@@ -334,8 +336,8 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
     fprintf(f, "reversible by %s: from t = %s s on the motion is its first half backwards\n", app->args.reverse,
             lag_number_text(o->T / 2, text));
   if (o->flow.differences)
-    fputs("multipliers to about 8 digits: a contact with friction, or one that comes and goes, has no tangent, which runs "
-          "from beside the start replace\n", f);
+    fputs("multipliers to about 8 digits: a contact with friction, or one that comes and goes, has no tangent, which "
+          "runs from beside the start replace\n", f);
   if (o->closed)
     fprintf(f, "%s is closed at the begin: multipliers are of disturbances that keep it so%s\n", o->closed,
             o->opens ? "" : "; after a small push that opens it, it is closed again within a period");

@@ -112,6 +112,12 @@ near "$title: amplitude" 1e-10 -0.672828117724294 "$(sed -n "1s/.*\"th\": \([^,]
 follow $dir/bratu.lag p=2..4 --period 2 u=0.01 "u'=1.24"
 kinds "fold;end;end;"
 close 1 parameter 3.51383071912516121 1e-12
+# the standard map: its island's centre doubles at K = 4; the period follows that of the kicks
+follow models/standard_map.lag q=0.1 p=0.05 K=0.5..4.5 --guess 1
+kinds "period doubling;end;end;"
+close 1 parameter 4 1e-12
+follow models/standard_map.lag q=0.1 p=0.05 T=1..2 --guess 1
+close 1 period 2 1e-14
 # Duffing's backbone by energy: 4 K(k)/sqrt(1 + A^2), k^2 = A^2/(2 (1 + A^2)), A^2 + A^4/2 = 2 E; at 24 by mpmath
 follow $dir/backbone.lag energy=0.7..24
 close 1 period 2.31119416692599250 1e-11

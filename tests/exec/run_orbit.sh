@@ -113,6 +113,21 @@ orbit $dir/mathieu.lag a=-0.01998 --period 6.283185307179586
 near "$title: product of multipliers" 1e-13 1 "$(multiplier 1 1 | awk -v b="$(multiplier 2 1)" '{ printf "%.17g", $1*b }')"
 orbit models/kapitza.lag "th=180[deg]"
 near "$title: product of multipliers" 1e-10 1 "$(multiplier 1 1 | awk -v im="$(multiplier 1 2)" '{ printf "%.15g", $1^2 + im^2 }')"
+# Kicks have a period: the standard map's fixed points, multipliers a + 1/a = 2 -+ K, and its motion of period 2 through pi, where they have K = 0.9's
+# 2 - K^2, over segments, too; a cell of lenses: 2 - (k T/2)^2 with T = 2 (E. Courant, H. Snyder, Annals of Physics 3 (1958) 1)
+orbit models/standard_map.lag q=0.1 p=0.05
+close period 1 0
+closes 1 1 0.55 1e-13
+orbit models/standard_map.lag q=3 p=0.05
+closes 1 1 2.5 1e-12
+orbit models/standard_map.lag q=3.1 p=3.1 --period 2 --segments 5
+closes 1 1 0.595 1e-12
+orbit models/storage_ring.lag linear x=1 y=1
+close period 2 0
+closes 1 1 0.595 1e-12
+refused_kicks() { check "kicks: $1" says 3 "$2" "$LAGC" orbit models/standard_map.lag "$3" "$4"; }
+refused_kicks "no multiple of their period" "has the period 1 s" --period 1.5
+refused_kicks "backwards" "kicks" --reverse q=-q
 # steps on a sphere stay on it: 4/sqrt(2 g (c - a)) K((b - a)/(c - a)) with the roots a, b, c of 2 (E - g z)(1 - z^2) = L^2, mpmath
 orbit $dir/sphere.lag --relative spin --guess 1 --hold energy,spin
 close period 1.04000924639386669 1e-12
@@ -229,6 +244,7 @@ refused "another period than the drive's" 3 "has the period 5.2359877559829" "$L
 refused "no length" 2 "a period is a positive time" "$LAGC" orbit models/pendulum.lag wide --guess -1
 refused "an exchange that is no symmetry" 3 "not a symmetry of the equations" "$LAGC" orbit models/cr3bp.lag departure --relative y=-y
 refused "a coordinate taken twice" 2 "write x=y,y=x to exchange them" "$LAGC" orbit models/figure_eight.lag --relative 'r[1]=r[2]'
+refused "two periods" 2 "leave one out" "$LAGC" orbit models/pendulum.lag wide --period 2.3 --guess 5
 refused "no map" 2 "write which coordinate takes the place" "$LAGC" orbit models/pendulum.lag wide --relative 'th=2*th'
 refused "too many segments" 2 "up to 200" "$LAGC" orbit models/pendulum.lag wide --segments 201
 refused "a start at rest" 3 "starts at rest, at an equilibrium" "$LAGC" orbit models/pendulum.lag wide "th=180[deg]"
