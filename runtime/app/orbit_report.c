@@ -425,6 +425,11 @@ int lag_app_orbit_solve(App *app, PeriodicOrbit *o) {
   int rc = lag_orbit_solve(o);
   if (rc == 0) return not_found(app, o);
   if (rc > 0) rc = lag_orbit_refine(o);
+  if (rc == 0 && o->at_rest && o->T < 1e-3 * o->time)
+    return lag_app_no_result(a,
+                             "no periodic motion found near the start of scene %s: the search shrinks the period to "
+                             "nothing; start nearer to one: name=VALUE, or another period: --guess T",
+                             app->scene->name);
   if (rc == 0 && o->at_rest) {
     return lag_app_no_result(
         a,

@@ -244,6 +244,7 @@ refused "another period than the drive's" 3 "has the period 5.2359877559829" "$L
 refused "no length" 2 "a period is a positive time" "$LAGC" orbit models/pendulum.lag wide --guess -1
 refused "an exchange that is no symmetry" 3 "not a symmetry of the equations" "$LAGC" orbit models/cr3bp.lag departure --relative y=-y
 refused "a coordinate taken twice" 2 "write x=y,y=x to exchange them" "$LAGC" orbit models/figure_eight.lag --relative 'r[1]=r[2]'
+refused "a period of nothing" 3 "shrinks the period to nothing" "$LAGC" orbit models/free_fall.lag --guess 1
 refused "two periods" 2 "leave one out" "$LAGC" orbit models/pendulum.lag wide --period 2.3 --guess 5
 refused "no map" 2 "write which coordinate takes the place" "$LAGC" orbit models/pendulum.lag wide --relative 'th=2*th'
 refused "too many segments" 2 "up to 200" "$LAGC" orbit models/pendulum.lag wide --segments 201
