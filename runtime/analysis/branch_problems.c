@@ -241,10 +241,9 @@ static int shrinks(PeriodicOrbit *o) {
   return most < least;
 }
 
-static int place_orbit(void *of, const double *u) {
-  PeriodicOrbit *o = of;
+static int place_with(PeriodicOrbit *o, const double *u, int tangents) {
   int n = o->n, k = o->m * n;
-  for (int i = 0; i < k; i++) o->y[i] = u[i] * o->unit[i % n];
+  for (int i = 0; i < k; i++) o->y[i] = fabs(u[i]) < 1e-100 ? 0 : u[i] * o->unit[i % n]; /* steps halve zeros */
   if (!o->flow.forced) o->T = u[k++] * o->time;
   for (int j = 0; j < o->ngroup; j++) o->shift[j] = u[k++];
   o->flow.message[0] = '\0';
@@ -254,7 +253,17 @@ static int place_orbit(void *of, const double *u) {
     snprintf(o->flow.message, sizeof o->flow.message, "the motion shrinks to a state of rest");
     return LAG_EDOMAIN;
   }
-  return lag_orbit_shoot(o, 1) ? LAG_EDOMAIN : LAG_OK;
+  return lag_orbit_shoot(o, tangents) ? LAG_EDOMAIN : LAG_OK;
+}
+
+static int place_orbit(void *of, const double *u) { return place_with(of, u, 1); }
+
+static int orbit_residual(void *of, const double *u, double *b) {
+  PeriodicOrbit *o = of;
+  int rc = place_with(o, u, 0);
+  rc = rc ? rc : lag_orbit_residual(o);
+  memcpy(b, o->b, (size_t)o->rows * sizeof *b);
+  return rc;
 }
 
 static int orbit_system(void *of, double *J, double *b) {
@@ -264,6 +273,9 @@ static int orbit_system(void *of, double *J, double *b) {
   memcpy(b, o->b, (size_t)o->rows * sizeof *b);
   return rc;
 }
+
+/* Tangents over several segments between which small changes grow have singular values as small as their inverse. */
+static double orbit_noise(void *of) { return ((PeriodicOrbit *)of)->flow.differences ? 1e-8 : 1e-11; }
 
 static int orbit_spectrum(void *of, Spectrum *s) {
   PeriodicOrbit *o = of;
@@ -301,6 +313,8 @@ void lag_orbit_branch(BranchProblem *p, PeriodicOrbit *o) {
                        .pairs = isfinite(o->pairing),
                        .place = place_orbit,
                        .system = orbit_system,
+                       .residual = orbit_residual,
+                       .noise = orbit_noise,
                        .spectrum = orbit_spectrum,
                        .stands = orbit_stands};
 }

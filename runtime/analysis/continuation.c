@@ -9,7 +9,7 @@
 #include "numeric/singular_values.h"
 #include "numeric/dense.h"
 
-enum { MOST_NEWTON = 12, MOST_LOCATE = 60 };
+enum { MOST_NEWTON = 12, MOST_CHORD = 8, MOST_LOCATE = 60 };
 
 static const double least_rank = 1e-8; /* singular values below this part of the first count as 0 */
 
@@ -32,6 +32,31 @@ static int open_walk(Walk *w, Branch *b, const BranchProblem *p) {
   return b->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
 
+/* x := the step for the residual rhs, across the direction d, where the system was decomposed. Returns its size. */
+static double newton_step(Walk *w, const double *u, const double *d, double along) {
+  const double least = w->p->noise ? w->p->noise(w->p->of) : least_rank;
+  w->rhs[w->p->rows] = along - lag_dot(w->cols, u, d);
+  lag_least_norm((lag_decomposed){w->rows, w->cols, w->J, w->V, w->sigma}, least, 0, w->rhs, w->x);
+  if (fabs(d[w->cols - 1]) == 1.0) w->x[w->cols - 1] = 0; /* the parameter stays to the bit, as at its bound */
+  return sqrt(lag_dot(w->cols, w->x, w->x));
+}
+
+/* Whether a step of this size behind one of `last` is the last one: nothing but rounding is left. */
+static int is_last(double size, double last) { return size < 1e-12 || (size < 1e-9 && size > 0.3 * last); }
+
+/* Steps by the matrix of the last one, while each is a tenth of the one before or less, from *size. Returns whether u
+ * is a solution. */
+static int chord(Walk *w, double *u, const double *d, double along, double *size) {
+  for (int k = 0; k < MOST_CHORD && w->p->residual && w->p->residual(w->p->of, u, w->rhs) == LAG_OK; k++) {
+    double now = newton_step(w, u, d, along), last = *size;
+    if (!(now < 0.1 * last) && !is_last(now, last)) return 0;
+    for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
+    *size = now;
+    if (is_last(now, last)) return 1;
+  }
+  return 0;
+}
+
 /* Newton's steps from u, each across the direction d: u := a solution. 0: none, as where conditions contradict each
  * other, so that steps end beside one. */
 static int correct(Walk *w, double *u, const double *d) {
@@ -40,14 +65,11 @@ static int correct(Walk *w, double *u, const double *d) {
   for (w->newton = 0; w->newton < MOST_NEWTON; w->newton++) {
     if (w->p->place(w->p->of, u) || w->p->system(w->p->of, w->J, w->rhs)) return 0;
     memcpy(w->J + w->p->rows * w->cols, d, (size_t)w->cols * sizeof *d);
-    w->rhs[w->p->rows] = along - lag_dot(w->cols, u, d);
     lag_singular_values(w->rows, w->cols, w->J, w->V, w->sigma);
-    lag_least_norm((lag_decomposed){w->rows, w->cols, w->J, w->V, w->sigma}, least_rank, 0, w->rhs, w->x);
-    if (fabs(d[w->cols - 1]) == 1.0) w->x[w->cols - 1] = 0; /* the parameter stays to the bit, as at its bound */
-    double size = sqrt(lag_dot(w->cols, w->x, w->x));
+    double size = newton_step(w, u, d, along);
     if (!(size < 1)) return 0;
     for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
-    if (size < 1e-12 || (size < 1e-9 && size > 0.3 * last))
+    if (is_last(size, last) || chord(w, u, d, along, &size))
       return lag_largest(w->rows, w->rhs) < solved && w->p->place(w->p->of, u) == LAG_OK;
     if (w->newton > 3 && size > 0.9 * last) return 0;
     last = size;

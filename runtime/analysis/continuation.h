@@ -22,6 +22,9 @@ typedef struct BranchProblem {
   int (*place)(void *of, const double *u); /* takes the unknowns. LAG_OK, or > 0: no values there */
   /* J[rows cols] and b[rows], the negative residual, at the unknowns that are placed */
   int (*system)(void *of, double *J, double *b);
+  /* b at u, which is placed, where that costs much less than J; or NULL */
+  int (*residual)(void *of, const double *u, double *b);
+  double (*noise)(void *of); /* rounding of J, as a part of its largest singular value; NULL: 1e-8 */
   int (*spectrum)(void *of, Spectrum *s);
   int (*stands)(void *of, const double *u, const double *d); /* whether d leads to the same solution, or NULL */
 } BranchProblem;

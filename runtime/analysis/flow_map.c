@@ -1,6 +1,7 @@
 /* The flow of a model as a map (flow_map.h). */
 #include "analysis/flow_map.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,6 +24,7 @@ lag_sim *lag_flow_sim(FlowMap *f, double t, const double *y0) {
   lag_sim *sim = lag_sim_like(f->like);
   f->like->scene = own;
   if (!sim) return NULL;
+  sim->kicks_late = t - own->t0;
   if (f->name) lag_sim_set(sim, f->name, f->value);
   if (y0) memcpy(sim->start, y0, (size_t)f->n * sizeof *y0);
   return sim;
@@ -68,6 +70,20 @@ static int driven_at(FlowMap *f, double t, const double *y, double *out) {
 static double driven_weight(const FlowMap *f, const double *at, int i) {
   double rates = lag_dot(f->n, at, at);
   return i < f->n || !(rates > 0) || at[i] == 0.0 ? 1 : sqrt(rates) / fabs(at[i]);
+}
+
+/* *longest := the longest period of a kick; 0: there are none. Whether T is a multiple of all of them. */
+static int fits_kicks(FlowMap *f, double T, double *longest) {
+  const double rounding = 1e-12;
+  lag_sim *s = f->probe;
+  int fits = 1;
+  *longest = 0;
+  for (int k = 0; k < s->scene->model->nev; k++) {
+    if (!lag_is_kick(s->scene->model, k) || lag_events_eval(s, f->t0, s->now, s->g1)) continue;
+    *longest = fmax(*longest, s->g1[k]);
+    fits &= T > 0.5 * s->g1[k] && fabs(remainder(T, s->g1[k])) <= rounding * T;
+  }
+  return fits;
 }
 
 /* Whether they change with time at the start. */
@@ -139,7 +155,10 @@ int lag_flow_open(FlowMap *f, lag_sim *like) {
   lag_pool_parts(&f->pool, sizeof parts / sizeof *parts, parts);
   if (f->pool.failed) return keep_message(f, NULL, LAG_ENOMEM);
   int rc = renew_probe(f);
-  f->forced = rc == LAG_OK && depends_on_time(f);
+  double kick = 0;
+  if (rc == LAG_OK) fits_kicks(f, 0, &kick);
+  f->kicks = kick > 0;
+  f->forced = rc == LAG_OK && (kick > 0 || depends_on_time(f));
   return rc;
 }
 
@@ -192,7 +211,7 @@ static int advance_with_tangent(FlowMap *f, lag_sim *sim, double t) {
   return lag_sim_advance(sim, t);
 }
 
-int lag_flow_differences(const FlowMap *f) { return f->like->scene->model->ncontacts > 0; }
+int lag_flow_contacts(const FlowMap *f) { return f->like->scene->model->ncontacts > 0; }
 
 /* d[n] := derivative of the end by the start in direction b[n], column j of B[n k] in units: differences of order 4. */
 static int end_slope(FlowMap *f, double t, double dt, const double *y0, const double *b, int k, double *d) {
@@ -210,8 +229,7 @@ static int end_slope(FlowMap *f, double t, double dt, const double *y0, const do
   return rc;
 }
 
-/* Phi := derivatives of the end by the start, on the tangent space of the constraints: closed contacts have no
- * tangent. */
+/* Phi := derivatives of the end by the start, on the tangent space of the constraints, by differences of runs. */
 static int end_derivatives(FlowMap *f, double t, double dt, const double *y0, double *Phi) {
   int n = f->n, k = 0;
   Pool pool = {0};
@@ -228,11 +246,17 @@ static int end_derivatives(FlowMap *f, double t, double dt, const double *y0, do
 }
 
 int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, double *Phi) {
-  int differences = Phi && lag_flow_differences(f), rc = differences ? end_derivatives(f, t, dt, y0, Phi) : LAG_OK;
+  int differences = Phi && f->differences, rc = differences ? end_derivatives(f, t, dt, y0, Phi) : LAG_OK;
   if (rc) return rc;
   lag_sim *sim = lag_flow_sim(f, t, y0);
   if (!sim) return keep_message(f, NULL, LAG_ENOMEM);
-  rc = Phi && !differences ? advance_with_tangent(f, sim, t + dt) : lag_sim_advance(sim, t + dt);
+  double end = t + dt + (f->kicks ? 32 * DBL_EPSILON * fmax(fabs(t), fabs(dt)) : 0); /* a kick there is of this run */
+  rc = Phi && !differences ? advance_with_tangent(f, sim, end) : lag_sim_advance(sim, end);
+  if (rc == LAG_EMETHOD && Phi && !differences && lag_flow_contacts(f)) { /* from here on: one map has one precision */
+    lag_sim_free(sim);
+    f->differences = 1;
+    return lag_flow_run(f, t, dt, y0, y1, Phi);
+  }
   rc = rc || !Phi || differences ? rc : lag_sim_tangent(sim, Phi);
   for (int k = 0; k < lag_sim_ncharges(sim); k++)
     if (sim->charges[k].jumped > 1e-12 * sim->charges[k].size) f->jumps[k] = 1;
@@ -294,7 +318,13 @@ static double drive_difference(FlowMap *f, double T, double *step) {
 }
 
 double lag_flow_drive(FlowMap *f, double *T) {
-  double step = 0, off = drive_difference(f, *T, &step);
+  double kick, step = 0;
+  fits_kicks(f, 0, &kick);
+  if (kick > 0) {
+    *T = kick * fmax(1, rint(*T / kick));
+    return fits_kicks(f, *T, &kick) ? drive_difference(f, *T, &step) : HUGE_VAL;
+  }
+  double off = drive_difference(f, *T, &step);
   for (int k = 0; k < 20 && isfinite(off); k++) {
     double next = *T + fmin(fmax(step, -*T / 8), *T / 8), further, now = drive_difference(f, next, &further);
     if (!(now < off)) break;
@@ -307,7 +337,13 @@ double lag_flow_drive(FlowMap *f, double *T) {
 
 double lag_flow_find_drive(FlowMap *f, double longest) {
   const double same = 1e-9;
-  double step, before = 0, now = 0;
+  double step, before = 0, now = 0, kick;
+  fits_kicks(f, 0, &kick);
+  for (int k = 1; kick > 0; k++) {
+    double T = k * kick;
+    if (k > 1 && (T > longest || k > DRIVE_LOOKS)) return 0;
+    if (fits_kicks(f, T, &kick) && lag_flow_drive(f, &T) < same) return T;
+  }
   for (int k = 1; k <= DRIVE_LOOKS; k++) { /* a local minimum of the difference, which is 0 */
     double T = longest * k / DRIVE_LOOKS, next = drive_difference(f, T, &step);
     if (k > 2 && now <= before && now <= next) {
@@ -349,16 +385,19 @@ static double slope_within(FlowMap *f, int k, double t, double *y, int i, double
   return sum / h;
 }
 
-/* The same by those two widths that agree best: near a singularity, as where bodies meet, narrow ones. */
+/* The same on the branch of each switch at y, by those two widths that agree best: near a singularity, as where bodies
+ * meet, narrow ones. */
 static double slope(FlowMap *f, int k, double t, double *y, int i) {
   enum { LEVELS = 9 };
   double h = 0x1p-4 * lag_difference_scale(&f->probe->pb, y, i), best = NAN, least = HUGE_VAL, before = NAN;
+  if (lag_switch_hold_sides(f->probe, t, y)) return NAN;
   for (int level = 0; level < LEVELS; level++, h /= 3) {
     double now = slope_within(f, k, t, y, i, h), off = fabs(now - before);
     if (off < least || (isnan(best) && isfinite(now))) best = now;
     if (off < least) least = off;
     before = now;
   }
+  for (int j = 0; j < f->probe->scene->model->nmodes; j++) lag_switch_hold(f->probe, j, LAG_FREE);
   return best;
 }
 
@@ -459,7 +498,11 @@ int lag_flow_tangent_basis(FlowMap *f, Pool *pool, double t, const double *y, co
   return rc;
 }
 
+int lag_flow_is_angle(const lag_model *m, int i) {
+  return i < m->nq ? m->q[i].periodic : i >= 2 * m->nq && m->z[i - 2 * m->nq].periodic;
+}
+
 double lag_flow_change(const lag_model *m, int i, const double *y, const double *y0) {
   double d = y[i] - y0[i], turn = 2 * acos(-1);
-  return i < m->nq && m->q[i].periodic ? d - turn * rint(d / turn) : d;
+  return lag_flow_is_angle(m, i) ? d - turn * rint(d / turn) : d;
 }

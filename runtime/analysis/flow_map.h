@@ -12,12 +12,14 @@ typedef struct FlowMap {
   int n, nq;
   double t0;
   int forced;       /* 1: the rates depend on time */
+  int kicks;        /* 1: there are kicks, at the scene's begin and a number of their periods */
   double drive;     /* the period of what drives it; 0: not known */
   const StateMap *closing;   /* what a drive's period is closed by: components that are exchanged; NULL: none */
   const char *name; /* parameter with another value, in its declared unit; NULL: none */
   double value;
   lag_scene scene;                                        /* of the runs: the scene's, with another start of the span */
   int stopped;                                            /* 1: the last run was ended by an event */
+  int differences; /* 1: Phi is by differences of runs, to some eight digits: a run over contacts had no tangent */
   double *jumps;                                          /* of each charge: 1: events changed it in a run */
   double *at, *up, *down, *mass, *linear, *room, *square; /* scratch */
   char message[600];                                      /* of the last failure */
@@ -35,8 +37,8 @@ lag_sim *lag_flow_sim(FlowMap *f, double t, const double *y0);
 /* y1[n] := the state a time dt after y0[n] at t; Phi[n n], row-major, unless NULL := its derivative by y0. LAG_OK, or
  * a status with its message; LAG_STOPPED: an event ended the run before. */
 int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, double *Phi);
-/* Whether these derivatives are differences of runs, to some eight digits: of models with contacts. */
-int lag_flow_differences(const FlowMap *f);
+/* Whether the model has contacts, which may close. */
+int lag_flow_contacts(const FlowMap *f);
 /* f[n] := y' at y, t. */
 int lag_flow_rates(FlowMap *f, double t, const double *y, double *rates);
 
@@ -68,5 +70,6 @@ int lag_flow_tangent_basis(FlowMap *f, Pool *pool, double t, const double *y, co
 /* G[nq + 1][nq + 1] := the affine map of coordinates by which the symmetry of charge k acts, per unit of its
  * parameter: q -> A q + b in the first nq rows. LAG_EMETHOD: it is not affine. */
 int lag_flow_affine(FlowMap *f, int k, double t, const double *y, double *G);
-/* y - y0 of component i, periodic angles modulo a turn. */
+/* Whether component i is a periodic angle; y - y0 of it, of such angles modulo a turn. */
+int lag_flow_is_angle(const lag_model *m, int i);
 double lag_flow_change(const lag_model *m, int i, const double *y, const double *y0);

@@ -89,6 +89,10 @@ void lag_orbit_set_target(PeriodicOrbit *o) {
 
 int lag_orbit_check_maps(const PeriodicOrbit *o, FlowMap *f, double T) {
   int forward = !o->closing || lag_flow_has_symmetry(f, o->closing, f->forced ? T : 0);
+  if (forward && o->reverse && f->kicks) {
+    snprintf(f->message, sizeof f->message, "--reverse: kicks are not the same backwards; leave it out");
+    return LAG_EMETHOD;
+  }
   if (forward && (!o->reverse || lag_flow_has_symmetry(f, o->reverse, 0))) return LAG_OK;
   snprintf(f->message, sizeof f->message,
            forward ? "--reverse: motions of this scene are not the same backwards in time with this map, which turns "

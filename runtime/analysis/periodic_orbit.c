@@ -122,12 +122,15 @@ static int continuation_column(PeriodicOrbit *o) {
     o->A[(all + o->led) * o->cols + col] = -o->parameter_unit / size_of(o, &o->held[o->led]);
     return LAG_OK;
   }
-  double was = o->parameter;
+  double was = o->parameter, *ends = o->ends;
+  memcpy(ends, o->end, (size_t)all * sizeof *ends);
   FiniteDifference d = {.order = 2, .n = all + o->nheld, .stride = o->cols, .h = part * o->parameter_unit,
                         .part = part, .out = o->saved};
   int rc = lag_finite_difference(&d, residuals_at, o, was, o->A + col);
   rc = rc ? rc : lag_orbit_set_parameter(o, was);
-  return rc ? rc : lag_orbit_shoot(o, 0);
+  memcpy(o->end, ends, (size_t)all * sizeof *ends);
+  lag_orbit_set_target(o);
+  return rc;
 }
 
 /* Whether a component that keeps its value chooses the phase: the motion crosses that value, or, of a family over one
@@ -273,7 +276,7 @@ static int remove_charges(PeriodicOrbit *o) {
 
 /* Whether nodes lie on constraints that always hold; those of contacts come and go. */
 static int is_constrained(const PeriodicOrbit *o) {
-  return o->flow.like->scene->model->constraints && !lag_flow_differences(&o->flow);
+  return o->flow.like->scene->model->constraints && !lag_flow_contacts(&o->flow);
 }
 
 /* A := its part in the tangent space of the constraints at each node, to which a step's end returns; o->normal := the
@@ -314,6 +317,14 @@ int lag_orbit_assemble(PeriodicOrbit *o) {
   if (rc == LAG_OK && o->half) begin_rows(o);
   if (rc == LAG_OK && !o->continues && is_constrained(o)) rc = within_constraints(o);
   return rc || !o->continues ? rc : phase_rows(o);
+}
+
+int lag_orbit_residual(PeriodicOrbit *o) {
+  shooting_rows(o);
+  int rc = o->half ? LAG_OK : remove_charges(o);
+  rc = rc ? rc : held_rows(o);
+  if (rc == LAG_OK && o->half) begin_rows(o);
+  return rc;
 }
 
 /* ---- Newton's steps */
@@ -365,7 +376,7 @@ static int falling_step(PeriodicOrbit *o, double *size) {
 
 /* The residual that is a solution's; at impacts, where runs differ by more than rounding, a hundred times it. */
 static double accepted(const PeriodicOrbit *o) {
-  return fmax((lag_flow_differences(&o->flow) ? 100 : 1) * rounding, 1e3 * o->flow.like->tol);
+  return fmax((lag_flow_contacts(&o->flow) ? 100 : 1) * rounding, 1e3 * o->flow.like->tol);
 }
 
 static int newton(PeriodicOrbit *o) {
@@ -400,9 +411,9 @@ static int allocate(PeriodicOrbit *o) {
   size_t charges = (size_t)lag_flow_charges(&o->flow);
   lag_orbit_count(o);
   size_t rows = (m + 1) * n + (size_t)o->nheld + charges + group + 1, cols = m * n + 2 + group; /* with continuation */
-  const lag_part parts[] = {{&o->y, m * n}, {&o->end, m * n}, {&o->Phi, m * n * n}, {&o->unit, n}, {&o->turns, n},
-      {&o->offset, n}, {&o->affine, group * size * size + 1}, {&o->target, n}, {&o->G, n * n}, {&o->A, rows * cols},
-      {&o->b, rows},
+  const lag_part parts[] = {{&o->y, m * n}, {&o->end, m * n}, {&o->ends, m * n}, {&o->Phi, m * n * n}, {&o->unit, n},
+      {&o->turns, n}, {&o->offset, n}, {&o->affine, group * size * size + 1}, {&o->target, n}, {&o->G, n * n},
+      {&o->A, rows * cols}, {&o->b, rows},
       {&o->V, cols * cols}, {&o->sigma, cols}, {&o->x, cols + 2 * n}, {&o->saved, m * n * (charges + 2) + cols},
       {&o->w, 4 * size * size + 4 * n}, {&o->re, n}, {&o->im, n}};
   lag_pool_parts(&o->pool, sizeof parts / sizeof *parts, parts);
@@ -430,8 +441,8 @@ static void place_begin(PeriodicOrbit *o) {
   const double turn = 2 * acos(-1);
   double *image = o->x;
   lag_map_apply(o->reverse, o->y, image);
-  for (int i = 0; i < m->nq; i++)
-    o->offset[i] = m->q[i].periodic ? turn * rint((o->y[i] - image[i]) / turn) : 0;
+  for (int i = 0; i < o->n; i++)
+    o->offset[i] = lag_flow_is_angle(m, i) ? turn * rint((o->y[i] - image[i]) / turn) : 0;
   for (int i = 0; i < o->n; i++) o->y[i] = (o->y[i] + image[i] + o->offset[i]) / 2;
 }
 
@@ -449,8 +460,8 @@ static int place_nodes(PeriodicOrbit *o) {
   double *image = o->x;
   if (o->closing) lag_map_apply(o->closing, o->y, image);
   else memcpy(image, o->y, (size_t)n * sizeof *image);
-  for (int i = 0; i < m->nq && rc == LAG_OK; i++)
-    o->turns[i] = m->q[i].periodic ? turn * rint((last[i] - image[i]) / turn) : 0;
+  for (int i = 0; i < n && rc == LAG_OK; i++)
+    o->turns[i] = lag_flow_is_angle(m, i) ? turn * rint((last[i] - image[i]) / turn) : 0;
   return rc;
 }
 
@@ -580,7 +591,7 @@ int lag_orbit_refine(PeriodicOrbit *o) {
   for (int k = 2; k <= 7 && !o->ngroup && !o->closing && !o->at_rest; k++)
     if (is_back(o, k)) o->repeats = k;
   like->tol = like->pb.tol = fmax(tol / 100, 1e-15);
-  if (like->tol == tol || lag_flow_differences(&o->flow)) like->tol = like->pb.tol = 100 * tol;
+  if (like->tol == tol || lag_flow_contacts(&o->flow)) like->tol = like->pb.tol = 100 * tol;
   int rc = lag_orbit_shoot(o, 1);
   rc = rc ? rc : lag_orbit_assemble(o);
   if (rc == LAG_OK) {

@@ -95,9 +95,10 @@ static const char *event_at_node(PeriodicOrbit *o) {
   for (int k = 0; k < o->m && !name; k++) {
     double begin = o->flow.t0 + o->T * k / o->m, end = begin + o->T / o->m;
     lag_sim *sim = lag_flow_sim(&o->flow, begin, o->y + k * o->n);
-    for (int j = 0; sim && j < m->nev && lag_sim_advance(sim, end) == LAG_OK; j++)
-      if (lag_sim_event_times(sim, j, &first, &last) > 0 && (first < begin + near || last > end - near))
-        name = m->ev[j].name;
+    for (int j = 0; sim && j < m->nev && lag_sim_advance(sim, end) == LAG_OK; j++) {
+      if (lag_is_kick(m, j) || lag_sim_event_times(sim, j, &first, &last) <= 0) continue;
+      if (first < begin + near || last > end - near) name = m->ev[j].name;
+    }
     lag_sim_free(sim);
   }
   return name;
@@ -185,8 +186,7 @@ static int open_moved(Doubled *moved, PeriodicOrbit *o, const lag_scene *scene, 
   if (!y) return LAG_ENOMEM;
   for (int k = 0; k < o->m && rc == LAG_OK; k++)
     rc = lag_flow_run(&o->flow, o->flow.t0 + o->T * k / o->m, later, o->y + k * n, y + k * n, NULL);
-  moved->scene = *scene;
-  moved->scene.t0 = o->flow.t0 + later;
+  moved->scene = *scene, moved->scene.t0 = o->flow.t0 + later;
   moved->scene.t1 = scene->t1 + (moved->scene.t0 - scene->t0);
   moved->like = rc ? NULL : lag_flow_sim(&o->flow, moved->scene.t0, y);
   if (moved->like) {
@@ -301,19 +301,21 @@ static int follow_other(Job *job, const Part *of, const BranchPoint *at) {
   return rc;
 }
 
+/* By how much the parameter of a branch grows for motions of twice the period. */
+static double doubling_factor(const PeriodicOrbit *o) {
+  return o->led >= 0 && o->held[o->led].kind == ORBIT_PERIOD ? 2 : 1;
+}
+
 /* The orbit over twice the period at a point where it doubles; its parts hold the same motion. */
 static int open_doubled(Doubled *two, PeriodicOrbit *o, const lag_scene *scene) {
   two->like = lag_flow_sim(&o->flow, o->flow.t0, o->y);
   if (!two->like) return LAG_ENOMEM;
   two->like->scene = scene;
-  two->orbit = (PeriodicOrbit){.nheld = o->nheld,
-                               .continues = 1,
-                               .led = o->led,
-                               .name = o->name,
-                               .parameter = o->parameter,
-                               .parameter_unit = o->parameter_unit,
+  two->orbit = (PeriodicOrbit){.nheld = o->nheld, .continues = 1, .led = o->led, .name = o->name,
+                               .parameter = o->parameter * doubling_factor(o), .parameter_unit = o->parameter_unit,
                                .ngroup = o->ngroup};
   memcpy(two->orbit.held, o->held, sizeof o->held);
+  for (int k = 0; k < o->nheld; k++) two->orbit.held[k].value *= o->held[k].kind == ORBIT_PERIOD ? 2 : 1;
   memcpy(two->orbit.group, o->group, sizeof o->group);
   if (o->closing && lag_map_square(&two->closing, &two->orbit.pool, o->closing)) return LAG_ENOMEM;
   two->orbit.closing = o->closing ? &two->closing : NULL;
@@ -329,11 +331,12 @@ static int open_doubled(Doubled *two, PeriodicOrbit *o, const lag_scene *scene) 
 static void double_tangent(const PeriodicOrbit *o, const PeriodicOrbit *two, const double *of, double *tangent) {
   int part = o->m * o->n, whole = two->m * two->n;
   for (int i = 0; i < two->cols; i++) tangent[i] = of[i < whole ? i % part : part + i - whole];
+  tangent[two->cols - 1] *= doubling_factor(o);
 }
 
 /* Motions of twice the period, from a point where it doubles: in one direction, as the other one is the same motion
  * a period later. */
-static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
+static int follow_doubled(Job *job, const Part *of, BranchPoint *at) {
   if (job->ndoubled == MOST_DOUBLINGS || of->problem->place(of->orbit, at->u)) return LAG_OK;
   Doubled *two = &job->doubled[job->ndoubled++];
   int rc = open_doubled(two, of->orbit, job->app->sim->scene), cols = two->orbit.cols;
@@ -342,6 +345,10 @@ static int follow_doubled(Job *job, const Part *of, const BranchPoint *at) {
   BranchPoint start = {.u = u, .tangent = u + cols};
   lag_orbit_branch_unknowns(&two->orbit, u);
   double_tangent(of->orbit, &two->orbit, at->tangent, start.tangent);
+  if (u[cols - 1] > job->limits.high || u[cols - 1] < job->limits.low) {
+    free(u);
+    return at->unfollowed = "its motions have twice this period, outside of the range", LAG_OK;
+  }
   rc = lag_branch_other(&two->problem, &start, u + 2 * cols);
   if (rc == LAG_OK) job->number = ++job->nbranches;
   if (rc == LAG_OK) rc = follow(job, &two->problem, &two->orbit, u, u + 2 * cols, 0, of->number);
@@ -374,7 +381,7 @@ static int follow_from(Job *job, const Part *of, BranchPoint *at, int first) {
   else if (at->kind == BRANCH_HOPF) rc = follow_cycle(job, of, at);
   else if (at->kind == BRANCH_DOUBLING) rc = follow_doubled(job, of, at);
   else return LAG_OK;
-  if (rc == LAG_OK && job->nparts == before)
+  if (rc == LAG_OK && job->nparts == before && !at->unfollowed)
     at->unfollowed = at->kind == BRANCH_HOPF && job->steady.cols
                          ? "motions about steady ones that change are not followed: `lagc orbit --relative NAME` "
                            "from a start beside it finds one"
@@ -467,24 +474,27 @@ static int begin_steady(Job *job) {
   return status ? failed(job, status, s->flow.message) : rc;
 }
 
-/* Conserved charges keep their values unless --hold names others, or one is the parameter. */
+/* Conserved charges keep their values unless --hold names others, or one is the parameter; --period is in place of the
+ * energy. */
 static void hold_charges(Job *job) {
   PeriodicOrbit *o = &job->orbit;
   const lag_charges *of = job->app->scene->model->charges;
   int conserves = (lag_facts(&job->app->sim->pb) & LAG_CONSERVES_ENERGY) != 0;
   if (job->led_kind < 0 && job->app->args.hold) return;
+  for (int k = 0; k < job->app->scene->model->nev; k++)
+    if (lag_is_kick(job->app->scene->model, k)) return; /* kicks change them */
   for (int k = 0; k < (of ? of->n : 1) && o->nheld < ORBIT_MOST_HELD - 2; k++) {
     if (of ? !(of->of[k].flags & LAG_CONSERVED) : !conserves) continue;
-    if (job->led_kind >= 0 && (k == 0 || (job->led_kind == ORBIT_CHARGE && job->led_of == k))) continue;
+    if (k == 0 && (job->led_kind >= 0 || job->app->args.period)) continue;
+    if (job->led_kind == ORBIT_CHARGE && job->led_of == k) continue;
     o->held[o->nheld++] = (OrbitHold){.kind = ORBIT_CHARGE, .of = k};
   }
 }
 
 static double led_value(Job *job) {
   PeriodicOrbit *o = &job->orbit;
-  return job->led_kind == ORBIT_PERIOD  ? o->T
-         : job->led_kind == ORBIT_STATE ? o->y[job->led_of]
-                                        : lag_flow_charge(&o->flow, job->led_of, o->flow.t0, o->y);
+  if (job->led_kind == ORBIT_PERIOD) return o->T;
+  return job->led_kind == ORBIT_STATE ? o->y[job->led_of] : lag_flow_charge(&o->flow, job->led_of, o->flow.t0, o->y);
 }
 
 /* The quantity that runs over a range keeps its value for the first motion only: --period 2.5 period=2..3. */

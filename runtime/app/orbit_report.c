@@ -91,6 +91,8 @@ int lag_app_orbit_holds(App *app, PeriodicOrbit *o) { return read_names(app, o, 
 static int given_period(const Args *a, double *T) {
   const char *option = a->period ? "--period" : "--guess", *text = a->period ? a->period : a->guess;
   *T = 0;
+  if (a->period && a->guess)
+    return lag_app_error(a, "--period and --guess: the period is given, or about that; leave one out");
   if (text && !lag_args_number(a, option, text, a->period ? "--period 6.28" : "--guess 6.28", T)) return EXIT_USAGE;
   return text && *T <= 0 ? lag_app_error(a, "%s %s: a period is a positive time", option, text) : 0;
 }
@@ -333,9 +335,9 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
   if (o->reverse)
     fprintf(f, "reversible by %s: from t = %s s on the motion is its first half backwards\n", app->args.reverse,
             lag_number_text(o->T / 2, text));
-  if (lag_flow_differences(&o->flow))
-    fputs("multipliers to about 8 digits: with contacts, which may close, runs from beside the start replace the "
-          "tangent\n", f);
+  if (o->flow.differences)
+    fputs("multipliers to about 8 digits: a contact with friction, or one that comes and goes, has no tangent, which "
+          "runs from beside the start replace\n", f);
   if (o->closed)
     fprintf(f, "%s is closed at the begin: multipliers are of disturbances that keep it so%s\n", o->closed,
             o->opens ? "" : "; after a small push that opens it, it is closed again within a period");
@@ -359,7 +361,7 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
   lag_json_numbers(&j, {"period", o->T}, {"period_error", o->flow.forced ? NAN : o->period_error},
                        {"residual", o->residual});
   lag_json_count(&j, "newton_steps", o->steps);
-  lag_json_string(&j, "multipliers_by", lag_flow_differences(&o->flow) ? "differences" : "tangent");
+  lag_json_string(&j, "multipliers_by", o->flow.differences ? "differences" : "tangent");
   lag_json_counts(&j, {"segments", o->m}, {"free_directions", o->nfree});
   lag_json_truth(&j, "steady", o->steady);
   lag_json_count(&j, "repeats", o->repeats > 1 ? o->repeats : 1);
@@ -423,6 +425,11 @@ int lag_app_orbit_solve(App *app, PeriodicOrbit *o) {
   int rc = lag_orbit_solve(o);
   if (rc == 0) return not_found(app, o);
   if (rc > 0) rc = lag_orbit_refine(o);
+  if (rc == 0 && o->at_rest && o->T < 1e-3 * o->time)
+    return lag_app_no_result(a,
+                             "no periodic motion found near the start of scene %s: the search shrinks the period to "
+                             "nothing; start nearer to one: name=VALUE, or another period: --guess T",
+                             app->scene->name);
   if (rc == 0 && o->at_rest) {
     return lag_app_no_result(
         a,

@@ -143,6 +143,7 @@ struct lag_sim {
   double *method_work;   /* [nwork] */
   size_t nwork;
   /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
+  double kicks_late; /* time between the origin of kicks and the begin of the scene, as of a part of a motion */
   double *tangent, *tangent_jump, *tangent_scratch;
   double *hold_before; /* [nu + nmodes] of a run with a tangent: hold before the event */
   struct lag_sensitivity *sensitivity;   /* parameter_columns.c; NULL: the tangent is one by starts alone */
@@ -286,6 +287,8 @@ int lag_switch_sticks(const lag_sim *sim, int k);
 void lag_switch_set_free(lag_sim *sim, int free);
 /* Holds switch k at mode m, 0: sliding, for right-hand sides beside the surface. */
 void lag_switch_hold(lag_sim *sim, int k, double m);
+/* Holds each switch at its side of y, for differences beside its surface. A status. */
+int lag_switch_hold_sides(lag_sim *sim, double t, const double *y);
 /* Event functions that are watched: events, then switches that have a mode; none of these for methods that find no
  * events. */
 static inline int lag_watched(const lag_sim *s) {

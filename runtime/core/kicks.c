@@ -16,7 +16,9 @@ static int has_kicks(const lag_model *m) {
 }
 
 /* The time of the next kick k, with the period T. */
-static double next_of(const lag_sim *s, int k, double T) { return s->scene->t0 + (s->count[k] + 1) * T; }
+static double next_of(const lag_sim *s, int k, double T) {
+  return s->scene->t0 - s->kicks_late + (s->count[k] + 1) * T;
+}
 
 /* Rounding of the times of kicks near t. */
 static double together(double t) { return 16 * DBL_EPSILON * fabs(t); }
@@ -30,6 +32,7 @@ int lag_kicks_begin(lag_sim *s, const double *period) {
     if (!(period[k] > 0))
       return lag_fail(s, LAG_EINVAL, "kick %s: its period is %s s, and must be positive", m->ev[k].name,
                       LAG_TEXT(period[k]));
+    s->count[k] = floor(s->kicks_late / period[k] * (1 + 64 * DBL_EPSILON));
   }
   return LAG_OK;
 }

@@ -80,7 +80,7 @@ static int parameters_at_jump(lag_sim *s, int k, const Jump *j, const double *ga
   if ((rc = lag_event_by_parameters(s, k, j->g_by)) != 0) return rc;
   if (kick) { /* g is the period */
     if ((rc = lag_events_eval(s, s->run->t, s->now, s->g1)) != 0) return rc;
-    rate = -s->g1[k] / (s->run->t - s->scene->t0);
+    rate = -s->g1[k] / (s->run->t - s->scene->t0 + s->kicks_late);
   }
   for (int i = 0; i < n; i++)
     for (int c = 0; c < columns; c++) j->R_by[i * columns + c] += gain[i] * j->g_by[c] / rate;

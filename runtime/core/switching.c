@@ -171,6 +171,14 @@ int lag_switch_eval(lag_sim *s, double t, const double *y, double *g) {
   return rc;
 }
 
+int lag_switch_hold_sides(lag_sim *s, double t, const double *y) {
+  int rc = s->scene->model->nmodes ? sides_at(s, t, y, s->sides) : 0;
+  for (int k = 0; k < s->scene->model->nmodes && rc == 0; k++)
+    *mode(s, k) = s->scene->model->switches[k].is_floor ? floor(s->sides[k]) : s->sides[k] < 0 ? -1 : 1;
+  lag_switch_count(s);
+  return rc;
+}
+
 double lag_switch_noise(const lag_sim *s, int k) { return slides(s, k) ? 1e-12 : 2 * s->side_noise[k]; }
 
 /* side_noise[nmodes] := change of the switching functions g[nmodes] when the state at the present time changes in

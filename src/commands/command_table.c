@@ -137,8 +137,8 @@ static const CommandRow commands[] = {
      "has proved, or after an exchange of coordinates; --reverse solves half of a motion that is the same "
      "backwards.\n\n"
      "Multipliers that are 1 by the phase, by conserved charges and by their symmetries are counted, not listed. "
-     "Motions may go over events that set velocities, and over switches; where there are contacts runs from beside "
-     "the start replace the tangent. Needs GSL. Exit status 3: no periodic motion was found.\n\n"
+     "Motions may go over events that set velocities, switches and impacts; where contacts with friction stay closed "
+     "runs from beside the start replace the tangent. Needs GSL. Exit status 3: no periodic motion was found.\n\n"
      "  name=value            a parameter, another start (th=3), an input to hold"},
     {CMD_CONTINUE, "continue", "bifurcation",
      "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T | --steady] [--hold NAMES] [--branches] "
@@ -153,7 +153,7 @@ static const CommandRow commands[] = {
      "coordinate or velocity at the start: the amplitude of a nonlinear mode. Periodic motions are followed where "
      "the scene depends on time, and where one of --guess, --period, --hold, --relative or such a NAME is given "
      "(the options of `lagc orbit`); else states of rest. Conserved charges keep their values unless one is NAME or "
-     "--hold names others.\n\n"
+     "--hold names others; --period T is kept in place of the energy.\n\n"
      "Derivatives by the parameter are differences, one-sided at its bounds; a constant is compiled as a parameter. "
      "A and B are in the declared unit, or the unit behind them: th=5..170[deg]. Needs GSL. Exit status 3: no "
      "solution was found to begin with.\n\n"

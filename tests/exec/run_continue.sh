@@ -97,17 +97,27 @@ close 3 parameter 3.99666724513820446 1e-12
 close 4 parameter 4.01657915296946699 1e-12
 close 6 parameter -0.0199132963584375184 1e-12
 # a ball bounces once a period T of a plate (run_orbit.sh): A w^2 cos p = g T w (1 - e)/(2 (1 + e)) has two motions that meet at cos p = 1; where
-# (1 + e)^2 A w^2 sin p/g is -2 (1 + e^2) the period doubles. Differences of runs: 8 digits of multipliers. (Behind the plate's zero by
+# (1 + e)^2 A w^2 sin p/g is -2 (1 + e^2) the period doubles. (Behind the plate's zero by
 # 1: no bounce at the start of the period.)
 sed 's/sin(w\*t)/sin(w*t + 1)/' $dir/plate.lag >"$TMP/plate.lag"
 follow "$TMP/plate.lag" A=0.005..0.011
 kinds "end;fold;period doubling;end;"
 close 2 parameter 0.00642062998577413993 1e-12
-close 3 parameter 0.00936133781380749192 1e-10
+close 3 parameter 0.00936133781380749192 1e-12
 # --period names the first motion, and holds no other: cos of the amplitude where 4 sqrt(l/g) K(sin(th/2)) = 3, mpmath
 follow models/pendulum.lag wide period=2.4..3 --period 2.5
 kinds "end;end;"
 near "$title: amplitude" 1e-10 -0.672828117724294 "$(sed -n "1s/.*\"th\": \([^,]*\), \"th'\": \([^}]*\)}.*/\1 \2/p" "$TMP/points" | awk '{ printf "%.15g", cos($1) - $2^2/(2*9.81) }')"
+# --period is kept in place of the energy while a parameter moves. The fold of Bratu's problem: 8 x^2/cosh(x)^2 where x tanh(x) = 1, mpmath
+follow $dir/bratu.lag p=2..4 --period 2 u=0.01 "u'=1.24"
+kinds "fold;end;end;"
+close 1 parameter 3.51383071912516121 1e-12
+# the standard map: its island's centre doubles at K = 4; the period follows that of the kicks
+follow models/standard_map.lag q=0.1 p=0.05 K=0.5..4.5 --guess 1
+kinds "period doubling;end;end;"
+close 1 parameter 4 1e-12
+follow models/standard_map.lag q=0.1 p=0.05 T=1..2 --guess 1
+close 1 period 2 1e-14
 # Duffing's backbone by energy: 4 K(k)/sqrt(1 + A^2), k^2 = A^2/(2 (1 + A^2)), A^2 + A^4/2 = 2 E; at 24 by mpmath
 follow $dir/backbone.lag energy=0.7..24
 close 1 period 2.31119416692599250 1e-11
@@ -181,11 +191,20 @@ long() {
   close 1 parameter 0.1352859193003538 1e-11 # SciPy: trace of the equation across is -2
   close 3 parameter 0.1615515151108141 1e-11 # SciPy: it is 2
   near "$title: 6 E" 5e-7 0.986709 "$(of_point 4 parameter | awk '{ printf "%.12g", 6*$1 }')"
+  # the first over the period: motions of twice it, whose branch point is that of the family over the energy
+  follow models/henon_heiles.lag regular x=0 y=0.3 "x'=0" "y'=0" energy=0.13..0.16 y=0.71 --guess 7.8 --branches --most 40
+  doubled=$(sed -n '/"kind": "branch point"/{s/.*"period": \([^,]*\),.*/\1/p;q;}' "$TMP/points")
+  follow models/henon_heiles.lag regular x=0 y=0.71 "x'=0" "y'=0" period=7.7..16 --guess 7.8 --branches --most 40
+  near "$title: twice the period" 1e-9 "$doubled" "$(sed -n '/"kind": "branch point", "parameter": 15/{s/.*"parameter": \([^,]*\),.*/\1/p;q;}' "$TMP/points")"
+  check "$title: twice a period outside" sh -c "'$LAGC' continue models/henon_heiles.lag regular x=0 y=0.71 \"x'=0\" \"y'=0\" period=7.7..8 --guess 7.8 --branches | grep -q 'not followed: .* outside of the range'"
   # halo orbits leave the planar ones about L1 where motions across the plane have a trace of 2: SciPy's DOP853 at 1e-13 and Brent's method
   follow $dir/cr3bp_space.lag period=2.71..2.75 --guess 2.743 --hold y --branches
   kinds "end;branch point;end;end;end;"
   close 2 parameter 2.7429940694621724 1e-11
   close 2 x 0.8233908986333198 1e-10
+  # the family of halo orbits at mu = 0.063004722392: folds of its period by AUTO-07p (demo r3b, 100 intervals), behind a branch point at 2.1804842
+  follow $dir/cr3bp_space.lag mu=0.063004722392 x=0.6637384 z=0.1213414 "y'=0.32624754" --guess 2.5996 --hold y period=1.9..3.2 --most 170
+  is "$title: folds" "2.692128169 2.014663112 3.080375913 " "$(sed -n 's/.*"fold", "parameter": \([^,]*\),.*/\1/p' "$TMP/points" | head -3 | awk '{ printf "%.9f ", $1 }')"
   # M. Garcia et al. (1998): the walker's gait doubles at a slope of 0.0151; its motions of two steps at 0.0177
   follow $dir/walker.lag slope=0.008..0.018 --guess 3.88 --branches
   kinds "period doubling;end;end;period doubling;end;end;"
