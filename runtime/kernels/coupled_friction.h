@@ -19,11 +19,13 @@ typedef struct lag_coupled_friction {
   lag_joint_friction *joints;
   LAG_REAL *end;                   /* [states] the end of the step without contacts */
   LAG_REAL *was, *change, *stride; /* [n] modes before a round; change by the last, and strides in parts of it */
+  int loaded;                      /* contacts have loaded guides in this step */
 } lag_coupled_friction;
 
 /* Contacts meet in a model that has some; dry friction alone needs no `end`. */
 static inline void lag_coupled_place(lag_coupled_friction *w, LAG_REAL *room) {
   const int n = w->joints->n;
+  w->loaded = 0;
   w->was = room, w->change = room += n, w->stride = room + n;
   for (int j = 0; j < n; j++) w->change[j] = w->stride[j] = LAG_C(0.0);
 }
@@ -96,14 +98,27 @@ static inline int lag_coupled_respond(LAG_MODEL, lag_coupled_friction *w, const 
   return LAG_FIND_CONTACTS(s, w);
 }
 
+/* Friction of guides from here on follows what contacts press on them, too; so does that at the begin of the step. */
+static inline int lag_coupled_load(LAG_MODEL, lag_coupled_friction *w, const lag_kick *s) {
+  int status = 0;
+  if (w->contacts.loads == 0) return status;
+  lag_contacts_load(&w->contacts, s->h);
+  if (!w->loaded) LAG_TRY(LAG_MODE_RATES(s->t, s->mid, w->joints, s->rate0));
+  w->loaded = 1;
+  return status;
+}
+
 /* s->y1 := velocities and states with contacts and friction, of a model with either. */
 static inline int lag_coupled_obey(LAG_MODEL, lag_coupled_friction *w, const lag_kick *s) {
   LAG_REAL size[1];
+  int status = 0;
   if (w->contacts.contacts == 0)
     return w->joints->n > 0 ? lag_joints_solve(LAG_THE_MODEL, w->joints, s, 0, size) : 0;
   if (w->joints->n == 0) return LAG_MEET(s, w);
+  if (w->loaded) LAG_TRY(lag_joints_respond(LAG_THE_MODEL, w->joints, s));
   for (int i = s->nq; i < w->joints->states; i++) w->end[i] = s->y1[i];
-  return lag_coupled_agree(LAG_THE_MODEL, w, s);
+  LAG_TRY(lag_coupled_agree(LAG_THE_MODEL, w, s));
+  return lag_coupled_load(LAG_THE_MODEL, w, s);
 }
 
 /* Once all agree: surfaces whose slip is 0 at the end; friction may be at its limit where contacts hold the body. */
