@@ -52,6 +52,7 @@ typedef struct lag_moreau_contacts {
   LAG_REAL *c, *r0, *r1, *pace, *bend, *tail, *g;
   LAG_REAL *d, *effort, *x;        /* [nq], [nq + loads], [nq] */
   LAG_REAL *loading, *load;        /* [rows loads] of a unit impulse; [loads] by contacts: the instance's */
+  LAG_REAL *smooth, *pressed;      /* with loads: [rows (nq + 1)] responses without friction of guides; [rows] impulses */
   LAG_REAL *jacobian, *mass, *lu, *pivot, *scale;
   LAG_REAL *first, *entry;         /* entry[first[k]] to entry[first[k + 1]]: entries of constraint k */
 } lag_moreau_contacts;
@@ -59,7 +60,7 @@ typedef struct lag_moreau_contacts {
 enum { LAG_PRESSING_SIZE = (int)(sizeof(lag_pressing)/sizeof(LAG_REAL)) };
 /* Scalars that a step with these sizes needs; entries of D: `responses`; of the factored mass matrix: `lu`. */
 #define LAG_CONTACT_ROOM(contacts, constraints, nq, entries, nmass, responses, lu, loads) \
-  ((contacts)*(LAG_PRESSING_SIZE + 10 + (loads)) + 4 + 8*(constraints) + 5*(nq) + (loads) + 4*(entries) + \
+  ((contacts)*(LAG_PRESSING_SIZE + 10 + (loads) + ((loads) > 0 ? (nq) + 2 : 0)) + 4 + 8*(constraints) + 5*(nq) + (loads) + 4*(entries) + \
    2*(responses) + (nmass) + (lu))
 
 /* Places arrays into room[LAG_CONTACT_ROOM]; sizes are set. */
@@ -72,7 +73,8 @@ static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG
   w->all.A.first = room += p, w->all.D.first = room += p + 1;
   w->c = room += p + 1, w->r0 = room += nc, w->r1 = room += nc, w->pace = room += nc, w->bend = room += nc;
   w->tail = room += nc, w->g = room += nc, w->d = room += nc, w->effort = room += nq, w->x = room += nq + w->loads;
-  w->loading = room += nq, w->pivot = room += p*w->loads, w->scale = room += nq;
+  w->loading = room += nq, w->smooth = room += p*w->loads, w->pressed = room += w->loads > 0 ? p*(nq + 1) : 0;
+  w->pivot = room += w->loads > 0 ? p : 0, w->scale = room += nq;
   w->jacobian = room += nq, w->all.A.col = room += e, w->all.A.value = room += e;
   w->all.D.col = room += e, w->all.D.value = room += responses, w->mass = room += responses, w->lu = room += w->nmass;
   w->first = room += lag_band_matrix_size(nq, w->band), w->entry = room + nc + 2;
@@ -156,7 +158,7 @@ static inline int lag_contact_row(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
   }
   if (!alone) LAG_TRY(lag_contact_respond(LAG_THE_MODEL, w, t, y, i, r));
   for (int j = 0; j < w->nq && !alone; j++) {
-    if (!(w->d[j] < LAG_C(0.0) || w->d[j] > LAG_C(0.0))) continue;
+    if (!(w->d[j] < LAG_C(0.0) || w->d[j] > LAG_C(0.0)) && w->loads == 0) continue;
     D->col[f] = (LAG_REAL)j;
     D->value[f++] = w->d[j];
   }
