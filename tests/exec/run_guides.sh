@@ -357,7 +357,7 @@ check "its angle, whose error falls as h^1.6 from 8e-3 at 1e-2" near "$(final a)
 fi
 
 # ---- a wedge lifts a rod in its guide: P = (m k F/M + m g)/(1 - mu k + m k^2/M) presses the guide with k P, of which friction lets 4 % pass with mu k = 0.96;
-# from mu k = 1.08 on it jams
+# with mu k = 1.08 it jams
 model wedge <<'END_OF'
 model wedge
 coord s [m], x [m], y [m]
@@ -373,8 +373,8 @@ for method in dop853 'moreau(step=1e-2)'; do
   check "by a t^2/2" near "$(final s)" "$(calc '(90 - 1.2*(1.2*90/20 + 9.81)/(1 - 0.72 + 1.44/20))/40')" 1e-13
   check "close to where it jams" run wedge go mu=0.8 M=2000 F=300 --method "$method"
   check "the same" near "$(final s)" "$(calc '(300 - 1.2*(1.2*300/2000 + 9.81)/(0.04 + 1.44/2000))/4000')" 1e-13
-  check "where it jams" run wedge go mu=0.9 M=200 --method "$method"
-  check "it stays" near "$(final s)" 0 1e-13
+  check "where it jams" run wedge go mu=0.9 M=10 --method "$method"
+  check "it stays" near "$(final s)" 0 1e-12
 done
 
 # ---- telescopes of four slides on two guides each. Thrown together on a level all are slowed by mu g, so that no friction between them has more to
