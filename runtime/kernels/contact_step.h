@@ -52,7 +52,7 @@ typedef struct lag_moreau_contacts {
   LAG_REAL *c, *r0, *r1, *pace, *bend, *tail, *g;
   LAG_REAL *d, *effort, *x;        /* [nq], [nq + loads], [nq] */
   LAG_REAL *loading, *load;        /* [rows loads] of a unit impulse; [loads] by contacts: the instance's */
-  LAG_REAL *smooth, *pressed;      /* with loads: [rows (nq + 1)] responses without friction of guides; [rows] impulses */
+  LAG_REAL *smooth, *pressed;      /* with loads: [rows (nq + 1)] responses without these guides; [rows] impulses */
   LAG_REAL *jacobian, *mass, *lu, *pivot, *scale;
   LAG_REAL *first, *entry;         /* entry[first[k]] to entry[first[k + 1]]: entries of constraint k */
 } lag_moreau_contacts;
@@ -60,8 +60,8 @@ typedef struct lag_moreau_contacts {
 enum { LAG_PRESSING_SIZE = (int)(sizeof(lag_pressing)/sizeof(LAG_REAL)) };
 /* Scalars that a step with these sizes needs; entries of D: `responses`; of the factored mass matrix: `lu`. */
 #define LAG_CONTACT_ROOM(contacts, constraints, nq, entries, nmass, responses, lu, loads) \
-  ((contacts)*(LAG_PRESSING_SIZE + 10 + (loads) + ((loads) > 0 ? (nq) + 2 : 0)) + 4 + 8*(constraints) + 5*(nq) + (loads) + 4*(entries) + \
-   2*(responses) + (nmass) + (lu))
+  ((contacts)*(LAG_PRESSING_SIZE + 10 + (loads) + ((loads) > 0 ? (nq) + 2 : 0)) + 4 + 8*(constraints) + 5*(nq) + \
+   (loads) + 4*(entries) + 2*(responses) + (nmass) + (lu))
 
 /* Places arrays into room[LAG_CONTACT_ROOM]; sizes are set. */
 static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG_REAL *room) {

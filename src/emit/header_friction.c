@@ -84,7 +84,8 @@ static void write_part(const Header *h, const char *text, const HeaderWord *word
       grips = guides || held;
   int meets = program_set_contacts(h->u) > 0;
   const LineChoice choices[] = {{'n', !h->u->q.n}, {'m', switches}, {'j', guides}, {'k', !guides}, {'x', !switches},
-                                {'g', grips},      {'s', held},     {'o', !grips}, {'c', meets},   {'l', h->u->guide_loads != NULL}, {0, 0}};
+                                {'g', grips},      {'s', held},     {'o', !grips}, {'c', meets},
+                                {'l', h->u->guide_loads != NULL},                 {0, 0}};
   header_template(h, header_chosen(h, text, choices), words);
 }
 
