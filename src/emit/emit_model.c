@@ -58,8 +58,8 @@ const char *model_id(Arena *a, const char *name) {
                                       "outputs", "forces", "options", "monitors", "measures", "program", "scenes",
                                       "curves", "exact", "exact_of", "residuals", "matrices", "charge_values",
                                       "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws",
-                                      "guide_loads", "size_values", "size_table", "correct_positions", "correct_velocities",
-                                      "inverse_dynamics", "adjoint", "adjoint_rates",
+                                      "guide_loads", "size_values", "size_table", "correct_positions",
+                                      "correct_velocities", "inverse_dynamics", "adjoint", "adjoint_rates",
                                       "adjoint_project", "families"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
