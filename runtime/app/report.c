@@ -316,8 +316,6 @@ static void impulses(const App *app, FILE *f) {
           c.touching, c.impacts, c.impacts == 1 ? "" : "s", c.steps > 0 ? c.sweeps / c.steps : 0, c.depth);
   if (c.gained > 0) fprintf(f, "; they bring in %.3g J", c.gained);
   putc('\n', f);
-  if (c.steps > 0 && app->scene->model->nguides > 0)
-    fprintf(f, "guides: friction follows their force without that of contacts, which dop853 counts, too\n");
 }
 
 static void impulses_json(const App *app, Json *j) {

@@ -56,7 +56,7 @@ static int pressing(const Slipping *s, lag_slipping *w) {
     int i = (int)w->of[k], guide = lag_guide_of(m, i);
     w->mu[k] = pb->rub[3 * i];
     for (int c = 0; c < 3; c++)
-      w->N[3 * k + c] = guide >= 0 ? lag_guide_law(m, pb->rub, guide)[1 + c]
+      w->N[3 * k + c] = guide >= 0 ? lag_guide_law(m, pb->rub, guide)[1 + c] + pb->guide_load[3 * guide + c]
                         : c == 0   ? pb->rub[3 * lag_gap_of(m, i) + 2]
                                    : 0;
   }

@@ -31,7 +31,7 @@ static size_t saved_arrays(lag_sim *s, const lag_method *method, double *x) {
       {&s->slid_since, nm}, {&s->mon_first, nmon}, {&s->mon_peak, nmon}, {&s->exact_peak, (size_t)s->scene->nexact},
       {&contacts, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0}, {&s->pb.contact_impulse, pushed},
       {&s->pb.contact_key, keys},
-      {&s->pb.contact_change, pushed ? (size_t)m->nq : 0},
+      {&s->pb.contact_change, pushed ? (size_t)m->nq : 0}, {&s->pb.guide_load, 3 * (size_t)m->nguides},
       {&s->charge_block, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double)}, {&s->rate_history, 3 * n},
       {&s->pb.size, n + 2}};
   size_t length = lag_workspace_slice(x, sizeof parts / sizeof *parts, parts);

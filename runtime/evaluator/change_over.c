@@ -23,6 +23,7 @@ static void change_model(const lag_model *evaluated, const lag_model *y) {
   x->act = y->act, x->size_values = y->size_values, x->moving_sizes = y->moving_sizes, x->variation = y->variation;
   x->second = y->second, x->switch_values = y->switch_values, x->switch_rates = y->switch_rates;
   x->switch_grips = y->switch_grips, x->contact_laws = y->contact_laws, x->inverse = y->inverse;
+  x->guide_loads = y->guide_loads;
   if (x->constraints) {
     lag_constraints *k = MUTABLE(lag_constraints, x->constraints);
     k->residuals = y->constraints->residuals, k->matrices = y->constraints->matrices;

@@ -83,6 +83,11 @@ static int inverse(LAG_STATE, const double *a, double *force, double *w) {
   return lag_run_program(model_of(self)->inverse, in, (double *[]){force}, w);
 }
 
+static int guide_loads(LAG_STATE, const double *g, double *d, double *force, double *load, double *w) {
+  const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_G] = g};
+  return lag_run_program(model_of(self)->guide_loads, in, (double *[]){d, force, load}, w);
+}
+
 static int adjoint(LAG_STATE, const double *a, const double *g, double *by_y, double *by_up, double *d, double *w) {
   const double *const in[PROGRAM_ARRAY_COUNT] = {&t, q, v, z, p, u, [PROGRAM_A] = a, [PROGRAM_G] = g};
   const EvaluatedAdjoint *of = self;
@@ -202,6 +207,7 @@ void lag_set_model_functions(EvaluatedModel *m) {
   if (m->switch_rates) f->switch_rates = switch_rates;
   if (m->switch_grips) f->switch_grips = switch_grips;
   if (m->contact_laws) f->contact_laws = contact_laws;
+  if (m->guide_loads) f->guide_loads = guide_loads;
 }
 
 void lag_set_scene_functions(EvaluatedScene *s) {
@@ -257,7 +263,8 @@ static void widen(size_t *room, const Program *p, size_t more) {
 size_t lag_model_room(const EvaluatedModel *m) {
   const Program *const all[] = {m->accel,        m->energy,       m->events,      m->sizes,
                                 m->moving_sizes, m->variation,    m->second,      m->switch_values,
-                                m->switch_rates, m->switch_grips, m->contact_laws, m->inverse};
+                                m->switch_rates, m->switch_grips, m->contact_laws, m->guide_loads,
+                                m->inverse};
   size_t room = 0;
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) widen(&room, all[i], 0);
   for (int k = 0; k < m->model.nev; k++) widen(&room, m->event[k].action, 0);

@@ -15,7 +15,7 @@ typedef struct {
 typedef struct {
   lag_model model;
   const Program *derive, *inputs, *accel, *energy, *events, *impact, *sizes, *moving_sizes, *variation, *second,
-      *inverse, *switch_values, *switch_rates, *switch_grips, *contact_laws;
+      *inverse, *switch_values, *switch_rates, *switch_grips, *contact_laws, *guide_loads;
   const EvaluatedEvent *event;
   int nconstraints;
 } EvaluatedModel;

@@ -212,6 +212,8 @@ static void read_contacts(Reader *r) {
   m->contacts = c;
   read_guides(r, c, n);
   r->m->contact_laws = program(r, 3 * (int64_t)n + 4 * (int64_t)m->nguides, 0, 0);
+  Reader loads = with_array(r, PROGRAM_G, r->m->nconstraints);
+  r->m->guide_loads = program(&loads, m->nq, m->nq, 3 * (int64_t)m->nguides);
 }
 
 static int64_t turns_of(const lag_contact_family *f, int row) { return f->turns + (int64_t)f->more * row; }

@@ -87,6 +87,7 @@ typedef struct lag_problem {
   lag_contact_stats *contacts;
   double *contact_impulse;     /* [ncontacts] impulse of each in the last step, */
   double *contact_change;      /* [nq] and the change of velocities by all of them */
+  double *guide_load;          /* [3 nguides] forces of guides by impulses of contacts in the last step */
   double *contact_key;         /* [lag_family_rows_of] of families of contacts: whose impulses these are, ascending */
   double *contact_room;        /* scratch */
   struct lag_family_rows *family; /* in it: families of contacts (methods/moreau_families.c); NULL: not laid out */

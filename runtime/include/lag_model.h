@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 21
+#define LAG_ABI 22
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many
  * doubles, one state or one set of parameters a lane. The status < 0 of such a call has bit k of its negative set
@@ -452,6 +452,9 @@ typedef struct lag_model {
   int nguides;
   const lag_guide *guides; /* [nguides]; behind out[3 ncontacts] of contact_laws, for each, its static friction and 3
                             * components of its force, linear in the multipliers */
+  /* As constraints->velocity; load[3 nguides]: components of the forces of guides by force = A^T mu. NULL: no contact
+   * stands beside guides. */
+  int (*guide_loads)(LAG_STATE, const LAG_REAL *g, LAG_REAL *d, LAG_REAL *force, LAG_REAL *load, LAG_REAL *w);
 
   const char *math; /* library of sin and cos that the program calls; NULL: not known */
   const char *fixed; /* names of parameters that are numbers in this program, separated by spaces; NULL: none */

@@ -20,7 +20,8 @@
  *   LAG_CLOSE(t, only, u)           a status; inputs u at t with contact `only` closed, or all of them (-1)
  *   LAG_GAPS(t, q, v, z, u, c, r)   a status; gaps and rates of all constraints
  *   LAG_GAP_MATRICES(t, y, u, A, M) a status; entries of the Jacobian and of the mass matrix
- *   LAG_UNIT_CHANGE(t, y, u, g, d, effort)  a status; d: least change with A d = g, effort = M d
+ *   LAG_UNIT_CHANGE(t, y, u, g, d, effort)  a status; d: least change with A d = g, effort = M d, and behind it
+ *                                   components of forces of guides, `loads` of them
  *   LAG_STRIKE(t, y, u, i, v)       a status; velocities after the impact of contact i alone
  *   LAG_FRICTIONS(t, y, u, law)     a status; friction and tangential restitution, two for each contact
  *   LAG_CONTACT_FAILS(t, i, words)  the status of a failure of contact i
@@ -36,6 +37,7 @@
 /* Contacts in a step. Those that take part: all.of[all.n], in rows 0 to rows - 1. */
 typedef struct lag_moreau_contacts {
   int contacts, constraints, nq, entries, nmass, band; /* sizes; entries: of the Jacobian; band: half bandwidth of M */
+  int loads;                                           /* components of forces of guides */
   const lag_contact *at;                               /* [contacts] */
   const lag_entry *jacobian_at, *mass_at;              /* rows and columns of entries */
   LAG_REAL epsilon, loose;                             /* rounding of LAG_REAL; part of the fastest rate, or 0 */
@@ -48,15 +50,18 @@ typedef struct lag_moreau_contacts {
   /* [constraints] gaps, rates at the begin, rates without contacts, their changes by forces and curvature in a step, by
    * curvature in its first half, and in its second, a unit */
   LAG_REAL *c, *r0, *r1, *pace, *bend, *tail, *g;
-  LAG_REAL *d, *effort, *x;        /* [nq] */
+  LAG_REAL *d, *effort, *x;        /* [nq], [nq + loads], [nq] */
+  LAG_REAL *loading, *load;        /* [rows loads] of a unit impulse; [loads] by contacts: the instance's */
+  LAG_REAL *smooth, *pressed;      /* with loads: [rows (nq + 1)] responses without these guides; [rows] impulses */
   LAG_REAL *jacobian, *mass, *lu, *pivot, *scale;
   LAG_REAL *first, *entry;         /* entry[first[k]] to entry[first[k + 1]]: entries of constraint k */
 } lag_moreau_contacts;
 
 enum { LAG_PRESSING_SIZE = (int)(sizeof(lag_pressing)/sizeof(LAG_REAL)) };
 /* Scalars that a step with these sizes needs; entries of D: `responses`; of the factored mass matrix: `lu`. */
-#define LAG_CONTACT_ROOM(contacts, constraints, nq, entries, nmass, responses, lu) \
-  ((contacts)*(LAG_PRESSING_SIZE + 10) + 4 + 8*(constraints) + 5*(nq) + 4*(entries) + 2*(responses) + (nmass) + (lu))
+#define LAG_CONTACT_ROOM(contacts, constraints, nq, entries, nmass, responses, lu, loads) \
+  ((contacts)*(LAG_PRESSING_SIZE + 10 + (loads) + ((loads) > 0 ? (nq) + 2 : 0)) + 4 + 8*(constraints) + 5*(nq) + \
+   (loads) + 4*(entries) + 2*(responses) + (nmass) + (lu))
 
 /* Places arrays into room[LAG_CONTACT_ROOM]; sizes are set. */
 static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG_REAL *room) {
@@ -67,8 +72,9 @@ static inline void lag_contacts_place(lag_moreau_contacts *w, int responses, LAG
   w->all.was = room += 2*p, w->all.went = room += p;
   w->all.A.first = room += p, w->all.D.first = room += p + 1;
   w->c = room += p + 1, w->r0 = room += nc, w->r1 = room += nc, w->pace = room += nc, w->bend = room += nc;
-  w->tail = room += nc, w->g = room += nc, w->d = room += nc, w->effort = room += nq, w->x = room += nq;
-  w->pivot = room += nq, w->scale = room += nq;
+  w->tail = room += nc, w->g = room += nc, w->d = room += nc, w->effort = room += nq, w->x = room += nq + w->loads;
+  w->loading = room += nq, w->smooth = room += p*w->loads, w->pressed = room += w->loads > 0 ? p*(nq + 1) : 0;
+  w->pivot = room += w->loads > 0 ? p : 0, w->scale = room += nq;
   w->jacobian = room += nq, w->all.A.col = room += e, w->all.A.value = room += e;
   w->all.D.col = room += e, w->all.D.value = room += responses, w->mass = room += responses, w->lu = room += w->nmass;
   w->first = room += lag_band_matrix_size(nq, w->band), w->entry = room + nc + 2;
@@ -126,6 +132,8 @@ static inline int lag_contact_respond(LAG_MODEL, lag_moreau_contacts *w, LAG_REA
   for (int j = 0; j < w->nq; j++) work += w->d[j]*w->effort[j];
   const int moves = work > LAG_C(0.0) && LAG_FN(fabs)(lag_row_product(A, row, w->d) - LAG_C(1.0)) < LAG_C(0.5);
   for (int j = 0; j < w->nq; j++) w->d[j] = moves ? w->d[j]/work : LAG_C(0.0);
+  for (int j = 0; j < w->loads; j++)
+    w->loading[row*w->loads + j] = moves ? w->effort[w->nq + j]/work : LAG_C(0.0);
   return status;
 }
 
@@ -150,7 +158,7 @@ static inline int lag_contact_row(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
   }
   if (!alone) LAG_TRY(lag_contact_respond(LAG_THE_MODEL, w, t, y, i, r));
   for (int j = 0; j < w->nq && !alone; j++) {
-    if (!(w->d[j] < LAG_C(0.0) || w->d[j] > LAG_C(0.0))) continue;
+    if (!(w->d[j] < LAG_C(0.0) || w->d[j] > LAG_C(0.0)) && w->loads == 0) continue;
     D->col[f] = (LAG_REAL)j;
     D->value[f++] = w->d[j];
   }
@@ -273,6 +281,17 @@ static inline void lag_contacts_rest(const lag_moreau_contacts *w, LAG_REAL *v) 
       w->x[(int)D->col[e]] += LAG_FN(fabs)(w->all.P[row]*D->value[e])*(e < (int)D->first[row + 1] ? one : c->mu);
   }
   for (int j = 0; j < w->nq; j++) v[j] = LAG_SELECT(LAG_FN(fabs)(v[j]) > little*w->x[j], v[j], zero);
+}
+
+/* load := forces of guides by contacts in a step h. In impacts guides are smooth. */
+static inline void lag_contacts_load(const lag_moreau_contacts *w, LAG_REAL h) {
+  for (int k = 0; k < w->loads; k++) w->load[k] = LAG_C(0.0);
+  for (int i = 0; i < w->all.n; i++) {
+    const lag_pressing *const c = &w->all.of[i];
+    const int row = (int)c->row, end = row + 1 + (int)c->tangents;
+    for (int r = row; r < end && !(c->strikes > LAG_C(0.0)); r++)
+      for (int k = 0; k < w->loads; k++) w->load[k] += w->all.P[r]/h*w->loading[r*w->loads + k];
+  }
 }
 
 /* v[nq], velocities without contacts, := those with them. Not 0: no impulses agree. */

@@ -34,6 +34,7 @@ typedef struct lag_joint_friction {
 } lag_joint_friction;
 
 #define LAG_JOINT_ROOM(n, states) ((n)*(8 + (states)) + (states))
+#define LAG_COUPLED_ROOM(n, states) (4*(n) + 2*(states)) /* of coupled_friction.h */
 
 static inline void lag_joints_place(lag_joint_friction *w, LAG_REAL *room) {
   const int n = w->n;

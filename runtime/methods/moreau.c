@@ -163,6 +163,7 @@ static int advance(Moreau *w, lag_problem *pb, double t, const lag_next_step *ne
   const lag_kick s = {nq, pb->nz, is_explicit(pb) && !friction.of.n, t + next->dt / 2, t + next->dt, next->dt,
                       DBL_EPSILON, y, x + MID * n, x + Y1 * n, x + RATE * n, x + RATE0 * n, x + SIZE * n};
   lag_kick_begin(&s, lost);
+  memset(pb->guide_load, 0, 3 * (size_t)pb->model->nguides * sizeof(double));
   lag_joint_friction_enter(&friction, pb);
   lag_coupled_place(&laws, friction.coupled);
   int rc = kick(pb, &s, &laws, &friction, t);

@@ -34,6 +34,7 @@ static lag_moreau_contacts sizes_of(const lag_model *m, int *responses) {
     w.mass_at = of->mass;
     w.at = m->contacts;
     w.jacobian_at = of->jacobian;
+    w.loads = m->guide_loads ? 3 * m->nguides : 0;
   }
   w.band = band_of(w.mass_at, w.nmass);
   *responses = m->families && w.band == 0 ? w.entries : (m->families ? w.contacts : m->ncontacts) * m->nq;
@@ -42,7 +43,7 @@ static lag_moreau_contacts sizes_of(const lag_model *m, int *responses) {
 
 static size_t kernel_size(const lag_moreau_contacts *w, int contacts, int responses) {
   return (size_t)LAG_CONTACT_ROOM(contacts, w->constraints, w->nq, w->entries, w->nmass, responses,
-                                  lag_band_matrix_size(w->nq, w->band));
+                                  lag_band_matrix_size(w->nq, w->band), w->loads);
 }
 
 /* One state, the room of the kernel, and that of families. */
@@ -60,7 +61,7 @@ lag_moreau_contacts lag_moreau_contacts_of(lag_problem *pb, double *law) {
   lag_moreau_contacts w = sizes_of(m, &responses);
   lag_contacts_place(&w, responses, pb->contact_room + pb->n);
   if (m->families) lag_families_begin(pb, pb->contact_room + pb->n + kernel_size(&w, w.contacts, responses));
-  else w.law = law, w.guess = pb->contact_impulse;
+  else w.law = law, w.guess = pb->contact_impulse, w.load = pb->guide_load;
   return w;
 }
 
@@ -109,9 +110,13 @@ int lag_moreau_matrices(lag_problem *pb, double t, const double *y, double *A, d
 }
 
 int lag_moreau_unit_change(lag_problem *pb, double t, const double *y, const double *g, double *d, double *effort) {
-  const lag_constraints *of = pb->model->constraints;
-  return lag_step_checked(
-      pb, of->velocity(of, t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, g, d, effort, pb->work), t);
+  const lag_model *m = pb->model;
+  const lag_constraints *of = m->constraints;
+  const double *v = y + pb->nq, *z = v + pb->nq;
+  int rc = m->guide_loads
+               ? m->guide_loads(m, t, y, v, z, pb->p, pb->u, g, d, effort, effort + pb->nq, pb->work)
+               : of->velocity(of, t, y, v, z, pb->p, pb->u, g, d, effort, pb->work);
+  return lag_step_checked(pb, rc, t);
 }
 
 int lag_moreau_frictions(lag_problem *pb, double t, const double *y, double *law) {

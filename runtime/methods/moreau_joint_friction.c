@@ -21,7 +21,7 @@ static int values(const lag_model *m) {
 
 size_t lag_joint_friction_size(const lag_problem *pb) {
   int n = surfaces(pb->model);
-  return n ? (size_t)(LAG_JOINT_ROOM(n, pb->n) + 5 * n + values(pb->model)) : 0;
+  return n ? (size_t)(LAG_JOINT_ROOM(n, pb->n) + 2 * n + LAG_COUPLED_ROOM(n, pb->n) + values(pb->model)) : 0;
 }
 
 JointFriction lag_joint_friction_of(const lag_problem *pb, double *room) {
@@ -32,7 +32,7 @@ JointFriction lag_joint_friction_of(const lag_problem *pb, double *room) {
   w.at = room + LAG_JOINT_ROOM(n, pb->n);
   w.entry = w.at + n;
   w.coupled = w.entry + n;
-  w.all = w.coupled + 3 * n;
+  w.all = w.coupled + LAG_COUPLED_ROOM(n, pb->n);
   for (int k = 0, j = 0; j < n; k++) /* guides behind the switches */
     if (k >= m->nmodes || is_surface(m, k)) w.at[j++] = k;
   return w;

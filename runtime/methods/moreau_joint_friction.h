@@ -26,7 +26,7 @@ typedef struct JointFriction {
   lag_joint_friction of; /* first */
   double *at, *all;      /* [n] the model's switch; [nswitch] its values */
   double *entry;         /* [n] modes in pb->hold before the step */
-  double *coupled;       /* [3 n] room of kernels/coupled_friction.h */
+  double *coupled;       /* room of kernels/coupled_friction.h */
 } JointFriction;
 
 size_t lag_joint_friction_size(const lag_problem *pb);

@@ -97,6 +97,7 @@ static void contacts(const Unit *w) {
     if (c->parts) word(w, i), word(w, c->parts), word(w, c->parts == 1 ? c->turn : UINT32_MAX);
   }
   program(w, w->u->contact_laws);
+  program(w, w->u->guide_loads);
 }
 
 static void reads(const Unit *w, const IrRead *at, uint32_t n) {

@@ -58,7 +58,7 @@ const char *model_id(Arena *a, const char *name) {
                                       "outputs", "forces", "options", "monitors", "measures", "program", "scenes",
                                       "curves", "exact", "exact_of", "residuals", "matrices", "charge_values",
                                       "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws",
-                                      "size_values", "size_table", "correct_positions",
+                                      "guide_loads", "size_values", "size_table", "correct_positions",
                                       "correct_velocities", "inverse_dynamics", "adjoint", "adjoint_rates",
                                       "adjoint_project", "families"};
   const char *id = cname(a, name);
@@ -105,7 +105,8 @@ CStyle model_style(const ModelFile *f, const char *const *own, const char *const
 /* Whether the function is called once a step, or once a row of output. */
 static int is_seldom_called(const ProgramSet *u, const Prog *p) {
   int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers || p == u->switch_values ||
-               p == u->switch_rates || p == u->switch_grips || p == u->contact_laws || p == u->size_values;
+               p == u->switch_rates || p == u->switch_grips || p == u->contact_laws || p == u->guide_loads ||
+               p == u->size_values;
   for (uint32_t i = 0; i < u->scenes.n; i++) seldom |= p == u->scenes.at[i].observe || p == u->scenes.at[i].momenta;
   return seldom;
 }
@@ -391,6 +392,7 @@ static void constraint_table(const ProgramSet *u, StrBuf *out) {
 }
 
 static void emit_contacts(const ModelFile *f) {
+  static const char *const loads[] = {"d", "force", "load", NULL};
   if (!f->u->contacts.n) return;
   sb_puts(f->out, "\nstatic const lag_contact contact_table[] = {\n");
   for (uint32_t i = 0; i < f->u->contacts.n; i++) {
@@ -408,6 +410,9 @@ static void emit_contacts(const ModelFile *f) {
   state_function(f, f->u->contact_laws, "contact_laws",
                  "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", NULL,
                  one_out);
+  state_function(f, f->u->guide_loads, "guide_loads",
+                 "The least change d of velocities with A d = g; force: M d; load: forces of guides by that.", "g",
+                 loads);
 }
 
 static void emit_constraints(const ModelFile *f) {

@@ -84,7 +84,8 @@ static void write_part(const Header *h, const char *text, const HeaderWord *word
       grips = guides || held;
   int meets = program_set_contacts(h->u) > 0;
   const LineChoice choices[] = {{'n', !h->u->q.n}, {'m', switches}, {'j', guides}, {'k', !guides}, {'x', !switches},
-                                {'g', grips},      {'s', held},     {'o', !grips}, {'c', meets},   {0, 0}};
+                                {'g', grips},      {'s', held},     {'o', !grips}, {'c', meets},
+                                {'l', h->u->guide_loads != NULL},                 {0, 0}};
   header_template(h, header_chosen(h, text, choices), words);
 }
 
@@ -143,6 +144,7 @@ void header_friction_define(const Header *h) {
       {"AT_GUIDES", guide_table(h)},
       {"NGUIDES", arena_printf(h->a, "%u", header_guides(u))},
       {"NALL", arena_printf(h->a, "%u", u->contacts.n)},
+      {"LOADS", u->guide_loads ? "rubs + LAG_NSLOPES" : "0"},
       {"NBEFORE", arena_printf(h->a, "%u", program_set_contacts(u))},
       {"NOTED", meets ? "friction_note" : "moreau_note"},
       {"HOLDS", meets ? "holds" : "touch"},

@@ -64,14 +64,18 @@ static void write_contacts(const Header *h, const char *text) {
                               {"STATES", u->z.n ? ", z" : ""},
                               {"NALL", arena_printf(h->a, "%u", u->contacts.n)},
                               {"NOTED", header_rubs(u) ? "contact_note" : "moreau_note"},
-                              {"VELOCITY", k->position == k->velocity ? "correct" : "correct_velocities"},
+                              {"VELOCITY", u->guide_loads                ? "guide_loads"
+                                           : k->position == k->velocity ? "correct"
+                                                                        : "correct_velocities"},
+                              {"LOAD", u->guide_loads ? ", (effort) + LAG_NQ" : ""},
                               {NULL, NULL}};
   header_template(h, header_chosen(h, text, choices), words);
 }
 
 static void define_contacts(const Header *h) {
   const ProgramSet *u = h->u;
-  static const char *const matrices[] = {"A", "M", NULL}, *const law[] = {"law", NULL};
+  static const char *const matrices[] = {"A", "M", NULL}, *const law[] = {"law", NULL},
+                           *const load[] = {"g", "d", "force", "load", NULL};
   header_section(h, "friction");
   header_section(h, "mean");
   header_section(h, "band_matrix");
@@ -81,6 +85,11 @@ static void define_contacts(const Header *h) {
   if (u->contact_coefficients)
     header_internal_function(h, u->contact_coefficients, "contact_coefficients",
                              arena_printf(h->a, "%s_REAL *law", h->upper), law, law);
+  if (u->guide_loads)
+    header_internal_function(h, u->guide_loads, "guide_loads",
+                             arena_printf(h->a, "const %s_REAL *g, %s_REAL *d, %s_REAL *force, %s_REAL *load",
+                                          h->upper, h->upper, h->upper, h->upper),
+                             load, load + 1);
   write_contacts(h, tables);
   header_section(h, "contacts");
   write_contacts(h, note);
@@ -156,6 +165,8 @@ static void write_step(const Header *h, const char *text) {
       {"NMASS", arena_printf(h->a, "%u", c->mass.n)},
       {"NBAND", arena_printf(h->a, "%u", nq * width)},
       {"NRESPONSES", arena_printf(h->a, "%u", band || holds ? program_set_contacts(u) * nq : c->jacobian.n)},
+      {"NLOADS", arena_printf(h->a, "%u", u->guide_loads ? 3 * header_guides(u) : 0)},
+      {"LOADS", u->guide_loads ? "rubs + LAG_NSLOPES" : "0"},
       {"BANDWIDTH", arena_printf(h->a, "%u", band)},
       {"NMODES", arena_printf(h->a, "%u", meets ? 0 : u->nmodes)},
       {"FRICTION_NOTED", meets ? "friction_note" : "moreau_note"},

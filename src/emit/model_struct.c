@@ -81,6 +81,7 @@ static void further_members(const ProgramSet *u, StrBuf *out) {
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->families.n) sb_puts(out, "  .families = &families,\n");
   if (u->contact_laws) sb_puts(out, "  .contact_laws = contact_laws,\n");
+  if (u->guide_loads) sb_puts(out, "  .guide_loads = guide_loads,\n");
   if (program_set_guides(u)) sb_printf(out, "  .nguides = %u, .guides = guide_table,\n", program_set_guides(u));
   if (u->sizes.n)
     sb_printf(out, "  .nsizes = %u, .sizes = size_table, .size_values = %s,\n", u->sizes.n - u->nmoving,

@@ -8,7 +8,7 @@ ProgList program_set_programs(const ProgramSet *u) {
   const IrConstraints *k = &u->constraints;
   const Prog *const of_unit[] = {u->accel,
                                  u->energy, u->event_values, u->inputs, u->derived, u->charge_values, u->charge_powers,
-                                 u->switch_values, u->switch_rates, u->switch_grips, u->contact_laws,
+                                 u->switch_values, u->switch_rates, u->switch_grips, u->contact_laws, u->guide_loads,
                                  u->contact_coefficients, u->size_values, u->moving_sizes, u->held_accel, u->impact,
                                  k->residuals, k->matrices, k->position, k->velocity, u->variation, u->second,
                                  u->linear, u->mass, u->bias, u->inverse, u->multipliers, u->by_inputs, u->outputs,

@@ -241,7 +241,7 @@ typedef struct {
   VEC(IrSwitch) switches;
   uint32_t nmodes;              /* switches that a run holds; their modes are inputs behind those of the model */
   /* NULL: no switches; none that is held; no static limits; no contact with friction */
-  const Prog *switch_values, *switch_rates, *switch_grips, *contact_laws;
+  const Prog *switch_values, *switch_rates, *switch_grips, *contact_laws, *guide_loads;
   const Prog *held_accel; /* of headers: accel with modes; NULL: no motion sticks */
   /* of headers: friction and tangential restitution of each contact; NULL: none has friction */
   const Prog *contact_coefficients;

@@ -282,7 +282,7 @@ void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, const
   const Entries *A = &e->constraints.A;
   Arena *a = l->p->arena;
   lower_matrices_of_solution(l);
-  Slot *multipliers = ARENA_ARRAY(a, Slot, nrows + 1);
+  Slot *multipliers = l->multipliers = ARENA_ARRAY(a, Slot, nrows + 1);
   RightHandSides sides = {ARENA_ARRAY(a, Slot, e->n + 1), g, factor, nrows, coarse};
   solve_blocks(l, &sides, d, multipliers);
   for (uint32_t i = 0; i < e->n && force; i++) force[i] = 0;

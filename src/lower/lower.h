@@ -26,6 +26,8 @@ Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
 Prog *lower_switches(const Eqns *e); /* out 0: value of each switching function */
 Prog *lower_sizes(const Eqns *e, int moving); /* out 0: those of e->sizes that move, or not; NULL: none */
 Prog *lower_contact_laws(const Eqns *e); /* out 0: as contact_laws of lag_model.h; NULL: no contact has friction */
+/* as lower_projection, out 2: as guide_loads of lag_model.h; NULL: no contact may load a guide */
+Prog *lower_guide_loads(const Eqns *e);
 Prog *lower_contact_coefficients(const Eqns *e); /* the same without multipliers, two numbers each */
 /* out 0: the largest mode of a sliding motion, for each that has a mode; NULL: all are 1 */
 Prog *lower_switch_grips(const Eqns *e);

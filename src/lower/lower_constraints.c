@@ -33,7 +33,27 @@ Prog *lower_matrices(const Eqns *e) {
   return lower_finish(&l, &(PassPlan){0}, NULL);
 }
 
-Prog *lower_projection(const Eqns *e, uint32_t nrows) {
+/* Stores 3 components of the force of each guide, by the multipliers of l. */
+static void store_guide_loads(Lower *l) {
+  const Eqns *e = l->e;
+  const Model *m = e->m;
+  uint32_t at = 0;
+  for (uint32_t i = 0; i < m->contacts.n; i++) {
+    const Contact *c = &m->contacts.at[i];
+    for (uint32_t k = 0; k < 3 && c->parts; k++) {
+      Slot sum = 0;
+      for (uint32_t r = 0; k < c->parts && r < e->constraints.n; r++) {
+        Expr slope = expr_diff(e->g, c->normal[k], e->constraints.of[r]->multiplier);
+        lower_roots(l, &slope, 1);
+        sum = prog_add_product(l->p, sum, lower_slot(l, slope), l->multipliers[r]);
+      }
+      prog_store(l->p, 2, at++, sum, c->name);
+    }
+  }
+}
+
+/* The least change d with A d = g of the first nrows constraints, and M d; loads: those of guides by M d, too. */
+static Prog *lower_least_change(const Eqns *e, uint32_t nrows, int loads) {
   const Model *m = e->m;
   Lower l = lower_new(e);
   Arena *a = l.p->arena;
@@ -44,7 +64,16 @@ Prog *lower_projection(const Eqns *e, uint32_t nrows) {
   lower_correction(&l, nrows, 1, g, NULL, d, force);
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, d[i], m->coords.at[i].name);
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 1, i, force[i], m->coords.at[i].name);
+  if (loads) store_guide_loads(&l);
   return lower_finish(&l, &(PassPlan){0}, NULL);
+}
+
+Prog *lower_projection(const Eqns *e, uint32_t nrows) { return lower_least_change(e, nrows, 0); }
+
+Prog *lower_guide_loads(const Eqns *e) {
+  uint32_t guides = 0, n = e->m->contacts.n;
+  for (uint32_t i = 0; i < n; i++) guides += e->m->contacts.at[i].parts > 0;
+  return guides && guides < n ? lower_least_change(e, e->constraints.n, 1) : NULL;
 }
 
 /* The contact of row i of A, if it has a law of impact of its own, or NULL. */

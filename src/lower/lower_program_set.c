@@ -77,6 +77,7 @@ static void add_contacts(ProgramSet *u, const Eqns *e) {
     vec_push(u->arena, &u->contacts, one);
   }
   u->contact_laws = lower_contact_laws(e);
+  u->guide_loads = lower_guide_loads(e);
   u->impact = lower_impact(e);
   u->contact_coefficients = lower_contact_coefficients(e);
 }

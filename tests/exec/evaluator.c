@@ -158,6 +158,8 @@ static void of_model(const lag_model *const *s) {
   CALL(switch_rates, m->nmodes, s[k]->switch_rates(s[k], STATE, out[k], w[k]));
   CALL(switch_grips, m->nmodes, s[k]->switch_grips(s[k], STATE, out[k], w[k]));
   CALL(contact_laws, 3 * m->ncontacts, s[k]->contact_laws(s[k], STATE, out[k], w[k]));
+  CALL(guide_loads, 2 * nq + 3 * m->nguides,
+       s[k]->guide_loads(s[k], STATE, g, out[k], out[k] + nq, out[k] + 2 * nq, w[k]));
   of_constraints((const lag_constraints *const[]){s[0]->constraints, s[1]->constraints}, nq);
   of_families((const lag_contact_families *const[]){s[0]->families, s[1]->families});
   of_charges((const lag_charges *const[]){s[0]->charges, s[1]->charges});

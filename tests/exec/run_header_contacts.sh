@@ -271,6 +271,17 @@ for i in 1..2 { contact out[i]: x[i+1] - x[i] >= 0, restitution = 0.4
 contact wall: 0.5 [m] - x[3] >= 0, restitution = 0.3, friction = 0.2, slip = y'
 scene s { start x[2] = 0.1, x[3] = 0.2 , y = -0.02; span 100 [s] }
 END_OF
+model wedge <<'END_OF'
+model wedge
+coord s [m], x [m], y [m]
+kinetic = 10 [kg]*s'^2 + 1 [kg]/2*(x'^2 + y'^2)
+potential = 9.81 [N]*y - 40 [N]*s + 60 [N/m]/2*s^2
+guide rail: x = 0, friction = 0.5, slip = y'
+contact lift: y - 1.2*(s - x) >= 0, restitution = 0, friction = 0.1, slip = y' + s'
+scene go { span 100 [s]; output s }
+END_OF
+unset inputs
+check "a wedge that presses a rod against its guide" digits "$TMP/wedge.lag" go
 check "a telescope on a slope: slides that rub between stops" digits "$TMP/tele.lag" s
 near=0
 model puck2 <<'END_OF'
