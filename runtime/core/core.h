@@ -142,8 +142,8 @@ struct lag_sim {
   double *exact_peak;    /* [nexact] largest difference from the closed form */
   double *method_work;   /* [nwork] */
   size_t nwork;
-  /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
   double kicks_late; /* time between the origin of kicks and the begin of the scene, as of a part of a motion */
+  /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
   double *tangent, *tangent_jump, *tangent_scratch;
   double *hold_before; /* [nu + nmodes] of a run with a tangent: hold before the event */
   struct lag_sensitivity *sensitivity;   /* parameter_columns.c; NULL: the tangent is one by starts alone */
