@@ -1,6 +1,6 @@
 /* Equations of a family's members, written as one with an index, and terms of a sum likewise: texts that differ in
- * numbers only, each of which is the same, or one more or less, in the next. Enters: lines as printed; leaves: fewer.
- */
+ * numbers only, each of which is the same in the next, or moves by one step that all share. Enters: lines as printed;
+ * leaves: fewer. */
 #include "report/family_rows.h"
 
 #include <ctype.h>
@@ -31,7 +31,8 @@ static int is_index(const char *line, const char *s, const char *end, PrintStyle
 }
 
 static Row row_of(Arena *a, const char *line, PrintStyle style) {
-  size_t most = strlen(line) / 2 + 2;
+  size_t most = 1;
+  for (const char *s = line; *s; s++) most += isdigit((unsigned char)s[0]) && !isdigit((unsigned char)s[1]);
   Row r = {ARENA_ARRAY(a, const char *, most), ARENA_ARRAY(a, long, most), 0, ""};
   const char *from = line, *tail = style == PRINT_LATEX ? strstr(line, " \\\\") : NULL;
   if (tail) r.line_break = " \\\\";
@@ -53,16 +54,16 @@ static Row row_of(Arena *a, const char *line, PrintStyle style) {
   return r;
 }
 
-/* step[x.n] := by what numbers grow from x to y, -1, 0 or 1. 0: they do otherwise, or none does. */
+/* step[x.n] := by what numbers grow from x to y: 0, or one number up or down. 0: they do otherwise, or none does. */
 static int follows(const Row *x, const Row *y, long *step) {
-  int moves = 0;
+  long moves = 0;
   if (x->n != y->n || strcmp(x->text[x->n], y->text[y->n]) != 0) return 0;
   for (uint32_t k = 0; k < x->n; k++) {
     step[k] = y->number[k] - x->number[k];
-    if (strcmp(x->text[k], y->text[k]) != 0 || labs(step[k]) > 1) return 0;
-    moves |= step[k] != 0;
+    if (strcmp(x->text[k], y->text[k]) != 0 || (step[k] && moves && labs(step[k]) != moves)) return 0;
+    moves = step[k] ? labs(step[k]) : moves;
   }
-  return moves;
+  return moves > 0;
 }
 
 /* How many of the rows at 0, period, 2 period, ... are members of one family; step: of their numbers. */
@@ -101,8 +102,8 @@ static char letter_for(const char *line) {
 typedef struct {
   const Row *from, *last; /* where the index is the least; the last row as printed */
   const long *step;
-  uint32_t first; /* the number that is the index */
-  long begin, end;
+  long up, begin,
+      end; /* the first number that moves is `up` times the index, and a rest; the index from begin to end */
   char letter;
   PrintStyle style;
 } Family;
@@ -113,20 +114,23 @@ static Family family_of(const Row *r, uint32_t count, uint32_t period, char lett
   follows(r, r + period, step);
   while (step[first] == 0) first++;
   const Row *from = step[first] > 0 ? r : last;
-  long begin = from->number[first];
-  return (Family){from, last, step, first, begin, begin + (long)count - 1, letter, style};
+  long up = step[first], begin = from->number[first] / labs(up);
+  return (Family){from, last, step, up, begin, begin + (long)count - 1, letter, style};
 }
 
 static const char *family_text(Arena *a, const Family *f) {
   const Row *r = f->from;
-  StrBuf out = strbuf(a);
+  const long up = labs(f->up);
+  StrBuf out = strbuf(a), index = strbuf(a);
+  if (up > 1) sb_printf(&index, f->style == PRINT_LATEX ? "%ld " : "%ld*", up);
+  sb_putc(&index, f->letter);
   for (uint32_t k = 0; k < r->n; k++) {
-    long here = r->number[k], more = here - f->begin;
+    long here = r->number[k], more = here - up * f->begin;
     sb_puts(&out, r->text[k]);
     if (f->step[k] == 0) sb_printf(&out, "%ld", here);
-    else if (f->step[k] != f->step[f->first]) sb_printf(&out, "%ld - %c", here + f->begin, f->letter);
-    else if (more == 0) sb_putc(&out, f->letter);
-    else sb_printf(&out, "%c %c %ld", f->letter, more < 0 ? '-' : '+', labs(more));
+    else if (f->step[k] != f->up) sb_printf(&out, "%ld - %s", here + up * f->begin, sb_text(&index));
+    else if (more == 0) sb_puts(&out, sb_text(&index));
+    else sb_printf(&out, "%s %c %ld", sb_text(&index), more < 0 ? '-' : '+', labs(more));
   }
   sb_puts(&out, r->text[r->n]);
   return sb_text(&out);
@@ -289,14 +293,26 @@ static void put_line(StrBuf *out, const Family *f) {
             family_text(out->arena, f), f->letter, f->begin, f->end, f->last->line_break);
 }
 
-const char *family_rows(Arena *a, const char *lines, PrintStyle style) {
+typedef struct {
+  const char *lines;
+  PrintStyle style;
+  StrBuf *out;
+} Block;
+
+static void put_block(Arena *a, void *data) {
+  const Block *b = data;
   Texts line = {0};
-  StrBuf out = strbuf(a);
-  for (const char *s = lines, *end; *s; s = *end ? end + 1 : end) {
+  for (const char *s = b->lines, *end; *s; s = *end ? end + 1 : end) {
     end = s + strcspn(s, "\n");
-    vec_push(a, &line, family_sides(a, arena_strndup(a, s, (size_t)(end - s)), style));
+    vec_push(a, &line, family_sides(a, arena_strndup(a, s, (size_t)(end - s)), b->style));
   }
-  line = fold(a, line, style, put_line);
-  for (uint32_t k = 0; k < line.n; k++) sb_printf(&out, "%s\n", line.at[k]);
+  line = fold(a, line, b->style, put_line);
+  for (uint32_t k = 0; k < line.n; k++) sb_printf(b->out, "%s\n", line.at[k]);
+}
+
+const char *family_rows(Arena *a, const char *lines, PrintStyle style) {
+  StrBuf out = strbuf(a);
+  Block b = {lines, style, &out};
+  arena_with_scratch(a, put_block, &b);
   return sb_text(&out);
 }

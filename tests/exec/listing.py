@@ -23,6 +23,7 @@ POTENTIAL = {
     "skew": pairs(lambda x, y: k*(x**2*y - 2*y**3*x)),
     "string": lambda u, n: sum(k/2*r**2 + c/4*r**4 for r in [u[1]] + [u[i + 1] - u[i] for i in range(1, n)] + [-u[n]]),
     "tied": lambda u, n: sum(k/2*(u[i] - w[min(i, 5)])**2 for i in range(1, n + 1)),
+    "dimer": lambda u, n: sum((k if i % 2 else c)/2*(u[i + 1] - u[i])**2 for i in range(1, n)),
     "net": lambda u, n: sum(k/2*(u[i + 1, j] - u[i, j])**2 + c/3*(u[j, i + 1] - u[j, i])**3 for i in range(1, n) for j in range(1, n + 1)),
 }
 

@@ -20,6 +20,9 @@ potential = sum(i in 0..N, k/2*r[i]^2 + c/4*r[i]^4)"
 model tied 10 "param w[N] = 1
 $kinetic
 potential = sum(i in 1..5, k/2*(u[i] - w[i])^2) + sum(i in 6..N, k/2*(u[i] - w[5])^2)"
+model dimer 21 "let r[i in 1..N-1] = u[i+1] - u[i]
+$kinetic
+potential = sum(i in 1..N-1, if(i - 2*floor(i/2) > 0.5, k, c)/2*r[i]^2)"
 model net 9 "kinetic = sum(i in 1..N, sum(j in 1..N, u[i,j]'^2/2))
 potential = sum(i in 1..N-1, sum(j in 1..N, k/2*(u[i+1,j] - u[i,j])^2 + c/3*(u[j,i+1] - u[j,i])^3))" pairs
 if command -v python3 >/dev/null; then
@@ -38,6 +41,7 @@ sines 400 3
 skew 300 3
 string 12 2
 tied 10 2
+dimer 21 5
 net 81 -
 END
 else
