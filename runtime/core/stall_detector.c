@@ -148,16 +148,18 @@ LAG_RARE int check_pace(lag_sim *s, double t) {
   if (!crawls(s, &r->stall_since, t, MOST, r->steps, &led) || lag_equal_step(s) > 0) return 0;
   if (s->method->flags & LAG_METHOD_IMPULSES) return 0; /* its steps have a least size */
   double apart = pb->model->constraints ? lag_independence(pb, t, s->y, &k) : 1;
-  if (!(pb->model->flags & LAG_FIRST_ORDER) &&
-      lag_mass_condition(pb, t, s->y, &which) > lag_sim_tolerance(s) / DBL_EPSILON)
+  int redundant = k >= 0 && apart <= dependent;
+  if (!redundant && !(pb->model->flags & LAG_FIRST_ORDER) &&
+      lag_mass_condition(pb, t, s->y, &which) > lag_sim_tolerance(s) / DBL_EPSILON) {
     return lag_note(pb, LAG_ESTEP, t,
                     "the last %d steps advanced the time by only %.3g s: accelerations have fewer digits here than the "
                     "tolerance asks for; take other coordinates, or a larger tolerance",
                     MOST, led);
-  if ((k < 0 || apart > dependent) && lag_facts(pb) & LAG_SMOOTH) return 0;
+  }
+  if (!redundant && lag_facts(pb) & LAG_SMOOTH) return 0;
   int at = hangs_at(s, t, led);
   if (at >= 0) return say_switch(s, at, t);
-  if (k < 0 || apart > dependent) {
+  if (!redundant) {
     return lag_note(pb, LAG_ESTEP, t,
                     "the last %d steps advanced the time by only %.3g s: a force or a constraint jumps here, and the "
                     "motion does not leave "

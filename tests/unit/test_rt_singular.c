@@ -68,7 +68,7 @@ static int steps_until(const lag_model *m, double t0, double h, double y1)
   Run run = {.steps = 0};
   double ranks[100];
   lag_sim s = {.scene = &scene,
-               .method = &lag_rk45, .options = none, .run = &run, .y = y, .now = y, .ya = scratch,
+               .method = &lag_rk45, .options = none, .tol = 1e-9, .run = &run, .y = y, .now = y, .ya = scratch,
                .pb = {.model = m, .nq = 2, .n = 4, .dir = 1, .ranks = ranks}};
 
   for (int i = 1; i <= PATIENCE; i++) {
