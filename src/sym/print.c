@@ -362,7 +362,8 @@ static void latex_plain(Name name, StrBuf *out) {
   if (primes) sb_putc(out, '}');
   size_t sub = stem;
   if (sub < end && (s[sub] == '_' || s[sub] == '[')) sub++;
-  size_t sub_end = end > sub && s[end - 1] == ']' ? end - 1 : end, index = sub; /* of d_stretch[3]: a subscript's own */
+  size_t sub_end = end > sub && s[end - 1] == ']' ? end - 1 : end;
+  size_t index = sub; /* where the index of d_stretch[3] begins: a subscript's own */
   while (index < sub_end && s[index] != '[') index++;
   if (sub_end > sub || dot) {
     sb_puts(out, "_{");
