@@ -248,9 +248,22 @@ static const char *family_brackets(Arena *a, const char *term, PrintStyle style)
   return sb_text(&out);
 }
 
+/* Whether the text is a sum: outside of brackets nothing binds less than + does, as commas and comparisons do. */
+static int is_sum(const char *text) {
+  static const char *const loose[] = {",", "<", "=", " and ", " or ", "\\le ", "\\wedge ", "\\vee "};
+  int depth = 0;
+  for (; *text; text++) {
+    depth += strchr("([{", *text) ? 1 : strchr(")]}", *text) ? -1 : 0;
+    for (size_t k = 0; depth == 0 && k < sizeof loose / sizeof *loose; k++)
+      if (strncmp(text, loose[k], strlen(loose[k])) == 0) return 0;
+  }
+  return 1;
+}
+
 /* The sum a + b + ... with terms of families as sums over their index. */
 static const char *family_sum(Arena *a, const char *text, PrintStyle style) {
   enum { NESTS = 3 };
+  if (!is_sum(text)) return family_brackets(a, text, style);
   Texts terms = {0};
   const char *s = text;
   for (int first = 1; first || *s == ' '; first = 0) {

@@ -54,6 +54,15 @@ check "downwards, too" grep -q -F '  d_stretch[i] = -b*stretch[i]^3 - k*stretch[
 check "the letter is no name of the line" sh -c "sed 's/, c = 3/, n = 3/; s/k + c/k + n/; s/c\*u/n*u/' '$TMP/springs.lag' >'$TMP/named.lag'; '$LAGC' derive '$TMP/named.lag' | grep -q \"^  u\[m\]'' = n\*u\[m\]^3 - sum(i in m + 1\.\.200, .* for m in 2\.\.199$\""
 "$LAGC" derive models/chain.lag -D N=4 >"$TMP/four.txt" 2>&1
 check "four members keep their rows" grep -q '^  p_th\[3\] = ' "$TMP/four.txt"
+cat >"$TMP/corner.lag" <<'END'
+model corner
+coord x, u[5]
+param k = 2
+kinetic = x'^2/2 + sum(i in 1..5, u[i]'^2/2)
+potential = max(u[1] - k, x + u[2] + u[3] + u[4] + u[5])
+END
+corner() { "$LAGC" derive "$TMP/corner.lag" | grep -q -F ' + max(u[1] - k, x + u[2] + u[3] + u[4] + u[5])'; }
+check "terms stay on their side of a comma" corner
 printf "model third\ncoord x\nkinetic = x'^2/2\npotential = x/3\n" >"$TMP/third.lag"
 check "the sign of a fraction in LaTeX" sh -c "'$LAGC' derive '$TMP/third.lag' --format latex | grep -q -F '  \\ddot{x} &= -\\frac{1}{3}'"
 tap_end
