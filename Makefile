@@ -319,7 +319,7 @@ help:
 	@echo 'make              the compiler build/lagc and the runtime build/liblag.a'
 	@echo 'make precisions   the runtime for lagc run --precision long and quad, which lagc cost uses for its reference, too'
 	@echo 'make demo         installs what is missing, then compiles and runs models/double_pendulum.lag'
-	@echo 'make test         installs what is missing, then runs every suite that takes seconds; of long rows of checks some'
+	@echo 'make test         installs what is missing, then runs unit, golden and other short suites, and one in eight of tests/exec, others each day'
 	@echo '                  T="unit/test_num golden": only suites whose names begin so'
 	@echo '                  DAY=20785: the rows of that day, which the first line of each run names'
 	@echo '                  TIMES=1: the processor time of each suite; JOBS=4: suites at a time, one a processor unless given'

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs suites of tests; `make test` calls it with what it built (RUN_TESTS in tests/tests.mk).
-#   sh tests/run.sh [--long | --all | --bless | --bench] [PREFIX...]     only suites whose names, with or without their folder, begin with a PREFIX
+#   sh tests/run.sh [--today | --long | --all | --bless | --bench] [PREFIX...]     only suites whose names, with or without their folder, begin with a PREFIX
 # JOBS: suites at a time (a job a processor); TIMES=1: each suite's processor time beside its wall time, the second of the run in which it ended,
 # and the sum of processor times.
 #
@@ -13,6 +13,7 @@
 #   tests/FOLDER/lib_NAME.sh       no suite: functions that scripts share
 # How deep: `make test` takes some rows of long tables (`one_of` of tests/tap.sh, slow() of tests/unit/slow.h); `make test-long` has SLOW=1, twice
 # as many rows and all `slow` checks; `make test-all` has all rows. DAY, the number of today, chooses the rows; the first line of a run names it.
+# --today, which `make test` gives, leaves out seven of eight suites of exec/, others each DAY, unless a PREFIX names them.
 # --bless runs the scripts that know BLESS with BLESS=1: they rewrite their expectations.
 #
 # Suites speak TAP: a plan `1..N`; `ok 1 - name`, `not ok 2 - name`, `ok 3 - name # SKIP why`; `# details`.
@@ -45,7 +46,9 @@ export XDG_CACHE_HOME LAG_TREE
 
 kind='test'
 limit=600
+of_exec=1
 case ${1:-} in
+  --today) of_exec=8 ;;
   --long) kind=long limit=2400 logs=$BUILD/test/long ;;
   --all) kind=long limit=7200 logs=$BUILD/test/all ;;
   --bless) kind=bless JOBS=1 ;;
@@ -147,7 +150,8 @@ slow="unit/test_nest unit/test_rt_cost unit/test_lift unit/test_found unit/test_
 exec/run_contradictions exec/includes exec/run_scenes exec/run_facts exec/run_modes exec/run_pictures"
 [ "$kind" != long ] || slow="$slow exec/run_compilers exec/long_sanitized exec/long_agree exec/long_random exec/long_windows exec/long_lanes exec/run_callbacks \
 exec/run_digits exec/long_energy exec/long_ports math/run_math hard/long_hard golden/gallery exec/verify exec/run_lanes exec/long_million hard/long_quad"
-suites=$(found "$@")
+[ $# = 0 ] || of_exec=1
+suites=$(found "$@" | awk -v k="$of_exec" -v day="${DAY:-0}" '!/^exec\// || (n++ + day) % k == 0')
 if [ -z "$suites" ]; then
   [ $# = 0 ] || { echo "no suite's name begins with: $*"; exit 1; }
   echo "0 passed, 0 failed"
@@ -268,5 +272,6 @@ if [ "$kind" = bench ] && [ "$failed" = 0 ]; then sh tests/bench/lib_results.sh 
 [ -z "${TIMES:-}" ] || (cd "$logs" && for s in $suites; do cat "$s.done"; done) | awk '{ sum += $4 } END { printf "processor time of all suites: %.0f s\n", sum }'
 line="$passed passed, $failed failed"
 [ "$skipped" = 0 ] || line="$line, $skipped skipped"
+[ "$of_exec" = 1 ] || echo "of the suites of exec/ one in $of_exec, others each day: \`make test T=exec\` and \`make test-long\` run them all"
 echo "$line"
 [ "$failed" = 0 ]

@@ -48,6 +48,11 @@ one_of() {
   [ $(((tap_row + ${DAY:-0}) % tap_step)) = 0 ]
 }
 
+# one_day_in K R: in `make test-long` the suite runs when DAY is R modulo K, in `make test-all` always. Costly suites that find the same kind of fault take turns.
+one_day_in() {
+  [ "${ROWS:-all}" = all ] || [ $((${DAY:-0} % $1)) = "$2" ] || skip_all "one day in $1; \`make test-all T=...\` on any"
+}
+
 # light MODEL: all but the bicycle, for whose C a compiler takes as long as for ten others; in `make test-long` on one day in four all.
 light() {
   case $1${SLOW:+slow}${ROWS:-} in

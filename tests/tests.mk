@@ -30,7 +30,7 @@ BUILD_TESTS = $(QUIET) build-tests
 test:
 	$(SETUP) test
 	$(BUILD_TESTS)
-	$(RUN_TESTS) $(T)
+	$(RUN_TESTS) --today $(T)
 # Unit and golden suites, without sanitizers: one build, of the compiler and of the runtime for doubles.
 QUICK_BIN := $(BUILD)/test/quick
 # Not those that take more than ten seconds each.

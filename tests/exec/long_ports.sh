@@ -2,6 +2,7 @@
 # Other machines: compiler and runtime built for aarch64 (long double is quad there), run by qemu, and with musl as C library.
 # `make test-long`: one of the two, by day. Emitted C is the text of tests/golden/emitted.txt; simulators give the digits of closed forms.
 . tests/tap.sh
+one_day_in 3 2
 : "${MAKE:=make}" "${BUILD:=build}"
 
 MODELS=${MODELS:-pendulum double_pendulum kepler rolling_cylinder bouncing_ball}

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Windows: compiler and runtime built by MinGW, run by wine. Texts are the bytes of Linux; simulators and FMUs move as on Linux.
 . tests/tap.sh
+one_day_in 3 0
 : "${MAKE:=make}"
 cc=x86_64-w64-mingw32-gcc
 command -v $cc >/dev/null || skip_all "no MinGW: apt-get install gcc-mingw-w64-x86-64-posix"

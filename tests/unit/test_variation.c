@@ -197,7 +197,7 @@ static void test_derivatives(void **state) {
   assert_int_equal(glob("models/*.lag", 0, NULL, &found), 0);
   assert_int_equal(glob("tests/exec/models/*.lag", GLOB_APPEND, NULL, &found), 0);
   for (size_t step = (size_t)depth(12, 4, 2), i = first_row(step); i < found.gl_pathc; i += step)
-    check_file(found.gl_pathv[i]);
+    if (light(found.gl_pathv[i])) check_file(found.gl_pathv[i]);
   globfree(&found);
 }
 
