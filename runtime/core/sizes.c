@@ -264,7 +264,9 @@ static Kind kind_of(const lag_sim *s, const double *f, const double *bend, int i
                 largest_of_unit(nq, var, bend + nq, i)};
 }
 
-static double reach(Kind k, double time) { return k.q > 0 ? k.q : fmax(k.v * time, k.a * time * time); }
+static double reach(Kind k, double time) {
+  return k.q > 0 ? k.q : lag_above_rounding(fmax(k.v * time, k.a * time * time), k.bend * time * time);
+}
 
 /* The time in which the motion changes by its own size; at most `time`. */
 static double time_scale(Kind k, double time) {

@@ -182,5 +182,11 @@ run models/drum_brake.lag locks
 below "a drum at rest has an error" 1e-13 "$(value error)"
 # Shut, the seal has what an impact at 5 rad/s leaves of its velocity, 1e-16 m/s, whose sign is no event.
 check "a door slams shut" run models/door_closer.lag slam k=2987
+# Released at 90 degrees the rod pulls at the cart by g cos(90 deg) = 6e-16 m/s^2: its reach is not that acceleration's, and steps are those of 89 degrees.
+run models/cart_pendulum.lag swing --method dop853 --tol 1e-9 --until 0.5 th='89[deg]'
+steps=$(value steps)
+run models/cart_pendulum.lag swing --method dop853 --tol 1e-9 --until 0.5
+below "a force that is rounding at the start makes no steps" $((2 * steps)) "$(value steps)"
+below "and the energy's drift is one of joules" 1e-9 "$(value energy_drift)"
 check "a stronger spring" run models/door_closer.lag slam k=1678.6666666666667
 tap_end
