@@ -24,7 +24,8 @@ typedef struct Start {
   double *other;             /* [constraints] residual of the level not at hand; marks of rank */
   double *M;                 /* sparse entries */
   double *full, *kkt;        /* [nq nq], work of lag_kkt */
-  int *index;                /* block of the level's integers */
+  int *place;                /* [nq] index of a coordinate among the free ones; -1: it is none */
+  int *index;                /* block of the level's integers, and of place */
 } Start;
 
 /* ---- the model at the state of a level */
@@ -71,6 +72,8 @@ static int direction(const lag_level *w, double pull, double *d) {
   const lag_constraints *of = s->of;
   int nq = s->nq, nf = w->nfree, rc = jacobian(w, w->A);
   double *A = s->kkt + nf * nf, *x = A + w->rows * nf, *l = x + nf;
+  int *place = s->place;
+  for (int i = 0; i < nq; i++) place[i] = -1;
   for (int regular = 0, pass = 0; pass < 2 && rc == 0 && !regular; pass++) {
     memset(s->full, 0, (size_t)(nq * nq) * sizeof(double));
     for (int e = 0; e < of->nmass; e++) {
@@ -83,16 +86,19 @@ static int direction(const lag_level *w, double pull, double *d) {
     }
     memset(A, 0, (size_t)(w->rows * nf) * sizeof(double));
     for (int a = 0; a < nf; a++) {
+      const double *row = s->full + w->free[a] * nq;
       x[a] = 0;
+      place[w->free[a]] = a;
       for (int b = 0; b < nf; b++) {
-        double m =
-            lag_level_weight(w, w->free[a]) * lag_level_weight(w, w->free[b]) * s->full[w->free[a] * nq + w->free[b]];
+        double m = row[w->free[b]];
+        if (m != 0.0) m *= lag_level_weight(w, w->free[a]) * lag_level_weight(w, w->free[b]);
         s->kkt[a * nf + b] = m;
-        x[a] += pull * m * (w->asked[w->free[b]] - w->x[w->free[b]]);
+        if (m != 0.0) x[a] += pull * m * (w->asked[w->free[b]] - w->x[w->free[b]]);
       }
-      for (int e = 0; e < of->njacobian; e++)
-        if (of->jacobian[e].row < w->rows && of->jacobian[e].col == w->free[a])
-          A[of->jacobian[e].row * nf + a] = w->A[e];
+    }
+    for (int e = 0; e < of->njacobian; e++) {
+      int row = of->jacobian[e].row, a = place[of->jacobian[e].col];
+      if (row < w->rows && a >= 0) A[row * nf + a] = w->A[e];
     }
     for (int k = 0; k < w->rows; k++) l[k] = -w->residual[k];
     regular = lag_kkt(nf, w->rows, 0, s->kkt);
@@ -108,8 +114,9 @@ static double distance(const lag_level *w) {
   double sum = 0;
   for (int i = 0; i < w->n; i++)
     for (int j = 0; j < w->n; j++)
-      sum += lag_level_weight(w, i) * (w->x[i] - w->asked[i]) * s->full[i * w->n + j] * lag_level_weight(w, j) *
-             (w->x[j] - w->asked[j]);
+      if (s->full[i * w->n + j] != 0.0)
+        sum += lag_level_weight(w, i) * (w->x[i] - w->asked[i]) * s->full[i * w->n + j] * lag_level_weight(w, j) *
+               (w->x[j] - w->asked[j]);
   return sum;
 }
 
@@ -345,7 +352,7 @@ static int make_room(Start *s, double **block) {
       {&w->has_terms, m},
       {&w->A, entries}};
   *block = lag_workspace(sizeof parts / sizeof *parts, parts);
-  s->index = malloc((nq + 2 * entries + 1) * sizeof *s->index);
+  s->index = malloc((2 * nq + 2 * entries + 1) * sizeof *s->index);
   if (!*block || !s->index) return 0;
   int *row = s->index + nq, *col = row + entries;
   for (size_t e = 0; e < entries; e++) {
@@ -355,6 +362,7 @@ static int make_room(Start *s, double **block) {
   w->free = s->index;
   w->row = row;
   w->col = col;
+  s->place = col + entries;
   return 1;
 }
 
