@@ -22,14 +22,14 @@ typedef struct lag_sparse_rows {
   LAG_REAL *first, *col, *value;
 } lag_sparse_rows;
 
-/* A contact: rows row (the gap) and row + 1 .. row + tangents (slip velocities). least: the least rate of the
- * gap after the impulse. Friction drives the slip velocity to the nearest point of a ball (an interval in a
+/* A contact: rows row (the gap) and row + 1 .. row + tangents (slip velocities). mu, hold: friction that slips, and the
+ * most that holds, by the force of the gap. least: the least rate of the gap after the impulse. Friction drives the slip velocity to the nearest point of a ball (an interval in a
  * plane), about centre[tangents], of this radius. strikes: 1 in an impact; rate, slip[tangents]: at the begin, by
  * directions at the middle; turn, tail[tangents]: change of the slip by theirs until there, and on to the end.
  * opposite: the contact on the other side of the same rail, or -1; head, next: of chains by first column;
  * couple: response of the gap to friction. */
 typedef struct lag_pressing {
-  LAG_REAL contact, row, tangents, mu, least, radius, centre[2], strikes, rate, slip[2], turn[2], tail[2];
+  LAG_REAL contact, row, tangents, mu, hold, least, radius, centre[2], strikes, rate, slip[2], turn[2], tail[2];
   LAG_REAL opposite, head, next, couple[2];
 } lag_pressing;
 
@@ -160,7 +160,7 @@ typedef struct lag_contact_alone {
 /* x := friction where the impulse of the gap is P. Returns the rate of the gap. */
 static inline LAG_REAL lag_contact_rate(const lag_contact_alone *a, LAG_REAL P, LAG_REAL *x) {
   const lag_pressing *const c = a->of;
-  const lag_coulomb law = {(int)c->tangents, a->slow, c->radius, c->mu*P, c->mu*P, c->centre};
+  const lag_coulomb law = {(int)c->tangents, a->slow, c->radius, c->hold*P, c->mu*P, c->centre};
   LAG_REAL slip[2], rate = a->rate + a->response*(P - a->impulse);
   for (int k = 0; k < law.n; k++) {
     slip[k] = a->slip[k] + c->couple[k]*(P - a->impulse);
@@ -230,7 +230,7 @@ static inline LAG_REAL lag_contact_turn_flat(const lag_impulses *s, const lag_pr
   LAG_REAL to = slip - slow*was;
   lag_into_ball(1, c->centre, c->radius, &to);
   LAG_REAL x = was + (to - slip)/slow;
-  if (LAG_FN(fabs)(x) > most) x = lag_smaller(lag_larger(x, -most), most);
+  if (LAG_FN(fabs)(x) > c->hold*s->P[r]) x = lag_smaller(lag_larger(x, -most), most);
   lag_add_impulse(&s->D, r + 1, part*(x - was), s->P, s->v);
   return lag_larger(change, LAG_FN(fabs)(x - was)*slow);
 }
@@ -263,9 +263,26 @@ static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressin
     a.slip[k] = lag_rate_of(s, r + 1 + k);
     x[k] = a.x[k];
   }
-  const lag_coulomb law = {n, a.slow, c->radius, c->mu*s->P[r], c->mu*s->P[r], c->centre};
+  const lag_coulomb law = {n, a.slow, c->radius, c->hold*s->P[r], c->mu*s->P[r], c->centre};
   lag_friction_turn(&law, a.slip, x);
   return lag_larger(change, lag_contact_rub(s, c, x, a.slow, part));
+}
+
+/* Whether friction of size rub holds: it is another than that of a contact that slips. */
+static inline int lag_contact_holds(const lag_pressing *c, LAG_REAL P, LAG_REAL rub, LAG_REAL epsilon) {
+  const LAG_REAL one = LAG_C(1.0), most = c->mu*P;
+  return rub < most*(one - LAG_C(64.0)*epsilon) || (c->hold > c->mu && rub > most*(one + LAG_C(1e-9)));
+}
+
+/* With static friction contacts that share a load may hold and slip in turns: one that slips has broken loose. */
+static inline void lag_contacts_loosen(const lag_impulses *s) {
+  for (int i = 0; i < s->n; i++) {
+    lag_pressing *const c = &s->of[i];
+    const int r = (int)c->row + 1, n = (int)c->tangents;
+    if (!(c->hold > c->mu)) continue;
+    const LAG_REAL rub = n > 1 ? lag_length_of(s->P[r], s->P[r + 1]) : LAG_FN(fabs)(s->P[r]);
+    if (!lag_contact_holds(c, s->P[r - 1], rub, LAG_C(1e-12))) c->hold = c->mu;
+  }
 }
 
 /* Whether friction by the slip at the end brings in energy in an impact; then its ball becomes that of the
@@ -412,7 +429,7 @@ static inline int lag_few_stand(const lag_impulses *s, lag_contact_equations *w)
   for (int i = 0; i < s->n; i++) {
     const lag_pressing *const c = &s->of[i];
     const int r = (int)c->row, n = (int)c->tangents;
-    const LAG_REAL slow = n > 0 ? s->response[r + 1] : zero, most = c->mu*lag_larger(zero, w->P[r]);
+    const LAG_REAL slow = n > 0 ? s->response[r + 1] : zero, most = c->hold*lag_larger(zero, w->P[r]);
     const int presses = s->response[r] > zero && w->P[r] + (c->least - w->rate[r])/s->response[r] > zero;
     others += w->stand[r] != presses;
     w->stand[r] = presses;
@@ -508,6 +525,7 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
       change = LAG_SELECT(one > change || !lag_is_number(one), one, change);
     }
     if (sweep >= SOME && change <= s->loose) change = zero;
+    if (sweep % 50 == 0) lag_contacts_loosen(s);
     if (change > enough && (sweep == 200 || sweep % 5000 == 0) && lag_contact_newton(s)) change = zero;
     for (int i = 0; i < s->n && !(change > enough); i++) softer += lag_contact_soften(s, &s->of[i], enough);
     if (!(change > enough) && softer == 0) return sweep;
