@@ -163,6 +163,8 @@ int lag_events_locate(lag_sim *s) {
   int nev = lag_watched(s);
   r->limit = r->step_t1;
   r->pending = 0;
-  /* contacts that are met by impulses have no other events */
-  return nev == 0 || (s->pb.contacts && nev == 2 * s->scene->model->ncontacts) ? LAG_OK : locate_first(s, nev);
+  const lag_model *m = s->scene->model;
+  int turns = 0; /* contacts and guides that are met by impulses have no other events */
+  for (int i = 0; i < m->nguides && s->pb.contacts; i++) turns += m->guides[i].turn >= 0;
+  return nev == 0 || (s->pb.contacts && nev == 2 * m->ncontacts + turns) ? LAG_OK : locate_first(s, nev);
 }

@@ -23,8 +23,8 @@
  *   LAG_UNIT_CHANGE(t, y, u, g, d, effort)  a status; d: least change with A d = g, effort = M d, and behind it
  *                                   components of forces of guides, `loads` of them
  *   LAG_STRIKE(t, y, u, i, v)       a status; velocities after the impact of contact i alone
- *   LAG_FRICTIONS(t, y, u, law)     a status; friction and tangential restitution, two for each contact; static friction
- *                                   beside its gap
+ *   LAG_FRICTIONS(t, y, u, law)     a status; friction and tangential restitution, two for each contact; static
+ *                                   friction beside its gap
  *   LAG_CONTACT_FAILS(t, i, words)  the status of a failure of contact i
  *   LAG_SINGULAR(t)                 that of a singular mass matrix */
 #ifndef LAG_CONTACT_STEP_H
@@ -190,16 +190,23 @@ static inline int lag_contact_bounce(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL
   return lag_is_number(*e) ? status : LAG_CONTACT_FAILS(t, i, "has no finite restitution");
 }
 
-/* Most friction that holds c, by the force of its gap: static, where it does not slip at the begin. */
-static inline LAG_REAL lag_contact_grip(const lag_moreau_contacts *w, const lag_pressing *c) {
-  const LAG_REAL zero = LAG_C(0.0), hold = w->law[2*(int)c->contact], rounding = LAG_C(1e-9);
+/* Static friction of c: at its full size where the contact rests at the begin, or friction has held it in the step
+ * before, in which its slip may have turned; then it takes what is left of that, too. */
+static inline void lag_contact_static(const lag_moreau_contacts *w, lag_pressing *c) {
+  const LAG_REAL zero = LAG_C(0.0), two = LAG_C(2.0), hold = w->law[2*(int)c->contact], P = w->guess[(int)c->contact];
   const int i = (int)c->contact + 1, r = (int)c->row + 1;
-  LAG_REAL slip = zero, pace = zero;
+  LAG_REAL slip = zero, pace = zero, rub = zero, slow = zero;
+  c->slack = -LAG_C(1.0);
+  c->hold = c->strikes > zero ? c->mu : lag_larger(hold, c->mu);
   for (int j = 0; j < (int)c->tangents; j++) {
-    slip += LAG_FN(fabs)(c->slip[j] - c->turn[j]);
-    pace += w->pace[w->at[i + j].constraint] + w->response[r + j]*hold*w->all.P[r - 1];
+    slip = lag_length_of(slip, c->slip[j] - c->turn[j]);
+    pace += w->pace[w->at[i + j].constraint];
+    slow += w->response[r + j];
+    rub = lag_length_of(rub, w->guess[i + j]);
   }
-  return hold > c->mu && !(c->strikes > zero) && slip <= rounding*pace ? hold : c->mu;
+  if (!(c->hold > c->mu) || !(slow > zero)) return;
+  const int held = P > zero && lag_contact_holds(c, P, rub, w->epsilon);
+  if (slip <= LAG_C(1e-9)*(pace + slow*hold*P) || (held && slip <= two*pace)) c->slack = slip/slow;
 }
 
 /* Appends contact i with its rows and its law. */
@@ -225,7 +232,7 @@ static inline int lag_contact_add(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
     c->turn[j] = w->bend[w->at[i + 1 + j].constraint];
     c->tail[j] = w->tail[w->at[i + 1 + j].constraint];
   }
-  c->hold = tangents > 0 ? lag_contact_grip(w, c) : zero;
+  lag_contact_static(w, c);
   lag_contact_law(c, w->c[k], w->bend[k], h, e, strikes && tangents > 0 ? w->law[2*(i + 1) + 1] : zero);
   return moves || w->r1[k] >= zero ? 0 : LAG_CONTACT_FAILS(t, i, "closes, and nothing can keep it from closing");
 }
