@@ -427,7 +427,7 @@ static void test_sweeps_of_surfaces(void **state) {
     q = p;
     lag_joints_place(&of, room);
     of.mode = q.z;
-    for (int i = 0; i < p.n; i++) of.response[i] = -s.response[i], of.bound[i] = 1;
+    for (int i = 0; i < p.n; i++) of.response[i] = -s.response[i], of.bound[i] = of.grip[i] = 1;
     assert_int_equal(lag_joints_solve(&q, &of, &step, 0, &size), 0);
     assert_int_equal(solve(&p, &solver), LAG_SOLVED);
     for (int i = 0; i < p.n; i++) {
