@@ -54,7 +54,8 @@ static int contact_word(const lag_sim *s, int i, const double *law) {
   if (i + 1 == m->ncontacts || !m->contacts[i + 1].is_tangent) return MARK_ACTS;
   if (!has_impulses(s)) return lag_contact_is_closed(s, c + 1) ? MARK_STICKS : MARK_SLIPS;
   for (int k = i + 1; k < m->ncontacts && m->contacts[k].is_tangent; k++) rub = hypot(rub, P[k]);
-  return rub < law[3 * (i + 1)] * P[i] * (1 - 64 * DBL_EPSILON) ? MARK_STICKS : MARK_SLIPS;
+  double most = law[3 * (i + 1)] * P[i]; /* more: by static friction */
+  return rub < most * (1 - 64 * DBL_EPSILON) || rub > most * (1 + 1e-9) ? MARK_STICKS : MARK_SLIPS;
 }
 
 static int surface_word(const lag_sim *s, int k) {

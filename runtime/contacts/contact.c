@@ -511,6 +511,55 @@ static double largest_force(const lag_sim *s, const double *g, const double *law
   return most;
 }
 
+/* contact_pair of open contact i, which touches: a closed one whose gap has the opposite gradient. A: of all gaps. */
+static void find_pair(lag_sim *s, const double *A, int i) {
+  const lag_model *m = s->scene->model;
+  const lag_constraints *of = m->constraints;
+  const double rounding = 1e-12;
+  double *a = s->contact_rows + of->njacobian + of->nmass, *same = s->contact_scratch, entries = 0;
+  memset(a, 0, (size_t)m->nq * sizeof *a);
+  memset(same, 0, (size_t)of->n * sizeof *same);
+  for (int e = 0; e < of->njacobian; e++)
+    if (of->jacobian[e].row == m->contacts[i].constraint && A[e] != 0.0) a[of->jacobian[e].col] = A[e], entries++;
+  for (int e = 0; e < of->njacobian; e++) {
+    int opposite = fabs(A[e] + a[of->jacobian[e].col]) <= rounding * fabs(A[e]);
+    if (A[e] != 0.0) same[of->jacobian[e].row] += opposite ? 1 : NAN;
+  }
+  for (int j = 0; j < m->ncontacts; j++)
+    if (s->contact_was[j] > 0.5 && !m->contacts[j].is_tangent && same[m->contacts[j].constraint] == entries)
+      s->contact_pair[i] = j + 1;
+}
+
+/* Pairs of contacts without play. */
+static int find_pairs(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  const lag_constraints *of = m->constraints;
+  const double *q = s->now, *v = q + m->nq;
+  double *A = s->contact_rows;
+  int rc = 0, known = 0;
+  for (int i = 0; i < m->ncontacts && rc == 0; i++) {
+    const lag_contact *c = &m->contacts[i];
+    s->contact_pair[i] = 0;
+    if (c->is_tangent || c->conditional || s->contact_was[i] > 0.5 || s->sign[c->impact] != 0.0) continue;
+    for (int j = 0; j < m->ncontacts && !known; j++) s->pb.u[m->contacts[j].input] = 1;
+    if (!known++) rc = of->matrices(of, s->run->t, q, v, v + m->nq, s->pb.p, s->pb.u, A, A + of->njacobian, s->pb.work);
+    if (rc == 0) find_pair(s, A, i);
+  }
+  return rc;
+}
+
+int lag_contact_pairs(lag_sim *s, double t, const double *y, double *g) {
+  const lag_model *m = s->scene->model;
+  double *c = s->contact_scratch;
+  int known = 0, rc = 0;
+  for (int i = 0; i < m->ncontacts && rc == 0; i++) {
+    if (s->contact_pair[i] == 0.0) continue;
+    if (!known++) rc = lag_residuals(&s->pb, t, y, c, c + m->constraints->n);
+    g[m->contacts[i].impact] += c[m->contacts[(int)s->contact_pair[i] - 1].constraint];
+  }
+  return rc;
+}
+
 int lag_contact_arm(lag_sim *s, const double *g) {
   const lag_model *m = s->scene->model;
   double *size = s->contact_scratch;
@@ -535,5 +584,5 @@ int lag_contact_arm(lag_sim *s, const double *g) {
       s->sign[k] = 1;
     }
   }
-  return rc;
+  return rc ? rc : find_pairs(s);
 }

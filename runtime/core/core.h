@@ -96,6 +96,8 @@ struct lag_sim {
   /* [3 n] force_pole.c: rate of change of the state over the last two steps, and its fading peak; NaN: not known */
   double *rate_history;
   double *contact_scratch, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
+  /* [contacts] 1 + the closed contact on the other side of one that touches, 0: none; gradients of gaps, scratch */
+  double *contact_pair, *contact_rows;
   double *grip;          /* [nmodes] the largest mode of a sliding motion */
   /* [nmodes] switching.c: rounding of the switching functions, their size before events; whether the motion is at
    * the surface, the side to which it has slid off; scratch */
@@ -328,6 +330,8 @@ void lag_contact_open(lag_sim *sim);
 int lag_contact_resolve(lag_sim *sim, double *y, const char *who, int event, int ends);
 int lag_contact_begin(lag_sim *sim);
 int lag_contact_arm(lag_sim *sim, const double *g);
+/* g[nev] at y, t beside the constraints: adds the gap of a closed contact to that of an open one on its other side. */
+int lag_contact_pairs(lag_sim *sim, double t, const double *y, double *g);
 /* contact_friction.c: law[3 contacts] at y, now. Failures have their message. law_size: numbers in pb.rub. */
 int lag_contact_laws(lag_sim *sim, const double *y, double *law);
 size_t lag_contact_law_size(const lag_model *m);

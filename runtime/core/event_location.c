@@ -8,23 +8,32 @@
 #include "core/rhs.h"
 #include "kernels/locate.h"
 
-/* y[n] := the state at time t of the step, exact at its ends. */
-static int state_at(lag_sim *s, double t, double *y) {
+/* y[n] := the state at time t of the step, exact at its ends. loosely: else dense output beside the constraints. */
+static int state_at(lag_sim *s, int loosely, double t, double *y) {
   size_t bytes = (size_t)s->pb.n * sizeof *y;
   if (t == s->run->step_t1) memcpy(y, s->y, bytes);
   else if (t == s->run->step_t0) memcpy(y, s->y0, bytes);
+  else if (loosely) s->method->dense(s->method_work, &s->pb, t, y);
   else return lag_dense_state(s, t, y);
   return LAG_OK;
 }
 
 /* g[nev] := the event functions at time t of the step; shaken: with t and the state changed in their last digits. */
-static int sample(void *sim, int shaken, double t, double *g) {
-  lag_sim *s = sim;
+static int sample_state(lag_sim *s, int loosely, int shaken, double t, double *g) {
   double last = shaken ? 4 * DBL_EPSILON : 0;
-  int rc = state_at(s, t, s->yc);
+  int rc = state_at(s, loosely, t, s->yc);
   for (int j = 0; j < s->pb.n && shaken; j++)
     s->yc[j] += (j % 2 ? -last : last) * (fabs(s->yc[j]) + fabs(s->y[j] - s->y0[j]));
   return rc ? rc : lag_events_eval(s, t * (1 + last), s->yc, g);
+}
+
+static int sample(void *sim, int shaken, double t, double *g) { return sample_state(sim, 0, shaken, t, g); }
+
+/* The same beside the constraints. A gap on the other side of a closed one counts from there. */
+static int sample_loosely(void *sim, int shaken, double t, double *g) {
+  lag_sim *s = sim;
+  int rc = sample_state(s, 1, shaken, t, g);
+  return rc ? rc : lag_contact_pairs(s, t, s->yc, g);
 }
 
 static int direction(void *sim, int k) {
@@ -95,6 +104,28 @@ static int is_quiet(lag_sim *s, int *rc) {
   return quiet && *rc == 0;
 }
 
+/* Whether no function changes its sign at the samples of a step that resolves all, beside the constraints, by far more
+ * than the way back there changes them; that costs a Newton iteration a sample. Row 0 is the first of them. */
+static int is_clear(lag_sim *s) {
+  const int n = lag_watched(s), far = 16;
+  lag_locator l = locator(s);
+  double ta = s->run->from, tb = s->run->step_t1, *exact = l.value + (LAG_LOCATE_ROWS - 1) * n, *apart = exact - n;
+  int known = 0, most = 0, clear = s->scene->model->constraints != NULL;
+  l.sample = sample_loosely;
+  if (!clear || lag_sample_part(&l, ta, tb, &known, &most) || most) return 0;
+  for (int k = 0; k < n; k++) apart[k] = 0;
+  for (int j = LAG_DEGREE / 4; j < LAG_DEGREE && clear; j += LAG_DEGREE / 2 - 1) {
+    clear = sample(s, 0, lag_locate_time(ta, tb, j), exact) == LAG_OK;
+    for (int k = 0; k < n; k++) apart[k] = fmax(apart[k], far * fabs(exact[k] - l.value[j * n + k]));
+  }
+  for (int j = 1; j <= LAG_DEGREE && clear; j++)
+    for (int k = 0; k < n && clear; k++) {
+      double g = l.value[j * n + k];
+      clear = s->sign[k] == 0.0 ? fabs(g) + apart[k] <= s->noise[k] : s->sign[k] * g > apart[k];
+    }
+  return clear;
+}
+
 /* limit := the earliest root; pending: whether there is one. Roots are late by s->late. */
 static void first_root(lag_sim *s) {
   Run *r = s->run;
@@ -120,6 +151,7 @@ LAG_RARE int locate_first(lag_sim *s, int nev) {
   const lag_locator l = locator(s);
   int rc = sample(s, 0, r->from, l.value);
   if (rc == 0 && !unknown && is_quiet(s, &rc)) return LAG_OK;
+  if (rc == 0 && is_clear(s)) return LAG_OK;
   rc = rc ? rc : lag_locate(&l, r->from, lag_kicks_locate(s, l.value), &found); /* roots of kicks are known before */
   memcpy(s->g0, l.value, (size_t)nev * sizeof(double));
   if (rc == 0) first_root(s);
@@ -131,6 +163,8 @@ int lag_events_locate(lag_sim *s) {
   int nev = lag_watched(s);
   r->limit = r->step_t1;
   r->pending = 0;
-  /* contacts that are met by impulses have no other events */
-  return nev == 0 || (s->pb.contacts && nev == 2 * s->scene->model->ncontacts) ? LAG_OK : locate_first(s, nev);
+  const lag_model *m = s->scene->model;
+  int turns = 0; /* contacts and guides that are met by impulses have no other events */
+  for (int i = 0; i < m->nguides && s->pb.contacts; i++) turns += m->guides[i].turn >= 0;
+  return nev == 0 || (s->pb.contacts && nev == 2 * m->ncontacts + turns) ? LAG_OK : locate_first(s, nev);
 }

@@ -109,13 +109,14 @@ static int clear_scratch(lag_sim *s) {
   size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw),
          nuu = nu + nm + (size_t)s->scene->nexact;
   size_t held = lag_constraint_scratch_size(m), ranks = lag_rank_scratch_size(m),
-         sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
+         sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0,
+         rows = m->ncontacts ? (size_t)(m->constraints->njacobian + m->constraints->nmass + m->nq) : 0;
   size_t nc = (size_t)lag_sim_ncharges(s) + 1;
   const lag_part parts[] = {{&s->u, nuu}, {&s->work, nw}, {&s->ya, n}, {&s->yb, n}, {&s->yc, n}, {&s->g0, nev},
       {&s->g1, nev}, {&s->out, nout}, {&s->e, 2 + nev}, {&s->spare, 11 * nev},
       {&s->beside, n + (size_t)(m->np + m->nderived)}, {&s->beside_noise, 3 * n},
       {&s->beside_open, 3 * n}, {&s->pb.held, held}, {&s->pb.ranks, ranks}, {&s->contact_scratch, sized},
-      {&s->contact_was, (size_t)m->ncontacts},
+      {&s->contact_was, (size_t)m->ncontacts}, {&s->contact_pair, (size_t)m->ncontacts}, {&s->contact_rows, rows},
       {&s->charge_now, 2 * nc}, {&s->charge_power, nc}, {&s->charge_gain, nc}, {&s->sides, 3 * (size_t)m->nswitch},
       {&s->grip, nm}, {&s->side_noise, nm}, {&s->slid_off, nm}, {&s->meets, nm}, {&s->left, nm},
       {&s->meeting, nm * (9 + 2 * nm)}, {&s->pb.slide, nm * (3 + 2 * nm)},

@@ -23,7 +23,8 @@
  *   LAG_UNIT_CHANGE(t, y, u, g, d, effort)  a status; d: least change with A d = g, effort = M d, and behind it
  *                                   components of forces of guides, `loads` of them
  *   LAG_STRIKE(t, y, u, i, v)       a status; velocities after the impact of contact i alone
- *   LAG_FRICTIONS(t, y, u, law)     a status; friction and tangential restitution, two for each contact
+ *   LAG_FRICTIONS(t, y, u, law)     a status; friction and tangential restitution, two for each contact; static
+ *                                   friction beside its gap
  *   LAG_CONTACT_FAILS(t, i, words)  the status of a failure of contact i
  *   LAG_SINGULAR(t)                 that of a singular mass matrix */
 #ifndef LAG_CONTACT_STEP_H
@@ -46,7 +47,7 @@ typedef struct lag_moreau_contacts {
   lag_impulses all;
   int rows, impacts, sweeps;
   LAG_REAL *response, *b, *before; /* [rows]; before: rates at the begin of the step */
-  LAG_REAL *law;                   /* [2 contacts] friction, tangential restitution */
+  LAG_REAL *law;                   /* [2 contacts] friction, tangential restitution; of a gap its static friction */
   /* [constraints] gaps, rates at the begin, rates without contacts, their changes by forces and curvature in a step, by
    * curvature in its first half, and in its second, a unit */
   LAG_REAL *c, *r0, *r1, *pace, *bend, *tail, *g;
@@ -189,6 +190,25 @@ static inline int lag_contact_bounce(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL
   return lag_is_number(*e) ? status : LAG_CONTACT_FAILS(t, i, "has no finite restitution");
 }
 
+/* Static friction of c: at its full size where the contact rests at the begin, or friction has held it in the step
+ * before, in which its slip may have turned; then it takes what is left of that, too. */
+static inline void lag_contact_static(const lag_moreau_contacts *w, lag_pressing *c) {
+  const LAG_REAL zero = LAG_C(0.0), two = LAG_C(2.0), hold = w->law[2*(int)c->contact], P = w->guess[(int)c->contact];
+  const int i = (int)c->contact + 1, r = (int)c->row + 1;
+  LAG_REAL slip = zero, pace = zero, rub = zero, slow = zero;
+  c->slack = -LAG_C(1.0);
+  c->hold = c->strikes > zero ? c->mu : lag_larger(hold, c->mu);
+  for (int j = 0; j < (int)c->tangents; j++) {
+    slip = lag_length_of(slip, c->slip[j] - c->turn[j]);
+    pace += w->pace[w->at[i + j].constraint];
+    slow += w->response[r + j];
+    rub = lag_length_of(rub, w->guess[i + j]);
+  }
+  if (!(c->hold > c->mu) || !(slow > zero)) return;
+  const int held = P > zero && lag_contact_holds(c, P, rub, w->epsilon);
+  if (slip <= LAG_C(1e-9)*(pace + slow*hold*P) || (held && slip <= two*pace)) c->slack = slip/slow;
+}
+
 /* Appends contact i with its rows and its law. */
 static inline int lag_contact_add(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t, LAG_REAL h, const LAG_REAL *y, int i) {
   const LAG_REAL zero = LAG_C(0.0);
@@ -212,6 +232,7 @@ static inline int lag_contact_add(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
     c->turn[j] = w->bend[w->at[i + 1 + j].constraint];
     c->tail[j] = w->tail[w->at[i + 1 + j].constraint];
   }
+  lag_contact_static(w, c);
   lag_contact_law(c, w->c[k], w->bend[k], h, e, strikes && tangents > 0 ? w->law[2*(i + 1) + 1] : zero);
   return moves || w->r1[k] >= zero ? 0 : LAG_CONTACT_FAILS(t, i, "closes, and nothing can keep it from closing");
 }
@@ -278,7 +299,7 @@ static inline void lag_contacts_rest(const lag_moreau_contacts *w, LAG_REAL *v) 
     const lag_pressing *const c = &w->all.of[i];
     const int row = (int)c->row, end = row + 1 + (int)c->tangents;
     for (int e = (int)D->first[row]; e < (int)D->first[end]; e++)
-      w->x[(int)D->col[e]] += LAG_FN(fabs)(w->all.P[row]*D->value[e])*(e < (int)D->first[row + 1] ? one : c->mu);
+      w->x[(int)D->col[e]] += LAG_FN(fabs)(w->all.P[row]*D->value[e])*(e < (int)D->first[row + 1] ? one : c->hold);
   }
   for (int j = 0; j < w->nq; j++) v[j] = LAG_SELECT(LAG_FN(fabs)(v[j]) > little*w->x[j], v[j], zero);
 }

@@ -31,29 +31,32 @@ static inline void lag_into_ball(int n, const LAG_REAL *centre, LAG_REAL radius,
 }
 
 /* Coulomb's law along n directions. response: of the slip to friction; friction drives the slip to the nearest point
- * of a ball about centre[n] if it is at most `holds`, else it is `most` against it. */
+ * of a ball about centre[n] if it is at most `holds`, or `turned` against a slip that turns round from before[n], else
+ * it is that against it, and no more than `most`. */
 typedef struct lag_coulomb {
   int n;
-  LAG_REAL response, radius, holds, most;
-  const LAG_REAL *centre;
+  LAG_REAL response, radius, holds, turned, most;
+  const LAG_REAL *centre, *before;
 } lag_coulomb;
 
 /* slip[n]: now, under the friction x[n]. x := friction by the law; slip := what that leaves of it. */
 static inline void lag_friction_turn(const lag_coulomb *of, LAG_REAL *slip, LAG_REAL *x) {
   const LAG_REAL origin[2] = {LAG_C(0.0), LAG_C(0.0)}, response = of->response;
   const int n = of->n;
-  LAG_REAL to[2], size = LAG_C(0.0);
+  LAG_REAL to[2], size = LAG_C(0.0), back = LAG_C(0.0);
   for (int k = 0; k < n; k++) to[k] = slip[k] - response*x[k];
   lag_into_ball(n, of->centre, of->radius, to);
+  for (int k = 0; k < n; k++) back += (to[k] - slip[k] + response*x[k])*of->before[k];
   for (int k = 0; k < n; k++) {
     x[k] += (to[k] - slip[k])/response;
     slip[k] = to[k];
   }
   if (n > 1) size = lag_length_of(x[0], x[1]);
   else size = LAG_FN(fabs)(x[0]);
-  if (!(size > of->holds)) return;
+  const LAG_REAL holds = LAG_SELECT(back > LAG_C(0.0), of->turned, of->holds);
+  if (!(size > holds)) return;
   for (int k = 0; k < n; k++) to[k] = x[k];
-  lag_into_ball(n, origin, of->most, x);
+  lag_into_ball(n, origin, lag_smaller(holds, of->most), x);
   for (int k = 0; k < n; k++) slip[k] += response*(x[k] - to[k]);
 }
 

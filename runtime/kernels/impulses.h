@@ -22,14 +22,16 @@ typedef struct lag_sparse_rows {
   LAG_REAL *first, *col, *value;
 } lag_sparse_rows;
 
-/* A contact: rows row (the gap) and row + 1 .. row + tangents (slip velocities). least: the least rate of the
- * gap after the impulse. Friction drives the slip velocity to the nearest point of a ball (an interval in a
- * plane), about centre[tangents], of this radius. strikes: 1 in an impact; rate, slip[tangents]: at the begin, by
- * directions at the middle; turn, tail[tangents]: change of the slip by theirs until there, and on to the end.
+/* A contact: rows row (the gap) and row + 1 .. row + tangents (slip velocities). mu, hold: friction that
+ * slips, and the most that holds, by the force of the gap; slack: what it may be more, where the contact rests at the
+ * begin, else -1. least: the least rate of the gap after the impulse. Friction drives the slip velocity to the nearest
+ * point of a ball (an interval in a plane), about centre[tangents], of this radius. strikes: 1 in an impact; rate,
+ * slip[tangents]: at the begin, by directions at the middle; turn, tail[tangents]: change of the slip by theirs until
+ * there, and on to the end.
  * opposite: the contact on the other side of the same rail, or -1; head, next: of chains by first column;
  * couple: response of the gap to friction. */
 typedef struct lag_pressing {
-  LAG_REAL contact, row, tangents, mu, least, radius, centre[2], strikes, rate, slip[2], turn[2], tail[2];
+  LAG_REAL contact, row, tangents, mu, hold, slack, least, radius, centre[2], strikes, rate, slip[2], turn[2], tail[2];
   LAG_REAL opposite, head, next, couple[2];
 } lag_pressing;
 
@@ -150,6 +152,19 @@ static inline void lag_press(const lag_impulses *s, const lag_pressing *c, LAG_R
   lag_add_impulse(&s->D, (int)c->row, dP - less, s->P, s->v);
 }
 
+/* Most friction that holds c under the impulse P of its gap; turned: the slip turns round in the step. */
+static inline LAG_REAL lag_contact_grip(const lag_pressing *c, LAG_REAL P, int turned) {
+  const int rests = c->slack >= LAG_C(0.0);
+  return (rests || turned ? c->hold : c->mu)*P + (rests ? c->slack : LAG_C(0.0));
+}
+
+/* Coulomb's law of c under the impulse P of its gap; slow: response of its slip. */
+static inline lag_coulomb lag_contact_coulomb(const lag_pressing *c, LAG_REAL slow, LAG_REAL P) {
+  const lag_coulomb law = {(int)c->tangents, slow, c->radius, lag_contact_grip(c, P, 0), lag_contact_grip(c, P, 1),
+                           (LAG_REAL)HUGE_VAL, c->centre, c->slip};
+  return law;
+}
+
 /* A contact alone, while the others keep theirs: its impulse, friction x, rates under them. slow: response of a slip to
  * friction, the trace, which is no less than the largest eigenvalue, and the same in all directions. */
 typedef struct lag_contact_alone {
@@ -160,7 +175,7 @@ typedef struct lag_contact_alone {
 /* x := friction where the impulse of the gap is P. Returns the rate of the gap. */
 static inline LAG_REAL lag_contact_rate(const lag_contact_alone *a, LAG_REAL P, LAG_REAL *x) {
   const lag_pressing *const c = a->of;
-  const lag_coulomb law = {(int)c->tangents, a->slow, c->radius, c->mu*P, c->mu*P, c->centre};
+  const lag_coulomb law = lag_contact_coulomb(c, a->slow, P);
   LAG_REAL slip[2], rate = a->rate + a->response*(P - a->impulse);
   for (int k = 0; k < law.n; k++) {
     slip[k] = a->slip[k] + c->couple[k]*(P - a->impulse);
@@ -226,10 +241,12 @@ static inline LAG_REAL lag_contact_turn_flat(const lag_impulses *s, const lag_pr
     if (!(change <= zero)) lag_press(s, c, part*by);
   }
   if (!(slow > zero)) return change;
-  const LAG_REAL slip = lag_rate_of(s, r + 1), most = c->mu*s->P[r], was = s->P[r + 1];
-  LAG_REAL to = slip - slow*was;
+  const LAG_REAL slip = lag_rate_of(s, r + 1), was = s->P[r + 1];
+  const LAG_REAL free = slip - slow*was;
+  LAG_REAL to = free;
   lag_into_ball(1, c->centre, c->radius, &to);
   LAG_REAL x = was + (to - slip)/slow;
+  const LAG_REAL most = lag_contact_grip(c, s->P[r], (to - free)*c->slip[0] > zero);
   if (LAG_FN(fabs)(x) > most) x = lag_smaller(lag_larger(x, -most), most);
   lag_add_impulse(&s->D, r + 1, part*(x - was), s->P, s->v);
   return lag_larger(change, LAG_FN(fabs)(x - was)*slow);
@@ -263,9 +280,36 @@ static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressin
     a.slip[k] = lag_rate_of(s, r + 1 + k);
     x[k] = a.x[k];
   }
-  const lag_coulomb law = {n, a.slow, c->radius, c->mu*s->P[r], c->mu*s->P[r], c->centre};
+  const lag_coulomb law = lag_contact_coulomb(c, a.slow, s->P[r]);
   lag_friction_turn(&law, a.slip, x);
   return lag_larger(change, lag_contact_rub(s, c, x, a.slow, part));
+}
+
+/* Whether friction of size rub holds: it is another than that of a contact that slips. */
+static inline int lag_contact_holds(const lag_pressing *c, LAG_REAL P, LAG_REAL rub, LAG_REAL epsilon) {
+  const LAG_REAL one = LAG_C(1.0), most = c->mu*P;
+  return rub < most*(one - LAG_C(64.0)*epsilon) || (c->hold > c->mu && rub > most*(one + LAG_C(1e-9)));
+}
+
+/* Contacts that static friction at its limit does not hold slip from then on; returns how many. */
+static inline int lag_contacts_loosen(const lag_impulses *s) {
+  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0);
+  int loose = 0;
+  for (int i = 0; i < s->n; i++) {
+    lag_pressing *const c = &s->of[i];
+    const int r = (int)c->row + 1, n = (int)c->tangents;
+    LAG_REAL slip[2] = {zero, zero}, x[2] = {zero, zero}, slow = zero;
+    if (!(c->hold > c->mu)) continue;
+    for (int k = 0; k < n; k++) slow += s->response[r + k], slip[k] = lag_rate_of(s, r + k), x[k] = s->P[r + k];
+    lag_coulomb law = lag_contact_coulomb(c, slow, s->P[r - 1]);
+    const LAG_REAL most = law.turned, rub = lag_length_of(x[0], x[1]);
+    law.holds = law.turned = (LAG_REAL)HUGE_VAL;
+    if (slow > zero) lag_friction_turn(&law, slip, x);
+    if (!(rub >= most*(one - LAG_C(1e-9)) && lag_length_of(x[0], x[1]) > most*(one + LAG_C(1e-9)))) continue;
+    c->hold = c->mu, c->slack = -one;
+    loose++;
+  }
+  return loose;
 }
 
 /* Whether friction by the slip at the end brings in energy in an impact; then its ball becomes that of the
@@ -361,12 +405,12 @@ static inline int lag_few_begin(const lag_impulses *s, lag_contact_equations *w)
   return 0;
 }
 
-/* Row r: its rate goes to `to` where it is held, else its impulse to `by` times that of the row before. A held
- * row gives way a little, so that rows which depend on others go to their limits. */
+/* Row r: its rate goes to `to` where it is held, else its impulse to `by` times that of the row before, and `to`. A
+ * held row gives way a little, so that rows which depend on others go to their limits. */
 static inline void lag_few_row(lag_contact_equations *w, int r, int held, LAG_REAL to, LAG_REAL by) {
   LAG_REAL *const a = w->a + r*w->rows;
   for (int k = 0; k < w->rows; k++) a[k] = held ? w->W[r*w->rows + k] : LAG_C(0.0);
-  w->change[r] = held ? to - w->rate[r] : -w->P[r];
+  w->change[r] = to - (held ? w->rate[r] : w->P[r]);
   a[r] = held ? a[r] + LAG_C(1e-10)*a[r] : LAG_C(1.0);
   if (held || !(by > LAG_C(0.0) || by < LAG_C(0.0))) return;
   a[r - 1] = -by;
@@ -381,11 +425,13 @@ static inline int lag_few_step(const lag_impulses *s, lag_contact_equations *w) 
   for (int i = 0; i < s->n; i++) {
     const lag_pressing *const c = &s->of[i];
     const int r = (int)c->row, stand = w->stand[r + 1];
-    lag_few_row(w, r, w->stand[r], c->least, zero);
+    lag_few_row(w, r, w->stand[r], w->stand[r] ? c->least : zero, zero);
     if (!(c->tangents > zero)) continue;
-    const LAG_REAL to = c->centre[0] + (stand == LAG_RUB_BELOW ? -c->radius : c->radius);
-    lag_few_row(w, r + 1, stand >= LAG_RUB_ABOVE, to,
-                stand == LAG_RUB_MOST ? c->mu : stand == LAG_RUB_LEAST ? -c->mu : zero);
+    const LAG_REAL side = stand == LAG_RUB_MOST ? LAG_C(1.0) : stand == LAG_RUB_LEAST ? -LAG_C(1.0) : zero;
+    const LAG_REAL rest = lag_contact_grip(c, zero, 0), by = lag_contact_grip(c, LAG_C(1.0), side*c->slip[0] > zero);
+    const LAG_REAL end = c->centre[0] + (stand == LAG_RUB_BELOW ? -c->radius : c->radius);
+    const int held = stand >= LAG_RUB_ABOVE;
+    lag_few_row(w, r + 1, held, held ? end : side*rest, side*(by - rest));
   }
   if (lag_band_matrix_factor(&m, w->scale)) return 1;
   lag_band_matrix_solve(&m, w->change);
@@ -412,17 +458,19 @@ static inline int lag_few_stand(const lag_impulses *s, lag_contact_equations *w)
   for (int i = 0; i < s->n; i++) {
     const lag_pressing *const c = &s->of[i];
     const int r = (int)c->row, n = (int)c->tangents;
-    const LAG_REAL slow = n > 0 ? s->response[r + 1] : zero, most = c->mu*lag_larger(zero, w->P[r]);
+    const LAG_REAL slow = n > 0 ? s->response[r + 1] : zero, P = lag_larger(zero, w->P[r]);
     const int presses = s->response[r] > zero && w->P[r] + (c->least - w->rate[r])/s->response[r] > zero;
     others += w->stand[r] != presses;
     w->stand[r] = presses;
     if (n == 0) continue;
     LAG_REAL slip = w->rate[r + 1], x = w->P[r + 1];
-    const lag_coulomb law = {1, slow, c->radius, (LAG_REAL)HUGE_VAL, most, c->centre};
+    lag_coulomb law = lag_contact_coulomb(c, slow, P);
+    law.holds = law.turned = (LAG_REAL)HUGE_VAL;
     const LAG_REAL free = slip - slow*x;
     int stand = LAG_RUB_NONE;
     if (slow > zero) lag_friction_turn(&law, &slip, &x);
     if (slow > zero && (slip < free || slip > free)) stand = slip < free ? LAG_RUB_ABOVE : LAG_RUB_BELOW;
+    const LAG_REAL most = lag_contact_grip(c, P, (slip - free)*c->slip[0] > zero);
     if (stand != LAG_RUB_NONE && LAG_FN(fabs)(x) > most) stand = x > zero ? LAG_RUB_MOST : LAG_RUB_LEAST;
     if (w->gives && slow > zero && lag_few_stays(w, c, slow, free)) stand = w->stand[r + 1];
     others += w->stand[r + 1] != stand;
@@ -510,7 +558,7 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
     if (sweep >= SOME && change <= s->loose) change = zero;
     if (change > enough && (sweep == 200 || sweep % 5000 == 0) && lag_contact_newton(s)) change = zero;
     for (int i = 0; i < s->n && !(change > enough); i++) softer += lag_contact_soften(s, &s->of[i], enough);
-    if (!(change > enough) && softer == 0) return sweep;
+    if (!(change > enough) && softer == 0 && lag_contacts_loosen(s) == 0) return sweep;
     if (sweep % 1000 == 0 && change <= LAG_C(1e7)*enough && change >= LAG_C(0.9)*before) return sweep;
     if (sweep % 1000 == 0) before = change;
     if (conjugate && sweep % 2 == 0) lag_contact_conjugate(s, &square);

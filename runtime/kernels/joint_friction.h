@@ -4,9 +4,9 @@
  * else friction is at its size, against the slip.
  *
  * A mode is the mean of sign(slip) in a step: friction in parts of its size while the body slips. Bounds are 1, or
- * static friction in these parts where the body rests at the begin. In a step with an impact friction opposes the mean
- * of the slips at both ends, as that of contacts: it drives the slip s into the interval from -s0 to 0, so it brings no
- * energy in where the impact turns the slip round.
+ * static friction in these parts where the body rests at the begin or turns round in the step. In a step with an
+ * impact friction opposes the mean of the slips at both ends, as that of contacts: it drives the slip s into the
+ * interval from -s0 to 0, so it brings no energy in where the impact turns the slip round.
  *
  * An instance defines before it includes this text:
  *   LAG_MODEL, LAG_THE_MODEL            the first parameters of functions: the model; the same as arguments
@@ -27,19 +27,20 @@
 typedef struct lag_joint_friction {
   int n, states, nq;
   LAG_REAL *mode, *sticks;    /* [n] in the last step; whether that held it */
-  LAG_REAL *bound, *response; /* [n] the largest mode; change of the slip by a mode of 1 */
+  LAG_REAL *bound, *grip;     /* [n] the largest mode, and that of a slip which does not turn */
+  LAG_REAL *response;         /* [n] change of the slip by a mode of 1 */
   LAG_REAL *before, *centre;  /* [n] slip at the begin; middle of the interval from there to the slip aimed at */
   LAG_REAL *slip, *other;     /* [n] */
   LAG_REAL *d, *x;            /* [n states] rates for a mode of 1; [states] */
 } lag_joint_friction;
 
-#define LAG_JOINT_ROOM(n, states) ((n)*(8 + (states)) + (states))
+#define LAG_JOINT_ROOM(n, states) ((n)*(9 + (states)) + (states))
 #define LAG_COUPLED_ROOM(n, states) (4*(n) + 2*(states)) /* of coupled_friction.h */
 
 static inline void lag_joints_place(lag_joint_friction *w, LAG_REAL *room) {
   const int n = w->n;
   w->mode = room, w->sticks = room += n, w->bound = room += n, w->response = room += n, w->before = room += n;
-  w->centre = room += n, w->slip = room += n, w->other = room += n;
+  w->centre = room += n, w->slip = room += n, w->other = room += n, w->grip = room += n;
   w->d = room += n, w->x = room + n*w->states;
 }
 
@@ -56,7 +57,8 @@ static inline int lag_joints_begin(LAG_MODEL, lag_joint_friction *w, LAG_REAL t,
     if (rests && w->bound[j] < one - LAG_C(1e-9))
       return LAG_FRICTION_FAILS(t, j, "has a static limit smaller than the friction of a sliding body: let "
                                       "`static = mu_s*N` have a mu_s of at least mu");
-    w->bound[j] = rests && w->bound[j] > one ? w->bound[j] : one;
+    w->bound[j] = w->bound[j] > one ? w->bound[j] : one;
+    w->grip[j] = rests ? w->bound[j] : one;
   }
   return status;
 }
@@ -100,7 +102,8 @@ static inline int lag_joint_turn(LAG_MODEL, lag_joint_friction *w, const lag_kic
   const LAG_REAL g = LAG_FN(fabs)(slip[0]), response = LAG_FN(fabs)(own);
   to[0] = was;
   if (own < zero) {
-    const lag_coulomb law = {1, own, LAG_FN(fabs)(w->centre[k]), w->bound[k], one, w->centre + k};
+    const lag_coulomb law = {1, own, LAG_FN(fabs)(w->centre[k]), w->grip[k], w->bound[k],
+                             one, w->centre + k, w->before + k};
     lag_friction_turn(&law, slip, to);
   } else {
     const LAG_REAL rests = LAG_SELECT(own > zero, was, zero), little = LAG_C(1e-6)*lag_larger(response, *size);
@@ -131,7 +134,7 @@ static inline int lag_joints_solve(LAG_MODEL, lag_joint_friction *w, const lag_k
     for (int k = 0; k < LAG_JOINTS(w); k++) {
       LAG_TRY(lag_joint_turn(LAG_THE_MODEL, w, s, k, size, &change));
       /* with static friction surfaces that share a load may hold and slip in turns: one that slips has broken loose */
-      if (sweep >= 50) w->bound[k] = LAG_SELECT(w->sticks[k] > zero, w->bound[k], LAG_C(1.0));
+      if (sweep >= 50 && !(w->sticks[k] > zero)) w->bound[k] = w->grip[k] = LAG_C(1.0);
     }
     const LAG_REAL unit = s->epsilon*(*size);
     if (change <= LAG_C(64.0)*unit) return status;

@@ -77,11 +77,6 @@ static int init(void *work, lag_problem *pb, const double *opt) {
           : m->contact_laws(m, 0, pb->begin, pb->begin + pb->nq, pb->begin + 2 * pb->nq, pb->p, pb->u, pb->rub,
                             pb->work);
   for (int i = 0; i < 2 * m->ncontacts; i++) law_of(w, pb)[i] = pb->rub[3 * (i / 2) + i % 2];
-  for (int i = 0; i + 1 < m->ncontacts && rc == 0; i++) {
-    if (m->contacts[i].is_tangent || !m->contacts[i + 1].is_tangent || !(pb->rub[3 * i] > pb->rub[3 * i + 3])) continue;
-    pb->detail = "a static friction above that of slipping is not followed by moreau; dop853 follows it";
-    return lag_step_failed(pb, LAG_EMETHOD, 0);
-  }
   return rc ? lag_step_refused(pb, rc, 0) : LAG_OK;
 }
 

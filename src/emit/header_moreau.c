@@ -109,8 +109,7 @@ const char *header_moreau_lacks(const ProgramSet *u) {
   const char *lacks = program_set_contacts(u) && !header_rubs(u) ? NULL : header_friction_lacks(u);
   if (lacks || !program_set_contacts(u)) return lacks;
   for (uint32_t i = 0; i < program_set_contacts(u); i++)
-    if (u->contacts.at[i].law || u->contacts.at[i].holds)
-      return "contacts of one friction, at rest and slipping, and of one law of impact, `stronge`";
+    if (u->contacts.at[i].law) return "contacts of one law of impact, `stronge`";
   int undetermined = u->flags & 1u << UNIT_MASSLESS && u->constraints.of.n == u->contacts.n;
   return undetermined ? "inertia in all coordinates: impulses would move the others by any amount"
                                         : NULL;

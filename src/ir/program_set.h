@@ -153,11 +153,10 @@ typedef struct {
 } IrConstraints;
 
 /* Indices: of the input that says whether the contact is closed, of its constraint, of its two events; of a tangent:
- * of the input of its force. conditional: a constraint with `while`; of a tangent, law: of impact, holds: more
- * friction while it sticks. */
+ * of the input of its force. conditional: a constraint with `while`; of a tangent, law: of impact. */
 typedef struct {
   uint32_t input, constraint, impact, release, force;
-  int is_tangent, conditional, law, holds;
+  int is_tangent, conditional, law;
   uint32_t parts, turn; /* of a tangent of a guide: components of its force; of one: the event where it turns */
 } IrContact;
 

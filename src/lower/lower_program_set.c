@@ -70,8 +70,8 @@ static void add_contacts(ProgramSet *u, const Eqns *e) {
   for (uint32_t k = 0; k < m->contacts.n; k++) {
     const Contact *c = &m->contacts.at[k];
     IrContact one = {
-        expr_symbol(e->g, c->closed)->index,    0, c->impact, c->release, 0, c->is_tangent, c->margin != 0, c->law,
-        c->is_tangent && c->hold != c->friction, c->parts, c->turn};
+        expr_symbol(e->g, c->closed)->index, 0, c->impact, c->release, 0, c->is_tangent, c->margin != 0, c->law,
+        c->parts, c->turn};
     if (c->is_tangent) one.force = expr_symbol(e->g, c->force)->index;
     while (e->constraints.of[one.constraint] != &m->constraints.at[c->constraint]) one.constraint++;
     vec_push(u->arena, &u->contacts, one);

@@ -8,6 +8,7 @@
 
 #include "base/dense_matrix.h"
 #include "base/sparse_solve.h"
+#include "base/spline.h"
 #include "numeric/magnitudes.h"
 
 typedef struct {
@@ -277,6 +278,11 @@ long double *start_requested(const Eqns *e) {
   symbols[m->time] = (long double)m->scene.t0;
   for (uint32_t i = 0; i < m->params.n; i++)
     if (m->params.at[i].value) expr_eval(e->g, &m->params.at[i].value, 1, symbols, &symbols[m->params.at[i].sym]);
+  for (uint32_t i = 0; i < m->inputs.n; i++) {
+    const Input *in = &m->inputs.at[i];
+    if (in->table) symbols[in->sym] = spline_at(in->table, in->order, symbols[m->time]);
+    else if (in->value) expr_eval(e->g, &in->value, 1, symbols, &symbols[in->sym]);
+  }
   for (uint32_t i = 0; i < m->scene.starts.n; i++) {
     const Start *s = &m->scene.starts.at[i];
     expr_eval(e->g, &s->value, 1, symbols, &symbols[s->target]);

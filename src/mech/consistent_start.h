@@ -11,7 +11,8 @@ typedef struct {
   long double residual;
 } StartResult;
 
-/* Values by symbol: parameters and the scene's start values; 0 for all other symbols, so that all contacts are open. */
+/* Values by symbol: parameters, the scene's start values and inputs then; 0 for all other symbols, so that all contacts
+ * are open. */
 long double *start_requested(const Eqns *e);
 
 /* Moves symbols (from start_requested) onto the constraints as a run does (numeric/consistent_state.h): positions

@@ -69,6 +69,8 @@ check "parameters and starts that follow others" moves 2 cs $driven s "m=3" 1e-9
 check "a parameter by formula that is set, and a start" moves 2 me $driven s "m=3 M=1 x=2" 1e-7 20 m=3 M=1 x=2
 check "an input that is set, the other by its formula" moves 3 cs $driven s "G=2" 1e-9 1 G=2
 check "the same in model exchange" moves 2 me $driven s "G=2 w=3" 1e-7 20 G=2 w=3
+check "a constraint that an input drives" moves 2 cs $here/fmu/pulled.lag s "" 1e-8 1
+check "a restitution of the speed" moves 2 cs $here/fmu/bridges.lag s "" 1e-11 1
 check "an input that is set after the start" moves 2 cs $driven s "G=2" 1e-9 1 @G=2
 for v in $versions; do
   check "saved and serialized states give the same bits, FMI $v" moves $v saved $driven s "G=2" 1e-9 1 G=2

@@ -84,6 +84,8 @@ check "digits of a throw, with drag" digits "$TMP/slope.lag" thrown
 check "of a ball with spin in space" digits "$TMP/puck.lag" falls
 check "of a tower that falls together, its masses coupled" digits "$TMP/tower.lag" drop
 check "of a bead inside a hoop that breathes" digits "$TMP/hoop.lag" s
+sed 's/friction = mu,/friction = mu, static = 2*mu,/; s/^model slope/model held/' "$TMP/slope.lag" >"$TMP/held.lag"
+check "of a throw that static friction ends" digits "$TMP/held.lag" thrown
 check "with a state and an input, without friction" digits "$TMP/gate.lag" s
 slow check "of a superball" digits models/superball.lag thrown
 near=200 # _hold ends its iteration by a simpler rule than the runtime

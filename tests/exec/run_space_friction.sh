@@ -69,4 +69,7 @@ check "y" near "$(final y)" 0.65636967 1e-6
 check "static friction above" run pulled s hold=0.4 --tol 1e-10
 check "x, then" near "$(final x)" -4.18050592 1e-8
 check "y, then" near "$(final y)" 0.3173173 1e-8
+check "by moreau" run pulled s hold=0.4 --method 'moreau(step=1e-3)'
+check "x by moreau" near "$(final x)" -4.18050592 5e-3 # a step late, at up to 5 m/s
+check "y by moreau" near "$(final y)" 0.3173173 5e-3
 tap_end

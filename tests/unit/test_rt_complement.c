@@ -355,7 +355,7 @@ static void test_sweeps_of_friction(void **state) {
     }
     for (int i = 0; i < n; i++) {
       touch[i] = (lag_touch){.mu = mu, .tangent = n + i};
-      of[i] = (lag_pressing){.contact = i, .row = 2 * i, .tangents = 1, .mu = mu};
+      of[i] = (lag_pressing){.contact = i, .row = 2 * i, .tangents = 1, .mu = mu, .hold = mu};
     }
     if (lag_contact_modes(n, touch, rows, W, pull, x, room) != 1) continue;
     assert_true(sweep(&s, n, of));
@@ -381,7 +381,7 @@ static void test_friction_in_space(void **state) {
     memcpy(s.b, rate, sizeof rate);
     memcpy(s.P, guess, sizeof guess);
     memcpy(s.response, response, sizeof response);
-    lag_pressing of = {.tangents = 2, .mu = mu[k]};
+    lag_pressing of = {.tangents = 2, .mu = mu[k], .hold = mu[k]};
     assert_true(sweep(&s, 1, &of));
     assert_close(s.P[0], 2, 1e-14);
     assert_close(s.P[1], along[k], 1e-13);
@@ -427,7 +427,7 @@ static void test_sweeps_of_surfaces(void **state) {
     q = p;
     lag_joints_place(&of, room);
     of.mode = q.z;
-    for (int i = 0; i < p.n; i++) of.response[i] = -s.response[i], of.bound[i] = 1;
+    for (int i = 0; i < p.n; i++) of.response[i] = -s.response[i], of.bound[i] = of.grip[i] = 1;
     assert_int_equal(lag_joints_solve(&q, &of, &step, 0, &size), 0);
     assert_int_equal(solve(&p, &solver), LAG_SOLVED);
     for (int i = 0; i < p.n; i++) {
