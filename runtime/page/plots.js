@@ -1,5 +1,4 @@
 // The plots beside the picture: columns over time, a phase portrait, a section. Enters: rows {t, x} of live.js; leaves: drawings.
-const ink = name => getComputedStyle(document.documentElement).getPropertyValue(name);
 function paper(id) {
   const canvas = $(id), pen = canvas.getContext("2d"), ratio = devicePixelRatio || 1, w = canvas.clientWidth, h = canvas.clientHeight;
   if (canvas.width != Math.round(w*ratio) || canvas.height != Math.round(h*ratio)) { canvas.width = Math.round(w*ratio); canvas.height = Math.round(h*ratio); }
@@ -45,11 +44,13 @@ function axes({pen, w, h}, rx, ry, xname, yname) {
 }
 function curve(pen, X, Y, x, y, colour, wide = 1.5) {
   pen.strokeStyle = colour; pen.lineWidth = wide; pen.beginPath();
-  let open = false;
+  let open = false, px = 0, py = 0;
   for (let k = 0; k < x.length; k++) {
     if (!Number.isFinite(y[k]) || !Number.isFinite(x[k])) { open = false; continue; }
-    pen[open ? "lineTo" : "moveTo"](X(x[k]), Y(y[k]));
-    open = true;
+    const u = X(x[k]), v = Y(y[k]);
+    if (open && k < x.length - 1 && Math.abs(u - px) + Math.abs(v - py) < 0.8) continue; // less than a pixel
+    open ? pen.lineTo(u, v) : pen.moveTo(u, v);
+    [open, px, py] = [true, u, v];
   }
   pen.stroke();
 }
