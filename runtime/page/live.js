@@ -505,8 +505,9 @@ async function offer(chosen) {
   if (isOf(chosen).length) $("scene").value = chosen;
   effects();
 }
-// Another model from its start, in the same scene where it has that.
+// Another model from its start, in the same scene where it has that; after the page has begun.
 async function load(other) {
+  await begun;
   const chosen = $("scene").value, before = program && bytes.subarray(program.at, program.at + program.n);
   model = other;
   await offer(chosen);
@@ -559,4 +560,4 @@ window.lagc = {
   pass(seconds) { pass(seconds); draw(); },
   set(name, value) { settings.values[name] = value; go_on(); },
 };
-main().catch(e => say(e.message));
+const begun = main().catch(e => say(e.message));

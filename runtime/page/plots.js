@@ -21,7 +21,7 @@ function ticks([lo, hi], n) {
 }
 // Axes, and a function that gives a place on the canvas. lo, hi: ranges of x and y.
 function axes({pen, w, h}, rx, ry, xname, yname) {
-  const top = 22, foot = 34, down = ticks(ry, Math.max(2, (h - top - foot)/34)), across = ticks(rx, Math.max(2, w/110));
+  const top = 26, foot = 34, down = ticks(ry, Math.max(2, (h - top - foot)/34)), across = ticks(rx, Math.max(2, w/110));
   pen.font = "12px system-ui, sans-serif";
   const left = Math.max(24, ...down.map(t => pen.measureText(t[1]).width)) + 10, right = w - 12;
   const X = v => left + (right - left)*(v - rx[0])/(rx[1] - rx[0]), Y = v => h - foot - (h - foot - top)*(v - ry[0])/(ry[1] - ry[0]);
