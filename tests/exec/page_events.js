@@ -48,6 +48,8 @@ async function pendulum() {
   is("German", await b.value('document.body.innerText.includes("Genauigkeit und Aufwand") && document.documentElement.lang == "de"'));
 }
 async function others() {
+  await page("pendulum");
+  is("a frame has one row, also a late one", await b.value("lagc.pause(), (n => { lagc.pass(1.02/60); return lagc.track.length - n; })(lagc.track.length)") == 1);
   await page("double_pendulum");
   await b.value("lagc.pause(); lagc.reset()");
   let at = await place();
