@@ -163,7 +163,8 @@ function starts() {
       const was = settings.start;
       settings.start = {...state(), ...was, [name]: +input.value};
       clear();
-      if (begin(settings.start)) { record(); draw(); share(); } else settings.start = was;
+      if (begin(settings.start)) { record(); draw(); share(); }
+      else { settings.start = was; input.value = +now[name].toPrecision(6); }
     };
     label.append(name + (unit ? " [" + unit + "]" : ""), input);
     return label;
@@ -454,6 +455,7 @@ function wire() {
   $("equations").ontoggle = equations;
   $("now").ontoggle = numbers;
   $("language").onchange = () => { speak($("language").value); named_play(); $("listing").textContent = ""; if ($("equations").open) equations(); if (lag) { controls(); methods(); draw(); starts(); share(); } };
+  addEventListener("hashchange", () => location.reload());
   addEventListener("beforeprint", () => { document.documentElement.classList.add("paper"); draw(); });
   addEventListener("afterprint", () => { document.documentElement.classList.remove("paper"); draw(); });
   document.onkeydown = e => {
@@ -538,14 +540,23 @@ async function main() {
     settings.method = said.method || "";
     settings.moved = said.fine !== undefined;
     $("fine").value = said.fine ?? 55;
-    for (const box of document.querySelectorAll("#effects input")) box.checked = (said.effects || []).includes(box.value);
+    for (const box of document.querySelectorAll("#effects input")) box.checked = [said.effects].flat().includes(box.value);
   }
   choose();
   wire();
   restart();
+  if (!motion && said) { // the address asks for what the model refuses
+    const why = $("said").textContent;
+    Object.assign(settings, {values: {}, start: {}, method: ""});
+    program = null;
+    choose();
+    restart();
+    say(why + ". " + word("address"));
+  }
   $("equations").open = innerWidth > 720 && more.latex && more.latex.length < 3000;
-  if (said && Number.isFinite(said.t)) { // shows that time, paused
-    try {
+  if (said && Number.isFinite(said.t) && motion) { // shows that time, paused
+    if (Math.abs(said.t - motion.t) > 100*Math.abs(span.t1 - span.t0)) say("t = " + short(said.t) + " s: " + word("far"));
+    else try {
       for (let k = 1, from = motion.t; k <= 200; k++) { motion.advance(from + (said.t - from)*k/200); beside(motion.t); record(); }
     } catch (e) { say(wrong(e)); }
     pause();
