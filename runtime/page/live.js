@@ -423,11 +423,11 @@ function look() {
   picture = machineOf(machine);
   if (eye) Object.assign(picture.eye, eye);
 }
-// Another extent, once a second, where a body has left the picture that nobody has moved or zoomed.
+// Another extent, twice a second, where a body has left the picture that nobody has moved or zoomed.
 let looked = 0;
 function follow(now) {
   const eye = picture.eye, outside = b => { const [x, y] = picture.toCanvas(picture.place(b.a)), c = $("picture"); return x < 0 || y < 0 || x > c.clientWidth || y > c.clientHeight; };
-  if (!playing || now - looked < 1000 || eye.zoom != 1 || eye.x || eye.y) return;
+  if (!playing || now - looked < 500 || eye.zoom != 1 || eye.x || eye.y) return;
   looked = now;
   if (!picture.bodies.some(outside)) return;
   machine.rows = [...machine.rows, ...track];
