@@ -25,7 +25,7 @@ $(BUILD)/gen/page/live_page.txt: $(LIVE) runtime/io/page.html
 	sed -e '/@DRAWING@/{r $(@D)/drawing.js' -e 'd}' $(@D)/numbers.js runtime/page/words.js runtime/page/typeset.js runtime/page/plots.js runtime/page/drag.js runtime/page/live.js >$(@D)/live.js
 	sed -e '/@MOTION@/{r runtime/page/motion.js' -e 'd}' runtime/page/live.html | sed 's/^  *//; /^\/\/ /d' >$@
 	{ echo '"use strict";'; sed 's/^  *//; /^\/\/ /d' $(@D)/live.js; } >$(@D)/live_script.txt
-$(BUILD)/gen/page/live_script.txt: $(BUILD)/gen/page/live_page.txt
+$(BUILD)/gen/page/live_script.txt: $(BUILD)/gen/page/live_page.txt ; @: # the same recipe writes it
 $(eval $(call as_text,commands/live_page.h,$(BUILD)/gen/page/live_page.txt))
 $(eval $(call as_text,commands/live_script.h,$(BUILD)/gen/page/live_script.txt))
 $(BUILD)/obj/src/commands/page.o $(BUILD)/obj/src/commands/playground.o: $(BUILD)/gen/commands/live_page.h

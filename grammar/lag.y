@@ -357,7 +357,8 @@ law: "friction" "=" expr[e]   { $$ = ast_option(ast, @$, "friction", $e); }
    | "law" "=" IDENT[n]       { $$ = ast_option(ast, @$, "law", ast_name(ast, $n)); }
    ;
 sides: arith[a] "=" expr[b] { $$ = ast_sides(ast, @$, @b, $a, $b); };
-gap: arith[a] ">="[op] arith[b] { $$ = ast_contact_gap(ast, @$, @op, $a, $b); };
+gap: arith[a] ">="[op] arith[b] { $$ = ast_contact_gap(ast, @$, @op, $a, $b); }
+   | arith[a] "<="[op] arith[b] { $$ = ast_contact_gap(ast, @$, @op, $b, $a); };
 condition: %empty       { $$ = 0; }
          | "while" expr[e] { $$ = $e; }
          ;

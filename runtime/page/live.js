@@ -3,7 +3,6 @@ const $ = id => document.getElementById(id);
 const clamp = (x, lo, hi) => Math.min(hi, Math.max(lo, x));
 const short = x => !Number.isFinite(x) ? "?" : x && (Math.abs(x) >= 1e6 || Math.abs(x) < 1e-3) ? (+x.toPrecision(4)).toExponential().replace("e+", "e") : String(+x.toPrecision(4));
 const named_unit = unit => unit == "1" ? "" : unit;
-const colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7f00", "#888888"];
 
 // motion: what is shown; twin: from a start 1e-9 aside; finer: with more digits, for the estimate of the error. track: rows {t, x} of the columns.
 let lag, motion, twin, finer, program, scene, items, bytes, more = {}, wasm, playing = false, before = 0, track = [], columns = [];
@@ -164,7 +163,8 @@ function starts() {
       const was = settings.start;
       settings.start = {...state(), ...was, [name]: +input.value};
       clear();
-      if (begin(settings.start)) { record(); draw(); share(); } else settings.start = was;
+      if (begin(settings.start)) { record(); draw(); share(); }
+      else { settings.start = was; input.value = +now[name].toPrecision(6); }
     };
     label.append(name + (unit ? " [" + unit + "]" : ""), input);
     return label;
@@ -251,10 +251,10 @@ function estimate() {
   if (horizon === null && doubtful >= 10) horizon = track.at(-9)?.t ?? motion.t;
 }
 const beside = t => { for (const other of [twin, finer]) if (other) other.advance(t); };
-// Goes on by so many seconds of watching, in pieces that take a few milliseconds; past 25 ms the rest is left out.
+// Goes on by so many seconds of watching, in pieces that take a few milliseconds; past the time that drawing leaves of a frame, the rest is left out.
 function pass(seconds) {
   const dir = $("back").checked ? -1 : 1, from = motion.t, asked = seconds*pace*+$("speed").value, goal = from + dir*asked, began = performance.now();
-  const parts = clamp(Math.ceil(60*asked/pace), 1, 8);
+  const parts = clamp(Math.round(60*asked/pace), 1, 8), budget = clamp(15 - drawing, 5, 25);
   try {
     if (motion.direction && motion.direction != dir) begin(state(), motion.t);
     motion.direction = dir;
@@ -266,7 +266,7 @@ function pass(seconds) {
       if (took > 8) piece = Math.max(Math.min(piece, step)/2, 1e-7*Math.abs(span.t1 - span.t0));
       else if (took < 3) piece = Math.min(2*piece, Math.abs(span.t1 - span.t0));
       if (ended) { say(word("ended") + " " + short(motion.t) + " s. " + word("again"), "note"); pause(); }
-      done = ended || performance.now() - began > 25;
+      done = ended || performance.now() - began > budget;
     }
   } catch (e) {
     const why = wrong(e);
@@ -331,13 +331,17 @@ function numbers() {
     return row;
   }));
 }
-let told = 0, plotted = 0;
+let told = 0, plotted = 0, drawing = 0; // drawing: what the picture takes [ms], a mean
 // The picture each frame; while it plays, plots ten times a second, words five times.
 function draw() {
   const now = performance.now();
   if (!motion || !track.length) return;
   if (machine) machine.horizon = horizon;
-  if (picture) { picture.draw(track); follow(now); }
+  if (picture) {
+    picture.draw(track);
+    drawing += (performance.now() - now - drawing)/8;
+    follow(now);
+  }
   if (playing && now - plotted < 95) return;
   plotted = now;
   plots();
@@ -381,8 +385,6 @@ function machineOf(run) {
   const solid = shapes.filter(s => ["ball", "disc", "box", "body"].includes(s.kind));
   const moves = c => c >= 0 && run.rows.some(r => r.x[c] != run.rows[0].x[c]), carried = s => s.a.some(moves);
   const bodies = [solid.filter(carried), shapes.filter(s => s.kind == "path"), solid].find(l => l.length) || [];
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  const bright = ["#4aa3df", "#ff8f3f", "#2cc295", "#e6a3cb", "#f2b632", "#7cc9f2", "#b8ac2e", "#aaaaaa"];
   let rows = run.rows, at = rows.length - 1;
   const last = at, value = (c, k = at, other = 0) => c < 0 ? other : rows[Math.floor(k)].x[c];
   const place = (of, k = at) => of.map(c => value(c, k)), timeOf = k => rows[Math.floor(k)].t;
@@ -421,12 +423,13 @@ function look() {
   picture = machineOf(machine);
   if (eye) Object.assign(picture.eye, eye);
 }
-// Another extent, once a second, where a body has left the picture that nobody has moved or zoomed.
+// Another extent, twice a second, where a body has left the picture that nobody has moved or zoomed.
 let looked = 0;
 function follow(now) {
   const eye = picture.eye, outside = b => { const [x, y] = picture.toCanvas(picture.place(b.a)), c = $("picture"); return x < 0 || y < 0 || x > c.clientWidth || y > c.clientHeight; };
-  if (!playing || now - looked < 1000 || eye.zoom != 1 || eye.x || eye.y || !picture.bodies.some(outside)) return;
+  if (!playing || now - looked < 500 || eye.zoom != 1 || eye.x || eye.y) return;
   looked = now;
+  if (!picture.bodies.some(outside)) return;
   machine.rows = [...machine.rows, ...track];
   picture = machineOf(machine);
   Object.assign(picture.eye, eye);
@@ -452,6 +455,7 @@ function wire() {
   $("equations").ontoggle = equations;
   $("now").ontoggle = numbers;
   $("language").onchange = () => { speak($("language").value); named_play(); $("listing").textContent = ""; if ($("equations").open) equations(); if (lag) { controls(); methods(); draw(); starts(); share(); } };
+  addEventListener("hashchange", () => location.reload());
   addEventListener("beforeprint", () => { document.documentElement.classList.add("paper"); draw(); });
   addEventListener("afterprint", () => { document.documentElement.classList.remove("paper"); draw(); });
   document.onkeydown = e => {
@@ -503,8 +507,9 @@ async function offer(chosen) {
   if (isOf(chosen).length) $("scene").value = chosen;
   effects();
 }
-// Another model from its start, in the same scene where it has that.
+// Another model from its start, in the same scene where it has that; after the page has begun.
 async function load(other) {
+  await begun;
   const chosen = $("scene").value, before = program && bytes.subarray(program.at, program.at + program.n);
   model = other;
   await offer(chosen);
@@ -535,14 +540,23 @@ async function main() {
     settings.method = said.method || "";
     settings.moved = said.fine !== undefined;
     $("fine").value = said.fine ?? 55;
-    for (const box of document.querySelectorAll("#effects input")) box.checked = (said.effects || []).includes(box.value);
+    for (const box of document.querySelectorAll("#effects input")) box.checked = [said.effects].flat().includes(box.value);
   }
   choose();
   wire();
   restart();
+  if (!motion && said) { // the address asks for what the model refuses
+    const why = $("said").textContent;
+    Object.assign(settings, {values: {}, start: {}, method: ""});
+    program = null;
+    choose();
+    restart();
+    say(why + ". " + word("address"));
+  }
   $("equations").open = innerWidth > 720 && more.latex && more.latex.length < 3000;
-  if (said && Number.isFinite(said.t)) { // shows that time, paused
-    try {
+  if (said && Number.isFinite(said.t) && motion) { // shows that time, paused
+    if (Math.abs(said.t - motion.t) > 100*Math.abs(span.t1 - span.t0)) say("t = " + short(said.t) + " s: " + word("far"));
+    else try {
       for (let k = 1, from = motion.t; k <= 200; k++) { motion.advance(from + (said.t - from)*k/200); beside(motion.t); record(); }
     } catch (e) { say(wrong(e)); }
     pause();
@@ -557,4 +571,4 @@ window.lagc = {
   pass(seconds) { pass(seconds); draw(); },
   set(name, value) { settings.values[name] = value; go_on(); },
 };
-main().catch(e => say(e.message));
+const begun = main().catch(e => say(e.message));

@@ -1,5 +1,4 @@
 // The plots beside the picture: columns over time, a phase portrait, a section. Enters: rows {t, x} of live.js; leaves: drawings.
-const ink = name => getComputedStyle(document.documentElement).getPropertyValue(name);
 function paper(id) {
   const canvas = $(id), pen = canvas.getContext("2d"), ratio = devicePixelRatio || 1, w = canvas.clientWidth, h = canvas.clientHeight;
   if (canvas.width != Math.round(w*ratio) || canvas.height != Math.round(h*ratio)) { canvas.width = Math.round(w*ratio); canvas.height = Math.round(h*ratio); }
@@ -22,7 +21,7 @@ function ticks([lo, hi], n) {
 }
 // Axes, and a function that gives a place on the canvas. lo, hi: ranges of x and y.
 function axes({pen, w, h}, rx, ry, xname, yname) {
-  const top = 22, foot = 34, down = ticks(ry, Math.max(2, (h - top - foot)/34)), across = ticks(rx, Math.max(2, w/110));
+  const top = 26, foot = 34, down = ticks(ry, Math.max(2, (h - top - foot)/34)), across = ticks(rx, Math.max(2, w/110));
   pen.font = "12px system-ui, sans-serif";
   const left = Math.max(24, ...down.map(t => pen.measureText(t[1]).width)) + 10, right = w - 12;
   const X = v => left + (right - left)*(v - rx[0])/(rx[1] - rx[0]), Y = v => h - foot - (h - foot - top)*(v - ry[0])/(ry[1] - ry[0]);
@@ -45,11 +44,13 @@ function axes({pen, w, h}, rx, ry, xname, yname) {
 }
 function curve(pen, X, Y, x, y, colour, wide = 1.5) {
   pen.strokeStyle = colour; pen.lineWidth = wide; pen.beginPath();
-  let open = false;
+  let open = false, px = 0, py = 0;
   for (let k = 0; k < x.length; k++) {
     if (!Number.isFinite(y[k]) || !Number.isFinite(x[k])) { open = false; continue; }
-    pen[open ? "lineTo" : "moveTo"](X(x[k]), Y(y[k]));
-    open = true;
+    const u = X(x[k]), v = Y(y[k]);
+    if (open && k < x.length - 1 && Math.abs(u - px) + Math.abs(v - py) < 0.8) continue; // less than a pixel
+    open ? pen.lineTo(u, v) : pen.moveTo(u, v);
+    [open, px, py] = [true, u, v];
   }
   pen.stroke();
 }

@@ -7,6 +7,7 @@ const signs = {le: "≤", ge: "≥", wedge: "∧", vee: "∨", neg: "¬", cdot: 
   in: "∈", to: "→", ne: "≠", infty: "∞", partial: "∂", int: "∫", "&": "&", "%": "%", "_": "_", "#": "#", "$": "$", lbrace: "{", rbrace: "}", approx: "≈", ll: "≪", gg: "≫"};
 const marks = {dot: "˙", ddot: "¨", dddot: "⃛", hat: "^", bar: "¯", tilde: "~"};
 const plain = s => s.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
+const upright = /<mi mathvariant="normal">[^<]{2}/;
 function typeset(latex) {
   const token = latex.match(/\\[a-zA-Z]+\*?|\\.|[0-9]+(?:\.[0-9]+)?(?:e[-+]?[0-9]+)?|\s+|[^]/gu) || [];
   let k = 0;
@@ -56,6 +57,7 @@ function typeset(latex) {
       let sub = null, sup = null;
       for (blank(); token[k] == "_" || token[k] == "^"; blank()) token[k++] == "_" ? sub = group() : sup = group();
       const big = base.includes("∑"), [b, p, both] = big ? ["munder", "mover", "munderover"] : ["msub", "msup", "msubsup"];
+      if (all.length && upright.test(all.at(-1) + base) && !/^<m(o|space)/.test(base) && !/^<m(o|space)|<mspace[^>]*><\/mspace>$/.test(all.at(-1))) all.push('<mspace width="0.17em"></mspace>'); // names of several letters beside others
       all.push(sub && sup ? `<${both}>${base}${sub}${sup}</${both}>` : sub ? `<${b}>${base}${sub}</${b}>` : sup ? `<${p}>${base}${sup}</${p}>` : base);
     }
   }

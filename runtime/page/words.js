@@ -11,7 +11,7 @@ const words = {
     framed: "an iframe is in the clipboard", dear: "the estimate of the error is off: it took too long", now: "at t =", playing: "plays", shows: "shows", range: "back to the value before.",
     long: "The equations are too long for a page; `lagc derive` prints them.", section_points: "points of the section", distance: "distance of the twin",
     no_wasm: "This browser has no WebAssembly, with which the page computes; this is a recording.", no_record: "This browser has no WebAssembly, with which the page computes.",
-    headings: {},
+    address: "What the address asks for is left out.", far: "more than 100 spans away; the page shows the start.", headings: {},
     keys: "Space: play or pause. Right arrow: step. R or Home: reset. On the picture: arrow keys, + and -."},
   de: {scene: "Szene", effects: "Effekte", play: "Start", pause: "Pause", step: "Schritt", reset: "Zurück", speed: "Tempo", back: "rückwärts", trace: "Spur",
     twin: "Zwilling, um 1e-9 versetzt", estimate: "Fehler schätzen", over: "über der Zeit", phase: "Phase", against: "gegen", section: "Schnitt, wenn",
@@ -24,6 +24,7 @@ const words = {
     framed: "ein iframe ist in der Zwischenablage", dear: "die Schätzung des Fehlers ist aus: sie dauerte zu lange", now: "bei t =", playing: "läuft", shows: "zeigt", range: "zurück zum Wert davor.",
     long: "Die Gleichungen sind zu lang für eine Seite; `lagc derive` druckt sie.", section_points: "Punkte des Schnitts", distance: "Abstand des Zwillings",
     no_wasm: "Dieser Browser hat kein WebAssembly, womit die Seite rechnet; dies ist eine Aufzeichnung.", no_record: "Dieser Browser hat kein WebAssembly, womit die Seite rechnet.",
+    address: "Was die Adresse verlangt, entfällt.", far: "mehr als 100 Zeitspannen entfernt; die Seite zeigt den Anfang.",
     headings: {Lagrangian: "Lagrangefunktion", momenta: "Impulse", "equations of motion": "Bewegungsgleichungen", energy: "Energie", where: "wobei", constraints: "Zwangsbedingungen",
       "conditions of the constraints on accelerations": "Bedingungen der Zwänge an die Beschleunigungen", "constraints with a condition": "Zwänge mit einer Bedingung",
       "Hamilton's equations": "Hamiltons Gleichungen", Hamiltonian: "Hamiltonfunktion", "charges of symmetries": "Erhaltungsgrößen der Symmetrien"},
@@ -32,7 +33,7 @@ const words = {
 let language = "en";
 const word = key => words[language][key];
 function speak(wanted) {
-  language = wanted in words ? wanted : "en";
+  language = Object.hasOwn(words, wanted) ? wanted : "en";
   document.documentElement.lang = language;
   for (const e of document.querySelectorAll("[data-word]")) e.textContent = word(e.dataset.word);
   for (const e of document.querySelectorAll("[data-label]")) e.setAttribute("aria-label", word(e.dataset.label));

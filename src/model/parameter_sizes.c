@@ -2,6 +2,10 @@
 #include "model/builder.h"
 #include "sym/expr_eval.h"
 
+#define LIVELY \
+  HELP "a surface that adds energy moves, or is an `event` that sets velocities: " \
+       "`event bumper: g falling { x' = -2*x' }`"
+
 static int is_of_parameters(const ExprGraph *g, Expr e) {
   return !(expr_kinds(g, e) & ~(1u << SYM_PARAM | 1u << SYM_CONST));
 }
@@ -86,7 +90,9 @@ void check_sizes(Builder *b) {
     expr_eval(b->g, &one->value, 1, x, &f);
     const char *size = arena_printf(b->arena, "%.6Lg", f);
     if (!(f < 0) && !(one->part && f > 1)) continue;
-    if (one->part) diag_error(b->diags, one->span, "%s of %s, which must be between 0 and 1", one->what, size);
+    if (one->part)
+      diag_error(b->diags, one->span, "%s of %s, which must be between 0 and 1%s", one->what, size,
+                 f > 1 ? LIVELY : "");
     else if (one->mistake)
       diag_error(b->diags, one->span, "%s", one->mistake);
     else

@@ -1,4 +1,5 @@
 // node page_digits.js LAG.wasm MOTION.js PAGE.html SCENE T: the outputs of the page's motion at T, after a row of nine times before. T "part": a sixteenth of the span.
+// ENERGY=1: then the drift of the energy, relative and in its unit.
 const fs = require("fs");
 const [wasm, script, page, scene, T] = process.argv.slice(2);
 const {Lag, Motion, bytes_of, unpacked} = require(require("path").resolve(script));
@@ -13,5 +14,6 @@ else try {
   const it = lag.open(bytes)[0], motion = new Motion(lag, it, {method: "dop853", tol: 1e-10}), n = motion.count - lag.f.page_drawn(it);
   const {t0, t1} = lag.span(it), end = T == "part" ? t0 + (t1 - t0)/16 : +T;
   for (let k = 1; k <= 10; k++) motion.advance(t0 + (end - t0)*k/10);
-  console.log([motion.t, ...motion.outputs.slice(0, n)].join(","));
+  const {drift, absolute} = motion.charge(0);
+  console.log([motion.t, ...motion.outputs.slice(0, n), ...(process.env.ENERGY ? [drift, absolute] : [])].join(","));
 } catch (e) { console.log("error: " + e.message); }

@@ -48,6 +48,8 @@ async function pendulum() {
   is("German", await b.value('document.body.innerText.includes("Genauigkeit und Aufwand") && document.documentElement.lang == "de"'));
 }
 async function others() {
+  await page("pendulum");
+  is("a frame has one row, also a late one", await b.value("lagc.pause(), (n => { lagc.pass(1.02/60); return lagc.track.length - n; })(lagc.track.length)") == 1);
   await page("double_pendulum");
   await b.value("lagc.pause(); lagc.reset()");
   let at = await place();
@@ -57,6 +59,11 @@ async function others() {
   await b.value('(() => { const s = document.getElementById("speed"); s.value = "20"; const c = document.getElementById("section"); c.value = lagc.columns.findIndex(c => c.name == "th2"); c.onchange(); lagc.reset(); lagc.play(); })()');
   await b.until("lagc.section.x.length > 5");
   is("a section grows", true);
+  const asks = async what => { await b.open(`file://${folder}/pendulum.html#` + encodeURIComponent(what)); await b.until("window.lagc && lagc.motion && lagc.track.length > 1"); return said(); };
+  is("an address that asks for what the model refuses", /m = -1.*left out/.test(await asks('{"values": {"m": -1}, "effects": 7, "lang": "__proto__"}')), await said());
+  await asks('{"values": {"m": 2}}');
+  await b.value(`location.hash = encodeURIComponent('{"values": {"m": 3}}')`);
+  is("an address that is typed over", await b.until('document.getElementById("value0").getAttribute("aria-valuetext") == "3 kg"', 20).catch(() => false));
   await page("slider_crank");
   await b.value("lagc.pause()");
   at = await place();

@@ -35,6 +35,8 @@ async function main() {
   const {targetId} = await call("Target.createTarget", {url: "about:blank"});
   session = (await call("Target.attachToTarget", {targetId, flatten: true})).sessionId;
   for (const domain of ["Runtime", "Log", "Page"]) await call(domain + ".enable");
+  await call("Page.addScriptToEvaluateOnNewDocument", {source: // the module of the motion is compiled after its model is there
+    "if (window != top) { const {compile} = WebAssembly; WebAssembly.compile = async bytes => { await new Promise(done => setTimeout(done, 3000)); return compile(bytes); }; }"});
   await call("Page.navigate", {url: "file://" + page});
   await until('typeof asked != "undefined" && asked');
   await settled();
