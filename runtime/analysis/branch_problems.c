@@ -261,7 +261,7 @@ static int place_orbit(void *of, const double *u) { return place_with(of, u, 1);
 static int orbit_residual(void *of, const double *u, double *b) {
   PeriodicOrbit *o = of;
   int rc = place_with(o, u, 0);
-  rc = rc ? rc : lag_orbit_residual(o);
+  if (rc == LAG_OK) lag_orbit_residual(o);
   memcpy(b, o->b, (size_t)o->rows * sizeof *b);
   return rc;
 }

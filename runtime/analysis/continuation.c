@@ -18,6 +18,9 @@ typedef struct Walk {
   const BranchProblem *p;
   int rows, cols; /* of the equations with the row across the tangent */
   double *J, *rhs, *V, *sigma, *x;
+  /* the system at the point that was made last, without the row across the tangent, which is the last column of its V;
+   * 0: there is none */
+  struct { double *J, *V, *sigma; int known; } made_at;
   int newton;  /* steps of the last correction */
   double made; /* arclength of the last step */
   int border;  /* 1: that step ends at the border of the range */
@@ -27,7 +30,7 @@ static int open_walk(Walk *w, Branch *b, const BranchProblem *p) {
   size_t rows = (size_t)p->rows + 1, cols = (size_t)p->cols;
   *w = (Walk){.b = b, .p = p, .rows = p->rows + 1, .cols = p->cols};
   const lag_part parts[] = {{&w->J, rows * cols}, {&w->rhs, rows}, {&w->V, cols * cols}, {&w->sigma, cols},
-      {&w->x, cols}};
+      {&w->x, cols}, {&w->made_at.J, rows * cols}, {&w->made_at.V, cols * cols}, {&w->made_at.sigma, cols}};
   lag_pool_parts(&b->pool, sizeof parts / sizeof *parts, parts);
   return b->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
@@ -44,11 +47,33 @@ static double newton_step(Walk *w, const double *u, const double *d, double alon
 /* Whether a step of this size behind one of `last` is the last one: nothing but rounding is left. */
 static int is_last(double size, double last) { return size < 1e-12 || (size < 1e-9 && size > 0.3 * last); }
 
-/* Steps by the matrix of the last one, while each is a tenth of the one before or less, from *size. Returns whether u
+/* The same by the system at the point that was made last. HUGE_VAL: there is none, or its branch is across d. */
+static double step_from_made(Walk *w, const double *u, const double *d, double along) {
+  const double least = 0.3;
+  int cols = w->cols, last = cols - 1;
+  const double *V = w->made_at.V, *sigma = w->made_at.sigma;
+  double part = 0, ahead = along - lag_dot(cols, u, d);
+  for (int i = 0; i < cols && w->made_at.known; i++) part += d[i] * V[i * cols + last];
+  if (!(fabs(part) > least)) return HUGE_VAL;
+  memset(w->x, 0, (size_t)cols * sizeof *w->x);
+  for (int k = 0; k < last; k++) {
+    double by = 0;
+    for (int r = 0; r < w->p->rows; r++) by += w->made_at.J[r * cols + k] * w->rhs[r];
+    for (int i = 0; i < cols; i++) w->x[i] += by / (sigma[k] * sigma[k]) * V[i * cols + k];
+  }
+  double on = (ahead - lag_dot(cols, w->x, d)) / part;
+  for (int i = 0; i < cols; i++) w->x[i] += on * V[i * cols + last];
+  if (fabs(d[last]) == 1.0) w->x[last] = 0;
+  return sqrt(lag_dot(cols, w->x, w->x));
+}
+
+typedef double NextStep(Walk *w, const double *u, const double *d, double along);
+
+/* Steps by the matrix of an earlier one, while each is a tenth of the one before or less, from *size. Returns whether u
  * is a solution. */
-static int chord(Walk *w, double *u, const double *d, double along, double *size) {
+static int chord(Walk *w, NextStep *step, double *u, const double *d, double along, double *size) {
   for (int k = 0; k < MOST_CHORD && w->p->residual && w->p->residual(w->p->of, u, w->rhs) == LAG_OK; k++) {
-    double now = newton_step(w, u, d, along), last = *size;
+    double now = step(w, u, d, along), last = *size;
     if (!(now < 0.1 * last) && !is_last(now, last)) return 0;
     for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
     *size = now;
@@ -57,11 +82,19 @@ static int chord(Walk *w, double *u, const double *d, double along, double *size
   return 0;
 }
 
-/* Newton's steps from u, each across the direction d: u := a solution. 0: none, as where conditions contradict each
- * other, so that steps end beside one. */
-static int correct(Walk *w, double *u, const double *d) {
+/* Whether u, behind its last step, is a solution, which is placed: steps end beside one where conditions contradict
+ * each other. */
+static int is_solved(Walk *w, const double *u) {
   const double solved = 1e-6; /* of the system's rows, in units; differences of runs have some 8 digits */
-  double last = HUGE_VAL, along = lag_dot(w->cols, u, d);
+  return lag_largest(w->p->rows, w->rhs) < solved && w->p->place(w->p->of, u) == LAG_OK;
+}
+
+/* Steps from u, each across the direction d: u := a solution; by the system of the point before as long as they
+ * converge, then by Newton's method. 0: none. */
+static int correct(Walk *w, double *u, const double *d) {
+  double near = 1, last = HUGE_VAL, along = lag_dot(w->cols, u, d);
+  w->newton = 0;
+  if (w->made_at.known && chord(w, step_from_made, u, d, along, &near)) return is_solved(w, u);
   for (w->newton = 0; w->newton < MOST_NEWTON; w->newton++) {
     if (w->p->place(w->p->of, u) || w->p->system(w->p->of, w->J, w->rhs)) return 0;
     memcpy(w->J + w->p->rows * w->cols, d, (size_t)w->cols * sizeof *d);
@@ -69,8 +102,7 @@ static int correct(Walk *w, double *u, const double *d) {
     double size = newton_step(w, u, d, along);
     if (!(size < 1)) return 0;
     for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
-    if (is_last(size, last) || chord(w, u, d, along, &size))
-      return lag_largest(w->rows, w->rhs) < solved && w->p->place(w->p->of, u) == LAG_OK;
+    if (is_last(size, last) || chord(w, newton_step, u, d, along, &size)) return is_solved(w, u);
     if (w->newton > 3 && size > 0.9 * last) return 0;
     last = size;
   }
@@ -101,13 +133,16 @@ static void judge(const BranchProblem *p, BranchPoint *at) {
 /* The tangent of the branch at the solution that is placed: the unit vector that the equations leave free, with a
  * positive part along d. LAG_ESINGULAR: there are several. */
 static int find_tangent(Walk *w, const double *d, double *tangent) {
-  if (w->p->system(w->p->of, w->J, w->rhs)) return LAG_EDOMAIN;
-  lag_singular_values(w->p->rows, w->cols, w->J, w->V, w->sigma);
+  const double *V = w->made_at.V, *sigma = w->made_at.sigma;
+  w->made_at.known = 0;
+  if (w->p->system(w->p->of, w->made_at.J, w->rhs)) return LAG_EDOMAIN;
+  lag_singular_values(w->p->rows, w->cols, w->made_at.J, w->made_at.V, w->made_at.sigma);
   int free = 0;
-  for (int i = 0; i < w->cols; i++) free += w->sigma[i] <= least_rank * w->sigma[0];
+  for (int i = 0; i < w->cols; i++) free += sigma[i] <= least_rank * sigma[0];
   double sign = 0;
-  for (int i = 0; i < w->cols; i++) sign += w->V[i * w->cols + w->cols - 1] * d[i];
-  for (int i = 0; i < w->cols; i++) tangent[i] = (sign < 0 ? -1 : 1) * w->V[i * w->cols + w->cols - 1];
+  for (int i = 0; i < w->cols; i++) sign += V[i * w->cols + w->cols - 1] * d[i];
+  for (int i = 0; i < w->cols; i++) tangent[i] = (sign < 0 ? -1 : 1) * V[i * w->cols + w->cols - 1];
+  w->made_at.known = free == 1;
   return free > 1 ? LAG_ESINGULAR : LAG_OK;
 }
 
