@@ -309,6 +309,7 @@ void lag_orbit_branch(BranchProblem *p, PeriodicOrbit *o) {
                        .rows = o->rows,
                        .cols = o->cols,
                        .eigenvalues = o->n,
+                       .forms = o->rows - o->m * o->n - o->nheld - (o->half ? o->n : 0),
                        .maps = 1,
                        .pairs = isfinite(o->pairing),
                        .place = place_orbit,

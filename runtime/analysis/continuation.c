@@ -21,6 +21,7 @@ typedef struct Walk {
   /* the system at the point that was made last, without the row across the tangent, which is the last column of its V;
    * 0: there is none */
   struct { double *J, *V, *sigma; int known; } made_at;
+  double enough; /* steps end where the next would be shorter: the system at the point takes it, too; 0: at rounding */
   int newton;  /* steps of the last correction */
   double made; /* arclength of the last step */
   int border;  /* 1: that step ends at the border of the range */
@@ -77,16 +78,17 @@ static int chord(Walk *w, NextStep *step, double *u, const double *d, double alo
     if (!(now < 0.1 * last) && !is_last(now, last)) return 0;
     for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
     *size = now;
-    if (is_last(now, last)) return 1;
+    if (is_last(now, last) || (k > 0 && now * (now / last) < w->enough)) return 1;
   }
   return 0;
 }
 
+static const double solved = 1e-6; /* of the system's rows, in units; differences of runs have some 8 digits */
+
 /* Whether u, behind its last step, is a solution, which is placed: steps end beside one where conditions contradict
  * each other. */
 static int is_solved(Walk *w, const double *u) {
-  const double solved = 1e-6; /* of the system's rows, in units; differences of runs have some 8 digits */
-  return lag_largest(w->p->rows, w->rhs) < solved && w->p->place(w->p->of, u) == LAG_OK;
+  return (w->enough > 0 || lag_largest(w->p->rows, w->rhs) < solved) && w->p->place(w->p->of, u) == LAG_OK;
 }
 
 /* Steps from u, each across the direction d: u := a solution; by the system of the point before as long as they
@@ -94,7 +96,7 @@ static int is_solved(Walk *w, const double *u) {
 static int correct(Walk *w, double *u, const double *d) {
   double near = 1, last = HUGE_VAL, along = lag_dot(w->cols, u, d);
   w->newton = 0;
-  if (w->made_at.known && chord(w, step_from_made, u, d, along, &near)) return is_solved(w, u);
+  if (w->enough > 0 && w->made_at.known && chord(w, step_from_made, u, d, along, &near)) return is_solved(w, u);
   for (w->newton = 0; w->newton < MOST_NEWTON; w->newton++) {
     if (w->p->place(w->p->of, u) || w->p->system(w->p->of, w->J, w->rhs)) return 0;
     memcpy(w->J + w->p->rows * w->cols, d, (size_t)w->cols * sizeof *d);
@@ -109,18 +111,22 @@ static int correct(Walk *w, double *u, const double *d) {
   return 0;
 }
 
+static const double no_growth = 1e-7;
+
+static double sign_of(double growth) { return fabs(growth) < no_growth ? 0 : growth; }
+
 /* Test functions from eigenvalues: products that vanish where one is 0 (a multiplier 1), or a multiplier -1; growth
  * of the complex pair that is nearest to the border. */
 static void judge(const BranchProblem *p, BranchPoint *at) {
   const Spectrum *s = &at->spectrum;
-  const double border = 1e-7, rounding = 1e-6; /* multipliers by differences have some 8 digits */
+  const double rounding = 1e-6; /* multipliers by differences have some 8 digits */
   at->zero = at->minus = 1;
   at->stays = 0;
   at->pair = HUGE_VAL;
   at->unstable = 0;
   for (int i = 0; i < s->n; i++) {
     double growth = p->maps ? log(fmax(hypot(s->re[i], s->im[i]), 1e-300)) : s->re[i], size = hypot(s->re[i], s->im[i]);
-    at->unstable += growth > border * fmax(1, p->maps ? 1 : size);
+    at->unstable += growth > no_growth * fmax(1, p->maps ? 1 : size);
     if (s->im[i] > 0 && fabs(growth) < fabs(at->pair)) at->pair = growth;
     if (s->im[i] < 0) continue; /* with its conjugate */
     double re = s->re[i] - (p->maps ? 1 : 0);
@@ -146,6 +152,14 @@ static int find_tangent(Walk *w, const double *d, double *tangent) {
   return free > 1 ? LAG_ESINGULAR : LAG_OK;
 }
 
+/* The point moves by the step that its own system gives. 0: that is no rounding of a solution. */
+static int take_last_step(Walk *w, BranchPoint *at) {
+  if (!(lag_largest(w->p->rows, w->rhs) < solved)) return 0;
+  double size = step_from_made(w, at->u, at->tangent, lag_dot(w->cols, at->u, at->tangent));
+  for (int i = 0; i < w->cols && size < solved; i++) at->u[i] += w->x[i];
+  return size < solved || !w->made_at.known;
+}
+
 /* A point at the solution u that is placed. NULL: no memory, or no values. */
 static BranchPoint *make_point(Walk *w, const double *u, const double *d) {
   size_t cols = (size_t)w->cols, n = (size_t)w->p->eigenvalues, room = sizeof(BranchPoint) / sizeof(double) + 1;
@@ -156,7 +170,7 @@ static BranchPoint *make_point(Walk *w, const double *u, const double *d) {
   at->spectrum = (Spectrum){0, at->tangent + cols, at->tangent + cols + n};
   memcpy(at->u, u, cols * sizeof *u);
   int rc = find_tangent(w, d, at->tangent);
-  if (rc == LAG_EDOMAIN || w->p->spectrum(w->p->of, &at->spectrum)) return NULL;
+  if (rc == LAG_EDOMAIN || (w->enough > 0 && !take_last_step(w, at)) || w->p->spectrum(w->p->of, &at->spectrum)) return NULL;
   at->fold = at->tangent[cols - 1];
   at->kind = BRANCH_REGULAR;
   judge(w->p, at);
@@ -170,11 +184,27 @@ static void append(Branch *b, BranchPoint *at) {
   b->npoints++;
 }
 
-/* The point at arclength s from `from` along its tangent. NULL: there is none. */
-static BranchPoint *point_at(Walk *w, const BranchPoint *from, double s) {
-  double *u = lag_pool_doubles(&w->b->pool, (size_t)w->cols);
+/* Removes the parts of x that lead from a solution to another form of it: along rows of the system at the point that
+ * was made last. */
+static void keep_form(Walk *w, double *x) {
+  int cols = w->cols;
+  double *row = w->x;
+  for (int r = w->p->rows - w->p->forms; r < w->p->rows && w->made_at.known; r++) {
+    for (int i = 0; i < cols; i++) row[i] = lag_dot(cols, w->made_at.J + r * cols, w->made_at.V + i * cols);
+    double size = lag_dot(cols, row, row), part = size > 0 ? lag_dot(cols, row, x) / size : 0;
+    for (int i = 0; i < cols; i++) x[i] -= part * row[i];
+  }
+}
+
+/* The point at arclength s from `from` along its tangent, on the parabola with the tangent of another point, `apart`
+ * from it, or NULL. NULL: there is none. */
+static BranchPoint *point_at(Walk *w, const BranchPoint *from, double s, const BranchPoint *other, double apart) {
+  double *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols), *bend = u + w->cols;
   if (!u) return NULL;
-  for (int i = 0; i < w->cols; i++) u[i] = from->u[i] + s * from->tangent[i];
+  double turn = other ? lag_dot(w->cols, from->tangent, other->tangent) : 1;
+  for (int i = 0; i < w->cols && other; i++) bend[i] = (other->tangent[i] - turn * from->tangent[i]) / apart;
+  keep_form(w, bend);
+  for (int i = 0; i < w->cols; i++) u[i] = from->u[i] + s * from->tangent[i] + s * s / 2 * bend[i];
   return correct(w, u, from->tangent) ? make_point(w, u, from->tangent) : NULL;
 }
 
@@ -191,15 +221,21 @@ static double test_of(const BranchPoint *at, BranchKind kind) {
 static int changes_sign(double a, double b) { return (a <= 0 && b > 0) || (a >= 0 && b < 0); }
 
 /* Kind of the point between two others; BRANCH_REGULAR: none, or no further one after `after`. */
-static BranchKind between(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b) {
+static BranchKind between(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b, BranchKind after) {
   int fold = changes_sign(a->fold, b->fold), zero = changes_sign(a->zero, b->zero) && !(a->stays && b->stays),
       minus = p->maps && changes_sign(a->minus, b->minus);
-  if (fold) return BRANCH_FOLD;
-  if (minus) return BRANCH_DOUBLING;
-  if (zero) return BRANCH_POINT;
+  if (fold && after == BRANCH_REGULAR) return BRANCH_FOLD;
+  if (minus && after != BRANCH_DOUBLING && after != BRANCH_POINT) return BRANCH_DOUBLING;
+  if (zero && !fold && after != BRANCH_POINT) return BRANCH_POINT;
+  if (fold || minus || zero) return BRANCH_REGULAR;
   if (abs(a->unstable - b->unstable) < 2) return BRANCH_REGULAR;
   if (p->pairs) return BRANCH_COLLISION;
-  return changes_sign(a->pair, b->pair) ? p->maps ? BRANCH_TORUS : BRANCH_HOPF : BRANCH_REGULAR;
+  return changes_sign(sign_of(a->pair), sign_of(b->pair)) ? p->maps ? BRANCH_TORUS : BRANCH_HOPF : BRANCH_REGULAR;
+}
+
+/* The kind of a further point there. */
+static BranchKind more_kinds(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b, BranchKind after) {
+  return after == BRANCH_FOLD || after == BRANCH_DOUBLING ? between(p, a, b, after) : BRANCH_REGULAR;
 }
 
 /* An interval of arclength at whose ends a test function has values of different sign. */
@@ -236,6 +272,7 @@ static void between_points(int cols, const BranchPoint *a, const BranchPoint *b,
  * polynomials. */
 typedef struct Nodes {
   int n;
+  double middle, width;
   double x[8];
   BranchPoint *at[8];
 } Nodes;
@@ -253,6 +290,15 @@ static double zero_at(const Nodes *k, double x) {
   lagrange(k, x, weight);
   for (int i = 0; i < k->n; i++) sum += weight[i] * k->at[i]->zero;
   return sum;
+}
+
+/* u[cols] := the state on the polynomial at x. */
+static void state_at(const Nodes *k, int cols, double x, double *u) {
+  double weight[8];
+  lagrange(k, x, weight);
+  memset(u, 0, (size_t)cols * sizeof *u);
+  for (int i = 0; i < k->n; i++)
+    for (int c = 0; c < cols; c++) u[c] += weight[i] * k->at[i]->u[c];
 }
 
 /* Root of the polynomial of the test function that is nearest to the middle of -1 to 1, by bisection; NAN: none. */
@@ -279,27 +325,31 @@ static BranchPoint *locate_branch_point(Walk *w, const BranchPoint *from, const 
   double middle = to / 2, width = to / 2, *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols);
   if (!u) return NULL;
   BranchPoint *best = NULL;
-  for (int round = 0; round < 3; round++) {
-    Nodes k = {0};
+  Nodes known = {0};
+  for (int round = 0, narrower = 0; round < 6 && narrower < 3; round++) {
+    Nodes k = {.middle = middle, .width = width};
     for (int i = 0; i < 6; i++) {
       double s = fmin(fmax(middle + width * places[i], 0), to);
       between_points(w->cols, from, far, to, s, u, u + w->cols);
+      if (known.n) state_at(&known, w->cols, (s - known.middle) / known.width, u);
       BranchPoint *at = correct(w, u, u + w->cols) ? make_point(w, u, from->tangent) : NULL;
       if (!at || (k.n && (s - middle) / width <= k.x[k.n - 1])) continue;
       k.x[k.n] = (s - middle) / width;
       k.at[k.n++] = at;
     }
-    double x = k.n > 3 ? root_of(&k) : NAN, weight[8];
-    if (isnan(x)) return best;
-    lagrange(&k, x, weight);
-    memset(u, 0, (size_t)w->cols * sizeof *u);
-    for (int i = 0; i < k.n; i++)
-      for (int c = 0; c < w->cols; c++) u[c] += weight[i] * k.at[i]->u[c];
+    double x = k.n > 3 ? root_of(&k) : NAN;
+    if (isnan(x) && !best) return NULL;
+    if (isnan(x)) { /* the root lies beside these points */
+      width = fmin(4 * width, to / 2);
+      continue;
+    }
+    state_at(&k, w->cols, x, u);
+    known = k;
     BranchPoint *at = w->p->place(w->p->of, u) ? NULL : make_point(w, u, from->tangent);
     if (!at) return best;
     best = at;
     middle += width * x;
-    width = to / (round ? 400 : 20);
+    width = to / (narrower++ ? 150 : 20);
   }
   return best;
 }
@@ -310,12 +360,15 @@ static BranchPoint *locate_by_test(Walk *w, const BranchPoint *from, const Branc
                                    BranchKind kind) {
   int counts = kind == BRANCH_COLLISION;
   Bracket r = {0, to, counts ? -1 : test_of(from, kind), counts ? 1 : test_of(far, kind), 0};
-  double least = HUGE_VAL;
+  if (kind == BRANCH_HOPF || kind == BRANCH_TORUS) r.fa = sign_of(r.fa);
+  double least = HUGE_VAL, *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols);
   BranchPoint *best = NULL;
+  if (!u) return NULL;
   for (int k = 0; k < MOST_LOCATE && r.b - r.a > 1e-13 * to; k++) {
     double s = counts ? (r.a + r.b) / 2 : (r.a * r.fb - r.b * r.fa) / (r.fb - r.fa);
     if (!(s > r.a && s < r.b)) s = (r.a + r.b) / 2;
-    BranchPoint *at = point_at(w, from, s);
+    between_points(w->cols, from, far, to, s, u, u + w->cols);
+    BranchPoint *at = correct(w, u, u + w->cols) ? make_point(w, u, from->tangent) : NULL;
     if (!at) break;
     double f = !counts ? test_of(at, kind) : at->unstable == from->unstable ? -1 : 1;
     if (counts || fabs(f) < least) best = at, least = fabs(f);
@@ -369,7 +422,7 @@ static int crosses(Walk *w, Dip *d, BranchKind kind) {
     double least = HUGE_VAL, s = vertex(d, kind, &least), f = test_of(d->at[1], kind);
     if (!(least < near)) return 0;
     int before = s < d->s[1], from = before ? 0 : 1;
-    BranchPoint *at = point_at(w, d->at[from], s - d->s[from]);
+    BranchPoint *at = point_at(w, d->at[from], s - d->s[from], d->at[from + 1], d->s[from + 1] - d->s[from]);
     if (!at) return 0;
     double now = test_of(at, kind);
     int lower = fabs(now) < fabs(f), other = (now < 0) != (f < 0);
@@ -408,6 +461,13 @@ static void look_within(Walk *w, BranchPoint *a, BranchPoint *b, BranchPoint *c,
 
 /* ---- The walk */
 
+/* Puts a point behind `from`, and behind or before another one there, along the tangent. */
+static void append_in_order(Branch *b, BranchPoint *from, BranchPoint *at, int cols) {
+  const BranchPoint *other = from->next;
+  if (other && lag_dot(cols, at->u, from->tangent) < lag_dot(cols, other->u, from->tangent)) insert(b, from, at);
+  else append(b, at);
+}
+
 /* Whether the branch has come back to its first point. */
 static int is_closed(const Branch *b, const BranchPoint *at, double step, int cols) {
   double d = 0;
@@ -443,20 +503,34 @@ static BranchPoint *last_point(Walk *w, const BranchPoint *from, double step, co
   return at;
 }
 
+/* The longest step from a point: a part of what the branch has gone through, as motions grow, that changes the parameter
+ * little. */
+static double longest_step(const Walk *w, const BranchPoint *from, const BranchLimits *l) {
+  const double most = 2;
+  int last = w->cols - 1;
+  double way = 0;
+  for (int i = 0; i < last; i++) way += (from->u[i] - w->b->first->u[i]) * (from->u[i] - w->b->first->u[i]);
+  double step = l->longest * fmin(fmax(1, sqrt(way)), most);
+  return fmin(step, l->longest / fabs(from->tangent[last]));
+}
+
 /* Makes the next step; its length adapts to the number of Newton's steps and the turn of the tangent. NULL: none is
  * short enough. */
-static BranchPoint *next_point(Walk *w, double *step, double least, const BranchLimits *l) {
-  const double shortest = 1e-7;
+static BranchPoint *next_point(Walk *w, double *step, double least, const BranchPoint *before, const BranchLimits *l) {
+  const double shortest = 1e-7, nearly = 1e-8;
   const BranchPoint *from = w->b->last;
+  double made = w->made;
   for (*step = fmax(*step, shortest); *step >= shortest; *step /= 2) { /* at least one, which says what keeps it */
-    BranchPoint *at = point_at(w, from, *step);
+    w->enough = nearly;
+    BranchPoint *at = point_at(w, from, *step, before, -made);
+    w->enough = 0;
     w->made = *step;
     w->border = !at && (at = last_point(w, from, *step, l)) != NULL;
     if (!at) continue;
     double turn = lag_dot(w->cols, at->tangent, from->tangent);
     if (turn < least) continue;
     int easy = w->newton <= 4 && turn > 0.98;
-    *step = easy ? fmin(1.4 * *step, l->longest) : *step;
+    *step = easy ? fmax(*step, fmin((turn > 0.995 ? 2 : 1.4) * *step, longest_step(w, at, l))) : *step;
     return at;
   }
   return NULL;
@@ -488,17 +562,20 @@ int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const
   double made = 0;
   for (double step = limits->step; rc == LAG_OK && b->npoints < limits->most;) {
     BranchPoint *from = b->last;
-    BranchPoint *at = next_point(&w, &step, 0.9, limits);
+    BranchPoint *at = next_point(&w, &step, 0.9, b->npoints > 1 ? before : NULL, limits);
     if (!at && !sign && b->npoints == 1) { /* the direction was across the other branch, not yet along this one */
       step = limits->step;
-      at = next_point(&w, &step, 0.3, limits);
+      at = next_point(&w, &step, 0.3, NULL, limits);
     }
     if (!at) return b->end = b->pool.failed ? BRANCH_NO_MEMORY : BRANCH_LOST, LAG_OK;
     /* from a branch point, where test functions are 0 but for rounding, nothing is looked for in the first step */
-    BranchKind kind = !sign && b->npoints == 1 ? BRANCH_REGULAR : between(p, from, at);
-    BranchPoint *found = kind == BRANCH_REGULAR ? NULL : locate(&w, from, at, w.made, kind);
-    if (found && kind == BRANCH_FOLD && p->stands && p->stands(p->of, found->u, found->tangent)) found = NULL;
-    if (found && !outside(found->u, last, limits)) append(b, found);
+    int looks = sign || b->npoints > 1;
+    BranchKind kind = looks ? between(p, from, at, BRANCH_REGULAR) : BRANCH_REGULAR;
+    for (BranchKind now = kind; now != BRANCH_REGULAR; now = more_kinds(p, from, at, now)) {
+      BranchPoint *found = locate(&w, from, at, w.made, now);
+      if (found && now == BRANCH_FOLD && p->stands && p->stands(p->of, found->u, found->tangent)) found = NULL;
+      if (found && !outside(found->u, last, limits)) append_in_order(b, from, found, p->cols);
+    }
     if (outside(at->u, last, limits)) at = at_border(&w, from, at, limits), w.border = 1;
     if (!at) return b->end = b->pool.failed ? BRANCH_NO_MEMORY : BRANCH_LOST, LAG_OK; /* none at the border itself */
     append(b, at);

@@ -17,6 +17,7 @@ typedef struct Spectrum {
 typedef struct BranchProblem {
   void *of;
   int rows, cols, eigenvalues; /* the most of them */
+  int forms; /* of the rows the last, which choose among forms of one solution, as the phase does */
   int maps;  /* 1: eigenvalues are multipliers, with stability inside the unit circle; 0: rates */
   int pairs; /* 1: eigenvalues come in pairs, as of Hamilton's equations */
   int (*place)(void *of, const double *u); /* takes the unknowns. LAG_OK, or > 0: no values there */
