@@ -361,18 +361,22 @@ static BranchPoint *locate_by_test(Walk *w, const BranchPoint *from, const Branc
   int counts = kind == BRANCH_COLLISION;
   Bracket r = {0, to, counts ? -1 : test_of(from, kind), counts ? 1 : test_of(far, kind), 0};
   if (kind == BRANCH_HOPF || kind == BRANCH_TORUS) r.fa = sign_of(r.fa);
-  double least = HUGE_VAL, *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols);
+  const double rounding = 1e-12;
+  double least = HUGE_VAL, last = HUGE_VAL, *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols);
   BranchPoint *best = NULL;
   if (!u) return NULL;
   for (int k = 0; k < MOST_LOCATE && r.b - r.a > 1e-13 * to; k++) {
     double s = counts ? (r.a + r.b) / 2 : (r.a * r.fb - r.b * r.fa) / (r.fb - r.fa);
     if (!(s > r.a && s < r.b)) s = (r.a + r.b) / 2;
     between_points(w->cols, from, far, to, s, u, u + w->cols);
+    w->enough = rounding;
     BranchPoint *at = correct(w, u, u + w->cols) ? make_point(w, u, from->tangent) : NULL;
+    w->enough = 0;
     if (!at) break;
     double f = !counts ? test_of(at, kind) : at->unstable == from->unstable ? -1 : 1;
     if (counts || fabs(f) < least) best = at, least = fabs(f);
-    if (f == 0.0) break;
+    if (f == 0.0 || fabs(s - last) < rounding * to) break;
+    last = s;
     narrow(&r, s, f);
     if (counts) r.fa = -1, r.fb = 1;
   }

@@ -16,16 +16,6 @@ enum { LEVELS = 10, MOST_STEPS = 60, MOST_PLANES = 24, SAMPLES = 4, DESCENT = 20
 
 /* ---- Rows and their derivatives */
 
-/* Rows of contacts, all of which are open, := 0. */
-static void leave_contacts_out(const SteadyMotion *s, double *out) {
-  const lag_model *m = s->sim->pb.model;
-  for (int i = 0; i < m->ncontacts; i++) {
-    int k = m->contacts[i].constraint;
-    if (k < m->constraints->nholonomic) out[k] = 0;
-    out[m->constraints->nholonomic + k] = 0;
-  }
-}
-
 /* out[nrows] at y. */
 static int rows_at(const SteadyMotion *s, const double *y, double *out) {
   lag_problem *pb = &s->sim->pb;
@@ -33,7 +23,6 @@ static int rows_at(const SteadyMotion *s, const double *y, double *out) {
   int rc = s->without_rates ? LAG_OK : lag_rhs(pb, s->sim->run->t, y, out);
   if (s->without_rates) memset(out, 0, (size_t)s->n * sizeof *out);
   rc = rc || !of ? rc : lag_residuals(pb, s->sim->run->t, y, out + s->n, out + s->n + of->nholonomic);
-  if (rc == LAG_OK) leave_contacts_out(s, out + s->n);
   return rc ? rc : lag_not_finite(s->nrows, out) >= 0 ? LAG_ENAN : LAG_OK;
 }
 

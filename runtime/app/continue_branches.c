@@ -257,6 +257,7 @@ static int open_doubled(Doubled *two, PeriodicOrbit *o, const lag_scene *scene) 
   int rc = lag_orbit_open(&two->orbit, two->like, o->algebra, 2 * o->T, 2 * o->m);
   for (int s = 0; s < two->orbit.m && rc == LAG_OK; s++)
     memcpy(two->orbit.y + s * o->n, o->y + s % o->m * o->n, (size_t)o->n * sizeof *o->y);
+  if (rc == LAG_OK) memcpy(two->orbit.unit, o->unit, (size_t)o->n * sizeof *o->unit); /* a motion at rest has no size */
   two->orbit.pairing = o->pairing;
   lag_orbit_branch(&two->problem, &two->orbit);
   return rc;

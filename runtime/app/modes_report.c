@@ -484,20 +484,17 @@ static int analysis_failed(const App *app, int rc, const char *where) {
 /* Whether all contacts are open at y, where small motion does not feel them. */
 static int check_open(const App *app, const double *y, const char *where) {
   const lag_model *m = app->scene->model;
-  Pool pool = {0};
-  double *c = m->ncontacts ? lag_pool_doubles(&pool, 2 * (size_t)m->constraints->n) : NULL;
+  lag_sim *sim = app->sim;
   const char *closed = NULL;
-  int rc = c ? lag_residuals(&app->sim->pb, app->scene->t0, y, c, c + m->constraints->n) : LAG_OK;
-  for (int i = 0; c && i < m->ncontacts && !closed; i++) {
-    int k = m->contacts[i].constraint, is_gap = !m->contacts[i].conditional && k < m->constraints->nholonomic;
-    if (rc || lag_contact_is_closed(app->sim, &m->contacts[i]) || (is_gap && c[k] <= 0))
-      closed = m->constraints->of[k].name;
+  if (m->ncontacts && lag_events_eval(sim, app->scene->t0, y, sim->g1))
+    return lag_app_error(&app->args, "the contacts have no values %s; another start: name=VALUE", where);
+  for (int i = 0; i < m->ncontacts && !closed; i++) {
+    const lag_contact *c = &m->contacts[i];
+    if (lag_contact_is_closed(sim, c) || (!c->is_tangent && !(sim->g1[c->impact] > 0)))
+      closed = m->constraints->of[c->constraint].name;
   }
-  lag_pool_free(&pool);
-  return closed ? lag_app_error(&app->args,
-                                "contact %s is closed %s: small motion there leaves it on one side only, and has no "
-                                "modes; start where it is open: name=VALUE",
-                                closed, where)
+  return closed ? lag_app_error(&app->args, "contact %s is closed %s: small motion leaves it on one side only, and has "
+                                            "no modes; start where it is open: name=VALUE", closed, where)
                 : 0;
 }
 
