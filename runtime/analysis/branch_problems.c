@@ -20,6 +20,7 @@ static int place_rest(void *of, const double *u) {
   r->parameter = u[r->n] * r->parameter_unit;
   r->flow.message[0] = '\0';
   int rc = lag_flow_set(&r->flow, r->name, r->parameter);
+  rc = rc || lag_flow_is_open(&r->flow, r->flow.t0, r->y) ? rc : LAG_EDOMAIN;
   rc = rc ? rc : lag_flow_rates(&r->flow, r->flow.t0, r->y, r->rates);
   return rc || lag_not_finite(2 * r->flow.nq + r->n - r->flow.nq, r->rates) >= 0 ? LAG_EDOMAIN : LAG_OK;
 }

@@ -185,9 +185,9 @@ static int cut_between(Search *s, Gap *g, const LongConnection *c) {
 
 /* The same, on long motions by multiple shooting: rounding has grown where halves meet, and their gap stays. */
 static int refine(Search *s, Gap *g, double *D, double *gap) {
-  const double near = 0.05;
+  const double near = 0.05, small = 1e-9;
   int found = refine_halves(s, g, D, gap);
-  if (found || !(*gap < near)) return found;
+  if (found < 0 || !(*gap < near) || *gap < small) return found;
   Ends ends = {s, g};
   LongConnection c = {.flow = &g->tube[0]->end->orbit->flow, .n = s->n, .unit = s->unit, .of = &ends,
                       .start = start_of, .before = g->y[1]};
@@ -196,7 +196,11 @@ static int refine(Search *s, Gap *g, double *D, double *gap) {
     c.rate = fmax(c.rate, g->tube[e]->start[0]->rate);
   }
   int rc = lag_connection_refine(&c);
-  if (rc || !(c.residual < closed)) return rc == LAG_ENOMEM ? rc : 0;
+  if (rc == LAG_ENOMEM) return rc;
+  if (rc || !(c.residual < fmin(closed, *gap))) {
+    for (int e = 0; e < 2 && found; e++) start_of(&ends, e, g->phase[e], g->y[1]);
+    return found;
+  }
   for (int e = 0; e < 2; e++) g->phase[e] = c.phase[e];
   *gap = c.residual;
   return cut_between(s, g, &c);

@@ -220,6 +220,19 @@ static int advance_with_tangent(FlowMap *f, lag_sim *sim, double t) {
 
 int lag_flow_contacts(const FlowMap *f) { return f->like->scene->model->ncontacts > 0; }
 
+int lag_flow_is_open(FlowMap *f, double t, const double *y) {
+  const lag_model *m = f->like->scene->model;
+  if (m->ncontacts && lag_events_eval(f->probe, t, y, f->probe->g1)) return 0;
+  for (int i = 0; i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    if (c->is_tangent || f->probe->g1[c->impact] > 0) continue;
+    snprintf(f->message, sizeof f->message, "contact %s closes: states beyond are held by its force, and are not followed",
+             m->constraints->of[c->constraint].name);
+    return 0;
+  }
+  return 1;
+}
+
 /* d[n] := derivative of the end by the start in direction b[n], column j of B[n k] in units: differences of order 4. */
 static int end_slope(FlowMap *f, double t, double dt, const double *y0, const double *b, int k, double *d) {
   static const double weight[] = {2.0 / 3, -1.0 / 12};
