@@ -147,7 +147,8 @@ BranchPoint *lag_walk_point(Walk *w, const double *u, const double *d) {
   at->spectrum = (Spectrum){0, at->tangent + cols, at->tangent + cols + n};
   memcpy(at->u, u, cols * sizeof *u);
   int rc = lag_walk_tangent(w, d, at->tangent);
-  if (rc == LAG_EDOMAIN || (w->enough > 0 && !take_last_step(w, at)) || w->p->spectrum(w->p->of, &at->spectrum)) return NULL;
+  if (rc == LAG_EDOMAIN || (w->enough > 0 && !take_last_step(w, at))) return NULL;
+  if (w->p->spectrum(w->p->of, &at->spectrum)) return NULL;
   at->fold = at->tangent[cols - 1];
   at->kind = BRANCH_REGULAR;
   judge(w->p, at);

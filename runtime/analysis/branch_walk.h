@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "analysis/continuation.h"
+#include "analysis/branch.h"
 
 typedef struct Walk {
   Branch *b;

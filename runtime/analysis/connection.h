@@ -36,8 +36,8 @@ int lag_connections_find(Connections *c, const ConnectionEnd *from, const Connec
                          double part);
 void lag_connections_free(Connections *c);
 
-/* connection_chain.c: a connection by multiple shooting. start: y[n] := that of the first end (0), or the second one, at
- * a place along its motion. */
+/* connection_chain.c: a connection by multiple shooting. start: y[n] := that of the first end (0), or the second one,
+ * at a place along its motion. */
 typedef struct LongConnection {
   FlowMap *flow;
   int n;

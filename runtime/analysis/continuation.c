@@ -1,10 +1,11 @@
 /* Pseudo-arclength continuation (continuation.h). */
-#include "analysis/branch_walk.h"
+#include "analysis/continuation.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "analysis/branch_walk.h"
 #include "lag.h"
 #include "numeric/singular_values.h"
 #include "numeric/dense.h"
@@ -40,7 +41,8 @@ static BranchKind between(const BranchProblem *p, const BranchPoint *a, const Br
   if (fold || minus || zero) return BRANCH_REGULAR;
   if (abs(a->unstable - b->unstable) < 2) return BRANCH_REGULAR;
   if (p->pairs) return BRANCH_COLLISION;
-  return changes_sign(lag_growth_sign(a->pair), lag_growth_sign(b->pair)) ? p->maps ? BRANCH_TORUS : BRANCH_HOPF : BRANCH_REGULAR;
+  if (!changes_sign(lag_growth_sign(a->pair), lag_growth_sign(b->pair))) return BRANCH_REGULAR;
+  return p->maps ? BRANCH_TORUS : BRANCH_HOPF;
 }
 
 /* The kind of a further point there. */
@@ -317,8 +319,8 @@ static BranchPoint *last_point(Walk *w, const BranchPoint *from, double step, co
   return at;
 }
 
-/* The longest step from a point: a part of what the branch has gone through, as motions grow, that changes the parameter
- * little. */
+/* The longest step from a point: a part of what the branch has gone through, as motions grow; the parameter changes
+ * little in it. */
 static double longest_step(const Walk *w, const BranchPoint *from, const BranchLimits *l) {
   const double most = 2;
   int last = w->cols - 1;

@@ -226,8 +226,8 @@ int lag_flow_is_open(FlowMap *f, double t, const double *y) {
   for (int i = 0; i < m->ncontacts; i++) {
     const lag_contact *c = &m->contacts[i];
     if (c->is_tangent || f->probe->g1[c->impact] > 0) continue;
-    snprintf(f->message, sizeof f->message, "contact %s closes: states beyond are held by its force, and are not followed",
-             m->constraints->of[c->constraint].name);
+    snprintf(f->message, sizeof f->message,
+             "contact %s closes: states beyond are held by its force, and are not followed", m->constraints->of[c->constraint].name);
     return 0;
   }
   return 1;

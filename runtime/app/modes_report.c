@@ -506,7 +506,8 @@ static int find_rest(const App *app, Equilibrium *r, SteadyMotion *steady) {
   rc = tangent ? lag_steady_find(steady, r, app->sim, app->extras.algebra, app->args.steady)
                : lag_equilibrium_find(r, app->sim, app->extras.algebra);
   if (rc == 0) return tangent ? none_near(app) : not_found(app, r);
-  return rc < 0 ? analysis_failed(app, rc, "at the start") : check_open(app, r->y, "at the equilibrium next to the start");
+  if (rc < 0) return analysis_failed(app, rc, "at the start");
+  return check_open(app, r->y, "at the equilibrium next to the start");
 }
 
 int lag_app_rest(App *app, double *y) {
