@@ -227,7 +227,8 @@ int lag_flow_is_open(FlowMap *f, double t, const double *y) {
     const lag_contact *c = &m->contacts[i];
     if (c->is_tangent || f->probe->g1[c->impact] > 0) continue;
     snprintf(f->message, sizeof f->message,
-             "contact %s closes: states beyond are held by its force, and are not followed", m->constraints->of[c->constraint].name);
+             "contact %s closes: states beyond are held by its force, and are not followed",
+             m->constraints->of[c->constraint].name);
     return 0;
   }
   return 1;
