@@ -319,10 +319,10 @@ static BranchPoint *last_point(Walk *w, const BranchPoint *from, double step, co
   return at;
 }
 
-/* The longest step from a point: a part of what the branch has gone through, as motions grow; the parameter changes
- * little in it. */
-static double longest_step(const Walk *w, const BranchPoint *from, const BranchLimits *l) {
-  const double most = 2;
+/* The longest step from a point: a part of what the branch has gone through, as motions grow, more where it is
+ * straight; the parameter changes little in it. */
+static double longest_step(const Walk *w, const BranchPoint *from, double turn, const BranchLimits *l) {
+  const double most = turn > 0.999 ? 4 : 2;
   int last = w->cols - 1;
   double way = 0;
   for (int i = 0; i < last; i++) way += (from->u[i] - w->b->first->u[i]) * (from->u[i] - w->b->first->u[i]);
@@ -346,7 +346,7 @@ static BranchPoint *next_point(Walk *w, double *step, double least, const Branch
     double turn = lag_dot(w->cols, at->tangent, from->tangent);
     if (turn < least) continue;
     int easy = w->newton <= 4 && turn > 0.98;
-    *step = easy ? fmax(*step, fmin((turn > 0.995 ? 2 : 1.4) * *step, longest_step(w, at, l))) : *step;
+    *step = easy ? fmax(*step, fmin((turn > 0.995 ? 2 : 1.4) * *step, longest_step(w, at, turn, l))) : *step;
     return at;
   }
   return NULL;
