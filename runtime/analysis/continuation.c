@@ -166,6 +166,22 @@ static BranchPoint *locate_branch_point(Walk *w, const BranchPoint *from, const 
   return best;
 }
 
+/* The same where they lie far apart: the half in which the test function changes its sign, and so on. */
+static BranchPoint *narrow_to_branch_point(Walk *w, const BranchPoint *from, const BranchPoint *far, double to) {
+  const double wide = 0.1;
+  int cols = w->cols;
+  double *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)cols);
+  for (int k = 0; u && k < 6 && to > wide; k++) {
+    between_points(cols, from, far, to, to / 2, u, u + cols);
+    BranchPoint *middle = lag_walk_correct(w, u, u + cols) ? lag_walk_point(w, u, from->tangent) : NULL;
+    if (!middle) break;
+    if (changes_sign(from->zero, middle->zero)) far = middle;
+    else from = middle;
+    to = lag_dot(cols, far->u, from->tangent) - lag_dot(cols, from->u, from->tangent);
+  }
+  return u ? locate_branch_point(w, from, far, to) : NULL;
+}
+
 /* The point of this kind between two points by its test function; where only the number of growing eigenvalues tells,
  * by bisection. */
 static BranchPoint *locate_by_test(Walk *w, const BranchPoint *from, const BranchPoint *far, double to,
@@ -197,7 +213,7 @@ static BranchPoint *locate_by_test(Walk *w, const BranchPoint *from, const Branc
 
 /* The point of this kind between `from` and `far`, which is at arclength `to`. */
 static BranchPoint *locate(Walk *w, const BranchPoint *from, const BranchPoint *far, double to, BranchKind kind) {
-  BranchPoint *best = kind == BRANCH_POINT ? locate_branch_point(w, from, far, to) : NULL;
+  BranchPoint *best = kind == BRANCH_POINT ? narrow_to_branch_point(w, from, far, to) : NULL;
   if (!best) best = locate_by_test(w, from, far, to, kind);
   if (!best) return NULL;
   best->kind = kind;
