@@ -166,22 +166,6 @@ static BranchPoint *locate_branch_point(Walk *w, const BranchPoint *from, const 
   return best;
 }
 
-/* The same where they lie far apart: the half in which the test function changes its sign, and so on. */
-static BranchPoint *narrow_to_branch_point(Walk *w, const BranchPoint *from, const BranchPoint *far, double to) {
-  const double wide = 0.1;
-  int cols = w->cols;
-  double *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)cols);
-  for (int k = 0; u && k < 6 && to > wide; k++) {
-    between_points(cols, from, far, to, to / 2, u, u + cols);
-    BranchPoint *middle = lag_walk_correct(w, u, u + cols) ? lag_walk_point(w, u, from->tangent) : NULL;
-    if (!middle) break;
-    if (changes_sign(from->zero, middle->zero)) far = middle;
-    else from = middle;
-    to = lag_dot(cols, far->u, from->tangent) - lag_dot(cols, from->u, from->tangent);
-  }
-  return u ? locate_branch_point(w, from, far, to) : NULL;
-}
-
 /* The point of this kind between two points by its test function; where only the number of growing eigenvalues tells,
  * by bisection. */
 static BranchPoint *locate_by_test(Walk *w, const BranchPoint *from, const BranchPoint *far, double to,
@@ -213,7 +197,7 @@ static BranchPoint *locate_by_test(Walk *w, const BranchPoint *from, const Branc
 
 /* The point of this kind between `from` and `far`, which is at arclength `to`. */
 static BranchPoint *locate(Walk *w, const BranchPoint *from, const BranchPoint *far, double to, BranchKind kind) {
-  BranchPoint *best = kind == BRANCH_POINT ? narrow_to_branch_point(w, from, far, to) : NULL;
+  BranchPoint *best = kind == BRANCH_POINT ? locate_branch_point(w, from, far, to) : NULL;
   if (!best) best = locate_by_test(w, from, far, to, kind);
   if (!best) return NULL;
   best->kind = kind;
@@ -335,10 +319,10 @@ static BranchPoint *last_point(Walk *w, const BranchPoint *from, double step, co
   return at;
 }
 
-/* The longest step from a point: a part of what the branch has gone through, as motions grow, more where it is
- * straight; the parameter changes little in it. */
-static double longest_step(const Walk *w, const BranchPoint *from, double turn, const BranchLimits *l) {
-  const double most = turn > 0.999 ? 4 : 2;
+/* The longest step from a point: a part of what the branch has gone through, as motions grow; the parameter changes
+ * little in it. */
+static double longest_step(const Walk *w, const BranchPoint *from, const BranchLimits *l) {
+  const double most = 2; /* at 4 a branch point of halo orbits was off by 7e-4 */
   int last = w->cols - 1;
   double way = 0;
   for (int i = 0; i < last; i++) way += (from->u[i] - w->b->first->u[i]) * (from->u[i] - w->b->first->u[i]);
@@ -362,7 +346,7 @@ static BranchPoint *next_point(Walk *w, double *step, double least, const Branch
     double turn = lag_dot(w->cols, at->tangent, from->tangent);
     if (turn < least) continue;
     int easy = w->newton <= 4 && turn > 0.98;
-    *step = easy ? fmax(*step, fmin((turn > 0.995 ? 2 : 1.4) * *step, longest_step(w, at, turn, l))) : *step;
+    *step = easy ? fmax(*step, fmin((turn > 0.995 ? 2 : 1.4) * *step, longest_step(w, at, l))) : *step;
     return at;
   }
   return NULL;

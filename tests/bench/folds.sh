@@ -44,7 +44,7 @@ two=run(pen('PD1'),c='pen.2',NTST=40,$tight,ILP=1,DSMAX=0.5,UZSTOP={11:17.5})
 print("RESULT PD %.14g" % pen('PD1')['PAR(3)'])
 for s in two('LP'): print("RESULT LP %.14g" % s['PAR(3)'])
 X
-beside "pen, over the torque" 'fold\|period doubling' tests/bench/models/pendulums.lag rotate I=0.4..0.14 --guess 1.57 --branches --most 92
+beside "pen, over the torque" 'fold\|period doubling' tests/bench/models/pendulums.lag rotate I=0.4..0.14 --guess 1.57 --branches --most 110
 auto_demo r3b <<X
 lag=run('r3b',UZR={'mu':0.063})
 L1=run(lag('UZ7'),c='r3b.L1',NTST=50,$tight,UZSTOP={'PERIOD':2.6})
@@ -54,4 +54,4 @@ for s in H1('LP'): print("RESULT LP %.14g" % s['PERIOD'])
 X
 mu=$(sed -n 's/^MU //p' "$TMP/auto")
 sed -i '/^MU/d' "$TMP/auto"
-beside "r3b, halo orbits over the period" fold tests/exec/orbits/cr3bp_space.lag lyapunov "mu=$mu" x=0.6637384 z=0.1213414 "y'=0.32624754" --guess 2.5996 --hold y period=1.9..3.2 --most 76
+beside "r3b, halo orbits over the period" fold tests/exec/orbits/cr3bp_space.lag lyapunov "mu=$mu" x=0.6637384 z=0.1213414 "y'=0.32624754" --guess 2.5996 --hold y period=1.9..3.2 --most 84
