@@ -181,7 +181,7 @@ static BranchPoint *locate_by_test(Walk *w, const BranchPoint *from, const Branc
     double s = counts ? (r.a + r.b) / 2 : (r.a * r.fb - r.b * r.fa) / (r.fb - r.fa);
     if (!(s > r.a && s < r.b)) s = (r.a + r.b) / 2;
     between_points(w->cols, from, far, to, s, u, u + w->cols);
-    w->enough = rounding;
+    w->enough = kind == BRANCH_POINT ? 0 : rounding; /* there the system is nearly singular */
     BranchPoint *at = lag_walk_correct(w, u, u + w->cols) ? lag_walk_point(w, u, from->tangent) : NULL;
     w->enough = 0;
     if (!at) break;
