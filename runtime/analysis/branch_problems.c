@@ -20,6 +20,7 @@ static int place_rest(void *of, const double *u) {
   r->parameter = u[r->n] * r->parameter_unit;
   r->flow.message[0] = '\0';
   int rc = lag_flow_set(&r->flow, r->name, r->parameter);
+  rc = rc || lag_flow_is_open(&r->flow, r->flow.t0, r->y) ? rc : LAG_EDOMAIN;
   rc = rc ? rc : lag_flow_rates(&r->flow, r->flow.t0, r->y, r->rates);
   return rc || lag_not_finite(2 * r->flow.nq + r->n - r->flow.nq, r->rates) >= 0 ? LAG_EDOMAIN : LAG_OK;
 }
@@ -261,7 +262,7 @@ static int place_orbit(void *of, const double *u) { return place_with(of, u, 1);
 static int orbit_residual(void *of, const double *u, double *b) {
   PeriodicOrbit *o = of;
   int rc = place_with(o, u, 0);
-  rc = rc ? rc : lag_orbit_residual(o);
+  if (rc == LAG_OK) lag_orbit_residual(o);
   memcpy(b, o->b, (size_t)o->rows * sizeof *b);
   return rc;
 }
@@ -309,6 +310,7 @@ void lag_orbit_branch(BranchProblem *p, PeriodicOrbit *o) {
                        .rows = o->rows,
                        .cols = o->cols,
                        .eigenvalues = o->n,
+                       .forms = o->rows - o->m * o->n - o->nheld - (o->half ? o->n : 0),
                        .maps = 1,
                        .pairs = isfinite(o->pairing),
                        .place = place_orbit,

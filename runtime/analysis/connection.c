@@ -61,8 +61,8 @@ static int run(const Search *s, FlowMap *f, int stable, double t, const double *
   return LAG_OK;
 }
 
-/* y[n] := the start at a place between two of the tube, and the cuts of its run in s->scratch. */
-static int run_from(Search *s, const Tube *tube, double phase, double *y) {
+/* y[n] := the start at a place between two of the tube. */
+static int start_at(const Search *s, const Tube *tube, double phase, double *y) {
   PeriodicOrbit *o = tube->end->orbit;
   int n = s->n, whole = (int)floor(phase), rc = LAG_OK;
   const ManifoldStart *m = tube->start[((whole % tube->places) + tube->places) % tube->places];
@@ -76,7 +76,14 @@ static int run_from(Search *s, const Tube *tube, double phase, double *y) {
   }
   for (int i = 0; i < n; i++) size += v[i] / o->unit[i] * (v[i] / o->unit[i]);
   for (int i = 0; i < n; i++) y[i] = end[i] + tube->side * s->part / sqrt(size) * v[i];
-  return rc ? rc : run(s, &o->flow, m->stable, o->flow.t0, y, &s->scratch);
+  return rc;
+}
+
+/* The same, and the cuts of its run in s->scratch. */
+static int run_from(Search *s, const Tube *tube, double phase, double *y) {
+  FlowMap *f = &tube->end->orbit->flow;
+  int rc = start_at(s, tube, phase, y);
+  return rc ? rc : run(s, f, tube->start[0]->stable, f->t0, y, &s->scratch);
 }
 
 static size_t room_of_start(int n) { return (size_t)(3 * n + n * n); }
@@ -131,8 +138,8 @@ static int newton_step(const Search *s, const Gap *g, const double *D, double *s
   return 1;
 }
 
-/* 1: the gap closes; 0: it does not; < 0: a status. *gap := what is left. */
-static int refine(Search *s, Gap *g, double *D, double *gap) {
+/* 1: the gap closes by single shooting; 0: it does not; < 0: a status. *gap := what is left. */
+static int refine_halves(Search *s, Gap *g, double *D, double *gap) {
   double step[2], *up = D + 2 * s->n, *down = up + s->n, last = HUGE_VAL;
   *gap = HUGE_VAL;
   for (int k = 0; k < MOST_NEWTON; k++) {
@@ -148,6 +155,55 @@ static int refine(Search *s, Gap *g, double *D, double *gap) {
     g->phase[0] += part * step[0], g->phase[1] += part * step[1];
   }
   return *gap < closed;
+}
+
+typedef struct Ends {
+  const Search *s;
+  Gap *g;
+} Ends;
+
+static int start_of(void *of, int e, double phase, double *y) {
+  const Ends *ends = of;
+  int rc = start_at(ends->s, ends->g->tube[e], phase, ends->g->start[e]);
+  memcpy(y, ends->g->start[e], (size_t)ends->s->n * sizeof *y);
+  return rc;
+}
+
+/* The state in the section, next to the time given after the node before it; the times of both ends follow. */
+static int cut_between(Search *s, Gap *g, const LongConnection *c) {
+  double part = c->time[0] / c->parts[0], near = HUGE_VAL, all = c->time[0] + c->time[1];
+  int rc = run(s, c->flow, 0, c->flow->t0, c->before, &s->scratch);
+  for (int k = 0; k < s->scratch.count && rc == LAG_OK; k++) {
+    if (fabs(s->scratch.time[k] - part) > near) continue;
+    near = fabs(s->scratch.time[k] - part);
+    memcpy(g->y[0], s->scratch.y + k * s->n, (size_t)s->n * sizeof(double));
+    g->time[0] = c->time[0] - part + s->scratch.time[k];
+    g->time[1] = all - g->time[0];
+  }
+  return rc ? rc : near < part;
+}
+
+/* The same, on long motions by multiple shooting: rounding has grown where halves meet, and their gap stays. */
+static int refine(Search *s, Gap *g, double *D, double *gap) {
+  const double near = 0.05, small = 1e-9;
+  int found = refine_halves(s, g, D, gap);
+  if (found < 0 || !(*gap < near) || *gap < small) return found;
+  Ends ends = {s, g};
+  LongConnection c = {.flow = &g->tube[0]->end->orbit->flow, .n = s->n, .unit = s->unit, .of = &ends,
+                      .start = start_of, .before = g->y[1]};
+  for (int e = 0; e < 2; e++) {
+    c.phase[e] = g->phase[e], c.time[e] = g->time[e];
+    c.rate = fmax(c.rate, g->tube[e]->start[0]->rate);
+  }
+  int rc = lag_connection_refine(&c);
+  if (rc == LAG_ENOMEM) return rc;
+  if (rc || !(c.residual < fmin(closed, *gap))) {
+    for (int e = 0; e < 2 && found; e++) start_of(&ends, e, g->phase[e], g->y[1]);
+    return found;
+  }
+  for (int e = 0; e < 2; e++) g->phase[e] = c.phase[e];
+  *gap = c.residual;
+  return cut_between(s, g, &c);
 }
 
 /* ---- Pairs of cuts that cross */

@@ -35,3 +35,20 @@ typedef struct Connections {
 int lag_connections_find(Connections *c, const ConnectionEnd *from, const ConnectionEnd *to, int section, double time,
                          double part);
 void lag_connections_free(Connections *c);
+
+/* connection_chain.c: a connection by multiple shooting. start: y[n] := that of the first end (0), or the second one,
+ * at a place along its motion. */
+typedef struct LongConnection {
+  FlowMap *flow;
+  int n;
+  const double *unit; /* [n] */
+  double rate;        /* of growth [1/s] */
+  void *of;
+  int (*start)(void *of, int end, double phase, double *y);
+  double phase[2], time[2]; /* of both ends, to the section; first estimates, then refined */
+  int parts[2];
+  double *before;  /* [n] the last node of the first end before the section */
+  double residual; /* the largest gap between parts, in units */
+} LongConnection;
+/* LAG_OK, with what is left in c->residual, or a status. */
+int lag_connection_refine(LongConnection *c);

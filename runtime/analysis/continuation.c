@@ -5,142 +5,18 @@
 #include <math.h>
 #include <string.h>
 
+#include "analysis/branch_walk.h"
 #include "lag.h"
 #include "numeric/singular_values.h"
 #include "numeric/dense.h"
 
-enum { MOST_NEWTON = 12, MOST_CHORD = 8, MOST_LOCATE = 60 };
-
-static const double least_rank = 1e-8; /* singular values below this part of the first count as 0 */
-
-typedef struct Walk {
-  Branch *b;
-  const BranchProblem *p;
-  int rows, cols; /* of the equations with the row across the tangent */
-  double *J, *rhs, *V, *sigma, *x;
-  int newton;  /* steps of the last correction */
-  double made; /* arclength of the last step */
-  int border;  /* 1: that step ends at the border of the range */
-} Walk;
-
-static int open_walk(Walk *w, Branch *b, const BranchProblem *p) {
-  size_t rows = (size_t)p->rows + 1, cols = (size_t)p->cols;
-  *w = (Walk){.b = b, .p = p, .rows = p->rows + 1, .cols = p->cols};
-  const lag_part parts[] = {{&w->J, rows * cols}, {&w->rhs, rows}, {&w->V, cols * cols}, {&w->sigma, cols},
-      {&w->x, cols}};
-  lag_pool_parts(&b->pool, sizeof parts / sizeof *parts, parts);
-  return b->pool.failed ? LAG_ENOMEM : LAG_OK;
-}
-
-/* x := the step for the residual rhs, across the direction d, where the system was decomposed. Returns its size. */
-static double newton_step(Walk *w, const double *u, const double *d, double along) {
-  const double least = w->p->noise ? w->p->noise(w->p->of) : least_rank;
-  w->rhs[w->p->rows] = along - lag_dot(w->cols, u, d);
-  lag_least_norm((lag_decomposed){w->rows, w->cols, w->J, w->V, w->sigma}, least, 0, w->rhs, w->x);
-  if (fabs(d[w->cols - 1]) == 1.0) w->x[w->cols - 1] = 0; /* the parameter stays to the bit, as at its bound */
-  return sqrt(lag_dot(w->cols, w->x, w->x));
-}
-
-/* Whether a step of this size behind one of `last` is the last one: nothing but rounding is left. */
-static int is_last(double size, double last) { return size < 1e-12 || (size < 1e-9 && size > 0.3 * last); }
-
-/* Steps by the matrix of the last one, while each is a tenth of the one before or less, from *size. Returns whether u
- * is a solution. */
-static int chord(Walk *w, double *u, const double *d, double along, double *size) {
-  for (int k = 0; k < MOST_CHORD && w->p->residual && w->p->residual(w->p->of, u, w->rhs) == LAG_OK; k++) {
-    double now = newton_step(w, u, d, along), last = *size;
-    if (!(now < 0.1 * last) && !is_last(now, last)) return 0;
-    for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
-    *size = now;
-    if (is_last(now, last)) return 1;
-  }
-  return 0;
-}
-
-/* Newton's steps from u, each across the direction d: u := a solution. 0: none, as where conditions contradict each
- * other, so that steps end beside one. */
-static int correct(Walk *w, double *u, const double *d) {
-  const double solved = 1e-6; /* of the system's rows, in units; differences of runs have some 8 digits */
-  double last = HUGE_VAL, along = lag_dot(w->cols, u, d);
-  for (w->newton = 0; w->newton < MOST_NEWTON; w->newton++) {
-    if (w->p->place(w->p->of, u) || w->p->system(w->p->of, w->J, w->rhs)) return 0;
-    memcpy(w->J + w->p->rows * w->cols, d, (size_t)w->cols * sizeof *d);
-    lag_singular_values(w->rows, w->cols, w->J, w->V, w->sigma);
-    double size = newton_step(w, u, d, along);
-    if (!(size < 1)) return 0;
-    for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
-    if (is_last(size, last) || chord(w, u, d, along, &size))
-      return lag_largest(w->rows, w->rhs) < solved && w->p->place(w->p->of, u) == LAG_OK;
-    if (w->newton > 3 && size > 0.9 * last) return 0;
-    last = size;
-  }
-  return 0;
-}
-
-/* Test functions from eigenvalues: products that vanish where one is 0 (a multiplier 1), or a multiplier -1; growth
- * of the complex pair that is nearest to the border. */
-static void judge(const BranchProblem *p, BranchPoint *at) {
-  const Spectrum *s = &at->spectrum;
-  const double border = 1e-7, rounding = 1e-6; /* multipliers by differences have some 8 digits */
-  at->zero = at->minus = 1;
-  at->stays = 0;
-  at->pair = HUGE_VAL;
-  at->unstable = 0;
-  for (int i = 0; i < s->n; i++) {
-    double growth = p->maps ? log(fmax(hypot(s->re[i], s->im[i]), 1e-300)) : s->re[i], size = hypot(s->re[i], s->im[i]);
-    at->unstable += growth > border * fmax(1, p->maps ? 1 : size);
-    if (s->im[i] > 0 && fabs(growth) < fabs(at->pair)) at->pair = growth;
-    if (s->im[i] < 0) continue; /* with its conjugate */
-    double re = s->re[i] - (p->maps ? 1 : 0);
-    at->stays |= p->maps && s->im[i] <= 0 && fabs(re) < rounding;
-    at->zero *= s->im[i] > 0 ? re * re + s->im[i] * s->im[i] : re;
-    at->minus *= s->im[i] > 0 ? (s->re[i] + 1) * (s->re[i] + 1) + s->im[i] * s->im[i] : s->re[i] + 1;
-  }
-}
-
-/* The tangent of the branch at the solution that is placed: the unit vector that the equations leave free, with a
- * positive part along d. LAG_ESINGULAR: there are several. */
-static int find_tangent(Walk *w, const double *d, double *tangent) {
-  if (w->p->system(w->p->of, w->J, w->rhs)) return LAG_EDOMAIN;
-  lag_singular_values(w->p->rows, w->cols, w->J, w->V, w->sigma);
-  int free = 0;
-  for (int i = 0; i < w->cols; i++) free += w->sigma[i] <= least_rank * w->sigma[0];
-  double sign = 0;
-  for (int i = 0; i < w->cols; i++) sign += w->V[i * w->cols + w->cols - 1] * d[i];
-  for (int i = 0; i < w->cols; i++) tangent[i] = (sign < 0 ? -1 : 1) * w->V[i * w->cols + w->cols - 1];
-  return free > 1 ? LAG_ESINGULAR : LAG_OK;
-}
-
-/* A point at the solution u that is placed. NULL: no memory, or no values. */
-static BranchPoint *make_point(Walk *w, const double *u, const double *d) {
-  size_t cols = (size_t)w->cols, n = (size_t)w->p->eigenvalues, room = sizeof(BranchPoint) / sizeof(double) + 1;
-  BranchPoint *at = (BranchPoint *)(void *)lag_pool_doubles(&w->b->pool, room + 2 * cols + 2 * n);
-  if (!at) return NULL;
-  at->u = (double *)(void *)at + room;
-  at->tangent = at->u + cols;
-  at->spectrum = (Spectrum){0, at->tangent + cols, at->tangent + cols + n};
-  memcpy(at->u, u, cols * sizeof *u);
-  int rc = find_tangent(w, d, at->tangent);
-  if (rc == LAG_EDOMAIN || w->p->spectrum(w->p->of, &at->spectrum)) return NULL;
-  at->fold = at->tangent[cols - 1];
-  at->kind = BRANCH_REGULAR;
-  judge(w->p, at);
-  return at;
-}
+enum { MOST_LOCATE = 60 };
 
 static void append(Branch *b, BranchPoint *at) {
   if (b->last) b->last->next = at;
   else b->first = at;
   b->last = at;
   b->npoints++;
-}
-
-/* The point at arclength s from `from` along its tangent. NULL: there is none. */
-static BranchPoint *point_at(Walk *w, const BranchPoint *from, double s) {
-  double *u = lag_pool_doubles(&w->b->pool, (size_t)w->cols);
-  if (!u) return NULL;
-  for (int i = 0; i < w->cols; i++) u[i] = from->u[i] + s * from->tangent[i];
-  return correct(w, u, from->tangent) ? make_point(w, u, from->tangent) : NULL;
 }
 
 /* ---- Bifurcations between two points */
@@ -156,15 +32,22 @@ static double test_of(const BranchPoint *at, BranchKind kind) {
 static int changes_sign(double a, double b) { return (a <= 0 && b > 0) || (a >= 0 && b < 0); }
 
 /* Kind of the point between two others; BRANCH_REGULAR: none, or no further one after `after`. */
-static BranchKind between(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b) {
+static BranchKind between(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b, BranchKind after) {
   int fold = changes_sign(a->fold, b->fold), zero = changes_sign(a->zero, b->zero) && !(a->stays && b->stays),
       minus = p->maps && changes_sign(a->minus, b->minus);
-  if (fold) return BRANCH_FOLD;
-  if (minus) return BRANCH_DOUBLING;
-  if (zero) return BRANCH_POINT;
+  if (fold && after == BRANCH_REGULAR) return BRANCH_FOLD;
+  if (minus && after != BRANCH_DOUBLING && after != BRANCH_POINT) return BRANCH_DOUBLING;
+  if (zero && !fold && after != BRANCH_POINT) return BRANCH_POINT;
+  if (fold || minus || zero) return BRANCH_REGULAR;
   if (abs(a->unstable - b->unstable) < 2) return BRANCH_REGULAR;
   if (p->pairs) return BRANCH_COLLISION;
-  return changes_sign(a->pair, b->pair) ? p->maps ? BRANCH_TORUS : BRANCH_HOPF : BRANCH_REGULAR;
+  if (!changes_sign(lag_growth_sign(a->pair), lag_growth_sign(b->pair))) return BRANCH_REGULAR;
+  return p->maps ? BRANCH_TORUS : BRANCH_HOPF;
+}
+
+/* The kind of a further point there. */
+static BranchKind more_kinds(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b, BranchKind after) {
+  return after == BRANCH_FOLD || after == BRANCH_DOUBLING ? between(p, a, b, after) : BRANCH_REGULAR;
 }
 
 /* An interval of arclength at whose ends a test function has values of different sign. */
@@ -201,6 +84,7 @@ static void between_points(int cols, const BranchPoint *a, const BranchPoint *b,
  * polynomials. */
 typedef struct Nodes {
   int n;
+  double middle, width;
   double x[8];
   BranchPoint *at[8];
 } Nodes;
@@ -218,6 +102,15 @@ static double zero_at(const Nodes *k, double x) {
   lagrange(k, x, weight);
   for (int i = 0; i < k->n; i++) sum += weight[i] * k->at[i]->zero;
   return sum;
+}
+
+/* u[cols] := the state on the polynomial at x. */
+static void state_at(const Nodes *k, int cols, double x, double *u) {
+  double weight[8];
+  lagrange(k, x, weight);
+  memset(u, 0, (size_t)cols * sizeof *u);
+  for (int i = 0; i < k->n; i++)
+    for (int c = 0; c < cols; c++) u[c] += weight[i] * k->at[i]->u[c];
 }
 
 /* Root of the polynomial of the test function that is nearest to the middle of -1 to 1, by bisection; NAN: none. */
@@ -244,27 +137,31 @@ static BranchPoint *locate_branch_point(Walk *w, const BranchPoint *from, const 
   double middle = to / 2, width = to / 2, *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols);
   if (!u) return NULL;
   BranchPoint *best = NULL;
-  for (int round = 0; round < 3; round++) {
-    Nodes k = {0};
+  Nodes known = {0};
+  for (int round = 0, narrower = 0; round < 6 && narrower < 3; round++) {
+    Nodes k = {.middle = middle, .width = width};
     for (int i = 0; i < 6; i++) {
       double s = fmin(fmax(middle + width * places[i], 0), to);
       between_points(w->cols, from, far, to, s, u, u + w->cols);
-      BranchPoint *at = correct(w, u, u + w->cols) ? make_point(w, u, from->tangent) : NULL;
+      if (known.n) state_at(&known, w->cols, (s - known.middle) / known.width, u);
+      BranchPoint *at = lag_walk_correct(w, u, u + w->cols) ? lag_walk_point(w, u, from->tangent) : NULL;
       if (!at || (k.n && (s - middle) / width <= k.x[k.n - 1])) continue;
       k.x[k.n] = (s - middle) / width;
       k.at[k.n++] = at;
     }
-    double x = k.n > 3 ? root_of(&k) : NAN, weight[8];
-    if (isnan(x)) return best;
-    lagrange(&k, x, weight);
-    memset(u, 0, (size_t)w->cols * sizeof *u);
-    for (int i = 0; i < k.n; i++)
-      for (int c = 0; c < w->cols; c++) u[c] += weight[i] * k.at[i]->u[c];
-    BranchPoint *at = w->p->place(w->p->of, u) ? NULL : make_point(w, u, from->tangent);
+    double x = k.n > 3 ? root_of(&k) : NAN;
+    if (isnan(x) && !best) return NULL;
+    if (isnan(x)) { /* the root lies beside these points */
+      width = fmin(4 * width, to / 2);
+      continue;
+    }
+    state_at(&k, w->cols, x, u);
+    known = k;
+    BranchPoint *at = w->p->place(w->p->of, u) ? NULL : lag_walk_point(w, u, from->tangent);
     if (!at) return best;
     best = at;
     middle += width * x;
-    width = to / (round ? 400 : 20);
+    width = to / (narrower++ ? 150 : 20);
   }
   return best;
 }
@@ -275,16 +172,23 @@ static BranchPoint *locate_by_test(Walk *w, const BranchPoint *from, const Branc
                                    BranchKind kind) {
   int counts = kind == BRANCH_COLLISION;
   Bracket r = {0, to, counts ? -1 : test_of(from, kind), counts ? 1 : test_of(far, kind), 0};
-  double least = HUGE_VAL;
+  if (kind == BRANCH_HOPF || kind == BRANCH_TORUS) r.fa = lag_growth_sign(r.fa);
+  const double rounding = 1e-12;
+  double least = HUGE_VAL, last = HUGE_VAL, *u = lag_pool_doubles(&w->b->pool, 2 * (size_t)w->cols);
   BranchPoint *best = NULL;
+  if (!u) return NULL;
   for (int k = 0; k < MOST_LOCATE && r.b - r.a > 1e-13 * to; k++) {
     double s = counts ? (r.a + r.b) / 2 : (r.a * r.fb - r.b * r.fa) / (r.fb - r.fa);
     if (!(s > r.a && s < r.b)) s = (r.a + r.b) / 2;
-    BranchPoint *at = point_at(w, from, s);
+    between_points(w->cols, from, far, to, s, u, u + w->cols);
+    w->enough = kind == BRANCH_POINT ? 0 : rounding; /* there the system is nearly singular */
+    BranchPoint *at = lag_walk_correct(w, u, u + w->cols) ? lag_walk_point(w, u, from->tangent) : NULL;
+    w->enough = 0;
     if (!at) break;
     double f = !counts ? test_of(at, kind) : at->unstable == from->unstable ? -1 : 1;
     if (counts || fabs(f) < least) best = at, least = fabs(f);
-    if (f == 0.0) break;
+    if (f == 0.0 || fabs(s - last) < rounding * to) break;
+    last = s;
     narrow(&r, s, f);
     if (counts) r.fa = -1, r.fb = 1;
   }
@@ -334,7 +238,7 @@ static int crosses(Walk *w, Dip *d, BranchKind kind) {
     double least = HUGE_VAL, s = vertex(d, kind, &least), f = test_of(d->at[1], kind);
     if (!(least < near)) return 0;
     int before = s < d->s[1], from = before ? 0 : 1;
-    BranchPoint *at = point_at(w, d->at[from], s - d->s[from]);
+    BranchPoint *at = lag_walk_point_at(w, d->at[from], s - d->s[from], d->at[from + 1], d->s[from + 1] - d->s[from]);
     if (!at) return 0;
     double now = test_of(at, kind);
     int lower = fabs(now) < fabs(f), other = (now < 0) != (f < 0);
@@ -373,6 +277,13 @@ static void look_within(Walk *w, BranchPoint *a, BranchPoint *b, BranchPoint *c,
 
 /* ---- The walk */
 
+/* Puts a point behind `from`, and behind or before another one there, along the tangent. */
+static void append_in_order(Branch *b, BranchPoint *from, BranchPoint *at, int cols) {
+  const BranchPoint *other = from->next;
+  if (other && lag_dot(cols, at->u, from->tangent) < lag_dot(cols, other->u, from->tangent)) insert(b, from, at);
+  else append(b, at);
+}
+
 /* Whether the branch has come back to its first point. */
 static int is_closed(const Branch *b, const BranchPoint *at, double step, int cols) {
   double d = 0;
@@ -390,7 +301,7 @@ static BranchPoint *at_border(Walk *w, const BranchPoint *from, const BranchPoin
   between_points(w->cols, from, far, w->made, part * w->made, u, NULL);
   u[last] = border;
   d[last] = 1;
-  return correct(w, u, d) ? make_point(w, u, from->tangent) : NULL;
+  return lag_walk_correct(w, u, d) ? lag_walk_point(w, u, from->tangent) : NULL;
 }
 
 static int outside(const double *u, int last, const BranchLimits *l) {
@@ -408,20 +319,34 @@ static BranchPoint *last_point(Walk *w, const BranchPoint *from, double step, co
   return at;
 }
 
+/* The longest step from a point: a part of what the branch has gone through, as motions grow; the parameter changes
+ * little in it. */
+static double longest_step(const Walk *w, const BranchPoint *from, const BranchLimits *l) {
+  const double most = 2; /* at 4 a branch point of halo orbits was off by 7e-4 */
+  int last = w->cols - 1;
+  double way = 0;
+  for (int i = 0; i < last; i++) way += (from->u[i] - w->b->first->u[i]) * (from->u[i] - w->b->first->u[i]);
+  double step = l->longest * fmin(fmax(1, sqrt(way)), most);
+  return fmin(step, l->longest / fabs(from->tangent[last]));
+}
+
 /* Makes the next step; its length adapts to the number of Newton's steps and the turn of the tangent. NULL: none is
  * short enough. */
-static BranchPoint *next_point(Walk *w, double *step, double least, const BranchLimits *l) {
-  const double shortest = 1e-7;
+static BranchPoint *next_point(Walk *w, double *step, double least, const BranchPoint *before, const BranchLimits *l) {
+  const double shortest = 1e-7, nearly = 1e-8;
   const BranchPoint *from = w->b->last;
+  double made = w->made;
   for (*step = fmax(*step, shortest); *step >= shortest; *step /= 2) { /* at least one, which says what keeps it */
-    BranchPoint *at = point_at(w, from, *step);
+    w->enough = nearly;
+    BranchPoint *at = lag_walk_point_at(w, from, *step, before, -made);
+    w->enough = 0;
     w->made = *step;
     w->border = !at && (at = last_point(w, from, *step, l)) != NULL;
     if (!at) continue;
     double turn = lag_dot(w->cols, at->tangent, from->tangent);
     if (turn < least) continue;
     int easy = w->newton <= 4 && turn > 0.98;
-    *step = easy ? fmin(1.4 * *step, l->longest) : *step;
+    *step = easy ? fmax(*step, fmin((turn > 0.995 ? 2 : 1.4) * *step, longest_step(w, at, l))) : *step;
     return at;
   }
   return NULL;
@@ -433,11 +358,11 @@ static int first_point(Walk *w, const double *u0, const double *d, int sign) {
   memcpy(u, u0, (size_t)w->cols * sizeof *u);
   if (d) memcpy(along, d, (size_t)w->cols * sizeof *d);
   else along[w->cols - 1] = sign;
-  if (!correct(w, u, along)) return LAG_EDOMAIN;
-  BranchPoint *at = make_point(w, u, along);
+  if (!lag_walk_correct(w, u, along)) return LAG_EDOMAIN;
+  BranchPoint *at = lag_walk_point(w, u, along);
   if (!at) return w->b->pool.failed ? LAG_ENOMEM : LAG_EDOMAIN;
   if (!sign) memcpy(at->tangent, d, (size_t)w->cols * sizeof *d); /* at a branch point there are several */
-  else if (find_tangent(w, along, at->tangent) == LAG_ESINGULAR) return LAG_ESINGULAR;
+  else if (lag_walk_tangent(w, along, at->tangent) == LAG_ESINGULAR) return LAG_ESINGULAR;
   at->fold = at->tangent[w->cols - 1];
   append(w->b, at);
   return LAG_OK;
@@ -447,23 +372,26 @@ int lag_branch_follow(Branch *b, const BranchProblem *p, const double *u0, const
                       const BranchLimits *limits) {
   Walk w;
   *b = (Branch){.end = BRANCH_AT_NUMBER};
-  int rc = open_walk(&w, b, p), last = p->cols - 1;
+  int rc = lag_walk_open(&w, b, p), last = p->cols - 1;
   rc = rc ? rc : first_point(&w, u0, d, sign);
   BranchPoint *before = NULL; /* the point before the last one, with nothing found between them */
   double made = 0;
   for (double step = limits->step; rc == LAG_OK && b->npoints < limits->most;) {
     BranchPoint *from = b->last;
-    BranchPoint *at = next_point(&w, &step, 0.9, limits);
+    BranchPoint *at = next_point(&w, &step, 0.9, b->npoints > 1 ? before : NULL, limits);
     if (!at && !sign && b->npoints == 1) { /* the direction was across the other branch, not yet along this one */
       step = limits->step;
-      at = next_point(&w, &step, 0.3, limits);
+      at = next_point(&w, &step, 0.3, NULL, limits);
     }
     if (!at) return b->end = b->pool.failed ? BRANCH_NO_MEMORY : BRANCH_LOST, LAG_OK;
     /* from a branch point, where test functions are 0 but for rounding, nothing is looked for in the first step */
-    BranchKind kind = !sign && b->npoints == 1 ? BRANCH_REGULAR : between(p, from, at);
-    BranchPoint *found = kind == BRANCH_REGULAR ? NULL : locate(&w, from, at, w.made, kind);
-    if (found && kind == BRANCH_FOLD && p->stands && p->stands(p->of, found->u, found->tangent)) found = NULL;
-    if (found && !outside(found->u, last, limits)) append(b, found);
+    int looks = sign || b->npoints > 1;
+    BranchKind kind = looks ? between(p, from, at, BRANCH_REGULAR) : BRANCH_REGULAR;
+    for (BranchKind now = kind; now != BRANCH_REGULAR; now = more_kinds(p, from, at, now)) {
+      BranchPoint *found = locate(&w, from, at, w.made, now);
+      if (found && now == BRANCH_FOLD && p->stands && p->stands(p->of, found->u, found->tangent)) found = NULL;
+      if (found && !outside(found->u, last, limits)) append_in_order(b, from, found, p->cols);
+    }
     if (outside(at->u, last, limits)) at = at_border(&w, from, at, limits), w.border = 1;
     if (!at) return b->end = b->pool.failed ? BRANCH_NO_MEMORY : BRANCH_LOST, LAG_OK; /* none at the border itself */
     append(b, at);
@@ -481,7 +409,7 @@ void lag_branch_free(Branch *b) { lag_pool_free(&b->pool); }
 int lag_branch_other(const BranchProblem *p, const BranchPoint *at, double *d) {
   Walk w;
   Branch scratch = {0};
-  int cols = p->cols, rc = open_walk(&w, &scratch, p);
+  int cols = p->cols, rc = lag_walk_open(&w, &scratch, p);
   rc = rc ? rc : p->place(p->of, at->u) || p->system(p->of, w.J, w.rhs) ? LAG_EDOMAIN : LAG_OK;
   if (rc == LAG_OK) {
     lag_singular_values(p->rows, cols, w.J, w.V, w.sigma);

@@ -30,27 +30,34 @@ lag_sim *lag_flow_sim(FlowMap *f, double t, const double *y0) {
   return sim;
 }
 
-static int renew_probe(FlowMap *f) {
+/* probe := sim, at its start. */
+static int take_probe(FlowMap *f, lag_sim *sim) {
   lag_sim_free(f->probe);
-  f->probe = lag_flow_sim(f, f->t0, NULL);
-  if (!f->probe) return keep_message(f, NULL, LAG_ENOMEM);
-  int rc = lag_sim_advance(f->probe, f->t0);
-  if (rc) return keep_message(f, f->probe, rc < 0 ? rc : LAG_EINVAL);
-  lag_switch_set_free(f->probe, 1);
+  f->probe = sim;
+  int rc = lag_sim_advance(sim, f->t0);
+  if (rc) return keep_message(f, sim, rc < 0 ? rc : LAG_EINVAL);
+  lag_switch_set_free(sim, 1);
   return LAG_OK;
 }
 
+static int renew_probe(FlowMap *f) {
+  lag_sim *sim = lag_flow_sim(f, f->t0, NULL);
+  return sim ? take_probe(f, sim) : keep_message(f, NULL, LAG_ENOMEM);
+}
+
 int lag_flow_set(FlowMap *f, const char *name, double value) {
+  if (f->name == name && f->value == value) return LAG_OK;
+  f->name = NULL; /* a value of the wrong sign is refused with its words */
+  lag_sim *sim = lag_flow_sim(f, f->t0, NULL);
+  int rc = sim ? lag_sim_set(sim, name, value) : LAG_ENOMEM;
+  if (rc) {
+    keep_message(f, sim, rc);
+    lag_sim_free(sim);
+    return rc;
+  }
   f->name = name;
   f->value = value;
-  lag_sim *trial = lag_flow_sim(f, f->t0, NULL);
-  f->name = NULL; /* a value of the wrong sign is refused with its words */
-  int rc = trial ? lag_sim_set(trial, name, value) : LAG_ENOMEM;
-  if (rc) keep_message(f, trial, rc);
-  lag_sim_free(trial);
-  if (rc) return rc;
-  f->name = name;
-  return renew_probe(f);
+  return take_probe(f, sim);
 }
 
 /* Numbers that a drive changes, n + nev: rates, and event functions, as of a contact with a plate that moves. */
@@ -213,6 +220,20 @@ static int advance_with_tangent(FlowMap *f, lag_sim *sim, double t) {
 
 int lag_flow_contacts(const FlowMap *f) { return f->like->scene->model->ncontacts > 0; }
 
+int lag_flow_is_open(FlowMap *f, double t, const double *y) {
+  const lag_model *m = f->like->scene->model;
+  if (m->ncontacts && lag_events_eval(f->probe, t, y, f->probe->g1)) return 0;
+  for (int i = 0; i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    if (c->is_tangent || f->probe->g1[c->impact] > 0) continue;
+    snprintf(f->message, sizeof f->message,
+             "contact %s closes: states beyond are held by its force, and are not followed",
+             m->constraints->of[c->constraint].name);
+    return 0;
+  }
+  return 1;
+}
+
 /* d[n] := derivative of the end by the start in direction b[n], column j of B[n k] in units: differences of order 4. */
 static int end_slope(FlowMap *f, double t, double dt, const double *y0, const double *b, int k, double *d) {
   static const double weight[] = {2.0 / 3, -1.0 / 12};
@@ -317,12 +338,49 @@ static double drive_difference(FlowMap *f, double T, double *step) {
   return size > 0 ? sqrt(off / size) : 0;
 }
 
+/* after[n] := the state after the action of kick k at y, t. */
+static int kicked(FlowMap *f, int k, double t, const double *y, double *after) {
+  lag_sim *s = f->probe;
+  const lag_model *m = s->scene->model;
+  int nq = m->nq, stop = 0, rc = lag_inputs(&s->pb, t);
+  memcpy(after, y, (size_t)f->n * sizeof *after);
+  if (rc || !m->act) return rc;
+  return m->act(m, k, t, y, y + nq, y + 2 * nq, s->p, s->u, after, after + nq, after + 2 * nq, &stop, s->work);
+}
+
+/* Difference of the actions of kicks a time T later, relative to the change that they make. */
+static double kick_difference(FlowMap *f, double T) {
+  enum { KICKS = 48 };
+  double off = 0, size = 0, *a = f->up, *b = f->down, *image = f->square, period;
+  for (int k = 0; k < f->like->scene->model->nev; k++) {
+    if (!lag_is_kick(f->like->scene->model, k)) continue;
+    if (lag_events_eval(f->probe, f->t0, f->probe->now, f->probe->g1)) return HUGE_VAL;
+    period = f->probe->g1[k];
+    for (int j = 1; j <= KICKS; j++) {
+      const double *y = f->at;
+      for (int i = 0; i < f->n; i++)
+        f->at[i] = f->probe->begin[i] + 0.1 * (j % 3) * lag_difference_scale(&f->probe->pb, f->probe->begin, i);
+      if (kicked(f, k, f->t0 + j * period, y, a)) return HUGE_VAL;
+      for (int i = 0; i < f->n; i++) size += (a[i] - y[i]) * (a[i] - y[i]);
+      if (f->closing) {
+        memcpy(b, a, (size_t)f->n * sizeof *b);
+        lag_map_apply(f->closing, b, a);
+        lag_map_apply(f->closing, y, image);
+        y = image;
+      }
+      if (kicked(f, k, f->t0 + j * period + T, y, b)) return HUGE_VAL;
+      for (int i = 0; i < f->n; i++) off += (b[i] - a[i]) * (b[i] - a[i]);
+    }
+  }
+  return size > 0 ? sqrt(off / size) : off > 0 ? HUGE_VAL : 0;
+}
+
 double lag_flow_drive(FlowMap *f, double *T) {
   double kick, step = 0;
   fits_kicks(f, 0, &kick);
   if (kick > 0) {
     *T = kick * fmax(1, rint(*T / kick));
-    return fits_kicks(f, *T, &kick) ? drive_difference(f, *T, &step) : HUGE_VAL;
+    return fits_kicks(f, *T, &kick) ? fmax(drive_difference(f, *T, &step), kick_difference(f, *T)) : HUGE_VAL;
   }
   double off = drive_difference(f, *T, &step);
   for (int k = 0; k < 20 && isfinite(off); k++) {

@@ -39,6 +39,8 @@ lag_sim *lag_flow_sim(FlowMap *f, double t, const double *y0);
 int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, double *Phi);
 /* Whether the model has contacts, which may close. */
 int lag_flow_contacts(const FlowMap *f);
+/* Whether all contacts are open at y, t; 0 with the name of one that is not in the message. */
+int lag_flow_is_open(FlowMap *f, double t, const double *y);
 /* f[n] := y' at y, t. */
 int lag_flow_rates(FlowMap *f, double t, const double *y, double *rates);
 

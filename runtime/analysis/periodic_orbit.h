@@ -60,6 +60,8 @@ typedef struct PeriodicOrbit {
   int rows, cols;
   double *A, *b, *V, *sigma, *x, *saved, *w;
   double *ends; /* [m n] copy of end */
+  double *across; /* [nacross m n] gradients of charges, made orthonormal, whose part of the residual is left out */
+  int nacross;
   double residual;           /* of y(T) = G y(0), in units: root of the mean square */
   int nfree;                 /* directions in which there are other solutions */
   int normal;                /* directions of nodes across the constraints */
@@ -101,13 +103,14 @@ void lag_orbit_guess_shifts(PeriodicOrbit *o);
 /* The charges that are conserved, and generators of the shifts. LAG_OK, or a status with its message. */
 int lag_orbit_list_charges(PeriodicOrbit *o);
 
-/* For continuation (branch_problems.c): runs all segments at the present unknowns; then A and b, or b alone. */
+/* For continuation (branch_problems.c): runs all segments at the present unknowns; then A and b, or b alone, across the
+ * charges as of the last A. */
 int lag_orbit_shoot(PeriodicOrbit *o, int tangents);
 /* orbit_units.c: unit[n] := the largest excursion from y0 of components of that unit, over a period; of those that do
  * not move the largest value, or 1 declared unit. */
 int lag_orbit_choose_units(PeriodicOrbit *o, const double *y0);
 int lag_orbit_assemble(PeriodicOrbit *o);
-int lag_orbit_residual(PeriodicOrbit *o);
+void lag_orbit_residual(PeriodicOrbit *o);
 /* orbit_drive.c. drives := how many periods of the drive T is. */
 void lag_orbit_count_drives(PeriodicOrbit *o);
 /* The parameter of the continuation := value. LAG_OK, or a status: both stay at the last value that was

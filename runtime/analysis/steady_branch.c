@@ -44,6 +44,7 @@ static int place(void *of, const double *u) {
   s->parameter = u[s->cols - 1] * s->parameter_unit;
   s->flow.message[0] = '\0';
   int rc = set_parameter(s, s->parameter);
+  rc = rc || lag_flow_is_open(&s->flow, s->flow.t0, m->y) ? rc : LAG_EDOMAIN;
   rc = rc ? rc : values(s, s->up);
   return rc || lag_not_finite(m->nrows + s->nheld, s->up) >= 0 ? LAG_EDOMAIN : LAG_OK;
 }

@@ -265,8 +265,9 @@ static int is_potential(const TangentModes *w) {
   const lag_model *m = s->sim->pb.model;
   int n = s->n, nq = s->nq, d = w->d;
   double most = 0, velocity = 0;
-  for (int k = 0; m->constraints && k < m->constraints->n; k++)
-    if (k >= m->constraints->nholonomic) return 0;
+  int on_velocities = m->constraints ? m->constraints->n - m->constraints->nholonomic : 0;
+  for (int i = 0; i < m->ncontacts; i++) on_velocities -= m->contacts[i].constraint >= m->constraints->nholonomic;
+  if (on_velocities) return 0;
   for (int i = nq; i < 2 * nq; i++) velocity = fmax(velocity, fabs(s->y[i]));
   if (m->nz || velocity > 0 || !lag_conserves_energy(s->sim)) return 0;
   for (int i = 0; i < nq; i++)

@@ -6,71 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- The parameter and its range */
-
-/* job->name, low and high: of the one value that is a range, which is taken out of the settings. */
-static int take_range(Job *job) {
-  Args *a = &job->app->args;
-  const char *found = NULL;
-  int kept = 0;
-  for (int i = 0; i < a->nsets; i++) {
-    const char *eq = strchr(a->sets[i], '=');
-    if (!eq || !strstr(eq, "..")) {
-      a->sets[kept++] = a->sets[i];
-      continue;
-    }
-    if (found) return lag_app_error(a, "%s and %s: one value runs over a range; leave one out", found, a->sets[i]);
-    found = a->sets[i];
-  }
-  a->nsets = kept;
-  if (!found) return lag_app_error(a, "a range is missing: NAME=A..B, for example mu=0.1..3");
-  size_t n = strcspn(found, "=");
-  char low[64];
-  const char *dots = strstr(found, "..");
-  snprintf(job->name, sizeof job->name, "%.*s", (int)n, found);
-  snprintf(low, sizeof low, "%.*s", (int)(dots - found - (long)n - 1), found + n + 1);
-  if (!lag_args_number(a, job->name, low, "mu=0.1..3", &job->low) ||
-      !lag_args_number(a, job->name, dots + 2, "mu=0.1..3", &job->high))
-    return EXIT_USAGE;
-  const double rounding = 1e-12;
-  double size = fmax(fabs(job->low), fabs(job->high));
-  if (fabs(job->high - job->low) > rounding * size) return 0;
-  return lag_app_error(a, "%s: the ends of the range are equal", found);
-}
-
-/* The quantity of this name, and its value at the start. */
-static int find_parameter(Job *job) {
-  App *app = job->app;
-  int index = 0, charge = lag_charge_named(app, job->name, strlen(job->name)),
-      state = lag_state_named(app, job->name, strlen(job->name));
-  job->factor = 1;
-  job->led_kind = -1;
-  if (strcmp(job->name, "period") == 0) job->led_kind = ORBIT_PERIOD;
-  else if (state >= 0) {
-    job->led_kind = ORBIT_STATE, job->led_of = state;
-    job->offset = 0 - lag_sim_declared(app->sim, state, 0);
-    job->factor = 1 / (lag_sim_declared(app->sim, state, 1) - lag_sim_declared(app->sim, state, 0));
-    job->offset *= job->factor;
-  } else if (charge >= 0) job->led_kind = ORBIT_CHARGE, job->led_of = charge;
-  else if (lag_find_name(app->scene->model, job->name, &index, &job->unit) != LAG_IS_P)
-    return lag_app_error(&app->args,
-                         "%s: the model has no parameter of this name; of periodic motions also `energy`, a conserved "
-                         "charge, `period`, a coordinate, velocity or state can run over a range",
-                         job->name);
-  else job->begin = lag_declared(job->unit, app->sim->p[index]);
-  return 0;
-}
-
-/* The value to begin with: the scene's, if it lies in the range, else the first end. */
-static int choose_begin(Job *job) {
-  double low = fmin(job->low, job->high), high = fmax(job->low, job->high);
-  job->size = high - low;
-  if (!(job->begin >= low && job->begin <= high)) job->begin = job->low;
-  return lag_sim_set(job->app->sim, job->name, job->begin)
-             ? lag_app_error(&job->app->args, "%s", lag_sim_message(job->app->sim))
-             : 0;
-}
-
 /* ---- Following */
 
 static const char *words_of(int rc, const char *message) {
@@ -322,6 +257,7 @@ static int open_doubled(Doubled *two, PeriodicOrbit *o, const lag_scene *scene) 
   int rc = lag_orbit_open(&two->orbit, two->like, o->algebra, 2 * o->T, 2 * o->m);
   for (int s = 0; s < two->orbit.m && rc == LAG_OK; s++)
     memcpy(two->orbit.y + s * o->n, o->y + s % o->m * o->n, (size_t)o->n * sizeof *o->y);
+  if (rc == LAG_OK) memcpy(two->orbit.unit, o->unit, (size_t)o->n * sizeof *o->unit); /* a motion at rest has no size */
   two->orbit.pairing = o->pairing;
   lag_orbit_branch(&two->problem, &two->orbit);
   return rc;
@@ -584,12 +520,12 @@ static void close_job(Job *job) {
 int lag_app_continue(App *app) {
   Job job = {.app = app};
   const Args *a = &app->args;
-  int rc = take_range(&job);
+  int rc = lag_continue_take_range(&job);
   rc = rc ? rc : lag_app_orbit_set_up(app);
-  rc = rc ? rc : find_parameter(&job);
+  rc = rc ? rc : lag_continue_find_parameter(&job);
   rc = rc ? rc : lag_continue_make_table(&job);
   rc = rc ? rc : lag_continue_resume(&job);
-  if (rc == 0 && job.led_kind < 0) rc = choose_begin(&job);
+  if (rc == 0 && job.led_kind < 0) rc = lag_continue_choose_begin(&job);
   job.size = fabs(job.high - job.low);
   rc = rc ? rc : read_limits(&job);
   rc = rc ? rc : run(&job);

@@ -51,6 +51,13 @@ typedef struct Job {
 /* The solutions in words: states of rest, steady or periodic motions. */
 const char *lag_continue_solutions(const Job *job);
 
+/* continue_range.c: name, low and high, of the one value that is a range, which is taken out of the settings; the
+ * quantity of this name, and its value at the start; begin := the scene's value, if it lies in the range, else the
+ * first end. 0, or EXIT_USAGE after a message. */
+int lag_continue_take_range(Job *job);
+int lag_continue_find_parameter(Job *job);
+int lag_continue_choose_begin(Job *job);
+
 /* Text or JSON: the points where a branch changes. */
 void lag_continue_put_text(FILE *f, const Job *job);
 void lag_continue_put_json(FILE *f, const Job *job);

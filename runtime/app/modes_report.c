@@ -41,10 +41,6 @@ static int refuse(const App *app) {
         a, "this simulator was built without GSL, which finds roots and eigenvalues; install GSL (libgsl-dev), make "
            "lagc anew, and leave out --no-gsl");
   }
-  if (m->ncontacts) {
-    return lag_app_error(a, "modes with contacts are not computed yet (%s): take a model without them",
-                         m->constraints->of[m->contacts[0].constraint].name);
-  }
   if (!m->linear && !in_tangent_space(app)) {
     return lag_app_error(
         a,
@@ -72,6 +68,7 @@ static int refuse(const App *app) {
 /* A caution about the result; NULL: none. */
 static const char *caution_of(const App *app, const Equilibrium *r) {
   if (r->pole) return "the mass matrix is nearly singular here: a coordinate has lost its meaning";
+  if (app->scene->model->ncontacts) return "contacts are open here: small motion does not reach them";
   if (!(app->scene->model->flags & LAG_SMOOTH))
     return "the model has if, abs, sign, min, max, atan2 or roots: where they switch at the equilibrium, the modes are "
            "those of one side";
@@ -484,14 +481,33 @@ static int analysis_failed(const App *app, int rc, const char *where) {
   return EXIT_RUN;
 }
 
+/* Whether all contacts are open at y, where small motion does not feel them. */
+static int check_open(const App *app, const double *y, const char *where) {
+  const lag_model *m = app->scene->model;
+  lag_sim *sim = app->sim;
+  const char *closed = NULL;
+  if (m->ncontacts && lag_events_eval(sim, app->scene->t0, y, sim->g1))
+    return lag_app_error(&app->args, "the contacts have no values %s; another start: name=VALUE", where);
+  for (int i = 0; i < m->ncontacts && !closed; i++) {
+    const lag_contact *c = &m->contacts[i];
+    if (lag_contact_is_closed(sim, c) || (!c->is_tangent && !(sim->g1[c->impact] > 0)))
+      closed = m->constraints->of[c->constraint].name;
+  }
+  return closed ? lag_app_error(&app->args, "contact %s is closed %s: small motion leaves it on one side only, and has "
+                                            "no modes; start where it is open: name=VALUE", closed, where)
+                : 0;
+}
+
 /* Finds the rest, or steady motion, next to the start, whose state is r->y. 0, or the exit status after a message. */
 static int find_rest(const App *app, Equilibrium *r, SteadyMotion *steady) {
   int tangent = in_tangent_space(app), rc = refuse(app);
+  rc = rc ? rc : check_open(app, app->sim->now, "at the start");
   if (rc) return rc;
   rc = tangent ? lag_steady_find(steady, r, app->sim, app->extras.algebra, app->args.steady)
                : lag_equilibrium_find(r, app->sim, app->extras.algebra);
   if (rc == 0) return tangent ? none_near(app) : not_found(app, r);
-  return rc < 0 ? analysis_failed(app, rc, "at the start") : 0;
+  if (rc < 0) return analysis_failed(app, rc, "at the start");
+  return check_open(app, r->y, "at the equilibrium next to the start");
 }
 
 int lag_app_rest(App *app, double *y) {

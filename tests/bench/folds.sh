@@ -37,14 +37,14 @@ auto_demo exp <<X
 exp=run('exp',c='exp.1',NTST=20,$tight,UZR={},UZSTOP={},NMX=400)
 for s in exp('LP'): print("RESULT LP %.14g" % s['lambda'])
 X
-beside "exp, over p" fold tests/exec/orbits/bratu.lag half p=0.5..4 --period 2 u=0.01 "u'=0.549"
+beside "exp, over p" fold tests/exec/orbits/bratu.lag half p=0.5..4 --period 2 u=0.14 "u'=0"
 auto_demo pen <<X
 pen=run('pen',c='pen.1',NTST=20,$tight,UZSTOP={3:0.14})
 two=run(pen('PD1'),c='pen.2',NTST=40,$tight,ILP=1,DSMAX=0.5,UZSTOP={11:17.5})
 print("RESULT PD %.14g" % pen('PD1')['PAR(3)'])
 for s in two('LP'): print("RESULT LP %.14g" % s['PAR(3)'])
 X
-beside "pen, over the torque" 'fold\|period doubling' tests/bench/models/pendulums.lag rotate I=0.4..0.14 --guess 1.57 --branches --most 108
+beside "pen, over the torque" 'fold\|period doubling' tests/bench/models/pendulums.lag rotate I=0.4..0.14 --guess 1.57 --branches --most 110
 auto_demo r3b <<X
 lag=run('r3b',UZR={'mu':0.063})
 L1=run(lag('UZ7'),c='r3b.L1',NTST=50,$tight,UZSTOP={'PERIOD':2.6})
@@ -54,4 +54,4 @@ for s in H1('LP'): print("RESULT LP %.14g" % s['PERIOD'])
 X
 mu=$(sed -n 's/^MU //p' "$TMP/auto")
 sed -i '/^MU/d' "$TMP/auto"
-beside "r3b, halo orbits over the period" fold tests/exec/orbits/cr3bp_space.lag lyapunov "mu=$mu" x=0.6637384 z=0.1213414 "y'=0.32624754" --guess 2.5996 --hold y period=1.9..3.2 --most 170
+beside "r3b, halo orbits over the period" fold tests/exec/orbits/cr3bp_space.lag lyapunov "mu=$mu" x=0.6637384 z=0.1213414 "y'=0.32624754" --guess 2.5996 --hold y period=1.9..3.2 --most 84

@@ -116,6 +116,11 @@ close 1 parameter 3.51383071912516121 1e-12
 follow models/standard_map.lag q=0.1 p=0.05 K=0.5..4.5 --guess 1
 kinds "period doubling;end;end;"
 close 1 parameter 4 1e-12
+# there motions of twice the period leave it, on which q turns to -q, and 4 q = K sin(q): at K = 4.5 by Newton
+follow models/standard_map.lag q=0.1 p=0.05 K=3.5..4.5 --guess 1 --branches
+near "$title: twice the period" 1e-10 0.830716795826628 "$(sed -n '/"period": 2,/{s/.*"q": \([^,]*\),.*/\1/p}' "$TMP/points" | tail -1 | tr -d -)"
+# states of rest end where a contact closes: m g/k = 1
+check "a family ends: at a contact" sh -c "'$LAGC' continue tests/exec/modes/ball.lag k=5..80 | grep -A1 'k = 9.8100' | grep -q 'it ends there: contact floor closes'"
 follow models/standard_map.lag q=0.1 p=0.05 T=1..2 --guess 1
 close 1 period 2 1e-14
 # Duffing's backbone by energy: 4 K(k)/sqrt(1 + A^2), k^2 = A^2/(2 (1 + A^2)), A^2 + A^4/2 = 2 E; at 24 by mpmath

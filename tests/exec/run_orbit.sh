@@ -127,6 +127,11 @@ close period 2 0
 closes 1 1 0.595 1e-12
 refused_kicks() { check "kicks: $1" says 3 "$2" "$LAGC" orbit models/standard_map.lag "$3" "$4"; }
 refused_kicks "no multiple of their period" "has the period 1 s" --period 1.5
+# kicks to and fro: the motion is turned round by each, x = -a/(2 w) tan(w/2), x' = a/2
+printf 'model kicked\ncoord x\nparam w = 2, a = 1\nkinetic = x'"'"'^2/2\npotential = w^2*x^2/2\nkick push every 1 { x'"'"' = x'"'"' + a*cos(pi*t) }\nscene go { start x = 0.1; span 20 }\n' >"$TMP/kicked.lag"
+orbit "$TMP/kicked.lag"
+near "kicks to and fro: period" 1e-14 2 "$(value period)"
+near "kicks to and fro: x" 1e-12 -0.389351931163725 "$(value x)"
 refused_kicks "backwards" "kicks" --reverse q=-q
 # steps on a sphere stay on it: 4/sqrt(2 g (c - a)) K((b - a)/(c - a)) with the roots a, b, c of 2 (E - g z)(1 - z^2) = L^2, mpmath
 orbit $dir/sphere.lag --relative spin --guess 1 --hold energy,spin
