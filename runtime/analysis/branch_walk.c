@@ -76,6 +76,12 @@ static int is_solved(Walk *w, const double *u) {
   return (w->enough > 0 || lag_largest(w->p->rows, w->rhs) < solved) && w->p->place(w->p->of, u) == LAG_OK;
 }
 
+/* Whether u is a solution but for rounding, and the step of this size behind one of `last`, too: beside a branch point
+ * the system is nearly singular, and such steps never end. */
+static int is_rounding(const Walk *w, double size, double last) {
+  return size < 1e-6 && size > 0.1 * last && lag_largest(w->p->rows, w->rhs) < 1e-11;
+}
+
 /* By the system of the point before as long as its steps converge, then by Newton's method. */
 int lag_walk_correct(Walk *w, double *u, const double *d) {
   double near = 1, last = HUGE_VAL, along = lag_dot(w->cols, u, d);
@@ -87,6 +93,7 @@ int lag_walk_correct(Walk *w, double *u, const double *d) {
     lag_singular_values(w->rows, w->cols, w->J, w->V, w->sigma);
     double size = newton_step(w, u, d, along);
     if (!(size < 1)) return 0;
+    if (is_rounding(w, size, last)) return is_solved(w, u);
     for (int i = 0; i < w->cols; i++) u[i] += w->x[i];
     if (is_last(size, last) || chord(w, newton_step, u, d, along, &size)) return is_solved(w, u);
     if (w->newton > 3 && size > 0.9 * last) return 0;

@@ -210,6 +210,8 @@ long() {
   # the family of halo orbits at mu = 0.063004722392: folds of its period by AUTO-07p (demo r3b, 100 intervals), behind a branch point at 2.1804842
   follow $dir/cr3bp_space.lag mu=0.063004722392 x=0.6637384 z=0.1213414 "y'=0.32624754" --guess 2.5996 --hold y period=1.9..3.2 --most 170
   is "$title: folds" "2.692128169 2.014663112 3.080375913 " "$(sed -n 's/.*"fold", "parameter": \([^,]*\),.*/\1/p' "$TMP/points" | head -3 | awk '{ printf "%.9f ", $1 }')"
+  is "$title: the branch point, in both directions" "2.180484199 2.180484199 " \
+    "$(sed -n 's/.*"branch point", "parameter": \([^,]*\),.*/\1/p' "$TMP/points" | awk '{ printf "%.9f ", $1 }')"
   # M. Garcia et al. (1998): the walker's gait doubles at a slope of 0.0151; its motions of two steps at 0.0177
   follow $dir/walker.lag slope=0.008..0.018 --guess 3.88 --branches
   kinds "period doubling;end;end;period doubling;end;end;"
