@@ -68,7 +68,8 @@ static int refuse(const App *app) {
 /* A caution about the result; NULL: none. */
 static const char *caution_of(const App *app, const Equilibrium *r) {
   if (r->pole) return "the mass matrix is nearly singular here: a coordinate has lost its meaning";
-  if (app->scene->model->ncontacts) return "contacts are open here: small motion does not reach them";
+  if (app->scene->model->ncontacts)
+    return "contacts, and constraints with `while`, do not act here: small motion does not reach them";
   if (!(app->scene->model->flags & LAG_SMOOTH))
     return "the model has if, abs, sign, min, max, atan2 or roots: where they switch at the equilibrium, the modes are "
            "those of one side";
@@ -486,15 +487,17 @@ static int check_open(const App *app, const double *y, const char *where) {
   const lag_model *m = app->scene->model;
   lag_sim *sim = app->sim;
   const char *closed = NULL;
+  int ends = 0; /* it is a constraint with `while` */
   if (m->ncontacts && lag_events_eval(sim, app->scene->t0, y, sim->g1))
     return lag_app_error(&app->args, "the contacts have no values %s; another start: name=VALUE", where);
   for (int i = 0; i < m->ncontacts && !closed; i++) {
     const lag_contact *c = &m->contacts[i];
     if (lag_contact_is_closed(sim, c) || (!c->is_tangent && !(sim->g1[c->impact] > 0)))
-      closed = m->constraints->of[c->constraint].name;
+      closed = m->constraints->of[c->constraint].name, ends = c->conditional;
   }
-  return closed ? lag_app_error(&app->args, "contact %s is closed %s: small motion leaves it on one side only, and has "
-                                            "no modes; start where it is open: name=VALUE", closed, where)
+  return closed ? lag_app_error(&app->args, "%s %s %s %s: small motion leaves it on one side only, and has no modes; "
+                                            "start where it %s: name=VALUE", ends ? "constraint" : "contact", closed,
+                                ends ? "acts" : "is closed", where, ends ? "does not act" : "is open")
                 : 0;
 }
 

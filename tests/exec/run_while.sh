@@ -90,7 +90,10 @@ check "lagc header" says 2 'a header has no constraints with `while` (bolt)' "$L
 check "nothing is written" test ! -e "$TMP/h.h"
 check "lagc fmu" says 2 'an FMU has no constraints with `while`' "$LAGC" fmu models/latch.lag -o "$TMP/f.fmu"
 check "nothing is written" test ! -e "$TMP/f.fmu"
-check "lagc modes" says 2 'are not computed yet (bolt)' "$LAGC" modes models/latch.lag
+"$LAGC" modes models/latch.lag >"$TMP/out" 2>&1 # where the lid stands open: sqrt(k/I) = 5
+check "lagc modes where the bolt does not act" grep -q '^ *2  5  .*th 1 rad' "$TMP/out"
+check "and says so" grep -q 'constraints with `while`, do not act here' "$TMP/out"
+check "lagc modes where it acts" says 2 'constraint bolt acts at the start' "$LAGC" modes models/latch.lag th=0 "th'=0" shut=1
 check "lagc lyapunov" says 2 'no tangent of a motion whose constraint bolt begins and ends' "$LAGC" lyapunov models/latch.lag
 check "--tangent" says 2 'no tangent of a motion whose constraint bolt begins and ends' "$LAGC" run models/latch.lag --tangent
 echo 'void f(double t, const double *y, double *d, const double *p) { d[0] = d[1] = d[2] = t + y[0] + p[0]; }' >"$TMP/f.c"
