@@ -242,9 +242,11 @@ void lag_velocity_terms(lag_sim *s, double t, const double *y, double h, double 
 /* ---- Sizes of a motion, from its start */
 
 /* Over all coordinates with one unit: the largest |q|, rate and acceleration at the start, and change of the
- * acceleration where coordinates are displaced. */
+ * acceleration where coordinates are displaced. still: the acceleration is rounding of forces that cancel, and there is
+ * no rate. */
 typedef struct Kind {
   double q, v, a, bend;
+  int still;
 } Kind;
 
 /* The largest |x[k]| over the n variables with the unit of variable i. */
@@ -255,17 +257,20 @@ static double largest_of_unit(int n, const lag_var *var, const double *x, int i)
   return most;
 }
 
-/* f: rates at the start; bend: their change. */
-static Kind kind_of(const lag_sim *s, const double *f, const double *bend, int i) {
+enum { ROUNDINGS = 1000 }; /* of a few hundred operations */
+
+/* f: rates at the start; bend: their change; noise[nq]: rounding of accelerations, NULL: not known. */
+static Kind kind_of(const lag_sim *s, const double *f, const double *bend, const double *noise, int i) {
   const lag_var *var = s->scene->model->q;
   const int nq = s->pb.nq;
   double q = lag_component_scale(fmax(largest_of_unit(nq, var, s->now, i), DBL_MIN), var[i].periodic, var[i].unit);
-  return (Kind){q > DBL_MIN ? q : 0, largest_of_unit(nq, var, f, i), largest_of_unit(nq, var, f + nq, i),
-                largest_of_unit(nq, var, bend + nq, i)};
+  double v = largest_of_unit(nq, var, f, i), a = largest_of_unit(nq, var, f + nq, i);
+  int still = noise && !(v > 0) && a > 0 && a < ROUNDINGS * noise[i];
+  return (Kind){q > DBL_MIN ? q : 0, v, a, largest_of_unit(nq, var, bend + nq, i), still};
 }
 
 static double reach(Kind k, double time) {
-  return k.q > 0 ? k.q : lag_above_rounding(fmax(k.v * time, k.a * time * time), k.bend * time * time);
+  return k.q > 0 ? k.q : k.still && k.bend > 0 ? k.bend * time * time : fmax(k.v * time, k.a * time * time);
 }
 
 /* The time in which the motion changes by its own size; at most `time`. */
@@ -293,8 +298,6 @@ static void rates_beside(lag_sim *s, int at, int count, const double *by, const 
   int none = lag_rhs(&s->pb, s->run->t, s->ya, dy) || lag_not_finite(n, dy) >= 0;
   for (int i = 0; i < n; i++) dy[i] = none ? 0 : dy[i] - (f ? f[i] : 0);
 }
-
-enum { ROUNDINGS = 1000 }; /* of a few hundred operations */
 
 /* noise[nq] := rounding of the accelerations at the start, the largest of each unit, in a block of 3 n; NULL: not
  * known. Steps depend on it, and what rounding modes show depends on the compiler: it is what last digits of the state
@@ -326,23 +329,24 @@ static void bends(lag_sim *s, int at, const double *by, const double *f, const d
   drop_rounding(s, noise, bend);
 }
 
-/* The sizes of coordinates and velocities, f: rates at the start. Returns the time scale, which begins as `time`.
+/* The sizes of coordinates and velocities, f: rates at the start, of which `noise` is rounding, `balanced` what
+ * constraints leave. Returns the time scale, which begins as `time`.
  * Turn 0: from the start alone; 1: with the forces of displaced coordinates; 2: of displaced velocities. */
-static double coordinate_sizes(lag_sim *s, const double *f, const double *noise, double time) {
+static double coordinate_sizes(lag_sim *s, const double *f, const double *noise, const double *balanced, double time) {
   const lag_model *m = s->scene->model;
   const int nq = m->nq;
   double *bend = s->yc, *size = s->pb.size, *of_v = size + nq;
   for (int turn = 0; turn < 3; turn++) {
     double before = time;
-    if (turn) bends(s, turn == 2 ? nq : 0, turn == 2 ? of_v : size, f, noise, bend);
+    if (turn) bends(s, turn == 2 ? nq : 0, turn == 2 ? of_v : size, f, balanced, bend);
     for (int i = 0; i < nq; i++) {
       if (!is_first(m, i)) continue;
-      Kind k = kind_of(s, f, bend, i);
+      Kind k = kind_of(s, f, bend, noise, i);
       time = turn < 2 ? time_scale(k, time) : k.bend > 0 ? fmin(time, of_v[i] / k.bend) : time;
     }
     for (int i = 0; i < nq; i++) {
       if (!is_first(m, i)) continue;
-      Kind k = kind_of(s, f, bend, i);
+      Kind k = kind_of(s, f, bend, noise, i);
       double v =
           turn < 2 ? lag_above_rounding(fmax(k.v, k.a * time), k.bend * time) : fmax(k.v, of_v[i] * time / before);
       const int rests = !(k.v > 0) && !(k.a > 0);
@@ -367,12 +371,12 @@ static double time_from_zero(lag_sim *s, const double *f, const double *noise, d
     double next = HUGE_VAL;
     for (int i = 0; i < s->pb.nq; i++) {
       int first = first_of_unit(m->q, i);
-      size[i] = first < i ? size[first] : reach(kind_of(s, f, bend, i), time);
+      size[i] = first < i ? size[first] : reach(kind_of(s, f, bend, NULL, i), time);
     }
     bends(s, 0, size, f, noise, bend);
     for (int i = 0; i < s->pb.nq; i++) {
       if (!is_first(m, i)) continue;
-      Kind k = kind_of(s, f, bend, i);
+      Kind k = kind_of(s, f, bend, NULL, i);
       if (size[i] > 0 && k.bend > 0) next = fmin(next, sqrt(size[i] / k.bend));
     }
     if (!(next < HUGE_VAL)) break;
@@ -496,10 +500,10 @@ void lag_start_sizes(lag_sim *s) {
   drop_rounding(s, balanced, f);
   raise_held(s, f);
   memset(bend, 0, (size_t)n * sizeof *bend);
-  for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, i), time) : time;
+  for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, noise, i), time) : time;
   const double span = s->pb.span;
   time = time < HUGE_VAL ? time : time_from_zero(s, f, balanced, span > 0 ? span : 10);
-  time = coordinate_sizes(s, f, balanced, span > 0 ? fmin(time, span) : time);
+  time = coordinate_sizes(s, f, noise, balanced, span > 0 ? fmin(time, span) : time);
   state_sizes(s, f, time);
   for (int i = 0; i < n; i++) size[i] = size_unit(size[i]);
   if (noise) raise_to_rounding(s, noise, local_time(s, f, noise, time) / STEPS);
