@@ -222,16 +222,12 @@ int lag_flow_contacts(const FlowMap *f) { return f->like->scene->model->ncontact
 
 int lag_flow_is_open(FlowMap *f, double t, const double *y) {
   const lag_model *m = f->like->scene->model;
-  if (m->ncontacts && lag_events_eval(f->probe, t, y, f->probe->g1)) return 0;
-  for (int i = 0; i < m->ncontacts; i++) {
-    const lag_contact *c = &m->contacts[i];
-    if (c->is_tangent || f->probe->g1[c->impact] > 0) continue;
+  int k = lag_contact_not_open(f->probe, t, y);
+  if (k >= 0)
     snprintf(f->message, sizeof f->message,
              "contact %s closes: states beyond are held by its force, and are not followed",
-             m->constraints->of[c->constraint].name);
-    return 0;
-  }
-  return 1;
+             m->constraints->of[m->contacts[k].constraint].name);
+  return k == -1;
 }
 
 /* d[n] := derivative of the end by the start in direction b[n], column j of B[n k] in units: differences of order 4. */

@@ -485,20 +485,14 @@ static int analysis_failed(const App *app, int rc, const char *where) {
 /* Whether all contacts are open at y, where small motion does not feel them. */
 static int check_open(const App *app, const double *y, const char *where) {
   const lag_model *m = app->scene->model;
-  lag_sim *sim = app->sim;
-  const char *closed = NULL;
-  int ends = 0; /* it is a constraint with `while` */
-  if (m->ncontacts && lag_events_eval(sim, app->scene->t0, y, sim->g1))
-    return lag_app_error(&app->args, "the contacts have no values %s; another start: name=VALUE", where);
-  for (int i = 0; i < m->ncontacts && !closed; i++) {
-    const lag_contact *c = &m->contacts[i];
-    if (lag_contact_is_closed(sim, c) || (!c->is_tangent && !(sim->g1[c->impact] > 0)))
-      closed = m->constraints->of[c->constraint].name, ends = c->conditional;
-  }
-  return closed ? lag_app_error(&app->args, "%s %s %s %s: small motion leaves it on one side only, and has no modes; "
-                                            "start where it %s: name=VALUE", ends ? "constraint" : "contact", closed,
-                                ends ? "acts" : "is closed", where, ends ? "does not act" : "is open")
-                : 0;
+  int k = lag_contact_not_open(app->sim, app->scene->t0, y);
+  if (k == -1) return 0;
+  if (k < 0) return lag_app_error(&app->args, "the contacts have no values %s; another start: name=VALUE", where);
+  int ends = m->contacts[k].conditional; /* it is a constraint with `while` */
+  return lag_app_error(&app->args, "%s %s %s %s: small motion leaves it on one side only, and has no modes; "
+                       "start where it %s: name=VALUE", ends ? "constraint" : "contact",
+                       m->constraints->of[m->contacts[k].constraint].name, ends ? "acts" : "is closed", where,
+                       ends ? "does not act" : "is open");
 }
 
 /* Finds the rest, or steady motion, next to the start, whose state is r->y. 0, or the exit status after a message. */

@@ -511,6 +511,15 @@ static double largest_force(const lag_sim *s, const double *g, const double *law
   return most;
 }
 
+int lag_contact_not_open(lag_sim *s, double t, const double *y) {
+  const lag_model *m = s->scene->model;
+  if (m->ncontacts && lag_events_eval(s, t, y, s->g1)) return -2;
+  for (int i = 0; i < m->ncontacts; i++)
+    if (lag_contact_is_closed(s, &m->contacts[i]) || (!m->contacts[i].is_tangent && !(s->g1[m->contacts[i].impact] > 0)))
+      return i;
+  return -1;
+}
+
 /* contact_pair of open contact i, which touches: a closed one whose gap has the opposite gradient. A: of all gaps. */
 static void find_pair(lag_sim *s, const double *A, int i) {
   const lag_model *m = s->scene->model;
