@@ -514,9 +514,10 @@ static double largest_force(const lag_sim *s, const double *g, const double *law
 int lag_contact_not_open(lag_sim *s, double t, const double *y) {
   const lag_model *m = s->scene->model;
   if (m->ncontacts && lag_events_eval(s, t, y, s->g1)) return -2;
-  for (int i = 0; i < m->ncontacts; i++)
-    if (lag_contact_is_closed(s, &m->contacts[i]) || (!m->contacts[i].is_tangent && !(s->g1[m->contacts[i].impact] > 0)))
-      return i;
+  for (int i = 0; i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    if (lag_contact_is_closed(s, c) || (!c->is_tangent && !(s->g1[c->impact] > 0))) return i;
+  }
   return -1;
 }
 

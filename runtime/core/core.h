@@ -330,8 +330,8 @@ void lag_contact_open(lag_sim *sim);
 int lag_contact_resolve(lag_sim *sim, double *y, const char *who, int event, int ends);
 int lag_contact_begin(lag_sim *sim);
 int lag_contact_arm(lag_sim *sim, const double *g);
-/* The first contact that is not open at y, t, or constraint with `while` that acts: its index; -1: none; -2: they have no
- * values there. */
+/* Index of the first contact that is not open at y, t, or constraint with `while` that acts; -1: none; -2: they have
+ * no values there. */
 int lag_contact_not_open(lag_sim *sim, double t, const double *y);
 /* g[nev] at y, t beside the constraints: adds the gap of a closed contact to that of an open one on its other side. */
 int lag_contact_pairs(lag_sim *sim, double t, const double *y, double *g);
