@@ -122,8 +122,8 @@ double lag_difference_scale(lag_problem *pb, const double *y, int k) {
 }
 
 /* column[n - nq] := derivative of rates by component k of the state, or by parameter k - n, with `part` of the step, by
- * differences of order 6, wrong by rounding over 2^-9 and by 2^-54/140 of a seventh derivative, for a scale of 1. *apart
- * := how far those of order 4 are, as a part. rate[n], there[n] are scratch. */
+ * differences of order 6, wrong by rounding over 2^-9 and by 2^-54/140 of a seventh derivative, for a scale of 1.
+ * *apart := how far those of order 4 are, as a part. rate[n], there[n] are scratch. */
 static int central_column(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, int k,
                           double part, double *column, double *there, double *rate, double *apart) {
   int n = pb->n, nq = pb->nq, rc = LAG_OK;
