@@ -62,7 +62,8 @@ void lag_gradient_name(const App *app, int i, char *name, char *unit) {
 static const char *bare(const char *unit) { return strcmp(unit, "1") == 0 ? "" : unit; }
 
 static void put_list(App *app, FILE *f, int k, const double *d) {
-  char name[LAG_GRADIENT_NAME], unit[LAG_GRADIENT_NAME], over[LAG_GRADIENT_NAME], under[LAG_GRADIENT_NAME], label[LAG_GRADIENT_NAME + 60];
+  char name[LAG_GRADIENT_NAME], unit[LAG_GRADIENT_NAME], over[LAG_GRADIENT_NAME], under[LAG_GRADIENT_NAME];
+  char label[LAG_GRADIENT_NAME + 60];
   const char *of = bare(lag_measures_unit(app->measures, k));
   lag_unit_in_fraction(over, sizeof over, of);
   fprintf(f, "gradient of %s, by reverse mode\n", app->measure_names[k]);
@@ -81,7 +82,8 @@ void lag_report_gradient(App *app, FILE *f) {
   if (!app->args.gradient || app->status < 0) return;
   double *d = calloc((size_t)(app->sim->pb.n + app->scene->model->np) + 1, sizeof *d);
   for (int k = 0; d && k < lag_measures_count(app->measures); k++) {
-    if (lag_measure_gradient(app, k, d, why, sizeof why)) fprintf(f, "no gradient of %s: %s\n", app->measure_names[k], why);
+    int none = lag_measure_gradient(app, k, d, why, sizeof why);
+    if (none) fprintf(f, "no gradient of %s: %s\n", app->measure_names[k], why);
     else put_list(app, f, k, d);
   }
   free(d);
