@@ -106,5 +106,8 @@ refused() { # TEXT MODEL SCENE NAMES
 check "friction at its limit" refused "at t = 0 s the friction of floor.slip holds with all its force: neighbouring motions slip or stick" slope edge a
 check "a slip in space that ends" refused "event floor sticks.x .*: a slip in space ends, before which its direction turns ever faster" plate stops mu
 check "two supports at once" refused "event left changes the state at t = .*: neighbouring motions go on with other contacts closed" plank go g,a
+check "two brakes by clocks of their own" refused "event one changes the state at t = 1 s: another event does so at the same time" brakes go t1
+last $S/brakes.lag go v # which does not tell the clocks apart
+close dy/dv 2
 check "a constraint that happens to be met" refused "event pin changes the state at t = .*: neighbouring motions do not meet its constraint there" brake go v
 tap_end
