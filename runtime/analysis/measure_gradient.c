@@ -44,9 +44,11 @@ typedef struct Seen {
   double t, *y;
 } Seen;
 
-/* A function to differentiate: an expression, or, event >= 0, that of an event. */
+/* A function to differentiate: an expression, or, event >= 0, that of an event; the expression a short time `later`, to
+ * which the rates lead. */
 typedef struct Function {
   int node, event;
+  double later;
 } Function;
 
 typedef struct MeasureGradient {
@@ -66,6 +68,7 @@ typedef struct MeasureGradient {
   int rows, row_room;
   double *t, *weight, *direct; /* [rows], [rows * n], [np]: for lag_sim_gradient, and what is added to it */
   double *by_y, *by_p, *there; /* [n], [np]: slopes of a function; [n] scratch */
+  double *moved;                  /* [n] scratch */
 } MeasureGradient;
 
 static void put_seed(MeasureGradient *g, Seed of) {
@@ -185,6 +188,11 @@ static void collect_seeds(MeasureGradient *g, int k, double dir) {
 
 static double value_of(MeasureGradient *g, Function of, double t, const double *y) {
   lag_sim *s = g->sim;
+  if (of.later != 0.0) {
+    if (lag_rhs(&s->pb, t, y, g->moved)) return NAN;
+    for (int i = 0; i < s->pb.n; i++) g->moved[i] = y[i] + of.later * g->moved[i];
+    return lag_measure_at(g->m, of.node, t + of.later, g->moved);
+  }
   if (of.event < 0) return lag_measure_at(g->m, of.node, t, y);
   return lag_events_eval(s, t, y, s->g1) == LAG_OK ? s->g1[of.event] : NAN;
 }
@@ -265,7 +273,7 @@ static void put_time(MeasureGradient *g, Function of, double t, const double *y,
 
 /* ... or of an event; firing number k of a kick has the time t0 + k T. */
 static void put_event_time(MeasureGradient *g, const Seen *e, double factor) {
-  Function of = {-1, e->at.event};
+  Function of = {-1, e->at.event, 0};
   lag_hold_swap(g->sim, g->hold);
   if (g->sim->pb.model->ev[of.event].direction != LAG_KICK) {
     put_time(g, of, e->t, e->y, factor);
@@ -280,7 +288,7 @@ static void put_event_time(MeasureGradient *g, const Seen *e, double factor) {
 static void put_event_value(MeasureGradient *g, const Seen *e, const Seed *x) {
   int n = g->sim->pb.n;
   const double *y = x->at.after ? e->y + n : e->y;
-  Function of = {x->node, -1};
+  Function of = {x->node, -1, 0};
   if (!x->at.after) lag_hold_swap(g->sim, g->hold);
   find_slopes(g, of, e->t, y);
   put_row(g, x->at.after ? nextafter(e->t, g->sim->pb.dir * HUGE_VAL) : e->t, x->weight);
@@ -346,7 +354,7 @@ static int put_places(MeasureGradient *g, double a, double b, double *y) {
     for (const Sum *k = g->sum; k < g->sum + g->sums && rc == LAG_OK; k++) {
       if (!lag_track_counts(k->track, (a + b) / 2)) continue;
       double x = k->track->kind == TRACK_RMS ? lag_measure_at(g->m, k->track->arg, t, y) : 1;
-      find_slopes(g, (Function){k->track->arg, -1}, t, y);
+      find_slopes(g, (Function){k->track->arg, -1, 0}, t, y);
       put_row(g, t, k->factor * weight * x);
     }
   }
@@ -385,14 +393,34 @@ static int walk(MeasureGradient *g, double t, double *y) {
   return rc == LAG_STOPPED ? LAG_OK : rc;
 }
 
+/* Time from t, where the value is largest or smallest up to half of the digits, to where its rate is 0. */
+static double time_to_rest(MeasureGradient *g, Function of, double t, const double *y) {
+  const Run *r = g->sim->run;
+  double later = (r->step_t1 - r->step_t0) / 256, rate, then, *f = g->moved;
+  int n = g->sim->pb.n;
+  find_slopes(g, of, t, y);
+  rate = rate_of(g, of, t, y);
+  double *beside = malloc((size_t)n * sizeof *beside);
+  if (!beside || lag_rhs(&g->sim->pb, t, y, f)) return free(beside), 0;
+  for (int i = 0; i < n; i++) beside[i] = y[i] + later * f[i];
+  find_slopes(g, of, t + later, beside);
+  then = rate_of(g, of, t + later, beside);
+  free(beside);
+  double rest = -rate * later / (then - rate);
+  return fabs(rest) < fabs(later) ? rest : 0;
+}
+
 /* A row of a value at a fixed or stationary time, not at a switch, where a largest value may jump or have a corner. */
 static void put_value(MeasureGradient *g, const Seed *x, const double *y) {
-  const Function of = {x->node, -1};
+  Function of = {x->node, -1, 0};
   const Track *k = x->top;
   const Run *r = g->sim->run;
+  int stands = k && x->t != k->when_first && x->t != g->end && x->t != k->from && x->t != k->to;
+  of.later = stands ? time_to_rest(g, of, x->t, y) : 0;
   find_slopes(g, of, x->t, y);
   put_row(g, x->t, x->weight);
-  if (!k || x->t == k->when_first || x->t == g->end || x->t == k->from || x->t == k->to) return;
+  of.later = 0;
+  if (!stands) return;
   double size = k->most - k->least + 1e-6 * fabs(x->value), off = lag_measure_at(g->m, x->node, x->t, y) - x->value,
          way = rate_of(g, of, x->t, y) * (r->step_t1 - r->step_t0);
   if (fabs(off) > 1e-6 * size || fabs(way) > 1e-4 * size)
@@ -415,7 +443,7 @@ static int run_through(MeasureGradient *g, double *y) {
     rc = rc ? rc : lag_sim_eval(g->sim, x->t, y);
     if (rc) break;
     x->done = 1;
-    if (x->kind == PASSAGE) put_time(g, (Function){x->node, -1}, x->t, y, x->weight);
+    if (x->kind == PASSAGE) put_time(g, (Function){x->node, -1, 0}, x->t, y, x->weight);
     else put_value(g, x, y);
   }
   if (rc == LAG_OK && !is_done(g)) rc = walk(g, end, y);
@@ -443,11 +471,11 @@ static int run_back(MeasureGradient *g, double *by_start, double *by_p, double *
 static int begin(MeasureGradient *g, int k, double **room) {
   const lag_model *model = g->sim->pb.model;
   size_t n = (size_t)g->sim->pb.n, np = (size_t)model->np, nev = (size_t)model->nev;
-  double *x = *room = calloc(3 * n + 2 * np + nev + (size_t)(model->nu + model->nmodes) + 1, sizeof *x);
+  double *x = *room = calloc(4 * n + 2 * np + nev + (size_t)(model->nu + model->nmodes) + 1, sizeof *x);
   g->adjoint = calloc((size_t)g->m->nnodes + 1, sizeof *g->adjoint);
   if (isnan(g->m->node[g->m->root[k]].value)) g->refused = g->m->why[k];
   if (!x || !g->adjoint) return lag_fail(g->sim, LAG_ENOMEM, "out of memory");
-  g->by_y = x + n, g->there = g->by_y + n, g->by_p = g->there + n, g->direct = g->by_p + np;
+  g->by_y = x + n, g->there = g->by_y + n, g->moved = g->there + n, g->by_p = g->moved + n, g->direct = g->by_p + np;
   g->firings = g->direct + np, g->hold = g->firings + nev;
   g->ended = g->m->status == LAG_STOPPED ? g->m->last : (Happening){.event = -1};
   g->t = malloc(sizeof *g->t), g->weight = malloc(n * sizeof *g->weight);

@@ -286,6 +286,11 @@ void lag_sensitivity_free(App *app);
 /* sensitivity_measures.c: d[measures] := derivatives of the measures by name j of --sensitivity, in declared units; by
  * four more runs. LAG_OK, or a failure. */
 int lag_measures_by(App *app, int j, double *d);
+/* gradient_report.c: d[n + np] := derivatives of measure k by the starts and parameters, in declared units; 0, or -1
+ * with the reason. name: name and unit of start or parameter i, each of LAG_GRADIENT_NAME characters. */
+enum { LAG_GRADIENT_NAME = 200 };
+int lag_measure_gradient(App *app, int k, double *d, char *why, size_t size);
+void lag_gradient_name(const App *app, int i, char *name, char *unit);
 
 /* volume_report.c: --volume. open: gives the run its tangent; 0, or EXIT_USAGE after a message. step: at the end of
  * each step; a failure ends the run. */

@@ -8,8 +8,6 @@
 #include "core/core.h"
 #include "core/rhs.h"
 
-enum { NAME = 200 };
-
 int lag_app_gradient_open(App *app) {
   if (!app->args.gradient) return 0;
   return app->measures ? 0 : lag_app_error(&app->args, "--gradient differentiates measures, and there are none");
@@ -41,8 +39,7 @@ static lag_sim *like_run(App *app) {
   return NULL;
 }
 
-/* d[n + np] := derivatives of measure k by the starts and parameters, in declared units. 0, or -1 with the reason. */
-static int gradient(App *app, int k, double *d, char *why, size_t size) {
+int lag_measure_gradient(App *app, int k, double *d, char *why, size_t size) {
   const lag_model *m = app->scene->model;
   int n = app->sim->pb.n, rc = -1;
   lag_sim *sim = like_run(app);
@@ -54,24 +51,24 @@ static int gradient(App *app, int k, double *d, char *why, size_t size) {
   return rc;
 }
 
-/* Name and unit of start or parameter i. */
-static void describe(const App *app, int i, char *name, char *unit) {
+void lag_gradient_name(const App *app, int i, char *name, char *unit) {
   int n = app->sim->pb.n;
   const lag_var *p = i < n ? NULL : &app->scene->model->p[i - n];
-  if (p) snprintf(name, NAME, "%s", p->name), snprintf(unit, NAME, "%s", p->unit);
-  else lag_sim_state_info(app->sim, i, name, NAME - 4, unit, NAME), strcat(name, "(0)");
+  if (p) snprintf(name, LAG_GRADIENT_NAME, "%s", p->name), snprintf(unit, LAG_GRADIENT_NAME, "%s", p->unit);
+  else lag_sim_state_info(app->sim, i, name, LAG_GRADIENT_NAME - 4, unit, LAG_GRADIENT_NAME), strcat(name, "(0)");
 }
 
 /* A unit; "" of pure numbers. */
 static const char *bare(const char *unit) { return strcmp(unit, "1") == 0 ? "" : unit; }
 
 static void put_list(App *app, FILE *f, int k, const double *d) {
-  char name[NAME], unit[NAME], over[NAME], under[NAME], label[NAME + 60];
+  char name[LAG_GRADIENT_NAME], unit[LAG_GRADIENT_NAME], over[LAG_GRADIENT_NAME], under[LAG_GRADIENT_NAME];
+  char label[LAG_GRADIENT_NAME + 60];
   const char *of = bare(lag_measures_unit(app->measures, k));
   lag_unit_in_fraction(over, sizeof over, of);
   fprintf(f, "gradient of %s, by reverse mode\n", app->measure_names[k]);
   for (int i = 0; i < app->sim->pb.n + app->scene->model->np; i++) {
-    describe(app, i, name, unit);
+    lag_gradient_name(app, i, name, unit);
     lag_unit_in_fraction(under, sizeof under, unit);
     snprintf(label, sizeof label, "d/d%s", name);
     if (strcmp(of, bare(unit)) == 0) fprintf(f, "  %-20s %.12g\n", label, d[i]);
@@ -85,23 +82,24 @@ void lag_report_gradient(App *app, FILE *f) {
   if (!app->args.gradient || app->status < 0) return;
   double *d = calloc((size_t)(app->sim->pb.n + app->scene->model->np) + 1, sizeof *d);
   for (int k = 0; d && k < lag_measures_count(app->measures); k++) {
-    if (gradient(app, k, d, why, sizeof why)) fprintf(f, "no gradient of %s: %s\n", app->measure_names[k], why);
+    int none = lag_measure_gradient(app, k, d, why, sizeof why);
+    if (none) fprintf(f, "no gradient of %s: %s\n", app->measure_names[k], why);
     else put_list(app, f, k, d);
   }
   free(d);
 }
 
 void lag_report_gradient_json(App *app, Json *j) {
-  char why[400], name[NAME], unit[NAME];
+  char why[400], name[LAG_GRADIENT_NAME], unit[LAG_GRADIENT_NAME];
   int n = app->sim->pb.n, np = app->scene->model->np;
   if (!app->args.gradient || app->status < 0) return;
   double *d = calloc((size_t)(n + np) + 1, sizeof *d);
   lag_json_begin(j, "gradient", '{');
   for (int k = 0; d && k < lag_measures_count(app->measures); k++) {
-    int none = gradient(app, k, d, why, sizeof why);
+    int none = lag_measure_gradient(app, k, d, why, sizeof why);
     lag_json_begin(j, app->measure_names[k], '{');
     if (none) lag_json_string(j, "none", why);
-    for (int i = 0; i < n + np && !none; i++) describe(app, i, name, unit), lag_json_number(j, name, d[i]);
+    for (int i = 0; i < n + np && !none; i++) lag_gradient_name(app, i, name, unit), lag_json_number(j, name, d[i]);
     lag_json_end(j, '}');
   }
   lag_json_end(j, '}');

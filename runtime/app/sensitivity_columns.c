@@ -143,32 +143,61 @@ static void report_felt(App *app, FILE *f) {
   putc('\n', f);
 }
 
-/* D[measures n] := derivatives of the measures; returns their number, 0: there are none, or a run fails. */
-static int derive_measures(App *app, double **D) {
-  const Sensitivity *s = app->sensitivity;
-  int n = app->measures ? lag_measures_count(app->measures) : 0;
-  *D = n ? calloc((size_t)(n * s->n) + (size_t)n, sizeof **D) : NULL;
-  for (int j = 0; *D && j < s->n; j++) {
-    double *one = *D + n * s->n;
-    if (lag_measures_by(app, j, one)) return 0;
-    for (int i = 0; i < n; i++) (*D)[i * s->n + j] = one[i];
+/* The start or parameter of name j, among those of a gradient. */
+static int place_of(const App *app, int j) {
+  char name[LAG_GRADIENT_NAME], asked[LAG_GRADIENT_NAME], unit[LAG_GRADIENT_NAME];
+  int i = 0, n = app->sim->pb.n + app->scene->model->np;
+  lag_sim_sensitivity_info(app->sim, j, asked, sizeof asked, NULL, 0);
+  for (; i < n; i++) {
+    lag_gradient_name(app, i, name, unit);
+    if (strcmp(name, asked) == 0) return i;
   }
-  return *D ? n : 0;
+  return -1;
+}
+
+/* D[measures n] := derivatives of the measures, by reverse mode where they have one, else by differences of runs:
+ * by_runs[measures] = 1. Returns their number, 0: there are none, or a run fails. */
+static int derive_measures(App *app, double **D, int **by_runs) {
+  const Sensitivity *s = app->sensitivity;
+  char why[400];
+  int n = app->measures ? lag_measures_count(app->measures) : 0, some = 0;
+  size_t all = (size_t)(app->sim->pb.n + app->scene->model->np);
+  *D = n ? calloc((size_t)(n * s->n) + (size_t)n + all, sizeof **D) : NULL;
+  *by_runs = calloc((size_t)n + 1, sizeof **by_runs);
+  if (!*D || !*by_runs) return 0;
+  double *one = *D + n * s->n;
+  for (int i = 0; i < n; i++) {
+    int none = lag_measure_gradient(app, i, one, why, sizeof why);
+    for (int j = 0, at; j < s->n && !none; j++) {
+      none = (at = place_of(app, j)) < 0;
+      (*D)[i * s->n + j] = none ? 0 : one[at];
+    }
+    some |= (*by_runs)[i] = none != 0;
+  }
+  for (int j = 0; some && j < s->n; j++) {
+    if (lag_measures_by(app, j, one)) return 0;
+    for (int i = 0; i < n; i++)
+      if ((*by_runs)[i]) (*D)[i * s->n + j] = one[i];
+  }
+  return n;
 }
 
 static void report_measures(App *app, FILE *f) {
   const Sensitivity *s = app->sensitivity;
   double *D;
-  int n = derive_measures(app, &D);
-  if (n) fputs("derivatives of measures, by differences of runs\n", f);
-  for (int k = 0; k < n * s->n; k++) {
-    Column c = {0}, x = {0};
-    snprintf(x.name, sizeof x.name, "%.40s", app->measure_names[k / s->n]);
-    snprintf(x.unit, sizeof x.unit, "%s", lag_measures_unit(app->measures, k / s->n));
-    c = quotient(app, &x, k % s->n);
-    fprintf(f, "  %-20s %.9g%s%s\n", c.name, D[k], c.unit[0] ? " " : "", c.unit);
-  }
+  int *by_runs, n = derive_measures(app, &D, &by_runs);
+  for (int runs = 0, told = 0; runs < 2; runs++, told = 0)
+    for (int k = 0; k < n * s->n; k++) {
+      Column c = {0}, x = {0};
+      if (by_runs[k / s->n] != runs) continue;
+      if (!told++) fprintf(f, "derivatives of measures%s\n", runs ? ", by differences of runs" : "");
+      snprintf(x.name, sizeof x.name, "%.40s", app->measure_names[k / s->n]);
+      snprintf(x.unit, sizeof x.unit, "%s", lag_measures_unit(app->measures, k / s->n));
+      c = quotient(app, &x, k % s->n);
+      fprintf(f, "  %-20s %.*g%s%s\n", c.name, runs ? 9 : 12, D[k], c.unit[0] ? " " : "", c.unit);
+    }
   free(D);
+  free(by_runs);
 }
 
 void lag_report_sensitivity(App *app, FILE *f) {
@@ -200,13 +229,14 @@ void lag_report_sensitivity_json(App *app, Json *out) {
     lag_json_end(out, '}');
   }
   double *D;
-  int n = derive_measures(app, &D);
+  int *by_runs, n = derive_measures(app, &D, &by_runs);
   for (int i = 0; i < n; i++) {
     lag_json_begin(out, app->measure_names[i], '{');
     for (int j = 0; j < s->n; j++) lag_json_number(out, s->names[j], D[i * s->n + j]);
     lag_json_end(out, '}');
   }
   free(D);
+  free(by_runs);
   lag_json_end(out, '}');
 }
 

@@ -19,6 +19,7 @@ static const double no_distance = 1e-9;
  * rounding, `zero`, a condition that had clearly been true, or false, until now ends at the same time as that of the
  * event: feet that follow each other. */
 static int then_holds(lag_sim *s, const lag_contact *c, int event, double margin, const double *zero) {
+  if (s->forced) return s->forced[c->input] > 0.5;
   int now = lag_contact_is_closed(s, c), came = now ? c->impact : c->release, goes = now ? c->release : c->impact;
   if (event == came || event == goes) return event == c->impact;
   if (fabs(margin) > (zero ? fmax(zero[came], zero[goes]) : 0)) return margin > 0;
@@ -93,7 +94,7 @@ static int obey(lag_sim *s, double *y, int event, int changed, int elsewhere) {
   double t = s->run->t;
   lag_contact_open(s); /* bodies at rest may have been lifted or thrown */
   if (changed || elsewhere) lag_release_integrals(s);
-  int rc = changed ? check_positions(s, y) : LAG_OK;
+  int rc = changed && !s->forced ? check_positions(s, y) : LAG_OK;
   if (rc == 0 && lag_project(&s->pb, t, y, NULL)) return fail_unmet(s, event, changed);
   return rc == 0 && (changed || elsewhere) ? lag_hold_integrals(s, t, y) : rc;
 }

@@ -97,9 +97,22 @@ static int place_size(const lag_model *m) {
 
 size_t lag_contact_law_size(const lag_model *m) {
   int slopes = place_size(m) + LAG_SLOPES_ROOM(m->nguides, place_size(m));
-  return m->contact_laws
-             ? (size_t)(law_size(m) + 1 + LAG_SLIPPING_ROOM(most_slipping(m)) + 2 * m->constraints->n + slopes)
-             : 0;
+  return m->contact_laws ? (size_t)(law_size(m) + 1 + LAG_SLIPPING_ROOM(most_slipping(m)) + 2 * m->constraints->n +
+                                    slopes + m->nguides)
+                         : 0;
+}
+
+/* [guides] side to which each of one direction is pressed, for derivatives, which no corner is near then; 0: any. */
+static double *pressed_sides(const lag_problem *pb) {
+  return pb->rub + lag_contact_law_size(pb->model) - pb->model->nguides;
+}
+
+void lag_guides_hold_sides(lag_problem *pb, int held) {
+  const lag_model *m = pb->model;
+  for (int g = 0; g < m->nguides; g++) {
+    double N = lag_guide_law(m, pb->rub, g)[1] + pb->guide_load[3 * g];
+    pressed_sides(pb)[g] = held && m->guides[g].parts == 1 ? (N > 0) - (N < 0) : 0;
+  }
 }
 
 /* place[place_size], on which slopes of the forces of guides depend. */
@@ -131,9 +144,11 @@ static int find_friction(lag_problem *pb, double t, const double *y) {
     if (guide < 0 && (contacts += 1 + in_space) > LAG_MOST_TOUCHES) continue;
     if (in_space) lag_slip_direction(pb, rates, i, w.mode + w.n);
     else w.mode[w.n] = side_of(pb, i);
+    double to = guide < 0 ? 0 : pressed_sides(pb)[guide];
+    w.mode[w.n] *= to != 0 ? to : 1;
     for (int k = 0; k <= in_space; k++) {
       w.of[w.n] = i + k;
-      w.parts[w.n++] = guide < 0 ? 0 : m->guides[guide].parts;
+      w.parts[w.n++] = guide < 0 || to != 0 ? 0 : m->guides[guide].parts;
     }
   }
   int all = w.n > 0 && w.n == m->nguides && contacts == 0; /* in a step of moreau: of one state for many modes */

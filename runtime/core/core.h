@@ -148,6 +148,7 @@ struct lag_sim {
   /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
   double *tangent, *tangent_jump, *tangent_scratch;
   double *hold_before; /* [nu + nmodes] of a run with a tangent: hold before the event */
+  const double *forced; /* hold of constraints with `while` behind an event, for its derivative; NULL: by conditions */
   struct lag_sensitivity *sensitivity;   /* parameter_columns.c; NULL: the tangent is one by starts alone */
   struct lag_record *record;             /* gradient.c; NULL: steps are not kept */
   int parameters_shifted; /* the parameters are those of a difference, beside the run's own */
@@ -338,6 +339,8 @@ int lag_contact_pairs(lag_sim *sim, double t, const double *y, double *g);
 /* contact_friction.c: law[3 contacts] at y, now. Failures have their message. law_size: numbers in pb.rub. */
 int lag_contact_laws(lag_sim *sim, const double *y, double *law);
 size_t lag_contact_law_size(const lag_model *m);
+/* Until held is 0, forces of guides press to the side to which they did last: without the corner where they turn. */
+void lag_guides_hold_sides(lag_problem *pb, int held);
 /* Event functions g[nev] of tangents: 1 where they are none, 1 or -1 times the slip velocity. */
 int lag_tangent_events(lag_sim *sim, double t, const double *y, double *g);
 void lag_contacts_turn(lag_sim *sim); /* held directions of slips in space := those at the end of a step */
@@ -381,6 +384,11 @@ int lag_tangent_corner(lag_sim *sim);
 int lag_tangent_begin(lag_sim *sim);
 int lag_tangent_jump(lag_sim *sim, int k, int more);
 int lag_tangent_carry(lag_sim *sim);
+/* edges: fails where friction holds with all its force. settle: projects the tangent at yb, with what holds there.
+ * effect: after := the state behind event k at y, whose constraints hold. */
+int lag_tangent_edges(lag_sim *sim);
+int lag_tangent_settle(lag_sim *sim);
+int lag_event_effect(lag_sim *sim, int k, const double *y, double *after);
 void lag_tangent_free(lag_sim *sim);
 /* As lag_sim_set_tangent, which first frees columns by parameters. */
 int lag_tangent_set(lag_sim *sim, int k, const double *Y);

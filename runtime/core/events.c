@@ -105,15 +105,24 @@ static const double *rounding_of_events(const lag_sim *s) {
   return zero;
 }
 
-enum { BY_EVENT = 1, BY_KICK = 2 };
+/* ... and that contacts have changed their forces alone. */
+enum { BY_EVENT = 1, BY_KICK = 2, BY_CONTACT = 4 };
+
+/* Whether event k of a contact with friction, or of a constraint with `while`, changes what acts; with a tangent. */
+static int changes_forces(const lag_sim *s, int k) {
+  const lag_model *m = s->scene->model;
+  const lag_contact *c = s->tangent ? lag_contact_of(m, k) : NULL;
+  return c && (c->conditional || m->contact_laws) && memcmp(s->hold, s->hold_before, (size_t)m->nu * sizeof *s->hold);
+}
 
 /* The state after event k, yb, becomes that of the run. *changed: it was, at this time already. A kick changes
  * neighbouring states where it leaves this one, and is told after it. */
 static int replace_state(lag_sim *s, int k, int *changed) {
-  int kick = lag_is_kick(s->scene->model, k), more = kick ? *changed & BY_EVENT : *changed;
+  int kick = lag_is_kick(s->scene->model, k), more = *changed & (kick ? BY_EVENT : BY_EVENT | BY_KICK);
   double t = s->run->t;
   size_t bytes = (size_t)s->pb.n * sizeof(double);
-  if (!kick && memcmp(s->yb, s->now, bytes) == 0) return lag_contact_of(s->scene->model, k) ? lag_tangent_carry(s) : 0;
+  if (!kick && memcmp(s->yb, s->now, bytes) == 0 && !changes_forces(s, k))
+    return lag_contact_of(s->scene->model, k) || lag_guide_turns(s->scene->model, k) ? lag_tangent_carry(s) : 0;
   int rc = lag_tangent_jump(s, k, more);
   if (rc) return rc;
   *changed |= kick ? BY_KICK : BY_EVENT;
@@ -124,49 +133,56 @@ static int replace_state(lag_sim *s, int k, int *changed) {
   return rc;
 }
 
-/* yb := the state after the action of event k; that of a contact's is found later. */
-static int state_after(lag_sim *s, int k, int of_contact, int *stop) {
+/* after := the state y after the action of event k; that of a contact's is found later. */
+static int state_after(lag_sim *s, int k, const double *y, double *after, int *stop) {
   const lag_model *m = s->scene->model;
   const double t = s->run->t;
   int nq = m->nq, rc = lag_inputs(&s->pb, t);
-  memcpy(s->yb, s->now, (size_t)s->pb.n * sizeof(double));
-  if (rc == 0 && m->act && !of_contact)
-    rc = m->act(m, k, t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, s->yb, s->yb + nq, s->yb + 2 * nq, stop,
-                s->work);
-  return rc == 0 && lag_not_finite(s->pb.n, s->yb) < 0
+  memcpy(after, y, (size_t)s->pb.n * sizeof(double));
+  if (rc == 0 && m->act && !lag_contact_of(m, k))
+    rc = m->act(m, k, t, y, y + nq, y + 2 * nq, s->p, s->u, after, after + nq, after + 2 * nq, stop, s->work);
+  return rc == 0 && lag_not_finite(s->pb.n, after) < 0
              ? LAG_OK
              : lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its action gives no finite state at t = %s s",
                         m->ev[k].name, LAG_TEXT(t));
+}
+
+/* after, set by event k at y, comes to the constraints and contacts that act from there on. who: for messages. */
+static int settle(lag_sim *s, int k, const double *y, double *after, const char *who, int ends, const double *zero) {
+  const lag_model *m = s->scene->model;
+  int of = lag_contact_of(m, k) != NULL, moved = memcmp(after, y, (size_t)s->pb.n * sizeof *y) != 0,
+      elsewhere = memcmp(after, y, (size_t)m->nq * sizeof *y) != 0;
+  return of || moved ? lag_settle_constraints(s, after, of && !moved ? NULL : who, k, ends, moved + elsewhere, zero)
+                     : LAG_OK;
+}
+
+int lag_event_effect(lag_sim *s, int k, const double *y, double *after) {
+  int stop = 0, rc = state_after(s, k, y, after, &stop);
+  return rc ? rc : settle(s, k, y, after, NULL, 0, NULL);
 }
 
 /* Applies the action of event k to `now`, by way of yb. *changed: the state has been replaced, BY_ what. */
 static int act(lag_sim *s, int k, int *stop, int *changed) {
   const lag_model *m = s->scene->model;
   Run *r = s->run;
-  int nq = m->nq, n = s->pb.n;
-  size_t bytes = (size_t)n * sizeof(double);
   double since = s->count[k] > 0 ? fabs(r->t - s->last[k]) : HUGE_VAL, last = s->last[k];
   r->events++;
   s->first[k] = s->count[k] > 0 ? s->first[k] : r->t;
   s->last[k] = r->t;
   s->count[k]++;
   const lag_contact *of = lag_contact_of(m, k), *contact = of && !of->conditional ? of : NULL;
-  int rc = state_after(s, k, of != NULL, stop);
+  int rc = state_after(s, k, s->now, s->yb, stop);
   if (rc) return rc;
   double rest = series_rest(s, k, since);
   if (contact && contact->is_tangent && k == contact->release && lag_switch_relieve(s, k)) {
-    *changed |= BY_EVENT;
+    *changed |= BY_CONTACT;
     return watch_restarts(s, k, rest);
   }
-  int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact != NULL),
-      moved = memcmp(s->yb, s->now, bytes) != 0;
-  int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;
+  int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact != NULL);
   if (s->tangent) memcpy(s->hold_before, s->hold, (size_t)(m->nu + m->nmodes) * sizeof *s->hold);
-  if (of || moved) {
-    char who[128];
-    snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
-    rc = lag_settle_constraints(s, s->yb, of && !moved ? NULL : who, k, ends, moved + elsewhere, rounding_of_events(s));
-  }
+  char who[128];
+  snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
+  rc = settle(s, k, s->now, s->yb, who, ends, rounding_of_events(s));
   /* a longer rest is that of strokes without restitution, after each of which the contact opens again */
   if (rc == 0 && contact && rest < 1e-3 * fabs(r->t) && lag_contact_is_closed(s, contact))
     s->skipped[k] = fmax(s->skipped[k], rest);
@@ -174,7 +190,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
   if (rc) return rc;
   int before = *changed;
   /* the set of closed contacts may be another; a force that has a corner goes on from there */
-  *changed |= of != NULL || lag_guide_turns(m, k);
+  *changed |= of || lag_guide_turns(m, k) ? BY_CONTACT : 0;
   /* slips back at once: no event */
   int turns = contact && contact->is_tangent && k == contact->impact && !lag_contact_is_closed(s, contact);
   if (turns) r->events--, s->count[k]--, s->last[k] = last;
@@ -272,6 +288,7 @@ int lag_events_fire(lag_sim *s) {
   }
   rc = rc ? rc : settle_switches(s, met, &changed);
   rc = rc ? rc : rearm(s, before, spread, jumps, changed);
+  rc = rc ? rc : lag_tangent_edges(s);
   r->from = r->t;
   r->pending = 0;
   if (changed || r->t == r->step_t1) {

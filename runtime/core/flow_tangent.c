@@ -23,13 +23,6 @@ static int check(lag_sim *s) {
   const lag_model *m = s->scene->model;
   int in_p = m->nq > 0 && (s->method->flags & LAG_METHOD_VARIATION) &&
              !((s->method->flags & LAG_METHOD_SPLITS) && (m->flags & LAG_SEPARABLE));
-  for (int i = 0; i < m->ncontacts; i++) {
-    const char *name = m->constraints->of[m->contacts[i].constraint].name;
-    if (m->contacts[i].conditional || lag_guide_of(m, i) >= 0)
-      return lag_fail(s, LAG_EMETHOD,
-                      "there is no tangent of a motion whose constraint %s begins and ends: the impulses there have no "
-                      "derivatives yet", name);
-  }
   if (m->constraints && (!s->method->tangent || (s->method->flags & LAG_METHOD_VARIATION)))
     return lag_fail(s, LAG_EMETHOD,
                     "method %s has no derivative of its steps with constraints; dop853, rk45, rk4 and radau have",
@@ -82,24 +75,10 @@ static int make_room(lag_sim *s, int k) {
   return LAG_OK;
 }
 
-/* A contact with friction that is closed; -1: none. */
-static int rubbing_contact(const lag_sim *s) {
-  const lag_model *m = s->scene->model;
-  for (int i = 0; i + 1 < m->ncontacts; i++)
-    if (m->contacts[i + 1].is_tangent && !m->contacts[i].is_tangent && lag_contact_is_closed(s, &m->contacts[i]))
-      return i;
-  return -1;
-}
-
 /* Near a singular position, as of a folded linkage, there is no tangent space. */
 int lag_tangent_exists(lag_sim *s, double t) {
   const double least = 1e-3;
-  int weakest = -1, closed = rubbing_contact(s);
-  if (closed >= 0)
-    return lag_fail(s, LAG_EMETHOD,
-                    "contact %s, which has friction, is closed at t = %s s: such contacts have a tangent between "
-                    "flights only; end the run before",
-                    s->scene->model->constraints->of[s->scene->model->contacts[closed].constraint].name, LAG_TEXT(t));
+  int weakest = -1;
   if (s->scene->model->constraints && lag_independence(&s->pb, t, s->now, &weakest) < least && weakest >= 0)
     return lag_fail(s, LAG_EMETHOD,
                     "at t = %s s constraint %s nearly depends on the others: neighbouring motions part there, and "
@@ -108,11 +87,11 @@ int lag_tangent_exists(lag_sim *s, double t) {
   return LAG_OK;
 }
 
-/* Projects Y onto the tangent space of the constraints at the present state, t. */
-static int stay_on_constraints(lag_sim *s, double t, double *Y) {
+/* Projects Y onto the tangent space of the constraints at y, t. */
+static int stay_on_constraints(lag_sim *s, double t, const double *y, double *Y) {
   int rc = lag_tangent_exists(s, t);
   if (rc) return rc;
-  rc = lag_tangent_project(&s->pb, t, s->now, s->tangent_columns, Y, s->tangent_scratch);
+  rc = lag_tangent_project(&s->pb, t, y, s->tangent_columns, Y, s->tangent_scratch);
   return rc ? lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN,
                        "at t = %s s changes of the state cannot be projected onto the constraints", LAG_TEXT(t))
             : LAG_OK;
@@ -148,7 +127,17 @@ int lag_tangent_set(lag_sim *s, int k, const double *Y) {
   if (Y) memcpy(s->tangent, Y, lag_tangent_block(s) * sizeof *Y);
   else memset(s->tangent, 0, lag_tangent_block(s) * sizeof *s->tangent);
   for (int i = 0; i < n && !Y; i++) s->tangent[i * n + i] = 1;
-  return stay_on_constraints(s, s->run->begun != 0.0 ? s->run->t : s->scene->t0, s->tangent);
+  return stay_on_constraints(s, s->run->begun != 0.0 ? s->run->t : s->scene->t0, s->now, s->tangent);
+}
+
+/* Guides press to the side of the middle of the step, up to t, also where stages at its ends pass the corner. */
+static int hold_sides(lag_sim *s, double t) {
+  if (s->scene->model->nguides == 0) return LAG_OK;
+  double middle = s->run->step_t0 + (t - s->run->step_t0) / 2;
+  int rc = lag_dense_state(s, middle, s->yc);
+  rc = rc ? rc : lag_rhs(&s->pb, middle, s->yc, s->ya);
+  if (rc == LAG_OK) lag_guides_hold_sides(&s->pb, 1);
+  return rc;
 }
 
 int lag_tangent_over(lag_sim *s, double t, double *Y) {
@@ -156,11 +145,13 @@ int lag_tangent_over(lag_sim *s, double t, double *Y) {
   double rhs_calls = pb->rhs_calls, systems = pb->systems, iterations = pb->iterations;
   pb->detail = NULL;
   pb->bad_index = -1;
-  int rc = s->method->tangent(s->method_work, pb, t, s->tangent_columns, Y, s->tangent_scratch);
+  int rc = hold_sides(s, t);
+  rc = rc ? rc : s->method->tangent(s->method_work, pb, t, s->tangent_columns, Y, s->tangent_scratch);
+  lag_guides_hold_sides(pb, 0);
   pb->rhs_calls = rhs_calls;
   pb->systems = systems;
   pb->iterations = iterations;
-  return rc ? lag_explain(s, rc) : stay_on_constraints(s, t, Y);
+  return rc ? lag_explain(s, rc) : stay_on_constraints(s, t, s->now, Y);
 }
 
 /* Y := D Y, or the record of it. */
@@ -186,6 +177,21 @@ int lag_tangent_carry(lag_sim *s) {
   lag_hold_swap(s, s->hold_before);
   s->tangent_at_event = 1;
   return rc;
+}
+
+int lag_tangent_settle(lag_sim *s) { return stay_on_constraints(s, s->run->t, s->yb, s->tangent); }
+
+int lag_tangent_edges(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  for (int i = 0; s->tangent && i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    if (c->is_tangent && lag_contact_is_closed(s, c) && s->sign[c->release] == 0.0)
+      return lag_fail(s, LAG_EMETHOD,
+                      "at t = %s s the friction of %s holds with all its force: neighbouring motions slip or stick, "
+                      "and there is no tangent; start beside, or end the run before",
+                      LAG_TEXT(s->run->t), m->constraints->of[m->contacts[i].constraint].name);
+  }
+  return LAG_OK;
 }
 
 int lag_event_touches(lag_sim *s, int k, double rate) {

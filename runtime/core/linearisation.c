@@ -48,7 +48,7 @@ size_t lag_linear_work(const lag_model *m) {
   size_t exact = m->linear ? n + (size_t)m->linear->ndr + (size_t)m->linear->nmass + nq * nq +
                                  partials_size(m->linear) + 2 * (size_t)m->nu
                            : 0,
-         differences = m->constraints || m->nmodes ? 3 * n : 0, reverse = reverse_rows_size(m),
+         differences = m->constraints || m->nmodes ? 5 * n : 0, reverse = reverse_rows_size(m),
          most = exact > differences ? exact : differences;
   return most > reverse ? most : reverse;
 }
@@ -121,26 +121,50 @@ double lag_difference_scale(lag_problem *pb, const double *y, int k) {
   return is_angle ? 1 : q->unit[0] ? size : sqrt(size);
 }
 
-/* J by central differences of order 6, column by column: wrong by rounding over 2^-9, and by 2^-54/140 of a seventh
- * derivative, for a scale of 1. */
+/* column[n - nq] := derivative of rates by component k of the state, or by parameter k - n, with `part` of the step, by
+ * differences of order 6, wrong by rounding over 2^-9 and by 2^-54/140 of a seventh derivative, for a scale of 1.
+ * *apart := how far those of order 4 are, as a part. rate[n], there[n] are scratch. */
+static int central_column(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, int k,
+                          double part, double *column, double *there, double *rate, double *apart) {
+  int n = pb->n, nq = pb->nq, rc = LAG_OK;
+  const double *p = pb->p;
+  double h = k < n ? part * LAG_DIFFERENCE_PART * lag_difference_scale(pb, y, k) : by->h[k - n], most = 0, far = 0;
+  double *other = rate + n;
+  memset(column, 0, (size_t)(n - nq) * sizeof *column);
+  memset(other, 0, (size_t)(n - nq) * sizeof *other);
+  memcpy(there, y, (size_t)n * sizeof *y);
+  LAG_EACH_DIFFERENCE(j) {
+    double fourth = (j < 0 ? -1 : 1) * (j == 1 || j == -1 ? 8 : j == 2 || j == -2 ? -1 : 0) / 12.0;
+    if (k < n) there[k] = y[k] + j * h;
+    else pb->p = lag_shifted_parameters(pb, by, k - n, j);
+    rc = rc ? rc : lag_rhs(pb, t, there, rate);
+    for (int i = nq; i < n; i++) {
+      column[i - nq] += lag_difference_weight(j) * rate[i] / h;
+      other[i - nq] += fourth * rate[i] / h;
+    }
+  }
+  pb->p = p;
+  for (int i = 0; i < n - nq; i++) most = fmax(most, fabs(column[i])), far = fmax(far, fabs(column[i] - other[i]));
+  *apart = far > 0 ? far / most : 0;
+  return rc;
+}
+
+/* J by central differences, column by column; closer ones where these differ, as of slow slips. */
 static int central_jacobian(lag_problem *pb, const lag_parameter_columns *by, double t, const double *y, double *J,
                             double *work) {
-  int n = pb->n, nq = pb->nq, width = n + (by ? by->n : 0), rc = LAG_OK;
-  double *there = work + n, *rate = there + n;
-  const double *p = pb->p;
-  memset(J, 0, (size_t)((n - nq) * width) * sizeof *J);
-  for (int k = 0; k < width; k++) {
-    double h = k < n ? LAG_DIFFERENCE_PART * lag_difference_scale(pb, y, k) : by->h[k - n];
-    memcpy(there, y, (size_t)n * sizeof *y);
-    LAG_EACH_DIFFERENCE(j) {
-      if (k < n) there[k] = y[k] + j * h;
-      else pb->p = lag_shifted_parameters(pb, by, k - n, j);
-      rc = rc ? rc : lag_rhs(pb, t, there, rate);
-      for (int i = nq; i < n; i++) J[(i - nq) * width + k] += lag_difference_weight(j) * rate[i] / h;
+  const double enough = 1e-8, smallest = 0x1p-16;
+  int n = pb->n, nq = pb->nq, width = n + (by ? by->n : 0), rc = lag_rhs(pb, t, y, work);
+  double *there = work + n, *column = there + n, *rate = column + n;
+  for (int k = 0; k < width && rc == LAG_OK; k++) {
+    double least = HUGE_VAL, apart = HUGE_VAL;
+    for (double part = 1; part >= smallest && least > enough && rc == LAG_OK; part = k < n ? part / 16 : 0) {
+      rc = central_column(pb, by, t, y, k, part, column, there, rate, &apart);
+      if (!(apart < least)) break;
+      least = apart;
+      for (int i = 0; i < n - nq; i++) J[i * width + k] = column[i];
     }
-    pb->p = p;
   }
-  return rc ? rc : lag_rhs(pb, t, y, work);
+  return rc;
 }
 
 /* du[nu] := derivatives of inputs that follow their formulas by parameter j; at[nu] is scratch. */

@@ -38,7 +38,8 @@ static int begin(lag_sim *s, double t) {
   s->run->begun = 1;
   rc = lag_monitors_begin(s);
   rc = rc ? rc : lag_tangent_begin(s);
-  return rc ? rc : lag_events_arm(s);
+  rc = rc ? rc : lag_events_arm(s);
+  return rc ? rc : lag_tangent_edges(s);
 }
 
 /* Passes a jump of a table, two rows next to each other in double precision, without a step. */

@@ -137,8 +137,8 @@ static const CommandRow commands[] = {
      "has proved, or after an exchange of coordinates; --reverse solves half of a motion that is the same "
      "backwards.\n\n"
      "Multipliers that are 1 by the phase, by conserved charges and by their symmetries are counted, not listed. "
-     "Motions may go over events that set velocities, switches and impacts; where contacts with friction stay closed "
-     "runs from beside the start replace the tangent. Needs GSL. Exit status 3: no periodic motion was found.\n\n"
+     "Motions may go over events that set velocities, switches and contacts; where there is no tangent runs from "
+     "beside the start replace it. Needs GSL. Exit status 3: no periodic motion was found.\n\n"
      "  name=value            a parameter, another start (th=3), an input to hold"},
     {CMD_CONTINUE, "continue", "bifurcation",
      "MODEL [SCENE] NAME=A..B [name=value ...] [--guess T | --period T | --steady] [--hold NAMES] [--branches] "
