@@ -3,7 +3,9 @@
  * name and unit, times are taken as they are, and what does not fit is refused with its line. */
 #include "app/fit_run.h"
 
+#include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -229,7 +231,7 @@ static int take_columns(FitRun *r) {
   if (f->ncolumns == 0)
     return lag_app_error(a, "%s: no column besides the time is an output here; `lagc fit` makes them outputs",
                          r->file[0]);
-  size_t many = (size_t)(f->nrows * f->ncolumns);
+  size_t many = (size_t)f->nrows * (size_t)f->ncolumns;
   f->data = calloc(many, sizeof *f->data);
   f->errors = calloc(many, sizeof *f->errors);
   if (!f->data || !f->errors) return lag_app_error(a, "out of memory");
@@ -330,6 +332,21 @@ static int read_files(FitRun *r) {
 
 /* ---- The analysis */
 
+/* Data that take long are announced; more than indices reach are refused. */
+static int check_size(const FitRun *r) {
+  const Args *a = &r->app->args;
+  const double many = 2e6, rows = r->fit.nrows, data = rows * r->fit.ncolumns, derivatives = data * (r->fit.n + 1);
+  if (derivatives > INT_MAX)
+    return lag_app_error(a, "--data %s: %.0f rows are more than a fit takes; leave out all but every %.0fth", a->data, rows,
+                         ceil(derivatives / many));
+  if (data > many && !a->quiet)
+    fprintf(stderr,
+            "%s: note: %.0f rows take %.2g GB, and each of ten to a hundred runs passes all of them; every %.0fth row "
+            "says nearly as much\n",
+            r->app->args.self, rows, (derivatives + 5 * data) * sizeof(double) / 1e9, ceil(100 * data / many));
+  return 0;
+}
+
 static int prepare(FitRun *r) {
   App *app = r->app;
   const Args *a = &app->args;
@@ -349,7 +366,7 @@ static int prepare(FitRun *r) {
   if (a->segments && (rc = lag_args_count(a, "--segments", a->segments, "--segments 20", &parts)) != 0) return rc;
   r->fit.parts = (int)(parts > MOST_PARTS ? MOST_PARTS : parts);
   r->fit.huber = a->loss && strcmp(a->loss, "huber") == 0;
-  if ((rc = lag_fit_take_targets(r)) != 0) return rc;
+  if ((rc = lag_fit_take_targets(r)) != 0 || (rc = check_size(r)) != 0) return rc;
   if (r->fit.trains && !a->out)
     return lag_app_error(a, "--fit %s: where do the weights go? Write -o weights.json", a->fit);
   if (r->fit.trains && r->compares)

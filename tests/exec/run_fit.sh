@@ -295,4 +295,10 @@ coverage() {
     END { print n, k, c, x; exit !(n == 100 && k >= 87 && c >= 87 && x >= 87 && k + c + x < 299) }'
 }
 slow check "coverage of the errors" coverage
+many() { # the run is cut: what it needs stands before it
+  awk 'BEGIN { print "t [s],x [m]"; for (i = 0; i < 2000001; i++) printf "%.3f,%.3f\n", i/1e3, cos(2*i/1e3) }' >"$TMP/many.csv"
+  timeout 10 "$LAGC" fit "$M/damped.lag" --data "$TMP/many.csv" --fit k >/dev/null 2>"$TMP/err"
+  grep -q 'note: 2000001 rows take .*every 101th row' "$TMP/err"
+}
+slow check "many rows: memory and a way out" many
 tap_end
