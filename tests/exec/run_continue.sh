@@ -295,4 +295,8 @@ refused "rows of another NAME" 2 "column 1 is \`energy\`" "$LAGC" continue model
 refused "no branch to go on" 2 "no branch can go on within 9..18" "$LAGC" continue models/pendulum.lag wide energy=9..18 --resume "$family"
 sed '3s/^[^,]*/nine/' "$family" >"$TMP/bad.csv"
 refused "a row without number" 2 "bad.csv:3: energy: \`nine\` is no number" "$LAGC" continue models/pendulum.lag wide energy=9..20 --resume "$TMP/bad.csv"
+sed '4s/^[^,]*,/nan,/' "$family" >"$TMP/bad.csv"
+refused "a row without a place" 2 "bad.csv:4: energy: \`nan\` is no place" "$LAGC" continue models/pendulum.lag wide energy=9..20 --resume "$TMP/bad.csv"
+sed '4s/,1,/,99999999999,/' "$family" >"$TMP/bad.csv"
+refused "a row of no branch" 2 "bad.csv:4: branch: \`99999999999\` is no number of a branch" "$LAGC" continue models/pendulum.lag wide energy=9..20 --resume "$TMP/bad.csv"
 tap_end
