@@ -41,7 +41,7 @@ typedef struct BranchPoint {
   struct BranchPoint *next;
   double *u, *tangent; /* [cols] */
   Spectrum spectrum;
-  int unstable;                   /* number of eigenvalues that grow */
+  int unstable, stable;           /* numbers of eigenvalues that grow, that decay */
   int stays;                      /* 1: a multiplier is 1 to rounding, as along a family */
   double fold, zero, minus, pair; /* test functions, and the growth of the complex pair nearest to the border */
   BranchKind kind;

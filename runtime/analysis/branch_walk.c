@@ -110,10 +110,12 @@ static void judge(const BranchProblem *p, BranchPoint *at) {
   at->zero = at->minus = 1;
   at->stays = 0;
   at->pair = HUGE_VAL;
-  at->unstable = 0;
+  at->unstable = at->stable = 0;
   for (int i = 0; i < s->n; i++) {
     double growth = p->maps ? log(fmax(hypot(s->re[i], s->im[i]), 1e-300)) : s->re[i], size = hypot(s->re[i], s->im[i]);
-    at->unstable += growth > no_growth * fmax(1, p->maps ? 1 : size);
+    double least = no_growth * fmax(1, p->maps ? 1 : size);
+    at->unstable += growth > least;
+    at->stable += growth < -least;
     if (s->im[i] > 0 && fabs(growth) < fabs(at->pair)) at->pair = growth;
     if (s->im[i] < 0) continue; /* with its conjugate */
     double re = s->re[i] - (p->maps ? 1 : 0);

@@ -31,17 +31,23 @@ static double test_of(const BranchPoint *at, BranchKind kind) {
 /* Whether a test function changes its sign from a to b, or leaves 0, as where a branch begins. */
 static int changes_sign(double a, double b) { return (a <= 0 && b > 0) || (a >= 0 && b < 0); }
 
+/* Whether the parameter stays along the branch, as of a family at one value: its folds would be rounding. */
+static int stands(const BranchPoint *at) { return fabs(at->fold) < 1e-6; }
+
 /* Kind of the point between two others; BRANCH_REGULAR: none, or no further one after `after`. */
 static BranchKind between(const BranchProblem *p, const BranchPoint *a, const BranchPoint *b, BranchKind after) {
-  int fold = changes_sign(a->fold, b->fold), zero = changes_sign(a->zero, b->zero) && !(a->stays && b->stays),
+  int fold = changes_sign(a->fold, b->fold) && !(stands(a) && stands(b)),
+      zero = changes_sign(a->zero, b->zero) && !(a->stays && b->stays),
       minus = p->maps && changes_sign(a->minus, b->minus);
   if (fold && after == BRANCH_REGULAR) return BRANCH_FOLD;
   if (minus && after != BRANCH_DOUBLING && after != BRANCH_POINT) return BRANCH_DOUBLING;
   if (zero && !fold && after != BRANCH_POINT) return BRANCH_POINT;
   if (fold || minus || zero) return BRANCH_REGULAR;
-  if (abs(a->unstable - b->unstable) < 2) return BRANCH_REGULAR;
-  if (p->pairs) return BRANCH_COLLISION;
-  if (!changes_sign(lag_growth_sign(a->pair), lag_growth_sign(b->pair))) return BRANCH_REGULAR;
+  int grow = a->unstable - b->unstable, decay = a->stable - b->stable;
+  if (abs(grow) < 2) return BRANCH_REGULAR;
+  if (p->pairs || (grow == decay && grow % 2 == 0)) return BRANCH_COLLISION; /* a pair grows, and another decays */
+  double from = lag_growth_sign(a->pair), to = lag_growth_sign(b->pair);
+  if (!changes_sign(from, to) && !(from > 0 && to == 0.0)) return BRANCH_REGULAR;
   return p->maps ? BRANCH_TORUS : BRANCH_HOPF;
 }
 
@@ -266,6 +272,7 @@ static void look_within(Walk *w, BranchPoint *a, BranchPoint *b, BranchPoint *c,
     Dip d = {{a, b, c}, {0, to_b, to_b + to_c}};
     double f = fabs(test_of(b, kinds[k]));
     int of_maps = kinds[k] == BRANCH_DOUBLING, stays = kinds[k] == BRANCH_POINT && b->stays;
+    stays |= kinds[k] == BRANCH_FOLD && stands(b);
     if ((of_maps && !w->p->maps) || stays || f == 0.0) continue;
     if (f > fabs(test_of(a, kinds[k])) || f > fabs(test_of(c, kinds[k])) || !crosses(w, &d, kinds[k])) continue;
     BranchPoint *one = locate(w, d.at[0], d.at[1], d.s[1] - d.s[0], kinds[k]),

@@ -23,9 +23,26 @@ static int is_counter(PeriodicOrbit *o, int i) {
   return 1;
 }
 
-/* At y, t: L[n c] := the gradients of conserved charges, R[n *nr] := the direction of motion, those of symmetries and
+/* d[n] := the direction of motion at node s; where a slide begins beside its surface, that of the run that ends there,
+ * on its side of the switch. */
+static int direction(PeriodicOrbit *o, int s, double *d) {
+  const double side = 1e-3; /* a gap between segments, on the way to a solution, changes rates by less */
+  int mapped = s == 0 && (o->ngroup || o->closing || o->half), rc;
+  const double *rates = o->rates + (s + o->m - 1) % o->m * o->n;
+  double off = 0, size = 0;
+  rc = lag_flow_rates(&o->flow, o->flow.t0 + o->T * s / o->m, o->y + s * o->n, d);
+  for (int i = 0; i < o->n && rc == LAG_OK && !mapped; i++) {
+    off = fmax(off, fabs(rates[i] - d[i]) / o->unit[i]);
+    size = fmax(size, fabs(d[i]) / o->unit[i]);
+  }
+  if (off > side * size) memcpy(d, rates, (size_t)o->n * sizeof *d);
+  return rc;
+}
+
+/* At node s: L[n c] := the gradients of conserved charges, R[n *nr] := the direction of motion, those of symmetries and
  * of counters, in units and of length 1. */
-static int invariants(PeriodicOrbit *o, double t, const double *y, double *L, double *R, int *nr) {
+static int invariants(PeriodicOrbit *o, int s, double *L, double *R, int *nr) {
+  const double t = o->flow.t0 + o->T * s / o->m, *y = o->y + s * o->n;
   int n = o->n, c = o->ncharges, most = c + 1 + o->ngroup + n - 2 * o->flow.nq, rc = LAG_OK;
   double *d = o->x;
   *nr = 0;
@@ -35,7 +52,7 @@ static int invariants(PeriodicOrbit *o, double t, const double *y, double *L, do
   }
   for (int k = -1; k < c && rc == LAG_OK; k++) {
     if (k < 0 ? o->flow.forced : o->charge[k] == 0) continue;
-    if (lag_flow_field(&o->flow, k < 0 ? 0 : o->charge[k], t, y, d)) continue;
+    if (k < 0 ? direction(o, s, d) : lag_flow_field(&o->flow, o->charge[k], t, y, d)) continue;
     for (int i = 0; i < n; i++) R[i * most + *nr] = d[i] / o->unit[i];
     ++*nr;
   }
@@ -45,9 +62,9 @@ static int invariants(PeriodicOrbit *o, double t, const double *y, double *L, do
     for (int i = 0; i < g->n; i++) R[g->shifted[i] * most + *nr] = 1 / o->unit[g->shifted[i]];
     *nr += g->n > 0;
   }
-  for (int s = 2 * o->flow.nq; s < n; s++) {
-    if (!is_counter(o, s)) continue;
-    for (int i = 0; i < n; i++) R[i * most + *nr] = i == s;
+  for (int z = 2 * o->flow.nq; z < n; z++) {
+    if (!is_counter(o, z)) continue;
+    for (int i = 0; i < n; i++) R[i * most + *nr] = i == z;
     ++*nr;
   }
   for (int i = 0; i < n; i++) /* rows of *nr elements, one behind the other */
@@ -57,8 +74,9 @@ static int invariants(PeriodicOrbit *o, double t, const double *y, double *L, do
   return rc;
 }
 
-/* The space of other changes at y, t: basis *b; *all: dimension of the tangent space there. */
-static int quotient(Pool *pool, PeriodicOrbit *o, double t, const double *y, Basis *b, int *all) {
+/* The space of other changes at node s: basis *b; *all: dimension of the tangent space there. */
+static int quotient(Pool *pool, PeriodicOrbit *o, int s, Basis *b, int *all) {
+  const double t = o->flow.t0 + o->T * s / o->m, *y = o->y + s * o->n;
   int n = o->n, nr = 0, rc;
   *b = (Basis){n, n, lag_pool_doubles(pool, (size_t)(n * n))};
   rc = b->B ? lag_flow_tangent_basis(&o->flow, pool, t, y, o->unit, b->B, &b->k) : LAG_ENOMEM;
@@ -66,7 +84,7 @@ static int quotient(Pool *pool, PeriodicOrbit *o, double t, const double *y, Bas
          *R = lag_pool_doubles(pool, (size_t)(n * (o->ncharges + 1 + o->ngroup + n)));
   rc = pool->failed ? LAG_ENOMEM : rc;
   *all = b->k;
-  rc = rc ? rc : invariants(o, t, y, L, R, &nr);
+  rc = rc ? rc : invariants(o, s, L, R, &nr);
   rc = rc ? rc : lag_within_levels(pool, n, o->ncharges, L, &nr, R);
   rc = rc ? rc : lag_basis_take_out(pool, b, o->ncharges, L);
   return rc ? rc : lag_basis_take_out(pool, b, nr, R);
@@ -204,7 +222,7 @@ int lag_orbit_multipliers(PeriodicOrbit *o) {
   int m = o->m, all = 0, rc = LAG_OK;
   Basis *b = (Basis *)(void *)lag_pool_doubles(&pool, (size_t)(m + 1) * (sizeof(Basis) / sizeof(double) + 1));
   for (int s = 0; s < m && b && rc == LAG_OK; s++)
-    rc = quotient(&pool, o, o->flow.t0 + o->T * s / m, o->y + s * o->n, &b[s], &all);
+    rc = quotient(&pool, o, s, &b[s], &all);
   if (!b) rc = LAG_ENOMEM;
   int k = rc ? 0 : b[0].k;
   for (int s = 0; s < m && rc == LAG_OK; s++) rc = b[s].k == k ? LAG_OK : LAG_ESINGULAR;

@@ -93,6 +93,13 @@ static int fits_kicks(FlowMap *f, double T, double *longest) {
   return fits;
 }
 
+/* Whether numbers differ, by more than the sign of 0 that a drive without size leaves. */
+static int differ(int n, const double *a, const double *b) {
+  for (int i = 0; i < n; i++)
+    if (a[i] != b[i] && !(isnan(a[i]) && isnan(b[i]))) return 1;
+  return 0;
+}
+
 /* Whether they change with time at the start. */
 static int depends_on_time(FlowMap *f) {
   static const double times[] = {0.1234567, 0.5772157, 2.7182818, 31.41592653};
@@ -101,9 +108,7 @@ static int depends_on_time(FlowMap *f) {
     for (int i = 0; i < f->n; i++) f->at[i] = f->probe->now[i] + place * 0.1 * (1 + i % 3);
     if (driven_at(f, f->t0, f->at, f->up)) continue;
     for (size_t k = 0; k < sizeof times / sizeof *times; k++)
-      if (driven_at(f, f->t0 + times[k], f->at, f->down) ||
-          memcmp(f->up, f->down, (size_t)driven_numbers(f) * sizeof(double)) != 0)
-        return 1;
+      if (driven_at(f, f->t0 + times[k], f->at, f->down) || differ(driven_numbers(f), f->up, f->down)) return 1;
   }
   return 0;
 }
@@ -158,7 +163,7 @@ int lag_flow_open(FlowMap *f, lag_sim *like) {
   const lag_part parts[] = {{&f->at, n}, {&f->up, driven}, {&f->down, driven}, {&f->mass, nq * nq},
       {&f->linear, lag_linear_work(like->scene->model) + 1}, {&f->room, n * n + (rows + 1) * (nq + 1) + driven},
       {&f->square, 2 * n * n + (nq + 1) * (nq + 1)},
-      {&f->jumps, (size_t)lag_sim_ncharges(like) + 1}};
+      {&f->jumps, (size_t)lag_sim_ncharges(like) + 1}, {&f->rates, n}};
   lag_pool_parts(&f->pool, sizeof parts / sizeof *parts, parts);
   if (f->pool.failed) return keep_message(f, NULL, LAG_ENOMEM);
   int rc = renew_probe(f);
@@ -282,6 +287,7 @@ int lag_flow_run(FlowMap *f, double t, double dt, const double *y0, double *y1, 
     snprintf(f->message, sizeof f->message, "an event ends the motion at t = %s s", LAG_TEXT(lag_sim_time(sim)));
   else if (rc) keep_message(f, sim, rc);
   memcpy(y1, sim->now, (size_t)f->n * sizeof *y1);
+  if (rc == LAG_OK && lag_rhs(&sim->pb, sim->run->t, sim->now, f->rates)) f->rates[0] = NAN;
   lag_sim_free(sim);
   return rc;
 }

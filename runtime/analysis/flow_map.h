@@ -20,6 +20,7 @@ typedef struct FlowMap {
   lag_scene scene;                                        /* of the runs: the scene's, with another start of the span */
   int stopped;                                            /* 1: the last run was ended by an event */
   int differences; /* 1: Phi is by differences of runs, to some eight digits: a run over contacts had no tangent */
+  double *rates;                                          /* [n] at the end of the last run, on its side of switches */
   double *jumps;                                          /* of each charge: 1: events changed it in a run */
   double *at, *up, *down, *mass, *linear, *room, *square; /* scratch */
   char message[600];                                      /* of the last failure */

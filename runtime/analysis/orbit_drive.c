@@ -27,8 +27,10 @@ static int renew_drive(PeriodicOrbit *o, double near) {
 
 int lag_orbit_period_is_usual(PeriodicOrbit *o) {
   const double longest = 30; /* near a homoclinic motion the period grows without limit */
-  if (o->T > 0 && o->T < longest * o->time) return 1;
-  snprintf(o->flow.message, sizeof o->flow.message, "the period has become %.6g s", o->T);
+  int asked = o->led >= 0 && o->held[o->led].kind == ORBIT_PERIOD; /* a range of periods is its own limit */
+  if (o->T > 0 && (asked || o->T < longest * o->time)) return 1;
+  snprintf(o->flow.message, sizeof o->flow.message,
+           "the period has become %.6g s, %g times that at the begin: begin there to go on", o->T, longest);
   return 0;
 }
 

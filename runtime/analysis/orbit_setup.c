@@ -20,9 +20,9 @@ static int allocate(PeriodicOrbit *o) {
   size_t charges = (size_t)lag_flow_charges(&o->flow);
   lag_orbit_count(o);
   size_t rows = (m + 1) * n + (size_t)o->nheld + charges + group + 1, cols = m * n + 2 + group; /* with continuation */
-  const lag_part parts[] = {{&o->y, m * n}, {&o->end, m * n}, {&o->ends, m * n}, {&o->Phi, m * n * n}, {&o->unit, n},
-      {&o->turns, n}, {&o->offset, n}, {&o->affine, group * size * size + 1}, {&o->target, n}, {&o->G, n * n},
-      {&o->A, rows * cols}, {&o->b, rows},
+  const lag_part parts[] = {{&o->y, m * n}, {&o->end, m * n}, {&o->ends, m * n}, {&o->Phi, m * n * n},
+      {&o->rates, m * n}, {&o->unit, n}, {&o->turns, n}, {&o->offset, n}, {&o->affine, group * size * size + 1},
+      {&o->target, n}, {&o->G, n * n}, {&o->A, rows * cols}, {&o->b, rows},
       {&o->V, cols * cols}, {&o->sigma, cols}, {&o->x, cols + 2 * n}, {&o->saved, m * n * (charges + 2) + cols},
       {&o->across, m * n * charges + 1},
       {&o->w, 4 * size * size + 4 * n}, {&o->re, n}, {&o->im, n}};

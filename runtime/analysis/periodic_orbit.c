@@ -66,13 +66,24 @@ static double begin_gap(const PeriodicOrbit *o, int i) {
   return (o->y[i] - R->sign[i] * o->y[R->from[i]] - o->offset[i]) / o->unit[i];
 }
 
+/* Row of component i of the begin of a motion that is the same backwards. */
+static void begin_row(PeriodicOrbit *o, int row, int i) {
+  const StateMap *R = o->reverse;
+  int from = R->from[i];
+  o->A[row * o->cols + i] += 1;
+  o->A[row * o->cols + from] -= R->sign[i] * o->unit[from] / o->unit[i];
+  o->b[row] = -begin_gap(o, i);
+}
+
 /* Runs all segments; residual := what is left. */
 int lag_orbit_shoot(PeriodicOrbit *o, int tangents) {
   int n = o->n, rc = LAG_OK;
   double sum = 0;
-  for (int k = 0; k < o->m && rc == LAG_OK; k++)
+  for (int k = 0; k < o->m && rc == LAG_OK; k++) {
     rc = lag_flow_run(&o->flow, begins(o, k), o->T / o->m, o->y + k * n, o->end + k * n,
                       tangents ? o->Phi + k * n * n : NULL);
+    if (tangents) memcpy(o->rates + k * n, o->flow.rates, (size_t)n * sizeof *o->rates);
+  }
   lag_orbit_set_target(o);
   if (o->half && tangents) less_image(o, n, o->Phi + (o->m - 1) * n * n);
   for (int k = 0; k < o->m; k++)
@@ -163,17 +174,43 @@ static void leave_led(const PeriodicOrbit *o, int i, double *X) {
   X[partner] = o->unit[partner];
 }
 
-/* Rows across the motion, and across the symmetries of conserved charges. */
+/* Component of such a begin that the motion changes most against its image; of others -1. */
+static int pinned_component(const PeriodicOrbit *o, const double *rates) {
+  int pinned = -1;
+  double most = 0;
+  for (int i = 0; i < o->n && o->reverse; i++) {
+    double off = fabs(rates[i] - o->reverse->sign[i] * rates[o->reverse->from[i]]) / o->unit[i];
+    if (off > most) pinned = i, most = off;
+  }
+  return pinned;
+}
+
+/* X[n] := its largest component alone: a begin at a turning point stays at it, where steps across X would lead away
+ * from it ever faster. */
+static void keep_largest(const PeriodicOrbit *o, double *X) {
+  int most = 0;
+  for (int i = 1; i < o->n; i++)
+    if (fabs(X[i]) / o->unit[i] > fabs(X[most]) / o->unit[most]) most = i;
+  for (int i = 0; i < o->n; i++) X[i] = i == most ? X[i] : 0;
+}
+
+/* Rows across the motion, or of a begin that is its own image, and across the symmetries of conserved charges. */
 static int phase_rows(PeriodicOrbit *o) {
   const OrbitHold *lead = o->led >= 0 ? &o->held[o->led] : NULL;
   int n = o->n, row = o->m * n + o->nheld, rc = LAG_OK;
   double *X = o->x;
+  o->pinned = -1;
   for (int k = -1; k < o->ncharges && rc == LAG_OK; k++) {
     if (k < 0 ? o->flow.forced : o->charge[k] == 0) continue;
     if (lag_flow_field(&o->flow, k < 0 ? 0 : o->charge[k], o->flow.t0, o->y, X)) continue;
     double size = 0;
     if (k < 0 && holds_phase(o, X)) continue;
+    if (k < 0 && (o->pinned = pinned_component(o, X)) >= 0) {
+      begin_row(o, row++, o->pinned);
+      continue;
+    }
     if (k < 0 && lead && lead->kind == ORBIT_STATE) leave_led(o, lead->of, X);
+    if (k < 0) keep_largest(o, X);
     for (int i = 0; i < n; i++) size += X[i] * X[i] / (o->unit[i] * o->unit[i]);
     for (int i = 0; i < n && size > 0; i++) o->A[row * o->cols + i] = X[i] / o->unit[i] / sqrt(size);
     row++;
@@ -222,13 +259,7 @@ static int held_rows(PeriodicOrbit *o) {
 
 /* Rows of the begin of a motion that is the same backwards, behind those of conditions. */
 static void begin_rows(PeriodicOrbit *o) {
-  const StateMap *R = o->reverse;
-  for (int i = 0; i < o->n; i++) {
-    int row = o->m * o->n + o->nheld + i, from = R->from[i];
-    o->A[row * o->cols + i] += 1;
-    o->A[row * o->cols + from] -= R->sign[i] * o->unit[from] / o->unit[i];
-    o->b[row] = -begin_gap(o, i);
-  }
+  for (int i = 0; i < o->n; i++) begin_row(o, o->m * o->n + o->nheld + i, i);
 }
 
 /* Removes the part of the shooting rows along w[m n], of unit length. */
@@ -333,6 +364,7 @@ void lag_orbit_residual(PeriodicOrbit *o) {
   }
   for (int k = 0; k < o->nheld; k++) o->b[all + k] = -off_by(o, k);
   for (int i = 0; i < o->n && o->half; i++) o->b[all + o->nheld + i] = -begin_gap(o, i);
+  if (o->continues && o->reverse && o->pinned >= 0) o->b[all + o->nheld] = -begin_gap(o, o->pinned);
 }
 
 /* ---- Newton's steps */
@@ -506,6 +538,10 @@ int lag_orbit_refine(PeriodicOrbit *o) {
   like->tol = like->pb.tol = fmax(tol / 100, 1e-15);
   if (like->tol == tol || lag_flow_contacts(&o->flow)) like->tol = like->pb.tol = 100 * tol;
   int rc = lag_orbit_shoot(o, 1);
+  if (rc && like->tol < tol) { /* rounding, as of steps between two events that are near */
+    like->tol = like->pb.tol = 100 * tol;
+    rc = lag_orbit_shoot(o, 1);
+  }
   rc = rc ? rc : lag_orbit_assemble(o);
   if (rc == LAG_OK) {
     lag_singular_values(o->rows, o->cols, o->A, o->V, o->sigma);

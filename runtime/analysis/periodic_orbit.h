@@ -33,6 +33,7 @@ typedef struct PeriodicOrbit {
   int drives;            /* of a driven model: periods of the drive in it */
   double *y;             /* [m n] the states at the begin of each segment */
   double *end, *Phi;     /* [m n], [m n n] states at the ends, and their derivatives */
+  double *rates;         /* [m n] rates at the ends, where Phi was made */
   double *unit, time;    /* [n] sizes of the motion's components, and of the period */
   double *turns;         /* [n] advance of periodic angles over a period */
   int ncharges, *charge; /* conserved charges */
@@ -51,7 +52,7 @@ typedef struct PeriodicOrbit {
   int asymmetric;  /* 1: events do not have the symmetry `closing` */
   /* 1: one more unknown, `parameter`: the value that condition `led` keeps, or, for -1, that of the model's parameter
    * `name`; and rows that fix the phase and the place along symmetries */
-  int continues, led;
+  int continues, led, pinned; /* pinned: the component of a reversible begin that fixes the phase; -1: none */
   const char *name;
   double parameter, parameter_unit;
   double *target; /* [n] G y(0), */

@@ -39,13 +39,27 @@ static const char *event_at_node(PeriodicOrbit *o) {
   return name;
 }
 
+/* Whether the parameter stays along the branch, to rounding. */
+static int stands(const Job *job, const Part *part) {
+  const double rounding = 1e-9;
+  int last = part->problem->cols - 1;
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const BranchPoint *at = part->branch.first; at; at = at->next)
+    low = fmin(low, at->u[last]), high = fmax(high, at->u[last]);
+  return job->led_kind < 0 && part->branch.npoints > 2 && high - low < rounding;
+}
+
 /* part->why := what kept the branch from going on: a value that the model refuses, a run that fails, a motion that
  * becomes a rest, or one whose period grows without limit. */
 static void explain_end(const Job *job, Part *part) {
   const FlowMap *f = part->orbit ? &part->orbit->flow : job->steady.cols ? &job->steady.flow : &job->rest.flow;
   const BranchPoint *last = part->branch.last, *before = part->branch.first;
   while (before && before->next != last) before = before->next;
-  if (part->branch.end != BRANCH_LOST) return;
+  if (stands(job, part))
+    snprintf(part->why, sizeof part->why,
+             "%s stays along this branch, a family at this value: `lagc continue` with that value and energy=A..B, "
+             "period=A..B or a coordinate follows it", job->name);
+  if (part->branch.end != BRANCH_LOST || part->why[0]) return;
   snprintf(part->why, sizeof part->why, "%s", f->message);
   if (part->orbit && !part->problem->place(part->problem->of, last->u)) {
     const char *event = event_at_node(part->orbit);
@@ -57,7 +71,7 @@ static void explain_end(const Job *job, Part *part) {
     if (event) return;
   }
   if (!part->orbit || f->forced || !before) return;
-  const double steep = 10; /* change of the period, in periods, over that of the parameter, in ranges */
+  const double steep = 1000; /* change of the period, in periods, over that of the parameter, in ranges */
   int cols = part->problem->cols, T = part->orbit->m * part->orbit->n;
   double longer = (last->u[T] - before->u[T]) / last->u[T], further = fabs(last->u[cols - 1] - before->u[cols - 1]);
   if (longer > steep * further)

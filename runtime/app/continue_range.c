@@ -35,7 +35,7 @@ int lag_continue_take_range(Job *job) {
 
 int lag_continue_find_parameter(Job *job) {
   App *app = job->app;
-  int index = 0, charge = lag_charge_named(app, job->name, strlen(job->name)),
+  int index = 0, kind, charge = lag_charge_named(app, job->name, strlen(job->name)),
       state = lag_state_named(app, job->name, strlen(job->name));
   job->factor = 1;
   job->led_kind = -1;
@@ -46,7 +46,11 @@ int lag_continue_find_parameter(Job *job) {
     job->factor = 1 / (lag_sim_declared(app->sim, state, 1) - lag_sim_declared(app->sim, state, 0));
     job->offset *= job->factor;
   } else if (charge >= 0) job->led_kind = ORBIT_CHARGE, job->led_of = charge;
-  else if (lag_find_name(app->scene->model, job->name, &index, &job->unit) != LAG_IS_P)
+  else if ((kind = lag_find_name(app->scene->model, job->name, &index, &job->unit)) == LAG_IS_U)
+    return lag_app_error(&app->args,
+                         "%s is an input: declare a parameter, `param`, and set the input to it, `input %s = ...`; "
+                         "that runs over a range", job->name, job->name);
+  else if (kind != LAG_IS_P)
     return lag_app_error(&app->args,
                          "%s: the model has no parameter of this name; of periodic motions also `energy`, a conserved "
                          "charge, `period`, a coordinate, velocity or state can run over a range",

@@ -124,7 +124,7 @@ void lag_continue_put_text(FILE *f, const Job *job) {
       else if (!at->next) put_point(f, job, part, at, ends[part->branch.end]);
     }
     if (part->branch.npoints == 1) fprintf(f, "  %s\n", ends[part->branch.end]);
-    if (part->why[0]) fprintf(f, "  it ends there: %s\n", part->why);
+    if (part->why[0]) fprintf(f, "  %s%s\n", part->branch.end == BRANCH_LOST ? "it ends there: " : "", part->why);
   }
 }
 

@@ -79,6 +79,9 @@ static int take_row(Job *job, CsvFile *f) {
                              "options, or leave out --resume", by, job->written_by);
   for (int i = 0; i < t->ncols; i++)
     if (read_field(f, &t->cols[i], f->field[i], &row[i])) return -1;
+  if (!isfinite(row[0])) return lag_csv_refuse(f, "%s: `%s` is no place of a branch", f->names[0], f->field[0]);
+  if (!(row[1] >= 1 && row[1] <= 1e6 && row[1] == rint(row[1])))
+    return lag_csv_refuse(f, "%s: `%s` is no number of a branch: 1, 2, ...", f->names[1], f->field[1]);
   return lag_table_add(t, row) ? lag_csv_refuse(f, "out of memory") : 0;
 }
 

@@ -28,6 +28,27 @@ follow models/lorenz.lag x=0 y=0 z=0 rho=0..26 --branches
 kinds "branch point;end;end;Hopf;end;Hopf;end;end;end;"
 close 1 parameter 1 1e-10
 close 4 parameter 24.7368421052631579 1e-9
+# H. Ziegler (1952), masses 2 and 1: without friction frequencies collide at (7 - 2 sqrt(2))/2 though no energy is conserved; with it a Hopf point, 41/28 + c^2/2
+follow $dir/ziegler.lag P=0..6
+kinds "frequencies collide;end;end;"
+close 1 parameter 2.0857864376269049 1e-10
+follow $dir/ziegler.lag P=0..6 c=0.1
+kinds "Hopf;end;end;"
+close 1 parameter 1.4692857142857143 1e-9
+# a Hopf point at which a step ends; all motions that leave it have one parameter, and rounding makes no folds
+follow $dir/vanderpol.lag mu=-1..3 --branches --most 40
+kinds "end;Hopf;end;end;"
+close 2 parameter 0 1e-10
+check "$title: the branch stands" grep -q 'stays along this branch, a family at this value' "$TMP/json"
+# Hill's problem: M. Henon, Astronomy and Astrophysics 1 (1969) 223: family g loses stability at C = -2 E = 4.49999; the begin stays at a right angle to y = 0
+follow $dir/hill.lag g energy=-2.4..-2.2 --reverse y=-y --guess 1
+close 1 parameter -2.249995 5e-6
+close 2 y 0 1e-14
+# the body on the axis by DOP853 and Brent's method (SciPy): the begin stays at rest, however long the period
+follow $dir/sitnikov.lag period=3..150
+kinds "end;end;"
+close 1 z 10.39416442119 1e-9
+close 1 "z'" 0 1e-12
 # a parameter's bound is a place like any other: differences are one-sided there
 check "to a bound" sh -c "'$LAGC' continue models/lorenz.lag x=0 y=0 z=0 rho=3..0 | grep -q 'end of the range   rho = 0, '"
 # a driven mass: x(0) is the real part of 1/(k - w^2 + i c w); its period is the drive's at w, from 30 times the first one
@@ -243,9 +264,11 @@ ends() { check "$1" sh -c "'$LAGC' continue $2 | grep -q 'it ends there: $3'"; }
 ends "a family ends: at a value that the model refuses" "models/lorenz.lag x=0 y=0 z=0 rho=0.5..-3" "rho = .*: the model declares rho >= 0"
 ends "a family ends: at a bound that is no value" "models/pendulum.lag wide l=0..1" "l = .*: the model declares l > 0"
 ends "a family ends: in a rest" "models/pendulum.lag wide th=0..1.6" "the motion shrinks to a state of rest"
+ends "a longer period than branches go to" "$dir/sitnikov.lag z=0.5..50" ".*30 times that at the begin: begin there to go on"
 slow ends "a family ends: next to the separatrix" "models/pendulum.lag wide energy=9..40" "the period grows without limit"
 refused "no range" 2 "a range is missing: NAME=A..B" "$LAGC" continue models/pendulum.lag wide
 refused "no such name" 2 "the model has no parameter of this name" "$LAGC" continue models/pendulum.lag wide gg=1..2
+refused "an input" 2 "G is an input: declare a parameter" "$LAGC" continue tests/exec/modes/driven.lag G=1..2
 refused "a range of another dimension" 2 "but [J] is needed here" "$LAGC" continue models/pendulum.lag wide 'energy=9..12[kg]'
 refused "a range without length" 2 "the ends of the range are equal" "$LAGC" continue models/pendulum.lag wide l=1..1
 refused "two ranges" 2 "one value runs over a range" "$LAGC" continue models/pendulum.lag wide l=1..2 m=1..2
@@ -272,4 +295,8 @@ refused "rows of another NAME" 2 "column 1 is \`energy\`" "$LAGC" continue model
 refused "no branch to go on" 2 "no branch can go on within 9..18" "$LAGC" continue models/pendulum.lag wide energy=9..18 --resume "$family"
 sed '3s/^[^,]*/nine/' "$family" >"$TMP/bad.csv"
 refused "a row without number" 2 "bad.csv:3: energy: \`nine\` is no number" "$LAGC" continue models/pendulum.lag wide energy=9..20 --resume "$TMP/bad.csv"
+sed '4s/^[^,]*,/nan,/' "$family" >"$TMP/bad.csv"
+refused "a row without a place" 2 "bad.csv:4: energy: \`nan\` is no place" "$LAGC" continue models/pendulum.lag wide energy=9..20 --resume "$TMP/bad.csv"
+sed '4s/,1,/,99999999999,/' "$family" >"$TMP/bad.csv"
+refused "a row of no branch" 2 "bad.csv:4: branch: \`99999999999\` is no number of a branch" "$LAGC" continue models/pendulum.lag wide energy=9..20 --resume "$TMP/bad.csv"
 tap_end

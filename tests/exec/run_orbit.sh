@@ -113,6 +113,11 @@ orbit $dir/mathieu.lag a=-0.01998 --period 6.283185307179586
 near "$title: product of multipliers" 1e-13 1 "$(multiplier 1 1 | awk -v b="$(multiplier 2 1)" '{ printf "%.17g", $1*b }')"
 orbit models/kapitza.lag "th=180[deg]"
 near "$title: product of multipliers" 1e-10 1 "$(multiplier 1 1 | awk -v im="$(multiplier 1 2)" '{ printf "%.15g", $1^2 + im^2 }')"
+# a block that sticks to a belt forgets on which motion it came; the start lies beside the slide by rounding
+orbit models/stick_slip.lag x=0.1
+closes 1 1 0 1e-12
+# a drive without size is none
+check "$title: a drive of size 0" says 3 "starts at rest, at an equilibrium" "$LAGC" orbit $dir/driven.lag shaken x=0 F=0 c=0.1
 # Kicks have a period: the standard map's fixed points, multipliers a + 1/a = 2 -+ K, and its motion of period 2 through pi, where they have K = 0.9's
 # 2 - K^2, over segments, too; a cell of lenses: 2 - (k T/2)^2 with T = 2 (E. Courant, H. Snyder, Annals of Physics 3 (1958) 1)
 orbit models/standard_map.lag q=0.1 p=0.05
