@@ -146,7 +146,10 @@ static int choose_period(App *app, PeriodicOrbit *o, double *T) {
   FlowMap f;
   int rc = given_period(a, T);
   const double longest = 1e4 * (search_end(app) - app->scene->t0);
-  if (rc == 0 && longest > 0 && *T > longest)
+  if (rc == 0 && !(longest > 0))
+    rc = lag_app_error(a, "a period is looked for forwards in time: write --until with a time after %g s",
+                       app->scene->t0);
+  if (rc == 0 && *T > longest)
     rc = lag_app_error(a, "%s %g: more than %g s, ten thousand times the span of scene %s; a longer one: --until T",
                        a->period ? "--period" : "--guess", *T, longest, app->scene->name);
   if (rc) return rc;

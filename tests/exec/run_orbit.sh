@@ -261,4 +261,5 @@ refused "too many segments" 2 "up to 200" "$LAGC" orbit models/pendulum.lag wide
 refused "a start at rest" 3 "starts at rest, at an equilibrium" "$LAGC" orbit models/pendulum.lag wide "th=180[deg]"
 refused "friction, backwards" 3 "friction spoils that" "$LAGC" orbit models/pendulum.lag fading --reverse th=-th
 refused "no word for rest" 2 "or \`rest\`" "$LAGC" orbit models/pendulum.lag wide --reverse th
+refused "a time before the start" 2 "a time after 0 s" "$LAGC" orbit models/pendulum.lag wide --until -3
 tap_end
