@@ -378,6 +378,23 @@ static void read_variation(Reader *r) {
   r->m->inverse = program(&with, m->nq, 0, 0);
 }
 
+static void read_kepler(Reader *r) {
+  Bytes *b = r->b;
+  if (!flag(b)) return;
+  EvaluatedKepler *k = lag_bytes_room(b, 1, sizeof *k);
+  if (!k) return;
+  const int nq = r->m->model.nq;
+  const int n = k->kepler.n = lag_bytes_int(b, 1, nq), dim = k->kepler.dim = lag_bytes_int(b, 2, 3);
+  k->kepler.fixed = flag(b);
+  if (!lag_bytes_need(b, (int64_t)n * dim == nq, "coordinates of bodies are missing")) return;
+  int *at = lag_bytes_room(b, (size_t)nq, sizeof *at);
+  for (int i = 0; at && i < nq; i++) at[i] = below(b, nq);
+  k->kepler.at = at;
+  k->values = wanted(r, 1, 2 * n, 0);
+  lag_set_kepler_functions(k);
+  r->m->model.kepler = &k->kepler;
+}
+
 static void read_taylor(Reader *r) {
   enum { MOST = 1 << 24 };
   Bytes *b = r->b;
@@ -451,6 +468,7 @@ static Reader read_model(Bytes *b) {
   read_switches(&r);
   read_linear(&r);
   read_variation(&r);
+  read_kepler(&r);
   read_taylor(&r);
   if (!b->why) lag_set_model_functions(r.m);
   return r;

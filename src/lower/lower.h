@@ -65,6 +65,9 @@ Prog *lower_multipliers(const Eqns *e); /* out 0: lambda of each constraint, in 
 /* out 0: v1, the velocities after the impact of the contact whose entry of g is 1, the others 0; NULL: no contact
  * strikes */
 Prog *lower_impact(const Eqns *e);
+struct KeplerPart;
+/* out 0: masses, then couplings, of all bodies */
+Prog *lower_kepler(const Eqns *e, const struct KeplerPart *of);
 Prog *lower_outputs(const Eqns *e); /* out 0: out[nout] */
 Prog *lower_plain_outputs(const Eqns *e); /* out 0: outputs without closed forms and actions, in their order */
 Prog *lower_action_curve(const Eqns *e, uint32_t i); /* out 0: roots[4] of e->actions[i] */
