@@ -28,17 +28,18 @@ static const lag_method_option options[] = {
      SBAB4, 0, 4, .choices = scheme_names}};
 static const lag_composition *scheme_of(const lag_problem *pb) { return schemes[(int)pb->opt[1]]; }
 
-/* Arrays of nq or n = 2 nq numbers, in Jacobi's coordinates but Y0, PLACE and RATE; and of bodies. */
 typedef struct WisdomHolman {
   lag_fixed_step step;
   double ready; /* 1: X, KICK are those of the state */
   double x[];
 } WisdomHolman;
 
-enum { X, LOST, KICK, X0, LOST0, KICK0, STATE, RATE, SCRATCH, NARRAYS = SCRATCH + 3 };
-/* order[k]: body of place k; mass; mu of Kepler's motion; mass of the bodies before it and it; k of each body and
- * masses as the model gives them. */
-enum { ORDER, MU, INNER, VALUES, PER_BODY = VALUES + 2 };
+/* Arrays in Jacobi's coordinates of 3 components a body, place by place, of positions (N) or of positions and velocities
+ * (2 N): a state, rounding that its sums have lost, the perturbation; the same at the begin of the last step, and of
+ * another step. */
+enum { X, LOST = X + 2, KICK = LOST + 2, OF_STATE, BEGIN = OF_STATE, OTHER = BEGIN + OF_STATE, NARRAYS = OTHER + OF_STATE };
+/* By place: the body; mu of its Kepler motion; its part of the mass of the bodies up to it. By body: masses, and k. */
+enum { ORDER, MU, PART, VALUES, PER_BODY = VALUES + 2 };
 
 static const char *refuses(const lag_model *m, const double *opt) {
   (void)opt;
@@ -48,13 +49,17 @@ static const char *refuses(const lag_model *m, const double *opt) {
 }
 
 static size_t work_size(const lag_problem *pb) {
-  return sizeof(WisdomHolman) / sizeof(double) + NARRAYS * (size_t)pb->n + PER_BODY * (size_t)pb->model->kepler->n;
+  return sizeof(WisdomHolman) / sizeof(double) + (3 * NARRAYS + PER_BODY) * (size_t)pb->model->kepler->n +
+         2 * (size_t)pb->n;
 }
 
-static double *array(WisdomHolman *w, const lag_problem *pb, int which) { return w->x + which * pb->n; }
+static int length(const lag_problem *pb) { return 3 * pb->model->kepler->n; }
+static double *array(WisdomHolman *w, const lag_problem *pb, int which) { return w->x + which * length(pb); }
 static double *per_body(WisdomHolman *w, const lag_problem *pb, int which) {
-  return w->x + NARRAYS * pb->n + which * pb->model->kepler->n;
+  return w->x + NARRAYS * length(pb) + which * pb->model->kepler->n;
 }
+/* A state as the model has it, and its rates. */
+static double *state_of(WisdomHolman *w, const lag_problem *pb) { return per_body(w, pb, PER_BODY); }
 
 static void reset(void *work, lag_problem *pb) {
   WisdomHolman *w = work;
@@ -66,7 +71,7 @@ static void reset(void *work, lag_problem *pb) {
 static int read_values(WisdomHolman *w, lag_problem *pb, int *heaviest) {
   const lag_model *m = pb->model;
   const lag_kepler *of = m->kepler;
-  double *q = array(w, pb, STATE), *out = per_body(w, pb, VALUES);
+  double *q = state_of(w, pb), *out = per_body(w, pb, VALUES);
   memset(q, 0, (size_t)pb->n * sizeof *q);
   *heaviest = 0;
   for (int turn = 0; turn < 2 - of->fixed; turn++) {
@@ -113,7 +118,7 @@ static int init(void *work, lag_problem *pb, const double *opt) {
 /* Places of bodies by their distance from the heaviest one, which is first; mu of their Kepler motions. */
 static int place_bodies(WisdomHolman *w, lag_problem *pb, const double *y) {
   const lag_kepler *of = pb->model->kepler;
-  double *order = per_body(w, pb, ORDER), *mu = per_body(w, pb, MU), *inner = per_body(w, pb, INNER);
+  double *order = per_body(w, pb, ORDER), *mu = per_body(w, pb, MU), *part = per_body(w, pb, PART), inner = 0;
   int first, rc = read_values(w, pb, &first);
   const double *mass = per_body(w, pb, VALUES), *k = mass + of->n;
   if (rc) return rc;
@@ -129,85 +134,79 @@ static int place_bodies(WisdomHolman *w, lag_problem *pb, const double *y) {
   }
   for (int i = 0; i < of->n; i++) {
     const int body = (int)order[i];
-    inner[i] = mass[body] + (i ? inner[i - 1] : 0);
-    mu[i] = of->fixed ? k[body] / mass[body] : i ? k[body] / (mass[first] * mass[body]) * inner[i] : 0;
+    inner += mass[body];
+    part[i] = mass[body] / inner;
+    mu[i] = of->fixed ? k[body] / mass[body] : i ? k[body] / (mass[first] * mass[body]) * inner : 0;
   }
   return LAG_OK;
 }
 
-/* to := Jacobi's coordinates of from[nq], body by body; a fixed centre: the same, in the order of bodies. */
+/* to := Jacobi's coordinates of from[nq]; with a fixed centre the same. */
 static void to_jacobi(WisdomHolman *w, const lag_problem *pb, const double *from, double *to) {
   const lag_kepler *of = pb->model->kepler;
-  const double *order = per_body(w, pb, ORDER), *inner = per_body(w, pb, INNER), *mass = per_body(w, pb, VALUES);
+  const double *order = per_body(w, pb, ORDER), *part = per_body(w, pb, PART);
+  const int dim = of->dim, joint = !of->fixed;
   double centre[3] = {0};
-  for (int i = 0; i < of->n; i++) {
-    const int body = (int)order[i];
-    const double part = mass[body] / inner[i];
-    for (int c = 0; c < of->dim; c++) {
-      const double d = from[of->at[body * of->dim + c]] - centre[c];
-      to[i * of->dim + c] = d;
-      if (!of->fixed) centre[c] += part * d;
-    }
+  for (int i = 0; i < of->n; i++, to += 3) {
+    const int *at = of->at + (int)order[i] * dim;
+    to[0] = from[at[0]] - centre[0], to[1] = from[at[1]] - centre[1];
+    to[2] = (dim > 2 ? from[at[2]] : 0) - centre[2];
+    for (int c = 0; c < 3 && joint; c++) centre[c] += part[i] * to[c];
   }
-  for (int c = 0; c < of->dim && !of->fixed; c++) to[c] = centre[c];
+  to -= length(pb);
+  for (int c = 0; c < 3 && joint; c++) to[c] = centre[c];
 }
 
 static void from_jacobi(WisdomHolman *w, const lag_problem *pb, const double *from, double *to) {
   const lag_kepler *of = pb->model->kepler;
-  const double *order = per_body(w, pb, ORDER), *inner = per_body(w, pb, INNER), *mass = per_body(w, pb, VALUES);
-  double centre[3] = {0};
-  for (int c = 0; c < of->dim && !of->fixed; c++) centre[c] = from[c];
-  for (int i = of->n - 1; i >= 0; i--) {
-    const int body = (int)order[i];
-    const double part = mass[body] / inner[i];
-    const int moves = i && !of->fixed;
-    for (int c = 0; c < of->dim; c++) {
-      const double d = i || of->fixed ? from[i * of->dim + c] : 0;
-      if (moves) centre[c] -= part * d;
-      to[of->at[body * of->dim + c]] = centre[c] + d;
-    }
+  const double *order = per_body(w, pb, ORDER), *part = per_body(w, pb, PART);
+  const int dim = of->dim, joint = !of->fixed;
+  double centre[3] = {joint ? from[0] : 0, joint ? from[1] : 0, joint ? from[2] : 0}, x[3];
+  for (int i = of->n - 1; i >= joint; i--) {
+    const int *at = of->at + (int)order[i] * dim;
+    const double *d = from + 3 * i;
+    for (int c = 0; c < 3 && joint; c++) centre[c] -= part[i] * d[c];
+    for (int c = 0; c < 3; c++) x[c] = centre[c] + d[c];
+    to[at[0]] = x[0], to[at[1]] = x[1];
+    if (dim > 2) to[at[2]] = x[2];
   }
+  for (int c = 0; c < dim && joint; c++) to[of->at[(int)order[0] * dim + c]] = centre[c];
 }
 
 /* kick := accelerations at Jacobi's coordinates x less those of Kepler. */
 static int perturbation(WisdomHolman *w, lag_problem *pb, double t, const double *x, double *kick) {
-  const lag_kepler *of = pb->model->kepler;
   const double *mu = per_body(w, pb, MU);
-  double *state = array(w, pb, STATE), *rate = array(w, pb, RATE);
+  double *state = state_of(w, pb), *rate = state + pb->n;
   from_jacobi(w, pb, x, state);
-  const int rc = lag_step_rhs(pb, t, state, rate);
-  if (rc) return rc;
+  const int rc = lag_rhs(pb, t, state, rate); /* the state at the end shows what is not finite */
+  if (rc) return lag_step_refused(pb, rc, t);
   to_jacobi(w, pb, rate + pb->nq, kick);
-  for (int i = !of->fixed; i < of->n; i++) {
-    double r2 = 0;
-    for (int c = 0; c < of->dim; c++) r2 += x[i * of->dim + c] * x[i * of->dim + c];
-    const double pull = mu[i] / (r2 * sqrt(r2));
-    for (int c = 0; c < of->dim; c++) kick[i * of->dim + c] += pull * x[i * of->dim + c];
+  for (int i = !pb->model->kepler->fixed; i < pb->model->kepler->n; i++) {
+    const double *q = x + 3 * i, r2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2], pull = mu[i] / (r2 * sqrt(r2));
+    for (int c = 0; c < 3; c++) kick[3 * i + c] += pull * q[c];
   }
   return LAG_OK;
 }
 
 /* Kepler's motions of all bodies; the centre of mass moves straight on. */
 static void drift(WisdomHolman *w, const lag_problem *pb, double dt, double *x, double *lost) {
-  const lag_kepler *of = pb->model->kepler;
   const double *mu = per_body(w, pb, MU);
-  const int nq = pb->nq;
-  for (int i = 0; i < of->n; i++) {
-    double *q = x + i * of->dim, *lost_q = lost + i * of->dim;
-    if (mu[i] > 0) lag_kepler_drift(of->dim, mu[i], dt, q, q + nq, lost_q, lost_q + nq);
+  const int n = length(pb);
+  for (int k = 0; k < n; k += 3) {
+    if (mu[k / 3] > 0) lag_kepler_drift(mu[k / 3], dt, x + k, x + n + k, lost + k, lost + n + k);
     else
-      for (int c = 0; c < of->dim; c++) q[c] = lag_compensated_sum(q[c], dt * q[nq + c], &lost_q[c]);
+      for (int c = k; c < k + 3; c++) x[c] = lag_compensated_sum(x[c], dt * x[n + c], &lost[c]);
   }
 }
 
 /* Whether steps begin with a drift, and need no forces at their ends. */
 static int drifts_first(const lag_composition *c) { return !(c->kick[0] > 0); }
 
-/* A step dt of x = [q|v] with what its sums have lost, from the perturbation to that at the end. */
-static int compose(WisdomHolman *w, lag_problem *pb, double t, double dt, double *x, double *lost, double *kick) {
+/* A step dt of x, with what its sums have lost, from the perturbation to that at the end. */
+static int compose(WisdomHolman *w, lag_problem *pb, double t, double dt, double *x) {
   const lag_composition *c = scheme_of(pb);
-  const int nq = pb->nq, first = drifts_first(c);
-  double at = 0;
+  const int nq = length(pb), first = drifts_first(c);
+  double *lost = x + LOST * nq, *kick = x + KICK * nq, at = 0;
   int rc;
   for (int s = 0;; s++) {
     const double part = c->kick[s] * dt;
@@ -224,33 +223,33 @@ static int compose(WisdomHolman *w, lag_problem *pb, double t, double dt, double
 /* Jacobi's coordinates of a state that is not the end of a step. */
 static int enter(WisdomHolman *w, lag_problem *pb, double t, const double *y) {
   double *x = array(w, pb, X);
-  const int rc = place_bodies(w, pb, y);
+  const int rc = place_bodies(w, pb, y), n = length(pb);
   if (rc) return rc;
   to_jacobi(w, pb, y, x);
-  to_jacobi(w, pb, y + pb->nq, x + pb->nq);
-  memset(array(w, pb, LOST), 0, (size_t)pb->n * sizeof(double));
+  to_jacobi(w, pb, y + pb->nq, x + n);
+  memset(array(w, pb, LOST), 0, 2 * (size_t)n * sizeof *x);
   return drifts_first(scheme_of(pb)) ? LAG_OK : perturbation(w, pb, t, x, array(w, pb, KICK));
 }
 
+/* y := the state x at the end of a step; the last forces had its positions, but where a drift came last. */
 static void leave(WisdomHolman *w, const lag_problem *pb, const double *x, double *y) {
-  from_jacobi(w, pb, x, y);
-  from_jacobi(w, pb, x + pb->nq, y + pb->nq);
+  if (drifts_first(scheme_of(pb))) from_jacobi(w, pb, x, y);
+  else lag_copy(pb->nq, state_of(w, pb), y);
+  from_jacobi(w, pb, x + length(pb), y + pb->nq);
 }
 
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   WisdomHolman *w = work;
-  const size_t bytes = 3 * (size_t)pb->n * sizeof(double);
   double *x = array(w, pb, X);
   lag_next_step next;
   int rc;
   (void)t_stop;
   if ((rc = lag_fixed_step_begin(&w->step, pb, *t, &next)) != 0) return rc;
   if (w->ready == 0.0 && (rc = enter(w, pb, *t, y)) != 0) return rc;
-  memcpy(array(w, pb, X0), x, bytes);
+  memcpy(array(w, pb, BEGIN), x, OF_STATE * (size_t)length(pb) * sizeof *x);
   w->ready = 0; /* until this step succeeds */
-  if ((rc = compose(w, pb, *t, next.dt, x, array(w, pb, LOST), array(w, pb, KICK))) != 0) return rc;
-  pb->bad_index = lag_not_finite(pb->n, x);
-  if (pb->bad_index >= 0) return lag_step_failed(pb, LAG_ENAN, next.tb);
+  if ((rc = compose(w, pb, *t, next.dt, x)) != 0) return rc;
+  if (lag_not_finite(2 * length(pb), x) >= 0) return lag_step_failed(pb, LAG_ENAN, next.tb);
   leave(w, pb, x, y);
   w->ready = 1;
   lag_fixed_step_end(&w->step, &next, t);
@@ -260,13 +259,10 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
 /* A shorter step from the same begin. */
 static void dense(void *work, lag_problem *pb, double t, double *y) {
   WisdomHolman *w = work;
-  double *x = array(w, pb, SCRATCH);
-  memcpy(x, array(w, pb, X0), 3 * (size_t)pb->n * sizeof *x);
-  if (compose(w, pb, w->step.t0, t - w->step.t0, x, x + pb->n, x + 2 * pb->n) != LAG_OK) {
-    y[0] = NAN;
-    return;
-  }
-  leave(w, pb, x, y);
+  double *x = array(w, pb, OTHER);
+  memcpy(x, array(w, pb, BEGIN), OF_STATE * (size_t)length(pb) * sizeof *x);
+  if (compose(w, pb, w->step.t0, t - w->step.t0, x) == LAG_OK) leave(w, pb, x, y);
+  else y[0] = NAN;
 }
 
 const lag_method lag_wisdom_holman = {
