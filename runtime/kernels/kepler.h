@@ -13,30 +13,56 @@
 /* Levels of the series below, the next of which is 2e-17 at x = 0.1. */
 enum { LAG_STUMPFF_LEVELS = sizeof(LAG_REAL) > 8 ? 12 : 5 };
 
-/* G_k = s^k c_k(beta s^2), k = 0 ... 3, with Stumpff's c_k(x) = 1/k! - x/(k + 2)! + ...: at the argument divided
- * by a power of 4 the series of c_2 and c_3, then their formulas for the fourfold argument. */
-static inline void lag_stumpff(LAG_REAL beta, LAG_REAL s, LAG_REAL G[4]) {
+/* 1/(k(k + 1)), 1/((k + 1)(k + 2)) for k = 3, 5, ... */
 #define LAG_LEVEL(k) {LAG_C(1.0)/((k)*((k) + 1)), LAG_C(1.0)/(((k) + 1)*((k) + 2))}
-  static const LAG_REAL level[][2] = {LAG_LEVEL(3),  LAG_LEVEL(5),  LAG_LEVEL(7),  LAG_LEVEL(9),
-                                      LAG_LEVEL(11), LAG_LEVEL(13), LAG_LEVEL(15), LAG_LEVEL(17),
-                                      LAG_LEVEL(19), LAG_LEVEL(21), LAG_LEVEL(23), LAG_LEVEL(25)};
+static const LAG_REAL lag_stumpff_level[][2] = {LAG_LEVEL(3),  LAG_LEVEL(5),  LAG_LEVEL(7),  LAG_LEVEL(9),
+                                                LAG_LEVEL(11), LAG_LEVEL(13), LAG_LEVEL(15), LAG_LEVEL(17),
+                                                LAG_LEVEL(19), LAG_LEVEL(21), LAG_LEVEL(23), LAG_LEVEL(25)};
 #undef LAG_LEVEL
-  LAG_REAL x = beta*s*s, c0, c1, c2 = LAG_C(1.0), c3 = LAG_C(1.0);
+
+/* Bodies side by side: loops over them are short, so that compilers make vectors of them. */
+enum { LAG_KEPLER_BLOCK = 4 };
+#define LAG_EACH(k) for (int k = 0; k < LAG_KEPLER_BLOCK; k++)
+typedef LAG_REAL lag_kepler_lanes[LAG_KEPLER_BLOCK];
+
+/* G_k = s^k c_k(beta s^2), k = 0 ... 3, with Stumpff's c_k(x) = 1/k! - x/(k + 2)! + ...: at the arguments x divided
+ * by 4^folds the series of c_2 and c_3, then their formulas for the fourfold argument. */
+static inline void lag_stumpff_block(const lag_kepler_lanes beta, const lag_kepler_lanes s, int folds,
+                                     lag_kepler_lanes G[4]) {
+  lag_kepler_lanes x, c0, c1, c2, c3;
+  LAG_REAL part = LAG_C(1.0);
+  for (int i = 0; i < folds; i++) part *= LAG_C(0.25);
+  LAG_EACH(k) x[k] = beta[k]*s[k]*s[k]*part, c2[k] = c3[k] = LAG_C(1.0);
+  for (int i = LAG_STUMPFF_LEVELS - 1; i >= 0; i--) {
+    const LAG_REAL l2 = lag_stumpff_level[i][0], l3 = lag_stumpff_level[i][1];
+    LAG_EACH(k) c2[k] = LAG_C(1.0) - x[k]*l2*c2[k];
+    LAG_EACH(k) c3[k] = LAG_C(1.0) - x[k]*l3*c3[k];
+  }
+  LAG_EACH(k) {
+    c2[k] *= LAG_C(0.5), c3[k] *= LAG_OVER(1.0, 6.0);
+    c1[k] = LAG_C(1.0) - x[k]*c3[k], c0[k] = LAG_C(1.0) - x[k]*c2[k];
+  }
+  for (int i = 0; i < folds; i++)
+    LAG_EACH(k) {
+      c3[k] = (c2[k] + c0[k]*c3[k])*LAG_C(0.25);
+      c2[k] = c1[k]*c1[k]*LAG_C(0.5);
+      c1[k] = c0[k]*c1[k];
+      c0[k] = LAG_C(2.0)*c0[k]*c0[k] - LAG_C(1.0);
+    }
+  LAG_EACH(k) {
+    const LAG_REAL s2 = s[k]*s[k];
+    G[0][k] = c0[k], G[1][k] = s[k]*c1[k], G[2][k] = s2*c2[k], G[3][k] = s[k]*s2*c3[k];
+  }
+}
+
+static inline void lag_stumpff(LAG_REAL beta, LAG_REAL s, LAG_REAL G[4]) {
+  const lag_kepler_lanes betas = {beta}, all = {s};
+  LAG_REAL x = beta*s*s;
+  lag_kepler_lanes of[4];
   int folds = 0;
-  for (; x*x > LAG_C(0.01); folds++) x *= LAG_C(0.25);
-  for (int k = LAG_STUMPFF_LEVELS - 1; k >= 0; k--) {
-    c2 = LAG_C(1.0) - x*level[k][0]*c2;
-    c3 = LAG_C(1.0) - x*level[k][1]*c3;
-  }
-  c2 *= LAG_C(0.5), c3 *= LAG_OVER(1.0, 6.0);
-  c1 = LAG_C(1.0) - x*c3, c0 = LAG_C(1.0) - x*c2;
-  for (; folds > 0; folds--) {
-    c3 = (c2 + c0*c3)*LAG_C(0.25);
-    c2 = c1*c1*LAG_C(0.5);
-    c1 = c0*c1;
-    c0 = LAG_C(2.0)*c0*c0 - LAG_C(1.0);
-  }
-  G[0] = c0, G[1] = s*c1, G[2] = s*s*c2, G[3] = s*s*s*c3;
+  for (; x*x > LAG_C(0.01) && folds < 600; folds++) x *= LAG_C(0.25);
+  lag_stumpff_block(betas, all, folds, of);
+  for (int k = 0; k < 4; k++) G[k] = of[k][0];
 }
 
 /* G at s + d, where |beta d^2| is at most 1e-4: addition theorems. */
@@ -56,10 +82,16 @@ typedef struct lag_kepler_orbit {
   LAG_REAL r, eta, beta, zeta;
 } lag_kepler_orbit;
 
+/* Whether the terms that follow in the inverse series, some a^3 d and a x d, are rounding. */
+static inline int lag_kepler_is_near(LAG_REAL beta, LAG_REAL s, LAG_REAL d, LAG_REAL a, LAG_REAL b) {
+  const LAG_REAL small = sizeof s > 8 ? LAG_C(1e-18) : LAG_C(1e-8), x = beta*d*d;
+  return x <= small && -x <= small && a*a <= small && b <= small && -b <= small && d*d <= LAG_C(1e-6)*s*s;
+}
+
 /* G at the universal variable s of the time h, s = int dt/r: the inverse series of h(s) to third order, from the start
  * and then from each estimate, within a bracket that halves where a step leaves it. Time grows with s. */
 static inline void lag_kepler_solve(const lag_kepler_orbit *o, LAG_REAL h, LAG_REAL G[4]) {
-  const LAG_REAL small = sizeof h > 8 ? LAG_C(1e-18) : LAG_C(1e-8), inverse = LAG_C(1.0)/o->r, u = h*inverse;
+  const LAG_REAL inverse = LAG_C(1.0)/o->r, u = h*inverse;
   const LAG_REAL turn1 = LAG_C(0.5)*o->eta*inverse*u, turn2 = o->zeta*inverse*LAG_OVER(1.0, 6.0)*u*u;
   const LAG_REAL part = LAG_C(1.0) - turn1 + (LAG_C(2.0)*turn1*turn1 - turn2);
   LAG_REAL s = part > LAG_C(0.5) && part < LAG_C(2.0) ? u*part : u, low = LAG_C(0.0), high = LAG_C(0.0);
@@ -70,8 +102,7 @@ static inline void lag_kepler_solve(const lag_kepler_orbit *o, LAG_REAL h, LAG_R
     const LAG_REAL a = LAG_C(0.5)*d1*slope*(o->eta*G[0] + o->zeta*G[1]);
     const LAG_REAL b = LAG_OVER(1.0, 6.0)*d1*d1*slope*(o->zeta*G[0] - o->beta*o->eta*G[1]);
     LAG_REAL d = d1*(LAG_C(1.0) - a + (LAG_C(2.0)*a*a - b));
-    const LAG_REAL x = o->beta*d*d; /* the next terms are some a^3 d and a x d */
-    if (x <= small && -x <= small && a*a <= small && b <= small && -b <= small && d*d <= LAG_C(1e-6)*s*s) {
+    if (lag_kepler_is_near(o->beta, s, d, a, b)) {
       lag_stumpff_near(o->beta, d, G);
       return;
     }
@@ -90,25 +121,67 @@ static inline void lag_kepler_solve(const lag_kepler_orbit *o, LAG_REAL h, LAG_R
   }
 }
 
-/* The motion of x[3], v[3]; lost_x, lost_v: rounding that their sums have lost. */
-static inline void lag_kepler_drift(LAG_REAL mu, LAG_REAL h, LAG_REAL *x, LAG_REAL *v, LAG_REAL *lost_x,
-                                    LAG_REAL *lost_v) {
-  LAG_REAL r2 = LAG_C(0.0), v2 = LAG_C(0.0), eta = LAG_C(0.0), G[4] = {LAG_C(1.0), LAG_C(0.0), LAG_C(0.0), LAG_C(0.0)};
-  for (int i = 0; i < 3; i++) r2 += x[i]*x[i], v2 += v[i]*v[i], eta += x[i]*v[i];
-  const LAG_REAL r = LAG_FN(sqrt)(r2), beta = LAG_C(2.0)*mu/r - v2;
-  const lag_kepler_orbit o = {r, eta, beta, mu - beta*r};
-  if (beta > LAG_C(0.0)) {
-    const LAG_REAL period = LAG_C(6.28318530717958647692528676655900577)*mu/(beta*LAG_FN(sqrt)(beta));
-    if (h > period || h < -period) h -= period*LAG_FN(floor)(h/period);
+/* The motions of a block of bodies: x, v, lost_x, lost_v: components at strides of `stride`; lost: rounding that sums
+ * have lost. mu = 0: a straight line. */
+static inline void lag_kepler_drift(const LAG_REAL *mu, LAG_REAL h, int stride, LAG_REAL *x, LAG_REAL *v,
+                                    LAG_REAL *lost_x, LAG_REAL *lost_v) {
+  lag_kepler_lanes r, eta, beta, zeta, s, d, moved, a, b, G[4], f, g, df, dg;
+  LAG_EACH(k) {
+    const LAG_REAL *const q = x + k, *const p = v + k;
+    r[k] = q[0]*q[0] + q[stride]*q[stride] + q[2*stride]*q[2*stride];
+    beta[k] = p[0]*p[0] + p[stride]*p[stride] + p[2*stride]*p[2*stride];
+    eta[k] = q[0]*p[0] + q[stride]*p[stride] + q[2*stride]*p[2*stride];
   }
-  if (h > LAG_C(0.0) || h < LAG_C(0.0)) lag_kepler_solve(&o, h, G);
-  const LAG_REAL r1 = r + (eta*G[1] + o.zeta*G[2]), f = -mu*G[2]/r, g = h - mu*G[3];
-  const LAG_REAL df = -mu*G[1]/(r*r1), dg = -mu*G[2]/r1;
-  for (int i = 0; i < 3; i++) {
-    const LAG_REAL dx = f*x[i] + g*v[i], dv = df*x[i] + dg*v[i];
-    x[i] = lag_compensated_sum(x[i], dx, &lost_x[i]);
-    v[i] = lag_compensated_sum(v[i], dv, &lost_v[i]);
+  LAG_EACH(k) r[k] = mu[k] > LAG_C(0.0) ? LAG_FN(sqrt)(r[k]) : LAG_C(1.0);
+  LAG_EACH(k) {
+    const LAG_REAL inverse = LAG_C(1.0)/r[k], u = h*inverse;
+    beta[k] = LAG_C(2.0)*mu[k]*inverse - beta[k];
+    zeta[k] = mu[k] - beta[k]*r[k];
+    const LAG_REAL turn1 = LAG_C(0.5)*eta[k]*inverse*u, turn2 = zeta[k]*inverse*LAG_OVER(1.0, 6.0)*u*u;
+    moved[k] = LAG_C(2.0)*turn1*turn1 - turn1 - turn2;
+    s[k] = u + u*moved[k];
   }
+  LAG_REAL most = LAG_C(0.0);
+  int easy[LAG_KEPLER_BLOCK], folds = 0;
+  LAG_EACH(k) {
+    const LAG_REAL y = beta[k]*s[k]*s[k], size = y < LAG_C(0.0) ? -y : y;
+    easy[k] = mu[k] > LAG_C(0.0) && moved[k]*moved[k] < LAG_C(0.25) && size < LAG_C(6.4);
+    most = easy[k] && size > most ? size : most;
+  }
+  for (; most > LAG_C(0.1); folds++) most *= LAG_C(0.25);
+  lag_stumpff_block(beta, s, folds, G);
+  LAG_EACH(k) {
+    const LAG_REAL miss = r[k]*s[k] + (eta[k]*G[2][k] + zeta[k]*G[3][k] - h);
+    const LAG_REAL slope = LAG_C(1.0)/(r[k] + (eta[k]*G[1][k] + zeta[k]*G[2][k])), d1 = -miss*slope;
+    a[k] = LAG_C(0.5)*d1*slope*(eta[k]*G[0][k] + zeta[k]*G[1][k]);
+    b[k] = LAG_OVER(1.0, 6.0)*d1*d1*slope*(zeta[k]*G[0][k] - beta[k]*eta[k]*G[1][k]);
+    d[k] = d1*(LAG_C(1.0) - a[k] + (LAG_C(2.0)*a[k]*a[k] - b[k]));
+  }
+  LAG_EACH(k) easy[k] = easy[k] && lag_kepler_is_near(beta[k], s[k], d[k], a[k], b[k]);
+  LAG_EACH(k) {
+    LAG_REAL of[4] = {G[0][k], G[1][k], G[2][k], G[3][k]};
+    lag_stumpff_near(beta[k], d[k], of);
+    const LAG_REAL r1 = r[k] + (eta[k]*of[1] + zeta[k]*of[2]);
+    f[k] = -mu[k]*of[2]/r[k], g[k] = h - mu[k]*of[3], df[k] = -mu[k]*of[1]/(r[k]*r1), dg[k] = -mu[k]*of[2]/r1;
+  }
+  LAG_EACH(k) {
+    if (easy[k]) continue;
+    LAG_REAL left = h, of[4] = {LAG_C(1.0), LAG_C(0.0), LAG_C(0.0), LAG_C(0.0)};
+    const lag_kepler_orbit o = {r[k], eta[k], beta[k], zeta[k]};
+    if (mu[k] > LAG_C(0.0) && beta[k] > LAG_C(0.0)) {
+      const LAG_REAL period = LAG_C(6.28318530717958647692528676655900577)*mu[k]/(beta[k]*LAG_FN(sqrt)(beta[k]));
+      if (h > period || h < -period) left -= period*LAG_FN(floor)(h/period);
+    }
+    if (mu[k] > LAG_C(0.0) && (left > LAG_C(0.0) || left < LAG_C(0.0))) lag_kepler_solve(&o, left, of);
+    const LAG_REAL r1 = r[k] + (eta[k]*of[1] + zeta[k]*of[2]);
+    f[k] = -mu[k]*of[2]/r[k], g[k] = left - mu[k]*of[3], df[k] = -mu[k]*of[1]/(r[k]*r1), dg[k] = -mu[k]*of[2]/r1;
+  }
+  for (int c = 0; c < 3*stride; c += stride)
+    LAG_EACH(k) {
+      const LAG_REAL q = x[c + k], p = v[c + k];
+      x[c + k] = lag_compensated_sum(q, f[k]*q + g[k]*p, &lost_x[c + k]);
+      v[c + k] = lag_compensated_sum(p, df[k]*q + dg[k]*p, &lost_v[c + k]);
+    }
 }
 
 /* ---- end ---- */

@@ -34,8 +34,8 @@ typedef struct WisdomHolman {
   double x[];
 } WisdomHolman;
 
-/* Arrays in Jacobi's coordinates of 3 components a body, place by place, of positions (N) or of positions and velocities
- * (2 N): a state, rounding that its sums have lost, the perturbation; the same at the begin of the last step, and of
+/* Arrays in Jacobi's coordinates of 3 components, x of all places, then y and z, of positions or of positions and
+ * velocities: a state, rounding that its sums have lost, the perturbation; the same at the begin of the last step, and of
  * another step. */
 enum { X, LOST = X + 2, KICK = LOST + 2, OF_STATE, BEGIN = OF_STATE, OTHER = BEGIN + OF_STATE, NARRAYS = OTHER + OF_STATE };
 /* By place: the body; mu of its Kepler motion; its part of the mass of the bodies up to it. By body: masses, and k. */
@@ -48,15 +48,19 @@ static const char *refuses(const lag_model *m, const double *opt) {
                      "-k/r between them or from the origin; verlet6 and dop853 do without";
 }
 
-static size_t work_size(const lag_problem *pb) {
-  return sizeof(WisdomHolman) / sizeof(double) + (3 * NARRAYS + PER_BODY) * (size_t)pb->model->kepler->n +
-         2 * (size_t)pb->n;
+/* Places: bodies, and more that stay at rest to fill a block. */
+static int places(const lag_problem *pb) {
+  return (pb->model->kepler->n + LAG_KEPLER_BLOCK - 1) / LAG_KEPLER_BLOCK * LAG_KEPLER_BLOCK;
 }
 
-static int length(const lag_problem *pb) { return 3 * pb->model->kepler->n; }
+static size_t work_size(const lag_problem *pb) {
+  return sizeof(WisdomHolman) / sizeof(double) + (3 * NARRAYS + PER_BODY) * (size_t)places(pb) + 2 * (size_t)pb->n;
+}
+
+static int length(const lag_problem *pb) { return 3 * places(pb); }
 static double *array(WisdomHolman *w, const lag_problem *pb, int which) { return w->x + which * length(pb); }
 static double *per_body(WisdomHolman *w, const lag_problem *pb, int which) {
-  return w->x + NARRAYS * length(pb) + which * pb->model->kepler->n;
+  return w->x + (3 * NARRAYS + which) * places(pb);
 }
 /* A state as the model has it, and its rates. */
 static double *state_of(WisdomHolman *w, const lag_problem *pb) { return per_body(w, pb, PER_BODY); }
@@ -145,45 +149,43 @@ static int place_bodies(WisdomHolman *w, lag_problem *pb, const double *y) {
 static void to_jacobi(WisdomHolman *w, const lag_problem *pb, const double *from, double *to) {
   const lag_kepler *of = pb->model->kepler;
   const double *order = per_body(w, pb, ORDER), *part = per_body(w, pb, PART);
-  const int dim = of->dim, joint = !of->fixed;
-  double centre[3] = {0};
-  for (int i = 0; i < of->n; i++, to += 3) {
+  const int dim = of->dim, joint = !of->fixed, m = places(pb);
+  double x = 0, y = 0, z = 0; /* centre of mass */
+  for (int i = 0; i < of->n; i++) {
     const int *at = of->at + (int)order[i] * dim;
-    to[0] = from[at[0]] - centre[0], to[1] = from[at[1]] - centre[1];
-    to[2] = (dim > 2 ? from[at[2]] : 0) - centre[2];
-    for (int c = 0; c < 3 && joint; c++) centre[c] += part[i] * to[c];
+    const double dx = from[at[0]] - x, dy = from[at[1]] - y, dz = dim > 2 ? from[at[2]] - z : 0;
+    to[i] = dx, to[m + i] = dy, to[2 * m + i] = dz;
+    if (joint) x += part[i] * dx, y += part[i] * dy, z += part[i] * dz;
   }
-  to -= length(pb);
-  for (int c = 0; c < 3 && joint; c++) to[c] = centre[c];
+  if (joint) to[0] = x, to[m] = y, to[2 * m] = z;
 }
 
 static void from_jacobi(WisdomHolman *w, const lag_problem *pb, const double *from, double *to) {
   const lag_kepler *of = pb->model->kepler;
   const double *order = per_body(w, pb, ORDER), *part = per_body(w, pb, PART);
-  const int dim = of->dim, joint = !of->fixed;
-  double centre[3] = {joint ? from[0] : 0, joint ? from[1] : 0, joint ? from[2] : 0}, x[3];
-  for (int i = of->n - 1; i >= joint; i--) {
-    const int *at = of->at + (int)order[i] * dim;
-    const double *d = from + 3 * i;
-    for (int c = 0; c < 3 && joint; c++) centre[c] -= part[i] * d[c];
-    for (int c = 0; c < 3; c++) x[c] = centre[c] + d[c];
-    to[at[0]] = x[0], to[at[1]] = x[1];
-    if (dim > 2) to[at[2]] = x[2];
+  const int dim = of->dim, joint = !of->fixed, m = places(pb);
+  double x = joint ? from[0] : 0, y = joint ? from[m] : 0, z = joint ? from[2 * m] : 0;
+  for (int i = of->n - 1; i >= 0; i--) {
+    const int *at = of->at + (int)order[i] * dim, apart = i || !joint;
+    const double dx = apart ? from[i] : 0, dy = apart ? from[m + i] : 0, dz = apart ? from[2 * m + i] : 0;
+    if (joint) x -= part[i] * dx, y -= part[i] * dy, z -= part[i] * dz;
+    to[at[0]] = x + dx, to[at[1]] = y + dy;
+    if (dim > 2) to[at[2]] = z + dz;
   }
-  for (int c = 0; c < dim && joint; c++) to[of->at[(int)order[0] * dim + c]] = centre[c];
 }
 
 /* kick := accelerations at Jacobi's coordinates x less those of Kepler. */
 static int perturbation(WisdomHolman *w, lag_problem *pb, double t, const double *x, double *kick) {
   const double *mu = per_body(w, pb, MU);
   double *state = state_of(w, pb), *rate = state + pb->n;
+  const int m = places(pb);
   from_jacobi(w, pb, x, state);
   const int rc = lag_rhs(pb, t, state, rate); /* the state at the end shows what is not finite */
   if (rc) return lag_step_refused(pb, rc, t);
   to_jacobi(w, pb, rate + pb->nq, kick);
   for (int i = !pb->model->kepler->fixed; i < pb->model->kepler->n; i++) {
-    const double *q = x + 3 * i, r2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2], pull = mu[i] / (r2 * sqrt(r2));
-    for (int c = 0; c < 3; c++) kick[3 * i + c] += pull * q[c];
+    const double r2 = x[i] * x[i] + x[m + i] * x[m + i] + x[2 * m + i] * x[2 * m + i], pull = mu[i] / (r2 * sqrt(r2));
+    for (int k = i; k < 3 * m; k += m) kick[k] += pull * x[k];
   }
   return LAG_OK;
 }
@@ -191,12 +193,9 @@ static int perturbation(WisdomHolman *w, lag_problem *pb, double t, const double
 /* Kepler's motions of all bodies; the centre of mass moves straight on. */
 static void drift(WisdomHolman *w, const lag_problem *pb, double dt, double *x, double *lost) {
   const double *mu = per_body(w, pb, MU);
-  const int n = length(pb);
-  for (int k = 0; k < n; k += 3) {
-    if (mu[k / 3] > 0) lag_kepler_drift(mu[k / 3], dt, x + k, x + n + k, lost + k, lost + n + k);
-    else
-      for (int c = k; c < k + 3; c++) x[c] = lag_compensated_sum(x[c], dt * x[n + c], &lost[c]);
-  }
+  const int m = places(pb), v = length(pb);
+  for (int i = 0; i < m; i += LAG_KEPLER_BLOCK)
+    lag_kepler_drift(mu + i, dt, m, x + i, x + v + i, lost + i, lost + v + i);
 }
 
 /* Whether steps begin with a drift, and need no forces at their ends. */
