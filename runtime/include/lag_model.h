@@ -359,8 +359,8 @@ typedef struct lag_size {
 } lag_size;
 
 /* Bodies in Cartesian coordinates with terms -k/r of the potential, between pairs or, with `fixed`, from the origin.
- * values: out[2 n] = mass of each body; then k of each, or where they are pairs the sum of k_ij s_j over the other
- * bodies j, with s_j in the place of the first coordinate of body j. */
+ * values: out[2 n] = mass of each body; then of each the sum of k_ij s_j over the other bodies j, with s_j in the place
+ * of the first coordinate of body j, and with `fixed` k of the body. */
 typedef struct lag_kepler {
   int n, dim, fixed; /* bodies; dimensions, 2 or 3 */
   const int *at;     /* [n * dim] coordinates, body by body */

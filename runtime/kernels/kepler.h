@@ -55,11 +55,17 @@ static inline void lag_stumpff_block(const lag_kepler_lanes beta, const lag_kepl
   }
 }
 
+/* The same for one body; of large arguments by sine and cosine, as each fold doubles rounding and more. */
 static inline void lag_stumpff(LAG_REAL beta, LAG_REAL s, LAG_REAL G[4]) {
   const lag_kepler_lanes betas = {beta}, all = {s};
   LAG_REAL x = beta*s*s;
   lag_kepler_lanes of[4];
   int folds = 0;
+  if (x > LAG_C(2.0)) {
+    const LAG_REAL y = LAG_FN(sqrt)(x), c1 = LAG_FN(sin)(y)/y, half = LAG_FN(sin)(LAG_C(0.5)*y);
+    G[0] = LAG_FN(cos)(y), G[1] = s*c1, G[2] = LAG_C(2.0)*half*half/beta, G[3] = s*(LAG_C(1.0) - c1)/beta;
+    return;
+  }
   for (; x*x > LAG_C(0.01) && folds < 600; folds++) x *= LAG_C(0.25);
   lag_stumpff_block(betas, all, folds, of);
   for (int k = 0; k < 4; k++) G[k] = of[k][0];
@@ -68,8 +74,9 @@ static inline void lag_stumpff(LAG_REAL beta, LAG_REAL s, LAG_REAL G[4]) {
 /* G at s + d, where |beta d^2| is at most 1e-4: addition theorems. */
 static inline void lag_stumpff_near(LAG_REAL beta, LAG_REAL d, LAG_REAL G[4]) {
   const LAG_REAL x = beta*d*d, G0 = G[0], G1 = G[1], G2 = G[2];
-  const LAG_REAL c3 = LAG_OVER(1.0, 6.0) - x*(LAG_OVER(1.0, 120.0) - x*(LAG_OVER(1.0, 5040.0) - x*LAG_OVER(1.0, 362880.0)));
-  const LAG_REAL c2 = LAG_C(0.5) - x*(LAG_OVER(1.0, 24.0) - x*(LAG_OVER(1.0, 720.0) - x*LAG_OVER(1.0, 40320.0)));
+  const LAG_REAL rest3 = LAG_OVER(1.0, 120.0) - x*(LAG_OVER(1.0, 5040.0) - x*LAG_OVER(1.0, 362880.0));
+  const LAG_REAL rest2 = LAG_OVER(1.0, 24.0) - x*(LAG_OVER(1.0, 720.0) - x*LAG_OVER(1.0, 40320.0));
+  const LAG_REAL c3 = LAG_OVER(1.0, 6.0) - x*rest3, c2 = LAG_C(0.5) - x*rest2;
   const LAG_REAL d1 = d*(LAG_C(1.0) - x*c3), d2 = d*d*c2, d3 = d*d*d*c3;
   G[3] += d*G2 + (G1*d2 + G0*d3);
   G[2] += G1*d1 + G0*d2;
@@ -89,12 +96,14 @@ static inline int lag_kepler_is_near(LAG_REAL beta, LAG_REAL s, LAG_REAL d, LAG_
 }
 
 /* G at the universal variable s of the time h, s = int dt/r: the inverse series of h(s) to third order, from the start
- * and then from each estimate, within a bracket that halves where a step leaves it. Time grows with s. */
+ * and then from each estimate, within a bracket that doubles or halves where a step leaves it. Time grows with s. */
 static inline void lag_kepler_solve(const lag_kepler_orbit *o, LAG_REAL h, LAG_REAL G[4]) {
   const LAG_REAL inverse = LAG_C(1.0)/o->r, u = h*inverse;
   const LAG_REAL turn1 = LAG_C(0.5)*o->eta*inverse*u, turn2 = o->zeta*inverse*LAG_OVER(1.0, 6.0)*u*u;
   const LAG_REAL part = LAG_C(1.0) - turn1 + (LAG_C(2.0)*turn1*turn1 - turn2);
-  LAG_REAL s = part > LAG_C(0.5) && part < LAG_C(2.0) ? u*part : u, low = LAG_C(0.0), high = LAG_C(0.0);
+  const LAG_REAL turned = o->beta*u*u, size = turned < LAG_C(0.0) ? -turned : turned;
+  LAG_REAL s = part > LAG_C(0.5) && part < LAG_C(2.0) ? u*part : size > LAG_C(1.0) ? u/LAG_FN(sqrt)(size) : u;
+  LAG_REAL low = LAG_C(0.0), high = LAG_C(0.0);
   lag_stumpff(o->beta, s, G);
   for (int turn = 0; turn < 200; turn++) {
     const LAG_REAL f = o->r*s + (o->eta*G[2] + o->zeta*G[3] - h);
@@ -109,78 +118,106 @@ static inline void lag_kepler_solve(const lag_kepler_orbit *o, LAG_REAL h, LAG_R
     if ((h > LAG_C(0.0) ? f : -f) < LAG_C(0.0)) low = s;
     else high = s;
     const int open = !(high > LAG_C(0.0) || high < LAG_C(0.0));
-    if (!((s + d - low)*h > LAG_C(0.0)) || (!open && !((high - s - d)*h > LAG_C(0.0)))) {
-      const LAG_REAL middle = open ? LAG_C(2.0)*s : LAG_C(0.5)*(low + high);
+    const LAG_REAL end = open ? LAG_C(2.0)*s : high;
+    if (!((s + d - low)*h > LAG_C(0.0)) || !((end - s - d)*h > LAG_C(0.0))) {
+      const LAG_REAL middle = open ? end : LAG_C(0.5)*(low + high);
       if (!(middle > s || middle < s)) return;
       d = middle - s;
     }
     const LAG_REAL moved = o->beta*d*d;
+    const int near = moved < LAG_C(1e-4) && moved > -LAG_C(1e-4) && d*d < LAG_C(0.01)*s*s && sizeof h == 8;
     s += d;
-    if (moved < LAG_C(1e-4) && moved > -LAG_C(1e-4) && sizeof h == 8) lag_stumpff_near(o->beta, d, G);
+    if (near) lag_stumpff_near(o->beta, d, G);
     else lag_stumpff(o->beta, s, G);
   }
 }
 
-/* The motions of a block of bodies: x, v, lost_x, lost_v: components at strides of `stride`; lost: rounding that sums
- * have lost. mu = 0: a straight line. */
-static inline void lag_kepler_drift(const LAG_REAL *mu, LAG_REAL h, int stride, LAG_REAL *x, LAG_REAL *v,
-                                    LAG_REAL *lost_x, LAG_REAL *lost_v) {
-  lag_kepler_lanes r, eta, beta, zeta, s, d, moved, a, b, G[4], f, g, df, dg;
+/* Motions of a block: orbits at the start, universal variable s and its correction d, whether one correction suffices;
+ * positions and velocities of the end less those of the start: f x + g v, df x + dg v. */
+typedef struct lag_kepler_motions {
+  lag_kepler_lanes r, eta, beta, zeta, s, d, G[4], f, g, df, dg;
+  int easy[LAG_KEPLER_BLOCK];
+} lag_kepler_motions;
+
+/* Orbits, and the first estimate of s; returns the folds of the largest argument of lag_stumpff_block. */
+static inline int lag_kepler_begin(lag_kepler_motions *o, const LAG_REAL *mu, LAG_REAL h, int stride, const LAG_REAL *x,
+                                   const LAG_REAL *v) {
+  lag_kepler_lanes moved;
+  LAG_REAL most = LAG_C(0.0);
+  int folds = 0;
   LAG_EACH(k) {
     const LAG_REAL *const q = x + k, *const p = v + k;
-    r[k] = q[0]*q[0] + q[stride]*q[stride] + q[2*stride]*q[2*stride];
-    beta[k] = p[0]*p[0] + p[stride]*p[stride] + p[2*stride]*p[2*stride];
-    eta[k] = q[0]*p[0] + q[stride]*p[stride] + q[2*stride]*p[2*stride];
+    o->r[k] = q[0]*q[0] + q[stride]*q[stride] + q[2*stride]*q[2*stride];
+    o->beta[k] = p[0]*p[0] + p[stride]*p[stride] + p[2*stride]*p[2*stride];
+    o->eta[k] = q[0]*p[0] + q[stride]*p[stride] + q[2*stride]*p[2*stride];
   }
-  LAG_EACH(k) r[k] = mu[k] > LAG_C(0.0) ? LAG_FN(sqrt)(r[k]) : LAG_C(1.0);
+  LAG_EACH(k) o->r[k] = mu[k] > LAG_C(0.0) ? LAG_FN(sqrt)(o->r[k]) : LAG_C(1.0);
   LAG_EACH(k) {
-    const LAG_REAL inverse = LAG_C(1.0)/r[k], u = h*inverse;
-    beta[k] = LAG_C(2.0)*mu[k]*inverse - beta[k];
-    zeta[k] = mu[k] - beta[k]*r[k];
-    const LAG_REAL turn1 = LAG_C(0.5)*eta[k]*inverse*u, turn2 = zeta[k]*inverse*LAG_OVER(1.0, 6.0)*u*u;
+    const LAG_REAL inverse = LAG_C(1.0)/o->r[k], u = h*inverse;
+    o->beta[k] = LAG_C(2.0)*mu[k]*inverse - o->beta[k];
+    o->zeta[k] = mu[k] - o->beta[k]*o->r[k];
+    const LAG_REAL turn1 = LAG_C(0.5)*o->eta[k]*inverse*u, turn2 = o->zeta[k]*inverse*LAG_OVER(1.0, 6.0)*u*u;
     moved[k] = LAG_C(2.0)*turn1*turn1 - turn1 - turn2;
-    s[k] = u + u*moved[k];
+    o->s[k] = u + u*moved[k];
   }
-  LAG_REAL most = LAG_C(0.0);
-  int easy[LAG_KEPLER_BLOCK], folds = 0;
   LAG_EACH(k) {
-    const LAG_REAL y = beta[k]*s[k]*s[k], size = y < LAG_C(0.0) ? -y : y;
-    easy[k] = mu[k] > LAG_C(0.0) && moved[k]*moved[k] < LAG_C(0.25) && size < LAG_C(6.4);
-    most = easy[k] && size > most ? size : most;
+    const LAG_REAL x2 = o->beta[k]*o->s[k]*o->s[k], size = x2 < LAG_C(0.0) ? -x2 : x2;
+    o->easy[k] = mu[k] > LAG_C(0.0) && moved[k]*moved[k] < LAG_C(0.25) && size < LAG_C(1.6);
+    most = o->easy[k] && size > most ? size : most;
   }
   for (; most > LAG_C(0.1); folds++) most *= LAG_C(0.25);
-  lag_stumpff_block(beta, s, folds, G);
+  return folds;
+}
+
+static inline void lag_kepler_correct(lag_kepler_motions *o, LAG_REAL h) {
+  lag_kepler_lanes a, b;
   LAG_EACH(k) {
-    const LAG_REAL miss = r[k]*s[k] + (eta[k]*G[2][k] + zeta[k]*G[3][k] - h);
-    const LAG_REAL slope = LAG_C(1.0)/(r[k] + (eta[k]*G[1][k] + zeta[k]*G[2][k])), d1 = -miss*slope;
-    a[k] = LAG_C(0.5)*d1*slope*(eta[k]*G[0][k] + zeta[k]*G[1][k]);
-    b[k] = LAG_OVER(1.0, 6.0)*d1*d1*slope*(zeta[k]*G[0][k] - beta[k]*eta[k]*G[1][k]);
-    d[k] = d1*(LAG_C(1.0) - a[k] + (LAG_C(2.0)*a[k]*a[k] - b[k]));
+    const LAG_REAL f = o->r[k]*o->s[k] + (o->eta[k]*o->G[2][k] + o->zeta[k]*o->G[3][k] - h);
+    const LAG_REAL slope = LAG_C(1.0)/(o->r[k] + (o->eta[k]*o->G[1][k] + o->zeta[k]*o->G[2][k])), d1 = -f*slope;
+    a[k] = LAG_C(0.5)*d1*slope*(o->eta[k]*o->G[0][k] + o->zeta[k]*o->G[1][k]);
+    b[k] = LAG_OVER(1.0, 6.0)*d1*d1*slope*(o->zeta[k]*o->G[0][k] - o->beta[k]*o->eta[k]*o->G[1][k]);
+    o->d[k] = d1*(LAG_C(1.0) - a[k] + (LAG_C(2.0)*a[k]*a[k] - b[k]));
   }
-  LAG_EACH(k) easy[k] = easy[k] && lag_kepler_is_near(beta[k], s[k], d[k], a[k], b[k]);
+  LAG_EACH(k) o->easy[k] = o->easy[k] && lag_kepler_is_near(o->beta[k], o->s[k], o->d[k], a[k], b[k]);
+}
+
+static inline void lag_kepler_finish(lag_kepler_motions *o, int k, LAG_REAL mu, LAG_REAL h, const LAG_REAL G[4]) {
+  const LAG_REAL r1 = o->r[k] + (o->eta[k]*G[1] + o->zeta[k]*G[2]);
+  o->f[k] = -mu*G[2]/o->r[k], o->g[k] = h - mu*G[3], o->df[k] = -mu*G[1]/(o->r[k]*r1), o->dg[k] = -mu*G[2]/r1;
+}
+
+/* A motion that one correction does not find; an ellipse: for the time less whole periods. */
+static inline void lag_kepler_far(lag_kepler_motions *o, int k, LAG_REAL mu, LAG_REAL h) {
+  const lag_kepler_orbit of = {o->r[k], o->eta[k], o->beta[k], o->zeta[k]};
+  LAG_REAL G[4] = {LAG_C(1.0), LAG_C(0.0), LAG_C(0.0), LAG_C(0.0)};
+  if (mu > LAG_C(0.0) && of.beta > LAG_C(0.0)) {
+    const LAG_REAL period = LAG_C(6.28318530717958647692528676655900577)*mu/(of.beta*LAG_FN(sqrt)(of.beta));
+    h -= period*LAG_FN(floor)(h/period + LAG_C(0.5));
+  }
+  if (mu > LAG_C(0.0) && (h > LAG_C(0.0) || h < LAG_C(0.0))) lag_kepler_solve(&of, h, G);
+  lag_kepler_finish(o, k, mu, h, G);
+}
+
+/* The motions of a block of bodies for the time h: x, v, lost_x, lost_v: components at strides of `stride`; lost:
+ * rounding that sums have lost. mu = 0: a straight line. */
+static inline void lag_kepler_drift(const LAG_REAL *mu, LAG_REAL h, int stride, LAG_REAL *x, LAG_REAL *v,
+                                    LAG_REAL *lost_x, LAG_REAL *lost_v) {
+  lag_kepler_motions o;
+  const int folds = lag_kepler_begin(&o, mu, h, stride, x, v);
+  lag_stumpff_block(o.beta, o.s, folds, o.G);
+  lag_kepler_correct(&o, h);
   LAG_EACH(k) {
-    LAG_REAL of[4] = {G[0][k], G[1][k], G[2][k], G[3][k]};
-    lag_stumpff_near(beta[k], d[k], of);
-    const LAG_REAL r1 = r[k] + (eta[k]*of[1] + zeta[k]*of[2]);
-    f[k] = -mu[k]*of[2]/r[k], g[k] = h - mu[k]*of[3], df[k] = -mu[k]*of[1]/(r[k]*r1), dg[k] = -mu[k]*of[2]/r1;
+    LAG_REAL G[4] = {o.G[0][k], o.G[1][k], o.G[2][k], o.G[3][k]};
+    lag_stumpff_near(o.beta[k], o.d[k], G);
+    lag_kepler_finish(&o, k, mu[k], h, G);
   }
-  LAG_EACH(k) {
-    if (easy[k]) continue;
-    LAG_REAL left = h, of[4] = {LAG_C(1.0), LAG_C(0.0), LAG_C(0.0), LAG_C(0.0)};
-    const lag_kepler_orbit o = {r[k], eta[k], beta[k], zeta[k]};
-    if (mu[k] > LAG_C(0.0) && beta[k] > LAG_C(0.0)) {
-      const LAG_REAL period = LAG_C(6.28318530717958647692528676655900577)*mu[k]/(beta[k]*LAG_FN(sqrt)(beta[k]));
-      if (h > period || h < -period) left -= period*LAG_FN(floor)(h/period);
-    }
-    if (mu[k] > LAG_C(0.0) && (left > LAG_C(0.0) || left < LAG_C(0.0))) lag_kepler_solve(&o, left, of);
-    const LAG_REAL r1 = r[k] + (eta[k]*of[1] + zeta[k]*of[2]);
-    f[k] = -mu[k]*of[2]/r[k], g[k] = left - mu[k]*of[3], df[k] = -mu[k]*of[1]/(r[k]*r1), dg[k] = -mu[k]*of[2]/r1;
-  }
+  LAG_EACH(k)
+    if (!o.easy[k]) lag_kepler_far(&o, k, mu[k], h);
   for (int c = 0; c < 3*stride; c += stride)
     LAG_EACH(k) {
       const LAG_REAL q = x[c + k], p = v[c + k];
-      x[c + k] = lag_compensated_sum(q, f[k]*q + g[k]*p, &lost_x[c + k]);
-      v[c + k] = lag_compensated_sum(p, df[k]*q + dg[k]*p, &lost_v[c + k]);
+      x[c + k] = lag_compensated_sum(q, o.f[k]*q + o.g[k]*p, &lost_x[c + k]);
+      v[c + k] = lag_compensated_sum(p, o.df[k]*q + o.dg[k]*p, &lost_v[c + k]);
     }
 }
 

@@ -24,7 +24,9 @@ static const char *const scheme_names[] = {"wh", "sbab2", "sbab3", "sbab4", "aba
 enum { SBAB4 = 3 };
 static const lag_method_option options[] = {
     LAG_STEP_OPTION,
-    {"scheme", "kicks of a step: wh 1, sbab2 to sbab4 as many, aba864 7; errors go with step^2 to step^8 (to first order)",
+    {"scheme",
+     "wh, sbab2, sbab3, sbab4: 1 to 4 kicks a step, errors go with step^2, 4, 6, 8 times the perturbation, and step^2 "
+     "times its square; aba864: 7 kicks, step^8, and step^6 times the square",
      SBAB4, 0, 4, .choices = scheme_names}};
 static const lag_composition *scheme_of(const lag_problem *pb) { return schemes[(int)pb->opt[1]]; }
 
@@ -35,10 +37,12 @@ typedef struct WisdomHolman {
 } WisdomHolman;
 
 /* Arrays in Jacobi's coordinates of 3 components, x of all places, then y and z, of positions or of positions and
- * velocities: a state, rounding that its sums have lost, the perturbation; the same at the begin of the last step, and of
- * another step. */
-enum { X, LOST = X + 2, KICK = LOST + 2, OF_STATE, BEGIN = OF_STATE, OTHER = BEGIN + OF_STATE, NARRAYS = OTHER + OF_STATE };
-/* By place: the body; mu of its Kepler motion; its part of the mass of the bodies up to it. By body: masses, and k. */
+ * velocities: a state, rounding that its sums have lost, the perturbation; the same at the begin of the last step,
+ * and of another step. */
+enum { X, LOST = X + 2, KICK = LOST + 2, OF_STATE, BEGIN = OF_STATE, OTHER = BEGIN + OF_STATE,
+       NARRAYS = OTHER + OF_STATE };
+/* By place: the body; mu of its Kepler motion; its part of the mass of the bodies up to it. By body: masses, and
+ * k. */
 enum { ORDER, MU, PART, VALUES, PER_BODY = VALUES + 2 };
 
 static const char *refuses(const lag_model *m, const double *opt) {
@@ -95,9 +99,11 @@ static int check_values(WisdomHolman *w, lag_problem *pb, int heaviest) {
   for (int i = 0; i < of->n; i++) {
     const char *name = pb->model->q[of->at[i * of->dim]].name;
     if (i == heaviest && !of->fixed) continue;
-    if (!(k[i] >= 0)) {
+    if (!(k[i] > 0)) {
       snprintf(pb->words, sizeof pb->words,
-               "method wisdom_holman needs attracting forces, and %s is repelled; verlet6 and dop853 do without", name);
+               "method wisdom_holman needs attracting forces, and none attracts %s to %s; verlet6 and dop853 do "
+               "without",
+               name, of->fixed ? "the origin" : "the body of the largest mass");
       return pb->detail = pb->words, LAG_EMETHOD;
     }
     if (!of->fixed && of->n > 2 && mass[i] > 0.1 * mass[heaviest]) {

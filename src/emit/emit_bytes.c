@@ -245,7 +245,8 @@ static void model(const Unit *w, const char *name) {
   actions(w);
   program(w, u->u.n ? u->inputs : NULL);
   tables(w);
-  constraints(w), contacts(w), families(w), sizes(w), charges(w), switches(w), linear(w), variation(w), kepler(w), taylor(w);
+  constraints(w), contacts(w), families(w), sizes(w), charges(w), switches(w), linear(w), variation(w);
+  kepler(w), taylor(w);
 }
 
 static void scene_lists(const Unit *w, const IrScene *s) {

@@ -24,7 +24,7 @@ typedef struct {
   uint32_t dim, *body_of;          /* by coordinate: number of its body, from 1 */
   VEC(uint32_t) at;
   VEC(Expr) parts;                 /* of W */
-  int pairs, centres;
+  int centres; /* some distance is from the origin */
   const char *why;
 } Finder;
 
@@ -71,7 +71,8 @@ static int read_distance(const ExprGraph *g, Expr s, Distance *x) {
   return 1;
 }
 
-/* Splits a term of L: k/|distance| into k and the distance; a constant times a sum into a new term. 0: something else. */
+/* Splits a term of L: k/|distance| into k and the distance; a constant times a sum into new terms. 0: something
+ * else. */
 static int read_term(Finder *f, Term t, Distance *x, Expr *k, Terms *more) {
   ExprGraph *g = f->g;
   Expr rest = t.factor, sum = 0;
@@ -93,7 +94,7 @@ static int read_term(Finder *f, Term t, Distance *x, Expr *k, Terms *more) {
 /* k/|distance| with s_i s_j, or s_i, in place of 1/|distance|. */
 static Expr marked(Finder *f, Expr k, const Distance *x) {
   for (uint32_t b = 0; b < x->of; b++) k = expr_mul(f->g, k, x->at[b][0]->node);
-  *(x->of == 2 ? &f->pairs : &f->centres) = 1;
+  f->centres |= x->of == 1;
   return k;
 }
 
@@ -229,7 +230,6 @@ const char *kepler_part(const Eqns *e, KeplerPart *out) {
   read_lagrangian(&f);
   if (f.why) return f.why;
   if (!f.parts.n) return "the potential has no term -k/r of a distance in Cartesian coordinates";
-  if (f.pairs && f.centres) return "there are terms -k/r of pairs and of the origin";
   for (uint32_t i = 0; i < e->n; i++)
     if (!f.body_of[i])
       return arena_printf(e->m->arena, "no term -k/r contains the coordinate `%s`", e->m->coords.at[i].name);

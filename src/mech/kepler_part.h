@@ -9,8 +9,8 @@ typedef struct KeplerPart {
   int fixed;              /* the bodies move about a centre at the origin; else about one of them */
   const uint32_t *at;     /* [bodies*dim] coordinates */
   const Expr *mass;       /* [bodies] */
-  /* [bodies] with a fixed centre k of each body; else the sum of k_ij s_j over the other bodies j, s_j being the first
-   * coordinate of body j */
+  /* [bodies] the sum of k_ij s_j over the other bodies j, s_j being the first coordinate of body j; and with a fixed
+   * centre k of the body */
   const Expr *coupling;
 } KeplerPart;
 
