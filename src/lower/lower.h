@@ -55,6 +55,8 @@ Prog *lower_forces(const Eqns *e, const Expr *x); /* out 0: x[nq]; may read q'' 
 Prog *lower_event_derivatives(const Eqns *e, EventPartials jumps); /* out 0: entries of jumps, in their order */
 /* lower_families.c: families of contacts, and M, which their impulses move. */
 void lower_families(ProgramSet *u, const Eqns *e);
+/* u->kepler, where L has a Kepler part. */
+void lower_kepler(ProgramSet *u, const Eqns *e);
 /* Models with constraints (lower_constraints.c). */
 Prog *lower_residuals(const Eqns *e); /* out 0: c[nkept], out 1: r: their rates, then nonholonomic constraints */
 Prog *lower_matrices(const Eqns *e);  /* out 0: nonzero entries of A, out 1: of M */
@@ -65,9 +67,6 @@ Prog *lower_multipliers(const Eqns *e); /* out 0: lambda of each constraint, in 
 /* out 0: v1, the velocities after the impact of the contact whose entry of g is 1, the others 0; NULL: no contact
  * strikes */
 Prog *lower_impact(const Eqns *e);
-struct KeplerPart;
-/* out 0: masses, then couplings, of all bodies */
-Prog *lower_kepler(const Eqns *e, const struct KeplerPart *of);
 Prog *lower_outputs(const Eqns *e); /* out 0: out[nout] */
 Prog *lower_plain_outputs(const Eqns *e); /* out 0: outputs without closed forms and actions, in their order */
 Prog *lower_action_curve(const Eqns *e, uint32_t i); /* out 0: roots[4] of e->actions[i] */

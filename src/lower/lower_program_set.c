@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "lower/lower.h"
-#include "mech/kepler_part.h"
 #include "mech/lagrange.h"
 #include "mech/switches.h"
 #include "sym/print.h"
@@ -197,14 +196,6 @@ static void add_sizes(ProgramSet *u, const Eqns *e, int moving) {
   *(moving ? &u->moving_sizes : &u->size_values) = lower_sizes(e, moving);
 }
 
-static void add_kepler(ProgramSet *u, const Eqns *e) {
-  KeplerPart of;
-  if (kepler_part(e, &of)) return;
-  u->kepler = lower_kepler(e, &of);
-  u->kepler_bodies = of.bodies, u->kepler_fixed = of.fixed;
-  for (uint32_t i = 0; i < of.bodies * of.dim; i++) vec_push(u->arena, &u->kepler_at, of.at[i]);
-}
-
 ProgramSet *unit_head(const Eqns *e, const char *source, int libm) {
   const Model *m = e->m;
   ProgramSet *u = ARENA_NEW(m->arena, ProgramSet);
@@ -240,7 +231,7 @@ void unit_add_programs(ProgramSet *u, const Eqns *e) {
   lower_families(u, e);
   add_charges(u, e);
   add_switches(u, e);
-  add_kepler(u, e);
+  lower_kepler(u, e);
 }
 
 ProgramSet *unit_new(const Eqns *e, const char *source, int libm) {

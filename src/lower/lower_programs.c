@@ -4,7 +4,6 @@
 
 #include "ir/roll.h"
 #include "lower/lower_impl.h"
-#include "mech/kepler_part.h"
 #include "mech/switches.h"
 
 Lower lower_new(const Eqns *e) {
@@ -431,16 +430,6 @@ Prog *lower_second_derivatives(const Eqns *e, const Variation *x) {
   for (uint32_t k = 0; k < x->second.n; k++)
     lower_output(&l, x->second.at[k].e, second_text(&l, &x->second.at[k]));
   return outputs_each_step(&l);
-}
-
-Prog *lower_kepler(const Eqns *e, const KeplerPart *of) {
-  Lower l = lower_new(e);
-  for (uint32_t k = 0; k < 2 * of->bodies; k++) {
-    Name name = e->m->coords.at[of->at[k % of->bodies * of->dim]].name;
-    lower_output(&l, k < of->bodies ? of->mass[k] : of->coupling[k - of->bodies],
-                 arena_printf(l.p->arena, k < of->bodies ? "mass of %s" : "coupling of %s", name));
-  }
-  return lower_outputs_seldom(&l);
 }
 
 /* Whether event i ends the touch or the rest of a contact, by its forces. */

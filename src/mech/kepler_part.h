@@ -4,7 +4,7 @@
 
 #include "mech/eqns.h"
 
-typedef struct KeplerPart {
+typedef struct {
   uint32_t bodies, dim;   /* dim: 2 or 3 */
   int fixed;              /* the bodies move about a centre at the origin; else about one of them */
   const uint32_t *at;     /* [bodies*dim] coordinates */
