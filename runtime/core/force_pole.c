@@ -10,6 +10,7 @@
  * line between the step's ends is bisected towards the end with the larger derivative. Across a pole of order p, the
  * interval's length times the smaller derivative at its ends grows by 2^(p-1) per bisection; for anything finite,
  * however steep, it is halved from some bisection on, and at the integrable end of a square root divided by sqrt 2.
+ * Steps along Kepler ellipses are left out: the line between their ends may go through the centre.
  * */
 #include <float.h>
 #include <math.h>
@@ -85,7 +86,8 @@ static double find_pole(lag_sim *s, double t, int i) {
 int lag_crosses_force_pole(lag_sim *s, double t) {
   lag_problem *pb = &s->pb;
   double *spent = &s->run->pole_calls, steps = s->run->steps, calls = pb->rhs_calls;
-  int i = s->steps_equal && !pb->model->constraints ? find_rough(s, t, *spent <= FREE_CALLS + steps / 16) : -1;
+  const int lines = s->steps_equal && !pb->model->constraints && !(s->method->flags & LAG_METHOD_KEPLER);
+  int i = lines ? find_rough(s, t, *spent <= FREE_CALLS + steps / 16) : -1;
   if (i < 0 || *spent > CALLS_FIRST + steps / 4) return LAG_OK;
   double pole = find_pole(s, t, i);
   *spent += pb->rhs_calls - calls;

@@ -36,4 +36,21 @@ const double *lag_bytes_numbers(Bytes *b, size_t n);
 /* Records a fault unless ok. Returns whether there is none so far. */
 int lag_bytes_need(Bytes *b, int ok, const char *why);
 
+/* A list whose elements take at least `least` bytes: zeroed room for *n elements of `size`. */
+static inline void *list(Bytes *b, int *n, size_t least, size_t size) {
+  *n = (int)lag_bytes_count(b, least);
+  return lag_bytes_room(b, (size_t)*n, size);
+}
+
+/* An index below `end`. */
+static inline int below(Bytes *b, int end) { return (int)lag_bytes_below(b, (uint32_t)end); }
+
+static inline int *ints_of(Bytes *b, int n, int end) {
+  int *x = lag_bytes_room(b, (size_t)n, sizeof *x);
+  for (int i = 0; x && i < n; i++) x[i] = below(b, end);
+  return x;
+}
+
+static inline int flag(Bytes *b) { return lag_bytes_int(b, 0, 1); }
+
 #endif

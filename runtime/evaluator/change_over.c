@@ -11,7 +11,7 @@ static int is_same_model(const lag_model *x, const lag_model *y) {
              x->nq == y->nq && x->nz == y->nz && x->np == y->np && x->nu == y->nu && x->nderived == y->nderived;
   int parts = !x->constraints == !y->constraints && !x->charges == !y->charges && !x->linear == !y->linear &&
               (x->families ? x->families->n : 0) == (y->families ? y->families->n : 0) &&
-              !x->taylor == !y->taylor && !x->variation == !y->variation;
+              !x->taylor == !y->taylor && !x->kepler == !y->kepler && !x->variation == !y->variation;
   return same && parts &&
          (!x->taylor || (y->taylor->nw <= x->taylor->nw && x->taylor->columns == y->taylor->columns &&
                          x->taylor->order == y->taylor->order));
@@ -42,6 +42,7 @@ static void change_model(const lag_model *evaluated, const lag_model *y) {
     lag_linear *k = MUTABLE(lag_linear, x->linear);
     k->eval = y->linear->eval, k->jumps = y->linear->jumps;
   }
+  if (x->kepler) MUTABLE(lag_kepler, x->kepler)->values = y->kepler->values;
   if (x->taylor) {
     lag_taylor *k = MUTABLE(lag_taylor, x->taylor);
     k->first = y->taylor->first, k->rest = y->taylor->rest, k->at = y->taylor->at, k->along = y->taylor->along;

@@ -15,6 +15,7 @@ static const EvaluatedConstraints *constraints_of(const void *self) { return sel
 static const EvaluatedFamily *family_of(const void *self) { return ((const lag_contact_family *)self)->programs; }
 static const EvaluatedFamilies *families_of(const void *self) { return self; }
 static const EvaluatedCharges *charges_of(const void *self) { return self; }
+static const EvaluatedKepler *kepler_of(const void *self) { return self; }
 static const EvaluatedLinear *linear_of(const void *self) { return self; }
 static const EvaluatedPartials *partials_of(const void *self) { return self; }
 static const EvaluatedAction *action_of(const void *self) { return self; }
@@ -38,6 +39,7 @@ FUNCTION(member_values, family_of, values)
 FUNCTION(reach, family_of, reach)
 FUNCTION(family_inertia, families_of, inertia)
 FUNCTION(charge_values, charges_of, values)
+FUNCTION(kepler_values, kepler_of, values)
 FUNCTION(charge_powers, charges_of, powers)
 FUNCTION(jumps, linear_of, jumps)
 FUNCTION(curve, action_of, of)
@@ -239,6 +241,8 @@ void lag_set_charge_functions(EvaluatedCharges *c) {
   if (c->powers) c->charges.powers = charge_powers;
 }
 
+void lag_set_kepler_functions(EvaluatedKepler *k) { k->kepler.values = kepler_values; }
+
 void lag_set_linear_functions(EvaluatedLinear *l) {
   l->linear.eval = linearise;
   if (l->jumps) l->linear.jumps = jumps;
@@ -278,6 +282,8 @@ size_t lag_model_room(const EvaluatedModel *m) {
   const EvaluatedFamilies *f = (const void *)m->model.families;
   for (int i = 0; f && i < f->families.n; i++) widen(&room, f->of[i].values, 0), widen(&room, f->of[i].reach, 0);
   if (f) widen(&room, f->inertia, 0);
+  const EvaluatedKepler *k = (const void *)m->model.kepler;
+  if (k) widen(&room, k->values, 0);
   if (q) widen(&room, q->values, 0), widen(&room, q->powers, 0);
   if (l) widen(&room, l->eval, 0), widen(&room, l->jumps, 0);
   const EvaluatedPartials *by_params = (const void *)(l ? l->linear.by_params : NULL),

@@ -41,6 +41,11 @@ typedef struct {
 } EvaluatedCharges;
 
 typedef struct {
+  lag_kepler kepler;
+  const Program *values;
+} EvaluatedKepler;
+
+typedef struct {
   lag_partials partials;
   const Program *eval;
 } EvaluatedPartials;
@@ -84,6 +89,7 @@ void lag_set_taylor_functions(EvaluatedTaylor *t);
 void lag_set_constraint_functions(EvaluatedConstraints *c);
 void lag_set_family_functions(EvaluatedFamilies *f, lag_contact_family *of);
 void lag_set_charge_functions(EvaluatedCharges *c);
+void lag_set_kepler_functions(EvaluatedKepler *k);
 void lag_set_linear_functions(EvaluatedLinear *l);
 void lag_set_partial_functions(EvaluatedPartials *p);
 void lag_set_adjoint_functions(EvaluatedAdjoint *a);

@@ -27,23 +27,6 @@ static const char *name_of(Bytes *b) {
   return text;
 }
 
-/* A list whose elements take at least `least` bytes: zeroed room for *n elements of `size`. */
-static void *list(Bytes *b, int *n, size_t least, size_t size) {
-  *n = (int)lag_bytes_count(b, least);
-  return lag_bytes_room(b, (size_t)*n, size);
-}
-
-/* An index below `end`. */
-static int below(Bytes *b, int end) { return (int)lag_bytes_below(b, (uint32_t)end); }
-
-static int *ints_of(Bytes *b, int n, int end) {
-  int *x = lag_bytes_room(b, (size_t)n, sizeof *x);
-  for (int i = 0; x && i < n; i++) x[i] = below(b, end);
-  return x;
-}
-
-static int flag(Bytes *b) { return lag_bytes_int(b, 0, 1); }
-
 /* A program that writes arrays of these lengths, 0 at the end. */
 static const Program *program(const Reader *r, int64_t x, int64_t y, int64_t z) {
   Lengths of = r->state;
@@ -378,6 +361,18 @@ static void read_variation(Reader *r) {
   r->m->inverse = program(&with, m->nq, 0, 0);
 }
 
+static void read_kepler(Reader *r) {
+  const int nq = r->m->model.nq;
+  EvaluatedKepler *k = flag(r->b) ? lag_bytes_room(r->b, 1, sizeof *k) : NULL;
+  if (!k) return;
+  k->kepler.n = lag_bytes_int(r->b, 1, nq), k->kepler.dim = lag_bytes_int(r->b, 2, 3), k->kepler.fixed = flag(r->b);
+  if (!lag_bytes_need(r->b, (int64_t)k->kepler.n * k->kepler.dim == nq, "coordinates of bodies are missing")) return;
+  k->kepler.at = ints_of(r->b, nq, nq);
+  k->values = wanted(r, 1, 2 * (int64_t)k->kepler.n, 0);
+  lag_set_kepler_functions(k);
+  r->m->model.kepler = &k->kepler;
+}
+
 static void read_taylor(Reader *r) {
   enum { MOST = 1 << 24 };
   Bytes *b = r->b;
@@ -451,6 +446,7 @@ static Reader read_model(Bytes *b) {
   read_switches(&r);
   read_linear(&r);
   read_variation(&r);
+  read_kepler(&r);
   read_taylor(&r);
   if (!b->why) lag_set_model_functions(r.m);
   return r;

@@ -231,6 +231,7 @@ enum {
   LAG_METHOD_ADAPTIVE = 1,     /* adaptive steps, from the tolerance; else steps are of equal size */
   LAG_METHOD_SYMPLECTIC = 2,
   LAG_METHOD_SYMMETRIC = 4,
+  LAG_METHOD_KEPLER = 16,      /* needs lag_model.kepler */
   LAG_METHOD_VARIATION = 8,    /* needs derivatives of L: lag_model.variation and second */
   LAG_METHOD_STEPS_TO = 32,    /* dense() is inaccurate: must step exactly to each time of output */
   LAG_METHOD_NO_SAVE = 64,     /* work holds pointers: its state cannot be saved */
@@ -334,6 +335,8 @@ extern const lag_method lag_symplectic_euler, lag_verlet, lag_verlet4, lag_verle
 extern const lag_method lag_variational, lag_gauss;
 /* Time-stepping with contacts and friction by impulses, fixed step: for many contacts, or impacts that accumulate. */
 extern const lag_method lag_moreau;
+/* Wisdom and Holman's splitting, symplectic, fixed step: for planets, lag_model.kepler. */
+extern const lag_method lag_wisdom_holman;
 /* Radau IIA of order 5, implicit, adaptive: for stiff models; needs the linearisation. */
 extern const lag_method lag_radau;
 /* The model's own Taylor series, adaptive, for tolerances below about 1e-9; needs lag_model.taylor. */

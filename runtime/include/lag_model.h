@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 22
+#define LAG_ABI 23
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many
  * doubles, one state or one set of parameters a lane. The status < 0 of such a call has bit k of its negative set
@@ -358,6 +358,15 @@ typedef struct lag_size {
   int open, part;
 } lag_size;
 
+/* Bodies in Cartesian coordinates with terms -k/r of the potential, between pairs or, with `fixed`, from the origin.
+ * values: out[2 n] = mass of each body; then of each the sum of k_ij s_j over the other bodies j, with s_j in the place
+ * of the first coordinate of body j, and with `fixed` k of the body. */
+typedef struct lag_kepler {
+  int n, dim, fixed; /* bodies; dimensions, 2 or 3 */
+  const int *at;     /* [n * dim] coordinates, body by body */
+  int (*values)(LAG_STATE, LAG_REAL *out, LAG_REAL *w);
+} lag_kepler;
+
 typedef struct lag_model {
   int abi;           /* LAG_ABI */
   size_t real_size;  /* sizeof(LAG_REAL) */
@@ -412,6 +421,8 @@ typedef struct lag_model {
   const lag_contact *contacts;        /* [ncontacts] */
   const lag_contact_families *families; /* NULL: none */
   const lag_charges *charges;         /* NULL: only the energy, without a known balance if it is not conserved */
+
+  const lag_kepler *kepler; /* NULL: L has no Kepler part */
 
   /* The members below are NULL in a program that was not emitted for a method that needs them (lagc build --method
    * NAME). */

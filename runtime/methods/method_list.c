@@ -14,8 +14,8 @@ LAG_SPLITTING_METHODS(DECLARE)
 LAG_RUNGE_KUTTA_METHODS(DECLARE_RK)
 
 const lag_method *const lag_methods[] = {LAG_RUNGE_KUTTA_METHODS(ENTRY_RK) &lag_euler,
-                                         LAG_SPLITTING_METHODS(ENTRY) &lag_variational, &lag_gauss, &lag_radau,
-                                         &lag_taylor_method, &lag_moreau};
+                                         LAG_SPLITTING_METHODS(ENTRY) &lag_wisdom_holman, &lag_variational, &lag_gauss,
+                                         &lag_radau, &lag_taylor_method, &lag_moreau};
 const int lag_nmethods = (int)(sizeof lag_methods / sizeof *lag_methods);
 
 const lag_method *lag_find_method(const char *name) {

@@ -13,7 +13,8 @@ enum {
   METHOD_TAYLOR = 16,    /* needs Taylor coefficients, and so a smooth model */
   /* takes models of states alone, with the linearisation, though it refuses states beside coordinates */
   METHOD_FLOWS = 32,
-  METHOD_CONSTRAINTS = 64 /* holds constraints */
+  METHOD_CONSTRAINTS = 64, /* holds constraints */
+  METHOD_KEPLER = 128      /* needs a Kepler part: mech/kepler_part.h */
 };
 
 typedef struct {

@@ -191,6 +191,15 @@ static void variation(const Unit *w) {
   program(w, u->inverse);
 }
 
+static void kepler(const Unit *w) {
+  const ProgramSet *u = w->u;
+  word(w, u->kepler != NULL);
+  if (!u->kepler) return;
+  word(w, u->kepler_bodies), word(w, u->kepler_at.n / u->kepler_bodies), integer(w, u->kepler_fixed);
+  for (uint32_t i = 0; i < u->kepler_at.n; i++) word(w, u->kepler_at.at[i]);
+  program(w, u->kepler);
+}
+
 static void taylor(const Unit *w) {
   const Series *s = w->u->taylor;
   word(w, s != NULL);
@@ -236,7 +245,8 @@ static void model(const Unit *w, const char *name) {
   actions(w);
   program(w, u->u.n ? u->inputs : NULL);
   tables(w);
-  constraints(w), contacts(w), families(w), sizes(w), charges(w), switches(w), linear(w), variation(w), taylor(w);
+  constraints(w), contacts(w), families(w), sizes(w), charges(w), switches(w), linear(w), variation(w);
+  kepler(w), taylor(w);
 }
 
 static void scene_lists(const Unit *w, const IrScene *s) {

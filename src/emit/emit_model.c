@@ -60,7 +60,7 @@ const char *model_id(Arena *a, const char *name) {
                                       "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws",
                                       "guide_loads", "size_values", "size_table", "correct_positions",
                                       "correct_velocities", "inverse_dynamics", "adjoint", "adjoint_rates",
-                                      "adjoint_project", "families"};
+                                      "adjoint_project", "families", "kepler", "kepler_at", "kepler_values"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -106,7 +106,7 @@ CStyle model_style(const ModelFile *f, const char *const *own, const char *const
 static int is_seldom_called(const ProgramSet *u, const Prog *p) {
   int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers || p == u->switch_values ||
                p == u->switch_rates || p == u->switch_grips || p == u->contact_laws || p == u->guide_loads ||
-               p == u->size_values;
+               p == u->size_values || p == u->kepler;
   for (uint32_t i = 0; i < u->scenes.n; i++) seldom |= p == u->scenes.at[i].observe || p == u->scenes.at[i].momenta;
   return seldom;
 }
@@ -154,6 +154,17 @@ static void emit_variation(const ModelFile *f) {
   state_function(f, u->second, "second",
                  arena_printf(f->a, "Their nonzero derivatives: %s.", op_count_text(u->second, f->a)), NULL,
                  derivatives);
+}
+
+static void emit_kepler(const ModelFile *f) {
+  const ProgramSet *u = f->u;
+  if (!u->kepler) return;
+  state_function(f, u->kepler, "kepler_values", "Masses of the bodies; k of terms -k/r.", NULL, one_out);
+  sb_puts(f->out, "\nstatic const int kepler_at[] = {");
+  for (uint32_t i = 0; i < u->kepler_at.n; i++)
+    sb_printf(f->out, "%s%u", !i ? "" : i % 16 ? ", " : ",\n  ", u->kepler_at.at[i]);
+  sb_printf(f->out, "};\nstatic const lag_kepler kepler = {%u, %u, %d, kepler_at, kepler_values};\n",
+            u->kepler_bodies, u->kepler_at.n / u->kepler_bodies, u->kepler_fixed);
 }
 
 static void emit_inverse(const ModelFile *f) {
@@ -524,6 +535,7 @@ void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
                 &(CStyle){.prefix = "LAG", .globals = f.globals, .solve = "lag_solve", .math = math_prefix(u, "lag")},
                 u->lanes, out);
   emit_variation(&f);
+  emit_kepler(&f);
   emit_inverse(&f);
   emit_model_struct(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, name, i);

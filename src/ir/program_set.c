@@ -12,7 +12,7 @@ ProgList program_set_programs(const ProgramSet *u) {
                                  u->contact_coefficients, u->size_values, u->moving_sizes, u->held_accel, u->impact,
                                  k->residuals, k->matrices, k->position, k->velocity, u->variation, u->second,
                                  u->linear, u->mass, u->bias, u->inverse, u->multipliers, u->by_inputs, u->outputs,
-                                 u->by_params, u->adjoint,
+                                 u->by_params, u->adjoint, u->kepler,
                                  u->adjoint_rates, u->adjoint_projection, u->jumps, u->taylor ? u->taylor->first : NULL,
                                  u->taylor ? u->taylor->next : NULL};
   for (size_t i = 0; i < sizeof of_unit / sizeof *of_unit; i++) vec_push(u->arena, &all, of_unit[i]);

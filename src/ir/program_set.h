@@ -253,6 +253,10 @@ typedef struct {
   unsigned wants;
   const Prog *variation, *second; /* NULL unless WANT_VARIATION */
   VEC(IrSecond) second_at;        /* positions of the outputs of `second` */
+  const Prog *kepler;             /* out 0: masses, couplings (mech/kepler_part.h); NULL: L has no Kepler part */
+  uint32_t kepler_bodies;
+  int kepler_fixed;
+  VEC(uint32_t) kepler_at;        /* coordinates, body by body */
   /* NULL unless WANT_TAYLOR, and where the model has no series: not analytic, constraints, tables */
   const Series *taylor;
   const Prog *linear;           /* NULL: not requested */

@@ -55,6 +55,8 @@ Prog *lower_forces(const Eqns *e, const Expr *x); /* out 0: x[nq]; may read q'' 
 Prog *lower_event_derivatives(const Eqns *e, EventPartials jumps); /* out 0: entries of jumps, in their order */
 /* lower_families.c: families of contacts, and M, which their impulses move. */
 void lower_families(ProgramSet *u, const Eqns *e);
+/* u->kepler, where L has a Kepler part. */
+void lower_kepler(ProgramSet *u, const Eqns *e);
 /* Models with constraints (lower_constraints.c). */
 Prog *lower_residuals(const Eqns *e); /* out 0: c[nkept], out 1: r: their rates, then nonholonomic constraints */
 Prog *lower_matrices(const Eqns *e);  /* out 0: nonzero entries of A, out 1: of M */

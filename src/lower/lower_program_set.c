@@ -231,6 +231,7 @@ void unit_add_programs(ProgramSet *u, const Eqns *e) {
   lower_families(u, e);
   add_charges(u, e);
   add_switches(u, e);
+  lower_kepler(u, e);
 }
 
 ProgramSet *unit_new(const Eqns *e, const char *source, int libm) {

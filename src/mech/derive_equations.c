@@ -11,6 +11,7 @@
 #include "mech/discontinuity.h"
 #include "mech/first_order.h"
 #include "mech/idle_time.h"
+#include "mech/kepler_part.h"
 #include "mech/lagrange.h"
 #include "mech/mass_definiteness.h"
 #include "mech/constraint_regularise.h"
@@ -261,10 +262,17 @@ int eqns_check_numbers(const Eqns *e) {
   return 1;
 }
 
-/* Taylor methods need smooth equations, which model/method.c could not know yet. */
+/* What methods need of equations, which model/method.c could not know yet: smooth ones, a Kepler part. */
 static int check_method(const Eqns *e) {
   const Scene *sc = &e->m->scene;
   const MethodInfo *method = sc->method ? method_find(sc->method, strlen(sc->method)) : NULL;
+  KeplerPart kepler;
+  const char *why = method && method->flags & METHOD_KEPLER ? kepler_part(e, &kepler) : NULL;
+  if (why)
+    return diag_error(e->m->diags, sc->method_span,
+                      "the method `%s` needs bodies with constant masses and terms -k/r, and %s" HELP
+                      "`verlet6` and `dop853` do without",
+                      method->name, why);
   if (!method || !(method->flags & METHOD_TAYLOR) || e->smooth) return 1;
   return diag_error(e->m->diags, sc->method_span,
                     "the method `%s` needs a model without if, abs, sign, min, max, atan2 and tables" HELP

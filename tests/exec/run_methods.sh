@@ -112,7 +112,8 @@ done
 # Every listed method finds the functions that it needs in a program.
 run models/double_pendulum.lag --method help
 for m in $(sed -n 's/^  \([a-z][a-z0-9_-]*\) .* \(adaptive\|fixed\) .*/\1/p' "$TMP/out"); do
-  check "$m has what it needs" run models/double_pendulum.lag --method "$m" --until 0.01
+  case $m in wisdom_holman) of=kepler ;; *) of=double_pendulum ;; esac
+  check "$m has what it needs" run models/$of.lag --method "$m" --until 0.01
 done
 # A state goes on with the method it was saved with, whatever is in the cache.
 run models/double_pendulum.lag --method gauss --step 1e-3 --until 1
@@ -144,9 +145,9 @@ check "lagc methods is what --method help says" cmp "$TMP/table" "$TMP/help"
 check "with order, what is kept and what is needed" grep -q '^  gauss  *2-8  *2-8  *fixed  *both  *yes  *alone  *yes  *no$' "$TMP/table"
 "$LAGC" methods models/pendulum.lag 2>"$TMP/err"
 is "lagc methods takes no model" 2 $?
-# A body at rest without forces stays at rest, to the last bit.
+# A body at rest without forces stays at rest, to the last bit; wisdom_holman takes bodies that fall towards others.
 printf "model rest\ncoord x\nlagrangian = x'^2/2 - x^2/2\nscene s { start x = 0; span 1 [s] }\n" >"$TMP/rest.lag"
-for m in $(sed -n 's/^  \([a-z][a-z0-9_-]*\)  *[0-9][-0-9]*  *[0-9].*/\1/p' "$TMP/table"); do
+for m in $(sed -n 's/^  \([a-z][a-z0-9_-]*\)  *[0-9][-0-9]*  *[0-9].*/\1/p' "$TMP/table" | grep -vx wisdom_holman); do
   is "$m leaves a body at rest" "1,0,0" "$("$LAGC" run "$TMP/rest.lag" --method "$m" -o - --quiet 2>"$TMP/err" | tail -n 1 | cut -d, -f1-3)"
 done
 # A state that begins at 0 and relaxes within 1e-6 of the run has the tolerance of its own size, not of its first rate times the run:

@@ -50,12 +50,13 @@ static void list(const lag_method *const *methods, int n)
       if (differs) printf("%s is not as its row says\n", m->name);
       continue;
     }
-    printf("  {\"%s\", \"%.*s\", 0%s%s%s%s%s%s%s,\n", m->name, (int)strcspn(m->doc, "\n"), m->doc,
+    printf("  {\"%s\", \"%.*s\", 0%s%s%s%s%s%s%s%s,\n", m->name, (int)strcspn(m->doc, "\n"), m->doc,
            m->flags & LAG_METHOD_NO_STATES ? " | METHOD_NO_STATES" : "",
            m->flags & LAG_METHOD_VARIATION ? " | METHOD_VARIATION" : "",
            m->flags & LAG_METHOD_SPLITS ? " | METHOD_SPLITS" : "",
            m->flags & LAG_METHOD_JACOBIAN ? " | METHOD_JACOBIAN" : "",
            m->flags & LAG_METHOD_TAYLOR ? " | METHOD_TAYLOR" : "", m->flags & LAG_METHOD_FLOWS ? " | METHOD_FLOWS" : "",
+           m->flags & LAG_METHOD_KEPLER ? " | METHOD_KEPLER" : "",
            m->flags & LAG_METHOD_CONSTRAINTS ? " | METHOD_CONSTRAINTS" : "");
     list_options(m);
   }

@@ -22,7 +22,7 @@ END
 if [ -n "${SLOW:-}${BLESS:-}" ]; then cp "$TMP/all" "$TMP/models"; else head -n 3 "$TMP/all" >"$TMP/models"; fi
 while read -r model until; do
   for method in rk45 dop853 'rk4(step=0.01)' 'euler(step=0.01)' 'symplectic_euler(step=0.01)' 'verlet(step=0.01)' 'verlet4(step=0.05)' 'verlet6(step=0.05)' 'verlet8(step=0.1)' \
-    'variational(step=0.02)' 'variational(step=0.05,order=6)' 'gauss(step=0.1)' radau 'taylor' 'taylor(order=12)' 'rk45(adapt=off,step=0.01)' 'moreau(step=0.01)'; do
+    'variational(step=0.02)' 'variational(step=0.05,order=6)' 'gauss(step=0.1)' radau 'taylor' 'taylor(order=12)' 'rk45(adapt=off,step=0.01)' 'moreau(step=0.01)' 'wisdom_holman(step=0.1)'; do
     echo "$(counts "models/$model.lag" "$method" "--until $until") $model $method"
   done
 done <"$TMP/models" >"$TMP/steps"

@@ -74,7 +74,7 @@ static void energy_is_bounded_without_trend(void **state)
   }
 }
 
-/* Every method whose descriptor says so is in the table. */
+/* Every method whose descriptor says so is in the table, or in test_rt_wisdom_holman. */
 static void all_that_claim_it(void **state)
 {
   (void)state;
@@ -83,7 +83,7 @@ static void all_that_claim_it(void **state)
     for (int m = 0; m < KINDS; m++) {
       tried |= lag_methods[i] == kinds[m].set.method;
     }
-    assert_int_equal(tried, (lag_methods[i]->flags & LAG_METHOD_SYMPLECTIC) != 0);
+    assert_int_equal(tried || OF_BODIES(lag_methods[i]), (lag_methods[i]->flags & LAG_METHOD_SYMPLECTIC) != 0);
   }
 }
 

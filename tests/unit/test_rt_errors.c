@@ -61,6 +61,7 @@ static void nan_stops_every_method(void **state)
   general.model = &model;
   for (int i = 0; i < 2 * lag_nmethods; i++) {
     const lag_method *m = lag_methods[i / 2];
+    if (OF_BODIES(m)) continue;
     if (m->flags & LAG_METHOD_TAYLOR) {
       continue; /* its coefficients are emitted: tests/exec/run_taylor.sh */
     }

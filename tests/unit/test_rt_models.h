@@ -156,11 +156,22 @@ UNUSED static const lag_second kepler_at[] = {
 UNIT_MASSES(kepler);
 TAYLOR(kepler, 2, 0);
 
+/* Its one body, about the origin. */
+UNUSED static int centre_values(ARGS, double *out, UNUSED double *w)
+{
+  out[0] = out[1] = 1;
+  return 0;
+}
+UNUSED static const int planar[] = {0, 1};
+UNUSED static const lag_kepler about_centre = {1, 2, 1, planar, centre_values};
+/* Whether the method takes the models with bodies alone. */
+#define OF_BODIES(m) (((m)->flags & LAG_METHOD_KEPLER) != 0)
+
 UNUSED static const lag_model kepler_model = {MODEL("kepler"),
                                               .flags = LAG_CONSERVES_ENERGY | LAG_AUTONOMOUS | LAG_CONSTANT_MASS |
                                                        LAG_SEPARABLE | LAG_SMOOTH,
                                               .nq = 2, .q = names_q, .accel = kepler_accel, .energy = kepler_energy,
-                                              ANALYTIC(kepler)};
+                                              .kepler = &about_centre, ANALYTIC(kepler)};
 UNUSED static const lag_scene kepler = {
     .name = "orbit", .doc = "", .model = &kepler_model, .start = kepler_start, .t1 = 10, .has_span = 1};
 
