@@ -323,6 +323,8 @@ const lag_contact *lag_contact_of(const lag_model *m, int event);
 int lag_guide_turns(const lag_model *m, int event);    /* whether the force of a guide changes its side there */
 int lag_guide_of(const lag_model *m, int contact); /* index of the guide with this tangent; -1: there is none */
 enum { LAG_MOST_GUIDES = 16 }; /* whose frictions events decide together; moreau has no limit */
+/* Whether a contact is a gap, and not a constraint with a condition. */
+int lag_has_gaps(const lag_model *m);
 /* Whether event k is located: those of contacts that are met by impulses are not. */
 int lag_event_is_located(const lag_sim *sim, int k);
 int lag_contact_is_closed(const lag_sim *sim, const lag_contact *contact);

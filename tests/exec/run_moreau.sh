@@ -396,14 +396,6 @@ check "lagc cost" refuses 2 'lagc cost leaves it out' cost ball drop --methods m
 check "drag that is too strong for the step" refuses 3 'change too much within a step: take smaller steps, or radau' run ball swing c=5000 --method $m3
 check "more contacts at once than others follow" refuses 3 'more than 6 contacts touch at once, some of them with friction, which only moreau follows' run tower rest -D N=$N --method dop853
 check "verlet names it" refuses 2 'rk45, dop853, radau, rk4 and moreau can' run slope s --method verlet
-model clutch <<'END_OF'
-model clutch
-coord a [rad], b [rad]
-kinetic = 1 [kg*m^2]/2*(a'^2 + b'^2)
-constraint clutch: a' = b' while t > 1 [s]
-scene s { span 2 [s] }
-END_OF
-check "constraints with a condition" refuses 2 'constraints that hold while a condition is true are not followed; dop853' run clutch s --method $m3
 
 # ---- friction that falls with speed: a e^(c v) + b = (a e^(c v0) + b) e^(-a c t/m) for F = a + b e^(-c |v|); a fast body is not stopped at once
 model stribeck <<'END_OF'
