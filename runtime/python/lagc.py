@@ -28,7 +28,7 @@ import numpy as np
 
 __all__ = ["load", "Model", "Result", "Batch", "Error", "CompileError", "RunError", "Linear", "Gradient"]
 
-_ABI = 22  # LAG_ABI of lag_model.h
+_ABI = 23  # LAG_ABI of lag_model.h
 _STOPPED, _INTERRUPTED = 2, 3
 _RATES, _OUTPUTS, _MASS, _INVERSE = 0, 4, 8, 9  # lag_quantity; behind _RATES and _OUTPUTS derivatives by state, inputs, parameters
 _CHUNK, _PATIENCE = 4096, 0.2  # rows and seconds of one call: between calls Ctrl-C is heard
