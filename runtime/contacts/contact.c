@@ -457,6 +457,21 @@ int lag_contact_resolve(lag_sim *s, double *y, const char *who, int event, int e
   return rc;
 }
 
+void lag_contact_show_start(lag_sim *s, const double *y) {
+  ContactSet w;
+  double *after = calloc((size_t)s->pb.n, sizeof *after);
+  if (!after) return;
+  lag_contact_stats *stats = s->pb.contacts;
+  memcpy(after, y, (size_t)s->pb.n * sizeof *after);
+  s->pb.contacts = NULL; /* their events tell the forces */
+  int rc = evaluate_contacts(s, after, &w);
+  rc = rc ? rc : resolve_contacts(&w, NULL, -1, 0);
+  s->pb.contacts = stats;
+  if (rc) lag_contact_open(s);
+  free_contacts(&w);
+  free(after);
+}
+
 /* Checks that every coefficient of restitution is between 0 and 1. */
 static int check_all(lag_sim *s) {
   ContactSet w;
