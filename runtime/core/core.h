@@ -344,8 +344,8 @@ size_t lag_contact_law_size(const lag_model *m);
 int lag_tangent_events(lag_sim *sim, double t, const double *y, double *g);
 void lag_contacts_turn(lag_sim *sim); /* held directions of slips in space := those at the end of a step */
 /* Event functions g[nev] of contacts that are met by impulses: 1, as they do not happen. show: u of these contacts,
- * for outputs with multipliers: closed where the last step pressed them. show_start: before the first step hold says what
- * rests at y under its forces, until lag_contact_open; where these decide nothing, all are open. */
+ * for outputs with multipliers: closed where the last step pressed them. show_start: before the first step hold says
+ * what rests at y under its forces, until lag_contact_open; where these decide nothing, all are open. */
 void lag_contact_mute(const lag_sim *sim, double *g);
 void lag_contact_show_start(lag_sim *sim, const double *y);
 void lag_contact_show(lag_sim *sim);
