@@ -483,6 +483,7 @@ static int check_all(lag_sim *s) {
       continue;
     }
     double e = s->scene->model->contacts[i].conditional ? NAN : restitution(&w, i);
+    if (!(e < 0 || e > 1)) continue;
     /* of an impact's speed, not of any */
     if (isfinite(e) && fabs(restitution_at(&w, i, 2 * (w.rate_size[i] > 0 ? w.rate_size[i] : 1)) - e) > 1e-6) continue;
     rc = isfinite(e) ? check_restitution(s, i, s->run->dir < 0 ? fmax(e, 1) : e) : LAG_OK;
