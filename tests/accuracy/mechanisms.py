@@ -123,6 +123,6 @@ with tempfile.TemporaryDirectory() as folder:
         why = judge(path)
         wrong += why != ""
         if why:
-            print(f"seed {seed}: {why}")
+            print(f"seed {seed}: {why}", flush=True)
 print(f"{last - first} mechanisms, {wrong} of them wrong")
 sys.exit(wrong > 0)
