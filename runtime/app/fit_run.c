@@ -337,8 +337,8 @@ static int check_size(const FitRun *r) {
   const Args *a = &r->app->args;
   const double many = 2e6, rows = r->fit.nrows, data = rows * r->fit.ncolumns, derivatives = data * (r->fit.n + 1);
   if (derivatives > INT_MAX)
-    return lag_app_error(a, "--data %s: %.0f rows are more than a fit takes; leave out all but every %.0fth", a->data, rows,
-                         ceil(derivatives / many));
+    return lag_app_error(a, "--data %s: %.0f rows are more than a fit takes; leave out all but every %.0fth", a->data,
+                         rows, ceil(derivatives / many));
   if (data > many && !a->quiet)
     fprintf(stderr,
             "%s: note: %.0f rows take %.2g GB, and each of ten to a hundred runs passes all of them; every %.0fth row "

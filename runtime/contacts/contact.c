@@ -44,7 +44,16 @@ const lag_contact *lag_contact_of(const lag_model *m, int event) {
   return NULL;
 }
 
-int lag_event_is_located(const lag_sim *s, int k) { return !s->pb.contacts || !lag_contact_of(s->scene->model, k); }
+int lag_has_gaps(const lag_model *m) {
+  int i = 0;
+  while (i < m->ncontacts && m->contacts[i].conditional) i++;
+  return i < m->ncontacts || m->families != NULL;
+}
+
+int lag_event_is_located(const lag_sim *s, int k) {
+  const lag_contact *c = lag_contact_of(s->scene->model, k);
+  return !s->pb.contacts || !c || c->conditional;
+}
 
 int lag_contact_is_closed(const lag_sim *s, const lag_contact *c) { return s->hold[c->input] > 0.5; }
 
@@ -115,9 +124,7 @@ int lag_contacts_rates(ContactSet *w, const double *y, double *rate) {
   return rc;
 }
 
-/* size[constraints] := size of the terms of gaps, or of their rates, at y or at the start, whichever is larger: a
- * ball that has come to lie at 0 is measured by its fall. Leaves all contacts closed. */
-static int term_sizes(lag_sim *s, const double *y, int holonomic, double *size, double *scratch) {
+int lag_contact_term_sizes(lag_sim *s, const double *y, int holonomic, double *size, double *scratch) {
   const lag_constraints *of = s->scene->model->constraints;
   int rc = lag_constraint_terms(&s->pb, s->run->t, y, holonomic, size);
   rc = rc ? rc : lag_constraint_terms(&s->pb, s->run->t, s->begin, holonomic, scratch);
@@ -141,10 +148,10 @@ static int evaluate_contacts(lag_sim *s, double *y, ContactSet *w) {
     w->gap[i] = m->contacts[i].is_tangent ? 1 : w->c[m->contacts[i].constraint];
     if (rc || !isfinite(w->gap[i]) || !isfinite(w->rate[i])) return lag_contacts_no_values(w, i);
   }
-  rc = term_sizes(s, y, 1, w->g, w->c);
+  rc = lag_contact_term_sizes(s, y, 1, w->g, w->c);
   for (int i = 0; i < m->ncontacts; i++)
     w->gap_size[i] = m->contacts[i].is_tangent ? 1 : w->g[m->contacts[i].constraint];
-  rc = rc ? rc : term_sizes(s, y, 0, w->g, w->c);
+  rc = rc ? rc : lag_contact_term_sizes(s, y, 0, w->g, w->c);
   for (int i = 0; i < m->ncontacts; i++) w->rate_size[i] = w->g[m->contacts[i].constraint];
   rc = rc ? rc : lag_inputs(pb, t);
   if (rc == 0 && m->contact_laws) rc = lag_contact_laws(s, y, w->law);
@@ -226,9 +233,8 @@ static const lag_constraint *constraint_of(const lag_sim *s, int i) {
   return &m->constraints->of[m->contacts[i].constraint];
 }
 
-/* Relative tolerances: a speed after an impact that counts as 0; a flight too low to
- * be followed, relative to the terms of the gap. */
-static const double no_speed = 1e-9, no_flight = 0x1p6 * DBL_EPSILON;
+/* A speed after an impact, relative to that before, that counts as 0. */
+static const double no_speed = 1e-9;
 
 /* ---- contacts that take part */
 
@@ -350,7 +356,7 @@ static int rest(ContactSet *w, int event, unsigned char *ends, const double *bef
   }
   int rc = find_closed(w, event, acceleration), more = 0;
   for (int a = 0; a < w->n && rc == 0; a++) { /* its flight would stay within rounding */
-    double after = w->rate[w->of[a]], back = -2 * acceleration[a] * no_flight * w->gap_size[w->of[a]];
+    double after = w->rate[w->of[a]], back = -2 * acceleration[a] * lag_no_flight * w->gap_size[w->of[a]];
     if (!w->active[a] && after * after <= back) {
       w->active[a] = ends[a] = 1;
       more = 1;
@@ -414,7 +420,8 @@ static int resolve_contacts(ContactSet *w, const char *who, int event, int last)
 
 void lag_contact_mute(const lag_sim *s, double *g) {
   const lag_model *m = s->scene->model;
-  for (int i = 0; i < m->ncontacts; i++) g[m->contacts[i].impact] = g[m->contacts[i].release] = 1;
+  for (int i = 0; i < m->ncontacts; i++)
+    if (!m->contacts[i].conditional) g[m->contacts[i].impact] = g[m->contacts[i].release] = 1;
   for (int i = 0; i < m->nguides; i++)
     if (m->guides[i].turn >= 0) g[m->guides[i].turn] = 1;
 }
@@ -423,7 +430,7 @@ void lag_contact_show(lag_sim *s) {
   const lag_model *m = s->scene->model;
   for (int i = 0; i < m->ncontacts; i++) {
     const lag_contact *c = &m->contacts[i];
-    if (lag_guide_of(m, i) >= 0) continue; /* forces, not impulses */
+    if (c->conditional || lag_guide_of(m, i) >= 0) continue; /* forces, not impulses */
     s->pb.u[c->input] = !c->is_tangent && s->pb.contact_impulse[i] > 0;
     if (c->is_tangent) s->pb.u[c->force] = s->pb.contact_impulse[i] / s->pb.contacts->length;
   }
@@ -450,6 +457,21 @@ int lag_contact_resolve(lag_sim *s, double *y, const char *who, int event, int e
   return rc;
 }
 
+void lag_contact_show_start(lag_sim *s, const double *y) {
+  ContactSet w;
+  double *after = calloc((size_t)s->pb.n, sizeof *after);
+  if (!after) return;
+  lag_contact_stats *stats = s->pb.contacts;
+  memcpy(after, y, (size_t)s->pb.n * sizeof *after);
+  s->pb.contacts = NULL; /* their events tell the forces */
+  int rc = evaluate_contacts(s, after, &w);
+  rc = rc ? rc : resolve_contacts(&w, NULL, -1, 0);
+  s->pb.contacts = stats;
+  if (rc) lag_contact_open(s);
+  free_contacts(&w);
+  free(after);
+}
+
 /* Checks that every coefficient of restitution is between 0 and 1. */
 static int check_all(lag_sim *s) {
   ContactSet w;
@@ -461,6 +483,7 @@ static int check_all(lag_sim *s) {
       continue;
     }
     double e = s->scene->model->contacts[i].conditional ? NAN : restitution(&w, i);
+    if (!(e < 0 || e > 1)) continue;
     /* of an impact's speed, not of any */
     if (isfinite(e) && fabs(restitution_at(&w, i, 2 * (w.rate_size[i] > 0 ? w.rate_size[i] : 1)) - e) > 1e-6) continue;
     rc = isfinite(e) ? check_restitution(s, i, s->run->dir < 0 ? fmax(e, 1) : e) : LAG_OK;
@@ -472,7 +495,7 @@ static int check_all(lag_sim *s) {
 
 int lag_contact_begin(lag_sim *s) {
   int rc = LAG_OK;
-  if (s->pb.contacts && s->run->dir < 0)
+  if (s->pb.contacts && lag_has_gaps(s->scene->model) && s->run->dir < 0)
     return lag_fail(s, LAG_EINVAL, "%s does not follow contacts backwards in time", s->method->name);
   if (s->scene->model->contact_laws && s->run->dir < 0)
     return lag_fail(
@@ -485,114 +508,4 @@ int lag_contact_begin(lag_sim *s) {
   }
   memcpy(s->y, s->now, (size_t)s->pb.n * sizeof(double));
   return rc;
-}
-
-/* size[constraints] of tangents := size of the terms of their slip velocities. */
-static int tangent_sizes(lag_sim *s, double *size) {
-  const lag_model *m = s->scene->model;
-  double *rates = size + m->constraints->n;
-  int rc = lag_constraint_terms(&s->pb, s->run->t, s->now, 0, rates);
-  for (int i = 0; i < m->ncontacts && rc == 0; i++)
-    if (m->contacts[i].is_tangent) size[m->contacts[i].constraint] = rates[m->contacts[i].constraint];
-  return rc;
-}
-
-/* The largest force of contacts that are closed; law: of the model's contact_laws, NULL without friction. Where
- * friction holds at its limit g is rounding, the force is not. */
-static double largest_force(const lag_sim *s, const double *g, const double *law) {
-  const lag_model *m = s->scene->model;
-  double most = 0;
-  for (int i = 0; i < m->ncontacts; i++) {
-    const lag_contact *c = &m->contacts[i];
-    if (!lag_contact_is_closed(s, c) || c->conditional) continue;
-    most = fmax(most, fabs(g[c->release]));
-    if (law && c->is_tangent) most = fmax(most, fabs(law[3 * i + 2] + s->pb.u[c->force]));
-  }
-  return most;
-}
-
-int lag_contact_not_open(lag_sim *s, double t, const double *y) {
-  const lag_model *m = s->scene->model;
-  if (m->ncontacts && lag_events_eval(s, t, y, s->g1)) return -2;
-  for (int i = 0; i < m->ncontacts; i++) {
-    const lag_contact *c = &m->contacts[i];
-    if (lag_contact_is_closed(s, c) || (!c->is_tangent && !(s->g1[c->impact] > 0))) return i;
-  }
-  return -1;
-}
-
-/* contact_pair of open contact i, which touches: a closed one whose gap has the opposite gradient. A: of all gaps. */
-static void find_pair(lag_sim *s, const double *A, int i) {
-  const lag_model *m = s->scene->model;
-  const lag_constraints *of = m->constraints;
-  const double rounding = 1e-12;
-  double *a = s->contact_rows + of->njacobian + of->nmass, *same = s->contact_scratch, entries = 0;
-  memset(a, 0, (size_t)m->nq * sizeof *a);
-  memset(same, 0, (size_t)of->n * sizeof *same);
-  for (int e = 0; e < of->njacobian; e++)
-    if (of->jacobian[e].row == m->contacts[i].constraint && A[e] != 0.0) a[of->jacobian[e].col] = A[e], entries++;
-  for (int e = 0; e < of->njacobian; e++) {
-    int opposite = fabs(A[e] + a[of->jacobian[e].col]) <= rounding * fabs(A[e]);
-    if (A[e] != 0.0) same[of->jacobian[e].row] += opposite ? 1 : NAN;
-  }
-  for (int j = 0; j < m->ncontacts; j++)
-    if (s->contact_was[j] > 0.5 && !m->contacts[j].is_tangent && same[m->contacts[j].constraint] == entries)
-      s->contact_pair[i] = j + 1;
-}
-
-/* Pairs of contacts without play. */
-static int find_pairs(lag_sim *s) {
-  const lag_model *m = s->scene->model;
-  const lag_constraints *of = m->constraints;
-  const double *q = s->now, *v = q + m->nq;
-  double *A = s->contact_rows;
-  int rc = 0, known = 0;
-  for (int i = 0; i < m->ncontacts && rc == 0; i++) {
-    const lag_contact *c = &m->contacts[i];
-    s->contact_pair[i] = 0;
-    if (c->is_tangent || c->conditional || s->contact_was[i] > 0.5 || s->sign[c->impact] != 0.0) continue;
-    for (int j = 0; j < m->ncontacts && !known; j++) s->pb.u[m->contacts[j].input] = 1;
-    if (!known++) rc = of->matrices(of, s->run->t, q, v, v + m->nq, s->pb.p, s->pb.u, A, A + of->njacobian, s->pb.work);
-    if (rc == 0) find_pair(s, A, i);
-  }
-  return rc;
-}
-
-int lag_contact_pairs(lag_sim *s, double t, const double *y, double *g) {
-  const lag_model *m = s->scene->model;
-  double *c = s->contact_scratch;
-  int known = 0, rc = 0;
-  for (int i = 0; i < m->ncontacts && rc == 0; i++) {
-    if (s->contact_pair[i] == 0.0) continue;
-    if (!known++) rc = lag_residuals(&s->pb, t, y, c, c + m->constraints->n);
-    g[m->contacts[i].impact] += c[m->contacts[(int)s->contact_pair[i] - 1].constraint];
-  }
-  return rc;
-}
-
-int lag_contact_arm(lag_sim *s, const double *g) {
-  const lag_model *m = s->scene->model;
-  double *size = s->contact_scratch;
-  if (m->ncontacts == 0 || s->pb.contacts) return LAG_OK;
-  const double *law = m->contact_laws && lag_contact_laws(s, s->now, s->pb.rub) == LAG_OK ? s->pb.rub : NULL;
-  const double most = largest_force(s, g, law);
-  for (int i = 0; i < m->ncontacts; i++) s->contact_was[i] = s->hold[m->contacts[i].input];
-  for (int i = 0; i < m->ncontacts; i++)
-    if (!m->contacts[i].conditional) s->hold[m->contacts[i].input] = 1;
-  int rc = term_sizes(s, s->now, 1, size, size + m->constraints->n);
-  if (rc == 0 && m->contact_laws) rc = tangent_sizes(s, size);
-  for (int i = 0; i < m->ncontacts; i++) {
-    const lag_contact *c = &m->contacts[i];
-    s->hold[c->input] = s->contact_was[i];
-    int k = lag_contact_is_closed(s, c) ? c->release : c->impact;
-    double least = fmax(no_flight * size[c->constraint], lag_slip_noise(&s->pb, i));
-    double noise = c->conditional ? 0 : k == c->release ? 1e-12 * most : least;
-    if (g[k] <= noise) { /* no sign yet; below -noise the event fires */
-      s->sign[k] = 0;
-      s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* with a larger factor it would grow at each impact */
-    } else if (k == c->release && !c->conditional) {         /* its force before may be that of an open contact */
-      s->sign[k] = 1;
-    }
-  }
-  return rc ? rc : find_pairs(s);
 }

@@ -39,6 +39,8 @@ typedef struct ContactSet {
 
 /* Rounding of a gap or of its rate, relative to their terms. */
 static const double lag_no_gap = 0x1p12 * DBL_EPSILON;
+/* A flight too low to be followed, relative to the terms of the gap. */
+static const double lag_no_flight = 0x1p6 * DBL_EPSILON;
 
 static inline const lag_contact *lag_contacts_at(const ContactSet *w, int a) {
   return &w->sim->scene->model->contacts[w->of[a]];
@@ -62,13 +64,16 @@ static inline double lag_norm(const double *x, int n) {
  * contact i of the model; a tangent sticks, or has no friction. close_only: closes all, or `which` alone, or none
  * (-1). rates: rate[i] := rate of each gap, and slip velocity of each tangent, at y; leaves all closed. response: d
  * := the least change of velocities that changes the rate of contact i by 1, the others open; returns the change per
- * unit impulse. no_values: reports that contact i has none. */
+ * unit impulse. no_values: reports that contact i has none. term_sizes: size[constraints] := size of the terms of gaps,
+ * or of their rates, at y or at the start, whichever is larger: a ball that has come to lie at 0 is measured by its
+ * fall; leaves all closed. */
 int lag_tangent_of(const lag_model *m, int i);
 void lag_contact_set_closed(lag_sim *sim, int i, int closed);
 void lag_contacts_close_only(const ContactSet *w, int all, int which);
 int lag_contacts_rates(ContactSet *w, const double *y, double *rate);
 double lag_contacts_response(ContactSet *w, int i);
 int lag_contacts_no_values(ContactSet *w, int i);
+int lag_contact_term_sizes(lag_sim *s, const double *y, int holonomic, double *size, double *scratch);
 
 /* contact_complementarity.c. close: closes the contacts of w with closed[n], and no others. impact: applies the
  * impulses where gaps close, changes y and w->rate; e[n]: coefficients of restitution; struck[n]: gaps that were

@@ -83,9 +83,12 @@ int lag_observe(lag_sim *s, double t, const double *y, double *out) {
   /* with independence i, forces have an error of rounding/i^2 and of the state's error/i^2 */
   const double doubtful = 1e-3;
   const lag_scene *c = s->scene;
+  int impulses = s->pb.contacts && c->forces && !c->model->families, start = impulses && s->pb.contacts->length == 0.0;
+  if (start) lag_contact_show_start(s, y);
   int weakest, rc = lag_inputs_at(&s->pb, t, y);
+  if (start) lag_contact_open(s);
   rc = rc ? rc : lag_closed_form_at(s, t);
-  if (rc == 0 && s->pb.contacts && c->forces && s->pb.contacts->length > 0) lag_contact_show(s);
+  if (rc == 0 && impulses && !start) lag_contact_show(s);
   rc = rc ? rc : c->observe(c, t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
   if (rc == 0 && c->forces && c->model->constraints && lag_independence(&s->pb, t, y, &weakest) < doubtful)
     for (int i = 0; i < c->nout; i++) out[i] = c->forces[i] ? NAN : out[i];

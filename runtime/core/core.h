@@ -324,6 +324,8 @@ const lag_contact *lag_contact_of(const lag_model *m, int event);
 int lag_guide_turns(const lag_model *m, int event);    /* whether the force of a guide changes its side there */
 int lag_guide_of(const lag_model *m, int contact); /* index of the guide with this tangent; -1: there is none */
 enum { LAG_MOST_GUIDES = 16 }; /* whose frictions events decide together; moreau has no limit */
+/* Whether a contact is a gap, and not a constraint with a condition. */
+int lag_has_gaps(const lag_model *m);
 /* Whether event k is located: those of contacts that are met by impulses are not. */
 int lag_event_is_located(const lag_sim *sim, int k);
 int lag_contact_is_closed(const lag_sim *sim, const lag_contact *contact);
@@ -345,8 +347,10 @@ void lag_guides_hold_sides(lag_problem *pb, int held);
 int lag_tangent_events(lag_sim *sim, double t, const double *y, double *g);
 void lag_contacts_turn(lag_sim *sim); /* held directions of slips in space := those at the end of a step */
 /* Event functions g[nev] of contacts that are met by impulses: 1, as they do not happen. show: u of these contacts,
- * for outputs with multipliers: closed where the last step pressed them. */
+ * for outputs with multipliers: closed where the last step pressed them. show_start: before the first step hold says
+ * what rests at y under its forces, until lag_contact_open; where these decide nothing, all are open. */
 void lag_contact_mute(const lag_sim *sim, double *g);
+void lag_contact_show_start(lag_sim *sim, const double *y);
 void lag_contact_show(lag_sim *sim);
 void lag_mark_due(lag_sim *sim, int event); /* the event happens at this time, too, unless it has fired already */
 /* conditional_constraints.c: constraints that hold while a condition is true. place: which of them hold at y, and no

@@ -164,7 +164,8 @@ int lag_events_locate(lag_sim *s) {
   r->limit = r->step_t1;
   r->pending = 0;
   const lag_model *m = s->scene->model;
-  int turns = 0; /* contacts and guides that are met by impulses have no other events */
-  for (int i = 0; i < m->nguides && s->pb.contacts; i++) turns += m->guides[i].turn >= 0;
-  return nev == 0 || (s->pb.contacts && nev == 2 * m->ncontacts + turns) ? LAG_OK : locate_first(s, nev);
+  int met = 0; /* contacts and guides that are met by impulses have no other events */
+  for (int i = 0; i < m->nguides && s->pb.contacts; i++) met += m->guides[i].turn >= 0;
+  for (int i = 0; i < m->ncontacts && s->pb.contacts; i++) met += m->contacts[i].conditional ? 0 : 2;
+  return nev == met ? LAG_OK : locate_first(s, nev);
 }

@@ -167,7 +167,7 @@ int lag_monitors_impulses(lag_sim *s) {
 }
 
 int lag_sim_contacts(const lag_sim *s, lag_contact_stats *c) {
-  if (!s || !c || !s->pb.contacts) return 0;
+  if (!s || !c || !s->pb.contacts || !lag_has_gaps(s->scene->model)) return 0;
   *c = *s->pb.contacts;
   return 1;
 }

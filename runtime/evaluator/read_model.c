@@ -240,7 +240,7 @@ static void read_family(Reader *r, lag_contact_family *f, EvaluatedFamily *of) {
   }
   Reader with = *r, alone = without_state(r, 0);
   with.state.in[PROGRAM_Q] = with.state.in[PROGRAM_V] = f->ncoords, with.state.in[PROGRAM_Z] = f->nparams;
-  of->values = wanted(&with, 1, 5 + f->tangents + (1 + f->tangents) * (int64_t)f->ncoords, 0);
+  of->values = wanted(&with, 1, LAG_FAMILY_VALUES + f->tangents + (1 + f->tangents) * (int64_t)f->ncoords, 0);
   of->reach = wanted(&alone, f->nplaces > 0, 4, 0);
 }
 

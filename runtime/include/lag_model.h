@@ -288,10 +288,11 @@ typedef struct lag_read {
 
 /* Contacts with one text for all members, rows 0 .. rows - 1 and, of each, turns skew*row .. skew*row + turns +
  * more*row - 1; indices: 1 or 2, i = i0 + row, j = j0 + turn.
- * values: out = gap, its rate, restitution, friction, tangential restitution; slips; derivatives of the rate, then of
- * the slips, by the member's velocities. Its q, v are those at `coords`, its z parameters at `params`. reach: the
- * distance beyond which no gap is closed, and sides of the box (0: open), of parameters alone; NULL: all members
- * are looked at. place: coordinates of the member of a turn; that of a row is turn i0 + row - j0. */
+ * values: out = gap, its rate, restitution, friction, tangential restitution, static friction; slips; derivatives of
+ * the rate, then of the slips, by the member's velocities. Its q, v are those at `coords`, its z parameters at
+ * `params`. reach: the distance beyond which no gap is closed, and sides of the box (0: open), of parameters alone;
+ * NULL: all members are looked at. place: coordinates of the member of a turn; that of a row is turn i0 + row - j0. */
+enum { LAG_FAMILY_VALUES = 6 }; /* before the slips */
 typedef struct lag_contact_family {
   const char *name;
   int indices, i0, j0, rows, skew, turns, more;

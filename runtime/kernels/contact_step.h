@@ -17,6 +17,7 @@
  *
  * An instance defines before it includes this text lag_contact and lag_entry (lag_model.h), and:
  *   LAG_MODEL, LAG_THE_MODEL             the first parameters of functions: the model; the same as arguments
+ *   LAG_IS_GAP(c)                   whether the contact c is a gap; else a tangent, or no contact of this step
  *   LAG_CLOSE(t, only, u)           a status; inputs u at t with contact `only` closed, or all of them (-1)
  *   LAG_GAPS(t, q, v, z, u, c, r)   a status; gaps and rates of all constraints
  *   LAG_GAP_MATRICES(t, y, u, A, M) a status; entries of the Jacobian and of the mass matrix
@@ -39,6 +40,7 @@
 typedef struct lag_moreau_contacts {
   int contacts, constraints, nq, entries, nmass, band; /* sizes; entries: of the Jacobian; band: half bandwidth of M */
   int loads;                                           /* components of forces of guides */
+  int others;                                          /* other constraints hold beside contacts */
   const lag_contact *at;                               /* [contacts] */
   const lag_entry *jacobian_at, *mass_at;              /* rows and columns of entries */
   LAG_REAL epsilon, loose;                             /* rounding of LAG_REAL; part of the fastest rate, or 0 */
@@ -120,7 +122,7 @@ static inline int lag_contact_respond(LAG_MODEL, lag_moreau_contacts *w, LAG_REA
   const lag_sparse_rows *const A = &w->all.A;
   LAG_REAL work = LAG_C(0.0);
   int status = 0;
-  if (w->constraints == w->contacts) {
+  if (!w->others) {
     lag_band_matrix M = lag_contact_inertia(w);
     for (int j = 0; j < w->nq; j++) w->d[j] = LAG_C(0.0);
     for (int e = (int)A->first[row]; e < (int)A->first[row + 1]; e++) w->d[(int)A->col[e]] = A->value[e];
@@ -150,7 +152,7 @@ static inline int lag_contact_row(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL t,
     A->value[e++] = value;
   }
   A->first[r + 1] = (LAG_REAL)e;
-  const int alone = w->constraints == w->contacts && w->band == 0; /* M is diagonal */
+  const int alone = !w->others && w->band == 0; /* M is diagonal */
   w->response[r] = LAG_C(0.0);
   for (int j = (int)A->first[r]; j < e && alone; j++) {
     D->col[f] = A->col[j];
@@ -265,7 +267,7 @@ static inline int lag_contacts_evaluate(LAG_MODEL, lag_moreau_contacts *w, LAG_R
   }
   for (int i = 0; i < w->contacts; i++) {
     const int k = w->at[i].constraint;
-    if (!lag_is_number(w->r0[k]) || !lag_is_number(w->r1[k]) || (!w->at[i].is_tangent && !lag_is_number(w->c[k])))
+    if (!lag_is_number(w->r0[k]) || !lag_is_number(w->r1[k]) || (LAG_IS_GAP(w->at[i]) && !lag_is_number(w->c[k])))
       return LAG_CONTACT_FAILS(t, i, "has no finite values");
   }
   return status;
@@ -282,8 +284,8 @@ static inline int lag_contacts_find(LAG_MODEL, lag_moreau_contacts *w, LAG_REAL 
   LAG_TRY(lag_contacts_evaluate(LAG_THE_MODEL, w, t, h, y, end));
   for (int i = 0; i < w->contacts; i++) {
     const int k = w->at[i].constraint;
-    if (w->at[i].is_tangent || !lag_contact_takes_part(w->c[k], w->r0[k], w->r1[k], w->pace[k], h)) continue;
-    if (w->all.n == 0 && w->constraints == w->contacts && lag_contacts_factor(w)) return LAG_SINGULAR(t);
+    if (!LAG_IS_GAP(w->at[i]) || !lag_contact_takes_part(w->c[k], w->r0[k], w->r1[k], w->pace[k], h)) continue;
+    if (w->all.n == 0 && !w->others && lag_contacts_factor(w)) return LAG_SINGULAR(t);
     LAG_TRY(lag_contact_add(LAG_THE_MODEL, w, t, h, y, i));
   }
   return status;

@@ -82,21 +82,18 @@ static int init(void *work, lag_problem *pb, const double *opt) {
 
 static const char *refuses(const lag_model *m, const double *opt) {
   (void)opt;
-  if (m->flags & LAG_MASSLESS && (m->families || !m->constraints || m->constraints->n == m->ncontacts))
+  if (m->flags & LAG_MASSLESS && (m->families || !lag_moreau_has_others(m)))
     return "some coordinates have no inertia, and impulses would move them by any amount; dop853 takes such a model";
   for (int i = 0; i < m->ncontacts; i++)
     if (m->contacts[i].law)
       return "it has a law of impact of its own, and one contact or more name another; dop853 follows these";
-  for (int i = 0; i < m->ncontacts; i++)
-    if (m->contacts[i].conditional)
-      return "constraints that hold while a condition is true are not followed; dop853 follows them";
   return NULL;
 }
 
 /* Whether forces depend on no velocity, nor on states. */
 static int is_explicit(const lag_problem *pb) {
   const lag_model *m = pb->model;
-  return (m->flags & LAG_SEPARABLE) && (!m->constraints || m->constraints->n == m->ncontacts);
+  return (m->flags & LAG_SEPARABLE) && !lag_moreau_has_others(m);
 }
 
 static int changes_too_much(lag_problem *pb, double t, const char *what) {

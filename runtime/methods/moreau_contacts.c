@@ -17,6 +17,12 @@ static int band_of(const lag_entry *mass, int n) {
   return band;
 }
 
+int lag_moreau_has_others(const lag_model *m) {
+  int others = m->constraints && m->constraints->n > m->ncontacts;
+  for (int i = 0; i < m->ncontacts; i++) others |= m->contacts[i].conditional;
+  return others;
+}
+
 /* Sizes of the kernel, for all contacts that a step may have; entries of responses: *responses. */
 static lag_moreau_contacts sizes_of(const lag_model *m, int *responses) {
   const lag_constraints *of = m->constraints;
@@ -28,6 +34,7 @@ static lag_moreau_contacts sizes_of(const lag_model *m, int *responses) {
     w.mass_at = m->families->mass;
   } else {
     w.contacts = m->ncontacts - m->nguides;
+    w.others = lag_moreau_has_others(m);
     w.constraints = of->n;
     w.entries = of->njacobian;
     w.nmass = of->nmass;
@@ -90,6 +97,7 @@ int lag_moreau_close(lag_problem *pb, double t, int only) {
   const lag_model *m = pb->model;
   int rc = lag_inputs(pb, t);
   for (int i = 0; i < m->ncontacts; i++) {
+    if (m->contacts[i].conditional) continue;
     pb->u[m->contacts[i].input] = only < 0 || i == only;
     if (m->contacts[i].is_tangent) pb->u[m->contacts[i].force] = 0;
   }

@@ -15,6 +15,7 @@ int lag_moreau_singular(lag_problem *pb, double t);
 
 #define LAG_MODEL lag_problem *pb
 #define LAG_THE_MODEL pb
+#define LAG_IS_GAP(c) (!(c).is_tangent && !(c).conditional)
 #define LAG_CLOSE(t, only, u) lag_moreau_close(pb, t, only)
 #define LAG_GAPS(t, q, v, z, u, c, r) lag_moreau_gaps(pb, t, q, v, z, c, r)
 #define LAG_GAP_MATRICES(t, y, u, A, M) lag_moreau_matrices(pb, t, y, A, M)
@@ -25,6 +26,8 @@ int lag_moreau_singular(lag_problem *pb, double t);
 #define LAG_SINGULAR(t) lag_moreau_singular(pb, t)
 #include "kernels/contact_step.h"
 
+/* Whether m has constraints beside contacts. */
+int lag_moreau_has_others(const lag_model *m);
 /* In pb->contact_room; law[2 contacts]: friction and tangential restitution. */
 lag_moreau_contacts lag_moreau_contacts_of(lag_problem *pb, double *law);
 /* Finds the contacts that take part, as lag_contacts_find; of families first those that are near. */

@@ -64,7 +64,7 @@ static size_t lay_out(const lag_contact_families *all, lag_family_rows *w, doubl
   size_t used = doubles_of(sizeof *w);
 #define PLACE(to, n) (w->to = first ? (void *)(first + used) : NULL, used += doubles_of((n) * sizeof *w->to))
   PLACE(at, most), PLACE(jacobian, most * parts), PLACE(of, most), PLACE(guess, most), PLACE(key, most);
-  PLACE(q, parts), PLACE(v, parts), PLACE(z, parts), PLACE(out, 8 + 3 * parts);
+  PLACE(q, parts), PLACE(v, parts), PLACE(z, parts), PLACE(out, LAG_FAMILY_VALUES + 2 + 3 * parts);
   PLACE(reach, 4 * (size_t)all->n), PLACE(near, (size_t)all->n);
 #undef PLACE
   for (int k = 0; k < all->n; k++) {
@@ -123,7 +123,7 @@ static int member_values(lag_problem *pb, const Member *of, double t, const doub
 }
 
 static const double *row_of(const lag_family_rows *w, const lag_contact_family *f, int j) {
-  return w->out + 5 + f->tangents + j * f->ncoords;
+  return w->out + LAG_FAMILY_VALUES + f->tangents + j * f->ncoords;
 }
 
 /* --- the members that take part --- */
@@ -265,7 +265,7 @@ int lag_families_gaps(lag_problem *pb, double t, const double *q, const double *
     r[of->at] = w->out[1];
     for (int j = 0; j < tangents; j++) {
       c[of->at + 1 + j] = 0;
-      r[of->at + 1 + j] = w->out[5 + j];
+      r[of->at + 1 + j] = w->out[LAG_FAMILY_VALUES + j];
     }
   }
   return 0;
@@ -286,13 +286,13 @@ int lag_families_matrices(lag_problem *pb, double t, const double *y, double *A,
   return rc ? lag_step_refused(pb, rc, t) : 0;
 }
 
-/* Friction and tangential restitution of the rows, at the places of tangents. */
+/* Friction and tangential restitution of the rows, at the places of tangents; static friction at that of a gap. */
 int lag_families_laws(lag_problem *pb, double t, const double *y, double *law) {
   const lag_family_rows *w = pb->family;
   for (int i = 0; i < w->contacts; i++) {
     if (member_values(pb, &w->of[i], t, y, y + pb->nq)) return lag_step_refused(pb, LAG_ERETRY, t);
     for (int j = 0; j <= pb->model->families->of[w->of[i].family].tangents; j++) {
-      law[2 * (w->of[i].at + j)] = w->out[3];
+      law[2 * (w->of[i].at + j)] = w->out[j ? 3 : 5];
       law[2 * (w->of[i].at + j) + 1] = w->out[4];
     }
   }

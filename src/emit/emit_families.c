@@ -13,7 +13,7 @@ static void reads(const char *name, const IrRead *at, uint32_t n, StrBuf *out) {
 
 static void family_functions(const ModelFile *f, const IrContactFamily *c, uint32_t i) {
   const char *name = comment_text(f->a, c->name);
-  const char *values = "A contact of the family %s: gap, rate, restitution, friction, slips, rows of A.",
+  const char *values = "A contact of the family %s: gap, rate, restitution, frictions, slips, rows of A.",
              *reach = "The distance at which %s looks for neighbours, and the box.";
   state_function(f, c->values, arena_printf(f->a, "family_%u", i), arena_printf(f->a, values, name), NULL, one_out);
   state_function(f, c->reach, arena_printf(f->a, "family_%u_reach", i), arena_printf(f->a, reach, name), NULL, one_out);

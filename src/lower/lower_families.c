@@ -52,14 +52,14 @@ static Expr rate_of(const Eqns *e, const ContactFamily *of) {
   return rate;
 }
 
-/* Gap, rate, restitution, friction, tangential restitution; slips; rows of the rate and of the slips by velocities. */
+/* FAMILY_VALUES; slips; rows of the rate and of the slips by velocities. */
 static const Prog *lower_member(const Eqns *e, const ContactFamily *of) {
   Lower l = lower_new(e);
-  const Expr first[] = {of->gap,      rate_of(e, of), of->restitution, of->friction, of->tangential,
+  const Expr first[] = {of->gap,      rate_of(e, of), of->restitution, of->friction, of->tangential, of->hold,
                         of->slip[0], of->slip[1]};
   static const char *const names[] = {"gap",  "gap'", "restitution", "friction", "tangential restitution",
-                                      "slip", "slip"};
-  for (uint32_t k = 0; k < 5 + of->tangents; k++) lower_output(&l, first[k], names[k]);
+                                      "static friction", "slip", "slip"};
+  for (uint32_t k = 0; k < FAMILY_VALUES + of->tangents; k++) lower_output(&l, first[k], names[k]);
   for (uint32_t row = 0; row <= of->tangents; row++)
     for (uint32_t k = 0; k < of->coords.n; k++) {
       const Coord *q = &e->m->coords.at[expr_symbol(e->g, of->coords.at[k].symbol)->index];

@@ -104,7 +104,9 @@ static Value evaluate(const Work *w, AstId id) {
 static Expr option(Work *w, const char *word, Expr other) {
   AstId id = ast_option_value(w->b->ast, w->st, word);
   Value v = id ? evaluate(w, id) : (Value){.e = other};
-  const char *what = word[0] == 't' ? "a tangential restitution" : "a coefficient of friction";
+  const char *what = word[0] == 't'   ? "a tangential restitution"
+                     : word[0] == 's' ? "a coefficient of static friction"
+                                      : "a coefficient of friction";
   int fits = !id || !v.e || check_pure_number(w->b, w->st, id, &v, word[0] == 't' ? 1 : HUGE_VAL, what);
   return fits ? v.e : 0;
 }
@@ -113,20 +115,21 @@ static int read_friction(Work *w, ContactFamily *to, const Value *gap) {
   Builder *b = w->b;
   const Constraint of_gap = {.c = gap->e, .dim = gap->dim};
   Expr zero = expr_int(b->g, 0);
-  to->friction = to->tangential = zero;
+  to->friction = to->tangential = to->hold = zero;
   if (!w->st->args) return 1;
   if (!check_contact_options(b, w->st)) return 0;
   for (AstId i = w->st->args; i; i = ast_expr(b->ast, i)->next)
-    if (strcmp(ast_expr(b->ast, i)->name, "law") == 0 || strcmp(ast_expr(b->ast, i)->name, "static") == 0)
+    if (strcmp(ast_expr(b->ast, i)->name, "law") == 0)
       return diag_error(b->diags, ast_expr(b->ast, i)->span,
-                        "not yet: `%s` of a family of contacts, which moreau follows" HELP
-                        "write `for i in 1..N { contact ... }`: dop853 follows contacts one by one",
-                        ast_expr(b->ast, i)->name);
-  AstId id = ast_option_value(b->ast, w->st, "slip");
+                        "not yet: `law` of a family of contacts, which moreau follows" HELP
+                        "write `for i in 1..N { contact ... }`: dop853 follows contacts one by one");
+  AstId id = ast_option_value(b->ast, w->st, "slip"), most = ast_option_value(b->ast, w->st, "static");
   Value slip = evaluate(w, id);
   to->friction = option(w, "friction", zero);
   to->tangential = option(w, "tangential", zero);
-  if (!slip.e || !to->friction || !to->tangential || !check_slip(b, w->st, id, &slip, &of_gap)) return 0;
+  to->hold = to->friction ? option(w, "static", to->friction) : 0;
+  if (most && to->hold) add_static_limit(b, to->hold, to->friction, ast_expr(b->ast, most)->span);
+  if (!slip.e || !to->hold || !to->tangential || !check_slip(b, w->st, id, &slip, &of_gap)) return 0;
   to->tangents = component_count(&slip);
   for (uint32_t k = 0; k < to->tangents; k++) to->slip[k] = slip.at[k];
   if (!b->m->dissipation_span.end) b->m->dissipation_span = w->st->span;
@@ -161,8 +164,8 @@ static int add_read(Work *w, ContactFamily *to, const Symbol *s) {
 
 static int add_reads(Work *w, ContactFamily *to) {
   ExprGraph *g = w->b->g;
-  const Expr roots[] = {to->gap, to->restitution, to->friction, to->tangential, to->tangents ? to->slip[0] : to->gap,
-                        to->tangents > 1 ? to->slip[1] : to->gap};
+  const Expr roots[] = {to->gap, to->restitution, to->friction, to->tangential, to->hold,
+                        to->tangents ? to->slip[0] : to->gap, to->tangents > 1 ? to->slip[1] : to->gap};
   ExprList l = expr_topo(g, roots, sizeof roots / sizeof *roots);
   for (uint32_t k = 0; k < l.n; k++) {
     if (expr_op(g, l.at[k]) == EX_CELL) return refuse_family(w, w->st->lhs, "a contact contains a sum over many terms");

@@ -320,12 +320,14 @@ typedef struct {
   LoopRange range;
   int64_t i0, j0;
   VEC(FamilyRead) coords, params;
-  Expr gap, restitution, friction, tangential, slip[2];
+  Expr gap, restitution, friction, tangential, hold, slip[2]; /* hold: static friction */
   uint32_t tangents;
   Expr cut, side[3];
   Subscript place[3]; /* coordinates of the member of a turn */
   uint32_t nplaces;
 } ContactFamily;
+/* Values of a member before its slips: gap, rate, restitution, friction, tangential restitution, static friction. */
+enum { FAMILY_VALUES = 6 };
 
 /* A sum that is not written out. beside: its outer terms have more than the inner sum; sampled: the self-check takes a
  * sample of its turns. */

@@ -141,19 +141,19 @@ static CheckVerdict check_member(Check *c, const TextMember *of) {
   const IrContactFamily *f = &c->u->families.at[of->family];
   const ContactFamily *text = &c->m->families.at[of->family];
   const Tape *tape = c->outputs->tape;
-  static const uint32_t place[] = {0, 2, 3, 4, 5, 6};
-  uint32_t rates = 5 + f->tangents;
+  static const uint32_t place[] = {0, 2, 3, 4, 5, 6, 7};
+  uint32_t rates = FAMILY_VALUES + f->tangents;
   Real *out = ARENA_ARRAY(c->arena, Real, rates + (1 + f->tangents) * f->coords.n + 1),
        *rest = ARENA_ARRAY(c->arena, Real, rates + (1 + f->tangents) * f->coords.n + 1);
   CheckVerdict v = AGREES;
   if (!run_member(c, of, 1, out) || !run_member(c, of, 0, rest)) return DISMISSED;
-  for (uint32_t k = 0; k < 4 + f->tangents; k++)
+  for (uint32_t k = 0; k < 5 + f->tangents; k++)
     v = worse(v, check_output_value(c, of->value[k], out[place[k]], text->span, "the contacts", text->name));
   if (of->value[0])
     v = worse(v, check_value(c, check_coefficient(tape, c->at_outputs, of->value[0], 0, 1), out[1], text->span,
                              "the rate of the contacts", text->name));
   for (uint32_t j = 0; j <= f->tangents; j++) {
-    uint32_t at = j ? 4 + j : 1;
+    uint32_t at = j ? FAMILY_VALUES - 1 + j : 1;
     v = worse(v, check_row(c, of, out + rates + j * f->coords.n, out[at], rest[at]));
   }
   return v;

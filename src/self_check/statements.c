@@ -295,12 +295,12 @@ static void read_event(Walk *w, const AstStmt *st, Name effect) {
 static void read_member(Walk *w, const ContactFamily *f, int64_t row, int64_t turn) {
   const AstStmt *st = f->stmt;
   TextMember x = {.family = (uint32_t)(f - w->text->m->families.at), .row = row, .turn = turn};
-  static const char *const options[] = {"friction", "tangential", "slip"};
+  static const char *const options[] = {"friction", "tangential", "static", "slip"};
   vec_push(w->text->arena, &w->around, ((IndexVar){f->name_i, f->i0 + row}));
   if (f->name_j) vec_push(w->text->arena, &w->around, ((IndexVar){f->name_j, f->j0 + turn}));
   x.value[0] = value(w, st->lhs, f->effect).at[0];
   x.value[1] = value(w, st->rhs, f->effect).at[0];
-  for (uint32_t k = 0; k < 3; k++) {
+  for (uint32_t k = 0; k < 4; k++) {
     AstId id = ast_option_value(w->text->b->ast, st, options[k]);
     TextValue v = id ? value(w, id, f->effect) : (TextValue){0};
     for (uint32_t part = 0; id && part < text_components(&v) && part < 2; part++) x.value[2 + k + part] = v.at[part];

@@ -16,11 +16,11 @@ typedef struct {
   Ref value;
 } TextAction;
 
-/* A member of a family of contacts: gap, restitution, friction, tangential restitution, slips. */
+/* A member of a family of contacts: gap, restitution, friction, tangential restitution, static friction, slips. */
 typedef struct {
   uint32_t family;
   int64_t row, turn;
-  Ref value[6];
+  Ref value[7];
 } TextMember;
 
 /* Ref 0: the text has no such statement, or it contains a construct that tapes cannot evaluate (`why`). Memory is

@@ -1,6 +1,6 @@
-/* A program evaluated beside the same program compiled: evaluator BYTES LIBRARY.so SCENE prints a line `accel NS NS RATIO` at the
- * scene's start, and one for a Taylor step of order 16 where there is one: nanoseconds a call, evaluated and compiled.
- * Both take turns; the least of 20 turns counts. */
+/* A program evaluated beside the same program compiled: evaluator BYTES LIBRARY.so SCENE prints a line `accel NS NS
+ * RATIO` at the scene's start, and one for a Taylor step of order 16 where there is one: nanoseconds a call, evaluated
+ * and compiled. Both take turns; the least of 20 turns counts. */
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -135,6 +135,22 @@ for v in 2 3; do
   check "saved and serialized, too, FMI $v" moves $v saved $belt s "mu=0.2" 2e-4 1 mu=0.2
 done
 check "a crank on guides, and the force of one" moves 2 cs $here/fmu/guides.lag coast "--tol 1e-11" 2e-6 1 # the tolerance of steps is 1e-6
+# A slider between two rails: of which of them it presses, and how much, from the start on, where no step has been taken. By events, too, where the force passes from one to the
+# other 7e-4 s before a row, by 4 N/s
+cat >"$TMP/rails.lag" <<'END'
+model rails
+coord a [rad], b [rad], x [m], y [m]
+param r = 0.1 [m] > 0, l = 0.25 [m] > 0, m = 1.5 [kg] > 0
+kinetic = 0.01 [kg*m^2]/2*a'^2 + m/2*(x'^2 + y'^2) + 1e-3 [kg*m^2]*b'^2
+constraint pin: (x, y) = (r*cos(a) + l*cos(b), r*sin(a) - l*sin(b))
+contact low: y >= 0, restitution = 0
+contact high: y <= 0 [m], restitution = 0
+scene s { start a = 1, b = asin(r*sin(1)/l), x = r*cos(1) + l*cos(asin(r*sin(1)/l)), a' = 5 [rad/s]; span 1 [s]; output a, lambda(low), lambda(high) every 0.01 [s] }
+END
+for v in $versions; do
+  check "forces of rails, from the start on, FMI $v" moves $v cs "$TMP/rails.lag" s "--method moreau(step=1e-4)" 1e-11 1
+  check "as by events, FMI $v" moves $v cs "$TMP/rails.lag" s "" 3e-3 1
+done
 check "beside a contact, with friction of a coordinate" moves 2 cs $here/fmu/stopped.lag coast "--method moreau(step=1e-3)" 1e-9 1
 check "a body that is held by friction stays where it is" moves 2 cs $here/fmu/brake.lag s "" 1e-4 1
 

@@ -25,6 +25,27 @@ check "the first goes on with (1 - 3 e)/4" near "$(final "r\[1\].x'")" -0.2 1e-1
 check "the second with (1 + e)/4" near "$(final "r\[2\].x'")" 0.4 1e-14
 check "the third is not met" near "$(final "r\[3\].x'")" 0 0
 
+# ---- static friction: blocks pulled by i newtons on rough ground, mu_s m g = 6.5 N, mu m g = 3 N; those that rest or come to rest stay up to 6 N, others slide by i - 3
+model rows <<'END_OF'
+model rows
+const N = 12
+coord r[N]: vec2
+param m = 1 > 0, g = 10, mu = 0.3 >= 0, mu_s = 0.65 >= 0
+kinetic = sum(i in 1..N, m/2*dot(r[i]', r[i]'))
+potential = sum(i in 1..N, m*g*r[i].y)
+for i in 1..N { force r[i].x = i }
+contact floor[i in 1..N]: r[i].y >= 0, restitution = 0, friction = mu, static = mu_s, slip = r[i].x'
+scene s { span 1; method moreau(step = 0.01); output r }
+scene slides { like s; start r[i in 1..N].x' = 0.1*i }
+END_OF
+check "blocks are pulled" run rows
+for i in 1 6; do check "block $i stays" near "$(final "r\[$i\].x")" 0 1e-16; done
+for i in 7 12; do check "block $i slides" near "$(final "r\[$i\].x")" "$(awk "BEGIN { print ($i - 3)/2 }")" 1e-12; done
+check "blocks slide" run rows slides
+check "the second stops, and stays" near "$(final "r\[2\].x")" 0.02 1e-12 # 0.2^2/2, by 1
+check "the fourth goes on" near "$(final "r\[4\].x")" 0.9 1e-12          # 0.4 + 1/2
+check "a static friction below friction" says 'the static limit minus the friction' run rows mu_s=0.2
+
 # ---- discs that slide on a floor until they roll: x' = 2 v/3 for a disc, whatever the friction
 model roll <<'END_OF'
 model roll
@@ -115,8 +136,6 @@ edit moves 's/near(i, 0.14)/near(i, r[1].x)/'
 check "a cut-off that moves" says 'the cut-off and the box of `near` move' check moves
 edit beside 's/^contact wall.*/contact wall: r[1].x >= 0, restitution = 0/'
 check "a single contact beside" says 'single contacts beside a family' check beside
-edit static 's/friction = mu, slip = r/friction = mu, static = 0.5, slip = r/'
-check "static friction" says 'not yet: `static` of a family' check static
 edit dop853 's/moreau(step = 0.002)/dop853/'
 check "another method" says 'does not follow the family of contacts `hit`' check dop853
 check "another method of the command line" says 'does not follow the family of contacts hit' run near --method dop853

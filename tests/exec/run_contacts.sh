@@ -222,4 +222,53 @@ EOF
 # up by 2 for half a second, which is 0.25 m and 0.05 m more, and down by 10 from 0.6 s on: 0.6 + sqrt(0.06)
 blows() { "$LAGC" run "$TMP/hammer.lag" >"$TMP/blows" && grep -q '^event anvil: 8 times, first at t = 0.8449' "$TMP/blows" && ! grep 'left out' "$TMP/blows"; }
 check "blows at equal times are told as they are" blows
+# Loops with contacts. MuJoCo's test engine_core_smooth_test, rne_post/connect/multiple_constraints.xml: cubes of 1 kg in the field (1, 2, 3), one hung from another beside a slider of
+# frictionloss 9 N; its sensor, which bears two of them, has (-2, -4, -6).
+model connect <<'EOF'
+model connect
+coord r: vec3 [m], s [m]
+param m = 1 [kg] > 0
+let G = (1 [m/s^2], 2 [m/s^2], 3 [m/s^2])
+kinetic = m/2*(dot(r', r') + s'^2)
+potential = -m*dot(G, r) - m*G.z*s
+constraint link: r = (0 [m], 0 [m], 0 [m])
+friction slide on s: 9 [N]
+observe X [N] = lambda(link).x - m*G.x
+observe Y [N] = lambda(link).y - m*G.y
+observe Z [N] = lambda(link).z - m*G.z
+scene hangs { span 1 [s]; output X, Y, Z, s every 1 [s] }
+scene steps { like hangs; method moreau(step = 1e-2) }
+EOF
+for s in hangs steps; do
+  check "cubes on a connect, $s" run connect $s
+  is "and its sensor" "1,-2,-4,-6,0" "$(tail -1 "$TMP/out.csv")"
+done
+# Two legs of length L hinged at the top, which bears P, feet on the floor, tied by a rope: moments about the hinge give the rope's force (P + m g) tan(a)/2, each foot m g + P/2.
+model frame <<'EOF'
+model frame
+coord x[2] [m], y[2] [m], a[2] [rad], h [m]
+param m = 3 [kg] > 0, L = 2 [m] > 0, P = 40 [N], g = 9.81 [m/s^2], mu = 0 >= 0
+let px = x[1] + L/2*sin(a[1]), py = y[1] + L/2*cos(a[1])
+let side[1] = 1
+let side[2] = -1
+kinetic = sum(i in 1..2, m/2*(x[i]'^2 + y[i]'^2) + m*L^2/24*a[i]'^2) + m/2*h'^2
+potential = sum(i in 1..2, m*g*y[i]) + P*h
+constraint pin: (x[2] - L/2*sin(a[2]), y[2] + L/2*cos(a[2])) = (px, py)
+constraint load: h = py
+constraint rope: 0.8*L = x[2] + L/2*sin(a[2]) - x[1] + L/2*sin(a[1]) while lambda(rope) > 0
+for i in 1..2 {
+  contact foot[i]: y[i] >= L/2*cos(a[i]), restitution = 0, friction = mu, slip = x[i]' - side[i]*L/2*cos(a[i])*a[i]'
+}
+scene stands {
+  start x[1] = -0.4, x[2] = 0.4, a[i in 1..2] = asin(0.4), y[i in 1..2] = sqrt(0.84), h = 2*sqrt(0.84)
+  span 1 [s]; output lambda(rope), lambda(foot[1]), h every 1 [s]
+}
+scene steps { like stands; method moreau(step = 1e-2) }
+EOF
+for s in stands steps; do
+  check "a frame on two feet, $s" run frame $s
+  check "the rope bears (P + m g) tan(a)/2" near "$(cell 1 2)" 15.150868119084954 1e-12
+  check "and each foot m g + P/2" near "$(cell 1 3)" 49.43 1e-12
+  check "it stands" near "$(cell 1 4)" 1.833030277982336 1e-14
+done
 tap_end

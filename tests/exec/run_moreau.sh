@@ -396,14 +396,6 @@ check "lagc cost" refuses 2 'lagc cost leaves it out' cost ball drop --methods m
 check "drag that is too strong for the step" refuses 3 'change too much within a step: take smaller steps, or radau' run ball swing c=5000 --method $m3
 check "more contacts at once than others follow" refuses 3 'more than 6 contacts touch at once, some of them with friction, which only moreau follows' run tower rest -D N=$N --method dop853
 check "verlet names it" refuses 2 'rk45, dop853, radau, rk4 and moreau can' run slope s --method verlet
-model clutch <<'END_OF'
-model clutch
-coord a [rad], b [rad]
-kinetic = 1 [kg*m^2]/2*(a'^2 + b'^2)
-constraint clutch: a' = b' while t > 1 [s]
-scene s { span 2 [s] }
-END_OF
-check "constraints with a condition" refuses 2 'constraints that hold while a condition is true are not followed; dop853' run clutch s --method $m3
 
 # ---- friction that falls with speed: a e^(c v) + b = (a e^(c v0) + b) e^(-a c t/m) for F = a + b e^(-c |v|); a fast body is not stopped at once
 model stribeck <<'END_OF'
@@ -457,4 +449,24 @@ scene clamp { start a = 0.6; start guess b = 0.6, x = 0.33; span 1 [s] }
 END_OF
 check "a toggle passes its dead centre" run toggle clamp --method $m3
 check "and clamps" near "$(final x)" "$(calc '0.4*cos(0.06)')" 1e-5 # of the order of the step in which it strikes: h l sin(0.06)
+
+# ---- forces at the start, before a step: a block that lies, one that slides, one that flies; m g = 10, mu m g = 3
+model start <<'END_OF'
+model start
+coord x[3] [m], y[3] [m]
+param m = 1 [kg] > 0, g = 10 [m/s^2], mu = 0.3 >= 0
+kinetic = sum(i in 1..3, m/2*(x[i]'^2 + y[i]'^2))
+potential = sum(i in 1..3, m*g*y[i])
+for i in 1..3 {
+  force x[i] = -2 [N]
+  contact floor[i]: y[i] >= 0, restitution = 0, friction = mu, slip = x[i]'
+}
+scene s {
+  start x[2]' = 1 [m/s], y[3] = 1 [m]; span 0.1 [s]; method moreau(step = 0.01)
+  output lambda(floor[1]), lambda(floor[1].slip), lambda(floor[2]), lambda(floor[2].slip), lambda(floor[3]), x[2]' every 0.1 [s]
+}
+END_OF
+check "forces at the start" run start s
+is "at rest, sliding, in flight" "0,10,2,10,-3,0,1" "$(sed -n 2p "$TMP/csv")"
+check "the steps are as without them: 1 - 0.5" near "$(final "x\[2\]'")" 0.5 1e-14
 tap_end
