@@ -40,7 +40,10 @@ function begin_beside() {
   if ($("twin").checked && first) twin = new Motion(lag, scene, options({...now, [first]: now[first] + 1e-9*(Math.abs(now[first]) || 1)}, motion.t));
   if ($("estimate").checked) finer = new Motion(lag, scene, options(now, motion.t, takesSteps() ? 4 : 10));
   for (const other of [twin, finer]) if (other) { other.advance(other.t); other.direction = motion.direction; }
+  look_at();
 }
+// Reads what is shown of the motion and the twin.
+function look_at() { for (const m of [motion, twin]) if (m) { m.now = m.values; m.row = m.outputs; } }
 // A new motion from `values`, at time t; the old one stays where that is refused.
 function begin(values, t = NaN) {
   try {
@@ -57,7 +60,11 @@ function begin(values, t = NaN) {
 }
 const state = () => Object.fromEntries(Object.entries(motion.state).filter(([name]) => names.state.includes(name)));
 // Goes on from the present state with what has changed.
-function go_on() { if (motion && begin(state(), motion.t)) { section.x = []; section.y = []; draw(); } }
+function go_on() {
+  const done = !motion || begin(state(), motion.t);
+  if (done && motion) { section.x = []; section.y = []; draw(); }
+  return done;
+}
 function restart() {
   clear();
   if (begin(settings.start)) { record(); draw(); starts(); }
@@ -74,6 +81,7 @@ function choose() {
   const all = isOf($("scene").value), found = all.find(p => sameSet(p.effects, wanted())) || all[0];
   if (found == program) return;
   end_beside();
+  const changed = !!program;
   program = found;
   $("doc").textContent = found.doc;
   lag = new Lag(wasm);
@@ -87,6 +95,10 @@ function choose() {
   pace = piece >= 1 && piece <= 90 ? 1 : unit*nice(piece/unit/20);
   controls();
   methods();
+  if (changed) { // values of what is off now
+    const known = new Set([...items.map(item => item.name), ...names.state]);
+    for (const of of [settings.values, settings.start]) for (const name in of) if (!known.has(name)) delete of[name];
+  }
   look();
 }
 
@@ -225,7 +237,7 @@ function equations() {
 
 // ---- the motion over time
 function record() {
-  for (const m of [motion, twin]) if (m) { m.now = m.values; m.row = m.outputs; }
+  look_at();
   const row = {t: motion.t, x: motion.row, y: columns.map(c => c.of(motion)), twin: twin && columns.map(c => c.of(twin))}, last = track.at(-1);
   estimate();
   track.push(row);
@@ -265,7 +277,7 @@ function beside(t) {
 const heading = () => $("back").checked ? -1 : 1, stands = () => [over, landed].includes(heading());
 // Goes on by so many seconds of watching, in pieces that take a few milliseconds; past the time that drawing leaves of a frame, the rest is left out.
 function pass(seconds) {
-  if (stands()) return;
+  if (!motion || stands()) return;
   const dir = heading(), from = motion.t, asked = seconds*pace*+$("speed").value, goal = from + dir*asked, began = performance.now();
   const parts = clamp(Math.round(60*asked/pace), 1, 8), budget = clamp(15 - drawing, 5, 25);
   try {
@@ -294,6 +306,7 @@ function pass(seconds) {
   if (slow > 0.5 && finer) { $("estimate").checked = false; end_beside(); begin_beside(); horizon = null; say(word("dear"), "note"); }
 }
 function tick(now) {
+  if (!motion) pause(); // no start was accepted
   if (!playing) return;
   pass(clamp(now - before, 0, 100)/1000);
   before = now;
@@ -457,14 +470,19 @@ function wire() {
   $("step").onclick = () => { pause(); pass(1/60); draw(); };
   $("reset").onclick = restart;
   $("scene").onchange = () => { settings.moved = false; settings.values = {}; settings.start = {}; effects(); choose(); restart(); share(); };
-  $("method").onchange = () => { settings.method = $("method").value; fine(); go_on(); share(); };
+  $("method").onchange = () => {
+    const was = settings.method, use = name => { $("method").value = settings.method = name; fine(); };
+    use($("method").value);
+    if (!go_on()) use(was); // refused: the one before goes on
+    share();
+  };
   $("fine").oninput = () => { settings.moved = true; fine(); go_on(); share(); };
   $("twin").onchange = $("estimate").onchange = () => { slow = 0; horizon = null; if (motion) { begin_beside(); draw(); } };
   for (const id of ["over", "px", "py", "section"]) $(id).onchange = () => { if (id != "over") section.x = [], section.y = []; draw(); };
   $("link").onclick = () => { share(); copy(location.href, "copied"); };
   $("embed").onclick = () => { share(); copy('<iframe width="480" height="360" src="' + location.href.replace(/(\?[^#]*)?(#|$)/, "?controls=0$2") + '"></iframe>', "framed"); };
   $("png").onclick = () => save("motion.png", "", picture_url());
-  $("csv").onclick = () => save("motion.csv", "text/csv", ["t [s]", ...columns.map((_, i) => titled(i))].join(",") + "\n" + track.map(r => [r.t, ...r.y].join(",")).join("\n") + "\n");
+  $("csv").onclick = () => save("motion.csv", "text/csv", ["t [s]", ...columns.map((_, i) => titled(i))].map(s => s.includes(",") ? '"' + s + '"' : s).join(",") + "\n" + track.map(r => [r.t, ...r.y].join(",")).join("\n") + "\n");
   $("lag").onclick = () => save("model.lag", "text/plain", model.source);
   $("print").onclick = () => print();
   $("equations").ontoggle = equations;

@@ -27,7 +27,11 @@ async function pendulum() {
   const e = await energy(), t = await b.value("lagc.motion.t");
   await b.until(`lagc.motion.t > ${t} + 0.5`);
   is("friction is switched on: the energy falls", programs > 1 && await energy() < e - 1e-4, [e, await energy()]);
+  await b.value('(s => { s.value = 150; s.oninput(); })(document.querySelector("#values .slider:last-child input"))');
   await b.click("#effects input");
+  await b.click("#effects input");
+  await b.click("#effects input");
+  is("an effect whose slider has moved is switched off and on", await said() == "" && await b.value("!!lagc.motion") && await b.value("lagc.columns.length > 0"), await said());
   const drift = async (method, fine) => {
     await b.value(`(() => { const m = document.getElementById("method"), f = document.getElementById("fine"); m.value = "${method}"; m.onchange(); f.value = ${fine}; f.oninput(); lagc.reset(); lagc.play(); })()`);
     await b.until("lagc.motion.t > 1.5");
@@ -111,6 +115,16 @@ async function edges() {
   await b.click("#back");
   await b.click("#play");
   is("backwards it leaves its end", await b.until("lagc.motion.t < 0.3", 5).catch(() => false));
+  await page("slider_crank");
+  await b.value('lagc.pause(), (m => { m.value = "gauss"; m.onchange(); })(document.getElementById("method"))');
+  is("a method that is refused is not taken", /constraints/.test(await said()) && await b.value('document.getElementById("method").value') == "" && await b.value("lagc.motion.method") == "dop853", await said());
+  await b.click("#twin");
+  is("a twin of a motion that stands", /aside by \d/.test(await b.value('document.getElementById("report").textContent')), await b.value('document.getElementById("report").textContent'));
+  await page("drop");
+  await b.value("lagc.reset(), lagc.play()");
+  await b.until("lagc.motion.t > 0.1");
+  const rows = await b.value(`new Promise(done => { const {createObjectURL} = URL; URL.createObjectURL = text => { URL.createObjectURL = createObjectURL; text.text().then(done); return "#"; }; document.getElementById("csv").click(); })`);
+  is("CSV quotes a name with a comma, as lagc run does", rows.startsWith('t [s],"hypot(y, 1 [m]) [m]",y [m],'), rows.slice(0, 200));
   await page("pendulum", "#" + encodeURIComponent('{"values": {"g": 1e20}}'));
   const took = await b.value("(t => { lagc.pass(1/60); return performance.now() - t; })(performance.now())");
   is("a motion of 1e10 turns a second leaves the page alive", took < 2000, took);
