@@ -2,6 +2,7 @@
  * II.4). */
 #include "methods/step_control.h"
 
+#include <float.h>
 
 const char *const lag_on_off[] = {"on", "off", NULL};
 
@@ -25,5 +26,6 @@ double lag_first_step(lag_problem *pb, const lag_tolerance *tol, lag_first_try s
   s.dir = pb->dir;
   s.longest = tol->limits->h_max;
   s.unit = tol->limits->atol > 0 ? 1 : pb->size[pb->n + 1]; /* of h0, h1, 1/d1 and 1/d2 */
-  return lag_start_step(pb, tol, &s);
+  /* Not a size that is refused at this time (4 ulp of it), as from components near 0, whose allowed errors are. */
+  return lag_max(lag_start_step(pb, tol, &s), 16 * DBL_EPSILON * fabs(s.t));
 }

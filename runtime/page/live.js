@@ -1,6 +1,7 @@
 // The live page: controls, clocks and plots around motion.js. Enters: model, parts and packed of live.html; leaves: the page.
 const $ = id => document.getElementById(id);
 const clamp = (x, lo, hi) => Math.min(hi, Math.max(lo, x));
+const ENDED = 2, LATE = 3; // of Motion.advance
 const short = x => !Number.isFinite(x) ? "?" : x && (Math.abs(x) >= 1e6 || Math.abs(x) < 1e-3) ? (+x.toPrecision(4)).toExponential().replace("e+", "e") : String(+x.toPrecision(4));
 const named_unit = unit => unit == "1" ? "" : unit;
 
@@ -10,6 +11,7 @@ let spent = 0, passed = 0, slow = 0, piece = 1, horizon = null, doubtful = 0, sc
 const section = {x: [], y: []};
 const settings = {method: "", fine: 1e-9, values: {}, start: {}};
 const span = {t0: 0, t1: 20};
+let over = 0, landed = 0; // the direction in which the motion does not go on: it failed; an event of the model ended it, also with other values
 let pace = 1, unit = 1, unitName = "s"; // seconds of the motion in one of watching; the unit of time that is shown
 
 const isOf = name => more.programs.filter(p => p.scene == name);
@@ -38,7 +40,10 @@ function begin_beside() {
   if ($("twin").checked && first) twin = new Motion(lag, scene, options({...now, [first]: now[first] + 1e-9*(Math.abs(now[first]) || 1)}, motion.t));
   if ($("estimate").checked) finer = new Motion(lag, scene, options(now, motion.t, takesSteps() ? 4 : 10));
   for (const other of [twin, finer]) if (other) { other.advance(other.t); other.direction = motion.direction; }
+  look_at();
 }
+// Reads what is shown of the motion and the twin.
+function look_at() { for (const m of [motion, twin]) if (m) { m.now = m.values; m.row = m.outputs; } }
 // A new motion from `values`, at time t; the old one stays where that is refused.
 function begin(values, t = NaN) {
   try {
@@ -47,7 +52,7 @@ function begin(values, t = NaN) {
     if (motion) motion.free();
     motion = next;
     horizon = null;
-    doubtful = spent = passed = slow = 0;
+    over = doubtful = spent = passed = slow = 0;
     say("");
     begin_beside();
   } catch (e) { say(wrong(e)); return false; }
@@ -55,7 +60,11 @@ function begin(values, t = NaN) {
 }
 const state = () => Object.fromEntries(Object.entries(motion.state).filter(([name]) => names.state.includes(name)));
 // Goes on from the present state with what has changed.
-function go_on() { if (motion && begin(state(), motion.t)) { section.x = []; section.y = []; draw(); } }
+function go_on() {
+  const done = !motion || begin(state(), motion.t);
+  if (done && motion) { section.x = []; section.y = []; draw(); }
+  return done;
+}
 function restart() {
   clear();
   if (begin(settings.start)) { record(); draw(); starts(); }
@@ -63,6 +72,7 @@ function restart() {
 function clear() {
   track = [];
   scale = [];
+  landed = 0;
   section.x = []; section.y = [];
 }
 
@@ -71,12 +81,13 @@ function choose() {
   const all = isOf($("scene").value), found = all.find(p => sameSet(p.effects, wanted())) || all[0];
   if (found == program) return;
   end_beside();
+  const changed = !!program;
   program = found;
   $("doc").textContent = found.doc;
   lag = new Lag(wasm);
   scene = lag.open(bytes.subarray(found.at, found.at + found.n))[0];
   motion = null;
-  items = lag.items(scene, "p").map((item, i) => ({...item, positive: lag.f.page_sign(scene, i) > 0}));
+  items = lag.items(scene, "p").map((item, i) => ({...item, sign: lag.f.page_sign(scene, i)}));
   const s = lag.span(scene);
   span.t0 = s.t0; span.t1 = s.t1 != s.t0 ? s.t1 : s.t0 + 20;
   piece = Math.abs(span.t1 - span.t0);
@@ -84,6 +95,10 @@ function choose() {
   pace = piece >= 1 && piece <= 90 ? 1 : unit*nice(piece/unit/20);
   controls();
   methods();
+  if (changed) { // values of what is off now
+    const known = new Set([...items.map(item => item.name), ...names.state]);
+    for (const of of [settings.values, settings.start]) for (const name in of) if (!known.has(name)) delete of[name];
+  }
   look();
 }
 
@@ -99,7 +114,7 @@ function row_of(name, unit, attributes) {
 }
 // The slider of parameter i, whose value in the scene is `value`: in proportion where it is declared > 0.
 function slider(item, i, value) {
-  const log = value > 0 && item.positive, [lo, hi] = log ? [value/10, value*10] : value ? [-2*Math.abs(value), 2*Math.abs(value)] : [-1, 1];
+  const log = value > 0 && item.sign == 1, most = 2*Math.abs(value) || 1, [lo, hi] = log ? [value/10, value*10] : [item.sign > 0 ? 0 : -most, item.sign < 0 ? 0 : most];
   const to = x => log ? lo*(hi/lo)**(x/200) : lo + (hi - lo)*x/200, from = v => clamp(200*(log ? Math.log(v/lo)/Math.log(hi/lo) : (v - lo)/(hi - lo)), 0, 200);
   const {row, input, show} = row_of(item.name, named_unit(item.unit), {id: "value" + i}), now = () => settings.values[item.name] ?? value;
   const set = v => { input.value = from(v); show(v); };
@@ -178,10 +193,10 @@ function methods() {
   fine();
 }
 // The slider of accuracy: a tolerance 1e-3 to 1e-14, or a step of 1/50 to 1/50000 of the span; at first the scene's own, but
-// no tolerance below 1e-10: motions are watched.
+// or that of `lagc run`, but no tolerance below 1e-10: motions are watched.
 function fine() {
   const steps = takesSteps(), most = Math.abs(span.t1 - span.t0)/50, x = +$("fine").value/100;
-  const own = settings.method || settings.moved ? 0 : steps ? lag.f.page_step(scene) : lag.f.page_tolerance(scene) && Math.max(1e-10, lag.f.page_tolerance(scene));
+  const own = settings.method || settings.moved ? 0 : steps ? lag.f.page_step(scene) : Math.max(1e-10, lag.f.page_tolerance(scene) || 1e-9);
   settings.fine = own > 0 ? own : steps ? most*10**(-3*x) : 10**(-3 - 11*x);
   if (own > 0) $("fine").value = 100*(steps ? Math.log10(most/own)/3 : (-3 - Math.log10(own))/11);
   $("finename").textContent = word(steps ? "stepsize" : "tolerance");
@@ -222,7 +237,7 @@ function equations() {
 
 // ---- the motion over time
 function record() {
-  for (const m of [motion, twin]) if (m) { m.now = m.values; m.row = m.outputs; }
+  look_at();
   const row = {t: motion.t, x: motion.row, y: columns.map(c => c.of(motion)), twin: twin && columns.map(c => c.of(twin))}, last = track.at(-1);
   estimate();
   track.push(row);
@@ -250,28 +265,39 @@ function estimate() {
   doubtful = error > 0.1 ? doubtful + 1 : 0;
   if (horizon === null && doubtful >= 10) horizon = track.at(-9)?.t ?? motion.t;
 }
-const beside = t => { for (const other of [twin, finer]) if (other) other.advance(t); };
+// A motion beside that takes far longer than the motion is given up.
+function beside(t) {
+  for (const other of [twin, finer]) if (other && other.advance(t, 0.1) == LATE) {
+    $(other == twin ? "twin" : "estimate").checked = false;
+    begin_beside();
+    say(word("dear"), "note");
+    return;
+  }
+}
+const heading = () => $("back").checked ? -1 : 1, stands = () => [over, landed].includes(heading());
 // Goes on by so many seconds of watching, in pieces that take a few milliseconds; past the time that drawing leaves of a frame, the rest is left out.
 function pass(seconds) {
-  const dir = $("back").checked ? -1 : 1, from = motion.t, asked = seconds*pace*+$("speed").value, goal = from + dir*asked, began = performance.now();
+  if (!motion || stands()) return;
+  const dir = heading(), from = motion.t, asked = seconds*pace*+$("speed").value, goal = from + dir*asked, began = performance.now();
   const parts = clamp(Math.round(60*asked/pace), 1, 8), budget = clamp(15 - drawing, 5, 25);
   try {
     if (motion.direction && motion.direction != dir) begin(state(), motion.t);
     motion.direction = dir;
     for (let done = false; !done && (goal - motion.t)*dir > 0;) {
-      const a = performance.now(), step = Math.min(piece, asked/parts), rest = Math.abs(goal - motion.t), ended = motion.advance(rest <= 1.01*step ? goal : motion.t + dir*step) > 0;
+      const a = performance.now(), step = Math.min(piece, asked/parts), rest = Math.abs(goal - motion.t), status = motion.advance(rest <= 1.01*step ? goal : motion.t + dir*step, budget/1000), ended = status == ENDED;
       beside(motion.t);
       record();
       const took = performance.now() - a;
       if (took > 8) piece = Math.max(Math.min(piece, step)/2, 1e-7*Math.abs(span.t1 - span.t0));
       else if (took < 3) piece = Math.min(2*piece, Math.abs(span.t1 - span.t0));
-      if (ended) { say(word("ended") + " " + short(motion.t) + " s. " + word("again"), "note"); pause(); }
+      if (ended) { say(word("ended") + " " + short(motion.t) + " s. " + word("again"), "note"); landed = dir; pause(); }
       done = ended || performance.now() - began > budget;
     }
   } catch (e) {
     const why = wrong(e);
     say((/^at t = /.test(why) ? "" : word("failed") + " " + short(motion.t) + " s: ") + why + ". " + word("again"));
     record();
+    over = dir;
     pause();
   }
   spent += performance.now() - began;
@@ -280,6 +306,7 @@ function pass(seconds) {
   if (slow > 0.5 && finer) { $("estimate").checked = false; end_beside(); begin_beside(); horizon = null; say(word("dear"), "note"); }
 }
 function tick(now) {
+  if (!motion) pause(); // no start was accepted
   if (!playing) return;
   pass(clamp(now - before, 0, 100)/1000);
   before = now;
@@ -288,6 +315,7 @@ function tick(now) {
 }
 function play() {
   if (playing || !motion) return;
+  if (stands()) restart();
   playing = true;
   before = performance.now();
   named_play();
@@ -413,7 +441,7 @@ function look() {
   try {
     const trial = new Motion(lag, scene, options(settings.start, NaN));
     for (let k = 0; k <= parts && (k < 20 || performance.now() - began < 200); k++) {
-      if (trial.advance(span.t0 + k*step) > 0) k = parts;
+      if (trial.advance(span.t0 + k*step, 0.2)) k = parts;
       rows.push({t: trial.t, x: trial.outputs});
     }
     trial.free();
@@ -442,14 +470,19 @@ function wire() {
   $("step").onclick = () => { pause(); pass(1/60); draw(); };
   $("reset").onclick = restart;
   $("scene").onchange = () => { settings.moved = false; settings.values = {}; settings.start = {}; effects(); choose(); restart(); share(); };
-  $("method").onchange = () => { settings.method = $("method").value; fine(); go_on(); share(); };
+  $("method").onchange = () => {
+    const was = settings.method, use = name => { $("method").value = settings.method = name; fine(); };
+    use($("method").value);
+    if (!go_on()) use(was); // refused: the one before goes on
+    share();
+  };
   $("fine").oninput = () => { settings.moved = true; fine(); go_on(); share(); };
   $("twin").onchange = $("estimate").onchange = () => { slow = 0; horizon = null; if (motion) { begin_beside(); draw(); } };
   for (const id of ["over", "px", "py", "section"]) $(id).onchange = () => { if (id != "over") section.x = [], section.y = []; draw(); };
   $("link").onclick = () => { share(); copy(location.href, "copied"); };
   $("embed").onclick = () => { share(); copy('<iframe width="480" height="360" src="' + location.href.replace(/(\?[^#]*)?(#|$)/, "?controls=0$2") + '"></iframe>', "framed"); };
   $("png").onclick = () => save("motion.png", "", picture_url());
-  $("csv").onclick = () => save("motion.csv", "text/csv", ["t [s]", ...columns.map((_, i) => titled(i))].join(",") + "\n" + track.map(r => [r.t, ...r.y].join(",")).join("\n") + "\n");
+  $("csv").onclick = () => save("motion.csv", "text/csv", ["t [s]", ...columns.map((_, i) => titled(i))].map(s => s.includes(",") ? '"' + s + '"' : s).join(",") + "\n" + track.map(r => [r.t, ...r.y].join(",")).join("\n") + "\n");
   $("lag").onclick = () => save("model.lag", "text/plain", model.source);
   $("print").onclick = () => print();
   $("equations").ontoggle = equations;
@@ -535,8 +568,7 @@ async function main() {
   wasm = await WebAssembly.compile(unpacked(bytes_of(packed)));
   $("fine").value = 55;
   if (said) {
-    settings.values = said.values || {};
-    settings.start = said.start || {};
+    for (const of of ["values", "start"]) settings[of] = Object.fromEntries(Object.entries(said[of] || {}).map(([n, v]) => [n, typeof v == "number" ? v : NaN]));
     settings.method = said.method || "";
     settings.moved = said.fine !== undefined;
     $("fine").value = said.fine ?? 55;
@@ -553,11 +585,18 @@ async function main() {
     restart();
     say(why + ". " + word("address"));
   }
+  const odd = said ? [said.scene, said.method, said.effects ?? []].flat().filter(x => x && ![$("scene").value, settings.method, ...wanted()].includes(x)) : [];
+  if (odd.length && motion && !$("said").textContent) say(odd.join(", ") + "? " + word("address"));
   $("equations").open = innerWidth > 720 && more.latex && more.latex.length < 3000;
   if (said && Number.isFinite(said.t) && motion) { // shows that time, paused
     if (Math.abs(said.t - motion.t) > 100*Math.abs(span.t1 - span.t0)) say("t = " + short(said.t) + " s: " + word("far"));
     else try {
-      for (let k = 1, from = motion.t; k <= 200; k++) { motion.advance(from + (said.t - from)*k/200); beside(motion.t); record(); }
+      for (let k = 1, from = motion.t, until = performance.now() + 5000; k <= 200; k++) {
+        const late = motion.advance(from + (said.t - from)*k/200, (until - performance.now())/1000) == LATE;
+        beside(motion.t);
+        record();
+        if (late) { say(word("failed") + " " + short(motion.t) + " s: " + word("slower")); k = 200; }
+      }
     } catch (e) { say(wrong(e)); }
     pause();
     document.body.dataset.state = JSON.stringify(motion.state);

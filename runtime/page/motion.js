@@ -154,8 +154,8 @@ class Motion {
   get message() { return this.lag.text(this.lag.f.lag_sim_message(this.sim)); }
   get method() { return this.lag.text(this.lag.f.page_method(this.sim)); }
   get t() { return this.lag.f.lag_sim_time(this.sim); }
-  // Integrates to t. Returns 0, or 1 where an event ended the motion before; throws where it failed.
-  advance(t) { return this.must(this.lag.f.lag_sim_advance(this.sim, t)); }
+  // Integrates to t, for so many seconds at most. Returns 0, or 2 where an event ended the motion before, 3 where the time did; throws where it failed.
+  advance(t, seconds = Infinity) { return this.must(this.lag.f.page_advance(this.sim, t, seconds)); }
   names(which) { // page_output or page_state
     const all = [];
     for (let i = 0, at; (at = this.lag.f[which](this.sim, i)); i++) all.push(this.lag.text(at).split("\t"));

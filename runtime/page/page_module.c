@@ -71,10 +71,8 @@ int page_takes_steps(const char *name) {
   return m && !(m->flags & LAG_METHOD_ADAPTIVE);
 }
 
-/* 1 where parameter i is declared > 0, else 0. */
-int page_sign(const lag_scene *scene, int i) {
-  return i >= 0 && i < scene->model->np && scene->model->p[i].sign == 1;
-}
+/* Declared sign of parameter i, as in lag_model.h; 0 past the last. */
+int page_sign(const lag_scene *scene, int i) { return i >= 0 && i < scene->model->np ? scene->model->p[i].sign : 0; }
 
 /* Of charge k: 0 its value, 1 its drift, relative, 2 its unit's drift, 3 the work that was taken off, 4 its trend. */
 double page_charge(lag_sim *sim, int k, int what) {
@@ -128,6 +126,13 @@ lag_sim *page_begin(const lag_scene *scene, double t) {
   lag_sim *sim = lag_sim_new(own);
   if (!sim) free(own);
   return sim;
+}
+/* lag_sim_advance for so many seconds at most: after them LAG_INTERRUPTED, at the end of a step. */
+int page_advance(lag_sim *sim, double t, double seconds) {
+  static double until;
+  until = lag_clock_seconds() + seconds;
+  lag_sim_on_step(sim, lag_time_is_up, &until);
+  return lag_sim_advance(sim, t);
 }
 void page_end(lag_sim *sim) {
   const lag_scene *own = lag_sim_scene(sim);

@@ -84,7 +84,7 @@ int command_page(Compiler *c) {
   pack_append(&d.bytes, &packed);
   page_bytes(&bytes, packed.at, packed.n);
   const Model *m = d.shown->m;
-  const PageMark marks[] = {{"@TITLE@", escaped(a, m->doc ? m->doc : m->name)},
+  const PageMark marks[] = {{"@TITLE@", escaped(a, *m->doc ? m->doc : m->name)},
                             {"@MODEL@", sb_text(&d.json)},
                             {"@BYTES@", sb_text(&bytes)},
                             {"@MODULE@", sb_text(&module)},

@@ -27,7 +27,11 @@ async function pendulum() {
   const e = await energy(), t = await b.value("lagc.motion.t");
   await b.until(`lagc.motion.t > ${t} + 0.5`);
   is("friction is switched on: the energy falls", programs > 1 && await energy() < e - 1e-4, [e, await energy()]);
+  await b.value('(s => { s.value = 150; s.oninput(); })(document.querySelector("#values .slider:last-child input"))');
   await b.click("#effects input");
+  await b.click("#effects input");
+  await b.click("#effects input");
+  is("an effect whose slider has moved is switched off and on", await said() == "" && await b.value("!!lagc.motion") && await b.value("lagc.columns.length > 0"), await said());
   const drift = async (method, fine) => {
     await b.value(`(() => { const m = document.getElementById("method"), f = document.getElementById("fine"); m.value = "${method}"; m.onchange(); f.value = ${fine}; f.oninput(); lagc.reset(); lagc.play(); })()`);
     await b.until("lagc.motion.t > 1.5");
@@ -92,6 +96,45 @@ async function others() {
   await b.click("#reset");
   is("reset begins again", await b.value("lagc.motion.t") == 0 && await said() == "", await said());
 }
+// A ball that falls, its motion ended by an event; no doc, no tolerance, a parameter >= 0.
+async function edges() {
+  await page("drop");
+  is("a model without a title has its name", await b.value("document.title") == "drop" && await b.value('document.querySelector("h1").textContent') == "drop");
+  is("without a tolerance, that of lagc run", await b.value('document.getElementById("finevalue").value') == "1e-9", await b.value('document.getElementById("finevalue").value'));
+  await b.value('(s => { s.value = 0; s.oninput(); })(document.getElementById("value2"))');
+  is("a parameter >= 0 has a slider from 0", await b.value('document.getElementById("value2").getAttribute("aria-valuetext")') == "0 kg/s" && await said() == "", await said());
+  await b.until("!lagc.playing && lagc.motion.t > 0.4"); // y = 1 - g t^2/2 = 0
+  const ended = await b.value("lagc.motion.t");
+  await b.value("lagc.pass(0.5)");
+  is("a motion that an event ended does not go on", Math.abs(ended - Math.sqrt(2/9.81)) < 1e-3 && await b.value("lagc.motion.t") == ended && (await said()).includes("ends"), ended);
+  await b.value('lagc.set("g", 9.9); lagc.pass(0.5)');
+  is("nor with another value", await b.value("lagc.motion.t") == ended);
+  await b.click("#play");
+  is("play begins it again", await b.until("lagc.playing && lagc.motion.t > 0.02 && lagc.motion.t < 0.44", 5).catch(() => false));
+  await b.until("!lagc.playing");
+  await b.click("#back");
+  await b.click("#play");
+  is("backwards it leaves its end", await b.until("lagc.motion.t < 0.3", 5).catch(() => false));
+  await page("slider_crank");
+  await b.value('lagc.pause(), (m => { m.value = "gauss"; m.onchange(); })(document.getElementById("method"))');
+  is("a method that is refused is not taken", /constraints/.test(await said()) && await b.value('document.getElementById("method").value') == "" && await b.value("lagc.motion.method") == "dop853", await said());
+  await b.click("#twin");
+  is("a twin of a motion that stands", /aside by \d/.test(await b.value('document.getElementById("report").textContent')), await b.value('document.getElementById("report").textContent'));
+  await page("drop");
+  await b.value("lagc.reset(), lagc.play()");
+  await b.until("lagc.motion.t > 0.1");
+  const rows = await b.value(`new Promise(done => { const {createObjectURL} = URL; URL.createObjectURL = text => { URL.createObjectURL = createObjectURL; text.text().then(done); return "#"; }; document.getElementById("csv").click(); })`);
+  is("CSV quotes a name with a comma, as lagc run does", rows.startsWith('t [s],"hypot(y, 1 [m]) [m]",y [m],'), rows.slice(0, 200));
+  await page("pendulum", "#" + encodeURIComponent('{"values": {"g": 1e20}}'));
+  const took = await b.value("(t => { lagc.pass(1/60); return performance.now() - t; })(performance.now())");
+  is("a motion of 1e10 turns a second leaves the page alive", took < 2000, took);
+  await b.open(`file://${folder}/pendulum.html#` + encodeURIComponent('{"values": {"m": [2]}, "t": 1}'));
+  await b.until("window.lagc && lagc.motion && lagc.track.length > 1");
+  is("values of an address are numbers", /m = nan.*left out/.test(await said()), await said());
+  await b.open(`file://${folder}/pendulum.html#` + encodeURIComponent('{"method": "nosuch", "scene": "none", "t": 1}'));
+  await b.until("window.lagc && lagc.motion && lagc.track.length > 1");
+  is("a method and a scene that are not there are told", /none, nosuch. .*left out/.test(await said()), await said());
+}
 async function site(models) {
   await b.open(`file://${folder}/site/index.html`);
   await b.until('document.querySelectorAll("#topics li").length > 1 && document.querySelectorAll("#course li").length > 1');
@@ -103,6 +146,6 @@ async function site(models) {
     is("the site leads to " + m + ", which moves", true);
   }
 }
-pendulum().then(others).then(() => site(process.argv.slice(4)))
+pendulum().then(others).then(edges).then(() => site(process.argv.slice(4)))
   .catch(e => is("all steps", false, e.message))
   .finally(() => { is("no complaint in the console", !b.faults.length, b.faults); console.log("1.." + n); b.close(); });

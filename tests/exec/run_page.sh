@@ -135,6 +135,9 @@ END
   events() { # pages under real events, and the site
     for m in pendulum double_pendulum slider_crank kepler; do "$LAGC" page "models/$m.lag" -o "$TMP/$m.html" || return; done
     printf '%s\n' 'model wall' 'state z' "flow z' = z^2" 'scene s { start z = 1; span 5 }' >"$TMP/wall.lag" # z = 1/(1 - t)
+    printf '%s\n' 'model drop' 'coord y [m]' 'param m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0, c = 0 [kg/s] >= 0' "kinetic = m/2*y'^2" 'potential = m*g*y' "dissipation = c/2*y'^2" \
+      'event lands: y falling { stop }' 'scene s { start y = 1; span 5; output hypot(y, 1 [m]), y every 0.1 }' >"$TMP/drop.lag"
+    "$LAGC" page "$TMP/drop.lag" -o "$TMP/drop.html" || return
     "$LAGC" page "$TMP/wall.lag" -o "$TMP/wall.html" && .ci/site "$LAGC" "$TMP/site" pendulum lorenz string || return
     timeout 300 node tests/exec/page_events.js "$browser" "$TMP" pendulum lorenz
   }

@@ -317,6 +317,26 @@ static void the_first_step_of_what_hardly_moves(void **state)
   }
 }
 
+static int quick_accel(ARGS, UNUSED double *a, double *zd, UNUSED double *w) { return zd[0] = -4, 0; }
+static void quick_start(SELF, UNUSED const double *p, UNUSED double *q, UNUSED double *v, double *z) { z[0] = 1e-16; }
+
+/* z' = -4 from z = 1e-16 at t = 0.45, both ways: errors that are allowed there would have steps shorter than time
+ * resolves. */
+static void a_start_near_zero_at_a_later_time(void **state)
+{
+  static const lag_model model = {MODEL("quick"), .nz = 1, .z = names_z, .accel = quick_accel};
+  static const lag_scene quick = {.name = "s", .doc = "", .model = &model, .start = quick_start, .t0 = 0.45, .t1 = 1};
+  const lag_method *const adaptive[] = {&lag_rk45, &lag_dop853};
+  (void)state;
+  for (int i = 0; i < 4; i++) {
+    lag_sim *s = sim_with(&quick, adaptive[i / 2], 1e-9, 0, NULL);
+    const double t = i % 2 ? 0.2 : 0.7;
+    assert_int_equal(lag_sim_advance(s, t), LAG_OK);
+    assert_close(lag_sim_z(s)[0], -4 * (t - 0.45), 1e-15);
+    lag_sim_free(s);
+  }
+}
+
 static void rough_powers_are_near(void **state)
 {
   (void)state;
@@ -341,6 +361,7 @@ int main(void)
       cmocka_unit_test(hermite_reproduces_polynomials),
       cmocka_unit_test(rk4_does_not_gather_rounding),
       cmocka_unit_test(the_first_step_of_what_hardly_moves),
+      cmocka_unit_test(a_start_near_zero_at_a_later_time),
       cmocka_unit_test(rk4_keeps_time),
       cmocka_unit_test(backwards_undoes_forwards),
       cmocka_unit_test(a_refused_step_loses_no_state),
