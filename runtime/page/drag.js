@@ -1,10 +1,16 @@
 // Dragging, turning and zooming of the picture by mouse, fingers and keys. Used by live.js, whose motion it begins anew.
 
+// Those of these coordinates that move the body: halves of the list are moved together, each by its own amount.
+function movers(list, moves) {
+  if (!list.length || !moves(list)) return [];
+  const half = list.length >> 1;
+  return half ? [...movers(list.slice(0, half), moves), ...movers(list.slice(half), moves)] : list;
+}
 // The coordinates that bring the body nearest to the pointer with the least change, at rest. project: a place to two lengths of the
 // screen. Least squares after Levenberg and Marquardt; where no coordinate moves the body towards the pointer, as with rods in one line, they
 // are first bent a little.
 function dragged(body, project, to) {
-  const free = names.state.filter(n => !n.includes("'") && names.state.includes(n + "'")), start = state(), began = performance.now();
+  const free = names.state.filter(n => !n.includes("'") && names.state.includes(n + "'")), start = state();
   for (const n of free) start[n + "'"] = 0;
   const at = values => {
     const m = new Motion(lag, scene, {...options(values, motion.t), method: motion.method});
@@ -13,17 +19,24 @@ function dragged(body, project, to) {
   const far = x => Math.hypot(...x.r);
   let here = at(start), best = here, damping = 1e-6, bent = 0;
   const near = 1e-5*(Math.hypot(...to) + far(here)) + 1e-300, keep = s => Object.fromEntries(Object.entries(s).filter(([n]) => names.state.includes(n)));
+  if (!body.movers) { // from a place where nothing is special, as the angle about a point at the origin
+    const bend = (base, part) => (n, i) => { base[n] += part*(0.3 + 0.618*i % 1)*(Math.abs(base[n]) || 1); }, generic = keep(here.state);
+    free.forEach(bend(generic, 1e-3));
+    const seen = list => { const next = {...generic}; list.forEach(bend(next, 1e-4)); try { return at(next).r.join(); } catch { return NaN; } }, there = seen([]);
+    body.movers = movers(free, list => seen(list) != there);
+  }
+  const began = performance.now();
   for (let turn = 0; turn < 16 && far(here) > near && performance.now() - began < 60; turn++) {
-    const base = keep(here.state), J = free.map(n => {
-      const h = 1e-6*(Math.abs(base[n]) || 1), r = at({...base, [n]: base[n] + h}).r;
+    const base = keep(here.state), J = body.movers.map(n => {
+      const h = 1e-6*(Math.abs(base[n]) || 1), r = performance.now() - began < 200 ? at({...base, [n]: base[n] + h}).r : here.r;
       return [(here.r[0] - r[0])/h, (here.r[1] - r[1])/h];
     });
     let a = 0, b = 0, d = 0, done = false;
     for (const [x, y] of J) { a += x*x; b += x*y; d += y*y; }
     for (let k = 0; k < 4 && !done; k++) {
-      const soft = damping*(a + d) + 1e-300, det = (a + soft)*(d + soft) - b*b, u = ((d + soft)*here.r[0] - b*here.r[1])/det, v = ((a + soft)*here.r[1] - b*here.r[0])/det;
+      const soft = damping*(a + d) + 1e-150, det = (a + soft)*(d + soft) - b*b, u = ((d + soft)*here.r[0] - b*here.r[1])/det, v = ((a + soft)*here.r[1] - b*here.r[0])/det;
       const next = {...base};
-      free.forEach((n, i) => { next[n] += J[i][0]*u + J[i][1]*v; });
+      body.movers.forEach((n, i) => { next[n] += J[i][0]*u + J[i][1]*v; });
       const there = at(next);
       done = far(there) < (1 - 1e-9)*far(here);
       if (done) { here = there; damping = Math.max(1e-9, damping/10); } else damping = Math.min(1, 30*damping);
@@ -32,7 +45,7 @@ function dragged(body, project, to) {
     if (done) continue;
     if (bent++) break;
     const next = {...base}; // at a place where the body cannot move that way at first
-    free.forEach((n, i) => { next[n] += (i % 2 ? -0.05 : 0.05)*(Math.abs(base[n]) > 1 ? Math.abs(base[n]) : 1); });
+    body.movers.forEach((n, i) => { next[n] += (i % 2 ? -0.05 : 0.05)*(Math.abs(base[n]) > 1 ? Math.abs(base[n]) : 1); });
     here = at(next);
     damping = 1e-6;
   }
@@ -49,6 +62,7 @@ function pointers() {
     const far = b => { const [x, y] = picture.toCanvas(picture.place(b.a)); return Math.hypot(x - from[0], y - from[1]); };
     held = picture.bodies.filter(b => b.a.some(c => c >= 0)).sort((a, b) => far(a) - far(b)).find(b => far(b) < (e.pointerType == "touch" ? 40 : 25)) || null;
     if (!held) return;
+    held.movers = null;
     [project, target] = picture.screen(picture.place(held.a), from);
     resumes = playing;
     pause();

@@ -137,7 +137,10 @@ END
     printf '%s\n' 'model wall' 'state z' "flow z' = z^2" 'scene s { start z = 1; span 5 }' >"$TMP/wall.lag" # z = 1/(1 - t)
     printf '%s\n' 'model drop' 'coord y [m]' 'param m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0, c = 0 [kg/s] >= 0' "kinetic = m/2*y'^2" 'potential = m*g*y' "dissipation = c/2*y'^2" \
       'event lands: y falling { stop }' 'scene s { start y = 1; span 5; output hypot(y, 1 [m]), y every 0.1 }' >"$TMP/drop.lag"
-    "$LAGC" page "$TMP/drop.lag" -o "$TMP/drop.html" || return
+    printf '%s\n' 'model loose' 'coord x[100] [m], y[100] [m]' 'kinetic = sum(i in 1..100, 0.5 [kg]*(x[i]'"'"'^2 + y[i]'"'"'^2))' \
+      'potential = sum(i in 1..100, 0.5 [N/m]*((x[i] - i*1 [m])^2 + y[i]^2))' 'draw ball[i in 1..100] at (x[i], y[i])' \
+      'scene s { start x[i in 1..100] = i*1.01 [m]; span 5; tolerance 1e-6 }' >"$TMP/loose.lag"
+    "$LAGC" page "$TMP/drop.lag" -o "$TMP/drop.html" && "$LAGC" page "$TMP/loose.lag" -o "$TMP/loose.html" || return
     "$LAGC" page "$TMP/wall.lag" -o "$TMP/wall.html" && .ci/site "$LAGC" "$TMP/site" pendulum lorenz string || return
     timeout 300 node tests/exec/page_events.js "$browser" "$TMP" pendulum lorenz
   }
