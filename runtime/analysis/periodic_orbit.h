@@ -128,5 +128,11 @@ int lag_orbit_solve(PeriodicOrbit *o);
 int lag_orbit_refine(PeriodicOrbit *o);
 /* Multipliers of the solution. LAG_OK, or a status. */
 int lag_orbit_multipliers(PeriodicOrbit *o);
+/* orbit_events.c. event_at_begin: the name of an event that is about to pass the time at which a segment of the motion
+ * begins: the state there jumps, and no branch of it goes on. grazes: that of an event or contact next to which the
+ * motion comes without meeting it, at *time: beyond, it happens once more. NULL: none. */
+const char *lag_orbit_event_at_begin(PeriodicOrbit *o);
+const char *lag_orbit_grazes(PeriodicOrbit *o, double *time);
+
 /* orbit_contacts.c: closed and opens of the solution. LAG_OK, or LAG_ENOMEM. */
 int lag_orbit_contacts(PeriodicOrbit *o);

@@ -21,24 +21,6 @@ static int failed(Job *job, int rc, const char *message) {
   return lag_app_no_result(&job->app->args, "%s", words_of(rc, message));
 }
 
-/* Name of an event that is about to pass the time at which a segment of the motion begins: the state there jumps, and
- * no branch of it goes on. NULL: none. */
-static const char *event_at_node(PeriodicOrbit *o) {
-  const lag_model *m = o->flow.like->scene->model;
-  const char *name = NULL;
-  double near = 0.01 * o->T / o->m, first, last;
-  for (int k = 0; k < o->m && !name; k++) {
-    double begin = o->flow.t0 + o->T * k / o->m, end = begin + o->T / o->m;
-    lag_sim *sim = lag_flow_sim(&o->flow, begin, o->y + k * o->n);
-    for (int j = 0; sim && j < m->nev && lag_sim_advance(sim, end) == LAG_OK; j++) {
-      if (lag_is_kick(m, j) || lag_sim_event_times(sim, j, &first, &last) <= 0) continue;
-      if (first < begin + near || last > end - near) name = m->ev[j].name;
-    }
-    lag_sim_free(sim);
-  }
-  return name;
-}
-
 /* Whether the parameter stays along the branch, to rounding. */
 static int stands(const Job *job, const Part *part) {
   const double rounding = 1e-9;
@@ -62,12 +44,17 @@ static void explain_end(const Job *job, Part *part) {
   if (part->branch.end != BRANCH_LOST || part->why[0]) return;
   snprintf(part->why, sizeof part->why, "%s", f->message);
   if (part->orbit && !part->problem->place(part->problem->of, last->u)) {
-    const char *event = event_at_node(part->orbit);
+    const char *event = lag_orbit_event_at_begin(part->orbit);
     if (event)
       snprintf(part->why, sizeof part->why,
                "%s passes the begin of the period, where the state jumps then: begin elsewhere, by the phase of the "
                "drive or at another point of the motion", event);
     part->moves = event != NULL;
+    double t = 0;
+    if (!event && (event = lag_orbit_grazes(part->orbit, &t)) != NULL)
+      snprintf(part->why, sizeof part->why,
+               "the motion grazes %s at t = %.6g s: beyond, it happens there once more, and other motions begin", event,
+               t);
     if (event) return;
   }
   if (!part->orbit || f->forced || !before) return;

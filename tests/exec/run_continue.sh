@@ -265,6 +265,8 @@ ends "a family ends: at a value that the model refuses" "models/lorenz.lag x=0 y
 ends "a family ends: at a bound that is no value" "models/pendulum.lag wide l=0..1" "l = .*: the model declares l > 0"
 ends "a family ends: in a rest" "models/pendulum.lag wide th=0..1.6" "the motion shrinks to a state of rest"
 ends "a longer period than branches go to" "$dir/sitnikov.lag z=0.5..50" ".*30 times that at the begin: begin there to go on"
+# the least gap between bounces is 0 at A = 0.01535448909, t = 0.006925004, by the closed form above
+ends "a family ends: where an impact is grazed" "'$TMP/plate.lag' A=0.01..0.02" "the motion grazes plate at t = 0.00692"
 slow ends "a family ends: next to the separatrix" "models/pendulum.lag wide energy=9..40" "the period grows without limit"
 refused "no range" 2 "a range is missing: NAME=A..B" "$LAGC" continue models/pendulum.lag wide
 refused "no such name" 2 "the model has no parameter of this name" "$LAGC" continue models/pendulum.lag wide gg=1..2
