@@ -57,10 +57,10 @@ static void place_begin(PeriodicOrbit *o) {
 }
 
 /* The states at the begin of segments, along the motion from the start; turns of periodic angles. */
-static int place_nodes(PeriodicOrbit *o) {
+static int place_nodes(PeriodicOrbit *o, const double *y0) {
   int n = o->n, rc = LAG_OK;
   const lag_model *m = o->flow.like->scene->model;
-  memcpy(o->y, o->flow.probe->now, (size_t)n * sizeof *o->y);
+  memcpy(o->y, y0, (size_t)n * sizeof *o->y);
   if (o->reverse) place_begin(o);
   for (int k = 0; k < o->m && rc == LAG_OK; k++) {
     rc = lag_flow_run(&o->flow, o->flow.t0 + o->T * k / o->m, o->T / o->m, o->y + k * n, o->end + k * n, NULL);
@@ -92,10 +92,17 @@ int lag_orbit_open(PeriodicOrbit *o, lag_sim *like, const lag_algebra *algebra, 
   if ((rc = allocate(o)) != 0) return rc;
   memcpy(o->unit, unit, (size_t)o->n * sizeof *unit);
   rc = lag_orbit_check_maps(o, &o->flow, T);
-  rc = rc ? rc : place_nodes(o);
+  rc = rc ? rc : place_nodes(o, o->flow.probe->now);
   rc = rc ? rc : lag_orbit_list_charges(o);
   if (rc == LAG_OK) lag_orbit_guess_shifts(o);
   return rc;
+}
+
+int lag_orbit_settle(PeriodicOrbit *o, int periods) {
+  double *y = o->x;
+  o->settled = periods;
+  int rc = lag_flow_run(&o->flow, o->flow.t0, periods * o->T, o->flow.probe->now, y, NULL);
+  return rc ? rc : place_nodes(o, y);
 }
 
 void lag_orbit_free(PeriodicOrbit *o) {

@@ -67,6 +67,7 @@ typedef struct PeriodicOrbit {
   int nfree;                 /* directions in which there are other solutions */
   int normal;                /* directions of nodes across the constraints */
   int steps;                 /* Newton's steps made */
+  int settled;               /* periods for which the motion ran before */
   double trace[ORBIT_TRACE]; /* the first residuals */
   double period_error;       /* change of the period by a run that is a hundred times as precise, or more */
   int repeats;               /* > 1: the period is that many times the shortest one */
@@ -122,6 +123,8 @@ int lag_orbit_period_is_usual(PeriodicOrbit *o);
 /* rows and cols for the present settings. */
 void lag_orbit_count(PeriodicOrbit *o);
 
+/* The motion begins where that of the start is after so many periods of the drive. LAG_OK, or a status. */
+int lag_orbit_settle(PeriodicOrbit *o, int periods);
 /* Solves. 1: found; 0: not, o->residual and o->trace say how near it came; < 0: a status with its message. */
 int lag_orbit_solve(PeriodicOrbit *o);
 /* Solves again more precisely, for the error of the period; how often it repeats; whether it is at rest. */

@@ -321,8 +321,10 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
   fprintf(f, "periodic motion: period %s s", lag_number_text(o->T, text));
   if (o->flow.forced) fputs(", that of the drive or a multiple", f);
   else fprintf(f, ", error %.1g s", o->period_error);
-  fprintf(f, "\nfound in %d step%s over %d segment%s; the motion closes to %.1g of its size\n", o->steps,
-          o->steps == 1 ? "" : "s", o->m, o->m == 1 ? "" : "s", o->residual);
+  fprintf(f, "\nfound in %d step%s over %d segment%s", o->steps, o->steps == 1 ? "" : "s", o->m,
+          o->m == 1 ? "" : "s");
+  if (o->settled) fprintf(f, " from where the motion is after %d periods", o->settled);
+  fprintf(f, "; it closes to %.1g of its size\n", o->residual);
   for (int j = 0; j < o->ngroup; j++) {
     int i = o->group[j].shifted[0];
     if (!o->group[j].n)
@@ -364,6 +366,7 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
   lag_json_numbers(&j, {"period", o->T}, {"period_error", o->flow.forced ? NAN : o->period_error},
                        {"residual", o->residual});
   lag_json_count(&j, "newton_steps", o->steps);
+  lag_json_count(&j, "periods_before", o->settled);
   lag_json_string(&j, "multipliers_by", o->flow.differences ? "differences" : "tangent");
   lag_json_counts(&j, {"segments", o->m}, {"free_directions", o->nfree});
   lag_json_truth(&j, "steady", o->steady);
@@ -416,16 +419,26 @@ static int not_found(App *app, const PeriodicOrbit *o) {
     n += (size_t)snprintf(course + n, sizeof course - n, "%s%.2g", k ? ", " : "", o->trace[k]);
   return lag_app_no_result(
       &app->args,
-      "no periodic motion found near the start of scene %s: after %d steps the motion of %s s still misses its "
+      "no periodic motion found near the start of scene %s%s: after %d steps the motion of %s s still misses its "
       "start by %.2g of its size (before: %s). Start nearer to one: name=VALUE; another period: --guess T; "
       "%sor more segments: --segments %d",
-      app->scene->name, o->steps, lag_number_text(o->T, text), o->residual, course,
+      app->scene->name, o->settled ? ", nor after two hundred periods" : "", o->steps,
+      lag_number_text(o->T, text), o->residual, course,
       o->nheld > (o->flow.forced != 0) ? "without --hold; " : "", 2 * o->m);
+}
+
+enum { SETTLE = 200 }; /* periods */
+
+/* With friction a driven motion comes to one that repeats, however far it begins from it. As lag_orbit_solve. */
+static int solve_settled(PeriodicOrbit *o) {
+    if (!o->flow.forced || o->closing || o->reverse || o->ngroup || o->nheld || lag_orbit_settle(o, SETTLE)) return 0;
+  return lag_orbit_solve(o);
 }
 
 int lag_app_orbit_solve(App *app, PeriodicOrbit *o) {
   const Args *a = &app->args;
   int rc = lag_orbit_solve(o);
+  if (rc == 0) rc = solve_settled(o);
   if (rc == 0) return not_found(app, o);
   if (rc > 0) rc = lag_orbit_refine(o);
   if (rc == 0 && o->at_rest && o->T < 1e-3 * o->time)

@@ -229,6 +229,13 @@ beside() { # VERDICT COORDINATE MODEL ARGS...
     NR > 1 { d = $2 - $(n + 2); d = d < 0 ? -d : d; most = d > most ? d : most } END { print (NR < 15 || most > 1e-2 ? "unstable" : "bounded") }')
   is "$title: runs from beside it" "$(if [ "$kind" = unstable ]; then echo unstable; else echo bounded; fi)" "$bounded"
 }
+# A driven motion from rest, far from where it comes to: RK4 over 300 periods with 1000 and 2000 steps each, extrapolated, in Python.
+printf '%s\n' 'model hard' 'coord x [m]' 'param F = 0.5 [N]' "lagrangian = 0.5 [kg]*x'^2 - 0.5 [N/m]*x^2 - 0.25 [N/m^3]*x^4 + F*cos(1.2 [rad/s]*t)*x" \
+  "dissipation = 0.05 [N*s/m]*x'^2" 'scene s { start x = 0; span 20 }' >"$TMP/hard.lag"
+orbit "$TMP/hard.lag"
+word periods_before 200
+close x 1.0589677337449088 1e-12
+close "x'" 0.41344686064709635 1e-12
 runs_from_beside() {
   beside attracts x $dir/vanderpol.lag cycle
   beside attracts x $dir/oscillator.lag driven
