@@ -355,9 +355,10 @@ int lag_fit(Fit *f) {
   for (int c = 0; c < f->ncolumns && rc == LAG_OK; c++) {
     given[c] = f->column[c].per_row || f->column[c].sigma > 0;
     f->known_errors &= given[c];
-    if (isfinite(spread_of(f, c))) continue;
-    snprintf(f->why, sizeof f->why, "the values of %s are too large to be squared: check them, and their unit",
-             f->column[c].label);
+    const double spread = spread_of(f, c), error = f->column[c].sigma > 0 ? f->column[c].sigma : 1;
+    if (isfinite(spread) && isfinite(spread / error * (spread / error))) continue;
+    snprintf(f->why, sizeof f->why, "%s of %s are too %s to be squared: check them, and their unit",
+             isfinite(spread) ? "the errors" : "the values", f->column[c].label, isfinite(spread) ? "small" : "large");
     rc = LAG_EINVAL;
   }
   if (rc == LAG_OK) begin_again(f, x, given);

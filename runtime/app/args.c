@@ -112,6 +112,16 @@ static int set_text(Args *a, const Option *o, int argc, const char *value) {
   return 0;
 }
 
+/* Whether the value is one of the choices, which spaces separate. */
+static int is_choice(const char *choices, const char *value) {
+  size_t n = strlen(value), k;
+  for (; *choices; choices += k + strspn(choices + k, " ")) {
+    k = strcspn(choices, " ");
+    if (k == n && memcmp(choices, value, n) == 0) return 1;
+  }
+  return 0;
+}
+
 /* Parses the long option at argv[*i]; its value follows "=" or is the next argument. */
 static int long_option(Args *a, int argc, char **argv, int *i) {
   const char *name = argv[*i], *eq = strchr(name, '=');
@@ -125,6 +135,8 @@ static int long_option(Args *a, int argc, char **argv, int *i) {
   }
   const char *value = eq ? eq + 1 : *i + 1 < argc ? argv[++*i] : NULL;
   if (!value || !*value) return lag_app_error(a, "%s needs a value; see --help", o->name);
+  if (o->takes == TAKES_CHOICE && !is_choice(o->hint, value))
+    return lag_app_error(a, "%s %s: write %s %s", o->name, value, o->name, o->value);
   return set_text(a, o, argc, value);
 }
 

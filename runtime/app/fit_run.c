@@ -225,6 +225,9 @@ static int take_columns(FitRun *r) {
   f->nrows = r->first[r->nfiles];
   f->column = calloc((size_t)d->file.ncols, sizeof *f->column);
   for (int k = 1; k < d->file.ncols && f->column; k++) {
+    for (int j = 1; j < k; j++)
+      if (strcmp(d->file.names[j], d->file.names[k]) == 0)
+        return lag_app_error(a, "%s: there are two columns \"%.40s\"; leave one out", r->file[0], d->file.names[k]);
     int output = lag_fit_is_asked(a, d->file.names[k]) ? output_named(r, d->file.names[k]) : -1;
     if (output >= 0) f->column[f->ncolumns++] = (FitColumn){.label = d->file.names[k], .output = output};
   }
@@ -332,7 +335,7 @@ static int read_files(FitRun *r) {
 
 /* ---- The analysis */
 
-/* Data that take long are announced; more than indices reach are refused. */
+/* Data and records that take long are announced; more than indices reach are refused. */
 static int check_size(const FitRun *r) {
   const Args *a = &r->app->args;
   const double many = 2e6, rows = r->fit.nrows, data = rows * r->fit.ncolumns, derivatives = data * (r->fit.n + 1);
@@ -343,7 +346,12 @@ static int check_size(const FitRun *r) {
     fprintf(stderr,
             "%s: note: %.0f rows take %.2g GB, and each of ten to a hundred runs passes all of them; every %.0fth row "
             "says nearly as much\n",
-            r->app->args.self, rows, (derivatives + 5 * data) * sizeof(double) / 1e9, ceil(100 * data / many));
+            a->self, rows, (derivatives + 5 * data) * sizeof(double) / 1e9, ceil(100 * data / many));
+  const double before = r->t[0] - r->app->scene->t0, length = r->t[r->first[1] - 1] - r->t[0], far = 1000;
+  if (before > far * length && length > 0 && !a->quiet)
+    fprintf(stderr,
+            "%s: note: the record begins %g s after the scene, where each run begins: let the span begin nearer\n",
+            a->self, before);
   return 0;
 }
 

@@ -71,8 +71,6 @@ static int make_plan(SweepApp *s) {
   if (a->sampling && strcmp(a->sampling, "lhs") == 0) s->plan.sampling = SAMPLING_HYPERCUBE;
   else if (a->sampling && (strcmp(a->sampling, "sobol") == 0 || strcmp(a->sampling, "halton") == 0))
     s->plan.sampling = SAMPLING_POINTS;
-  else if (a->sampling && strcmp(a->sampling, "random") != 0)
-    return lag_app_error(a, "--sampling %s: it is random, lhs, sobol or halton", a->sampling);
   if (lag_plan_finish(&s->plan, samples, why, sizeof why)) return lag_app_error(a, "%s", why);
   return s->plan.sampling == SAMPLING_POINTS && s->plan.dimensions ? take_points(s) : 0;
 }

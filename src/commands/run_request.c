@@ -376,14 +376,14 @@ static int is_column_asked(const Options *o, const char *label, size_t length) {
 }
 
 /* Makes the column an output called by its label: a number in its unit, or the quantity in its own where the label has
- * none. The sum has both in one unit, which the compiler checks. */
+ * none. The difference has both in one unit, which the compiler checks. */
 static int add_column(RequestBuilder *k, const char *label, int is_time) {
   const char *unit = strstr(label, " [");
   size_t n = unit ? (size_t)(unit - label) : strlen(label);
   const char *name = is_time ? "1 [s]" : arena_strndup(k->arena, label, n), *text = name;
   if (strncmp(label, "sigma(", 6) == 0 || (!is_time && !is_column_asked(k->o, label, n))) return 1;
-  if (unit && strcmp(unit, " [degC]") == 0) text = arena_printf(k->arena, "(%s - 0 [degC])/(1 [K]) + 1 - 1", name);
-  else if (unit) text = arena_printf(k->arena, "(%s)/(1%s) + 1 - 1", name, unit);
+  if (unit && strcmp(unit, " [degC]") == 0) text = arena_printf(k->arena, "(%s - 0 [degC])/(1 [K])", name);
+  else if (unit) text = arena_printf(k->arena, "(%s - 1%s + 1%s)/(1%s)", name, unit, unit, unit);
   const Source *source =
       source_add(k->ast->sources, arena_printf(k->arena, "--data, column %s", label), text, strlen(text));
   CommandOutput asked = {source ? parse_expression(k->ast, source) : 0, intern(k->ast->names, label)};
@@ -413,6 +413,9 @@ static int prepare_columns(RequestBuilder *k, const char **error) {
   if (strncmp(at, "\xEF\xBB\xBF", 3) == 0) at += 3;
   for (int column = 0, ok = 1;; column++) {
     at += csv_field(k->arena, at, &label);
+    if (column == 0 && *at != ',' && strpbrk(label, ";\t"))
+      return fail_with(error, arena_printf(k->arena, "--data %s: the names in the first line, `%s`, have no commas "
+                                                     "between them; CSV with commas is read", path, label));
     int is_time = column == 0 && strncmp(label, "t [", 3) == 0 && strcmp(label, "t [s]") != 0;
     /* the simulator refuses a first line without names */
     if ((column || is_time) && !text_is_number(label)) ok = add_column(k, label, is_time);

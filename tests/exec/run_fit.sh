@@ -262,11 +262,19 @@ bad "too many fields" 'bad.csv:2: there are more fields than the 2 names' 't [s]
 bad "no time" 'the first column is "x \[m\]"; it must be the time: t \[s\]' 'x [m],t [s]\n0,1\n'
 bad "before the scene" 'bad.csv:2: t = -1 s lies before the scene' 't [s],x [m]\n-1,1\n0,1\n'
 bad "values beyond squares" 'values of x \[m\] are too large to be squared' 't [s],x [m]\n0,1e300\n1,1e300\n'
-unit() { printf 't [s],x [kg]\n0,1\n' >"$TMP/bad.csv"; refused 1 "units do not match" --data "$TMP/bad.csv" --fit k; }
+unit() { printf 't [s],x [kg]\n0,1\n' >"$TMP/bad.csv"; refused 1 "units do not match: \`x\` is in \[m\], \`1 \[kg\]\` in \[kg\]" --data "$TMP/bad.csv" --fit k; }
 check "another unit" unit
 few() { printf 't [s],x [m]\n1,0.1\n' >"$TMP/bad.csv"; refused 2 "1 values cannot determine 2 quantities" --data "$TMP/bad.csv" --fit k,c; }
 check "too few values" few
 check "an unknown name" refused 2 "kk: no such parameter or coordinate in model damped; did you mean k?" --data "$M/damped.csv" --fit kk
+check "a loss that there is not" refused 2 "write --loss squares|huber" --data "$M/damped.csv" --fit k --loss hubert
+check "errors that are too small" refused 2 "the errors of x \[m\] are too small to be squared" --data "$M/damped.csv" --fit k --sigma 1e-300
+twice() { printf 't [s],x [m],x [m]\n1,0.1,0.1\n' >"$TMP/bad.csv"; refused 2 'two columns "x \[m\]"' --data "$TMP/bad.csv" --fit k; }
+check "a column that stands twice" twice
+semicolons() { printf 't [s];x [m]\n1;0.1\n' >"$TMP/bad.csv"; refused 2 "have no commas between them" --data "$TMP/bad.csv" --fit k; }
+check "semicolons" semicolons
+late() { printf 't [s],x [m]\n20000,0.1\n20001,0.1\n' >"$TMP/bad.csv"; timeout 20 "$LAGC" fit "$M/damped.lag" --data "$TMP/bad.csv" --fit k 2>&1 | grep -q 'begins 20000 s after the scene'; }
+check "a record far behind the begin" late
 check "no data" refused 2 "needs the record and what to find" --fit k
 check "nothing to find" refused 2 "needs the record and what to find" --data "$M/damped.csv"
 check "a prior without numbers" refused 2 "write --prior 'k~normal(MEAN, DEVIATION)'" --data "$M/damped.csv" --fit k --prior 'k~normal'
