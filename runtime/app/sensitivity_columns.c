@@ -16,6 +16,7 @@ struct Sensitivity {
   double *factor;    /* [n] of each name's unit */
   double *Y, *D;     /* [state n], [nout n] */
   double *by, *size; /* [nout n] largest |D| so far; [nout] largest |output| */
+  double room[];
 };
 
 /* Splits "g,l,th(0)" at commas outside of brackets: number of names, which are written to names (NULL: counted). */
@@ -62,7 +63,7 @@ static Sensitivity *sensitivity_new(const App *app, const char *list) {
   if (!s) return NULL;
   s->n = n;
   s->nout = nout;
-  s->factor = (double *)(s + 1);
+  s->factor = s->room;
   s->Y = s->factor + n;
   s->D = s->Y + state * n;
   s->by = s->D + nout * n;

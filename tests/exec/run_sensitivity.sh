@@ -143,4 +143,9 @@ quad_differences() {
     END { exit bad || n != 4 }' "$TMP/values" "$TMP/out"
 }
 [ ! -e "${BUILD:-build}/liblag_quad.a" ] || slow check "against differences in 34 digits" quad_differences
+quad_of_one() { # an odd number of names: arrays of 16-byte numbers behind pointers; y = 1 - g t^2/2
+  printf '%s\n' 'model fall' 'coord y [m]' 'param g = 9.81 [m/s^2]' "lagrangian = 1 [kg]*(y'^2/2 - g*y)" 'scene s { start y = 1; span 1 }' >"$TMP/fall.lag"
+  "$LAGC" run "$TMP/fall.lag" --precision quad --sensitivity g | grep -E 'dy/dg +-0\.(50{19}|49{19})'
+}
+[ ! -e "${BUILD:-build}/liblag_quad.a" ] || slow check "of one name in 34 digits" quad_of_one
 tap_end
