@@ -97,11 +97,13 @@ static int refuse_section(RequestBuilder *k, const char *text, Names events, con
   if (near)
     return fail_with(error, arena_printf(k->arena, "--section %s: there is no event or kick `%s`; did you mean `%s`?",
                                          text, text, near));
+  const char *last = strrchr(text, ' '), *of = last ? arena_strndup(k->arena, text, (size_t)(last - text)) : text;
+  int other = last && find_quantity(k->ast, of); /* x sideways */
   return fail_with(
       error,
-      arena_printf(k->arena,
-                   "--section %s: a direction is missing; write --section '%s rising', falling or crossing (both)",
-                   text, text));
+      arena_printf(k->arena, "--section %s: %s; write --section '%s rising', falling or crossing (both)", text,
+                   other ? arena_printf(k->arena, "`%s` is no direction", last + 1) : "a direction is missing",
+                   other ? of : text));
 }
 
 /* --section 'EXPR rising' becomes an event of the model, at which the simulator writes rows; the name of an event or
