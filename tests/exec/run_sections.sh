@@ -92,7 +92,7 @@ refused() { # STATUS TEXT ARGS...
 }
 star=models/henon_heiles.lag
 check "no direction" refused 2 "a direction is missing; write --section 'x rising', falling" $star --section x
-check "another direction" refused 2 "`sideways` is no direction; write --section 'x rising'" $star --section "x sideways"
+check "another direction" refused 2 "\`sideways\` is no direction; write --section 'x rising'" $star --section "x sideways"
 check "a name that the model has not" refused 1 "unknown name .vx" $star --section 'vx rising'
 check "its mistake is shown with a caret" grep -q '| \^~' "$TMP/out"
 check "and a way out" grep -q '= ' "$TMP/out"
