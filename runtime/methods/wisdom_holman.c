@@ -48,7 +48,7 @@ enum { ORDER, MU, PART, VALUES, PER_BODY = VALUES + 2 };
 static const char *refuses(const lag_model *m, const double *opt) {
   (void)opt;
   return m->kepler ? NULL
-                   : "method wisdom_holman needs bodies in Cartesian coordinates with constant masses, all with terms "
+                   : "it needs bodies in Cartesian coordinates with constant masses, all with terms "
                      "-k/r between them or from the origin; verlet6 and dop853 do without";
 }
 
@@ -101,14 +101,14 @@ static int check_values(WisdomHolman *w, lag_problem *pb, int heaviest) {
     if (i == heaviest && !of->fixed) continue;
     if (!(k[i] > 0)) {
       snprintf(pb->words, sizeof pb->words,
-               "method wisdom_holman needs attracting forces, and none attracts %s to %s; verlet6 and dop853 do "
+               "it needs attracting forces, and none attracts %s to %s; verlet6 and dop853 do "
                "without",
                name, of->fixed ? "the origin" : "the body of the largest mass");
       return pb->detail = pb->words, LAG_EMETHOD;
     }
     if (!of->fixed && of->n > 2 && mass[i] > 0.1 * mass[heaviest]) {
       snprintf(pb->words, sizeof pb->words,
-               "method wisdom_holman needs one body that dominates, and the mass of %s is %.2g of the largest, more "
+               "it needs one body that dominates, and the mass of %s is %.2g of the largest, more "
                "than a tenth; verlet6, taylor and dop853 take any masses",
                name, mass[i] / mass[heaviest]);
       return pb->detail = pb->words, LAG_EMETHOD;
