@@ -60,7 +60,8 @@ const char *model_id(Arena *a, const char *name) {
                                       "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws",
                                       "guide_loads", "size_values", "size_table", "correct_positions",
                                       "correct_velocities", "inverse_dynamics", "adjoint", "adjoint_rates",
-                                      "adjoint_project", "families", "kepler", "kepler_at", "kepler_values"};
+                                      "adjoint_project", "families", "kepler_part", "kepler_part_at",
+                                      "kepler_part_values"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -159,11 +160,11 @@ static void emit_variation(const ModelFile *f) {
 static void emit_kepler(const ModelFile *f) {
   const ProgramSet *u = f->u;
   if (!u->kepler) return;
-  state_function(f, u->kepler, "kepler_values", "Masses of the bodies; k of terms -k/r.", NULL, one_out);
-  sb_puts(f->out, "\nstatic const int kepler_at[] = {");
+  state_function(f, u->kepler, "kepler_part_values", "Masses of the bodies; k of terms -k/r.", NULL, one_out);
+  sb_puts(f->out, "\nstatic const int kepler_part_at[] = {");
   for (uint32_t i = 0; i < u->kepler_at.n; i++)
     sb_printf(f->out, "%s%u", !i ? "" : i % 16 ? ", " : ",\n  ", u->kepler_at.at[i]);
-  sb_printf(f->out, "};\nstatic const lag_kepler kepler = {%u, %u, %d, kepler_at, kepler_values};\n",
+  sb_printf(f->out, "};\nstatic const lag_kepler kepler_part = {%u, %u, %d, kepler_part_at, kepler_part_values};\n",
             u->kepler_bodies, u->kepler_at.n / u->kepler_bodies, u->kepler_fixed);
 }
 

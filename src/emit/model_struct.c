@@ -95,7 +95,7 @@ static void further_members(const ProgramSet *u, StrBuf *out) {
   if (u->variation)
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
-  if (u->kepler) sb_puts(out, "  .kepler = &kepler,\n");
+  if (u->kepler) sb_puts(out, "  .kepler = &kepler_part,\n");
   if (u->inverse) sb_puts(out, "  .inverse = inverse_dynamics,\n");
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
   if (model_has_linear(u)) sb_puts(out, "  .linear = &linear,\n");
