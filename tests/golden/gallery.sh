@@ -62,7 +62,7 @@ ln -s "$(pwd)/models" "$TMP/models"
 sed -n 's/^lagc //p' models/README.md | grep -v NAME >"$TMP/commands"
 while read -r words; do
   one_of 30 && light "$words" || continue
-  case $words in action* | check* | derive* | modes*) quiet= ;; *) quiet=--quiet ;; esac
+  case $words in action* | check* | derive* | fit* | modes*) quiet= ;; *) quiet=--quiet ;; esac
   status=0
   case $words in *painleve_rod.lag*mu=1.34) status=3 ;; esac # it shows the message
   check "lagc $words" sh -c "cd $TMP && $lagc $words $quiet; [ \$? = $status ]"
