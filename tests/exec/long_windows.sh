@@ -29,7 +29,7 @@ PATH=$TMP/bin:$PATH
 case $LAGC in /*) ;; *) LAGC=$(pwd)/$LAGC ;; esac
 tree=$BUILD/windows usr=$TMP/usr
 
-made() { env -u CC "$MAKE" -s -j2 CC=$cc AR=x86_64-w64-mingw32-ar CFLAGS=-O1 BUILD="$tree" PRECISIONS= WERROR=-Werror PREFIX="$usr" "$@"; }
+made() { env -u CC "$MAKE" -s -j2 CC=$cc AR=x86_64-w64-mingw32-ar CFLAGS=-O0 BUILD="$tree" PRECISIONS= WERROR=-Werror PREFIX="$usr" "$@"; }
 check "it builds without warnings" made all
 check "it is installed" made install
 [ -x "$usr/bin/lagc.exe" ] && [ -f "$usr/lib/liblag.a" ] || { tap_end; exit; }

@@ -128,6 +128,12 @@ lost() { # SIGNAL: rank 1 loses its chunks; mpirun leaves the others
   # shellcheck disable=SC2086
   begin timeout 60 mpirun $2 -n 3 "$LAGC" sweep $words
   kill -"$1" "$(rank_pid 1)"
+  i=0
+  while [ "$1" = STOP ] && ! { [ -e "$TMP/two.csv" ] && grep -q "do not answer" "$TMP/err"; } && [ $i -lt 1100 ]; do
+    sleep 0.05
+    i=$((i + 1))
+  done
+  [ "$1" != STOP ] || kill -KILL "$(rank_pid 1)" # mpirun waits for it
   wait $!
   cat "$TMP/err"
   same && grep -q "1 of 3 processes do not answer" "$TMP/err"
@@ -150,6 +156,6 @@ slow check "the rest, by two" kept --mpi 2
 slow check "a rank is terminated" killed TERM 1
 slow check "and goes on" kept --mpi 2
 slow check "a killed rank with --enable-recovery" lost KILL --enable-recovery
-slow check "rank 0 is killed with --enable-recovery" orphaned
+one_of 3 && slow check "rank 0 is killed with --enable-recovery" orphaned # the others wait for a minute
 slow check "a rank that stands still" lost STOP ""
 tap_end

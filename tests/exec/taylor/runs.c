@@ -169,7 +169,8 @@ typedef struct {
   int n;
 } Hits;
 
-static void hit(void *context, int k, double t) {
+static void hit(void *context, int k, double t, const double *before, const double *after) {
+  (void)before, (void)after;
   Hits *h = context;
   (void)k;
   if (h->n < 16) h->t[h->n++] = t;
