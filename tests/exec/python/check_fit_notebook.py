@@ -10,7 +10,7 @@ nbclient.NotebookClient(nb, timeout=300, kernel_name="python3", resources={"meta
 
 def printed(word):
     cell, = [c for c in nb.cells if c.cell_type == "code" and word in c.source]
-    return cell.outputs[-1].text
+    return "".join(o.text for o in cell.outputs if o.get("name") == "stdout")  # the kernel itself may warn behind it
 
 
 bare = printed('"l,th", "--svg"')
