@@ -139,6 +139,7 @@ rows() {
 is "a member of a family is no more than that" "k[2] [N/m],a [m],b [N/m],c [N/m],d [m/s],status 3,1,1,3,0 " "$(rows 'k[2]\n3\n')"
 is "quotes, CRLF, blank lines, spaces, units" "k[2] [N/m],x[2]' [m/s],a [m],b [N/m],c [N/m],d [m/s],status 3,4,1,1,3,4 5,6,1,1,5,6 " "$(rows "\\357\\273\\277\\r\\n\"k[2] [N/m]\" , x[2]' [m/s]\\r\\n\"3\", 4 \\r\\n\\r\\n5,\"6\"")"
 is "a family, in its unit" "k [N/m],a [m],b [N/m],c [N/m],d [m/s],status 3,1,3,3,0 " "$(rows 'k [N/m]\n3\n')"
+check "a sampling that there is not" says 2 "write --sampling random|lhs|sobol|halton" "$LAGC" sweep "$TMP/pair.lag" 'k[1]=1..2' --samples 3 --sampling latin -o "$TMP/no.csv"
 check "the file itself as output" says 2 "is the file of --rows" "$LAGC" sweep "$TMP/pair.lag" --rows "$TMP/rows.in.csv" -o "$TMP/rows.in.csv"
 wide() { awk 'BEGIN { printf "%600s", "k"; for (i = 0; i < 300; i++) printf "%600s", ",x" i; print "\n1" }' >"$TMP/rows.in.csv"; says 2 "$1" "$LAGC" sweep "$TMP/pair.lag" --rows "$TMP/rows.in.csv" -o "$TMP/no.csv"; }
 check "all of 301 columns count" wide "fewer fields than the 301 names"
