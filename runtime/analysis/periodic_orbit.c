@@ -185,12 +185,15 @@ static int pinned_component(const PeriodicOrbit *o, const double *rates) {
   return pinned;
 }
 
-/* X[n] := its largest component alone: a begin at a turning point stays at it, where steps across X would lead away
- * from it ever faster. */
-static void keep_largest(const PeriodicOrbit *o, double *X) {
+/* Where the largest component of X[n] is the rate of one that is 0, X := that alone: a begin at a turning point, or
+ * where a path is crossed, stays there, while steps across X would lead away from it ever faster. Another value need
+ * not be reached by all motions of a branch. */
+static void keep_zero(const PeriodicOrbit *o, double *X) {
+  const double none = 1e-9;
   int most = 0;
   for (int i = 1; i < o->n; i++)
     if (fabs(X[i]) / o->unit[i] > fabs(X[most]) / o->unit[most]) most = i;
+  if (fabs(o->y[most]) > none * o->unit[most]) return;
   for (int i = 0; i < o->n; i++) X[i] = i == most ? X[i] : 0;
 }
 
@@ -210,7 +213,7 @@ static int phase_rows(PeriodicOrbit *o) {
       continue;
     }
     if (k < 0 && lead && lead->kind == ORBIT_STATE) leave_led(o, lead->of, X);
-    if (k < 0) keep_largest(o, X);
+    if (k < 0) keep_zero(o, X);
     for (int i = 0; i < n; i++) size += X[i] * X[i] / (o->unit[i] * o->unit[i]);
     for (int i = 0; i < n && size > 0; i++) o->A[row * o->cols + i] = X[i] / o->unit[i] / sqrt(size);
     row++;

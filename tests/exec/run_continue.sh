@@ -125,6 +125,12 @@ follow "$TMP/plate.lag" A=0.005..0.011
 kinds "end;fold;period doubling;end;"
 close 2 parameter 0.00642062998577413993 1e-12
 close 3 parameter 0.00936133781380749192 1e-12
+# a begin whose velocity the motions of a branch need not have: digits of AUTO-07p for its demo pen (tests/bench/folds.sh)
+follow tests/bench/models/pendulums.lag rotate I=0.4..0.14 --guess 1.57 --branches --most 110
+kinds "end;period doubling;end;fold;branch point;branch point;fold;end;"
+close 2 parameter 0.17916377628 1e-9
+close 4 parameter 0.39907438898 1e-9
+close 7 parameter 0.15859485742 1e-8
 # --period names the first motion, and holds no other: cos of the amplitude where 4 sqrt(l/g) K(sin(th/2)) = 3, mpmath
 follow models/pendulum.lag wide period=2.4..3 --period 2.5
 kinds "end;end;"
