@@ -422,8 +422,7 @@ typedef struct lag_model {
   const lag_contact *contacts;        /* [ncontacts] */
   const lag_contact_families *families; /* NULL: none */
   const lag_charges *charges;         /* NULL: only the energy, without a known balance if it is not conserved */
-
-  const lag_kepler *kepler; /* NULL: L has no Kepler part */
+  const lag_kepler *kepler;           /* NULL: L has no Kepler part */
 
   /* The members below are NULL in a program that was not emitted for a method that needs them (lagc build --method
    * NAME). */
@@ -440,9 +439,7 @@ typedef struct lag_model {
    * model; multipliers count as 0. NULL: not emitted (lagc build --with derivatives). */
   int (*inverse)(LAG_STATE, const LAG_REAL *a, LAG_REAL *out, LAG_REAL *w);
 
-  /* NULL also where a value of the model is not analytic (if, abs, sign, min, max). */
-  const lag_taylor *taylor;
-
+  const lag_taylor *taylor; /* NULL also where a value of the model is not analytic (if, abs, sign, min, max) */
   const lag_linear *linear;
 
   int nswitch;

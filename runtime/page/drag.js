@@ -1,6 +1,6 @@
 // Dragging, turning and zooming of the picture by mouse, fingers and keys. Used by live.js, whose motion it begins anew.
 
-// Those of these coordinates that move the body: halves of the list are moved together, each by its own amount.
+// Coordinates of the list that move the body: halves of it are moved together, each coordinate by its own amount.
 function movers(list, moves) {
   if (!list.length || !moves(list)) return [];
   const half = list.length >> 1;

@@ -262,7 +262,7 @@ int eqns_check_numbers(const Eqns *e) {
   return 1;
 }
 
-/* What methods need of equations, which model/method.c could not know yet: smooth ones, a Kepler part. */
+/* Needs of methods that model/method.c could not know yet: smooth equations, a Kepler part. */
 static int check_method(const Eqns *e) {
   const Scene *sc = &e->m->scene;
   const MethodInfo *method = sc->method ? method_find(sc->method, strlen(sc->method)) : NULL;
