@@ -117,10 +117,9 @@ static LAG_LANE lag_element(int n, const lag_band *b, int e, const LAG_LANE *M, 
   return *i < n ? M[*i*n + *j] : A[(b->row ? (int)b->row[*i - n] : *i - n)*n + *j];
 }
 
-/* Fills and factors the band, L U with row exchanges: rows of 3 half + 1 elements, the last `half` for exchanges;
- * scaled so that M has ones on its diagonal and each constraint a largest element of 1. Returns 0 where a pivot is
- * 0. */
-static int lag_band_factor(int n, const lag_band *b, const LAG_LANE *M, const LAG_LANE *A) {
+/* Fills the band: rows of 3 half + 1 elements, the last `half` for exchanges, scaled so that M has ones on its
+ * diagonal and each constraint a largest element of 1; end: last column of each row; deep: last row of each column. */
+static void lag_band_fill(int n, const lag_band *b, const LAG_LANE *M, const LAG_LANE *A) {
   const int h = b->half, width = 3*h + 1;
   int i, j;
   for (int k = 0; k < b->all; k++) b->scale[k] = k < n && M[k*n + k] > 0 ? 1/LAG_LANE_FN(sqrt)(M[k*n + k]) : k < n;
@@ -140,6 +139,11 @@ static int lag_band_factor(int n, const lag_band *b, const LAG_LANE *M, const LA
     if (b->end[low] < high) b->end[low] = (LAG_LANE)high;
   }
   for (int k = 0; k < b->all; k++) b->deep[k] = k > 0 && b->deep[k - 1] > b->end[k] ? b->deep[k - 1] : b->end[k];
+}
+
+/* Factors the band, L U with row exchanges. Returns 0 where a pivot is 0. */
+static int lag_band_factor(const lag_band *b) {
+  const int h = b->half, width = 3*h + 1;
   for (int k = 0; k < b->all; k++) {
     const int last = (int)b->deep[k];
     int top = k;
@@ -238,9 +242,9 @@ static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, const 
   b.rows = b.deep + all;
   if (b.rows - w > room || !lag_edges(n, m, M, A, of, &b)) return 0;
   lag_places(&b);
-  if (3 * b.half + 1 > (room - (int)(b.rows - w)) / all || !lag_band_factor(n, &b, M, A) ||
-      !(lag_band_inverse(&b, y, z) <= (LAG_LANE)1e8))
-    return 0;
+  if (3 * b.half + 1 > (room - (int)(b.rows - w)) / all) return 0;
+  lag_band_fill(n, &b, M, A);
+  if (!lag_band_factor(&b) || !(lag_band_inverse(&b, y, z) <= (LAG_LANE)1e8)) return 0;
   for (int i = 0; i < all; i++) side[i] = i < n ? x[i] : l[i - n], z[i] = 0;
   for (int turn = 0; turn < 2; turn++) {
     lag_band_rest(n, &b, M, A, side, z, y);

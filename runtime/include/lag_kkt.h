@@ -71,21 +71,13 @@ static void lag_leave_small(int n, int m, const LAG_LANE *scale, LAG_LANE *size)
       if (size[k*n + j] + scale[k] + scale[m + j] < far) size[k*n + j] = none;
 }
 
-/* scale[m + n], powers of two, of the constraints and then of the coordinates: [M A^T; A 0], scaled by them, has
- * elements as near to 1 as least squares of their exponents allow (A. R. Curtis, J. K. Reid, IMA J. Appl. Math. 10
- * (1972) 118, DOI 10.1093/imamat/10.1.118). So ranks depend on no unit: another unit of a constraint or coordinate
- * changes its scale and nothing else. Elements that are rounding beside the largest of their row and column do not
- * count; inertia counts 16 times, so that a constraint that becomes dependent is seen to, and not scaled up. top[m +
- * n] and size[(m + n) n] are scratch. */
-static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *scale, LAG_LANE *top,
-                       LAG_LANE *size) {
+/* size[(m + n) n] := exponents of the elements of A and then of M, 1e9 for zeros; top[m + n] := the largest of each
+ * row of A and of each column of [M; A], -1e9 where all are zeros. */
+static void lag_sizes(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *top, LAG_LANE *size) {
   const LAG_LANE none = (LAG_LANE)1e9;
-  const int all = m + n;
-  LAG_LANE moved = 1;
-  int bits, e;
-  (void)LAG_LANE_FN(frexp)(lag_rounding(), &bits);
-  for (int k = 0; k < all; k++) scale[k] = 0, top[k] = -none;
-  for (int k = 0; k < all; k++)
+  int e;
+  for (int k = 0; k < m + n; k++) top[k] = -none;
+  for (int k = 0; k < m + n; k++)
     for (int j = 0; j < n; j++) {
       const LAG_LANE x = k < m ? A[k*n + j] : M[(k - m)*n + j];
       (void)LAG_LANE_FN(frexp)(x, &e);
@@ -93,7 +85,11 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
       if (here < none && here > top[k]) top[k] = here;
       if (here < none && here > top[m + j]) top[m + j] = here;
     }
-  /* range of row and column sizes of A: where it is small nothing is scaled, so nothing changes from call to call */
+}
+
+/* Range of the sizes of rows and columns of A. */
+static LAG_LANE lag_constraint_range(int n, int m, const LAG_LANE *top, const LAG_LANE *size) {
+  const LAG_LANE none = (LAG_LANE)1e9;
   LAG_LANE least = none, most = -none;
   for (int k = 0; k < m; k++)
     least = top[k] > -none && top[k] < least ? top[k] : least, most = top[k] > most ? top[k] : most;
@@ -102,8 +98,13 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
     for (int k = 0; k < m; k++) column = size[k*n + j] < none && size[k*n + j] > column ? size[k*n + j] : column;
     least = column > -none && column < least ? column : least;
   }
-  /* range of inertia, which goes with the square of a coordinate's unit; that of a coordinate without inertia is
-   * another where all elements beside its own would lose half of their digits */
+  return most - least;
+}
+
+/* Range of inertia, which goes with the square of a coordinate's unit; far where a coordinate without inertia stands
+ * beside elements that another unit of it would make lose half of their digits (bits: exponent of the rounding). */
+static LAG_LANE lag_inertia_range(int n, int m, int bits, const LAG_LANE *size) {
+  const LAG_LANE none = (LAG_LANE)1e9;
   LAG_LANE light = none, heavy = -none;
   for (int j = 0; j < n; j++) {
     const LAG_LANE here = size[(m + j)*n + j];
@@ -115,30 +116,53 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
     }
     if (beside < (LAG_LANE)(bits/2) && beside > (LAG_LANE)bits) light = -none;
   }
-  if (most - least <= (LAG_LANE)12 && heavy - light <= (LAG_LANE)48) {
-    for (int k = 0; k < all; k++) scale[k] = 1;
-    return;
+  return heavy - light;
+}
+
+/* Moves each scale to the best for the scales of the others; the largest move. */
+static LAG_LANE lag_improve_scales(int n, int m, const LAG_LANE *size, LAG_LANE *scale) {
+  const LAG_LANE none = (LAG_LANE)1e9;
+  LAG_LANE moved = 0;
+  for (int k = 0; k < m + n; k++) {
+    LAG_LANE sum = 0, weight = 0;
+    for (int j = 0; j < n; j++) {
+      /* diagonal: the scale enters twice */
+      const LAG_LANE here = size[k*n + j], twice = (LAG_LANE)(j == k - m ? 2 : 1);
+      const LAG_LANE counts = (LAG_LANE)(j == k - m ? 16 : 1);
+      if (here < none) sum += counts*twice*(here + (j == k - m ? 0 : scale[m + j])), weight += counts*twice*twice;
+    }
+    for (int j = 0; j < m && k >= m; j++)
+      if (size[j*n + k - m] < none) sum += size[j*n + k - m] + scale[j], weight += 1;
+    const LAG_LANE now = weight > 0 ? -sum/weight : 0, change = LAG_LANE_FN(fabs)(now - scale[k]);
+    moved = change > moved ? change : moved;
+    scale[k] = now;
   }
+  return moved;
+}
+
+/* scale[m + n], powers of two, of the constraints and then of the coordinates: [M A^T; A 0], scaled by them, has
+ * elements as near to 1 as least squares of their exponents allow (A. R. Curtis, J. K. Reid, IMA J. Appl. Math. 10
+ * (1972) 118, DOI 10.1093/imamat/10.1.118). So ranks depend on no unit: another unit of a constraint or coordinate
+ * changes its scale and nothing else. Elements that are rounding beside the largest of their row and column do not
+ * count; inertia counts 16 times, so that a constraint that becomes dependent is seen to, and not scaled up. Where
+ * ranges are small nothing is scaled, so nothing changes from call to call. top[m + n] and size[(m + n) n] are
+ * scratch. */
+static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *scale, LAG_LANE *top,
+                       LAG_LANE *size) {
+  const int all = m + n;
+  LAG_LANE moved = 1;
+  int bits;
+  (void)LAG_LANE_FN(frexp)(lag_rounding(), &bits);
+  lag_sizes(n, m, M, A, top, size);
+  const int even = lag_constraint_range(n, m, top, size) <= 12 && lag_inertia_range(n, m, bits, size) <= 48;
+  for (int k = 0; k < all; k++) scale[k] = even ? 1 : 0;
+  if (even) return;
   for (int k = 0; k < all; k++)
     for (int j = 0; j < n; j++)
-      if (2*size[k*n + j] < top[k] + top[m + j] + (LAG_LANE)(2*bits + 6)) size[k*n + j] = none;
+      if (2*size[k*n + j] < top[k] + top[m + j] + (LAG_LANE)(2*bits + 6)) size[k*n + j] = (LAG_LANE)1e9;
   for (int turn = 0, left = 0; turn < 40 && (moved > (LAG_LANE)0.1 || !left); turn++) {
     if (!(moved > (LAG_LANE)0.1)) lag_leave_small(n, m, scale, size), left = 1;
-    moved = 0;
-    for (int k = 0; k < all; k++) {
-      LAG_LANE sum = 0, weight = 0;
-      for (int j = 0; j < n; j++) {
-        /* diagonal: the scale enters twice */
-        const LAG_LANE here = size[k*n + j], twice = (LAG_LANE)(j == k - m ? 2 : 1);
-        const LAG_LANE counts = (LAG_LANE)(j == k - m ? 16 : 1);
-        if (here < none) sum += counts*twice*(here + (j == k - m ? 0 : scale[m + j])), weight += counts*twice*twice;
-      }
-      for (int j = 0; j < m && k >= m; j++)
-        if (size[j*n + k - m] < none) sum += size[j*n + k - m] + scale[j], weight += 1;
-      const LAG_LANE now = weight > 0 ? -sum/weight : 0, change = LAG_LANE_FN(fabs)(now - scale[k]);
-      moved = change > moved ? change : moved;
-      scale[k] = now;
-    }
+    moved = lag_improve_scales(n, m, size, scale);
   }
   for (int k = 0; k < all; k++)
     scale[k] = LAG_LANE_FN(ldexp)((LAG_LANE)1, (int)LAG_LANE_FN(floor)(scale[k] + (LAG_LANE)0.5));
@@ -254,6 +278,16 @@ static void lag_backward(int n, const LAG_LANE *L, const LAG_LANE *from, LAG_LAN
   }
 }
 
+/* L := Cholesky's factor of M, from[n]: where its rows begin. Returns whether M is positive definite by far. */
+static int lag_factor_inertia(int n, const LAG_LANE *M, LAG_LANE *L, LAG_LANE *from) {
+  for (int i = 0; i < n; i++) {
+    if (!(M[i*n + i] > 0)) return 0;
+    for (int j = 0; j <= i; j++) L[i*n + j] = M[i*n + j];
+    from[i] = (LAG_LANE)lag_first(i, L + i*n);
+  }
+  return lag_cholesky(n, L, from, (LAG_LANE)1e-12);
+}
+
 /* Solves by Schur's complement S = A M^-1 A^T, with one step of refinement, if M is positive definite and the
  * constraints are far from dependent (a part of 1e-2 of each is independent of the others, so S has lost at most 4
  * digits). x and l hold f and g. Returns whether it has solved the system; M and A stay. w[n*n + m*n + m*m + 2*n +
@@ -263,14 +297,8 @@ static int lag_schur(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LAN
   LAG_LANE *const L = w, *const W = L + n*n, *const S = W + m*n, *const from = S + m*m, *const y = from + n;
   LAG_LANE *const begin = y + n, *const end = begin + m, *const row = end + m, *const mu = row + m,
                   *const rest = mu + m;
-  if (m > n) return 0;
-  for (int i = 0; i < n; i++) {
-    if (!(M[i*n + i] > 0)) return 0;
-    for (int j = 0; j <= i; j++) L[i*n + j] = M[i*n + j];
-    from[i] = (LAG_LANE)lag_first(i, L + i*n);
-    y[i] = x[i];
-  }
-  if (!lag_cholesky(n, L, from, (LAG_LANE)1e-12)) return 0;
+  if (m > n || !lag_factor_inertia(n, M, L, from)) return 0;
+  for (int i = 0; i < n; i++) y[i] = x[i];
   for (int j = 0; j < m; j++) {
     for (int i = 0; i < n; i++) W[j*n + i] = A[j*n + i];
     begin[j] = (LAG_LANE)lag_first(n, W + j*n);
@@ -349,6 +377,28 @@ static LAG_LANE lag_eliminate(int n, int r, LAG_LANE *M, LAG_LANE *x, LAG_LANE *
   return most;
 }
 
+/* Whether M or A has an element that is not finite: then x and l become NaN. */
+static int lag_pass_nan(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *x, LAG_LANE *l) {
+  LAG_LANE any = 0;
+  for (int i = 0; i < n*n + m*n; i++) any += (i < n*n ? M[i] : A[i - n*n])*0;
+  for (int i = 0; i < n + m && !(any == 0); i++) *(i < n ? x + i : l + i - n) = any;
+  return !(any == 0);
+}
+
+/* Multiplies coordinates by their units, in M, A and x; the largest element of M. */
+static LAG_LANE lag_scale_columns(int n, int m, const LAG_LANE *unit, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x) {
+  LAG_LANE most = 0;
+  for (int i = 0; i < n; i++) {
+    for (int j = 0; j < n; j++) {
+      M[i*n + j] *= unit[i]*unit[j];
+      most = LAG_LANE_FN(fabs)(M[i*n + j]) > most ? LAG_LANE_FN(fabs)(M[i*n + j]) : most;
+    }
+    for (int j = 0; j < m; j++) A[j*n + i] *= unit[i];
+    x[i] *= unit[i];
+  }
+  return most;
+}
+
 /* x[n], l[m] hold f and g, and become the solution; NaN where M or A has an element that is not finite. M and A are
  * destroyed. w[n*n + m*n + m*m + 2*n + 9*m] is scratch. Returns whether M is regular on the kernel of A, by more
  * than rounding: pivots and the solution for an arbitrary right-hand side bound the inverse from below (J. D. Dixon,
@@ -360,22 +410,14 @@ static int lag_kkt_rows(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_
   if (n + m >= LAG_BAND_LEAST && lag_banded(n, m, M, A, &whole, x, l, w, n*n + m*n + m*m + 2*n + 9*m)) return 1;
 #endif
   if (lag_schur(n, m, M, A, x, l, w)) return 1;
-  LAG_LANE any = 0;
-  for (int i = 0; i < n*n + m*n; i++) any += (i < n*n ? M[i] : A[i - n*n])*0;
-  for (int i = 0; i < n + m && !(any == 0); i++) *(i < n ? x + i : l + i - n) = any; /* NaN, like that element */
-  if (!(any == 0)) return 1;
+  if (lag_pass_nan(n, m, M, A, x, l)) return 1;
   LAG_LANE *const diag = w, *const beta = w + m, *const scale = w + 2*m, *const order = w + 3*m;
   LAG_LANE *const y = w + 4 * m, *const s = w + 5 * m, *const mu = w + 6 * m, *const S = w + 7 * m,
                   *const z = S + m * m + m, *const unit = z + n + m;
-  LAG_LANE most = 0, u = 0;
   lag_scales(n, m, M, A, unit - m, z - m, unit + n);
+  const LAG_LANE most = lag_scale_columns(n, m, unit, M, A, x);
+  LAG_LANE u = 0;
   for (int i = 0; i < n; i++) {
-    for (int j = 0; j < n; j++) {
-      M[i*n + j] *= unit[i]*unit[j];
-      most = LAG_LANE_FN(fabs)(M[i*n + j]) > most ? LAG_LANE_FN(fabs)(M[i*n + j]) : most;
-    }
-    for (int j = 0; j < m; j++) A[j*n + i] *= unit[i];
-    x[i] *= unit[i];
     u += (LAG_LANE)0.618033988749894848; /* an arbitrary right-hand side, so that nothing cancels */
     if (u > 1) u -= 1;
     z[i] = i % 2 ? -u : u;

@@ -37,6 +37,25 @@ LAG_INLINE void lag_sincos4(double a, double *sin_a, double *cos_a, double b, do
 
 /* ---- sincos ---- */
 #if LAG_OWN
+/* The fraction f[6], in 32 bits each, of pi/2 is y - *lo; returns y. */
+#if defined(__GNUC__)
+__attribute__((cold, noinline, unused))
+#endif
+static double lag_quarter_part(const lag_bits *f, double *lo) {
+  double sum = 0, rest = 0, unit = 1;
+  for (int i = 0; i < 6; i++) {
+    unit *= 1/4294967296.0;
+    const double part = (double)f[i]*unit, was = sum;
+    sum += part;
+    rest += (was - sum) + part;
+  }
+  const double pi_2 = 1.5707963267948966, product = sum*pi_2;
+  const double low = fma(sum, pi_2, -product) + (sum*6.123233995736766e-17 + rest*pi_2);
+  const double y = product + low;
+  *lo = (y - product) - low;
+  return y;
+}
+
 /* Payne and Hanek's reduction: returns y, with x modulo pi/2 = y - *lo, |y| <= pi/4, and *quarter, the number of
  * quarter turns modulo 4, for x of any size and next to a multiple of pi/2. Bits of 2/pi whose products with x are
  * multiples of 4 are left out; the next 192 suffice, as no double is nearer than 2^-62 to a multiple (M. Payne, R.
@@ -62,10 +81,8 @@ static double lag_reduce(double x, double *lo, lag_bits *quarter) {
   const lag_bits factor[2] = {n & 0xffffffff, n >> 32};
   const int at = e - 53 - 2 + 64, shift = at % 32;
   lag_bits w[6], f[6] = {0, 0, 0, 0, 0, 0}, carry;
-  for (int i = 0; i < 6; i++) {
-    const lag_bits two = (lag_bits)two_over_pi[at/32 + i] << 32 | two_over_pi[at/32 + i + 1];
-    w[i] = two >> (32 - shift) & 0xffffffff;
-  }
+  for (int i = 0; i < 6; i++)
+    w[i] = ((lag_bits)two_over_pi[at/32 + i] << 32 | two_over_pi[at/32 + i + 1]) >> (32 - shift) & 0xffffffff;
   for (int k = 0; k < 2; k++) { /* f = n w modulo 2^192: two bits of quarters, and a fraction */
     carry = 0;
     for (int i = 5; i - k >= 0; i--) {
@@ -87,17 +104,8 @@ static double lag_reduce(double x, double *lo, lag_bits *quarter) {
     }
   }
   if (x < 0) *quarter = 4 - *quarter;
-  double sum = 0, rest = 0, unit = 1;
-  for (int i = 0; i < 6; i++) {
-    unit *= 1/4294967296.0;
-    const double part = (double)f[i]*unit, was = sum;
-    sum += part;
-    rest += (was - sum) + part;
-  }
-  const double pi_2 = 1.5707963267948966, product = sum*pi_2;
-  const double low = fma(sum, pi_2, -product) + (sum*6.123233995736766e-17 + rest*pi_2);
-  const double y = product + low, left = (y - product) - low;
-  *lo = negative ? -left : left;
+  const double y = lag_quarter_part(f, lo);
+  if (negative) *lo = -*lo;
   return negative ? -y : y;
 }
 

@@ -41,5 +41,10 @@ without_model() {
 empty "each topic of the course has its models" "$(without_model <models/course.txt)"
 
 empty "no line of C above 120 columns" "$(find src runtime tests grammar -name '*.[chl]' -exec awk 'length($0) > 120 { print FILENAME ":" FNR }' {} +)"
+empty "no function of sources above 45 lines" "$(find src runtime -name '*.[ch]' -exec awk '
+  FNR == 1 || /^}/ { if (first && FNR - first > 44) print FILENAME ":" first; first = 0 }
+  /^[a-zA-Z_].*\(/ && !/;$/ && !/^(typedef|struct|enum|union)/ { first = FNR }
+  /^[^ }].*;$/ { first = 0 }' {} +)"
+empty "no file of sources above 600 lines" "$(find src runtime -name '*.[ch]' -exec awk 'FNR == 601 { print FILENAME }' {} +)"
 empty "each file of sources begins with a comment" "$(find src runtime -name '*.[ch]' -exec awk 'FNR == 1 && !/^\/\*/ { print FILENAME }' {} +)"
 tap_end
