@@ -37,39 +37,6 @@ static Eqns *derive_asked(Compiler *c, const char *scene, int measures) {
   return compiler_derive_wanted(c, &choice);
 }
 
-static int is_named(SceneList named, const char *scene) {
-  for (uint32_t i = 0; i < named.n; i++)
-    if (strcmp(named.at[i], scene) == 0) return 1;
-  return 0;
-}
-
-static int same_effects(const Model *a, const Model *b) {
-  for (uint32_t i = 0; i < a->effects.n && i < b->effects.n; i++)
-    if (a->effects.at[i] != b->effects.at[i]) return 0;
-  return a->effects.n == b->effects.n;
-}
-
-/* The scenes that a run compiles: those that it names, and others with the effects of one of them, which share its
- * programs. 0: a scene is wrong. */
-static int scenes_of_run(Compiler *c, SceneList all, SceneList named, SceneList *run) {
-  Name *at = ARENA_ARRAY(c->arena, Name, all.n + 1);
-  VEC(const Model *) models = {0};
-  *run = (SceneList){at, 0};
-  for (uint32_t i = 0; i < all.n; i++) {
-    ModelChoice choice = choice_of(c, all.at[i], 0);
-    const Model *m = compiler_model(c, &choice);
-    if (!m) return 0;
-    vec_push(c->arena, &models, m);
-  }
-  for (uint32_t i = 0; i < all.n; i++) {
-    int shared = 0;
-    for (uint32_t k = 0; k < all.n; k++)
-      shared |= is_named(named, all.at[k]) && same_effects(models.at[i], models.at[k]);
-    if (shared) at[run->n++] = all.at[i];
-  }
-  return 1;
-}
-
 typedef VEC(const Measures *) Measured; /* the measures of the command line, of each variant */
 
 /* Hands them to the simulator as they are compiled: the name, and the words, of each variant where they differ. */
@@ -210,11 +177,9 @@ static int add_effect_scenes(Compiler *c, const Eqns *run, Units *units, Lowered
 
 int simulator_lower(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast), named = c->picture.scenes.n ? c->picture.scenes : (SceneList){scenes.at, 1};
-  int measured_once = c->o.command == CMD_COST || c->o.command == CMD_BUILD; /* the latter: the reference of cost */
-  if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->picture.drawing || c->o.consts.n ||
-      (c->picture.argv.n && measured_once))
-    scenes = named;
-  else if (c->picture.argv.n && !scenes_of_run(c, scenes, named, &scenes)) return 0;
+  if (c->picture.argv.n || c->picture.asked.n || c->given.n || c->picture.section.expr || c->picture.drawing ||
+      c->o.consts.n)
+    scenes = named; /* a run's programs are those of its scenes, build's of all */
   Lowereds all = {0};
   const char *error, *first = c->picture.scene ? c->picture.scene : scenes.at[0];
   uint32_t variants = const_range_variants(c->arena, &c->o, &error);

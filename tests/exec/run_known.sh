@@ -100,7 +100,7 @@ units() { # WORDS...: number of files that this command compiles
   grep -o 'model_[0-9]*[.]c' words | sort -u | wc -l
 }
 is 'a run: one of two units' 1 "$(units run units.lag free --quiet --compile always)"
-is 'a scene that shares it: none' 0 "$(units run units.lag other --quiet --compile always)"
+is 'another scene: its own' 1 "$(units run units.lag other --quiet --compile always)"
 is 'the other unit' 1 "$(units run units.lag slow --quiet --compile always)"
 is 'both scenes in a picture: both' 2 "$(units plot units.lag free slow --svg p.svg --compile always)"
 is 'build: both' 2 "$(units build units.lag -o sim)"
