@@ -77,7 +77,7 @@ static GenId find_reducible(const PolyRing *r, const MonoPow *at, uint32_t n) {
 /* The id of a monomial without zero exponents. */
 static MonoId mono_intern(PolyRing *r, const MonoPow *at, uint32_t n) {
   uint32_t hash = n;
-  for (uint32_t i = 0; i < n; i++) hash = hash_mix(hash_mix(hash, at[i].gen), (uint32_t)at[i].exp);
+  for (uint32_t i = 0; i < n; i++) hash += hash_mix(at[i].gen, (uint32_t)at[i].exp); /* a sum: no factor waits */
   uint32_t slot = idtable_start(&r->mono_table, hash), id;
   while (idtable_next(&r->mono_table, hash, &slot, &id)) {
     const Mono *m = &r->monos.at[id];
