@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "numeric/functions.def"
+
 typedef struct Words {
   const char *at;                       /* the next character */
   const char *(*let)(const char *name); /* the expression for which a name stands, or NULL; NULL: no such names */
@@ -45,10 +47,10 @@ static void words_name(Words *w, char name[128])
 /* name( is read. */
 static void words_call(Words *w, const char *name)
 {
-  static const char *const tracks[] = {"max", "min", "mean", "rms", "drift", "period"},
-                           *const functions[] = {"sin",   "cos",    "tan",  "asin", "acos", "atan", "sinh",   "cosh",
-                                                 "tanh",  "sqrt",   "cbrt", "exp",  "log",  "abs",  "floor",  "atan2",
-                                                 "hypot", "kepler", "K",    "sn",   "cn",   "dn",   "lambert"};
+#define WORDS_TRACK(KIND, name, unit, how) #name,
+#define WORDS_FUNCTION(OP, name, latex, symmetry, at_0, sign, proof, slope, derivative) #name,
+  static const char *const words[] = {TRACKS(WORDS_TRACK) FUNCTIONS(WORDS_FUNCTION) "sqrt", "abs", "floor", "atan2",
+                                      "hypot", "kepler", "K", "sn", "cn", "dn", "lambert"};
   char word[300], event[128] = "";
   int hit = strcmp(name, "hit") == 0, of = hit || strcmp(name, "count") == 0, known = 0;
   if (of) {
@@ -58,8 +60,7 @@ static void words_call(Words *w, const char *name)
     if (hit && *w->at != ',') words_put(w, "1");
     if (hit && words_take(w, ',')) words_sum(w);
   } else {
-    for (size_t i = 0; i < sizeof tracks/sizeof *tracks; i++) known |= strcmp(name, tracks[i]) == 0;
-    for (size_t i = 0; i < sizeof functions/sizeof *functions; i++) known |= strcmp(name, functions[i]) == 0;
+    for (size_t i = 0; i < sizeof words/sizeof *words; i++) known |= strcmp(name, words[i]) == 0;
     if (!known) words_put(w, name);
     words_sum(w);
     if (words_take(w, ',')) words_sum(w);

@@ -152,8 +152,14 @@ exec/run_contradictions exec/includes exec/run_scenes exec/run_facts exec/run_mo
 exec/run_digits exec/long_energy exec/long_ports math/run_math hard/long_hard golden/gallery exec/verify exec/run_lanes exec/long_million hard/long_quad"
 [ $# = 0 ] || of_exec=1
 suites=$(found "$@" | awk -v k="$of_exec" -v day="${DAY:-0}" '!/^exec\// || (n++ + day) % k == 0')
+unknown=
+for prefix; do [ -n "$(found "$prefix")" ] || unknown="$unknown $prefix"; done
+if [ -n "$unknown" ]; then
+  case $kind$unknown in test*long_*) unknown="$unknown (\`make test-long\` has those of long_)" ;; esac
+  echo "no suite's name begins with:$unknown"
+  exit 1
+fi
 if [ -z "$suites" ]; then
-  [ $# = 0 ] || { echo "no suite's name begins with: $*"; exit 1; }
   echo "0 passed, 0 failed"
   exit 0
 fi

@@ -125,19 +125,18 @@ static double slope(const Measures *m, const MeasureNode *n, int by_b) {
 
 static void seed_track(MeasureGradient *g, const Track *k, double weight) {
   const Happening none = {.event = -1};
-  int drifts = k->kind == TRACK_DRIFT,
-      falls = k->kind == TRACK_MIN || (drifts && k->first - k->least > k->most - k->first);
-  if (k->kind == TRACK_PERIOD) {
-    seed_period(g, k, weight);
-    return;
+  int falls = k->first - k->least > k->most - k->first;
+  switch (k->kind) {
+    case TRACK_MAX: seed_top(g, k, 0, weight); break;
+    case TRACK_MIN: seed_top(g, k, 1, weight); break;
+    case TRACK_DRIFT:
+      seed_top(g, k, falls, falls ? -weight : weight);
+      seed_value(g, k->arg, k->when_first, none, falls ? weight : -weight);
+      break;
+    case TRACK_PERIOD: seed_period(g, k, weight); break;
+    case TRACK_MEAN: case TRACK_RMS: seed_sum(g, k, weight); break;
+    case TRACK_KINDS: break;
   }
-  if (k->integral) {
-    seed_sum(g, k, weight);
-    return;
-  }
-  double part = drifts && falls ? -weight : weight;
-  seed_top(g, k, falls, part);
-  if (drifts) seed_value(g, k->arg, k->when_first, none, -part);
 }
 
 static void pass_back(MeasureGradient *g, int i) {

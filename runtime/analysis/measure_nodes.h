@@ -29,6 +29,9 @@ typedef enum TrackKind {
   TRACK_KINDS
 } TrackKind;
 
+/* What is sought within steps; INTEGRATED: nothing, the track is summed over them. */
+typedef enum TrackHow { INTEGRATED, HIGHEST = 1, LOWEST = 2, EXTREMES = HIGHEST | LOWEST, PASSAGES = 4 } TrackHow;
+
 /* Unit in which a value is shown: SI = shown*factor + offset. */
 typedef struct MeasureUnit {
   char text[48];
@@ -60,7 +63,7 @@ typedef struct Happening {
 /* A value that is followed along the run. */
 typedef struct Track {
   TrackKind kind;
-  int integral;         /* 1: summed over the steps; 0: sampled within them */
+  TrackHow how;
   int node, arg;        /* its node, and the node of the expression that is followed */
   double first, last;   /* value at the start, and at the end of the last part */
   double least, most, when_first, when_least, when_most; /* and their times, */

@@ -186,9 +186,9 @@ static void find_passages(Measures *m, Track *track, int n, const double *t, con
 /* Follows a track through samples x[n + 1] at t[n + 1]; n = 0: the two sides of a jump. */
 static void follow(Measures *m, Track *track, int n, const double *t, const double *x) {
   for (int k = 0; k <= n; k++) note(m, track, t[k], x[k]);
-  if (track->kind == TRACK_MAX || track->kind == TRACK_DRIFT) find_tops(m, track, 1, n, t, x);
-  if (track->kind == TRACK_MIN || track->kind == TRACK_DRIFT) find_tops(m, track, -1, n, t, x);
-  if (track->kind == TRACK_PERIOD) find_passages(m, track, n, t, x);
+  if (track->how & HIGHEST) find_tops(m, track, 1, n, t, x);
+  if (track->how & LOWEST) find_tops(m, track, -1, n, t, x);
+  if (track->how & PASSAGES) find_passages(m, track, n, t, x);
   track->last = x[n];
 }
 
@@ -219,9 +219,9 @@ static int may_pass(double bend, int n, const double *x) {
 static int needs_more(const Track *track, int n, const double *x) {
   double bend = 0;
   for (int k = 1; k < n; k++) bend = fmax(bend, 2 * fabs(x[k - 1] - 2 * x[k] + x[k + 1]));
-  if (track->kind == TRACK_PERIOD) return may_pass(bend, n, x);
-  return (track->kind != TRACK_MIN && may_have_top(1, track->most, bend, n, x)) ||
-         (track->kind != TRACK_MAX && may_have_top(-1, -track->least, bend, n, x));
+  return (track->how & HIGHEST && may_have_top(1, track->most, bend, n, x)) ||
+         (track->how & LOWEST && may_have_top(-1, -track->least, bend, n, x)) ||
+         (track->how & PASSAGES && may_pass(bend, n, x));
 }
 
 /* Samples number first, first + stride, ... n of [a, b]: t[k] and the values of each track there. */
@@ -230,7 +230,7 @@ static void take_samples(Measures *m, double a, double b, int n, int first, int 
     t[k] = k == n ? b : a + k * (b - a) / n;
     take_row(m, t[k]);
     for (int i = 0; i < m->ntracks; i++)
-      if (!m->track[i].integral && m->track[i].active)
+      if (m->track[i].how != INTEGRATED && m->track[i].active)
         m->sampled[i * (MEASURE_SAMPLES + 1) + k] = evaluate(m, m->track[i].arg);
   }
 }
@@ -254,7 +254,7 @@ static void sample(Measures *m, double a, double b) {
   for (int i = 0; i < m->ntracks && stride > 1 && !more; i++) {
     if (!m->track[i].active) continue;
     for (int k = 0; k <= FEW; k++) few[k] = m->sampled[i * (MEASURE_SAMPLES + 1) + k * stride];
-    more = !m->track[i].integral && !is_at_ends(m, &m->track[i]) && needs_more(&m->track[i], FEW, few);
+    more = m->track[i].how != INTEGRATED && !is_at_ends(m, &m->track[i]) && needs_more(&m->track[i], FEW, few);
   }
   for (int first = 1; more && first < stride; first++) take_samples(m, a, b, n, first, stride, t);
   if (more) stride = 1;
@@ -262,7 +262,7 @@ static void sample(Measures *m, double a, double b) {
   for (int i = 0; i < m->ntracks; i++) {
     double *x = m->sampled + i * (MEASURE_SAMPLES + 1);
     for (int k = 0; k * stride <= n; k++) x[k] = x[k * stride];
-    if (m->track[i].integral || !m->track[i].active) continue;
+    if (m->track[i].how == INTEGRATED || !m->track[i].active) continue;
     if (!is_at_ends(m, &m->track[i])) follow(m, &m->track[i], n / stride, t, x);
     else note_end(m, &m->track[i], a, x[0]), note_end(m, &m->track[i], b, x[n / stride]);
   }
@@ -288,7 +288,7 @@ static void integrate(Measures *m, double a, double b) {
     double weight, t = lag_measure_place(m, j, a, b, &weight);
     take_row(m, t);
     for (Track *k = m->track; k < m->track + m->ntracks; k++) {
-      if (!k->integral || !k->active) continue;
+      if (k->how != INTEGRATED || !k->active) continue;
       double x = evaluate(m, k->arg), term = weight * (k->kind == TRACK_RMS ? x * x : x) - k->lost, sum = k->sum + term;
       if (!isfinite(x) && isnan(k->bad)) k->bad = t;
       k->lost = (sum - k->sum) - term;

@@ -27,10 +27,9 @@ typedef struct Reader {
   size_t size;
 } Reader;
 
-enum { SAMPLED, INTEGRATED };
 static const struct {
   const char *word;
-  int how;
+  TrackHow how;
 } tracks[TRACK_KINDS] = {
 #define TRACK_ROW(KIND, name, unit, how) {#name, how},
   TRACKS(TRACK_ROW)
@@ -193,10 +192,9 @@ static int put_track(Reader *r, TrackKind which, const char *window) {
   m->track = track;
   if (put(r, whole(MEASURE_TRACK, m->ntracks), 1)) return -1;
   int node = m->nnodes - 1;
-  int integral = tracks[which].how == INTEGRATED;
   track[m->ntracks++] =
-      (Track){.kind = which, .integral = integral, .node = node, .arg = m->node[node].a, .from = from, .to = to};
-  *(integral ? &m->integrates : &m->samples) = 1;
+      (Track){.kind = which, .how = tracks[which].how, .node = node, .arg = m->node[node].a, .from = from, .to = to};
+  *(tracks[which].how == INTEGRATED ? &m->integrates : &m->samples) = 1;
   return 0;
 }
 

@@ -13,16 +13,39 @@
 #include "fmu/fmi2_text.h"
 #include "fmu/fmi3_text.h"
 #include "fmu/zip.h"
+#include "kernels/steppers.def"
 
 /* ---- sources/fmu.c ---- */
 
 static void define(StrBuf *out, const char *name, uint32_t n) { sb_printf(out, "#define %s %u\n", name, n); }
 
 /* The step of the scene's method, or 1/10000 of its span. */
-static double moreau_step(const IrScene *s) {
+static double step_size(const IrScene *s) {
   for (uint32_t i = 0; i < s->options.n; i++)
     if (strcmp(s->options.at[i].name, "step") == 0 && s->options.at[i].value > 0) return s->options.at[i].value;
   return (s->t1 > s->t0 ? s->t1 - s->t0 : 10) / 1e4;
+}
+
+/* The explicit Runge-Kutta method of the scene, with *is_fixed, where its steps alone make the motion; else dop853:
+ * events lie on its dense output. */
+static const char *step_method(const ProgramSet *u, int moreau, int *is_fixed) {
+  enum { FIXED, ADAPTIVE, LATE };
+#define STEP_ROW(name, table, kind, dense, order, line, words) {#name, kind},
+  static const struct { const char *name; int kind; } rows[] = {LAG_RUNGE_KUTTA_METHODS(STEP_ROW)};
+  const IrScene *s = &u->scenes.at[0];
+  int chosen = s->method && !u->events.n && !moreau;
+  *is_fixed = 0;
+  for (uint32_t i = 0; i < s->options.n; i++) chosen &= strcmp(s->options.at[i].name, "adapt") != 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows && chosen; i++) {
+    if (strcmp(rows[i].name, s->method) != 0) continue;
+    *is_fixed = rows[i].kind == FIXED;
+    return rows[i].name;
+  }
+  return "dop853";
+}
+
+static const char *with_inputs(const ProgramSet *u) {
+  return u->u.n ? "_with(&(m)->p, &(m)->s, h, set_inputs, m)" : "(&(m)->p, &(m)->s, h)";
 }
 
 /* Sizes, and arguments of the header's functions, which leave out what the model lacks. */
@@ -36,8 +59,14 @@ static void write_calls(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   sb_printf(out, "#define AND_INPUTS(u)%s\n#define BY_TIME(m)%s\n", u->u.n ? " , u" : "",
             u->u.n ? " NULL, set_inputs, m," : "");
   sb_printf(out, "#define BY_INPUTS(m)%s\n", u->u.n ? " , NULL, set_inputs, m" : "");
-  int keeps = u->events.n && !f->moreau, some = u->u.n > 0;
-  sb_printf(out, "#define STEP(m, until, path) model_dop853_%s(&(m)->p, &(m)->s, &(m)->w, until%s%s%s)\n",
+  int keeps = u->events.n && !f->moreau, some = u->u.n > 0, is_fixed;
+  const char *method = step_method(u, f->moreau, &is_fixed);
+  if (is_fixed)
+    sb_printf(out, "#define EQUAL_STEP %.17g\n#define EQUAL(m, h) model_%s_step%s\n"
+                   "#define STEP(m, until, path) equal_step(m, until)\n",
+              step_size(&u->scenes.at[0]), method, with_inputs(u));
+  else
+    sb_printf(out, "#define STEP(m, until, path) model_%s_%s(&(m)->p, &(m)->s, &(m)->w, until%s%s%s)\n", method,
             keeps ? "keep" : some ? "step_with" : "step", keeps && some ? ", NULL" : "", some ? ", set_inputs, m" : "",
             keeps ? ", (path)->k" : "");
 }
@@ -67,9 +96,9 @@ static void write_head(const ProgramSet *u, const Fmu *f, StrBuf *out) {
     sb_printf(out, "#define CORRECT model_correct%s\n",
               u->constraints.position == u->constraints.velocity ? "" : "_velocities");
   define(out, "FRICTION", (uint32_t)(f->moreau && header_rubs(u)));
-  const char *with = u->u.n ? "_with(&(m)->p, &(m)->s, h, set_inputs, m)" : "(&(m)->p, &(m)->s, h)";
   if (f->moreau)
-    sb_printf(out, "#define MOREAU_STEP %.17g\n#define MOREAU(m, h) model_moreau_step%s\n", moreau_step(s), with);
+    sb_printf(out, "#define MOREAU_STEP %.17g\n#define MOREAU(m, h) model_moreau_step%s\n", step_size(s),
+              with_inputs(u));
   define(out, "HELD", u->held_accel != NULL);
   if (f->moreau)
     sb_printf(out, "#define SURFACE(m) (m)->s.%s\n#define ACCELERATIONS model_%saccel\n#define DERIVED(f) %s\n",
@@ -152,9 +181,10 @@ int fmu_make(const ProgramSet *u, int version, const char *equations, Fmu *f, co
       return fail_with(error, "an FMU has no constraints with `while`, which need a solver of their own: `lagc build "
                               "--shared` makes a library that has them");
   HeaderParts steps = parts;
-  int moreau = header_parts(u, "dop853,moreau", &steps, error);
+  int moreau = header_parts(u, "dop853,moreau", &steps, error), is_fixed;
+  const char *method = step_method(u, moreau, &is_fixed);
   if (moreau) parts = steps;
-  else if (u->contacts.n || !header_parts(u, "dop853", &parts, error)) return 0;
+  else if (u->contacts.n || !header_parts(u, arena_printf(a, "dop853,%s", method), &parts, error)) return 0;
   HeaderParts more = parts;
   int has_derivatives = u->outputs && header_parts(u, u->p.n ? DERIVATIVES ",params" : DERIVATIVES, &more, error);
   if (u->events.n) parts.parts |= PART_PATH, more.parts |= PART_PATH;

@@ -54,6 +54,20 @@ kepler orbit 4 0.02
 damped_oscillator flutter 4 0.05
 cart_pendulum shove 3 0.03
 END
+# ---- the scene's method: rk4 with steps of 0.1 s is off by 1e-5 from the motion, and equals that of the run
+cat >"$TMP/byrow.lag" <<'LAG'
+model byrow
+coord x
+input u = 0.3*cos(t)
+lagrangian = x'^2/2 - x^2/2 - x^4/3
+force x = u - 0.1*x'
+scene rk4 { start x = 0.7, x' = 0.2; span 5; method rk4(step = 0.1); output x, x' every 0.5 }
+scene rk45 { like rk4; method rk45; tolerance 1e-4 }
+LAG
+check "co-simulation by the scene's rk4" moves 2 cs "$TMP/byrow.lag" rk4 "" 1e-13 1
+rm -rf "$TMP/byrow.2" # by rk45, steps end at rows, between which those of the run lie
+check "by its rk45" moves 2 cs "$TMP/byrow.lag" rk45 "--method rk45 --tol 1e-11" 1e-3 1
+check "that has its steps" grep -q "model_rk45_step_with(" "$TMP"/byrow.2/sources/fmu.c
 rolled() { moves "$1" "$2" models/rolling_cylinder.lag solid_cylinder '--every 0.05' 1e-6 20 >"$TMP/said" && cat "$TMP/said" && grep -q '^stopped at 1.33725' "$TMP/said"; }
 for v in 2 3; do
   for mode in cs me; do

@@ -102,6 +102,9 @@ is "a whole suite skipped" "0 passed, 0 failed, 1 skipped" "$(last a/skips_all)"
 is "cmocka's groups and skips" "2 passed, 0 failed, 1 skipped" "$(last unit/)"
 is "all of them" "11 passed, 7 failed, 3 skipped" "$(last)"
 is "with long suites" "12 passed, 7 failed, 3 skipped" "$(last --long)"
+is "a name that begins none, beside one that does" "no suite's name begins with: a/none" "$(last a/good a/none)"
+check "is a failure" fails a/good a/none
+is "long suites are those of make test-long" "no suite's name begins with: long_ (\`make test-long\` has those of long_)" "$(last a/good long_)"
 check "the day that chooses rows is printed" says a/good "^rows of DAY=[0-9]"
 # Eleven suites of exec/ in a tree of their own.
 days=$TMP/days
