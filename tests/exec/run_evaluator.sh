@@ -66,6 +66,30 @@ check "without a compiler the report is the same" cmp "$TMP/never" "$TMP/auto"
 is "one line says that there is none" 1 "$(grep -c 'there is no C compiler `/no/compiler`' "$TMP/err")"
 "$LAGC" run models/pendulum.lag th=0.5 --compile always | report >"$TMP/always"
 check "compiled, too" cmp "$TMP/never" "$TMP/always"
+
+# The cache's entry and its bytes, when only one of them was written; and another lagc of the same name, size and time.
+halves() {
+  printf 'model halves\ninclude "k.lag"\ncoord x\nlagrangian = x%s^2/2 - k*x^2/2\nscene s { start x = 1; span 1; output x }\n' "'" >"$TMP/halves.lag"
+  export XDG_CACHE_HOME="$TMP/halves" && mkdir -m 700 "$XDG_CACHE_HOME" || return 1
+  for k in 1 2 1; do
+    echo "let k = $k" >"$TMP/k.lag"
+    [ ! -e "$TMP/entry.run" ] || [ $k = 2 ] || cp "$TMP/entry.run" "$XDG_CACHE_HOME"/lagc/*.run
+    "$LAGC" run "$TMP/halves.lag" --compile never --quiet -o "$TMP/halves.csv" || return 1
+    [ $k = 2 ] || [ -e "$TMP/first.csv" ] || { cp "$TMP/halves.csv" "$TMP/first.csv" && cp "$XDG_CACHE_HOME"/lagc/*.run "$TMP/entry.run"; }
+  done
+  cmp "$TMP/first.csv" "$TMP/halves.csv"
+}
+check "bytes of another entry are not evaluated" eval '(halves)'
+another() {
+  export XDG_CACHE_HOME="$TMP/another" LAG_HOME="$TMP/home" && mkdir -m 700 "$XDG_CACHE_HOME" "$LAG_HOME" || return 1
+  ln -s "$(cd "$BUILD" && pwd)" "$LAG_HOME/lib" && ln -s "$(pwd)/runtime/include" "$LAG_HOME/include" || return 1
+  for _ in 1 2; do
+    cp "$LAGC" "$TMP/lagc_new" && touch -r "$LAGC" "$TMP/lagc_new" && mv "$TMP/lagc_new" "$TMP/lagc" || return 1
+    "$TMP/lagc" run models/pendulum.lag --compile never --quiet -o "$TMP/another.csv" || return 1
+  done
+  [ "$(find "$XDG_CACHE_HOME" -name '*.run' | wc -l)" = 2 ]
+}
+check "another lagc of the same size and time" eval '(another)'
 "$LAGC" run models/pendulum.lag --compile never --precision long >/dev/null 2>"$TMP/err"
 is "other numbers than doubles need the compiler" "lagc: --compile never evaluates doubles only: leave --precision out" "$(cat "$TMP/err")"
 
