@@ -58,7 +58,7 @@ struct lag_stat {
   unsigned long long st_ino;
   unsigned st_mode, st_nlink, st_uid, st_gid;
   long long st_size;
-  struct timespec st_mtim;
+  struct timespec st_mtim, st_ctim; /* st_ctim: of creation */
 };
 #define stat lag_stat
 #define lstat(path, st) lag_stat(path, st)

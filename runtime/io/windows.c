@@ -51,7 +51,8 @@ static int stat_of(HANDLE h, struct lag_stat *st) {
                           .st_mode = (folder ? _S_IFDIR : _S_IFREG) | (fixed ? 0500u : 0700u),
                           .st_nlink = is.nNumberOfLinks,
                           .st_size = (long long)is.nFileSizeHigh << 32 | is.nFileSizeLow,
-                          .st_mtim = time_of(is.ftLastWriteTime)};
+                          .st_mtim = time_of(is.ftLastWriteTime),
+                          .st_ctim = time_of(is.ftCreationTime)};
   return 0;
 }
 

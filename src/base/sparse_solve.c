@@ -125,7 +125,9 @@ typedef struct {
   uint32_t *count; /* [n] elements of the column in remaining rows */
   uint32_t *taken; /* [rank] eliminated rows, in order */
   unsigned char *is_taken;
-  uint32_t *first, *next, *before; /* remaining rows in doubly linked lists, one for each length: 1 + row, 0: none */
+  /* remaining rows in doubly linked lists, one for each length and size class: 1 + row, 0: none */
+  uint32_t *first, *next, *before;
+  int top; /* binary exponent of the initial largest element */
   long double *most;  /* [2 n] tournament tree: largest element of row i at n + i, of nodes 2 k and 2 k + 1 at k */
   uint32_t *place;    /* [n] scratch: 1 + index of the column in the current row */
 } Elimination;
@@ -141,8 +143,24 @@ static void update_largest(Elimination *x, uint32_t i, const Row *r) {
   }
 }
 
+/* Size classes of rows by the binary exponent of their largest element, from the initial largest on down. */
+enum { SIZES = 64, LENGTHS = 64 };
+
+static uint32_t size_class(const Elimination *x, long double most) {
+  int exponent;
+  if (!(most > 0) || !isfinite(most)) return most > 0 ? 0 : SIZES - 1;
+  (void)frexpl(most, &exponent);
+  return exponent >= x->top ? 0 : x->top - exponent < SIZES ? (uint32_t)(x->top - exponent) : SIZES - 1;
+}
+
+/* Head of the list of row i; long rows share the lists of one length. */
+static uint32_t *list_of(const Elimination *x, uint32_t i) {
+  uint32_t length = x->rows[i].n < LENGTHS ? x->rows[i].n : LENGTHS;
+  return &x->first[length * SIZES + size_class(x, x->most[x->n + (size_t)i])];
+}
+
 static void list_row(Elimination *x, uint32_t i) {
-  uint32_t *first = &x->first[x->rows[i].n];
+  uint32_t *first = list_of(x, i);
   x->next[i] = *first;
   x->before[i] = 0;
   if (*first) x->before[*first - 1] = i + 1;
@@ -151,7 +169,7 @@ static void list_row(Elimination *x, uint32_t i) {
 
 static void unlist_row(Elimination *x, uint32_t i) {
   if (x->before[i]) x->next[x->before[i] - 1] = x->next[i];
-  else x->first[x->rows[i].n] = x->next[i];
+  else *list_of(x, i) = x->next[i];
   if (x->next[i]) x->before[x->next[i] - 1] = x->before[i];
 }
 
@@ -160,28 +178,32 @@ static Elimination elimination_new(Arena *arena, const Matrix *m, const int *by_
   Elimination x = {.arena = arena,
                    .n = n, .rows = ARENA_ARRAY(arena, Row, n + 1), .columns = ARENA_ARRAY(arena, Lines, n + 1),
                    .count = ARENA_ARRAY(arena, uint32_t, n + 1), .taken = ARENA_ARRAY(arena, uint32_t, n + 1),
-                   .is_taken = ARENA_ARRAY(arena, unsigned char, n + 1), .first = ARENA_ARRAY(arena, uint32_t, n + 1),
+                   .is_taken = ARENA_ARRAY(arena, unsigned char, n + 1),
+                   .first = ARENA_ARRAY(arena, uint32_t, SIZES * ((n < LENGTHS ? n : LENGTHS) + (size_t)1)),
                    .next = ARENA_ARRAY(arena, uint32_t, n + 1), .before = ARENA_ARRAY(arena, uint32_t, n + 1),
                    .most = ARENA_ARRAY(arena, long double, 2 * (size_t)n + 2),
                    .place = ARENA_ARRAY(arena, uint32_t, n + 1)};
-  for (uint32_t i = n; i-- > 0;) {
+  for (uint32_t i = 0; i < n; i++) {
     for (uint32_t k = m->from[i]; k < m->from[i + 1]; k++) {
       uint32_t col = m->at[k].col;
       vec_push(arena, &x.rows[i], ((Element){col, ldexpl(m->at[k].value, by_row[i] + by_column[col])}));
       vec_push(arena, &x.columns[col], i);
       x.count[col]++;
     }
-    list_row(&x, i);
     update_largest(&x, i, &x.rows[i]);
   }
+  if (n && isfinite(x.most[1])) (void)frexpl(x.most[1], &x.top);
+  for (uint32_t i = n; i-- > 0;) list_row(&x, i);
   return x;
 }
 
-/* The first of the shortest rows with an element of at least `least`, which some row has. */
+/* One of the shortest rows with an element of at least `least`, which some row has; large ones first. */
 static uint32_t shortest_row(const Elimination *x, long double least) {
+  uint32_t last = size_class(x, least);
   for (uint32_t length = 1;; length++)
-    for (uint32_t i = x->first[length]; i; i = x->next[i - 1])
-      if (x->most[x->n + (size_t)i - 1] >= least) return i - 1;
+    for (uint32_t size = 0; size <= last; size++)
+      for (uint32_t i = x->first[length * SIZES + size]; i; i = x->next[i - 1])
+        if (x->most[x->n + (size_t)i - 1] >= least) return i - 1;
 }
 
 /* Moves the pivot to the front of the row: of its elements of at least `least`, the one in the shortest column. */
@@ -195,14 +217,17 @@ static void bring_pivot(const Elimination *x, Row *r, long double least) {
   r->at[0] = pivot;
 }
 
-/* Chooses the next pivot row, with a pivot of at least a tenth of the largest element. Returns 0 where no element is
- * above `least`. */
+/* Chooses the next pivot row, with a pivot of at least a sixteenth of the largest element: a power of two, so that a
+ * size class holds no row that is searched in vain. Returns 0 where no element is above `least`. */
 static int choose_pivot_row(Elimination *x, long double least, uint32_t *row) {
   static const Row none;
   long double largest = x->n ? x->most[1] : 0;
   if (!(largest > least)) return 0;
-  uint32_t i = *row = shortest_row(x, largest / 10);
-  bring_pivot(x, &x->rows[i], largest / 10);
+  int exponent = 0;
+  (void)frexpl(largest, &exponent);
+  long double enough = isfinite(largest) ? ldexpl(1, exponent - 4) : largest;
+  uint32_t i = *row = shortest_row(x, enough);
+  bring_pivot(x, &x->rows[i], enough);
   unlist_row(x, i);
   update_largest(x, i, &none);
   x->is_taken[i] = 1;
@@ -230,8 +255,8 @@ static long double subtract_pivot_row(Elimination *x, const Row *pivot, uint32_t
   }
   for (uint32_t k = 0; k < r->n; k++) x->place[r->at[k].col] = 0;
   r->at[out] = r->at[--r->n];
-  list_row(x, i);
   update_largest(x, i, r);
+  list_row(x, i);
   return f;
 }
 

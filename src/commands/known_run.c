@@ -20,6 +20,7 @@ enum {
   SIMULATOR = 's',
   EVALUATOR = 'e',
   LIBRARY = 'c',
+  BYTES = 'b',
   ARGUMENT = 'a',
   NUMBER = 'n',
   READ = 'r',
@@ -124,6 +125,7 @@ static int is_still(Compiler *c, const char *field) {
 typedef struct {
   const char *simulator; /* in the cache */
   const char *said;      /* messages */
+  const char *bytes;     /* hash of the program's bytes */
   int listens;
   EvaluatedRun by; /* evaluator NULL: the run is compiled */
 } Found;
@@ -135,6 +137,7 @@ static int take_field(Compiler *c, char kind, const char *text, Found *f) {
   case SIMULATOR: f->by.simulator = text; return 1;
   case EVALUATOR: f->by.evaluator = text; return 1;
   case LIBRARY: f->by.library = text; return 1;
+  case BYTES: f->bytes = text; return 1;
   case ARGUMENT: vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, text)); return 1;
   case NUMBER:
     if ((k = (uint32_t)atoi(text)) >= c->known->numbers.n) return 0;
@@ -153,11 +156,20 @@ static const char *program_path(Compiler *c, const char *entry) {
   return arena_printf(c->arena, "%.*s.bytes", (int)(strrchr(entry, '.') - entry), entry);
 }
 
+/* An entry and its bytes are two files, of which an interruption, or another process, may have written one. */
+static const char *hash_of(Arena *a, const StrBuf *bytes) {
+  return arena_printf(a, "%016llx", (unsigned long long)lag_fnv1a(LAG_FNV1A_START, sb_text(bytes), bytes->n));
+}
+
+static int has_bytes(Compiler *c, const char *entry, Found *f) {
+  return cache_read(program_path(c, entry), &f->by.bytes) && strcmp(hash_of(c->arena, &f->by.bytes), f->bytes) == 0;
+}
+
 /* Whether there is an entry, and all is as it was; then its arguments are in c->picture.argv. */
 static int find(Compiler *c, const char *entry, Found *f) {
   StrBuf text = strbuf(c->arena);
   const char *field;
-  *f = (Found){.said = "", .by.bytes = strbuf(c->arena)};
+  *f = (Found){.said = "", .bytes = "", .by.bytes = strbuf(c->arena)};
   c->picture.argv.n = 0;
   c->sources->files.n = 1;
   if (!cache_read(entry, &text)) return 0;
@@ -168,7 +180,7 @@ static int find(Compiler *c, const char *entry, Found *f) {
   vec_push(c->arena, &c->picture.argv, NULL);
   f->simulator = simulator_compiled(c, &f->by);
   if (f->simulator) f->by.evaluator = NULL;
-  else f->simulator = cache_read(program_path(c, entry), &f->by.bytes) ? f->by.evaluator : NULL;
+  else f->simulator = has_bytes(c, entry, f) ? f->by.evaluator : NULL;
   return f->simulator != NULL;
 }
 
@@ -196,7 +208,10 @@ static void keep(Compiler *c, const Found *f) {
   uint32_t numbers;
   if (f->by.simulator) add_field(&b, SIMULATOR, f->by.simulator);
   if (f->by.library) add_field(&b, LIBRARY, f->by.library);
-  if (f->by.evaluator) add_field(&b, EVALUATOR, f->by.evaluator);
+  if (f->by.evaluator) {
+    add_field(&b, EVALUATOR, f->by.evaluator);
+    add_field(&b, BYTES, hash_of(c->arena, &f->by.bytes));
+  }
   for (uint32_t i = 1; i < c->sources->files.n; i++)
     if (c->sources->files.at[i].is_file) add_field(&b, READ, hash_and_path(c->arena, &c->sources->files.at[i]));
   for (uint32_t i = 0; i < c->sources->absent.n; i++) add_field(&b, ABSENT, c->sources->absent.at[i]);

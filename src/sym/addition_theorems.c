@@ -23,8 +23,8 @@ static uint32_t find_atom(Normal *n, PolyId base_num, DenId base_den, PolyId par
  * independent of each other and of the symbols (Ax, On Schanuel's conjectures, 1971, DOI 10.2307/1970774). */
 static int is_plain(const Normal *n, PolyId part) {
   Poly p = poly_at(n->ring, part);
-  const Mono *mono = mono_at(n->ring, p.at[0].mono);
-  if (p.n > 1 || mono->n == 0) return 0;
+  const Mono *mono = p.n == 1 ? mono_at(n->ring, p.at[0].mono) : NULL; /* p.n 0: the ring has failed */
+  if (!mono || mono->n == 0) return 0;
   for (uint32_t i = 0; i < mono->n; i++)
     if (n->gens.at[mono->at[i].gen].kind != GEN_SYMBOL) return 0;
   return 1;

@@ -84,6 +84,6 @@ const char *file_absolute(Arena *a, const char *path) {
 const char *file_identity(Arena *a, const char *path) {
   struct stat st;
   if (stat(path, &st) != 0) return "";
-  return arena_printf(a, "%s %lld %lld.%09ld", path, (long long)st.st_size, (long long)st.st_mtim.tv_sec,
-                      st.st_mtim.tv_nsec);
+  return arena_printf(a, "%s %lld %lld.%09ld %lld.%09ld", path, (long long)st.st_size, (long long)st.st_mtim.tv_sec,
+                      st.st_mtim.tv_nsec, (long long)st.st_ctim.tv_sec, st.st_ctim.tv_nsec);
 }

@@ -23,7 +23,7 @@ const char *file_name(const char *path);
 
 int file_exists(const char *path);
 
-/* Path, size and modification time; "" where there is no such file. */
+/* Path, size, times of modification and of the last change; "" where there is no such file. */
 const char *file_identity(Arena *a, const char *path);
 
 /* The path from the root on; NULL: there is no such file. */

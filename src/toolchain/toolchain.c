@@ -9,6 +9,8 @@
 #include "base/hash.h"
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 #include "base/vec.h"
+#include "numeric/functions.def"
+#include "numeric/program_code.def"
 #include "toolchain/compiler_probe.h"
 #include "toolchain/simulator_cache.h"
 #include "toolchain/files.h"
@@ -149,6 +151,12 @@ static void push(Arena *a, Words *words, const char *const *list, size_t n) {
   for (size_t i = 0; i < n; i++) vec_push(a, words, list[i]);
 }
 
+/* Calls of the C library on constants are not folded: compilers round them in their own way, cbrt(2) and sinh(2) not
+ * as the library does, which evaluated programs call. */
+#define UNFOLDED(OP, name, ...) "-fno-builtin-" #name,
+#define UNFOLDED_2(name) "-fno-builtin-" #name,
+static const char *const unfolded[] = {FUNCTIONS(UNFOLDED) PROGRAM_FUNCTIONS_2(UNFOLDED_2)};
+
 /* Macro LAG_BUILD: how the program was compiled. */
 static const char *build_macro(Arena *a, const Toolchain *t, const char *safe) {
   char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc,
@@ -176,6 +184,7 @@ static const char *const *compiler_words(Arena *a, const Toolchain *t, const cha
                         t->gsl ? "-lgslcblas" : "", t->needs ? t->needs : "", "-lm", NULL};
   Words words = {0};
   PUSH(first);
+  PUSH(unfolded);
   if (!single) PUSH(runtime);
   if (t->soname) PUSH(library);
   if (single) PUSH(hidden);

@@ -13,7 +13,7 @@ here=tests/bench
 "$LAGC" emit $here/models/kepler.lag narrow --fix all --method taylor -o "$TMP/narrow.c"
 "$LAGC" emit $here/models/outer_planets.lag --fix all --method taylor -o "$TMP/outer_planets.c"
 "$LAGC" emit $here/models/oscillators.lag --fix all --method taylor -o "$TMP/oscillators.c"
-sed -i 's/\<kepler\>/kepler_model_2/g' "$TMP/narrow.c" # two scenes of a model in one program
+sed -i 's/\([^.]\)\<kepler\>/\1kepler_model_2/g' "$TMP/narrow.c" # two scenes of a model in one program; lag_model has a member .kepler
 for n in 10 20; do
   "$LAGC" emit models/chain.lag swing -DN=$n --method taylor -o "$TMP/chain_$n.c"
   sed -i "s/\\<chain\\>/chain_model_$n/g; s/\\<chain_/chain_${n}_/g" "$TMP/chain_$n.c"

@@ -20,7 +20,7 @@ src/lower     lower/ series/ ir/ symmetry/charges.h mech/ model/ sym/ base/
 src/self_check      self_check/ lower/lower.h ir/ mech/ model/ syntax/ base/ numeric/functions.def
 src/emit      emit/ ir/ base/ numeric/functions.def numeric/program_code.def kernels/steppers.def
 src/fmu       fmu/ emit/ ir/ base/ kernels/steppers.def
-src/toolchain toolchain/ base/
+src/toolchain toolchain/ base/ numeric/functions.def numeric/program_code.def
 src/commands  app/options.def kernels/steppers.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ phase_space/ mech/ model/ sym/ syntax/ base/
 src/playground playground/ commands/ fmu/fmu_archive.h toolchain/files.h toolchain/process.h report/equation_listing.h model/model.h base/
 src           commands/ toolchain/gallery.h syntax/ base/

@@ -26,6 +26,16 @@ potential = sum(i in 1..N, sum(j in 1..i-1, i*(x[i] - x[j])^2/(j + 1))) + sum(i 
 scene s { start x[i in 1..N] = 0.001*i; span 0.1 }
 END
 check "numbers that turns of a loop multiply" functions "$TMP/index.lag"
+# Compilers fold calls on constants, and round cbrt(7) and sinh(2) correctly, the C library in the last digit not.
+cat >"$TMP/constants.lag" <<'END'
+model constants
+coord x
+param P = 2*sinh(2)
+lagrangian = x'^2/2 - (cbrt(7) + 10^(1/3) + cosh(3))*x^2/2 + P*x
+event at: x - 2^(1/3) falling { x' = tan(2)*x' }
+scene s { start x = 0.3; span 1; output x, sinh(1)*x, hypot(2, 3)*x, atan2(1, 3)*x, tanh(0.3)*exp(x) }
+END
+check "functions of constants" functions "$TMP/constants.lag"
 for model in models/*.lag; do
   case $model in
     */double_pendulum.lag) one_of 2 && check "functions of $model" functions "$model" --method taylor --with derivatives ;;
@@ -56,6 +66,30 @@ check "without a compiler the report is the same" cmp "$TMP/never" "$TMP/auto"
 is "one line says that there is none" 1 "$(grep -c 'there is no C compiler `/no/compiler`' "$TMP/err")"
 "$LAGC" run models/pendulum.lag th=0.5 --compile always | report >"$TMP/always"
 check "compiled, too" cmp "$TMP/never" "$TMP/always"
+
+# The cache's entry and its bytes, when only one of them was written; and another lagc of the same name, size and time.
+halves() {
+  printf 'model halves\ninclude "k.lag"\ncoord x\nlagrangian = x%s^2/2 - k*x^2/2\nscene s { start x = 1; span 1; output x }\n' "'" >"$TMP/halves.lag"
+  export XDG_CACHE_HOME="$TMP/halves" && mkdir -m 700 "$XDG_CACHE_HOME" || return 1
+  for k in 1 2 1; do
+    echo "let k = $k" >"$TMP/k.lag"
+    [ ! -e "$TMP/entry.run" ] || [ $k = 2 ] || cp "$TMP/entry.run" "$XDG_CACHE_HOME"/lagc/*.run
+    "$LAGC" run "$TMP/halves.lag" --compile never --quiet -o "$TMP/halves.csv" || return 1
+    [ $k = 2 ] || [ -e "$TMP/first.csv" ] || { cp "$TMP/halves.csv" "$TMP/first.csv" && cp "$XDG_CACHE_HOME"/lagc/*.run "$TMP/entry.run"; }
+  done
+  cmp "$TMP/first.csv" "$TMP/halves.csv"
+}
+check "bytes of another entry are not evaluated" eval '(halves)'
+another() {
+  export XDG_CACHE_HOME="$TMP/another" LAG_HOME="$TMP/home" && mkdir -m 700 "$XDG_CACHE_HOME" "$LAG_HOME" || return 1
+  ln -s "$(cd "$BUILD" && pwd)" "$LAG_HOME/lib" && ln -s "$(pwd)/runtime/include" "$LAG_HOME/include" || return 1
+  for _ in 1 2; do
+    cp "$LAGC" "$TMP/lagc_new" && touch -r "$LAGC" "$TMP/lagc_new" && mv "$TMP/lagc_new" "$TMP/lagc" || return 1
+    "$TMP/lagc" run models/pendulum.lag --compile never --quiet -o "$TMP/another.csv" || return 1
+  done
+  [ "$(find "$XDG_CACHE_HOME" -name '*.run' | wc -l)" = 2 ]
+}
+check "another lagc of the same size and time" eval '(another)'
 "$LAGC" run models/pendulum.lag --compile never --precision long >/dev/null 2>"$TMP/err"
 is "other numbers than doubles need the compiler" "lagc: --compile never evaluates doubles only: leave --precision out" "$(cat "$TMP/err")"
 
