@@ -228,9 +228,9 @@ static void lag_band_rest(int n, const lag_band *b, const LAG_LANE *M, const LAG
   for (int k = 0; k < b->all; k++) y[(int)b->place[k]] *= b->scale[k];
 }
 
-/* Solves the system of lag_kkt if its band fits into w[room] and its condition is at most 1e8 (each constraint has a
- * part of some 1e-4 of its own, so neither rank nor least norm is in question), with one step of refinement. x and l
- * hold f and g. Returns whether it has solved the system; M and A stay. */
+/* Solves the system of lag_kkt if its band fits into w[room] and its condition is at most 1e10 (each constraint has a
+ * part of some 1e-5 of its own, so neither rank nor least norm is in question), with one step of refinement, two where
+ * the condition is above 1e8. x and l hold f and g. Returns whether it has solved the system; M and A stay. */
 static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, const lag_entries *of, LAG_LANE *x,
                       LAG_LANE *l, LAG_LANE *w, int room) {
   const int all = n + m;
@@ -244,9 +244,11 @@ static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, const 
   lag_places(&b);
   if (3 * b.half + 1 > (room - (int)(b.rows - w)) / all) return 0;
   lag_band_fill(n, &b, M, A);
-  if (!lag_band_factor(&b) || !(lag_band_inverse(&b, y, z) <= (LAG_LANE)1e8)) return 0;
+  if (!lag_band_factor(&b)) return 0;
+  const LAG_LANE inverse = lag_band_inverse(&b, y, z);
+  if (!(inverse <= (LAG_LANE)1e10)) return 0;
   for (int i = 0; i < all; i++) side[i] = i < n ? x[i] : l[i - n], z[i] = 0;
-  for (int turn = 0; turn < 2; turn++) {
+  for (int turn = 0; turn < (inverse > (LAG_LANE)1e8 ? 3 : 2); turn++) {
     lag_band_rest(n, &b, M, A, side, z, y);
     lag_band_solve(&b, y);
     /* the symmetric system is that of (x, -l) */
