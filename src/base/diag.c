@@ -79,6 +79,15 @@ static int add(Diags *d, Severity severity, Span span, const char *fmt, va_list 
 int diag_error(Diags *d, Span span, const char *fmt, ...) { ADD(DIAG_ERROR); }
 int diag_warning(Diags *d, Span span, const char *fmt, ...) { ADD(DIAG_WARNING); }
 int diag_note(Diags *d, Span span, const char *fmt, ...) { ADD(DIAG_NOTE); }
+void diag_drop_notes(Diags *d, Span span) {
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < d->list.n; k++) {
+    const Diag *x = &d->list.at[k];
+    if (x->severity != DIAG_NOTE || x->span.begin != span.begin || x->span.end != span.end) d->list.at[n++] = *x;
+  }
+  d->list.n = n;
+}
+
 int diag_verror(Diags *d, Span span, const char *fmt, va_list ap) { return add(d, DIAG_ERROR, span, fmt, ap); }
 
 void diag_help(Diags *d, const char *fmt, ...) {

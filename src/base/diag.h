@@ -48,6 +48,9 @@ int diag_warning(Diags *d, Span span, const char *fmt, ...) __attribute__((forma
 /* A message that is neither error nor warning: verdicts of `lagc check`. */
 int diag_note(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 
+/* Drops the notes about a span, before an error about it. */
+void diag_drop_notes(Diags *d, Span span);
+
 int diag_verror(Diags *d, Span span, const char *fmt, va_list ap) __attribute__((format(printf, 3, 0)));
 
 /* Adds a way out, or a second place, to the message recorded last. */

@@ -113,6 +113,7 @@ typedef struct {
   const Loop *l;
   uint32_t number;
   uint32_t *own_uses; /* [period] uses of a value in its own turn */
+  const char **row;   /* [period] array that has the sines or cosines of all turns; NULL: none */
   VEC(TurnLoad) loads;
 } Body;
 
@@ -172,6 +173,49 @@ static void write_first_values(Writer *w, const Body *b) {
     }
 }
 
+/* Array for the value at `offset` of all turns: the one in which it is kept, or a new one. */
+static const char *row_of(Writer *w, Body *b, uint32_t offset) {
+  const char *kept = w->kept[b->number][offset];
+  if (kept) return b->row[offset] = kept;
+  b->row[offset] = cnames_take(&w->names, kept_name(w, &w->p->ins.at[code_of(w, b->l, 0, offset)]));
+  cwriter_line(w, arena_printf(w->a, "%s_REAL %s[%u];", w->style->prefix, b->row[offset], b->l->count));
+  return b->row[offset];
+}
+
+/* Appends "x[k + t], &sin[k + t], &cos[k + t]". */
+static void put_angle(const Writer *w, const char *const *row, const Ins *load, int64_t step, int64_t t, int64_t by,
+                      StrBuf *b) {
+  const char *at = index_text(w, t, by);
+  sb_printf(b, "%s%s[%s], &%s[%s], &%s[%s]", b->n ? ", " : "", cwriter_array(w, load->array),
+            index_text(w, load->index + t * step, by * step), row[0], at, row[1], at);
+}
+
+/* Sines and cosines of an array's elements before the loop, four calls at once, which processors overlap. */
+static void write_sincos_rows(Writer *w, Body *b) {
+  for (uint32_t k = 0; k < b->l->period; k++) {
+    Slot s = code_of(w, b->l, 0, k), other = w->pair[s], angle = w->p->ins.at[s].a;
+    if (other < s) continue;
+    uint32_t j = offset_of(w, b->l, other);
+    Step by = roll_step(&w->rolls, b->l, k, 0);
+    if (by.kind != STEP_LOAD || b->l->kept[k] > 1 || b->l->kept[j] > 1) continue;
+    int swap = strcmp(w->p->ins.at[s].text, "cos") == 0;
+    const char *row[2];
+    row[swap] = row_of(w, b, k), row[!swap] = row_of(w, b, j);
+    uint32_t count = b->l->count, fours = count - count % SINCOS_BATCH;
+    StrBuf four = strbuf(w->a);
+    for (int t = 0; t < SINCOS_BATCH; t++) put_angle(w, row, &w->p->ins.at[angle], by.step, t, 1, &four);
+    cwriter_line(w, arena_printf(w->a, "for (int k = 0; k < %u; k += %d)", fours, SINCOS_BATCH));
+    w->indent += 2;
+    cwriter_line(w, arena_printf(w->a, "%s_sincos%d(%s);", w->style->math, SINCOS_BATCH, sb_text(&four)));
+    w->indent -= 2;
+    for (uint32_t t = fours; t < count; t++) {
+      StrBuf one = strbuf(w->a);
+      put_angle(w, row, &w->p->ins.at[angle], by.step, t, 0, &one);
+      cwriter_line(w, arena_printf(w->a, "%s_sincos(%s);", w->style->math, sb_text(&one)));
+    }
+  }
+}
+
 static const TurnLoad *turn_load(const Body *b, Slot first, int64_t step) {
   for (uint32_t i = 0; i < b->loads.n; i++)
     if (b->loads.at[i].first == first && b->loads.at[i].step == step) return &b->loads.at[i];
@@ -183,7 +227,7 @@ static void name_turn_loads(Writer *w, Body *b) {
     for (int which = 0; which < 3; which++) {
       Slot x = ins_operand(&w->p->ins.at[code_of(w, b->l, 0, k)], which);
       Step s = x ? roll_step(&w->rolls, b->l, k, which) : (Step){.kind = STEP_SAME};
-      if (s.kind != STEP_LOAD || turn_load(b, x, s.step)) continue;
+      if (s.kind != STEP_LOAD || b->row[k] || turn_load(b, x, s.step)) continue;
       const Ins *i = &w->p->ins.at[x];
       const char *name = cnames_take(&w->names, cloop_stem(w->a, i->name));
       vec_push(w->a, &b->loads, ((TurnLoad){x, s.step, name}));
@@ -238,6 +282,10 @@ static void write_value(Writer *w, const Body *b, uint32_t offset, Slot s, const
     cwriter_pivot(w, i);
     return;
   }
+  if (b->row[offset]) {
+    w->piece[s] = (CExpr){arena_printf(w->a, "%s[k]", b->row[offset]), C_ATOM, 1};
+    return;
+  }
   CExpr x = cwriter_spell(w, i);
   int carried = b->l->carried[offset];
   Ins named = named_by_stem(w, i), pair = named_by_stem(w, &w->p->ins.at[w->pair[s]]);
@@ -262,7 +310,7 @@ static void write_turn(Writer *w, const Body *b) {
     for (int which = 0; which < 3; which++) {
       Slot x = ins_operand(i, which);
       before[which] = w->piece[x];
-      now[which] = x ? turn_operand(w, b, k, which, x) : before[which];
+      now[which] = x && !b->row[k] ? turn_operand(w, b, k, which, x) : before[which];
     }
     for (int which = 0; which < 3; which++) w->piece[ins_operand(i, which)] = now[which];
     write_value(w, b, k, s, i);
@@ -288,12 +336,14 @@ static void write_turn_end(Writer *w, const Body *b) {
 void cloop_write(Writer *w, uint32_t loop) {
   Body b = {.l = loop_at(w, loop), .number = loop};
   b.own_uses = ARENA_ARRAY(w->a, uint32_t, b.l->period);
+  b.row = ARENA_ARRAY(w->a, const char *, b.l->period);
   count_own_uses(w, &b);
   cwriter_flush_title(w);
   w->kept[loop] = ARENA_ARRAY(w->a, const char *, b.l->period);
   declare_kept(w, &b, 0);
   declare_kept(w, &b, 1);
   write_first_values(w, &b);
+  write_sincos_rows(w, &b);
   cwriter_line(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) {", b.l->count));
   w->indent += 2;
   name_turn_loads(w, &b);

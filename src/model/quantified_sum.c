@@ -297,18 +297,24 @@ static int has_many_turns(const struct Quantified *q, uint64_t turns) {
   return turns > MANY * members;
 }
 
-/* Says that a long sum is written out, and why. */
-static void note_written_out(const Eval *ev, const struct Quantified *q, uint64_t turns) {
-  enum { TERM_KB = 4, LIMIT_MB = 2048 }; /* of a short term: potential of a pair, in a plane */
+/* Says that a long sum is written out, and why; refuses it where no expansion takes so many terms. */
+static int may_write_out(const Eval *ev, const struct Quantified *q, uint64_t turns) {
+  enum { TERM_KB = 4 }; /* of a short term: potential of a pair, in a plane */
+  static const char help[] = "a sum whose terms read families at indices such as `i`, `j`, `i+1` stays a sum, "
+                             "whatever N is: `lagc help families`";
   Builder *b = ev->b;
   const char *sum = ast_short(b, q->outer), *why = q->why ? q->why : "its terms have no common form";
-  uint64_t mb = turns * TERM_KB / 1024;
-  if (b->diags->errors) return;
-  diag_note(b->diags, ast_expr(b->ast, q->where ? q->where : q->outer)->span,
-            "`%s` is written out, %llu terms, some %llu MB%s: %s", sum, (unsigned long long)turns,
-            (unsigned long long)mb, mb > LIMIT_MB ? ", more than lagc takes" : "", why);
-  diag_help(b->diags, "a sum whose terms read families at indices such as `i`, `j`, `i+1` stays a sum, whatever N is: "
-                      "`lagc help families`");
+  Span span = ast_expr(b->ast, q->where ? q->where : q->outer)->span;
+  if (b->diags->errors) return 1;
+  if (turns > RANGE_MAX) {
+    refuse(b, span, "`%s` would be written out, %llu terms, and lagc takes %d: %s" HELP "%s", sum,
+           (unsigned long long)turns, RANGE_MAX, why, help);
+    return 0;
+  }
+  diag_note(b->diags, span, "`%s` is written out, %llu terms, some %llu MB: %s", sum, (unsigned long long)turns,
+            (unsigned long long)(turns * TERM_KB / 1024), why);
+  diag_help(b->diags, "%s", help);
+  return 1;
 }
 
 static const AstNear *near_of(const Ast *ast, AstId sum) {
@@ -373,8 +379,9 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
     return -1;
   }
   if (!read || !find_pairs(q, b->arena)) {
-    if (turns >= b->sums_from) note_written_out(ev, q, turns);
-    return 0;
+    if (turns < b->sums_from || may_write_out(ev, q, turns)) return 0;
+    *value_of(ev, id) = FAILED;
+    return -1;
   }
   q->turns = turns;
   q->sampled = has_many_turns(q, turns);
@@ -471,7 +478,7 @@ int quantified_next(Eval *ev, Value *v) {
     ev->sums = q;
   } else {
     ev->written_out = q->outer;
-    note_written_out(ev, q, q->turns);
+    if (!may_write_out(ev, q, q->turns)) return *v = FAILED, 0;
   }
   ev->terms.n = l->base;
   l->at = ev->index.at[ev->index.n - 1].at = q->lo;

@@ -233,6 +233,7 @@ static void report_range(Builder *b, const Entity *e, const int64_t *at, Span sp
   StrBuf s = strbuf(b->arena);
   for (int k = 0; k < e->ndims; k++)
     sb_printf(&s, "%s%lld..%lld", k ? ", " : "", (long long)e->lo[k], (long long)e->hi[k]);
+  diag_drop_notes(b->diags, span); /* that a sum is written out, since an index leaves the range */
   diag_error(b->diags, span, "`%s` is out of range%s", member_name(b->ast, e->name, at, e->ndims), where);
   if (in_range(e, at)) diag_help(b->diags, "`%s` is defined in %s, but not for this member", e->name, sb_text(&s));
   else diag_help(b->diags, "the members are `%s[%s]`", e->name, sb_text(&s));

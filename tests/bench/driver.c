@@ -24,8 +24,8 @@ extern const lag_scene SCENE;
 #define WITHIN 2
 #endif
 
-typedef int (*Accel)(double, const double *, const double *, const double *, const double *, const double *, double *,
-                     double *, double *);
+typedef int (*Accel)(const void *, double, const double *, const double *, const double *, const double *,
+                     const double *, double *, double *, double *);
 typedef struct {
   const char *name;
   Accel f;
@@ -77,7 +77,7 @@ static Bench bench_new(void) {
 static void call(const Bench *b, Accel f, long times) {
   for (long k = 0; k < times; k++) {
     int s = (int)(k % STATES);
-    if (f(0, b->q[s], b->v[s], NULL, b->p, NULL, b->a, NULL, b->w) != 0) exit(3);
+    if (f(b->m, 0, b->q[s], b->v[s], NULL, b->p, NULL, b->a, NULL, b->w) != 0) exit(3);
   }
 }
 
@@ -89,7 +89,7 @@ static int check(const Bench *b) {
     for (int s = 0; s < STATES; s++) {
       double size = 0, off = 0;
       if (b->m->accel(b->m, 0, b->q[s], b->v[s], NULL, b->p, NULL, ours, NULL, b->w) != 0) return 3;
-      if (b->all[k].f(0, b->q[s], b->v[s], NULL, b->p, NULL, b->a, NULL, b->w) != 0) return 3;
+      if (b->all[k].f(b->m, 0, b->q[s], b->v[s], NULL, b->p, NULL, b->a, NULL, b->w) != 0) return 3;
       for (int i = 0; i < b->m->nq; i++) size = fmax(size, fabs(ours[i])), off = fmax(off, fabs(ours[i] - b->a[i]));
       worst = fmax(worst, off/size);
     }
