@@ -20,15 +20,21 @@ static const LAG_REAL lag_stumpff_level[][2] = {LAG_LEVEL(3),  LAG_LEVEL(5),  LA
                                                 LAG_LEVEL(19), LAG_LEVEL(21), LAG_LEVEL(23), LAG_LEVEL(25)};
 #undef LAG_LEVEL
 
-/* Bodies side by side: loops over them are short, so that compilers make vectors of them. */
-enum { LAG_KEPLER_BLOCK = 4 };
-#define LAG_EACH(k) for (int k = 0; k < LAG_KEPLER_BLOCK; k++)
-typedef LAG_REAL lag_kepler_lanes[LAG_KEPLER_BLOCK];
+/* Bodies side by side: loops over them are short, so that compilers make vectors of them. A block has 4, or 8: two
+ * vectors of 4 overlap in time. Functions of a block are called with a constant, and inline. */
+enum { LAG_KEPLER_BLOCK = 4, LAG_KEPLER_LARGE = 8 };
+#define LAG_EACH(k) for (int k = 0; k < block; k++)
+typedef LAG_REAL lag_kepler_lanes[LAG_KEPLER_LARGE];
+#if defined(__GNUC__)
+#define LAG_KEPLER_INLINE static inline __attribute__((always_inline))
+#else
+#define LAG_KEPLER_INLINE static inline
+#endif
 
 /* G_k = s^k c_k(beta s^2), k = 0 ... 3, with Stumpff's c_k(x) = 1/k! - x/(k + 2)! + ...: at the arguments x divided
  * by 4^folds the series of c_2 and c_3, then their formulas for the fourfold argument. */
-static inline void lag_stumpff_block(const lag_kepler_lanes beta, const lag_kepler_lanes s, int folds,
-                                     lag_kepler_lanes G[4]) {
+LAG_KEPLER_INLINE void lag_stumpff_block(int block, const lag_kepler_lanes beta, const lag_kepler_lanes s, int folds,
+                                         lag_kepler_lanes G[4]) {
   lag_kepler_lanes x, c0, c1, c2, c3;
   LAG_REAL part = LAG_C(1.0);
   for (int i = 0; i < folds; i++) part *= LAG_C(0.25);
@@ -67,7 +73,7 @@ static inline void lag_stumpff(LAG_REAL beta, LAG_REAL s, LAG_REAL G[4]) {
     return;
   }
   for (; x*x > LAG_C(0.01) && folds < 600; folds++) x *= LAG_C(0.25);
-  lag_stumpff_block(betas, all, folds, of);
+  lag_stumpff_block(LAG_KEPLER_BLOCK, betas, all, folds, of);
   for (int k = 0; k < 4; k++) G[k] = of[k][0];
 }
 
@@ -136,12 +142,12 @@ static inline void lag_kepler_solve(const lag_kepler_orbit *o, LAG_REAL h, LAG_R
  * positions and velocities of the end less those of the start: f x + g v, df x + dg v. */
 typedef struct lag_kepler_motions {
   lag_kepler_lanes r, eta, beta, zeta, s, d, G[4], f, g, df, dg;
-  int easy[LAG_KEPLER_BLOCK];
+  int easy[LAG_KEPLER_LARGE];
 } lag_kepler_motions;
 
 /* Orbits, and the first estimate of s; returns the folds of the largest argument of lag_stumpff_block. */
-static inline int lag_kepler_begin(lag_kepler_motions *o, const LAG_REAL *mu, LAG_REAL h, int stride, const LAG_REAL *x,
-                                   const LAG_REAL *v) {
+LAG_KEPLER_INLINE int lag_kepler_begin(int block, lag_kepler_motions *o, const LAG_REAL *mu, LAG_REAL h, int stride,
+                                       const LAG_REAL *x, const LAG_REAL *v) {
   lag_kepler_lanes moved;
   LAG_REAL most = LAG_C(0.0);
   int folds = 0;
@@ -169,7 +175,7 @@ static inline int lag_kepler_begin(lag_kepler_motions *o, const LAG_REAL *mu, LA
   return folds;
 }
 
-static inline void lag_kepler_correct(lag_kepler_motions *o, LAG_REAL h) {
+LAG_KEPLER_INLINE void lag_kepler_correct(int block, lag_kepler_motions *o, LAG_REAL h) {
   lag_kepler_lanes a, b;
   LAG_EACH(k) {
     const LAG_REAL f = o->r[k]*o->s[k] + (o->eta[k]*o->G[2][k] + o->zeta[k]*o->G[3][k] - h);
@@ -198,14 +204,14 @@ static inline void lag_kepler_far(lag_kepler_motions *o, int k, LAG_REAL mu, LAG
   lag_kepler_finish(o, k, mu, h, G);
 }
 
-/* The motions of a block of bodies for the time h: x, v, lost_x, lost_v: components at strides of `stride`; lost:
- * rounding that sums have lost. mu = 0: a straight line. */
-static inline void lag_kepler_drift(const LAG_REAL *mu, LAG_REAL h, int stride, LAG_REAL *x, LAG_REAL *v,
-                                    LAG_REAL *lost_x, LAG_REAL *lost_v) {
+/* The motions of a block of bodies for the time h: y = {x, v, lost_x, lost_v}: components at strides of `stride`;
+ * lost: rounding that sums have lost. mu = 0: a straight line. */
+static inline void lag_kepler_drift(int block, const LAG_REAL *mu, LAG_REAL h, int stride, LAG_REAL *const y[4]) {
+  LAG_REAL *const x = y[0], *const v = y[1], *const lost_x = y[2], *const lost_v = y[3];
   lag_kepler_motions o;
-  const int folds = lag_kepler_begin(&o, mu, h, stride, x, v);
-  lag_stumpff_block(o.beta, o.s, folds, o.G);
-  lag_kepler_correct(&o, h);
+  const int folds = lag_kepler_begin(block, &o, mu, h, stride, x, v);
+  lag_stumpff_block(block, o.beta, o.s, folds, o.G);
+  lag_kepler_correct(block, &o, h);
   LAG_EACH(k) {
     LAG_REAL G[4] = {o.G[0][k], o.G[1][k], o.G[2][k], o.G[3][k]};
     lag_stumpff_near(o.beta[k], o.d[k], G);

@@ -37,6 +37,25 @@ static inline int64_t subscript_step(const Subscript *x) {
   return a < 0 ? -a : a;
 }
 
+/* Cells least, least + 1 ... in another order, from `base` on: `step` rows of `each`. Those of one component of a
+ * family of vectors, which lie `step` apart, come to lie side by side. */
+typedef struct {
+  int64_t least, step, each, base;
+} CellOrder;
+
+/* Lets turns with these indices have cells side by side. */
+static inline void cells_follow(CellOrder *o, const Subscript *x) {
+  o->step = subscript_step(&(Subscript){0, o->step, subscript_step(x)});
+}
+static inline void cells_complete(CellOrder *o, int64_t most) {
+  if (!o->step) o->step = 1;
+  o->each = (most - o->least + o->step) / o->step;
+}
+static inline Subscript cell_in_order(const CellOrder *o, const Subscript *x) {
+  int64_t from = x->first - o->least, row = (from % o->step + o->step) % o->step;
+  return (Subscript){o->base + row * o->each + (from - row) / o->step, x->by_row / o->step, x->by_turn / o->step};
+}
+
 /* Whether turn k of n belongs to the sample by which the self-check compares long sums: the ends and the middle. */
 static inline int loop_samples(int64_t k, int64_t n) { return k < 2 || k >= n - 2 || k == n / 2; }
 

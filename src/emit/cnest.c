@@ -1,7 +1,8 @@
 /* Nests of a program as nested loops in C.
  *
  * Sums are elements of one local array; a sum whose element is the same in all turns of a row is accumulated in a
- * variable. */
+ * variable. Where turns do not depend on each other, LAG_TURNS of them are computed side by side, if the compiler has
+ * vectors (lag_lanes.h), and added in their order: the bits are the same. */
 #include <string.h>
 
 #include "emit/cwriter_impl.h"
@@ -62,10 +63,12 @@ static void write_load(Nesting *x, const Writer *around, Slot s) {
                                  w->style->prefix, place(x, i->index)));
     w->piece[s] = (CExpr){name, C_ATOM, 0};
   } else {
-    const char *name = cnames_take(&w->names, i->name ? i->name : "sum");
-    cwriter_line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name,
-                                 i->array == ARR_P && w->parameters ? w->parameters : cwriter_array(w, i->array),
-                                 place(x, i->index)));
+    const char *name = w->again ? w->again[s].text : cnames_take(&w->names, i->name ? i->name : "sum");
+    const char *array = i->array == ARR_P && w->parameters ? w->parameters : cwriter_array(w, i->array);
+    const char *one = arena_printf(w->a, "%s[%s]", array, place(x, i->index));
+    cwriter_line(w, w->together ? arena_printf(w->a, "const lag_turns %s = lag_turns_at(&%s, %lld);", name, one,
+                                               (long long)x->n->at[i->index].by_turn)
+                                : arena_printf(w->a, "const %s_REAL %s = %s;", w->style->prefix, name, one));
     w->piece[s] = (CExpr){name, C_ATOM, 0};
   }
 }
@@ -79,11 +82,26 @@ static void write_values(Nesting *x, const Writer *around, int each) {
     if (w->p->ins.at[s].op != IR_LOAD && x->each[s] == each) cwriter_instruction(w, s);
 }
 
+/* Adds the terms of turns side by side to a sum, in the order of turns. */
+static void write_addition_together(Nesting *x, uint32_t k) {
+  Writer *w = &x->body;
+  const Store *st = &w->p->stores.at[k];
+  const char *value = cwriter_operand(w, st->slot).text, *part = x->partial[k];
+  const char *how = st->array ? "less" : "plus";
+  cwriter_line(w, part ? arena_printf(w->a, "%s = lag_turns_%s(%s, %s);", part, how, part, value)
+                       : arena_printf(w->a, "lag_turns_each_%s(&%s[%s], %lld, %s);", how, w->cells,
+                                      place(x, st->index), (long long)x->n->at[st->index].by_turn, value));
+}
+
 static void write_additions(Nesting *x) {
   Writer *w = &x->body;
   for (uint32_t k = 0; k < w->p->stores.n; k++) {
     const Store *st = &w->p->stores.at[k], *test = test_of(w->p);
     if (st == test) continue;
+    if (w->together) {
+      write_addition_together(x, k);
+      continue;
+    }
     const char *sum = x->partial[k] ? x->partial[k] : arena_printf(w->a, "%s[%s]", w->cells, place(x, st->index));
     const char *value = cwriter_operand(w, st->slot).text, *prefix = w->style->prefix;
     if (test)
@@ -164,12 +182,84 @@ static void write_tree(Writer *w, const Nest *n) {
   cwriter_line(w, "}");
 }
 
-/* --- the loops --- */
+/* --- turns side by side --- */
+
+static LoopRange range_of(const Nest *n) { return (LoopRange){n->rows, n->skew, n->turns, n->more}; }
+
+/* Whether two indices never meet within a row: their ranges are apart, or they differ modulo their step. */
+static int never_meet(const Nest *n, uint32_t i, uint32_t k) {
+  const LoopRange range = range_of(n);
+  const IrSubscript *x = &n->at[i], *y = &n->at[k];
+  int64_t x0, x1, y0, y1, step = x->by_turn;
+  if (!loop_extent(&range, x, &x0, &x1) || !loop_extent(&range, y, &y0, &y1) || x0 > y1 || y0 > x1) return 1;
+  return step == y->by_turn && step != 0 && (x->by_row - y->by_row) % step == 0 && (x->first - y->first) % step != 0;
+}
+
+/* Whether a vector has the operation, with the same bits; a load: of what turns do not change. */
+static int is_of_vectors(const Nesting *x, const Ins *i) {
+  const Prog *p = x->n->body;
+  if (i->op == IR_LOAD) {
+    for (uint32_t k = 0; k < p->stores.n && i->array == ARR_CELL; k++)
+      if (!never_meet(x->n, i->index, p->stores.at[k].index)) return 0;
+    return i->array != ARR_INDEX;
+  }
+  return i->op == IR_ADD || i->op == IR_SUB || i->op == IR_MUL || i->op == IR_DIV || i->op == IR_NEG ||
+         i->op == IR_SQRT;
+}
+
+/* Whether turns may be computed before the sums of those before them are complete, and gain by it: divisions and roots
+ * take most of the time. */
+static int may_run_together(const Nesting *x, const CStyle *style) {
+  enum { FEWEST = 4 }; /* turns of the longest row */
+  const Nest *n = x->n;
+  const Prog *p = n->body;
+  const int64_t first = n->turns, last = n->turns + n->more * ((int64_t)n->rows - 1);
+  if (!style->turns || x->near || !nest_has_turns(n) || test_of(p) || (first < FEWEST && last < FEWEST)) return 0;
+  int slow = 0;
+  for (Slot s = 1; s < p->ins.n; s++) {
+    if (x->each[s] && !is_of_vectors(x, &p->ins.at[s])) return 0;
+    slow |= x->each[s] && (p->ins.at[s].op == IR_DIV || p->ins.at[s].op == IR_SQRT);
+  }
+  for (uint32_t k = 0; k < p->stores.n; k++) {
+    if (!x->each[p->stores.at[k].slot]) return 0;
+    const uint32_t at = p->stores.at[k].index;
+    for (uint32_t j = 0; j < k && nest_moves(n, at); j++)
+      if (nest_moves(n, p->stores.at[j].index) && !never_meet(n, p->stores.at[j].index, at)) return 0;
+  }
+  return slow;
+}
 
 static void open_loop(Writer *w, const char *counter, const char *from, const char *end) {
   cwriter_line(w, arena_printf(w->a, "for (int %s = %s; %s < %s; %s++) {", counter, from, counter, end, counter));
   w->indent += 2;
 }
+
+static void close_loop(Writer *w) {
+  w->indent -= 2;
+  cwriter_line(w, "}");
+}
+
+/* Most turns of a row in vectors; the loop over the others follows, with the same names. */
+static void write_together(Nesting *x, const Writer *around) {
+  Writer *w = &x->body;
+  const char *from = turn_of_row(x, 0), *end = turn_of_row(x, 1);
+  sb_puts(w->out, "#ifdef LAG_TURNS\n");
+  cwriter_line(w, arena_printf(w->a, "for (int %s = %s; %s + LAG_TURNS <= %s; %s += LAG_TURNS) {", x->j, from, x->j,
+                               end, x->j));
+  w->indent += 2;
+  w->together = 1;
+  write_values(x, around, 1);
+  write_additions(x);
+  w->together = 0;
+  close_loop(w);
+  sb_puts(w->out, "#endif\n");
+  CExpr *again = ARENA_ARRAY(w->a, CExpr, w->p->ins.n);
+  memcpy(again, w->piece, w->p->ins.n * sizeof *again);
+  w->again = again;
+  open_loop(w, x->j, arena_printf(w->a, "LAG_REST(%s, %s)", from, end), end);
+}
+
+/* --- the loops --- */
 
 static void open_neighbours(Nesting *x) {
   Writer *w = &x->body;
@@ -186,11 +276,6 @@ static void write_test(Nesting *x, const Writer *around) {
   Writer *w = &x->body;
   write_values(x, around, 2);
   cwriter_line(w, arena_printf(w->a, "if (!LAG_ANY(%s)) continue;", cwriter_operand(w, test_of(w->p)->slot).text));
-}
-
-static void close_loop(Writer *w) {
-  w->indent -= 2;
-  cwriter_line(w, "}");
 }
 
 static void declare_partial(Nesting *x) {
@@ -220,6 +305,7 @@ static void write_rows(Nesting *x, const Writer *around) {
   write_values(x, around, 0);
   declare_partial(x);
   if (x->near) open_neighbours(x);
+  else if (may_run_together(x, w->style)) write_together(x, around);
   else if (nest_has_turns(n)) open_loop(w, x->j, turn_of_row(x, 0), turn_of_row(x, 1));
   else open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
   if (x->near) write_test(x, around);

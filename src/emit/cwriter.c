@@ -112,7 +112,7 @@ CExpr cwriter_spell(Writer *w, const Ins *i) {
     case IR_MUL: return infix(w, i, "*", C_MUL);
     case IR_DIV: return infix(w, i, "/", C_MUL);
     case IR_NEG: return negative(w, i);
-    case IR_SQRT: return function(w, "sqrt", i, 1);
+    case IR_SQRT: return w->together ? call(w, "lag_turns_sqrt", i, 1) : function(w, "sqrt", i, 1);
     case IR_FN1: return function(w, i->text, i, 1);
     case IR_FN2: return function(w, i->text, i, 2);
     case IR_MIN: case IR_MAX: case IR_SIGN: return choose(w, i);
@@ -184,6 +184,7 @@ static const char *made_name(Writer *w, const Ins *i) {
 }
 
 CExpr cwriter_name(Writer *w, const Ins *i) {
+  if (w->again && is_identifier(w->again[i - w->p->ins.at].text)) return w->again[i - w->p->ins.at];
   const char *made = i->name ? i->name : made_name(w, i);
   if (made) return (CExpr){cnames_take(&w->names, made), C_ATOM, 0};
   const char *stem = ir_is_condition(i->op) ? "is" : "w";
@@ -204,8 +205,8 @@ static const char *meaning(Writer *w, const char *name) {
 void cwriter_declare(Writer *w, Slot s, CExpr name, CExpr x) {
   const Ins *i = &w->p->ins.at[s];
   cwriter_flush_title(w);
-  const char *type = ir_is_condition(i->op) ? "MASK" : "REAL";
-  cwriter_statement(w, arena_printf(w->a, "const %s_%s %s = %s;", w->style->prefix, type, name.text, x.text));
+  const char *type = arena_printf(w->a, "%s_%s", w->style->prefix, ir_is_condition(i->op) ? "MASK" : "REAL");
+  cwriter_statement(w, arena_printf(w->a, "const %s %s = %s;", w->together ? "lag_turns" : type, name.text, x.text));
   /* in a loop, the name common to all turns */
   const char *said = i->name && w->indent ? cloop_stem(w->a, i->name) : i->name;
   if (said && strcmp(said, name.text) != 0) sb_printf(w->out, " /* %s */", comment_text(w->a, meaning(w, said)));

@@ -38,6 +38,8 @@ typedef struct {
     const char *name;
   } rows[8]; /* [nrows] tables that were written */
   uint32_t nrows;
+  int together;       /* 1: in turns side by side, whose values are vectors */
+  const CExpr *again; /* by slot, in turns written a second time: the names of the first; or NULL */
   const char *parameters; /* array copy of the parameters that nests read, if parameters are struct members; or NULL */
 } Writer;
 

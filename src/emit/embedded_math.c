@@ -55,6 +55,14 @@ static int listed_sums(const MathText *m) {
   return strcmp(m->prefix, "LAG") == 0 ? some : 0;
 }
 
+/* Whether a model has loops whose turns may be computed side by side. */
+static int has_turns(const MathText *m) {
+  ProgList all = program_set_programs(m->u);
+  int some = 0;
+  for (uint32_t i = 0; i < all.n; i++) some |= all.at[i]->nests.n > 0;
+  return some && strcmp(m->prefix, "LAG") == 0;
+}
+
 static int has_near(const MathText *m) { return (listed_sums(m) & 1) != 0; }
 static int has_tree(const MathText *m) { return (listed_sums(m) & 2) != 0; }
 
@@ -73,7 +81,8 @@ static void sections(const MathText *m, int front, StrBuf *out) {
   const struct {
     const char *name;
     int needed;
-  } rows[] = {{"lanes", !front}, {"own", own}, {"libm", 1}, {"sincos", own && calls_sincos(u)},
+  } rows[] = {{"turns", front && has_turns(m)}, {"lanes", !front}, {"own", own}, {"libm", 1},
+              {"sincos", own && calls_sincos(u)},
               {"exp", own && unit_calls(u, "exp")}, {"log", own && unit_calls(u, "log")}, {"solver", m->solver},
               {"numbers", kkt}, {"band", kkt && has_band(u)}, {"kkt", kkt}, {"listed", kkt && has_band(u)},
               {"near", has_near(m)}, {"tree", has_tree(m)},

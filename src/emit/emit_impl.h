@@ -10,6 +10,7 @@ typedef struct {
   Arena *a;
   const char *const *globals; /* names that functions must not hide, NULL at the end */
   StrBuf *out;
+  int for_readers; /* 1: loops are written once, not for vectors too */
 } ModelFile;
 
 /* How functions of the file spell their arrays. own: names of their arguments, NULL at the end; written: of their

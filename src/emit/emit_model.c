@@ -100,7 +100,7 @@ CStyle model_style(const ModelFile *f, const char *const *own, const char *const
   return (CStyle){.prefix = "LAG",
                   .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve",
                   .kkt = "lag_kkt", .spline = "lag_spline", .curve = "lag_curve",
-                  .math = math_prefix(f->u, "lag")};
+                  .math = math_prefix(f->u, "lag"), .turns = !f->for_readers};
 }
 
 /* Whether the function is called once a step, or once a row of output. */
@@ -143,7 +143,7 @@ static void accel(const ModelFile *f) {
 }
 
 void emit_accel(const ProgramSet *u, StrBuf *out) {
-  accel(&(ModelFile){.u = u, .a = u->arena, .globals = globals_of(u, NULL), .out = out});
+  accel(&(ModelFile){.u = u, .a = u->arena, .globals = globals_of(u, NULL), .out = out, .for_readers = 1});
 }
 
 static void emit_variation(const ModelFile *f) {

@@ -150,7 +150,7 @@ typedef struct {
   const Search *s;
   const Prog *from;
   Prog *to;
-  uint32_t *base;      /* by class of hubs: first cell */
+  CellOrder *order;    /* by class of hubs */
   Slot *map;           /* by item: a slot of `from` or, from ins.n on, a nest */
   unsigned char *done;
   VEC(uint32_t) open;
@@ -164,10 +164,16 @@ static void number_cells(Rebuild *r) {
     Slot hub = c->hubs.at[k];
     if (s->terms[hub] && size[c->class_of[hub]] <= c->number[hub]) size[c->class_of[hub]] = c->number[hub] + 1;
   }
-  r->base = ARENA_ARRAY(c->a, uint32_t, c->classes + 1);
+  r->order = ARENA_ARRAY(c->a, CellOrder, c->classes + 1);
+  for (uint32_t k = 0; k < s->found.n; k++) {
+    const FoundNest *f = &s->found.at[k];
+    for (uint32_t j = 0; j < f->nest.n; j++)
+      if (f->array[j] >= ARR_COUNT) cells_follow(&r->order[f->array[j] - ARR_COUNT], &f->nest.at[j]);
+  }
   for (uint32_t k = 0; k < c->classes; k++) {
-    r->base[k] = r->to->cells;
-    r->to->cells += size[k];
+    r->order[k].base = r->to->cells;
+    cells_complete(&r->order[k], (int64_t)size[k] - 1);
+    r->to->cells += (uint32_t)(r->order[k].step * r->order[k].each);
   }
 }
 
@@ -218,8 +224,7 @@ static Slot make_nest(Rebuild *r, uint32_t k) {
   Nest n = f->nest;
   IrSubscript *at = ARENA_ARRAY(r->to->arena, IrSubscript, n.n + 1);
   for (uint32_t j = 0; j < n.n; j++) {
-    at[j] = n.at[j];
-    if (f->array[j] >= ARR_COUNT) at[j].first += r->base[f->array[j] - ARR_COUNT];
+    at[j] = f->array[j] >= ARR_COUNT ? cell_in_order(&r->order[f->array[j] - ARR_COUNT], &n.at[j]) : n.at[j];
   }
   Slot *outer = ARENA_ARRAY(r->to->arena, Slot, n.nouter + 1);
   for (uint32_t j = 0; j < n.nouter; j++) outer[j] = r->map[n.outer[j]];
@@ -239,7 +244,8 @@ static Slot load_cell(Rebuild *r, uint32_t cell, uint32_t nest, Name name) {
 static Slot make_hub(Rebuild *r, Slot hub) {
   const Search *s = r->s;
   Name name = r->from->ins.at[hub].name;
-  Slot sum = load_cell(r, r->base[s->c.class_of[hub]] + s->c.number[hub], s->last[hub], name ? name : "sum");
+  const Subscript cell = cell_in_order(&r->order[s->c.class_of[hub]], &(Subscript){.first = s->c.number[hub]});
+  Slot sum = load_cell(r, (uint32_t)cell.first, s->last[hub], name ? name : "sum");
   other_terms(r, hub, s->c.terms);
   for (uint32_t k = 0; k < s->c.terms->n; k++)
     sum = prog_op(r->to, s->c.terms->at[k].minus ? IR_SUB : IR_ADD, sum, r->map[s->c.terms->at[k].value]);

@@ -242,16 +242,22 @@ static uint64_t turns_of(const LoopRange *r) {
   return n;
 }
 
-/* Appends the nest; cell `least` is number `base` of the program's sums. */
-static Slot append_nest(NestBuilder *b, const Shares *shares, const Listed *x, int64_t least, uint32_t base) {
+/* The order of cells least ... most in a nest whose turns are found in order. */
+static CellOrder order_of_cells(const Shares *shares, const Listed *x, int64_t least, int64_t most, uint32_t base) {
+  CellOrder order = {.least = least, .base = base};
+  for (uint32_t k = 0; k < shares->n && !x->near.n && !x->far.n; k++) cells_follow(&order, &shares->at[k].at);
+  cells_complete(&order, most);
+  return order;
+}
+
+/* Appends the nest. */
+static Slot append_nest(NestBuilder *b, const Shares *shares, const Listed *x, const CellOrder *order) {
   const IrNear *near = &x->near;
   Prog *p = b->l->p;
   const LoopRange *r = &b->s->range;
   for (uint32_t k = 0; k < shares->n; k++) {
     const Share *share = &shares->at[k];
-    IrSubscript at = share->at;
-    at.first += (int64_t)base - least;
-    vec_push(p->arena, &b->at, at);
+    vec_push(p->arena, &b->at, cell_in_order(order, &share->at));
     prog_store(b->body.p, (uint32_t)share->minus, b->at.n - 1, lower_slot(&b->body, share->value), "");
   }
   if (near->n) prog_store(b->body.p, NEST_TEST, 0, lower_slot(&b->body, b->s->near->test), "");
@@ -326,7 +332,7 @@ static int lower_far_charges(NestBuilder *rows, Expr charge, uint32_t *first) {
   lower_roots(&rows->body, &charge, 1);
   *first = l->p->cells;
   l->p->cells += rows->s->range.rows;
-  append_nest(rows, &shares, &(const Listed){0}, 0, *first);
+  append_nest(rows, &shares, &(const Listed){0}, &(CellOrder){.step = 1, .base = *first});
   return 1;
 }
 
@@ -410,13 +416,14 @@ static int lower_as_nest(NestBuilder *b, const Expr *cells, uint32_t n) {
   load_constants(b, values, nvalues);
   if (!load_reads(b)) return 0;
   lower_roots(&b->body, values, nvalues);
-  uint32_t base = l->p->cells;
-  l->p->cells += (uint32_t)(most - least + 1);
-  number_cells(&listed.far, (int64_t)base - least);
-  Slot nest = shares.n ? append_nest(b, &shares, &listed, least, base) : 0;
+  const CellOrder order = order_of_cells(&shares, &listed, least, most, l->p->cells);
+  l->p->cells += (uint32_t)(order.step * order.each);
+  number_cells(&listed.far, order.base - least);
+  Slot nest = shares.n ? append_nest(b, &shares, &listed, &order) : 0;
   for (uint32_t k = 0; k < n; k++) {
     int64_t c = expr_cell_number(l->g, cells[k]);
-    Ins load = {.op = IR_LOAD, .array = ARR_CELL, .a = nest, .index = (uint32_t)(base + c - least), .name = "sum"};
+    uint32_t index = (uint32_t)cell_in_order(&order, &(Subscript){.first = c}).first;
+    Ins load = {.op = IR_LOAD, .array = ARR_CELL, .a = nest, .index = index, .name = "sum"};
     Slot s = c >= least && c <= most ? prog_ins(l->p, load) : 0;
     expr_map_set(&l->slots, cells[k], s + 1);
   }

@@ -154,7 +154,7 @@ check "pairs of 20 bodies" has_loops bodies 70
 check "24 bodies by hand" has_loops bodies_by_hand 80
 check "2,415 pairs, which stay a sum, run" "$LAGC" run tests/bench/models/bodies.lag -DN=70 --until 0.001 --quiet -o "$TMP/seventy.csv"
 check "and stays one where all parameters are numbers" "$LAGC" emit tests/bench/models/bodies.lag -DN=70 --fix all -o "$TMP/seventy.c"
-is "with one nest for its forces" 1 "$(sed -n '/^static int accel/,/^}/p' "$TMP/seventy.c" | grep -c 'for (int j')"
+is "with one nest for its forces" 1 "$(sed -n '/^static int accel/,/^}/p' "$TMP/seventy.c" | grep -c 'for (int i = 0; i < 69')"
 slow check "choices and functions" has_loops odd 120
 check "side rods along a chain" has_loops comb 330
 check "all pulled by the first" has_loops star 20
@@ -229,6 +229,16 @@ agrees() {
     tests/exec/emit_agree.c "$TMP"/c/*.c "$TMP/scenes.c" "$BUILD/liblagc.a" -lm -o "$TMP/agree" && "$TMP/agree" $models
 }
 check "loops compute what the program says, to the last bit" agrees
+# Turns side by side, by two and by four, against one after the other: pairs that stay a sum, and pairs written out.
+avx=
+! grep -q ' avx ' /proc/cpuinfo 2>/dev/null || avx=-mavx
+turns() { # N
+  for flag in -DLAG_REAL=double '' $avx; do
+    CC="$CC $flag" "$LAGC" build tests/bench/models/bodies.lag -DN="$1" -o "$TMP/turns" && "$TMP/turns" --quiet --until 0.05 -o "$TMP/turns$flag.csv" || return 1
+    cmp "$TMP/turns-DLAG_REAL=double.csv" "$TMP/turns$flag.csv" || return 1
+  done
+}
+for n in 20 70; do check "$n bodies: turns side by side have the bits of turns one by one" turns $n; done
 
 # ---- chains of point masses: the tridiagonal system of the rods' tensions, by hand (tests/bench/hand/chain.c)
 # Masses and lengths of 0.01 to 30: condition numbers of some 1e6 (bench/driver.c: within 1e-8 of the largest acceleration). 5 and 6: an odd and an even

@@ -8,15 +8,24 @@
 
 /* ---- Kepler's motion */
 
+static double drift_error_in(int block, double h, const double *x0, const double *v0, const long double *right)
+{
+  double x[24] = {0}, v[24] = {0}, lost_x[24] = {0}, lost_v[24] = {0}, mu[8] = {0}, worst = 0;
+  const int at = block - 4; /* others in the block: at rest without mu, a radial hyperbola */
+  mu[at] = mu[2] = x[2] = 1, v[2] = 3;
+  x[at] = x0[0], x[block + at] = x0[1], v[at] = v0[0], v[block + at] = v0[1];
+  double *const y[4] = {x, v, lost_x, lost_v};
+  lag_kepler_drift(block, mu, h, block, y);
+  for (int c = 0; c < 2; c++) {
+    const int k = block * c + at;
+    worst = fmax(worst, fmax(fabs(x[k] - (double)right[c]), fabs(v[k] - (double)right[2 + c])));
+  }
+  return worst;
+}
+
 static double drift_error(double h, const double *x0, const double *v0, const long double *right)
 {
-  double x[12] = {0}, v[12] = {0}, lost_x[12] = {0}, lost_v[12] = {0}, mu[4] = {1, 0, 1, 0}, worst = 0;
-  x[2] = 1, v[2] = 3; /* others in the block: at rest without mu, a radial hyperbola */
-  x[0] = x0[0], x[4] = x0[1], v[0] = v0[0], v[4] = v0[1];
-  lag_kepler_drift(mu, h, 4, x, v, lost_x, lost_v);
-  for (int c = 0; c < 2; c++)
-    worst = fmax(worst, fmax(fabs(x[4 * c] - (double)right[c]), fabs(v[4 * c] - (double)right[2 + c])));
-  return worst;
+  return fmax(drift_error_in(LAG_KEPLER_BLOCK, h, x0, v0, right), drift_error_in(LAG_KEPLER_LARGE, h, x0, v0, right));
 }
 
 /* The root of an increasing function M(E) = m of Kepler's equation, sign 1: E - e sin E, -1: e sinh E - E. */
