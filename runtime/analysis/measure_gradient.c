@@ -322,6 +322,7 @@ static void put_events(MeasureGradient *g) {
       else put_event_time(g, e, x->weight);
     }
     for (int k = 0; k < g->sums; k++) put_jump(g, e, &g->sum[k]), g->sum[k].last = NAN;
+    if (is_same(e->at, g->ended)) g->sums = 0;
     free(e->y);
   }
   g->nseen = 0;
