@@ -357,7 +357,8 @@ int lag_fit(Fit *f) {
     given[c] = f->column[c].per_row || f->column[c].sigma > 0;
     f->known_errors &= given[c];
     const double spread = spread_of(f, c), error = f->column[c].sigma > 0 ? f->column[c].sigma : 1;
-    const int small = isfinite(spread) && !isfinite(spread / error * (spread / error)), large = 1 / error / error < DBL_MIN;
+    const int small = isfinite(spread) && !isfinite(spread / error * (spread / error));
+    const int large = 1 / error / error < DBL_MIN;
     if (isfinite(spread) && !small && !large) continue;
     snprintf(f->why, sizeof f->why, "%s of %s are too %s to be squared: check them, and their unit",
              small || large ? "the errors" : "the values", f->column[c].label, small ? "small" : "large");

@@ -386,8 +386,10 @@ static int walk(MeasureGradient *g, double t, double *y) {
     rc = lag_sim_ensure_step(s, t, &reach);
     put_events(g);
     if (rc == LAG_OK && g->sums) check_jumps(g, lag_sim_time(s), 1, y);
-    for (double a = lag_sim_time(s), b; rc == LAG_OK && g->sums && a != reach; a = b)
-      b = lag_measure_part(g->m, a, reach), rc = put_places(g, a, b, y);
+    for (double a = lag_sim_time(s), b, last = 0; rc == LAG_OK && g->sums && a != reach; last = b - a, a = b) {
+      b = lag_measure_smooth(g->m, a, lag_measure_part(g->m, a, reach), last);
+      rc = put_places(g, a, b, y);
+    }
     if (rc == LAG_OK) rc = lag_sim_advance(s, reach);
     if (rc == LAG_OK && g->sums) check_jumps(g, reach, 0, y);
   }

@@ -235,15 +235,17 @@ int lag_fit_check_names(const Args *a, const Fit *f) {
   for (const char *list = a->columns; list && *list;) {
     size_t n = strcspn(list, ",");
     if (n && !is_column(f, list, n))
-      return lag_app_error(a, "--columns %s: \"%.*s\" is none of the columns; they are named without units", a->columns,
-                           (int)n, list);
+      return lag_app_error(a, "--columns %s: \"%.*s\" is none of the columns; they are named without units",
+                           a->columns, (int)n, list);
     list += n + (list[n] == ',');
   }
   for (int i = 0; i < a->nsigmas; i++) {
     const char *eq = strchr(a->sigmas[i], '=');
     if (eq && !is_column(f, a->sigmas[i], (size_t)(eq - a->sigmas[i])))
-      return lag_app_error(a, "--sigma %s: \"%.*s\" is none of the columns, the first of which is \"%s\"; they are named "
-                              "without units", a->sigmas[i], (int)(eq - a->sigmas[i]), a->sigmas[i], f->column[0].label);
+      return lag_app_error(a,
+                           "--sigma %s: \"%.*s\" is none of the columns, the first of which is \"%s\"; they are named "
+                           "without units",
+                           a->sigmas[i], (int)(eq - a->sigmas[i]), a->sigmas[i], f->column[0].label);
   }
   return 0;
 }
@@ -256,8 +258,10 @@ static int check_errors(const FitRun *r, int of) {
     if (strncmp(d->file.names[k], "sigma(", 6) != 0) continue;
     while (j < d->file.ncols && errors_of(d, d->file.names[j]) != k) j++;
     if (j == d->file.ncols)
-      return lag_app_error(&r->app->args, "%s: \"%s\" are the errors of no column here: those of \"th [deg]\" are called "
-                                          "\"sigma(th) [deg]\"", r->file[of], d->file.names[k]);
+      return lag_app_error(&r->app->args,
+                           "%s: \"%s\" are the errors of no column here: those of \"th [deg]\" are called "
+                           "\"sigma(th) [deg]\"",
+                           r->file[of], d->file.names[k]);
   }
   return 0;
 }

@@ -221,9 +221,12 @@ void lag_report_sensitivity(App *app, FILE *f) {
 /* Key of a measure: "measure x" where an output is called x. */
 static const char *measure_key(const App *app, int i, char *key, size_t size) {
   char name[64];
-  int k = 0, n = app->sensitivity->nout;
-  while (k < n && (lag_sim_output_info(app->sim, k, name, sizeof name, NULL, 0), strcmp(name, app->measure_names[i]) != 0)) k++;
-  snprintf(key, size, "%s%s", k < n ? "measure " : "", app->measure_names[i]);
+  int is_output = 0;
+  for (int k = 0; k < app->sensitivity->nout; k++) {
+    lag_sim_output_info(app->sim, k, name, sizeof name, NULL, 0);
+    is_output |= strcmp(name, app->measure_names[i]) == 0;
+  }
+  snprintf(key, size, "%s%s", is_output ? "measure " : "", app->measure_names[i]);
   return key;
 }
 

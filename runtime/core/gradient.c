@@ -417,7 +417,8 @@ static int sweep(Sweep *w) {
   for (; rc == LAG_OK && w->rows > 0 && w->t[w->rows - 1] == s->scene->t0; w->rows--)
     add(n, w->weight + (size_t)(w->rows - 1) * (size_t)n, w->x);
   return rc || w->rows == 0 ? rc
-                            : lag_fail(s, LAG_EMETHOD, "the weights of a gradient at t = %s s lie at no step of the run",
+                            : lag_fail(s, LAG_EMETHOD,
+                                       "the weights of a gradient at t = %s s lie at no step of the run",
                                        LAG_TEXT(w->t[w->rows - 1]));
 }
 

@@ -430,8 +430,8 @@ static int prepare_columns(RequestBuilder *k, const char **error) {
       return fail_with(error, arena_printf(k->arena, "--data %s: the names in the first line, `%s`, have no commas "
                                                      "between them; CSV with commas is read", path, label));
     if (!*label)
-      return fail_with(error, arena_printf(k->arena, "--data %s: column %d has no name; write one with its unit, or take "
-                                                     "the column and its comma away", path, column + 1));
+      return fail_with(error, arena_printf(k->arena, "--data %s: column %d has no name; write one with its unit, or "
+                                                     "take the column and its comma away", path, column + 1));
     if (is_cut_in_parentheses(label))
       return fail_with(error, arena_printf(k->arena, "--data %s: the name `%s` ends within parentheses; a name with a "
                                                      "comma stands in quotes: \"hypot(x, y) [m]\"", path, label));

@@ -73,6 +73,13 @@ near "... by a parameter of the start, (1 - cos(wt))/(w^2 t)" 1e-10 "$(awk 'BEGI
 # With C, S the integrals of cos^2 wt, cos wt sin wt: rms^2 t = x0^2 C + 2 x0 v0/w S + ..., whose half derivative is x0 C + v0/w S.
 near "of a root of a mean square by a start" 1e-10 "$(awk 'BEGIN { t = 1.3; w = 2; C = t/2 + sin(2*w*t)/4/w; S = sin(w*t)^2/2/w; Q = t/2 - sin(2*w*t)/4/w; a = 0.5; b = 0.3
   printf "%.15g", (a*C + b*S)/t/sqrt((a*a*C + 2*a*b*S + b*b*Q)/t) }')" "$(d 'rms(x)' 'x(0)')"
+# |cos wt| has a corner where wt = pi/2, within a step: its mean is (2 - sin wT)/(w T), and dw/dk = w/(2 k). A corner is cut off up to 1e-8 of a part.
+corner() { "$LAGC" run "$TMP/spring.lag" go --method $1 --tol 1e-12 --until 1.3 x=1 v0=0 --gradient 'mean(abs(x))' --json >"$TMP/out.json" 2>"$TMP/err"; }
+for method in dop853 taylor; do
+  check "a mean over a corner by $method" corner $method
+  near "... its value" 1e-11 0.5709610108378983 "$(sed 's/.*"mean(abs(x))": \([0-9.]*\).*gradient.*/\1/' "$TMP/out.json")"
+  near "... by the stiffness" 1e-8 "$(awk 'BEGIN { a = 2.6; printf "%.15g", (-cos(a)/a - (2 - sin(a))/a/a)*1.3/8 }')" "$(d 'mean(abs(x))' k)"
+done
 # A ball that bounces: the first time T = sqrt(2 h/g), the second (1 + 2 e) T; an oscillator's period 2 pi sqrt(m/k). By Taylor series the gradient is
 # that of dop853, whose event is beside that of the run by rounding. The mean by the way out of its message: of x = cos wt over 1.3 s, sin wt/(w t).
 cat >"$TMP/drop.lag" <<'M'
