@@ -4,6 +4,7 @@
  * that the first guess of a frequency may be off by more than one turn over the whole record. */
 #include "analysis/fit.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -356,15 +357,17 @@ int lag_fit(Fit *f) {
     given[c] = f->column[c].per_row || f->column[c].sigma > 0;
     f->known_errors &= given[c];
     const double spread = spread_of(f, c), error = f->column[c].sigma > 0 ? f->column[c].sigma : 1;
-    if (isfinite(spread) && isfinite(spread / error * (spread / error))) continue;
+    const int small = isfinite(spread) && !isfinite(spread / error * (spread / error));
+    const int large = 1 / error / error < DBL_MIN;
+    if (isfinite(spread) && !small && !large) continue;
     snprintf(f->why, sizeof f->why, "%s of %s are too %s to be squared: check them, and their unit",
-             isfinite(spread) ? "the errors" : "the values", f->column[c].label, isfinite(spread) ? "small" : "large");
+             small || large ? "the errors" : "the values", f->column[c].label, small ? "small" : "large");
     rc = LAG_EINVAL;
   }
   if (rc == LAG_OK) begin_again(f, x, given);
   if (rc == LAG_OK && lag_fit_count_values(f, 1) < n && !f->trains) {
-    snprintf(f->why, sizeof f->why, "%d values cannot determine %d quantities; fit fewer, or give more data",
-             f->nvalues, n);
+    snprintf(f->why, sizeof f->why, "%d value%s cannot determine %d quantities; fit fewer, or give more data",
+             f->nvalues, f->nvalues == 1 ? "" : "s", n);
     rc = LAG_EINVAL;
   }
   rc = rc ? rc : make_room(f);

@@ -321,6 +321,7 @@ static void put_events(MeasureGradient *g) {
       else put_event_time(g, e, x->weight);
     }
     for (int k = 0; k < g->sums; k++) put_jump(g, e, &g->sum[k]), g->sum[k].last = NAN;
+    if (is_same(e->at, g->ended)) g->sums = 0;
     free(e->y);
   }
   g->nseen = 0;
@@ -384,8 +385,10 @@ static int walk(MeasureGradient *g, double t, double *y) {
     rc = lag_sim_ensure_step(s, t, &reach);
     put_events(g);
     if (rc == LAG_OK && g->sums) check_jumps(g, lag_sim_time(s), 1, y);
-    for (double a = lag_sim_time(s), b; rc == LAG_OK && g->sums && a != reach; a = b)
-      b = lag_measure_part(g->m, a, reach), rc = put_places(g, a, b, y);
+    for (double a = lag_sim_time(s), b, last = 0; rc == LAG_OK && g->sums && a != reach; last = b - a, a = b) {
+      b = lag_measure_smooth(g->m, a, lag_measure_part(g->m, a, reach), last);
+      rc = put_places(g, a, b, y);
+    }
     if (rc == LAG_OK) rc = lag_sim_advance(s, reach);
     if (rc == LAG_OK && g->sums) check_jumps(g, reach, 0, y);
   }

@@ -69,6 +69,7 @@ typedef struct Track {
   double least, most, when_first, when_least, when_most; /* and their times, */
   Happening least_at, most_at; /* which are those of events */
   double sum, lost;     /* the integral, and its rounding error (Kahan) */
+  double size;          /* largest value seen at places of the integral */
   double passage, latest; /* first and last upward passage of 0, */
   Happening passage_at, latest_at; /* over which an event may lead, */
   int passages;         /* and their number */
@@ -113,6 +114,10 @@ double lag_measure_at(Measures *m, int node, double t, const double *y);
 
 /* measure_run.c: the end of the part of [a, reach] in which each track is in its window, or out of it. */
 double lag_measure_part(const Measures *m, double a, double reach);
+
+/* measure_run.c: the end of a part of [a, reach], within a step, in which no mean has a corner or a jump; `last`:
+ * length of the part before, 0: none. */
+double lag_measure_smooth(Measures *m, double a, double reach, double last);
 
 /* measure_run.c: the places of a quadrature over [a, b], a part of a step: their number; place j with its weight. */
 int lag_measure_places(const Measures *m);

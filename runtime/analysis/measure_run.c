@@ -282,8 +282,39 @@ double lag_measure_place(const Measures *m, int j, double a, double b, double *w
   return a + (j / s->nodes + s->node[j % s->nodes]) * h;
 }
 
+/* Whether a track has no corner or jump in [a, b], as abs(x) has: the last two of its nine Chebyshev coefficients are
+ * 1e-8 of the largest, or rounding. So a corner is cut off up to 1e-8 of a part, as mean values' gradients need it. */
+static int is_smooth(Measures *m, Track *k, double a, double b) {
+  enum { LAST = 8 };
+  const double pi = 3.14159265358979323846, small = 1e-8, rounding = 1e-13;
+  double x[LAST + 1], largest = 0, end = 0;
+  for (int j = 0; j <= LAST; j++) {
+    take_row(m, j == 0 ? b : j == LAST ? a : a + (b - a) * (0.5 + 0.5 * cos(pi * j / LAST)));
+    x[j] = evaluate(m, k->arg);
+    k->size = fmax(k->size, fabs(x[j]));
+  }
+  for (int c = 1; c <= LAST; c++) {
+    double sum = 0;
+    for (int j = 0; j <= LAST; j++) sum += x[j] * cos(pi * j * c / LAST) * (j % LAST ? 1 : 0.5);
+    sum = fabs(sum) * 2 / LAST;
+    largest = fmax(largest, sum);
+    if (c >= LAST - 1) end = fmax(end, sum);
+  }
+  return !(end > fmax(small * largest, rounding * k->size));
+}
+
+double lag_measure_smooth(Measures *m, double a, double reach, double last) {
+  double least = fmax(fabs(m->sim->run->step_t1 - m->sim->run->step_t0) * 0x1p-33, 64 * DBL_EPSILON * fabs(reach));
+  double b = last != 0.0 && fabs(2 * last) < fabs(reach - a) ? a + 2 * last : reach;
+  for (int i = 0; i < m->ntracks && fabs(b - a) > least; i++)
+    while (m->track[i].integral && lag_track_counts(&m->track[i], a + (b - a) / 2) && fabs(b - a) > least &&
+           !is_smooth(m, &m->track[i], a, b))
+      b = a + (b - a) / 2;
+  return b;
+}
+
 /* Adds the integrals over [a, b]: compensated sums, W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723. */
-static void integrate(Measures *m, double a, double b) {
+static void integrate_part(Measures *m, double a, double b) {
   for (int j = 0, n = lag_measure_places(m); j < n; j++) {
     double weight, t = lag_measure_place(m, j, a, b, &weight);
     take_row(m, t);
@@ -295,6 +326,11 @@ static void integrate(Measures *m, double a, double b) {
       k->sum = sum;
     }
   }
+}
+
+static void integrate(Measures *m, double a, double b) {
+  for (double last = 0, to; a != b; last = to - a, a = to)
+    to = lag_measure_smooth(m, a, b, last), integrate_part(m, a, to);
 }
 
 /* ---- The run */

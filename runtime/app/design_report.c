@@ -53,6 +53,7 @@ static int take_columns(DesignRun *d) {
       rc = refuse_exact(app, label);
     f->ncolumns++;
   }
+  if (rc == 0 && f->ncolumns && (rc = lag_fit_check_names(&app->args, f)) != 0) return rc;
   if (rc == 0 && f->ncolumns == 0)
     return lag_app_error(&app->args, "no output of the scene is left to be measured; --columns takes their names");
   return rc;

@@ -169,13 +169,20 @@ static int errors_of(const DataFile *d, const char *label) {
   return 0;
 }
 
+/* Whether the first n letters are the label without its unit. */
+static int is_name_of(const char *label, const char *name, size_t n) {
+  const char *unit = strstr(label, " [");
+  return (unit ? (size_t)(unit - label) : strlen(label)) == n && strncmp(label, name, n) == 0;
+}
+
 /* Error of column c by --sigma X or --sigma NAME=X, in the column's unit; 0: not given. */
 int lag_fit_take_sigma(FitRun *r, FitColumn *c) {
   const Args *a = &r->app->args;
-  size_t n = strcspn(c->label, " ");
   for (int i = 0; i < a->nsigmas; i++) {
     const char *text = a->sigmas[i], *eq = strchr(text, '=');
-    if (eq && ((size_t)(eq - text) != n || strncmp(text, c->label, n) != 0)) continue;
+    if (eq && !is_name_of(c->label, text, (size_t)(eq - text))) continue;
+    if (strchr(eq ? eq + 1 : text, '['))
+      return lag_app_error(a, "--sigma %s: write the number alone; its unit is that of the column, %s", text, c->label);
     if (!lag_args_number(a, "--sigma", eq ? eq + 1 : text, "--sigma 0.01, or --sigma th=0.5", &c->sigma))
       return EXIT_USAGE;
     if (!(c->sigma > 0)) return lag_app_error(a, "--sigma %s: the error of a value is positive", text);
@@ -207,13 +214,54 @@ static int copy_column(FitRun *r, int c, int of) {
 
 /* Whether --columns names the column, or is not given. */
 int lag_fit_is_asked(const Args *a, const char *label) {
-  const char *list = a->columns, *unit = strstr(label, " [");
-  size_t length = unit ? (size_t)(unit - label) : strlen(label);
+  const char *list = a->columns;
   if (!list) return 1;
   while (*list) {
     size_t n = strcspn(list, ",");
-    if (n == length && memcmp(list, label, n) == 0) return 1;
+    if (is_name_of(label, list, n)) return 1;
     list += n + (list[n] == ',');
+  }
+  return 0;
+}
+
+/* Whether one of the columns has the name. */
+static int is_column(const Fit *f, const char *name, size_t n) {
+  for (int c = 0; c < f->ncolumns; c++)
+    if (is_name_of(f->column[c].label, name, n)) return 1;
+  return 0;
+}
+
+int lag_fit_check_names(const Args *a, const Fit *f) {
+  for (const char *list = a->columns; list && *list;) {
+    size_t n = strcspn(list, ",");
+    if (n && !is_column(f, list, n))
+      return lag_app_error(a, "--columns %s: \"%.*s\" is none of the columns; they are named without units",
+                           a->columns, (int)n, list);
+    list += n + (list[n] == ',');
+  }
+  for (int i = 0; i < a->nsigmas; i++) {
+    const char *eq = strchr(a->sigmas[i], '=');
+    if (eq && !is_column(f, a->sigmas[i], (size_t)(eq - a->sigmas[i])))
+      return lag_app_error(a,
+                           "--sigma %s: \"%.*s\" is none of the columns, the first of which is \"%s\"; they are named "
+                           "without units",
+                           a->sigmas[i], (int)(eq - a->sigmas[i]), a->sigmas[i], f->column[0].label);
+  }
+  return 0;
+}
+
+/* Refuses errors that belong to no column. */
+static int check_errors(const FitRun *r, int of) {
+  const DataFile *d = &r->data[of];
+  for (int k = 1; k < d->file.ncols; k++) {
+    int j = 1;
+    if (strncmp(d->file.names[k], "sigma(", 6) != 0) continue;
+    while (j < d->file.ncols && errors_of(d, d->file.names[j]) != k) j++;
+    if (j == d->file.ncols)
+      return lag_app_error(&r->app->args,
+                           "%s: \"%s\" are the errors of no column here: those of \"th [deg]\" are called "
+                           "\"sigma(th) [deg]\"",
+                           r->file[of], d->file.names[k]);
   }
   return 0;
 }
@@ -231,9 +279,13 @@ static int take_columns(FitRun *r) {
     int output = lag_fit_is_asked(a, d->file.names[k]) ? output_named(r, d->file.names[k]) : -1;
     if (output >= 0) f->column[f->ncolumns++] = (FitColumn){.label = d->file.names[k], .output = output};
   }
+  for (int of = 0; of < r->nfiles; of++)
+    if (check_errors(r, of)) return EXIT_USAGE;
+  if (lag_fit_check_names(a, f)) return EXIT_USAGE;
   if (f->ncolumns == 0)
-    return lag_app_error(a, "%s: no column besides the time is an output here; `lagc fit` makes them outputs",
-                         r->file[0]);
+    return lag_app_error(a, d->file.ncols == 1 ? "%s: there is no column besides the time"
+                                               : "%s: no column besides the time is an output here; `lagc fit` makes "
+                                                 "them outputs", r->file[0]);
   size_t many = (size_t)f->nrows * (size_t)f->ncolumns;
   f->data = calloc(many, sizeof *f->data);
   f->errors = calloc(many, sizeof *f->errors);

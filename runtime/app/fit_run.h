@@ -26,6 +26,8 @@ void lag_fit_run_free(FitRun *r);
 int lag_fit_take_targets(FitRun *r);
 int lag_fit_take_sigma(FitRun *r, FitColumn *c);
 int lag_fit_is_asked(const Args *a, const char *label);
+/* ... 0, or an exit status after a message: --sigma and --columns name columns. */
+int lag_fit_check_names(const Args *a, const Fit *f);
 /* fit_compare.c: fits several scenes. Returns the exit status. */
 int lag_fit_compare(App *app);
 

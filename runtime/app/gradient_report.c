@@ -66,7 +66,8 @@ static void put_list(App *app, FILE *f, int k, const double *d) {
   char label[LAG_GRADIENT_NAME + 60];
   const char *of = bare(lag_measures_unit(app->measures, k));
   lag_unit_in_fraction(over, sizeof over, of);
-  fprintf(f, "gradient of %s, by reverse mode\n", app->measure_names[k]);
+  fprintf(f, "gradient of %s, by reverse mode%s\n", app->measure_names[k],
+          has_derivatives(app) ? "" : " of a run by dop853");
   for (int i = 0; i < app->sim->pb.n + app->scene->model->np; i++) {
     lag_gradient_name(app, i, name, unit);
     lag_unit_in_fraction(under, sizeof under, unit);

@@ -218,8 +218,21 @@ void lag_report_sensitivity(App *app, FILE *f) {
   report_measures(app, f);
 }
 
+/* Key of a measure: "measure x" where an output is called x. */
+static const char *measure_key(const App *app, int i, char *key, size_t size) {
+  char name[64];
+  int is_output = 0;
+  for (int k = 0; k < app->sensitivity->nout; k++) {
+    lag_sim_output_info(app->sim, k, name, sizeof name, NULL, 0);
+    is_output |= strcmp(name, app->measure_names[i]) == 0;
+  }
+  snprintf(key, size, "%s%s", is_output ? "measure " : "", app->measure_names[i]);
+  return key;
+}
+
 void lag_report_sensitivity_json(App *app, Json *out) {
   const Sensitivity *s = app->sensitivity;
+  char key[300];
   if (!known_at_end(app)) return;
   lag_json_begin(out, "sensitivity", '{');
   for (int i = 0; i < s->nout; i++) {
@@ -232,7 +245,7 @@ void lag_report_sensitivity_json(App *app, Json *out) {
   double *D;
   int *by_runs, n = derive_measures(app, &D, &by_runs);
   for (int i = 0; i < n; i++) {
-    lag_json_begin(out, app->measure_names[i], '{');
+    lag_json_begin(out, measure_key(app, i, key, sizeof key), '{');
     for (int j = 0; j < s->n; j++) lag_json_number(out, s->names[j], D[i * s->n + j]);
     lag_json_end(out, '}');
   }

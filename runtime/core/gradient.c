@@ -244,10 +244,11 @@ static void add(int n, const double *from, double *to) {
   for (int i = 0; i < n; i++) to[i] += from[i];
 }
 
-/* Adds the weights at time t to x: up to rounding at the end of a step, exactly at a place within one. */
+/* Adds the weights at time t to x: up to rounding at the end of a step or of the run, which an event may have moved by
+ * one number, exactly at a place within a step. */
 static void add_weights(Sweep *w, double t, int within, double *x) {
   int n = w->s->pb.n;
-  double rounding = within ? 0 : 4 * DBL_EPSILON * fabs(t);
+  double rounding = within && t != w->end ? 0 : 4 * DBL_EPSILON * fabs(t);
   for (; w->rows > 0 && fabs(w->t[w->rows - 1] - t) <= rounding; w->rows--)
     add(n, w->weight + (size_t)(w->rows - 1) * (size_t)n, x);
 }
@@ -415,7 +416,10 @@ static int sweep(Sweep *w) {
   if (rc == LAG_OK && s->record->nunits > 1) rc = back_over_marks(w);
   for (; rc == LAG_OK && w->rows > 0 && w->t[w->rows - 1] == s->scene->t0; w->rows--)
     add(n, w->weight + (size_t)(w->rows - 1) * (size_t)n, w->x);
-  return rc;
+  return rc || w->rows == 0 ? rc
+                            : lag_fail(s, LAG_EMETHOD,
+                                       "the weights of a gradient at t = %s s lie at no step of the run",
+                                       LAG_TEXT(w->t[w->rows - 1]));
 }
 
 /* Of the start by starts and parameters, and of parameters by one another. */

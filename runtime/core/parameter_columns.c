@@ -207,6 +207,8 @@ static int find_target(lag_sim *s, const char *name, Target *of) {
   char bare[128], near[64];
   const lag_model *m = s->scene->model;
   of->kind = lag_find_name(m, bare_name(name, bare, sizeof bare), &of->index, &var);
+  if (of->kind == LAG_IS_P && strcmp(bare, name) != 0)
+    return lag_fail(s, LAG_EINVAL, "%s: %s is a parameter, the same at all times; leave (0) out", name, bare);
   if (of->kind == LAG_IS_U)
     return lag_fail(s, LAG_EINVAL, "%s is an input; name the parameters of its formula, or make it a parameter", bare);
   if (of->kind == LAG_IS_NOTHING && lag_family_member(m, bare, 0, near, sizeof near))

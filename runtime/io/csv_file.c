@@ -48,14 +48,15 @@ static int read_text(CsvFile *f) {
   return 0;
 }
 
-/* The next line that is not blank, without its end: LF, CR or both. NULL: none. */
+/* The next line that is not blank and no comment, `# ...`, without its end: LF, CR or both. NULL: none. */
 static char *next_line(CsvFile *f) {
   while (*f->at) {
     char *line = f->at, *end = line + strcspn(line, "\r\n");
     f->at = end + (*end != '\0') + (end[0] == '\r' && end[1] == '\n');
     *end = '\0';
     f->line++;
-    if (line[strspn(line, " \t")]) return line;
+    const char first = line[strspn(line, " \t")];
+    if (first && first != '#') return line;
   }
   return NULL;
 }

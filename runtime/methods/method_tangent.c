@@ -143,9 +143,9 @@ int lag_tangent_implicit(lag_implicit_rk of, lag_step_taken step, int k, double 
   return LAG_OK;
 }
 
-/* Scratch: y of a stage, two matrices, and one matrix per stage; f of the stages is not needed. */
+/* Scratch, with one column more, the probe: y of a stage, two matrices, one matrix per stage, and Y. */
 size_t lag_tangent_along_size(const lag_problem *pb, int k) {
-  return lag_tangent_size(pb, lag_dop853_tableau.stages, k);
+  return lag_tangent_size(pb, lag_dop853_tableau.stages, k + 1);
 }
 
 /* Size below which entry i of Y is rounding: in a column by a parameter a part of the component's size over the
@@ -158,49 +158,79 @@ static double rounding_size(const lag_tangent *w, int i, double tol) {
   return 0;
 }
 
-/* sum (e_i / s_i)^2 of an error estimate, s_i = |Y_i| + |dt| mean |F_i| over the stages, and at least that size. */
-static double square(const lag_tangent *w, int stages, const double *e, const double *Y, const double *F, double dt,
+/* Sum of (e_i / s_i)^2 over an error estimate of the probe, or of the other columns; s_i = |Y_i| + |dt| mean |F_i| over
+ * the stages, and at least rounding. */
+static double square(const lag_tangent *w, int of_probe, const double *e, const double *Y, const double *F, double dt,
                      double tol) {
   double sum = 0;
-  int m = w->pb->n * w->k;
+  int k = w->k, m = w->pb->n * k, stages = lag_dop853_tableau.stages - 1;
   for (int i = 0; i < m; i++) {
     double gain = 0;
+    if ((i % k == k - 1) != of_probe || e[i] == 0.0) continue;
     for (int j = 0; j < stages; j++) gain += fabs(F[j * m + i]) / stages;
-    double x = e[i] != 0.0 ? e[i] / fmax(fabs(Y[i]) + fabs(dt) * gain, rounding_size(w, i, tol)) : 0;
+    double x = e[i] / fmax(fabs(Y[i]) + fabs(dt) * gain, rounding_size(w, i, tol));
     sum += x * x;
   }
   return sum;
+}
+
+/* Error of a part h over what is allowed: the larger of the probe's, held 512 times smaller, down to rounding, and the
+ * other columns'. So the probe alone decides, as a rule: parts do not depend on Y, and the derivative is linear in Y.
+ * NaN: not finite. */
+static double part_error(const lag_tangent *w, double h, double dt, double tol, const double *Y, const double *F,
+                         double *error) {
+  const double held = tol / fmax(tol / 512, 1e-15);
+  const int stages = lag_dop853_tableau.stages - 1;
+  double squares[2][2], err = 0;
+  int m = w->pb->n * w->k;
+  for (int r = 0; r < 2; r++) {
+    combine(m, stages, lag_dop853_tableau.errors[r], 1, NULL, F, error);
+    for (int of = 0; of < 2; of++) squares[of][r] = square(w, of, error, Y, F, dt, tol);
+  }
+  for (int of = 0; of < 2; of++) {
+    double both = squares[of][0] + 0.01 * squares[of][1], count = w->pb->n * (of ? 1 : w->k - 1);
+    double e = both > 0 || isnan(both) ? fabs(h) * squares[of][0] / sqrt(count * both) / tol : 0;
+    if (!isfinite(e)) return NAN;
+    err = fmax(err, of ? held * e : e);
+  }
+  return err;
+}
+
+/* Block of the columns Y[n * k] with the probe behind them, a fixed vector. */
+static void with_probe(int n, int k, const double *Y, double *block) {
+  for (int i = 0; i < n; i++) {
+    lag_copy(k, Y + i * k, block + i * (k + 1));
+    block[i * (k + 1) + k] = (i % 2 ? -1.0 : 1.0) / (1 + i % 5);
+  }
 }
 
 int lag_tangent_along(lag_tangent_path *path, void *work, lag_step_taken step, int k, double *Y, double *scratch) {
   const lag_tableau *tab = &lag_dop853_tableau;
   lag_problem *pb = step.pb;
   const double tol = fmax(pb->tol, 1e-14), safety = 0.9, shrink_most = 0.2, grow_most = 6, least = 1e-6;
-  int n = pb->n, m = n * k, stages = tab->stages - 1, rc;
+  int n = pb->n, m = n * (k + 1), stages = tab->stages - 1, rc;
   double *rest;
-  lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
-  double *y = rest, *Ys = y + n, *error = Ys + m, *F = error + m;
+  lag_tangent w = lag_tangent_layout(pb, k + 1, scratch, &rest);
+  double *y = rest, *Ys = y + n, *error = Ys + m, *F = error + m, *X = F + stages * m;
+  with_probe(n, k, Y, X);
   for (double done = 0, part = 1; done < 1;) {
     part = fmin(part, 1 - done);
     double h = part * step.dt, t = step.t0 + done * step.dt;
     for (int s = 0; s < stages; s++) {
-      combine(m, s, tab->a[s], h, Y, F, Ys);
+      combine(m, s, tab->a[s], h, X, F, Ys);
       path(work, pb, t + tab->c[s] * h, y);
       if ((rc = lag_tangent_at(&w, t + tab->c[s] * h, y, NULL)) != 0) return rc;
       lag_tangent_times(&w, Ys, F + s * m);
     }
-    combine(m, stages, tab->errors[0], 1, NULL, F, error);
-    double fine = square(&w, stages, error, Y, F, step.dt, tol);
-    combine(m, stages, tab->errors[1], 1, NULL, F, error);
-    double both = fine + 0.01 * square(&w, stages, error, Y, F, step.dt, tol),
-           err = both > 0 ? fabs(h) * fine / sqrt(m * both) / tol : 0;
+    double err = part_error(&w, h, step.dt, tol, X, F, error);
     if (!isfinite(err)) return lag_step_failed(pb, LAG_ENAN, t);
     if (err <= 1 || part < least) {
-      combine(m, stages, tab->a[stages], h, Y, F, Ys);
-      memcpy(Y, Ys, (size_t)m * sizeof *Y);
+      combine(m, stages, tab->a[stages], h, X, F, Ys);
+      memcpy(X, Ys, (size_t)m * sizeof *X);
       done = part >= 1 - done ? 1 : done + part;
     }
     part *= fmin(grow_most, fmax(shrink_most, err > 0 ? safety * pow(err, -1.0 / 8) : grow_most));
   }
+  for (int i = 0; i < n; i++) lag_copy(k, X + i * (k + 1), Y + i * k);
   return LAG_OK;
 }

@@ -399,10 +399,19 @@ const char *data_head(Arena *a, const char *path, const char **why) {
   FILE *f = source_open(path, why);
   if (!f && strchr(path, ',')) f = source_open(arena_strndup(a, path, strcspn(path, ",")), why); /* of several */
   if (!f) return NULL;
-  char *line = arena_alloc(a, LONGEST), *at = fgets(line, LONGEST, f);
+  char *line = arena_alloc(a, LONGEST), *at;
+  do at = fgets(line, LONGEST, f); /* comments and blank lines do not count */
+  while (at && (line[strspn(line, " \t")] == '#' || !line[strspn(line, " \t\r\n")]));
   fclose(f);
   if (!at) *why = "the file is empty";
   return at;
+}
+
+/* Whether a comma has cut a name in two: it has more `(` than `)`. */
+static int is_cut_in_parentheses(const char *label) {
+  int open = 0;
+  for (; *label; label++) open += *label == '(' ? 1 : *label == ')' ? -1 : 0;
+  return open > 0;
 }
 
 /* Columns of --data, by the first line of the file. */
@@ -414,10 +423,18 @@ static int prepare_columns(RequestBuilder *k, const char **error) {
   if (!at) return fail_with(error, arena_printf(k->arena, "--data %s cannot be read: %s", path, why));
   if (strncmp(at, "\xEF\xBB\xBF", 3) == 0) at += 3;
   for (int column = 0, ok = 1;; column++) {
+    const char *field = at, *separator;
     at += csv_field(k->arena, at, &label);
-    if (column == 0 && *at != ',' && strpbrk(label, ";\t"))
+    separator = strpbrk(field, ";\t");
+    if (column == 0 && *at != ',' && separator && separator < at)
       return fail_with(error, arena_printf(k->arena, "--data %s: the names in the first line, `%s`, have no commas "
                                                      "between them; CSV with commas is read", path, label));
+    if (!*label)
+      return fail_with(error, arena_printf(k->arena, "--data %s: column %d has no name; write one with its unit, or "
+                                                     "take the column and its comma away", path, column + 1));
+    if (is_cut_in_parentheses(label))
+      return fail_with(error, arena_printf(k->arena, "--data %s: the name `%s` ends within parentheses; a name with a "
+                                                     "comma stands in quotes: \"hypot(x, y) [m]\"", path, label));
     int is_time = column == 0 && strncmp(label, "t [", 3) == 0 && strcmp(label, "t [s]") != 0;
     /* the simulator refuses a first line without names */
     if ((column || is_time) && !text_is_number(label)) ok = add_column(k, label, is_time);

@@ -264,7 +264,7 @@ bad "before the scene" 'bad.csv:2: t = -1 s lies before the scene' 't [s],x [m]\
 bad "values beyond squares" 'values of x \[m\] are too large to be squared' 't [s],x [m]\n0,1e300\n1,1e300\n'
 unit() { printf 't [s],x [kg]\n0,1\n' >"$TMP/bad.csv"; refused 1 "units do not match: \`x\` is in \[m\], \`1 \[kg\]\` in \[kg\]" --data "$TMP/bad.csv" --fit k; }
 check "another unit" unit
-few() { printf 't [s],x [m]\n1,0.1\n' >"$TMP/bad.csv"; refused 2 "1 values cannot determine 2 quantities" --data "$TMP/bad.csv" --fit k,c; }
+few() { printf 't [s],x [m]\n1,0.1\n' >"$TMP/bad.csv"; refused 2 "1 value cannot determine 2 quantities" --data "$TMP/bad.csv" --fit k,c; }
 check "too few values" few
 check "an unknown name" refused 2 "kk: no such parameter or coordinate in model damped; did you mean k?" --data "$M/damped.csv" --fit kk
 check "a loss that there is not" refused 2 "write --loss squares|huber" --data "$M/damped.csv" --fit k --loss hubert
@@ -273,6 +273,17 @@ twice() { printf 't [s],x [m],x [m]\n1,0.1,0.1\n' >"$TMP/bad.csv"; refused 2 'tw
 check "a column that stands twice" twice
 semicolons() { printf 't [s];x [m]\n1;0.1\n' >"$TMP/bad.csv"; refused 2 "have no commas between them" --data "$TMP/bad.csv" --fit k; }
 check "semicolons" semicolons
+bad "tabs" 'have no commas between them' 't [s]\tx [m]\n1\t0.1\n'
+bad "a column without a name" 'column 3 has no name' 't [s],x [m],\n1,0.1,\n'
+bad "a comma within a name" 'the name `hypot(x` ends within parentheses' 't [s],hypot(x, 1 [m]) [m]\n1,0.1\n'
+bad "errors in another unit" '"sigma(x) \[cm\]" are the errors of no column here' 't [s],x [m],sigma(x) [cm]\n1,0.1,1\n2,0.1,1\n'
+bad "no column but the time" 'there is no column besides the time' 't [s]\n1\n'
+check "an error of no column" refused 2 '"foo" is none of the columns, the first of which is "x \[m\]"' --data "$M/damped.csv" --fit k --sigma foo=1
+check "... with a unit" refused 2 'write the number alone; its unit is that of the column, x \[m\]' --data "$M/damped.csv" --fit k --sigma '1[cm]'
+check "... too large" refused 2 "the errors of x \[m\] are too large to be squared" --data "$M/damped.csv" --fit k --sigma 1e300
+check "columns that there are not" refused 2 '"foo" is none of the columns' --data "$M/damped.csv" --fit k --columns x,foo
+comments() { { printf '# a record\n\n'; sed '3i # a remark' "$M/damped.csv"; } >"$TMP/remarks.csv"; for f in "$M/damped.csv" "$TMP/remarks.csv"; do "$LAGC" fit "$M/damped.lag" --data "$f" --fit k || return 1; done | sort | uniq -u >"$TMP/uniq"; [ ! -s "$TMP/uniq" ]; }
+check "comments and blank lines do not count" comments
 late() { printf 't [s],x [m]\n20000,0.1\n20001,0.1\n' >"$TMP/bad.csv"; timeout 20 "$LAGC" fit "$M/damped.lag" --data "$TMP/bad.csv" --fit k 2>&1 | grep -q 'begins 20000 s after the scene'; }
 check "a record far behind the begin" late
 check "no data" refused 2 "needs the record and what to find" --fit k
