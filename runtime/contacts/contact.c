@@ -95,8 +95,8 @@ static int make_room(ContactSet *w) {
   const lag_part parts[] = {{&w->gap, p}, {&w->rate, p}, {&w->gap_size, p}, {&w->rate_size, p}, {&w->g, n},
       {&w->c, n}, {&w->r, n}, {&w->d, nq}, {&w->force, nq}, {&w->test, (size_t)w->sim->pb.n},
       {&w->events, (size_t)(m->nev + m->nmodes)}, {&w->ahead, p}, {&w->A, (size_t)of->njacobian},
-      {&w->mass, (size_t)of->nmass}, {&w->law, 3 * p + 4 * (size_t)m->nguides}, {&w->side, p}, {&w->way, 2 * p}, {&w->push, p},
-      {&w->pressed, 3 * (size_t)m->nguides * (p + 1)}, {&w->pivot, apart}, {&w->diagonal, apart},
+      {&w->mass, (size_t)of->nmass}, {&w->law, 3 * p + 4 * (size_t)m->nguides}, {&w->side, p}, {&w->way, 2 * p},
+      {&w->push, p}, {&w->pressed, 3 * (size_t)m->nguides * (p + 1)}, {&w->pivot, apart}, {&w->diagonal, apart},
       {&w->lu, apart ? (size_t)lag_band_matrix_size(m->nq, w->band) : 0}};
   w->block = lag_workspace(sizeof parts / sizeof *parts, parts);
   w->row = calloc(n + 2 + (size_t)of->njacobian, sizeof *w->row);
@@ -109,7 +109,8 @@ static int make_room(ContactSet *w) {
   w->was_closed = w->closed + p;
   w->follows = w->was_closed + p;
   w->state = w->follows + p;
-  if (!w->block || !w->row || !w->of || !w->at || !w->island || !w->active) return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  if (!w->block || !w->row || !w->of || !w->at || !w->island || !w->active)
+    return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
   lag_contacts_list_entries(w);
   return LAG_OK;
 }

@@ -88,10 +88,10 @@ int lag_contacts_at_rest(ContactSet *w, double *acceleration);
 /* contact_response.c. rate_change: of contact i by a change d of velocities; A: entries of the Jacobian;
  * change_of_rate: of w. band: half bandwidth of M, -1: constraints hold besides the contacts. list_entries: sorts
  * those of the Jacobian by rows. factor_mass: w->band := -1 where M is singular. find_islands: of those that take part:
- * contacts that share bodies, or whose bodies share inertia, are of one; all are where w->band < 0. free_response: lag_contacts_response
- * where w->band >= 0. keep_constraints: whether a change d of velocities, d M d = square, keeps the constraints that
- * always hold: it does not where they imply the row that d moves, and the solver has left out one of theirs. Rates
- * are measured by those of free coordinates. */
+ * contacts that share bodies, or whose bodies share inertia, are of one; all are where w->band < 0. free_response:
+ * lag_contacts_response where w->band >= 0. keep_constraints: whether a change d of velocities, d M d = square, keeps
+ * the constraints that always hold: it does not where they imply the row that d moves, and the solver has left out one
+ * of theirs. Rates are measured by those of free coordinates. */
 double lag_contacts_rate_change(const lag_model *m, const double *A, int i, const double *d);
 double lag_contacts_change_of_rate(const ContactSet *w, int i, const double *d);
 int lag_contacts_band(const lag_model *m);
