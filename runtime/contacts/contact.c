@@ -96,23 +96,27 @@ static int make_room(ContactSet *w) {
       {&w->c, n}, {&w->r, n}, {&w->d, nq}, {&w->force, nq}, {&w->test, (size_t)w->sim->pb.n},
       {&w->events, (size_t)(m->nev + m->nmodes)}, {&w->ahead, p}, {&w->A, (size_t)of->njacobian},
       {&w->mass, (size_t)of->nmass}, {&w->law, 3 * p + 4 * (size_t)m->nguides}, {&w->side, p}, {&w->way, 2 * p},
-      {&w->pressed, 3 * (size_t)m->nguides * (p + 1)}, {&w->pivot, apart}, {&w->diagonal, apart},
+      {&w->push, p}, {&w->pressed, 3 * (size_t)m->nguides * (p + 1)}, {&w->pivot, apart}, {&w->diagonal, apart},
       {&w->lu, apart ? (size_t)lag_band_matrix_size(m->nq, w->band) : 0}};
   w->block = lag_workspace(sizeof parts / sizeof *parts, parts);
   w->row = calloc(n + 2 + (size_t)of->njacobian, sizeof *w->row);
   w->of = calloc(p, sizeof *w->of);
   w->at = calloc(p, sizeof *w->at);
-  w->active = calloc(4 * p, 1);
+  w->island = calloc(p + nq, sizeof *w->island);
+  w->body = w->island + p;
+  w->active = calloc(5 * p, 1);
   w->closed = w->active + p;
   w->was_closed = w->closed + p;
   w->follows = w->was_closed + p;
-  if (!w->block || !w->row || !w->of || !w->at || !w->active) return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  w->state = w->follows + p;
+  if (!w->block || !w->row || !w->of || !w->at || !w->island || !w->active)
+    return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
   lag_contacts_list_entries(w);
   return LAG_OK;
 }
 
 static void free_contacts(ContactSet *w) {
-  lag_free_all(w->block, w->row, w->of, w->at, w->active, w->response);
+  lag_free_all(w->block, w->row, w->of, w->at, w->island, w->active, w->response);
 }
 
 int lag_contacts_rates(ContactSet *w, const double *y, double *rate) {
@@ -204,7 +208,7 @@ static double restitution(ContactSet *w, int i) {
   return fabs(now - e) > fmax(same, roundings * typical / -w->rate[i]) ? now : e;
 }
 
-/* Computes W for the contacts of[n]. */
+/* Computes W for the contacts of[n], which is 0 between islands. */
 static int find_responses(ContactSet *w) {
   size_t n = (size_t)w->rows;
   double *x = w->response = calloc(2 * n * n + 3 * n + 1, sizeof *x);
@@ -213,16 +217,19 @@ static int find_responses(ContactSet *w) {
   w->rhs = w->lcp + n * n;
   w->impulse = w->rhs + n;
   w->scale = w->impulse + n;
+  lag_contacts_find_islands(w);
   for (int a = 0; a < w->rows; a++) {
     double to = lag_contacts_response(w, w->of[a]);
     if (!isfinite(to)) return lag_contacts_no_values(w, w->of[a]);
     for (int b = 0; b < w->rows; b++)
-      w->response[b * w->rows + a] = to * lag_contacts_change_of_rate(w, w->of[b], w->d);
+      if (w->island[a] == w->island[b])
+        w->response[b * w->rows + a] = to * lag_contacts_change_of_rate(w, w->of[b], w->d);
     w->response[a * w->rows + a] = to;
   }
-  for (int k = 0; k < w->rows * w->rows; k++) /* what constraints imply, others do not move either */
-    if (!(w->response[k / w->rows * (w->rows + 1)] > 0 && w->response[k % w->rows * (w->rows + 1)] > 0))
-      w->response[k] = 0;
+  for (int a = 0; a < w->rows; a++) { /* what constraints imply, others do not move either */
+    int moves = w->response[a * (w->rows + 1)] > 0;
+    for (int b = 0; b < w->rows && !moves; b++) w->response[a * w->rows + b] = w->response[b * w->rows + a] = 0;
+  }
   return LAG_OK;
 }
 

@@ -30,27 +30,50 @@ static int fail_incompatible(ContactSet *w, int a) {
                   w->sim->run->t, lag_contacts_name(w, a < 0 ? 0 : a));
 }
 
-/* Solves the complementarity problem of the contacts that take part: in[n]; push[n] := impulses where in[n]. */
-static int complement(ContactSet *w, const double *q) {
+enum { WAITS = 2 }; /* in follows[n]: its island is still to be solved */
+
+/* |q| of contact a, in units of its own response. */
+static double scaled(const ContactSet *w, const double *q, int a) {
+  double own = w->response[a * w->n + a];
+  return fabs(q[a]) * (own > 0 ? 1 / sqrt(own) : 1);
+}
+
+/* Solves the problem of the island of contact a. most: the largest scaled q of all, whose rounding counts. */
+static int complement_island(ContactSet *w, const double *q, int a, double most) {
   int m = 0, n = w->n;
-  for (int a = 0; a < n; a++)
-    if (w->active[a]) {
-      w->at[m] = a;
-      w->impulse[m++] = q[a];
-    }
+  double own = 0;
+  for (int b = a; b < n; b++) {
+    if (w->follows[b] != WAITS || w->island[b] != w->island[a]) continue;
+    w->at[m] = b;
+    w->impulse[m++] = q[b];
+    own = fmax(own, scaled(w, q, b));
+  }
   for (int k = 0; k < m * m; k++) w->lcp[k] = w->response[w->at[k / m] * n + w->at[k % m]];
-  lag_complementarity p = lag_contact_complementarity(m, w->lcp, w->impulse, w->scale, w->closed);
+  lag_complementarity p = lag_contact_complementarity(m, w->lcp, w->impulse, w->scale, w->state);
+  if (own > 0) p.rounding *= most / own;
   int status = lag_solve_complementarity(&p);
-  for (int k = n - 1; k >= m; k--) w->closed[k] = w->follows[k] = 0;
-  for (int k = m - 1; k >= 0; k--) { /* back to their places, which are not lower */
-    double push = w->impulse[k];
-    unsigned char in = w->closed[k] == LAG_BETWEEN, follows = !in && w->lcp[k * m + k] <= p.zero;
-    w->impulse[k] = w->closed[k] = w->follows[k] = 0;
-    w->impulse[w->at[k]] = push;
-    w->closed[w->at[k]] = in;
-    w->follows[w->at[k]] = follows;
+  for (int k = 0; k < m; k++) {
+    int b = w->at[k];
+    w->push[b] = w->impulse[k];
+    w->closed[b] = w->state[k] == LAG_BETWEEN;
+    w->follows[b] = !w->closed[b] && w->lcp[k * m + k] <= p.zero;
   }
   return status == LAG_SOLVED ? LAG_OK : fail_incompatible(w, status == LAG_NO_SOLUTION ? w->at[p.row] : -1);
+}
+
+/* Solves the complementarity problem of the contacts that take part: in[n]; push[n] := impulses where in[n]. */
+static int complement(ContactSet *w, const double *q) {
+  int rc = LAG_OK;
+  double most = 0;
+  for (int a = 0; a < w->n; a++) {
+    w->push[a] = w->closed[a] = 0;
+    w->follows[a] = w->active[a] ? WAITS : 0;
+    if (w->active[a]) most = fmax(most, scaled(w, q, a));
+  }
+  for (int a = 0; a < w->n && rc == LAG_OK; a++)
+    if (w->follows[a] == WAITS) rc = complement_island(w, q, a, most);
+  memcpy(w->impulse, w->push, (size_t)w->n * sizeof *w->push);
+  return rc;
 }
 
 int lag_contacts_impact(ContactSet *w, const double *e, const unsigned char *struck) {
@@ -79,6 +102,7 @@ int lag_contacts_impact(ContactSet *w, const double *e, const unsigned char *str
 static int is_apart(const ContactSet *w, const unsigned char *group, int b) {
   const double *W = w->response, own = W[b * w->n + b];
   for (int a = 0; a < w->n; a++) {
+    if (w->island[a] != w->island[b]) continue;
     double both = W[a * w->n + b] * W[b * w->n + a], square = DBL_EPSILON * DBL_EPSILON * own * W[a * w->n + a];
     if (group[a] && !(own > 0 && W[a * w->n + a] > 0 && fabs(both) <= square)) return 0;
   }
@@ -123,7 +147,8 @@ int lag_contacts_at_rest(ContactSet *w, double *acceleration) {
   rc = rc ? rc : complement(w, w->rhs);
   for (int a = 0; a < n && rc == 0; a++) {
     acceleration[a] = w->rhs[a];
-    for (int b = 0; b < n; b++) acceleration[a] += w->closed[b] ? w->response[a * n + b] * w->impulse[b] : 0;
+    for (int b = 0; b < n; b++)
+      if (w->closed[b] && w->island[a] == w->island[b]) acceleration[a] += w->response[a * n + b] * w->impulse[b];
     more |= w->follows[a];
     w->follows[a] |= w->closed[a];
   }

@@ -398,9 +398,11 @@ static int fail_paradox(ContactSet *w, const lag_touch *of, int n, int motions) 
   double least = HUGE_VAL;
   for (int k = 0; k < n; k++) { /* the contact that comes closest to jamming */
     int a = of[k].contact, t = of[k].guide ? a : w->at[a];
-    double limit = t < 0         ? HUGE_VAL
+    double by = t < 0 ? 0 : w->response[a * w->rows + t];
+    int relieves = t < 0 || (!of[k].guide && !of[k].second && of[k].slip * by < 0);
+    double limit = relieves      ? HUGE_VAL
                    : of[k].guide ? 1 / lag_guide_gain(w, a)
-                                 : w->response[a * w->rows + a] / fabs(w->response[a * w->rows + t]);
+                                 : w->response[a * w->rows + a] / fabs(by);
     if (limit >= least) continue;
     least = limit;
     worst = k;

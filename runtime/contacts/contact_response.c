@@ -49,13 +49,43 @@ void lag_contacts_factor_mass(ContactSet *w) {
   if (w->band >= 0 && lag_band_matrix_factor(&M, w->diagonal)) w->band = -1;
 }
 
+static int body_of(int *body, int j) {
+  while (body[j] != j) j = body[j] = body[body[j]];
+  return j;
+}
+
+static void join(int *body, int i, int j) { body[body_of(body, i)] = body_of(body, j); }
+
+void lag_contacts_find_islands(ContactSet *w) {
+  const lag_model *m = w->sim->scene->model;
+  const lag_constraints *of = m->constraints;
+  for (int j = 0; j < m->nq; j++) w->body[j] = j;
+  for (int e = 0; e < of->nmass && w->band > 0; e++)
+    if (w->mass[e] != 0) join(w->body, of->mass[e].row, of->mass[e].col);
+  for (int pass = 0; pass < 2; pass++)
+    for (int a = 0; a < w->rows; a++) {
+      const int *row = w->row + m->contacts[w->of[a]].constraint;
+      int first = -1;
+      for (int k = row[0]; k < row[1] && w->band >= 0; k++) {
+        int col = of->jacobian[w->entry[k]].col;
+        if (w->A[w->entry[k]] == 0) continue;
+        if (first >= 0) join(w->body, first, col);
+        first = col;
+      }
+      w->island[a] = first < 0 ? -1 : body_of(w->body, first);
+    }
+}
+
 double lag_contacts_free_response(ContactSet *w, int i) {
   const lag_model *m = w->sim->scene->model;
   const int *row = w->row + m->contacts[i].constraint;
   const lag_band_matrix M = {m->nq, w->band, w->lu, w->pivot};
   memset(w->d, 0, (size_t)m->nq * sizeof *w->d);
-  for (int k = row[0]; k < row[1]; k++) w->d[m->constraints->jacobian[w->entry[k]].col] += w->A[w->entry[k]];
-  lag_band_matrix_solve(&M, w->d);
+  for (int k = row[0]; k < row[1]; k++) {
+    int col = m->constraints->jacobian[w->entry[k]].col;
+    w->d[col] += w->A[w->entry[k]] / (w->band ? 1 : *lag_band_matrix_at(&M, col, col));
+  }
+  if (w->band) lag_band_matrix_solve(&M, w->d);
   double to = lag_contacts_change_of_rate(w, i, w->d);
   for (int j = 0; j < m->nq; j++) w->d[j] = to > 0 ? w->d[j] / to : 0;
   return to > 0 || isnan(to) ? to : 0;

@@ -21,9 +21,11 @@ typedef struct ContactSet {
   /* [n n], [n] matrix and scales of the complementarity problem, whose row k is contact at[k] */
   double *lcp, *scale;
   int *at;
+  int *island, *body;           /* [n] islands of contacts that move each other; [nq] scratch: bodies joined */
+  double *push;                 /* scratch: [n] impulses */
   unsigned char *active, *closed; /* [n] takes part; pushes */
   unsigned char *was_closed;    /* [contacts] closed before */
-  unsigned char *follows;       /* [n] its gap is held by the contacts that push */
+  unsigned char *follows, *state; /* [n] its gap is held by the contacts that push; scratch */
   /* scratch: [constraints], [constraints], [constraints], [nq], [nq], [n of the state], [nev], [contacts] */
   double *g, *c, *r, *d, *force, *test, *events, *ahead;
   /* of the model's contact_laws; [n] side to which a contact slips, NaN: it sticks, 0: by a force that
@@ -85,15 +87,17 @@ int lag_contacts_at_rest(ContactSet *w, double *acceleration);
 
 /* contact_response.c. rate_change: of contact i by a change d of velocities; A: entries of the Jacobian;
  * change_of_rate: of w. band: half bandwidth of M, -1: constraints hold besides the contacts. list_entries: sorts
- * those of the Jacobian by rows. factor_mass: w->band := -1 where M is singular. free_response: lag_contacts_response
- * where w->band >= 0. keep_constraints: whether a change d of velocities, d M d = square, keeps the constraints that
- * always hold: it does not where they imply the row that d moves, and the solver has left out one of theirs. Rates
- * are measured by those of free coordinates. */
+ * those of the Jacobian by rows. factor_mass: w->band := -1 where M is singular. find_islands: of those that take part:
+ * contacts that share bodies, or whose bodies share inertia, are of one; all are where w->band < 0. free_response:
+ * lag_contacts_response where w->band >= 0. keep_constraints: whether a change d of velocities, d M d = square, keeps
+ * the constraints that always hold: it does not where they imply the row that d moves, and the solver has left out one
+ * of theirs. Rates are measured by those of free coordinates. */
 double lag_contacts_rate_change(const lag_model *m, const double *A, int i, const double *d);
 double lag_contacts_change_of_rate(const ContactSet *w, int i, const double *d);
 int lag_contacts_band(const lag_model *m);
 void lag_contacts_list_entries(ContactSet *w);
 void lag_contacts_factor_mass(ContactSet *w);
+void lag_contacts_find_islands(ContactSet *w);
 double lag_contacts_free_response(ContactSet *w, int i);
 int lag_contacts_keep_constraints(const ContactSet *w, const double *d, double square);
 

@@ -117,12 +117,12 @@ static inline int lag_coupled_agree(LAG_MODEL, lag_coupled_friction *w, const la
   return moved[0] <= little ? status : LAG_COUPLING_FAILS(s->t);
 }
 
-/* Responses at the first middle; friction acts once before contacts are chosen. */
-static inline int lag_coupled_respond(LAG_MODEL, lag_coupled_friction *w, const lag_kick *s) {
+/* Responses at the first middle, where friction acts once before contacts are chosen, and in later turns. */
+static inline int lag_coupled_respond(LAG_MODEL, lag_coupled_friction *w, const lag_kick *s, int turn) {
   LAG_REAL moved[1];
   int status = 0;
-  if (w->joints->n > 0) LAG_TRY(lag_joints_respond(LAG_THE_MODEL, w->joints, s));
-  if (w->contacts.contacts == 0) return status;
+  if (w->joints->n > 0) LAG_TRY(lag_joints_respond_again(LAG_THE_MODEL, w->joints, s, turn));
+  if (w->contacts.contacts == 0 || turn > 0) return status;
   if (w->joints->n > 0) {
     LAG_TRY(lag_coupled_round(LAG_THE_MODEL, w, s, 0, moved));
     lag_coupled_carry(w, LAG_C(1.0), s->rate0);

@@ -88,6 +88,14 @@ static inline int lag_joints_respond(LAG_MODEL, lag_joint_friction *w, const lag
   return status;
 }
 
+/* Where forces and friction do not agree in a few turns: responses at the friction so far, since friction that follows
+ * a load is no sum of that of each surface; in later turns a surface that slips has broken loose. */
+static inline int lag_joints_respond_again(LAG_MODEL, lag_joint_friction *w, const lag_kick *s, int turn) {
+  for (int k = 0; k < LAG_JOINTS(w) && turn >= 20; k++)
+    if (!(w->sticks[k] > LAG_C(0.0))) w->bound[k] = w->grip[k] = LAG_C(1.0);
+  return turn == 0 || turn >= 8 ? lag_joints_respond(LAG_THE_MODEL, w, s) : 0;
+}
+
 /* One turn of surface k; *size, *change: the largest slip, and change of one. A surface with a response < 0 is driven
  * to the nearest slip of an interval about centre[k]; one without slips. Where friction pushes it on, as that of a
  * guide may which others hold, it keeps its mode while it rests. */

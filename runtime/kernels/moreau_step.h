@@ -6,7 +6,7 @@
  *   LAG_MODEL, LAG_THE_MODEL         the first parameters of functions: the model; the same as arguments
  *   LAG_LAWS                    type of contacts and friction in a step, w
  *   LAG_KICK_RATES(t, y, w, k)  a status; rates k
- *   LAG_RESPONSES(s, w)         a status; responses to contacts and friction, once y1 is known without them
+ *   LAG_RESPONSES(s, w, turn)   a status; responses to contacts and friction, once y1 is known without them
  *   LAG_OBEY(s, w)              a status; s->y1 := velocities and states with contacts and friction
  *   LAG_STRUCK(w)               whether the step has an impact
  *   LAG_TERM_SIZE(w, i, rate)   size of the terms of rate i
@@ -29,7 +29,7 @@ static inline int lag_moreau_kick(LAG_MODEL, const lag_kick *s, LAG_LAWS *w) {
       if (LAG_STRUCK(w)) s->rate[i] = (s->rate0[i] + s->rate[i])/LAG_C(2.0);
       s->y1[i] = s->y[i] + s->h*s->rate[i];
     }
-    if (turn == 0) LAG_TRY(LAG_RESPONSES(s, w));
+    LAG_TRY(LAG_RESPONSES(s, w, turn));
     LAG_TRY(LAG_OBEY(s, w));
     if (s->is_explicit) return status;
     for (int i = nq; i < n; i++) s->size[i] = LAG_TERM_SIZE(w, i, s->rate[i]);

@@ -116,7 +116,7 @@ static int meet(lag_problem *pb, const lag_kick *s, lag_moreau_contacts *w) {
 
 #define LAG_LAWS lag_coupled_friction
 #define LAG_KICK_RATES(t, y, w, k) lag_step_rhs(pb, t, y, k)
-#define LAG_RESPONSES(s, w) lag_coupled_respond(pb, w, s)
+#define LAG_RESPONSES(s, w, turn) lag_coupled_respond(pb, w, s, turn)
 #define LAG_OBEY(s, w) lag_coupled_obey(pb, w, s)
 #define LAG_STRUCK(w) ((w)->contacts.impacts > 0)
 #define LAG_TERM_SIZE(w, i, rate) lag_joints_size((w)->joints, i, rate)

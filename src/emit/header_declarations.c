@@ -123,7 +123,7 @@ static const char *const docs[FN_COUNT] = {
     [FN_OBSERVE] = "Outputs of the scene: out[LAG_NOUT].",
     [FN_EVENTS] = "The event functions g[LAG_NEV].",
     [FN_ACT] = "Applies the action of an event to the state; *stop becomes 1 if the event ends the run.",
-    [FN_HOLD] = "Moves the state to the nearest one that obeys the constraints, by the metric of the mass matrix; "
+    [FN_HOLD] = "Moves a state beside the constraints onto them, to the nearest by the metric of the mass matrix; "
                 "steps do so themselves.\n"
                 " * LAG_EUNMET: no small change obeys them; begin nearer, or step shorter.",
     [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was. Events, and "

@@ -257,6 +257,26 @@ check "stands" near "$(final "th'")" 0 1e-14
 check "at 67.79" ladder 67.79
 check "it slides" most "$(final "th'")" -1e-5
 
+# ---- a brake of two shoes, friction at k from the line through their pivots at c from the pads: moments about these give N = F L/(c + mu k) and F L/(c - mu k); from mu = c/k on
+# one of them has no motion, the other if the drum turns the other way
+model shoes <<'END_OF'
+model shoes
+coord a [rad], p[2] [rad]
+param F = 300 [N], mu = 0.35 >= 0, R = 0.15 [m], L = 0.45 [m], c = 0.2 [m], k = 0.12 [m]
+kinetic = 0.8 [kg*m^2]/2*a'^2 + 0.01 [kg*m^2]/2*(p[1]'^2 + p[2]'^2)
+force p[1] = -F*L
+force p[2] = -F*L
+contact out: c*p[1] >= 0, restitution = 0, friction = mu, slip = R*a' - k*p[1]'
+contact into: c*p[2] >= 0, restitution = 0, friction = mu, slip = R*a' + k*p[2]'
+scene s { start a' = 30 [rad/s]; span 3 [s]; output a, lambda(out), lambda(into) every 0.1 [s] }
+END_OF
+check "a brake of two shoes" run shoes s
+check "the friction lifts one" near "$(cell 0.1 3)" "$(calc '300*0.45/(0.2 + 0.35*0.12)')" 1e-9
+check "and presses the other" near "$(cell 0.1 4)" "$(calc '300*0.45/(0.2 - 0.35*0.12)')" 1e-9
+check "the drum stops" near "$(final a)" "$(calc '30^2/2*0.8/(0.35*0.15*300*0.45)/(1/0.242 + 1/0.158)')" 1e-9
+check "the shoe that jams is named" refuses 3 "no motion follows at the contact into, of friction 1.8: .* from a friction of 1.66667 on" shoes s mu=1.8
+check "the other one, backwards" refuses 3 "no motion follows at the contact out, of friction 1.8" shoes s mu=1.8 "a'=-3"
+
 # ---- Painleve's rod, a slender one: its least friction is 4/3, where tan th = 2
 model rod <<'END_OF'
 model rod

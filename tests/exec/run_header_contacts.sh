@@ -87,6 +87,14 @@ check "of a bead inside a hoop that breathes" digits "$TMP/hoop.lag" s
 sed 's/friction = mu,/friction = mu, static = 2*mu,/; s/^model slope/model held/' "$TMP/slope.lag" >"$TMP/held.lag"
 check "of a throw that static friction ends" digits "$TMP/held.lag" thrown
 check "with a state and an input, without friction" digits "$TMP/gate.lag" s
+model bouncy <<'END_OF'
+model bouncy
+coord y [m]
+lagrangian = 1 [kg]/2*y'^2 - 9.81 [N]*y
+contact floor: y >= 0, restitution = min(1, 0.8*(abs(y')/(1 [m/s]))^(-1/4))
+scene s { start y = 1 [m]; span 40 [s] }
+END_OF
+check "with a restitution of the speed" digits "$TMP/bouncy.lag" s
 slow check "of a superball" digits models/superball.lag thrown
 near=200 # _hold ends its iteration by a simpler rule than the runtime
 check "beside a constraint, to rounding" digits "$TMP/wall.lag" bounces
