@@ -307,7 +307,7 @@ double lag_measure_smooth(Measures *m, double a, double reach, double last) {
   double least = fmax(fabs(m->sim->run->step_t1 - m->sim->run->step_t0) * 0x1p-33, 64 * DBL_EPSILON * fabs(reach));
   double b = last != 0.0 && fabs(2 * last) < fabs(reach - a) ? a + 2 * last : reach;
   for (int i = 0; i < m->ntracks && fabs(b - a) > least; i++)
-    while (m->track[i].integral && lag_track_counts(&m->track[i], a + (b - a) / 2) && fabs(b - a) > least &&
+    while (m->track[i].how == INTEGRATED && lag_track_counts(&m->track[i], a + (b - a) / 2) && fabs(b - a) > least &&
            !is_smooth(m, &m->track[i], a, b))
       b = a + (b - a) / 2;
   return b;
