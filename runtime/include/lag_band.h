@@ -11,6 +11,18 @@
 #define LAG_LANE_FN(f) LAG_FN(f)
 #endif
 
+/* y[n] := an arbitrary right-hand side, so that nothing cancels. Returns its 1-norm. */
+static LAG_LANE lag_any_side(int n, LAG_LANE *y) {
+  LAG_LANE u = 0, size = 0;
+  for (int i = 0; i < n; i++) {
+    u += (LAG_LANE)0.618033988749894848;
+    if (u > 1) u -= 1;
+    size += u;
+    y[i] = i % 2 ? -u : u;
+  }
+  return size;
+}
+
 /* ---- band ---- */
 #ifndef LAG_NO_BAND
 /* The whole system [M A^T; A 0] within a band, for large systems: along chains, ladders and loops of any number of
@@ -195,21 +207,22 @@ static void lag_band_solve(const lag_band *b, LAG_LANE *y) {
 }
 
 /* Estimate of the 1-norm of the inverse of a symmetric matrix (W. Hager, SIAM J. Sci. Stat. Comput. 5 (1984) 311,
- * DOI 10.1137/0905023). y[all] and z[all] are scratch. */
+ * DOI 10.1137/0905023), of its order alone below 1e6. y[all] and z[all] are scratch. */
 static LAG_LANE lag_band_inverse(const lag_band *b, LAG_LANE *y, LAG_LANE *z) {
-  LAG_LANE size = 0;
+  LAG_LANE size = 0, whole = lag_any_side(b->all, y);
   int at = -1;
   for (int turn = 0; turn < 4; turn++) {
     LAG_LANE now = 0;
     int most = 0;
-    for (int i = 0; i < b->all; i++) y[i] = at < 0 ? 1/(LAG_LANE)b->all : i == at;
+    for (int i = 0; i < b->all && turn; i++) y[i] = i == at;
     lag_band_solve(b, y);
-    for (int i = 0; i < b->all; i++) now += LAG_LANE_FN(fabs)(y[i]), z[i] = y[i] < 0 ? -1 : 1;
+    for (int i = 0; i < b->all; i++) now += LAG_LANE_FN(fabs)(y[i])/whole, z[i] = y[i] < 0 ? -1 : 1;
     if (!(now > size)) return turn ? size : now;
     size = now;
+    whole = 1;
     lag_band_solve(b, z);
     for (int i = 1; i < b->all; i++) most = LAG_LANE_FN(fabs)(z[i]) > LAG_LANE_FN(fabs)(z[most]) ? i : most;
-    if (most == at) break;
+    if (most == at || LAG_LANE_FN(fabs)(z[most]) < (LAG_LANE)1e6) break;
     at = most;
   }
   return size;

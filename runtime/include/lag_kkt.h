@@ -416,12 +416,7 @@ static int lag_kkt_rows(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_
                   *const z = S + m * m + m, *const unit = z + n + m;
   lag_scales(n, m, M, A, unit - m, z - m, unit + n);
   const LAG_LANE most = lag_scale_columns(n, m, unit, M, A, x);
-  LAG_LANE u = 0;
-  for (int i = 0; i < n; i++) {
-    u += (LAG_LANE)0.618033988749894848; /* an arbitrary right-hand side, so that nothing cancels */
-    if (u > 1) u -= 1;
-    z[i] = i % 2 ? -u : u;
-  }
+  (void)lag_any_side(n, z);
   const int r = lag_rank(n, m, coarse, A, diag, beta, scale, order);
   for (int k = 0; k < r; k++) {
     y[k] = l[(int)order[k]]/scale[k];
