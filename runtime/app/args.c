@@ -104,8 +104,8 @@ static int unknown_option(const Args *a, const char *text, size_t n) {
 static int set_text(Args *a, const Option *o, int argc, const char *value) {
   const char **text = (const char **)((char *)a + o->field), ***list = (const char ***)((char *)a + o->field);
   int *n = (int *)((char *)a + o->count);
-  if (text == &a->starts && a->starts)
-    return lag_app_error(a, "--starts stands twice, %s and %s: one range of runs is drawn", a->starts, value);
+  if (!o->count && *text)
+    return lag_app_error(a, "%s stands twice, %s and %s; leave one out", o->name, *text, value);
   if (o->count && !*list && !(*list = calloc((size_t)argc, sizeof **list))) return lag_app_error(a, "out of memory");
   if (o->count) (*list)[(*n)++] = value;
   else *text = value;
@@ -152,6 +152,10 @@ static int one_argument(Args *a, int argc, char **argv, int *i) {
   } else if (s[0] == '-') {
     return lag_app_error(a, "unknown option %s; see --help", s);
   } else if (strpbrk(s, "=~")) {
+    size_t n = strcspn(s, "=~") + 1;
+    for (int k = 0; k < a->nsets; k++)
+      if (strncmp(a->sets[k], s, n) == 0)
+        return lag_app_error(a, "%s and %s: a value stands twice; leave one out", a->sets[k], s);
     a->sets[a->nsets++] = s;
   } else {
     a->scenes[a->nscenes++] = s;

@@ -247,7 +247,7 @@ static int prepare_plot(RequestBuilder *k, const char **error) {
     add_argument(k, beneath, NULL);
   } else if (x && !y) *error = arena_printf(k->arena, "--x %s: the other axis is missing; add --y EXPR", x);
   if (*error) return 0;
-  add_argument(k, "--svg", file_name(k, "svg"));
+  if (!options_passed(o, "--svg")) add_argument(k, "--svg", file_name(k, "svg"));
   if (x && !(x = add_output(k, o->phase ? "--phase" : "--x", x))) return 0;
   if (y && !(y = add_output(k, o->phase ? "--phase" : "--y", y))) return 0;
   if (x) add_argument(k, "--plot-x", x);
