@@ -73,7 +73,7 @@ static void lag_leave_small(int n, int m, const LAG_LANE *scale, LAG_LANE *size)
 
 /* size[(m + n) n] := exponents of the elements of A and then of M, 1e9 for zeros; top[m + n] := the largest of each
  * row of A and of each column of [M; A], -1e9 where all are zeros. */
-static void lag_sizes(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *top, LAG_LANE *size) {
+static void lag_element_sizes(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LANE *top, LAG_LANE *size) {
   const LAG_LANE none = (LAG_LANE)1e9;
   int e;
   for (int k = 0; k < m + n; k++) top[k] = -none;
@@ -153,7 +153,7 @@ static void lag_scales(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_L
   LAG_LANE moved = 1;
   int bits;
   (void)LAG_LANE_FN(frexp)(lag_rounding(), &bits);
-  lag_sizes(n, m, M, A, top, size);
+  lag_element_sizes(n, m, M, A, top, size);
   const int even = lag_constraint_range(n, m, top, size) <= 12 && lag_inertia_range(n, m, bits, size) <= 48;
   for (int k = 0; k < all; k++) scale[k] = even ? 1 : 0;
   if (even) return;
