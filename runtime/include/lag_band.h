@@ -216,7 +216,8 @@ static LAG_LANE lag_band_inverse(const lag_band *b, LAG_LANE *y, LAG_LANE *z) {
     int most = 0;
     for (int i = 0; i < b->all && turn; i++) y[i] = i == at;
     lag_band_solve(b, y);
-    for (int i = 0; i < b->all; i++) now += LAG_LANE_FN(fabs)(y[i])/whole, z[i] = y[i] < 0 ? -1 : 1;
+    for (int i = 0; i < b->all; i++) now += LAG_LANE_FN(fabs)(y[i]), z[i] = y[i] < 0 ? -1 : 1;
+    now /= whole;
     if (!(now > size)) return turn ? size : now;
     size = now;
     whole = 1;
@@ -228,12 +229,12 @@ static LAG_LANE lag_band_inverse(const lag_band *b, LAG_LANE *y, LAG_LANE *z) {
   return size;
 }
 
-/* y := residual of the right-hand side (f, g) for the solution (x, l), scaled and in the order of places. */
+/* y := residual of the right-hand side (f, g) for the solution x, 0 if NULL, scaled and in the order of places. */
 static void lag_band_rest(int n, const lag_band *b, const LAG_LANE *M, const LAG_LANE *A, const LAG_LANE *side,
                           const LAG_LANE *x, LAG_LANE *y) {
   int i, j;
-  for (int k = 0; k < b->all; k++) y[(int)b->place[k]] = side[k] - (k < n ? M[k*n + k]*x[k] : 0);
-  for (int e = 0; e < b->edges; e++) {
+  for (int k = 0; k < b->all; k++) y[(int)b->place[k]] = side[k] - (x && k < n ? M[k*n + k]*x[k] : 0);
+  for (int e = 0; e < b->edges && x; e++) {
     const LAG_LANE a = lag_element(n, b, e, M, A, &i, &j);
     y[(int)b->place[i]] -= a*x[j];
     y[(int)b->place[j]] -= i < n ? a*x[i] : -a*x[i];
@@ -262,7 +263,7 @@ static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, const 
   if (!(inverse <= (LAG_LANE)1e10)) return 0;
   for (int i = 0; i < all; i++) side[i] = i < n ? x[i] : l[i - n], z[i] = 0;
   for (int turn = 0; turn < (inverse > (LAG_LANE)1e8 ? 3 : 2); turn++) {
-    lag_band_rest(n, &b, M, A, side, z, y);
+    lag_band_rest(n, &b, M, A, side, turn ? z : 0, y);
     lag_band_solve(&b, y);
     /* the symmetric system is that of (x, -l) */
     for (int i = 0; i < all; i++) z[i] += (i < n ? 1 : -1)*b.scale[i]*y[(int)b.place[i]];
