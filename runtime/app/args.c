@@ -100,15 +100,21 @@ static int unknown_option(const Args *a, const char *text, size_t n) {
                    : lag_app_error(a, "unknown option %s; see --help", name);
 }
 
+/* Sets an option's text, and says so if another gives way. */
+static void replace(const Args *a, const char *option, const char **text, const char *value) {
+  if (*text && strcmp(*text, value) != 0) lag_app_error(a, "note: %s %s gives way to %s", option, *text, value);
+  *text = value;
+}
+
 /* Sets a text, or puts it to the end of a list with room for all arguments. */
 static int set_text(Args *a, const Option *o, int argc, const char *value) {
   const char **text = (const char **)((char *)a + o->field), ***list = (const char ***)((char *)a + o->field);
   int *n = (int *)((char *)a + o->count);
-  if (!o->count && *text)
-    return lag_app_error(a, "%s stands twice, %s and %s; leave one out", o->name, *text, value);
+  if (text == &a->starts && a->starts)
+    return lag_app_error(a, "--starts stands twice, %s and %s: one range of runs is drawn", a->starts, value);
   if (o->count && !*list && !(*list = calloc((size_t)argc, sizeof **list))) return lag_app_error(a, "out of memory");
   if (o->count) (*list)[(*n)++] = value;
-  else *text = value;
+  else replace(a, o->brief ? o->brief : o->name, text, value);
   return 0;
 }
 
@@ -140,22 +146,30 @@ static int long_option(Args *a, int argc, char **argv, int *i) {
   return set_text(a, o, argc, value);
 }
 
+/* Says that a value gives way to a later one; a range may stand beside the value at which it begins. */
+static void note_replaced(const Args *a, const char *later) {
+  size_t n = strcspn(later, "=~") + 1;
+  for (int k = a->nsets - 1; k >= 0; k--)
+    if (strncmp(a->sets[k], later, n) == 0 && strcmp(a->sets[k], later) != 0 &&
+        !strstr(a->sets[k], "..") == !strstr(later, "..")) {
+      lag_app_error(a, "note: %s gives way to %s", a->sets[k], later);
+      return;
+    }
+}
+
 static int one_argument(Args *a, int argc, char **argv, int *i) {
   char *s = argv[*i];
   if (strcmp(s, "-h") == 0) {
     a->help = 1;
   } else if (strcmp(s, "-o") == 0) {
     if (*i + 1 >= argc) return lag_app_error(a, "-o needs a file name, or - for standard output");
-    a->out = argv[++*i];
+    replace(a, "-o", &a->out, argv[++*i]);
   } else if (strncmp(s, "--", 2) == 0) {
     return long_option(a, argc, argv, i);
   } else if (s[0] == '-') {
     return lag_app_error(a, "unknown option %s; see --help", s);
   } else if (strpbrk(s, "=~")) {
-    size_t n = strcspn(s, "=~") + 1;
-    for (int k = 0; k < a->nsets; k++)
-      if (strncmp(a->sets[k], s, n) == 0)
-        return lag_app_error(a, "%s and %s: a value stands twice; leave one out", a->sets[k], s);
+    note_replaced(a, s);
     a->sets[a->nsets++] = s;
   } else {
     a->scenes[a->nscenes++] = s;

@@ -32,14 +32,18 @@ typedef VEC(Name) Names;
 
 /* ---- values of options ---- */
 
+/* Says that what stands first gives way; options that are passed on are the simulator's to tell. */
+static void note_replaced(const char *first, const char *later) {
+  fprintf(stderr, "lagc: note: %s gives way to %s\n", first, later);
+}
+
 static int add_define(Arena *a, Options *o, const char *text, const char **error) {
   const char *eq = strchr(text, '=');
   if (!eq || eq == text || !eq[1]) return fail_with(error, "-D takes CONST=VALUE, for example -D N=50");
   Define d = {.name = arena_strndup(a, text, (size_t)(eq - text)), .value = eq + 1};
   for (uint32_t k = 0; k < o->defines.n; k++)
-    if (strcmp(o->defines.at[k].name, d.name) == 0)
-      return fail_with(error, arena_printf(a, "-D %s stands twice, %s and %s; leave one out", d.name,
-                                           o->defines.at[k].value, d.value));
+    if (strcmp(o->defines.at[k].name, d.name) == 0 && strcmp(o->defines.at[k].value, d.value) != 0)
+      note_replaced(arena_printf(a, "-D %s=%s", d.name, o->defines.at[k].value), d.value);
   vec_push(a, &o->defines, d);
   return 1;
 }
@@ -126,10 +130,13 @@ static int set_value(Arena *a, Options *o, const OptionRow *row, const char *val
     case TAKES_CHOICE: case TAKES_CHOICES:
       if (!check_choices(a, row, value, error)) return 0;
       break;
-    case TAKES_EXPRS: case TAKES_TEXTS: vec_push(a, (OptionTexts *)field, value); return 1;
+    case TAKES_EXPRS: vec_push(a, (OptionTexts *)field, value); return 1;
     case TAKES_TEXT: case TAKES_NUMBER: case TAKES_FILE: case TAKES_METHOD: case TAKES_PARAMS: case TAKES_EXPR: break;
   }
-  *(const char **)field = value;
+  const char **text = field;
+  if (*text && strcmp(*text, value) != 0)
+    note_replaced(arena_printf(a, "%s %s", row->brief ? row->brief : row->name, *text), value);
+  *text = value;
   return 1;
 }
 
@@ -186,31 +193,17 @@ static const char *unknown_option(Arena *a, const Options *o, const char *word) 
   return arena_printf(a, "`lagc %s` has no option `%s`; `lagc help %s` lists them%s", row->name, arg, row->name, set);
 }
 
-/* Words of the command line, and the place of the present one; options and values of the model so far. */
+/* Words of the command line, and the place of the present one. */
 typedef struct {
   char **at;
   int n, i;
-  VEC(const OptionRow *) options;
-  OptionTexts texts, values; /* of options, of the model */
 } Arguments;
-
-/* Whether the option is given for the first time, or makes a list. */
-static int is_new(Arena *a, Arguments *words, const OptionRow *row, const char *value, const char **error) {
-  if (row->takes == TAKES_NOTHING || row->takes == TAKES_DEFINE || row->takes == TAKES_EXPRS ||
-      row->takes == TAKES_TEXTS)
-    return 1;
-  for (uint32_t k = 0; k < words->options.n; k++)
-    if (words->options.at[k] == row)
-      return fail_with(error, arena_printf(a, "%s stands twice, %s and %s; leave one out", row->name,
-                                           words->texts.at[k], value));
-  vec_push(a, &words->options, row);
-  vec_push(a, &words->texts, value);
-  return 1;
-}
 
 static int read_option(Arena *a, Arguments *words, Options *o, const OptionRow *row, const char *value,
                        const char **error) {
   const char *arg = words->at[words->i];
+  if (strcmp(row->name, "--data") == 0 && options_passed(o, row->name))
+    return fail_with(error, "--data stands twice; several files are one list: --data a.csv,b.csv");
   if (row->takes == TAKES_NOTHING && value) return fail_with(error, arena_printf(a, "%s takes no value", row->name));
   if (row->passed) vec_push(a, &o->rest, arg);
   if (row->takes != TAKES_NOTHING && !value) {
@@ -220,7 +213,6 @@ static int read_option(Arena *a, Arguments *words, Options *o, const OptionRow *
     value = words->at[++words->i];
     if (row->passed) vec_push(a, &o->rest, value);
   }
-  if (!is_new(a, words, row, value, error)) return 0;
   /* --shared may come later: build.c judges */
   int library = o->command == CMD_BUILD && lag_outfile_has_suffix(value ? value : "", "so");
   if (row->takes == TAKES_FILE && (*row->hint || o->command == CMD_BUILD) && !library &&
@@ -244,8 +236,7 @@ static void add_scene(Arena *a, Options *o, const char *name) {
 }
 
 /* A word that is no option: the model, a scene, a value. */
-static int read_word(Arena *a, Arguments *words, Options *o, const char **error) {
-  const char *arg = words->at[words->i];
+static int read_word(Arena *a, const char *arg, Options *o, const char **error) {
   int sets = command_takes_values(o->command) &&
              (strchr(arg, '=') || (o->command == CMD_SWEEP && o->file && strchr(arg, '~')));
   if (!o->file && !sets) {
@@ -256,13 +247,8 @@ static int read_word(Arena *a, Arguments *words, Options *o, const char **error)
   if (sets && (*last == '=' || *last == '~'))
     return fail_with(
         error, arena_printf(a, "%s: a value is missing; name and value are one word without spaces, as in k=1", arg));
-  for (uint32_t k = 0; sets && k < words->values.n; k++)
-    if (strncmp(words->values.at[k], arg, strcspn(arg, "=~") + 1) == 0)
-      return fail_with(error, arena_printf(a, "%s and %s: a value stands twice; leave one out", words->values.at[k],
-                                           arg));
   if (command_simulates(o->command) || sets) {
-    if (sets) vec_push(a, &words->values, arg);
-    else add_scene(a, o, arg);
+    if (!sets) add_scene(a, o, arg);
     vec_push(a, &o->rest, arg);
     return 1;
   }
@@ -273,12 +259,12 @@ static int read_word(Arena *a, Arguments *words, Options *o, const char **error)
 }
 
 static int read_arguments(Arena *a, int argc, char **argv, Options *o, const char **error) {
-  for (Arguments words = {argv, argc, 2, {0}, {0}, {0}}; words.i < argc; words.i++) {
+  for (Arguments words = {argv, argc, 2}; words.i < argc; words.i++) {
     const char *arg = argv[words.i], *value;
     int ok, dash = arg[0] == '-' && arg[1];
     const OptionRow *row = dash ? option_find(o->command, arg, &value) : NULL;
     if (row) ok = read_option(a, &words, o, row, value, error);
-    else if (!dash) ok = read_word(a, &words, o, error);
+    else if (!dash) ok = read_word(a, arg, o, error);
     else {
       *error = unknown_option(a, o, arg);
       ok = 0;
@@ -319,7 +305,7 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
   if (o->command == CMD_CACHE && arg) {
     const char *value;
     const OptionRow *row = option_find(o->command, arg, &value);
-    if (row) return read_option(a, &(Arguments){argv, argc, 2, {0}, {0}, {0}}, o, row, value, error);
+    if (row) return read_option(a, &(Arguments){argv, argc, 2}, o, row, value, error);
     return fail_with(error, unknown_option(a, o, arg));
   }
   if (o->command == CMD_COMPLETION && (!arg || !has_word("bash zsh fish", arg)))

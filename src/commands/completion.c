@@ -154,7 +154,7 @@ static void offer_value(CommandLine *l, const OptionRow *o) {
     case TAKES_FILE: sb_printf(l->out, ":files%s%s\n", o->hint[0] ? " " : "", o->hint); break;
     case TAKES_METHOD: offer_methods(l); break;
     case TAKES_CHOICE: case TAKES_CHOICES: offer_choices(l, o); break;
-    case TAKES_EXPR: case TAKES_EXPRS: case TAKES_TEXT: case TAKES_TEXTS: offer_expression(l); break;
+    case TAKES_EXPR: case TAKES_EXPRS: case TAKES_TEXT: offer_expression(l); break;
     case TAKES_PARAMS: offer_params(l, o); break;
     case TAKES_DEFINE: offer_constants(l); break;
     case TAKES_NUMBER: case TAKES_NOTHING: break;

@@ -81,6 +81,17 @@ static int starts_rotation(const Ast *ast, const char *name) {
   return st && st->type && strcmp(st->type, "rotation") == 0 && !strchr(inner, '\'');
 }
 
+/* Whether word i, a range of `name`, has a table or formula beside it: the simulator would not see that. */
+static const char *value_beside(Arena *a, const Options *o, uint32_t i, const char *name) {
+  for (uint32_t k = 0; k < o->rest.n; k++) {
+    const char *word = o->rest.at[k], *eq = word[0] != '-' ? strchr(word, '=') : NULL;
+    if (word[0] == '-' && option_takes_next(o->command, word)) k++;
+    if (k != i && eq && strcmp(text_trimmed(a, word, (size_t)(eq - word)), name) == 0 && !range_split(a, word))
+      return word;
+  }
+  return NULL;
+}
+
 /* Makes a constant that varies continuously a parameter, and says so. */
 static void as_param(Ast *ast, const char *name) {
   AstStmt *st = (AstStmt *)find_declared(ast, STMT_CONST, name);
@@ -91,9 +102,23 @@ static void as_param(Ast *ast, const char *name) {
 /* Whether values may be ranges. */
 static int takes_ranges(const Options *o) { return o->command == CMD_SWEEP || o->command == CMD_CONTINUE; }
 
+/* Refuses names with a range and a value. */
+static int check_ranges(Ast *ast, const Options *o, const char **error) {
+  for (uint32_t i = 0; i < o->rest.n && o->command == CMD_SWEEP; i++) {
+    const char *word = o->rest.at[i];
+    if (word[0] == '-' && option_takes_next(o->command, word)) i++;
+    if (word[0] == '-' || !range_split(ast->arena, word)) continue;
+    const char *name = text_trimmed(ast->arena, word, strcspn(word, "=~")),
+               *beside = value_beside(ast->arena, o, i, name);
+    if (beside) return fail_with(error, arena_printf(ast->arena, "%s: %s varies; leave one out", beside, name));
+  }
+  return 1;
+}
+
 int settings_compiled(Ast *ast, Options *o, int all, GivenList *given, const char **error) {
   uint32_t kept = 0;
   int ok = 1;
+  if (!check_ranges(ast, o, error)) return 0;
   for (uint32_t i = 0; i < o->rest.n; i++) {
     /* --measure u=x is no value of u */
     if (o->rest.at[i][0] == '-' && option_takes_next(o->command, o->rest.at[i]) && i + 1 < o->rest.n) {

@@ -122,9 +122,8 @@ check "one dash" says '`lagc run` has no option `-tol`: did you mean `--tol`?' r
 check "an option that is nowhere near" says '`lagc check` has no option `--frobnicate`; `lagc help check` lists them' check $m --frobnicate
 check "an option that is none of this command" says '`--format` is an option of `lagc derive`; `lagc help check` lists those of `lagc check`' check $m --format c
 check "a value is missing" says '--until needs a value: --until T' run $m --until
-check "an option twice" says '--until stands twice, 1 and 2; leave one out' run $m --until 1 --until=2
-check "a value twice" says 'l=1 and l=2: a value stands twice; leave one out' run $m l=1 l=2
-check "a constant twice" says '-D N stands twice, 3 and 4; leave one out' check $m -D N=3 -D N=4
+check "two lists of files" says '--data stands twice; several files are one list: --data a.csv,b.csv' fit $m --data a.csv --data b.csv --fit g
+check "options and constants twice: a note" sh -c "'$LAGC' derive $m --format latex --format text 2>&1 >/dev/null | grep -qx 'lagc: note: --format latex gives way to text' && '$LAGC' emit models/chain.lag -D N=3 -D N=4 2>&1 >/dev/null | grep -qx 'lagc: note: -D N=3 gives way to 4'"
 check "a value too many" says '--json takes no value' run $m --json=1
 check "a wrong choice" says '--format takes text, latex, c, not `html`' derive $m --format html
 check "a wrong stage" says '--dump takes ast, eqns, passes, prog, with commas between several, not `asm`' derive $m --dump ast,asm

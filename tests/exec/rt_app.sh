@@ -136,8 +136,8 @@ check "negative step" says 2 "--step 1e-3" --step -1
 check "empty span" says 2 "nothing to compute" --until 0
 check "bad every" says 2 "must be positive" --every 0
 check "unknown option" says 2 "did you mean --method?" --methd rk4
-check "an option twice" says 2 "--until stands twice, 1 and 2; leave one out" --until 1 --until 2
-check "a value twice" says 2 "g=1 and g=2: a value stands twice; leave one out" g=1 g=2
+check "an option twice" says 0 "note: --until 1 gives way to 2" --until 1 --until 2
+check "a value twice" says 0 "note: g=1 gives way to g=2" g=1 g=2
 check "unknown method" says 2 "unknown method rk9; did you mean rk4?" --method rk9
 check "a method that is near none has a list, which does not hide the message" says 2 "unknown method simpson; --method help lists them" --method simpson
 check "in one line" [ "$(wc -l <err)" = 1 ]

@@ -113,7 +113,7 @@ check "coloured by their place, with a legend" sh -c 'grep -q ">p=0.1<" "$1" && 
 is "a list" "3 runs" "$(plot $map --section pulse --x q --y p --starts p=0,1,2 --until 9.5 | head -1)"
 check "an angle is drawn from -pi to pi" sh -c '"$1" plot "$2" p=2.5 --section pulse --x q --y p --until 50.5 -o "$3" >/dev/null && ! grep -q ">10<" "$3" && grep -q ">3<" "$3"' sh "$LAGC" $map "$TMP/q.svg"
 check "no range" says 2 "write a range" "$LAGC" plot $map --starts q -o "$TMP/p.svg"
-check "two ranges" says 2 "--starts stands twice, q=0,1 and p=0,1; leave one out" "$LAGC" plot $map --starts q=0,1 --starts p=0,1 -o "$TMP/p.svg"
+check "two ranges" says 2 "--starts stands twice, q=0,1 and p=0,1: one range of runs is drawn" "$LAGC" plot $map --starts q=0,1 --starts p=0,1 -o "$TMP/p.svg"
 check "a range and --vs" says 2 "leave one of them out" "$LAGC" plot $map --starts q=0,1 --vs q=2 -o "$TMP/p.svg"
 check "no number of runs" says 2 "the number of runs is missing" "$LAGC" plot $map --starts q=0..1 -o "$TMP/p.svg"
 check "the section of an event that there is not" says 2 'no event or kick `puls`; did you mean `pulse`?' "$LAGC" run $map --section puls

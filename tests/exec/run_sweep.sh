@@ -91,7 +91,7 @@ mkdir "$TMP/sub"
 printf 't,u\n0,1\n1,1\n' >"$TMP/gust.csv"
 check "a table and a function with commas are no ranges" sweep "$TMP/pair.lag" u="$TMP/sub/../gust.csv" T=1,2 --measure z -o "$TMP/pair.csv"
 is "the table counts" "1.500" "$(awk -F , 'FNR == 2 { printf "%.3f", $2 }' "$TMP/pair.csv")"
-check "a table of what varies" says 2 "gust.csv and u=1,2: a value stands twice; leave one out" "$LAGC" sweep "$TMP/pair.lag" u="$TMP/gust.csv" u=1,2 -o "$TMP/no.csv"
+check "a table of what varies" says 2 "gust.csv: u varies; leave one out" "$LAGC" sweep "$TMP/pair.lag" u="$TMP/gust.csv" u=1,2 -o "$TMP/no.csv"
 check "a measure called as an input or a constant" sweep "$TMP/pair.lag" T=1,2 --measure 'N=max(z)' -o "$TMP/named.csv"
 check "as an input" sweep "$TMP/pair.lag" T=1,2 --measure 'u=max(z)' -o "$TMP/named.csv"
 is "is a column" "T [degC],u [m],status" "$(head -n 1 "$TMP/named.csv")"
@@ -518,7 +518,7 @@ check "a value as an option" no "a value of the model has no dashes: w=1" "$osc"
 check "a name that is not there" no "did you mean stiffer" "$osc" stifer=1,2
 check "wrong values alone" no "the model declares m > 0" "$osc" m=-2,-1
 check "a measure that is not there" wrong "did you mean" "$osc" w=1,2 --measure 'perod(x)'
-check "two ranges of one name" no "w=1,2 and w=3,4: a value stands twice" "$osc" w=1,2 w=3,4
+check "two ranges of one name" no "varies twice" "$osc" w=1,2 w=3,4
 check "ranges of different length" no "the same number" "$osc" w=1,2 m=1,2,3 --zip
 check "samples of a constant" no "compiled for each of its values: write plain numbers" "$TMP/chain.lag" 'N~uniform(1,9)' --samples 3
 check "a constant with a unit" no "write plain numbers" "$TMP/chain.lag" 'N=2,3[m]'
@@ -538,7 +538,7 @@ near "and of 2" 1e-12 "$(last 2)" "$(sed -n 3p "$TMP/last.csv" | cut -d, -f2)"
 check "a start of one size alone" no "with N=2: x[3]: no such parameter" "$TMP/chain.lag" N=4,2 'x[3]=1,2'
 check "a start of a rotation" no "cannot vary: write a \`param\` into it" models/free_body.lag 'omega(R).x=1,2'
 check "an empty place in a list" no "w=1,,2: a list is numbers and commas" "$osc" w=1,,2
-check "a range and a value of one name" no "w=1 and w=2,3: a value stands twice; leave one out" "$osc" w=1 w=2,3
+check "a range and a value of one name" no "w=1: w varies; leave one out" "$osc" w=1 w=2,3
 check "a range of a member, and then of all" says 2 "write k first" "$LAGC" sweep "$TMP/pair.lag" 'k[1]=1,2' k=3,4 -o "$TMP/no.csv"
 check "all, and then a member" sweep "$TMP/pair.lag" k=3,4 'k[1]=1,2' -o "$TMP/all.csv"
 check "a range wider than numbers" no "wider than the largest number" "$osc" F=-1e308..1e308:3
