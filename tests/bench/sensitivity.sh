@@ -1,5 +1,5 @@
 #!/bin/sh
-# Sensitivities and gradients beside SUNDIALS' CVODES, at an error of 1e-8, of the double pendulum and a chain of 8; where it is installed
+# Sensitivities and gradients beside SUNDIALS' CVODES, at an error of 1e-8, and beside differences, at 1e-6, of the double pendulum and a chain of 8; where it is installed
 # (Debian: libsundials-dev).
 set -eu
 : "${LAGC:=build/lagc}" "${CC:=cc}" "${BUILD:=build}" "${INC:=runtime/include}" "${TMP:=$(mktemp -d)}"

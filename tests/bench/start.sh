@@ -21,7 +21,7 @@ median_ms() {
 # first_row MODEL: builds the simulator afresh and stops at the first row after the head.
 first_row() {
   rm -rf "$TMP/cache"
-  XDG_CACHE_HOME=$TMP/cache "$LAGC" run "$1" --until 0.01 --every 0.01 -o - | head -n 2
+  XDG_CACHE_HOME=$TMP/cache "$LAGC" run "$1" --until 1e-9 --every 1e-9 -o - | head -n 2
 }
 
 # run_of NAME SCENE: to the report; run_anew: with nothing kept
