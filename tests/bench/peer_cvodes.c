@@ -1,7 +1,8 @@
 /* Sensitivities by all parameters and the gradient of the sum of the state at the end: liblag's forward and reverse
  * mode beside SUNDIALS' CVODES (Adams, fixed point; forward: simultaneous, with error control of the columns; adjoint:
  * marks every 100 steps, Hermite). Both have the equations and derivatives that lagc emits: methods are compared.
- * Then forward mode beside differences of runs by dop853, at 1e-6. Included: model.h, a header with prefix bench, and the macro SCENE; leaves: the least time for an error of 1e-8. */
+ * Then forward mode beside differences of runs by dop853, at 1e-6. Included: model.h, a header with prefix bench, and
+ * the macro SCENE; leaves: the least time for an error of 1e-8. */
 #include <cvodes/cvodes.h>
 #include <math.h>
 #include <nvector/nvector_serial.h>
