@@ -35,7 +35,9 @@ class Browser {
     await this.send("Page.navigate", {url});
   }
   async value(expression) {
-    const {result, exceptionDetails} = await this.send("Runtime.evaluate", {expression, returnByValue: true, awaitPromise: true});
+    const ask = () => this.send("Runtime.evaluate", {expression, returnByValue: true, awaitPromise: true});
+    // a page that is just being replaced by the next has no answer: that has one
+    const {result, exceptionDetails} = await ask().catch(e => /navigated/.test(e.message) ? ask() : Promise.reject(e));
     if (exceptionDetails) throw new Error(expression + ": " + exceptionDetails.exception?.description);
     return result.value;
   }
