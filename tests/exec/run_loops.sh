@@ -250,6 +250,8 @@ tensions() {
     tests/bench/hand/chain.c -lm -o "$TMP/uneven" && "$TMP/uneven" check
 }
 for n in 5 6 41; do check "a chain of $n: as by tensions" tensions $n; done
+# A division a rod, and one that every two rods wait for: 41 + 40/2. Without the recursion there are 41, one behind the other.
+is "two rods wait for one division" "61 divisions" "$("$LAGC" emit models/chain.lag -DN=41 -o - | sed -n 's/.*Accelerations: .*, \([0-9]* divisions\).*/\1/p' | head -1)"
 
 # ---- memory and time of compilation
 # 3160 pairs of charges, three scenes: each program that a pass replaces, and each block that an array outgrows, is given up. With them it takes 360 MB.
