@@ -186,13 +186,12 @@ static void write_tree(Writer *w, const Nest *n) {
 
 static LoopRange range_of(const Nest *n) { return (LoopRange){n->rows, n->skew, n->turns, n->more}; }
 
-/* Whether two indices never meet within a row: their ranges are apart, or they differ modulo their step. */
+/* Whether two indices never meet: their ranges are apart. */
 static int never_meet(const Nest *n, uint32_t i, uint32_t k) {
   const LoopRange range = range_of(n);
   const IrSubscript *x = &n->at[i], *y = &n->at[k];
-  int64_t x0, x1, y0, y1, step = x->by_turn;
-  if (!loop_extent(&range, x, &x0, &x1) || !loop_extent(&range, y, &y0, &y1) || x0 > y1 || y0 > x1) return 1;
-  return step == y->by_turn && step != 0 && (x->by_row - y->by_row) % step == 0 && (x->first - y->first) % step != 0;
+  int64_t x0, x1, y0, y1;
+  return !loop_extent(&range, x, &x0, &x1) || !loop_extent(&range, y, &y0, &y1) || x0 > y1 || y0 > x1;
 }
 
 /* Whether a vector has the operation, with the same bits; a load: of what turns do not change. */
