@@ -179,7 +179,7 @@ coverage:
 	$(SETUP) test
 	$(COVERAGE_MAKE) build-coverage
 	@find $(COVERAGE) -name '*.gcda' -delete
-	@ln -sfn "$(CURDIR)/runtime" $(COVERAGE)/../runtime # lagc finds its headers in ../runtime
+	@ln -sfn "$(CURDIR)/runtime" "$(CURDIR)/models" $(COVERAGE)/.. # lagc finds headers and gallery there
 	@printf '#!/bin/sh\nexec %s "$$@" -O0 --coverage\n' '$(CC)' >$(COVERAGE)/counted-cc && chmod +x $(COVERAGE)/counted-cc
 	-$(COVERAGE_MAKE) MODEL_CC='$(CURDIR)/$(COVERAGE)/counted-cc' COVERAGE=yes GCOV_ERROR_FILE=/dev/null run-coverage
 	@sh tests/coverage/lib_report.sh $(COVERAGE)
