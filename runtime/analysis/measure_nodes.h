@@ -29,7 +29,7 @@ typedef enum TrackKind {
   TRACK_KINDS
 } TrackKind;
 
-/* What is sought within steps; INTEGRATED: nothing, the track is summed over them. */
+/* Search within steps; INTEGRATED: none, the track is summed over them. */
 typedef enum TrackHow { INTEGRATED, HIGHEST = 1, LOWEST = 2, EXTREMES = HIGHEST | LOWEST, PASSAGES = 4 } TrackHow;
 
 /* Unit in which a value is shown: SI = shown*factor + offset. */

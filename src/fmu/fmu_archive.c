@@ -48,7 +48,6 @@ static const char *with_inputs(const ProgramSet *u) {
   return u->u.n ? "_with(&(m)->p, &(m)->s, h, set_inputs, m)" : "(&(m)->p, &(m)->s, h)";
 }
 
-/* Sizes, and arguments of the header's functions, which leave out what the model lacks. */
 /* Macros that call functions of the header with the arguments that it has. */
 static void write_calls(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   sb_printf(out, "#define ARGUMENTS(s, p, u) (s)->t%s%s, p%s\n", u->q.n ? ", (s)->q, (s)->v" : "",
@@ -71,6 +70,7 @@ static void write_calls(const ProgramSet *u, const Fmu *f, StrBuf *out) {
             keeps ? ", (path)->k" : "");
 }
 
+/* Sizes, and arguments of the header's functions, which leave out what the model lacks. */
 static void write_head(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   const IrScene *s = &u->scenes.at[0];
   sb_printf(out, "/* fmu_archive.c: the model %s, scene %s, as an FMU of FMI %d.0. All that is to be compiled.\n",
