@@ -81,12 +81,12 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %type <stmts> options options_opt uses monitors
 %type <one> single coord momentum param const input_ state let observable item map map_item each required excluded
 %type <one> assign option use monitor
-%type <list> drawn clauses several
+%type <list> members clauses several
 %type <declared> declaration
 %type <id> clause
 %type <list> rubbing laws dims indices places_bound ranges exprs args names variables
 %type <id> window
-%type <id> happening expr arith primary reach place moved bound range value comparison every number literal declared gap sides law tuple condition
+%type <id> happening expr arith primary reach place moved bound range value comparison every limit number literal declared gap sides law tuple condition
 %type <text> doc weights
 %type <unit> unit
 %type <ident> type method_name activation
@@ -131,9 +131,8 @@ stmt: single[x]                       { $$ = stmts_one($x); }
     | "exact" assigns[l]              { $$ = stmts_set_kind(ast, $l, STMT_EXACT, 0); }
     | "use" uses[l]                   { $$ = $l; }
     | "monitor" monitors[l]           { $$ = $l; }
-    | "guide" IDENT[n] dims[d] ":" sides[c] laws[r] { $$ = stmts_guide(ast, @$, $n, $d, $c, $r); }
-    | "friction" IDENT[n] dims[d] "on" place[q] ":" arith[f] { $$ = stmts_friction(ast, @$, $n, $d, $q, $f, 0); }
-    | "friction" IDENT[n] dims[d] "on" place[q] ":" arith[f] "," "static" "=" arith[s] { $$ = stmts_friction(ast, @$, $n, $d, $q, $f, $s); }
+    | "guide" IDENT[n] members[d] ":" sides[c] laws[r] { $$ = stmts_each(ast, $d.first, $d.last, stmts_guide(ast, @$, $n, $d, $c, $r)); }
+    | "friction" IDENT[n] members[d] "on" place[q] ":" arith[f] limit[s] { $$ = stmts_each(ast, $d.first, $d.last, stmts_friction(ast, @$, $n, $d, $q, $f, $s)); }
     ;
 
 single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MODEL, @$, $n, $d, NONE_STMTS); }
@@ -145,15 +144,15 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "kinetic" "=" expr[e]                   { $$ = stmt_value(ast, STMT_KINETIC, @$, $e); }
       | "potential" "=" expr[e]                 { $$ = stmt_value(ast, STMT_POTENTIAL, @$, $e); }
       | "dissipation" "=" expr[e]               { $$ = stmt_value(ast, STMT_DISSIPATION, @$, $e); }
-      | "force" place[q] "=" expr[e]            { $$ = stmt_pair(ast, STMT_FORCE, @$, $q, $e); }
+      | "force" place[q] "=" expr[e]            { $$ = stmts_each(ast, $q, $q, stmts_one(stmt_pair(ast, STMT_FORCE, @$, $q, $e))).first; }
       | "force" tuple[q] "=" expr[e]            { $$ = stmt_pair(ast, STMT_FORCE, @$, $q, $e); }
-      | "constraint" IDENT[n] dims[d] ":" arith[a] "=" expr[b] condition[w] { $$ = stmt_constraint(ast, @$, $n, $d, $a, $b, $w); }
+      | "constraint" IDENT[n] members[d] ":" arith[a] "=" expr[b] condition[w] { $$ = stmts_each(ast, $d.first, $d.last, stmts_one(stmt_constraint(ast, @$, $n, $d, $a, $b, $w))).first; }
       | "symmetry" IDENT[n] "(" names[a] ")" doc[d] ":" maps[m] { $$ = stmt_symmetry(ast, @$, $n, $a, $d, $m); }
       | "canonical" IDENT[n] variables[a] doc[d] ":" items[m] { $$ = stmt_canonical(ast, @$, $n, $a, $d, $m); }
       | "expect" IDENT[n] ":" arith[a] "=" expr[b] { $$ = stmt_equation(ast, STMT_EXPECT, @$, $n, NONE_LIST, $a, $b); }
       | "expect" arith[a] "=" expr[b]           { $$ = stmt_equation(ast, STMT_EXPECT, @$, NONE_IDENT, NONE_LIST, $a, $b); }
-      | "event" IDENT[n] dims[d] ":" arith[g] direction[w] block[b] { $$ = stmt_event(ast, @$, $n, $d, $g, $w, $b); }
-      | "kick" IDENT[n] dims[d] "every" arith[T] block[b] { $$ = stmt_event(ast, @$, $n, $d, $T, AT_EQUAL_TIMES, $b); }
+      | "event" IDENT[n] members[d] ":" arith[g] direction[w] block[b] { $$ = stmts_each(ast, $d.first, $d.last, stmts_one(stmt_event(ast, @$, $n, $d, $g, $w, $b))).first; }
+      | "kick" IDENT[n] members[d] "every" arith[T] block[b] { $$ = stmts_each(ast, $d.first, $d.last, stmts_one(stmt_event(ast, @$, $n, $d, $T, AT_EQUAL_TIMES, $b))).first; }
       | "contact" IDENT[n] dims[d] ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
       | "contact" IDENT[n] "[" ranges[d] "]" ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
       | "for" IDENT[i] "in" arith[lo] ".." arith[hi] block[b] { $$ = stmt_for(ast, @$, $i, $lo, $hi, $b); }
@@ -164,9 +163,9 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "tolerance" arith[e]                    { $$ = stmt_value(ast, STMT_TOLERANCE, @$, $e); }
       | "output" exprs[l] every[e]              { $$ = stmt_output(ast, @$, $l, $e); }
       | "measure" IDENT[n] "=" expr[e]          { $$ = stmt_measure(ast, @$, $n, $e); }
-      | "draw" SHAPE[k] drawn[d] clauses[c]     { $$ = stmt_draw(ast, @$, $k, $d, 0, 0, $c); }
-      | "draw" SHAPE[k] drawn[d] value[e] clauses[c] { $$ = stmt_draw(ast, @$, $k, $d, $e, 0, $c); }
-      | "draw" SHAPE[k] drawn[d] IDENT[n] "=" expr[e] clauses[c] { $$ = stmt_draw(ast, @$, $k, $d, ast_name(ast, $n), $e, $c); }
+      | "draw" SHAPE[k] members[d] clauses[c]     { $$ = stmt_draw(ast, @$, $k, $d, 0, 0, $c); }
+      | "draw" SHAPE[k] members[d] value[e] clauses[c] { $$ = stmt_draw(ast, @$, $k, $d, $e, 0, $c); }
+      | "draw" SHAPE[k] members[d] IDENT[n] "=" expr[e] clauses[c] { $$ = stmt_draw(ast, @$, $k, $d, ast_name(ast, $n), $e, $c); }
       | "like" IDENT[n]                         { $$ = stmt_name(ast, STMT_LIKE, @$, $n); }
       | "stop"                                  { $$ = stmt_plain(ast, STMT_STOP, @$); }
       | moved[p] "=" value[v]                   { $$ = stmt_pair(ast, STMT_SET, @$, $p, $v); }
@@ -178,7 +177,7 @@ coords: coord[x]               { $$ = stmts_one($x); }
       | coords[l] "," coord[x] { $$ = stmts_add($l, $x); }
       ;
 coord: declaration[x] periodic[p] { $$ = stmt_coord(ast, STMT_COORD, @$, $x, $p); };
-declaration: IDENT[n] dims[d] type[t] unit[u] { $$ = (AstDeclared){$n, $t, $d, $u}; };
+declaration: IDENT[n] members[d] type[t] unit[u] { $$ = (AstDeclared){$n, $t, $d, $u}; };
 
 momenta: momentum[x]                { $$ = stmts_one($x); }
        | momenta[l] "," momentum[x] { $$ = stmts_add($l, $x); }
@@ -215,7 +214,7 @@ let: IDENT[n] "=" expr[e]                       { $$ = stmt_define(ast, STMT_LET
 observed: observable[x]                   { $$ = stmts_one($x); }
         | observed[l] "," observable[x] { $$ = stmts_add($l, $x); }
         ;
-observable: IDENT[n] dims[d] unit[u] "=" expr[e] { $$ = stmt_define(ast, STMT_OBSERVE, @$, $n, $d, $u, $e); };
+observable: IDENT[n] members[d] unit[u] "=" expr[e] { $$ = stmts_each(ast, $d.first, $d.last, stmts_one(stmt_define(ast, STMT_OBSERVE, @$, $n, $d, $u, $e))).first; };
 
 requires: required[x]                 { $$ = stmts_one($x); }
         | requires[l] "," required[x] { $$ = stmts_add($l, $x); }
@@ -238,9 +237,6 @@ activation: %empty   { $$ = NONE_IDENT; }
 
 /* ---- drawings ---- */
 
-drawn: %empty                     { $$ = NONE_LIST; }
-     | "[" places_bound[l] "]"    { $$ = $l; }
-     ;
 clauses: %empty { $$ = NONE_LIST; }
        | several
        ;
@@ -261,7 +257,7 @@ map_item: map[m]  { $$ = $m; }
         | "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" each[m] { $$ = stmt_for_map(ast, @$, $i, $lo, $hi, $m); }
         ;
 each: "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" map[m] { $$ = stmt_for_map(ast, @$, $i, $lo, $hi, $m); };
-map: place[q] "->" expr[e] { $$ = stmt_pair(ast, STMT_MAP, @$, $q, $e); };
+map: place[q] "->" expr[e] { $$ = stmts_each(ast, $q, $q, stmts_one(stmt_pair(ast, STMT_MAP, @$, $q, $e))).first; };
 
 /* ---- canonical transformations ---- */
 
@@ -320,6 +316,12 @@ doc: %empty    { $$ = NONE_TEXT; }
 dims: %empty               { $$ = NONE_LIST; }
     | "[" indices[l] "]"   { $$ = $l; }
     ;
+members: %empty                  { $$ = NONE_LIST; }
+       | "[" places_bound[l] "]" { $$ = $l; }
+       ;
+limit: %empty                      { $$ = 0; }
+     | "," "static" "=" arith[s] { $$ = $s; }
+     ;
 type: %empty       { $$ = NONE_IDENT; }
     | ":" IDENT[n] { $$ = $n; }
     ;

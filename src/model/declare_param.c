@@ -88,13 +88,39 @@ typedef struct {
   VEC(Span) spans;
 } ParamValues;
 
+/* Evaluates the right side of `param m[i in 1..N] = ...` for each member, up to one that is wrong, and reported. */
+static void read_formula(const Declared *d, Name effect, ParamValues *values) {
+  Builder *b = d->b;
+  uint32_t outer = b->index.n;
+  int64_t at[2] = {1, 1};
+  Value v;
+  do {
+    AstId dim = d->st->dims;
+    for (int k = 0; dim; dim = ast_expr(b->ast, dim)->next, k++)
+      if (ast_expr(b->ast, dim)->kind == AST_BIND)
+        vec_push(b->arena, &b->index, ((IndexVar){ast_expr(b->ast, dim)->name, at[k]}));
+    v = element_value(b, &(Element){d->st->rhs, NULL}, IN_PARAM, effect);
+    vec_push(b->arena, &values->at, v);
+    vec_push(b->arena, &values->spans, ast_expr(b->ast, d->st->rhs)->span);
+    b->index.n = outer;
+  } while (v.e && next_member(&d->e, at));
+}
+
+/* Whether an index of the declaration is a range with a name. */
+static int has_range(const Builder *b, AstId dims) {
+  for (; dims; dims = ast_expr(b->ast, dims)->next)
+    if (ast_expr(b->ast, dims)->kind == AST_BIND) return 1;
+  return 0;
+}
+
 /* Evaluates the right side; 0, reported, when a list does not fit the family. */
 static int read_values(Declared *d, Name effect, ParamValues *values) {
   Builder *b = d->b;
   const AstUnit *behind;
   const AstExpr *list = list_behind(b, d->st->rhs, &behind);
   Elements elements = {0};
-  if (!list) vec_push(b->arena, &elements, ((Element){d->st->rhs, NULL}));
+  if (!list && has_range(b, d->st->dims)) read_formula(d, effect, values);
+  else if (!list) vec_push(b->arena, &elements, ((Element){d->st->rhs, NULL}));
   IndexRange r = entity_range(&d->e);
   if (list && !list_elements(b, list, behind, &r, d->st->name, &elements)) return 0;
   for (uint32_t i = 0; i < elements.n; i++) {

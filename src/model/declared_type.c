@@ -53,6 +53,18 @@ static int fits_memory(Builder *b, const AstStmt *st, const Entity *e) {
 }
 
 /* Reads the sizes of a family into e, as index ranges 1..N. */
+/* A size, N or, of parameters whose value depends on it, the range `i in 1..N`; 0, reported, on error. */
+static int read_size(Builder *b, const AstStmt *st, AstId id, Name effect, int64_t *n) {
+  const AstExpr *x = ast_expr(b->ast, id);
+  if (x->kind != AST_BIND) return resolve_whole(b, id, effect, n);
+  int64_t lo;
+  if (!resolve_whole(b, x->a, effect, &lo) || !resolve_whole(b, x->b, effect, n)) return 0;
+  if (st->kind == STMT_PARAM && lo == 1) return 1;
+  return diag_error(b->diags, x->span,
+                    "a family is declared by its size, and its members begin at 1" HELP "write `%s[%s]`", st->name,
+                    ast_text(b, x->b));
+}
+
 static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
   uint64_t all = e->parts ? e->parts : 1;
   for (AstId i = st->dims; i; i = ast_expr(b->ast, i)->next) {
@@ -62,7 +74,7 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
       report_many_indices(b, span);
       return 0;
     }
-    if (!resolve_whole(b, i, effect, &n)) return 0;
+    if (!read_size(b, st, i, effect, &n)) return 0;
     if (n < 1) return diag_error(b->diags, span, "a family has at least one member, and this is %lld", (long long)n);
     if (n > FAMILY_MAX || (all *= (uint64_t)n) > FAMILY_MAX)
       return diag_error(b->diags, span, "a family has at most %d members", FAMILY_MAX);

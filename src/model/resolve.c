@@ -114,7 +114,8 @@ static Value node_value(Eval *ev, AstId id) {
           "a table from a file gives an input its values: `input u = \"file.csv\"`, or `u = \"file.csv\"` in a scene");
     case AST_BIND:
       return refuse(b, x->span,
-                    "a range stands in `sum(i in 1..N, ...)`, and one of time in a measure, `max(x, 10..20)`");
+                    "a range stands in `sum(i in 1..N, ...)` and behind a name, `friction rub[i in 1..N] on x[i]: "
+                    "...`, and one of time in a measure, `max(x, 10..20)`");
     case AST_ERROR: return FAILED;
   }
   return FAILED;

@@ -44,7 +44,7 @@ typedef uint32_t AstId;
   X(AST_PRODUCT, NULL)  /* product(i in 1..N, e)  likewise                                   */ \
   X(AST_TUPLE, NULL)    /* (a, b, c)        args; two or more                                */ \
   X(AST_LIST, NULL)     /* {a, b, c}        args                                             */ \
-  X(AST_BIND, NULL)     /* i in 1..N        inside an index of let or start: name, a, b      */ \
+  X(AST_BIND, NULL)     /* i in 1..N        inside an index of let, param or start: name, a, b */ \
   X(AST_ERROR, NULL)    /* placeholder where the parser reported an error                    */
 
 #define AST_ENUM_(kind, text) kind,
@@ -111,7 +111,7 @@ typedef enum {
   STMT_GUIDE,
   STMT_OBSERVE,     /* name, unit, rhs */
   STMT_DRAW,        /* name = the shape, dims, lhs = what it draws or 0, rhs: of `lhs = rhs`; args: options */
-  STMT_FOR,         /* name, lhs = lo, rhs = hi, body */
+  STMT_FOR,         /* name, lhs = lo, rhs = hi, body; alone: the range stood in an index of its one statement */
   STMT_EFFECT,      /* name, doc, body */
   STMT_REQUIRES,    /* name */
   STMT_EXCLUDES,    /* name */
@@ -150,7 +150,7 @@ struct AstStmt {
   AstUnit unit;
   AstSign sign;
   AstDirection direction;
-  int periodic, exactly;
+  int periodic, exactly, alone;
   AstStmt *body, *last; /* a list, and its end */
   AstStmt *next;
 };

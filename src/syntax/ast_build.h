@@ -116,6 +116,9 @@ AstStmt *stmt_symmetry(Ast *ast, Span span, Ident name, AstList args, AstText do
 /* `canonical NAME(args): maps`: items `Q = ...` and `F2(q, P) = ...`. */
 AstStmt *stmt_canonical(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList items);
 AstStmt *stmt_event(Ast *ast, Span span, Ident name, AstList dims, AstId when, AstDirection way, StmtList body);
+/* The statements inside a `for` over each range `i in 1..N` among the expressions first .. last, in whose place its
+ * index stands: `observe u[i in 1..N] = e` is `for i in 1..N { observe u[i] = e }`. last 0: the statements alone. */
+StmtList stmts_each(Ast *ast, AstId first, AstId last, StmtList list);
 AstStmt *stmt_for(Ast *ast, Span span, Ident index, AstId lo, AstId hi, StmtList body);
 AstStmt *stmt_for_map(Ast *ast, Span span, Ident index, AstId lo, AstId hi, AstStmt *map);
 AstStmt *stmt_options(Ast *ast, AstStmtKind kind, Span span, Ident name, StmtList options);

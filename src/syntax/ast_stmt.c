@@ -17,26 +17,6 @@ StmtList stmts_join(StmtList a, StmtList b) {
 
 StmtList stmts_add(StmtList list, AstStmt *s) { return stmts_join(list, stmts_one(s)); }
 
-/* Reports `i in 1..N` in an index on the left of a statement with one equation a member: `for` says that. */
-static void refuse_bind(Ast *ast, const AstStmt *s) {
-  for (AstId id = ast_expr(ast, s->lhs)->first; id && id <= s->lhs; id++) {
-    const AstExpr *e = ast_expr(ast, id);
-    if (e->kind != AST_BIND) continue;
-    diag_error(ast->diags, e->span, "`%s in …` cannot stand in this index", e->name);
-    diag_help(ast->diags, "write `for %s in 1..N { … }` around the statement", e->name);
-    return;
-  }
-}
-
-StmtList stmts_set_kind(Ast *ast, StmtList list, AstStmtKind kind, int exactly) {
-  for (AstStmt *s = list.first; s; s = s->next) {
-    s->kind = kind;
-    s->exactly = exactly;
-    if (kind == STMT_FLOW) refuse_bind(ast, s);
-  }
-  return list;
-}
-
 AstStmt *stmt_plain(Ast *ast, AstStmtKind kind, Span span) {
   AstStmt *s = ARENA_NEW(ast->arena, AstStmt);
   s->kind = kind;
@@ -49,6 +29,36 @@ AstStmt *stmt_name(Ast *ast, AstStmtKind kind, Span span, Ident name) {
   s->name = name.name;
   if (name.name) s->name_span = name.span;
   return s;
+}
+
+StmtList stmts_each(Ast *ast, AstId first, AstId last, StmtList list) {
+  for (AstId id = last; last && id >= ast_expr(ast, first)->first; id--) {
+    AstExpr *e = &ast->exprs.at[id];
+    if (e->kind != AST_BIND) continue;
+    AstStmt *each = stmt_name(ast, STMT_FOR, list.first->span, (Ident){e->name, e->op_span});
+    each->lhs = e->a;
+    each->rhs = e->b;
+    each->body = list.first;
+    each->last = list.last;
+    each->alone = 1;
+    e->kind = AST_NAME;
+    e->span = e->op_span;
+    e->a = e->b = 0;
+    list = stmts_one(each);
+  }
+  return list;
+}
+
+StmtList stmts_set_kind(Ast *ast, StmtList list, AstStmtKind kind, int exactly) {
+  StmtList all = {0};
+  for (AstStmt *s = list.first, *next; s; s = next) {
+    next = s->next;
+    s->next = NULL;
+    s->kind = kind;
+    s->exactly = exactly;
+    all = stmts_join(all, kind == STMT_FLOW ? stmts_each(ast, s->lhs, s->lhs, stmts_one(s)) : stmts_one(s));
+  }
+  return all;
 }
 
 /* A statement that declares a name. */
@@ -171,7 +181,6 @@ AstStmt *stmt_value(Ast *ast, AstStmtKind kind, Span span, AstId rhs) {
 AstStmt *stmt_pair(Ast *ast, AstStmtKind kind, Span span, AstId lhs, AstId rhs) {
   AstStmt *s = stmt_value(ast, kind, span, rhs);
   s->lhs = lhs;
-  if (kind == STMT_FORCE || kind == STMT_MAP) refuse_bind(ast, s);
   return s;
 }
 
@@ -270,8 +279,8 @@ AstStmt *stmt_canonical(Ast *ast, Span span, Ident name, AstList args, AstText d
 
 StmtList maps_add(StmtList maps, AstStmt *item) {
   AstStmt *each = maps.last;
-  while (each && each->kind == STMT_FOR && each->last->kind == STMT_FOR) each = each->last;
-  if (item->kind != STMT_MAP || !each || each->kind != STMT_FOR) return stmts_add(maps, item);
+  while (each && each->kind == STMT_FOR && each->last->kind == STMT_FOR && !each->last->alone) each = each->last;
+  if (item->kind != STMT_MAP || !each || each->kind != STMT_FOR || each->alone) return stmts_add(maps, item);
   StmtList body = stmts_add((StmtList){each->body, each->last}, item);
   each->last = body.last;
   return maps;

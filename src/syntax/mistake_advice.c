@@ -199,6 +199,7 @@ static const struct {
     {TOK_METHOD, ANY, TOK_LPAREN, ANY, "options stand in parentheses: `method %s(step = 0.01)`"},
     {ANY, TOK_COMMA, TOK_IN, ANY, "a range is written `i in 1..N`"},
     {ANY, TOK_ASSIGN, TOK_IN, ANY, "a range is written `i in 1..N`"},
+    {ANY, TOK_IN, TOK_RBRACKET, ANY, "`for i in 1..N { … }` around a statement makes one for each i"},
     {ANY, ANY, TOK_IN, TOK_TIMES, "a range is written `i in 1..N`, a sum over it `sum(i in 1..N, x[i])`"},
     {ANY, TOK_COMMA, TOK_RANGE, ANY, "a range is written `i in 1..N`"},
     {ANY, TOK_COMMA, TOK_RPAREN, ANY, "a function with several arguments has no `.` in its name: `pow(x, 2)`"},
