@@ -87,7 +87,7 @@ scene s { start x = 2 [m], y' = 1 [m/s], T = 20; span 3; tolerance 1e-12; measur
 LAG
 "$LAGC" run functions.lag --measure 'a=sinh(end/1[s])' --measure 'b=sech(x(1)/1[m])' --measure 'c=apart(max(y), y(1))' --measure 'd=tanh(y(1)/1[m]) + cbrt(8) + floor(2.5)' \
   --measure 'e=max(x, 150)' --measure 'f=hypot(max(x), max(y))' --measure 'g=max(y*y)^(1/2)' --measure 'h=max(y)*k' --measure 'i=asin(max(y)/1[m])' --measure 'j=max(x)/min(x)' --measure 'k=T' \
-  --measure 'l=drift(T)' --measure 'm=sign(min(x))*abs(min(x))' --measure 'n=pow(max(y), 2)' --measure 'o=max(twice(x) + 1)' --measure 'p=energy(1)/lagrangian(0)' --measure 't(2)' >out 2>err
+  --measure 'l=drift(T)' --measure 'm=sign(min(x))*abs(min(x))' --measure 'n=pow(max(y), 2)' --measure 'o=max(twice(x) + 1)' --measure 'p=energy(1)/lagrangian(0)' --measure 'q=mod(-2.5*max(y), 2 [m])' --measure 't(2)' >out 2>err
 sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
 check "a hyperbolic sine" near a 10.017874927409903 '' 1e-9      # sinh 3
 check "a function that a text defines" near b 0.6086703740847927 '' 1e-9 # 1/cosh(2 cos 1)
@@ -99,6 +99,7 @@ check "a unit to a power" near g 1 m 1e-9
 check "a unit that is no declared one" near h 1 N 1e-9
 check "an angle" near i 1.5707963267948966 rad 1e-4             # asin is steep there: the error's root
 check "a ratio" near j -1.0101 '' 2e-2                           # min x = 2 cos 3 = -1.98
+check "a remainder, of the sign of what divides" near q 1.5 m 1e-9 # -2.5 + 2*2
 check "a temperature" near k 20 degC 1e-9
 check "a difference of temperatures" near l 0 degC 1e-9
 check "a sign" near m -197.998499 cm 1e-5                        # 2 cos 3
