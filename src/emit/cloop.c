@@ -323,8 +323,9 @@ static void write_turn_end(Writer *w, const Body *b) {
   const Loop *l = b->l;
   for (uint32_t k = 0; k < l->stores.n; k++) {
     const LoopStore *s = &l->stores.at[k];
-    cwriter_statement(w, arena_printf(w->a, "%s[%s] = %s;", w->style->out[s->array], index_text(w, s->index, s->step),
-                                      cwriter_operand(w, code_of(w, l, 0, s->offset)).text));
+    const char *index = index_text(w, s->index, s->step), *x = cwriter_operand(w, code_of(w, l, 0, s->offset)).text;
+    cwriter_statement(w, arena_printf(w->a, "%s%s[%s] = %s;", cwriter_guard(w, index), w->style->out[s->array], index,
+                                      x));
     sb_printf(w->out, " /* %s ... %s */\n", comment_text(w->a, s->first), comment_text(w->a, s->last));
   }
   for (uint32_t k = 0; k < l->period; k++) {
@@ -406,7 +407,8 @@ uint32_t cloop_stores(const Writer *w, uint32_t k) {
 
 void cloop_write_stores(Writer *w, uint32_t k, uint32_t n) {
   const Store *first = &w->p->stores.at[k];
-  cwriter_statement(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) %s[%s] = %s;", n, w->style->out[first->array],
-                                    index_text(w, first->index, 1), stored_value(w, first)));
+  const char *index = index_text(w, first->index, 1);
+  cwriter_statement(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) %s%s[%s] = %s;", n, cwriter_guard(w, index),
+                                    w->style->out[first->array], index, stored_value(w, first)));
   sb_printf(w->out, " /* %s ... %s */\n", comment_text(w->a, first->comment), comment_text(w->a, first[n - 1].comment));
 }

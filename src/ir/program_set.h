@@ -75,9 +75,15 @@ typedef struct {
   int a[3], b[3], size[3], turn[4], count;
 } IrShape;
 
+/* Values of parameters first ... first + n - 1, none of which reads another of them. out 0: p */
+typedef struct {
+  uint32_t first, n;
+  const Prog *values;
+} IrParams;
+
 typedef struct {
   const char *name, *doc;
-  const Prog *const *params; /* [np] */
+  VEC(IrParams) params; /* all parameters, in order */
   const Prog *start, *observe;
   VEC(IrMove) moves;  /* found with the scene's parameters; for emitted programs that do no such search */
   double t0, t1;

@@ -433,10 +433,10 @@ void unit_add_scene(ProgramSet *u, const Eqns *e) {
                .name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .t1_digits = sc->t1_digits,
                .has_span = sc->has_span, .method = sc->method, .tolerance = sc->tolerance,
                .every = sc->every};
-  const Prog **params = ARENA_ARRAY(m->arena, const Prog *, m->params.n + 1);
-  for (uint32_t i = 0; i < m->params.n; i++)
-    if (!m->params.at[i].fixed) params[m->params.at[i].place] = lower_param(e, i);
-  s.params = params;
+  for (uint32_t i = 0, n = 0; n < u->p.n; n += s.params.at[s.params.n - 1].n) {
+    IrParams some = lower_params(e, &i);
+    vec_push(m->arena, &s.params, some);
+  }
   s.start = lower_start(e);
   add_implied(&s, m);
   s.observe = lower_outputs(e);

@@ -582,12 +582,41 @@ Prog *lower_closed_forms(const Eqns *e) {
   return outputs_once(&l);
 }
 
-Prog *lower_param(const Eqns *e, uint32_t i) {
+/* The tidy program; the memory of the lowering is given up. */
+static Prog *tidied(Lower *l) {
+  Prog *p = prog_tidy(l->p);
+  prog_release(l->p);
+  arena_release(l->slots.arena, l->slots.at, l->slots.cap * sizeof *l->slots.at);
+  return p;
+}
+
+/* Whether a value reads parameters of the model from number `first` on. */
+static int reads_params_from(ExprGraph *g, Expr value, uint32_t first) {
+  if (!(expr_kinds(g, value) & 1u << SYM_PARAM)) return 0;
+  ExprList l = expr_topo(g, &value, 1);
+  for (uint32_t k = 0; k < l.n; k++) {
+    const Symbol *s = expr_op(g, l.at[k]) == EX_SYM ? expr_sym_of(g, l.at[k]) : NULL;
+    if (s && s->kind == SYM_PARAM && s->index >= first) return 1;
+  }
+  return 0;
+}
+
+IrParams lower_params(const Eqns *e, uint32_t *i) {
+  const Model *m = e->m;
   Lower l = lower_by_text(e);
-  const Param *p = &e->m->params.at[i];
-  lower_roots(&l, &p->value, 1);
-  prog_store(l.p, 0, p->place, lower_slot(&l, p->value), p->name);
-  return prog_tidy(l.p);
+  IrParams r = {0};
+  uint32_t from = *i;
+  for (; *i < m->params.n; ++*i) {
+    const Param *p = &m->params.at[*i];
+    if (p->fixed) continue;
+    if (r.n && reads_params_from(e->g, p->value, from)) break;
+    if (!r.n) r.first = p->place;
+    lower_roots(&l, &p->value, 1);
+    prog_store(l.p, 0, p->place, lower_slot(&l, p->value), p->name);
+    r.n++;
+  }
+  r.values = tidied(&l);
+  return r;
 }
 
 Prog *lower_start(const Eqns *e) {
@@ -595,5 +624,5 @@ Prog *lower_start(const Eqns *e) {
   const Scene *sc = &e->m->scene;
   for (uint32_t i = 0; i < sc->starts.n; i++) lower_roots(&l, &sc->starts.at[i].value, 1);
   for (uint32_t i = 0; i < sc->starts.n; i++) store_target(&l, sc->starts.at[i].target, sc->starts.at[i].value);
-  return prog_tidy(l.p);
+  return tidied(&l);
 }
