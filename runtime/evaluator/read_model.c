@@ -513,15 +513,11 @@ static void read_outputs(Bytes *b, const Reader *r, EvaluatedScene *s) {
 }
 
 static void read_params(Bytes *b, const Reader *alone, EvaluatedScene *s) {
-  int np = s->of->model.np, left = np;
-  s->nparams = (int)lag_bytes_count(b, 8);
-  EvaluatedParams *x = lag_bytes_room(b, (size_t)s->nparams, sizeof *x);
-  for (int i = 0; x && i < s->nparams; i++) {
-    x[i].n = lag_bytes_int(b, 1, left), left -= x[i].n;
-    x[i].values = program(alone, np, 0, 0);
-  }
-  lag_bytes_need(b, !left, "a parameter has no value");
-  s->params = x;
+  int left = alone->m->model.np;
+  EvaluatedParams *x = list(b, &s->nparams, 8, sizeof *x);
+  for (int i = 0; x && i < s->nparams; i++)
+    x[i].n = lag_bytes_int(b, 1, left), left -= x[i].n, x[i].values = program(alone, alone->m->model.np, 0, 0);
+  if (lag_bytes_need(b, !left, "a parameter has no value")) s->params = x;
 }
 
 static const lag_scene *read_scene(Bytes *b, const Reader *r) {

@@ -63,11 +63,22 @@ const char *shortest_double(Arena *a, double x) {
   return arena_strdup(a, text);
 }
 
+/* Whether statements, indented by two spaces, declare names outside of loops. */
+static int declares(const char *body) {
+  for (; *body; body += strcspn(body, "\n"), body += *body != '\0') {
+    const char *type = strstr(body, "_REAL ");
+    if (type && type < body + strcspn(body, "\n") && strncmp(body, "   ", 3) != 0 && strncmp(body, "  for", 5) != 0)
+      return 1;
+  }
+  return 0;
+}
+
 /* Statements under a condition, or none, and in a block where they declare names. */
 static void write_guarded(const char *condition, const char *body, StrBuf *out) {
+  int block = declares(body);
   body += strspn(body, "\n ");
-  int one = strchr(body, '\n') == body + strlen(body) - 1, declares = strstr(body, "_REAL ") != NULL;
-  if (!declares && (one || !*condition)) {
+  int one = strchr(body, '\n') == body + strlen(body) - 1;
+  if (!block && (one || !*condition)) {
     sb_printf(out, "  %s%s", condition, body);
     return;
   }

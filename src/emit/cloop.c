@@ -386,6 +386,9 @@ static const char *stored_value(const Writer *w, const Store *first) {
   Slot x = first[0].slot, y = first[1].slot;
   const Ins *i = &w->p->ins.at[x];
   if (x == y) return cwriter_operand(w, x).text;
+  Num unit;
+  int64_t start;
+  if (roll_number(i, &w->p->ins.at[y], &unit, &start)) return multiple(w, unit, index_text(w, start, 1)).text;
   if (i->op == IR_LOAD)
     return arena_printf(w->a, "%s[%s]", cwriter_array(w, i->array),
                         index_text(w, i->index, (int64_t)w->p->ins.at[y].index - i->index));
@@ -400,7 +403,7 @@ uint32_t cloop_stores(const Writer *w, uint32_t k) {
   if (k + fewest > p->stores.n || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0))
     return 0;
   if (w->style->params && p->ins.at[first->slot].op == IR_LOAD && p->ins.at[first->slot].array == ARR_P) return 0;
-  uint32_t n = 1;
+  uint32_t n = roll_constants(p, k);
   while (k + n < p->stores.n && follows(w, first, n)) n++;
   return n >= fewest ? n : 0;
 }

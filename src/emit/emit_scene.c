@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "emit/emit_impl.h"
+#include "ir/roll.h"
 
 /* Whether a store is of a constant; *n: which. */
 static int is_constant(const Prog *p, const Store *x, Num *n) {
@@ -10,13 +11,15 @@ static int is_constant(const Prog *p, const Store *x, Num *n) {
   return !x->slot || i->op == IR_CONST;
 }
 
-/* Number of stores from k on that are constants of neighbouring elements; same: of one value. */
-static uint32_t constants_from(const Prog *p, uint32_t k, int same) {
+enum { MANY = 16 }; /* stores that are a loop of their own */
+
+/* Number of stores from k on that are constants of neighbouring elements, up to the next loop. */
+static uint32_t constants_from(const Prog *p, uint32_t k) {
   const Store *x = p->stores.at + k;
   uint32_t n = 0;
   Num value;
   while (k + n < p->stores.n && x[n].array == x[0].array && x[n].index == x[0].index + n &&
-         is_constant(p, &x[n], &value) && (!same || x[n].slot == x[0].slot))
+         is_constant(p, &x[n], &value) && (!n || roll_constants(p, k + n) < MANY))
     n++;
   return n;
 }
@@ -38,16 +41,16 @@ static void constant_table(const ModelFile *f, const Prog *p, const Store *x, ui
             x->index);
 }
 
-/* Writes long runs of constants as tables, which C compilers read in linear time; returns the other stores, for which
- * there are loops where many store one value. */
+/* Writes long runs of constants as tables, which C compilers read in linear time; returns the other stores, and
+ * those that are even: loops write them. */
 static Prog constant_tables(const ModelFile *f, const Prog *p, const CStyle *style) {
-  enum { LONG = 1000, MANY = 16 };
+  enum { LONG = 1000 };
   Prog rest = *p;
   memset(&rest.stores, 0, sizeof rest.stores);
   for (uint32_t k = 0; k < p->stores.n;) {
     const Store *x = &p->stores.at[k];
-    uint32_t same = constants_from(p, k, 1), n = same >= MANY ? same : constants_from(p, k, 0);
-    int is_table = n >= LONG && n > same;
+    uint32_t even = roll_constants(p, k), n = even >= MANY ? even : constants_from(p, k);
+    int is_table = n >= LONG && n > even;
     if (is_table) constant_table(f, p, x, n, style);
     for (uint32_t i = 0; !is_table && i < (n ? n : 1); i++) vec_push(f->a, &rest.stores, x[i]);
     k += n ? n : 1;

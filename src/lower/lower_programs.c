@@ -13,7 +13,7 @@ Lower lower_new(const Eqns *e) {
   return (Lower){.e = e, .g = e->g, .p = p, .slots = expr_map(a), .circular = expr_map(a)};
 }
 
-static Lower lower_by_text(const Eqns *e) {
+Lower lower_by_text(const Eqns *e) {
   Lower l = lower_new(e);
   l.by_text = 1;
   return l;
@@ -491,18 +491,19 @@ Prog *lower_switch_rates(const Eqns *e) {
   return lower_outputs_seldom(&l);
 }
 
-static uint32_t array_of_target(SymKind k) { return k == SYM_COORD ? 0 : k == SYM_VEL ? 1 : 2; }
+uint32_t lower_array_of_target(SymKind k) { return k == SYM_COORD ? 0 : k == SYM_VEL ? 1 : 2; }
 
-static void store_target(Lower *l, SymId target, Expr value) {
+void lower_store_target(Lower *l, SymId target, Expr value) {
   const Symbol *s = expr_symbol(l->g, target);
-  prog_store(l->p, array_of_target(s->kind), s->index, lower_slot(l, value), s->name);
+  prog_store(l->p, lower_array_of_target(s->kind), s->index, lower_slot(l, value), s->name);
 }
 
 Prog *lower_action(const Eqns *e, uint32_t event) {
   Lower l = lower_by_text(e);
   const Event *ev = &e->m->events.at[event];
   for (uint32_t i = 0; i < ev->actions.n; i++) lower_roots(&l, &ev->actions.at[i].value, 1);
-  for (uint32_t i = 0; i < ev->actions.n; i++) store_target(&l, ev->actions.at[i].target, ev->actions.at[i].value);
+  for (uint32_t i = 0; i < ev->actions.n; i++)
+    lower_store_target(&l, ev->actions.at[i].target, ev->actions.at[i].value);
   return prog_tidy(l.p);
 }
 
@@ -580,49 +581,4 @@ Prog *lower_closed_forms(const Eqns *e) {
   const Scene *sc = &e->m->scene;
   for (uint32_t i = 0; i < sc->exacts.n; i++) lower_output(&l, sc->exacts.at[i].value, sc->exacts.at[i].name);
   return outputs_once(&l);
-}
-
-/* The tidy program; the memory of the lowering is given up. */
-static Prog *tidied(Lower *l) {
-  Prog *p = prog_tidy(l->p);
-  prog_release(l->p);
-  arena_release(l->slots.arena, l->slots.at, l->slots.cap * sizeof *l->slots.at);
-  return p;
-}
-
-/* Whether a value reads parameters of the model from number `first` on. */
-static int reads_params_from(ExprGraph *g, Expr value, uint32_t first) {
-  if (!(expr_kinds(g, value) & 1u << SYM_PARAM)) return 0;
-  ExprList l = expr_topo(g, &value, 1);
-  for (uint32_t k = 0; k < l.n; k++) {
-    const Symbol *s = expr_op(g, l.at[k]) == EX_SYM ? expr_sym_of(g, l.at[k]) : NULL;
-    if (s && s->kind == SYM_PARAM && s->index >= first) return 1;
-  }
-  return 0;
-}
-
-IrParams lower_params(const Eqns *e, uint32_t *i) {
-  const Model *m = e->m;
-  Lower l = lower_by_text(e);
-  IrParams r = {0};
-  uint32_t from = *i;
-  for (; *i < m->params.n; ++*i) {
-    const Param *p = &m->params.at[*i];
-    if (p->fixed) continue;
-    if (r.n && reads_params_from(e->g, p->value, from)) break;
-    if (!r.n) r.first = p->place;
-    lower_roots(&l, &p->value, 1);
-    prog_store(l.p, 0, p->place, lower_slot(&l, p->value), p->name);
-    r.n++;
-  }
-  r.values = tidied(&l);
-  return r;
-}
-
-Prog *lower_start(const Eqns *e) {
-  Lower l = lower_by_text(e);
-  const Scene *sc = &e->m->scene;
-  for (uint32_t i = 0; i < sc->starts.n; i++) lower_roots(&l, &sc->starts.at[i].value, 1);
-  for (uint32_t i = 0; i < sc->starts.n; i++) store_target(&l, sc->starts.at[i].target, sc->starts.at[i].value);
-  return tidied(&l);
 }

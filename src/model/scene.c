@@ -187,7 +187,7 @@ static void give_param(Builder *b, uint32_t i, Expr e, Span span, void *data) {
 }
 
 static void set_value(Builder *b, const AstStmt *st, Name effect) {
-  static const Assigner assigner = {IN_START, param_unit, give_param, NULL, NULL};
+  static const Assigner assigner = {IN_START, param_unit, give_param, NULL, NULL, NULL};
   if (!effect && advise_statement(b, st)) return;
   Target p = read_target(b, st->lhs);
   const Entity *e = find_settable(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
