@@ -29,8 +29,9 @@ static double longer(const Unit *w, double x, const char *digits) {
 static void variables(const Unit *w, const IrVar *v, uint32_t n) {
   word(w, n);
   for (uint32_t i = 0; i < n; i++) {
-    text(w, v[i].name), text(w, v[i].unit);
-    number(w, longer(w, v[i].factor, decimal_literal(w->u->arena, v[i].ratio, v[i].pi_power))), number(w, v[i].offset);
+    const IrUnit *u = v[i].unit;
+    text(w, v[i].name), text(w, u->text);
+    number(w, longer(w, u->factor, decimal_literal(w->u->arena, u->ratio, u->pi_power))), number(w, u->offset);
     integer(w, v[i].periodic), integer(w, v[i].sign);
   }
 }

@@ -230,7 +230,7 @@ static int units(const Header *h) {
   StrBuf text = strbuf(h->a);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t first = 0;
-    while (strcmp(q[first].unit, q[i].unit) != 0) first++;
+    while (strcmp(q[first].unit->text, q[i].unit->text) != 0) first++;
     several |= first;
     sb_printf(&text, "%s%u", i ? ", " : "", first);
   }

@@ -114,7 +114,8 @@ struct Builder {
   ExprGraph *g;
   Model *m;
   Scope scope, members, constraints;
-  Scope outputs; /* the scene's outputs by label; index into Scene.outputs */
+  Scope outputs; /* the first `labelled` of the scene's outputs by label; index into Scene.outputs */
+  uint32_t labelled;
   Rotations rotations;
   VEC(SpinStart) spins; /* start values of angular velocities */
   Scope *named; /* names of events, constraints and expectations; NULL: none yet */

@@ -265,6 +265,8 @@ static void scene_statement(Builder *b, const AstStmt *st) {
 /* Outputs of a scene without an output statement: coordinates, velocities, states, energy. */
 static void default_outputs(Builder *b) {
   Model *m = b->m;
+  m->scene.outputs.cap = 2 * m->coords.n + m->states.n + 1;
+  m->scene.outputs.at = ARENA_ARRAY(b->arena, Output, m->scene.outputs.cap);
   for (int velocities = 0; velocities < 2; velocities++)
     for (uint32_t i = 0; i < m->coords.n; i++) {
       const Coord *c = &m->coords.at[i];
