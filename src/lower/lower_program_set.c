@@ -22,8 +22,8 @@ static const IrUnit *ir_unit(Units *all, const Unit *u) {
   const Model *m = all->m;
   for (uint32_t k = 0; k < all->of.n; k++) {
     const Unit *x = &all->of.at[k];
-    if (strcmp(x->text, u->text) == 0 && x->dim == u->dim && num_equal(x->factor, u->factor) && x->pi_power == u->pi_power &&
-        num_equal(x->offset, u->offset))
+    if (strcmp(x->text, u->text) == 0 && x->dim == u->dim && x->pi_power == u->pi_power &&
+        num_equal(x->factor, u->factor) && num_equal(x->offset, u->offset))
       return all->units.at[k];
   }
   Dim d = dim_resolved(m->dims, u->dim);

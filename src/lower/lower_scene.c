@@ -24,16 +24,17 @@ IrParams lower_params(const Eqns *e, uint32_t *i) {
   const Model *m = e->m;
   Lower l = lower_by_text(e);
   IrParams r = {0};
-  uint32_t from = *i;
-  for (; *i < m->params.n; ++*i) {
-    const Param *p = &m->params.at[*i];
-    if (p->fixed) continue;
-    if (r.n && reads_params_from(e->g, p->value, from)) break;
-    if (!r.n) r.first = p->place;
-    lower_roots(&l, &p->value, 1);
-    prog_store(l.p, 0, p->place, lower_slot(&l, p->value), p->name);
-    r.n++;
+  VEC(Expr) roots = {0};
+  const Param *from = &m->params.at[*i], *end = from;
+  for (; *i < m->params.n; ++*i, ++end) {
+    if (end->fixed) continue;
+    if (r.n && reads_params_from(e->g, end->value, (uint32_t)(from - m->params.at))) break;
+    if (!r.n++) r.first = end->place;
+    vec_push(m->arena, &roots, end->value);
   }
+  lower_roots(&l, roots.at, roots.n);
+  for (const Param *p = from; p < end; p++)
+    if (!p->fixed) prog_store(l.p, 0, p->place, lower_slot(&l, p->value), p->name);
   r.values = tidied(&l);
   return r;
 }

@@ -191,17 +191,21 @@ static int computes_with_indices(const Builder *b, AstId after, AstId rhs) {
 static int is_finite(const Builder *b, const FamilyValue *x) {
   const Model *m = b->m;
   long double *symbols = model_constants(m), y[4];
-  for (uint32_t i = 0; i < m->params.n; i++)
+  unsigned kinds = 0;
+  int finite = 1;
+  for (uint32_t k = 0; k < x->n; k++) kinds |= expr_kinds(b->g, x->value[k]);
+  for (uint32_t i = 0; i < m->params.n && kinds & 1u << SYM_PARAM; i++)
     if (m->params.at[i].value) expr_eval(b->g, &m->params.at[i].value, 1, symbols, &symbols[m->params.at[i].sym]);
-  for (int64_t i = 0; i < x->range.rows; i++)
-    for (int64_t j = 0; j < x->range.turns; j++) {
-      symbols[x->index[0]] = (long double)(x->lo[0] + i);
-      symbols[x->index[1]] = (long double)(x->lo[1] + j);
-      expr_eval(b->g, x->value, x->n, symbols, y);
-      for (uint32_t k = 0; k < x->n; k++)
-        if (!isfinite(y[k])) return 0;
-    }
-  return 1;
+  EvalTape *tape = eval_tape(b->g, x->value, x->n);
+  for (int64_t t = 0; finite && t < x->range.rows * x->range.turns; t++) {
+    symbols[x->index[0]] = (long double)(x->lo[0] + t / x->range.turns);
+    symbols[x->index[1]] = (long double)(x->lo[1] + t % x->range.turns);
+    eval_run(tape, symbols, y);
+    for (uint32_t k = 0; k < x->n; k++) finite &= isfinite(y[k]) != 0;
+  }
+  eval_tape_free(b->g, tape);
+  arena_release(b->arena, symbols, (expr_symbol_count(b->g) + 1) * sizeof *symbols);
+  return finite;
 }
 
 /* Assigns one formula to many members at once; 0: each is to have its own. */

@@ -79,13 +79,15 @@ void model_eval_starts(const Model *m, long double *symbols) {
   for (uint32_t k = 0; k < sc->family_starts.n; k++) {
     const FamilyStart *f = &sc->family_starts.at[k];
     const FamilyValue *x = &f->of;
+    EvalTape *tape = eval_tape(m->g, x->value, x->n);
     for (int64_t t = 0; t < x->range.rows * x->range.turns; t++) {
       int64_t i = t / x->range.turns, j = t % x->range.turns;
       symbols[x->index[0]] = (long double)(x->lo[0] + i);
       symbols[x->index[1]] = (long double)(x->lo[1] + j);
-      expr_eval(m->g, x->value, x->n, symbols, y);
+      eval_run(tape, symbols, y);
       for (uint32_t c = 0; c < x->n; c++) symbols[model_start_target(m, f, i, j, c)] = y[c];
     }
+    eval_tape_free(m->g, tape);
   }
   for (uint32_t i = 0; i < sc->starts.n; i++)
     expr_eval(m->g, &sc->starts.at[i].value, 1, symbols, &symbols[sc->starts.at[i].target]);
