@@ -75,9 +75,9 @@ static void params_struct(const Header *h) {
   if (!h->u->p.n) sb_puts(h->out, "  char none; /* C has no empty struct */\n");
   for (uint32_t i = 0; i < h->u->p.n; i++) {
     const IrVar *v = &h->u->p.at[i];
-    const char *text =
-        arena_printf(h->a, "%s%s, default %s%s", unit_text(h, v->unit), sign_text(v->sign),
-                     shortest_double(h->a, (double)value[i]), v->unit->factor == 1 && v->unit->offset == 0 ? "" : " (SI)");
+    int converts = v->unit->factor != 1 || v->unit->offset != 0;
+    const char *text = arena_printf(h->a, "%s%s, default %s%s", unit_text(h, v->unit), sign_text(v->sign),
+                                    shortest_double(h->a, (double)value[i]), converts ? " (SI)" : "");
     if (*text == ' ' || *text == ',') text++;
     sb_printf(h->out, "  %s_REAL %s; /* %s */\n", h->upper, h->fields[i],
               comment_text(h->a, *text == ' ' ? text + 1 : text));
