@@ -134,8 +134,14 @@ static int inputs(const void *self, double t, const double *p, double *u) {
 static void params(const void *self, double *p, const unsigned char *fixed) {
   const EvaluatedScene *s = scene_of(self);
   const double *const in[PROGRAM_ARRAY_COUNT] = {[PROGRAM_P] = p};
-  for (int i = 0; i < s->of->model.np; i++)
-    if (!fixed[i] && s->params[i] && run_alone(s->params[i], in, (double *[]){p}) != LAG_OK) p[i] = NAN;
+  double *value = malloc(((size_t)s->of->model.np + 1) * sizeof *value);
+  for (int k = 0, i = 0; k < s->nparams; k++) {
+    const EvaluatedParams *x = &s->params[k];
+    int failed = !value || !x->values || run_alone(x->values, in, (double *[]){value}) != LAG_OK;
+    for (int end = i + x->n; i < end; i++)
+      if (!fixed[i]) p[i] = failed ? NAN : value[i];
+  }
+  free(value);
   if (s->of->derive) derive(&s->of->model, p);
 }
 

@@ -73,10 +73,17 @@ typedef struct {
   const Program *of, *momenta;
 } EvaluatedAction;
 
+/* Values of the next n parameters, none of which reads another of them. */
+typedef struct {
+  int n;
+  const Program *values;
+} EvaluatedParams;
+
 typedef struct {
   lag_scene scene;
   const EvaluatedModel *of;
-  const Program *const *params;
+  const EvaluatedParams *params;
+  int nparams;
   const Program *start, *observe, *exact;
   int nactions, nrow; /* nrow: inputs, modes and closed forms that observe finds in u */
   const EvaluatedAction *action;

@@ -64,9 +64,10 @@ typedef struct {
   TurnLevel level;
 } TurnIns;
 
-/* Term that a turn adds to a sum, or subtracts. */
+/* Term that a turn adds to a sum, or (1) subtracts; NEST_SETS + k: that it stores in array k. */
+enum { NEST_SETS = 3 };
 typedef struct {
-  uint32_t minus, subscript, value;
+  uint32_t how, subscript, value;
   int moves;
 } TurnSum;
 
@@ -125,7 +126,7 @@ uint64_t lag_near_room(int members);
 uint64_t lag_tree_room(int members);
 
 /* Runs a nest of the program; see lag_run_program. */
-void lag_run_nest(const Program *p, const Nest *n, const double *const *in, double *r);
+void lag_run_nest(const Program *p, const Nest *n, const double *const *in, double *const *out, double *r);
 
 enum { NEST_BLOCK = 64 }; /* turns that an operation of a nest computes at once */
 

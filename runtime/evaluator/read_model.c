@@ -512,6 +512,14 @@ static void read_outputs(Bytes *b, const Reader *r, EvaluatedScene *s) {
   s->observe = wanted(&with, 1, c->nout, 0);
 }
 
+static void read_params(Bytes *b, const Reader *alone, EvaluatedScene *s) {
+  int left = alone->m->model.np;
+  EvaluatedParams *x = list(b, &s->nparams, 8, sizeof *x);
+  for (int i = 0; x && i < s->nparams; i++)
+    x[i].n = lag_bytes_int(b, 1, left), left -= x[i].n, x[i].values = program(alone, alone->m->model.np, 0, 0);
+  if (lag_bytes_need(b, !left, "a parameter has no value")) s->params = x;
+}
+
 static const lag_scene *read_scene(Bytes *b, const Reader *r) {
   EvaluatedScene *s = lag_bytes_room(b, 1, sizeof *s);
   if (!s) return NULL;
@@ -523,9 +531,7 @@ static const lag_scene *read_scene(Bytes *b, const Reader *r) {
   c->every = lag_bytes_number(b);
   c->has_span = flag(b), c->exactly = flag(b);
   Reader alone = without_state(r, 0);
-  const Program **params = lag_bytes_room(b, (size_t)m->np, sizeof *params);
-  for (int i = 0; params && i < m->np; i++) params[i] = program(&alone, m->np, 0, 0);
-  s->params = params;
+  read_params(b, &alone, s);
   s->start = program(&alone, m->nq, m->nq, m->nz);
   unsigned char *given = m->constraints ? lag_bytes_room(b, (size_t)r->ny, 1) : NULL;
   for (int i = 0; given && i < r->ny; i++) given[i] = (unsigned char)lag_bytes_int(b, 0, 2);

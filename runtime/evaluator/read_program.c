@@ -230,12 +230,15 @@ static void read_turn(Bytes *b, const Program *p, const Lengths *of, Nest *n) {
   n->nsums = lag_bytes_count(b, 12);
   TurnSum *sum = lag_bytes_room(b, n->nsums, sizeof *sum);
   for (uint32_t k = 0; sum && k < n->nsums; k++) {
-    sum[k].minus = lag_bytes_below(b, 2);
+    sum[k].how = lag_bytes_below(b, NEST_SETS + PROGRAM_OUTPUTS);
     sum[k].subscript = lag_bytes_below(b, n->nsubscripts);
     sum[k].value = lag_bytes_below(b, n->nins + 1);
     if (b->why) return;
     sum[k].moves = n->at[sum[k].subscript].by_turn != 0;
-    lag_bytes_need(b, is_within(range_of(b, n, sum[k].subscript), p->ncells), "a turn adds out of range");
+    int sets = sum[k].how >= NEST_SETS;
+    lag_bytes_need(b, sum[k].how < 2 || (sets && sum[k].moves && !n->near.n), "a turn stores a sum");
+    lag_bytes_need(b, is_within(range_of(b, n, sum[k].subscript), sets ? of->out[sum[k].how - NEST_SETS] : p->ncells),
+                   "a turn adds out of range");
   }
   n->sum = sum;
   if (!b->why) order_turn(b, n);

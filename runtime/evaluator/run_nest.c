@@ -21,6 +21,7 @@ typedef struct {
   const Program *p;
   const Nest *n;
   const double *const *in;
+  double *const *out;
   double *r, *values, *part; /* part: sums of the row, by sum of the nest */
   int64_t last_row;          /* first row of the last block; -1: none */
   int count, nsegments;
@@ -176,11 +177,15 @@ static void add_to(const Block *b, const Segment *g, uint32_t k, int j, int n) {
   const TurnSum *s = &b->n->sum[k];
   const double *x = value(b, s->value) + g->at + j;
   if (!s->moves) {
-    add_up(&b->part[k], x, n, (int)s->minus);
+    add_up(&b->part[k], x, n, (int)s->how);
     return;
   }
   int64_t step = b->n->at[s->subscript].by_turn, at = first_index(b->n, g, s->subscript) + j * step;
-  add_each(b->r + b->p->cells + at, step, x, n, (int)s->minus);
+  if (s->how >= NEST_SETS) {
+    for (double *to = b->out[s->how - NEST_SETS] + at; n-- > 0; to += step) *to = *x++;
+    return;
+  }
+  add_each(b->r + b->p->cells + at, step, x, n, (int)s->how);
 }
 
 /* Sums of a row go to their elements at its end. */
@@ -200,7 +205,7 @@ static void add_tested(const Block *b, const Segment *g) {
       const TurnSum *s = &b->n->sum[k];
       int64_t at = first_index(b->n, g, s->subscript) + turn_of(g, j) * b->n->at[s->subscript].by_turn;
       double *to = s->moves ? b->r + b->p->cells + at : &b->part[k];
-      *to += s->minus ? -value(b, s->value)[g->at + j] : value(b, s->value)[g->at + j];
+      *to += s->how ? -value(b, s->value)[g->at + j] : value(b, s->value)[g->at + j];
     }
 }
 
@@ -286,13 +291,13 @@ static void run_tree(const Program *p, const Far *x, const uint32_t *outer, cons
   lag_tree_sum(&w, in[PROGRAM_Q], r + p->cells + x->charge, numbers, r + p->cells);
 }
 
-void lag_run_nest(const Program *p, const Nest *n, const double *const *in, double *r) {
+void lag_run_nest(const Program *p, const Nest *n, const double *const *in, double *const *out, double *r) {
   if (n->far.n) {
     run_tree(p, &n->far, n->outer, in, r);
     return;
   }
   Segment segment[NEST_BLOCK];
-  Block b = {p, n, in, r, .values = r + p->scratch, .last_row = -1, .count = NEST_BLOCK, .segment = segment};
+  Block b = {p, n, in, out, r, .values = r + p->scratch, .last_row = -1, .count = NEST_BLOCK, .segment = segment};
   int most = n->turn_order == TURN_BY_TURN ? 1 : NEST_BLOCK;
   if ((uintptr_t)(void *)b.values % (2 * sizeof(double))) b.values++; /* as vectors lie */
   b.part = b.values + (size_t)(n->nins + 1) * NEST_BLOCK;

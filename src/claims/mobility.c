@@ -268,7 +268,7 @@ static int check_contacts(const Eqns *e, const long double *symbols) {
 static int says_start(const Model *m) {
   for (uint32_t i = 0; i < m->scene.starts.n; i++)
     if (!m->scene.starts.at[i].implied) return 1;
-  return 0;
+  return m->scene.family_starts.n != 0;
 }
 
 /* Without constraints: whether M is regular at the start, as it is not at the pole of angles. */

@@ -125,8 +125,7 @@ static int draw(SamplePoints *s, uint32_t k, uint32_t seed, long double *symbols
   if (k == 0) {
     symbols[m->time] = m->scene.t0;
     for (uint32_t i = 0; i < s->ny; i++) symbols[s->y[i]] = 0;
-    for (uint32_t i = 0; i < m->scene.starts.n; i++)
-      symbols[m->scene.starts.at[i].target] = value_of(s, m->scene.starts.at[i].value, symbols);
+    model_eval_starts(m, symbols);
   }
   if (k) open_contacts(s, symbols);
   if (s->solver && !states_project(s->solver, symbols)) return 0;

@@ -63,16 +63,44 @@ const char *shortest_double(Arena *a, double x) {
   return arena_strdup(a, text);
 }
 
-void cwrite_guarded(const char *condition, const char *body, StrBuf *out) {
-  body += strspn(body, "\n ");
-  int one = strchr(body, '\n') == body + strlen(body) - 1 && strncmp(body, "const ", 6) != 0;
-  if (one) sb_printf(out, "  %s%s", condition, body);
-  else sb_printf(out, "  %s{\n", condition);
-  while (!one && *body) {
-    size_t n = strcspn(body, "\n");
-    if (n) sb_printf(out, "    %.*s\n", (int)n, body);
-    body += n;
-    body += strspn(body, "\n ");
+/* Whether statements, indented by two spaces, declare names outside of loops. */
+static int declares(const char *body) {
+  for (; *body; body += strcspn(body, "\n"), body += *body != '\0') {
+    const char *type = strstr(body, "_REAL ");
+    if (type && type < body + strcspn(body, "\n") && strncmp(body, "   ", 3) != 0 && strncmp(body, "  for", 5) != 0)
+      return 1;
   }
-  if (!one) sb_puts(out, "  }\n");
+  return 0;
+}
+
+/* Statements under a condition, or none, and in a block where they declare names. */
+static void write_guarded(const char *condition, const char *body, StrBuf *out) {
+  int block = declares(body);
+  body += strspn(body, "\n ");
+  int one = strchr(body, '\n') == body + strlen(body) - 1;
+  if (!block && (one || !*condition)) {
+    sb_printf(out, "  %s%s", condition, body);
+    return;
+  }
+  sb_printf(out, "  %s{\n    ", condition);
+  while (*body) {
+    size_t n = strcspn(body, "\n");
+    sb_printf(out, "%.*s\n", (int)n, body);
+    body += n;
+    body += strspn(body, "\n");
+    if (*body) sb_puts(out, "  ");
+  }
+  sb_puts(out, "  }\n");
+}
+
+void cwrite_params(const IrParams *x, CStyle style, Arena *a, StrBuf *out) {
+  StrBuf body = strbuf(a);
+  const char *condition = "";
+  if (x->n == 1 && style.guard) {
+    condition = arena_printf(a, "if (!%s[%u]) ", style.guard, x->first);
+    style.guard = NULL;
+  }
+  style.loads_inline = style.prefer_short_code = style.apart = 1;
+  cwrite_body(x->values, &style, a, &body);
+  write_guarded(condition, sb_text(&body), out);
 }

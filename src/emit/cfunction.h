@@ -3,6 +3,7 @@
 #pragma once
 
 #include "emit/cwriter.h"
+#include "ir/program_set.h"
 
 /* Appends text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
 void csupport_expand(const char *text, const char *prefix, const char *lower, StrBuf *out);
@@ -20,8 +21,8 @@ const char *cfunction_status(const Prog *p, const CStyle *style);
 /* Appends the function: comment, head, `(void)` for unused parameters, body, return. */
 void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *out);
 
-/* Appends a body after `condition` (may be ""): a single statement on the same line, more in braces. */
-void cwrite_guarded(const char *condition, const char *body, StrBuf *out);
+/* Appends the values of parameters, stores under the style's guard: one parameter is computed under it, too. */
+void cwrite_params(const IrParams *x, CStyle style, Arena *a, StrBuf *out);
 
 /* Shortest text that reads back as x; integers below 1e9 without exponent. */
 const char *shortest_double(Arena *a, double x);

@@ -323,8 +323,9 @@ static void write_turn_end(Writer *w, const Body *b) {
   const Loop *l = b->l;
   for (uint32_t k = 0; k < l->stores.n; k++) {
     const LoopStore *s = &l->stores.at[k];
-    cwriter_statement(w, arena_printf(w->a, "%s[%s] = %s;", w->style->out[s->array], index_text(w, s->index, s->step),
-                                      cwriter_operand(w, code_of(w, l, 0, s->offset)).text));
+    const char *index = index_text(w, s->index, s->step), *x = cwriter_operand(w, code_of(w, l, 0, s->offset)).text;
+    cwriter_statement(w, arena_printf(w->a, "%s%s[%s] = %s;", cwriter_guard(w, index), w->style->out[s->array], index,
+                                      x));
     sb_printf(w->out, " /* %s ... %s */\n", comment_text(w->a, s->first), comment_text(w->a, s->last));
   }
   for (uint32_t k = 0; k < l->period; k++) {
@@ -385,6 +386,9 @@ static const char *stored_value(const Writer *w, const Store *first) {
   Slot x = first[0].slot, y = first[1].slot;
   const Ins *i = &w->p->ins.at[x];
   if (x == y) return cwriter_operand(w, x).text;
+  Num unit;
+  int64_t start;
+  if (roll_number(i, &w->p->ins.at[y], &unit, &start)) return multiple(w, unit, index_text(w, start, 1)).text;
   if (i->op == IR_LOAD)
     return arena_printf(w->a, "%s[%s]", cwriter_array(w, i->array),
                         index_text(w, i->index, (int64_t)w->p->ins.at[y].index - i->index));
@@ -399,14 +403,15 @@ uint32_t cloop_stores(const Writer *w, uint32_t k) {
   if (k + fewest > p->stores.n || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0))
     return 0;
   if (w->style->params && p->ins.at[first->slot].op == IR_LOAD && p->ins.at[first->slot].array == ARR_P) return 0;
-  uint32_t n = 1;
+  uint32_t n = roll_constants(p, k);
   while (k + n < p->stores.n && follows(w, first, n)) n++;
   return n >= fewest ? n : 0;
 }
 
 void cloop_write_stores(Writer *w, uint32_t k, uint32_t n) {
   const Store *first = &w->p->stores.at[k];
-  cwriter_statement(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) %s[%s] = %s;", n, w->style->out[first->array],
-                                    index_text(w, first->index, 1), stored_value(w, first)));
+  const char *index = index_text(w, first->index, 1);
+  cwriter_statement(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) %s%s[%s] = %s;", n, cwriter_guard(w, index),
+                                    w->style->out[first->array], index, stored_value(w, first)));
   sb_printf(w->out, " /* %s ... %s */\n", comment_text(w->a, first->comment), comment_text(w->a, first[n - 1].comment));
 }

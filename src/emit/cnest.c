@@ -102,6 +102,12 @@ static void write_additions(Nesting *x) {
       write_addition_together(x, k);
       continue;
     }
+    if (st->array >= NEST_SETS) {
+      const char *to = w->style->out[st->array - NEST_SETS], *value = cwriter_operand(w, st->slot).text;
+      cwriter_statement(w, arena_printf(w->a, "%s[%s] = %s;", to, place(x, st->index), value));
+      sb_printf(w->out, " /* %s */\n", comment_text(w->a, st->comment));
+      continue;
+    }
     const char *sum = x->partial[k] ? x->partial[k] : arena_printf(w->a, "%s[%s]", w->cells, place(x, st->index));
     const char *value = cwriter_operand(w, st->slot).text, *prefix = w->style->prefix;
     if (test)
@@ -213,7 +219,8 @@ static int may_run_together(const Nesting *x, const CStyle *style) {
   const Nest *n = x->n;
   const Prog *p = n->body;
   const int64_t first = n->turns, last = n->turns + n->more * ((int64_t)n->rows - 1);
-  if (!style->turns || x->near || !nest_has_turns(n) || test_of(p) || (first < FEWEST && last < FEWEST)) return 0;
+  if (!style->turns || x->near || nest_sets(n) || !nest_has_turns(n) || test_of(p) || (first < FEWEST && last < FEWEST))
+    return 0;
   int slow = 0;
   for (Slot s = 1; s < p->ins.n; s++) {
     if (x->each[s] && !is_of_vectors(x, &p->ins.at[s])) return 0;
@@ -282,7 +289,7 @@ static void declare_partial(Nesting *x) {
   StrBuf text = strbuf(w->a);
   for (uint32_t k = 0; k < w->p->stores.n; k++) {
     const Store *st = &w->p->stores.at[k];
-    if (st->array == NEST_TEST || nest_moves(x->n, st->index)) continue;
+    if (st->array >= NEST_TEST || nest_moves(x->n, st->index)) continue;
     x->partial[k] = cnames_take(&w->names, "part");
     sb_printf(&text, "%s%s = %s_C(0.0)", text.n ? ", " : "", x->partial[k], w->style->prefix);
   }
@@ -393,6 +400,7 @@ void cnest_prepare(Writer *w) {
   w->cells = cnames_take(&w->names, "sum");
   w->row = cnames_take(&w->names, "i");
   w->turn = cnames_take(&w->names, "j");
+  if (!w->p->cells) return;
   cwriter_line(w, arena_printf(w->a, "%s%s_REAL %s[%u];", storage(w), w->style->prefix, w->cells, w->p->cells));
   cwriter_line(w, arena_printf(w->a, "for (int %s = 0; %s < %u; %s++) %s[%s] = %s_C(0.0);", w->row, w->row, w->p->cells,
                                w->row, w->cells, w->row, w->style->prefix));

@@ -442,12 +442,17 @@ void cwriter_instruction(Writer *w, Slot s) {
   else cwriter_declare(w, s, cwriter_name(w, i), x);
 }
 
+const char *cwriter_guard(const Writer *w, const char *index) {
+  return w->style->guard ? arena_printf(w->a, "if (!%s[%s]) ", w->style->guard, index) : "";
+}
+
 static void write_store(Writer *w, const Store *st) {
   const char *text = cwriter_operand(w, st->slot).text;
   const char *target = element(w, w->style->out[st->array], st->index), *member = strstr(target, "->");
   int said = !st->comment[0] || strcmp(st->comment, text) == 0 ||
              (w->style->params && member && strcmp(member + 2, st->comment) == 0);
-  cwriter_statement(w, arena_printf(w->a, "%s = %s;", target, text));
+  const char *guard = cwriter_guard(w, arena_printf(w->a, "%u", st->index));
+  cwriter_statement(w, arena_printf(w->a, "%s%s = %s;", guard, target, text));
   if (!said) sb_printf(w->out, " /* %s */", comment_text(w->a, st->comment));
   sb_putc(w->out, '\n');
 }
@@ -494,8 +499,9 @@ static unsigned arrays_by_index(const CStyle *style) {
                        : ~(1u << ARR_T | 1u << ARR_ORDER | 1u << ARR_PER_ORDER | 1u << ARR_UP);
 }
 
-/* Whether no array is both read and written. */
+/* Whether stores may stand in loops: no array is both read and written, nor members of a struct. */
 static int stores_apart(const Prog *p, const CStyle *style) {
+  if (style->params && p->stores.n && strcmp(style->in[ARR_P], style->out[p->stores.at[0].array]) == 0) return 0;
   if (style->apart) return 1;
   for (int k = 0; k < ARR_COUNT; k++) {
     if (k == ARR_CELL || k == ARR_OUTER || k == ARR_INDEX || !prog_reads(p, (IrArray)k)) continue; /* local */

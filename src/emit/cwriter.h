@@ -27,6 +27,7 @@ typedef struct {
   int prefer_short_code;                /* 1: prefer short code to fast code */
   const char *math;                 /* prefix of the embedded sincos, sin and cos; NULL: LAG_FN(sin) */
   int turns;                        /* 1: LAG_TURNS turns of a nest side by side, where it may be */
+  const char *guard;                /* array of flags of elements that stores leave alone; NULL: none */
   int loads_inline;                 /* 1: array elements are spelled at each use, not named at the top */
 } CStyle;
 

@@ -47,6 +47,9 @@ CExpr cwriter_operand(const Writer *w, Slot s);
 CExpr cwriter_spell(Writer *w, const Ins *i);
 int cwriter_is_short(const Writer *w, CExpr x);
 
+/* Condition before a store: "if (!fixed[3]) ", or "". */
+const char *cwriter_guard(const Writer *w, const char *index);
+
 /* Appends a statement, broken at spaces where it is long; cwriter_line with a line end. */
 void cwriter_statement(Writer *w, const char *text);
 void cwriter_line(Writer *w, const char *text);

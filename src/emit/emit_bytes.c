@@ -29,8 +29,9 @@ static double longer(const Unit *w, double x, const char *digits) {
 static void variables(const Unit *w, const IrVar *v, uint32_t n) {
   word(w, n);
   for (uint32_t i = 0; i < n; i++) {
-    text(w, v[i].name), text(w, v[i].unit);
-    number(w, longer(w, v[i].factor, decimal_literal(w->u->arena, v[i].ratio, v[i].pi_power))), number(w, v[i].offset);
+    const IrUnit *u = v[i].unit;
+    text(w, v[i].name), text(w, u->text);
+    number(w, longer(w, u->factor, decimal_literal(w->u->arena, u->ratio, u->pi_power))), number(w, u->offset);
     integer(w, v[i].periodic), integer(w, v[i].sign);
   }
 }
@@ -298,7 +299,8 @@ static void scene(const Unit *w, const IrScene *s) {
   text(w, s->name), text(w, s->doc), text(w, s->method);
   number(w, s->t0), number(w, longer(w, s->t1, s->t1_digits)), number(w, s->tolerance), number(w, s->every);
   integer(w, s->has_span), integer(w, s->exactly);
-  for (uint32_t i = 0; i < u->p.n; i++) program(w, s->params[i]);
+  word(w, s->params.n);
+  for (uint32_t i = 0; i < s->params.n; i++) word(w, s->params.at[i].n), program(w, s->params.at[i].values);
   program(w, s->start);
   const unsigned char *given = u->constraints.of.n ? scene_given(u, s) : NULL;
   for (uint32_t i = 0; given && i < 2 * u->q.n + u->z.n; i++) word(w, given[i]);

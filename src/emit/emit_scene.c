@@ -2,45 +2,7 @@
 #include <string.h>
 
 #include "emit/emit_impl.h"
-
-/* Whether the parameter of p is a constant equal to that of `like`. */
-static int is_number_like(const Prog *p, const Prog *like) {
-  if (p->stores.n != 1 || like->stores.n != 1) return 0;
-  const Ins *x = &p->ins.at[p->stores.at[0].slot], *y = &like->ins.at[like->stores.at[0].slot];
-  return p->stores.at[0].slot && like->stores.at[0].slot && x->op == IR_CONST && y->op == IR_CONST &&
-         num_equal(x->number, y->number);
-}
-
-/* Number of parameters from i on with one constant value if at least 16; otherwise 1. */
-static uint32_t same_params(const ProgramSet *u, const IrScene *s, uint32_t i) {
-  enum { MANY = 16 };
-  uint32_t n = 1;
-  while (i + n < u->p.n && is_number_like(s->params[i + n], s->params[i])) n++;
-  return n >= MANY ? n : 1;
-}
-
-/* Function params_ID: parameters in order, as each formula may use the parameters before it. */
-static void emit_params(const ModelFile *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"self", "p", "fixed", NULL}, *const written[] = {"p"};
-  sb_printf(f->out, "\nstatic void params_%s(const void *self, LAG_REAL *p, const unsigned char *fixed) {\n", id);
-  sb_puts(f->out, f->u->p.n ? "  (void)self;\n" : "  (void)self; (void)p; (void)fixed;\n");
-  for (uint32_t i = 0, same; i < f->u->p.n; i += same) {
-    same = same_params(f->u, s, i);
-    if (same > 1) {
-      const Prog *p = s->params[i];
-      sb_printf(f->out, "  for (int k = 0; k < %u; k++) /* %s ... %s */\n    if (!fixed[k + %u]) p[k + %u] = %s;\n",
-                same, comment_text(f->a, f->u->p.at[i].name), comment_text(f->a, f->u->p.at[i + same - 1].name), i, i,
-                c_number(f->a, "LAG", p->ins.at[p->stores.at[0].slot].number));
-      continue;
-    }
-    CStyle st = model_style(f, own, written);
-    st.loads_inline = 1;
-    StrBuf body = strbuf(f->a);
-    cwrite_body(s->params[i], &st, f->a, &body);
-    cwrite_guarded(arena_printf(f->a, "if (!fixed[%u]) ", i), sb_text(&body), f->out);
-  }
-  sb_puts(f->out, f->u->nderived ? "  derive(NULL, p);\n}\n" : "}\n");
-}
+#include "ir/roll.h"
 
 /* Whether a store is of a constant; *n: which. */
 static int is_constant(const Prog *p, const Store *x, Num *n) {
@@ -49,19 +11,22 @@ static int is_constant(const Prog *p, const Store *x, Num *n) {
   return !x->slot || i->op == IR_CONST;
 }
 
-/* Number of stores from k on that are constants of neighbouring elements. */
+enum { MANY = 16 }; /* stores that are a loop of their own */
+
+/* Number of stores from k on that are constants of neighbouring elements, up to the next loop. */
 static uint32_t constants_from(const Prog *p, uint32_t k) {
   const Store *x = p->stores.at + k;
   uint32_t n = 0;
   Num value;
   while (k + n < p->stores.n && x[n].array == x[0].array && x[n].index == x[0].index + n &&
-         is_constant(p, &x[n], &value))
+         is_constant(p, &x[n], &value) && (!n || roll_constants(p, k + n) < MANY))
     n++;
   return n;
 }
 
-static void constant_table(const ModelFile *f, const Prog *p, const Store *x, uint32_t n, const char *to) {
+static void constant_table(const ModelFile *f, const Prog *p, const Store *x, uint32_t n, const CStyle *style) {
   enum { A_LINE = 6 };
+  const char *to = style->out[x->array];
   sb_printf(f->out, "  static const LAG_LANE %s_%u[] = {", to, x->index);
   for (uint32_t i = 0; i < n; i++) {
     Num value;
@@ -71,22 +36,40 @@ static void constant_table(const ModelFile *f, const Prog *p, const Store *x, ui
   const char *first = comment_text(f->a, x->comment), *last = comment_text(f->a, x[n - 1].comment);
   sb_printf(f->out, "\n  };\n  /* %s ... %s */\n", first, last);
   const char *shift = x->index ? arena_printf(f->a, " + %u", x->index) : "";
-  sb_printf(f->out, "  for (int i = 0; i < %u; i++) %s[i%s] = LAG_C(0.0) + %s_%u[i];\n", n, to, shift, to, x->index);
+  const char *guard = style->guard ? arena_printf(f->a, "if (!%s[i%s]) ", style->guard, shift) : "";
+  sb_printf(f->out, "  for (int i = 0; i < %u; i++) %s%s[i%s] = LAG_C(0.0) + %s_%u[i];\n", n, guard, to, shift, to,
+            x->index);
 }
 
-/* Writes long runs of constants as tables, which C compilers read in linear time; returns the other stores. */
-static Prog start_tables(const ModelFile *f, const Prog *p, const char *const *written) {
+/* Writes long runs of constants as tables, which C compilers read in linear time; returns the other stores, and
+ * those that are even: loops write them. */
+static Prog constant_tables(const ModelFile *f, const Prog *p, const CStyle *style) {
   enum { LONG = 1000 };
   Prog rest = *p;
   memset(&rest.stores, 0, sizeof rest.stores);
   for (uint32_t k = 0; k < p->stores.n;) {
     const Store *x = &p->stores.at[k];
-    uint32_t n = constants_from(p, k);
-    if (n >= LONG) constant_table(f, p, x, n, written[x->array]);
-    for (uint32_t i = 0; n < LONG && i < (n ? n : 1); i++) vec_push(f->a, &rest.stores, x[i]);
+    uint32_t even = roll_constants(p, k), n = even >= MANY ? even : constants_from(p, k);
+    int is_table = n >= LONG && n > even;
+    if (is_table) constant_table(f, p, x, n, style);
+    for (uint32_t i = 0; !is_table && i < (n ? n : 1); i++) vec_push(f->a, &rest.stores, x[i]);
     k += n ? n : 1;
   }
   return rest;
+}
+
+/* Function params_ID: parameters in order, as each formula may use the parameters before it. */
+static void emit_params(const ModelFile *f, const IrScene *s, const char *id) {
+  static const char *const own[] = {"self", "p", "fixed", NULL}, *const written[] = {"p"};
+  sb_printf(f->out, "\nstatic void params_%s(const void *self, LAG_REAL *p, const unsigned char *fixed) {\n", id);
+  sb_puts(f->out, f->u->p.n ? "  (void)self;\n" : "  (void)self; (void)p; (void)fixed;\n");
+  CStyle st = model_style(f, own, written);
+  st.guard = "fixed";
+  for (uint32_t i = 0; i < s->params.n; i++) {
+    Prog rest = constant_tables(f, s->params.at[i].values, &st);
+    cwrite_params(&(IrParams){s->params.at[i].first, s->params.at[i].n, &rest}, st, f->a, f->out);
+  }
+  sb_puts(f->out, f->u->nderived ? "  derive(NULL, p);\n}\n" : "}\n");
 }
 
 static void emit_start(const ModelFile *f, const IrScene *s, const char *id) {
@@ -99,7 +82,7 @@ static void emit_start(const ModelFile *f, const IrScene *s, const char *id) {
   if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
   if (f->u->z.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) z[i] = LAG_C(0.0);\n", f->u->z.n);
   st.prefer_short_code = 1;
-  Prog rest = start_tables(f, s->start, written);
+  Prog rest = constant_tables(f, s->start, &st);
   cwrite_body(&rest, &st, f->a, f->out);
   sb_puts(f->out, "}\n");
 }

@@ -7,12 +7,12 @@
 /* --- indices --- */
 
 /* Unit of a variable for a comment: " [deg]: 1 deg is 0.01745 in SI". */
-static const char *unit_text(const Header *h, const IrVar *v) {
-  if (!v->unit[0]) return "";
-  if (v->offset != 0)
-    return arena_printf(h->a, " [%s]: 0 %s is %s in SI", v->unit, v->unit, shortest_double(h->a, v->offset));
-  if (v->factor == 1) return arena_printf(h->a, " [%s]", v->unit);
-  return arena_printf(h->a, " [%s]: 1 %s is %s in SI", v->unit, v->unit, shortest_double(h->a, v->factor));
+static const char *unit_text(const Header *h, const IrUnit *u) {
+  if (!u->text[0]) return "";
+  if (u->offset != 0)
+    return arena_printf(h->a, " [%s]: 0 %s is %s in SI", u->text, u->text, shortest_double(h->a, u->offset));
+  if (u->factor == 1) return arena_printf(h->a, " [%s]", u->text);
+  return arena_printf(h->a, " [%s]: 1 %s is %s in SI", u->text, u->text, shortest_double(h->a, u->factor));
 }
 
 static void size(const Header *h, const char *name, uint32_t n) {
@@ -37,7 +37,7 @@ static void indices(const Header *h, const char *comment, const char **names, co
   if (!n) return;
   sb_printf(h->out, "\n/* %s */\nenum {\n", comment);
   for (uint32_t i = 0; i < n; i++) {
-    const char *text = arena_printf(h->a, "%s%s", v[i].name, unit_text(h, &v[i]));
+    const char *text = arena_printf(h->a, "%s%s", v[i].name, unit_text(h, v[i].unit));
     sb_printf(h->out, "  %s = %u%s /* %s */\n", names[i], i, i + 1 < n ? "," : "", comment_text(h->a, text));
   }
   sb_puts(h->out, "};\n");
@@ -75,9 +75,9 @@ static void params_struct(const Header *h) {
   if (!h->u->p.n) sb_puts(h->out, "  char none; /* C has no empty struct */\n");
   for (uint32_t i = 0; i < h->u->p.n; i++) {
     const IrVar *v = &h->u->p.at[i];
-    const char *text =
-        arena_printf(h->a, "%s%s, default %s%s", unit_text(h, v), sign_text(v->sign),
-                     shortest_double(h->a, (double)value[i]), v->factor == 1 && v->offset == 0 ? "" : " (SI)");
+    int converts = v->unit->factor != 1 || v->unit->offset != 0;
+    const char *text = arena_printf(h->a, "%s%s, default %s%s", unit_text(h, v->unit), sign_text(v->sign),
+                                    shortest_double(h->a, (double)value[i]), converts ? " (SI)" : "");
     if (*text == ' ' || *text == ',') text++;
     sb_printf(h->out, "  %s_REAL %s; /* %s */\n", h->upper, h->fields[i],
               comment_text(h->a, *text == ' ' ? text + 1 : text));

@@ -35,13 +35,9 @@ static void write_defaults(const Header *h, const char *head, int follow) {
   static const char *const own[] = {"p", NULL}, *const out[] = {"p"};
   sb_printf(h->out, "\n%s {\n", head);
   if (!h->u->p.n) sb_printf(h->out, "  p->none = 0;\n%s", follow ? "  (void)given;\n" : "");
-  for (uint32_t i = 0; i < h->u->p.n; i++) {
-    CStyle st = header_style(h, own, out);
-    st.loads_inline = 1;
-    StrBuf body = strbuf(h->a);
-    cwrite_body(h->scene->params[i], &st, h->a, &body);
-    cwrite_guarded(follow ? arena_printf(h->a, "if (!given[%u]) ", i) : "", sb_text(&body), h->out);
-  }
+  CStyle st = header_style(h, own, out);
+  st.guard = follow ? "given" : NULL;
+  for (uint32_t i = 0; i < h->scene->params.n; i++) cwrite_params(&h->scene->params.at[i], st, h->a, h->out);
   sb_puts(h->out, "}\n");
 }
 
@@ -234,7 +230,7 @@ static int units(const Header *h) {
   StrBuf text = strbuf(h->a);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t first = 0;
-    while (strcmp(q[first].unit, q[i].unit) != 0) first++;
+    while (strcmp(q[first].unit->text, q[i].unit->text) != 0) first++;
     several |= first;
     sb_printf(&text, "%s%u", i ? ", " : "", first);
   }

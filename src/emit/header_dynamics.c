@@ -289,8 +289,8 @@ static void name_rows(const Header *h, const char *of, const IrVar *v, uint32_t 
   if (!n) return;
   sb_printf(h->out, "static const %s_name %s_names_%s[] = {\n", h->lower, h->lower, of);
   for (uint32_t i = 0; i < n; i++)
-    sb_printf(h->out, "  {%s, %s, %s, %s, %s, %s}%s\n", c_string(h->a, v[i].name), c_string(h->a, v[i].unit),
-              shortest_double(h->a, v[i].factor), shortest_double(h->a, v[i].offset), least[v[i].sign > 0],
+    sb_printf(h->out, "  {%s, %s, %s, %s, %s, %s}%s\n", c_string(h->a, v[i].name), c_string(h->a, v[i].unit->text),
+              shortest_double(h->a, v[i].unit->factor), shortest_double(h->a, v[i].unit->offset), least[v[i].sign > 0],
               most[v[i].sign < 0], i + 1 < n ? "," : "");
   sb_puts(h->out, "};\n");
 }

@@ -45,8 +45,10 @@ static int counts_up(const char *x, const char *y, Number *n) {
 }
 
 static int same_but_name(const IrVar *x, const IrVar *y) {
-  return strcmp(x->unit, y->unit) == 0 && !(x->factor < y->factor) && !(x->factor > y->factor) &&
-         !(x->offset < y->offset) && !(x->offset > y->offset) && x->periodic == y->periodic && x->sign == y->sign;
+  const IrUnit *a = x->unit, *b = y->unit;
+  int same_unit = a == b || (strcmp(a->text, b->text) == 0 && !(a->factor < b->factor) && !(a->factor > b->factor) &&
+                             !(a->offset < b->offset) && !(a->offset > b->offset));
+  return same_unit && x->periodic == y->periodic && x->sign == y->sign;
 }
 
 /* Number of successive groups of `size` entries that differ only in one number that counts up; 1 if the second
@@ -86,9 +88,10 @@ const char *table_number(Arena *a, double x, const char *digits) {
 }
 
 static const char *rest_of_entry(const IrVar *v, Arena *a) {
-  const char *unit = c_string(a, v->unit),
-             *factor = table_number(a, v->factor, decimal_literal(a, v->ratio, v->pi_power));
-  const char *offset = table_number(a, v->offset, NULL);
+  const IrUnit *u = v->unit;
+  const char *unit = c_string(a, u->text),
+             *factor = table_number(a, u->factor, decimal_literal(a, u->ratio, u->pi_power));
+  const char *offset = table_number(a, u->offset, NULL);
   return arena_printf(a, "%s, %s, %d, %d, %s},", unit, factor, v->periodic, v->sign, offset);
 }
 

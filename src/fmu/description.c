@@ -48,13 +48,13 @@ static void number(StrBuf *out, const char *name, double x) { attribute(out, nam
 /* ---- variables ---- */
 
 /* Names of units: values are in SI, and shown in the user's unit. */
-static void set_unit(Description *d, FmuVar *v, const IrVar *from) {
-  int angle = !from->si[0] && (from->pi_power || strstr(from->unit, "rad"));
+static void set_unit(Description *d, FmuVar *v, const IrUnit *from) {
+  int angle = !from->si[0] && (from->pi_power || strstr(from->text, "rad"));
   int own = from->factor == 1 && from->offset == 0;
-  v->unit = own ? from->unit : angle ? "rad" : from->si[0] ? from->si : "1";
+  v->unit = own ? from->text : angle ? "rad" : from->si[0] ? from->si : "1";
   if (from->pi_power && from->si[0])
     v->unit = from->si[0] == '1' ? arena_printf(d->a, "rad%s", from->si + 1) : arena_printf(d->a, "rad*%s", from->si);
-  v->display = own ? "" : from->unit;
+  v->display = own ? "" : from->text;
   v->factor = from->factor;
   v->offset = from->offset;
   memcpy(v->base, from->base, sizeof v->base);
@@ -82,7 +82,7 @@ static FmuVar rate_of(Description *d, const FmuVar *of, uint32_t state) {
 
 static FmuVar local_variable(Description *d, const IrVar *from) {
   FmuVar v = {.name = from->name, .causality = "local", .variability = "continuous", .sign = from->sign};
-  set_unit(d, &v, from);
+  set_unit(d, &v, from->unit);
   return v;
 }
 

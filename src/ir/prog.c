@@ -202,7 +202,7 @@ static void mark_needed(const Prog *p, unsigned char *need) {
   for (uint32_t i = 0; i < p->stores.n; i++) need[p->stores.at[i].slot] = 1;
   for (Slot s = p->ins.n; s-- > 1;) {
     const Ins *i = &p->ins.at[s];
-    if (i->op == IR_PIVOT || i->op == IR_TITLE) need[s] = 1;
+    if (i->op == IR_PIVOT || i->op == IR_TITLE || (i->op == IR_NEST && nest_sets(&p->nests.at[i->index]))) need[s] = 1;
     for (uint32_t k = 0; need[s] && k < prog_operands(p, i); k++) need[prog_operand(p, i, k)] = 1;
   }
 }

@@ -106,7 +106,7 @@ typedef struct {
   uint32_t n, at_i[3], at_j[3], cut, side[3];
   int boxed;
 } IrNear;
-enum { NEST_TEST = 2 };
+enum { NEST_TEST = 2, NEST_SETS = 3 };
 
 /* Of a nest that a tree sums, factor*c_i*c_j/sqrt(d^2 + soft) over all pairs of bodies: component c of body k is
  * q[first[c] + step*k], its charge the sum charge + k. The nest adds to the sum `energy`, or derivatives by places to
@@ -121,7 +121,8 @@ typedef struct {
  * their total at once, added up from 0.
  *
  * The body is a program without nests. The index of its loads and stores is a position in `at` (scalars have none),
- * of loads of ARR_OUTER a position in `outer`. A store to array 0 adds to the sum, a store to array 1 subtracts. */
+ * of loads of ARR_OUTER a position in `outer`. A store to array 0 adds to the sum, a store to array 1 subtracts, one to
+ * array NEST_SETS + k is a store to array k of the program around, before its own. */
 typedef struct {
   uint32_t rows, count; /* count: turns of all rows together */
   int64_t skew, turns, more;
@@ -173,6 +174,9 @@ typedef struct Prog {
   const char *fault;  /* a pass left it malformed (ir/passes.h), and how; NULL: none did */
   IdTable table;      /* of instructions, for value numbering */
 } Prog;
+
+/* Whether a nest stores values, and has no sums. */
+static inline int nest_sets(const Nest *n) { return n->body->stores.n && n->body->stores.at[0].array >= NEST_SETS; }
 
 typedef struct {
   uint64_t add, mul, div, sqrt, fn, other; /* fn: sin, cos, exp ... */

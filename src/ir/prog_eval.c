@@ -55,6 +55,7 @@ static const Real *solved(const Prog *p, const Solve *s, const Real *v, int *sta
 typedef struct {
   const Prog *p;
   const Real *const *in;
+  Real *const *out;
   Real *v, *cells;
   const Real **solution;
   int samples; /* quantified sums by a sample of their turns */
@@ -123,6 +124,10 @@ static void add_stores(const Run *r, const Run *body, const Nest *n, Real *part,
   if (n->near.n && body->v[body->p->stores.at[n_stores].slot] == 0) return;
   for (uint32_t k = 0; k < n_stores; k++) {
     const Store *st = &body->p->stores.at[k];
+    if (st->array >= NEST_SETS) {
+      r->out[st->array - NEST_SETS][nest_index(n, st->index, i, j)] = body->v[st->slot];
+      continue;
+    }
     Real *to = nest_moves(n, st->index) ? &r->cells[nest_index(n, st->index, i, j)] : &part[k];
     *to += st->array ? -body->v[st->slot] : body->v[st->slot];
   }
@@ -131,7 +136,7 @@ static void add_stores(const Run *r, const Run *body, const Nest *n, Real *part,
 static void add_parts(const Run *r, const Nest *n, Real *part, int64_t i) {
   for (uint32_t k = 0; k < n->body->stores.n; k++) {
     const Store *st = &n->body->stores.at[k];
-    if (st->array == NEST_TEST) continue;
+    if (st->array >= NEST_TEST) continue;
     if (!nest_moves(n, st->index)) r->cells[nest_index(n, st->index, i, nest_from(n, i))] += part[k];
     part[k] = 0;
   }
@@ -165,6 +170,7 @@ static int evaluate(const Prog *p, const Real *const in[ARR_COUNT], Real *const 
   ArenaMark before = arena_mark(p->arena);
   Run r = {.p = p,
            .in = in,
+           .out = out,
            .samples = samples,
            .v = ARENA_ARRAY(p->arena, Real, p->ins.n),
            .cells = ARENA_ARRAY(p->arena, Real, p->cells + 1),

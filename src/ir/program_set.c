@@ -27,7 +27,7 @@ ProgList program_set_programs(const ProgramSet *u) {
     const Prog *const of_scene[] = {s->start, s->observe, s->observe_plain, s->observe_held, s->exact, s->momenta};
     for (size_t j = 0; j < sizeof of_scene / sizeof *of_scene; j++) vec_push(u->arena, &all, of_scene[j]);
     for (uint32_t j = 0; j < s->actions.n; j++) vec_push(u->arena, &all, s->actions.at[j].curve);
-    for (uint32_t j = 0; s->params && j < u->p.n; j++) vec_push(u->arena, &all, s->params[j]);
+    for (uint32_t j = 0; j < s->params.n; j++) vec_push(u->arena, &all, s->params.at[j].values);
   }
   uint32_t n = 0;
   for (uint32_t i = 0; i < all.n; i++)
@@ -48,8 +48,11 @@ void scene_values(const ProgramSet *u, const IrScene *s, long double *p, long do
   uint32_t n = u->q.n;
   const long double *const from[ARR_COUNT] = {[ARR_T] = &t, [ARR_P] = p};
   long double *const to_p[] = {p}, *const to_y[] = {y, y + n, y + 2 * n}, *const to_in[] = {in};
-  for (uint32_t i = 0; i < u->p.n; i++)
-    if (prog_eval(s->params[i], from, to_p) != 0) p[i] = (long double)NAN;
+  for (uint32_t k = 0; k < s->params.n; k++) {
+    const IrParams *x = &s->params.at[k];
+    int failed = prog_eval(x->values, from, to_p) != 0;
+    for (uint32_t i = x->first; failed && i < x->first + x->n; i++) p[i] = (long double)NAN;
+  }
   prog_eval(s->start, from, to_y);
   for (uint32_t i = 0; i < s->moves.n; i++) y[s->moves.at[i].component] = s->moves.at[i].value;
   prog_eval(u->inputs, from, to_in);

@@ -19,14 +19,18 @@ enum {
 };
 
 typedef struct {
-  const char *name, *unit; /* as the user wrote them */
-  double factor;
-  int periodic, sign;
-  double offset;
+  const char *text; /* as the user wrote it */
+  double factor, offset;
   Num ratio;    /* the factor is ratio*pi^pi_power, exact where ratio is exact */
   int pi_power;
   const char *si;       /* name of the SI unit, "N*m"; "" for pure numbers */
   signed char base[7];  /* its powers of m, kg, s, A, K, mol, cd; all 0 where one is no integer */
+} IrUnit;
+
+typedef struct {
+  const char *name;
+  const IrUnit *unit; /* variables of one unit share it */
+  int periodic, sign;
 } IrVar;
 
 enum { EVENT_KICK = 2 }; /* LAG_KICK of lag_model.h: an event at equal times, whose function is the period */
@@ -75,9 +79,15 @@ typedef struct {
   int a[3], b[3], size[3], turn[4], count;
 } IrShape;
 
+/* Values of parameters first ... first + n - 1, none of which reads another of them. out 0: p */
+typedef struct {
+  uint32_t first, n;
+  const Prog *values;
+} IrParams;
+
 typedef struct {
   const char *name, *doc;
-  const Prog *const *params; /* [np] */
+  VEC(IrParams) params; /* all parameters, in order */
   const Prog *start, *observe;
   VEC(IrMove) moves;  /* found with the scene's parameters; for emitted programs that do no such search */
   double t0, t1;

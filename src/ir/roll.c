@@ -50,6 +50,22 @@ int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first) {
          unit->num < LARGEST;
 }
 
+uint32_t roll_constants(const Prog *p, uint32_t k) {
+  const Store *x = p->stores.at + k;
+  const Ins *at = p->ins.at;
+  Num unit = num_int(0);
+  int64_t first = 0;
+  uint32_t n = 1;
+  for (; k + n < p->stores.n && x[n].array == x->array && x[n].index == x->index + n; n++) {
+    if (x[n].slot == x->slot && (n == 1 || num_is_zero(unit))) continue;
+    if (n == 1 && !roll_number(&at[x->slot], &at[x[1].slot], &unit, &first)) break;
+    if (num_is_zero(unit) || at[x[n].slot].op != IR_CONST ||
+        !num_equal(at[x[n].slot].number, num_mul(unit, num_int(first + n))))
+      break;
+  }
+  return n;
+}
+
 static Step step_between(const Rolls *r, uint32_t begin, uint32_t period, Slot x, Slot y) {
   if (x == y) return (Step){.kind = STEP_SAME};
   if (!r->place[x] && r->p->ins.at[x].op != IR_LOAD) return (Step){.kind = STEP_NUMBER};

@@ -69,3 +69,6 @@ Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which);
  * exact in binary, so that division by the unit's denominator rounds as the number itself. Returns 0 when the
  * numbers have no such form. */
 int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first);
+
+/* Number of stores from k on, of numbers to neighbouring elements: all of one value, or as in roll_number. */
+uint32_t roll_constants(const Prog *p, uint32_t k);

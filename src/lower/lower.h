@@ -73,7 +73,7 @@ Prog *lower_action_curve(const Eqns *e, uint32_t i); /* out 0: roots[4] of e->ac
 Prog *lower_momenta(const Eqns *e); /* out 0: dL/dq'[nq] */
 int output_is_plain(const Eqns *e, uint32_t i);
 Prog *lower_closed_forms(const Eqns *e);   /* out 0: value of each closed form, from the state at the start */
-Prog *lower_param(const Eqns *e, uint32_t i); /* out 0: p[i], from earlier parameters */
+IrParams lower_params(const Eqns *e, uint32_t *i); /* of Model.params from *i on, which moves behind them */
 Prog *lower_start(const Eqns *e);   /* out 0, 1, 2: q, v, z; only components with a start value */
 
 /* unit_new: the unit of these equations, without scenes; source: path of the file as the user gave it; libm as in

@@ -27,6 +27,11 @@ typedef struct {
 static inline Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
 
 Lower lower_new(const Eqns *e);
+Lower lower_by_text(const Eqns *e);
+
+/* Output array of a state that an event or the start sets; the store of its value, which is lowered. */
+uint32_t lower_array_of_target(SymKind k);
+void lower_store_target(Lower *l, SymId target, Expr value);
 
 /* Lowers the roots and all nodes below them; lower_slot then gives their slots. */
 void lower_roots(Lower *l, const Expr *roots, uint32_t n);

@@ -11,17 +11,37 @@
 #include "sym/sum_nest.h"
 #include "symmetry/charges.h"
 
-static IrVar ir_var(const Model *m, Name name, const Unit *u, int periodic, AstSign sign) {
-  static const int signs[] = {[SIGN_ANY] = 0, [SIGN_GT] = 1, [SIGN_GE] = 2, [SIGN_LT] = -1, [SIGN_LE] = -2};
+/* Units of variables, each once. */
+typedef struct {
+  const Model *m;
+  VEC(Unit) of;
+  VEC(const IrUnit *) units;
+} Units;
+
+static const IrUnit *ir_unit(Units *all, const Unit *u) {
+  const Model *m = all->m;
+  for (uint32_t k = 0; k < all->of.n; k++) {
+    const Unit *x = &all->of.at[k];
+    if (strcmp(x->text, u->text) == 0 && x->dim == u->dim && x->pi_power == u->pi_power &&
+        num_equal(x->factor, u->factor) && num_equal(x->offset, u->offset))
+      return all->units.at[k];
+  }
   Dim d = dim_resolved(m->dims, u->dim);
-  IrVar v = {name,      u->text,     unit_factor(u),
-             periodic,  signs[sign], num_value(u->offset),
-             u->factor, u->pi_power, unit_of_dim(m->dims, d).text,
-             {0}};
-  int whole = v.si[0] != '\0';
+  IrUnit *v = ARENA_NEW(m->arena, IrUnit);
+  *v = (IrUnit){u->text, unit_factor(u), num_value(u->offset), u->factor, u->pi_power, unit_of_dim(m->dims, d).text,
+                {0}};
+  int whole = v->si[0] != '\0';
   for (int i = 0; i < DIM_BASES && whole; i++) whole = num_is_int(dim_exponent(m->dims, d, (DimBase)i));
-  for (int i = 0; i < DIM_BASES && whole; i++) v.base[i] = (signed char)num_value(dim_exponent(m->dims, d, (DimBase)i));
+  for (int i = 0; i < DIM_BASES && whole; i++)
+    v->base[i] = (signed char)num_value(dim_exponent(m->dims, d, (DimBase)i));
+  vec_push(m->arena, &all->of, *u);
+  vec_push(m->arena, &all->units, v);
   return v;
+}
+
+static IrVar ir_var(Units *all, Name name, const Unit *u, int periodic, AstSign sign) {
+  static const int signs[] = {[SIGN_ANY] = 0, [SIGN_GT] = 1, [SIGN_GE] = 2, [SIGN_LT] = -1, [SIGN_LE] = -2};
+  return (IrVar){name, ir_unit(all, u), periodic, signs[sign]};
 }
 
 static const char *joined(Arena *a, const Name *names, uint32_t n) {
@@ -198,6 +218,7 @@ static void add_sizes(ProgramSet *u, const Eqns *e, int moving) {
 
 ProgramSet *unit_head(const Eqns *e, const char *source, int libm) {
   const Model *m = e->m;
+  Units units = {.m = m};
   ProgramSet *u = ARENA_NEW(m->arena, ProgramSet);
   *u = (ProgramSet){.arena = m->arena,
                     .name = m->name, .doc = m->doc ? m->doc : "", .source = source, .flags = flags_of(e),
@@ -207,15 +228,15 @@ ProgramSet *unit_head(const Eqns *e, const char *source, int libm) {
   add_fixed(u, m);
   for (uint32_t i = 0; i < m->coords.n; i++)
     vec_push(m->arena, &u->q,
-             ir_var(m, m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
+             ir_var(&units, m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->states.n; i++)
     vec_push(m->arena, &u->z,
-             ir_var(m, m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
+             ir_var(&units, m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->params.n; i++)
     if (!m->params.at[i].fixed)
-      vec_push(m->arena, &u->p, ir_var(m, m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
+      vec_push(m->arena, &u->p, ir_var(&units, m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
   for (uint32_t i = 0; i < m->inputs.n; i++)
-    vec_push(m->arena, &u->u, ir_var(m, m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
+    vec_push(m->arena, &u->u, ir_var(&units, m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
   u->inputs = lower_inputs(e);
   add_sizes(u, e, 0);
   add_sizes(u, e, 1);
@@ -402,16 +423,24 @@ void unit_require(ProgramSet *u, Eqns *e, unsigned wants) {
 
 static void add_scene_outputs(IrScene *s, const Eqns *e) {
   const Model *m = e->m;
+  Units units = {.m = m};
+  uint32_t nplain = 0;
   s->outputs.cap = e->noutputs;
   s->outputs.at = ARENA_ARRAY(m->arena, IrVar, e->noutputs + 1);
   for (uint32_t i = 0; i < e->noutputs; i++) {
-    IrVar v = ir_var(m, e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
+    IrVar v = ir_var(&units, e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
     vec_push(m->arena, &s->outputs, v);
+    nplain += output_is_plain(e, i) != 0;
     if (e->constraints.n)
       vec_push(m->arena, &s->forces,
                (expr_kinds(e->g, e->outputs[i].value) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0);
-    if (output_is_plain(e, i)) vec_push(m->arena, &s->plain, v);
   }
+  s->plain.n = nplain;
+  s->plain.at = s->outputs.at;
+  if (nplain == e->noutputs) return;
+  s->plain.n = 0, s->plain.at = NULL;
+  for (uint32_t i = 0; i < e->noutputs; i++)
+    if (output_is_plain(e, i)) vec_push(m->arena, &s->plain, s->outputs.at[i]);
 }
 
 static void add_shapes(IrScene *s, const Model *m) {
@@ -433,10 +462,10 @@ void unit_add_scene(ProgramSet *u, const Eqns *e) {
                .name = sc->name, .doc = sc->doc, .t0 = sc->t0, .t1 = sc->t1, .t1_digits = sc->t1_digits,
                .has_span = sc->has_span, .method = sc->method, .tolerance = sc->tolerance,
                .every = sc->every};
-  const Prog **params = ARENA_ARRAY(m->arena, const Prog *, m->params.n + 1);
-  for (uint32_t i = 0; i < m->params.n; i++)
-    if (!m->params.at[i].fixed) params[m->params.at[i].place] = lower_param(e, i);
-  s.params = params;
+  for (uint32_t i = 0, n = 0; n < u->p.n; n += s.params.at[s.params.n - 1].n) {
+    IrParams some = lower_params(e, &i);
+    vec_push(m->arena, &s.params, some);
+  }
   s.start = lower_start(e);
   add_implied(&s, m);
   s.observe = lower_outputs(e);

@@ -13,7 +13,7 @@ Lower lower_new(const Eqns *e) {
   return (Lower){.e = e, .g = e->g, .p = p, .slots = expr_map(a), .circular = expr_map(a)};
 }
 
-static Lower lower_by_text(const Eqns *e) {
+Lower lower_by_text(const Eqns *e) {
   Lower l = lower_new(e);
   l.by_text = 1;
   return l;
@@ -491,18 +491,19 @@ Prog *lower_switch_rates(const Eqns *e) {
   return lower_outputs_seldom(&l);
 }
 
-static uint32_t array_of_target(SymKind k) { return k == SYM_COORD ? 0 : k == SYM_VEL ? 1 : 2; }
+uint32_t lower_array_of_target(SymKind k) { return k == SYM_COORD ? 0 : k == SYM_VEL ? 1 : 2; }
 
-static void store_target(Lower *l, SymId target, Expr value) {
+void lower_store_target(Lower *l, SymId target, Expr value) {
   const Symbol *s = expr_symbol(l->g, target);
-  prog_store(l->p, array_of_target(s->kind), s->index, lower_slot(l, value), s->name);
+  prog_store(l->p, lower_array_of_target(s->kind), s->index, lower_slot(l, value), s->name);
 }
 
 Prog *lower_action(const Eqns *e, uint32_t event) {
   Lower l = lower_by_text(e);
   const Event *ev = &e->m->events.at[event];
   for (uint32_t i = 0; i < ev->actions.n; i++) lower_roots(&l, &ev->actions.at[i].value, 1);
-  for (uint32_t i = 0; i < ev->actions.n; i++) store_target(&l, ev->actions.at[i].target, ev->actions.at[i].value);
+  for (uint32_t i = 0; i < ev->actions.n; i++)
+    lower_store_target(&l, ev->actions.at[i].target, ev->actions.at[i].value);
   return prog_tidy(l.p);
 }
 
@@ -580,20 +581,4 @@ Prog *lower_closed_forms(const Eqns *e) {
   const Scene *sc = &e->m->scene;
   for (uint32_t i = 0; i < sc->exacts.n; i++) lower_output(&l, sc->exacts.at[i].value, sc->exacts.at[i].name);
   return outputs_once(&l);
-}
-
-Prog *lower_param(const Eqns *e, uint32_t i) {
-  Lower l = lower_by_text(e);
-  const Param *p = &e->m->params.at[i];
-  lower_roots(&l, &p->value, 1);
-  prog_store(l.p, 0, p->place, lower_slot(&l, p->value), p->name);
-  return prog_tidy(l.p);
-}
-
-Prog *lower_start(const Eqns *e) {
-  Lower l = lower_by_text(e);
-  const Scene *sc = &e->m->scene;
-  for (uint32_t i = 0; i < sc->starts.n; i++) lower_roots(&l, &sc->starts.at[i].value, 1);
-  for (uint32_t i = 0; i < sc->starts.n; i++) store_target(&l, sc->starts.at[i].target, sc->starts.at[i].value);
-  return prog_tidy(l.p);
 }

@@ -283,10 +283,7 @@ long double *start_requested(const Eqns *e) {
     if (in->table) symbols[in->sym] = spline_at(in->table, in->order, symbols[m->time]);
     else if (in->value) expr_eval(e->g, &in->value, 1, symbols, &symbols[in->sym]);
   }
-  for (uint32_t i = 0; i < m->scene.starts.n; i++) {
-    const Start *s = &m->scene.starts.at[i];
-    expr_eval(e->g, &s->value, 1, symbols, &symbols[s->target]);
-  }
+  model_eval_starts(m, symbols);
   return symbols;
 }
 

@@ -1,7 +1,11 @@
 /* Targets of assignments (`start`, `exact`, `param`, maps of symmetries): left sides, lists, and values for whole
  * families. */
+#include <math.h>
+
 #include "base/words.h"
 #include "model/builder.h"
+#include "sym/expr_eval.h"
+#include "sym/sum_nest.h"
 
 Target read_target(const Builder *b, AstId id) {
   static const char letters[] = "xyzw";
@@ -166,6 +170,76 @@ static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list,
   }
 }
 
+/* Whether the text between `after` and `rhs` only computes with indices: no text depends on which member it is of. */
+static int computes_with_indices(const Builder *b, AstId after, AstId rhs) {
+  static const AstKind kinds[] = {AST_NUM, AST_NAME, AST_UNIT, AST_NEG, AST_ADD, AST_SUB,
+                                  AST_MUL, AST_DIV,  AST_POW,  AST_TUPLE, AST_CALL};
+  for (AstId id = after + 1; id <= rhs; id++) {
+    const AstExpr *x = ast_expr(b->ast, id);
+    size_t k = 0;
+    int ambiguous;
+    while (k < sizeof kinds / sizeof *kinds && kinds[k] != x->kind) k++;
+    if (k == sizeof kinds / sizeof *kinds) return 0;
+    if (x->kind == AST_POW && ast_expr(b->ast, x->b)->kind != AST_NUM) return 0;
+    if (x->kind == AST_CALL && (function_index(x->name) < 0 || scope_find(&b->scope, x->name, NULL, &ambiguous)))
+      return 0;
+  }
+  return after < rhs;
+}
+
+/* Whether the formula has values for all members. */
+static int is_finite(const Builder *b, const FamilyValue *x) {
+  const Model *m = b->m;
+  long double *symbols = model_constants(m), y[4];
+  unsigned kinds = 0;
+  int finite = 1;
+  for (uint32_t k = 0; k < x->n; k++) kinds |= expr_kinds(b->g, x->value[k]);
+  for (uint32_t i = 0; i < m->params.n && kinds & 1u << SYM_PARAM; i++)
+    if (m->params.at[i].value) expr_eval(b->g, &m->params.at[i].value, 1, symbols, &symbols[m->params.at[i].sym]);
+  EvalTape *tape = eval_tape(b->g, x->value, x->n);
+  for (int64_t t = 0; finite && t < x->range.rows * x->range.turns; t++) {
+    symbols[x->index[0]] = (long double)(x->lo[0] + t / x->range.turns);
+    symbols[x->index[1]] = (long double)(x->lo[1] + t % x->range.turns);
+    eval_run(tape, symbols, y);
+    for (uint32_t k = 0; k < x->n; k++) finite &= isfinite(y[k]) != 0;
+  }
+  eval_tape_free(b->g, tape);
+  arena_release(b->arena, symbols, (expr_symbol_count(b->g) + 1) * sizeof *symbols);
+  return finite;
+}
+
+/* Assigns one formula to many members at once; 0: each is to have its own. */
+static int give_family(const Assign *s, const IndexRange *r, AstId lhs, AstId rhs) {
+  enum { MANY = 64 };
+  static const char *const unnamed[2] = {"row", "turn"};
+  Builder *b = s->b;
+  uint32_t outer = b->index.n;
+  uint64_t members = range_count(r);
+  if (!s->assigner->give_family || members < MANY || !computes_with_indices(b, lhs, rhs)) return 0;
+  const int64_t next[2] = {r->lo[0] + (r->n == 2 || r->n == 1), r->lo[1]}, beside[2] = {r->lo[0], r->lo[1] + 1};
+  FamilyValue x = {.range = {.rows = (uint32_t)count_along(r, 0), .turns = r->n == 2 ? (int64_t)count_along(r, 1) : 1}};
+  uint32_t first = member_offset(s->e, r->lo);
+  x.at = (Subscript){s->e->index + first + (s->p->part < 0 ? 0 : (uint32_t)component_index(s->e->parts, s->p->part)),
+                     member_offset(s->e, next) - first, r->n == 2 ? member_offset(s->e, beside) - first : 0};
+  for (uint32_t k = 0; k < 2; k++) {
+    Name name = r->name[k] ? r->name[k] : intern(b->ast->names, unnamed[k]);
+    x.index[k] = expr_sym_id(b->g, expr_named_symbol(b->g, name));
+    x.lo[k] = r->lo[k];
+    if (k < r->n && r->name[k]) vec_push(b->arena, &b->index, ((IndexVar){name, r->lo[k]}));
+  }
+  b->index_symbols = 1;
+  Value v = resolve(b, rhs, s->assigner->where, s->assigner->effect);
+  b->index_symbols = 0;
+  b->index.n = outer;
+  if (!v.e) return 1;
+  if (v.n != s->parts) return 0;
+  v = values_in(b, v, ast_expr(b->ast, rhs)->span, s->assigner->unit(b, (uint32_t)x.at.first, s->assigner->data));
+  if (!v.e) return 1;
+  x.n = v.n ? v.n : 1;
+  for (uint32_t k = 0; k < x.n; k++) x.value[k] = v.at[k];
+  return is_finite(b, &x) && s->assigner->give_family(b, &x, s->assigner->data);
+}
+
 /* Assigns a formula: evaluated for each member with its indices in scope, or once if no index is named. */
 static void give_formula(const Assign *s, const IndexRange *r, AstId rhs) {
   Builder *b = s->b;
@@ -196,5 +270,5 @@ void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstI
   const AstUnit *behind;
   const AstExpr *list = list_behind(b, rhs, &behind);
   if (list) give_list(&s, &r, list, behind);
-  else give_formula(&s, &r, rhs);
+  else if (!give_family(&s, &r, lhs, rhs)) give_formula(&s, &r, rhs);
 }

@@ -114,11 +114,13 @@ struct Builder {
   ExprGraph *g;
   Model *m;
   Scope scope, members, constraints;
-  Scope outputs; /* the scene's outputs by label; index into Scene.outputs */
+  Scope outputs; /* the first `labelled` of the scene's outputs by label; index into Scene.outputs */
+  uint32_t labelled;
   Rotations rotations;
   VEC(SpinStart) spins; /* start values of angular velocities */
   Scope *named; /* names of events, constraints and expectations; NULL: none yet */
   IndexVars index; /* indices of the `for` around the current statement */
+  int index_symbols; /* 1: they stand for themselves, as symbols */
   VEC(struct Eval *) idle; /* free list of evaluations */
   VEC(Expr) scratch;
   uint32_t *start_index; /* [SymId] index into Scene.starts + 1; 0: no start value */
@@ -264,6 +266,8 @@ typedef struct {
   void (*give)(Builder *b, uint32_t scalar, Expr value, Span span, void *data);
   void *data;
   Name effect;   /* the effect around the statement, or NULL */
+  /* takes one formula for many members; 0: it does not. NULL: none is taken */
+  int (*give_family)(Builder *b, const FamilyValue *x, void *data);
 } Assigner;
 void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstId rhs, const Assigner *assigner);
 

@@ -229,6 +229,23 @@ typedef struct {
   int guess;   /* constraints move it before those that are given */
 } Start;
 
+/* One formula for members of a family: value[k] is of the number `at` + k, in symbols of the indices, which are
+ * lo[0] + row and lo[1] + turn. */
+typedef struct {
+  LoopRange range;
+  Subscript at;
+  uint32_t n;
+  Expr value[4];
+  SymId index[2];
+  int64_t lo[2];
+} FamilyValue;
+
+/* Starts of many members of a family; starts of single members override them. */
+typedef struct {
+  SymKind kind; /* of the targets: SYM_COORD, SYM_VEL or SYM_STATE */
+  FamilyValue of;
+} FamilyStart;
+
 /* Closed form (`exact q = ...`) of a coordinate, a velocity or a state. */
 typedef struct {
   Name name;
@@ -286,6 +303,7 @@ typedef struct {
   Span span; /* of its name; empty: the file has no scene */
   const char *doc;
   VEC(Start) starts;
+  VEC(FamilyStart) family_starts; /* before them, in order */
   Span exactly; /* the first `start exactly`; empty: none */
   double t0, t1;
   const char *t1_digits; /* t1 as decimal digits beyond double precision (base/num.h), or NULL */
@@ -487,6 +505,12 @@ typedef struct {
 
 /* Reason against coordinates and momenta as in brackets, with a way out; or NULL. */
 const char *reason_against_brackets(const Model *m);
+
+/* start_values.c: the symbol of component k of the member of row i and turn j. */
+SymId model_start_target(const Model *m, const FamilyStart *f, int64_t i, int64_t j, uint32_t k);
+
+/* start_values.c: sets the symbols of all starts; parameters are set. */
+void model_eval_starts(const Model *m, long double *symbols);
 
 /* Names of all coordinates, in order of declaration, whether L is of first order or not. */
 CoordList model_coordinates(const Model *m);

@@ -29,19 +29,26 @@ static void show_spin(const Builder *b, const Value *v, Unit *unit) {
 
 int push_output(Builder *b, const Output *o) {
   vec_push(b->arena, &b->m->scene.outputs, *o);
-  if (!scope_own(&b->outputs, o->name, NULL))
-    scope_add(&b->outputs, (Entity){.name = o->name, .index = b->m->scene.outputs.n - 1});
   return (int)b->m->scene.outputs.n - 1;
 }
 
+/* First output with this label; NULL: none. Labels enter the scope at the first question after they came. */
+static const Entity *labelled(Builder *b, Name label) {
+  for (; b->labelled < b->m->scene.outputs.n; b->labelled++) {
+    Entity e = {.name = b->m->scene.outputs.at[b->labelled].name, .index = b->labelled};
+    if (!scope_own(&b->outputs, e.name, NULL)) scope_add(&b->outputs, e);
+  }
+  return scope_own(&b->outputs, label, NULL);
+}
+
 void drop_outputs(Builder *b) {
-  b->m->scene.outputs.n = 0;
+  b->m->scene.outputs.n = b->labelled = 0;
   b->outputs = (Scope){.arena = b->arena};
 }
 
 /* Index of the output with this label; adds it if there is none. from: its expression in the text. */
 static int add_one(Builder *b, Name label, Span span, Unit unit, Expr value, const OutputText *from) {
-  const Entity *there = scope_own(&b->outputs, label, NULL);
+  const Entity *there = labelled(b, label);
   if (there) return (int)there->index;
   Output o = {.name = label, .span = span, .unit = unit, .value = value, .from = *from};
   return push_output(b, &o);

@@ -189,7 +189,8 @@ static const IndexVar *find_index(const Eval *ev, Name name) {
 Value name_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const IndexVar *index = find_index(ev, x->name);
-  if (index && quantified_counts(ev, x)) return a_value(expr_named_symbol(b->g, x->name), DIM_NONE, 1);
+  int is_symbol = index && b->index_symbols && index >= b->index.at && index < b->index.at + b->index.n;
+  if (is_symbol || (index && quantified_counts(ev, x))) return a_value(expr_named_symbol(b->g, x->name), DIM_NONE, 1);
   if (index) return a_value(expr_int(b->g, index->at), DIM_NONE, 1);
   for (uint32_t i = 0; i < b->nbound && ev->in_statement; i++)
     if (b->bound[i].name == x->name)

@@ -187,7 +187,7 @@ static void give_param(Builder *b, uint32_t i, Expr e, Span span, void *data) {
 }
 
 static void set_value(Builder *b, const AstStmt *st, Name effect) {
-  static const Assigner assigner = {IN_START, param_unit, give_param, NULL, NULL};
+  static const Assigner assigner = {IN_START, param_unit, give_param, NULL, NULL, NULL};
   if (!effect && advise_statement(b, st)) return;
   Target p = read_target(b, st->lhs);
   const Entity *e = find_settable(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
@@ -265,6 +265,8 @@ static void scene_statement(Builder *b, const AstStmt *st) {
 /* Outputs of a scene without an output statement: coordinates, velocities, states, energy. */
 static void default_outputs(Builder *b) {
   Model *m = b->m;
+  m->scene.outputs.cap = 2 * m->coords.n + m->states.n + 1;
+  m->scene.outputs.at = ARENA_ARRAY(b->arena, Output, m->scene.outputs.cap);
   for (int velocities = 0; velocities < 2; velocities++)
     for (uint32_t i = 0; i < m->coords.n; i++) {
       const Coord *c = &m->coords.at[i];

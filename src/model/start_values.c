@@ -2,12 +2,13 @@
  * components; `start omega(R) = ...` is converted to their rates after all statements of the scene, as it depends on
  * the start of R. */
 #include "model/resolve_impl.h"
+#include "sym/expr_eval.h"
 
 typedef struct {
   EntKind kind;
   int velocity;
   Unit unit;
-  int guess;
+  int guess, rotates;
 } StartOf;
 
 static SymId start_target(const Builder *b, const StartOf *of, uint32_t i) {
@@ -36,6 +37,60 @@ static void give_start(Builder *b, uint32_t i, Expr value, Span span, void *data
   }
   vec_push(b->arena, &sc->starts, ((Start){target, value, 0, of->guess}));
   b->start_index[target] = sc->starts.n;
+}
+
+/* Whether the family has a start for target s. */
+static int starts_target(const FamilyStart *f, const Symbol *s) {
+  const FamilyValue *x = &f->of;
+  for (int64_t i = 0; s->kind == f->kind && i < x->range.rows; i++) {
+    int64_t from = s->index - subscript_at(&x->at, i, 0), step = x->at.by_turn ? x->at.by_turn : 1;
+    if (from >= 0 && from / step < x->range.turns && from % step < x->n) return 1;
+  }
+  return 0;
+}
+
+/* Of models without constraints, which look at each start. Takes the place of starts of its members. */
+static int give_family_start(Builder *b, const FamilyValue *x, void *data) {
+  Scene *sc = &b->m->scene;
+  const StartOf *of = data;
+  uint32_t n = sc->starts.n;
+  if (b->m->constraints.n || of->guess || of->rotates) return 0;
+  FamilyStart f = {of->kind == ENT_STATE ? SYM_STATE : of->velocity ? SYM_VEL : SYM_COORD, *x};
+  vec_push(b->arena, &sc->family_starts, f);
+  sc->starts.n = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    Start one = sc->starts.at[i];
+    b->start_index[one.target] = 0;
+    if (starts_target(&f, expr_symbol(b->g, one.target))) continue;
+    sc->starts.at[sc->starts.n++] = one;
+    b->start_index[one.target] = sc->starts.n;
+  }
+  return 1;
+}
+
+SymId model_start_target(const Model *m, const FamilyStart *f, int64_t i, int64_t j, uint32_t k) {
+  int64_t at = subscript_at(&f->of.at, i, j) + k;
+  return f->kind == SYM_STATE ? m->states.at[at].z : f->kind == SYM_VEL ? m->coords.at[at].v : m->coords.at[at].q;
+}
+
+void model_eval_starts(const Model *m, long double *symbols) {
+  const Scene *sc = &m->scene;
+  long double y[4];
+  for (uint32_t k = 0; k < sc->family_starts.n; k++) {
+    const FamilyStart *f = &sc->family_starts.at[k];
+    const FamilyValue *x = &f->of;
+    EvalTape *tape = eval_tape(m->g, x->value, x->n);
+    for (int64_t t = 0; t < x->range.rows * x->range.turns; t++) {
+      int64_t i = t / x->range.turns, j = t % x->range.turns;
+      symbols[x->index[0]] = (long double)(x->lo[0] + i);
+      symbols[x->index[1]] = (long double)(x->lo[1] + j);
+      eval_run(tape, symbols, y);
+      for (uint32_t c = 0; c < x->n; c++) symbols[model_start_target(m, f, i, j, c)] = y[c];
+    }
+    eval_tape_free(m->g, tape);
+  }
+  for (uint32_t i = 0; i < sc->starts.n; i++)
+    expr_eval(m->g, &sc->starts.at[i].value, 1, symbols, &symbols[sc->starts.at[i].target]);
 }
 
 static void give_closed_form(Builder *b, uint32_t i, Expr value, Span span, void *data) {
@@ -114,8 +169,10 @@ void set_motion(Builder *b, const AstStmt *st) {
   if (e->kind == ENT_COORD && !p.primes && !exact && e->parts != ROTATION)
     warn_of_degrees(b, &b->m->coords.at[e->index], st->rhs);
   if (st->exactly == START_EXACTLY && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;
-  StartOf of = {.kind = e->kind, .velocity = p.primes > 0, .guess = st->exactly == START_GUESS};
-  Assigner assigner = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of, NULL};
+  StartOf of = {.kind = e->kind, .velocity = p.primes > 0, .guess = st->exactly == START_GUESS,
+                .rotates = e->parts == ROTATION};
+  Assigner assigner = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of, NULL,
+                       exact ? NULL : give_family_start};
   assign_values(b, &p, e, st->lhs, st->rhs, &assigner);
 }
 
@@ -193,7 +250,7 @@ static void give_spin(Builder *b, const AstStmt *st) {
   vectors.index = 0;
   vectors.parts = 3;
   if (!e->ndims) vectors.name = intern_printf(b, "omega(%s)", e->name);
-  Assigner assigner = {IN_START, unit_of_spin, assign_spin, &of, NULL};
+  Assigner assigner = {IN_START, unit_of_spin, assign_spin, &of, NULL, NULL};
   assign_values(b, &p, &vectors, st->lhs, st->rhs, &assigner);
 }
 

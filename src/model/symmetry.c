@@ -251,7 +251,7 @@ static void add_map(Builder *b, const AstStmt *st, Name effect, void *data) {
     report_target(b, &target, target.primes ? whole : name, e);
     return;
   }
-  Assigner assigner = {IN_DYNAMICS, unit_of_target, give_target, &p, effect};
+  Assigner assigner = {IN_DYNAMICS, unit_of_target, give_target, &p, effect, NULL};
   assign_values(b, &target, e, st->lhs, st->rhs, &assigner);
 }
 

@@ -44,21 +44,15 @@ static Real other_value(Check *c, const Param *p, Real value) {
                                                     : 0.5L - factor;
 }
 
-static int loads_parameters(const Prog *p) {
-  for (Slot s = 1; s < p->ins.n; s++)
-    if (p->ins.at[s].op == IR_LOAD && p->ins.at[s].array == ARR_P) return 1;
-  return 0;
-}
-
 static int choose_parameters(Check *c) {
   const IrScene *scene = &c->u->scenes.at[c->scene];
+  const IrParams *next = scene->params.at;
   for (uint32_t i = 0; i < c->m->params.n; i++) {
     const Param *p = &c->m->params.at[i];
-    if (!p->fixed) {
-      const Prog *value = scene->params[p->place];
-      if (!check_run(c, value, (Real *const[]){c->p})) return 0;
-      if (!loads_parameters(value)) c->p[p->place] = other_value(c, p, c->p[p->place]);
-    }
+    int is_first = !p->fixed && next < scene->params.at + scene->params.n && p->place == next->first;
+    if (is_first && !check_run(c, next++->values, (Real *const[]){c->p})) return 0;
+    if (!p->fixed && !(expr_kinds(c->e->g, p->value) & 1u << SYM_PARAM))
+      c->p[p->place] = other_value(c, p, c->p[p->place]);
     c->given[i] = p->fixed ? (Real)num_value(p->number) : c->p[p->place];
   }
   return !c->u->derived || check_run(c, c->u->derived, (Real *const[]){c->p});

@@ -377,4 +377,37 @@ for side in up down; do
   check "the nearest to it" close_to "$(sed -n 's/.*"final": {.*"b": \([-0-9.e]*\).*/\1/p' "$TMP/guess")" "$right" 1e-9
   check "and what is given stays" close_to "$(sed -n 's/.*"final": {"a": \([-0-9.e]*\).*/\1/p' "$TMP/guess")" 1 1e-12
 done
+# ---- families: one loop for a formula, whatever their size; later starts of members go before, as do families after them
+cat >"$TMP/family.lag" <<'END_OF'
+model family
+const N = 100
+coord x[N], r[N, 3]: vec2
+param m = 2 > 0, k[N] = 1, w[N] = 1
+kinetic = sum(i in 1..N, m/2*x[i]'^2 + sum(j in 1..3, m/2*dot(r[i,j]', r[i,j]')))
+potential = sum(i in 1..N, k[i]*w[i]/2*x[i]^2)
+scene s {
+  k[i in 1..N] = 1 + i/10
+  w[i in 1..N] = m*k[i]
+  start x[3] = 99
+  start x[i in 1..N] = sin(1.7*i) + m*pi
+  start x[5] = -1, x' = 0.25
+  start r[i in 1..N, j in 1..3] = (i + 0.1*j, cos(i*j)/m)
+  start r[i in 11..N, 2].x' = sqrt(i)
+  start r[N, 3] = (7, 8)
+  span 1
+  output x[3], x[99], x[5], x[7]', r[2,3].x, r[2,3].y, r[100,3].y, r[10,2].x', r[12,2].x', w[40], w[41]
+}
+END_OF
+starts_of_family() {
+  "$LAGC" run "$TMP/family.lag" m=3 'k[40]=9' --compile $1 --until 1e-9 --quiet -o - | sed -n 2p | awk -F, 'BEGIN { pi = atan2(0, -1) }
+    function apart(x, y) { return (x - y)^2 > 1e-30*(1 + y*y) }  # some roundings of numbers up to 12
+    { exit apart($2, sin(5.1) + 3*pi) || apart($3, sin(168.3) + 3*pi) || $4 != -1 || $5 != 0.25 || apart($6, 2.3) || apart($7, cos(6)/3) || $8 != 8 ||
+        $9 != 0 || apart($10, sqrt(12)) || $11 != 27 || apart($12, 15.3) }'
+}
+for how in never always; do check "starts and parameters of families, compiled: $how" starts_of_family $how; done
+lines() { "$LAGC" emit "$TMP/family.lag" -DN="$1" -o - | sed -n '/^static void params_s/,/^}/p; /^static void start_s/,/^}/p' | wc -l; }
+is "as many lines for 2000 members as for 1000" "$(lines 1000)" "$(lines 2000)"
+sed 's|sin(1.7\*i) + m\*pi|1/(i - 70)|' "$TMP/family.lag" >"$TMP/family0.lag"
+says_zero() { "$LAGC" check "$TMP/family0.lag" 2>&1 | grep -q '11:27: error: division by zero'; }
+check "a member without a value has a message" says_zero
 tap_end
