@@ -103,8 +103,10 @@ static size_t list_room(uint32_t n) {
   return room;
 }
 
-/* Nodes reachable from the roots, ascending; not below nodes of `leaves` (or NULL). */
-static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, Depth depth) {
+/* Nodes reachable from the roots, ascending; not below nodes of `leaves` (or NULL). Ends where there are more than
+ * `most`. */
+static ExprList reachable(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, Depth depth,
+                          uint32_t most) {
   VEC(Expr) found = {g->found, 0, g->found_cap};
   expr_map_clear(&g->seen);
   for (uint32_t i = 0; i < n; i++)
@@ -112,7 +114,7 @@ static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap 
       expr_map_set(&g->seen, roots[i], 1);
       vec_push(g->arena, &found, roots[i]);
     }
-  for (uint32_t k = 0; k < found.n; k++) {
+  for (uint32_t k = 0; k < found.n && found.n <= most; k++) {
     Expr e = found.at[k];
     ExprOp op = expr_op(g, e);
     if ((leaves && expr_map_get(leaves, e)) || (op == EX_DEF && depth == TO_DEFINITIONS) ||
@@ -137,6 +139,13 @@ void expr_list_free(ExprGraph *g, ExprList l) {
   arena_recycle(g->arena, (void *)(uintptr_t)l.at, list_room(l.n) * sizeof *l.at);
 }
 
+static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, Depth depth) {
+  return reachable(g, roots, n, leaves, depth, UINT32_MAX);
+}
+
+ExprList expr_topo_few(ExprGraph *g, const Expr *roots, uint32_t n, uint32_t most) {
+  return reachable(g, roots, n, NULL, TO_LEAVES, most);
+}
 ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, TO_LEAVES); }
 ExprList expr_topo_to_sums(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, TO_SUMS); }
 ExprList expr_topo_shallow(ExprGraph *g, const Expr *roots, uint32_t n) {
