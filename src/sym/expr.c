@@ -16,9 +16,9 @@ ExprGraph *expr_graph(Arena *a, Interner *names) {
   ExprGraph *g = ARENA_NEW(a, ExprGraph);
   g->arena = a;
   g->names = names;
-  g->seen = expr_map(a);
-  g->work = expr_map(a);
-  g->live = expr_map(a);
+  g->seen = expr_map_by_id(a);
+  g->work = expr_map_by_id(a);
+  g->live = expr_map_by_id(a);
   g->table = idtable(a, 512);
   g->named_table = idtable(a, 32);
   vec_push(a, &g->nodes, ((Node){0}));

@@ -15,16 +15,21 @@ void expr_map_clear(ExprMap *m) {
   m->n = 0;
 }
 
+ExprMap expr_map_by_id(Arena *a) { return (ExprMap){.arena = a, .epoch = 1, .by_id = 1}; }
+
 /* Slot of e, or the free slot for it (open addressing; Knuth's multiplicative hash). */
 static uint32_t map_slot(const ExprMap *m, Expr e) {
+  if (m->by_id) return e;
   uint32_t i = (e * 2654435769u) >> m->shift;
   while (m->at[i].stamp == m->epoch && m->at[i].key != e) i = (i + 1) & (m->cap - 1);
   return i;
 }
 
-static void map_grow(ExprMap *m) {
+/* Makes room for e. */
+static void map_grow(ExprMap *m, Expr e) {
   ExprMap old = *m;
   m->cap = old.cap ? 2 * old.cap : 64;
+  while (m->by_id && m->cap <= e) m->cap *= 2;
   m->shift = old.cap ? old.shift - 1 : 26;
   m->at = ARENA_ARRAY(m->arena, ExprMapEntry, m->cap);
   for (uint32_t i = 0; i < old.cap; i++)
@@ -33,14 +38,14 @@ static void map_grow(ExprMap *m) {
 }
 
 void expr_map_set(ExprMap *m, Expr e, uint32_t value) {
-  if (2 * m->n >= m->cap) map_grow(m);
+  if (m->by_id ? e >= m->cap : 2 * m->n >= m->cap) map_grow(m, e);
   ExprMapEntry *x = &m->at[map_slot(m, e)];
   m->n += x->stamp != m->epoch;
   *x = (ExprMapEntry){e, value, m->epoch};
 }
 
 uint32_t expr_map_get(const ExprMap *m, Expr e) {
-  if (!m->n) return 0;
+  if (!m->n || (m->by_id && e >= m->cap)) return 0;
   const ExprMapEntry *x = &m->at[map_slot(m, e)];
   return x->stamp == m->epoch ? x->value : 0;
 }
