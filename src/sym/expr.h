@@ -227,12 +227,14 @@ typedef struct {
 
 typedef struct {
   Arena *arena;
-  ExprMapEntry *at;
+  union {
+    ExprMapEntry *at; /* hash table */
+    uint64_t *of;     /* [e] stamp and value: memory grows with the graph */
+  };
   uint32_t cap, shift, n, epoch;
-  int by_id; /* at[e], and not a hash table: memory grows with the graph */
+  int by_id;
 } ExprMap;
 ExprMap expr_map(Arena *a);
-ExprMap expr_map_by_id(Arena *a); /* for maps that are used again and again */
 void expr_map_clear(ExprMap *m);
 void expr_map_free(ExprMap *m); /* gives up its memory; it is empty */
 void expr_map_set(ExprMap *m, Expr e, uint32_t value);

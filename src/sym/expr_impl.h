@@ -92,6 +92,8 @@ Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
 
 ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
 
+ExprMap expr_map_by_id(Arena *a); /* for maps of the graph itself, which are used again and again */
+
 /* Node e with its arguments mapped through m; an argument that is not in m stays. */
 Name expr_name_with_suffix(ExprGraph *g, Name name, const char *suffix);
 Expr expr_with_mapped_args(ExprGraph *g, const ExprMap *m, Expr e);

@@ -9,27 +9,23 @@
 /* --- maps --- */
 
 ExprMap expr_map(Arena *a) { return (ExprMap){.arena = a, .epoch = 1}; }
+ExprMap expr_map_by_id(Arena *a) { return (ExprMap){.arena = a, .epoch = 1, .by_id = 1}; }
 
 void expr_map_clear(ExprMap *m) {
   m->epoch++;
   m->n = 0;
 }
 
-ExprMap expr_map_by_id(Arena *a) { return (ExprMap){.arena = a, .epoch = 1, .by_id = 1}; }
-
 /* Slot of e, or the free slot for it (open addressing; Knuth's multiplicative hash). */
 static uint32_t map_slot(const ExprMap *m, Expr e) {
-  if (m->by_id) return e;
   uint32_t i = (e * 2654435769u) >> m->shift;
   while (m->at[i].stamp == m->epoch && m->at[i].key != e) i = (i + 1) & (m->cap - 1);
   return i;
 }
 
-/* Makes room for e. */
-static void map_grow(ExprMap *m, Expr e) {
+static void map_grow(ExprMap *m) {
   ExprMap old = *m;
   m->cap = old.cap ? 2 * old.cap : 64;
-  while (m->by_id && m->cap <= e) m->cap *= 2;
   m->shift = old.cap ? old.shift - 1 : 26;
   m->at = ARENA_ARRAY(m->arena, ExprMapEntry, m->cap);
   for (uint32_t i = 0; i < old.cap; i++)
@@ -37,22 +33,41 @@ static void map_grow(ExprMap *m, Expr e) {
   if (old.cap) arena_recycle(m->arena, old.at, old.cap * sizeof *old.at);
 }
 
+static void set_by_id(ExprMap *m, Expr e, uint32_t value) {
+  uint32_t cap = m->cap ? m->cap : 64;
+  while (cap <= e) cap *= 2;
+  if (cap > m->cap) {
+    uint64_t *of = ARENA_ARRAY(m->arena, uint64_t, cap);
+    if (m->cap) memcpy(of, m->of, m->cap * sizeof *of);
+    if (m->cap) arena_recycle(m->arena, m->of, m->cap * sizeof *of);
+    m->of = of;
+    m->cap = cap;
+  }
+  m->n += m->of[e] >> 32 != m->epoch;
+  m->of[e] = (uint64_t)m->epoch << 32 | value;
+}
+
 void expr_map_set(ExprMap *m, Expr e, uint32_t value) {
-  if (m->by_id ? e >= m->cap : 2 * m->n >= m->cap) map_grow(m, e);
+  if (m->by_id) {
+    set_by_id(m, e, value);
+    return;
+  }
+  if (2 * m->n >= m->cap) map_grow(m);
   ExprMapEntry *x = &m->at[map_slot(m, e)];
   m->n += x->stamp != m->epoch;
   *x = (ExprMapEntry){e, value, m->epoch};
 }
 
 uint32_t expr_map_get(const ExprMap *m, Expr e) {
-  if (!m->n || (m->by_id && e >= m->cap)) return 0;
+  if (!m->n) return 0;
+  if (m->by_id) return e < m->cap && m->of[e] >> 32 == m->epoch ? (uint32_t)m->of[e] : 0;
   const ExprMapEntry *x = &m->at[map_slot(m, e)];
   return x->stamp == m->epoch ? x->value : 0;
 }
 
 void expr_map_free(ExprMap *m) {
-  if (m->cap) arena_recycle(m->arena, m->at, m->cap * sizeof *m->at);
-  *m = expr_map(m->arena);
+  if (m->cap) arena_recycle(m->arena, m->at, m->cap * (m->by_id ? sizeof *m->of : sizeof *m->at));
+  *m = m->by_id ? expr_map_by_id(m->arena) : expr_map(m->arena);
 }
 
 /* --- reachable nodes --- */
