@@ -13,13 +13,25 @@
 #include "symmetry/noether_report.h"
 #include "report/equation_listing.h"
 
+/* The model without effects, as scenes without effects have met it. */
+typedef struct {
+  int compared; /* its equations, with the text */
+  int judged;   /* it claims symmetries alone, and they hold: see lines */
+  StrBuf lines;
+} PlainModel;
+
 /* Judges symmetries and expectations for the model without effects, and those inside an effect with that effect and
  * its requirements; no scene is needed. */
-static void check_claims(Compiler *c, const Ast *ast, int allow_numeric, ExpectResults *results, StrBuf *out) {
+static void check_claims(Compiler *c, const PlainModel *plain, int allow_numeric, ExpectResults *results, StrBuf *out) {
+  const Ast *ast = c->ast;
   EffectList where = model_claiming_effects(ast);
   Eqns **e = ARENA_ARRAY(ast->arena, Eqns *, where.n + 1);
-  for (uint32_t i = 0; i < where.n; i++)
-    e[i] = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = where.at[i]});
+  for (uint32_t i = 0; i < where.n; i++) {
+    ModelChoice choice = {.bare = 1, .also = where.at[i]};
+    if (where.at[i] || !plain->compared) e[i] = compiler_derive_compared(c, &choice);
+    else if (!plain->judged) e[i] = compiler_derive(c, &choice);
+  }
+  sb_puts(out, sb_text(&plain->lines));
   for (uint32_t i = 0; i < where.n; i++) {
     if (!e[i]) continue;
     charges_judge(e[i], where.at[i]);
@@ -63,6 +75,7 @@ static int has_inputs(const Model *m) { return m->inputs.n > model_contact_input
 typedef struct {
   ModelChoice choice;
   int is_first;
+  PlainModel *plain;
   FoundUnits *found;
   StrBuf *out;
 } CheckedPart;
@@ -76,6 +89,17 @@ static void list_families(const Model *m, StrBuf *out) {
   if (m->families.n) sb_printf(out, ": %s, which moreau follows\n", m->families.n > 1 ? "families" : "a family");
 }
 
+/* Parameters that --fix made numbers are a model of their own. */
+static void note_plain(Compiler *c, const Eqns *e, PlainModel *plain) {
+  const Model *m = e->m;
+  if (m->effects.n || c->o.fix) return;
+  plain->compared = 1;
+  if (plain->judged || m->expects.n || m->canonicals.n || m->hamiltonian) return;
+  charges_print(e, NULL, &plain->lines);
+  check_json_symmetries(c, e, NULL);
+  plain->judged = 1;
+}
+
 static void check_scene(Compiler *c, void *data) {
   const CheckedPart *x = data;
   StrBuf *out = x->out;
@@ -83,6 +107,7 @@ static void check_scene(Compiler *c, void *data) {
   Eqns *e = compiler_derive_compared(c, &x->choice);
   if (!e) check_json_scene(c, "scene", name, NULL, 0);
   if (!e) return;
+  note_plain(c, e, x->plain);
   if (!out->n) {
     show_facts(e, out);
     show_cyclic(e, "", out);
@@ -130,10 +155,11 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
   SceneList scenes = model_scenes(ast);
   FoundUnits found = {0};
   ExpectResults results = {0};
+  PlainModel plain = {.lines = strbuf(c->arena)};
   for (uint32_t i = 0; i < scenes.n; i++) {
     if (scene && strcmp(scene, scenes.at[i]) != 0) continue;
     CheckedPart part = {.choice = {.scene = scenes.at[i], .drawing = DRAWING_CHECKED},
-                        .is_first = i == 0 || scene, .found = &found, .out = out};
+                        .is_first = i == 0 || scene, .plain = &plain, .found = &found, .out = out};
     compiler_with_scratch(c, check_scene, &part);
   }
   if (scene && !out->n) compiler_derive_compared(c, &(ModelChoice){.scene = scene}); /* reports the unknown scene */
@@ -141,7 +167,7 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
   list_units(&found, out);
   check_json_units(c, found.at, found.n);
   if (ast->diags->errors) return 0; /* expectations of a wrong model say nothing */
-  check_claims(c, ast, allow_numeric, &results, out);
+  check_claims(c, &plain, allow_numeric, &results, out);
   check_json_expects(c, &results);
   expects_print(&results, ast->sources, out);
   return 1;

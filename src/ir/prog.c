@@ -161,10 +161,13 @@ void prog_solve(Prog *p, Solve k, Slot *x) {
   for (uint32_t i = 0; i < k.n + k.m; i++) x[i] = prog_ins(p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
 
+int prog_takes_name(const Prog *p, Slot s) {
+  const Ins *i = &p->ins.at[s];
+  return s && !i->name && i->op != IR_CONST && i->op != IR_PI && i->op != IR_LOAD;
+}
+
 void prog_name(Prog *p, Slot s, Name name) {
-  if (!s) return;
-  Ins *i = &p->ins.at[s];
-  if (!i->name && i->op != IR_CONST && i->op != IR_PI && i->op != IR_LOAD) i->name = name;
+  if (prog_takes_name(p, s)) p->ins.at[s].name = name;
 }
 
 int ir_is_scalar(IrArray array) {

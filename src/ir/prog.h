@@ -209,6 +209,7 @@ void prog_solve(Prog *p, Solve k, Slot *x);
 
 /* Gives a value the user's or the theory's name, unless it has a name or is a leaf. */
 void prog_name(Prog *p, Slot s, Name name);
+int prog_takes_name(const Prog *p, Slot s);
 
 int ir_is_condition(IrOp op);
 

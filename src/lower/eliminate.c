@@ -62,7 +62,7 @@ static Elimination system_new(Lower *l) {
   for (uint32_t k = 0; k < s->H.n; k++) {
     const MassEntry *m = &s->H.at[k];
     Slot slot = lower_slot(l, m->e);
-    if (m->row < s->n) prog_name(l->p, slot, lower_numbered(l, "M", m->row, m->col));
+    if (m->row < s->n) lower_name(l, slot, "M", m->row, m->col);
     if (m->row == m->col && expr_sign(l->g, m->e) == SIGN_POSITIVE) {
       if (m->row < s->n) y.positive[m->row] = slot;
       else y.form[m->row] = (MassForm){.mate = NO_VARIABLE, .own = slot, .full = slot};
@@ -75,7 +75,7 @@ static Elimination system_new(Lower *l) {
   }
   for (uint32_t i = 0; i < s->n; i++) {
     y.b[i] = lower_slot(l, s->f[i]);
-    prog_name(l->p, y.b[i], lower_numbered(l, "f", i, UINT32_MAX));
+    lower_name(l, y.b[i], "f", i, UINT32_MAX);
   }
   return y;
 }
@@ -197,14 +197,14 @@ static void eliminate_coordinate(Elimination *y, uint32_t v) {
   Fraction link = is_link(y, v) ? link_row(y, v) : (Fraction){0};
   const SparseRow *row = &y->H.rows[v];
   Slot d = sparse_get(&y->H, v, v);
-  prog_name(y->l->p, d, lower_numbered(y->l, "D", v, UINT32_MAX));
+  lower_name(y->l, d, "D", v, UINT32_MAX);
   if (!d || d != y->positive[v]) lower_pivot(y->l, d, 1);
   SparseRow *below = &y->factor[v];
   for (uint32_t k = 0; k < row->n; k++) {
     SparseEntry h = row->at[k];
     if (h.col == v) continue;
     Slot f = op(y->l, IR_DIV, h.value, d);
-    if (h.col < y->s->n) prog_name(y->l->p, f, lower_numbered(y->l, "L", v, h.col));
+    if (h.col < y->s->n) lower_name(y->l, f, "L", v, h.col);
     for (uint32_t j = 0; j < below->n && !link.num; j++) { /* earlier entries of the column */
       SparseEntry g = below->at[j];
       sparse_set(&y->H, h.col, g.col, prog_sub_product(y->l->p, sparse_get(&y->H, h.col, g.col), h.value, g.value));

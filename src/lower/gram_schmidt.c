@@ -25,13 +25,13 @@ static void orthogonalise_by(Gram *y, uint32_t v, const uint32_t *later, uint32_
   for (uint32_t k = 0; k < y->s->n; k++) weighted[k] = op(y->l, IR_MUL, lower_slot(y->l, y->s->weight[k]),
                                                           y->w[k * y->n + v]);
   Slot d = y->pivot[v] = product(y, weighted, v);
-  prog_name(y->l->p, d, lower_numbered(y->l, "D", v, UINT32_MAX));
+  lower_name(y->l, d, "D", v, UINT32_MAX);
   lower_pivot(y->l, d, 1);
   for (uint32_t i = 0; i < nlater; i++) {
     uint32_t u = later[i];
     Slot f = op(y->l, IR_DIV, product(y, weighted, u), d);
     if (!f) continue;
-    prog_name(y->l->p, f, lower_numbered(y->l, "L", v, u));
+    lower_name(y->l, f, "L", v, u);
     for (uint32_t k = 0; k < y->s->n; k++)
       y->w[k * y->n + u] = prog_sub_product(y->l->p, y->w[k * y->n + u], f, y->w[k * y->n + v]);
     y->b[u] = prog_sub_product(y->l->p, y->b[u], f, y->b[v]);
@@ -51,7 +51,7 @@ void lower_gram_schmidt(Lower *l, Slot *acc) {
   for (uint32_t k = 0; k < y.s->n * n; k++) y.w[k] = y.s->W[k] ? lower_slot(l, y.s->W[k]) : 0;
   for (uint32_t i = 0; i < n; i++) {
     y.b[i] = lower_slot(l, e->system.f[i]);
-    prog_name(l->p, y.b[i], lower_numbered(l, "f", i, UINT32_MAX));
+    lower_name(l, y.b[i], "f", i, UINT32_MAX);
   }
   prog_title(l->p, "M q'' = f, M = W^T C W by orthogonal columns of W");
   for (uint32_t k = 0; k < n; k++) orthogonalise_by(&y, order[k], order + k + 1, n - k - 1);

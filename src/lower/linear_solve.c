@@ -45,11 +45,12 @@ static uint32_t *label_blocks(const Eqns *e, uint32_t nrows) {
   return parent;
 }
 
-Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j) {
+void lower_name(Lower *l, Slot s, const char *stem, uint32_t i, uint32_t j) {
   Arena *a = l->p->arena;
-  if (l->e->n == 1) return arena_strdup(a, stem);
-  if (j == UINT32_MAX) return arena_printf(a, "%s%u", stem, i + 1);
-  return arena_printf(a, l->e->n > 9 ? "%s%u_%u" : "%s%u%u", stem, j + 1, i + 1);
+  if (!prog_takes_name(l->p, s)) return;
+  prog_name(l->p, s, l->e->n == 1      ? stem
+                     : j == UINT32_MAX ? arena_printf(a, "%s%u", stem, i + 1)
+                                       : arena_printf(a, l->e->n > 9 ? "%s%u_%u" : "%s%u%u", stem, j + 1, i + 1));
 }
 
 /* Coordinate i is number place[i] of blocks[block[i]]; constraint k number row_place[k] of blocks[row_block[k]]. */
@@ -117,14 +118,14 @@ static uint32_t make_blocks(Lower *l, const RightHandSides *s, Block **blocks) {
     const MassEntry *x = &e->system.H.at[k];
     Block *b = &y.blocks[y.block[x->row]];
     Slot slot = lower_slot(l, x->e);
-    prog_name(l->p, slot, lower_numbered(l, "M", x->row, x->col));
+    lower_name(l, slot, "M", x->row, x->col);
     b->M[y.place[x->row] * b->n + y.place[x->col]] = slot;
   }
   for (uint32_t i = 0; i < e->n; i++) {
     Block *b = &y.blocks[y.block[i]];
     b->at[y.place[i]] = i;
     b->f[y.place[i]] = s->f[i];
-    if (s->f[i]) prog_name(l->p, s->f[i], lower_numbered(l, "f", i, UINT32_MAX));
+    if (s->f[i]) lower_name(l, s->f[i], "f", i, UINT32_MAX);
   }
   fill_constraints(l, s, &y);
   *blocks = y.blocks;

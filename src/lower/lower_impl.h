@@ -81,9 +81,9 @@ void lower_elimination(Lower *l, Slot *acc);
 /* gram_schmidt.c: q'' where M = W^T C W; weights, W and forces must be lowered. */
 void lower_gram_schmidt(Lower *l, Slot *acc);
 
-/* Names "M12", "f1" by numbers of coordinates, from 1 (j UINT32_MAX: i alone); the stem alone when there is one
+/* Names s "M12", "f1" by numbers of coordinates, from 1 (j UINT32_MAX: i alone); the stem alone when there is one
  * coordinate. */
-Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j);
+void lower_name(Lower *l, Slot s, const char *stem, uint32_t i, uint32_t j);
 
 /* Check that d is positive, or (positive 0) not zero; none where d is a number that passes. */
 void lower_pivot(Lower *l, Slot d, int positive);

@@ -154,6 +154,10 @@ static long double *parameter_values(const Eqns *e) {
   return value;
 }
 
+static void forget_values(const Eqns *e, long double *value) {
+  arena_release(e->m->arena, value, (expr_symbol_count(e->g) + 1) * sizeof *value);
+}
+
 static void add_once(Eqns *e, ExprMap *known, ModelSize one) {
   if (expr_is_num(e->g, one.value) || expr_map_get(known, one.value) == (one.part ? 2u : 1u)) return;
   expr_map_set(known, one.value, one.part ? 2u : 1u);
@@ -174,6 +178,7 @@ void sizes_find(Eqns *e) {
     Span span = m->coords.at[x.row].span;
     if (inertia > 0) add_once(e, &known, (ModelSize){x.e, what, span, !m->constraints.n, 0, 0, NULL});
   }
+  forget_values(e, value);
 }
 
 void mass_warn_nonpositive(const Eqns *e) {
@@ -191,6 +196,7 @@ void mass_warn_nonpositive(const Eqns *e) {
     diag_help(m->diags, "give them values that make %s positive; with `> 0` after a parameter a run refuses others",
               expr_text(e->g, x.e));
   }
+  forget_values(e, value);
 }
 
 /* The coordinate without inertia at these values: the largest part of a vector that M makes 0; e->n: M is regular. */

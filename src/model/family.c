@@ -1,6 +1,8 @@
 /* Families (indexed declarations): index ranges, offsets and names of members, and `for` loops over statements. */
 #include "model/builder.h"
 
+#include <string.h>
+
 uint32_t member_offset(const Entity *e, const int64_t *at) {
   uint64_t i = 0;
   for (int k = 0; k < e->ndims; k++) i = i * (uint64_t)(e->hi[k] - e->lo[k] + 1) + (uint64_t)(at[k] - e->lo[k]);
@@ -22,8 +24,11 @@ int next_member(const Entity *e, int64_t *at) {
 
 Name member_name(const Ast *ast, Name name, const int64_t *at, uint32_t ndims) {
   if (ndims == 0) return name;
-  const char *second = ndims == 2 ? arena_printf(ast->arena, ",%lld", (long long)at[1]) : "";
-  return intern(ast->names, arena_printf(ast->arena, "%s[%lld%s]", name, (long long)at[0], second));
+  char *text = ndims == 2 ? arena_printf(ast->arena, "%s[%lld,%lld]", name, (long long)at[0], (long long)at[1])
+                          : arena_printf(ast->arena, "%s[%lld]", name, (long long)at[0]);
+  Name member = intern(ast->names, text);
+  arena_recycle(ast->arena, text, strlen(text) + 1);
+  return member;
 }
 
 const Entity *find_member(const Ast *ast, const Scope *members, const Entity *e, const int64_t *at) {

@@ -101,4 +101,5 @@ void check_sizes(Builder *b) {
                  "it acts against the velocity by itself: let its size be at least 0, `param mu = 0.3 >= 0`",
                  one->what, size);
   }
+  arena_release(b->arena, x, (expr_symbol_count(b->g) + 1) * sizeof *x);
 }

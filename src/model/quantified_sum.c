@@ -346,7 +346,17 @@ int quantified_fits(Eval *ev, AstId id) {
   return 0;
 }
 
-int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
+/* Whether the sum is tried as one. */
+static int may_stay(const Eval *ev, AstId id) {
+  return ast_expr(ev->b->ast, id)->kind == AST_SUM && !ev->sums && !ev->index.n &&
+         !(ev->in_statement && ev->b->index.n) && !ev->function && ev->written_out != id && ev->b->sums_from;
+}
+
+int64_t quantified_part(Eval *ev, AstId id, int64_t lo, int64_t hi) {
+  return may_stay(ev, id) ? quantified_same_branches(ev, id, lo, hi) : hi;
+}
+
+int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi, int whole) {
   Builder *b = ev->b;
   const AstExpr *x = ast_expr(b->ast, id);
   if (ev->sums && id == ev->sums->inner && ev->sums->pairs) {
@@ -355,13 +365,11 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
   }
   if (ev->sums && id == ev->sums->inner) {
     int64_t j = ev->sums->pair[ev->sums->pass][1];
-    vec_push(b->arena, &ev->loops, ((Loop){id, j, j, ev->terms.n}));
+    vec_push(b->arena, &ev->loops, ((Loop){id, j, j, ev->terms.n, 0, 0}));
     vec_push(b->arena, &ev->index, ((IndexVar){x->name, j}));
     return 1;
   }
-  if (x->kind != AST_SUM || ev->sums || ev->index.n || (ev->in_statement && b->index.n) || ev->function ||
-      ev->written_out == id || !b->sums_from)
-    return 0;
+  if (!may_stay(ev, id)) return 0;
   struct Quantified *q = ARENA_NEW(b->arena, struct Quantified);
   *q = (struct Quantified){.outer = id, .lo = lo, .hi = hi};
   int read = quantified_text(ev, q);
@@ -384,10 +392,10 @@ int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi) {
     return -1;
   }
   q->turns = turns;
-  q->sampled = has_many_turns(q, turns);
+  q->sampled = whole && has_many_turns(q, turns);
   for (int k = 0; k < COMPONENTS; k++) q->inside[k] = expr_declare(b->g, SYM_LOCAL, 0, x->name, SIGN_UNKNOWN);
   ev->sums = q;
-  vec_push(b->arena, &ev->loops, ((Loop){id, q->pair[0][0], q->pair[0][0], ev->terms.n}));
+  vec_push(b->arena, &ev->loops, ((Loop){id, q->pair[0][0], q->pair[0][0], ev->terms.n, 0, 0}));
   vec_push(b->arena, &ev->index, ((IndexVar){x->name, q->pair[0][0]}));
   return 1;
 }
@@ -480,7 +488,6 @@ int quantified_next(Eval *ev, Value *v) {
     ev->written_out = q->outer;
     if (!may_write_out(ev, q, q->turns)) return *v = FAILED, 0;
   }
-  ev->terms.n = l->base;
   l->at = ev->index.at[ev->index.n - 1].at = q->lo;
   l->hi = q->hi;
   return 1;

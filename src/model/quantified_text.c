@@ -1,6 +1,7 @@
 /* Families that the text of a sum reads, at indices affine in i and j, through lets by index, too. */
 #include "model/quantified_sum.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_DEPTH = 24 };
@@ -11,6 +12,7 @@ enum { MOST_DEPTH = 24 };
 typedef struct {
   Name name[2];
   Affine is[2];
+  int64_t lo, hi; /* of i */
 } Indices;
 
 static int has(Name name, Name other) { return name && name == other; }
@@ -51,6 +53,8 @@ static int affine_product(AstKind kind, Affine x, Affine y, Affine *out) {
   return 1;
 }
 
+static AstId taken_branch(Eval *ev, AstId id, const Indices *of, int depth);
+
 /* Whether the expression is affine in the indices. */
 static int is_affine(Eval *ev, AstId id, const Indices *of, int depth, Affine *out) {
   const AstExpr *x = ast_expr(ev->b->ast, id);
@@ -79,8 +83,91 @@ static int is_affine(Eval *ev, AstId id, const Indices *of, int depth, Affine *o
     case AST_MUL: case AST_DIV:
       return is_affine(ev, x->a, of, depth - 1, &a) && is_affine(ev, x->b, of, depth - 1, &b) &&
              affine_product(x->kind, a, b, out);
+    case AST_CALL: {
+      AstId taken = taken_branch(ev, id, of, depth - 1);
+      return taken && is_affine(ev, taken, of, depth - 1, out);
+    }
     default: return 0;
   }
+}
+
+/* --- conditions on the index --- */
+
+static int is_comparison(AstKind kind) {
+  return kind == AST_LT || kind == AST_LE || kind == AST_GT || kind == AST_GE || kind == AST_EQ || kind == AST_NE;
+}
+
+/* Whether both sides are affine in i alone; *d: left less right. */
+static int compares_index(Eval *ev, const AstExpr *x, const Indices *of, int depth, Affine *d) {
+  enum { LARGEST = 1 << 30 };
+  Affine a, b;
+  if (!is_comparison(x->kind) || !is_affine(ev, x->a, of, depth, &a) || !is_affine(ev, x->b, of, depth, &b)) return 0;
+  *d = (Affine){a.first - b.first, a.by_i - b.by_i, a.by_j - b.by_j};
+  return !d->by_j && llabs(d->first) < LARGEST && llabs(d->by_i) < LARGEST;
+}
+
+static int holds(AstKind kind, int64_t d) {
+  return kind == AST_LT ? d < 0 : kind == AST_LE ? d <= 0 : kind == AST_GT ? d > 0 : kind == AST_GE ? d >= 0
+         : kind == AST_EQ ? d == 0 : d != 0;
+}
+
+/* Whether the condition, comparisons of i with numbers and what joins them, holds for i = at; -1: it is none. */
+static int truth_at(Eval *ev, AstId id, const Indices *of, int depth, int64_t at) {
+  const AstExpr *x = ast_expr(ev->b->ast, id);
+  Affine d;
+  if (depth <= 0) return -1;
+  if (compares_index(ev, x, of, depth - 1, &d)) return holds(x->kind, d.first + d.by_i * at);
+  if (x->kind != AST_NOT && x->kind != AST_AND && x->kind != AST_OR) return -1;
+  int l = truth_at(ev, x->a, of, depth - 1, at), r = x->kind == AST_NOT ? 0 : truth_at(ev, x->b, of, depth - 1, at);
+  if (l < 0 || r < 0) return -1;
+  return x->kind == AST_NOT ? !l : x->kind == AST_AND ? l && r : l || r;
+}
+
+/* The last index from lo on for which the comparisons in `id` hold, or do not hold, as for lo. */
+static int64_t same_from(Eval *ev, AstId id, const Indices *of, int depth, int64_t lo, int64_t hi) {
+  const Ast *ast = ev->b->ast;
+  for (AstId k = ast_expr(ast, id)->first; k <= id; k++) {
+    const AstExpr *x = ast_expr(ast, k);
+    Affine d;
+    if (!compares_index(ev, x, of, depth, &d) || !d.by_i) continue;
+    for (int64_t root = -d.first / d.by_i, i = root - 1; i <= root + 1; i++)
+      if (i >= lo && i < hi && holds(x->kind, d.first + d.by_i * i) != holds(x->kind, d.first + d.by_i * (i + 1)))
+        hi = i;
+  }
+  return hi;
+}
+
+/* The second and the third argument of an `if`; 0: it is none. */
+static int is_choice(const Ast *ast, AstId id, AstId *yes, AstId *no) {
+  const AstExpr *x = ast_expr(ast, id);
+  if (x->kind != AST_CALL || strcmp(x->name, "if") != 0 || !x->args) return 0;
+  *yes = ast_expr(ast, x->args)->next;
+  *no = *yes ? ast_expr(ast, *yes)->next : 0;
+  return *no && !ast_expr(ast, *no)->next;
+}
+
+/* The branch of an `if` that is taken for all i; 0: it is no `if`, or takes several. */
+static AstId taken_branch(Eval *ev, AstId id, const Indices *of, int depth) {
+  AstId yes, no;
+  if (!is_choice(ev->b->ast, id, &yes, &no)) return 0;
+  AstId condition = ast_expr(ev->b->ast, id)->args;
+  int is = truth_at(ev, condition, of, depth, of->lo);
+  if (is < 0 || same_from(ev, condition, of, depth, of->lo, of->hi) < of->hi) return 0;
+  return is ? yes : no;
+}
+
+int64_t quantified_same_branches(Eval *ev, AstId id, int64_t lo, int64_t hi) {
+  const Ast *ast = ev->b->ast;
+  const AstExpr *x = ast_expr(ast, id);
+  const Indices own = {.name = {x->name}, .is = {{.by_i = 1}}, .lo = lo, .hi = hi};
+  AstId yes, no;
+  int64_t end = hi;
+  for (AstId k = ast_expr(ast, x->c)->first; k <= x->c; k++) {
+    if (ast_expr(ast, k)->kind == AST_SUM) return hi;
+    if (!is_choice(ast, k, &yes, &no) || truth_at(ev, ast_expr(ast, k)->args, &own, MOST_DEPTH, lo) < 0) continue;
+    end = same_from(ev, ast_expr(ast, k)->args, &own, MOST_DEPTH, lo, end);
+  }
+  return end;
 }
 
 /* In rows and turns: i = lo + row, j = from(lo) + turn. */
@@ -110,13 +197,13 @@ static const AstStmt *only_definition(const Builder *b, const Entity *e) {
 }
 
 static int note_reads(Eval *ev, struct Quantified *q, AstId first, AstId last, const Indices *of,
-                      const unsigned char *skip, int depth);
+                      unsigned char *skip, int depth);
 
 /* Notes what the members of a family of lets read. */
 static int note_let(Eval *ev, struct Quantified *q, AstId id, const Read *r, int depth) {
   const Ast *ast = ev->b->ast;
   const AstStmt *st = only_definition(ev->b, r->e);
-  Indices of = {0};
+  Indices of = {.lo = q->lo, .hi = q->hi};
   uint32_t n = 0;
   if (!st || depth == 0) return refused(q, id, "these lets depend on each other, or on several statements");
   for (AstId k = st->dims; k; k = ast_expr(ast, k)->next, n++) {
@@ -172,16 +259,26 @@ static int is_in_power(const Eval *ev, AstId at, AstId first, AstId last) {
   return 0;
 }
 
-/* Notes what nodes first .. last read, but for those to skip; where the sums' own indices are numbers of the terms,
- * they are marked as such. */
+/* Skips the condition of an `if` that takes one branch for all i, and the other branch. */
+static void skip_branch(Eval *ev, AstId id, AstId first, const Indices *of, unsigned char *skip) {
+  AstId taken = taken_branch(ev, id, of, MOST_DEPTH), yes, no;
+  if (!taken || !is_choice(ev->b->ast, id, &yes, &no)) return;
+  mark_nodes(ev, ast_expr(ev->b->ast, id)->args, first, skip);
+  mark_nodes(ev, taken == yes ? no : yes, first, skip);
+}
+
+/* Notes what nodes first .. last read, but for those to skip (NULL: none yet); where the sums' own indices are numbers
+ * of the terms, they are marked as such. */
 static int note_reads(Eval *ev, struct Quantified *q, AstId first, AstId last, const Indices *of,
-                      const unsigned char *skip, int depth) {
+                      unsigned char *skip, int depth) {
   const Ast *ast = ev->b->ast;
   unsigned char *inside = ARENA_ARRAY(ev->b->arena, unsigned char, last - first + 1);
   int own = depth == MOST_DEPTH;
+  if (!skip) skip = ARENA_ARRAY(ev->b->arena, unsigned char, last - first + 1);
   for (AstId k = last + 1; k-- > first;) {
     const AstExpr *x = ast_expr(ast, k);
-    if (skip && skip[k - first]) continue;
+    if (skip[k - first]) continue;
+    skip_branch(ev, k, first, of, skip);
     for (AstId at = x->kind == AST_INDEX ? x->args : 0; at; at = ast_expr(ast, at)->next)
       mark_nodes(ev, at, first, inside);
     if (x->kind == AST_INDEX && !note_read(ev, q, k, of, depth)) return 0;
@@ -210,7 +307,7 @@ static void mark_beside(const Eval *ev, const struct Quantified *q, unsigned cha
 }
 
 int quantified_range(Eval *ev, struct Quantified *q, AstId from, AstId to) {
-  const Indices outer = {.name = {q->i}, .is = {{.by_i = 1}}};
+  const Indices outer = {.name = {q->i}, .is = {{.by_i = 1}}, .lo = q->lo, .hi = q->hi};
   if (q->i == q->j || !is_affine(ev, from, &outer, MOST_DEPTH, &q->from) ||
       !is_affine(ev, to, &outer, MOST_DEPTH, &q->to))
     return refused(q, to, "the range inside is not affine in the outer index");
@@ -235,7 +332,7 @@ static int read_inner(Eval *ev, struct Quantified *q, unsigned char *skip) {
 }
 
 int quantified_reads(Eval *ev, struct Quantified *q, AstId id) {
-  const Indices own = {.name = {q->i, q->j}, .is = {{.by_i = 1}, {.by_j = 1}}};
+  const Indices own = {.name = {q->i, q->j}, .is = {{.by_i = 1}, {.by_j = 1}}, .lo = q->lo, .hi = q->hi};
   q->first = ast_expr(ev->b->ast, id)->first;
   q->counts = ARENA_ARRAY(ev->b->arena, unsigned char, id - q->first + 1);
   if (!note_reads(ev, q, q->first, id, &own, NULL, MOST_DEPTH)) return 0;
@@ -261,6 +358,6 @@ int quantified_text(Eval *ev, struct Quantified *q) {
     if (kind == AST_AT || kind == AST_LIST || kind == AST_BIND || kind == AST_STRING) return 0;
   }
   if (q->inner && !read_inner(ev, q, skip)) return 0;
-  const Indices own = {.name = {q->i, q->j}, .is = {{.by_i = 1}, {.by_j = 1}}};
+  const Indices own = {.name = {q->i, q->j}, .is = {{.by_i = 1}, {.by_j = 1}}, .lo = q->lo, .hi = q->hi};
   return note_reads(ev, q, q->first, last, &own, skip, MOST_DEPTH);
 }

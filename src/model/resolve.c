@@ -241,6 +241,7 @@ static int run(Eval *ev) {
 
 /* --- evaluations, and the definitions that they wait for --- */
 
+enum { SHALLOW = 8 };
 typedef VEC(Eval *) EvalStack;
 
 static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
@@ -379,7 +380,8 @@ static void run_all(Builder *b, EvalStack *stack) {
 }
 
 static void resolve_definition(Builder *b, EntKind kind, uint32_t index) {
-  EvalStack stack = {0};
+  Eval *room[SHALLOW];
+  EvalStack stack = {room, 0, SHALLOW};
   Eval *ev = begin_definition(b, kind, index);
   vec_push(b->arena, &stack, ev);
   run_all(b, &stack);
@@ -418,7 +420,8 @@ static int nests_too_deep(Builder *b, AstId id) {
 
 static Value evaluate(Builder *b, AstId id, Context where, Name effect, Expr *nodes) {
   if (!id || nests_too_deep(b, id)) return FAILED;
-  EvalStack stack = {0};
+  Eval *room[SHALLOW];
+  EvalStack stack = {room, 0, SHALLOW};
   Eval *ev = begin(b, id, where, effect);
   vec_push(b->arena, &stack, ev);
   run_all(b, &stack);

@@ -9,6 +9,7 @@ typedef struct {
   AstId construct;
   int64_t at, hi;
   uint32_t base; /* index of its first term in Eval.terms */
+  int64_t end, last; /* of the part of the range in progress, and of the range */
 } Loop;
 
 /* Operand of a chain of + and -, or of * and /. */
@@ -156,10 +157,14 @@ int quantified_fits(Eval *ev, AstId id);
 /* After a turn of the sum `id`: whether the cut-off and the box of its neighbours rest; 0, reported. */
 int quantified_judge(Eval *ev, AstId id);
 
+/* quantified_sum.c: the last index, from lo on, up to which each `if` of the sum's body that compares the index takes
+ * one branch, where the sum may stay one: it is the sum over such parts. */
+int64_t quantified_part(Eval *ev, AstId id, int64_t lo, int64_t hi);
+
 /* quantified_sum.c: starts the sum `id` over i in lo .. hi, or the sum inside it, as one over representative pairs;
  * 0: it has no such form; -1: its value is set. quantified_next takes the value v of a body: 1: evaluate it again;
  * 0: *v is that of the sum. */
-int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi);
+int quantified_begin(Eval *ev, AstId id, int64_t lo, int64_t hi, int whole);
 int quantified_next(Eval *ev, Value *v);
 
 /* Whether the name of an index stands for its symbol there, as all turns have one body. */

@@ -311,6 +311,22 @@ int resolve_whole(Builder *b, AstId id, Name effect, int64_t *out) {
   return whole_number(b, &v, id, out);
 }
 
+/* Starts the next part of a sum over lo .. hi; 0: its value is set. */
+static int begin_part(Eval *ev, AstId id, int64_t lo, int64_t hi, int first) {
+  Builder *b = ev->b;
+  int64_t end = quantified_part(ev, id, lo, hi);
+  int quantified = quantified_begin(ev, id, lo, end, first && end == hi);
+  if (quantified < 0) return 0;
+  if (!quantified) {
+    vec_push(b->arena, &ev->loops, ((Loop){id, lo, end, ev->terms.n, 0, 0}));
+    vec_push(b->arena, &ev->index, ((IndexVar){ast_expr(b->ast, id)->name, lo}));
+  }
+  Loop *l = &ev->loops.at[ev->loops.n - 1];
+  l->end = end;
+  l->last = hi;
+  return 1;
+}
+
 int loop_begin(Eval *ev, AstId id) {
   Builder *b = ev->b;
   const AstExpr *x = ast_expr(b->ast, id);
@@ -322,12 +338,7 @@ int loop_begin(Eval *ev, AstId id) {
     *r = a_value(expr_int(b->g, x->kind == AST_PRODUCT), x->kind == AST_PRODUCT ? DIM_NONE : DIM_ANY, 1);
     return 0;
   }
-  if (!range_fits(b, lo, hi, x->span) || !quantified_fits(ev, id)) return 0;
-  int quantified = quantified_begin(ev, id, lo, hi);
-  if (quantified) return quantified > 0;
-  vec_push(b->arena, &ev->loops, ((Loop){id, lo, hi, ev->terms.n}));
-  vec_push(b->arena, &ev->index, ((IndexVar){x->name, lo}));
-  return 1;
+  return range_fits(b, lo, hi, x->span) && quantified_fits(ev, id) && begin_part(ev, id, lo, hi, 1);
 }
 
 /* Shape and dimension of sum(...) or product(...) from its terms, and whether it is bare; 0, reported, when terms
@@ -400,9 +411,16 @@ int loop_next(Eval *ev) {
     ev->index.at[ev->index.n - 1].at = ++l->at;
     return 1;
   }
-  *value_of(ev, l->construct) = v.e ? terms_value(ev, ev->terms.at + l->base, ev->terms.n - l->base, x) : FAILED;
-  ev->terms.n = l->base;
+  Loop done = *l;
   ev->index.n--;
   ev->loops.n--;
+  int more = v.e && done.end < done.last;
+  if (more && begin_part(ev, done.construct, done.end + 1, done.last, 0)) {
+    ev->loops.at[ev->loops.n - 1].base = done.base;
+    return 1;
+  }
+  int good = v.e && !more;
+  *value_of(ev, done.construct) = good ? terms_value(ev, ev->terms.at + done.base, ev->terms.n - done.base, x) : FAILED;
+  ev->terms.n = done.base;
   return 0;
 }

@@ -1,14 +1,17 @@
 /* Source text of expressions for messages, and interned names made by the compiler. */
 #include <stdarg.h>
+#include <string.h>
 
 #include "model/resolve_impl.h"
 
 Name intern_printf(Builder *b, const char *fmt, ...) {
   va_list ap;
   va_start(ap, fmt);
-  const char *s = arena_vprintf(b->arena, fmt, ap);
+  char *s = arena_vprintf(b->arena, fmt, ap);
   va_end(ap);
-  return intern(b->ast->names, s);
+  Name name = intern(b->ast->names, s);
+  arena_recycle(b->arena, s, strlen(s) + 1);
+  return name;
 }
 
 Value refuse(Builder *b, Span span, const char *fmt, ...) {

@@ -30,6 +30,9 @@ typedef struct {
  * output. */
 int self_check(const Eqns *e, const ProgramSet *u, uint32_t scene, SelfCheck *statistics);
 
+/* 0: the equations have many coordinates and a text that is too long to be compared, or not evaluated here. */
+int self_check_ends(const Eqns *e, SelfCheck *statistics);
+
 /* Appends the statistics, in a sentence or two. */
 void self_check_print(const Eqns *e, const SelfCheck *statistics, StrBuf *out);
 

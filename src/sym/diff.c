@@ -87,6 +87,7 @@ static void prepare_sums(ExprGraph *g, const Expr *roots, uint32_t n, int forwar
     make_slopes(g, l.at[k]);
     if (!expr_prepare_sum(g, l.at[k], forward)) vec_push(g->arena, &several, l.at[k]);
   }
+  if (l.at) expr_list_free(g, l);
   for (uint32_t k = 0; k < several.n; k++)
     g->writes_sums_out |= expr_sum_nest(g, expr_cell_nest(g, several.at[k]))->sampled;
   expr_write_out(g, roots, n, several.at, several.n, out);

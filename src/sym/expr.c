@@ -16,9 +16,9 @@ ExprGraph *expr_graph(Arena *a, Interner *names) {
   ExprGraph *g = ARENA_NEW(a, ExprGraph);
   g->arena = a;
   g->names = names;
-  g->seen = expr_map(a);
-  g->work = expr_map(a);
-  g->live = expr_map(a);
+  g->seen = expr_map_by_id(a);
+  g->work = expr_map_by_id(a);
+  g->live = expr_map_by_id(a);
   g->table = idtable(a, 512);
   g->named_table = idtable(a, 32);
   vec_push(a, &g->nodes, ((Node){0}));
@@ -65,19 +65,43 @@ static Expr add_hashed(ExprGraph *g, Node n, uint32_t hash) {
   return e;
 }
 
+unsigned expr_traits(const ExprGraph *g, Expr e) { return g->nodes.at[e].has; }
+
+static int can_overflow(ExprOp op) {
+  return op == EX_EXP || op == EX_SINH || op == EX_COSH || op == EX_TANH || op == EX_POW;
+}
+
+/* Kinds and traits of a node's arguments, and its own. */
+static void inherit(const ExprGraph *g, Node *n, const Expr *args) {
+  unsigned has = can_overflow((ExprOp)n->op) ? HAS_GROWTH : 0;
+  for (uint32_t i = 0; i < n->nargs; i++) {
+    const Node *of = &g->nodes.at[args[i]];
+    n->kinds |= of->kinds;
+    has |= of->has | (n->op == EX_PROD && i % 2 && of->sign != SIGN_POSITIVE ? HAS_QUOTIENT : 0u);
+  }
+  n->has = has & 15u;
+}
+
+/* Name of a definition; NULL for other nodes. */
+static Name name_of(const ExprGraph *g, const Node *n) {
+  return n->op == EX_DEF ? g->def_names.at[g->args.at[n->payload + n->nargs]] : NULL;
+}
+
 static Expr make_named(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs, Name name) {
   uint32_t hash = hash_parts(op, args, nargs, name), slot = idtable_start(&g->table, hash);
   for (Expr e; idtable_next(&g->table, hash, &slot, &e);) {
     const Node *n = &g->nodes.at[e];
-    if (n->op == op && n->nargs == nargs && n->name == name &&
+    if (n->op == op && n->nargs == nargs && name_of(g, n) == name &&
         memcmp(g->args.at + n->payload, args, nargs * sizeof *args) == 0)
       return e;
   }
-  Node n = {.op = (uint8_t)op, .nargs = nargs, .payload = g->args.n, .name = name};
-  n.sign = (uint8_t)expr_infer_sign(g, op, args, nargs);
-  for (uint32_t i = 0; i < nargs; i++) {
-    n.kinds |= g->nodes.at[args[i]].kinds;
-    vec_push(g->arena, &g->args, args[i]);
+  Node n = {.op = (uint8_t)op, .nargs = nargs, .payload = g->args.n};
+  n.sign = expr_infer_sign(g, op, args, nargs) & 15u;
+  inherit(g, &n, args);
+  for (uint32_t i = 0; i < nargs; i++) vec_push(g->arena, &g->args, args[i]);
+  if (op == EX_DEF) {
+    vec_push(g->arena, &g->args, g->def_names.n);
+    vec_push(g->arena, &g->def_names, name);
   }
   return add_hashed(g, n, hash);
 }
@@ -96,7 +120,11 @@ Expr expr_num(ExprGraph *g, Num v) {
   }
   int s = num_sign(v);
   Node n = {.op = EX_NUM, .payload = g->numbers.n};
-  n.sign = !num_sign_is_sure(v) ? SIGN_UNKNOWN : s > 0 ? SIGN_POSITIVE : s < 0 ? SIGN_NEGATIVE : SIGN_NONNEGATIVE;
+  ExprSign sign = !num_sign_is_sure(v) ? SIGN_UNKNOWN
+                  : s > 0              ? SIGN_POSITIVE
+                  : s < 0              ? SIGN_NEGATIVE
+                                       : SIGN_NONNEGATIVE;
+  n.sign = sign & 15u;
   vec_push(g->arena, &g->numbers, v);
   return add_hashed(g, n, hash);
 }
@@ -105,7 +133,7 @@ Expr expr_int(ExprGraph *g, int64_t n) { return expr_num(g, num_int(n)); }
 
 SymId expr_declare(ExprGraph *g, SymKind kind, uint32_t index, Name name, ExprSign sign) {
   SymId id = g->symbols.n;
-  Node n = {.op = EX_SYM, .payload = id, .sign = (uint8_t)sign, .kinds = (uint16_t)(1u << kind)};
+  Node n = {.op = EX_SYM, .payload = id, .sign = sign & 15u, .kinds = (uint16_t)(1u << kind)};
   Expr node = add_node(g, n); /* stays out of the table: each declaration is its own node */
   Symbol s = {.kind = kind, .index = index, .name = name, .sign = sign, .node = node};
   vec_push(g->arena, &g->symbols, s);
@@ -156,7 +184,7 @@ Expr expr_arg(const ExprGraph *g, Expr e, uint32_t i) {
 Num expr_number(const ExprGraph *g, Expr e) { return g->numbers.at[g->nodes.at[e].payload]; }
 SymId expr_sym_id(const ExprGraph *g, Expr e) { return g->nodes.at[e].payload; }
 const Symbol *expr_sym_of(const ExprGraph *g, Expr e) { return &g->symbols.at[g->nodes.at[e].payload]; }
-Name expr_def_name(const ExprGraph *g, Expr e) { return g->nodes.at[e].name; }
+Name expr_def_name(const ExprGraph *g, Expr e) { return name_of(g, &g->nodes.at[e]); }
 ExprSign expr_sign(const ExprGraph *g, Expr e) { return (ExprSign)g->nodes.at[e].sign; }
 int expr_is_num(const ExprGraph *g, Expr e) { return g->nodes.at[e].op == EX_NUM; }
 unsigned expr_kinds(const ExprGraph *g, Expr e) { return g->nodes.at[e].kinds; }

@@ -170,6 +170,11 @@ ExprSign expr_sign(const ExprGraph *g, Expr e);
 int expr_is_nonzero(const ExprGraph *g, Expr e); /* a number or an expression of strict sign that is not 0 */
 int expr_is_num(const ExprGraph *g, Expr e);
 unsigned expr_kinds(const ExprGraph *g, Expr e); /* kinds of the symbols in e, as bits 1 << SymKind */
+
+/* Traits of a node and all below: an operation that overflows where its argument is moderate; a power that may be
+ * negative. */
+enum { HAS_GROWTH = 1, HAS_QUOTIENT = 2 };
+unsigned expr_traits(const ExprGraph *g, Expr e);
 int expr_is_constant(const ExprGraph *g, Expr e); /* made of numbers, parameters and constants alone */
 int expr_is_zero(const ExprGraph *g, Expr e);
 int expr_is_bool(const ExprGraph *g, Expr e); /* a comparison or logical operation */
@@ -197,6 +202,9 @@ typedef struct {
 /* All nodes reachable from the roots, ascending: arguments before their nodes. Zero roots are skipped. */
 ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n);
 
+/* expr_topo where that is at most `most` nodes; else some of them, more than `most`. */
+ExprList expr_topo_few(ExprGraph *g, const Expr *roots, uint32_t n, uint32_t most);
+
 /* Gives up a list, whose memory the next one may have. */
 void expr_list_free(ExprGraph *g, ExprList l);
 
@@ -219,8 +227,12 @@ typedef struct {
 
 typedef struct {
   Arena *arena;
-  ExprMapEntry *at;
+  union {
+    ExprMapEntry *at; /* hash table */
+    uint64_t *of;     /* [e] stamp and value: memory grows with the graph */
+  };
   uint32_t cap, shift, n, epoch;
+  int by_id;
 } ExprMap;
 ExprMap expr_map(Arena *a);
 void expr_map_clear(ExprMap *m);

@@ -5,11 +5,12 @@
 #include "sym/expr.h"
 
 typedef struct {
-  uint8_t op, sign;
-  uint16_t kinds;   /* kinds of the symbols below the node: bits 1 << SymKind */
+  uint8_t op;
+  uint8_t sign : 4, has : 4; /* has: traits of the node and all below */
+  uint16_t kinds;            /* kinds of the symbols below the node: bits 1 << SymKind */
   uint32_t nargs;
-  uint32_t payload; /* index of the first argument in g->args; NUM: index into numbers; SYM: SymId */
-  Name name;        /* DEF only */
+  uint32_t payload; /* index of the first argument in g->args, behind which a DEF has the index of its name in
+                       def_names; NUM: index into numbers; SYM: SymId */
 } Node;
 
 /* Contribution to a node's adjoint in a reverse sweep; each node's contributions are a linked list in g->pool. */
@@ -32,6 +33,7 @@ struct ExprGraph {
   VEC(Node) nodes; /* [0] unused */
   VEC(Expr) args;
   VEC(Num) numbers;
+  VEC(Name) def_names;
   VEC(Symbol) symbols;
   IdTable table; /* of nodes other than symbols */
   ExprMap seen; /* scratch of expr_topo */
@@ -89,6 +91,8 @@ uint32_t expr_sum_to_distribute(const ExprGraph *g, const Product *r);
 Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
 
 ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
+
+ExprMap expr_map_by_id(Arena *a); /* for maps of the graph itself, which are used again and again */
 
 /* Node e with its arguments mapped through m; an argument that is not in m stays. */
 Name expr_name_with_suffix(ExprGraph *g, Name name, const char *suffix);

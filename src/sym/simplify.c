@@ -293,10 +293,6 @@ static void work(Arena *scratch, void *data) {
 
 /* --- range --- */
 
-static int can_overflow(ExprOp op) {
-  return op == EX_EXP || op == EX_SINH || op == EX_COSH || op == EX_TANH || op == EX_POW;
-}
-
 typedef struct {
   const ExprGraph *g;
   uint32_t seed;
@@ -317,10 +313,7 @@ static int keeps_range(ExprGraph *g, Expr before, Expr after) {
   static const long double scales[] = {1, 20, 60, 180, 400, 700, 2000, 20000};
   enum { SCALES = sizeof scales / sizeof *scales, SEEDS = 3 };
   Expr both[2] = {before, after};
-  ExprList nodes = expr_topo(g, both, 2);
-  int risky = 0, keeps = 1;
-  for (uint32_t i = 0; i < nodes.n; i++) risky |= can_overflow(expr_op(g, nodes.at[i]));
-  expr_list_free(g, nodes);
+  int risky = ((expr_traits(g, before) | expr_traits(g, after)) & HAS_GROWTH) != 0, keeps = 1;
   EvalTape *t = risky ? eval_tape(g, both, 2) : NULL;
   for (uint32_t k = 0; risky && keeps && k < SCALES * SEEDS; k++) {
     FarState at = {.g = g, .seed = 1 + k, .scale = scales[k / SEEDS]};
@@ -430,7 +423,7 @@ static int add_divisors(ExprGraph *g, ExprList nodes, Expr *root, int n) {
 static int keeps_digits(ExprGraph *g, Expr before, Expr after) {
   enum { LINES = 12, LINES_DIVISOR = 4, NODES_MOST = 120 };
   Expr root[ROOTS_MOST] = {before, after};
-  ExprList nodes = expr_topo(g, root, 2);
+  ExprList nodes = expr_topo_few(g, root, 2, NODES_MOST);
   int few = nodes.n <= NODES_MOST, n = few ? add_divisors(g, nodes, root, 2) : 2,
       product = expr_pairs(g, before, EX_SUM) <= 1, loses = 0;
   expr_list_free(g, nodes);

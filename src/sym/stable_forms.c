@@ -178,6 +178,7 @@ static void add_divisors(ExprGraph *g, Expr e, ExprMap *divisors) {
 }
 
 Expr simplify_stable_quotients(ExprGraph *g, Expr e, Expr text) {
+  if (!((expr_traits(g, e) | expr_traits(g, text)) & HAS_QUOTIENT)) return e;
   ExprList nodes = expr_topo_to_sums(g, &e, 1);
   ExprMap divisors = expr_map(expr_arena(g));
   int divided = 0;

@@ -9,6 +9,7 @@
 /* --- maps --- */
 
 ExprMap expr_map(Arena *a) { return (ExprMap){.arena = a, .epoch = 1}; }
+ExprMap expr_map_by_id(Arena *a) { return (ExprMap){.arena = a, .epoch = 1, .by_id = 1}; }
 
 void expr_map_clear(ExprMap *m) {
   m->epoch++;
@@ -32,7 +33,25 @@ static void map_grow(ExprMap *m) {
   if (old.cap) arena_recycle(m->arena, old.at, old.cap * sizeof *old.at);
 }
 
+static void set_by_id(ExprMap *m, Expr e, uint32_t value) {
+  uint32_t cap = m->cap ? m->cap : 64;
+  while (cap <= e) cap *= 2;
+  if (cap > m->cap) {
+    uint64_t *of = ARENA_ARRAY(m->arena, uint64_t, cap);
+    if (m->cap) memcpy(of, m->of, m->cap * sizeof *of);
+    if (m->cap) arena_recycle(m->arena, m->of, m->cap * sizeof *of);
+    m->of = of;
+    m->cap = cap;
+  }
+  m->n += m->of[e] >> 32 != m->epoch;
+  m->of[e] = (uint64_t)m->epoch << 32 | value;
+}
+
 void expr_map_set(ExprMap *m, Expr e, uint32_t value) {
+  if (m->by_id) {
+    set_by_id(m, e, value);
+    return;
+  }
   if (2 * m->n >= m->cap) map_grow(m);
   ExprMapEntry *x = &m->at[map_slot(m, e)];
   m->n += x->stamp != m->epoch;
@@ -41,13 +60,14 @@ void expr_map_set(ExprMap *m, Expr e, uint32_t value) {
 
 uint32_t expr_map_get(const ExprMap *m, Expr e) {
   if (!m->n) return 0;
+  if (m->by_id) return e < m->cap && m->of[e] >> 32 == m->epoch ? (uint32_t)m->of[e] : 0;
   const ExprMapEntry *x = &m->at[map_slot(m, e)];
   return x->stamp == m->epoch ? x->value : 0;
 }
 
 void expr_map_free(ExprMap *m) {
-  if (m->cap) arena_recycle(m->arena, m->at, m->cap * sizeof *m->at);
-  *m = expr_map(m->arena);
+  if (m->cap) arena_recycle(m->arena, m->at, m->cap * (m->by_id ? sizeof *m->of : sizeof *m->at));
+  *m = m->by_id ? expr_map_by_id(m->arena) : expr_map(m->arena);
 }
 
 /* --- reachable nodes --- */
@@ -103,8 +123,10 @@ static size_t list_room(uint32_t n) {
   return room;
 }
 
-/* Nodes reachable from the roots, ascending; not below nodes of `leaves` (or NULL). */
-static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, Depth depth) {
+/* Nodes reachable from the roots, ascending; not below nodes of `leaves` (or NULL). Ends where there are more than
+ * `most`. */
+static ExprList reachable(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, Depth depth,
+                          uint32_t most) {
   VEC(Expr) found = {g->found, 0, g->found_cap};
   expr_map_clear(&g->seen);
   for (uint32_t i = 0; i < n; i++)
@@ -112,7 +134,7 @@ static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap 
       expr_map_set(&g->seen, roots[i], 1);
       vec_push(g->arena, &found, roots[i]);
     }
-  for (uint32_t k = 0; k < found.n; k++) {
+  for (uint32_t k = 0; k < found.n && found.n <= most; k++) {
     Expr e = found.at[k];
     ExprOp op = expr_op(g, e);
     if ((leaves && expr_map_get(leaves, e)) || (op == EX_DEF && depth == TO_DEFINITIONS) ||
@@ -137,6 +159,13 @@ void expr_list_free(ExprGraph *g, ExprList l) {
   arena_recycle(g->arena, (void *)(uintptr_t)l.at, list_room(l.n) * sizeof *l.at);
 }
 
+static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, Depth depth) {
+  return reachable(g, roots, n, leaves, depth, UINT32_MAX);
+}
+
+ExprList expr_topo_few(ExprGraph *g, const Expr *roots, uint32_t n, uint32_t most) {
+  return reachable(g, roots, n, NULL, TO_LEAVES, most);
+}
 ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, TO_LEAVES); }
 ExprList expr_topo_to_sums(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, TO_SUMS); }
 ExprList expr_topo_shallow(ExprGraph *g, const Expr *roots, uint32_t n) {

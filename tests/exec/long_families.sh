@@ -136,6 +136,20 @@ for f in text latex; do
   slow large "a string of 10000 masses, printed as $f" 30 1000000 "$LAGC" derive models/string.lag -D N=10000 --format $f
 done
 large "a chain of 300 links" 30 1500000 "$LAGC" check models/chain.lag swing -D N=300
+slow large "a chain of 4000 links, whose lets are not walked through for each entry" 15 1000000 "$LAGC" emit models/chain.lag -D N=4000 -o "$dir/chain.c"
+cat >"$dir/ring.lag" <<'LAG'
+model ring
+const N = 100000
+coord x[N] [m]
+param m = 1 [kg] > 0, k = 1 [N/m] > 0
+kinetic = sum(i in 1..N, m/2*x[i]'^2)
+potential = sum(i in 1..N, k/2*(x[if(i < N, i+1, 1)] - x[i])^2)
+symmetry shift(s): for i in 1..N: x[i] -> x[i] + s
+scene s { start x[1] = 0.1; span 1 }
+LAG
+stays_a_sum() { limited "$LAGC" check "$dir/ring.lag" >"$dir/out" 2>&1 && cat "$dir/out" && grep -q 'shift: proved' "$dir/out" && ! grep -q 'written out' "$dir/out"; }
+seconds=8 memory=700000
+slow check "a ring of 100000 masses, closed by a condition in an index" stays_a_sum
 cat >"$dir/long.lag" <<'LAG'
 model long
 const N = 100000

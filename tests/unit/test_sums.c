@@ -69,6 +69,10 @@ static const char *const texts[] = {
     /* by a tree: what it is compared with are the pairs */
     BODIES "potential = sum(i in 1..N, e[i]/2*sum(j in 1..i-1, -e[j]/sqrt(2*" APART " + 2*soft^2), by tree(0.5)))",
     BODIES "potential = sum(i in 1..N-1, sum(j in i+1..N, i*j*m[i]*m[j]/norm(r[i] - r[j]), by tree(soft)))",
+    /* conditions on the index divide the range: a ring, free ends, one member apart, an end within an end */
+    "const N = %d\ncoord x[N], y[N]\nparam k[N] = 1\nlagrangian = sum(i in 1..N, (x[i]'^2 + y[i]'^2)/2) -\n"
+    "  sum(i in 1..N, k[i]/2*(x[if(i < N, i+1, 1)] - x[i])^2 + if(i > 1, (y[i] - y[i-1])^4/4, y[1]^2)) -\n"
+    "  sum(i in 1..N, if(not i == 2 and 2*i <= N + 3, i*cos(x[i]*y[N+1-i]), y[if(i == N, 2, if(i >= N-1, 1, i+2))]))",
     /* a range that moves and grows; the first two rows are empty */
     "const N = %d\ncoord x[2*N]\nlagrangian = sum(i in 1..2*N, x[i]'^2/2) -\n"
     "  sum(i in 1..N, sum(j in i+1..2*i-2, cos(x[i] - 2*x[j])))",
@@ -167,20 +171,21 @@ static const char *one_of(const char *const *from, size_t n) { return from[(size
 
 /* A random factor of terms over i (pairs: and j), of coordinates, velocities, parameters, lets and numbers. */
 static const char *random_factor(Arena *a, int pairs) {
-  static const char *const at[] = {"i", "i+1", "2*i", "N+2-i", "i+2", "3"},
+  static const char *const at[] = {"i", "i+1", "2*i", "N+2-i", "i+2", "3", "if(i < N-1, i+1, 1)",
+                                 "if(i == 3 or i < 2, 2, 2*i-1)"},
                     *const of_pairs[] = {"i", "j", "j+1", "2*i", "i+j", "N+2-j", "3"},
                     *const shapes[] = {"x[%s]*y[%s]", "cos(x[%s] - x[%s])", "(x[%s] - y[%s])^2", "exp(-x[%s]^2)*k[%s]",
                                        "abs(x[%s] - y[%s])", "max(x[%s], y[%s]/2)^2", "if(x[%s] < y[%s], x[1], y[2]^2)",
                                        "c[%s]*x[%s]", "1/(2 + (x[%s] + c[%s])^2)"};
-  const char *first = pairs ? one_of(of_pairs, 7) : one_of(at, 6);
-  const char *second = pairs ? one_of(of_pairs, 7) : one_of(at, 6);
+  const char *first = pairs ? one_of(of_pairs, 7) : one_of(at, 8);
+  const char *second = pairs ? one_of(of_pairs, 7) : one_of(at, 8);
   return arena_printf(a, one_of(shapes, 9), first, second);
 }
 
 static const char *random_sum(Arena *a, int pairs) {
   static const char *const ranges[] = {"1..i-1", "i+1..N", "1..N", "2..i", "i..N"},
-                    *const weights[] = {"", "i*", "k[i]*", "(i + 1/2)*w*", "-", "x[i]*"};
-  const char *f = random_factor(a, pairs), *g = random_factor(a, pairs), *weight = one_of(weights, 6);
+                    *const weights[] = {"", "i*", "k[i]*", "(i + 1/2)*w*", "-", "x[i]*", "if(i != 2, k[i], 3*w)*"};
+  const char *f = random_factor(a, pairs), *g = random_factor(a, pairs), *weight = one_of(weights, pairs ? 6 : 7);
   if (!pairs) return arena_printf(a, "sum(i in 1..N, %s%s*(1 + %s))", weight, f, g);
   return arena_printf(a, "sum(i in 1..N, %ssum(j in %s, %s + %s))", weight, one_of(ranges, 5), f, g);
 }
@@ -230,6 +235,20 @@ static void programs_do_not_know_the_pairs(void **state) {
   }
   assert_int_equal(parts[0], parts[1]);
   assert_true(length[1] < 10 * length[0] + 50);
+  arena_free(a);
+}
+
+/* A ring and ends by conditions on the index: each sum stays one, over the parts of its range. */
+static void conditions_divide_the_range(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  const char *messages;
+  Eqns *e = try_family(a, "const N = %d\ncoord x[N]\nlagrangian = sum(i in 1..N, x[i]'^2/2) -\n"
+                          "  sum(i in 1..N, (x[if(i < N, i+1, 1)] - x[i])^2) -\n"
+                          "  sum(i in 1..N, if(not i == 9 and i > 2, i*cos(x[i-2]), x[N+1-i]))", 100, 8, &messages);
+  assert_non_null(e);
+  assert_string_equal(messages, "");
+  assert_int_equal(e->m->sums.n, 3); /* 1..100; 1..99; 10..100: all other parts have fewer than 8 terms */
   arena_free(a);
 }
 
@@ -388,6 +407,7 @@ int main(void) {
       cmocka_unit_test(neighbours_are_those_within_the_cut),
       cmocka_unit_test(random_families_agree),
       cmocka_unit_test(programs_do_not_know_the_pairs),
+      cmocka_unit_test(conditions_divide_the_range),
       cmocka_unit_test(a_spring_is_right),
       cmocka_unit_test(time_is_seen),
       cmocka_unit_test(other_texts_are_written_out),
