@@ -110,7 +110,8 @@ typedef struct {
 } Family;
 
 /* The family of `count` rows of which r is the first, step those of its numbers. */
-static Family family_of(const Row *r, const Row *last, uint32_t count, char letter, const long *step, PrintStyle style) {
+static Family family_of(const Row *r, const Row *last, uint32_t count, char letter, const long *step,
+                        PrintStyle style) {
   uint32_t first = 0;
   while (step[first] == 0) first++;
   const Row *from = step[first] > 0 ? r : last;

@@ -45,8 +45,8 @@ void expr_write_out(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *cel
  * them; *rest: the other terms. 0: e has no cells, or their factors differ from turn to turn. */
 Expr expr_gather_sum(ExprGraph *g, Expr e, Expr *rest);
 
-/* sum_terms.c: where the turns that add to a cell stand: in one row, or in rows[0] to rows[1]; in one turn of each, or in
- * all; and the arguments that their term names without a running index. */
+/* sum_terms.c: where the turns that add to a cell stand: in one row, or in rows[0] to rows[1]; in one turn of each, or
+ * in all; and the arguments that their term names without a running index. */
 typedef struct {
   uint32_t share;
   int fixed_row, fixed_turn;
