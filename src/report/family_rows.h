@@ -3,7 +3,7 @@
 
 #include "base/strbuf.h"
 #include "sym/print.h"
-#include "sym/shape.h"
+#include "sym/text_shape.h"
 
 /* The lines of a block, made when they are needed. Of many that follow one another and have shapes of one family the
  * first ones and the last are made alone. */

@@ -1,6 +1,6 @@
 /* Shapes of expressions. A name is its letters and, apart, the indices in its brackets; a quantified sum is its body,
  * and the places of its terms (sym/sum_terms.c). */
-#include "sym/shape.h"
+#include "sym/text_shape.h"
 
 #include <ctype.h>
 #include <stdlib.h>
