@@ -25,6 +25,7 @@ POTENTIAL = {
     "tied": lambda u, n: sum(k/2*(u[i] - w[min(i, 5)])**2 for i in range(1, n + 1)),
     "dimer": lambda u, n: sum((k if i % 2 else c)/2*(u[i + 1] - u[i])**2 for i in range(1, n)),
     "grid": lambda u, n: sum(k/2*(u[i + 1, j] - u[i, j])**2 + c/2*(u[j, i + 1] - u[j, i])**2 for i in range(1, n) for j in range(1, n + 1)),
+    "stiff": lambda u, n: sum((c if i == 500 else k)/2*x*x for i, x in u.items()),
     "odd": lambda u, n: sum(k*x*x/2 for x in u.values()) + sum(c*(u[i + 1] - u[i])**2/2 for i in range(1, n)) + u[500]**4,
     "net": lambda u, n: sum(k/2*(u[i + 1, j] - u[i, j])**2 + c/3*(u[j, i + 1] - u[j, i])**3 for i in range(1, n) for j in range(1, n + 1)),
 }

@@ -25,6 +25,8 @@ $kinetic
 potential = sum(i in 1..N-1, if(i - 2*floor(i/2) > 0.5, k, c)/2*r[i]^2)"
 model odd 1000 "$kinetic
 potential = sum(i in 1..N, k*u[i]^2/2) + sum(i in 1..N-1, c*(u[i+1] - u[i])^2/2) + u[500]^4"
+model stiff 1000 "$kinetic
+potential = sum(i in 1..499, k*u[i]^2/2) + c*u[500]^2/2 + sum(i in 501..N, k*u[i]^2/2)"
 model net 9 "kinetic = sum(i in 1..N, sum(j in 1..N, u[i,j]'^2/2))
 potential = sum(i in 1..N-1, sum(j in 1..N, k/2*(u[i+1,j] - u[i,j])^2 + c/3*(u[j,i+1] - u[j,i])^3))" pairs
 sed 's/N = 9$/N = 40/' "$TMP/net.lag" >"$TMP/wide.lag"
@@ -48,6 +50,7 @@ string 12 2
 tied 10 2
 dimer 21 5
 odd 1000 5
+stiff 1000 3
 net 81 -
 wide 1600 - net
 grid 3600 9
