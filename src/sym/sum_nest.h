@@ -19,6 +19,11 @@ Expr expr_cell_of(ExprGraph *g, Expr nest, uint32_t cell);
 Expr expr_twin_cell(ExprGraph *g, Expr nest, uint32_t number, uint32_t cell);
 uint32_t expr_nest_number(const ExprGraph *g, Expr nest);
 
+/* A NEST of these arguments; where some have become 0 in all turns, the body has 0 in their place, as readers see the
+ * body. A CELL; 0 where no turn adds to any. */
+Expr expr_nest_rebuilt(ExprGraph *g, const Expr *args, uint32_t n);
+Expr expr_cell_rebuilt(ExprGraph *g, const Expr *args);
+
 /* Of a NEST: its sums; argument i. Of a CELL: its NEST, and its number. */
 const SumNest *expr_sum_nest(const ExprGraph *g, Expr nest);
 uint32_t expr_sum_args(const ExprGraph *g, Expr nest);
