@@ -60,7 +60,8 @@ static int invert_block(LegendreTransform *w, const uint32_t *at, uint32_t n) {
 static const char *invert(LegendreTransform *w, const char *what) {
   uint32_t *block = union_find_new(w->arena, w->n); /* connected components of the matrix */
   for (uint32_t k = 0; k < w->form->n; k++) union_find_join(block, w->form->at[k].row, w->form->at[k].col);
-  for (size_t i = 0; i < (size_t)w->n * w->n; i++) w->inverse[i] = expr_int(w->g, 0);
+  const Expr zero = expr_int(w->g, 0);
+  for (size_t i = 0; i < (size_t)w->n * w->n; i++) w->inverse[i] = zero;
   for (uint32_t i = 0; i < w->n; i++) {
     uint32_t at[BLOCK_MOST], n = 0;
     if (union_find_root(block, i) != i) continue;
@@ -80,29 +81,46 @@ static const char *invert(LegendreTransform *w, const char *what) {
 
 /* x at q' = 0; definitions with velocities are expanded. */
 static Expr at_rest(const LegendreTransform *w, Expr x) {
-  Expr *zero = ARENA_ARRAY(w->arena, Expr, w->n + 1);
-  for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
   if (!(expr_kinds(w->g, x) & 1u << SYM_VEL)) return x;
+  Expr *zero = ARENA_ARRAY(w->arena, Expr, w->n + 1);
+  zero[0] = expr_int(w->g, 0);
+  for (uint32_t i = 1; i < w->n; i++) zero[i] = zero[0];
   return expr_replace(w->g, expr_expand_defs(w->g, x), w->v, zero, w->n);
 }
 
 /* V = -L at rest, term by term; terms without velocities stay as written. */
 static Expr potential(const LegendreTransform *w) {
   ExprGraph *g = w->g;
-  Expr L = w->e->m->lagrangian, V = expr_int(g, 0);
+  Expr L = w->e->m->lagrangian;
+  VEC(Expr) terms = {0};
   for (ExprPair term = {0}; expr_next_pair(g, L, EX_SUM, &term);) {
     Expr rest = at_rest(w, term.of);
-    V = expr_sub(g, V, expr_scale(g, term.num, rest == term.of ? term.of : simplify(g, rest)));
+    if (rest != term.of) rest = simplify(g, rest);
+    vec_push(w->arena, &terms, expr_scale(g, num_neg(term.num), rest));
   }
-  return V;
+  return expr_add_n(g, terms.at, terms.n);
 }
 
 static Expr short_form(const LegendreTransform *w, Expr x) { return w->n <= SHORT_MOST ? simplify(w->g, x) : x; }
 
+/* Derivatives of x by all coordinates in one sweep. NULL: each is made alone, which reads best, as there are few, or x
+ * has definitions, whose derivatives the sweep would name. */
+static Expr *swept_slopes(const LegendreTransform *w, Expr x) {
+  if (w->n <= SHORT_MOST || expr_expand_defs(w->g, x) != x) return NULL;
+  Expr *to = ARENA_ARRAY(w->arena, Expr, w->n + 1);
+  expr_gradient(w->g, x, w->q, w->n, to);
+  return to;
+}
+
+static Expr slope(const LegendreTransform *w, const Expr *swept, Expr x, uint32_t i) {
+  return swept ? swept[i] : expr_diff(w->g, x, w->q[i]);
+}
+
 static Hamilton hamilton_equations(LegendreTransform *w) {
   ExprGraph *g = w->g;
   const Constraints *k = &w->e->constraints;
-  Expr *u = ARENA_ARRAY(w->arena, Expr, w->n + 1), kinetic = expr_int(g, 0), V = potential(w);
+  Expr *u = ARENA_ARRAY(w->arena, Expr, w->n + 1), V = potential(w);
+  VEC(Expr) terms = {0};
   for (uint32_t i = 0; i < w->n; i++) {
     w->a[i] = short_form(w, at_rest(w, w->e->p[i]));
     u[i] = expr_sub(g, node(w, w->p[i]), w->a[i]);
@@ -113,13 +131,14 @@ static Hamilton hamilton_equations(LegendreTransform *w) {
       Expr x = w->inverse[i * w->n + j];
       if (expr_is_zero(g, x)) continue;
       rate = expr_add(g, rate, expr_mul(g, x, u[j]));
-      if (j <= i) kinetic = expr_add(g, kinetic, expr_scale(g, num_ratio(i == j ? 1 : 2, 2), mul3(w, x, u[i], u[j])));
+      if (j <= i) vec_push(w->arena, &terms, expr_scale(g, num_ratio(i == j ? 1 : 2, 2), mul3(w, x, u[i], u[j])));
     }
     w->rate[i] = short_form(w, rate);
   }
-  Expr H = expr_add(g, short_form(w, kinetic), V);
+  Expr kinetic = expr_add_n(g, terms.at, terms.n), H = expr_add(g, short_form(w, kinetic), V);
+  const Expr *of_kinetic = swept_slopes(w, kinetic), *of_V = swept_slopes(w, V);
   for (uint32_t i = 0; i < w->n; i++) {
-    Expr force = expr_neg(g, expr_diff(g, kinetic, w->q[i])), pull = expr_neg(g, expr_diff(g, V, w->q[i])),
+    Expr force = expr_neg(g, slope(w, of_kinetic, kinetic, i)), pull = expr_neg(g, slope(w, of_V, V, i)),
          other = expr_replace(g, w->e->Q[i], w->v, w->rate, w->n);
     for (uint32_t x = 0; x < k->A.n; x++)
       if (k->A.at[x].col == i) {

@@ -20,11 +20,12 @@ typedef struct {
 } Row;
 
 /* Whether a number at s, within `line`, is an index or a bound of a sum: u[12], u[3,4], 2..N, 1..12; in LaTeX u_{12},
- * \sum_{i=2}^{2000}. */
+ * r[12], \sum_{i=2}^{2000}. */
 static int is_index(const char *line, const char *s, const char *end, PrintStyle style) {
   char before = s > line ? s[-1] : ' ';
   if (style == PRINT_LATEX)
-    return (before == '{' && s - line >= 2 && s[-2] == '_') || (before == '=' && *end == '}') ||
+    return before == '[' || before == ',' || (before == '{' && s - line >= 2 && s[-2] == '_') ||
+           (before == '=' && *end == '}') ||
            (before == '{' && s - line >= 3 && s[-2] == '^' && s[-3] == '}' && strstr(line, "\\sum_{") != NULL);
   return before == '[' || before == ',' || *end == ']' || (before == '.' && s - line >= 2 && s[-2] == '.') ||
          strncmp(end, "..", 2) == 0;
@@ -108,10 +109,10 @@ typedef struct {
   PrintStyle style;
 } Family;
 
-static Family family_of(const Row *r, uint32_t count, uint32_t period, char letter, long *step, PrintStyle style) {
-  const Row *last = r + (count - 1) * period;
+/* The family of `count` rows of which r is the first, step those of its numbers. */
+static Family family_of(const Row *r, const Row *last, uint32_t count, char letter, const long *step,
+                        PrintStyle style) {
   uint32_t first = 0;
-  follows(r, r + period, step);
   while (step[first] == 0) first++;
   const Row *from = step[first] > 0 ? r : last;
   long up = step[first], begin = from->number[first] / labs(up);
@@ -164,7 +165,9 @@ static Texts fold(Arena *a, Texts from, PrintStyle style, void (*put)(StrBuf *, 
     uint32_t count = 0, period = period_at(row + k, from.n - k, step, &count);
     for (uint32_t q = 0; q < period; q++) {
       StrBuf out = strbuf(a);
-      Family f = family_of(row + k + q, count, period, letter_for(from.at[k + q]), step, style);
+      const Row *r = row + k + q;
+      follows(r, r + period, step);
+      Family f = family_of(r, r + (count - 1) * period, count, letter_for(from.at[k + q]), step, style);
       put(&out, &f);
       vec_push(a, &to, sb_text(&out));
     }
@@ -307,25 +310,115 @@ static void put_line(StrBuf *out, const Family *f) {
 }
 
 typedef struct {
-  const char *lines;
+  const FamilyLines *lines;
   PrintStyle style;
   StrBuf *out;
+  Texts wait, done; /* lines that have not been compared yet; those that have */
 } Block;
 
-static void put_block(Arena *a, void *data) {
-  const Block *b = data;
-  Texts line = {0};
-  for (const char *s = b->lines, *end; *s; s = *end ? end + 1 : end) {
-    end = s + strcspn(s, "\n");
-    vec_push(a, &line, family_sides(a, arena_strndup(a, s, (size_t)(end - s)), b->style));
+static const char *line_at(Arena *a, const Block *b, uint32_t k) {
+  return family_sides(a, b->lines->line(a, b->lines->data, k), b->style);
+}
+
+static void put_waiting(Arena *a, Block *b) {
+  Texts line = fold(a, b->wait, b->style, put_line);
+  for (uint32_t k = 0; k < line.n; k++) vec_push(a, &b->done, line.at[k]);
+  b->wait.n = 0;
+}
+
+/* Whether the shapes x, y, z are those of a family's members that follow one another. */
+static int shapes_follow(const ExprShape *x, const ExprShape *y, const ExprShape *z) {
+  int same = x->structure == y->structure && y->structure == z->structure && x->index.n == y->index.n &&
+             y->index.n == z->index.n && expr_shape_is_known(x);
+  for (uint32_t k = 0; same && k < x->index.n; k++)
+    same = y->index.at[k] - x->index.at[k] == z->index.at[k] - y->index.at[k];
+  return same;
+}
+
+/* How often the `period` lines at k repeat, by their shapes. */
+static uint32_t shapes_repeat(const FamilyLines *l, uint32_t k, uint32_t period) {
+  const ExprShape *s = l->shape + k;
+  uint32_t x = 0, n = l->n - k;
+  while (x + 2 * period < n && shapes_follow(s + x, s + x + period, s + x + 2 * period)) x++;
+  return x < period ? 0 : x / period + 2;
+}
+
+/* The period and count of a family of many lines that begins at k; 0: none does. */
+static uint32_t shaped_period(const FamilyLines *l, uint32_t k, uint32_t *count) {
+  enum { LONGEST = 8, MANY = 24 };
+  uint32_t best = 0;
+  *count = 0;
+  for (uint32_t period = 1; l->shape && period <= LONGEST; period++) {
+    uint32_t found = shapes_repeat(l, k, period);
+    if (found >= MANY && found * period > *count * best) best = period, *count = found;
   }
-  line = fold(a, line, b->style, put_line);
-  for (uint32_t k = 0; k < line.n; k++) sb_printf(b->out, "%s\n", line.at[k]);
+  return best;
+}
+
+/* The line of the family whose first member is line k; NULL: its last is not as the first ones foretell. */
+static const char *family_line(Arena *a, const Block *b, uint32_t k, uint32_t period, uint32_t count) {
+  const char *line[3] = {line_at(a, b, k), line_at(a, b, k + period), line_at(a, b, k + (count - 1) * period)};
+  Row r[3] = {row_of(a, line[0], b->style), row_of(a, line[1], b->style), row_of(a, line[2], b->style)};
+  long *step = ARENA_ARRAY(a, long, r[0].n + 1);
+  if (r[2].n != r[0].n || !follows(&r[0], &r[1], step)) return NULL;
+  for (uint32_t x = 0; x <= r[0].n; x++) {
+    if (strcmp(r[0].text[x], r[2].text[x]) != 0) return NULL;
+    if (x < r[0].n && r[2].number[x] - r[0].number[x] != step[x] * (long)(count - 1)) return NULL;
+  }
+  StrBuf out = strbuf(a);
+  Family f = family_of(&r[0], &r[2], count, letter_for(line[0]), step, b->style);
+  put_line(&out, &f);
+  return sb_text(&out);
+}
+
+/* Puts the families of many lines that begin at k; 0: their texts are none. */
+static int put_families(Arena *a, Block *b, uint32_t k, uint32_t period, uint32_t count) {
+  enum { LONGEST = 8 };
+  const char *line[LONGEST];
+  for (uint32_t q = 0; q < period; q++)
+    if (!(line[q] = family_line(a, b, k + q, period, count))) return 0;
+  put_waiting(a, b);
+  for (uint32_t q = 0; q < period; q++) vec_push(a, &b->done, line[q]);
+  return 1;
+}
+
+static void put_block(Arena *a, void *data) {
+  Block *b = data;
+  for (uint32_t k = 0, past = 0, count; k < b->lines->n;) {
+    uint32_t period = k >= past ? shaped_period(b->lines, k, &count) : 0;
+    if (period && put_families(a, b, k, period, count)) {
+      k += period * count;
+      continue;
+    }
+    if (period) past = k + period * count;
+    vec_push(a, &b->wait, line_at(a, b, k));
+    k++;
+  }
+  put_waiting(a, b);
+  for (uint32_t before = b->lines->n; b->done.n < before;) { /* lines with an index are members of families, too */
+    before = b->done.n;
+    b->done = fold(a, b->done, b->style, put_line);
+  }
+  for (uint32_t k = 0; k < b->done.n; k++) sb_printf(b->out, "%s\n", b->done.at[k]);
+}
+
+const char *family_lines(Arena *a, const FamilyLines *lines, PrintStyle style) {
+  StrBuf out = strbuf(a);
+  Block b = {lines, style, &out, {0}, {0}};
+  arena_with_scratch(a, put_block, &b);
+  return sb_text(&out);
+}
+
+static const char *line_of(Arena *a, void *data, uint32_t k) {
+  (void)a;
+  return ((const Texts *)data)->at[k];
 }
 
 const char *family_rows(Arena *a, const char *lines, PrintStyle style) {
-  StrBuf out = strbuf(a);
-  Block b = {lines, style, &out};
-  arena_with_scratch(a, put_block, &b);
-  return sb_text(&out);
+  Texts all = {0};
+  for (const char *s = lines, *end; *s; s = *end ? end + 1 : end) {
+    end = s + strcspn(s, "\n");
+    vec_push(a, &all, arena_strndup(a, s, (size_t)(end - s)));
+  }
+  return family_lines(a, &(FamilyLines){all.n, NULL, line_of, &all}, style);
 }

@@ -14,13 +14,7 @@ void text_heading(Text *t, const char *title) {
   if (text_latex(t)) sb_printf(t->out, "\n%% %s\n\\begin{align*}\n", title);
   else sb_printf(t->out, "\n%s\n", title);
   t->block = t->out->n;
-}
-
-void text_end(Text *t) {
-  const char *rows = family_rows(t->e->m->arena, sb_text(t->out) + t->block, t->style);
-  t->out->n = t->block;
-  sb_puts(t->out, rows);
-  text_put(t, "", "\\end{align*}\n");
+  t->rows.n = 0;
 }
 
 void text_expr(Text *t, Expr e) {
@@ -37,14 +31,56 @@ void text_expr(Text *t, Expr e) {
   text_put(t, ")", ")}");
 }
 
+/* Takes words that were written since the heading as lines of the block. */
+static void take_words(Text *t) {
+  Arena *a = t->e->m->arena;
+  sb_text(t->out);
+  for (const char *s = t->out->at + t->block, *to = t->out->at + t->out->n, *end; s < to; s = end + 1) {
+    end = s + strcspn(s, "\n");
+    vec_push(a, &t->rows, ((TextRow){.words = arena_strndup(a, s, (size_t)(end - s))}));
+  }
+  t->out->n = t->block;
+}
+
 /* "  left = right", left a name or, where that is NULL, an expression. */
 static void equation(Text *t, const char *name, Expr left, Expr right, int last) {
-  sb_puts(t->out, "  ");
-  if (name) sb_puts(t->out, name);
-  else text_expr(t, left);
-  text_put(t, " = ", " &= ");
-  text_expr(t, right);
-  text_put(t, "\n", last ? "\n" : " \\\\\n");
+  take_words(t);
+  vec_push(t->e->m->arena, &t->rows, ((TextRow){NULL, name, left, right, last}));
+}
+
+static const char *row_text(Arena *a, void *data, uint32_t k) {
+  Text own = *(const Text *)data;
+  const TextRow *r = &own.rows.at[k];
+  StrBuf line = strbuf(a);
+  own.out = &line;
+  if (r->words) return r->words;
+  sb_puts(&line, "  ");
+  if (r->name) sb_puts(&line, r->name);
+  else text_expr(&own, r->left);
+  text_put(&own, " = ", " &= ");
+  text_expr(&own, r->right);
+  text_put(&own, "", r->last ? "" : " \\\\");
+  return sb_text(&line);
+}
+
+static ExprShape shape_of(Text *t, const TextRow *r) {
+  ExprShape s = {0};
+  Arena *a = t->e->m->arena;
+  if (r->words) return (ExprShape){.parts = SHAPE_PARTS_MOST};
+  if (r->name) expr_shape_add_name(a, r->name, &s);
+  else expr_shape_add(t->g, a, r->left, &s);
+  expr_shape_add(t->g, a, r->right, &s);
+  return s;
+}
+
+void text_end(Text *t) {
+  Arena *a = t->e->m->arena;
+  take_words(t);
+  ExprShape *shape = ARENA_ARRAY(a, ExprShape, t->rows.n + 1);
+  for (uint32_t k = 0; k < t->rows.n; k++) shape[k] = shape_of(t, &t->rows.at[k]);
+  sb_puts(t->out, family_lines(a, &(FamilyLines){t->rows.n, shape, row_text, t}, t->style));
+  t->rows.n = 0;
+  text_put(t, "", "\\end{align*}\n");
 }
 
 void text_equation(Text *t, Expr left, Expr right, int last) { equation(t, NULL, left, right, last); }

@@ -4,12 +4,20 @@
 #include "mech/eqns.h"
 #include "sym/print.h"
 
+/* A line of a block: an equation, or words. */
+typedef struct {
+  const char *words, *name; /* words NULL: an equation; name NULL: of the expression `left` */
+  Expr left, right;
+  int last;
+} TextRow;
+
 typedef struct {
   const Eqns *e;
   ExprGraph *g;
   PrintStyle style;
   StrBuf *out;
-  size_t block; /* where the lines of the last heading begin */
+  size_t block;      /* where the lines of the last heading begin */
+  VEC(TextRow) rows; /* of the block, not written yet */
 } Text;
 
 int text_latex(const Text *t);

@@ -2,6 +2,7 @@
 #include "symmetry/noether_report.h"
 #include "base/words.h"
 #include "symmetry/charges.h"
+#include "report/family_rows.h"
 #include "report/listing_text.h"
 
 typedef struct {
@@ -154,7 +155,7 @@ static const char *power_text(Page *p, Num power) {
 static void scaling(Page *p) {
   const NoetherReport *r = p->r;
   Text *t = &p->text;
-  StrBuf b = strbuf(t->e->m->arena);
+  StrBuf b = strbuf(t->e->m->arena), lines = strbuf(t->e->m->arena);
   if (!r->scales) return;
   sb_putc(t->out, '\n');
   sb_puts(&b, "scaling:");
@@ -162,8 +163,11 @@ static void scaling(Page *p) {
     Num power = i < t->e->n ? r->scaling.alpha[i] : r->scaling.beta;
     Name x = i < t->e->n ? t->e->m->coords.at[i].name : "t";
     if (num_is_zero(power)) continue;
-    sb_printf(&b, "%s %s -> %s*%s", b.n > sizeof "scaling:" ? "," : "", x, power_text(p, power), x);
+    sb_printf(&lines, "%s -> %s*%s\n", x, power_text(p, power), x);
   }
+  const char *line = family_rows(t->e->m->arena, sb_text(&lines), PRINT_TEXT);
+  for (size_t n; (n = strcspn(line, "\n")) > 0; line += n + 1)
+    sb_printf(&b, "%s %.*s", b.n > sizeof "scaling:" ? "," : "", (int)n, line);
   sb_printf(&b,
             " maps solutions to solutions; it multiplies the action by %s, so it is no symmetry in Noether's sense and "
             "has no charge",

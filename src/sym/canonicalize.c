@@ -5,6 +5,7 @@
 
 #include "sym/expr.h"
 #include "sym/expr_impl.h"
+#include "sym/sum_nest.h"
 
 static int by_node(const void *a, const void *b) {
   Expr x = ((const Pair *)a)->node, y = ((const Pair *)b)->node;
@@ -499,7 +500,8 @@ Expr expr_rebuild(ExprGraph *g, Expr e, const Expr *args) {
       }
       return finish_product(g, &r);
     }
-    case EX_NEST: case EX_CELL: return expr_make(g, expr_op(g, e), args, n);
+    case EX_NEST: return expr_nest_rebuilt(g, args, n);
+    case EX_CELL: return expr_cell_rebuilt(g, args);
     case EX_POW: return expr_pow(g, args[0], args[1]);
     case EX_SELECT: return expr_select(g, args[0], args[1], args[2]);
     EX_FUNCTION_CASES

@@ -17,6 +17,7 @@ Normal *normal_new(ExprGraph *g, Arena *a, NormalLimits limits) {
   n->field = frac_field(n->ring);
   n->canonical = 1;
   n->index = expr_map(a);
+  n->of_symbol = expr_map(a);
   n->circular_index = expr_map(a);
   n->opaque_table.arena = a;
   n->root_table.arena = a;
@@ -59,14 +60,12 @@ void normal_add_key(Normal *n, IdTable *t, const uint32_t *key, uint32_t len, Ge
 static Frac gen_frac(Normal *n, GenId x) { return frac_poly(poly_gen(n->ring, x)); }
 
 static Frac symbol_frac(Normal *n, Expr e) {
-  SymId s = expr_sym_id(n->g, e);
-  while (n->of_symbol.n <= s) vec_push(n->arena, &n->of_symbol, 0);
-  if (!n->of_symbol.at[s]) {
+  if (!expr_map_get(&n->of_symbol, e)) {
     GenId x = poly_new_gen(n->ring);
     normal_set_gen_info(n, x, (GenInfo){.kind = GEN_SYMBOL, .expr = e});
-    n->of_symbol.at[s] = x + 1;
+    expr_map_set(&n->of_symbol, e, x + 1);
   }
-  return gen_frac(n, n->of_symbol.at[s] - 1);
+  return gen_frac(n, expr_map_get(&n->of_symbol, e) - 1);
 }
 
 enum { MAX_ARGS = 3 };

@@ -70,7 +70,7 @@ typedef struct {
   int restart; /* the unit of an atom became finer: the run must be repeated */
   VEC(GenInfo) gens;
   VEC(Atom) atoms;
-  VEC(GenId) of_symbol; /* generator + 1, by SymId */
+  ExprMap of_symbol;    /* generator + 1, by node */
   ExprMap index;        /* node -> index into value */
   VEC(Frac) value;      /* [0] unused */
   ExprMap circular_index;

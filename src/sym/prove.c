@@ -261,8 +261,9 @@ static Poly cramer(Normal *n, uint32_t size, const Poly *rows, Poly *solution) {
 static int unknown_gens(Normal *n, const System *s, GenId *gen) {
   for (uint32_t k = 0; k < s->n; k++) {
     gen[k] = GEN_NONE;
-    if (s->acc[k] >= n->of_symbol.n || !n->of_symbol.at[s->acc[k]]) continue;
-    gen[k] = n->of_symbol.at[s->acc[k]] - 1;
+    uint32_t known = expr_map_get(&n->of_symbol, expr_symbol(n->g, s->acc[k])->node);
+    if (!known) continue;
+    gen[k] = known - 1;
     for (GenId x = 0; x < n->gens.n; x++)
       if (x != gen[k] && expr_contains_sym(n->g, n->gens.at[x].expr, s->acc[k])) return 0;
   }

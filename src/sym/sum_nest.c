@@ -78,6 +78,40 @@ Expr expr_sum_cell(ExprGraph *g, const SumNest *s, const Expr *args, uint32_t ce
   return expr_cell_of(g, nest, cell);
 }
 
+/* Whether the read is 0 in all turns. */
+static int reads_zeros(const ExprGraph *g, const SumNest *s, const NestRead *read, const Expr *args) {
+  int64_t lo, hi, step = subscript_step(&read->at);
+  if (!loop_extent(&s->range, &read->at, &lo, &hi)) return 0;
+  for (int64_t k = lo; k <= hi; k += step ? step : 1)
+    if (args[k + 1] != g->zero) return 0;
+  return 1;
+}
+
+Expr expr_nest_rebuilt(ExprGraph *g, const Expr *args, uint32_t n) {
+  SumNest s = g->nests.at[expr_number(g, args[0]).num - 1];
+  ExprMap zeros = expr_map(g->arena); /* the graph's own map is in use while nodes are rebuilt */
+  NestShare *shares = ARENA_ARRAY(g->arena, NestShare, s.nshares + 1);
+  for (uint32_t k = 0; k < s.nreads && !s.near; k++)
+    if (reads_zeros(g, &s, &s.reads[k], args))
+      expr_map_set(&zeros, expr_symbol(g, s.reads[k].symbol)->node, g->zero);
+  if (!zeros.n) return expr_make(g, EX_NEST, args, n);
+  for (uint32_t k = 0; k < s.nshares; k++) {
+    shares[k] = s.shares[k];
+    shares[k].value = expr_replace_by(g, shares[k].value, &zeros);
+  }
+  s.shares = shares;
+  s.slopes = NULL;
+  s.far = NULL;
+  return nest_of(g, expr_sum_number(g, &s), args + 1, n - 1);
+}
+
+Expr expr_cell_rebuilt(ExprGraph *g, const Expr *args) {
+  const SumNest *s = expr_sum_nest(g, args[0]);
+  int some = 0;
+  for (uint32_t k = 0; k < s->nshares; k++) some |= s->shares[k].value != g->zero;
+  return some ? expr_make(g, EX_CELL, args, 2) : g->zero;
+}
+
 Expr expr_twin_cell(ExprGraph *g, Expr nest, uint32_t number, uint32_t cell) {
   if (g->twin_of != nest || g->twin_number != number) {
     uint32_t n = expr_sum_args(g, nest);

@@ -19,6 +19,11 @@ Expr expr_cell_of(ExprGraph *g, Expr nest, uint32_t cell);
 Expr expr_twin_cell(ExprGraph *g, Expr nest, uint32_t number, uint32_t cell);
 uint32_t expr_nest_number(const ExprGraph *g, Expr nest);
 
+/* A NEST of these arguments; where some have become 0 in all turns, the body has 0 in their place, as readers see the
+ * body. A CELL; 0 where no turn adds to any. */
+Expr expr_nest_rebuilt(ExprGraph *g, const Expr *args, uint32_t n);
+Expr expr_cell_rebuilt(ExprGraph *g, const Expr *args);
+
 /* Of a NEST: its sums; argument i. Of a CELL: its NEST, and its number. */
 const SumNest *expr_sum_nest(const ExprGraph *g, Expr nest);
 uint32_t expr_sum_args(const ExprGraph *g, Expr nest);
@@ -45,7 +50,23 @@ void expr_write_out(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *cel
  * them; *rest: the other terms. 0: e has no cells, or their factors differ from turn to turn. */
 Expr expr_gather_sum(ExprGraph *g, Expr e, Expr *rest);
 
-/* sum_terms.c: a cell as a person writes it: a sum over i and j, or for a derivative the sums over the index that is
+/* sum_terms.c: where the turns that add to a cell stand: in one row, or in rows[0] to rows[1]; in one turn of each, or
+ * in all; and the arguments that their term names without a running index. */
+typedef struct {
+  uint32_t share;
+  int fixed_row, fixed_turn;
+  int64_t row, turn, rows[2];
+  uint32_t nargs;
+  const Expr *args;
+} SumPlace;
+
+typedef struct {
+  const SumPlace *at;
+  uint32_t n;
+} SumPlaces;
+SumPlaces expr_sum_places(ExprGraph *g, Expr cell);
+
+/* A cell as a person writes it: a sum over i and j, or for a derivative the sums over the index that is
  * left; the body is in symbols that have the names r[i].x. */
 typedef struct {
   int minus;

@@ -7,17 +7,11 @@ typedef struct {
   ExprGraph *g;
   Expr nest;
   const SumNest *s;
-  VEC(SumTerm) terms;
+  VEC(SumPlace) places;
 } Reader;
 
-/* A term in the making: row and turn are numbers, or are summed over. */
-typedef struct {
-  int fixed_row, fixed_turn;
-  int64_t row, turn;
-} Turn;
-
 /* Affine function of i and j (of row and turn where they are fixed) as text: "i + 1", "2*i - j", "7". */
-static const char *affine_text(const Reader *r, Subscript x, const Turn *at) {
+static const char *affine_text(const Reader *r, Subscript x, const SumPlace *at) {
   StrBuf b = strbuf(r->g->arena);
   const char *name[2] = {r->s->i, r->s->j};
   int64_t by[2] = {x.by_row, x.by_turn}, rest = x.first;
@@ -44,10 +38,16 @@ Expr expr_named_symbol(ExprGraph *g, const char *text) {
   return expr_symbol(g, s)->node;
 }
 
-static Expr read_symbol(const Reader *r, const NestRead *read, const Turn *at) {
+/* The argument that stands for itself in the term; 0: its name has a running index. */
+static Expr fixed_argument(const Reader *r, const NestRead *read, const SumPlace *at) {
   int runs = (read->at.by_row && !at->fixed_row) || (read->at.by_turn && !at->fixed_turn);
   int64_t arg = subscript_at(&read->at, at->fixed_row ? at->row : 0, at->fixed_turn ? at->turn : 0);
-  if (!runs || !read->stem) return expr_sum_arg(r->g, r->nest, (uint32_t)arg);
+  return runs && read->stem ? 0 : expr_sum_arg(r->g, r->nest, (uint32_t)arg);
+}
+
+static Expr read_symbol(const Reader *r, const NestRead *read, const SumPlace *at) {
+  Expr fixed = fixed_argument(r, read, at);
+  if (fixed) return fixed;
   const char *first = affine_text(r, read->index[0], at);
   if (!*read->stem) return expr_named_symbol(r->g, first);
   const char *second = read->nindices == 2 ? affine_text(r, read->index[1], at) : "";
@@ -56,8 +56,9 @@ static Expr read_symbol(const Reader *r, const NestRead *read, const Turn *at) {
   return expr_named_symbol(r->g, text);
 }
 
-static void add_term(Reader *r, const NestShare *x, const Turn *at, Subscript from, Subscript to, uint32_t rows[2]) {
+static SumTerm term_at(Reader *r, const SumPlace *at) {
   ExprGraph *g = r->g;
+  const LoopRange *range = &r->s->range;
   SymId *syms = ARENA_ARRAY(g->arena, SymId, r->s->nreads + 1);
   Expr *with = ARENA_ARRAY(g->arena, Expr, r->s->nreads + 1);
   SumTerm t = {0};
@@ -67,7 +68,7 @@ static void add_term(Reader *r, const NestShare *x, const Turn *at, Subscript fr
     syms[k] = r->s->reads[k].symbol;
     with[k] = read_symbol(r, &r->s->reads[k], at);
   }
-  t.body = expr_replace(g, x->value, syms, with, r->s->nreads);
+  t.body = expr_replace(g, r->s->shares[at->share].value, syms, with, r->s->nreads);
   if (expr_op(g, t.body) == EX_SUM && expr_pairs(g, t.body, EX_SUM) == 1) {
     expr_pair(g, t.body, EX_SUM, 0, &c);
     t.minus = num_sign(c) < 0;
@@ -75,39 +76,81 @@ static void add_term(Reader *r, const NestShare *x, const Turn *at, Subscript fr
   }
   if (!at->fixed_row) {
     t.index[n] = r->s->i;
-    t.from[n] = arena_printf(g->arena, "%lld", (long long)(r->s->i0 + rows[0]));
-    t.to[n++] = arena_printf(g->arena, "%lld", (long long)(r->s->i0 + rows[1]));
+    t.from[n] = arena_printf(g->arena, "%lld", (long long)(r->s->i0 + at->rows[0]));
+    t.to[n++] = arena_printf(g->arena, "%lld", (long long)(r->s->i0 + at->rows[1]));
   }
   if (!at->fixed_turn) {
     t.index[n] = r->s->j;
-    t.from[n] = affine_text(r, from, at);
-    t.to[n++] = affine_text(r, to, at);
+    t.from[n] = affine_text(r, (Subscript){r->s->j0, range->skew, 0}, at);
+    t.to[n++] = affine_text(r, (Subscript){r->s->j0 + range->turns - 1, range->skew + range->more, 0}, at);
   }
-  vec_push(g->arena, &r->terms, t);
+  return t;
 }
 
-/* The terms of a share that are added to cell c, for each row that has any, or for all rows together. */
-static void add_share(Reader *r, const NestShare *x, int64_t c) {
-  const LoopRange *range = &r->s->range;
-  Subscript from = {r->s->j0, range->skew, 0}, to = {r->s->j0 + range->turns - 1, range->skew + range->more, 0};
-  uint32_t rows[2] = {0, range->rows - 1}, some = 0;
-  int by_row = x->at.by_row != 0, by_turn = x->at.by_turn != 0;
-  int64_t gap = c - x->at.first, turn = by_turn && !by_row ? gap / x->at.by_turn : 0;
-  if (!by_row && (by_turn ? gap % x->at.by_turn : gap)) return;
-  for (uint32_t i = 0; i < range->rows; i++) {
-    if (by_row && by_turn) turn = (gap - x->at.by_row * i) / x->at.by_turn;
-    int hits = by_turn ? turn >= loop_from(range, i) && turn < loop_to(range, i) : loop_turns(range, i) > 0;
-    if (!hits || (by_row && x->at.by_row * i + x->at.by_turn * turn != gap)) continue;
-    if (by_row) add_term(r, x, &(Turn){1, by_turn, i, turn}, from, to, rows);
-    if (!some++) rows[0] = i;
-    rows[1] = i;
+/* Cuts the rows from rows[0] to rows[1] to those with by*row <= most. */
+static void cut_rows(int64_t rows[2], int64_t by, int64_t most) {
+  int64_t whole = by ? most / by : 0;
+  if (by == 0 && most < 0) rows[1] = rows[0] - 1;
+  if (by > 0 && whole * by > most) whole--; /* rounded towards 0 */
+  if (by < 0 && whole * by > most) whole++;
+  if (by > 0 && whole < rows[1]) rows[1] = whole;
+  if (by < 0 && whole > rows[0]) rows[0] = whole;
+}
+
+/* The rows that have a turn, or, if `fixed`, that turn. */
+static void rows_with_turn(const LoopRange *x, int fixed, int64_t turn, int64_t rows[2]) {
+  rows[0] = 0;
+  rows[1] = (int64_t)x->rows - 1;
+  cut_rows(rows, -x->more, x->turns - 1);
+  if (!fixed) return;
+  cut_rows(rows, x->skew, turn);
+  cut_rows(rows, -(x->skew + x->more), x->turns - 1 - turn);
+}
+
+static void add_place(Reader *r, SumPlace at) {
+  Expr *args = ARENA_ARRAY(r->g->arena, Expr, r->s->nreads + 1);
+  for (uint32_t k = 0; k < r->s->nreads; k++) {
+    Expr fixed = fixed_argument(r, &r->s->reads[k], &at);
+    if (fixed) args[at.nargs++] = fixed;
   }
-  if (!by_row && some) add_term(r, x, &(Turn){0, by_turn, 0, turn}, from, to, rows);
+  at.args = args;
+  vec_push(r->g->arena, &r->places, at);
+}
+
+/* The places of a share that are added to cell c, in each row that has any, or in all rows together. */
+static void add_share(Reader *r, uint32_t share, int64_t c) {
+  const LoopRange *range = &r->s->range;
+  const Subscript *x = &r->s->shares[share].at;
+  int by_row = x->by_row != 0, by_turn = x->by_turn != 0;
+  int64_t gap = c - x->first, turn = by_turn && !by_row ? gap / x->by_turn : 0, rows[2];
+  if (!by_row && (by_turn ? gap % x->by_turn : gap)) return;
+  if (by_row && !by_turn && gap % x->by_row) return;
+  rows_with_turn(range, by_turn && !by_row, turn, rows);
+  if (!by_row && rows[0] <= rows[1]) add_place(r, (SumPlace){share, 0, by_turn, 0, turn, {rows[0], rows[1]}, 0, NULL});
+  for (int64_t i = by_turn ? rows[0] : by_row ? gap / x->by_row : 0; by_row && i <= rows[1]; i++) {
+    if (by_turn) turn = (gap - x->by_row * i) / x->by_turn;
+    int hits = !by_turn || (turn >= loop_from(range, i) && turn < loop_to(range, i));
+    if (hits && i >= rows[0] && x->by_row * i + x->by_turn * turn == gap)
+      add_place(r, (SumPlace){share, 1, by_turn, i, turn, {0, 0}, 0, NULL});
+    if (!by_turn) break;
+  }
+}
+
+static Reader reader(ExprGraph *g, Expr cell) {
+  Reader r = {.g = g, .nest = expr_cell_nest(g, cell)};
+  r.s = expr_sum_nest(g, r.nest);
+  for (uint32_t k = 0; k < r.s->nshares; k++) add_share(&r, k, expr_cell_number(g, cell));
+  return r;
+}
+
+SumPlaces expr_sum_places(ExprGraph *g, Expr cell) {
+  Reader r = reader(g, cell);
+  return (SumPlaces){r.places.at, r.places.n};
 }
 
 SumTerms expr_sum_terms(ExprGraph *g, Expr cell) {
-  Reader r = {.g = g, .nest = expr_cell_nest(g, cell)};
-  r.s = expr_sum_nest(g, r.nest);
-  for (uint32_t k = 0; k < r.s->nshares; k++) add_share(&r, &r.s->shares[k], expr_cell_number(g, cell));
-  return (SumTerms){r.terms.at, r.terms.n};
+  Reader r = reader(g, cell);
+  SumTerm *terms = ARENA_ARRAY(g->arena, SumTerm, r.places.n + 1);
+  for (uint32_t k = 0; k < r.places.n; k++) terms[k] = term_at(&r, &r.places.at[k]);
+  return (SumTerms){terms, r.places.n};
 }

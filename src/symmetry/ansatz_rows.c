@@ -153,13 +153,14 @@ static long double steepness(RowSource *r) {
 }
 
 /* Draws some states and keeps that with the weakest forces: where two of several bodies nearly touch, their force
- * drowns all others, and with 1/(x
- * - y)^2 rounding of the potential drowns the kinetic energy. With many bodies every second state is wide. */
+ * drowns all others, and with 1/(x - y)^2 rounding of the potential drowns the kinetic energy. With many bodies every
+ * second state is wide; with more of them the draws, which take most of the search's time, are fewer. */
 static int draw_some(RowSource *r) {
-  enum { MANY = 6, DRAWS = 24 };
+  enum { MANY = 6, MORE = 30, DRAWS = 24 };
+  const int draws = r->of->n > MORE ? DRAWS / 4 : DRAWS;
   size_t size = (expr_symbol_count(r->of->e->g) + 1) * sizeof *r->symbols;
   long double least = INFINITY;
-  for (int k = 0; k < DRAWS; k++) {
+  for (int k = 0; k < draws; k++) {
     draw(r, k % 2 && r->of->n >= MANY ? 3 : 1);
     long double now = steepness(r);
     if (!(now < least)) continue;

@@ -337,13 +337,11 @@ static void search_ansatz(SymmetrySearch *s, int whole) {
   else search_autonomous(s);
 }
 
-static const char *stopped_note(const SymmetrySearch *s) {
-  if (s->limit->no_room)
-    return arena_printf(s->e->m->arena, "%s, and nothing was searched beyond", search_stop_text(s->limit));
+static const char *stopped_note(Arena *a, const SearchLimit *limit) {
+  if (limit->no_room) return arena_printf(a, "%s, and nothing was searched beyond", search_stop_text(limit));
   return arena_printf(
-      s->e->m->arena,
-      "%.3g s did not suffice for more, and nothing was searched beyond: --seconds %.3g gives more time",
-      s->limit->seconds, 10 * s->limit->seconds);
+      a, "%.3g s did not suffice for more, and nothing was searched beyond: --seconds %.3g gives more time",
+      limit->seconds, 10 * limit->seconds);
 }
 
 /* The largest ansatz that can be searched in its part of the time, else the usual symmetries. */
@@ -359,7 +357,6 @@ static void search_work(Arena *scratch, void *data) {
                      "of a kind together";
     s->out->note = "the linear equations of the full search could not be solved reliably";
   }
-  if (s->limit->stopped) s->out->note = stopped_note(s);
 }
 
 const char *noether_note_on_impacts(const Model *m) {
@@ -406,6 +403,7 @@ FoundSymmetries noether_find(Eqns *e, SearchLimit *limit) {
   FoundSymmetries out = {0};
   if (too_large_to_search(e)) try_usual_symmetries(e, &out, limit);
   else out = search(e, limit);
+  if (limit->stopped) out.note = stopped_note(e->m->arena, limit);
   out.galilean = has_galilean_charges(&out);
   if (!out.note) out.note = noether_note_on_impacts(e->m);
   return out;

@@ -87,8 +87,8 @@ static Expr delta(const ProofWork *w, Expr term) {
 }
 
 Expr noether_at_rest(const ProofWork *w, Expr x) {
-  Expr *zero = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   if (!(expr_kinds(w->g, x) & (1u << SYM_VEL | 1u << SYM_RATE))) return x;
+  Expr *zero = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
   return expr_replace(w->g, x, w->v, zero, w->n);
 }

@@ -3,16 +3,9 @@
 #include "symmetry/symmetry_names.h"
 
 #include <ctype.h>
+#include <stdlib.h>
 
 /* --- coordinates of bodies --- */
-
-CoordinateNames coordinate_names(const Eqns *e) {
-  CoordinateNames c = {e->g, e->m->arena, eqns_coordinates(e), NULL};
-  Name *name = ARENA_ARRAY(c.arena, Name, c.n + 1);
-  for (uint32_t i = 0; i < c.n; i++) name[i] = expr_symbol(c.g, eqns_coordinate(e, i))->name;
-  c.name = name;
-  return c;
-}
 
 /* Axis of a component by its name alone: r[2].x, x[2], x2, x and X lie along x. */
 static uint32_t axis_of(Name name) {
@@ -29,22 +22,55 @@ int name_same_body(Name a, Name b) {
   return x - a == y - b && memcmp(a, b, (size_t)(x - a)) == 0;
 }
 
-/* Component `letter` of the vector or rotation that coordinate i belongs to; UINT32_MAX: there is none. */
-static uint32_t sibling(const CoordinateNames *e, uint32_t i, char letter) {
+struct SortedName {
+  Name name;
+  uint32_t i;
+};
+
+static int by_name(const void *a, const void *b) {
+  return strcmp(((const SortedName *)a)->name, ((const SortedName *)b)->name);
+}
+
+uint32_t name_component(const CoordinateNames *e, uint32_t i, char letter) {
   Name name = e->name[i];
   const char *dot = strrchr(name, '.');
-  for (uint32_t k = 0; dot && k < e->n; k++) {
-    Name other = e->name[k];
-    if (strncmp(other, name, (size_t)(dot + 1 - name)) == 0 && other[dot + 1 - name] == letter &&
-        !other[dot + 2 - name])
-      return k;
-  }
-  return UINT32_MAX;
+  const SortedName key = {dot ? arena_printf(e->arena, "%.*s.%c", (int)(dot - name), name, letter)
+                              : arena_printf(e->arena, "%c%s", letter, name + 1), 0};
+  const SortedName *found = bsearch(&key, e->sorted, e->n, sizeof key, by_name);
+  return found ? found->i : UINT32_MAX;
+}
+
+/* Component `letter` of the vector or rotation that coordinate i belongs to; UINT32_MAX: there is none. */
+static uint32_t sibling(const CoordinateNames *e, uint32_t i, char letter) {
+  return strchr(e->name[i], '.') ? name_component(e, i, letter) : UINT32_MAX;
 }
 
 /* Components of a rotation lie along no axis. */
-uint32_t name_axis(const CoordinateNames *e, uint32_t i) {
-  return sibling(e, i, 'w') == UINT32_MAX ? axis_of(e->name[i]) : AXIS_NONE;
+uint32_t name_axis(const CoordinateNames *e, uint32_t i) { return e->axis[i]; }
+
+int name_same_kind(const CoordinateNames *e, uint32_t i, uint32_t k) {
+  uint32_t a = name_axis(e, i), b = name_axis(e, k);
+  Name one = e->name[i], other = e->name[k];
+  size_t n = strcspn(one, "[");
+  if (a != AXIS_NONE || b != AXIS_NONE) return a == b;
+  return n == strcspn(other, "[") && memcmp(one, other, n) == 0;
+}
+
+CoordinateNames coordinate_names(const Eqns *e) {
+  CoordinateNames c = {e->g, e->m->arena, eqns_coordinates(e), NULL, NULL, NULL};
+  Name *name = ARENA_ARRAY(c.arena, Name, c.n + 1);
+  uint32_t *axis = ARENA_ARRAY(c.arena, uint32_t, c.n + 1);
+  SortedName *sorted = ARENA_ARRAY(c.arena, SortedName, c.n + 1);
+  for (uint32_t i = 0; i < c.n; i++) {
+    name[i] = expr_symbol(c.g, eqns_coordinate(e, i))->name;
+    sorted[i] = (SortedName){name[i], i};
+  }
+  if (c.n) qsort(sorted, c.n, sizeof *sorted, by_name);
+  c.name = name;
+  c.axis = axis;
+  c.sorted = sorted;
+  for (uint32_t i = 0; i < c.n; i++) axis[i] = sibling(&c, i, 'w') == UINT32_MAX ? axis_of(name[i]) : AXIS_NONE;
+  return c;
 }
 
 static uint32_t along(const CoordinateNames *e, uint32_t axis) {

@@ -13,12 +13,16 @@ typedef struct {
   Generator by;
 } GeneratorRow;
 
+typedef struct SortedName SortedName;
+
 /* The coordinates that generators move. */
 typedef struct {
   ExprGraph *g;
   Arena *arena;      /* for texts */
   uint32_t n;
   const Name *name;  /* [n] */
+  const uint32_t *axis;     /* [n] see name_axis */
+  const SortedName *sorted; /* [n] */
 } CoordinateNames;
 
 CoordinateNames coordinate_names(const Eqns *e);
@@ -29,6 +33,12 @@ enum { AXIS_NONE = 3 };
  * rotations have none. */
 uint32_t name_axis(const CoordinateNames *e, uint32_t i);
 const char *axis_text(uint32_t axis);
+
+/* The coordinate with that letter for its axis: r[2].y or y2 from r[2].x or x2; UINT32_MAX: there is none. */
+uint32_t name_component(const CoordinateNames *e, uint32_t i, char letter);
+
+/* Whether two coordinates are of a kind: along one axis, or members of one family. */
+int name_same_kind(const CoordinateNames *e, uint32_t i, uint32_t k);
 
 /* Whether two components belong to one body: their names agree in all but the letter. */
 int name_same_body(Name a, Name b);

@@ -51,27 +51,30 @@ MODEL
 }
 
 table
-# ---- lagc check
-# grows WHAT KIND FEW MANY: slopes of the logarithms of CPU time and memory against log N. The memory for N = 1 is subtracted.
+# ---- lagc check, derive, noether
+# grows WHAT KIND FEW MANY [COMMAND]: slopes of the logarithms of CPU time and memory against log N. The memory for N = 1 is subtracted.
 grows() {
+  command=${5:-check}
   grown_model "$2" 1 >"$TMP/grows.lag"
-  floor=$(kilobytes 1 "$LAGC" check "$TMP/grows.lag")
+  floor=$(kilobytes 1 "$LAGC" "$command" "$TMP/grows.lag")
   for n in "$3" "$4"; do
     grown_model "$2" "$n" >"$TMP/grows.lag"
-    echo "$n $(seconds 2 "$LAGC" check "$TMP/grows.lag") $(kilobytes 1 "$LAGC" check "$TMP/grows.lag")"
+    echo "$n $(seconds 2 "$LAGC" "$command" "$TMP/grows.lag") $(kilobytes 1 "$LAGC" "$command" "$TMP/grows.lag")"
   done >"$TMP/grown"
   slopes=$(awk -v floor="$floor" '{ n[NR] = log($1); s[NR] = log($2 + 1e-3); k[NR] = log($3 - floor + 1) }
     END { d = n[2] - n[1]; printf "%.2f %.2f", (s[2] - s[1])/d, (k[2] - k[1])/d }' "$TMP/grown")
   most=$(awk 'END { printf "%s s, %d MB", $2, $3/1024 }' "$TMP/grown")
-  row "lagc check, $1, slope of log time against log N, $3 to $4" '<= 1.15' "$most" "${slopes% *}" '' "$(at_most "${slopes% *}" 1.15)"
-  row "lagc check, $1, slope of log memory" '<= 1.15' '' "${slopes#* }" '' "$(at_most "${slopes#* }" 1.15)"
+  row "lagc $command, $1, slope of log time against log N, $3 to $4" '<= 1.15' "$most" "${slopes% *}" '' "$(at_most "${slopes% *}" 1.15)"
+  row "lagc $command, $1, slope of log memory" '<= 1.15' '' "${slopes#* }" '' "$(at_most "${slopes#* }" 1.15)"
 }
 grows 'N rods' rods 100 800
 grows 'N bodies, a sum over all pairs,' bodies 200 2000
 grows 'N scenes' scenes 1000 8000
 grows 'N outputs' outputs 10000 100000
+grows 'N bodies, a sum over all pairs,' bodies 1000 10000 derive
+grows 'N bodies, a sum over all pairs,' bodies 100 1000 noether
 
-# ---- lagc noether: xi of N bodies in space has 9 N^2 + 3 N coefficients; bodies of one kind together have ten
+# ---- lagc noether: xi of N bodies in space has 9 N^2 + 3 N coefficients, where each may move in its own way
 for n in 8 16; do echo "$n $(seconds 2 "$LAGC" noether tests/bench/models/bodies.lag -DN="$n")"; done >"$TMP/grown"
 row "lagc noether, N bodies in space, slope of log time against log N, 8 to 16" '' "$(awk 'END { print $2 " s" }' "$TMP/grown")" \
   "$(awk '{ n[NR] = log($1); s[NR] = log($2) } END { printf "%.2f", (s[2] - s[1])/(n[2] - n[1]) }' "$TMP/grown")" '' ''

@@ -24,6 +24,9 @@ POTENTIAL = {
     "string": lambda u, n: sum(k/2*r**2 + c/4*r**4 for r in [u[1]] + [u[i + 1] - u[i] for i in range(1, n)] + [-u[n]]),
     "tied": lambda u, n: sum(k/2*(u[i] - w[min(i, 5)])**2 for i in range(1, n + 1)),
     "dimer": lambda u, n: sum((k if i % 2 else c)/2*(u[i + 1] - u[i])**2 for i in range(1, n)),
+    "grid": lambda u, n: sum(k/2*(u[i + 1, j] - u[i, j])**2 + c/2*(u[j, i + 1] - u[j, i])**2 for i in range(1, n) for j in range(1, n + 1)),
+    "stiff": lambda u, n: sum((c if i == 500 else k)/2*x*x for i, x in u.items()),
+    "odd": lambda u, n: sum(k*x*x/2 for x in u.values()) + sum(c*(u[i + 1] - u[i])**2/2 for i in range(1, n)) + u[500]**4,
     "net": lambda u, n: sum(k/2*(u[i + 1, j] - u[i, j])**2 + c/3*(u[j, i + 1] - u[j, i])**3 for i in range(1, n) for j in range(1, n + 1)),
 }
 
@@ -45,7 +48,7 @@ def python(text):
 def main():
     kind, n = sys.argv[1], int(sys.argv[2])
     place = random.Random(1)
-    members = [(i, j) for i in range(1, n + 1) for j in range(1, n + 1)] if kind == "net" else range(1, n + 1)
+    members = [(i, j) for i in range(1, n + 1) for j in range(1, n + 1)] if kind in ("net", "grid") else range(1, n + 1)
     u = {i: place.uniform(-1, 1) for i in members}
     names = {"u": u, "k": k, "c": c, "w": w, "total": sum, "sin": lambda x: cmath.sin(x).real, "cos": lambda x: cmath.cos(x).real}
     v = {i: place.uniform(-1, 1) for i in members}
@@ -54,12 +57,15 @@ def main():
     for line in sys.stdin:
         if line.startswith("  E = "):
             energy = python(line[6:])
-        row = re.match(r"  (\w+)\[([^]]*)\]('*) = (.*?)(?:  for (\w+) in (\d+)\.\.(\d+))?$", line)
+        row = re.match(r"  (\w+)\[([^]]*)\]('*) = (.*?)((?:  for \w+ in [^.]*\.\.[^.]*)*)$", line)
         if not row or row[1].startswith("p_"):
             continue
-        name, at, primes, right, letter, low, high = row.groups()
-        for value in range(int(low), int(high) + 1) if letter else [0]:
-            here = {**names, letter or "_": value}
+        name, at, primes, right, ranges = row.groups()
+        cases = [{}]
+        for letter, low, high in reversed(re.findall(r"  for (\w+) in (.*?)\.\.(.*?)(?=  |$)", ranges)):  # later ones are outside
+            cases = [{**x, letter: value} for x in cases for value in range(eval(low, {}, x), eval(high, {}, x) + 1)]
+        for case in cases:
+            here = {**names, **case}
             if primes == "''":
                 member = eval(at, here)
                 assert member not in found, member
