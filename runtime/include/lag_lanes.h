@@ -23,8 +23,8 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 /* ---- lanes: front ---- */
 #ifdef LAG_LANES
 /* Selection, logic and functions of vectors of doubles. */
-#if !defined(__GNUC__) || (LAG_LANES != 4 && LAG_LANES != 8)
-#error "LAG_LANES must be 4 or 8, and the compiler GCC or Clang"
+#if !defined(__GNUC__) || (LAG_LANES != 2 && LAG_LANES != 4 && LAG_LANES != 8)
+#error "LAG_LANES must be 2, 4 or 8, and the compiler GCC or Clang"
 #endif
 #define LAG_INLINE static __inline__ __attribute__((always_inline, unused))
 typedef long long lag_lanes_mask __attribute__((vector_size(8 * LAG_LANES)));
@@ -244,6 +244,8 @@ LAG_INLINE int lag_lanes_bits(lag_lanes_mask c) {
 LAG_INLINE int lag_lanes_any(lag_lanes_mask c) {
 #if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
   return __builtin_ia32_cvtq2mask512(c) != 0;
+#elif LAG_LANES == 2
+  return (c[0] | c[1]) != 0;
 #else
   typedef long long half __attribute__((vector_size(4 * LAG_LANES)));
   union { lag_lanes_mask all; half part[2]; } u = {c};
@@ -278,6 +280,8 @@ LAG_INLINE LAG_REAL lag_lanes_sqrt(LAG_REAL x) {
   return __builtin_ia32_sqrtpd512(x, 4);
 #elif defined(__AVX__) && LAG_LANES == 4
   return __builtin_ia32_sqrtpd256(x);
+#elif defined(__SSE2__) && LAG_LANES == 2
+  return __builtin_ia32_sqrtpd(x);
 #else
   for (int k = 0; k < LAG_LANES; k++) x[k] = sqrt(x[k]);
   return x;
