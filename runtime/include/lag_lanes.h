@@ -217,6 +217,18 @@ LAG_TURNS_INLINE void lag_turns_each_less(double *sum, int step, lag_turns x) {
 #define LAG_REST(from, end) (from)
 #endif
 
+/* to[n] := 1/(x sqrt(x)). */
+static LAG_UNUSED void lag_inverse_cubes(int n, const LAG_REAL *x, LAG_REAL *to) {
+  int k = 0;
+#ifdef LAG_TURNS
+  for (; k + LAG_TURNS <= n; k += LAG_TURNS) {
+    const lag_turns x_k = lag_turns_at(x + k, 1);
+    *(lag_turns_near *)(to + k) = 1.0/(x_k*lag_turns_sqrt(x_k));
+  }
+#endif
+  for (; k < n; k++) to[k] = LAG_C(1.0)/(x[k]*LAG_FN(sqrt)(x[k]));
+}
+
 /* ---- lanes ---- */
 #ifdef LAG_LANES
 LAG_INLINE LAG_REAL lag_lanes_all(double x) {
