@@ -80,7 +80,7 @@ int cwriter_declare_sincos(Writer *w, Slot s, const Ins *first, const Ins *secon
 /* Declares the loads of the arrays that instruction s reads. */
 void cwriter_arrays_of(Writer *w, Slot s);
 
-/* ccubes.c: computes reciprocal cubes from slot s on by one call, if there are enough. Returns 1 if s is computed so. */
+/* Computes reciprocal cubes from slot s on by one call, if there are enough. Returns 1 if s is computed by a call. */
 int ccubes_write(Writer *w, Slot s);
 
 /* Whether sin and cos of one operand can share a call: both outside of loops, or in the same turn of one loop in all
