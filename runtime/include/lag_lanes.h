@@ -1,5 +1,5 @@
 /* lag_lanes.h: arithmetic over LAG_REAL: selection, logic, checks of pivots, functions of the C library, bits of a
- * double. LAG_REAL is double, or, with LAG_LANES defined as 4 or 8, the type of a vector with so many lanes (GCC and
+ * double. LAG_REAL is double, or, with LAG_LANES defined as 2, 4 or 8, the type of a vector with so many lanes (GCC and
  * Clang; arrays of it are aligned to its size: aligned_alloc; -Wno-psabi silences GCC on how it passes them). Another
  * scalar: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L'. Includes only <math.h>.
  *
