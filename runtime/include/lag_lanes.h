@@ -346,6 +346,8 @@ LAG_INLINE LAG_REAL lag_mad(LAG_REAL a, LAG_REAL b, LAG_REAL c) {
   return __builtin_ia32_vfmaddpd512_mask(a, b, c, (unsigned char)-1, 4);
 #elif LAG_LANES == 4 && defined(__FMA__)
   return __builtin_ia32_vfmaddpd256(a, b, c);
+#elif LAG_LANES == 2 && defined(__FMA__)
+  return __builtin_ia32_vfmaddpd(a, b, c);
 #elif defined(__FMA__)
   typedef double half __attribute__((vector_size(32)));
   union { LAG_REAL all; half part[2]; } x = {a}, y = {b}, z = {c};
