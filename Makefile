@@ -149,8 +149,8 @@ $(BUILD)/liblag_mpi.a: $(BUILD)/obj/runtime/mpi/mpi.o
 	$(call ARCHIVE,$^)
 	@pkg-config --libs ompi-c >$(@:.a=.libs)
 # gcc takes the vectors from a pragma in the file; Clang passes vectors as the file's flags say.
-$(BUILD)/obj/runtime/lanes/lanes_4.o: override CFLAGS += $(if $(CLANG_X86),-mavx2)
-$(BUILD)/obj/runtime/lanes/lanes_8.o: override CFLAGS += $(if $(CLANG_X86),-mavx512f -mavx512dq)
+$(addprefix $(BUILD)/obj/runtime/,lanes/lanes_4.o methods/kepler_lanes_4.o): override CFLAGS += $(if $(CLANG_X86),-mavx2)
+$(addprefix $(BUILD)/obj/runtime/,lanes/lanes_8.o methods/kepler_lanes_8.o): override CFLAGS += $(if $(CLANG_X86),-mavx512f -mavx512dq)
 $(BUILD)/obj/runtime/png/png.o: override CFLAGS += $(PNG_CFLAGS)
 $(BUILD)/obj/runtime/hdf5/hdf5.o: override CFLAGS += $(HDF5_CFLAGS)
 $(BUILD)/obj/runtime/mpi/mpi.o: override CFLAGS += $(MPI_CFLAGS)

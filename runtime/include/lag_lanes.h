@@ -1,5 +1,5 @@
 /* lag_lanes.h: arithmetic over LAG_REAL: selection, logic, checks of pivots, functions of the C library, bits of a
- * double. LAG_REAL is double, or, with LAG_LANES defined as 4 or 8, the type of a vector with so many lanes (GCC and
+ * double. LAG_REAL is double, or, with LAG_LANES defined as 2, 4 or 8, the type of a vector with so many lanes (GCC and
  * Clang; arrays of it are aligned to its size: aligned_alloc; -Wno-psabi silences GCC on how it passes them). Another
  * scalar: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L'. Includes only <math.h>.
  *
@@ -23,8 +23,8 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 /* ---- lanes: front ---- */
 #ifdef LAG_LANES
 /* Selection, logic and functions of vectors of doubles. */
-#if !defined(__GNUC__) || (LAG_LANES != 4 && LAG_LANES != 8)
-#error "LAG_LANES must be 4 or 8, and the compiler GCC or Clang"
+#if !defined(__GNUC__) || (LAG_LANES != 2 && LAG_LANES != 4 && LAG_LANES != 8)
+#error "LAG_LANES must be 2, 4 or 8, and the compiler GCC or Clang"
 #endif
 #define LAG_INLINE static __inline__ __attribute__((always_inline, unused))
 typedef long long lag_lanes_mask __attribute__((vector_size(8 * LAG_LANES)));
@@ -217,6 +217,18 @@ LAG_TURNS_INLINE void lag_turns_each_less(double *sum, int step, lag_turns x) {
 #define LAG_REST(from, end) (from)
 #endif
 
+/* to[n] := 1/(x sqrt(x)). */
+static LAG_UNUSED void lag_inverse_cubes(int n, const LAG_REAL *x, LAG_REAL *to) {
+  int k = 0;
+#ifdef LAG_TURNS
+  for (; k + LAG_TURNS <= n; k += LAG_TURNS) {
+    const lag_turns x_k = lag_turns_at(x + k, 1);
+    *(lag_turns_near *)(to + k) = 1.0/(x_k*lag_turns_sqrt(x_k));
+  }
+#endif
+  for (; k < n; k++) to[k] = LAG_C(1.0)/(x[k]*LAG_FN(sqrt)(x[k]));
+}
+
 /* ---- lanes ---- */
 #ifdef LAG_LANES
 LAG_INLINE LAG_REAL lag_lanes_all(double x) {
@@ -244,6 +256,8 @@ LAG_INLINE int lag_lanes_bits(lag_lanes_mask c) {
 LAG_INLINE int lag_lanes_any(lag_lanes_mask c) {
 #if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
   return __builtin_ia32_cvtq2mask512(c) != 0;
+#elif LAG_LANES == 2
+  return (c[0] | c[1]) != 0;
 #else
   typedef long long half __attribute__((vector_size(4 * LAG_LANES)));
   union { lag_lanes_mask all; half part[2]; } u = {c};
@@ -278,6 +292,8 @@ LAG_INLINE LAG_REAL lag_lanes_sqrt(LAG_REAL x) {
   return __builtin_ia32_sqrtpd512(x, 4);
 #elif defined(__AVX__) && LAG_LANES == 4
   return __builtin_ia32_sqrtpd256(x);
+#elif defined(__SSE2__) && LAG_LANES == 2
+  return __builtin_ia32_sqrtpd(x);
 #else
   for (int k = 0; k < LAG_LANES; k++) x[k] = sqrt(x[k]);
   return x;
@@ -330,6 +346,8 @@ LAG_INLINE LAG_REAL lag_mad(LAG_REAL a, LAG_REAL b, LAG_REAL c) {
   return __builtin_ia32_vfmaddpd512_mask(a, b, c, (unsigned char)-1, 4);
 #elif LAG_LANES == 4 && defined(__FMA__)
   return __builtin_ia32_vfmaddpd256(a, b, c);
+#elif LAG_LANES == 2 && defined(__FMA__)
+  return __builtin_ia32_vfmaddpd(a, b, c);
 #elif defined(__FMA__)
   typedef double half __attribute__((vector_size(32)));
   union { LAG_REAL all; half part[2]; } x = {a}, y = {b}, z = {c};

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/processor.h"
 
 void lag_lane_enter(lag_sim *s) { s->outside.on = 1; }
 
@@ -16,32 +17,6 @@ int lag_lane_doubts(lag_sim *s) {
   return energy.flags & LAG_CONSERVED &&
          !(fabs(energy.now - s->charges[0].first) <= fmax(0.5 * fabs(energy.begin), 1e-12));
 }
-
-#if defined(__GNUC__) && defined(__x86_64__)
-typedef struct {
-  unsigned a, b, c, d;
-} Registers;
-
-static Registers cpuid(unsigned leaf) {
-  Registers r;
-  __asm__("cpuid" : "=a"(r.a), "=b"(r.b), "=c"(r.c), "=d"(r.d) : "a"(leaf), "c"(0));
-  return r;
-}
-
-/* By cpuid, not __builtin_cpu_supports: that is a symbol of libgcc, which other compilers do not link. Intel, Software
- * Developer's Manual 1, 14.3 and 15.2: the processor has the instructions, the system saves the registers. */
-static int processor_has(int lanes) {
-  enum { OSXSAVE = 1 << 27, FMA = 1 << 12, AVX2 = 1 << 5, AVX512F = 1 << 16, AVX512DQ = 1 << 17, YMM = 6, ZMM = 0xe6 };
-  unsigned saved, high;
-  if (cpuid(0).a < 7 || !(cpuid(1).c & OSXSAVE)) return 0;
-  Registers more = cpuid(7);
-  __asm__ volatile("xgetbv" : "=a"(saved), "=d"(high) : "c"(0));
-  return lanes == 4 ? (saved & YMM) == YMM && cpuid(1).c & FMA && more.b & AVX2
-                    : (saved & ZMM) == ZMM && more.b & AVX512F && more.b & AVX512DQ;
-}
-#else
-static int processor_has(int lanes) { return lanes == 4; }
-#endif
 
 static const LaneKernel *kernel_of(const LaneWidth *w, const lag_method *method) {
   for (int i = 0; w->kernels && w->kernels[i]; i++)
@@ -99,7 +74,7 @@ const char *lag_lanes_choose(const lag_sim *like, const lag_scene *four, const l
   for (int i = 0; i < 2; i++) {
     int lanes = widths[i]->lanes;
     if (!scenes[i] || !widths[i]->kernels || (wanted && wanted != lanes)) continue;
-    if (!processor_has(lanes)) {
+    if (lag_processor_lanes() < lanes) {
       why = "since this processor has no such vectors";
       continue;
     }
@@ -115,6 +90,6 @@ const char *lag_lanes_choose(const lag_sim *like, const lag_scene *four, const l
 int lag_lanes_possible(const lag_sim *like) {
   const LaneWidth *const widths[] = {&lag_lane_width_8, &lag_lane_width_4};
   for (int i = 0; i < 2 && !needs_single_steps(like); i++)
-    if (processor_has(widths[i]->lanes) && kernel_of(widths[i], like->method)) return widths[i]->lanes;
+    if (lag_processor_lanes() >= widths[i]->lanes && kernel_of(widths[i], like->method)) return widths[i]->lanes;
   return 1;
 }

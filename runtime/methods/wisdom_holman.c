@@ -8,9 +8,6 @@
  * sums of Jacobi's coordinates over steps are compensated; the kick at the end of a step is the first of the next.
  * Schemes of kernels/composition.h for small perturbations stand in for symplectic correctors (Wisdom, Holman,
  * Touma 1996): they have the same order in the perturbation, and starts, events and rows need no other state. */
-#if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
-#pragma GCC optimize("O3") /* vectors where loops over blocks need a check of overlap, too: a fifth of the time */
-#endif
 #include "lag.h"
 
 #include <math.h>
@@ -18,8 +15,9 @@
 #include <string.h>
 
 #include "kernels/composition.h"
-#include "kernels/kepler.h"
+#include "methods/kepler_lanes.h"
 #include "methods/steps.h"
+#include "numeric/processor.h"
 
 static const lag_composition *const schemes[] = {&lag_compose_verlet, &lag_compose_sbab2, &lag_compose_sbab3,
                                                  &lag_compose_sbab4, &lag_compose_aba864};
@@ -35,18 +33,15 @@ static const lag_composition *scheme_of(const lag_problem *pb) { return schemes[
 
 typedef struct WisdomHolman {
   lag_fixed_step step;
-  double ready; /* 1: X, KICK are those of the state */
-  double x[];
+  double ready; /* 1: STATE is that of the run */
+  _Alignas(LAG_WORK_ALIGN) double x[];
 } WisdomHolman;
 
-/* Arrays in Jacobi's coordinates of 3 components, x of all places, then y and z, of positions or of positions and
- * velocities: a state, rounding that its sums have lost, the perturbation; the same at the begin of the last step,
- * and of another step. */
-enum { X, LOST = X + 2, KICK = LOST + 2, OF_STATE, BEGIN = OF_STATE, OTHER = BEGIN + OF_STATE,
-       NARRAYS = OTHER + OF_STATE };
-/* By place: the body; mu of its Kepler motion; its part of the mass of the bodies up to it. By body: masses, and
- * k. */
-enum { ORDER, MU, PART, VALUES, PER_BODY = VALUES + 2 };
+/* Arrays of kepler_lanes.h in Jacobi's coordinates: of the state, at the begin of the last step, of another step. */
+enum { STATE, BEGIN, OTHER, NSTATES };
+/* By place: the body; mu of its Kepler motion, and 1 where that is not 0; its part of the mass of the bodies up to
+ * it. By body: masses, and k. */
+enum { ORDER, MU, HELD, PART, VALUES, PER_BODY = VALUES + 2 };
 
 static const char *refuses(const lag_model *m, const double *opt) {
   (void)opt;
@@ -55,20 +50,24 @@ static const char *refuses(const lag_model *m, const double *opt) {
                      "-k/r between them or from the origin; verlet6 and dop853 do without";
 }
 
-/* Places: bodies, and more that stay at rest to fill blocks, which are large for more than one small one. */
+/* Places: bodies, and more that stay at rest to fill vectors. */
 static int places(const lag_problem *pb) {
-  const int n = pb->model->kepler->n, block = n > LAG_KEPLER_BLOCK ? LAG_KEPLER_LARGE : LAG_KEPLER_BLOCK;
+  const int n = pb->model->kepler->n, block = n > KEPLER_FEW ? KEPLER_BLOCK : KEPLER_FEW;
   return (n + block - 1) / block * block;
 }
 
 static size_t work_size(const lag_problem *pb) {
-  return sizeof(WisdomHolman) / sizeof(double) + (3 * NARRAYS + PER_BODY) * (size_t)places(pb) + 2 * (size_t)pb->n;
+  const size_t per_place = 3 * NSTATES * KEPLER_ARRAYS + PER_BODY;
+  return sizeof(WisdomHolman) / sizeof(double) + per_place * (size_t)places(pb) + 2 * (size_t)pb->n;
 }
 
 static int length(const lag_problem *pb) { return 3 * places(pb); }
-static double *array(WisdomHolman *w, const lag_problem *pb, int which) { return w->x + which * length(pb); }
+static size_t state_size(const lag_problem *pb) { return KEPLER_ARRAYS * (size_t)length(pb) * sizeof(double); }
+static double *array(WisdomHolman *w, const lag_problem *pb, int state, int which) {
+  return w->x + (state * KEPLER_ARRAYS + which) * length(pb);
+}
 static double *per_body(WisdomHolman *w, const lag_problem *pb, int which) {
-  return w->x + (3 * NARRAYS + which) * places(pb);
+  return w->x + (3 * NSTATES * KEPLER_ARRAYS + which) * places(pb);
 }
 /* A state as the model has it, and its rates. */
 static double *state_of(WisdomHolman *w, const lag_problem *pb) { return per_body(w, pb, PER_BODY); }
@@ -132,7 +131,8 @@ static int init(void *work, lag_problem *pb, const double *opt) {
 /* Places of bodies by their distance from the heaviest one, which is first; mu of their Kepler motions. */
 static int place_bodies(WisdomHolman *w, lag_problem *pb, const double *y) {
   const lag_kepler *of = pb->model->kepler;
-  double *order = per_body(w, pb, ORDER), *mu = per_body(w, pb, MU), *part = per_body(w, pb, PART), inner = 0;
+  double *order = per_body(w, pb, ORDER), *mu = per_body(w, pb, MU), *held = per_body(w, pb, HELD),
+         *part = per_body(w, pb, PART), inner = 0;
   int first, rc = read_values(w, pb, &first);
   const double *mass = per_body(w, pb, VALUES), *k = mass + of->n;
   if (rc) return rc;
@@ -151,6 +151,7 @@ static int place_bodies(WisdomHolman *w, lag_problem *pb, const double *y) {
     inner += mass[body];
     part[i] = mass[body] / inner;
     mu[i] = of->fixed ? k[body] / mass[body] : i ? k[body] / (mass[first] * mass[body]) * inner : 0;
+    held[i] = mu[i] > 0;
   }
   return LAG_OK;
 }
@@ -184,63 +185,55 @@ static void from_jacobi(WisdomHolman *w, const lag_problem *pb, const double *fr
   }
 }
 
-/* kick := accelerations at Jacobi's coordinates x less those of Kepler. */
-static int perturbation(WisdomHolman *w, lag_problem *pb, double t, const double *x, double *kick) {
-  const double *mu = per_body(w, pb, MU);
+/* Accelerations in Jacobi's coordinates at x. */
+static int accelerations(WisdomHolman *w, lag_problem *pb, double t, double *x) {
   double *state = state_of(w, pb), *rate = state + pb->n;
-  const int m = places(pb);
   from_jacobi(w, pb, x, state);
   const int rc = lag_rhs(pb, t, state, rate); /* the state at the end shows what is not finite */
   if (rc) return lag_step_refused(pb, rc, t);
-  to_jacobi(w, pb, rate + pb->nq, kick);
-  for (int i = !pb->model->kepler->fixed; i < pb->model->kepler->n; i++) {
-    const double r2 = x[i] * x[i] + x[m + i] * x[m + i] + x[2 * m + i] * x[2 * m + i], pull = mu[i] / (r2 * sqrt(r2));
-    for (int k = i; k < 3 * m; k += m) kick[k] += pull * x[k];
-  }
+  to_jacobi(w, pb, rate + pb->nq, x + KEPLER_ACCEL * length(pb));
   return LAG_OK;
 }
 
-/* Kepler's motions of all bodies; the centre of mass moves straight on. */
-static void drift(WisdomHolman *w, const lag_problem *pb, double dt, double *x, double *lost) {
-  const double *mu = per_body(w, pb, MU);
-  const int m = places(pb), v = length(pb);
-  for (int i = 0; i < m; i += LAG_KEPLER_LARGE) {
-    double *const y[4] = {x + i, x + v + i, lost + i, lost + v + i};
-    if (m == LAG_KEPLER_BLOCK) lag_kepler_drift(LAG_KEPLER_BLOCK, mu, dt, m, y);
-    else lag_kepler_drift(LAG_KEPLER_LARGE, mu + i, dt, m, y);
-  }
+static KeplerMove *move_for(int m) {
+  const int most = lag_processor_lanes();
+  if (most >= 8 && m % KEPLER_BLOCK == 0 && lag_kepler_move_8) return lag_kepler_move_8;
+  if (most >= 4 && lag_kepler_move_4) return lag_kepler_move_4;
+  return lag_kepler_move_2 ? lag_kepler_move_2 : lag_kepler_move_1;
 }
 
 /* Whether steps begin with a drift, and need no forces at their ends. */
 static int drifts_first(const lag_composition *c) { return !(c->kick[0] > 0); }
 
-/* A step dt of x, with what its sums have lost, from the perturbation to that at the end. */
+/* A step dt of x, with what its sums have lost, from the accelerations to those at the end. */
 static int compose(WisdomHolman *w, lag_problem *pb, double t, double dt, double *x) {
   const lag_composition *c = scheme_of(pb);
-  const int nq = length(pb), first = drifts_first(c);
-  double *lost = x + LOST * nq, *kick = x + KICK * nq, at = 0;
-  int rc;
-  for (int s = 0;; s++) {
-    const double part = c->kick[s] * dt;
-    for (int i = 0; i < nq && !(first && s % c->stages == 0); i++)
-      x[nq + i] = lag_compensated_sum(x[nq + i], part * kick[i], &lost[nq + i]);
-    if (s == c->stages) return LAG_OK;
-    drift(w, pb, c->drift[s] * dt, x, lost);
+  const double *mu = per_body(w, pb, MU);
+  const int m = places(pb);
+  KeplerMove *const move = move_for(m);
+  double at = 0;
+  for (int s = 0; s < c->stages; s++) {
+    move(m, mu, c->kick[s] * dt, c->drift[s] * dt, x);
     at += c->drift[s];
-    if (first && s + 1 == c->stages) continue;
-    if ((rc = perturbation(w, pb, t + at * dt, x, kick)) != 0) return rc;
+    if (drifts_first(c) && s + 1 == c->stages) return LAG_OK;
+    const int rc = accelerations(w, pb, t + at * dt, x);
+    if (rc) return rc;
   }
+  move(m, mu, c->kick[c->stages] * dt, 0, x);
+  return LAG_OK;
 }
 
 /* Jacobi's coordinates of a state that is not the end of a step. */
 static int enter(WisdomHolman *w, lag_problem *pb, double t, const double *y) {
-  double *x = array(w, pb, X);
-  const int rc = place_bodies(w, pb, y), n = length(pb);
+  double *x = array(w, pb, STATE, KEPLER_X);
+  const double *mu = per_body(w, pb, MU);
+  const int rc = place_bodies(w, pb, y), n = length(pb), m = places(pb);
   if (rc) return rc;
   to_jacobi(w, pb, y, x);
-  to_jacobi(w, pb, y + pb->nq, x + n);
-  memset(array(w, pb, LOST), 0, 2 * (size_t)n * sizeof *x);
-  return drifts_first(scheme_of(pb)) ? LAG_OK : perturbation(w, pb, t, x, array(w, pb, KICK));
+  to_jacobi(w, pb, y + pb->nq, x + KEPLER_V * n);
+  memset(x + KEPLER_LOST_X * n, 0, 2 * (size_t)n * sizeof *x);
+  lag_kepler_distances(m, mu, x);
+  return drifts_first(scheme_of(pb)) ? LAG_OK : accelerations(w, pb, t, x);
 }
 
 /* y := the state x at the end of a step; the last forces had its positions, but where a drift came last. */
@@ -252,13 +245,13 @@ static void leave(WisdomHolman *w, const lag_problem *pb, const double *x, doubl
 
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   WisdomHolman *w = work;
-  double *x = array(w, pb, X);
+  double *x = array(w, pb, STATE, KEPLER_X);
   lag_next_step next;
   int rc;
   (void)t_stop;
   if ((rc = lag_fixed_step_begin(&w->step, pb, *t, &next)) != 0) return rc;
   if (w->ready == 0.0 && (rc = enter(w, pb, *t, y)) != 0) return rc;
-  memcpy(array(w, pb, BEGIN), x, OF_STATE * (size_t)length(pb) * sizeof *x);
+  memcpy(array(w, pb, BEGIN, KEPLER_X), x, state_size(pb));
   w->ready = 0; /* until this step succeeds */
   if ((rc = compose(w, pb, *t, next.dt, x)) != 0) return rc;
   if (lag_not_finite(2 * length(pb), x) >= 0) return lag_step_failed(pb, LAG_ENAN, next.tb);
@@ -271,8 +264,8 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
 /* A shorter step from the same begin. */
 static void dense(void *work, lag_problem *pb, double t, double *y) {
   WisdomHolman *w = work;
-  double *x = array(w, pb, OTHER);
-  memcpy(x, array(w, pb, BEGIN), OF_STATE * (size_t)length(pb) * sizeof *x);
+  double *x = array(w, pb, OTHER, KEPLER_X);
+  memcpy(x, array(w, pb, BEGIN, KEPLER_X), state_size(pb));
   if (compose(w, pb, w->step.t0, t - w->step.t0, x) == LAG_OK) leave(w, pb, x, y);
   else y[0] = NAN;
 }

@@ -342,7 +342,7 @@ void cnest_write(Writer *w, const Ins *i) {
   }
   Nesting x = {.n = n, .body = *w, .i = w->row, .j = w->turn};
   x.body.p = named_by_stems(w, n->body);
-  x.body.uses = prog_uses(n->body);
+  x.body.uses = prog_uses(n->body), x.body.in_call = NULL;
   x.body.stored = ARENA_ARRAY(w->a, const char *, n->body->ins.n);
   cwriter_init_pieces(&x.body);
   x.body.rolls = roll_find(n->body, 0, UINT32_MAX, 0);

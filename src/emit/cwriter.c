@@ -322,7 +322,7 @@ static void write_arrays(Writer *w) {
 
 /* Declares the loads of the arrays that instruction s reads: here and not at the top, where calls in between would
  * have to save them. */
-static void write_arrays_of(Writer *w, Slot s) {
+void cwriter_arrays_of(Writer *w, Slot s) {
   for (int which = 0; which < 3; which++) {
     const Ins *x = &w->p->ins.at[ins_operand(&w->p->ins.at[s], which)];
     if (x->op == IR_LOAD) write_array(w, (int)x->array);
@@ -399,7 +399,7 @@ static int write_sincos_batch(Writer *w, Slot s) {
   uint32_t n = collect_sincos(w, s, at);
   if (n < 2) return 0;
   n = n < SINCOS_BATCH ? 2 : SINCOS_BATCH;
-  for (uint32_t k = 0; k < n; k++) write_arrays_of(w, at[k]);
+  for (uint32_t k = 0; k < n; k++) cwriter_arrays_of(w, at[k]);
   StrBuf names = strbuf(w->a), arguments = strbuf(w->a);
   for (uint32_t k = 0; k < n; k++)
     declare_pair(w, at[k], &w->p->ins.at[at[k]], &w->p->ins.at[w->pair[at[k]]], &names, &arguments);
@@ -415,7 +415,7 @@ void cwriter_instruction(Writer *w, Slot s) {
     w->title = i->text;
     return;
   }
-  write_arrays_of(w, s);
+  cwriter_arrays_of(w, s);
   if (i->op == IR_PIVOT) {
     cwriter_pivot(w, i);
     return;
@@ -433,7 +433,8 @@ void cwriter_instruction(Writer *w, Slot s) {
     cnest_write(w, i);
     return;
   }
-  if (ir_is_leaf(i->op) || write_sincos_batch(w, s) || cwriter_declare_sincos(w, s, i, &w->p->ins.at[w->pair[s]]))
+  if (ir_is_leaf(i->op) || ccubes_write(w, s) || write_sincos_batch(w, s) ||
+      cwriter_declare_sincos(w, s, i, &w->p->ins.at[w->pair[s]]))
     return;
   CExpr x = cwriter_spell(w, i);
   int told = !i->name || (w->stored[s] && strcmp(i->name, w->stored[s]) == 0); /* the store's comment says the name */
@@ -533,7 +534,7 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   /* programs with nests are long */
   uint32_t from = p->nests.n ? 0 : style->prefer_short_code ? ROLL_SELDOM_FROM : ROLL_FROM;
   w.rolls = roll_find(p, arrays_by_index(style), from, stores_apart(p, style));
-  w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
+  w.stored = ARENA_ARRAY(a, const char *, p->ins.n), w.in_call = ARENA_ARRAY(a, unsigned char, p->ins.n);
   cwriter_init_pieces(&w);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
   for (const char *const *g = style->globals; g && *g; g++) cnames_reserve(&w.names, *g);

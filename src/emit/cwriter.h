@@ -40,6 +40,9 @@ void cwrite_rows(const IrTable *table, const char *name, const char *prefix, con
 /* "36 operations: 12 additions, 18 multiplications, 2 divisions, 4 calls of sin, cos, ..." */
 const char *op_count_text(const Prog *p, Arena *a);
 
+/* Whether the program computes reciprocals of distances cubed by a call for several. */
+int ccubes_some(const Prog *p);
+
 /* Whether the program, or a body of its nests, reads the array. */
 int prog_reads(const Prog *p, IrArray array);
 

@@ -1,5 +1,5 @@
 /* Internals of the writer of function bodies: cwriter.c writes statements, csolve.c linear systems, cloop.c loops,
- * cnest.c nests of loops. */
+ * cnest.c nests of loops, ccubes.c reciprocal cubes. */
 #pragma once
 
 #include "emit/cwriter.h"
@@ -24,6 +24,7 @@ typedef struct {
   CExpr *piece; /* by slot: C text of its value */
   /* by slot of a sine: the cosine of the same angle, and vice versa, where one call computes both; or 0 */
   Slot *pair;
+  unsigned char *in_call; /* by slot: 1 if a call of several (ccubes.c) has computed it */
   StrBuf *out;
   uint32_t temps;
   const char *title; /* pending: printed before the next statement */
@@ -78,6 +79,12 @@ void cwriter_declare(Writer *w, Slot s, CExpr name, CExpr x);
 /* Declares a sine and its cosine by one sincos call, named after their instructions, unless done already. Returns 0
  * if slot s has no pair. */
 int cwriter_declare_sincos(Writer *w, Slot s, const Ins *first, const Ins *second);
+
+/* Declares the loads of the arrays that instruction s reads. */
+void cwriter_arrays_of(Writer *w, Slot s);
+
+/* Computes reciprocal cubes from slot s on by one call, if there are enough. Returns 1 if s is computed by a call. */
+int ccubes_write(Writer *w, Slot s);
 
 /* Whether sin and cos of one operand can share a call: both outside of loops, or in the same turn of one loop in all
  * turns. */

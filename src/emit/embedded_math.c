@@ -55,11 +55,11 @@ static int listed_sums(const MathText *m) {
   return strcmp(m->prefix, "LAG") == 0 ? some : 0;
 }
 
-/* Whether a model has loops whose turns may be computed side by side. */
+/* Whether a model has loops whose turns, or values that, may be computed side by side. */
 static int has_turns(const MathText *m) {
   ProgList all = program_set_programs(m->u);
   int some = 0;
-  for (uint32_t i = 0; i < all.n; i++) some |= all.at[i]->nests.n > 0;
+  for (uint32_t i = 0; i < all.n; i++) some |= all.at[i]->nests.n > 0 || ccubes_some(all.at[i]);
   return some && strcmp(m->prefix, "LAG") == 0;
 }
 

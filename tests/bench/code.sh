@@ -191,7 +191,7 @@ long_model() { # WHAT LIMIT SCENE MODEL PEER.c "PEERS" options...: at most LIMIT
   done
 }
 long_model 'string of 10,000 masses' 1.3 string_hard models/string.lag $here/hand/string.c 'loop twice' hard -DN=10000
-for n in 24 256; do
+for n in 6 24 256; do
   long_model "$n gravitating bodies" 0.8 bodies_drift $here/models/bodies.lag $here/hand/bodies.c 'pairs ordered' -DN=$n
 done
 

@@ -31,7 +31,7 @@ runtime/core      core/ kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/constraints constraints/ core/core.h core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_kkt.h
 runtime/contacts  contacts/ core/core.h core/rhs.h kernels/ numeric/ lag.h lag_model.h
 runtime/methods   methods/ core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_math.h lag_support.h
-runtime/lanes     lanes/ kernels/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
+runtime/lanes     lanes/ kernels/ numeric/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
 runtime/analysis  analysis/ core/ kernels/ numeric/ lag.h lag_model.h
 runtime/evaluator evaluator/ numeric/ lag.h lag_model.h lag_math.h lag_support.h lag_tree.h lag_kkt.h
 runtime/io        io/ numeric/ lag.h lag_model.h

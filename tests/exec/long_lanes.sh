@@ -89,6 +89,7 @@ for c in "$CC" $clang; do
   check "an embedded header, 8 lanes, $(basename "$c")" embedded "$c" 8 $eight
 done
 check "4 lanes without AVX" embedded "$CC" 4
+check "2 lanes" embedded "$CC" 2 $four
 check "8 lanes with the C library's functions" embedded "$CC" 8 -DSWING_LIBM -DONE_LIBM
 if [ -n "${CXX:-}" ]; then
   printf '#define SWING_LANES 4\n#define SWING_IMPLEMENTATION\n#include "swing.h"\n' >"$TMP/swing.cpp"

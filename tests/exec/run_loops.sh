@@ -229,7 +229,7 @@ agrees() {
     tests/exec/emit_agree.c "$TMP"/c/*.c "$TMP/scenes.c" "$BUILD/liblagc.a" -lm -o "$TMP/agree" && "$TMP/agree" $models
 }
 check "loops compute what the program says, to the last bit" agrees
-# Turns side by side, by two and by four, against one after the other: pairs that stay a sum, and pairs written out.
+# Side by side, by two and by four, against one after the other: pairs that stay a sum, turns, and roots written out.
 avx=
 ! grep -q ' avx ' /proc/cpuinfo 2>/dev/null || avx=-mavx
 turns() { # N
@@ -238,7 +238,7 @@ turns() { # N
     cmp "$TMP/turns-DLAG_REAL=double.csv" "$TMP/turns$flag.csv" || return 1
   done
 }
-for n in 20 70; do check "$n bodies: turns side by side have the bits of turns one by one" turns $n; done
+for n in 6 20 70; do check "$n bodies: turns side by side have the bits of turns one by one" turns $n; done
 
 # ---- chains of point masses: the tridiagonal system of the rods' tensions, by hand (tests/bench/hand/chain.c)
 # Masses and lengths of 0.01 to 30: condition numbers of some 1e6 (bench/driver.c: within 1e-8 of the largest acceleration). 5 and 6: an odd and an even
