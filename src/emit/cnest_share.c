@@ -2,7 +2,8 @@
  * that each sum gets its terms in the order of one thread (row_share.c). Without OpenMP the text is serial. */
 #include "emit/cnest_impl.h"
 
-static const char *const openmp = "#ifdef LAG_OPENMP\n", *const end_openmp = "#endif\n";
+static void begin_openmp(Writer *w) { sb_printf(w->out, "#ifdef %s_OPENMP\n", w->style->prefix); }
+static void end_openmp(Writer *w) { sb_puts(w->out, "#endif\n"); }
 
 const char *cnest_near_pointer(const Nesting *x) {
   return x->share == SHARE_LISTS ? x->near : arena_printf(x->body.a, "&%s", x->near);
@@ -59,7 +60,7 @@ static void open_tiles(Nesting *x) {
   const int64_t first = nest_to(n, 0), last = nest_to(n, (int64_t)n->rows - 1), turns = first > last ? first : last;
   const char *real = w->style->prefix, *tiles = cnames_take(&w->names, "tiles"), *done = cnames_take(&w->names, "done");
   x->tile = cnames_take(&w->names, "tile");
-  sb_puts(w->out, openmp);
+  begin_openmp(w);
   declare_kept(x);
   cwriter_line(w, arena_printf(w->a, "int %s[%s_SIDES(%u)] = {0};", done, real, n->rows));
   cwriter_line(w, arena_printf(w->a, "%s_TILES %s = {%s_SIDES(%u), %s_SIDES(%lld), 0, %s};", real, tiles, real, n->rows,
@@ -67,7 +68,7 @@ static void open_tiles(Nesting *x) {
   sb_printf(w->out, "#pragma omp parallel %s_TEAM\n", real);
   cwriter_line(w, arena_printf(w->a, "for (%s_TILE %s = {-1, 0, 0}; %s_NEXT_TILE(&%s, &%s);)", real, x->tile, real,
                                tiles, x->tile));
-  sb_puts(w->out, end_openmp);
+  end_openmp(w);
 }
 
 /* Shares of a list, each by one thread; the loop over their rows follows. */
@@ -75,12 +76,12 @@ static void open_shares(Nesting *x) {
   Writer *w = &x->body;
   const char *real = w->style->prefix;
   x->tile = cnames_take(&w->names, "share"), x->shares = cnames_take(&w->names, "shares");
-  sb_puts(w->out, openmp);
+  begin_openmp(w);
   declare_kept(x);
   cwriter_line(w, arena_printf(w->a, "const int %s = %s_SHARES;", x->shares, real));
   sb_printf(w->out, "#pragma omp parallel for schedule(static, 1) num_threads(%s)\n", x->shares);
   cwriter_line(w, arena_printf(w->a, "for (int %s = 0; %s < %s; %s++)", x->tile, x->tile, x->shares, x->tile));
-  sb_puts(w->out, end_openmp);
+  end_openmp(w);
 }
 
 /* Where the row is that of a member of a later share: there is nothing left to add to its own sums. */
@@ -100,24 +101,24 @@ static void find_turns(Nesting *x) {
                                  x->from, x->tile, end, real, x->end, x->tile));
     x->from = from, x->end = end;
   }
-  sb_puts(w->out, openmp);
+  begin_openmp(w);
   cwriter_line(w, x->share == SHARE_TILES ? arena_printf(w->a, "if (%s >= %s) continue;", x->from, x->end)
                                           : is_later(x, "break"));
-  sb_puts(w->out, end_openmp);
+  end_openmp(w);
 }
 
 /* Sums of the row that go on elsewhere. */
 static void keep_sums(Nesting *x) {
   Writer *w = &x->body;
   if (x->share == SHARE_NONE) return;
-  sb_puts(w->out, openmp);
+  begin_openmp(w);
   if (x->share == SHARE_LISTS && turns_meet(x, -1)) cwriter_line(w, is_later(x, "continue"));
   for (uint32_t k = 0; k < w->p->stores.n; k++)
     if (is_kept(x, k)) cwriter_line(w, arena_printf(w->a, "%s = %s;", kept_place(x, k), x->partial[k]));
   if (x->share == SHARE_TILES)
     cwriter_line(w, arena_printf(w->a, "if (%s < %s) continue;", x->end, cnest_turn_of_row(x, 1)));
   if (x->share == SHARE_LISTS && x->kept) sb_puts(w->out, "#else\n");
-  else sb_puts(w->out, end_openmp);
+  else end_openmp(w);
 }
 
 /* Adds the sums of the row; kept: those that wait for the end, of all rows. */
@@ -134,7 +135,7 @@ void cnest_end_row(Nesting *x) {
   keep_sums(x);
   if (x->share == SHARE_LISTS && x->kept) {
     add_partial(x, 1);
-    sb_puts(w->out, end_openmp);
+    end_openmp(w);
   }
   add_partial(x, 0);
 }
@@ -143,13 +144,13 @@ void cnest_end_row(Nesting *x) {
 void cnest_end_rows(Nesting *x) {
   Writer *w = &x->body;
   if (x->share != SHARE_LISTS || !x->kept) return;
-  sb_puts(w->out, openmp);
+  begin_openmp(w);
   cnest_open_loop(w, x->i, "0", arena_printf(w->a, "%u", x->n->rows));
   for (uint32_t k = 0; k < w->p->stores.n; k++)
     if (is_kept(x, k)) x->partial[k] = kept_place(x, k);
   add_partial(x, 1);
   cnest_close_loop(w);
-  sb_puts(w->out, end_openmp);
+  end_openmp(w);
 }
 
 const char *cnest_declare_ours(Nesting *x) {
@@ -188,12 +189,12 @@ void cnest_find_list(Nesting *x) {
   Writer *w = &x->body;
   const char *list = x->near;
   if (x->share == SHARE_LISTS) {
-    sb_puts(w->out, openmp);
+    begin_openmp(w);
     cwriter_line(w, arena_printf(w->a, "const int %s_n = lag_near_shared(%s, %s, %s, %s, &%s_j);", list, list,
                                  cnest_turn_of_row(x, 1), x->tile, x->shares, list));
     sb_puts(w->out, "#else\n");
   }
   cwriter_line(w, arena_printf(w->a, "const int %s_n = lag_near_of(%s, %s, &%s_j);", list, cnest_near_pointer(x),
                                cnest_turn_of_row(x, 1), list));
-  if (x->share == SHARE_LISTS) sb_puts(w->out, end_openmp);
+  if (x->share == SHARE_LISTS) end_openmp(w);
 }
