@@ -192,8 +192,8 @@ static void write_usage(const Header *h) {
                 : h->u->z.n ? arena_printf(h->a, "s.z[%s]", h->z[0])
                             : "s.t"},
       {"THREADS", !unit_shares(h->u, 0) ? "" :
-       arena_printf(h->a, "\n *   %s_THREADS how many threads share long sums, compiled with OpenMP (-fopenmp), with the "
-                    "same digits; by default as\n *             OMP_NUM_THREADS says", h->upper)},
+       arena_printf(h->a, "\n *   %s_THREADS how many threads share long sums, compiled with OpenMP (-fopenmp), with "
+                    "the same digits; by default\n *             as OMP_NUM_THREADS says", h->upper)},
       {NULL, NULL}};
   sb_puts(h->out, " *\n * In every file that uses it, and in one of them (C or C++) after #define as here:\n");
   sb_printf(h->out, " *   #define %s_IMPLEMENTATION\n *   #include \"%s.h\"\n *\n", h->upper, h->file);

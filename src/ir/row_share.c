@@ -75,7 +75,7 @@ RowShare nest_row_share(const Nest *n, int listed) {
   const int64_t last = (int64_t)n->rows - 1;
   if (listed && n->far.n) return n->far.members < MEMBERS ? SHARE_NONE : SHARE_TREE;
   const int lists = listed && n->near.n;
-  if (n->rows < 2 || !nest_has_turns(n) || (lists ? n->rows < MEMBERS : n->count < TURNS))
+  if (n->rows < 2 || !nest_has_turns(n) || (lists ? n->rows + 1 < MEMBERS : n->count < TURNS))
     return SHARE_NONE;
   if (n->skew < 0 || n->skew + n->more < 0 || nest_to(n, last) > INT32_MAX) return SHARE_NONE;
   if (lists && (n->skew || n->more != 1)) return SHARE_NONE;

@@ -56,6 +56,9 @@ rows() { # MODEL OPTIONS: the digits, in hexadecimal where two texts may print a
 for model in below above square box open tree; do
   rows $model >"$TMP/one"
   check "$model runs" test -s "$TMP/one"
+  "$LAGC" emit "$TMP/$model.lag" >"$TMP/text" 2>/dev/null
+  case $model in box | open) shared=lag_near_shared ;; tree) shared=lag_tree_sum ;; *) shared=LAG_NEXT_TILE ;; esac
+  check "$model is shared" grep -q "$shared" "$TMP/text"
   for n in 2 1 3 4; do
     [ $n = 2 ] || one_of 6 || continue
     rows $model --threads $n >"$TMP/some"
