@@ -155,6 +155,25 @@ LAG_INLINE LAG_REAL lag_mad(LAG_REAL a, LAG_REAL b, LAG_REAL c);
 LAG_DECLARE_1(sin) LAG_DECLARE_1(cos) LAG_DECLARE_1(exp) LAG_DECLARE_1(log)
 #endif
 
+/* ---- shares: front ---- */
+/* Shares of sums over lists and trees, each with memory of its own. */
+#if defined(_OPENMP) && _OPENMP >= 201107
+#include <omp.h>
+#if defined(__unix__) || defined(__APPLE__)
+#include <sched.h>
+#define LAG_YIELD() (void)sched_yield()
+#endif
+#ifdef LAG_THREADS
+#define LAG_SHARES LAG_THREADS
+#define LAG_MOST_SHARES LAG_THREADS
+#else
+#define LAG_MOST_SHARES 16
+#define LAG_SHARES (omp_get_max_threads() < LAG_MOST_SHARES ? omp_get_max_threads() : LAG_MOST_SHARES)
+#endif
+#else
+#define LAG_MOST_SHARES 1
+#endif
+
 /* ---- share: front ---- */
 /* Nests of loops that threads share, compiled with OpenMP (-fopenmp), in tiles of rows and turns. A tile follows the
  * one above it and the one before it, so that every sum gets its terms in the order of one thread, and the bits do not
@@ -170,11 +189,8 @@ LAG_DECLARE_1(sin) LAG_DECLARE_1(cos) LAG_DECLARE_1(exp) LAG_DECLARE_1(log)
 #else
 #define LAG_TEAM
 #endif
-#if defined(__unix__) || defined(__APPLE__)
-#include <sched.h>
-#define LAG_YIELD() (void)sched_yield()
-#else
-#define LAG_YIELD() (void)0
+#ifndef LAG_YIELD
+#define LAG_YIELD() (void)0 /* a thread that waits lets others run: sched_yield() of POSIX */
 #endif
 /* First of n members of share k, and first row, row 0 being that of member `before`. */
 #define LAG_SHARE_OF(n, k, shares) ((int)((long long)(n)*(k)/(shares)))
@@ -240,21 +256,6 @@ LAG_UNUSED static int lag_next_tile(lag_tiles *all, lag_tile *t) {
 #define LAG_FROM(x, k) (x)
 #define LAG_TO(x, k) (x)
 #define LAG_KEPT(x) LAG_C(0.0)
-#endif
-
-/* ---- shares: front ---- */
-/* Shares of sums over lists and trees, each with memory of its own. */
-#ifdef LAG_OPENMP
-#include <omp.h>
-#ifdef LAG_THREADS
-#define LAG_SHARES LAG_THREADS
-#define LAG_MOST_SHARES LAG_THREADS
-#else
-#define LAG_MOST_SHARES 16
-#define LAG_SHARES (omp_get_max_threads() < LAG_MOST_SHARES ? omp_get_max_threads() : LAG_MOST_SHARES)
-#endif
-#else
-#define LAG_MOST_SHARES 1
 #endif
 
 /* ---- turns: front ---- */

@@ -82,7 +82,7 @@ static void sections(const MathText *m, int front, StrBuf *out) {
   const struct {
     const char *name;
     int needed;
-  } rows[] = {{"share", front && (has_turns(m) || unit_shares(u, 0))}, {"shares", front && listed_sums(m)},
+  } rows[] = {{"shares", front && has_turns(m)}, {"share", front && (has_turns(m) || unit_shares(u, 0))},
               {"turns", front && has_turns(m)}, {"lanes", !front}, {"own", own}, {"libm", 1},
               {"sincos", own && calls_sincos(u)},
               {"exp", own && unit_calls(u, "exp")}, {"log", own && unit_calls(u, "log")}, {"solver", m->solver},
