@@ -155,6 +155,68 @@ LAG_INLINE LAG_REAL lag_mad(LAG_REAL a, LAG_REAL b, LAG_REAL c);
 LAG_DECLARE_1(sin) LAG_DECLARE_1(cos) LAG_DECLARE_1(exp) LAG_DECLARE_1(log)
 #endif
 
+/* ---- turns: front ---- */
+/* LAG_TURNS turns of a loop side by side, where the compiler has vectors of doubles: elements that lie `step` apart,
+ * sums in the order of turns. Whatever their number, the bits are those of one turn after the other. */
+#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE) && \
+    (defined(__x86_64__) || defined(__aarch64__) || defined(__wasm_simd128__))
+#ifdef __AVX__
+#define LAG_TURNS 4
+#define LAG_TURNS_EACH(f) f(0) f(1) f(2) f(3)
+#define LAG_TURNS_APART(x, step) {(x)[0], (x)[step], (x)[2*(step)], (x)[3*(step)]}
+#else
+#define LAG_TURNS 2
+#define LAG_TURNS_EACH(f) f(0) f(1)
+#define LAG_TURNS_APART(x, step) {(x)[0], (x)[step]}
+#endif
+#define LAG_REST(from, end) ((end) - ((end) - (from)) % LAG_TURNS) /* first turn that they leave */
+#define LAG_TURNS_INLINE static __inline__ __attribute__((always_inline, unused))
+typedef double lag_turns __attribute__((vector_size(8 * LAG_TURNS)));
+typedef double lag_turns_near __attribute__((vector_size(8 * LAG_TURNS), aligned(8), may_alias));
+
+LAG_TURNS_INLINE lag_turns lag_turns_at(const double *x, int step) {
+  const lag_turns apart = LAG_TURNS_APART(x, step);
+  if (step == 1) return *(const lag_turns_near *)x;
+  return apart;
+}
+
+LAG_TURNS_INLINE lag_turns lag_turns_sqrt(lag_turns x) {
+#ifdef __AVX__
+  return __builtin_ia32_sqrtpd256(x);
+#elif defined(__x86_64__)
+  return __builtin_ia32_sqrtpd(x);
+#else
+  const lag_turns root = {sqrt(x[0]), sqrt(x[1])};
+  return root;
+#endif
+}
+
+/* lag_turns_plus(sum, x): the sum and its terms; lag_turns_each_plus(sum, step, x): sums that lie `step` apart, each
+ * and its term. The same with less. */
+#define LAG_TURNS_ADD(k) sum += x[k];
+#define LAG_TURNS_SUBTRACT(k) sum -= x[k];
+#define LAG_TURNS_ADD_EACH(k) sum[(k)*step] += x[k];
+#define LAG_TURNS_SUBTRACT_EACH(k) sum[(k)*step] -= x[k];
+LAG_TURNS_INLINE double lag_turns_plus(double sum, lag_turns x) {
+  LAG_TURNS_EACH(LAG_TURNS_ADD)
+  return sum;
+}
+LAG_TURNS_INLINE double lag_turns_less(double sum, lag_turns x) {
+  LAG_TURNS_EACH(LAG_TURNS_SUBTRACT)
+  return sum;
+}
+LAG_TURNS_INLINE void lag_turns_each_plus(double *sum, int step, lag_turns x) {
+  if (step == 1) *(lag_turns_near *)sum += x;
+  else { LAG_TURNS_EACH(LAG_TURNS_ADD_EACH) }
+}
+LAG_TURNS_INLINE void lag_turns_each_less(double *sum, int step, lag_turns x) {
+  if (step == 1) *(lag_turns_near *)sum -= x;
+  else { LAG_TURNS_EACH(LAG_TURNS_SUBTRACT_EACH) }
+}
+#else
+#define LAG_REST(from, end) (from)
+#endif
+
 /* ---- shares: front ---- */
 /* Shares of sums over lists and trees, each with memory of its own. */
 #if defined(_OPENMP) && _OPENMP >= 201107
@@ -256,68 +318,6 @@ LAG_UNUSED static int lag_next_tile(lag_tiles *all, lag_tile *t) {
 #define LAG_FROM(x, k) (x)
 #define LAG_TO(x, k) (x)
 #define LAG_KEPT(x) LAG_C(0.0)
-#endif
-
-/* ---- turns: front ---- */
-/* LAG_TURNS turns of a loop side by side, where the compiler has vectors of doubles: elements that lie `step` apart,
- * sums in the order of turns. Whatever their number, the bits are those of one turn after the other. */
-#if defined(__GNUC__) && defined(LAG_REAL_IS_DOUBLE) && \
-    (defined(__x86_64__) || defined(__aarch64__) || defined(__wasm_simd128__))
-#ifdef __AVX__
-#define LAG_TURNS 4
-#define LAG_TURNS_EACH(f) f(0) f(1) f(2) f(3)
-#define LAG_TURNS_APART(x, step) {(x)[0], (x)[step], (x)[2*(step)], (x)[3*(step)]}
-#else
-#define LAG_TURNS 2
-#define LAG_TURNS_EACH(f) f(0) f(1)
-#define LAG_TURNS_APART(x, step) {(x)[0], (x)[step]}
-#endif
-#define LAG_REST(from, end) ((end) - ((end) - (from)) % LAG_TURNS) /* first turn that they leave */
-#define LAG_TURNS_INLINE static __inline__ __attribute__((always_inline, unused))
-typedef double lag_turns __attribute__((vector_size(8 * LAG_TURNS)));
-typedef double lag_turns_near __attribute__((vector_size(8 * LAG_TURNS), aligned(8), may_alias));
-
-LAG_TURNS_INLINE lag_turns lag_turns_at(const double *x, int step) {
-  const lag_turns apart = LAG_TURNS_APART(x, step);
-  if (step == 1) return *(const lag_turns_near *)x;
-  return apart;
-}
-
-LAG_TURNS_INLINE lag_turns lag_turns_sqrt(lag_turns x) {
-#ifdef __AVX__
-  return __builtin_ia32_sqrtpd256(x);
-#elif defined(__x86_64__)
-  return __builtin_ia32_sqrtpd(x);
-#else
-  const lag_turns root = {sqrt(x[0]), sqrt(x[1])};
-  return root;
-#endif
-}
-
-/* lag_turns_plus(sum, x): the sum and its terms; lag_turns_each_plus(sum, step, x): sums that lie `step` apart, each
- * and its term. The same with less. */
-#define LAG_TURNS_ADD(k) sum += x[k];
-#define LAG_TURNS_SUBTRACT(k) sum -= x[k];
-#define LAG_TURNS_ADD_EACH(k) sum[(k)*step] += x[k];
-#define LAG_TURNS_SUBTRACT_EACH(k) sum[(k)*step] -= x[k];
-LAG_TURNS_INLINE double lag_turns_plus(double sum, lag_turns x) {
-  LAG_TURNS_EACH(LAG_TURNS_ADD)
-  return sum;
-}
-LAG_TURNS_INLINE double lag_turns_less(double sum, lag_turns x) {
-  LAG_TURNS_EACH(LAG_TURNS_SUBTRACT)
-  return sum;
-}
-LAG_TURNS_INLINE void lag_turns_each_plus(double *sum, int step, lag_turns x) {
-  if (step == 1) *(lag_turns_near *)sum += x;
-  else { LAG_TURNS_EACH(LAG_TURNS_ADD_EACH) }
-}
-LAG_TURNS_INLINE void lag_turns_each_less(double *sum, int step, lag_turns x) {
-  if (step == 1) *(lag_turns_near *)sum -= x;
-  else { LAG_TURNS_EACH(LAG_TURNS_SUBTRACT_EACH) }
-}
-#else
-#define LAG_REST(from, end) (from)
 #endif
 
 /* ---- lanes ---- */

@@ -332,8 +332,8 @@ static int find_threads(Compiler *c, const Units *units, long *threads) {
     return usage_error(arena_printf(c->arena, "--threads %s: write a number from 1 to %d: --threads 2", text, MOST));
   for (uint32_t i = 0; i < units->n && *threads > 1; i++) shares |= unit_shares(units->at[i], 1);
   if (*threads > 1 && !shares && !options_pass_flag(&c->o, "--quiet")) {
-    const char *says = "--threads: nothing to share; threads share sums over pairs of 246 bodies and more, and sums "
-                       "over neighbours and trees of 2000";
+    const char *says = "--threads: nothing to share; threads share sums over pairs, each taken once, of 246 bodies "
+                       "and more, and sums over neighbours and trees of 2000";
     if (c->o.command == CMD_BUILD) fprintf(stderr, "lagc build: %s\n", says);
     else if (!c->picture.note) c->picture.note = says;
   }
