@@ -229,6 +229,109 @@ static LAG_UNUSED void lag_inverse_cubes(int n, const LAG_REAL *x, LAG_REAL *to)
   for (; k < n; k++) to[k] = LAG_C(1.0)/(x[k]*LAG_FN(sqrt)(x[k]));
 }
 
+/* ---- shares: front ---- */
+/* Shares of sums over lists and trees, each with memory of its own. */
+#if defined(_OPENMP) && _OPENMP >= 201107
+#include <omp.h>
+#if defined(__unix__) || defined(__APPLE__)
+#include <sched.h>
+#define LAG_YIELD() (void)sched_yield()
+#endif
+#ifdef LAG_THREADS
+#define LAG_SHARES LAG_THREADS
+#define LAG_MOST_SHARES LAG_THREADS
+#else
+#define LAG_MOST_SHARES 16
+#define LAG_SHARES (omp_get_max_threads() < LAG_MOST_SHARES ? omp_get_max_threads() : LAG_MOST_SHARES)
+#endif
+#else
+#define LAG_MOST_SHARES 1
+#endif
+
+/* ---- share: front ---- */
+/* Nests of loops that threads share, compiled with OpenMP (-fopenmp), in tiles of rows and turns. A tile follows the
+ * one above it and the one before it, so that every sum gets its terms in the order of one thread, and the bits do not
+ * depend on the number of threads. LAG_THREADS: their number; by default as OpenMP says (OMP_NUM_THREADS). */
+#if defined(_OPENMP) && _OPENMP >= 201107
+#define LAG_OPENMP 1
+#elif defined(LAG_THREADS)
+#error "LAG_THREADS needs OpenMP 3.1: -fopenmp"
+#endif
+#ifdef LAG_OPENMP
+#ifdef LAG_THREADS
+#define LAG_TEAM num_threads(LAG_THREADS)
+#else
+#define LAG_TEAM
+#endif
+#ifndef LAG_YIELD
+#define LAG_YIELD() (void)0 /* a thread that waits lets others run: sched_yield() of POSIX */
+#endif
+/* First of n members of share k, and first row, row 0 being that of member `before`. */
+#define LAG_SHARE_OF(n, k, shares) ((int)((long long)(n)*(k)/(shares)))
+#define LAG_SHARE_FROM(n, k, shares, before) \
+  (LAG_SHARE_OF(n, k, shares) > (before) ? LAG_SHARE_OF(n, k, shares) - (before) : 0)
+#define LAG_SHARE_HAS(n, k, shares, j) ((j) >= LAG_SHARE_OF(n, k, shares))
+#define LAG_SIDE 64 /* rows and turns of a tile */
+#define LAG_SIDES(n) (((n) + LAG_SIDE - 1)/LAG_SIDE)
+#define LAG_FROM(x, k) ((x) > LAG_SIDE*(k) ? (x) : LAG_SIDE*(k))
+#define LAG_TO(x, k) ((x) < LAG_SIDE*((k) + 1) ? (x) : LAG_SIDE*((k) + 1))
+#define LAG_KEPT(x) (x)
+#define LAG_TILES lag_tiles
+#define LAG_TILE lag_tile
+#define LAG_NEXT_TILE lag_next_tile
+
+/* Of all threads: tiles of a column and of a row, how many are taken, and those of each row that are done. */
+typedef struct {
+  int rows, turns, taken, *done;
+} lag_tiles;
+
+/* Of one thread: its tile, which has this number in the order of waves, row + turn. */
+typedef struct {
+  int number, row, turn;
+} lag_tile;
+
+LAG_UNUSED static int lag_tiles_read(const int *x) {
+  int value;
+#pragma omp atomic read
+  value = *x;
+  return value;
+}
+
+LAG_UNUSED static void lag_tiles_wait(const int *done, int least) {
+  for (int tries = 1; lag_tiles_read(done) < least; tries++)
+    if (tries % 256 == 0) LAG_YIELD();
+}
+
+/* Says that the tile is done, and takes the next as soon as those that it follows are done; 0: none is left. */
+LAG_UNUSED static int lag_next_tile(lag_tiles *all, lag_tile *t) {
+  int number;
+  if (t->number >= 0) {
+#pragma omp flush
+#pragma omp atomic write
+    all->done[t->row] = t->turn + 1;
+  }
+#pragma omp atomic capture
+  number = all->taken++;
+  if (number >= all->rows*all->turns) return 0;
+  while (t->number < number) { /* down to the left, and on from the first row or the last turn of the next wave */
+    const int wave = t->row + t->turn + 1;
+    t->number++;
+    if (t->row + 1 < all->rows && t->turn > 0 && t->number) t->row++, t->turn--;
+    else if (t->number) t->row = wave < all->turns ? 0 : wave - all->turns + 1, t->turn = wave - t->row;
+  }
+  if (t->row) lag_tiles_wait(&all->done[t->row - 1], t->turn + 1);
+  lag_tiles_wait(&all->done[t->row], t->turn);
+#pragma omp flush
+  return 1;
+}
+#else
+#define LAG_SHARE_FROM(n, k, shares, before) 0
+#define LAG_SHARE_HAS(n, k, shares, j) 1
+#define LAG_FROM(x, k) (x)
+#define LAG_TO(x, k) (x)
+#define LAG_KEPT(x) LAG_C(0.0)
+#endif
+
 /* ---- lanes ---- */
 #ifdef LAG_LANES
 LAG_INLINE LAG_REAL lag_lanes_all(double x) {

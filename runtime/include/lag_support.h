@@ -118,7 +118,7 @@ LAG_UNUSED static LAG_REAL lag_curve(LAG_REAL t, int n, const LAG_LANE (*row)[4]
  * doi:10.1103/PhysRev.159.98; cells: B. Quentrec, C. Brot, J. Comput. Phys. 13 (1973) 430,
  * doi:10.1016/0021-9991(73)90046-6). */
 #define LAG_NEAR_WIDTH 128 /* most candidates that are kept for a member */
-#define LAG_NEAR_INTS(n) ((n)*(LAG_NEAR_WIDTH + 5) + 2)
+#define LAG_NEAR_INTS(n) ((n)*(LAG_NEAR_WIDTH + 4 + LAG_MOST_SHARES) + 2)
 #define LAG_NEAR_NUMBERS(n) (6*(n))
 
 /* floor, bit by bit, without a call where the processor's instructions lack it. */
@@ -313,9 +313,24 @@ LAG_UNUSED static int lag_near_of(lag_near *w, int k, const int **list) {
 /* A list for n members in memory of its own: numbers[LAG_NEAR_NUMBERS(n)], ints[LAG_NEAR_INTS(n)]. */
 LAG_UNUSED static void lag_near_open(lag_near *w, int n, int parts, int step, double *numbers, int *ints) {
   w->n = n, w->parts = parts, w->step = step, w->x = numbers, w->place = numbers + 3*n;
-  w->count = ints, w->order = ints + n, w->row = ints + 2*n, w->at = ints + 3*n, w->cell = ints + 4*n;
-  w->list = ints + 5*n + 2;
+  w->count = ints, w->order = ints + n, w->at = ints + 2*n, w->cell = ints + 3*n, w->list = ints + 4*n + 2;
+  w->row = w->list + (long)LAG_NEAR_WIDTH*n;
 }
+
+#ifdef LAG_OPENMP
+/* Of the list of member k what a share adds up: of its own member all, of a later one those among its own. */
+LAG_UNUSED static int lag_near_shared(const lag_near *w, int k, int share, int shares, const int **list) {
+  const int from = LAG_SHARE_OF(w->n, share, shares), to = LAG_SHARE_OF(w->n, share + 1, shares);
+  lag_near own = *w;
+  if (share) own.row += (long)w->n*share;
+  int n = lag_near_of(&own, k, list);
+  if (k < to) return n;
+  if (n && (*list)[0] >= to) return 0;
+  while (n && (*list)[n - 1] >= to) n--;
+  while (n && (*list)[0] < from) ++*list, n--;
+  return n;
+}
+#endif
 
 /* ---- end ---- */
 #endif

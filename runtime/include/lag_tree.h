@@ -14,7 +14,8 @@
 #define LAG_TREE_GROUP 16
 #define LAG_TREE_NODES(n) ((n)/2 + 64) /* where there are no more, cells keep many bodies */
 #define LAG_TREE_NUMBERS(n) (8*(n) + 24*LAG_TREE_NODES(n))
-#define LAG_TREE_INTS(n) ((n) + 6*LAG_TREE_NODES(n))
+#define LAG_TREE_INTS(n) ((n) + (3 + 3*LAG_MOST_SHARES)*LAG_TREE_NODES(n))
+#define LAG_TREE_SHARED 2000 /* bodies from which threads share the groups */
 
 /* Bodies first .. end - 1 in the tree's order, in a box. center, charge, dipole, quadrupole xx yy zz xy xz yz; weight:
  * of the |charges|; size2, far2: squares of the longest side, and of the largest distance from center in the box. */
@@ -29,7 +30,7 @@ typedef struct {
   double factor, soft, theta;
   double *body, *field;  /* [4n] places and charges; potential and its derivatives: in the tree's order */
   lag_tree_cell *cell;
-  int *order, *begin, *end, *child, *far, *near, *stack; /* child: the first of two; 0: none. far, near: lists */
+  int *order, *begin, *end, *child, *lists; /* child: the first of two; 0: none. lists: of each thread that shares */
 } lag_tree;
 
 /* In memory of its own: numbers[LAG_TREE_NUMBERS(n)], ints[LAG_TREE_INTS(n)]. */
@@ -38,7 +39,7 @@ LAG_UNUSED static void lag_tree_open(lag_tree *w, int n, double *numbers, int *i
   w->n = n, w->body = numbers, w->field = numbers + 4*(long)n;
   w->cell = (lag_tree_cell *)(void *)(numbers + 8*(long)n);
   w->order = ints, w->begin = ints + n, w->end = w->begin + cells, w->child = w->end + cells;
-  w->far = w->child + cells, w->near = w->far + cells, w->stack = w->near + cells;
+  w->lists = w->child + cells;
 }
 
 LAG_UNUSED static void lag_tree_sum(lag_tree *w, const LAG_REAL *q, const LAG_REAL *charge, const LAG_REAL *numbers,
@@ -154,14 +155,18 @@ LAG_UNUSED static void lag_tree_moments(lag_tree *w) {
   }
 }
 
-/* Lists of a group: cells that count as one, and cells whose bodies count one by one. */
-LAG_UNUSED static void lag_tree_walk(lag_tree *w, const lag_tree_cell *group, int *nfar, int *nnear) {
+/* Of a group: cells that count as one, and cells whose bodies count one by one. */
+typedef struct {
+  int *far, *near, *stack, nfar, nnear;
+} lag_tree_lists;
+
+LAG_UNUSED static void lag_tree_walk(const lag_tree *w, const lag_tree_cell *group, lag_tree_lists *of) {
   const double angle2 = w->theta*w->theta;
   int depth = 0;
-  *nfar = *nnear = 0;
-  w->stack[depth++] = 0;
+  of->nfar = of->nnear = 0;
+  of->stack[depth++] = 0;
   while (depth) {
-    const int k = w->stack[--depth];
+    const int k = of->stack[--depth];
     const lag_tree_cell *x = &w->cell[k];
     double gap2 = 0;
     for (int c = 0; c < 3; c++) {
@@ -169,9 +174,9 @@ LAG_UNUSED static void lag_tree_walk(lag_tree *w, const lag_tree_cell *group, in
       const double gap = below > above ? below : above;
       gap2 += gap > 0 ? gap*gap : 0;
     }
-    if (x->size2 < angle2*gap2 && x->far2 < gap2) w->far[(*nfar)++] = k;
-    else if (!w->child[k]) w->near[(*nnear)++] = k;
-    else w->stack[depth++] = w->child[k] + 1, w->stack[depth++] = w->child[k];
+    if (x->size2 < angle2*gap2 && x->far2 < gap2) of->far[of->nfar++] = k;
+    else if (!w->child[k]) of->near[of->nnear++] = k;
+    else of->stack[depth++] = w->child[k] + 1, of->stack[depth++] = w->child[k];
   }
 }
 
@@ -227,12 +232,13 @@ LAG_UNUSED static void lag_tree_add_cell(lag_tree_group *g, const lag_tree_cell 
   }
 }
 
-/* The field at the bodies of cell k. */
-LAG_UNUSED static void lag_tree_group_field(lag_tree *w, int k) {
-  const int first = w->begin[k], n = w->end[k] - first;
+/* The field at the bodies of cell k, by a thread. */
+LAG_UNUSED static void lag_tree_group_field(const lag_tree *w, int k, int thread) {
+  const int first = w->begin[k], n = w->end[k] - first, cells = LAG_TREE_NODES(w->n);
   lag_tree_group g = {{0}, {0}, {0}, {0}, {0}, {0}, {0}};
-  int nfar, nnear;
-  lag_tree_walk(w, &w->cell[k], &nfar, &nnear);
+  lag_tree_lists of = {w->lists + 3*(long)cells*thread, 0, 0, 0, 0};
+  of.near = of.far + cells, of.stack = of.near + cells;
+  lag_tree_walk(w, &w->cell[k], &of);
   for (int from = 0; from < n; from += LAG_TREE_GROUP) {
     const int to = n - from < LAG_TREE_GROUP ? n - from : LAG_TREE_GROUP;
     const double *y = w->body + 4*(long)(first + from);
@@ -242,9 +248,9 @@ LAG_UNUSED static void lag_tree_group_field(lag_tree *w, int k) {
       g.x[b] = y[4*at], g.y[b] = y[4*at + 1], g.z[b] = y[4*at + 2];
       g.v[b] = g.dx[b] = g.dy[b] = g.dz[b] = 0;
     }
-    for (int c = 0; c < nfar; c++) lag_tree_add_cell(&g, &w->cell[w->far[c]], w->soft);
-    for (int c = 0; c < nnear; c++)
-      for (int b = w->begin[w->near[c]]; b < w->end[w->near[c]]; b++) {
+    for (int c = 0; c < of.nfar; c++) lag_tree_add_cell(&g, &w->cell[of.far[c]], w->soft);
+    for (int c = 0; c < of.nnear; c++)
+      for (int b = w->begin[of.near[c]]; b < w->end[of.near[c]]; b++) {
         const int self = b - first - from;
         lag_tree_add_body(&g, w->body + 4*(long)b, w->soft, self >= 0 && self < to ? self : -1);
       }
@@ -257,8 +263,14 @@ LAG_UNUSED static void lag_tree_group_field(lag_tree *w, int k) {
 LAG_UNUSED static void lag_tree_fields(lag_tree *w) {
   lag_tree_divide(w);
   lag_tree_moments(w);
+#ifdef LAG_OPENMP
+#pragma omp parallel for schedule(dynamic, 8) num_threads(LAG_SHARES) if(w->n >= LAG_TREE_SHARED)
   for (int k = 0; k < w->cells; k++)
-    if (!w->child[k]) lag_tree_group_field(w, k);
+    if (!w->child[k]) lag_tree_group_field(w, k, omp_get_thread_num());
+#else
+  for (int k = 0; k < w->cells; k++)
+    if (!w->child[k]) lag_tree_group_field(w, k, 0);
+#endif
 }
 
 #ifdef LAG_LANES

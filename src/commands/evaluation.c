@@ -13,6 +13,7 @@ static const char *reason_to_compile(Compiler *c, const Toolchain *tools, Progra
   if (kind & PROGRAM_WITH_PNG) return "has no pictures as PNG: give a name with .svg";
   if (kind & PROGRAM_WITH_HDF5) return "writes no HDF5: give a name with .csv or .npy";
   if (kind & PROGRAM_WITH_MPI) return "runs in one process: leave out --mpi and mpirun";
+  if (tools->threads) return "computes in one thread: leave out --threads";
   return toolchain_evaluator(c->arena, tools) ? NULL : "needs lag-run beside liblag.a: run `make`";
 }
 

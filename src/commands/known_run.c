@@ -249,12 +249,20 @@ static void tell_last_state(void *compiler, const double *number, uint32_t n) {
   if (nonfinite_note(c->run, c->run_by, number, n)) compiler_print_messages(c);
 }
 
+/* A thread that waits for others sleeps soon (libgomp: after 15 ms by itself), so that a machine with other work to do
+ * does it. */
+static void let_threads_sleep(void) {
+  if (!getenv("GOMP_SPINCOUNT") && !getenv("OMP_WAIT_POLICY")) process_set("GOMP_SPINCOUNT", "1000");
+  if (!getenv("KMP_BLOCKTIME") && !getenv("OMP_WAIT_POLICY")) process_set("KMP_BLOCKTIME", "0");
+}
+
 static int start(Compiler *c, const Found *f, const Units *units) {
   if (writes_source(c)) return STATUS_USAGE;
   int status = f->by.evaluator ? simulator_hand_over(c, &f->by, units) : STATUS_OK;
   if (status != STATUS_OK) return status;
   fflush(stdout);
   fputs(f->said, stderr); /* before: the simulator does not come back */
+  if (c->o.threads) let_threads_sleep();
   if (f->listens) last_state_listen(c->arena, tell_last_state, c);
   process_become(f->simulator, c->picture.argv.at);
   const char *why = strerror(errno);

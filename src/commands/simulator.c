@@ -10,6 +10,7 @@
 #include "commands/effect_sets.h"
 #include "emit/cnames.h"
 #include "emit/emit_model.h"
+#include "ir/row_share.h"
 #include "ir/program_set.h"
 #include "lower/lower.h"
 #include "mech/discontinuity.h"
@@ -320,6 +321,26 @@ static int find_parts(Compiler *c, Toolchain *t, const char **error) {
   return kind;
 }
 
+/* --threads: their number for the compiler, 0 where there is nothing to share. Returns a STATUS. */
+static int find_threads(Compiler *c, const Units *units, long *threads) {
+  enum { MOST = 1024 };
+  char *end = NULL;
+  const char *text = c->o.command == CMD_SWEEP ? NULL : c->o.threads;
+  int shares = 0;
+  *threads = text ? strtol(text, &end, 10) : 1;
+  if (text && (end == text || *end || *threads < 1 || *threads > MOST))
+    return usage_error(arena_printf(c->arena, "--threads %s: write a number from 1 to %d: --threads 2", text, MOST));
+  for (uint32_t i = 0; i < units->n && *threads > 1; i++) shares |= unit_shares(units->at[i], 1);
+  if (*threads > 1 && !shares && !options_pass_flag(&c->o, "--quiet")) {
+    const char *says = "--threads: nothing to share; threads share sums over pairs, each taken once, of 246 bodies "
+                       "and more, and sums over neighbours and trees of 2000";
+    if (c->o.command == CMD_BUILD) fprintf(stderr, "lagc build: %s\n", says);
+    else if (!c->picture.note) c->picture.note = says;
+  }
+  if (!shares) *threads = 0;
+  return STATUS_OK;
+}
+
 int simulator_tools(Compiler *c, const Units *units, const char *output, Toolchain *tools, ProgramKind *kind) {
   const char *error = NULL;
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl && !c->o.shared, tools, &error)) return usage_error(error);
@@ -327,6 +348,8 @@ int simulator_tools(Compiler *c, const Units *units, const char *output, Toolcha
   if (c->o.command == CMD_MODES) tools->optimise = "-O0";
   tools->soname = c->o.shared ? arena_printf(c->arena, "lib%s.so", file_stem(c, output ? output : c->o.file)) : NULL;
   tools->lanes = units->at[0]->lanes;
+  int status = find_threads(c, units, &tools->threads);
+  if (status != STATUS_OK) return status;
   int parts = find_parts(c, tools, &error);
   if (parts < 0) return usage_error(error);
   int lanes = tools->lanes ? PROGRAM_WITH_LANES : 0;

@@ -5,17 +5,8 @@
  * vectors (lag_lanes.h), and added in their order: the bits are the same. */
 #include <string.h>
 
-#include "emit/cwriter_impl.h"
+#include "emit/cnest_impl.h"
 
-typedef struct {
-  const Nest *n;
-  Writer body;             /* writes the turn, with names of the function */
-  const char *i, *j;       /* the counters */
-  /* by slot of the body: 1 if its value changes from turn to turn; 2: and it is part of the test of neighbours */
-  unsigned char *each;
-  const char *near;        /* the list of neighbours; NULL: there is none */
-  const char **partial;    /* by store of the body: the variable that accumulates it; NULL: the element itself */
-} Nesting;
 
 static int has_rows(const Nest *n) { return n->rows > 1; }
 
@@ -24,12 +15,33 @@ static const char *index_text(const Nesting *x, IrSubscript at) {
                      x->j);
 }
 
-static const char *place(const Nesting *x, uint32_t k) { return index_text(x, x->n->at[k]); }
+const char *cnest_place(const Nesting *x, uint32_t k) { return index_text(x, x->n->at[k]); }
 
-/* First turn of row i + behind. */
-static const char *turn_of_row(const Nesting *x, int behind) {
+const char *cnest_turn_of_row(const Nesting *x, int behind) {
   const Nest *n = x->n;
   return index_text(x, (IrSubscript){.first = behind ? n->turns : 0, .by_row = n->skew + (behind ? n->more : 0)});
+}
+
+void cnest_open_loop(Writer *w, const char *counter, const char *from, const char *end) {
+  cwriter_line(w, arena_printf(w->a, "for (int %s = %s; %s < %s; %s++) {", counter, from, counter, end, counter));
+  w->indent += 2;
+}
+
+void cnest_close_loop(Writer *w) {
+  w->indent -= 2;
+  cwriter_line(w, "}");
+}
+
+void cnest_declare_array(Writer *w, const char *name, long long n) {
+  enum { MANY = 100000 };
+  const char *real = w->style->prefix;
+  if (n <= MANY || w->style->params) {
+    cwriter_line(w, arena_printf(w->a, "%s_REAL %s[%lld];", real, name, n));
+    return;
+  }
+  const char *own = cnames_take(&w->names, arena_printf(w->a, "%s_of_thread", name));
+  cwriter_line(w, arena_printf(w->a, "static _Thread_local %s_REAL %s[%lld];", real, own, n));
+  cwriter_line(w, arena_printf(w->a, "%s_REAL *const %s = %s;", real, name, own));
 }
 
 /* The store that says whether a turn counts; NULL: all do. */
@@ -60,12 +72,12 @@ static void write_load(Nesting *x, const Writer *around, Slot s) {
   } else if (i->array == ARR_INDEX) {
     const char *name = cnames_take(&w->names, i->name);
     cwriter_line(w, arena_printf(w->a, "const %s_REAL %s = %s_C(1.0)*(double)(%s);", w->style->prefix, name,
-                                 w->style->prefix, place(x, i->index)));
+                                 w->style->prefix, cnest_place(x, i->index)));
     w->piece[s] = (CExpr){name, C_ATOM, 0};
   } else {
     const char *name = w->again ? w->again[s].text : cnames_take(&w->names, i->name ? i->name : "sum");
     const char *array = i->array == ARR_P && w->parameters ? w->parameters : cwriter_array(w, i->array);
-    const char *one = arena_printf(w->a, "%s[%s]", array, place(x, i->index));
+    const char *one = arena_printf(w->a, "%s[%s]", array, cnest_place(x, i->index));
     cwriter_line(w, w->together ? arena_printf(w->a, "const lag_turns %s = lag_turns_at(&%s, %lld);", name, one,
                                                (long long)x->n->at[i->index].by_turn)
                                 : arena_printf(w->a, "const %s_REAL %s = %s;", w->style->prefix, name, one));
@@ -90,11 +102,12 @@ static void write_addition_together(Nesting *x, uint32_t k) {
   const char *how = st->array ? "less" : "plus";
   cwriter_line(w, part ? arena_printf(w->a, "%s = lag_turns_%s(%s, %s);", part, how, part, value)
                        : arena_printf(w->a, "lag_turns_each_%s(&%s[%s], %lld, %s);", how, w->cells,
-                                      place(x, st->index), (long long)x->n->at[st->index].by_turn, value));
+                                      cnest_place(x, st->index), (long long)x->n->at[st->index].by_turn, value));
 }
 
 static void write_additions(Nesting *x) {
   Writer *w = &x->body;
+  const char *ours = cnest_declare_ours(x);
   for (uint32_t k = 0; k < w->p->stores.n; k++) {
     const Store *st = &w->p->stores.at[k], *test = test_of(w->p);
     if (st == test) continue;
@@ -104,16 +117,17 @@ static void write_additions(Nesting *x) {
     }
     if (st->array >= NEST_SETS) {
       const char *to = w->style->out[st->array - NEST_SETS], *value = cwriter_operand(w, st->slot).text;
-      cwriter_statement(w, arena_printf(w->a, "%s[%s] = %s;", to, place(x, st->index), value));
+      cwriter_statement(w, arena_printf(w->a, "%s[%s] = %s;", to, cnest_place(x, st->index), value));
       sb_printf(w->out, " /* %s */\n", comment_text(w->a, st->comment));
       continue;
     }
-    const char *sum = x->partial[k] ? x->partial[k] : arena_printf(w->a, "%s[%s]", w->cells, place(x, st->index));
+    const char *sum = x->partial[k] ? x->partial[k] : arena_printf(w->a, "%s[%s]", w->cells, cnest_place(x, st->index));
     const char *value = cwriter_operand(w, st->slot).text, *prefix = w->style->prefix;
     if (test)
       value = arena_printf(w->a, "%s_SELECT(%s, %s, %s_C(0.0))", prefix, cwriter_operand(w, test->slot).text, value,
                            prefix);
-    cwriter_line(w, arena_printf(w->a, "%s %s %s;", sum, st->array ? "-=" : "+=", value));
+    const char *where = ours && !x->partial[k] ? arena_printf(w->a, "if (%s) ", ours) : "";
+    cwriter_line(w, arena_printf(w->a, "%s%s %s %s;", where, sum, st->array ? "-=" : "+=", value));
   }
 }
 
@@ -138,23 +152,29 @@ static void find_neighbours(Nesting *x, const Writer *around) {
   const Nest *n = x->n;
   const IrNear *near = &n->near;
   const char *list = x->near, *real = w->style->prefix;
-  int64_t members = n->at[near->at_i[0]].first - n->at[near->at_j[0]].first, step = n->at[near->at_j[0]].by_turn;
-  members = members / step + n->rows;
+  const int64_t members = cnest_near_members(n), step = n->at[near->at_j[0]].by_turn;
   cwriter_line(w, arena_printf(w->a, "static _Thread_local double %s_x[LAG_NEAR_NUMBERS(%lld)];", list,
                                (long long)members));
   cwriter_line(w, arena_printf(w->a, "static _Thread_local int %s_of[LAG_NEAR_INTS(%lld)];", list, (long long)members));
-  cwriter_line(w, arena_printf(w->a, "static _Thread_local lag_near %s;", list));
+  if (x->share == SHARE_LISTS) {
+    const char *own = cnames_take(&w->names, arena_printf(w->a, "%s_of_thread", list));
+    cwriter_line(w, arena_printf(w->a, "static _Thread_local lag_near %s;", own));
+    cwriter_line(w, arena_printf(w->a, "lag_near *const %s = &%s;", list, own));
+  } else {
+    cwriter_line(w, arena_printf(w->a, "static _Thread_local lag_near %s;", list));
+  }
   StrBuf side = strbuf(w->a), first = strbuf(w->a);
   for (uint32_t c = 0; c < near->n; c++) {
     const char *open = arena_printf(w->a, "%s_C(0.0)", real);
     sb_printf(&side, "%s%s", c ? ", " : "",
               near->boxed ? cwriter_operand(around, n->outer[near->side[c]]).text : open);
-    sb_printf(&first, "%s%s.first[%u] = %lld", c ? ", " : "", list, c, (long long)n->at[near->at_j[c]].first);
+    sb_printf(&first, "%s%s%sfirst[%u] = %lld", c ? ", " : "", list, x->share == SHARE_LISTS ? "->" : ".", c,
+              (long long)n->at[near->at_j[c]].first);
   }
-  cwriter_line(w, arena_printf(w->a, "lag_near_open(&%s, %lld, %u, %lld, %s_x, %s_of);", list, (long long)members,
-                               near->n, (long long)step, list, list));
+  cwriter_line(w, arena_printf(w->a, "lag_near_open(%s, %lld, %u, %lld, %s_x, %s_of);", cnest_near_pointer(x),
+                               (long long)members, near->n, (long long)step, list, list));
   cwriter_line(w, arena_printf(w->a, "%s;", sb_text(&first)));
-  cwriter_line(w, arena_printf(w->a, "lag_near_find(&%s, %s, %s, (const %s_REAL[]){%s});", list,
+  cwriter_line(w, arena_printf(w->a, "lag_near_find(%s, %s, %s, (const %s_REAL[]){%s});", cnest_near_pointer(x),
                                cwriter_array(w, ARR_Q), cwriter_operand(around, n->outer[near->cut]).text, real,
                                sb_text(&side)));
 }
@@ -190,22 +210,12 @@ static void write_tree(Writer *w, const Nest *n) {
 
 /* --- turns side by side --- */
 
-static LoopRange range_of(const Nest *n) { return (LoopRange){n->rows, n->skew, n->turns, n->more}; }
-
-/* Whether two indices never meet: their ranges are apart. */
-static int never_meet(const Nest *n, uint32_t i, uint32_t k) {
-  const LoopRange range = range_of(n);
-  const IrSubscript *x = &n->at[i], *y = &n->at[k];
-  int64_t x0, x1, y0, y1;
-  return !loop_extent(&range, x, &x0, &x1) || !loop_extent(&range, y, &y0, &y1) || x0 > y1 || y0 > x1;
-}
-
 /* Whether a vector has the operation, with the same bits; a load: of what turns do not change. */
 static int is_of_vectors(const Nesting *x, const Ins *i) {
   const Prog *p = x->n->body;
   if (i->op == IR_LOAD) {
     for (uint32_t k = 0; k < p->stores.n && i->array == ARR_CELL; k++)
-      if (!never_meet(x->n, i->index, p->stores.at[k].index)) return 0;
+      if (!nest_never_meet(x->n, i->index, p->stores.at[k].index)) return 0;
     return i->array != ARR_INDEX;
   }
   return i->op == IR_ADD || i->op == IR_SUB || i->op == IR_MUL || i->op == IR_DIV || i->op == IR_NEG ||
@@ -230,25 +240,15 @@ static int may_run_together(const Nesting *x, const CStyle *style) {
     if (!x->each[p->stores.at[k].slot]) return 0;
     const uint32_t at = p->stores.at[k].index;
     for (uint32_t j = 0; j < k && nest_moves(n, at); j++)
-      if (nest_moves(n, p->stores.at[j].index) && !never_meet(n, p->stores.at[j].index, at)) return 0;
+      if (nest_moves(n, p->stores.at[j].index) && !nest_never_meet(n, p->stores.at[j].index, at)) return 0;
   }
   return slow;
-}
-
-static void open_loop(Writer *w, const char *counter, const char *from, const char *end) {
-  cwriter_line(w, arena_printf(w->a, "for (int %s = %s; %s < %s; %s++) {", counter, from, counter, end, counter));
-  w->indent += 2;
-}
-
-static void close_loop(Writer *w) {
-  w->indent -= 2;
-  cwriter_line(w, "}");
 }
 
 /* Most turns of a row in vectors; the loop over the others follows, with the same names. */
 static void write_together(Nesting *x, const Writer *around) {
   Writer *w = &x->body;
-  const char *from = turn_of_row(x, 0), *end = turn_of_row(x, 1);
+  const char *from = x->from, *end = x->end;
   sb_puts(w->out, "#ifdef LAG_TURNS\n");
   cwriter_line(w, arena_printf(w->a, "for (int %s = %s; %s + LAG_TURNS <= %s; %s += LAG_TURNS) {", x->j, from, x->j,
                                end, x->j));
@@ -257,12 +257,12 @@ static void write_together(Nesting *x, const Writer *around) {
   write_values(x, around, 1);
   write_additions(x);
   w->together = 0;
-  close_loop(w);
+  cnest_close_loop(w);
   sb_puts(w->out, "#endif\n");
   CExpr *again = ARENA_ARRAY(w->a, CExpr, w->p->ins.n);
   memcpy(again, w->piece, w->p->ins.n * sizeof *again);
   w->again = again;
-  open_loop(w, x->j, arena_printf(w->a, "LAG_REST(%s, %s)", from, end), end);
+  cnest_open_loop(w, x->j, arena_printf(w->a, "LAG_REST(%s, %s)", from, end), end);
 }
 
 /* --- the loops --- */
@@ -271,9 +271,8 @@ static void open_neighbours(Nesting *x) {
   Writer *w = &x->body;
   const char *list = x->near;
   cwriter_line(w, arena_printf(w->a, "const int *%s_j;", list));
-  cwriter_line(w, arena_printf(w->a, "const int %s_n = lag_near_of(&%s, %s, &%s_j);", list, list, turn_of_row(x, 1),
-                               list));
-  open_loop(w, arena_printf(w->a, "%s_k", list), "0", arena_printf(w->a, "%s_n", list));
+  cnest_find_list(x);
+  cnest_open_loop(w, arena_printf(w->a, "%s_k", list), "0", arena_printf(w->a, "%s_n", list));
   cwriter_line(w, arena_printf(w->a, "const int %s = %s_j[%s_k];", x->j, list, list));
 }
 
@@ -284,6 +283,8 @@ static void write_test(Nesting *x, const Writer *around) {
   cwriter_line(w, arena_printf(w->a, "if (!LAG_ANY(%s)) continue;", cwriter_operand(w, test_of(w->p)->slot).text));
 }
 
+/* --- rows --- */
+
 static void declare_partial(Nesting *x) {
   Writer *w = &x->body;
   StrBuf text = strbuf(w->a);
@@ -291,35 +292,31 @@ static void declare_partial(Nesting *x) {
     const Store *st = &w->p->stores.at[k];
     if (st->array >= NEST_TEST || nest_moves(x->n, st->index)) continue;
     x->partial[k] = cnames_take(&w->names, "part");
-    sb_printf(&text, "%s%s = %s_C(0.0)", text.n ? ", " : "", x->partial[k], w->style->prefix);
+    sb_printf(&text, "%s%s = ", text.n ? ", " : "", x->partial[k]);
+    sb_puts(&text, cnest_row_begins(x, k));
   }
   if (text.n) cwriter_line(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&text)));
-}
-
-static void add_partial(Nesting *x) {
-  Writer *w = &x->body;
-  for (uint32_t k = 0; k < w->p->stores.n; k++)
-    if (x->partial[k])
-      cwriter_line(w, arena_printf(w->a, "%s[%s] += %s;", w->cells, place(x, w->p->stores.at[k].index), x->partial[k]));
 }
 
 static void write_rows(Nesting *x, const Writer *around) {
   Writer *w = &x->body;
   const Nest *n = x->n;
   if (x->near) find_neighbours(x, around);
-  if (has_rows(n) && nest_has_turns(n)) open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
+  x->from = cnest_turn_of_row(x, 0), x->end = cnest_turn_of_row(x, 1);
+  if (has_rows(n) && nest_has_turns(n)) cnest_open_rows(x);
   write_values(x, around, 0);
   declare_partial(x);
   if (x->near) open_neighbours(x);
   else if (may_run_together(x, w->style)) write_together(x, around);
-  else if (nest_has_turns(n)) open_loop(w, x->j, turn_of_row(x, 0), turn_of_row(x, 1));
-  else open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
+  else if (nest_has_turns(n)) cnest_open_loop(w, x->j, x->from, x->end);
+  else cnest_open_loop(w, x->i, "0", arena_printf(w->a, "%u", n->rows));
   if (x->near) write_test(x, around);
   write_values(x, around, 1);
   write_additions(x);
-  close_loop(w);
-  add_partial(x);
-  if (has_rows(n) && nest_has_turns(n)) close_loop(w);
+  cnest_close_loop(w);
+  cnest_end_row(x);
+  if (has_rows(n) && nest_has_turns(n)) cnest_close_loop(w);
+  cnest_end_rows(x);
 }
 
 /* Copy of the body in which values have the name common to all turns (cloop_stem). */
@@ -351,6 +348,7 @@ void cnest_write(Writer *w, const Ins *i) {
   cwriter_find_sincos(&x.body);
   find_varying(&x);
   if (n->near.n && !w->style->params) x.near = cnames_take(&x.body.names, "near");
+  x.share = nest_row_share(n, !w->style->params);
   find_test(&x);
   cwriter_flush_title(w);
   x.body.title = NULL;
@@ -388,12 +386,6 @@ static void copy_parameters(Writer *w) {
   cwriter_line(w, sb_text(&text));
 }
 
-/* Many sums, as of second derivatives, have static memory of their own in each thread: a stack has a few MB. */
-static const char *storage(const Writer *w) {
-  enum { MANY = 100000 };
-  return w->p->cells > MANY && !w->style->params ? "static _Thread_local " : "";
-}
-
 void cnest_prepare(Writer *w) {
   if (!w->p->nests.n) return;
   if (w->style->params) copy_parameters(w);
@@ -401,7 +393,7 @@ void cnest_prepare(Writer *w) {
   w->row = cnames_take(&w->names, "i");
   w->turn = cnames_take(&w->names, "j");
   if (!w->p->cells) return;
-  cwriter_line(w, arena_printf(w->a, "%s%s_REAL %s[%u];", storage(w), w->style->prefix, w->cells, w->p->cells));
+  cnest_declare_array(w, w->cells, w->p->cells);
   cwriter_line(w, arena_printf(w->a, "for (int %s = 0; %s < %u; %s++) %s[%s] = %s_C(0.0);", w->row, w->row, w->p->cells,
                                w->row, w->cells, w->row, w->style->prefix));
 }

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "ir/row_share.h"
 #include "emit/embedded_texts.h" /* static const char *const embedded_texts[]: lines of runtime/include, kernels */
 
 static const char mark[] = "/* ---- ";
@@ -81,7 +82,8 @@ static void sections(const MathText *m, int front, StrBuf *out) {
   const struct {
     const char *name;
     int needed;
-  } rows[] = {{"turns", front && has_turns(m)}, {"lanes", !front}, {"own", own}, {"libm", 1},
+  } rows[] = {{"shares", front && has_turns(m)}, {"share", front && (has_turns(m) || unit_shares(u, 0))},
+              {"turns", front && has_turns(m)}, {"lanes", !front}, {"own", own}, {"libm", 1},
               {"sincos", own && calls_sincos(u)},
               {"exp", own && unit_calls(u, "exp")}, {"log", own && unit_calls(u, "log")}, {"solver", m->solver},
               {"numbers", kkt}, {"band", kkt && has_band(u)}, {"kkt", kkt}, {"listed", kkt && has_band(u)},

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "emit/emit_header_text.h"
+#include "ir/row_share.h"
 #include "emit/header_impl.h"
 #include "kernels/steppers.def"
 
@@ -190,6 +191,9 @@ static void write_usage(const Header *h) {
       {"FIRST", h->u->q.n   ? arena_printf(h->a, "s.q[%s]", h->q[0])
                 : h->u->z.n ? arena_printf(h->a, "s.z[%s]", h->z[0])
                             : "s.t"},
+      {"THREADS", !unit_shares(h->u, 0) ? "" :
+       arena_printf(h->a, "\n *   %s_THREADS how many threads share long sums, compiled with OpenMP (-fopenmp), with "
+                    "the same digits; by default\n *             as OMP_NUM_THREADS says", h->upper)},
       {NULL, NULL}};
   sb_puts(h->out, " *\n * In every file that uses it, and in one of them (C or C++) after #define as here:\n");
   sb_printf(h->out, " *   #define %s_IMPLEMENTATION\n *   #include \"%s.h\"\n *\n", h->upper, h->file);

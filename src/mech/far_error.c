@@ -80,7 +80,7 @@ static void note_sum(const FarSum *x) {
   every = (leaves + SAMPLES - 1) / SAMPLES;
   for (int k = 0, leaf = 0; k < w.cells; k++) {
     if (w.child[k] || leaf++ % every) continue;
-    lag_tree_group_field(&w, k);
+    lag_tree_group_field(&w, k, 0);
     double gap2, size2;
     compare_body(&w, w.begin[k], &gap2, &size2);
     gaps += gap2, sizes += size2;

@@ -159,8 +159,8 @@ static const char *const unfolded[] = {FUNCTIONS(UNFOLDED) PROGRAM_FUNCTIONS_2(U
 
 /* Macro LAG_BUILD: how the program was compiled. */
 static const char *build_macro(Arena *a, const Toolchain *t, const char *safe) {
-  char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc,
-                             t->optimise, *safe ? " " : "", safe);
+  char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s%s\"", t->cc,
+                             t->optimise, t->threads ? " -fopenmp" : "", *safe ? " " : "", safe);
   for (char *c = build + strlen("-DLAG_BUILD=\""); c[1]; c++)
     if (*c == '"' || *c == '\\') *c = ' ';
   return build;
@@ -182,8 +182,10 @@ static const char *const *compiler_words(Arena *a, const Toolchain *t, const cha
   const char *whole[] = {"-Wl,-Bsymbolic", exports, "-Wl,--whole-archive", archive, "-Wl,--no-whole-archive"};
   const char *last[] = {t->gsl ? "-llag_gsl" : "", t->soname ? "" : archive,    t->gsl ? "-lgsl" : "",
                         t->gsl ? "-lgslcblas" : "", t->needs ? t->needs : "", "-lm", NULL};
+  const char *threads[] = {"-fopenmp", arena_printf(a, "-DLAG_THREADS=%ld", t->threads)};
   Words words = {0};
   PUSH(first);
+  if (t->threads) PUSH(threads);
   PUSH(unfolded);
   if (!single) PUSH(runtime);
   if (t->soname) PUSH(library);
@@ -216,6 +218,11 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
         a,
         "quadruple precision needs libquadmath, which comes with gcc; the C compiler `%s` does not find it: set CC=gcc",
         t->cc);
+  else if (t->threads && said && (strstr(said, "omp") || strstr(said, "openmp") || strstr(said, "OpenMP")))
+    *error = arena_printf(a,
+                          "--threads needs OpenMP, which the C compiler `%s` does not have: `apt-get install %s`, or "
+                          "set CC to another, or leave --threads out",
+                          t->cc, strstr(t->cc, "clang") ? "libomp-dev" : "gcc libgomp1");
   else *error = arena_printf(a, "the C compiler `%s` failed:\n%s", t->cc, said ? said : "");
   return 0;
 }
@@ -327,6 +334,7 @@ static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceT
   for (size_t i = 0; i < n; i++) h = lag_fnv1a(h, texts[i].text, strlen(texts[i].text) + 1);
   h = lag_fnv1a(h, t->cc, strlen(t->cc) + 1);
   h = lag_fnv1a(h, t->optimise, strlen(t->optimise) + 1);
+  if (t->threads) h = lag_fnv1a(h, (const char *)&t->threads, sizeof t->threads);
   h = hash_library(a, h, t->models ? toolchain_evaluator(a, t) : arena_printf(a, "%s/lib%s.a", t->lib, t->library));
   for (int i = 0; i < 3; i++)
     if (t->parts[i]) h = hash_library(a, h, arena_printf(a, "%s/liblag_%s.a", t->lib, part_names[i]));

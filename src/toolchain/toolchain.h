@@ -14,6 +14,7 @@ typedef struct {
   const char *parts[3];  /* what links liblag_png.a, liblag_hdf5.a, liblag_mpi.a; NULL: they are not to be linked */
   const char *library;   /* lag; lag_long or lag_quad: the runtime in another precision */
   const char *const *flags; /* matching flags for emitted C, NULL-terminated */
+  long threads;          /* that share the sums of emitted C, by OpenMP; 0: it has none */
   int lanes;             /* models are also compiled for lanes of vectors */
   const char *needs;     /* one more library to link, or NULL */
   /* of the shared library that is made instead of a program, with the runtime where `library` names it; NULL: a
