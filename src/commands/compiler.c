@@ -191,7 +191,7 @@ static void warn_of_actions(const Eqns *e) {
       if (expr_contains_sym(e->g, m->scene.outputs.at[i].value, m->actions.at[k].sym)) {
         diag_warning(m->diags, m->scene.outputs.at[i].span,
                      "the output `%s` is left out: liblag computes action variables, and this does without it",
-                     e->outputs[i].name);
+                     m->scene.outputs.at[i].name);
         diag_help(m->diags, "a library with all outputs: `lagc build --shared`");
         break;
       }

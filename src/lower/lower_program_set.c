@@ -353,7 +353,7 @@ static void add_outputs(ProgramSet *u, const Eqns *e) {
 /* Whether no output contains multipliers, whose derivatives are not known. */
 static int outputs_derive(const Eqns *e) {
   unsigned kinds = 0;
-  for (uint32_t i = 0; i < e->noutputs; i++) kinds |= expr_kinds(e->g, e->outputs[i].value);
+  for (uint32_t i = 0; i < e->noutputs; i++) kinds |= expr_kinds(e->g, e->outputs[i]);
   return !(kinds & 1u << SYM_MULTIPLIER);
 }
 
@@ -428,12 +428,12 @@ static void add_scene_outputs(IrScene *s, const Eqns *e) {
   s->outputs.cap = e->noutputs;
   s->outputs.at = ARENA_ARRAY(m->arena, IrVar, e->noutputs + 1);
   for (uint32_t i = 0; i < e->noutputs; i++) {
-    IrVar v = ir_var(&units, e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
+    IrVar v = ir_var(&units, e->m->scene.outputs.at[i].name, &e->m->scene.outputs.at[i].unit, 0, SIGN_ANY);
     vec_push(m->arena, &s->outputs, v);
     nplain += output_is_plain(e, i) != 0;
     if (e->constraints.n)
       vec_push(m->arena, &s->forces,
-               (expr_kinds(e->g, e->outputs[i].value) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0);
+               (expr_kinds(e->g, e->outputs[i]) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0);
   }
   s->plain.n = nplain;
   s->plain.at = s->outputs.at;

@@ -533,12 +533,12 @@ static int is_of_runs(const Symbol *s, const void *data) {
 
 int output_is_plain(const Eqns *e, uint32_t i) {
   return !(e->m->scene.exacts.n + e->nactions) ||
-         !expr_contains(e->g, e->outputs[i].value, is_of_runs, &e->m->inputs.n);
+         !expr_contains(e->g, e->outputs[i], is_of_runs, &e->m->inputs.n);
 }
 
 static void name_outputs(Lower *l, int plain_only) {
   for (uint32_t i = 0; i < l->e->noutputs; i++)
-    if (!plain_only || output_is_plain(l->e, i)) lower_output(l, l->e->outputs[i].value, l->e->outputs[i].name);
+    if (!plain_only || output_is_plain(l->e, i)) lower_output(l, l->e->outputs[i], l->e->m->scene.outputs.at[i].name);
 }
 
 Prog *lower_output_partials(const Eqns *e, Partials *d) {

@@ -238,7 +238,7 @@ int eqns_check_numbers(const Eqns *e) {
   for (uint32_t i = 0; i < e->system.H.n; i++) vec_push(m->arena, &roots, e->system.H.at[i].e);
   for (uint32_t i = 0; i < e->system.C.n; i++) vec_push(m->arena, &roots, e->system.C.at[i].e);
   for (uint32_t i = 0; i < m->states.n; i++) vec_push(m->arena, &roots, e->flow[i]);
-  for (uint32_t i = 0; i < e->noutputs; i++) vec_push(m->arena, &roots, e->outputs[i].value);
+  for (uint32_t i = 0; i < e->noutputs; i++) vec_push(m->arena, &roots, e->outputs[i]);
   vec_push(m->arena, &roots, e->energy_scale);
   ExprList l = expr_topo(e->g, roots.at, roots.n);
   arena_release(m->arena, roots.at, roots.cap * sizeof *roots.at);

@@ -137,7 +137,7 @@ typedef struct {
   const struct BracketValue *brackets; /* [nbrackets] of Model.brackets */
   uint32_t nbrackets;
   Switches switches;     /* none before switches_find */
-  const Output *outputs; /* the scene's outputs, with the energy and charges filled in */
+  const Expr *outputs;   /* [noutputs] values of the scene's outputs, with the energy and charges filled in */
   uint32_t noutputs;
   /* [nactions] that outputs contain: inputs numbered behind those of the model and closed forms */
   const ActionCurve *actions;

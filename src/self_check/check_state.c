@@ -232,7 +232,7 @@ void check_prepare(Check *c) {
   c->gap = check_reals(c, m->constraints.n);
   c->n = n;
   c->dynamics = text_dynamics(m, c->samples, c->arena);
-  c->outputs = text_outputs(m, c->samples, c->e->outputs, c->e->noutputs, c->arena);
+  c->outputs = text_outputs(m, c->samples, c->arena);
   c->at = ARENA_ARRAY(c->arena, Jet, c->dynamics->tape->slots + 1);
   c->at_outputs = ARENA_ARRAY(c->arena, Jet, c->outputs->tape->slots + 1);
   c->multipliers = !c->e->constraints.n ? NULL : c->u->multipliers ? c->u->multipliers : lower_multipliers(c->e);

@@ -90,15 +90,15 @@ static CheckVerdict check_events(Check *c) {
 
 static CheckVerdict check_outputs(Check *c) {
   const TextOutputs *o = c->outputs;
-  const Eqns *e = c->e;
-  const IrScene *scene = &c->u->scenes.at[c->scene];
-  Real *value = ARENA_ARRAY(c->arena, Real, e->noutputs + 1);
+  const Scene *scene = &c->e->m->scene;
+  Real *value = ARENA_ARRAY(c->arena, Real, scene->outputs.n + 1);
   CheckVerdict v = AGREES;
-  if (!e->noutputs || !check_run(c, scene->observe, (Real *const[]){value})) return AGREES;
-  for (uint32_t i = 0; i < e->noutputs; i++) {
-    v = worse(v, check_output_value(c, o->outputs[i], value[i], e->outputs[i].span, "the output", e->outputs[i].name));
+  if (!scene->outputs.n || !check_run(c, c->u->scenes.at[c->scene].observe, (Real *const[]){value})) return AGREES;
+  for (uint32_t i = 0; i < scene->outputs.n; i++) {
+    const Output *of = &scene->outputs.at[i];
+    v = worse(v, check_output_value(c, o->outputs[i], value[i], of->span, "the output", of->name));
     if (o->is_energy[i] && c->has_energy)
-      v = worse(v, check_compare(c, &c->energy, value[i], e->outputs[i].span, "the output", e->outputs[i].name));
+      v = worse(v, check_compare(c, &c->energy, value[i], of->span, "the output", of->name));
   }
   return v;
 }

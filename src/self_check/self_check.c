@@ -79,12 +79,13 @@ static CheckVerdict check_state(Check *c, int dynamics) {
 /* Names of outputs that are not compared (charges, closed forms), or NULL. */
 static const char *outputs_left_out(const Check *c) {
   enum { MOST = 8 };
-  const Eqns *e = c->e;
+  const Scene *scene = &c->m->scene;
   StrBuf s = strbuf(c->m->arena);
   uint32_t n = 0;
-  for (uint32_t i = 0; i < e->noutputs; i++) {
-    if (c->outputs->outputs[i] || !e->outputs[i].from.id || (c->outputs->is_energy[i] && !c->dynamics->why)) continue;
-    if (n++ < MOST) sb_printf(&s, "%s%s", n > 1 ? ", " : "", e->outputs[i].name);
+  for (uint32_t i = 0; i < scene->outputs.n; i++) {
+    const Output *of = &scene->outputs.at[i];
+    if (c->outputs->outputs[i] || !of->from.id || (c->outputs->is_energy[i] && !c->dynamics->why)) continue;
+    if (n++ < MOST) sb_printf(&s, "%s%s", n > 1 ? ", " : "", of->name);
   }
   if (n > MOST) sb_printf(&s, " and %u more", n - MOST);
   return n ? sb_text(&s) : NULL;

@@ -376,8 +376,10 @@ static void give_energies(Walk *w) {
   if (w->why) t->lagrangian = t->kinetic = t->potential = 0;
 }
 
-TextOutputs *text_outputs(const Model *m, int samples, const Output *outputs, uint32_t noutputs, Arena *a) {
+TextOutputs *text_outputs(const Model *m, int samples, Arena *a) {
   TextOutputs *o = ARENA_NEW(a, TextOutputs);
+  const Output *outputs = m->scene.outputs.at;
+  const uint32_t noutputs = m->scene.outputs.n;
   o->events = ARENA_ARRAY(a, Ref, m->events.n + 1);
   o->outputs = ARENA_ARRAY(a, Ref, noutputs + 1);
   o->is_energy = ARENA_ARRAY(a, unsigned char, noutputs + 1);

@@ -46,4 +46,4 @@ typedef struct {
 } TextOutputs;
 
 TextDynamics *text_dynamics(const Model *m, int samples, Arena *a);
-TextOutputs *text_outputs(const Model *m, int samples, const Output *outputs, uint32_t noutputs, Arena *a);
+TextOutputs *text_outputs(const Model *m, int samples, Arena *a);

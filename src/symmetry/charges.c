@@ -87,7 +87,7 @@ Expr charges_substitute(const Eqns *e, Expr x) {
 static int fill_outputs(Eqns *e) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
-  Output *out = ARENA_ARRAY(m->arena, Output, m->scene.outputs.n + 1);
+  Expr *out = ARENA_ARRAY(m->arena, Expr, m->scene.outputs.n + 1);
   Expr *action = ARENA_ARRAY(m->arena, Expr, m->actions.n + 1);
   if (!action_outputs(e, action)) return 0;
   uint32_t nsymbols = expr_symbol_count(g) + 1;
@@ -97,10 +97,9 @@ static int fill_outputs(Eqns *e) {
   for (uint32_t k = 0; k < m->pairs.n && m->hamiltonian; k++)
     with[m->states.at[m->pairs.at[k].q].rate] = e->first.velocity[k];
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) {
-    out[i] = m->scene.outputs.at[i];
-    out[i].value = charges_substitute(e, out[i].value);
-    if (e->energy) out[i].value = expr_substitute(g, out[i].value, with, nsymbols, "");
-    out[i].value = switches_keep(e, out[i].value, simplify_stable);
+    out[i] = charges_substitute(e, m->scene.outputs.at[i].value);
+    if (e->energy) out[i] = expr_substitute(g, out[i], with, nsymbols, "");
+    out[i] = switches_keep(e, out[i], simplify_stable);
   }
   arena_release(m->arena, with, nsymbols * sizeof *with);
   e->outputs = out;
