@@ -48,6 +48,18 @@ check "an input: what is not looked for" says '^looked for: .*no tau since L con
 check "where there is none" says '^found: none$' noether models/kapitza.lag
 check "no symmetry is called proved" is_silent 'proved' noether models/kapitza.lag
 
+# ---- many bodies on a line: random equations tell not all solutions ----
+cat >"$TMP/calogero.lag" <<'END'
+model calogero
+const N = 34
+coord x[N]
+lagrangian = sum(i in 1..N, x[i]'^2/2) - sum(i in 1..N, sum(j in 1..i-1, 1/(x[i] - x[j])^2))
+END
+for n in 34 60; do
+  check "$n bodies have momentum and centre of mass" says "^Q3: boost along x: the centre of mass moves uniformly" noether "$TMP/calogero.lag" -D N=$n
+  check "and more is not excluded, which is said" says "^the linear equations of the full search could not be solved reliably" noether "$TMP/calogero.lag" -D N=$n
+done
+
 # ---- scenes and effects ----
 check "without a scene effects are off, and each is judged alone" says "effect drag breaks 8 of 8" noether models/projectile.lag
 check "a scene has its own" says "scene air, with wind_resistance" noether models/projectile.lag air
