@@ -328,7 +328,7 @@ static void read_linear(Reader *r) {
   if (!l) return;
   l->linear.dr = entries(b, &l->linear.ndr, nq + r->m->model.nz, ny, 0);
   l->linear.mass = entries(b, &l->linear.nmass, nq, nq, 1);
-  l->linear.ops = below(b, INT32_MAX);
+  l->linear.ops = lag_bytes_int(b, 0, INT32_MAX);
   Reader with = with_array(r, PROGRAM_A, nq);
   l->eval = wanted(&with, 1, l->linear.ndr, l->linear.nmass);
   lag_jump *j = list(b, &l->linear.njump, 12, sizeof *j);
@@ -385,7 +385,7 @@ static void read_taylor(Reader *r) {
   t->sums = lag_bytes_int(b, 0, MOST), t->squares = lag_bytes_int(b, 0, MOST);
   t->first_square = lag_bytes_int(b, 0, MOST), t->row = lag_bytes_int(b, 0, MOST);
   t->constants = lag_bytes_int(b, 0, MOST), t->uses_time = flag(b), t->near = flag(b);
-  t->taylor.cost_first = below(b, INT32_MAX), t->taylor.cost_next = below(b, INT32_MAX),
+  t->taylor.cost_first = lag_bytes_int(b, 0, INT32_MAX), t->taylor.cost_next = lag_bytes_int(b, 0, INT32_MAX),
   t->taylor.sums = below(b, INT32_MAX);
   int fits = t->sums <= t->first_square && t->first_square + t->squares <= t->row &&
              t->taylor.width <= t->taylor.columns &&
@@ -414,7 +414,7 @@ static void read_head(Reader *r) {
   m->name = name_of(b), m->doc = name_of(b), m->effects = name_of(b), m->digest = name_of(b),
   m->fixed = lag_bytes_text(b);
   m->math = flag(b) ? "sin and cos: lag_math.h" : "sin and cos: the C library's";
-  m->flags = lag_bytes_word(b), m->ops = below(b, INT32_MAX);
+  m->flags = lag_bytes_word(b), m->ops = lag_bytes_int(b, 0, INT32_MAX); /* at most what ops_as_int gives */
   m->q = variables(b, &m->nq), m->z = variables(b, &m->nz), m->p = variables(b, &m->np), m->u = variables(b, &m->nu);
   m->nderived = lag_bytes_int(b, 0, 1 << 24), m->nmodes = lag_bytes_int(b, 0, 1 << 24);
   r->m->nconstraints = lag_bytes_int(b, 0, 1 << 24);

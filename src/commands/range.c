@@ -68,8 +68,8 @@ Range *range_split(Arena *a, const char *word) {
     at += strncmp(at, "..", 2) == 0 ? 2 : *at == ',';
     at += strspn(at, " ");
   }
-  const char *unit =
-      distributed && strncmp(text, "normal", 6) == 0 && r->numbers.n == 2 ? strchr(r->numbers.at[1], '[') : NULL;
+  int normal = distributed && strncmp(text, "normal", 6) == 0 && r->numbers.n == 2;
+  const char *unit = normal ? strchr(strchr(r->numbers.at[1], '='), '[') : NULL; /* a member's name has brackets, too */
   if (unit) r->zero = arena_printf(a, "%s=0%s", r->name, unit);
   vec_push(a, &r->between, from == text ? arena_printf(a, "%s%s", arena_strndup(a, word, mark + 1), text) : from);
   return r;

@@ -344,6 +344,22 @@ static const char *stopped_note(Arena *a, const SearchLimit *limit) {
       limit->seconds, 10 * limit->seconds);
 }
 
+/* The usual symmetries instead, if the search was none, or found fewer, as its random equations are too badly
+ * conditioned to tell all solutions. */
+static void compare_with_usual(SymmetrySearch *s) {
+  FoundSymmetries usual = {0};
+  int stopped = s->limit->stopped, none = !s->out->searched || (stopped && !s->out->all.n);
+  try_usual_symmetries(s->e, &usual, s->limit);
+  if (!none && usual.all.n <= s->out->all.n) {
+    s->limit->stopped = stopped;
+    return;
+  }
+  *s->out = usual;
+  s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and rotations of all coordinates "
+                   "of a kind together";
+  s->out->note = "the linear equations of the full search could not be solved reliably";
+}
+
 /* The largest ansatz that can be searched in its part of the time, else the usual symmetries. */
 static void search_work(Arena *scratch, void *data) {
   SymmetrySearch *s = data;
@@ -351,12 +367,7 @@ static void search_work(Arena *scratch, void *data) {
   s->scratch = scratch;
   search_ansatz(s, whole);
   if (whole && s->limit->stopped && !s->out->all.n) search_ansatz(s, 0);
-  if (!s->out->searched || (s->limit->stopped && !s->out->all.n)) {
-    try_usual_symmetries(s->e, s->out, s->limit);
-    s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and rotations of all coordinates "
-                     "of a kind together";
-    s->out->note = "the linear equations of the full search could not be solved reliably";
-  }
+  if (!s->out->searched || !s->ansatz->whole || (s->limit->stopped && !s->out->all.n)) compare_with_usual(s);
 }
 
 const char *noether_note_on_impacts(const Model *m) {

@@ -32,6 +32,9 @@ static int try_one(TrialWork *w, const Expr *xi, Expr tau, FoundSymmetry as) {
   as.by = (Generator){.xi = xi, .tau = tau};
   as.is = noether_prove(w->e, &as.by);
   if ((as.is.is != INVARIANT && as.is.is != INVARIANT_UP_TO_F) || as.is.by_value || as.is.broken) return 0;
+  if (as.kind == SYMMETRY_MOMENTUM && as.of_all && as.is.is == INVARIANT_UP_TO_F &&
+      (expr_kinds(w->g, as.is.F) & 1u << SYM_COORD))
+    as.name = arena_printf(w->e->m->arena, "magnetic translation of all bodies along %s", axis_text(as.axis));
   vec_push(w->e->m->arena, &w->out->all, as);
   return 1;
 }

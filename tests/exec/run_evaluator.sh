@@ -222,6 +222,17 @@ check "functions of families of contacts" functions "$TMP/pile.lag"
 "$LAGC" build "$TMP/pile.lag" --bytes -o "$TMP/pile"
 check "damaged bytes of a model with families of contacts" "$TMP/sanitized" "$TMP/pile" - "$(depth 50 500 2000)"
 check "damaged bytes of a model with nests and series" "$TMP/sanitized" "$TMP/nests" - "$(depth 100 1000 20000)"
+# Operations of a dense mass matrix of 2000 coordinates, 2^31 and more: the counter is full.
+cat >"$TMP/dense.lag" <<'END'
+model dense
+const N = 2000
+coord x[N]
+param m = 1 > 0
+kinetic = sum(i in 1..N, m*x[i]'^2) + sum(i in 1..N-1, m/4*x[i]'*x[i+1]')
+END
+"$LAGC" build "$TMP/dense.lag" --bytes -o "$TMP/dense"
+LAG_PROGRAM=$TMP/dense "$BUILD/lag-run" m=-1 >/dev/null 2>"$TMP/err"
+is "more operations than are counted are no damage" "lag-run: m = -1: the model declares m > 0" "$(cat "$TMP/err")"
 printf 'no program' >"$TMP/text"
 LAG_PROGRAM=$TMP/text "$BUILD/lag-run" >/dev/null 2>"$TMP/err"
 is "a text is no program" "lag-run: $TMP/text: these bytes are no program" "$(cat "$TMP/err")"

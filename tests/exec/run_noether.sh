@@ -48,6 +48,28 @@ check "an input: what is not looked for" says '^looked for: .*no tau since L con
 check "where there is none" says '^found: none$' noether models/kapitza.lag
 check "no symmetry is called proved" is_silent 'proved' noether models/kapitza.lag
 
+# ---- many bodies on a line: random equations tell not all solutions ----
+cat >"$TMP/calogero.lag" <<'END'
+model calogero
+const N = 34
+coord x[N]
+lagrangian = sum(i in 1..N, x[i]'^2/2) - sum(i in 1..N, sum(j in 1..i-1, 1/(x[i] - x[j])^2))
+END
+for n in 34 60; do
+  check "$n bodies have momentum and centre of mass" says "^Q3: boost along x: the centre of mass moves uniformly" noether "$TMP/calogero.lag" -D N=$n
+  check "and more is not excluded, which is said" says "^the linear equations of the full search could not be solved reliably" noether "$TMP/calogero.lag" -D N=$n
+done
+
+cat >"$TMP/swarm.lag" <<'END'
+model swarm "Charged bodies in a magnetic field"
+const N = 34
+coord r[N]: vec3
+param B = 1, K = 1
+lagrangian = sum(i in 1..N, dot(r[i]', r[i]')/2 + B/2*(r[i].x*r[i].y' - r[i].y*r[i].x')) - sum(i in 1..N, sum(j in 1..i-1, K/norm(r[i] - r[j])))
+END
+check "translations across a magnetic field are no momenta, of many bodies too" says "^Q2: magnetic translation of all bodies along x" noether "$TMP/swarm.lag"
+check "those along it are" says "^Q4: total momentum along z" noether "$TMP/swarm.lag"
+
 # ---- scenes and effects ----
 check "without a scene effects are off, and each is judged alone" says "effect drag breaks 8 of 8" noether models/projectile.lag
 check "a scene has its own" says "scene air, with wind_resistance" noether models/projectile.lag air

@@ -81,12 +81,14 @@ force z = u
 scene run { start x = 1, z' = 1; span 1; tolerance 1e-10 }
 END
 # Mean and deviation of T: 400 samples of a hypercube miss them by less than 0.01. The scene is left out.
-spread() {
+spread() { # RANGE [MEASURE]
   rm -f "$TMP/pair.csv"
-  sweep "$TMP/pair.lag" "$1" --samples 400 --sampling lhs --measure T --json -o "$TMP/pair.csv" && sed 's/.*"mean": \([^,]*\), "deviation": \([^,]*\),.*/\1 \2/' "$TMP/text" | awk '{ printf "%.1f %.1f\n", $1, $2 }'
+  sweep "$TMP/pair.lag" "$1" --samples 400 --sampling lhs --measure "${2:-T}" --json -o "$TMP/pair.csv" && sed 's/.*"mean": \([^,]*\), "deviation": \([^,]*\),.*/\1 \2/' "$TMP/text" | awk '{ printf "%.1f %.1f\n", $1, $2 }'
 }
 is "a deviation in kelvin is a difference" "22.0 3.0" "$(spread 'T~normal(22,3[K])')"
 is "as in degrees" "22.0 3.0" "$(spread 'T~normal(22,3)[degC]')"
+is "of a member" "22.0 3.0" "$(spread 'k[2]~normal(22,3)' 'k[2]')"
+is "of a member, with a unit" "22.0 3.0" "$(spread 'k[2]~normal(22, 3000[N/km])' 'k[2]')"
 mkdir "$TMP/sub"
 printf 't,u\n0,1\n1,1\n' >"$TMP/gust.csv"
 check "a table and a function with commas are no ranges" sweep "$TMP/pair.lag" u="$TMP/sub/../gust.csv" T=1,2 --measure z -o "$TMP/pair.csv"
