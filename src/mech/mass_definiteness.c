@@ -40,6 +40,8 @@ static void add_square(SquareBounds *q, Expr factor, Expr u, Num c) {
   q->left.at[at - 1] = num_add(q->left.at[at - 1], c);
 }
 
+enum { MOST_PARTS = 100000 }; /* nested lets that each occur twice would multiply out exponentially */
+
 static int squares_dominate(const Eqns *e, Expr l);
 
 /* Adds c*factor*term, at most quadratic in velocities. 0: the term may be negative, or has another form. */
@@ -75,6 +77,13 @@ static int add_quadratic_term(SquareBounds *q, Expr factor, Num c, Expr term) {
   const SumNest *sum = op == EX_CELL ? expr_sum_nest(g, expr_cell_nest(g, moving[0])) : NULL;
   if (sum && sum->ncells == 1 && num_is_one(power[0]) && num_sign(c) > 0 && squares_dominate(q->e, sum->shares->value))
     return 1; /* one turn stands for all */
+  if (sum && num_is_one(power[0])) { /* terms that only squares of others outweigh, as x[i]'*x[i+1]' */
+    Expr written = moving[0];
+    if (expr_sum_turns(g, expr_cell_nest(g, written)) > MOST_PARTS) return 0;
+    expr_write_out(g, &written, 1, &written, 1, &written);
+    vec_push(e->m->arena, &q->open, ((Part){c, factor, written}));
+    return 1;
+  }
   if (num_is_one(power[0]) && (op == EX_SUM || op == EX_DEF)) {
     vec_push(e->m->arena, &q->open, ((Part){c, factor, op == EX_DEF ? expr_arg(g, moving[0], 0) : moving[0]}));
     return 1;
@@ -88,7 +97,6 @@ static int add_term(SquareBounds *q, Expr factor, Num c, Expr term) {
 }
 
 static int squares_dominate(const Eqns *e, Expr l) {
-  enum { MOST_PARTS = 100000 }; /* nested lets that each occur twice would multiply out exponentially */
   SquareBounds q = {.e = e, .place = expr_map(e->m->arena)};
   Expr one = expr_int(e->g, 1);
   vec_push(e->m->arena, &q.open, ((Part){num_int(1), one, l}));

@@ -253,6 +253,21 @@ for n in 5 6 41; do check "a chain of $n: as by tensions" tensions $n; done
 # A division a rod, and one that every two rods wait for: 41 + 40/2. Without the recursion there are 41, one behind the other.
 is "two rods wait for one division" "61 divisions" "$("$LAGC" emit models/chain.lag -DN=41 -o - | sed -n 's/.*Accelerations: .*, \([0-9]* divisions\).*/\1/p' | head -1)"
 
+# ---- neighbours' velocities multiplied: a tridiagonal mass matrix, positive definite by its diagonal, which no turn alone shows.
+# Elimination and substitution: ten operations a mass; as a dense matrix they would be N^3/3.
+cat >"$TMP/coupled.lag" <<'END'
+model coupled
+const N = 2000
+coord x[N]
+param m = 1, k = 1
+kinetic = sum(i in 1..N, m*x[i]'^2) + sum(i in 1..N-1, m/4*x[i]'*x[i+1]')
+potential = sum(i in 1..N, k/2*x[i]^2)
+END
+fewest() { [ "$("$LAGC" derive "$TMP/coupled.lag" --ops | sed 's/ .*//;q')" -le 20000 ]; }
+check "neighbours' velocities multiplied: ten operations a mass" fewest
+is "definite where the diagonal outweighs" "positive definite by the signs of its parameters' values" \
+  "$("$LAGC" check "$TMP/coupled.lag" | sed -n 's/.*constant, \(.*values\);.*/\1/p')"
+
 # ---- memory and time of compilation
 # 3160 pairs of charges, three scenes: each program that a pass replaces, and each block that an array outgrows, is given up. With them it takes 360 MB.
 within() { (ulimit -v 250000 && "$LAGC" build models/electron_cloud.lag -DN=80 -o "$TMP/cloud"); }
