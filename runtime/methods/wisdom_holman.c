@@ -243,6 +243,15 @@ static void leave(WisdomHolman *w, const lag_problem *pb, const double *x, doubl
   from_jacobi(w, pb, x + length(pb), y + pb->nq);
 }
 
+/* A step from t to tb that has no finite end: the model has no rates at its begin, or none within it. */
+static int lost(WisdomHolman *w, lag_problem *pb, double t, const double *y, double tb) {
+  double *rate = state_of(w, pb) + pb->n;
+  const int rc = lag_rhs(pb, t, y, rate);
+  if (rc) return lag_step_refused(pb, rc, t);
+  pb->bad_index = lag_not_finite(pb->n, rate);
+  return lag_step_failed(pb, LAG_ENAN, pb->bad_index >= 0 ? t : tb);
+}
+
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   WisdomHolman *w = work;
   double *x = array(w, pb, STATE, KEPLER_X);
@@ -254,7 +263,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   memcpy(array(w, pb, BEGIN, KEPLER_X), x, state_size(pb));
   w->ready = 0; /* until this step succeeds */
   if ((rc = compose(w, pb, *t, next.dt, x)) != 0) return rc;
-  if (lag_not_finite(2 * length(pb), x) >= 0) return lag_step_failed(pb, LAG_ENAN, next.tb);
+  if (lag_not_finite(2 * length(pb), x) >= 0) return lost(w, pb, *t, y, next.tb);
   leave(w, pb, x, y);
   w->ready = 1;
   lag_fixed_step_end(&w->step, &next, t);

@@ -112,6 +112,8 @@ sed 's/^kinetic.*/&\nforce r[2] = -0.1*r[2]'\''/' "$TMP/family.lag" >"$TMP/drag.
 refused drag 'forces depend on velocities'
 sed 's/1e-3, 3e-4/0.5, 3e-4/' "$TMP/family.lag" >"$TMP/heavy.lag"
 refused heavy 'the mass of r[2].x is 0.5 of the largest' 3
+sed "s/(0, 1.9)}/(1, 0)}/; s/(-0.75, 0)}/(0, 1.02)}/" "$TMP/family.lag" >"$TMP/touch.lag"
+refused touch "at t = 0 s: the model gives no finite value for r[2].x''" 3
 check "figure_eight is refused" says 3 'needs one body that dominates' "$LAGC" run --quiet models/figure_eight.lag --method wisdom_holman
 check "pendulum is refused" says 2 'terms -k/r' "$LAGC" run models/pendulum.lag --method wisdom_holman
 check "lyapunov names another" says 2 'verlet8 has' "$LAGC" lyapunov models/kepler.lag --method wisdom_holman
