@@ -522,7 +522,12 @@ int lag_start_state(lag_sim *s) {
   const lag_scene *c = s->scene;
   int n = s->pb.n, rc;
   lag_asked_start(s);
-  if (lag_not_finite(n, s->now) >= 0) return lag_fail(s, LAG_ENAN, "the start is not finite");
+  const int bad = lag_not_finite(n, s->now);
+  if (bad >= 0) {
+    char name[160] = "";
+    lag_sim_state_info(s, bad, name, sizeof name, NULL, 0);
+    return lag_fail(s, LAG_ENAN, "the start of `%s` is not finite", name);
+  }
   memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */
   if ((rc = lag_conditional_place(s, c->t0, s->now)) != 0 || (rc = lag_consistent_start(s)) != 0) return rc;
   memcpy(s->begin, s->now, (size_t)n * sizeof(double));

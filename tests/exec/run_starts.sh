@@ -410,4 +410,7 @@ is "as many lines for 2000 members as for 1000" "$(lines 1000)" "$(lines 2000)"
 sed 's|sin(1.7\*i) + m\*pi|1/(i - 70)|' "$TMP/family.lag" >"$TMP/family0.lag"
 says_zero() { "$LAGC" check "$TMP/family0.lag" 2>&1 | grep -q '11:27: error: division by zero'; }
 check "a member without a value has a message" says_zero
+sed 's|sin(1.7\*i) + m\*pi|sqrt(i - m)|; /start x.3./d' "$TMP/family.lag" >"$TMP/family1.lag"
+says_member() { "$LAGC" run "$TMP/family1.lag" --quiet >/dev/null 2>"$TMP/said" || grep -q 'the start of `x\[1\]` is not finite' "$TMP/said"; }
+check "and so has one whose parameters have none" says_member
 tap_end
