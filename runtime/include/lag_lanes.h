@@ -285,9 +285,9 @@ typedef struct {
   int rows, turns, taken, *done;
 } lag_tiles;
 
-/* Of one thread: its tile, which has this number in the order of waves, row + turn. */
+/* Of one thread: its tile, and the wave of tiles with this sum of row and turn, whose first has the number `first`. */
 typedef struct {
-  int number, row, turn;
+  int number, row, turn, wave, first;
 } lag_tile;
 
 LAG_UNUSED static int lag_tiles_read(const int *x) {
@@ -313,11 +313,17 @@ LAG_UNUSED static int lag_next_tile(lag_tiles *all, lag_tile *t) {
 #pragma omp atomic capture
   number = all->taken++;
   if (number >= all->rows*all->turns) return 0;
-  while (t->number < number) { /* down to the left, and on from the first row or the last turn of the next wave */
-    const int wave = t->row + t->turn + 1;
-    t->number++;
-    if (t->row + 1 < all->rows && t->turn > 0 && t->number) t->row++, t->turn--;
-    else if (t->number) t->row = wave < all->turns ? 0 : wave - all->turns + 1, t->turn = wave - t->row;
+  t->number = number;
+  for (;;) { /* tiles side by side share lines of a cache: of a wave every other one, then those between */
+    const int top = t->wave < all->turns ? 0 : t->wave - all->turns + 1;
+    const int size = (t->wave < all->rows ? t->wave + 1 : all->rows) - top, k = number - t->first;
+    if (k < size) {
+      t->row = top + (k < (size + 1)/2 ? 2*k : 2*(k - (size + 1)/2) + 1);
+      t->turn = t->wave - t->row;
+      break;
+    }
+    t->first += size;
+    t->wave++;
   }
   if (t->row) lag_tiles_wait(&all->done[t->row - 1], t->turn + 1);
   lag_tiles_wait(&all->done[t->row], t->turn);

@@ -66,8 +66,8 @@ static void open_tiles(Nesting *x) {
   cwriter_line(w, arena_printf(w->a, "%s_TILES %s = {%s_SIDES(%u), %s_SIDES(%lld), 0, %s};", real, tiles, real, n->rows,
                                real, (long long)turns, done));
   sb_printf(w->out, "#pragma omp parallel %s_TEAM\n", real);
-  cwriter_line(w, arena_printf(w->a, "for (%s_TILE %s = {-1, 0, 0}; %s_NEXT_TILE(&%s, &%s);)", real, x->tile, real,
-                               tiles, x->tile));
+  cwriter_line(w, arena_printf(w->a, "for (%s_TILE %s = {-1, 0, 0, 0, 0}; %s_NEXT_TILE(&%s, &%s);)", real, x->tile,
+                               real, tiles, x->tile));
   end_openmp(w);
 }
 
