@@ -11,6 +11,7 @@
 #include "commands/check_json.h"
 #include "commands/commands.h"
 #include "commands/known_run.h"
+#include "commands/small_sizes.h"
 #include "toolchain/gallery.h"
 
 enum { MEMORY_LIMIT_MIB = 2048 };
@@ -73,6 +74,7 @@ static int compile(Compiler *c) {
   if (status == STATUS_OK) status = known_run_start(c, &known);
   if (known) return status;
   if (status == STATUS_OK) status = compiler_parse(c);
+  if (status == STATUS_OK && small_sizes_run(c, do_command, &status)) return status;
   if (status == STATUS_OK) status = folds_digits(c) ? do_command(c) : STATUS_USAGE;
   compiler_print_messages(c);
   if (c->o.command == CMD_CHECK && c->o.json && status != STATUS_USAGE && check_json_print(c) != STATUS_OK)

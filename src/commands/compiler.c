@@ -8,6 +8,7 @@
 #include "base/method_table.h"
 #include "base/visible.h"
 #include "commands/run_request.h"
+#include "emit/late_text.h"
 #include "ir/program_set.h"
 #include "self_check/self_check.h"
 #include "lower/lower.h"
@@ -58,9 +59,16 @@ int compiler_is_source(Compiler *c, const char *path) {
 
 int compiler_write(Compiler *c, const char *path, const StrBuf *text) {
   const char *why;
+  if (c->small) sb_putn(&c->small->written, sb_text(text), text->n);
+  if (c->small) return STATUS_OK;
   if (path && c->sources && compiler_is_source(c, path)) return STATUS_USAGE;
   if (file_write(path ? path : "-", sb_text(text), text->n, &why)) return STATUS_OK;
   return usage_error(arena_printf(c->arena, "cannot write %s: %s", path ? path : "standard output", why));
+}
+
+int compiler_write_c(Compiler *c, const char *path, const StrBuf *text) {
+  const StrBuf whole = c->small ? *text : late_text_write(text);
+  return compiler_write(c, path, &whole);
 }
 
 int compiler_report(Compiler *c, const char *path, const StrBuf *text) {
@@ -105,6 +113,7 @@ Model *compiler_model(Compiler *c, const ModelChoice *choice) {
   with_defines.defines = c->o.defines.at;
   with_defines.ndefines = c->o.defines.n;
   if (!choice->bare && !choice->unfixed) with_defines.fix = c->o.fix;
+  if (c->small && !choice->sums_from) with_defines.sums_from = SMALL_SUMS_FROM;
   return model_build(c->ast, &with_defines);
 }
 
@@ -140,7 +149,9 @@ Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice) {
 }
 
 ProgramSet *compiler_unit_head(Compiler *c, Eqns *e) {
-  return unit_head(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0);
+  ProgramSet *u = unit_head(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0);
+  u->times = c->small ? c->small->times : 1;
+  return u;
 }
 
 ProgramSet *compiler_new_unit(Compiler *c, Eqns *e) {

@@ -15,6 +15,14 @@ typedef enum { JSON_FACTS, JSON_SCENES, JSON_SYMMETRIES, JSON_EXPECTS, JSON_UNIT
 
 typedef struct KnownRun KnownRun;
 
+/* Of a compilation for a smaller size than the one asked for (commands/small_sizes.h): what it would write, and the
+ * size asked for as a multiple of its own. */
+typedef struct {
+  StrBuf written;
+  double times;
+} SmallSize;
+enum { SMALL_SUMS_FROM = 64 }; /* its sums of so many terms stay sums, as all are in the size asked for */
+
 typedef struct {
   Arena *arena;
   Options o;
@@ -32,6 +40,7 @@ typedef struct {
   StrBuf json[JSON_LISTS]; /* lists of check --json (check_json.h) */
   const Eqns *run; /* equations of the scene that the command runs, */
   ProgramSet *run_by;  /* and their programs */
+  SmallSize *small;    /* NULL: it is for the size asked for */
 } Compiler;
 
 /* Prints the messages so far; warnings about unused names too, if there is no error. */
@@ -47,6 +56,8 @@ int compiler_is_source(Compiler *c, const char *path);
 
 /* Writes the text to a file (NULL, "-": standard output), whole or not at all. Returns a STATUS. */
 int compiler_write(Compiler *c, const char *path, const StrBuf *text);
+/* The same of a C text with marks (emit/late_text.h). */
+int compiler_write_c(Compiler *c, const char *path, const StrBuf *text);
 /* The same of a report, unless an error was found while it was made. */
 int compiler_report(Compiler *c, const char *path, const StrBuf *text);
 

@@ -125,7 +125,10 @@ int command_derive(Compiler *c) {
   const char *format = c->o.format ? c->o.format : "text";
   const char *cost = op_count_text(u->accel, c->arena);
   if (c->o.ops) sb_printf(&out, "%s\n%s", cost, c->o.fix ? unfixed_cost(c) : "");
-  else if (strcmp(format, "c") == 0) emit_accel(u, &out);
+  else if (strcmp(format, "c") == 0) {
+    emit_accel(u, &out);
+    return c->diags->errors ? STATUS_MODEL : compiler_write_c(c, c->o.output, &out);
+  }
   else show_equations(e, cost, print_style(format), &out);
   return compiler_report(c, c->o.output, &out);
 }

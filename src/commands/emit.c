@@ -13,5 +13,5 @@ int command_emit(Compiler *c) {
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
   emit_model(u, model_id(c->arena, u->name), c->o.standalone, &out);
-  return compiler_write(c, c->o.output, &out);
+  return compiler_write_c(c, c->o.output, &out);
 }

@@ -10,6 +10,7 @@
 #include "commands/effect_sets.h"
 #include "emit/cnames.h"
 #include "emit/emit_model.h"
+#include "emit/late_text.h"
 #include "ir/row_share.h"
 #include "ir/program_set.h"
 #include "lower/lower.h"
@@ -246,7 +247,8 @@ Texts simulator_texts(Compiler *c, const Units *units, ProgramKind kind) {
     if (i + 1 == units->n) emit_program((const ProgramSet *const *)units->at, names, units->n, kind, &b);
     for (int lanes = 4; lanes <= 8 && kind & PROGRAM_WITH_LANES; lanes *= 2)
       add_lanes(c, units->at[i], names[i], file, lanes, &texts);
-    vec_push(c->arena, &texts, ((SourceText){file, sb_text(&b)}));
+    const StrBuf whole = late_text_write(&b);
+    vec_push(c->arena, &texts, ((SourceText){file, sb_text(&whole)}));
   }
   return texts;
 }

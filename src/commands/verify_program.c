@@ -8,6 +8,7 @@
 #include "commands/verify.h"
 #include "commands/verify_driver.h" /* static const char *const verify_driver[]: generated from verify_driver.in */
 #include "emit/emit_model.h"
+#include "emit/late_text.h"
 #include "toolchain/simulator_cache.h"
 
 /* Text with comments and literals blanked, so that braces and names are those of code. */
@@ -108,7 +109,8 @@ static const char *model_text(const Verification *v, const ProgramSet *u, const 
   emit_model(u, "lag_derived", 0, &b); /* a function by hand often has the model's name */
   for (size_t i = 0; i < sizeof verify_driver / sizeof *verify_driver; i++) sb_puts(&b, verify_driver[i]);
   sb_puts(&b, "\nint main(void) { return lag_compare(&lag_derived); }\n");
-  return sb_text(&b);
+  const StrBuf whole = late_text_write(&b);
+  return sb_text(&whole);
 }
 
 int verify_run(Verification *v, const char *precision) {

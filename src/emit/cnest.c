@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "emit/cnest_impl.h"
-
+#include "emit/late_text.h"
 
 static int has_rows(const Nest *n) { return n->rows > 1; }
 
@@ -33,15 +33,12 @@ void cnest_close_loop(Writer *w) {
 }
 
 void cnest_declare_array(Writer *w, const char *name, long long n) {
-  enum { MANY = 100000 };
-  const char *real = w->style->prefix;
-  if (n <= MANY || w->style->params) {
-    cwriter_line(w, arena_printf(w->a, "%s_REAL %s[%lld];", real, name, n));
-    return;
-  }
-  const char *own = cnames_take(&w->names, arena_printf(w->a, "%s_of_thread", name));
-  cwriter_line(w, arena_printf(w->a, "static _Thread_local %s_REAL %s[%lld];", real, own, n));
-  cwriter_line(w, arena_printf(w->a, "%s_REAL *const %s = %s;", real, name, own));
+  const char *real = arena_printf(w->a, "%s_REAL", w->style->prefix);
+  StrBuf line = strbuf(w->a);
+  if (w->style->params) sb_printf(&line, "%s %s[%lld];", real, name, n);
+  else
+    late_array(&line, real, name, cnames_take(&w->names, arena_printf(w->a, "%s_of_thread", name)), (uint64_t)n);
+  cwriter_line(w, sb_text(&line));
 }
 
 /* The store that says whether a turn counts; NULL: all do. */
@@ -348,7 +345,7 @@ void cnest_write(Writer *w, const Ins *i) {
   cwriter_find_sincos(&x.body);
   find_varying(&x);
   if (n->near.n && !w->style->params) x.near = cnames_take(&x.body.names, "near");
-  x.share = nest_row_share(n, !w->style->params);
+  x.share = nest_row_share(n, !w->style->params, w->style->times > 0 ? w->style->times : 1);
   find_test(&x);
   cwriter_flush_title(w);
   x.body.title = NULL;

@@ -26,6 +26,7 @@ typedef struct {
   const char *const *rows;          /* names of the arrays of table rows; NULL: the body declares them */
   int prefer_short_code;                /* 1: prefer short code to fast code */
   const char *math;                 /* prefix of the embedded sincos, sin and cos; NULL: LAG_FN(sin) */
+  double times;                     /* as in ProgramSet; 0: 1 */
   int turns;                        /* 1: LAG_TURNS turns of a nest side by side, where it may be */
   const char *guard;                /* array of flags of elements that stores leave alone; NULL: none */
   int loads_inline;                 /* 1: array elements are spelled at each use, not named at the top */

@@ -33,7 +33,7 @@ void emit_entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out);
 void emit_families(const ModelFile *f);
 
 /* model_struct.c: appends the const lag_model called NAME, and the tables that it names. */
-void emit_model_struct(const ProgramSet *u, const char *name, const char *digest, StrBuf *out);
+void emit_model_struct(const ProgramSet *u, const char *name, StrBuf *out);
 
 /* emit_scene.c: appends the functions and tables of scene `index` of the model whose lag_model is called NAME. */
 void emit_scene(const ModelFile *f, const char *name, uint32_t index);

@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "base/hash.h"
 #include "emit/emit_impl.h"
+#include "emit/late_text.h"
 
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
 
@@ -100,7 +100,7 @@ CStyle model_style(const ModelFile *f, const char *const *own, const char *const
   return (CStyle){.prefix = "LAG",
                   .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve",
                   .kkt = "lag_kkt", .spline = "lag_spline", .curve = "lag_curve",
-                  .math = math_prefix(f->u, "lag"), .turns = !f->for_readers};
+                  .math = math_prefix(f->u, "lag"), .turns = !f->for_readers, .times = f->u->times};
 }
 
 /* Whether the function is called once a step, or once a row of output. */
@@ -380,10 +380,11 @@ static void emit_linear(const ModelFile *f) {
   if (u->adjoint) emit_adjoint(f);
   if (inputs) emit_partials(f, u->by_inputs, u->by_inputs_dr.at, u->by_inputs_dr.n, "inputs");
   sb_printf(f->out,
-            "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = %u, .eval "
-            "= linearise,\n",
+            "\nstatic const lag_linear linear = {\n  .ndr = %u, .dr = %s, .nmass = %u, .mass = %s,\n  .ops = ",
             u->linear_dr.n, u->linear_dr.n ? "dr_table" : "NULL", u->linear_mass.n,
-            u->linear_mass.n ? "mass_table" : "NULL", ops_as_int(ops_total(prog_count(u->linear))));
+            u->linear_mass.n ? "mass_table" : "NULL");
+  late_int(f->out, ops_total(prog_count(u->linear)));
+  sb_puts(f->out, ", .eval = linearise,\n");
   if (u->jumps) sb_printf(f->out, "  .njump = %u, .jump = jump_table, .jumps = jumps,\n", u->jump_at.n);
   if (params) sb_puts(f->out, "  .by_params = &params_partials,\n");
   if (inputs) sb_puts(f->out, "  .by_inputs = &inputs_partials,\n");
@@ -483,12 +484,6 @@ static int needs_solver(const ProgramSet *u) {
   return some;
 }
 
-/* Digest of the equations' C text (FNV-1a, 64 bits, in hexadecimal), by which a saved state is tied to its
- * equations. */
-static const char *digest_text(Arena *a, const char *text) {
-  return arena_printf(a, "%016llx", (unsigned long long)lag_fnv1a(LAG_FNV1A_START, text, strlen(text)));
-}
-
 static void emit_head(const ProgramSet *u, StrBuf *out) {
   sb_printf(out, "/* %s: %s\n", u->name, comment_text(u->arena, u->doc));
   sb_printf(out, " * Emitted by lagc; effects in use: %s.\n", u->effects[0] ? u->effects : "none");
@@ -500,9 +495,9 @@ static void emit_head(const ProgramSet *u, StrBuf *out) {
   sb_puts(out, "#include <math.h>\n\n#include \"lag_model.h\"\n");
 }
 
-/* The functions on which a saved state depends; returns their digest. */
-static const char *emit_equations(const ModelFile *f) {
-  size_t begin = f->out->n;
+/* The functions on which a saved state depends, and their digest. */
+static void emit_equations(const ModelFile *f) {
+  late_digest_from(f->out);
   emit_derive(f);
   accel(f);
   state_function(f, f->u->energy, "energy",
@@ -511,12 +506,14 @@ static const char *emit_equations(const ModelFile *f) {
   emit_inputs(f);
   emit_constraints(f);
   emit_families(f);
-  return digest_text(f->a, sb_text(f->out) + begin);
+  late_digest_to(f->out);
 }
 
 const char *model_digest(const ProgramSet *u, const char *name) {
   StrBuf text = strbuf(u->arena);
-  return emit_equations(&(ModelFile){.u = u, .a = u->arena, .globals = globals_of(u, name), .out = &text});
+  emit_equations(&(ModelFile){.u = u, .a = u->arena, .globals = globals_of(u, name), .out = &text});
+  const StrBuf whole = late_text_write(&text);
+  return late_text_digest(u->arena, sb_text(&whole), whole.n);
 }
 
 void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
@@ -525,7 +522,7 @@ void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
   MathText math = {u, "LAG", "lag", needs_solver(u)};
   math_of_model(&math, alone, out);
   if (has_long_tables(u)) table_macros(out);
-  const char *digest = emit_equations(&f);
+  emit_equations(&f);
   emit_sizes(&f);
   emit_charges(&f);
   emit_switches(&f);
@@ -538,7 +535,7 @@ void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
   emit_variation(&f);
   emit_kepler(&f);
   emit_inverse(&f);
-  emit_model_struct(u, name, digest, out);
+  emit_model_struct(u, name, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, name, i);
   if (!alone) return;
   sb_puts(out, "\n/* ---- lag_math.h and others, of lagc ---- */\n\n");

@@ -1,6 +1,7 @@
 /* The const lag_model of an emitted model file, and the tables that it names. */
 
 #include "emit/emit_impl.h"
+#include "emit/late_text.h"
 
 static uint32_t work_size(const ProgramSet *u) {
   ProgList all = program_set_programs(u);
@@ -49,7 +50,7 @@ static void event_table(const ProgramSet *u, StrBuf *out) {
 }
 
 /* Members that every model has. */
-static void common_members(const ProgramSet *u, const char *digest, StrBuf *out) {
+static void common_members(const ProgramSet *u, StrBuf *out) {
   static const char *const flags[UNIT_FLAGS] = {
 #define MODEL_FLAG(name) "LAG_" #name,
 #include "ir/flags.def"
@@ -59,10 +60,14 @@ static void common_members(const ProgramSet *u, const char *digest, StrBuf *out)
              *effects = c_string(u->arena, u->effects);
   sb_printf(out,
             "  .abi = LAG_ABI, .real_size = sizeof(LAG_REAL),\n  .name = %s,\n  .doc = %s,\n  .effects = %s,\n  "
-            ".digest = \"%s\",\n  .flags = ",
-            model, doc, effects, digest);
+            ".digest = \"",
+            model, doc, effects);
+  late_digest(out);
+  sb_puts(out, "\",\n  .flags = ");
   model_flags(u->flags, flags, UNIT_FLAGS, out);
-  sb_printf(out, ",\n  .ops = %u,\n", ops_as_int(ops_total(prog_count(u->accel))));
+  sb_puts(out, ",\n  .ops = ");
+  late_int(out, ops_total(prog_count(u->accel)));
+  sb_puts(out, ",\n");
   sb_printf(out, "  .nq = %u, .nz = %u, .np = %u, .nu = %u, .nev = %u, .nw = %u,\n", u->q.n, u->z.n, u->p.n, u->u.n,
             u->events.n, work_size(u));
   sb_printf(out, "  .q = %s, .z = %s, .p = %s, .u = %s, .ev = %s,\n", or_null(u->q.n, "q_table"),
@@ -103,7 +108,7 @@ static void further_members(const ProgramSet *u, StrBuf *out) {
   if (u->fixed[0]) sb_printf(out, "  .fixed = %s,\n", c_string(u->arena, u->fixed));
 }
 
-void emit_model_struct(const ProgramSet *u, const char *name, const char *digest, StrBuf *out) {
+void emit_model_struct(const ProgramSet *u, const char *name, StrBuf *out) {
   table_vars("q_table", u->q.at, u->q.n, u->arena, out);
   table_vars("z_table", u->z.at, u->z.n, u->arena, out);
   table_vars("p_table", u->p.at, u->p.n, u->arena, out);
@@ -112,7 +117,7 @@ void emit_model_struct(const ProgramSet *u, const char *name, const char *digest
   emit_curves(u, out);
   second_table(u, out);
   sb_printf(out, "\nconst lag_model %s = {\n", name);
-  common_members(u, digest, out);
+  common_members(u, out);
   further_members(u, out);
   sb_puts(out, "};\n");
 }

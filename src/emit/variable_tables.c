@@ -1,16 +1,16 @@
 /* Tables of variables: entry by entry, or as runs of groups that differ in one number that counts up. */
 #include "emit/emit_impl.h"
+#include "emit/late_text.h"
 
 #include <string.h>
 
 #include "base/num.h"
 
-/* LAG_10(f, 12) is f(120) ... f(129): numbers are pasted from their digits. */
-enum { LARGEST_BLOCK = 10000, MOST_IN_GROUP = 16, FEWEST_GROUPS = 32 };
+enum { MOST_IN_GROUP = 16, FEWEST_GROUPS = 32 };
 
 void table_macros(StrBuf *out) {
   sb_puts(out, "\n/* f(i0) f(i1) ... f(i9), digits pasted: LAG_10(f, 12) is f(120) ... f(129). */\n");
-  for (int block = 10; block <= LARGEST_BLOCK; block *= 10) {
+  for (int block = 10; block <= LATE_RUNS_BLOCK; block *= 10) {
     sb_printf(out, "#define LAG_%d(f, i)", block);
     for (int digit = 0; digit < 10; digit++) {
       if (digit == 5) sb_puts(out, " \\\n ");
@@ -105,18 +105,11 @@ static const char *entry_of_i(const IrVar *v, const IrVar *next, Arena *a) {
 }
 
 static void write_run(const IrVar *v, uint32_t size, uint32_t groups, Arena *a, StrBuf *out) {
-  enum { A_LINE = 6 };
   Number first;
   counts_up(v[0].name, v[size].name, &first);
   sb_puts(out, "#define LAG_EACH(i)");
   for (uint32_t k = 0; k < size; k++) sb_printf(out, " %s", entry_of_i(&v[k], &v[size + k], a));
-  uint32_t end = first.value + groups, column = 0;
-  for (uint32_t i = first.value, block; i < end; i += block) {
-    for (block = 1; block < LARGEST_BLOCK && i % (block * 10) == 0 && i + block * 10 <= end;) block *= 10;
-    const char *lead = column++ % A_LINE ? " " : "\n  ";
-    if (block == 1) sb_printf(out, "%sLAG_EACH(%u)", lead, i);
-    else sb_printf(out, "%sLAG_%u(LAG_EACH, %u)", lead, block, i / block);
-  }
+  late_runs(out, first.value, first.value + groups);
   sb_puts(out, "\n#undef LAG_EACH\n");
 }
 

@@ -282,6 +282,7 @@ typedef struct {
   const Prog *jumps;            /* NULL: not requested, or no event changes the state */
   VEC(IrJump) jump_at;          /* positions of its outputs */
   VEC(IrScene) scenes;
+  double times;                 /* size asked for, as a multiple of the one that this is made for */
   int libm;                     /* emitted code calls the C library's sin and cos */
   int lanes;                    /* emitted to be compiled for lanes, too, and for a double with the same bits */
   /* messages on constraints and switches give their source lines: simulators name their file */

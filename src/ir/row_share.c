@@ -69,13 +69,14 @@ static int sums_are_apart(const Nest *n, int listed) {
   return 1;
 }
 
-RowShare nest_row_share(const Nest *n, int listed) {
+RowShare nest_row_share(const Nest *n, int listed, double times) {
   /* sizes from which two threads gain: turns of a nest, members of lists and trees */
   enum { TURNS = 30000, MEMBERS = 2000 };
   const int64_t last = (int64_t)n->rows - 1;
-  if (listed && n->far.n) return n->far.members < MEMBERS ? SHARE_NONE : SHARE_TREE;
+  const double rows = n->rows * times, turns = n->count * times;
+  if (listed && n->far.n) return n->far.members * times < MEMBERS ? SHARE_NONE : SHARE_TREE;
   const int lists = listed && n->near.n;
-  if (nest_sets(n) || n->rows < 2 || !nest_has_turns(n) || (lists ? n->rows + 1 < MEMBERS : n->count < TURNS))
+  if (nest_sets(n) || n->rows < 2 || !nest_has_turns(n) || (lists ? rows + 1 < MEMBERS : turns < TURNS))
     return SHARE_NONE;
   if (n->skew < 0 || n->skew + n->more < 0 || nest_to(n, last) > INT32_MAX) return SHARE_NONE;
   if (lists && (n->skew || n->more != 1)) return SHARE_NONE;
@@ -88,6 +89,6 @@ int unit_shares(const ProgramSet *u, int listed) {
   int some = 0;
   for (uint32_t i = 0; i < all.n; i++)
     for (uint32_t k = 0; k < all.at[i]->nests.n; k++)
-      some |= nest_row_share(&all.at[i]->nests.at[k], listed) != SHARE_NONE;
+      some |= nest_row_share(&all.at[i]->nests.at[k], listed, u->times) != SHARE_NONE;
   return some;
 }

@@ -11,8 +11,9 @@ typedef enum {
   SHARE_TREE   /* groups of bodies of a tree */
 } RowShare;
 
-/* listed: neighbours are found by lists, far bodies taken together by trees, as in models; not in headers. */
-RowShare nest_row_share(const Nest *n, int listed);
+/* listed: neighbours are found by lists, far bodies taken together by trees, as in models; not in headers. times: see
+ * ProgramSet. */
+RowShare nest_row_share(const Nest *n, int listed, double times);
 
 /* Whether two indices, positions in n->at, never meet: their ranges are apart, or one lies between the
  * steps of the other. */

@@ -2,7 +2,7 @@
 #include "report/listing_text.h"
 
 #include "model/printed_text.h"
-#include "report/family_rows.h"
+#include "sym/family_rows.h"
 #include "symmetry/charges.h"
 
 int text_latex(const Text *t) { return t->style == PRINT_LATEX; }

@@ -2,7 +2,7 @@
 #include "symmetry/noether_report.h"
 #include "base/words.h"
 #include "symmetry/charges.h"
-#include "report/family_rows.h"
+#include "sym/family_rows.h"
 #include "report/listing_text.h"
 
 typedef struct {

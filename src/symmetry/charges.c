@@ -8,6 +8,7 @@
 #include "mech/switches.h"
 #include "phase_space/action_outputs.h"
 #include "phase_space/expression_brackets.h"
+#include "sym/family_rows.h"
 #include "sym/simplify.h"
 
 /* --- generators and charges --- */
@@ -136,13 +137,13 @@ static Expr in_own_names(const Eqns *e, Expr x) {
 }
 
 static const char *text_of(const Eqns *e, Expr x) {
-  enum { LONGEST = 4000 };
+  const double longest = 1e5;
   uint32_t distinct;
   StrBuf b = strbuf(e->m->arena);
   x = in_own_names(e, x);
-  if (expr_tree_size(e->g, x, &distinct) > LONGEST) return "(too long to print)";
+  if (expr_tree_size(e->g, x, &distinct) > longest) return "(too long to print)";
   expr_print_checked(e->m, x, PRINT_TEXT, &b);
-  return sb_text(&b);
+  return family_sum(e->m->arena, sb_text(&b), PRINT_TEXT);
 }
 
 static int holds(const Charge *c) {

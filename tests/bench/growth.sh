@@ -74,6 +74,39 @@ grows 'N outputs' outputs 10000 100000
 grows 'N bodies, a sum over all pairs,' bodies 1000 10000 derive
 grows 'N bodies, a sum over all pairs,' bodies 100 1000 noether
 
+# ---- families from 2048 members on, whose texts follow from small ones: time and memory do not depend on N
+ring_of() { cat <<MODEL; }
+model ring "N masses on a ring of springs"
+const N = 100
+coord x[N]
+param m = 1 > 0, k = 1 > 0
+kinetic = sum(i in 1..N, m/2*x[i]'^2)
+potential = sum(i in 1..N-1, k/2*(x[i+1] - x[i])^2) + k/2*(x[1] - x[N])^2
+symmetry shift(s): x[i in 1..N] -> x[i] + s
+scene s {
+  start x[i in 1..N] = sin(i)
+  span 1
+}
+MODEL
+ring_of >"$TMP/ring.lag"
+# even COMMAND WHAT FILE SECONDS MB: least time and memory at N = 200, 10^4, 10^5
+even() {
+  for n in 200 10000 100000; do
+    s=$(seconds 3 "$LAGC" "$1" "$3" -DN=$n) m=$(($(kilobytes 1 "$LAGC" "$1" "$3" -DN=$n)/1024))
+    row "lagc $1, $2, N = $n, s" "<= $4" '' "$s" '' "$(at_most "$s" "$4")"
+    row "lagc $1, $2, N = $n, MB" "<= $5" '' "$m" '' "$(at_most "$m" "$5")"
+    echo "$n $s"
+  done >"$TMP/even.rows"
+  grep '^|' "$TMP/even.rows"
+  slope=$(grep -v '^|' "$TMP/even.rows" | awk '{ n[NR] = log($1); s[NR] = log($2 + 1e-3) } END { printf "%.2f", (s[3] - s[2])/(n[3] - n[2]) }')
+  row "lagc $1, $2, slope of log time, 10^4 to 10^5" '<= 0.1' '' "$slope" '' "$(at_most "$slope" 0.1)"
+}
+even emit 'N bodies' tests/bench/models/bodies.lag 0.1 30
+even check 'N bodies' tests/bench/models/bodies.lag 0.1 30
+even derive 'N bodies' tests/bench/models/bodies.lag 0.1 30
+even check 'a ring' "$TMP/ring.lag" 0.2 100
+even noether 'a ring' "$TMP/ring.lag" 0.2 100
+
 # ---- lagc noether: xi of N bodies in space has 9 N^2 + 3 N coefficients, where each may move in its own way
 for n in 8 16; do echo "$n $(seconds 2 "$LAGC" noether tests/bench/models/bodies.lag -DN="$n")"; done >"$TMP/grown"
 row "lagc noether, N bodies in space, slope of log time against log N, 8 to 16" '' "$(awk 'END { print $2 " s" }' "$TMP/grown")" \

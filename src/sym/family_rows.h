@@ -17,6 +17,9 @@ typedef struct {
 /* The lines, each with its end, as family_rows writes them. */
 const char *family_lines(Arena *a, const FamilyLines *lines, PrintStyle style);
 
+/* The sum a + b + ..., also one in brackets, with terms of families as sums over their index. */
+const char *family_sum(Arena *a, const char *text, PrintStyle style);
+
 /* The lines of a block, each with its end, where five or more that follow one another differ by an index alone
  * written once: `u[i]'' = u[i + 1] - u[i]  for i in 2..9`. */
 const char *family_rows(Arena *a, const char *lines, PrintStyle style);

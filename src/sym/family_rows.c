@@ -1,7 +1,7 @@
 /* Equations of a family's members, written as one with an index, and terms of a sum likewise: texts that differ in
  * numbers only, each of which is the same in the next, or moves by one step that all share. Enters: lines as printed;
  * leaves: fewer. */
-#include "report/family_rows.h"
+#include "sym/family_rows.h"
 
 #include <ctype.h>
 #include <stdlib.h>
@@ -217,8 +217,6 @@ static void put_first_term_back(Arena *a, Texts *terms, PrintStyle style) {
   }
 }
 
-static const char *family_sum(Arena *a, const char *text, PrintStyle style);
-
 /* Whether the text is sum(...) and nothing else, which needs no brackets. */
 static int is_one_sum(const char *text) {
   int depth = 0;
@@ -263,8 +261,7 @@ static int is_sum(const char *text) {
   return 1;
 }
 
-/* The sum a + b + ... with terms of families as sums over their index. */
-static const char *family_sum(Arena *a, const char *text, PrintStyle style) {
+const char *family_sum(Arena *a, const char *text, PrintStyle style) {
   enum { NESTS = 3 };
   if (!is_sum(text)) return family_brackets(a, text, style);
   Texts terms = {0};
