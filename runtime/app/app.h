@@ -11,18 +11,19 @@
 enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_SIGNAL = 128 };
 enum { MOST_OPTIONS = 16 };
 
-#include "app/options.def"
-
 /* The command line as text; numbers are not parsed yet. Lists are in order, with their number; NULL: none. */
 typedef struct Args {
 #define OWN_FLAG(f) int f;
 #define OWN_TEXT(f) const char *f;
 #define OWN_LIST(f) const char **f; int n##f;
+#define PICTURE_FLAG TO
+#define PICTURE_TEXT TO
 #define TO(f)
 #define LAGC(...)
 #define BOTH(name, brief, value, takes, hint, commands, analyses, field, text) field
 #define SIMULATOR(name, value, takes, analyses, field, text) field
 #include "app/options.def"
+  PictureOptions picture;
   const char *self, *scene, *plot_y; /* this program; the first of the scenes and of plot_ys */
   char **sets; /* name=value, in order */
   const char **scenes; /* all scenes named */
@@ -189,12 +190,13 @@ int lag_app_choose_automatically(App *app, const lag_option *opt, int n);
 void lag_app_help(const App *app, FILE *f);
 void lag_app_list_methods(const App *app, const char *name, FILE *f);
 
-/* pictures.c: writes a picture to path by `write`, which makes an SVG file (-1 with errno set); of a path that ends
- * in .png that becomes a PNG. lag_app_draw_table: the table to --svg, if given. 0, or EXIT_USAGE after a message.
+/* pictures.c: writes a picture to path, SVG or, where it ends in .png, PNG: `write` puts all but the last tag into p->f
+ * (-1 with errno set). lag_app_draw_table: the table to --svg, if given. 0, or EXIT_USAGE after a message.
  * lag_app_check_parts: refuses files that only a program built with librsvg or libhdf5 writes. */
 int lag_app_check_parts(const App *app);
-int lag_app_picture(const App *app, const char *path, int (*write)(const char *svg, void *context), void *context);
-int lag_app_draw_table(const App *app, const char *title);
+int lag_app_picture(const App *app, const char *path, const char *title, int (*write)(const Picture *p, void *context),
+                    void *context);
+int lag_app_draw_table(App *app, const char *title);
 
 /* column_lookup.c: app->drawn := columns of --plot-x and --plot-y, or all. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_curves(App *app);

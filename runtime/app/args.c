@@ -64,6 +64,8 @@ static const Option options[] = {
 #define OWN_FLAG TO
 #define OWN_TEXT TO
 #define OWN_LIST(f) offsetof(Args, f), offsetof(Args, n##f)
+#define PICTURE_FLAG(f) TO(picture.f)
+#define PICTURE_TEXT(f) TO(picture.f)
 #define LAGC(...)
 #define BOTH(name, brief, value, takes, hint, commands, analyses, field, text) \
   {name, brief, value, takes, hint, analyses, field, text},
@@ -357,9 +359,9 @@ static int check_pictures(const Args *a) {
       {a->plot_x && !a->plot_y, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x},
       {(a->points || a->from || a->trace || a->no_rods) && !a->html,
        "--points, --from, --trace and --no-rods need an animation: add --html FILE", NULL},
-      {a->drawing && !(atoi(a->drawing) >= 1 && atoi(a->drawing) <= 100),
-       "--drawing %s: a number of instants from 1 to 100 is needed", a->drawing},
-      {a->drawing && (!a->svg || a->section || axes || energies),
+      {a->picture.drawing && !(atoi(a->picture.drawing) >= 1 && atoi(a->picture.drawing) <= 100),
+       "--drawing %s: a number of instants from 1 to 100 is needed", a->picture.drawing},
+      {a->picture.drawing && (!a->svg || a->section || axes || energies),
        "--drawing is a picture of its own, which `lagc plot` draws; leave out other axes", NULL},
       {a->section && a->html, "--section and --html: a motion is shown in time; leave one of them out", NULL}};
   return first_mistake(a, sizeof m / sizeof *m, m);

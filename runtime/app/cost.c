@@ -383,26 +383,16 @@ static void check_answers(App *app, Cost *c) {
 
 /* ---- The command */
 
-typedef struct Drawing {
-  const App *app;
-  const Cost *cost;
-} Drawing;
-
-static int draw(const char *svg, void *drawing) {
-  const Drawing *d = drawing;
-  return lag_cost_put_picture(svg, d->app, d->cost);
-}
-
-static int show(App *app, const Cost *c) {
+static int show(App *app, Cost *c) {
   const Args *a = &app->args;
   const CostRun *run;
+  char title[300];
+  snprintf(title, sizeof title, "%s, %s: what accuracy costs", app->scene->model->name, app->scene->name);
   if (a->json) lag_cost_put_json(stdout, app, c);
   else if (!a->quiet) lag_cost_put_text(stdout, app, c);
-  if (a->out) {
-    int picture = lag_outfile_has_suffix(a->out, "svg png"),
-        rc = picture ? lag_app_picture(app, a->out, draw, &(Drawing){app, c}) : lag_cost_put_rows(a->out, app, c);
-    if (rc) return picture ? rc : lag_app_io_error(app, a->out);
-  }
+  if (a->out && lag_outfile_has_suffix(a->out, "svg png")) {
+    if (lag_app_picture(app, a->out, title, lag_cost_put_picture, c)) return EXIT_USAGE;
+  } else if (a->out && lag_cost_put_rows(a->out, app, c)) return lag_app_io_error(app, a->out);
   if (c->stopped) return lag_app_interrupted();
   if (c->target > 0 && !lag_cost_answer(c->method, c->nmethods, c->target, &run)) return EXIT_RUN;
   return EXIT_FINE;

@@ -463,7 +463,7 @@ int lag_app_fit(App *app) {
   int rc = lag_fit_run(&r);
   if (rc == 0 && a->svg && r.nfiles > 1) rc = lag_app_error(a, "--svg: a picture is of one record; name one file");
   if (rc == 0 && a->profile && lag_fit_profile(&r.fit)) rc = lag_app_error(a, "%s", r.fit.why);
-  if (rc == 0 && a->svg && lag_fit_picture(&r, a->svg)) rc = lag_app_io_error(app, a->svg);
+  if (rc == 0 && a->svg) rc = lag_fit_picture(&r);
   if (rc == 0 && a->out && lag_network_write(&r, a->out)) rc = lag_app_io_error(app, a->out);
   if (rc == 0 && a->json) lag_fit_report_json(&r, stdout);
   if (rc == 0 && !a->json) lag_fit_report(&r, stdout);

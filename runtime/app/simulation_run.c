@@ -176,7 +176,7 @@ static int open_output(App *app) {
   if (lag_tangent_columns_open(app) || lag_sensitivity_open(app) || lag_app_volume_open(app) ||
       lag_app_choose_curves(app) || lag_portrait_open(app))
     return EXIT_USAGE;
-  if ((a->html || a->drawing) && lag_app_choose_shapes(app)) return EXIT_USAGE;
+  if ((a->html || a->picture.drawing) && lag_app_choose_shapes(app)) return EXIT_USAGE;
   if (lag_app_try_file(app, a->svg) || lag_app_try_file(app, a->html) || lag_app_try_file(app, a->save))
     return EXIT_USAGE;
   int rc = lag_sampling_open(app);
