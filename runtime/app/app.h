@@ -426,7 +426,8 @@ void lag_report_json(App *app, FILE *f);
 /* The word behind a charge's name: "energy drift", "spin balance". */
 const char *lag_charge_word(const lag_charge_stats *charge);
 extern const char lag_energy_scale[]; /* what drifts and balances of the energy are relative to */
-/* Members model, scene, method, chosen, status. */
-void lag_report_json_head(const App *app, Json *j);
+/* A JSON object that begins with model and scene; of a run also with method, chosen and status. */
+Json lag_app_json(const App *app, FILE *f);
+Json lag_report_json_open(const App *app, FILE *f);
 /* s[n] := method with the options that differ from their defaults, "rk45(tol=1e-09)". */
 void lag_report_method(const App *app, char *s, size_t n);

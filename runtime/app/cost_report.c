@@ -279,39 +279,29 @@ void lag_cost_put_json(FILE *f, const App *app, const Cost *c) {
   const Samples *s = &c->reference;
   const CostRun *cheapest = NULL;
   if (c->target > 0) lag_cost_answer(c->method, c->nmethods, c->target, &cheapest);
-  Json j = {.f = f};
-  lag_json_begin(&j, NULL, '{');
-  lag_json_strings(&j, {"model", app->scene->model->name}, {"scene", app->scene->name});
+  Json j = lag_app_json(app, f);
   lag_json_number(&j, "until", s->t[s->rows - 1]);
   lag_json_string(&j, "reference", c->reference_name);
   lag_json_numbers(&j, {"uncertainty", s->uncertainty}, {"target", c->target > 0 ? c->target : NAN});
   lag_json_truth(&j, "interrupted", c->stopped);
   lag_cost_put_precisions_json(&j, c);
-  lag_json_begin(&j, "methods", '[');
-  for (int i = 0; i < c->nmethods; i++) {
+  JSON_OBJECTS(&j, "methods", i, c->nmethods) {
     const CostMethod *m = &c->method[i];
-    lag_json_begin(&j, NULL, '{');
     lag_json_string(&j, "method", m->name);
     lag_json_number(&j, "order", m->order);
     lag_json_truth(&j, "best_of_family", lag_cost_best_of_family(c, family_of(c, m)) == m);
     lag_json_number(&j, "left_out_from", m->left_out > 0 ? m->left_out : NAN);
     lag_json_string(&j, "refused", m->why[0] ? m->why : NULL);
-    lag_json_begin(&j, "runs", '[');
-    for (int k = 0; k < m->nruns; k++) {
+    JSON_OBJECTS(&j, "runs", k, m->nruns) {
       const CostRun *r = &m->run[k];
-      lag_json_begin(&j, NULL, '{');
       lag_json_number(&j, m->method->flags & LAG_METHOD_ADAPTIVE ? "tolerance" : "step", r->knob);
       lag_json_numbers(&j, {"error", r->error}, {"seconds", r->time}, {"spread", r->spread});
       lag_json_counts(&j, {"steps", r->steps}, {"calls", r->calls});
       lag_json_truth(&j, "front", r->best);
       lag_json_truth(&j, "cheapest", r == cheapest);
       lag_json_string(&j, "growth", growth_of(c, r)[0] ? growth_of(c, r) : NULL);
-      lag_json_end(&j, '}');
     }
-    lag_json_end(&j, ']');
-    lag_json_end(&j, '}');
   }
-  lag_json_end(&j, ']');
   lag_json_close(&j);
 }
 

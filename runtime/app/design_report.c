@@ -209,22 +209,14 @@ static void put_report(const DesignRun *d) {
 static void put_json(const DesignRun *d) {
   static const char *const kinds[] = {"errors", "errors_equally_far", "errors_of_all"};
   const Fit *f = &d->of.fit;
-  Json j = {stdout, 0};
-  lag_json_begin(&j, NULL, '{');
-  lag_json_strings(&j, {"model", d->of.app->scene->model->name}, {"scene", d->of.app->scene->name});
+  Json j = lag_app_json(d->of.app, stdout);
   lag_json_count(&j, "candidates", d->ntimes * f->ncolumns);
-  lag_json_begin(&j, "measurements", '[');
-  for (int k = 0; k < d->best; k++) {
-    lag_json_begin(&j, NULL, '{');
+  JSON_OBJECTS(&j, "measurements", k, d->best) {
     lag_json_string(&j, "output", f->column[d->chosen[k] % f->ncolumns].label);
     lag_json_number(&j, "t", d->t[d->chosen[k] / f->ncolumns]);
-    lag_json_end(&j, '}');
   }
-  lag_json_end(&j, ']');
   for (int kind = 0; kind < 3; kind++) {
-    lag_json_begin(&j, kinds[kind], '{');
-    for (int i = 0; i < d->n; i++) lag_json_number(&j, f->target[i].label, d->error[kind * d->n + i]);
-    lag_json_end(&j, '}');
+    JSON_EACH(&j, kinds[kind], '{', i, d->n) lag_json_number(&j, f->target[i].label, d->error[kind * d->n + i]);
   }
   lag_json_close(&j);
 }

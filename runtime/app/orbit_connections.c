@@ -94,9 +94,7 @@ static void put_text(FILE *f, const App *app, const Connections *all, int n) {
 }
 
 static void put_json(FILE *f, App *app, const Connections *all, int n) {
-  Json j = {.f = f};
-  lag_json_begin(&j, NULL, '{');
-  lag_report_json_head(app, &j);
+  Json j = lag_report_json_open(app, f);
   lag_json_string(&j, "to", app->args.to);
   lag_json_string(&j, "section", app->args.section);
   lag_json_begin(&j, "connections", '[');
@@ -107,15 +105,12 @@ static void put_json(FILE *f, App *app, const Connections *all, int n) {
     lag_json_count(&j, "crossing", c->from.cut);
     lag_json_count(&j, "crossing_from_end", c->to.cut);
     lag_json_number(&j, "residual", c->residual);
-    lag_json_begin(&j, "state", '{');
-    for (int i = 0; i < n; i++)
+    JSON_EACH(&j, "state", '{', i, n)
       lag_json_number(&j, lag_state_column(app->sim, i).name, lag_sim_declared(app->sim, i, c->at[i]));
-    lag_json_end(&j, '}');
     lag_json_end(&j, '}');
   }
   lag_json_end(&j, ']');
-  lag_json_end(&j, '}');
-  putc('\n', f);
+  lag_json_close(&j);
 }
 
 /* Rows of one half, in the order of time; 0 at the section. */

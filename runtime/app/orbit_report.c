@@ -357,12 +357,10 @@ static void put_text(FILE *f, App *app, const PeriodicOrbit *o) {
 }
 
 static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
-  Json j = {.f = f};
+  Json j = lag_report_json_open(app, f);
   char why[400];
   OrbitVerdict v = verdict_of(o);
   reason(o, v, why, sizeof why);
-  lag_json_begin(&j, NULL, '{');
-  lag_report_json_head(app, &j);
   lag_json_numbers(&j, {"period", o->T}, {"period_error", o->flow.forced ? NAN : o->period_error},
                        {"residual", o->residual});
   lag_json_count(&j, "newton_steps", o->steps);
@@ -379,16 +377,11 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
   }
   lag_json_end(&j, '}');
   if (closings(o) > 1) lag_json_number(&j, "whole_period", closings(o) * o->T);
-  lag_json_begin(&j, "start", '{');
-  for (int i = 0; i < o->n; i++)
+  JSON_EACH(&j, "start", '{', i, o->n)
     lag_json_number(&j, lag_state_column(app->sim, i).name, lag_sim_declared(app->sim, i, o->y[i]));
-  lag_json_end(&j, '}');
   lag_json_count(&j, "trivial_multipliers", o->ntrivial);
-  lag_json_begin(&j, "multipliers", '[');
-  for (int i = 0; i < o->nmultipliers; i++) {
+  JSON_EACH(&j, "multipliers", '[', i, o->nmultipliers)
     lag_json_row(&j, NULL, 2, (const double[]){o->re[i], o->im[i]});
-  }
-  lag_json_end(&j, ']');
   lag_json_string(&j, "closed", o->closed);
   lag_json_number(&j, "pairing", o->pairing);
   lag_json_strings(&j, {"verdict", verdict_names[v]}, {"reason", why});
@@ -399,15 +392,13 @@ static void put_json(FILE *f, App *app, const PeriodicOrbit *o) {
 
 /* How near the search came, as JSON. */
 static void json_not_found(App *app, const PeriodicOrbit *o) {
-  Json j = {.f = stdout};
-  lag_json_begin(&j, NULL, '{');
-  lag_json_strings(&j, {"model", app->scene->model->name}, {"scene", app->scene->name},
-                       {"status", "no periodic motion"});
+  Json j = lag_app_json(app, stdout);
+  lag_json_string(&j, "status", "no periodic motion");
   lag_json_numbers(&j, {"period", o->T}, {"residual", o->residual});
   lag_json_count(&j, "newton_steps", o->steps);
-  lag_json_begin(&j, "residuals", '[');
-  for (int k = 0; k < ORBIT_TRACE && o->trace[k] > 0; k++) lag_json_number(&j, NULL, o->trace[k]);
-  lag_json_end(&j, ']');
+  int traced = 0;
+  while (traced < ORBIT_TRACE && o->trace[traced] > 0) traced++;
+  lag_json_row(&j, "residuals", traced, o->trace);
   lag_json_close(&j);
 }
 

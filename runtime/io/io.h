@@ -208,8 +208,16 @@ void lag_json_truth(Json *j, const char *name, int yes);
 /* x[n] as an array; x[rows][columns] as one of arrays. */
 void lag_json_row(Json *j, const char *name, int n, const double *x);
 void lag_json_matrix(Json *j, const char *name, int rows, int columns, const double *x);
-/* Ends the outermost object, and its line. */
+/* The outermost object: its begin; its end, and that of its line. */
+Json lag_json_open(FILE *f);
 void lag_json_close(Json *j);
+/* A member with n elements, each written by the statement behind, and an array of objects with the members written
+ * there: JSON_EACH(j, "names", '[', i, n) lag_json_string(j, NULL, name[i]). */
+#define JSON_EACH(j, name, bracket, i, n) \
+  for (int i = (lag_json_begin(j, name, bracket), 0); i < (n) || (lag_json_end(j, (bracket) + 2), 0); i++)
+#define JSON_OBJECTS(j, name, i, n) \
+  for (int i = (lag_json_begin(j, name, '['), 0); \
+       i < (n) ? (lag_json_begin(j, NULL, '{'), 1) : (lag_json_end(j, ']'), 0); lag_json_end(j, '}'), i++)
 
 /* Several members: lag_json_numbers(j, {"t", t}, {"x", x}). */
 #define JSON_LIST(Each, ...) (const Each[]){__VA_ARGS__, {NULL, 0}}
