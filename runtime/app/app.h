@@ -148,6 +148,8 @@ int lag_args_decimal(const char *text, double *x);
 int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x);
 /* x := the whole number of an option, from 1 on. 0, or EXIT_USAGE after a message. */
 int lag_args_count(const Args *a, const char *option, const char *text, const char *example, long long *x);
+/* every := the time between rows that --every gives, if it does. 0, or EXIT_USAGE after a message. */
+int lag_args_every(const Args *a, double *every);
 /* Prints an error to standard error after the program's name; returns EXIT_USAGE. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
@@ -229,6 +231,8 @@ int lag_portrait_open(App *app);
  * failure. */
 int lag_app_put_row(App *app);
 int lag_app_write_row(App *app, int drawn);
+/* All rows of a table to a file; 0, or EXIT_USAGE after a message. */
+int lag_app_write_table(const App *app, const char *path, const Table *t);
 /* Signals that end a run (Ctrl-C, SIGTERM, SIGHUP) let it finish its step and write its files; nohup is respected.
  * Called before files are opened, so that none is left over. */
 void lag_app_catch_interrupt(void);
@@ -250,8 +254,10 @@ void lag_app_free(App *app);
 /* multi_run_plot.c: whether the command line names several scenes or methods, or --vs, for one picture; draws it and
  * returns the exit status. */
 int lag_app_overlays(const Args *a);
-/* Length of the first method in a list with commas; those between the parentheses of options separate none. */
+/* Length of the first method in a list with commas; those between the parentheses of options separate none.
+ * lag_app_next_method: the one behind it; NULL: none. */
 size_t lag_app_method_length(const char *list);
+const char *lag_app_next_method(const char *list);
 int lag_app_overlay(App *app);
 
 /* area_plot.c: --cloud. Returns the exit status. */
@@ -355,6 +361,8 @@ int lag_app_orbit_set_up(App *app);
 int lag_app_orbit_holds(App *app, struct PeriodicOrbit *o); /* its conditions, those of --hold */
 int lag_app_orbit_open(App *app, struct PeriodicOrbit *o);
 int lag_app_orbit_solve(App *app, struct PeriodicOrbit *o);
+/* The rest of a scene to paste: values of the command line that are no starts, the start y[n], the span. */
+void lag_app_put_start(FILE *f, const App *app, const double *y, double span);
 /* orbit_manifolds.c: --manifold, of the orbit, or with --equilibrium of the rest next to the start. 0, or the exit
  * status. */
 int lag_app_manifolds(App *app, struct PeriodicOrbit *o);
@@ -431,3 +439,5 @@ Json lag_app_json(const App *app, FILE *f);
 Json lag_report_json_open(const App *app, FILE *f);
 /* s[n] := method with the options that differ from their defaults, "rk45(tol=1e-09)". */
 void lag_report_method(const App *app, char *s, size_t n);
+/* The first line of reports: model, scene and method. */
+void lag_report_head(const App *app, FILE *f);

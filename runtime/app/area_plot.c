@@ -306,15 +306,14 @@ static int one_method(Cloud *c, int method) {
 /* c->names := the methods of --method, with commas between them; NULL: the scene's, named when set up. */
 static int split_methods(Cloud *c) {
   const char *list = c->app->args.method;
-  c->methods = list ? 0 : 1;
   c->names = calloc((list ? strlen(list) : 0) + 1, sizeof *c->names);
-  if (!c->names) return lag_app_error(&c->app->args, "out of memory");
-  for (size_t n; list && *list; list += n + strspn(list + n, ", ")) {
-    n = lag_app_method_length(list);
-    if (!(c->names[c->methods] = calloc(n + 1, 1))) return lag_app_error(&c->app->args, "out of memory");
-    memcpy(c->names[c->methods++], list, n);
+  for (; c->names && list; list = lag_app_next_method(list)) {
+    char *name = calloc(lag_app_method_length(list) + 1, 1);
+    if (!(c->names[c->methods++] = name)) return lag_app_error(&c->app->args, "out of memory");
+    memcpy(name, list, lag_app_method_length(list));
   }
-  return 0;
+  if (!c->methods) c->methods = 1;
+  return c->names ? 0 : lag_app_error(&c->app->args, "out of memory");
 }
 
 int lag_app_cloud(App *app) {

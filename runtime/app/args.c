@@ -59,6 +59,14 @@ int lag_args_count(const Args *a, const char *option, const char *text, const ch
   return 0;
 }
 
+int lag_args_every(const Args *a, double *every) {
+  if (!a->every) return 0;
+  if (!lag_args_number(a, "--every", a->every, "--every 0.01", every)) return EXIT_USAGE;
+  return *every > 0 ? 0
+                    : lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01",
+                                    a->every);
+}
+
 static const Option options[] = {
 #define TO(f) offsetof(Args, f), 0
 #define OWN_FLAG TO
@@ -259,37 +267,34 @@ size_t lag_app_method_length(const char *list) {
   return n + strcspn(list + n, ",");
 }
 
+const char *lag_app_next_method(const char *list) {
+  list += lag_app_method_length(list);
+  return *list ? list + 1 + strspn(list + 1, " ") : NULL;
+}
+
 int lag_app_overlays(const Args *a) {
   return a->nscenes > 1 || a->nvs > 0 || a->starts || (a->method && a->method[lag_app_method_length(a->method)] == ',');
 }
 
-/* An option for one run that a picture of several goes without, or NULL. */
-static const char *of_one_run(const Args *a) {
-  return a->out           ? "-o"
-         : a->json        ? "--json"
-         : a->html        ? "--html"
-         : a->save        ? "--save-state"
-         : a->resume      ? "--resume"
-         : a->events      ? "--events"
-         : a->measures    ? "--measure"
-         : a->tangent     ? "--tangent"
-         : a->sensitivity ? "--sensitivity"
-         : a->volume      ? "--volume"
-         : a->accuracy    ? "--accuracy"
-                          : NULL;
+/* The first of these options that is given, or NULL. */
+static const char *first_given(const Args *a, const char *const *names) {
+  for (; *names; names++) {
+    const Option *o = find_option(a, *names, strlen(*names));
+    if (is_given(a, o)) return o->brief ? o->brief : o->name;
+  }
+  return NULL;
 }
+
+/* Options for one run that a picture of several goes without. */
+static const char *const of_one_run[] = {"--output", "--json", "--html", "--save-state", "--resume", "--events",
+                                         "--measure", "--tangent", "--sensitivity", "--volume", "--accuracy", NULL};
 
 /* --cloud draws one scene by several methods, and writes nothing else. */
 static int check_cloud(const Args *a) {
-  const char *other = a->section        ? "--section"
-                      : a->vs           ? "--vs"
-                      : a->starts       ? "--starts"
-                      : a->distance     ? "--distance"
-                      : a->energy_error ? "--energy-error"
-                      : a->portrait     ? "--portrait"
-                      : a->potential    ? "--potential"
-                      : a->sketch       ? "--sketch"
-                                        : of_one_run(a);
+  static const char *const others[] = {"--section", "--vs", "--starts", "--distance", "--energy-error", "--portrait",
+                                       "--potential", "--sketch", NULL};
+  const char *other = first_given(a, others);
+  other = other ? other : first_given(a, of_one_run);
   if (other) return lag_app_error(a, "%s and --cloud: a cloud is a picture of its own; leave one of them out", other);
   if (a->nscenes > 1)
     return lag_app_error(a, "--cloud: two scenes are named, %s and %s; a cloud is around the start of one",
@@ -302,7 +307,7 @@ static int check_cloud(const Args *a) {
 
 /* Several scenes or methods, or --vs, draw one picture, and write nothing else. */
 static int check_overlay(const Args *a) {
-  const char *other = of_one_run(a);
+  const char *other = first_given(a, of_one_run);
   if (a->cloud) return check_cloud(a);
   if (a->fit && !a->vs && !a->starts) return 0;
   if (!lag_app_overlays(a)) return 0;

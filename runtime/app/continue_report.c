@@ -249,12 +249,7 @@ int lag_continue_write_rows(Job *job) {
   const char *out = app->args.out ? app->args.out : app->args.resume;
   if (!out && !app->args.svg) return 0;
   if (add_rows(job)) return lag_app_error(&app->args, "out of memory");
-  if (!out) return 0;
-  if (lag_rows_open(&app->rows, out, &app->table)) return lag_app_io_error(app, out);
-  int rc = 0;
-  for (size_t k = 0; k < app->table.nrows && rc == 0; k++)
-    rc = lag_rows_write(&app->rows, app->table.data + k * (size_t)app->table.ncols);
-  return lag_rows_close(&app->rows, rc == 0) || rc ? lag_app_io_error(app, out) : 0;
+  return out ? lag_app_write_table(app, out, &app->table) : 0;
 }
 
 /* Rows of the picture: the parameter and the value where it is stable, or where it is not; rows without values part

@@ -186,9 +186,8 @@ static void put_points(const DesignRun *d) {
 
 static void put_report(const DesignRun *d) {
   const Fit *f = &d->of.fit;
-  char method[NAME], even[40];
-  lag_report_method(d->of.app, method, sizeof method);
-  printf("model %s, scene %s, method %s\n", d->of.app->scene->model->name, d->of.app->scene->name, method);
+  char even[40];
+  lag_report_head(d->of.app, stdout);
   printf("best %d of %d measurements, at %d times from %.6g to %.6g s:\n", d->best, d->ntimes * f->ncolumns, d->ntimes,
          d->t[0], d->t[d->ntimes - 1]);
   put_points(d);

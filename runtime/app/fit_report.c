@@ -168,9 +168,7 @@ static void put_weights(const FitRun *r, FILE *out) {
 
 void lag_fit_report(const FitRun *r, FILE *out) {
   const Fit *f = &r->fit;
-  char method[200];
-  lag_report_method(r->app, method, sizeof method);
-  fprintf(out, "model %s, scene %s, method %s\n", r->app->scene->model->name, r->app->scene->name, method);
+  lag_report_head(r->app, out);
   fprintf(out, "%s after %d steps, %d runs of the motion\n", f->converged ? "converged" : "not converged", f->steps,
           f->evaluations);
   if (f->nodes)

@@ -137,21 +137,21 @@ static void put_json(FILE *f, const App *app, const LinearSystem *s) {
 
 /* The rows of [A B; C D], with a column for each state and input. */
 static int put_file(App *app, const LinearSystem *s) {
-  int columns = s->n + s->nu, bad = 0;
-  Table t = {.ncols = columns, .cols = calloc((size_t)columns, sizeof *t.cols)};
+  int columns = s->n + s->nu, rc = 0;
+  Table t = {.ncols = columns, .keep = 1, .cols = calloc((size_t)columns, sizeof *t.cols)};
   double *row = calloc((size_t)columns, sizeof *row);
-  Rows rows = {0};
   char name[NAME + 4];
-  if (!t.cols || !row) return free(t.cols), free(row), lag_app_error(&app->args, "out of memory");
-  for (int k = 0; k < columns; k++) snprintf(t.cols[k].name, sizeof t.cols[k].name, "%s", column_name(s, k, name));
-  bad = lag_rows_open(&rows, app->args.out, &t);
-  for (int i = 0; i < s->n + s->nout && !bad; i++) {
+  if (!t.cols || !row) rc = -1;
+  for (int k = 0; k < columns && rc == 0; k++)
+    snprintf(t.cols[k].name, sizeof t.cols[k].name, "%s", column_name(s, k, name));
+  for (int i = 0; i < s->n + s->nout && rc == 0; i++) {
     for (int k = 0; k < columns; k++) row[k] = element(s, i, k);
-    bad = lag_rows_write(&rows, row);
+    rc = lag_table_add(&t, row);
   }
-  if (rows.open) bad |= lag_rows_close(&rows, !bad);
-  free(t.cols), free(row);
-  return bad ? lag_app_io_error(app, app->args.out) : 0;
+  rc = rc ? lag_app_error(&app->args, "out of memory") : lag_app_write_table(app, app->args.out, &t);
+  lag_table_free(&t);
+  free(row);
+  return rc;
 }
 
 /* ---- The command */

@@ -140,9 +140,7 @@ static void conclude(FILE *f, const Lyapunov *l) {
 }
 
 static void put_text(FILE *f, App *app, const Lyapunov *l) {
-  char method[256];
-  lag_report_method(app, method, sizeof method);
-  fprintf(f, "model %s, scene %s, method %s\n", app->scene->model->name, app->scene->name, method);
+  lag_report_head(app, f);
   if (app->why[0]) fprintf(f, "chosen: %s\n", app->why);
   if (!(l->t > l->begun)) {
     fprintf(f, "no step of the run ends after t = %g s, where the measurement begins; run longer: --until\n", l->from);

@@ -261,22 +261,26 @@ static void free_name(const App *app, char name[32]) {
   }
 }
 
-static void put_scene(FILE *f, const App *app, const PeriodicOrbit *o) {
-  char text[64], name[32];
-  free_name(app, name);
-  fprintf(f, "\nscene %s \"periodic\" {\n  like %s\n", name, app->scene->name);
+void lag_app_put_start(FILE *f, const App *app, const double *y, double span) {
+  char text[64];
   for (int k = 0; k < app->args.nsets; k++) {
     const char *set = app->args.sets[k], *eq = strchr(set, '=');
     if (lag_state_named(app, set, (size_t)(eq - set)) < 0) fprintf(f, "  %.*s = %s\n", (int)(eq - set), set, eq + 1);
   }
-  for (int i = 0; i < o->n; i++) {
+  for (int i = 0; i < app->sim->pb.n; i++) {
     Column c = lag_state_column(app->sim, i);
     fprintf(f, "%s%s = %s", i % 4 == 0 ? i ? "\n  start " : "  start " : ", ", c.name,
-            lag_number_text(lag_sim_declared(app->sim, i, o->y[i]), text));
+            lag_number_text(lag_sim_declared(app->sim, i, y[i]), text));
     if (c.unit[0] && strcmp(c.unit, "1") != 0) fprintf(f, " [%s]", c.unit);
   }
-  fprintf(f, "\n  span %s", lag_number_text(o->T * (closings(o) ? closings(o) : 1), text));
-  fputs("\n}\n", f);
+  fprintf(f, "\n  span %s\n}\n", lag_number_text(span, text));
+}
+
+static void put_scene(FILE *f, const App *app, const PeriodicOrbit *o) {
+  char name[32];
+  free_name(app, name);
+  fprintf(f, "\nscene %s \"periodic\" {\n  like %s\n", name, app->scene->name);
+  lag_app_put_start(f, app, o->y, o->T * (closings(o) ? closings(o) : 1));
 }
 
 static void put_multipliers(FILE *f, const PeriodicOrbit *o) {

@@ -24,6 +24,12 @@ void lag_report_method(const App *app, char *s, size_t n) {
   if (used < n) snprintf(s[used - 1] == '(' ? s + used - 1 : s + used, n - used, "%s", s[used - 1] == '(' ? "" : ")");
 }
 
+void lag_report_head(const App *app, FILE *f) {
+  char method[256];
+  lag_report_method(app, method, sizeof method);
+  fprintf(f, "model %s, scene %s, method %s\n", app->scene->model->name, app->scene->name, method);
+}
+
 /* ---- Energy and other charges: drift or balance of each, and whether it grows */
 
 const char *lag_charge_word(const lag_charge_stats *c) {
@@ -393,10 +399,8 @@ static void exact_json(const App *app, Json *j) {
 void lag_report_text(App *app, FILE *f) {
   const lag_scene *c = app->scene;
   lag_stats st;
-  char method[256];
   lag_sim_stats(app->sim, &st);
-  lag_report_method(app, method, sizeof method);
-  fprintf(f, "model %s, scene %s, method %s\n", c->model->name, c->name, method);
+  lag_report_head(app, f);
   if (app->why[0]) fprintf(f, "chosen: %s\n", app->why);
   verdict(app, f);
   final_state(app, f);

@@ -187,6 +187,7 @@ double lag_equal_step(const lag_sim *s);
 /* saved_state.c: FNV-1a hash that goes on from h with a number, by its value: in memory, numbers of some precisions
  * have bytes without meaning. */
 unsigned long long lag_hash_number(unsigned long long h, double x);
+unsigned long long lag_hash_numbers(unsigned long long h, long long n, const double *x);
 
 /* A number for %s in a message. */
 #define LAG_TEXT(x) lag_number_text((x), (char[64]){0})
