@@ -28,6 +28,7 @@ typedef struct Args {
   char **sets; /* name=value, in order */
   const char **scenes; /* all scenes named */
   int nsets, nscenes, argc;
+  unsigned analysis; /* RUN, or the analysis that is asked for */
   char **argv; /* as main gets them */
 } Args;
 
@@ -138,6 +139,8 @@ static inline int lag_args_tangents(const Args *a) { return a->lyapunov || a->or
 
 /* Row i; NULL past the end. */
 const Option *lag_args_option(int i);
+/* The analysis that an option begins; 0: none. */
+unsigned lag_args_analysis_named(const char *option);
 
 /* args.c: parses and checks the command line. 0, or EXIT_USAGE after a message. */
 int lag_args_parse(Args *a, int argc, char **argv);

@@ -209,7 +209,8 @@ static unsigned analyses_with(const Option *o) {
   return all;
 }
 
-/* Analyses and what they take; an option of several is said to be for the first. */
+/* Analyses and what they take. An option of several is said to be for the first; --design stands behind --fit, which it
+ * takes. */
 static const struct {
   unsigned is;
   const char *option, *takes;
@@ -231,32 +232,37 @@ static const struct {
     {LYAPUNOV, "--lyapunov",
      ", which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json"},
     {EFFECTS, "--effects", ", which takes name=value, --until and a method"},
+    {REFERENCE, "--reference", ", which takes name=value and --until"},
 };
+enum { NANALYSES = sizeof analyses / sizeof *analyses };
+
+unsigned lag_args_analysis_named(const char *option) {
+  int i = 0;
+  while (i < NANALYSES && strcmp(analyses[i].option, option) != 0) i++;
+  return i < NANALYSES ? analyses[i].is : 0;
+}
 
 /* Index of the first of these analyses. */
 static int first_of(unsigned some) {
-  int i = 0, last = (int)(sizeof analyses / sizeof *analyses) - 1;
-  while (i < last && !(analyses[i].is & some)) i++;
+  int i = 0;
+  while (i < NANALYSES - 1 && !(analyses[i].is & some)) i++;
   return i;
 }
 
 /* Refuses options that a run, or the analysis that is asked for, does not use. */
-static int check_analysis(const Args *a) {
-  const unsigned what = a->sweep ? SWEEP : a->design ? DESIGN : a->fit ? FIT : a->modes ? MODES
-                        : a->linearize ? LINEARIZE
-                        : a->orbit ? ORBIT : a->continues ? CONTINUE
-                        : a->cost ? COST : a->reference ? REFERENCE
-                        : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
+static int check_analysis(Args *a) {
+  unsigned what = RUN;
+  for (int i = 0; i < NANALYSES; i++)
+    if (is_given(a, find_option(a, analyses[i].option, strlen(analyses[i].option)))) what = analyses[i].is;
+  a->analysis = what;
   for (int i = 0; i < NOPTIONS; i++) {
     const Option *o = &options[i];
     unsigned with = analyses_with(o);
     if (!is_given(a, o) || with & what) continue;
-    if (what != RUN && what != REFERENCE)
-      return lag_app_error(a, "%s has no meaning for %s%s", o->name, analyses[first_of(what)].option,
-                           analyses[first_of(what)].takes);
-    return with & RUN
-               ? lag_app_error(a, "%s has no meaning for --reference, which takes name=value and --until", o->name)
-               : lag_app_error(a, "%s is for %s", o->name, analyses[first_of(with)].option);
+    if (what == RUN || (what == REFERENCE && !(with & RUN)))
+      return lag_app_error(a, "%s is for %s", o->name, analyses[first_of(with)].option);
+    return lag_app_error(a, "%s has no meaning for %s%s", o->name, analyses[first_of(what)].option,
+                         analyses[first_of(what)].takes);
   }
   return check_files(a, what);
 }
@@ -393,7 +399,7 @@ static const char *file_of_doubles(const char *path) {
   return of_doubles && strcmp(LAG_PRECISION, "double") != 0 ? path : NULL;
 }
 
-static int check(const Args *a) {
+static int check(Args *a) {
   const char *doubles = file_of_doubles(a->out) ? a->out : file_of_doubles(a->motions);
   const Mistake streams[] = {
       {is_stdout(a->motions), "--motions -: motions are written to a file, for example --motions motions.csv", NULL},
