@@ -217,6 +217,13 @@ int lag_consistent_start(lag_sim *sim);
 /* accessors.c: out[nout] := outputs of the scene [SI] at y, t; those with multipliers or accelerations are NaN near
  * a singular position of the constraints. LAG_OK, or the status of the failed function. */
 int lag_observe(lag_sim *sim, double t, const double *y, double *out);
+/* out[noutputs] := the outputs in SI, or the state where the scene has none. Adds to a column of D[noutputs columns]:
+ * the outputs, times weight; their derivative by parameter column j. */
+int lag_outputs_at(lag_sim *s, double t, const double *y, double *out);
+int lag_add_outputs(lag_sim *s, double t, const double *y, double weight, double *out, int columns, double *column);
+int lag_outputs_by_parameter(lag_sim *s, double t, const double *y, int j, double *out, int columns, double *column);
+/* M[nq nq] := the symmetric matrix with these entries of its lower triangle. */
+void lag_symmetric_matrix(size_t nq, int n, const lag_entry *at, const double *entry, double *M);
 /* constraint_rank.c: A[n nq] := Jacobian of all constraints by the coordinates at y, t, row-major; unit[nq] :=
  * coordinate scales (lag_scales of lag_kkt.h); mass[nq nq] := M unless NULL. 0, or the model's status; then they are
  * undefined. */

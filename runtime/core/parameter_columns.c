@@ -331,20 +331,6 @@ int lag_action_by_parameters(lag_sim *s, int event, double *after, double *chang
   return rc;
 }
 
-/* out[nout] := outputs of the scene; or the state where it has none. */
-static int outputs_at(lag_sim *s, const double *y, double *out) {
-  if (s->scene->nout) return lag_observe(s, s->run->t, y, out);
-  memcpy(out, y, (size_t)s->pb.n * sizeof *out);
-  return LAG_OK;
-}
-
-/* Adds weight/h times outputs to column c of D. */
-static int add_outputs(lag_sim *s, const double *y, double weight, double *out, int c, double *D) {
-  int nout = lag_sim_noutputs(s), rc = outputs_at(s, y, out);
-  for (int i = 0; i < nout; i++) D[i * s->tangent_columns + c] += weight * out[i];
-  return rc;
-}
-
 /* The start, on which closed forms depend, moves along column c. */
 static void move_begin(lag_sim *s, int c, double by) {
   for (int i = 0; i < s->pb.n; i++) s->begin[i] += by * s->sensitivity->begin[i * s->tangent_columns + c];
@@ -361,20 +347,9 @@ static int outputs_along(lag_sim *s, const double *Y, int c, double *y, double *
   LAG_EACH_DIFFERENCE(k) {
     for (int i = 0; i < n; i++) y[i] = s->now[i] + k * h * Y[i * columns + c];
     if (s->scene->nexact) move_begin(s, c, k * h);
-    rc = rc ? rc : add_outputs(s, y, lag_difference_weight(k) / h, out, c, D);
+    rc = rc ? rc : lag_add_outputs(s, s->run->t, y, lag_difference_weight(k) / h, out, columns, D + c);
     memcpy(s->begin, kept, (size_t)n * sizeof *kept);
   }
-  return rc;
-}
-
-static int outputs_by_parameter(lag_sim *s, int j, double *out, double *D) {
-  const lag_parameter_columns *by = s->pb.by;
-  int rc = LAG_OK;
-  LAG_EACH_DIFFERENCE(k) {
-    lag_use_parameters(s, j, k);
-    rc = rc ? rc : add_outputs(s, s->now, lag_difference_weight(k) / by->h[j], out, by->column[j], D);
-  }
-  lag_use_parameters(s, 0, 0);
   return rc;
 }
 
@@ -386,7 +361,8 @@ int lag_sim_output_sensitivity(lag_sim *s, const double *Y, double *D) {
   if (!y) return lag_fail(s, LAG_ENOMEM, "out of memory");
   memset(D, 0, (size_t)(nout * columns) * sizeof *D);
   for (int c = 0; c < columns && rc == LAG_OK; c++) rc = outputs_along(s, Y, c, y, y + n, D);
-  for (int j = 0; s->pb.by && j < s->pb.by->n && rc == LAG_OK; j++) rc = outputs_by_parameter(s, j, y + n, D);
+  for (int j = 0; s->pb.by && j < s->pb.by->n && rc == LAG_OK; j++)
+    rc = lag_outputs_by_parameter(s, s->run->t, s->now, j, y + n, columns, D + s->pb.by->column[j]);
   for (int i = 0; i < nout; i++)
     for (int c = 0; c < columns; c++) D[i * columns + c] /= lag_sim_output_info(s, i, NULL, 0, NULL, 0);
   free(y);
