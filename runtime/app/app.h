@@ -151,6 +151,10 @@ int lag_args_decimal(const char *text, double *x);
 int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x);
 /* x := the whole number of an option, from 1 on. 0, or EXIT_USAGE after a message. */
 int lag_args_count(const Args *a, const char *option, const char *text, const char *example, long long *x);
+/* x := the positive number of an option, whose meaning the message states; unchanged where text is NULL. 0, or
+ * EXIT_USAGE after a message. */
+int lag_args_positive(const Args *a, const char *option, const char *text, const char *example, const char *meaning,
+                      double *x);
 /* every := the time between rows that --every gives, if it does. 0, or EXIT_USAGE after a message. */
 int lag_args_every(const Args *a, double *every);
 /* Prints an error to standard error after the program's name; returns EXIT_USAGE. */

@@ -59,12 +59,15 @@ int lag_args_count(const Args *a, const char *option, const char *text, const ch
   return 0;
 }
 
+int lag_args_positive(const Args *a, const char *option, const char *text, const char *example, const char *meaning,
+                      double *x) {
+  if (!text) return 0;
+  if (!lag_args_number(a, option, text, example, x)) return EXIT_USAGE;
+  return *x > 0 ? 0 : lag_app_error(a, "%s %s: %s, for example %s", option, text, meaning, example);
+}
+
 int lag_args_every(const Args *a, double *every) {
-  if (!a->every) return 0;
-  if (!lag_args_number(a, "--every", a->every, "--every 0.01", every)) return EXIT_USAGE;
-  return *every > 0 ? 0
-                    : lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01",
-                                    a->every);
+  return lag_args_positive(a, "--every", a->every, "--every 0.01", "the time between rows must be positive", every);
 }
 
 static const Option options[] = {

@@ -401,10 +401,9 @@ static int show(App *app, Cost *c) {
 static int run_cost(App *app, Cost *c) {
   const Args *a = &app->args;
   int limited = 0, rc = lag_cost_list_methods(app, c);
-  if (rc == 0 && a->target &&
-      (!lag_args_number(a, "--target", a->target, "--target 1e-8", &c->target) || c->target <= 0))
-    rc =
-        lag_app_error(a, "--target %s: an error to reach, relative and positive; for example --target 1e-8", a->target);
+  if (rc == 0)
+    rc = lag_args_positive(a, "--target", a->target, "--target 1e-8", "an error to reach, relative and positive",
+                           &c->target);
   rc = rc ? rc : lag_app_check_outputs(app);
   app->progress = isatty(2) && !a->quiet ? 0 : -1;
   rc = rc                                            ? rc
@@ -456,9 +455,8 @@ int lag_app_cost(App *app) {
                          a->error);
   int failed = lag_cost_begin(&cost, rows, output > 0 ? 1 : app->sim->pb.n, t0, span);
   rc = failed ? lag_app_error(a, "out of memory") : span == 0.0 ? lag_app_no_span(app) : 0;
-  if (rc == 0 && a->seconds &&
-      (!lag_args_number(a, "--seconds", a->seconds, "--seconds 60", &cost.seconds) || cost.seconds <= 0))
-    rc = lag_app_error(a, "--seconds %s: the time to spend, for example --seconds 60", a->seconds);
+  if (rc == 0)
+    rc = lag_args_positive(a, "--seconds", a->seconds, "--seconds 60", "the time to spend", &cost.seconds);
   cost.reference.output = output;
   if (rc == 0 && !a->reference) {
     rc = run_cost(app, &cost);

@@ -65,8 +65,8 @@ static int take_times(DesignRun *d) {
   const Args *a = &app->args;
   double t0 = app->scene->t0, span = app->until - t0, every = app->scene->every;
   if (!(every > 0)) every = fabs(span) / 200;
-  if (a->every && !lag_args_number(a, "--every", a->every, "--every 0.1", &every)) return EXIT_USAGE;
-  if (!(every > 0)) return lag_app_error(a, "--every: the time between measurements is positive");
+  if (lag_args_positive(a, "--every", a->every, "--every 0.1", "the time between measurements is positive", &every))
+    return EXIT_USAGE;
   double rows = floor(fabs(span) / every * (1 + 1e-12)) + 1;
   if (rows * d->of.fit.ncolumns > MOST_CANDIDATES)
     return lag_app_error(&app->args, "%.0f candidates are too many; write a larger --every", rows * d->of.fit.ncolumns);

@@ -183,9 +183,9 @@ int lag_fit_take_sigma(FitRun *r, FitColumn *c) {
     if (eq && !is_name_of(c->label, text, (size_t)(eq - text))) continue;
     if (strchr(eq ? eq + 1 : text, '['))
       return lag_app_error(a, "--sigma %s: write the number alone; its unit is that of the column, %s", text, c->label);
-    if (!lag_args_number(a, "--sigma", eq ? eq + 1 : text, "--sigma 0.01, or --sigma th=0.5", &c->sigma))
+    if (lag_args_positive(a, "--sigma", eq ? eq + 1 : text, "--sigma 0.01, or --sigma th=0.5",
+                          "the error of a value is positive", &c->sigma))
       return EXIT_USAGE;
-    if (!(c->sigma > 0)) return lag_app_error(a, "--sigma %s: the error of a value is positive", text);
   }
   return 0;
 }

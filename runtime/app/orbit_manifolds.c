@@ -29,8 +29,7 @@ int lag_manifolds_settings(Manifolds *m) {
   m->wanted[0] = choice != 1;
   m->wanted[1] = choice != 0;
   m->phases = (int)fmin((double)phases, 100000);
-  if (a->follow && !lag_args_number(a, "--follow", a->follow, "--follow 20", &m->follow)) return EXIT_USAGE;
-  if (a->follow && !(m->follow > 0)) return lag_app_error(a, "--follow %s: a time above 0", a->follow);
+  if (lag_args_positive(a, "--follow", a->follow, "--follow 20", "a time above 0", &m->follow)) return EXIT_USAGE;
   if (a->manifold && !a->out && !a->svg && !a->to)
     return lag_app_error(a, "--manifold: the runs need a file: -o FILE.csv, or --svg FILE.svg for a picture");
   return lag_section_choose(m->app);

@@ -93,8 +93,8 @@ static int given_period(const Args *a, double *T) {
   *T = 0;
   if (a->period && a->guess)
     return lag_app_error(a, "--period and --guess: the period is given, or about that; leave one out");
-  if (text && !lag_args_number(a, option, text, a->period ? "--period 6.28" : "--guess 6.28", T)) return EXIT_USAGE;
-  return text && *T <= 0 ? lag_app_error(a, "%s %s: a period is a positive time", option, text) : 0;
+  return lag_args_positive(a, option, text, a->period ? "--period 6.28" : "--guess 6.28", "a period is a positive time",
+                           T);
 }
 
 /* End of the search for a period: --until, or a little more than the scene's span, which may be the period. */

@@ -240,11 +240,8 @@ int lag_app_realtime(App *app, const Cost *c) {
   double *least = malloc(WATCHED * sizeof *least);
   Samples own = {0};
   const lag_method *m;
-  int n = 0, rc = 0;
-  if (!lag_args_number(a, "--realtime", a->realtime, "--realtime 1e-3", &step)) rc = EXIT_USAGE;
-  else if (!(step > 0))
-    rc = lag_app_error(a, "--realtime %s: the time of a step [s], for example --realtime 1e-3", a->realtime);
-  else if (!all || !least || lag_samples_init(&own, c->reference.rows, c->reference.n))
+  int n = 0, rc = lag_args_positive(a, "--realtime", a->realtime, "--realtime 1e-3", "the time of a step [s]", &step);
+  if (rc == 0 && (!all || !least || lag_samples_init(&own, c->reference.rows, c->reference.n)))
     rc = lag_app_error(a, "out of memory");
   for (int i = 0; rc == 0 && (m = lag_app_method_at(app, i)) != NULL; i++) {
     if (strcmp(m->name, "variational") == 0 || strcmp(m->name, "gauss") == 0)
