@@ -333,6 +333,8 @@ void lag_report_gradient_json(App *app, Json *j);
  * end: after it. */
 int lag_app_error_begin(App *app);
 void lag_app_error_end(App *app);
+/* An option of the method of `sim`, where it has it; others stay. LAG_OK, or a refusal. */
+int lag_app_set_option(lag_sim *sim, const char *name, double value);
 /* `to` takes the method and options of `from`, and its tolerance times `times`. LAG_OK, or a refusal. */
 int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times);
 /* Compares the motion noted in *e, of `run`, with a more accurate run of at most `most` operations. LAG_OK, also
