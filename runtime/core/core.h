@@ -544,6 +544,9 @@ int lag_is_member(const char *var, const char *family, size_t length);
 int lag_nearest_name(const lag_model *model, const char *name, char *best, size_t nbest);
 /* part := member or component k of the family `name` ("th": "th[1]", "th'": "th[1]'", "r": "r.x"); 0 past the last. */
 int lag_family_member(const lag_model *model, const char *name, int k, char *part, size_t npart);
+/* LAG_EINVAL, after a message: the parts of a family, which one may `use` ("set"); or that of these kinds of names the
+ * model has no such one, and the nearest. */
+int lag_no_such_name(lag_sim *s, const char *name, const char *use, const char *kinds);
 /* The nearest of several names, while they are tried one by one; best: NULL where none is near. */
 typedef struct lag_nearest {
   const char *name, *best;

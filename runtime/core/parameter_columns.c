@@ -204,20 +204,14 @@ static const char *bare_name(const char *name, char *s, size_t n) {
 
 static int find_target(lag_sim *s, const char *name, Target *of) {
   const lag_var *var;
-  char bare[128], near[64];
+  char bare[128];
   const lag_model *m = s->scene->model;
   of->kind = lag_find_name(m, bare_name(name, bare, sizeof bare), &of->index, &var);
   if (of->kind == LAG_IS_P && strcmp(bare, name) != 0)
     return lag_fail(s, LAG_EINVAL, "%s: %s is a parameter, the same at all times; leave (0) out", name, bare);
   if (of->kind == LAG_IS_U)
     return lag_fail(s, LAG_EINVAL, "%s is an input; name the parameters of its formula, or make it a parameter", bare);
-  if (of->kind == LAG_IS_NOTHING && lag_family_member(m, bare, 0, near, sizeof near))
-    return lag_fail(s, LAG_EINVAL, "%s has parts: name %s, and so on", bare, near);
-  if (of->kind == LAG_IS_NOTHING)
-    return lag_nearest_name(m, bare, near, sizeof near)
-               ? lag_fail(s, LAG_EINVAL, "%s: no such parameter or coordinate in model %s; did you mean %s?", bare,
-                          m->name, near)
-               : lag_fail(s, LAG_EINVAL, "%s: no such parameter or coordinate in model %s", bare, m->name);
+  if (of->kind == LAG_IS_NOTHING) return lag_no_such_name(s, bare, "name", "parameter or coordinate");
   if (of->kind == LAG_IS_V) of->index += m->nq;
   if (of->kind == LAG_IS_Z) of->index += 2 * m->nq;
   return LAG_OK;
