@@ -217,8 +217,8 @@ int lag_consistent_start(lag_sim *sim);
 /* accessors.c: out[nout] := outputs of the scene [SI] at y, t; those with multipliers or accelerations are NaN near
  * a singular position of the constraints. LAG_OK, or the status of the failed function. */
 int lag_observe(lag_sim *sim, double t, const double *y, double *out);
-/* out[noutputs] := the outputs in SI, or the state where the scene has none. Adds to a column of D[noutputs columns]:
- * the outputs, times weight; their derivative by parameter column j. */
+/* parameter_columns.c: out[noutputs] := the outputs in SI, or the state where the scene has none. Adds to a column of
+ * D[noutputs columns]: the outputs, times weight; their derivative by parameter column j. */
 int lag_outputs_at(lag_sim *s, double t, const double *y, double *out);
 int lag_add_outputs(lag_sim *s, double t, const double *y, double weight, double *out, int columns, double *column);
 int lag_outputs_by_parameter(lag_sim *s, double t, const double *y, int j, double *out, int columns, double *column);

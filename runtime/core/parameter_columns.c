@@ -325,6 +325,28 @@ int lag_action_by_parameters(lag_sim *s, int event, double *after, double *chang
   return rc;
 }
 
+int lag_outputs_at(lag_sim *s, double t, const double *y, double *out) {
+  if (s->scene->nout) return lag_observe(s, t, y, out);
+  memcpy(out, y, (size_t)s->pb.n * sizeof *out);
+  return LAG_OK;
+}
+
+int lag_add_outputs(lag_sim *s, double t, const double *y, double weight, double *out, int columns, double *column) {
+  int rc = lag_outputs_at(s, t, y, out);
+  for (int i = 0; i < lag_sim_noutputs(s) && rc == 0; i++) column[i * columns] += weight * out[i];
+  return rc;
+}
+
+int lag_outputs_by_parameter(lag_sim *s, double t, const double *y, int j, double *out, int columns, double *column) {
+  int rc = LAG_OK;
+  LAG_EACH_DIFFERENCE(k) {
+    lag_use_parameters(s, j, k);
+    rc = rc ? rc : lag_add_outputs(s, t, y, lag_difference_weight(k) / s->pb.by->h[j], out, columns, column);
+  }
+  lag_use_parameters(s, 0, 0);
+  return rc;
+}
+
 /* The start, on which closed forms depend, moves along column c. */
 static void move_begin(lag_sim *s, int c, double by) {
   for (int i = 0; i < s->pb.n; i++) s->begin[i] += by * s->sensitivity->begin[i * s->tangent_columns + c];
