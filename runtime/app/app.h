@@ -164,8 +164,11 @@ __attribute__((format(printf, 2, 3)))
 int lag_app_error(const Args *a, const char *format, ...);
 /* The same where an analysis has no result: EXIT_RUN. */
 #define lag_app_no_result(...) (lag_app_error(__VA_ARGS__), EXIT_RUN)
-/* Refuses a span without length; returns EXIT_USAGE. */
+/* Refuse a span without length, and a program without GSL, which "finds eigenvalues"; return EXIT_USAGE. */
 int lag_app_no_span(const App *app);
+int lag_app_no_gsl(const App *app, const char *does);
+/* Another run of the same program and command line, not set up. */
+App lag_app_like(const App *app);
 
 /* simulation_setup.c: app->scene and app->sim with values and method; lag_app_set_up_start: without the method. 0,
  * or EXIT_USAGE after a message. */

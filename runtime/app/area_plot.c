@@ -80,7 +80,7 @@ static int read_times(Cloud *c) {
 /* Sets up the simulation of a method, and finds the drawn columns. */
 static int set_up(Cloud *c, const char *method) {
   App *run = &c->run;
-  *run = (App){.program = c->app->program, .extras = c->app->extras, .args = c->app->args, .last_row = NAN};
+  *run = lag_app_like(c->app);
   run->args.method = method;
   int rc = lag_app_set_up(run);
   if (rc) return rc;

@@ -94,7 +94,7 @@ int lag_fit_compare(App *app) {
   Judged *all = calloc((size_t)n, sizeof *all);
   if (!all) return lag_app_error(&app->args, "out of memory");
   for (int i = 0; i < n && rc == 0; i++) {
-    App one = {.program = app->program, .extras = app->extras, .args = app->args, .last_row = NAN};
+    App one = lag_app_like(app);
     one.args.scene = app->args.scenes[i];
     FitRun r = {.app = &one, .compares = 1};
     rc = lag_fit_run(&r);

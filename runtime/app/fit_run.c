@@ -410,9 +410,7 @@ static int check_size(const FitRun *r) {
 static int prepare(FitRun *r) {
   App *app = r->app;
   const Args *a = &app->args;
-  if (!app->extras.fits)
-    return lag_app_error(a, "fits need GSL, which this simulator was built without: `apt-get install libgsl-dev`, make "
-                            "lagc again, and leave out --no-gsl");
+  if (!app->extras.fits) return lag_app_no_gsl(app, "solves least squares");
   if (!a->data) return lag_app_error(a, "--fit %s: the data are missing: --data motion.csv", a->fit);
   int rc = read_files(r);
   if (rc || (rc = lag_app_set_up_start(app)) != 0 || (rc = take_times(r)) != 0) return rc;

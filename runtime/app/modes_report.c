@@ -36,11 +36,7 @@ static int refuse(const App *app) {
   const lag_model *m = app->scene->model;
   const Args *a = &app->args;
   const char *source = app->program->source;
-  if (!app->extras.algebra) {
-    return lag_app_error(
-        a, "this simulator was built without GSL, which finds roots and eigenvalues; install GSL (libgsl-dev), make "
-           "lagc anew, and leave out --no-gsl");
-  }
+  if (!app->extras.algebra) return lag_app_no_gsl(app, "finds roots and eigenvalues");
   if (!m->linear && !in_tangent_space(app)) {
     return lag_app_error(
         a,

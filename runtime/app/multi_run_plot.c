@@ -70,10 +70,9 @@ static int add_run(Overlay *o, const char *scene, const char *method, const char
   size_t length = method ? lag_app_method_length(method) : 0;
   OverlaidRun *r = &o->runs[o->n++];
   App *app = &r->app;
-  *r = (OverlaidRun){
-      .app = {.program = whole->program,
-              .extras = whole->extras, .args = whole->args, .last_row = NAN, .overlaid = 1,
-              .compared = method && whole->args.method[lag_app_method_length(whole->args.method)] == ','}};
+  *r = (OverlaidRun){.app = lag_app_like(whole)};
+  app->overlaid = 1;
+  app->compared = method && whole->args.method[lag_app_method_length(whole->args.method)] == ',';
   app->args.scene = scene;
   if ((method && !(app->args.method = r->method = calloc(length + 1, 1))) ||
       (value && !(r->sets = calloc((size_t)whole->args.nsets + 1, sizeof *r->sets))))

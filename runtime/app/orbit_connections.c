@@ -52,7 +52,7 @@ static int check_same(App *app, App *other, PeriodicOrbit *o, PeriodicOrbit *p) 
 
 /* The periodic motion of scene --to, by the same options. */
 static int open_other(App *app, App *other, PeriodicOrbit *o, PeriodicOrbit *p) {
-  *other = (App){.program = app->program, .extras = app->extras, .args = app->args, .last_row = NAN};
+  *other = lag_app_like(app);
   other->args.scene = app->args.to;
   other->args.guess = other->args.period = NULL;
   int rc = keep_parameters(app, other);

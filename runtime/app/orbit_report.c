@@ -468,9 +468,7 @@ int lag_app_orbit_set_up(App *app) {
   const double fine = 1e-13;
   int rc = lag_app_set_up_start(app);
   if (rc) return rc;
-  if (!app->extras.algebra)
-    return lag_app_error(&app->args, "this simulator was built without GSL, which finds eigenvalues; install GSL "
-                                     "(libgsl-dev), make lagc anew, and leave out --no-gsl");
+  if (!app->extras.algebra) return lag_app_no_gsl(app, "finds eigenvalues");
   if (!app->args.tol && lag_sim_tolerance(app->sim) > fine && sizeof(double) == 8)
     lag_sim_set_tolerance(app->sim, fine);
   return lag_app_choose_method(app);
