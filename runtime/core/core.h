@@ -23,7 +23,7 @@ typedef struct Run {
   double steps, rejected, rhs_calls, systems, iterations, events;
   double watched;        /* charges and their work are known up to this time */
   double balanced;       /* 1: the work of forces on charges is integrated along the run */
-  double dry_work, dry_lost; /* work of dry friction, and the rounding error of that sum */
+  double dry_work, dry_lost; /* work of dry friction, and what its rounding has lost */
   double at_events;      /* change of the energy at events: impacts, constraints that begin to hold, actions */
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
   /* rank of the constraints at the start; and, at a singular start, their rank a hundredth away from it */
@@ -54,7 +54,7 @@ typedef struct Charge {
   double step;       /* with steps up to four times as long as this */
   double before;     /* difference at the last look */
   double through;    /* int |P| dt, step by step */
-  double work, lost; /* int P dt, and the rounding error of that sum (Kahan) */
+  double work, lost; /* int P dt, and what its rounding has lost */
   double balanced;   /* 1: P is known and integrated */
   double bins, width, in_bin; /* full bins; samples that fill a bin; samples in the open bin */
   /* means of time, difference and size over each bin; element LAG_BINS: sums over the open bin */
