@@ -7,8 +7,8 @@
 #include "numeric/dense.h"
 #include "numeric/singular_values.h"
 
-/* B[n k] := those combinations of its columns, k - rank in number, along which none of R[rows k] changes: singular values
- * below `least` count as 0. R is destroyed. Returns the number that is left, or LAG_ENOMEM. */
+/* B[n k] := those combinations of its columns, k - rank in number, along which none of R[rows k] changes: singular
+ * values below `least` count as 0. R is destroyed. Returns the number that is left, or LAG_ENOMEM. */
 static int drop(Pool *pool, int rows, int k, double *R, int n, double *B) {
   const double least = 1e-7;
   int rank = 0;

@@ -99,7 +99,9 @@ static void multiply(int n, int k, int m, const double *A, int down, int right, 
     }
 }
 
-void lag_multiply(int n, int k, int m, const double *A, const double *B, double *C) { multiply(n, k, m, A, k, 1, B, C); }
+void lag_multiply(int n, int k, int m, const double *A, const double *B, double *C) {
+  multiply(n, k, m, A, k, 1, B, C);
+}
 
 void lag_multiply_transposed(int n, int k, int m, const double *A, const double *B, double *C) {
   multiply(n, k, m, A, 1, n, B, C);
